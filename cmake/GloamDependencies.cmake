@@ -1,0 +1,35 @@
+# Everything Gloam links: Debian packages, and MuJoCo from the wheel that ./gloam unpacks into .venv/wheels.
+find_package(Threads REQUIRED)
+find_package(fmt REQUIRED)
+find_package(spdlog REQUIRED)
+find_package(TBB REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_package(Eigen3 QUIET NO_MODULE)
+find_package(tomlplusplus QUIET)
+find_package(pugixml QUIET)
+find_package(embree 3 QUIET)
+find_package(PNG QUIET)
+find_package(JPEG QUIET)
+find_package(OpenEXR QUIET)
+find_package(GTest REQUIRED)
+find_package(benchmark QUIET)
+
+pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
+add_library(gloam_xxhash ALIAS PkgConfig::XXHASH)
+pkg_check_modules(ZSTD IMPORTED_TARGET libzstd)
+pkg_check_modules(OPENH264 IMPORTED_TARGET openh264)
+
+# MuJoCo: a user's own package is honoured; otherwise the pinned wheel holds the library and all headers.
+find_package(mujoco 4.0.1 QUIET)
+if(NOT TARGET mujoco::mujoco)
+  set(GLOAM_WHEELS ${CMAKE_SOURCE_DIR}/.venv/wheels CACHE PATH "Folder of the unpacked Python wheels")
+  set(mujoco_dir ${GLOAM_WHEELS}/mujoco)
+  if(NOT EXISTS ${mujoco_dir}/libmujoco.so.4.0.1)
+    message(FATAL_ERROR "MuJoCo 4.0.1 is missing in ${mujoco_dir}: run ./gloam setup")
+  endif()
+  add_library(mujoco::mujoco SHARED IMPORTED)
+  set_target_properties(mujoco::mujoco PROPERTIES
+    IMPORTED_LOCATION ${mujoco_dir}/libmujoco.so.4.0.1
+    IMPORTED_SONAME libmujoco.so.4.0.1
+    INTERFACE_INCLUDE_DIRECTORIES ${mujoco_dir}/include)
+endif()

@@ -1,0 +1,99 @@
+#pragma once
+// Errors caused by the user's data are values. Result<T> holds a T or an Error; neither may be ignored.
+// Bugs are not values: see GLOAM_CHECK in src/base/check.h.
+
+#include <string>
+#include <utility>
+#include <variant>
+
+namespace gloam {
+
+/// A place in a text file that a person wrote. `line` and `column` count from 1; 0 = unknown.
+struct SourceLoc {
+  std::string file;
+  int line = 0;
+  int column = 0;
+};
+
+/// What kind of failure it is decides the exit code of the program.
+enum class ErrorKind {
+  kInput,        ///< a file or value the user gave is wrong: exit 1
+  kIo,           ///< reading or writing failed (permission, disk full, port in use): exit 1
+  kUsage,        ///< the command line or the call is wrong: exit 2
+  kPartial,      ///< it stopped early but what was recorded is complete and readable: exit 3
+  kDiverged,     ///< physics left the finite numbers; the last good state is kept: exit 3
+  kUnsupported,  ///< valid input that this build cannot do: exit 1
+  kInterrupted,  ///< the user stopped it: exit 130
+};
+
+/// One failure: what is wrong, where, and what to do about it.
+struct [[nodiscard]] Error {
+  ErrorKind kind = ErrorKind::kInput;
+  std::string message;  ///< one sentence without a final full stop
+  SourceLoc loc = {};   ///< where in the user's files; empty when it has no place
+  std::string hint = {};  ///< what to do; may be empty
+
+  /// "file:line:column: message (hint)", one line.
+  std::string to_string() const;
+  /// 1, 2, 3 or 130, as ErrorKind documents.
+  int exit_code() const;
+};
+
+/// A value or an Error.
+template <class T>
+class [[nodiscard]] Result {
+ public:
+  Result(T value) : value_(std::move(value)) {}      // NOLINT: implicit on purpose, `return value;`
+  Result(Error error) : value_(std::move(error)) {}  // NOLINT: implicit on purpose, `return error;`
+
+  bool ok() const { return value_.index() == 0; }
+  explicit operator bool() const { return ok(); }
+
+  T& value() & { return std::get<0>(value_); }
+  const T& value() const& { return std::get<0>(value_); }
+  T&& value() && { return std::get<0>(std::move(value_)); }
+  T& operator*() & { return value(); }
+  const T& operator*() const& { return value(); }
+  T&& operator*() && { return std::move(*this).value(); }
+  T* operator->() { return &value(); }
+  const T* operator->() const { return &value(); }
+
+  const Error& error() const& { return std::get<1>(value_); }
+  Error&& error() && { return std::get<1>(std::move(value_)); }
+
+ private:
+  std::variant<T, Error> value_;
+};
+
+/// Success without a value, or an Error.
+class [[nodiscard]] Status {
+ public:
+  Status() = default;
+  Status(Error error) : error_(std::move(error)), ok_(false) {}  // NOLINT: implicit on purpose
+
+  bool ok() const { return ok_; }
+  explicit operator bool() const { return ok_; }
+  const Error& error() const& { return error_; }
+  Error&& error() && { return std::move(error_); }
+
+ private:
+  Error error_;
+  bool ok_ = true;
+};
+
+}  // namespace gloam
+
+#define GLOAM_CONCAT_INNER(a, b) a##b
+#define GLOAM_CONCAT(a, b) GLOAM_CONCAT_INNER(a, b)
+
+/// `GLOAM_TRY(auto x, f());` declares x from the value of f(), or returns its Error from this function.
+#define GLOAM_TRY(declaration, expression)                                              \
+  auto GLOAM_CONCAT(gloam_try_, __LINE__) = (expression);                               \
+  if (!GLOAM_CONCAT(gloam_try_, __LINE__).ok())                                         \
+    return std::move(GLOAM_CONCAT(gloam_try_, __LINE__)).error();                       \
+  declaration = std::move(GLOAM_CONCAT(gloam_try_, __LINE__)).value()
+
+/// Returns the Error of a Status (or Result) from this function if it is one.
+#define GLOAM_TRY_STATUS(expression)                                          \
+  if (auto gloam_try_status = (expression); !gloam_try_status.ok())          \
+  return std::move(gloam_try_status).error()

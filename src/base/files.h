@@ -1,0 +1,31 @@
+#pragma once
+// Reading and writing whole files, with errors that say what to do.
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gloam/result.h"
+
+namespace gloam {
+
+/// Reads a regular file of at most `max_size` bytes. Errors: missing, a folder, no permission, too large.
+Result<std::vector<uint8_t>> read_file(const std::filesystem::path& path, uint64_t max_size = uint64_t{1} << 30);
+Result<std::string> read_text_file(const std::filesystem::path& path, uint64_t max_size = uint64_t{64} << 20);
+
+/// Writes to a temporary file beside `path` and renames it: readers see the old file or the new one, whole.
+Status write_file_atomic(const std::filesystem::path& path, std::span<const uint8_t> bytes);
+Status write_text_file_atomic(const std::filesystem::path& path, const std::string& text);
+
+/// Creates a folder and its parents.
+Status make_folder(const std::filesystem::path& path);
+
+/// The folder that holds `assets/`: found upwards from the running program, or from $GLOAM_HOME.
+Result<std::filesystem::path> gloam_home();
+
+/// Per-user cache folder ($XDG_CACHE_HOME/gloam or ~/.cache/gloam); $GLOAM_CACHE overrides.
+std::filesystem::path cache_folder();
+
+}  // namespace gloam

@@ -1,0 +1,26 @@
+#pragma once
+// The one way to use many threads. The name labels the stage in profiles and metrics.
+
+#include <cstdint>
+#include <functional>
+
+namespace gloam {
+
+/// Calls f(begin, end) over disjoint ranges that cover [0, n), on several threads; returns when all are done.
+/// `grain` = smallest range worth a task. f must not depend on how the range is split.
+void parallel_for_range(const char* name, int64_t n, int64_t grain,
+                        const std::function<void(int64_t begin, int64_t end)>& f);
+
+/// Calls f(i) for every i in [0, n) on several threads.
+template <class F>
+void parallel_for(const char* name, int64_t n, F&& f) {
+  parallel_for_range(name, n, 1, [&f](int64_t begin, int64_t end) {
+    for (int64_t i = begin; i < end; ++i) f(i);
+  });
+}
+
+/// Number of threads parallel_for may use; default: the machine's processors. 0 restores the default.
+void set_thread_count(int n);
+int thread_count();
+
+}  // namespace gloam

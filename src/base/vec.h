@@ -1,0 +1,96 @@
+#pragma once
+// Small float vectors for geometry and light; device-safe. Public double-precision values are in gloam/types.h.
+
+#include <cmath>
+
+#include "base/device.h"
+
+namespace gloam {
+
+inline constexpr float kPi = 3.14159265358979323846f;
+inline constexpr float kInvPi = 0.31830988618379067154f;
+
+GLOAM_HD float min(float a, float b) { return a < b ? a : b; }
+GLOAM_HD float max(float a, float b) { return a > b ? a : b; }
+GLOAM_HD float clamp(float x, float lo, float hi) { return min(max(x, lo), hi); }
+GLOAM_HD float lerp(float a, float b, float t) { return a + (b - a) * t; }
+GLOAM_HD float sqr(float x) { return x * x; }
+/// Square root that treats rounding below zero as zero.
+GLOAM_HD float safe_sqrt(float x) { return sqrtf(max(x, 0.0f)); }
+
+struct Vec2f {
+  float x = 0, y = 0;
+};
+GLOAM_HD Vec2f operator+(Vec2f a, Vec2f b) { return {a.x + b.x, a.y + b.y}; }
+GLOAM_HD Vec2f operator-(Vec2f a, Vec2f b) { return {a.x - b.x, a.y - b.y}; }
+GLOAM_HD Vec2f operator*(Vec2f a, float s) { return {a.x * s, a.y * s}; }
+
+struct Vec3f {
+  float x = 0, y = 0, z = 0;
+  GLOAM_HD float operator[](int i) const { return i == 0 ? x : (i == 1 ? y : z); }
+};
+GLOAM_HD Vec3f operator+(Vec3f a, Vec3f b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+GLOAM_HD Vec3f operator-(Vec3f a, Vec3f b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+GLOAM_HD Vec3f operator-(Vec3f a) { return {-a.x, -a.y, -a.z}; }
+GLOAM_HD Vec3f operator*(Vec3f a, Vec3f b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+GLOAM_HD Vec3f operator*(Vec3f a, float s) { return {a.x * s, a.y * s, a.z * s}; }
+GLOAM_HD Vec3f operator*(float s, Vec3f a) { return a * s; }
+GLOAM_HD Vec3f operator/(Vec3f a, float s) { return a * (1.0f / s); }
+GLOAM_HD Vec3f& operator+=(Vec3f& a, Vec3f b) { return a = a + b; }
+GLOAM_HD Vec3f& operator*=(Vec3f& a, Vec3f b) { return a = a * b; }
+GLOAM_HD Vec3f& operator*=(Vec3f& a, float s) { return a = a * s; }
+GLOAM_HD bool operator==(Vec3f a, Vec3f b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
+GLOAM_HD float dot(Vec3f a, Vec3f b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+GLOAM_HD Vec3f cross(Vec3f a, Vec3f b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+GLOAM_HD float length_squared(Vec3f a) { return dot(a, a); }
+GLOAM_HD float length(Vec3f a) { return sqrtf(dot(a, a)); }
+GLOAM_HD Vec3f normalize(Vec3f a) { return a * (1.0f / length(a)); }
+GLOAM_HD Vec3f lerp(Vec3f a, Vec3f b, float t) { return a + (b - a) * t; }
+GLOAM_HD float max_component(Vec3f a) { return max(a.x, max(a.y, a.z)); }
+/// Luminance of a linear Rec. 709 colour (ITU-R BT.709).
+GLOAM_HD float luminance(Vec3f rgb) { return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z; }
+
+/// Affine map of points of B into A: columns x, y, z are the images of B's axes, p that of its origin. Named X_AB.
+struct Affine3f {
+  Vec3f x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, p{0, 0, 0};
+};
+GLOAM_HD Vec3f transform_vector(const Affine3f& X_AB, Vec3f v_B) {
+  return X_AB.x * v_B.x + X_AB.y * v_B.y + X_AB.z * v_B.z;
+}
+GLOAM_HD Vec3f transform_point(const Affine3f& X_AB, Vec3f p_B) {
+  return transform_vector(X_AB, p_B) + X_AB.p;
+}
+/// X_AC = X_AB X_BC.
+GLOAM_HD Affine3f operator*(const Affine3f& X_AB, const Affine3f& X_BC) {
+  return {transform_vector(X_AB, X_BC.x), transform_vector(X_AB, X_BC.y), transform_vector(X_AB, X_BC.z),
+          transform_point(X_AB, X_BC.p)};
+}
+/// Inverse of any invertible affine map (scales and shears allowed).
+GLOAM_HD Affine3f inverse(const Affine3f& X) {
+  const Vec3f yz = cross(X.y, X.z), zx = cross(X.z, X.x), xy = cross(X.x, X.y);
+  const float inv_det = 1.0f / dot(X.x, yz);
+  const Vec3f r0 = yz * inv_det, r1 = zx * inv_det, r2 = xy * inv_det;  // rows of the inverse
+  Affine3f out;
+  out.x = {r0.x, r1.x, r2.x};
+  out.y = {r0.y, r1.y, r2.y};
+  out.z = {r0.z, r1.z, r2.z};
+  out.p = -transform_vector(out, X.p);
+  return out;
+}
+
+/// Orthonormal frame with z along the unit vector n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
+struct Frame {
+  Vec3f x, y, z;
+  GLOAM_HD static Frame from_z(Vec3f n) {
+    const float sign = copysignf(1.0f, n.z);
+    const float a = -1.0f / (sign + n.z);
+    const float b = n.x * n.y * a;
+    return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
+  }
+  GLOAM_HD Vec3f to_local(Vec3f v) const { return {dot(v, x), dot(v, y), dot(v, z)}; }
+  GLOAM_HD Vec3f to_world(Vec3f v) const { return x * v.x + y * v.y + z * v.z; }
+};
+
+}  // namespace gloam
