@@ -1,6 +1,6 @@
 #pragma once
-// Errors caused by the user's data are values. Result<T> holds a T or an Error; neither may be ignored.
-// Bugs are not values: see GLOAM_CHECK in src/base/check.h.
+// Errors caused by the user's data are values. Result<T> holds a T or an Error; neither may be
+// ignored. Bugs are not values: see GLOAM_CHECK in src/base/check.h.
 
 #include <string>
 #include <utility>
@@ -29,8 +29,8 @@ enum class ErrorKind {
 /// One failure: what is wrong, where, and what to do about it.
 struct [[nodiscard]] Error {
   ErrorKind kind = ErrorKind::kInput;
-  std::string message;  ///< one sentence without a final full stop
-  SourceLoc loc = {};   ///< where in the user's files; empty when it has no place
+  std::string message;    ///< one sentence without a final full stop
+  SourceLoc loc = {};     ///< where in the user's files; empty when it has no place
   std::string hint = {};  ///< what to do; may be empty
 
   /// "file:line:column: message (hint)", one line.
@@ -86,14 +86,15 @@ class [[nodiscard]] Status {
 #define GLOAM_CONCAT_INNER(a, b) a##b
 #define GLOAM_CONCAT(a, b) GLOAM_CONCAT_INNER(a, b)
 
-/// `GLOAM_TRY(auto x, f());` declares x from the value of f(), or returns its Error from this function.
-#define GLOAM_TRY(declaration, expression)                                              \
-  auto GLOAM_CONCAT(gloam_try_, __LINE__) = (expression);                               \
-  if (!GLOAM_CONCAT(gloam_try_, __LINE__).ok())                                         \
-    return std::move(GLOAM_CONCAT(gloam_try_, __LINE__)).error();                       \
+/// `GLOAM_TRY(auto x, f());` declares x from the value of f(), or returns its Error from this
+/// function.
+#define GLOAM_TRY(declaration, expression)                        \
+  auto GLOAM_CONCAT(gloam_try_, __LINE__) = (expression);         \
+  if (!GLOAM_CONCAT(gloam_try_, __LINE__).ok())                   \
+    return std::move(GLOAM_CONCAT(gloam_try_, __LINE__)).error(); \
   declaration = std::move(GLOAM_CONCAT(gloam_try_, __LINE__)).value()
 
 /// Returns the Error of a Status (or Result) from this function if it is one.
-#define GLOAM_TRY_STATUS(expression)                                          \
-  if (auto gloam_try_status = (expression); !gloam_try_status.ok())          \
+#define GLOAM_TRY_STATUS(expression)                                \
+  if (auto gloam_try_status = (expression); !gloam_try_status.ok()) \
   return std::move(gloam_try_status).error()

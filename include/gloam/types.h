@@ -23,7 +23,8 @@ struct Pose {
   bool operator==(const Pose&) const = default;
 };
 
-/// An exact rate or period: `num / den`. Schedules are counted in integers, never compared as floats.
+/// An exact rate or period: `num / den`. Schedules are counted in integers, never compared as
+/// floats.
 struct Rational {
   int64_t num = 0;
   int64_t den = 1;

@@ -1,8 +1,10 @@
 #pragma once
-// Checks for bugs, as opposed to errors in the user's data (gloam/result.h). A failed check prints and aborts.
+// Checks for bugs, as opposed to errors in the user's data (gloam/result.h). A failed check prints
+// and aborts.
 
 namespace gloam {
-[[noreturn]] void check_failed(const char* file, int line, const char* condition, const char* message);
+[[noreturn]] void check_failed(const char* file, int line, const char* condition,
+                               const char* message);
 }
 
 /// Always on: an invariant of the program.

@@ -1,6 +1,6 @@
 #pragma once
-// Device-safe code is compiled by the host compiler and by nvcc: no std containers, exceptions, virtuals,
-// globals or I/O. Functions that run in kernels are marked GLOAM_HD.
+// Device-safe code is compiled by the host compiler and by nvcc: no std containers, exceptions,
+// virtuals, globals or I/O. Functions that run in kernels are marked GLOAM_HD.
 
 #include <cstddef>
 #include <cstdint>

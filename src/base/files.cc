@@ -28,13 +28,17 @@ Result<Container> read_bytes(const fs::path& path, uint64_t max_size) {
   const uint64_t size = fs::file_size(path, code);
   if (code) return io_error(path, fmt::format("cannot read: {}", code.message()));
   if (size > max_size) {
-    return io_error(path, fmt::format("has {} bytes; the limit for this kind of file is {}", size, max_size));
+    return io_error(
+        path, fmt::format("has {} bytes; the limit for this kind of file is {}", size, max_size));
   }
   std::ifstream in(path, std::ios::binary);
-  if (!in) return io_error(path, fmt::format("cannot open: {}", std::strerror(errno)), "check its permissions");
+  if (!in)
+    return io_error(path, fmt::format("cannot open: {}", std::strerror(errno)),
+                    "check its permissions");
   Container bytes(size, 0);
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (static_cast<uint64_t>(in.gcount()) != size) return io_error(path, "ended while it was being read");
+  if (static_cast<uint64_t>(in.gcount()) != size)
+    return io_error(path, "ended while it was being read");
   return bytes;
 }
 
@@ -52,7 +56,8 @@ Status write_file_atomic(const fs::path& path, std::span<const uint8_t> bytes) {
   const std::string temporary = fmt::format("{}.{}.tmp", path.string(), ::getpid());
   const int fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (fd < 0) {
-    return io_error(path, fmt::format("cannot write: {}", std::strerror(errno)), "check the folder and its permissions");
+    return io_error(path, fmt::format("cannot write: {}", std::strerror(errno)),
+                    "check the folder and its permissions");
   }
   size_t done = 0;
   while (done < bytes.size()) {
@@ -66,7 +71,8 @@ Status write_file_atomic(const fs::path& path, std::span<const uint8_t> bytes) {
   if (done != bytes.size() || !closed) {
     const std::string cause = std::strerror(done != bytes.size() ? write_errno : errno);
     ::unlink(temporary.c_str());
-    return io_error(path, fmt::format("cannot write: {}", cause), "free some space or choose another folder");
+    return io_error(path, fmt::format("cannot write: {}", cause),
+                    "free some space or choose another folder");
   }
   if (::rename(temporary.c_str(), path.c_str()) != 0) {
     const std::string cause = std::strerror(errno);
@@ -83,25 +89,34 @@ Status write_text_file_atomic(const fs::path& path, const std::string& text) {
 Status make_folder(const fs::path& path) {
   std::error_code code;
   fs::create_directories(path, code);
-  if (code) return io_error(path, fmt::format("cannot create the folder: {}", code.message()), "choose another with --out");
-  if (!fs::is_directory(path, code)) return io_error(path, "is a file, not a folder", "choose another with --out");
+  if (code)
+    return io_error(path, fmt::format("cannot create the folder: {}", code.message()),
+                    "choose another with --out");
+  if (!fs::is_directory(path, code))
+    return io_error(path, "is a file, not a folder", "choose another with --out");
   return {};
 }
 
 Result<fs::path> gloam_home() {
-  if (const char* home = std::getenv("GLOAM_HOME"); home != nullptr && *home != 0) return fs::path(home);
+  if (const char* home = std::getenv("GLOAM_HOME"); home != nullptr && *home != 0)
+    return fs::path(home);
   std::error_code code;
   fs::path folder = fs::read_symlink("/proc/self/exe", code).parent_path();
   for (; !folder.empty() && folder != folder.root_path(); folder = folder.parent_path()) {
     if (fs::is_directory(folder / "assets" / "robots", code)) return folder;
   }
-  return Error{ErrorKind::kIo, "the folder 'assets' was not found above the program", {}, "set GLOAM_HOME to Gloam's folder"};
+  return Error{ErrorKind::kIo,
+               "the folder 'assets' was not found above the program",
+               {},
+               "set GLOAM_HOME to Gloam's folder"};
 }
 
 fs::path cache_folder() {
   if (const char* cache = std::getenv("GLOAM_CACHE"); cache != nullptr && *cache != 0) return cache;
-  if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg != 0) return fs::path(xdg) / "gloam";
-  if (const char* home = std::getenv("HOME"); home != nullptr && *home != 0) return fs::path(home) / ".cache" / "gloam";
+  if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg != 0)
+    return fs::path(xdg) / "gloam";
+  if (const char* home = std::getenv("HOME"); home != nullptr && *home != 0)
+    return fs::path(home) / ".cache" / "gloam";
   return fs::temp_directory_path() / "gloam-cache";
 }
 

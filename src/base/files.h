@@ -11,11 +11,15 @@
 
 namespace gloam {
 
-/// Reads a regular file of at most `max_size` bytes. Errors: missing, a folder, no permission, too large.
-Result<std::vector<uint8_t>> read_file(const std::filesystem::path& path, uint64_t max_size = uint64_t{1} << 30);
-Result<std::string> read_text_file(const std::filesystem::path& path, uint64_t max_size = uint64_t{64} << 20);
+/// Reads a regular file of at most `max_size` bytes. Errors: missing, a folder, no permission, too
+/// large.
+Result<std::vector<uint8_t>> read_file(const std::filesystem::path& path,
+                                       uint64_t max_size = uint64_t{1} << 30);
+Result<std::string> read_text_file(const std::filesystem::path& path,
+                                   uint64_t max_size = uint64_t{64} << 20);
 
-/// Writes to a temporary file beside `path` and renames it: readers see the old file or the new one, whole.
+/// Writes to a temporary file beside `path` and renames it: readers see the old file or the new
+/// one, whole.
 Status write_file_atomic(const std::filesystem::path& path, std::span<const uint8_t> bytes);
 Status write_text_file_atomic(const std::filesystem::path& path, const std::string& text);
 

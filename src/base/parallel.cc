@@ -38,8 +38,9 @@ void parallel_for_range(const char* /*name*/, int64_t n, int64_t grain,
     f(0, n);
     return;
   }
-  tbb::parallel_for(tbb::blocked_range<int64_t>(0, n, static_cast<size_t>(grain)),
-                    [&f](const tbb::blocked_range<int64_t>& range) { f(range.begin(), range.end()); });
+  tbb::parallel_for(
+      tbb::blocked_range<int64_t>(0, n, static_cast<size_t>(grain)),
+      [&f](const tbb::blocked_range<int64_t>& range) { f(range.begin(), range.end()); });
 }
 
 }  // namespace gloam

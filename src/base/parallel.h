@@ -6,8 +6,8 @@
 
 namespace gloam {
 
-/// Calls f(begin, end) over disjoint ranges that cover [0, n), on several threads; returns when all are done.
-/// `grain` = smallest range worth a task. f must not depend on how the range is split.
+/// Calls f(begin, end) over disjoint ranges that cover [0, n), on several threads; returns when all
+/// are done. `grain` = smallest range worth a task. f must not depend on how the range is split.
 void parallel_for_range(const char* name, int64_t n, int64_t grain,
                         const std::function<void(int64_t begin, int64_t end)>& f);
 
@@ -19,7 +19,8 @@ void parallel_for(const char* name, int64_t n, F&& f) {
   });
 }
 
-/// Number of threads parallel_for may use; default: the machine's processors. 0 restores the default.
+/// Number of threads parallel_for may use; default: the machine's processors. 0 restores the
+/// default.
 void set_thread_count(int n);
 int thread_count();
 

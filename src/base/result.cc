@@ -19,13 +19,17 @@ std::string Error::to_string() const {
 
 int Error::exit_code() const {
   switch (kind) {
-    case ErrorKind::kUsage: return 2;
+    case ErrorKind::kUsage:
+      return 2;
     case ErrorKind::kPartial:
-    case ErrorKind::kDiverged: return 3;
-    case ErrorKind::kInterrupted: return 130;
+    case ErrorKind::kDiverged:
+      return 3;
+    case ErrorKind::kInterrupted:
+      return 130;
     case ErrorKind::kInput:
     case ErrorKind::kIo:
-    case ErrorKind::kUnsupported: return 1;
+    case ErrorKind::kUnsupported:
+      return 1;
   }
   return 1;
 }

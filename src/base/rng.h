@@ -1,7 +1,7 @@
 #pragma once
-// Counter-based random numbers: a draw is a pure function of its key (seed, stream, counter, index), so any
-// thread can make any draw in any order. Philox4x32-10, Salmon et al. 2011, "Parallel random numbers: as easy
-// as 1, 2, 3". Device-safe.
+// Counter-based random numbers: a draw is a pure function of its key (seed, stream, counter,
+// index), so any thread can make any draw in any order. Philox4x32-10, Salmon et al. 2011,
+// "Parallel random numbers: as easy as 1, 2, 3". Device-safe.
 
 #include "base/device.h"
 
@@ -18,7 +18,8 @@ GLOAM_HD Philox4 philox4x32(uint64_t key, uint64_t counter_hi, uint64_t counter_
   uint32_t k0 = static_cast<uint32_t>(key), k1 = static_cast<uint32_t>(key >> 32);
   for (int round = 0; round < 10; ++round) {
     const uint64_t p0 = 0xD2511F53ull * c0, p1 = 0xCD9E8D57ull * c2;
-    const uint32_t n0 = static_cast<uint32_t>(p1 >> 32) ^ c1 ^ k0, n2 = static_cast<uint32_t>(p0 >> 32) ^ c3 ^ k1;
+    const uint32_t n0 = static_cast<uint32_t>(p1 >> 32) ^ c1 ^ k0,
+                   n2 = static_cast<uint32_t>(p0 >> 32) ^ c3 ^ k1;
     c1 = static_cast<uint32_t>(p1);
     c3 = static_cast<uint32_t>(p0);
     c0 = n0;

@@ -1,5 +1,6 @@
 #pragma once
-// Small float vectors for geometry and light; device-safe. Public double-precision values are in gloam/types.h.
+// Small float vectors for geometry and light; device-safe. Public double-precision values are in
+// gloam/types.h.
 
 #include <cmath>
 
@@ -52,7 +53,8 @@ GLOAM_HD float max_component(Vec3f a) { return max(a.x, max(a.y, a.z)); }
 /// Luminance of a linear Rec. 709 colour (ITU-R BT.709).
 GLOAM_HD float luminance(Vec3f rgb) { return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z; }
 
-/// Affine map of points of B into A: columns x, y, z are the images of B's axes, p that of its origin. Named X_AB.
+/// Affine map of points of B into A: columns x, y, z are the images of B's axes, p that of its
+/// origin. Named X_AB.
 struct Affine3f {
   Vec3f x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, p{0, 0, 0};
 };
@@ -64,8 +66,8 @@ GLOAM_HD Vec3f transform_point(const Affine3f& X_AB, Vec3f p_B) {
 }
 /// X_AC = X_AB X_BC.
 GLOAM_HD Affine3f operator*(const Affine3f& X_AB, const Affine3f& X_BC) {
-  return {transform_vector(X_AB, X_BC.x), transform_vector(X_AB, X_BC.y), transform_vector(X_AB, X_BC.z),
-          transform_point(X_AB, X_BC.p)};
+  return {transform_vector(X_AB, X_BC.x), transform_vector(X_AB, X_BC.y),
+          transform_vector(X_AB, X_BC.z), transform_point(X_AB, X_BC.p)};
 }
 /// Inverse of any invertible affine map (scales and shears allowed).
 GLOAM_HD Affine3f inverse(const Affine3f& X) {
@@ -80,7 +82,8 @@ GLOAM_HD Affine3f inverse(const Affine3f& X) {
   return out;
 }
 
-/// Orthonormal frame with z along the unit vector n (Duff et al. 2017, "Building an Orthonormal Basis, Revisited").
+/// Orthonormal frame with z along the unit vector n (Duff et al. 2017, "Building an Orthonormal
+/// Basis, Revisited").
 struct Frame {
   Vec3f x, y, z;
   GLOAM_HD static Frame from_z(Vec3f n) {

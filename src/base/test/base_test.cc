@@ -17,7 +17,8 @@ namespace gloam {
 namespace {
 
 TEST(Error, NamesFileLineCauseAndWhatToDo) {
-  const Error error{ErrorKind::kInput, "unknown key 'durration'", {"a.toml", 3, 1}, "did you mean 'duration'?"};
+  const Error error{
+      ErrorKind::kInput, "unknown key 'durration'", {"a.toml", 3, 1}, "did you mean 'duration'?"};
   EXPECT_EQ(error.to_string(), "a.toml:3:1: unknown key 'durration' (did you mean 'duration'?)");
   EXPECT_EQ(error.exit_code(), 1);
 }
@@ -55,7 +56,8 @@ TEST(Parallel, CoversEveryIndexOnceWhateverTheThreads) {
   for (const int threads : {1, 2, 4}) {
     set_thread_count(threads);
     std::vector<int> hits(10007, 0);
-    parallel_for("test", static_cast<int64_t>(hits.size()), [&](int64_t i) { hits[static_cast<size_t>(i)] += 1; });
+    parallel_for("test", static_cast<int64_t>(hits.size()),
+                 [&](int64_t i) { hits[static_cast<size_t>(i)] += 1; });
     EXPECT_EQ(std::accumulate(hits.begin(), hits.end(), 0), 10007) << threads << " threads";
     EXPECT_EQ(*std::max_element(hits.begin(), hits.end()), 1);
   }

@@ -1,0 +1,80 @@
+#pragma once
+// Commands: the only way to change a running simulation. Each carries the integer step at which it
+// applies; one whose step has passed applies at the next step, and the log records the step it
+// really applied at.
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "gloam/types.h"
+#include "gloam/world.h"
+
+namespace gloam {
+
+/// Sets one actuator's control, in the actuator's own unit.
+struct SetControl {
+  Actuator actuator;
+  double value = 0;
+};
+/// Velocity goal of the robot's controller, in its heading frame [m/s, m/s, rad/s].
+struct SetVelocityGoal {
+  int robot = 0;
+  double vx = 0, vy = 0, yaw_rate = 0;
+};
+/// Pose of a mocap body.
+struct SetMocapPose {
+  Body body;
+  Pose X_WB;
+};
+/// Force and torque on a body at its centre of mass, world axes [N, N m]; stays until changed.
+struct SetWrench {
+  Body body;
+  Vec3 force, torque;
+};
+/// Adds to the linear velocity of the free body (or root of a floating robot) [m/s].
+struct AddVelocity {
+  Body body;
+  Vec3 velocity;
+};
+/// Pulls a body point towards a target like a spring (MuJoCo's perturbation): stays until `active`
+/// is false.
+struct DragBody {
+  Body body;
+  Vec3 point_B;
+  Vec3 target_W;
+  bool active = true;
+};
+/// Back to the initial state; step and time start at zero again.
+struct ResetSim {};
+
+/// The closed list of model fields that may change while the simulation runs.
+enum class LiveFieldId {
+  kGravity,           ///< (3) [m/s²]
+  kWind,              ///< (3) [m/s]
+  kBodyMass,          ///< (nbody) [kg]; the inertia scales with it
+  kGeomFriction,      ///< (ngeom x 3)
+  kHeightField,       ///< (nhfielddata) 0..1
+  kLightDiffuse,      ///< (nlight x 3)
+  kLightIntensity,    ///< (nlight) [cd]
+  kLightActive,       ///< (nlight) 0 or 1
+  kMaterialColor,     ///< (nmat x 4) rgba
+  kMaterialEmission,  ///< (nmat)
+};
+/// Replaces elements [first, first + values.size()) of a live field.
+struct SetLiveField {
+  LiveFieldId field = LiveFieldId::kGravity;
+  int first = 0;
+  std::vector<float> values;
+};
+
+struct Command {
+  static constexpr int64_t kNextStep = -1;
+  int64_t step = kNextStep;  ///< applies before this step is taken
+  std::variant<SetControl, SetVelocityGoal, SetMocapPose, SetWrench, AddVelocity, DragBody,
+               ResetSim, SetLiveField>
+      what;
+};
+
+}  // namespace gloam

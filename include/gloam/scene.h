@@ -1,0 +1,136 @@
+#pragma once
+// Scene: what the user wrote. Freely editable until compiled into a World. Every node knows its
+// file and line. One options struct per feature: the same struct is filled from TOML, C++ and
+// (later) Python.
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gloam/result.h"
+#include "gloam/types.h"
+
+namespace gloam {
+
+/// How far a model's files may reach. Models come from strangers: see docs/security.md.
+struct FileAccess {
+  std::filesystem::path root =
+      {};  ///< no file outside it is read; empty = found by the rules in docs/security.md
+  bool strict = false;  ///< root = the model file's own folder
+  std::vector<std::pair<std::string, std::filesystem::path>> packages =
+      {};  ///< package://NAME -> folder (URDF)
+};
+
+/// One change of a velocity goal on the schedule of a robot's controller.
+struct VelocityGoal {
+  double time = 0;      ///< when it starts to apply [s], >= 0
+  double vx = 0;        ///< forward [m/s], in the robot's heading frame
+  double vy = 0;        ///< left [m/s]
+  double yaw_rate = 0;  ///< counter-clockwise seen from above [rad/s]
+  SourceLoc loc = {};
+};
+
+/// [robot.controller]: what drives a robot's actuators.
+struct ControllerOptions {
+  std::string type = "none";  ///< none | torque | joint_position | trot (control/ has the list)
+  Rational rate = {500,
+                   1};  ///< how often it runs [Hz]; the model's step rate must be a multiple of it
+  double kp = 40;       ///< joint_position: stiffness [N m/rad]
+  double kd = 1;        ///< joint_position: damping [N m s/rad]
+  std::vector<double> target =
+      {};  ///< joint_position: joint angles [rad], torque: torques [N m]; empty = keyframe / zero
+  std::vector<VelocityGoal> goals = {};  ///< trot: velocity goals over time; empty = stand
+  SourceLoc loc = {};
+};
+
+/// [[robot]]: one MJCF or URDF file, attached under a name prefix "NAME/".
+struct RobotOptions {
+  std::string name = {};  ///< unique; prefix of every element it brings
+  std::filesystem::path file =
+      {};          ///< MJCF (.xml, .mjz, .mjb not) or URDF (.urdf), relative to the scene file
+  Pose X_WR = {};  ///< where its root frame stands in the world
+  std::string keyframe = {};  ///< initial pose by name; empty = the model's default
+  ControllerOptions controller = {};
+  SourceLoc loc = {};
+};
+
+/// [environment]: everything that is not a robot.
+struct EnvironmentOptions {
+  std::filesystem::path file =
+      {};  ///< MJCF; empty = nothing but a floor when a TOML scene has robots, nothing otherwise
+  SourceLoc loc = {};
+};
+
+/// [[camera]]: a camera added to the scene, fixed in the world or on a body.
+struct CameraOptions {
+  std::string name = {};
+  std::string body = {};  ///< full name of the body it sits on; empty = world
+  std::string track =
+      {};  ///< body whose position it follows with a fixed offset and heading; empty = none
+  Vec3 position = {};  ///< in the frame of `body`; for `track`: offset from it in world axes [m]
+  std::optional<Vec3> look_at = {};  ///< point to look at, in the same frame [m]
+  std::optional<Quat> orientation =
+      {};            ///< instead of look_at: looks along its -Z, up is +Y (MuJoCo's convention)
+  double fovy = 45;  ///< vertical field of view [deg], (0, 180)
+  int width = 640, height = 480;               ///< [px], 1 … 16384
+  Rational rate = {20, 1};                     ///< frames per second of simulation time
+  std::vector<std::string> outputs = {"rgb"};  ///< rgb depth segmentation normal albedo motion
+  SourceLoc loc = {};
+};
+
+/// [[push]]: a velocity kick for robustness tests: an impulse at the body's centre of mass.
+struct PushOptions {
+  std::string body = {};
+  double time = 0;     ///< [s]
+  Vec3 velocity = {};  ///< change of the whole subtree's centre-of-mass velocity [m/s]
+  SourceLoc loc = {};
+};
+
+/// [sim]
+struct SimOptions {
+  std::optional<double> timestep = {};  ///< [s]; empty = the model's own
+  double duration = 10;                 ///< [s] of simulation time, > 0
+  uint64_t seed = 1;
+  SourceLoc loc = {};
+};
+
+/// [render]
+struct RenderOptions {
+  std::string tier = "path";  ///< path | direct (primary hit, direct light and shadows only)
+  int spp = 4;                ///< samples per pixel, 1 … 65536
+  int max_depth = 5;          ///< path vertices after the camera, 1 … 64
+  bool denoise = true;
+  std::optional<double> ev100 =
+      {};  ///< exposure value at ISO 100; empty = the scene's rule (docs/light.md)
+  SourceLoc loc = {};
+};
+
+/// [record]
+struct RecordOptions {
+  std::vector<std::string> outputs = {
+      "video", "png"};  ///< video png depth_png depth_exr segmentation metrics contact_sheet
+  SourceLoc loc = {};
+};
+
+struct Scene {
+  std::string name = "scene";
+  std::filesystem::path file = {};  ///< what it was read from; empty for scenes made in code
+  FileAccess access = {};
+  EnvironmentOptions environment = {};
+  std::vector<RobotOptions> robots = {};  ///< in source order
+  std::vector<CameraOptions> cameras = {};
+  std::vector<PushOptions> pushes = {};
+  SimOptions sim = {};
+  RenderOptions render = {};
+  RecordOptions record = {};
+  /// A bare MJCF or URDF is used as it stands: no prefix, nothing added, options unchanged. Then
+  /// this is its path and robots and environment are empty.
+  std::filesystem::path bare_model = {};
+};
+
+/// Reads a scene (.toml) or wraps a bare model (.xml, .urdf). Every error names file and line.
+Result<Scene> load_scene(const std::filesystem::path& path, const FileAccess& access = {});
+
+}  // namespace gloam

@@ -1,0 +1,81 @@
+#pragma once
+// World: what a Scene compiles to. Immutable; shared by everything that runs it.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gloam/result.h"
+#include "gloam/scene.h"
+
+namespace gloam {
+
+struct CompiledWorld;  // src/world/world.h
+
+/// Typed index of a named element. Resolve once with World::find_*, then use on every Snapshot.
+struct Joint {
+  int id = -1;
+};
+struct Body {
+  int id = -1;
+};
+struct Actuator {
+  int id = -1;
+};
+struct SensorHandle {
+  int id = -1;
+};
+struct Camera {
+  int id = -1;
+};
+struct Geom {
+  int id = -1;
+};
+
+/// A name and its kind, for listings.
+struct NamedElement {
+  std::string name;    ///< full name, with the robot's prefix; "" when the model gives none
+  std::string detail;  ///< type, size or target in words
+};
+
+/// What the model holds, for `gloam info`.
+struct WorldInfo {
+  std::vector<NamedElement> bodies, joints, actuators, sensors, cameras, geoms, lights, materials;
+  int nq = 0, nv = 0, nu = 0;
+  double timestep = 0;             ///< [s]
+  double mass = 0;                 ///< of all bodies [kg]
+  int64_t model_bytes = 0;         ///< mjModel
+  int64_t triangles = 0;           ///< of visual meshes, instances counted once each
+  std::vector<Error> unsupported;  ///< what is in the file and is not simulated or drawn, and where
+};
+
+class World {
+ public:
+  World() = default;
+  explicit World(std::shared_ptr<const CompiledWorld> compiled) : compiled_(std::move(compiled)) {}
+
+  /// Compiles a Scene. On failure nothing is left behind.
+  static Result<World> compile(const Scene& scene);
+
+  Result<Joint> find_joint(const std::string& name) const;
+  Result<Body> find_body(const std::string& name) const;
+  Result<Actuator> find_actuator(const std::string& name) const;
+  Result<SensorHandle> find_sensor(const std::string& name) const;
+  Result<Camera> find_camera(const std::string& name) const;
+  Result<Geom> find_geom(const std::string& name) const;
+
+  WorldInfo info() const;
+
+  /// Writes the whole level as one MJCF with its assets into `folder`/scene.xml; stock MuJoCo loads
+  /// it to the same model, equal in every array.
+  Status export_mjcf(const std::filesystem::path& folder) const;
+
+  const std::shared_ptr<const CompiledWorld>& compiled() const { return compiled_; }
+
+ private:
+  std::shared_ptr<const CompiledWorld> compiled_;
+};
+
+}  // namespace gloam

@@ -1,0 +1,18 @@
+#pragma once
+// Images in memory, rows from the top.
+
+#include <cstdint>
+#include <vector>
+
+namespace gloam {
+
+enum class ColorSpace : uint8_t { kLinear, kSrgb };
+
+/// 8-bit texels of a texture.
+struct Image8 {
+  int width = 0, height = 0, channels = 0;
+  ColorSpace color_space = ColorSpace::kSrgb;
+  std::vector<uint8_t> texels;  ///< (height x width x channels)
+};
+
+}  // namespace gloam

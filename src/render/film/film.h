@@ -1,0 +1,28 @@
+#pragma once
+// The planes that a render fills. Rows from the top; every plane is of the same rays.
+
+#include <cstdint>
+#include <vector>
+
+#include "base/vec.h"
+
+namespace gloam {
+
+struct Film {
+  int width = 0, height = 0;
+  std::vector<Vec3f> radiance;  ///< mean over samples, linear Rec. 709 [cd/m²]
+  std::vector<Vec3f> variance;  ///< of that mean, per channel; empty unless asked for
+  std::vector<Vec3f> albedo;    ///< mean over samples (filtered), 0..1; sky: 0
+  std::vector<Vec3f> normal;    ///< mean over samples of the shading normal, world; sky: 0
+  // Exact channels: of the ray through the pixel's centre, never averaged.
+  std::vector<float> depth;          ///< along the optical axis [m]; +inf = nothing
+  std::vector<float> distance;       ///< along the ray [m]; +inf = nothing
+  std::vector<uint32_t> part;        ///< instance index + 1; 0 = nothing
+  std::vector<Vec3f> center_normal;  ///< geometric-shading normal at the centre, world; 0 = nothing
+  std::vector<Vec3f> center_albedo;
+  std::vector<Vec2f> motion;  ///< from the previous to this instant [px]
+
+  size_t pixel_count() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
+};
+
+}  // namespace gloam

@@ -1,0 +1,64 @@
+#pragma once
+// The renderer's face: one World's visuals, moved by PoseFrames, seen by any number of cameras.
+
+#include <cstdint>
+#include <memory>
+
+#include "gloam/result.h"
+#include "render/film/film.h"
+#include "sim/pose_frame.h"
+#include "world/render_description.h"
+
+namespace gloam {
+
+/// A camera at the two ends of the shutter. C looks along -Z with +Y up.
+struct CameraView {
+  Intrinsics intrinsics;
+  Affine3f X_WC_open, X_WC_close;
+  Affine3f X_WC_previous;  ///< at the previous frame, for `motion`
+};
+
+enum class RenderTier : uint8_t {
+  kPath,    ///< unbiased path tracing
+  kDirect,  ///< primary hit, direct light with shadows, constant ambient
+};
+
+struct RenderSettings {
+  RenderTier tier = RenderTier::kPath;
+  int spp = 4;           ///< samples per pixel of this call
+  int first_sample = 0;  ///< index of the first of them: calls with disjoint ranges may be averaged
+  int max_depth = 5;     ///< path vertices after the camera (Mitsuba's max_depth)
+  int roulette_depth = 100;  ///< vertices before Russian roulette starts (Mitsuba's rr_depth)
+  uint64_t seed = 1;
+  uint32_t frame = 0;          ///< draws are keyed (seed, frame, pixel, sample)
+  bool exact_channels = true;  ///< depth, distance, part, center_normal, center_albedo, motion
+  bool variance = false;
+};
+
+struct RenderStats {
+  uint64_t paths = 0, rays = 0;
+  double trace_seconds = 0;  ///< wall time of the call [s]
+};
+
+/// Not thread-safe; renders with all threads of parallel_for. The RenderDescription must outlive
+/// it.
+class Renderer {
+ public:
+  virtual ~Renderer() = default;
+  /// Moves instances, lights and deformables. `open` and `close` bracket the shutter (may be the
+  /// same object); `previous` is the frame before, for motion vectors.
+  virtual void update(const PoseFrame& open, const PoseFrame& close, const PoseFrame& previous) = 0;
+  /// Fills `film` (resized to the view's resolution).
+  virtual RenderStats render(const CameraView& view, const RenderSettings& settings,
+                             Film* film) = 0;
+};
+
+/// Renders on the CPU with Embree. Errors: out of memory, a description that refers to things it
+/// does not hold.
+Result<std::unique_ptr<Renderer>> make_cpu_renderer(const RenderDescription& description);
+
+/// Camera `camera` of the description as it stands in `frame`.
+CameraView view_at(const RenderDescription& description, int camera, const PoseFrame& open,
+                   const PoseFrame& close, const PoseFrame& previous);
+
+}  // namespace gloam

@@ -1,0 +1,39 @@
+#pragma once
+// The data behind gloam::Snapshot.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "gloam/snapshot.h"
+
+namespace gloam {
+
+/// Private copies of the model fields that have been changed by Command. Shared and immutable: a
+/// change makes a new one.
+struct LiveFields {
+  uint64_t version = 0;
+  uint64_t height_field_version = 0;
+  std::vector<std::vector<float>> values;  ///< by LiveFieldId; empty = as in the World's model
+};
+
+struct SnapshotData {
+  std::shared_ptr<const CompiledWorld> world;
+  int64_t step = 0;
+  double time = 0;  ///< [s]
+  uint64_t hash = 0;
+  std::vector<double> state;               ///< mjSTATE_INTEGRATION
+  std::vector<double> sensordata;          ///< (nsensordata), of the state before the last step
+  double sensor_stamp = 0;                 ///< [s]
+  std::shared_ptr<const LiveFields> live;  ///< null = nothing changed
+};
+
+/// Whoever can hand out Snapshots in order: the live simulation, or a replay.
+class SnapshotSource {
+ public:
+  virtual ~SnapshotSource() = default;
+  /// Next Snapshot, or an empty one when the source has ended. Blocks until there is one.
+  virtual Snapshot next() = 0;
+};
+
+}  // namespace gloam

@@ -1,0 +1,50 @@
+#pragma once
+// The compiled World behind gloam::World. Immutable after compile; only scene/ world/ sim/ control/
+// see MuJoCo types.
+
+#include <mujoco/mujoco.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gloam/scene.h"
+#include "gloam/world.h"
+
+namespace gloam {
+
+struct ModelDeleter {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+};
+struct SpecDeleter {
+  void operator()(mjSpec* spec) const { mj_deleteSpec(spec); }
+};
+using ModelPtr = std::unique_ptr<mjModel, ModelDeleter>;
+using SpecPtr = std::unique_ptr<mjSpec, SpecDeleter>;
+
+/// One robot of the scene inside the one model.
+struct RobotInstance {
+  std::string name;
+  std::string prefix;  ///< "go1/"; "" for a bare model
+  int root_body = -1;  ///< body id of its root
+  RobotOptions options;
+};
+
+/// A geom that is drawn but not simulated: the visuals of a URDF, which stock loading discards.
+struct VisualOnlyGeom {
+  int body = 0;   ///< body id in `model`
+  int geom = -1;  ///< geom id in `visual_model`
+  Pose X_BG;
+};
+
+struct CompiledWorld {
+  Scene scene;
+  ModelPtr model;  ///< the whole level, exactly what stock MuJoCo would load
+  SpecPtr spec;    ///< what `model` was compiled from, for export
+  std::vector<RobotInstance> robots;
+  ModelPtr visual_model;  ///< source of visual_only meshes and materials; null when there are none
+  std::vector<VisualOnlyGeom> visual_only;
+  std::vector<Error> unsupported;
+};
+
+}  // namespace gloam
