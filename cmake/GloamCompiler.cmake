@@ -35,3 +35,6 @@ endif()
 if(GLOAM_FUZZ)
   add_compile_options(-fsanitize=fuzzer-no-link)
 endif()
+
+# Programs side by side in one folder, whatever folder of the source they come from.
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)

@@ -1,0 +1,68 @@
+"""The folder rule: a folder of src/ includes only folders above it, and outsiders see include/gloam/ only."""
+import re
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+ORDER = ["base", "geometry", "scene", "world", "sim", "render", "sensors", "control", "record", "runtime"]
+OUTSIDERS = ["src/bridge", "src/studio", "apps", "python"]
+MUJOCO_FOLDERS = {"scene", "world", "sim", "control"}
+STD_IN_KERNEL = re.compile(r"^\s*#include\s+<(?!cmath|cstdint|cstddef|cfloat)")
+INCLUDE = re.compile(r'^\s*#include\s+["<]([^">]+)[">]', re.M)
+
+
+def sources(folder):
+    for path in sorted((ROOT / folder).rglob("*")):
+        if path.suffix in (".h", ".cc") and path.is_file():
+            yield path
+
+
+class FolderRule(unittest.TestCase):
+    def test_modules_include_only_modules_above_them(self):
+        bad = []
+        for rank, module in enumerate(ORDER):
+            for path in sources(f"src/{module}"):
+                if "/fuzz/" in str(path):
+                    continue
+                for include in INCLUDE.findall(path.read_text()):
+                    top = include.split("/")[0]
+                    if top in ORDER and ORDER.index(top) > rank:
+                        bad.append(f"{path.relative_to(ROOT)} includes {include}, which lies below it")
+        self.assertEqual(bad, [])
+
+    def test_outsiders_see_the_public_api_only(self):
+        bad = []
+        for folder in OUTSIDERS:
+            for path in sources(folder):
+                for include in INCLUDE.findall(path.read_text()):
+                    top = include.split("/")[0]
+                    if top in ORDER or top == "mujoco":
+                        bad.append(f"{path.relative_to(ROOT)} includes {include}; only gloam/ is allowed there")
+        self.assertEqual(bad, [])
+
+    def test_mujoco_types_stay_in_their_folders(self):
+        bad = []
+        for module in ORDER:
+            if module in MUJOCO_FOLDERS:
+                continue
+            for path in sources(f"src/{module}"):
+                if "/test/" in str(path):
+                    continue
+                if re.search(r'#include\s+[<"]mujoco/', path.read_text()):
+                    bad.append(str(path.relative_to(ROOT)))
+        self.assertEqual(bad, [], "these folders must not see MuJoCo types")
+
+    def test_kernel_is_device_safe(self):
+        bad = []
+        for path in sources("src/render/kernel"):
+            for number, line in enumerate(path.read_text().splitlines(), 1):
+                if STD_IN_KERNEL.search(line) or re.search(r"\b(virtual|throw|std::)\b", line.split("//")[0]):
+                    bad.append(f"{path.relative_to(ROOT)}:{number}: {line.strip()}")
+        self.assertEqual(bad, [], "device-safe code has no std containers, virtuals or exceptions")
+
+    def test_public_headers_stay_few(self):
+        self.assertLessEqual(len(list((ROOT / "include/gloam").glob("*.h"))), 20)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,248 @@
+#!/usr/bin/env python3
+"""Runs Gloam's tests: `./gloam test [fast|full] [--only NAME]`.
+
+fast  everything that takes about a minute once built
+      (no tier) what CI runs: format, lint of changed files, all tests, ASan+UBSan over unit tests, TSan over sim
+full  the same plus every sanitizer over everything, long fuzzing and sweeps; resumable: finished parts are kept in
+      build/full_state.json until the source changes
+"""
+import argparse
+import json
+import os
+import re
+import subprocess
+import sys
+import time
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+BUILD = ROOT / "build"
+CLANG = "-19"
+UNIT = ["base", "geometry", "scene", "world", "sim", "render", "sensors", "control", "record", "runtime", "studio"]
+
+
+class Tally:
+    """Counts of what ran, and what broke in plain words."""
+
+    def __init__(self):
+        self.passed, self.failed, self.skipped, self.broken = 0, 0, 0, []
+
+    def add(self, name, passed, failed, skipped, seconds, detail=""):
+        self.passed += passed
+        self.failed += failed
+        self.skipped += skipped
+        mark = "ok  " if not failed else "FAIL"
+        counts = f"{passed} passed" + (f", {failed} failed" if failed else "") + (f", {skipped} skipped" if skipped else "")
+        print(f"{mark} {name:<34} {counts:<34} {seconds:6.1f} s", flush=True)
+        if failed:
+            self.broken.append(name)
+            if detail:
+                print(detail, flush=True)
+
+
+def environment():
+    env = dict(os.environ)
+    env.setdefault("GLOAM_TEST_DATA", str(ROOT / ".cache" / "test_data"))
+    env.setdefault("ASAN_OPTIONS", "detect_leaks=1:abort_on_error=0:allocator_may_return_null=1")
+    env.setdefault("LSAN_OPTIONS", f"suppressions={ROOT}/tests/lsan.supp:print_suppressions=0")
+    env.setdefault("TSAN_OPTIONS", f"suppressions={ROOT}/tests/tsan.supp:halt_on_error=1")
+    return env
+
+
+def run(command, text_in="", **more):
+    return subprocess.run(command, cwd=ROOT, text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                          input=text_in, env=environment(), **more)
+
+
+def tail(text, lines=40):
+    return "\n".join("    " + line for line in text.splitlines()[-lines:])
+
+
+def build(tally, preset, targets=()):
+    start = time.time()
+    folder = BUILD / preset
+    result = None
+    if not (folder / "build.ninja").exists():
+        result = run(["cmake", "--preset", preset])
+    if result is None or result.returncode == 0:
+        result = run(["ninja", "-C", str(folder), *targets])
+    ok = result.returncode == 0
+    tally.add(f"build {preset}", int(ok), int(not ok), 0, time.time() - start, "" if ok else tail(result.stdout))
+    return ok
+
+
+def gtest(tally, preset, module, only=None, shard_filter=None):
+    """Runs one module's unit tests under one build; its own output is shown only for what fails."""
+    program = BUILD / preset / "bin" / f"gloam_{module}_test"
+    if not program.exists():
+        return
+    report = BUILD / preset / f"{module}_tests.json"
+    report.unlink(missing_ok=True)
+    command = [str(program), f"--gtest_output=json:{report}", "--gtest_brief=1"]
+    if only or shard_filter:
+        command.append(f"--gtest_filter={only or shard_filter}")
+    start = time.time()
+    result = run(command, timeout=3600)
+    name = f"{module} ({preset})"
+    seconds = time.time() - start
+    if not report.exists():
+        tally.add(name, 0, 1, 0, seconds, f"    crashed with status {result.returncode}\n" + tail(result.stdout))
+        return
+    data = json.loads(report.read_text())
+    cases = [case for suite in data.get("testsuites", []) for case in suite.get("testsuite", [])]
+    skipped = sum(case.get("result") == "SKIPPED" for case in cases)
+    failed = sum("failures" in case for case in cases)
+    ran = sum(case.get("status") == "RUN" for case in cases)
+    if result.returncode != 0 and failed == 0:
+        failed = 1  # a sanitizer spoke after the last test
+    tally.add(name, max(ran - failed - skipped, 0), failed, skipped, seconds, "" if not failed else tail(result.stdout, 80))
+
+
+def python_tests(tally, pattern, folder="tests", only=None):
+    start = time.time()
+    os.environ.update(environment())
+    loader = unittest.TestLoader()
+    if only:
+        loader.testNamePatterns = [f"*{only}*"]
+    suite = loader.discover(str(ROOT / folder), pattern=pattern, top_level_dir=str(ROOT / "tests"))
+    with open(BUILD / "python_tests.log", "w+") as log:
+        result = unittest.TextTestRunner(stream=log, verbosity=2).run(suite)
+        log.seek(0)
+        text = log.read()
+    failed = len(result.failures) + len(result.errors)
+    passed = result.testsRun - failed - len(result.skipped)
+    tally.add(f"{folder}/{pattern}", passed, failed, len(result.skipped), time.time() - start,
+              "" if not failed else tail(text, 80))
+
+
+def tracked(*patterns):
+    listed = run(["git", "ls-files", "--cached", "--others", "--exclude-standard", *patterns]).stdout.split()
+    return [name for name in listed if (ROOT / name).exists()]
+
+
+def check_format(tally):
+    start = time.time()
+    files = tracked("*.h", "*.cc")
+    result = run([f"clang-format{CLANG}", "--dry-run", "--Werror", *files])
+    ok = result.returncode == 0
+    bad = sorted(set(re.findall(r"^(\S+?):\d+:\d+: error", result.stdout, re.M)))
+    tally.add("format", int(ok), int(not ok), 0, time.time() - start,
+              "" if ok else "    not formatted (clang-format-19 -i FILE): " + " ".join(bad))
+
+
+def check_lint(tally):
+    """clang-tidy on the sources that the last commits changed: the whole tree would take half an hour."""
+    start = time.time()
+    base = run(["git", "rev-list", "-1", "--before=12 hours ago", "HEAD"]).stdout.strip()
+    changed = run(["git", "diff", "--name-only", "--diff-filter=d", base or "HEAD", "--", "src/*.cc", "apps/*.cc"]).stdout.split()
+    if not base:
+        changed = tracked("src/*.cc", "apps/*.cc")
+    changed = [name for name in changed if "/fuzz/" not in name and "/test/" not in name][:40]
+    if not changed:
+        tally.add("lint", 1, 0, 0, time.time() - start)
+        return
+    result = run(["xargs", "-P2", "-n4", f"clang-tidy{CLANG}", "-p", str(BUILD / "release"), "--quiet",
+                  "--extra-arg=-Wno-unknown-warning-option"], text_in="\n".join(changed))
+    errors = [line for line in result.stdout.splitlines() if re.search(r"(error|warning): .*\[", line)]
+    ok = result.returncode == 0
+    tally.add(f"lint ({len(changed)} files)", int(ok), int(not ok), 0, time.time() - start,
+              "" if ok else "\n".join("    " + line for line in errors[:30]) or tail(result.stdout))
+
+
+def fuzz(tally, seconds):
+    if not build(tally, "fuzz"):
+        return
+    for program in sorted((BUILD / "fuzz" / "bin").glob("*_fuzz")):
+        start = time.time()
+        corpus = BUILD / "fuzz" / "corpus" / program.name
+        corpus.mkdir(parents=True, exist_ok=True)
+        seeds = ROOT / "tests" / "fuzz" / program.name
+        folders = [str(corpus)] + ([str(seeds)] if seeds.is_dir() else [])
+        result = run([str(program), f"-max_total_time={seconds}", "-timeout=5", "-rss_limit_mb=1024", "-print_final_stats=1",
+                      f"-artifact_prefix={corpus}/", *folders])
+        executions = re.search(r"stat::number_of_executed_units:\s*(\d+)", result.stdout)
+        ok = result.returncode == 0
+        tally.add(f"fuzz {program.name} ({executions.group(1) if executions else 0} runs)", int(ok), int(not ok), 0,
+                  time.time() - start, "" if ok else tail(result.stdout))
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="./gloam test", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("tier", nargs="?", choices=["fast", "full"], help="default: what CI runs")
+    parser.add_argument("--only", metavar="NAME", help="only tests whose name contains NAME (unit and e2e, release build)")
+    args = parser.parse_args()
+    BUILD.mkdir(exist_ok=True)
+    started, tally = time.time(), Tally()
+    if build(tally, "release"):
+        if args.only:
+            for module in UNIT:
+                gtest(tally, "release", module, f"*{args.only}*")
+            python_tests(tally, "*_test.py", "tests/e2e", args.only)
+        else:
+            tiers = {"fast": fast, None: ci, "full": full}
+            tiers[args.tier](tally)
+    total = time.time() - started
+    if tally.broken:
+        print("broken: " + ", ".join(tally.broken))
+    print(f"total {total / 60:.1f} min")
+    print(f"{tally.passed} passed, {tally.failed} failed" + (f", {tally.skipped} skipped" if tally.skipped else ""))
+    return 1 if tally.failed or not tally.passed else 0
+
+
+def fast(tally):
+    python_tests(tally, "folder_rule.py")
+    for module in UNIT:
+        gtest(tally, "release", module, shard_filter="-*Slow*")
+    python_tests(tally, "cli_test.py", "tests/e2e")
+
+
+def ci(tally):
+    run([sys.executable, "tests/fetch_data.py"])
+    check_format(tally)
+    python_tests(tally, "folder_rule.py")
+    for module in UNIT:
+        gtest(tally, "release", module)
+    python_tests(tally, "*_test.py", "tests/e2e")
+    check_lint(tally)
+    if build(tally, "asan"):
+        for module in UNIT:
+            gtest(tally, "asan", module, shard_filter="-*Slow*:*Allocat*")
+    if build(tally, "tsan", ["gloam_base_test", "gloam_sim_test"]):
+        for module in ["base", "sim"]:
+            gtest(tally, "tsan", module, shard_filter="-*Slow*:*Allocat*")
+    fuzz(tally, seconds=15)
+
+
+def full(tally):
+    """Everything; parts that passed on this very source are not run again."""
+    state_file = BUILD / "full_state.json"
+    version = run(["git", "describe", "--always", "--dirty"]).stdout.strip()
+    state = json.loads(state_file.read_text()) if state_file.exists() else {}
+    if state.get("version") != version:
+        state = {"version": version, "done": {}}
+    parts = {
+        "ci": lambda t: ci(t),
+        "asan all": lambda t: build(t, "asan") and [gtest(t, "asan", m) for m in UNIT],
+        "tsan all": lambda t: build(t, "tsan") and [gtest(t, "tsan", m) for m in UNIT],
+        "fuzz long": lambda t: fuzz(t, seconds=3600),
+    }
+    for name, part in parts.items():
+        if name in state["done"]:
+            print(f"kept {name}: passed before on {version}")
+            tally.passed += state["done"][name]["passed"]
+            continue
+        own, start = Tally(), time.time()
+        part(own)
+        tally.passed, tally.failed, tally.skipped = tally.passed + own.passed, tally.failed + own.failed, tally.skipped + own.skipped
+        tally.broken += own.broken
+        if not own.failed:
+            state["done"][name] = {"passed": own.passed, "skipped": own.skipped, "seconds": round(time.time() - start)}
+            state_file.write_text(json.dumps(state, indent=1))
+    history = ROOT / "bench" / "history"
+    history.mkdir(parents=True, exist_ok=True)
+    (history / f"full_tests_{version}.json").write_text(json.dumps(state, indent=1))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
