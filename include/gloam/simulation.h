@@ -1,0 +1,121 @@
+#pragma once
+// Simulation: a World that runs. Physics has its own thread; cameras render on theirs. Everything
+// here may be called from any thread; callbacks say on which thread they come.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gloam/camera.h"
+#include "gloam/command.h"
+#include "gloam/result.h"
+#include "gloam/scene.h"
+#include "gloam/snapshot.h"
+#include "gloam/world.h"
+
+struct mjModel_;
+struct mjData_;
+
+namespace gloam {
+
+enum class Pace {
+  kFast,      ///< as fast as possible: waits for required consumers
+  kRealTime,  ///< paced by the wall clock times `speed`; late consumers lose frames
+};
+
+struct SimulationOptions {
+  uint64_t seed = 1;
+  double timestep = 0;  ///< [s]; 0 = the model's own
+  Pace pace = Pace::kFast;
+  double speed = 1;  ///< of Pace::kRealTime, > 0
+};
+
+/// One stream of pictures from one camera.
+struct CameraRequest {
+  std::string camera = "free";  ///< full name, or "free": frames the whole model until moved
+  Rational rate = {20, 1};      ///< frames per second of simulation time
+  int width = 0, height = 0;    ///< [px]; 0 = the camera's own
+  std::vector<std::string> outputs = {"rgb"};  ///< rgb depth segmentation normal albedo motion
+  RenderOptions render = {};
+  bool required =
+      false;  ///< the simulation waits for this camera; else frames are dropped, oldest first
+};
+
+/// An open stream. Closing (destroying) it waits for its last callback.
+class CameraStream {
+ public:
+  virtual ~CameraStream() = default;
+  /// Moves the free camera: pose of the camera in the world, looks along -Z. No effect on the
+  /// model's own cameras.
+  virtual void set_pose(const Pose& X_WC) = 0;
+  virtual Pose pose() const = 0;
+  /// Renders the latest Snapshot again, also while the simulation is paused.
+  virtual void refresh() = 0;
+  virtual int64_t dropped() const = 0;
+};
+using FrameCallback = std::function<void(std::shared_ptr<const CameraFrame>)>;
+
+struct SimulationStats {
+  int64_t step = 0;
+  double time = 0;             ///< [s]
+  uint64_t hash = 0;           ///< of the state, chained over all steps
+  double realtime_factor = 0;  ///< simulated seconds per wall second since the last resume
+  int64_t dropped_snapshots = 0;
+  int64_t commands_applied = 0;
+  int64_t warnings = 0;  ///< MuJoCo's, all types
+};
+
+/// A body under a pixel, for dragging.
+struct PickResult {
+  Body body;
+  std::string name;
+  Vec3 point_B;  ///< hit point in the body's frame [m]
+  Vec3 point_W;  ///< and in the world [m]
+};
+
+class Simulation {
+ public:
+  static Result<std::unique_ptr<Simulation>> create(const World& world,
+                                                    const SimulationOptions& options);
+  virtual ~Simulation() = default;
+
+  virtual const World& world() const = 0;
+  /// Steps until `step`, then pauses; blocks. Errors: diverged (the last good state is kept),
+  /// stopped by request_stop().
+  virtual Status run_until(int64_t step) = 0;
+  /// Runs until paused; returns at once.
+  virtual void resume() = 0;
+  virtual void pause() = 0;
+  virtual bool paused() const = 0;
+  /// Takes n steps and pauses again; blocks.
+  virtual Status step(int64_t n) = 0;
+  virtual void set_pace(Pace pace, double speed) = 0;
+  /// Makes run_until return early with ErrorKind::kInterrupted. Safe in signal handlers.
+  virtual void request_stop() = 0;
+  /// How the physics is: ok, or why it stopped.
+  virtual Status status() const = 0;
+
+  /// Queues a Command. Errors: the queue is full, the handle is not of this World.
+  virtual Status post(const Command& command) = 0;
+  virtual Snapshot latest() const = 0;
+  virtual SimulationStats stats() const = 0;
+  /// Called on the physics thread after every step with the private model and data. Set before the
+  /// first step.
+  virtual void set_step_hook(std::function<void(const mjModel_*, mjData_*)> hook) = 0;
+
+  /// Opens a stream; `on_frame` comes on the stream's own thread, frames in order.
+  virtual Result<std::unique_ptr<CameraStream>> open_camera(const CameraRequest& request,
+                                                            FrameCallback on_frame) = 0;
+  virtual std::vector<std::string> camera_names() const = 0;
+  virtual Result<std::vector<LabelRow>> labels() = 0;
+  /// What the ray through pixel (u, v) [px] of a frame hits in the latest Snapshot. Error: nothing
+  /// there.
+  virtual Result<PickResult> pick(const CameraFrame& frame, double u, double v) = 0;
+
+  /// Physics steps per simulated second, exact.
+  virtual Rational step_rate() const = 0;
+};
+
+}  // namespace gloam
