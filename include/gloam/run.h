@@ -28,6 +28,8 @@ struct RunRequest {
   bool overwrite = false;          ///< an existing results folder is replaced
   std::vector<std::string> cameras =
       {};  ///< full names; empty = all [[camera]]s of the scene, else all of the model
+  int width = 0, height = 0;  ///< of every camera [px]; 0 = the camera's own
+  Rational rate = {0, 1};     ///< of every camera [Hz]; 0 = the camera's own
   SimulationOptions simulation = {};
   double duration = 0;  ///< [s]; 0 = the scene's
 };

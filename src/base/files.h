@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "gloam/program.h"
 #include "gloam/result.h"
 
 namespace gloam {
@@ -25,9 +26,6 @@ Status write_text_file_atomic(const std::filesystem::path& path, const std::stri
 
 /// Creates a folder and its parents.
 Status make_folder(const std::filesystem::path& path);
-
-/// The folder that holds `assets/`: found upwards from the running program, or from $GLOAM_HOME.
-Result<std::filesystem::path> gloam_home();
 
 /// Per-user cache folder ($XDG_CACHE_HOME/gloam or ~/.cache/gloam); $GLOAM_CACHE overrides.
 std::filesystem::path cache_folder();

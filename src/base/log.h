@@ -6,12 +6,10 @@
 #include <string_view>
 #include <utility>
 
+#include "gloam/program.h"
+
 namespace gloam {
 
-enum class LogLevel { kDebug, kInfo, kWarning, kError, kOff };
-
-/// Lowest level that is printed; default kInfo.
-void set_log_level(LogLevel level);
 void log_message(LogLevel level, std::string_view text);
 
 template <class... Args>

@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <functional>
 
+#include "gloam/program.h"
+
 namespace gloam {
 
 /// Calls f(begin, end) over disjoint ranges that cover [0, n), on several threads; returns when all

@@ -1,0 +1,50 @@
+#pragma once
+// A command of the program: one file in commands/ and one line in the list of main.cc.
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+#include "gloam/result.h"
+#include "gloam/run.h"
+#include "gloam/scene.h"
+
+namespace gloam::cli {
+
+/// Set by main for every command.
+struct Globals {
+  bool json = false;
+  bool quiet = false;
+};
+
+/// What a command does after parsing; the value is the exit code.
+using Action = std::function<int()>;
+
+void add_demo(CLI::App& app, Globals& globals, Action& action);
+void add_run(CLI::App& app, Globals& globals, Action& action);
+void add_render(CLI::App& app, Globals& globals, Action& action);
+void add_info(CLI::App& app, Globals& globals, Action& action);
+void add_export(CLI::App& app, Globals& globals, Action& action);
+void add_completion(CLI::App& app, Globals& globals, Action& action);
+
+/// Prints "error: …" on stderr and returns the exit code.
+int fail(const Error& error);
+
+/// Adds the options that say how far a model's files may reach.
+void add_access_options(CLI::App& command, FileAccess& access, std::vector<std::string>& packages);
+/// Parses `packages` (NAME=FOLDER) into `access`.
+Status apply_packages(FileAccess& access, const std::vector<std::string>& packages);
+/// "640x480" -> width, height.
+Status parse_resolution(const std::string& text, int& width, int& height);
+
+/// A progress line on stderr: a bar with ETA on a terminal, a line now and then elsewhere. Stops
+/// the job on Ctrl-C.
+ProgressCallback progress_display(const Globals& globals);
+/// Ends the progress line.
+void finish_progress();
+
+/// From now on Ctrl-C and SIGTERM set a flag; a second one ends the process with 130.
+void catch_interrupts();
+bool interrupted();
+
+}  // namespace gloam::cli

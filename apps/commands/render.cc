@@ -1,0 +1,87 @@
+// gloam render: stills.
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "run_options.h"
+
+namespace gloam::cli {
+namespace {
+
+struct RenderCommand {
+  std::string file, out = ".";
+  RunOptions options;
+  double time = 0;
+};
+
+int render(const RenderCommand& command_line, const Globals& globals) {
+  RenderCommand command = command_line;
+  constexpr int kStillSamples = 64;
+  if (!command.options.spp) command.options.spp = kStillSamples;
+  auto scene = command.options.load(command.file);
+  if (!scene.ok()) return fail(scene.error());
+  auto world = World::compile(*scene);
+  if (!world.ok()) return fail(world.error());
+
+  std::vector<std::string> cameras = command.options.cameras;
+  if (cameras.empty()) {
+    for (const NamedElement& camera : world->info().cameras) cameras.push_back(camera.name);
+  }
+  if (cameras.empty()) cameras = {"free"};
+  std::vector<CameraRequest> requests;
+  for (const std::string& camera : cameras) {
+    CameraRequest request;
+    request.camera = camera;
+    request.render = scene->render;
+    request.outputs =
+        command.options.outputs.empty() ? std::vector<std::string>{"rgb"} : command.options.outputs;
+    if (!command.options.resolution.empty()) {
+      if (const Status status =
+              parse_resolution(command.options.resolution, request.width, request.height);
+          !status.ok()) {
+        return fail(status.error());
+      }
+    }
+    requests.push_back(request);
+  }
+  auto frames = render_stills(*world, command.time, requests, progress_display(globals));
+  finish_progress();
+  if (!frames.ok()) return fail(frames.error());
+
+  auto json = nlohmann::ordered_json::array();
+  for (const CameraFrame& frame : *frames) {
+    std::string name = frame.camera;
+    std::replace(name.begin(), name.end(), '/', '_');
+    auto files = write_frame(frame, command.out, name);
+    if (!files.ok()) return fail(files.error());
+    for (const auto& file : *files) {
+      if (globals.json)
+        json.push_back({{"camera", frame.camera}, {"file", file.string()}});
+      else
+        std::printf("%s\n", file.string().c_str());
+    }
+  }
+  if (globals.json) std::printf("%s\n", json.dump(2).c_str());
+  return 0;
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, Globals& globals, Action& action) {
+  CLI::App* sub = app.add_subcommand("render", "Render stills of a scene or model");
+  auto command = std::make_shared<RenderCommand>();
+  sub->add_option("FILE", command->file, "Scene or model")->required();
+  command->options.add_rendering(*sub);
+  sub->get_option("--output")->description("Channels: rgb depth segmentation normal albedo motion");
+  sub->add_option("--time", command->time, "Simulation time of the picture in seconds")
+      ->check(CLI::NonNegativeNumber);
+  sub->add_option("--out", command->out, "Folder for the pictures; default: here");
+  sub->footer("Example:\n  gloam render robot.xml --camera free --spp 256 --resolution 1280x720");
+  sub->callback([&globals, &action, command] {
+    action = [&globals, command] { return render(*command, globals); };
+  });
+}
+
+}  // namespace gloam::cli

@@ -1,0 +1,118 @@
+// What several commands share: errors, interrupts, progress, option parsing.
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+
+#include "command.h"
+
+namespace gloam::cli {
+namespace {
+
+std::atomic<bool> stop_requested{false};
+
+void on_signal(int signal) {
+  if (stop_requested.exchange(true))
+    ::_exit(128 + signal);  // the second one does not wait for files
+}
+
+std::string as_time(double seconds) {
+  const auto whole = static_cast<int64_t>(seconds + 0.5);
+  return whole < 60 ? fmt::format("{} s", whole)
+                    : fmt::format("{} min {:02} s", whole / 60, whole % 60);
+}
+
+bool progress_line_open = false;
+
+}  // namespace
+
+int fail(const Error& error) {
+  finish_progress();
+  std::fprintf(stderr, "gloam: error: %s\n", error.to_string().c_str());
+  return error.exit_code();
+}
+
+void catch_interrupts() {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+bool interrupted() { return stop_requested; }
+
+ProgressCallback progress_display(const Globals& globals) {
+  const bool terminal = ::isatty(STDERR_FILENO) != 0;
+  return [terminal, quiet = globals.quiet, last_print = -1e9](const Progress& progress) mutable {
+    // Nothing for the first moments: most commands end before anybody wonders.
+    const double interval = terminal ? 0.2 : 10.0;
+    if (!quiet && progress.seconds > 1.0 && progress.seconds - last_print >= interval) {
+      last_print = progress.seconds;
+      const double fraction = std::min(std::max(progress.done, 0.0), 1.0);
+      const std::string eta =
+          fraction > 0.01 ? fmt::format(", about {} left",
+                                        as_time(progress.seconds * (1 - fraction) / fraction))
+                          : "";
+      if (terminal) {
+        constexpr int kWidth = 30;
+        const int filled = static_cast<int>(fraction * kWidth);
+        std::fprintf(stderr, "\r\033[K%s [%s%s] %3d %%, %s%s", progress.what.c_str(),
+                     std::string(filled, '#').c_str(), std::string(kWidth - filled, '.').c_str(),
+                     static_cast<int>(fraction * 100), as_time(progress.seconds).c_str(),
+                     eta.c_str());
+        progress_line_open = true;
+      } else {
+        std::fprintf(stderr, "gloam: %s: %d %%, %s%s\n", progress.what.c_str(),
+                     static_cast<int>(fraction * 100), as_time(progress.seconds).c_str(),
+                     eta.c_str());
+      }
+      std::fflush(stderr);
+    }
+    return !interrupted();
+  };
+}
+
+void finish_progress() {
+  if (progress_line_open) std::fputs("\r\033[K", stderr);
+  progress_line_open = false;
+}
+
+void add_access_options(CLI::App& command, FileAccess& access, std::vector<std::string>& packages) {
+  command.add_option("--root", access.root, "No file of the model may lie outside this folder");
+  command.add_flag("--strict", access.strict, "The root is the model file's own folder");
+  command.add_option("--package", packages, "Where package://NAME is, as NAME=FOLDER (repeatable)");
+}
+
+Status apply_packages(FileAccess& access, const std::vector<std::string>& packages) {
+  for (const std::string& text : packages) {
+    const size_t split = text.find('=');
+    if (split == std::string::npos || split == 0 || split + 1 == text.size()) {
+      return Error{ErrorKind::kUsage, fmt::format("--package {}: expected NAME=FOLDER", text)};
+    }
+    access.packages.emplace_back(text.substr(0, split), text.substr(split + 1));
+  }
+  return {};
+}
+
+Status parse_resolution(const std::string& text, int& width, int& height) {
+  const char* end = text.data() + text.size();
+  const auto [after_width, error] = std::from_chars(text.data(), end, width);
+  if (error == std::errc() && after_width != end && *after_width == 'x') {
+    const auto [after_height, error2] = std::from_chars(after_width + 1, end, height);
+    constexpr int kLargest = 16384;
+    if (error2 == std::errc() && after_height == end && width >= 1 && height >= 1 &&
+        width <= kLargest && height <= kLargest) {
+      return {};
+    }
+  }
+  return Error{ErrorKind::kUsage,
+               fmt::format("--resolution {}: expected WIDTHxHEIGHT, each from 1 to 16384", text),
+               {},
+               "for example 640x480"};
+}
+
+}  // namespace gloam::cli

@@ -1,0 +1,59 @@
+// The command line: thin, sees include/gloam/ only.
+
+#include <array>
+#include <iostream>
+
+#include "command.h"
+#include "gloam/program.h"
+
+namespace gloam::cli {
+namespace {
+
+constexpr std::array kCommands = {add_demo, add_run,    add_render,
+                                  add_info, add_export, add_completion};
+
+int run_program(int argc, char** argv) {
+  CLI::App app{
+      "Gloam: a robotics simulator. Physics is exactly MuJoCo, light is path-traced.\n"
+      "Also: ./gloam setup | test | bench | doctor (see ./gloam help)"};
+  app.name("gloam");
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.set_version_flag("--version",
+                       [] { return std::string("gloam ") + version() + "\n" + configuration(); });
+  app.footer(
+      "Example: gloam run examples/demo.toml --out results/first\nExit codes: 0 ok, 1 failure, 2 "
+      "usage, 3 partial, 130 interrupted");
+
+  Globals globals;
+  bool verbose = false;
+  app.add_flag("--json", globals.json, "Print data as JSON on stdout");
+  app.add_flag("-q,--quiet", globals.quiet, "No progress, only warnings and errors");
+  app.add_flag("-v,--verbose", verbose, "Tell more");
+
+  Action action;
+  for (const auto add : kCommands) add(app, globals, action);
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error, std::cout, std::cerr);
+    return code == 0 ? 0 : 2;
+  }
+  if (verbose) set_log_level(LogLevel::kDebug);
+  if (globals.quiet) set_log_level(LogLevel::kWarning);
+  catch_interrupts();
+  return action();
+}
+
+}  // namespace
+}  // namespace gloam::cli
+
+int main(int argc, char** argv) {
+  try {
+    return gloam::cli::run_program(argc, argv);
+  } catch (const std::bad_alloc&) {
+    std::cerr << "gloam: error: out of memory (lower the resolution or the size of the scene)\n";
+    return 1;
+  }
+}

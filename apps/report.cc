@@ -1,0 +1,40 @@
+#include "report.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+namespace gloam::cli {
+
+int run_and_report(const World& world, const RunRequest& request, const Globals& globals) {
+  auto report = run_and_record(world, request, progress_display(globals));
+  finish_progress();
+  if (!report.ok()) return fail(report.error());
+  const double factor = report->wall_time > 0 ? report->sim_time / report->wall_time : 0;
+  if (globals.json) {
+    nlohmann::ordered_json json = {
+        {"out", report->out.string()},
+        {"steps", report->steps},
+        {"sim_time_s", report->sim_time},
+        {"wall_time_s", report->wall_time},
+        {"realtime_factor", factor},
+        {"state_hash", fmt::format("{:016x}", report->hash)},
+        {"frames", report->frames},
+        {"written", report->written},
+        {"error", report->status.ok() ? "" : report->status.error().to_string()}};
+    std::printf("%s\n", json.dump(2).c_str());
+  } else {
+    std::printf("simulated %.3f s in %.1f s (%.2f x real time), %lld steps, state hash %016llx\n",
+                report->sim_time, report->wall_time, factor, static_cast<long long>(report->steps),
+                static_cast<unsigned long long>(report->hash));
+    if (!report->out.empty()) {
+      std::printf("results in %s (%lld pictures):\n", report->out.string().c_str(),
+                  static_cast<long long>(report->frames));
+      for (const std::string& file : report->written) std::printf("  %s\n", file.c_str());
+    }
+  }
+  return report->status.ok() ? 0 : fail(report->status.error());
+}
+
+}  // namespace gloam::cli

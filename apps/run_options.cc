@@ -1,0 +1,63 @@
+#include "run_options.h"
+
+#include "gloam/program.h"
+
+namespace gloam::cli {
+
+void RunOptions::add_simulation(CLI::App& command) {
+  command.add_option("--duration", duration, "Seconds of simulation time")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--seed", seed, "Seed of everything random");
+  command.add_option("--timestep", timestep, "Physics time step in seconds; default: the model's")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--set", settings,
+                     "Change one setting of the scene, as sim.duration=5 (repeatable)");
+}
+
+void RunOptions::add_rendering(CLI::App& command) {
+  command.add_option("--camera", cameras, "Camera by name (repeatable); default: all");
+  command.add_option("--resolution", resolution, "WIDTHxHEIGHT of every camera");
+  command.add_option("--spp", spp, "Samples per pixel")->check(CLI::Range(1, 65536));
+  command.add_option("--max-depth", max_depth, "Longest light path, in vertices")
+      ->check(CLI::Range(1, 64));
+  command.add_option("--tier", tier, "path: unbiased light; direct: fast, no indirect light")
+      ->check(CLI::IsMember({"path", "direct"}));
+  command.add_option("--ev", ev100, "Exposure value at ISO 100; default: by the scene's light");
+  command.add_flag("--no-denoise", no_denoise, "Show the samples as they are");
+  command.add_option("--threads", threads, "Threads for rendering; 0 = all")
+      ->check(CLI::Range(0, 1024));
+  command
+      .add_option(
+          "--output", outputs,
+          "What to record: video png depth_png depth_exr segmentation metrics contact_sheet")
+      ->delimiter(',');
+  add_access_options(command, access, packages);
+}
+
+Result<Scene> RunOptions::load(const std::string& file) {
+  GLOAM_TRY_STATUS(apply_packages(access, packages));
+  GLOAM_TRY(Scene scene, load_scene(file, access));
+  for (const std::string& setting : settings) {
+    const size_t split = setting.find('=');
+    if (split == std::string::npos) {
+      return Error{ErrorKind::kUsage,
+                   "--set " + setting + ": expected KEY=VALUE",
+                   {},
+                   "for example sim.duration=5"};
+    }
+    GLOAM_TRY_STATUS(set_option(scene, setting.substr(0, split), setting.substr(split + 1)));
+  }
+  if (duration) scene.sim.duration = *duration;
+  if (seed) scene.sim.seed = *seed;
+  if (timestep) scene.sim.timestep = *timestep;
+  if (spp) scene.render.spp = *spp;
+  if (max_depth) scene.render.max_depth = *max_depth;
+  if (!tier.empty()) scene.render.tier = tier;
+  if (ev100) scene.render.ev100 = *ev100;
+  if (no_denoise) scene.render.denoise = false;
+  if (!outputs.empty()) scene.record.outputs = outputs;
+  set_thread_count(threads);
+  return scene;
+}
+
+}  // namespace gloam::cli

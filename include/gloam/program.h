@@ -1,0 +1,26 @@
+#pragma once
+// The program itself: version, where its files are, its logging and threads.
+
+#include <filesystem>
+#include <string>
+
+#include "gloam/result.h"
+
+namespace gloam {
+
+/// "0.1.0"
+const char* version();
+/// Compiler, instruction set, build type and the versions of MuJoCo and Embree: what determinism is
+/// relative to.
+std::string configuration();
+/// The folder that holds `assets/`: found upwards from the running program, or $GLOAM_HOME.
+Result<std::filesystem::path> gloam_home();
+
+enum class LogLevel { kDebug, kInfo, kWarning, kError, kOff };
+/// Lowest level that is printed to stderr; default kInfo.
+void set_log_level(LogLevel level);
+
+/// Threads for rendering and loading; 0 = all processors. Results do not depend on it.
+void set_thread_count(int n);
+
+}  // namespace gloam
