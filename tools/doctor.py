@@ -1,0 +1,115 @@
+#!/usr/bin/env python3
+"""Says what is missing on this machine and how to mend it. Exit 0: all that is needed is here; 1: something is not."""
+import argparse
+import ctypes.util
+import json
+import os
+import platform
+import shutil
+import socket
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+
+def check(name, ok, found, mend="", needed=True):
+    return {"name": name, "ok": bool(ok), "needed": needed, "found": str(found), "mend": "" if ok else mend}
+
+
+def cpu_flags():
+    try:
+        for line in Path("/proc/cpuinfo").read_text().splitlines():
+            if line.startswith("flags"):
+                return set(line.split(":", 1)[1].split())
+    except OSError:
+        pass
+    return set()
+
+
+def operating_system():
+    try:
+        lines = dict(line.split("=", 1) for line in Path("/etc/os-release").read_text().splitlines() if "=" in line)
+    except OSError:
+        return platform.system()
+    return lines.get("PRETTY_NAME", "unknown").strip('"')
+
+
+def installed(package):
+    if not shutil.which("dpkg-query"):
+        return None
+    result = subprocess.run(["dpkg-query", "-W", "-f=${db:Status-Status}", package], capture_output=True, text=True)
+    return result.stdout == "installed"
+
+
+def packages(variable):
+    """The package lists live in ./gloam; this reads them there so that they are written once."""
+    text = (ROOT / "gloam").read_text()
+    block = text.split(variable + "=(", 1)[1].split(")", 1)[0]
+    return block.split()
+
+
+def checks():
+    system = operating_system()
+    yield check("operating system", "Debian GNU/Linux 12" in system, system, "Debian 12 is the tested system; others are best effort", needed=False)
+    flags = cpu_flags()
+    yield check("processor", platform.machine() == "x86_64" and "sse4_2" in flags,
+                f"{platform.machine()}, {'AVX2' if 'avx2' in flags else 'no AVX2'}", "an x86-64 processor with SSE 4.2 is needed")
+    yield check("AVX2", "avx2" in flags, "yes" if "avx2" in flags else "no", "rendering is slower without; ./gloam builds for the older set", needed=False)
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30
+    yield check("memory", memory >= 3.5, f"{memory:.1f} GiB", "the build needs about 4 GiB; add swap or build with fewer jobs")
+    free = shutil.disk_usage(ROOT).free / 2**30
+    yield check("disk space here", free >= 3, f"{free:.1f} GiB free", "set-up and build take about 3 GiB")
+    for tool, package in [("python3", "python3"), ("cmake", "cmake"), ("ninja", "ninja-build"), ("g++", "g++")]:
+        path = shutil.which(tool)
+        yield check(tool, path, path or "missing", f"apt-get install {package} (./gloam setup does it)")
+    missing = [p for p in packages("run_packages") if installed(p) is False]
+    yield check("Debian packages", not missing, "all" if not missing else "missing: " + " ".join(missing),
+                "apt-get install " + " ".join(missing))
+    missing = [p for p in packages("test_packages") if installed(p) is False]
+    yield check("packages for ./gloam test", not missing, "all" if not missing else "missing: " + " ".join(missing),
+                "apt-get install " + " ".join(missing), needed=False)
+    mujoco = ROOT / ".venv/wheels/mujoco/libmujoco.so.4.0.1"
+    yield check("MuJoCo 4.0.1", mujoco.exists(), "in .venv/wheels" if mujoco.exists() else "missing", "./gloam setup fetches it")
+    oidn = ROOT / ".venv/wheels/pyoidn/oidn/lib/libOpenImageDenoise.so.2"
+    yield check("Open Image Denoise", oidn.exists(), "in .venv/wheels" if oidn.exists() else "missing",
+                "./gloam setup fetches it; without it Gloam uses its own filter", needed=False)
+    program = ROOT / "build/release/bin/gloam"
+    yield check("the build", program.exists(), "built" if program.exists() else "not built yet", "./gloam setup")
+    if program.exists():
+        result = subprocess.run([str(program), "--version"], capture_output=True, text=True)
+        why = (result.stderr.strip().splitlines() or ["?"])[-1]
+        yield check("the program starts", result.returncode == 0, result.stdout.split("\n")[0] or why, f"it says: {why}; rebuild with ./gloam setup")
+    cache = Path(os.environ.get("GLOAM_CACHE") or Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "gloam")
+    try:
+        cache.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=cache):
+            pass
+        yield check("cache folder", True, "writable")
+    except OSError as error:
+        yield check("cache folder", False, error.strerror, "make it writable or set GLOAM_CACHE to a folder that is", needed=False)
+    with socket.socket() as probe:
+        busy = probe.connect_ex(("127.0.0.1", 8080)) == 0
+    yield check("port 8080 for --view", not busy, "in use" if busy else "free", "use --port 0", needed=False)
+    driver = ctypes.util.find_library("cuda")
+    yield check("NVIDIA driver", driver, driver or "none", "not needed: this version renders on the CPU", needed=False)
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="./gloam doctor", description=__doc__, epilog="Example: ./gloam doctor --json")
+    parser.add_argument("--json", action="store_true", help="print the findings as JSON")
+    args = parser.parse_args()
+    found = list(checks())
+    if args.json:
+        print(json.dumps(found, indent=2))
+    else:
+        for item in found:
+            mark = "ok  " if item["ok"] else ("MISS" if item["needed"] else "note")
+            print(f"{mark} {item['name']:<26} {item['found']}" + (f"\n     {'':<26} -> {item['mend']}" if item["mend"] else ""))
+    return 0 if all(item["ok"] or not item["needed"] for item in found) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
