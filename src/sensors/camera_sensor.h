@@ -1,0 +1,62 @@
+#pragma once
+// A camera: an instant's poses in, one CameraFrame out. Every channel is of the same rays; the picture is a pure
+// function of (World, seed, camera, frame index, poses).
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "gloam/camera.h"
+#include "gloam/result.h"
+#include "gloam/simulation.h"
+#include "render/film/denoise.h"
+#include "render/renderer.h"
+#include "sim/pose_frame.h"
+#include "world/render_description.h"
+
+namespace gloam {
+
+/// Which channels of a CameraFrame are filled.
+struct CameraChannels {
+  bool rgb = false, radiance = false, depth = false, segmentation = false;
+  bool normal = false, albedo = false, motion = false;
+  static Result<CameraChannels> parse(const std::vector<std::string>& names);
+  bool exact() const { return depth || segmentation || normal || albedo || motion; }
+};
+
+class CameraSensor {
+ public:
+  /// `description` must outlive the sensor. Errors: unknown camera (with the nearest name), channel or tier.
+  static Result<std::unique_ptr<CameraSensor>> create(const RenderDescription& description, const CameraRequest& request,
+                                                      uint64_t seed);
+
+  /// Renders the instant of `now`. `renderer_mutex` is held while the shared renderer works, not while this sensor
+  /// denoises and converts. `previous` is the instant of the frame before, for motion.
+  std::shared_ptr<const CameraFrame> capture(Renderer& renderer, std::mutex& renderer_mutex, const PoseFrame& now,
+                                             const PoseFrame& previous, int64_t frame_index);
+
+  /// Pose of the free camera in the world.
+  void set_free_pose(const Pose& X_WC);
+  Pose free_pose() const;
+
+ private:
+  CameraSensor(const RenderDescription& description, int camera, CameraChannels channels, RenderSettings settings,
+               Intrinsics intrinsics, float ev100, bool denoise);
+  CameraView view(const PoseFrame& now, const PoseFrame& previous) const;
+  void fill_frame(CameraFrame* frame) const;
+
+  const RenderDescription& description_;
+  int camera_;
+  CameraChannels channels_;
+  RenderSettings settings_;
+  Intrinsics intrinsics_;
+  float ev100_;
+  std::unique_ptr<Denoiser> denoiser_;  ///< null = none asked for
+  Film film_;
+  mutable std::mutex pose_mutex_;
+  Affine3f free_pose_;
+  Affine3f previous_free_pose_;
+};
+
+}  // namespace gloam
