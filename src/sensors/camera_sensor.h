@@ -22,41 +22,45 @@ struct CameraChannels {
   bool rgb = false, radiance = false, depth = false, segmentation = false;
   bool normal = false, albedo = false, motion = false;
   static Result<CameraChannels> parse(const std::vector<std::string>& names);
-  bool exact() const { return depth || segmentation || normal || albedo || motion; }
+  bool light() const { return rgb || radiance; }
 };
 
 class CameraSensor {
  public:
   /// `description` must outlive the sensor. Errors: unknown camera (with the nearest name), channel or tier.
-  static Result<std::unique_ptr<CameraSensor>> create(const RenderDescription& description, const CameraRequest& request,
-                                                      uint64_t seed);
+  static Result<std::unique_ptr<CameraSensor>> create(const RenderDescription& description,
+                                                      const CameraRequest& request, uint64_t seed);
 
   /// Renders the instant of `now`. `renderer_mutex` is held while the shared renderer works, not while this sensor
   /// denoises and converts. `previous` is the instant of the frame before, for motion.
   std::shared_ptr<const CameraFrame> capture(Renderer& renderer, std::mutex& renderer_mutex, const PoseFrame& now,
                                              const PoseFrame& previous, int64_t frame_index);
 
-  /// Pose of the free camera in the world.
+  const Rational& rate() const { return rate_; }
+  /// Pose of the free camera in the world; may be set from any thread.
   void set_free_pose(const Pose& X_WC);
   Pose free_pose() const;
 
  private:
-  CameraSensor(const RenderDescription& description, int camera, CameraChannels channels, RenderSettings settings,
-               Intrinsics intrinsics, float ev100, bool denoise);
-  CameraView view(const PoseFrame& now, const PoseFrame& previous) const;
-  void fill_frame(CameraFrame* frame) const;
+  CameraSensor(const RenderDescription& description, int camera, const CameraChannels& channels);
+  void convert(const PoseFrame& now, int64_t frame_index, const CameraView& view, CameraFrame* frame);
 
   const RenderDescription& description_;
-  int camera_;
-  CameraChannels channels_;
+  const int camera_;
+  const CameraChannels channels_;
   RenderSettings settings_;
   Intrinsics intrinsics_;
-  float ev100_;
-  std::unique_ptr<Denoiser> denoiser_;  ///< null = none asked for
+  Rational rate_;
+  float ev100_ = 0;
+  std::unique_ptr<Denoiser> denoiser_;  // null: the samples as they are
   Film film_;
+  std::vector<Vec3f> clean_;
   mutable std::mutex pose_mutex_;
-  Affine3f free_pose_;
-  Affine3f previous_free_pose_;
+  Affine3f free_pose_, previous_free_pose_;
 };
+
+/// Rigid pose <-> affine map.
+Pose to_pose(const Affine3f& X);
+Affine3f to_affine(const Pose& X);
 
 }  // namespace gloam

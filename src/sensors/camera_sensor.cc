@@ -1,0 +1,190 @@
+#include "sensors/camera_sensor.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/hash.h"
+#include "base/text.h"
+#include "render/film/tone_map.h"
+
+namespace gloam {
+namespace {
+
+template <class T>
+std::vector<float> flatten(const std::vector<T>& values) {
+  static_assert(sizeof(T) % sizeof(float) == 0);
+  const auto* first = reinterpret_cast<const float*>(values.data());
+  return {first, first + values.size() * sizeof(T) / sizeof(float)};
+}
+
+// The picture keeps the camera's vertical field of view; a principal point off the centre stays at its share.
+Intrinsics resized(const Intrinsics& from, int width, int height) {
+  Intrinsics to = from;
+  if (width <= 0 || height <= 0) return to;
+  const double scale = static_cast<double>(height) / from.height;
+  to.width = width;
+  to.height = height;
+  to.fx = from.fx * scale;
+  to.fy = from.fy * scale;
+  to.cx = width * 0.5 + (from.cx - from.width * 0.5) * scale;
+  to.cy = height * 0.5 + (from.cy - from.height * 0.5) * scale;
+  return to;
+}
+
+Result<int> find_camera(const RenderDescription& description, const std::string& name) {
+  std::vector<std::string> names;
+  for (size_t i = 0; i < description.cameras.size(); ++i) {
+    if (description.cameras[i].name == name) return static_cast<int>(i);
+    names.push_back(description.cameras[i].name);
+  }
+  return Error{ErrorKind::kInput, fmt::format("there is no camera '{}'", name), {}, suggest_name(name, names)};
+}
+
+}  // namespace
+
+Pose to_pose(const Affine3f& X) {
+  // Shepperd's method: the largest of the four squared components is never near zero.
+  const double m00 = X.x.x, m10 = X.x.y, m20 = X.x.z, m01 = X.y.x, m11 = X.y.y, m21 = X.y.z;
+  const double m02 = X.z.x, m12 = X.z.y, m22 = X.z.z;
+  const double ww = 1 + m00 + m11 + m22, xx = 1 + m00 - m11 - m22, yy = 1 - m00 + m11 - m22, zz = 1 - m00 - m11 + m22;
+  Quat q;
+  if (ww >= xx && ww >= yy && ww >= zz) {
+    q = {ww, m21 - m12, m02 - m20, m10 - m01};
+  } else if (xx >= yy && xx >= zz) {
+    q = {m21 - m12, xx, m10 + m01, m02 + m20};
+  } else if (yy >= zz) {
+    q = {m02 - m20, m10 + m01, yy, m21 + m12};
+  } else {
+    q = {m10 - m01, m02 + m20, m21 + m12, zz};
+  }
+  const double scale = (q.w < 0 ? -1.0 : 1.0) / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  return {{X.p.x, X.p.y, X.p.z}, {q.w * scale, q.x * scale, q.y * scale, q.z * scale}};
+}
+
+Affine3f to_affine(const Pose& X) {
+  const auto& [w, x, y, z] = X.q;
+  const auto f = [](double a, double b, double c) {
+    return Vec3f{static_cast<float>(a), static_cast<float>(b), static_cast<float>(c)};
+  };
+  return {f(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)),
+          f(2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)),
+          f(2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)), f(X.p.x, X.p.y, X.p.z)};
+}
+
+Result<CameraChannels> CameraChannels::parse(const std::vector<std::string>& names) {
+  CameraChannels channels;
+  const std::vector<std::pair<std::string, bool*>> known = {
+      {"rgb", &channels.rgb},       {"radiance", &channels.radiance}, {"depth", &channels.depth},
+      {"normal", &channels.normal}, {"albedo", &channels.albedo},     {"segmentation", &channels.segmentation},
+      {"motion", &channels.motion}};
+  std::vector<std::string> all;
+  for (const auto& entry : known) all.push_back(entry.first);
+  for (const std::string& name : names) {
+    const auto found = std::find_if(known.begin(), known.end(), [&](const auto& entry) { return entry.first == name; });
+    if (found == known.end()) {
+      return Error{ErrorKind::kInput, fmt::format("there is no camera output '{}'", name), {}, suggest_name(name, all)};
+    }
+    *found->second = true;
+  }
+  return channels;
+}
+
+CameraSensor::CameraSensor(const RenderDescription& description, int camera, const CameraChannels& channels)
+    : description_(description), camera_(camera), channels_(channels) {}
+
+Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescription& description,
+                                                           const CameraRequest& request, uint64_t seed) {
+  GLOAM_TRY(const int camera, find_camera(description, request.camera));
+  GLOAM_TRY(const CameraChannels channels, CameraChannels::parse(request.outputs));
+  if (request.rate.num <= 0 || request.rate.den <= 0) {
+    return Error{ErrorKind::kInput, fmt::format("camera '{}': the rate must be positive", request.camera)};
+  }
+  const CameraDescription& described = description.cameras[static_cast<size_t>(camera)];
+  std::unique_ptr<CameraSensor> sensor(new CameraSensor(description, camera, channels));
+  sensor->intrinsics_ = resized(described.intrinsics, request.width, request.height);
+  sensor->rate_ = request.rate;
+  sensor->ev100_ = request.render.ev100 ? static_cast<float>(*request.render.ev100) : description.ev100;
+  sensor->free_pose_ = sensor->previous_free_pose_ = described.X_WC;
+
+  RenderSettings& settings = sensor->settings_;
+  if (request.render.tier == "path") {
+    settings.tier = RenderTier::kPath;
+  } else if (request.render.tier == "direct") {
+    settings.tier = RenderTier::kDirect;
+  } else {
+    return Error{ErrorKind::kInput, fmt::format("there is no render tier '{}'", request.render.tier), {},
+                 "one of: path, direct"};
+  }
+  settings.spp = channels.light() ? request.render.spp : 0;
+  settings.max_depth = request.render.max_depth;
+  settings.seed = hash_bytes(request.camera.data(), request.camera.size(), seed);
+  if (request.render.denoise && channels.light()) sensor->denoiser_ = make_denoiser({});
+  return sensor;
+}
+
+void CameraSensor::set_free_pose(const Pose& X_WC) {
+  const std::lock_guard lock(pose_mutex_);
+  free_pose_ = to_affine(X_WC);
+}
+
+Pose CameraSensor::free_pose() const {
+  const std::lock_guard lock(pose_mutex_);
+  return to_pose(free_pose_);
+}
+
+std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer, std::mutex& renderer_mutex,
+                                                         const PoseFrame& now, const PoseFrame& previous,
+                                                         int64_t frame_index) {
+  CameraView view = view_at(description_, camera_, now, now, previous);
+  view.intrinsics = intrinsics_;
+  if (description_.cameras[static_cast<size_t>(camera_)].camera < 0) {
+    const std::lock_guard lock(pose_mutex_);
+    view.X_WC_open = view.X_WC_close = free_pose_;
+    view.X_WC_previous = previous_free_pose_;
+    previous_free_pose_ = free_pose_;
+  }
+  settings_.frame = static_cast<uint32_t>(frame_index);
+  {
+    const std::lock_guard lock(renderer_mutex);
+    renderer.update(now, now, previous);
+    renderer.render(view, settings_, &film_);
+  }
+  auto frame = std::make_shared<CameraFrame>();
+  convert(now, frame_index, view, frame.get());
+  return frame;
+}
+
+void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const CameraView& view, CameraFrame* frame) {
+  frame->camera = description_.cameras[static_cast<size_t>(camera_)].name;
+  frame->index = frame_index;
+  frame->step = now.step;
+  frame->time = now.time;
+  frame->intrinsics = intrinsics_;
+  frame->X_WC = to_pose(view.X_WC_close);
+
+  if (channels_.light()) {
+    const std::vector<Vec3f>* radiance = &film_.radiance;
+    if (denoiser_ != nullptr && denoiser_->denoise(film_, &clean_).ok()) radiance = &clean_;
+    if (channels_.rgb) tone_map(*radiance, film_.width, film_.height, {.ev100 = ev100_}, &frame->rgb);
+    if (channels_.radiance) frame->radiance = flatten(*radiance);
+  }
+  if (channels_.depth) frame->depth = film_.depth;
+  if (channels_.normal) frame->normal = flatten(film_.center_normal);
+  if (channels_.albedo) frame->albedo = flatten(film_.center_albedo);
+  if (channels_.motion) frame->motion = flatten(film_.motion);
+  if (channels_.segmentation) {
+    frame->part = film_.part;
+    frame->instance.resize(film_.part.size());
+    frame->semantic.resize(film_.part.size());
+    for (size_t i = 0; i < film_.part.size(); ++i) {
+      if (film_.part[i] == 0) continue;
+      const LabelRow& label = description_.instances[film_.part[i] - 1].label;
+      frame->instance[i] = label.instance;
+      frame->semantic[i] = label.semantic;
+    }
+  }
+}
+
+}  // namespace gloam
