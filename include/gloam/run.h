@@ -42,6 +42,8 @@ struct RunReport {
   uint64_t hash = 0;
   int64_t frames = 0;
   std::vector<std::string> written;  ///< the main result files, for people
+  std::vector<std::pair<std::string, double>>
+      results;    ///< velocity errors, falls … as in summary.json
   Status status;  ///< why it ended early, if it did; what was recorded is readable
 };
 

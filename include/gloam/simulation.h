@@ -22,6 +22,7 @@ namespace gloam {
 
 enum class Pace {
   kFast,      ///< as fast as possible: waits for required consumers
+  kLockstep,  ///< as fast as possible, but only when told to: step(), run_until()
   kRealTime,  ///< paced by the wall clock times `speed`; late consumers lose frames
 };
 

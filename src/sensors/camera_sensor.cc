@@ -19,7 +19,8 @@ std::vector<float> flatten(const std::vector<T>& values) {
   return {first, first + values.size() * sizeof(T) / sizeof(float)};
 }
 
-// The picture keeps the camera's vertical field of view; a principal point off the centre stays at its share.
+// The picture keeps the camera's vertical field of view; a principal point off the centre stays at
+// its share.
 Intrinsics resized(const Intrinsics& from, int width, int height) {
   Intrinsics to = from;
   if (width <= 0 || height <= 0) return to;
@@ -39,7 +40,10 @@ Result<int> find_camera(const RenderDescription& description, const std::string&
     if (description.cameras[i].name == name) return static_cast<int>(i);
     names.push_back(description.cameras[i].name);
   }
-  return Error{ErrorKind::kInput, fmt::format("there is no camera '{}'", name), {}, suggest_name(name, names)};
+  return Error{ErrorKind::kInput,
+               fmt::format("there is no camera '{}'", name),
+               {},
+               suggest_name(name, names)};
 }
 
 }  // namespace
@@ -48,7 +52,8 @@ Pose to_pose(const Affine3f& X) {
   // Shepperd's method: the largest of the four squared components is never near zero.
   const double m00 = X.x.x, m10 = X.x.y, m20 = X.x.z, m01 = X.y.x, m11 = X.y.y, m21 = X.y.z;
   const double m02 = X.z.x, m12 = X.z.y, m22 = X.z.z;
-  const double ww = 1 + m00 + m11 + m22, xx = 1 + m00 - m11 - m22, yy = 1 - m00 + m11 - m22, zz = 1 - m00 - m11 + m22;
+  const double ww = 1 + m00 + m11 + m22, xx = 1 + m00 - m11 - m22, yy = 1 - m00 + m11 - m22,
+               zz = 1 - m00 - m11 + m22;
   Quat q;
   if (ww >= xx && ww >= yy && ww >= zz) {
     q = {ww, m21 - m12, m02 - m20, m10 - m01};
@@ -59,7 +64,8 @@ Pose to_pose(const Affine3f& X) {
   } else {
     q = {m10 - m01, m02 + m20, m21 + m12, zz};
   }
-  const double scale = (q.w < 0 ? -1.0 : 1.0) / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  const double scale =
+      (q.w < 0 ? -1.0 : 1.0) / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
   return {{X.p.x, X.p.y, X.p.z}, {q.w * scale, q.x * scale, q.y * scale, q.z * scale}};
 }
 
@@ -70,42 +76,52 @@ Affine3f to_affine(const Pose& X) {
   };
   return {f(1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)),
           f(2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)),
-          f(2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)), f(X.p.x, X.p.y, X.p.z)};
+          f(2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)),
+          f(X.p.x, X.p.y, X.p.z)};
 }
 
 Result<CameraChannels> CameraChannels::parse(const std::vector<std::string>& names) {
   CameraChannels channels;
   const std::vector<std::pair<std::string, bool*>> known = {
-      {"rgb", &channels.rgb},       {"radiance", &channels.radiance}, {"depth", &channels.depth},
-      {"normal", &channels.normal}, {"albedo", &channels.albedo},     {"segmentation", &channels.segmentation},
+      {"rgb", &channels.rgb},       {"radiance", &channels.radiance},
+      {"depth", &channels.depth},   {"normal", &channels.normal},
+      {"albedo", &channels.albedo}, {"segmentation", &channels.segmentation},
       {"motion", &channels.motion}};
   std::vector<std::string> all;
   for (const auto& entry : known) all.push_back(entry.first);
   for (const std::string& name : names) {
-    const auto found = std::find_if(known.begin(), known.end(), [&](const auto& entry) { return entry.first == name; });
+    const auto found = std::find_if(known.begin(), known.end(),
+                                    [&](const auto& entry) { return entry.first == name; });
     if (found == known.end()) {
-      return Error{ErrorKind::kInput, fmt::format("there is no camera output '{}'", name), {}, suggest_name(name, all)};
+      return Error{ErrorKind::kInput,
+                   fmt::format("there is no camera output '{}'", name),
+                   {},
+                   suggest_name(name, all)};
     }
     *found->second = true;
   }
   return channels;
 }
 
-CameraSensor::CameraSensor(const RenderDescription& description, int camera, const CameraChannels& channels)
+CameraSensor::CameraSensor(const RenderDescription& description, int camera,
+                           const CameraChannels& channels)
     : description_(description), camera_(camera), channels_(channels) {}
 
 Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescription& description,
-                                                           const CameraRequest& request, uint64_t seed) {
+                                                           const CameraRequest& request,
+                                                           uint64_t seed) {
   GLOAM_TRY(const int camera, find_camera(description, request.camera));
   GLOAM_TRY(const CameraChannels channels, CameraChannels::parse(request.outputs));
   if (request.rate.num <= 0 || request.rate.den <= 0) {
-    return Error{ErrorKind::kInput, fmt::format("camera '{}': the rate must be positive", request.camera)};
+    return Error{ErrorKind::kInput,
+                 fmt::format("camera '{}': the rate must be positive", request.camera)};
   }
   const CameraDescription& described = description.cameras[static_cast<size_t>(camera)];
   std::unique_ptr<CameraSensor> sensor(new CameraSensor(description, camera, channels));
   sensor->intrinsics_ = resized(described.intrinsics, request.width, request.height);
   sensor->rate_ = request.rate;
-  sensor->ev100_ = request.render.ev100 ? static_cast<float>(*request.render.ev100) : description.ev100;
+  sensor->ev100_ =
+      request.render.ev100 ? static_cast<float>(*request.render.ev100) : description.ev100;
   sensor->free_pose_ = sensor->previous_free_pose_ = described.X_WC;
 
   RenderSettings& settings = sensor->settings_;
@@ -114,7 +130,9 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
   } else if (request.render.tier == "direct") {
     settings.tier = RenderTier::kDirect;
   } else {
-    return Error{ErrorKind::kInput, fmt::format("there is no render tier '{}'", request.render.tier), {},
+    return Error{ErrorKind::kInput,
+                 fmt::format("there is no render tier '{}'", request.render.tier),
+                 {},
                  "one of: path, direct"};
   }
   settings.spp = channels.light() ? request.render.spp : 0;
@@ -134,8 +152,10 @@ Pose CameraSensor::free_pose() const {
   return to_pose(free_pose_);
 }
 
-std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer, std::mutex& renderer_mutex,
-                                                         const PoseFrame& now, const PoseFrame& previous,
+std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
+                                                         std::mutex& renderer_mutex,
+                                                         const PoseFrame& now,
+                                                         const PoseFrame& previous,
                                                          int64_t frame_index) {
   CameraView view = view_at(description_, camera_, now, now, previous);
   view.intrinsics = intrinsics_;
@@ -156,7 +176,8 @@ std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer, std
   return frame;
 }
 
-void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const CameraView& view, CameraFrame* frame) {
+void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const CameraView& view,
+                           CameraFrame* frame) {
   frame->camera = description_.cameras[static_cast<size_t>(camera_)].name;
   frame->index = frame_index;
   frame->step = now.step;
@@ -167,7 +188,8 @@ void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const Came
   if (channels_.light()) {
     const std::vector<Vec3f>* radiance = &film_.radiance;
     if (denoiser_ != nullptr && denoiser_->denoise(film_, &clean_).ok()) radiance = &clean_;
-    if (channels_.rgb) tone_map(*radiance, film_.width, film_.height, {.ev100 = ev100_}, &frame->rgb);
+    if (channels_.rgb)
+      tone_map(*radiance, film_.width, film_.height, {.ev100 = ev100_}, &frame->rgb);
     if (channels_.radiance) frame->radiance = flatten(*radiance);
   }
   if (channels_.depth) frame->depth = film_.depth;

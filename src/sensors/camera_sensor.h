@@ -1,6 +1,6 @@
 #pragma once
-// A camera: an instant's poses in, one CameraFrame out. Every channel is of the same rays; the picture is a pure
-// function of (World, seed, camera, frame index, poses).
+// A camera: an instant's poses in, one CameraFrame out. Every channel is of the same rays; the
+// picture is a pure function of (World, seed, camera, frame index, poses).
 
 #include <memory>
 #include <mutex>
@@ -27,15 +27,19 @@ struct CameraChannels {
 
 class CameraSensor {
  public:
-  /// `description` must outlive the sensor. Errors: unknown camera (with the nearest name), channel or tier.
+  /// `description` must outlive the sensor. Errors: unknown camera (with the nearest name), channel
+  /// or tier.
   static Result<std::unique_ptr<CameraSensor>> create(const RenderDescription& description,
                                                       const CameraRequest& request, uint64_t seed);
 
-  /// Renders the instant of `now`. `renderer_mutex` is held while the shared renderer works, not while this sensor
-  /// denoises and converts. `previous` is the instant of the frame before, for motion.
-  std::shared_ptr<const CameraFrame> capture(Renderer& renderer, std::mutex& renderer_mutex, const PoseFrame& now,
-                                             const PoseFrame& previous, int64_t frame_index);
+  /// Renders the instant of `now`. `renderer_mutex` is held while the shared renderer works, not
+  /// while this sensor denoises and converts. `previous` is the instant of the frame before, for
+  /// motion.
+  std::shared_ptr<const CameraFrame> capture(Renderer& renderer, std::mutex& renderer_mutex,
+                                             const PoseFrame& now, const PoseFrame& previous,
+                                             int64_t frame_index);
 
+  const Intrinsics& intrinsics() const { return intrinsics_; }
   const Rational& rate() const { return rate_; }
   /// Pose of the free camera in the world; may be set from any thread.
   void set_free_pose(const Pose& X_WC);
@@ -43,7 +47,8 @@ class CameraSensor {
 
  private:
   CameraSensor(const RenderDescription& description, int camera, const CameraChannels& channels);
-  void convert(const PoseFrame& now, int64_t frame_index, const CameraView& view, CameraFrame* frame);
+  void convert(const PoseFrame& now, int64_t frame_index, const CameraView& view,
+               CameraFrame* frame);
 
   const RenderDescription& description_;
   const int camera_;

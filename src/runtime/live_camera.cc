@@ -1,0 +1,95 @@
+#include "runtime/live_camera.h"
+
+#include <chrono>
+#include <utility>
+
+#include "base/log.h"
+
+namespace gloam {
+
+LiveCamera::LiveCamera(Simulator& simulator, std::shared_ptr<SharedRenderer> shared,
+                       FrameCallback on_frame)
+    : simulator_(simulator), shared_(std::move(shared)), on_frame_(std::move(on_frame)) {}
+
+Result<std::unique_ptr<LiveCamera>> LiveCamera::open(Simulator& simulator,
+                                                     std::shared_ptr<SharedRenderer> shared,
+                                                     const CameraRequest& request, uint64_t seed,
+                                                     FrameCallback on_frame) {
+  std::unique_ptr<LiveCamera> camera(
+      new LiveCamera(simulator, std::move(shared), std::move(on_frame)));
+  GLOAM_TRY(camera->sensor_, CameraSensor::create(camera->shared_->description, request, seed));
+  const std::shared_ptr<const CompiledWorld> world(std::shared_ptr<void>(), &simulator.world());
+  GLOAM_TRY(camera->solver_, PoseSolver::create(world));
+  // Two in the queue keep the camera busy; more would only make a live picture older.
+  const int capacity = request.required ? 2 : 1;
+  GLOAM_TRY(camera->queue_,
+            simulator.subscribe(
+                {.rate = request.rate, .required = request.required, .capacity = capacity}));
+  camera->required_ = request.required;
+  camera->thread_ = std::thread([raw = camera.get()] { raw->run(); });
+  return camera;
+}
+
+LiveCamera::~LiveCamera() {
+  {
+    const std::lock_guard lock(mutex_);
+    closing_ = true;
+  }
+  changed_.notify_all();
+  queue_->close();
+  if (thread_.joinable()) thread_.join();
+}
+
+void LiveCamera::drain() {
+  if (thread_.joinable()) thread_.join();
+}
+
+void LiveCamera::set_pose(const Pose& X_WC) { sensor_->set_free_pose(X_WC); }
+
+void LiveCamera::refresh() {
+  {
+    const std::lock_guard lock(mutex_);
+    refresh_wanted_ = true;
+  }
+  changed_.notify_all();
+}
+
+Snapshot LiveCamera::wait_for_work() {
+  if (required_) return queue_->next();
+  // A live camera also answers refresh() while the simulation is paused, so it looks at both.
+  constexpr auto kLook = std::chrono::milliseconds(4);
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    if (closing_) return {};
+    if (Snapshot snapshot = queue_->try_next()) return snapshot;
+    if (queue_->closed()) return {};
+    if (std::exchange(refresh_wanted_, false)) return simulator_.latest();
+    changed_.wait_for(lock, kLook);
+  }
+}
+
+void LiveCamera::run() {
+  while (const Snapshot snapshot = wait_for_work()) capture(snapshot);
+}
+
+int64_t LiveCamera::frame_index(int64_t step) const {
+  // Frame k is exposed at the first step at or after k / rate, so this floor gives k back.
+  const Rational timestep = simulator_.timestep();
+  const auto num = static_cast<__int128>(step) * timestep.num * sensor_->rate().num;
+  return static_cast<int64_t>(num / (static_cast<__int128>(timestep.den) * sensor_->rate().den));
+}
+
+void LiveCamera::capture(const Snapshot& snapshot) {
+  if (const Status status = solver_->solve(snapshot, now_); !status.ok()) {
+    log_error("a camera lost its poses: {}", status.error().to_string());
+    return;
+  }
+  const bool continuous = has_previous_ && previous_.step <= now_.step;
+  auto frame = sensor_->capture(*shared_->renderer, shared_->mutex, now_,
+                                continuous ? previous_ : now_, frame_index(snapshot.step()));
+  on_frame_(std::move(frame));
+  std::swap(now_, previous_);
+  has_previous_ = true;
+}
+
+}  // namespace gloam

@@ -1,0 +1,56 @@
+#pragma once
+// A camera of a running simulation: a thread that turns Snapshots into frames.
+
+#include <atomic>
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "gloam/simulation.h"
+#include "runtime/shared_renderer.h"
+#include "sensors/camera_sensor.h"
+#include "sim/pose_solver.h"
+#include "sim/simulator.h"
+
+namespace gloam {
+
+class LiveCamera final : public CameraStream {
+ public:
+  static Result<std::unique_ptr<LiveCamera>> open(Simulator& simulator,
+                                                  std::shared_ptr<SharedRenderer> shared,
+                                                  const CameraRequest& request, uint64_t seed,
+                                                  FrameCallback on_frame);
+  ~LiveCamera() override;
+
+  void set_pose(const Pose& X_WC) override;
+  Pose pose() const override { return sensor_->free_pose(); }
+  void refresh() override;
+  int64_t dropped() const override { return queue_->dropped(); }
+
+  /// Waits until the queue has ended (the simulation stopped) and every frame was delivered.
+  void drain();
+
+ private:
+  LiveCamera(Simulator& simulator, std::shared_ptr<SharedRenderer> shared, FrameCallback on_frame);
+  void run();
+  Snapshot wait_for_work();
+  void capture(const Snapshot& snapshot);
+  int64_t frame_index(int64_t step) const;
+
+  Simulator& simulator_;
+  std::shared_ptr<SharedRenderer> shared_;
+  FrameCallback on_frame_;
+  std::unique_ptr<CameraSensor> sensor_;
+  std::unique_ptr<PoseSolver> solver_;
+  std::shared_ptr<SnapshotQueue> queue_;
+  bool required_ = false;
+  PoseFrame now_, previous_;
+  bool has_previous_ = false;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  bool refresh_wanted_ = false, closing_ = false;
+  std::thread thread_;
+};
+
+}  // namespace gloam

@@ -1,0 +1,215 @@
+#include "runtime/live_simulation.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <thread>
+
+#include "control/controllers.h"
+
+namespace gloam {
+namespace {
+
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+Status add_controllers(const CompiledWorld& world, Simulator& simulator) {
+  for (size_t i = 0; i < world.robots.size(); ++i) {
+    const RobotInstance& robot = world.robots[i];
+    if (robot.options.controller.type == "none") continue;
+    GLOAM_TRY(auto controller, make_controller(world, robot));
+    GLOAM_TRY_STATUS(simulator.add_controller(static_cast<int>(i), std::move(controller),
+                                              robot.options.controller.rate));
+  }
+  return {};
+}
+
+}  // namespace
+
+LiveSimulation::LiveSimulation(World world, uint64_t seed)
+    : world_(std::move(world)), seed_(seed) {}
+
+Result<std::unique_ptr<Simulation>> Simulation::create(const World& world,
+                                                       const SimulationOptions& options) {
+  GLOAM_TRY(auto live, LiveSimulation::create(world, options));
+  return std::unique_ptr<Simulation>(std::move(live));
+}
+
+Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& world,
+                                                               const SimulationOptions& options) {
+  std::unique_ptr<LiveSimulation> live(new LiveSimulation(world, options.seed));
+  SimulatorOptions core;
+  core.seed = options.seed;
+  if (options.timestep > 0) core.timestep = options.timestep;
+  core.pace = options.pace;
+  core.speed = options.speed;
+  GLOAM_TRY(live->simulator_, Simulator::create(world.compiled(), core));
+  GLOAM_TRY_STATUS(add_controllers(*world.compiled(), *live->simulator_));
+  // The thread starts with the first call that moves time: hooks, controllers and cameras come
+  // before.
+  live->simulator_->start(0);
+  return live;
+}
+
+LiveSimulation::~LiveSimulation() { simulator_->stop(); }
+
+void LiveSimulation::restart_speed_clock() {
+  const std::lock_guard lock(clock_mutex_);
+  clock_wall_ = wall_seconds();
+  clock_sim_ = simulator_->latest().time();
+}
+
+Status LiveSimulation::run_until(int64_t step) {
+  restart_speed_clock();
+  paused_ = false;
+  simulator_->run_until(step);
+  simulator_->resume();
+  while (simulator_->step_count() < step && simulator_->status().ok() && !stop_requested_) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  if (stop_requested_.exchange(false)) {
+    pause();
+    return Error{ErrorKind::kInterrupted, "stopped by the user"};
+  }
+  paused_ = true;
+  return simulator_->wait();
+}
+
+void LiveSimulation::resume() {
+  restart_speed_clock();
+  paused_ = false;
+  simulator_->run_until(Simulator::kForever);
+  simulator_->resume();
+}
+
+void LiveSimulation::pause() {
+  paused_ = true;
+  simulator_->pause();
+}
+
+Status LiveSimulation::step(int64_t n) {
+  pause();
+  return simulator_->step(n);
+}
+
+void LiveSimulation::set_pace(Pace pace, double speed) {
+  restart_speed_clock();
+  simulator_->set_pace(pace, speed);
+}
+
+Status LiveSimulation::post(const Command& command) {
+  if (std::holds_alternative<ResetSim>(command.what)) {
+    const Status status = simulator_->reset();  // works after a failure, too
+    restart_speed_clock();
+    return status;
+  }
+  return simulator_->post(command);
+}
+
+SimulationStats LiveSimulation::stats() const {
+  const Snapshot snapshot = simulator_->latest();
+  const SimCounters counters = simulator_->counters();
+  SimulationStats stats;
+  stats.step = snapshot.step();
+  stats.time = snapshot.time();
+  stats.hash = snapshot.hash();
+  stats.dropped_snapshots = counters.snapshots_dropped;
+  stats.warnings = std::accumulate(counters.warnings.begin(), counters.warnings.end(), int64_t{0});
+  const std::lock_guard lock(clock_mutex_);
+  const double wall = wall_seconds() - clock_wall_;
+  if (!paused_ && wall > 0) stats.realtime_factor = (stats.time - clock_sim_) / wall;
+  return stats;
+}
+
+void LiveSimulation::set_step_hook(std::function<void(const mjModel_*, mjData_*)> hook) {
+  simulator_->set_step_hook(std::move(hook));
+}
+
+Result<std::shared_ptr<SharedRenderer>> LiveSimulation::renderer() {
+  const std::lock_guard lock(renderer_mutex_);
+  if (renderer_ == nullptr) {
+    GLOAM_TRY(renderer_, SharedRenderer::create(*world_.compiled()));
+  }
+  return renderer_;
+}
+
+Result<std::unique_ptr<LiveCamera>> LiveSimulation::open_live_camera(const CameraRequest& request,
+                                                                     FrameCallback on_frame) {
+  GLOAM_TRY(auto shared, renderer());
+  return LiveCamera::open(*simulator_, std::move(shared), request, seed_, std::move(on_frame));
+}
+
+Result<std::unique_ptr<CameraStream>> LiveSimulation::open_camera(const CameraRequest& request,
+                                                                  FrameCallback on_frame) {
+  GLOAM_TRY(auto camera, open_live_camera(request, std::move(on_frame)));
+  return std::unique_ptr<CameraStream>(std::move(camera));
+}
+
+std::vector<std::string> LiveSimulation::camera_names() const {
+  std::vector<std::string> names;
+  for (const NamedElement& camera : world_.info().cameras) names.push_back(camera.name);
+  names.emplace_back("free");
+  return names;
+}
+
+Result<std::vector<LabelRow>> LiveSimulation::labels() {
+  GLOAM_TRY(auto shared, renderer());
+  std::vector<LabelRow> rows;
+  for (const InstanceDescription& instance : shared->description.instances)
+    rows.push_back(instance.label);
+  return rows;
+}
+
+Result<PickResult> LiveSimulation::pick(const CameraFrame& frame, double u, double v) {
+  GLOAM_TRY(auto shared, renderer());
+  const std::lock_guard lock(shared->mutex);
+  if (pick_solver_ == nullptr) {
+    GLOAM_TRY(pick_solver_, PoseSolver::create(world_.compiled()));
+  }
+  PoseFrame poses;
+  GLOAM_TRY_STATUS(pick_solver_->solve(simulator_->latest(), poses));
+  // A picture of one pixel whose centre is (u, v).
+  CameraView view;
+  view.X_WC_open = view.X_WC_close = view.X_WC_previous = to_affine(frame.X_WC);
+  view.intrinsics = frame.intrinsics;
+  view.intrinsics.width = view.intrinsics.height = 1;
+  view.intrinsics.cx = frame.intrinsics.cx - u + 0.5;
+  view.intrinsics.cy = frame.intrinsics.cy - v + 0.5;
+  shared->renderer->update(poses, poses, poses);
+  Film film;
+  RenderSettings settings;
+  settings.spp = 0;
+  shared->renderer->render(view, settings, &film);
+  const uint32_t part = film.part.empty() ? 0 : film.part[0];
+  if (part == 0) return Error{ErrorKind::kInput, "there is nothing under this pixel"};
+
+  const Intrinsics& k = frame.intrinsics;
+  const auto depth = static_cast<double>(film.depth[0]);
+  const double scale = k.orthographic ? 1.0 : depth;
+  const Vec3f p_C{static_cast<float>((u - k.cx) / k.fx * scale),
+                  static_cast<float>(-(v - k.cy) / k.fy * scale), static_cast<float>(-depth)};
+  const Vec3f p_W = transform_point(view.X_WC_open, p_C);
+  const InstanceDescription& instance = shared->description.instances[part - 1];
+  const auto body = static_cast<size_t>(instance.body);
+  const double* R = poses.body_R.data() + 9 * body;
+  const double* p = poses.body_p.data() + 3 * body;
+  const double d[3] = {p_W.x - p[0], p_W.y - p[1], p_W.z - p[2]};
+  PickResult result;
+  result.body = {instance.body};
+  result.name = instance.label.body.empty() ? instance.label.instance_name : instance.label.body;
+  result.point_W = {p_W.x, p_W.y, p_W.z};
+  result.point_B = {R[0] * d[0] + R[3] * d[1] + R[6] * d[2],
+                    R[1] * d[0] + R[4] * d[1] + R[7] * d[2],
+                    R[2] * d[0] + R[5] * d[1] + R[8] * d[2]};
+  return result;
+}
+
+Rational LiveSimulation::step_rate() const {
+  const Rational timestep = simulator_->timestep();
+  return {timestep.den, timestep.num};
+}
+
+}  // namespace gloam

@@ -1,0 +1,61 @@
+#pragma once
+// gloam::Simulation over the simulation core, the shared renderer and the cameras.
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "gloam/simulation.h"
+#include "runtime/live_camera.h"
+
+namespace gloam {
+
+class LiveSimulation final : public Simulation {
+ public:
+  static Result<std::unique_ptr<LiveSimulation>> create(const World& world,
+                                                        const SimulationOptions& options);
+  ~LiveSimulation() override;
+
+  const World& world() const override { return world_; }
+  Status run_until(int64_t step) override;
+  void resume() override;
+  void pause() override;
+  bool paused() const override { return paused_; }
+  Status step(int64_t n) override;
+  void set_pace(Pace pace, double speed) override;
+  void request_stop() override { stop_requested_ = true; }
+  Status status() const override { return simulator_->status(); }
+  Status post(const Command& command) override;
+  Snapshot latest() const override { return simulator_->latest(); }
+  SimulationStats stats() const override;
+  void set_step_hook(std::function<void(const mjModel_*, mjData_*)> hook) override;
+  Result<std::unique_ptr<CameraStream>> open_camera(const CameraRequest& request,
+                                                    FrameCallback on_frame) override;
+  std::vector<std::string> camera_names() const override;
+  Result<std::vector<LabelRow>> labels() override;
+  Result<PickResult> pick(const CameraFrame& frame, double u, double v) override;
+  Rational step_rate() const override;
+
+  // For the runtime's own jobs.
+  Simulator& simulator() { return *simulator_; }
+  Result<std::shared_ptr<SharedRenderer>> renderer();
+  Result<std::unique_ptr<LiveCamera>> open_live_camera(const CameraRequest& request,
+                                                       FrameCallback on_frame);
+
+ private:
+  LiveSimulation(World world, uint64_t seed);
+  void restart_speed_clock();
+
+  World world_;
+  uint64_t seed_;
+  std::unique_ptr<Simulator> simulator_;
+  std::mutex renderer_mutex_;
+  std::shared_ptr<SharedRenderer> renderer_;
+  std::unique_ptr<PoseSolver> pick_solver_;
+  std::atomic<bool> paused_{true}, stop_requested_{false};
+  mutable std::mutex clock_mutex_;
+  double clock_wall_ = 0, clock_sim_ = 0;  // where the real-time factor counts from [s]
+};
+
+}  // namespace gloam

@@ -1,0 +1,234 @@
+// gloam::run_and_record: a simulation, its cameras and metrics, and a recorder, from start to
+// finished files.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "base/files.h"
+#include "base/hash.h"
+#include "gloam/program.h"
+#include "gloam/run.h"
+#include "record/recorder.h"
+#include "runtime/live_simulation.h"
+#include "runtime/robot_metrics.h"
+#include "world/version.h"
+
+namespace gloam {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+bool wants(const std::vector<std::string>& outputs, const std::string& name) {
+  return std::find(outputs.begin(), outputs.end(), name) != outputs.end();
+}
+
+// The channels that cameras must fill so that the recorder can write `outputs`.
+std::vector<std::string> channels_for(const std::vector<std::string>& outputs) {
+  std::vector<std::string> channels;
+  if (wants(outputs, "video") || wants(outputs, "png") || wants(outputs, "contact_sheet"))
+    channels.push_back("rgb");
+  if (wants(outputs, "depth_png") || wants(outputs, "depth_exr") ||
+      wants(outputs, "contact_sheet")) {
+    channels.push_back("depth");
+  }
+  if (wants(outputs, "segmentation") || wants(outputs, "contact_sheet"))
+    channels.push_back("segmentation");
+  return channels;
+}
+
+// All [[camera]]s of a scene and the cameras of its robots; a bare model's own cameras.
+Result<std::vector<CameraRequest>> camera_requests(const World& world, const RunRequest& request,
+                                                   const RenderDescription& description) {
+  const Scene& scene = world.compiled()->scene;
+  std::vector<std::string> names = request.cameras;
+  if (names.empty()) {
+    for (const CameraDescription& camera : description.cameras) {
+      if (camera.camera >= 0) names.push_back(camera.name);
+    }
+    if (names.empty()) names.push_back("free");
+  }
+  std::vector<CameraRequest> requests;
+  for (const std::string& name : names) {
+    CameraRequest camera;
+    camera.camera = name;
+    camera.width = request.width;
+    camera.height = request.height;
+    for (const CameraOptions& options : scene.cameras) {
+      if (options.name == name) camera.rate = options.rate;
+    }
+    if (request.rate.num > 0) camera.rate = request.rate;
+    camera.outputs = channels_for(scene.record.outputs);
+    camera.render = scene.render;
+    camera.required = request.simulation.pace == Pace::kFast;
+    requests.push_back(camera);
+  }
+  return requests;
+}
+
+std::string scene_hash(const Scene& scene) {
+  const auto path = scene.bare_model.empty() ? scene.file : scene.bare_model;
+  if (path.empty()) return {};
+  const auto text = read_file(path);
+  return text.ok() ? hash_to_hex(hash_bytes(text->data(), text->size())) : std::string();
+}
+
+// Steps to the end in the background of this thread, which shows progress and obeys the user.
+Status run_to_the_end(LiveSimulation& simulation, int64_t steps, Clock::time_point start,
+                      const ProgressCallback& progress, const char* what) {
+  Simulator& simulator = simulation.simulator();
+  simulator.run_until(steps);
+  simulator.resume();
+  while (simulator.step_count() < steps && simulator.status().ok()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    const double done = static_cast<double>(simulator.step_count()) / static_cast<double>(steps);
+    if (progress && !progress({what, done, seconds_since(start)})) {
+      simulator.pause();
+      return Error{ErrorKind::kInterrupted, "interrupted"};
+    }
+  }
+  return simulator.wait();
+}
+
+RunInfo run_info(const World& world, const RunRequest& request, double timestep, double duration) {
+  const Scene& scene = world.compiled()->scene;
+  RunInfo info;
+  info.title = scene.name;
+  info.versions = {
+      {"gloam", version()}, {"mujoco", mujoco_version()}, {"configuration", configuration()}};
+  info.scene_file = (scene.bare_model.empty() ? scene.file : scene.bare_model).filename().string();
+  info.scene_hash = scene_hash(scene);
+  info.seed = request.simulation.seed;
+  info.timestep = timestep;
+  info.duration = duration;
+  info.settings = {{"tier", scene.render.tier},
+                   {"spp", std::to_string(scene.render.spp)},
+                   {"max_depth", std::to_string(scene.render.max_depth)},
+                   {"denoise", scene.render.denoise ? "true" : "false"}};
+  return info;
+}
+
+// The metrics' own consumer of Snapshots.
+class MetricsThread {
+ public:
+  MetricsThread(std::shared_ptr<SnapshotQueue> queue, RobotMetrics& metrics, Recorder* recorder)
+      : queue_(std::move(queue)), thread_([this, &metrics, recorder] {
+          while (const Snapshot snapshot = queue_->next()) {
+            const std::vector<double>& row = metrics.sample(snapshot);
+            if (recorder != nullptr) recorder->add_metrics(row);
+          }
+        }) {}
+  ~MetricsThread() { join(); }
+  void join() {
+    queue_->close();
+    if (thread_.joinable()) thread_.join();
+  }
+
+ private:
+  std::shared_ptr<SnapshotQueue> queue_;
+  std::thread thread_;
+};
+
+}  // namespace
+
+Result<RunReport> run_and_record(const World& world, const RunRequest& request,
+                                 const ProgressCallback& progress) {
+  const auto start = Clock::now();
+  const Scene& scene = world.compiled()->scene;
+  GLOAM_TRY(auto simulation, LiveSimulation::create(world, request.simulation));
+  Simulator& simulator = simulation->simulator();
+  const double duration = request.duration > 0 ? request.duration : scene.sim.duration;
+  const Rational rate = simulation->step_rate();
+  const auto steps = static_cast<int64_t>(std::llround(duration * rate.value()));
+
+  RunReport report;
+  RobotMetrics metrics(*world.compiled());
+  std::unique_ptr<Recorder> recorder;
+  std::vector<std::unique_ptr<LiveCamera>> cameras;
+  std::atomic<int64_t> frames{0};
+  double prepared = 0;
+  if (!request.out.empty()) {
+    GLOAM_TRY(auto shared, simulation->renderer());
+    GLOAM_TRY(const auto requests, camera_requests(world, request, shared->description));
+    RunInfo info = run_info(world, request, 1 / rate.value(), duration);
+    for (const CameraRequest& camera : requests) {
+      GLOAM_TRY(const auto sensor,
+                CameraSensor::create(shared->description, camera, request.simulation.seed));
+      info.cameras.push_back({camera.camera, sensor->intrinsics(), camera.rate});
+    }
+    GLOAM_TRY(info.labels, simulation->labels());
+    info.metric_columns = metrics.columns();
+    info.plots = metrics.plots();
+    RecorderOptions options;
+    options.folder = request.out;
+    options.overwrite = request.overwrite;
+    options.outputs = scene.record.outputs;
+    options.wait = request.simulation.pace == Pace::kFast;
+    GLOAM_TRY(recorder, Recorder::start(options, info));
+    for (const CameraRequest& camera : requests) {
+      GLOAM_TRY(auto live,
+                simulation->open_live_camera(camera, [&](std::shared_ptr<const CameraFrame> frame) {
+                  frames.fetch_add(1);
+                  recorder->add_frame(std::move(frame));
+                }));
+      cameras.push_back(std::move(live));
+    }
+    prepared = seconds_since(start);
+  }
+  // Metrics at 100 Hz, or every step of slower models.
+  const Rational metric_rate = rate.value() >= 100 ? Rational{100, 1} : rate;
+  GLOAM_TRY(auto metric_queue,
+            simulator.subscribe({.rate = metric_rate, .required = true, .capacity = 256}));
+  MetricsThread metrics_thread(metric_queue, metrics, recorder.get());
+
+  report.status = run_to_the_end(*simulation, steps, start, progress,
+                                 cameras.empty() ? "simulating" : "rendering");
+  if (report.status.ok() && recorder != nullptr && !recorder->status().ok())
+    report.status = recorder->status();
+  const Snapshot last = simulator.latest();
+  const double simulated = seconds_since(start);
+  simulator.stop();  // ends the queues; what they hold is still delivered
+  for (auto& camera : cameras) camera->drain();
+  cameras.clear();
+  metrics_thread.join();
+
+  report.out = request.out;
+  report.steps = last.step();
+  report.sim_time = last.time();
+  report.hash = last.hash();
+  report.frames = frames;
+  if (recorder != nullptr) {
+    RunOutcome outcome;
+    outcome.exit_reason = report.status.ok() ? "completed" : report.status.error().to_string();
+    outcome.steps = report.steps;
+    outcome.simulated = report.sim_time;
+    outcome.final_state_hash = hash_to_hex(report.hash);
+    outcome.timings = {{"prepare_s", prepared},
+                       {"run_s", simulated - prepared},
+                       {"total_s", seconds_since(start)}};
+    outcome.results = metrics.summary();
+    const Status finished = recorder->finish(outcome);
+    if (report.status.ok()) report.status = finished;
+    for (const char* name : {"contact_sheet.png", "metrics.csv", "summary.json", "labels.json"}) {
+      if (std::filesystem::exists(request.out / name))
+        report.written.push_back((request.out / name).string());
+    }
+    std::error_code code;
+    for (const auto& entry : std::filesystem::directory_iterator(request.out, code)) {
+      if (entry.path().extension() == ".mp4") report.written.push_back(entry.path().string());
+    }
+    std::sort(report.written.begin(), report.written.end());
+  }
+  report.results = metrics.summary();
+  report.wall_time = seconds_since(start);
+  return report;
+}
+
+}  // namespace gloam

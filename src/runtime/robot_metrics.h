@@ -1,0 +1,47 @@
+#pragma once
+// How well each robot follows its velocity goals: one row of metrics.csv per sample, and the
+// numbers of the summary.
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gloam/snapshot.h"
+#include "record/recorder.h"
+#include "world/world.h"
+
+namespace gloam {
+
+class RobotMetrics {
+ public:
+  /// Robots with a floating base are measured; others give no columns.
+  explicit RobotMetrics(const CompiledWorld& world);
+
+  const std::vector<std::string>& columns() const { return columns_; }
+  /// Plots for the contact sheet: measured and commanded velocity of the first robot with goals.
+  std::vector<MetricPlot> plots() const;
+  /// The row of one instant; also feeds the summary.
+  const std::vector<double>& sample(const Snapshot& snapshot);
+  /// "NAME.vx_error_rms_percent" … over all samples so far, and "NAME.falls".
+  std::vector<NamedNumber> summary() const;
+
+ private:
+  struct Tracked {
+    std::string name;
+    const RobotOptions* options = nullptr;
+    Joint base;               // its free joint
+    double start_height = 0;  // [m]
+    bool has_start = false, fallen = false;
+    int64_t falls = 0;
+    double error_squared[3] = {}, goal_squared[3] = {};
+    double path_length = 0, last_x = 0, last_y = 0;  // [m]
+  };
+  void measure(Tracked& robot, const Snapshot& snapshot);
+
+  std::vector<Tracked> robots_;
+  std::vector<std::string> columns_;
+  std::vector<double> row_;
+  int64_t samples_ = 0;
+};
+
+}  // namespace gloam
