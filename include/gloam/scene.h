@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gloam/result.h"
@@ -132,5 +133,10 @@ struct Scene {
 
 /// Reads a scene (.toml) or wraps a bare model (.xml, .urdf). Every error names file and line.
 Result<Scene> load_scene(const std::filesystem::path& path, const FileAccess& access = {});
+
+/// Overrides one option, as a line of the scene file would: `path` is "sim.duration",
+/// "robot.NAME.controller.kp", "camera.NAME.width" …, `toml_value` is the text after "=". Quotes
+/// around a string may be left out. The Scene is unchanged on error.
+Status set_option(Scene& scene, std::string_view path, std::string_view toml_value);
 
 }  // namespace gloam

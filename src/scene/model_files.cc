@@ -1,0 +1,339 @@
+#include "scene/model_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <regex>
+
+#include "base/check.h"
+#include "base/files.h"
+#include "base/hash.h"
+#include "base/text.h"
+#include "scene/mujoco_guard.h"
+
+namespace gloam {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr uint64_t kLargestXml = uint64_t{64} << 20;
+constexpr uint64_t kLargestAsset = uint64_t{1} << 30;
+constexpr uint64_t kLargestTotal = uint64_t{8} << 30;
+constexpr size_t kMostXmlFiles = 2000;
+constexpr size_t kDeepestInclude = 64;
+
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+bool is_container(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".mjz" || extension == ".zip" || extension == ".mjb";
+}
+
+bool leads_to_xml(const FileReference& reference) {
+  return reference.element == "include" || reference.element == "model";
+}
+
+// How well an attribute's value explains that `path` was opened: shared trailing components.
+size_t shared_tail(const fs::path& path, const fs::path& value) {
+  std::vector<fs::path> a(path.begin(), path.end()), b(value.begin(), value.end());
+  size_t shared = 0;
+  while (shared < a.size() && shared < b.size() &&
+         a[a.size() - 1 - shared] == b[b.size() - 1 - shared])
+    ++shared;
+  return shared;
+}
+
+std::string one_line(std::string text) {
+  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
+  std::string out;
+  for (const char c : text) {
+    if (c == '\n') {
+      out += "; ";
+    } else if (static_cast<unsigned char>(c) >= 0x20) {
+      out += c;
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+ModelFiles::ModelFiles() {
+  install_mujoco_handler();
+  mj_defaultVFS(&vfs_);
+  mjp_defaultProvider(&provider_);
+  provider_.open = provider_open;
+  provider_.read = provider_read;
+  provider_.close = provider_close;
+  provider_.data = this;
+  // MuJoCo mounts folders but not "/": every folder at the top takes its place, so that no absolute
+  // path escapes.
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator("/", code))
+    mj_mountVFS(&vfs_, entry.path().c_str(), &provider_);
+}
+
+ModelFiles::~ModelFiles() { mj_deleteVFS(&vfs_); }
+
+int ModelFiles::provider_open(mjResource* resource) {
+  auto* files = static_cast<ModelFiles*>(resource->provider->data);
+  std::string hash;
+  Result<Content> content = files->open(fs::path(resource->name).lexically_normal(), &hash);
+  if (!content.ok()) return 0;
+  // MuJoCo keeps parsed meshes by name and timestamp; the content's hash never goes stale.
+  std::snprintf(resource->timestamp, sizeof(resource->timestamp), "%s", hash.c_str());
+  resource->data = new Content(std::move(content).value());
+  return 1;
+}
+
+int ModelFiles::provider_read(mjResource* resource, const void** buffer) {
+  const std::string& bytes = **static_cast<Content*>(resource->data);
+  *buffer = bytes.data();
+  return static_cast<int>(bytes.size());
+}
+
+void ModelFiles::provider_close(mjResource* resource) {
+  delete static_cast<Content*>(resource->data);
+  resource->data = nullptr;
+}
+
+Result<ModelFiles::Content> ModelFiles::open(const fs::path& path, std::string* hash_text) {
+  const std::lock_guard lock(mutex_);
+  const auto fail = [&](ErrorKind kind, std::string reason) -> Error {
+    failures_.push_back({path, reason, kind});
+    return {kind, std::move(reason), {path.string(), 0, 0}};
+  };
+  if (const auto overlay = overlays_.find(path); overlay != overlays_.end()) {
+    *hash_text = hash_to_hex(hash_bytes(overlay->second->data(), overlay->second->size()));
+    return overlay->second;
+  }
+  const std::string refusal = why_not_readable(path, roots_);
+  if (!refusal.empty()) return fail(ErrorKind::kInput, refusal);
+  if (is_container(path))
+    return fail(ErrorKind::kUnsupported, "is an archive or binary model, which is not read");
+  const bool is_new = depended_.insert(path).second;
+  std::error_code code;
+  if (!fs::exists(path, code)) {
+    if (is_new) dependencies_.push_back({path, false, 0});
+    return fail(ErrorKind::kInput, "does not exist");
+  }
+  if (const auto known = contents_.find(path); known != contents_.end()) {
+    *hash_text = hash_to_hex(hash_bytes(known->second->data(), known->second->size()));
+    return known->second;
+  }
+  Result<std::string> bytes = read_text_file(path, kLargestAsset);
+  if (!bytes.ok()) return fail(bytes.error().kind, bytes.error().message);
+  total_size_ += bytes->size();
+  if (total_size_ > kLargestTotal)
+    return fail(ErrorKind::kInput, "is one file too many: the model's files exceed 8 GiB");
+  // XML that MuJoCo finds by a way the scan did not follow is scanned now, before its parser sees
+  // it.
+  const std::string extension = lower_extension(path);
+  if ((extension == ".xml" || extension == ".urdf") && !scans_.contains(path)) {
+    if (const Result<XmlScan> scan = scan_model_xml(*bytes, path.string()); !scan.ok())
+      return fail(scan.error().kind, scan.error().message);
+  }
+  const uint64_t hash = hash_bytes(bytes->data(), bytes->size());
+  *hash_text = hash_to_hex(hash);
+  if (is_new) dependencies_.push_back({path, true, hash});
+  auto content = std::make_shared<const std::string>(std::move(bytes).value());
+  contents_.emplace(path, content);
+  return content;
+}
+
+Status ModelFiles::scan(const fs::path& file, const fs::path& model, const SourceLoc& named_at,
+                        std::vector<fs::path>& stack) {
+  if (std::find(stack.begin(), stack.end(), file) != stack.end()) {
+    return Error{ErrorKind::kInput, fmt::format("'{}' includes itself", file.filename().string()),
+                 named_at, "break the circle of <include> or <model> elements"};
+  }
+  if (stack.size() >= kDeepestInclude || scans_.size() >= kMostXmlFiles) {
+    return Error{ErrorKind::kInput,
+                 fmt::format("more than {} files include each other, or {} deep", kMostXmlFiles,
+                             kDeepestInclude),
+                 named_at};
+  }
+  if (scans_.contains(file)) return {};
+  std::string hash;
+  Result<Content> content = open(file, &hash);
+  if (!content.ok()) {
+    Error error = content.error();
+    error.message = fmt::format("'{}' {}",
+                                stack.empty()           ? file.string()
+                                : named_at.file.empty() ? file.string()
+                                                        : file.filename().string(),
+                                error.message);
+    if (!named_at.file.empty()) error.loc = named_at;
+    if (named_at.file.empty()) error.loc = {};
+    if (why_not_readable(file, roots_).empty()) {
+      error.hint = "check the path";
+    } else {
+      error.hint = "--root FOLDER widens what the model may read";
+    }
+    return error;
+  }
+  const std::string& text = **content;
+  if (text.size() > kLargestXml)
+    return Error{ErrorKind::kInput, "the XML is larger than 64 MiB", {file.string(), 0, 0}};
+  GLOAM_TRY(XmlScan scanned, scan_model_xml(text, file.string()));
+  uses_plugins_ = uses_plugins_ || scanned.has_plugins;
+  const XmlScan& kept = scans_.emplace(file, std::move(scanned)).first->second;
+  stack.push_back(file);
+  for (const FileReference& reference : kept.references) {
+    const SourceLoc loc{file.string(), reference.line, 0};
+    if (kept.root == "robot" && reference.element == "mesh") continue;  // see urdf_text.h
+    const std::string refusal = why_not_a_path(reference.value);
+    if (!refusal.empty()) {
+      return Error{
+          ErrorKind::kInput,
+          fmt::format("the file '{:.80}' of <{}> {}", reference.value, reference.element, refusal),
+          loc};
+    }
+    if (!leads_to_xml(reference)) continue;
+    // MuJoCo looks beside the main file; beside the including one is where people expect it.
+    fs::path target = absolute_path(reference.value, model.parent_path());
+    std::error_code code;
+    if (!fs::exists(target, code)) {
+      const fs::path beside = absolute_path(reference.value, file.parent_path());
+      if (fs::exists(beside, code)) target = beside;
+    }
+    GLOAM_TRY_STATUS(scan(target, reference.element == "model" ? target : model, loc, stack));
+  }
+  stack.pop_back();
+  return {};
+}
+
+Status ModelFiles::add_model(const fs::path& file, const FileAccess& access, const SourceLoc& loc) {
+  const fs::path path = absolute_path(file, "");
+  if (scans_.contains(path)) return {};
+  if (is_container(path)) {
+    return Error{
+        ErrorKind::kUnsupported,
+        fmt::format("'{}' is an archive or binary model, which is not read", file.string()), loc,
+        "give the MJCF (.xml) or URDF file"};
+  }
+  GLOAM_TRY(ModelRoot root, find_model_root(path, access));
+  roots_.push_back(std::move(root));
+  for (const auto& [name, folder] : access.packages) {
+    std::error_code code;
+    const fs::path package = absolute_path(folder, "");
+    const fs::path canonical = fs::weakly_canonical(package, code);
+    roots_.push_back({package, canonical, canonical});
+  }
+  std::vector<fs::path> stack;
+  GLOAM_TRY_STATUS(scan(path, path, loc, stack));
+  const std::string& top = scans_.at(path).root;
+  if (top == "mujoco" || top == "robot") return {};
+  return Error{ErrorKind::kInput,
+               fmt::format("the top element is <{:.40}>, so this is neither MJCF nor URDF", top),
+               {path.string(), 1, 0},
+               "MJCF starts with <mujoco>, URDF with <robot>"};
+}
+
+const std::string& ModelFiles::root_element(const fs::path& file) const {
+  return scans_.at(absolute_path(file, "")).root;
+}
+
+const std::string& ModelFiles::text(const fs::path& file) const {
+  const std::lock_guard lock(mutex_);
+  return *contents_.at(absolute_path(file, ""));
+}
+
+void ModelFiles::set_overlay(const fs::path& file, std::string text) {
+  const std::lock_guard lock(mutex_);
+  overlays_[absolute_path(file, "")] = std::make_shared<const std::string>(std::move(text));
+}
+
+void ModelFiles::clear_overlay(const fs::path& file) {
+  const std::lock_guard lock(mutex_);
+  overlays_.erase(absolute_path(file, ""));
+}
+
+Result<ModelFiles::Content> ModelFiles::read(const fs::path& path) {
+  std::string hash;
+  return open(absolute_path(path, ""), &hash);
+}
+
+bool ModelFiles::readable(const fs::path& path) {
+  const fs::path absolute = absolute_path(path, "");
+  std::error_code code;
+  return why_not_readable(absolute, roots_).empty() && fs::is_regular_file(absolute, code);
+}
+
+SourceLoc ModelFiles::find_reference(const fs::path& path) const {
+  SourceLoc best;
+  size_t best_tail = 0;
+  for (const auto& [file, scan] : scans_) {
+    for (const FileReference& reference : scan.references) {
+      const size_t tail = shared_tail(path, fs::path(reference.value).lexically_normal());
+      if (tail > best_tail) {
+        best_tail = tail;
+        best = {file.string(), reference.line, 0};
+      }
+    }
+  }
+  return best;
+}
+
+Error ModelFiles::explain(const std::string& message, const fs::path& model) const {
+  const std::lock_guard lock(mutex_);
+  for (const Failure& failure : failures_) {
+    if (message.find(failure.path.filename().string()) == std::string::npos) continue;
+    Error error{failure.kind, fmt::format("'{}' {}", failure.path.string(), failure.reason),
+                find_reference(failure.path)};
+    if (error.loc.file.empty()) error.loc.file = model.string();
+    if (failure.reason == "does not exist") {
+      error.hint = "check the path, meshdir and texturedir";
+    } else if (!why_not_readable(failure.path, roots_).empty()) {
+      error.hint = "--root FOLDER widens what the model may read";
+    }
+    return error;
+  }
+  std::string text = one_line(message);
+  for (const std::string_view prefix : {"XML Error: ", "Error: ", "XML error: "}) {
+    if (text.starts_with(prefix)) text.erase(0, prefix.size());
+  }
+  Error error{ErrorKind::kInput, text, {model.string(), 0, 0}};
+  std::smatch match;
+  static const std::regex kLine(
+      "[;,]? *(?:Element '([^']*)', )?(?:at )?[Ll]ine[ =](\\d+)(?:, column \\d+)?\\.?");
+  if (std::regex_search(text, match, kLine) && match[2].length() < 9) {
+    const std::string element = match[1];
+    error.loc.line = std::stoi(match[2]);
+    error.message = std::string(match.prefix()) +
+                    (element.empty() ? "" : fmt::format(" in <{}>", element)) +
+                    std::string(match.suffix());
+    // MuJoCo does not say which of the included files it means.
+    const auto holds = [&](const fs::path& file) {
+      const auto content = contents_.find(file);
+      return content != contents_.end() &&
+             has_element_at(*content->second, element, error.loc.line);
+    };
+    if (!holds(absolute_path(model, ""))) {
+      for (const auto& [file, scan] : scans_) {
+        if (!holds(file)) continue;
+        error.loc.file = file.string();
+        break;
+      }
+    }
+  }
+  if (error.message.empty()) error.message = "MuJoCo refused the model without a reason";
+  return error;
+}
+
+void ModelFiles::forget_failures() {
+  const std::lock_guard lock(mutex_);
+  failures_.clear();
+}
+
+std::vector<Dependency> ModelFiles::dependencies() const {
+  const std::lock_guard lock(mutex_);
+  return dependencies_;
+}
+
+}  // namespace gloam

@@ -1,0 +1,101 @@
+#pragma once
+// The only door through which MuJoCo reads files: a virtual file system whose every open is checked
+// against the roots of the models, bounded in size, remembered for the cache, and explained when it
+// fails.
+
+#include <mujoco/mujoco.h>
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "gloam/scene.h"
+#include "scene/model_path.h"
+#include "scene/xml_scan.h"
+
+namespace gloam {
+
+/// One file that the models were made of, or one that was looked for in vain (`exists` false).
+struct Dependency {
+  std::filesystem::path path;
+  bool exists = true;
+  uint64_t hash = 0;  ///< of the content
+};
+
+/// Files of the models of one level. Not movable: MuJoCo keeps pointers to it.
+class ModelFiles {
+ public:
+  ModelFiles();
+  ~ModelFiles();
+  ModelFiles(const ModelFiles&) = delete;
+  ModelFiles& operator=(const ModelFiles&) = delete;
+
+  /// Admits a model: finds its root, reads and scans its XML and everything that includes reach.
+  /// `loc` is where the scene names it (empty = the command line). Errors: missing, not a model,
+  /// malformed or absurd XML, cyclic includes, a file outside the root.
+  Status add_model(const std::filesystem::path& file, const FileAccess& access,
+                   const SourceLoc& loc = {});
+
+  /// Top element of a model that was added: "mujoco" or "robot".
+  const std::string& root_element(const std::filesystem::path& file) const;
+  /// Text of a model or of a file that it includes, as on disk.
+  const std::string& text(const std::filesystem::path& file) const;
+  bool uses_plugins() const { return uses_plugins_; }
+
+  /// From now on MuJoCo reads `text` instead of the file.
+  void set_overlay(const std::filesystem::path& file, std::string text);
+  void clear_overlay(const std::filesystem::path& file);
+
+  /// Reads through the same checks. For files that Gloam itself needs (export).
+  Result<std::shared_ptr<const std::string>> read(const std::filesystem::path& path);
+
+  /// Could this file be read?
+  bool readable(const std::filesystem::path& path);
+
+  /// To be passed to mj_parseXML and mj_compile.
+  const mjVFS* vfs() const { return &vfs_; }
+
+  /// What went wrong and where, from MuJoCo's message and from the files that could not be opened
+  /// since the last forget_failures().
+  Error explain(const std::string& message, const std::filesystem::path& model) const;
+  void forget_failures();
+
+  /// In the order of first use.
+  std::vector<Dependency> dependencies() const;
+
+ private:
+  struct Failure {
+    std::filesystem::path path;
+    std::string reason;
+    ErrorKind kind = ErrorKind::kInput;
+  };
+  using Content = std::shared_ptr<const std::string>;
+
+  Status scan(const std::filesystem::path& file, const std::filesystem::path& model,
+              const SourceLoc& named_at, std::vector<std::filesystem::path>& stack);
+  Result<Content> open(const std::filesystem::path& path, std::string* hash_text);
+  SourceLoc find_reference(const std::filesystem::path& path) const;
+
+  static int provider_open(mjResource* resource);
+  static int provider_read(mjResource* resource, const void** buffer);
+  static void provider_close(mjResource* resource);
+
+  mjVFS vfs_;
+  mjpResourceProvider provider_;
+  std::vector<ModelRoot> roots_;
+  std::map<std::filesystem::path, XmlScan> scans_;
+  bool uses_plugins_ = false;
+
+  mutable std::mutex mutex_;  // MuJoCo's compiler reads assets on several threads
+  std::map<std::filesystem::path, Content> contents_;
+  std::map<std::filesystem::path, Content> overlays_;
+  std::vector<Dependency> dependencies_;
+  std::set<std::filesystem::path> depended_;
+  std::vector<Failure> failures_;
+  uint64_t total_size_ = 0;  // [bytes]
+};
+
+}  // namespace gloam

@@ -1,0 +1,45 @@
+#pragma once
+// Where a model's files may lie. Models come from strangers: a model must not make Gloam read
+// /etc/passwd or a private key next to the downloads folder.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "gloam/scene.h"
+
+namespace gloam {
+
+/// The folders one model may read from. All canonical.
+struct ModelRoot {
+  std::filesystem::path folder;  ///< as MuJoCo spells paths below it: absolute, not canonical
+  std::filesystem::path canonical;
+  std::filesystem::path linked;  ///< files reached through a symbolic link must lie below this one
+};
+
+/// Root of the model (or scene) `file`: FileAccess::root if given, its own folder if strict, else
+/// the nearest of its folder and four more levels up that holds package.xml, else the highest of
+/// them; never "/", a home folder, or past a symbolic link. Errors: the file is not inside the root
+/// that the user gave.
+Result<ModelRoot> find_model_root(const std::filesystem::path& file, const FileAccess& access);
+
+/// Empty when `path` (absolute) may be read under one of `roots`; else why not, as half a sentence
+/// that follows the file's name.
+std::string why_not_readable(const std::filesystem::path& path,
+                             const std::vector<ModelRoot>& roots);
+
+/// Folder that package://`name`/ stands for: FileAccess::packages, else the nearest folder above
+/// `file` whose package.xml says so or that is called `name`. Empty when there is none.
+std::filesystem::path find_package(const std::string& name, const std::filesystem::path& file,
+                                   const FileAccess& access);
+
+/// `path` made absolute against `base`, without "." and "..", links untouched. An absolute `path`
+/// stays.
+std::filesystem::path absolute_path(const std::filesystem::path& path,
+                                    const std::filesystem::path& base);
+
+/// Error text when a name found in a file is no plain path ("http://…", a NUL, far too long), else
+/// "".
+std::string why_not_a_path(std::string_view name);
+
+}  // namespace gloam

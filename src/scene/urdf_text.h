@@ -1,0 +1,26 @@
+#pragma once
+// What MuJoCo is given instead of a URDF's own text: the same robot with mesh paths that it can
+// find, and a second, static one that keeps the visuals which stock loading discards.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "gloam/scene.h"
+
+namespace gloam {
+
+struct UrdfText {
+  std::string physics;  ///< empty = load the file as it is: stock MuJoCo finds all it needs
+  std::string visual;   ///< visuals only, every joint fixed, nothing fused; empty = no visuals
+  std::vector<Error> unsupported;  ///< visuals that cannot be drawn, and where
+};
+
+/// `exists` says whether a file may be read. `file` is the URDF's absolute path. Errors: not
+/// well-formed; a mesh of a package whose folder is unknown, or a scheme other than package://,
+/// file:// and model://.
+Result<UrdfText> prepare_urdf(const std::string& text, const std::filesystem::path& file,
+                              const FileAccess& access,
+                              const std::function<bool(const std::filesystem::path&)>& exists);
+
+}  // namespace gloam

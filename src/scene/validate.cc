@@ -1,0 +1,149 @@
+#include "scene/validate.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "base/text.h"
+#include "scene/option_fields.h"
+
+namespace gloam {
+namespace {
+
+// Checks the rule of every field of one option struct.
+class FieldChecker {
+ public:
+  FieldChecker(std::string where, SourceLoc loc, Status* status)
+      : where_(std::move(where)), loc_(std::move(loc)), status_(status) {}
+
+  template <class T>
+  void operator()(std::string_view key, const T& value, const FieldRule& rule) {
+    if (status_->ok()) check(key, value, rule);
+  }
+
+ private:
+  void fail(std::string_view key, const std::string& what) {
+    *status_ = Error{ErrorKind::kInput, fmt::format("'{}' of {} {}", key, where_, what), loc_};
+  }
+  void number(std::string_view key, double value, const FieldRule& rule) {
+    const bool inside =
+        rule.open ? value > rule.min && value < rule.max : value >= rule.min && value <= rule.max;
+    if (!std::isfinite(value) || !inside)
+      fail(key, fmt::format("is {}, outside {} … {}", value, rule.min, rule.max));
+  }
+  void check(std::string_view key, double value, const FieldRule& rule) {
+    number(key, value, rule);
+  }
+  void check(std::string_view key, int value, const FieldRule& rule) { number(key, value, rule); }
+  void check(std::string_view, uint64_t, const FieldRule&) {}
+  void check(std::string_view, bool, const FieldRule&) {}
+  void check(std::string_view key, const Rational& value, const FieldRule& rule) {
+    if (value.den <= 0) return fail(key, "has no positive denominator");
+    number(key, value.value(), rule);
+  }
+  void check(std::string_view key, const Vec3& v, const FieldRule& rule) {
+    for (const double x : {v.x, v.y, v.z}) number(key, x, rule);
+  }
+  void check(std::string_view key, const Quat& q, const FieldRule&) {
+    const double square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
+    if (!(std::abs(square - 1) < 1e-6)) fail(key, "is not a unit quaternion");
+  }
+  void check(std::string_view key, const std::string& text, const FieldRule& rule) {
+    if (rule.required && text.empty()) return fail(key, "is empty");
+    if (rule.identifier && (text.empty() || text.find('/') != std::string::npos))
+      return fail(key, fmt::format("must be a name without '/', not '{}'", text));
+    if (!rule.choices.empty() &&
+        std::find(rule.choices.begin(), rule.choices.end(), text) == rule.choices.end()) {
+      const std::vector<std::string> choices(rule.choices.begin(), rule.choices.end());
+      fail(key, fmt::format("cannot be '{}'; {}", text, suggest_name(text, choices)));
+    }
+  }
+  void check(std::string_view key, const std::filesystem::path& path, const FieldRule& rule) {
+    if (rule.required && path.empty()) fail(key, "is empty");
+  }
+  template <class T>
+  void check(std::string_view key, const std::optional<T>& value, const FieldRule& rule) {
+    if (value) check(key, *value, rule);
+  }
+  template <class T>
+  void check(std::string_view key, const std::vector<T>& values, const FieldRule& rule) {
+    for (const T& value : values) {
+      if (status_->ok()) check(key, value, rule);
+    }
+  }
+  template <class Options>
+    requires requires(FieldChecker& v, Options& o) { visit_fields(v, o); }
+  void check(std::string_view key, const Options& options, const FieldRule&) {
+    SourceLoc loc = loc_;
+    if constexpr (requires { options.loc; }) loc = options.loc;
+    std::string where = fmt::format("[{}]", key);
+    if constexpr (requires { options.name; }) {
+      if (!options.name.empty()) where = fmt::format("{} '{}'", key, options.name);
+    }
+    FieldChecker inner(where, loc, status_);
+    visit_fields(inner, const_cast<Options&>(options));  // visitors that read do not write
+  }
+
+  std::string where_;
+  SourceLoc loc_;
+  Status* status_;
+};
+
+template <class Options>
+Status refuse_duplicates(const std::vector<Options>& options, std::string_view kind) {
+  std::map<std::string, SourceLoc> seen;
+  for (const Options& option : options) {
+    const auto [first, is_new] = seen.emplace(option.name, option.loc);
+    if (is_new) continue;
+    const std::string hint =
+        first->second.line > 0 ? fmt::format("the first is in line {}", first->second.line) : "";
+    return Error{ErrorKind::kInput, fmt::format("there are two {}s named '{}'", kind, option.name),
+                 option.loc, hint};
+  }
+  return {};
+}
+
+Status validate_camera(const CameraOptions& camera) {
+  const auto both = [&](const char* a, const char* b) {
+    return Error{ErrorKind::kInput,
+                 fmt::format("camera '{}' has both '{}' and '{}'", camera.name, a, b), camera.loc,
+                 "give one of them"};
+  };
+  if (camera.look_at && camera.orientation) return both("look_at", "orientation");
+  if (!camera.body.empty() && !camera.track.empty()) return both("body", "track");
+  if (camera.look_at && *camera.look_at == camera.position) {
+    return Error{ErrorKind::kInput,
+                 fmt::format("camera '{}' looks at the point it stands in", camera.name),
+                 camera.loc, "move 'look_at' or 'position'"};
+  }
+  return {};
+}
+
+}  // namespace
+
+Status validate_scene(const Scene& scene) {
+  Status status;
+  FieldChecker checker("the scene", {scene.file.string(), 0, 0}, &status);
+  SceneHeader header{scene.name};
+  visit_tables(checker, header, const_cast<Scene&>(scene));  // visitors that read do not write
+  GLOAM_TRY_STATUS(std::move(status));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.robots, "robot"));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.cameras, "camera"));
+  for (const CameraOptions& camera : scene.cameras) GLOAM_TRY_STATUS(validate_camera(camera));
+  for (const RobotOptions& robot : scene.robots) {
+    for (size_t i = 1; i < robot.controller.goals.size(); ++i) {
+      const VelocityGoal& goal = robot.controller.goals[i];
+      if (goal.time >= robot.controller.goals[i - 1].time) continue;
+      return Error{ErrorKind::kInput,
+                   fmt::format("goal at {} s comes after the goal at {} s", goal.time,
+                               robot.controller.goals[i - 1].time),
+                   goal.loc, "order the goals by time"};
+    }
+  }
+  return {};
+}
+
+}  // namespace gloam

@@ -1,0 +1,11 @@
+#pragma once
+// What one option alone cannot tell: names that clash, options that exclude each other. Ranges are
+// checked here too, because scenes made in code have met no reader.
+
+#include "gloam/scene.h"
+
+namespace gloam {
+
+Status validate_scene(const Scene& scene);
+
+}  // namespace gloam

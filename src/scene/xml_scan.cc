@@ -1,0 +1,207 @@
+#include "scene/xml_scan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+#include <functional>
+#include <pugixml.hpp>
+
+namespace gloam {
+namespace {
+
+constexpr int kDeepest = 200;
+constexpr int64_t kMostElements = 4'000'000;
+
+// Sizes that only a mistake or an attack would ask for. The product of all numbers of the attribute
+// counts.
+struct SizeLimit {
+  std::string_view element, attribute;
+  double largest;
+};
+constexpr SizeLimit kSizeLimits[] = {
+    {"replicate", "count", 1e5},   {"flexcomp", "count", 1e6},    {"flexcomp", "cellcount", 1e6},
+    {"texture", "width", 16384},   {"texture", "height", 98304},  {"texture", "nchannel", 4},
+    {"hfield", "nrow", 16384},     {"hfield", "ncol", 16384},     {"numeric", "size", 1e7},
+    {"size", "nuserdata", 1e8},    {"size", "nkey", 1e6},         {"size", "njmax", 1e7},
+    {"size", "nconmax", 1e7},      {"size", "nstack", 1e9},       {"mesh", "octree_maxdepth", 12},
+    {"user", "dim", 1e6},          {"texture", "gridsize", 144},  {"size", "nuser_geom", 1e4},
+    {"size", "nuser_body", 1e4},   {"size", "nuser_jnt", 1e4},    {"size", "nuser_site", 1e4},
+    {"size", "nuser_cam", 1e4},    {"size", "nuser_tendon", 1e4}, {"size", "nuser_actuator", 1e4},
+    {"size", "nuser_sensor", 1e4},
+};
+constexpr double kLargestArena = 64.0 * (uint64_t{1} << 30);  // [bytes]
+
+bool names_a_file(std::string_view element, std::string_view attribute) {
+  if (attribute.starts_with("file")) return element != "key" && element != "text";
+  return false;
+}
+
+class Lines {
+ public:
+  explicit Lines(std::string_view text) {
+    for (size_t i = 0; i < text.size(); ++i) {
+      if (text[i] == '\n') ends_.push_back(i);
+    }
+  }
+  int at(ptrdiff_t offset) const {
+    const auto end = std::lower_bound(ends_.begin(), ends_.end(),
+                                      static_cast<size_t>(std::max<ptrdiff_t>(offset, 0)));
+    return static_cast<int>(end - ends_.begin()) + 1;
+  }
+
+ private:
+  std::vector<size_t> ends_;
+};
+
+double product_of_numbers(const char* text) {
+  double product = 1;
+  bool any = false;
+  while (*text != 0) {
+    char* end = nullptr;
+    const double x = std::strtod(text, &end);
+    if (end == text) {
+      ++text;
+      continue;
+    }
+    product *= std::abs(x) > 1 ? std::abs(x) : 1;
+    any = true;
+    text = end;
+  }
+  return any ? product : 0;
+}
+
+double memory_bytes(const char* text) {
+  char* end = nullptr;
+  const double x = std::strtod(text, &end);
+  static constexpr std::string_view kUnits = "KMGTPE";
+  const size_t unit =
+      kUnits.find(static_cast<char>(std::toupper(static_cast<unsigned char>(*end))));
+  return unit == std::string_view::npos || *end == 0
+             ? x
+             : x * std::pow(1024.0, static_cast<double>(unit) + 1);
+}
+
+// Calls visit(node, depth) on every element in document order without recursion; stops when it
+// returns false.
+template <class Visit>
+void walk(const pugi::xml_document& document, Visit&& visit) {
+  pugi::xml_node node = document.document_element();
+  int depth = 1;
+  while (node) {
+    if (node.type() == pugi::node_element && !visit(node, depth)) return;
+    if (node.first_child()) {
+      node = node.first_child();
+      ++depth;
+      continue;
+    }
+    while (node && !node.next_sibling()) {
+      node = node.parent();
+      --depth;
+      if (depth < 1) return;
+    }
+    node = node.next_sibling();
+  }
+}
+
+pugi::xml_parse_result parse(std::string_view text, pugi::xml_document* document) {
+  return document->load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
+}
+
+Status check_sizes(const pugi::xml_node& node, const std::function<SourceLoc()>& loc) {
+  const std::string_view element = node.name();
+  for (const SizeLimit& limit : kSizeLimits) {
+    if (element != limit.element) continue;
+    const pugi::xml_attribute attribute = node.attribute(limit.attribute.data());
+    if (!attribute) continue;
+    const double size = product_of_numbers(attribute.value());
+    if (size <= limit.largest) continue;
+    return Error{ErrorKind::kInput,
+                 fmt::format("{} {}=\"{:.40}\" is more than the limit of {}", element,
+                             limit.attribute, attribute.value(), limit.largest),
+                 loc()};
+  }
+  if (element == "size" && node.attribute("memory") &&
+      memory_bytes(node.attribute("memory").value()) > kLargestArena) {
+    return Error{ErrorKind::kInput,
+                 fmt::format("size memory=\"{:.40}\" is more than the limit of 64G",
+                             node.attribute("memory").value()),
+                 loc()};
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<XmlScan> scan_model_xml(std::string_view text, const std::string& file) {
+  pugi::xml_document document;
+  const pugi::xml_parse_result parsed = parse(text, &document);
+  const Lines lines(text);
+  const auto loc_at = [&](ptrdiff_t offset) { return SourceLoc{file, lines.at(offset), 0}; };
+  if (!parsed) {
+    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
+      return Error{ErrorKind::kInput, "the file is empty", {file, 0, 0}};
+    std::string what = parsed.description();
+    if (!what.empty())
+      what[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(what[0])));
+    return Error{ErrorKind::kInput, fmt::format("is not well-formed XML: {}", what),
+                 loc_at(parsed.offset)};
+  }
+  XmlScan scan;
+  scan.root = document.document_element().name();
+  Status status;
+  int64_t elements = 0;
+  walk(document, [&](const pugi::xml_node& node, int depth) {
+    const auto loc = [&] { return loc_at(node.offset_debug()); };
+    if (depth > kDeepest) {
+      status = Error{ErrorKind::kInput,
+                     fmt::format("elements are nested more than {} deep", kDeepest), loc()};
+    } else if (++elements > kMostElements) {
+      status =
+          Error{ErrorKind::kInput, fmt::format("has more than {} elements", kMostElements), loc()};
+    } else {
+      status = check_sizes(node, loc);
+    }
+    if (!status.ok()) return false;
+    const std::string_view element = node.name();
+    if (element == "extension" || element == "plugin") scan.has_plugins = true;
+    for (const pugi::xml_attribute& attribute : node.attributes()) {
+      if (!names_a_file(element, attribute.name())) continue;
+      scan.references.push_back({std::string(element), attribute.name(), attribute.value(),
+                                 lines.at(node.offset_debug())});
+    }
+    return true;
+  });
+  GLOAM_TRY_STATUS(std::move(status));
+  return scan;
+}
+
+bool has_element_at(std::string_view text, std::string_view name, int line) {
+  pugi::xml_document document;
+  if (!parse(text, &document)) return false;
+  const Lines lines(text);
+  bool found = false;
+  walk(document, [&](const pugi::xml_node& node, int) {
+    found = (name.empty() || name == node.name()) && lines.at(node.offset_debug()) == line;
+    return !found;
+  });
+  return found;
+}
+
+int line_of_named(std::string_view text, std::string_view element, std::string_view name) {
+  pugi::xml_document document;
+  if (!parse(text, &document)) return 0;
+  const Lines lines(text);
+  int line = 0;
+  walk(document, [&](const pugi::xml_node& node, int) {
+    if ((element.empty() || element == node.name()) && name == node.attribute("name").value())
+      line = lines.at(node.offset_debug());
+    return line == 0;
+  });
+  return line;
+}
+
+}  // namespace gloam

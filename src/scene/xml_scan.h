@@ -1,0 +1,37 @@
+#pragma once
+// A first look at a model's XML, before MuJoCo sees it: bounds what hostile files could make its
+// recursive parser or its compiler do, and remembers where every file is named.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gloam/result.h"
+
+namespace gloam {
+
+/// One attribute that names a file.
+struct FileReference {
+  std::string element;    ///< "mesh", "include" …
+  std::string attribute;  ///< "file", "fileup", "filename" …
+  std::string value;      ///< as written
+  int line = 0;           ///< of the element
+};
+
+struct XmlScan {
+  std::string root;                       ///< name of the top element: "mujoco", "robot" …
+  std::vector<FileReference> references;  ///< in document order
+  bool has_plugins = false;               ///< an <extension> or <plugin> element
+};
+
+/// `file` names the text in errors. Errors: not well-formed, nested deeper than 200, absurd sizes
+/// (a billion replicas, a texture of a million pixels' width …).
+Result<XmlScan> scan_model_xml(std::string_view text, const std::string& file);
+
+/// Is there an element `name` (any, if empty) that starts in line `line`?
+bool has_element_at(std::string_view text, std::string_view name, int line);
+
+/// Line of the first element that has an attribute "name" of this value; 0 = none.
+int line_of_named(std::string_view text, std::string_view element, std::string_view name);
+
+}  // namespace gloam
