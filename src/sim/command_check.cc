@@ -1,0 +1,123 @@
+#include "sim/command_check.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <initializer_list>
+
+#include "sim/live_fields.h"
+
+namespace gloam {
+namespace {
+
+Error refuse(std::string message, std::string hint = {}) {
+  return Error{ErrorKind::kUsage, std::move(message), {}, std::move(hint)};
+}
+
+bool finite(std::initializer_list<double> values) {
+  for (const double value : values) {
+    if (!std::isfinite(value)) return false;
+  }
+  return true;
+}
+bool finite(Vec3 v) { return finite({v.x, v.y, v.z}); }
+
+std::string body_label(const mjModel& model, int body) {
+  const char* name = mj_id2name(&model, mjOBJ_BODY, body);
+  return name != nullptr && *name != 0 ? fmt::format("body '{}'", name)
+                                       : fmt::format("body {}", body);
+}
+
+class Check {
+ public:
+  Check(const mjModel& model, int robot_count) : model_(model), robot_count_(robot_count) {}
+
+  Status operator()(const SetControl& c) const {
+    if (c.actuator.id < 0 || c.actuator.id >= model_.nactuator) {
+      return refuse(fmt::format("there is no actuator number {}", c.actuator.id));
+    }
+    if (model_.actuator_ctrlnum[c.actuator.id] != 1) {
+      return refuse(fmt::format("actuator {} takes {} controls, not one", c.actuator.id,
+                                model_.actuator_ctrlnum[c.actuator.id]),
+                    "set its controls in a step hook or a controller");
+    }
+    if (!finite({c.value})) return refuse("a control is not a finite number");
+    return {};
+  }
+  Status operator()(const SetVelocityGoal& c) const {
+    if (c.robot < 0 || c.robot >= robot_count_) {
+      return refuse(fmt::format("there is no robot number {}", c.robot));
+    }
+    if (!finite({c.vx, c.vy, c.yaw_rate})) return refuse("a velocity goal is not finite");
+    return {};
+  }
+  Status operator()(const SetMocapPose& c) const {
+    if (Status status = check_body(c.body); !status) return status;
+    if (model_.body_mocapid[c.body.id] < 0) {
+      return refuse(fmt::format("{} is not a mocap body", body_label(model_, c.body.id)),
+                    "give it mocap=\"true\" in the model");
+    }
+    const Quat& q = c.X_WB.q;
+    if (!finite(c.X_WB.p) || !finite({q.w, q.x, q.y, q.z}) ||
+        q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z < 1e-12) {
+      return refuse("a mocap pose is not finite, or its quaternion is zero");
+    }
+    return {};
+  }
+  Status operator()(const SetWrench& c) const {
+    if (Status status = check_body(c.body); !status) return status;
+    if (!finite(c.force) || !finite(c.torque)) return refuse("a wrench is not finite");
+    return {};
+  }
+  Status operator()(const AddVelocity& c) const {
+    if (Status status = check_body(c.body); !status) return status;
+    if (!finite(c.velocity)) return refuse("a velocity is not finite");
+    if (floating_joint(model_, c.body.id) < 0) {
+      return refuse(fmt::format("{} does not float: it has no free joint above it",
+                                body_label(model_, c.body.id)),
+                    "push it with a wrench instead");
+    }
+    return {};
+  }
+  Status operator()(const DragBody& c) const {
+    if (Status status = check_body(c.body); !status) return status;
+    if (!finite(c.point_B) || !finite(c.target_W)) return refuse("a drag point is not finite");
+    if (c.active && model_.body_weldid[c.body.id] == 0) {
+      return refuse(fmt::format("{} cannot move", body_label(model_, c.body.id)));
+    }
+    return {};
+  }
+  Status operator()(const ResetSim&) const { return {}; }
+  Status operator()(const SetLiveField& c) const { return check_live_field(model_, c); }
+
+ private:
+  Status check_body(Body body) const {
+    if (body.id < 1 || body.id >= model_.nbody) {
+      return refuse(fmt::format("there is no body number {} that could move", body.id));
+    }
+    return {};
+  }
+
+  const mjModel& model_;
+  int robot_count_;
+};
+
+}  // namespace
+
+int floating_joint(const mjModel& model, int body) {
+  const int root = model.body_rootid[body];
+  for (int i = 0; i < model.body_jntnum[root]; ++i) {
+    const int joint = model.body_jntadr[root] + i;
+    if (model.jnt_type[joint] == mjJNT_FREE) return joint;
+  }
+  return -1;
+}
+
+Status check_command(const mjModel& model, int robot_count, const Command& command) {
+  if (command.step < Command::kNextStep) {
+    return refuse(fmt::format("a command cannot apply at step {}", command.step));
+  }
+  return std::visit(Check(model, robot_count), command.what);
+}
+
+}  // namespace gloam

@@ -1,0 +1,16 @@
+#pragma once
+// What a Command may say, checked on the thread that posts it.
+
+#include <mujoco/mujoco.h>
+
+#include "gloam/command.h"
+
+namespace gloam {
+
+/// The free joint that carries `body` (its own or that of the floating base it hangs from), or -1.
+int floating_joint(const mjModel& model, int body);
+
+/// Refuses unknown handles, numbers that are not finite, and effects the model cannot show.
+Status check_command(const mjModel& model, int robot_count, const Command& command);
+
+}  // namespace gloam

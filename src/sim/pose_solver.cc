@@ -1,0 +1,119 @@
+#include "sim/pose_solver.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "scene/mujoco_guard.h"
+#include "sim/live_fields.h"
+#include "sim/skinning.h"
+#include "sim/state_layout.h"
+
+namespace gloam {
+namespace {
+
+void assign(const mjtNum* values, mjtSize n, std::vector<double>& out) {
+  out.assign(values, values + n);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<PoseSolver>> PoseSolver::create(std::shared_ptr<const CompiledWorld> world) {
+  std::unique_ptr<PoseSolver> solver(new PoseSolver);
+  solver->world_ = std::move(world);
+  solver->layout_ = deformable_layout(*solver->world_->model);
+  if (solver->model().opt.enableflags & mjENBL_SLEEP) GLOAM_TRY_STATUS(solver->own_the_model());
+  const mjModel* model = &solver->model();
+  mjData* data = nullptr;
+  GLOAM_TRY_STATUS(guarded([&] { data = mj_makeData(model); }));
+  solver->data_.reset(data);
+  return solver;
+}
+
+Status PoseSolver::own_the_model() {
+  if (own_model_) return {};
+  mjModel* model = nullptr;
+  GLOAM_TRY_STATUS(guarded([&] { model = mj_copyModel(nullptr, world_->model.get()); }));
+  own_model_.reset(model);
+  own_model_->opt.enableflags &= ~mjENBL_SLEEP;  // kinematics skips what sleeps
+  return {};
+}
+
+// Masses move centres of mass, which cameras and lights may track; no other live field moves
+// anything that is seen.
+Status PoseSolver::follow_live_fields(const std::shared_ptr<const LiveFields>& live) {
+  const auto field = static_cast<size_t>(LiveFieldId::kBodyMass);
+  const bool changed = live != nullptr && !live->values[field].empty();
+  if (!changed && masses_.empty()) return {};
+  const std::vector<float> masses =
+      changed ? live->values[field] : read_live_field(*world_->model, LiveFieldId::kBodyMass);
+  if (masses == masses_) return {};
+  GLOAM_TRY_STATUS(own_the_model());
+  if (scratch_ == nullptr) {
+    mjData* scratch = nullptr;
+    GLOAM_TRY_STATUS(guarded([&] { scratch = mj_makeData(own_model_.get()); }));
+    scratch_.reset(scratch);
+  }
+  masses_ = masses;
+  return write_live_field(*world_->model, LiveFieldId::kBodyMass, masses, *own_model_,
+                          scratch_.get());
+}
+
+Status PoseSolver::solve(const Snapshot& snapshot, PoseFrame& frame) {
+  const SnapshotData& in = snapshot.data();
+  GLOAM_CHECK(in.world == world_, "a Snapshot of another World");
+  GLOAM_TRY_STATUS(follow_live_fields(in.live));
+  const mjModel* model = &this->model();
+  mjData* data = data_.get();
+  GLOAM_TRY_STATUS(guarded([&] {
+    mj_setState(model, data, in.state.data(), mjSTATE_INTEGRATION);
+    mj_kinematics(model, data);
+    mj_comPos(model, data);
+    mj_camlight(model, data);
+    if (model->nflex > 0) mj_flex(model, data);
+  }));
+  frame.n_world = 1;
+  frame.step = in.step;
+  frame.time = in.time;
+  fill_poses(frame);
+  fill_live(in.live.get(), frame);
+  return {};
+}
+
+void PoseSolver::fill_poses(PoseFrame& frame) const {
+  const mjModel& m = model();
+  const mjData& d = *data_;
+  assign(d.xpos, 3 * m.nbody, frame.body_p);
+  assign(d.xmat, 9 * m.nbody, frame.body_R);
+  assign(d.cam_xpos, 3 * m.ncam, frame.camera_p);
+  assign(d.cam_xmat, 9 * m.ncam, frame.camera_R);
+  assign(d.light_xpos, 3 * m.nlight, frame.light_p);
+  assign(d.light_xdir, 3 * m.nlight, frame.light_dir);
+  frame.vertices.resize(static_cast<size_t>(3 * layout_.nvertex));
+  for (int skin = 0; skin < m.nskin; ++skin) {
+    skin_vertices(m, skin, d.xpos, d.xquat,
+                  frame.vertices.data() + 3 * layout_.skin_first[static_cast<size_t>(skin)]);
+  }
+  std::transform(d.flexvert_xpos, d.flexvert_xpos + 3 * m.nflexvert,
+                 frame.vertices.begin() + 3 * m.nskinvert,
+                 [](mjtNum x) { return static_cast<float>(x); });
+}
+
+void PoseSolver::fill_live(const LiveFields* live, PoseFrame& frame) {
+  const mjModel& m = *world_->model;
+  frame.live_version = live != nullptr ? live->version : 0;
+  frame.light_diffuse = live_field_at(m, live, LiveFieldId::kLightDiffuse);
+  frame.light_intensity = live_field_at(m, live, LiveFieldId::kLightIntensity);
+  const std::vector<float> active = live_field_at(m, live, LiveFieldId::kLightActive);
+  frame.light_active.resize(active.size());
+  std::transform(active.begin(), active.end(), frame.light_active.begin(),
+                 [](float v) { return static_cast<uint8_t>(v != 0); });
+  frame.material_rgba = live_field_at(m, live, LiveFieldId::kMaterialColor);
+  frame.material_emission = live_field_at(m, live, LiveFieldId::kMaterialEmission);
+  const uint64_t height_field = live != nullptr ? live->height_field_version : 0;
+  if (height_field == frame.height_field_version) return;
+  frame.height_field_version = height_field;
+  frame.height_field =
+      height_field == 0 ? std::vector<float>() : live_field_at(m, live, LiveFieldId::kHeightField);
+}
+
+}  // namespace gloam

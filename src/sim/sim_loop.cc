@@ -1,0 +1,179 @@
+#include "sim/sim_loop.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace gloam {
+namespace {
+constexpr int kLargestQueue = 65536;
+constexpr int64_t kNever = std::numeric_limits<int64_t>::max();
+}  // namespace
+
+SimLoop::SimLoop(std::unique_ptr<Stepper> stepper, Rational timestep, CommandQueue& commands,
+                 std::vector<Command> scene_commands, std::vector<LoggedCommand> replay)
+    : stepper_(std::move(stepper)),
+      timestep_(timestep),
+      commands_(commands),
+      scene_commands_(std::move(scene_commands)),
+      replay_(std::move(replay)),
+      goals_(stepper_->world().robots.size()),
+      next_publication_(kNever) {}
+
+Status SimLoop::add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate) {
+  if (robot < 0 || robot >= static_cast<int>(goals_.size())) {
+    return Error{ErrorKind::kUsage, fmt::format("there is no robot number {}", robot)};
+  }
+  const SourceLoc& loc =
+      stepper_->world().robots[static_cast<size_t>(robot)].options.controller.loc;
+  Result<StepSchedule> schedule = StepSchedule::make(rate, {0, 1}, timestep_);
+  if (!schedule) {
+    Error error = schedule.error();
+    error.loc = loc;
+    return error;
+  }
+  // Calls must be evenly spaced: 1 / rate is a whole number of timesteps.
+  const __int128 steps = static_cast<__int128>(rate.den) * timestep_.den;
+  if (steps % (static_cast<__int128>(rate.num) * timestep_.num) != 0) {
+    return Error{ErrorKind::kInput,
+                 fmt::format("the controller's rate of {:g} Hz does not divide the simulation's "
+                             "step rate of {:g} Hz",
+                             rate.value(), 1 / timestep_.value()),
+                 loc, "choose a rate of which the step rate is a multiple"};
+  }
+  ControllerSlot slot{robot, std::move(controller), *schedule,
+                      static_cast<double>(rate.den) / static_cast<double>(rate.num)};
+  slot.k = slot.schedule.first_at_or_after(stepper_->step_count());
+  slot.due = slot.schedule.step_of(slot.k);
+  slot.controller->reset(&stepper_->model(), &stepper_->data());
+  controllers_.push_back(std::move(slot));
+  return {};
+}
+
+Result<std::shared_ptr<SnapshotQueue>> SimLoop::subscribe(const SubscriptionOptions& options,
+                                                          const std::shared_ptr<Signal>& signal) {
+  if (options.capacity < 1 || options.capacity > kLargestQueue) {
+    return Error{ErrorKind::kUsage, fmt::format("a queue of {} Snapshots is not in 1 … {}",
+                                                options.capacity, kLargestQueue)};
+  }
+  GLOAM_TRY(StepSchedule schedule, StepSchedule::make(options.rate, options.phase, timestep_));
+  Subscription subscription{std::make_shared<SnapshotQueue>(options, signal), schedule};
+  subscription.k = schedule.first_at_or_after(stepper_->step_count());
+  subscription.due = schedule.step_of(subscription.k);
+  // Full queue, one with the reader, one being made.
+  stepper_->pool().add_slots(options.capacity + 2);
+  subscriptions_.push_back(subscription);
+  find_next_publication();
+  return subscription.queue;
+}
+
+void SimLoop::find_next_publication() {
+  next_publication_ = kNever;
+  for (const Subscription& s : subscriptions_) {
+    next_publication_ = std::min(next_publication_, s.due);
+  }
+}
+
+bool SimLoop::publish_due() {
+  const int64_t step = stepper_->step_count();
+  if (step < next_publication_) return true;
+  bool all = true;
+  for (Subscription& s : subscriptions_) {
+    if (s.due > step || s.queue->closed()) continue;
+    if (s.queue->options().required && s.queue->full()) {
+      all = false;
+      continue;
+    }
+    s.queue->publish(stepper_->snapshot());
+    s.due = s.schedule.step_of(++s.k);
+  }
+  std::erase_if(subscriptions_, [this](const Subscription& s) {
+    if (s.queue->closed()) dropped_by_closed_ += s.queue->dropped();
+    return s.queue->closed();
+  });
+  find_next_publication();
+  return all;
+}
+
+void SimLoop::apply(const Command& command) {
+  if (const auto* goal = std::get_if<SetVelocityGoal>(&command.what)) {
+    goal_of(goal->robot) = {goal->vx, goal->vy, goal->yaw_rate};
+  } else {
+    stepper_->apply(command);
+  }
+}
+
+// True when one of them was a reset.
+bool SimLoop::apply_commands() {
+  const int64_t step = stepper_->step_count();
+  while (scene_cursor_ < scene_commands_.size() && scene_commands_[scene_cursor_].step <= step) {
+    apply(scene_commands_[scene_cursor_++]);
+  }
+  while (replay_cursor_ < replay_.size() && replay_[replay_cursor_].run == run_ &&
+         replay_[replay_cursor_].command.step <= step) {
+    const Command& command = replay_[replay_cursor_++].command;
+    if (std::holds_alternative<ResetSim>(command.what)) {
+      commands_.reset_now(step, run_);
+      return true;
+    }
+    apply(command);
+  }
+  return commands_.maybe_due(step) &&
+         commands_.apply_due(step, run_, [this](const Command& command) { apply(command); });
+}
+
+void SimLoop::run_controllers() {
+  const int64_t step = stepper_->step_count();
+  for (ControllerSlot& slot : controllers_) {
+    if (slot.due > step) continue;
+    slot.controller->control(&stepper_->model(), &stepper_->data(), step, slot.period,
+                             goal_of(slot.robot));
+    slot.due = slot.schedule.step_of(++slot.k);
+  }
+}
+
+bool SimLoop::advance() {
+  if (stepper_->failed()) return false;
+  if (apply_commands()) {
+    begin_run();
+    return !stepper_->failed();
+  }
+  run_controllers();
+  if (hook_) hook_(&stepper_->model(), &stepper_->data());
+  return stepper_->step();
+}
+
+void SimLoop::reset() {
+  commands_.reset_now(stepper_->step_count(), run_);
+  begin_run();
+}
+
+void SimLoop::begin_run() {
+  ++run_;
+  scene_cursor_ = 0;
+  while (replay_cursor_ < replay_.size() && replay_[replay_cursor_].run < run_) ++replay_cursor_;
+  std::fill(goals_.begin(), goals_.end(), VelocityTarget{});
+  if (!stepper_->reset()) return;
+  for (ControllerSlot& slot : controllers_) {
+    slot.k = slot.due = 0;
+    slot.controller->reset(&stepper_->model(), &stepper_->data());
+  }
+  for (Subscription& s : subscriptions_) {
+    s.k = 0;
+    s.due = s.schedule.step_of(0);
+  }
+  find_next_publication();
+}
+
+int64_t SimLoop::dropped() const {
+  int64_t dropped = dropped_by_closed_;
+  for (const Subscription& s : subscriptions_) dropped += s.queue->dropped();
+  return dropped;
+}
+
+void SimLoop::close_queues() {
+  for (const Subscription& s : subscriptions_) s.queue->close();
+}
+
+}  // namespace gloam

@@ -1,0 +1,84 @@
+#pragma once
+// What happens around every step, in a fixed order, on whichever thread runs it:
+//   Snapshots due now -> Commands due now -> controllers -> step hook -> physics.
+
+#include <functional>
+#include <vector>
+
+#include "sim/command_queue.h"
+#include "sim/controller.h"
+#include "sim/snapshot_queue.h"
+#include "sim/step_schedule.h"
+#include "sim/stepper.h"
+
+namespace gloam {
+
+/// Raw access before every step, after Commands and controllers. What it writes into mjData counts
+/// as input: it is in state and hash. MuJoCo functions that can fail need try_mujoco.
+using StepHook = std::function<void(const mjModel*, mjData*)>;
+
+class SimLoop {
+ public:
+  /// `scene_commands` apply in every run, `replay` in the run each entry names; both sorted.
+  SimLoop(std::unique_ptr<Stepper> stepper, Rational timestep, CommandQueue& commands,
+          std::vector<Command> scene_commands, std::vector<LoggedCommand> replay);
+
+  Status add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate);
+  void set_step_hook(StepHook hook) { hook_ = std::move(hook); }
+  Result<std::shared_ptr<SnapshotQueue>> subscribe(const SubscriptionOptions& options,
+                                                   const std::shared_ptr<Signal>& signal);
+
+  /// Hands out the Snapshots that are due at the present step. False when a required queue is full:
+  /// call again when it may have room.
+  bool publish_due();
+  /// Applies Commands and takes one step; when a Command was a reset, stands at step 0 instead.
+  /// False when physics failed.
+  bool advance();
+  /// Back to step 0; Commands that wait are thrown away.
+  void reset();
+
+  Stepper& stepper() { return *stepper_; }
+  const Stepper& stepper() const { return *stepper_; }
+  Rational timestep() const { return timestep_; }
+  int64_t run() const { return run_; }
+  /// Snapshots that best-effort subscriptions have lost.
+  int64_t dropped() const;
+  void close_queues();
+
+ private:
+  struct ControllerSlot {
+    int robot;
+    std::unique_ptr<Controller> controller;
+    StepSchedule schedule;
+    double period;  // [s]
+    int64_t k = 0, due = 0;
+  };
+  struct Subscription {
+    std::shared_ptr<SnapshotQueue> queue;
+    StepSchedule schedule;
+    int64_t k = 0, due = 0;
+  };
+
+  void apply(const Command& command);
+  bool apply_commands();
+  void run_controllers();
+  void begin_run();
+  void find_next_publication();
+  VelocityTarget& goal_of(int robot) { return goals_[static_cast<size_t>(robot)]; }
+
+  std::unique_ptr<Stepper> stepper_;
+  Rational timestep_;
+  CommandQueue& commands_;
+  std::vector<Command> scene_commands_;
+  std::vector<LoggedCommand> replay_;
+  size_t scene_cursor_ = 0, replay_cursor_ = 0;
+  std::vector<VelocityTarget> goals_;  // by robot
+  std::vector<ControllerSlot> controllers_;
+  std::vector<Subscription> subscriptions_;
+  StepHook hook_;
+  int64_t run_ = 0;
+  int64_t next_publication_ = 0;  // earliest `due` of the subscriptions
+  int64_t dropped_by_closed_ = 0;
+};
+
+}  // namespace gloam

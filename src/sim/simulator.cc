@@ -1,0 +1,258 @@
+#include "sim/simulator.h"
+
+#include <fmt/format.h>
+#include <pthread.h>
+#include <time.h>
+
+#include <cmath>
+
+#include "base/check.h"
+#include "scene/mujoco_guard.h"
+#include "sim/command_check.h"
+#include "sim/scene_schedule.h"
+
+namespace gloam {
+
+Result<std::unique_ptr<Simulator>> Simulator::create(std::shared_ptr<const CompiledWorld> world,
+                                                     SimulatorOptions options) {
+  const double dt = options.timestep.value_or(world->model->opt.timestep);
+  if (!(dt >= 1e-9 && dt < 1e3)) {
+    return Error{ErrorKind::kInput, fmt::format("a timestep of {} s is not in [1e-9, 1e3)", dt)};
+  }
+  if (!(options.speed > 0 && std::isfinite(options.speed))) {
+    return Error{ErrorKind::kUsage, fmt::format("a speed of {} is not positive", options.speed)};
+  }
+  if (options.command_capacity < 2 || options.command_capacity > 1 << 20) {
+    return Error{ErrorKind::kUsage,
+                 fmt::format("a command queue of {} is not in 2 … 2^20", options.command_capacity)};
+  }
+  const Rational timestep = exact_rational(dt);
+  GLOAM_TRY(std::vector<Command> scene_commands, scene_schedule(*world, timestep));
+  GLOAM_TRY(std::unique_ptr<Stepper> stepper,
+            Stepper::create(std::move(world), options.seed, options.timestep));
+  return std::unique_ptr<Simulator>(
+      new Simulator(std::move(stepper), timestep, std::move(options), std::move(scene_commands)));
+}
+
+Simulator::Simulator(std::unique_ptr<Stepper> stepper, Rational timestep, SimulatorOptions options,
+                     std::vector<Command> scene_commands)
+    : pace_(options.pace),
+      commands_(options.command_capacity, options.log_capacity),
+      loop_(std::move(stepper), timestep, commands_, std::move(scene_commands),
+            std::move(options.replay)),
+      pacer_(timestep.value(), options.speed) {}
+
+Simulator::~Simulator() { stop(); }
+
+// ---- the sim thread ----
+
+void Simulator::run_thread() {
+  MujocoWarningCapture warnings;  // they are counted by type in mjData
+  while (true) {
+    const uint32_t ticket = signal_->ticket();
+    if (called_.load(std::memory_order_acquire)) answer_calls();
+    if (quit_) break;
+    if (!loop_.publish_due()) {
+      signal_->wait(ticket);
+    } else if (loop_.stepper().failed() || !wants_step()) {
+      report_idle();
+      signal_->wait(ticket);
+    } else if (pace_ != Pace::kRealTime || pacer_.ready(loop_.stepper().step_count())) {
+      take_step();
+    }
+  }
+  const std::lock_guard lock(mutex_);
+  for (const std::function<void()>* f : calls_) (*f)();
+  calls_answered_ += static_cast<int64_t>(calls_.size());
+  calls_.clear();
+  loop_.close_queues();
+  running_ = false;  // from here on, calls run where they are made
+  idle_ = true;
+  changed_.notify_all();
+}
+
+void Simulator::take_step() {
+  const int64_t run = loop_.run();
+  const bool ok = loop_.advance();
+  if (loop_.run() != run) {
+    pacer_.restart();
+  } else if (ok) {
+    ++total_steps_;
+    if (remaining_ != kForever) --remaining_;
+  }
+  step_count_.store(loop_.stepper().step_count(), std::memory_order_relaxed);
+}
+
+void Simulator::answer_calls() {
+  const std::lock_guard lock(mutex_);
+  called_.store(false, std::memory_order_relaxed);
+  for (const std::function<void()>* f : calls_) (*f)();
+  calls_answered_ += static_cast<int64_t>(calls_.size());
+  calls_.clear();
+  idle_ = false;
+  step_count_.store(loop_.stepper().step_count(), std::memory_order_relaxed);
+  changed_.notify_all();
+}
+
+void Simulator::report_idle() {
+  const std::lock_guard lock(mutex_);
+  if (called_.load(std::memory_order_relaxed)) return;  // not idle: somebody wants something
+  idle_ = true;
+  changed_.notify_all();
+}
+
+// ---- other threads ----
+
+// Runs f between two steps: on the sim thread if it lives, else here.
+void Simulator::call(const std::function<void()>& f) {
+  std::unique_lock lock(mutex_);
+  if (!running_) {
+    f();
+    step_count_.store(loop_.stepper().step_count(), std::memory_order_relaxed);
+    return;
+  }
+  GLOAM_CHECK(std::this_thread::get_id() != thread_.get_id(),
+              "controllers and step hooks cannot call the Simulator they run in");
+  calls_.push_back(&f);
+  const int64_t mine = ++calls_made_;
+  called_.store(true, std::memory_order_release);
+  signal_->raise();
+  changed_.wait(lock, [&] { return calls_answered_ >= mine; });
+}
+
+void Simulator::start(int64_t until) {
+  const std::lock_guard lock(mutex_);
+  GLOAM_CHECK(!running_ && !quit_, "a Simulator starts once");
+  until_ = pace_ == Pace::kLockstep ? loop_.stepper().step_count() : until;
+  running_ = true;
+  idle_ = false;
+  thread_ = std::thread([this] { run_thread(); });
+}
+
+void Simulator::stop() {
+  call([this] {
+    quit_ = true;
+    loop_.close_queues();
+  });
+  const std::lock_guard lock(join_mutex_);
+  if (thread_.joinable()) thread_.join();
+}
+
+void Simulator::pause() {
+  call([this] { paused_ = true; });
+}
+
+void Simulator::resume() {
+  call([this] {
+    paused_ = false;
+    if (pace_ != Pace::kLockstep) until_ = kForever;
+    remaining_ = kForever;
+    pacer_.restart();
+  });
+}
+
+void Simulator::run_until(int64_t step) {
+  call([this, step] {
+    paused_ = false;
+    until_ = step;
+    remaining_ = kForever;
+    pacer_.restart();
+  });
+}
+
+Status Simulator::step(int64_t n) {
+  call([this, n] {
+    paused_ = false;
+    until_ = kForever;
+    remaining_ = n;
+    pacer_.restart();
+  });
+  return wait();
+}
+
+Status Simulator::wait() {
+  {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return idle_ || !running_; });
+  }
+  return status();
+}
+
+Status Simulator::reset() {
+  call([this] {
+    loop_.reset();
+    pacer_.restart();
+  });
+  return status();
+}
+
+void Simulator::set_speed(double speed) {
+  GLOAM_CHECK(speed > 0 && std::isfinite(speed), "the speed is a positive number");
+  call([this, speed] { pacer_.set_speed(speed); });
+}
+
+Status Simulator::post(Command command) {
+  const CompiledWorld& world = loop_.stepper().world();
+  GLOAM_TRY_STATUS(check_command(*world.model, static_cast<int>(world.robots.size()), command));
+  return commands_.post(std::move(command));
+}
+
+Status Simulator::add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate) {
+  Status status;
+  call([&] { status = loop_.add_controller(robot, std::move(controller), rate); });
+  return status;
+}
+
+void Simulator::set_step_hook(StepHook hook) {
+  call([&] { loop_.set_step_hook(std::move(hook)); });
+}
+
+Result<std::shared_ptr<SnapshotQueue>> Simulator::subscribe(const SubscriptionOptions& options) {
+  Result<std::shared_ptr<SnapshotQueue>> result = std::shared_ptr<SnapshotQueue>();
+  call([&] { result = loop_.subscribe(options, signal_); });
+  return result;
+}
+
+Snapshot Simulator::latest() {
+  Snapshot snapshot;
+  call([&] { snapshot = loop_.stepper().snapshot(); });
+  return snapshot;
+}
+
+Status Simulator::status() {
+  Status status;
+  call([&] {
+    if (loop_.stepper().failed()) status = loop_.stepper().error();
+  });
+  return status;
+}
+
+SimCounters Simulator::counters() {
+  SimCounters counters;
+  call([&] {
+    Stepper& stepper = loop_.stepper();
+    counters = {.steps = total_steps_,
+                .resets = loop_.run(),
+                .snapshots_dropped = loop_.dropped(),
+                .pool_grown = stepper.pool().grown(),
+                .commands_discarded = commands_.discarded(),
+                .log_lost = commands_.log_lost(),
+                .deadlines_missed = pacer_.missed(),
+                .most_contacts = stepper.most_contacts(),
+                .warnings = stepper.warnings()};
+  });
+  return counters;
+}
+
+double Simulator::cpu_time() {
+  clockid_t clock;
+  timespec time{};
+  const std::lock_guard lock(join_mutex_);
+  if (!thread_.joinable() || pthread_getcpuclockid(thread_.native_handle(), &clock) != 0 ||
+      clock_gettime(clock, &time) != 0) {
+    return 0;
+  }
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+}  // namespace gloam

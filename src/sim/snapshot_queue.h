@@ -1,0 +1,67 @@
+#pragma once
+// A subscription's end at the consumer: Snapshots in order, on a schedule.
+
+#include <atomic>
+#include <memory>
+
+#include "sim/bounded_queue.h"
+#include "sim/snapshot.h"
+
+namespace gloam {
+
+/// Wakes a thread that waits for one of several things.
+class Signal {
+ public:
+  uint32_t ticket() const { return value_.load(std::memory_order_acquire); }
+  void raise() {
+    value_.fetch_add(1, std::memory_order_acq_rel);
+    value_.notify_all();
+  }
+  /// Returns once raise() has been called since `ticket` was taken.
+  void wait(uint32_t ticket) const { value_.wait(ticket, std::memory_order_acquire); }
+
+ private:
+  std::atomic<uint32_t> value_{0};
+};
+
+struct SubscriptionOptions {
+  Rational rate = {20, 1};  ///< Snapshots per second of simulation time, at most the step rate [Hz]
+  Rational phase = {0, 1};  ///< time of the first one [s], >= 0
+  bool required = false;    ///< the simulation waits while the queue is full, and nothing is lost;
+                            ///< else the oldest are dropped and counted
+  int capacity = 8;         ///< Snapshots that wait to be consumed, 1 … 65536
+};
+
+/// Blocking reads from any number of threads; the sim thread is the only writer and takes no lock.
+class SnapshotQueue final : public SnapshotSource {
+ public:
+  SnapshotQueue(const SubscriptionOptions& options, std::shared_ptr<Signal> sim_signal);
+
+  /// The next Snapshot; waits for it. Empty once the simulation has stopped or this queue was
+  /// closed, and everything before that has been read.
+  Snapshot next() override;
+  /// The next Snapshot if there is one now, else an empty one.
+  Snapshot try_next();
+  /// Ends the subscription: the simulation forgets it, waiting readers return.
+  void close();
+
+  bool closed() const { return closed_.load(std::memory_order_acquire); }
+  /// Snapshots lost since the subscription began because the reader was too slow.
+  int64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
+  const SubscriptionOptions& options() const { return options_; }
+
+  // ---- the sim thread's side ----
+  bool full() const { return queue_.size() >= options_.capacity; }
+  /// Required queues must not be full.
+  void publish(Snapshot snapshot);
+
+ private:
+  SubscriptionOptions options_;
+  BoundedQueue<Snapshot> queue_;
+  Signal readers_;
+  std::shared_ptr<Signal> sim_signal_;
+  std::atomic<bool> closed_{false};
+  std::atomic<int64_t> dropped_{0};
+};
+
+}  // namespace gloam

@@ -1,0 +1,25 @@
+#pragma once
+// Where the parts of a Snapshot's state vector (mjSTATE_INTEGRATION) begin.
+
+#include <mujoco/mujoco.h>
+
+#include <span>
+
+namespace gloam {
+
+/// Length of the state vector.
+inline int state_size(const mjModel& model) { return mj_stateSize(&model, mjSTATE_INTEGRATION); }
+
+/// Offset of one component (one bit of mjtState) in the state vector.
+inline int state_offset(const mjModel& model, mjtState component) {
+  return mj_stateSize(&model, mjSTATE_INTEGRATION & (static_cast<int>(component) - 1));
+}
+
+/// One component of a state vector.
+inline std::span<const double> state_part(const mjModel& model, std::span<const double> state,
+                                          mjtState component) {
+  return state.subspan(static_cast<size_t>(state_offset(model, component)),
+                       static_cast<size_t>(mj_stateSize(&model, component)));
+}
+
+}  // namespace gloam

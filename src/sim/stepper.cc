@@ -1,0 +1,194 @@
+#include "sim/stepper.h"
+
+#include <algorithm>
+
+#include "base/hash.h"
+#include "scene/mujoco_guard.h"
+#include "sim/divergence.h"
+#include "sim/initial_state.h"
+#include "sim/live_fields.h"
+#include "sim/state_layout.h"
+
+namespace gloam {
+namespace {
+constexpr int kFirstSlots = 8;
+}
+
+Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledWorld> world,
+                                                 uint64_t seed, std::optional<double> timestep) {
+  std::unique_ptr<Stepper> stepper(new Stepper);
+  stepper->world_ = world;
+  stepper->seed_ = seed;
+  stepper->timestep_ = timestep;
+  GLOAM_TRY(stepper->keyframes_, find_keyframes(*world));
+  mjModel* model = nullptr;
+  mjData* data = nullptr;
+  GLOAM_TRY_STATUS(guarded([&] { model = mj_copyModel(nullptr, world->model.get()); }));
+  stepper->model_.reset(model);
+  GLOAM_TRY_STATUS(guarded([&] { data = mj_makeData(model); }));
+  stepper->data_.reset(data);
+  stepper->inputs_.emplace(*model);
+  stepper->state_.resize(static_cast<size_t>(state_size(*model)));
+  stepper->next_state_.resize(stepper->state_.size());
+  stepper->sensors_.resize(static_cast<size_t>(model->nsensordata));
+  stepper->pool_ = SnapshotPool::create(world, kFirstSlots);
+  stepper->prepare_private_model();
+  if (!stepper->reset()) return stepper->error();
+  return stepper;
+}
+
+// What the simulation changes on its copy; exports are made from the World's own model.
+void Stepper::prepare_private_model() {
+  model_->opt.disableflags |= mjDSBL_AUTORESET;
+  if (timestep_) model_->opt.timestep = *timestep_;
+}
+
+bool Stepper::reset() {
+  failed_ = false;
+  if (live_ != nullptr) {
+    live_.reset();
+    mjModel* model = model_.get();
+    if (!try_mujoco([&] { mj_copyModel(model, world_->model.get()); })) {
+      return fail({ErrorKind::kInput, mujoco_error_message()});
+    }
+    prepare_private_model();
+  }
+  inputs_->reset();
+  // Sensors and the warm start of the solver are computed by a forward pass. The sensors are
+  // wanted, but a bare mj_step loop starts cold, so the state is made anew after it.
+  const mjModel* model = model_.get();
+  mjData* data = data_.get();
+  const bool ok = try_mujoco([&] {
+    reset_to_initial_state(*world_, keyframes_, *model, *data);
+    mj_forward(model, data);
+    mju_copy(sensors_.data(), data->sensordata, static_cast<int>(model->nsensordata));
+    reset_to_initial_state(*world_, keyframes_, *model, *data);
+    mj_kinematics(model, data);  // so that controllers and hooks see poses before the first step
+    mj_comPos(model, data);
+    mj_getState(model, data, state_.data(), mjSTATE_INTEGRATION);
+  });
+  step_ = 0;
+  snapshot_ = {};
+  own_sensors_ = true;
+  sensor_stamp_ = state_[0];
+  warnings_seen_.fill(0);
+  hash_ = hash_span<double>(state_, hash_bytes(&seed_, sizeof(seed_)));
+  if (!ok) return fail({ErrorKind::kInput, mujoco_error_message()});
+  return true;
+}
+
+void Stepper::apply(const Command& command) {
+  mjData& data = *data_;
+  std::visit(
+      [&](const auto& what) {
+        using T = std::decay_t<decltype(what)>;
+        if constexpr (std::is_same_v<T, SetLiveField>) {
+          change_live(what);
+        } else if constexpr (!std::is_same_v<T, SetVelocityGoal> && !std::is_same_v<T, ResetSim>) {
+          inputs_->apply(*model_, data, what);
+        }
+      },
+      command.what);
+}
+
+// The one Command that allocates: a new version of the fields.
+void Stepper::change_live(const SetLiveField& change) {
+  if (change.field == LiveFieldId::kBodyMass && scratch_ == nullptr) {
+    mjData* scratch = nullptr;
+    const mjModel* model = model_.get();
+    if (!try_mujoco([&] { scratch = mj_makeData(model); })) {
+      fail({ErrorKind::kInput, mujoco_error_message()});
+      return;
+    }
+    scratch_.reset(scratch);
+  }
+  live_ = change_live_field(*world_->model, live_.get(), change);
+  const uint64_t digest = live_fields_digest(*live_);
+  hash_ = hash_bytes(&digest, sizeof(digest), hash_);
+  const Status written =
+      write_live_field(*world_->model, change.field,
+                       live_->values[static_cast<size_t>(change.field)], *model_, scratch_.get());
+  if (!written) fail(written.error());
+}
+
+bool Stepper::step() {
+  if (failed_) return false;
+  const mjModel* model = model_.get();
+  mjData* data = data_.get();
+  AppliedInputs* inputs = &*inputs_;
+  const bool ok = try_mujoco([=] {
+    inputs->before_step(*model, *data);
+    mj_step(model, data);
+  });
+  if (!ok) {
+    Error error{ErrorKind::kDiverged, mujoco_error_message()};
+    error.message +=
+        " (in step " + std::to_string(step_) + ", from t = " + std::to_string(time()) + " s)";
+    return fail(std::move(error));
+  }
+  count_diagnostics();
+  mj_getState(model, data, next_state_.data(), mjSTATE_INTEGRATION);
+  if (!is_sound(*model, *data, next_state_)) {
+    return fail(describe_divergence(*model, *data, next_state_, step_, time()));
+  }
+  sensor_stamp_ = state_[0];
+  own_sensors_ = false;
+  state_.swap(next_state_);
+  ++step_;
+  hash_ = hash_span<double>(state_, hash_);
+  snapshot_ = {};
+  return true;
+}
+
+bool Stepper::fail(Error error) {
+  failed_ = true;
+  error_ = std::move(error);
+  restore_last_good_state();
+  return false;
+}
+
+// mjData is in an unknown state: make it anew. If even that is refused the state vector and the
+// Snapshot made from it are still good.
+void Stepper::restore_last_good_state() {
+  const mjModel* model = model_.get();
+  mjData* data = nullptr;
+  if (!try_mujoco([&] { data = mj_makeData(model); }) || data == nullptr) return;
+  data_.reset(data);
+  snapshot_ = {};
+  own_sensors_ = true;
+  sensor_stamp_ = state_[0];
+  std::fill(sensors_.begin(), sensors_.end(), 0.0);
+  static_cast<void>(try_mujoco([&] {
+    mj_setState(model, data, state_.data(), mjSTATE_INTEGRATION);
+    mj_forward(model, data);
+    mju_copy(sensors_.data(), data->sensordata, static_cast<int>(model->nsensordata));
+    mj_setState(model, data, state_.data(), mjSTATE_INTEGRATION);
+  }));
+}
+
+void Stepper::count_diagnostics() {
+  for (int i = 0; i < mjNWARNING; ++i) {
+    const int number = data_->warning[i].number;
+    warnings_[static_cast<size_t>(i)] += number - warnings_seen_[static_cast<size_t>(i)];
+    warnings_seen_[static_cast<size_t>(i)] = number;
+  }
+  most_contacts_ = std::max(most_contacts_, data_->ncon);
+}
+
+const Snapshot& Stepper::snapshot() {
+  if (!snapshot_) {
+    snapshot_ = pool_->make([this](SnapshotData& out) {
+      out.step = step_;
+      out.time = time();
+      out.hash = hash_;
+      out.live = live_;
+      out.sensor_stamp = sensor_stamp_;
+      std::copy(state_.begin(), state_.end(), out.state.begin());
+      const double* sensors = own_sensors_ ? sensors_.data() : data_->sensordata;
+      std::copy_n(sensors, out.sensordata.size(), out.sensordata.begin());
+    });
+  }
+  return snapshot_;
+}
+
+}  // namespace gloam

@@ -1,0 +1,90 @@
+#pragma once
+// One simulation without its thread: a private model and mjData, the step, the hash of every step,
+// live fields and what Commands left behind. Used by one thread at a time.
+
+#include <array>
+#include <optional>
+
+#include "gloam/command.h"
+#include "sim/applied_inputs.h"
+#include "sim/snapshot_pool.h"
+#include "world/world.h"
+
+namespace gloam {
+
+struct DataDeleter {
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+using DataPtr = std::unique_ptr<mjData, DataDeleter>;
+
+class Stepper {
+ public:
+  /// Stands at the initial state. The chain of hashes starts from `seed`.
+  static Result<std::unique_ptr<Stepper>> create(std::shared_ptr<const CompiledWorld> world,
+                                                 uint64_t seed, std::optional<double> timestep);
+
+  /// Back to the initial state, live fields included. False and error() when MuJoCo refuses.
+  bool reset();
+
+  /// Applies one checked Command now. Velocity goals and resets are not its business.
+  void apply(const Command& command);
+
+  /// One physics step, bit-equal to mj_step on the same state. False when it failed: then it stands
+  /// at the last good state and error() says why; only reset() goes on from there.
+  bool step();
+
+  bool failed() const { return failed_; }
+  const Error& error() const { return error_; }
+
+  /// The present instant; made once, however often it is asked for. Allocates only when readers
+  /// hold the whole pool.
+  const Snapshot& snapshot();
+
+  int64_t step_count() const { return step_; }
+  double time() const { return state_[0]; }
+  uint64_t hash() const { return hash_; }
+  const mjModel& model() const { return *model_; }
+  mjData& data() { return *data_; }
+  const CompiledWorld& world() const { return *world_; }
+  SnapshotPool& pool() { return *pool_; }
+  /// MuJoCo's warnings since creation, by mjtWarning.
+  const std::array<int64_t, mjNWARNING>& warnings() const { return warnings_; }
+  /// Most contacts seen in a step since creation.
+  int most_contacts() const { return most_contacts_; }
+
+ private:
+  Stepper() = default;
+  bool fail(Error error);
+  void restore_last_good_state();
+  void compute_sensors();
+  void change_live(const SetLiveField& change);
+  void prepare_private_model();
+  void count_diagnostics();
+
+  std::shared_ptr<const CompiledWorld> world_;
+  std::optional<double> timestep_;
+  uint64_t seed_ = 0;
+  std::vector<int> keyframes_;
+  ModelPtr model_;
+  DataPtr data_;
+  DataPtr scratch_;  // for mj_setConst; made on first use
+  std::optional<AppliedInputs> inputs_;
+  std::shared_ptr<const LiveFields> live_;
+  std::shared_ptr<SnapshotPool> pool_;
+
+  int64_t step_ = 0;
+  uint64_t hash_ = 0;
+  std::vector<double> state_;       // of the last good step
+  std::vector<double> next_state_;  // being checked
+  std::vector<double> sensors_;     // where mjData's are not those of a step: at start and failure
+  bool own_sensors_ = false;
+  double sensor_stamp_ = 0;  // [s]
+  Snapshot snapshot_;        // of this step, once made
+  bool failed_ = false;
+  Error error_;
+  std::array<int64_t, mjNWARNING> warnings_{};
+  std::array<int, mjNWARNING> warnings_seen_{};
+  int most_contacts_ = 0;
+};
+
+}  // namespace gloam
