@@ -63,12 +63,12 @@ struct InstanceDescription {
   int material = 0;
   bool is_static = false;  ///< never moves: its body is welded to the world
   bool casts_shadow = true;
-  int group = 0;           ///< MuJoCo's geom group; groups 3..5 are not drawn by default
+  int group = 0;  ///< MuJoCo's geom group; groups 3..5 are not drawn by default
   LabelRow label;
 };
 
-/// A mesh whose vertices move every instant; topology and uvs are fixed. Thin: seen from both sides.
-/// Vertex i is PoseFrame::vertices[first_vertex + i], already in the world.
+/// A mesh whose vertices move every instant; topology and uvs are fixed. Thin: seen from both
+/// sides. Vertex i is PoseFrame::vertices[first_vertex + i], already in the world.
 struct DeformableDescription {
   TriangleMesh rest;     ///< at qpos0, world; normals are recomputed from positions each update
   int first_vertex = 0;  ///< into PoseFrame::vertices
@@ -95,8 +95,8 @@ struct LightDescription {
       0};  ///< point, spot: [cd] per channel; directional: illuminance on a facing surface [lx]
   float radius =
       0;  ///< of the luminous sphere (point, spot) [m]; directional: sine of the half angle
-  float cos_cutoff = -1;  ///< spot: cosine of the half angle of the cone
-  float softness = 0;     ///< spot: share of the cone over which it fades
+  float cos_cutoff = -1;   ///< spot: cosine of the half angle of the cone
+  float softness = 0;      ///< spot: share of the cone over which it fades
   float legacy_scale = 0;  ///< what PoseFrame::light_diffuse is multiplied by to give `intensity`
                            ///< while the light has no intensity in cd (docs/light.md)
   int light = -1;  ///< row of PoseFrame's light poses; -1 = headlight: sits at the camera, shines

@@ -7,7 +7,8 @@
 // row), N = texrepeat, c = texuniform ? size : 1 (of capsule and cylinder: radius, radius):
 //   plane      s = c.x (1/2 + x / 2 size.x)     t = c.y (1/2 - y / 2 size.y)
 //              an infinite side: s = 1/2 + N x / 2, t = 1/2 - N y / 2, whatever texuniform says
-//   box        as plane on the two faces across z; across x: s from y, t from z; across y: s from x,
+//   box        as plane on the two faces across z; across x: s from y, t from z; across y: s from
+//   x,
 //              t from z; c stays (size.x, size.y)
 //   sphere, ellipsoid (q = p / size)
 //              s = c.x atan2(q.y, q.x) / 2 pi in [0, 1),  t = c.y acos(q.z) / pi

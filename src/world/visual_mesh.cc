@@ -36,7 +36,8 @@ TriangleMesh split_corners(const IndexedCorners& in) {
     if (area > 0) face_normal = face_normal / area;
     for (size_t k = f; k < f + 3; ++k) {
       const auto position = static_cast<size_t>(in.face[k]);
-      Vec3f normal = in.normals.empty() ? Vec3f{} : in.normals[static_cast<size_t>(in.face_normal[k])];
+      Vec3f normal =
+          in.normals.empty() ? Vec3f{} : in.normals[static_cast<size_t>(in.face_normal[k])];
       if (area > 0 && dot(normal, face_normal) < kEdgeCosine) normal = face_normal;
       const int uv = has_uv ? in.face_uv[k] : 0;
       uint32_t vertex = newest[position];

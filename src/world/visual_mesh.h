@@ -12,8 +12,8 @@ namespace gloam {
 /// A mesh whose corners name position, normal and uv by separate indices.
 struct IndexedCorners {
   std::span<const Vec3f> positions;
-  std::span<const Vec3f> normals;  ///< unit, or zero where there is none
-  std::span<const Vec2f> uvs;      ///< t down the image (MuJoCo's), empty = none
+  std::span<const Vec3f> normals;                   ///< unit, or zero where there is none
+  std::span<const Vec2f> uvs;                       ///< t down the image (MuJoCo's), empty = none
   std::span<const int> face, face_normal, face_uv;  ///< three per triangle; face_uv as uvs
 };
 
