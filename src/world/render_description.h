@@ -1,7 +1,7 @@
 #pragma once
 // What a World looks like, without MuJoCo types: the only thing render/ knows of a model. Moving
 // parts refer to bodies by index; where those are at an instant is in sim/pose_frame.h. Radiometry:
-// docs/light.md.
+// docs/light.md. Where textures land on shapes: world/texture_coordinates.h.
 
 #include <array>
 #include <cstdint>
@@ -13,29 +13,11 @@
 #include "geometry/mesh.h"
 #include "gloam/camera.h"
 #include "gloam/result.h"
+#include "world/shape_type.h"
 
 namespace gloam {
 
 struct CompiledWorld;
-
-/// Closed list of shapes. Analytic ones are exact and use `size` as MuJoCo does (half extents,
-/// radii [m]).
-enum class ShapeType : uint8_t {
-  kMesh,        ///< triangles; also height fields, SDFs (by their mesh)
-  kPlane,       ///< z = 0; half extents size.x, size.y; 0 = infinite
-  kBox,         ///< half extents
-  kSphere,      ///< radius size.x
-  kEllipsoid,   ///< semi-axes
-  kCapsule,     ///< radius size.x, half length of the cylinder size.y, along z
-  kCylinder,    ///< radius size.x, half length size.y, along z
-  kDeformable,  ///< triangles whose vertices come with every PoseFrame (skins, flexes)
-};
-
-enum class TextureMapping : uint8_t {
-  kNone,
-  kUv,    ///< mesh uv, or MuJoCo's generated coordinates of primitives (2d textures)
-  kCube,  ///< cube texture by object-space direction
-};
 
 /// Index into RenderDescription::textures, or -1.
 struct MaterialTextures {
@@ -60,31 +42,46 @@ struct MaterialDescription {
   bool texture_uniform = false;  ///< MuJoCo's texuniform: repeats per metre, not per object
   Vec2f texture_repeat{1, 1};
   MaterialTextures textures;
+  int model_material = -1;  ///< row of PoseFrame::material_rgba and material_emission, -1 = none
+  bool own_color = false;   ///< its colour is the geom's: material_rgba does not apply
 };
 
 struct TextureDescription {
   std::string name;
-  std::vector<Image8>
-      faces;  ///< 1 (2-D), or 6 in the order right, left, up, down, front, back (MuJoCo's cube)
+  /// 1 (2-D), or 6 in the order right, left, up, down, front, back (MuJoCo's cube). Of one texture
+  /// used both as colour and as data there are two rows: they differ in colour space.
+  std::vector<Image8> faces;
 };
 
 /// One drawn thing. Its row index + 1 is its `part` in pictures.
 struct InstanceDescription {
   ShapeType shape = ShapeType::kBox;
   int mesh = -1;  ///< kMesh: index into meshes; kDeformable: index into deformables
-  Vec3f size;     ///< analytic shapes [m]
+  Vec3f size;     ///< analytic shapes [m]; meshes: half extents that scale texture coordinates
   int body = 0;   ///< body it moves with, 0 = world
   Affine3f X_BG;  ///< rigid pose of the shape in the body
   int material = 0;
   bool is_static = false;  ///< never moves: its body is welded to the world
-  int group = 0;           ///< MuJoCo's geom group; groups 3..5 are not drawn by default
+  bool casts_shadow = true;
+  int group = 0;  ///< MuJoCo's geom group; groups 3..5 are not drawn by default
   LabelRow label;
 };
 
-/// A mesh whose vertices move every instant; topology and uvs are fixed.
+/// A mesh whose vertices move every instant; topology and uvs are fixed. Thin: seen from both
+/// sides. Vertex i is PoseFrame::vertices[first_vertex + i], already in the world.
 struct DeformableDescription {
-  TriangleMesh rest;     ///< at qpos0; normals are recomputed from positions each update
+  TriangleMesh rest;     ///< at qpos0, world; normals are recomputed from positions each update
   int first_vertex = 0;  ///< into PoseFrame::vertices
+};
+
+/// The grid behind a mesh that is a height field, to rebuild it when PoseFrame::height_field
+/// changes (height_field_mesh() in world/visual_mesh.h).
+struct HeightFieldDescription {
+  int mesh = 0;        ///< index into meshes
+  int first_data = 0;  ///< into PoseFrame::height_field
+  int rows = 0, columns = 0;
+  Vec3f size;      ///< half extent x, half extent y, elevation of data = 1 [m]
+  float base = 0;  ///< depth of the base below z = 0 [m]
 };
 
 enum class LightType : uint8_t { kPoint, kSpot, kDirectional };
@@ -98,8 +95,10 @@ struct LightDescription {
       0};  ///< point, spot: [cd] per channel; directional: illuminance on a facing surface [lx]
   float radius =
       0;  ///< of the luminous sphere (point, spot) [m]; directional: sine of the half angle
-  float cos_cutoff = -1;  ///< spot: cosine of the half angle of the cone
-  float softness = 0;     ///< spot: share of the cone over which it fades
+  float cos_cutoff = -1;   ///< spot: cosine of the half angle of the cone
+  float softness = 0;      ///< spot: share of the cone over which it fades
+  float legacy_scale = 0;  ///< what PoseFrame::light_diffuse is multiplied by to give `intensity`
+                           ///< while the light has no intensity in cd (docs/light.md)
   int light = -1;  ///< row of PoseFrame's light poses; -1 = headlight: sits at the camera, shines
                    ///< along its axis
 };
@@ -125,13 +124,14 @@ struct RenderDescription {
   std::vector<TextureDescription> textures;
   std::vector<MaterialDescription> materials;
   std::vector<InstanceDescription> instances;
+  std::vector<HeightFieldDescription> height_fields;
   std::vector<LightDescription> lights;
   std::vector<CameraDescription>
       cameras;  ///< all of the model's, then one free camera that frames the model, "free"
   SkyDescription sky;
   float ev100 = 0;   ///< exposure by the scene's rule, used when the user gives none
   Vec3f center;      ///< of the model's bounding sphere at qpos0 [m]
-  float extent = 1;  ///< its radius [m]
+  float extent = 1;  ///< MuJoCo's stat.extent, about its diameter [m]
   std::vector<Error> unsupported;
 };
 

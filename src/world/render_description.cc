@@ -1,0 +1,241 @@
+#include "world/render_description.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <optional>
+
+#include "base/parallel.h"
+#include "world/visual_camera.h"
+#include "world/visual_deformable.h"
+#include "world/visual_label.h"
+#include "world/visual_light.h"
+#include "world/visual_material.h"
+#include "world/visual_mesh.h"
+#include "world/visual_pose.h"
+#include "world/world.h"
+
+namespace gloam {
+namespace {
+
+std::string name_of(const mjModel& m, mjtObj type, int id) {
+  const char* name = mj_id2name(&m, type, id);
+  return name != nullptr ? name : "";
+}
+
+/// Vec3f and Vec2f are packed floats: MuJoCo's arrays are read in place.
+std::span<const Vec3f> vec3_span(const float* data, int first, int count) {
+  static_assert(sizeof(Vec3f) == 3 * sizeof(float));
+  return {reinterpret_cast<const Vec3f*>(data) + first, static_cast<size_t>(count)};
+}
+std::span<const Vec2f> vec2_span(const float* data, int first, int count) {
+  static_assert(sizeof(Vec2f) == 2 * sizeof(float));
+  return {reinterpret_cast<const Vec2f*>(data) + first, static_cast<size_t>(count)};
+}
+
+TriangleMesh convert_mesh(const mjModel& m, int i) {
+  const auto faces = [&](const int* data) {
+    return std::span<const int>(data + 3 * m.mesh_faceadr[i],
+                                3 * static_cast<size_t>(m.mesh_facenum[i]));
+  };
+  IndexedCorners corners;
+  corners.positions = vec3_span(m.mesh_vert, m.mesh_vertadr[i], m.mesh_vertnum[i]);
+  corners.normals = vec3_span(m.mesh_normal, m.mesh_normaladr[i], m.mesh_normalnum[i]);
+  corners.face = faces(m.mesh_face);
+  corners.face_normal = faces(m.mesh_facenormal);
+  if (m.mesh_texcoordadr[i] >= 0 && m.mesh_texcoordnum[i] > 0) {
+    corners.uvs = vec2_span(m.mesh_texcoord, m.mesh_texcoordadr[i], m.mesh_texcoordnum[i]);
+    corners.face_uv = faces(m.mesh_facetexcoord);
+  }
+  return split_corners(corners);
+}
+
+/// Geoms of one model on their way into the description. Meshes are handed out as rows first and
+/// converted together at the end, in parallel.
+class GeomImporter {
+ public:
+  GeomImporter(const mjModel& model, mjSpec* spec, bool live, RenderDescription* out)
+      : model_(model), materials_(model, spec, live, out), out_(out) {}
+
+  /// The geom's shape, material and flags; nothing when it cannot be seen.
+  std::optional<InstanceDescription> instance(int geom);
+  void convert_meshes();
+  MaterialTable& materials() { return materials_; }
+
+ private:
+  int mesh_row(int asset, bool is_height_field);
+
+  struct PendingMesh {
+    int asset = 0, row = 0, height_field = -1;
+  };
+  const mjModel& model_;
+  MaterialTable materials_;
+  RenderDescription* out_;
+  std::map<std::pair<int, bool>, int> mesh_rows_;
+  std::vector<PendingMesh> pending_;
+};
+
+int GeomImporter::mesh_row(int asset, bool is_height_field) {
+  const auto [entry, added] =
+      mesh_rows_.try_emplace({asset, is_height_field}, static_cast<int>(out_->meshes.size()));
+  if (!added) return entry->second;
+  out_->meshes.emplace_back();
+  PendingMesh pending{asset, entry->second, -1};
+  if (is_height_field) {
+    const mjtNum* size = model_.hfield_size + 4 * asset;
+    HeightFieldDescription field;
+    field.mesh = entry->second;
+    field.first_data = model_.hfield_adr[asset];
+    field.rows = model_.hfield_nrow[asset];
+    field.columns = model_.hfield_ncol[asset];
+    field.size = {static_cast<float>(size[0]), static_cast<float>(size[1]),
+                  static_cast<float>(size[2])};
+    field.base = static_cast<float>(size[3]);
+    pending.height_field = static_cast<int>(out_->height_fields.size());
+    out_->height_fields.push_back(field);
+  }
+  pending_.push_back(pending);
+  return entry->second;
+}
+
+std::optional<InstanceDescription> GeomImporter::instance(int g) {
+  const mjModel& m = model_;
+  const float* rgba = m.geom_rgba + 4 * g;
+  if (drawn_rgba(m, m.geom_matid[g], rgba)[3] == 0) return std::nullopt;
+  InstanceDescription instance;
+  const mjtNum* size = m.geom_size + 3 * g;
+  instance.size = {static_cast<float>(size[0]), static_cast<float>(size[1]),
+                   static_cast<float>(size[2])};
+  const int asset = m.geom_dataid[g];
+  switch (m.geom_type[g]) {
+    case mjGEOM_PLANE:
+      instance.shape = ShapeType::kPlane;
+      instance.size.z = 0;
+      break;
+    case mjGEOM_SPHERE:
+      instance.shape = ShapeType::kSphere;
+      break;
+    case mjGEOM_CAPSULE:
+      instance.shape = ShapeType::kCapsule;
+      break;
+    case mjGEOM_ELLIPSOID:
+      instance.shape = ShapeType::kEllipsoid;
+      break;
+    case mjGEOM_CYLINDER:
+      instance.shape = ShapeType::kCylinder;
+      break;
+    case mjGEOM_BOX:
+      instance.shape = ShapeType::kBox;
+      break;
+    case mjGEOM_HFIELD:
+      instance.shape = ShapeType::kMesh;
+      instance.mesh = mesh_row(asset, true);
+      instance.size = {static_cast<float>(m.hfield_size[4 * asset]),
+                       static_cast<float>(m.hfield_size[4 * asset + 1]),
+                       static_cast<float>(m.hfield_size[4 * asset + 2])};
+      break;
+    case mjGEOM_MESH:
+    case mjGEOM_SDF:
+      if (asset >= 0) {
+        instance.shape = ShapeType::kMesh;
+        instance.mesh = mesh_row(asset, false);
+        break;
+      }
+      [[fallthrough]];
+    default:
+      out_->unsupported.push_back(
+          {ErrorKind::kUnsupported,
+           fmt::format("geom '{}' has a shape that is not drawn", name_of(m, mjOBJ_GEOM, g))});
+      return std::nullopt;
+  }
+  instance.material = materials_.row(m.geom_matid[g], rgba, instance.shape);
+  instance.group = m.geom_group[g];
+  instance.casts_shadow = m.geom_castshadow[g] != 0;
+  instance.X_BG = rigid_pose(m.geom_pos + 3 * g, m.geom_quat + 4 * g);
+  return instance;
+}
+
+void GeomImporter::convert_meshes() {
+  parallel_for("world.meshes", static_cast<int64_t>(pending_.size()), [&](int64_t i) {
+    const PendingMesh& pending = pending_[static_cast<size_t>(i)];
+    TriangleMesh& mesh = out_->meshes[static_cast<size_t>(pending.row)];
+    if (pending.height_field < 0) {
+      mesh = convert_mesh(model_, pending.asset);
+      return;
+    }
+    const auto& field = out_->height_fields[static_cast<size_t>(pending.height_field)];
+    mesh = height_field_mesh(field, {model_.hfield_data + field.first_data,
+                                     static_cast<size_t>(field.rows) * field.columns});
+  });
+}
+
+/// Whether each body can never move.
+std::vector<bool> static_bodies(const mjModel& m) {
+  std::vector<bool> is_static(static_cast<size_t>(m.nbody), true);
+  for (size_t b = 1; b < is_static.size(); ++b)
+    is_static[b] = m.body_jntnum[b] == 0 && m.body_mocapid[b] < 0 &&
+                   is_static[static_cast<size_t>(m.body_parentid[b])];
+  return is_static;
+}
+
+}  // namespace
+
+Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
+  const mjModel& m = *world.model;
+  RenderDescription out;
+  LabelTable labels(world);
+  const std::vector<Affine3f> poses = body_poses_at_qpos0(m);
+  const std::vector<bool> is_static = static_bodies(m);
+
+  const auto add = [&](InstanceDescription instance, int body, std::string name, int kind, int id) {
+    instance.body = body;
+    instance.is_static = is_static[static_cast<size_t>(body)];
+    instance.label = labels.label(body, name, kind, id);
+    instance.label.geom = std::move(name);
+    instance.label.material = out.materials[static_cast<size_t>(instance.material)].name;
+    instance.label.part = static_cast<uint32_t>(out.instances.size()) + 1;
+    out.instances.push_back(std::move(instance));
+  };
+
+  GeomImporter simulated(m, world.spec.get(), true, &out);
+  out.instances.reserve(static_cast<size_t>(m.ngeom) + world.visual_only.size());
+  for (int g = 0; g < static_cast<int>(m.ngeom); ++g)
+    if (auto instance = simulated.instance(g))
+      add(std::move(*instance), m.geom_bodyid[g], name_of(m, mjOBJ_GEOM, g), mjOBJ_GEOM, g);
+
+  std::optional<GeomImporter> visual;
+  if (world.visual_model != nullptr) {
+    visual.emplace(*world.visual_model, nullptr, false, &out);
+    for (size_t i = 0; i < world.visual_only.size(); ++i) {
+      const VisualOnlyGeom& geom = world.visual_only[i];
+      auto instance = visual->instance(geom.geom);
+      if (!instance) continue;
+      const mjtNum p[3] = {geom.X_BG.p.x, geom.X_BG.p.y, geom.X_BG.p.z};
+      const mjtNum q[4] = {geom.X_BG.q.w, geom.X_BG.q.x, geom.X_BG.q.y, geom.X_BG.q.z};
+      instance->X_BG = rigid_pose(p, q);
+      constexpr int kVisualOnly = mjOBJ_UNKNOWN;
+      add(std::move(*instance), geom.body, name_of(*world.visual_model, mjOBJ_GEOM, geom.geom),
+          kVisualOnly, static_cast<int>(i));
+    }
+  }
+
+  describe_deformables(m, poses, &simulated.materials(), &labels, &out);
+  describe_cameras(m, &out);
+  describe_light(m, poses, &simulated.materials(), &out);
+  for (int i = 0; i < static_cast<int>(m.ntendon); ++i)
+    out.unsupported.push_back({ErrorKind::kUnsupported, fmt::format("tendon '{}' is not drawn",
+                                                                    name_of(m, mjOBJ_TENDON, i))});
+  if (labels.overflowed())
+    out.unsupported.push_back(
+        {ErrorKind::kUnsupported, "there are more than 65535 objects; the last share one label"});
+
+  simulated.convert_meshes();
+  simulated.materials().load_textures();
+  if (visual) {
+    visual->convert_meshes();
+    visual->materials().load_textures();
+  }
+  return out;
+}
+
+}  // namespace gloam

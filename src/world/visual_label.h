@@ -1,0 +1,41 @@
+#pragma once
+// Which object a drawn thing belongs to, and its class.
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "gloam/camera.h"
+#include "world/world.h"
+
+namespace gloam {
+
+/// Class of an object from its name: the path before the last '/' and trailing digits, underscores,
+/// dots, dashes and spaces are cut off ("kitchen/chair_3" is a "chair"); "object" when nothing is
+/// left.
+std::string semantic_class(std::string_view name);
+
+/// Hands out instance and semantic ids, from 1, in order of first use. An object is a robot, or a
+/// body directly under the world with all below it, or one geom of the world body.
+class LabelTable {
+ public:
+  explicit LabelTable(const CompiledWorld& world) : world_(world) {}
+
+  /// Label without part and geom of something fixed to body `body`; `own_name` = its own name,
+  /// which names the object if the body is the world. `kind`, `id` make world geoms distinct.
+  LabelRow label(int body, const std::string& own_name, int kind, int id);
+  bool is_robot(int body) const { return robot_of(body) >= 0; }
+  /// More objects than ids: the last id is shared.
+  bool overflowed() const { return overflowed_; }
+
+ private:
+  int robot_of(int body) const;
+
+  const CompiledWorld& world_;
+  std::map<std::pair<int, int>, uint16_t> instances_;
+  std::map<std::string, uint16_t> classes_;
+  bool overflowed_ = false;
+};
+
+}  // namespace gloam

@@ -1,0 +1,115 @@
+#include "world/visual_light.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "world/visual_rules.h"
+
+namespace gloam {
+namespace {
+
+Vec3f vec3(const float* v) { return {v[0], v[1], v[2]}; }
+Vec3f vec3(const mjtNum* v) {
+  return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
+}
+
+/// A light that sits at the centre is taken to be meant for things this share of the extent away.
+constexpr float kNearestShare = 0.25f;
+
+LightDescription model_light(const mjModel& m, int i, float distance) {
+  LightDescription light;
+  if (const char* name = mj_id2name(&m, mjOBJ_LIGHT, i)) light.name = name;
+  light.light = i;
+  light.active = m.light_active[i] != 0;
+  light.casts_shadow = m.light_castshadow[i] != 0;
+  light.radius = max(m.light_bulbradius[i], 0);
+  const float cutoff = clamp(m.light_cutoff[i] * (kPi / 180), 0, kPi);
+  switch (m.light_type[i]) {
+    case mjLIGHT_DIRECTIONAL:
+      light.type = LightType::kDirectional;
+      light.radius = min(light.radius, 1);
+      break;
+    case mjLIGHT_POINT:
+      light.type = LightType::kPoint;
+      break;
+    default:
+      // OpenGL's cutoff of 180 degrees is a light that shines everywhere.
+      light.type = cutoff >= kPi ? LightType::kPoint : LightType::kSpot;
+      light.cos_cutoff = std::cos(cutoff);
+      light.softness = clamp(m.light_softness[i], 0, 1);
+  }
+  light.legacy_scale = legacy_light_scale(light.type, distance, vec3(m.light_attenuation + 3 * i));
+  const float candela = m.light_intensity[i];
+  if (candela <= 0 && light.type == LightType::kSpot)
+    light.softness = max(light.softness, softness_of_exponent(m.light_exponent[i], cutoff));
+  light.intensity = light_intensity(vec3(m.light_diffuse + 3 * i), candela, light.legacy_scale);
+  return light;
+}
+
+/// Cube textures only; the light's intensity is the luminance of a white texel, if it has one.
+void set_image_light(const mjModel& m, int i, MaterialTable* materials, RenderDescription* out) {
+  const int texid = m.light_texid[i];
+  if (texid < 0 || m.tex_type[texid] == mjTEXTURE_2D) {
+    out->unsupported.push_back({ErrorKind::kUnsupported,
+                                fmt::format("image light {} has no cube texture; it is dark", i)});
+    return;
+  }
+  out->sky.texture = materials->texture_row(texid, ColorSpace::kSrgb);
+  out->sky.scale = m.light_intensity[i] > 0 ? m.light_intensity[i] : kWhiteLuminance;
+}
+
+}  // namespace
+
+void describe_light(const mjModel& model, const std::vector<Affine3f>& poses,
+                    MaterialTable* materials, RenderDescription* out) {
+  out->center = vec3(model.stat.center);
+  out->extent = static_cast<float>(model.stat.extent);
+  const float nearest = kNearestShare * max(out->extent, 1e-3f);
+
+  for (int i = 0; i < static_cast<int>(model.ntex) && out->sky.texture < 0; ++i)
+    if (model.tex_type[i] == mjTEXTURE_SKYBOX) {
+      out->sky.texture = materials->texture_row(i, ColorSpace::kSrgb);
+      out->sky.scale = kWhiteLuminance;
+    }
+
+  Vec3f ambient{};
+  std::vector<float> illuminance;  // [lx] facing the light at the centre
+  bool photometric = false;
+  for (int i = 0; i < static_cast<int>(model.nlight); ++i) {
+    if (model.light_type[i] == mjLIGHT_IMAGE) {
+      if (model.light_active[i] != 0) set_image_light(model, i, materials, out);
+      continue;
+    }
+    const Vec3f p_W =
+        poses[static_cast<size_t>(model.light_bodyid[i])].p + vec3(model.light_pos0 + 3 * i);
+    const float distance = max(length(p_W - out->center), nearest);
+    out->lights.push_back(model_light(model, i, distance));
+    const LightDescription& light = out->lights.back();
+    if (!light.active) continue;
+    ambient += vec3(model.light_ambient + 3 * i);
+    photometric = photometric || model.light_intensity[i] > 0;
+    const float lux = luminance(light.intensity);
+    illuminance.push_back(light.type == LightType::kDirectional ? lux : lux / sqr(distance));
+  }
+
+  const auto& headlight = model.vis.headlight;
+  constexpr int kAuto = 2;
+  LightDescription head;
+  head.name = "headlight";
+  head.type = LightType::kDirectional;
+  head.casts_shadow = false;
+  head.active = headlight.active == kAuto ? illuminance.empty() : headlight.active != 0;
+  head.legacy_scale = legacy_light_scale(LightType::kDirectional, 0, {1, 0, 0});
+  head.intensity = light_intensity(vec3(headlight.diffuse), 0, head.legacy_scale);
+  if (headlight.active != 0) ambient += vec3(headlight.ambient);
+  if (head.active) illuminance.push_back(luminance(head.intensity));
+  out->lights.push_back(head);
+
+  out->sky.ambient = ambient * kWhiteLuminance;
+  const float sky = out->sky.texture >= 0 ? 0.25f * out->sky.scale : 0;  // of a sky of mid values
+  out->ev100 = scene_ev100(illuminance, luminance(out->sky.ambient) + sky, photometric);
+}
+
+}  // namespace gloam

@@ -1,0 +1,202 @@
+#include "world/visual_material.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <memory>
+
+#include "base/parallel.h"
+#include "world/visual_rules.h"
+
+namespace gloam {
+namespace {
+
+/// Geoms, skins and flexes without a colour of their own have this one.
+bool is_default_rgba(const float* rgba) {
+  return rgba[0] == 0.5f && rgba[1] == 0.5f && rgba[2] == 0.5f && rgba[3] == 1.0f;
+}
+
+std::string name_of(const mjModel& model, mjtObj type, int id) {
+  const char* name = id >= 0 ? mj_id2name(&model, type, id) : nullptr;
+  return name != nullptr ? name : "";
+}
+
+struct Texels {
+  const mjtByte* data = nullptr;
+  int width = 0, height = 0;
+  std::unique_ptr<mjtByte, void (*)(void*)> owned{nullptr, mju_free};  ///< of by-reference textures
+};
+
+/// Cuts the texels into one image or six; returns what is wrong, or "".
+std::string cut_faces(const Texels& texels, int channels, bool cube, ColorSpace color_space,
+                      std::vector<Image8>* faces) {
+  const auto* bytes = texels.data;
+  const int64_t size = int64_t{texels.width} * texels.height * channels;
+  if (bytes == nullptr || size <= 0) return "has no texels";
+  if (size >= 4 && std::memcmp(bytes, "\xabKTX", 4) == 0) return "is a KTX file, which is not read";
+  const int face_height = cube ? texels.width : texels.height;
+  const bool six = cube && texels.height == 6 * texels.width;
+  if (cube && !six && texels.height != texels.width) return "is not a cube";
+  const int64_t face_size = int64_t{texels.width} * face_height * channels;
+  faces->resize(cube ? 6 : 1);
+  for (size_t i = 0; i < faces->size(); ++i) {
+    const mjtByte* begin = bytes + (six ? static_cast<int64_t>(i) * face_size : 0);
+    (*faces)[i] = {texels.width, face_height, channels, color_space, {begin, begin + face_size}};
+  }
+  return "";
+}
+
+}  // namespace
+
+const float* drawn_rgba(const mjModel& model, int matid, const float* rgba) {
+  return matid >= 0 && is_default_rgba(rgba) ? model.mat_rgba + 4 * matid : rgba;
+}
+
+ColorSpace MaterialTable::color_space_of(int texid) const {
+  // The compiler turns "auto" into linear when a file says nothing, yet such files hold display
+  // colours. Only an author's explicit "linear" is one.
+  if (model_.tex_colorspace[texid] != mjCOLORSPACE_LINEAR || spec_ == nullptr)
+    return ColorSpace::kSrgb;
+  mjsElement* element =
+      mjs_findElement(spec_, mjOBJ_TEXTURE, name_of(model_, mjOBJ_TEXTURE, texid).c_str());
+  const mjsTexture* texture = element != nullptr ? mjs_asTexture(element) : nullptr;
+  return texture != nullptr && texture->colorspace == mjCOLORSPACE_LINEAR ? ColorSpace::kLinear
+                                                                          : ColorSpace::kSrgb;
+}
+
+int MaterialTable::texture_row(int texid, ColorSpace color_space) {
+  const auto [entry, added] =
+      texture_rows_.try_emplace({texid, color_space}, static_cast<int>(out_->textures.size()));
+  if (added) {
+    out_->textures.push_back(
+        {name_of(model_, mjOBJ_TEXTURE, texid), {Image8{1, 1, 3, color_space, {255, 255, 255}}}});
+    pending_.push_back({texid, entry->second});
+  }
+  return entry->second;
+}
+
+int MaterialTable::layer(int matid, mjtTextureRole role, MaterialDescription* material) {
+  const int texid = model_.mat_texid[mjNTEXROLE * matid + role];
+  if (texid < 0) return -1;
+  const auto mapping = model_.tex_type[texid] == mjTEXTURE_2D ? TextureMapping::kUv  //
+                                                              : TextureMapping::kCube;
+  if (material->mapping != TextureMapping::kNone && material->mapping != mapping) {
+    out_->unsupported.push_back(
+        {ErrorKind::kUnsupported,
+         fmt::format("material '{}' mixes 2d and cube textures; texture '{}' is not drawn",
+                     material->name, name_of(model_, mjOBJ_TEXTURE, texid))});
+    return -1;
+  }
+  material->mapping = mapping;
+  const bool is_color =
+      role == mjTEXROLE_RGB || role == mjTEXROLE_RGBA || role == mjTEXROLE_EMISSIVE;
+  return texture_row(texid, is_color ? color_space_of(texid) : ColorSpace::kLinear);
+}
+
+int MaterialTable::row(int matid, const float* rgba, ShapeType shape, bool textured) {
+  const bool reflects = matid >= 0 && model_.mat_reflectance[matid] > 0 &&
+                        (shape == ShapeType::kPlane || shape == ShapeType::kBox);
+  const bool own_color = drawn_rgba(model_, matid, rgba) == rgba;
+  const float* color = drawn_rgba(model_, matid, rgba);
+  std::array<float, 4> key_color{};
+  if (own_color) std::copy_n(color, 4, key_color.begin());
+  const auto [entry, added] = rows_.try_emplace({matid, key_color, reflects, textured},
+                                                static_cast<int>(out_->materials.size()));
+  if (!added) return entry->second;
+
+  MaterialDescription material;
+  material.base_color = linear_color({color[0], color[1], color[2]});
+  material.opacity = clamp(color[3], 0, 1);
+  material.own_color = own_color;
+  float specular = 0.5f, shininess = 0.5f;  // MuJoCo's defaults, also of geoms without a material
+  if (matid >= 0) {
+    material.name = name_of(model_, mjOBJ_MATERIAL, matid);
+    material.model_material = live_ ? matid : -1;
+    specular = model_.mat_specular[matid];
+    shininess = model_.mat_shininess[matid];
+  }
+  material.specular_weight = clamp(2 * specular, 0, 1);
+  material.roughness = roughness_of_shininess(shininess);
+  if (reflects) {
+    const float f0 = clamp(model_.mat_reflectance[matid], 0.04f, 0.9f);
+    material.ior = (1 + std::sqrt(f0)) / (1 - std::sqrt(f0));
+    material.specular_weight = 1;
+    material.roughness = min(material.roughness, 0.1f);
+  }
+  if (matid >= 0) {
+    MaterialTextures& textures = material.textures;
+    if (textured) {
+      textures.base_color = layer(matid, mjTEXROLE_RGBA, &material);
+      if (textures.base_color < 0) textures.base_color = layer(matid, mjTEXROLE_RGB, &material);
+      textures.roughness = layer(matid, mjTEXROLE_ROUGHNESS, &material);
+      textures.metallic = layer(matid, mjTEXROLE_METALLIC, &material);
+      textures.occlusion = layer(matid, mjTEXROLE_OCCLUSION, &material);
+      textures.orm = layer(matid, mjTEXROLE_ORM, &material);
+      textures.normal = layer(matid, mjTEXROLE_NORMAL, &material);
+      textures.opacity = layer(matid, mjTEXROLE_OPACITY, &material);
+      textures.emission = layer(matid, mjTEXROLE_EMISSIVE, &material);
+    }
+    // A value multiplies its texture; a texture without a value stands alone.
+    if (model_.mat_roughness[matid] >= 0)
+      material.roughness = clamp(model_.mat_roughness[matid], 0, 1);
+    else if (textures.roughness >= 0 || textures.orm >= 0)
+      material.roughness = 1;
+    if (model_.mat_metallic[matid] >= 0)
+      material.metallic = clamp(model_.mat_metallic[matid], 0, 1);
+    else if (textures.metallic >= 0 || textures.orm >= 0)
+      material.metallic = 1;
+    const float emission = model_.mat_emission[matid];
+    if (textures.emission >= 0)
+      material.emission = emission_luminance({1, 1, 1}, emission > 0 ? emission : 1);
+    else
+      material.emission = emission_luminance(material.base_color, emission);
+    material.texture_uniform = model_.mat_texuniform[matid] != 0;
+    material.texture_repeat = {model_.mat_texrepeat[2 * matid],
+                               model_.mat_texrepeat[2 * matid + 1]};
+  }
+  out_->materials.push_back(std::move(material));
+  return entry->second;
+}
+
+void MaterialTable::load_textures() {
+  std::vector<std::string> problems(pending_.size());
+  parallel_for("world.textures", static_cast<int64_t>(pending_.size()), [&](int64_t i) {
+    const int texid = pending_[static_cast<size_t>(i)].texid;
+    TextureDescription& texture =
+        out_->textures[static_cast<size_t>(pending_[static_cast<size_t>(i)].row)];
+    std::string& problem = problems[static_cast<size_t>(i)];
+    Texels texels;
+    if (model_.tex_adr[texid] >= 0) {
+      texels.data = model_.tex_data + model_.tex_adr[texid];
+      texels.width = model_.tex_width[texid];
+      texels.height = model_.tex_height[texid];
+    } else {  // by reference (compiler passthrough)
+      mjtByte* data = nullptr;
+      char error[500] = "";
+      if (mj_loadTexture(&model_, texid, &data, &texels.width, &texels.height, nullptr, error,
+                         sizeof(error)) != 0) {
+        problem = fmt::format("cannot be read: {}", error);
+        return;
+      }
+      texels.owned.reset(data);
+      texels.data = data;
+    }
+    std::vector<Image8> faces;
+    problem = cut_faces(texels, model_.tex_nchannel[texid], model_.tex_type[texid] != mjTEXTURE_2D,
+                        texture.faces.front().color_space, &faces);
+    if (problem.empty()) texture.faces = std::move(faces);
+  });
+  for (size_t i = 0; i < problems.size(); ++i)
+    if (!problems[i].empty())
+      out_->unsupported.push_back(
+          {ErrorKind::kUnsupported,
+           fmt::format("texture '{}' {}", name_of(model_, mjOBJ_TEXTURE, pending_[i].texid),
+                       problems[i]),
+           {},
+           "it is drawn white"});
+  pending_.clear();
+}
+
+}  // namespace gloam

@@ -1,0 +1,59 @@
+#include "world/visual_rules.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gloam {
+
+Vec3f linear_color(Vec3f srgb) {
+  const auto channel = [](float x) {
+    return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
+  };
+  return {channel(srgb.x), channel(srgb.y), channel(srgb.z)};
+}
+
+Vec3f emission_luminance(Vec3f color, float emission) {
+  return color * (max(emission, 0) * kWhiteLuminance);
+}
+
+float roughness_of_shininess(float shininess) {
+  const float exponent = 128 * clamp(shininess, 0, 1);
+  return std::sqrt(std::sqrt(2 / (exponent + 2)));
+}
+
+Vec3f light_intensity(Vec3f diffuse, float intensity, float legacy_scale) {
+  if (intensity <= 0) return diffuse * legacy_scale;
+  const float y = luminance(diffuse);
+  return y > 0 ? diffuse * (intensity / y) : Vec3f{0, 0, 0};
+}
+
+float legacy_light_scale(LightType type, float distance, Vec3f attenuation) {
+  const float facing_white = kPi * kWhiteLuminance;  // E = pi L of a Lambert surface of albedo 1
+  if (type == LightType::kDirectional) return facing_white;
+  const float dimmed = attenuation.x + attenuation.y * distance + attenuation.z * sqr(distance);
+  return facing_white * sqr(distance) / (dimmed > 0 ? dimmed : 1.0f);
+}
+
+float softness_of_exponent(float exponent, float cutoff) {
+  if (exponent <= 0 || cutoff <= 0) return 0;
+  const float half_angle = std::acos(std::pow(0.5f, 1 / exponent));
+  return clamp(2 * (1 - half_angle / cutoff), 0, 1);
+}
+
+float ev100_for(float luminance, float display) {
+  return std::log2(max(luminance, 1e-6f) / (1.2f * display));
+}
+
+float scene_ev100(std::span<const float> illuminance, float surround, bool photometric) {
+  float sum = 0, most = 0;
+  for (const float lux : illuminance) {
+    sum += lux;
+    most = max(most, lux);
+  }
+  // One surface faces one light; the others meet it at a slant.
+  float white = (most + 0.5f * (sum - most)) * kInvPi + surround;
+  if (!photometric) white = max(white, kWhiteLuminance);
+  return ev100_for(white, kWhiteExposed);
+}
+
+}  // namespace gloam
