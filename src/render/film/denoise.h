@@ -1,0 +1,50 @@
+#pragma once
+// Removing Monte Carlo noise from a Film: by Open Image Denoise where it is installed, else by a
+// filter of our own. One interface; which one is a run-time choice.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "gloam/result.h"
+#include "render/film/film.h"
+
+namespace gloam {
+
+enum class DenoiseQuality : uint8_t { kFast, kBalanced, kHigh };
+
+struct DenoiseOptions {
+  bool use_oidn = true;  ///< false: our own filter even where Open Image Denoise is installed
+  DenoiseQuality quality = DenoiseQuality::kBalanced;  ///< of Open Image Denoise
+};
+
+/// Keeps its buffers from call to call. Not thread-safe; uses all threads of parallel_for.
+class Denoiser {
+ public:
+  virtual ~Denoiser() = default;
+  /// Writes the film's radiance without its noise to `out` [cd/m²], (height x width). Uses albedo,
+  /// normal, depth and variance where the film has them. Pixels that are not numbers count as
+  /// black; single pixels far brighter than everything around them (fireflies) are toned down
+  /// first.
+  virtual Status denoise(const Film& film, std::vector<Vec3f>* out) = 0;
+  virtual const char* name() const = 0;
+};
+
+/// Open Image Denoise 2.x, loaded at run time from $GLOAM_OIDN (its library or folder), Gloam's
+/// .venv, or the system. Results are equal for any number of threads on one machine. Errors: not
+/// found, too old, refuses this machine.
+Result<std::unique_ptr<Denoiser>> make_oidn_denoiser(DenoiseQuality quality);
+
+/// Edge-avoiding à-trous wavelet filter (Dammertz et al. 2010) over radiance divided by albedo,
+/// guided by normal, depth and variance (as in Schied et al. 2017, without the temporal part).
+std::unique_ptr<Denoiser> make_edge_denoiser();
+
+/// Open Image Denoise if wanted and present, else our own.
+std::unique_ptr<Denoiser> make_denoiser(const DenoiseOptions& options);
+
+/// What both do first: not-a-number to black, and pixels brighter than four times the third
+/// brightest of their 5 x 5 neighbours down to that. Every thin line or highlight of three or more
+/// pixels passes unchanged.
+void remove_fireflies(const Film& film, std::vector<Vec3f>* out);
+
+}  // namespace gloam

@@ -1,0 +1,205 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <string>
+
+#include "base/parallel.h"
+#include "base/rng.h"
+#include "render/film/denoise.h"
+
+namespace gloam {
+namespace {
+
+/// A floor under a checkerboard, a bright and a dark wall, sky above; every channel of it exact.
+struct TestScene {
+  Film film;                     // with noise
+  std::vector<Vec3f> reference;  // without
+};
+
+TestScene make_scene(int width, int height, float noise, uint64_t seed) {
+  TestScene scene;
+  Film& f = scene.film;
+  f.width = width;
+  f.height = height;
+  const RandomStream random{seed, stream_id("test.noise")};
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const float u = (static_cast<float>(x) + 0.5f) / static_cast<float>(width);
+      const float v = (static_cast<float>(y) + 0.5f) / static_cast<float>(height);
+      Vec3f albedo, normal, light;
+      float depth = INFINITY;
+      if (v > 0.5f) {  // floor
+        depth = 1 / (v - 0.45f);
+        const bool dark = (static_cast<int>(u * 12) + static_cast<int>(depth * 2)) % 2 == 0;
+        albedo = dark ? Vec3f{0.2f, 0.15f, 0.1f} : Vec3f{0.7f, 0.65f, 0.6f};
+        normal = {0, 0, 1};
+        light = Vec3f{1, 0.95f, 0.9f} * (300 * (0.4f + 0.6f * u));
+      } else if (v > 0.1f) {  // two walls that meet in a corner
+        const bool left = u < 0.5f;
+        depth = left ? 10 + 10 * u : 20 - 10 * u;
+        albedo = {0.8f, 0.8f, 0.8f};
+        normal = left ? Vec3f{0.7071068f, -0.7071068f, 0} : Vec3f{-0.7071068f, -0.7071068f, 0};
+        light = Vec3f{1, 1, 1} * (left ? 600.0f : 150.0f);
+      }
+      const bool sky = std::isinf(depth);
+      const Vec3f truth = sky ? Vec3f{500, 700, 1000} : albedo * light;
+      scene.reference.push_back(truth);
+      // Noise of few samples: exponential, mean 1, mixed with the truth.
+      const uint32_t i = static_cast<uint32_t>(y * width + x);
+      const float e = -std::log(1 - static_cast<float>(random.uniform(0, i)) * 0.999999f);
+      f.radiance.push_back(sky ? truth : truth * (1 + noise * (e - 1)));
+      f.variance.push_back(sky ? Vec3f{} : truth * truth * (noise * noise));
+      f.albedo.push_back(albedo);
+      f.normal.push_back(normal);
+      f.depth.push_back(depth);
+    }
+  }
+  return scene;
+}
+
+double relative_error(const std::vector<Vec3f>& picture, const std::vector<Vec3f>& reference) {
+  double sum = 0;
+  for (size_t i = 0; i < picture.size(); ++i) {
+    const Vec3f d = picture[i] - reference[i];
+    sum += dot(d, d) / (dot(reference[i], reference[i]) + 1);
+  }
+  return std::sqrt(sum / static_cast<double>(picture.size()));
+}
+
+double mean_luminance(const std::vector<Vec3f>& picture) {
+  double sum = 0;
+  for (const Vec3f& c : picture) sum += luminance(c);
+  return sum / static_cast<double>(picture.size());
+}
+
+/// Both denoisers must do all of this. "oidn" is skipped where the library is not installed.
+class DenoiseTest : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override {
+    if (GetParam() == "own") {
+      denoiser_ = make_edge_denoiser();
+      return;
+    }
+    setenv("GLOAM_HOME", GLOAM_SOURCE_DIR, 1);
+    Result<std::unique_ptr<Denoiser>> oidn = make_oidn_denoiser(DenoiseQuality::kBalanced);
+    if (!oidn.ok()) GTEST_SKIP() << oidn.error().to_string();
+    denoiser_ = std::move(oidn).value();
+  }
+  std::unique_ptr<Denoiser> denoiser_;
+};
+
+TEST_P(DenoiseTest, BringsThePictureMuchCloserToTheReference) {
+  const TestScene scene = make_scene(320, 240, 0.5f, 7);
+  std::vector<Vec3f> out;
+  ASSERT_TRUE(denoiser_->denoise(scene.film, &out).ok());
+  const double before = relative_error(scene.film.radiance, scene.reference);
+  const double after = relative_error(out, scene.reference);
+  EXPECT_GT(before, 0.3);
+  EXPECT_LT(after, before / 4);
+}
+
+TEST_P(DenoiseTest, KeepsTheMeanLight) {
+  const TestScene scene = make_scene(320, 240, 0.5f, 8);
+  std::vector<Vec3f> out;
+  ASSERT_TRUE(denoiser_->denoise(scene.film, &out).ok());
+  EXPECT_NEAR(mean_luminance(out) / mean_luminance(scene.reference), 1, 0.03);
+}
+
+TEST_P(DenoiseTest, KeepsEdgesOfShapeAndTexture) {
+  const TestScene scene = make_scene(320, 240, 0.3f, 9);
+  std::vector<Vec3f> out;
+  ASSERT_TRUE(denoiser_->denoise(scene.film, &out).ok());
+  // Across the corner of the walls and across every edge of the checkerboard in one row of it.
+  for (const int y : {80, 200}) {
+    for (int x = 1; x < 320; ++x) {
+      const size_t i = static_cast<size_t>(y * 320 + x);
+      const float jump = luminance(scene.reference[i]) - luminance(scene.reference[i - 1]);
+      if (std::fabs(jump) < 30) continue;
+      const float kept = luminance(out[i]) - luminance(out[i - 1]);
+      EXPECT_NEAR(kept / jump, 1, 0.35) << "at " << x << ", " << y;
+    }
+  }
+}
+
+TEST_P(DenoiseTest, LeavesACleanPictureAlone) {
+  TestScene scene = make_scene(160, 120, 0, 1);
+  std::vector<Vec3f> out;
+  ASSERT_TRUE(denoiser_->denoise(scene.film, &out).ok());
+  EXPECT_LT(relative_error(out, scene.reference), 0.03);
+}
+
+TEST_P(DenoiseTest, SurvivesFirefliesAndNotANumber) {
+  TestScene scene = make_scene(160, 120, 0.3f, 3);
+  for (const size_t i : {size_t{40 * 160 + 40}, size_t{100 * 160 + 100}})
+    scene.film.radiance[i] = {1e6f, 1e6f, 1e6f};
+  scene.film.radiance[80 * 160 + 10] = {NAN, INFINITY, -1};
+  std::vector<Vec3f> out;
+  ASSERT_TRUE(denoiser_->denoise(scene.film, &out).ok());
+  for (size_t i = 0; i < out.size(); ++i) {
+    ASSERT_TRUE(std::isfinite(luminance(out[i])));
+    EXPECT_LT(luminance(out[i]), 2.5f * max(luminance(scene.reference[i]), 100)) << i;
+  }
+}
+
+TEST_P(DenoiseTest, TakesFilmsWithoutGuidesAndOfAnySize) {
+  for (const auto& [w, h] : {std::pair{1, 1}, {3, 2}, {17, 5}, {64, 64}, {33, 70}}) {
+    TestScene scene = make_scene(w, h, 0.5f, 4);
+    std::vector<Vec3f> out;
+    ASSERT_TRUE(denoiser_->denoise(scene.film, &out).ok());
+    EXPECT_EQ(out.size(), scene.reference.size());
+    scene.film.albedo.clear();
+    scene.film.normal.clear();
+    scene.film.depth.clear();
+    scene.film.variance.clear();
+    ASSERT_TRUE(denoiser_->denoise(scene.film, &out).ok());
+    for (const Vec3f& c : out) ASSERT_TRUE(std::isfinite(luminance(c)));
+  }
+}
+
+TEST_P(DenoiseTest, IsEqualForAnyNumberOfThreadsAndFromRunToRun) {
+  const TestScene scene = make_scene(320, 240, 0.5f, 11);
+  std::vector<Vec3f> reference;
+  ASSERT_TRUE(denoiser_->denoise(scene.film, &reference).ok());
+  for (const int threads : {1, 2, 3, 4}) {
+    set_thread_count(threads);
+    SetUp();  // OIDN takes its number of threads when it is made
+    std::vector<Vec3f> out;
+    for (int run = 0; run < 2; ++run) {
+      ASSERT_TRUE(denoiser_->denoise(scene.film, &out).ok());
+      ASSERT_TRUE(out == reference) << threads << " threads, run " << run;
+    }
+  }
+  set_thread_count(0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Both, DenoiseTest, testing::Values("own", "oidn"),
+                         [](const auto& info) { return info.param; });
+
+TEST(Denoise, FallsBackToOurOwnFilterWhereOidnIsMissing) {
+  setenv("GLOAM_OIDN", "/nowhere", 1);
+  const Result<std::unique_ptr<Denoiser>> missing = make_oidn_denoiser(DenoiseQuality::kFast);
+  ASSERT_FALSE(missing.ok());
+  EXPECT_NE(missing.error().to_string().find("not installed"), std::string::npos);
+  EXPECT_STREQ(make_denoiser({})->name(), "Gloam edge filter");
+  unsetenv("GLOAM_OIDN");
+  EXPECT_STREQ(make_denoiser({.use_oidn = false})->name(), "Gloam edge filter");
+}
+
+TEST(Denoise, FireflyFilterKeepsHighlightsOfThreePixels) {
+  Film film;
+  film.width = film.height = 16;
+  film.radiance.assign(256, Vec3f{1, 1, 1});
+  film.radiance[8 * 16 + 3] = {500, 500, 500};
+  for (const size_t i :
+       {size_t{4 * 16 + 9}, size_t{5 * 16 + 9}, size_t{6 * 16 + 9}, size_t{7 * 16 + 9}})
+    film.radiance[i] = {50, 60, 70};
+  std::vector<Vec3f> out;
+  remove_fireflies(film, &out);
+  EXPECT_NEAR(out[8 * 16 + 3].x, 4, 1e-4);
+  EXPECT_EQ(out[5 * 16 + 9].z, 70);
+  EXPECT_EQ(out[0].x, 1);
+}
+
+}  // namespace
+}  // namespace gloam
