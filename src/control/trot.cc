@@ -83,7 +83,7 @@ class Trot final : public TrotController {
   std::array<Vector3d, 4> nominal_H_;  // foot from B's origin when standing, z = 0
 
   VelocityTarget goal_;      // acceleration-limited
-  Vector3d v_goal_W_;
+  Vector3d v_goal_H_, v_goal_W_, a_goal_W_;
   Vector3d p_goal_;          // of B's origin; z unused
   double yaw_goal_ = 0;
   double height_goal_ = 0;   // of B's origin above the foot centres
@@ -113,7 +113,7 @@ void Trot::reset(const mjModel*, const mjData* data) {
 
   status_ = {};
   goal_ = {};
-  v_goal_W_.setZero();
+  v_goal_H_.setZero();
   p_goal_ = s_.p_WB;
   yaw_goal_ = s_.yaw;
   height_sum_ = fall_time_ = 0;
@@ -133,7 +133,11 @@ void Trot::shape_goal(const VelocityTarget& goal, double dt) {
   goal_.vx = approach(goal_.vx, goal.vx, step);
   goal_.vy = approach(goal_.vy, goal.vy, step);
   goal_.yaw_rate = approach(goal_.yaw_rate, goal.yaw_rate, options_.angular_acceleration * dt);
-  v_goal_W_ = s_.R_WH * Vector3d(goal_.vx, goal_.vy, 0);
+  const Vector3d v_goal_before = v_goal_H_;
+  v_goal_H_ = {goal_.vx, goal_.vy, 0};
+  v_goal_W_ = s_.R_WH * v_goal_H_;
+  a_goal_W_ = s_.R_WH * ((v_goal_H_ - v_goal_before) / dt +
+                         goal_.yaw_rate * Vector3d::UnitZ().cross(v_goal_H_));
 
   // The goal pose moves with the goal velocity, on a leash: it is the integral action.
   p_goal_ += v_goal_W_ * dt;
@@ -223,7 +227,8 @@ ForceProblem Trot::wanted_wrench(double dt) {
     problem.foot[k] = s_.foot_W[k] - s_.com_W;
     problem.foot[k].z() -= robot_.legs[k].foot_radius;
   }
-  Vector3d a = options_.kp_xy * (p_goal_ - s_.p_WB) + options_.kd_xy * (v_goal_W_ - s_.v_W);
+  Vector3d a = a_goal_W_ + options_.kp_xy * (p_goal_ - s_.p_WB) +
+               options_.kd_xy * (v_goal_W_ - s_.v_W);
   const double height_error = height_goal_ - (s_.p_WB.z() - ground_);
   height_sum_ = std::clamp(height_sum_ + options_.height_integral * height_error * dt,
                            -options_.height_integral_limit, options_.height_integral_limit);
@@ -302,7 +307,11 @@ void Trot::control(const mjModel*, mjData* data, int64_t, double period,
     const LegPose& pose = s_.pose[k];
     const LegDynamics weight = leg_dynamics(robot_.legs[k], pose, Vector3d::Zero(),
                                             Vector3d::Zero(), s_.gravity_B);
-    write_torque(k, weight.torque - pose.J.transpose() * (s_.R_WB.transpose() * force[k]), data);
+    const Vector3d sole = pose.foot + robot_.legs[k].foot_radius * s_.gravity_B.normalized();
+    Vector3d torque = weight.torque;
+    for (int i = 0; i < 3; ++i)
+      torque[i] -= pose.axis[i].cross(sole - pose.anchor[i]).dot(s_.R_WB.transpose() * force[k]);
+    write_torque(k, torque, data);
   }
 }
 

@@ -67,15 +67,25 @@ RobotInstance robot_instance(const mjModel& model) {
   return robot;
 }
 
-TrialResult run_trial(const mjModel& model, const Trial& trial) {
+TrialResult run_trial(const mjModel& known_model, const Trial& trial) {
   TrialResult out;
-  auto made = make_trot_controller(model, robot_instance(model), trial.options);
+  auto made = make_trot_controller(known_model, robot_instance(known_model), trial.options);
   if (!made.ok()) {
     ADD_FAILURE() << made.error().to_string();
     out.fell = true;
     return out;
   }
   TrotController& trot = *made.value();
+  TestModel real_model(mj_copyModel(nullptr, &known_model));
+  const mjModel& model = *real_model;
+  if (trial.surprise_mass > 0) {
+    const int trunk = mj_name2id(&model, mjOBJ_BODY, "trunk");
+    const double grow = 1 + trial.surprise_mass / model.body_mass[trunk];
+    real_model->body_mass[trunk] *= grow;
+    for (int i = 0; i < 3; ++i) real_model->body_inertia[3 * trunk + i] *= grow;
+    TestData scratch(mj_makeData(&model));
+    mj_setConst(real_model.get(), scratch.get());
+  }
   TestData data(mj_makeData(&model));
   mjData* d = data.get();
   if (model.nkey > 0) mj_resetDataKeyframe(&model, d, 0);
@@ -153,7 +163,8 @@ TrialResult run_trial(const mjModel& model, const Trial& trial) {
       if (touching) {
         mjtNum velocity[6];
         mj_objectVelocity(&model, d, mjOBJ_GEOM, feet[k], velocity, 0);
-        slip_sum += std::hypot(velocity[3], velocity[4]);
+        const double r = model.geom_size[3 * feet[k]];  // of the sole, not the rolling centre
+        slip_sum += std::hypot(velocity[3] - r * velocity[1], velocity[4] + r * velocity[0]);
         ++slip_count;
         if (!down[k] && top[k] > 0.01) {
           clearance_sum += top[k];

@@ -28,6 +28,7 @@ struct Trial {
   int pushes = 0;        ///< at random times
   uint64_t seed = 1;
   TrotOptions options;
+  double surprise_mass = 0;  ///< put on the base after the controller has read the model [kg]
 };
 
 /// Velocities are those of the base's origin in the heading frame: forward, left, yaw.
