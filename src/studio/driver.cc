@@ -1,0 +1,339 @@
+#include "studio/driver.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace gloam::studio {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr size_t kMaxWishes = 256;
+constexpr milliseconds kBeat{20};
+constexpr milliseconds kCameraLinger{3000};  // longer than the reload of a page takes
+constexpr milliseconds kRetry{1000};
+constexpr const char* kFreeCamera = "free";
+
+/// Adds `next` to the message that waits, if both are moves of one kind. False: it must queue up.
+bool merge(ControlMessage& waiting, const ControlMessage& next) {
+  if (waiting.index() != next.index()) return false;
+  if (auto* orbit = std::get_if<OrbitMessage>(&waiting)) {
+    orbit->dx += std::get<OrbitMessage>(next).dx;
+    orbit->dy += std::get<OrbitMessage>(next).dy;
+    return true;
+  }
+  if (auto* pan = std::get_if<PanMessage>(&waiting)) {
+    pan->dx += std::get<PanMessage>(next).dx;
+    pan->dy += std::get<PanMessage>(next).dy;
+    return true;
+  }
+  if (auto* zoom = std::get_if<ZoomMessage>(&waiting)) {
+    zoom->amount += std::get<ZoomMessage>(next).amount;
+    return true;
+  }
+  if (std::holds_alternative<DragMoveMessage>(waiting)) {
+    waiting = next;
+    return true;
+  }
+  return false;
+}
+
+/// Where a camera that sees nothing at its centre turns about: the floor, or a step ahead [m].
+double distance_to_floor(const Pose& X_WC) {
+  const double fall = -rotate(X_WC.q, {0, 0, -1}).z;
+  const double distance = fall > 0.01 ? X_WC.p.z / fall : 0;
+  return distance > 0.2 && distance < 50 ? distance : 3;
+}
+
+}  // namespace
+
+Driver::Driver(Simulation& simulation, const ViewOptions& options, Publisher& publisher,
+               Reply reply)
+    : simulation_(simulation),
+      options_(options),
+      publisher_(publisher),
+      reply_(std::move(reply)),
+      cameras_{kFreeCamera} {
+  for (auto& name : simulation.camera_names())
+    if (name != kFreeCamera) cameras_.push_back(std::move(name));
+}
+
+Driver::~Driver() { stop(); }
+
+Status Driver::start() {
+  GLOAM_TRY_STATUS(open_camera(options_.camera));
+  {
+    const std::lock_guard lock(mutex_);
+    last_client_ = Clock::now();
+  }
+  thread_ = std::thread([this] { run(); });
+  return {};
+}
+
+bool Driver::post(int64_t client, const ControlMessage& message) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!wishes_.empty() && wishes_.back().client == client &&
+        merge(wishes_.back().message, message))
+      return true;
+    if (wishes_.size() >= kMaxWishes) return false;
+    wishes_.push_back({client, message});
+  }
+  wake_.notify_one();
+  return true;
+}
+
+void Driver::release(int64_t client) {
+  const std::lock_guard lock(mutex_);
+  wishes_.push_back({client, DragEndMessage{}});
+}
+
+void Driver::set_clients(int count) {
+  {
+    const std::lock_guard lock(mutex_);
+    clients_ = count;
+    last_client_ = Clock::now();
+  }
+  wake_.notify_one();
+}
+
+void Driver::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_one();
+  if (thread_.joinable()) thread_.join();
+  stream_.reset();
+}
+
+Driver::CameraReport Driver::report() const {
+  const std::lock_guard lock(mutex_);
+  return report_;
+}
+
+void Driver::run() {
+  std::unique_lock lock(mutex_);
+  while (!stopping_) {
+    wake_.wait_for(lock, kBeat, [this] { return stopping_ || !wishes_.empty(); });
+    while (!stopping_ && !wishes_.empty()) {
+      const Wish wish = std::move(wishes_.front());
+      wishes_.pop_front();
+      lock.unlock();
+      carry_out(wish);
+      lock.lock();
+    }
+    if (stopping_) break;
+    lock.unlock();
+    keep_camera();
+    refresh_when_due();
+    lock.lock();
+  }
+  lock.unlock();
+  if (drag_) do_message(drag_->client, DragEndMessage{});
+  close_camera();
+}
+
+void Driver::carry_out(const Wish& wish) {
+  std::visit(
+      [&](const auto& message) {
+        // Messages about control itself and about seen pictures end in the server.
+        if constexpr (requires { do_message(wish.client, message); })
+          do_message(wish.client, message);
+      },
+      wish.message);
+}
+
+void Driver::do_message(int64_t, const PauseMessage&) {
+  simulation_.pause();
+  picture_is_old_ = true;
+}
+
+void Driver::do_message(int64_t, const ResumeMessage&) { simulation_.resume(); }
+
+void Driver::do_message(int64_t client, const StepMessage& message) {
+  for (int i = 0; i < message.count; ++i) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (stopping_) return;
+    }
+    if (const Status status = simulation_.step(1); !status.ok())
+      return tell_failure(client, status);
+  }
+  picture_is_old_ = true;
+}
+
+void Driver::do_message(int64_t, const SpeedMessage& message) {
+  simulation_.set_pace(Pace::kRealTime, message.value);
+  speed_ = message.value;
+  const std::lock_guard lock(mutex_);
+  report_.speed = message.value;
+}
+
+void Driver::do_message(int64_t client, const ResetMessage&) {
+  tell_failure(client, simulation_.post({.what = ResetSim{}}));
+  picture_is_old_ = true;
+}
+
+void Driver::do_message(int64_t client, const CameraMessage& message) {
+  if (message.name == camera_ && stream_) return;
+  if (std::find(cameras_.begin(), cameras_.end(), message.name) == cameras_.end())
+    return reply_(client, notice_message("There is no camera named '" + message.name + "'."));
+  close_camera();
+  tell_failure(client, open_camera(message.name));
+}
+
+void Driver::do_message(int64_t, const OrbitMessage& message) {
+  if (OrbitCamera* camera = free_camera()) {
+    camera->orbit(message.dx, message.dy);
+    move_free_camera();
+  }
+}
+
+void Driver::do_message(int64_t, const PanMessage& message) {
+  const auto frame = publisher_.newest();
+  OrbitCamera* camera = free_camera();
+  if (!camera || !frame) return;
+  const Intrinsics& k = frame->intrinsics;
+  camera->pan(message.dx, message.dy, k.height / k.fy * (k.orthographic ? 1 : camera->distance()));
+  move_free_camera();
+}
+
+void Driver::do_message(int64_t, const ZoomMessage& message) {
+  if (OrbitCamera* camera = free_camera()) {
+    camera->zoom(message.amount);
+    move_free_camera();
+  }
+}
+
+void Driver::do_message(int64_t client, const PickMessage& message) {
+  const auto frame = publisher_.newest();
+  if (!frame) return;
+  const auto hit = simulation_.pick(*frame, message.u, message.v);
+  reply_(client,
+         hit.ok() ? picked_message(hit->name, hit->point_W, false) : picked_nothing_message());
+}
+
+void Driver::do_message(int64_t client, const DragStartMessage& message) {
+  if (drag_) do_message(drag_->client, DragEndMessage{});
+  const auto frame = publisher_.newest();
+  if (!frame) return;
+  const auto hit = simulation_.pick(*frame, message.u, message.v);
+  if (!hit.ok()) return reply_(client, notice_message("There is nothing to pull here."));
+  if (hit->body.id <= 0)
+    return reply_(client, notice_message("This belongs to the world and does not move."));
+  drag_ = Drag{client, hit->body, hit->point_B, depth_of(frame->X_WC, hit->point_W)};
+  if (const Status status = pull(hit->point_W, true); !status.ok()) {
+    drag_.reset();
+    return tell_failure(client, status);
+  }
+  reply_(client, picked_message(hit->name, hit->point_W, true));
+}
+
+void Driver::do_message(int64_t client, const DragMoveMessage& message) {
+  const auto frame = publisher_.newest();
+  if (!drag_ || drag_->client != client || !frame) return;
+  tell_failure(
+      client,
+      pull(point_at(frame->X_WC, frame->intrinsics, message.u, message.v, drag_->depth), true));
+}
+
+void Driver::do_message(int64_t client, const DragEndMessage&) {
+  if (!drag_ || drag_->client != client) return;
+  tell_failure(client, pull({}, false));
+  drag_.reset();
+}
+
+Status Driver::pull(const Vec3& target_W, bool active) {
+  return simulation_.post({.what = DragBody{drag_->body, drag_->point_B, target_W, active}});
+}
+
+Status Driver::open_camera(const std::string& name) {
+  CameraRequest request{.camera = name,
+                        .rate = {std::llround(options_.rate * 1000), 1000},
+                        .width = options_.width,
+                        .height = options_.height,
+                        .render = options_.render};
+  last_attempt_ = Clock::now();
+  auto opened = simulation_.open_camera(
+      request, [this](std::shared_ptr<const CameraFrame> frame) { publisher_.offer(frame); });
+  {
+    const std::lock_guard lock(mutex_);
+    report_.error = opened.ok() ? "" : opened.error().to_string();
+    if (opened.ok()) report_.camera = name;
+  }
+  if (!opened.ok()) return std::move(opened).error();
+  stream_ = std::move(opened).value();
+  camera_ = name;
+  if (camera_ == kFreeCamera && orbit_) stream_->set_pose(orbit_->pose());
+  picture_is_old_ = true;
+  last_frame_ = Clock::now();
+  return {};
+}
+
+void Driver::close_camera() {
+  stream_.reset();
+  publisher_.forget();
+  refreshed_at_.reset();
+}
+
+void Driver::keep_camera() {
+  const auto now = Clock::now();
+  bool wanted = false;
+  {
+    const std::lock_guard lock(mutex_);
+    wanted = clients_ > 0 || now - last_client_ < kCameraLinger;
+    if (stream_) report_.dropped = stream_->dropped();
+  }
+  if (!wanted && stream_) close_camera();
+  // A failure is in the report, where every client sees it.
+  if (wanted && !stream_ && now - last_attempt_ > kRetry) (void)open_camera(camera_).ok();
+}
+
+void Driver::refresh_when_due() {
+  if (!stream_) return;
+  const auto now = Clock::now();
+  const uint64_t sequence = publisher_.sequence();
+  if (sequence != seen_sequence_) {
+    seen_sequence_ = sequence;
+    last_frame_ = now;
+  }
+  // One refresh at a time: a slow renderer must not be given a queue of them.
+  if (refreshed_at_ == sequence && now - last_refresh_ < kRetry) return;
+  refreshed_at_.reset();
+  const bool paused = simulation_.paused();
+  const bool slow_motion = speed_ < 1 && !paused;
+  const bool late = now - last_frame_ > std::chrono::duration<double>(1.5 / options_.rate);
+  if (!(picture_is_old_ || slow_motion) || !(paused || late)) return;
+  picture_is_old_ = false;
+  refreshed_at_ = sequence;
+  last_refresh_ = now;
+  stream_->refresh();
+}
+
+OrbitCamera* Driver::free_camera() {
+  if (camera_ != kFreeCamera || !stream_) return nullptr;
+  if (!orbit_) {
+    const Pose X_WC = stream_->pose();
+    double distance = distance_to_floor(X_WC);
+    if (const auto frame = publisher_.newest()) {
+      const auto hit =
+          simulation_.pick(*frame, frame->intrinsics.width / 2.0, frame->intrinsics.height / 2.0);
+      if (hit.ok()) distance = depth_of(X_WC, hit->point_W);
+    }
+    orbit_.emplace(X_WC, distance);
+  }
+  return &*orbit_;
+}
+
+void Driver::move_free_camera() {
+  stream_->set_pose(orbit_->pose());
+  picture_is_old_ = true;
+}
+
+void Driver::tell_failure(int64_t client, const Status& status) {
+  if (!status.ok()) reply_(client, notice_message(status.error().to_string()));
+}
+
+}  // namespace gloam::studio

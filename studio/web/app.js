@@ -1,0 +1,384 @@
+"use strict";
+// The view's page. Protocol: docs/view_protocol.md. The server decides everything; the page shows the
+// state it is told and sends wishes.
+
+const $ = (id) => document.getElementById(id);
+const stage = $("stage"), canvas = $("picture"), context = canvas.getContext("2d", { alpha: false });
+const kSpeeds = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50];
+const kClickTravel = 3;  // CSS pixels a hand may shake
+
+let socket = null, client = 0, retries = 0, ended = false, cameras = [];
+let state = null;      // newest state message
+let picture = null;    // header of the picture on the screen
+let drag = null;       // pull of a body: {u, v, point: null until the server has found one}
+let noticeTimer = 0;
+
+// The token has become a cookie: out of the address bar, history and screenshots.
+if (location.search) history.replaceState(null, "", location.pathname);
+
+// ---- connection ----
+
+function connect() {
+  showLink("connecting", "Connecting");
+  socket = new WebSocket(`ws://${location.host}/ws`);
+  socket.binaryType = "arraybuffer";
+  socket.onmessage = (event) => {
+    if (typeof event.data === "string") receive(JSON.parse(event.data));
+    else showPicture(event.data);
+  };
+  socket.onclose = (event) => {
+    socket = null;
+    endDrag();
+    document.body.classList.add("offline");
+    document.body.classList.remove("running");
+    ended = ended || event.code === 1001;
+    const slow = event.code === 1013;
+    const why = ended ? "The simulation has ended. Start it again and open the address that it prints."
+      : slow ? "This page could not keep up and was disconnected. Trying again…"
+      : "The connection to the simulation is lost. Trying again…";
+    showBanner(why);
+    showLink("lost", ended ? "Ended" : "Not connected");
+    showControls();
+    if (!picture) $("placeholder-text").textContent = "Not connected";
+    if (!ended) setTimeout(connect, Math.min(5000, 400 * 2 ** retries++));
+  };
+}
+
+function send(message) {
+  if (socket && socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
+}
+
+function inControl() { return socket !== null && state !== null && state.controller === client; }
+
+/** Sends what only the controller may; tells the others why nothing happens. */
+function wish(message) {
+  if (inControl()) send(message);
+  else if (socket) showNotice("You are watching. Press “Take control” first.");
+}
+
+function receive(message) {
+  switch (message.type) {
+    case "hello":
+      client = message.client;
+      retries = 0;
+      cameras = message.cameras;
+      $("camera").replaceChildren(...cameras.map((name) => new Option(name === "free" ? "Free camera" : name, name)));
+      document.body.classList.remove("offline");
+      if (!picture) $("placeholder-text").textContent = "Waiting for the first picture…";
+      showLink("live", "Live");
+      break;
+    case "state":
+      state = message;
+      showState();
+      break;
+    case "picked":
+      showPicked(message);
+      break;
+    case "notice":
+      if (drag && !drag.point) endDrag();
+      showNotice(message.text);
+      break;
+  }
+}
+
+// ---- pictures ----
+
+const arrivals = [];     // [ms] when pictures were shown in the last second
+let lastSequence = 0n, missed = 0;
+
+async function showPicture(bytes) {
+  const view = new DataView(bytes);
+  if (bytes.byteLength < 120 || view.getUint32(0) !== 0x474c5631) return;
+  const sequence = view.getBigUint64(8, true);
+  if (lastSequence !== 0n && sequence > lastSequence) missed += Number(sequence - lastSequence) - 1;
+  lastSequence = sequence;
+  const header = {
+    time: view.getFloat64(24, true), width: view.getUint16(32, true), height: view.getUint16(34, true),
+    orthographic: (view.getUint32(40, true) & 1) !== 0,
+    fx: view.getFloat32(44, true), fy: view.getFloat32(48, true), cx: view.getFloat32(52, true), cy: view.getFloat32(56, true),
+    p: [60, 68, 76].map((at) => view.getFloat64(at, true)),
+    q: [84, 92, 100, 108].map((at) => view.getFloat64(at, true)),
+  };
+  try {
+    const image = await createImageBitmap(new Blob([new Uint8Array(bytes, view.getUint32(4, true))], { type: "image/jpeg" }));
+    if (canvas.width !== image.width || canvas.height !== image.height) {
+      canvas.width = image.width;
+      canvas.height = image.height;
+    }
+    context.drawImage(image, 0, 0);
+    image.close();
+  } finally {
+    send({ type: "seen" });
+  }
+  picture = header;
+  $("placeholder").hidden = true;
+  arrivals.push(performance.now());
+  drawPull();
+}
+
+/** Where the picture lies in the stage: object-fit leaves margins. */
+function pictureBox() {
+  const scale = Math.min(stage.clientWidth / canvas.width, stage.clientHeight / canvas.height);
+  return {
+    scale,
+    left: (stage.clientWidth - scale * canvas.width) / 2,
+    top: (stage.clientHeight - scale * canvas.height) / 2,
+  };
+}
+
+function toPixel(event) {
+  const box = pictureBox(), at = stage.getBoundingClientRect();
+  return { u: (event.clientX - at.left - box.left) / box.scale, v: (event.clientY - at.top - box.top) / box.scale };
+}
+
+function inPicture({ u, v }) { return u >= 0 && v >= 0 && u < canvas.width && v < canvas.height; }
+
+/** Pixel of a point in the world, or null when it lies behind the camera. */
+function project(point) {
+  const [w, x, y, z] = picture.q, d = point.map((value, i) => value - picture.p[i]);
+  // Columns of the rotation matrix: the camera's axes in the world.
+  const right = [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)];
+  const up = [2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)];
+  const back = [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)];
+  const dot = (axis) => axis[0] * d[0] + axis[1] * d[1] + axis[2] * d[2];
+  const depth = picture.orthographic ? 1 : -dot(back);
+  if (depth <= 0) return null;
+  return { u: picture.cx + picture.fx * dot(right) / depth, v: picture.cy - picture.fy * dot(up) / depth };
+}
+
+function drawPull() {
+  const from = drag && drag.point && picture ? project(drag.point) : null;
+  $("overlay").classList.toggle("on", from !== null);
+  if (!from) return;
+  const box = pictureBox();
+  const x1 = box.left + from.u * box.scale, y1 = box.top + from.v * box.scale;
+  const x2 = box.left + drag.u * box.scale, y2 = box.top + drag.v * box.scale;
+  for (const line of [$("pull"), $("pull-shadow")])
+    for (const [name, value] of Object.entries({ x1, y1, x2, y2 })) line.setAttribute(name, value);
+  $("pull-from").setAttribute("cx", x1);
+  $("pull-from").setAttribute("cy", y1);
+  $("pull-to").setAttribute("cx", x2);
+  $("pull-to").setAttribute("cy", y2);
+}
+
+// ---- what the user reads ----
+
+function showState() {
+  document.body.classList.toggle("running", !state.paused);
+  $("play-label").textContent = state.paused ? "Play" : "Pause";
+  $("play").title = state.paused ? "Play (Space)" : "Pause (Space)";
+  $("speed").textContent = `${state.speed}×`;
+  $("camera").value = state.camera;
+  $("time").textContent = `${state.time.toFixed(3)} s`;
+  $("steps").textContent = state.step.toLocaleString("en");
+  $("factor").textContent = state.paused ? "paused" : `${state.realtime_factor.toFixed(2)}×`;
+  $("dropped").textContent = (state.dropped + missed).toLocaleString("en");
+  $("warnings").textContent = state.warnings;
+  $("warnings-cell").hidden = state.warnings === 0;
+  $("hash").textContent = state.hash;
+  const now = performance.now();
+  while (arrivals.length && arrivals[0] < now - 1000) arrivals.shift();
+  $("rate").textContent = `${arrivals.length} /s`;
+  showBanner(state.error ? `The simulation has a problem: ${state.error}` : "");
+  showControls();
+}
+
+function showControls() {
+  const mine = inControl();
+  for (const id of ["play", "step", "reset", "slower", "faster", "camera"]) $(id).disabled = !mine;
+  $("role").hidden = $("claim").hidden = mine || !socket || !state;
+  $("role").textContent = state && state.controller === 0 ? "Nobody is in control" : "Watching: another window is in control";
+  if (!mine) endDrag();
+}
+
+function showLink(kind, text) {
+  $("link").dataset.state = kind;
+  $("link-text").textContent = kind === "live" && state && state.clients > 1 ? `${text}, ${state.clients} windows` : text;
+}
+
+function showBanner(text) {
+  if ($("banner").textContent !== text) $("banner").textContent = text;
+  $("banner").hidden = text === "";
+}
+
+function showNotice(text) {
+  $("notice").textContent = text;
+  $("notice").hidden = false;
+  clearTimeout(noticeTimer);
+  noticeTimer = setTimeout(() => { $("notice").hidden = true; }, 4000);
+}
+
+function showPicked(message) {
+  if (message.dragging) {
+    if (drag) drag.point = message.point;
+    drawPull();
+    showNotice(`Pulling ${message.body || "a body without a name"}`);
+    return;
+  }
+  $("selected").textContent = message.body || "a body without a name";
+  $("selected").hidden = !message.found;
+}
+
+// ---- wishes ----
+
+function changeSpeed(by) {
+  if (!state) return;
+  const near = kSpeeds.reduce((best, value, i) => Math.abs(Math.log(value / state.speed)) < Math.abs(Math.log(kSpeeds[best] / state.speed)) ? i : best, 0);
+  wish({ type: "speed", value: kSpeeds[Math.max(0, Math.min(kSpeeds.length - 1, near + by))] });
+}
+
+function changeCamera(by) {
+  if (!state || cameras.length === 0) return;
+  const at = Math.max(0, cameras.indexOf(state.camera));
+  wish({ type: "camera", name: cameras[(at + by + cameras.length) % cameras.length] });
+}
+
+const actions = {
+  play: () => wish({ type: state && state.paused ? "resume" : "pause" }),
+  step: (event) => wish({ type: "step", count: event.shiftKey ? 10 : 1 }),
+  reset: () => wish({ type: "reset" }),
+  slower: () => changeSpeed(-1),
+  faster: () => changeSpeed(1),
+  claim: () => send({ type: "claim" }),
+  "help-button": () => $("help").showModal(),
+};
+for (const [id, action] of Object.entries(actions)) $(id).addEventListener("click", action);
+$("camera").addEventListener("change", () => {
+  wish({ type: "camera", name: $("camera").value });
+  stage.focus();
+});
+
+const keys = {
+  " ": actions.play,
+  ArrowRight: actions.step,
+  Backspace: actions.reset,
+  "-": actions.slower,
+  "=": actions.faster,
+  "+": actions.faster,
+  "[": () => changeCamera(-1),
+  "]": () => changeCamera(1),
+  Escape: () => wish({ type: "camera", name: "free" }),
+  "?": actions["help-button"],
+};
+document.addEventListener("keydown", (event) => {
+  if ($("help").open || event.ctrlKey || event.altKey || event.metaKey) return;
+  // A focused button keeps its own keys, and so does the list of cameras.
+  const inside = event.target.tagName;
+  if ((inside === "BUTTON" && event.key === " ") || (inside === "SELECT" && event.key !== "Escape")) return;
+  const action = keys[event.key];
+  if (!action) return;
+  event.preventDefault();
+  if (!event.repeat || event.key === "ArrowRight") action(event);
+});
+
+// ---- mouse ----
+
+let gesture = null;  // {kind: orbit | pan | pull, x, y}
+// Moves are gathered and sent once per screen refresh: the server needs no more.
+let travel = { dx: 0, dy: 0 }, travelKind = "", zoom = 0, pullMoved = false, flushQueued = false;
+
+function queueFlush() {
+  if (flushQueued) return;
+  flushQueued = true;
+  requestAnimationFrame(flush);
+}
+
+function flush() {
+  flushQueued = false;
+  if (travelKind && (travel.dx || travel.dy)) send({ type: travelKind, dx: travel.dx, dy: travel.dy });
+  if (zoom) send({ type: "zoom", amount: Math.max(-10, Math.min(10, zoom)) });
+  if (pullMoved && drag) send({ type: "drag_move", u: drag.u, v: drag.v });
+  travel = { dx: 0, dy: 0 };
+  zoom = 0;
+  pullMoved = false;
+}
+
+/** True when the free camera may be moved; says why not. */
+function mayMoveCamera() {
+  if (!inControl()) {
+    wish({});
+    return false;
+  }
+  if (state.camera === "free") return true;
+  showNotice("This camera belongs to the model. Press Esc for the free camera.");
+  return false;
+}
+
+stage.addEventListener("pointerdown", (event) => {
+  stage.focus({ preventScroll: true });
+  if (gesture || !picture || event.button === 1) return;
+  event.preventDefault();
+  const kind = event.ctrlKey ? "pull" : event.button === 2 ? "pan" : "orbit";
+  if (kind === "pull" && (!inControl() || !inPicture(toPixel(event)))) return wish({});
+  gesture = { kind, x: event.clientX, y: event.clientY, moved: false, id: event.pointerId };
+  stage.setPointerCapture(event.pointerId);
+  if (kind !== "pull") return;
+  drag = { ...toPixel(event), point: null };
+  stage.classList.add("pull");
+  send({ type: "drag_start", u: drag.u, v: drag.v });
+});
+
+stage.addEventListener("pointermove", (event) => {
+  if (!gesture || event.pointerId !== gesture.id) return;
+  if (gesture.kind === "pull") {
+    if (!drag) return;
+    Object.assign(drag, toPixel(event));
+    pullMoved = true;
+    drawPull();
+    return queueFlush();
+  }
+  const dx = event.clientX - gesture.x, dy = event.clientY - gesture.y;
+  if (!gesture.moved) {
+    if (Math.hypot(dx, dy) < kClickTravel) return;
+    if (!mayMoveCamera()) {
+      gesture = null;
+      return;
+    }
+    gesture.moved = true;
+    stage.classList.add("moving");
+  }
+  if (travelKind !== gesture.kind) flush();
+  const height = pictureBox().scale * canvas.height;
+  travelKind = gesture.kind;
+  travel.dx += dx / height;
+  travel.dy += dy / height;
+  gesture.x = event.clientX;
+  gesture.y = event.clientY;
+  queueFlush();
+});
+
+function endGesture() {
+  gesture = null;
+  flush();
+  stage.classList.remove("moving");
+  endDrag();
+}
+
+function endDrag() {
+  if (!drag) return;
+  drag = null;
+  send({ type: "drag_end" });
+  stage.classList.remove("pull");
+  $("notice").hidden = true;
+  drawPull();
+}
+
+for (const name of ["pointerup", "pointercancel", "lostpointercapture"])
+  stage.addEventListener(name, (event) => { if (gesture && event.pointerId === gesture.id) endGesture(); });
+stage.addEventListener("contextmenu", (event) => event.preventDefault());
+stage.addEventListener("dblclick", (event) => {
+  const at = toPixel(event);
+  if (picture && inPicture(at)) wish({ type: "pick", ...at });
+});
+stage.addEventListener("wheel", (event) => {
+  event.preventDefault();
+  if (!picture || !mayMoveCamera()) return;
+  // A notch is about 100 px, 3 lines or 1 page.
+  const notches = event.deltaY / [100, 3, 1][event.deltaMode];
+  zoom -= 0.15 * notches;
+  queueFlush();
+}, { passive: false });
+new ResizeObserver(drawPull).observe(stage);
+
+showControls();
+connect();
