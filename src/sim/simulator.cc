@@ -186,9 +186,12 @@ Status Simulator::reset() {
   return status();
 }
 
-void Simulator::set_speed(double speed) {
+void Simulator::set_pace(Pace pace, double speed) {
   GLOAM_CHECK(speed > 0 && std::isfinite(speed), "the speed is a positive number");
-  call([this, speed] { pacer_.set_speed(speed); });
+  call([this, pace, speed] {
+    pace_ = pace;
+    pacer_.set_speed(speed);
+  });
 }
 
 Status Simulator::post(Command command) {

@@ -11,16 +11,11 @@
 #include <optional>
 #include <thread>
 
+#include "gloam/simulation.h"
 #include "sim/pacer.h"
 #include "sim/sim_loop.h"
 
 namespace gloam {
-
-enum class Pace {
-  kFast,      ///< as fast as possible
-  kRealTime,  ///< `speed` simulated seconds per second
-  kLockstep,  ///< as fast as possible, but only when told to: step(), run_until()
-};
 
 struct SimulatorOptions {
   uint64_t seed = 1;                    ///< the chain of state hashes starts from it
@@ -69,7 +64,7 @@ class Simulator {
   Status wait();
   /// Back to step 0 now, also after a failure. Commands that wait are thrown away.
   Status reset();
-  void set_speed(double speed);
+  void set_pace(Pace pace, double speed);
 
   /// Checks a Command and queues it; never blocks. Errors: not a thing of this world, queue full.
   Status post(Command command);
