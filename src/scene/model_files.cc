@@ -208,6 +208,18 @@ Status ModelFiles::scan(const fs::path& file, const fs::path& model, const Sourc
   return {};
 }
 
+Status ModelFiles::admit(const fs::path& file, const FileAccess& access) {
+  GLOAM_TRY(ModelRoot root, find_model_root(file, access));
+  roots_.push_back(std::move(root));
+  for (const auto& [name, folder] : access.packages) {
+    std::error_code code;
+    const fs::path package = absolute_path(folder, "");
+    const fs::path canonical = fs::weakly_canonical(package, code);
+    roots_.push_back({package, canonical, canonical});
+  }
+  return {};
+}
+
 Status ModelFiles::add_model(const fs::path& file, const FileAccess& access, const SourceLoc& loc) {
   const fs::path path = absolute_path(file, "");
   if (scans_.contains(path)) return {};
@@ -217,14 +229,7 @@ Status ModelFiles::add_model(const fs::path& file, const FileAccess& access, con
         fmt::format("'{}' is an archive or binary model, which is not read", file.string()), loc,
         "give the MJCF (.xml) or URDF file"};
   }
-  GLOAM_TRY(ModelRoot root, find_model_root(path, access));
-  roots_.push_back(std::move(root));
-  for (const auto& [name, folder] : access.packages) {
-    std::error_code code;
-    const fs::path package = absolute_path(folder, "");
-    const fs::path canonical = fs::weakly_canonical(package, code);
-    roots_.push_back({package, canonical, canonical});
-  }
+  GLOAM_TRY_STATUS(admit(path, access));
   std::vector<fs::path> stack;
   GLOAM_TRY_STATUS(scan(path, path, loc, stack));
   const std::string& top = scans_.at(path).root;
@@ -257,6 +262,13 @@ void ModelFiles::clear_overlay(const fs::path& file) {
 Result<ModelFiles::Content> ModelFiles::read(const fs::path& path) {
   std::string hash;
   return open(absolute_path(path, ""), &hash);
+}
+
+bool ModelFiles::is_unchanged(const Dependency& dependency) {
+  std::error_code code;
+  if (!dependency.exists) return !fs::exists(dependency.path, code);
+  std::string hash;
+  return open(dependency.path, &hash).ok() && hash == hash_to_hex(dependency.hash);
 }
 
 bool ModelFiles::readable(const fs::path& path) {

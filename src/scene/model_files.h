@@ -39,6 +39,9 @@ class ModelFiles {
   Status add_model(const std::filesystem::path& file, const FileAccess& access,
                    const SourceLoc& loc = {});
 
+  /// Only the first step of add_model: finds the root, so that files below it may be read.
+  Status admit(const std::filesystem::path& file, const FileAccess& access);
+
   /// Top element of a model that was added: "mujoco" or "robot".
   const std::string& root_element(const std::filesystem::path& file) const;
   /// Text of a model or of a file that it includes, as on disk.
@@ -49,8 +52,11 @@ class ModelFiles {
   void set_overlay(const std::filesystem::path& file, std::string text);
   void clear_overlay(const std::filesystem::path& file);
 
-  /// Reads through the same checks. For files that Gloam itself needs (export).
+  /// Reads through the same checks. For files that Gloam itself needs (export, cache).
   Result<std::shared_ptr<const std::string>> read(const std::filesystem::path& path);
+
+  /// Is the file (or its absence) what the cache remembers? Roots must be admitted.
+  bool is_unchanged(const Dependency& dependency);
 
   /// Could this file be read?
   bool readable(const std::filesystem::path& path);

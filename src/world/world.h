@@ -40,7 +40,9 @@ struct VisualOnlyGeom {
 struct CompiledWorld {
   Scene scene;
   ModelPtr model;  ///< the whole level, exactly what stock MuJoCo would load
-  SpecPtr spec;    ///< what `model` was compiled from, for export
+  /// Keyframe of `model` that the simulation starts from; -1 = mj_resetData's state. A scene whose
+  /// robots name keyframes gets one made of theirs, so that the start survives export.
+  int initial_key = -1;
   std::vector<RobotInstance> robots;
   ModelPtr visual_model;  ///< source of visual_only meshes and materials; null when there are none
   std::vector<VisualOnlyGeom> visual_only;

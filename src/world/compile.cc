@@ -1,0 +1,70 @@
+#include <chrono>
+
+#include "scene/mujoco_guard.h"
+#include "scene/validate.h"
+#include "world/level.h"
+#include "world/model_cache.h"
+#include "world/urdf_visuals.h"
+
+namespace gloam {
+namespace {
+
+// Below this a model compiles as fast as its cache entry is read.
+constexpr std::chrono::milliseconds kWorthCaching{20};
+
+int first_body_of(const mjModel* model, const Level& level, const LevelRobot& robot) {
+  int first = -1;
+  const mjSpec* spec = level.spec.get();
+  for (mjsElement* e = mjs_firstElement(spec, mjOBJ_BODY); e != nullptr;
+       e = mjs_nextElement(spec, e)) {
+    const int id = mjs_getId(e);
+    if (mjs_getOriginSpec(e) == robot.spec.get() && id > 0 && (first < 0 || id < first)) first = id;
+  }
+  return first < model->nbody ? first : -1;
+}
+
+std::vector<RobotInstance> list_robots(const Level& level) {
+  std::vector<RobotInstance> robots;
+  for (const LevelRobot& robot : level.robots) {
+    robots.push_back({robot.options.name, robot.options.name + "/",
+                      first_body_of(level.model.get(), level, robot), robot.options});
+  }
+  return robots;
+}
+
+RobotInstance bare_robot(const Scene& scene, const mjModel* model) {
+  RobotInstance robot;
+  robot.name = scene.name;
+  robot.root_body = model->nbody > 1 ? 1 : -1;
+  robot.options.name = scene.name;
+  robot.options.file = scene.bare_model;
+  return robot;
+}
+
+}  // namespace
+
+Result<World> World::compile(const Scene& scene) {
+  install_mujoco_handler();
+  GLOAM_TRY_STATUS(validate_scene(scene));
+  if (std::shared_ptr<CompiledWorld> cached = load_cached_world(scene)) {
+    if (!scene.bare_model.empty()) cached->robots = {bare_robot(scene, cached->model.get())};
+    return World(std::move(cached));
+  }
+  const auto start = std::chrono::steady_clock::now();
+  ModelFiles files;
+  GLOAM_TRY_STATUS(add_scene_files(scene, &files));
+  GLOAM_TRY(Level level, build_level(scene, &files));
+  auto world = std::make_shared<CompiledWorld>();
+  world->scene = scene;
+  world->robots = list_robots(level);
+  if (!scene.bare_model.empty()) world->robots = {bare_robot(scene, level.model.get())};
+  world->model = std::move(level.model);
+  world->initial_key = level.initial_key;
+  world->unsupported = std::move(level.unsupported);
+  add_urdf_visuals(scene, &files, world.get());
+  if (std::chrono::steady_clock::now() - start > kWorthCaching)
+    store_cached_world(world, files.dependencies());
+  return World(std::move(world));
+}
+
+}  // namespace gloam

@@ -1,0 +1,186 @@
+#include "world/level.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "base/text.h"
+#include "scene/mujoco_guard.h"
+#include "scene/mujoco_plugins.h"
+#include "scene/urdf_text.h"
+#include "world/level_cameras.h"
+#include "world/level_keyframe.h"
+
+namespace gloam {
+namespace fs = std::filesystem;
+namespace {
+
+// Strings cross into MuJoCo by its C functions only: the wheel is built with another standard
+// library, whose std::string has another layout than mjString's declaration says here.
+void set_name(mjsElement* element, const std::string& name) { mjs_setName(element, name.c_str()); }
+
+Result<SpecPtr> parse_model(const fs::path& file, const FileAccess& access, ModelFiles* files) {
+  const std::string path = absolute_path(file, "").string();
+  if (files->root_element(path) == "robot") {
+    GLOAM_TRY(const UrdfText urdf,
+              prepare_urdf(files->text(path), path, access,
+                           [&](const fs::path& mesh) { return files->readable(mesh); }));
+    if (!urdf.physics.empty()) files->set_overlay(path, urdf.physics);
+  }
+  char message[2048] = "";
+  mjSpec* spec = nullptr;
+  files->forget_failures();
+  const MujocoWarningCapture warnings;
+  const Status status =
+      guarded([&] { spec = mj_parseXML(path.c_str(), files->vfs(), message, sizeof(message)); });
+  if (!status.ok()) return files->explain(status.error().message, path);
+  if (spec == nullptr) return files->explain(message, path);
+  return SpecPtr(spec);
+}
+
+void add_default_floor(mjSpec* spec) {
+  mjsTexture* texture = mjs_addTexture(spec, nullptr);
+  set_name(texture->element, "floor");
+  texture->type = mjTEXTURE_2D;
+  texture->builtin = mjBUILTIN_CHECKER;
+  texture->width = texture->height = 256;
+  for (int i = 0; i < 3; ++i) {
+    texture->rgb1[i] = 0.45;
+    texture->rgb2[i] = 0.55;
+  }
+  mjsMaterial* material = mjs_addMaterial(spec, nullptr);
+  set_name(material->element, "floor");
+  mjs_setInStringVec(material->textures, mjTEXROLE_RGB, "floor");
+  material->texrepeat[0] = material->texrepeat[1] = 1;  // one square pattern per metre
+  material->texuniform = 1;
+  mjsGeom* floor = mjs_addGeom(mjs_findBody(spec, "world"), nullptr);
+  set_name(floor->element, "floor");
+  floor->type = mjGEOM_PLANE;
+  floor->size[0] = floor->size[1] = 0;  // unbounded
+  floor->size[2] = 0.05;
+  mjs_setString(floor->material, "floor");
+}
+
+// MuJoCo tells the settings of an attached model that clash with the level's, one a line, as
+// "timestep: parent has 0.002, child has 0.001, keeping parent value". Those that are kept out are
+// the user's business.
+void report_conflicts(mjSpec* spec, int first, const RobotOptions& robot,
+                      std::vector<Error>* unsupported) {
+  for (int i = first; i < mjs_numWarnings(spec); ++i) {
+    const std::string text = mjs_getWarning(spec, i);
+    for (size_t begin = 0; begin < text.size();) {
+      const size_t end = std::min(text.find('\n', begin), text.size());
+      const std::string line = text.substr(begin, end - begin);
+      begin = end + 1;
+      if (line.find("keeping parent value") == std::string::npos) continue;
+      unsupported->push_back(
+          {ErrorKind::kUnsupported, fmt::format("robot '{}': {}", robot.name, line),
+           robot.loc.file.empty() ? SourceLoc{robot.file.string(), 0, 0} : robot.loc,
+           "the level has one value for all robots; set it in the environment"});
+    }
+  }
+}
+
+Status attach_robot(mjSpec* base, const RobotOptions& robot, mjSpec* child, ModelFiles* files,
+                    std::vector<Error>* unsupported) {
+  const std::string prefix = robot.name + "/";
+  const int warnings_before = mjs_numWarnings(base);
+  const MujocoWarningCapture warnings;
+  mjsElement* attached = nullptr;
+  const Status status = guarded([&] {
+    mjsFrame* frame = mjs_addFrame(mjs_findBody(base, "world"), nullptr);
+    const double p[3] = {robot.X_WR.p.x, robot.X_WR.p.y, robot.X_WR.p.z};
+    const double q[4] = {robot.X_WR.q.w, robot.X_WR.q.x, robot.X_WR.q.y, robot.X_WR.q.z};
+    std::copy(p, p + 3, frame->pos);
+    std::copy(q, q + 4, frame->quat);
+    attached = mjs_attach(frame->element, child->element, prefix.c_str(), "");
+  });
+  if (!status.ok() || attached == nullptr) {
+    Error error =
+        files->explain(status.ok() ? mjs_getError(base) : status.error().message, robot.file);
+    error.message = fmt::format("robot '{}' cannot join the scene: {}", robot.name, error.message);
+    return error;
+  }
+  report_conflicts(base, warnings_before, robot, unsupported);
+  return {};
+}
+
+Result<Level> assemble(const Scene& scene, ModelFiles* files, mjtConflict policy) {
+  Level level;
+  if (!scene.bare_model.empty()) {
+    GLOAM_TRY(level.spec, parse_model(scene.bare_model, scene.access, files));
+  } else if (!scene.environment.file.empty()) {
+    GLOAM_TRY(level.spec, parse_model(scene.environment.file, scene.access, files));
+  } else {
+    level.spec.reset(mj_makeSpec());
+    mjs_setString(level.spec->modelname, scene.name.c_str());
+    if (!scene.robots.empty()) add_default_floor(level.spec.get());
+  }
+  if (level.spec->compiler.conflict == mjCONFLICT_WARNING && !scene.robots.empty())
+    level.spec->compiler.conflict = policy;
+  for (const RobotOptions& robot : scene.robots) {
+    GLOAM_TRY(SpecPtr child, parse_model(robot.file, scene.access, files));
+    GLOAM_TRY_STATUS(attach_robot(level.spec.get(), robot, child.get(), files, &level.unsupported));
+    level.robots.push_back({robot, std::move(child)});
+  }
+  if (scene.sim.timestep) level.spec->option.timestep = *scene.sim.timestep;
+  return level;
+}
+
+Status compile(const Scene& scene, ModelFiles* files, Level* level) {
+  files->forget_failures();
+  mjModel* model = nullptr;
+  mjSpec* spec = level->spec.get();
+  const mjVFS* vfs = files->vfs();
+  const MujocoWarningCapture warnings;
+  const Status status = guarded([&] { model = mj_compile(spec, vfs); });
+  level->model.reset(model);
+  if (status.ok() && model != nullptr) return {};
+  const fs::path file = !scene.bare_model.empty()         ? scene.bare_model
+                        : !scene.environment.file.empty() ? scene.environment.file
+                        : scene.robots.empty()            ? scene.file
+                                                          : scene.robots[0].file;
+  return files->explain(status.ok() ? mjs_getError(spec) : status.error().message, file);
+}
+
+}  // namespace
+
+std::vector<std::string> object_names(const mjModel* model, mjtObj type, int count) {
+  std::vector<std::string> names;
+  for (int i = 0; i < count; ++i) {
+    const char* name = mj_id2name(model, type, i);
+    names.emplace_back(name != nullptr ? name : "");
+  }
+  return names;
+}
+
+Status add_scene_files(const Scene& scene, ModelFiles* files) {
+  if (!scene.bare_model.empty()) {
+    GLOAM_TRY_STATUS(files->add_model(scene.bare_model, scene.access));
+  } else if (!scene.environment.file.empty()) {
+    GLOAM_TRY_STATUS(files->add_model(scene.environment.file, scene.access, scene.environment.loc));
+  }
+  for (const RobotOptions& robot : scene.robots)
+    GLOAM_TRY_STATUS(files->add_model(robot.file, scene.access, robot.loc));
+  if (files->uses_plugins()) load_mujoco_plugins();
+  return {};
+}
+
+Result<Level> build_level(const Scene& scene, ModelFiles* files) {
+  // MuJoCo's "merge" rules let a robot bring its solver settings along; where two files cannot both
+  // be right ("merge" refuses), the earlier file wins and the rest is reported.
+  Result<Level> assembled = assemble(scene, files, mjCONFLICT_MERGE);
+  if (!assembled.ok() && assembled.error().message.find("onflict") != std::string::npos)
+    assembled = assemble(scene, files, mjCONFLICT_WARNING);
+  if (!assembled.ok()) return assembled;
+  Level level = std::move(assembled).value();
+  GLOAM_TRY_STATUS(add_cameras(scene, &level));
+  add_initial_keyframe(scene, &level);
+  GLOAM_TRY_STATUS(compile(scene, files, &level));
+  if (turn_tracking_cameras(scene, &level)) GLOAM_TRY_STATUS(compile(scene, files, &level));
+  GLOAM_TRY_STATUS(fill_initial_keyframe(&level));
+  return level;
+}
+
+}  // namespace gloam

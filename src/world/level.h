@@ -1,0 +1,37 @@
+#pragma once
+// A scene on its way to a model: parsed, put together in one mjSpec, compiled.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "scene/model_files.h"
+#include "world/world.h"
+
+namespace gloam {
+
+/// One robot's own spec; the level's elements remember which one they came from.
+struct LevelRobot {
+  RobotOptions options;
+  SpecPtr spec;
+};
+
+struct Level {
+  SpecPtr spec;
+  std::vector<LevelRobot> robots;  ///< empty for a bare model
+  ModelPtr model;
+  int initial_key = -1;            ///< as in CompiledWorld
+  std::vector<Error> unsupported;  ///< settings that lost against another file's
+};
+
+/// Admits every model file of the scene: roots, scans. Errors as ModelFiles::add_model.
+Status add_scene_files(const Scene& scene, ModelFiles* files);
+
+/// Parses, attaches and compiles. `files` must hold the scene's files already and outlive the
+/// Level. After it, level.spec holds everything that the model does (for export).
+Result<Level> build_level(const Scene& scene, ModelFiles* files);
+
+/// Names that MuJoCo gives its objects of one kind, "" where unnamed.
+std::vector<std::string> object_names(const mjModel* model, mjtObj type, int count);
+
+}  // namespace gloam

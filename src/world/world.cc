@@ -1,0 +1,168 @@
+#include "gloam/world.h"
+
+#include <fmt/format.h>
+
+#include "base/text.h"
+#include "world/level.h"
+#include "world/world.h"
+
+namespace gloam {
+namespace {
+
+template <class Handle>
+Result<Handle> find(const mjModel* m, mjtObj type, mjtSize count, const char* kind,
+                    const std::string& name) {
+  const int id = mj_name2id(m, type, name.c_str());
+  if (id >= 0) return Handle{id};
+  return Error{ErrorKind::kInput,
+               fmt::format("there is no {} '{}'", kind, name),
+               {},
+               suggest_name(name, object_names(m, type, static_cast<int>(count)))};
+}
+
+std::string numbers(const mjtNum* values, int n) {
+  std::string text;
+  for (int i = 0; i < n; ++i) text += fmt::format("{}{:.4g}", i == 0 ? "" : " ", values[i]);
+  return text;
+}
+
+std::string joint_detail(const mjModel* m, int joint) {
+  static constexpr const char* kTypes[] = {"free", "ball", "slide", "hinge"};
+  std::string text = kTypes[m->jnt_type[joint]];
+  if (m->jnt_limited[joint]) {
+    const char* unit = m->jnt_type[joint] == mjJNT_SLIDE ? "m" : "rad";
+    text += fmt::format(", range {} {}", numbers(m->jnt_range + 2 * joint, 2), unit);
+  }
+  return text;
+}
+
+std::string actuator_detail(const mjModel* m, int actuator) {
+  const int target = m->actuator_trnid[2 * actuator];
+  mjtObj type = mjOBJ_UNKNOWN;
+  switch (m->actuator_trntype[actuator]) {
+    case mjTRN_JOINT:
+    case mjTRN_JOINTINPARENT:
+      type = mjOBJ_JOINT;
+      break;
+    case mjTRN_TENDON:
+      type = mjOBJ_TENDON;
+      break;
+    case mjTRN_SITE:
+    case mjTRN_SLIDERCRANK:
+      type = mjOBJ_SITE;
+      break;
+    case mjTRN_BODY:
+      type = mjOBJ_BODY;
+      break;
+    default:
+      break;
+  }
+  const char* name = type == mjOBJ_UNKNOWN ? nullptr : mj_id2name(m, type, target);
+  std::string text = name == nullptr ? "" : fmt::format("{} '{}'", mju_type2Str(type), name);
+  const int ctrl = m->actuator_ctrladr[actuator];
+  if (ctrl >= 0 && m->actuator_ctrlnum[actuator] > 0 && m->actuator_ctrllimited[ctrl])
+    text += fmt::format("{}control {}", text.empty() ? "" : ", ",
+                        numbers(m->actuator_ctrlrange + 2 * ctrl, 2));
+  return text;
+}
+
+std::string geom_detail(const mjModel* m, int geom) {
+  static constexpr const char* kTypes[] = {
+      "plane", "height field", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"};
+  const int type = m->geom_type[geom];
+  std::string text = type >= 0 && type < 9 ? kTypes[type] : "other";
+  if (type == mjGEOM_MESH && m->geom_dataid[geom] >= 0) {
+    if (const char* mesh = mj_id2name(m, mjOBJ_MESH, m->geom_dataid[geom]))
+      text += fmt::format(" '{}'", mesh);
+  }
+  return text + fmt::format(", group {}", m->geom_group[geom]);
+}
+
+template <class Detail>
+std::vector<NamedElement> list(const mjModel* m, mjtObj type, mjtSize count, Detail&& detail) {
+  std::vector<NamedElement> elements;
+  const std::vector<std::string> names = object_names(m, type, static_cast<int>(count));
+  for (size_t i = 0; i < names.size(); ++i)
+    elements.push_back({names[i], detail(m, static_cast<int>(i))});
+  return elements;
+}
+
+int64_t count_triangles(const mjModel* m, bool hidden_groups) {
+  int64_t triangles = 0;
+  for (int geom = 0; geom < m->ngeom; ++geom) {
+    const int mesh = m->geom_dataid[geom];
+    const bool is_mesh = m->geom_type[geom] == mjGEOM_MESH || m->geom_type[geom] == mjGEOM_SDF;
+    if (!is_mesh || mesh < 0 || (!hidden_groups && m->geom_group[geom] > 2)) continue;
+    triangles += m->mesh_facenum[mesh];
+  }
+  return triangles;
+}
+
+}  // namespace
+
+Result<Joint> World::find_joint(const std::string& name) const {
+  const mjModel* m = compiled_->model.get();
+  return find<Joint>(m, mjOBJ_JOINT, m->njnt, "joint", name);
+}
+Result<Body> World::find_body(const std::string& name) const {
+  const mjModel* m = compiled_->model.get();
+  return find<Body>(m, mjOBJ_BODY, m->nbody, "body", name);
+}
+Result<Actuator> World::find_actuator(const std::string& name) const {
+  const mjModel* m = compiled_->model.get();
+  return find<Actuator>(m, mjOBJ_ACTUATOR, m->nactuator, "actuator", name);
+}
+Result<SensorHandle> World::find_sensor(const std::string& name) const {
+  const mjModel* m = compiled_->model.get();
+  return find<SensorHandle>(m, mjOBJ_SENSOR, m->nsensor, "sensor", name);
+}
+Result<Camera> World::find_camera(const std::string& name) const {
+  const mjModel* m = compiled_->model.get();
+  return find<Camera>(m, mjOBJ_CAMERA, m->ncam, "camera", name);
+}
+Result<Geom> World::find_geom(const std::string& name) const {
+  const mjModel* m = compiled_->model.get();
+  return find<Geom>(m, mjOBJ_GEOM, m->ngeom, "geom", name);
+}
+
+WorldInfo World::info() const {
+  const mjModel* m = compiled_->model.get();
+  WorldInfo info;
+  info.bodies = list(m, mjOBJ_BODY, m->nbody, [](const mjModel* m, int i) {
+    return fmt::format("{:.4g} kg", m->body_mass[i]);
+  });
+  info.joints = list(m, mjOBJ_JOINT, m->njnt, joint_detail);
+  info.actuators = list(m, mjOBJ_ACTUATOR, m->nactuator, actuator_detail);
+  info.sensors = list(m, mjOBJ_SENSOR, m->nsensor, [](const mjModel* m, int i) {
+    const int dim = m->sensor_dim[i];
+    return fmt::format("{} number{}", dim, dim == 1 ? "" : "s");
+  });
+  info.cameras = list(m, mjOBJ_CAMERA, m->ncam, [](const mjModel* m, int i) {
+    const char* body = mj_id2name(m, mjOBJ_BODY, m->cam_bodyid[i]);
+    return fmt::format("{}x{}, {:.4g} deg, on '{}'", m->cam_resolution[2 * i],
+                       m->cam_resolution[2 * i + 1], m->cam_fovy[i], body == nullptr ? "" : body);
+  });
+  info.geoms = list(m, mjOBJ_GEOM, m->ngeom, geom_detail);
+  info.lights = list(m, mjOBJ_LIGHT, m->nlight, [](const mjModel* m, int i) {
+    static constexpr const char* kTypes[] = {"spot", "directional", "point", "image"};
+    const int type = m->light_type[i];
+    return std::string(type >= 0 && type < 4 ? kTypes[type] : "other");
+  });
+  info.materials = list(m, mjOBJ_MATERIAL, m->nmat, [](const mjModel* m, int i) {
+    const float* c = m->mat_rgba + 4 * i;
+    return fmt::format("rgba {:.3g} {:.3g} {:.3g} {:.3g}", c[0], c[1], c[2], c[3]);
+  });
+  info.nq = static_cast<int>(m->nq);
+  info.nv = static_cast<int>(m->nv);
+  info.nu = static_cast<int>(m->nu);
+  info.timestep = m->opt.timestep;
+  info.mass = mj_getTotalmass(m);
+  info.model_bytes = static_cast<int64_t>(mj_sizeModel(m));
+  info.triangles = count_triangles(m, false);
+  if (compiled_->visual_model != nullptr)
+    info.triangles += count_triangles(compiled_->visual_model.get(), true);
+  info.unsupported = compiled_->unsupported;
+  return info;
+}
+
+}  // namespace gloam

@@ -1,0 +1,3 @@
+namespace gloam {
+void world_local_placeholder() {}
+}  // namespace gloam
