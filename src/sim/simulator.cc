@@ -48,11 +48,12 @@ Simulator::~Simulator() { stop(); }
 
 void Simulator::run_thread() {
   MujocoWarningCapture warnings;  // they are counted by type in mjData
-  while (true) {
+  while (!quit_) {
     const uint32_t ticket = signal_->ticket();
-    if (called_.load(std::memory_order_acquire)) answer_calls();
-    if (quit_) break;
-    if (!loop_.publish_due()) {
+    const bool published = loop_.publish_due();
+    if (called_.load(std::memory_order_acquire)) {
+      answer_calls();
+    } else if (!published) {
       signal_->wait(ticket);
     } else if (loop_.stepper().failed() || !wants_step()) {
       report_idle();

@@ -101,12 +101,17 @@ TEST(Determinism, ReplayOfTheCommandLogIsExact) {
   std::vector<uint64_t> hashes, replayed;
   std::vector<LoggedCommand> log;
   auto watch = [](Simulator& sim) {
-    return *sim.subscribe({.rate = {500, 1}, .required = true, .capacity = 65536});
+    return *sim.subscribe({.rate = {500, 1}, .required = true, .capacity = 64});
+  };
+  auto collect = [](std::shared_ptr<SnapshotQueue> queue, std::vector<uint64_t>& out) {
+    return std::thread([queue, &out] {
+      while (Snapshot s = queue->next()) out.push_back(s.hash());
+    });
   };
   int64_t last_step = 0;
   {
     auto sim = make_simulator(world);
-    auto queue = watch(*sim);
+    std::thread reader = collect(watch(*sim), hashes);
     sim->start();
     std::thread client([&] {
       for (int i = 0; i < 400; ++i) {
@@ -145,7 +150,7 @@ TEST(Determinism, ReplayOfTheCommandLogIsExact) {
     ASSERT_TRUE(sim->wait().ok());
     last_step = sim->step_count();
     sim->stop();
-    while (Snapshot s = queue->try_next()) hashes.push_back(s.hash());
+    reader.join();
     log = sim->take_command_log();
     EXPECT_GT(log.size(), 200u);
     EXPECT_EQ(log.back().run, 2);
@@ -155,13 +160,13 @@ TEST(Determinism, ReplayOfTheCommandLogIsExact) {
     SimulatorOptions options = lockstep();
     options.replay = log;
     auto sim = make_simulator(world, options);
-    auto queue = watch(*sim);
+    std::thread reader = collect(watch(*sim), replayed);
     sim->start();
     while (sim->counters().resets < 2) ASSERT_TRUE(sim->step().ok());
     sim->run_until(last_step);
     ASSERT_TRUE(sim->wait().ok());
     sim->stop();
-    while (Snapshot s = queue->try_next()) replayed.push_back(s.hash());
+    reader.join();
   }
   EXPECT_EQ(hashes.size(), replayed.size());
   EXPECT_TRUE(hashes == replayed);
