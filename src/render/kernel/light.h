@@ -1,0 +1,233 @@
+#pragma once
+// Lights: sample a direction towards one, its density, and the radiance of what a ray meets. The
+// luminous spheres of lamps and the disc of a sun are seen in reflections, do not block rays, and
+// are not shown to the camera. Device-safe.
+
+#include "render/kernel/shapes.h"
+#include "render/kernel/surface.h"
+
+namespace gloam {
+
+struct LightSample {
+  Vec3f wi;            ///< unit, from the surface to the light
+  float distance = 0;  ///< [m]
+  Vec3f radiance;      ///< [cd/m²]; delta lights: illuminance on a facing surface [lx]
+  float pdf = 0;       ///< per solid angle, selection included; delta: of the selection; 0 = none
+  bool is_delta = false;
+  bool casts_shadow = true;
+};
+
+/// Index of the light that `u` selects by power, and u stretched to [0, 1) again.
+GLOAM_HD uint32_t select_light(const SceneView& scene, float* u) {
+  uint32_t low = 0, high = scene.lights.size - 1;
+  while (low < high) {
+    const uint32_t middle = (low + high) / 2;
+    if (*u < scene.lights[middle].cdf) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  const LightView& light = scene.lights[low];
+  *u = clamp((*u - (light.cdf - light.probability)) / max(light.probability, 1e-20f), 0.0f,
+             0.9999999f);
+  return low;
+}
+
+/// Share of a lamp's full intensity in the direction from its centre to p.
+GLOAM_HD float spot_falloff(const LightView& light, Vec3f to_p) {
+  if (light.kind != LightKind::kSpot) return 1.0f;
+  const float cosine = dot(light.direction, to_p);
+  if (cosine <= light.cos_cutoff) return 0.0f;
+  if (cosine >= light.cos_inner) return 1.0f;
+  const float angle = acosf(clamp(cosine, -1.0f, 1.0f));
+  const float x = (light.cutoff - angle) / max(light.cutoff - light.inner, 1e-6f);
+  return x * x * (3.0f - 2.0f * x);
+}
+
+namespace lights {
+
+GLOAM_HD LightSample sample_lamp(const LightView& light, Vec3f p, Vec2f u) {
+  LightSample s;
+  const Vec3f to = light.p - p;
+  const float d2 = max(dot(to, to), 1e-12f), d = sqrtf(d2);
+  const Vec3f axis = to / d;
+  const Vec3f intensity = light.intensity * spot_falloff(light, -axis);
+  if (max_component(intensity) <= 0) return s;
+  const float r2 = light.radius * light.radius;
+  if (light.is_delta || d2 <= r2 * 1.0001f) {  // within the sphere it acts as a point
+    s.wi = axis;
+    s.distance = d;
+    s.radiance = intensity / max(d2, r2);
+    s.pdf = 1;
+    s.is_delta = true;
+    return s;
+  }
+  const float one_minus_cos = one_minus_cos_of(r2 / d2);
+  s.wi = Frame::from_z(axis).to_world(sample_cone(one_minus_cos, u));
+  const float along = dot(to, s.wi);
+  s.distance = along - safe_sqrt(r2 - max(d2 - along * along, 0.0f));
+  s.radiance = intensity / (kPi * r2);
+  s.pdf = cone_pdf(one_minus_cos);
+  return s;
+}
+
+GLOAM_HD LightSample sample_sun(const LightView& light, Vec2f u) {
+  LightSample s;
+  s.distance = 1e7f;
+  const Vec3f axis = -light.direction;
+  if (light.is_delta) {
+    s.wi = axis;
+    s.radiance = light.intensity;
+    s.pdf = 1;
+    s.is_delta = true;
+    return s;
+  }
+  const float sin2 = light.radius * light.radius;
+  s.wi = Frame::from_z(axis).to_world(sample_cone(one_minus_cos_of(sin2), u));
+  s.radiance = light.intensity / (kPi * sin2);
+  s.pdf = cone_pdf(one_minus_cos_of(sin2));
+  return s;
+}
+
+/// Density per solid angle at p of the direction to a point of an emitting instance.
+GLOAM_HD float instance_pdf(const SceneView& scene, const InstanceView& instance, Vec3f p,
+                            Vec3f hit_p, Vec3f hit_normal, float time) {
+  if (instance.shape == ShapeType::kSphere) {
+    const Vec3f to = pose_at(instance, time).p - p;
+    const float d2 = dot(to, to), r2 = sqr(instance.size.x);
+    if (d2 > r2 * 1.0001f) return cone_pdf(one_minus_cos_of(r2 / d2));
+  }
+  const bool is_mesh =
+      instance.shape == ShapeType::kMesh || instance.shape == ShapeType::kDeformable;
+  float pdf_area = is_mesh ? 1.0f / scene.meshes[instance.mesh].area : 0.0f;
+  if (!is_mesh) {
+    const Affine3f X_WG = pose_at(instance, time);
+    const Vec3f d = hit_p - X_WG.p;
+    pdf_area =
+        shape_pdf(instance.shape, instance.size, {dot(d, X_WG.x), dot(d, X_WG.y), dot(d, X_WG.z)});
+  }
+  const Vec3f to = hit_p - p;
+  const float d2 = dot(to, to), cosine = fabsf(dot(to, hit_normal)) / sqrtf(d2);
+  return cosine > 1e-6f ? pdf_area * d2 / cosine : 0.0f;
+}
+
+GLOAM_HD LightSample sample_instance(const SceneView& scene, const LightView& light, Vec3f p,
+                                     float pick, Vec2f u, float time) {
+  LightSample s;
+  const InstanceView& instance = scene.instances[light.instance];
+  const MaterialView& material = scene.materials[instance.material];
+  const Affine3f X_WG = pose_at(instance, time);
+  RayHit hit;
+  Vec3f p_W, n_W, p_G;
+  if (instance.shape == ShapeType::kMesh || instance.shape == ShapeType::kDeformable) {
+    const MeshView& mesh = scene.meshes[instance.mesh];
+    uint32_t low = 0, high = mesh.area_cdf.size - 1;
+    while (low < high) {
+      const uint32_t middle = (low + high) / 2;
+      if (pick < mesh.area_cdf[middle]) {
+        high = middle;
+      } else {
+        low = middle + 1;
+      }
+    }
+    hit.primitive = low;
+    const float root = sqrtf(u.x);
+    hit.u = root * (1.0f - u.y);
+    hit.v = root * u.y;
+    const uint32_t* index = mesh.indices.data + 3 * static_cast<size_t>(low);
+    const Vec3f a = mesh_vertex(mesh, index[0], time);
+    const Vec3f e1 = mesh_vertex(mesh, index[1], time) - a;
+    const Vec3f e2 = mesh_vertex(mesh, index[2], time) - a;
+    p_G = a + e1 * hit.u + e2 * hit.v;
+    p_W = transform_point(X_WG, p_G);
+    n_W = normalize(transform_vector(X_WG, cross(e1, e2)));
+  } else if (const float d2 = length_squared(X_WG.p - p), r2 = sqr(instance.size.x);
+             instance.shape == ShapeType::kSphere && d2 > r2 * 1.0001f) {
+    const Frame frame = Frame::from_z((X_WG.p - p) / sqrtf(d2));
+    const Vec3f wi = frame.to_world(sample_cone(one_minus_cos_of(r2 / d2), u));
+    const float along = dot(X_WG.p - p, wi);
+    p_W = p + wi * (along - safe_sqrt(r2 - max(d2 - along * along, 0.0f)));
+    n_W = normalize(p_W - X_WG.p);
+    p_G = {dot(n_W, X_WG.x), dot(n_W, X_WG.y), dot(n_W, X_WG.z)};
+    p_G *= instance.size.x;
+  } else {
+    Vec3f n_G;
+    p_G = sample_shape(instance.shape, instance.size, pick, u, &n_G);
+    p_W = transform_point(X_WG, p_G);
+    n_W = transform_vector(X_WG, n_G);
+  }
+  const Vec3f to = p_W - p;
+  s.distance = length(to);
+  if (!(s.distance > 1e-6f)) return s;
+  s.wi = to / s.distance;
+  Surface surface;
+  surface.instance = &instance;
+  surface.material = &material;
+  surface.outside = dot(s.wi, n_W) < 0;
+  surface.emission = material.emission;
+  if (material.textured) {
+    surface.normal = n_W;
+    surfaces::apply_textures(scene, hit, X_WG, p_G, 0.0f, time, &surface);
+  }
+  s.radiance = surface_emission(surface) * surface.opacity;
+  if (max_component(s.radiance) <= 0) return s;
+  s.pdf = instance_pdf(scene, instance, p, p_W, n_W, time);
+  return s;
+}
+
+}  // namespace lights
+
+/// A direction from p to light `index`; the density does not include its selection.
+GLOAM_HD LightSample sample_one_light(const SceneView& scene, uint32_t index, Vec3f p, float pick,
+                                      Vec2f u, float time) {
+  const LightView& light = scene.lights[index];
+  LightSample s = light.kind == LightKind::kInstance
+                      ? lights::sample_instance(scene, light, p, pick, u, time)
+                  : light.kind == LightKind::kDirectional ? lights::sample_sun(light, u)
+                                                          : lights::sample_lamp(light, p, u);
+  s.casts_shadow = light.casts_shadow;
+  // What cannot be hit must be found here alone.
+  if (!light.casts_shadow) s.is_delta = s.is_delta || light.kind != LightKind::kInstance;
+  return s;
+}
+
+GLOAM_HD LightSample sample_lights(const SceneView& scene, Vec3f p, float pick, Vec2f u,
+                                   float time) {
+  if (scene.lights.empty()) return {};
+  const uint32_t index = select_light(scene, &pick);
+  LightSample s = sample_one_light(scene, index, p, pick, u, time);
+  s.pdf *= scene.lights[index].probability;
+  return s;
+}
+
+/// Light of lamps and suns that a scattered ray meets before `tmax`, each weighted against
+/// sample_lights at `from`, the vertex that scattered it, by the density `pdf_bsdf` of its
+/// direction.
+GLOAM_HD Vec3f visible_lights(const SceneView& scene, const Ray& ray, float tmax, Vec3f from,
+                              float pdf_bsdf) {
+  Vec3f sum;
+  for (uint32_t i = 0; i < scene.lights.size; ++i) {
+    const LightView& light = scene.lights[i];
+    if (light.is_delta || !light.casts_shadow || light.kind == LightKind::kInstance) continue;
+    Vec3f radiance;
+    float sin2 = light.radius * light.radius;
+    if (light.kind == LightKind::kDirectional) {
+      if (tmax < 1e29f || -dot(ray.d, light.direction) < 1.0f - one_minus_cos_of(sin2)) continue;
+      radiance = light.intensity / (kPi * sin2);
+    } else {
+      const float t = enter_sphere(ray, light.p, light.radius);
+      if (t <= 0 || t >= tmax) continue;
+      const Vec3f to = light.p - from;
+      const float d2 = dot(to, to);
+      if (d2 <= sin2 * 1.0001f) continue;
+      radiance = light.intensity * (spot_falloff(light, -to / sqrtf(d2)) / (kPi * sin2));
+      sin2 /= d2;
+    }
+    const float pdf = light.probability * cone_pdf(one_minus_cos_of(sin2));
+    sum += radiance * mis_weight(pdf_bsdf, pdf);
+  }
+  return sum;
+}
+
+}  // namespace gloam

@@ -1,0 +1,123 @@
+#pragma once
+// What the kernel reads: plain arrays in the memory of the side that runs it. render/scene fills
+// them. Device-safe.
+
+#include "render/kernel/ray.h"
+#include "world/render_description.h"
+
+namespace gloam {
+
+/// Texture coordinates of one triangle and how many texture lengths one metre on it spans.
+struct TriangleUv {
+  Vec2f corner[3];
+  float density = 0;  ///< sqrt(area in uv / area [m²])
+};
+
+struct MeshView {
+  DeviceSpan<const Vec3f> positions;  ///< frame G [m]; deformables: world, shutter open
+  DeviceSpan<const Vec3f> positions_close, positions_previous;  ///< deformables only
+  DeviceSpan<const uint32_t> indices;
+  DeviceSpan<const Vec3f> corner_normals;  ///< three per triangle; empty = flat
+  DeviceSpan<const TriangleUv> uvs;        ///< one per triangle; empty = none
+  DeviceSpan<const float> area_cdf;        ///< running sum of triangle areas / total; emitters only
+  float area = 0;                          ///< [m²]; emitters only
+};
+
+struct InstanceView {
+  ShapeType shape = ShapeType::kBox;
+  bool moving = false;     ///< X_WG differs between shutter open and close
+  bool has_moved = false;  ///< X_WG_previous differs from X_WG
+  uint32_t material = 0;
+  uint32_t mesh = 0;
+  int light = -1;   ///< row of lights when it emits and can be sampled
+  Vec3f size;       ///< [m]
+  Vec3f half_size;  ///< of the object that textures are fitted to [m]
+  Affine3f X_WG;    ///< at shutter open
+  Affine3f X_WG_close, X_WG_previous;
+};
+
+struct TextureLevel {
+  uint32_t first = 0;  ///< texel index
+  int width = 0, height = 0;
+};
+/// Linear RGBA, 16 bits a channel (0..65535 = 0..1), mip levels from fine to coarse.
+struct TextureView {
+  uint32_t first_level = 0;
+  int level_count = 0;  ///< of each face
+  int face_count = 1;   ///< 1 or 6
+  float log2_size = 0;  ///< log2 of sqrt(width height) of the finest level
+};
+struct Texel {
+  uint16_t r = 0, g = 0, b = 0, a = 0;
+};
+
+struct MaterialView {
+  Vec3f base_color;
+  Vec3f emission;
+  float opacity = 1, metallic = 0, roughness = 0.5f;
+  float f0 = 0.04f;  ///< of the dielectric layer at normal incidence, specular weight included
+  float f90 = 1;     ///< of the dielectric layer at grazing incidence
+  TextureMapping mapping = TextureMapping::kNone;
+  bool texture_uniform = false;
+  bool textured = false;     ///< any texture at all
+  bool transparent = false;  ///< opacity below one somewhere
+  Vec2f texture_repeat{1, 1};
+  MaterialTextures textures;
+};
+
+enum class LightKind : uint8_t { kPoint, kSpot, kDirectional, kInstance };
+
+struct LightView {
+  LightKind kind = LightKind::kPoint;
+  bool casts_shadow = true;
+  bool is_delta = false;                              ///< no extent: cannot be hit
+  Vec3f p;                                            ///< of the centre [m]
+  Vec3f direction;                                    ///< along which it shines, unit
+  Vec3f intensity;                                    ///< [cd]; directional: [lx]
+  float radius = 0;                                   ///< [m]; directional: sine of the half angle
+  float cutoff = 0, cos_cutoff = -1, cos_inner = -1;  ///< spot: half angle [rad] and cosines
+  float inner = 0;                                    ///< spot: half angle of full intensity [rad]
+  uint32_t instance = 0;                              ///< kInstance
+  float probability = 0;                              ///< of being selected
+  float cdf = 0;                                      ///< running sum of probabilities
+};
+
+/// Directional albedo of the GGX layer without Fresnel, split for Schlick's:
+/// albedo(F0, F90) = F0 a + F90 b.
+struct AlbedoTable {
+  static constexpr int kSize = 32;
+  float a[kSize * kSize], b[kSize * kSize];  ///< rows of roughness 0..1, columns of cosine 0..1
+};
+
+struct SceneView {
+  DeviceSpan<const InstanceView> instances;
+  DeviceSpan<const MeshView> meshes;
+  DeviceSpan<const MaterialView> materials;
+  DeviceSpan<const TextureView> textures;
+  DeviceSpan<const TextureLevel> texture_levels;
+  DeviceSpan<const Texel> texels;
+  DeviceSpan<const LightView> lights;
+  const AlbedoTable* albedo = nullptr;
+  int sky_texture = -1;
+  float sky_scale = 0;
+  Vec3f sky_ambient;             ///< for indirect rays
+  Vec3f sky_mean;                ///< mean luminance of the texture [cd/m²]
+  bool has_transparent = false;  ///< some material lets light through
+  bool has_emitters = false;  ///< something that a ray can hit gives light: sky, sphere, instance
+  bool has_visible_lights = false;  ///< some sphere or sun can be hit
+};
+
+/// Pose of an instance at a time in the shutter (linear between the keys, as Embree does).
+GLOAM_HD Affine3f pose_at(const InstanceView& instance, float time) {
+  if (!instance.moving || time == 0) return instance.X_WG;
+  const Affine3f &a = instance.X_WG, &b = instance.X_WG_close;
+  return {lerp(a.x, b.x, time), lerp(a.y, b.y, time), lerp(a.z, b.z, time), lerp(a.p, b.p, time)};
+}
+
+GLOAM_HD Vec3f mesh_vertex(const MeshView& mesh, uint32_t i, float time) {
+  const Vec3f p = mesh.positions[i];
+  if (mesh.positions_close.empty() || time == 0) return p;
+  return lerp(p, mesh.positions_close[i], time);
+}
+
+}  // namespace gloam

@@ -1,0 +1,270 @@
+#pragma once
+// The closed list of analytic shapes, centred in their own frame G: intersection, surface, area
+// sampling. Sizes as in ShapeType. Device-safe.
+
+#include "render/kernel/ray.h"
+#include "world/render_description.h"
+
+namespace gloam {
+
+/// Half extents of the object that MuJoCo scales to unit size before it maps textures.
+GLOAM_HD Vec3f shape_half_size(ShapeType shape, Vec3f size) {
+  switch (shape) {
+    case ShapeType::kSphere:
+      return {size.x, size.x, size.x};
+    case ShapeType::kCapsule:
+    case ShapeType::kCylinder:
+      return {size.x, size.x, size.y};
+    default:
+      return size;
+  }
+}
+
+namespace shapes {
+
+/// Nearest root in (tmin, tmax) of a t² - 2 b t + c = 0 with a > 0 that `accept` takes.
+template <class Accept>
+GLOAM_HD float nearest_root(float a, float b, float disc, float tmin, float tmax, Accept accept) {
+  if (disc < 0) return -1.0f;
+  const float root = sqrtf(disc);
+  const float t0 = (b - root) / a, t1 = (b + root) / a;
+  if (t0 > tmin && t0 < tmax && accept(t0)) return t0;
+  if (t1 > tmin && t1 < tmax && accept(t1)) return t1;
+  return -1.0f;
+}
+
+GLOAM_HD float hit_plane(Vec3f size, Vec3f o, Vec3f d, float tmin, float tmax) {
+  if (d.z >= 0) return -1.0f;  // one-sided, as MuJoCo's rays see it
+  const float t = -o.z / d.z;
+  if (!(t > tmin && t < tmax)) return -1.0f;
+  if (size.x > 0 && fabsf(o.x + t * d.x) > size.x) return -1.0f;
+  if (size.y > 0 && fabsf(o.y + t * d.y) > size.y) return -1.0f;
+  return t;
+}
+
+GLOAM_HD float hit_box(Vec3f size, Vec3f o, Vec3f d, float tmin, float tmax) {
+  float enter = -1e30f, leave = 1e30f;
+  const float os[3] = {o.x, o.y, o.z}, ds[3] = {d.x, d.y, d.z}, hs[3] = {size.x, size.y, size.z};
+  for (int i = 0; i < 3; ++i) {
+    if (ds[i] == 0) {
+      if (fabsf(os[i]) > hs[i]) return -1.0f;
+      continue;
+    }
+    const float inv = 1.0f / ds[i], side = copysignf(hs[i], ds[i]);
+    enter = max(enter, (-side - os[i]) * inv);
+    leave = min(leave, (side - os[i]) * inv);
+  }
+  if (enter > leave) return -1.0f;
+  if (enter > tmin && enter < tmax) return enter;
+  return leave > tmin && leave < tmax ? leave : -1.0f;
+}
+
+/// Sphere of radius 1 scaled by `axes`.
+GLOAM_HD float hit_ellipsoid(Vec3f axes, Vec3f o, Vec3f d, float tmin, float tmax) {
+  const Vec3f f{o.x / axes.x, o.y / axes.y, o.z / axes.z};
+  const Vec3f g{d.x / axes.x, d.y / axes.y, d.z / axes.z};
+  const float a = dot(g, g), b = -dot(f, g);
+  const Vec3f closest = f + g * (b / a);
+  return nearest_root(a, b, a * (1.0f - dot(closest, closest)), tmin, tmax,
+                      [](float) { return true; });
+}
+
+/// Wall of an infinite cylinder about z, cut at |z| <= half.
+GLOAM_HD float hit_tube(float radius, float half, Vec3f o, Vec3f d, float tmin, float tmax) {
+  const float a = d.x * d.x + d.y * d.y;
+  if (a < 1e-14f) return -1.0f;
+  const float b = -(o.x * d.x + o.y * d.y);
+  const float cx = o.x + d.x * (b / a), cy = o.y + d.y * (b / a);
+  return nearest_root(a, b, a * (radius * radius - cx * cx - cy * cy), tmin, tmax,
+                      [&](float t) { return fabsf(o.z + t * d.z) <= half; });
+}
+
+GLOAM_HD float hit_cylinder(float radius, float half, Vec3f o, Vec3f d, float tmin, float tmax) {
+  float best = hit_tube(radius, half, o, d, tmin, tmax);
+  if (best > 0) tmax = best;
+  for (int i = 0; i < 2 && d.z != 0; ++i) {
+    const float t = ((i == 0 ? half : -half) - o.z) / d.z;
+    if (t > tmin && t < tmax && sqr(o.x + t * d.x) + sqr(o.y + t * d.y) <= radius * radius) {
+      best = tmax = t;
+    }
+  }
+  return best;
+}
+
+GLOAM_HD float hit_capsule(float radius, float half, Vec3f o, Vec3f d, float tmin, float tmax) {
+  float best = hit_tube(radius, half, o, d, tmin, tmax);
+  if (best > 0) tmax = best;
+  for (int i = 0; i < 2; ++i) {
+    const float side = i == 0 ? 1.0f : -1.0f;
+    const Vec3f f{o.x, o.y, o.z - side * half};
+    const float a = dot(d, d), b = -dot(f, d);
+    const Vec3f closest = f + d * (b / a);
+    const float t = nearest_root(a, b, a * (radius * radius - dot(closest, closest)), tmin, tmax,
+                                 [&](float s) { return (f.z + s * d.z) * side >= 0; });
+    if (t > 0) best = tmax = t;
+  }
+  return best;
+}
+
+}  // namespace shapes
+
+/// Nearest hit of the ray (in G) with tmin < t < tmax, or a value <= 0. `d` need not be unit.
+GLOAM_HD float intersect_shape(ShapeType shape, Vec3f size, Vec3f o, Vec3f d, float tmin,
+                               float tmax) {
+  switch (shape) {
+    case ShapeType::kPlane:
+      return shapes::hit_plane(size, o, d, tmin, tmax);
+    case ShapeType::kBox:
+      return shapes::hit_box(size, o, d, tmin, tmax);
+    case ShapeType::kSphere:
+      return shapes::hit_ellipsoid({size.x, size.x, size.x}, o, d, tmin, tmax);
+    case ShapeType::kEllipsoid:
+      return shapes::hit_ellipsoid(size, o, d, tmin, tmax);
+    case ShapeType::kCapsule:
+      return shapes::hit_capsule(size.x, size.y, o, d, tmin, tmax);
+    case ShapeType::kCylinder:
+      return shapes::hit_cylinder(size.x, size.y, o, d, tmin, tmax);
+    default:
+      return -1.0f;
+  }
+}
+
+/// Outward unit normal at a point near the surface; moves *p onto the surface.
+GLOAM_HD Vec3f snap_to_shape(ShapeType shape, Vec3f size, Vec3f* p) {
+  switch (shape) {
+    case ShapeType::kBox: {
+      const float gap_x = size.x - fabsf(p->x), gap_y = size.y - fabsf(p->y),
+                  gap_z = size.z - fabsf(p->z);
+      if (gap_x <= gap_y && gap_x <= gap_z) {
+        p->x = copysignf(size.x, p->x);
+        return {copysignf(1.0f, p->x), 0, 0};
+      }
+      if (gap_y <= gap_z) {
+        p->y = copysignf(size.y, p->y);
+        return {0, copysignf(1.0f, p->y), 0};
+      }
+      p->z = copysignf(size.z, p->z);
+      return {0, 0, copysignf(1.0f, p->z)};
+    }
+    case ShapeType::kSphere: {
+      const Vec3f n = normalize(*p);
+      *p = n * size.x;
+      return n;
+    }
+    case ShapeType::kEllipsoid: {
+      const Vec3f q = normalize({p->x / size.x, p->y / size.y, p->z / size.z});
+      *p = q * size;
+      return normalize({q.x / size.x, q.y / size.y, q.z / size.z});
+    }
+    case ShapeType::kCapsule: {
+      const Vec3f axis{0, 0, clamp(p->z, -size.y, size.y)};
+      const Vec3f n = normalize(*p - axis);
+      *p = axis + n * size.x;
+      return n;
+    }
+    case ShapeType::kCylinder: {
+      const float r = sqrtf(p->x * p->x + p->y * p->y);
+      if (size.y - fabsf(p->z) < size.x - r) {
+        p->z = copysignf(size.y, p->z);
+        return {0, 0, copysignf(1.0f, p->z)};
+      }
+      const Vec3f n{p->x / r, p->y / r, 0};
+      p->x = n.x * size.x;
+      p->y = n.y * size.x;
+      return n;
+    }
+    default:
+      p->z = 0;
+      return {0, 0, 1};
+  }
+}
+
+/// Area [m²]; for an ellipsoid the area it is sampled over is not needed (0), for an infinite plane
+/// 0.
+GLOAM_HD float shape_area(ShapeType shape, Vec3f s) {
+  switch (shape) {
+    case ShapeType::kPlane:
+      return 4 * s.x * s.y;
+    case ShapeType::kBox:
+      return 8 * (s.x * s.y + s.y * s.z + s.z * s.x);
+    case ShapeType::kSphere:
+      return 4 * kPi * s.x * s.x;
+    case ShapeType::kEllipsoid: {  // Thomsen's approximation, within 1.1 %: weighs lights only
+      const float q = 1.6075f;
+      const float a = powf(s.x, q), b = powf(s.y, q), c = powf(s.z, q);
+      return 4 * kPi * powf((a * b + b * c + c * a) / 3, 1 / q);
+    }
+    case ShapeType::kCapsule:
+      return 4 * kPi * s.x * (s.x + s.y);
+    case ShapeType::kCylinder:
+      return 2 * kPi * s.x * (2 * s.y + s.x);
+    default:
+      return 0;
+  }
+}
+
+/// Density per area [1/m²] with which sample_shape makes p; 0 for an infinite plane.
+GLOAM_HD float shape_pdf(ShapeType shape, Vec3f s, Vec3f p) {
+  if (shape == ShapeType::kEllipsoid) {
+    const Vec3f q{p.x / (s.x * s.x), p.y / (s.y * s.y), p.z / (s.z * s.z)};
+    return 1.0f / (4 * kPi * s.x * s.y * s.z * length(q));
+  }
+  const float area = shape_area(shape, s);
+  return area > 0 ? 1.0f / area : 0.0f;
+}
+
+/// A point on the surface and its outward normal; density shape_pdf.
+GLOAM_HD Vec3f sample_shape(ShapeType shape, Vec3f s, float pick, Vec2f u, Vec3f* normal) {
+  Vec3f p;
+  switch (shape) {
+    case ShapeType::kBox: {
+      const float yz = s.y * s.z, zx = s.z * s.x, xy = s.x * s.y, total = yz + zx + xy;
+      float x = pick * 2.0f;
+      const float side = x < 1 ? -1.0f : 1.0f;
+      x = (x < 1 ? x : x - 1) * total;
+      const float a = u.x * 2 - 1, b = u.y * 2 - 1;
+      p = x < yz        ? Vec3f{side * s.x, a * s.y, b * s.z}
+          : x < yz + zx ? Vec3f{a * s.x, side * s.y, b * s.z}
+                        : Vec3f{a * s.x, b * s.y, side * s.z};
+      *normal = x < yz ? Vec3f{side, 0, 0} : x < yz + zx ? Vec3f{0, side, 0} : Vec3f{0, 0, side};
+      return p;
+    }
+    case ShapeType::kSphere:
+      *normal = sample_sphere(u);
+      return *normal * s.x;
+    case ShapeType::kEllipsoid:
+      p = sample_sphere(u) * s;
+      *normal = snap_to_shape(shape, s, &p);
+      return p;
+    case ShapeType::kCapsule: {
+      const bool wall = pick * (s.x + s.y) < s.y;
+      if (!wall) {
+        *normal = sample_sphere(u);
+        p = *normal * s.x;
+        p.z += copysignf(s.y, p.z);
+        return p;
+      }
+      float sine, cosine;
+      sincos_turn(u.y, &sine, &cosine);
+      *normal = {cosine, sine, 0};
+      return {cosine * s.x, sine * s.x, (u.x * 2 - 1) * s.y};
+    }
+    case ShapeType::kCylinder: {
+      float sine, cosine;
+      sincos_turn(u.y, &sine, &cosine);
+      const float x = pick * (2 * s.y + s.x);
+      if (x < 2 * s.y) {
+        *normal = {cosine, sine, 0};
+        return {cosine * s.x, sine * s.x, (u.x * 2 - 1) * s.y};
+      }
+      const float side = x - 2 * s.y < 0.5f * s.x ? -1.0f : 1.0f, r = s.x * sqrtf(u.x);
+      *normal = {0, 0, side};
+      return {cosine * r, sine * r, side * s.y};
+    }
+    default:
+      *normal = {0, 0, 1};
+      return {(u.x * 2 - 1) * s.x, (u.y * 2 - 1) * s.y, 0};
+  }
+}
+
+}  // namespace gloam

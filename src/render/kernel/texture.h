@@ -1,0 +1,110 @@
+#pragma once
+// Filtered texture look-ups: trilinear over mip levels by an isotropic footprint. 2-D textures
+// repeat; cube faces are clamped. Device-safe.
+
+#include "render/kernel/scene_view.h"
+
+namespace gloam {
+
+struct Rgba {
+  Vec3f rgb;
+  float a = 1;
+};
+
+namespace texturing {
+
+/// Coordinates in texels of level `level`; `row` grows downwards.
+GLOAM_HD Rgba bilinear(const SceneView& scene, const TextureLevel& level, float x, float row,
+                       bool repeat) {
+  const float fx = x * static_cast<float>(level.width) - 0.5f;
+  const float fy = row * static_cast<float>(level.height) - 0.5f;
+  const float bx = floorf(fx), by = floorf(fy);
+  const float wx = fx - bx, wy = fy - by;
+  int x0 = static_cast<int>(bx), y0 = static_cast<int>(by), x1 = x0 + 1, y1 = y0 + 1;
+  const int w = level.width, h = level.height;
+  if (repeat) {  // coordinates are in [0, 1): one step outside at most
+    x0 = x0 < 0 ? x0 + w : x0;
+    y0 = y0 < 0 ? y0 + h : y0;
+    x1 = x1 >= w ? 0 : x1;
+    y1 = y1 >= h ? 0 : y1;
+  }
+  x0 = x0 < 0 ? 0 : (x0 >= w ? w - 1 : x0);
+  y0 = y0 < 0 ? 0 : (y0 >= h ? h - 1 : y0);
+  x1 = x1 < 0 ? 0 : (x1 >= w ? w - 1 : x1);
+  y1 = y1 < 0 ? 0 : (y1 >= h ? h - 1 : y1);
+  const Texel* row0 = scene.texels.data + level.first + static_cast<size_t>(y0) * w;
+  const Texel* row1 = scene.texels.data + level.first + static_cast<size_t>(y1) * w;
+  const Texel t[4] = {row0[x0], row0[x1], row1[x0], row1[x1]};
+  const float weight[4] = {(1 - wx) * (1 - wy), wx * (1 - wy), (1 - wx) * wy, wx * wy};
+  Rgba sum{{0, 0, 0}, 0};
+  for (int i = 0; i < 4; ++i) {
+    sum.rgb +=
+        Vec3f{static_cast<float>(t[i].r), static_cast<float>(t[i].g), static_cast<float>(t[i].b)} *
+        weight[i];
+    sum.a += static_cast<float>(t[i].a) * weight[i];
+  }
+  constexpr float kScale = 1.0f / 65535.0f;
+  return {sum.rgb * kScale, sum.a * kScale};
+}
+
+GLOAM_HD Rgba trilinear(const SceneView& scene, const TextureView& texture, int face, float x,
+                        float row, float footprint, bool repeat) {
+  // Footprint of one texel at level 0 is 2^-log2_size.
+  const float lod = footprint > 0 ? log2f(footprint) + texture.log2_size : 0.0f;
+  const float top = static_cast<float>(texture.level_count - 1);
+  const float level = clamp(lod, 0.0f, top);
+  const float base = floorf(level);
+  const TextureLevel* levels = scene.texture_levels.data + texture.first_level +
+                               face * texture.level_count + static_cast<int>(base);
+  const Rgba fine = bilinear(scene, levels[0], x, row, repeat);
+  const float w = level - base;
+  if (w < 0.01f || base >= top) return fine;
+  const Rgba coarse = bilinear(scene, levels[1], x, row, repeat);
+  return {lerp(fine.rgb, coarse.rgb, w), lerp(fine.a, coarse.a, w)};
+}
+
+}  // namespace texturing
+
+/// `uv`: v grows upwards. `footprint`: width of what is seen, in texture lengths.
+GLOAM_HD Rgba lookup_2d(const SceneView& scene, int texture, Vec2f uv, float footprint) {
+  const float x = uv.x - floorf(uv.x), v = 1.0f - uv.y;
+  return texturing::trilinear(scene, scene.textures[texture], 0, min(x, 0.9999999f),
+                              min(v - floorf(v), 0.9999999f), footprint, true);
+}
+
+/// `direction` need not be unit. Faces right +X, left -X, up +Y, down -Y, front +Z, back -Z, laid
+/// out as OpenGL's cube maps. `footprint`: angle seen, as a share of a face.
+GLOAM_HD Rgba lookup_cube(const SceneView& scene, int texture, Vec3f d, float footprint) {
+  const TextureView& view = scene.textures[texture];
+  const float ax = fabsf(d.x), ay = fabsf(d.y), az = fabsf(d.z);
+  int face;
+  float s, t, m;
+  if (ax >= ay && ax >= az) {
+    face = d.x > 0 ? 0 : 1;
+    m = ax;
+    s = d.x > 0 ? -d.z : d.z;
+    t = -d.y;
+  } else if (ay >= az) {
+    face = d.y > 0 ? 2 : 3;
+    m = ay;
+    s = d.x;
+    t = d.y > 0 ? d.z : -d.z;
+  } else {
+    face = d.z > 0 ? 4 : 5;
+    m = az;
+    s = d.z > 0 ? d.x : -d.x;
+    t = -d.y;
+  }
+  const float inv = m > 0 ? 0.5f / m : 0.0f;
+  return texturing::trilinear(scene, view, view.face_count == 6 ? face : 0, s * inv + 0.5f,
+                              t * inv + 0.5f, footprint, false);
+}
+
+/// Luminance of the sky texture towards the unit world direction d [cd/m²]. MuJoCo turns its skybox
+/// by 90 degrees about +X.
+GLOAM_HD Vec3f sky_radiance(const SceneView& scene, Vec3f d, float spread) {
+  if (scene.sky_texture < 0) return {0, 0, 0};
+  return lookup_cube(scene, scene.sky_texture, {d.x, d.z, -d.y}, spread).rgb * scene.sky_scale;
+}
+
+}  // namespace gloam

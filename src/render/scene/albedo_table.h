@@ -1,0 +1,9 @@
+#pragma once
+#include "render/kernel/bsdf.h"
+
+namespace gloam {
+
+/// Integrates the layer's directional albedo by a fixed point set: the same on every machine.
+void fill_albedo_table(AlbedoTable* table);
+
+}  // namespace gloam

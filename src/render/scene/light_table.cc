@@ -1,0 +1,113 @@
+#include "render/scene/light_table.h"
+
+#include <algorithm>
+
+#include "render/kernel/shapes.h"
+
+namespace gloam {
+namespace {
+
+/// A live value against the one that the description was made with.
+float ratio(float now, float first) { return first > 0 ? now / first : (now > 0 ? 1.0f : 0.0f); }
+
+/// Power that a light brings into the scene [lm], to weigh lights against each other.
+float light_power(const LightView& light, float scene_radius) {
+  const float strength = luminance(light.intensity);
+  if (light.kind == LightKind::kDirectional) return strength * kPi * scene_radius * scene_radius;
+  return strength * 2 * kPi * (1.0f - light.cos_cutoff);
+}
+
+LightView describe_light(const LightDescription& in) {
+  LightView out;
+  out.kind = in.type == LightType::kPoint  ? LightKind::kPoint
+             : in.type == LightType::kSpot ? LightKind::kSpot
+                                           : LightKind::kDirectional;
+  out.casts_shadow = in.casts_shadow;
+  out.intensity = in.intensity;
+  out.radius = max(in.radius, 0.0f);
+  out.is_delta = out.radius <= 0;
+  if (out.kind == LightKind::kSpot) {
+    out.cos_cutoff = clamp(in.cos_cutoff, -1.0f, 1.0f);
+    out.cutoff = std::acos(out.cos_cutoff);
+    out.inner = out.cutoff * (1.0f - clamp(in.softness, 0.0f, 1.0f));
+    out.cos_inner = std::cos(out.inner);
+  }
+  return out;
+}
+
+Vec3f row(const std::vector<double>& values, int i) {
+  return {static_cast<float>(values[3 * i]), static_cast<float>(values[3 * i + 1]),
+          static_cast<float>(values[3 * i + 2])};
+}
+
+}  // namespace
+
+void LightTable::update(const RenderDescription& description, const PoseFrame& frame,
+                        const std::vector<MaterialView>& materials,
+                        const std::vector<MeshView>& meshes, std::vector<InstanceView>* instances) {
+  if (first_diffuse_.empty()) first_diffuse_ = frame.light_diffuse;
+  if (first_intensity_.empty()) first_intensity_ = frame.light_intensity;
+  lights_.clear();
+  headlights_.clear();
+  std::vector<float> power;
+  const float scene_radius = max(description.extent, 1.0f);
+  for (const LightDescription& in : description.lights) {
+    const size_t i = in.light < 0 ? 0 : static_cast<size_t>(in.light);
+    const bool live = in.light >= 0 && i < frame.light_active.size();
+    if (live ? frame.light_active[i] == 0 : !in.active) continue;
+    LightView light = describe_light(in);
+    if (in.light >= 0) {
+      light.p = row(frame.light_p, in.light);
+      light.direction = normalize(row(frame.light_dir, in.light));
+      if (3 * i + 2 < frame.light_diffuse.size()) {
+        const float *now = &frame.light_diffuse[3 * i], *first = &first_diffuse_[3 * i];
+        light.intensity *=
+            Vec3f{ratio(now[0], first[0]), ratio(now[1], first[1]), ratio(now[2], first[2])};
+      }
+      if (i < frame.light_intensity.size() && first_intensity_[i] > 0) {
+        light.intensity *= frame.light_intensity[i] / first_intensity_[i];
+      }
+    }
+    if (!(luminance(light.intensity) > 0)) continue;
+    if (in.light < 0) headlights_.push_back(lights_.size());
+    lights_.push_back(light);
+    power.push_back(light_power(light, scene_radius));
+  }
+  for (size_t i = 0; i < instances->size(); ++i) {
+    InstanceView& instance = (*instances)[i];
+    instance.light = -1;
+    const bool is_mesh =
+        instance.shape == ShapeType::kMesh || instance.shape == ShapeType::kDeformable;
+    const MaterialView& material = materials[instance.material];
+    const float area =
+        is_mesh ? 2 * meshes[instance.mesh].area : shape_area(instance.shape, instance.size);
+    const float strength = luminance(material.emission) * kPi * area * material.opacity;
+    if (!(strength > 0)) continue;
+    instance.light = static_cast<int>(lights_.size());
+    LightView light;
+    light.kind = LightKind::kInstance;
+    light.instance = static_cast<uint32_t>(i);
+    lights_.push_back(light);
+    power.push_back(strength);
+  }
+  // A share of draws goes to all lights alike: a weak lamp near a surface matters as much as a
+  // strong one far away.
+  constexpr float kUniformShare = 0.25f;
+  double total = 0, sum = 0;
+  for (const float p : power) total += p;
+  for (size_t i = 0; i < lights_.size(); ++i) {
+    const double p = (1 - kUniformShare) * power[i] / total +
+                     kUniformShare / static_cast<double>(lights_.size());
+    lights_[i].probability = static_cast<float>(p);
+    lights_[i].cdf = static_cast<float>(sum += p);
+  }
+}
+
+void LightTable::place_headlights(const Affine3f& X_WC) {
+  for (const size_t i : headlights_) {
+    lights_[i].p = X_WC.p;
+    lights_[i].direction = normalize(-X_WC.z);
+  }
+}
+
+}  // namespace gloam

@@ -1,0 +1,29 @@
+#pragma once
+// The lights that are sampled, and how often.
+
+#include <vector>
+
+#include "render/kernel/scene_view.h"
+#include "sim/pose_frame.h"
+
+namespace gloam {
+
+class LightTable {
+ public:
+  /// Poses and live fields of the frame; then the emitters among `instances`, whose `light` is set.
+  void update(const RenderDescription& description, const PoseFrame& frame,
+              const std::vector<MaterialView>& materials, const std::vector<MeshView>& meshes,
+              std::vector<InstanceView>* instances);
+  /// Headlights sit at the camera.
+  void place_headlights(const Affine3f& X_WC);
+
+  const std::vector<LightView>& lights() const { return lights_; }
+
+ private:
+  std::vector<LightView> lights_;
+  std::vector<size_t> headlights_;  ///< rows of lights_
+  // Live fields as they were at the first update: the description's intensities belong to them.
+  std::vector<float> first_diffuse_, first_intensity_;
+};
+
+}  // namespace gloam

@@ -1,0 +1,165 @@
+#include "render/scene/mesh_store.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "base/parallel.h"
+
+namespace gloam {
+namespace {
+
+bool is_finite(Vec3f v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+Status check_mesh(const TriangleMesh& mesh, const std::string& name) {
+  const auto bad = [&](const char* what) {
+    return Error{ErrorKind::kInput, fmt::format("{} {}", name, what)};
+  };
+  const size_t n = mesh.positions.size();
+  if (mesh.indices.size() % 3 != 0) return bad("has an incomplete triangle");
+  if (!mesh.normals.empty() && mesh.normals.size() != n) return bad("has too few or many normals");
+  if (!mesh.uvs.empty() && mesh.uvs.size() != n) return bad("has too few or many uvs");
+  if (std::any_of(mesh.indices.begin(), mesh.indices.end(), [n](uint32_t i) { return i >= n; })) {
+    return bad("has a triangle with a vertex that does not exist");
+  }
+  if (!std::all_of(mesh.positions.begin(), mesh.positions.end(), is_finite)) {
+    return bad("has a vertex that is not a finite number");
+  }
+  return {};
+}
+
+float triangle_area(const std::vector<Vec3f>& positions, const uint32_t* index) {
+  const Vec3f a = positions[index[0]];
+  return 0.5f * length(cross(positions[index[1]] - a, positions[index[2]] - a));
+}
+
+void fill_static_data(const TriangleMesh& mesh, MeshBuffers* out) {
+  const size_t count = mesh.triangle_count();
+  if (!mesh.normals.empty()) {
+    out->corner_normals.resize(mesh.indices.size());
+    for (size_t i = 0; i < mesh.indices.size(); ++i) {
+      out->corner_normals[i] = mesh.normals[mesh.indices[i]];
+    }
+  }
+  if (!mesh.uvs.empty()) {
+    out->uvs.resize(count);
+    for (size_t t = 0; t < count; ++t) {
+      TriangleUv& uv = out->uvs[t];
+      for (int k = 0; k < 3; ++k) uv.corner[k] = mesh.uvs[mesh.indices[3 * t + k]];
+      const Vec2f a = uv.corner[1] - uv.corner[0], b = uv.corner[2] - uv.corner[0];
+      const float uv_area = 0.5f * std::fabs(a.x * b.y - a.y * b.x);
+      uv.density =
+          std::sqrt(uv_area / max(triangle_area(mesh.positions, &mesh.indices[3 * t]), 1e-12f));
+    }
+  }
+  Vec3f low{1e30f, 1e30f, 1e30f}, high{-1e30f, -1e30f, -1e30f};
+  for (const Vec3f& p : mesh.positions) {
+    low = {min(low.x, p.x), min(low.y, p.y), min(low.z, p.z)};
+    high = {max(high.x, p.x), max(high.y, p.y), max(high.z, p.z)};
+  }
+  if (!mesh.positions.empty()) out->half_extents = (high - low) * 0.5f;
+}
+
+/// Smooth normals of moved vertices, weighted by triangle area.
+void recompute_normals(const TriangleMesh& mesh, MeshBuffers* buffers) {
+  std::vector<Vec3f> sum(buffers->open.size());
+  for (size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const uint32_t* i = &mesh.indices[3 * t];
+    const Vec3f a = buffers->open[i[0]];
+    const Vec3f n = cross(buffers->open[i[1]] - a, buffers->open[i[2]] - a);
+    for (int k = 0; k < 3; ++k) sum[i[k]] += n;
+  }
+  buffers->corner_normals.resize(mesh.indices.size());
+  for (size_t i = 0; i < mesh.indices.size(); ++i) {
+    const Vec3f n = sum[mesh.indices[i]];
+    const float l = length(n);
+    buffers->corner_normals[i] = l > 0 ? n / l : Vec3f{0, 0, 1};
+  }
+}
+
+template <class T>
+DeviceSpan<const T> span_of(const std::vector<T>& v) {
+  return {v.data(), static_cast<uint32_t>(v.size())};
+}
+
+}  // namespace
+
+Result<MeshStore> MeshStore::make(const RenderDescription& description) {
+  MeshStore store;
+  const size_t rigid = description.meshes.size();
+  const size_t count = rigid + description.deformables.size();
+  const auto mesh_of = [&](size_t i) -> const TriangleMesh& {
+    return i < rigid ? description.meshes[i] : description.deformables[i - rigid].rest;
+  };
+  for (size_t i = 0; i < count; ++i) {
+    GLOAM_TRY_STATUS(check_mesh(mesh_of(i), i < rigid ? fmt::format("mesh {}", i)
+                                                      : fmt::format("deformable {}", i - rigid)));
+  }
+  store.meshes_.resize(count);
+  parallel_for("mesh shading data", static_cast<int64_t>(count),
+               [&](int64_t i) { fill_static_data(mesh_of(i), &store.meshes_[i]); });
+  return store;
+}
+
+void MeshStore::update(const RenderDescription& description, const PoseFrame& open,
+                       const PoseFrame& close, const PoseFrame& previous) {
+  const size_t rigid = description.meshes.size();
+  for (size_t d = 0; d < description.deformables.size(); ++d) {
+    const DeformableDescription& deformable = description.deformables[d];
+    MeshBuffers& buffers = meshes_[rigid + d];
+    const size_t n = deformable.rest.positions.size();
+    const auto take = [&](const PoseFrame& frame, std::vector<Vec3f>* out) {
+      GLOAM_CHECK(frame.vertices.size() >= 3 * (deformable.first_vertex + n),
+                  "the pose frame lacks vertices of a deformable");
+      out->resize(n);
+      const float* v = frame.vertices.data() + 3 * deformable.first_vertex;
+      for (size_t i = 0; i < n; ++i) (*out)[i] = {v[3 * i], v[3 * i + 1], v[3 * i + 2]};
+    };
+    take(open, &buffers.open);
+    take(close, &buffers.close);
+    take(previous, &buffers.previous);
+    buffers.moving = buffers.open != buffers.close;
+    recompute_normals(deformable.rest, &buffers);
+    if (!buffers.area_cdf.empty()) make_samplable(description, static_cast<uint32_t>(rigid + d));
+  }
+}
+
+void MeshStore::make_samplable(const RenderDescription& description, uint32_t row) {
+  const size_t rigid = description.meshes.size();
+  const TriangleMesh& mesh =
+      row < rigid ? description.meshes[row] : description.deformables[row - rigid].rest;
+  MeshBuffers& buffers = meshes_[row];
+  const std::vector<Vec3f>& positions =
+      row < rigid || buffers.open.empty() ? mesh.positions : buffers.open;
+  buffers.area_cdf.resize(mesh.triangle_count());
+  double sum = 0;
+  for (size_t t = 0; t < mesh.triangle_count(); ++t) {
+    sum += triangle_area(positions, &mesh.indices[3 * t]);
+    buffers.area_cdf[t] = static_cast<float>(sum);
+  }
+  buffers.area = static_cast<float>(sum);
+  for (float& value : buffers.area_cdf) value /= max(buffers.area, 1e-30f);
+}
+
+std::vector<MeshView> MeshStore::views(const RenderDescription& description) const {
+  const size_t rigid = description.meshes.size();
+  std::vector<MeshView> views(meshes_.size());
+  for (size_t i = 0; i < meshes_.size(); ++i) {
+    const MeshBuffers& buffers = meshes_[i];
+    const TriangleMesh& mesh =
+        i < rigid ? description.meshes[i] : description.deformables[i - rigid].rest;
+    MeshView& view = views[i];
+    view.positions = span_of(i < rigid || buffers.open.empty() ? mesh.positions : buffers.open);
+    if (buffers.moving) view.positions_close = span_of(buffers.close);
+    view.positions_previous = span_of(buffers.previous);
+    view.indices = span_of(mesh.indices);
+    view.corner_normals = span_of(buffers.corner_normals);
+    view.uvs = span_of(buffers.uvs);
+    view.area_cdf = span_of(buffers.area_cdf);
+    view.area = buffers.area;
+  }
+  return views;
+}
+
+}  // namespace gloam

@@ -1,0 +1,41 @@
+#pragma once
+// Meshes as the kernel reads them, with per-triangle shading data.
+
+#include <vector>
+
+#include "render/kernel/scene_view.h"
+#include "sim/pose_frame.h"
+
+namespace gloam {
+
+/// Buffers of one mesh. Rigid meshes refer to the description's positions and indices.
+struct MeshBuffers {
+  std::vector<Vec3f> corner_normals;
+  std::vector<TriangleUv> uvs;
+  std::vector<float> area_cdf;
+  float area = 0;                            ///< [m²]
+  Vec3f half_extents;                        ///< of the bounding box of the rest positions [m]
+  std::vector<Vec3f> open, close, previous;  ///< deformables: world positions [m]
+  bool moving = false;                       ///< deformables: open and close differ
+};
+
+class MeshStore {
+ public:
+  /// Errors: an index out of range, attributes of the wrong length, values that are not finite.
+  static Result<MeshStore> make(const RenderDescription& description);
+
+  /// Takes the deformables' vertices from the frames and recomputes their normals.
+  void update(const RenderDescription& description, const PoseFrame& open, const PoseFrame& close,
+              const PoseFrame& previous);
+  /// Builds what sampling points on mesh `mesh` needs.
+  void make_samplable(const RenderDescription& description, uint32_t mesh);
+
+  /// Rows: all meshes, then all deformables.
+  std::vector<MeshView> views(const RenderDescription& description) const;
+  const MeshBuffers& buffers(size_t row) const { return meshes_[row]; }
+
+ private:
+  std::vector<MeshBuffers> meshes_;
+};
+
+}  // namespace gloam

@@ -1,0 +1,209 @@
+#include "render/scene/render_scene.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "render/kernel/shapes.h"
+#include "render/scene/albedo_table.h"
+
+namespace gloam {
+namespace {
+
+Status check_references(const RenderDescription& d) {
+  const auto bad = [](std::string what) { return Error{ErrorKind::kInput, std::move(what)}; };
+  const auto is_texture = [&](int t) { return t >= -1 && t < static_cast<int>(d.textures.size()); };
+  for (const MaterialDescription& m : d.materials) {
+    const MaterialTextures& t = m.textures;
+    for (const int texture : {t.base_color, t.roughness, t.metallic, t.occlusion, t.orm, t.normal,
+                              t.opacity, t.emission}) {
+      if (!is_texture(texture)) {
+        return bad(fmt::format("material '{}' refers to texture {}, which does not exist", m.name,
+                               texture));
+      }
+    }
+  }
+  if (!is_texture(d.sky.texture)) return bad("the sky refers to a texture that does not exist");
+  for (size_t i = 0; i < d.instances.size(); ++i) {
+    const InstanceDescription& in = d.instances[i];
+    const bool rigid = in.shape == ShapeType::kMesh, soft = in.shape == ShapeType::kDeformable;
+    const size_t meshes = soft ? d.deformables.size() : d.meshes.size();
+    if ((rigid || soft) && (in.mesh < 0 || static_cast<size_t>(in.mesh) >= meshes)) {
+      return bad(fmt::format("drawn geom {} refers to mesh {}, which does not exist", i, in.mesh));
+    }
+    if (in.material < 0 || static_cast<size_t>(in.material) >= d.materials.size()) {
+      return bad(
+          fmt::format("drawn geom {} refers to material {}, which does not exist", i, in.material));
+    }
+    const Vec3f s = in.size;
+    bool sized = true;
+    switch (in.shape) {
+      case ShapeType::kBox:
+      case ShapeType::kEllipsoid:
+        sized = s.x > 0 && s.y > 0 && s.z > 0;
+        break;
+      case ShapeType::kSphere:
+        sized = s.x > 0;
+        break;
+      case ShapeType::kCapsule:
+      case ShapeType::kCylinder:
+        sized = s.x > 0 && s.y > 0;
+        break;
+      case ShapeType::kPlane:
+        sized = s.x >= 0 && s.y >= 0;
+        break;
+      default:
+        break;
+    }
+    if (!sized) return bad(fmt::format("drawn geom {} has a size that is not positive", i));
+  }
+  return {};
+}
+
+MaterialView describe_material(const MaterialDescription& in, const TextureStore& textures) {
+  MaterialView out;
+  const auto unit = [](float x) { return clamp(x, 0.0f, 1.0f); };
+  out.base_color = {unit(in.base_color.x), unit(in.base_color.y), unit(in.base_color.z)};
+  out.emission = {max(in.emission.x, 0), max(in.emission.y, 0), max(in.emission.z, 0)};
+  out.opacity = unit(in.opacity);
+  out.metallic = unit(in.metallic);
+  out.roughness = unit(in.roughness);
+  const float ior = max(in.ior, 1.0f);
+  out.f90 = unit(in.specular_weight);
+  out.f0 = sqr((ior - 1) / (ior + 1)) * out.f90;
+  out.mapping = in.mapping;
+  out.texture_uniform = in.texture_uniform;
+  out.texture_repeat = in.texture_repeat;
+  out.textures = in.textures;
+  const MaterialTextures& t = in.textures;
+  const int used[] = {t.base_color, t.roughness, t.metallic, t.orm,
+                      t.normal,     t.opacity,   t.emission};
+  out.textured = in.mapping != TextureMapping::kNone &&
+                 std::any_of(std::begin(used), std::end(used), [](int i) { return i >= 0; });
+  out.transparent = out.opacity < 1;
+  if (out.textured) {
+    out.transparent |= t.opacity >= 0 || (t.base_color >= 0 && textures.has_alpha[t.base_color]);
+  }
+  return out;
+}
+
+/// X_WG = X_WB X_BG in double precision, rounded once.
+Affine3f pose_of(const PoseFrame& frame, const InstanceDescription& instance) {
+  const size_t b = static_cast<size_t>(instance.body);
+  GLOAM_CHECK(frame.body_p.size() >= 3 * (b + 1) && frame.body_R.size() >= 9 * (b + 1),
+              "the pose frame lacks a body");
+  const double *p = &frame.body_p[3 * b], *R = &frame.body_R[9 * b];
+  const auto rotate = [R](Vec3f v, const double* offset) {
+    double out[3];
+    for (int i = 0; i < 3; ++i) {
+      out[i] = R[3 * i] * v.x + R[3 * i + 1] * v.y + R[3 * i + 2] * v.z +
+               (offset != nullptr ? offset[i] : 0.0);
+    }
+    return Vec3f{static_cast<float>(out[0]), static_cast<float>(out[1]),
+                 static_cast<float>(out[2])};
+  };
+  const Affine3f& X_BG = instance.X_BG;
+  return {rotate(X_BG.x, nullptr), rotate(X_BG.y, nullptr), rotate(X_BG.z, nullptr),
+          rotate(X_BG.p, p)};
+}
+
+bool is_same(const Affine3f& a, const Affine3f& b) {
+  return a.x == b.x && a.y == b.y && a.z == b.z && a.p == b.p;
+}
+
+template <class T>
+DeviceSpan<const T> span_of(const std::vector<T>& v) {
+  return {v.data(), static_cast<uint32_t>(v.size())};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<RenderScene>> RenderScene::make(const RenderDescription& description) {
+  GLOAM_TRY_STATUS(check_references(description));
+  std::unique_ptr<RenderScene> scene(new RenderScene(description));
+  GLOAM_TRY(scene->textures_, make_texture_store(description.textures));
+  GLOAM_TRY(scene->meshes_, MeshStore::make(description));
+  fill_albedo_table(&scene->albedo_);
+  for (const MaterialDescription& material : description.materials) {
+    scene->materials_.push_back(describe_material(material, scene->textures_));
+  }
+  for (const InstanceDescription& in : description.instances) {
+    InstanceView out;
+    out.shape = in.shape;
+    out.material = static_cast<uint32_t>(in.material);
+    out.size = in.size;
+    out.half_size = shape_half_size(in.shape, in.size);
+    if (in.shape == ShapeType::kMesh || in.shape == ShapeType::kDeformable) {
+      out.mesh = static_cast<uint32_t>(in.mesh);
+      if (in.shape == ShapeType::kDeformable) {
+        out.mesh += static_cast<uint32_t>(description.meshes.size());
+      }
+      out.half_size = scene->meshes_.buffers(out.mesh).half_extents;
+      if (luminance(scene->materials_[out.material].emission) > 0) {
+        scene->meshes_.make_samplable(description, out.mesh);
+      }
+    }
+    scene->instances_.push_back(out);
+  }
+  scene->mesh_views_ = scene->meshes_.views(description);
+  return scene;
+}
+
+void RenderScene::update(const PoseFrame& open, const PoseFrame& close, const PoseFrame& previous) {
+  if (!description_.deformables.empty()) {
+    meshes_.update(description_, open, close, previous);
+    mesh_views_ = meshes_.views(description_);
+  }
+  for (size_t i = 0; i < instances_.size(); ++i) {
+    InstanceView& out = instances_[i];
+    if (out.shape == ShapeType::kDeformable) continue;
+    const InstanceDescription& in = description_.instances[i];
+    out.X_WG = pose_of(open, in);
+    out.X_WG_close = &open == &close || in.is_static ? out.X_WG : pose_of(close, in);
+    out.X_WG_previous = &open == &previous || in.is_static ? out.X_WG : pose_of(previous, in);
+    out.moving = !is_same(out.X_WG, out.X_WG_close);
+    out.has_moved = !is_same(out.X_WG, out.X_WG_previous);
+  }
+  lights_.update(description_, open, materials_, mesh_views_, &instances_);
+}
+
+bool RenderScene::has_motion() const {
+  return std::any_of(instances_.begin(), instances_.end(), [this](const InstanceView& in) {
+    return in.shape == ShapeType::kDeformable ? !mesh_views_[in.mesh].positions_close.empty()
+                                              : in.moving;
+  });
+}
+
+SceneView RenderScene::view_from(const Affine3f& X_WC) {
+  lights_.place_headlights(X_WC);
+  SceneView view;
+  view.instances = span_of(instances_);
+  view.meshes = span_of(mesh_views_);
+  view.materials = span_of(materials_);
+  view.textures = span_of(textures_.textures);
+  view.texture_levels = span_of(textures_.levels);
+  view.texels = span_of(textures_.texels);
+  view.lights = span_of(lights_.lights());
+  view.albedo = &albedo_;
+  const SkyDescription& sky = description_.sky;
+  view.sky_texture = sky.scale > 0 ? sky.texture : -1;
+  view.sky_scale = sky.scale;
+  view.sky_ambient = sky.ambient;
+  if (view.sky_texture >= 0) view.sky_mean = textures_.mean[sky.texture] * sky.scale;
+  for (size_t i = 0; i < instances_.size(); ++i) {
+    const MaterialView& material = materials_[instances_[i].material];
+    if (!is_drawn(i)) continue;
+    view.has_transparent |= material.transparent;
+    view.has_emitters |= max_component(material.emission) > 0;
+  }
+  for (const LightView& light : lights_.lights()) {
+    view.has_visible_lights |=
+        !light.is_delta && light.casts_shadow && light.kind != LightKind::kInstance;
+  }
+  view.has_emitters |=
+      view.has_visible_lights || view.sky_texture >= 0 || max_component(sky.ambient) > 0;
+  return view;
+}
+
+}  // namespace gloam
