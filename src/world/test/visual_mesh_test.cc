@@ -60,21 +60,19 @@ TEST(VisualMesh, VerticesLandWhereTheFilePutThem) {
 }
 
 TEST(VisualMesh, EdgesAreSharpAndFacesLookOutwards) {
-  for (const char* smooth : {"false", "true"}) {
-    const RenderDescription out =
-        describe(std::string("<mujoco><asset><mesh name='m' smoothnormal='") + smooth + "' " +
-                 kCube + "/></asset><worldbody><geom type='mesh' mesh='m'/></worldbody></mujoco>");
-    const TriangleMesh& mesh = out.meshes[0];
-    EXPECT_EQ(mesh.triangle_count(), 12u);
-    EXPECT_EQ(mesh.positions.size(), 24u) << "four corners of six faces, welded within each face";
-    for (size_t f = 0; f < mesh.indices.size(); f += 3) {
-      const Vec3f a = mesh.positions[mesh.indices[f]], b = mesh.positions[mesh.indices[f + 1]],
-                  c = mesh.positions[mesh.indices[f + 2]];
-      const Vec3f normal = normalize(cross(b - a, c - a));
-      EXPECT_GT(dot(normal, a + b + c), 0) << "the mesh is centred: outwards is away from zero";
-      for (size_t k = f; k < f + 3; ++k)
-        EXPECT_NEAR(dot(mesh.normals[mesh.indices[k]], normal), 1, 1e-5);
-    }
+  const RenderDescription out = describe(std::string("<mujoco><asset><mesh name='m' ") + kCube +
+                                         "/></asset><worldbody><geom type='mesh' mesh='m'/>"
+                                         "</worldbody></mujoco>");
+  const TriangleMesh& mesh = out.meshes[0];
+  EXPECT_EQ(mesh.triangle_count(), 12u);
+  EXPECT_EQ(mesh.positions.size(), 24u) << "four corners of six faces, welded within each face";
+  for (size_t f = 0; f < mesh.indices.size(); f += 3) {
+    const Vec3f a = mesh.positions[mesh.indices[f]], b = mesh.positions[mesh.indices[f + 1]],
+                c = mesh.positions[mesh.indices[f + 2]];
+    const Vec3f normal = normalize(cross(b - a, c - a));
+    EXPECT_GT(dot(normal, a + b + c), 0) << "the mesh is centred: outwards is away from zero";
+    for (size_t k = f; k < f + 3; ++k)
+      EXPECT_NEAR(dot(mesh.normals[mesh.indices[k]], normal), 1, 1e-5);
   }
 }
 
