@@ -1,0 +1,215 @@
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+
+#include "visual_test_model.h"
+#include "world/visual_rules.h"
+
+namespace gloam {
+namespace {
+
+using visual_test::compile;
+using visual_test::describe;
+using visual_test::expect_near;
+
+/// Smallest PNG writer: 8-bit RGB, stored (not compressed) zlib blocks. `srgb` adds that chunk.
+std::string png(int width, int height, const std::vector<uint8_t>& rgb, bool srgb) {
+  const auto be32 = [](uint32_t v) {
+    return std::string{static_cast<char>(v >> 24), static_cast<char>(v >> 16),
+                       static_cast<char>(v >> 8), static_cast<char>(v)};
+  };
+  const auto chunk = [&](const std::string& type, const std::string& data) {
+    uint32_t crc = 0xffffffffu;
+    for (const char c : type + data) {
+      crc ^= static_cast<uint8_t>(c);
+      for (int k = 0; k < 8; ++k) crc = (crc >> 1) ^ ((crc & 1) != 0 ? 0xEDB88320u : 0u);
+    }
+    return be32(static_cast<uint32_t>(data.size())) + type + data + be32(~crc);
+  };
+  std::string rows;
+  for (int y = 0; y < height; ++y) {
+    rows += '\0';
+    for (int i = 0; i < 3 * width; ++i)
+      rows += static_cast<char>(rgb[static_cast<size_t>(3 * width * y + i)]);
+  }
+  uint32_t a = 1, b = 0;
+  for (const char c : rows) {
+    a = (a + static_cast<uint8_t>(c)) % 65521;
+    b = (b + a) % 65521;
+  }
+  const auto n = static_cast<uint16_t>(rows.size());
+  const auto m = static_cast<uint16_t>(~n);
+  std::string zlib = "\x78\x01\x01";
+  for (const uint16_t v : {n, m}) {
+    zlib += static_cast<char>(v & 255);
+    zlib += static_cast<char>(v >> 8);
+  }
+  zlib += rows + be32((b << 16) | a);
+  return std::string("\x89PNG\r\n\x1a\n", 8) +
+         chunk("IHDR", be32(static_cast<uint32_t>(width)) + be32(static_cast<uint32_t>(height)) +
+                           std::string("\x08\x02\x00\x00\x00", 5)) +
+         (srgb ? chunk("sRGB", std::string(1, '\0')) : "") + chunk("IDAT", zlib) +
+         chunk("IEND", "");
+}
+
+/// A folder with t.png (2 x 3 texels: red, green / blue, grey / black, white) that vanishes.
+class VisualTextureFiles : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              ("gloam_visual_" + std::to_string(reinterpret_cast<uintptr_t>(this)));
+    std::filesystem::create_directories(folder_);
+    std::ofstream(folder_ / "t.png", std::ios::binary) << png(2, 3, kTexels, false);
+    std::ofstream(folder_ / "s.png", std::ios::binary) << png(2, 3, kTexels, true);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  CompiledWorld compile_here(const std::string& compiler, const std::string& assets) {
+    return compile("<mujoco><compiler texturedir='" + folder_.string() + "' " + compiler +
+                   "/><asset>" + assets +
+                   "</asset><worldbody><geom size='1' material='m'/></worldbody></mujoco>");
+  }
+
+  const std::vector<uint8_t> kTexels{255, 0,  0,  0, 255, 0, 0,   0,   255,
+                                     90,  90, 90, 0, 0,   0, 255, 255, 255};
+  std::filesystem::path folder_;
+};
+
+const Image8& color_image(const RenderDescription& out) {
+  const int texture = out.materials.at(0).textures.base_color;
+  return out.textures.at(static_cast<size_t>(texture)).faces.at(0);
+}
+
+TEST_F(VisualTextureFiles, RowsAreFromTheTop) {
+  const RenderDescription out = describe(compile_here(
+      "", "<texture name='t' type='2d' file='t.png'/><material name='m' texture='t'/>"));
+  const Image8& image = color_image(out);
+  EXPECT_EQ(image.width, 2);
+  EXPECT_EQ(image.height, 3);
+  EXPECT_EQ(image.channels, 3);
+  EXPECT_EQ(image.texels, kTexels);
+  EXPECT_EQ(out.materials[0].mapping, TextureMapping::kUv);
+}
+
+TEST_F(VisualTextureFiles, ByReferenceIsTheSameAsEmbedded) {
+  const std::string assets =
+      "<texture name='t' type='2d' file='t.png'/><material name='m' texture='t'/>";
+  const CompiledWorld world = compile_here("passthrough='textures'", assets);
+  ASSERT_EQ(world.model->tex_adr[0], -1) << "the texels are not in the model";
+  EXPECT_EQ(color_image(describe(world)).texels, kTexels);
+
+  std::filesystem::remove(folder_ / "t.png");
+  const RenderDescription out = describe(world);
+  ASSERT_EQ(out.unsupported.size(), 1u) << "a file that has gone is said, not fatal";
+  EXPECT_NE(out.unsupported[0].message.find("texture 't' cannot be read"), std::string::npos);
+  EXPECT_EQ(color_image(out).texels, (std::vector<uint8_t>{255, 255, 255}));
+}
+
+TEST_F(VisualTextureFiles, ColourSpace) {
+  const auto space = [&](const std::string& attributes) {
+    return color_image(describe(compile_here("", "<texture name='t' type='2d' " + attributes +
+                                                     "/><material name='m' texture='t'/>")))
+        .color_space;
+  };
+  EXPECT_EQ(space("file='t.png'"), ColorSpace::kSrgb) << "MuJoCo calls it linear by default";
+  EXPECT_EQ(space("file='s.png'"), ColorSpace::kSrgb);
+  EXPECT_EQ(space("file='t.png' colorspace='linear'"), ColorSpace::kLinear);
+  EXPECT_EQ(space("file='t.png' colorspace='sRGB'"), ColorSpace::kSrgb);
+  EXPECT_EQ(space("builtin='flat' width='4' height='4'"), ColorSpace::kSrgb);
+}
+
+TEST(VisualMaterial, CubeFacesAreInMuJoCosOrder) {
+  // builtin flat: five faces rgb1, the down face rgb2; a cross marks no face apart.
+  const RenderDescription out = describe(R"(<mujoco><asset>
+      <texture name="c" type="cube" builtin="flat" width="8" rgb1="1 0 0" rgb2="0 0 1"/>
+      <material name="m" texture="c" texuniform="true" texrepeat="2 3"/></asset>
+    <worldbody><geom size="1" material="m"/></worldbody></mujoco>)");
+  EXPECT_EQ(out.materials[0].mapping, TextureMapping::kCube);
+  EXPECT_TRUE(out.materials[0].texture_uniform);
+  EXPECT_EQ(out.materials[0].texture_repeat.y, 3);
+  const auto& faces = out.textures[0].faces;
+  ASSERT_EQ(faces.size(), 6u);
+  for (size_t f = 0; f < 6; ++f) {
+    EXPECT_EQ(faces[f].texels.size(), 8u * 8 * 3);
+    EXPECT_EQ(faces[f].texels[0], f == 3 ? 0 : 255) << f;
+    EXPECT_EQ(faces[f].texels[2], f == 3 ? 255 : 0) << f;
+  }
+}
+
+TEST(VisualMaterial, ColourOfGeomWinsWhenItIsGiven) {
+  const RenderDescription out = describe(R"(<mujoco><asset>
+      <material name="m" rgba="1 .5 0 1" emission=".5"/></asset><worldbody>
+      <geom size="1" material="m"/><geom size="1" material="m" rgba="0 1 0 .25"/>
+      <geom size="1" rgba="0 0 1 1"/><geom size="1"/><geom size="2" material="m"/>
+      <geom name="unseen" size="1" rgba="1 1 1 0"/></worldbody></mujoco>)");
+  ASSERT_EQ(out.instances.size(), 5u) << "what is fully transparent is left out, as in MuJoCo";
+  const auto material = [&](size_t i) {
+    return out.materials[static_cast<size_t>(out.instances[i].material)];
+  };
+  const float half = linear_color({.5f, 0, 0}).x;
+  expect_near(material(0).base_color, {1, half, 0}, 1e-6f);
+  EXPECT_EQ(material(0).model_material, 0);
+  EXPECT_FALSE(material(0).own_color);
+  expect_near(material(0).emission, {50, 50 * half, 0}, 1e-4f);
+  expect_near(material(1).base_color, {0, 1, 0}, 1e-6f);
+  EXPECT_FLOAT_EQ(material(1).opacity, .25f);
+  EXPECT_TRUE(material(1).own_color);
+  expect_near(material(1).emission, {0, 50, 0}, 1e-4f);
+  expect_near(material(2).base_color, {0, 0, 1}, 1e-6f);
+  EXPECT_EQ(material(2).model_material, -1);
+  expect_near(material(3).base_color, Vec3f{half, half, half}, 1e-6f);
+  EXPECT_EQ(out.instances[0].material, out.instances[4].material) << "rows are shared";
+  EXPECT_EQ(out.instances[0].label.material, "m");
+}
+
+TEST(VisualMaterial, SurfaceFromOldAndNewAttributes) {
+  const RenderDescription out = describe(R"(<mujoco><asset>
+      <material name="old" specular=".2" shininess="1"/>
+      <material name="mirror" reflectance=".25" shininess="0"/>
+      <material name="new" roughness=".3" metallic=".9" shininess="1"/></asset><worldbody>
+      <geom size="1" material="old"/><geom type="plane" size="1 1 1" material="mirror"/>
+      <geom size="1" material="mirror"/><geom size="1" material="new"/></worldbody></mujoco>)");
+  const auto material = [&](size_t i) {
+    return out.materials[static_cast<size_t>(out.instances[i].material)];
+  };
+  EXPECT_NEAR(std::pow(material(0).roughness, 4), 2. / 130, 1e-6);
+  EXPECT_FLOAT_EQ(material(0).specular_weight, .4f);
+  EXPECT_EQ(material(0).metallic, 0);
+  // Reflectance is that at normal incidence: ((n - 1) / (n + 1))², on planes and boxes only.
+  const float n = material(1).ior;
+  EXPECT_NEAR(((n - 1) / (n + 1)) * ((n - 1) / (n + 1)), .25, 1e-5);
+  EXPECT_LE(material(1).roughness, .1f);
+  EXPECT_FLOAT_EQ(material(2).ior, 1.5f);
+  EXPECT_FLOAT_EQ(material(2).roughness, 1);
+  EXPECT_FLOAT_EQ(material(3).roughness, .3f);
+  EXPECT_FLOAT_EQ(material(3).metallic, .9f);
+}
+
+TEST(VisualMaterial, LayersByRole) {
+  const RenderDescription out = describe(R"(<mujoco><asset>
+      <texture name="a" type="2d" builtin="flat" width="2" height="2"/>
+      <texture name="b" type="2d" builtin="checker" width="2" height="2"/>
+      <texture name="c" type="cube" builtin="flat" width="2"/>
+      <material name="m" roughness=".5"><layer role="rgb" texture="a"/>
+        <layer role="orm" texture="b"/><layer role="normal" texture="a"/>
+        <layer role="emissive" texture="b"/><layer role="opacity" texture="c"/></material></asset>
+    <worldbody><geom size="1" material="m"/></worldbody></mujoco>)");
+  const MaterialDescription& m = out.materials[0];
+  const auto texture = [&](int row) { return out.textures.at(static_cast<size_t>(row)); };
+  EXPECT_EQ(texture(m.textures.base_color).name, "a");
+  EXPECT_EQ(texture(m.textures.base_color).faces[0].color_space, ColorSpace::kSrgb);
+  EXPECT_EQ(texture(m.textures.normal).name, "a");
+  EXPECT_EQ(texture(m.textures.normal).faces[0].color_space, ColorSpace::kLinear);
+  EXPECT_EQ(texture(m.textures.orm).faces[0].color_space, ColorSpace::kLinear);
+  EXPECT_EQ(texture(m.textures.emission).faces[0].color_space, ColorSpace::kSrgb);
+  EXPECT_EQ(m.textures.opacity, -1) << "a cube among 2d layers cannot be drawn";
+  ASSERT_EQ(out.unsupported.size(), 1u);
+  EXPECT_NE(out.unsupported[0].message.find("'c'"), std::string::npos);
+  EXPECT_FLOAT_EQ(m.roughness, .5f) << "multiplies the layer";
+  EXPECT_FLOAT_EQ(m.metallic, 1) << "not given: the layer stands alone";
+  expect_near(m.emission, {100, 100, 100}, 1e-4f);
+}
+
+}  // namespace
+}  // namespace gloam
