@@ -1,0 +1,154 @@
+#include "record/camera_recorder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "render/film/exr.h"
+#include "render/film/png.h"
+
+namespace gloam {
+namespace {
+
+constexpr size_t kThumbnails = 24;    // at most in memory; the contact sheet picks from these
+constexpr int kThumbnailWidth = 320;  // [px]
+
+}  // namespace
+
+Pose optical_pose(const Pose& X_WC) {
+  // Half a turn about the camera's own x: q * (0, 1, 0, 0).
+  const Quat& q = X_WC.q;
+  return {X_WC.p, {-q.x, q.w, q.z, -q.y}};
+}
+
+Thumbnail make_thumbnail(const CameraFrame& frame, int width) {
+  const int w = frame.intrinsics.width, h = frame.intrinsics.height;
+  Thumbnail out;
+  out.time = frame.time;
+  out.width = std::min(width, w);
+  out.height = std::max(1, static_cast<int>(int64_t{h} * out.width / w));
+  const auto source = [&](int x, int y) {
+    return static_cast<size_t>(y) * static_cast<size_t>(w) + static_cast<size_t>(x);
+  };
+  for (int y = 0; y < out.height; ++y) {
+    const int y0 = static_cast<int>(int64_t{y} * h / out.height);
+    const int y1 = std::max(y0 + 1, static_cast<int>(int64_t{y + 1} * h / out.height));
+    for (int x = 0; x < out.width; ++x) {
+      const int x0 = static_cast<int>(int64_t{x} * w / out.width);
+      const int x1 = std::max(x0 + 1, static_cast<int>(int64_t{x + 1} * w / out.width));
+      const size_t middle = source((x0 + x1 - 1) / 2, (y0 + y1 - 1) / 2);
+      if (!frame.depth.empty()) out.depth.push_back(frame.depth[middle]);
+      if (!frame.instance.empty()) out.instance.push_back(frame.instance[middle]);
+      if (frame.rgb.empty()) continue;
+      for (size_t c = 0; c < 3; ++c) {
+        int sum = 0;
+        for (int v = y0; v < y1; ++v)
+          for (int u = x0; u < x1; ++u) sum += frame.rgb[3 * source(u, v) + c];
+        const int count = (x1 - x0) * (y1 - y0);
+        out.rgb.push_back(static_cast<uint8_t>((sum + count / 2) / count));
+      }
+    }
+  }
+  return out;
+}
+
+CameraRecorder::CameraRecorder(RecordedCamera camera, std::filesystem::path folder,
+                               std::string file_name, std::set<std::string> outputs,
+                               std::shared_ptr<FileStore> store)
+    : camera_(std::move(camera)),
+      folder_(std::move(folder)),
+      file_name_(std::move(file_name)),
+      outputs_(std::move(outputs)),
+      store_(std::move(store)),
+      thumbnails_(kThumbnails) {}
+
+Status CameraRecorder::start() {
+  GLOAM_TRY_STATUS(store_->make_folder(folder_ / file_name_));
+  GLOAM_TRY(std::unique_ptr<ByteSink> sink, store_->create(folder_ / file_name_ / "poses.csv"));
+  GLOAM_TRY(CsvWriter poses,
+            CsvWriter::start(std::move(sink), {"frame", "step", "time_s", "x_m", "y_m", "z_m", "qw",
+                                               "qx", "qy", "qz"}));
+  poses_ = std::move(poses);
+  return {};
+}
+
+Status CameraRecorder::add(const CameraFrame& frame) {
+  GLOAM_TRY_STATUS(write_pictures(frame));
+  GLOAM_TRY_STATUS(write_video(frame));
+  GLOAM_TRY_STATUS(write_pose(frame));
+  ++frames_;
+  if (writes("contact_sheet")) {
+    if (thumbnails_.wants_next()) {
+      thumbnails_.add(make_thumbnail(frame, kThumbnailWidth));
+    } else {
+      thumbnails_.skip();
+    }
+  }
+  return {};
+}
+
+Status CameraRecorder::write_pictures(const CameraFrame& frame) {
+  const int w = frame.intrinsics.width, h = frame.intrinsics.height;
+  if (writes("png") && !frame.rgb.empty())
+    GLOAM_TRY_STATUS(write_picture("rgb", "png", frame.index, encode_png8(w, h, 3, frame.rgb)));
+  if (writes("depth_png") && !frame.depth.empty())
+    GLOAM_TRY_STATUS(write_picture("depth", "png", frame.index,
+                                   encode_png16(w, h, depth_to_millimetres(frame.depth))));
+  if (writes("depth_exr") && !frame.depth.empty()) {
+    const ExrChannel channel{"Z", frame.depth.data()};
+    GLOAM_TRY(const std::vector<uint8_t> bytes, encode_exr(w, h, {&channel, 1}));
+    GLOAM_TRY_STATUS(write_picture("depth_exr", "exr", frame.index, bytes));
+  }
+  if (writes("segmentation")) {
+    if (!frame.instance.empty())
+      GLOAM_TRY_STATUS(
+          write_picture("instance", "png", frame.index, encode_png16(w, h, frame.instance)));
+    if (!frame.semantic.empty())
+      GLOAM_TRY_STATUS(
+          write_picture("semantic", "png", frame.index, encode_png16(w, h, frame.semantic)));
+  }
+  return {};
+}
+
+Status CameraRecorder::write_picture(const char* kind, const char* extension, int64_t index,
+                                     std::span<const uint8_t> bytes) {
+  const std::filesystem::path folder = folder_ / file_name_ / kind;
+  if (made_folders_.insert(kind).second) GLOAM_TRY_STATUS(store_->make_folder(folder));
+  return store_->write_file(folder / fmt::format("{:06}.{}", index, extension), bytes);
+}
+
+Status CameraRecorder::write_video(const CameraFrame& frame) {
+  if (!writes("video") || frame.rgb.empty()) return {};
+  if (!video_) {
+    GLOAM_TRY(std::unique_ptr<ByteSink> sink, store_->create(folder_ / (file_name_ + ".mp4")));
+    GLOAM_TRY(VideoWriter video,
+              VideoWriter::start(std::move(sink), {.width = frame.intrinsics.width,
+                                                   .height = frame.intrinsics.height,
+                                                   .rate = camera_.rate}));
+    video_ = std::move(video);
+  }
+  return video_->add(frame.index, frame.rgb);
+}
+
+Status CameraRecorder::write_pose(const CameraFrame& frame) {
+  const Pose X = optical_pose(frame.X_WC);
+  const double row[] = {static_cast<double>(frame.index),
+                        static_cast<double>(frame.step),
+                        frame.time,
+                        X.p.x,
+                        X.p.y,
+                        X.p.z,
+                        X.q.w,
+                        X.q.x,
+                        X.q.y,
+                        X.q.z};
+  return poses_->add(row);
+}
+
+Status CameraRecorder::finish() {
+  Status video = video_ ? video_->finish() : Status();
+  Status poses = poses_ ? poses_->finish() : Status();
+  return video.ok() ? poses : video;
+}
+
+}  // namespace gloam

@@ -1,0 +1,35 @@
+#pragma once
+// Tables of numbers as CSV (RFC 4180, LF line ends), one row per write: what was written is whole.
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "gloam/result.h"
+#include "render/film/byte_sink.h"
+
+namespace gloam {
+
+/// One field, quoted if it must be.
+std::string csv_field(const std::string& text);
+
+class CsvWriter {
+ public:
+  /// Writes the header. Units belong into the names: "time_s", "vx_mps".
+  static Result<CsvWriter> start(std::unique_ptr<ByteSink> sink,
+                                 const std::vector<std::string>& columns);
+  /// Shortest digits that read back to the same double; not-a-number is an empty field.
+  Status add(std::span<const double> row);
+  Status finish() { return sink_->close(); }
+
+ private:
+  CsvWriter(std::unique_ptr<ByteSink> sink, size_t columns)
+      : sink_(std::move(sink)), columns_(columns) {}
+  Status append(const std::string& line);
+
+  std::unique_ptr<ByteSink> sink_;
+  size_t columns_;
+};
+
+}  // namespace gloam

@@ -1,0 +1,233 @@
+#include "record/recorder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <optional>
+
+#include "base/check.h"
+#include "base/log.h"
+#include "base/text.h"
+#include "record/camera_recorder.h"
+#include "record/csv.h"
+#include "record/run_files.h"
+#include "record/run_folder.h"
+#include "record/run_sheet.h"
+#include "record/worker.h"
+#include "render/film/h264.h"
+
+namespace gloam {
+namespace {
+
+constexpr size_t kQueuedRows = 4096;   // metric rows that may wait for the disk
+constexpr size_t kPlottedRows = 2000;  // kept in memory for the contact sheet
+
+const std::vector<std::string> kOutputs = {"video",        "png",     "depth_png",    "depth_exr",
+                                           "segmentation", "metrics", "contact_sheet"};
+
+/// The failure that ended a recording. Others that follow from it are of no interest.
+class FirstFailure {
+ public:
+  void report(const Status& status) {
+    if (status.ok()) return;
+    const std::lock_guard lock(mutex_);
+    if (error_) return;
+    error_ = status.error();
+    failed_ = true;
+    log_error("recording stopped: {}", error_->to_string());
+  }
+  bool failed() const { return failed_; }
+  Status status() const {
+    const std::lock_guard lock(mutex_);
+    return error_ ? Status(*error_) : Status();
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::atomic<bool> failed_{false};
+  std::optional<Error> error_;
+};
+
+/// A camera's files and the thread that writes them.
+struct CameraLane {
+  CameraLane(CameraRecorder camera_recorder, size_t capacity, bool wait)
+      : recorder(std::move(camera_recorder)), worker(capacity, wait) {}
+  CameraRecorder recorder;
+  Worker worker;  // after what it uses: it is destroyed, and so ends, first
+};
+
+class FolderRecorder : public Recorder {
+ public:
+  FolderRecorder(const RecorderOptions& options, const RunInfo& info)
+      : options_(options),
+        info_(info),
+        outputs_(options.outputs.begin(), options.outputs.end()),
+        rows_(kPlottedRows) {}
+
+  Status open() {
+    GLOAM_TRY_STATUS(check());
+    GLOAM_TRY_STATUS(prepare_run_folder(options_.folder, options_.overwrite));
+    // First the file that says whose folder this is, then everything else.
+    entries_ = {"cameras.json", "labels.json"};
+    if (outputs_.contains("metrics")) entries_.push_back("metrics.csv");
+    if (outputs_.contains("contact_sheet")) entries_.push_back("contact_sheet.png");
+    for (const std::string& name : file_names_) {
+      entries_.push_back(name);
+      if (outputs_.contains("video")) entries_.push_back(name + ".mp4");
+    }
+    entries_.push_back(kSummaryName);
+    GLOAM_TRY_STATUS(write_summary(nullptr));
+    GLOAM_TRY_STATUS(write_text("cameras.json", cameras_json(info_.cameras, file_names_)));
+    GLOAM_TRY_STATUS(write_text("labels.json", labels_json(info_.labels)));
+    for (size_t i = 0; i < info_.cameras.size(); ++i) {
+      CameraRecorder recorder(info_.cameras[i], options_.folder, file_names_[i], outputs_,
+                              options_.store);
+      GLOAM_TRY_STATUS(recorder.start());
+      lanes_[info_.cameras[i].name] = std::make_unique<CameraLane>(
+          std::move(recorder), static_cast<size_t>(options_.queue_frames), options_.wait);
+    }
+    if (outputs_.contains("metrics")) {
+      GLOAM_TRY(std::unique_ptr<ByteSink> sink,
+                options_.store->create(options_.folder / "metrics.csv"));
+      GLOAM_TRY(CsvWriter metrics, CsvWriter::start(std::move(sink), info_.metric_columns));
+      metrics_ = std::move(metrics);
+    }
+    metrics_worker_ = std::make_unique<Worker>(kQueuedRows, options_.wait);
+    return {};
+  }
+
+  void add_frame(std::shared_ptr<const CameraFrame> frame) override {
+    const auto lane = lanes_.find(frame->camera);
+    GLOAM_CHECK(lane != lanes_.end(), "a frame of a camera that is not recorded");
+    if (failure_.failed()) return;
+    CameraRecorder* recorder = &lane->second->recorder;
+    lane->second->worker.post([this, recorder, frame = std::move(frame)] {
+      if (!failure_.failed()) failure_.report(recorder->add(*frame));
+    });
+  }
+
+  void add_metrics(std::span<const double> row) override {
+    GLOAM_CHECK(row.size() == info_.metric_columns.size(), "a row has one value per column");
+    if (failure_.failed()) return;
+    metrics_worker_->post([this, values = std::vector<double>(row.begin(), row.end())]() mutable {
+      if (failure_.failed()) return;
+      if (metrics_) failure_.report(metrics_->add(values));
+      ++metric_rows_;
+      if (rows_.wants_next()) {
+        rows_.add(std::move(values));
+      } else {
+        rows_.skip();
+      }
+    });
+  }
+
+  Status status() const override { return failure_.status(); }
+
+  Status finish(const RunOutcome& outcome) override {
+    for (auto& [name, lane] : lanes_) lane->worker.close();
+    metrics_worker_->close();
+    // After a failure too: what can be ended properly should be.
+    for (auto& [name, lane] : lanes_) failure_.report(lane->recorder.finish());
+    if (metrics_) failure_.report(metrics_->finish());
+    if (outputs_.contains("contact_sheet") && !failure_.failed()) {
+      std::vector<const CameraRecorder*> cameras;
+      for (const RecordedCamera& camera : info_.cameras)
+        cameras.push_back(&lanes_.at(camera.name)->recorder);
+      failure_.report(
+          options_.store->write_file(options_.folder / "contact_sheet.png",
+                                     run_sheet_png(info_, outcome, cameras, rows_.items())));
+    }
+    failure_.report(write_summary(&outcome));
+    Status status = failure_.status();
+    if (status.ok()) return {};
+    Error error = status.error();
+    error.kind = ErrorKind::kPartial;
+    return error;
+  }
+
+  const std::filesystem::path& folder() const override { return options_.folder; }
+
+ private:
+  Status check() {
+    for (const std::string& output : outputs_) {
+      if (std::find(kOutputs.begin(), kOutputs.end(), output) != kOutputs.end()) continue;
+      return Error{ErrorKind::kUsage,
+                   fmt::format("there is no output '{}'", output),
+                   {},
+                   suggest_name(output, kOutputs)};
+    }
+    GLOAM_CHECK(options_.queue_frames > 0, "a queue holds at least one frame");
+    std::set<std::string> names,
+        taken = {"cameras.json", "labels.json", "metrics.csv", "contact_sheet.png", kSummaryName};
+    for (const RecordedCamera& camera : info_.cameras) {
+      if (!names.insert(camera.name).second)
+        return Error{ErrorKind::kInput,
+                     fmt::format("two cameras are named '{}'", camera.name),
+                     {},
+                     "rename one of them"};
+      const int64_t pixels = int64_t{camera.intrinsics.width} * camera.intrinsics.height;
+      if (outputs_.contains("video") && (pixels > kMaxVideoPixels || camera.intrinsics.width < 16 ||
+                                         camera.intrinsics.height < 16))
+        return Error{
+            ErrorKind::kUnsupported,
+            fmt::format("camera '{}' with {} x {} pixels cannot be recorded as H.264 video",
+                        camera.name, camera.intrinsics.width, camera.intrinsics.height),
+            {},
+            "change its resolution, or record 'png' instead of 'video'"};
+      std::string file_name = safe_file_name(camera.name);
+      for (int i = 2; !taken.insert(file_name).second || !taken.insert(file_name + ".mp4").second;
+           ++i)
+        file_name = fmt::format("{}_{}", safe_file_name(camera.name), i);
+      file_names_.push_back(file_name);
+    }
+    return {};
+  }
+
+  Status write_text(const char* name, const std::string& text) {
+    return options_.store->write_file(options_.folder / name,
+                                      {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+  }
+
+  Status write_summary(const RunOutcome* outcome) {
+    std::vector<CameraCounts> counts;
+    for (size_t i = 0; i < info_.cameras.size(); ++i) {
+      const auto lane = lanes_.find(info_.cameras[i].name);
+      const bool known = lane != lanes_.end();
+      counts.push_back({info_.cameras[i].name, file_names_[i],
+                        known ? lane->second->recorder.frames() : 0,
+                        known ? lane->second->worker.dropped() : 0});
+    }
+    const Status status = failure_.status();
+    return write_text(kSummaryName,
+                      summary_json(info_, outcome, counts, metric_rows_,
+                                   metrics_worker_ ? metrics_worker_->dropped() : 0, entries_,
+                                   status.ok() ? "" : status.error().to_string()));
+  }
+
+  const RecorderOptions options_;
+  const RunInfo info_;
+  const std::set<std::string> outputs_;
+  std::vector<std::string> file_names_;  // of the cameras
+  std::vector<std::string> entries_;     // of the folder, as listed in the summary
+  FirstFailure failure_;
+  std::optional<CsvWriter> metrics_;
+  int64_t metric_rows_ = 0;
+  Timeline<std::vector<double>> rows_;
+  // The threads come last, so they end before anything that they use.
+  std::map<std::string, std::unique_ptr<CameraLane>> lanes_;
+  std::unique_ptr<Worker> metrics_worker_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Recorder>> Recorder::start(const RecorderOptions& options,
+                                                  const RunInfo& info) {
+  auto recorder = std::make_unique<FolderRecorder>(options, info);
+  GLOAM_TRY_STATUS(recorder->open());
+  return std::unique_ptr<Recorder>(std::move(recorder));
+}
+
+}  // namespace gloam

@@ -1,0 +1,109 @@
+#pragma once
+// Writes one run into one folder, on threads of its own:
+//
+//   summary.json        what ran, how it ended (written at the start, replaced at the end)
+//   cameras.json        intrinsics, frames and file patterns of every camera
+//   labels.json         what the numbers in instance and semantic pictures mean
+//   metrics.csv         one row per add_metrics(); units in the column names
+//   contact_sheet.png   the run at a glance
+//   CAMERA.mp4          H.264
+//   CAMERA/poses.csv    pose of the camera's optical frame (Z forward, X right, Y down) per frame
+//   CAMERA/rgb/000000.png        8-bit sRGB
+//   CAMERA/depth/000000.png      16-bit mm along the optical axis (ROS 16UC1), 0 = nothing or
+//                                beyond 65.535 m
+//   CAMERA/depth_exr/000000.exr  float m, channel Z (ROS 32FC1), +inf = nothing
+//   CAMERA/instance/000000.png, CAMERA/semantic/000000.png   16-bit ids of labels.json
+//
+// Pictures are written whole or not at all, tables and videos only grow: after any failure
+// everything written before it is readable.
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gloam/camera.h"
+#include "gloam/result.h"
+#include "gloam/types.h"
+#include "record/file_store.h"
+
+namespace gloam {
+
+struct RecorderOptions {
+  std::filesystem::path folder;
+  bool overwrite = false;  ///< replace an earlier recording in `folder`
+  /// As RecordOptions::outputs; channels that a frame does not have are not written.
+  std::vector<std::string> outputs = {"video", "png", "metrics", "contact_sheet"};
+  /// true: add_frame() waits for the disk (batch runs); false: oldest frames are dropped and
+  /// counted, add_frame() never waits.
+  bool wait = true;
+  int queue_frames = 8;  ///< frames per camera that may wait to be written
+  std::shared_ptr<FileStore> store = make_disk_store();
+};
+
+struct RecordedCamera {
+  std::string name;  ///< full name, as in CameraFrame::camera
+  Intrinsics intrinsics;
+  Rational rate = {20, 1};  ///< frames per second of simulation time
+};
+
+/// A curve of the contact sheet: columns of the metrics; `commanded` may be "".
+struct MetricPlot {
+  std::string title;  ///< "forward speed"
+  std::string unit;   ///< "m/s"
+  std::string measured, commanded;
+};
+
+using NamedText = std::pair<std::string, std::string>;
+using NamedNumber = std::pair<std::string, double>;
+
+/// What is known when a run starts.
+struct RunInfo {
+  std::string title;                ///< heading of the contact sheet
+  std::vector<NamedText> versions;  ///< {"gloam", "0.1.0"}, {"mujoco", "4.0.1"} …
+  std::string scene_file;           ///< "" for scenes made in code
+  std::string scene_hash;           ///< of its content, hexadecimal
+  uint64_t seed = 0;
+  double timestep = 0;              ///< [s]
+  double duration = 0;              ///< planned [s]
+  std::vector<NamedText> settings;  ///< renderer tier, samples, threads …
+  std::vector<RecordedCamera> cameras;
+  std::vector<LabelRow> labels;
+  std::vector<std::string> metric_columns;  ///< the first is the time [s]
+  std::vector<MetricPlot> plots;
+};
+
+/// What is known when it ended.
+struct RunOutcome {
+  std::string exit_reason = "completed";  ///< or "interrupted", "diverged: …"
+  int64_t steps = 0;
+  double simulated = 0;              ///< [s]
+  std::string final_state_hash;      ///< hexadecimal
+  std::vector<NamedNumber> timings;  ///< [s]
+  std::vector<NamedNumber> results;  ///< numbers worth a line: velocity errors, falls …
+};
+
+class Recorder {
+ public:
+  /// Errors: the folder is in use or cannot be made, two cameras of one name, an unknown output,
+  /// a picture too large for a video.
+  static Result<std::unique_ptr<Recorder>> start(const RecorderOptions& options,
+                                                 const RunInfo& info);
+  virtual ~Recorder() = default;  ///< without finish(): as after a crash
+
+  /// Frames of one camera come in order; frames of unknown cameras are a bug. Any thread.
+  virtual void add_frame(std::shared_ptr<const CameraFrame> frame) = 0;
+  /// One value per column. One thread.
+  virtual void add_metrics(std::span<const double> row) = 0;
+
+  /// The first failure so far; it stops the recording and was logged once.
+  virtual Status status() const = 0;
+  /// Writes what is queued, ends videos, makes contact sheet and summary. Returns the first failure
+  /// as ErrorKind::kPartial. Call once.
+  virtual Status finish(const RunOutcome& outcome) = 0;
+  virtual const std::filesystem::path& folder() const = 0;
+};
+
+}  // namespace gloam

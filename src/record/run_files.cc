@@ -1,0 +1,125 @@
+#include "record/run_files.h"
+
+#include <nlohmann/json.hpp>
+
+namespace gloam {
+namespace {
+using Json = nlohmann::ordered_json;
+
+// Names come from users' files: bytes that are not UTF-8 are replaced, never thrown about.
+std::string dump(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+template <class Pairs>
+Json object(const Pairs& pairs) {
+  Json out = Json::object();
+  for (const auto& [name, value] : pairs) out[name] = value;
+  return out;
+}
+
+}  // namespace
+
+std::string summary_json(const RunInfo& info, const RunOutcome* outcome,
+                         const std::vector<CameraCounts>& cameras, int64_t metric_rows,
+                         uint64_t dropped_metric_rows, const std::vector<std::string>& entries,
+                         const std::string& error) {
+  Json out;
+  out["format"] = "gloam-run 1";
+  out["title"] = info.title;
+  out["state"] = outcome == nullptr ? "recording" : "finished";
+  out["exit_reason"] = outcome == nullptr ? Json() : Json(outcome->exit_reason);
+  out["recording_error"] = error.empty() ? Json() : Json(error);
+  out["versions"] = object(info.versions);
+  out["scene"] = {{"file", info.scene_file}, {"hash", info.scene_hash}};
+  out["seed"] = info.seed;
+  out["timestep_s"] = info.timestep;
+  out["planned_s"] = info.duration;
+  out["settings"] = object(info.settings);
+  if (outcome != nullptr) {
+    out["simulated_s"] = outcome->simulated;
+    out["steps"] = outcome->steps;
+    out["final_state_hash"] = outcome->final_state_hash;
+    out["results"] = object(outcome->results);
+    out["timings_s"] = object(outcome->timings);
+  }
+  Json list = Json::array();
+  for (const CameraCounts& camera : cameras)
+    list.push_back({{"name", camera.name},
+                    {"folder", camera.file_name},
+                    {"frames", camera.frames},
+                    {"dropped_frames", camera.dropped}});
+  out["cameras"] = list;
+  out["metrics"] = {{"rows", metric_rows}, {"dropped_rows", dropped_metric_rows}};
+  out["entries"] = entries;
+  return dump(out);
+}
+
+std::string cameras_json(const std::vector<RecordedCamera>& cameras,
+                         const std::vector<std::string>& file_names) {
+  Json list = Json::array();
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    const RecordedCamera& camera = cameras[i];
+    const Intrinsics& k = camera.intrinsics;
+    Json one;
+    one["name"] = camera.name;
+    one["folder"] = file_names[i];
+    one["frame_id"] = camera.name + "_optical_frame";
+    one["rate_hz"] = {{"num", camera.rate.num}, {"den", camera.rate.den}};
+    one["width_px"] = k.width;
+    one["height_px"] = k.height;
+    one["projection"] = k.orthographic ? "orthographic" : "pinhole";
+    one["fx_px"] = k.fx;
+    one["fy_px"] = k.fy;
+    one["cx_px"] = k.cx;
+    one["cy_px"] = k.cy;
+    // ROS and OpenCV count pixel centres at integers, Gloam at integer + 0.5.
+    if (!k.orthographic)
+      one["camera_info"] = {{"distortion_model", "plumb_bob"},
+                            {"d", {0, 0, 0, 0, 0}},
+                            {"k", {k.fx, 0.0, k.cx - 0.5, 0.0, k.fy, k.cy - 0.5, 0.0, 0.0, 1.0}}};
+    list.push_back(one);
+  }
+  Json out;
+  out["conventions"] = {
+      {"pixels",
+       "fx, fy, cx, cy from the top left corner of the picture, pixel centres at integer "
+       "+ 0.5; camera_info.k as in ROS and OpenCV, pixel centres at integers"},
+      {"poses",
+       "poses.csv: of frame_id in the world; Z forward, X right, Y down; metres; "
+       "quaternion w first"},
+      {"depth",
+       "along Z of frame_id; depth/*.png 16-bit millimetres, 0 = nothing or beyond "
+       "65.535 m; depth_exr/*.exr channel Z, float metres, inf = nothing"}};
+  out["cameras"] = list;
+  return dump(out);
+}
+
+std::string labels_json(const std::vector<LabelRow>& labels) {
+  std::map<uint16_t, std::string> categories;
+  std::map<uint16_t, std::pair<std::string, uint16_t>> instances;
+  Json parts = Json::array();
+  for (const LabelRow& row : labels) {
+    if (row.semantic != 0) categories.try_emplace(row.semantic, row.semantic_name);
+    if (row.instance != 0)
+      instances.try_emplace(row.instance, std::pair(row.instance_name, row.semantic));
+    parts.push_back({{"id", row.part},
+                     {"geom", row.geom},
+                     {"body", row.body},
+                     {"material", row.material},
+                     {"instance_id", row.instance},
+                     {"category_id", row.semantic}});
+  }
+  Json out;
+  out["nothing"] = 0;
+  out["categories"] = Json::array();  // ids of semantic/*.png
+  for (const auto& [id, name] : categories)
+    out["categories"].push_back({{"id", id}, {"name", name}});
+  out["instances"] = Json::array();  // ids of instance/*.png
+  for (const auto& [id, what] : instances)
+    out["instances"].push_back({{"id", id}, {"name", what.first}, {"category_id", what.second}});
+  out["parts"] = parts;
+  return dump(out);
+}
+
+}  // namespace gloam

@@ -1,0 +1,30 @@
+#pragma once
+// The texts of a recording: summary.json, cameras.json, labels.json.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "record/recorder.h"
+
+namespace gloam {
+
+struct CameraCounts {
+  std::string name, file_name;
+  int64_t frames = 0;
+  uint64_t dropped = 0;
+};
+
+/// `outcome` null: the run is still going on. `entries` = names in the folder that belong to it.
+std::string summary_json(const RunInfo& info, const RunOutcome* outcome,
+                         const std::vector<CameraCounts>& cameras, int64_t metric_rows,
+                         uint64_t dropped_metric_rows, const std::vector<std::string>& entries,
+                         const std::string& error);
+
+/// `file_names`: of the cameras, in order.
+std::string cameras_json(const std::vector<RecordedCamera>& cameras,
+                         const std::vector<std::string>& file_names);
+
+std::string labels_json(const std::vector<LabelRow>& labels);
+
+}  // namespace gloam
