@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "gloam/result.h"
 #include "render/film/film.h"
@@ -52,6 +53,9 @@ class Renderer {
   virtual RenderStats render(const CameraView& view, const RenderSettings& settings,
                              Film* film) = 0;
 };
+
+/// "Embree 3.13.5"
+std::string ray_tracer_version();
 
 /// Renders on the CPU with Embree. Errors: out of memory, a description that refers to things it
 /// does not hold.

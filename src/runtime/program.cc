@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "geometry/embree_version.h"
+#include "render/renderer.h"
 #include "world/version.h"
 
 namespace gloam {
@@ -15,7 +15,7 @@ std::string configuration() {
 #else
   const std::string compiler = fmt::format("gcc {}.{}", __GNUC__, __GNUC_MINOR__);
 #endif
-  return fmt::format("MuJoCo {}, Embree {}, {}, {}", mujoco_version(), embree_version(), compiler,
+  return fmt::format("MuJoCo {}, {}, {}, {}", mujoco_version(), ray_tracer_version(), compiler,
                      GLOAM_BUILD);
 }
 

@@ -197,7 +197,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     out.instances.push_back(std::move(instance));
   };
 
-  GeomImporter simulated(m, world.spec.get(), true, &out);
+  GeomImporter simulated(m, nullptr, true, &out);
   out.instances.reserve(static_cast<size_t>(m.ngeom) + world.visual_only.size());
   for (int g = 0; g < static_cast<int>(m.ngeom); ++g)
     if (auto instance = simulated.instance(g))

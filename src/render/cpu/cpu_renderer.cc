@@ -1,5 +1,6 @@
 // The kernel's stages over Embree and all threads of parallel_for.
 
+#include <fmt/format.h>
 #include <immintrin.h>
 
 #include <algorithm>
@@ -222,6 +223,10 @@ Affine3f camera_pose(const CameraDescription& camera, const PoseFrame& frame) {
 }
 
 }  // namespace
+
+std::string ray_tracer_version() {
+  return fmt::format("Embree {}.{}.{}", RTC_VERSION_MAJOR, RTC_VERSION_MINOR, RTC_VERSION_PATCH);
+}
 
 Result<std::unique_ptr<Renderer>> make_cpu_renderer(const RenderDescription& description) {
   GLOAM_TRY(auto scene, RenderScene::make(description));
