@@ -28,7 +28,9 @@ void on_error(j_common_ptr info) {
   info->err->format_message(info, reader->message);
   std::longjmp(reader->recovery, 1);
 }
-void on_message(j_common_ptr, int) {}
+void on_message(j_common_ptr info, int level) {
+  if (level < 0) ++info->err->num_warnings;
+}
 
 bool read_header(Reader* reader, const uint8_t* bytes, size_t size) {
   reader->info.err = jpeg_std_error(&reader->errors);

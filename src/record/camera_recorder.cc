@@ -18,7 +18,7 @@ constexpr int kThumbnailWidth = 320;  // [px]
 Pose optical_pose(const Pose& X_WC) {
   // Half a turn about the camera's own x: q * (0, 1, 0, 0).
   const Quat& q = X_WC.q;
-  return {X_WC.p, {-q.x, q.w, q.z, -q.y}};
+  return {X_WC.p, {0 - q.x, q.w, q.z, 0 - q.y}};  // 0 - x: no minus zeros in tables
 }
 
 Thumbnail make_thumbnail(const CameraFrame& frame, int width) {

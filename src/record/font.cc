@@ -10,7 +10,7 @@ namespace {
 // Points are two hexadecimal digits x, y: base line at y = 3, small letters up to 8, capitals to a,
 // descenders to 0.
 constexpr std::string_view kGlyphs[] = {
-    "3",                                        // space
+    "2",                                        // space
     "0 l0a06 d03",                              // !
     "2 l0a08 l2a28",                            // "
     "6 l132a l435a l0565 l0868",                // #

@@ -9,7 +9,7 @@
 namespace gloam {
 
 inline constexpr float kFontCapHeight = 7;   ///< [grid units]
-inline constexpr float kFontSpacing = 2.3f;  ///< between characters
+inline constexpr float kFontSpacing = 2.15f;  ///< between characters
 
 struct Glyph {
   float width = 0;                        ///< without spacing

@@ -19,7 +19,7 @@ class Timeline {
   void skip() { ++count_; }
   void add(T item) {
     if (items_.size() == capacity_) {
-      for (size_t i = 0; 2 * i < items_.size(); ++i) items_[i] = std::move(items_[2 * i]);
+      for (size_t i = 1; 2 * i < items_.size(); ++i) items_[i] = std::move(items_[2 * i]);
       items_.resize((items_.size() + 1) / 2);
       stride_ *= 2;
       if (!wants_next()) {
