@@ -26,7 +26,7 @@ function connect() {
   socket.onmessage = (event) => {
     greeted = true;
     if (typeof event.data === "string") receive(JSON.parse(event.data));
-    else showPicture(event.data);
+    else pictures = pictures.then(() => showPicture(event.data)).catch(() => {});
   };
   socket.onclose = async (event) => {
     socket = null;
@@ -78,6 +78,7 @@ function receive(message) {
     case "hello":
       client = message.client;
       retries = 0;
+      lastSequence = 0n;
       cameras = message.cameras;
       $("camera").replaceChildren(...cameras.map((name) => new Option(name === "free" ? "Free camera" : name, name)));
       document.body.classList.remove("offline");
@@ -102,6 +103,7 @@ function receive(message) {
 
 const arrivals = [];     // [ms] when pictures were shown in the last second
 let lastSequence = 0n, missed = 0;
+let pictures = Promise.resolve();  // decoded one after the other: they must not overtake
 
 async function showPicture(bytes) {
   const view = new DataView(bytes);
@@ -259,7 +261,13 @@ const actions = {
   claim: () => send({ type: "claim" }),
   "help-button": () => $("help").showModal(),
 };
-for (const [id, action] of Object.entries(actions)) $(id).addEventListener("click", action);
+for (const [id, action] of Object.entries(actions)) {
+  $(id).addEventListener("click", (event) => {
+    action(event);
+    // After a click with the mouse the Space key plays and pauses again.
+    if (event.detail > 0 && !$("help").open) stage.focus({ preventScroll: true });
+  });
+}
 $("camera").addEventListener("change", () => {
   wish({ type: "camera", name: $("camera").value });
   stage.focus();

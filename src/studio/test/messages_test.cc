@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 
 namespace gloam::studio {
 namespace {
@@ -88,6 +91,19 @@ TEST(Messages, PicksSayWhatWasHit) {
   EXPECT_EQ(hit["point"], nlohmann::json::array({1.0, 2.0, 3.0}));
   EXPECT_EQ(hit["dragging"], true);
   EXPECT_EQ(nlohmann::json::parse(picked_nothing_message())["found"], false);
+}
+
+TEST(Messages, EveryExampleOfTheDocumentationIsRead) {
+  std::ifstream file(GLOAM_SOURCE_DIR "/docs/view_protocol.md");
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  std::set<size_t> types;
+  for (size_t at = text.find("`{"); at != std::string::npos; at = text.find("`{", at + 1)) {
+    const std::string example = text.substr(at + 1, text.find('`', at + 1) - at - 1);
+    const auto message = parse_message(example);
+    ASSERT_TRUE(message.ok()) << example << ": " << message.error().message;
+    types.insert(message->index());
+  }
+  EXPECT_EQ(types.size(), std::variant_size_v<ControlMessage>);
 }
 
 }  // namespace

@@ -232,6 +232,7 @@ TEST_F(ViewTest, ChangesOfAPausedSimulationAreShown) {
 }
 
 TEST_F(ViewTest, CamerasAreSwitched) {
+  simulation_.resume();
   const auto client = join();
   client->send_json({{"type", "camera"}, {"name", "robot/head"}});
   EXPECT_TRUE(called("open robot/head"));
