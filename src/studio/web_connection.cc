@@ -23,7 +23,7 @@ constexpr uint32_t kMaxHeader = 8 << 10;
 constexpr size_t kMaxMessage = 64 << 10;
 constexpr size_t kMaxWaitingTexts = 128;
 constexpr size_t kMaxDrained = 256 << 10;
-constexpr std::chrono::seconds kRequestTime{5}, kIdleTime{30}, kGoodbyeTime{2};
+constexpr std::chrono::seconds kGoodbyeTime{2};
 
 std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
@@ -68,7 +68,7 @@ void WebConnection::read_request() {
   request_.emplace();
   request_->header_limit(kMaxHeader);
   // One deadline for the whole header: sending it byte by byte gains no time.
-  stream_.expires_after(kRequestTime);
+  stream_.expires_after(shared_.options.request_time);
   http::async_read_header(
       stream_, buffer_, *request_,
       [self = shared_from_this()](error_code error, size_t) { self->on_request(error); });
@@ -119,7 +119,7 @@ void WebConnection::answer(http::status status, std::string_view type, std::stri
   response.content_length(body.size());
   if (request_->get().method() != http::verb::head) response.body() = body;
 
-  stream_.expires_after(kRequestTime);
+  stream_.expires_after(shared_.options.request_time);
   http::async_write(stream_, response,
                     [self = shared_from_this(), keep_alive](error_code error, size_t) {
                       if (error) return;
@@ -143,7 +143,8 @@ void WebConnection::drain() {
 void WebConnection::become_websocket() {
   stream_.expires_never();
   websocket_.emplace(std::move(stream_));
-  websocket_->set_option(websocket::stream_base::timeout{kRequestTime, kIdleTime, true});
+  websocket_->set_option(websocket::stream_base::timeout{shared_.options.request_time,
+                                                         shared_.options.idle_time, true});
   websocket_->read_message_max(kMaxMessage);
   websocket_->auto_fragment(false);
   buffer_.clear();

@@ -2,6 +2,7 @@
 // The network side: HTTP for the page's files, WebSocket for messages and pictures, on one thread.
 // Knows who may connect and how much is bearable; knows nothing of simulations.
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -17,6 +18,8 @@ struct WebOptions {
   int port = 0;
   int max_connections = 32;
   std::string token;
+  std::chrono::milliseconds request_time{5000};  ///< for a whole request header, or a handshake
+  std::chrono::milliseconds idle_time{30000};    ///< a silent WebSocket is pinged at half of it
 };
 
 /// Called on the network's thread; must not block. Clients are numbered from 1.

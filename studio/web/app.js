@@ -22,11 +22,13 @@ function connect() {
   showLink("connecting", "Connecting");
   socket = new WebSocket(`ws://${location.host}/ws`);
   socket.binaryType = "arraybuffer";
+  let greeted = false;
   socket.onmessage = (event) => {
+    greeted = true;
     if (typeof event.data === "string") receive(JSON.parse(event.data));
-    else showPicture(event.data);
+    else pictures = pictures.then(() => showPicture(event.data)).catch(() => {});
   };
-  socket.onclose = (event) => {
+  socket.onclose = async (event) => {
     socket = null;
     endDrag();
     document.body.classList.add("offline");
@@ -40,8 +42,21 @@ function connect() {
     showLink("lost", ended ? "Ended" : "Not connected");
     showControls();
     if (!picture) $("placeholder-text").textContent = "Not connected";
+    // Another simulation may listen at this address by now: its token is a new one.
+    if (!ended && !greeted && await isTurnedAway()) {
+      ended = true;
+      showBanner("Another simulation runs at this address now. Open the address that it printed.");
+    }
     if (!ended) setTimeout(connect, Math.min(5000, 400 * 2 ** retries++));
   };
+}
+
+async function isTurnedAway() {
+  try {
+    return (await fetch("/")).status === 401;
+  } catch {
+    return false;
+  }
 }
 
 function send(message) {
@@ -53,14 +68,17 @@ function inControl() { return socket !== null && state !== null && state.control
 /** Sends what only the controller may; tells the others why nothing happens. */
 function wish(message) {
   if (inControl()) send(message);
-  else if (socket) showNotice("You are watching. Press “Take control” first.");
+  else if (socket) tellWatching();
 }
+
+function tellWatching() { showNotice("You are watching. Press “Take control” first."); }
 
 function receive(message) {
   switch (message.type) {
     case "hello":
       client = message.client;
       retries = 0;
+      lastSequence = 0n;
       cameras = message.cameras;
       $("camera").replaceChildren(...cameras.map((name) => new Option(name === "free" ? "Free camera" : name, name)));
       document.body.classList.remove("offline");
@@ -85,6 +103,7 @@ function receive(message) {
 
 const arrivals = [];     // [ms] when pictures were shown in the last second
 let lastSequence = 0n, missed = 0;
+let pictures = Promise.resolve();  // decoded one after the other: they must not overtake
 
 async function showPicture(bytes) {
   const view = new DataView(bytes);
@@ -171,7 +190,7 @@ function showState() {
   $("camera").value = state.camera;
   $("time").textContent = `${state.time.toFixed(3)} s`;
   $("steps").textContent = state.step.toLocaleString("en");
-  $("factor").textContent = state.paused ? "paused" : `${state.realtime_factor.toFixed(2)}×`;
+  $("factor").textContent = state.error ? "–" : state.paused ? "paused" : `${state.realtime_factor.toFixed(2)}×`;
   $("dropped").textContent = (state.dropped + missed).toLocaleString("en");
   $("warnings").textContent = state.warnings;
   $("warnings-cell").hidden = state.warnings === 0;
@@ -242,7 +261,13 @@ const actions = {
   claim: () => send({ type: "claim" }),
   "help-button": () => $("help").showModal(),
 };
-for (const [id, action] of Object.entries(actions)) $(id).addEventListener("click", action);
+for (const [id, action] of Object.entries(actions)) {
+  $(id).addEventListener("click", (event) => {
+    action(event);
+    // After a click with the mouse the Space key plays and pauses again.
+    if (event.detail > 0 && !$("help").open) stage.focus({ preventScroll: true });
+  });
+}
 $("camera").addEventListener("change", () => {
   wish({ type: "camera", name: $("camera").value });
   stage.focus();
@@ -296,7 +321,7 @@ function flush() {
 /** True when the free camera may be moved; says why not. */
 function mayMoveCamera() {
   if (!inControl()) {
-    wish({});
+    tellWatching();
     return false;
   }
   if (state.camera === "free") return true;
@@ -309,7 +334,8 @@ stage.addEventListener("pointerdown", (event) => {
   if (gesture || !picture || event.button === 1) return;
   event.preventDefault();
   const kind = event.ctrlKey ? "pull" : event.button === 2 ? "pan" : "orbit";
-  if (kind === "pull" && (!inControl() || !inPicture(toPixel(event)))) return wish({});
+  if (kind === "pull" && !inPicture(toPixel(event))) return;
+  if (kind === "pull" && !inControl()) return tellWatching();
   gesture = { kind, x: event.clientX, y: event.clientY, moved: false, id: event.pointerId };
   stage.setPointerCapture(event.pointerId);
   if (kind !== "pull") return;

@@ -1,0 +1,100 @@
+#include "studio/picture.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstring>
+// After cstdio: it needs FILE.
+#include <jpeglib.h>
+
+namespace gloam::studio {
+namespace {
+
+std::vector<uint8_t> decode(std::string_view jpeg, int& width, int& height) {
+  jpeg_decompress_struct info;
+  jpeg_error_mgr errors;
+  info.err = jpeg_std_error(&errors);
+  jpeg_create_decompress(&info);
+  jpeg_mem_src(&info, reinterpret_cast<const unsigned char*>(jpeg.data()), jpeg.size());
+  jpeg_read_header(&info, TRUE);
+  info.out_color_space = JCS_RGB;
+  jpeg_start_decompress(&info);
+  width = static_cast<int>(info.output_width);
+  height = static_cast<int>(info.output_height);
+  std::vector<uint8_t> rgb(size_t{3} * info.output_width * info.output_height);
+  while (info.output_scanline < info.output_height) {
+    JSAMPROW row = &rgb[size_t{3} * info.output_scanline * info.output_width];
+    jpeg_read_scanlines(&info, &row, 1);
+  }
+  jpeg_finish_decompress(&info);
+  jpeg_destroy_decompress(&info);
+  return rgb;
+}
+
+/// A smooth picture: JPEG keeps it within a few grey levels.
+CameraFrame ramp(int width, int height) {
+  CameraFrame frame;
+  frame.intrinsics = {width, height, 50, 60, 7.5, 8.5};
+  for (int v = 0; v < height; ++v)
+    for (int u = 0; u < width; ++u)
+      for (const int value : {255 * u / width, 255 * v / height, 128})
+        frame.rgb.push_back(static_cast<uint8_t>(value));
+  return frame;
+}
+
+TEST(Picture, KeepsTheColours) {
+  const CameraFrame frame = ramp(97, 61);
+  const auto jpeg = encode_jpeg(frame.rgb, 97, 61);
+  ASSERT_TRUE(jpeg.ok());
+  int width = 0, height = 0;
+  const auto rgb = decode(*jpeg, width, height);
+  ASSERT_EQ(width, 97);
+  ASSERT_EQ(height, 61);
+  double sum = 0;
+  for (size_t i = 0; i < rgb.size(); ++i) sum += std::abs(rgb[i] - frame.rgb[i]);
+  EXPECT_LT(sum / static_cast<double>(rgb.size()), 3.0);
+}
+
+TEST(Picture, HeaderHoldsWhatThePageProjectsWith) {
+  CameraFrame frame = ramp(32, 24);
+  frame.index = 77;
+  frame.time = 3.85;
+  frame.X_WC = {{1, 2, 3}, {0.5, -0.5, 0.5, -0.5}};
+  const auto packet = encode_picture(frame, 12, 2);
+  ASSERT_TRUE(packet.ok());
+  const auto at = [&]<class T>(size_t offset, T) {
+    T value;
+    std::memcpy(&value, packet->data() + offset, sizeof value);
+    return value;
+  };
+  EXPECT_EQ(packet->substr(0, 4), "GLV1");
+  EXPECT_EQ(at(4, uint32_t{}), kPictureHeaderSize);
+  EXPECT_EQ(at(8, uint64_t{}), 12u);
+  EXPECT_EQ(at(16, int64_t{}), 77);
+  EXPECT_EQ(at(24, double{}), 3.85);
+  EXPECT_EQ(at(32, uint16_t{}), 32);
+  EXPECT_EQ(at(34, uint16_t{}), 24);
+  EXPECT_EQ(at(36, uint32_t{}), 2u);
+  EXPECT_EQ(at(40, uint32_t{}), 0u);
+  EXPECT_EQ(at(44, float{}), 50.f);
+  EXPECT_EQ(at(48, float{}), 60.f);
+  EXPECT_EQ(at(52, float{}), 7.5f);
+  EXPECT_EQ(at(56, float{}), 8.5f);
+  EXPECT_EQ(at(60, double{}), 1.0);
+  EXPECT_EQ(at(76, double{}), 3.0);
+  EXPECT_EQ(at(84, double{}), 0.5);
+  EXPECT_EQ(at(108, double{}), -0.5);
+  int width = 0, height = 0;
+  decode(std::string_view(*packet).substr(kPictureHeaderSize), width, height);
+  EXPECT_EQ(width, 32);
+}
+
+TEST(Picture, ImpossibleOnesAreRefused) {
+  EXPECT_FALSE(encode_jpeg({}, 4, 4).ok());
+  EXPECT_FALSE(encode_jpeg({}, 0, 0).ok());
+  EXPECT_FALSE(encode_jpeg(std::vector<uint8_t>(3 * 70000), 70000, 1).ok());
+  EXPECT_FALSE(encode_jpeg({}, -1, -1).ok());
+}
+
+}  // namespace
+}  // namespace gloam::studio
