@@ -1,3 +1,0 @@
-namespace gloam {
-void world_local_placeholder() {}
-}  // namespace gloam
