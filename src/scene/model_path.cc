@@ -65,7 +65,8 @@ fs::path absolute_path(const fs::path& path, const fs::path& base) {
   std::error_code code;
   fs::path joined = path.is_absolute() ? path : base / path;
   if (!joined.is_absolute()) joined = fs::current_path(code) / joined;
-  return joined.lexically_normal();
+  joined = joined.lexically_normal();
+  return joined.has_filename() || joined == joined.root_path() ? joined : joined.parent_path();
 }
 
 std::string why_not_a_path(std::string_view name) {

@@ -28,7 +28,7 @@ class Writer {
  public:
   std::string bytes;
   template <class T>
-    requires std::is_trivially_copyable_v<T>
+    requires(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>)
   void put(const T& value) {
     bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
   }
@@ -44,7 +44,7 @@ class Writer {
     put(error.loc.column);
     put(error.hint);
   }
-  void put(const mjModel* model) {
+  void put_model(const mjModel* model) {
     const uint64_t size = model == nullptr ? 0 : static_cast<uint64_t>(mj_sizeModel(model));
     put(size);
     if (size == 0) return;
@@ -134,8 +134,8 @@ std::string serialise(const CompiledWorld& world, const std::vector<Dependency>&
   out.put(static_cast<uint64_t>(world.unsupported.size()));
   for (const Error& error : world.unsupported) out.put(error);
   out.put(world.model->nplugin > 0);
-  out.put(world.model.get());
-  out.put(world.visual_model.get());
+  out.put_model(world.model.get());
+  out.put_model(world.visual_model.get());
   return std::move(out.bytes);
 }
 

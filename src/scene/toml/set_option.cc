@@ -46,13 +46,19 @@ class OptionSetter {
       *status_ = usage(fmt::format("'{}' has no option '{}'", key, names_[next]));
       return;
     }
+    assign(key, member, rule);
+  }
+
+  template <class T>
+  void assign(std::string_view key, T& member, const FieldRule& rule) {
     toml::table table;
     table.insert_or_assign(key, value_);
     TableReader(table, where_, "an option", status_)(key, member, rule);
   }
 
   template <OptionStruct T>
-  void set(std::string_view key, std::vector<T>& members, const FieldRule&, size_t next) {
+  void set(std::string_view key, std::vector<T>& members, const FieldRule& rule, size_t next) {
+    if (next >= names_.size()) return assign(key, members, rule);
     if (next + 1 >= names_.size()) {
       *status_ = usage(fmt::format("'{}' needs a name or number and an option", key),
                        fmt::format("as in {}.0.{}", key, "name"));
