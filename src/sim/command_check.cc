@@ -28,6 +28,12 @@ std::string body_label(const mjModel& model, int body) {
                                        : fmt::format("body {}", body);
 }
 
+// Has degrees of freedom above it; a mocap body has none.
+bool can_move(const mjModel& model, int body) {
+  while (body > 0 && model.body_dofnum[body] == 0) body = model.body_parentid[body];
+  return body > 0;
+}
+
 class Check {
  public:
   Check(const mjModel& model, int robot_count) : model_(model), robot_count_(robot_count) {}
@@ -82,7 +88,7 @@ class Check {
   Status operator()(const DragBody& c) const {
     if (Status status = check_body(c.body); !status) return status;
     if (!finite(c.point_B) || !finite(c.target_W)) return refuse("a drag point is not finite");
-    if (c.active && model_.body_weldid[c.body.id] == 0) {
+    if (c.active && !can_move(model_, c.body.id)) {
       return refuse(fmt::format("{} cannot move", body_label(model_, c.body.id)));
     }
     return {};

@@ -130,7 +130,12 @@ Status check_live_field(const mjModel& model, const SetLiveField& change) {
                              "a part of it",
                              limits.name, size, change.first, end - 1)};
   }
-  for (const float value : change.values) {
+  for (size_t i = 0; i < change.values.size(); ++i) {
+    const float value = change.values[i];
+    if (change.field == LiveFieldId::kBodyMass && value <= 0 &&
+        model.body_mass[static_cast<size_t>(change.first) + i] > 0) {
+      return Error{ErrorKind::kUsage, fmt::format("a mass of {} kg is not positive", value)};
+    }
     if (!(value >= limits.smallest && value <= limits.largest)) {
       return Error{ErrorKind::kUsage,
                    fmt::format("{} is not a value of live field {} ({:g} … {:g})", value,

@@ -124,7 +124,7 @@ TEST(Determinism, ReplayOfTheCommandLogIsExact) {
             (void)sim->post({.what = SetMocapPose{hand, {{-1, r / 5, 1}, {}}}}).ok();
             break;
           case 2:
-            (void)sim->post({.what = SetWrench{ball, {r, 0, 4}, {0, 0, r}}}).ok();
+            (void)sim->post({.what = SetWrench{ball, {r / 10, 0, 2}, {0, 0, r / 1e4}}}).ok();
             break;
           case 3:
             (void)sim->post({.what = AddVelocity{base, {r / 9, 0, 0}}}).ok();

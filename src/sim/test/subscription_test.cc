@@ -1,0 +1,174 @@
+// Who gets which Snapshot, and what happens to readers that are slow.
+
+#include <thread>
+
+#include "test_world.h"
+
+namespace gloam {
+namespace {
+
+const char* const kBall = R"(<mujoco><option timestep="0.002"/><worldbody>
+  <body pos="0 0 1"><freejoint/><geom size=".1"/></body></worldbody></mujoco>)";
+
+TEST(Subscription, PublishesAtTheStepsOfItsRateAndPhase) {
+  auto sim = make_simulator(world_from_mjcf(kBall), lockstep());
+  auto even = *sim->subscribe({.rate = {50, 1}, .required = true, .capacity = 100});
+  auto odd =
+      *sim->subscribe({.rate = {30, 1}, .phase = {1, 100}, .required = true, .capacity = 100});
+  sim->start();
+  ASSERT_TRUE(sim->step(500).ok());
+  for (int k = 0; k <= 50; ++k) EXPECT_EQ(even->try_next().step(), 10 * k);
+  EXPECT_FALSE(even->try_next());
+  for (int k = 0; k < 30; ++k) {
+    // t_k = 0.01 + k / 30, the first step at or after it.
+    EXPECT_EQ(odd->try_next().step(), (3 * 5 + k * 50 + 2) / 3);
+  }
+  EXPECT_FALSE(odd->try_next());
+}
+
+TEST(Subscription, OneMadeLaterBeginsAtThePresentStep) {
+  auto sim = make_simulator(world_from_mjcf(kBall), lockstep());
+  sim->start();
+  ASSERT_TRUE(sim->step(20).ok());
+  auto queue = *sim->subscribe({.rate = {50, 1}});
+  EXPECT_EQ(queue->next().step(), 20);
+  ASSERT_TRUE(sim->step(10).ok());
+  EXPECT_EQ(queue->next().step(), 30);
+}
+
+TEST(Subscription, RequiredReadersLoseNothingHoweverSlow) {
+  auto sim = make_simulator(world_from_mjcf(kBall));
+  auto queue = *sim->subscribe({.rate = {500, 1}, .required = true, .capacity = 2});
+  sim->start(200);
+  for (int n = 0; n <= 200; ++n) {
+    if (n % 20 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    ASSERT_EQ(queue->next().step(), n);
+    EXPECT_LE(sim->step_count(), n + 3);  // it waited
+  }
+  ASSERT_TRUE(sim->wait().ok());
+  EXPECT_EQ(queue->dropped(), 0);
+  EXPECT_EQ(sim->counters().snapshots_dropped, 0);
+}
+
+TEST(Subscription, BestEffortReadersLoseTheOldestAndItIsCounted) {
+  auto sim = make_simulator(world_from_mjcf(kBall), lockstep());
+  auto queue = *sim->subscribe({.rate = {500, 1}, .capacity = 4});
+  sim->start();
+  ASSERT_TRUE(sim->step(99).ok());
+  EXPECT_EQ(queue->dropped(), 96);
+  EXPECT_EQ(sim->counters().snapshots_dropped, 96);
+  for (int n = 96; n < 100; ++n) EXPECT_EQ(queue->next().step(), n);
+  queue->close();
+  ASSERT_TRUE(sim->step(10).ok());
+  EXPECT_FALSE(queue->next());
+  EXPECT_EQ(sim->counters().snapshots_dropped, 96);  // still counted after it is gone
+}
+
+TEST(Subscription, SlowBestEffortReadersSeeStepsInOrder) {
+  auto sim = make_simulator(world_from_mjcf(kBall));
+  auto queue = *sim->subscribe({.rate = {500, 1}, .capacity = 3});
+  int64_t got = 0;
+  std::thread reader([&] {
+    int64_t last = -1;
+    while (Snapshot s = queue->next()) {
+      EXPECT_GT(s.step(), last);
+      last = s.step();
+      ++got;
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
+  });
+  sim->start(5000);
+  ASSERT_TRUE(sim->wait().ok());
+  sim->stop();
+  reader.join();
+  EXPECT_GT(got, 0);
+  EXPECT_EQ(got + queue->dropped(), 5001);
+}
+
+TEST(Subscription, WaitingReadersAreReleasedByStop) {
+  auto sim = make_simulator(world_from_mjcf(kBall), lockstep());
+  auto queue = *sim->subscribe({.rate = {500, 1}});
+  sim->start();
+  EXPECT_TRUE(queue->next());
+  std::thread reader([&] { EXPECT_FALSE(queue->next()); });
+  sim->stop();
+  reader.join();
+}
+
+TEST(Subscription, SnapshotsOutliveTheSimulator) {
+  Snapshot kept;
+  {
+    auto sim = make_simulator(world_from_mjcf(kBall), lockstep());
+    sim->start();
+    ASSERT_TRUE(sim->step(5).ok());
+    kept = sim->latest();
+  }
+  EXPECT_EQ(kept.step(), 5);
+  EXPECT_EQ(kept[Joint{0}].qpos.size(), 7u);
+}
+
+TEST(Subscription, ThePoolIsUsedAgainAndGrowsOnlyForReadersThatHoldTooMuch) {
+  auto sim = make_simulator(world_from_mjcf(kBall), lockstep());
+  auto queue = *sim->subscribe({.rate = {500, 1}, .required = true, .capacity = 8});
+  sim->start();
+  for (int i = 0; i < 1000; ++i) {
+    ASSERT_TRUE(sim->step(5).ok());
+    while (queue->try_next()) {
+    }
+  }
+  EXPECT_EQ(sim->counters().pool_grown, 0);
+  std::vector<Snapshot> held;
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(sim->step(5).ok());
+    while (Snapshot s = queue->try_next()) held.push_back(s);
+  }
+  const int64_t grown = sim->counters().pool_grown;
+  EXPECT_GT(grown, 50);
+  for (size_t i = 1; i < held.size(); ++i) EXPECT_EQ(held[i].step(), held[i - 1].step() + 1);
+  held.clear();
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(sim->step(5).ok());
+    while (Snapshot s = queue->try_next()) held.push_back(s);
+  }
+  EXPECT_EQ(sim->counters().pool_grown, grown);
+}
+
+TEST(Subscription, RefusesBadOptions) {
+  auto sim = make_simulator(world_from_mjcf(kBall), lockstep());
+  EXPECT_FALSE(sim->subscribe({.rate = {501, 1}}).ok());
+  EXPECT_FALSE(sim->subscribe({.rate = {0, 1}}).ok());
+  EXPECT_FALSE(sim->subscribe({.phase = {-1, 2}}).ok());
+  EXPECT_FALSE(sim->subscribe({.capacity = 0}).ok());
+  EXPECT_TRUE(sim->subscribe({.rate = {500, 1}, .capacity = 1}).ok());
+}
+
+TEST(Pace, RealTimeKeepsToTheClock) {
+  auto sim = make_simulator(world_from_mjcf(kBall), {.pace = Pace::kRealTime, .speed = 2});
+  const auto begin = std::chrono::steady_clock::now();
+  sim->start(200);  // 0.4 s of simulation
+  ASSERT_TRUE(sim->wait().ok());
+  const double took =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  EXPECT_GT(took, 0.195);
+  EXPECT_LT(took, 5);  // other programs may hold the machine up
+}
+
+TEST(Pace, PauseStopsAndResumeGoesOn) {
+  auto sim = make_simulator(world_from_mjcf(kBall), {.pace = Pace::kRealTime});
+  sim->start();
+  sim->pause();
+  ASSERT_TRUE(sim->wait().ok());
+  const int64_t paused_at = sim->step_count();
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(sim->step_count(), paused_at);
+  ASSERT_TRUE(sim->step(3).ok());
+  EXPECT_EQ(sim->step_count(), paused_at + 3);
+  sim->set_speed(50);
+  sim->resume();
+  while (sim->step_count() < paused_at + 100) std::this_thread::yield();
+  sim->stop();
+  EXPECT_GE(sim->latest().step(), paused_at + 100);
+}
+
+}  // namespace
+}  // namespace gloam
