@@ -44,6 +44,7 @@ int main(int argc, char** argv) {
     const std::string arg = argv[i];
     if (arg == "--picture" && i + 1 < argc) picture = argv[++i];
     if (arg == "--spp" && i + 1 < argc) settings.spp = std::atoi(argv[++i]);
+    if (arg == "--depth" && i + 1 < argc) settings.max_depth = std::atoi(argv[++i]);
     if (arg == "--direct") settings.tier = RenderTier::kDirect;
     if (arg == "--plain") room.plain = true;
     if (arg == "--size" && i + 1 < argc) std::sscanf(argv[++i], "%dx%d", &width, &height);

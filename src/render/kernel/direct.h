@@ -7,7 +7,7 @@
 namespace gloam {
 
 /// Scenes with more lights than this draw so many of them by power.
-inline constexpr uint32_t kMaxDirectLights = 16;
+inline constexpr uint32_t kMaxDirectLights = kMaxWeighedLights;
 
 /// `first` (may be null) receives the hit of the first surface that shows; untouched when nothing
 /// does. Transparent surfaces are composited front to back.
@@ -76,7 +76,7 @@ GLOAM_HD PathResult trace_direct(const SceneView& scene, const Tracer& tracer, R
       float pick = sampler.next_1d();
       const Vec2f u = sampler.next_2d();
       const LightSample light = all_lights ? sample_one_light(scene, index, s.p, pick, u, ray.time)
-                                           : sample_lights(scene, s.p, pick, u, ray.time);
+                                           : sample_lights(scene, s.p, s.geometric, 1.0f, pick, u, ray.time);
       if (!(light.pdf > 0) || dot(light.wi, s.geometric) <= 0) continue;
       float pdf;
       light_radiance = eval_bsdf(bsdf, wo, frame.to_local(light.wi), &pdf) * light.radiance *

@@ -17,23 +17,6 @@ struct LightSample {
   bool casts_shadow = true;
 };
 
-/// Index of the light that `u` selects by power, and u stretched to [0, 1) again.
-GLOAM_HD uint32_t select_light(const SceneView& scene, float* u) {
-  uint32_t low = 0, high = scene.lights.size - 1;
-  while (low < high) {
-    const uint32_t middle = (low + high) / 2;
-    if (*u < scene.lights[middle].cdf) {
-      high = middle;
-    } else {
-      low = middle + 1;
-    }
-  }
-  const LightView& light = scene.lights[low];
-  *u = clamp((*u - (light.cdf - light.probability)) / max(light.probability, 1e-20f), 0.0f,
-             0.9999999f);
-  return low;
-}
-
 /// Share of a lamp's full intensity in the direction from its centre to p.
 GLOAM_HD float spot_falloff(const LightView& light, Vec3f to_p) {
   if (light.kind != LightKind::kSpot) return 1.0f;
@@ -90,6 +73,10 @@ GLOAM_HD LightSample sample_sun(const LightView& light, Vec2f u) {
   return s;
 }
 
+GLOAM_HD Vec3f to_instance(const Affine3f& X_WG, Vec3f v) {
+  return {dot(v, X_WG.x), dot(v, X_WG.y), dot(v, X_WG.z)};
+}
+
 /// Density per solid angle at p of the direction to a point of an emitting instance.
 GLOAM_HD float instance_pdf(const SceneView& scene, const InstanceView& instance, Vec3f p,
                             Vec3f hit_p, Vec3f hit_normal, float time) {
@@ -103,9 +90,10 @@ GLOAM_HD float instance_pdf(const SceneView& scene, const InstanceView& instance
   float pdf_area = is_mesh ? 1.0f / scene.meshes[instance.mesh].area : 0.0f;
   if (!is_mesh) {
     const Affine3f X_WG = pose_at(instance, time);
-    const Vec3f d = hit_p - X_WG.p;
-    pdf_area =
-        shape_pdf(instance.shape, instance.size, {dot(d, X_WG.x), dot(d, X_WG.y), dot(d, X_WG.z)});
+    pdf_area = instance.shape == ShapeType::kBox
+                   ? box_pdf_from(instance.size, to_instance(X_WG, p - X_WG.p),
+                                  to_instance(X_WG, hit_normal))
+                   : shape_pdf(instance.shape, instance.size, to_instance(X_WG, hit_p - X_WG.p));
   }
   const Vec3f to = hit_p - p;
   const float d2 = dot(to, to), cosine = fabsf(dot(to, hit_normal)) / sqrtf(d2);
@@ -149,11 +137,14 @@ GLOAM_HD LightSample sample_instance(const SceneView& scene, const LightView& li
     const float along = dot(X_WG.p - p, wi);
     p_W = p + wi * (along - safe_sqrt(r2 - max(d2 - along * along, 0.0f)));
     n_W = normalize(p_W - X_WG.p);
-    p_G = {dot(n_W, X_WG.x), dot(n_W, X_WG.y), dot(n_W, X_WG.z)};
-    p_G *= instance.size.x;
+    p_G = to_instance(X_WG, n_W) * instance.size.x;
   } else {
     Vec3f n_G;
-    p_G = sample_shape(instance.shape, instance.size, pick, u, &n_G);
+    if (instance.shape != ShapeType::kBox) {
+      p_G = sample_shape(instance.shape, instance.size, pick, u, &n_G);
+    } else if (!sample_box_from(instance.size, to_instance(X_WG, p - X_WG.p), pick, u, &p_G, &n_G)) {
+      return s;
+    }
     p_W = transform_point(X_WG, p_G);
     n_W = transform_vector(X_WG, n_G);
   }
@@ -192,20 +183,83 @@ GLOAM_HD LightSample sample_one_light(const SceneView& scene, uint32_t index, Ve
   return s;
 }
 
-GLOAM_HD LightSample sample_lights(const SceneView& scene, Vec3f p, float pick, Vec2f u,
-                                   float time) {
-  if (scene.lights.empty()) return {};
-  const uint32_t index = select_light(scene, &pick);
+/// Scenes with more lights select by power alone.
+inline constexpr uint32_t kMaxWeighedLights = 32;
+
+/// A bound, up to a factor, of what light i brings to the surface at p with the geometric normal n
+/// if nothing is in between; zero only if it brings nothing.
+GLOAM_HD float light_weight(const LightView& light, Vec3f p, Vec3f n) {
+  if (light.kind == LightKind::kDirectional) {
+    const float cosine = -dot(light.direction, n);
+    return cosine > -light.radius ? light.strength * (max(cosine, 0.0f) + 0.05f) : 0.0f;
+  }
+  const Vec3f to = light.p - p;
+  const float height = dot(to, n) + light.reach;
+  if (height <= 0) return 0.0f;
+  const float d2 = max(dot(to, to), light.reach * light.reach);
+  const float inv_d2 = 1.0f / max(d2, 1e-8f);
+  const float cosine = min(height * sqrtf(inv_d2), 1.0f);
+  // Outside the cone of a spot nothing arrives.
+  const float cone = light.kind == LightKind::kSpot
+                         ? spot_falloff(light, -to / sqrtf(max(dot(to, to), 1e-12f)))
+                         : 1.0f;
+  return light.strength * inv_d2 * (cosine + 0.05f) * cone;
+}
+
+/// Sum of the weights of all lights at a surface; what pick_probability divides by.
+GLOAM_HD float total_light_weight(const SceneView& scene, Vec3f p, Vec3f n) {
+  if (scene.lights.size > kMaxWeighedLights) return 1.0f;
+  float total = 0;
+  for (uint32_t i = 0; i < scene.lights.size; ++i) total += light_weight(scene.lights[i], p, n);
+  return total;
+}
+
+/// Probability with which sample_lights takes light i at the surface (p, n).
+GLOAM_HD float pick_probability(const SceneView& scene, uint32_t i, Vec3f p, Vec3f n, float total) {
+  if (scene.lights.size > kMaxWeighedLights) return scene.lights[i].probability;
+  return total > 0 ? light_weight(scene.lights[i], p, n) / total : 0.0f;
+}
+
+/// Takes a light for the surface (p, n) and a direction towards it.
+GLOAM_HD LightSample sample_lights(const SceneView& scene, Vec3f p, Vec3f n, float total,
+                                   float pick, Vec2f u, float time) {
+  const uint32_t count = scene.lights.size;
+  if (count == 0 || !(total > 0)) return {};
+  float before = 0, probability = 0;
+  uint32_t index = 0;
+  if (count > kMaxWeighedLights) {
+    uint32_t high = count - 1;
+    while (index < high) {
+      const uint32_t middle = (index + high) / 2;
+      if (pick < scene.lights[middle].cdf) {
+        high = middle;
+      } else {
+        index = middle + 1;
+      }
+    }
+    probability = scene.lights[index].probability;
+    before = scene.lights[index].cdf - probability;
+  } else {
+    for (uint32_t i = 0; i < count; ++i) {
+      const float p_i = light_weight(scene.lights[i], p, n) / total;
+      if (!(p_i > 0)) continue;
+      before += probability;
+      probability = p_i;
+      index = i;
+      if (pick < before + probability) break;
+    }
+  }
+  pick = clamp((pick - before) / probability, 0.0f, 0.9999999f);
   LightSample s = sample_one_light(scene, index, p, pick, u, time);
-  s.pdf *= scene.lights[index].probability;
+  s.pdf *= probability;
   return s;
 }
 
 /// Light of lamps and suns that a scattered ray meets before `tmax`, each weighted against
-/// sample_lights at `from`, the vertex that scattered it, by the density `pdf_bsdf` of its
+/// sample_lights at `from`, the surface that scattered it, by the density `pdf_bsdf` of its
 /// direction.
 GLOAM_HD Vec3f visible_lights(const SceneView& scene, const Ray& ray, float tmax, Vec3f from,
-                              float pdf_bsdf) {
+                              Vec3f from_normal, float total, float pdf_bsdf) {
   Vec3f sum;
   for (uint32_t i = 0; i < scene.lights.size; ++i) {
     const LightView& light = scene.lights[i];
@@ -224,7 +278,8 @@ GLOAM_HD Vec3f visible_lights(const SceneView& scene, const Ray& ray, float tmax
       radiance = light.intensity * (spot_falloff(light, -to / sqrtf(d2)) / (kPi * sin2));
       sin2 /= d2;
     }
-    const float pdf = light.probability * cone_pdf(one_minus_cos_of(sin2));
+    const float pdf = pick_probability(scene, i, from, from_normal, total) *
+                      cone_pdf(one_minus_cos_of(sin2));
     sum += radiance * mis_weight(pdf_bsdf, pdf);
   }
   return sum;

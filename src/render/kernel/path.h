@@ -36,7 +36,8 @@ GLOAM_HD PathResult trace_path(const SceneView& scene, const Tracer& tracer, Ray
   PathResult result;
   Vec3f throughput{1, 1, 1};
   float pdf_bsdf = 0;  // of the direction of `ray`; 0 = from the camera
-  Vec3f from = ray.o;  // the last scattering vertex
+  Vec3f from, from_normal;  // the last scattering vertex
+  float light_total = 0;    // total_light_weight there
   int depth = 0, passed = 0;
   bool seen_first = false;
 
@@ -73,7 +74,7 @@ GLOAM_HD PathResult trace_path(const SceneView& scene, const Tracer& tracer, Ray
 
     if (pdf_bsdf > 0 && scene.has_visible_lights) {
       const float reach = found ? hit.t : 1e30f;
-      result.radiance += throughput * visible_lights(scene, ray, reach, from, pdf_bsdf);
+      result.radiance += throughput * visible_lights(scene, ray, reach, from, from_normal, light_total, pdf_bsdf);
     }
     if (!found) {
       const Vec3f sky = sky_radiance(scene, ray.d, cone.spread);
@@ -98,9 +99,12 @@ GLOAM_HD PathResult trace_path(const SceneView& scene, const Tracer& tracer, Ray
       const Vec3f emitted = surface_emission(s);
       float weight = 1;
       if (pdf_bsdf > 0 && s.instance->light >= 0) {
-        weight = mis_weight(pdf_bsdf, scene.lights[s.instance->light].probability *
-                                          lights::instance_pdf(scene, *s.instance, from, s.p,
-                                                               s.geometric, ray.time));
+        const float selected =
+            pick_probability(scene, static_cast<uint32_t>(s.instance->light), from, from_normal,
+                             light_total);
+        const float pdf =
+            lights::instance_pdf(scene, *s.instance, from, s.p, s.geometric, ray.time);
+        weight = mis_weight(pdf_bsdf, selected * pdf);
       }
       result.radiance += throughput * emitted * weight;
     }
@@ -119,8 +123,10 @@ GLOAM_HD PathResult trace_path(const SceneView& scene, const Tracer& tracer, Ray
     cone.width += cone.spread * hit.t;
 
     // Next event: one light.
+    const float total = total_light_weight(scene, s.p, s.geometric);
     const float pick = sampler.next_1d();
-    const LightSample light = sample_lights(scene, s.p, pick, sampler.next_2d(), ray.time);
+    const LightSample light =
+        sample_lights(scene, s.p, s.geometric, total, pick, sampler.next_2d(), ray.time);
     is_shadow = false;
     Ray shadow;
     if (light.pdf > 0 && dot(light.wi, s.geometric) > 0) {
@@ -151,6 +157,8 @@ GLOAM_HD PathResult trace_path(const SceneView& scene, const Tracer& tracer, Ray
         throughput *= sample.weight;
         pdf_bsdf = sample.pdf;
         from = s.p;
+        from_normal = s.geometric;
+        light_total = total;
         // The cone widens with the lobe: texture detail that a broad lobe averages is not sought.
         cone.spread += 0.2f * sqrtf(min(1.0f / (kPi * sample.pdf), 1.0f));
         has_next = true;

@@ -77,8 +77,10 @@ struct LightView {
   float radius = 0;                                   ///< [m]; directional: sine of the half angle
   float cutoff = 0, cos_cutoff = -1, cos_inner = -1;  ///< spot: half angle [rad] and cosines
   float inner = 0;                                    ///< spot: half angle of full intensity [rad]
+  float strength = 0;  ///< luminous intensity [cd] (directional: illuminance [lx]), for selection
+  float reach = 0;     ///< radius of a sphere about p that holds all of it [m]
   uint32_t instance = 0;                              ///< kInstance
-  float probability = 0;                              ///< of being selected
+  float probability = 0;                              ///< of selection by power alone
   float cdf = 0;                                      ///< running sum of probabilities
 };
 

@@ -267,4 +267,47 @@ GLOAM_HD Vec3f sample_shape(ShapeType shape, Vec3f s, float pick, Vec2f u, Vec3f
   }
 }
 
+/// Weights (area times height of p above it) of the faces -x, +x, -y, +y, -z, +z of a box that p
+/// sees from outside; returns their sum.
+GLOAM_HD float box_face_weights(Vec3f s, Vec3f p, float weight[6]) {
+  const float area[3] = {4 * s.y * s.z, 4 * s.z * s.x, 4 * s.x * s.y};
+  float total = 0;
+  for (int i = 0; i < 6; ++i) {
+    const int axis = i / 2;
+    const float height = ((i & 1) != 0 ? p[axis] : -p[axis]) - s[axis];
+    total += weight[i] = height > 0 ? area[axis] * height : 0.0f;
+  }
+  return total;
+}
+
+/// A point on a face that p sees, and its normal; false inside the box.
+GLOAM_HD bool sample_box_from(Vec3f s, Vec3f p, float pick, Vec2f u, Vec3f* q, Vec3f* normal) {
+  float weight[6];
+  const float total = box_face_weights(s, p, weight);
+  if (!(total > 0)) return false;
+  pick *= total;
+  int face = -1;
+  for (int i = 0; i < 6; ++i) {
+    if (weight[i] <= 0) continue;
+    face = i;
+    if (pick < weight[i]) break;
+    pick -= weight[i];
+  }
+  const float side = (face & 1) != 0 ? 1.0f : -1.0f, a = u.x * 2 - 1, b = u.y * 2 - 1;
+  *q = face < 2   ? Vec3f{side * s.x, a * s.y, b * s.z}
+       : face < 4 ? Vec3f{a * s.x, side * s.y, b * s.z}
+                  : Vec3f{a * s.x, b * s.y, side * s.z};
+  *normal = face < 2 ? Vec3f{side, 0, 0} : face < 4 ? Vec3f{0, side, 0} : Vec3f{0, 0, side};
+  return true;
+}
+
+/// Density per area with which sample_box_from(s, p) makes points of the face with this normal.
+GLOAM_HD float box_pdf_from(Vec3f s, Vec3f p, Vec3f normal) {
+  float weight[6];
+  const float total = box_face_weights(s, p, weight);
+  const int axis = fabsf(normal.x) > 0.5f ? 0 : (fabsf(normal.y) > 0.5f ? 1 : 2);
+  const float height = (normal[axis] > 0 ? p[axis] : -p[axis]) - s[axis];
+  return total > 0 && height > 0 ? height / total : 0.0f;
+}
+
 }  // namespace gloam

@@ -35,6 +35,25 @@ LightView describe_light(const LightDescription& in) {
   return out;
 }
 
+/// A sphere that holds the emitter during the shutter.
+void set_bounds(const InstanceView& instance, const std::vector<MeshView>& meshes,
+                LightView* light) {
+  light->p = (instance.X_WG.p + instance.X_WG_close.p) * 0.5f;
+  const bool soft = instance.shape == ShapeType::kDeformable;
+  if (soft || instance.shape == ShapeType::kMesh) {
+    const MeshView& mesh = meshes[instance.mesh];
+    if (soft) light->p = mesh.positions.empty() ? Vec3f{} : mesh.positions[0];
+    for (uint32_t i = 0; i < mesh.positions.size; ++i) {
+      light->reach = max(light->reach, length(mesh.positions[i] - (soft ? light->p : Vec3f{})));
+    }
+    if (!mesh.positions_close.empty()) light->reach *= 2;
+  } else {
+    const Vec3f h = shape_half_size(instance.shape, instance.size);
+    light->reach = length(h) + (instance.shape == ShapeType::kCapsule ? instance.size.x : 0.0f);
+  }
+  light->reach += 0.5f * length(instance.X_WG_close.p - instance.X_WG.p);
+}
+
 Vec3f row(const std::vector<double>& values, int i) {
   return {static_cast<float>(values[3 * i]), static_cast<float>(values[3 * i + 1]),
           static_cast<float>(values[3 * i + 2])};
@@ -70,6 +89,8 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
     }
     if (!(luminance(light.intensity) > 0)) continue;
     if (in.light < 0) headlights_.push_back(lights_.size());
+    light.strength = luminance(light.intensity);
+    light.reach = light.kind == LightKind::kDirectional ? 0.0f : light.radius;
     lights_.push_back(light);
     power.push_back(light_power(light, scene_radius));
   }
@@ -87,6 +108,8 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
     LightView light;
     light.kind = LightKind::kInstance;
     light.instance = static_cast<uint32_t>(i);
+    light.strength = strength / (4 * kPi);
+    set_bounds(instance, meshes, &light);
     lights_.push_back(light);
     power.push_back(strength);
   }
