@@ -54,8 +54,8 @@ TriangleMesh convert_mesh(const mjModel& m, int i) {
 /// converted together at the end, in parallel.
 class GeomImporter {
  public:
-  GeomImporter(const mjModel& model, mjSpec* spec, bool live, RenderDescription* out)
-      : model_(model), materials_(model, spec, live, out), out_(out) {}
+  GeomImporter(const mjModel& model, bool live, RenderDescription* out)
+      : model_(model), materials_(model, live, out), out_(out) {}
 
   /// The geom's shape, material and flags; nothing when it cannot be seen.
   std::optional<InstanceDescription> instance(int geom);
@@ -197,7 +197,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     out.instances.push_back(std::move(instance));
   };
 
-  GeomImporter simulated(m, nullptr, true, &out);
+  GeomImporter simulated(m, true, &out);
   out.instances.reserve(static_cast<size_t>(m.ngeom) + world.visual_only.size());
   for (int g = 0; g < static_cast<int>(m.ngeom); ++g)
     if (auto instance = simulated.instance(g))
@@ -205,7 +205,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
 
   std::optional<GeomImporter> visual;
   if (world.visual_model != nullptr) {
-    visual.emplace(*world.visual_model, nullptr, false, &out);
+    visual.emplace(*world.visual_model, false, &out);
     for (size_t i = 0; i < world.visual_only.size(); ++i) {
       const VisualOnlyGeom& geom = world.visual_only[i];
       auto instance = visual->instance(geom.geom);

@@ -33,6 +33,12 @@ int LabelTable::robot_of(int body) const {
   for (int ancestor = body; ancestor > 0; ancestor = model.body_parentid[ancestor])
     for (size_t i = 0; i < world_.robots.size(); ++i)
       if (world_.robots[i].root_body == ancestor) return static_cast<int>(i);
+  // A robot's file may hold several bodies side by side.
+  const char* name = mj_id2name(&model, mjOBJ_BODY, model.body_rootid[body]);
+  for (size_t i = 0; name != nullptr && i < world_.robots.size(); ++i) {
+    const std::string& prefix = world_.robots[i].prefix;
+    if (!prefix.empty() && std::string_view(name).starts_with(prefix)) return static_cast<int>(i);
+  }
   return -1;
 }
 

@@ -54,18 +54,6 @@ const float* drawn_rgba(const mjModel& model, int matid, const float* rgba) {
   return matid >= 0 && is_default_rgba(rgba) ? model.mat_rgba + 4 * matid : rgba;
 }
 
-ColorSpace MaterialTable::color_space_of(int texid) const {
-  // The compiler turns "auto" into linear when a file says nothing, yet such files hold display
-  // colours. Only an author's explicit "linear" is one.
-  if (model_.tex_colorspace[texid] != mjCOLORSPACE_LINEAR || spec_ == nullptr)
-    return ColorSpace::kSrgb;
-  mjsElement* element =
-      mjs_findElement(spec_, mjOBJ_TEXTURE, name_of(model_, mjOBJ_TEXTURE, texid).c_str());
-  const mjsTexture* texture = element != nullptr ? mjs_asTexture(element) : nullptr;
-  return texture != nullptr && texture->colorspace == mjCOLORSPACE_LINEAR ? ColorSpace::kLinear
-                                                                          : ColorSpace::kSrgb;
-}
-
 int MaterialTable::texture_row(int texid, ColorSpace color_space) {
   const auto [entry, added] =
       texture_rows_.try_emplace({texid, color_space}, static_cast<int>(out_->textures.size()));
@@ -92,7 +80,9 @@ int MaterialTable::layer(int matid, mjtTextureRole role, MaterialDescription* ma
   material->mapping = mapping;
   const bool is_color =
       role == mjTEXROLE_RGB || role == mjTEXROLE_RGBA || role == mjTEXROLE_EMISSIVE;
-  return texture_row(texid, is_color ? color_space_of(texid) : ColorSpace::kLinear);
+  // tex_colorspace cannot tell an author's "linear" from a file that says nothing, as most do, and
+  // those hold display colours. So the role decides.
+  return texture_row(texid, is_color ? ColorSpace::kSrgb : ColorSpace::kLinear);
 }
 
 int MaterialTable::row(int matid, const float* rgba, ShapeType shape, bool textured) {

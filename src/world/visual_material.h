@@ -14,10 +14,9 @@ namespace gloam {
 /// Hands out rows of RenderDescription::materials and ::textures; each is made on first use.
 class MaterialTable {
  public:
-  /// `spec` = what `model` was compiled from, or null; `live` = the model is the simulated one, so
-  /// its material rows follow PoseFrame.
-  MaterialTable(const mjModel& model, mjSpec* spec, bool live, RenderDescription* out)
-      : model_(model), spec_(spec), live_(live), out_(out) {}
+  /// `live` = the model is the simulated one, so its material rows follow PoseFrame.
+  MaterialTable(const mjModel& model, bool live, RenderDescription* out)
+      : model_(model), live_(live), out_(out) {}
 
   /// Row of the material of an element with material `matid` (-1 = none) and colour `rgba`, which
   /// wins over the material's where it differs from MuJoCo's default. Reflectance counts on planes
@@ -35,10 +34,8 @@ class MaterialTable {
     int texid = 0, row = 0;
   };
   int layer(int matid, mjtTextureRole role, MaterialDescription* material);
-  ColorSpace color_space_of(int texid) const;
 
   const mjModel& model_;
-  mjSpec* spec_;
   bool live_;
   RenderDescription* out_;
   std::map<std::tuple<int, std::array<float, 4>, bool, bool>, int> rows_;

@@ -27,6 +27,7 @@ TEST(VisualLabel, ObjectsAreRobotsBodiesAndWorldGeoms) {
       <body name="chair_4"><freejoint/><geom size="1"/></body>
       <body name="go1/trunk"><freejoint/><geom name="go1/shell" size="1"/>
         <body name="go1/foot"><joint/><geom size="1" group="3"/></body></body>
+      <body name="go1/tether"><geom size="1"/></body>
       <body name="target" mocap="true"><geom size="1"/><body><geom size="1"/></body></body>
     </worldbody></mujoco>)");
   RobotInstance robot;
@@ -35,18 +36,18 @@ TEST(VisualLabel, ObjectsAreRobotsBodiesAndWorldGeoms) {
   robot.root_body = mj_name2id(world.model.get(), mjOBJ_BODY, "go1/trunk");
   world.robots.push_back(robot);
   const RenderDescription out = describe(world);
-  ASSERT_EQ(out.instances.size(), 11u);
+  ASSERT_EQ(out.instances.size(), 12u);
   struct Row {
     const char* instance;
     const char* semantic;
     bool is_static;
   };
-  const Row rows[11] = {
-      {"floor", "floor", true},    {"wall_1", "wall", true},   {"wall_2", "wall", true},
-      {"", "object", true},        {"chair_3", "chair", true}, {"chair_3", "chair", false},
-      {"chair_4", "chair", false}, {"go1", "robot", false},    {"go1", "robot", false},
-      {"target", "target", false}, {"target", "target", false}};
-  for (size_t i = 0; i < 11; ++i) {
+  const Row rows[12] = {
+      {"floor", "floor", true},    {"wall_1", "wall", true},    {"wall_2", "wall", true},
+      {"", "object", true},        {"chair_3", "chair", true},  {"chair_3", "chair", false},
+      {"chair_4", "chair", false}, {"go1", "robot", false},     {"go1", "robot", false},
+      {"go1", "robot", true},      {"target", "target", false}, {"target", "target", false}};
+  for (size_t i = 0; i < 12; ++i) {
     const InstanceDescription& instance = out.instances[i];
     EXPECT_EQ(instance.label.part, i + 1);
     EXPECT_EQ(instance.label.instance_name, rows[i].instance) << i;

@@ -15,9 +15,9 @@ namespace gloam::visual_test {
 inline CompiledWorld compile(const std::string& xml) {
   char error[1000] = "";
   CompiledWorld world;
-  world.spec.reset(mj_parseXMLString(xml.c_str(), nullptr, error, sizeof(error)));
-  if (world.spec != nullptr) world.model.reset(mj_compile(world.spec.get(), nullptr));
-  EXPECT_NE(world.model, nullptr) << error << (world.spec ? mjs_getError(world.spec.get()) : "");
+  const SpecPtr spec{mj_parseXMLString(xml.c_str(), nullptr, error, sizeof(error))};
+  if (spec != nullptr) world.model.reset(mj_compile(spec.get(), nullptr));
+  EXPECT_NE(world.model, nullptr) << error << (spec ? mjs_getError(spec.get()) : "");
   return world;
 }
 
