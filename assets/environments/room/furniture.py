@@ -152,12 +152,12 @@ def bookshelf(pos, yaw, rng):
             if y + thin > end:
                 break
             number += 1
-            book(s, number, kind, (0.115 - deep / 2 + rng.uniform(-0.01, 0.012), y + thin / 2,
+            book(s, f"book_{number:02d}", kind, (0.115 - deep / 2 + rng.uniform(-0.01, 0.012), y + thin / 2,
                              z + 0.0115), 0.0, tints[rng.integers(len(tints))])
             y += thin + 0.0012
         if k in (1, 4, 8):
             number += 1
-            book(s, number, 3, (0.03, y + 0.052, z + 0.0105), 17.0, tints[k % 10])
+            book(s, f"book_{number:02d}", 3, (0.03, y + 0.052, z + 0.0105), 17.0, tints[k % 10])
     vase = lathe(rounded_profile([(0, 0), (0.045, 0), (0.075, 0.09), (0.03, 0.17), (0.036, 0.20),
                                   (0.030, 0.20), (0.024, 0.16), (0, 0.15)], 0.03, 5), 28)
     s.show("vase", "glazed_blue", vase.moved(0.0, 0.46, 0.791 + 0.36))
@@ -173,7 +173,7 @@ BOOKS = ((0.018, 0.21, 0.14), (0.024, 0.24, 0.16), (0.030, 0.22, 0.15), (0.028, 
          (0.038, 0.27, 0.19), (0.045, 0.25, 0.17), (0.022, 0.29, 0.21), (0.033, 0.30, 0.20))  # thin, tall, deep [m]
 
 
-def book(piece, number, kind, pos, lean, rgba):
+def book(piece, name, kind, pos, lean, rgba):
     """Standing book of one of the sizes; spine towards +x, leaning by `lean` degrees about x."""
     thin, tall, deep = BOOKS[kind]
     x, y, z = pos
@@ -187,7 +187,6 @@ def book(piece, number, kind, pos, lean, rgba):
     back = sheet(spine, np.stack(np.meshgrid(np.linspace(0, 1, 7), [0.0, 1.0]), -1))
     for m in cover:
         m.uv = np.full_like(m.uv, 0.02)
-    name = f"book_{number:02d}"
     mesh = join(*cover, back)
     piece.visuals.append(Visual(name, "book_cloth", mesh, f"book_cover_{kind}", pos=(x, y, z), euler=(lean, 0, 0), rgba=rgba + (1,)))
     up = np.array([0, -np.sin(np.radians(lean)), np.cos(np.radians(lean))]) * tall / 2
