@@ -193,8 +193,34 @@ def lying_book(name, pos, yaw, size, rgba):
                  slab((-x / 2, -y / 2, 0), (-x / 2 + 0.003, y / 2, z), 0.001))
     cover.uv = np.full_like(cover.uv, 0.02)
     b.visuals.append(Visual("cover", "book_cloth", cover, rgba=rgba + (1,)))
+    b.collide_box((-x / 2, -y / 2, 0), (x / 2, y / 2, z))
     b.show("pages", "paper", slab((-x / 2 + 0.003, -y / 2 + 0.004, 0.003), (x / 2 - 0.004, y / 2 - 0.004, z - 0.003), 0))
     return b
+
+
+def toy_car(pos, yaw):
+    """Wooden toy car 0.18 m long, along x."""
+    c = Piece("toy_car", pos, yaw)
+    side = np.array([(-0.09, 0.02), (0.09, 0.02), (0.09, 0.045), (0.045, 0.055), (0.02, 0.085), (-0.05, 0.085), (-0.085, 0.055)])
+    outline = rounded_profile(np.vstack([side, side[:1]]), 0.012, 3)
+    mid = outline.mean(0)
+    grid = np.stack([np.stack([outline[:, 0], np.full(len(outline), y), outline[:, 1]], 1) for y in (0.035, -0.035)])
+    cap = [sheet(np.stack([grid[k] if k else grid[0], np.tile([mid[0], grid[k, 0, 1], mid[1]], (len(outline), 1))][::1 if k else -1]))
+           for k in (0, 1)]
+    c.show("body", "toy_paint", sheet(grid), *cap)
+    wheels = [cylinder(0.022, -0.008, 0.008, bevel=0.004, segments=20).turned("x", 90).moved(x, y, 0.022)
+              for x in (-0.055, 0.055) for y in (-0.044, 0.044)]
+    c.show("wheels", "oak", *wheels)
+    c.collide_box((-0.09, -0.05, 0), (0.09, 0.05, 0.085))
+    return c
+
+
+def remote(pos, yaw):
+    r = Piece("remote_control", pos, yaw)
+    keys = [slab((x - 0.006, y - 0.005, 0.017), (x + 0.006, y + 0.005, 0.0195), 0.001)
+            for x in np.arange(-0.055, 0.06, 0.022) for y in (-0.013, 0.0, 0.013)]
+    r.show("case", "black_plastic", slab((-0.085, -0.022, 0), (0.085, 0.022, 0.018), 0.006))
+    return r.show("keys", "white_plastic", *keys)
 
 
 def wall_shelf(pos, yaw, rng):
@@ -222,9 +248,9 @@ def wall_shelf(pos, yaw, rng):
 
 def pouf(pos):
     p = Piece("pouf", pos)
-    a = np.linspace(0, 2 * np.pi, 73)
-    prof = rounded_profile([(0.0, 0.0), (0.22, 0.0), (0.27, 0.17), (0.22, 0.35), (0.0, 0.355)], 0.12, 6)
-    grid = np.empty((len(prof), 73, 3))
+    a = np.linspace(0, 2 * np.pi, 61)
+    prof = rounded_profile([(0.0, 0.0), (0.22, 0.0), (0.27, 0.17), (0.22, 0.35), (0.0, 0.355)], 0.12, 4)
+    grid = np.empty((len(prof), 61, 3))
     rib = 1 + 0.018 * np.cos(12 * a) * (prof[:, :1] > 0.02)
     grid[..., 0], grid[..., 1] = prof[:, :1] * np.cos(a) * rib, prof[:, :1] * np.sin(a) * rib
     grid[..., 2] = prof[:, 1:]

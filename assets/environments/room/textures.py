@@ -72,7 +72,7 @@ def plank_atlas(rng):
     h, w, strips = 1024, 1024, 8
     s = h // strips
     rgb, height, rough = np.empty((h, w, 3)), np.empty((h, w)), np.empty((h, w))
-    light, dark = np.array([0.76, 0.60, 0.43]), np.array([0.54, 0.39, 0.26])
+    light, dark = np.array([0.74, 0.61, 0.47]), np.array([0.53, 0.40, 0.285])
     d = np.minimum(np.arange(s) + 0.5, s - np.arange(s) - 0.5)[:, None] * 0.14 / s
     groove = np.clip(1 - d / 0.0028, 0, 1)
     for k in range(strips):
@@ -151,7 +151,8 @@ def rug(rng):
     rows = np.sin(2 * np.pi * Y / 0.0094)
     tone = 1 + 0.05 * noise(h, w, 90, 3, rng) + 0.05 * rows + 0.05 * noise(h, w, 2, 1.2, rng)
     height = 0.0006 * rows + 0.0005 * noise(h, w, 2.2, 1.5, rng)
-    return to8(c * np.clip(tone, 0.6, 1.3)[..., None]), normal_map(height, 2.4 / w)
+    # Coarser steps halve the files; the eye cannot tell in a fibre pattern.
+    return to8(c * np.clip(tone, 0.6, 1.3)[..., None]) // 3 * 3, (np.minimum(normal_map(height, 2.4 / w), 253) + 2) // 4 * 4
 
 
 def cardboard(rng):
@@ -220,7 +221,7 @@ def art(rng, palette, kind):
     border = np.minimum(np.minimum(X, 1 - X) * 0.8, np.minimum(Y, 1 - Y)) < 0.045
     c = c * brush[..., None]
     c[border] = np.array([0.93, 0.92, 0.89])
-    return to8(c)
+    return to8(c) // 3 * 3
 
 
 FONT = {"G": "01110 10001 10000 10111 10001 10001 01110", "L": "10000 10000 10000 10000 10000 10000 11111",
