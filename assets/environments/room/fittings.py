@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from furniture import BOOKS, book, leaf
 from mesh import (Mesh, box, cylinder, join, lathe, rounded_profile, sheet, slab, smooth_path, tube)
 from piece import Collider, Piece, Visual
 from textures import BLOCK_COLOURS
@@ -38,6 +39,11 @@ def pendant_lamp(pos, drop, radius):
     p = Piece("pendant_lamp", pos)
     p.show("cord", "white_plastic", cylinder(0.05, -0.025, 0, bevel=0.006), cylinder(0.0035, radius - drop, -0.02, bevel=0.001, segments=8))
     p.visuals.append(Visual("lantern", "paper_lantern", primitive="sphere", size=(radius,), pos=(0, 0, -drop)))
+    ribs = []
+    for z in np.linspace(-0.88, 0.88, 11) * radius:
+        r, a = np.sqrt(radius ** 2 - z ** 2) + 0.0005, np.linspace(0, 2 * np.pi, 41)
+        ribs.append(tube(np.stack([r * np.cos(a), r * np.sin(a), np.full(41, z - drop)], 1), 0.0011, 5))
+    p.show("ribs", "rattan", *ribs)
     p.show("ring", "white_plastic", *[lathe([(radius * 0.24, z - 0.006), (radius * 0.27, z), (radius * 0.24, z + 0.006)], 24)
                                       for z in (-drop - 0.97 * radius, -drop + 0.97 * radius)])
     return p
@@ -187,15 +193,64 @@ def lying_book(name, pos, yaw, size, rgba):
                  slab((-x / 2, -y / 2, 0), (-x / 2 + 0.003, y / 2, z), 0.001))
     cover.uv = np.full_like(cover.uv, 0.02)
     b.visuals.append(Visual("cover", "book_cloth", cover, rgba=rgba + (1,)))
+    b.collide_box((-x / 2, -y / 2, 0), (x / 2, y / 2, z))
     b.show("pages", "paper", slab((-x / 2 + 0.003, -y / 2 + 0.004, 0.003), (x / 2 - 0.004, y / 2 - 0.004, z - 0.003), 0))
     return b
 
 
+def toy_car(pos, yaw):
+    """Wooden toy car 0.18 m long, along x."""
+    c = Piece("toy_car", pos, yaw)
+    side = np.array([(-0.09, 0.02), (0.09, 0.02), (0.09, 0.045), (0.045, 0.055), (0.02, 0.085), (-0.05, 0.085), (-0.085, 0.055)])
+    outline = rounded_profile(np.vstack([side, side[:1]]), 0.012, 3)
+    mid = outline.mean(0)
+    grid = np.stack([np.stack([outline[:, 0], np.full(len(outline), y), outline[:, 1]], 1) for y in (0.035, -0.035)])
+    cap = [sheet(np.stack([grid[k] if k else grid[0], np.tile([mid[0], grid[k, 0, 1], mid[1]], (len(outline), 1))][::1 if k else -1]))
+           for k in (0, 1)]
+    c.show("body", "toy_paint", sheet(grid), *cap)
+    wheels = [cylinder(0.022, -0.008, 0.008, bevel=0.004, segments=20).turned("x", 90).moved(x, y, 0.022)
+              for x in (-0.055, 0.055) for y in (-0.044, 0.044)]
+    c.show("wheels", "oak", *wheels)
+    c.collide_box((-0.09, -0.05, 0), (0.09, 0.05, 0.085))
+    return c
+
+
+def remote(pos, yaw):
+    r = Piece("remote_control", pos, yaw)
+    keys = [slab((x - 0.006, y - 0.005, 0.017), (x + 0.006, y + 0.005, 0.0195), 0.001)
+            for x in np.arange(-0.055, 0.06, 0.022) for y in (-0.013, 0.0, 0.013)]
+    r.show("case", "black_plastic", slab((-0.085, -0.022, 0), (0.085, 0.022, 0.018), 0.006))
+    return r.show("keys", "white_plastic", *keys)
+
+
+def wall_shelf(pos, yaw, rng):
+    """Floating board 1.0 m long (along y) with a few things on it; back at x = 0."""
+    s = Piece("wall_shelf", pos, yaw)
+    s.show("board", "oak", slab((0, -0.50, -0.014), (0.20, 0.50, 0.014), 0.003, "y"))
+    s.show("brackets", "black_metal", *[slab((0, y - 0.012, -0.10), (0.006, y + 0.012, -0.014), 0.001) for y in (-0.38, 0.38)],
+           *[slab((0, y - 0.012, -0.02), (0.17, y + 0.012, -0.014), 0.001) for y in (-0.38, 0.38)])
+    y = -0.44
+    for k, rgba in enumerate(((0.62, 0.62, 0.60), (0.45, 0.10, 0.08), (0.10, 0.22, 0.34), (0.72, 0.52, 0.16), (0.2, 0.3, 0.22))):
+        thin = BOOKS[(2 * k + 1) % 6][0]
+        book(s, f"shelf_book_{k + 1}", (2 * k + 1) % 6, (0.10, y + thin / 2, 0.0145), 0, rgba)
+        y += thin + 0.001
+    s.show("jar", "glazed_rust", lathe(rounded_profile([(0, 0), (0.05, 0), (0.06, 0.10), (0.034, 0.13), (0.038, 0.15), (0.03, 0.15),
+                                                        (0, 0.12)], 0.02, 5), 28).moved(0.10, 0.02, 0.0145))
+    s.show("pot", "ceramic_white", lathe(rounded_profile([(0, 0), (0.05, 0), (0.062, 0.10), (0.055, 0.10), (0, 0.09)], 0.008, 4), 28)
+           .moved(0.10, 0.33, 0.0145))
+    leaves = []
+    for k in range(26):
+        leaves.append(leaf(rng.uniform(0.06, 0.11), rng).turned("y", -rng.uniform(5, 75)).turned("z", 137.5 * k)
+                      .moved(0.10, 0.33, 0.105))
+    s.show("leaves", "leaf", *leaves)
+    return s
+
+
 def pouf(pos):
     p = Piece("pouf", pos)
-    a = np.linspace(0, 2 * np.pi, 73)
-    prof = rounded_profile([(0.0, 0.0), (0.22, 0.0), (0.27, 0.17), (0.22, 0.35), (0.0, 0.355)], 0.12, 6)
-    grid = np.empty((len(prof), 73, 3))
+    a = np.linspace(0, 2 * np.pi, 61)
+    prof = rounded_profile([(0.0, 0.0), (0.22, 0.0), (0.27, 0.17), (0.22, 0.35), (0.0, 0.355)], 0.12, 4)
+    grid = np.empty((len(prof), 61, 3))
     rib = 1 + 0.018 * np.cos(12 * a) * (prof[:, :1] > 0.02)
     grid[..., 0], grid[..., 1] = prof[:, :1] * np.cos(a) * rib, prof[:, :1] * np.sin(a) * rib
     grid[..., 2] = prof[:, 1:]

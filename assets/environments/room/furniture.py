@@ -19,14 +19,14 @@ def sofa(pos, yaw):
     s.show("frame", "sofa_fabric", *frame)
     seats, backs = [], []
     for k, side in enumerate((-1, 1)):
-        seats.append(cushion((0.66, 0.765, 0.17), 0.16, 0.045, 7, 11 + k).moved(0.08, 0.386 * side, 0.365))
-        back = cushion((0.17, 0.74, 0.42), 0.30, 0.05, 7, 21 + k).turned("y", -14)
+        seats.append(cushion((0.66, 0.765, 0.17), 0.16, 0.05, 5, 11 + k).moved(0.08, 0.386 * side, 0.365))
+        back = cushion((0.17, 0.74, 0.42), 0.30, 0.05, 5, 21 + k).turned("y", -14)
         backs.append(back.moved(-0.155, 0.386 * side, 0.635))
     s.show("seat_cushions", "sofa_fabric", *seats)
     s.show("back_cushions", "sofa_fabric", *backs)
-    pillow = cushion((0.15, 0.44, 0.44), 0.42, 0.035, 7, 31).turned("y", -24).turned("z", 16)
+    pillow = cushion((0.15, 0.46, 0.46), 0.25, 0.03, 9, 31, 0.006, 0.12).turned("y", -24).turned("z", 16)
     s.show("pillow_mustard", "mustard_fabric", pillow.moved(0.05, -0.56, 0.66))
-    pillow = cushion((0.14, 0.40, 0.40), 0.42, 0.035, 7, 32).turned("y", -20).turned("z", -22)
+    pillow = cushion((0.14, 0.42, 0.42), 0.25, 0.03, 9, 32, 0.006, 0.12).turned("y", -20).turned("z", -22)
     s.show("pillow_rust", "rust_fabric", pillow.moved(0.06, 0.58, 0.64))
     s.show("blanket", "cream_fabric", blanket())
     s.show("legs", "walnut", *[leg((x * 0.36, y * 0.84, 0), (x * 0.33, y * 0.82, 0.135), 0.015, 0.024)
@@ -43,14 +43,19 @@ def sofa(pos, yaw):
 
 def blanket():
     """Throw laid over the arm at -y, with soft folds."""
-    over = smooth_path([(-0.725, 0.47), (-0.755, 0.57), (-0.80, 0.603), (-0.865, 0.606), (-0.93, 0.602),
-                        (-0.972, 0.57), (-0.978, 0.44), (-0.985, 0.26)], 5)
-    x = np.linspace(-0.02, 0.33, 25)
+    arm, top, bend, gap = (-0.96, -0.77), 0.59, 0.06, 0.008
+    turn = np.linspace(0, np.pi / 2, 7)
+    inner = np.stack([arm[1] - bend + (bend + gap) * np.cos(turn), top - bend + (bend + gap) * np.sin(turn)], 1)
+    outer = np.stack([arm[0] + bend - (bend + gap) * np.sin(turn), top - bend + (bend + gap) * np.cos(turn)], 1)
+    fall = np.stack([np.full(5, arm[0] - gap), np.linspace(0.48, 0.25, 5)], 1)
+    over = np.vstack([[(arm[1] + gap, 0.47)], inner, outer, fall])
+    x = np.linspace(-0.02, 0.33, 33)
     grid = np.empty((len(over), len(x), 3))
-    hang = np.clip((0.56 - over[:, 1]) / 0.3, 0, 1)[:, None]
+    hang = np.clip((0.53 - over[:, 1]) / 0.3, 0, 1)[:, None]
+    outside = (over[:, :1] < sum(arm) / 2)
     grid[..., 0] = x + 0.012 * hang * np.sin(x * 30)
-    grid[..., 1] = over[:, :1] - 0.012 * hang * (1 + np.sin(x * 46 + 1)) * np.sign(-0.86 - over[:, :1]).clip(0, 1)
-    grid[..., 2] = over[:, 1:] + 0.004 * np.sin(x * 52) * (1 - hang)
+    grid[..., 1] = over[:, :1] - 0.014 * hang * (1 + np.sin(x * 46 + 1)) * outside
+    grid[..., 2] = over[:, 1:] + 0.002 * (1 + np.sin(x * 52)) * (1 - hang)
     return thick(grid, 0.006)
 
 
@@ -152,12 +157,12 @@ def bookshelf(pos, yaw, rng):
             if y + thin > end:
                 break
             number += 1
-            book(s, number, kind, (0.115 - deep / 2 + rng.uniform(-0.01, 0.012), y + thin / 2,
+            book(s, f"book_{number:02d}", kind, (0.115 - deep / 2 + rng.uniform(-0.01, 0.012), y + thin / 2,
                              z + 0.0115), 0.0, tints[rng.integers(len(tints))])
             y += thin + 0.0012
         if k in (1, 4, 8):
             number += 1
-            book(s, number, 3, (0.03, y + 0.052, z + 0.0105), 17.0, tints[k % 10])
+            book(s, f"book_{number:02d}", 3, (0.03, y + 0.052, z + 0.0105), 17.0, tints[k % 10])
     vase = lathe(rounded_profile([(0, 0), (0.045, 0), (0.075, 0.09), (0.03, 0.17), (0.036, 0.20),
                                   (0.030, 0.20), (0.024, 0.16), (0, 0.15)], 0.03, 5), 28)
     s.show("vase", "glazed_blue", vase.moved(0.0, 0.46, 0.791 + 0.36))
@@ -173,7 +178,7 @@ BOOKS = ((0.018, 0.21, 0.14), (0.024, 0.24, 0.16), (0.030, 0.22, 0.15), (0.028, 
          (0.038, 0.27, 0.19), (0.045, 0.25, 0.17), (0.022, 0.29, 0.21), (0.033, 0.30, 0.20))  # thin, tall, deep [m]
 
 
-def book(piece, number, kind, pos, lean, rgba):
+def book(piece, name, kind, pos, lean, rgba):
     """Standing book of one of the sizes; spine towards +x, leaning by `lean` degrees about x."""
     thin, tall, deep = BOOKS[kind]
     x, y, z = pos
@@ -187,7 +192,6 @@ def book(piece, number, kind, pos, lean, rgba):
     back = sheet(spine, np.stack(np.meshgrid(np.linspace(0, 1, 7), [0.0, 1.0]), -1))
     for m in cover:
         m.uv = np.full_like(m.uv, 0.02)
-    name = f"book_{number:02d}"
     mesh = join(*cover, back)
     piece.visuals.append(Visual(name, "book_cloth", mesh, f"book_cover_{kind}", pos=(x, y, z), euler=(lean, 0, 0), rgba=rgba + (1,)))
     up = np.array([0, -np.sin(np.radians(lean)), np.cos(np.radians(lean))]) * tall / 2

@@ -19,7 +19,8 @@ import textures
 from materials import MATERIALS
 from mesh import rotation
 
-SUN = {"dir": (0.40, 0.68, -0.62), "lux": 9000, "rgb": (1.0, 0.90, 0.76)}
+SUN = {"dir": (0.40, 0.68, -0.62), "lux": 2500, "rgb": (1.0, 0.95, 0.86)}
+SKY_LUMINANCE = 300  # of a white texel [cd/m²]
 
 
 def pieces():
@@ -42,7 +43,7 @@ def pieces():
         furniture.plant("plant", (-X + 0.42, -Y + 0.45, 0), rng),
         fittings.floor_lamp((-X + 0.34, Y - 0.95, 0)),
         fittings.table_lamp((X - 0.22, 1.55, 0.531)),
-        fittings.pendant_lamp((0.1, 0.1, shell.HEIGHT), 0.56, 0.25),
+        fittings.pendant_lamp((0.1, 0.1, shell.HEIGHT), 0.56, 0.27),
         fittings.curtain("curtain_left", (x0 - 0.16, -Y + 0.10, 0), 0.62, 2.33, 3),
         fittings.curtain("curtain_right", (x1 + 0.16, -Y + 0.10, 0), 0.62, 2.33, 4),
         fittings.curtain_rod(((x0 + x1) / 2, -Y + 0.10, 2.345), 2.75),
@@ -50,6 +51,8 @@ def pieces():
         fittings.picture("picture_1", "art_hills", (-X, 0.62, 1.55), 0, 0.60, 0.75, "oak"),
         fittings.picture("picture_2", "art_discs", (-X, -0.28, 1.55), 0, 0.60, 0.75, "oak"),
         fittings.picture("picture_3", "art_bands", (0.95, Y, 1.50), -90, 0.50, 0.62, "black_metal"),
+        fittings.picture("picture_4", "art_night", (X, -1.42, 1.52), 180, 0.72, 0.90, "oak"),
+        fittings.wall_shelf((X, 0.80, 1.50), 180, rng),
         fittings.pouf((-1.75, Y - 0.62, 0)),
         fittings.basket((X - 0.24, -0.06, 0)),
         fittings.cardboard_box((1.12, -Y + 0.42, 0), 14),
@@ -57,6 +60,11 @@ def pieces():
         fittings.toy_block("G", (-0.98, 1.62, 0), 12), fittings.toy_block("L", (-1.12, 1.50, 0), -35),
         fittings.toy_block("O", (-0.86, 1.47, 0), 61), fittings.toy_block("A", (-1.02, 1.36, 0), -8),
         fittings.toy_block("M", (-0.985, 1.625, 0.06), 31),
+        fittings.toy_car((-1.42, 1.42, 0), 38),
+        fittings.remote((-1.97, 0.36, 0.40), 70),
+        fittings.lying_book("floor_book_1", (-X + 0.30, 1.36, 0), 12, (0.23, 0.30, 0.035), (0.20, 0.26, 0.34)),
+        fittings.lying_book("floor_book_2", (-X + 0.31, 1.365, 0.035), -6, (0.20, 0.27, 0.028), (0.62, 0.44, 0.22)),
+        fittings.lying_book("floor_book_3", (-X + 0.30, 1.36, 0.063), 24, (0.17, 0.24, 0.022), (0.56, 0.54, 0.50)),
         fittings.mug("mug", (-1.86, 0.36, 0.40), "glazed_rust"),
         fittings.lying_book("magazine_1", (-1.95, -0.08, 0.40), 8, (0.21, 0.28, 0.018), (0.10, 0.24, 0.34)),
         fittings.lying_book("magazine_2", (-1.94, -0.07, 0.418), -9, (0.19, 0.26, 0.024), (0.72, 0.30, 0.16)),
@@ -101,7 +109,7 @@ def body_xml(piece, assets):
     if piece.mass:
         lines.append(f'      <freejoint name="{piece.name}"/>')
     for v in piece.visuals:
-        name = v.name if v.name.startswith(piece.name) or v.name.startswith("book_") else f"{piece.name}_{v.name}"
+        name = v.name if v.name.startswith(piece.name) or "book_" in v.name else f"{piece.name}_{v.name}"
         shape = {"type": v.primitive, "size": numbers(v.size)} if v.primitive else {"type": "mesh", "mesh": assets[id(v)]}
         lines.append("      <geom" + attributes(class_="room_visual", name=name, **shape, material=v.material,
                                                 **placed(v.pos, v.euler), rgba=numbers(v.rgba) if v.rgba else "") + "/>")
@@ -148,7 +156,7 @@ def scene_xml(all_pieces, assets, meshes):
          '    <default class="room_collider">',
          '      <geom group="3" mass="0" friction="0.8 0.005 0.0001" rgba="0.3 0.6 0.9 0.3"/>', "    </default>", "  </default>",
          "  <asset>",
-         '    <texture name="sky" type="skybox" builtin="gradient" rgb1="0.80 0.90 1" rgb2="0.98 0.97 0.94" width="128" height="768"/>']
+         '    <texture name="sky" type="skybox" builtin="gradient" rgb1="0.62 0.78 0.98" rgb2="0.97 0.98 1" width="128" height="768"/>']
     for t in used:
         space = "linear" if t.endswith(("_normal", "_roughness")) else "sRGB"
         channels = ' nchannel="1"' if t.endswith("_roughness") else ""
@@ -159,6 +167,7 @@ def scene_xml(all_pieces, assets, meshes):
     x += ["  </asset>", "  <worldbody>",
           f'    <light name="sun" type="directional" pos="-2.5 -6 5" dir="{numbers(SUN["dir"])}" diffuse="{numbers(SUN["rgb"])}" '
           f'intensity="{SUN["lux"]}" bulbradius="0.01" castshadow="true"/>',
+          f'    <light name="sky" type="image" texture="sky" intensity="{SKY_LUMINANCE}"/>',
           '    <geom class="room_collider" name="floor_plane" type="plane" size="3.2 2.6 0.1" friction="1 0.005 0.0001"/>']
     for piece in all_pieces:
         x += body_xml(piece, assets)

@@ -249,19 +249,22 @@ def smooth_path(points, steps=8):
     return np.vstack(out + [q[-2:-1]])
 
 
-def cushion(size, bulge=0.35, radius=0.05, cuts=5, seed=0, wrinkle=0.004):
-    """Soft box: faces swell towards their middle, corners pull in, a little uneven."""
-    m = box(size, radius, 3, "x", cuts)
+def cushion(size, bulge=0.35, radius=0.05, cuts=5, seed=0, wrinkle=0.004, edge=1.0):
+    """Soft box: faces swell towards their middle, corners pull in, a little uneven; its rim is `edge`
+    times as thick as `size` says (thrown pillows: thin seams)."""
+    m = box(size, radius, 2, "x", cuts)
     half = np.asarray(size, float) / 2
     q = m.p / half
+    hollow = 0.03 + 0.07 * (edge < 1)
     p = m.p.copy()
     thin = int(np.argmin(half))
     a, b = [i for i in range(3) if i != thin]
     dome = (1 - np.clip(np.abs(q[:, a]), 0, 1) ** 2.4) * (1 - np.clip(np.abs(q[:, b]), 0, 1) ** 2.4)
     p[:, thin] *= 1 + bulge * dome - 0.22 * (1 - dome) * (np.abs(q[:, a] * q[:, b]) ** 3)
-    pinch = 1 - 0.05 * (1 - q[:, a] ** 2) * np.abs(q[:, b]) ** 6
+    p[:, thin] *= edge + (1 - edge) * np.clip(dome, 0, 1) ** 0.55
+    pinch = 1 - hollow * (1 - q[:, a] ** 2) * np.abs(q[:, b]) ** 6
     p[:, b] *= pinch
-    pinch = 1 - 0.05 * (1 - q[:, b] ** 2) * np.abs(q[:, a]) ** 6
+    pinch = 1 - hollow * (1 - q[:, b] ** 2) * np.abs(q[:, a]) ** 6
     p[:, a] *= pinch
     rng = np.random.default_rng(seed)
     for _ in range(5):

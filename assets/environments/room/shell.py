@@ -130,32 +130,33 @@ def rug():
     w, d, h = 1.2, 0.85, 0.006
     m = box((2 * w, 2 * d, 0.012), 0.005, 3).moved(0, 0, h - 0.006)
     m.uv = np.stack([m.p[:, 0] / (2 * w) + 0.5, m.p[:, 1] / (2 * d) + 0.5], 1)
-    return r.show("pile", "rug", m)
+    r.show("pile", "rug", m)
+    rng = np.random.default_rng(5)
+    fringe = []
+    for side in (-1, 1):
+        for y in np.arange(-d + 0.012, d - 0.005, 0.019):
+            bend, reach = rng.normal(0, 0.006), rng.uniform(0.045, 0.06)
+            fringe.append(tube([(side * (w - 0.01), y, 0.003), (side * (w + 0.5 * reach), y + bend, 0.0035),
+                                (side * (w + reach), y + 2 * bend + rng.normal(0, 0.003), 0.002)], 0.0022, 5))
+    return r.show("fringe", "cream_fabric", *fringe)
 
 
-def blob(rng, radius, bumps):
-    """Closed lumpy ball: hedges and tree crowns."""
-    t, a = np.linspace(-np.pi / 2, np.pi / 2, 13), np.linspace(0, 2 * np.pi, 19)
-    d = np.stack([np.outer(np.cos(t), np.cos(a)), np.outer(np.cos(t), np.sin(a)), np.repeat(np.sin(t)[:, None], 19, 1)], -1)
-    r = np.ones(d.shape[:2])
-    for _ in range(bumps):
-        c = rng.normal(size=3)
-        c /= np.linalg.norm(c)
-        r += 0.13 * np.exp(-((1 - d @ c) / 0.05))
-    m = sheet(radius * r[..., None] * d)
-    return m.box_uv()
+def woods(rng, y, height, step):
+    """A far line of tree tops, seen from the room as a hazy silhouette."""
+    x = np.arange(-40, 40.01, step)
+    crown = np.convolve(rng.normal(size=len(x) + 24), np.hanning(24), "valid")[:len(x)]
+    fine = np.convolve(rng.normal(size=len(x) + 4), np.hanning(4), "valid")[:len(x)]
+    top = height * (1 + 0.10 * crown + 0.05 * fine)
+    grid = np.empty((2, len(x), 3))
+    grid[..., 0], grid[..., 1] = x[::-1], y
+    grid[0, :, 2], grid[1, :, 2] = -1.0, top
+    return sheet(grid)
 
 
 def outdoors(rng):
     o = Piece("garden")
-    o.show("lawn", "lawn", slab((-22, -34, -0.7), (22, -HALF_Y - WALL, -0.5), 0))
-    hedge = [blob(rng, 0.75, 40).moved(x, -8.2 + rng.uniform(-0.3, 0.3), -0.1 + rng.uniform(0, 0.35))
-             for x in np.arange(-8, 9, 0.95)]
-    crowns = [blob(rng, r, 60).moved(x, y, z) for x, y, z, r in
-              ((-4.6, -13, 3.0, 1.9), (-6.5, -15, 3.6, 2.4), (3.4, -16, 3.2, 2.1), (8.0, -14, 2.6, 1.7), (-0.4, -20, 3.2, 2.2))]
-    trunks = [tube([(x, y, -0.6), (x + 0.1, y, z)], 0.16, 10) for x, y, z, _ in
-              ((-4.6, -13, 3.0, 0), (-6.5, -15, 3.6, 0), (3.4, -16, 3.2, 0), (8.0, -14, 2.6, 0), (-0.4, -20, 3.2, 0))]
-    o.show("hedge", "foliage", *hedge)
-    o.show("trees", "foliage", *crowns)
-    o.show("trunks", "bark", *trunks)
+    o.show("lawn", "lawn", slab((-40, -60, -0.7), (40, -HALF_Y - WALL, -0.5), 0))
+    o.show("woods_far", "woods_far", woods(rng, -58, 4.8, 0.5))
+    o.show("woods_middle", "woods_middle", woods(rng, -44, 2.6, 0.4))
+    o.show("woods_near", "woods_near", woods(rng, -30, 0.9, 0.3))
     return o

@@ -72,13 +72,13 @@ def plank_atlas(rng):
     h, w, strips = 1024, 1024, 8
     s = h // strips
     rgb, height, rough = np.empty((h, w, 3)), np.empty((h, w)), np.empty((h, w))
-    light, dark = np.array([0.72, 0.53, 0.35]), np.array([0.50, 0.335, 0.20])
+    light, dark = np.array([0.74, 0.61, 0.47]), np.array([0.53, 0.40, 0.285])
     d = np.minimum(np.arange(s) + 0.5, s - np.arange(s) - 0.5)[:, None] * 0.14 / s
     groove = np.clip(1 - d / 0.0028, 0, 1)
     for k in range(strips):
         rings, streak, pores = wood_figure(s, w, rng, 1.0 if k % 3 else 0.35)
-        t = np.clip(0.16 + 0.42 * rings + 0.13 * streak + rng.uniform(-0.12, 0.16), 0, 1)
-        c = mix(light, dark, t) * rng.uniform(0.92, 1.06)
+        t = np.clip(0.16 + 0.40 * rings + 0.13 * streak + rng.uniform(-0.14, 0.26), 0, 1)
+        c = mix(light, dark, t) * (rng.uniform(0.88, 1.06) + rng.uniform(-0.012, 0.012, 3))
         c *= (1 - 0.25 * np.clip(pores, 0, 1))[..., None]
         c *= (1 - 0.62 * groove ** 0.8)[..., None]
         rows = slice(k * s, (k + 1) * s)
@@ -128,15 +128,16 @@ def rug(rng):
     w, h = 1024, 725
     y, x = np.mgrid[0:h, 0:w]
     X, Y = x / w * 2.4 - 1.2, y / h * 1.7 - 0.85
-    jitter = noise(h, w, 4, 4, rng) * 0.0035
-    cream, rust = np.array([0.80, 0.74, 0.64]), np.array([0.56, 0.21, 0.14])
-    navy, ochre = np.array([0.12, 0.19, 0.29]), np.array([0.74, 0.50, 0.20])
+    jitter = noise(h, w, 9, 9, rng) * 0.0016
+    cream, rust = np.array([0.78, 0.73, 0.64]), np.array([0.50, 0.23, 0.17])
+    navy, ochre = np.array([0.15, 0.20, 0.28]), np.array([0.68, 0.50, 0.27])
     c = np.broadcast_to(cream, (h, w, 3)).copy()
     edge = np.minimum(1.2 - np.abs(X), 0.85 - np.abs(Y)) + jitter
-    fx, fy = np.abs((X + jitter) % 0.4 - 0.2), np.abs((Y + jitter) % 0.34 - 0.17)
-    lozenge = fx / 0.2 + fy / 0.17
-    for lo, hi, colour in ((0.0, 0.22, rust), (0.22, 0.36, cream), (0.36, 0.56, navy),
-                           (0.80, 0.92, ochre)):
+    # Five by four lozenges fill the field inside the border.
+    fx = np.abs((X + jitter + 0.96) / 0.384 % 1 - 0.5) * 2
+    fy = np.abs((Y + jitter + 0.61) / 0.305 % 1 - 0.5) * 2
+    lozenge = fx + fy
+    for lo, hi, colour in ((0.0, 0.24, rust), (0.36, 0.58, navy), (0.80, 0.93, ochre), (1.72, 1.88, navy)):
         c[(edge > 0.24) & (lozenge >= lo) & (lozenge < hi)] = colour
     along = np.where(1.2 - np.abs(X) < 0.85 - np.abs(Y), Y, X)
     zigzag = np.abs((along + jitter) % 0.10 - 0.05) * 1.6
@@ -150,7 +151,8 @@ def rug(rng):
     rows = np.sin(2 * np.pi * Y / 0.0094)
     tone = 1 + 0.05 * noise(h, w, 90, 3, rng) + 0.05 * rows + 0.05 * noise(h, w, 2, 1.2, rng)
     height = 0.0006 * rows + 0.0005 * noise(h, w, 2.2, 1.5, rng)
-    return to8(c * np.clip(tone, 0.6, 1.3)[..., None]), normal_map(height, 2.4 / w)
+    # Coarser steps halve the files; the eye cannot tell in a fibre pattern.
+    return to8(c * np.clip(tone, 0.6, 1.3)[..., None]) // 3 * 3, (np.minimum(normal_map(height, 2.4 / w), 253) + 2) // 4 * 4
 
 
 def cardboard(rng):
@@ -219,7 +221,7 @@ def art(rng, palette, kind):
     border = np.minimum(np.minimum(X, 1 - X) * 0.8, np.minimum(Y, 1 - Y)) < 0.045
     c = c * brush[..., None]
     c[border] = np.array([0.93, 0.92, 0.89])
-    return to8(c)
+    return to8(c) // 3 * 3
 
 
 FONT = {"G": "01110 10001 10000 10111 10001 10001 01110", "L": "10000 10000 10000 10000 10000 10000 11111",
@@ -256,7 +258,7 @@ def ball(rng):
 def lawn(rng):
     n = 256
     t = np.clip(0.5 + 0.25 * noise(n, n, 2, 2, rng) + 0.2 * noise(n, n, 25, 25, rng), 0, 1)
-    return to8(mix([0.10, 0.19, 0.05], [0.30, 0.40, 0.14], t))
+    return to8(mix([0.20, 0.27, 0.15], [0.46, 0.52, 0.32], t))
 
 
 HILLS = ([0.90, 0.80, 0.66], [0.86, 0.42, 0.20], [0.62, 0.68, 0.62], [0.30, 0.46, 0.46],
@@ -265,6 +267,8 @@ DISCS = ([0.92, 0.88, 0.80], [0.12, 0.18, 0.30], [0.82, 0.34, 0.22], [0.88, 0.66
          [0.30, 0.44, 0.38])
 BANDS = ([0.88, 0.84, 0.76], [0.16, 0.30, 0.40], [0.80, 0.52, 0.36], [0.86, 0.74, 0.50],
          [0.34, 0.22, 0.20])
+NIGHT = ([0.78, 0.80, 0.80], [0.93, 0.90, 0.80], [0.52, 0.60, 0.66], [0.33, 0.41, 0.50],
+         [0.20, 0.26, 0.36], [0.60, 0.52, 0.42])
 BLOCK_COLOURS = {"G": [0.74, 0.12, 0.09], "L": [0.09, 0.30, 0.62], "O": [0.92, 0.62, 0.08],
                  "A": [0.10, 0.46, 0.26], "M": [0.50, 0.20, 0.52]}
 
@@ -285,6 +289,7 @@ def make_all(folder):
     images["art_hills"] = art(rng, HILLS, "hills")
     images["art_discs"] = art(rng, DISCS, "discs")
     images["art_bands"] = art(rng, BANDS, "bands")
+    images["art_night"] = art(rng, NIGHT, "hills")
     images["ball_rgb"] = ball(rng)
     images["lawn_rgb"] = lawn(rng)
     for letter, colour in BLOCK_COLOURS.items():
