@@ -100,7 +100,9 @@ void describe_light(const mjModel& model, const std::vector<Affine3f>& poses,
   head.name = "headlight";
   head.type = LightType::kDirectional;
   head.casts_shadow = false;
-  head.active = headlight.active == kAuto ? illuminance.empty() : headlight.active != 0;
+  // MuJoCo's own renderer leaves an automatic headlight on, and models without intensities are
+  // lit to suit it.
+  head.active = headlight.active == kAuto ? !photometric : headlight.active != 0;
   head.legacy_scale = legacy_light_scale(LightType::kDirectional, 0, {1, 0, 0});
   head.intensity = light_intensity(vec3(headlight.diffuse), 0, head.legacy_scale);
   if (headlight.active != 0) ambient += vec3(headlight.ambient);

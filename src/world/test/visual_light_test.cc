@@ -92,9 +92,12 @@ TEST(VisualLight, HeadlightIsTheLastLight) {
     expect_near(out.lights.back().intensity, Vec3f{.4f, .5f, .6f} * (100 * kPi), 1e-2f);
     return std::pair{out.lights.back().active, out.sky.ambient};
   };
-  EXPECT_TRUE(light("", "auto").first) << "it is the only light";
-  EXPECT_TRUE(light("<light pos='0 0 3' active='false'/>", "auto").first);
-  EXPECT_FALSE(light(lamp, "auto").first) << "other lights replace it";
+  EXPECT_TRUE(light("", "auto").first);
+  EXPECT_TRUE(light(lamp, "auto").first) << "as in MuJoCo's own renderer";
+  const std::string candela = "<light pos='0 0 3' intensity='100' active='";
+  EXPECT_FALSE(light(candela + "true'/>", "auto").first) << "real light replaces it";
+  EXPECT_TRUE(light(candela + "false'/>", "auto").first);
+  EXPECT_TRUE(light(candela + "true'/>", "true").first);
   EXPECT_TRUE(light(lamp, "true").first);
   EXPECT_FALSE(light("", "false").first);
   expect_near(light(lamp, "auto").second, {15, 25, 35}, 1e-4f);
@@ -122,7 +125,7 @@ TEST(VisualLight, Skybox) {
 TEST(VisualLight, ExposureShowsWhiteJustBelowWhite) {
   // One legacy light of diffuse 1, nothing else: facing white has 100 cd/m², shown at 0.85.
   const auto ev = [](const std::string& lights, const std::string& ambient) {
-    return describe(scene(lights, "<headlight ambient='" + ambient + "'/>")).ev100;
+    return describe(scene(lights, "<headlight diffuse='0 0 0' ambient='" + ambient + "'/>")).ev100;
   };
   const auto display = [](float luminance, float ev100) {
     return luminance / (1.2f * std::exp2(ev100));
