@@ -135,13 +135,23 @@ TEST(VisualLight, ExposureShowsWhiteJustBelowWhite) {
   // A dim legacy scene stays dim: its colours mean what they say.
   EXPECT_NEAR(display(100, ev("<light type='directional' diffuse='.1 .1 .1'/>", "0 0 0")), .85,
               1e-4);
-  // Lights that add up beyond white are stopped down: 100 + half of 100 + 30 ambient.
-  EXPECT_NEAR(display(180, ev(full + full, ".3 .3 .3")), .85, 1e-4);
+  // Lights that add up beyond white are stopped down: 100 + a quarter of 100 + 30 ambient.
+  EXPECT_NEAR(display(155, ev(full + full, ".3 .3 .3")), .85, 1e-4);
   // Lights in candela set the exposure, up and down: 900 cd at 3 m give 100 lx = 31.8 cd/m².
   EXPECT_NEAR(display(100 / kPi, ev("<light type='point' pos='0 0 4' intensity='900'/>", "0 0 0")),
               .85, 1e-4);
   EXPECT_NEAR(display(3e4f / kPi, ev("<light type='directional' intensity='30000'/>", "0 0 0")),
               .85, 1e-4);
+}
+
+TEST(VisualLight, SkyCountsByItsMeanLuminance) {
+  // A sky of sRGB 188 = 0.5 linear: 50 cd/m² on top of the 100 of the light.
+  const float ev100 = describe(scene("<light type='directional' diffuse='1 1 1'/>",
+                                     "<headlight diffuse='0 0 0' ambient='0 0 0'/>",
+                                     R"(<texture type="skybox" builtin="flat" width="32"
+                                        rgb1=".7354 .7354 .7354" rgb2=".7354 .7354 .7354"/>)"))
+                          .ev100;
+  EXPECT_NEAR(150 / (1.2f * std::exp2(ev100)), .85, 3e-3);
 }
 
 TEST(VisualRules, SrgbAndRoughness) {
