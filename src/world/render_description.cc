@@ -221,7 +221,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
 
   describe_deformables(m, poses, &simulated.materials(), &labels, &out);
   describe_cameras(m, &out);
-  describe_light(m, poses, &simulated.materials(), &out);
+  const LightLevels levels = describe_light(m, poses, &simulated.materials(), &out);
   for (int i = 0; i < static_cast<int>(m.ntendon); ++i)
     out.unsupported.push_back({ErrorKind::kUnsupported, fmt::format("tendon '{}' is not drawn",
                                                                     name_of(m, mjOBJ_TENDON, i))});
@@ -235,6 +235,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     visual->convert_meshes();
     visual->materials().load_textures();
   }
+  out.ev100 = exposure(levels, out);
   return out;
 }
 

@@ -62,8 +62,9 @@ void set_image_light(const mjModel& m, int i, MaterialTable* materials, RenderDe
 
 }  // namespace
 
-void describe_light(const mjModel& model, const std::vector<Affine3f>& poses,
-                    MaterialTable* materials, RenderDescription* out) {
+LightLevels describe_light(const mjModel& model, const std::vector<Affine3f>& poses,
+                           MaterialTable* materials, RenderDescription* out) {
+  LightLevels levels;
   out->center = vec3(model.stat.center);
   out->extent = static_cast<float>(model.stat.extent);
   const float nearest = kNearestShare * max(out->extent, 1e-3f);
@@ -75,8 +76,6 @@ void describe_light(const mjModel& model, const std::vector<Affine3f>& poses,
     }
 
   Vec3f ambient{};
-  std::vector<float> illuminance;  // [lx] facing the light at the centre
-  bool photometric = false;
   for (int i = 0; i < static_cast<int>(model.nlight); ++i) {
     if (model.light_type[i] == mjLIGHT_IMAGE) {
       if (model.light_active[i] != 0) set_image_light(model, i, materials, out);
@@ -89,9 +88,9 @@ void describe_light(const mjModel& model, const std::vector<Affine3f>& poses,
     const LightDescription& light = out->lights.back();
     if (!light.active) continue;
     ambient += vec3(model.light_ambient + 3 * i);
-    photometric = photometric || model.light_intensity[i] > 0;
+    levels.photometric = levels.photometric || model.light_intensity[i] > 0;
     const float lux = luminance(light.intensity);
-    illuminance.push_back(light.type == LightType::kDirectional ? lux : lux / sqr(distance));
+    levels.illuminance.push_back(light.type == LightType::kDirectional ? lux : lux / sqr(distance));
   }
 
   const auto& headlight = model.vis.headlight;
@@ -100,16 +99,25 @@ void describe_light(const mjModel& model, const std::vector<Affine3f>& poses,
   head.name = "headlight";
   head.type = LightType::kDirectional;
   head.casts_shadow = false;
-  head.active = headlight.active == kAuto ? illuminance.empty() : headlight.active != 0;
+  // MuJoCo's own renderer leaves an automatic headlight on, and models without intensities are
+  // lit to suit it.
+  head.active = headlight.active == kAuto ? !levels.photometric : headlight.active != 0;
   head.legacy_scale = legacy_light_scale(LightType::kDirectional, 0, {1, 0, 0});
   head.intensity = light_intensity(vec3(headlight.diffuse), 0, head.legacy_scale);
   if (headlight.active != 0) ambient += vec3(headlight.ambient);
-  if (head.active) illuminance.push_back(luminance(head.intensity));
+  if (head.active) levels.illuminance.push_back(luminance(head.intensity));
   out->lights.push_back(head);
 
   out->sky.ambient = ambient * kWhiteLuminance;
-  const float sky = out->sky.texture >= 0 ? 0.25f * out->sky.scale : 0;  // of a sky of mid values
-  out->ev100 = scene_ev100(illuminance, luminance(out->sky.ambient) + sky, photometric);
+  return levels;
+}
+
+float exposure(const LightLevels& levels, const RenderDescription& scene) {
+  float surround = luminance(scene.sky.ambient);
+  if (scene.sky.texture >= 0)
+    surround +=
+        scene.sky.scale * mean_luminance(scene.textures[static_cast<size_t>(scene.sky.texture)]);
+  return scene_ev100(levels.illuminance, surround, levels.photometric);
 }
 
 }  // namespace gloam

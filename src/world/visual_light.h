@@ -11,8 +11,17 @@
 
 namespace gloam {
 
-/// Fills lights (headlight last), sky and ev100. `poses` = X_WB at qpos0.
-void describe_light(const mjModel& model, const std::vector<Affine3f>& poses,
-                    MaterialTable* materials, RenderDescription* out);
+/// How much light there is, for the exposure.
+struct LightLevels {
+  std::vector<float> illuminance;  ///< [lx] of each active light, facing it at the model's centre
+  bool photometric = false;        ///< an active light has an intensity in cd
+};
+
+/// Fills lights (headlight last) and sky. `poses` = X_WB at qpos0.
+LightLevels describe_light(const mjModel& model, const std::vector<Affine3f>& poses,
+                           MaterialTable* materials, RenderDescription* out);
+
+/// EV100 of the described scene, whose textures are loaded.
+float exposure(const LightLevels& levels, const RenderDescription& scene);
 
 }  // namespace gloam

@@ -44,14 +44,32 @@ float ev100_for(float luminance, float display) {
   return std::log2(max(luminance, 1e-6f) / (1.2f * display));
 }
 
+float mean_luminance(const TextureDescription& texture) {
+  constexpr size_t kSamples = 1024;  // of each face, evenly spread
+  double sum = 0;
+  size_t count = 0;
+  for (const Image8& face : texture.faces) {
+    if (face.channels < 3) continue;
+    const auto channels = static_cast<size_t>(face.channels);
+    const size_t texels = face.texels.size() / channels;
+    for (size_t i = 0; i < texels; i += texels / kSamples + 1, ++count) {
+      const uint8_t* texel = face.texels.data() + i * channels;
+      sum += luminance(linear_color({static_cast<float>(texel[0]) / 255.0f,
+                                     static_cast<float>(texel[1]) / 255.0f,
+                                     static_cast<float>(texel[2]) / 255.0f}));
+    }
+  }
+  return count > 0 ? static_cast<float>(sum / static_cast<double>(count)) : 0;
+}
+
 float scene_ev100(std::span<const float> illuminance, float surround, bool photometric) {
   float sum = 0, most = 0;
   for (const float lux : illuminance) {
     sum += lux;
     most = max(most, lux);
   }
-  // One surface faces one light; the others meet it at a slant.
-  float white = (most + 0.5f * (sum - most)) * kInvPi + surround;
+  // One surface faces one light; to the others it is turned at random: mean of max(cos, 0) = 1/4.
+  float white = (most + 0.25f * (sum - most)) * kInvPi + surround;
   if (!photometric) white = max(white, kWhiteLuminance);
   return ev100_for(white, kWhiteExposed);
 }

@@ -41,6 +41,9 @@ float softness_of_exponent(float exponent, float cutoff);
 /// with a saturation-based sensitivity).
 float ev100_for(float luminance, float display);
 
+/// Mean luminance of an sRGB texture over all its faces, 0..1, from a sample of its texels.
+float mean_luminance(const TextureDescription& texture);
+
 /// EV100 of a scene: `illuminance` [lx] of each active light on a surface that faces it at the
 /// model's centre, `surround` = luminance of sky and ambient light [cd/m²], `photometric` = at
 /// least one active light has an intensity in cd.

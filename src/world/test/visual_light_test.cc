@@ -92,9 +92,12 @@ TEST(VisualLight, HeadlightIsTheLastLight) {
     expect_near(out.lights.back().intensity, Vec3f{.4f, .5f, .6f} * (100 * kPi), 1e-2f);
     return std::pair{out.lights.back().active, out.sky.ambient};
   };
-  EXPECT_TRUE(light("", "auto").first) << "it is the only light";
-  EXPECT_TRUE(light("<light pos='0 0 3' active='false'/>", "auto").first);
-  EXPECT_FALSE(light(lamp, "auto").first) << "other lights replace it";
+  EXPECT_TRUE(light("", "auto").first);
+  EXPECT_TRUE(light(lamp, "auto").first) << "as in MuJoCo's own renderer";
+  const std::string candela = "<light pos='0 0 3' intensity='100' active='";
+  EXPECT_FALSE(light(candela + "true'/>", "auto").first) << "real light replaces it";
+  EXPECT_TRUE(light(candela + "false'/>", "auto").first);
+  EXPECT_TRUE(light(candela + "true'/>", "true").first);
   EXPECT_TRUE(light(lamp, "true").first);
   EXPECT_FALSE(light("", "false").first);
   expect_near(light(lamp, "auto").second, {15, 25, 35}, 1e-4f);
@@ -122,7 +125,7 @@ TEST(VisualLight, Skybox) {
 TEST(VisualLight, ExposureShowsWhiteJustBelowWhite) {
   // One legacy light of diffuse 1, nothing else: facing white has 100 cd/m², shown at 0.85.
   const auto ev = [](const std::string& lights, const std::string& ambient) {
-    return describe(scene(lights, "<headlight ambient='" + ambient + "'/>")).ev100;
+    return describe(scene(lights, "<headlight diffuse='0 0 0' ambient='" + ambient + "'/>")).ev100;
   };
   const auto display = [](float luminance, float ev100) {
     return luminance / (1.2f * std::exp2(ev100));
@@ -132,13 +135,23 @@ TEST(VisualLight, ExposureShowsWhiteJustBelowWhite) {
   // A dim legacy scene stays dim: its colours mean what they say.
   EXPECT_NEAR(display(100, ev("<light type='directional' diffuse='.1 .1 .1'/>", "0 0 0")), .85,
               1e-4);
-  // Lights that add up beyond white are stopped down: 100 + half of 100 + 30 ambient.
-  EXPECT_NEAR(display(180, ev(full + full, ".3 .3 .3")), .85, 1e-4);
+  // Lights that add up beyond white are stopped down: 100 + a quarter of 100 + 30 ambient.
+  EXPECT_NEAR(display(155, ev(full + full, ".3 .3 .3")), .85, 1e-4);
   // Lights in candela set the exposure, up and down: 900 cd at 3 m give 100 lx = 31.8 cd/m².
   EXPECT_NEAR(display(100 / kPi, ev("<light type='point' pos='0 0 4' intensity='900'/>", "0 0 0")),
               .85, 1e-4);
   EXPECT_NEAR(display(3e4f / kPi, ev("<light type='directional' intensity='30000'/>", "0 0 0")),
               .85, 1e-4);
+}
+
+TEST(VisualLight, SkyCountsByItsMeanLuminance) {
+  // A sky of sRGB 188 = 0.5 linear: 50 cd/m² on top of the 100 of the light.
+  const float ev100 = describe(scene("<light type='directional' diffuse='1 1 1'/>",
+                                     "<headlight diffuse='0 0 0' ambient='0 0 0'/>",
+                                     R"(<texture type="skybox" builtin="flat" width="32"
+                                        rgb1=".7354 .7354 .7354" rgb2=".7354 .7354 .7354"/>)"))
+                          .ev100;
+  EXPECT_NEAR(150 / (1.2f * std::exp2(ev100)), .85, 3e-3);
 }
 
 TEST(VisualRules, SrgbAndRoughness) {
