@@ -26,7 +26,7 @@ class VideoWriter {
   /// Errors: a size that H.264 cannot hold. The file's header follows with the first picture.
   static Result<VideoWriter> start(std::unique_ptr<ByteSink> sink, const VideoOptions& options);
   /// `rgb`: sRGB (height x width x 3). `index` counts pictures at `rate` and rises strictly; where
-  /// indices are missing the picture before stays on.
+  /// indices are missing the picture before stays on. After an error only finish() may be called.
   Status add(int64_t index, std::span<const uint8_t> rgb);
   Status finish();
 
