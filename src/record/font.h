@@ -8,7 +8,7 @@
 
 namespace gloam {
 
-inline constexpr float kFontCapHeight = 7;   ///< [grid units]
+inline constexpr float kFontCapHeight = 7;    ///< [grid units]
 inline constexpr float kFontSpacing = 2.15f;  ///< between characters
 
 struct Glyph {

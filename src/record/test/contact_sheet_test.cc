@@ -23,12 +23,13 @@ int bright_pixels(const Canvas& canvas) {
 }
 
 TEST(Font, EveryCharacterIsDrawnAndNoTwoAreAlike) {
-  std::map<std::vector<uint8_t>, char> seen;
+  std::map<std::string, char> seen;
   for (char c = ' '; c <= '~'; ++c) {
     Canvas canvas(60, 60, kBlack);
     canvas.text(10, 40, std::string_view(&c, 1), 24, kWhite);
-    if (c != ' ') EXPECT_GT(bright_pixels(canvas), 4) << c;
-    const auto [other, is_new] = seen.try_emplace(canvas.pixels(), c);
+    EXPECT_GE(bright_pixels(canvas), c == ' ' ? 0 : 4) << c;
+    const std::string picture(canvas.pixels().begin(), canvas.pixels().end());
+    const auto [other, is_new] = seen.try_emplace(picture, c);
     EXPECT_TRUE(is_new) << c << " looks like " << other->second;
   }
 }
@@ -75,9 +76,9 @@ TEST(Canvas, LinesCoverTheirAreaAndClip) {
 TEST(ContactSheet, TicksAreRoundNumbersInsideTheAxis) {
   EXPECT_EQ(axis_ticks(0, 10, 5), (std::vector<double>{0, 2, 4, 6, 8, 10}));
   const std::vector<double> ticks = axis_ticks(-0.13, 0.52, 5);
-  ASSERT_EQ(ticks.size(), 4u);
+  ASSERT_EQ(ticks.size(), 3u);
   EXPECT_NEAR(ticks[0], 0, 1e-12);
-  EXPECT_NEAR(ticks[3], 0.6 - 0.0, 0.2);
+  EXPECT_NEAR(ticks[2], 0.4, 1e-12);
   for (const double range : {1e-3, 0.7, 3.0, 42.0, 1e5}) {
     const std::vector<double> t = axis_ticks(0.3 * range, 1.3 * range, 6);
     EXPECT_GE(t.size(), 2u);

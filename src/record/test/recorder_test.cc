@@ -26,8 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kWidth = 64, kHeight = 48, kFrames = 6;
-const std::vector<std::string> kEverything = {"video",        "png",     "depth_png",    "depth_exr",
-                                              "segmentation", "metrics", "contact_sheet"};
+const std::vector<std::string> kEverything = {
+    "video", "png", "depth_png", "depth_exr", "segmentation", "metrics", "contact_sheet"};
 
 /// A folder of its own for each test, removed afterwards.
 class RecorderTest : public testing::Test {
@@ -256,9 +256,11 @@ TEST_F(RecorderTest, ASummaryFromAStrangerRemovesNothingOutside) {
   fs::create_directories(run() / "sub");
   std::ofstream(folder_ / "outside.txt") << "keep";
   fs::create_symlink(folder_, run() / "link");
-  for (const char* text :
-       {R"({"format": "gloam-run 1", "entries": ["../outside.txt", "..", ".", "/", "link", "sub/../../outside.txt", 7, ""]})",
-        R"({"format": "gloam-run 1"})", R"({"format": 3, "entries": ["sub"]})", "[1, 2]", "garbage"}) {
+  for (
+      const char* text :
+      {R"({"format": "gloam-run 1", "entries": ["../outside.txt", "..", ".", "/", "link", "sub/../../outside.txt", 7, ""]})",
+       R"({"format": "gloam-run 1"})", R"({"format": 3, "entries": ["sub"]})", "[1, 2]",
+       "garbage"}) {
     std::ofstream(run() / "summary.json") << text;
     (void)prepare_run_folder(run(), true).ok();
     EXPECT_TRUE(fs::exists(folder_ / "outside.txt")) << text;
@@ -358,7 +360,10 @@ class GuardedStore : public FileStore {
 };
 
 Error disk_full() {
-  return {ErrorKind::kIo, "cannot write: No space left on device", {"some/file", 0, 0}, "free some space"};
+  return {ErrorKind::kIo,
+          "cannot write: No space left on device",
+          {"some/file", 0, 0},
+          "free some space"};
 }
 
 /// Whatever is in a run's folder must be whole: pictures decode, tables have whole rows but for the
@@ -418,8 +423,8 @@ TEST_F(RecorderTest, AfterAFailureNothingMoreIsWrittenAndNobodyWaits) {
   std::atomic<bool> full{false};
   RecorderOptions o = options();
   o.queue_frames = 1;
-  o.store = std::make_shared<GuardedStore>(
-      [&full] { return full ? Status(disk_full()) : Status(); });
+  o.store =
+      std::make_shared<GuardedStore>([&full] { return full ? Status(disk_full()) : Status(); });
   auto recorder = Recorder::start(o, run_info());
   ASSERT_TRUE(recorder.ok());
   (*recorder)->add_frame(make_frame("chase", 0));
@@ -449,7 +454,8 @@ TEST_F(RecorderTest, ABestEffortRecorderDropsTheOldestAndNeverWaits) {
   auto recorder = Recorder::start(o, run_info());
   ASSERT_TRUE(recorder.ok());
   stuck = true;
-  for (int i = 0; i < 20; ++i) (*recorder)->add_frame(make_frame("chase", i));  // returns though stuck
+  for (int i = 0; i < 20; ++i)
+    (*recorder)->add_frame(make_frame("chase", i));  // returns though stuck
   stuck = false;
   ASSERT_TRUE((*recorder)->finish({}).ok());
   const nlohmann::json camera = read_json(run() / "summary.json")["cameras"][1];
@@ -478,7 +484,7 @@ TEST_F(RecorderTest, ARealLimitOfTheSystemIsReportedWithFileAndCause) {
   const pid_t child = fork();
   if (child == 0) {
     std::signal(SIGXFSZ, SIG_IGN);
-    const rlimit limit{9000, 9000};
+    const rlimit limit{4000, 4000};
     setrlimit(RLIMIT_FSIZE, &limit);
     RecorderOptions o = options();
     o.outputs = {"video"};

@@ -49,8 +49,10 @@ Rgb8 label_color(uint32_t id) {
   if (id == 0) return {38, 42, 48};
   constexpr double kGoldenAngle = 0.38196601125;  // turns
   const double turns = static_cast<double>(id) * kGoldenAngle;
+  // Ids 21 apart have nearly the same hue and the same lightness, hence two degrees of colour.
   const float lightness[] = {0.74f, 0.62f, 0.84f};
-  return oklch_color(lightness[id % 3], 0.125f, static_cast<float>(turns - std::floor(turns)));
+  const float chroma = (id / 3) % 2 == 0 ? 0.145f : 0.075f;
+  return oklch_color(lightness[id % 3], chroma, static_cast<float>(turns - std::floor(turns)));
 }
 
 }  // namespace gloam

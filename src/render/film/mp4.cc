@@ -315,6 +315,7 @@ Status Mp4Writer::add(int64_t index, bool key, std::span<const uint8_t> sample) 
 
 Status Mp4Writer::finish() {
   const uint64_t index_offset = end_;
+  GLOAM_TRY_STATUS(sink_->truncate(index_offset));  // without what a failed add() may have left
   const std::vector<uint8_t> index = movie_header(true);
   if (Status status = append(index); !status.ok()) {
     (void)sink_->truncate(index_offset);  // still a good fragmented file

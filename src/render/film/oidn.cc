@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 
 #include "base/check.h"
 #include "base/files.h"
@@ -78,15 +79,50 @@ std::vector<fs::path> candidates() {
   return paths;
 }
 
+/// One filter of the library. Pictures stay the caller's.
+class Filter {
+ public:
+  Filter(const OidnApi& api, OidnDevice device, DenoiseQuality quality)
+      : api_(api), filter_(api.new_filter(device, "RT")) {
+    api_.set_int(filter_, "quality", kQuality[static_cast<int>(quality)]);
+  }
+  ~Filter() { api_.release_filter(filter_); }
+  Filter(const Filter&) = delete;
+  Filter& operator=(const Filter&) = delete;
+
+  void set(const char* name, bool value) { api_.set_bool(filter_, name, value); }
+  /// A plane that does not have the film's size is left out.
+  void set(const char* name, const std::vector<Vec3f>& plane, const Film& film) {
+    if (plane.size() != film.pixel_count()) {
+      api_.unset_image(filter_, name);
+      return;
+    }
+    api_.set_image(filter_, name, const_cast<Vec3f*>(plane.data()), kFormatFloat3,
+                   static_cast<size_t>(film.width), static_cast<size_t>(film.height), 0, 0, 0);
+  }
+  void run() {
+    api_.commit_filter(filter_);
+    api_.execute_filter(filter_);
+  }
+
+ private:
+  OidnApi api_;
+  OidnFilter filter_;
+};
+
 class OidnDenoiser : public Denoiser {
  public:
   OidnDenoiser(const OidnApi& api, OidnDevice device, DenoiseQuality quality)
-      : api_(api), device_(device), filter_(api.new_filter(device, "RT")) {
-    api_.set_bool(filter_, "hdr", true);
-    api_.set_int(filter_, "quality", kQuality[static_cast<int>(quality)]);
+      : api_(api), device_(device), color_filter_(std::in_place, api, device, quality) {
+    color_filter_->set("hdr", true);
+    if (quality != DenoiseQuality::kHigh) return;
+    albedo_filter_.emplace(api, device, quality);
+    normal_filter_.emplace(api, device, quality);
   }
   ~OidnDenoiser() override {
-    api_.release_filter(filter_);
+    color_filter_.reset();  // filters before their device
+    albedo_filter_.reset();
+    normal_filter_.reset();
     api_.release_device(device_);
   }
   OidnDenoiser(const OidnDenoiser&) = delete;
@@ -95,21 +131,21 @@ class OidnDenoiser : public Denoiser {
   Status denoise(const Film& film, std::vector<Vec3f>* out) override {
     remove_fireflies(film, &color_);
     out->resize(film.pixel_count());
-    const auto set = [&](const char* name, const std::vector<Vec3f>& plane) {
-      if (plane.size() != film.pixel_count()) {
-        api_.unset_image(filter_, name);
-        return;
-      }
-      api_.set_image(filter_, name, const_cast<Vec3f*>(plane.data()), kFormatFloat3,
-                     static_cast<size_t>(film.width), static_cast<size_t>(film.height), 0, 0, 0);
-    };
-    set("color", color_);
-    set("albedo", film.albedo);
+    const bool has_albedo = film.albedo.size() == film.pixel_count();
     // The library takes normals only together with albedo.
-    set("normal", film.albedo.empty() ? film.albedo : film.normal);
-    set("output", *out);
-    api_.commit_filter(filter_);
-    api_.execute_filter(filter_);
+    const bool has_normal = has_albedo && film.normal.size() == film.pixel_count();
+    const bool clean = albedo_filter_ && has_normal;
+    if (clean) {
+      clean_up("albedo", film.albedo, film, &*albedo_filter_, &albedo_);
+      clean_up("normal", film.normal, film, &*normal_filter_, &normal_);
+    }
+    const std::vector<Vec3f> none;
+    color_filter_->set("cleanAux", clean);
+    color_filter_->set("color", color_, film);
+    color_filter_->set("albedo", clean ? albedo_ : has_albedo ? film.albedo : none, film);
+    color_filter_->set("normal", clean ? normal_ : has_normal ? film.normal : none, film);
+    color_filter_->set("output", *out, film);
+    color_filter_->run();
     const char* message = nullptr;
     if (api_.get_device_error(device_, &message) != kErrorNone)
       return Error{ErrorKind::kIo, fmt::format("Open Image Denoise failed: {}", message)};
@@ -119,10 +155,18 @@ class OidnDenoiser : public Denoiser {
   const char* name() const override { return "Open Image Denoise"; }
 
  private:
+  static void clean_up(const char* name, const std::vector<Vec3f>& noisy, const Film& film,
+                       Filter* filter, std::vector<Vec3f>* out) {
+    out->resize(noisy.size());
+    filter->set(name, noisy, film);
+    filter->set("output", *out, film);
+    filter->run();
+  }
+
   OidnApi api_;
   OidnDevice device_;
-  OidnFilter filter_;
-  std::vector<Vec3f> color_;
+  std::optional<Filter> color_filter_, albedo_filter_, normal_filter_;
+  std::vector<Vec3f> color_, albedo_, normal_;
 };
 
 }  // namespace

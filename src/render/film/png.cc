@@ -39,10 +39,10 @@ bool write_png(const Layout& layout, const uint8_t* rows, std::vector<uint8_t>* 
                static_cast<png_uint_32>(layout.height), layout.bit_depth, layout.color_type,
                PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   if (layout.bit_depth == 8) png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
-  // Measured at 640 x 480: level 1 with the Sub filter costs a third of libpng's defaults and
-  // makes pictures 10-20 % larger.
+  // Measured at 640 x 480 on rendered rooms: against libpng's defaults this takes a sixth of the
+  // time and makes files 13 % larger (noisy pictures: two thirds, equal size).
   png_set_compression_level(png, 1);
-  png_set_filter(png, PNG_FILTER_TYPE_BASE, layout.bit_depth == 8 ? PNG_FILTER_SUB : PNG_FILTER_UP);
+  png_set_filter(png, PNG_FILTER_TYPE_BASE, layout.bit_depth == 8 ? PNG_FILTER_AVG : PNG_FILTER_UP);
   png_write_info(png, info);
   if (layout.bit_depth == 16) png_set_swap(png);  // PNG is big-endian
   for (int y = 0; y < layout.height; ++y)

@@ -27,6 +27,9 @@ Status VideoWriter::add(int64_t index, std::span<const uint8_t> rgb) {
   return mp4_->add(index, picture.key, picture.bytes);
 }
 
-Status VideoWriter::finish() { return mp4_ ? mp4_->finish() : sink_->close(); }
+Status VideoWriter::finish() {
+  if (mp4_) return mp4_->finish();
+  return sink_ ? sink_->close() : Status();  // no sink: the header could not be written
+}
 
 }  // namespace gloam

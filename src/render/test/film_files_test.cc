@@ -206,7 +206,8 @@ TEST(Jpeg, DamagedFilesAreErrorsNotCrashes) {
 TEST(Exr, FloatChannelsRoundTripWithoutLoss) {
   const int w = 37, h = 21;
   std::vector<float> depth(static_cast<size_t>(w * h)), rgb(3 * depth.size());
-  for (size_t i = 0; i < depth.size(); ++i) depth[i] = i % 5 == 0 ? kInf : 0.1f * static_cast<float>(i);
+  for (size_t i = 0; i < depth.size(); ++i)
+    depth[i] = i % 5 == 0 ? kInf : 0.1f * static_cast<float>(i);
   for (size_t i = 0; i < rgb.size(); ++i) rgb[i] = std::exp(static_cast<float>(i % 100) - 50);
   const ExrChannel channels[] = {{"Z", depth.data()},
                                  {"R", rgb.data(), 3},
@@ -277,7 +278,8 @@ TEST(Yuv, MatchesBt709LimitedRange) {
   EXPECT_EQ(one(0, 255, 0), (std::array{173, 42, 26}));
   EXPECT_EQ(one(0, 0, 255), (std::array{32, 240, 118}));
   for (int v = 0; v < 256; ++v) {
-    const auto grey = one(static_cast<uint8_t>(v), static_cast<uint8_t>(v), static_cast<uint8_t>(v));
+    const auto grey =
+        one(static_cast<uint8_t>(v), static_cast<uint8_t>(v), static_cast<uint8_t>(v));
     EXPECT_EQ(grey[1], 128);
     EXPECT_EQ(grey[2], 128);
     EXPECT_EQ(grey[0], static_cast<int>(std::lround(16 + 219.0 * v / 255)));

@@ -93,8 +93,8 @@ struct Movie {
 };
 
 void read_avcc(const std::vector<uint8_t>& b, const Box& moov, Movie* movie) {
-  const auto stsd = find_box(b, boxes_in(b, moov.body, moov.end),
-                             {"trak", "mdia", "minf", "stbl", "stsd"});
+  const auto stsd =
+      find_box(b, boxes_in(b, moov.body, moov.end), {"trak", "mdia", "minf", "stbl", "stsd"});
   ASSERT_TRUE(stsd);
   const std::vector<Box> entries = boxes_in(b, stsd->body + 8, stsd->end);
   ASSERT_EQ(entries.size(), 1u);
@@ -138,11 +138,17 @@ Movie read_indexed(const std::vector<uint8_t>& b) {
   const uint64_t n = number(b, stsz.body + 8, 4);
   EXPECT_EQ(number(b, co64.body + 4, 4), n);
   for (uint64_t i = 0; i < n; ++i)
-    movie.samples.push_back({number(b, co64.body + 8 + 8 * i, 8), number(b, stsz.body + 12 + 4 * i, 4)});
+    movie.samples.push_back(
+        {number(b, co64.body + 8 + 8 * i, 8), number(b, stsz.body + 12 + 4 * i, 4)});
   const Box stss = *find_box(b, mdia, {"minf", "stbl", "stss"});
   for (uint64_t i = 0; i < number(b, stss.body + 4, 4); ++i)
     movie.keys.push_back(number(b, stss.body + 8 + 4 * i, 4));
   return movie;
+}
+
+/// As read_indexed(), for files that may hold no picture and so no key pictures.
+Movie read_indexed_or_empty(const std::vector<uint8_t>& b, int pictures) {
+  return pictures == 0 ? Movie() : read_indexed(b);
 }
 
 /// A file that was cut off: header and complete fragments.
@@ -163,14 +169,27 @@ Movie read_fragments(const std::vector<uint8_t>& b) {
 }
 
 /// Decodes with OpenH264's decoder; returns the luma planes.
-std::vector<std::vector<uint8_t>> decode(const std::vector<uint8_t>& b, const Movie& movie, int width,
-                                         int height) {
+std::vector<std::vector<uint8_t>> decode(const std::vector<uint8_t>& b, const Movie& movie,
+                                         int width, int height) {
   ISVCDecoder* decoder = nullptr;
   EXPECT_EQ(WelsCreateDecoder(&decoder), 0);
   SDecodingParam parameters = {};
   parameters.sVideoProperty.eVideoBsType = VIDEO_BITSTREAM_AVC;
   EXPECT_EQ(decoder->Initialize(&parameters), 0);
   std::vector<std::vector<uint8_t>> out;
+  uint8_t* planes[3] = {};
+  SBufferInfo info = {};
+  const auto take = [&] {
+    if (info.iBufferStatus != 1) return;
+    EXPECT_EQ(info.UsrData.sSystemBuffer.iWidth, width);
+    EXPECT_EQ(info.UsrData.sSystemBuffer.iHeight, height);
+    std::vector<uint8_t> luma;
+    for (int y = 0; y < height; ++y) {
+      const uint8_t* row = planes[0] + y * info.UsrData.sSystemBuffer.iStride[0];
+      luma.insert(luma.end(), row, row + width);
+    }
+    out.push_back(std::move(luma));
+  };
   for (size_t i = 0; i < movie.samples.size(); ++i) {
     std::vector<uint8_t> stream = i == 0 ? movie.parameter_sets : std::vector<uint8_t>();
     size_t at = movie.samples[i].first;
@@ -183,21 +202,16 @@ std::vector<std::vector<uint8_t>> decode(const std::vector<uint8_t>& b, const Mo
                     b.begin() + static_cast<std::ptrdiff_t>(at + 4 + size));
       at += 4 + size;
     }
-    uint8_t* planes[3] = {};
-    SBufferInfo info = {};
-    const auto state = decoder->DecodeFrameNoDelay(stream.data(), static_cast<int>(stream.size()),
-                                                   planes, &info);
-    EXPECT_EQ(state, dsErrorFree) << "picture " << i;
-    if (info.iBufferStatus != 1) continue;
-    EXPECT_EQ(info.UsrData.sSystemBuffer.iWidth, width);
-    EXPECT_EQ(info.UsrData.sSystemBuffer.iHeight, height);
-    std::vector<uint8_t> luma;
-    for (int y = 0; y < height; ++y) {
-      const uint8_t* row = planes[0] + y * info.UsrData.sSystemBuffer.iStride[0];
-      luma.insert(luma.end(), row, row + width);
-    }
-    out.push_back(std::move(luma));
+    EXPECT_EQ(
+        decoder->DecodeFrameNoDelay(stream.data(), static_cast<int>(stream.size()), planes, &info),
+        dsErrorFree)
+        << "picture " << i;
+    take();
   }
+  // This decoder keeps one picture back in case pictures come out of order.
+  info = {};
+  decoder->FlushFrame(planes, &info);
+  take();
   decoder->Uninitialize();
   WelsDestroyDecoder(decoder);
   return out;
@@ -229,9 +243,8 @@ std::vector<uint8_t> test_picture(int width, int height, int index) {
 std::vector<uint8_t> make_video(int width, int height, int pictures, bool finish = true,
                                 Rational rate = {20, 1}) {
   std::vector<uint8_t> bytes;
-  Result<VideoWriter> writer =
-      VideoWriter::start(std::make_unique<MemorySink>(&bytes),
-                         {.width = width, .height = height, .rate = rate});
+  Result<VideoWriter> writer = VideoWriter::start(std::make_unique<MemorySink>(&bytes),
+                                                  {.width = width, .height = height, .rate = rate});
   EXPECT_TRUE(writer.ok());
   for (int i = 0; i < pictures; ++i)
     EXPECT_TRUE(writer->add(i, test_picture(width, height, i)).ok());
@@ -279,6 +292,39 @@ TEST(Video, IsReadableWhereverItIsCutOff) {
     const Movie movie = read_fragments(prefix);
     ASSERT_EQ(movie.samples.size(), complete) << "cut at " << cut;
     EXPECT_EQ(decode(prefix, movie, 160, 120).size(), complete) << "cut at " << cut;
+  }
+}
+
+/// Takes half of the n-th append and then fails once, as a disk does that is full for a while.
+class FailingSink : public MemorySink {
+ public:
+  FailingSink(std::vector<uint8_t>* bytes, int n) : MemorySink(bytes), left_(n) {}
+  Status append(std::span<const uint8_t> more) override {
+    if (left_-- != 0) return MemorySink::append(more);
+    (void)MemorySink::append(more.first(more.size() / 2));
+    return Error{ErrorKind::kIo, "disk full"};
+  }
+
+ private:
+  int left_;
+};
+
+TEST(Video, FinishesCleanlyAfterAFailedWrite) {
+  for (int n = 0; n < 8; ++n) {
+    std::vector<uint8_t> bytes;
+    Result<VideoWriter> writer =
+        VideoWriter::start(std::make_unique<FailingSink>(&bytes, n), {.width = 64, .height = 48});
+    ASSERT_TRUE(writer.ok());
+    int added = 0;
+    while (added < 5 && writer->add(added, test_picture(64, 48, added)).ok()) ++added;
+    EXPECT_EQ(added, std::min(std::max(n - 1, 0), 5));  // the first append is the header
+    const Status finished = writer->finish();
+    if (n == 0) continue;  // not even a header
+    // Append 6 is the index of all 5 pictures: then the file stays a fragmented one.
+    EXPECT_EQ(finished.ok(), n != 6);
+    const Movie movie = n == 6 ? read_fragments(bytes) : read_indexed_or_empty(bytes, added);
+    EXPECT_EQ(movie.samples.size(), static_cast<size_t>(added));
+    EXPECT_EQ(decode(bytes, movie, 64, 48).size(), static_cast<size_t>(added));
   }
 }
 
@@ -334,8 +380,9 @@ TEST(Video, OtherProgramsReadItWholeAndCut) {
                      " " + path.string());
   };
   const std::vector<uint8_t> file = make_video(160, 120, 25);
-  EXPECT_EQ(probe(file, "codec_name,profile,width,height,pix_fmt,color_range,color_space,"
-                        "color_transfer,color_primaries,r_frame_rate,nb_frames,nb_read_frames"),
+  EXPECT_EQ(probe(file,
+                  "codec_name,profile,width,height,pix_fmt,color_range,color_space,"
+                  "color_transfer,color_primaries,r_frame_rate,nb_frames,nb_read_frames"),
             "h264,High,160,120,yuv420p,tv,bt709,bt709,bt709,20/1,25,25\n");
   Yuv420 source;
   const std::string decoded =
