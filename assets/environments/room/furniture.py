@@ -43,7 +43,7 @@ def sofa(pos, yaw):
 
 def blanket():
     """Throw laid over the arm at -y, with soft folds."""
-    arm, top, bend, gap = (-0.96, -0.77), 0.59, 0.06, 0.008
+    arm, top, bend, gap = (-0.96, -0.77), 0.59, 0.06, 0.009
     turn = np.linspace(0, np.pi / 2, 7)
     inner = np.stack([arm[1] - bend + (bend + gap) * np.cos(turn), top - bend + (bend + gap) * np.sin(turn)], 1)
     outer = np.stack([arm[0] + bend - (bend + gap) * np.sin(turn), top - bend + (bend + gap) * np.cos(turn)], 1)
@@ -56,14 +56,7 @@ def blanket():
     grid[..., 0] = x + 0.012 * hang * np.sin(x * 30)
     grid[..., 1] = over[:, :1] - 0.014 * hang * (1 + np.sin(x * 46 + 1)) * outside
     grid[..., 2] = over[:, 1:] + 0.002 * (1 + np.sin(x * 52)) * (1 - hang)
-    return thick(grid, 0.006)
-
-
-def thick(grid, thickness):
-    """Closes a grid of points into a thin solid: front, back, and no rim (the gap is under a weave)."""
-    front = sheet(grid)
-    back = Mesh(front.p - thickness * front.n, -front.n, front.uv, front.f[:, ::-1])
-    return join(front, back)
+    return rimmed(grid[:, ::-1], 0.006)
 
 
 def coffee_table(pos, yaw):

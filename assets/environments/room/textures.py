@@ -128,7 +128,7 @@ def rug(rng):
     w, h = 1024, 725
     y, x = np.mgrid[0:h, 0:w]
     X, Y = x / w * 2.4 - 1.2, y / h * 1.7 - 0.85
-    jitter = noise(h, w, 9, 9, rng) * 0.0016
+    jitter = noise(h, w, 9, 9, rng) * 0.0014 + noise(h, w, 1.2, 1.2, rng) * 0.0011
     cream, rust = np.array([0.78, 0.73, 0.64]), np.array([0.50, 0.23, 0.17])
     navy, ochre = np.array([0.15, 0.20, 0.28]), np.array([0.68, 0.50, 0.27])
     c = np.broadcast_to(cream, (h, w, 3)).copy()
@@ -149,7 +149,7 @@ def rug(rng):
     c[band & (np.abs(edge - 0.095 - zigzag) < 0.014)] = cream
     c[band & (np.abs(edge - 0.060 - zigzag) < 0.010)] = ochre
     rows = np.sin(2 * np.pi * Y / 0.0094)
-    tone = 1 + 0.05 * noise(h, w, 90, 3, rng) + 0.05 * rows + 0.05 * noise(h, w, 2, 1.2, rng)
+    tone = 1 + 0.05 * noise(h, w, 90, 3, rng) + 0.07 * rows + 0.06 * noise(h, w, 2, 1.2, rng)
     height = 0.0006 * rows + 0.0005 * noise(h, w, 2.2, 1.5, rng)
     # Coarser steps halve the files; the eye cannot tell in a fibre pattern.
     return to8(c * np.clip(tone, 0.6, 1.3)[..., None]) // 3 * 3, (np.minimum(normal_map(height, 2.4 / w), 253) + 2) // 4 * 4
