@@ -17,17 +17,23 @@ import furniture
 import shell
 import textures
 from materials import MATERIALS
-from mesh import rotation
 
-SUN = {"dir": (0.40, 0.68, -0.62), "lux": 2500, "rgb": (1.0, 0.95, 0.86)}
+SUN = {"dir": (0.40, 0.68, -0.62), "lux": 2000, "rgb": (1.0, 0.95, 0.86)}
 SKY_LUMINANCE = 300  # of a white texel [cd/m²]
 
 
 def pieces():
     rng = np.random.default_rng(7)
     X, Y = shell.HALF_X, shell.HALF_Y
-    all_pieces = [shell.floor(rng), *shell.walls(), shell.skirting(), shell.door(), shell.window(), shell.rug(),
-                  shell.outdoors(rng)]
+    all_pieces = [
+        shell.floor(rng),
+        *shell.walls(),
+        shell.skirting(),
+        shell.door(),
+        shell.window(),
+        shell.rug(),
+        shell.outdoors(rng),
+    ]
     x0, x1, _, top = shell.WINDOW
     all_pieces += [
         furniture.sofa((-X + 0.46, 0.15, 0), 0),
@@ -57,26 +63,58 @@ def pieces():
         fittings.basket((X - 0.24, -0.06, 0)),
         fittings.cardboard_box((1.12, -Y + 0.42, 0), 14),
         fittings.toy_ball((1.32, 1.62), 0.11),
-        fittings.toy_block("G", (-0.98, 1.62, 0), 12), fittings.toy_block("L", (-1.12, 1.50, 0), -35),
-        fittings.toy_block("O", (-0.86, 1.47, 0), 61), fittings.toy_block("A", (-1.02, 1.36, 0), -8),
+        fittings.toy_block("G", (-0.98, 1.62, 0), 12),
+        fittings.toy_block("L", (-1.12, 1.50, 0), -35),
+        fittings.toy_block("O", (-0.86, 1.47, 0), 61),
+        fittings.toy_block("A", (-1.02, 1.36, 0), -8),
         fittings.toy_block("M", (-0.985, 1.625, 0.06), 31),
         fittings.toy_car((-1.42, 1.42, 0), 38),
         fittings.remote((-1.97, 0.36, 0.40), 70),
-        fittings.lying_book("floor_book_1", (-X + 0.30, 1.36, 0), 12, (0.23, 0.30, 0.035), (0.20, 0.26, 0.34)),
-        fittings.lying_book("floor_book_2", (-X + 0.31, 1.365, 0.035), -6, (0.20, 0.27, 0.028), (0.62, 0.44, 0.22)),
-        fittings.lying_book("floor_book_3", (-X + 0.30, 1.36, 0.063), 24, (0.17, 0.24, 0.022), (0.56, 0.54, 0.50)),
+        fittings.lying_book(
+            "floor_book_1", (-X + 0.30, 1.36, 0), 12, (0.23, 0.30, 0.035), (0.20, 0.26, 0.34)
+        ),
+        fittings.lying_book(
+            "floor_book_2", (-X + 0.31, 1.365, 0.035), -6, (0.20, 0.27, 0.028), (0.62, 0.44, 0.22)
+        ),
+        fittings.lying_book(
+            "floor_book_3", (-X + 0.30, 1.36, 0.063), 24, (0.17, 0.24, 0.022), (0.56, 0.54, 0.50)
+        ),
         fittings.mug("mug", (-1.86, 0.36, 0.40), "glazed_rust"),
-        fittings.lying_book("magazine_1", (-1.95, -0.08, 0.40), 8, (0.21, 0.28, 0.018), (0.10, 0.24, 0.34)),
-        fittings.lying_book("magazine_2", (-1.94, -0.07, 0.418), -9, (0.19, 0.26, 0.024), (0.72, 0.30, 0.16)),
-        fittings.lying_book("album", (-1.93, 0.1, 0.145), 4, (0.24, 0.32, 0.03), (0.30, 0.36, 0.24)),
+        fittings.lying_book(
+            "magazine_1", (-1.95, -0.08, 0.40), 8, (0.21, 0.28, 0.018), (0.10, 0.24, 0.34)
+        ),
+        fittings.lying_book(
+            "magazine_2", (-1.94, -0.07, 0.418), -9, (0.19, 0.26, 0.024), (0.72, 0.30, 0.16)
+        ),
+        fittings.lying_book(
+            "album", (-1.93, 0.1, 0.145), 4, (0.24, 0.32, 0.03), (0.30, 0.36, 0.24)
+        ),
         fittings.fruit_bowl((2.50, -1.32, 0.74)),
         fittings.mug("cup", (2.36, -1.72, 0.74), "ceramic_white"),
-        fittings.cable("lamp_cable", [(-X + 0.34, Y - 0.83, 0.005), (-X + 0.27, Y - 0.62, 0.005), (-X + 0.14, Y - 0.48, 0.005),
-                                      (-X + 0.03, Y - 0.42, 0.05), (-X + 0.02, Y - 0.41, 0.26), (-X + 0.01, Y - 0.41, 0.30)]),
+        fittings.cable(
+            "lamp_cable",
+            [
+                (-X + 0.34, Y - 0.83, 0.005),
+                (-X + 0.27, Y - 0.62, 0.005),
+                (-X + 0.14, Y - 0.48, 0.005),
+                (-X + 0.03, Y - 0.42, 0.05),
+                (-X + 0.02, Y - 0.41, 0.26),
+                (-X + 0.01, Y - 0.41, 0.30),
+            ],
+        ),
         fittings.socket("socket_1", (-X, Y - 0.41, 0.30), 0),
         fittings.socket("socket_2", (X, -0.28, 0.30), 180),
-        fittings.cable("tv_cable", [(X - 0.02, -0.28, 0.30), (X - 0.05, -0.27, 0.12), (X - 0.06, -0.12, 0.01),
-                                    (X - 0.05, 0.12, 0.005), (X - 0.07, 0.32, 0.01), (X - 0.03, 0.45, 0.3)]),
+        fittings.cable(
+            "tv_cable",
+            [
+                (X - 0.02, -0.28, 0.30),
+                (X - 0.05, -0.27, 0.12),
+                (X - 0.06, -0.12, 0.01),
+                (X - 0.05, 0.12, 0.005),
+                (X - 0.07, 0.32, 0.01),
+                (X - 0.03, 0.45, 0.3),
+            ],
+        ),
     ]
     mat = shell.Piece("doormat", (2.3, Y - 0.42, 0))
     mat.show("pile", "doormat", shell.box((0.70, 0.42, 0.010), 0.004, 2).moved(0, 0, 0.003))
@@ -84,7 +122,9 @@ def pieces():
 
 
 def numbers(values, digits=5):
-    return " ".join(f"{v:.{digits}f}".rstrip("0").rstrip(".") or "0" for v in np.asarray(values, float) + 0.0)
+    return " ".join(
+        f"{v:.{digits}f}".rstrip("0").rstrip(".") or "0" for v in np.asarray(values, float) + 0.0
+    )
 
 
 def quaternion(euler):
@@ -101,7 +141,10 @@ def attributes(**values):
 
 
 def placed(pos, euler):
-    return {"pos": numbers(pos) if any(pos) else "", "quat": quaternion(euler) if any(euler) else ""}
+    return {
+        "pos": numbers(pos) if any(pos) else "",
+        "quat": quaternion(euler) if any(euler) else "",
+    }
 
 
 def body_xml(piece, assets):
@@ -109,24 +152,63 @@ def body_xml(piece, assets):
     if piece.mass:
         lines.append(f'      <freejoint name="{piece.name}"/>')
     for v in piece.visuals:
-        name = v.name if v.name.startswith(piece.name) or "book_" in v.name else f"{piece.name}_{v.name}"
-        shape = {"type": v.primitive, "size": numbers(v.size)} if v.primitive else {"type": "mesh", "mesh": assets[id(v)]}
-        lines.append("      <geom" + attributes(class_="room_visual", name=name, **shape, material=v.material,
-                                                **placed(v.pos, v.euler), rgba=numbers(v.rgba) if v.rgba else "") + "/>")
+        name = (
+            v.name
+            if v.name.startswith(piece.name) or "book_" in v.name
+            else f"{piece.name}_{v.name}"
+        )
+        shape = (
+            {"type": v.primitive, "size": numbers(v.size)}
+            if v.primitive
+            else {"type": "mesh", "mesh": assets[id(v)]}
+        )
+        lines.append(
+            "      <geom"
+            + attributes(
+                class_="room_visual",
+                name=name,
+                **shape,
+                material=v.material,
+                **placed(v.pos, v.euler),
+                rgba=numbers(v.rgba) if v.rgba else "",
+            )
+            + "/>"
+        )
     for k, c in enumerate(piece.colliders):
         mass = piece.mass / len(piece.colliders) if piece.mass else ""
-        lines.append("      <geom" + attributes(
-            class_="room_collider", name=f"{piece.name}_collider_{k + 1}", type=c.type, size=numbers(c.size),
-            **placed(c.pos, c.euler), mass=mass, friction=c.friction) + "/>")
+        lines.append(
+            "      <geom"
+            + attributes(
+                class_="room_collider",
+                name=f"{piece.name}_collider_{k + 1}",
+                type=c.type,
+                size=numbers(c.size),
+                **placed(c.pos, c.euler),
+                mass=mass,
+                friction=c.friction,
+            )
+            + "/>"
+        )
     return lines + ["    </body>"]
 
 
 def material_xml(name, m):
-    head = "    <material" + attributes(name=name, rgba=numbers((*m.rgba, 1)), roughness=m.roughness, metallic=m.metallic,
-                                        emission=m.emission or "", specular=0.3, shininess=round(0.6 * (1 - m.roughness), 3))
+    head = "    <material" + attributes(
+        name=name,
+        rgba=numbers((*m.rgba, 1)),
+        roughness=m.roughness,
+        metallic=m.metallic,
+        emission=m.emission or "",
+        specular=0.3,
+        shininess=round(0.6 * (1 - m.roughness), 3),
+    )
     if not m.layers:
         return [head + "/>"]
-    return [head + ">"] + [f'      <layer role="{r}" texture="{t}"/>' for r, t in m.layers.items()] + ["    </material>"]
+    return (
+        [head + ">"]
+        + [f'      <layer role="{r}" texture="{t}"/>' for r, t in m.layers.items()]
+        + ["    </material>"]
+    )
 
 
 def write_meshes(all_pieces, folder):
@@ -147,28 +229,42 @@ def write_meshes(all_pieces, folder):
 
 def scene_xml(all_pieces, assets, meshes):
     used = sorted({t for m in MATERIALS.values() for t in m.layers.values()})
-    x = ['<mujoco model="furnished_room">', "  <!-- Generated by make_room.py: edit that, not this. -->",
-         '  <compiler angle="degree" meshdir="meshes" texturedir="textures"/>',
-         '  <statistic center="0 0 1" extent="4"/>',
-         '  <visual>', '    <headlight active="0"/>', "  </visual>", "  <default>",
-         '    <default class="room_visual">',
-         '      <geom contype="0" conaffinity="0" group="2" mass="0"/>', "    </default>",
-         '    <default class="room_collider">',
-         '      <geom group="3" mass="0" friction="0.8 0.005 0.0001" rgba="0.3 0.6 0.9 0.3"/>', "    </default>", "  </default>",
-         "  <asset>",
-         '    <texture name="sky" type="skybox" builtin="gradient" rgb1="0.62 0.78 0.98" rgb2="0.97 0.98 1" width="128" height="768"/>']
+    x = [
+        '<mujoco model="furnished_room">',
+        "  <!-- Generated by make_room.py: edit that, not this. -->",
+        '  <compiler angle="degree" meshdir="meshes" texturedir="textures"/>',
+        '  <statistic center="0 0 1" extent="4"/>',
+        "  <visual>",
+        '    <headlight active="0"/>',
+        "  </visual>",
+        "  <default>",
+        '    <default class="room_visual">',
+        '      <geom contype="0" conaffinity="0" group="2" mass="0"/>',
+        "    </default>",
+        '    <default class="room_collider">',
+        '      <geom group="3" mass="0" friction="0.8 0.005 0.0001" rgba="0.3 0.6 0.9 0.3"/>',
+        "    </default>",
+        "  </default>",
+        "  <asset>",
+        '    <texture name="sky" type="skybox" builtin="gradient" rgb1="0.62 0.78 0.98" rgb2="0.97 0.98 1" width="128" height="768"/>',
+    ]
     for t in used:
         space = "linear" if t.endswith(("_normal", "_roughness")) else "sRGB"
         channels = ' nchannel="1"' if t.endswith("_roughness") else ""
-        x.append(f'    <texture name="{t}" type="2d" file="{t}.png" colorspace="{space}"{channels}/>')
+        x.append(
+            f'    <texture name="{t}" type="2d" file="{t}.png" colorspace="{space}"{channels}/>'
+        )
     for name, m in MATERIALS.items():
         x += material_xml(name, m)
     x += [f'    <mesh name="{m}" file="{m}.obj" inertia="shell"/>' for m in meshes]
-    x += ["  </asset>", "  <worldbody>",
-          f'    <light name="sun" type="directional" pos="-2.5 -6 5" dir="{numbers(SUN["dir"])}" diffuse="{numbers(SUN["rgb"])}" '
-          f'intensity="{SUN["lux"]}" bulbradius="0.01" castshadow="true"/>',
-          f'    <light name="sky" type="image" texture="sky" intensity="{SKY_LUMINANCE}"/>',
-          '    <geom class="room_collider" name="floor_plane" type="plane" size="3.2 2.6 0.1" friction="1 0.005 0.0001"/>']
+    x += [
+        "  </asset>",
+        "  <worldbody>",
+        f'    <light name="sun" type="directional" pos="-2.5 -6 5" dir="{numbers(SUN["dir"])}" diffuse="{numbers(SUN["rgb"])}" '
+        f'intensity="{SUN["lux"]}" bulbradius="0.01" castshadow="true"/>',
+        f'    <light name="sky" type="image" texture="sky" intensity="{SKY_LUMINANCE}"/>',
+        '    <geom class="room_collider" name="floor_plane" type="plane" size="3.2 2.6 0.1" friction="1 0.005 0.0001"/>',
+    ]
     for piece in all_pieces:
         x += body_xml(piece, assets)
     return "\n".join(x + ["  </worldbody>", "</mujoco>"]) + "\n"

@@ -35,8 +35,12 @@ def unit(texture, roughness):
 
 
 MATERIALS = {
-    "floor_oak": Material((1, 1, 1), 1.0, tile=None, layers={
-        "rgb": "floor_rgb", "normal": "floor_normal", "roughness": "floor_roughness"}),
+    "floor_oak": Material(
+        (1, 1, 1),
+        1.0,
+        tile=None,
+        layers={"rgb": "floor_rgb", "normal": "floor_normal", "roughness": "floor_roughness"},
+    ),
     "gap": Material((0.05, 0.035, 0.025), 0.9),
     "wall_paint": paint((0.90, 0.88, 0.84)),
     "accent_paint": paint((0.39, 0.50, 0.48)),
@@ -61,9 +65,12 @@ MATERIALS = {
     "soil": Material((0.07, 0.05, 0.035), 0.98, layers={"normal": "plaster_normal"}, tile=0.1),
     "bark": Material((0.26, 0.19, 0.12), 0.85),
     "leaf": unit("leaf_rgb", 0.42),
-    "rattan": Material((0.66, 0.48, 0.28), 0.8, layers={"rgb": "weave_rgb", "normal": "weave_normal"}, tile=0.5),
-    "cardboard": Material((1, 1, 1), 0.85, tile=0.25, layers={
-        "rgb": "cardboard_rgb", "normal": "cardboard_normal"}),
+    "rattan": Material(
+        (0.66, 0.48, 0.28), 0.8, layers={"rgb": "weave_rgb", "normal": "weave_normal"}, tile=0.5
+    ),
+    "cardboard": Material(
+        (1, 1, 1), 0.85, tile=0.25, layers={"rgb": "cardboard_rgb", "normal": "cardboard_normal"}
+    ),
     "parcel_tape": Material((0.62, 0.46, 0.26), 0.25),
     "book_cloth": unit("book_rgb", 0.75),
     "paper": Material((0.86, 0.82, 0.73), 0.9),

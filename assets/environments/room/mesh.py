@@ -46,8 +46,10 @@ class Mesh:
         lines = ["o " + path.stem]
         for letter, rows, digits in (("v", self.p, 4), ("vt", self.uv, 4), ("vn", self.n, 3)):
             values, index = np.unique(rows.round(digits) + 0.0, axis=0, return_inverse=True)
-            lines += [letter + " " + " ".join(f"{c:.{digits}f}".rstrip("0").rstrip(".") for c in row)
-                      for row in values]
+            lines += [
+                letter + " " + " ".join(f"{c:.{digits}f}".rstrip("0").rstrip(".") for c in row)
+                for row in values
+            ]
             if letter == "v":
                 iv = index.ravel() + 1
             elif letter == "vt":
@@ -61,9 +63,11 @@ class Mesh:
 def rotation(axis, degrees):
     a = np.radians(degrees)
     c, s = np.cos(a), np.sin(a)
-    return {"x": np.array([[1, 0, 0], [0, c, -s], [0, s, c]]),
-            "y": np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]),
-            "z": np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])}[axis]
+    return {
+        "x": np.array([[1, 0, 0], [0, c, -s], [0, s, c]]),
+        "y": np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]),
+        "z": np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]),
+    }[axis]
 
 
 def weld(p, n, uv):
@@ -78,8 +82,12 @@ def join(*meshes):
     for m in meshes:
         faces.append(m.f + base)
         base += len(m.p)
-    return Mesh(np.vstack([m.p for m in meshes]), np.vstack([m.n for m in meshes]),
-                np.vstack([m.uv for m in meshes]), np.vstack(faces))
+    return Mesh(
+        np.vstack([m.p for m in meshes]),
+        np.vstack([m.n for m in meshes]),
+        np.vstack([m.uv for m in meshes]),
+        np.vstack(faces),
+    )
 
 
 def normalized(v):
@@ -173,7 +181,7 @@ def lathe(profile, segments=32, smooth=True):
     prof = np.asarray(profile, float)
     angle = np.linspace(0, 2 * np.pi, segments + 1)
     parts = []
-    runs = [prof] if smooth else [prof[i:i + 2] for i in range(len(prof) - 1)]
+    runs = [prof] if smooth else [prof[i : i + 2] for i in range(len(prof) - 1)]
     length = 0.0
     for run in runs:
         d = np.gradient(run, axis=0) if len(run) > 2 else np.repeat(run[1:] - run[:1], 2, 0)
@@ -185,8 +193,9 @@ def lathe(profile, segments=32, smooth=True):
         uv = np.stack(np.meshgrid(angle * run[:, 0].max(), length + arc), -1)
         length += arc[-1]
         m = Mesh(p, n, uv, grid_faces(len(run), len(c)))
-        area = np.linalg.norm(np.cross(m.p[m.f[:, 1]] - m.p[m.f[:, 0]],
-                                       m.p[m.f[:, 2]] - m.p[m.f[:, 0]]), axis=1)
+        area = np.linalg.norm(
+            np.cross(m.p[m.f[:, 1]] - m.p[m.f[:, 0]], m.p[m.f[:, 2]] - m.p[m.f[:, 0]]), axis=1
+        )
         m.f = m.f[area > 1e-12]
         parts.append(m)
     return join(*parts)
@@ -244,8 +253,15 @@ def smooth_path(points, steps=8):
     t = np.linspace(0, 1, steps, endpoint=False)[:, None]
     out = []
     for a, b, c, d in zip(q, q[1:], q[2:], q[3:]):
-        out.append(0.5 * (2 * b + (c - a) * t + (2 * a - 5 * b + 4 * c - d) * t ** 2
-                          + (3 * b - a - 3 * c + d) * t ** 3))
+        out.append(
+            0.5
+            * (
+                2 * b
+                + (c - a) * t
+                + (2 * a - 5 * b + 4 * c - d) * t**2
+                + (3 * b - a - 3 * c + d) * t**3
+            )
+        )
     return np.vstack(out + [q[-2:-1]])
 
 
