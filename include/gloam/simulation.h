@@ -114,6 +114,12 @@ class Simulation {
   /// What the ray through pixel (u, v) [px] of a frame hits in the latest Snapshot. Error: nothing
   /// there.
   virtual Result<PickResult> pick(const CameraFrame& frame, double u, double v) = 0;
+  /// Pose X_WB of a body in the latest Snapshot. Errors: no such body; a Simulation that cannot
+  /// tell.
+  virtual Result<Pose> body_pose(Body) {
+    return Error{.kind = ErrorKind::kUnsupported,
+                 .message = "this simulation does not tell the poses of bodies"};
+  }
 
   /// Physics steps per simulated second, exact.
   virtual Rational step_rate() const = 0;

@@ -92,6 +92,7 @@ void Driver::release(int64_t client) {
 void Driver::set_clients(int count) {
   {
     const std::lock_guard lock(mutex_);
+    someone_came_ |= count > clients_;
     clients_ = count;
     last_client_ = Clock::now();
   }
@@ -127,6 +128,7 @@ void Driver::run() {
     if (stopping_) break;
     lock.unlock();
     keep_camera();
+    follow_pictures();
     refresh_when_due();
     lock.lock();
   }
@@ -223,30 +225,44 @@ void Driver::do_message(int64_t client, const DragStartMessage& message) {
   if (!hit.ok()) return reply_(client, notice_message("There is nothing to pull here."));
   if (hit->body.id <= 0)
     return reply_(client, notice_message("This belongs to the world and does not move."));
-  drag_ = Drag{client, hit->body, hit->point_B, depth_of(frame->X_WC, hit->point_W)};
-  if (const Status status = pull(hit->point_W, true); !status.ok()) {
-    drag_.reset();
-    return tell_failure(client, status);
-  }
+  drag_ = Drag{.client = client,
+               .body = hit->body,
+               .point_B = hit->point_B,
+               .depth = depth_of(frame->X_WC, hit->point_W),
+               .u = message.u,
+               .v = message.v,
+               .target_W = hit->point_W};
+  pull(true);
   reply_(client, picked_message(hit->name, hit->point_W, true));
 }
 
 void Driver::do_message(int64_t client, const DragMoveMessage& message) {
-  const auto frame = publisher_.newest();
-  if (!drag_ || drag_->client != client || !frame) return;
-  tell_failure(
-      client,
-      pull(point_at(frame->X_WC, frame->intrinsics, message.u, message.v, drag_->depth), true));
+  if (!drag_ || drag_->client != client) return;
+  drag_->u = message.u;
+  drag_->v = message.v;
+  follow_drag();
 }
 
 void Driver::do_message(int64_t client, const DragEndMessage&) {
   if (!drag_ || drag_->client != client) return;
-  tell_failure(client, pull({}, false));
+  pull(false);
   drag_.reset();
 }
 
-Status Driver::pull(const Vec3& target_W, bool active) {
-  return simulation_.post({.what = DragBody{drag_->body, drag_->point_B, target_W, active}});
+void Driver::pull(bool active) {
+  tell_failure(
+      drag_->client,
+      simulation_.post({.what = DragBody{drag_->body, drag_->point_B, drag_->target_W, active}}));
+}
+
+/// The mouse or the camera has moved: the target stays under the mouse.
+void Driver::follow_drag() {
+  const auto frame = publisher_.newest();
+  if (!frame) return;
+  const Vec3 target = point_at(frame->X_WC, frame->intrinsics, drag_->u, drag_->v, drag_->depth);
+  if (norm(target - drag_->target_W) < 1e-9) return;
+  drag_->target_W = target;
+  pull(true);
 }
 
 Status Driver::open_camera(const std::string& name) {
@@ -285,20 +301,29 @@ void Driver::keep_camera() {
     const std::lock_guard lock(mutex_);
     wanted = clients_ > 0 || now - last_client_ < kCameraLinger;
     if (stream_) report_.dropped = stream_->dropped();
+    // Pictures that nobody was there to see are not encoded.
+    picture_is_old_ |= std::exchange(someone_came_, false);
   }
   if (!wanted && stream_) close_camera();
   // A failure is in the report, where every client sees it.
   if (wanted && !stream_ && now - last_attempt_ > kRetry) (void)open_camera(camera_).ok();
 }
 
+void Driver::follow_pictures() {
+  const uint64_t sequence = publisher_.sequence();
+  if (sequence == seen_sequence_) return;
+  seen_sequence_ = sequence;
+  last_frame_ = Clock::now();
+  if (!drag_) return;
+  follow_drag();
+  const auto X_WB = simulation_.body_pose(drag_->body);
+  if (X_WB.ok()) reply_(drag_->client, pulled_message(X_WB->p + rotate(X_WB->q, drag_->point_B)));
+}
+
 void Driver::refresh_when_due() {
   if (!stream_) return;
   const auto now = Clock::now();
-  const uint64_t sequence = publisher_.sequence();
-  if (sequence != seen_sequence_) {
-    seen_sequence_ = sequence;
-    last_frame_ = now;
-  }
+  const uint64_t sequence = seen_sequence_;
   // One refresh at a time: a slow renderer must not be given a queue of them.
   if (refreshed_at_ == sequence && now - last_refresh_ < kRetry) return;
   refreshed_at_.reset();

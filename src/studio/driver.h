@@ -56,12 +56,14 @@ class Driver {
     int64_t client;
     ControlMessage message;
   };
-  /// A body point held in the plane that faces the camera at `depth` [m].
+  /// A body point held in the plane that faces the camera at `depth` [m], under pixel (u, v).
   struct Drag {
     int64_t client;
     Body body;
     Vec3 point_B;
     double depth;
+    double u, v;
+    Vec3 target_W;
   };
 
   void run();
@@ -83,10 +85,12 @@ class Driver {
   Status open_camera(const std::string& name);
   void close_camera();
   void keep_camera();
+  void follow_pictures();
   void refresh_when_due();
   OrbitCamera* free_camera();
   void move_free_camera();
-  Status pull(const Vec3& target_W, bool active);
+  void pull(bool active);
+  void follow_drag();
   void tell_failure(int64_t client, const Status& status);
 
   Simulation& simulation_;
@@ -99,6 +103,7 @@ class Driver {
   std::condition_variable wake_;
   std::deque<Wish> wishes_;
   int clients_ = 0;
+  bool someone_came_ = false;
   Clock::time_point last_client_;
   CameraReport report_;
   bool stopping_ = false;

@@ -153,6 +153,10 @@ std::string picked_nothing_message() {
   return to_text({{"type", "picked"}, {"found", false}, {"dragging", false}});
 }
 
+std::string pulled_message(const Vec3& point_W) {
+  return to_text({{"type", "pulled"}, {"point", {point_W.x, point_W.y, point_W.z}}});
+}
+
 std::string notice_message(std::string_view text) {
   return to_text({{"type", "notice"}, {"text", std::string(text)}});
 }

@@ -86,6 +86,8 @@ std::string state_message(const ViewState& state);
 std::string picked_message(std::string_view body, const Vec3& point_W, bool dragging);
 /// Answer to a pick that hit nothing.
 std::string picked_nothing_message();
+/// Where the point that is dragged has moved to [m].
+std::string pulled_message(const Vec3& point_W);
 /// Something the user should read.
 std::string notice_message(std::string_view text);
 

@@ -92,6 +92,10 @@ function receive(message) {
     case "picked":
       showPicked(message);
       break;
+    case "pulled":
+      if (drag && drag.point) drag.point = message.point;
+      drawPull();
+      break;
     case "notice":
       if (drag && !drag.point) endDrag();
       showNotice(message.text);

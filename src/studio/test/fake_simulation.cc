@@ -299,6 +299,10 @@ void FakeSimulation::draw(CameraFrame& frame) const {
   }
 }
 
+Result<Pose> FakeSimulation::body_pose(Body body) {
+  return Pose{balls()[static_cast<size_t>(body.id - 1)].center, {}};
+}
+
 Result<PickResult> FakeSimulation::pick(const CameraFrame& frame, double u, double v) {
   const auto list = balls();
   const Hit hit = cast(list, frame.X_WC.p,

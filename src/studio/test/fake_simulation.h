@@ -38,6 +38,7 @@ class FakeSimulation : public Simulation {
   std::vector<std::string> camera_names() const override { return {"front", "robot/head"}; }
   Result<std::vector<LabelRow>> labels() override { return std::vector<LabelRow>{}; }
   Result<PickResult> pick(const CameraFrame& frame, double u, double v) override;
+  Result<Pose> body_pose(Body body) override;
   Rational step_rate() const override { return {500, 1}; }
 
   // For tests.

@@ -193,6 +193,11 @@ TEST_F(ViewTest, AClientThatShowsNothingGetsNoMorePictures) {
   EXPECT_TRUE(eventually([&] { return client->read_frame()->opcode == 2; }));
 }
 
+TEST_F(ViewTest, TheFirstClientMayComeLongAfterThePausedPicture) {
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  EXPECT_TRUE(join()->wait_for_picture().has_value());
+}
+
 TEST_F(ViewTest, ALateClientSeesThePausedPicture) {
   const auto first = join();
   ASSERT_TRUE(first->wait_for_picture().has_value());
@@ -311,6 +316,19 @@ TEST_F(ViewTest, ABodyIsPulledInThePlaneOfTheCamera) {
   EXPECT_TRUE(drags[1].active);
   EXPECT_FALSE(drags[2].active);
   EXPECT_EQ(drags[2].body.id, 2);
+}
+
+TEST_F(ViewTest, TheClientIsToldWhereThePulledPointIs) {
+  const auto client = join();
+  ASSERT_TRUE(client->wait_for_picture().has_value());
+  client->send_json({{"type", "drag_start"}, {"u", 32}, {"v", 24}});
+  const auto picked = client->wait_for("picked");
+  ASSERT_TRUE(picked.has_value());
+  simulation_.resume();
+  const auto pulled = client->wait_for("pulled");
+  ASSERT_TRUE(pulled.has_value());
+  for (int i = 0; i < 3; ++i)  // the globe does not move
+    EXPECT_NEAR((*pulled)["point"][i], (*picked)["point"][i].get<double>(), 1e-9);
 }
 
 TEST_F(ViewTest, NothingAndTheWorldCannotBePulled) {
