@@ -30,7 +30,7 @@ const char* const kSeen = R"(
     <body name="hand" mocap="true" pos="-1 0 1"><geom type="sphere" size=".05"/><camera name="held" pos="0 0 .2"/></body>
     <flexcomp name="cloth" type="grid" count="4 4 1" spacing=".1 .1 .1" pos="2 0 1" dim="2" radius=".005" mass=".2">
       <edge equality="true"/></flexcomp>
-    <flexcomp name="jelly" type="grid" count="3 3 3" spacing=".1 .1 .1" pos="-2 0 1" dim="3" radius=".005" mass=".5" dof="trilinear"/>
+    <flexcomp name="jelly" type="grid" count="3 3 3" spacing=".1 .1 .1" pos="-2 0 1" dim="3" radius=".005" mass=".5" dof="trilinear"><elasticity young="1e4" poisson=".2"/></flexcomp>
   </worldbody>
   <deformable>
     <skin name="s" vertex="0 0 0  .4 0 0  .8 0 0  .4 .1 0" face="0 1 3 1 2 3">
