@@ -1,15 +1,13 @@
 #pragma once
-// The list of controllers: from a robot's options to the thing that drives it.
+// The list of controllers: the names that [robot.controller] type may have.
 
-#include <memory>
-
-#include "gloam/result.h"
 #include "sim/controller.h"
-#include "world/world.h"
 
 namespace gloam {
 
-/// Error: unknown type, or the robot does not fit it.
-Result<std::unique_ptr<Controller>> make_controller(const CompiledWorld& world, const RobotInstance& robot);
+/// The controller that a robot's options ask for; null for "none". Unknown names are refused with
+/// the nearest valid one.
+Result<std::unique_ptr<Controller>> make_controller(const CompiledWorld& world,
+                                                    const RobotInstance& robot);
 
 }  // namespace gloam

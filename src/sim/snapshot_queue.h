@@ -27,8 +27,9 @@ class Signal {
 struct SubscriptionOptions {
   Rational rate = {20, 1};  ///< Snapshots per second of simulation time, at most the step rate [Hz]
   Rational phase = {0, 1};  ///< time of the first one [s], >= 0
-  bool required = false;    ///< the simulation waits while the queue is full, and nothing is lost;
-                            ///< else the oldest are dropped and counted
+  bool required = false;    ///< the simulation waits while the queue is full and nothing is lost
+                            ///< (but what it waits with when a reset comes); else the oldest are
+                            ///< dropped and counted
   int capacity = 8;         ///< Snapshots that wait to be consumed, 1 … 65536
 };
 

@@ -27,6 +27,7 @@ Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledW
   stepper->model_.reset(model);
   GLOAM_TRY_STATUS(guarded([&] { data = mj_makeData(model); }));
   stepper->data_.reset(data);
+  stepper->reader_ = StateReader(*model, *data);
   stepper->inputs_.emplace(*model);
   stepper->state_.resize(static_cast<size_t>(state_size(*model)));
   stepper->next_state_.resize(stepper->state_.size());
@@ -127,7 +128,7 @@ bool Stepper::step() {
     return fail(std::move(error));
   }
   count_diagnostics();
-  mj_getState(model, data, next_state_.data(), mjSTATE_INTEGRATION);
+  reader_.read(next_state_.data());
   if (!is_sound(*model, *data, next_state_)) {
     return fail(describe_divergence(*model, *data, next_state_, step_, time()));
   }
@@ -154,6 +155,7 @@ void Stepper::restore_last_good_state() {
   mjData* data = nullptr;
   if (!try_mujoco([&] { data = mj_makeData(model); }) || data == nullptr) return;
   data_.reset(data);
+  reader_ = StateReader(*model, *data);
   snapshot_ = {};
   own_sensors_ = true;
   sensor_stamp_ = state_[0];

@@ -8,6 +8,7 @@
 #include "gloam/command.h"
 #include "sim/applied_inputs.h"
 #include "sim/snapshot_pool.h"
+#include "sim/state_layout.h"
 #include "world/world.h"
 
 namespace gloam {
@@ -67,7 +68,8 @@ class Stepper {
   std::vector<int> keyframes_;
   ModelPtr model_;
   DataPtr data_;
-  DataPtr scratch_;  // for mj_setConst; made on first use
+  StateReader reader_;  // of data_
+  DataPtr scratch_;     // for mj_setConst; made on first use
   std::optional<AppliedInputs> inputs_;
   std::shared_ptr<const LiveFields> live_;
   std::shared_ptr<SnapshotPool> pool_;

@@ -27,7 +27,7 @@ uint64_t final_hash(SimulatorOptions options, Watchers watchers, uint64_t* hash_
     });
   }
   if (hash_at_100 != nullptr) {
-    auto queue = *sim->subscribe({.rate = {5, 1}, .required = true, .capacity = 64});
+    auto queue = *sim->subscribe({.rate = {5, 1}, .required = true, .capacity = 65536});
     sim->start(kSteps);
     EXPECT_EQ(queue->next().step(), 0);
     *hash_at_100 = queue->next().hash();
@@ -101,7 +101,7 @@ TEST(Determinism, ReplayOfTheCommandLogIsExact) {
   std::vector<uint64_t> hashes, replayed;
   std::vector<LoggedCommand> log;
   auto watch = [](Simulator& sim) {
-    return *sim.subscribe({.rate = {500, 1}, .required = true, .capacity = 64});
+    return *sim.subscribe({.rate = {500, 1}, .required = true, .capacity = 65536});
   };
   auto collect = [](std::shared_ptr<SnapshotQueue> queue, std::vector<uint64_t>& out) {
     return std::thread([queue, &out] {
@@ -110,7 +110,7 @@ TEST(Determinism, ReplayOfTheCommandLogIsExact) {
   };
   int64_t last_step = 0;
   {
-    auto sim = make_simulator(world);
+    auto sim = make_simulator(world, {.pace = Pace::kRealTime, .speed = 4});
     std::thread reader = collect(watch(*sim), hashes);
     sim->start();
     std::thread client([&] {
@@ -124,7 +124,7 @@ TEST(Determinism, ReplayOfTheCommandLogIsExact) {
             (void)sim->post({.what = SetMocapPose{hand, {{-1, r / 5, 1}, {}}}}).ok();
             break;
           case 2:
-            (void)sim->post({.what = SetWrench{ball, {r / 10, 0, 2}, {0, 0, r / 1e4}}}).ok();
+            (void)sim->post({.what = SetWrench{ball, {r / 10, 0, 2}, {}}}).ok();
             break;
           case 3:
             (void)sim->post({.what = AddVelocity{base, {r / 9, 0, 0}}}).ok();
@@ -141,13 +141,18 @@ TEST(Determinism, ReplayOfTheCommandLogIsExact) {
             break;
         }
         if (i == 150) (void)sim->post({.what = ResetSim{}}).ok();
-        if (i == 250) (void)sim->reset().ok();
+        if (i == 250) {
+          const Status before = sim->status();
+          EXPECT_TRUE(before.ok()) << before.error().to_string();
+          EXPECT_TRUE(sim->reset().ok());
+        }
         std::this_thread::sleep_for(std::chrono::microseconds(50));
       }
     });
     client.join();
     sim->pause();
-    ASSERT_TRUE(sim->wait().ok());
+    const Status status = sim->wait();
+    ASSERT_TRUE(status.ok()) << status.error().to_string();
     last_step = sim->step_count();
     sim->stop();
     reader.join();
@@ -162,7 +167,9 @@ TEST(Determinism, ReplayOfTheCommandLogIsExact) {
     auto sim = make_simulator(world, options);
     std::thread reader = collect(watch(*sim), replayed);
     sim->start();
-    while (sim->counters().resets < 2) ASSERT_TRUE(sim->step().ok());
+    while (sim->counters().resets < 2) {
+      if (!sim->step().ok()) FAIL() << sim->status().error().to_string();
+    }
     sim->run_until(last_step);
     ASSERT_TRUE(sim->wait().ok());
     sim->stop();

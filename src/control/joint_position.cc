@@ -1,0 +1,83 @@
+#include "control/joint_position.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "control/robot_joints.h"
+
+namespace gloam {
+namespace {
+
+class JointPositionController final : public Controller {
+ public:
+  JointPositionController(std::vector<DrivenJoint> joints, const ControllerOptions& options)
+      : joints_(std::move(joints)),
+        kp_(options.kp),
+        kd_(options.kd),
+        target_(options.target),
+        hold_initial_(options.target.empty()) {
+    target_.resize(joints_.size());
+  }
+
+  void reset(const mjModel*, const mjData* data) override {
+    if (!hold_initial_) return;
+    for (size_t i = 0; i < joints_.size(); ++i) target_[i] = data->qpos[joints_[i].qpos];
+  }
+
+  void control(const mjModel*, mjData* data, int64_t, double, const VelocityTarget&) override {
+    for (size_t i = 0; i < joints_.size(); ++i) {
+      const DrivenJoint& joint = joints_[i];
+      data->ctrl[joint.ctrl] = std::clamp(
+          joint.takes_target ? joint.gear * target_[i] : motor_control(joint, *data, target_[i]),
+          joint.lowest, joint.highest);
+    }
+  }
+
+ private:
+  double motor_control(const DrivenJoint& joint, const mjData& data, double target) const {
+    const double torque = kp_ * (target - data.qpos[joint.qpos]) - kd_ * data.qvel[joint.dof];
+    const double force = std::clamp(torque / joint.gear, joint.force_lowest, joint.force_highest);
+    return force / joint.gain;
+  }
+
+  std::vector<DrivenJoint> joints_;
+  double kp_, kd_;              // [N m/rad], [N m s/rad]
+  std::vector<double> target_;  // [rad or m], by driven joint
+  bool hold_initial_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Controller>> make_joint_position_controller(const CompiledWorld& world,
+                                                                   const RobotInstance& robot) {
+  const ControllerOptions& options = robot.options.controller;
+  std::vector<DrivenJoint> joints = driven_joints(*world.model, robot);
+  if (joints.empty()) {
+    return Error{ErrorKind::kInput,
+                 fmt::format("robot '{}' has no motor or position servo on a joint, so controller "
+                             "'joint_position' has nothing to drive",
+                             robot.name),
+                 options.loc, "add actuators to its model"};
+  }
+  if (std::any_of(joints.begin(), joints.end(), [](const DrivenJoint& j) { return j.gear == 0; })) {
+    return Error{
+        ErrorKind::kInput,
+        fmt::format("an actuator of robot '{}' has gear 0 and cannot hold its joint", robot.name),
+        options.loc};
+  }
+  if (!options.target.empty() && options.target.size() != joints.size()) {
+    return Error{ErrorKind::kInput,
+                 fmt::format("'target' has {} values, but {} joints of robot '{}' are driven",
+                             options.target.size(), joints.size(), robot.name),
+                 options.loc, "give one angle per actuator, in the model's order"};
+  }
+  if (!(options.kp >= 0 && options.kd >= 0 && std::isfinite(options.kp + options.kd))) {
+    return Error{ErrorKind::kInput, "'kp' and 'kd' must be finite and not negative", options.loc};
+  }
+  return std::unique_ptr<Controller>(
+      std::make_unique<JointPositionController>(std::move(joints), options));
+}
+
+}  // namespace gloam

@@ -1,0 +1,110 @@
+// Controllers on small robots, run through the Simulator.
+
+#include "control/controllers.h"
+
+#include <gtest/gtest.h>
+
+#include "scene/mujoco_guard.h"
+#include "sim/simulator.h"
+
+namespace gloam {
+namespace {
+
+const char* const kArm = R"(<mujoco><option timestep="0.002" gravity="0 0 0"/><worldbody>
+  <body name="post"><geom size=".1"/>
+    <body name="a"><joint name="m" axis="0 1 0" armature=".1"/><geom size=".05" pos=".3 0 0" mass="1"/></body>
+    <body name="b" pos="0 2 0"><joint name="s" axis="0 1 0" damping="5"/><geom size=".05" pos=".3 0 0" mass="1"/></body>
+    <body name="c" pos="0 4 0"><joint name="w" axis="0 1 0"/><geom size=".05" pos=".3 0 0" mass="1"/></body>
+  </body></worldbody>
+  <actuator><motor name="m" joint="m" gear="2" ctrlrange="-3 3"/><position name="s" joint="s" kp="50"/>
+    <general name="w" joint="w" gainprm="4" forcerange="-1 1"/></actuator></mujoco>)";
+
+std::shared_ptr<CompiledWorld> make_world(ControllerOptions options) {
+  install_mujoco_handler();
+  char error[500] = "";
+  auto world = std::make_shared<CompiledWorld>();
+  world->spec.reset(mj_parseXMLString(kArm, nullptr, error, sizeof(error)));
+  EXPECT_TRUE(world->spec) << error;
+  world->model.reset(mj_compile(world->spec.get(), nullptr));
+  EXPECT_TRUE(world->model);
+  RobotInstance robot;
+  robot.name = "arm";
+  robot.root_body = 1;
+  robot.options.controller = std::move(options);
+  world->robots.push_back(robot);
+  return world;
+}
+
+std::unique_ptr<Simulator> start(const std::shared_ptr<CompiledWorld>& world) {
+  auto controller = make_controller(*world, world->robots[0]);
+  EXPECT_TRUE(controller.ok());
+  auto sim = Simulator::create(world, {.pace = Pace::kLockstep});
+  EXPECT_TRUE(sim.ok());
+  EXPECT_TRUE((*sim)->add_controller(0, std::move(*controller), {500, 1}).ok());
+  (*sim)->start();
+  return std::move(*sim);
+}
+
+TEST(JointPosition, MotorsAndServosReachTheirTargets) {
+  auto sim =
+      start(make_world({.type = "joint_position", .kp = 20, .kd = 4, .target = {0.5, -0.4, 0.2}}));
+  ASSERT_TRUE(sim->step(3000).ok());
+  const Snapshot s = sim->latest();
+  EXPECT_NEAR(s[Joint{0}].position(), 0.5, 1e-3);
+  EXPECT_NEAR(s[Joint{1}].position(), -0.4, 1e-3);
+  EXPECT_NEAR(s[Joint{2}].position(), 0.2, 1e-2);
+}
+
+TEST(JointPosition, TorqueIsThatOfThePdLawWithinTheLimits) {
+  auto sim =
+      start(make_world({.type = "joint_position", .kp = 5, .kd = 1, .target = {0.4, 0, 0.1}}));
+  ASSERT_TRUE(sim->step(1).ok());
+  EXPECT_DOUBLE_EQ(sim->latest().control(Actuator{0}), 5 * 0.4 / 2);  // gear 2
+  EXPECT_DOUBLE_EQ(sim->latest().control(Actuator{2}), 5 * 0.1 / 4);  // 4 N m per unit
+  auto strong =
+      start(make_world({.type = "joint_position", .kp = 500, .kd = 1, .target = {1, 0, 1}}));
+  ASSERT_TRUE(strong->step(1).ok());
+  EXPECT_EQ(strong->latest().control(Actuator{0}), 3);     // ctrlrange
+  EXPECT_EQ(strong->latest().control(Actuator{2}), 0.25);  // forcerange / gain
+}
+
+TEST(JointPosition, WithoutTargetsItHoldsWhereItStarts) {
+  auto sim = start(make_world({.type = "joint_position"}));
+  ASSERT_TRUE(sim->step(500).ok());
+  for (int j = 0; j < 3; ++j) EXPECT_NEAR(sim->latest()[Joint{j}].position(), 0, 1e-9);
+}
+
+TEST(Torque, IsConstantUntilACommandChangesIt) {
+  auto sim = start(make_world({.type = "torque", .target = {1, 0.5}}));
+  ASSERT_TRUE(sim->step(10).ok());
+  EXPECT_EQ(sim->latest().control(Actuator{0}), 0.5);
+  EXPECT_EQ(sim->latest().control(Actuator{1}), 0);  // a servo is not its business
+  EXPECT_EQ(sim->latest().control(Actuator{2}), 0.125);
+  ASSERT_TRUE(sim->post({.what = SetControl{Actuator{0}, -1}}).ok());
+  ASSERT_TRUE(sim->step(10).ok());
+  EXPECT_EQ(sim->latest().control(Actuator{0}), -1);
+  ASSERT_TRUE(sim->reset().ok());
+  ASSERT_TRUE(sim->step(1).ok());
+  EXPECT_EQ(sim->latest().control(Actuator{0}), 0.5);
+}
+
+TEST(Controllers, AreFoundByNameAndErrorsSayWhatToDo) {
+  auto make = [](ControllerOptions options) {
+    options.loc = {"scene.toml", 9};
+    auto world = make_world(std::move(options));
+    return make_controller(*world, world->robots[0]);
+  };
+  auto none = make({.type = "none"});
+  ASSERT_TRUE(none.ok());
+  EXPECT_EQ(*none, nullptr);
+  auto wrong = make({.type = "joint_positoin"});
+  ASSERT_FALSE(wrong.ok());
+  EXPECT_NE(wrong.error().to_string().find("'joint_position'"), std::string::npos);
+  EXPECT_EQ(wrong.error().loc.line, 9);
+  EXPECT_FALSE(make({.type = "joint_position", .target = {1}}).ok());
+  EXPECT_FALSE(make({.type = "joint_position", .kp = -1}).ok());
+  EXPECT_FALSE(make({.type = "torque", .target = {1, 2, 3}}).ok());
+}
+
+}  // namespace
+}  // namespace gloam

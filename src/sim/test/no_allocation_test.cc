@@ -1,0 +1,81 @@
+// Once warm, the sim thread neither allocates nor frees: commands, controllers, Snapshots and
+// readers included. malloc itself is replaced in this program, to count what one thread asks for.
+
+#include <atomic>
+#include <cstdlib>
+#include <thread>
+
+#include "test_world.h"
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define GLOAM_SANITIZER_OWNS_MALLOC 1
+#endif
+
+namespace {
+thread_local bool counting = false;
+std::atomic<int64_t> allocations{0}, frees{0};
+}  // namespace
+
+#ifndef GLOAM_SANITIZER_OWNS_MALLOC
+extern "C" {
+void* __libc_malloc(size_t size);
+void __libc_free(void* block);
+void* malloc(size_t size) {
+  if (counting) ++allocations;
+  return __libc_malloc(size);
+}
+void free(void* block) {
+  if (counting && block != nullptr) ++frees;
+  __libc_free(block);
+}
+}
+#endif
+
+namespace gloam {
+namespace {
+
+TEST(StepLoop, AllocatesNothingOnceWarm) {
+#ifdef GLOAM_SANITIZER_OWNS_MALLOC
+  GTEST_SKIP() << "the sanitizer owns malloc";
+#endif
+  auto world = world_from_mjcf(kRichModel);
+  const Body base{mj_name2id(world->model.get(), mjOBJ_BODY, "base")};
+  auto sim = make_simulator(world);
+  ASSERT_TRUE(sim->add_controller(0, std::make_unique<RandomController>(), {500, 1}).ok());
+  sim->set_step_hook([](const mjModel*, mjData* d) { counting = d->time > 0.1; });
+  auto required = *sim->subscribe({.rate = {250, 1}, .required = true, .capacity = 4});
+  auto slow = *sim->subscribe({.rate = {500, 1}, .capacity = 2});
+  std::thread reader([required] {
+    while (required->next()) {
+    }
+  });
+  std::thread client([&sim, base] {
+    for (int i = 0; i < 500; ++i) {
+      static_cast<void>(sim->post({.what = SetControl{Actuator{i % 4}, 0.1}}).ok());
+      static_cast<void>(sim->post({.what = SetWrench{base, {0, 0, 1}, {}}}).ok());
+      static_cast<void>(sim->post({.what = DragBody{base, {}, {0, 0, .5}, i % 3 != 0}}).ok());
+      static_cast<void>(sim->post({i * 10, AddVelocity{base, {0.01, 0, 0}}}).ok());
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
+  });
+  sim->start(4000);
+  ASSERT_TRUE(sim->wait().ok());
+  client.join();
+  EXPECT_GT(slow->dropped(), 1000);
+  EXPECT_EQ(allocations.load(), 0);
+  EXPECT_EQ(frees.load(), 0);
+  // The hook does count what it should.
+  sim->set_step_hook([](const mjModel*, mjData*) {
+    counting = true;
+    free(malloc(10));
+    counting = false;
+  });
+  sim->run_until(4001);
+  ASSERT_TRUE(sim->wait().ok());
+  EXPECT_GE(allocations.load(), 1);
+  sim->stop();
+  reader.join();
+}
+
+}  // namespace
+}  // namespace gloam
