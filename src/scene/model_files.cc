@@ -292,6 +292,31 @@ SourceLoc ModelFiles::find_reference(const fs::path& path) const {
   return best;
 }
 
+// MuJoCo does not say which of the included files it means, and elements that were included have
+// lost their line.
+void ModelFiles::find_place(const std::string& element, Error* error, const fs::path& model) const {
+  std::vector<const std::pair<const fs::path, XmlScan>*> files;
+  if (const auto main = scans_.find(model); main != scans_.end()) files.push_back(&*main);
+  for (const auto& file : scans_) {
+    if (file.first != model) files.push_back(&file);
+  }
+  std::vector<std::string> words;
+  static const std::regex kQuoted("'([^']+)'");
+  for (std::sregex_iterator it(error->message.begin(), error->message.end(), kQuoted), end;
+       it != end; ++it)
+    words.push_back((*it)[1]);
+  for (const auto* file : files) {
+    const auto content = contents_.find(file->first);
+    if (content == contents_.end()) continue;
+    int line = error->loc.line;
+    if (line > 0 ? !has_element_at(*content->second, element, line)
+                 : (line = line_of_element_with(*content->second, element, words)) == 0)
+      continue;
+    error->loc = {file->first.string(), line, 0};
+    return;
+  }
+}
+
 Error ModelFiles::explain(const std::string& message, const fs::path& model) const {
   const std::lock_guard lock(mutex_);
   for (const Failure& failure : failures_) {
@@ -311,29 +336,18 @@ Error ModelFiles::explain(const std::string& message, const fs::path& model) con
     if (text.starts_with(prefix)) text.erase(0, prefix.size());
   }
   Error error{ErrorKind::kInput, text, {model.string(), 0, 0}};
+  std::string element;
   std::smatch match;
   static const std::regex kLine(
       "[;,]? *(?:Element '([^']*)', )?(?:at )?[Ll]ine[ =](\\d+)(?:, column \\d+)?\\.?");
   if (std::regex_search(text, match, kLine) && match[2].length() < 9) {
-    const std::string element = match[1];
+    element = match[1];
     error.loc.line = std::stoi(match[2]);
     error.message = std::string(match.prefix()) +
                     (element.empty() ? "" : fmt::format(" in <{}>", element)) +
                     std::string(match.suffix());
-    // MuJoCo does not say which of the included files it means.
-    const auto holds = [&](const fs::path& file) {
-      const auto content = contents_.find(file);
-      return content != contents_.end() &&
-             has_element_at(*content->second, element, error.loc.line);
-    };
-    if (!holds(absolute_path(model, ""))) {
-      for (const auto& [file, scan] : scans_) {
-        if (!holds(file)) continue;
-        error.loc.file = file.string();
-        break;
-      }
-    }
   }
+  find_place(element, &error, absolute_path(model, ""));
   if (error.message.empty()) error.message = "MuJoCo refused the model without a reason";
   return error;
 }

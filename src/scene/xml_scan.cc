@@ -191,15 +191,22 @@ bool has_element_at(std::string_view text, std::string_view name, int line) {
   return found;
 }
 
-int line_of_named(std::string_view text, std::string_view element, std::string_view name) {
+int line_of_element_with(std::string_view text, std::string_view name,
+                         const std::vector<std::string>& words) {
   pugi::xml_document document;
   if (!parse(text, &document)) return 0;
   const Lines lines(text);
   int line = 0;
   walk(document, [&](const pugi::xml_node& node, int) {
-    if ((element.empty() || element == node.name()) && name == node.attribute("name").value())
-      line = lines.at(node.offset_debug());
-    return line == 0;
+    if (!name.empty() && name != node.name()) return true;
+    for (const pugi::xml_attribute& attribute : node.attributes()) {
+      for (const std::string& word : words) {
+        if (word != attribute.name() && word != attribute.value()) continue;
+        line = lines.at(node.offset_debug());
+        return false;
+      }
+    }
+    return true;
   });
   return line;
 }

