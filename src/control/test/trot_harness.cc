@@ -118,13 +118,16 @@ TrialResult run_trial(const mjModel& known_model, const Trial& trial) {
           std::max(out.torque_share, std::abs(d->ctrl[i]) / model.actuator_ctrlrange[2 * i + 1]);
       out.speed = std::max(out.speed, std::abs(d->qvel[dof]));
     }
+    const mjtNum* p = d->xpos + 3 * trunk;
+    out.extent = {std::min(out.extent[0], p[0]), std::max(out.extent[1], p[0]),
+                  std::min(out.extent[2], p[1]), std::max(out.extent[3], p[1])};
     if (time < 0) continue;
     const mjtNum* R = d->xmat + 9 * trunk;
     const double yaw = std::atan2(R[3], R[0]), c = std::cos(yaw), s = std::sin(yaw);
     const mjtNum* v = d->qvel + base_dof;
     const double yaw_rate = R[6] * v[3] + R[7] * v[4] + R[8] * v[5];
-    samples.push_back({{goal.vx, goal.vy, goal.yaw_rate},
-                       {c * v[0] + s * v[1], -s * v[0] + c * v[1], yaw_rate}});
+    samples.push_back(
+        {{goal.vx, goal.vy, goal.yaw_rate}, {c * v[0] + s * v[1], -s * v[0] + c * v[1], yaw_rate}});
     tilt.push_back(std::acos(std::clamp(R[8], -1.0, 1.0)) * 180 / M_PI);
     height.push_back(d->xpos[3 * trunk + 2]);
     for (int k = 0; k < 4; ++k) {
@@ -176,9 +179,10 @@ TrialResult run_trial(const mjModel& known_model, const Trial& trial) {
 }
 
 std::string table_header() {
-  return fmt::format("{:<26} {:>4} | raw {:>5} {:>6} {:>6} | stride {:>5} {:>6} {:>6} | {:>17} | "
-                     "tilt  zsd  slip clear torq speed  sat   us",
-                     "trial", "fell", "vx", "vy", "yaw", "vx", "vy", "yaw", "mean");
+  return fmt::format(
+      "{:<26} {:>4} | raw {:>5} {:>6} {:>6} | stride {:>5} {:>6} {:>6} | {:>17} | "
+      "tilt  zsd  slip clear torq speed  sat   us",
+      "trial", "fell", "vx", "vy", "yaw", "vx", "vy", "yaw", "mean");
 }
 
 std::string table_row(const std::string& name, const TrialResult& r) {

@@ -37,6 +37,7 @@ struct TrialResult {
                                    ///< included, over the RMS of the goal where it is not zero
   std::array<double, 3> stride{};  ///< the same after a moving mean over one stride
   std::array<double, 3> mean{};    ///< mean measured velocity [m/s, m/s, rad/s]
+  std::array<double, 4> extent{};  ///< of the base's path: x from, to; y from, to [m]
   double tilt_deg = 0;             ///< RMS of roll and pitch together
   double height_sd = 0;            ///< of the base [m]
   double slip = 0;                 ///< mean speed of feet on the ground [m/s]

@@ -92,8 +92,8 @@ TEST_P(TrotModel, LegTorquesAreMujocosInverseDynamics) {
     mj_inverse(s.model.get(), s.data.get());
     Vector3d force = Vector3d(0, 0, s.robot.base_mass * s.robot.gravity);
     for (int k = 0; k < 4; ++k) {
-      const LegDynamics got = leg_dynamics(s.robot.legs[k], s.state.pose[k], s.state.qd[k], qdd[k],
-                                           s.state.gravity_B);
+      const LegDynamics got =
+          leg_dynamics(s.robot.legs[k], s.state.pose[k], s.state.qd[k], qdd[k], s.state.gravity_B);
       for (int i = 0; i < 3; ++i)
         EXPECT_NEAR(got.torque[i], s.data->qfrc_inverse[s.robot.legs[k].dof[i]], 1e-9);
       force += s.state.R_WB * got.force;
@@ -125,8 +125,8 @@ TEST_P(TrotModel, CompositeInertiaIsMujocos) {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) about_base(i, j) = M[(dof + 3 + i) * nv + dof + 3 + j];
   const Vector3d r = s.state.R_WB.transpose() * (s.state.com_W - s.state.p_WB);
-  const Matrix3d about_com = about_base - s.robot.mass * (r.squaredNorm() * Matrix3d::Identity() -
-                                                          r * r.transpose());
+  const Matrix3d about_com =
+      about_base - s.robot.mass * (r.squaredNorm() * Matrix3d::Identity() - r * r.transpose());
   EXPECT_LT((composite_inertia(s.robot, s.state) - about_com).norm(), 1e-9);
 }
 
@@ -154,8 +154,9 @@ TEST(TrotModelErrors, SaysWhatIsMissing) {
   const size_t motor = good.find("<motor");
   EXPECT_THAT(refusal(std::string(good).erase(motor, good.find("/>", motor) + 2 - motor)),
               testing::HasSubstr("has no actuator"));
-  EXPECT_THAT(refusal(replaced(good, "<geom friction", "<geom contype=\"0\" conaffinity=\"0\" friction")),
-              testing::HasSubstr("no collision geom to stand on"));
+  EXPECT_THAT(
+      refusal(replaced(good, "<geom friction", "<geom contype=\"0\" conaffinity=\"0\" friction")),
+      testing::HasSubstr("no collision geom to stand on"));
   EXPECT_THAT(refusal(R"(<mujoco><worldbody><body name="trunk"><freejoint/><geom size="0.1"/></body>
                          </worldbody></mujoco>)"),
               testing::HasSubstr("0 legs"));

@@ -34,7 +34,7 @@ std::string other_quadruped_xml() {
   for (const char* name : {"rear_left", "front_right", "front_left", "rear_right"}) {
     const std::string leg = name;
     const bool front = leg[0] == 'f', left = leg.find("left") != std::string::npos;
-    const double sx = front ? 1 : -1, sy = left ? 1 : -1, bend = front ? 1 : -1;
+    const double sx = front ? 1 : -1, sy = left ? 1 : -1, bend = front ? -1 : 1;
     legs += fmt::format(
         R"(<body name="{0}_a" pos="{1} {2} 0" euler="0 {4} 0">
           <joint name="{0}_1" pos="0 {7} 0" axis="{8} 0 {9}" range="-0.8 0.8"/>
@@ -48,8 +48,10 @@ std::string other_quadruped_xml() {
         leg, sx * 0.28, sy * 0.19, 0, bend * 0.85, -bend * 1.7, 0, -sy * 0.11,
         std::cos(bend * 0.85), std::sin(bend * 0.85));
     for (const int j : {3, 1, 2})
-      motors = fmt::format(R"(<motor name="{0}_m{1}" joint="{0}_{1}" gear="-8" ctrlrange="-{2} {2}"/>)",
-                           leg, j, j == 3 ? 14 : 10) + motors;
+      motors =
+          fmt::format(R"(<motor name="{0}_m{1}" joint="{0}_{1}" gear="-8" ctrlrange="-{2} {2}"/>)",
+                      leg, j, j == 3 ? 14 : 10) +
+          motors;
   }
   return R"(<mujoco><compiler angle="radian" autolimits="true"/>
     <option timestep="0.001" integrator="implicitfast"/>

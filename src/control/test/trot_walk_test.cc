@@ -15,7 +15,7 @@ void print(const std::string& line) { fmt::print("{}\n", line); }
 
 /// The goals of the demo: ahead, to the side, on the spot, in an arc.
 std::vector<TrialGoal> demo_goals() {
-  return {{0.0, {0.5, 0, 0}}, {3.0, {0, 0.25, 0}}, {5.5, {0, 0, 0.8}}, {7.5, {0.5, 0, 0.8}}};
+  return {{0.3, {0.5, 0, 0}}, {3.5, {0, 0.25, 0}}, {5.8, {0, 0, 0.8}}, {7.6, {0.4, 0, 0.6}}};
 }
 
 TrialResult walk(const mjModel& model, const std::string& name, const Trial& trial) {
@@ -26,7 +26,8 @@ TrialResult walk(const mjModel& model, const std::string& name, const Trial& tri
   return result;
 }
 
-/// Error of the commanded axes, RMS with every transient, against `bar`; other axes must stay still.
+/// Error of the commanded axes, RMS with every transient, against `bar`; other axes must stay
+/// still.
 void expect_follows(const TrialResult& r, const Trial& trial, double bar) {
   for (int axis = 0; axis < 3; ++axis) {
     bool commanded = false;
@@ -54,15 +55,23 @@ TEST(TrotWalk, FollowsEachGoalAndTheirMixes) {
     EXPECT_LT(r.slip, 0.06) << name;
     EXPECT_GT(r.clearance, 0.045) << name;
     EXPECT_LT(r.clearance, 0.075) << name;
-    EXPECT_LT(r.speed, 20.06) << name;  // [rad/s] the knee motor's top speed, the lowest of the three
+    EXPECT_LT(r.speed, 20.06)
+        << name;  // [rad/s] the knee motor's top speed, the lowest of the three
   }
 }
 
 TEST(TrotWalk, FollowsTheDemo) {
   const ModelPtr model = load_quadruped();
-  const Trial trial{.goals = demo_goals()};
+  const Trial trial{.goals = demo_goals(), .settle = 0};
   const TrialResult r = walk(*model, "demo", trial);
+  print(fmt::format("path: x {:.2f} … {:.2f}, y {:.2f} … {:.2f} m", r.extent[0], r.extent[1],
+                    r.extent[2], r.extent[3]));
   expect_follows(r, trial, 0.2);
+  // From (-1.6, -0.8) it stays in the middle of a room of 6 x 5 m.
+  EXPECT_GT(r.extent[0], -0.1);
+  EXPECT_LT(r.extent[1], 2.2);
+  EXPECT_GT(r.extent[2], -0.1);
+  EXPECT_LT(r.extent[3], 1.6);
   EXPECT_EQ(r.saturated, 0);
 }
 
@@ -82,8 +91,8 @@ TEST(TrotWalk, StandsStillUntilPushedAndComesToRestAgain) {
   const TrialResult pushed =
       walk(*model, "stand, pushed", {.duration = 8, .push = 0.4, .pushes = 2, .seed = 3});
   EXPECT_GT(pushed.clearance, 0.03);  // it stepped
-  const TrialResult stopped = walk(
-      *model, "walk, stop", {.goals = {{0, {0.5, 0, 0.5}}, {3, {0, 0, 0}}}, .duration = 6});
+  const TrialResult stopped =
+      walk(*model, "walk, stop", {.goals = {{0, {0.5, 0, 0.5}}, {3, {0, 0, 0}}}, .duration = 6});
   EXPECT_FALSE(stopped.stepping);
 }
 
