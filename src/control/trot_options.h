@@ -11,7 +11,7 @@ inline constexpr double kReferenceLeg = 0.426;
 struct TrotOptions {
   // Gait.
   double period = 0.38;     ///< of one stride [s]
-  double duty = 0.58;       ///< share of the stride a foot is on the ground, 0.5 … 0.8
+  double duty = 0.61;       ///< share of the stride a foot is on the ground, 0.5 … 0.8
   double clearance = 0.06;  ///< height of the swinging foot's lowest point above ground [m]
   double crouch = 0.65;     ///< hip height over foot centre / leg length when standing
   double press = 0.006;  ///< how far below the ground a foothold is aimed, so that it touches [m]
@@ -22,11 +22,11 @@ struct TrotOptions {
   double placement_limit = 0.18;  ///< largest distance from the nominal foothold [m]
 
   // Goal shaping.
-  double linear_acceleration = 2.5;   ///< of the goal [m/s²]
+  double linear_acceleration = 3.0;   ///< of the goal [m/s²]
   double angular_acceleration = 8.0;  ///< of the goal [rad/s²]
 
   // Body: wanted acceleration = kp error + kd error rate.
-  double kp_xy = 15, kd_xy = 14;       ///< [1/s²], [1/s]
+  double kp_xy = 12, kd_xy = 22;       ///< [1/s²], [1/s]
   double kp_z = 120, kd_z = 20;        ///< [1/s²], [1/s]
   double kp_tilt = 180, kd_tilt = 22;  ///< roll and pitch [1/s²], [1/s]
   double kp_yaw = 40, kd_yaw = 12;     ///< [1/s²], [1/s]
@@ -36,7 +36,7 @@ struct TrotOptions {
   double height_integral_limit = 4;    ///< [m/s²]
 
   // Force distribution: weights of the wrench error in N and N m, and of the forces themselves.
-  double weight_xy = 1, weight_z = 2, weight_tilt = 30, weight_yaw = 20;
+  double weight_xy = 1.5, weight_z = 2, weight_tilt = 30, weight_yaw = 20;
   double weight_force = 1e-3, weight_change = 2e-3;
   double friction = 0.35;  ///< friction coefficient that the forces keep within
   int sweeps = 40;         ///< of the force solver
