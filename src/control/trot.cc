@@ -5,6 +5,7 @@
 
 #include "control/trot_force.h"
 #include "control/trot_gait.h"
+#include "control/trot_goal.h"
 #include "control/trot_legs.h"
 #include "control/trot_options.h"
 #include "control/trot_state.h"
@@ -25,32 +26,25 @@ TrotOptions scaled(TrotOptions o, double leg_length) {
   return o;
 }
 
-double wrap(double angle) { return std::remainder(angle, 2 * M_PI); }
-
-double approach(double from, double to, double step) {
-  return from + std::clamp(to - from, -step, step);
-}
-
 /// Rotation vector that turns `R` to `R_goal`, world axes [rad].
 Vector3d rotation_error(const Matrix3d& R_goal, const Matrix3d& R) {
   const Eigen::AngleAxisd turn(Matrix3d(R_goal * R.transpose()));
   return turn.angle() * turn.axis();
 }
 
-constexpr double kContactHold = 0.01;       // [s] a contact is believed for after its last report
-constexpr double kLandingPhase = 0.6;       // a touch this late in the swing is the landing
-constexpr double kFallDelay = 0.1;          // [s]
-constexpr double kFallenDamping = 1.0;      // [N m s/rad]
-constexpr double kRiseSpeed = 0.15;         // [m/s] at which the height goal moves
-constexpr double kGroundFilter = 0.03;      // [s] time constant of the ground height
-constexpr double kMovingGoal = 0.01;        // [m/s, rad/s] a goal below it is "stand"
-constexpr double kSettledFoot = 0.03;       // [m] from its nominal place: good enough to stand on
+constexpr double kContactHold = 0.01;   // [s] a contact is believed for after its last report
+constexpr double kLandingPhase = 0.6;   // a touch this late in the swing is the landing
+constexpr double kFallDelay = 0.1;      // [s]
+constexpr double kFallenDamping = 1.0;  // [N m s/rad]
+constexpr double kGroundFilter = 0.03;  // [s] time constant of the ground height
+constexpr double kSettledFoot = 0.03;   // [m] from its nominal place: good enough to stand on
 
 class Trot final : public TrotController {
  public:
   Trot(const Quadruped& robot, const TrotOptions& options)
       : robot_(robot),
         options_(scaled(options, robot.leg_length)),
+        shaper_(options_, options_.crouch * robot.leg_length - robot.legs[0].anchor_B[1].z()),
         gait_(options_.period, options_.duty),
         forces_(options_) {}
 
@@ -60,7 +54,6 @@ class Trot final : public TrotController {
   const TrotStatus& status() const override { return status_; }
 
  private:
-  void shape_goal(const VelocityTarget& goal, double dt);
   void choose_gait(double dt);
   void watch_feet(double dt);
   void watch_for_fall(double dt);
@@ -68,27 +61,21 @@ class Trot final : public TrotController {
   ForceProblem wanted_wrench(double dt);
   Vector3d swing_torque(int leg, double dt, ForceProblem& problem);
   void write_torque(int leg, const Vector3d& torque, mjData* data);
-  double standing_height() const { return options_.crouch * robot_.leg_length; }
   Vector3d nominal_W(int leg, double yaw) const {
     return Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * nominal_H_[leg];
   }
 
   Quadruped robot_;
   TrotOptions options_;
+  GoalShaper shaper_;
   TrotGait gait_;
   ForceDistribution forces_;
   TrotState s_;
   TrotStatus status_;
-  Matrix3d inertia_B_;
   std::array<Vector3d, 4> nominal_H_;  // foot from B's origin when standing, z = 0
 
-  VelocityTarget goal_;      // acceleration-limited
-  Vector3d v_goal_H_, v_goal_W_, a_goal_W_;
-  Vector3d p_goal_;          // of B's origin; z unused
-  double yaw_goal_ = 0;
-  double height_goal_ = 0;   // of B's origin above the foot centres
-  double height_sum_ = 0;    // integral action [m/s²]
-  double ground_ = 0;        // height of the standing feet's centres
+  double height_sum_ = 0;  // integral action [m/s²]
+  double ground_ = 0;      // height of the standing feet's centres
   double fall_time_ = 0;
 
   struct Foot {
@@ -102,7 +89,6 @@ class Trot final : public TrotController {
 
 void Trot::reset(const mjModel*, const mjData* data) {
   measure(robot_, *data, s_);
-  inertia_B_ = composite_inertia(robot_, s_);
   const Vector3d com_B = s_.R_WB.transpose() * (s_.com_W - s_.p_WB);
   Vector3d center = Vector3d::Zero();
   for (int k = 0; k < 4; ++k) {
@@ -112,10 +98,6 @@ void Trot::reset(const mjModel*, const mjData* data) {
   for (auto& foot : nominal_H_) foot += Vector3d(com_B.x() - center.x(), com_B.y() - center.y(), 0);
 
   status_ = {};
-  goal_ = {};
-  v_goal_H_.setZero();
-  p_goal_ = s_.p_WB;
-  yaw_goal_ = s_.yaw;
   height_sum_ = fall_time_ = 0;
   gait_.stand();
   forces_.reset();
@@ -125,38 +107,14 @@ void Trot::reset(const mjModel*, const mjData* data) {
     feet_[k].lift_off = feet_[k].aim = s_.foot_W[k];
     ground_ += s_.foot_W[k].z() / 4;
   }
-  height_goal_ = s_.p_WB.z() - ground_;
-}
-
-void Trot::shape_goal(const VelocityTarget& goal, double dt) {
-  const double step = options_.linear_acceleration * dt;
-  goal_.vx = approach(goal_.vx, goal.vx, step);
-  goal_.vy = approach(goal_.vy, goal.vy, step);
-  goal_.yaw_rate = approach(goal_.yaw_rate, goal.yaw_rate, options_.angular_acceleration * dt);
-  const Vector3d v_goal_before = v_goal_H_;
-  v_goal_H_ = {goal_.vx, goal_.vy, 0};
-  v_goal_W_ = s_.R_WH * v_goal_H_;
-  a_goal_W_ = s_.R_WH * ((v_goal_H_ - v_goal_before) / dt +
-                         goal_.yaw_rate * Vector3d::UnitZ().cross(v_goal_H_));
-
-  // The goal pose moves with the goal velocity, on a leash: it is the integral action.
-  p_goal_ += v_goal_W_ * dt;
-  Vector3d lead = p_goal_ - s_.p_WB;
-  lead.z() = 0;
-  if (lead.norm() > options_.position_leash) lead *= options_.position_leash / lead.norm();
-  p_goal_ = s_.p_WB + lead;
-  yaw_goal_ += goal_.yaw_rate * dt;
-  yaw_goal_ = s_.yaw + std::clamp(wrap(yaw_goal_ - s_.yaw), -options_.yaw_leash, options_.yaw_leash);
-  height_goal_ = approach(height_goal_, standing_height() - robot_.legs[0].anchor_B[1].z(),
-                          kRiseSpeed * dt);
+  shaper_.reset(s_, s_.p_WB.z() - ground_);
 }
 
 void Trot::choose_gait(double dt) {
-  const bool moving = std::abs(goal_.vx) > kMovingGoal || std::abs(goal_.vy) > kMovingGoal ||
-                      std::abs(goal_.yaw_rate) > kMovingGoal;
+  const bool moving = shaper_.moving();
   double misplaced = 0;
   for (int k = 0; k < 4; ++k) {
-    Vector3d off = s_.foot_W[k] - s_.p_WB - nominal_W(k, s_.yaw);
+    const Vector3d off = s_.foot_W[k] - s_.p_WB - nominal_W(k, s_.yaw);
     misplaced = std::max(misplaced, off.head<2>().norm());
   }
   const double speed = s_.v_W.head<2>().norm();
@@ -167,8 +125,7 @@ void Trot::choose_gait(double dt) {
     if (!moving && gait_.between_steps() && speed < 0.6 * options_.wake_speed &&
         misplaced < kSettledFoot && std::abs(s_.omega_W.z()) < 0.3) {
       gait_.stand();
-      p_goal_ = s_.p_WB;
-      yaw_goal_ = s_.yaw;
+      shaper_.hold(s_);
     }
   }
   status_.stepping = gait_.stepping();
@@ -201,17 +158,19 @@ void Trot::watch_feet(double dt) {
 }
 
 void Trot::watch_for_fall(double dt) {
-  const bool down = s_.R_WB(2, 2) < 0.5 || s_.p_WB.z() - ground_ < 0.35 * standing_height();
+  const bool down =
+      s_.R_WB(2, 2) < 0.5 || s_.p_WB.z() - ground_ < 0.35 * options_.crouch * robot_.leg_length;
   fall_time_ = down ? fall_time_ + dt : 0;
   if (fall_time_ > kFallDelay) status_.fallen = true;
 }
 
 Vector3d Trot::foothold(int leg) const {
   const double left = (1 - gait_.swing_phase(leg)) * gait_.swing_time();
-  const Vector3d nominal = nominal_W(leg, s_.yaw + goal_.yaw_rate * left);
-  const Vector3d turning = goal_.yaw_rate * Vector3d::UnitZ().cross(nominal);
+  const BodyGoal& goal = shaper_.goal();
+  const Vector3d nominal = nominal_W(leg, s_.yaw + goal.velocity.yaw_rate * left);
+  const Vector3d turning = goal.velocity.yaw_rate * Vector3d::UnitZ().cross(nominal);
   Vector3d offset = 0.5 * gait_.stance_time() * (s_.v_W + turning) +
-                    options_.placement_gain * (s_.v_W - v_goal_W_);
+                    options_.placement_gain * (s_.v_W - goal.v_W);
   offset.z() = 0;
   if (offset.norm() > options_.placement_limit) offset *= options_.placement_limit / offset.norm();
   Vector3d out = s_.p_WB + s_.v_W * left + nominal + offset;
@@ -227,21 +186,22 @@ ForceProblem Trot::wanted_wrench(double dt) {
     problem.foot[k] = s_.foot_W[k] - s_.com_W;
     problem.foot[k].z() -= robot_.legs[k].foot_radius;
   }
-  Vector3d a = a_goal_W_ + options_.kp_xy * (p_goal_ - s_.p_WB) +
-               options_.kd_xy * (v_goal_W_ - s_.v_W);
-  const double height_error = height_goal_ - (s_.p_WB.z() - ground_);
+  const BodyGoal& goal = shaper_.goal();
+  Vector3d a =
+      goal.a_W + options_.kp_xy * (goal.p_W - s_.p_WB) + options_.kd_xy * (goal.v_W - s_.v_W);
+  const double height_error = goal.height - (s_.p_WB.z() - ground_);
   height_sum_ = std::clamp(height_sum_ + options_.height_integral * height_error * dt,
                            -options_.height_integral_limit, options_.height_integral_limit);
   a.z() = options_.kp_z * height_error - options_.kd_z * s_.v_W.z() + height_sum_;
 
-  const Matrix3d level = Eigen::AngleAxisd(yaw_goal_, Vector3d::UnitZ()).toRotationMatrix();
+  const Matrix3d level = Eigen::AngleAxisd(goal.yaw, Vector3d::UnitZ()).toRotationMatrix();
   const Vector3d kp_H(options_.kp_tilt, options_.kp_tilt, options_.kp_yaw);
   const Vector3d kd_H(options_.kd_tilt, options_.kd_tilt, options_.kd_yaw);
   const Vector3d turn = s_.R_WH.transpose() * rotation_error(level, s_.R_WB);
-  const Vector3d rate = s_.R_WH.transpose() * (Vector3d(0, 0, goal_.yaw_rate) - s_.omega_W);
+  const Vector3d rate = s_.R_WH.transpose() * (Vector3d(0, 0, goal.velocity.yaw_rate) - s_.omega_W);
   const Vector3d alpha = s_.R_WH * (kp_H.cwiseProduct(turn) + kd_H.cwiseProduct(rate));
 
-  const Matrix3d inertia = s_.R_WB * inertia_B_ * s_.R_WB.transpose();
+  const Matrix3d inertia = s_.R_WB * composite_inertia(robot_, s_) * s_.R_WB.transpose();
   problem.wrench.head<3>() = robot_.mass * (a + Vector3d(0, 0, robot_.gravity));
   problem.wrench.tail<3>() = inertia * alpha + s_.omega_W.cross(inertia * s_.omega_W);
   return problem;
@@ -295,7 +255,7 @@ void Trot::control(const mjModel*, mjData* data, int64_t, double period,
     for (int k = 0; k < 4; ++k) write_torque(k, -kFallenDamping * s_.qd[k], data);
     return;
   }
-  shape_goal(goal, period);
+  shaper_.update(goal, s_, period);
   choose_gait(period);
   watch_feet(period);
   ForceProblem problem = wanted_wrench(period);
@@ -305,8 +265,8 @@ void Trot::control(const mjModel*, mjData* data, int64_t, double period,
   for (int k = 0; k < 4; ++k) {
     if (!feet_[k].bears) continue;
     const LegPose& pose = s_.pose[k];
-    const LegDynamics weight = leg_dynamics(robot_.legs[k], pose, Vector3d::Zero(),
-                                            Vector3d::Zero(), s_.gravity_B);
+    const LegDynamics weight =
+        leg_dynamics(robot_.legs[k], pose, Vector3d::Zero(), Vector3d::Zero(), s_.gravity_B);
     const Vector3d sole = pose.foot + robot_.legs[k].foot_radius * s_.gravity_B.normalized();
     Vector3d torque = weight.torque;
     for (int i = 0; i < 3; ++i)

@@ -1,9 +1,9 @@
 #pragma once
-// A trot for any 12-joint quadruped with torque motors: walks where a velocity goal says, by contact
-// alone. Per control step: gait clock, foot placement (Raibert 1986, "Legged Robots That Balance"),
-// swing feet by inverse dynamics, stance feet by distributing the wanted body acceleration over
-// friction-limited ground forces (as in Focchi et al. 2017, "High-slope terrain locomotion for
-// torque-controlled quadruped robots").
+// A trot for any 12-joint quadruped with torque motors: walks where a velocity goal says, by
+// contact alone. Per control step: gait clock, foot placement (Raibert 1986, "Legged Robots That
+// Balance"), swing feet by inverse dynamics, stance feet by distributing the wanted body
+// acceleration over friction-limited ground forces (as in Focchi et al. 2017, "High-slope terrain
+// locomotion for torque-controlled quadruped robots").
 //
 // The robot's own base pose and velocity, joints and foot contacts are read from mjData: state
 // estimation is taken as perfect. Nothing about the world is read. Only motor torques are written,

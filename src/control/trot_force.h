@@ -17,8 +17,8 @@ struct ForceProblem {
 };
 
 /// Minimises |W (A f - wrench)|² + a |f|² + b |f - f_last|² with every f inside its pyramid
-/// |fx|, |fy| <= mu fz. A force is written as a non-negative mix of its pyramid's four edges, so the
-/// only constraint is non-negativity; solved by a fixed number of projected Gauss-Seidel sweeps
+/// |fx|, |fy| <= mu fz. A force is written as a non-negative mix of its pyramid's four edges, so
+/// the only constraint is non-negativity; solved by a fixed number of projected Gauss-Seidel sweeps
 /// started from the last solution. No allocation.
 class ForceDistribution {
  public:
@@ -29,7 +29,7 @@ class ForceDistribution {
 
  private:
   TrotOptions options_;
-  Eigen::Matrix<double, 16, 1> mix_;     ///< of the last solution
+  Eigen::Matrix<double, 16, 1> mix_;      ///< of the last solution
   std::array<Eigen::Vector3d, 4> force_;  ///< of the last solution
 };
 

@@ -74,8 +74,7 @@ Status find_motor(const mjModel& m, int joint, int i, Leg& leg) {
       limit = std::min(limit, std::min(std::abs(range[0]), std::abs(range[1])) * std::abs(scale));
     };
     if (m.actuator_ctrllimited[a]) limit_by(m.actuator_ctrlrange + 2 * a, gain);
-    if (m.actuator_forcelimited[a])
-      limit_by(m.actuator_forcerange + 2 * a, m.actuator_gear[6 * a]);
+    if (m.actuator_forcelimited[a]) limit_by(m.actuator_forcerange + 2 * a, m.actuator_gear[6 * a]);
     if (m.jnt_actfrclimited[joint]) limit_by(m.jnt_actfrcrange + 2 * joint, 1);
     leg.actuator[i] = a;
     leg.torque_per_control[i] = gain;
@@ -83,7 +82,8 @@ Status find_motor(const mjModel& m, int joint, int i, Leg& leg) {
     return {};
   }
   return Error{.kind = ErrorKind::kUnsupported,
-               .message = "joint '" + joint_name + "' has no actuator; the trot controller needs a "
+               .message = "joint '" + joint_name +
+                          "' has no actuator; the trot controller needs a "
                           "torque motor on each of 12 joints",
                .hint = "add <motor joint=\"" + joint_name + "\" ctrlrange=\"…\"/>"};
 }
@@ -127,8 +127,10 @@ Status find_foot(const mjModel& m, const mjData& d, int calf_body, const Matrix3
 Result<Quadruped> find_quadruped(const mjModel& m, const RobotInstance& robot) {
   const auto not_a_quadruped = [&](const std::string& why) {
     return Error{.kind = ErrorKind::kUnsupported,
-                 .message = "robot '" + robot.name + "' is not a quadruped the trot controller "
-                            "can drive: " + why,
+                 .message = "robot '" + robot.name +
+                            "' is not a quadruped the trot controller "
+                            "can drive: " +
+                            why,
                  .loc = robot.options.controller.loc,
                  .hint = "it needs a free joint and four legs of three hinge joints each"};
   };
@@ -175,7 +177,8 @@ Result<Quadruped> find_quadruped(const mjModel& m, const RobotInstance& robot) {
     Leg leg;
     for (int i = 0; i < 3; ++i) {
       const int j = chain[i], dof = m.jnt_dofadr[j];
-      if (m.jnt_type[j] != mjJNT_HINGE) return not_a_quadruped("a leg has a joint that is no hinge");
+      if (m.jnt_type[j] != mjJNT_HINGE)
+        return not_a_quadruped("a leg has a joint that is no hinge");
       leg.qpos[i] = m.jnt_qposadr[j];
       leg.dof[i] = dof;
       leg.q_ref[i] = d.qpos[leg.qpos[i]];

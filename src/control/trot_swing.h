@@ -1,5 +1,6 @@
 #pragma once
-// Where a swinging foot goes: a smooth path from lift-off to the foothold, which may move meanwhile.
+// Where a swinging foot goes: a smooth path from lift-off to the foothold, which may move
+// meanwhile.
 
 #include <Eigen/Dense>
 

@@ -1,12 +1,14 @@
 #include "trot_harness.h"
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
+#include <ctime>
 
 #include "base/rng.h"
+#include "control/trot_legs.h"
 
 namespace gloam {
 namespace {
@@ -19,6 +21,12 @@ double rms(const std::vector<double>& x) {
   double sum = 0;
   for (double v : x) sum += v * v;
   return x.empty() ? 0 : std::sqrt(sum / static_cast<double>(x.size()));
+}
+
+double cpu_seconds() {
+  timespec t;
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 /// Centred moving mean over `width` samples.
@@ -35,38 +43,6 @@ std::vector<double> smooth(const std::vector<double>& x, int width) {
 
 }  // namespace
 
-TestModel load_quadruped(double friction, const std::function<void(mjSpec*)>& change) {
-  char error[1024] = "";
-  const std::string file = GLOAM_SOURCE_DIR "/assets/robots/quadruped/quadruped.xml";
-  TestSpec spec(mj_parseXML(file.c_str(), nullptr, error, sizeof error));
-  if (!spec) {
-    ADD_FAILURE() << error;
-    return nullptr;
-  }
-  mjsBody* world = mjs_findBody(spec.get(), "world");
-  mjsGeom* floor = mjs_addGeom(world, nullptr);
-  floor->type = mjGEOM_PLANE;
-  floor->size[0] = floor->size[1] = 0;
-  floor->size[2] = 0.1;
-  floor->friction[0] = friction;
-  if (change) change(spec.get());
-  TestModel model(mj_compile(spec.get(), nullptr));
-  if (!model) {
-    ADD_FAILURE() << mjs_getError(spec.get());
-    return nullptr;
-  }
-  for (int g = 0; g < model->ngeom; ++g)
-    model->geom_friction[3 * g] = std::min(model->geom_friction[3 * g], friction);
-  return model;
-}
-
-RobotInstance robot_instance(const mjModel& model) {
-  RobotInstance robot;
-  robot.name = "quadruped";
-  robot.root_body = mj_name2id(&model, mjOBJ_BODY, "trunk");
-  return robot;
-}
-
 TrialResult run_trial(const mjModel& known_model, const Trial& trial) {
   TrialResult out;
   auto made = make_trot_controller(known_model, robot_instance(known_model), trial.options);
@@ -76,7 +52,7 @@ TrialResult run_trial(const mjModel& known_model, const Trial& trial) {
     return out;
   }
   TrotController& trot = *made.value();
-  TestModel real_model(mj_copyModel(nullptr, &known_model));
+  ModelPtr real_model(mj_copyModel(nullptr, &known_model));
   const mjModel& model = *real_model;
   if (trial.surprise_mass > 0) {
     const int trunk = mj_name2id(&model, mjOBJ_BODY, "trunk");
@@ -94,13 +70,9 @@ TrialResult run_trial(const mjModel& known_model, const Trial& trial) {
 
   const int trunk = mj_name2id(&model, mjOBJ_BODY, "trunk");
   const int base_dof = model.jnt_dofadr[model.body_jntadr[trunk]];
+  const Quadruped robot = find_quadruped(known_model, robot_instance(known_model)).value();
   std::array<int, 4> feet;
-  const std::array<const char*, 4> names = {"FL", "FR", "RL", "RR"};
-  for (int k = 0; k < 4; ++k) {
-    feet[k] = mj_name2id(&model, mjOBJ_GEOM, (std::string(names[k]) + "_foot").c_str());
-    if (feet[k] < 0)
-      feet[k] = mj_name2id(&model, mjOBJ_GEOM, (std::string(names[k]) + "_foot_collision").c_str());
-  }
+  for (int k = 0; k < 4; ++k) feet[k] = robot.legs[k].foot_geom;
 
   const double dt = model.opt.timestep;
   const int every = std::max(1, static_cast<int>(std::lround(0.002 / dt)));
@@ -117,7 +89,7 @@ TrialResult run_trial(const mjModel& known_model, const Trial& trial) {
   std::array<bool, 4> down{true, true, true, true};
   double clearance_sum = 0, slip_sum = 0;
   int64_t clearance_count = 0, slip_count = 0;
-  std::chrono::steady_clock::duration spent{};
+  double spent = 0;  // [s]
   VelocityTarget goal;
   for (int64_t step = 0; step < steps; ++step) {
     const double time = static_cast<double>(step) * dt - trial.settle;
@@ -131,9 +103,9 @@ TrialResult run_trial(const mjModel& known_model, const Trial& trial) {
         d->qvel[base_dof + 1] += trial.push * std::sin(angle);
       }
     if (step % every == 0) {
-      const auto start = std::chrono::steady_clock::now();
+      const double start = cpu_seconds();
       trot.control(&model, d, step, every * dt, goal);
-      spent += std::chrono::steady_clock::now() - start;
+      spent += cpu_seconds() - start;
     }
     mj_step(&model, d);
     if (trot.fallen()) {
@@ -142,17 +114,20 @@ TrialResult run_trial(const mjModel& known_model, const Trial& trial) {
     }
     for (int i = 0; i < model.nu; ++i) {
       const int dof = model.jnt_dofadr[model.actuator_trnid[2 * i]];
-      out.torque_share = std::max(
-          out.torque_share, std::abs(d->actuator_force[i]) / model.actuator_ctrlrange[2 * i + 1]);
+      out.torque_share =
+          std::max(out.torque_share, std::abs(d->ctrl[i]) / model.actuator_ctrlrange[2 * i + 1]);
       out.speed = std::max(out.speed, std::abs(d->qvel[dof]));
     }
+    const mjtNum* p = d->xpos + 3 * trunk;
+    out.extent = {std::min(out.extent[0], p[0]), std::max(out.extent[1], p[0]),
+                  std::min(out.extent[2], p[1]), std::max(out.extent[3], p[1])};
     if (time < 0) continue;
     const mjtNum* R = d->xmat + 9 * trunk;
     const double yaw = std::atan2(R[3], R[0]), c = std::cos(yaw), s = std::sin(yaw);
     const mjtNum* v = d->qvel + base_dof;
     const double yaw_rate = R[6] * v[3] + R[7] * v[4] + R[8] * v[5];
-    samples.push_back({{goal.vx, goal.vy, goal.yaw_rate},
-                       {c * v[0] + s * v[1], -s * v[0] + c * v[1], yaw_rate}});
+    samples.push_back(
+        {{goal.vx, goal.vy, goal.yaw_rate}, {c * v[0] + s * v[1], -s * v[0] + c * v[1], yaw_rate}});
     tilt.push_back(std::acos(std::clamp(R[8], -1.0, 1.0)) * 180 / M_PI);
     height.push_back(d->xpos[3 * trunk + 2]);
     for (int k = 0; k < 4; ++k) {
@@ -177,10 +152,10 @@ TrialResult run_trial(const mjModel& known_model, const Trial& trial) {
       down[k] = touching;
     }
   }
+  out.stepping = trot.status().stepping;
   out.saturated = trot.status().saturated;
   out.calls = trot.status().calls;
-  out.control_us = std::chrono::duration<double, std::micro>(spent).count() /
-                   static_cast<double>(std::max<int64_t>(1, out.calls));
+  out.control_us = 1e6 * spent / static_cast<double>(std::max<int64_t>(1, out.calls));
   const int stride = static_cast<int>(trial.options.period / dt);
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> error, commanded;
@@ -204,9 +179,10 @@ TrialResult run_trial(const mjModel& known_model, const Trial& trial) {
 }
 
 std::string table_header() {
-  return fmt::format("{:<26} {:>4} | raw {:>5} {:>6} {:>6} | stride {:>5} {:>6} {:>6} | {:>17} | "
-                     "tilt  zsd  slip clear torq speed  sat   us",
-                     "trial", "fell", "vx", "vy", "yaw", "vx", "vy", "yaw", "mean");
+  return fmt::format(
+      "{:<26} {:>4} | raw {:>5} {:>6} {:>6} | stride {:>5} {:>6} {:>6} | {:>17} | "
+      "tilt  zsd  slip clear torq speed  sat   us",
+      "trial", "fell", "vx", "vy", "yaw", "vx", "vy", "yaw", "mean");
 }
 
 std::string table_row(const std::string& name, const TrialResult& r) {

@@ -1,17 +1,15 @@
 #pragma once
 // Walks a robot on a floor under the trot controller and measures how well it follows.
 
-#include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
 #include <array>
-#include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "control/trot.h"
 #include "control/trot_options.h"
+#include "trot_robots.h"
 
 namespace gloam {
 
@@ -34,10 +32,12 @@ struct Trial {
 /// Velocities are those of the base's origin in the heading frame: forward, left, yaw.
 struct TrialResult {
   bool fell = false;
+  bool stepping = false;           ///< at the end
   std::array<double, 3> raw{};     ///< RMS of goal - measured over the whole run, every transient
                                    ///< included, over the RMS of the goal where it is not zero
   std::array<double, 3> stride{};  ///< the same after a moving mean over one stride
   std::array<double, 3> mean{};    ///< mean measured velocity [m/s, m/s, rad/s]
+  std::array<double, 4> extent{};  ///< of the base's path: x from, to; y from, to [m]
   double tilt_deg = 0;             ///< RMS of roll and pitch together
   double height_sd = 0;            ///< of the base [m]
   double slip = 0;                 ///< mean speed of feet on the ground [m/s]
@@ -49,21 +49,6 @@ struct TrialResult {
   double control_us = 0;  ///< mean CPU time of control() [us]
 };
 
-struct ModelDelete {
-  void operator()(mjModel* m) const { mj_deleteModel(m); }
-  void operator()(mjSpec* s) const { mj_deleteSpec(s); }
-  void operator()(mjData* d) const { mj_deleteData(d); }
-};
-using TestSpec = std::unique_ptr<mjSpec, ModelDelete>;
-using TestModel = std::unique_ptr<mjModel, ModelDelete>;
-using TestData = std::unique_ptr<mjData, ModelDelete>;
-
-/// The robot of assets/robots/quadruped on a floor with this friction (feet get it too, since
-/// MuJoCo takes the larger of the two).
-TestModel load_quadruped(double friction = 0.8,
-                         const std::function<void(mjSpec*)>& change = nullptr);
-/// The base body "trunk" of a model as a RobotInstance.
-RobotInstance robot_instance(const mjModel& model);
 TrialResult run_trial(const mjModel& model, const Trial& trial);
 std::string table_header();
 std::string table_row(const std::string& name, const TrialResult& result);
