@@ -4,6 +4,7 @@
 #include "render/kernel/bsdf.h"
 #include "render/kernel/shapes.h"
 #include "render/kernel/texture.h"
+#include "world/texture_coordinates.h"
 
 namespace gloam {
 
@@ -32,42 +33,65 @@ struct TextureCoordinates {
   float footprint = 0;  ///< in texture lengths
 };
 
-/// MuJoCo's coordinates: those of the mesh, else x, y of the object scaled to unit size, or, for
-/// uniform textures, of the object itself; half a repeat per unit either way (the object is two
-/// units wide).
+/// Texture lengths per metre along the surface, the mean of both directions, repeats included.
+GLOAM_HD float texture_density(const InstanceView& instance, const MaterialView& material) {
+  const Vec3f size = instance.size, h = instance.half_size;
+  const bool uniform = material.texture_uniform;
+  Vec2f scale{0.5f, 0.5f};
+  switch (instance.shape) {
+    case ShapeType::kSphere:
+    case ShapeType::kEllipsoid:
+    case ShapeType::kCylinder:
+    case ShapeType::kCapsule: {
+      const bool round =
+          instance.shape == ShapeType::kSphere || instance.shape == ShapeType::kEllipsoid;
+      scale = {0.5f * kInvPi / h.x, round ? kInvPi / h.z : 0.5f / size.y};
+      if (uniform) scale = {scale.x * size.x, scale.y * size.x};
+      break;
+    }
+    case ShapeType::kPlane:
+    case ShapeType::kBox:
+    case ShapeType::kMesh:
+    case ShapeType::kDeformable:
+      if (!uniform && h.x > 0) scale.x /= h.x;
+      if (!uniform && h.y > 0) scale.y /= h.y;
+      break;
+  }
+  return sqrtf(scale.x * scale.y * material.texture_repeat.x * material.texture_repeat.y);
+}
+
+/// Where the hit lies on the material's textures, by the rules of world/texture_coordinates.h.
+/// `n_G` = unit geometric normal in the shape's frame.
 GLOAM_HD TextureCoordinates texture_coordinates(const SceneView& scene,
                                                 const InstanceView& instance,
                                                 const MaterialView& material, const RayHit& hit,
-                                                Vec3f p_G, float width) {
+                                                Vec3f p_G, Vec3f n_G, float width) {
   TextureCoordinates out;
+  if (material.mapping == TextureMapping::kCube) {
+    out.direction_G =
+        texture_cube_direction(instance.shape, p_G, instance.size, material.texture_uniform);
+    const Vec3f h = instance.half_size;
+    const float reach = max(max_component(h), 1e-9f);
+    out.footprint = 0.5f * width * length(out.direction_G) / max(length(p_G), 1e-3f * reach) /
+                    max(length(out.direction_G), 1e-9f);
+    return out;
+  }
   const bool is_mesh =
       instance.shape == ShapeType::kMesh || instance.shape == ShapeType::kDeformable;
-  if (material.mapping == TextureMapping::kCube) {
-    const Vec3f h = instance.half_size;
-    // MuJoCo keeps a mesh at its own size and multiplies by its half extents when uniform.
-    const Vec3f scale = is_mesh ? (material.texture_uniform ? h : Vec3f{1, 1, 1})
-                        : material.texture_uniform
-                            ? Vec3f{1, 1, 1}
-                            : Vec3f{1 / h.x, 1 / h.y, h.z > 0 ? 1 / h.z : 1.0f};
-    out.direction_G = p_G * scale;
-    const float s = max_component(scale);
-    out.footprint = 0.5f * width * s / max(length(out.direction_G), 1e-9f);
-    return out;
-  }
-  if (is_mesh && !scene.meshes[instance.mesh].uvs.empty()) {
+  const bool has_uv = is_mesh && !scene.meshes[instance.mesh].uvs.empty();
+  Vec2f uv;
+  float density = 0;
+  if (has_uv) {
     const TriangleUv& t = scene.meshes[instance.mesh].uvs[hit.primitive];
-    const float w = 1.0f - hit.u - hit.v;
-    out.uv = t.corner[0] * w + t.corner[1] * hit.u + t.corner[2] * hit.v;
-    out.footprint = width * t.density;
-    return out;
+    uv = t.corner[0] * (1.0f - hit.u - hit.v) + t.corner[1] * hit.u + t.corner[2] * hit.v;
+    density = t.density * sqrtf(material.texture_repeat.x * material.texture_repeat.y);
+    if (material.texture_uniform) density *= sqrtf(instance.size.x * instance.size.y);
+  } else {
+    density = texture_density(instance, material);
   }
-  Vec2f scale{0.5f * material.texture_repeat.x, 0.5f * material.texture_repeat.y};
-  if (!material.texture_uniform) {
-    if (instance.half_size.x > 0) scale.x /= instance.half_size.x;
-    if (instance.half_size.y > 0) scale.y /= instance.half_size.y;
-  }
-  out.uv = {scale.x * p_G.x - 0.5f, scale.y * p_G.y - 0.5f};
-  out.footprint = width * sqrtf(scale.x * scale.y);
+  out.uv = texture_uv(instance.shape, p_G, n_G, instance.size, uv, has_uv, material.texture_repeat,
+                      material.texture_uniform);
+  out.footprint = width * density;
   return out;
 }
 
@@ -103,9 +127,11 @@ GLOAM_HD bool tangents(const SceneView& scene, const InstanceView& instance, con
 
 GLOAM_HD void apply_textures(const SceneView& scene, const RayHit& hit, const Affine3f& X_WG,
                              Vec3f p_G, float width, float time, Surface* s) {
+  const Vec3f g = s->geometric;
+  const Vec3f n_G{dot(g, X_WG.x), dot(g, X_WG.y), dot(g, X_WG.z)};
   const MaterialView& m = *s->material;
   const MaterialTextures& map = m.textures;
-  const TextureCoordinates at = texture_coordinates(scene, *s->instance, m, hit, p_G, width);
+  const TextureCoordinates at = texture_coordinates(scene, *s->instance, m, hit, p_G, n_G, width);
   if (map.base_color >= 0) {
     const Rgba texel = lookup(scene, m, map.base_color, at);
     s->base_color *= texel.rgb;

@@ -26,9 +26,12 @@ class RenderScene {
   const std::vector<MeshView>& meshes() const { return mesh_views_; }
   /// Something moves between shutter open and close.
   bool has_motion() const;
-  /// Invisible instances are in the tables but never traced.
+  /// Invisible instances are in the tables but never traced: transparent ones, and MuJoCo's geom
+  /// groups 3 and up, where robots keep what they collide with.
   bool is_drawn(size_t instance) const {
-    return materials_[instances_[instance].material].opacity > 0;
+    constexpr int kDrawnGroups = 3;
+    return materials_[instances_[instance].material].opacity > 0 &&
+           description_.instances[instance].group < kDrawnGroups;
   }
 
  private:
