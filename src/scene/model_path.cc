@@ -60,7 +60,7 @@ std::vector<fs::path> candidate_roots(const fs::path& file) {
     const fs::path& below = folders.back();
     const fs::path folder = below.parent_path();
     if (fs::is_symlink(below, code) || folder == below || folder == folder.root_path() ||
-        is_home_folder(folder))
+        is_home_folder(below) || is_home_folder(folder))
       break;
     folders.push_back(folder);
   }
