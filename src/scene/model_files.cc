@@ -76,6 +76,8 @@ ModelFiles::ModelFiles() {
   std::error_code code;
   for (const fs::directory_entry& entry : fs::directory_iterator("/", code))
     mj_mountVFS(&vfs_, entry.path().c_str(), &provider_);
+  // Too many "../" leave it with "/../etc", which the operating system takes for "/etc".
+  mj_mountVFS(&vfs_, "/..", &provider_);
 }
 
 ModelFiles::~ModelFiles() { mj_deleteVFS(&vfs_); }
@@ -102,7 +104,8 @@ void ModelFiles::provider_close(mjResource* resource) {
   resource->data = nullptr;
 }
 
-Result<ModelFiles::Content> ModelFiles::open(const fs::path& path, std::string* hash_text) {
+Result<ModelFiles::Content> ModelFiles::open(const fs::path& path, std::string* hash_text,
+                                             bool is_scanned) {
   const std::lock_guard lock(mutex_);
   const auto fail = [&](ErrorKind kind, std::string reason) -> Error {
     failures_.push_back({path, reason, kind});
@@ -134,7 +137,7 @@ Result<ModelFiles::Content> ModelFiles::open(const fs::path& path, std::string* 
   // XML that MuJoCo finds by a way the scan did not follow is scanned now, before its parser sees
   // it.
   const std::string extension = lower_extension(path);
-  if ((extension == ".xml" || extension == ".urdf") && !scans_.contains(path)) {
+  if (!is_scanned && (extension == ".xml" || extension == ".urdf")) {
     if (const Result<XmlScan> scan = scan_model_xml(*bytes, path.string()); !scan.ok())
       return fail(scan.error().kind, scan.error().message);
   }
@@ -160,7 +163,7 @@ Status ModelFiles::scan(const fs::path& file, const fs::path& model, const Sourc
   }
   if (scans_.contains(file)) return {};
   std::string hash;
-  Result<Content> content = open(file, &hash);
+  Result<Content> content = open(file, &hash, true);
   if (!content.ok()) {
     Error error = content.error();
     error.message = fmt::format("'{}' {}",
@@ -187,6 +190,7 @@ Status ModelFiles::scan(const fs::path& file, const fs::path& model, const Sourc
   for (const FileReference& reference : kept.references) {
     const SourceLoc loc{file.string(), reference.line, 0};
     if (kept.root == "robot" && reference.element == "mesh") continue;  // see urdf_text.h
+    if (reference.element == "compiler" && reference.value.empty()) continue;
     const std::string refusal = why_not_a_path(reference.value);
     if (!refusal.empty()) {
       return Error{
@@ -335,6 +339,10 @@ Error ModelFiles::explain(const std::string& message, const fs::path& model) con
   for (const std::string_view prefix : {"XML Error: ", "Error: ", "XML error: "}) {
     if (text.starts_with(prefix)) text.erase(0, prefix.size());
   }
+  static const std::regex kUnnamed("[;,]? *Element name '', id -?\\d+");
+  static const std::regex kNamed("[;,]? *Element name ('[^']*'), id -?\\d+");
+  text = std::regex_replace(text, kUnnamed, "");
+  text = std::regex_replace(text, kNamed, ", in $1");
   Error error{ErrorKind::kInput, text, {model.string(), 0, 0}};
   std::string element;
   std::smatch match;

@@ -82,7 +82,9 @@ class ModelFiles {
 
   Status scan(const std::filesystem::path& file, const std::filesystem::path& model,
               const SourceLoc& named_at, std::vector<std::filesystem::path>& stack);
-  Result<Content> open(const std::filesystem::path& path, std::string* hash_text);
+  // `is_scanned`: the caller bounds XML itself.
+  Result<Content> open(const std::filesystem::path& path, std::string* hash_text,
+                       bool is_scanned = false);
   void find_place(const std::string& element, Error* error,
                   const std::filesystem::path& model) const;
   SourceLoc find_reference(const std::filesystem::path& path) const;

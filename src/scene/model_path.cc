@@ -44,6 +44,14 @@ bool has_package_xml(const fs::path& folder) {
   return fs::is_regular_file(folder / "package.xml", code);
 }
 
+bool may_read_below_wide(const fs::path& path, const fs::path& folder) {
+  if (!is_below(path, folder)) return false;
+  const fs::path below = path.lexically_relative(folder);
+  if (folder == folder.root_path()) return !below.has_parent_path();
+  return std::none_of(below.begin(), below.end(),
+                      [](const fs::path& part) { return part.string().starts_with('.'); });
+}
+
 // The file's folder and those above it that a root may be, nearest first.
 std::vector<fs::path> candidate_roots(const fs::path& file) {
   std::vector<fs::path> folders{file.parent_path()};
@@ -52,7 +60,7 @@ std::vector<fs::path> candidate_roots(const fs::path& file) {
     const fs::path& below = folders.back();
     const fs::path folder = below.parent_path();
     if (fs::is_symlink(below, code) || folder == below || folder == folder.root_path() ||
-        is_home_folder(folder))
+        is_home_folder(below) || is_home_folder(folder))
       break;
     folders.push_back(folder);
   }
@@ -75,8 +83,9 @@ std::string why_not_a_path(std::string_view name) {
   for (const char c : name) {
     if (static_cast<unsigned char>(c) < 0x20) return "holds a control character";
   }
+  // "C:" and "http:" make a path absolute to MuJoCo, and mean something else to this system.
   const size_t colon = name.find(':');
-  if (colon != std::string_view::npos && colon > 1 && name.find('/') > colon)
+  if (colon != std::string_view::npos && name.find_first_of("/\\") > colon)
     return "is a network address or has a scheme; only files are read";
   return {};
 }
@@ -102,7 +111,9 @@ Result<ModelRoot> find_model_root(const fs::path& file, const FileAccess& access
     root = package != folders.end() ? *package : folders.back();
     linked = package != folders.end() ? *package : folders.front();
   }
-  return ModelRoot{root, fs::weakly_canonical(root, code), fs::weakly_canonical(linked, code)};
+  const bool is_wide = access.root.empty() && (root == root.root_path() || is_home_folder(root));
+  return ModelRoot{root, fs::weakly_canonical(root, code), fs::weakly_canonical(linked, code),
+                   is_wide};
 }
 
 std::string why_not_readable(const fs::path& path, const std::vector<ModelRoot>& roots) {
@@ -111,6 +122,7 @@ std::string why_not_readable(const fs::path& path, const std::vector<ModelRoot>&
   if (code) return fmt::format("cannot be reached: {}", code.message());
   bool through_link = false;
   for (const ModelRoot& root : roots) {
+    if (root.is_wide && !may_read_below_wide(canonical, root.canonical)) continue;
     if (is_below(canonical, root.linked)) return {};
     if (!is_below(canonical, root.canonical) && !is_below(path, root.folder)) continue;
     const fs::path expected =

@@ -15,12 +15,15 @@ struct ModelRoot {
   std::filesystem::path folder;  ///< as MuJoCo spells paths below it: absolute, not canonical
   std::filesystem::path canonical;
   std::filesystem::path linked;  ///< files reached through a symbolic link must lie below this one
+  /// The model lies directly in a home folder or in "/": hidden files stay out of reach, and of "/"
+  /// only the files beside the model are read.
+  bool is_wide = false;
 };
 
 /// Root of the model (or scene) `file`: FileAccess::root if given, its own folder if strict, else
 /// the nearest of its folder and four more levels up that holds package.xml, else the highest of
-/// them; never "/", a home folder, or past a symbolic link. Errors: the file is not inside the root
-/// that the user gave.
+/// them; never climbs to "/", a home folder, or past a symbolic link. Errors: the file is not
+/// inside the root that the user gave.
 Result<ModelRoot> find_model_root(const std::filesystem::path& file, const FileAccess& access);
 
 /// Empty when `path` (absolute) may be read under one of `roots`; else why not, as half a sentence

@@ -36,6 +36,8 @@ constexpr SizeLimit kSizeLimits[] = {
 constexpr double kLargestArena = 64.0 * (uint64_t{1} << 30);  // [bytes]
 
 bool names_a_file(std::string_view element, std::string_view attribute) {
+  if (element == "compiler")
+    return attribute == "meshdir" || attribute == "texturedir" || attribute == "assetdir";
   if (attribute.starts_with("file")) return element != "key" && element != "text";
   return false;
 }

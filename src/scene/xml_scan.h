@@ -10,7 +10,7 @@
 
 namespace gloam {
 
-/// One attribute that names a file.
+/// One attribute that names a file, or the folder of files (<compiler meshdir="…">).
 struct FileReference {
   std::string element;    ///< "mesh", "include" …
   std::string attribute;  ///< "file", "fileup", "filename" …

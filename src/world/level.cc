@@ -20,7 +20,20 @@ namespace {
 // library, whose std::string has another layout than mjString's declaration says here.
 void set_name(mjsElement* element, const std::string& name) { mjs_setName(element, name.c_str()); }
 
-Result<SpecPtr> parse_model(const fs::path& file, const FileAccess& access, ModelFiles* files) {
+// What MuJoCo's parser and compiler grumble about but take ("<mimic> on joint 'x' ignored").
+void report_warnings(const MujocoWarningCapture& warnings, const fs::path& file,
+                     std::vector<Error>* unsupported) {
+  for (const std::string& message : warnings.messages()) {
+    std::string line = message.substr(0, message.find('\n'));
+    const bool known = std::any_of(unsupported->begin(), unsupported->end(),
+                                   [&](const Error& e) { return e.message == line; });
+    if (!known)
+      unsupported->push_back({ErrorKind::kUnsupported, std::move(line), {file.string(), 0, 0}});
+  }
+}
+
+Result<SpecPtr> parse_model(const fs::path& file, const FileAccess& access, ModelFiles* files,
+                            std::vector<Error>* unsupported) {
   const std::string path = absolute_path(file, "").string();
   if (files->root_element(path) == "robot") {
     GLOAM_TRY(const UrdfText urdf,
@@ -36,6 +49,7 @@ Result<SpecPtr> parse_model(const fs::path& file, const FileAccess& access, Mode
       guarded([&] { spec = mj_parseXML(path.c_str(), files->vfs(), message, sizeof(message)); });
   if (!status.ok()) return files->explain(status.error().message, path);
   if (spec == nullptr) return files->explain(message, path);
+  report_warnings(warnings, path, unsupported);
   return SpecPtr(spec);
 }
 
@@ -109,9 +123,10 @@ Status attach_robot(mjSpec* base, const RobotOptions& robot, mjSpec* child, Mode
 Result<Level> assemble(const Scene& scene, ModelFiles* files, mjtConflict policy) {
   Level level;
   if (!scene.bare_model.empty()) {
-    GLOAM_TRY(level.spec, parse_model(scene.bare_model, scene.access, files));
+    GLOAM_TRY(level.spec, parse_model(scene.bare_model, scene.access, files, &level.unsupported));
   } else if (!scene.environment.file.empty()) {
-    GLOAM_TRY(level.spec, parse_model(scene.environment.file, scene.access, files));
+    GLOAM_TRY(level.spec,
+              parse_model(scene.environment.file, scene.access, files, &level.unsupported));
   } else {
     level.spec.reset(mj_makeSpec());
     mjs_setString(level.spec->modelname, scene.name.c_str());
@@ -120,7 +135,7 @@ Result<Level> assemble(const Scene& scene, ModelFiles* files, mjtConflict policy
   if (level.spec->compiler.conflict == mjCONFLICT_WARNING && !scene.robots.empty())
     level.spec->compiler.conflict = policy;
   for (const RobotOptions& robot : scene.robots) {
-    GLOAM_TRY(SpecPtr child, parse_model(robot.file, scene.access, files));
+    GLOAM_TRY(SpecPtr child, parse_model(robot.file, scene.access, files, &level.unsupported));
     GLOAM_TRY_STATUS(attach_robot(level.spec.get(), robot, child.get(), files, &level.unsupported));
     level.robots.push_back({robot, std::move(child)});
   }
@@ -136,12 +151,14 @@ Status compile(const Scene& scene, ModelFiles* files, Level* level) {
   const MujocoWarningCapture warnings;
   const Status status = guarded([&] { model = mj_compile(spec, vfs); });
   level->model.reset(model);
-  if (status.ok() && model != nullptr) return {};
   const fs::path file = !scene.bare_model.empty()         ? scene.bare_model
                         : !scene.environment.file.empty() ? scene.environment.file
                         : scene.robots.empty()            ? scene.file
                                                           : scene.robots[0].file;
-  return files->explain(status.ok() ? mjs_getError(spec) : status.error().message, file);
+  if (!status.ok() || model == nullptr)
+    return files->explain(status.ok() ? mjs_getError(spec) : status.error().message, file);
+  report_warnings(warnings, file, &level->unsupported);
+  return {};
 }
 
 }  // namespace

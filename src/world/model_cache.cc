@@ -114,8 +114,12 @@ class Reader {
   bool ok_ = true;
 };
 
+constexpr size_t kHeaderSize = 2 * sizeof(uint64_t);  // magic, hash of the rest
+
 std::string serialise(const CompiledWorld& world, const std::vector<Dependency>& dependencies) {
   Writer out;
+  out.put(kMagic);
+  out.put(uint64_t{0});
   out.put(static_cast<uint64_t>(dependencies.size()));
   for (const Dependency& dependency : dependencies) {
     out.put(dependency.path.string());
@@ -136,22 +140,20 @@ std::string serialise(const CompiledWorld& world, const std::vector<Dependency>&
   out.put(world.model->nplugin > 0);
   out.put_model(world.model.get());
   out.put_model(world.visual_model.get());
+  const uint64_t hash = hash_bytes(out.bytes.data() + kHeaderSize, out.bytes.size() - kHeaderSize);
+  std::memcpy(out.bytes.data() + sizeof(kMagic), &hash, sizeof(hash));
   return std::move(out.bytes);
 }
 
 void write_entry(const CompiledWorld& world, const std::vector<Dependency>& dependencies) {
   const fs::path folder = model_cache_folder();
-  const std::string payload = serialise(world, dependencies);
-  Writer entry;
-  entry.put(kMagic);
-  entry.put(hash_bytes(payload.data(), payload.size()));
-  entry.bytes += payload;
-  if (entry.bytes.size() > kLargestEntry) return;
+  const std::string entry = serialise(world, dependencies);
+  if (entry.size() > kLargestEntry) return;
   Status status = make_folder(folder);
   if (status.ok()) {
     const fs::path path = folder / (hash_to_hex(world_cache_key(world.scene)) + ".world");
-    status = write_file_atomic(
-        path, {reinterpret_cast<const uint8_t*>(entry.bytes.data()), entry.bytes.size()});
+    status =
+        write_file_atomic(path, {reinterpret_cast<const uint8_t*>(entry.data()), entry.size()});
   }
   if (!status.ok()) return log_debug("cache not written: {}", status.error().to_string());
   trim_cache(folder, kLargestCache);
@@ -232,7 +234,7 @@ std::shared_ptr<CompiledWorld> load_cached_world(const Scene& scene) {
   Reader header(*bytes);
   const uint64_t magic = header.get<uint64_t>(), hash = header.get<uint64_t>();
   if (!header.ok() || magic != kMagic) return nullptr;
-  const std::span<const uint8_t> payload = std::span(*bytes).subspan(2 * sizeof(uint64_t));
+  const std::span<const uint8_t> payload = std::span(*bytes).subspan(kHeaderSize);
   if (hash_bytes(payload.data(), payload.size()) != hash) return nullptr;
 
   ModelFiles files;

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "scene/mujoco_guard.h"
 #include "scene/test/temp_folder.h"
 
 namespace gloam {
@@ -75,6 +76,48 @@ TEST(ModelFiles, MissingAndWrongFilesAreNamed) {
   EXPECT_THAT(add_error(folder.path()), HasSubstr("folder"));
 }
 
+// The paths MuJoCo itself makes of what the XML says must all come back to the same door.
+TEST(ModelFiles, MuJoCoItselfReadsNothingOutside) {
+  TempFolder folder;
+  const fs::path outside =
+      fs::temp_directory_path() / ("gloam_outside_" + std::to_string(::getpid()) + ".obj");
+  std::ofstream(outside) << tetrahedron_obj();
+  std::string up;
+  for (int i = 0; i < 40; ++i) up += "../";
+  std::string backslashes = up;
+  std::replace(backslashes.begin(), backslashes.end(), '/', '\\');
+  const std::string inner = outside.string().substr(1);
+  const auto model = [](const std::string& compiler, const std::string& file) {
+    return "<mujoco><compiler " + compiler + "/><asset><mesh name='m' file='" + file +
+           "'/></asset><worldbody><geom type='mesh' mesh='m'/></worldbody></mujoco>";
+  };
+  const std::string texts[] = {
+      model("", outside.string()),
+      model("", up + inner),
+      model("", "/../" + inner),
+      model("", "/../../" + inner),
+      model("", "//" + inner),
+      model("", "/./" + inner),
+      model("", backslashes + inner),
+      model("meshdir='/'", inner),
+      model("meshdir='/../'", inner),
+      model("meshdir='" + up + "'", inner),
+      model("meshdir='" + outside.parent_path().string() + "'", outside.filename().string()),
+      model("assetdir='c:/'", up + inner),
+  };
+  for (const std::string& text : texts) {
+    const fs::path file = folder.write("m.xml", text);
+    ModelFiles files;
+    if (!files.add_model(file, {}).ok()) continue;  // refused even earlier
+    char error[1000] = "";
+    mjModel* loaded = mj_loadXML(file.c_str(), files.vfs(), error, sizeof(error));
+    EXPECT_EQ(loaded, nullptr) << text;
+    mj_deleteModel(loaded);
+    mj_clearCache(mj_getCache());
+  }
+  fs::remove(outside);
+}
+
 class Confinement : public ::testing::Test {
  protected:
   bool readable(const fs::path& model, const fs::path& file, const FileAccess& access = {}) {
@@ -121,7 +164,19 @@ TEST_F(Confinement, HomeFoldersAreNeverRoots) {
   ::setenv("HOME", folder_.path().parent_path().c_str(), 1);
   EXPECT_TRUE(readable(model_, folder_.write("mesh.stl", "x")));
   EXPECT_FALSE(readable(model_, folder_.write("../private_key", "x")));
+  // A model right in the home folder reaches the folders beside it but nothing hidden.
+  ::setenv("HOME", folder_.path().c_str(), 1);
+  EXPECT_TRUE(readable(model_, folder_.write("meshes/mesh.stl", "x")));
+  EXPECT_FALSE(readable(model_, folder_.write(".ssh/id", "x")));
+  EXPECT_FALSE(readable(model_, folder_.write("../mesh.stl", "x")));
   ::setenv("HOME", saved.c_str(), 1);
+}
+
+TEST(ModelRootTest, AModelInTheTopFolderReadsOnlyWhatLiesBesideIt) {
+  const Result<ModelRoot> root = find_model_root("/model.xml", {});
+  ASSERT_TRUE(root.ok());
+  EXPECT_EQ(why_not_readable("/mesh.stl", {*root}), "");
+  EXPECT_NE(why_not_readable("/etc/passwd", {*root}), "");
 }
 
 TEST_F(Confinement, LinksDoNotLeadOut) {
@@ -135,7 +190,8 @@ TEST_F(Confinement, LinksDoNotLeadOut) {
 }
 
 TEST(WhyNotAPath, NamesWithSchemes) {
-  for (const char* bad : {"http://a/b", "https://a", "file:///etc/passwd", "package://a/b", ""})
+  for (const char* bad : {"http://a/b", "https://a", "file:///etc/passwd", "package://a/b",
+                          "c:\\a.stl", "c:a.stl", ""})
     EXPECT_NE(why_not_a_path(bad), "") << bad;
   for (const char* good : {"a.stl", "../a/b.stl", "/abs/a.stl", "dir/a:b.stl", "ünïcode.stl"})
     EXPECT_EQ(why_not_a_path(good), "") << good;
