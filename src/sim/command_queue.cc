@@ -30,7 +30,7 @@ Status CommandQueue::post(Command command) {
                  {},
                  "post fewer commands per step, or let the simulation step"};
   }
-  node.release();
+  static_cast<void>(node.release());  // the queue owns it now
   return {};
 }
 

@@ -68,6 +68,8 @@ class Simulator {
 
   /// Checks a Command and queues it; never blocks. Errors: not a thing of this world, queue full.
   Status post(Command command);
+  /// Runs before steps at `rate`, of which the step rate is a multiple; reset now and at every
+  /// reset.
   Status add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate);
   void set_step_hook(StepHook hook);
   /// From the present step on. The reader holds what it got for as long as it likes.

@@ -28,7 +28,7 @@ Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledW
   GLOAM_TRY_STATUS(guarded([&] { data = mj_makeData(model); }));
   stepper->data_.reset(data);
   stepper->reader_ = StateReader(*model, *data);
-  stepper->inputs_.emplace(*model);
+  stepper->inputs_ = std::make_unique<AppliedInputs>(*model);
   stepper->state_.resize(static_cast<size_t>(state_size(*model)));
   stepper->next_state_.resize(stepper->state_.size());
   stepper->sensors_.resize(static_cast<size_t>(model->nsensordata));
@@ -116,7 +116,7 @@ bool Stepper::step() {
   if (failed_) return false;
   const mjModel* model = model_.get();
   mjData* data = data_.get();
-  AppliedInputs* inputs = &*inputs_;
+  AppliedInputs* inputs = inputs_.get();
   const bool ok = try_mujoco([=] {
     inputs->before_step(*model, *data);
     mj_step(model, data);

@@ -70,7 +70,7 @@ class Stepper {
   DataPtr data_;
   StateReader reader_;  // of data_
   DataPtr scratch_;     // for mj_setConst; made on first use
-  std::optional<AppliedInputs> inputs_;
+  std::unique_ptr<AppliedInputs> inputs_;
   std::shared_ptr<const LiveFields> live_;
   std::shared_ptr<SnapshotPool> pool_;
 
