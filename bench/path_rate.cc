@@ -1,20 +1,62 @@
-// How many paths per second, against a bare Embree loop that traces the very same rays.
-//   path_rate [--picture FILE.ppm] [--spp N] [--direct] [--plain] [--size WxH]
+// Paths per second, and the share of a bare Embree loop that traces the very same rays. All figures
+// are of CPU time over all threads, medians of alternating runs: they stand on a busy machine.
+//   path_rate [--picture FILE.ppm] [--spp N] [--depth N] [--direct] [--plain] [--size WxH]
+//             [--runs N] [--export FOLDER]
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
+#include <ctime>
 #include <string>
 
 #include "base/parallel.h"
 #include "bench/room_scene.h"
+#include "render/test/probe.h"
 
 using namespace gloam;
 
 namespace {
 
-/// A quick look: exposure to a mean of 0.18, soft shoulder, sRGB.
+struct Arguments {
+  std::string picture, export_folder;
+  RenderSettings settings;
+  RoomOptions room;
+  int width = 640, height = 480, runs = 5;
+};
+
+Arguments parse(int argc, char** argv) {
+  Arguments a;
+  for (int i = 1; i < argc; ++i) {
+    const std::string arg = argv[i];
+    const bool more = i + 1 < argc;
+    if (arg == "--direct") a.settings.tier = RenderTier::kDirect;
+    if (arg == "--plain") a.room.plain = true;
+    if (!more) continue;
+    if (arg == "--picture") a.picture = argv[++i];
+    if (arg == "--export") a.export_folder = argv[++i];
+    if (arg == "--spp") a.settings.spp = std::atoi(argv[++i]);
+    if (arg == "--runs") a.runs = std::atoi(argv[++i]);
+    if (arg == "--depth") a.settings.max_depth = std::atoi(argv[++i]);
+    if (arg == "--size") std::sscanf(argv[++i], "%dx%d", &a.width, &a.height);
+  }
+  return a;
+}
+
+double cpu_seconds() {
+  timespec t;
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+double wall_seconds() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+double median(std::vector<double> v) {
+  std::nth_element(v.begin(), v.begin() + static_cast<long>(v.size() / 2), v.end());
+  return v[v.size() / 2];
+}
+
+/// A quick look: exposure to the logarithmic mean, soft shoulder, sRGB.
 void write_ppm(const std::string& path, const Film& film) {
   double mean = 0;
   for (const Vec3f& c : film.radiance) mean += std::log(1e-3 + luminance(c));
@@ -33,40 +75,172 @@ void write_ppm(const std::string& path, const Film& film) {
   std::fclose(file);
 }
 
+struct RecordedRay {
+  Ray ray;
+  bool any;
+};
+
+/// Writes down what it traces.
+struct RecordingTracer {
+  const EmbreeTracer* tracer;
+  std::vector<RecordedRay>* rays;
+  bool trace(const Ray& ray, bool any, RayHit* hit) const {
+    rays->push_back({ray, any});
+    return tracer->trace(ray, any, hit);
+  }
+};
+
+/// The rays of one sample per pixel of the path tier, in its own order, one list per row.
+std::vector<std::vector<RecordedRay>> record_rays(const Probe& probe, const CameraView& view,
+                                                  const RenderSettings& settings) {
+  CameraView32 camera;
+  camera.fx = camera.fy = static_cast<float>(view.intrinsics.fx);
+  camera.cx = static_cast<float>(view.intrinsics.cx);
+  camera.cy = static_cast<float>(view.intrinsics.cy);
+  camera.pose = {view.X_WC_open, view.X_WC_open, view.X_WC_open};
+  std::vector<std::vector<RecordedRay>> rows(static_cast<size_t>(view.intrinsics.height));
+  parallel_for("record", view.intrinsics.height, [&](int64_t y) {
+    const RecordingTracer tracer{&probe.tracer, &rows[static_cast<size_t>(y)]};
+    for (int x = 0; x < view.intrinsics.width; ++x) {
+      Sampler sampler = Sampler::make(1, 0, static_cast<uint32_t>(x), static_cast<uint32_t>(y), 0, 0);
+      const Vec2f offset = sample_pixel_filter(sampler.next_2d());
+      RayCone cone;
+      const Ray ray = camera_ray(camera, static_cast<float>(x) + 0.5f + offset.x,
+                                 static_cast<float>(y) + 0.5f + offset.y, 0, &cone);
+      if (settings.tier == RenderTier::kDirect) {
+        bool found = false;
+        Surface first;
+        trace_direct(probe.view, tracer, ray, cone, sampler, &found, &first);
+      } else {
+        trace_path(probe.view, tracer, ray, cone, {settings.max_depth, 100}, sampler);
+      }
+    }
+  });
+  return rows;
+}
+
+/// Embree and nothing else.
+void trace_bare(RTCScene scene, const std::vector<std::vector<RecordedRay>>& rows) {
+  parallel_for("bare", static_cast<int64_t>(rows.size()), [&](int64_t row) {
+    for (const RecordedRay& r : rows[static_cast<size_t>(row)]) {
+      RTCIntersectContext context;
+      rtcInitIntersectContext(&context);
+      RTCRayHit query;
+      query.ray = {r.ray.o.x, r.ray.o.y, r.ray.o.z, 0, r.ray.d.x, r.ray.d.y, r.ray.d.z, 0,
+                   r.ray.tmax, ~0u,      0,         0};
+      if (r.any) {
+        rtcOccluded1(scene, &context, &query.ray);
+      } else {
+        query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        rtcIntersect1(scene, &context, &query);
+      }
+    }
+  });
+}
+
+/// Meshes as PLY in world coordinates and a text list of them, for bench/peers/mitsuba_room.py.
+void export_scene(const std::string& folder, const SceneBuilder& b, const CameraView& view) {
+  std::FILE* list = std::fopen((folder + "/scene.txt").c_str(), "w");
+  if (list == nullptr) return;
+  const Affine3f& C = view.X_WC_open;
+  std::fprintf(list, "camera %d %d %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g\n",
+               view.intrinsics.width, view.intrinsics.height, view.intrinsics.fy, C.p.x, C.p.y,
+               C.p.z, -C.z.x, -C.z.y, -C.z.z, C.y.z);
+  for (size_t i = 0; i < b.description.instances.size(); ++i) {
+    const InstanceDescription& in = b.description.instances[i];
+    const MaterialDescription& m = b.description.materials[static_cast<size_t>(in.material)];
+    const double* p = &b.frame.body_p[3 * static_cast<size_t>(in.body)];
+    const double* R = &b.frame.body_R[9 * static_cast<size_t>(in.body)];
+    Affine3f X_WB;
+    X_WB.x = {static_cast<float>(R[0]), static_cast<float>(R[3]), static_cast<float>(R[6])};
+    X_WB.y = {static_cast<float>(R[1]), static_cast<float>(R[4]), static_cast<float>(R[7])};
+    X_WB.z = {static_cast<float>(R[2]), static_cast<float>(R[5]), static_cast<float>(R[8])};
+    X_WB.p = {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
+    const Affine3f X = X_WB * in.X_BG;
+    TriangleMesh mesh;
+    if (in.shape == ShapeType::kMesh) {
+      mesh = b.description.meshes[static_cast<size_t>(in.mesh)];
+    } else if (in.shape == ShapeType::kBox) {
+      for (int k = 0; k < 8; ++k) {
+        mesh.positions.push_back({(k & 1) != 0 ? in.size.x : -in.size.x,
+                                  (k & 2) != 0 ? in.size.y : -in.size.y,
+                                  (k & 4) != 0 ? in.size.z : -in.size.z});
+      }
+      mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                      2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+    } else {  // curved shapes: a fine ball squeezed to the bounds is work enough alike
+      mesh = make_ball(24);
+      const Vec3f h = in.shape == ShapeType::kSphere ? Vec3f{in.size.x, in.size.x, in.size.x}
+                                                     : Vec3f{in.size.x, in.size.x, in.size.y};
+      for (Vec3f& v : mesh.positions) v = v * h;
+    }
+    const std::string name = "shape" + std::to_string(i) + ".ply";
+    std::FILE* ply = std::fopen((folder + "/" + name).c_str(), "wb");
+    if (ply == nullptr) break;
+    const bool smooth = !mesh.normals.empty();
+    std::fprintf(ply, "ply\nformat binary_little_endian 1.0\nelement vertex %zu\n",
+                 mesh.positions.size());
+    std::fprintf(ply, "property float x\nproperty float y\nproperty float z\n");
+    if (smooth) std::fprintf(ply, "property float nx\nproperty float ny\nproperty float nz\n");
+    std::fprintf(ply, "element face %zu\nproperty list uchar int vertex_indices\nend_header\n",
+                 mesh.triangle_count());
+    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+      const Vec3f q = transform_point(X, mesh.positions[v]);
+      std::fwrite(&q, sizeof q, 1, ply);
+      if (!smooth) continue;
+      const Vec3f n = transform_vector(X, mesh.normals[v]);
+      std::fwrite(&n, sizeof n, 1, ply);
+    }
+    for (size_t t = 0; t < mesh.indices.size(); t += 3) {
+      const uint8_t three = 3;
+      std::fwrite(&three, 1, 1, ply);
+      std::fwrite(&mesh.indices[t], sizeof(uint32_t), 3, ply);
+    }
+    std::fclose(ply);
+    std::fprintf(list, "shape %s %d %.9g %.9g %.9g %.9g %.9g %.9g\n", name.c_str(), smooth ? 1 : 0,
+                 m.base_color.x, m.base_color.y, m.base_color.z, m.emission.x, m.emission.y,
+                 m.emission.z);
+  }
+  std::fclose(list);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::string picture;
-  RenderSettings settings;
-  RoomOptions room;
-  int width = 640, height = 480;
-  for (int i = 1; i < argc; ++i) {
-    const std::string arg = argv[i];
-    if (arg == "--picture" && i + 1 < argc) picture = argv[++i];
-    if (arg == "--spp" && i + 1 < argc) settings.spp = std::atoi(argv[++i]);
-    if (arg == "--depth" && i + 1 < argc) settings.max_depth = std::atoi(argv[++i]);
-    if (arg == "--direct") settings.tier = RenderTier::kDirect;
-    if (arg == "--plain") room.plain = true;
-    if (arg == "--size" && i + 1 < argc) std::sscanf(argv[++i], "%dx%d", &width, &height);
-  }
-  const SceneBuilder builder = make_room(room);
-  const auto start = std::chrono::steady_clock::now();
+  Arguments a = parse(argc, argv);
+  const SceneBuilder builder = make_room(a.room);
+  const CameraView view = room_camera(a.width, a.height);
+  if (!a.export_folder.empty()) export_scene(a.export_folder, builder, view);
+  const double start = wall_seconds();
   auto renderer = builder.make();
-  const double build =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double build = wall_seconds() - start;
+  const Probe probe(builder);
+
   Film film;
-  const CameraView view = room_camera(width, height);
-  RenderStats best;
-  best.trace_seconds = 1e30;
-  for (int i = 0; i < 5; ++i) {
-    const RenderStats stats = renderer->render(view, settings, &film);
-    if (stats.trace_seconds < best.trace_seconds) best = stats;
-    if (settings.spp > 32) break;
+  a.settings.exact_channels = !a.picture.empty();
+  const auto rays = record_rays(probe, view, a.settings);
+  size_t recorded = 0;
+  for (const auto& row : rays) recorded += row.size();
+  std::vector<double> render_cpu, render_wall, bare_cpu;
+  RenderStats stats;
+  for (int i = 0; i < a.runs; ++i) {
+    double cpu = cpu_seconds();
+    stats = renderer->render(view, a.settings, &film);
+    render_cpu.push_back(cpu_seconds() - cpu);
+    render_wall.push_back(stats.trace_seconds);
+    cpu = cpu_seconds();
+    trace_bare(probe.tracer.root, rays);
+    bare_cpu.push_back(cpu_seconds() - cpu);
   }
-  std::printf("build %.0f ms, %d threads, %.1f ms, %.2f rays/path, %.3f Mpaths/s, %.2f Mrays/s\n",
-              build * 1e3, thread_count(), best.trace_seconds * 1e3,
-              static_cast<double>(best.rays) / static_cast<double>(best.paths),
-              static_cast<double>(best.paths) / best.trace_seconds * 1e-6,
-              static_cast<double>(best.rays) / best.trace_seconds * 1e-6);
-  if (!picture.empty()) write_ppm(picture, film);
+  const double paths = static_cast<double>(stats.paths), threads = thread_count();
+  const double per_path = static_cast<double>(recorded) / (a.width * a.height);
+  const double cpu_per_path = median(render_cpu) / paths;
+  const double bare_per_path = median(bare_cpu) / (a.width * a.height);
+  std::printf("build %.0f ms; %d threads; wall %.1f ms; CPU %.1f ms per picture\n", build * 1e3,
+              thread_count(), median(render_wall) * 1e3, median(render_cpu) * 1e3);
+  std::printf("%.2f rays/path; %.3f Mpaths/s at %.0f full threads; bare Embree %.3f Mpaths/s "
+              "(%.1f Mrays/s); share %.1f %%\n",
+              per_path, threads / cpu_per_path * 1e-6, threads, threads / bare_per_path * 1e-6,
+              per_path * threads / bare_per_path * 1e-6, 100 * bare_per_path / cpu_per_path);
+  if (!a.picture.empty()) write_ppm(a.picture, film);
 }

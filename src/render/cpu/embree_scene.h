@@ -79,7 +79,8 @@ class EmbreeTracer {
     } else {
       hit->instance = root_rows[top];
       const InstanceView& instance = instances[hit->instance];
-      hit->normal = transform_vector(pose_at(instance, ray.time), hit->normal);
+      Affine3f between;
+      hit->normal = transform_vector(pose_at(instance, ray.time, &between), hit->normal);
     }
     return true;
   }

@@ -16,6 +16,7 @@ struct Bsdf {
   Vec3f f0;           ///< of the layer at normal incidence, energy compensation included
   Vec3f f90;          ///< of the layer at grazing incidence, energy compensation included
   float alpha = 0;    ///< GGX width
+  float root_o = 0;   ///< smith_root of the viewing direction
   float p_layer = 0;  ///< probability of sampling the layer
 };
 
@@ -71,6 +72,7 @@ GLOAM_HD Bsdf make_bsdf(const AlbedoTable& table, Vec3f base_color, float metall
                         float dielectric_f0, float dielectric_f90, float cos_o) {
   Bsdf bsdf;
   bsdf.alpha = max(roughness * roughness, 1e-3f);
+  bsdf.root_o = ggx::smith_root(sqr(bsdf.alpha), cos_o);
   float a, b;
   layer_albedo(table, roughness, cos_o, &a, &b);
   const float single = max(a + b, 1e-3f), missing = (1.0f - single) / single;
@@ -96,12 +98,12 @@ GLOAM_HD Vec3f eval_bsdf(const Bsdf& bsdf, Vec3f wo, Vec3f wi, float* pdf) {
     const Vec3f h = normalize(wo + wi);
     const float alpha2 = bsdf.alpha * bsdf.alpha;
     const float d = ggx::distribution(alpha2, h.z);
-    const float root_o = ggx::smith_root(alpha2, wo.z), root_i = ggx::smith_root(alpha2, wi.z);
+    const float root_i = ggx::smith_root(alpha2, wi.z);
     // Height-correlated Smith: G2 / (4 cos_o cos_i) = 1 / (2 (cos_i root_o + cos_o root_i)).
-    const float g = 0.5f / (wi.z * root_o + wo.z * root_i);
+    const float g = 0.5f / (wi.z * bsdf.root_o + wo.z * root_i);
     const float f = ggx::schlick(dot(wo, h));
     value += lerp(bsdf.f0, bsdf.f90, f) * (d * g * wi.z);
-    *pdf += bsdf.p_layer * d / (2.0f * (wo.z + root_o));  // G1 D / (4 cos_o)
+    *pdf += bsdf.p_layer * d / (2.0f * (wo.z + bsdf.root_o));  // G1 D / (4 cos_o)
   }
   return value;
 }

@@ -22,6 +22,7 @@ GLOAM_HD PathResult trace_direct(const SceneView& scene, const Tracer& tracer, R
   int passed = 0;
 
   Surface s;
+  LightPicker picker;
   Bsdf bsdf;
   Frame frame;
   Vec3f wo;
@@ -69,6 +70,7 @@ GLOAM_HD PathResult trace_direct(const SceneView& scene, const Tracer& tracer, R
                          (transmittance * s.opacity);
       view.o = leave_surface(s.p, s.geometric, ray.d, hit.t);
       next_light = 0;
+      if (!all_lights) picker.prepare(scene, s.p, s.geometric);
     }
     is_shadow = false;
     while (!is_shadow && next_light < light_count) {
@@ -76,7 +78,7 @@ GLOAM_HD PathResult trace_direct(const SceneView& scene, const Tracer& tracer, R
       float pick = sampler.next_1d();
       const Vec2f u = sampler.next_2d();
       const LightSample light = all_lights ? sample_one_light(scene, index, s.p, pick, u, ray.time)
-                                           : sample_lights(scene, s.p, s.geometric, 1.0f, pick, u, ray.time);
+                                           : picker.sample(scene, s.p, pick, u, ray.time);
       if (!(light.pdf > 0) || dot(light.wi, s.geometric) <= 0) continue;
       float pdf;
       light_radiance = eval_bsdf(bsdf, wo, frame.to_local(light.wi), &pdf) * light.radiance *

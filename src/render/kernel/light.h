@@ -184,7 +184,7 @@ GLOAM_HD LightSample sample_one_light(const SceneView& scene, uint32_t index, Ve
 }
 
 /// Scenes with more lights select by power alone.
-inline constexpr uint32_t kMaxWeighedLights = 32;
+inline constexpr uint32_t kMaxWeighedLights = 16;
 
 /// A bound, up to a factor, of what light i brings to the surface at p with the geometric normal n
 /// if nothing is in between; zero only if it brings nothing.
@@ -206,60 +206,74 @@ GLOAM_HD float light_weight(const LightView& light, Vec3f p, Vec3f n) {
   return light.strength * inv_d2 * (cosine + 0.05f) * cone;
 }
 
-/// Sum of the weights of all lights at a surface; what pick_probability divides by.
-GLOAM_HD float total_light_weight(const SceneView& scene, Vec3f p, Vec3f n) {
-  if (scene.lights.size > kMaxWeighedLights) return 1.0f;
-  float total = 0;
-  for (uint32_t i = 0; i < scene.lights.size; ++i) total += light_weight(scene.lights[i], p, n);
-  return total;
-}
+/// How lights are taken at one surface: in proportion to light_weight where there are few, by power
+/// alone where there are many.
+class LightPicker {
+ public:
+  /// For the surface at p with the geometric normal n.
+  GLOAM_HD void prepare(const SceneView& scene, Vec3f p, Vec3f n) {
+    count_ = scene.lights.size;
+    if (count_ > kMaxWeighedLights) return;
+    float total = 0;
+    for (uint32_t i = 0; i < count_; ++i) {
+      total += share_[i] = count_ == 1 ? 1.0f : light_weight(scene.lights[i], p, n);
+    }
+    if (!(total > 0)) {
+      count_ = 0;  // nothing can arrive
+      return;
+    }
+    const float inverse = 1.0f / total;
+    for (uint32_t i = 0; i < count_; ++i) share_[i] *= inverse;
+  }
 
-/// Probability with which sample_lights takes light i at the surface (p, n).
-GLOAM_HD float pick_probability(const SceneView& scene, uint32_t i, Vec3f p, Vec3f n, float total) {
-  if (scene.lights.size > kMaxWeighedLights) return scene.lights[i].probability;
-  return total > 0 ? light_weight(scene.lights[i], p, n) / total : 0.0f;
-}
+  /// Probability of taking light i.
+  GLOAM_HD float probability(const SceneView& scene, uint32_t i) const {
+    if (count_ > kMaxWeighedLights) return scene.lights[i].probability;
+    return i < count_ ? share_[i] : 0.0f;
+  }
 
-/// Takes a light for the surface (p, n) and a direction towards it.
-GLOAM_HD LightSample sample_lights(const SceneView& scene, Vec3f p, Vec3f n, float total,
-                                   float pick, Vec2f u, float time) {
-  const uint32_t count = scene.lights.size;
-  if (count == 0 || !(total > 0)) return {};
-  float before = 0, probability = 0;
-  uint32_t index = 0;
-  if (count > kMaxWeighedLights) {
-    uint32_t high = count - 1;
-    while (index < high) {
-      const uint32_t middle = (index + high) / 2;
-      if (pick < scene.lights[middle].cdf) {
-        high = middle;
-      } else {
-        index = middle + 1;
+  /// Takes a light and a direction from p towards it.
+  GLOAM_HD LightSample sample(const SceneView& scene, Vec3f p, float pick, Vec2f u,
+                              float time) const {
+    if (count_ == 0) return {};
+    float before = 0, taken = 0;
+    uint32_t index = 0;
+    if (count_ > kMaxWeighedLights) {
+      uint32_t high = count_ - 1;
+      while (index < high) {
+        const uint32_t middle = (index + high) / 2;
+        if (pick < scene.lights[middle].cdf) {
+          high = middle;
+        } else {
+          index = middle + 1;
+        }
+      }
+      taken = scene.lights[index].probability;
+      before = scene.lights[index].cdf - taken;
+    } else {
+      for (uint32_t i = 0; i < count_; ++i) {
+        if (!(share_[i] > 0)) continue;
+        before += taken;
+        taken = share_[i];
+        index = i;
+        if (pick < before + taken) break;
       }
     }
-    probability = scene.lights[index].probability;
-    before = scene.lights[index].cdf - probability;
-  } else {
-    for (uint32_t i = 0; i < count; ++i) {
-      const float p_i = light_weight(scene.lights[i], p, n) / total;
-      if (!(p_i > 0)) continue;
-      before += probability;
-      probability = p_i;
-      index = i;
-      if (pick < before + probability) break;
-    }
+    pick = clamp((pick - before) / taken, 0.0f, 0.9999999f);
+    LightSample s = sample_one_light(scene, index, p, pick, u, time);
+    s.pdf *= taken;
+    return s;
   }
-  pick = clamp((pick - before) / probability, 0.0f, 0.9999999f);
-  LightSample s = sample_one_light(scene, index, p, pick, u, time);
-  s.pdf *= probability;
-  return s;
-}
+
+ private:
+  uint32_t count_ = 0;
+  float share_[kMaxWeighedLights];
+};
 
 /// Light of lamps and suns that a scattered ray meets before `tmax`, each weighted against
-/// sample_lights at `from`, the surface that scattered it, by the density `pdf_bsdf` of its
-/// direction.
+/// `picker` at `from`, the surface that scattered it, by the density `pdf_bsdf` of its direction.
 GLOAM_HD Vec3f visible_lights(const SceneView& scene, const Ray& ray, float tmax, Vec3f from,
-                              Vec3f from_normal, float total, float pdf_bsdf) {
+                              const LightPicker& picker, float pdf_bsdf) {
   Vec3f sum;
   for (uint32_t i = 0; i < scene.lights.size; ++i) {
     const LightView& light = scene.lights[i];
@@ -278,8 +292,7 @@ GLOAM_HD Vec3f visible_lights(const SceneView& scene, const Ray& ray, float tmax
       radiance = light.intensity * (spot_falloff(light, -to / sqrtf(d2)) / (kPi * sin2));
       sin2 /= d2;
     }
-    const float pdf = pick_probability(scene, i, from, from_normal, total) *
-                      cone_pdf(one_minus_cos_of(sin2));
+    const float pdf = picker.probability(scene, i) * cone_pdf(one_minus_cos_of(sin2));
     sum += radiance * mis_weight(pdf_bsdf, pdf);
   }
   return sum;

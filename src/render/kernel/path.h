@@ -36,8 +36,8 @@ GLOAM_HD PathResult trace_path(const SceneView& scene, const Tracer& tracer, Ray
   PathResult result;
   Vec3f throughput{1, 1, 1};
   float pdf_bsdf = 0;  // of the direction of `ray`; 0 = from the camera
-  Vec3f from, from_normal;  // the last scattering vertex
-  float light_total = 0;    // total_light_weight there
+  Vec3f from;          // the last scattering vertex
+  LightPicker picker;  // of that vertex
   int depth = 0, passed = 0;
   bool seen_first = false;
 
@@ -74,7 +74,7 @@ GLOAM_HD PathResult trace_path(const SceneView& scene, const Tracer& tracer, Ray
 
     if (pdf_bsdf > 0 && scene.has_visible_lights) {
       const float reach = found ? hit.t : 1e30f;
-      result.radiance += throughput * visible_lights(scene, ray, reach, from, from_normal, light_total, pdf_bsdf);
+      result.radiance += throughput * visible_lights(scene, ray, reach, from, picker, pdf_bsdf);
     }
     if (!found) {
       const Vec3f sky = sky_radiance(scene, ray.d, cone.spread);
@@ -100,8 +100,7 @@ GLOAM_HD PathResult trace_path(const SceneView& scene, const Tracer& tracer, Ray
       float weight = 1;
       if (pdf_bsdf > 0 && s.instance->light >= 0) {
         const float selected =
-            pick_probability(scene, static_cast<uint32_t>(s.instance->light), from, from_normal,
-                             light_total);
+            picker.probability(scene, static_cast<uint32_t>(s.instance->light));
         const float pdf =
             lights::instance_pdf(scene, *s.instance, from, s.p, s.geometric, ray.time);
         weight = mis_weight(pdf_bsdf, selected * pdf);
@@ -123,10 +122,9 @@ GLOAM_HD PathResult trace_path(const SceneView& scene, const Tracer& tracer, Ray
     cone.width += cone.spread * hit.t;
 
     // Next event: one light.
-    const float total = total_light_weight(scene, s.p, s.geometric);
-    const float pick = sampler.next_1d();
-    const LightSample light =
-        sample_lights(scene, s.p, s.geometric, total, pick, sampler.next_2d(), ray.time);
+    picker.prepare(scene, s.p, s.geometric);
+    const Vec2f choice = sampler.next_2d();  // of the light, of the lobe
+    const LightSample light = picker.sample(scene, s.p, choice.x, sampler.next_2d(), ray.time);
     is_shadow = false;
     Ray shadow;
     if (light.pdf > 0 && dot(light.wi, s.geometric) > 0) {
@@ -150,15 +148,12 @@ GLOAM_HD PathResult trace_path(const SceneView& scene, const Tracer& tracer, Ray
     // Next direction. The last segment can only bring light from something that a ray can hit.
     has_next = false;
     if (depth + 1 < options.max_depth || scene.has_emitters) {
-      const float lobe = sampler.next_1d();
-      const BsdfSample sample = sample_bsdf(bsdf, wo, lobe, sampler.next_2d());
+      const BsdfSample sample = sample_bsdf(bsdf, wo, choice.y, sampler.next_2d());
       const Vec3f wi = frame.to_world(sample.wi);
       if (sample.pdf > 0 && dot(wi, s.geometric) > 0 && max_component(sample.weight) > 0) {
         throughput *= sample.weight;
         pdf_bsdf = sample.pdf;
         from = s.p;
-        from_normal = s.geometric;
-        light_total = total;
         // The cone widens with the lobe: texture detail that a broad lobe averages is not sought.
         cone.spread += 0.2f * sqrtf(min(1.0f / (kPi * sample.pdf), 1.0f));
         has_next = true;

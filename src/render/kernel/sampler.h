@@ -84,9 +84,9 @@ class Sampler {
   }
 
  private:
-  /// Draws beyond this many of one path (after about four bounces) are plain hashes: what is left
+  /// Draws beyond this many of one path (after three vertices) are plain hashes: what is left
   /// to gain there is less than what the points cost.
-  static constexpr uint32_t kLowDiscrepancyDraws = 20;
+  static constexpr uint32_t kLowDiscrepancyDraws = 10;
 
   GLOAM_HD uint32_t next_key() { return mix_bits(seed_ + (++dimension_) * 0x9E3779B9u); }
   GLOAM_HD static float to_float(uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }

@@ -109,11 +109,18 @@ struct SceneView {
   bool has_visible_lights = false;  ///< some sphere or sun can be hit
 };
 
-/// Pose of an instance at a time in the shutter (linear between the keys, as Embree does).
-GLOAM_HD Affine3f pose_at(const InstanceView& instance, float time) {
+/// Pose of an instance at a time in the shutter (linear between the keys, as Embree does);
+/// `between` is room for it.
+GLOAM_HD const Affine3f& pose_at(const InstanceView& instance, float time, Affine3f* between) {
   if (!instance.moving || time == 0) return instance.X_WG;
   const Affine3f &a = instance.X_WG, &b = instance.X_WG_close;
-  return {lerp(a.x, b.x, time), lerp(a.y, b.y, time), lerp(a.z, b.z, time), lerp(a.p, b.p, time)};
+  *between = {lerp(a.x, b.x, time), lerp(a.y, b.y, time), lerp(a.z, b.z, time),
+              lerp(a.p, b.p, time)};
+  return *between;
+}
+GLOAM_HD Affine3f pose_at(const InstanceView& instance, float time) {
+  Affine3f between;
+  return pose_at(instance, time, &between);
 }
 
 GLOAM_HD Vec3f mesh_vertex(const MeshView& mesh, uint32_t i, float time) {

@@ -169,7 +169,8 @@ GLOAM_HD Surface make_surface(const SceneView& scene, const Ray& ray, const RayH
   s.material = &scene.materials[s.instance->material];
   s.t = hit.t;
   s.p = ray.o + ray.d * hit.t;
-  const Affine3f X_WG = pose_at(*s.instance, ray.time);
+  Affine3f between;
+  const Affine3f& X_WG = pose_at(*s.instance, ray.time, &between);
   Vec3f p_G;
   if (s.instance->shape == ShapeType::kMesh || s.instance->shape == ShapeType::kDeformable) {
     const MeshView& mesh = scene.meshes[s.instance->mesh];
@@ -189,7 +190,8 @@ GLOAM_HD Surface make_surface(const SceneView& scene, const Ray& ray, const RayH
     p_G = {dot(d, X_WG.x), dot(d, X_WG.y), dot(d, X_WG.z)};
     const Vec3f n_G = snap_to_shape(s.instance->shape, s.instance->size, &p_G);
     s.p = transform_point(X_WG, p_G);
-    s.geometric = s.normal = normalize(transform_vector(X_WG, n_G));
+    s.geometric = s.normal = transform_vector(X_WG, n_G);
+    if (s.instance->moving) s.geometric = s.normal = normalize(s.normal);  // a mean of two poses
   }
   const MaterialView& m = *s.material;
   s.base_color = m.base_color;

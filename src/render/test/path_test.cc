@@ -131,9 +131,9 @@ Mean one_technique(const Probe& probe, const CameraView& view, bool by_light, in
       const float pick = sampler.next_1d();
       const Vec2f u = sampler.next_2d();
       if (by_light) {
-        const float total = total_light_weight(probe.view, s.p, s.geometric);
-        const LightSample light =
-            sample_lights(probe.view, s.p, s.geometric, total, pick, u, 0);
+        LightPicker picker;
+        picker.prepare(probe.view, s.p, s.geometric);
+        const LightSample light = picker.sample(probe.view, s.p, pick, u, 0);
         if (light.pdf > 0 && dot(light.wi, s.geometric) > 0) {
           float pdf = 0;
           const Vec3f f = eval_bsdf(bsdf, wo, frame.to_local(light.wi), &pdf);
