@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
@@ -261,7 +262,8 @@ TEST(Exr, DamagedAndLargeFilesAreErrors) {
 // --- readers by content ---
 
 TEST(ReadImage, GoesByContentNotByName) {
-  const std::filesystem::path folder = testing::TempDir() + "gloam_read_image";
+  const std::filesystem::path folder =
+      testing::TempDir() + "gloam_read_image_" + std::to_string(getpid());
   std::filesystem::create_directories(folder);
   const auto write = [&](const char* name, const std::vector<uint8_t>& bytes) {
     EXPECT_TRUE(write_file_atomic(folder / name, bytes).ok());
