@@ -34,7 +34,7 @@ class RecorderTest : public testing::Test {
  protected:
   void SetUp() override {
     folder_ = fs::path(testing::TempDir()) /
-              ("gloam_recorder_" +
+              ("gloam_recorder_" + std::to_string(getpid()) + "_" +
                std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::remove_all(folder_);
     set_log_level(LogLevel::kOff);

@@ -30,9 +30,10 @@ struct ExrImage {
   const std::vector<float>* find(const std::string& name) const;
 };
 
-/// Reads flat scan-line or tiled files whose channels are not subsampled. `name` is for messages.
-/// For files that Gloam wrote: OpenEXR's own parser is not hardened against hostile ones.
-/// Errors: not EXR, damaged, more than `max_values` values in all.
+/// Reads single-part scan-line files, uncompressed or ZIP, whose channels are not subsampled. Own
+/// code, because OpenEXR 3.1's reader asks for any amount of memory that a damaged header names.
+/// `name` is for messages. Errors: not EXR, damaged, of another kind, larger than 16384 x 16384 or
+/// more than `max_values` values in all.
 Result<ExrImage> decode_exr(std::span<const uint8_t> bytes, const std::string& name,
                             uint64_t max_values = uint64_t{1} << 28);
 

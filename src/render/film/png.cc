@@ -1,7 +1,6 @@
 #include "render/film/png.h"
 
 #include <png.h>
-#include <zlib.h>
 
 #include <cmath>
 #include <csetjmp>

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <array>
 #include <cmath>
@@ -231,6 +232,22 @@ TEST(Exr, FloatChannelsRoundTripWithoutLoss) {
   EXPECT_EQ(read->find("X"), nullptr);
 }
 
+TEST(Exr, FilesOfOneRowAndUnfitForCompressionRoundTrip) {
+  for (const int h : {1, 15, 16, 17, 33}) {
+    std::vector<float> noise(static_cast<size_t>(3 * h));
+    const std::vector<uint8_t> bytes = random_bytes(noise.size() * 4, 77);
+    for (size_t i = 0; i < noise.size(); ++i)
+      noise[i] =
+          static_cast<float>(bytes[4 * i] * 65536 + bytes[4 * i + 1] * 256 + bytes[4 * i + 2]);
+    const ExrChannel channel{"Z", noise.data()};
+    const Result<std::vector<uint8_t>> file = encode_exr(3, h, {&channel, 1});
+    ASSERT_TRUE(file.ok());
+    const Result<ExrImage> read = decode_exr(file.value(), "noise.exr");
+    ASSERT_TRUE(read.ok()) << read.error().to_string();
+    EXPECT_EQ(*read->find("Z"), noise);
+  }
+}
+
 TEST(Exr, DamagedAndLargeFilesAreErrors) {
   std::vector<float> depth(64 * 64, 1.5f);
   const ExrChannel channel{"Z", depth.data()};
@@ -245,7 +262,8 @@ TEST(Exr, DamagedAndLargeFilesAreErrors) {
 // --- readers by content ---
 
 TEST(ReadImage, GoesByContentNotByName) {
-  const std::filesystem::path folder = testing::TempDir() + "gloam_read_image";
+  const std::filesystem::path folder =
+      testing::TempDir() + "gloam_read_image_" + std::to_string(getpid());
   std::filesystem::create_directories(folder);
   const auto write = [&](const char* name, const std::vector<uint8_t>& bytes) {
     EXPECT_TRUE(write_file_atomic(folder / name, bytes).ok());

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 #include <wels/codec_api.h>
 
 #include <cmath>
@@ -373,7 +374,8 @@ std::string output_of(const std::string& command) {
 
 TEST(Video, OtherProgramsReadItWholeAndCut) {
   if (output_of("ffprobe -version").empty()) GTEST_SKIP() << "ffprobe is not installed";
-  const fs::path path = fs::path(testing::TempDir()) / "gloam_video_test.mp4";
+  const fs::path path =
+      fs::path(testing::TempDir()) / ("gloam_video_" + std::to_string(getpid()) + ".mp4");
   const auto probe = [&](const std::vector<uint8_t>& bytes, const std::string& entries) {
     EXPECT_TRUE(write_file_atomic(path, bytes).ok());
     return output_of("ffprobe -v error -count_frames -of csv=p=0 -show_entries stream=" + entries +
