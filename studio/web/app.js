@@ -33,6 +33,8 @@ function connect() {
     endDrag();
     document.body.classList.add("offline");
     document.body.classList.remove("running");
+    state = null;
+    $("play-label").textContent = "Play";
     ended = ended || event.code === 1001;
     const slow = event.code === 1013;
     const why = ended ? "The simulation has ended. Start it again and open the address that it prints."
@@ -69,6 +71,14 @@ function inControl() { return socket !== null && state !== null && state.control
 function wish(message) {
   if (inControl()) send(message);
   else if (socket) tellWatching();
+}
+
+/** A wish whose result is known: the next key press builds on it before the server has answered. */
+function wishFor(message, result) {
+  wish(message);
+  if (!inControl()) return;
+  Object.assign(state, result);
+  showState();
 }
 
 function tellWatching() { showNotice("You are watching. Press “Take control” first."); }
@@ -247,17 +257,21 @@ function showPicked(message) {
 function changeSpeed(by) {
   if (!state) return;
   const near = kSpeeds.reduce((best, value, i) => Math.abs(Math.log(value / state.speed)) < Math.abs(Math.log(kSpeeds[best] / state.speed)) ? i : best, 0);
-  wish({ type: "speed", value: kSpeeds[Math.max(0, Math.min(kSpeeds.length - 1, near + by))] });
+  const speed = kSpeeds[Math.max(0, Math.min(kSpeeds.length - 1, near + by))];
+  wishFor({ type: "speed", value: speed }, { speed });
 }
 
 function changeCamera(by) {
   if (!state || cameras.length === 0) return;
   const at = Math.max(0, cameras.indexOf(state.camera));
-  wish({ type: "camera", name: cameras[(at + by + cameras.length) % cameras.length] });
+  const camera = cameras[(at + by + cameras.length) % cameras.length];
+  wishFor({ type: "camera", name: camera }, { camera });
 }
 
 const actions = {
-  play: () => wish({ type: state && state.paused ? "resume" : "pause" }),
+  play: () => {
+    if (state) wishFor({ type: state.paused ? "resume" : "pause" }, { paused: !state.paused });
+  },
   step: (event) => wish({ type: "step", count: event.shiftKey ? 10 : 1 }),
   reset: () => wish({ type: "reset" }),
   slower: () => changeSpeed(-1),
