@@ -5,6 +5,7 @@
 #include "base/text.h"
 #include "control/joint_position.h"
 #include "control/torque.h"
+#include "control/trot.h"
 
 namespace gloam {
 namespace {
@@ -24,6 +25,7 @@ constexpr ControllerType kControllers[] = {
     {"none", make_none},
     {"torque", make_torque_controller},
     {"joint_position", make_joint_position_controller},
+    {"trot", make_trot_controller},
 };
 
 }  // namespace

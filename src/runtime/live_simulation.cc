@@ -163,14 +163,37 @@ Result<std::vector<LabelRow>> LiveSimulation::labels() {
   return rows;
 }
 
+Status LiveSimulation::solve_latest(PoseFrame& poses) {
+  const std::lock_guard lock(solver_mutex_);
+  if (solver_ == nullptr) {
+    GLOAM_TRY(solver_, PoseSolver::create(world_.compiled()));
+  }
+  return solver_->solve(simulator_->latest(), poses);
+}
+
+Result<Pose> LiveSimulation::body_pose(Body body) {
+  PoseFrame poses;
+  GLOAM_TRY_STATUS(solve_latest(poses));
+  const auto id = static_cast<size_t>(body.id);
+  if (body.id < 0 || 3 * id >= poses.body_p.size()) {
+    return Error{ErrorKind::kInput, "there is no such body"};
+  }
+  const double* p = poses.body_p.data() + 3 * id;
+  const double* R = poses.body_R.data() + 9 * id;
+  const auto column = [&](int i) {
+    return Vec3f{static_cast<float>(R[i]), static_cast<float>(R[3 + i]),
+                 static_cast<float>(R[6 + i])};
+  };
+  Pose X_WB = to_pose({column(0), column(1), column(2), {}});
+  X_WB.p = {p[0], p[1], p[2]};
+  return X_WB;
+}
+
 Result<PickResult> LiveSimulation::pick(const CameraFrame& frame, double u, double v) {
   GLOAM_TRY(auto shared, renderer());
-  const std::lock_guard lock(shared->mutex);
-  if (pick_solver_ == nullptr) {
-    GLOAM_TRY(pick_solver_, PoseSolver::create(world_.compiled()));
-  }
   PoseFrame poses;
-  GLOAM_TRY_STATUS(pick_solver_->solve(simulator_->latest(), poses));
+  GLOAM_TRY_STATUS(solve_latest(poses));
+  const std::lock_guard lock(shared->mutex);
   // A picture of one pixel whose centre is (u, v).
   CameraView view;
   view.X_WC_open = view.X_WC_close = view.X_WC_previous = to_affine(frame.X_WC);

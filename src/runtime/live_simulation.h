@@ -34,6 +34,7 @@ class LiveSimulation final : public Simulation {
                                                     FrameCallback on_frame) override;
   std::vector<std::string> camera_names() const override;
   Result<std::vector<LabelRow>> labels() override;
+  Result<Pose> body_pose(Body body) override;
   Result<PickResult> pick(const CameraFrame& frame, double u, double v) override;
   Rational step_rate() const override;
 
@@ -46,13 +47,15 @@ class LiveSimulation final : public Simulation {
  private:
   LiveSimulation(World world, uint64_t seed);
   void restart_speed_clock();
+  Status solve_latest(PoseFrame& poses);
 
   World world_;
   uint64_t seed_;
   std::unique_ptr<Simulator> simulator_;
   std::mutex renderer_mutex_;
   std::shared_ptr<SharedRenderer> renderer_;
-  std::unique_ptr<PoseSolver> pick_solver_;
+  std::mutex solver_mutex_;
+  std::unique_ptr<PoseSolver> solver_;  // for questions about the latest instant
   std::atomic<bool> paused_{true}, stop_requested_{false};
   mutable std::mutex clock_mutex_;
   double clock_wall_ = 0, clock_sim_ = 0;  // where the real-time factor counts from [s]
