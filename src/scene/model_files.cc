@@ -165,19 +165,14 @@ Status ModelFiles::scan(const fs::path& file, const fs::path& model, const Sourc
   std::string hash;
   Result<Content> content = open(file, &hash, true);
   if (!content.ok()) {
+    const bool is_named = !named_at.file.empty();  // else it comes from the command line
     Error error = content.error();
-    error.message = fmt::format("'{}' {}",
-                                stack.empty()           ? file.string()
-                                : named_at.file.empty() ? file.string()
-                                                        : file.filename().string(),
-                                error.message);
-    if (!named_at.file.empty()) error.loc = named_at;
-    if (named_at.file.empty()) error.loc = {};
-    if (why_not_readable(file, roots_).empty()) {
-      error.hint = "check the path";
-    } else {
-      error.hint = "--root FOLDER widens what the model may read";
-    }
+    error.message =
+        fmt::format("'{}' {}", is_named ? file.filename().string() : file.string(), error.message);
+    error.loc = named_at;
+    error.hint = why_not_readable(file, roots_).empty()
+                     ? "check the path"
+                     : "--root FOLDER widens what the model may read";
     return error;
   }
   const std::string& text = **content;

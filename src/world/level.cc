@@ -20,14 +20,18 @@ namespace {
 // library, whose std::string has another layout than mjString's declaration says here.
 void set_name(mjsElement* element, const std::string& name) { mjs_setName(element, name.c_str()); }
 
-// What MuJoCo's parser and compiler grumble about but take ("<mimic> on joint 'x' ignored").
-void report_warnings(const MujocoWarningCapture& warnings, const fs::path& file,
-                     std::vector<Error>* unsupported) {
-  for (const std::string& message : warnings.messages()) {
+// What MuJoCo's parser and compiler grumble about but take ("<mimic> on joint 'x' ignored"): from
+// its log, and those after the first `known` of the spec.
+void report_warnings(const MujocoWarningCapture& warnings, const mjSpec* spec, int known,
+                     const fs::path& file, std::vector<Error>* unsupported) {
+  std::vector<std::string> messages = warnings.messages();
+  for (int i = known; i < mjs_numWarnings(spec); ++i)
+    messages.emplace_back(mjs_getWarning(spec, i));
+  for (const std::string& message : messages) {
     std::string line = message.substr(0, message.find('\n'));
-    const bool known = std::any_of(unsupported->begin(), unsupported->end(),
-                                   [&](const Error& e) { return e.message == line; });
-    if (!known)
+    const bool is_known = std::any_of(unsupported->begin(), unsupported->end(),
+                                      [&](const Error& e) { return e.message == line; });
+    if (!is_known)
       unsupported->push_back({ErrorKind::kUnsupported, std::move(line), {file.string(), 0, 0}});
   }
 }
@@ -49,7 +53,7 @@ Result<SpecPtr> parse_model(const fs::path& file, const FileAccess& access, Mode
       guarded([&] { spec = mj_parseXML(path.c_str(), files->vfs(), message, sizeof(message)); });
   if (!status.ok()) return files->explain(status.error().message, path);
   if (spec == nullptr) return files->explain(message, path);
-  report_warnings(warnings, path, unsupported);
+  report_warnings(warnings, spec, 0, path, unsupported);
   return SpecPtr(spec);
 }
 
@@ -148,6 +152,7 @@ Status compile(const Scene& scene, ModelFiles* files, Level* level) {
   mjModel* model = nullptr;
   mjSpec* spec = level->spec.get();
   const mjVFS* vfs = files->vfs();
+  const int warnings_before = mjs_numWarnings(spec);
   const MujocoWarningCapture warnings;
   const Status status = guarded([&] { model = mj_compile(spec, vfs); });
   level->model.reset(model);
@@ -157,7 +162,7 @@ Status compile(const Scene& scene, ModelFiles* files, Level* level) {
                                                           : scene.robots[0].file;
   if (!status.ok() || model == nullptr)
     return files->explain(status.ok() ? mjs_getError(spec) : status.error().message, file);
-  report_warnings(warnings, file, &level->unsupported);
+  report_warnings(warnings, spec, warnings_before, file, &level->unsupported);
   return {};
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// The visitor that fills one option struct from one TOML table.
+// The visitor that fills one option struct from one TOML table. All in a header because it is a
+// template over every struct of option_fields.h, for two users: whole files and single overrides.
 
 #include <fmt/format.h>
 #include <toml++/toml.h>

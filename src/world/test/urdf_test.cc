@@ -117,6 +117,19 @@ TEST_F(UrdfTest, WhatCannotBeDrawnIsListedNotFatal) {
               HasSubstr("r.urdf:4: the visual mesh 'arm.dae'"));
 }
 
+TEST_F(UrdfTest, WhatMuJoCoIgnoresIsListed) {
+  const Result<World> world = compile(folder_.write(
+      "r.urdf",
+      "<robot name='r'><link name='world'/><link name='base'><inertial><mass value='1'/><inertia "
+      "ixx='.1' iyy='.1' izz='.1' ixy='0' ixz='0' iyz='0'/></inertial></link>\n<joint name='float' "
+      "type='floating'><parent link='world'/><child link='base'/><mimic "
+      "joint='x'/></joint></robot>"));
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  ASSERT_EQ(world->info().unsupported.size(), 1u);
+  EXPECT_THAT(world->info().unsupported[0].to_string(),
+              HasSubstr("<mimic> on joint 'float' ignored"));
+}
+
 TEST_F(UrdfTest, MissingCollisionMeshIsAnErrorWithItsLine) {
   EXPECT_THAT(
       error_of(folder_.write("r.urdf", robot_urdf("none.obj", "none.obj"))),

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <thread>
 
 #include "scene/mujoco_guard.h"
 #include "scene/test/temp_folder.h"
@@ -369,6 +370,21 @@ TEST_F(WorldTest, ErrorsInIncludedFilesNameThem) {
   folder_.write("part.xml", "<mujoco>\n\n\n<worldbody><geom sise='1'/></worldbody></mujoco>");
   EXPECT_THAT(error_of("a.xml", "<mujoco>\n<include file='part.xml'/></mujoco>"),
               HasSubstr("part.xml:4: Schema violation"));
+}
+
+TEST_F(WorldTest, ARangeOfThreadsMayCompileAtOnce) {
+  std::vector<std::string> errors(4);
+  std::vector<std::thread> threads;
+  for (std::string& error : errors) {
+    threads.emplace_back([&] {
+      for (int i = 0; i < 5 && error.empty(); ++i) {
+        const Result<World> world = compile(folder_.path() / "arm.xml");
+        if (!world.ok()) error = world.error().to_string();
+      }
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(errors, std::vector<std::string>(4));
 }
 
 TEST_F(WorldTest, ErrorsAreOneLine) {
