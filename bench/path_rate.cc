@@ -58,7 +58,7 @@ double median(std::vector<double> v) {
 
 /// A quick look: exposure to the logarithmic mean, soft shoulder, sRGB.
 void write_ppm(const std::string& path, const Film& film) {
-  double mean = 0;
+  double mean = 0;  // of the red channel, to compare with peers
   for (const Vec3f& c : film.radiance) mean += std::log(1e-3 + luminance(c));
   const double scale = 0.22 / std::exp(mean / static_cast<double>(film.radiance.size()));
   std::FILE* file = std::fopen(path.c_str(), "wb");
@@ -108,9 +108,13 @@ std::vector<std::vector<RecordedRay>> record_rays(const Probe& probe, const Came
       const Ray ray = camera_ray(camera, static_cast<float>(x) + 0.5f + offset.x,
                                  static_cast<float>(y) + 0.5f + offset.y, 0, &cone);
       if (settings.tier == RenderTier::kDirect) {
-        bool found = false;
-        Surface first;
-        trace_direct(probe.view, tracer, ray, cone, sampler, &found, &first);
+        DirectState state;
+        direct_start(&state, ray, cone, sampler);
+        for (bool going = true; going;) {
+          RayHit hit;
+          const bool found = tracer.trace(state.ray, state.any, &hit);
+          going = direct_advance(probe.view, &state, found, hit);
+        }
       } else {
         trace_path(probe.view, tracer, ray, cone, {settings.max_depth, 100}, sampler);
       }
@@ -242,5 +246,8 @@ int main(int argc, char** argv) {
               "(%.1f Mrays/s); share %.1f %%\n",
               per_path, threads / cpu_per_path * 1e-6, threads, threads / bare_per_path * 1e-6,
               per_path * threads / bare_per_path * 1e-6, 100 * bare_per_path / cpu_per_path);
+  double mean = 0;  // of the red channel, to compare with peers
+  for (const Vec3f& c : film.radiance) mean += c.x;
+  std::printf("mean %.4f\n", mean / static_cast<double>(film.radiance.size()));
   if (!a.picture.empty()) write_ppm(a.picture, film);
 }

@@ -53,6 +53,8 @@ struct Job {
   PathOptions path;
   uint32_t log2_samples = 0;
   bool has_motion = false;  ///< something moves while the shutter is open
+  /// A single direct sample goes through the pixel's centre, and serves the exact channels too.
+  bool centered = false;
   Film* film = nullptr;
 };
 
@@ -84,56 +86,211 @@ void store_channels(Film* film, size_t pixel, const ExactChannels& c) {
   film->motion[pixel] = c.motion;
 }
 
-void render_pixel(const Job& job, int x, int y, RenderStats* stats) {
-  Film& film = *job.film;
-  const size_t pixel = static_cast<size_t>(y) * film.width + x;
-  const RenderSettings& settings = job.settings;
-  const bool direct = settings.tier == RenderTier::kDirect;
-  const float u = static_cast<float>(x) + 0.5f, v = static_cast<float>(y) + 0.5f;
-  // A single direct sample goes through the pixel's centre, and serves the exact channels too.
-  const bool centered = direct && settings.spp == 1 && !job.has_motion;
-  uint32_t rays = 0;
-  PixelMean mean;
-  for (int i = 0; i < settings.spp; ++i) {
-    Sampler sampler = Sampler::make(
-        settings.seed, settings.frame, static_cast<uint32_t>(x), static_cast<uint32_t>(y),
-        static_cast<uint32_t>(settings.first_sample + i), job.log2_samples);
-    Vec2f offset;
-    float time = 0;
-    if (!centered) {
-      offset = sample_pixel_filter(sampler.next_2d());
-      if (job.has_motion) time = sampler.next_1d();
+/// The paths of one sample of a tile, run together: each round traces all of their rays in packets,
+/// then advances every path.
+template <class State>
+struct Wave {
+  State states[kTile * kTile];
+  RayHit hits[kTile * kTile];
+  bool found[kTile * kTile];
+  int alive[kTile * kTile];
+  int count = 0;
+
+  /// The closest hit of each path in `alive`.
+  void trace_closest(const EmbreeTracer& tracer) { trace_kind(tracer, false, true); }
+
+  template <class Advance>
+  void run(const EmbreeTracer& tracer, const Advance& advance) {
+    for (int i = 0; i < count; ++i) alive[i] = i;
+    for (bool first_round = true; count > 0; first_round = false) {
+      trace_kind(tracer, false, first_round);
+      trace_kind(tracer, true, false);
+      int left = 0;
+      for (int i = 0; i < count; ++i) {
+        const int k = alive[i];
+        if (advance(&states[k], found[k], hits[k])) alive[left++] = k;
+      }
+      count = left;
     }
-    RayCone cone;
-    const Ray ray = camera_ray(job.camera, u + offset.x, v + offset.y, time, &cone);
-    PathResult result;
-    if (direct) {
-      Surface first;
-      bool found = false;
-      result = trace_direct(job.scene, job.tracer, ray, cone, sampler, &found, &first);
-    } else {
-      result = trace_path(job.scene, job.tracer, ray, cone, job.path, sampler);
+  }
+
+ private:
+  void trace_kind(const EmbreeTracer& tracer, bool any, bool coherent) {
+    constexpr int n = EmbreeTracer::kPacket;
+    const Ray* rays[n];
+    int who[n], used = 0;
+    RayHit packet_hits[n];
+    bool packet_found[n];
+    const auto flush = [&] {
+      if (used == 0) return;
+      tracer.trace_packet(rays, used, any, coherent, packet_hits, packet_found);
+      for (int j = 0; j < used; ++j) {
+        found[who[j]] = packet_found[j];
+        if (packet_found[j] && !any) hits[who[j]] = packet_hits[j];
+      }
+      used = 0;
+    };
+    for (int i = 0; i < count; ++i) {
+      const int k = alive[i];
+      if (states[k].any != any) continue;
+      rays[used] = &states[k].ray;
+      who[used++] = k;
+      if (used == n) flush();
     }
-    rays += result.rays;
-    mean.add(result);
+    flush();
   }
-  film.radiance[pixel] = mean.radiance;
-  film.albedo[pixel] = mean.albedo;
-  film.normal[pixel] = mean.normal;
-  if (settings.variance) film.variance[pixel] = mean.variance();
-  if (settings.exact_channels) {
-    RayCone cone;
-    const Ray ray = camera_ray(job.camera, u, v, 0.0f, &cone);
-    Surface surface;
-    RayHit hit;
-    const bool found = find_first(job.scene, job.tracer, ray, cone, &surface, &hit, &rays);
-    store_channels(&film, pixel,
-                   found ? describe_surface(job.scene, job.camera, ray, surface, hit)
-                         : describe_sky(job.camera, ray));
-  }
-  stats->paths += static_cast<uint64_t>(settings.spp);
-  stats->rays += rays;
+};
+
+/// Pixel `index` of a full tile: 4 x 4 blocks, so that packets of primary rays are compact.
+void tile_pixel(int index, int* x, int* y) {
+  const int block = index / 16, in = index % 16;
+  *x = block % (kTile / 4) * 4 + in % 4;
+  *y = block / (kTile / 4) * 4 + in / 4;
 }
+
+struct CenterState {
+  Ray ray;
+  bool any = false;
+};
+
+/// One tile's pixels inside the picture, and their running means.
+class Tile {
+ public:
+  Tile(const Job& job, int x0, int y0) : job_(job) {
+    for (int i = 0; i < kTile * kTile; ++i) {
+      int x, y;
+      tile_pixel(i, &x, &y);
+      if (x0 + x >= job.film->width || y0 + y >= job.film->height) continue;
+      x_[count_] = x0 + x;
+      y_[count_] = y0 + y;
+      ++count_;
+    }
+  }
+
+  template <class State, class Start, class Advance, class Finish>
+  void sample(Wave<State>* wave, int index, const Start& start, const Advance& advance,
+              const Finish& finish) {
+    const RenderSettings& settings = job_.settings;
+    wave->count = count_;
+    for (int i = 0; i < count_; ++i) {
+      Sampler sampler = Sampler::make(
+          settings.seed, settings.frame, static_cast<uint32_t>(x_[i]),
+          static_cast<uint32_t>(y_[i]), static_cast<uint32_t>(settings.first_sample + index),
+          job_.log2_samples);
+      Vec2f offset;
+      float time = 0;
+      if (!job_.centered) {
+        offset = sample_pixel_filter(sampler.next_2d());
+        if (job_.has_motion) time = sampler.next_1d();
+      }
+      RayCone cone;
+      const Ray ray = center_ray(i, offset, time, &cone);
+      start(&wave->states[i], ray, cone, sampler);
+    }
+    wave->run(job_.tracer, advance);
+    for (int i = 0; i < count_; ++i) {
+      mean_[i].add(wave->states[i].result);
+      rays_ += wave->states[i].result.rays;
+      finish(i, wave->states[i]);
+    }
+  }
+
+  void render_path() {
+    const auto wave = std::make_unique<Wave<PathState>>();
+    for (int index = 0; index < job_.settings.spp; ++index) {
+      sample(
+          wave.get(), index, path_start,
+          [this](PathState* state, bool found, const RayHit& hit) {
+            return path_advance(job_.scene, job_.path, state, found, hit);
+          },
+          [](int, const PathState&) {});
+    }
+  }
+
+  void render_direct() {
+    const auto wave = std::make_unique<Wave<DirectState>>();
+    for (int index = 0; index < job_.settings.spp; ++index) {
+      sample(
+          wave.get(), index, direct_start,
+          [this](DirectState* state, bool found, const RayHit& hit) {
+            return direct_advance(job_.scene, state, found, hit);
+          },
+          [this](int i, const DirectState& state) {
+            known_[i] = job_.centered && (state.layers == 0 || (state.layers == 1 && state.has_first));
+            center_found_[i] = state.has_first;
+            center_hit_[i] = state.first;
+          });
+    }
+  }
+
+  /// Exact channels: centre rays in packets, except those that a centred sample has answered.
+  void render_channels() {
+    const auto wave = std::make_unique<Wave<CenterState>>();
+    for (int i = 0; i < count_; ++i) {
+      RayCone cone;
+      wave->states[i].ray = center_ray(i, {}, 0, &cone);
+      if (!known_[i]) wave->alive[wave->count++] = i;
+    }
+    const int traced = wave->count;
+    std::copy(wave->alive, wave->alive + traced, trace_list_);
+    wave->trace_closest(job_.tracer);
+    rays_ += static_cast<uint64_t>(traced);
+    for (int j = 0; j < traced; ++j) {
+      center_found_[trace_list_[j]] = wave->found[trace_list_[j]];
+      center_hit_[trace_list_[j]] = wave->hits[trace_list_[j]];
+    }
+    for (int i = 0; i < count_; ++i) store(i, wave->states[i].ray);
+  }
+
+  void store_means(RenderStats* stats) const {
+    Film& film = *job_.film;
+    for (int i = 0; i < count_; ++i) {
+      const size_t pixel = pixel_of(i);
+      film.radiance[pixel] = mean_[i].radiance;
+      film.albedo[pixel] = mean_[i].albedo;
+      film.normal[pixel] = mean_[i].normal;
+      if (job_.settings.variance) film.variance[pixel] = mean_[i].variance();
+    }
+    stats->paths = static_cast<uint64_t>(count_) * static_cast<uint64_t>(job_.settings.spp);
+    stats->rays = rays_;
+  }
+
+ private:
+  size_t pixel_of(int i) const { return static_cast<size_t>(y_[i]) * job_.film->width + x_[i]; }
+  Ray center_ray(int i, Vec2f offset, float time, RayCone* cone) const {
+    return camera_ray(job_.camera, static_cast<float>(x_[i]) + 0.5f + offset.x,
+                      static_cast<float>(y_[i]) + 0.5f + offset.y, time, cone);
+  }
+  void store(int i, const Ray& ray) {
+    RayCone cone;
+    center_ray(i, {}, 0, &cone);
+    if (!center_found_[i]) {
+      store_channels(job_.film, pixel_of(i), describe_sky(job_.camera, ray));
+      return;
+    }
+    Surface s = make_surface(job_.scene, ray, center_hit_[i], cone);
+    if (!shows(s)) {
+      uint32_t rays = 0;
+      const bool found =
+          find_first(job_.scene, job_.tracer, ray, cone, &s, &center_hit_[i], &rays);
+      rays_ += rays;
+      if (!found) {
+        store_channels(job_.film, pixel_of(i), describe_sky(job_.camera, ray));
+        return;
+      }
+    }
+    store_channels(job_.film, pixel_of(i),
+                   describe_surface(job_.scene, job_.camera, ray, s, center_hit_[i]));
+  }
+
+  const Job& job_;
+  int count_ = 0;
+  uint64_t rays_ = 0;
+  int x_[kTile * kTile], y_[kTile * kTile], trace_list_[kTile * kTile];
+  PixelMean mean_[kTile * kTile];
+  bool known_[kTile * kTile] = {}, center_found_[kTile * kTile] = {};
+  RayHit center_hit_[kTile * kTile];
+};
 
 void resize_film(const CameraView& view, const RenderSettings& settings, Film* film) {
   film->width = view.intrinsics.width;
@@ -175,6 +332,8 @@ class CpuRenderer final : public Renderer {
     job.path = {settings.max_depth, settings.roulette_depth};
     job.film = film;
     job.has_motion = job.camera.pose.moving || scene_->has_motion();
+    job.centered =
+        settings.tier == RenderTier::kDirect && settings.spp == 1 && !job.has_motion;
     while ((int64_t{1} << job.log2_samples) < int64_t{settings.first_sample} + settings.spp) {
       ++job.log2_samples;
     }
@@ -185,11 +344,14 @@ class CpuRenderer final : public Renderer {
       const FlushDenormals flush;
       const int x0 = static_cast<int>(tile % columns) * kTile;
       const int y0 = static_cast<int>(tile / columns) * kTile;
-      for (int y = y0; y < std::min(y0 + kTile, film->height); ++y) {
-        for (int x = x0; x < std::min(x0 + kTile, film->width); ++x) {
-          render_pixel(job, x, y, &tiles_[tile]);
-        }
+      Tile pixels(job, x0, y0);
+      if (settings.tier == RenderTier::kDirect) {
+        pixels.render_direct();
+      } else {
+        pixels.render_path();
       }
+      if (settings.exact_channels) pixels.render_channels();
+      pixels.store_means(&tiles_[tile]);
     });
     RenderStats total;
     for (const RenderStats& tile : tiles_) {

@@ -22,12 +22,6 @@ Vec3f to_shape(const Affine3f& X_SG, Vec3f v) {  // rigid
   return {dot(v, X_SG.x), dot(v, X_SG.y), dot(v, X_SG.z)};
 }
 
-float hit_distance(const ShapeGeometry& g, const RTCRay& ray) {
-  const Vec3f o = Vec3f{ray.org_x, ray.org_y, ray.org_z} - g.X_SG.p;
-  return intersect_shape(g.shape, g.size, to_shape(g.X_SG, o),
-                         to_shape(g.X_SG, {ray.dir_x, ray.dir_y, ray.dir_z}), ray.tnear, ray.tfar);
-}
-
 void shape_bounds(const RTCBoundsFunctionArguments* args) {
   const ShapeGeometry& g = *static_cast<const ShapeGeometry*>(args->geometryUserPtr);
   Vec3f h = shape_half_size(g.shape, g.size);
@@ -42,26 +36,38 @@ void shape_bounds(const RTCBoundsFunctionArguments* args) {
                      X.p.x + r.x, X.p.y + r.y, X.p.z + r.z, 0};
 }
 
-// Only single rays are traced: N = 1.
+float hit_distance(const ShapeGeometry& g, RTCRayN* rays, unsigned n, unsigned i) {
+  const Vec3f o = Vec3f{RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i),
+                        RTCRayN_org_z(rays, n, i)} -
+                  g.X_SG.p;
+  const Vec3f d{RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i)};
+  return intersect_shape(g.shape, g.size, to_shape(g.X_SG, o), to_shape(g.X_SG, d),
+                         RTCRayN_tnear(rays, n, i), RTCRayN_tfar(rays, n, i));
+}
+
 void shape_intersect(const RTCIntersectFunctionNArguments* args) {
-  if (args->valid[0] == 0) return;
   const ShapeGeometry& g = *static_cast<const ShapeGeometry*>(args->geometryUserPtr);
-  RTCRayHit* query = reinterpret_cast<RTCRayHit*>(args->rayhit);
-  const float t = hit_distance(g, query->ray);
-  if (!(t > 0)) return;
-  query->ray.tfar = t;
-  query->hit.u = query->hit.v = 0;
-  query->hit.Ng_x = query->hit.Ng_y = query->hit.Ng_z = 0;
-  query->hit.geomID = args->geomID;
-  query->hit.primID = 0;
-  query->hit.instID[0] = args->context->instID[0];
+  RTCRayN* rays = RTCRayHitN_RayN(args->rayhit, args->N);
+  RTCHitN* hits = RTCRayHitN_HitN(args->rayhit, args->N);
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] == 0) continue;
+    const float t = hit_distance(g, rays, args->N, i);
+    if (!(t > 0)) continue;
+    RTCRayN_tfar(rays, args->N, i) = t;
+    RTCHitN_geomID(hits, args->N, i) = args->geomID;
+    RTCHitN_primID(hits, args->N, i) = 0;
+    RTCHitN_instID(hits, args->N, i, 0) = args->context->instID[0];
+  }
 }
 
 void shape_occluded(const RTCOccludedFunctionNArguments* args) {
-  if (args->valid[0] == 0) return;
   const ShapeGeometry& g = *static_cast<const ShapeGeometry*>(args->geometryUserPtr);
-  RTCRay* ray = reinterpret_cast<RTCRay*>(args->ray);
-  if (hit_distance(g, *ray) > 0) ray->tfar = -INFINITY;
+  for (unsigned i = 0; i < args->N; ++i) {
+    if (args->valid[i] == 0) continue;
+    if (hit_distance(g, args->ray, args->N, i) > 0) {
+      RTCRayN_tfar(args->ray, args->N, i) = -INFINITY;
+    }
+  }
 }
 
 void set_transform(RTCGeometry geometry, unsigned key, const Affine3f& X) {
@@ -83,6 +89,107 @@ void set_indices(RTCGeometry geometry, const uint32_t* indices, size_t triangles
 }
 
 }  // namespace
+
+int EmbreeTracer::hit_planes(const Ray& ray, float* tmax) const {
+  int plane = -1;
+  for (uint32_t i = 0; i < planes.size; ++i) {
+    const InstanceView& instance = instances[planes[i]];
+    Affine3f between;
+    const Affine3f& X_WG = pose_at(instance, ray.time, &between);
+    const float t = intersect_shape(ShapeType::kPlane, instance.size, to_shape(X_WG, ray.o - X_WG.p),
+                                    to_shape(X_WG, ray.d), 0.0f, *tmax);
+    if (t > 0) {
+      *tmax = t;
+      plane = static_cast<int>(planes[i]);
+    }
+  }
+  return plane;
+}
+
+void EmbreeTracer::resolve(uint32_t instance_id, uint32_t geometry_id, const Ray& ray,
+                           RayHit* hit) const {
+  if (instance_id == RTC_INVALID_GEOMETRY_ID) {
+    hit->instance = root_rows[geometry_id];
+  } else if (instance_id == static_id) {
+    hit->instance = static_rows[geometry_id];
+  } else {
+    hit->instance = root_rows[instance_id];
+    Affine3f between;
+    hit->normal = transform_vector(pose_at(instances[hit->instance], ray.time, &between),
+                                   hit->normal);  // Embree's is in the instance's frame
+  }
+}
+
+bool EmbreeTracer::trace(const Ray& ray, bool any, RayHit* hit) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  float tmax = ray.tmax;
+  const int plane = hit_planes(ray, &tmax);
+  if (any && plane >= 0) return true;
+  RTCRayHit query;
+  query.ray = {ray.o.x, ray.o.y, ray.o.z, 0.0f, ray.d.x, ray.d.y, ray.d.z, ray.time,
+               tmax,    ~0u,     0,       0};
+  if (any) {
+    rtcOccluded1(root, &context, &query.ray);
+    return query.ray.tfar < 0;
+  }
+  query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(root, &context, &query);
+  const RTCHit& h = query.hit;
+  const bool found = h.geomID != RTC_INVALID_GEOMETRY_ID;
+  if (found) {
+    *hit = {query.ray.tfar, 0, h.primID, h.u, h.v, {h.Ng_x, h.Ng_y, h.Ng_z}};
+    resolve(h.instID[0], h.geomID, ray, hit);
+  } else if (plane >= 0) {
+    *hit = {.t = tmax, .instance = static_cast<uint32_t>(plane)};
+  }
+  return found || plane >= 0;
+}
+
+void EmbreeTracer::trace_packet(const Ray* const* rays, int count, bool any, bool coherent,
+                                RayHit* hits, bool* found) const {
+  alignas(64) int valid[kPacket];
+  alignas(64) RTCRayHit16 q;
+  int plane[kPacket];
+  for (int i = 0; i < kPacket; ++i) {
+    const Ray& ray = *rays[i < count ? i : 0];
+    float tmax = ray.tmax;
+    plane[i] = i < count ? hit_planes(ray, &tmax) : -1;
+    valid[i] = i < count && !(any && plane[i] >= 0) ? -1 : 0;
+    q.ray.org_x[i] = ray.o.x;
+    q.ray.org_y[i] = ray.o.y;
+    q.ray.org_z[i] = ray.o.z;
+    q.ray.tnear[i] = 0;
+    q.ray.dir_x[i] = ray.d.x;
+    q.ray.dir_y[i] = ray.d.y;
+    q.ray.dir_z[i] = ray.d.z;
+    q.ray.time[i] = ray.time;
+    q.ray.tfar[i] = tmax;
+    q.ray.mask[i] = ~0u;
+    q.ray.id[i] = q.ray.flags[i] = 0;
+    q.hit.geomID[i] = q.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  }
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  if (any) {
+    rtcOccluded16(valid, root, &context, &q.ray);
+    for (int i = 0; i < count; ++i) found[i] = plane[i] >= 0 || q.ray.tfar[i] < 0;
+    return;
+  }
+  rtcIntersect16(valid, root, &context, &q);
+  for (int i = 0; i < count; ++i) {
+    if (q.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) {
+      hits[i] = {q.ray.tfar[i], 0, q.hit.primID[i], q.hit.u[i], q.hit.v[i],
+                 {q.hit.Ng_x[i], q.hit.Ng_y[i], q.hit.Ng_z[i]}};
+      resolve(q.hit.instID[0][i], q.hit.geomID[i], *rays[i], &hits[i]);
+      found[i] = true;
+    } else {
+      if (plane[i] >= 0) hits[i] = {.t = q.ray.tfar[i], .instance = static_cast<uint32_t>(plane[i])};
+      found[i] = plane[i] >= 0;
+    }
+  }
+}
 
 Result<std::unique_ptr<EmbreeScene>> EmbreeScene::make() {
   std::unique_ptr<EmbreeScene> scene(new EmbreeScene);

@@ -33,63 +33,24 @@ struct ShapeGeometry {
 /// What the kernel traces with. Cheap to copy; valid until the scene's next update.
 class EmbreeTracer {
  public:
-  bool trace(const Ray& ray, bool any, RayHit* hit) const {
-    float tmax = ray.tmax;
-    int plane = -1;
-    for (uint32_t i = 0; i < planes.size; ++i) {
-      const InstanceView& instance = instances[planes[i]];
-      const Affine3f X_WG = pose_at(instance, ray.time);
-      const Vec3f o = ray.o - X_WG.p;
-      const float t = intersect_shape(
-          ShapeType::kPlane, instance.size, {dot(o, X_WG.x), dot(o, X_WG.y), dot(o, X_WG.z)},
-          {dot(ray.d, X_WG.x), dot(ray.d, X_WG.y), dot(ray.d, X_WG.z)}, 0.0f, tmax);
-      if (t > 0) {
-        if (any) return true;
-        tmax = t;
-        plane = static_cast<int>(planes[i]);
-      }
-    }
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    RTCRayHit query;
-    query.ray = {ray.o.x, ray.o.y,  ray.o.z, 0.0f, ray.d.x, ray.d.y,
-                 ray.d.z, ray.time, tmax,    ~0u,  0,       0};
-    if (any) {
-      rtcOccluded1(root, &context, &query.ray);
-      return query.ray.tfar < 0;
-    }
-    query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    rtcIntersect1(root, &context, &query);
-    const RTCHit& h = query.hit;
-    if (h.geomID == RTC_INVALID_GEOMETRY_ID) {
-      if (plane < 0) return false;
-      *hit = {.t = tmax, .instance = static_cast<uint32_t>(plane)};
-      return true;
-    }
-    hit->t = query.ray.tfar;
-    hit->primitive = h.primID;
-    hit->u = h.u;
-    hit->v = h.v;
-    hit->normal = {h.Ng_x, h.Ng_y, h.Ng_z};
-    const uint32_t top = h.instID[0];
-    if (top == RTC_INVALID_GEOMETRY_ID) {
-      hit->instance = root_rows[h.geomID];
-    } else if (top == static_id) {
-      hit->instance = static_rows[h.geomID];
-    } else {
-      hit->instance = root_rows[top];
-      const InstanceView& instance = instances[hit->instance];
-      Affine3f between;
-      hit->normal = transform_vector(pose_at(instance, ray.time, &between), hit->normal);
-    }
-    return true;
-  }
+  static constexpr int kPacket = 16;
+
+  /// One ray: the closest hit, or with `any` just whether there is one.
+  bool trace(const Ray& ray, bool any, RayHit* hit) const;
+  /// Up to kPacket rays of one kind at once; even incoherent ones are faster so.
+  void trace_packet(const Ray* const* rays, int count, bool any, bool coherent, RayHit* hits,
+                    bool* found) const;
 
   RTCScene root = nullptr;
   uint32_t static_id = RTC_INVALID_GEOMETRY_ID;
   DeviceSpan<const uint32_t> root_rows, static_rows;  ///< Embree id -> instance
   DeviceSpan<const uint32_t> planes;                  ///< rows of infinite planes
   DeviceSpan<const InstanceView> instances;
+
+ private:
+  /// Nearest infinite plane before *tmax, which moves there; -1 = none.
+  int hit_planes(const Ray& ray, float* tmax) const;
+  void resolve(uint32_t instance_id, uint32_t geometry_id, const Ray& ray, RayHit* hit) const;
 };
 
 class EmbreeScene {

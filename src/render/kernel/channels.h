@@ -13,7 +13,11 @@ struct ExactChannels {
   Vec2f motion;  ///< [px]
 };
 
-/// The first surface along the ray that is more opaque than not, and the distance to it.
+/// Whether the exact channels stop at a surface: what is evenly transparent is a thing, as MuJoCo
+/// draws it; holes in an opacity texture are not.
+GLOAM_HD bool shows(const Surface& s) { return s.opacity >= 0.5f || s.material->opacity < 1.0f; }
+
+/// The first surface along the ray that shows, and the distance to it.
 template <class Tracer>
 GLOAM_HD bool find_first(const SceneView& scene, const Tracer& tracer, Ray ray, RayCone cone,
                          Surface* s, RayHit* hit, uint32_t* rays) {
@@ -22,7 +26,7 @@ GLOAM_HD bool find_first(const SceneView& scene, const Tracer& tracer, Ray ray, 
     ++*rays;
     if (!tracer.trace(ray, false, hit)) return false;
     *s = make_surface(scene, ray, *hit, cone);
-    if (s->opacity >= 0.5f || s->material->opacity < 1.0f) {
+    if (shows(*s)) {
       s->t = hit->t += passed_distance;
       return true;
     }

@@ -1,6 +1,6 @@
 #pragma once
-// The direct stage: first surfaces, every light with its shadow, constant ambient. No reflections.
-// Device-safe.
+// The direct stage: first surfaces, every light with its shadow, constant ambient, no reflections.
+// A state machine like the path stage. Device-safe.
 
 #include "render/kernel/path.h"
 
@@ -9,97 +9,124 @@ namespace gloam {
 /// Scenes with more lights than this draw so many of them by power.
 inline constexpr uint32_t kMaxDirectLights = kMaxWeighedLights;
 
-/// `first` (may be null) receives the hit of the first surface that shows; untouched when nothing
-/// does. Transparent surfaces are composited front to back.
-template <class Tracer>
-GLOAM_HD PathResult trace_direct(const SceneView& scene, const Tracer& tracer, Ray ray,
-                                 RayCone cone, Sampler sampler, bool* found_first, Surface* first) {
+struct DirectState {
+  Ray ray;           ///< to be traced now
+  bool any = false;  ///< any hit will do
   PathResult result;
-  *found_first = false;
-  const bool all_lights = scene.lights.size <= kMaxDirectLights;
-  const uint32_t light_count = all_lights ? scene.lights.size : kMaxDirectLights;
-  float transmittance = 1;  // of the surfaces passed so far
-  int passed = 0;
+  bool has_first = false;  ///< a surface more opaque than not has been met
+  RayHit first;            ///< the camera ray's first hit, if that was it
 
-  Surface s;
+  bool is_shadow = false;
+  int layers = 0, passed = 0;
+  uint32_t next_light = 0;
+  float transmittance = 1;  ///< of the surfaces passed so far
+  RayCone cone;
+  Sampler sampler;
   LightPicker picker;
+  Surface s;
   Bsdf bsdf;
   Frame frame;
-  Vec3f wo;
-  Ray view = ray;
-  uint32_t next_light = 0;
-  bool is_shadow = false;
-  Vec3f light_radiance;
-  for (;;) {
-    RayHit hit;
-    ++result.rays;
-    const bool found = tracer.trace(ray, is_shadow && !scene.has_transparent, &hit);
-    if (is_shadow) {
-      bool lit = !found;
-      if (found && scene.has_transparent && passed < kMaxPassed) {
-        const Surface blocker = make_surface(scene, ray, hit, {});
-        if (blocker.opacity < 1.0f) {
-          light_radiance *= 1.0f - blocker.opacity;
-          ray.o = leave_surface(blocker.p, blocker.geometric, ray.d, hit.t);
-          ray.tmax -= hit.t;
-          ++passed;
-          continue;
-        }
-      }
-      if (lit) result.radiance += light_radiance;
-    } else {
-      if (!found) {
-        result.radiance += sky_radiance(scene, ray.d, cone.spread) * transmittance;
-        return result;
-      }
-      s = make_surface(scene, ray, hit, cone);
-      cone.width += cone.spread * hit.t;
-      const Vec3f wo_W = -ray.d;
-      bsdf = surface_bsdf(scene, s, wo_W, &frame);
-      wo = frame.to_local(wo_W);
-      if (!*found_first && s.opacity >= 0.5f) {
-        *found_first = true;
-        *first = s;
-        result.albedo = s.base_color;
-        result.normal = s.normal;
-      }
-      float a, b;
-      layer_albedo(*scene.albedo, s.roughness, wo.z, &a, &b);
-      const Vec3f albedo = bsdf.diffuse + bsdf.f0 * a + bsdf.f90 * b;
-      result.radiance += (surface_emission(s) + albedo * (scene.sky_ambient + scene.sky_mean)) *
-                         (transmittance * s.opacity);
-      view.o = leave_surface(s.p, s.geometric, ray.d, hit.t);
-      next_light = 0;
-      if (!all_lights) picker.prepare(scene, s.p, s.geometric);
-    }
-    is_shadow = false;
-    while (!is_shadow && next_light < light_count) {
-      const uint32_t index = next_light++;
-      float pick = sampler.next_1d();
-      const Vec2f u = sampler.next_2d();
-      const LightSample light = all_lights ? sample_one_light(scene, index, s.p, pick, u, ray.time)
-                                           : picker.sample(scene, s.p, pick, u, ray.time);
-      if (!(light.pdf > 0) || dot(light.wi, s.geometric) <= 0) continue;
-      float pdf;
-      light_radiance = eval_bsdf(bsdf, wo, frame.to_local(light.wi), &pdf) * light.radiance *
-                       (transmittance * s.opacity /
-                        (light.pdf * (all_lights ? 1.0f : static_cast<float>(kMaxDirectLights))));
-      if (max_component(light_radiance) <= 0) continue;
-      if (!light.casts_shadow) {
-        result.radiance += light_radiance;
-        continue;
-      }
-      is_shadow = true;
-      passed = 0;
-      ray.o = leave_surface(s.p, s.geometric, light.wi, s.t);
-      ray.d = light.wi;
-      ray.tmax = light.distance * 0.9999f;
-    }
-    if (is_shadow) continue;
-    transmittance *= 1.0f - s.opacity;
-    if (transmittance < 0.004f) return result;
-    ray = view;
+  Vec3f wo, view_d, light_radiance;
+};
+
+GLOAM_HD void direct_start(DirectState* state, const Ray& ray, RayCone cone, Sampler sampler) {
+  *state = DirectState{};
+  state->ray = ray;
+  state->view_d = ray.d;
+  state->cone = cone;
+  state->sampler = sampler;
+}
+
+namespace directs {
+
+/// A surface that the view meets: what it gives off, and the constant ambient.
+GLOAM_HD void meet_surface(const SceneView& scene, DirectState* d, const RayHit& hit) {
+  d->s = make_surface(scene, d->ray, hit, d->cone);
+  d->cone.width += d->cone.spread * hit.t;
+  d->bsdf = surface_bsdf(scene, d->s, -d->ray.d, &d->frame);
+  d->wo = d->frame.to_local(-d->ray.d);
+  if (!d->has_first && d->s.opacity >= 0.5f) {
+    d->has_first = true;
+    d->first = hit;
+    d->result.albedo = d->s.base_color;
+    d->result.normal = d->s.normal;
   }
+  ++d->layers;
+  float a, b;
+  layer_albedo(*scene.albedo, d->s.roughness, d->wo.z, &a, &b);
+  const Vec3f albedo = d->bsdf.diffuse + d->bsdf.f0 * a + d->bsdf.f90 * b;
+  d->result.radiance += (surface_emission(d->s) + albedo * (scene.sky_ambient + scene.sky_mean)) *
+                        (d->transmittance * d->s.opacity);
+  d->next_light = 0;
+  if (scene.lights.size > kMaxDirectLights) d->picker.prepare(scene, d->s.p, d->s.geometric);
+}
+
+/// Sets the shadow ray of the next light that can reach the surface; false when none is left.
+GLOAM_HD bool next_shadow(const SceneView& scene, DirectState* d) {
+  const bool all = scene.lights.size <= kMaxDirectLights;
+  const uint32_t count = all ? scene.lights.size : kMaxDirectLights;
+  const Surface& s = d->s;
+  while (d->next_light < count) {
+    const uint32_t index = d->next_light++;
+    const float pick = d->sampler.next_1d();
+    const Vec2f u = d->sampler.next_2d();
+    const LightSample light = all ? sample_one_light(scene, index, s.p, pick, u, d->ray.time)
+                                  : d->picker.sample(scene, s.p, pick, u, d->ray.time);
+    if (!(light.pdf > 0) || dot(light.wi, s.geometric) <= 0) continue;
+    float pdf;
+    const float share = all ? 1.0f : 1.0f / static_cast<float>(kMaxDirectLights);
+    d->light_radiance = eval_bsdf(d->bsdf, d->wo, d->frame.to_local(light.wi), &pdf) *
+                        light.radiance * (d->transmittance * s.opacity * share / light.pdf);
+    if (max_component(d->light_radiance) <= 0) continue;
+    if (!light.casts_shadow) {
+      d->result.radiance += d->light_radiance;
+      continue;
+    }
+    d->passed = 0;
+    d->ray.o = leave_surface(s.p, s.geometric, light.wi, s.t);
+    d->ray.d = light.wi;
+    d->ray.tmax = light.distance * 0.9999f;
+    return true;
+  }
+  return false;
+}
+
+}  // namespace directs
+
+/// Takes the hit of state->ray; false when state->result is final. Transparent surfaces are
+/// composited front to back.
+GLOAM_HD bool direct_advance(const SceneView& scene, DirectState* d, bool found,
+                             const RayHit& hit) {
+  ++d->result.rays;
+  if (d->is_shadow) {
+    if (found && scene.has_transparent && d->passed < kMaxPassed) {
+      const Surface blocker = make_surface(scene, d->ray, hit, {});
+      if (blocker.opacity < 1.0f) {
+        d->light_radiance *= 1.0f - blocker.opacity;
+        d->ray.o = leave_surface(blocker.p, blocker.geometric, d->ray.d, hit.t);
+        d->ray.tmax -= hit.t;
+        ++d->passed;
+        if (d->ray.tmax > 0) return true;
+        found = false;
+      }
+    }
+    if (!found) d->result.radiance += d->light_radiance;
+  } else {
+    if (!found) {
+      d->result.radiance += sky_radiance(scene, d->ray.d, d->cone.spread) * d->transmittance;
+      return false;
+    }
+    directs::meet_surface(scene, d, hit);
+  }
+  d->is_shadow = directs::next_shadow(scene, d);
+  d->any = d->is_shadow && !scene.has_transparent;
+  if (d->is_shadow) return true;
+  d->transmittance *= 1.0f - d->s.opacity;
+  if (d->transmittance < 0.004f || d->layers >= kMaxPassed) return false;
+  d->ray.o = leave_surface(d->s.p, d->s.geometric, d->view_d, d->s.t);
+  d->ray.d = d->view_d;
+  d->ray.tmax = 1e30f;
+  return true;
 }
 
 }  // namespace gloam
