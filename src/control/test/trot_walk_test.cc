@@ -121,6 +121,14 @@ TEST(TrotWalk, TakesSlipperyFloorsStepsRubbleAndLoads) {
   walk(*steps, "2 cm steps, demo, pushed", pushed);
 }
 
+TEST(TrotWalk, WorksAtOtherRatesAndTimesteps) {
+  Trial trial{.goals = demo_goals(), .push = 0.2, .pushes = 5, .seed = 4, .control_period = 0.004};
+  expect_follows(walk(*load_quadruped(), "250 Hz", trial), trial, 0.2);
+  const ModelPtr fine = load_quadruped(0.8, [](mjSpec* spec) { spec->option.timestep = 0.001; });
+  trial.control_period = 0.001;
+  expect_follows(walk(*fine, "1 kHz, 1 ms steps", trial), trial, 0.2);
+}
+
 TEST(TrotWalk, DrivesAQuadrupedItWasNotTunedOn) {
   const ModelPtr model = load_other_quadruped();
   const Trial forward{.goals = {{0, {0.5, 0, 0}}}, .duration = 6};
