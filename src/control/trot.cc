@@ -59,6 +59,7 @@ class Trot final : public TrotController {
   void watch_for_fall(double dt);
   Vector3d foothold(int leg) const;
   ForceProblem wanted_wrench(double dt);
+  /// Also adds what the leg's motion takes to the wrench that the standing feet must give.
   Vector3d swing_torque(int leg, double dt, ForceProblem& problem);
   void write_torque(int leg, const Vector3d& torque, mjData* data);
   Vector3d nominal_W(int leg, double yaw) const {
@@ -238,6 +239,7 @@ Vector3d Trot::swing_torque(int k, double dt, ForceProblem& problem) {
 void Trot::write_torque(int k, const Vector3d& torque, mjData* data) {
   const Leg& leg = robot_.legs[k];
   for (int i = 0; i < 3; ++i) {
+    // Most of the joint's friction, smoothly through zero: less than the whole stays stable.
     const double friction = leg.friction[i] * std::tanh(s_.qd[k][i] / 0.5) * 0.8;
     const double wanted = torque[i] + friction + leg.damping[i] * s_.qd[k][i];
     const double limit = leg.torque_limit[i];
@@ -267,6 +269,7 @@ void Trot::control(const mjModel*, mjData* data, int64_t, double period,
     const LegPose& pose = s_.pose[k];
     const LegDynamics weight =
         leg_dynamics(robot_.legs[k], pose, Vector3d::Zero(), Vector3d::Zero(), s_.gravity_B);
+    // The ground pushes at the sole, not at the foot's centre, which rolls.
     const Vector3d sole = pose.foot + robot_.legs[k].foot_radius * s_.gravity_B.normalized();
     Vector3d torque = weight.torque;
     for (int i = 0; i < 3; ++i)

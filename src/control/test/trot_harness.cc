@@ -75,7 +75,7 @@ TrialResult run_trial(const mjModel& known_model, const Trial& trial) {
   for (int k = 0; k < 4; ++k) feet[k] = robot.legs[k].foot_geom;
 
   const double dt = model.opt.timestep;
-  const int every = std::max(1, static_cast<int>(std::lround(0.002 / dt)));
+  const int every = std::max(1, static_cast<int>(std::lround(trial.control_period / dt)));
   const auto steps = static_cast<int64_t>(std::lround((trial.duration + trial.settle) / dt));
   const RandomStream random{trial.seed, stream_id("trot.push")};
   std::vector<int64_t> push_steps;

@@ -25,6 +25,7 @@ struct Trial {
   double push = 0;       ///< [m/s], in a random direction
   int pushes = 0;        ///< at random times
   uint64_t seed = 1;
+  double control_period = 0.002;  ///< [s]
   TrotOptions options;
   double surprise_mass = 0;  ///< put on the base after the controller has read the model [kg]
 };

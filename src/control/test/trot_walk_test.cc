@@ -121,12 +121,69 @@ TEST(TrotWalk, TakesSlipperyFloorsStepsRubbleAndLoads) {
   walk(*steps, "2 cm steps, demo, pushed", pushed);
 }
 
+TEST(TrotWalk, WorksAtOtherRatesAndTimesteps) {
+  Trial trial{.goals = demo_goals(), .push = 0.2, .pushes = 5, .seed = 4, .control_period = 0.004};
+  expect_follows(walk(*load_quadruped(), "250 Hz", trial), trial, 0.2);
+  const ModelPtr fine = load_quadruped(0.8, [](mjSpec* spec) { spec->option.timestep = 0.001; });
+  trial.control_period = 0.001;
+  expect_follows(walk(*fine, "1 kHz, 1 ms steps", trial), trial, 0.2);
+}
+
 TEST(TrotWalk, DrivesAQuadrupedItWasNotTunedOn) {
   const ModelPtr model = load_other_quadruped();
   const Trial forward{.goals = {{0, {0.5, 0, 0}}}, .duration = 6};
   expect_follows(walk(*model, "other robot, forward", forward), forward, 0.2);
   Trial demo{.goals = demo_goals(), .push = 0.2, .pushes = 5, .seed = 1};
   walk(*model, "other robot, demo, pushed", demo);
+}
+
+TEST(TrotWalk, EachOfTwoRobotsInOneWorldIsDrivenByItsOwnController) {
+  char error[1024] = "";
+  const std::string file = GLOAM_SOURCE_DIR "/assets/robots/quadruped/quadruped.xml";
+  std::vector<SpecPtr> robots;
+  SpecPtr level(mj_makeSpec());
+  mjsBody* world = mjs_findBody(level.get(), "world");
+  mjsGeom* floor = mjs_addGeom(world, nullptr);
+  floor->type = mjGEOM_PLANE;
+  floor->size[2] = 0.1;
+  for (const char* prefix : {"a/", "b/"}) {
+    robots.emplace_back(mj_parseXML(file.c_str(), nullptr, error, sizeof error));
+    ASSERT_TRUE(robots.back()) << error;
+    mjsFrame* frame = mjs_addFrame(world, nullptr);
+    frame->pos[1] = prefix[0] == 'a' ? 1 : -1;
+    ASSERT_NE(
+        mjs_attach(frame->element, mjs_findBody(robots.back().get(), "trunk")->element, prefix, ""),
+        nullptr)
+        << mjs_getError(level.get());
+  }
+  const ModelPtr model(mj_compile(level.get(), nullptr));
+  ASSERT_TRUE(model) << mjs_getError(level.get());
+  TestData data(mj_makeData(model.get()));
+  std::vector<std::unique_ptr<TrotController>> trots;
+  std::array<int, 2> base;
+  for (int r = 0; r < 2; ++r) {
+    RobotInstance instance;
+    instance.prefix = r == 0 ? "a/" : "b/";
+    instance.root_body = mj_name2id(model.get(), mjOBJ_BODY, (instance.prefix + "trunk").c_str());
+    base[r] = model->jnt_qposadr[model->body_jntadr[instance.root_body]];
+    for (int leg = 0; leg < 4; ++leg) {
+      data->qpos[base[r] + 7 + 3 * leg + 1] = 0.864;
+      data->qpos[base[r] + 7 + 3 * leg + 2] = -1.728;
+    }
+    auto trot = make_trot_controller(*model, instance, TrotOptions{});
+    ASSERT_TRUE(trot.ok()) << trot.error().to_string();
+    trots.push_back(std::move(*trot));
+  }
+  mj_forward(model.get(), data.get());
+  for (auto& trot : trots) trot->reset(model.get(), data.get());
+  for (int step = 0; step < 1500; ++step) {
+    trots[0]->control(model.get(), data.get(), step, 0.002, {0.5, 0, 0});
+    trots[1]->control(model.get(), data.get(), step, 0.002, {-0.3, 0, 0});
+    mj_step(model.get(), data.get());
+  }
+  EXPECT_NEAR(data->qpos[base[0]], 1.5, 0.15);
+  EXPECT_NEAR(data->qpos[base[1]], -0.9, 0.1);
+  EXPECT_NEAR(data->qpos[base[0] + 1], 1, 0.05);
 }
 
 TEST(TrotWalk, RunsTwiceTheSame) {
