@@ -66,7 +66,6 @@ Status LiveSimulation::run_until(int64_t step) {
   restart_speed_clock();
   paused_ = false;
   simulator_->run_until(step);
-  simulator_->resume();
   while (simulator_->step_count() < step && simulator_->status().ok() && !stop_requested_) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
@@ -81,7 +80,6 @@ Status LiveSimulation::run_until(int64_t step) {
 void LiveSimulation::resume() {
   restart_speed_clock();
   paused_ = false;
-  simulator_->run_until(Simulator::kForever);
   simulator_->resume();
 }
 

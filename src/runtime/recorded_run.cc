@@ -85,7 +85,6 @@ Status run_to_the_end(LiveSimulation& simulation, int64_t steps, Clock::time_poi
                       const ProgressCallback& progress, const char* what) {
   Simulator& simulator = simulation.simulator();
   simulator.run_until(steps);
-  simulator.resume();
   while (simulator.step_count() < steps && simulator.status().ok()) {
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
     const double done = static_cast<double>(simulator.step_count()) / static_cast<double>(steps);

@@ -20,7 +20,6 @@ Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledW
   stepper->world_ = world;
   stepper->seed_ = seed;
   stepper->timestep_ = timestep;
-  GLOAM_TRY(stepper->keyframes_, find_keyframes(*world));
   mjModel* model = nullptr;
   mjData* data = nullptr;
   GLOAM_TRY_STATUS(guarded([&] { model = mj_copyModel(nullptr, world->model.get()); }));
@@ -60,10 +59,10 @@ bool Stepper::reset() {
   const mjModel* model = model_.get();
   mjData* data = data_.get();
   const bool ok = try_mujoco([&] {
-    reset_to_initial_state(*world_, keyframes_, *model, *data);
+    reset_to_initial_state(*world_, *model, *data);
     mj_forward(model, data);
     mju_copy(sensors_.data(), data->sensordata, static_cast<int>(model->nsensordata));
-    reset_to_initial_state(*world_, keyframes_, *model, *data);
+    reset_to_initial_state(*world_, *model, *data);
     mj_kinematics(model, data);  // so that controllers and hooks see poses before the first step
     mj_comPos(model, data);
     mj_getState(model, data, state_.data(), mjSTATE_INTEGRATION);

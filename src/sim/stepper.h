@@ -65,7 +65,6 @@ class Stepper {
   std::shared_ptr<const CompiledWorld> world_;
   std::optional<double> timestep_;
   uint64_t seed_ = 0;
-  std::vector<int> keyframes_;
   ModelPtr model_;
   DataPtr data_;
   StateReader reader_;  // of data_

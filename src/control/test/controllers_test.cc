@@ -23,9 +23,9 @@ std::shared_ptr<CompiledWorld> make_world(ControllerOptions options) {
   install_mujoco_handler();
   char error[500] = "";
   auto world = std::make_shared<CompiledWorld>();
-  world->spec.reset(mj_parseXMLString(kArm, nullptr, error, sizeof(error)));
-  EXPECT_TRUE(world->spec) << error;
-  world->model.reset(mj_compile(world->spec.get(), nullptr));
+  const SpecPtr spec(mj_parseXMLString(kArm, nullptr, error, sizeof(error)));
+  EXPECT_TRUE(spec) << error;
+  world->model.reset(mj_compile(spec.get(), nullptr));
   EXPECT_TRUE(world->model);
   RobotInstance robot;
   robot.name = "arm";

@@ -8,14 +8,14 @@ std::shared_ptr<CompiledWorld> world_from_mjcf(const std::string& xml) {
   install_mujoco_handler();
   char error[1000] = "";
   auto world = std::make_shared<CompiledWorld>();
-  world->spec.reset(mj_parseXMLString(xml.c_str(), nullptr, error, sizeof(error)));
-  if (!world->spec) {
+  const SpecPtr spec(mj_parseXMLString(xml.c_str(), nullptr, error, sizeof(error)));
+  if (!spec) {
     ADD_FAILURE() << error;
     abort();
   }
-  world->model.reset(mj_compile(world->spec.get(), nullptr));
+  world->model.reset(mj_compile(spec.get(), nullptr));
   if (!world->model) {
-    ADD_FAILURE() << mjs_getError(world->spec.get());
+    ADD_FAILURE() << mjs_getError(spec.get());
     abort();
   }
   RobotInstance robot;
