@@ -34,8 +34,8 @@ double distance_to(ShapeType shape, Vec3f size, double x, double y, double z) {
     }
     case ShapeType::kEllipsoid: {
       const double k = std::sqrt(x * x / (a * a) + y * y / (b * b) + z * z / (c * c));
-      const double g = std::sqrt(x * x / (a * a * a * a) + y * y / (b * b * b * b) +
-                                 z * z / (c * c * c * c));
+      const double g =
+          std::sqrt(x * x / (a * a * a * a) + y * y / (b * b * b * b) + z * z / (c * c * c * c));
       return (k - 1) * k / g;  // first order
     }
     case ShapeType::kBox:
@@ -99,10 +99,11 @@ TEST(Geometry, DepthOfEveryShapeIsExact) {
 
 TEST(Geometry, SilhouettesAreComplete) {
   // Rays aimed at points inside a shape hit it; rays past its bounding sphere do not.
-  const std::pair<ShapeType, Vec3f> cases[] = {
-      {ShapeType::kBox, {0.3f, 0.5f, 0.2f}},       {ShapeType::kSphere, {0.5f, 0, 0}},
-      {ShapeType::kEllipsoid, {0.5f, 0.2f, 0.3f}}, {ShapeType::kCapsule, {0.2f, 0.4f, 0}},
-      {ShapeType::kCylinder, {0.3f, 0.3f, 0}}};
+  const std::pair<ShapeType, Vec3f> cases[] = {{ShapeType::kBox, {0.3f, 0.5f, 0.2f}},
+                                               {ShapeType::kSphere, {0.5f, 0, 0}},
+                                               {ShapeType::kEllipsoid, {0.5f, 0.2f, 0.3f}},
+                                               {ShapeType::kCapsule, {0.2f, 0.4f, 0}},
+                                               {ShapeType::kCylinder, {0.3f, 0.3f, 0}}};
   for (const auto& [shape, size] : cases) {
     SceneBuilder b;
     b.add(shape, size, translation({1, 2, 3}), b.add_diffuse({1, 1, 1}));
@@ -167,7 +168,8 @@ TEST(Geometry, InstancesEqualBakedGeometry) {
   RenderSettings settings;
   settings.spp = 64;
   settings.variance = true;
-  const Film baked = build(false).render(view, settings), moved = build(true).render(view, settings);
+  const Film baked = build(false).render(view, settings),
+             moved = build(true).render(view, settings);
   int differing = 0;
   for (size_t i = 0; i < baked.depth.size(); ++i) {
     if (baked.part[i] != moved.part[i]) {
@@ -321,7 +323,8 @@ TEST(Geometry, DeformablesFollowTheirVertices) {
   const auto place = [&](PoseFrame* frame, float x, float scale) {
     frame->vertices.clear();
     for (const Vec3f& p : cloth.rest.positions) {
-      for (const float v : {p.x * scale + x, p.y * scale, p.z * scale}) frame->vertices.push_back(v);
+      for (const float v : {p.x * scale + x, p.y * scale, p.z * scale})
+        frame->vertices.push_back(v);
     }
   };
   place(&b.frame, 0, 1);
@@ -374,15 +377,20 @@ TEST(Geometry, BrokenDescriptionsAreRefusedWithTheirCause) {
     return renderer.ok() ? std::string() : renderer.error().message;
   };
   EXPECT_EQ(refusal([](SceneBuilder*) {}), "");
-  EXPECT_NE(refusal([](SceneBuilder* b) { b->description.instances[0].material = 7; }).find("material 7"),
-            std::string::npos);
-  EXPECT_NE(refusal([](SceneBuilder* b) { b->add(ShapeType::kMesh, {}, {}, 0, 0, 3); }).find("mesh 3"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal([](SceneBuilder* b) { b->description.instances[0].material = 7; }).find("material 7"),
+      std::string::npos);
+  EXPECT_NE(
+      refusal([](SceneBuilder* b) { b->add(ShapeType::kMesh, {}, {}, 0, 0, 3); }).find("mesh 3"),
+      std::string::npos);
   EXPECT_NE(refusal([](SceneBuilder* b) { b->description.instances[0].size.y = 0; }).find("size"),
             std::string::npos);
-  EXPECT_NE(refusal([](SceneBuilder* b) { b->description.meshes[0].indices[4] = 999; }).find("vertex"),
-            std::string::npos);
-  EXPECT_NE(refusal([](SceneBuilder* b) { b->description.meshes[0].positions[0].x = NAN; }).find("finite"),
+  EXPECT_NE(
+      refusal([](SceneBuilder* b) { b->description.meshes[0].indices[4] = 999; }).find("vertex"),
+      std::string::npos);
+  EXPECT_NE(refusal([](SceneBuilder* b) {
+              b->description.meshes[0].positions[0].x = NAN;
+            }).find("finite"),
             std::string::npos);
   EXPECT_NE(refusal([](SceneBuilder* b) { b->description.sky.texture = 2; }).find("sky"),
             std::string::npos);

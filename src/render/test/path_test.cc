@@ -87,7 +87,8 @@ TEST(Path, ClosedWhiteRoomFollowsTheGeometricSeries) {
   const int wall = b.add_material(m);
   for (int axis = 0; axis < 3; ++axis) {
     for (const float side : {-1.0f, 1.0f}) {
-      const Vec3f z = Vec3f{axis == 0 ? 1.0f : 0, axis == 1 ? 1.0f : 0, axis == 2 ? 1.0f : 0} * side;
+      const Vec3f z =
+          Vec3f{axis == 0 ? 1.0f : 0, axis == 1 ? 1.0f : 0, axis == 2 ? 1.0f : 0} * side;
       const Frame f = Frame::from_z(-z);
       b.add(ShapeType::kPlane, {1, 1, 0}, {f.x, f.y, f.z, z}, wall);
     }
@@ -164,7 +165,8 @@ TEST(Path, NextEventBsdfAndBothTogetherAgree) {
   glossy.base_color = {0.7f, 0.7f, 0.7f};
   glossy.roughness = 0.35f;
   b.add(ShapeType::kBox, {3, 3, 0.1f}, translation({0, 0, -0.1f}), b.add_material(glossy));
-  b.add(ShapeType::kSphere, {0.4f, 0, 0}, translation({0.2f, 0.6f, 0.4f}), b.add_diffuse({0.5f, 0.5f, 0.5f}));
+  b.add(ShapeType::kSphere, {0.4f, 0, 0}, translation({0.2f, 0.6f, 0.4f}),
+        b.add_diffuse({0.5f, 0.5f, 0.5f}));
   b.add(ShapeType::kBox, {0.6f, 0.02f, 0.4f}, rigid({1, 0, 0}, 0.4f, {0, 1.8f, 1.2f}),
         b.add_emitter({100, 100, 100}));
   b.add(ShapeType::kSphere, {0.3f, 0, 0}, translation({-1.0f, 0.5f, 0.9f}),
@@ -217,8 +219,7 @@ TEST(Path, NoLightLeaksIntoAClosedBox) {
       b.add_light(sun, transform_point(X_WB, p));
     }
     b.description.sky.ambient = {1000, 1000, 1000};
-    CameraView view =
-        SceneBuilder::camera(X_WB * look_at({0, 0, 0}, {1, 1, 0.9f}), 96, 96, 100);
+    CameraView view = SceneBuilder::camera(X_WB * look_at({0, 0, 0}, {1, 1, 0.9f}), 96, 96, 100);
     const Film film = b.render(view, settings_of(16, 6));
     for (const Vec3f& c : film.radiance) ASSERT_EQ(c.x, 0) << "moving " << moving;
   }
@@ -275,7 +276,8 @@ TEST(Path, DirectTierEqualsPathTierOfOneReflection) {
   MaterialDescription m;
   m.roughness = 0.5f;
   b.add(ShapeType::kPlane, {}, {}, b.add_material(m));
-  b.add(ShapeType::kSphere, {0.5f, 0, 0}, translation({0, 0, 0.5f}), b.add_diffuse({0.6f, 0.3f, 0.1f}));
+  b.add(ShapeType::kSphere, {0.5f, 0, 0}, translation({0, 0, 0.5f}),
+        b.add_diffuse({0.6f, 0.3f, 0.1f}));
   LightDescription light;
   light.intensity = {100, 100, 100};
   b.add_light(light, {1, -1, 2});
