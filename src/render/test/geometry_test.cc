@@ -367,6 +367,40 @@ TEST(Geometry, OrthographicCamera) {
   EXPECT_NEAR(film.depth[20 * 40 + 20], 9.5, 2e-3);
 }
 
+TEST(Geometry, TinyAndDegenerateTrianglesLeaveNoTraceInThePicture) {
+  SceneBuilder b;
+  MaterialDescription m;
+  m.roughness = 0.3f;
+  const int material = b.add_material(m);
+  TriangleMesh mesh = make_ball(12);
+  for (Vec3f& p : mesh.positions) p = p * 1e-9f;  // its normals underflow when squared
+  mesh.positions.insert(
+      mesh.positions.end(),
+      {{-1, 0, 0}, {1, 0, 0}, {0, 0, 0}, {-1, -1, 0.2f}, {1, -1, 0.2f}, {0, 1, 0.2f}});
+  mesh.normals.resize(mesh.positions.size(), Vec3f{0, 0, 0});  // and some normals are missing
+  const auto n = static_cast<uint32_t>(mesh.positions.size()) - 6;
+  mesh.indices.insert(mesh.indices.end(), {n, n + 1, n + 2, n, n, n, n + 3, n + 4, n + 5});
+  mesh.uvs.clear();
+  b.add(ShapeType::kMesh, {}, {}, material, 0, b.add_mesh(mesh));
+  LightDescription light;
+  light.intensity = {10, 10, 10};
+  light.radius = 0.1f;
+  b.add_light(light, {0.5f, -0.5f, 2});
+  b.description.sky.ambient = {1, 1, 1};
+  RenderSettings settings;
+  settings.spp = 16;
+  const Film near =
+      b.render(SceneBuilder::camera(look_at({0, -2e-9f, 3e-9f}, {}), 16, 16), settings);
+  const Film far = b.render(SceneBuilder::camera(look_at({0, -1, 3}, {}), 16, 16), settings);
+  for (const Film* film : {&near, &far}) {
+    for (const Vec3f& c : film->radiance) {
+      EXPECT_TRUE(std::isfinite(c.x) && c.x >= 0);
+    }
+    for (const Vec3f& c : film->center_normal) EXPECT_TRUE(std::isfinite(c.x));
+  }
+  EXPECT_EQ(far.part[8 * 16 + 8], 1u);
+}
+
 TEST(Geometry, BrokenDescriptionsAreRefusedWithTheirCause) {
   const auto refusal = [](const std::function<void(SceneBuilder*)>& spoil) {
     SceneBuilder b;
@@ -391,6 +425,10 @@ TEST(Geometry, BrokenDescriptionsAreRefusedWithTheirCause) {
   EXPECT_NE(refusal([](SceneBuilder* b) {
               b->description.meshes[0].positions[0].x = NAN;
             }).find("finite"),
+            std::string::npos);
+  EXPECT_NE(refusal([](SceneBuilder* b) {
+              b->description.meshes[0].uvs[0].x = INFINITY;
+            }).find("texture coordinate"),
             std::string::npos);
   EXPECT_NE(refusal([](SceneBuilder* b) { b->description.sky.texture = 2; }).find("sky"),
             std::string::npos);
