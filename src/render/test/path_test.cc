@@ -187,6 +187,46 @@ TEST(Path, NextEventBsdfAndBothTogetherAgree) {
   EXPECT_LT(both.standard_error() * std::sqrt(1024.0), light.standard_error() * 1000);
 }
 
+TEST(Path, LampsCloseToASurfaceLoseNothing) {
+  // The ceiling right beside a panel that hangs 5 mm under it, metres from the origin, against a
+  // path tracer without next event estimation.
+  SceneBuilder b;
+  const Affine3f X = translation({4, -3, 2});
+  b.add(ShapeType::kBox, {2, 2, 0.1f}, X * translation({0, 0, 0.1f}),
+        b.add_diffuse({0.8f, 0.8f, 0.8f}));
+  b.add(ShapeType::kBox, {0.02f, 0.02f, 0.005f}, X * translation({0, 0, -0.01f}),
+        b.add_emitter({1000, 1000, 1000}));
+  const CameraView view =
+      SceneBuilder::camera(X * look_at({0.25f, 0, -0.1f}, {0.06f, 0, 0}), 24, 24, 8);
+  const Probe probe(b);
+  Mean brute;
+  CameraView32 camera;
+  camera.fx = camera.fy = static_cast<float>(view.intrinsics.fx);
+  camera.cx = camera.cy = 12;
+  camera.pose = {view.X_WC_open, view.X_WC_open, view.X_WC_open};
+  for (uint32_t i = 0; i < 1000000; ++i) {
+    Sampler sampler = draw(i, 3);
+    RayCone cone;
+    const Vec2f pixel = sampler.next_2d();
+    Ray ray = camera_ray(camera, pixel.x * 24, pixel.y * 24, 0, &cone);
+    double value = 0, throughput = 1;
+    for (int depth = 0; depth < 2; ++depth) {
+      RayHit hit;
+      if (!probe.tracer.trace(ray, false, &hit)) break;
+      const Surface s = make_surface(probe.view, ray, hit, cone);
+      value += throughput * surface_emission(s).x;
+      throughput *= s.base_color.x;
+      const Vec3f wi =
+          Frame::from_z(s.normal).to_world(sample_cosine_hemisphere(sampler.next_2d()));
+      ray = make_ray(leave_surface(s.p, s.geometric, wi, hit.t), wi);
+    }
+    brute.add(value);
+  }
+  const Mean path = picture_mean(b.render(view, settings_of(256, 2)));
+  EXPECT_NEAR(path.mean, brute.mean,
+              4 * std::hypot(path.standard_error(), brute.standard_error()) + 0.003 * brute.mean);
+}
+
 TEST(Path, NoLightLeaksIntoAClosedBox) {
   for (const bool moving : {false, true}) {
     SceneBuilder b;
