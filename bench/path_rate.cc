@@ -102,7 +102,8 @@ std::vector<std::vector<RecordedRay>> record_rays(const Probe& probe, const Came
   parallel_for("record", view.intrinsics.height, [&](int64_t y) {
     const RecordingTracer tracer{&probe.tracer, &rows[static_cast<size_t>(y)]};
     for (int x = 0; x < view.intrinsics.width; ++x) {
-      Sampler sampler = Sampler::make(1, 0, static_cast<uint32_t>(x), static_cast<uint32_t>(y), 0, 0);
+      Sampler sampler =
+          Sampler::make(1, 0, static_cast<uint32_t>(x), static_cast<uint32_t>(y), 0, 0);
       const Vec2f offset = sample_pixel_filter(sampler.next_2d());
       RayCone cone;
       const Ray ray = camera_ray(camera, static_cast<float>(x) + 0.5f + offset.x,
@@ -130,8 +131,8 @@ void trace_bare(RTCScene scene, const std::vector<std::vector<RecordedRay>>& row
       RTCIntersectContext context;
       rtcInitIntersectContext(&context);
       RTCRayHit query;
-      query.ray = {r.ray.o.x, r.ray.o.y, r.ray.o.z, 0, r.ray.d.x, r.ray.d.y, r.ray.d.z, 0,
-                   r.ray.tmax, ~0u,      0,         0};
+      query.ray = {r.ray.o.x, r.ray.o.y, r.ray.o.z,  0,   r.ray.d.x, r.ray.d.y,
+                   r.ray.d.z, 0,         r.ray.tmax, ~0u, 0,         0};
       if (r.any) {
         rtcOccluded1(scene, &context, &query.ray);
       } else {
@@ -242,10 +243,11 @@ int main(int argc, char** argv) {
   const double bare_per_path = median(bare_cpu) / (a.width * a.height);
   std::printf("build %.0f ms; %d threads; wall %.1f ms; CPU %.1f ms per picture\n", build * 1e3,
               thread_count(), median(render_wall) * 1e3, median(render_cpu) * 1e3);
-  std::printf("%.2f rays/path; %.3f Mpaths/s at %.0f full threads; bare Embree %.3f Mpaths/s "
-              "(%.1f Mrays/s); share %.1f %%\n",
-              per_path, threads / cpu_per_path * 1e-6, threads, threads / bare_per_path * 1e-6,
-              per_path * threads / bare_per_path * 1e-6, 100 * bare_per_path / cpu_per_path);
+  std::printf(
+      "%.2f rays/path; %.3f Mpaths/s at %.0f full threads; bare Embree %.3f Mpaths/s "
+      "(%.1f Mrays/s); share %.1f %%\n",
+      per_path, threads / cpu_per_path * 1e-6, threads, threads / bare_per_path * 1e-6,
+      per_path * threads / bare_per_path * 1e-6, 100 * bare_per_path / cpu_per_path);
   double mean = 0;  // of the red channel, to compare with peers
   for (const Vec3f& c : film.radiance) mean += c.x;
   std::printf("mean %.4f\n", mean / static_cast<double>(film.radiance.size()));

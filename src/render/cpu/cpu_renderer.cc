@@ -174,9 +174,8 @@ class Tile {
     wave->count = count_;
     for (int i = 0; i < count_; ++i) {
       Sampler sampler = Sampler::make(
-          settings.seed, settings.frame, static_cast<uint32_t>(x_[i]),
-          static_cast<uint32_t>(y_[i]), static_cast<uint32_t>(settings.first_sample + index),
-          job_.log2_samples);
+          settings.seed, settings.frame, static_cast<uint32_t>(x_[i]), static_cast<uint32_t>(y_[i]),
+          static_cast<uint32_t>(settings.first_sample + index), job_.log2_samples);
       Vec2f offset;
       float time = 0;
       if (!job_.centered) {
@@ -216,7 +215,8 @@ class Tile {
             return direct_advance(job_.scene, state, found, hit);
           },
           [this](int i, const DirectState& state) {
-            known_[i] = job_.centered && (state.layers == 0 || (state.layers == 1 && state.has_first));
+            known_[i] =
+                job_.centered && (state.layers == 0 || (state.layers == 1 && state.has_first));
             center_found_[i] = state.has_first;
             center_hit_[i] = state.first;
           });
@@ -271,8 +271,7 @@ class Tile {
     Surface s = make_surface(job_.scene, ray, center_hit_[i], cone);
     if (!shows(s)) {
       uint32_t rays = 0;
-      const bool found =
-          find_first(job_.scene, job_.tracer, ray, cone, &s, &center_hit_[i], &rays);
+      const bool found = find_first(job_.scene, job_.tracer, ray, cone, &s, &center_hit_[i], &rays);
       rays_ += rays;
       if (!found) {
         store_channels(job_.film, pixel_of(i), describe_sky(job_.camera, ray));
@@ -332,8 +331,7 @@ class CpuRenderer final : public Renderer {
     job.path = {settings.max_depth, settings.roulette_depth};
     job.film = film;
     job.has_motion = job.camera.pose.moving || scene_->has_motion();
-    job.centered =
-        settings.tier == RenderTier::kDirect && settings.spp == 1 && !job.has_motion;
+    job.centered = settings.tier == RenderTier::kDirect && settings.spp == 1 && !job.has_motion;
     while ((int64_t{1} << job.log2_samples) < int64_t{settings.first_sample} + settings.spp) {
       ++job.log2_samples;
     }

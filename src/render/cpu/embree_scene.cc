@@ -37,9 +37,9 @@ void shape_bounds(const RTCBoundsFunctionArguments* args) {
 }
 
 float hit_distance(const ShapeGeometry& g, RTCRayN* rays, unsigned n, unsigned i) {
-  const Vec3f o = Vec3f{RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i),
-                        RTCRayN_org_z(rays, n, i)} -
-                  g.X_SG.p;
+  const Vec3f o =
+      Vec3f{RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i), RTCRayN_org_z(rays, n, i)} -
+      g.X_SG.p;
   const Vec3f d{RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i)};
   return intersect_shape(g.shape, g.size, to_shape(g.X_SG, o), to_shape(g.X_SG, d),
                          RTCRayN_tnear(rays, n, i), RTCRayN_tfar(rays, n, i));
@@ -96,8 +96,9 @@ int EmbreeTracer::hit_planes(const Ray& ray, float* tmax) const {
     const InstanceView& instance = instances[planes[i]];
     Affine3f between;
     const Affine3f& X_WG = pose_at(instance, ray.time, &between);
-    const float t = intersect_shape(ShapeType::kPlane, instance.size, to_shape(X_WG, ray.o - X_WG.p),
-                                    to_shape(X_WG, ray.d), 0.0f, *tmax);
+    const float t =
+        intersect_shape(ShapeType::kPlane, instance.size, to_shape(X_WG, ray.o - X_WG.p),
+                        to_shape(X_WG, ray.d), 0.0f, *tmax);
     if (t > 0) {
       *tmax = t;
       plane = static_cast<int>(planes[i]);
@@ -127,8 +128,8 @@ bool EmbreeTracer::trace(const Ray& ray, bool any, RayHit* hit) const {
   const int plane = hit_planes(ray, &tmax);
   if (any && plane >= 0) return true;
   RTCRayHit query;
-  query.ray = {ray.o.x, ray.o.y, ray.o.z, 0.0f, ray.d.x, ray.d.y, ray.d.z, ray.time,
-               tmax,    ~0u,     0,       0};
+  query.ray = {ray.o.x, ray.o.y,  ray.o.z, 0.0f, ray.d.x, ray.d.y,
+               ray.d.z, ray.time, tmax,    ~0u,  0,       0};
   if (any) {
     rtcOccluded1(root, &context, &query.ray);
     return query.ray.tfar < 0;
@@ -180,12 +181,13 @@ void EmbreeTracer::trace_packet(const Ray* const* rays, int count, bool any, boo
   rtcIntersect16(valid, root, &context, &q);
   for (int i = 0; i < count; ++i) {
     if (q.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) {
-      hits[i] = {q.ray.tfar[i], 0, q.hit.primID[i], q.hit.u[i], q.hit.v[i],
-                 {q.hit.Ng_x[i], q.hit.Ng_y[i], q.hit.Ng_z[i]}};
+      hits[i] = {q.ray.tfar[i], 0,          q.hit.primID[i],
+                 q.hit.u[i],    q.hit.v[i], {q.hit.Ng_x[i], q.hit.Ng_y[i], q.hit.Ng_z[i]}};
       resolve(q.hit.instID[0][i], q.hit.geomID[i], *rays[i], &hits[i]);
       found[i] = true;
     } else {
-      if (plane[i] >= 0) hits[i] = {.t = q.ray.tfar[i], .instance = static_cast<uint32_t>(plane[i])};
+      if (plane[i] >= 0)
+        hits[i] = {.t = q.ray.tfar[i], .instance = static_cast<uint32_t>(plane[i])};
       found[i] = plane[i] >= 0;
     }
   }

@@ -84,7 +84,9 @@ GLOAM_HD Bsdf make_bsdf(const AlbedoTable& table, Vec3f base_color, float metall
   bsdf.f0 = base_color * gain_m * metallic + Vec3f{1, 1, 1} * (f0_d * gain_d * dielectric);
   bsdf.f90 = gain_m * metallic + Vec3f{1, 1, 1} * (dielectric_f90 * gain_d * dielectric);
   const float layer = luminance(bsdf.f0 * a + bsdf.f90 * b), base = luminance(bsdf.diffuse);
-  bsdf.p_layer = layer <= 0 ? 0.0f : (base <= 0 ? 1.0f : clamp(layer / (layer + base), 0.1f, 0.9f));
+  // Both parts keep a fair chance, as their lobes differ; a mere rounding error gets none.
+  const float share = layer > 0 ? layer / (layer + base) : 0.0f;
+  bsdf.p_layer = share < 1e-5f ? 0.0f : (share > 0.99999f ? 1.0f : clamp(share, 0.1f, 0.9f));
   return bsdf;
 }
 

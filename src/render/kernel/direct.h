@@ -85,7 +85,7 @@ GLOAM_HD bool next_shadow(const SceneView& scene, DirectState* d) {
     d->passed = 0;
     d->ray.o = leave_surface(s.p, s.geometric, light.wi, s.t);
     d->ray.d = light.wi;
-    d->ray.tmax = light.distance * 0.9999f;
+    d->ray.tmax = shadow_length(s.p, s.t, light.distance);
     return true;
   }
   return false;

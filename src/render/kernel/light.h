@@ -142,7 +142,8 @@ GLOAM_HD LightSample sample_instance(const SceneView& scene, const LightView& li
     Vec3f n_G;
     if (instance.shape != ShapeType::kBox) {
       p_G = sample_shape(instance.shape, instance.size, pick, u, &n_G);
-    } else if (!sample_box_from(instance.size, to_instance(X_WG, p - X_WG.p), pick, u, &p_G, &n_G)) {
+    } else if (!sample_box_from(instance.size, to_instance(X_WG, p - X_WG.p), pick, u, &p_G,
+                                &n_G)) {
       return s;
     }
     p_W = transform_point(X_WG, p_G);

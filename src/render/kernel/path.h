@@ -121,7 +121,7 @@ GLOAM_HD bool scatter(const SceneView& scene, const PathOptions& options, PathSt
     p->any = !scene.has_transparent;
     p->ray.o = leave_surface(s.p, s.geometric, light.wi, s.t);
     p->ray.d = light.wi;
-    p->ray.tmax = light.distance * 0.9999f;
+    p->ray.tmax = shadow_length(s.p, s.t, light.distance);
   } else {
     p->ray.o = p->next_o;
     p->ray.d = p->next_d;

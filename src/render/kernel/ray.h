@@ -80,11 +80,20 @@ GLOAM_HD float mis_weight(float a, float b) {
   return a * a / (a * a + b * b);
 }
 
+/// More than the rounding [m] of the surface point p that was found at distance t.
+GLOAM_HD float surface_step(Vec3f p, float t) {
+  return 4e-6f * max(max(fabsf(p.x), max(fabsf(p.y), fabsf(p.z))), t) + 1e-7f;
+}
+
+/// Length of a shadow ray that starts a step off p and must not reach the light at `distance`.
+GLOAM_HD float shadow_length(Vec3f p, float t, float distance) {
+  return max(distance * 0.9999f - 2.0f * surface_step(p, t), 0.0f);
+}
+
 /// Origin of a ray that leaves the surface at p, which was found at distance t: moved off it along
-/// the geometric normal, to the side of `direction`, by more than the rounding of p.
+/// the geometric normal, to the side of `direction`.
 GLOAM_HD Vec3f leave_surface(Vec3f p, Vec3f normal, Vec3f direction, float t) {
-  const float magnitude = max(max(fabsf(p.x), max(fabsf(p.y), fabsf(p.z))), t);
-  const float step = 4e-6f * magnitude + 1e-7f;
+  const float step = surface_step(p, t);
   return p + normal * (dot(direction, normal) >= 0 ? step : -step);
 }
 

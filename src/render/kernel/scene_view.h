@@ -79,9 +79,9 @@ struct LightView {
   float inner = 0;                                    ///< spot: half angle of full intensity [rad]
   float strength = 0;  ///< luminous intensity [cd] (directional: illuminance [lx]), for selection
   float reach = 0;     ///< radius of a sphere about p that holds all of it [m]
-  uint32_t instance = 0;                              ///< kInstance
-  float probability = 0;                              ///< of selection by power alone
-  float cdf = 0;                                      ///< running sum of probabilities
+  uint32_t instance = 0;  ///< kInstance
+  float probability = 0;  ///< of selection by power alone
+  float cdf = 0;          ///< running sum of probabilities
 };
 
 /// Directional albedo of the GGX layer without Fresnel, split for Schlick's:

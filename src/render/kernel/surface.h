@@ -174,7 +174,9 @@ GLOAM_HD Surface make_surface(const SceneView& scene, const Ray& ray, const RayH
   Vec3f p_G;
   if (s.instance->shape == ShapeType::kMesh || s.instance->shape == ShapeType::kDeformable) {
     const MeshView& mesh = scene.meshes[s.instance->mesh];
-    s.geometric = normalize(hit.normal);
+    // Normals of tiny triangles would vanish when squared.
+    const float scale = max(fabsf(hit.normal.x), max(fabsf(hit.normal.y), fabsf(hit.normal.z)));
+    s.geometric = scale > 0 ? normalize(hit.normal * (1.0f / max(scale, 1e-37f))) : -ray.d;
     s.normal = s.geometric;
     if (!mesh.corner_normals.empty()) {
       const Vec3f* n = mesh.corner_normals.data + 3 * static_cast<size_t>(hit.primitive);

@@ -23,6 +23,10 @@ Status check_mesh(const TriangleMesh& mesh, const std::string& name) {
   if (std::any_of(mesh.indices.begin(), mesh.indices.end(), [n](uint32_t i) { return i >= n; })) {
     return bad("has a triangle with a vertex that does not exist");
   }
+  if (!std::all_of(mesh.uvs.begin(), mesh.uvs.end(),
+                   [](Vec2f uv) { return std::isfinite(uv.x) && std::isfinite(uv.y); })) {
+    return bad("has a texture coordinate that is not a finite number");
+  }
   if (!std::all_of(mesh.positions.begin(), mesh.positions.end(), is_finite)) {
     return bad("has a vertex that is not a finite number");
   }

@@ -34,8 +34,8 @@ double distance_to(ShapeType shape, Vec3f size, double x, double y, double z) {
     }
     case ShapeType::kEllipsoid: {
       const double k = std::sqrt(x * x / (a * a) + y * y / (b * b) + z * z / (c * c));
-      const double g = std::sqrt(x * x / (a * a * a * a) + y * y / (b * b * b * b) +
-                                 z * z / (c * c * c * c));
+      const double g =
+          std::sqrt(x * x / (a * a * a * a) + y * y / (b * b * b * b) + z * z / (c * c * c * c));
       return (k - 1) * k / g;  // first order
     }
     case ShapeType::kBox:
@@ -99,10 +99,11 @@ TEST(Geometry, DepthOfEveryShapeIsExact) {
 
 TEST(Geometry, SilhouettesAreComplete) {
   // Rays aimed at points inside a shape hit it; rays past its bounding sphere do not.
-  const std::pair<ShapeType, Vec3f> cases[] = {
-      {ShapeType::kBox, {0.3f, 0.5f, 0.2f}},       {ShapeType::kSphere, {0.5f, 0, 0}},
-      {ShapeType::kEllipsoid, {0.5f, 0.2f, 0.3f}}, {ShapeType::kCapsule, {0.2f, 0.4f, 0}},
-      {ShapeType::kCylinder, {0.3f, 0.3f, 0}}};
+  const std::pair<ShapeType, Vec3f> cases[] = {{ShapeType::kBox, {0.3f, 0.5f, 0.2f}},
+                                               {ShapeType::kSphere, {0.5f, 0, 0}},
+                                               {ShapeType::kEllipsoid, {0.5f, 0.2f, 0.3f}},
+                                               {ShapeType::kCapsule, {0.2f, 0.4f, 0}},
+                                               {ShapeType::kCylinder, {0.3f, 0.3f, 0}}};
   for (const auto& [shape, size] : cases) {
     SceneBuilder b;
     b.add(shape, size, translation({1, 2, 3}), b.add_diffuse({1, 1, 1}));
@@ -167,7 +168,8 @@ TEST(Geometry, InstancesEqualBakedGeometry) {
   RenderSettings settings;
   settings.spp = 64;
   settings.variance = true;
-  const Film baked = build(false).render(view, settings), moved = build(true).render(view, settings);
+  const Film baked = build(false).render(view, settings),
+             moved = build(true).render(view, settings);
   int differing = 0;
   for (size_t i = 0; i < baked.depth.size(); ++i) {
     if (baked.part[i] != moved.part[i]) {
@@ -321,7 +323,8 @@ TEST(Geometry, DeformablesFollowTheirVertices) {
   const auto place = [&](PoseFrame* frame, float x, float scale) {
     frame->vertices.clear();
     for (const Vec3f& p : cloth.rest.positions) {
-      for (const float v : {p.x * scale + x, p.y * scale, p.z * scale}) frame->vertices.push_back(v);
+      for (const float v : {p.x * scale + x, p.y * scale, p.z * scale})
+        frame->vertices.push_back(v);
     }
   };
   place(&b.frame, 0, 1);
@@ -364,6 +367,40 @@ TEST(Geometry, OrthographicCamera) {
   EXPECT_NEAR(film.depth[20 * 40 + 20], 9.5, 2e-3);
 }
 
+TEST(Geometry, TinyAndDegenerateTrianglesLeaveNoTraceInThePicture) {
+  SceneBuilder b;
+  MaterialDescription m;
+  m.roughness = 0.3f;
+  const int material = b.add_material(m);
+  TriangleMesh mesh = make_ball(12);
+  for (Vec3f& p : mesh.positions) p = p * 1e-9f;  // its normals underflow when squared
+  mesh.positions.insert(
+      mesh.positions.end(),
+      {{-1, 0, 0}, {1, 0, 0}, {0, 0, 0}, {-1, -1, 0.2f}, {1, -1, 0.2f}, {0, 1, 0.2f}});
+  mesh.normals.resize(mesh.positions.size(), Vec3f{0, 0, 0});  // and some normals are missing
+  const auto n = static_cast<uint32_t>(mesh.positions.size()) - 6;
+  mesh.indices.insert(mesh.indices.end(), {n, n + 1, n + 2, n, n, n, n + 3, n + 4, n + 5});
+  mesh.uvs.clear();
+  b.add(ShapeType::kMesh, {}, {}, material, 0, b.add_mesh(mesh));
+  LightDescription light;
+  light.intensity = {10, 10, 10};
+  light.radius = 0.1f;
+  b.add_light(light, {0.5f, -0.5f, 2});
+  b.description.sky.ambient = {1, 1, 1};
+  RenderSettings settings;
+  settings.spp = 16;
+  const Film near =
+      b.render(SceneBuilder::camera(look_at({0, -2e-9f, 3e-9f}, {}), 16, 16), settings);
+  const Film far = b.render(SceneBuilder::camera(look_at({0, -1, 3}, {}), 16, 16), settings);
+  for (const Film* film : {&near, &far}) {
+    for (const Vec3f& c : film->radiance) {
+      EXPECT_TRUE(std::isfinite(c.x) && c.x >= 0);
+    }
+    for (const Vec3f& c : film->center_normal) EXPECT_TRUE(std::isfinite(c.x));
+  }
+  EXPECT_EQ(far.part[8 * 16 + 8], 1u);
+}
+
 TEST(Geometry, BrokenDescriptionsAreRefusedWithTheirCause) {
   const auto refusal = [](const std::function<void(SceneBuilder*)>& spoil) {
     SceneBuilder b;
@@ -374,15 +411,24 @@ TEST(Geometry, BrokenDescriptionsAreRefusedWithTheirCause) {
     return renderer.ok() ? std::string() : renderer.error().message;
   };
   EXPECT_EQ(refusal([](SceneBuilder*) {}), "");
-  EXPECT_NE(refusal([](SceneBuilder* b) { b->description.instances[0].material = 7; }).find("material 7"),
-            std::string::npos);
-  EXPECT_NE(refusal([](SceneBuilder* b) { b->add(ShapeType::kMesh, {}, {}, 0, 0, 3); }).find("mesh 3"),
-            std::string::npos);
+  EXPECT_NE(
+      refusal([](SceneBuilder* b) { b->description.instances[0].material = 7; }).find("material 7"),
+      std::string::npos);
+  EXPECT_NE(
+      refusal([](SceneBuilder* b) { b->add(ShapeType::kMesh, {}, {}, 0, 0, 3); }).find("mesh 3"),
+      std::string::npos);
   EXPECT_NE(refusal([](SceneBuilder* b) { b->description.instances[0].size.y = 0; }).find("size"),
             std::string::npos);
-  EXPECT_NE(refusal([](SceneBuilder* b) { b->description.meshes[0].indices[4] = 999; }).find("vertex"),
+  EXPECT_NE(
+      refusal([](SceneBuilder* b) { b->description.meshes[0].indices[4] = 999; }).find("vertex"),
+      std::string::npos);
+  EXPECT_NE(refusal([](SceneBuilder* b) {
+              b->description.meshes[0].positions[0].x = NAN;
+            }).find("finite"),
             std::string::npos);
-  EXPECT_NE(refusal([](SceneBuilder* b) { b->description.meshes[0].positions[0].x = NAN; }).find("finite"),
+  EXPECT_NE(refusal([](SceneBuilder* b) {
+              b->description.meshes[0].uvs[0].x = INFINITY;
+            }).find("texture coordinate"),
             std::string::npos);
   EXPECT_NE(refusal([](SceneBuilder* b) { b->description.sky.texture = 2; }).find("sky"),
             std::string::npos);

@@ -73,7 +73,7 @@ TEST(Light, SpotShinesInItsConeAndFades) {
     return plane_luminance(b).mean * M_PI / 0.5 / (100 * std::pow(std::cos(angle), 3) / 4);
   };
   EXPECT_NEAR(luminance_at(0.0f), 1, 1e-3);
-  EXPECT_NEAR(luminance_at(0.29f), 1, 2e-3);  // full intensity within 0.6 of the half angle
+  EXPECT_NEAR(luminance_at(0.29f), 1, 2e-3);   // full intensity within 0.6 of the half angle
   EXPECT_NEAR(luminance_at(0.4f), 0.5, 5e-3);  // half-way through the penumbra
   EXPECT_EQ(luminance_at(0.51f), 0);
 }
@@ -110,8 +110,8 @@ TEST(Light, MeshEmitterEqualsAnalyticOne) {
   analytic.add(ShapeType::kBox, {0.3f, 0.2f, 0.1f}, pose, analytic.add_emitter({200, 200, 200}));
   TriangleMesh box;
   for (int i = 0; i < 8; ++i) {
-    box.positions.push_back({(i & 1) != 0 ? 0.3f : -0.3f, (i & 2) != 0 ? 0.2f : -0.2f,
-                             (i & 4) != 0 ? 0.1f : -0.1f});
+    box.positions.push_back(
+        {(i & 1) != 0 ? 0.3f : -0.3f, (i & 2) != 0 ? 0.2f : -0.2f, (i & 4) != 0 ? 0.1f : -0.1f});
   }
   box.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
                  2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
@@ -189,8 +189,7 @@ TEST(Light, SkyAndAmbientFollowTheirRules) {
   // The camera sees the texture only.
   RenderSettings settings;
   settings.spp = 4;
-  const Film film =
-      b.render(SceneBuilder::camera(look_at({0, 0, 1}, {0, 0, 5}), 4, 4), settings);
+  const Film film = b.render(SceneBuilder::camera(look_at({0, 0, 1}, {0, 0, 5}), 4, 4), settings);
   EXPECT_NEAR(film.radiance[0].x, 10, 1e-3);
 }
 
@@ -209,7 +208,8 @@ TEST(Light, SkyFacesStandWhereMujocoPutsThem) {
   settings.spp = 1;
   const Vec3f directions[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}, {0, -1, 0}, {0, 1, 0}};
   for (int i = 0; i < 6; ++i) {
-    const Film film = b.render(SceneBuilder::camera(look_at({}, directions[i]), 2, 2, 10), settings);
+    const Film film =
+        b.render(SceneBuilder::camera(look_at({}, directions[i]), 2, 2, 10), settings);
     EXPECT_NEAR(film.radiance[0].x, 40 * i + 20, 0.05) << "face " << i;
   }
 }
@@ -229,9 +229,11 @@ TEST(Light, LampsShowInMirrorsButNotToTheCamera) {
   settings.spp = 64;
   settings.max_depth = 3;
   settings.variance = true;
-  const Film down = b.render(SceneBuilder::camera(look_at({0, 0, 1}, {0, 0, 0}), 4, 4, 0.5), settings);
+  const Film down =
+      b.render(SceneBuilder::camera(look_at({0, 0, 1}, {0, 0, 0}), 4, 4, 0.5), settings);
   EXPECT_NEAR(down.radiance[5].x, 100 / (M_PI * 0.09), 4);
-  const Film up = b.render(SceneBuilder::camera(look_at({0, 0, 1}, {0, 0, 3}), 4, 4, 0.5), settings);
+  const Film up =
+      b.render(SceneBuilder::camera(look_at({0, 0, 1}, {0, 0, 3}), 4, 4, 0.5), settings);
   EXPECT_EQ(up.radiance[5].x, 0);
 }
 

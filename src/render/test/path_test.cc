@@ -87,7 +87,8 @@ TEST(Path, ClosedWhiteRoomFollowsTheGeometricSeries) {
   const int wall = b.add_material(m);
   for (int axis = 0; axis < 3; ++axis) {
     for (const float side : {-1.0f, 1.0f}) {
-      const Vec3f z = Vec3f{axis == 0 ? 1.0f : 0, axis == 1 ? 1.0f : 0, axis == 2 ? 1.0f : 0} * side;
+      const Vec3f z =
+          Vec3f{axis == 0 ? 1.0f : 0, axis == 1 ? 1.0f : 0, axis == 2 ? 1.0f : 0} * side;
       const Frame f = Frame::from_z(-z);
       b.add(ShapeType::kPlane, {1, 1, 0}, {f.x, f.y, f.z, z}, wall);
     }
@@ -164,7 +165,8 @@ TEST(Path, NextEventBsdfAndBothTogetherAgree) {
   glossy.base_color = {0.7f, 0.7f, 0.7f};
   glossy.roughness = 0.35f;
   b.add(ShapeType::kBox, {3, 3, 0.1f}, translation({0, 0, -0.1f}), b.add_material(glossy));
-  b.add(ShapeType::kSphere, {0.4f, 0, 0}, translation({0.2f, 0.6f, 0.4f}), b.add_diffuse({0.5f, 0.5f, 0.5f}));
+  b.add(ShapeType::kSphere, {0.4f, 0, 0}, translation({0.2f, 0.6f, 0.4f}),
+        b.add_diffuse({0.5f, 0.5f, 0.5f}));
   b.add(ShapeType::kBox, {0.6f, 0.02f, 0.4f}, rigid({1, 0, 0}, 0.4f, {0, 1.8f, 1.2f}),
         b.add_emitter({100, 100, 100}));
   b.add(ShapeType::kSphere, {0.3f, 0, 0}, translation({-1.0f, 0.5f, 0.9f}),
@@ -183,6 +185,46 @@ TEST(Path, NextEventBsdfAndBothTogetherAgree) {
   agree(light, both, 0.004 * both.mean);
   // And the weights do what they are for.
   EXPECT_LT(both.standard_error() * std::sqrt(1024.0), light.standard_error() * 1000);
+}
+
+TEST(Path, LampsCloseToASurfaceLoseNothing) {
+  // The ceiling right beside a panel that hangs 5 mm under it, metres from the origin, against a
+  // path tracer without next event estimation.
+  SceneBuilder b;
+  const Affine3f X = translation({4, -3, 2});
+  b.add(ShapeType::kBox, {2, 2, 0.1f}, X * translation({0, 0, 0.1f}),
+        b.add_diffuse({0.8f, 0.8f, 0.8f}));
+  b.add(ShapeType::kBox, {0.02f, 0.02f, 0.005f}, X * translation({0, 0, -0.01f}),
+        b.add_emitter({1000, 1000, 1000}));
+  const CameraView view =
+      SceneBuilder::camera(X * look_at({0.25f, 0, -0.1f}, {0.06f, 0, 0}), 24, 24, 8);
+  const Probe probe(b);
+  Mean brute;
+  CameraView32 camera;
+  camera.fx = camera.fy = static_cast<float>(view.intrinsics.fx);
+  camera.cx = camera.cy = 12;
+  camera.pose = {view.X_WC_open, view.X_WC_open, view.X_WC_open};
+  for (uint32_t i = 0; i < 1000000; ++i) {
+    Sampler sampler = draw(i, 3);
+    RayCone cone;
+    const Vec2f pixel = sampler.next_2d();
+    Ray ray = camera_ray(camera, pixel.x * 24, pixel.y * 24, 0, &cone);
+    double value = 0, throughput = 1;
+    for (int depth = 0; depth < 2; ++depth) {
+      RayHit hit;
+      if (!probe.tracer.trace(ray, false, &hit)) break;
+      const Surface s = make_surface(probe.view, ray, hit, cone);
+      value += throughput * surface_emission(s).x;
+      throughput *= s.base_color.x;
+      const Vec3f wi =
+          Frame::from_z(s.normal).to_world(sample_cosine_hemisphere(sampler.next_2d()));
+      ray = make_ray(leave_surface(s.p, s.geometric, wi, hit.t), wi);
+    }
+    brute.add(value);
+  }
+  const Mean path = picture_mean(b.render(view, settings_of(256, 2)));
+  EXPECT_NEAR(path.mean, brute.mean,
+              4 * std::hypot(path.standard_error(), brute.standard_error()) + 0.003 * brute.mean);
 }
 
 TEST(Path, NoLightLeaksIntoAClosedBox) {
@@ -217,8 +259,7 @@ TEST(Path, NoLightLeaksIntoAClosedBox) {
       b.add_light(sun, transform_point(X_WB, p));
     }
     b.description.sky.ambient = {1000, 1000, 1000};
-    CameraView view =
-        SceneBuilder::camera(X_WB * look_at({0, 0, 0}, {1, 1, 0.9f}), 96, 96, 100);
+    CameraView view = SceneBuilder::camera(X_WB * look_at({0, 0, 0}, {1, 1, 0.9f}), 96, 96, 100);
     const Film film = b.render(view, settings_of(16, 6));
     for (const Vec3f& c : film.radiance) ASSERT_EQ(c.x, 0) << "moving " << moving;
   }
@@ -275,7 +316,8 @@ TEST(Path, DirectTierEqualsPathTierOfOneReflection) {
   MaterialDescription m;
   m.roughness = 0.5f;
   b.add(ShapeType::kPlane, {}, {}, b.add_material(m));
-  b.add(ShapeType::kSphere, {0.5f, 0, 0}, translation({0, 0, 0.5f}), b.add_diffuse({0.6f, 0.3f, 0.1f}));
+  b.add(ShapeType::kSphere, {0.5f, 0, 0}, translation({0, 0, 0.5f}),
+        b.add_diffuse({0.6f, 0.3f, 0.1f}));
   LightDescription light;
   light.intensity = {100, 100, 100};
   b.add_light(light, {1, -1, 2});

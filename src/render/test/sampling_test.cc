@@ -13,8 +13,8 @@
 namespace gloam {
 namespace {
 
-/// Chi-square test of `sample` (directions; false = none) against `pdf` per solid angle on a grid of
-/// the sphere. Also checks that the density integrates to the share of samples that exist.
+/// Chi-square test of `sample` (directions; false = none) against `pdf` per solid angle on a grid
+/// of the sphere. Also checks that the density integrates to the share of samples that exist.
 void check_directions(const std::function<bool(uint32_t, Vec3f*)>& sample,
                       const std::function<double(Vec3f)>& pdf, const char* name) {
   constexpr int kRows = 16, kColumns = 32, kFine = 12, kDraws = 200000;
@@ -50,8 +50,8 @@ void check_directions(const std::function<bool(uint32_t, Vec3f*)>& sample,
     pooled_observed += observed[i];
     if (pooled_expected < 50) continue;
     // The grid integrates the density to about 1 %: that is not the sampler's error.
-    const double gap = std::max(0.0, std::abs(pooled_observed - pooled_expected) -
-                                         0.01 * pooled_expected);
+    const double gap =
+        std::max(0.0, std::abs(pooled_observed - pooled_expected) - 0.01 * pooled_expected);
     chi2 += gap * gap / pooled_expected;
     pooled_expected = pooled_observed = 0;
     ++cells;
@@ -96,8 +96,8 @@ TEST(Sampling, BsdfMatchesItsDensity) {
         const Bsdf bsdf =
             make_bsdf(table, {0.6f, 0.5f, 0.4f}, metallic, roughness, 0.04f, 1.0f, cos_o);
         const Vec3f wo{std::sqrt(1 - cos_o * cos_o), 0, cos_o};
-        const std::string name = fmt::format("roughness {} metallic {} cos {}", roughness, metallic,
-                                             cos_o);
+        const std::string name =
+            fmt::format("roughness {} metallic {} cos {}", roughness, metallic, cos_o);
         check_directions(
             [&](uint32_t i, Vec3f* d) {
               const BsdfSample s = sample_bsdf(bsdf, wo, random_2d(i, 1).x, random_2d(i, 0));
@@ -166,7 +166,7 @@ TEST(Sampling, ShapesAreSampledEvenly) {
   const struct {
     ShapeType shape;
     Vec3f size;
-  } cases[] = {{ShapeType::kBox, {0.3f, 0.5f, 0.1f}},      {ShapeType::kSphere, {0.4f, 0, 0}},
+  } cases[] = {{ShapeType::kBox, {0.3f, 0.5f, 0.1f}},       {ShapeType::kSphere, {0.4f, 0, 0}},
                {ShapeType::kEllipsoid, {0.3f, 0.5f, 0.2f}}, {ShapeType::kCapsule, {0.2f, 0.4f, 0}},
                {ShapeType::kCylinder, {0.3f, 0.2f, 0}},     {ShapeType::kPlane, {0.3f, 0.5f, 0}}};
   for (const auto& c : cases) {
@@ -294,11 +294,13 @@ TEST(Sampling, EmittersAreSampledByTheDensityTheyReport) {
     }
     return b;
   };
-  const std::pair<ShapeType, Vec3f> cases[] = {
-      {ShapeType::kBox, {0.5f, 0.1f, 0.3f}},       {ShapeType::kSphere, {0.5f, 0, 0}},
-      {ShapeType::kEllipsoid, {0.5f, 0.2f, 0.3f}}, {ShapeType::kCapsule, {0.2f, 0.4f, 0}},
-      {ShapeType::kCylinder, {0.3f, 0.3f, 0}},     {ShapeType::kPlane, {0.4f, 0.6f, 0}},
-      {ShapeType::kMesh, {}}};
+  const std::pair<ShapeType, Vec3f> cases[] = {{ShapeType::kBox, {0.5f, 0.1f, 0.3f}},
+                                               {ShapeType::kSphere, {0.5f, 0, 0}},
+                                               {ShapeType::kEllipsoid, {0.5f, 0.2f, 0.3f}},
+                                               {ShapeType::kCapsule, {0.2f, 0.4f, 0}},
+                                               {ShapeType::kCylinder, {0.3f, 0.3f, 0}},
+                                               {ShapeType::kPlane, {0.4f, 0.6f, 0}},
+                                               {ShapeType::kMesh, {}}};
   for (const auto& [shape, size] : cases) {
     const Probe probe(build(shape, size));
     Mean by_bsdf, by_light, total;
@@ -311,7 +313,8 @@ TEST(Sampling, EmittersAreSampledByTheDensityTheyReport) {
       if (probe.tracer.trace(ray, false, &hit)) {
         const Surface s = make_surface(probe.view, ray, hit, {});
         e = surface_emission(s).x * kPi;
-        density = lights::instance_pdf(probe.view, *s.instance, p, s.p, s.geometric, 0) * kPi / wi.z;
+        density =
+            lights::instance_pdf(probe.view, *s.instance, p, s.p, s.geometric, 0) * kPi / wi.z;
       }
       by_bsdf.add(e);
       total.add(density);
