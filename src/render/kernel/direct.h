@@ -83,9 +83,7 @@ GLOAM_HD bool next_shadow(const SceneView& scene, DirectState* d) {
       continue;
     }
     d->passed = 0;
-    d->ray.o = leave_surface(s.p, s.geometric, light.wi, s.t);
-    d->ray.d = light.wi;
-    d->ray.tmax = shadow_length(s.p, s.t, light.distance);
+    aim_shadow_ray(s, light, &d->ray);
     return true;
   }
   return false;

@@ -11,6 +11,7 @@ namespace gloam {
 struct LightSample {
   Vec3f wi;            ///< unit, from the surface to the light
   float distance = 0;  ///< [m]
+  Vec3f lift;          ///< moves the point on the light off its surface [m]
   Vec3f radiance;      ///< [cd/m²]; delta lights: illuminance on a facing surface [lx]
   float pdf = 0;       ///< per solid angle, selection included; delta: of the selection; 0 = none
   bool is_delta = false;
@@ -165,6 +166,7 @@ GLOAM_HD LightSample sample_instance(const SceneView& scene, const LightView& li
   s.radiance = surface_emission(surface) * surface.opacity;
   if (max_component(s.radiance) <= 0) return s;
   s.pdf = instance_pdf(scene, instance, p, p_W, n_W, time);
+  s.lift = leave_surface(p_W, n_W, -s.wi, 0.0f) - p_W;
   return s;
 }
 
@@ -182,6 +184,17 @@ GLOAM_HD LightSample sample_one_light(const SceneView& scene, uint32_t index, Ve
   // What cannot be hit must be found here alone.
   if (!light.casts_shadow) s.is_delta = s.is_delta || light.kind != LightKind::kInstance;
   return s;
+}
+
+/// Turns `ray` into the shadow ray from the surface to the light. It aims from its own, moved
+/// origin at a point just off the light: along the old direction it would meet the light's surface
+/// too soon where that is close and slanted.
+GLOAM_HD void aim_shadow_ray(const Surface& s, const LightSample& light, Ray* ray) {
+  ray->o = leave_surface(s.p, s.geometric, light.wi, s.t);
+  const Vec3f to = s.p - ray->o + light.wi * light.distance + light.lift;
+  const float distance = length(to);
+  ray->d = distance > 0 ? to / distance : light.wi;
+  ray->tmax = distance * 0.9999f;
 }
 
 /// Scenes with more lights select by power alone.

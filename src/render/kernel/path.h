@@ -119,9 +119,7 @@ GLOAM_HD bool scatter(const SceneView& scene, const PathOptions& options, PathSt
   }
   if (p->is_shadow) {
     p->any = !scene.has_transparent;
-    p->ray.o = leave_surface(s.p, s.geometric, light.wi, s.t);
-    p->ray.d = light.wi;
-    p->ray.tmax = shadow_length(s.p, s.t, light.distance);
+    aim_shadow_ray(s, light, &p->ray);
   } else {
     p->ray.o = p->next_o;
     p->ray.d = p->next_d;

@@ -85,11 +85,6 @@ GLOAM_HD float surface_step(Vec3f p, float t) {
   return 4e-6f * max(max(fabsf(p.x), max(fabsf(p.y), fabsf(p.z))), t) + 1e-7f;
 }
 
-/// Length of a shadow ray that starts a step off p and must not reach the light at `distance`.
-GLOAM_HD float shadow_length(Vec3f p, float t, float distance) {
-  return max(distance * 0.9999f - 2.0f * surface_step(p, t), 0.0f);
-}
-
 /// Origin of a ray that leaves the surface at p, which was found at distance t: moved off it along
 /// the geometric normal, to the side of `direction`.
 GLOAM_HD Vec3f leave_surface(Vec3f p, Vec3f normal, Vec3f direction, float t) {

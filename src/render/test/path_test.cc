@@ -207,8 +207,9 @@ TEST(Path, LampsCloseToASurfaceLoseNothing) {
   for (uint32_t i = 0; i < 1000000; ++i) {
     Sampler sampler = draw(i, 3);
     RayCone cone;
-    const Vec2f pixel = sampler.next_2d();
-    Ray ray = camera_ray(camera, pixel.x * 24, pixel.y * 24, 0, &cone);
+    const Vec2f offset = sample_pixel_filter(sampler.next_2d());
+    const float x = static_cast<float>(i % 24), y = static_cast<float>(i / 24 % 24);
+    Ray ray = camera_ray(camera, x + 0.5f + offset.x, y + 0.5f + offset.y, 0, &cone);
     double value = 0, throughput = 1;
     for (int depth = 0; depth < 2; ++depth) {
       RayHit hit;
