@@ -101,12 +101,12 @@ Result<std::shared_ptr<const CompiledWorld>> load(const Options& options) {
   install_mujoco_handler();
   char error[1000] = "";
   auto world = std::make_shared<CompiledWorld>();
-  world->spec.reset(mj_parseXML(options.model, nullptr, error, sizeof(error)));
-  if (!world->spec) return Error{ErrorKind::kInput, error};
-  const bool has_actuators = mjs_firstElement(world->spec.get(), mjOBJ_ACTUATOR) != nullptr;
-  if (!has_actuators && !options.bare) add_floor_and_motors(world->spec.get());
-  world->model.reset(mj_compile(world->spec.get(), nullptr));
-  if (!world->model) return Error{ErrorKind::kInput, mjs_getError(world->spec.get())};
+  const SpecPtr spec(mj_parseXML(options.model, nullptr, error, sizeof(error)));
+  if (!spec) return Error{ErrorKind::kInput, error};
+  const bool has_actuators = mjs_firstElement(spec.get(), mjOBJ_ACTUATOR) != nullptr;
+  if (!has_actuators && !options.bare) add_floor_and_motors(spec.get());
+  world->model.reset(mj_compile(spec.get(), nullptr));
+  if (!world->model) return Error{ErrorKind::kInput, mjs_getError(spec.get())};
   RobotInstance robot;
   robot.root_body = 1;
   world->robots.push_back(robot);

@@ -163,7 +163,7 @@ TEST(Pace, PauseStopsAndResumeGoesOn) {
   EXPECT_EQ(sim->step_count(), paused_at);
   ASSERT_TRUE(sim->step(3).ok());
   EXPECT_EQ(sim->step_count(), paused_at + 3);
-  sim->set_speed(50);
+  sim->set_pace(Pace::kRealTime, 50);
   sim->resume();
   while (sim->step_count() < paused_at + 100) std::this_thread::yield();
   sim->stop();
