@@ -55,7 +55,6 @@ Result<Scene> RunOptions::load(const std::string& file) {
   if (!tier.empty()) scene.render.tier = tier;
   if (ev100) scene.render.ev100 = *ev100;
   if (no_denoise) scene.render.denoise = false;
-  if (!outputs.empty()) scene.record.outputs = outputs;
   set_thread_count(threads);
   return scene;
 }

@@ -28,7 +28,9 @@ int watch(const World& world, const SimulationOptions& options, const RunCommand
   if (!simulation.ok()) return fail(simulation.error());
   ViewOptions view;
   view.port = command.port;
-  view.render = scene.render;
+  // A live picture is a quick one unless the user asked for light on the command line.
+  if (!command.options.tier.empty()) view.render = scene.render;
+  view.render.ev100 = scene.render.ev100;
   if (!command.options.cameras.empty()) view.camera = command.options.cameras.front();
   if (!command.options.resolution.empty()) {
     if (const Status status = parse_resolution(command.options.resolution, view.width, view.height);
@@ -49,6 +51,7 @@ int run(const RunCommand& command_line, const Globals& globals) {
   RunCommand command = command_line;
   auto scene = command.options.load(command.file);
   if (!scene.ok()) return fail(scene.error());
+  if (!command.options.outputs.empty()) scene->record.outputs = command.options.outputs;
   auto world = World::compile(*scene);
   if (!world.ok()) return fail(world.error());
 

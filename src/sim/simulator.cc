@@ -80,6 +80,8 @@ void Simulator::take_step() {
   } else if (ok) {
     ++total_steps_;
     if (remaining_ != kForever) --remaining_;
+  } else if (remaining_ != kForever) {
+    remaining_ = 0;  // a failed step(n) is over: a reset must not take up the rest of it
   }
   step_count_.store(loop_.stepper().step_count(), std::memory_order_relaxed);
 }

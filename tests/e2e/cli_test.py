@@ -49,7 +49,7 @@ class Mistakes(ProgramTest):
         self.gloam(expect=2)
 
     def test_missing_file(self):
-        self.complains(1, "run", "missing.xml", words=["missing.xml", "no such file"])
+        self.complains(1, "run", "missing.xml", words=["missing.xml", "there is no file"])
 
     def test_unknown_key_suggests_the_nearest(self):
         self.write("robot.xml", PENDULUM)
@@ -151,7 +151,7 @@ class Work(ProgramTest):
         self.assertEqual(summary["steps"], 250)
         self.assertTrue(list((self.folder / "out").glob("**/*.mp4")))
         # A second start does not destroy the first run's results.
-        self.gloam("run", model, "--duration", "0.5", "--out", "out", expect=1)
+        self.gloam("run", model, "--duration", "0.5", "--out", "out", expect=2)
         self.gloam("run", model, "--duration", "0.5", "--out", "out", "--overwrite", "--spp", "1", "--resolution", "64x48")
 
     def test_ctrl_c_finishes_the_files(self):
