@@ -1,3 +1,7 @@
+if(GLOAM_FUZZ)
+  add_custom_target(fuzzers)
+endif()
+
 # gloam_module(NAME [DEPENDS targets…] [TEST_DEPENDS targets…] [EXCLUDE files…])
 # One folder of src/ = one static library gloam_NAME of all its .cc files (test/ and fuzz/ apart),
 # one test program gloam_NAME_test of test/*_test.cc, one fuzz program per fuzz/*_fuzz.cc.
@@ -36,6 +40,7 @@ function(gloam_module name)
       add_executable(${fuzz} ${file})
       target_link_libraries(${fuzz} PRIVATE ${target})
       target_link_options(${fuzz} PRIVATE -fsanitize=fuzzer)
+      add_dependencies(fuzzers ${fuzz})
     endforeach()
   endif()
 endfunction()
