@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "base/parallel.h"
 #include "render/cpu/embree_scene.h"
+#include "render/cpu/light_guide.h"
 #include "render/kernel/channels.h"
 #include "render/kernel/direct.h"
 #include "render/renderer.h"
@@ -347,6 +348,7 @@ class CpuRenderer final : public Renderer {
     scene_->update(open, close, previous);
     const Status status = embree_->update(*scene_);
     GLOAM_CHECK(status.ok(), "the BVH cannot be built: out of memory?");
+    if (!updated_) guided_lights_ = scene_->guided_lights(open);
     updated_ = true;
   }
 
@@ -357,6 +359,11 @@ class CpuRenderer final : public Renderer {
     Job job;
     job.scene = scene_->view_from(view.X_WC_open);
     job.tracer = embree_->tracer(*scene_);
+    if (settings.tier == RenderTier::kPath) {
+      if (!has_guide_) guide_.build(job.scene, embree_->static_tracer(*scene_), guided_lights_);
+      has_guide_ = true;
+      job.scene.guide = guide_.view();
+    }
     job.camera = make_camera(view);
     job.settings = settings;
     job.path = {settings.max_depth, settings.roulette_depth};
@@ -396,7 +403,9 @@ class CpuRenderer final : public Renderer {
   std::unique_ptr<RenderScene> scene_;
   std::unique_ptr<EmbreeScene> embree_;
   std::vector<RenderStats> tiles_;
-  bool updated_ = false;
+  std::vector<LightView> guided_lights_;
+  LightGuideStore guide_;
+  bool updated_ = false, has_guide_ = false;
 };
 
 Affine3f camera_pose(const CameraDescription& camera, const PoseFrame& frame) {

@@ -39,15 +39,18 @@ TEST(Texture, PlanesRepeatPerObjectOrPerLength) {
   EXPECT_NEAR(albedo_above(object, 1, 0.5f), 85 / 255.0, 0.02);
   EXPECT_NEAR(albedo_above(object, -1, -0.5f), 170 / 255.0, 0.02);
   EXPECT_NEAR(albedo_above(object, 1, -0.5f), 1, 0.02);
-  // Uniform: half a repeat per metre and unit of texrepeat, whatever the size.
+  // Uniform: half a repeat per metre and unit of texrepeat; the origin of the texture is the middle
+  // of an infinite plane, the corner of a finite one.
   for (const float size : {0.0f, 5.0f}) {
     SceneBuilder uniform;
     uniform.add(ShapeType::kPlane, {size, size, 0}, {},
                 uniform.add_material(textured(uniform.add_texture(corners()), true, {4, 4})));
+    const float origin = size > 0 ? -0.25f : 0.0f;
     for (const float shift : {0.0f, 0.5f, 1.5f}) {
-      EXPECT_NEAR(albedo_above(uniform, shift - 0.125f, 0.125f + shift), 0, 0.02);
-      EXPECT_NEAR(albedo_above(uniform, shift + 0.125f, 0.125f - shift), 85 / 255.0, 0.02);
-      EXPECT_NEAR(albedo_above(uniform, shift + 0.125f, -0.125f - shift), 1, 0.02);
+      const float x = origin + shift, y = origin;
+      EXPECT_NEAR(albedo_above(uniform, x - 0.125f, y + 0.125f + shift), 0, 0.02);
+      EXPECT_NEAR(albedo_above(uniform, x + 0.125f, y + 0.125f - shift), 85 / 255.0, 0.02);
+      EXPECT_NEAR(albedo_above(uniform, x + 0.125f, y - 0.125f - shift), 1, 0.02);
     }
   }
 }
