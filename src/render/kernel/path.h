@@ -152,6 +152,11 @@ GLOAM_HD bool path_advance(const SceneView& scene, const PathOptions& options, P
     radiance += p->throughput * (p->depth > 0 ? sky + scene.sky_ambient : sky) * weight;
     return false;
   }
+  if (p->depth > 0 && p->depth + 1 >= options.max_depth) {
+    // Only what the last surface gives off counts: most give nothing.
+    const MaterialView& m = scene.materials[scene.instances[hit.instance].material];
+    if (!m.transparent && max_component(m.emission) <= 0) return false;
+  }
   const Surface s = make_surface(scene, p->ray, hit, p->cone);
   if (s.opacity < 1.0f && p->passed < kMaxPassed && p->sampler.next_1d() >= s.opacity) {
     p->ray.o = leave_surface(s.p, s.geometric, p->ray.d, hit.t);
