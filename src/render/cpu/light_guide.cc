@@ -9,7 +9,7 @@
 namespace gloam {
 namespace {
 
-constexpr int kCellsAlong = 20;  // of the longest edge
+constexpr int kCellsAlong = 16;  // of the longest edge
 constexpr int kLightRays = 32;   // to each light from a cell
 constexpr int kSkyRays = 192;    // from a cell, all around
 constexpr float kFloor = 0.02f;  // share of a light that no ray has seen
