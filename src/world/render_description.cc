@@ -222,6 +222,10 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
   describe_deformables(m, poses, &simulated.materials(), &labels, &out);
   describe_cameras(m, &out);
   const LightLevels levels = describe_light(m, poses, &simulated.materials(), &out);
+  for (LightDescription& light : out.lights) {
+    light.is_static = light.light >= 0 && m.light_mode[light.light] == mjCAMLIGHT_FIXED &&
+                      is_static[static_cast<size_t>(m.light_bodyid[light.light])];
+  }
   for (int i = 0; i < static_cast<int>(m.ntendon); ++i)
     out.unsupported.push_back({ErrorKind::kUnsupported, fmt::format("tendon '{}' is not drawn",
                                                                     name_of(m, mjOBJ_TENDON, i))});

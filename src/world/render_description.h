@@ -99,6 +99,7 @@ struct LightDescription {
   float softness = 0;      ///< spot: share of the cone over which it fades
   float legacy_scale = 0;  ///< what PoseFrame::light_diffuse is multiplied by to give `intensity`
                            ///< while the light has no intensity in cd (docs/light.md)
+  bool is_static = false;  ///< never moves: fixed to a body that is welded to the world
   int light = -1;  ///< row of PoseFrame's light poses; -1 = headlight: sits at the camera, shines
                    ///< along its axis
 };

@@ -10,6 +10,7 @@
 #include "base/log.h"
 #include "base/parallel.h"
 #include "render/cpu/embree_scene.h"
+#include "render/cpu/light_guide.h"
 #include "render/kernel/channels.h"
 #include "render/kernel/direct.h"
 #include "render/renderer.h"
@@ -100,13 +101,16 @@ struct Wave {
   void trace_closest(const EmbreeTracer& tracer) { trace_kind(tracer, false, true); }
 
   template <class Advance>
-  void run(const EmbreeTracer& tracer, const Advance& advance) {
+  void run(const SceneView& scene, const EmbreeTracer& tracer, const Advance& advance) {
     for (int i = 0; i < count; ++i) alive[i] = i;
     for (bool first_round = true; count > 0; first_round = false) {
       trace_kind(tracer, false, first_round);
       trace_kind(tracer, true, false);
       int left = 0;
-      for (int i = 0; i < count; ++i) {
+      const int all = count;
+      for (int i = 0; i < all; ++i) {
+        if (i + 2 * kAhead < all) fetch_instance(scene, alive[i + 2 * kAhead]);
+        if (i + kAhead < all) fetch_triangle(scene, alive[i + kAhead]);
         const int k = alive[i];
         if (advance(&states[k], found[k], hits[k])) alive[left++] = k;
       }
@@ -115,6 +119,34 @@ struct Wave {
   }
 
  private:
+  /// Paths between a request to the memory for what a hit needs and its use.
+  static constexpr int kAhead = 4;
+
+  bool needs_surface(int k) const { return found[k] && !states[k].any; }
+  void fetch_instance(const SceneView& scene, int k) const {
+    if (!needs_surface(k)) return;
+    const char* instance = reinterpret_cast<const char*>(&scene.instances[hits[k].instance]);
+    for (size_t byte = 0; byte < sizeof(InstanceView); byte += 64) {
+      __builtin_prefetch(instance + byte);
+    }
+  }
+  void fetch_triangle(const SceneView& scene, int k) const {
+    if (!needs_surface(k)) return;
+    const InstanceView& instance = scene.instances[hits[k].instance];
+    const char* material = reinterpret_cast<const char*>(&scene.materials[instance.material]);
+    __builtin_prefetch(material);
+    __builtin_prefetch(material + 64);
+    if (instance.shape != ShapeType::kMesh) return;
+    const MeshView& mesh = scene.meshes[instance.mesh];
+    const size_t triangle = hits[k].primitive;
+    if (!mesh.corner_normals.empty()) {
+      __builtin_prefetch(mesh.corner_normals.data + 3 * triangle);
+      __builtin_prefetch(mesh.corner_normals.data + 3 * triangle + 2);
+    }
+    if (!mesh.uvs.empty()) __builtin_prefetch(mesh.uvs.data + triangle);
+    __builtin_prefetch(mesh.indices.data + 3 * triangle);
+  }
+
   void trace_kind(const EmbreeTracer& tracer, bool any, bool coherent) {
     constexpr int n = EmbreeTracer::kPacket;
     const Ray* rays[n];
@@ -186,7 +218,7 @@ class Tile {
       const Ray ray = center_ray(i, offset, time, &cone);
       start(&wave->states[i], ray, cone, sampler);
     }
-    wave->run(job_.tracer, advance);
+    wave->run(job_.scene, job_.tracer, advance);
     for (int i = 0; i < count_; ++i) {
       mean_[i].add(wave->states[i].result);
       rays_ += wave->states[i].result.rays;
@@ -316,6 +348,7 @@ class CpuRenderer final : public Renderer {
     scene_->update(open, close, previous);
     const Status status = embree_->update(*scene_);
     GLOAM_CHECK(status.ok(), "the BVH cannot be built: out of memory?");
+    if (!updated_) guided_lights_ = scene_->guided_lights(open);
     updated_ = true;
   }
 
@@ -326,6 +359,11 @@ class CpuRenderer final : public Renderer {
     Job job;
     job.scene = scene_->view_from(view.X_WC_open);
     job.tracer = embree_->tracer(*scene_);
+    if (settings.tier == RenderTier::kPath) {
+      if (!has_guide_) guide_.build(job.scene, embree_->static_tracer(*scene_), guided_lights_);
+      has_guide_ = true;
+      job.scene.guide = guide_.view();
+    }
     job.camera = make_camera(view);
     job.settings = settings;
     job.path = {settings.max_depth, settings.roulette_depth};
@@ -365,7 +403,9 @@ class CpuRenderer final : public Renderer {
   std::unique_ptr<RenderScene> scene_;
   std::unique_ptr<EmbreeScene> embree_;
   std::vector<RenderStats> tiles_;
-  bool updated_ = false;
+  std::vector<LightView> guided_lights_;
+  LightGuideStore guide_;
+  bool updated_ = false, has_guide_ = false;
 };
 
 Affine3f camera_pose(const CameraDescription& camera, const PoseFrame& frame) {

@@ -363,6 +363,15 @@ Status EmbreeScene::update(const RenderScene& scene) {
   return {};
 }
 
+EmbreeTracer EmbreeScene::static_tracer(const RenderScene& scene) const {
+  EmbreeTracer tracer;
+  if (static_rows_.empty()) return tracer;
+  tracer.root = static_.get();
+  tracer.root_rows = {static_rows_.data(), static_cast<uint32_t>(static_rows_.size())};
+  tracer.instances = {scene.instances().data(), static_cast<uint32_t>(scene.instances().size())};
+  return tracer;
+}
+
 EmbreeTracer EmbreeScene::tracer(const RenderScene& scene) const {
   const auto span = [](const auto& v) {
     return DeviceSpan<const std::decay_t<decltype(v[0])>>{v.data(),

@@ -62,6 +62,8 @@ class EmbreeScene {
   /// object.
   Status update(const RenderScene& scene);
   EmbreeTracer tracer(const RenderScene& scene) const;
+  /// Of what never moves alone, without infinite planes; null `root` = nothing.
+  EmbreeTracer static_tracer(const RenderScene& scene) const;
 
  private:
   using ShapeKey = std::tuple<ShapeType, uint32_t, float, float, float>;

@@ -227,10 +227,25 @@ class LightPicker {
   /// For the surface at p with the geometric normal n.
   GLOAM_HD void prepare(const SceneView& scene, Vec3f p, Vec3f n) {
     count_ = scene.lights.size;
+    sky_ = {};
+    sky_share_ = 0;
     if (count_ > kMaxWeighedLights) return;
+    const LightGuide& guide = scene.guide;
+    const int cell = guide.nx > 0 ? guide.cell_at(p + n * (0.5f / guide.per_metre)) : -1;
+    const float* visible =
+        cell >= 0 ? guide.visible.data + static_cast<size_t>(cell) * guide.rows : nullptr;
     float total = 0;
     for (uint32_t i = 0; i < count_; ++i) {
-      total += share_[i] = count_ == 1 ? 1.0f : light_weight(scene.lights[i], p, n);
+      const LightView& light = scene.lights[i];
+      share_[i] = light_weight(light, p, n);
+      if (visible != nullptr && light.guide >= 0) share_[i] *= visible[light.guide];
+      total += share_[i];
+    }
+    if (cell >= 0 && guide.sky[cell].strength > 0) {
+      sky_ = guide.sky[cell];
+      const float reach = sqrtf(min(2.0f * sky_.one_minus_cos, 1.0f));
+      const float cosine = dot(sky_.axis, n) + reach;
+      if (cosine > 0) total += sky_share_ = sky_.strength * (min(cosine, 1.0f) + 0.05f);
     }
     if (!(total > 0)) {
       count_ = 0;  // nothing can arrive
@@ -238,6 +253,13 @@ class LightPicker {
     }
     const float inverse = 1.0f / total;
     for (uint32_t i = 0; i < count_; ++i) share_[i] *= inverse;
+    sky_share_ *= inverse;
+  }
+
+  /// Density with which sample() makes the direction d for its sky.
+  GLOAM_HD float sky_pdf(Vec3f d) const {
+    const bool inside = sky_share_ > 0 && dot(d, sky_.axis) >= 1.0f - sky_.one_minus_cos;
+    return inside ? sky_share_ * cone_pdf(sky_.one_minus_cos) : 0.0f;
   }
 
   /// Probability of taking light i.
@@ -246,9 +268,13 @@ class LightPicker {
     return i < count_ ? share_[i] : 0.0f;
   }
 
-  /// Takes a light and a direction from p towards it.
-  GLOAM_HD LightSample sample(const SceneView& scene, Vec3f p, float pick, Vec2f u,
-                              float time) const {
+  /// Takes a light, or the sky, and a direction from p towards it. `spread`: of the sky's cone.
+  GLOAM_HD LightSample sample(const SceneView& scene, Vec3f p, float pick, Vec2f u, float time,
+                              float spread) const {
+    if (sky_share_ > 0) {
+      if (pick < sky_share_) return sample_sky(scene, u, spread);
+      pick -= sky_share_;
+    }
     if (count_ == 0) return {};
     float before = 0, taken = 0;
     uint32_t index = 0;
@@ -272,6 +298,7 @@ class LightPicker {
         index = i;
         if (pick < before + taken) break;
       }
+      if (!(taken > 0)) return {};
     }
     pick = clamp((pick - before) / taken, 0.0f, 0.9999999f);
     LightSample s = sample_one_light(scene, index, p, pick, u, time);
@@ -280,8 +307,19 @@ class LightPicker {
   }
 
  private:
+  GLOAM_HD LightSample sample_sky(const SceneView& scene, Vec2f u, float spread) const {
+    LightSample s;
+    s.wi = Frame::from_z(sky_.axis).to_world(sample_cone(sky_.one_minus_cos, u));
+    s.distance = 1e7f;
+    s.radiance = sky_radiance(scene, s.wi, spread) + scene.sky_ambient;
+    s.pdf = sky_pdf(s.wi);
+    return s;
+  }
+
   uint32_t count_ = 0;
   float share_[kMaxWeighedLights];
+  SkyCone sky_;
+  float sky_share_ = 0;
 };
 
 /// Light of lamps and suns that a scattered ray meets before `tmax`, each weighted against

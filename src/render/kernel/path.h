@@ -89,7 +89,7 @@ GLOAM_HD bool scatter(const SceneView& scene, const PathOptions& options, PathSt
   p->picker.prepare(scene, s.p, s.geometric);
   const Vec2f choice = p->sampler.next_2d();  // of the light, of the lobe
   const LightSample light =
-      p->picker.sample(scene, s.p, choice.x, p->sampler.next_2d(), p->ray.time);
+      p->picker.sample(scene, s.p, choice.x, p->sampler.next_2d(), p->ray.time, p->cone.spread);
   if (light.pdf > 0 && dot(light.wi, s.geometric) > 0) {
     float pdf = 0;
     const Vec3f f = eval_bsdf(bsdf, wo, frame.to_local(light.wi), &pdf);
@@ -147,8 +147,15 @@ GLOAM_HD bool path_advance(const SceneView& scene, const PathOptions& options, P
   }
   if (!found) {
     const Vec3f sky = sky_radiance(scene, p->ray.d, p->cone.spread);
-    radiance += p->throughput * (p->depth > 0 ? sky + scene.sky_ambient : sky);
+    const float weight =
+        p->pdf_bsdf > 0 ? mis_weight(p->pdf_bsdf, p->picker.sky_pdf(p->ray.d)) : 1.0f;
+    radiance += p->throughput * (p->depth > 0 ? sky + scene.sky_ambient : sky) * weight;
     return false;
+  }
+  if (p->depth > 0 && p->depth + 1 >= options.max_depth) {
+    // Only what the last surface gives off counts: most give nothing.
+    const MaterialView& m = scene.materials[scene.instances[hit.instance].material];
+    if (!m.transparent && max_component(m.emission) <= 0) return false;
   }
   const Surface s = make_surface(scene, p->ray, hit, p->cone);
   if (s.opacity < 1.0f && p->passed < kMaxPassed && p->sampler.next_1d() >= s.opacity) {

@@ -80,8 +80,36 @@ struct LightView {
   float strength = 0;  ///< luminous intensity [cd] (directional: illuminance [lx]), for selection
   float reach = 0;     ///< radius of a sphere about p that holds all of it [m]
   uint32_t instance = 0;  ///< kInstance
+  int guide = -1;         ///< row of LightGuide::visible; -1 = it moves, or has none
   float probability = 0;  ///< of selection by power alone
   float cdf = 0;          ///< running sum of probabilities
+};
+
+/// A cone in which the sky is seen.
+struct SkyCone {
+  Vec3f axis;
+  float one_minus_cos = 0;  ///< of the half angle
+  float strength = 0;       ///< illuminance on a surface that faces it [lx]; 0 = no such cone
+};
+
+/// What static geometry lets through to the cells of a regular grid. It steers sampling alone: a
+/// wrong guess costs noise, never the mean.
+struct LightGuide {
+  Vec3f low;            ///< corner of the grid [m]
+  float per_metre = 0;  ///< 1 / edge of a cell
+  int nx = 0, ny = 0, nz = 0;
+  uint32_t rows = 0;                ///< lights that have one
+  DeviceSpan<const float> visible;  ///< cell-major: share of each light seen, with a floor
+  DeviceSpan<const SkyCone> sky;    ///< one per cell
+
+  GLOAM_HD int cell_at(Vec3f p) const {
+    const Vec3f q = (p - low) * per_metre;
+    if (!(q.x >= 0 && q.y >= 0 && q.z >= 0 && q.x < static_cast<float>(nx) &&
+          q.y < static_cast<float>(ny) && q.z < static_cast<float>(nz))) {
+      return -1;
+    }
+    return (static_cast<int>(q.z) * ny + static_cast<int>(q.y)) * nx + static_cast<int>(q.x);
+  }
 };
 
 /// Directional albedo of the GGX layer without Fresnel, split for Schlick's:
@@ -100,6 +128,7 @@ struct SceneView {
   DeviceSpan<const Texel> texels;
   DeviceSpan<const LightView> lights;
   const AlbedoTable* albedo = nullptr;
+  LightGuide guide;
   int sky_texture = -1;
   float sky_scale = 0;
   Vec3f sky_ambient;             ///< for indirect rays

@@ -2,7 +2,14 @@
 // Filtered texture look-ups: trilinear over mip levels by an isotropic footprint. 2-D textures
 // repeat; cube faces are clamped. Device-safe.
 
+#include <cstring>
+
 #include "render/kernel/scene_view.h"
+
+#if defined(__SSE4_1__) && !defined(__CUDACC__)
+#include <smmintrin.h>
+#define GLOAM_SIMD_TEXELS  // the same arithmetic in the same order, four channels at once
+#endif
 
 namespace gloam {
 
@@ -12,6 +19,14 @@ struct Rgba {
 };
 
 namespace texturing {
+
+/// log2 of a positive x, a parabola between powers of two: error < 0.01.
+GLOAM_HD float log2_of(float x) {
+  uint32_t bits;
+  memcpy(&bits, &x, sizeof bits);
+  const float f = static_cast<float>(bits & 0x7FFFFFu) * 0x1p-23f;
+  return static_cast<float>(static_cast<int>(bits >> 23) - 127) + f * (1.3465f - 0.3465f * f);
+}
 
 /// Coordinates in texels of level `level`; `row` grows downwards.
 GLOAM_HD Rgba bilinear(const SceneView& scene, const TextureLevel& level, float x, float row,
@@ -34,23 +49,35 @@ GLOAM_HD Rgba bilinear(const SceneView& scene, const TextureLevel& level, float 
   y1 = y1 < 0 ? 0 : (y1 >= h ? h - 1 : y1);
   const Texel* row0 = scene.texels.data + level.first + static_cast<size_t>(y0) * w;
   const Texel* row1 = scene.texels.data + level.first + static_cast<size_t>(y1) * w;
-  const Texel t[4] = {row0[x0], row0[x1], row1[x0], row1[x1]};
+  const Texel* t[4] = {row0 + x0, row0 + x1, row1 + x0, row1 + x1};
   const float weight[4] = {(1 - wx) * (1 - wy), wx * (1 - wy), (1 - wx) * wy, wx * wy};
+  constexpr float kScale = 1.0f / 65535.0f;
+#ifdef GLOAM_SIMD_TEXELS
+  __m128 sum = _mm_setzero_ps();
+  for (int i = 0; i < 4; ++i) {
+    const __m128i bits = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(t[i]));
+    const __m128 texel = _mm_cvtepi32_ps(_mm_cvtepu16_epi32(bits));
+    sum = _mm_add_ps(sum, _mm_mul_ps(texel, _mm_set1_ps(weight[i])));
+  }
+  alignas(16) float out[4];
+  _mm_store_ps(out, _mm_mul_ps(sum, _mm_set1_ps(kScale)));
+  return {{out[0], out[1], out[2]}, out[3]};
+#else
   Rgba sum{{0, 0, 0}, 0};
   for (int i = 0; i < 4; ++i) {
-    sum.rgb +=
-        Vec3f{static_cast<float>(t[i].r), static_cast<float>(t[i].g), static_cast<float>(t[i].b)} *
-        weight[i];
-    sum.a += static_cast<float>(t[i].a) * weight[i];
+    sum.rgb += Vec3f{static_cast<float>(t[i]->r), static_cast<float>(t[i]->g),
+                     static_cast<float>(t[i]->b)} *
+               weight[i];
+    sum.a += static_cast<float>(t[i]->a) * weight[i];
   }
-  constexpr float kScale = 1.0f / 65535.0f;
   return {sum.rgb * kScale, sum.a * kScale};
+#endif
 }
 
 GLOAM_HD Rgba trilinear(const SceneView& scene, const TextureView& texture, int face, float x,
                         float row, float footprint, bool repeat) {
   // Footprint of one texel at level 0 is 2^-log2_size.
-  const float lod = footprint > 0 ? log2f(footprint) + texture.log2_size : 0.0f;
+  const float lod = footprint > 0 ? log2_of(footprint) + texture.log2_size : 0.0f;
   const float top = static_cast<float>(texture.level_count - 1);
   const float level = clamp(lod, 0.0f, top);
   const float base = floorf(level);

@@ -54,6 +54,10 @@ void set_bounds(const InstanceView& instance, const std::vector<MeshView>& meshe
   light->reach += 0.5f * length(instance.X_WG_close.p - instance.X_WG.p);
 }
 
+bool is_guided(const LightDescription& light) {
+  return light.is_static && light.casts_shadow && light.light >= 0;
+}
+
 Vec3f row(const std::vector<double>& values, int i) {
   return {static_cast<float>(values[3 * i]), static_cast<float>(values[3 * i + 1]),
           static_cast<float>(values[3 * i + 2])};
@@ -70,11 +74,14 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
   headlights_.clear();
   std::vector<float> power;
   const float scene_radius = max(description.extent, 1.0f);
+  int guide = 0;
   for (const LightDescription& in : description.lights) {
+    const int row_of_guide = is_guided(in) ? guide++ : -1;
     const size_t i = in.light < 0 ? 0 : static_cast<size_t>(in.light);
     const bool live = in.light >= 0 && i < frame.light_active.size();
     if (live ? frame.light_active[i] == 0 : !in.active) continue;
     LightView light = describe_light(in);
+    light.guide = row_of_guide;
     if (in.light >= 0) {
       light.p = row(frame.light_p, in.light);
       light.direction = normalize(row(frame.light_dir, in.light));
@@ -108,6 +115,7 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
     LightView light;
     light.kind = LightKind::kInstance;
     light.instance = static_cast<uint32_t>(i);
+    if (description.instances[i].is_static) light.guide = guide++;
     light.strength = strength / (4 * kPi);
     set_bounds(instance, meshes, &light);
     lights_.push_back(light);
@@ -124,6 +132,28 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
     lights_[i].probability = static_cast<float>(p);
     lights_[i].cdf = static_cast<float>(sum += p);
   }
+}
+
+std::vector<LightView> LightTable::guided(const RenderDescription& description,
+                                          const PoseFrame& frame,
+                                          const std::vector<InstanceView>& instances) {
+  std::vector<LightView> lights;
+  for (const LightDescription& in : description.lights) {
+    if (!is_guided(in)) continue;
+    LightView light = describe_light(in);
+    light.p = row(frame.light_p, in.light);
+    light.direction = normalize(row(frame.light_dir, in.light));
+    lights.push_back(light);
+  }
+  for (size_t i = 0; i < instances.size(); ++i) {
+    const InstanceView& instance = instances[i];
+    if (instance.light < 0 || !description.instances[i].is_static) continue;
+    LightView light;
+    light.kind = LightKind::kInstance;
+    light.instance = static_cast<uint32_t>(i);
+    lights.push_back(light);
+  }
+  return lights;
 }
 
 void LightTable::place_headlights(const Affine3f& X_WC) {

@@ -17,6 +17,10 @@ class LightTable {
   /// Headlights sit at the camera.
   void place_headlights(const Affine3f& X_WC);
 
+  /// Static lights that cast shadows, whether on or off, in the order of LightView::guide.
+  static std::vector<LightView> guided(const RenderDescription& description, const PoseFrame& frame,
+                                       const std::vector<InstanceView>& instances);
+
   const std::vector<LightView>& lights() const { return lights_; }
 
  private:

@@ -24,6 +24,10 @@ class RenderScene {
   const RenderDescription& description() const { return description_; }
   const std::vector<InstanceView>& instances() const { return instances_; }
   const std::vector<MeshView>& meshes() const { return mesh_views_; }
+  /// What a LightGuide has rows for.
+  std::vector<LightView> guided_lights(const PoseFrame& frame) const {
+    return LightTable::guided(description_, frame, instances_);
+  }
   /// Something moves between shutter open and close.
   bool has_motion() const;
   /// Invisible instances are in the tables but never traced: transparent ones, and MuJoCo's geom

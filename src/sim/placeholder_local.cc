@@ -1,0 +1,1 @@
+namespace gloam { int placeholder_sim; }
