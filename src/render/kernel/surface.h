@@ -105,12 +105,12 @@ GLOAM_HD Rgba lookup(const SceneView& scene, const MaterialView& material, int t
 /// Tangents of increasing u and v in the frame G, not normalised; false where the map is singular.
 GLOAM_HD bool tangents(const SceneView& scene, const InstanceView& instance, const RayHit& hit,
                        float time, Vec3f* tangent_u, Vec3f* tangent_v) {
-  const MeshView& mesh = scene.meshes[instance.mesh];
   if (instance.shape != ShapeType::kMesh && instance.shape != ShapeType::kDeformable) {
     *tangent_u = {1, 0, 0};
     *tangent_v = {0, 1, 0};
     return true;
   }
+  const MeshView& mesh = scene.meshes[instance.mesh];
   if (mesh.uvs.empty()) return false;
   const uint32_t* index = mesh.indices.data + 3 * static_cast<size_t>(hit.primitive);
   const Vec3f a = mesh_vertex(mesh, index[0], time);
