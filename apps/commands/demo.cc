@@ -17,7 +17,6 @@ int demo(bool quick, const std::string& out, const Globals& globals) {
   request.out = out.empty() ? (quick ? "results/demo-quick" : "results/demo") : out;
   if (quick) {
     scene->sim.duration = 4;
-    scene->render.spp = 2;
     request.rate = {5, 1};
   }
   auto world = World::compile(*scene);
