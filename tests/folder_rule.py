@@ -7,7 +7,8 @@ ROOT = Path(__file__).resolve().parent.parent
 ORDER = ["base", "geometry", "scene", "world", "sim", "render", "sensors", "control", "record", "runtime"]
 OUTSIDERS = ["src/bridge", "src/studio", "apps", "python"]
 MUJOCO_FOLDERS = {"scene", "world", "sim", "control"}
-STD_IN_KERNEL = re.compile(r"^\s*#include\s+<(?!cmath|cstdint|cstddef|cfloat)")
+# memcpy is how bits are reinterpreted on both sides; intrinsics stand behind guards of the host.
+STD_IN_KERNEL = re.compile(r"^\s*#include\s+<(?!cmath|cstdint|cstddef|cfloat|cstring|[a-z]mmintrin)")
 INCLUDE = re.compile(r'^\s*#include\s+["<]([^">]+)[">]', re.M)
 
 

@@ -165,6 +165,7 @@ void Simulator::run_until(int64_t step) {
 
 Status Simulator::step(int64_t n) {
   call([this, n] {
+    if (loop_.stepper().failed()) return;  // nothing to take up after a reset
     paused_ = false;
     until_ = kForever;
     remaining_ = n;

@@ -1,1 +1,0 @@
-namespace gloam { int placeholder_geometry; }
