@@ -17,6 +17,9 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "tests"))
+import fetch_data  # noqa: E402
+
 BUILD = ROOT / "build"
 CLANG = "-19"
 UNIT = ["base", "geometry", "scene", "world", "sim", "render", "sensors", "control", "record", "runtime", "studio"]
@@ -43,7 +46,7 @@ class Tally:
 
 def environment():
     env = dict(os.environ)
-    env.setdefault("GLOAM_TEST_DATA", str(ROOT / ".cache" / "test_data"))
+    env.setdefault("GLOAM_TEST_DATA", str(fetch_data.default_folder()))
     env.setdefault("ASAN_OPTIONS", "detect_leaks=1:abort_on_error=0:allocator_may_return_null=1")
     env.setdefault("LSAN_OPTIONS", f"suppressions={ROOT}/tests/lsan.supp:print_suppressions=0")
     env.setdefault("TSAN_OPTIONS", f"suppressions={ROOT}/tests/tsan.supp:halt_on_error=1")
