@@ -31,7 +31,11 @@ int watch(const World& world, const SimulationOptions& options, const RunCommand
   // A live picture is a quick one unless the user asked for light on the command line.
   if (!command.options.tier.empty()) view.render = scene.render;
   view.render.ev100 = scene.render.ev100;
-  if (!command.options.cameras.empty()) view.camera = command.options.cameras.front();
+  if (!command.options.cameras.empty()) {
+    view.camera = command.options.cameras.front();
+  } else if (!scene.cameras.empty()) {
+    view.camera = scene.cameras.front().name;  // the free camera may stand outside the walls
+  }
   if (!command.options.resolution.empty()) {
     if (const Status status = parse_resolution(command.options.resolution, view.width, view.height);
         !status.ok()) {
