@@ -40,8 +40,9 @@ std::vector<std::string> compare_models(const mjModel* a, const mjModel* b) {
   (void)nuser_body, (void)nuser_jnt, (void)nuser_geom, (void)nuser_site, (void)nuser_cam;
   (void)nuser_tendon, (void)nuser_actuator, (void)nuser_sensor;
   (void)nq, (void)nv, (void)na, (void)nu, (void)nmocap, (void)nplastic;
+  // The paths of files may differ in length, so they are not even read.
 #define X(type, name, n, columns)                                                                 \
-  {                                                                                               \
+  if (!says_where_it_came_from(#name)) {                                                          \
     const size_t bytes = sizeof(type) * static_cast<size_t>(a->n) * static_cast<size_t>(columns); \
     check(#name, bytes == 0 || std::memcmp(a->name, b->name, bytes) == 0);                        \
   }
