@@ -34,6 +34,9 @@ int fail(const Error& error);
 void add_access_options(CLI::App& command, FileAccess& access, std::vector<std::string>& packages);
 /// Parses `packages` (NAME=FOLDER) into `access`.
 Status apply_packages(FileAccess& access, const std::vector<std::string>& packages);
+/// Reads a scene or model within what `access` and `packages` allow, and compiles it.
+Result<World> load_world(const std::string& file, FileAccess access,
+                         const std::vector<std::string>& packages);
 /// "640x480" -> width, height.
 Status parse_resolution(const std::string& text, int& width, int& height);
 

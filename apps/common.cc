@@ -98,6 +98,13 @@ Status apply_packages(FileAccess& access, const std::vector<std::string>& packag
   return {};
 }
 
+Result<World> load_world(const std::string& file, FileAccess access,
+                         const std::vector<std::string>& packages) {
+  GLOAM_TRY_STATUS(apply_packages(access, packages));
+  GLOAM_TRY(const Scene scene, load_scene(file, access));
+  return World::compile(scene);
+}
+
 Status parse_resolution(const std::string& text, int& width, int& height) {
   const char* end = text.data() + text.size();
   const auto [after_width, error] = std::from_chars(text.data(), end, width);

@@ -13,13 +13,8 @@ struct ExportCommand {
   std::vector<std::string> packages;
 };
 
-int export_scene(const ExportCommand& command_line) {
-  ExportCommand command = command_line;
-  if (const Status status = apply_packages(command.access, command.packages); !status.ok())
-    return fail(status.error());
-  auto scene = load_scene(command.file, command.access);
-  if (!scene.ok()) return fail(scene.error());
-  auto world = World::compile(*scene);
+int export_scene(const ExportCommand& command) {
+  auto world = load_world(command.file, command.access, command.packages);
   if (!world.ok()) return fail(world.error());
   if (const Status status = world->export_mjcf(command.out); !status.ok())
     return fail(status.error());

@@ -59,13 +59,8 @@ void print_text(const WorldInfo& info, const std::vector<Section>& sections) {
   for (const Error& error : info.unsupported) fmt::print("  {}\n", error.to_string());
 }
 
-int info(const InfoCommand& command_line, const Globals& globals) {
-  InfoCommand command = command_line;
-  if (const Status status = apply_packages(command.access, command.packages); !status.ok())
-    return fail(status.error());
-  auto scene = load_scene(command.file, command.access);
-  if (!scene.ok()) return fail(scene.error());
-  auto world = World::compile(*scene);
+int info(const InfoCommand& command, const Globals& globals) {
+  auto world = load_world(command.file, command.access, command.packages);
   if (!world.ok()) return fail(world.error());
   const WorldInfo info = world->info();
   const std::vector<Section> sections = {{"bodies", &info.bodies},       {"joints", &info.joints},
