@@ -88,6 +88,13 @@ struct RecordingTracer {
     rays->push_back({ray, any});
     return tracer->trace(ray, any, hit);
   }
+  bool closest(const Ray& ray, bool active, bool, RayHit* hit) const {
+    return active && trace(ray, false, hit);
+  }
+  bool occluded(const Ray& ray, bool active) const {
+    RayHit hit;
+    return active && trace(ray, true, &hit);
+  }
 };
 
 /// The rays of one sample per pixel of the path tier, in its own order, one list per row.
@@ -117,7 +124,8 @@ std::vector<std::vector<RecordedRay>> record_rays(const Probe& probe, const Came
           going = direct_advance(probe.view, &state, found, hit);
         }
       } else {
-        trace_path(probe.view, tracer, ray, cone, {settings.max_depth, 100}, sampler);
+        trace_path(probe.view, tracer, ray, cone.width, cone.spread, {settings.max_depth, 100},
+                   sampler);
       }
     }
   });
@@ -125,7 +133,7 @@ std::vector<std::vector<RecordedRay>> record_rays(const Probe& probe, const Came
 }
 
 /// Embree and nothing else.
-void trace_bare(RTCScene scene, const std::vector<std::vector<RecordedRay>>& rows) {
+void trace_bare(const EmbreeTracer& tracer, const std::vector<std::vector<RecordedRay>>& rows) {
   parallel_for("bare", static_cast<int64_t>(rows.size()), [&](int64_t row) {
     for (const RecordedRay& r : rows[static_cast<size_t>(row)]) {
       RTCIntersectContext context;
@@ -134,10 +142,12 @@ void trace_bare(RTCScene scene, const std::vector<std::vector<RecordedRay>>& row
       query.ray = {r.ray.o.x, r.ray.o.y, r.ray.o.z,  0,   r.ray.d.x, r.ray.d.y,
                    r.ray.d.z, 0,         r.ray.tmax, ~0u, 0,         0};
       if (r.any) {
-        rtcOccluded1(scene, &context, &query.ray);
+        rtcOccluded1(tracer.fixed, &context, &query.ray);
+        if (query.ray.tfar >= 0) rtcOccluded1(tracer.moving, &context, &query.ray);
       } else {
         query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(scene, &context, &query);
+        rtcIntersect1(tracer.fixed, &context, &query);
+        rtcIntersect1(tracer.moving, &context, &query);
       }
     }
   });
@@ -234,7 +244,7 @@ int main(int argc, char** argv) {
     render_cpu.push_back(cpu_seconds() - cpu);
     render_wall.push_back(stats.trace_seconds);
     cpu = cpu_seconds();
-    trace_bare(probe.tracer.root, rays);
+    trace_bare(probe.tracer, rays);
     bare_cpu.push_back(cpu_seconds() - cpu);
   }
   const double paths = static_cast<double>(stats.paths), threads = thread_count();

@@ -82,7 +82,7 @@ inline SceneBuilder make_room(const RoomOptions& options) {
     if (std::fabs(length(shape.positions[0]) - 1) < 0.3f) {  // scale each mesh once
       for (Vec3f& v : shape.positions) v = v * half;
       for (Vec3f& n : shape.normals) {
-        n = normalize({n.x / half.x, n.y / half.y, n.z / half.z});
+        n = normalize(Vec3f{n.x / half.x, n.y / half.y, n.z / half.z});
       }
     }
     b.add(ShapeType::kMesh, {}, {}, material, body, mesh[m]);

@@ -16,42 +16,55 @@ GLOAM_HD float max(float a, float b) { return a > b ? a : b; }
 GLOAM_HD float clamp(float x, float lo, float hi) { return min(max(x, lo), hi); }
 GLOAM_HD float lerp(float a, float b, float t) { return a + (b - a) * t; }
 GLOAM_HD float sqr(float x) { return x * x; }
+GLOAM_HD float square_root(float x) { return sqrtf(x); }
 /// Square root that treats rounding below zero as zero.
 GLOAM_HD float safe_sqrt(float x) { return sqrtf(max(x, 0.0f)); }
+GLOAM_HD float select(bool condition, float a, float b) { return condition ? a : b; }
 
-struct Vec2f {
-  float x = 0, y = 0;
+/// F: float, or the lanes of render/kernel/lanes.h.
+template <class F>
+struct Vec2Of {
+  F x{}, y{};
+  friend GLOAM_HD Vec2Of operator+(Vec2Of a, Vec2Of b) { return {a.x + b.x, a.y + b.y}; }
+  friend GLOAM_HD Vec2Of operator-(Vec2Of a, Vec2Of b) { return {a.x - b.x, a.y - b.y}; }
+  friend GLOAM_HD Vec2Of operator*(Vec2Of a, F s) { return {a.x * s, a.y * s}; }
 };
-GLOAM_HD Vec2f operator+(Vec2f a, Vec2f b) { return {a.x + b.x, a.y + b.y}; }
-GLOAM_HD Vec2f operator-(Vec2f a, Vec2f b) { return {a.x - b.x, a.y - b.y}; }
-GLOAM_HD Vec2f operator*(Vec2f a, float s) { return {a.x * s, a.y * s}; }
+using Vec2f = Vec2Of<float>;
 
-struct Vec3f {
-  float x = 0, y = 0, z = 0;
-  GLOAM_HD float operator[](int i) const { return i == 0 ? x : (i == 1 ? y : z); }
+/// F: float, or the lanes of render/kernel/lanes.h.
+template <class F>
+struct Vec3Of {
+  F x{}, y{}, z{};
+  GLOAM_HD F operator[](int i) const { return i == 0 ? x : (i == 1 ? y : z); }
+
+  friend GLOAM_HD Vec3Of operator+(Vec3Of a, Vec3Of b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+  friend GLOAM_HD Vec3Of operator-(Vec3Of a, Vec3Of b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+  friend GLOAM_HD Vec3Of operator-(Vec3Of a) { return {-a.x, -a.y, -a.z}; }
+  friend GLOAM_HD Vec3Of operator*(Vec3Of a, Vec3Of b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
+  friend GLOAM_HD Vec3Of operator*(Vec3Of a, F s) { return {a.x * s, a.y * s, a.z * s}; }
+  friend GLOAM_HD Vec3Of operator*(F s, Vec3Of a) { return a * s; }
+  friend GLOAM_HD Vec3Of operator/(Vec3Of a, F s) { return a * (1.0f / s); }
+  friend GLOAM_HD Vec3Of& operator+=(Vec3Of& a, Vec3Of b) { return a = a + b; }
+  friend GLOAM_HD Vec3Of& operator*=(Vec3Of& a, Vec3Of b) { return a = a * b; }
+  friend GLOAM_HD Vec3Of& operator*=(Vec3Of& a, F s) { return a = a * s; }
+  friend GLOAM_HD auto operator==(Vec3Of a, Vec3Of b) {
+    return (a.x == b.x) & (a.y == b.y) & (a.z == b.z);
+  }
+  friend GLOAM_HD F dot(Vec3Of a, Vec3Of b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+  friend GLOAM_HD Vec3Of cross(Vec3Of a, Vec3Of b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+  }
+  friend GLOAM_HD F length_squared(Vec3Of a) { return dot(a, a); }
+  friend GLOAM_HD F length(Vec3Of a) { return square_root(dot(a, a)); }
+  friend GLOAM_HD Vec3Of normalize(Vec3Of a) { return a * (1.0f / length(a)); }
+  friend GLOAM_HD Vec3Of lerp(Vec3Of a, Vec3Of b, F t) { return a + (b - a) * t; }
+  friend GLOAM_HD F max_component(Vec3Of a) { return max(a.x, max(a.y, a.z)); }
+  /// Luminance of a linear Rec. 709 colour (ITU-R BT.709).
+  friend GLOAM_HD F luminance(Vec3Of rgb) {
+    return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z;
+  }
 };
-GLOAM_HD Vec3f operator+(Vec3f a, Vec3f b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-GLOAM_HD Vec3f operator-(Vec3f a, Vec3f b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-GLOAM_HD Vec3f operator-(Vec3f a) { return {-a.x, -a.y, -a.z}; }
-GLOAM_HD Vec3f operator*(Vec3f a, Vec3f b) { return {a.x * b.x, a.y * b.y, a.z * b.z}; }
-GLOAM_HD Vec3f operator*(Vec3f a, float s) { return {a.x * s, a.y * s, a.z * s}; }
-GLOAM_HD Vec3f operator*(float s, Vec3f a) { return a * s; }
-GLOAM_HD Vec3f operator/(Vec3f a, float s) { return a * (1.0f / s); }
-GLOAM_HD Vec3f& operator+=(Vec3f& a, Vec3f b) { return a = a + b; }
-GLOAM_HD Vec3f& operator*=(Vec3f& a, Vec3f b) { return a = a * b; }
-GLOAM_HD Vec3f& operator*=(Vec3f& a, float s) { return a = a * s; }
-GLOAM_HD bool operator==(Vec3f a, Vec3f b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
-GLOAM_HD float dot(Vec3f a, Vec3f b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-GLOAM_HD Vec3f cross(Vec3f a, Vec3f b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-GLOAM_HD float length_squared(Vec3f a) { return dot(a, a); }
-GLOAM_HD float length(Vec3f a) { return sqrtf(dot(a, a)); }
-GLOAM_HD Vec3f normalize(Vec3f a) { return a * (1.0f / length(a)); }
-GLOAM_HD Vec3f lerp(Vec3f a, Vec3f b, float t) { return a + (b - a) * t; }
-GLOAM_HD float max_component(Vec3f a) { return max(a.x, max(a.y, a.z)); }
-/// Luminance of a linear Rec. 709 colour (ITU-R BT.709).
-GLOAM_HD float luminance(Vec3f rgb) { return 0.2126f * rgb.x + 0.7152f * rgb.y + 0.0722f * rgb.z; }
+using Vec3f = Vec3Of<float>;
 
 /// Affine map of points of B into A: columns x, y, z are the images of B's axes, p that of its
 /// origin. Named X_AB.
@@ -84,16 +97,19 @@ GLOAM_HD Affine3f inverse(const Affine3f& X) {
 
 /// Orthonormal frame with z along the unit vector n (Duff et al. 2017, "Building an Orthonormal
 /// Basis, Revisited").
-struct Frame {
-  Vec3f x, y, z;
-  GLOAM_HD static Frame from_z(Vec3f n) {
-    const float sign = copysignf(1.0f, n.z);
-    const float a = -1.0f / (sign + n.z);
-    const float b = n.x * n.y * a;
-    return {{1 + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
+template <class F>
+struct FrameOf {
+  Vec3Of<F> x, y, z;
+  GLOAM_HD static FrameOf from_z(Vec3Of<F> n) {
+    const F sign = select(n.z < 0.0f, F(-1.0f), F(1.0f));
+    const F a = -1.0f / (sign + n.z);
+    const F b = n.x * n.y * a;
+    return {
+        {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x}, {b, sign + n.y * n.y * a, -n.y}, n};
   }
-  GLOAM_HD Vec3f to_local(Vec3f v) const { return {dot(v, x), dot(v, y), dot(v, z)}; }
-  GLOAM_HD Vec3f to_world(Vec3f v) const { return x * v.x + y * v.y + z * v.z; }
+  GLOAM_HD Vec3Of<F> to_local(Vec3Of<F> v) const { return {dot(v, x), dot(v, y), dot(v, z)}; }
+  GLOAM_HD Vec3Of<F> to_world(Vec3Of<F> v) const { return x * v.x + y * v.y + z * v.z; }
 };
+using Frame = FrameOf<float>;
 
 }  // namespace gloam

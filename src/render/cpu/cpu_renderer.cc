@@ -227,14 +227,8 @@ class Tile {
   }
 
   void render_path() {
-    const auto wave = std::make_unique<Wave<PathState>>();
     for (int index = 0; index < job_.settings.spp; ++index) {
-      sample(
-          wave.get(), index, path_start,
-          [this](PathState* state, bool found, const RayHit& hit) {
-            return path_advance(job_.scene, job_.path, state, found, hit);
-          },
-          [](int, const PathState&) {});
+      for (int first = 0; first < count_; first += kLaneCount) sample_lanes(first, index);
     }
   }
 
@@ -288,6 +282,45 @@ class Tile {
   }
 
  private:
+  /// One path through each of the pixels from `first` on.
+  void sample_lanes(int first, int index) {
+    using F = FloatLanes;
+    const int used = std::min(kLaneCount, count_ - first);
+    MaskLanes active = false;
+    UintLanes x, y;
+    for (int i = 0; i < kLaneCount; ++i) {
+      const int pixel = first + std::min(i, used - 1);
+      set_lane(&active, i, i < used);
+      set_lane(&x, i, static_cast<uint32_t>(x_[pixel]));
+      set_lane(&y, i, static_cast<uint32_t>(y_[pixel]));
+    }
+    const RenderSettings& settings = job_.settings;
+    auto sampler =
+        SamplerOf<F>::make(settings.seed, settings.frame, x, y,
+                           static_cast<uint32_t>(settings.first_sample + index), job_.log2_samples);
+    const Vec2Of<F> filter = sampler.next_2d();
+    const F time = job_.has_motion ? sampler.next_1d() : F(0.0f);
+    RayOf<F> ray;
+    ray.time = time;
+    F width, spread;
+    for (int i = 0; i < kLaneCount; ++i) {
+      RayCone cone;
+      const Ray one = center_ray(first + std::min(i, used - 1),
+                                 sample_pixel_filter(lane(filter, i)), lane(time, i), &cone);
+      set_lane(&ray.o, i, one.o);
+      set_lane(&ray.d, i, one.d);
+      set_lane(&width, i, cone.width);
+      set_lane(&spread, i, cone.spread);
+    }
+    const PathResultOf<F> result =
+        trace_path(job_.scene, job_.tracer, ray, width, spread, job_.path, sampler, active);
+    for (int i = 0; i < used; ++i) {
+      mean_[first + i].add({lane(result.radiance, i), lane(result.albedo, i),
+                            lane(result.normal, i), lane(result.rays, i)});
+      rays_ += lane(result.rays, i);
+    }
+  }
+
   size_t pixel_of(int i) const { return static_cast<size_t>(y_[i]) * job_.film->width + x_[i]; }
   Ray center_ray(int i, Vec2f offset, float time, RayCone* cone) const {
     return camera_ray(job_.camera, static_cast<float>(x_[i]) + 0.5f + offset.x,

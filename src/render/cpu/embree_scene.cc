@@ -107,16 +107,14 @@ int EmbreeTracer::hit_planes(const Ray& ray, float* tmax) const {
   return plane;
 }
 
-void EmbreeTracer::resolve(uint32_t instance_id, uint32_t geometry_id, const Ray& ray,
+void EmbreeTracer::resolve(uint32_t instance_id, uint32_t geometry_id, float time,
                            RayHit* hit) const {
   if (instance_id == RTC_INVALID_GEOMETRY_ID) {
-    hit->instance = root_rows[geometry_id];
-  } else if (instance_id == static_id) {
-    hit->instance = static_rows[geometry_id];
+    hit->instance = rows[geometry_id];
   } else {
-    hit->instance = root_rows[instance_id];
+    hit->instance = rows[instance_id];
     Affine3f between;
-    hit->normal = transform_vector(pose_at(instances[hit->instance], ray.time, &between),
+    hit->normal = transform_vector(pose_at(instances[hit->instance], time, &between),
                                    hit->normal);  // Embree's is in the instance's frame
   }
 }
@@ -131,20 +129,137 @@ bool EmbreeTracer::trace(const Ray& ray, bool any, RayHit* hit) const {
   query.ray = {ray.o.x, ray.o.y,  ray.o.z, 0.0f, ray.d.x, ray.d.y,
                ray.d.z, ray.time, tmax,    ~0u,  0,       0};
   if (any) {
-    rtcOccluded1(root, &context, &query.ray);
+    if (fixed != nullptr) rtcOccluded1(fixed, &context, &query.ray);
+    if (moving != nullptr && query.ray.tfar >= 0) rtcOccluded1(moving, &context, &query.ray);
     return query.ray.tfar < 0;
   }
   query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(root, &context, &query);
+  if (fixed != nullptr) rtcIntersect1(fixed, &context, &query);
+  if (moving != nullptr) rtcIntersect1(moving, &context, &query);
   const RTCHit& h = query.hit;
   const bool found = h.geomID != RTC_INVALID_GEOMETRY_ID;
   if (found) {
     *hit = {query.ray.tfar, 0, h.primID, h.u, h.v, {h.Ng_x, h.Ng_y, h.Ng_z}};
-    resolve(h.instID[0], h.geomID, ray, hit);
+    resolve(h.instID[0], h.geomID, ray.time, hit);
   } else if (plane >= 0) {
     *hit = {.t = tmax, .instance = static_cast<uint32_t>(plane)};
   }
   return found || plane >= 0;
+}
+
+bool EmbreeTracer::closest(const Ray& ray, bool active, bool, RayHit* hit) const {
+  return active && trace(ray, false, hit);
+}
+bool EmbreeTracer::occluded(const Ray& ray, bool active) const {
+  RayHit hit;
+  return active && trace(ray, true, &hit);
+}
+
+UintLanes EmbreeTracer::hit_planes(const RayOf<FloatLanes>& ray, FloatLanes* tmax) const {
+  using F = FloatLanes;
+  UintLanes plane = 0u;
+  for (uint32_t i = 0; i < planes.size; ++i) {
+    const InstanceView& instance = instances[planes[i]];
+    Vec3Of<F> X[4];
+    const Affine3f &a = instance.X_WG, &b = instance.X_WG_close;
+    const Vec3f open[4] = {a.x, a.y, a.z, a.p}, close[4] = {b.x, b.y, b.z, b.p};
+    for (int k = 0; k < 4; ++k) {
+      X[k] = in_all_lanes<F>(open[k]);
+      if (instance.moving) X[k] = lerp(X[k], in_all_lanes<F>(close[k]), ray.time);
+    }
+    const Vec3Of<F> o = ray.o - X[3];
+    const F slope = dot(ray.d, X[2]), t = -dot(o, X[2]) / slope;
+    MaskLanes hit = (slope < 0.0f) & (t > 0.0f) & (t < *tmax);
+    for (int k = 0; k < 2; ++k) {
+      if (!(instance.size[k] > 0)) continue;
+      hit = hit & (magnitude(dot(o, X[k]) + t * dot(ray.d, X[k])) <= instance.size[k]);
+    }
+    *tmax = select(hit, t, *tmax);
+    plane = select(hit, UintLanes(planes[i] + 1), plane);
+  }
+  return plane;
+}
+
+namespace {
+
+template <class Native>
+void store(const Native& lanes, void* to) {
+  std::memcpy(to, &lanes, sizeof(Native));
+}
+template <class T>
+T load(const void* from) {
+  T lanes;
+  std::memcpy(&lanes.v, from, sizeof lanes.v);
+  return lanes;
+}
+
+void fill(const RayOf<FloatLanes>& ray, const FloatLanes& tmax, RTCRay8* q) {
+  store(ray.o.x.v, q->org_x);
+  store(ray.o.y.v, q->org_y);
+  store(ray.o.z.v, q->org_z);
+  store(FloatLanes(0.0f).v, q->tnear);
+  store(ray.d.x.v, q->dir_x);
+  store(ray.d.y.v, q->dir_y);
+  store(ray.d.z.v, q->dir_z);
+  store(ray.time.v, q->time);
+  store(tmax.v, q->tfar);
+  store(UintLanes(~0u).v, q->mask);
+  store(UintLanes(0u).v, q->id);
+  store(UintLanes(0u).v, q->flags);
+}
+
+}  // namespace
+
+MaskLanes EmbreeTracer::closest(const RayOf<FloatLanes>& ray, MaskLanes active, bool coherent,
+                                RayHitOf<FloatLanes>* hit) const {
+  FloatLanes tmax = ray.tmax;
+  const UintLanes plane = hit_planes(ray, &tmax);
+  alignas(32) RTCRayHit8 q;
+  fill(ray, tmax, &q.ray);
+  store(UintLanes(RTC_INVALID_GEOMETRY_ID).v, q.hit.geomID);
+  store(UintLanes(RTC_INVALID_GEOMETRY_ID).v, q.hit.instID[0]);
+  alignas(32) int32_t valid[kLaneCount];
+  store(active.v, valid);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  if (fixed != nullptr) rtcIntersect8(valid, fixed, &context, &q);
+  if (moving != nullptr) rtcIntersect8(valid, moving, &context, &q);
+  const MaskLanes found = active & (load<UintLanes>(q.hit.geomID) != RTC_INVALID_GEOMETRY_ID);
+  hit->t = load<FloatLanes>(q.ray.tfar);
+  hit->primitive = load<UintLanes>(q.hit.primID);
+  hit->u = load<FloatLanes>(q.hit.u);
+  hit->v = load<FloatLanes>(q.hit.v);
+  hit->normal = {load<FloatLanes>(q.hit.Ng_x), load<FloatLanes>(q.hit.Ng_y),
+                 load<FloatLanes>(q.hit.Ng_z)};
+  hit->instance = plane + UintLanes(~0u);  // row, where a plane is the nearest
+  for (uint32_t left = bits_of(found); left != 0; left &= left - 1) {
+    const int i = __builtin_ctz(left);
+    RayHit one;
+    one.normal = lane(hit->normal, i);
+    resolve(q.hit.instID[0][i], q.hit.geomID[i], lane(ray.time, i), &one);
+    set_lane(&hit->instance, i, one.instance);
+    set_lane(&hit->normal, i, one.normal);
+  }
+  return found | (active & (plane != 0u));
+}
+
+MaskLanes EmbreeTracer::occluded(const RayOf<FloatLanes>& ray, MaskLanes active) const {
+  FloatLanes tmax = ray.tmax;
+  MaskLanes blocked = active & (hit_planes(ray, &tmax) != 0u);
+  alignas(32) RTCRay8 q;
+  fill(ray, tmax, &q);
+  alignas(32) int32_t valid[kLaneCount];
+  store((active & !blocked).v, valid);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  if (fixed != nullptr) rtcOccluded8(valid, fixed, &context, &q);
+  blocked = blocked | (active & (load<FloatLanes>(q.tfar) < 0.0f));
+  const MaskLanes open = active & !blocked;
+  if (moving == nullptr || !any(open)) return blocked;
+  store(open.v, valid);
+  rtcOccluded8(valid, moving, &context, &q);
+  return blocked | (open & (load<FloatLanes>(q.tfar) < 0.0f));
 }
 
 void EmbreeTracer::trace_packet(const Ray* const* rays, int count, bool any, bool coherent,
@@ -174,16 +289,23 @@ void EmbreeTracer::trace_packet(const Ray* const* rays, int count, bool any, boo
   rtcInitIntersectContext(&context);
   if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   if (any) {
-    rtcOccluded16(valid, root, &context, &q.ray);
-    for (int i = 0; i < count; ++i) found[i] = plane[i] >= 0 || q.ray.tfar[i] < 0;
+    if (fixed != nullptr) rtcOccluded16(valid, fixed, &context, &q.ray);
+    for (int i = 0; i < count; ++i) {
+      found[i] = plane[i] >= 0 || q.ray.tfar[i] < 0;
+      valid[i] = found[i] ? 0 : -1;
+    }
+    if (moving == nullptr) return;
+    rtcOccluded16(valid, moving, &context, &q.ray);
+    for (int i = 0; i < count; ++i) found[i] = found[i] || q.ray.tfar[i] < 0;
     return;
   }
-  rtcIntersect16(valid, root, &context, &q);
+  if (fixed != nullptr) rtcIntersect16(valid, fixed, &context, &q);
+  if (moving != nullptr) rtcIntersect16(valid, moving, &context, &q);
   for (int i = 0; i < count; ++i) {
     if (q.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID) {
       hits[i] = {q.ray.tfar[i], 0,          q.hit.primID[i],
                  q.hit.u[i],    q.hit.v[i], {q.hit.Ng_x[i], q.hit.Ng_y[i], q.hit.Ng_z[i]}};
-      resolve(q.hit.instID[0][i], q.hit.geomID[i], *rays[i], &hits[i]);
+      resolve(q.hit.instID[0][i], q.hit.geomID[i], rays[i]->time, &hits[i]);
       found[i] = true;
     } else {
       if (plane[i] >= 0)
@@ -247,8 +369,9 @@ RtcOwner<RTCGeometry> EmbreeScene::shape_geometry(ShapeType shape, Vec3f size,
   return geometry;
 }
 
-void EmbreeScene::build_static(const RenderScene& scene) {
-  static_ = new_scene();
+void EmbreeScene::build_fixed(const RenderScene& scene) {
+  fixed_ = new_scene();
+  bool empty = true;
   const std::vector<InstanceView>& instances = scene.instances();
   for (size_t i = 0; i < instances.size(); ++i) {
     const InstanceView& in = instances[i];
@@ -270,11 +393,15 @@ void EmbreeScene::build_static(const RenderScene& scene) {
       geometry = shape_geometry(in.shape, in.size, in.X_WG);
     }
     rtcCommitGeometry(geometry.get());
-    rtcAttachGeometryByID(static_.get(), geometry.get(),
-                          static_cast<unsigned>(static_rows_.size()));
-    static_rows_.push_back(static_cast<uint32_t>(i));
+    rtcAttachGeometryByID(fixed_.get(), geometry.get(), static_cast<unsigned>(rows_.size()));
+    rows_.push_back(static_cast<uint32_t>(i));
+    empty = false;
   }
-  rtcCommitScene(static_.get());
+  if (empty) {
+    fixed_.reset();
+  } else {
+    rtcCommitScene(fixed_.get());
+  }
 }
 
 void EmbreeScene::build_shapes(const RenderScene& scene) {
@@ -299,47 +426,44 @@ void EmbreeScene::build_shapes(const RenderScene& scene) {
     }
     RtcOwner<RTCGeometry> instance(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
     rtcSetGeometryInstancedScene(instance.get(), shape.get());
-    rtcAttachGeometryByID(root_.get(), instance.get(), static_cast<unsigned>(root_rows_.size()));
-    root_rows_.push_back(static_cast<uint32_t>(i));
-    root_geometries_.push_back(std::move(instance));
+    rtcAttachGeometryByID(moving_.get(), instance.get(), static_cast<unsigned>(rows_.size()));
+    rows_.push_back(static_cast<uint32_t>(i));
+    moving_geometries_.push_back(std::move(instance));
   }
   parallel_for("shape BVHs", static_cast<int64_t>(to_commit.size()),
                [&](int64_t i) { rtcCommitScene(to_commit[i]); });
 }
 
-void EmbreeScene::make_root(const RenderScene& scene) {
-  const std::vector<InstanceView>& instances = scene.instances();
-  for (size_t i = 0; i < instances.size(); ++i) {
-    if (is_infinite_plane(instances[i]) && scene.is_drawn(i)) {
-      planes_.push_back(static_cast<uint32_t>(i));
-    }
-  }
-  build_static(scene);
-  root_ = new_scene();
-  rtcSetSceneFlags(root_.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
+void EmbreeScene::build_moving(const RenderScene& scene) {
+  moving_ = new_scene();
+  rtcSetSceneFlags(moving_.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
   build_shapes(scene);
+  const std::vector<InstanceView>& instances = scene.instances();
   for (size_t i = 0; i < instances.size(); ++i) {
     if (instances[i].shape != ShapeType::kDeformable || !scene.is_drawn(i)) continue;
     RtcOwner<RTCGeometry> geometry = mesh_geometry(scene.meshes()[instances[i].mesh]);
     rtcSetGeometryBuildQuality(geometry.get(), RTC_BUILD_QUALITY_REFIT);
-    rtcAttachGeometryByID(root_.get(), geometry.get(), static_cast<unsigned>(root_rows_.size()));
-    root_rows_.push_back(static_cast<uint32_t>(i));
-    root_geometries_.push_back(std::move(geometry));
+    rtcAttachGeometryByID(moving_.get(), geometry.get(), static_cast<unsigned>(rows_.size()));
+    rows_.push_back(static_cast<uint32_t>(i));
+    moving_geometries_.push_back(std::move(geometry));
   }
-  if (root_rows_.empty() || static_rows_.empty()) return;
-  RtcOwner<RTCGeometry> instance(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
-  rtcSetGeometryInstancedScene(instance.get(), static_.get());
-  set_transform(instance.get(), 0, {});
-  rtcCommitGeometry(instance.get());
-  static_id_ = static_cast<uint32_t>(root_rows_.size());
-  rtcAttachGeometryByID(root_.get(), instance.get(), static_id_);
+  if (rows_.empty()) moving_.reset();
 }
 
 Status EmbreeScene::update(const RenderScene& scene) {
-  if (root_ == nullptr) make_root(scene);
-  for (size_t g = 0; g < root_geometries_.size(); ++g) {
-    const RTCGeometry geometry = root_geometries_[g].get();
-    const InstanceView& in = scene.instances()[root_rows_[g]];
+  if (!built_) {
+    for (size_t i = 0; i < scene.instances().size(); ++i) {
+      if (is_infinite_plane(scene.instances()[i]) && scene.is_drawn(i)) {
+        planes_.push_back(static_cast<uint32_t>(i));
+      }
+    }
+    build_moving(scene);
+    build_fixed(scene);
+    built_ = true;
+  }
+  for (size_t g = 0; g < moving_geometries_.size(); ++g) {
+    const RTCGeometry geometry = moving_geometries_[g].get();
+    const InstanceView& in = scene.instances()[rows_[g]];
     if (in.shape == ShapeType::kDeformable) {
       const MeshView& mesh = scene.meshes()[in.mesh];
       const bool blurred = !mesh.positions_close.empty();
@@ -353,7 +477,7 @@ Status EmbreeScene::update(const RenderScene& scene) {
     }
     rtcCommitGeometry(geometry);
   }
-  if (!root_rows_.empty()) rtcCommitScene(root_.get());
+  if (moving_ != nullptr) rtcCommitScene(moving_.get());
   if (const RTCError error = rtcGetDeviceError(device_.get()); error != RTC_ERROR_NONE) {
     return Error{ErrorKind::kUnsupported,
                  error == RTC_ERROR_OUT_OF_MEMORY
@@ -364,11 +488,9 @@ Status EmbreeScene::update(const RenderScene& scene) {
 }
 
 EmbreeTracer EmbreeScene::static_tracer(const RenderScene& scene) const {
-  EmbreeTracer tracer;
-  if (static_rows_.empty()) return tracer;
-  tracer.root = static_.get();
-  tracer.root_rows = {static_rows_.data(), static_cast<uint32_t>(static_rows_.size())};
-  tracer.instances = {scene.instances().data(), static_cast<uint32_t>(scene.instances().size())};
+  EmbreeTracer tracer = this->tracer(scene);
+  tracer.moving = nullptr;
+  tracer.planes = {};
   return tracer;
 }
 
@@ -378,11 +500,10 @@ EmbreeTracer EmbreeScene::tracer(const RenderScene& scene) const {
                                                           static_cast<uint32_t>(v.size())};
   };
   EmbreeTracer tracer;
-  const bool has_root = !root_rows_.empty();
-  tracer.root = has_root ? root_.get() : static_.get();
-  tracer.static_id = static_id_;
-  tracer.root_rows = has_root ? span(root_rows_) : span(static_rows_);
-  tracer.static_rows = span(static_rows_);
+  tracer.fixed = fixed_.get();
+  tracer.moving = moving_.get();
+  tracer.rows = span(rows_);
+  tracer.first_fixed = static_cast<uint32_t>(moving_geometries_.size());
   tracer.planes = span(planes_);
   tracer.instances = span(scene.instances());
   return tracer;

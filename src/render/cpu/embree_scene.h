@@ -37,20 +37,30 @@ class EmbreeTracer {
 
   /// One ray: the closest hit, or with `any` just whether there is one.
   bool trace(const Ray& ray, bool any, RayHit* hit) const;
+  /// The rays of the `active` lanes; returns those that hit something.
+  bool closest(const Ray& ray, bool active, bool coherent, RayHit* hit) const;
+  bool occluded(const Ray& ray, bool active) const;
+  MaskLanes closest(const RayOf<FloatLanes>& ray, MaskLanes active, bool coherent,
+                    RayHitOf<FloatLanes>* hit) const;
+  MaskLanes occluded(const RayOf<FloatLanes>& ray, MaskLanes active) const;
   /// Up to kPacket rays of one kind at once; even incoherent ones are faster so.
   void trace_packet(const Ray* const* rays, int count, bool any, bool coherent, RayHit* hits,
                     bool* found) const;
 
-  RTCScene root = nullptr;
-  uint32_t static_id = RTC_INVALID_GEOMETRY_ID;
-  DeviceSpan<const uint32_t> root_rows, static_rows;  ///< Embree id -> instance
-  DeviceSpan<const uint32_t> planes;                  ///< rows of infinite planes
+  // Two scenes, one after the other: an instance around all that is static would cost every ray
+  // more.
+  RTCScene fixed = nullptr, moving = nullptr;  ///< either may be absent
+  DeviceSpan<const uint32_t> rows;             ///< Embree id -> instance, those of `moving` first
+  uint32_t first_fixed = 0;                    ///< id of the first of `fixed`
+  DeviceSpan<const uint32_t> planes;           ///< rows of infinite planes
   DeviceSpan<const InstanceView> instances;
 
  private:
   /// Nearest infinite plane before *tmax, which moves there; -1 = none.
   int hit_planes(const Ray& ray, float* tmax) const;
-  void resolve(uint32_t instance_id, uint32_t geometry_id, const Ray& ray, RayHit* hit) const;
+  /// The same in lanes: row + 1, 0 = none.
+  UintLanes hit_planes(const RayOf<FloatLanes>& ray, FloatLanes* tmax) const;
+  void resolve(uint32_t instance_id, uint32_t geometry_id, float time, RayHit* hit) const;
 };
 
 class EmbreeScene {
@@ -62,28 +72,29 @@ class EmbreeScene {
   /// object.
   Status update(const RenderScene& scene);
   EmbreeTracer tracer(const RenderScene& scene) const;
-  /// Of what never moves alone, without infinite planes; null `root` = nothing.
+  /// Of what never moves alone, without infinite planes; no scene = nothing.
   EmbreeTracer static_tracer(const RenderScene& scene) const;
 
  private:
   using ShapeKey = std::tuple<ShapeType, uint32_t, float, float, float>;
 
   EmbreeScene() = default;
-  void build_static(const RenderScene& scene);
+  void build_fixed(const RenderScene& scene);
+  void build_moving(const RenderScene& scene);
   void build_shapes(const RenderScene& scene);
-  void make_root(const RenderScene& scene);
   RtcOwner<RTCGeometry> mesh_geometry(const MeshView& mesh);
   RtcOwner<RTCGeometry> shape_geometry(ShapeType shape, Vec3f size, const Affine3f& X_SG);
   RtcOwner<RTCGeometry> box_geometry(Vec3f size, const Affine3f& X_SG);
   RtcOwner<RTCScene> new_scene();
 
   RtcOwner<RTCDevice> device_;
-  RtcOwner<RTCScene> static_;  ///< geometry that never moves, in world coordinates
+  RtcOwner<RTCScene> fixed_;  ///< geometry that never moves, in world coordinates; null = none
   std::map<ShapeKey, RtcOwner<RTCScene>> shapes_;  ///< one BVH per distinct moving shape
-  RtcOwner<RTCScene> root_;                        ///< instances; null when nothing moves
-  std::vector<RtcOwner<RTCGeometry>> root_geometries_;
-  uint32_t static_id_ = RTC_INVALID_GEOMETRY_ID;
-  std::vector<uint32_t> static_rows_, root_rows_, planes_;
+  RtcOwner<RTCScene> moving_;                      ///< instances, deformables; null = none
+  std::vector<RtcOwner<RTCGeometry>> moving_geometries_;
+  std::vector<uint32_t> rows_;  ///< Embree id -> instance: those of moving_, then those of fixed_
+  std::vector<uint32_t> planes_;
+  bool built_ = false;
   std::vector<std::unique_ptr<ShapeGeometry>> shape_data_;  ///< Embree keeps pointers to them
   std::vector<std::unique_ptr<std::vector<Vec3f>>> vertex_data_;
 };

@@ -143,7 +143,7 @@ void LightGuideStore::look_for_lights(const SceneView& scene, const EmbreeTracer
               ray->o = point_in(cell, next_3d(&sampler));
               const float pick = sampler.next_1d();
               const LightSample sample =
-                  sample_one_light(scene, light, ray->o, pick, sampler.next_2d(), 0);
+                  sample_one_light(scene, light, ray->o, pick, sampler.next_2d(), 0.0f);
               if (!(sample.pdf > 0)) return false;
               const Vec3f to = sample.wi * sample.distance + sample.lift;
               ray->d = normalize(to);
@@ -223,12 +223,14 @@ void LightGuideStore::build(SceneView scene, const EmbreeTracer& statics,
                             const std::vector<LightView>& lights) {
   grid_ = {};
   const bool has_sky = scene.sky_texture >= 0 || luminance(scene.sky_ambient) > 0;
-  if (statics.root == nullptr || lights.size() > kMaxWeighedLights ||
+  if (statics.fixed == nullptr || lights.size() > kMaxWeighedLights ||
       lights.size() + (has_sky ? 1 : 0) < 2) {
     return;
   }
   Vec3f low, size;
-  find_crowd(scene, statics.root_rows, &low, &size);
+  find_crowd(scene,
+             {statics.rows.data + statics.first_fixed, statics.rows.size - statics.first_fixed},
+             &low, &size);
   const float longest = max_component(size);
   if (!(longest > 0 && longest < 1e6f)) return;
   grid_.low = low;

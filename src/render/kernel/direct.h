@@ -17,7 +17,7 @@ struct DirectState {
   RayHit first;            ///< the camera ray's first hit, if that was it
 
   bool is_shadow = false;
-  int layers = 0, passed = 0;
+  uint32_t layers = 0, passed = 0;
   uint32_t next_light = 0;
   float transmittance = 1;  ///< of the surfaces passed so far
   RayCone cone;
@@ -84,7 +84,7 @@ GLOAM_HD bool next_shadow(const SceneView& scene, DirectState* d) {
       continue;
     }
     d->passed = 0;
-    aim_shadow_ray(s, light, &d->ray);
+    aim_shadow_ray(s.p, s.geometric, s.t, light, &d->ray);
     return true;
   }
   return false;

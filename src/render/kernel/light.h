@@ -8,74 +8,153 @@
 
 namespace gloam {
 
-struct LightSample {
-  Vec3f wi;            ///< unit, from the surface to the light
-  float distance = 0;  ///< [m]
-  Vec3f lift;          ///< moves the point on the light off its surface [m]
-  Vec3f radiance;      ///< [cd/m²]; delta lights: illuminance on a facing surface [lx]
-  float pdf = 0;       ///< per solid angle, selection included; delta: of the selection; 0 = none
-  bool is_delta = false;
-  bool casts_shadow = true;
+template <class F>
+struct LightSampleOf {
+  Vec3Of<F> wi;        ///< unit, from the surface to the light
+  F distance{};        ///< [m]
+  Vec3Of<F> lift;      ///< moves the point on the light off its surface [m]
+  Vec3Of<F> radiance;  ///< [cd/m²]; delta lights: illuminance on a facing surface [lx]
+  F pdf{};             ///< per solid angle, selection included; delta: of the selection; 0 = none
+  MaskOf<F> is_delta = MaskOf<F>(false);
+  MaskOf<F> casts_shadow = MaskOf<F>(true);
 };
+using LightSample = LightSampleOf<float>;
+
+template <class F>
+GLOAM_HD LightSampleOf<F> select(MaskOf<F> m, const LightSampleOf<F>& a,
+                                 const LightSampleOf<F>& b) {
+  return {select<F>(m, a.wi, b.wi),
+          select(m, a.distance, b.distance),
+          select<F>(m, a.lift, b.lift),
+          select<F>(m, a.radiance, b.radiance),
+          select(m, a.pdf, b.pdf),
+          select(m, a.is_delta, b.is_delta),
+          select(m, a.casts_shadow, b.casts_shadow)};
+}
+template <class F>
+GLOAM_HD void set_lane(LightSampleOf<F>* s, int i, const LightSample& value) {
+  set_lane(&s->wi, i, value.wi);
+  set_lane(&s->distance, i, value.distance);
+  set_lane(&s->lift, i, value.lift);
+  set_lane(&s->radiance, i, value.radiance);
+  set_lane(&s->pdf, i, value.pdf);
+  set_lane(&s->is_delta, i, value.is_delta);
+  set_lane(&s->casts_shadow, i, value.casts_shadow);
+}
 
 /// Share of a lamp's full intensity in the direction from its centre to p.
-GLOAM_HD float spot_falloff(const LightView& light, Vec3f to_p) {
+template <class F>
+GLOAM_HD F spot_falloff(const LightView& light, Vec3Of<F> to_p) {
   if (light.kind != LightKind::kSpot) return 1.0f;
-  const float cosine = dot(light.direction, to_p);
-  if (cosine <= light.cos_cutoff) return 0.0f;
-  if (cosine >= light.cos_inner) return 1.0f;
-  const float angle = acosf(clamp(cosine, -1.0f, 1.0f));
-  const float x = (light.cutoff - angle) / max(light.cutoff - light.inner, 1e-6f);
-  return x * x * (3.0f - 2.0f * x);
+  const F cosine = dot(in_all_lanes<F>(light.direction), to_p);
+  F share = select(cosine >= light.cos_inner, F(1.0f), F(0.0f));
+  const MaskOf<F> rim = (cosine > light.cos_cutoff) & (cosine < light.cos_inner);
+  if (!any(rim)) return share;
+  for (int i = 0; i < Lanes<F>::kCount; ++i) {
+    if (!lane(rim, i)) continue;
+    const float angle = acosf(clamp(lane(cosine, i), -1.0f, 1.0f));
+    const float x = (light.cutoff - angle) / max(light.cutoff - light.inner, 1e-6f);
+    set_lane(&share, i, x * x * (3.0f - 2.0f * x));
+  }
+  return share;
 }
 
 namespace lights {
 
-GLOAM_HD LightSample sample_lamp(const LightView& light, Vec3f p, Vec2f u) {
-  LightSample s;
-  const Vec3f to = light.p - p;
-  const float d2 = max(dot(to, to), 1e-12f), d = sqrtf(d2);
-  const Vec3f axis = to / d;
-  const Vec3f intensity = light.intensity * spot_falloff(light, -axis);
-  if (max_component(intensity) <= 0) return s;
+template <class F>
+GLOAM_HD LightSampleOf<F> sample_lamp(const LightView& light, Vec3Of<F> p, Vec2Of<F> u) {
+  LightSampleOf<F> s;
+  const Vec3Of<F> to = in_all_lanes<F>(light.p) - p;
+  const F d2 = max(dot(to, to), 1e-12f), d = square_root(d2);
+  const Vec3Of<F> axis = to / d;
+  const Vec3Of<F> intensity = in_all_lanes<F>(light.intensity) * spot_falloff(light, -axis);
   const float r2 = light.radius * light.radius;
-  if (light.is_delta || d2 <= r2 * 1.0001f) {  // within the sphere it acts as a point
-    s.wi = axis;
-    s.distance = d;
-    s.radiance = intensity / max(d2, r2);
-    s.pdf = 1;
-    s.is_delta = true;
-    return s;
+  // Within the sphere it acts as a point.
+  const MaskOf<F> point = MaskOf<F>(light.is_delta) | (d2 <= r2 * 1.0001f);
+  s.wi = axis;
+  s.distance = d;
+  s.radiance = intensity / max(d2, r2);
+  s.pdf = 1.0f;
+  s.is_delta = point;
+  if (any(!point)) {
+    const F one_minus_cos = one_minus_cos_of(min(r2 / d2, 1.0f));
+    const Vec3Of<F> wi = FrameOf<F>::from_z(axis).to_world(sample_cone(one_minus_cos, u));
+    const F along = dot(to, wi);
+    s.wi = select<F>(point, s.wi, wi);
+    s.distance = select(point, s.distance, along - safe_sqrt(r2 - max(d2 - along * along, 0.0f)));
+    s.radiance = select<F>(point, s.radiance, intensity * (1.0f / (kPi * r2)));
+    s.pdf = select(point, s.pdf, cone_pdf(one_minus_cos));
   }
-  const float one_minus_cos = one_minus_cos_of(r2 / d2);
-  s.wi = Frame::from_z(axis).to_world(sample_cone(one_minus_cos, u));
-  const float along = dot(to, s.wi);
-  s.distance = along - safe_sqrt(r2 - max(d2 - along * along, 0.0f));
-  s.radiance = intensity / (kPi * r2);
-  s.pdf = cone_pdf(one_minus_cos);
+  s.pdf = select(max_component(intensity) > 0.0f, s.pdf, F(0.0f));
   return s;
 }
 
-GLOAM_HD LightSample sample_sun(const LightView& light, Vec2f u) {
-  LightSample s;
+template <class F>
+GLOAM_HD LightSampleOf<F> sample_sun(const LightView& light, Vec2Of<F> u) {
+  LightSampleOf<F> s;
   s.distance = 1e7f;
   const Vec3f axis = -light.direction;
   if (light.is_delta) {
-    s.wi = axis;
-    s.radiance = light.intensity;
-    s.pdf = 1;
+    s.wi = in_all_lanes<F>(axis);
+    s.radiance = in_all_lanes<F>(light.intensity);
+    s.pdf = 1.0f;
     s.is_delta = true;
     return s;
   }
   const float sin2 = light.radius * light.radius;
-  s.wi = Frame::from_z(axis).to_world(sample_cone(one_minus_cos_of(sin2), u));
-  s.radiance = light.intensity / (kPi * sin2);
+  s.wi =
+      FrameOf<F>::from_z(in_all_lanes<F>(axis)).to_world(sample_cone(F(one_minus_cos_of(sin2)), u));
+  s.radiance = in_all_lanes<F>(light.intensity / (kPi * sin2));
   s.pdf = cone_pdf(one_minus_cos_of(sin2));
   return s;
 }
 
 GLOAM_HD Vec3f to_instance(const Affine3f& X_WG, Vec3f v) {
   return {dot(v, X_WG.x), dot(v, X_WG.y), dot(v, X_WG.z)};
+}
+
+/// A box that stands still, without textures: every lane takes its own face.
+template <class F>
+GLOAM_HD LightSampleOf<F> sample_box(const InstanceView& instance, Vec3f emission, Vec3Of<F> p,
+                                     F pick, Vec2Of<F> u) {
+  LightSampleOf<F> s;
+  const Affine3f& X_WG = instance.X_WG;
+  const Vec3Of<F> x = in_all_lanes<F>(X_WG.x), y = in_all_lanes<F>(X_WG.y),
+                  z = in_all_lanes<F>(X_WG.z), origin = in_all_lanes<F>(X_WG.p);
+  const Vec3Of<F> d = p - origin, p_G{dot(d, x), dot(d, y), dot(d, z)};
+  Vec3Of<F> q, n_G;
+  const F pdf_area = sample_box_from(instance.size, p_G, pick, u, &q, &n_G);
+  const Vec3Of<F> p_W = x * q.x + y * q.y + z * q.z + origin;
+  const Vec3Of<F> n_W = x * n_G.x + y * n_G.y + z * n_G.z;
+  const Vec3Of<F> to = p_W - p;
+  const F d2 = dot(to, to);
+  s.distance = square_root(d2);
+  s.wi = to / s.distance;
+  const F cosine = -dot(s.wi, n_W);
+  s.radiance = in_all_lanes<F>(emission);
+  s.pdf = select((pdf_area > 0.0f) & (cosine > 1e-6f) & (s.distance > 1e-6f),
+                 pdf_area * d2 / cosine, F(0.0f));
+  s.lift = n_W * surface_step(p_W, F(0.0f));
+  return s;
+}
+
+/// A sphere that stands still, without textures, seen from outside.
+template <class F>
+GLOAM_HD LightSampleOf<F> sample_ball(const InstanceView& instance, Vec3f emission, Vec3Of<F> p,
+                                      Vec2Of<F> u) {
+  LightSampleOf<F> s;
+  const Vec3Of<F> to = in_all_lanes<F>(instance.X_WG.p) - p;
+  const float r2 = sqr(instance.size.x);
+  const F d2 = dot(to, to), one_minus_cos = one_minus_cos_of(min(r2 / d2, 1.0f));
+  s.wi = FrameOf<F>::from_z(to / square_root(d2)).to_world(sample_cone(one_minus_cos, u));
+  const F along = dot(to, s.wi);
+  s.distance = along - safe_sqrt(r2 - max(d2 - along * along, 0.0f));
+  const Vec3Of<F> p_W = p + s.wi * s.distance;
+  const Vec3Of<F> n_W = normalize(p_W - in_all_lanes<F>(instance.X_WG.p));
+  s.radiance = in_all_lanes<F>(emission);
+  s.pdf = select(s.distance > 1e-6f, cone_pdf(one_minus_cos), F(0.0f));
+  s.lift = n_W * surface_step(p_W, F(0.0f));
+  return s;
 }
 
 /// Density per solid angle at p of the direction to a point of an emitting instance.
@@ -143,8 +222,8 @@ GLOAM_HD LightSample sample_instance(const SceneView& scene, const LightView& li
     Vec3f n_G;
     if (instance.shape != ShapeType::kBox) {
       p_G = sample_shape(instance.shape, instance.size, pick, u, &n_G);
-    } else if (!sample_box_from(instance.size, to_instance(X_WG, p - X_WG.p), pick, u, &p_G,
-                                &n_G)) {
+    } else if (!(sample_box_from(instance.size, to_instance(X_WG, p - X_WG.p), pick, u, &p_G,
+                                 &n_G) > 0)) {
       return s;
     }
     p_W = transform_point(X_WG, p_G);
@@ -172,28 +251,53 @@ GLOAM_HD LightSample sample_instance(const SceneView& scene, const LightView& li
 
 }  // namespace lights
 
-/// A direction from p to light `index`; the density does not include its selection.
-GLOAM_HD LightSample sample_one_light(const SceneView& scene, uint32_t index, Vec3f p, float pick,
-                                      Vec2f u, float time) {
+/// A direction from p towards light `index` for the `active` lanes; the density does not include
+/// its selection.
+template <class F>
+GLOAM_HD LightSampleOf<F> sample_one_light(const SceneView& scene, uint32_t index, Vec3Of<F> p,
+                                           F pick, Vec2Of<F> u, F time, MaskOf<F> active = true) {
   const LightView& light = scene.lights[index];
-  LightSample s = light.kind == LightKind::kInstance
-                      ? lights::sample_instance(scene, light, p, pick, u, time)
-                  : light.kind == LightKind::kDirectional ? lights::sample_sun(light, u)
-                                                          : lights::sample_lamp(light, p, u);
+  LightSampleOf<F> s;
+  if (light.kind == LightKind::kDirectional) {
+    s = lights::sample_sun(light, u);
+  } else if (light.kind != LightKind::kInstance) {
+    s = lights::sample_lamp(light, p, u);
+  } else {
+    const InstanceView& instance = scene.instances[light.instance];
+    const MaterialView& material = scene.materials[instance.material];
+    const bool plain = !instance.moving && !material.textured;
+    const Vec3f emission = material.emission * material.opacity;
+    if (plain && instance.shape == ShapeType::kBox) {
+      s = lights::sample_box(instance, emission, p, pick, u);
+    } else if (plain && instance.shape == ShapeType::kSphere &&
+               all((!active) | (length_squared(in_all_lanes<F>(instance.X_WG.p) - p) >
+                                sqr(instance.size.x) * 1.0001f))) {
+      s = lights::sample_ball(instance, emission, p, u);
+    } else {
+      for (int i = 0; i < Lanes<F>::kCount; ++i) {
+        if (!lane(active, i)) continue;
+        set_lane(&s, i,
+                 lights::sample_instance(scene, light, lane(p, i), lane(pick, i), lane(u, i),
+                                         lane(time, i)));
+      }
+    }
+  }
   s.casts_shadow = light.casts_shadow;
   // What cannot be hit must be found here alone.
-  if (!light.casts_shadow) s.is_delta = s.is_delta || light.kind != LightKind::kInstance;
+  if (!light.casts_shadow && light.kind != LightKind::kInstance) s.is_delta = true;
   return s;
 }
 
-/// Turns `ray` into the shadow ray from the surface to the light. It aims from its own, moved
-/// origin at a point just off the light: along the old direction it would meet the light's surface
-/// too soon where that is close and slanted.
-GLOAM_HD void aim_shadow_ray(const Surface& s, const LightSample& light, Ray* ray) {
-  ray->o = leave_surface(s.p, s.geometric, light.wi, s.t);
-  const Vec3f to = s.p - ray->o + light.wi * light.distance + light.lift;
-  const float distance = length(to);
-  ray->d = distance > 0 ? to / distance : light.wi;
+/// Turns `ray` into the shadow ray from the surface point p, found at distance t, to the light. It
+/// aims from its own, moved origin at a point just off the light: along the old direction it would
+/// meet the light's surface too soon where that is close and slanted.
+template <class F>
+GLOAM_HD void aim_shadow_ray(Vec3Of<F> p, Vec3Of<F> geometric, F t, const LightSampleOf<F>& light,
+                             RayOf<F>* ray) {
+  ray->o = leave_surface(p, geometric, light.wi, t);
+  const Vec3Of<F> to = p - ray->o + light.wi * light.distance + light.lift;
+  const F distance = length(to);
+  ray->d = select<F>(distance > 0.0f, to / distance, light.wi);
   ray->tmax = distance * 0.9999f;
 }
 
@@ -202,150 +306,201 @@ inline constexpr uint32_t kMaxWeighedLights = 16;
 
 /// A bound, up to a factor, of what light i brings to the surface at p with the geometric normal n
 /// if nothing is in between; zero only if it brings nothing.
-GLOAM_HD float light_weight(const LightView& light, Vec3f p, Vec3f n) {
+template <class F>
+GLOAM_HD F light_weight(const LightView& light, Vec3Of<F> p, Vec3Of<F> n) {
   if (light.kind == LightKind::kDirectional) {
-    const float cosine = -dot(light.direction, n);
-    return cosine > -light.radius ? light.strength * (max(cosine, 0.0f) + 0.05f) : 0.0f;
+    const F cosine = -dot(in_all_lanes<F>(light.direction), n);
+    return select(cosine > -light.radius, light.strength * (max(cosine, 0.0f) + 0.05f), F(0.0f));
   }
-  const Vec3f to = light.p - p;
-  const float height = dot(to, n) + light.reach;
-  if (height <= 0) return 0.0f;
-  const float d2 = max(dot(to, to), light.reach * light.reach);
-  const float inv_d2 = 1.0f / max(d2, 1e-8f);
-  const float cosine = min(height * sqrtf(inv_d2), 1.0f);
+  const Vec3Of<F> to = in_all_lanes<F>(light.p) - p;
+  const F height = dot(to, n) + light.reach;
+  const F distance2 = dot(to, to);
+  const F inv_d2 = 1.0f / max(max(distance2, light.reach * light.reach), 1e-8f);
+  const F cosine = min(height * square_root(inv_d2), 1.0f);
   // Outside the cone of a spot nothing arrives.
-  const float cone = light.kind == LightKind::kSpot
-                         ? spot_falloff(light, -to / sqrtf(max(dot(to, to), 1e-12f)))
-                         : 1.0f;
-  return light.strength * inv_d2 * (cosine + 0.05f) * cone;
+  const F cone = light.kind == LightKind::kSpot
+                     ? spot_falloff(light, -to / square_root(max(distance2, 1e-12f)))
+                     : F(1.0f);
+  return select(height > 0.0f, light.strength * inv_d2 * (cosine + 0.05f) * cone, F(0.0f));
 }
 
 /// How lights are taken at one surface: in proportion to light_weight where there are few, by power
 /// alone where there are many.
-class LightPicker {
+template <class F>
+class LightPickerOf {
  public:
-  /// For the surface at p with the geometric normal n.
-  GLOAM_HD void prepare(const SceneView& scene, Vec3f p, Vec3f n) {
+  using Mask = MaskOf<F>;
+  using Uint = UintOf<F>;
+
+  /// For the surfaces at p with the geometric normals n, in the `active` lanes; the others keep
+  /// what they were prepared for.
+  GLOAM_HD void prepare(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, Mask active = true) {
     count_ = scene.lights.size;
-    sky_ = {};
-    sky_share_ = 0;
     if (count_ > kMaxWeighedLights) return;
-    const LightGuide& guide = scene.guide;
-    const int cell = guide.nx > 0 ? guide.cell_at(p + n * (0.5f / guide.per_metre)) : -1;
-    const float* visible =
-        cell >= 0 ? guide.visible.data + static_cast<size_t>(cell) * guide.rows : nullptr;
-    float total = 0;
+    Uint row{};  // of the guide
+    Mask guided = false;
+    if (scene.guide.nx > 0) {
+      find_cell(scene.guide, p + n * (0.5f / scene.guide.per_metre), active, &row, &guided);
+    }
+    F weight[kMaxWeighedLights], total = 0.0f, sky = 0.0f;
     for (uint32_t i = 0; i < count_; ++i) {
       const LightView& light = scene.lights[i];
-      share_[i] = light_weight(light, p, n);
-      if (visible != nullptr && light.guide >= 0) share_[i] *= visible[light.guide];
-      total += share_[i];
+      weight[i] = light_weight(light, p, n);
+      if (light.guide >= 0 && any(guided)) {
+        const F visible = gather(scene.guide.visible.data + light.guide, row);
+        weight[i] *= select(guided, visible, F(1.0f));
+      }
+      total += weight[i];
     }
-    if (cell >= 0 && guide.sky[cell].strength > 0) {
-      sky_ = guide.sky[cell];
-      const float reach = sqrtf(min(2.0f * sky_.one_minus_cos, 1.0f));
-      const float cosine = dot(sky_.axis, n) + reach;
-      if (cosine > 0) total += sky_share_ = sky_.strength * (min(cosine, 1.0f) + 0.05f);
+    if (any(sky_strength_ > 0.0f)) {
+      const F reach = square_root(min(2.0f * sky_one_minus_cos_, 1.0f));
+      const F cosine = dot(sky_axis_, n) + reach;
+      sky = select(cosine > 0.0f, sky_strength_ * (min(cosine, 1.0f) + 0.05f), F(0.0f));
+      total += sky;
     }
-    if (!(total > 0)) {
-      count_ = 0;  // nothing can arrive
-      return;
+    const F inverse = select(total > 0.0f, 1.0f / total, F(0.0f));
+    for (uint32_t i = 0; i < count_; ++i) {
+      share_[i] = select(active, weight[i] * inverse, share_[i]);
     }
-    const float inverse = 1.0f / total;
-    for (uint32_t i = 0; i < count_; ++i) share_[i] *= inverse;
-    sky_share_ *= inverse;
+    sky_share_ = select(active, sky * inverse, sky_share_);
   }
 
   /// Density with which sample() makes the direction d for its sky.
-  GLOAM_HD float sky_pdf(Vec3f d) const {
-    const bool inside = sky_share_ > 0 && dot(d, sky_.axis) >= 1.0f - sky_.one_minus_cos;
-    return inside ? sky_share_ * cone_pdf(sky_.one_minus_cos) : 0.0f;
+  GLOAM_HD F sky_pdf(Vec3Of<F> d) const {
+    if (!any(sky_share_ > 0.0f)) return 0.0f;
+    const Mask inside = (sky_share_ > 0.0f) & (dot(d, sky_axis_) >= 1.0f - sky_one_minus_cos_);
+    return select(inside, sky_share_ * cone_pdf(sky_one_minus_cos_), F(0.0f));
   }
 
   /// Probability of taking light i.
-  GLOAM_HD float probability(const SceneView& scene, uint32_t i) const {
-    if (count_ > kMaxWeighedLights) return scene.lights[i].probability;
-    return i < count_ ? share_[i] : 0.0f;
+  GLOAM_HD F probability(const SceneView& scene, uint32_t i) const {
+    return count_ > kMaxWeighedLights ? F(scene.lights[i].probability) : share_[i];
   }
 
-  /// Takes a light, or the sky, and a direction from p towards it. `spread`: of the sky's cone.
-  GLOAM_HD LightSample sample(const SceneView& scene, Vec3f p, float pick, Vec2f u, float time,
-                              float spread) const {
-    if (sky_share_ > 0) {
-      if (pick < sky_share_) return sample_sky(scene, u, spread);
+  /// Takes a light, or the sky, and a direction from p towards it, for the `active` lanes.
+  /// `spread`: of the sky's cone.
+  GLOAM_HD LightSampleOf<F> sample(const SceneView& scene, Vec3Of<F> p, F pick, Vec2Of<F> u, F time,
+                                   F spread, Mask active = true) const {
+    LightSampleOf<F> out;
+    Mask open = active;
+    if (any(sky_share_ > 0.0f)) {
+      const Mask sky = active & (pick < sky_share_);
+      if (any(sky)) out = select(sky, sample_sky(scene, u, spread), out);
+      open = active & !sky;
       pick -= sky_share_;
     }
-    if (count_ == 0) return {};
-    float before = 0, taken = 0;
-    uint32_t index = 0;
     if (count_ > kMaxWeighedLights) {
-      uint32_t high = count_ - 1;
-      while (index < high) {
-        const uint32_t middle = (index + high) / 2;
-        if (pick < scene.lights[middle].cdf) {
-          high = middle;
-        } else {
-          index = middle + 1;
+      for (int i = 0; i < Lanes<F>::kCount; ++i) {
+        if (lane(open, i)) {
+          set_lane(&out, i,
+                   sample_by_power(scene, lane(p, i), lane(pick, i), lane(u, i), lane(time, i)));
         }
       }
-      taken = scene.lights[index].probability;
-      before = scene.lights[index].cdf - taken;
-    } else {
-      for (uint32_t i = 0; i < count_; ++i) {
-        if (!(share_[i] > 0)) continue;
-        before += taken;
-        taken = share_[i];
-        index = i;
-        if (pick < before + taken) break;
-      }
-      if (!(taken > 0)) return {};
+      return out;
     }
+    F before = 0.0f, taken = 0.0f;
+    Uint index{};
+    Mask searching = open;
+    for (uint32_t i = 0; i < count_; ++i) {
+      const Mask can = searching & (share_[i] > 0.0f);
+      before = select(can, before + taken, before);
+      taken = select(can, share_[i], taken);
+      index = select(can, Uint(i), index);
+      searching = searching & !(can & (pick < before + taken));
+    }
+    open = open & (taken > 0.0f);
     pick = clamp((pick - before) / taken, 0.0f, 0.9999999f);
+    for (uint32_t i = 0; i < count_; ++i) {
+      const Mask mine = open & (index == i);
+      if (!any(mine)) continue;
+      LightSampleOf<F> s = sample_one_light(scene, i, p, pick, u, time, mine);
+      s.pdf *= taken;
+      out = select(mine, s, out);
+    }
+    return out;
+  }
+
+ private:
+  /// Rows of the guide at p, and the sky there.
+  GLOAM_HD void find_cell(const LightGuide& guide, Vec3Of<F> p, Mask active, Uint* row,
+                          Mask* guided) {
+    for (int i = 0; i < Lanes<F>::kCount; ++i) {
+      if (!lane(active, i)) continue;
+      const int cell = guide.cell_at(lane(p, i));
+      set_lane(&sky_strength_, i, 0.0f);
+      if (cell < 0) continue;
+      set_lane(guided, i, true);
+      set_lane(row, i, static_cast<uint32_t>(cell) * guide.rows);
+      const SkyCone& sky = guide.sky[static_cast<uint32_t>(cell)];
+      set_lane(&sky_strength_, i, sky.strength);
+      set_lane(&sky_one_minus_cos_, i, sky.one_minus_cos);
+      set_lane(&sky_axis_, i, sky.axis);
+    }
+  }
+  GLOAM_HD static LightSample sample_by_power(const SceneView& scene, Vec3f p, float pick, Vec2f u,
+                                              float time) {
+    uint32_t index = 0, high = scene.lights.size - 1;
+    while (index < high) {
+      const uint32_t middle = (index + high) / 2;
+      if (pick < scene.lights[middle].cdf) {
+        high = middle;
+      } else {
+        index = middle + 1;
+      }
+    }
+    const float taken = scene.lights[index].probability;
+    pick = clamp((pick - (scene.lights[index].cdf - taken)) / taken, 0.0f, 0.9999999f);
     LightSample s = sample_one_light(scene, index, p, pick, u, time);
     s.pdf *= taken;
     return s;
   }
-
- private:
-  GLOAM_HD LightSample sample_sky(const SceneView& scene, Vec2f u, float spread) const {
-    LightSample s;
-    s.wi = Frame::from_z(sky_.axis).to_world(sample_cone(sky_.one_minus_cos, u));
+  GLOAM_HD LightSampleOf<F> sample_sky(const SceneView& scene, Vec2Of<F> u, F spread) const {
+    LightSampleOf<F> s;
+    s.wi = FrameOf<F>::from_z(sky_axis_).to_world(sample_cone(sky_one_minus_cos_, u));
     s.distance = 1e7f;
-    s.radiance = sky_radiance(scene, s.wi, spread) + scene.sky_ambient;
+    s.radiance = sky_radiance_of(scene, s.wi, spread) + in_all_lanes<F>(scene.sky_ambient);
     s.pdf = sky_pdf(s.wi);
     return s;
   }
 
   uint32_t count_ = 0;
-  float share_[kMaxWeighedLights];
-  SkyCone sky_;
-  float sky_share_ = 0;
+  F share_[kMaxWeighedLights];
+  Vec3Of<F> sky_axis_;
+  F sky_one_minus_cos_{}, sky_strength_{};
+  F sky_share_{};
 };
+using LightPicker = LightPickerOf<float>;
 
 /// Light of lamps and suns that a scattered ray meets before `tmax`, each weighted against
 /// `picker` at `from`, the surface that scattered it, by the density `pdf_bsdf` of its direction.
-GLOAM_HD Vec3f visible_lights(const SceneView& scene, const Ray& ray, float tmax, Vec3f from,
-                              const LightPicker& picker, float pdf_bsdf) {
-  Vec3f sum;
+template <class F>
+GLOAM_HD Vec3Of<F> visible_lights(const SceneView& scene, const RayOf<F>& ray, F tmax,
+                                  Vec3Of<F> from, const LightPickerOf<F>& picker, F pdf_bsdf) {
+  Vec3Of<F> sum;
   for (uint32_t i = 0; i < scene.lights.size; ++i) {
     const LightView& light = scene.lights[i];
     if (light.is_delta || !light.casts_shadow || light.kind == LightKind::kInstance) continue;
-    Vec3f radiance;
-    float sin2 = light.radius * light.radius;
+    const float r2 = light.radius * light.radius;
+    Vec3Of<F> radiance;
+    F sin2 = r2;
+    MaskOf<F> seen;
     if (light.kind == LightKind::kDirectional) {
-      if (tmax < 1e29f || -dot(ray.d, light.direction) < 1.0f - one_minus_cos_of(sin2)) continue;
-      radiance = light.intensity / (kPi * sin2);
+      seen = (tmax >= 1e29f) &
+             (-dot(ray.d, in_all_lanes<F>(light.direction)) >= 1.0f - one_minus_cos_of(r2));
+      if (!any(seen)) continue;
+      radiance = in_all_lanes<F>(light.intensity / (kPi * r2));
     } else {
-      const float t = enter_sphere(ray, light.p, light.radius);
-      if (t <= 0 || t >= tmax) continue;
-      const Vec3f to = light.p - from;
-      const float d2 = dot(to, to);
-      if (d2 <= sin2 * 1.0001f) continue;
-      radiance = light.intensity * (spot_falloff(light, -to / sqrtf(d2)) / (kPi * sin2));
-      sin2 /= d2;
+      const F t = enter_sphere(ray, light.p, light.radius);
+      const Vec3Of<F> to = in_all_lanes<F>(light.p) - from;
+      const F d2 = dot(to, to);
+      seen = (t > 0.0f) & (t < tmax) & (d2 > r2 * 1.0001f);
+      if (!any(seen)) continue;
+      radiance = in_all_lanes<F>(light.intensity) *
+                 (spot_falloff(light, -to / square_root(d2)) / (kPi * r2));
+      sin2 = min(r2 / d2, 1.0f);
     }
-    const float pdf = picker.probability(scene, i) * cone_pdf(one_minus_cos_of(sin2));
-    sum += radiance * mis_weight(pdf_bsdf, pdf);
+    const F pdf = picker.probability(scene, i) * cone_pdf(one_minus_cos_of(sin2));
+    sum += select<F>(seen, radiance * mis_weight(pdf_bsdf, pdf), Vec3Of<F>{});
   }
   return sum;
 }

@@ -1,8 +1,5 @@
 #pragma once
-// The path stage, as a state machine around one place where rays are traced: who runs it traces
-// state.ray (any hit if state.any, else the closest) and hands the hit to path_advance, until that
-// says the path has ended. So one source serves one path at a time and packets of paths.
-// Device-safe.
+// The path stage: one path, or one in each lane, from the camera to its end. Device-safe.
 
 #include "render/kernel/camera.h"
 #include "render/kernel/light.h"
@@ -18,189 +15,249 @@ struct PathOptions {
 };
 
 /// What one camera sample saw.
-struct PathResult {
-  Vec3f radiance;  ///< [cd/m²]
-  Vec3f albedo;    ///< of the first surface, 0 = sky
-  Vec3f normal;    ///< of the first surface, 0 = sky
-  uint32_t rays = 0;
+template <class F>
+struct PathResultOf {
+  Vec3Of<F> radiance;   ///< [cd/m²]
+  Vec3Of<F> albedo;     ///< of the first surface, 0 = sky
+  Vec3Of<F> normal;     ///< of the first surface, 0 = sky
+  UintOf<F> rays = 0u;  ///< traced
 };
+using PathResult = PathResultOf<float>;
 
 /// Surfaces that a ray may pass because they are transparent, at most.
-inline constexpr int kMaxPassed = 64;
-
-struct PathState {
-  Ray ray;           ///< to be traced now
-  bool any = false;  ///< any hit will do
-  PathResult result;
-
-  bool is_shadow = false, has_next = false, seen_first = false;
-  int depth = 0, passed = 0;
-  RayCone cone;
-  Sampler sampler;
-  Vec3f throughput{1, 1, 1};
-  float pdf_bsdf = 0;    ///< of the direction of the path's ray; 0 = from the camera
-  Vec3f from;            ///< the last scattering vertex
-  LightPicker picker;    ///< of that vertex
-  Vec3f light_radiance;  ///< waits for the shadow ray
-  Vec3f next_o, next_d;  ///< of the next path ray, which waits meanwhile
-};
-
-GLOAM_HD void path_start(PathState* state, const Ray& ray, RayCone cone, Sampler sampler) {
-  *state = PathState{};
-  state->ray = ray;
-  state->cone = cone;
-  state->sampler = sampler;
-}
+inline constexpr uint32_t kMaxPassed = 64;
 
 namespace paths {
 
-/// The shadow ray of the last vertex has returned; true if the path goes on.
-GLOAM_HD bool end_shadow(const SceneView& scene, PathState* p, bool found, const RayHit& hit) {
-  if (found && scene.has_transparent && p->passed < kMaxPassed) {
-    const Surface s = make_surface(scene, p->ray, hit, {});
-    if (s.opacity < 1.0f) {
-      p->light_radiance *= 1.0f - s.opacity;
-      p->ray.o = leave_surface(s.p, s.geometric, p->ray.d, hit.t);
-      p->ray.tmax -= hit.t;
-      ++p->passed;
-      if (p->ray.tmax > 0) return true;
-      found = false;
+/// What scattering needs to know of a surface.
+template <class F>
+struct Vertex {
+  Vec3Of<F> p, geometric, normal;
+  Vec3Of<F> base_color;
+  Vec3Of<F> emission;  ///< towards the viewer
+  F metallic{}, roughness{}, f0{}, f90{};
+  F opacity = 1.0f;
+};
+
+template <class F>
+struct State {
+  RayOf<F> ray;
+  PathResultOf<F> result;
+  MaskOf<F> seen_first = false;
+  UintOf<F> depth = 0u, passed = 0u;
+  F cone_width{}, cone_spread{};
+  SamplerOf<F> sampler;
+  Vec3Of<F> throughput;
+  F pdf_bsdf = 0.0f;        ///< of the direction of the path's ray; 0 = from the camera
+  Vec3Of<F> from;           ///< the last scattering vertex
+  LightPickerOf<F> picker;  ///< of that vertex
+};
+
+/// The surfaces that the lanes of `found` have hit. Emission is weighted against the light sampling
+/// of the last vertex.
+template <class F>
+GLOAM_HD Vertex<F> load_vertex(const SceneView& scene, const State<F>& path, const RayHitOf<F>& hit,
+                               MaskOf<F> found) {
+  Vertex<F> v;
+  for (int i = 0; i < Lanes<F>::kCount; ++i) {
+    if (!lane(found, i)) continue;
+    const Ray ray = lane(path.ray, i);
+    const RayHit h = lane(hit, i);
+    const Surface s =
+        make_surface(scene, ray, h, {lane(path.cone_width, i), lane(path.cone_spread, i)});
+    set_lane(&v.p, i, s.p);
+    set_lane(&v.geometric, i, s.geometric);
+    set_lane(&v.normal, i, s.normal);
+    set_lane(&v.base_color, i, s.base_color);
+    set_lane(&v.metallic, i, s.metallic);
+    set_lane(&v.roughness, i, s.roughness);
+    set_lane(&v.f0, i, s.material->f0);
+    set_lane(&v.f90, i, s.material->f90);
+    set_lane(&v.opacity, i, s.opacity);
+    Vec3f emission = surface_emission(s);
+    if (max_component(emission) <= 0) continue;
+    const float pdf_bsdf = lane(path.pdf_bsdf, i);
+    if (pdf_bsdf > 0 && s.instance->light >= 0) {
+      const float selected =
+          lane(path.picker.probability(scene, static_cast<uint32_t>(s.instance->light)), i);
+      emission *= mis_weight(
+          pdf_bsdf, selected * lights::instance_pdf(scene, *s.instance, lane(path.from, i), s.p,
+                                                    s.geometric, ray.time));
     }
+    set_lane(&v.emission, i, emission);
   }
-  if (!found) p->result.radiance += p->light_radiance;
-  if (!p->has_next) return false;
-  p->is_shadow = p->any = false;
-  p->passed = 0;
-  p->ray.o = p->next_o;
-  p->ray.d = p->next_d;
-  p->ray.tmax = 1e30f;
-  return true;
+  return v;
 }
 
-/// Samples one light and one direction at the surface; true if there is a ray to trace.
-GLOAM_HD bool scatter(const SceneView& scene, const PathOptions& options, PathState* p,
-                      const Surface& s) {
-  const Vec3f wo_W = -p->ray.d;
-  Frame frame;
-  const Bsdf bsdf = surface_bsdf(scene, s, wo_W, &frame);
-  const Vec3f wo = frame.to_local(wo_W);
-  p->cone.width += p->cone.spread * s.t;
+/// Lanes whose surface can neither scatter any more nor give off light: most of the last ones.
+template <class F>
+GLOAM_HD MaskOf<F> gives_nothing(const SceneView& scene, const RayHitOf<F>& hit, MaskOf<F> last) {
+  for (int i = 0; i < Lanes<F>::kCount; ++i) {
+    if (!lane(last, i)) continue;
+    const MaterialView& m = scene.materials[scene.instances[lane(hit.instance, i)].material];
+    if (m.transparent || max_component(m.emission) > 0) set_lane(&last, i, false);
+  }
+  return last;
+}
 
-  p->picker.prepare(scene, s.p, s.geometric);
-  const Vec2f choice = p->sampler.next_2d();  // of the light, of the lobe
-  const LightSample light =
-      p->picker.sample(scene, s.p, choice.x, p->sampler.next_2d(), p->ray.time, p->cone.spread);
-  if (light.pdf > 0 && dot(light.wi, s.geometric) > 0) {
-    float pdf = 0;
-    const Vec3f f = eval_bsdf(bsdf, wo, frame.to_local(light.wi), &pdf);
-    if (max_component(f) > 0) {
-      const float weight = light.is_delta ? 1.0f : mis_weight(light.pdf, pdf);
-      p->light_radiance = p->throughput * f * light.radiance * (weight / light.pdf);
-      p->is_shadow = light.casts_shadow;
-      if (!light.casts_shadow) p->result.radiance += p->light_radiance;
+/// What is left of the light along the shadow rays of the `open` lanes.
+template <class F, class Tracer>
+GLOAM_HD Vec3Of<F> transmit(const SceneView& scene, const Tracer& tracer, RayOf<F> ray,
+                            MaskOf<F> open, UintOf<F>* rays) {
+  Vec3Of<F> light = in_all_lanes<F>({1, 1, 1});
+  if (!scene.has_transparent) {
+    *rays += select(open, UintOf<F>(1u), UintOf<F>(0u));
+    return select<F>(tracer.occluded(ray, open), Vec3Of<F>{}, light);
+  }
+  for (uint32_t passed = 0; passed <= kMaxPassed && any(open); ++passed) {
+    RayHitOf<F> hit;
+    *rays += select(open, UintOf<F>(1u), UintOf<F>(0u));
+    open = tracer.closest(ray, open, false, &hit);
+    for (int i = 0; i < Lanes<F>::kCount; ++i) {
+      if (!lane(open, i)) continue;
+      const RayHit h = lane(hit, i);
+      const Ray r = lane(ray, i);
+      const Surface s = make_surface(scene, r, h, {});
+      const float through = passed < kMaxPassed ? 1.0f - s.opacity : 0.0f;
+      set_lane(&light, i, lane(light, i) * through);
+      set_lane(&ray.o, i, leave_surface(s.p, s.geometric, r.d, h.t));
+      set_lane(&ray.tmax, i, r.tmax - h.t);
+      set_lane(&open, i, through > 0 && r.tmax > h.t);
     }
+  }
+  return light;
+}
+
+/// Samples one light and one direction at the vertices of the `active` lanes; returns the lanes
+/// whose path goes on.
+template <class F, class Tracer>
+GLOAM_HD MaskOf<F> scatter(const SceneView& scene, const Tracer& tracer, const PathOptions& options,
+                           State<F>* path, const Vertex<F>& v, F t, MaskOf<F> active) {
+  const Vec3Of<F> wo_W = -path->ray.d;
+  const FrameOf<F> frame = FrameOf<F>::from_z(v.normal);
+  const BsdfOf<F> bsdf = make_bsdf(*scene.albedo, v.base_color, v.metallic, v.roughness, v.f0,
+                                   v.f90, max(dot(wo_W, v.normal), 1e-4f));
+  const Vec3Of<F> wo = frame.to_local(wo_W);
+
+  path->picker.prepare(scene, v.p, v.geometric, active);
+  const Vec2Of<F> choice = path->sampler.next_2d(active);  // of the light, of the lobe
+  const Vec2Of<F> u_light = path->sampler.next_2d(active);
+  const LightSampleOf<F> light =
+      path->picker.sample(scene, v.p, choice.x, u_light, path->ray.time, path->cone_spread, active);
+  MaskOf<F> lit = active & (light.pdf > 0.0f) & (dot(light.wi, v.geometric) > 0.0f);
+  if (any(lit)) {
+    F pdf;
+    const Vec3Of<F> f = eval_bsdf(bsdf, wo, frame.to_local(light.wi), &pdf);
+    lit = lit & (max_component(f) > 0.0f);
+    const F weight = select(light.is_delta, F(1.0f), mis_weight(light.pdf, pdf));
+    Vec3Of<F> arriving = path->throughput * f * light.radiance * (weight / light.pdf);
+    const MaskOf<F> shadowed = lit & light.casts_shadow;
+    if (any(shadowed)) {
+      RayOf<F> shadow = path->ray;
+      aim_shadow_ray(v.p, v.geometric, t, light, &shadow);
+      arriving = select<F>(shadowed,
+                           arriving * transmit(scene, tracer, shadow, shadowed, &path->result.rays),
+                           arriving);
+    }
+    path->result.radiance += select<F>(lit, arriving, Vec3Of<F>{});
   }
 
   // The last segment can only bring light from something that a ray can hit.
-  p->has_next = false;
-  if (p->depth + 1 < options.max_depth || scene.has_emitters) {
-    const BsdfSample sample = sample_bsdf(bsdf, wo, choice.y, p->sampler.next_2d());
-    const Vec3f wi = frame.to_world(sample.wi);
-    if (sample.pdf > 0 && dot(wi, s.geometric) > 0 && max_component(sample.weight) > 0) {
-      p->throughput *= sample.weight;
-      p->pdf_bsdf = sample.pdf;
-      p->from = s.p;
-      // The cone widens with the lobe: texture detail that a broad lobe averages is not sought.
-      p->cone.spread += 0.2f * sqrtf(min(1.0f / (kPi * sample.pdf), 1.0f));
-      p->has_next = true;
-      p->next_o = leave_surface(s.p, s.geometric, wi, s.t);
-      p->next_d = wi;
-    }
-  }
-  if (p->is_shadow) {
-    p->any = !scene.has_transparent;
-    aim_shadow_ray(s, light, &p->ray);
-  } else {
-    p->ray.o = p->next_o;
-    p->ray.d = p->next_d;
-    p->ray.tmax = 1e30f;
-  }
-  return p->is_shadow || p->has_next;
+  MaskOf<F> next = active;
+  if (!scene.has_emitters)
+    next = next & !(path->depth + 1u >= static_cast<uint32_t>(options.max_depth));
+  const Vec2Of<F> u = path->sampler.next_2d(next);
+  if (!any(next)) return next;
+  const BsdfSampleOf<F> sample = sample_bsdf(bsdf, wo, choice.y, u);
+  const Vec3Of<F> wi = frame.to_world(sample.wi);
+  next = next & (sample.pdf > 0.0f) & (dot(wi, v.geometric) > 0.0f) &
+         (max_component(sample.weight) > 0.0f);
+  path->throughput = select<F>(next, path->throughput * sample.weight, path->throughput);
+  path->pdf_bsdf = select(next, sample.pdf, path->pdf_bsdf);
+  path->from = select<F>(next, v.p, path->from);
+  // The cone widens with the lobe: texture detail that a broad lobe averages is not sought.
+  const F widening = 0.2f * square_root(min(1.0f / (kPi * sample.pdf), 1.0f));
+  path->cone_spread = select(next, path->cone_spread + widening, path->cone_spread);
+  path->ray.o = select<F>(next, leave_surface(v.p, v.geometric, wi, t), path->ray.o);
+  path->ray.d = select<F>(next, wi, path->ray.d);
+  return next;
 }
 
 }  // namespace paths
 
-/// Takes the hit of state->ray; false when the path has ended and state->result is final: an
-/// unbiased estimate of the radiance along the camera's ray. At each vertex one light and one
-/// direction of the BSDF are sampled and combined by the power heuristic; transparent surfaces are
-/// passed by chance (path) or by attenuation (shadow rays).
-GLOAM_HD bool path_advance(const SceneView& scene, const PathOptions& options, PathState* p,
-                           bool found, const RayHit& hit) {
-  ++p->result.rays;
-  if (p->is_shadow) return paths::end_shadow(scene, p, found, hit);
-
-  Vec3f& radiance = p->result.radiance;
-  if (p->pdf_bsdf > 0 && scene.has_visible_lights) {
-    const float reach = found ? hit.t : 1e30f;
-    radiance +=
-        p->throughput * visible_lights(scene, p->ray, reach, p->from, p->picker, p->pdf_bsdf);
-  }
-  if (!found) {
-    const Vec3f sky = sky_radiance(scene, p->ray.d, p->cone.spread);
-    const float weight =
-        p->pdf_bsdf > 0 ? mis_weight(p->pdf_bsdf, p->picker.sky_pdf(p->ray.d)) : 1.0f;
-    radiance += p->throughput * (p->depth > 0 ? sky + scene.sky_ambient : sky) * weight;
-    return false;
-  }
-  if (p->depth > 0 && p->depth + 1 >= options.max_depth) {
-    // Only what the last surface gives off counts: most give nothing.
-    const MaterialView& m = scene.materials[scene.instances[hit.instance].material];
-    if (!m.transparent && max_component(m.emission) <= 0) return false;
-  }
-  const Surface s = make_surface(scene, p->ray, hit, p->cone);
-  if (s.opacity < 1.0f && p->passed < kMaxPassed && p->sampler.next_1d() >= s.opacity) {
-    p->ray.o = leave_surface(s.p, s.geometric, p->ray.d, hit.t);
-    p->cone.width += p->cone.spread * hit.t;
-    ++p->passed;
-    return true;
-  }
-  p->passed = 0;
-  if (!p->seen_first) {
-    p->seen_first = true;
-    p->result.albedo = s.base_color;
-    p->result.normal = s.normal;
-  }
-  if (max_component(s.emission) > 0) {
-    float weight = 1;
-    if (p->pdf_bsdf > 0 && s.instance->light >= 0) {
-      const float selected = p->picker.probability(scene, static_cast<uint32_t>(s.instance->light));
-      const float pdf =
-          lights::instance_pdf(scene, *s.instance, p->from, s.p, s.geometric, p->ray.time);
-      weight = mis_weight(p->pdf_bsdf, selected * pdf);
+/// An unbiased estimate of the radiance along each camera ray of the `active` lanes. At each vertex
+/// one light and one direction of the BSDF are sampled and combined by the power heuristic;
+/// transparent surfaces are passed by chance (path) or by attenuation (shadow rays). A Tracer has
+///   Mask closest(const RayOf<F>&, Mask active, bool coherent, RayHitOf<F>* hit) const,
+///   Mask occluded(const RayOf<F>&, Mask active) const,
+/// which return the lanes with a hit, of `active` alone.
+template <class F, class Tracer>
+GLOAM_HD PathResultOf<F> trace_path(const SceneView& scene, const Tracer& tracer,
+                                    const RayOf<F>& ray, F cone_width, F cone_spread,
+                                    const PathOptions& options, const SamplerOf<F>& sampler,
+                                    MaskOf<F> active = true) {
+  using Mask = MaskOf<F>;
+  const auto one = [](Mask m) { return select(m, UintOf<F>(1u), UintOf<F>(0u)); };
+  paths::State<F> path;
+  path.ray = ray;
+  path.cone_width = cone_width;
+  path.cone_spread = cone_spread;
+  path.sampler = sampler;
+  path.throughput = in_all_lanes<F>({1, 1, 1});
+  const uint32_t max_depth = static_cast<uint32_t>(options.max_depth);
+  for (bool coherent = true; any(active); coherent = false) {
+    RayHitOf<F> hit;
+    path.result.rays += one(active);
+    Mask found = tracer.closest(path.ray, active, coherent, &hit);
+    const Mask scattered = path.pdf_bsdf > 0.0f;
+    if (scene.has_visible_lights && any(active & scattered)) {
+      const Vec3Of<F> lamps = visible_lights(scene, path.ray, select(found, hit.t, F(1e30f)),
+                                             path.from, path.picker, path.pdf_bsdf);
+      path.result.radiance += select<F>(active & scattered, path.throughput * lamps, Vec3Of<F>{});
     }
-    radiance += p->throughput * surface_emission(s) * weight;
-  }
-  if (++p->depth >= options.max_depth) return false;
-  if (p->depth > options.roulette_depth) {
-    const float survive = min(max_component(p->throughput), 0.95f);
-    if (p->sampler.next_1d() >= survive) return false;
-    p->throughput = p->throughput / survive;
-  }
-  return paths::scatter(scene, options, p, s);
-}
+    if (const Mask missed = active & !found; any(missed)) {
+      Vec3Of<F> sky = sky_radiance_of(scene, path.ray.d, path.cone_spread);
+      sky = select<F>(path.depth > 0u, sky + in_all_lanes<F>(scene.sky_ambient), sky);
+      const F weight =
+          select(scattered, mis_weight(path.pdf_bsdf, path.picker.sky_pdf(path.ray.d)), F(1.0f));
+      path.result.radiance += select<F>(missed, path.throughput * sky * weight, Vec3Of<F>{});
+    }
+    const Mask last = found & (path.depth > 0u) & (path.depth + 1u >= max_depth);
+    if (any(last)) found = found & !paths::gives_nothing(scene, hit, last);
+    if (!any(found)) break;
 
-/// Runs one path to its end. A Tracer has one function,
-///   bool trace(const Ray& ray, bool any, RayHit* hit) const.
-template <class Tracer>
-GLOAM_HD PathResult trace_path(const SceneView& scene, const Tracer& tracer, const Ray& ray,
-                               RayCone cone, const PathOptions& options, Sampler sampler) {
-  PathState state;
-  path_start(&state, ray, cone, sampler);
-  for (;;) {
-    RayHit hit;
-    const bool found = tracer.trace(state.ray, state.any, &hit);
-    if (!path_advance(scene, options, &state, found, hit)) return state.result;
+    const paths::Vertex<F> v = paths::load_vertex(scene, path, hit, found);
+    Mask through = false;
+    if (scene.has_transparent) {
+      const Mask thin = found & (v.opacity < 1.0f) & !(path.passed >= kMaxPassed);
+      if (any(thin)) through = thin & (path.sampler.next_1d(thin) >= v.opacity);
+      path.passed = select(through, path.passed + 1u, UintOf<F>(0u));
+    }
+    Mask solid = found & !through;
+    path.cone_width = select(found, path.cone_width + path.cone_spread * hit.t, path.cone_width);
+    const Mask first = solid & !path.seen_first;
+    path.seen_first = path.seen_first | first;
+    path.result.albedo = select<F>(first, v.base_color, path.result.albedo);
+    path.result.normal = select<F>(first, v.normal, path.result.normal);
+    path.result.radiance += select<F>(solid, path.throughput * v.emission, Vec3Of<F>{});
+
+    path.depth += one(solid);
+    solid = solid & !(path.depth >= max_depth);
+    if (const Mask chance = solid & (path.depth > static_cast<uint32_t>(options.roulette_depth));
+        any(chance)) {
+      const F survive = min(max_component(path.throughput), 0.95f);
+      solid = solid & !(chance & (path.sampler.next_1d(chance) >= survive));
+      path.throughput = select<F>(chance, path.throughput / survive, path.throughput);
+    }
+    if (any(through)) {  // past the surface, as if it were not there
+      path.ray.o =
+          select<F>(through, leave_surface(v.p, v.geometric, path.ray.d, hit.t), path.ray.o);
+    }
+    active = through;
+    if (any(solid))
+      active = active | paths::scatter(scene, tracer, options, &path, v, hit.t, solid);
   }
+  return path.result;
 }
 
 }  // namespace gloam

@@ -5,11 +5,12 @@
 // differ (Ahmed and Wonka 2020, "Screen-space blue-noise diffusion of Monte Carlo sampling error").
 // A draw is a function of (seed, frame, pixel, sample, dimension) alone. Device-safe.
 
-#include "base/vec.h"
+#include "render/kernel/lanes.h"
 
 namespace gloam {
 
-GLOAM_HD uint32_t reverse_bits(uint32_t x) {
+template <class U>
+GLOAM_HD U reverse_bits(U x) {
   x = (x << 16) | (x >> 16);
   x = ((x & 0x00FF00FFu) << 8) | ((x & 0xFF00FF00u) >> 8);
   x = ((x & 0x0F0F0F0Fu) << 4) | ((x & 0xF0F0F0F0u) >> 4);
@@ -18,7 +19,8 @@ GLOAM_HD uint32_t reverse_bits(uint32_t x) {
 }
 
 /// Bijection of 32 bits in which every output bit depends on every input bit.
-GLOAM_HD uint32_t mix_bits(uint32_t x) {
+template <class U>
+GLOAM_HD U mix_bits(U x) {
   x = (x ^ (x >> 16)) * 0x7FEB352Du;
   x = (x ^ (x >> 15)) * 0x846CA68Bu;
   return x ^ (x >> 16);
@@ -26,7 +28,8 @@ GLOAM_HD uint32_t mix_bits(uint32_t x) {
 
 /// Owen scrambling of a bit-reversed value: bit i changes with the bits below it (constants of
 /// Burley 2020).
-GLOAM_HD uint32_t scramble_reversed(uint32_t x, uint32_t seed) {
+template <class U>
+GLOAM_HD U scramble_reversed(U x, U seed) {
   x += seed;
   x ^= x * 0x6C50B47Cu;
   x ^= x * 0xB82F1E52u;
@@ -36,7 +39,8 @@ GLOAM_HD uint32_t scramble_reversed(uint32_t x, uint32_t seed) {
 }
 
 /// Second Sobol' dimension, bit-reversed: the Pascal matrix modulo 2, a tensor power.
-GLOAM_HD uint32_t sobol1_reversed(uint32_t i) {
+template <class U>
+GLOAM_HD U sobol1_reversed(U i) {
   i ^= (i >> 1) & 0x55555555u;
   i ^= (i >> 2) & 0x33333333u;
   i ^= (i >> 4) & 0x0F0F0F0Fu;
@@ -44,7 +48,8 @@ GLOAM_HD uint32_t sobol1_reversed(uint32_t i) {
   return i ^ (i >> 16);
 }
 
-GLOAM_HD uint32_t spread_bits(uint32_t x) {
+template <class U>
+GLOAM_HD U spread_bits(U x) {
   x &= 0xFFFFu;
   x = (x | (x << 8)) & 0x00FF00FFu;
   x = (x | (x << 4)) & 0x0F0F0F0Fu;
@@ -52,35 +57,52 @@ GLOAM_HD uint32_t spread_bits(uint32_t x) {
   return (x | (x << 1)) & 0x55555555u;
 }
 
-class Sampler {
+template <class F>
+class SamplerOf {
  public:
+  using Mask = MaskOf<F>;
+  using Uint = UintOf<F>;
+
   /// `log2_samples`: samples per pixel, rounded up to a power of two, of the whole picture.
-  GLOAM_HD static Sampler make(uint64_t seed, uint32_t frame, uint32_t x, uint32_t y,
-                               uint32_t sample, uint32_t log2_samples) {
-    Sampler s;
-    const uint32_t morton = spread_bits(x) | (spread_bits(y) << 1);
-    s.reversed_index_ = reverse_bits((morton << log2_samples) + sample);
+  GLOAM_HD static SamplerOf make(uint64_t seed, uint32_t frame, Uint x, Uint y, Uint sample,
+                                 uint32_t log2_samples) {
+    SamplerOf s;
+    const Uint morton = spread_bits(x) | (spread_bits(y) << 1);
+    s.reversed_index_ = reverse_bits((morton << static_cast<int>(log2_samples)) + sample);
     s.seed_ = mix_bits(static_cast<uint32_t>(seed) ^
                        mix_bits(static_cast<uint32_t>(seed >> 32) ^ mix_bits(frame + 0x9E3779B9u)));
     return s;
   }
 
-  GLOAM_HD float next_1d() {
-    const uint32_t key = next_key();
-    if (dimension_ > kLowDiscrepancyDraws) return to_float(mix_bits(reversed_index_ ^ key));
-    const uint32_t i = reverse_bits(scramble_reversed(reversed_index_, key));
-    return to_float(reverse_bits(scramble_reversed(i, key * 0x9E3779B9u + 1u)));
+  /// Lanes that are not `active` get a number too, but keep their place in the sequence.
+  GLOAM_HD F next_1d(Mask active = true) {
+    const Uint key = next_key(active);
+    const Mask late = dimension_ > Uint(kLowDiscrepancyDraws);
+    F out{};
+    if (any(!late)) {
+      const Uint i = reverse_bits(scramble_reversed(reversed_index_, key));
+      out = to_unit(reverse_bits(scramble_reversed(i, key * Uint(0x9E3779B9u) + Uint(1u))));
+    }
+    if (any(late)) out = select(late, to_unit(mix_bits(reversed_index_ ^ key)), out);
+    return out;
   }
 
-  GLOAM_HD Vec2f next_2d() {
-    const uint32_t key = next_key();
-    if (dimension_ > kLowDiscrepancyDraws) {
-      const uint32_t bits = mix_bits(reversed_index_ ^ key);
-      return {to_float(bits), to_float(mix_bits(bits + 0x9E3779B9u))};
+  GLOAM_HD Vec2Of<F> next_2d(Mask active = true) {
+    const Uint key = next_key(active);
+    const Mask late = dimension_ > Uint(kLowDiscrepancyDraws);
+    Vec2Of<F> out;
+    if (any(!late)) {
+      const Uint i = reverse_bits(scramble_reversed(reversed_index_, key));
+      out = {to_unit(reverse_bits(scramble_reversed(i, key * Uint(0x9E3779B9u) + Uint(1u)))),
+             to_unit(reverse_bits(
+                 scramble_reversed(sobol1_reversed(i), key * Uint(0x85EBCA6Bu) + Uint(2u))))};
     }
-    const uint32_t i = reverse_bits(scramble_reversed(reversed_index_, key));
-    return {to_float(reverse_bits(scramble_reversed(i, key * 0x9E3779B9u + 1u))),
-            to_float(reverse_bits(scramble_reversed(sobol1_reversed(i), key * 0x85EBCA6Bu + 2u)))};
+    if (any(late)) {
+      const Uint bits = mix_bits(reversed_index_ ^ key);
+      const Vec2Of<F> hashed{to_unit(bits), to_unit(mix_bits(bits + Uint(0x9E3779B9u)))};
+      out = select<F>(late, hashed, out);
+    }
+    return out;
   }
 
  private:
@@ -88,10 +110,15 @@ class Sampler {
   /// to gain there is less than what the points cost.
   static constexpr uint32_t kLowDiscrepancyDraws = 10;
 
-  GLOAM_HD uint32_t next_key() { return mix_bits(seed_ + (++dimension_) * 0x9E3779B9u); }
-  GLOAM_HD static float to_float(uint32_t bits) { return static_cast<float>(bits >> 8) * 0x1p-24f; }
+  GLOAM_HD Uint next_key(Mask active) {
+    dimension_ += select(active, Uint(1u), Uint(0u));
+    return mix_bits(Uint(seed_) + dimension_ * Uint(0x9E3779B9u));
+  }
+  GLOAM_HD static F to_unit(Uint bits) { return to_float(bits >> 8) * 0x1p-24f; }
 
-  uint32_t reversed_index_ = 0, seed_ = 0, dimension_ = 0;
+  Uint reversed_index_{}, dimension_{};
+  uint32_t seed_ = 0;
 };
+using Sampler = SamplerOf<float>;
 
 }  // namespace gloam

@@ -152,9 +152,9 @@ GLOAM_HD Vec3f snap_to_shape(ShapeType shape, Vec3f size, Vec3f* p) {
       return n;
     }
     case ShapeType::kEllipsoid: {
-      const Vec3f q = normalize({p->x / size.x, p->y / size.y, p->z / size.z});
+      const Vec3f q = normalize(Vec3f{p->x / size.x, p->y / size.y, p->z / size.z});
       *p = q * size;
-      return normalize({q.x / size.x, q.y / size.y, q.z / size.z});
+      return normalize(Vec3f{q.x / size.x, q.y / size.y, q.z / size.z});
     }
     case ShapeType::kCapsule: {
       const Vec3f axis{0, 0, clamp(p->z, -size.y, size.y)};
@@ -267,44 +267,37 @@ GLOAM_HD Vec3f sample_shape(ShapeType shape, Vec3f s, float pick, Vec2f u, Vec3f
   }
 }
 
-/// Weights (area times height of p above it) of the faces -x, +x, -y, +y, -z, +z of a box that p
-/// sees from outside; returns their sum.
-GLOAM_HD float box_face_weights(Vec3f s, Vec3f p, float weight[6]) {
+/// A point on a face that p sees, its normal, and its density per area; 0 inside the box.
+template <class F>
+GLOAM_HD F sample_box_from(Vec3f s, Vec3Of<F> p, F pick, Vec2Of<F> u, Vec3Of<F>* q,
+                           Vec3Of<F>* normal) {
+  // At most one of two opposite faces is seen; they are taken by area times the height of p above.
   const float area[3] = {4 * s.y * s.z, 4 * s.z * s.x, 4 * s.x * s.y};
-  float total = 0;
-  for (int i = 0; i < 6; ++i) {
-    const int axis = i / 2;
-    const float height = ((i & 1) != 0 ? p[axis] : -p[axis]) - s[axis];
-    total += weight[i] = height > 0 ? area[axis] * height : 0.0f;
+  F height[3], weight[3];
+  for (int i = 0; i < 3; ++i) {
+    height[i] = max(magnitude(p[i]) - s[i], 0.0f);
+    weight[i] = height[i] * area[i];
   }
-  return total;
-}
-
-/// A point on a face that p sees, and its normal; false inside the box.
-GLOAM_HD bool sample_box_from(Vec3f s, Vec3f p, float pick, Vec2f u, Vec3f* q, Vec3f* normal) {
-  float weight[6];
-  const float total = box_face_weights(s, p, weight);
-  if (!(total > 0)) return false;
+  const F total = weight[0] + weight[1] + weight[2];
   pick *= total;
-  int face = -1;
-  for (int i = 0; i < 6; ++i) {
-    if (weight[i] <= 0) continue;
-    face = i;
-    if (pick < weight[i]) break;
-    pick -= weight[i];
-  }
-  const float side = (face & 1) != 0 ? 1.0f : -1.0f, a = u.x * 2 - 1, b = u.y * 2 - 1;
-  *q = face < 2   ? Vec3f{side * s.x, a * s.y, b * s.z}
-       : face < 4 ? Vec3f{a * s.x, side * s.y, b * s.z}
-                  : Vec3f{a * s.x, b * s.y, side * s.z};
-  *normal = face < 2 ? Vec3f{side, 0, 0} : face < 4 ? Vec3f{0, side, 0} : Vec3f{0, 0, side};
-  return true;
+  const auto x = pick < weight[0], y = pick < weight[0] + weight[1];
+  const F side_x = select(p.x < 0.0f, F(-1.0f), F(1.0f)),
+          side_y = select(p.y < 0.0f, F(-1.0f), F(1.0f)),
+          side_z = select(p.z < 0.0f, F(-1.0f), F(1.0f));
+  const F a = u.x * 2.0f - 1.0f, b = u.y * 2.0f - 1.0f, zero = 0.0f;
+  *q = {select(x, side_x, a) * s.x, select(x, a, select(y, side_y, b)) * s.y,
+        select(x, b, select(y, b, side_z)) * s.z};
+  *normal = {select(x, side_x, zero), select(x, zero, select(y, side_y, zero)),
+             select(x, zero, select(y, zero, side_z))};
+  const F seen = select(x, height[0], select(y, height[1], height[2]));
+  return select((total > 0.0f) & (seen > 0.0f), seen / total, zero);
 }
 
 /// Density per area with which sample_box_from(s, p) makes points of the face with this normal.
 GLOAM_HD float box_pdf_from(Vec3f s, Vec3f p, Vec3f normal) {
-  float weight[6];
-  const float total = box_face_weights(s, p, weight);
+  const float area[3] = {4 * s.y * s.z, 4 * s.z * s.x, 4 * s.x * s.y};
+  float total = 0;
+  for (int i = 0; i < 3; ++i) total += area[i] * max(fabsf(p[i]) - s[i], 0.0f);
   const int axis = fabsf(normal.x) > 0.5f ? 0 : (fabsf(normal.y) > 0.5f ? 1 : 2);
   const float height = (normal[axis] > 0 ? p[axis] : -p[axis]) - s[axis];
   return total > 0 && height > 0 ? height / total : 0.0f;

@@ -134,4 +134,15 @@ GLOAM_HD Vec3f sky_radiance(const SceneView& scene, Vec3f d, float spread) {
   return lookup_cube(scene, scene.sky_texture, {d.x, d.z, -d.y}, spread).rgb * scene.sky_scale;
 }
 
+/// The same for directions in lanes.
+template <class F>
+GLOAM_HD Vec3Of<F> sky_radiance_of(const SceneView& scene, Vec3Of<F> d, F spread) {
+  Vec3Of<F> out;
+  if (scene.sky_texture < 0) return out;
+  for (int i = 0; i < Lanes<F>::kCount; ++i) {
+    set_lane(&out, i, sky_radiance(scene, lane(d, i), lane(spread, i)));
+  }
+  return out;
+}
+
 }  // namespace gloam

@@ -54,7 +54,7 @@ TEST(Geometry, DepthOfEveryShapeIsExact) {
   for (const bool on_body : {false, true}) {
     for (const auto& [shape, size] : cases) {
       SceneBuilder b;
-      const Affine3f pose = rigid(normalize({1, 2, 3}), 0.6f, {2.5f, -1.5f, 0.75f});
+      const Affine3f pose = rigid(normalize(Vec3f{1, 2, 3}), 0.6f, {2.5f, -1.5f, 0.75f});
       const int body = on_body ? b.add_body(pose) : 0;
       b.add(shape, size, on_body ? Affine3f{} : pose, b.add_diffuse({0.5f, 0.5f, 0.5f}), body);
       RenderSettings settings;
@@ -125,7 +125,7 @@ TEST(Geometry, SilhouettesAreComplete) {
 TEST(Geometry, MeshesAreWatertight) {
   for (const bool on_body : {false, true}) {
     SceneBuilder b;
-    const Affine3f pose = rigid(normalize({3, 1, 2}), 1.1f, {10, 20, 5});
+    const Affine3f pose = rigid(normalize(Vec3f{3, 1, 2}), 1.1f, {10, 20, 5});
     const int body = on_body ? b.add_body(pose) : 0;
     b.add(ShapeType::kMesh, {}, on_body ? Affine3f{} : pose, b.add_diffuse({1, 1, 1}), body,
           b.add_mesh(make_ball(16)));
@@ -149,7 +149,7 @@ TEST(Geometry, MeshesAreWatertight) {
 TEST(Geometry, InstancesEqualBakedGeometry) {
   const auto build = [](bool on_body) {
     SceneBuilder b;
-    const Affine3f pose = rigid(normalize({0, 1, 2}), 0.9f, {0.5f, -0.25f, 0.75f});
+    const Affine3f pose = rigid(normalize(Vec3f{0, 1, 2}), 0.9f, {0.5f, -0.25f, 0.75f});
     const int body = on_body ? b.add_body(pose) : 0;
     const Affine3f X_BG = on_body ? Affine3f{} : pose;
     MaterialDescription m;

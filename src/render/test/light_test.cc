@@ -56,7 +56,7 @@ TEST(Light, DirectionalWithAndWithoutDisc) {
     light.type = LightType::kDirectional;
     light.intensity = {100, 100, 100};
     light.radius = radius;
-    b.add_light(light, {0, 0, 5}, normalize({0.6f, 0, -0.8f}));
+    b.add_light(light, {0, 0, 5}, normalize(Vec3f{0.6f, 0, -0.8f}));
     expect_luminance(plane_luminance(b), 0.5 / M_PI * 100 * 0.8);
   }
 }
@@ -106,7 +106,7 @@ TEST(Light, RectangleHasItsFormFactor) {
 TEST(Light, MeshEmitterEqualsAnalyticOne) {
   // A box of triangles against the analytic box.
   SceneBuilder analytic, mesh;
-  const Affine3f pose = rigid(normalize({1, 1, 0}), 0.5f, {0.5f, 0.2f, 1.0f});
+  const Affine3f pose = rigid(normalize(Vec3f{1, 1, 0}), 0.5f, {0.5f, 0.2f, 1.0f});
   analytic.add(ShapeType::kBox, {0.3f, 0.2f, 0.1f}, pose, analytic.add_emitter({200, 200, 200}));
   TriangleMesh box;
   for (int i = 0; i < 8; ++i) {

@@ -232,8 +232,8 @@ TEST(Path, NoLightLeaksIntoAClosedBox) {
   for (const bool moving : {false, true}) {
     SceneBuilder b;
     const int white = b.add_diffuse({1, 1, 1});
-    const int body = moving ? b.add_body(rigid(normalize({1, 2, 3}), 0.8f, {7, -4, 2})) : 0;
-    const Affine3f X_WB = moving ? rigid(normalize({1, 2, 3}), 0.8f, {7, -4, 2}) : Affine3f{};
+    const int body = moving ? b.add_body(rigid(normalize(Vec3f{1, 2, 3}), 0.8f, {7, -4, 2})) : 0;
+    const Affine3f X_WB = moving ? rigid(normalize(Vec3f{1, 2, 3}), 0.8f, {7, -4, 2}) : Affine3f{};
     // Six abutting slabs; their inner edges coincide exactly.
     for (int axis = 0; axis < 3; ++axis) {
       for (const float side : {-1.0f, 1.0f}) {
@@ -324,7 +324,7 @@ TEST(Path, DirectTierEqualsPathTierOfOneReflection) {
   b.add_light(light, {1, -1, 2});
   light.type = LightType::kDirectional;
   light.intensity = {20, 20, 20};
-  b.add_light(light, {0, 0, 3}, normalize({1, 1, -2}));
+  b.add_light(light, {0, 0, 3}, normalize(Vec3f{1, 1, -2}));
   const CameraView view = SceneBuilder::camera(look_at({3, -3, 2}, {0, 0, 0.4f}), 32, 32, 30);
   RenderSettings path = settings_of(256, 2), direct = settings_of(256);
   direct.tier = RenderTier::kDirect;

@@ -146,7 +146,7 @@ TEST(Sampling, DielectricLayerMatchesBruteForceAlbedo) {
   for (const float roughness : {0.3f, 0.8f}) {
     for (const float cos_o : {0.9f, 0.3f}) {
       const Vec3f wo{std::sqrt(1 - cos_o * cos_o), 0, cos_o};
-      const Bsdf bsdf = make_bsdf(table, {0, 0, 0}, 0, roughness, 0.04f, 1.0f, cos_o);
+      const Bsdf bsdf = make_bsdf(table, {0, 0, 0}, 0.0f, roughness, 0.04f, 1.0f, cos_o);
       Mean brute;  // uniform directions: independent of the layer's own sampling
       for (uint32_t i = 0; i < 400000; ++i) {
         Vec3f wi = sample_sphere(random_2d(i, 0));
@@ -284,7 +284,7 @@ TEST(Sampling, EmittersAreSampledByTheDensityTheyReport) {
   const auto build = [](ShapeType shape, Vec3f size) {
     SceneBuilder b;
     const int material = b.add_emitter({900, 900, 900});
-    const Affine3f pose = rigid(normalize({1, 2, 0.5f}), 0.7f, {0.3f, 0.2f, 1.2f});
+    const Affine3f pose = rigid(normalize(Vec3f{1, 2, 0.5f}), 0.7f, {0.3f, 0.2f, 1.2f});
     if (shape == ShapeType::kMesh) {
       b.add(shape, {}, pose, material, 0, b.add_mesh(make_ball(4, 0.2f)));
     } else if (shape == ShapeType::kPlane) {
@@ -319,7 +319,7 @@ TEST(Sampling, EmittersAreSampledByTheDensityTheyReport) {
       by_bsdf.add(e);
       total.add(density);
       const LightSample light =
-          sample_one_light(probe.view, 0, p, random_2d(i, 1).x, random_2d(i, 2), 0);
+          sample_one_light(probe.view, 0, p, random_2d(i, 1).x, random_2d(i, 2), 0.0f);
       double direct = 0;
       Ray shadow = make_ray(p, light.wi);
       shadow.tmax = light.distance * 0.9999f;
