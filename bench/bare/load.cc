@@ -20,7 +20,8 @@ int main(int argc, char** argv) {
   timespec cpu{}, wall{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
   clock_gettime(CLOCK_MONOTONIC, &wall);
-  std::printf("%.6f %.6f\n", static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec),
+  std::printf("%.6f %.6f\n",
+              static_cast<double>(cpu.tv_sec) + 1e-9 * static_cast<double>(cpu.tv_nsec),
               static_cast<double>(wall.tv_sec) + 1e-9 * static_cast<double>(wall.tv_nsec));
   std::fflush(stdout);
   mj_deleteModel(model);

@@ -66,7 +66,7 @@ class Stepper {
   std::shared_ptr<const CompiledWorld> world_;
   std::optional<double> timestep_;
   uint64_t seed_ = 0;
-  mjModel model_;        // options of its own; its arrays are the World's until a live field changes
+  mjModel model_;  // options of its own; its arrays are the World's until a live field changes
   ModelPtr own_arrays_;  // then model_'s arrays are these
   DataPtr data_;
   StateReader reader_;  // of data_

@@ -161,7 +161,8 @@ void write_entry(const CompiledWorld& world, const std::vector<Dependency>& depe
   trim_cache(folder, kLargestCache);
 }
 
-// A program that has just compiled a world goes on to start up; an entry of 70 MB can wait for that.
+// A program that has just compiled a world goes on to start up; an entry of 70 MB can wait for
+// that.
 constexpr std::chrono::seconds kStartUp{2};
 
 // One writer at a time; its destructor at the end of the program waits for the last entry.
@@ -171,11 +172,10 @@ class BackgroundWriter {
   void start(std::shared_ptr<const CompiledWorld> world, std::vector<Dependency> dependencies) {
     const std::lock_guard lock(mutex_);
     join();
-    thread_ = std::thread(
-        [this, world = std::move(world), dependencies = std::move(dependencies)] {
-          wait_for_start_up();
-          write_entry(*world, dependencies);
-        });
+    thread_ = std::thread([this, world = std::move(world), dependencies = std::move(dependencies)] {
+      wait_for_start_up();
+      write_entry(*world, dependencies);
+    });
   }
   void finish() {
     const std::lock_guard lock(mutex_);
