@@ -13,6 +13,7 @@ import subprocess
 import sys
 import threading
 import time
+from pathlib import Path
 
 import measure
 from measure import ROOT, say
@@ -53,7 +54,7 @@ class Progress:
 
 
 def machine():
-    names = re.findall(r"^model name\s*:\s*(.+)$", open("/proc/cpuinfo").read(), re.M)
+    names = re.findall(r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(), re.M)
     return {"cpu": names[0] if names else os.uname().machine, "cores": os.cpu_count()}
 
 
