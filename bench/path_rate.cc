@@ -1,7 +1,7 @@
 // Paths per second, and the share of a bare Embree loop that traces the very same rays. All figures
 // are of CPU time over all threads, medians of alternating runs: they stand on a busy machine.
 //   path_rate [--picture FILE.ppm] [--spp N] [--depth N] [--direct] [--plain] [--size WxH]
-//             [--runs N] [--export FOLDER]
+//             [--runs N] [--export FOLDER] [--json]
 
 #include <algorithm>
 #include <chrono>
@@ -23,6 +23,7 @@ struct Arguments {
   RenderSettings settings;
   RoomOptions room;
   int width = 640, height = 480, runs = 5;
+  bool json = false;
 };
 
 Arguments parse(int argc, char** argv) {
@@ -32,6 +33,7 @@ Arguments parse(int argc, char** argv) {
     const bool more = i + 1 < argc;
     if (arg == "--direct") a.settings.tier = RenderTier::kDirect;
     if (arg == "--plain") a.room.plain = true;
+    if (arg == "--json") a.json = true;
     if (!more) continue;
     if (arg == "--picture") a.picture = argv[++i];
     if (arg == "--export") a.export_folder = argv[++i];
@@ -251,15 +253,23 @@ int main(int argc, char** argv) {
   const double per_path = static_cast<double>(recorded) / (a.width * a.height);
   const double cpu_per_path = median(render_cpu) / paths;
   const double bare_per_path = median(bare_cpu) / (a.width * a.height);
-  std::printf("build %.0f ms; %d threads; wall %.1f ms; CPU %.1f ms per picture\n", build * 1e3,
-              thread_count(), median(render_wall) * 1e3, median(render_cpu) * 1e3);
-  std::printf(
-      "%.2f rays/path; %.3f Mpaths/s at %.0f full threads; bare Embree %.3f Mpaths/s "
-      "(%.1f Mrays/s); share %.1f %%\n",
-      per_path, threads / cpu_per_path * 1e-6, threads, threads / bare_per_path * 1e-6,
-      per_path * threads / bare_per_path * 1e-6, 100 * bare_per_path / cpu_per_path);
+  const double rate = threads / cpu_per_path * 1e-6, bare_rate = threads / bare_per_path * 1e-6;
   double mean = 0;  // of the red channel, to compare with peers
   for (const Vec3f& c : film.radiance) mean += c.x;
-  std::printf("mean %.4f\n", mean / static_cast<double>(film.radiance.size()));
+  mean /= static_cast<double>(film.radiance.size());
+  if (a.json) {
+    std::printf(
+        "{\"name\": \"path_rate\", \"rays_per_path\": %.4f, \"mpaths_per_s\": %.4f, "
+        "\"bare_mpaths_per_s\": %.4f, \"wall_ms\": %.2f, \"cpu_ms\": %.2f, \"mean\": %.4f}\n",
+        per_path, rate, bare_rate, median(render_wall) * 1e3, median(render_cpu) * 1e3, mean);
+  } else {
+    std::printf("build %.0f ms; %d threads; wall %.1f ms; CPU %.1f ms per picture\n", build * 1e3,
+                thread_count(), median(render_wall) * 1e3, median(render_cpu) * 1e3);
+    std::printf(
+        "%.2f rays/path; %.3f Mpaths/s at %.0f full threads; bare Embree %.3f Mpaths/s "
+        "(%.1f Mrays/s); share %.1f %%\n",
+        per_path, rate, threads, bare_rate, per_path * bare_rate, 100 * rate / bare_rate);
+    std::printf("mean %.4f\n", mean);
+  }
   if (!a.picture.empty()) write_ppm(a.picture, film);
 }

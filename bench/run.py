@@ -1,164 +1,163 @@
 #!/usr/bin/env python3
 """Measures Gloam against peers and limits, as ratios in one run: `./gloam bench [--only NAME] [--json]`.
 
-Prints one line per measurement with its bar and keeps the figures in bench/history. Peers are installed on first use
-into .cache/bench_venv (about 300 MB). Ratios above 1 mean that Gloam is better unless the line says otherwise.
+Prints one line per figure with its bar. A complete run is kept in bench/history and compared with the one before on
+the same kind of machine. Peers are installed on first use into .cache/bench_venv (300 MB). See docs/bench.md.
 """
 import argparse
+import datetime
 import json
 import os
 import re
-import statistics
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parent.parent
-BIN = ROOT / "build" / "release" / "bin"
-CACHE = ROOT / ".cache"
-PEER_PACKAGES = ["libllvm19", "libegl1", "libgles2", "libgl1-mesa-dri", "mesa-vulkan-drivers"]
+import measure
+from measure import ROOT, say
 
-sys.path.insert(0, str(ROOT / "tests"))
-import fetch_data  # noqa: E402
+HISTORY = ROOT / "bench" / "history"
 
 
-def say(text):
-    print(f"gloam: {text}", file=sys.stderr, flush=True)
+class Progress:
+    """A line on the terminal that tells what is measured and how long it will still take; elsewhere a line per subject."""
+
+    def __init__(self, expected):
+        self._left, self._live = dict(expected), sys.stderr.isatty()
+        self._stop = threading.Event()
+
+    def start(self, subject):
+        self._subject, self._began, self._expected = subject.__name__, time.monotonic(), self._left.pop(subject)
+        text = f"measuring {self._subject}: {subject.__doc__}"
+        say(text if self._live else f"{text} (about {self._expected:.0f} s, then {sum(self._left.values()):.0f} s)")
+        self._stop.clear()
+        self._thread = threading.Thread(target=self._tick, daemon=True)
+        self._thread.start()
+
+    def end(self):
+        self._stop.set()
+        self._thread.join()
+        return time.monotonic() - self._began
+
+    def _tick(self):
+        while self._live and not self._stop.wait(1):
+            passed = time.monotonic() - self._began
+            left = max(self._expected - passed, 1) + sum(self._left.values())
+            share = min(passed / self._expected, 0.99)
+            sys.stderr.write(f"\r\033[K{share:4.0%} of {self._subject}, about {left:.0f} s left in all")
+            sys.stderr.flush()
+        if self._live:
+            sys.stderr.write("\r\033[K")
+            sys.stderr.flush()
 
 
-def run(command, **env):
-    result = subprocess.run([str(word) for word in command], capture_output=True, text=True, env={**os.environ, **env})
-    if result.returncode != 0:
-        raise RuntimeError(f"{Path(str(command[0])).name} failed: {(result.stderr or result.stdout).strip().splitlines()[-1:]}")
-    return result.stdout
+def machine():
+    names = re.findall(r"^model name\s*:\s*(.+)$", Path("/proc/cpuinfo").read_text(), re.M)
+    return {"cpu": names[0] if names else os.uname().machine, "cores": os.cpu_count()}
 
 
-def cpu_seconds(command, **env):
-    """User and system seconds of one run of a command."""
-    before = os.times()
-    run(command, **env)
-    after = os.times()
-    return after.children_user + after.children_system - before.children_user - before.children_system
+def versions():
+    listed = re.findall(r"^(mujoco|mitsuba)==(\S+)$", (ROOT / "bench" / "requirements.txt").read_text(), re.M)
+    return {"gloam": measure.run(measure.BIN / "gloam", "--version").strip().replace("\n", ", "),
+            "commit": measure.run("git", "-C", ROOT, "describe", "--always", "--dirty").strip(),
+            "peers": ", ".join(f"{name} {version}" for name, version in listed)}
 
 
-def robot(name):
-    data = Path(os.environ.get("GLOAM_TEST_DATA") or fetch_data.default_folder())
-    if not (data / "mjlab").exists():
-        say("fetching the robots to measure with")
-        run([sys.executable, ROOT / "tests" / "fetch_data.py", data])
-    found = sorted((data / "mjlab").glob(f"**/{name}.xml"))
-    if not found:
-        raise RuntimeError(f"{name}.xml is not in the test data")
-    return found[0]
+def previous_run(here):
+    """The newest complete run on the same kind of machine, or None."""
+    runs = []
+    for path in HISTORY.glob("bench_*.json"):
+        record = json.loads(path.read_text())
+        if record["machine"] == here:
+            runs.append(record)
+    return max(runs, key=lambda record: record["date"], default=None)
 
 
-def peer_python():
-    python = CACHE / "bench_venv" / "bin" / "python"
-    if not python.exists():
-        say("installing the peers (MuJoCo's renderers, Mitsuba) into .cache/bench_venv")
-        missing = [p for p in PEER_PACKAGES if subprocess.run(["dpkg", "-s", p], capture_output=True).returncode != 0]
-        if missing:
-            run((["sudo"] if os.geteuid() else []) + ["apt-get", "install", "-y", "--no-install-recommends", *missing])
-        run([sys.executable, "-m", "venv", CACHE / "bench_venv"])
-        run([python, "-m", "pip", "install", "-q", "-r", ROOT / "bench" / "requirements.txt"])
-    return python
+def change(row, before):
+    """Since the previous run, in words; empty when there is nothing to compare with."""
+    old = next((r["value"] for r in before["rows"] if r["name"] == row["name"]), 0) if before else 0
+    return f"{100 * (row['value'] / old - 1):+.0f} % since {before['date'][:10]}" if old else ""
 
 
-def row(name, value, bar, better, note=""):
-    return {"name": name, "value": round(value, 4), "bar": bar, "met": value >= bar if better == "higher" else value <= bar,
-            "better": better, "note": note}
+def print_row(row, before):
+    sign = ">=" if row["better"] == "higher" else "<="
+    mark = "ok  " if row["met"] else "MISS"
+    print(f"{mark} {row['name']:<58} {row['value']:7.3f}  (bar {sign} {row['bar']:g})  {change(row, before)}", flush=True)
+    print(f"     {row['note']}", flush=True)
 
 
-def sim_step_rate():
-    """CPU time of the sim thread against a bare mj_step loop, alternate blocks in one process."""
-    data = json.loads(run([BIN / "bench_sim_step_rate", robot("go1"), "--json"]))
-    low = data["lower_95"]
-    yield row("sim: step rate / bare mj_step loop, lower 95 % bound", low, 0.97, "higher", f"median {data['median_ratio']:.3f}, {data['pairs']} pairs")
+def keep(record):
+    """One file per day and commit: a repeated run replaces the earlier one."""
+    HISTORY.mkdir(exist_ok=True)
+    path = HISTORY / f"bench_{record['date'][:10]}_{record['versions']['commit']}.json"
+    path.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n")
+    return path
 
 
-def path_tier():
-    """Paths per second of CPU time against Mitsuba 3.9 (llvm_ad_rgb) on the same meshes and lights."""
-    folder = CACHE / "bench_room"
-    folder.mkdir(parents=True, exist_ok=True)
-    own = run([BIN / "bench_path_rate", "--plain", "--spp", "4", "--runs", "5", "--export", folder])
-    own_rate = float(re.search(r"([\d.]+) Mpaths/s", own).group(1))
-    library = next(Path("/usr/lib").glob("*/libLLVM*19*.so*"))
-    theirs = run([peer_python(), ROOT / "bench" / "peers" / "mitsuba_room.py", folder, "--spp", "4", "--runs", "5"],
-                 DRJIT_LIBLLVM_PATH=str(library))
-    their_rate = float(re.search(r"([\d.]+) Mpaths/s", theirs).group(1))
-    yield row("path tier: paths per second / Mitsuba 3.9", own_rate / their_rate, 1.0, "higher", own.strip().splitlines()[-1])
+def choose(only):
+    chosen = [subject for subject in measure.ALL if only in subject.__name__]
+    if not chosen:
+        names = ", ".join(subject.__name__ for subject in measure.ALL)
+        say(f"error: nothing that is measured has '{only}' in its name; there are: {names}")
+        sys.exit(2)
+    return chosen
 
 
-def direct_tier():
-    """One RGB picture with shadows against MuJoCo's own renderers on the same model."""
-    scene = CACHE / "bench_boxes.xml"
-    boxes = "".join(f'<geom type="box" size=".1 .1 .1" pos="{-1.5 + 0.75 * (i % 5)} {-1.5 + (i // 5)} 0.1" rgba=".{3 + i % 6} .4 .5 1"/>'
-                    for i in range(20))
-    CACHE.mkdir(exist_ok=True)
-    include = robot("go1")
-    scene = include.parent / "gloam_bench_boxes.xml"
-    scene.write_text(f'<mujoco><include file="{include.name}"/><worldbody><light type="spot" pos="1 1 3" dir="-.3 -.3 -1" castshadow="true"/>'
-                     f'<geom type="plane" size="5 5 .1"/>{boxes}<camera name="c" pos="1.2 -1.2 .8" xyaxes=".7 .7 0 -.3 .3 .9"/></worldbody></mujoco>')
-    times = []
-    for spp in (1, 9):
-        samples = []
-        for _ in range(5):
-            start = time.perf_counter()
-            run([BIN / "gloam", "render", scene, "--camera", "c", "--tier", "direct", "--no-denoise", "--spp", spp, "--resolution", "640x480",
-                 "--out", CACHE / "bench_pictures"])
-            samples.append(time.perf_counter() - start)
-        times.append(statistics.median(samples))
-    own = 1e3 * (times[1] - times[0]) / 8
-    for kind in ("classic", "filament"):
-        theirs = float(run([peer_python(), ROOT / "bench" / "peers" / "mujoco_render.py", scene, kind, 640, 480, 10]).split()[-1])
-        yield row(f"direct tier: MuJoCo {kind} time / ours, 640x480", theirs / own, 3.0, "higher", f"{theirs:.0f} ms against {own:.0f} ms")
-
-
-def first_picture():
-    """Start of the program to a written picture, warm."""
-    command = [BIN / "gloam", "render", ROOT / "examples" / "demo.toml", "--camera", "chase", "--spp", "1", "--out", CACHE / "bench_pictures"]
-    run(command)
-    samples = []
-    for _ in range(5):
-        start = time.perf_counter()
-        run(command)
-        samples.append(time.perf_counter() - start)
-    yield row("first picture after a warm start [s]", statistics.median(samples), 3.0, "lower")
-
-
-MEASUREMENTS = [sim_step_rate, path_tier, direct_tier, first_picture]
+def measure_all(chosen, before, args):
+    """Rows, seconds by subject, and the names of the subjects that could not be measured."""
+    expected = {subject: (before or {}).get("seconds", {}).get(subject.__name__, measure.ALL[subject]) for subject in chosen}
+    if args.quick:
+        expected = {subject: seconds / 4 for subject, seconds in expected.items()}
+    rows, seconds, failed, progress = [], {}, [], Progress(expected)
+    for subject in chosen:
+        progress.start(subject)
+        try:
+            found, error = list(subject(args.quick)), None
+        except (RuntimeError, OSError, ValueError, KeyError) as problem:
+            found, error = [], problem
+        finally:
+            seconds[subject.__name__] = round(progress.end(), 1)
+        if error is not None:
+            failed.append(subject.__name__)
+            say(f"error: {subject.__name__} could not be measured: {error}")
+        for row in found:
+            rows.append(row)
+            if not args.json:
+                print_row(row, before)
+    return rows, seconds, failed
 
 
 def main():
     parser = argparse.ArgumentParser(prog="./gloam bench", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     epilog="Example: ./gloam bench --only sim")
-    parser.add_argument("--only", metavar="NAME", default="", help="only measurements whose name contains NAME")
-    parser.add_argument("--json", action="store_true", help="print the figures as JSON")
+                                     epilog="Measured: " + ", ".join(s.__name__ for s in measure.ALL) +
+                                            "\nExample: ./gloam bench --only sim")
+    parser.add_argument("--only", metavar="NAME", default="", help="only what has NAME in its name; not kept in the history")
+    parser.add_argument("--quick", action="store_true", help="few repetitions, rough figures: to see that it works; not kept")
+    parser.add_argument("--json", action="store_true", help="print the record of the run as JSON")
     args = parser.parse_args()
-    rows, failed = [], []
-    for measure in MEASUREMENTS:
-        if args.only not in measure.__name__:
-            continue
-        say(f"measuring {measure.__name__}: {measure.__doc__}")
-        try:
-            for line in measure():
-                rows.append(line)
-                if not args.json:
-                    sign = ">=" if line["better"] == "higher" else "<="
-                    print(f"{'ok  ' if line['met'] else 'MISS'} {line['name']:<58} {line['value']:8.3f}  (bar {sign} {line['bar']})  {line['note'][:90]}", flush=True)
-        except (RuntimeError, OSError, AttributeError, StopIteration, TypeError) as error:
-            failed.append(measure.__name__)
-            say(f"error: {measure.__name__} could not be measured: {error}")
-    version = subprocess.run(["git", "-C", str(ROOT), "describe", "--always", "--dirty"], capture_output=True, text=True).stdout.strip()
-    if rows:
-        history = ROOT / "bench" / "history"
-        history.mkdir(exist_ok=True)
-        (history / f"bench_{version}.json").write_text(json.dumps({"version": version, "cpus": os.cpu_count(), "rows": rows}, indent=1))
+    chosen = choose(args.only)
+    here = machine()
+    before = previous_run(here)
+    busy = os.getloadavg()[0]
+    if busy > 0.5 * here["cores"]:
+        say(f"warning: the machine is busy (load {busy:.1f} on {here['cores']} cores): expect a scatter of 30 %")
+    rows, seconds, failed = measure_all(chosen, before, args)
+    record = {"date": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"), "machine": here,
+              "load": round(busy, 2), "versions": versions(), "rows": rows, "seconds": seconds}
     if args.json:
-        print(json.dumps(rows, indent=1))
-    return 1 if failed else 0
+        print(json.dumps(record, indent=1, ensure_ascii=False))
+    if failed:
+        return 3 if rows else 1
+    if not (args.only or args.quick):
+        say(f"kept in {os.path.relpath(keep(record))}")
+    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    try:
+        sys.exit(main())
+    except KeyboardInterrupt:
+        say("stopped; a run that is not complete is not kept")
+        sys.exit(130)

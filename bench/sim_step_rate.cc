@@ -8,16 +8,12 @@
 // pair (1 = no overhead) and the lower end of its 95 % confidence interval from order statistics.
 
 #include <fmt/format.h>
-#include <time.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstring>
 #include <string_view>
 
 #include "base/hash.h"
-#include "base/rng.h"
-#include "scene/mujoco_guard.h"
+#include "bench/step_model.h"
 #include "sim/simulator.h"
 #include "sim/state_layout.h"
 
@@ -31,42 +27,6 @@ struct Options {
   bool bare = false, json = false;
 };
 
-double thread_cpu_time() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-// Controls of one block, drawn before the clock starts, so that only the copy is timed.
-class ControlTable {
- public:
-  ControlTable(const mjModel& model, int block)
-      : nu_(static_cast<int>(model.nu)), values_(static_cast<size_t>(nu_ * block)) {
-    for (int i = 0; i < nu_; ++i) {
-      const bool limited = model.actuator_ctrllimited[i];
-      low_.push_back(limited ? model.actuator_ctrlrange[2 * i] : -1);
-      high_.push_back(limited ? model.actuator_ctrlrange[2 * i + 1] : 1);
-    }
-  }
-  void draw(int64_t first_step) {
-    constexpr RandomStream stream{1, stream_id("bench.control")};
-    for (size_t k = 0; k < values_.size(); ++k) {
-      const auto i = k % static_cast<size_t>(nu_);
-      const double u = stream.uniform(static_cast<uint64_t>(first_step), static_cast<uint32_t>(k));
-      values_[k] = low_[i] + u * (high_[i] - low_[i]);
-    }
-    first_step_ = first_step;
-  }
-  void apply(int64_t step, mjData* data) const {
-    if (nu_ > 0) mju_copy(data->ctrl, values_.data() + (step - first_step_) * nu_, nu_);
-  }
-
- private:
-  int nu_;
-  std::vector<double> low_, high_, values_;
-  int64_t first_step_ = 0;
-};
-
 class TableController final : public Controller {
  public:
   explicit TableController(const ControlTable& table) : table_(table) {}
@@ -78,40 +38,6 @@ class TableController final : public Controller {
  private:
   const ControlTable& table_;
 };
-
-void add_floor_and_motors(mjSpec* spec) {
-  mjsGeom* floor = mjs_addGeom(mjs_findBody(spec, "world"), nullptr);
-  floor->type = mjGEOM_PLANE;
-  floor->size[0] = floor->size[1] = floor->size[2] = 1;
-  for (mjsElement* e = mjs_firstElement(spec, mjOBJ_JOINT); e != nullptr;
-       e = mjs_nextElement(spec, e)) {
-    const mjsJoint* joint = mjs_asJoint(e);
-    const std::string name = mjs_getString(mjs_getName(e));
-    if (joint->type == mjJNT_FREE || joint->type == mjJNT_BALL || name.empty()) continue;
-    mjsActuator* motor = mjs_addActuator(spec, nullptr);
-    mjs_setToMotor(motor);
-    motor->trntype = mjTRN_JOINT;
-    mjs_setString(motor->target, name.c_str());
-    motor->ctrllimited = mjLIMITED_TRUE;
-    motor->ctrlrange[0] = -10, motor->ctrlrange[1] = 10;
-  }
-}
-
-Result<std::shared_ptr<const CompiledWorld>> load(const Options& options) {
-  install_mujoco_handler();
-  char error[1000] = "";
-  auto world = std::make_shared<CompiledWorld>();
-  const SpecPtr spec(mj_parseXML(options.model, nullptr, error, sizeof(error)));
-  if (!spec) return Error{ErrorKind::kInput, error};
-  const bool has_actuators = mjs_firstElement(spec.get(), mjOBJ_ACTUATOR) != nullptr;
-  if (!has_actuators && !options.bare) add_floor_and_motors(spec.get());
-  world->model.reset(mj_compile(spec.get(), nullptr));
-  if (!world->model) return Error{ErrorKind::kInput, mjs_getError(spec.get())};
-  RobotInstance robot;
-  robot.root_body = 1;
-  world->robots.push_back(robot);
-  return std::shared_ptr<const CompiledWorld>(world);
-}
 
 // Nanoseconds of the state copy and the hash of one step, measured alone.
 double hash_cost(const mjModel& model, const mjData& data) {
@@ -128,7 +54,8 @@ double hash_cost(const mjModel& model, const mjData& data) {
 }
 
 Status run(const Options& options) {
-  GLOAM_TRY(const std::shared_ptr<const CompiledWorld> world, load(options));
+  GLOAM_TRY(const std::shared_ptr<const CompiledWorld> world,
+            load_step_model(options.model, options.bare));
   const mjModel* model = world->model.get();
   DataPtr data(mj_makeData(model));
   ControlTable table(*model, options.block);
@@ -180,13 +107,8 @@ Status run(const Options& options) {
     return Error{ErrorKind::kInput, "the two loops ended in different states"};
   }
 
-  std::sort(ratios.begin(), ratios.end());
-  const auto n = static_cast<double>(ratios.size());
-  const double median = 0.5 * (ratios[ratios.size() / 2] + ratios[(ratios.size() - 1) / 2]);
-  // Binomial(n, 1/2): the rank below the median that it exceeds with 95 % probability.
-  const auto rank =
-      static_cast<size_t>(std::max(0.0, std::floor(0.5 * (n - 1.645 * std::sqrt(n)))));
-  const double per_step = 1e6 / (n * options.block);
+  const RatioSummary summary = summarise(ratios);
+  const double per_step = 1e6 / (static_cast<double>(options.pairs) * options.block);
   const double bare_us = bare_total * per_step, simulator_us = simulator_total * per_step;
   const double hash_ns = hash_cost(*model, *data);
   if (options.json) {
@@ -194,13 +116,13 @@ Status run(const Options& options) {
         "{{\"name\": \"sim_step_rate\", \"pairs\": {}, \"block\": {}, \"median_ratio\": {:.5f}, "
         "\"lower_95\": {:.5f}, \"bare_us\": {:.3f}, \"simulator_us\": {:.3f}, \"hash_ns\": "
         "{:.1f}, \"state_size\": {}}}\n",
-        ratios.size(), options.block, median, ratios[rank], bare_us, simulator_us, hash_ns,
-        state.size());
+        ratios.size(), options.block, summary.median, summary.lower_95, bare_us, simulator_us,
+        hash_ns, state.size());
   } else {
     fmt::print(
         "step rate through the Simulator / bare mj_step: {:.4f} (lower 95 % bound {:.4f}, "
         "{} pairs of {} steps)\n",
-        median, ratios[rank], ratios.size(), options.block);
+        summary.median, summary.lower_95, ratios.size(), options.block);
     fmt::print(
         "per step: bare {:.3f} µs, Simulator {:.3f} µs; state copy and hash {:.0f} ns of {} "
         "numbers\n",

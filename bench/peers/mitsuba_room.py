@@ -1,13 +1,15 @@
 """Renders the scene that `path_rate --plain --export FOLDER` wrote with Mitsuba 3 (llvm_ad_rgb).
 
 Same meshes, Lambertian materials, one emitter, camera, max_depth and resolution: the same work as
-`path_rate --plain`. Prints paths per second of CPU time, kernels compiled before.
+`path_rate --plain`. Prints paths per second of CPU time (at full use of all threads), kernels compiled before, as JSON.
 Needs: pip install mitsuba numpy; DRJIT_LIBLLVM_PATH=/usr/lib/x86_64-linux-gnu/libLLVM.so.19.1
 
     python mitsuba_room.py FOLDER [--spp 4] [--runs 5] [--picture out.png]
 """
 
 import argparse
+import json
+import math
 import os
 import time
 
@@ -26,7 +28,7 @@ def load(folder):
             width, height = int(rest[0]), int(rest[1])
             fy, *values = [float(v) for v in rest[2:]]
             eye, direction = values[0:3], values[3:6]
-            fov = 2 * 180 / 3.141592653589793 * __import__("math").atan(0.5 * height / fy)
+            fov = 360 / math.pi * math.atan(0.5 * height / fy)
             scene["sensor"] = {
                 "type": "perspective", "fov_axis": "y", "fov": fov,
                 "to_world": mi.ScalarTransform4f().look_at(
@@ -70,8 +72,8 @@ def main():
     paths = width * height * arguments.spp
     threads = os.cpu_count()
     red = float(dr.mean(image.array[0::3])[0])
-    print(f"mean {red:.4f}; wall {sorted(walls)[len(walls) // 2] * 1e3:.0f} ms; CPU {seconds * 1e3:.0f} ms; "
-          f"{paths / seconds * threads * 1e-6:.3f} Mpaths/s at {threads} full threads")
+    print(json.dumps({"mpaths_per_s": paths / seconds * threads * 1e-6, "cpu_ms": seconds * 1e3,
+                      "wall_ms": sorted(walls)[len(walls) // 2] * 1e3, "mean": red}))
     if arguments.picture:
         mi.util.write_bitmap(arguments.picture, image * (0.22 / 20))
 

@@ -140,6 +140,7 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
   settings.roulette_depth = 3;  // unbiased, and dim paths are a third of all rays in a room
   settings.seed = hash_bytes(request.camera.data(), request.camera.size(), seed);
   if (request.render.denoise && channels.light()) sensor->denoiser_ = make_denoiser({});
+  settings.exact_channels = channels.geometry() || sensor->denoiser_ != nullptr;
   return sensor;
 }
 

@@ -23,6 +23,7 @@ struct CameraChannels {
   bool normal = false, albedo = false, motion = false;
   static Result<CameraChannels> parse(const std::vector<std::string>& names);
   bool light() const { return rgb || radiance; }
+  bool geometry() const { return depth || segmentation || normal || albedo || motion; }
 };
 
 class CameraSensor {

@@ -20,10 +20,9 @@ Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledW
   stepper->world_ = world;
   stepper->seed_ = seed;
   stepper->timestep_ = timestep;
-  mjModel* model = nullptr;
+  stepper->take_model(*world->model);
+  const mjModel* model = &stepper->model_;
   mjData* data = nullptr;
-  GLOAM_TRY_STATUS(guarded([&] { model = mj_copyModel(nullptr, world->model.get()); }));
-  stepper->model_.reset(model);
   GLOAM_TRY_STATUS(guarded([&] { data = mj_makeData(model); }));
   stepper->data_.reset(data);
   stepper->reader_ = StateReader(*model, *data);
@@ -32,31 +31,37 @@ Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledW
   stepper->next_state_.resize(stepper->state_.size());
   stepper->sensors_.resize(static_cast<size_t>(model->nsensordata));
   stepper->pool_ = SnapshotPool::create(world, kFirstSlots);
-  stepper->prepare_private_model();
   if (!stepper->reset()) return stepper->error();
   return stepper;
 }
 
-// What the simulation changes on its copy; exports are made from the World's own model.
-void Stepper::prepare_private_model() {
-  model_->opt.disableflags |= mjDSBL_AUTORESET;
-  if (timestep_) model_->opt.timestep = *timestep_;
+// Refers to the arrays of `model`, meshes of 70 MB among them; the options are copied and changed.
+void Stepper::take_model(const mjModel& model) {
+  model_ = model;
+  model_.opt.disableflags |= mjDSBL_AUTORESET;
+  if (timestep_) model_.opt.timestep = *timestep_;
+}
+
+// Live fields are written into the arrays: not into those that all simulations of the World share.
+bool Stepper::own_the_arrays() {
+  mjModel* copy = own_arrays_.get();
+  const bool ok = try_mujoco([&] { copy = mj_copyModel(copy, world_->model.get()); });
+  if (!ok || copy == nullptr) return fail({ErrorKind::kInput, mujoco_error_message()});
+  if (own_arrays_ == nullptr) own_arrays_.reset(copy);
+  take_model(*copy);
+  return true;
 }
 
 bool Stepper::reset() {
   failed_ = false;
   if (live_ != nullptr) {
     live_.reset();
-    mjModel* model = model_.get();
-    if (!try_mujoco([&] { mj_copyModel(model, world_->model.get()); })) {
-      return fail({ErrorKind::kInput, mujoco_error_message()});
-    }
-    prepare_private_model();
+    if (!own_the_arrays()) return false;
   }
   inputs_->reset();
   // Sensors and the warm start of the solver are computed by a forward pass. The sensors are
   // wanted, but a bare mj_step loop starts cold, so the state is made anew after it.
-  const mjModel* model = model_.get();
+  const mjModel* model = &model_;
   mjData* data = data_.get();
   const bool ok = try_mujoco([&] {
     reset_to_initial_state(*world_, *model, *data);
@@ -85,7 +90,7 @@ void Stepper::apply(const Command& command) {
         if constexpr (std::is_same_v<T, SetLiveField>) {
           change_live(what);
         } else if constexpr (!std::is_same_v<T, SetVelocityGoal> && !std::is_same_v<T, ResetSim>) {
-          inputs_->apply(*model_, data, what);
+          inputs_->apply(model_, data, what);
         }
       },
       command.what);
@@ -95,25 +100,26 @@ void Stepper::apply(const Command& command) {
 void Stepper::change_live(const SetLiveField& change) {
   if (change.field == LiveFieldId::kBodyMass && scratch_ == nullptr) {
     mjData* scratch = nullptr;
-    const mjModel* model = model_.get();
+    const mjModel* model = &model_;
     if (!try_mujoco([&] { scratch = mj_makeData(model); })) {
       fail({ErrorKind::kInput, mujoco_error_message()});
       return;
     }
     scratch_.reset(scratch);
   }
+  if (live_ == nullptr && !own_the_arrays()) return;
   live_ = change_live_field(*world_->model, live_.get(), change);
   const uint64_t digest = live_fields_digest(*live_);
   hash_ = hash_bytes(&digest, sizeof(digest), hash_);
   const Status written =
       write_live_field(*world_->model, change.field,
-                       live_->values[static_cast<size_t>(change.field)], *model_, scratch_.get());
+                       live_->values[static_cast<size_t>(change.field)], model_, scratch_.get());
   if (!written) fail(written.error());
 }
 
 bool Stepper::step() {
   if (failed_) return false;
-  const mjModel* model = model_.get();
+  const mjModel* model = &model_;
   mjData* data = data_.get();
   AppliedInputs* inputs = inputs_.get();
   const bool ok = try_mujoco([=] {
@@ -150,7 +156,7 @@ bool Stepper::fail(Error error) {
 // mjData is in an unknown state: make it anew. If even that is refused the state vector and the
 // Snapshot made from it are still good.
 void Stepper::restore_last_good_state() {
-  const mjModel* model = model_.get();
+  const mjModel* model = &model_;
   mjData* data = nullptr;
   if (!try_mujoco([&] { data = mj_makeData(model); }) || data == nullptr) return;
   data_.reset(data);

@@ -1,5 +1,5 @@
 #pragma once
-// One simulation without its thread: a private model and mjData, the step, the hash of every step,
+// One simulation without its thread: private options and mjData, the step, the hash of every step,
 // live fields and what Commands left behind. Used by one thread at a time.
 
 #include <array>
@@ -44,7 +44,7 @@ class Stepper {
   int64_t step_count() const { return step_; }
   double time() const { return state_[0]; }
   uint64_t hash() const { return hash_; }
-  const mjModel& model() const { return *model_; }
+  const mjModel& model() const { return model_; }
   mjData& data() { return *data_; }
   const CompiledWorld& world() const { return *world_; }
   SnapshotPool& pool() { return *pool_; }
@@ -59,13 +59,15 @@ class Stepper {
   void restore_last_good_state();
   void compute_sensors();
   void change_live(const SetLiveField& change);
-  void prepare_private_model();
+  bool own_the_arrays();
+  void take_model(const mjModel& model);
   void count_diagnostics();
 
   std::shared_ptr<const CompiledWorld> world_;
   std::optional<double> timestep_;
   uint64_t seed_ = 0;
-  ModelPtr model_;
+  mjModel model_;  // options of its own; its arrays are the World's until a live field changes
+  ModelPtr own_arrays_;  // then model_'s arrays are these
   DataPtr data_;
   StateReader reader_;  // of data_
   DataPtr scratch_;     // for mj_setConst; made on first use

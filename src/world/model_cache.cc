@@ -4,6 +4,8 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <chrono>
+#include <condition_variable>
 #include <cstring>
 #include <mutex>
 #include <thread>
@@ -159,25 +161,49 @@ void write_entry(const CompiledWorld& world, const std::vector<Dependency>& depe
   trim_cache(folder, kLargestCache);
 }
 
+// A program that has just compiled a world goes on to start up; an entry of 70 MB can wait for
+// that.
+constexpr std::chrono::seconds kStartUp{2};
+
 // One writer at a time; its destructor at the end of the program waits for the last entry.
 class BackgroundWriter {
  public:
   ~BackgroundWriter() { finish(); }
   void start(std::shared_ptr<const CompiledWorld> world, std::vector<Dependency> dependencies) {
     const std::lock_guard lock(mutex_);
-    if (thread_.joinable()) thread_.join();
-    thread_ = std::thread([world = std::move(world), dependencies = std::move(dependencies)] {
+    join();
+    thread_ = std::thread([this, world = std::move(world), dependencies = std::move(dependencies)] {
+      wait_for_start_up();
       write_entry(*world, dependencies);
     });
   }
   void finish() {
     const std::lock_guard lock(mutex_);
-    if (thread_.joinable()) thread_.join();
+    join();
   }
 
  private:
+  void wait_for_start_up() {
+    std::unique_lock lock(hurry_mutex_);
+    hurried_.wait_for(lock, kStartUp, [this] { return hurry_; });
+  }
+  void set_hurry(bool hurry) {
+    const std::lock_guard lock(hurry_mutex_);
+    hurry_ = hurry;
+  }
+  void join() {
+    if (!thread_.joinable()) return;
+    set_hurry(true);
+    hurried_.notify_one();
+    thread_.join();
+    set_hurry(false);
+  }
+
   std::mutex mutex_;
   std::thread thread_;
+  std::mutex hurry_mutex_;
+  std::condition_variable hurried_;
+  bool hurry_ = false;  // someone waits for the entry
 };
 
 BackgroundWriter& background_writer() {

@@ -13,8 +13,8 @@ uint64_t world_cache_key(const Scene& scene);
 /// The scene's entry, read and checked; null when there is none that holds good.
 std::shared_ptr<CompiledWorld> load_cached_world(const Scene& scene);
 
-/// Writes the entry on a thread of its own, which the program waits for at its end. A cache that
-/// cannot be written is no error.
+/// Writes the entry on a thread of its own, after the program has had two seconds to start up; its
+/// end waits for the entry. A cache that cannot be written is no error.
 void store_cached_world(std::shared_ptr<const CompiledWorld> world,
                         std::vector<Dependency> dependencies);
 

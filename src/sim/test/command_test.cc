@@ -130,6 +130,26 @@ TEST_F(CommandTest, GravityMassAndFrictionChangeWhileItRuns) {
   EXPECT_EQ(m.opt.gravity[2], 0);  // the World is as it was
 }
 
+TEST_F(CommandTest, LiveFieldsOfOneSimulationReachNoOtherOfItsWorld) {
+  auto other = make_simulator(world, lockstep());  // made before, so that it could notice
+  const std::vector<mjtNum> before(world->model->body_mass,
+                                   world->model->body_mass + world->model->nbody);
+  ASSERT_TRUE(sim->post({0, SetLiveField{LiveFieldId::kBodyMass, body("cart").id, {8}}}).ok());
+  for (Simulator* each : {sim.get(), other.get()}) {
+    ASSERT_TRUE(each->post({0, SetControl{Actuator{0}, 8}}).ok());
+    each->start();
+    ASSERT_TRUE(each->step(10).ok());
+  }
+  EXPECT_NEAR(velocity(), 8 / 8.0 * 0.1, 1e-12);
+  EXPECT_NEAR(other->latest()[Joint{0}].velocity(), 8 / 2.0 * 0.1, 1e-12);
+  for (size_t i = 0; i < before.size(); ++i) EXPECT_EQ(world->model->body_mass[i], before[i]);
+  // A reset takes the change back, for good and in the one that made it only.
+  ASSERT_TRUE(sim->reset().ok());
+  ASSERT_TRUE(sim->post({0, SetControl{Actuator{0}, 8}}).ok());
+  ASSERT_TRUE(sim->step(10).ok());
+  EXPECT_NEAR(velocity(), 8 / 2.0 * 0.1, 1e-12);
+}
+
 TEST_F(CommandTest, LiveFieldsAreInTheHash) {
   auto hash = [this](std::vector<Command> commands) {
     auto sim = make_simulator(world, lockstep());

@@ -1,0 +1,111 @@
+// Time of one RGB picture of the direct tier (primary hit, direct light, shadows), as a live camera
+// takes it: physics has moved, so every frame solves poses, moves the scene, renders, tone-maps.
+//
+//   direct_rate MODEL CAMERA [--size WxH] [--spp N] [--frames N] [--picture FILE.png]
+//
+// No denoising. Prints the medians over the frames, without the two that warm up, as
+// "WALL ms CPU ms"; physics itself is not timed.
+
+#include <fmt/format.h>
+#include <time.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
+#include "base/files.h"
+#include "gloam/scene.h"
+#include "render/film/png.h"
+#include "runtime/live_simulation.h"
+
+namespace gloam {
+namespace {
+
+struct Options {
+  const char *model = nullptr, *camera = nullptr, *picture = nullptr;
+  int width = 640, height = 480, spp = 1, frames = 20;
+};
+
+double seconds(clockid_t clock) {
+  timespec t{};
+  clock_gettime(clock, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return 0.5 * (values[values.size() / 2] + values[(values.size() - 1) / 2]);
+}
+
+Status run(const Options& options) {
+  GLOAM_TRY(const Scene scene, load_scene(options.model));
+  GLOAM_TRY(const World world, World::compile(scene));
+  GLOAM_TRY(const auto simulation, LiveSimulation::create(world, {.pace = Pace::kLockstep}));
+  GLOAM_TRY(const auto shared, simulation->renderer());
+  GLOAM_TRY(const auto solver, PoseSolver::create(world.compiled()));
+  CameraRequest request;
+  request.camera = options.camera;
+  request.width = options.width, request.height = options.height;
+  request.render.tier = "direct";
+  request.render.spp = options.spp;
+  request.render.denoise = false;
+  GLOAM_TRY(const auto sensor, CameraSensor::create(shared->description, request, 1));
+
+  constexpr int kWarmUp = 2;
+  std::vector<double> wall, cpu;
+  std::shared_ptr<const CameraFrame> frame;
+  PoseFrame now, previous;
+  for (int i = -kWarmUp; i < options.frames; ++i) {
+    GLOAM_TRY_STATUS(simulation->step(1));
+    const Snapshot snapshot = simulation->latest();
+    const double wall_begin = seconds(CLOCK_MONOTONIC);
+    const double cpu_begin = seconds(CLOCK_PROCESS_CPUTIME_ID);
+    GLOAM_TRY_STATUS(solver->solve(snapshot, now));
+    frame = sensor->capture(*shared->renderer, shared->mutex, now, i > -kWarmUp ? previous : now,
+                            i + kWarmUp);
+    const double wall_end = seconds(CLOCK_MONOTONIC);
+    const double cpu_end = seconds(CLOCK_PROCESS_CPUTIME_ID);
+    std::swap(now, previous);
+    if (i < 0) continue;
+    wall.push_back(wall_end - wall_begin);
+    cpu.push_back(cpu_end - cpu_begin);
+  }
+  if (options.picture != nullptr) {
+    GLOAM_TRY_STATUS(write_file_atomic(options.picture,
+                                       encode_png8(options.width, options.height, 3, frame->rgb)));
+  }
+  fmt::print("{:.3f} ms {:.3f} ms\n", 1e3 * median(wall), 1e3 * median(cpu));
+  return {};
+}
+
+}  // namespace
+}  // namespace gloam
+
+int main(int argc, char** argv) {
+  gloam::Options options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    const bool more = i + 1 < argc;
+    if (word == "--size" && more) {
+      std::sscanf(argv[++i], "%dx%d", &options.width, &options.height);
+    } else if (word == "--spp" && more) {
+      options.spp = std::max(1, std::atoi(argv[++i]));
+    } else if (word == "--frames" && more) {
+      options.frames = std::max(1, std::atoi(argv[++i]));
+    } else if (word == "--picture" && more) {
+      options.picture = argv[++i];
+    } else {
+      (options.model == nullptr ? options.model : options.camera) = argv[i];
+    }
+  }
+  if (options.camera == nullptr) {
+    fmt::print(stderr,
+               "usage: direct_rate MODEL CAMERA [--size WxH] [--spp N] [--frames N] [--picture "
+               "FILE.png]\n");
+    return 2;
+  }
+  const gloam::Status status = gloam::run(options);
+  if (!status) fmt::print(stderr, "gloam: error: {}\n", status.error().to_string());
+  return status.ok() ? 0 : status.error().exit_code();
+}

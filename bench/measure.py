@@ -1,0 +1,200 @@
+"""What ./gloam bench measures: one function per subject, which yields rows. run.py prints and keeps them.
+
+Whatever is compared runs in turns within the same minutes, so that a busy machine is busy for both.
+"""
+import json
+import os
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+BIN = ROOT / "build" / os.environ.get("GLOAM_PRESET", "release") / "bin"
+CACHE = ROOT / ".cache"
+PEER_PACKAGES = ["libllvm19", "libegl1", "libgles2", "libgl1-mesa-dri", "mesa-vulkan-drivers"]
+
+sys.path.insert(0, str(ROOT / "tests"))
+import fetch_data  # noqa: E402
+
+
+def say(text):
+    print(f"gloam: {text}", file=sys.stderr, flush=True)
+
+
+def run(*command, **env):
+    """Standard output of a program that must succeed."""
+    result = subprocess.run([str(word) for word in command], capture_output=True, text=True, env={**os.environ, **env})
+    if result.returncode != 0:
+        words = (result.stderr or result.stdout).strip().splitlines() or [f"exit status {result.returncode}"]
+        raise RuntimeError(f"{Path(str(command[0])).name}: {words[-1]}")
+    return result.stdout
+
+
+def run_json(*command, **env):
+    return json.loads(run(*command, **env).strip().splitlines()[-1])
+
+
+def at_least(name, value, bar, note):
+    return {"name": name, "value": round(value, 4), "bar": bar, "better": "higher", "met": value >= bar, "note": note}
+
+
+def at_most(name, value, bar, note):
+    return {"name": name, "value": round(value, 4), "bar": bar, "better": "lower", "met": value <= bar, "note": note}
+
+
+def robot(name):
+    """A third-party model of the test data, fetched once."""
+    data = Path(os.environ.get("GLOAM_TEST_DATA") or fetch_data.default_folder())
+    if not (data / "mjlab").exists():
+        say("fetching the robots to measure with")
+        run(sys.executable, ROOT / "tests" / "fetch_data.py", data)
+    found = sorted((data / "mjlab").glob(f"**/{name}.xml"))
+    if not found:
+        raise RuntimeError(f"{name}.xml is not in {data}: remove that folder, it is fetched again")
+    return found[0]
+
+
+def peer_python():
+    python = CACHE / "bench_venv" / "bin" / "python"
+    if not python.exists():
+        say("installing the peers (MuJoCo's renderers, Mitsuba; 300 MB) into .cache/bench_venv")
+        missing = [p for p in PEER_PACKAGES if subprocess.run(["dpkg", "-s", p], capture_output=True).returncode != 0]
+        if missing:
+            run(*(["sudo"] if os.geteuid() else []), "apt-get", "install", "-y", "--no-install-recommends", *missing)
+        fresh = CACHE / "bench_venv.new"  # complete or absent, also after Ctrl-C
+        shutil.rmtree(fresh, ignore_errors=True)
+        run(sys.executable, "-m", "venv", fresh)
+        run(fresh / "bin" / "python", "-m", "pip", "install", "-q", "-r", ROOT / "bench" / "requirements.txt")
+        fresh.rename(CACHE / "bench_venv")
+    return python
+
+
+def sim_step_rate(quick):
+    """steps through the Simulator against a bare mj_step loop"""
+    data = run_json(BIN / "bench_sim_step_rate", robot("go1"), "--json", "--pairs", 10 if quick else 60)
+    yield at_least("sim thread's step rate / bare mj_step, lower 95 % bound", data["lower_95"], 0.97,
+                   f"median {data['median_ratio']:.3f} of {data['pairs']} pairs; {data['bare_us']:.1f} µs a bare step")
+
+
+def sim_beside_cameras(quick):
+    """steps while two cameras render, against bare steps while the same cameras render in another process"""
+    data = run_json(BIN / "bench_sim_beside_cameras", robot("go1"), "--json", "--pairs", 4 if quick else 120)
+    yield at_least("the same while two cameras render, lower 95 % bound", data["lower_95"], 0.9,
+                   f"median {data['median_ratio']:.3f} of {data['pairs']} pairs; rendering per stepping, in CPU time: "
+                   f"{data['rendering_beside_simulator']:.1f} ours, {data['rendering_beside_bare']:.1f} bare")
+
+
+def path_tier(quick):
+    """paths per second against Mitsuba 3.9 (llvm_ad_rgb): same meshes, materials, light, depth"""
+    folder = CACHE / "bench_room"
+    folder.mkdir(parents=True, exist_ok=True)
+    library = next(Path("/usr/lib").glob("*/libLLVM*19*.so*"), None) if peer_python() else None
+    if library is None:
+        raise RuntimeError("libLLVM 19 is missing: apt-get install libllvm19")
+    ours, theirs = [], []
+    for _ in range(1 if quick else 4):
+        ours.append(run_json(BIN / "bench_path_rate", "--plain", "--spp", 4, "--runs", 3, "--json", "--export", folder))
+        theirs.append(run_json(peer_python(), ROOT / "bench" / "peers" / "mitsuba_room.py", folder, "--spp", 4, "--runs", 3,
+                               DRJIT_LIBLLVM_PATH=str(library)))
+    if abs(ours[0]["mean"] / theirs[0]["mean"] - 1) > 0.02:
+        raise RuntimeError(f"the two pictures differ: mean radiance {ours[0]['mean']} against {theirs[0]['mean']}")
+    ratio = statistics.median(a["mpaths_per_s"] / b["mpaths_per_s"] for a, b in zip(ours, theirs))
+    rate = statistics.median(a["mpaths_per_s"] for a in ours)
+    share = statistics.median(a["mpaths_per_s"] / a["bare_mpaths_per_s"] for a in ours)
+    yield at_least("path tier: paths/s / Mitsuba 3.9 llvm_ad_rgb", ratio, 1.0,
+                   f"{rate:.2f} Mpaths/s of CPU time; {ours[0]['rays_per_path']:.2f} rays/path; "
+                   f"{share:.0%} of the bare Embree loop (aim 65 %)")
+
+
+def boxes_scene():
+    """Go1, a floor and 20 boxes under a shadowing light, beside a copy of the robot's files."""
+    folder = CACHE / "bench_boxes"
+    source = robot("go1").parent
+    shutil.copytree(source, folder, dirs_exist_ok=True)
+    boxes = "".join(f'<body pos="{-1.5 + 0.75 * (i % 5):g} {-1.5 + i // 5:g} 0.1"><freejoint/>'
+                    f'<geom type="box" size=".1 .1 .1" mass="1" rgba=".{3 + i % 6} .4 .5 1"/></body>' for i in range(20))
+    scene = folder / "bench_boxes.xml"
+    scene.write_text('<mujoco><include file="go1.xml"/><worldbody>'
+                     '<light type="spot" pos="1 1 3" dir="-.3 -.3 -1" castshadow="true"/><geom type="plane" size="5 5 .1"/>'
+                     f'{boxes}<camera name="bench" pos="1.2 -1.2 .8" xyaxes=".7 .7 0 -.3 .3 .9"/></worldbody></mujoco>')
+    return scene
+
+
+def milliseconds(*command):
+    """[wall, CPU] of the last line "WALL ms CPU ms"."""
+    words = run(*command).strip().splitlines()[-1].split()
+    return [float(words[0]), float(words[2])]
+
+
+def direct_tier(quick):
+    """one 640x480 picture with shadows against MuJoCo's own renderers on the same model"""
+    scene = boxes_scene()
+    pictures = CACHE / "bench_pictures"
+    pictures.mkdir(exist_ok=True)
+    commands = {"ours": [BIN / "bench_direct_rate", scene, "bench", "--frames", 20, "--picture", pictures / "direct_ours.png"]}
+    for peer in ("classic", "filament"):
+        commands[peer] = [peer_python(), ROOT / "bench" / "peers" / "mujoco_render.py", scene, "bench", peer, 640, 480, 8,
+                          pictures / f"direct_{peer}.png"]
+    times = {who: [] for who in commands}
+    for _ in range(1 if quick else 5):
+        for who, command in commands.items():
+            times[who].append(milliseconds(*command))
+    for peer, label in (("classic", "MuJoCo classic (EGL, llvmpipe)"), ("filament", "MuJoCo Filament (lavapipe)")):
+        wall, cpu = (statistics.median(a[k] / b[k] for a, b in zip(times[peer], times["ours"])) for k in (0, 1))
+        theirs, own = (statistics.median(t[0] for t in times[who]) for who in (peer, "ours"))
+        yield at_least(f"direct tier: {label} / ours", wall, 3.0, f"{theirs:.0f} ms against {own:.0f} ms; in CPU time {cpu:.1f}")
+
+
+def seconds_until_ready(cache, *command):
+    """[CPU, wall] from the start of a process to the moment that it says it is ready."""
+    start = time.monotonic()
+    cpu, ready = (float(word) for word in run(*command, GLOAM_CACHE=str(cache)).split())
+    return [cpu, ready - start]
+
+
+def load_time(quick):
+    """fresh processes that load third-party models, against mj_loadXML"""
+    names, ratios = ("go1", "g1", "yam"), {"physics": [], "render": [], "cached": []}
+    for name in names:
+        model, pairs = robot(name), {kind: [] for kind in ratios}
+        with tempfile.TemporaryDirectory(prefix="gloam_bench_") as warm:
+            run(BIN / "bench_load_time", model, "physics", GLOAM_CACHE=warm)
+            for _ in range(2 if quick else 15):
+                bare = seconds_until_ready(warm, BIN / "bench_bare_load", model)
+                for kind in ratios:
+                    with tempfile.TemporaryDirectory(prefix="gloam_bench_") as empty:
+                        what, cache = ("physics", warm) if kind == "cached" else (kind, empty)
+                        ours = seconds_until_ready(cache, BIN / "bench_load_time", model, what)
+                    pairs[kind].append([a / b for a, b in zip(ours, bare)])
+        for kind in ratios:
+            ratios[kind].append([statistics.median(pair[k] for pair in pairs[kind]) for k in (0, 1)])
+    for kind, what, bar in (("physics", "ready for physics", 1.15), ("render", "ready to render", 1.6),
+                            ("cached", "ready for physics from our cache", 0.7)):
+        each = ", ".join(f"{name} {cpu:.2f}" for name, (cpu, _) in zip(names, ratios[kind]))
+        walls = ", ".join(f"{wall:.2f}" for _, wall in ratios[kind])
+        yield at_most(f"{what} / mj_loadXML, slowest model", max(cpu for cpu, _ in ratios[kind]), bar,
+                      f"CPU time: {each}; wall: {walls}")
+
+
+def first_picture(quick):
+    """the program's start to a written picture of the demo's room, warm"""
+    command = [BIN / "gloam", "render", ROOT / "examples" / "demo.toml", "--camera", "chase", "--spp", 1, "--out",
+               CACHE / "bench_pictures"]
+    run(*command)
+    walls, cpus = [], []
+    for _ in range(2 if quick else 7):
+        start, before = time.monotonic(), os.times()
+        run(*command)
+        after = os.times()
+        walls.append(time.monotonic() - start)
+        cpus.append(after.children_user + after.children_system - before.children_user - before.children_system)
+    yield at_most("first picture after a warm start [s]", statistics.median(walls), 3.0,
+                  f"wall; CPU time of all threads {statistics.median(cpus):.1f} s; 640x480, 1 sample a pixel, denoised")
+
+
+# With the seconds that each takes on two cores: the first estimate of the time left.
+ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, direct_tier: 90, load_time: 120, first_picture: 15}
