@@ -11,14 +11,10 @@
 #include <vector>
 
 #include "gloam/simulation.h"
+#include "sim/stepper.h"
 #include "world/world.h"
 
 namespace gloam {
-
-struct DataDeleter {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
-using DataPtr = std::unique_ptr<mjData, DataDeleter>;
 
 /// The file as a program without Gloam would have it.
 struct StockModel {
