@@ -36,7 +36,7 @@ LiveCamera::~LiveCamera() {
     closing_ = true;
   }
   changed_.notify_all();
-  queue_->close();
+  if (queue_ != nullptr) queue_->close();  // null when open() failed
   if (thread_.joinable()) thread_.join();
 }
 
