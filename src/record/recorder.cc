@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "base/check.h"
-#include "base/log.h"
 #include "base/text.h"
 #include "record/camera_recorder.h"
 #include "record/csv.h"
@@ -28,7 +27,8 @@ constexpr size_t kPlottedRows = 2000;  // kept in memory for the contact sheet
 const std::vector<std::string> kOutputs = {"video",        "png",     "depth_png",    "depth_exr",
                                            "segmentation", "metrics", "contact_sheet"};
 
-/// The failure that ended a recording. Others that follow from it are of no interest.
+/// The failure that ended a recording: what was written before it is complete, so its kind is
+/// kPartial. Others that follow from it are of no interest.
 class FirstFailure {
  public:
   void report(const Status& status) {
@@ -36,8 +36,9 @@ class FirstFailure {
     const std::lock_guard lock(mutex_);
     if (error_) return;
     error_ = status.error();
+    error_->kind = ErrorKind::kPartial;
+    error_->message = "recording stopped: " + error_->message;
     failed_ = true;
-    log_error("recording stopped: {}", error_->to_string());
   }
   bool failed() const { return failed_; }
   Status status() const {
@@ -141,11 +142,7 @@ class FolderRecorder : public Recorder {
                                      run_sheet_png(info_, outcome, cameras, rows_.items())));
     }
     failure_.report(write_summary(&outcome));
-    Status status = failure_.status();
-    if (status.ok()) return {};
-    Error error = status.error();
-    error.kind = ErrorKind::kPartial;
-    return error;
+    return failure_.status();
   }
 
   const std::filesystem::path& folder() const override { return options_.folder; }

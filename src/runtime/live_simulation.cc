@@ -54,8 +54,6 @@ Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& worl
   return live;
 }
 
-LiveSimulation::~LiveSimulation() { simulator_->stop(); }
-
 void LiveSimulation::restart_speed_clock() {
   const std::lock_guard lock(clock_mutex_);
   clock_wall_ = wall_seconds();

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <thread>
 
 #include "base/files.h"
@@ -15,6 +14,8 @@
 #include "record/recorder.h"
 #include "runtime/live_simulation.h"
 #include "runtime/robot_metrics.h"
+#include "runtime/run_to_step.h"
+#include "sim/step_schedule.h"
 #include "world/version.h"
 
 namespace gloam {
@@ -80,22 +81,6 @@ std::string scene_hash(const Scene& scene) {
   return text.ok() ? hash_to_hex(hash_bytes(text->data(), text->size())) : std::string();
 }
 
-// Steps to the end in the background of this thread, which shows progress and obeys the user.
-Status run_to_the_end(LiveSimulation& simulation, int64_t steps, Clock::time_point start,
-                      const ProgressCallback& progress, const char* what) {
-  Simulator& simulator = simulation.simulator();
-  simulator.run_until(steps);
-  while (simulator.step_count() < steps && simulator.status().ok()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    const double done = static_cast<double>(simulator.step_count()) / static_cast<double>(steps);
-    if (progress && !progress({what, done, seconds_since(start)})) {
-      simulator.pause();
-      return Error{ErrorKind::kInterrupted, "interrupted"};
-    }
-  }
-  return simulator.wait();
-}
-
 RunInfo run_info(const World& world, const RunRequest& request, double timestep, double duration) {
   const Scene& scene = world.compiled()->scene;
   RunInfo info;
@@ -145,7 +130,7 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   Simulator& simulator = simulation->simulator();
   const double duration = request.duration > 0 ? request.duration : scene.sim.duration;
   const Rational rate = simulation->step_rate();
-  const auto steps = static_cast<int64_t>(std::llround(duration * rate.value()));
+  GLOAM_TRY(const int64_t steps, step_of_time(duration, rate, "a duration"));
 
   RunReport report;
   RobotMetrics metrics(*world.compiled());
@@ -160,6 +145,8 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
     for (const CameraRequest& camera : requests) {
       GLOAM_TRY(const auto sensor,
                 CameraSensor::create(shared->description, camera, request.simulation.seed));
+      // Before an older recording is replaced: the simulation would refuse it later.
+      GLOAM_TRY_STATUS(StepSchedule::make(camera.rate, {0, 1}, simulator.timestep()));
       info.cameras.push_back({camera.camera, sensor->intrinsics(), camera.rate});
     }
     GLOAM_TRY(info.labels, simulation->labels());
@@ -187,10 +174,9 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
             simulator.subscribe({.rate = metric_rate, .required = true, .capacity = 256}));
   MetricsThread metrics_thread(metric_queue, metrics, recorder.get());
 
-  report.status = run_to_the_end(*simulation, steps, start, progress,
-                                 cameras.empty() ? "simulating" : "rendering");
-  if (report.status.ok() && recorder != nullptr && !recorder->status().ok())
-    report.status = recorder->status();
+  const auto recording = [&] { return recorder != nullptr ? recorder->status() : Status(); };
+  report.status = run_to_step(simulator, steps, cameras.empty() ? "simulating" : "rendering",
+                              seconds_since(start), progress, recording);
   const Snapshot last = simulator.latest();
   const double simulated = seconds_since(start);
   simulator.stop();  // ends the queues; what they hold is still delivered
