@@ -43,7 +43,7 @@ Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& worl
   std::unique_ptr<LiveSimulation> live(new LiveSimulation(world, options.seed));
   SimulatorOptions core;
   core.seed = options.seed;
-  if (options.timestep > 0) core.timestep = options.timestep;
+  if (options.timestep != 0) core.timestep = options.timestep;
   core.pace = options.pace;
   core.speed = options.speed;
   GLOAM_TRY(live->simulator_, Simulator::create(world.compiled(), core));
@@ -113,6 +113,7 @@ SimulationStats LiveSimulation::stats() const {
   stats.step = snapshot.step();
   stats.time = snapshot.time();
   stats.hash = snapshot.hash();
+  stats.commands_applied = counters.commands_applied;
   stats.dropped_snapshots = counters.snapshots_dropped;
   stats.warnings = std::accumulate(counters.warnings.begin(), counters.warnings.end(), int64_t{0});
   const std::lock_guard lock(clock_mutex_);
