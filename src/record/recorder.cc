@@ -40,6 +40,15 @@ class FirstFailure {
     error_->message = "recording stopped: " + error_->message;
     failed_ = true;
   }
+  /// Does `write`, whose failure or want of memory ends the recording.
+  template <class F>
+  void attempt(F&& write) {
+    try {
+      report(write());
+    } catch (const std::bad_alloc&) {
+      report(Error{ErrorKind::kIo, "out of memory", {}, "lower the resolution"});
+    }
+  }
   bool failed() const { return failed_; }
   Status status() const {
     const std::lock_guard lock(mutex_);
@@ -106,7 +115,7 @@ class FolderRecorder : public Recorder {
     if (failure_.failed()) return;
     CameraRecorder* recorder = &lane->second->recorder;
     lane->second->worker.post([this, recorder, frame = std::move(frame)] {
-      if (!failure_.failed()) failure_.report(recorder->add(*frame));
+      if (!failure_.failed()) failure_.attempt([&] { return recorder->add(*frame); });
     });
   }
 

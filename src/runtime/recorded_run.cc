@@ -174,13 +174,19 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
             simulator.subscribe({.rate = metric_rate, .required = true, .capacity = 256}));
   MetricsThread metrics_thread(metric_queue, metrics, recorder.get());
 
-  const auto recording = [&] { return recorder != nullptr ? recorder->status() : Status(); };
+  const auto recording = [&]() -> Status {
+    for (const auto& camera : cameras) GLOAM_TRY_STATUS(camera->status());
+    return recorder != nullptr ? recorder->status() : Status();
+  };
   report.status = run_to_step(simulator, steps, cameras.empty() ? "simulating" : "rendering",
                               seconds_since(start), progress, recording);
   const Snapshot last = simulator.latest();
   const double simulated = seconds_since(start);
   simulator.stop();  // ends the queues; what they hold is still delivered
-  for (auto& camera : cameras) camera->drain();
+  for (auto& camera : cameras) {
+    camera->drain();
+    if (report.status.ok()) report.status = camera->status();
+  }
   cameras.clear();
   metrics_thread.join();
 

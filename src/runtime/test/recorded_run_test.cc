@@ -122,6 +122,25 @@ TEST_F(RecordedRun, HoldsWhatTheSceneAsksFor) {
   EXPECT_TRUE(fs::exists(report.out / "contact_sheet.png"));
 }
 
+TEST_F(RecordedRun, CamerasWithoutANameAreRecordedAsWell) {
+  const World world = compile_text(folder_, "unnamed.xml", R"(
+<mujoco><worldbody><light pos="0 0 3"/><geom size="1"/>
+  <camera pos="0 -5 0" xyaxes="1 0 0 0 0 1"/><camera name="camera_0" pos="0 -6 0" xyaxes="1 0 0 0 0 1"/>
+  <camera pos="0 -7 0" xyaxes="1 0 0 0 0 1"/></worldbody></mujoco>)");
+  std::vector<std::string> names;
+  for (const NamedElement& camera : world.info().cameras) names.push_back(camera.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"camera_0_", "camera_0", "camera_2"}));
+  for (size_t i = 0; i < names.size(); ++i)
+    EXPECT_EQ(world.find_camera(names[i])->id, static_cast<int>(i));
+  RunRequest all = request("out");
+  all.cameras.clear();
+  all.duration = 0.1;
+  const RunReport report = run(world, all);
+  EXPECT_TRUE(report.status.ok());
+  for (const std::string& name : names)
+    EXPECT_TRUE(fs::exists(report.out / (name + ".mp4"))) << name;
+}
+
 // The contract of determinism, on files: same World and seed, same bytes.
 TEST_F(RecordedRun, FilesDoNotDependOnThreadsOrRepetition) {
   for (const std::string tier : {"direct", "path"}) {

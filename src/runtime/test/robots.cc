@@ -45,11 +45,12 @@ RandomInputs::RandomInputs(const mjModel& m, int64_t step) {
   constexpr RandomStream kControl{11, stream_id("test.control")},
       kForce{11, stream_id("test.force")};
   const auto counter = static_cast<uint64_t>(step);
-  for (int i = 0; i < m.nu; ++i) {
+  for (int i = 0; i < m.nactuator; ++i) {
     const double u = kControl.uniform(counter, static_cast<uint32_t>(i));
-    const double* range = m.actuator_ctrlrange + 2 * i;
-    controls.push_back(m.actuator_ctrllimited[i] ? range[0] + u * (range[1] - range[0])
-                                                 : 2 * u - 1);
+    const int ctrl = m.actuator_ctrladr[i];
+    const double* range = m.actuator_ctrlrange + 2 * ctrl;
+    controls.push_back(m.actuator_ctrllimited[ctrl] ? range[0] + u * (range[1] - range[0])
+                                                    : 2 * u - 1);
   }
   for (int b = 0; b < m.nbody; ++b) {
     const double weight = 9.81 * m.body_mass[b];

@@ -44,7 +44,7 @@ struct RandomInputs {
   Status post(Simulation& simulation, int64_t step) const;
   int count() const { return static_cast<int>(controls.size() + forces.size()); }
 
-  std::vector<double> controls;  // (nu)
+  std::vector<double> controls;  // (nactuator)
   std::vector<Vec3> forces;      // (nbody) [N]
 };
 
