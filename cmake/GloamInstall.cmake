@@ -20,7 +20,8 @@ set_target_properties(gloam_library PROPERTIES OUTPUT_NAME gloam EXPORT_NAME glo
   SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN/gloam")
 set_target_properties(gloam PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/gloam")
 
-install(TARGETS gloam gloam_library EXPORT gloam)
+install(TARGETS gloam)
+install(TARGETS gloam_library EXPORT gloam)
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/include/gloam DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/gloam)
 install(EXPORT gloam NAMESPACE gloam:: FILE gloamConfig.cmake DESTINATION ${package})

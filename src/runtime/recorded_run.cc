@@ -45,9 +45,11 @@ std::vector<std::string> channels_for(const std::vector<std::string>& outputs) {
   return channels;
 }
 
-// All [[camera]]s of a scene and the cameras of its robots; a bare model's own cameras.
+// All [[camera]]s of a scene and the cameras of its robots; a bare model's own cameras. A camera
+// without a rate has the default one, or every step of slower models.
 Result<std::vector<CameraRequest>> camera_requests(const World& world, const RunRequest& request,
-                                                   const RenderDescription& description) {
+                                                   const RenderDescription& description,
+                                                   Rational step_rate) {
   const Scene& scene = world.compiled()->scene;
   std::vector<std::string> names = request.cameras;
   if (names.empty()) {
@@ -62,10 +64,16 @@ Result<std::vector<CameraRequest>> camera_requests(const World& world, const Run
     camera.camera = name;
     camera.width = request.width;
     camera.height = request.height;
+    bool asked = false;
     for (const CameraOptions& options : scene.cameras) {
-      if (options.name == name) camera.rate = options.rate;
+      if (options.name != name) continue;
+      camera.rate = options.rate;
+      asked = true;
     }
-    if (request.rate.num > 0) camera.rate = request.rate;
+    if (request.rate.num > 0)
+      camera.rate = request.rate;
+    else if (!asked && step_rate.value() < camera.rate.value())
+      camera.rate = step_rate;
     camera.outputs = channels_for(scene.record.outputs);
     camera.render = scene.render;
     camera.required = request.simulation.pace == Pace::kFast;
@@ -140,7 +148,7 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   double prepared = 0;
   if (!request.out.empty()) {
     GLOAM_TRY(auto shared, simulation->renderer());
-    GLOAM_TRY(const auto requests, camera_requests(world, request, shared->description));
+    GLOAM_TRY(const auto requests, camera_requests(world, request, shared->description, rate));
     RunInfo info = run_info(world, request, 1 / rate.value(), duration);
     for (const CameraRequest& camera : requests) {
       GLOAM_TRY(const auto sensor,

@@ -49,7 +49,8 @@ class Install(unittest.TestCase):
             for line in libraries.splitlines():
                 self.assertNotIn(str(ROOT), line)
                 self.assertNotIn(str((ROOT / ".venv").resolve()), line)
-            self.assertIn(str(self.prefix / "lib" / "gloam"), libraries, "MuJoCo is the installed one")
+            mujoco = re.search(r"libmujoco\S+ => (\S+)", libraries).group(1)
+            self.assertEqual(Path(mujoco).resolve().parent, (self.prefix / "lib" / "gloam").resolve())
 
     def test_the_program_runs_a_scene_from_elsewhere(self):
         gloam = self.prefix / "bin" / "gloam"
@@ -57,6 +58,11 @@ class Install(unittest.TestCase):
         here = json.loads(run([BUILD / "bin" / "gloam", "run", self.model, "--duration", "1", "--json"], self.elsewhere, **cache))
         there = json.loads(run(hidden([gloam, "run", self.model, "--duration", "1", "--json"]), self.elsewhere, **cache))
         self.assertEqual(here["state_hash"], there["state_hash"])
+        for program, out in [(BUILD / "bin" / "gloam", "here"), (gloam, "there")]:
+            still = [program, "render", self.model, "--resolution", "64x48", "--spp", "1", "--out", out]
+            run(hidden(still) if out == "there" else still, self.elsewhere, **cache)
+        pictures = [(self.elsewhere / out / "side.png").read_bytes() for out in ["here", "there"]]
+        self.assertEqual(*pictures, "the same picture, so the same denoiser")
         demo = self.prefix / "share" / "gloam" / "examples" / "demo.toml"
         run(hidden([gloam, "run", demo, "--duration", "0.1", "--resolution", "64x48", "--spp", "1", "--out", "out"]), self.elsewhere, **cache)
         summary = json.loads((self.elsewhere / "out" / "summary.json").read_text())
