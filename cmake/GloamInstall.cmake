@@ -35,6 +35,6 @@ if(DEFINED mujoco_dir)  # from the wheel; a user's own MuJoCo stays where it is
 endif()
 file(GLOB oidn ${GLOAM_WHEELS}/pyoidn/oidn/lib/libOpenImageDenoise.so.2 ${GLOAM_WHEELS}/pyoidn/oidn/lib/libOpenImageDenoise_core.so.*
   ${GLOAM_WHEELS}/pyoidn/oidn/lib/libOpenImageDenoise_device_cpu.so.* ${GLOAM_WHEELS}/pyoidn/oidn/lib/libtbb.so.12)
-install(FILES ${oidn} DESTINATION ${private}/oidn)
+install(FILES ${oidn} DESTINATION ${private}/oidn/lib)  # they look for each other in ../lib
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/assets ${CMAKE_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/gloam)
 install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -76,7 +76,7 @@ std::vector<fs::path> candidates() {
   if (const Result<fs::path> home = gloam_home(); home.ok()) {
     paths.push_back(*home / ".venv" / "wheels" / "pyoidn" / "oidn" / "lib" / kLibrary);
     const fs::path prefix = home->parent_path().parent_path();  // of an installation
-    paths.push_back(prefix / "lib" / "gloam" / "oidn" / kLibrary);
+    paths.push_back(prefix / "lib" / "gloam" / "oidn" / "lib" / kLibrary);
   }
   paths.emplace_back(kLibrary);  // wherever the system looks
   return paths;
