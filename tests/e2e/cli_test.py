@@ -181,6 +181,8 @@ class Work(ProgramTest):
         first = json.loads(self.gloam("run", model, "--duration", "1", "--json").stdout)
         second = json.loads(self.gloam("run", model, "--duration", "1", "--json", "--threads", "1").stdout)
         self.assertEqual(first["state_hash"], second["state_hash"])
+        recorded = json.loads(self.gloam("run", model, "--duration", "1", "--json", "--out", "out", "--spp", "1", "--resolution", "64x48").stdout)
+        self.assertEqual(first["state_hash"], recorded["state_hash"])
         self.assertEqual(first["steps"], 500)
 
     def test_info_as_json(self):

@@ -183,6 +183,36 @@ TEST_F(RecordedRun, PhysicsDoesNotDependOnBeingRecorded) {
   EXPECT_EQ(bare->latest().hash(), unrecorded.hash);
 }
 
+// The main job itself: controller, contacts, two cameras in the furnished room.
+TEST_F(RecordedRun, SlowTheDemoDoesNotDependOnThreadsOrRecording) {
+  ::setenv("GLOAM_CACHE", (folder_.path() / "cache").c_str(), 1);
+  const Result<Scene> scene = load_scene(GLOAM_SOURCE_DIR "/examples/demo.toml");
+  ASSERT_TRUE(scene.ok()) << scene.error().to_string();
+  const Result<World> world = World::compile(*scene);
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  RunRequest recorded = request("one");
+  recorded.cameras.clear();
+  recorded.width = 96;
+  recorded.height = 72;
+  recorded.rate = {10, 1};
+  recorded.duration = 0.5;
+  RunRequest silent = recorded;
+  silent.out.clear();
+  const uint64_t hash = run(*world, silent).hash;
+  set_thread_count(1);
+  const RunReport one = run(*world, recorded);
+  set_thread_count(4);
+  recorded.out = folder_.path() / "four";
+  const RunReport four = run(*world, recorded);
+  EXPECT_EQ(one.hash, hash);
+  EXPECT_EQ(four.hash, hash);
+  EXPECT_EQ(one.frames, 12) << "of two cameras";
+  const auto expected = files(one.out), found = files(four.out);
+  ASSERT_EQ(found.size(), expected.size());
+  for (const auto& [name, bytes] : expected)
+    EXPECT_TRUE(found.contains(name) && found.at(name) == bytes) << name;
+}
+
 TEST_F(RecordedRun, AnInterruptedRunIsFinishedProperly) {
   const World world = flight(folder_, kCameras);
   RunRequest long_run = request("out");
