@@ -112,6 +112,31 @@ TEST(LiveCamera, PoseDepthAndStampAreOfOneInstant) {
   }
 }
 
+TEST(LiveCamera, MotionIsFromTheFrameBefore) {
+  const TempFolder folder;
+  auto simulation = simulate(flight(folder));
+  Frames frames;
+  CameraRequest request = tiny("a/fixed", {25, 1});
+  request.outputs = {"motion", "depth"};
+  auto stream = open(*simulation, request, frames);
+  ASSERT_TRUE(simulation->run_until(60).ok());
+  frames.wait_for(4);
+  ASSERT_TRUE(simulation->post({.what = ResetSim{}}).ok());
+  frames.wait_for(5);
+  stream.reset();
+  const auto all = frames.all();
+  ASSERT_EQ(all.size(), 5u);
+  for (size_t i = 0; i < all.size(); ++i) {
+    const CameraFrame& frame = *all[i];
+    const size_t middle = 6 * 16 + 8;
+    ASSERT_LT(frame.depth[middle], 2.1f) << "the ball";
+    // 1 m/s for 40 ms; nothing came before the first frame, nor before the one after a reset.
+    const double moved = frame.index == 0 ? 0 : 0.04;
+    EXPECT_NEAR(frame.motion[2 * middle], moved * frame.intrinsics.fx / frame.depth[middle], 1e-2)
+        << "frame " << i;
+  }
+}
+
 TEST(LiveCamera, TheSimulationWaitsForARequiredCamera) {
   const TempFolder folder;
   auto simulation = simulate(flight(folder));
