@@ -168,6 +168,37 @@ std::string robot_name(const ::testing::TestParamInfo<const char*>& info) {
 INSTANTIATE_TEST_SUITE_P(Robots, SlowThirdPartyRun, ::testing::Values(kGo1, kG1, kYam, kPanda),
                          robot_name);
 
+// Stock loading throws a URDF's visuals away; Gloam draws them and steps the same.
+TEST(UrdfRun, IsStockBitForBitAndShowsItsVisuals) {
+  const TempFolder folder;
+  ::setenv("GLOAM_CACHE", (folder.path() / "cache").c_str(), 1);
+  const std::filesystem::path file = folder.write("arm.urdf", R"(<robot name="arm">
+    <link name="base"><inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+    <link name="rod">
+      <inertial><origin xyz="0.3 0 0"/><mass value="1"/>
+        <inertia ixx="0.01" iyy="0.02" izz="0.02" ixy="0" ixz="0" iyz="0"/></inertial>
+      <visual><origin xyz="0.3 0 0"/><geometry><sphere radius="0.2"/></geometry></visual>
+      <collision><origin xyz="0.3 0 0"/><geometry><box size="0.05 0.05 0.05"/></geometry></collision>
+    </link>
+    <joint name="hinge" type="continuous"><parent link="base"/><child link="rod"/><axis xyz="0 1 0"/></joint>
+  </robot>)");
+  const StockModel stock(file);
+  ASSERT_NE(stock.model, nullptr) << stock.error;
+  std::vector<double> last;
+  const States states = stock_run(stock, &last);
+  EXPECT_NE(states.front(), states.back());
+  GloamRun run;
+  const World world = compile_file(file);
+  ASSERT_NO_FATAL_FAILURE(gloam_run(world, *stock.model, {.cameras = true}, &run));
+  EXPECT_EQ(first_difference(states, run.states), "");
+  EXPECT_EQ(first_difference({last}, {run.last}), "");
+  // The free camera frames the model: the ball takes far more of its picture than the box would.
+  const CameraFrame& frame = *run.pictures[1].frames.front();
+  const auto seen =
+      std::count_if(frame.part.begin(), frame.part.end(), [](uint32_t p) { return p != 0; });
+  EXPECT_GT(seen, static_cast<int64_t>(frame.part.size()) / 40);
+}
+
 // Contacts, friction and two robots in one model: what export writes is what runs.
 TEST(SlowThirdPartyLevel, TwoRobotsOnAFloorRunAsTheirExport) {
   const auto go1 = third_party_file(kGo1), panda = third_party_file(kPanda);
