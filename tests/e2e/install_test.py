@@ -81,7 +81,10 @@ class Install(unittest.TestCase):
         said = run(hidden([project / "build" / "consumer", self.model]), self.elsewhere, GLOAM_CACHE=str(self.folder / "cache"))
         program = json.loads(run([BUILD / "bin" / "gloam", "run", self.model, "--duration", "1", "--json"], self.elsewhere))
         self.assertIn(f"1.000 s, state hash {program['state_hash']}", said)
-        self.assertTrue((self.elsewhere / "picture.png").read_bytes().startswith(b"\x89PNG"))
+        run([BUILD / "bin" / "gloam", "render", self.model, "--camera", "free", "--time", "1", "--spp", "4", "--resolution", "64x48",
+             "--out", "same"], self.elsewhere)
+        pictures = [(self.elsewhere / name).read_bytes() for name in ["picture.png", "same/free.png"]]
+        self.assertEqual(*pictures, "the library found its denoiser, too")
         failed = subprocess.run([project / "build" / "consumer", "missing.xml"], capture_output=True, text=True)
         self.assertEqual(failed.returncode, 1)
         self.assertIn("missing.xml", failed.stderr)
