@@ -30,6 +30,11 @@ void add_completion(CLI::App& app, Globals& globals, Action& action);
 /// Prints "error: …" on stderr and returns the exit code.
 int fail(const Error& error);
 
+/// What numbers on the command line are checked with. (CLI11's own messages print the largest
+/// double in full.)
+CLI::Validator positive_number();
+CLI::Validator non_negative_number();
+
 /// Adds the options that say how far a model's files may reach.
 void add_access_options(CLI::App& command, FileAccess& access, std::vector<std::string>& packages);
 /// Parses `packages` (NAME=FOLDER) into `access`.

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 
@@ -41,6 +42,7 @@ void catch_interrupts() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error where it is written
 }
 
 bool interrupted() { return stop_requested; }
@@ -79,6 +81,28 @@ ProgressCallback progress_display(const Globals& globals) {
 void finish_progress() {
   if (progress_line_open) std::fputs("\r\033[K", stderr);
   progress_line_open = false;
+}
+
+namespace {
+
+CLI::Validator number_check(const char* what, bool (*good)(double)) {
+  return {[what, good](const std::string& text) {
+            double value = 0;
+            const char* end = text.data() + text.size();
+            const auto [after, error] = std::from_chars(text.data(), end, value);
+            const bool ok = error == std::errc() && after == end && std::isfinite(value);
+            return ok && good(value) ? std::string() : text + " is not a " + what + " number";
+          },
+          "NUMBER"};
+}
+
+}  // namespace
+
+CLI::Validator positive_number() {
+  return number_check("positive", [](double value) { return value > 0; });
+}
+CLI::Validator non_negative_number() {
+  return number_check("non-negative", [](double value) { return value >= 0; });
 }
 
 void add_access_options(CLI::App& command, FileAccess& access, std::vector<std::string>& packages) {

@@ -6,10 +6,10 @@ namespace gloam::cli {
 
 void RunOptions::add_simulation(CLI::App& command) {
   command.add_option("--duration", duration, "Seconds of simulation time")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command.add_option("--seed", seed, "Seed of everything random");
   command.add_option("--timestep", timestep, "Physics time step in seconds; default: the model's")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command.add_option("--set", settings,
                      "Change one setting of the scene, as sim.duration=5 (repeatable)");
 }

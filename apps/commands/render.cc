@@ -76,7 +76,7 @@ void add_render(CLI::App& app, Globals& globals, Action& action) {
   command->options.add_rendering(*sub);
   sub->get_option("--output")->description("Channels: rgb depth segmentation normal albedo motion");
   sub->add_option("--time", command->time, "Simulation time of the picture in seconds")
-      ->check(CLI::NonNegativeNumber);
+      ->check(non_negative_number());
   sub->add_option("--out", command->out, "Folder for the pictures; default: here");
   sub->footer("Example:\n  gloam render robot.xml --camera free --spp 256 --resolution 1280x720");
   sub->callback([&globals, &action, command] {

@@ -96,7 +96,7 @@ void add_run(CLI::App& app, Globals& globals, Action& action) {
                 "Pace by the wall clock; default: as fast as possible");
   sub->add_option("--speed", command->speed,
                   "Simulated seconds per second, with --realtime or --view")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   sub->add_flag("--view", command->view, "Serve a live page on this machine instead of recording");
   sub->add_option("--port", command->port, "Port of --view; 0 = any free one")
       ->check(CLI::Range(0, 65535));

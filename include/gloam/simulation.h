@@ -64,7 +64,7 @@ struct SimulationStats {
   uint64_t hash = 0;           ///< of the state, chained over all steps
   double realtime_factor = 0;  ///< simulated seconds per wall second since the last resume
   int64_t dropped_snapshots = 0;
-  int64_t commands_applied = 0;
+  int64_t commands_applied = 0;  ///< posted ones, over all runs
   int64_t warnings = 0;  ///< MuJoCo's, all types
 };
 
@@ -102,8 +102,8 @@ class Simulation {
   virtual Status post(const Command& command) = 0;
   virtual Snapshot latest() const = 0;
   virtual SimulationStats stats() const = 0;
-  /// Called on the physics thread after every step with the private model and data. Set before the
-  /// first step.
+  /// Called on the physics thread before every step, after Commands and controllers, with the
+  /// private model and data: what it writes into mjData counts as input. Set before the first step.
   virtual void set_step_hook(std::function<void(const mjModel_*, mjData_*)> hook) = 0;
 
   /// Opens a stream; `on_frame` comes on the stream's own thread, frames in order.

@@ -42,6 +42,7 @@ struct NamedElement {
 
 /// What the model holds, for `gloam info`.
 struct WorldInfo {
+  /// Cameras without a name are called "camera_ID", so that they can be asked for.
   std::vector<NamedElement> bodies, joints, actuators, sensors, cameras, geoms, lights, materials;
   int nq = 0, nv = 0, nu = 0;
   double timestep = 0;             ///< [s]

@@ -1,5 +1,6 @@
 #include "base/files.h"
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -9,6 +10,7 @@
 #include <cstring>
 #include <fstream>
 #include <system_error>
+#include <vector>
 
 namespace gloam {
 namespace fs = std::filesystem;
@@ -101,9 +103,18 @@ Result<fs::path> gloam_home() {
   if (const char* home = std::getenv("GLOAM_HOME"); home != nullptr && *home != 0)
     return fs::path(home);
   std::error_code code;
-  fs::path folder = fs::read_symlink("/proc/self/exe", code).parent_path();
-  for (; !folder.empty() && folder != folder.root_path(); folder = folder.parent_path()) {
-    if (fs::is_directory(folder / "assets" / "robots", code)) return folder;
+  std::vector<fs::path> starts = {fs::read_symlink("/proc/self/exe", code)};
+  Dl_info library{};  // of a program that uses the installed library, the one below is elsewhere
+  if (::dladdr(reinterpret_cast<const void*>(&gloam_home), &library) != 0 &&
+      library.dli_fname != nullptr) {
+    starts.push_back(fs::canonical(library.dli_fname, code));
+  }
+  for (const fs::path& start : starts) {
+    fs::path folder = start.parent_path();
+    for (; !folder.empty() && folder != folder.root_path(); folder = folder.parent_path()) {
+      for (const fs::path& home : {folder, folder / "share" / "gloam"})  // source tree, installed
+        if (fs::is_directory(home / "assets" / "robots", code)) return home;
+    }
   }
   return Error{ErrorKind::kIo,
                "the folder 'assets' was not found above the program",

@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "base/check.h"
-#include "base/log.h"
 #include "base/text.h"
 #include "record/camera_recorder.h"
 #include "record/csv.h"
@@ -28,7 +27,8 @@ constexpr size_t kPlottedRows = 2000;  // kept in memory for the contact sheet
 const std::vector<std::string> kOutputs = {"video",        "png",     "depth_png",    "depth_exr",
                                            "segmentation", "metrics", "contact_sheet"};
 
-/// The failure that ended a recording. Others that follow from it are of no interest.
+/// The failure that ended a recording: what was written before it is complete, so its kind is
+/// kPartial. Others that follow from it are of no interest.
 class FirstFailure {
  public:
   void report(const Status& status) {
@@ -36,8 +36,18 @@ class FirstFailure {
     const std::lock_guard lock(mutex_);
     if (error_) return;
     error_ = status.error();
+    error_->kind = ErrorKind::kPartial;
+    error_->message = "recording stopped: " + error_->message;
     failed_ = true;
-    log_error("recording stopped: {}", error_->to_string());
+  }
+  /// Does `write`, whose failure or want of memory ends the recording.
+  template <class F>
+  void attempt(F&& write) {
+    try {
+      report(write());
+    } catch (const std::bad_alloc&) {
+      report(Error{ErrorKind::kIo, "out of memory", {}, "lower the resolution"});
+    }
   }
   bool failed() const { return failed_; }
   Status status() const {
@@ -105,7 +115,7 @@ class FolderRecorder : public Recorder {
     if (failure_.failed()) return;
     CameraRecorder* recorder = &lane->second->recorder;
     lane->second->worker.post([this, recorder, frame = std::move(frame)] {
-      if (!failure_.failed()) failure_.report(recorder->add(*frame));
+      if (!failure_.failed()) failure_.attempt([&] { return recorder->add(*frame); });
     });
   }
 
@@ -141,11 +151,7 @@ class FolderRecorder : public Recorder {
                                      run_sheet_png(info_, outcome, cameras, rows_.items())));
     }
     failure_.report(write_summary(&outcome));
-    Status status = failure_.status();
-    if (status.ok()) return {};
-    Error error = status.error();
-    error.kind = ErrorKind::kPartial;
-    return error;
+    return failure_.status();
   }
 
   const std::filesystem::path& folder() const override { return options_.folder; }

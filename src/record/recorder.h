@@ -98,10 +98,10 @@ class Recorder {
   /// One value per column. One thread.
   virtual void add_metrics(std::span<const double> row) = 0;
 
-  /// The first failure so far; it stops the recording and was logged once.
+  /// The first failure so far, as ErrorKind::kPartial; it stops the recording.
   virtual Status status() const = 0;
-  /// Writes what is queued, ends videos, makes contact sheet and summary. Returns the first failure
-  /// as ErrorKind::kPartial. Call once.
+  /// Writes what is queued, ends videos, makes contact sheet and summary. Returns what status() does
+  /// then. Call once.
   virtual Status finish(const RunOutcome& outcome) = 0;
   virtual const std::filesystem::path& folder() const = 0;
 };

@@ -1,6 +1,9 @@
 #include "runtime/live_camera.h"
 
+#include <fmt/format.h>
+
 #include <chrono>
+#include <new>
 #include <utility>
 
 #include "base/log.h"
@@ -36,7 +39,7 @@ LiveCamera::~LiveCamera() {
     closing_ = true;
   }
   changed_.notify_all();
-  queue_->close();
+  if (queue_ != nullptr) queue_->close();  // null when open() failed
   if (thread_.joinable()) thread_.join();
 }
 
@@ -69,7 +72,23 @@ Snapshot LiveCamera::wait_for_work() {
 }
 
 void LiveCamera::run() {
-  while (const Snapshot snapshot = wait_for_work()) capture(snapshot);
+  try {
+    while (const Snapshot snapshot = wait_for_work()) capture(snapshot);
+  } catch (const std::bad_alloc&) {
+    const Intrinsics& k = sensor_->intrinsics();
+    const std::lock_guard lock(mutex_);
+    status_ = Error{ErrorKind::kPartial,
+                    fmt::format("out of memory for pictures of {} x {} pixels", k.width, k.height),
+                    {},
+                    "lower the resolution"};
+    if (!required_) log_error("a camera stopped: {}", status_.error().to_string());
+    queue_->close();  // the simulation must not wait for it
+  }
+}
+
+Status LiveCamera::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_;
 }
 
 int64_t LiveCamera::frame_index(int64_t step) const {

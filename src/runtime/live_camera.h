@@ -30,6 +30,8 @@ class LiveCamera final : public CameraStream {
 
   /// Waits until the queue has ended (the simulation stopped) and every frame was delivered.
   void drain();
+  /// Why it delivers no more frames, if so: it ran out of memory.
+  Status status() const;
 
  private:
   LiveCamera(Simulator& simulator, std::shared_ptr<SharedRenderer> shared, FrameCallback on_frame);
@@ -47,8 +49,9 @@ class LiveCamera final : public CameraStream {
   bool required_ = false;
   PoseFrame now_, previous_;
   bool has_previous_ = false;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::condition_variable changed_;
+  Status status_;
   bool refresh_wanted_ = false, closing_ = false;
   std::thread thread_;
 };

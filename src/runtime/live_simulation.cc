@@ -43,7 +43,7 @@ Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& worl
   std::unique_ptr<LiveSimulation> live(new LiveSimulation(world, options.seed));
   SimulatorOptions core;
   core.seed = options.seed;
-  if (options.timestep > 0) core.timestep = options.timestep;
+  if (options.timestep != 0) core.timestep = options.timestep;
   core.pace = options.pace;
   core.speed = options.speed;
   GLOAM_TRY(live->simulator_, Simulator::create(world.compiled(), core));
@@ -53,8 +53,6 @@ Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& worl
   live->simulator_->start(0);
   return live;
 }
-
-LiveSimulation::~LiveSimulation() { simulator_->stop(); }
 
 void LiveSimulation::restart_speed_clock() {
   const std::lock_guard lock(clock_mutex_);
@@ -73,8 +71,9 @@ Status LiveSimulation::run_until(int64_t step) {
     pause();
     return Error{ErrorKind::kInterrupted, "stopped by the user"};
   }
-  paused_ = true;
-  return simulator_->wait();
+  const Status status = simulator_->wait();
+  pause();  // so that a reset does not set out for `step` again
+  return status;
 }
 
 void LiveSimulation::resume() {
@@ -114,6 +113,7 @@ SimulationStats LiveSimulation::stats() const {
   stats.step = snapshot.step();
   stats.time = snapshot.time();
   stats.hash = snapshot.hash();
+  stats.commands_applied = counters.commands_applied;
   stats.dropped_snapshots = counters.snapshots_dropped;
   stats.warnings = std::accumulate(counters.warnings.begin(), counters.warnings.end(), int64_t{0});
   const std::lock_guard lock(clock_mutex_);

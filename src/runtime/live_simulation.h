@@ -15,8 +15,6 @@ class LiveSimulation final : public Simulation {
  public:
   static Result<std::unique_ptr<LiveSimulation>> create(const World& world,
                                                         const SimulationOptions& options);
-  ~LiveSimulation() override;
-
   const World& world() const override { return world_; }
   Status run_until(int64_t step) override;
   void resume() override;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <thread>
 
 #include "base/files.h"
@@ -15,6 +14,8 @@
 #include "record/recorder.h"
 #include "runtime/live_simulation.h"
 #include "runtime/robot_metrics.h"
+#include "runtime/run_to_step.h"
+#include "sim/step_schedule.h"
 #include "world/version.h"
 
 namespace gloam {
@@ -44,9 +45,11 @@ std::vector<std::string> channels_for(const std::vector<std::string>& outputs) {
   return channels;
 }
 
-// All [[camera]]s of a scene and the cameras of its robots; a bare model's own cameras.
+// All [[camera]]s of a scene and the cameras of its robots; a bare model's own cameras. A camera
+// without a rate has the default one, or every step of slower models.
 Result<std::vector<CameraRequest>> camera_requests(const World& world, const RunRequest& request,
-                                                   const RenderDescription& description) {
+                                                   const RenderDescription& description,
+                                                   Rational step_rate) {
   const Scene& scene = world.compiled()->scene;
   std::vector<std::string> names = request.cameras;
   if (names.empty()) {
@@ -61,10 +64,16 @@ Result<std::vector<CameraRequest>> camera_requests(const World& world, const Run
     camera.camera = name;
     camera.width = request.width;
     camera.height = request.height;
+    bool asked = false;
     for (const CameraOptions& options : scene.cameras) {
-      if (options.name == name) camera.rate = options.rate;
+      if (options.name != name) continue;
+      camera.rate = options.rate;
+      asked = true;
     }
-    if (request.rate.num > 0) camera.rate = request.rate;
+    if (request.rate.num > 0)
+      camera.rate = request.rate;
+    else if (!asked && step_rate.value() < camera.rate.value())
+      camera.rate = step_rate;
     camera.outputs = channels_for(scene.record.outputs);
     camera.render = scene.render;
     camera.required = request.simulation.pace == Pace::kFast;
@@ -78,22 +87,6 @@ std::string scene_hash(const Scene& scene) {
   if (path.empty()) return {};
   const auto text = read_file(path);
   return text.ok() ? hash_to_hex(hash_bytes(text->data(), text->size())) : std::string();
-}
-
-// Steps to the end in the background of this thread, which shows progress and obeys the user.
-Status run_to_the_end(LiveSimulation& simulation, int64_t steps, Clock::time_point start,
-                      const ProgressCallback& progress, const char* what) {
-  Simulator& simulator = simulation.simulator();
-  simulator.run_until(steps);
-  while (simulator.step_count() < steps && simulator.status().ok()) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    const double done = static_cast<double>(simulator.step_count()) / static_cast<double>(steps);
-    if (progress && !progress({what, done, seconds_since(start)})) {
-      simulator.pause();
-      return Error{ErrorKind::kInterrupted, "interrupted"};
-    }
-  }
-  return simulator.wait();
 }
 
 RunInfo run_info(const World& world, const RunRequest& request, double timestep, double duration) {
@@ -145,7 +138,7 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   Simulator& simulator = simulation->simulator();
   const double duration = request.duration > 0 ? request.duration : scene.sim.duration;
   const Rational rate = simulation->step_rate();
-  const auto steps = static_cast<int64_t>(std::llround(duration * rate.value()));
+  GLOAM_TRY(const int64_t steps, step_of_time(duration, rate, "a duration"));
 
   RunReport report;
   RobotMetrics metrics(*world.compiled());
@@ -155,11 +148,13 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   double prepared = 0;
   if (!request.out.empty()) {
     GLOAM_TRY(auto shared, simulation->renderer());
-    GLOAM_TRY(const auto requests, camera_requests(world, request, shared->description));
+    GLOAM_TRY(const auto requests, camera_requests(world, request, shared->description, rate));
     RunInfo info = run_info(world, request, 1 / rate.value(), duration);
     for (const CameraRequest& camera : requests) {
       GLOAM_TRY(const auto sensor,
                 CameraSensor::create(shared->description, camera, request.simulation.seed));
+      // Before an older recording is replaced: the simulation would refuse it later.
+      GLOAM_TRY_STATUS(StepSchedule::make(camera.rate, {0, 1}, simulator.timestep()));
       info.cameras.push_back({camera.camera, sensor->intrinsics(), camera.rate});
     }
     GLOAM_TRY(info.labels, simulation->labels());
@@ -187,14 +182,19 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
             simulator.subscribe({.rate = metric_rate, .required = true, .capacity = 256}));
   MetricsThread metrics_thread(metric_queue, metrics, recorder.get());
 
-  report.status = run_to_the_end(*simulation, steps, start, progress,
-                                 cameras.empty() ? "simulating" : "rendering");
-  if (report.status.ok() && recorder != nullptr && !recorder->status().ok())
-    report.status = recorder->status();
+  const auto recording = [&]() -> Status {
+    for (const auto& camera : cameras) GLOAM_TRY_STATUS(camera->status());
+    return recorder != nullptr ? recorder->status() : Status();
+  };
+  report.status = run_to_step(simulator, steps, cameras.empty() ? "simulating" : "rendering",
+                              seconds_since(start), progress, recording);
   const Snapshot last = simulator.latest();
   const double simulated = seconds_since(start);
   simulator.stop();  // ends the queues; what they hold is still delivered
-  for (auto& camera : cameras) camera->drain();
+  for (auto& camera : cameras) {
+    camera->drain();
+    if (report.status.ok()) report.status = camera->status();
+  }
   cameras.clear();
   metrics_thread.join();
 

@@ -1,13 +1,13 @@
 // gloam::render_stills and write_frame.
 
 #include <chrono>
-#include <cmath>
 
 #include "base/files.h"
 #include "gloam/run.h"
 #include "render/film/exr.h"
 #include "render/film/png.h"
 #include "runtime/live_simulation.h"
+#include "runtime/run_to_step.h"
 
 namespace gloam {
 
@@ -18,13 +18,13 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
   const auto seconds = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
-  if (!(time >= 0)) return Error{ErrorKind::kUsage, "the time of a picture must be 0 or later"};
   SimulationOptions options;
   options.seed = world.compiled()->scene.sim.seed;
   options.timestep = world.compiled()->scene.sim.timestep.value_or(0);
   GLOAM_TRY(auto simulation, LiveSimulation::create(world, options));
-  const auto steps = static_cast<int64_t>(std::llround(time * simulation->step_rate().value()));
-  if (steps > 0) GLOAM_TRY_STATUS(simulation->run_until(steps));
+  GLOAM_TRY(const int64_t steps, step_of_time(time, simulation->step_rate(), "a time"));
+  GLOAM_TRY_STATUS(
+      run_to_step(simulation->simulator(), steps, "simulating", seconds(), progress, {}));
 
   GLOAM_TRY(auto shared, simulation->renderer());
   GLOAM_TRY(auto solver, PoseSolver::create(world.compiled()));

@@ -34,6 +34,26 @@ Intrinsics resized(const Intrinsics& from, int width, int height) {
   return to;
 }
 
+// What a request says in numbers.
+Status check_numbers(const CameraRequest& request) {
+  const auto refuse = [&](const std::string& what) {
+    return Error{ErrorKind::kUsage, fmt::format("camera '{}': {}", request.camera, what)};
+  };
+  if (request.rate.num <= 0 || request.rate.den <= 0) return refuse("the rate must be positive");
+  constexpr int kMaxSide = 16384;  // [px]
+  const int width = request.width, height = request.height;
+  const bool own = width == 0 && height == 0;
+  if (!own && (width < 1 || height < 1 || width > kMaxSide || height > kMaxSide)) {
+    return refuse(fmt::format("a picture of {} x {} pixels is not in 1 … {} on both sides", width,
+                              height, kMaxSide));
+  }
+  if (request.render.spp < 1 || request.render.spp > 65536)
+    return refuse(fmt::format("spp = {} is not in 1 … 65536", request.render.spp));
+  if (request.render.max_depth < 1 || request.render.max_depth > 64)
+    return refuse(fmt::format("max_depth = {} is not in 1 … 64", request.render.max_depth));
+  return {};
+}
+
 Result<int> find_camera(const RenderDescription& description, const std::string& name) {
   std::vector<std::string> names;
   for (size_t i = 0; i < description.cameras.size(); ++i) {
@@ -112,10 +132,7 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
                                                            uint64_t seed) {
   GLOAM_TRY(const int camera, find_camera(description, request.camera));
   GLOAM_TRY(const CameraChannels channels, CameraChannels::parse(request.outputs));
-  if (request.rate.num <= 0 || request.rate.den <= 0) {
-    return Error{ErrorKind::kInput,
-                 fmt::format("camera '{}': the rate must be positive", request.camera)};
-  }
+  GLOAM_TRY_STATUS(check_numbers(request));
   const CameraDescription& described = description.cameras[static_cast<size_t>(camera)];
   std::unique_ptr<CameraSensor> sensor(new CameraSensor(description, camera, channels));
   sensor->intrinsics_ = resized(described.intrinsics, request.width, request.height);

@@ -29,7 +29,7 @@ struct CameraChannels {
 class CameraSensor {
  public:
   /// `description` must outlive the sensor. Errors: unknown camera (with the nearest name), channel
-  /// or tier.
+  /// or tier; a number out of its range.
   static Result<std::unique_ptr<CameraSensor>> create(const RenderDescription& description,
                                                       const CameraRequest& request, uint64_t seed);
 

@@ -104,6 +104,7 @@ void CommandQueue::reset_now(int64_t step, int64_t run) {
 void CommandQueue::log(Node* node, int64_t run, int64_t step) {
   node->command.step = step;
   node->run = run;
+  applied_.fetch_add(1, std::memory_order_relaxed);
   if (log_size_.load(std::memory_order_relaxed) >= log_capacity_) {
     log_lost_.fetch_add(1, std::memory_order_relaxed);
     retire(node);

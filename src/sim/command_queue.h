@@ -31,6 +31,8 @@ class CommandQueue {
   Status post(Command command);
   /// What has applied since the last call, in order.
   std::vector<LoggedCommand> take_log();
+  /// Commands that have applied, over all runs.
+  int64_t applied() const { return applied_.load(std::memory_order_relaxed); }
   /// Applied commands that the full log did not keep: a replay of it would not be exact.
   int64_t log_lost() const { return log_lost_.load(std::memory_order_relaxed); }
   /// Commands for later steps that a reset threw away.
@@ -82,7 +84,7 @@ class CommandQueue {
   Node* pending_tail_ = nullptr;
   int64_t arrival_count_ = 0;
   int64_t log_capacity_;
-  std::atomic<int64_t> log_size_{0}, log_lost_{0}, discarded_{0};
+  std::atomic<int64_t> log_size_{0}, applied_{0}, log_lost_{0}, discarded_{0};
   std::atomic<Node*> log_{nullptr};      // stack, newest first
   std::atomic<Node*> retired_{nullptr};  // to be deleted by the next thread that posts
 };

@@ -242,6 +242,7 @@ SimCounters Simulator::counters() {
                 .resets = loop_.run(),
                 .snapshots_dropped = loop_.dropped(),
                 .pool_grown = stepper.pool().grown(),
+                .commands_applied = commands_.applied(),
                 .commands_discarded = commands_.discarded(),
                 .log_lost = commands_.log_lost(),
                 .deadlines_missed = pacer_.missed(),

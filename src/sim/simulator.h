@@ -32,6 +32,7 @@ struct SimCounters {
   int64_t resets = 0;
   int64_t snapshots_dropped = 0;   ///< by best-effort subscriptions whose reader was too slow
   int64_t pool_grown = 0;          ///< Snapshots allocated because readers held too many
+  int64_t commands_applied = 0;    ///< posted ones, resets among them
   int64_t commands_discarded = 0;  ///< that waited for a later step when a reset came
   int64_t log_lost = 0;            ///< Commands missing in the log: a replay would not be exact
   int64_t deadlines_missed = 0;    ///< steps that began late in real-time mode

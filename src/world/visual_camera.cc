@@ -21,7 +21,7 @@ void set_fovy(double fovy, Intrinsics* k) {
 
 CameraDescription model_camera(const mjModel& m, int i, std::vector<Error>* unsupported) {
   CameraDescription camera;
-  if (const char* name = mj_id2name(&m, mjOBJ_CAMERA, i)) camera.name = name;
+  camera.name = camera_name(m, i);
   camera.camera = i;
   Intrinsics& k = camera.intrinsics;
   k.orthographic = m.cam_projection[i] == mjPROJ_ORTHOGRAPHIC;
@@ -92,6 +92,13 @@ CameraDescription free_camera(const mjModel& m) {
 }
 
 }  // namespace
+
+std::string camera_name(const mjModel& m, int id) {
+  if (const char* own = mj_id2name(&m, mjOBJ_CAMERA, id)) return own;
+  std::string name = fmt::format("camera_{}", id);
+  while (mj_name2id(&m, mjOBJ_CAMERA, name.c_str()) >= 0) name += '_';
+  return name;
+}
 
 void describe_cameras(const mjModel& model, RenderDescription* out) {
   for (int i = 0; i < static_cast<int>(model.ncam); ++i)

@@ -7,6 +7,9 @@
 
 namespace gloam {
 
+/// A name for camera `id`: its own, or "camera_ID" when the model gives none.
+std::string camera_name(const mjModel& model, int id);
+
 /// All cameras of the model, then the free camera "free" as MuJoCo's viewer first shows it.
 void describe_cameras(const mjModel& model, RenderDescription* out);
 

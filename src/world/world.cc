@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "world/level.h"
+#include "world/visual_camera.h"
 #include "world/world.h"
 
 namespace gloam {
@@ -118,6 +119,9 @@ Result<SensorHandle> World::find_sensor(const std::string& name) const {
 }
 Result<Camera> World::find_camera(const std::string& name) const {
   const mjModel* m = compiled_->model.get();
+  for (int i = 0; i < static_cast<int>(m->ncam); ++i) {
+    if (camera_name(*m, i) == name) return Camera{i};
+  }
   return find<Camera>(m, mjOBJ_CAMERA, m->ncam, "camera", name);
 }
 Result<Geom> World::find_geom(const std::string& name) const {
@@ -142,6 +146,8 @@ WorldInfo World::info() const {
     return fmt::format("{}x{}, {:.4g} deg, on '{}'", m->cam_resolution[2 * i],
                        m->cam_resolution[2 * i + 1], m->cam_fovy[i], body == nullptr ? "" : body);
   });
+  for (size_t i = 0; i < info.cameras.size(); ++i)
+    info.cameras[i].name = camera_name(*m, static_cast<int>(i));
   info.geoms = list(m, mjOBJ_GEOM, m->ngeom, geom_detail);
   info.lights = list(m, mjOBJ_LIGHT, m->nlight, [](const mjModel* m, int i) {
     static constexpr const char* kTypes[] = {"spot", "directional", "point", "image"};

@@ -1,12 +1,14 @@
 """The command line as a user meets it: help, exit codes, one clear line for every mistake."""
 import json
 import os
+import resource
 import signal
+import socket
 import subprocess
 import time
 import unittest
 
-from e2e.support import PENDULUM, PROGRAM, ProgramTest
+from e2e.support import PENDULUM, PROGRAM, ProgramTest, video_frames
 
 COMMANDS = ["demo", "run", "render", "info", "export", "completion"]
 
@@ -82,6 +84,39 @@ class Mistakes(ProgramTest):
         model = self.write("models/m.xml", '<mujoco><asset><mesh name="a" file="/etc/passwd"/></asset><worldbody><geom type="mesh" mesh="a"/></worldbody></mujoco>')
         self.complains(1, "info", model, "--strict", words=["/etc/passwd"])
 
+    def test_path_that_leaves_its_root_by_the_rules(self):
+        # Four levels up is as far as a model may look by itself; --root widens that.
+        self.write("secret.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+        model = self.write("1/2/3/4/5/m.xml", '<mujoco><asset>\n<mesh name="a" file="../../../../../secret.obj"/></asset>'
+                           '<worldbody><geom type="mesh" mesh="a"/></worldbody></mujoco>')
+        self.complains(1, "info", model, words=["m.xml:2", "secret.obj", "--root"])
+        self.gloam("info", model, "--root", self.folder)
+        (self.folder / "1/2/3/4/5/link.obj").symlink_to(self.folder / "secret.obj")
+        link = self.write("1/2/3/4/5/l.xml", '<mujoco><asset><mesh name="a" file="link.obj"/></asset><worldbody><geom type="mesh" mesh="a"/></worldbody></mujoco>')
+        self.complains(1, "info", link, words=["link.obj", "symbolic link"])
+
+    def test_unknown_package(self):
+        mesh = '<geometry><mesh filename="package://nowhere/a.stl"/></geometry>'
+        model = self.write("r.urdf", f'<robot name="r"><link name="a"><visual>{mesh}</visual><collision>{mesh}</collision></link></robot>')
+        self.complains(1, "info", model, words=["r.urdf", "nowhere", "--package"])
+
+    def test_files_that_are_no_scenes(self):
+        self.complains(1, "run", self.write("empty.toml", ""), words=["empty.toml", "robot"])
+        self.complains(1, "run", self.folder, words=["not a file"])
+        (self.folder / "noise.xml").write_bytes(bytes(i * 37 % 251 for i in range(50000)))
+        self.complains(1, "info", self.folder / "noise.xml", words=["noise.xml"])
+
+    def test_numbers_out_of_range(self):
+        model = self.write("m.xml", PENDULUM)
+        for option, value in [("--duration", "0"), ("--duration", "inf"), ("--duration", "-1"), ("--timestep", "nan"), ("--speed", "x"),
+                              ("--spp", "0"), ("--threads", "-3"), ("--port", "70000"), ("--max-depth", "65")]:
+            error = self.gloam("run", model, option, value, expect=2).stderr
+            self.assertIn(option, error)
+            self.assertLess(len(error), 200, "one clear line")
+        self.gloam("render", model, "--time", "inf", expect=2)
+        self.complains(1, "run", model, "--timestep", "1e6", words=["timestep"])
+        self.complains(1, "run", model, "--duration", "1e300", words=["duration"])
+
     def test_texture_that_is_a_text_file(self):
         self.write("t.png", "this is no picture")
         model = self.write("m.xml", '<mujoco><asset><texture name="t" type="2d" file="t.png"/><material name="m" texture="t"/></asset>'
@@ -96,6 +131,26 @@ class Mistakes(ProgramTest):
     def test_unknown_camera_suggests(self):
         model = self.write("m.xml", PENDULUM)
         self.complains(1, "render", model, "--camera", "sid", words=["sid", "side"])
+        self.complains(1, "run", model, "--camera", "sid", "--out", "out", words=["sid", "side"])
+        self.complains(1, "run", model, "--camera", "sid", "--view", "--port", "0", words=["sid", "side"])
+        self.assertFalse((self.folder / "out").exists())
+
+    def test_port_in_use(self):
+        model = self.write("m.xml", PENDULUM)
+        with socket.socket() as taken:
+            taken.bind(("127.0.0.1", 0))
+            taken.listen()
+            port = str(taken.getsockname()[1])
+            self.complains(1, "run", model, "--view", "--port", port, words=["port " + port, "in use"])
+
+    def test_a_picture_that_memory_cannot_hold(self):
+        model = self.write("m.xml", PENDULUM)
+        limit = lambda: resource.setrlimit(resource.RLIMIT_AS, (3 << 30, 3 << 30))  # noqa: E731
+        self.complains(1, "render", model, "--resolution", "16384x16384", "--spp", "1", words=["memory"], preexec_fn=limit)
+        result = self.gloam("run", model, "--resolution", "16384x16384", "--output", "depth_png", "--duration", "0.1", "--out", "out", expect=3,
+                            preexec_fn=limit)
+        self.assertIn("memory", result.stderr)
+        self.assertEqual(json.loads((self.folder / "out" / "summary.json").read_text())["state"], "finished")
 
     @unittest.skipIf(os.geteuid() == 0, "root may write anywhere")
     def test_no_write_permission(self):
@@ -114,6 +169,10 @@ class Mistakes(ProgramTest):
                            '<actuator><motor joint="spring" gear="1e12" ctrlrange="-1 1"/></actuator></mujoco>')
         result = self.gloam("run", model, "--duration", "60", expect=3)
         self.assertIn("diverged", result.stderr)
+        result = self.gloam("run", model, "--duration", "60", "--out", "out", "--spp", "1", "--resolution", "64x48", expect=3)
+        summary = json.loads((self.folder / "out" / "summary.json").read_text())
+        self.assertIn("diverged", summary["exit_reason"])
+        self.assertLess(summary["steps"], 600)
 
 
 class Work(ProgramTest):
@@ -122,6 +181,8 @@ class Work(ProgramTest):
         first = json.loads(self.gloam("run", model, "--duration", "1", "--json").stdout)
         second = json.loads(self.gloam("run", model, "--duration", "1", "--json", "--threads", "1").stdout)
         self.assertEqual(first["state_hash"], second["state_hash"])
+        recorded = json.loads(self.gloam("run", model, "--duration", "1", "--json", "--out", "out", "--spp", "1", "--resolution", "64x48").stdout)
+        self.assertEqual(first["state_hash"], recorded["state_hash"])
         self.assertEqual(first["steps"], 500)
 
     def test_info_as_json(self):
@@ -154,15 +215,40 @@ class Work(ProgramTest):
         self.gloam("run", model, "--duration", "0.5", "--out", "out", expect=2)
         self.gloam("run", model, "--duration", "0.5", "--out", "out", "--overwrite", "--spp", "1", "--resolution", "64x48")
 
+    def stopped_by(self, number, *arguments, started):
+        """Starts the program, waits until started() holds, sends it the signal; returns its exit code and stderr."""
+        process = subprocess.Popen([str(PROGRAM), *map(str, arguments)], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                   env={**os.environ, "GLOAM_CACHE": str(self.folder / "cache")})
+        deadline = time.time() + 60
+        while not started() and process.poll() is None and time.time() < deadline:
+            time.sleep(0.05)
+        process.send_signal(number)
+        _, stderr = process.communicate(timeout=60)
+        return process.returncode, stderr
+
     def test_ctrl_c_finishes_the_files(self):
         model = self.write("m.xml", PENDULUM)
-        process = subprocess.Popen([str(PROGRAM), "run", str(model), "--duration", "1000", "--out", "out", "--spp", "1", "--resolution", "64x48"],
-                                   cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        time.sleep(3)
-        process.send_signal(signal.SIGINT)
-        _, stderr = process.communicate(timeout=30)
-        self.assertEqual(process.returncode, 130, stderr)
-        self.assertTrue((self.folder / "out" / "summary.json").exists(), "what was recorded is finished")
+        for number in [signal.SIGINT, signal.SIGTERM]:
+            out = self.folder / f"out{int(number)}"
+            code, stderr = self.stopped_by(number, "run", model, "--duration", "1e6", "--out", out, "--spp", "1", "--resolution", "64x48",
+                                           started=lambda: (out / "side/rgb/000003.png").exists())
+            self.assertEqual(code, 130, stderr)
+            errors = [line for line in stderr.splitlines() if "error" in line]
+            self.assertEqual(errors, ["gloam: error: interrupted"])
+            summary = json.loads((out / "summary.json").read_text())
+            self.assertEqual(summary["state"], "finished")
+            frames = summary["cameras"][0]["frames"]
+            self.assertEqual(len(list((out / "side/rgb").glob("*.png"))), frames)
+            self.assertEqual(video_frames(out / "side.mp4"), frames)
+
+    def test_ctrl_c_ends_a_still_and_a_view(self):
+        model = self.write("m.xml", PENDULUM)
+        begin = time.time()
+        code, stderr = self.stopped_by(signal.SIGINT, "render", model, "--time", "1e6", started=lambda: time.time() > begin + 1)
+        self.assertEqual(code, 130, stderr)
+        begin = time.time()
+        code, stderr = self.stopped_by(signal.SIGINT, "run", model, "--view", "--port", "0", started=lambda: time.time() > begin + 1)
+        self.assertEqual(code, 0, stderr)
 
 
 if __name__ == "__main__":

@@ -23,6 +23,15 @@ PENDULUM = """<mujoco model="pendulum">
 """
 
 
+def video_frames(path):
+    """Frames that a stranger's decoder finds in a video; fails on damaged ones."""
+    result = subprocess.run(["ffprobe", "-v", "error", "-select_streams", "v:0", "-count_frames", "-show_entries", "stream=nb_read_frames",
+                             "-of", "csv=p=0", str(path)], capture_output=True, text=True)
+    if result.returncode != 0 or result.stderr:
+        raise AssertionError(f"{path} is damaged: {result.stderr}")
+    return int(result.stdout.strip().strip(","))
+
+
 class ProgramTest(unittest.TestCase):
     """A test with a scratch folder and a cache of its own."""
 
@@ -37,10 +46,10 @@ class ProgramTest(unittest.TestCase):
         path.write_text(text)
         return path
 
-    def gloam(self, *arguments, expect=0, timeout=120, env=None, cwd=None):
+    def gloam(self, *arguments, expect=0, timeout=120, env=None, cwd=None, preexec_fn=None):
         """Runs the program; asserts its exit code and that no crash text appears."""
         result = subprocess.run([str(PROGRAM), *map(str, arguments)], cwd=cwd or self.folder, text=True, capture_output=True,
-                                stdin=subprocess.DEVNULL, timeout=timeout,
+                                stdin=subprocess.DEVNULL, timeout=timeout, preexec_fn=preexec_fn,
                                 env={**os.environ, "GLOAM_CACHE": str(self.folder / "cache"), **(env or {})})
         self.assertEqual(result.returncode, expect, f"gloam {' '.join(map(str, arguments))}\nstdout: {result.stdout}\nstderr: {result.stderr}")
         return result

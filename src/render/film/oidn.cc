@@ -73,8 +73,11 @@ std::vector<fs::path> candidates() {
     paths.emplace_back(fs::is_directory(user, code) ? fs::path(user) / kLibrary : fs::path(user));
     return paths;  // the user's word is final
   }
-  if (const Result<fs::path> home = gloam_home(); home.ok())
-    paths.push_back(home.value() / ".venv" / "wheels" / "pyoidn" / "oidn" / "lib" / kLibrary);
+  if (const Result<fs::path> home = gloam_home(); home.ok()) {
+    paths.push_back(*home / ".venv" / "wheels" / "pyoidn" / "oidn" / "lib" / kLibrary);
+    const fs::path prefix = home->parent_path().parent_path();  // of an installation
+    paths.push_back(prefix / "lib" / "gloam" / "oidn" / "lib" / kLibrary);
+  }
   paths.emplace_back(kLibrary);  // wherever the system looks
   return paths;
 }

@@ -70,7 +70,7 @@ TEST_F(ThirdParty, UnitreeAndYamAreStockAndRoundTrip) {
   for (const char* name : kMjlab) EXPECT_EQ(check(mjlab_ / name), "") << name;
 }
 
-TEST_F(ThirdParty, EveryRobosuiteFileThatStockLoadsRoundTrips) {
+TEST_F(ThirdParty, SlowEveryRobosuiteFileThatStockLoadsRoundTrips) {
   if (!fs::is_directory(robosuite_)) GTEST_SKIP() << "robosuite was not fetched";
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::recursive_directory_iterator(robosuite_)) {

@@ -1,0 +1,40 @@
+# cmake --install FOLDER [--prefix PREFIX]: a tree that can be moved and needs neither source nor build folder.
+#   bin/gloam                  the program
+#   lib/libgloam.so            all modules as one library; include/gloam/ is its interface; find_package(gloam) finds it
+#   lib/gloam/                 MuJoCo and its plugins, Open Image Denoise (where the wheel was there)
+#   share/gloam/               what gloam_home() is then: assets, examples
+set(CMAKE_INSTALL_LIBDIR lib)  # the same everywhere: the program looks for its own libraries there
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(modules base geometry scene world sim render sensors control record runtime studio)
+list(TRANSFORM modules PREPEND gloam_)
+add_library(gloam_library SHARED)
+foreach(module IN LISTS modules)
+  target_sources(gloam_library PRIVATE $<TARGET_OBJECTS:${module}>)
+endforeach()
+target_link_libraries(gloam_library PRIVATE ${modules})  # for what they link in turn
+target_include_directories(gloam_library INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+target_compile_features(gloam_library INTERFACE cxx_std_20)
+set_target_properties(gloam_library PROPERTIES OUTPUT_NAME gloam EXPORT_NAME gloam VERSION ${PROJECT_VERSION}
+  SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN/gloam")
+set_target_properties(gloam PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/gloam")
+
+install(TARGETS gloam)
+install(TARGETS gloam_library EXPORT gloam)
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/include/gloam DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/gloam)
+install(EXPORT gloam NAMESPACE gloam:: FILE gloamConfig.cmake DESTINATION ${package})
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/gloamConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/gloamConfigVersion.cmake DESTINATION ${package})
+
+set(private ${CMAKE_INSTALL_LIBDIR}/gloam)
+if(DEFINED mujoco_dir)  # from the wheel; a user's own MuJoCo stays where it is
+  install(FILES ${mujoco_dir}/libmujoco.so.4.0.1 DESTINATION ${private})
+  install(DIRECTORY ${mujoco_dir}/plugin DESTINATION ${private})
+endif()
+file(GLOB oidn ${GLOAM_WHEELS}/pyoidn/oidn/lib/libOpenImageDenoise.so.2 ${GLOAM_WHEELS}/pyoidn/oidn/lib/libOpenImageDenoise_core.so.*
+  ${GLOAM_WHEELS}/pyoidn/oidn/lib/libOpenImageDenoise_device_cpu.so.* ${GLOAM_WHEELS}/pyoidn/oidn/lib/libtbb.so.12)
+install(FILES ${oidn} DESTINATION ${private}/oidn/lib)  # they look for each other in ../lib
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/assets ${CMAKE_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/gloam)
+install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

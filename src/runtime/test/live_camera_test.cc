@@ -1,0 +1,261 @@
+// Streams of a running simulation: when frames are taken, of which instant they are, and who waits.
+
+#include <cmath>
+#include <condition_variable>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "scenes.h"
+
+namespace gloam {
+namespace {
+
+/// Collects frames; waits for some of them.
+class Frames {
+ public:
+  FrameCallback callback() {
+    return [this](std::shared_ptr<const CameraFrame> frame) {
+      std::this_thread::sleep_for(delay);
+      const std::lock_guard lock(mutex_);
+      frames_.push_back(std::move(frame));
+      changed_.notify_all();
+    };
+  }
+  std::vector<std::shared_ptr<const CameraFrame>> all() {
+    const std::lock_guard lock(mutex_);
+    return frames_;
+  }
+  /// The last frame once there are `count` of them.
+  std::shared_ptr<const CameraFrame> wait_for(size_t count) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, std::chrono::seconds(30), [&] { return frames_.size() >= count; });
+    EXPECT_GE(frames_.size(), count);
+    return frames_.empty() ? nullptr : frames_.back();
+  }
+  std::chrono::milliseconds delay{0};
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<std::shared_ptr<const CameraFrame>> frames_;
+};
+
+CameraRequest tiny(const std::string& camera, Rational rate) {
+  CameraRequest request{.camera = camera, .rate = rate, .width = 16, .height = 12};
+  request.outputs = {"depth", "segmentation"};
+  request.required = true;
+  return request;
+}
+
+std::unique_ptr<CameraStream> open(Simulation& simulation, const CameraRequest& request,
+                                   Frames& frames) {
+  auto stream = simulation.open_camera(request, frames.callback());
+  if (!stream.ok()) {
+    ADD_FAILURE() << stream.error().to_string();
+    abort();
+  }
+  return std::move(*stream);
+}
+
+float center_depth(const CameraFrame& frame) {
+  const auto w = static_cast<size_t>(frame.intrinsics.width);
+  return frame.depth[static_cast<size_t>(frame.intrinsics.height / 2) * w + w / 2];
+}
+
+// t_k = k / rate falls on the first step at or after it: no drift where the rate does not divide
+// the step rate.
+TEST(LiveCamera, FrameKIsTakenAtTheFirstStepAtOrAfterKOverRate) {
+  const TempFolder folder;
+  const World world = flight(folder);
+  for (const Rational rate : {Rational{30, 1}, {20, 1}, {500, 1}, {24000, 1001}}) {
+    auto simulation = simulate(world);
+    Frames frames;
+    auto stream = open(*simulation, tiny("a/fixed", rate), frames);
+    ASSERT_TRUE(simulation->run_until(250).ok());
+    stream.reset();
+    const auto all = frames.all();
+    ASSERT_EQ(all.size(), static_cast<size_t>(std::floor(0.5 * rate.value())) + 1) << rate.num;
+    for (size_t k = 0; k < all.size(); ++k) {
+      const auto i = static_cast<int64_t>(k);
+      const int64_t step = (i * rate.den * 500 + rate.num - 1) / rate.num;  // ceil
+      EXPECT_EQ(all[k]->index, i);
+      EXPECT_EQ(all[k]->step, step) << "frame " << k << " at " << rate.num << " Hz";
+      EXPECT_NEAR(all[k]->time, static_cast<double>(step) * 0.002, 1e-12);
+    }
+  }
+}
+
+// MuJoCo's own xpos lags one step behind the state; a frame's poses and depths must not.
+TEST(LiveCamera, PoseDepthAndStampAreOfOneInstant) {
+  const TempFolder folder;
+  auto simulation = simulate(flight(folder));
+  Frames frames;
+  auto rider = open(*simulation, tiny("a/rider", {50, 1}), frames);
+  Frames fixed_frames;
+  auto fixed = open(*simulation, tiny("a/fixed", {50, 1}), fixed_frames);
+  ASSERT_TRUE(simulation->run_until(500).ok());
+  rider.reset();
+  fixed.reset();
+  ASSERT_EQ(frames.all().size(), 51u);
+  for (const auto& frame : frames.all()) {
+    EXPECT_NEAR(frame->X_WC.p.x, frame->time, 1e-5) << "1 m/s along X";
+    EXPECT_NEAR(frame->X_WC.p.y, 0.5, 1e-6);
+    EXPECT_NEAR(center_depth(*frame), 2.5, 1e-4) << "to the wall";
+  }
+  // The ball leaves the middle of the fixed camera's picture once its centre has gone by 0.2 m.
+  for (const auto& frame : fixed_frames.all()) {
+    const bool ball = center_depth(*frame) < 2.5f;
+    if (std::abs(frame->time - 0.2) > 0.05) {
+      EXPECT_EQ(ball, frame->time < 0.2) << frame->time;
+    }
+  }
+}
+
+TEST(LiveCamera, MotionIsFromTheFrameBefore) {
+  const TempFolder folder;
+  auto simulation = simulate(flight(folder));
+  Frames frames;
+  CameraRequest request = tiny("a/fixed", {25, 1});
+  request.outputs = {"motion", "depth"};
+  auto stream = open(*simulation, request, frames);
+  ASSERT_TRUE(simulation->run_until(60).ok());
+  frames.wait_for(4);
+  ASSERT_TRUE(simulation->post({.what = ResetSim{}}).ok());
+  frames.wait_for(5);
+  stream.reset();
+  const auto all = frames.all();
+  ASSERT_EQ(all.size(), 5u);
+  for (size_t i = 0; i < all.size(); ++i) {
+    const CameraFrame& frame = *all[i];
+    const size_t middle = 6 * 16 + 8;
+    ASSERT_LT(frame.depth[middle], 2.1f) << "the ball";
+    // 1 m/s for 40 ms; nothing came before the first frame, nor before the one after a reset.
+    const double moved = frame.index == 0 ? 0 : 0.04;
+    EXPECT_NEAR(frame.motion[2 * middle], moved * frame.intrinsics.fx / frame.depth[middle], 1e-2)
+        << "frame " << i;
+  }
+}
+
+TEST(LiveCamera, TheSimulationWaitsForARequiredCamera) {
+  const TempFolder folder;
+  auto simulation = simulate(flight(folder));
+  Frames frames;
+  frames.delay = std::chrono::milliseconds(10);
+  auto stream = open(*simulation, tiny("a/fixed", {100, 1}), frames);
+  ASSERT_TRUE(simulation->run_until(200).ok());
+  EXPECT_GE(frames.all().size(), 30u) << "it ran ahead of the camera";
+  EXPECT_EQ(stream->dropped(), 0);
+  stream.reset();
+  EXPECT_EQ(frames.all().size(), 41u);
+}
+
+TEST(LiveCamera, ASlowViewerLosesFramesAndSlowsNothing) {
+  const TempFolder folder;
+  const World world = flight(folder);
+  auto alone = simulate(world);
+  ASSERT_TRUE(alone->run_until(1000).ok());
+
+  auto simulation = simulate(world);
+  Frames frames;
+  frames.delay = std::chrono::milliseconds(50);
+  CameraRequest request = tiny("a/fixed", {500, 1});
+  request.required = false;
+  auto stream = open(*simulation, request, frames);
+  ASSERT_TRUE(simulation->run_until(1000).ok());
+  EXPECT_EQ(simulation->latest().hash(), alone->latest().hash());
+  const int64_t dropped = stream->dropped();
+  EXPECT_GT(dropped, 0);
+  EXPECT_GE(simulation->stats().dropped_snapshots, dropped);
+  frames.wait_for(static_cast<size_t>(1001 - dropped));  // every frame is shown or counted
+  stream.reset();
+  const auto all = frames.all();
+  EXPECT_EQ(all.size(), static_cast<size_t>(1001 - dropped));
+  for (size_t i = 1; i < all.size(); ++i) EXPECT_GT(all[i]->index, all[i - 1]->index);
+  EXPECT_EQ(all.back()->step, 1000) << "the newest is what stays";
+}
+
+TEST(LiveCamera, TheFreeCameraMovesWhilePaused) {
+  const TempFolder folder;
+  auto simulation = simulate(flight(folder));
+  ASSERT_TRUE(simulation->step(10).ok());
+  Frames frames;
+  CameraRequest request = tiny("free", {20, 1});
+  request.required = false;
+  auto stream = open(*simulation, request, frames);
+  // Towards the wall, which is 3 m from the origin.
+  const Quat towards_y = {std::sqrt(0.5), std::sqrt(0.5), 0, 0};
+  size_t count = 0;
+  for (const double y : {1.0, 2.0}) {
+    stream->set_pose({{2, y, 0}, towards_y});
+    EXPECT_NEAR(stream->pose().p.y, y, 1e-6);
+    stream->refresh();
+    const auto frame = frames.wait_for(++count);
+    ASSERT_NE(frame, nullptr);
+    EXPECT_NEAR(frame->X_WC.p.y, y, 1e-6);
+    EXPECT_NEAR(center_depth(*frame), 3 - y, 1e-4);
+    EXPECT_EQ(frame->step, 10) << "time stands still";
+  }
+}
+
+TEST(LiveCamera, AResetStartsTheFramesAgain) {
+  const TempFolder folder;
+  auto simulation = simulate(flight(folder));
+  Frames frames;
+  auto stream = open(*simulation, tiny("a/rider", {50, 1}), frames);
+  ASSERT_TRUE(simulation->run_until(100).ok());
+  frames.wait_for(11);
+  ASSERT_TRUE(simulation->post({.what = ResetSim{}}).ok());
+  ASSERT_TRUE(simulation->run_until(50).ok());
+  stream.reset();
+  const auto all = frames.all();
+  ASSERT_EQ(all.size(), 17u);
+  for (size_t i = 0; i < all.size(); ++i) {
+    const auto k = static_cast<int64_t>(i < 11 ? i : i - 11);
+    EXPECT_EQ(all[i]->index, k);
+    EXPECT_EQ(all[i]->step, 10 * k);
+    EXPECT_NEAR(all[i]->X_WC.p.x, 0.02 * static_cast<double>(k), 1e-5);
+  }
+}
+
+TEST(LiveCamera, WhatCannotBeOpenedSaysWhy) {
+  const TempFolder folder;
+  auto simulation = simulate(flight(folder));
+  const auto refused = [&](const CameraRequest& request) {
+    auto stream = simulation->open_camera(request, [](auto) {});
+    EXPECT_FALSE(stream.ok());
+    return stream.ok() ? std::string() : stream.error().to_string();
+  };
+  const auto changed = [](auto change) {
+    CameraRequest request = tiny("a/fixed", {20, 1});
+    change(request);
+    return request;
+  };
+  using R = CameraRequest;
+  EXPECT_NE(refused(changed([](R& r) { r.camera = "a/fixd"; })).find("a/fixed"), std::string::npos);
+  EXPECT_NE(refused(changed([](R& r) { r.outputs = {"dept"}; })).find("depth"), std::string::npos);
+  EXPECT_NE(refused(changed([](R& r) { r.render.tier = "raster"; })).find("raster"),
+            std::string::npos);
+  EXPECT_NE(refused(changed([](R& r) { r.rate = {0, 1}; })).find("rate"), std::string::npos);
+  EXPECT_NE(refused(changed([](R& r) { r.rate = {501, 1}; })).find("501"), std::string::npos);
+  for (const auto& [width, height] : std::vector<std::pair<int, int>>{
+           {-1, 12}, {16, -1}, {16, 0}, {0, 12}, {16385, 12}, {16, 1 << 30}}) {
+    const std::string message = refused(changed([&](R& r) {
+      r.width = width;
+      r.height = height;
+    }));
+    EXPECT_NE(message.find("16384"), std::string::npos)
+        << width << " x " << height << ": " << message;
+  }
+  EXPECT_NE(refused(changed([](R& r) {
+              r.outputs = {"rgb"};
+              r.render.spp = 0;
+            })).find("spp"),
+            std::string::npos);
+  EXPECT_NE(refused(changed([](R& r) { r.render.max_depth = 0; })).find("max_depth"),
+            std::string::npos);
+  ASSERT_TRUE(simulation->run_until(10).ok()) << "and nothing was left behind that it waits for";
+}
+
+}  // namespace
+}  // namespace gloam

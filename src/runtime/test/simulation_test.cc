@@ -1,0 +1,138 @@
+// gloam::Simulation as its users call it.
+
+#include <mujoco/mujoco.h>
+
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include "scenes.h"
+
+namespace gloam {
+namespace {
+
+TEST(LiveSimulation, StandsWhereItWasToldTo) {
+  const TempFolder folder;
+  auto simulation = simulate(flight(folder));
+  EXPECT_TRUE(simulation->paused());
+  EXPECT_EQ(simulation->latest().step(), 0);
+  EXPECT_EQ(simulation->step_rate(), (Rational{500, 1}));
+  ASSERT_TRUE(simulation->step(3).ok());
+  EXPECT_EQ(simulation->latest().step(), 3);
+  ASSERT_TRUE(simulation->run_until(50).ok());
+  EXPECT_EQ(simulation->latest().step(), 50);
+  EXPECT_TRUE(simulation->paused());
+  ASSERT_TRUE(simulation->run_until(20).ok()) << "the past needs no steps";
+  EXPECT_EQ(simulation->latest().step(), 50);
+  simulation->resume();
+  EXPECT_FALSE(simulation->paused());
+  while (simulation->latest().step() < 100) std::this_thread::yield();
+  simulation->pause();
+  const int64_t step = simulation->latest().step();
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(simulation->latest().step(), step);
+  const auto stats = simulation->stats();
+  EXPECT_EQ(stats.step, step);
+  EXPECT_EQ(stats.hash, simulation->latest().hash());
+  EXPECT_NEAR(stats.time, static_cast<double>(step) * 0.002, 1e-9);
+}
+
+TEST(LiveSimulation, AResetWaitsAtStepZeroWithTheSameHash) {
+  const TempFolder folder;
+  auto simulation = simulate(flight(folder));
+  const uint64_t first = simulation->latest().hash();
+  ASSERT_TRUE(simulation->run_until(40).ok());
+  const uint64_t at_40 = simulation->latest().hash();
+  ASSERT_TRUE(simulation->post({.what = ResetSim{}}).ok());
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(simulation->latest().step(), 0) << "it set out again by itself";
+  EXPECT_EQ(simulation->latest().hash(), first);
+  ASSERT_TRUE(simulation->run_until(40).ok());
+  EXPECT_EQ(simulation->latest().hash(), at_40);
+}
+
+TEST(LiveSimulation, AStopFromOutsideEndsAnEndlessRun) {
+  const TempFolder folder;
+  auto simulation = simulate(flight(folder));
+  std::thread user([&] {
+    while (simulation->latest().step() < 10) std::this_thread::yield();
+    simulation->request_stop();
+  });
+  const Status status = simulation->run_until(int64_t{1} << 50);
+  user.join();
+  ASSERT_FALSE(status.ok());
+  EXPECT_EQ(status.error().exit_code(), 130);
+  EXPECT_TRUE(simulation->status().ok()) << "physics is well";
+  EXPECT_TRUE(simulation->step(1).ok()) << "and can go on";
+}
+
+TEST(LiveSimulation, CommandsApplyAtTheirStepAndAreCounted) {
+  const TempFolder folder;
+  const World world = flight(folder);
+  auto simulation = simulate(world);
+  const auto ball = world.find_body("a/ball");
+  ASSERT_TRUE(ball.ok());
+  ASSERT_TRUE(simulation->post({100, AddVelocity{*ball, {0, 0, 2}}}).ok());
+  ASSERT_TRUE(simulation->run_until(100).ok());
+  EXPECT_NEAR(simulation->body_pose(*ball)->p.z, 0, 1e-9);
+  EXPECT_EQ(simulation->stats().commands_applied, 0);
+  ASSERT_TRUE(simulation->run_until(200).ok());
+  EXPECT_NEAR(simulation->body_pose(*ball)->p.z, 0.4, 1e-9) << "2 m/s for 0.2 s";
+  EXPECT_NEAR(simulation->body_pose(*ball)->p.x, 0.4, 1e-9);
+  EXPECT_EQ(simulation->stats().commands_applied, 1);
+  // Not of this World, not finite: refused at once, and nothing changes.
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(simulation->post({.what = AddVelocity{{99}, {0, 0, 1}}}).ok());
+  EXPECT_FALSE(simulation->post({.what = AddVelocity{*ball, {nan, 0, 0}}}).ok());
+  EXPECT_FALSE(simulation->post({.what = SetControl{{0}, 1}}).ok()) << "there are no actuators";
+  EXPECT_FALSE(simulation->body_pose({-1}).ok());
+  EXPECT_FALSE(simulation->body_pose({99}).ok());
+  EXPECT_EQ(simulation->stats().commands_applied, 1);
+}
+
+TEST(LiveSimulation, TheStepHookSeesTheStateBeforeEveryStep) {
+  const TempFolder folder;
+  auto simulation = simulate(flight(folder));
+  std::vector<double> times;
+  simulation->set_step_hook([&](const mjModel*, mjData* d) { times.push_back(d->time); });
+  ASSERT_TRUE(simulation->step(3).ok());
+  ASSERT_EQ(times.size(), 3u);
+  for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(times[i], 0.002 * static_cast<double>(i), 1e-12);
+}
+
+TEST(LiveSimulation, APixelLeadsToTheBodyBehindIt) {
+  const TempFolder folder;
+  const World world = flight(folder);
+  auto simulation = simulate(world);
+  ASSERT_TRUE(simulation->run_until(50).ok());  // the ball's centre at x = 0.1
+  CameraFrame frame;
+  frame.intrinsics = {64, 48, 50, 50, 32, 24};
+  frame.X_WC = {{0.1, -2, 0}, {std::sqrt(0.5), std::sqrt(0.5), 0, 0}};
+  const auto hit = simulation->pick(frame, 32, 24);
+  ASSERT_TRUE(hit.ok()) << hit.error().to_string();
+  EXPECT_EQ(hit->body.id, world.find_body("a/ball")->id);
+  EXPECT_NEAR(hit->point_W.x, 0.1, 1e-4);
+  EXPECT_NEAR(hit->point_W.y, -0.2, 1e-4);
+  EXPECT_NEAR(hit->point_B.x, 0, 1e-4);
+  EXPECT_NEAR(hit->point_B.y, -0.2, 1e-4);
+  frame.X_WC.q = {1, 0, 0, 0};  // straight down: nothing there
+  EXPECT_FALSE(simulation->pick(frame, 32, 24).ok());
+}
+
+TEST(LiveSimulation, OptionsOutOfRangeAreRefused) {
+  const TempFolder folder;
+  const World world = flight(folder);
+  for (const double timestep : {-0.001, std::nan(""), 1e9, 1e-300}) {
+    const auto simulation = Simulation::create(world, {.timestep = timestep});
+    ASSERT_FALSE(simulation.ok()) << timestep;
+    EXPECT_NE(simulation.error().to_string().find("timestep"), std::string::npos);
+  }
+  for (const double speed : {0.0, -1.0, std::nan("")}) {
+    const auto simulation = Simulation::create(world, {.pace = Pace::kRealTime, .speed = speed});
+    EXPECT_FALSE(simulation.ok()) << speed;
+  }
+}
+
+}  // namespace
+}  // namespace gloam

@@ -1,0 +1,99 @@
+// Stills and the files of one frame.
+
+#include <cmath>
+#include <limits>
+
+#include "base/files.h"
+#include "geometry/image_file.h"
+#include "gloam/run.h"
+#include "render/film/exr.h"
+#include "scenes.h"
+
+namespace gloam {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kChannels = {"rgb",    "radiance", "depth", "segmentation",
+                                            "normal", "albedo",   "motion"};
+
+CameraRequest small(const std::string& camera) {
+  CameraRequest request{.camera = camera, .width = 32, .height = 24, .outputs = kChannels};
+  request.render = {.tier = "path", .spp = 2, .denoise = false};
+  return request;
+}
+
+TEST(Stills, ArePicturesOfTheInstantAskedFor) {
+  const TempFolder folder;
+  const World world = flight(folder);
+  for (const double time : {0.0, 0.5, 1.0}) {
+    const auto frames = render_stills(world, time, {small("a/rider"), small("a/fixed")}, {});
+    ASSERT_TRUE(frames.ok()) << frames.error().to_string();
+    ASSERT_EQ(frames->size(), 2u);
+    EXPECT_NEAR((*frames)[0].time, time, 1e-9);
+    EXPECT_NEAR((*frames)[0].X_WC.p.x, time, 1e-5);
+    EXPECT_NEAR((*frames)[1].X_WC.p.x, 0, 1e-6);
+  }
+}
+
+TEST(Stills, SayWhatIsWrong) {
+  const TempFolder folder;
+  const World world = flight(folder);
+  for (const double time : {-1.0, std::nan(""), std::numeric_limits<double>::infinity(), 1e300}) {
+    const auto frames = render_stills(world, time, {small("a/rider")}, {});
+    ASSERT_FALSE(frames.ok()) << time;
+    EXPECT_EQ(frames.error().kind, ErrorKind::kUsage) << time;
+  }
+  const auto unknown = render_stills(world, 0, {small("a/ridr")}, {});
+  ASSERT_FALSE(unknown.ok());
+  EXPECT_NE(unknown.error().to_string().find("a/rider"), std::string::npos);
+  const auto stopped =
+      render_stills(world, 0, {small("a/rider")}, [](const Progress&) { return false; });
+  ASSERT_FALSE(stopped.ok());
+  EXPECT_EQ(stopped.error().kind, ErrorKind::kInterrupted);
+}
+
+TEST(Stills, EveryChannelIsWrittenAndReadsBack) {
+  const TempFolder folder;
+  const auto frames = render_stills(flight(folder), 0, {small("a/fixed")}, {});
+  ASSERT_TRUE(frames.ok()) << frames.error().to_string();
+  const CameraFrame& frame = frames->front();
+  const fs::path out = folder.path() / "new" / "pictures";
+  const auto written = write_frame(frame, out, "fixed");
+  ASSERT_TRUE(written.ok()) << written.error().to_string();
+  EXPECT_EQ(written->size(), 9u);
+  EXPECT_EQ(read_image(out / "fixed.png")->texels, frame.rgb);
+  const auto png16 = [&](const std::string& name) {
+    return decode_png16(read_file(out / name).value(), name).value().texels;
+  };
+  EXPECT_EQ(png16("fixed_instance.png"), frame.instance);
+  EXPECT_EQ(png16("fixed_semantic.png"), frame.semantic);
+  const auto millimetres = png16("fixed_depth.png");
+  for (size_t i = 0; i < millimetres.size(); ++i) {
+    const float d = frame.depth[i];
+    EXPECT_EQ(millimetres[i], std::isinf(d) ? 0 : std::lround(d * 1000));
+  }
+  const auto exr = [&](const std::string& name) {
+    return decode_exr(read_file(out / name).value(), name).value();
+  };
+  EXPECT_EQ(*exr("fixed_depth.exr").find("Z"), frame.depth);
+  for (size_t i = 0; i < frame.depth.size(); ++i) {
+    EXPECT_EQ((*exr("fixed.exr").find("G"))[i], frame.radiance[3 * i + 1]);
+    EXPECT_EQ((*exr("fixed_normal.exr").find("Y"))[i], frame.normal[3 * i + 1]);
+    if (i > 40) break;
+  }
+}
+
+TEST(Stills, AFolderThatCannotBeMadeIsNamed) {
+  const TempFolder folder;
+  const auto frames = render_stills(flight(folder), 0, {small("a/fixed")}, {});
+  ASSERT_TRUE(frames.ok());
+  folder.write("file", "in the way");
+  const auto written = write_frame(frames->front(), folder.path() / "file" / "out", "fixed");
+  ASSERT_FALSE(written.ok());
+  EXPECT_EQ(written.error().kind, ErrorKind::kIo);
+  EXPECT_NE(written.error().to_string().find("file"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace gloam

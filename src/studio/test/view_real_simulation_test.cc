@@ -1,0 +1,109 @@
+// The view of a real simulation: watching changes nothing, and what its user does is a Command.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "gloam/view.h"
+#include "raw_client.h"
+
+namespace gloam {
+namespace {
+
+namespace fs = std::filesystem;
+using studio::RawClient;
+
+const char* const kTumbling = R"(
+<mujoco><option timestep="0.002"/>
+  <worldbody><light pos="0 0 3"/><geom name="floor" type="plane" size="3 3 0.1"/>
+    <camera name="side" pos="0 -2 1" xyaxes="1 0 0 0 0.5 1"/>
+    <body name="box" pos="0 0 1" quat="0.9 0.3 0.2 0.1"><freejoint/>
+      <geom type="box" size="0.2 0.1 0.15"/></body>
+  </worldbody></mujoco>)";
+
+class ViewOfARealSimulation : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(::testing::TempDir()) / ("gloam_view_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+    ::setenv("GLOAM_CACHE", (folder_ / "cache").c_str(), 1);
+    std::ofstream(folder_ / "model.xml") << kTumbling;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static World compile(const fs::path& file) {
+    const Result<Scene> scene = load_scene(file);
+    EXPECT_TRUE(scene.ok()) << scene.error().to_string();
+    auto world = World::compile(*scene);
+    EXPECT_TRUE(world.ok()) << world.error().to_string();
+    return *world;
+  }
+
+  static uint64_t hash_alone(const World& world, int64_t steps) {
+    auto simulation = Simulation::create(world, {});
+    EXPECT_TRUE((*simulation)->run_until(steps).ok());
+    return (*simulation)->latest().hash();
+  }
+
+  /// The same with `clients` pages that show pictures, at ten times real time.
+  static uint64_t hash_watched(const World& world, int64_t steps, int clients) {
+    auto simulation = Simulation::create(world, {});
+    auto server = ViewServer::start(**simulation, {.port = 0, .width = 48, .height = 36});
+    EXPECT_TRUE(server.ok()) << server.error().to_string();
+    const std::string url = (*server)->url();
+    const std::string headers = "Host: 127.0.0.1:" + std::to_string((*server)->port()) +
+                                "\r\nAuthorization: token " + url.substr(url.find("token=") + 6) +
+                                "\r\n";
+    std::vector<std::thread> pages;
+    std::atomic<int> pictures{0};
+    std::atomic<bool> over{false};
+    for (int i = 0; i < clients; ++i) {
+      pages.emplace_back([&] {
+        RawClient client((*server)->port());
+        EXPECT_EQ(client.upgrade(headers), 101);
+        while (!over) pictures += client.wait_for_picture(0.5).has_value();
+      });
+    }
+    while (pictures < clients) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    (*simulation)->set_pace(Pace::kRealTime, 10);
+    EXPECT_TRUE((*simulation)->run_until(steps).ok());
+    const uint64_t hash = (*simulation)->latest().hash();
+    over = true;
+    for (std::thread& page : pages) page.join();
+    EXPECT_GT(pictures, clients) << "it was watched while it ran";
+    (*server)->stop();
+    return hash;
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(ViewOfARealSimulation, WatchingChangesNothing) {
+  const World world = compile(folder_ / "model.xml");
+  EXPECT_EQ(hash_watched(world, 1000, 2), hash_alone(world, 1000));
+}
+
+TEST_F(ViewOfARealSimulation, SlowWatchingAThirdPartyRobotChangesNothing) {
+  const char* data = std::getenv("GLOAM_TEST_DATA");
+  const fs::path robots = fs::path(data != nullptr ? data : "") / "mjlab/mjlab/asset_zoo/robots";
+  if (data == nullptr || !fs::is_directory(robots)) GTEST_SKIP() << "run tests/fetch_data.py";
+  for (const char* name :
+       {"unitree_go1/xmls/go1.xml", "unitree_g1/xmls/g1.xml", "i2rt_yam/xmls/yam.xml"}) {
+    const World world = compile(robots / name);
+    EXPECT_EQ(hash_watched(world, 2000, 1), hash_alone(world, 2000)) << name;
+  }
+}
+
+TEST_F(ViewOfARealSimulation, AnUnknownCameraIsAnError) {
+  auto simulation = Simulation::create(compile(folder_ / "model.xml"), {});
+  const auto server = ViewServer::start(**simulation, {.port = 0, .camera = "sid"});
+  ASSERT_FALSE(server.ok());
+  EXPECT_NE(server.error().to_string().find("side"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace gloam

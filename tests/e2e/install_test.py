@@ -1,0 +1,94 @@
+"""What `cmake --install` puts down works on its own: the program, and the library for a project that finds it."""
+import json
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+from e2e.support import PENDULUM, ROOT
+
+BUILD = ROOT / "build" / "release"
+
+
+def run(command, cwd, expect=0, **env):
+    result = subprocess.run([str(part) for part in command], cwd=cwd, text=True, capture_output=True, stdin=subprocess.DEVNULL, timeout=300,
+                            env={**{k: v for k, v in os.environ.items() if not k.startswith(("GLOAM_", "LD_"))}, **env})
+    assert result.returncode == expect, f"{command} ends with {result.returncode}\n{result.stdout}\n{result.stderr}"
+    return result.stdout
+
+
+def hidden(command):
+    """The command in a world without the source tree, its build folder and the wheels, where that can be had (root)."""
+    places = {str(ROOT), str((ROOT / ".venv").resolve())}
+    script = " && ".join(f"mount -t tmpfs tmpfs '{place}'" for place in sorted(places)) + ' && exec "$@"'
+    wrapped = ["unshare", "--mount", "sh", "-c", script, "sh"]
+    can = subprocess.run([*wrapped, "true"], capture_output=True, cwd="/")
+    return [*wrapped, *command] if can.returncode == 0 else command
+
+
+class Install(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls._folder = tempfile.TemporaryDirectory(prefix="gloam_install_")
+        cls.addClassCleanup(cls._folder.cleanup)
+        cls.folder = Path(cls._folder.name)
+        run(["cmake", "--install", BUILD, "--prefix", cls.folder / "first"], "/")
+        cls.prefix = cls.folder / "moved"  # nothing may remember where it was put first
+        (cls.folder / "first").rename(cls.prefix)
+        cls.elsewhere = cls.folder / "elsewhere"
+        cls.elsewhere.mkdir()
+        cls.model = cls.elsewhere / "pendulum.xml"
+        cls.model.write_text(PENDULUM)
+
+    def test_nothing_points_back(self):
+        for file in [self.prefix / "bin" / "gloam", self.prefix / "lib" / "libgloam.so"]:
+            libraries = run(["ldd", file], "/")
+            self.assertNotIn("not found", libraries)
+            for line in libraries.splitlines():
+                self.assertNotIn(str(ROOT), line)
+                self.assertNotIn(str((ROOT / ".venv").resolve()), line)
+            mujoco = re.search(r"libmujoco\S+ => (\S+)", libraries).group(1)
+            self.assertEqual(Path(mujoco).resolve().parent, (self.prefix / "lib" / "gloam").resolve())
+
+    def test_the_program_runs_a_scene_from_elsewhere(self):
+        gloam = self.prefix / "bin" / "gloam"
+        cache = {"GLOAM_CACHE": str(self.folder / "cache")}
+        here = json.loads(run([BUILD / "bin" / "gloam", "run", self.model, "--duration", "1", "--json"], self.elsewhere, **cache))
+        there = json.loads(run(hidden([gloam, "run", self.model, "--duration", "1", "--json"]), self.elsewhere, **cache))
+        self.assertEqual(here["state_hash"], there["state_hash"])
+        for program, out in [(BUILD / "bin" / "gloam", "here"), (gloam, "there")]:
+            still = [program, "render", self.model, "--resolution", "64x48", "--spp", "1", "--out", out]
+            run(hidden(still) if out == "there" else still, self.elsewhere, **cache)
+        pictures = [(self.elsewhere / out / "side.png").read_bytes() for out in ["here", "there"]]
+        self.assertEqual(*pictures, "the same picture, so the same denoiser")
+        demo = self.prefix / "share" / "gloam" / "examples" / "demo.toml"
+        run(hidden([gloam, "run", demo, "--duration", "0.1", "--resolution", "64x48", "--spp", "1", "--out", "out"]), self.elsewhere, **cache)
+        summary = json.loads((self.elsewhere / "out" / "summary.json").read_text())
+        self.assertEqual(summary["exit_reason"], "completed")
+        self.assertTrue((self.elsewhere / "out" / "contact_sheet.png").exists())
+
+    def test_the_page_of_the_documentation_builds_and_runs(self):
+        page = (ROOT / "docs" / "library.md").read_text()
+        project = self.folder / "project"
+        project.mkdir()
+        for language, name in [("cmake", "CMakeLists.txt"), ("cpp", "main.cc")]:
+            (project / name).write_text(re.search(rf"^```{language}\n(.*?)^```", page, re.M | re.S).group(1))
+        run(["cmake", "-S", project, "-B", project / "build", "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={self.prefix}",
+             "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror"], "/")
+        run(["cmake", "--build", project / "build"], "/")
+        said = run(hidden([project / "build" / "consumer", self.model]), self.elsewhere, GLOAM_CACHE=str(self.folder / "cache"))
+        program = json.loads(run([BUILD / "bin" / "gloam", "run", self.model, "--duration", "1", "--json"], self.elsewhere))
+        self.assertIn(f"1.000 s, state hash {program['state_hash']}", said)
+        run([BUILD / "bin" / "gloam", "render", self.model, "--camera", "free", "--time", "1", "--spp", "4", "--resolution", "64x48",
+             "--out", "same"], self.elsewhere)
+        pictures = [(self.elsewhere / name).read_bytes() for name in ["picture.png", "same/free.png"]]
+        self.assertEqual(*pictures, "the library found its denoiser, too")
+        failed = subprocess.run([project / "build" / "consumer", "missing.xml"], capture_output=True, text=True)
+        self.assertEqual(failed.returncode, 1)
+        self.assertIn("missing.xml", failed.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
