@@ -100,20 +100,26 @@ void PoseSolver::fill_poses(PoseFrame& frame) const {
 
 void PoseSolver::fill_live(const LiveFields* live, PoseFrame& frame) {
   const mjModel& m = *world_->model;
-  frame.live_version = live != nullptr ? live->version : 0;
-  frame.light_diffuse = live_field_at(m, live, LiveFieldId::kLightDiffuse);
-  frame.light_intensity = live_field_at(m, live, LiveFieldId::kLightIntensity);
-  const std::vector<float> active = live_field_at(m, live, LiveFieldId::kLightActive);
-  frame.light_active.resize(active.size());
-  std::transform(active.begin(), active.end(), frame.light_active.begin(),
+  frame.live_serial = live != nullptr ? live->serial : 0;
+  live_field_at(m, live, LiveFieldId::kLightDiffuse, &frame.light_diffuse);
+  live_field_at(m, live, LiveFieldId::kLightIntensity, &frame.light_intensity);
+  live_field_at(m, live, LiveFieldId::kLightActive, &active_);
+  frame.light_active.resize(active_.size());
+  std::transform(active_.begin(), active_.end(), frame.light_active.begin(),
                  [](float v) { return static_cast<uint8_t>(v != 0); });
-  frame.material_rgba = live_field_at(m, live, LiveFieldId::kMaterialColor);
-  frame.material_emission = live_field_at(m, live, LiveFieldId::kMaterialEmission);
-  const uint64_t height_field = live != nullptr ? live->height_field_version : 0;
-  if (height_field == frame.height_field_version) return;
-  frame.height_field_version = height_field;
-  frame.height_field =
-      height_field == 0 ? std::vector<float>() : live_field_at(m, live, LiveFieldId::kHeightField);
+  live_field_at(m, live, LiveFieldId::kGeomColor, &frame.geom_rgba);
+  live_field_at(m, live, LiveFieldId::kMaterialColor, &frame.material_rgba);
+  live_field_at(m, live, LiveFieldId::kMaterialEmission, &frame.material_emission);
+  live_field_at(m, live, LiveFieldId::kMaterialSpecular, &frame.material_specular);
+  live_field_at(m, live, LiveFieldId::kMaterialShininess, &frame.material_shininess);
+  live_field_at(m, live, LiveFieldId::kMaterialReflectance, &frame.material_reflectance);
+  live_field_at(m, live, LiveFieldId::kMaterialMetallic, &frame.material_metallic);
+  live_field_at(m, live, LiveFieldId::kMaterialRoughness, &frame.material_roughness);
+  const uint64_t height_field = live != nullptr ? live->height_field_serial : 0;
+  if (height_field == frame.height_field_serial) return;
+  frame.height_field_serial = height_field;
+  frame.height_field.clear();
+  if (height_field != 0) live_field_at(m, live, LiveFieldId::kHeightField, &frame.height_field);
 }
 
 }  // namespace gloam

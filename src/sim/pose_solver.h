@@ -30,8 +30,8 @@ class PoseSolver {
   ModelPtr own_model_;  // only where the World's own will not do: other masses, or sleep
   DataPtr data_, scratch_;
   DeformableLayout layout_;
-  std::shared_ptr<const LiveFields> live_;  // what own_model_ and the last frame follow
-  std::vector<float> masses_;               // in own_model_; empty = the World's
+  std::vector<float> masses_;  // in own_model_; empty = the World's
+  std::vector<float> active_;  // of the lights; room for fill_live
 };
 
 }  // namespace gloam

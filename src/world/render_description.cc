@@ -55,7 +55,7 @@ TriangleMesh convert_mesh(const mjModel& m, int i) {
 class GeomImporter {
  public:
   GeomImporter(const mjModel& model, bool live, RenderDescription* out)
-      : model_(model), materials_(model, live, out), out_(out) {}
+      : model_(model), live_(live), materials_(model, live, out), out_(out) {}
 
   /// The geom's shape, material and flags; nothing when it cannot be seen.
   std::optional<InstanceDescription> instance(int geom);
@@ -69,6 +69,7 @@ class GeomImporter {
     int asset = 0, row = 0, height_field = -1;
   };
   const mjModel& model_;
+  const bool live_;
   MaterialTable materials_;
   RenderDescription* out_;
   std::map<std::pair<int, bool>, int> mesh_rows_;
@@ -101,7 +102,8 @@ int GeomImporter::mesh_row(int asset, bool is_height_field) {
 std::optional<InstanceDescription> GeomImporter::instance(int g) {
   const mjModel& m = model_;
   const float* rgba = m.geom_rgba + 4 * g;
-  if (drawn_rgba(m, m.geom_matid[g], rgba)[3] == 0) return std::nullopt;
+  // What is fully transparent may be made visible by a Command, but only in the simulated model.
+  if (!live_ && drawn_rgba(m, m.geom_matid[g], rgba)[3] == 0) return std::nullopt;
   InstanceDescription instance;
   const mjtNum* size = m.geom_size + 3 * g;
   instance.size = {static_cast<float>(size[0]), static_cast<float>(size[1]),
@@ -150,6 +152,7 @@ std::optional<InstanceDescription> GeomImporter::instance(int g) {
   }
   instance.material = materials_.row(m.geom_matid[g], rgba, instance.shape);
   instance.group = m.geom_group[g];
+  instance.geom = live_ ? g : -1;
   instance.casts_shadow = m.geom_castshadow[g] != 0;
   instance.X_BG = rigid_pose(m.geom_pos + 3 * g, m.geom_quat + 4 * g);
   return instance;

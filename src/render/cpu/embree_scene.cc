@@ -252,7 +252,7 @@ void EmbreeScene::build_static(const RenderScene& scene) {
   const std::vector<InstanceView>& instances = scene.instances();
   for (size_t i = 0; i < instances.size(); ++i) {
     const InstanceView& in = instances[i];
-    if (!scene.description().instances[i].is_static || in.shape == ShapeType::kDeformable ||
+    if (!scene.is_fixed(i) || in.shape == ShapeType::kDeformable ||
         is_infinite_plane(in) || !scene.is_drawn(i)) {
       continue;
     }
@@ -282,7 +282,7 @@ void EmbreeScene::build_shapes(const RenderScene& scene) {
   const std::vector<InstanceView>& instances = scene.instances();
   for (size_t i = 0; i < instances.size(); ++i) {
     const InstanceView& in = instances[i];
-    if (scene.description().instances[i].is_static || in.shape == ShapeType::kDeformable ||
+    if (scene.is_fixed(i) || in.shape == ShapeType::kDeformable ||
         is_infinite_plane(in) || !scene.is_drawn(i)) {
       continue;
     }
@@ -307,7 +307,27 @@ void EmbreeScene::build_shapes(const RenderScene& scene) {
                [&](int64_t i) { rtcCommitScene(to_commit[i]); });
 }
 
+void EmbreeScene::rebuild_mesh(const RenderScene& scene, uint32_t mesh) {
+  const auto shape = shapes_.find({ShapeType::kMesh, mesh, 0, 0, 0});
+  if (shape == shapes_.end()) return;  // it is not drawn
+  const RtcOwner<RTCGeometry> geometry = mesh_geometry(scene.meshes()[mesh]);
+  rtcCommitGeometry(geometry.get());
+  rtcDetachGeometry(shape->second.get(), 0);
+  rtcAttachGeometryByID(shape->second.get(), geometry.get(), 0);
+  rtcCommitScene(shape->second.get());
+}
+
 void EmbreeScene::make_root(const RenderScene& scene) {
+  drawn_version_ = scene.drawn_version();
+  root_geometries_.clear();
+  root_.reset();
+  static_.reset();
+  shapes_.clear();
+  shape_data_.clear();
+  static_rows_.clear();
+  root_rows_.clear();
+  planes_.clear();
+  static_id_ = RTC_INVALID_GEOMETRY_ID;
   const std::vector<InstanceView>& instances = scene.instances();
   for (size_t i = 0; i < instances.size(); ++i) {
     if (is_infinite_plane(instances[i]) && scene.is_drawn(i)) {
@@ -336,7 +356,8 @@ void EmbreeScene::make_root(const RenderScene& scene) {
 }
 
 Status EmbreeScene::update(const RenderScene& scene) {
-  if (root_ == nullptr) make_root(scene);
+  if (root_ == nullptr || drawn_version_ != scene.drawn_version()) make_root(scene);
+  for (const uint32_t mesh : scene.rebuilt_meshes()) rebuild_mesh(scene, mesh);
   for (size_t g = 0; g < root_geometries_.size(); ++g) {
     const RTCGeometry geometry = root_geometries_[g].get();
     const InstanceView& in = scene.instances()[root_rows_[g]];

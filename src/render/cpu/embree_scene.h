@@ -72,6 +72,7 @@ class EmbreeScene {
   void build_static(const RenderScene& scene);
   void build_shapes(const RenderScene& scene);
   void make_root(const RenderScene& scene);
+  void rebuild_mesh(const RenderScene& scene, uint32_t mesh);
   RtcOwner<RTCGeometry> mesh_geometry(const MeshView& mesh);
   RtcOwner<RTCGeometry> shape_geometry(ShapeType shape, Vec3f size, const Affine3f& X_SG);
   RtcOwner<RTCGeometry> box_geometry(Vec3f size, const Affine3f& X_SG);
@@ -83,6 +84,7 @@ class EmbreeScene {
   RtcOwner<RTCScene> root_;                        ///< instances; null when nothing moves
   std::vector<RtcOwner<RTCGeometry>> root_geometries_;
   uint32_t static_id_ = RTC_INVALID_GEOMETRY_ID;
+  uint64_t drawn_version_ = 0;  ///< of the scene that is built
   std::vector<uint32_t> static_rows_, root_rows_, planes_;
   std::vector<std::unique_ptr<ShapeGeometry>> shape_data_;  ///< Embree keeps pointers to them
   std::vector<std::unique_ptr<std::vector<Vec3f>>> vertex_data_;

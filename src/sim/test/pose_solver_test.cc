@@ -139,7 +139,7 @@ TEST(PoseSolver, FollowsLiveFields) {
   ASSERT_TRUE(sim->step(100).ok());
   const Snapshot old = sim->latest();
   ASSERT_TRUE(solver->solve(old, before).ok());
-  EXPECT_EQ(before.live_version, 0u);
+  EXPECT_EQ(before.live_serial, 0u);
   EXPECT_TRUE(before.height_field.empty());
   EXPECT_EQ(before.material_rgba[1], 0);
 
@@ -157,8 +157,8 @@ TEST(PoseSolver, FollowsLiveFields) {
   ASSERT_TRUE(solver->solve(s, frame).ok());
   DataPtr d(mj_makeData(live_model.get()));
   expect_forward_poses(*live_model, *d, s, frame);
-  EXPECT_EQ(frame.live_version, 4u);
-  EXPECT_EQ(frame.height_field_version, 1u);
+  EXPECT_EQ(frame.live_serial, 4u);
+  EXPECT_EQ(frame.height_field_serial, 4u);
   ASSERT_EQ(frame.height_field.size(), 12u);
   EXPECT_EQ(frame.height_field[3], .75f);
   EXPECT_EQ(frame.height_field[5], 1.f);
