@@ -20,21 +20,11 @@ constexpr float kAny = 1e10f;  // mjMAXVAL: beyond it MuJoCo calls a number bad
 
 // By LiveFieldId.
 constexpr FieldRow kFields[kLiveFieldCount] = {
-    {"gravity", -kAny, kAny},
-    {"wind", -kAny, kAny},
-    {"body_mass", 0, kAny},
-    {"geom_friction", 0, kAny},
-    {"height_field", 0, 1},
-    {"light_diffuse", 0, kAny},
-    {"light_intensity", 0, kAny},
-    {"light_active", 0, 1},
-    {"geom_color", 0, 1},
-    {"material_color", 0, 1},
-    {"material_emission", 0, kAny},
-    {"material_specular", 0, 1},
-    {"material_shininess", 0, 1},
-    {"material_reflectance", 0, 1},
-    {"material_metallic", -1, 1},
+    {"gravity", -kAny, kAny},      {"wind", -kAny, kAny},          {"body_mass", 0, kAny},
+    {"geom_friction", 0, kAny},    {"height_field", 0, 1},         {"light_diffuse", 0, kAny},
+    {"light_intensity", 0, kAny},  {"light_active", 0, 1},         {"geom_color", 0, 1},
+    {"material_color", 0, 1},      {"material_emission", 0, kAny}, {"material_specular", 0, 1},
+    {"material_shininess", 0, 1},  {"material_reflectance", 0, 1}, {"material_metallic", -1, 1},
     {"material_roughness", -1, 1},
 };
 

@@ -25,9 +25,9 @@ struct PoseFrame {
   std::vector<float> light_diffuse;      ///< (n_world x nlight x 3)
   std::vector<float> light_intensity;    ///< (n_world x nlight) [cd]
   std::vector<uint8_t> light_active;     ///< (n_world x nlight)
-  std::vector<float> geom_rgba;             ///< (n_world x ngeom x 4)
-  std::vector<float> material_rgba;         ///< (n_world x nmat x 4)
-  std::vector<float> material_emission;     ///< (n_world x nmat); likewise below
+  std::vector<float> geom_rgba;          ///< (n_world x ngeom x 4)
+  std::vector<float> material_rgba;      ///< (n_world x nmat x 4)
+  std::vector<float> material_emission;  ///< (n_world x nmat); likewise below
   std::vector<float> material_specular, material_shininess, material_reflectance;
   std::vector<float> material_metallic, material_roughness;  ///< -1 = not given
   uint64_t height_field_serial = 0;  ///< of their last change, 0 = as in the World's model

@@ -81,8 +81,7 @@ int MaterialTable::layer(int matid, mjtTextureRole role, MaterialDescription* ma
 }
 
 int MaterialTable::row(int matid, const float* rgba, ShapeType shape, bool textured) {
-  const bool can_mirror =
-      matid >= 0 && (shape == ShapeType::kPlane || shape == ShapeType::kBox);
+  const bool can_mirror = matid >= 0 && (shape == ShapeType::kPlane || shape == ShapeType::kBox);
   const float* color = drawn_rgba(model_, matid, rgba);
   const bool own_color = color == rgba;
   ModelSurface surface;

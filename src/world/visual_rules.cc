@@ -45,8 +45,7 @@ void set_look(const ModelSurface& surface, MaterialDescription* material) {
   else if (textures.metallic >= 0 || textures.orm >= 0)
     material->metallic = 1;
   if (textures.emission >= 0)
-    material->emission =
-        emission_luminance({1, 1, 1}, surface.emission > 0 ? surface.emission : 1);
+    material->emission = emission_luminance({1, 1, 1}, surface.emission > 0 ? surface.emission : 1);
   else
     material->emission = emission_luminance(material->base_color, surface.emission);
 }
