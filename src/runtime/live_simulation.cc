@@ -73,8 +73,9 @@ Status LiveSimulation::run_until(int64_t step) {
     pause();
     return Error{ErrorKind::kInterrupted, "stopped by the user"};
   }
-  paused_ = true;
-  return simulator_->wait();
+  const Status status = simulator_->wait();
+  pause();  // or a reset would set it going again
+  return status;
 }
 
 void LiveSimulation::resume() {
