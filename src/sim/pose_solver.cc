@@ -70,11 +70,13 @@ Status PoseSolver::solve(const Snapshot& snapshot, PoseFrame& frame) {
     mj_comPos(model, data);
     mj_camlight(model, data);
     if (model->nflex > 0) mj_flex(model, data);
+    if (layout_.has_tendons) mj_tendon(model, data);
   }));
   frame.n_world = 1;
   frame.step = in.step;
   frame.time = in.time;
   fill_poses(frame);
+  fill_vertices(in.live.get(), frame);
   fill_live(in.live.get(), frame);
   return {};
 }
@@ -88,6 +90,11 @@ void PoseSolver::fill_poses(PoseFrame& frame) const {
   assign(d.cam_xmat, 9 * m.ncam, frame.camera_R);
   assign(d.light_xpos, 3 * m.nlight, frame.light_p);
   assign(d.light_xdir, 3 * m.nlight, frame.light_dir);
+}
+
+void PoseSolver::fill_vertices(const LiveFields* live, PoseFrame& frame) {
+  const mjModel& m = model();
+  const mjData& d = *data_;
   frame.vertices.resize(static_cast<size_t>(3 * layout_.nvertex));
   for (int skin = 0; skin < m.nskin; ++skin) {
     skin_vertices(m, skin, d.xpos, d.xquat,
@@ -96,6 +103,9 @@ void PoseSolver::fill_poses(PoseFrame& frame) const {
   std::transform(d.flexvert_xpos, d.flexvert_xpos + 3 * m.nflexvert,
                  frame.vertices.begin() + 3 * m.nskinvert,
                  [](mjtNum x) { return static_cast<float>(x); });
+  live_field_at(m, live, LiveFieldId::kGravity, &gravity_);
+  const double gravity[3] = {gravity_[0], gravity_[1], gravity_[2]};
+  place_capsules(m, d, gravity, layout_, frame.vertices.data());
 }
 
 void PoseSolver::fill_live(const LiveFields* live, PoseFrame& frame) {

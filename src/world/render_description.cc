@@ -229,9 +229,6 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     light.is_static = light.light >= 0 && m.light_mode[light.light] == mjCAMLIGHT_FIXED &&
                       is_static[static_cast<size_t>(m.light_bodyid[light.light])];
   }
-  for (int i = 0; i < static_cast<int>(m.ntendon); ++i)
-    out.unsupported.push_back({ErrorKind::kUnsupported, fmt::format("tendon '{}' is not drawn",
-                                                                    name_of(m, mjOBJ_TENDON, i))});
   if (labels.overflowed())
     out.unsupported.push_back(
         {ErrorKind::kUnsupported, "there are more than 65535 objects; the last share one label"});
