@@ -181,6 +181,34 @@ std::vector<bool> static_bodies(const mjModel& m) {
   return is_static;
 }
 
+/// Robots collide with simpler shapes than they show. In MJCF those are in the groups 3 and up,
+/// which MuJoCo hides; in a URDF they are the geoms of the model, and the visuals, where a link has
+/// some, are `instances` from `first_visual` on. Something that moves on joints and has nothing to
+/// show shows what it collides with.
+void choose_what_is_shown(const mjModel& m, const CompiledWorld& world, size_t first_visual,
+                          std::vector<InstanceDescription>* instances) {
+  const auto body_of = [&](size_t i) { return static_cast<size_t>((*instances)[i].body); };
+  const auto root_of = [&](size_t i) { return static_cast<size_t>(m.body_rootid[body_of(i)]); };
+  std::vector<bool> has_visuals(static_cast<size_t>(m.nbody)), root_shows(has_visuals);
+  for (size_t i = first_visual; i < instances->size(); ++i) {
+    // The world's own geoms are the scene's, unless the robot stands alone.
+    if (body_of(i) > 0 || !world.scene.bare_model.empty()) has_visuals[body_of(i)] = true;
+    root_shows[root_of(i)] = true;
+  }
+  constexpr int kFirstHiddenGroup = 3;
+  for (size_t i = 0; i < first_visual; ++i) {
+    InstanceDescription& instance = (*instances)[i];
+    instance.shown = instance.group < kFirstHiddenGroup && !has_visuals[body_of(i)];
+    if (instance.shown) root_shows[root_of(i)] = true;
+  }
+  std::vector<bool> root_moves(static_cast<size_t>(m.nbody));
+  for (int body = 1; body < m.nbody; ++body) {
+    if (m.body_jntnum[body] > 0) root_moves[static_cast<size_t>(m.body_rootid[body])] = true;
+  }
+  for (size_t i = 0; i < first_visual; ++i)
+    if (root_moves[root_of(i)] && !root_shows[root_of(i)]) (*instances)[i].shown = true;
+}
+
 }  // namespace
 
 Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
@@ -206,6 +234,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     if (auto instance = simulated.instance(g))
       add(std::move(*instance), m.geom_bodyid[g], name_of(m, mjOBJ_GEOM, g), mjOBJ_GEOM, g);
 
+  const size_t first_visual = out.instances.size();
   std::optional<GeomImporter> visual;
   if (world.visual_model != nullptr) {
     visual.emplace(*world.visual_model, false, &out);
@@ -222,6 +251,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     }
   }
 
+  choose_what_is_shown(m, world, first_visual, &out.instances);
   describe_deformables(m, poses, &simulated.materials(), &labels, &out);
   describe_cameras(m, &out);
   const LightLevels levels = describe_light(m, poses, &simulated.materials(), &out);

@@ -66,12 +66,10 @@ struct InstanceDescription {
   int material = 0;
   bool is_static = false;  ///< never moves: its body is welded to the world
   bool casts_shadow = true;
-  int group = 0;  ///< MuJoCo's geom group
-  int geom = -1;  ///< row of PoseFrame::geom_rgba, -1 = its colour never changes
+  int group = 0;      ///< MuJoCo's
+  bool shown = true;  ///< false: a collision shape that something else is drawn for
+  int geom = -1;      ///< row of PoseFrame::geom_rgba, -1 = its colour never changes
   LabelRow label;
-
-  /// MuJoCo draws the groups 0 … 2 unless told otherwise: robots keep what they collide with in 3.
-  bool is_shown() const { return group < 3; }
 };
 
 /// A mesh whose vertices move every instant; topology and uvs are fixed. Thin: seen from both

@@ -27,6 +27,7 @@ void add_instance(RenderDescription* out, TriangleMesh rest, int first_vertex, i
   instance.size = {1, 1, 1};
   instance.material = material;
   instance.group = group;
+  instance.shown = group < 3;
   label.material = out->materials[static_cast<size_t>(material)].name;
   label.part = static_cast<uint32_t>(out->instances.size()) + 1;
   instance.label = std::move(label);

@@ -59,7 +59,7 @@ bool is_guided(const LightDescription& light) {
 bool is_guided(const RenderDescription& description, const InstanceDescription& instance) {
   const MaterialDescription& material =
       description.materials[static_cast<size_t>(instance.material)];
-  return instance.is_static && instance.is_shown() && luminance(material.emission) > 0 &&
+  return instance.is_static && instance.shown && luminance(material.emission) > 0 &&
          material.opacity > 0;
 }
 
@@ -107,7 +107,7 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
     const InstanceDescription& described = description.instances[i];
     const int row_of_guide = is_guided(description, described) ? guide++ : -1;
     instance.light = -1;
-    if (!described.is_shown()) continue;
+    if (!described.shown) continue;
     const bool is_mesh =
         instance.shape == ShapeType::kMesh || instance.shape == ShapeType::kDeformable;
     const MaterialView& material = materials[instance.material];

@@ -146,7 +146,7 @@ void RenderScene::follow_materials() {
   for (size_t i = 0; i < instances_.size(); ++i) {
     const InstanceView& in = instances_[i];
     const MaterialView& material = materials_.views()[in.material];
-    const bool drawn = description_.instances[i].is_shown() && material.opacity > 0;
+    const bool drawn = description_.instances[i].shown && material.opacity > 0;
     changed |= drawn != drawn_[i];
     drawn_[i] = drawn;
     const bool has_mesh = in.shape == ShapeType::kMesh || in.shape == ShapeType::kDeformable;

@@ -31,8 +31,8 @@ class RenderScene {
   }
   /// Something moves between shutter open and close.
   bool has_motion() const;
-  /// Invisible instances are in the tables but never traced: fully transparent ones and those of
-  /// groups that are not shown.
+  /// Invisible instances are in the tables but never traced: fully transparent ones and those
+  /// that are not shown.
   bool is_drawn(size_t instance) const { return drawn_[instance]; }
   /// Changes whenever is_drawn() does for some instance.
   uint64_t drawn_version() const { return drawn_version_; }
