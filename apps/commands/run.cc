@@ -55,7 +55,10 @@ int run(const RunCommand& command_line, const Globals& globals) {
   RunCommand command = command_line;
   auto scene = command.options.load(command.file);
   if (!scene.ok()) return fail(scene.error());
-  if (!command.options.outputs.empty()) scene->record.outputs = command.options.outputs;
+  if (!command.options.outputs.empty()) {
+    scene->record.outputs = command.options.outputs;
+    for (CameraOptions& camera : scene->cameras) camera.outputs.reset();
+  }
   auto world = World::compile(*scene);
   if (!world.ok()) return fail(world.error());
 

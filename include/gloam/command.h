@@ -49,19 +49,28 @@ struct DragBody {
 /// Back to the initial state; step and time start at zero again.
 struct ResetSim {};
 
-/// The closed list of model fields that may change while the simulation runs.
+/// The closed list of model fields that may change while the simulation runs. Values mean what they
+/// mean in the model; pictures show them from the step on at which the Command applies.
 enum class LiveFieldId {
-  kGravity,           ///< (3) [m/s²]
-  kWind,              ///< (3) [m/s]
-  kBodyMass,          ///< (nbody) [kg]; the inertia scales with it
-  kGeomFriction,      ///< (ngeom x 3)
-  kHeightField,       ///< (nhfielddata) 0..1
-  kLightDiffuse,      ///< (nlight x 3)
-  kLightIntensity,    ///< (nlight) [cd]
-  kLightActive,       ///< (nlight) 0 or 1
-  kMaterialColor,     ///< (nmat x 4) rgba
-  kMaterialEmission,  ///< (nmat)
+  kGravity,              ///< (3) [m/s²]
+  kWind,                 ///< (3) [m/s]
+  kBodyMass,             ///< (nbody) [kg]; the inertia scales with it
+  kGeomFriction,         ///< (ngeom x 3)
+  kHeightField,          ///< (nhfielddata) 0..1, seen and collided with
+  kLightDiffuse,         ///< (nlight x 3)
+  kLightIntensity,       ///< (nlight) [cd], 0 = diffuse alone counts (docs/light.md)
+  kLightActive,          ///< (nlight) 0 or 1
+  kGeomColor,            ///< (ngeom x 4) rgba 0..1; 0.5 0.5 0.5 1 = the material's
+  kMaterialColor,        ///< (nmat x 4) rgba 0..1
+  kMaterialEmission,     ///< (nmat) >= 0
+  kMaterialSpecular,     ///< (nmat) 0..1
+  kMaterialShininess,    ///< (nmat) 0..1
+  kMaterialReflectance,  ///< (nmat) 0..1, of planes and boxes
+  kMaterialMetallic,     ///< (nmat) 0..1, -1 = not given
+  kMaterialRoughness,    ///< (nmat) 0..1, -1 = not given: shininess counts
 };
+inline constexpr int kLiveFieldCount = static_cast<int>(LiveFieldId::kMaterialRoughness) + 1;
+
 /// Replaces elements [first, first + values.size()) of a live field.
 struct SetLiveField {
   LiveFieldId field = LiveFieldId::kGravity;

@@ -75,9 +75,11 @@ struct CameraOptions {
   std::optional<Quat> orientation =
       {};            ///< instead of look_at: looks along its -Z, up is +Y (MuJoCo's convention)
   double fovy = 45;  ///< vertical field of view [deg], (0, 180)
-  int width = 640, height = 480;               ///< [px], 1 … 16384
-  Rational rate = {20, 1};                     ///< frames per second of simulation time
-  std::vector<std::string> outputs = {"rgb"};  ///< rgb depth segmentation normal albedo motion
+  int width = 640, height = 480;  ///< [px], 1 … 16384
+  Rational rate = {20, 1};        ///< frames per second of simulation time
+  /// What is recorded of this camera, instead of what [record] says: video png depth_png depth_exr
+  /// segmentation; [] = its poses alone.
+  std::optional<std::vector<std::string>> outputs = {};
   SourceLoc loc = {};
 };
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,7 @@ struct CameraRequest {
   int width = 0, height = 0;    ///< [px]; 0 = the camera's own
   std::vector<std::string> outputs = {"rgb"};  ///< rgb depth segmentation normal albedo motion
   RenderOptions render = {};
+  std::optional<Pose> X_WC = {};  ///< of camera "free": where it stands at first
   bool required =
       false;  ///< the simulation waits for this camera; else frames are dropped, oldest first
 };

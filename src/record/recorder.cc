@@ -84,17 +84,18 @@ class FolderRecorder : public Recorder {
     entries_ = {"cameras.json", "labels.json"};
     if (outputs_.contains("metrics")) entries_.push_back("metrics.csv");
     if (outputs_.contains("contact_sheet")) entries_.push_back("contact_sheet.png");
-    for (const std::string& name : file_names_) {
-      entries_.push_back(name);
-      if (outputs_.contains("video")) entries_.push_back(name + ".mp4");
+    for (size_t i = 0; i < file_names_.size(); ++i) {
+      entries_.push_back(file_names_[i]);
+      if (outputs_of(info_.cameras[i]).contains("video"))
+        entries_.push_back(file_names_[i] + ".mp4");
     }
     entries_.push_back(kSummaryName);
     GLOAM_TRY_STATUS(write_summary(nullptr));
     GLOAM_TRY_STATUS(write_text("cameras.json", cameras_json(info_.cameras, file_names_)));
     GLOAM_TRY_STATUS(write_text("labels.json", labels_json(info_.labels)));
     for (size_t i = 0; i < info_.cameras.size(); ++i) {
-      CameraRecorder recorder(info_.cameras[i], options_.folder, file_names_[i], outputs_,
-                              options_.store);
+      CameraRecorder recorder(info_.cameras[i], options_.folder, file_names_[i],
+                              outputs_of(info_.cameras[i]), options_.store);
       GLOAM_TRY_STATUS(recorder.start());
       lanes_[info_.cameras[i].name] = std::make_unique<CameraLane>(
           std::move(recorder), static_cast<size_t>(options_.queue_frames), options_.wait);
@@ -157,26 +158,41 @@ class FolderRecorder : public Recorder {
   const std::filesystem::path& folder() const override { return options_.folder; }
 
  private:
-  Status check() {
-    for (const std::string& output : outputs_) {
+  std::set<std::string> outputs_of(const RecordedCamera& camera) const {
+    if (!camera.outputs) return outputs_;
+    std::set<std::string> outputs(camera.outputs->begin(), camera.outputs->end());
+    if (outputs_.contains("contact_sheet"))
+      outputs.insert("contact_sheet");  // it shows all cameras
+    return outputs;
+  }
+
+  static Status check_outputs(const std::set<std::string>& outputs) {
+    for (const std::string& output : outputs) {
       if (std::find(kOutputs.begin(), kOutputs.end(), output) != kOutputs.end()) continue;
       return Error{ErrorKind::kUsage,
                    fmt::format("there is no output '{}'", output),
                    {},
                    suggest_name(output, kOutputs)};
     }
+    return {};
+  }
+
+  Status check() {
+    GLOAM_TRY_STATUS(check_outputs(outputs_));
     GLOAM_CHECK(options_.queue_frames > 0, "a queue holds at least one frame");
     std::set<std::string> names,
         taken = {"cameras.json", "labels.json", "metrics.csv", "contact_sheet.png", kSummaryName};
     for (const RecordedCamera& camera : info_.cameras) {
+      GLOAM_TRY_STATUS(check_outputs(outputs_of(camera)));
       if (!names.insert(camera.name).second)
         return Error{ErrorKind::kInput,
                      fmt::format("two cameras are named '{}'", camera.name),
                      {},
                      "rename one of them"};
       const int64_t pixels = int64_t{camera.intrinsics.width} * camera.intrinsics.height;
-      if (outputs_.contains("video") && (pixels > kMaxVideoPixels || camera.intrinsics.width < 16 ||
-                                         camera.intrinsics.height < 16))
+      if (outputs_of(camera).contains("video") &&
+          (pixels > kMaxVideoPixels || camera.intrinsics.width < 16 ||
+           camera.intrinsics.height < 16))
         return Error{
             ErrorKind::kUnsupported,
             fmt::format("camera '{}' with {} x {} pixels cannot be recorded as H.264 video",

@@ -19,6 +19,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -47,6 +48,8 @@ struct RecordedCamera {
   std::string name;  ///< full name, as in CameraFrame::camera
   Intrinsics intrinsics;
   Rational rate = {20, 1};  ///< frames per second of simulation time
+  /// Files of this camera instead of RecorderOptions::outputs, as CameraOptions::outputs.
+  std::optional<std::vector<std::string>> outputs = {};
 };
 
 /// A curve of the contact sheet: columns of the metrics; `commanded` may be "".

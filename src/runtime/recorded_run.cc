@@ -31,7 +31,7 @@ bool wants(const std::vector<std::string>& outputs, const std::string& name) {
   return std::find(outputs.begin(), outputs.end(), name) != outputs.end();
 }
 
-// The channels that cameras must fill so that the recorder can write `outputs`.
+// The channels that a camera must fill so that the recorder can write `outputs`.
 std::vector<std::string> channels_for(const std::vector<std::string>& outputs) {
   std::vector<std::string> channels;
   if (wants(outputs, "video") || wants(outputs, "png") || wants(outputs, "contact_sheet"))
@@ -43,6 +43,13 @@ std::vector<std::string> channels_for(const std::vector<std::string>& outputs) {
   if (wants(outputs, "segmentation") || wants(outputs, "contact_sheet"))
     channels.push_back("segmentation");
   return channels;
+}
+
+const CameraOptions* find_options(const Scene& scene, const std::string& camera) {
+  for (const CameraOptions& options : scene.cameras) {
+    if (options.name == camera) return &options;
+  }
+  return nullptr;
 }
 
 // All [[camera]]s of a scene and the cameras of its robots; a bare model's own cameras. A camera
@@ -64,17 +71,18 @@ Result<std::vector<CameraRequest>> camera_requests(const World& world, const Run
     camera.camera = name;
     camera.width = request.width;
     camera.height = request.height;
-    bool asked = false;
-    for (const CameraOptions& options : scene.cameras) {
-      if (options.name != name) continue;
-      camera.rate = options.rate;
-      asked = true;
+    std::vector<std::string> outputs = scene.record.outputs;
+    const CameraOptions* options = find_options(scene, name);
+    if (options != nullptr) {
+      camera.rate = options->rate;
+      if (options->outputs) outputs = *options->outputs;
     }
+    if (wants(scene.record.outputs, "contact_sheet")) outputs.emplace_back("contact_sheet");
     if (request.rate.num > 0)
       camera.rate = request.rate;
-    else if (!asked && step_rate.value() < camera.rate.value())
+    else if (options == nullptr && step_rate.value() < camera.rate.value())
       camera.rate = step_rate;
-    camera.outputs = channels_for(scene.record.outputs);
+    camera.outputs = channels_for(outputs);
     camera.render = scene.render;
     camera.required = request.simulation.pace == Pace::kFast;
     requests.push_back(camera);
@@ -155,7 +163,9 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
                 CameraSensor::create(shared->description, camera, request.simulation.seed));
       // Before an older recording is replaced: the simulation would refuse it later.
       GLOAM_TRY_STATUS(StepSchedule::make(camera.rate, {0, 1}, simulator.timestep()));
-      info.cameras.push_back({camera.camera, sensor->intrinsics(), camera.rate});
+      const CameraOptions* own = find_options(scene, camera.camera);
+      info.cameras.push_back({camera.camera, sensor->intrinsics(), camera.rate,
+                              own != nullptr ? own->outputs : std::nullopt});
     }
     GLOAM_TRY(info.labels, simulation->labels());
     info.metric_columns = metrics.columns();

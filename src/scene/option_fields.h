@@ -77,7 +77,7 @@ void visit_fields(Visitor& v, CameraOptions& o) {
   v("height", o.height, FieldRule{.unit = "px", .min = 1, .max = 16384});
   v("rate", o.rate, FieldRule{.unit = "Hz", .min = 0, .max = kFastestRate, .open = true});
   v("outputs", o.outputs,
-    FieldRule{.choices = {"rgb", "depth", "segmentation", "normal", "albedo", "motion"}});
+    FieldRule{.choices = {"video", "png", "depth_png", "depth_exr", "segmentation"}});
 }
 
 template <class Visitor>

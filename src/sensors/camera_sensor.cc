@@ -139,7 +139,8 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
   sensor->rate_ = request.rate;
   sensor->ev100_ =
       request.render.ev100 ? static_cast<float>(*request.render.ev100) : description.ev100;
-  sensor->free_pose_ = sensor->previous_free_pose_ = described.X_WC;
+  sensor->free_pose_ = sensor->previous_free_pose_ =
+      request.X_WC ? to_affine(*request.X_WC) : described.X_WC;
 
   RenderSettings& settings = sensor->settings_;
   if (request.render.tier == "path") {

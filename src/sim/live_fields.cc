@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/check.h"
 #include "base/hash.h"
@@ -21,24 +20,62 @@ constexpr float kAny = 1e10f;  // mjMAXVAL: beyond it MuJoCo calls a number bad
 
 // By LiveFieldId.
 constexpr FieldRow kFields[kLiveFieldCount] = {
-    {"gravity", -kAny, kAny},       {"wind", -kAny, kAny},  {"body_mass", 0, kAny},
-    {"geom_friction", 0, kAny},     {"height_field", 0, 1}, {"light_diffuse", 0, kAny},
-    {"light_intensity", 0, kAny},   {"light_active", 0, 1}, {"material_color", 0, 1},
-    {"material_emission", 0, kAny},
+    {"gravity", -kAny, kAny},      {"wind", -kAny, kAny},          {"body_mass", 0, kAny},
+    {"geom_friction", 0, kAny},    {"height_field", 0, 1},         {"light_diffuse", 0, kAny},
+    {"light_intensity", 0, kAny},  {"light_active", 0, 1},         {"geom_color", 0, 1},
+    {"material_color", 0, 1},      {"material_emission", 0, kAny}, {"material_specular", 0, 1},
+    {"material_shininess", 0, 1},  {"material_reflectance", 0, 1}, {"material_metallic", -1, 1},
+    {"material_roughness", -1, 1},
 };
 
 const FieldRow& row(LiveFieldId field) { return kFields[static_cast<int>(field)]; }
 
-template <class T>
-std::vector<float> to_floats(const T* values, mjtSize n) {
-  return std::vector<float>(values, values + n);
+// Calls use(first value, number of values): where the field lies in a model.
+template <class Model, class Use>
+auto visit_field(Model& m, LiveFieldId field, Use&& use) {
+  switch (field) {
+    case LiveFieldId::kGravity:
+      return use(m.opt.gravity, 3);
+    case LiveFieldId::kWind:
+      return use(m.opt.wind, 3);
+    case LiveFieldId::kBodyMass:
+      return use(m.body_mass, m.nbody);
+    case LiveFieldId::kGeomFriction:
+      return use(m.geom_friction, 3 * m.ngeom);
+    case LiveFieldId::kHeightField:
+      return use(m.hfield_data, m.nhfielddata);
+    case LiveFieldId::kLightDiffuse:
+      return use(m.light_diffuse, 3 * m.nlight);
+    case LiveFieldId::kLightIntensity:
+      return use(m.light_intensity, m.nlight);
+    case LiveFieldId::kLightActive:
+      return use(m.light_active, m.nlight);
+    case LiveFieldId::kGeomColor:
+      return use(m.geom_rgba, 4 * m.ngeom);
+    case LiveFieldId::kMaterialColor:
+      return use(m.mat_rgba, 4 * m.nmat);
+    case LiveFieldId::kMaterialEmission:
+      return use(m.mat_emission, m.nmat);
+    case LiveFieldId::kMaterialSpecular:
+      return use(m.mat_specular, m.nmat);
+    case LiveFieldId::kMaterialShininess:
+      return use(m.mat_shininess, m.nmat);
+    case LiveFieldId::kMaterialReflectance:
+      return use(m.mat_reflectance, m.nmat);
+    case LiveFieldId::kMaterialMetallic:
+      return use(m.mat_metallic, m.nmat);
+    case LiveFieldId::kMaterialRoughness:
+      return use(m.mat_roughness, m.nmat);
+  }
+  return use(static_cast<float*>(nullptr), 0);
 }
 
 // Values that are the World's own keep its full precision.
-template <class T>
-void from_floats(std::span<const float> values, const T* world, T* target) {
+template <class World, class T>
+void from_floats(std::span<const float> values, const World* world, T* target) {
   for (size_t i = 0; i < values.size(); ++i) {
-    target[i] = values[i] == static_cast<float>(world[i]) ? world[i] : static_cast<T>(values[i]);
+    const bool is_own = values[i] == static_cast<float>(world[i]);
+    target[i] = static_cast<T>(is_own ? world[i] : static_cast<World>(values[i]));
   }
 }
 
@@ -59,61 +96,22 @@ void write_masses(const mjModel& world_model, std::span<const float> masses, mjM
 const char* live_field_name(LiveFieldId field) { return row(field).name; }
 
 int live_field_size(const mjModel& model, LiveFieldId field) {
-  switch (field) {
-    case LiveFieldId::kGravity:
-    case LiveFieldId::kWind:
-      return 3;
-    case LiveFieldId::kBodyMass:
-      return static_cast<int>(model.nbody);
-    case LiveFieldId::kGeomFriction:
-      return static_cast<int>(3 * model.ngeom);
-    case LiveFieldId::kHeightField:
-      return static_cast<int>(model.nhfielddata);
-    case LiveFieldId::kLightDiffuse:
-      return static_cast<int>(3 * model.nlight);
-    case LiveFieldId::kLightIntensity:
-    case LiveFieldId::kLightActive:
-      return static_cast<int>(model.nlight);
-    case LiveFieldId::kMaterialColor:
-      return static_cast<int>(4 * model.nmat);
-    case LiveFieldId::kMaterialEmission:
-      return static_cast<int>(model.nmat);
-  }
-  return 0;
+  return visit_field(model, field, [](const auto*, mjtSize n) { return static_cast<int>(n); });
 }
 
 std::vector<float> read_live_field(const mjModel& model, LiveFieldId field) {
-  const int n = live_field_size(model, field);
-  switch (field) {
-    case LiveFieldId::kGravity:
-      return to_floats(model.opt.gravity, n);
-    case LiveFieldId::kWind:
-      return to_floats(model.opt.wind, n);
-    case LiveFieldId::kBodyMass:
-      return to_floats(model.body_mass, n);
-    case LiveFieldId::kGeomFriction:
-      return to_floats(model.geom_friction, n);
-    case LiveFieldId::kHeightField:
-      return to_floats(model.hfield_data, n);
-    case LiveFieldId::kLightDiffuse:
-      return to_floats(model.light_diffuse, n);
-    case LiveFieldId::kLightIntensity:
-      return to_floats(model.light_intensity, n);
-    case LiveFieldId::kLightActive:
-      return to_floats(model.light_active, n);
-    case LiveFieldId::kMaterialColor:
-      return to_floats(model.mat_rgba, n);
-    case LiveFieldId::kMaterialEmission:
-      return to_floats(model.mat_emission, n);
-  }
-  return {};
+  std::vector<float> values;
+  live_field_at(model, nullptr, field, &values);
+  return values;
 }
 
-std::vector<float> live_field_at(const mjModel& model, const LiveFields* live, LiveFieldId field) {
+void live_field_at(const mjModel& model, const LiveFields* live, LiveFieldId field,
+                   std::vector<float>* values) {
   if (live != nullptr && !live->values[static_cast<size_t>(field)].empty()) {
-    return live->values[static_cast<size_t>(field)];
+    *values = live->values[static_cast<size_t>(field)];
+    return;
   }
-  return read_live_field(model, field);
+  visit_field(model, field, [&](const auto* from, mjtSize n) { values->assign(from, from + n); });
 }
 
 Status check_live_field(const mjModel& model, const SetLiveField& change) {
@@ -147,7 +145,7 @@ Status check_live_field(const mjModel& model, const SetLiveField& change) {
 
 std::shared_ptr<const LiveFields> change_live_field(const mjModel& world_model,
                                                     const LiveFields* current,
-                                                    const SetLiveField& change) {
+                                                    const SetLiveField& change, uint64_t serial) {
   auto next =
       current != nullptr ? std::make_shared<LiveFields>(*current) : std::make_shared<LiveFields>();
   next->values.resize(kLiveFieldCount);
@@ -155,7 +153,8 @@ std::shared_ptr<const LiveFields> change_live_field(const mjModel& world_model,
   if (values.empty()) values = read_live_field(world_model, change.field);
   std::copy(change.values.begin(), change.values.end(), values.begin() + change.first);
   ++next->version;
-  if (change.field == LiveFieldId::kHeightField) ++next->height_field_version;
+  next->serial = serial;
+  if (change.field == LiveFieldId::kHeightField) next->height_field_serial = serial;
   return next;
 }
 
@@ -173,39 +172,13 @@ Status write_live_field(const mjModel& world_model, LiveFieldId field,
                         std::span<const float> values, mjModel& model, mjData* scratch) {
   GLOAM_CHECK(static_cast<int>(values.size()) == live_field_size(model, field),
               "a live field is written whole");
-  switch (field) {
-    case LiveFieldId::kGravity:
-      from_floats(values, world_model.opt.gravity, model.opt.gravity);
-      break;
-    case LiveFieldId::kWind:
-      from_floats(values, world_model.opt.wind, model.opt.wind);
-      break;
-    case LiveFieldId::kBodyMass:
-      write_masses(world_model, values, model);
-      return guarded([&] { mj_setConst(&model, scratch); });
-    case LiveFieldId::kGeomFriction:
-      from_floats(values, world_model.geom_friction, model.geom_friction);
-      break;
-    case LiveFieldId::kHeightField:
-      from_floats(values, world_model.hfield_data, model.hfield_data);
-      break;
-    case LiveFieldId::kLightDiffuse:
-      from_floats(values, world_model.light_diffuse, model.light_diffuse);
-      break;
-    case LiveFieldId::kLightIntensity:
-      from_floats(values, world_model.light_intensity, model.light_intensity);
-      break;
-    case LiveFieldId::kLightActive:
-      std::transform(values.begin(), values.end(), model.light_active,
-                     [](float v) { return static_cast<mjtBool>(v != 0); });
-      break;
-    case LiveFieldId::kMaterialColor:
-      from_floats(values, world_model.mat_rgba, model.mat_rgba);
-      break;
-    case LiveFieldId::kMaterialEmission:
-      from_floats(values, world_model.mat_emission, model.mat_emission);
-      break;
+  if (field == LiveFieldId::kBodyMass) {
+    write_masses(world_model, values, model);
+    return guarded([&] { mj_setConst(&model, scratch); });
   }
+  visit_field(world_model, field, [&](const auto* world, mjtSize) {
+    visit_field(model, field, [&](auto* target, mjtSize) { from_floats(values, world, target); });
+  });
   return {};
 }
 

@@ -12,8 +12,6 @@
 
 namespace gloam {
 
-inline constexpr int kLiveFieldCount = static_cast<int>(LiveFieldId::kMaterialEmission) + 1;
-
 /// "gravity", "body_mass" …
 const char* live_field_name(LiveFieldId field);
 /// Number of values of a field.
@@ -21,16 +19,17 @@ int live_field_size(const mjModel& model, LiveFieldId field);
 /// The field as it stands in a model.
 std::vector<float> read_live_field(const mjModel& model, LiveFieldId field);
 /// The field at an instant: from `live` where it was changed, else from the World's model.
-std::vector<float> live_field_at(const mjModel& model, const LiveFields* live, LiveFieldId field);
+void live_field_at(const mjModel& model, const LiveFields* live, LiveFieldId field,
+                   std::vector<float>* values);
 
 /// Refuses a range outside the field and values that physics or light cannot take.
 Status check_live_field(const mjModel& model, const SetLiveField& change);
 
-/// `current` (null = nothing changed yet) with one more change. `change` has passed
-/// check_live_field.
+/// `current` (null = nothing changed yet) with one more change, the `serial`-th of its simulation.
+/// `change` has passed check_live_field.
 std::shared_ptr<const LiveFields> change_live_field(const mjModel& world_model,
                                                     const LiveFields* current,
-                                                    const SetLiveField& change);
+                                                    const SetLiveField& change, uint64_t serial);
 
 /// Hash of the version number and of all changed values.
 uint64_t live_fields_digest(const LiveFields& live);

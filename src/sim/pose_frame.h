@@ -19,15 +19,19 @@ struct PoseFrame {
   std::vector<double> light_dir;  ///< unit, world, (n_world x nlight x 3)
   std::vector<float> vertices;    ///< deformables' vertices, world [m], (n_world x nvertex x 3)
 
-  // Live fields as they were at this instant; `live_version` changes when any of them does.
-  uint64_t live_version = 0;
+  // Live fields as they were at this instant. Of one simulation, equal `live_serial`s mean equal
+  // fields; 0 = all as in the World's model.
+  uint64_t live_serial = 0;
   std::vector<float> light_diffuse;      ///< (n_world x nlight x 3)
   std::vector<float> light_intensity;    ///< (n_world x nlight) [cd]
   std::vector<uint8_t> light_active;     ///< (n_world x nlight)
+  std::vector<float> geom_rgba;          ///< (n_world x ngeom x 4)
   std::vector<float> material_rgba;      ///< (n_world x nmat x 4)
-  std::vector<float> material_emission;  ///< (n_world x nmat)
-  uint64_t height_field_version = 0;
-  std::vector<float> height_field;  ///< (n_world x nhfielddata) 0..1; empty unless it ever changed
+  std::vector<float> material_emission;  ///< (n_world x nmat); likewise below
+  std::vector<float> material_specular, material_shininess, material_reflectance;
+  std::vector<float> material_metallic, material_roughness;  ///< -1 = not given
+  uint64_t height_field_serial = 0;  ///< of their last change, 0 = as in the World's model
+  std::vector<float> height_field;   ///< (n_world x nhfielddata) 0..1; empty while that is 0
 };
 
 }  // namespace gloam

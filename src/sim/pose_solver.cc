@@ -70,11 +70,13 @@ Status PoseSolver::solve(const Snapshot& snapshot, PoseFrame& frame) {
     mj_comPos(model, data);
     mj_camlight(model, data);
     if (model->nflex > 0) mj_flex(model, data);
+    if (layout_.has_tendons) mj_tendon(model, data);
   }));
   frame.n_world = 1;
   frame.step = in.step;
   frame.time = in.time;
   fill_poses(frame);
+  fill_vertices(in.live.get(), frame);
   fill_live(in.live.get(), frame);
   return {};
 }
@@ -88,6 +90,11 @@ void PoseSolver::fill_poses(PoseFrame& frame) const {
   assign(d.cam_xmat, 9 * m.ncam, frame.camera_R);
   assign(d.light_xpos, 3 * m.nlight, frame.light_p);
   assign(d.light_xdir, 3 * m.nlight, frame.light_dir);
+}
+
+void PoseSolver::fill_vertices(const LiveFields* live, PoseFrame& frame) {
+  const mjModel& m = model();
+  const mjData& d = *data_;
   frame.vertices.resize(static_cast<size_t>(3 * layout_.nvertex));
   for (int skin = 0; skin < m.nskin; ++skin) {
     skin_vertices(m, skin, d.xpos, d.xquat,
@@ -96,24 +103,33 @@ void PoseSolver::fill_poses(PoseFrame& frame) const {
   std::transform(d.flexvert_xpos, d.flexvert_xpos + 3 * m.nflexvert,
                  frame.vertices.begin() + 3 * m.nskinvert,
                  [](mjtNum x) { return static_cast<float>(x); });
+  live_field_at(m, live, LiveFieldId::kGravity, &gravity_);
+  const double gravity[3] = {gravity_[0], gravity_[1], gravity_[2]};
+  place_capsules(m, d, gravity, layout_, frame.vertices.data());
 }
 
 void PoseSolver::fill_live(const LiveFields* live, PoseFrame& frame) {
   const mjModel& m = *world_->model;
-  frame.live_version = live != nullptr ? live->version : 0;
-  frame.light_diffuse = live_field_at(m, live, LiveFieldId::kLightDiffuse);
-  frame.light_intensity = live_field_at(m, live, LiveFieldId::kLightIntensity);
-  const std::vector<float> active = live_field_at(m, live, LiveFieldId::kLightActive);
-  frame.light_active.resize(active.size());
-  std::transform(active.begin(), active.end(), frame.light_active.begin(),
+  frame.live_serial = live != nullptr ? live->serial : 0;
+  live_field_at(m, live, LiveFieldId::kLightDiffuse, &frame.light_diffuse);
+  live_field_at(m, live, LiveFieldId::kLightIntensity, &frame.light_intensity);
+  live_field_at(m, live, LiveFieldId::kLightActive, &active_);
+  frame.light_active.resize(active_.size());
+  std::transform(active_.begin(), active_.end(), frame.light_active.begin(),
                  [](float v) { return static_cast<uint8_t>(v != 0); });
-  frame.material_rgba = live_field_at(m, live, LiveFieldId::kMaterialColor);
-  frame.material_emission = live_field_at(m, live, LiveFieldId::kMaterialEmission);
-  const uint64_t height_field = live != nullptr ? live->height_field_version : 0;
-  if (height_field == frame.height_field_version) return;
-  frame.height_field_version = height_field;
-  frame.height_field =
-      height_field == 0 ? std::vector<float>() : live_field_at(m, live, LiveFieldId::kHeightField);
+  live_field_at(m, live, LiveFieldId::kGeomColor, &frame.geom_rgba);
+  live_field_at(m, live, LiveFieldId::kMaterialColor, &frame.material_rgba);
+  live_field_at(m, live, LiveFieldId::kMaterialEmission, &frame.material_emission);
+  live_field_at(m, live, LiveFieldId::kMaterialSpecular, &frame.material_specular);
+  live_field_at(m, live, LiveFieldId::kMaterialShininess, &frame.material_shininess);
+  live_field_at(m, live, LiveFieldId::kMaterialReflectance, &frame.material_reflectance);
+  live_field_at(m, live, LiveFieldId::kMaterialMetallic, &frame.material_metallic);
+  live_field_at(m, live, LiveFieldId::kMaterialRoughness, &frame.material_roughness);
+  const uint64_t height_field = live != nullptr ? live->height_field_serial : 0;
+  if (height_field == frame.height_field_serial) return;
+  frame.height_field_serial = height_field;
+  frame.height_field.clear();
+  if (height_field != 0) live_field_at(m, live, LiveFieldId::kHeightField, &frame.height_field);
 }
 
 }  // namespace gloam

@@ -24,14 +24,15 @@ class PoseSolver {
   Status follow_live_fields(const std::shared_ptr<const LiveFields>& live);
   Status own_the_model();
   void fill_poses(PoseFrame& frame) const;
+  void fill_vertices(const LiveFields* live, PoseFrame& frame);
   void fill_live(const LiveFields* live, PoseFrame& frame);
 
   std::shared_ptr<const CompiledWorld> world_;
   ModelPtr own_model_;  // only where the World's own will not do: other masses, or sleep
   DataPtr data_, scratch_;
   DeformableLayout layout_;
-  std::shared_ptr<const LiveFields> live_;  // what own_model_ and the last frame follow
-  std::vector<float> masses_;               // in own_model_; empty = the World's
+  std::vector<float> masses_;            // in own_model_; empty = the World's
+  std::vector<float> gravity_, active_;  // room to read live fields into
 };
 
 }  // namespace gloam

@@ -12,8 +12,9 @@ namespace gloam {
 /// Private copies of the model fields that have been changed by Command. Shared and immutable: a
 /// change makes a new one.
 struct LiveFields {
-  uint64_t version = 0;
-  uint64_t height_field_version = 0;
+  uint64_t version = 0;  ///< changes since reset
+  uint64_t serial = 0;   ///< changes since the simulation was made, so that no two have the same
+  uint64_t height_field_serial = 0;        ///< of the last change of the height fields, 0 = none
   std::vector<std::vector<float>> values;  ///< by LiveFieldId; empty = as in the World's model
 };
 

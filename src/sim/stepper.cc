@@ -108,7 +108,7 @@ void Stepper::change_live(const SetLiveField& change) {
     scratch_.reset(scratch);
   }
   if (live_ == nullptr && !own_the_arrays()) return;
-  live_ = change_live_field(*world_->model, live_.get(), change);
+  live_ = change_live_field(*world_->model, live_.get(), change, ++live_changes_);
   const uint64_t digest = live_fields_digest(*live_);
   hash_ = hash_bytes(&digest, sizeof(digest), hash_);
   const Status written =

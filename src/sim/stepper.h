@@ -73,6 +73,7 @@ class Stepper {
   DataPtr scratch_;     // for mj_setConst; made on first use
   std::unique_ptr<AppliedInputs> inputs_;
   std::shared_ptr<const LiveFields> live_;
+  uint64_t live_changes_ = 0;  // since creation
   std::shared_ptr<SnapshotPool> pool_;
 
   int64_t step_ = 0;

@@ -271,6 +271,8 @@ Status Driver::open_camera(const std::string& name) {
                         .width = options_.width,
                         .height = options_.height,
                         .render = options_.render};
+  // From the first picture on where its user left it.
+  if (name == kFreeCamera && orbit_) request.X_WC = orbit_->pose();
   last_attempt_ = Clock::now();
   auto opened = simulation_.open_camera(
       request, [this](std::shared_ptr<const CameraFrame> frame) { publisher_.offer(frame); });
@@ -282,7 +284,6 @@ Status Driver::open_camera(const std::string& name) {
   if (!opened.ok()) return std::move(opened).error();
   stream_ = std::move(opened).value();
   camera_ = name;
-  if (camera_ == kFreeCamera && orbit_) stream_->set_pose(orbit_->pose());
   picture_is_old_ = true;
   last_frame_ = Clock::now();
   return {};

@@ -11,10 +11,6 @@ namespace gloam::studio {
 
 inline constexpr size_t kPictureHeaderSize = 120;
 
-/// Baseline JPEG of 8-bit sRGB. Errors: the vector does not have the size of the picture, a side is
-/// longer than 65500 px.
-Result<std::string> encode_jpeg(const std::vector<uint8_t>& rgb, int width, int height);
-
 /// Header and JPEG of one frame. `sequence` counts the frames that came from the renderer, so that
 /// gaps tell a client what it has not been sent; `camera` is a row of the hello message's list.
 Result<std::string> encode_picture(const CameraFrame& frame, uint64_t sequence, uint32_t camera);

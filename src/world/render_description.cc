@@ -55,7 +55,7 @@ TriangleMesh convert_mesh(const mjModel& m, int i) {
 class GeomImporter {
  public:
   GeomImporter(const mjModel& model, bool live, RenderDescription* out)
-      : model_(model), materials_(model, live, out), out_(out) {}
+      : model_(model), live_(live), materials_(model, live, out), out_(out) {}
 
   /// The geom's shape, material and flags; nothing when it cannot be seen.
   std::optional<InstanceDescription> instance(int geom);
@@ -69,6 +69,7 @@ class GeomImporter {
     int asset = 0, row = 0, height_field = -1;
   };
   const mjModel& model_;
+  const bool live_;
   MaterialTable materials_;
   RenderDescription* out_;
   std::map<std::pair<int, bool>, int> mesh_rows_;
@@ -101,7 +102,8 @@ int GeomImporter::mesh_row(int asset, bool is_height_field) {
 std::optional<InstanceDescription> GeomImporter::instance(int g) {
   const mjModel& m = model_;
   const float* rgba = m.geom_rgba + 4 * g;
-  if (drawn_rgba(m, m.geom_matid[g], rgba)[3] == 0) return std::nullopt;
+  // What is fully transparent may be made visible by a Command, but only in the simulated model.
+  if (!live_ && drawn_rgba(m, m.geom_matid[g], rgba)[3] == 0) return std::nullopt;
   InstanceDescription instance;
   const mjtNum* size = m.geom_size + 3 * g;
   instance.size = {static_cast<float>(size[0]), static_cast<float>(size[1]),
@@ -150,6 +152,7 @@ std::optional<InstanceDescription> GeomImporter::instance(int g) {
   }
   instance.material = materials_.row(m.geom_matid[g], rgba, instance.shape);
   instance.group = m.geom_group[g];
+  instance.geom = live_ ? g : -1;
   instance.casts_shadow = m.geom_castshadow[g] != 0;
   instance.X_BG = rigid_pose(m.geom_pos + 3 * g, m.geom_quat + 4 * g);
   return instance;
@@ -178,6 +181,34 @@ std::vector<bool> static_bodies(const mjModel& m) {
   return is_static;
 }
 
+/// Robots collide with simpler shapes than they show. In MJCF those are in the groups 3 and up,
+/// which MuJoCo hides; in a URDF they are the geoms of the model, and the visuals, where a link has
+/// some, are `instances` from `first_visual` on. Something that moves on joints and has nothing to
+/// show shows what it collides with.
+void choose_what_is_shown(const mjModel& m, const CompiledWorld& world, size_t first_visual,
+                          std::vector<InstanceDescription>* instances) {
+  const auto body_of = [&](size_t i) { return static_cast<size_t>((*instances)[i].body); };
+  const auto root_of = [&](size_t i) { return static_cast<size_t>(m.body_rootid[body_of(i)]); };
+  std::vector<bool> has_visuals(static_cast<size_t>(m.nbody)), root_shows(has_visuals);
+  for (size_t i = first_visual; i < instances->size(); ++i) {
+    // The world's own geoms are the scene's, unless the robot stands alone.
+    if (body_of(i) > 0 || !world.scene.bare_model.empty()) has_visuals[body_of(i)] = true;
+    root_shows[root_of(i)] = true;
+  }
+  constexpr int kFirstHiddenGroup = 3;
+  for (size_t i = 0; i < first_visual; ++i) {
+    InstanceDescription& instance = (*instances)[i];
+    instance.shown = instance.group < kFirstHiddenGroup && !has_visuals[body_of(i)];
+    if (instance.shown) root_shows[root_of(i)] = true;
+  }
+  std::vector<bool> root_moves(static_cast<size_t>(m.nbody));
+  for (int body = 1; body < m.nbody; ++body) {
+    if (m.body_jntnum[body] > 0) root_moves[static_cast<size_t>(m.body_rootid[body])] = true;
+  }
+  for (size_t i = 0; i < first_visual; ++i)
+    if (root_moves[root_of(i)] && !root_shows[root_of(i)]) (*instances)[i].shown = true;
+}
+
 }  // namespace
 
 Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
@@ -203,6 +234,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     if (auto instance = simulated.instance(g))
       add(std::move(*instance), m.geom_bodyid[g], name_of(m, mjOBJ_GEOM, g), mjOBJ_GEOM, g);
 
+  const size_t first_visual = out.instances.size();
   std::optional<GeomImporter> visual;
   if (world.visual_model != nullptr) {
     visual.emplace(*world.visual_model, false, &out);
@@ -219,6 +251,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     }
   }
 
+  choose_what_is_shown(m, world, first_visual, &out.instances);
   describe_deformables(m, poses, &simulated.materials(), &labels, &out);
   describe_cameras(m, &out);
   const LightLevels levels = describe_light(m, poses, &simulated.materials(), &out);
@@ -226,9 +259,6 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     light.is_static = light.light >= 0 && m.light_mode[light.light] == mjCAMLIGHT_FIXED &&
                       is_static[static_cast<size_t>(m.light_bodyid[light.light])];
   }
-  for (int i = 0; i < static_cast<int>(m.ntendon); ++i)
-    out.unsupported.push_back({ErrorKind::kUnsupported, fmt::format("tendon '{}' is not drawn",
-                                                                    name_of(m, mjOBJ_TENDON, i))});
   if (labels.overflowed())
     out.unsupported.push_back(
         {ErrorKind::kUnsupported, "there are more than 65535 objects; the last share one label"});

@@ -42,8 +42,11 @@ struct MaterialDescription {
   bool texture_uniform = false;  ///< MuJoCo's texuniform: repeats per metre, not per object
   Vec2f texture_repeat{1, 1};
   MaterialTextures textures;
-  int model_material = -1;  ///< row of PoseFrame::material_rgba and material_emission, -1 = none
-  bool own_color = false;   ///< its colour is the geom's: material_rgba does not apply
+  // What set_look() (world/visual_rules.h) makes the values above from when they change live.
+  int model_material = -1;      ///< row of PoseFrame::material_rgba and its kin, -1 = none
+  std::array<float, 4> rgba{};  ///< display colour and opacity as in the model
+  bool own_color = false;       ///< that is the geom's: material_rgba does not apply
+  bool can_mirror = false;      ///< reflectance counts: of planes and boxes
 };
 
 struct TextureDescription {
@@ -63,7 +66,9 @@ struct InstanceDescription {
   int material = 0;
   bool is_static = false;  ///< never moves: its body is welded to the world
   bool casts_shadow = true;
-  int group = 0;  ///< MuJoCo's geom group; groups 3..5 are not drawn by default
+  int group = 0;      ///< MuJoCo's
+  bool shown = true;  ///< false: a collision shape that something else is drawn for
+  int geom = -1;      ///< row of PoseFrame::geom_rgba, -1 = its colour never changes
   LabelRow label;
 };
 
@@ -99,6 +104,8 @@ struct LightDescription {
   float softness = 0;      ///< spot: share of the cone over which it fades
   float legacy_scale = 0;  ///< what PoseFrame::light_diffuse is multiplied by to give `intensity`
                            ///< while the light has no intensity in cd (docs/light.md)
+  Vec3f ambient{0, 0, 0};  ///< MuJoCo's; a part of SkyDescription::ambient while it is active, the
+                           ///< headlight's always
   bool is_static = false;  ///< never moves: fixed to a body that is welded to the world
   int light = -1;  ///< row of PoseFrame's light poses; -1 = headlight: sits at the camera, shines
                    ///< along its axis

@@ -6,6 +6,9 @@
 #include <array>
 #include <map>
 
+#include "world/capsule_mesh.h"
+#include "world/deformable_layout.h"
+#include "world/tendon_path.h"
 #include "world/visual_pose.h"
 
 namespace gloam {
@@ -24,12 +27,28 @@ void add_instance(RenderDescription* out, TriangleMesh rest, int first_vertex, i
   instance.size = {1, 1, 1};
   instance.material = material;
   instance.group = group;
+  instance.shown = group < 3;
   label.material = out->materials[static_cast<size_t>(material)].name;
   label.part = static_cast<uint32_t>(out->instances.size()) + 1;
   instance.label = std::move(label);
   out->deformables.push_back({std::move(rest), first_vertex});
   out->instances.push_back(std::move(instance));
 }
+
+/// Cables and tendons at qpos0.
+struct Capsules {
+  DeformableLayout layout;
+  std::vector<float> vertices;  // as PoseFrame::vertices
+
+  TriangleMesh chain(int first_vertex, int count) const {
+    TriangleMesh mesh;
+    const float* v = vertices.data() + 3 * first_vertex;
+    for (int i = 0; i < count * kCapsuleVertices; ++i, v += 3)
+      mesh.positions.push_back({v[0], v[1], v[2]});
+    append_capsule_triangles(count, &mesh.indices);
+    return mesh;
+  }
+};
 
 /// Linear blend skinning at qpos0, as MuJoCo skins at every instant.
 std::vector<Vec3f> skin_vertices(const mjModel& m, int skin, const std::vector<Affine3f>& poses) {
@@ -106,15 +125,57 @@ bool flex_uvs(const mjModel& m, int flex, std::vector<Vec2f>* uvs) {
   return unique;
 }
 
+/// A flex of a robot belongs to it; any other is an object of its own.
+LabelRow flex_label(const mjModel& m, int i, LabelTable* labels) {
+  const int vertex_body = m.flex_interp[i] != 0 ? m.flex_nodebodyid[m.flex_nodeadr[i]]
+                                                : m.flex_vertbodyid[m.flex_vertadr[i]];
+  const int body = vertex_body > 0 && labels->is_robot(vertex_body) ? vertex_body : 0;
+  LabelRow label = labels->label(body, name_of(m, mjOBJ_FLEX, i), mjOBJ_FLEX, i);
+  label.geom = name_of(m, mjOBJ_FLEX, i);
+  return label;
+}
+
+/// A dimension of one has no surface: its elements are capsules, as MuJoCo draws them.
+void describe_cable(const mjModel& m, int i, const Capsules& capsules, MaterialTable* materials,
+                    LabelTable* labels, RenderDescription* out) {
+  const int first = capsules.layout.cable_first[static_cast<size_t>(i)];
+  // Elements of one material follow each other, or are drawn as several things.
+  for (int begin = 0, end = 0; begin < m.flex_elemnum[i]; begin = end) {
+    const int* matid = m.flex_matid + m.flex_elemadr[i];
+    while (end < m.flex_elemnum[i] && matid[end] == matid[begin]) ++end;
+    if (drawn_rgba(m, matid[begin], m.flex_rgba + 4 * i)[3] == 0) continue;
+    const int vertex = first + begin * kCapsuleVertices;
+    add_instance(out, capsules.chain(vertex, end - begin), vertex,
+                 materials->row(matid[begin], m.flex_rgba + 4 * i, ShapeType::kDeformable, false),
+                 m.flex_group[i], flex_label(m, i, labels));
+  }
+}
+
+void describe_tendon(const mjModel& m, int i, const Capsules& capsules, MaterialTable* materials,
+                     LabelTable* labels, RenderDescription* out) {
+  const int first = capsules.layout.tendon_first[static_cast<size_t>(i)];
+  const float* rgba = m.tendon_rgba + 4 * i;
+  if (first < 0 || drawn_rgba(m, m.tendon_matid[i], rgba)[3] == 0) return;
+  // A tendon belongs to the robot that its path begins on; any other is an object of its own.
+  int body = 0;
+  for (int k = m.tendon_adr[i]; k < m.tendon_adr[i] + m.tendon_num[i] && body == 0; ++k) {
+    const int on = m.wrap_type[k] == mjWRAP_SITE     ? m.site_bodyid[m.wrap_objid[k]]
+                   : m.wrap_type[k] == mjWRAP_PULLEY ? 0
+                                                     : m.geom_bodyid[m.wrap_objid[k]];
+    if (on > 0 && labels->is_robot(on)) body = on;
+  }
+  const std::string name = name_of(m, mjOBJ_TENDON, i);
+  LabelRow label = labels->label(body, name, mjOBJ_TENDON, i);
+  label.geom = name;
+  add_instance(out, capsules.chain(first, tendon_segments(m, i)), first,
+               materials->row(m.tendon_matid[i], rgba, ShapeType::kDeformable, false),
+               m.tendon_group[i], std::move(label));
+}
+
 void describe_flex(const mjModel& m, int i, const mjtNum* vertices_W, MaterialTable* materials,
                    LabelTable* labels, RenderDescription* out) {
   const int dim = m.flex_dim[i];
   const std::string name = name_of(m, mjOBJ_FLEX, i);
-  if (dim == 1) {
-    out->unsupported.push_back(
-        {ErrorKind::kUnsupported, fmt::format("flex '{}' is a cable and is not drawn", name)});
-    return;
-  }
   // Triangles by material: the elements themselves, or the shell of a solid.
   std::map<int, std::vector<uint32_t>> triangles;
   const auto material_of = [&](int element) { return m.flex_matid[m.flex_elemadr[i] + element]; };
@@ -148,20 +209,14 @@ void describe_flex(const mjModel& m, int i, const mjtNum* vertices_W, MaterialTa
         {ErrorKind::kUnsupported,
          fmt::format("flex '{}' has texture seams, which are drawn smeared", name)});
 
-  // A flex of a robot belongs to it; any other is an object of its own.
-  const int vertex_body = m.flex_interp[i] != 0 ? m.flex_nodebodyid[m.flex_nodeadr[i]]
-                                                : m.flex_vertbodyid[m.flex_vertadr[i]];
-  const int body = vertex_body > 0 && labels->is_robot(vertex_body) ? vertex_body : 0;
   for (auto& [matid, indices] : triangles) {
     const float* rgba = m.flex_rgba + 4 * i;
     if (drawn_rgba(m, matid, rgba)[3] == 0) continue;
     TriangleMesh mesh = rest;
     mesh.indices = std::move(indices);
-    LabelRow label = labels->label(body, name, mjOBJ_FLEX, i);
-    label.geom = name;
     add_instance(out, std::move(mesh), static_cast<int>(m.nskinvert) + m.flex_vertadr[i],
                  materials->row(matid, rgba, ShapeType::kDeformable, has_uv), m.flex_group[i],
-                 std::move(label));
+                 flex_label(m, i, labels));
   }
 }
 
@@ -171,14 +226,24 @@ void describe_deformables(const mjModel& model, const std::vector<Affine3f>& pos
                           MaterialTable* materials, LabelTable* labels, RenderDescription* out) {
   for (int i = 0; i < static_cast<int>(model.nskin); ++i)
     describe_skin(model, i, poses, materials, labels, out);
-  if (model.nflex == 0) return;
+  const DeformableLayout layout = deformable_layout(model);
+  if (model.nflex == 0 && !layout.has_tendons) return;
   // MuJoCo knows how interpolated flexes place their vertices.
   const std::unique_ptr<mjData, void (*)(mjData*)> data{mj_makeData(&model), mj_deleteData};
   mj_kinematics(&model, data.get());
   mj_comPos(&model, data.get());
   mj_flex(&model, data.get());
-  for (int i = 0; i < static_cast<int>(model.nflex); ++i)
-    describe_flex(model, i, data->flexvert_xpos, materials, labels, out);
+  if (layout.has_tendons) mj_tendon(&model, data.get());
+  Capsules capsules{layout, std::vector<float>(static_cast<size_t>(3 * layout.nvertex))};
+  place_capsules(model, *data, model.opt.gravity, layout, capsules.vertices.data());
+  for (int i = 0; i < static_cast<int>(model.nflex); ++i) {
+    if (model.flex_dim[i] == 1)
+      describe_cable(model, i, capsules, materials, labels, out);
+    else
+      describe_flex(model, i, data->flexvert_xpos, materials, labels, out);
+  }
+  for (int i = 0; i < static_cast<int>(model.ntendon); ++i)
+    describe_tendon(model, i, capsules, materials, labels, out);
 }
 
 }  // namespace gloam

@@ -1,5 +1,5 @@
 #pragma once
-// Skins and flexes: meshes whose vertices move every instant.
+// Skins, flexes and spatial tendons: meshes whose vertices move every instant.
 
 #include <mujoco/mujoco.h>
 
@@ -12,9 +12,8 @@
 
 namespace gloam {
 
-/// Adds a deformable and an instance for every skin and every material of every flex. Vertices of
-/// PoseFrame: those of all skins, then those of all flexes, in the model's order. Flexes of
-/// dimension 1 (cables) have no surface and are listed in `unsupported`. `poses` = X_WB at qpos0.
+/// Adds a deformable and an instance for every skin, every material of every flex and every tendon
+/// with a path; their vertices in PoseFrame: world/deformable_layout.h. `poses` = X_WB at qpos0.
 void describe_deformables(const mjModel& model, const std::vector<Affine3f>& poses,
                           MaterialTable* materials, LabelTable* labels, RenderDescription* out);
 

@@ -40,6 +40,7 @@ LightDescription model_light(const mjModel& m, int i, float distance) {
       light.cos_cutoff = std::cos(cutoff);
       light.softness = clamp(m.light_softness[i], 0, 1);
   }
+  light.ambient = vec3(m.light_ambient + 3 * i);
   light.legacy_scale = legacy_light_scale(light.type, distance, vec3(m.light_attenuation + 3 * i));
   const float candela = m.light_intensity[i];
   if (candela <= 0 && light.type == LightType::kSpot)
@@ -87,7 +88,7 @@ LightLevels describe_light(const mjModel& model, const std::vector<Affine3f>& po
     out->lights.push_back(model_light(model, i, distance));
     const LightDescription& light = out->lights.back();
     if (!light.active) continue;
-    ambient += vec3(model.light_ambient + 3 * i);
+    ambient += light.ambient;
     levels.photometric = levels.photometric || model.light_intensity[i] > 0;
     const float lux = luminance(light.intensity);
     levels.illuminance.push_back(light.type == LightType::kDirectional ? lux : lux / sqr(distance));
@@ -104,7 +105,8 @@ LightLevels describe_light(const mjModel& model, const std::vector<Affine3f>& po
   head.active = headlight.active == kAuto ? !levels.photometric : headlight.active != 0;
   head.legacy_scale = legacy_light_scale(LightType::kDirectional, 0, {1, 0, 0});
   head.intensity = light_intensity(vec3(headlight.diffuse), 0, head.legacy_scale);
-  if (headlight.active != 0) ambient += vec3(headlight.ambient);
+  if (headlight.active != 0) head.ambient = vec3(headlight.ambient);
+  ambient += head.ambient;
   if (head.active) levels.illuminance.push_back(luminance(head.intensity));
   out->lights.push_back(head);
 

@@ -13,11 +13,6 @@
 namespace gloam {
 namespace {
 
-/// Geoms, skins and flexes without a colour of their own have this one.
-bool is_default_rgba(const float* rgba) {
-  return rgba[0] == 0.5f && rgba[1] == 0.5f && rgba[2] == 0.5f && rgba[3] == 1.0f;
-}
-
 std::string name_of(const mjModel& model, mjtObj type, int id) {
   const char* name = id >= 0 ? mj_id2name(&model, type, id) : nullptr;
   return name != nullptr ? name : "";
@@ -86,68 +81,49 @@ int MaterialTable::layer(int matid, mjtTextureRole role, MaterialDescription* ma
 }
 
 int MaterialTable::row(int matid, const float* rgba, ShapeType shape, bool textured) {
-  const bool reflects = matid >= 0 && model_.mat_reflectance[matid] > 0 &&
-                        (shape == ShapeType::kPlane || shape == ShapeType::kBox);
-  const bool own_color = drawn_rgba(model_, matid, rgba) == rgba;
+  const bool can_mirror = matid >= 0 && (shape == ShapeType::kPlane || shape == ShapeType::kBox);
   const float* color = drawn_rgba(model_, matid, rgba);
-  std::array<float, 4> key_color{};
-  if (own_color) std::copy_n(color, 4, key_color.begin());
-  const auto [entry, added] = rows_.try_emplace({matid, key_color, reflects, textured},
+  const bool own_color = color == rgba;
+  ModelSurface surface;
+  std::copy_n(color, 4, surface.rgba.begin());
+  const auto key_color = own_color ? surface.rgba : std::array<float, 4>{};
+  const auto [entry, added] = rows_.try_emplace({matid, key_color, can_mirror, textured},
                                                 static_cast<int>(out_->materials.size()));
   if (!added) return entry->second;
 
   MaterialDescription material;
-  material.base_color = linear_color({color[0], color[1], color[2]});
-  material.opacity = clamp(color[3], 0, 1);
   material.own_color = own_color;
-  float specular = 0.5f, shininess = 0.5f;  // MuJoCo's defaults, also of geoms without a material
+  material.can_mirror = can_mirror;
   if (matid >= 0) {
     material.name = name_of(model_, mjOBJ_MATERIAL, matid);
     material.model_material = live_ ? matid : -1;
-    specular = model_.mat_specular[matid];
-    shininess = model_.mat_shininess[matid];
-  }
-  material.specular_weight = clamp(2 * specular, 0, 1);
-  material.roughness = roughness_of_shininess(shininess);
-  if (reflects) {
-    const float f0 = clamp(model_.mat_reflectance[matid], 0.04f, 0.9f);
-    material.ior = (1 + std::sqrt(f0)) / (1 - std::sqrt(f0));
-    material.specular_weight = 1;
-    material.roughness = min(material.roughness, 0.1f);
-  }
-  if (matid >= 0) {
-    MaterialTextures& textures = material.textures;
-    if (textured) {
-      textures.base_color = layer(matid, mjTEXROLE_RGBA, &material);
-      if (textures.base_color < 0) textures.base_color = layer(matid, mjTEXROLE_RGB, &material);
-      textures.roughness = layer(matid, mjTEXROLE_ROUGHNESS, &material);
-      textures.metallic = layer(matid, mjTEXROLE_METALLIC, &material);
-      textures.occlusion = layer(matid, mjTEXROLE_OCCLUSION, &material);
-      textures.orm = layer(matid, mjTEXROLE_ORM, &material);
-      textures.normal = layer(matid, mjTEXROLE_NORMAL, &material);
-      textures.opacity = layer(matid, mjTEXROLE_OPACITY, &material);
-      textures.emission = layer(matid, mjTEXROLE_EMISSIVE, &material);
-    }
-    // A value multiplies its texture; a texture without a value stands alone.
-    if (model_.mat_roughness[matid] >= 0)
-      material.roughness = clamp(model_.mat_roughness[matid], 0, 1);
-    else if (textures.roughness >= 0 || textures.orm >= 0)
-      material.roughness = 1;
-    if (model_.mat_metallic[matid] >= 0)
-      material.metallic = clamp(model_.mat_metallic[matid], 0, 1);
-    else if (textures.metallic >= 0 || textures.orm >= 0)
-      material.metallic = 1;
-    const float emission = model_.mat_emission[matid];
-    if (textures.emission >= 0)
-      material.emission = emission_luminance({1, 1, 1}, emission > 0 ? emission : 1);
-    else
-      material.emission = emission_luminance(material.base_color, emission);
+    surface.emission = model_.mat_emission[matid];
+    surface.specular = model_.mat_specular[matid];
+    surface.shininess = model_.mat_shininess[matid];
+    surface.reflectance = model_.mat_reflectance[matid];
+    surface.metallic = model_.mat_metallic[matid];
+    surface.roughness = model_.mat_roughness[matid];
     material.texture_uniform = model_.mat_texuniform[matid] != 0;
     material.texture_repeat = {model_.mat_texrepeat[2 * matid],
                                model_.mat_texrepeat[2 * matid + 1]};
+    if (textured) add_layers(matid, &material);
   }
+  set_look(surface, &material);
   out_->materials.push_back(std::move(material));
   return entry->second;
+}
+
+void MaterialTable::add_layers(int matid, MaterialDescription* material) {
+  MaterialTextures& textures = material->textures;
+  textures.base_color = layer(matid, mjTEXROLE_RGBA, material);
+  if (textures.base_color < 0) textures.base_color = layer(matid, mjTEXROLE_RGB, material);
+  textures.roughness = layer(matid, mjTEXROLE_ROUGHNESS, material);
+  textures.metallic = layer(matid, mjTEXROLE_METALLIC, material);
+  textures.occlusion = layer(matid, mjTEXROLE_OCCLUSION, material);
+  textures.orm = layer(matid, mjTEXROLE_ORM, material);
+  textures.normal = layer(matid, mjTEXROLE_NORMAL, material);
+  textures.opacity = layer(matid, mjTEXROLE_OPACITY, material);
+  textures.emission = layer(matid, mjTEXROLE_EMISSIVE, material);
 }
 
 void MaterialTable::load_textures() {

@@ -34,6 +34,7 @@ class MaterialTable {
     int texid = 0, row = 0;
   };
   int layer(int matid, mjtTextureRole role, MaterialDescription* material);
+  void add_layers(int matid, MaterialDescription* material);
 
   const mjModel& model_;
   bool live_;

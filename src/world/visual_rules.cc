@@ -21,6 +21,39 @@ float roughness_of_shininess(float shininess) {
   return std::sqrt(std::sqrt(2 / (exponent + 2)));
 }
 
+void set_look(const ModelSurface& surface, MaterialDescription* material) {
+  const MaterialTextures& textures = material->textures;
+  material->rgba = surface.rgba;
+  material->base_color = linear_color({surface.rgba[0], surface.rgba[1], surface.rgba[2]});
+  material->opacity = clamp(surface.rgba[3], 0, 1);
+  material->specular_weight = clamp(2 * surface.specular, 0, 1);
+  material->roughness = roughness_of_shininess(surface.shininess);
+  material->ior = MaterialDescription().ior;
+  if (material->can_mirror && surface.reflectance > 0) {
+    const float f0 = clamp(surface.reflectance, 0.04f, 0.9f);
+    material->ior = (1 + std::sqrt(f0)) / (1 - std::sqrt(f0));
+    material->specular_weight = 1;
+    material->roughness = min(material->roughness, 0.1f);
+  }
+  if (surface.roughness >= 0)
+    material->roughness = clamp(surface.roughness, 0, 1);
+  else if (textures.roughness >= 0 || textures.orm >= 0)
+    material->roughness = 1;
+  material->metallic = 0;
+  if (surface.metallic >= 0)
+    material->metallic = clamp(surface.metallic, 0, 1);
+  else if (textures.metallic >= 0 || textures.orm >= 0)
+    material->metallic = 1;
+  if (textures.emission >= 0)
+    material->emission = emission_luminance({1, 1, 1}, surface.emission > 0 ? surface.emission : 1);
+  else
+    material->emission = emission_luminance(material->base_color, surface.emission);
+}
+
+bool is_default_rgba(const float* rgba) {
+  return rgba[0] == 0.5f && rgba[1] == 0.5f && rgba[2] == 0.5f && rgba[3] == 1.0f;
+}
+
 Vec3f light_intensity(Vec3f diffuse, float intensity, float legacy_scale) {
   if (intensity <= 0) return diffuse * legacy_scale;
   const float y = luminance(diffuse);

@@ -2,6 +2,7 @@
 // The rules that turn MuJoCo's display-referred colours and lights into photometry: docs/light.md
 // explains each. Free of MuJoCo types, because live fields pass through the same rules.
 
+#include <array>
 #include <span>
 
 #include "base/vec.h"
@@ -24,6 +25,20 @@ Vec3f emission_luminance(Vec3f color, float emission);
 
 /// GGX roughness (alpha = roughness²) of a Blinn-Phong lobe with exponent 128 x shininess.
 float roughness_of_shininess(float shininess);
+
+/// What MuJoCo knows of a surface, in its own terms; these are its defaults.
+struct ModelSurface {
+  std::array<float, 4> rgba{0.5f, 0.5f, 0.5f, 1};  ///< display colour and opacity
+  float emission = 0, specular = 0.5f, shininess = 0.5f, reflectance = 0;
+  float metallic = -1, roughness = -1;  ///< -1 = not given
+};
+
+/// Writes what `surface` looks like into `material`, whose textures and can_mirror are set. A value
+/// multiplies its texture; a texture without a value stands alone.
+void set_look(const ModelSurface& surface, MaterialDescription* material);
+
+/// Geoms, skins, flexes and tendons without a colour of their own have this one.
+bool is_default_rgba(const float* rgba);
 
 /// What LightDescription::intensity holds, from the light's live values. `intensity` [cd], 0 = none
 /// given: then `legacy_scale` x diffuse. Otherwise diffuse gives the hue only. Directional: [lx].

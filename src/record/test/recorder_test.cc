@@ -196,6 +196,31 @@ TEST_F(RecorderTest, WritesOnlyWhatWasAskedFor) {
   EXPECT_FALSE(fs::exists(run() / "contact_sheet.png"));
 }
 
+TEST_F(RecorderTest, ACameraMayHaveOutputsOfItsOwn) {
+  RecorderOptions o = options();
+  o.outputs = {"png", "metrics", "contact_sheet"};
+  RunInfo info = run_info();
+  info.cameras[0].outputs = {"video", "depth_png"};
+  info.cameras[1].outputs.reset();
+  auto recorder = Recorder::start(o, info);
+  ASSERT_TRUE(recorder.ok());
+  feed(recorder->get());
+  ASSERT_TRUE((*recorder)->finish({}).ok());
+  const fs::path run = o.folder;
+  EXPECT_TRUE(fs::exists(run / "go1_front.mp4"));
+  EXPECT_TRUE(fs::exists(run / "go1_front/depth/000001.png"));
+  EXPECT_FALSE(fs::exists(run / "go1_front/rgb"));
+  EXPECT_FALSE(fs::exists(run / "chase.mp4"));
+  EXPECT_TRUE(fs::exists(run / "chase/rgb/000001.png"));
+  EXPECT_FALSE(fs::exists(run / "chase/depth"));
+  EXPECT_TRUE(fs::exists(run / "contact_sheet.png"));
+  info.cameras[0].outputs = {"vidoe"};
+  o.overwrite = true;
+  const auto refused = Recorder::start(o, info);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().hint.find("video"), std::string::npos);
+}
+
 TEST_F(RecorderTest, EqualRunsGiveEqualFiles) {
   std::vector<std::vector<uint8_t>> files[2];
   for (int round = 0; round < 2; ++round) {

@@ -375,7 +375,7 @@ void EmbreeScene::build_fixed(const RenderScene& scene) {
   const std::vector<InstanceView>& instances = scene.instances();
   for (size_t i = 0; i < instances.size(); ++i) {
     const InstanceView& in = instances[i];
-    if (!scene.description().instances[i].is_static || in.shape == ShapeType::kDeformable ||
+    if (!scene.is_fixed(i) || in.shape == ShapeType::kDeformable ||
         is_infinite_plane(in) || !scene.is_drawn(i)) {
       continue;
     }
@@ -409,7 +409,7 @@ void EmbreeScene::build_shapes(const RenderScene& scene) {
   const std::vector<InstanceView>& instances = scene.instances();
   for (size_t i = 0; i < instances.size(); ++i) {
     const InstanceView& in = instances[i];
-    if (scene.description().instances[i].is_static || in.shape == ShapeType::kDeformable ||
+    if (scene.is_fixed(i) || in.shape == ShapeType::kDeformable ||
         is_infinite_plane(in) || !scene.is_drawn(i)) {
       continue;
     }
@@ -434,6 +434,35 @@ void EmbreeScene::build_shapes(const RenderScene& scene) {
                [&](int64_t i) { rtcCommitScene(to_commit[i]); });
 }
 
+void EmbreeScene::rebuild_mesh(const RenderScene& scene, uint32_t mesh) {
+  const auto shape = shapes_.find({ShapeType::kMesh, mesh, 0, 0, 0});
+  if (shape == shapes_.end()) return;  // it is not drawn
+  const RtcOwner<RTCGeometry> geometry = mesh_geometry(scene.meshes()[mesh]);
+  rtcCommitGeometry(geometry.get());
+  rtcDetachGeometry(shape->second.get(), 0);
+  rtcAttachGeometryByID(shape->second.get(), geometry.get(), 0);
+  rtcCommitScene(shape->second.get());
+}
+
+void EmbreeScene::build(const RenderScene& scene) {
+  drawn_version_ = scene.drawn_version();
+  moving_geometries_.clear();
+  moving_.reset();
+  fixed_.reset();
+  shapes_.clear();
+  shape_data_.clear();
+  rows_.clear();
+  planes_.clear();
+  for (size_t i = 0; i < scene.instances().size(); ++i) {
+    if (is_infinite_plane(scene.instances()[i]) && scene.is_drawn(i)) {
+      planes_.push_back(static_cast<uint32_t>(i));
+    }
+  }
+  build_moving(scene);
+  build_fixed(scene);
+  built_ = true;
+}
+
 void EmbreeScene::build_moving(const RenderScene& scene) {
   moving_ = new_scene();
   rtcSetSceneFlags(moving_.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
@@ -451,16 +480,8 @@ void EmbreeScene::build_moving(const RenderScene& scene) {
 }
 
 Status EmbreeScene::update(const RenderScene& scene) {
-  if (!built_) {
-    for (size_t i = 0; i < scene.instances().size(); ++i) {
-      if (is_infinite_plane(scene.instances()[i]) && scene.is_drawn(i)) {
-        planes_.push_back(static_cast<uint32_t>(i));
-      }
-    }
-    build_moving(scene);
-    build_fixed(scene);
-    built_ = true;
-  }
+  if (!built_ || drawn_version_ != scene.drawn_version()) build(scene);
+  for (const uint32_t mesh : scene.rebuilt_meshes()) rebuild_mesh(scene, mesh);
   for (size_t g = 0; g < moving_geometries_.size(); ++g) {
     const RTCGeometry geometry = moving_geometries_[g].get();
     const InstanceView& in = scene.instances()[rows_[g]];

@@ -79,9 +79,11 @@ class EmbreeScene {
   using ShapeKey = std::tuple<ShapeType, uint32_t, float, float, float>;
 
   EmbreeScene() = default;
+  void build(const RenderScene& scene);
   void build_fixed(const RenderScene& scene);
   void build_moving(const RenderScene& scene);
   void build_shapes(const RenderScene& scene);
+  void rebuild_mesh(const RenderScene& scene, uint32_t mesh);
   RtcOwner<RTCGeometry> mesh_geometry(const MeshView& mesh);
   RtcOwner<RTCGeometry> shape_geometry(ShapeType shape, Vec3f size, const Affine3f& X_SG);
   RtcOwner<RTCGeometry> box_geometry(Vec3f size, const Affine3f& X_SG);
@@ -95,6 +97,7 @@ class EmbreeScene {
   std::vector<uint32_t> rows_;  ///< Embree id -> instance: those of moving_, then those of fixed_
   std::vector<uint32_t> planes_;
   bool built_ = false;
+  uint64_t drawn_version_ = 0;  ///< of the scene that is built
   std::vector<std::unique_ptr<ShapeGeometry>> shape_data_;  ///< Embree keeps pointers to them
   std::vector<std::unique_ptr<std::vector<Vec3f>>> vertex_data_;
 };

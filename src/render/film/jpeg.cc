@@ -1,12 +1,11 @@
-#include "render/film/jpeg.h"
-
 #include <csetjmp>
 #include <cstdio>
 #include <cstdlib>
-
+// jpeglib.h needs FILE and size_t declared before it.
 #include <jpeglib.h>
 
 #include "base/check.h"
+#include "gloam/picture.h"
 
 namespace gloam {
 namespace {
@@ -40,6 +39,7 @@ bool write_jpeg(int width, int height, const uint8_t* rgb, int quality, uint8_t*
   info.in_color_space = JCS_RGB;
   jpeg_set_defaults(&info);
   jpeg_set_quality(&info, quality, TRUE);
+  info.dct_method = JDCT_ISLOW;
   jpeg_start_compress(&info, TRUE);
   while (info.next_scanline < info.image_height) {
     const size_t offset = 3 * static_cast<size_t>(info.next_scanline) * static_cast<size_t>(width);
@@ -53,18 +53,20 @@ bool write_jpeg(int width, int height, const uint8_t* rgb, int quality, uint8_t*
 
 }  // namespace
 
-std::vector<uint8_t> encode_jpeg(int width, int height, std::span<const uint8_t> rgb, int quality) {
-  GLOAM_CHECK(width > 0 && height > 0 && width <= JPEG_MAX_DIMENSION &&
-                  height <= JPEG_MAX_DIMENSION && quality >= 1 && quality <= 100,
-              "bad size or quality of a picture");
-  GLOAM_CHECK(rgb.size() == 3 * static_cast<size_t>(width) * static_cast<size_t>(height),
-              "pixels do not match the size");
+Result<std::vector<uint8_t>> encode_jpeg(int width, int height, std::span<const uint8_t> rgb,
+                                         int quality) {
+  GLOAM_CHECK(quality >= 1 && quality <= 100, "the quality of a JPEG is 1 to 100");
+  if (width < 1 || height < 1 || width > JPEG_MAX_DIMENSION || height > JPEG_MAX_DIMENSION ||
+      rgb.size() != 3 * static_cast<size_t>(width) * static_cast<size_t>(height)) {
+    return Error{ErrorKind::kInput,
+                 "the picture has no colours, or its size is not one that JPEG can hold"};
+  }
   uint8_t* bytes = nullptr;
   unsigned long size = 0;
   const bool ok = write_jpeg(width, height, rgb.data(), quality, &bytes, &size);
   std::vector<uint8_t> out(bytes, bytes + (ok ? size : 0));
   std::free(bytes);
-  GLOAM_CHECK(ok, "JPEG encoding failed");
+  if (!ok) return Error{ErrorKind::kIo, "there is no memory to compress the picture"};
   return out;
 }
 

@@ -3,12 +3,10 @@
 #include <algorithm>
 
 #include "render/kernel/shapes.h"
+#include "world/visual_rules.h"
 
 namespace gloam {
 namespace {
-
-/// A live value against the one that the description was made with.
-float ratio(float now, float first) { return first > 0 ? now / first : (now > 0 ? 1.0f : 0.0f); }
 
 /// Power that a light brings into the scene [lm], to weigh lights against each other.
 float light_power(const LightView& light, float scene_radius) {
@@ -54,8 +52,15 @@ void set_bounds(const InstanceView& instance, const std::vector<MeshView>& meshe
   light->reach += 0.5f * length(instance.X_WG_close.p - instance.X_WG.p);
 }
 
+// The guide's rows are those of the description, whatever is live: it is built once.
 bool is_guided(const LightDescription& light) {
   return light.is_static && light.casts_shadow && light.light >= 0;
+}
+bool is_guided(const RenderDescription& description, const InstanceDescription& instance) {
+  const MaterialDescription& material =
+      description.materials[static_cast<size_t>(instance.material)];
+  return instance.is_static && instance.shown && luminance(material.emission) > 0 &&
+         material.opacity > 0;
 }
 
 Vec3f row(const std::vector<double>& values, int i) {
@@ -68,8 +73,7 @@ Vec3f row(const std::vector<double>& values, int i) {
 void LightTable::update(const RenderDescription& description, const PoseFrame& frame,
                         const std::vector<MaterialView>& materials,
                         const std::vector<MeshView>& meshes, std::vector<InstanceView>* instances) {
-  if (first_diffuse_.empty()) first_diffuse_ = frame.light_diffuse;
-  if (first_intensity_.empty()) first_intensity_ = frame.light_intensity;
+  const bool live = frame.live_serial != 0;
   lights_.clear();
   headlights_.clear();
   std::vector<float> power;
@@ -77,22 +81,19 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
   int guide = 0;
   for (const LightDescription& in : description.lights) {
     const int row_of_guide = is_guided(in) ? guide++ : -1;
-    const size_t i = in.light < 0 ? 0 : static_cast<size_t>(in.light);
-    const bool live = in.light >= 0 && i < frame.light_active.size();
-    if (live ? frame.light_active[i] == 0 : !in.active) continue;
+    const bool follows = live && in.light >= 0;
+    const size_t i = follows ? static_cast<size_t>(in.light) : 0;
+    if (follows ? frame.light_active[i] == 0 : !in.active) continue;
     LightView light = describe_light(in);
     light.guide = row_of_guide;
     if (in.light >= 0) {
       light.p = row(frame.light_p, in.light);
       light.direction = normalize(row(frame.light_dir, in.light));
-      if (3 * i + 2 < frame.light_diffuse.size()) {
-        const float *now = &frame.light_diffuse[3 * i], *first = &first_diffuse_[3 * i];
-        light.intensity *=
-            Vec3f{ratio(now[0], first[0]), ratio(now[1], first[1]), ratio(now[2], first[2])};
-      }
-      if (i < frame.light_intensity.size() && first_intensity_[i] > 0) {
-        light.intensity *= frame.light_intensity[i] / first_intensity_[i];
-      }
+    }
+    if (follows) {
+      const float* diffuse = &frame.light_diffuse[3 * i];
+      light.intensity = light_intensity({diffuse[0], diffuse[1], diffuse[2]},
+                                        frame.light_intensity[i], in.legacy_scale);
     }
     if (!(luminance(light.intensity) > 0)) continue;
     if (in.light < 0) headlights_.push_back(lights_.size());
@@ -103,7 +104,10 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
   }
   for (size_t i = 0; i < instances->size(); ++i) {
     InstanceView& instance = (*instances)[i];
+    const InstanceDescription& described = description.instances[i];
+    const int row_of_guide = is_guided(description, described) ? guide++ : -1;
     instance.light = -1;
+    if (!described.shown) continue;
     const bool is_mesh =
         instance.shape == ShapeType::kMesh || instance.shape == ShapeType::kDeformable;
     const MaterialView& material = materials[instance.material];
@@ -115,7 +119,7 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
     LightView light;
     light.kind = LightKind::kInstance;
     light.instance = static_cast<uint32_t>(i);
-    if (description.instances[i].is_static) light.guide = guide++;
+    light.guide = row_of_guide;
     light.strength = strength / (4 * kPi);
     set_bounds(instance, meshes, &light);
     lights_.push_back(light);
@@ -135,8 +139,7 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
 }
 
 std::vector<LightView> LightTable::guided(const RenderDescription& description,
-                                          const PoseFrame& frame,
-                                          const std::vector<InstanceView>& instances) {
+                                          const PoseFrame& frame) {
   std::vector<LightView> lights;
   for (const LightDescription& in : description.lights) {
     if (!is_guided(in)) continue;
@@ -145,9 +148,8 @@ std::vector<LightView> LightTable::guided(const RenderDescription& description,
     light.direction = normalize(row(frame.light_dir, in.light));
     lights.push_back(light);
   }
-  for (size_t i = 0; i < instances.size(); ++i) {
-    const InstanceView& instance = instances[i];
-    if (instance.light < 0 || !description.instances[i].is_static) continue;
+  for (size_t i = 0; i < description.instances.size(); ++i) {
+    if (!is_guided(description, description.instances[i])) continue;
     LightView light;
     light.kind = LightKind::kInstance;
     light.instance = static_cast<uint32_t>(i);

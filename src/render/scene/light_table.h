@@ -17,17 +17,16 @@ class LightTable {
   /// Headlights sit at the camera.
   void place_headlights(const Affine3f& X_WC);
 
-  /// Static lights that cast shadows, whether on or off, in the order of LightView::guide.
-  static std::vector<LightView> guided(const RenderDescription& description, const PoseFrame& frame,
-                                       const std::vector<InstanceView>& instances);
+  /// Static lights that cast shadows, whether on or off, and static things described as emitters,
+  /// in the order of LightView::guide.
+  static std::vector<LightView> guided(const RenderDescription& description,
+                                       const PoseFrame& frame);
 
   const std::vector<LightView>& lights() const { return lights_; }
 
  private:
   std::vector<LightView> lights_;
   std::vector<size_t> headlights_;  ///< rows of lights_
-  // Live fields as they were at the first update: the description's intensities belong to them.
-  std::vector<float> first_diffuse_, first_intensity_;
 };
 
 }  // namespace gloam

@@ -6,6 +6,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "world/visual_mesh.h"
 
 namespace gloam {
 namespace {
@@ -129,13 +130,37 @@ void MeshStore::update(const RenderDescription& description, const PoseFrame& op
   }
 }
 
-void MeshStore::make_samplable(const RenderDescription& description, uint32_t row) {
+const TriangleMesh& MeshStore::mesh_at(const RenderDescription& description, size_t row) const {
+  if (meshes_[row].rebuilt) return *meshes_[row].rebuilt;
   const size_t rigid = description.meshes.size();
-  const TriangleMesh& mesh =
-      row < rigid ? description.meshes[row] : description.deformables[row - rigid].rest;
+  return row < rigid ? description.meshes[row] : description.deformables[row - rigid].rest;
+}
+
+bool MeshStore::rebuild(const RenderDescription& description, const HeightFieldDescription& field,
+                        const PoseFrame& frame) {
+  const auto row = static_cast<size_t>(field.mesh);
+  std::optional<TriangleMesh> mesh;
+  if (!frame.height_field.empty()) {
+    const size_t first = static_cast<size_t>(field.first_data);
+    const size_t count = static_cast<size_t>(field.rows) * static_cast<size_t>(field.columns);
+    GLOAM_CHECK(frame.height_field.size() >= first + count,
+                "the pose frame lacks data of a height field");
+    mesh = height_field_mesh(field, std::span(frame.height_field).subspan(first, count));
+  }
+  const TriangleMesh& now = mesh ? *mesh : description.meshes[row];
+  if (now.positions == mesh_at(description, row).positions) return false;
+  const bool samplable = !meshes_[row].area_cdf.empty();
+  meshes_[row] = {};
+  fill_static_data(now, &meshes_[row]);
+  meshes_[row].rebuilt = std::move(mesh);
+  if (samplable) make_samplable(description, static_cast<uint32_t>(row));
+  return true;
+}
+
+void MeshStore::make_samplable(const RenderDescription& description, uint32_t row) {
+  const TriangleMesh& mesh = mesh_at(description, row);
   MeshBuffers& buffers = meshes_[row];
-  const std::vector<Vec3f>& positions =
-      row < rigid || buffers.open.empty() ? mesh.positions : buffers.open;
+  const std::vector<Vec3f>& positions = buffers.open.empty() ? mesh.positions : buffers.open;
   buffers.area_cdf.resize(mesh.triangle_count());
   double sum = 0;
   for (size_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -147,14 +172,12 @@ void MeshStore::make_samplable(const RenderDescription& description, uint32_t ro
 }
 
 std::vector<MeshView> MeshStore::views(const RenderDescription& description) const {
-  const size_t rigid = description.meshes.size();
   std::vector<MeshView> views(meshes_.size());
   for (size_t i = 0; i < meshes_.size(); ++i) {
     const MeshBuffers& buffers = meshes_[i];
-    const TriangleMesh& mesh =
-        i < rigid ? description.meshes[i] : description.deformables[i - rigid].rest;
+    const TriangleMesh& mesh = mesh_at(description, i);
     MeshView& view = views[i];
-    view.positions = span_of(i < rigid || buffers.open.empty() ? mesh.positions : buffers.open);
+    view.positions = span_of(buffers.open.empty() ? mesh.positions : buffers.open);
     if (buffers.moving) view.positions_close = span_of(buffers.close);
     view.positions_previous = span_of(buffers.previous);
     view.indices = span_of(mesh.indices);

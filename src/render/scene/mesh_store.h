@@ -1,6 +1,7 @@
 #pragma once
 // Meshes as the kernel reads them, with per-triangle shading data.
 
+#include <optional>
 #include <vector>
 
 #include "render/kernel/scene_view.h"
@@ -16,6 +17,7 @@ struct MeshBuffers {
   float area = 0;                            ///< [m²]
   Vec3f half_extents;                        ///< of the bounding box of the rest positions [m]
   std::vector<Vec3f> open, close, previous;  ///< deformables: world positions [m]
+  std::optional<TriangleMesh> rebuilt;       ///< height fields: instead of the description's
   bool moving = false;                       ///< deformables: open and close differ
 };
 
@@ -27,6 +29,10 @@ class MeshStore {
   /// Takes the deformables' vertices from the frames and recomputes their normals.
   void update(const RenderDescription& description, const PoseFrame& open, const PoseFrame& close,
               const PoseFrame& previous);
+  /// Makes the mesh of a height field anew from the frame's data, or as described where the frame
+  /// has none. False when it stays as it was.
+  bool rebuild(const RenderDescription& description, const HeightFieldDescription& field,
+               const PoseFrame& frame);
   /// Builds what sampling points on mesh `mesh` needs.
   void make_samplable(const RenderDescription& description, uint32_t mesh);
 
@@ -35,6 +41,8 @@ class MeshStore {
   const MeshBuffers& buffers(size_t row) const { return meshes_[row]; }
 
  private:
+  const TriangleMesh& mesh_at(const RenderDescription& description, size_t row) const;
+
   std::vector<MeshBuffers> meshes_;
 };
 

@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "render/kernel/shapes.h"
 #include "render/scene/albedo_table.h"
+#include "world/visual_rules.h"
 
 namespace gloam {
 namespace {
@@ -61,33 +62,6 @@ Status check_references(const RenderDescription& d) {
   return {};
 }
 
-MaterialView describe_material(const MaterialDescription& in, const TextureStore& textures) {
-  MaterialView out;
-  const auto unit = [](float x) { return clamp(x, 0.0f, 1.0f); };
-  out.base_color = {unit(in.base_color.x), unit(in.base_color.y), unit(in.base_color.z)};
-  out.emission = {max(in.emission.x, 0), max(in.emission.y, 0), max(in.emission.z, 0)};
-  out.opacity = unit(in.opacity);
-  out.metallic = unit(in.metallic);
-  out.roughness = unit(in.roughness);
-  const float ior = max(in.ior, 1.0f);
-  out.f90 = unit(in.specular_weight);
-  out.f0 = sqr((ior - 1) / (ior + 1)) * out.f90;
-  out.mapping = in.mapping;
-  out.texture_uniform = in.texture_uniform;
-  out.texture_repeat = in.texture_repeat;
-  out.textures = in.textures;
-  const MaterialTextures& t = in.textures;
-  const int used[] = {t.base_color, t.roughness, t.metallic, t.orm,
-                      t.normal,     t.opacity,   t.emission};
-  out.textured = in.mapping != TextureMapping::kNone &&
-                 std::any_of(std::begin(used), std::end(used), [](int i) { return i >= 0; });
-  out.transparent = out.opacity < 1;
-  if (out.textured) {
-    out.transparent |= t.opacity >= 0 || (t.base_color >= 0 && textures.has_alpha[t.base_color]);
-  }
-  return out;
-}
-
 /// X_WG = X_WB X_BG in double precision, rounded once.
 Affine3f pose_of(const PoseFrame& frame, const InstanceDescription& instance) {
   const size_t b = static_cast<size_t>(instance.body);
@@ -108,6 +82,18 @@ Affine3f pose_of(const PoseFrame& frame, const InstanceDescription& instance) {
           rotate(X_BG.p, p)};
 }
 
+/// MuJoCo's ambient light of all lamps that are on, and of the headlight.
+Vec3f live_ambient(const RenderDescription& description, const PoseFrame& frame) {
+  if (frame.live_serial == 0) return description.sky.ambient;
+  Vec3f sum;
+  for (const LightDescription& light : description.lights) {
+    if (light.light < 0 || frame.light_active[static_cast<size_t>(light.light)] != 0) {
+      sum += light.ambient;
+    }
+  }
+  return sum * kWhiteLuminance;
+}
+
 bool is_same(const Affine3f& a, const Affine3f& b) {
   return a.x == b.x && a.y == b.y && a.z == b.z && a.p == b.p;
 }
@@ -125,9 +111,7 @@ Result<std::unique_ptr<RenderScene>> RenderScene::make(const RenderDescription& 
   GLOAM_TRY(scene->textures_, make_texture_store(description.textures));
   GLOAM_TRY(scene->meshes_, MeshStore::make(description));
   fill_albedo_table(&scene->albedo_);
-  for (const MaterialDescription& material : description.materials) {
-    scene->materials_.push_back(describe_material(material, scene->textures_));
-  }
+  scene->materials_ = MaterialStore(description, scene->textures_);
   for (const InstanceDescription& in : description.instances) {
     InstanceView out;
     out.shape = in.shape;
@@ -140,17 +124,63 @@ Result<std::unique_ptr<RenderScene>> RenderScene::make(const RenderDescription& 
         out.mesh += static_cast<uint32_t>(description.meshes.size());
       }
       out.half_size = scene->meshes_.buffers(out.mesh).half_extents;
-      if (luminance(scene->materials_[out.material].emission) > 0) {
-        scene->meshes_.make_samplable(description, out.mesh);
-      }
     }
     scene->instances_.push_back(out);
   }
+  scene->is_height_field_.resize(description.meshes.size());
+  for (const HeightFieldDescription& field : description.height_fields) {
+    if (field.mesh < 0 || static_cast<size_t>(field.mesh) >= description.meshes.size()) {
+      return Error{ErrorKind::kInput, "a height field refers to a mesh that does not exist"};
+    }
+    scene->is_height_field_[static_cast<size_t>(field.mesh)] = true;
+  }
+  scene->sky_ambient_ = description.sky.ambient;
+  scene->drawn_.resize(description.instances.size());
+  scene->follow_materials();
   scene->mesh_views_ = scene->meshes_.views(description);
   return scene;
 }
 
+void RenderScene::follow_materials() {
+  bool changed = false;
+  for (size_t i = 0; i < instances_.size(); ++i) {
+    const InstanceView& in = instances_[i];
+    const MaterialView& material = materials_.views()[in.material];
+    const bool drawn = description_.instances[i].shown && material.opacity > 0;
+    changed |= drawn != drawn_[i];
+    drawn_[i] = drawn;
+    const bool has_mesh = in.shape == ShapeType::kMesh || in.shape == ShapeType::kDeformable;
+    if (has_mesh && drawn && luminance(material.emission) > 0) {
+      meshes_.make_samplable(description_, in.mesh);
+    }
+  }
+  if (changed) ++drawn_version_;
+}
+
+void RenderScene::follow_live_fields(const PoseFrame& frame) {
+  if (materials_.update(description_, textures_, frame, &instances_)) {
+    follow_materials();
+    mesh_views_ = meshes_.views(description_);
+    sky_ambient_ = live_ambient(description_, frame);
+  }
+  rebuilt_meshes_.clear();
+  if (frame.height_field_serial == height_field_serial_) return;
+  height_field_serial_ = frame.height_field_serial;
+  for (const HeightFieldDescription& field : description_.height_fields) {
+    if (!meshes_.rebuild(description_, field, frame)) continue;
+    const auto row = static_cast<uint32_t>(field.mesh);
+    rebuilt_meshes_.push_back(row);
+    for (InstanceView& instance : instances_) {
+      if (instance.shape == ShapeType::kMesh && instance.mesh == row) {
+        instance.half_size = meshes_.buffers(row).half_extents;
+      }
+    }
+  }
+  mesh_views_ = meshes_.views(description_);
+}
+
 void RenderScene::update(const PoseFrame& open, const PoseFrame& close, const PoseFrame& previous) {
+  follow_live_fields(open);
   if (!description_.deformables.empty()) {
     meshes_.update(description_, open, close, previous);
     mesh_views_ = meshes_.views(description_);
@@ -165,7 +195,7 @@ void RenderScene::update(const PoseFrame& open, const PoseFrame& close, const Po
     out.moving = !is_same(out.X_WG, out.X_WG_close);
     out.has_moved = !is_same(out.X_WG, out.X_WG_previous);
   }
-  lights_.update(description_, open, materials_, mesh_views_, &instances_);
+  lights_.update(description_, open, materials_.views(), mesh_views_, &instances_);
 }
 
 bool RenderScene::has_motion() const {
@@ -180,7 +210,7 @@ SceneView RenderScene::view_from(const Affine3f& X_WC) {
   SceneView view;
   view.instances = span_of(instances_);
   view.meshes = span_of(mesh_views_);
-  view.materials = span_of(materials_);
+  view.materials = span_of(materials_.views());
   view.textures = span_of(textures_.textures);
   view.texture_levels = span_of(textures_.levels);
   view.texels = span_of(textures_.texels);
@@ -189,10 +219,10 @@ SceneView RenderScene::view_from(const Affine3f& X_WC) {
   const SkyDescription& sky = description_.sky;
   view.sky_texture = sky.scale > 0 ? sky.texture : -1;
   view.sky_scale = sky.scale;
-  view.sky_ambient = sky.ambient;
+  view.sky_ambient = sky_ambient_;
   if (view.sky_texture >= 0) view.sky_mean = textures_.mean[sky.texture] * sky.scale;
   for (size_t i = 0; i < instances_.size(); ++i) {
-    const MaterialView& material = materials_[instances_[i].material];
+    const MaterialView& material = materials_.views()[instances_[i].material];
     if (!is_drawn(i)) continue;
     view.has_transparent |= material.transparent;
     view.has_emitters |= max_component(material.emission) > 0;
@@ -202,7 +232,7 @@ SceneView RenderScene::view_from(const Affine3f& X_WC) {
         !light.is_delta && light.casts_shadow && light.kind != LightKind::kInstance;
   }
   view.has_emitters |=
-      view.has_visible_lights || view.sky_texture >= 0 || max_component(sky.ambient) > 0;
+      view.has_visible_lights || view.sky_texture >= 0 || max_component(sky_ambient_) > 0;
   return view;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/scene/light_table.h"
+#include "render/scene/material_store.h"
 #include "render/scene/mesh_store.h"
 #include "render/scene/texture_store.h"
 
@@ -26,29 +27,42 @@ class RenderScene {
   const std::vector<MeshView>& meshes() const { return mesh_views_; }
   /// What a LightGuide has rows for.
   std::vector<LightView> guided_lights(const PoseFrame& frame) const {
-    return LightTable::guided(description_, frame, instances_);
+    return LightTable::guided(description_, frame);
   }
   /// Something moves between shutter open and close.
   bool has_motion() const;
-  /// Invisible instances are in the tables but never traced: transparent ones, and MuJoCo's geom
-  /// groups 3 and up, where robots keep what they collide with.
-  bool is_drawn(size_t instance) const {
-    constexpr int kDrawnGroups = 3;
-    return materials_[instances_[instance].material].opacity > 0 &&
-           description_.instances[instance].group < kDrawnGroups;
+  /// Invisible instances are in the tables but never traced: fully transparent ones and those
+  /// that are not shown.
+  bool is_drawn(size_t instance) const { return drawn_[instance]; }
+  /// Changes whenever is_drawn() does for some instance.
+  uint64_t drawn_version() const { return drawn_version_; }
+  /// Neither moves nor may change its form: height fields may.
+  bool is_fixed(size_t instance) const {
+    const InstanceView& in = instances_[instance];
+    return description_.instances[instance].is_static &&
+           !(in.shape == ShapeType::kMesh && is_height_field_[in.mesh]);
   }
+  /// Rows of the meshes that the last update made anew.
+  const std::vector<uint32_t>& rebuilt_meshes() const { return rebuilt_meshes_; }
 
  private:
   explicit RenderScene(const RenderDescription& description) : description_(description) {}
+  void follow_live_fields(const PoseFrame& frame);
+  void follow_materials();
 
   const RenderDescription& description_;
   TextureStore textures_;
   MeshStore meshes_;
   LightTable lights_;
   AlbedoTable albedo_;
-  std::vector<MaterialView> materials_;
+  MaterialStore materials_;
+  Vec3f sky_ambient_;  ///< [cd/m²]
   std::vector<InstanceView> instances_;
   std::vector<MeshView> mesh_views_;
+  std::vector<bool> drawn_;            ///< by instance
+  std::vector<bool> is_height_field_;  ///< by mesh
+  uint64_t drawn_version_ = 0, height_field_serial_ = 0;
+  std::vector<uint32_t> rebuilt_meshes_;
 };
 
 }  // namespace gloam

@@ -11,9 +11,9 @@
 #include "base/files.h"
 #include "base/rng.h"
 #include "geometry/image_file.h"
+#include "gloam/picture.h"
 #include "render/film/color_map.h"
 #include "render/film/exr.h"
-#include "render/film/jpeg.h"
 #include "render/film/png.h"
 #include "render/film/tone_map.h"
 #include "render/film/yuv.h"
@@ -184,21 +184,25 @@ TEST(Jpeg, RoundTripIsClose) {
   for (int y = 0; y < 48; ++y)
     for (int x = 0; x < 64; ++x)
       for (const int v : {x * 4, y * 5, 128}) rgb.push_back(static_cast<uint8_t>(v));
-  const std::vector<uint8_t> file = encode_jpeg(64, 48, rgb, 90);
+  const std::vector<uint8_t> file = encode_jpeg(64, 48, rgb, 90).value();
   const Result<Image8> read = decode_jpeg(file, "test.jpg");
   ASSERT_TRUE(read.ok()) << read.error().to_string();
   ASSERT_EQ(read->texels.size(), rgb.size());
   double error = 0;
   for (size_t i = 0; i < rgb.size(); ++i) error += std::abs(read->texels[i] - rgb[i]);
   EXPECT_LT(error / static_cast<double>(rgb.size()), 3);
-  EXPECT_LT(encode_jpeg(64, 48, rgb, 30).size(), file.size());
+  EXPECT_LT(encode_jpeg(64, 48, rgb, 30)->size(), file.size());
 }
 
 TEST(Jpeg, DamagedFilesAreErrorsNotCrashes) {
-  const std::vector<uint8_t> good = encode_jpeg(40, 30, random_bytes(3 * 40 * 30, 5));
+  const std::vector<uint8_t> good = encode_jpeg(40, 30, random_bytes(3 * 40 * 30, 5)).value();
   for (size_t n = 0; n + 2 < good.size(); n += 11)
     EXPECT_FALSE(decode_jpeg({good.data(), n}, "cut.jpg").ok()) << "cut at " << n;
   EXPECT_FALSE(decode_jpeg(random_bytes(200, 9), "noise.jpg").ok());
+  EXPECT_FALSE(encode_jpeg(4, 4, {}).ok());
+  EXPECT_FALSE(encode_jpeg(0, 0, {}).ok());
+  EXPECT_FALSE(encode_jpeg(70000, 1, random_bytes(3 * 70000, 6)).ok());
+  EXPECT_FALSE(encode_jpeg(-1, -1, random_bytes(3, 6)).ok());
   EXPECT_FALSE(decode_jpeg(good, "large.jpg", 100).ok());
 }
 
@@ -271,7 +275,7 @@ TEST(ReadImage, GoesByContentNotByName) {
   };
   const auto pixels = random_bytes(3 * 16 * 16, 1);
   EXPECT_TRUE(read_image(write("png.jpg", encode_png8(16, 16, 3, pixels))).ok());
-  EXPECT_TRUE(read_image(write("jpg.png", encode_jpeg(16, 16, pixels))).ok());
+  EXPECT_TRUE(read_image(write("jpg.png", *encode_jpeg(16, 16, pixels))).ok());
   const std::string text = "not a picture";
   const Result<Image8> bad = read_image(write("text.png", {text.begin(), text.end()}));
   ASSERT_FALSE(bad.ok());

@@ -55,7 +55,7 @@ name = "front"
 body = "go1/b"
 look_at = [1, 0, 0]
 rate = "30000/1001"
-outputs = ["rgb", "depth"]
+outputs = ["video", "depth_png"]
 [[push]]
 body = "go1/b"
 time = 3
@@ -83,7 +83,7 @@ outputs = ["video"]
   EXPECT_EQ(robot.loc.line, 8);
   ASSERT_EQ(scene->cameras.size(), 1u);
   EXPECT_EQ(scene->cameras[0].rate, (Rational{30000, 1001}));
-  EXPECT_EQ(scene->cameras[0].outputs, (std::vector<std::string>{"rgb", "depth"}));
+  EXPECT_EQ(scene->cameras[0].outputs, (std::vector<std::string>{"video", "depth_png"}));
   EXPECT_EQ(scene->pushes.at(0).velocity, (Vec3{0, 0.2, 0}));
   EXPECT_EQ(scene->render.tier, "direct");
   EXPECT_EQ(scene->render.ev100, -2);
@@ -191,8 +191,8 @@ INSTANTIATE_TEST_SUITE_P(
                  {"not an exact fraction"}},
         BadScene{"zero_rate", "[[camera]]\nname = \"c\"\nrate = 0\n", {"'rate' is 0"}},
         BadScene{"bad_output",
-                 "[[camera]]\nname = \"c\"\noutputs = [\"rgb\", \"deph\"]\n",
-                 {"'outputs[1]' cannot be 'deph'", "did you mean 'depth'?"}},
+                 "[[camera]]\nname = \"c\"\noutputs = [\"png\", \"deph_png\"]\n",
+                 {"'outputs[1]' cannot be 'deph_png'", "did you mean 'depth_png'?"}},
         BadScene{
             "goals_out_of_order",
             "[[robot]]\nname = \"a\"\nfile = \"robot.xml\"\n[[robot.controller.goals]]\ntime = "

@@ -2,9 +2,12 @@
 
 #include "sim/pose_solver.h"
 
+#include <cstring>
 #include <thread>
 
 #include "test_world.h"
+#include "world/capsule_mesh.h"
+#include "world/tendon_path.h"
 
 namespace gloam {
 namespace {
@@ -129,6 +132,111 @@ TEST(PoseSolver, SkinsAndFlexesAreWhereMuJoCoDrawsThem) {
   mjv_freeScene(&scene);
 }
 
+// A rope over a drum, one around a ball the long way, one that hangs slack, one that is slack by
+// its spring and hangs straight down, one over a pulley.
+const char* const kRopes = R"(
+<mujoco><option timestep="0.002"/>
+  <worldbody>
+    <site name="anchor" pos="-.8 0 1.6"/><site name="above" pos="0 0 1.9"/>
+    <geom name="drum" type="cylinder" size=".2 .15" pos="0 0 1.5" euler="80 10 0"/>
+    <body name="weight" pos=".6 0 .7"><joint name="lift" type="slide" axis="0 0 1" damping="2"/>
+      <geom type="box" size=".1 .1 .1" mass="1"/><site name="hook" pos="0 0 .1"/></body>
+    <site name="left" pos="-1.2 .3 1.1"/>
+    <body pos="-.5 .3 1.2"><joint name="swing" type="hinge" axis="0 1 0" pos="0 0 .3"/>
+      <geom size=".08" mass=".2"/><site name="right"/></body>
+    <site name="over" pos="2 0 2"/><site name="under" pos="2 0 1.9"/>
+    <geom name="ball" size=".12" pos="1.2 .2 1.4"/><site name="behind" pos="1.4 .2 1.4"/>
+    <site name="p0" pos=".9 .2 1.7"/><site name="p1" pos="1 .2 1"/>
+    <site name="p2" pos="1.5 .2 1"/><site name="p3" pos="1.5 .2 1.7"/>
+  </worldbody>
+  <tendon>
+    <spatial name="rope" width=".01"><site site="anchor"/><geom geom="drum" sidesite="above"/>
+      <site site="hook"/></spatial>
+    <spatial name="slack" limited="true" range="0 1.2"><site site="left"/><site site="right"/></spatial>
+    <spatial name="loop" stiffness="3" springlength="0 .7"><site site="over"/><site site="under"/></spatial>
+    <spatial name="pulley"><site site="p0"/><geom geom="ball" sidesite="behind"/><site site="p1"/>
+      <pulley divisor="2"/><site site="p2"/><site site="p3"/></spatial>
+  </tendon>
+</mujoco>)";
+
+struct Rod {
+  double a[3], b[3], radius;
+};
+
+double distance(const double* p, const Rod& rod) {
+  double along[3], to_p[3];
+  mju_sub3(along, rod.b, rod.a);
+  mju_sub3(to_p, p, rod.a);
+  const double t = mju_clip(mju_dot3(to_p, along) / std::max(mju_dot3(along, along), 1e-12), 0, 1);
+  mju_addToScl3(to_p, along, -t);
+  return mju_norm3(to_p);
+}
+
+// MuJoCo's visualizer draws tendons as capsules, too: each end of one chain lies on the other.
+TEST(PoseSolver, TendonsRunWhereMuJoCoDrawsThem) {
+  auto world = world_from_mjcf(kRopes);
+  const mjModel& m = *world->model;
+  auto sim = make_simulator(world, lockstep());
+  auto solver = *PoseSolver::create(world);
+  PoseFrame frame;
+  DataPtr d(mj_makeData(&m));
+  mjvScene scene;
+  mjv_defaultScene(&scene);
+  mjv_makeScene(&m, &scene, 1000);
+  mjvOption option;
+  mjv_defaultOption(&option);
+  mjvCamera camera;
+  mjv_defaultCamera(&camera);
+  sim->start();
+  for (int round = 0; round < 4; ++round) {
+    ASSERT_TRUE(sim->step(40).ok());
+    ASSERT_TRUE(solver->solve(sim->latest(), frame).ok());
+    mj_setState(&m, d.get(), sim->latest().state().data(), mjSTATE_INTEGRATION);
+    mj_forward(&m, d.get());
+    mjv_updateScene(&m, d.get(), &option, nullptr, &camera, mjCAT_ALL, &scene);
+    for (int tendon = 0; tendon < m.ntendon; ++tendon) {
+      std::vector<Rod> ours, theirs;
+      const float* v =
+          frame.vertices.data() + 3 * solver->layout().tendon_first[static_cast<size_t>(tendon)];
+      for (int k = 0; k < tendon_segments(m, tendon); ++k, v += 3 * kCapsuleVertices) {
+        Rod rod{};
+        constexpr int kEnd = kCapsuleVertices / 2;  // vertices of one end
+        for (int i = 0; i < kCapsuleVertices; ++i)
+          for (int axis = 0; axis < 3; ++axis)
+            (i < kEnd ? rod.a : rod.b)[axis] += double{v[3 * i + axis]} / kEnd;
+        // The mean of an end lies inside by a little; a point is no capsule.
+        if (std::memcmp(v, v + 3, 3 * sizeof(float)) != 0) ours.push_back(rod);
+      }
+      for (int g = 0; g < scene.ngeom; ++g) {
+        const mjvGeom& geom = scene.geoms[g];
+        if (geom.objtype != mjOBJ_TENDON || geom.objid != tendon) continue;
+        Rod rod{};
+        for (int axis = 0; axis < 3; ++axis) {
+          const double half = double{geom.size[2]} * geom.mat[3 * axis + 2];
+          rod.a[axis] = geom.pos[axis] - half;
+          rod.b[axis] = geom.pos[axis] + half;
+        }
+        theirs.push_back(rod);
+      }
+      ASSERT_FALSE(ours.empty());
+      ASSERT_FALSE(theirs.empty());
+      const auto farthest = [](const std::vector<Rod>& from, const std::vector<Rod>& to) {
+        double most = 0;
+        for (const Rod& rod : from)
+          for (const double* p : {rod.a, rod.b}) {
+            double least = 1e9;
+            for (const Rod& other : to) least = std::min(least, distance(p, other));
+            most = std::max(most, least);
+          }
+        return most;
+      };
+      EXPECT_LT(farthest(ours, theirs), 6e-3) << "tendon " << tendon << " round " << round;
+      EXPECT_LT(farthest(theirs, ours), 6e-3) << "tendon " << tendon << " round " << round;
+    }
+  }
+  mjv_freeScene(&scene);
+}
+
 TEST(PoseSolver, FollowsLiveFields) {
   auto world = world_from_mjcf(kSeen);
   const mjModel& m = *world->model;
@@ -139,7 +247,7 @@ TEST(PoseSolver, FollowsLiveFields) {
   ASSERT_TRUE(sim->step(100).ok());
   const Snapshot old = sim->latest();
   ASSERT_TRUE(solver->solve(old, before).ok());
-  EXPECT_EQ(before.live_version, 0u);
+  EXPECT_EQ(before.live_serial, 0u);
   EXPECT_TRUE(before.height_field.empty());
   EXPECT_EQ(before.material_rgba[1], 0);
 
@@ -157,8 +265,8 @@ TEST(PoseSolver, FollowsLiveFields) {
   ASSERT_TRUE(solver->solve(s, frame).ok());
   DataPtr d(mj_makeData(live_model.get()));
   expect_forward_poses(*live_model, *d, s, frame);
-  EXPECT_EQ(frame.live_version, 4u);
-  EXPECT_EQ(frame.height_field_version, 1u);
+  EXPECT_EQ(frame.live_serial, 4u);
+  EXPECT_EQ(frame.height_field_serial, 4u);
   ASSERT_EQ(frame.height_field.size(), 12u);
   EXPECT_EQ(frame.height_field[3], .75f);
   EXPECT_EQ(frame.height_field[5], 1.f);

@@ -43,6 +43,7 @@ class FakeSimulation::Stream : public CameraStream {
       : simulation_(simulation), request_(std::move(request)), on_frame_(std::move(on_frame)) {
     pose_ = request_.camera == "front"        ? looking({0, -4, 1}, {0, 0, 0.4})
             : request_.camera == "robot/head" ? looking({2, 2, 2}, {0, 0, 0.3})
+            : request_.X_WC                   ? *request_.X_WC
                                               : looking({2.6, -2.8, 1.9}, {0, 0, 0.35});
     ++simulation_.open_streams_;
     thread_ = std::thread([this] { run(); });

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <set>
 
 #include "visual_test_model.h"
@@ -76,7 +77,7 @@ TEST(VisualDeformable, ClothAndSolid) {
       <bone body="world" bindpos="0 0 0" bindquat="1 0 0 0" vertid="0 1 2" vertweight="1 1 1"/>
     </skin></deformable></mujoco>)");
   const RenderDescription out = describe(world);
-  ASSERT_EQ(out.deformables.size(), 3u);
+  ASSERT_EQ(out.deformables.size(), 4u);
   const Picture picture(world.model.get());
   const TriangleMesh& cloth = out.deformables[1].rest;
   EXPECT_EQ(out.deformables[1].first_vertex, 3) << "flexes come after skins";
@@ -109,8 +110,25 @@ TEST(VisualDeformable, ClothAndSolid) {
                   {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])},
                   1e-6f);
     }
-  ASSERT_EQ(out.unsupported.size(), 1u);
-  EXPECT_NE(out.unsupported[0].message.find("'rope'"), std::string::npos);
+  // The rope is three capsules of its radius around its elements, closed and facing outwards.
+  const TriangleMesh& rope = out.deformables[3].rest;
+  EXPECT_EQ(out.deformables[3].first_vertex, 3 + 6 + 27 + 4);
+  double rope_volume = 0;
+  for (size_t f = 0; f < rope.indices.size(); f += 3)
+    rope_volume +=
+        dot(rope.positions[rope.indices[f]],
+            cross(rope.positions[rope.indices[f + 1]], rope.positions[rope.indices[f + 2]])) /
+        6.0;
+  const double one = 3.14159265 * .01 * .01 * (.1 + 4. / 3 * .01);
+  EXPECT_NEAR(rope_volume, 3 * one, .05 * 3 * one);
+  const mjtNum* end = picture.data().flexvert_xpos + 3 * 33;
+  for (const Vec3f p : rope.positions) {
+    EXPECT_NEAR(p.y, end[1], .0103);
+    EXPECT_GT(p.x, end[0] - .0101);
+    EXPECT_LT(p.x, end[0] + .3101);
+  }
+  EXPECT_EQ(out.instances[3].label.instance_name, "rope");
+  EXPECT_TRUE(out.unsupported.empty());
 }
 
 TEST(VisualDeformable, EachMaterialOfAFlexIsAPart) {
@@ -133,13 +151,30 @@ TEST(VisualDeformable, EachMaterialOfAFlexIsAPart) {
     EXPECT_TRUE(corners.count(static_cast<int>(v)) == 1);
 }
 
-TEST(VisualDeformable, TendonsAreSaidToBeMissing) {
-  const RenderDescription out = describe(R"(<mujoco><worldbody><site name="a"/>
-      <body><joint/><geom size=".1"/><site name="b" pos="0 0 1"/></body></worldbody>
-      <tendon><spatial name="string"><site site="a"/><site site="b"/></spatial></tendon></mujoco>)");
-  ASSERT_EQ(out.unsupported.size(), 1u);
-  EXPECT_NE(out.unsupported[0].message.find("'string'"), std::string::npos);
-  EXPECT_EQ(out.instances.size(), 1u) << "sites are not drawn";
+TEST(VisualDeformable, SpatialTendonsAreDrawn) {
+  const RenderDescription out = describe(R"(<mujoco>
+      <asset><material name="hemp" rgba="1 0 0 1"/></asset><worldbody><site name="a"/>
+      <body><joint name="j"/><geom size=".1"/><site name="b" pos="0 0 1"/></body></worldbody>
+      <tendon><spatial name="string" width=".02" material="hemp" group="1">
+          <site site="a"/><site site="b"/></spatial>
+        <spatial name="unseen" rgba="1 1 1 0"><site site="a"/><site site="b"/></spatial>
+        <fixed name="sum"><joint joint="j" coef="1"/></fixed></tendon></mujoco>)");
+  EXPECT_TRUE(out.unsupported.empty());
+  ASSERT_EQ(out.instances.size(), 2u) << "neither sites nor what has no path are drawn";
+  const InstanceDescription& string = out.instances[1];
+  EXPECT_EQ(string.label.geom, "string");
+  EXPECT_EQ(string.label.material, "hemp");
+  EXPECT_EQ(string.group, 1);
+  expect_near(out.materials[static_cast<size_t>(string.material)].base_color, {1, 0, 0}, 0);
+  float low = 1, high = 0, widest = 0;
+  for (const Vec3f p : out.deformables[0].rest.positions) {
+    low = std::min(low, p.z);
+    high = std::max(high, p.z);
+    widest = std::max(widest, std::hypot(p.x, p.y));
+  }
+  EXPECT_NEAR(low, -.02, 1e-4);
+  EXPECT_NEAR(high, 1.02, 1e-4);
+  EXPECT_NEAR(widest, .02, .001);
 }
 
 }  // namespace

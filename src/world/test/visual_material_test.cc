@@ -141,7 +141,9 @@ TEST(VisualMaterial, ColourOfGeomWinsWhenItIsGiven) {
       <geom size="1" material="m"/><geom size="1" material="m" rgba="0 1 0 .25"/>
       <geom size="1" rgba="0 0 1 1"/><geom size="1"/><geom size="2" material="m"/>
       <geom name="unseen" size="1" rgba="1 1 1 0"/></worldbody></mujoco>)");
-  ASSERT_EQ(out.instances.size(), 5u) << "what is fully transparent is left out, as in MuJoCo";
+  ASSERT_EQ(out.instances.size(), 6u);
+  EXPECT_EQ(out.materials[static_cast<size_t>(out.instances[5].material)].opacity, 0)
+      << "what is fully transparent may be shown by a Command";
   const auto material = [&](size_t i) {
     return out.materials[static_cast<size_t>(out.instances[i].material)];
   };

@@ -1,0 +1,107 @@
+#include "render/scene/material_store.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "world/visual_rules.h"
+
+namespace gloam {
+namespace {
+
+MaterialView view_of(const MaterialDescription& in, const TextureStore& textures) {
+  MaterialView out;
+  const auto unit = [](float x) { return clamp(x, 0.0f, 1.0f); };
+  out.base_color = {unit(in.base_color.x), unit(in.base_color.y), unit(in.base_color.z)};
+  out.emission = {max(in.emission.x, 0), max(in.emission.y, 0), max(in.emission.z, 0)};
+  out.opacity = unit(in.opacity);
+  out.metallic = unit(in.metallic);
+  out.roughness = unit(in.roughness);
+  const float ior = max(in.ior, 1.0f);
+  out.f90 = unit(in.specular_weight);
+  out.f0 = sqr((ior - 1) / (ior + 1)) * out.f90;
+  out.mapping = in.mapping;
+  out.texture_uniform = in.texture_uniform;
+  out.texture_repeat = in.texture_repeat;
+  out.textures = in.textures;
+  const MaterialTextures& t = in.textures;
+  const int used[] = {t.base_color, t.roughness, t.metallic, t.orm,
+                      t.normal,     t.opacity,   t.emission};
+  out.textured = in.mapping != TextureMapping::kNone &&
+                 std::any_of(std::begin(used), std::end(used), [](int i) { return i >= 0; });
+  out.transparent = out.opacity < 1;
+  if (out.textured) {
+    out.transparent |= t.opacity >= 0 || (t.base_color >= 0 && textures.has_alpha[t.base_color]);
+  }
+  return out;
+}
+
+std::array<float, 4> rgba_at(const std::vector<float>& values, int row) {
+  GLOAM_CHECK(values.size() >= 4 * (static_cast<size_t>(row) + 1), "the pose frame lacks a colour");
+  std::array<float, 4> rgba;
+  std::copy_n(values.begin() + 4 * row, 4, rgba.begin());
+  return rgba;
+}
+
+/// The described material with colour `rgba` and everything else as the frame has it.
+MaterialView live_view(const MaterialDescription& described, const std::array<float, 4>& rgba,
+                       const PoseFrame& frame, const TextureStore& textures) {
+  ModelSurface surface;
+  surface.rgba = rgba;
+  if (described.model_material >= 0) {
+    const auto m = static_cast<size_t>(described.model_material);
+    surface.emission = frame.material_emission[m];
+    surface.specular = frame.material_specular[m];
+    surface.shininess = frame.material_shininess[m];
+    surface.reflectance = frame.material_reflectance[m];
+    surface.metallic = frame.material_metallic[m];
+    surface.roughness = frame.material_roughness[m];
+  }
+  MaterialDescription live = described;
+  set_look(surface, &live);
+  return view_of(live, textures);
+}
+
+}  // namespace
+
+MaterialStore::MaterialStore(const RenderDescription& description, const TextureStore& textures) {
+  for (const MaterialDescription& material : description.materials) {
+    views_.push_back(view_of(material, textures));
+  }
+}
+
+bool MaterialStore::update(const RenderDescription& description, const TextureStore& textures,
+                           const PoseFrame& frame, std::vector<InstanceView>* instances) {
+  if (frame.live_serial == live_serial_) return false;
+  live_serial_ = frame.live_serial;
+  const std::vector<MaterialDescription>& materials = description.materials;
+  if (live_serial_ == 0) {
+    *this = MaterialStore(description, textures);
+  } else {
+    views_.resize(materials.size());
+    for (size_t i = 0; i < materials.size(); ++i) {
+      const MaterialDescription& in = materials[i];
+      const bool own = in.own_color || in.model_material < 0;
+      const auto rgba = own ? in.rgba : rgba_at(frame.material_rgba, in.model_material);
+      // Materials of drawn things that are not simulated never change.
+      const bool is_live = in.model_material >= 0;
+      views_[i] = is_live ? live_view(in, rgba, frame, textures) : view_of(in, textures);
+    }
+  }
+  for (size_t i = 0; i < instances->size(); ++i) {
+    const InstanceDescription& in = description.instances[i];
+    const MaterialDescription& material = materials[static_cast<size_t>(in.material)];
+    InstanceView& out = (*instances)[i];
+    out.material = static_cast<uint32_t>(in.material);
+    if (in.geom < 0 || live_serial_ == 0) continue;
+    const auto rgba = rgba_at(frame.geom_rgba, in.geom);
+    const bool own_color = material.model_material < 0 || !is_default_rgba(rgba.data());
+    if (own_color == material.own_color && (!own_color || rgba == material.rgba)) continue;
+    out.material = static_cast<uint32_t>(views_.size());
+    views_.push_back(live_view(
+        material, own_color ? rgba : rgba_at(frame.material_rgba, material.model_material), frame,
+        textures));
+  }
+  return true;
+}
+
+}  // namespace gloam

@@ -1,0 +1,31 @@
+#pragma once
+// Materials as the kernel reads them; they follow the live fields of PoseFrames.
+
+#include <cstdint>
+#include <vector>
+
+#include "render/kernel/scene_view.h"
+#include "render/scene/texture_store.h"
+#include "sim/pose_frame.h"
+
+namespace gloam {
+
+class MaterialStore {
+ public:
+  MaterialStore() = default;
+  /// As described. Both must outlive it.
+  MaterialStore(const RenderDescription& description, const TextureStore& textures);
+
+  /// Takes the live fields of `frame`. An instance whose colour is no longer that of its described
+  /// material gets a row of its own. True when they are not those of the last update.
+  bool update(const RenderDescription& description, const TextureStore& textures,
+              const PoseFrame& frame, std::vector<InstanceView>* instances);
+
+  const std::vector<MaterialView>& views() const { return views_; }
+
+ private:
+  std::vector<MaterialView> views_;  // those of the description, then own ones of instances
+  uint64_t live_serial_ = 0;
+};
+
+}  // namespace gloam
