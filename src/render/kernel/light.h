@@ -231,9 +231,9 @@ class LightPicker {
     sky_share_ = 0;
     if (count_ > kMaxWeighedLights) return;
     const LightGuide& guide = scene.guide;
-    const int cell = guide.nx > 0 ? guide.cell_at(p + n * (0.5f / guide.per_metre)) : -1;
+    const int row = guide.row_at(p, n);
     const float* visible =
-        cell >= 0 ? guide.visible.data + static_cast<size_t>(cell) * guide.rows : nullptr;
+        row >= 0 ? guide.visible.data + static_cast<size_t>(row) * guide.lights : nullptr;
     float total = 0;
     for (uint32_t i = 0; i < count_; ++i) {
       const LightView& light = scene.lights[i];
@@ -241,8 +241,8 @@ class LightPicker {
       if (visible != nullptr && light.guide >= 0) share_[i] *= visible[light.guide];
       total += share_[i];
     }
-    if (cell >= 0 && guide.sky[cell].strength > 0) {
-      sky_ = guide.sky[cell];
+    if (row >= 0 && guide.sky[row].strength > 0) {
+      sky_ = guide.sky[row];
       const float reach = sqrtf(min(2.0f * sky_.one_minus_cos, 1.0f));
       const float cosine = dot(sky_.axis, n) + reach;
       if (cosine > 0) total += sky_share_ = sky_.strength * (min(cosine, 1.0f) + 0.05f);
