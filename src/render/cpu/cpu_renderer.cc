@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/log.h"
 #include "base/parallel.h"
+#include "render/cpu/edge_samples.h"
 #include "render/cpu/embree_scene.h"
 #include "render/cpu/light_guide.h"
 #include "render/kernel/channels.h"
@@ -393,6 +394,10 @@ class CpuRenderer final : public Renderer {
     for (const RenderStats& tile : tiles_) {
       total.paths += tile.paths;
       total.rays += tile.rays;
+    }
+    if (settings.spp > 0 && settings.spp < settings.guide_samples) {
+      total.rays += refine_guides({job.scene, job.tracer, job.camera, job.has_motion},
+                                  settings.guide_samples, film);
     }
     total.trace_seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
