@@ -21,7 +21,7 @@ struct CameraView {
 
 enum class RenderTier : uint8_t {
   kPath,    ///< unbiased path tracing
-  kDirect,  ///< primary hit, direct light with shadows, constant ambient
+  kDirect,  ///< primary hit, direct light with shadows, one ambient light by facing
 };
 
 struct RenderSettings {

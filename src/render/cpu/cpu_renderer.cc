@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/log.h"
 #include "base/parallel.h"
+#include "render/cpu/ambient.h"
 #include "render/cpu/edge_samples.h"
 #include "render/cpu/embree_scene.h"
 #include "render/cpu/light_guide.h"
@@ -366,6 +367,10 @@ class CpuRenderer final : public Renderer {
       job.scene.guide = guide_.view();
     }
     job.camera = make_camera(view);
+    if (settings.tier == RenderTier::kDirect && settings.spp > 0) {
+      job.scene.ambient = measure_ambient(job.scene, job.tracer, job.camera, film->width,
+                                          film->height, settings.max_depth);
+    }
     job.settings = settings;
     job.path = {settings.max_depth, settings.roulette_depth};
     job.film = film;

@@ -11,7 +11,7 @@ constexpr int kCellsAlong = 16;   // of the longest edge
 constexpr int kLightRays = 32;    // to each light from a cell
 constexpr int kSkyRays = 192;     // from a cell, all around
 constexpr float kFloor = 0.005f;  // factor on a light that no ray has seen
-constexpr int kFacings = 6;
+constexpr int kFacings = LightGuide::kFacings;
 constexpr float kWidest = 0.5f;  // 1 - cos: the BSDF finds wider skies itself
 
 /// Rays of one cell, traced a packet at a time.

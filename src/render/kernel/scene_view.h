@@ -98,6 +98,7 @@ struct SkyCone {
 struct LightGuide {
   Vec3f low;            ///< corner of the grid [m]
   float per_metre = 0;  ///< 1 / edge of a cell
+  static constexpr int kFacings = 6;
   int nx = 0, ny = 0, nz = 0;
   uint32_t lights = 0;                ///< that have a weight
   DeviceSpan<const int> surface_row;  ///< cell-major, one per facing; -1 = no such surface
@@ -126,8 +127,19 @@ struct LightGuide {
     if (nx == 0) return -1;
     const float edge = 1.0f / per_metre;
     const int cell = cell_at(p + n * (1e-3f * edge));
-    const int row = cell >= 0 ? surface_row[6 * cell + facing_of(n)] : -1;
+    const int row = cell >= 0 ? surface_row[kFacings * cell + facing_of(n)] : -1;
     return row >= 0 ? row : cell_at(p + n * (0.5f * edge));
+  }
+};
+
+/// Luminance of even surroundings that would light surfaces as strongly as the scene does [cd/m²],
+/// by facing.
+struct AmbientCube {
+  Vec3f light[LightGuide::kFacings];
+
+  GLOAM_HD Vec3f on(Vec3f n) const {
+    return light[n.x >= 0 ? 0 : 1] * (n.x * n.x) + light[n.y >= 0 ? 2 : 3] * (n.y * n.y) +
+           light[n.z >= 0 ? 4 : 5] * (n.z * n.z);
   }
 };
 
@@ -151,7 +163,7 @@ struct SceneView {
   int sky_texture = -1;
   float sky_scale = 0;
   Vec3f sky_ambient;             ///< for indirect rays
-  Vec3f sky_mean;                ///< mean luminance of the texture [cd/m²]
+  AmbientCube ambient;           ///< for the direct stage
   bool has_transparent = false;  ///< some material lets light through
   bool has_emitters = false;  ///< something that a ray can hit gives light: sky, sphere, instance
   bool has_visible_lights = false;  ///< some sphere or sun can be hit

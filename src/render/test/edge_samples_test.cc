@@ -43,7 +43,7 @@ class EdgeSamplesTest : public testing::Test {
 };
 
 TEST_F(EdgeSamplesTest, AreMuchNearerToManySamplesThanOneSampleIs) {
-  const Film many = render(256, 0), one = render(1, 0), refined = render(1, 4);
+  const Film many = render(64, 0), one = render(1, 0), refined = render(1, 4);
   EXPECT_LT(difference(refined.albedo, many.albedo), 0.5 * difference(one.albedo, many.albedo));
   EXPECT_LT(difference(refined.normal, many.normal), 0.5 * difference(one.normal, many.normal));
 }
