@@ -21,7 +21,7 @@ struct CameraView {
 
 enum class RenderTier : uint8_t {
   kPath,    ///< unbiased path tracing
-  kDirect,  ///< primary hit, direct light with shadows, constant ambient
+  kDirect,  ///< primary hit, direct light with shadows, one ambient light by facing
 };
 
 struct RenderSettings {
@@ -34,6 +34,9 @@ struct RenderSettings {
   uint32_t frame = 0;          ///< draws are keyed (seed, frame, pixel, sample)
   bool exact_channels = true;  ///< depth, distance, part, center_normal, center_albedo, motion
   bool variance = false;
+  /// For a denoiser, of pictures with fewer samples than this: albedo and normal of so many rays at
+  /// edges, of the pixel's centre elsewhere. 0 = always those of the samples. Needs exact_channels.
+  int guide_samples = 0;
 };
 
 struct RenderStats {

@@ -157,7 +157,10 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
   settings.max_depth = request.render.max_depth;
   settings.roulette_depth = 3;  // unbiased, and dim paths are a third of all rays in a room
   settings.seed = hash_bytes(request.camera.data(), request.camera.size(), seed);
-  if (request.render.denoise && channels.light()) sensor->denoiser_ = make_denoiser({});
+  if (request.render.denoise && channels.light()) {
+    sensor->denoiser_ = make_denoiser({});
+    settings.guide_samples = 4;
+  }
   settings.exact_channels = channels.geometry() || sensor->denoiser_ != nullptr;
   return sensor;
 }

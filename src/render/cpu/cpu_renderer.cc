@@ -9,6 +9,8 @@
 #include "base/check.h"
 #include "base/log.h"
 #include "base/parallel.h"
+#include "render/cpu/ambient.h"
+#include "render/cpu/edge_samples.h"
 #include "render/cpu/embree_scene.h"
 #include "render/cpu/light_guide.h"
 #include "render/kernel/channels.h"
@@ -398,6 +400,10 @@ class CpuRenderer final : public Renderer {
       job.scene.guide = guide_.view();
     }
     job.camera = make_camera(view);
+    if (settings.tier == RenderTier::kDirect && settings.spp > 0) {
+      job.scene.ambient = measure_ambient(job.scene, job.tracer, job.camera, film->width,
+                                          film->height, settings.max_depth);
+    }
     job.settings = settings;
     job.path = {settings.max_depth, settings.roulette_depth};
     job.film = film;
@@ -426,6 +432,10 @@ class CpuRenderer final : public Renderer {
     for (const RenderStats& tile : tiles_) {
       total.paths += tile.paths;
       total.rays += tile.rays;
+    }
+    if (settings.spp > 0 && settings.spp < settings.guide_samples) {
+      total.rays += refine_guides({job.scene, job.tracer, job.camera, job.has_motion},
+                                  settings.guide_samples, film);
     }
     total.trace_seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -3,16 +3,15 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "render/kernel/light.h"
-#include "render/kernel/sampler.h"
 
 namespace gloam {
 namespace {
 
-constexpr int kCellsAlong = 16;  // of the longest edge
-constexpr int kLightRays = 32;   // to each light from a cell
-constexpr int kSkyRays = 192;    // from a cell, all around
-constexpr float kFloor = 0.02f;  // share of a light that no ray has seen
+constexpr int kCellsAlong = 16;   // of the longest edge
+constexpr int kLightRays = 32;    // to each light from a cell
+constexpr int kSkyRays = 192;     // from a cell, all around
+constexpr float kFloor = 0.005f;  // factor on a light that no ray has seen
+constexpr int kFacings = LightGuide::kFacings;
 constexpr float kWidest = 0.5f;  // 1 - cos: the BSDF finds wider skies itself
 
 /// Rays of one cell, traced a packet at a time.
@@ -67,137 +66,115 @@ class Probes {
   const EmbreeTracer& tracer_;
 };
 
-Sampler sampler_of(int cell, int ray) {
-  return Sampler::make(0, 0, static_cast<uint32_t>(cell) & 0xFFFFu,
-                       static_cast<uint32_t>(cell) >> 16, static_cast<uint32_t>(ray), 9);
-}
-
-Vec3f next_3d(Sampler* sampler) {
-  const Vec2f a = sampler->next_2d();
-  return {a.x, a.y, sampler->next_1d()};
-}
-
-/// Box around an instance in the world.
-void add_bounds(const SceneView& scene, const InstanceView& instance, Vec3f* low, Vec3f* high) {
-  const auto add = [&](Vec3f p_G) {
-    const Vec3f p = transform_point(instance.X_WG, p_G);
-    *low = {min(low->x, p.x), min(low->y, p.y), min(low->z, p.z)};
-    *high = {max(high->x, p.x), max(high->y, p.y), max(high->z, p.z)};
-  };
-  if (instance.shape == ShapeType::kMesh) {
-    const MeshView& mesh = scene.meshes[instance.mesh];
-    for (uint32_t i = 0; i < mesh.positions.size; ++i) add(mesh.positions[i]);
-    return;
-  }
-  Vec3f h = shape_half_size(instance.shape, instance.size);
-  if (instance.shape == ShapeType::kCapsule) h.z += instance.size.x;
-  for (int i = 0; i < 8; ++i) {
-    add({(i & 1) != 0 ? h.x : -h.x, (i & 2) != 0 ? h.y : -h.y, (i & 4) != 0 ? h.z : -h.z});
-  }
-}
-
-/// A box that holds most of the geoms: a lawn around a house must not make its cells coarse.
-void find_crowd(const SceneView& scene, DeviceSpan<const uint32_t> rows, Vec3f* low, Vec3f* size) {
-  constexpr double kOutside = 0.05;
-  constexpr float kMargin = 0.15f;  // of the size, on each side
-  std::vector<float> lows[3], highs[3];
-  for (uint32_t i = 0; i < rows.size; ++i) {
-    Vec3f a{1e30f, 1e30f, 1e30f}, b = a * -1.0f;
-    add_bounds(scene, scene.instances[rows[i]], &a, &b);
-    for (int k = 0; k < 3; ++k) {
-      lows[k].push_back(a[k]);
-      highs[k].push_back(b[k]);
-    }
-  }
-  const auto outside = static_cast<std::ptrdiff_t>(kOutside * static_cast<double>(rows.size));
-  float from[3], length[3];
-  for (int k = 0; k < 3; ++k) {
-    std::nth_element(lows[k].begin(), lows[k].begin() + outside, lows[k].end());
-    std::nth_element(highs[k].begin(), highs[k].end() - 1 - outside, highs[k].end());
-    const float inner = lows[k][outside], edge = *(highs[k].end() - 1 - outside) - inner;
-    from[k] = inner - kMargin * edge;
-    length[k] = (1 + 2 * kMargin) * edge;
-  }
-  *low = {from[0], from[1], from[2]};
-  *size = {length[0], length[1], length[2]};
-}
-
 }  // namespace
 
-Vec3f LightGuideStore::point_in(int cell, Vec3f u) const {
-  const int x = cell % grid_.nx, y = cell / grid_.nx % grid_.ny, z = cell / (grid_.nx * grid_.ny);
-  const Vec3f q{static_cast<float>(x) + u.x, static_cast<float>(y) + u.y,
-                static_cast<float>(z) + u.z};
-  return grid_.low + q * (1.0f / grid_.per_metre);
+SurfacePoint LightGuideStore::start_of(const Row& row, int ray, Sampler* sampler) const {
+  const Vec3f u = next_3d(sampler);
+  if (row.facing < 0) return {point_in_cell(grid_, row.cell, u), {0, 0, 0}};
+  return row.points[static_cast<size_t>(ray) % row.points.size()];
+}
+
+void LightGuideStore::find_rows(const SceneView& scene, const EmbreeTracer& statics) {
+  const int cells = grid_.nx * grid_.ny * grid_.nz;
+  std::vector<Row> surfaces(static_cast<size_t>(cells) * kFacings);
+  parallel_for("light guide surfaces", cells, [&](int64_t cell) {
+    for (int facing = 0; facing < kFacings; ++facing) {
+      const int c = static_cast<int>(cell);
+      surfaces[static_cast<size_t>(cell * kFacings + facing)] = {
+          c, facing, find_surface(scene, statics, grid_, c, facing)};
+    }
+  });
+  rows_.clear();
+  for (int cell = 0; cell < cells; ++cell) rows_.push_back({cell, -1, {}});
+  surface_row_.assign(surfaces.size(), -1);
+  for (size_t i = 0; i < surfaces.size(); ++i) {
+    if (surfaces[i].points.empty()) continue;
+    surface_row_[i] = static_cast<int>(rows_.size());
+    rows_.push_back(std::move(surfaces[i]));
+  }
 }
 
 void LightGuideStore::look_for_lights(const SceneView& scene, const EmbreeTracer& statics,
-                                      int cell) {
-  for (uint32_t light = 0; light < grid_.rows; ++light) {
-    int seen = 0;
+                                      int row) {
+  const Row& from = rows_[static_cast<size_t>(row)];
+  for (uint32_t light = 0; light < grid_.lights; ++light) {
+    int seen = 0, sent = 0;
     Probes(scene, statics)
         .trace(
             kLightRays,
             [&](int i, Ray* ray) {
-              Sampler sampler = sampler_of(cell, i);
-              ray->o = point_in(cell, next_3d(&sampler));
+              Sampler sampler = guide_sampler(row, i, 0);
+              const SurfacePoint start = start_of(from, i, &sampler);
+              ray->o = start.p;
               const float pick = sampler.next_1d();
               const LightSample sample =
                   sample_one_light(scene, light, ray->o, pick, sampler.next_2d(), 0.0f);
-              if (!(sample.pdf > 0)) return false;
+              const bool is_behind = from.facing >= 0 && dot(sample.wi, start.n) <= 0;
+              if (!(sample.pdf > 0) || is_behind) return false;
+              ++sent;
               const Vec3f to = sample.wi * sample.distance + sample.lift;
               ray->d = normalize(to);
               ray->tmax = length(to) * 0.9999f;
               return true;
             },
             [&seen](int, const Ray&) { ++seen; });
-    seen_[static_cast<size_t>(cell) * grid_.rows + light] = static_cast<float>(seen) / kLightRays;
+    seen_[static_cast<size_t>(row) * grid_.lights + light] =
+        sent > 0 ? static_cast<float>(seen) / static_cast<float>(sent) : 0.0f;
   }
 }
 
-void LightGuideStore::look_for_sky(const SceneView& scene, const EmbreeTracer& statics, int cell) {
+void LightGuideStore::look_for_sky(const SceneView& scene, const EmbreeTracer& statics, int row) {
+  const Row& from = rows_[static_cast<size_t>(row)];
   Probes(scene, statics)
       .trace(
           kSkyRays,
           [&](int i, Ray* ray) {
-            Sampler sampler = sampler_of(cell, i);
-            ray->o = point_in(cell, next_3d(&sampler));
+            Sampler sampler = guide_sampler(row, i, 0);
+            const SurfacePoint start = start_of(from, i, &sampler);
+            ray->o = start.p;
             ray->d = sample_sphere(sampler.next_2d());
-            return true;
+            return from.facing < 0 || dot(ray->d, start.n) > 0;
           },
           [&](int, const Ray& ray) {
             const float light = luminance(sky_radiance(scene, ray.d, 0.1f) + scene.sky_ambient);
-            if (light > 0) sky_rays_[static_cast<size_t>(cell)].push_back({ray.d, light});
+            if (light > 0) sky_rays_[static_cast<size_t>(row)].push_back({ray.d, light});
           });
 }
 
-int LightGuideStore::neighborhood(int cell, int* cells) const {
+int LightGuideStore::neighborhood(int row, int* rows) const {
+  const int cell = rows_[static_cast<size_t>(row)].cell;
+  const int facing = rows_[static_cast<size_t>(row)].facing;
   const int n[3] = {grid_.nx, grid_.ny, grid_.nz}, stride[3] = {1, n[0], n[0] * n[1]};
   int count = 0;
-  cells[count++] = cell;
+  rows[count++] = row;
+  const auto add = [&](int other) {
+    const int found =
+        facing < 0 ? other : surface_row_[static_cast<size_t>(kFacings * other + facing)];
+    if (found >= 0) rows[count++] = found;
+  };
   for (int k = 0; k < 3; ++k) {
     const int at = cell / stride[k] % n[k];
-    if (at > 0) cells[count++] = cell - stride[k];
-    if (at + 1 < n[k]) cells[count++] = cell + stride[k];
+    if (at > 0) add(cell - stride[k]);
+    if (at + 1 < n[k]) add(cell + stride[k]);
   }
   return count;
 }
 
-void LightGuideStore::conclude(int cell) {
-  int cells[7];
-  const int count = neighborhood(cell, cells);
-  for (uint32_t light = 0; light < grid_.rows; ++light) {
-    const auto seen = [&](int c) { return seen_[static_cast<size_t>(c) * grid_.rows + light]; };
+void LightGuideStore::conclude(int row) {
+  int rows[7];
+  const int count = neighborhood(row, rows);
+  for (uint32_t light = 0; light < grid_.lights; ++light) {
+    const auto seen = [&](int r) { return seen_[static_cast<size_t>(r) * grid_.lights + light]; };
     float around = 0;
-    for (int i = 1; i < count; ++i) around += seen(cells[i]) / static_cast<float>(count - 1);
-    const float share = count > 1 ? 0.5f * (seen(cell) + around) : seen(cell);
-    visible_[static_cast<size_t>(cell) * grid_.rows + light] = kFloor + (1.0f - kFloor) * share;
+    for (int i = 1; i < count; ++i) around += seen(rows[i]) / static_cast<float>(count - 1);
+    const float share = count > 1 ? 0.5f * (seen(row) + around) : seen(row);
+    visible_[static_cast<size_t>(row) * grid_.lights + light] = max(std::sqrt(share), kFloor);
   }
   Vec3f sum;
   float light = 0;
   size_t rays = 0;
   for (int i = 0; i < count; ++i) {
-    for (const SkyRay& ray : sky_rays_[static_cast<size_t>(cells[i])]) {
+    for (const SkyRay& ray : sky_rays_[static_cast<size_t>(rows[i])]) {
       sum += ray.d;
       light += ray.luminance;
       ++rays;
@@ -208,7 +185,7 @@ void LightGuideStore::conclude(int cell) {
   SkyCone cone;
   cone.axis = normalize(sum);
   for (int i = 0; i < count; ++i) {
-    for (const SkyRay& ray : sky_rays_[static_cast<size_t>(cells[i])]) {
+    for (const SkyRay& ray : sky_rays_[static_cast<size_t>(rows[i])]) {
       cone.one_minus_cos = max(cone.one_minus_cos, 1.0f - dot(cone.axis, ray.d));
     }
   }
@@ -216,49 +193,42 @@ void LightGuideStore::conclude(int cell) {
   cone.one_minus_cos = cone.one_minus_cos * (1.0f + 1.0f / static_cast<float>(rays)) + 1e-3f;
   if (cone.one_minus_cos > kWidest) return;
   cone.strength = light * (4 * kPi / static_cast<float>(kSkyRays * count));
-  sky_[static_cast<size_t>(cell)] = cone;
+  sky_[static_cast<size_t>(row)] = cone;
 }
 
 void LightGuideStore::build(SceneView scene, const EmbreeTracer& statics,
                             const std::vector<LightView>& lights) {
   grid_ = {};
   const bool has_sky = scene.sky_texture >= 0 || luminance(scene.sky_ambient) > 0;
-  if (statics.fixed == nullptr || lights.size() > kMaxWeighedLights ||
-      lights.size() + (has_sky ? 1 : 0) < 2) {
+  const bool has_choice = has_sky || lights.size() > 1;
+  if (statics.fixed == nullptr || lights.size() > kMaxWeighedLights || !has_choice) {
     return;
   }
-  Vec3f low, size;
-  find_crowd(scene,
-             {statics.rows.data + statics.first_fixed, statics.rows.size - statics.first_fixed},
-             &low, &size);
-  const float longest = max_component(size);
-  if (!(longest > 0 && longest < 1e6f)) return;
-  grid_.low = low;
-  grid_.per_metre = kCellsAlong / (longest * 1.0001f);
-  const auto cells = [this](float edge) {
-    return std::max(1, static_cast<int>(std::ceil(edge * grid_.per_metre)));
-  };
-  grid_.nx = cells(size.x);
-  grid_.ny = cells(size.y);
-  grid_.nz = cells(size.z);
-  grid_.rows = static_cast<uint32_t>(lights.size());
-  const int count = grid_.nx * grid_.ny * grid_.nz;
-  visible_.resize(static_cast<size_t>(count) * grid_.rows);
+  grid_ = place_guide_grid(
+      scene, {statics.rows.data + statics.first_fixed, statics.rows.size - statics.first_fixed},
+      kCellsAlong);
+  if (grid_.nx == 0) return;
+  grid_.lights = static_cast<uint32_t>(lights.size());
+  scene.lights = {lights.data(), grid_.lights};
+  find_rows(scene, statics);
+  visible_.resize(rows_.size() * grid_.lights);
   seen_.resize(visible_.size());
-  sky_rays_.resize(static_cast<size_t>(count));
-  sky_.assign(static_cast<size_t>(count), {});
-  scene.lights = {lights.data(), grid_.rows};
-  parallel_for("light guide", count, [&](int64_t cell) {
-    look_for_lights(scene, statics, static_cast<int>(cell));
-    if (has_sky) look_for_sky(scene, statics, static_cast<int>(cell));
+  sky_rays_.resize(rows_.size());
+  sky_.assign(rows_.size(), {});
+  const auto count = static_cast<int64_t>(rows_.size());
+  parallel_for("light guide", count, [&](int64_t row) {
+    look_for_lights(scene, statics, static_cast<int>(row));
+    if (has_sky) look_for_sky(scene, statics, static_cast<int>(row));
   });
-  parallel_for("light guide cells", count, [&](int64_t cell) { conclude(static_cast<int>(cell)); });
+  parallel_for("light guide rows", count, [&](int64_t row) { conclude(static_cast<int>(row)); });
+  rows_ = {};
   seen_ = {};
   sky_rays_ = {};
 }
 
 LightGuide LightGuideStore::view() const {
   LightGuide guide = grid_;
+  guide.surface_row = {surface_row_.data(), static_cast<uint32_t>(surface_row_.size())};
   guide.visible = {visible_.data(), static_cast<uint32_t>(visible_.size())};
   guide.sky = {sky_.data(), static_cast<uint32_t>(sky_.size())};
   return guide;

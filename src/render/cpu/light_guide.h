@@ -5,34 +5,43 @@
 
 #include <vector>
 
-#include "render/cpu/embree_scene.h"
+#include "render/cpu/guide_grid.h"
 
 namespace gloam {
 
 class LightGuideStore {
  public:
   /// A function of what never moves alone, so a picture does not depend on those made before it.
-  /// `lights`: rows of the guide. Without static geometry the guide is empty.
+  /// `lights`: those of the guide. Without static geometry the guide is empty.
   void build(SceneView scene, const EmbreeTracer& statics, const std::vector<LightView>& lights);
   LightGuide view() const;
 
  private:
-  void look_for_lights(const SceneView& scene, const EmbreeTracer& statics, int cell);
-  void look_for_sky(const SceneView& scene, const EmbreeTracer& statics, int cell);
-  /// Makes the cell's guide from what it and its neighbours have seen.
-  void conclude(int cell);
-  /// The cell and up to six that share a face with it.
-  int neighborhood(int cell, int* cells) const;
-  Vec3f point_in(int cell, Vec3f u) const;
-
+  /// Where the rays of one row start: at surfaces, or anywhere in the cell.
+  struct Row {
+    int cell = 0;
+    int facing = -1;  ///< -1: anywhere
+    std::vector<SurfacePoint> points;
+  };
   struct SkyRay {
     Vec3f d;
     float luminance;
   };
 
+  void find_rows(const SceneView& scene, const EmbreeTracer& statics);
+  void look_for_lights(const SceneView& scene, const EmbreeTracer& statics, int row);
+  void look_for_sky(const SceneView& scene, const EmbreeTracer& statics, int row);
+  /// Makes the row's guide from what it and its neighbours have seen.
+  void conclude(int row);
+  /// The row and up to six like it in cells that share a face with its own.
+  int neighborhood(int row, int* rows) const;
+  SurfacePoint start_of(const Row& row, int ray, Sampler* sampler) const;
+
   LightGuide grid_;
-  std::vector<float> seen_;                    ///< cell-major; while building
-  std::vector<std::vector<SkyRay>> sky_rays_;  ///< of each cell; while building
+  std::vector<Row> rows_;                      ///< while building
+  std::vector<float> seen_;                    ///< row-major; while building
+  std::vector<std::vector<SkyRay>> sky_rays_;  ///< of each row; while building
+  std::vector<int> surface_row_;
   std::vector<float> visible_;
   std::vector<SkyCone> sky_;
 };

@@ -26,8 +26,8 @@ class Denoiser {
   virtual ~Denoiser() = default;
   /// Writes the film's radiance without its noise to `out` [cd/m²], (height x width). Uses albedo,
   /// normal, depth and variance where the film has them. Pixels that are not numbers count as
-  /// black; single pixels far brighter than everything around them (fireflies) are toned down
-  /// first.
+  /// black; the light of single pixels far brighter than everything around them (fireflies) is
+  /// spread first.
   virtual Status denoise(const Film& film, std::vector<Vec3f>* out) = 0;
   virtual const char* name() const = 0;
 };
@@ -46,7 +46,9 @@ std::unique_ptr<Denoiser> make_denoiser(const DenoiseOptions& options);
 
 /// What both do first: not-a-number to black, and pixels brighter than four times the third
 /// brightest of their 5 x 5 neighbours down to that. Every thin line or highlight of three or more
-/// pixels passes unchanged.
+/// pixels passes unchanged. What fireflies lose is spread, as light on the albedo there, over the
+/// 33 x 33 pixels around that face the same way, so that the picture keeps its mean; a pixel gets
+/// at most 2 % of a firefly's limit of it.
 void remove_fireflies(const Film& film, std::vector<Vec3f>* out);
 
 }  // namespace gloam

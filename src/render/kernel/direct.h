@@ -1,5 +1,6 @@
 #pragma once
-// The direct stage: first surfaces, every light with its shadow, constant ambient, no reflections.
+// The direct stage: first surfaces, every light with its shadow; one measured ambient light stands
+// for what is reflected and for the sky.
 // A state machine like the path stage. Device-safe.
 
 #include "render/kernel/path.h"
@@ -39,7 +40,7 @@ GLOAM_HD void direct_start(DirectState* state, const Ray& ray, RayCone cone, Sam
 
 namespace directs {
 
-/// A surface that the view meets: what it gives off, and the constant ambient.
+/// A surface that the view meets: what it gives off, and the ambient light.
 GLOAM_HD void meet_surface(const SceneView& scene, DirectState* d, const RayHit& hit) {
   d->s = make_surface(scene, d->ray, hit, d->cone);
   d->cone.width += d->cone.spread * hit.t;
@@ -55,7 +56,7 @@ GLOAM_HD void meet_surface(const SceneView& scene, DirectState* d, const RayHit&
   float a, b;
   layer_albedo(*scene.albedo, d->s.roughness, d->wo.z, &a, &b);
   const Vec3f albedo = d->bsdf.diffuse + d->bsdf.f0 * a + d->bsdf.f90 * b;
-  d->result.radiance += (surface_emission(d->s) + albedo * (scene.sky_ambient + scene.sky_mean)) *
+  d->result.radiance += (surface_emission(d->s) + albedo * scene.ambient.on(d->s.normal)) *
                         (d->transmittance * d->s.opacity);
   d->next_light = 0;
   if (scene.lights.size > kMaxDirectLights) d->picker.prepare(scene, d->s.p, d->s.geometric);

@@ -337,17 +337,15 @@ class LightPickerOf {
   GLOAM_HD void prepare(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, Mask active = true) {
     count_ = scene.lights.size;
     if (count_ > kMaxWeighedLights) return;
-    Uint row{};  // of the guide
+    Uint first{};  // of the guide's visibilities
     Mask guided = false;
-    if (scene.guide.nx > 0) {
-      find_cell(scene.guide, p + n * (0.5f / scene.guide.per_metre), active, &row, &guided);
-    }
+    if (scene.guide.nx > 0) find_rows(scene.guide, p, n, active, &first, &guided);
     F weight[kMaxWeighedLights], total = 0.0f, sky = 0.0f;
     for (uint32_t i = 0; i < count_; ++i) {
       const LightView& light = scene.lights[i];
       weight[i] = light_weight(light, p, n);
       if (light.guide >= 0 && any(guided)) {
-        const F visible = gather(scene.guide.visible.data + light.guide, row);
+        const F visible = gather(scene.guide.visible.data + light.guide, first);
         weight[i] *= select(guided, visible, F(1.0f));
       }
       total += weight[i];
@@ -421,17 +419,17 @@ class LightPickerOf {
   }
 
  private:
-  /// Rows of the guide at p, and the sky there.
-  GLOAM_HD void find_cell(const LightGuide& guide, Vec3Of<F> p, Mask active, Uint* row,
+  /// First visibilities of the guide's rows for the surfaces, and the sky there.
+  GLOAM_HD void find_rows(const LightGuide& guide, Vec3Of<F> p, Vec3Of<F> n, Mask active, Uint* first,
                           Mask* guided) {
     for (int i = 0; i < Lanes<F>::kCount; ++i) {
       if (!lane(active, i)) continue;
-      const int cell = guide.cell_at(lane(p, i));
+      const int row = guide.row_at(lane(p, i), lane(n, i));
       set_lane(&sky_strength_, i, 0.0f);
-      if (cell < 0) continue;
+      if (row < 0) continue;
       set_lane(guided, i, true);
-      set_lane(row, i, static_cast<uint32_t>(cell) * guide.rows);
-      const SkyCone& sky = guide.sky[static_cast<uint32_t>(cell)];
+      set_lane(first, i, static_cast<uint32_t>(row) * guide.lights);
+      const SkyCone& sky = guide.sky[static_cast<uint32_t>(row)];
       set_lane(&sky_strength_, i, sky.strength);
       set_lane(&sky_one_minus_cos_, i, sky.one_minus_cos);
       set_lane(&sky_axis_, i, sky.axis);

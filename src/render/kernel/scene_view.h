@@ -93,14 +93,19 @@ struct SkyCone {
 };
 
 /// What static geometry lets through to the cells of a regular grid. It steers sampling alone: a
-/// wrong guess costs noise, never the mean.
+/// wrong guess costs noise, never the mean. A wall's two sides see different lights, so a cell has
+/// a row for static surfaces of each facing that it holds, and one for all else in it.
 struct LightGuide {
   Vec3f low;            ///< corner of the grid [m]
   float per_metre = 0;  ///< 1 / edge of a cell
+  static constexpr int kFacings = 6;
   int nx = 0, ny = 0, nz = 0;
-  uint32_t rows = 0;                ///< lights that have one
-  DeviceSpan<const float> visible;  ///< cell-major: share of each light seen, with a floor
-  DeviceSpan<const SkyCone> sky;    ///< one per cell
+  uint32_t lights = 0;                ///< that have a weight
+  DeviceSpan<const int> surface_row;  ///< cell-major, one per facing; -1 = no such surface
+  /// Row-major: factor on each light's weight, the square root of the share of it that is seen,
+  /// above zero. (What is drawn best in proportion to is a light's root mean square.)
+  DeviceSpan<const float> visible;
+  DeviceSpan<const SkyCone> sky;  ///< one per row; the first rows are the cells'
 
   GLOAM_HD int cell_at(Vec3f p) const {
     const Vec3f q = (p - low) * per_metre;
@@ -109,6 +114,32 @@ struct LightGuide {
       return -1;
     }
     return (static_cast<int>(q.z) * ny + static_cast<int>(q.y)) * nx + static_cast<int>(q.x);
+  }
+  /// Axis that a normal is nearest to: 2 k along the k-th, 2 k + 1 against it.
+  GLOAM_HD static int facing_of(Vec3f n) {
+    const Vec3f a{fabsf(n.x), fabsf(n.y), fabsf(n.z)};
+    if (a.z >= a.x && a.z >= a.y) return n.z >= 0 ? 4 : 5;
+    if (a.y >= a.x) return n.y >= 0 ? 2 : 3;
+    return n.x >= 0 ? 0 : 1;
+  }
+  /// The row for a surface at p with the normal n; -1 outside the grid, or without one.
+  GLOAM_HD int row_at(Vec3f p, Vec3f n) const {
+    if (nx == 0) return -1;
+    const float edge = 1.0f / per_metre;
+    const int cell = cell_at(p + n * (1e-3f * edge));
+    const int row = cell >= 0 ? surface_row[kFacings * cell + facing_of(n)] : -1;
+    return row >= 0 ? row : cell_at(p + n * (0.5f * edge));
+  }
+};
+
+/// Luminance of even surroundings that would light surfaces as strongly as the scene does [cd/m²],
+/// by facing.
+struct AmbientCube {
+  Vec3f light[LightGuide::kFacings];
+
+  GLOAM_HD Vec3f on(Vec3f n) const {
+    return light[n.x >= 0 ? 0 : 1] * (n.x * n.x) + light[n.y >= 0 ? 2 : 3] * (n.y * n.y) +
+           light[n.z >= 0 ? 4 : 5] * (n.z * n.z);
   }
 };
 
@@ -132,7 +163,7 @@ struct SceneView {
   int sky_texture = -1;
   float sky_scale = 0;
   Vec3f sky_ambient;             ///< for indirect rays
-  Vec3f sky_mean;                ///< mean luminance of the texture [cd/m²]
+  AmbientCube ambient;           ///< for the direct stage
   bool has_transparent = false;  ///< some material lets light through
   bool has_emitters = false;  ///< something that a ray can hit gives light: sky, sphere, instance
   bool has_visible_lights = false;  ///< some sphere or sun can be hit

@@ -220,7 +220,6 @@ SceneView RenderScene::view_from(const Affine3f& X_WC) {
   view.sky_texture = sky.scale > 0 ? sky.texture : -1;
   view.sky_scale = sky.scale;
   view.sky_ambient = sky_ambient_;
-  if (view.sky_texture >= 0) view.sky_mean = textures_.mean[sky.texture] * sky.scale;
   for (size_t i = 0; i < instances_.size(); ++i) {
     const MaterialView& material = materials_.views()[instances_[i].material];
     if (!is_drawn(i)) continue;

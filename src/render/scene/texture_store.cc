@@ -111,7 +111,6 @@ Result<TextureStore> make_texture_store(const std::vector<TextureDescription>& t
   }
   store.texels.resize(texel_count);
   store.has_alpha.resize(textures.size());
-  store.mean.resize(textures.size());
   std::vector<uint8_t> has_alpha(textures.size());
   parallel_for("textures", static_cast<int64_t>(textures.size()), [&](int64_t i) {
     const TextureView& view = store.textures[i];
@@ -125,10 +124,6 @@ Result<TextureStore> make_texture_store(const std::vector<TextureDescription>& t
         halve(store.texels.data() + level[k - 1].first, level[k - 1],
               store.texels.data() + level[k].first, level[k]);
       }
-      const Texel& top = store.texels[level[view.level_count - 1].first];
-      store.mean[i] +=
-          Vec3f{static_cast<float>(top.r), static_cast<float>(top.g), static_cast<float>(top.b)} *
-          (1.0f / (65535.0f * static_cast<float>(view.face_count)));
     }
   });
   store.has_alpha.assign(has_alpha.begin(), has_alpha.end());

@@ -12,7 +12,6 @@ struct TextureStore {
   std::vector<TextureLevel> levels;
   std::vector<Texel> texels;
   std::vector<bool> has_alpha;  ///< some texel is not opaque, per texture
-  std::vector<Vec3f> mean;      ///< mean linear colour over all faces, per texture
 };
 
 /// Errors: a texture without texels, with the wrong number of faces or of texels.

@@ -326,7 +326,7 @@ TEST(Path, DirectTierEqualsPathTierOfOneReflection) {
   light.intensity = {20, 20, 20};
   b.add_light(light, {0, 0, 3}, normalize(Vec3f{1, 1, -2}));
   const CameraView view = SceneBuilder::camera(look_at({3, -3, 2}, {0, 0, 0.4f}), 32, 32, 30);
-  RenderSettings path = settings_of(256, 2), direct = settings_of(256);
+  RenderSettings path = settings_of(256, 2), direct = settings_of(256, 2);
   direct.tier = RenderTier::kDirect;
   const Mean a = picture_mean(b.render(view, path)), c = picture_mean(b.render(view, direct));
   EXPECT_NEAR(a.mean, c.mean, 4 * std::hypot(a.standard_error(), c.standard_error()));
