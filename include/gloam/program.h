@@ -13,8 +13,8 @@ const char* version();
 /// Compiler, instruction set, build type and the versions of MuJoCo and Embree: what determinism is
 /// relative to.
 std::string configuration();
-/// The folder that holds `assets/`: $GLOAM_HOME, else found upwards from the running program or from
-/// the library that it uses, as the source tree or as share/gloam/ of an installation.
+/// The folder that holds `assets/`: $GLOAM_HOME, else found upwards from the running program or
+/// from the library that it uses, as the source tree or as share/gloam/ of an installation.
 Result<std::filesystem::path> gloam_home();
 
 enum class LogLevel { kDebug, kInfo, kWarning, kError, kOff };

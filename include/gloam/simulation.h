@@ -67,7 +67,7 @@ struct SimulationStats {
   double realtime_factor = 0;  ///< simulated seconds per wall second since the last resume
   int64_t dropped_snapshots = 0;
   int64_t commands_applied = 0;  ///< posted ones, over all runs
-  int64_t warnings = 0;  ///< MuJoCo's, all types
+  int64_t warnings = 0;          ///< MuJoCo's, all types
 };
 
 /// A body under a pixel, for dragging.

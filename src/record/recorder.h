@@ -103,8 +103,8 @@ class Recorder {
 
   /// The first failure so far, as ErrorKind::kPartial; it stops the recording.
   virtual Status status() const = 0;
-  /// Writes what is queued, ends videos, makes contact sheet and summary. Returns what status() does
-  /// then. Call once.
+  /// Writes what is queued, ends videos, makes contact sheet and summary. Returns what status()
+  /// does then. Call once.
   virtual Status finish(const RunOutcome& outcome) = 0;
   virtual const std::filesystem::path& folder() const = 0;
 };

@@ -219,6 +219,8 @@ class Work(ProgramTest):
         """Starts the program, waits until started() holds, sends it the signal; returns its exit code and stderr."""
         process = subprocess.Popen([str(PROGRAM), *map(str, arguments)], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                    env={**os.environ, "GLOAM_CACHE": str(self.folder / "cache")})
+        self.addCleanup(process.communicate)
+        self.addCleanup(process.kill)  # before the other; does nothing to one that has ended
         deadline = time.time() + 60
         while not started() and process.poll() is None and time.time() < deadline:
             time.sleep(0.05)
