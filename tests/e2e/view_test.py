@@ -2,6 +2,7 @@
 import re
 import signal
 import subprocess
+import time
 import unittest
 
 import browser
@@ -82,6 +83,7 @@ class ViewTest(ProgramTest):
 
         page.key(" ", " ")
         page.wait("document.getElementById('factor').innerText == 'paused'")
+        time.sleep(0.5)  # the page says so before the simulation has answered
         steps = int(page.text("steps").replace(",", ""))
         page.click("step")
         page.wait(f"document.getElementById('steps').innerText.replaceAll(',', '') == {steps + 1}")
