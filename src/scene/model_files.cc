@@ -338,6 +338,8 @@ Error ModelFiles::explain(const std::string& message, const fs::path& model) con
   static const std::regex kNamed("[;,]? *Element name ('[^']*'), id -?\\d+");
   text = std::regex_replace(text, kUnnamed, "");
   text = std::regex_replace(text, kNamed, ", in $1");
+  static const std::regex kKeyframe("^Keyframe ([^' ]+) has");  // names in quotes are looked for
+  text = std::regex_replace(text, kKeyframe, "Keyframe '$1' has");
   Error error{ErrorKind::kInput, text, {model.string(), 0, 0}};
   std::string element;
   std::smatch match;

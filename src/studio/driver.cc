@@ -182,6 +182,9 @@ void Driver::do_message(int64_t client, const CameraMessage& message) {
   if (message.name == camera_ && stream_) return;
   if (std::find(cameras_.begin(), cameras_.end(), message.name) == cameras_.end())
     return reply_(client, notice_message("There is no camera named '" + message.name + "'."));
+  // The free camera begins where its user was looking from: the model may have walls.
+  if (const auto frame = publisher_.newest(); frame && camera_ != kFreeCamera)
+    free_start_ = frame->X_WC;
   close_camera();
   tell_failure(client, open_camera(message.name));
 }
@@ -272,7 +275,7 @@ Status Driver::open_camera(const std::string& name) {
                         .height = options_.height,
                         .render = options_.render};
   // From the first picture on where its user left it.
-  if (name == kFreeCamera && orbit_) request.X_WC = orbit_->pose();
+  if (name == kFreeCamera) request.X_WC = orbit_ ? orbit_->pose() : free_start_;
   last_attempt_ = Clock::now();
   auto opened = simulation_.open_camera(
       request, [this](std::shared_ptr<const CameraFrame> frame) { publisher_.offer(frame); });

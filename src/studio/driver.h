@@ -112,6 +112,7 @@ class Driver {
   std::string camera_;
   std::unique_ptr<CameraStream> stream_;
   std::optional<OrbitCamera> orbit_;
+  std::optional<Pose> free_start_;  // where the free camera begins; none = it frames the model
   std::optional<Drag> drag_;
   double speed_ = 1;
   bool picture_is_old_ = false;

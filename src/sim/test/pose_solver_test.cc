@@ -283,6 +283,16 @@ TEST(PoseSolver, FollowsLiveFields) {
   EXPECT_EQ(again.material_rgba, before.material_rgba);
   ASSERT_TRUE(solver->solve(old, frame).ok());
   EXPECT_TRUE(frame.height_field.empty());
+
+  // The fifth change since the simulation was made is the first of its second run.
+  ASSERT_TRUE(sim->reset().ok());
+  ASSERT_TRUE(sim->post({.what = SetLiveField{LiveFieldId::kHeightField, 3, {.25f}}}).ok());
+  ASSERT_TRUE(sim->step(1).ok());
+  ASSERT_TRUE(solver->solve(sim->latest(), frame).ok());
+  EXPECT_EQ(sim->latest().data().live->version, 1u);
+  EXPECT_EQ(frame.live_serial, 5u);
+  EXPECT_EQ(frame.height_field_serial, 5u);
+  EXPECT_EQ(frame.height_field[3], .25f);
 }
 
 TEST(PoseSolver, SeesWhatSleeps) {
