@@ -20,7 +20,7 @@ void RunOptions::add_rendering(CLI::App& command) {
   command.add_option("--spp", spp, "Samples per pixel")->check(CLI::Range(1, 65536));
   command.add_option("--max-depth", max_depth, "Longest light path, in vertices")
       ->check(CLI::Range(1, 64));
-  command.add_option("--tier", tier, "path: unbiased light; direct: fast, no indirect light")
+  command.add_option("--tier", tier, "path: unbiased light; direct: fast, one ambient light")
       ->check(CLI::IsMember({"path", "direct"}));
   command.add_option("--ev", ev100, "Exposure value at ISO 100; default: by the scene's light");
   command.add_flag("--no-denoise", no_denoise, "Show the samples as they are");

@@ -434,6 +434,7 @@ class CpuRenderer final : public Renderer {
       total.rays += tile.rays;
     }
     if (settings.spp > 0 && settings.spp < settings.guide_samples) {
+      GLOAM_CHECK(settings.exact_channels, "guide samples need the exact channels");
       total.rays += refine_guides({job.scene, job.tracer, job.camera, job.has_motion},
                                   settings.guide_samples, film);
     }

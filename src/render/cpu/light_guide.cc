@@ -10,7 +10,7 @@ namespace {
 constexpr int kCellsAlong = 16;   // of the longest edge
 constexpr int kLightRays = 32;    // to each light from a cell
 constexpr int kSkyRays = 192;     // from a cell, all around
-constexpr float kFloor = 0.005f;  // factor on a light that no ray has seen
+constexpr float kFloor = 0.002f;  // share of a light that no ray has seen
 constexpr int kFacings = LightGuide::kFacings;
 constexpr float kWidest = 0.5f;  // 1 - cos: the BSDF finds wider skies itself
 
@@ -168,7 +168,7 @@ void LightGuideStore::conclude(int row) {
     float around = 0;
     for (int i = 1; i < count; ++i) around += seen(rows[i]) / static_cast<float>(count - 1);
     const float share = count > 1 ? 0.5f * (seen(row) + around) : seen(row);
-    visible_[static_cast<size_t>(row) * grid_.lights + light] = max(std::sqrt(share), kFloor);
+    visible_[static_cast<size_t>(row) * grid_.lights + light] = max(share, kFloor);
   }
   Vec3f sum;
   float light = 0;

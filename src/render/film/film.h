@@ -12,8 +12,10 @@ struct Film {
   int width = 0, height = 0;
   std::vector<Vec3f> radiance;  ///< mean over samples, linear Rec. 709 [cd/m²]
   std::vector<Vec3f> variance;  ///< of that mean, per channel; empty unless asked for
-  std::vector<Vec3f> albedo;    ///< mean over samples (filtered), 0..1; sky: 0
-  std::vector<Vec3f> normal;    ///< mean over samples of the shading normal, world; sky: 0
+  // Guides for a denoiser; means over samples, unless RenderSettings::guide_samples asks for
+  // better.
+  std::vector<Vec3f> albedo;  ///< 0..1; sky: 0
+  std::vector<Vec3f> normal;  ///< shading normal, world; sky: 0
   // Exact channels: of the ray through the pixel's centre, never averaged.
   std::vector<float> depth;          ///< along the optical axis [m]; +inf = nothing
   std::vector<float> distance;       ///< along the ray [m]; +inf = nothing

@@ -102,8 +102,7 @@ struct LightGuide {
   int nx = 0, ny = 0, nz = 0;
   uint32_t lights = 0;                ///< that have a weight
   DeviceSpan<const int> surface_row;  ///< cell-major, one per facing; -1 = no such surface
-  /// Row-major: factor on each light's weight, the square root of the share of it that is seen,
-  /// above zero. (What is drawn best in proportion to is a light's root mean square.)
+  /// Row-major: share of each light that is seen, above zero.
   DeviceSpan<const float> visible;
   DeviceSpan<const SkyCone> sky;  ///< one per row; the first rows are the cells'
 

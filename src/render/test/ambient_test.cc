@@ -79,7 +79,8 @@ TEST(Ambient, IsTheSameForAnyNumberOfThreadsAndFrame) {
 }
 
 TEST(Ambient, ChangesLittleAsTheCameraMoves) {
-  const auto renderer = make_place(Place::kRoomWithWindow).make();
+  const SceneBuilder b = make_place(Place::kRoomWithWindow);  // the renderer refers to it
+  const auto renderer = b.make();
   RenderSettings settings;
   settings.spp = 1;
   settings.tier = RenderTier::kDirect;
