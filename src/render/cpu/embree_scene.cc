@@ -375,8 +375,8 @@ void EmbreeScene::build_fixed(const RenderScene& scene) {
   const std::vector<InstanceView>& instances = scene.instances();
   for (size_t i = 0; i < instances.size(); ++i) {
     const InstanceView& in = instances[i];
-    if (!scene.is_fixed(i) || in.shape == ShapeType::kDeformable ||
-        is_infinite_plane(in) || !scene.is_drawn(i)) {
+    if (!scene.is_fixed(i) || in.shape == ShapeType::kDeformable || is_infinite_plane(in) ||
+        !scene.is_drawn(i)) {
       continue;
     }
     RtcOwner<RTCGeometry> geometry;
@@ -409,8 +409,8 @@ void EmbreeScene::build_shapes(const RenderScene& scene) {
   const std::vector<InstanceView>& instances = scene.instances();
   for (size_t i = 0; i < instances.size(); ++i) {
     const InstanceView& in = instances[i];
-    if (scene.is_fixed(i) || in.shape == ShapeType::kDeformable ||
-        is_infinite_plane(in) || !scene.is_drawn(i)) {
+    if (scene.is_fixed(i) || in.shape == ShapeType::kDeformable || is_infinite_plane(in) ||
+        !scene.is_drawn(i)) {
       continue;
     }
     const ShapeKey key = is_mesh(in.shape) ? ShapeKey{in.shape, in.mesh, 0, 0, 0}

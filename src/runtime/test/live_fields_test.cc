@@ -101,6 +101,8 @@ struct Case {
   Look before, after;
 };
 
+void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+
 const std::vector<Case> kCases = {
     {"colour",
      LiveFieldId::kMaterialColor,
