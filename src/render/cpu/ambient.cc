@@ -27,7 +27,8 @@ Vec3f incoming(const SceneView& scene, const EmbreeTracer& tracer, const Ray& ra
   }
   if (scene.instances[hit.instance].light >= 0) return {};
   constexpr int kRoulette = 3;
-  return trace_path(scene, tracer, ray, 0.0f, kSpread, {max_depth - 1, kRoulette}, sampler).radiance;
+  return trace_path(scene, tracer, ray, 0.0f, kSpread, {max_depth - 1, kRoulette}, sampler)
+      .radiance;
 }
 
 void add_path(const SceneView& scene, const EmbreeTracer& tracer, const CameraView32& camera,

@@ -420,8 +420,8 @@ class LightPickerOf {
 
  private:
   /// First visibilities of the guide's rows for the surfaces, and the sky there.
-  GLOAM_HD void find_rows(const LightGuide& guide, Vec3Of<F> p, Vec3Of<F> n, Mask active, Uint* first,
-                          Mask* guided) {
+  GLOAM_HD void find_rows(const LightGuide& guide, Vec3Of<F> p, Vec3Of<F> n, Mask active,
+                          Uint* first, Mask* guided) {
     for (int i = 0; i < Lanes<F>::kCount; ++i) {
       if (!lane(active, i)) continue;
       const int row = guide.row_at(lane(p, i), lane(n, i));
