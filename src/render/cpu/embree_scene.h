@@ -3,12 +3,11 @@
 // is compiled with. Static geometry is one BVH, built once; each moving geom is an instance of the
 // BVH of its shape with one or two motion keys. Infinite planes stay outside, in a short list.
 
-#include <embree3/rtcore.h>
-
 #include <map>
 #include <memory>
 #include <vector>
 
+#include "render/cpu/embree_tracer.h"
 #include "render/kernel/shapes.h"
 #include "render/scene/render_scene.h"
 
@@ -28,39 +27,6 @@ struct ShapeGeometry {
   ShapeType shape;
   Vec3f size;
   Affine3f X_SG;
-};
-
-/// What the kernel traces with. Cheap to copy; valid until the scene's next update.
-class EmbreeTracer {
- public:
-  static constexpr int kPacket = 16;
-
-  /// One ray: the closest hit, or with `any` just whether there is one.
-  bool trace(const Ray& ray, bool any, RayHit* hit) const;
-  /// The rays of the `active` lanes; returns those that hit something.
-  bool closest(const Ray& ray, bool active, bool coherent, RayHit* hit) const;
-  bool occluded(const Ray& ray, bool active) const;
-  MaskLanes closest(const RayOf<FloatLanes>& ray, MaskLanes active, bool coherent,
-                    RayHitOf<FloatLanes>* hit) const;
-  MaskLanes occluded(const RayOf<FloatLanes>& ray, MaskLanes active) const;
-  /// Up to kPacket rays of one kind at once; even incoherent ones are faster so.
-  void trace_packet(const Ray* const* rays, int count, bool any, bool coherent, RayHit* hits,
-                    bool* found) const;
-
-  // Two scenes, one after the other: an instance around all that is static would cost every ray
-  // more.
-  RTCScene fixed = nullptr, moving = nullptr;  ///< either may be absent
-  DeviceSpan<const uint32_t> rows;             ///< Embree id -> instance, those of `moving` first
-  uint32_t first_fixed = 0;                    ///< id of the first of `fixed`
-  DeviceSpan<const uint32_t> planes;           ///< rows of infinite planes
-  DeviceSpan<const InstanceView> instances;
-
- private:
-  /// Nearest infinite plane before *tmax, which moves there; -1 = none.
-  int hit_planes(const Ray& ray, float* tmax) const;
-  /// The same in lanes: row + 1, 0 = none.
-  UintLanes hit_planes(const RayOf<FloatLanes>& ray, FloatLanes* tmax) const;
-  void resolve(uint32_t instance_id, uint32_t geometry_id, float time, RayHit* hit) const;
 };
 
 class EmbreeScene {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "render/cpu/embree_scene.h"
-#include "render/kernel/light.h"
+#include "render/kernel/light_picker.h"
 #include "render/kernel/sampler.h"
 
 namespace gloam {

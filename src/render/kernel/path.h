@@ -2,7 +2,7 @@
 // The path stage: one path, or one in each lane, from the camera to its end. Device-safe.
 
 #include "render/kernel/camera.h"
-#include "render/kernel/light.h"
+#include "render/kernel/light_picker.h"
 #include "render/kernel/sampler.h"
 
 namespace gloam {

@@ -1,0 +1,212 @@
+#pragma once
+// Many lights: which to take at a surface, and the radiance of what a ray meets. The luminous
+// spheres of lamps and the disc of a sun are seen in reflections, do not block rays, and are not
+// shown to the camera. Device-safe.
+
+#include "render/kernel/light.h"
+
+namespace gloam {
+
+/// Scenes with more lights select by power alone.
+inline constexpr uint32_t kMaxWeighedLights = 16;
+
+/// A bound, up to a factor, of what light i brings to the surface at p with the geometric normal n
+/// if nothing is in between; zero only if it brings nothing.
+template <class F>
+GLOAM_HD F light_weight(const LightView& light, Vec3Of<F> p, Vec3Of<F> n) {
+  if (light.kind == LightKind::kDirectional) {
+    const F cosine = -dot(in_all_lanes<F>(light.direction), n);
+    return select(cosine > -light.radius, light.strength * (max(cosine, 0.0f) + 0.05f), F(0.0f));
+  }
+  const Vec3Of<F> to = in_all_lanes<F>(light.p) - p;
+  const F height = dot(to, n) + light.reach;
+  const F distance2 = dot(to, to);
+  const F inv_d2 = 1.0f / max(max(distance2, light.reach * light.reach), 1e-8f);
+  const F cosine = min(height * square_root(inv_d2), 1.0f);
+  // Outside the cone of a spot nothing arrives.
+  const F cone = light.kind == LightKind::kSpot
+                     ? spot_falloff(light, -to / square_root(max(distance2, 1e-12f)))
+                     : F(1.0f);
+  return select(height > 0.0f, light.strength * inv_d2 * (cosine + 0.05f) * cone, F(0.0f));
+}
+
+/// How lights are taken at one surface: in proportion to light_weight where there are few, by power
+/// alone where there are many.
+template <class F>
+class LightPickerOf {
+ public:
+  using Mask = MaskOf<F>;
+  using Uint = UintOf<F>;
+
+  /// For the surfaces at p with the geometric normals n, in the `active` lanes; the others keep
+  /// what they were prepared for.
+  GLOAM_HD void prepare(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, Mask active = true) {
+    count_ = scene.lights.size;
+    if (count_ > kMaxWeighedLights) return;
+    Uint first{};  // of the guide's visibilities
+    Mask guided = false;
+    if (scene.guide.nx > 0) find_rows(scene.guide, p, n, active, &first, &guided);
+    F weight[kMaxWeighedLights], total = 0.0f, sky = 0.0f;
+    for (uint32_t i = 0; i < count_; ++i) {
+      const LightView& light = scene.lights[i];
+      weight[i] = light_weight(light, p, n);
+      if (light.guide >= 0 && any(guided)) {
+        const F visible = gather(scene.guide.visible.data + light.guide, first);
+        weight[i] *= select(guided, visible, F(1.0f));
+      }
+      total += weight[i];
+    }
+    if (any(sky_strength_ > 0.0f)) {
+      const F reach = square_root(min(2.0f * sky_one_minus_cos_, 1.0f));
+      const F cosine = dot(sky_axis_, n) + reach;
+      sky = select(cosine > 0.0f, sky_strength_ * (min(cosine, 1.0f) + 0.05f), F(0.0f));
+      total += sky;
+    }
+    const F inverse = select(total > 0.0f, 1.0f / total, F(0.0f));
+    for (uint32_t i = 0; i < count_; ++i) {
+      share_[i] = select(active, weight[i] * inverse, share_[i]);
+    }
+    sky_share_ = select(active, sky * inverse, sky_share_);
+  }
+
+  /// Density with which sample() makes the direction d for its sky.
+  GLOAM_HD F sky_pdf(Vec3Of<F> d) const {
+    if (!any(sky_share_ > 0.0f)) return 0.0f;
+    const Mask inside = (sky_share_ > 0.0f) & (dot(d, sky_axis_) >= 1.0f - sky_one_minus_cos_);
+    return select(inside, sky_share_ * cone_pdf(sky_one_minus_cos_), F(0.0f));
+  }
+
+  /// Probability of taking light i.
+  GLOAM_HD F probability(const SceneView& scene, uint32_t i) const {
+    return count_ > kMaxWeighedLights ? F(scene.lights[i].probability) : share_[i];
+  }
+
+  /// Takes a light, or the sky, and a direction from p towards it, for the `active` lanes.
+  /// `spread`: of the sky's cone.
+  GLOAM_HD LightSampleOf<F> sample(const SceneView& scene, Vec3Of<F> p, F pick, Vec2Of<F> u, F time,
+                                   F spread, Mask active = true) const {
+    LightSampleOf<F> out;
+    Mask open = active;
+    if (any(sky_share_ > 0.0f)) {
+      const Mask sky = active & (pick < sky_share_);
+      if (any(sky)) out = select(sky, sample_sky(scene, u, spread), out);
+      open = active & !sky;
+      pick -= sky_share_;
+    }
+    if (count_ > kMaxWeighedLights) {
+      for (int i = 0; i < Lanes<F>::kCount; ++i) {
+        if (lane(open, i)) {
+          set_lane(&out, i,
+                   sample_by_power(scene, lane(p, i), lane(pick, i), lane(u, i), lane(time, i)));
+        }
+      }
+      return out;
+    }
+    F before = 0.0f, taken = 0.0f;
+    Uint index{};
+    Mask searching = open;
+    for (uint32_t i = 0; i < count_; ++i) {
+      const Mask can = searching & (share_[i] > 0.0f);
+      before = select(can, before + taken, before);
+      taken = select(can, share_[i], taken);
+      index = select(can, Uint(i), index);
+      searching = searching & !(can & (pick < before + taken));
+    }
+    open = open & (taken > 0.0f);
+    pick = clamp((pick - before) / taken, 0.0f, 0.9999999f);
+    for (uint32_t i = 0; i < count_; ++i) {
+      const Mask mine = open & (index == i);
+      if (!any(mine)) continue;
+      LightSampleOf<F> s = sample_one_light(scene, i, p, pick, u, time, mine);
+      s.pdf *= taken;
+      out = select(mine, s, out);
+    }
+    return out;
+  }
+
+ private:
+  /// First visibilities of the guide's rows for the surfaces, and the sky there.
+  GLOAM_HD void find_rows(const LightGuide& guide, Vec3Of<F> p, Vec3Of<F> n, Mask active,
+                          Uint* first, Mask* guided) {
+    for (int i = 0; i < Lanes<F>::kCount; ++i) {
+      if (!lane(active, i)) continue;
+      const int row = guide.row_at(lane(p, i), lane(n, i));
+      set_lane(&sky_strength_, i, 0.0f);
+      if (row < 0) continue;
+      set_lane(guided, i, true);
+      set_lane(first, i, static_cast<uint32_t>(row) * guide.lights);
+      const SkyCone& sky = guide.sky[static_cast<uint32_t>(row)];
+      set_lane(&sky_strength_, i, sky.strength);
+      set_lane(&sky_one_minus_cos_, i, sky.one_minus_cos);
+      set_lane(&sky_axis_, i, sky.axis);
+    }
+  }
+  GLOAM_HD static LightSample sample_by_power(const SceneView& scene, Vec3f p, float pick, Vec2f u,
+                                              float time) {
+    uint32_t index = 0, high = scene.lights.size - 1;
+    while (index < high) {
+      const uint32_t middle = (index + high) / 2;
+      if (pick < scene.lights[middle].cdf) {
+        high = middle;
+      } else {
+        index = middle + 1;
+      }
+    }
+    const float taken = scene.lights[index].probability;
+    pick = clamp((pick - (scene.lights[index].cdf - taken)) / taken, 0.0f, 0.9999999f);
+    LightSample s = sample_one_light(scene, index, p, pick, u, time);
+    s.pdf *= taken;
+    return s;
+  }
+  GLOAM_HD LightSampleOf<F> sample_sky(const SceneView& scene, Vec2Of<F> u, F spread) const {
+    LightSampleOf<F> s;
+    s.wi = FrameOf<F>::from_z(sky_axis_).to_world(sample_cone(sky_one_minus_cos_, u));
+    s.distance = 1e7f;
+    s.radiance = sky_radiance_of(scene, s.wi, spread) + in_all_lanes<F>(scene.sky_ambient);
+    s.pdf = sky_pdf(s.wi);
+    return s;
+  }
+
+  uint32_t count_ = 0;
+  F share_[kMaxWeighedLights];
+  Vec3Of<F> sky_axis_;
+  F sky_one_minus_cos_{}, sky_strength_{};
+  F sky_share_{};
+};
+using LightPicker = LightPickerOf<float>;
+
+/// Light of lamps and suns that a scattered ray meets before `tmax`, each weighted against
+/// `picker` at `from`, the surface that scattered it, by the density `pdf_bsdf` of its direction.
+template <class F>
+GLOAM_HD Vec3Of<F> visible_lights(const SceneView& scene, const RayOf<F>& ray, F tmax,
+                                  Vec3Of<F> from, const LightPickerOf<F>& picker, F pdf_bsdf) {
+  Vec3Of<F> sum;
+  for (uint32_t i = 0; i < scene.lights.size; ++i) {
+    const LightView& light = scene.lights[i];
+    if (light.is_delta || !light.casts_shadow || light.kind == LightKind::kInstance) continue;
+    const float r2 = light.radius * light.radius;
+    Vec3Of<F> radiance;
+    F sin2 = r2;
+    MaskOf<F> seen;
+    if (light.kind == LightKind::kDirectional) {
+      seen = (tmax >= 1e29f) &
+             (-dot(ray.d, in_all_lanes<F>(light.direction)) >= 1.0f - one_minus_cos_of(r2));
+      if (!any(seen)) continue;
+      radiance = in_all_lanes<F>(light.intensity / (kPi * r2));
+    } else {
+      const F t = enter_sphere(ray, light.p, light.radius);
+      const Vec3Of<F> to = in_all_lanes<F>(light.p) - from;
+      const F d2 = dot(to, to);
+      seen = (t > 0.0f) & (t < tmax) & (d2 > r2 * 1.0001f);
+      if (!any(seen)) continue;
+      radiance = in_all_lanes<F>(light.intensity) *
+                 (spot_falloff(light, -to / square_root(d2)) / (kPi * r2));
+      sin2 = min(r2 / d2, 1.0f);
+    }
+    const F pdf = picker.probability(scene, i) * cone_pdf(one_minus_cos_of(sin2));
+    sum += select<F>(seen, radiance * mis_weight(pdf_bsdf, pdf), Vec3Of<F>{});
+  }
+  return sum;
+}
+
+}  // namespace gloam
