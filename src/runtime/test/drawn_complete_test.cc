@@ -168,7 +168,7 @@ int64_t pixels_alone(const RenderDescription& whole, size_t instance, const Pose
                      const double* center, double radius) {
   RenderDescription alone = whole;
   for (size_t i = 0; i < alone.instances.size(); ++i) {
-    if (i != instance) alone.instances[i].group = 5;
+    if (i != instance) alone.instances[i].shown = false;
   }
   auto renderer = make_cpu_renderer(alone);
   EXPECT_TRUE(renderer.ok());
