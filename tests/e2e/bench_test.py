@@ -95,7 +95,9 @@ class Runs(unittest.TestCase):
             self.skipTest("the robots are not fetched")
         before = history()
         process = subprocess.Popen([*BENCH, "--only", "beside"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                   start_new_session=True)
+                                   start_new_session=True,
+                                   # A caller in the background ignores it, and its children would inherit that.
+                                   preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
         time.sleep(3)
         os.killpg(process.pid, signal.SIGINT)
         _, errors = process.communicate(timeout=20)

@@ -5,8 +5,8 @@ import subprocess
 import time
 import unittest
 
-import browser
-from support import PROGRAM, ProgramTest
+from e2e import browser
+from e2e.support import PROGRAM, ProgramTest
 
 SCENE = """<mujoco model="swing">
   <visual><global offwidth="320" offheight="240"/></visual>
