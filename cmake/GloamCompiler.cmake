@@ -21,6 +21,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 reports std::string members of values returned through std::variant as uninitialised (GCC bug 105562 and kin).
   add_compile_options(-Wno-maybe-uninitialized -Wno-restrict)
 endif()
+if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+  add_compile_options(-Wno-bitwise-instead-of-logical)  # generic over bool and lanes: render/kernel/lanes.h
+endif()
 add_compile_options("$<$<CONFIG:Release>:-O3>")
 if(CMAKE_SYSTEM_PROCESSOR STREQUAL "x86_64")
   add_compile_options(-march=${GLOAM_MARCH})

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "base/check.h"
 #include "render/film/exr.h"
 #include "render/film/png.h"
 
@@ -131,6 +132,7 @@ Status CameraRecorder::write_video(const CameraFrame& frame) {
 }
 
 Status CameraRecorder::write_pose(const CameraFrame& frame) {
+  GLOAM_CHECK(poses_.has_value(), "the recorder has not been opened");
   const Pose X = optical_pose(frame.X_WC);
   const double row[] = {static_cast<double>(frame.index),
                         static_cast<double>(frame.step),

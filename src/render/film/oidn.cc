@@ -137,18 +137,20 @@ class OidnDenoiser : public Denoiser {
     const bool has_albedo = film.albedo.size() == film.pixel_count();
     // The library takes normals only together with albedo.
     const bool has_normal = has_albedo && film.normal.size() == film.pixel_count();
-    const bool clean = albedo_filter_ && has_normal;
+    const bool clean = albedo_filter_ && normal_filter_ && has_normal;
     if (clean) {
       clean_up("albedo", film.albedo, film, &*albedo_filter_, &albedo_);
       clean_up("normal", film.normal, film, &*normal_filter_, &normal_);
     }
     const std::vector<Vec3f> none;
-    color_filter_->set("cleanAux", clean);
-    color_filter_->set("color", color_, film);
-    color_filter_->set("albedo", clean ? albedo_ : has_albedo ? film.albedo : none, film);
-    color_filter_->set("normal", clean ? normal_ : has_normal ? film.normal : none, film);
-    color_filter_->set("output", *out, film);
-    color_filter_->run();
+    GLOAM_CHECK(color_filter_.has_value(), "the denoiser has been made without its filter");
+    Filter& filter = *color_filter_;
+    filter.set("cleanAux", clean);
+    filter.set("color", color_, film);
+    filter.set("albedo", clean ? albedo_ : has_albedo ? film.albedo : none, film);
+    filter.set("normal", clean ? normal_ : has_normal ? film.normal : none, film);
+    filter.set("output", *out, film);
+    filter.run();
     const char* message = nullptr;
     if (api_.get_device_error(device_, &message) != kErrorNone)
       return Error{ErrorKind::kIo, fmt::format("Open Image Denoise failed: {}", message)};
