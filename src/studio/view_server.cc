@@ -118,10 +118,11 @@ class ViewServer::Impl : public WebEvents {
     const auto& cameras = driver_.cameras();
     const auto row = std::find(cameras.begin(), cameras.end(), frame.camera) - cameras.begin();
     auto packet = encode_picture(frame, sequence, static_cast<uint32_t>(row));
+    std::string error = packet.ok() ? "" : packet.error().to_string();
     if (packet.ok())
       web_.send_picture(std::make_shared<const std::string>(std::move(packet).value()));
     const std::lock_guard lock(error_mutex_);
-    picture_error_ = packet.ok() ? "" : packet.error().to_string();
+    picture_error_ = std::move(error);
   }
 
   void send_state() {
