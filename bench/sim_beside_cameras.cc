@@ -27,13 +27,6 @@
 namespace gloam {
 namespace {
 
-struct Options {
-  const char* model = nullptr;
-  int pairs = 60;
-  int block = 2000;
-  bool json = false;
-};
-
 /// Two views of the model in 640 x 480, path traced and denoised: what a recorded run does.
 struct TwoCameras {
   std::unique_ptr<CameraStream> streams[2];
@@ -152,8 +145,8 @@ Status serve_renderer(const std::shared_ptr<const CompiledWorld>& compiled, int 
   return {};
 }
 
-Status run(const Options& options) {
-  GLOAM_TRY(const auto compiled, load_step_model(options.model, false));
+Status run(const StepOptions& options) {
+  GLOAM_TRY(const auto compiled, load_step_model(options.model, options.bare));
   ::signal(SIGPIPE, SIG_IGN);  // a helper that ends is told as an error
   const Helper ours([&](int in, int out) { return serve_ours(compiled, options.block, in, out); });
   const Helper renderer([&](int in, int out) { return serve_renderer(compiled, in, out); });
@@ -239,25 +232,5 @@ Status run(const Options& options) {
 }  // namespace gloam
 
 int main(int argc, char** argv) {
-  gloam::Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view word = argv[i];
-    if (word == "--json") {
-      options.json = true;
-    } else if (word == "--pairs" && i + 1 < argc) {
-      options.pairs = std::max(2, std::atoi(argv[++i]));
-    } else if (word == "--block" && i + 1 < argc) {
-      options.block = std::max(1, std::atoi(argv[++i]));
-    } else {
-      options.model = argv[i];
-    }
-  }
-  if (options.model == nullptr) {
-    fmt::print(stderr,
-               "usage: sim_beside_cameras MODEL.xml [--pairs N] [--block STEPS] [--json]\n");
-    return 2;
-  }
-  const gloam::Status status = gloam::run(options);
-  if (!status) fmt::print(stderr, "gloam: error: {}\n", status.error().to_string());
-  return status.ok() ? 0 : status.error().exit_code();
+  return gloam::run_step_bench(argc, argv, "sim_beside_cameras", 2, gloam::run);
 }

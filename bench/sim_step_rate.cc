@@ -20,13 +20,6 @@
 namespace gloam {
 namespace {
 
-struct Options {
-  const char* model = nullptr;
-  int pairs = 60;
-  int block = 2000;
-  bool bare = false, json = false;
-};
-
 class TableController final : public Controller {
  public:
   explicit TableController(const ControlTable& table) : table_(table) {}
@@ -53,7 +46,7 @@ double hash_cost(const mjModel& model, const mjData& data) {
   return hash == 0 ? 0 : ns;  // the hash is used, so the loop is not optimised away
 }
 
-Status run(const Options& options) {
+Status run(const StepOptions& options) {
   GLOAM_TRY(const std::shared_ptr<const CompiledWorld> world,
             load_step_model(options.model, options.bare));
   const mjModel* model = world->model.get();
@@ -135,27 +128,5 @@ Status run(const Options& options) {
 }  // namespace gloam
 
 int main(int argc, char** argv) {
-  gloam::Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view word = argv[i];
-    if (word == "--bare") {
-      options.bare = true;
-    } else if (word == "--json") {
-      options.json = true;
-    } else if (word == "--pairs" && i + 1 < argc) {
-      options.pairs = std::max(10, std::atoi(argv[++i]));
-    } else if (word == "--block" && i + 1 < argc) {
-      options.block = std::max(1, std::atoi(argv[++i]));
-    } else {
-      options.model = argv[i];
-    }
-  }
-  if (options.model == nullptr) {
-    fmt::print(stderr,
-               "usage: sim_step_rate MODEL.xml [--pairs N] [--block STEPS] [--bare] [--json]\n");
-    return 2;
-  }
-  const gloam::Status status = gloam::run(options);
-  if (!status) fmt::print(stderr, "gloam: error: {}\n", status.error().to_string());
-  return status.ok() ? 0 : status.error().exit_code();
+  return gloam::run_step_bench(argc, argv, "sim_step_rate", 10, gloam::run);
 }

@@ -1,12 +1,15 @@
 #pragma once
 // What the step rate benches share: the model, its controls, the clock and the statistics.
 
+#include <fmt/format.h>
 #include <time.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/rng.h"
@@ -86,6 +89,40 @@ inline Result<std::shared_ptr<const CompiledWorld>> load_step_model(const char* 
   robot.root_body = 1;
   world->robots.push_back(robot);
   return std::shared_ptr<const CompiledWorld>(world);
+}
+
+struct StepOptions {
+  const char* model = nullptr;
+  int pairs = 60;
+  int block = 2000;  ///< steps
+  bool bare = false, json = false;
+};
+
+/// `main` of a bench: its options from the command line, then `run`.
+inline int run_step_bench(int argc, char** argv, const char* name, int least_pairs,
+                          Status (*run)(const StepOptions&)) {
+  StepOptions options;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view word = argv[i];
+    if (word == "--bare") {
+      options.bare = true;
+    } else if (word == "--json") {
+      options.json = true;
+    } else if (word == "--pairs" && i + 1 < argc) {
+      options.pairs = std::max(least_pairs, std::atoi(argv[++i]));
+    } else if (word == "--block" && i + 1 < argc) {
+      options.block = std::max(1, std::atoi(argv[++i]));
+    } else {
+      options.model = argv[i];
+    }
+  }
+  if (options.model == nullptr) {
+    fmt::print(stderr, "usage: {} MODEL.xml [--pairs N] [--block STEPS] [--bare] [--json]\n", name);
+    return 2;
+  }
+  const Status status = run(options);
+  if (!status) fmt::print(stderr, "gloam: error: {}\n", status.error().to_string());
+  return status.ok() ? 0 : status.error().exit_code();
 }
 
 /// Median of ratios and the lower end of its one-sided 95 % confidence interval from order

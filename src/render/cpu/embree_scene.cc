@@ -235,7 +235,6 @@ void EmbreeScene::build(const RenderScene& scene) {
   }
   build_moving(scene);
   build_fixed(scene);
-  built_ = true;
 }
 
 void EmbreeScene::build_moving(const RenderScene& scene) {
@@ -255,7 +254,7 @@ void EmbreeScene::build_moving(const RenderScene& scene) {
 }
 
 Status EmbreeScene::update(const RenderScene& scene) {
-  if (!built_ || drawn_version_ != scene.drawn_version()) build(scene);
+  if (drawn_version_ != scene.drawn_version()) build(scene);
   for (const uint32_t mesh : scene.rebuilt_meshes()) rebuild_mesh(scene, mesh);
   for (size_t g = 0; g < moving_geometries_.size(); ++g) {
     const RTCGeometry geometry = moving_geometries_[g].get();

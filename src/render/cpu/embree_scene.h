@@ -5,6 +5,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "render/cpu/embree_tracer.h"
@@ -62,10 +63,8 @@ class EmbreeScene {
   std::vector<RtcOwner<RTCGeometry>> moving_geometries_;
   std::vector<uint32_t> rows_;  ///< Embree id -> instance: those of moving_, then those of fixed_
   std::vector<uint32_t> planes_;
-  bool built_ = false;
-  uint64_t drawn_version_ = 0;                              ///< of the scene that is built
+  std::optional<uint64_t> drawn_version_;                   ///< of the scene that is built
   std::vector<std::unique_ptr<ShapeGeometry>> shape_data_;  ///< Embree keeps pointers to them
-  std::vector<std::unique_ptr<std::vector<Vec3f>>> vertex_data_;
 };
 
 }  // namespace gloam

@@ -13,6 +13,7 @@
 #include "robots.h"
 #include "runtime/shared_renderer.h"
 #include "scene/test/temp_folder.h"
+#include "scenes.h"
 #include "sensors/camera_sensor.h"
 #include "sim/pose_solver.h"
 
@@ -193,18 +194,13 @@ int64_t pixels_alone(const RenderDescription& whole, size_t instance, const Pose
   return pixels;
 }
 
-class SlowDrawnComplete : public ::testing::TestWithParam<const char*> {};
+class SlowDrawnComplete : public ThirdPartyRobot {};
 
 TEST_P(SlowDrawnComplete, EveryGeomInViewIsInTheSegmentation) {
-  const auto file = third_party_file(GetParam());
-  if (!file) GTEST_SKIP() << "no third-party robots: run tests/fetch_data.py, set GLOAM_TEST_DATA";
-  const TempFolder folder;
-  ::setenv("GLOAM_CACHE", (folder.path() / "cache").c_str(), 1);
-  const StockModel stock(*file);
-  ASSERT_NE(stock.model, nullptr) << stock.error;
+  const StockModel& stock = *stock_;
   const mjModel& m = *stock.model;
   mjData* d = stock.data.get();
-  const World world = compile_file(*file);
+  const World world = compile_file(file_);
   auto simulation = Simulation::create(world, {});
   ASSERT_TRUE(simulation.ok()) << simulation.error().to_string();
   const auto labels = (*simulation)->labels();

@@ -1,7 +1,5 @@
 #include "robots.h"
 
-#include <gtest/gtest.h>
-
 #include <cstdlib>
 
 #include "base/rng.h"
@@ -19,26 +17,21 @@ StockModel::StockModel(const std::filesystem::path& file) {
   if (model != nullptr) data.reset(mj_makeData(model.get()));
 }
 
+void ThirdPartyRobot::SetUp() {
+  const auto file = third_party_file(GetParam());
+  if (!file) GTEST_SKIP() << "no third-party robots: run tests/fetch_data.py, set GLOAM_TEST_DATA";
+  ::setenv("GLOAM_CACHE", (folder_.path() / "cache").c_str(), 1);
+  file_ = *file;
+  stock_.emplace(file_);
+  ASSERT_NE(stock_->model, nullptr) << stock_->error;
+}
+
 std::optional<std::filesystem::path> third_party_file(const std::string& name) {
   const char* data = std::getenv("GLOAM_TEST_DATA");
   if (data == nullptr) return {};
   const std::filesystem::path file = std::filesystem::path(data) / name;
   if (!std::filesystem::exists(file)) return {};
   return file;
-}
-
-World compile_file(const std::filesystem::path& file) {
-  const Result<Scene> scene = load_scene(file);
-  if (!scene.ok()) {
-    ADD_FAILURE() << scene.error().to_string();
-    abort();
-  }
-  Result<World> world = World::compile(*scene);
-  if (!world.ok()) {
-    ADD_FAILURE() << world.error().to_string();
-    abort();
-  }
-  return std::move(*world);
 }
 
 RandomInputs::RandomInputs(const mjModel& m, int64_t step) {

@@ -2,6 +2,7 @@
 // Robots for the tests of the runtime: other people's, unedited, beside stock MuJoCo's own load of
 // the same file. tests/fetch_data.py gets them; GLOAM_TEST_DATA says where.
 
+#include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "gloam/simulation.h"
+#include "scene/test/temp_folder.h"
 #include "sim/stepper.h"
 #include "world/world.h"
 
@@ -27,13 +29,20 @@ struct StockModel {
 /// "mjlab/…" or "robosuite/…" in the test data; nothing when it was not fetched.
 std::optional<std::filesystem::path> third_party_file(const std::string& name);
 
+/// A test for each of the robots, skipped where they were not fetched; its cache is its own.
+class ThirdPartyRobot : public ::testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override;
+
+  const TempFolder folder_;
+  std::filesystem::path file_;
+  std::optional<StockModel> stock_;
+};
+
 inline constexpr const char* kGo1 = "mjlab/mjlab/asset_zoo/robots/unitree_go1/xmls/go1.xml";
 inline constexpr const char* kG1 = "mjlab/mjlab/asset_zoo/robots/unitree_g1/xmls/g1.xml";
 inline constexpr const char* kYam = "mjlab/mjlab/asset_zoo/robots/i2rt_yam/xmls/yam.xml";
 inline constexpr const char* kPanda = "robosuite/robosuite/models/assets/robots/panda/robot.xml";
-
-/// Loads and compiles through the public API; fails the test when that cannot be done.
-World compile_file(const std::filesystem::path& file);
 
 /// Random inputs of one step: a control for every actuator, in its range, and a force of up to the
 /// body's own weight on every body (robots without actuators have nothing else to be driven by).

@@ -28,11 +28,9 @@ inline const char* const kFlight = R"(
   <keyframe><key name="go" qpos="0 0 0 1 0 0 0" qvel="1 0 0 0 0 0"/></keyframe>
 </mujoco>)";
 
-/// Compiles the scene file `text` in `folder`; fails the test when that cannot be done.
-inline World compile_text(const TempFolder& folder, const std::string& name,
-                          const std::string& text) {
-  ::setenv("GLOAM_CACHE", (folder.path() / "cache").c_str(), 1);
-  const Result<Scene> scene = load_scene(folder.write(name, text));
+/// Loads and compiles through the public API; fails the test when that cannot be done.
+inline World compile_file(const std::filesystem::path& file) {
+  const Result<Scene> scene = load_scene(file);
   if (!scene.ok()) {
     ADD_FAILURE() << scene.error().to_string();
     abort();
@@ -43,6 +41,13 @@ inline World compile_text(const TempFolder& folder, const std::string& name,
     abort();
   }
   return std::move(*world);
+}
+
+/// The same of the scene file `text` in `folder`.
+inline World compile_text(const TempFolder& folder, const std::string& name,
+                          const std::string& text) {
+  ::setenv("GLOAM_CACHE", (folder.path() / "cache").c_str(), 1);
+  return compile_file(folder.write(name, text));
 }
 
 /// kFlight as the only robot "a" of a scene; `more` = lines of TOML that follow.

@@ -12,6 +12,7 @@
 #include "gloam/program.h"
 #include "robots.h"
 #include "scene/test/temp_folder.h"
+#include "scenes.h"
 
 namespace gloam {
 namespace {
@@ -119,20 +120,15 @@ bool sees_something(const CameraFrame& frame) {
                      [](uint16_t i) { return i != 0; });
 }
 
-class SlowThirdPartyRun : public ::testing::TestWithParam<const char*> {};
+class SlowThirdPartyRun : public ThirdPartyRobot {};
 
 TEST_P(SlowThirdPartyRun, IsStockBitForBitWhileTwoCamerasRender) {
-  const auto file = third_party_file(GetParam());
-  if (!file) GTEST_SKIP() << "no third-party robots: run tests/fetch_data.py, set GLOAM_TEST_DATA";
-  const TempFolder folder;
-  ::setenv("GLOAM_CACHE", (folder.path() / "cache").c_str(), 1);
-  const StockModel stock(*file);
-  ASSERT_NE(stock.model, nullptr) << stock.error;
+  const StockModel& stock = *stock_;
   std::vector<double> last;
   const States states = stock_run(stock, &last);
   EXPECT_NE(states.front(), states.back());
 
-  const World world = compile_file(*file);
+  const World world = compile_file(file_);
   GloamRun alone, watched, one_thread;
   ASSERT_NO_FATAL_FAILURE(gloam_run(world, *stock.model, {}, &alone));
   ASSERT_NO_FATAL_FAILURE(
