@@ -50,6 +50,13 @@ int run_program(int argc, char** argv) {
 }  // namespace gloam::cli
 
 int main(int argc, char** argv) {
+#ifdef __AVX512F__
+  if (!__builtin_cpu_supports("avx512f")) {
+    std::cerr << "gloam: error: built for a CPU with AVX-512, which this one has not: build it on "
+                 "this machine, or with -DGLOAM_MARCH=x86-64-v3\n";
+    return 1;
+  }
+#endif
   try {
     return gloam::cli::run_program(argc, argv);
   } catch (const std::bad_alloc&) {

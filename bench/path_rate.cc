@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <string>
 
@@ -134,26 +135,81 @@ std::vector<std::vector<RecordedRay>> record_rays(const Probe& probe, const Came
   return rows;
 }
 
-/// Embree and nothing else.
-void trace_bare(const EmbreeTracer& tracer, const std::vector<std::vector<RecordedRay>>& rows) {
-  parallel_for("bare", static_cast<int64_t>(rows.size()), [&](int64_t row) {
-    for (const RecordedRay& r : rows[static_cast<size_t>(row)]) {
-      RTCIntersectContext context;
-      rtcInitIntersectContext(&context);
-      RTCRayHit query;
-      query.ray = {r.ray.o.x, r.ray.o.y, r.ray.o.z,  0,   r.ray.d.x, r.ray.d.y,
-                   r.ray.d.z, 0,         r.ray.tmax, ~0u, 0,         0};
-      if (r.any) {
-        rtcOccluded1(tracer.fixed, &context, &query.ray);
-        if (query.ray.tfar >= 0) rtcOccluded1(tracer.moving, &context, &query.ray);
-      } else {
-        query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-        rtcIntersect1(tracer.fixed, &context, &query);
-        rtcIntersect1(tracer.moving, &context, &query);
-      }
+/// Triangles of an instance in world coordinates.
+TriangleMesh world_mesh(const SceneBuilder& b, const InstanceDescription& in) {
+  TriangleMesh mesh;
+  if (in.shape == ShapeType::kMesh) {
+    mesh = b.description.meshes[static_cast<size_t>(in.mesh)];
+  } else if (in.shape == ShapeType::kBox) {
+    for (int k = 0; k < 8; ++k) {
+      mesh.positions.push_back({(k & 1) != 0 ? in.size.x : -in.size.x,
+                                (k & 2) != 0 ? in.size.y : -in.size.y,
+                                (k & 4) != 0 ? in.size.z : -in.size.z});
     }
-  });
+    mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                    2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+  } else {  // curved shapes: a fine ball squeezed to the bounds is work enough alike
+    mesh = make_ball(24);
+    const Vec3f h = in.shape == ShapeType::kSphere ? Vec3f{in.size.x, in.size.x, in.size.x}
+                                                   : Vec3f{in.size.x, in.size.x, in.size.y};
+    for (Vec3f& v : mesh.positions) v = v * h;
+  }
+  const double* p = &b.frame.body_p[3 * static_cast<size_t>(in.body)];
+  const double* R = &b.frame.body_R[9 * static_cast<size_t>(in.body)];
+  Affine3f X_WB;
+  X_WB.x = {static_cast<float>(R[0]), static_cast<float>(R[3]), static_cast<float>(R[6])};
+  X_WB.y = {static_cast<float>(R[1]), static_cast<float>(R[4]), static_cast<float>(R[7])};
+  X_WB.z = {static_cast<float>(R[2]), static_cast<float>(R[5]), static_cast<float>(R[8])};
+  X_WB.p = {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
+  const Affine3f X = X_WB * in.X_BG;
+  for (Vec3f& v : mesh.positions) v = transform_point(X, v);
+  for (Vec3f& n : mesh.normals) n = transform_vector(X, n);
+  return mesh;
 }
+
+/// Embree and nothing else: all triangles in one scene, with its default settings.
+class BareEmbree {
+ public:
+  explicit BareEmbree(const SceneBuilder& b)
+      : device_(rtcNewDevice(nullptr)), scene_(rtcNewScene(device_.get())) {
+    for (const InstanceDescription& in : b.description.instances) {
+      const TriangleMesh mesh = world_mesh(b, in);
+      const RtcOwner<RTCGeometry> geometry(
+          rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+      const auto fill = [&](RTCBufferType type, RTCFormat format, const void* data, size_t count) {
+        void* out = rtcSetNewGeometryBuffer(geometry.get(), type, 0, format, 12, count);
+        std::memcpy(out, data, 12 * count);
+      };
+      fill(RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, mesh.positions.data(), mesh.positions.size());
+      fill(RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3, mesh.indices.data(), mesh.triangle_count());
+      rtcCommitGeometry(geometry.get());
+      rtcAttachGeometry(scene_.get(), geometry.get());
+    }
+    rtcCommitScene(scene_.get());
+  }
+
+  void trace(const std::vector<std::vector<RecordedRay>>& rows) const {
+    parallel_for("bare", static_cast<int64_t>(rows.size()), [&](int64_t row) {
+      for (const RecordedRay& r : rows[static_cast<size_t>(row)]) {
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        RTCRayHit query;
+        query.ray = {r.ray.o.x, r.ray.o.y, r.ray.o.z,  0,   r.ray.d.x, r.ray.d.y,
+                     r.ray.d.z, 0,         r.ray.tmax, ~0u, 0,         0};
+        query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+        if (r.any) {
+          rtcOccluded1(scene_.get(), &context, &query.ray);
+        } else {
+          rtcIntersect1(scene_.get(), &context, &query);
+        }
+      }
+    });
+  }
+
+ private:
+  RtcOwner<RTCDevice> device_;
+  RtcOwner<RTCScene> scene_;
+};
 
 /// Meshes as PLY in world coordinates and a text list of them, for bench/peers/mitsuba_room.py.
 void export_scene(const std::string& folder, const SceneBuilder& b, const CameraView& view) {
@@ -166,31 +222,7 @@ void export_scene(const std::string& folder, const SceneBuilder& b, const Camera
   for (size_t i = 0; i < b.description.instances.size(); ++i) {
     const InstanceDescription& in = b.description.instances[i];
     const MaterialDescription& m = b.description.materials[static_cast<size_t>(in.material)];
-    const double* p = &b.frame.body_p[3 * static_cast<size_t>(in.body)];
-    const double* R = &b.frame.body_R[9 * static_cast<size_t>(in.body)];
-    Affine3f X_WB;
-    X_WB.x = {static_cast<float>(R[0]), static_cast<float>(R[3]), static_cast<float>(R[6])};
-    X_WB.y = {static_cast<float>(R[1]), static_cast<float>(R[4]), static_cast<float>(R[7])};
-    X_WB.z = {static_cast<float>(R[2]), static_cast<float>(R[5]), static_cast<float>(R[8])};
-    X_WB.p = {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
-    const Affine3f X = X_WB * in.X_BG;
-    TriangleMesh mesh;
-    if (in.shape == ShapeType::kMesh) {
-      mesh = b.description.meshes[static_cast<size_t>(in.mesh)];
-    } else if (in.shape == ShapeType::kBox) {
-      for (int k = 0; k < 8; ++k) {
-        mesh.positions.push_back({(k & 1) != 0 ? in.size.x : -in.size.x,
-                                  (k & 2) != 0 ? in.size.y : -in.size.y,
-                                  (k & 4) != 0 ? in.size.z : -in.size.z});
-      }
-      mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
-                      2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
-    } else {  // curved shapes: a fine ball squeezed to the bounds is work enough alike
-      mesh = make_ball(24);
-      const Vec3f h = in.shape == ShapeType::kSphere ? Vec3f{in.size.x, in.size.x, in.size.x}
-                                                     : Vec3f{in.size.x, in.size.x, in.size.y};
-      for (Vec3f& v : mesh.positions) v = v * h;
-    }
+    const TriangleMesh mesh = world_mesh(b, in);
     const std::string name = "shape" + std::to_string(i) + ".ply";
     std::FILE* ply = std::fopen((folder + "/" + name).c_str(), "wb");
     if (ply == nullptr) break;
@@ -202,11 +234,8 @@ void export_scene(const std::string& folder, const SceneBuilder& b, const Camera
     std::fprintf(ply, "element face %zu\nproperty list uchar int vertex_indices\nend_header\n",
                  mesh.triangle_count());
     for (size_t v = 0; v < mesh.positions.size(); ++v) {
-      const Vec3f q = transform_point(X, mesh.positions[v]);
-      std::fwrite(&q, sizeof q, 1, ply);
-      if (!smooth) continue;
-      const Vec3f n = transform_vector(X, mesh.normals[v]);
-      std::fwrite(&n, sizeof n, 1, ply);
+      std::fwrite(&mesh.positions[v], sizeof(Vec3f), 1, ply);
+      if (smooth) std::fwrite(&mesh.normals[v], sizeof(Vec3f), 1, ply);
     }
     for (size_t t = 0; t < mesh.indices.size(); t += 3) {
       const uint8_t three = 3;
@@ -232,6 +261,7 @@ int main(int argc, char** argv) {
   auto renderer = builder.make();
   const double build = wall_seconds() - start;
   const Probe probe(builder);
+  const BareEmbree bare(builder);
 
   Film film;
   a.settings.exact_channels = !a.picture.empty();
@@ -246,7 +276,7 @@ int main(int argc, char** argv) {
     render_cpu.push_back(cpu_seconds() - cpu);
     render_wall.push_back(stats.trace_seconds);
     cpu = cpu_seconds();
-    trace_bare(probe.tracer, rays);
+    bare.trace(rays);
     bare_cpu.push_back(cpu_seconds() - cpu);
   }
   const double paths = static_cast<double>(stats.paths), threads = thread_count();

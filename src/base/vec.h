@@ -68,13 +68,19 @@ using Vec3f = Vec3Of<float>;
 
 /// Affine map of points of B into A: columns x, y, z are the images of B's axes, p that of its
 /// origin. Named X_AB.
-struct Affine3f {
-  Vec3f x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, p{0, 0, 0};
+template <class F>
+struct AffineOf {
+  Vec3Of<F> x{F(1.0f), F(0.0f), F(0.0f)}, y{F(0.0f), F(1.0f), F(0.0f)},
+      z{F(0.0f), F(0.0f), F(1.0f)}, p{F(0.0f), F(0.0f), F(0.0f)};
 };
-GLOAM_HD Vec3f transform_vector(const Affine3f& X_AB, Vec3f v_B) {
+using Affine3f = AffineOf<float>;
+
+template <class F>
+GLOAM_HD Vec3Of<F> transform_vector(const AffineOf<F>& X_AB, Vec3Of<F> v_B) {
   return X_AB.x * v_B.x + X_AB.y * v_B.y + X_AB.z * v_B.z;
 }
-GLOAM_HD Vec3f transform_point(const Affine3f& X_AB, Vec3f p_B) {
+template <class F>
+GLOAM_HD Vec3Of<F> transform_point(const AffineOf<F>& X_AB, Vec3Of<F> p_B) {
   return transform_vector(X_AB, p_B) + X_AB.p;
 }
 /// X_AC = X_AB X_BC.

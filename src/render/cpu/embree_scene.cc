@@ -11,29 +11,58 @@
 namespace gloam {
 namespace {
 
-bool is_mesh(ShapeType shape) {
-  return shape == ShapeType::kMesh || shape == ShapeType::kDeformable;
-}
 bool is_infinite_plane(const InstanceView& instance) {
   return instance.shape == ShapeType::kPlane && (instance.size.x <= 0 || instance.size.y <= 0);
 }
+/// Drawn, in one place, of finite extent.
+bool stands_still(const RenderScene& scene, size_t i) {
+  const InstanceView& in = scene.instances()[i];
+  return scene.is_fixed(i) && scene.is_drawn(i) && in.shape != ShapeType::kDeformable &&
+         !is_infinite_plane(in);
+}
 
-Vec3f to_shape(const Affine3f& X_SG, Vec3f v) {  // rigid
-  return {dot(v, X_SG.x), dot(v, X_SG.y), dot(v, X_SG.z)};
+/// So many solids that stand still are scanned: from about twice as many on a BVH is faster.
+constexpr size_t kMaxScanned = 64;
+
+/// Of an analytic shape.
+Bounds exact_bounds(ShapeType shape, Vec3f size, const Affine3f& X) {
+  Vec3f h = shape_half_size(shape, size);
+  if (shape == ShapeType::kCapsule) h.z += size.x;
+  if (shape == ShapeType::kPlane) h.z = 0;
+  const auto reach = [&](float x, float y, float z) {
+    return fabsf(x) * h.x + fabsf(y) * h.y + fabsf(z) * h.z;
+  };
+  const Vec3f r{reach(X.x.x, X.y.x, X.z.x), reach(X.x.y, X.y.y, X.z.y), reach(X.x.z, X.y.z, X.z.z)};
+  return {X.p - r, X.p + r};
+}
+Bounds wider(const Bounds& b) {
+  const Vec3f room = (b.high - b.low) * 1e-5f + Vec3f{1e-6f, 1e-6f, 1e-6f};
+  return {b.low - room, b.high + room};
+}
+
+/// Over the whole time of the shutter.
+Bounds bounds_of(RTCScene scene) {
+  RTCLinearBounds b;
+  rtcGetSceneLinearBounds(scene, &b);
+  const RTCBounds &open = b.bounds0, &close = b.bounds1;
+  return wider({{min(open.lower_x, close.lower_x), min(open.lower_y, close.lower_y),
+                 min(open.lower_z, close.lower_z)},
+                {max(open.upper_x, close.upper_x), max(open.upper_y, close.upper_y),
+                 max(open.upper_z, close.upper_z)}});
+}
+
+bool lies_along_axes(const Affine3f& X) {
+  const auto is_axis = [](Vec3f v) {
+    return max_component(Vec3f{fabsf(v.x), fabsf(v.y), fabsf(v.z)}) > 1 - 1e-6f &&
+           fabsf(v.x) + fabsf(v.y) + fabsf(v.z) < 1 + 1e-6f;
+  };
+  return is_axis(X.x) && is_axis(X.y) && is_axis(X.z);
 }
 
 void shape_bounds(const RTCBoundsFunctionArguments* args) {
   const ShapeGeometry& g = *static_cast<const ShapeGeometry*>(args->geometryUserPtr);
-  Vec3f h = shape_half_size(g.shape, g.size);
-  if (g.shape == ShapeType::kCapsule) h.z += g.size.x;
-  if (g.shape == ShapeType::kPlane) h.z = 0;
-  const Affine3f& X = g.X_SG;
-  const auto reach = [&](float x, float y, float z) {
-    return (fabsf(x) * h.x + fabsf(y) * h.y + fabsf(z) * h.z) * 1.00001f + 1e-6f;
-  };
-  const Vec3f r{reach(X.x.x, X.y.x, X.z.x), reach(X.x.y, X.y.y, X.z.y), reach(X.x.z, X.y.z, X.z.z)};
-  *args->bounds_o = {X.p.x - r.x, X.p.y - r.y, X.p.z - r.z, 0,
-                     X.p.x + r.x, X.p.y + r.y, X.p.z + r.z, 0};
+  const Bounds b = wider(exact_bounds(g.shape, g.size, g.X_SG));
+  *args->bounds_o = {b.low.x, b.low.y, b.low.z, 0, b.high.x, b.high.y, b.high.z, 0};
 }
 
 float hit_distance(const ShapeGeometry& g, RTCRayN* rays, unsigned n, unsigned i) {
@@ -41,7 +70,7 @@ float hit_distance(const ShapeGeometry& g, RTCRayN* rays, unsigned n, unsigned i
       Vec3f{RTCRayN_org_x(rays, n, i), RTCRayN_org_y(rays, n, i), RTCRayN_org_z(rays, n, i)} -
       g.X_SG.p;
   const Vec3f d{RTCRayN_dir_x(rays, n, i), RTCRayN_dir_y(rays, n, i), RTCRayN_dir_z(rays, n, i)};
-  return intersect_shape(g.shape, g.size, to_shape(g.X_SG, o), to_shape(g.X_SG, d),
+  return intersect_shape(g.shape, g.size, to_frame(g.X_SG, o), to_frame(g.X_SG, d),
                          RTCRayN_tnear(rays, n, i), RTCRayN_tfar(rays, n, i));
 }
 
@@ -144,16 +173,38 @@ RtcOwner<RTCGeometry> EmbreeScene::shape_geometry(ShapeType shape, Vec3f size,
   return geometry;
 }
 
+bool EmbreeScene::is_scanned(size_t instance) const {
+  return std::any_of(solids_.begin(), solids_.end(),
+                     [&](const ScannedSolid& solid) { return solid.row == instance; });
+}
+
+/// Takes the largest: most rays end there.
+void EmbreeScene::choose_scanned(const RenderScene& scene) {
+  const std::vector<InstanceView>& instances = scene.instances();
+  std::vector<std::pair<float, uint32_t>> by_area;
+  for (size_t i = 0; i < instances.size(); ++i) {
+    const InstanceView& in = instances[i];
+    if (!stands_still(scene, i) || is_mesh(in.shape)) continue;
+    by_area.push_back({-shape_area(in.shape, in.size), static_cast<uint32_t>(i)});
+  }
+  std::sort(by_area.begin(), by_area.end());
+  by_area.resize(std::min(by_area.size(), kMaxScanned));
+  for (const auto& [area, row] : by_area) {
+    const InstanceView& in = instances[row];
+    const Bounds bounds = exact_bounds(in.shape, in.size, in.X_WG);
+    const bool is_bounds = in.shape == ShapeType::kBox && lies_along_axes(in.X_WG);
+    solids_.push_back({is_bounds ? bounds : wider(bounds), is_bounds, row});
+    rows_.push_back(row);
+  }
+}
+
 void EmbreeScene::build_fixed(const RenderScene& scene) {
   fixed_ = new_scene();
   bool empty = true;
   const std::vector<InstanceView>& instances = scene.instances();
   for (size_t i = 0; i < instances.size(); ++i) {
     const InstanceView& in = instances[i];
-    if (!scene.is_fixed(i) || in.shape == ShapeType::kDeformable || is_infinite_plane(in) ||
-        !scene.is_drawn(i)) {
-      continue;
-    }
+    if (!stands_still(scene, i) || is_scanned(i)) continue;
     RtcOwner<RTCGeometry> geometry;
     if (is_mesh(in.shape)) {
       const MeshView& mesh = scene.meshes()[in.mesh];
@@ -228,12 +279,14 @@ void EmbreeScene::build(const RenderScene& scene) {
   shape_data_.clear();
   rows_.clear();
   planes_.clear();
+  solids_.clear();
   for (size_t i = 0; i < scene.instances().size(); ++i) {
     if (is_infinite_plane(scene.instances()[i]) && scene.is_drawn(i)) {
       planes_.push_back(static_cast<uint32_t>(i));
     }
   }
   build_moving(scene);
+  choose_scanned(scene);
   build_fixed(scene);
 }
 
@@ -284,8 +337,8 @@ Status EmbreeScene::update(const RenderScene& scene) {
 
 EmbreeTracer EmbreeScene::static_tracer(const RenderScene& scene) const {
   EmbreeTracer tracer = this->tracer(scene);
-  tracer.moving = nullptr;
-  tracer.planes = {};
+  tracer.moving = {};
+  tracer.scanned.planes = {};
   return tracer;
 }
 
@@ -295,12 +348,11 @@ EmbreeTracer EmbreeScene::tracer(const RenderScene& scene) const {
                                                           static_cast<uint32_t>(v.size())};
   };
   EmbreeTracer tracer;
-  tracer.fixed = fixed_.get();
-  tracer.moving = moving_.get();
+  if (fixed_ != nullptr) tracer.fixed = {fixed_.get(), bounds_of(fixed_.get())};
+  if (moving_ != nullptr) tracer.moving = {moving_.get(), bounds_of(moving_.get())};
   tracer.rows = span(rows_);
-  tracer.first_fixed = static_cast<uint32_t>(moving_geometries_.size());
-  tracer.planes = span(planes_);
-  tracer.instances = span(scene.instances());
+  tracer.first_still = static_cast<uint32_t>(moving_geometries_.size());
+  tracer.scanned = {span(planes_), span(solids_), span(scene.instances())};
   return tracer;
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 // Embree behind one face: acceleration structures of a RenderScene and the Tracer that the kernel
 // is compiled with. Static geometry is one BVH, built once; each moving geom is an instance of the
-// BVH of its shape with one or two motion keys. Infinite planes stay outside, in a short list.
+// BVH of its shape with one or two motion keys. Infinite planes and the largest simple solids that
+// stand still stay outside, in a short list.
 
 #include <map>
 #include <memory>
@@ -47,6 +48,8 @@ class EmbreeScene {
 
   EmbreeScene() = default;
   void build(const RenderScene& scene);
+  void choose_scanned(const RenderScene& scene);
+  bool is_scanned(size_t instance) const;
   void build_fixed(const RenderScene& scene);
   void build_moving(const RenderScene& scene);
   void build_shapes(const RenderScene& scene);
@@ -61,8 +64,10 @@ class EmbreeScene {
   std::map<ShapeKey, RtcOwner<RTCScene>> shapes_;  ///< one BVH per distinct moving shape
   RtcOwner<RTCScene> moving_;                      ///< instances, deformables; null = none
   std::vector<RtcOwner<RTCGeometry>> moving_geometries_;
-  std::vector<uint32_t> rows_;  ///< Embree id -> instance: those of moving_, then those of fixed_
+  /// Embree id -> instance: those of moving_, then the scanned solids, then those of fixed_.
+  std::vector<uint32_t> rows_;
   std::vector<uint32_t> planes_;
+  std::vector<ScannedSolid> solids_;
   std::optional<uint64_t> drawn_version_;                   ///< of the scene that is built
   std::vector<std::unique_ptr<ShapeGeometry>> shape_data_;  ///< Embree keeps pointers to them
 };

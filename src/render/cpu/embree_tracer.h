@@ -1,16 +1,23 @@
 #pragma once
-// Embree's traversal as the kernel wants it: one ray, lanes, or packets.
+// What the kernel traces with: a short list that is scanned, and Embree's traversal of the rest.
 
 #include <embree3/rtcore.h>
 
+#include "render/cpu/scan.h"
 #include "render/kernel/scene_view.h"
 
 namespace gloam {
 
-/// What the kernel traces with. Cheap to copy; valid until the scene's next update.
+/// A scene of Embree's and what it lies in.
+struct EmbreePart {
+  RTCScene scene = nullptr;  ///< null = nothing
+  Bounds bounds;             ///< a little wider than the scene
+};
+
+/// Cheap to copy; valid until the scene's next update.
 class EmbreeTracer {
  public:
-  static constexpr int kPacket = 16;
+  static constexpr int kPacket = kLaneCount;
 
   /// One ray: the closest hit, or with `any` just whether there is one.
   bool trace(const Ray& ray, bool any, RayHit* hit) const;
@@ -20,17 +27,16 @@ class EmbreeTracer {
   MaskLanes closest(const RayOf<FloatLanes>& ray, MaskLanes active, bool coherent,
                     RayHitOf<FloatLanes>* hit) const;
   MaskLanes occluded(const RayOf<FloatLanes>& ray, MaskLanes active) const;
-  /// Up to kPacket rays of one kind at once; even incoherent ones are faster so.
+  /// Up to kPacket rays of one kind at once.
   void trace_packet(const Ray* const* rays, int count, bool any, bool coherent, RayHit* hits,
                     bool* found) const;
 
   // Two scenes, one after the other: an instance around all that is static would cost every ray
   // more.
-  RTCScene fixed = nullptr, moving = nullptr;  ///< either may be absent
-  DeviceSpan<const uint32_t> rows;             ///< Embree id -> instance, those of `moving` first
-  uint32_t first_fixed = 0;                    ///< id of the first of `fixed`
-  DeviceSpan<const uint32_t> planes;           ///< rows of infinite planes
-  DeviceSpan<const InstanceView> instances;
+  EmbreePart fixed, moving;
+  DeviceSpan<const uint32_t> rows;  ///< Embree id -> instance, what moves first
+  uint32_t first_still = 0;         ///< id of the first that never moves
+  ScanList scanned;
 
  private:
   void resolve(uint32_t instance_id, uint32_t geometry_id, float time, RayHit* hit) const;

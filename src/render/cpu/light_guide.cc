@@ -201,11 +201,12 @@ void LightGuideStore::build(SceneView scene, const EmbreeTracer& statics,
   grid_ = {};
   const bool has_sky = scene.sky_texture >= 0 || luminance(scene.sky_ambient) > 0;
   const bool has_choice = has_sky || lights.size() > 1;
-  if (statics.fixed == nullptr || lights.size() > kMaxWeighedLights || !has_choice) {
+  const bool has_walls = statics.rows.size > statics.first_still;
+  if (!has_walls || lights.size() > kMaxWeighedLights || !has_choice) {
     return;
   }
   grid_ = place_guide_grid(
-      scene, {statics.rows.data + statics.first_fixed, statics.rows.size - statics.first_fixed},
+      scene, {statics.rows.data + statics.first_still, statics.rows.size - statics.first_still},
       kCellsAlong);
   if (grid_.nx == 0) return;
   grid_.lights = static_cast<uint32_t>(lights.size());

@@ -195,8 +195,11 @@ class Tile {
   }
 
   void render_path() {
-    for (int index = 0; index < job_.settings.spp; ++index) {
-      for (int first = 0; first < count_; first += kLaneCount) sample_lanes(first, index);
+    for (int index = 0; index < job_.settings.spp; index += kTogether) {
+      const int together = std::min(kTogether, job_.settings.spp - index);
+      for (int first = 0; first < count_ * together; first += kLaneCount) {
+        sample_lanes(first, index, together);
+      }
     }
   }
 
@@ -250,22 +253,29 @@ class Tile {
   }
 
  private:
-  /// One path through each of the pixels from `first` on.
-  void sample_lanes(int first, int index) {
+  /// Samples of a pixel that run side by side in lanes, at most: their rays keep together.
+  static constexpr int kTogether = 4;
+
+  /// Paths from the one on that is `first` when each pixel has `together` samples, the first of
+  /// them `index`.
+  void sample_lanes(int first, int index, int together) {
     using F = FloatLanes;
-    const int used = std::min(kLaneCount, count_ - first);
+    const int used = std::min(kLaneCount, count_ * together - first);
     MaskLanes active = false;
-    UintLanes x, y;
+    UintLanes x, y, sample;
+    int pixel[kLaneCount];
     for (int i = 0; i < kLaneCount; ++i) {
-      const int pixel = first + std::min(i, used - 1);
+      const int path = first + std::min(i, used - 1);
+      pixel[i] = path / together;
       set_lane(&active, i, i < used);
-      set_lane(&x, i, static_cast<uint32_t>(x_[pixel]));
-      set_lane(&y, i, static_cast<uint32_t>(y_[pixel]));
+      set_lane(&x, i, static_cast<uint32_t>(x_[pixel[i]]));
+      set_lane(&y, i, static_cast<uint32_t>(y_[pixel[i]]));
+      set_lane(&sample, i,
+               static_cast<uint32_t>(job_.settings.first_sample + index + path % together));
     }
     const RenderSettings& settings = job_.settings;
     auto sampler =
-        SamplerOf<F>::make(settings.seed, settings.frame, x, y,
-                           static_cast<uint32_t>(settings.first_sample + index), job_.log2_samples);
+        SamplerOf<F>::make(settings.seed, settings.frame, x, y, sample, job_.log2_samples);
     const Vec2Of<F> filter = sampler.next_2d();
     const F time = job_.has_motion ? sampler.next_1d() : F(0.0f);
     RayOf<F> ray;
@@ -273,8 +283,8 @@ class Tile {
     F width, spread;
     for (int i = 0; i < kLaneCount; ++i) {
       RayCone cone;
-      const Ray one = center_ray(first + std::min(i, used - 1),
-                                 sample_pixel_filter(lane(filter, i)), lane(time, i), &cone);
+      const Ray one =
+          center_ray(pixel[i], sample_pixel_filter(lane(filter, i)), lane(time, i), &cone);
       set_lane(&ray.o, i, one.o);
       set_lane(&ray.d, i, one.d);
       set_lane(&width, i, cone.width);
@@ -283,8 +293,8 @@ class Tile {
     const PathResultOf<F> result =
         trace_path(job_.scene, job_.tracer, ray, width, spread, job_.path, sampler, active);
     for (int i = 0; i < used; ++i) {
-      mean_[first + i].add({lane(result.radiance, i), lane(result.albedo, i),
-                            lane(result.normal, i), lane(result.rays, i)});
+      mean_[pixel[i]].add({lane(result.radiance, i), lane(result.albedo, i), lane(result.normal, i),
+                           lane(result.rays, i)});
       rays_ += lane(result.rays, i);
     }
   }
@@ -302,7 +312,7 @@ class Tile {
       return;
     }
     Surface s = make_surface(job_.scene, ray, center_hit_[i], cone);
-    if (!shows(s)) {
+    if (!shows(job_.scene, s)) {
       uint32_t rays = 0;
       const bool found = find_first(job_.scene, job_.tracer, ray, cone, &s, &center_hit_[i], &rays);
       rays_ += rays;

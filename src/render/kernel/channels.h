@@ -15,7 +15,9 @@ struct ExactChannels {
 
 /// Whether the exact channels stop at a surface: what is evenly transparent is a thing, as MuJoCo
 /// draws it; holes in an opacity texture are not.
-GLOAM_HD bool shows(const Surface& s) { return s.opacity >= 0.5f || s.material->opacity < 1.0f; }
+GLOAM_HD bool shows(const SceneView& scene, const Surface& s) {
+  return s.opacity >= 0.5f || scene.materials[scene.instances[s.instance].material].opacity < 1.0f;
+}
 
 /// The first surface along the ray that shows, and the distance to it.
 template <class Tracer>
@@ -26,7 +28,7 @@ GLOAM_HD bool find_first(const SceneView& scene, const Tracer& tracer, Ray ray, 
     ++*rays;
     if (!tracer.trace(ray, false, hit)) return false;
     *s = make_surface(scene, ray, *hit, cone);
-    if (shows(*s)) {
+    if (shows(scene, *s)) {
       s->t = hit->t += passed_distance;
       return true;
     }
@@ -38,7 +40,7 @@ GLOAM_HD bool find_first(const SceneView& scene, const Tracer& tracer, Ray ray, 
 
 /// Where the point of the surface was at the previous frame.
 GLOAM_HD Vec3f previous_point(const SceneView& scene, const Surface& s, const RayHit& hit) {
-  const InstanceView& instance = *s.instance;
+  const InstanceView& instance = scene.instances[s.instance];
   if (instance.shape == ShapeType::kDeformable) {
     const MeshView& mesh = scene.meshes[instance.mesh];
     const uint32_t* index = mesh.indices.data + 3 * static_cast<size_t>(hit.primitive);
@@ -56,7 +58,7 @@ GLOAM_HD ExactChannels describe_surface(const SceneView& scene, const CameraView
   c.distance = dot(s.p - ray.o, ray.d);
   const Vec3f axis = camera.pose.X_WC_open.z;
   c.depth = -dot(s.p - camera.pose.X_WC_open.p, axis);
-  c.part = static_cast<uint32_t>(s.instance - scene.instances.data) + 1;
+  c.part = s.instance + 1;
   c.normal = s.normal;
   c.albedo = s.base_color;
   Vec2f now, before;

@@ -56,8 +56,8 @@ GLOAM_HD void meet_surface(const SceneView& scene, DirectState* d, const RayHit&
   float a, b;
   layer_albedo(*scene.albedo, d->s.roughness, d->wo.z, &a, &b);
   const Vec3f albedo = d->bsdf.diffuse + d->bsdf.f0 * a + d->bsdf.f90 * b;
-  d->result.radiance += (surface_emission(d->s) + albedo * scene.ambient.on(d->s.normal)) *
-                        (d->transmittance * d->s.opacity);
+  d->result.radiance +=
+      (d->s.emission + albedo * scene.ambient.on(d->s.normal)) * (d->transmittance * d->s.opacity);
   d->next_light = 0;
   if (scene.lights.size > kMaxDirectLights) d->picker.prepare(scene, d->s.p, d->s.geometric);
 }

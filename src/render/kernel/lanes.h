@@ -1,5 +1,5 @@
 #pragma once
-// What the kernel computes with: one float, or eight side by side. Code that is generic over F
+// What the kernel computes with: one float, or several side by side. Code that is generic over F
 // takes no branch that differs between lanes: it computes both sides and selects, and skips what no
 // lane needs with any(). A lane gives the same bits as the float: same operations, same order.
 //   F     float     FloatLanes
@@ -28,6 +28,11 @@ GLOAM_HD bool lane(bool x, int) { return x; }
 GLOAM_HD void set_lane(float* x, int, float value) { *x = value; }
 GLOAM_HD void set_lane(uint32_t* x, int, uint32_t value) { *x = value; }
 GLOAM_HD void set_lane(bool* x, int, bool value) { *x = value; }
+/// Calls visit(i) for every lane i of the mask.
+template <class Visit>
+GLOAM_HD void each_lane(bool mask, const Visit& visit) {
+  if (mask) visit(0);
+}
 
 template <class F>
 struct Lanes {  // float
@@ -43,7 +48,7 @@ using UintOf = typename Lanes<F>::Uint;
 }  // namespace gloam
 
 #ifndef __CUDACC__
-#include "render/kernel/lanes8.h"
+#include "render/kernel/simd_lanes.h"
 #endif
 
 namespace gloam {
@@ -75,6 +80,17 @@ GLOAM_HD void set_lane(Vec3Of<F>* v, int i, Vec3f value) {
   set_lane(&v->x, i, value.x);
   set_lane(&v->y, i, value.y);
   set_lane(&v->z, i, value.z);
+}
+template <class F>
+GLOAM_HD void set_lane(AffineOf<F>* X, int i, const Affine3f& value) {
+  set_lane(&X->x, i, value.x);
+  set_lane(&X->y, i, value.y);
+  set_lane(&X->z, i, value.z);
+  set_lane(&X->p, i, value.p);
+}
+template <class F>
+GLOAM_HD Affine3f lane(const AffineOf<F>& X, int i) {
+  return {lane(X.x, i), lane(X.y, i), lane(X.z, i), lane(X.p, i)};
 }
 
 }  // namespace gloam

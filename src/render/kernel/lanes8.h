@@ -1,20 +1,12 @@
 #pragma once
-// Eight lanes by GCC's and Clang's vector extensions: AVX registers where the compiler may use
-// them, whatever else elsewhere, with the same results.
-
-#ifdef __AVX__
-#include <immintrin.h>
-#endif
-
-#include "base/vec.h"
+// Eight lanes: masks are vectors of all bits or none. AVX registers where the compiler may use
+// them, whatever else elsewhere. Part of simd_lanes.h.
 
 namespace gloam {
 
-inline constexpr int kLaneCount = 8;
-
 struct MaskLanes {
   using Native = int32_t __attribute__((vector_size(32)));
-  Native v{};  ///< all bits or none
+  Native v{};
 
   MaskLanes() = default;
   MaskLanes(Native native) : v(native) {}
@@ -33,7 +25,6 @@ inline bool any(MaskLanes m) {
   return bits != 0;
 #endif
 }
-inline bool all(MaskLanes m) { return !any(!m); }
 /// Bit i = lane i.
 inline uint32_t bits_of(MaskLanes m) {
 #ifdef __AVX__
@@ -47,63 +38,33 @@ inline uint32_t bits_of(MaskLanes m) {
 inline bool lane(MaskLanes m, int i) { return m.v[i] != 0; }
 inline void set_lane(MaskLanes* m, int i, bool value) { m->v[i] = value ? -1 : 0; }
 
-struct UintLanes {
-  using Native = uint32_t __attribute__((vector_size(32)));
-  Native v{};
-
-  UintLanes() = default;
-  UintLanes(Native native) : v(native) {}
-  UintLanes(uint32_t x) : v(Native{} + x) {}
-  friend UintLanes operator+(UintLanes a, UintLanes b) { return a.v + b.v; }
-  friend UintLanes operator*(UintLanes a, UintLanes b) { return a.v * b.v; }
-  friend UintLanes operator&(UintLanes a, UintLanes b) { return a.v & b.v; }
-  friend UintLanes operator|(UintLanes a, UintLanes b) { return a.v | b.v; }
-  friend UintLanes operator^(UintLanes a, UintLanes b) { return a.v ^ b.v; }
-  friend UintLanes operator<<(UintLanes a, int n) { return a.v << n; }
-  friend UintLanes operator>>(UintLanes a, int n) { return a.v >> n; }
-  friend UintLanes& operator+=(UintLanes& a, UintLanes b) { return a = a + b; }
-  friend UintLanes& operator^=(UintLanes& a, UintLanes b) { return a = a ^ b; }
-  friend UintLanes& operator&=(UintLanes& a, UintLanes b) { return a = a & b; }
-  friend MaskLanes operator==(UintLanes a, UintLanes b) { return a.v == b.v; }
-  friend MaskLanes operator!=(UintLanes a, UintLanes b) { return a.v != b.v; }
-  friend MaskLanes operator>(UintLanes a, UintLanes b) { return a.v > b.v; }
-  friend MaskLanes operator>=(UintLanes a, UintLanes b) { return a.v >= b.v; }
-};
-inline uint32_t lane(const UintLanes& x, int i) { return x.v[i]; }
-inline void set_lane(UintLanes* x, int i, uint32_t value) { x->v[i] = value; }
-
-struct FloatLanes {
-  using Native = float __attribute__((vector_size(32)));
-  Native v{};
-
-  FloatLanes() = default;
-  FloatLanes(Native native) : v(native) {}
-  FloatLanes(float x) : v{x, x, x, x, x, x, x, x} {}
-  friend FloatLanes operator+(FloatLanes a, FloatLanes b) { return a.v + b.v; }
-  friend FloatLanes operator-(FloatLanes a, FloatLanes b) { return a.v - b.v; }
-  friend FloatLanes operator-(FloatLanes a) { return -a.v; }
-  friend FloatLanes operator*(FloatLanes a, FloatLanes b) { return a.v * b.v; }
-  friend FloatLanes operator/(FloatLanes a, FloatLanes b) { return a.v / b.v; }
-  friend FloatLanes& operator+=(FloatLanes& a, FloatLanes b) { return a = a + b; }
-  friend FloatLanes& operator-=(FloatLanes& a, FloatLanes b) { return a = a - b; }
-  friend FloatLanes& operator*=(FloatLanes& a, FloatLanes b) { return a = a * b; }
-  friend MaskLanes operator<(FloatLanes a, FloatLanes b) { return a.v < b.v; }
-  friend MaskLanes operator<=(FloatLanes a, FloatLanes b) { return a.v <= b.v; }
-  friend MaskLanes operator>(FloatLanes a, FloatLanes b) { return a.v > b.v; }
-  friend MaskLanes operator>=(FloatLanes a, FloatLanes b) { return a.v >= b.v; }
-  friend MaskLanes operator==(FloatLanes a, FloatLanes b) { return a.v == b.v; }
-};
-inline float lane(const FloatLanes& x, int i) { return x.v[i]; }
-inline void set_lane(FloatLanes* x, int i, float value) { x->v[i] = value; }
+inline MaskLanes operator==(UintLanes a, UintLanes b) { return a.v == b.v; }
+inline MaskLanes operator!=(UintLanes a, UintLanes b) { return a.v != b.v; }
+inline MaskLanes operator>(UintLanes a, UintLanes b) { return a.v > b.v; }
+inline MaskLanes operator>=(UintLanes a, UintLanes b) { return a.v >= b.v; }
+inline MaskLanes operator<(FloatLanes a, FloatLanes b) { return a.v < b.v; }
+inline MaskLanes operator<=(FloatLanes a, FloatLanes b) { return a.v <= b.v; }
+inline MaskLanes operator>(FloatLanes a, FloatLanes b) { return a.v > b.v; }
+inline MaskLanes operator>=(FloatLanes a, FloatLanes b) { return a.v >= b.v; }
+inline MaskLanes operator==(FloatLanes a, FloatLanes b) { return a.v == b.v; }
 
 inline FloatLanes select(MaskLanes m, FloatLanes a, FloatLanes b) { return m.v ? a.v : b.v; }
 inline UintLanes select(MaskLanes m, UintLanes a, UintLanes b) { return m.v ? a.v : b.v; }
 inline MaskLanes select(MaskLanes m, MaskLanes a, MaskLanes b) { return m.v ? a.v : b.v; }
+#ifdef __AVX__
+// As a < b ? a : b and a > b ? a : b, for what is no number too.
+inline FloatLanes min(FloatLanes a, FloatLanes b) {
+  return reinterpret_cast<FloatLanes::Native>(
+      _mm256_min_ps(reinterpret_cast<__m256>(a.v), reinterpret_cast<__m256>(b.v)));
+}
+inline FloatLanes max(FloatLanes a, FloatLanes b) {
+  return reinterpret_cast<FloatLanes::Native>(
+      _mm256_max_ps(reinterpret_cast<__m256>(a.v), reinterpret_cast<__m256>(b.v)));
+}
+#else
 inline FloatLanes min(FloatLanes a, FloatLanes b) { return a.v < b.v ? a.v : b.v; }
 inline FloatLanes max(FloatLanes a, FloatLanes b) { return a.v > b.v ? a.v : b.v; }
-inline FloatLanes clamp(FloatLanes x, FloatLanes lo, FloatLanes hi) { return min(max(x, lo), hi); }
-inline FloatLanes lerp(FloatLanes a, FloatLanes b, FloatLanes t) { return a + (b - a) * t; }
-inline FloatLanes sqr(FloatLanes x) { return x * x; }
+#endif
 inline FloatLanes square_root(FloatLanes x) {
 #ifdef __AVX__
   return reinterpret_cast<FloatLanes::Native>(_mm256_sqrt_ps(reinterpret_cast<__m256>(x.v)));
@@ -113,7 +74,6 @@ inline FloatLanes square_root(FloatLanes x) {
   return out;
 #endif
 }
-inline FloatLanes safe_sqrt(FloatLanes x) { return square_root(max(x, 0.0f)); }
 inline FloatLanes floor_of(FloatLanes x) {
 #ifdef __AVX__
   return reinterpret_cast<FloatLanes::Native>(_mm256_floor_ps(reinterpret_cast<__m256>(x.v)));
@@ -122,16 +82,6 @@ inline FloatLanes floor_of(FloatLanes x) {
   for (int i = 0; i < kLaneCount; ++i) out.v[i] = floorf(x.v[i]);
   return out;
 #endif
-}
-inline FloatLanes magnitude(FloatLanes x) {
-  return reinterpret_cast<FloatLanes::Native>(reinterpret_cast<UintLanes::Native>(x.v) &
-                                              0x7FFFFFFFu);
-}
-inline UintLanes to_uint(FloatLanes x) {
-  return reinterpret_cast<UintLanes::Native>(__builtin_convertvector(x.v, MaskLanes::Native));
-}
-inline FloatLanes to_float(UintLanes x) {
-  return __builtin_convertvector(reinterpret_cast<MaskLanes::Native>(x.v), FloatLanes::Native);
 }
 inline FloatLanes gather(const float* table, UintLanes index) {
 #ifdef __AVX2__
@@ -143,14 +93,5 @@ inline FloatLanes gather(const float* table, UintLanes index) {
   return out;
 #endif
 }
-
-template <class F>
-struct Lanes;
-template <>
-struct Lanes<FloatLanes> {
-  static constexpr int kCount = kLaneCount;
-  using Mask = MaskLanes;
-  using Uint = UintLanes;
-};
 
 }  // namespace gloam

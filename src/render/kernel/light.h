@@ -107,10 +107,6 @@ GLOAM_HD LightSampleOf<F> sample_sun(const LightView& light, Vec2Of<F> u) {
   return s;
 }
 
-GLOAM_HD Vec3f to_instance(const Affine3f& X_WG, Vec3f v) {
-  return {dot(v, X_WG.x), dot(v, X_WG.y), dot(v, X_WG.z)};
-}
-
 /// A box that stands still, without textures: every lane takes its own face.
 template <class F>
 GLOAM_HD LightSampleOf<F> sample_box(const InstanceView& instance, Vec3f emission, Vec3Of<F> p,
@@ -163,15 +159,13 @@ GLOAM_HD float instance_pdf(const SceneView& scene, const InstanceView& instance
     const float d2 = dot(to, to), r2 = sqr(instance.size.x);
     if (d2 > r2 * 1.0001f) return cone_pdf(one_minus_cos_of(r2 / d2));
   }
-  const bool is_mesh =
-      instance.shape == ShapeType::kMesh || instance.shape == ShapeType::kDeformable;
-  float pdf_area = is_mesh ? 1.0f / scene.meshes[instance.mesh].area : 0.0f;
-  if (!is_mesh) {
+  float pdf_area = is_mesh(instance.shape) ? 1.0f / scene.meshes[instance.mesh].area : 0.0f;
+  if (!is_mesh(instance.shape)) {
     const Affine3f X_WG = pose_at(instance, time);
-    pdf_area = instance.shape == ShapeType::kBox
-                   ? box_pdf_from(instance.size, to_instance(X_WG, p - X_WG.p),
-                                  to_instance(X_WG, hit_normal))
-                   : shape_pdf(instance.shape, instance.size, to_instance(X_WG, hit_p - X_WG.p));
+    pdf_area =
+        instance.shape == ShapeType::kBox
+            ? box_pdf_from(instance.size, to_frame(X_WG, p - X_WG.p), to_frame(X_WG, hit_normal))
+            : shape_pdf(instance.shape, instance.size, to_frame(X_WG, hit_p - X_WG.p));
   }
   const Vec3f to = hit_p - p;
   const float d2 = dot(to, to), cosine = fabsf(dot(to, hit_normal)) / sqrtf(d2);
@@ -186,7 +180,7 @@ GLOAM_HD LightSample sample_instance(const SceneView& scene, const LightView& li
   const Affine3f X_WG = pose_at(instance, time);
   RayHit hit;
   Vec3f p_W, n_W, p_G;
-  if (instance.shape == ShapeType::kMesh || instance.shape == ShapeType::kDeformable) {
+  if (is_mesh(instance.shape)) {
     const MeshView& mesh = scene.meshes[instance.mesh];
     uint32_t low = 0, high = mesh.area_cdf.size - 1;
     while (low < high) {
@@ -215,13 +209,13 @@ GLOAM_HD LightSample sample_instance(const SceneView& scene, const LightView& li
     const float along = dot(X_WG.p - p, wi);
     p_W = p + wi * (along - safe_sqrt(r2 - max(d2 - along * along, 0.0f)));
     n_W = normalize(p_W - X_WG.p);
-    p_G = to_instance(X_WG, n_W) * instance.size.x;
+    p_G = to_frame(X_WG, n_W) * instance.size.x;
   } else {
     Vec3f n_G;
     if (instance.shape != ShapeType::kBox) {
       p_G = sample_shape(instance.shape, instance.size, pick, u, &n_G);
-    } else if (!(sample_box_from(instance.size, to_instance(X_WG, p - X_WG.p), pick, u, &p_G,
-                                 &n_G) > 0)) {
+    } else if (!(sample_box_from(instance.size, to_frame(X_WG, p - X_WG.p), pick, u, &p_G, &n_G) >
+                 0)) {
       return s;
     }
     p_W = transform_point(X_WG, p_G);
@@ -231,16 +225,15 @@ GLOAM_HD LightSample sample_instance(const SceneView& scene, const LightView& li
   s.distance = length(to);
   if (!(s.distance > 1e-6f)) return s;
   s.wi = to / s.distance;
+  if (!is_mesh(instance.shape) && dot(s.wi, n_W) >= 0) return s;  // its back is dark
   Surface surface;
-  surface.instance = &instance;
-  surface.material = &material;
-  surface.outside = dot(s.wi, n_W) < 0;
   surface.emission = material.emission;
+  surface.opacity = material.opacity;
   if (material.textured) {
-    surface.normal = n_W;
-    surfaces::apply_textures(scene, hit, X_WG, p_G, 0.0f, time, &surface);
+    surface.geometric = surface.normal = n_W;
+    surfaces::apply_textures(scene, instance, hit, X_WG, p_G, 0.0f, time, &surface);
   }
-  s.radiance = surface_emission(surface) * surface.opacity;
+  s.radiance = surface.emission * surface.opacity;
   if (max_component(s.radiance) <= 0) return s;
   s.pdf = instance_pdf(scene, instance, p, p_W, n_W, time);
   s.lift = leave_surface(p_W, n_W, -s.wi, 0.0f) - p_W;

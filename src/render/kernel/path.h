@@ -29,16 +29,6 @@ inline constexpr uint32_t kMaxPassed = 64;
 
 namespace paths {
 
-/// What scattering needs to know of a surface.
-template <class F>
-struct Vertex {
-  Vec3Of<F> p, geometric, normal;
-  Vec3Of<F> base_color;
-  Vec3Of<F> emission;  ///< towards the viewer
-  F metallic{}, roughness{}, f0{}, f90{};
-  F opacity = 1.0f;
-};
-
 template <class F>
 struct State {
   RayOf<F> ray;
@@ -53,51 +43,32 @@ struct State {
   LightPickerOf<F> picker;  ///< of that vertex
 };
 
-/// The surfaces that the lanes of `found` have hit. Emission is weighted against the light sampling
-/// of the last vertex.
+/// Weighs what the surfaces give off against the light sampling of the last vertex.
 template <class F>
-GLOAM_HD Vertex<F> load_vertex(const SceneView& scene, const State<F>& path, const RayHitOf<F>& hit,
-                               MaskOf<F> found) {
-  Vertex<F> v;
-  for (int i = 0; i < Lanes<F>::kCount; ++i) {
-    if (!lane(found, i)) continue;
-    const Ray ray = lane(path.ray, i);
-    const RayHit h = lane(hit, i);
-    const Surface s =
-        make_surface(scene, ray, h, {lane(path.cone_width, i), lane(path.cone_spread, i)});
-    set_lane(&v.p, i, s.p);
-    set_lane(&v.geometric, i, s.geometric);
-    set_lane(&v.normal, i, s.normal);
-    set_lane(&v.base_color, i, s.base_color);
-    set_lane(&v.metallic, i, s.metallic);
-    set_lane(&v.roughness, i, s.roughness);
-    set_lane(&v.f0, i, s.material->f0);
-    set_lane(&v.f90, i, s.material->f90);
-    set_lane(&v.opacity, i, s.opacity);
-    Vec3f emission = surface_emission(s);
-    if (max_component(emission) <= 0) continue;
-    const float pdf_bsdf = lane(path.pdf_bsdf, i);
-    if (pdf_bsdf > 0 && s.instance->light >= 0) {
-      const float selected =
-          lane(path.picker.probability(scene, static_cast<uint32_t>(s.instance->light)), i);
-      emission *= mis_weight(
-          pdf_bsdf, selected * lights::instance_pdf(scene, *s.instance, lane(path.from, i), s.p,
-                                                    s.geometric, ray.time));
-    }
-    set_lane(&v.emission, i, emission);
-  }
-  return v;
+GLOAM_HD void weigh_emission(const SceneView& scene, const State<F>& path, MaskOf<F> found,
+                             SurfaceOf<F>* s) {
+  const MaskOf<F> sampled = found & (max_component(s->emission) > 0.0f) & (path.pdf_bsdf > 0.0f);
+  each_lane(sampled, [&](int i) {
+    const InstanceView& instance = scene.instances[lane(s->instance, i)];
+    if (instance.light < 0) return;
+    const float selected =
+        lane(path.picker.probability(scene, static_cast<uint32_t>(instance.light)), i);
+    const float pdf =
+        selected * lights::instance_pdf(scene, instance, lane(path.from, i), lane(s->p, i),
+                                        lane(s->geometric, i), lane(path.ray.time, i));
+    set_lane(&s->emission, i, lane(s->emission, i) * mis_weight(lane(path.pdf_bsdf, i), pdf));
+  });
 }
 
 /// Lanes whose surface can neither scatter any more nor give off light: most of the last ones.
 template <class F>
 GLOAM_HD MaskOf<F> gives_nothing(const SceneView& scene, const RayHitOf<F>& hit, MaskOf<F> last) {
-  for (int i = 0; i < Lanes<F>::kCount; ++i) {
-    if (!lane(last, i)) continue;
+  MaskOf<F> dark = last;
+  each_lane(last, [&](int i) {
     const MaterialView& m = scene.materials[scene.instances[lane(hit.instance, i)].material];
-    if (m.transparent || max_component(m.emission) > 0) set_lane(&last, i, false);
-  }
-  return last;
+    if (m.transparent || max_component(m.emission) > 0) set_lane(&dark, i, false);
+  });
+  return dark;
 }
 
 /// What is left of the light along the shadow rays of the `open` lanes.
@@ -113,17 +84,13 @@ GLOAM_HD Vec3Of<F> transmit(const SceneView& scene, const Tracer& tracer, RayOf<
     RayHitOf<F> hit;
     *rays += select(open, UintOf<F>(1u), UintOf<F>(0u));
     open = tracer.closest(ray, open, false, &hit);
-    for (int i = 0; i < Lanes<F>::kCount; ++i) {
-      if (!lane(open, i)) continue;
-      const RayHit h = lane(hit, i);
-      const Ray r = lane(ray, i);
-      const Surface s = make_surface(scene, r, h, {});
-      const float through = passed < kMaxPassed ? 1.0f - s.opacity : 0.0f;
-      set_lane(&light, i, lane(light, i) * through);
-      set_lane(&ray.o, i, leave_surface(s.p, s.geometric, r.d, h.t));
-      set_lane(&ray.tmax, i, r.tmax - h.t);
-      set_lane(&open, i, through > 0 && r.tmax > h.t);
-    }
+    if (!any(open)) break;
+    const SurfaceOf<F> s = make_surface(scene, ray, hit, {}, open);
+    const F through = passed < kMaxPassed ? 1.0f - s.opacity : F(0.0f);
+    light = select<F>(open, light * through, light);
+    ray.o = select<F>(open, leave_surface(s.p, s.geometric, ray.d, hit.t), ray.o);
+    ray.tmax = select(open, ray.tmax - hit.t, ray.tmax);
+    open = open & (through > 0.0f) & (ray.tmax > 0.0f);
   }
   return light;
 }
@@ -132,11 +99,10 @@ GLOAM_HD Vec3Of<F> transmit(const SceneView& scene, const Tracer& tracer, RayOf<
 /// whose path goes on.
 template <class F, class Tracer>
 GLOAM_HD MaskOf<F> scatter(const SceneView& scene, const Tracer& tracer, const PathOptions& options,
-                           State<F>* path, const Vertex<F>& v, F t, MaskOf<F> active) {
+                           State<F>* path, const SurfaceOf<F>& v, MaskOf<F> active) {
   const Vec3Of<F> wo_W = -path->ray.d;
-  const FrameOf<F> frame = FrameOf<F>::from_z(v.normal);
-  const BsdfOf<F> bsdf = make_bsdf(*scene.albedo, v.base_color, v.metallic, v.roughness, v.f0,
-                                   v.f90, max(dot(wo_W, v.normal), 1e-4f));
+  FrameOf<F> frame;
+  const BsdfOf<F> bsdf = surface_bsdf(scene, v, wo_W, &frame);
   const Vec3Of<F> wo = frame.to_local(wo_W);
 
   path->picker.prepare(scene, v.p, v.geometric, active);
@@ -154,7 +120,7 @@ GLOAM_HD MaskOf<F> scatter(const SceneView& scene, const Tracer& tracer, const P
     const MaskOf<F> shadowed = lit & light.casts_shadow;
     if (any(shadowed)) {
       RayOf<F> shadow = path->ray;
-      aim_shadow_ray(v.p, v.geometric, t, light, &shadow);
+      aim_shadow_ray(v.p, v.geometric, v.t, light, &shadow);
       arriving = select<F>(shadowed,
                            arriving * transmit(scene, tracer, shadow, shadowed, &path->result.rays),
                            arriving);
@@ -178,7 +144,7 @@ GLOAM_HD MaskOf<F> scatter(const SceneView& scene, const Tracer& tracer, const P
   // The cone widens with the lobe: texture detail that a broad lobe averages is not sought.
   const F widening = 0.2f * square_root(min(1.0f / (kPi * sample.pdf), 1.0f));
   path->cone_spread = select(next, path->cone_spread + widening, path->cone_spread);
-  path->ray.o = select<F>(next, leave_surface(v.p, v.geometric, wi, t), path->ray.o);
+  path->ray.o = select<F>(next, leave_surface(v.p, v.geometric, wi, v.t), path->ray.o);
   path->ray.d = select<F>(next, wi, path->ray.d);
   return next;
 }
@@ -226,7 +192,9 @@ GLOAM_HD PathResultOf<F> trace_path(const SceneView& scene, const Tracer& tracer
     if (any(last)) found = found & !paths::gives_nothing(scene, hit, last);
     if (!any(found)) break;
 
-    const paths::Vertex<F> v = paths::load_vertex(scene, path, hit, found);
+    SurfaceOf<F> v =
+        make_surface(scene, path.ray, hit, RayConeOf<F>{path.cone_width, path.cone_spread}, found);
+    paths::weigh_emission(scene, path, found, &v);
     Mask through = false;
     if (scene.has_transparent) {
       const Mask thin = found & (v.opacity < 1.0f) & !(path.passed >= kMaxPassed);
@@ -254,8 +222,7 @@ GLOAM_HD PathResultOf<F> trace_path(const SceneView& scene, const Tracer& tracer
           select<F>(through, leave_surface(v.p, v.geometric, path.ray.d, hit.t), path.ray.o);
     }
     active = through;
-    if (any(solid))
-      active = active | paths::scatter(scene, tracer, options, &path, v, hit.t, solid);
+    if (any(solid)) active = active | paths::scatter(scene, tracer, options, &path, v, solid);
   }
   return path.result;
 }

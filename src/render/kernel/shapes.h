@@ -7,6 +7,10 @@
 
 namespace gloam {
 
+GLOAM_HD bool is_mesh(ShapeType shape) {
+  return shape == ShapeType::kMesh || shape == ShapeType::kDeformable;
+}
+
 /// Half extents of the object that MuJoCo scales to unit size before it maps textures.
 GLOAM_HD Vec3f shape_half_size(ShapeType shape, Vec3f size) {
   switch (shape) {
@@ -129,23 +133,25 @@ GLOAM_HD float intersect_shape(ShapeType shape, Vec3f size, Vec3f o, Vec3f d, fl
   }
 }
 
+/// Outward unit normal of the face of a box that *p is nearest to; moves *p onto it.
+template <class F>
+GLOAM_HD Vec3Of<F> snap_to_box(Vec3Of<F> size, Vec3Of<F>* p) {
+  const F gap_x = size.x - magnitude(p->x), gap_y = size.y - magnitude(p->y),
+          gap_z = size.z - magnitude(p->z);
+  const auto x = (gap_x <= gap_y) & (gap_x <= gap_z), y = (gap_y <= gap_z) & !x, z = !(x | y);
+  const F zero = 0.0f, one = 1.0f;
+  const Vec3Of<F> side{select(p->x < 0.0f, -one, one), select(p->y < 0.0f, -one, one),
+                       select(p->z < 0.0f, -one, one)};
+  *p = {select(x, side.x * size.x, p->x), select(y, side.y * size.y, p->y),
+        select(z, side.z * size.z, p->z)};
+  return {select(x, side.x, zero), select(y, side.y, zero), select(z, side.z, zero)};
+}
+
 /// Outward unit normal at a point near the surface; moves *p onto the surface.
 GLOAM_HD Vec3f snap_to_shape(ShapeType shape, Vec3f size, Vec3f* p) {
   switch (shape) {
-    case ShapeType::kBox: {
-      const float gap_x = size.x - fabsf(p->x), gap_y = size.y - fabsf(p->y),
-                  gap_z = size.z - fabsf(p->z);
-      if (gap_x <= gap_y && gap_x <= gap_z) {
-        p->x = copysignf(size.x, p->x);
-        return {copysignf(1.0f, p->x), 0, 0};
-      }
-      if (gap_y <= gap_z) {
-        p->y = copysignf(size.y, p->y);
-        return {0, copysignf(1.0f, p->y), 0};
-      }
-      p->z = copysignf(size.z, p->z);
-      return {0, 0, copysignf(1.0f, p->z)};
-    }
+    case ShapeType::kBox:
+      return snap_to_box(size, p);
     case ShapeType::kSphere: {
       const Vec3f n = normalize(*p);
       *p = n * size.x;

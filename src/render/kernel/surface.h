@@ -9,21 +9,52 @@
 namespace gloam {
 
 /// How wide a ray is: a cone of `width` [m] at its origin that grows by `spread` [m/m].
-struct RayCone {
-  float width = 0, spread = 0;
+template <class F>
+struct RayConeOf {
+  F width{}, spread{};
 };
+using RayCone = RayConeOf<float>;
 
-struct Surface {
-  Vec3f p;              ///< world [m]
-  Vec3f geometric;      ///< unit normal of the geometry, towards the viewer
-  Vec3f normal;         ///< unit shading normal, towards the viewer
-  float t = 0;          ///< distance at which it was found [m]
-  bool outside = true;  ///< seen from the side that normals point to
-  const InstanceView* instance = nullptr;
-  const MaterialView* material = nullptr;
-  Vec3f base_color, emission;
-  float metallic = 0, roughness = 0, opacity = 1;
+template <class F>
+struct SurfaceOf {
+  Vec3Of<F> p;               ///< world [m]
+  Vec3Of<F> geometric;       ///< unit normal of the geometry, towards the viewer
+  Vec3Of<F> normal;          ///< unit shading normal, towards the viewer
+  F t{};                     ///< distance at which it was found [m]
+  MaskOf<F> outside = true;  ///< seen from the side that normals point to
+  UintOf<F> instance{};      ///< row of SceneView::instances
+  Vec3Of<F> base_color;
+  Vec3Of<F> emission;  ///< towards the viewer: meshes shine to both sides, others outwards
+  F metallic{}, roughness{};
+  F f0{}, f90{};  ///< as in MaterialView
+  F opacity = F(1.0f);
 };
+using Surface = SurfaceOf<float>;
+
+/// The vector v_A in a frame B whose axes are orthonormal.
+template <class F>
+GLOAM_HD Vec3Of<F> to_frame(const AffineOf<F>& X_AB, Vec3Of<F> v_A) {
+  return {dot(v_A, X_AB.x), dot(v_A, X_AB.y), dot(v_A, X_AB.z)};
+}
+
+template <class F>
+GLOAM_HD Surface lane(const SurfaceOf<F>& s, int i) {
+  Surface one;
+  one.p = lane(s.p, i);
+  one.geometric = lane(s.geometric, i);
+  one.normal = lane(s.normal, i);
+  one.t = lane(s.t, i);
+  one.outside = lane(s.outside, i);
+  one.instance = lane(s.instance, i);
+  one.base_color = lane(s.base_color, i);
+  one.emission = lane(s.emission, i);
+  one.metallic = lane(s.metallic, i);
+  one.roughness = lane(s.roughness, i);
+  one.f0 = lane(s.f0, i);
+  one.f90 = lane(s.f90, i);
+  one.opacity = lane(s.opacity, i);
+  return one;
+}
 
 namespace surfaces {
 
@@ -76,9 +107,7 @@ GLOAM_HD TextureCoordinates texture_coordinates(const SceneView& scene,
                     max(length(out.direction_G), 1e-9f);
     return out;
   }
-  const bool is_mesh =
-      instance.shape == ShapeType::kMesh || instance.shape == ShapeType::kDeformable;
-  const bool has_uv = is_mesh && !scene.meshes[instance.mesh].uvs.empty();
+  const bool has_uv = is_mesh(instance.shape) && !scene.meshes[instance.mesh].uvs.empty();
   Vec2f uv;
   float density = 0;
   if (has_uv) {
@@ -105,7 +134,7 @@ GLOAM_HD Rgba lookup(const SceneView& scene, const MaterialView& material, int t
 /// Tangents of increasing u and v in the frame G, not normalised; false where the map is singular.
 GLOAM_HD bool tangents(const SceneView& scene, const InstanceView& instance, const RayHit& hit,
                        float time, Vec3f* tangent_u, Vec3f* tangent_v) {
-  if (instance.shape != ShapeType::kMesh && instance.shape != ShapeType::kDeformable) {
+  if (!is_mesh(instance.shape)) {
     *tangent_u = {1, 0, 0};
     *tangent_v = {0, 1, 0};
     return true;
@@ -125,13 +154,14 @@ GLOAM_HD bool tangents(const SceneView& scene, const InstanceView& instance, con
   return true;
 }
 
-GLOAM_HD void apply_textures(const SceneView& scene, const RayHit& hit, const Affine3f& X_WG,
-                             Vec3f p_G, float width, float time, Surface* s) {
-  const Vec3f g = s->geometric;
-  const Vec3f n_G{dot(g, X_WG.x), dot(g, X_WG.y), dot(g, X_WG.z)};
-  const MaterialView& m = *s->material;
+/// Of the surface `s` of an instance, at p_G in its frame.
+GLOAM_HD void apply_textures(const SceneView& scene, const InstanceView& instance,
+                             const RayHit& hit, const Affine3f& X_WG, Vec3f p_G, float width,
+                             float time, Surface* s) {
+  const Vec3f n_G = to_frame(X_WG, s->geometric);
+  const MaterialView& m = scene.materials[instance.material];
   const MaterialTextures& map = m.textures;
-  const TextureCoordinates at = texture_coordinates(scene, *s->instance, m, hit, p_G, n_G, width);
+  const TextureCoordinates at = texture_coordinates(scene, instance, m, hit, p_G, n_G, width);
   if (map.base_color >= 0) {
     const Rgba texel = lookup(scene, m, map.base_color, at);
     s->base_color *= texel.rgb;
@@ -149,7 +179,7 @@ GLOAM_HD void apply_textures(const SceneView& scene, const RayHit& hit, const Af
   if (map.emission >= 0) s->emission *= lookup(scene, m, map.emission, at).rgb;
   Vec3f u, v;
   if (map.normal >= 0 && m.mapping == TextureMapping::kUv &&
-      tangents(scene, *s->instance, hit, time, &u, &v)) {
+      tangents(scene, instance, hit, time, &u, &v)) {
     const Vec3f n = lookup(scene, m, map.normal, at).rgb * 2.0f - Vec3f{1, 1, 1};
     const Vec3f x = transform_vector(X_WG, u), y = transform_vector(X_WG, v), z = s->normal;
     const Vec3f tx = x - z * dot(z, x), ty = y - z * dot(z, y);
@@ -161,77 +191,114 @@ GLOAM_HD void apply_textures(const SceneView& scene, const RayHit& hit, const Af
 
 }  // namespace surfaces
 
-/// `cone` is that of the ray at its origin.
-GLOAM_HD Surface make_surface(const SceneView& scene, const Ray& ray, const RayHit& hit,
-                              RayCone cone) {
-  Surface s;
-  s.instance = &scene.instances[hit.instance];
-  s.material = &scene.materials[s.instance->material];
+/// The surfaces that the lanes of `found` have hit. `cone` is that of the ray at its origin.
+template <class F>
+GLOAM_HD SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>& ray,
+                                   const RayHitOf<F>& hit, RayConeOf<F> cone,
+                                   MaskOf<F> found = true) {
+  SurfaceOf<F> s;
+  s.instance = hit.instance;
   s.t = hit.t;
   s.p = ray.o + ray.d * hit.t;
-  Affine3f between;
-  const Affine3f& X_WG = pose_at(*s.instance, ray.time, &between);
-  Vec3f p_G;
-  if (s.instance->shape == ShapeType::kMesh || s.instance->shape == ShapeType::kDeformable) {
-    const MeshView& mesh = scene.meshes[s.instance->mesh];
+
+  AffineOf<F> X_WG;
+  Vec3Of<F> size, corner[3];  // of the shape; shading normals of a triangle's corners
+  MaskOf<F> mesh = false, smooth = false, box = false, moving = false, textured = false;
+  each_lane(found, [&](int i) {
+    const InstanceView& instance = scene.instances[lane(hit.instance, i)];
+    const MaterialView& m = scene.materials[instance.material];
+    Affine3f between;
+    set_lane(&X_WG, i, pose_at(instance, lane(ray.time, i), &between));
+    set_lane(&s.base_color, i, m.base_color);
+    set_lane(&s.emission, i, m.emission);
+    set_lane(&s.metallic, i, m.metallic);
+    set_lane(&s.roughness, i, m.roughness);
+    set_lane(&s.f0, i, m.f0);
+    set_lane(&s.f90, i, m.f90);
+    set_lane(&s.opacity, i, m.opacity);
+    if (m.textured) set_lane(&textured, i, true);
+    if (is_mesh(instance.shape)) {
+      set_lane(&mesh, i, true);
+      const DeviceSpan<const Vec3f>& normals = scene.meshes[instance.mesh].corner_normals;
+      if (normals.empty()) return;
+      set_lane(&smooth, i, true);
+      const size_t first = 3 * static_cast<size_t>(lane(hit.primitive, i));
+      for (int k = 0; k < 3; ++k) set_lane(&corner[k], i, normals.data[first + k]);
+    } else {
+      if (instance.moving) set_lane(&moving, i, true);
+      if (instance.shape == ShapeType::kBox) set_lane(&box, i, true);
+      set_lane(&size, i, instance.size);
+    }
+  });
+
+  if (any(mesh)) {
     // Normals of tiny triangles would vanish when squared.
-    const float scale = max(fabsf(hit.normal.x), max(fabsf(hit.normal.y), fabsf(hit.normal.z)));
-    s.geometric = scale > 0 ? normalize(hit.normal * (1.0f / max(scale, 1e-37f))) : -ray.d;
+    const Vec3Of<F>& n = hit.normal;
+    const F scale = max(magnitude(n.x), max(magnitude(n.y), magnitude(n.z)));
+    s.geometric = select<F>(scale > 0.0f, normalize(n * (1.0f / max(scale, 1e-37f))), -ray.d);
     s.normal = s.geometric;
-    if (!mesh.corner_normals.empty()) {
-      const Vec3f* n = mesh.corner_normals.data + 3 * static_cast<size_t>(hit.primitive);
-      const Vec3f smooth = n[0] * (1.0f - hit.u - hit.v) + n[1] * hit.u + n[2] * hit.v;
-      if (length_squared(smooth) > 1e-8f) s.normal = normalize(transform_vector(X_WG, smooth));
+    if (any(smooth)) {
+      const Vec3Of<F> mean =
+          corner[0] * (1.0f - hit.u - hit.v) + corner[1] * hit.u + corner[2] * hit.v;
+      smooth = smooth & (length_squared(mean) > 1e-8f);
+      s.normal = select<F>(smooth, normalize(transform_vector(X_WG, mean)), s.normal);
     }
-    if (s.material->textured) {
-      const Vec3f d = s.p - X_WG.p;
-      p_G = {dot(d, X_WG.x), dot(d, X_WG.y), dot(d, X_WG.z)};
-    }
-  } else {
-    const Vec3f d = s.p - X_WG.p;
-    p_G = {dot(d, X_WG.x), dot(d, X_WG.y), dot(d, X_WG.z)};
-    const Vec3f n_G = snap_to_shape(s.instance->shape, s.instance->size, &p_G);
-    s.p = transform_point(X_WG, p_G);
-    s.geometric = s.normal = transform_vector(X_WG, n_G);
-    if (s.instance->moving) s.geometric = s.normal = normalize(s.normal);  // a mean of two poses
   }
-  const MaterialView& m = *s.material;
-  s.base_color = m.base_color;
-  s.emission = m.emission;
-  s.metallic = m.metallic;
-  s.roughness = m.roughness;
-  s.opacity = m.opacity;
-  const float cosine = dot(s.geometric, ray.d);
-  if (m.textured) {
+  const MaskOf<F> solid = found & !mesh;
+  Vec3Of<F> p_G = to_frame(X_WG, s.p - X_WG.p);
+  if (any(solid)) {
+    Vec3Of<F> on_G = p_G, n_G;
+    if (any(box)) n_G = snap_to_box(size, &on_G);
+    each_lane(solid & !box, [&](int i) {
+      Vec3f p = lane(p_G, i);
+      const ShapeType shape = scene.instances[lane(hit.instance, i)].shape;
+      set_lane(&n_G, i, snap_to_shape(shape, lane(size, i), &p));
+      set_lane(&on_G, i, p);
+    });
+    Vec3Of<F> n = transform_vector(X_WG, n_G);
+    if (any(moving)) n = select<F>(moving, normalize(n), n);  // X_WG is a mean of two poses
+    p_G = select<F>(solid, on_G, p_G);
+    s.p = select<F>(solid, transform_point(X_WG, on_G), s.p);
+    s.geometric = select<F>(solid, n, s.geometric);
+    s.normal = select<F>(solid, n, s.normal);
+  }
+  const F cosine = dot(s.geometric, ray.d);
+  each_lane(textured, [&](int i) {
     // The footprint is an ellipse; its mean axis keeps near texels sharp without aliasing far ones.
-    const float width = (cone.width + cone.spread * hit.t) / sqrtf(max(fabsf(cosine), 0.05f));
-    surfaces::apply_textures(scene, hit, X_WG, p_G, width, ray.time, &s);
-  }
-  if (cosine > 0) {
-    s.outside = false;
-    s.geometric = -s.geometric;
-    s.normal = -s.normal;
-  }
+    const float width = (lane(cone.width, i) + lane(cone.spread, i) * lane(hit.t, i)) /
+                        sqrtf(max(fabsf(lane(cosine, i)), 0.05f));
+    Surface one = lane(s, i);
+    surfaces::apply_textures(scene, scene.instances[one.instance], lane(hit, i), lane(X_WG, i),
+                             lane(p_G, i), width, lane(ray.time, i), &one);
+    set_lane(&s.normal, i, one.normal);
+    set_lane(&s.base_color, i, one.base_color);
+    set_lane(&s.emission, i, one.emission);
+    set_lane(&s.metallic, i, one.metallic);
+    set_lane(&s.roughness, i, one.roughness);
+    set_lane(&s.opacity, i, one.opacity);
+  });
+  const MaskOf<F> inside = cosine > 0.0f;
+  s.outside = !inside;
+  s.emission = select<F>(solid & inside, Vec3Of<F>{}, s.emission);
+  s.geometric = select<F>(inside, -s.geometric, s.geometric);
+  s.normal = select<F>(inside, -s.normal, s.normal);
   // A shading normal that looks away from the viewer is bent back to just face it: black rims and
   // lost energy otherwise.
-  const float facing = -dot(s.normal, ray.d);
-  if (facing < 1e-3f) s.normal = normalize(s.normal - ray.d * (1e-2f - facing));
+  const F facing = -dot(s.normal, ray.d);
+  const MaskOf<F> away = facing < 1e-3f;
+  if (any(away)) {
+    s.normal = select<F>(away, normalize(s.normal - ray.d * (1e-2f - facing)), s.normal);
+  }
   return s;
 }
 
 /// BSDF of the surface for the direction `wo` towards the viewer; `frame` is its shading frame.
-GLOAM_HD Bsdf surface_bsdf(const SceneView& scene, const Surface& s, Vec3f wo, Frame* frame) {
-  *frame = Frame::from_z(s.normal);
-  return make_bsdf(*scene.albedo, s.base_color, s.metallic, s.roughness, s.material->f0,
-                   s.material->f90, max(dot(wo, s.normal), 1e-4f));
-}
-
-/// Light that the surface gives off by itself towards the viewer. Planes and solids shine outwards,
-/// meshes to both sides.
-GLOAM_HD Vec3f surface_emission(const Surface& s) {
-  const bool is_mesh =
-      s.instance->shape == ShapeType::kMesh || s.instance->shape == ShapeType::kDeformable;
-  return s.outside || is_mesh ? s.emission : Vec3f{0, 0, 0};
+template <class F>
+GLOAM_HD BsdfOf<F> surface_bsdf(const SceneView& scene, const SurfaceOf<F>& s, Vec3Of<F> wo,
+                                FrameOf<F>* frame) {
+  *frame = FrameOf<F>::from_z(s.normal);
+  return make_bsdf(*scene.albedo, s.base_color, s.metallic, s.roughness, s.f0, s.f90,
+                   max(dot(wo, s.normal), 1e-4f));
 }
 
 }  // namespace gloam

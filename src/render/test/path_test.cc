@@ -125,7 +125,7 @@ Mean one_technique(const Probe& probe, const CameraView& view, bool by_light, in
     double value = 0;
     if (probe.tracer.trace(ray, false, &hit)) {
       const Surface s = make_surface(probe.view, ray, hit, cone);
-      value = surface_emission(s).x;
+      value = s.emission.x;
       Frame frame;
       const Bsdf bsdf = surface_bsdf(probe.view, s, -ray.d, &frame);
       const Vec3f wo = frame.to_local(-ray.d);
@@ -149,7 +149,7 @@ Mean one_technique(const Probe& probe, const CameraView& view, bool by_light, in
           const Ray next = make_ray(leave_surface(s.p, s.geometric, wi, hit.t), wi);
           if (probe.tracer.trace(next, false, &hit)) {
             const Surface e = make_surface(probe.view, next, hit, cone);
-            value += sample.weight.x * surface_emission(e).x;
+            value += sample.weight.x * e.emission.x;
           }
         }
       }
@@ -215,7 +215,7 @@ TEST(Path, LampsCloseToASurfaceLoseNothing) {
       RayHit hit;
       if (!probe.tracer.trace(ray, false, &hit)) break;
       const Surface s = make_surface(probe.view, ray, hit, cone);
-      value += throughput * surface_emission(s).x;
+      value += throughput * s.emission.x;
       throughput *= s.base_color.x;
       const Vec3f wi =
           Frame::from_z(s.normal).to_world(sample_cosine_hemisphere(sampler.next_2d()));

@@ -312,9 +312,9 @@ TEST(Sampling, EmittersAreSampledByTheDensityTheyReport) {
       double e = 0, density = 0;
       if (probe.tracer.trace(ray, false, &hit)) {
         const Surface s = make_surface(probe.view, ray, hit, {});
-        e = surface_emission(s).x * kPi;
+        e = s.emission.x * kPi;
         density =
-            lights::instance_pdf(probe.view, *s.instance, p, s.p, s.geometric, 0) * kPi / wi.z;
+            lights::instance_pdf(probe.view, probe.view.instances[s.instance], p, s.p, s.geometric, 0) * kPi / wi.z;
       }
       by_bsdf.add(e);
       total.add(density);
