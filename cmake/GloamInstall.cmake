@@ -17,8 +17,16 @@ target_link_libraries(gloam_library PRIVATE ${modules})  # for what they link in
 target_include_directories(gloam_library INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_compile_features(gloam_library INTERFACE cxx_std_20)
 set_target_properties(gloam_library PROPERTIES OUTPUT_NAME gloam EXPORT_NAME gloam VERSION ${PROJECT_VERSION}
-  SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN/gloam")
+  SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN/gloam"
+  LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR})
 set_target_properties(gloam PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}/gloam")
+# The build folder is laid out as what is installed. With a path of its own CMake would end it with an empty part, to
+# the loader the current folder: a stranger's library there would be taken.
+set_target_properties(gloam gloam_library PROPERTIES BUILD_WITH_INSTALL_RPATH ON)
+get_target_property(mujoco_library mujoco::mujoco LOCATION)
+get_filename_component(mujoco_folder ${mujoco_library} DIRECTORY)
+file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR})
+file(CREATE_LINK ${mujoco_folder} ${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}/gloam SYMBOLIC)
 
 install(TARGETS gloam)
 install(TARGETS gloam_library EXPORT gloam)

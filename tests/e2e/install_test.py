@@ -52,6 +52,12 @@ class Install(unittest.TestCase):
             mujoco = re.search(r"libmujoco\S+ => (\S+)", libraries).group(1)
             self.assertEqual(Path(mujoco).resolve().parent, (self.prefix / "lib" / "gloam").resolve())
 
+    def test_no_library_is_sought_in_the_current_folder(self):
+        for file in [BUILD / "bin" / "gloam", BUILD / "bin" / "gloam_base_test", self.prefix / "bin" / "gloam", self.prefix / "lib" / "libgloam.so"]:
+            for path in re.findall(r"(?:RUNPATH|RPATH).*\[(.*)\]", run(["readelf", "-d", file], "/")):
+                for folder in path.split(":"):
+                    self.assertTrue(folder.startswith(("/", "$ORIGIN")), f"{file} looks for libraries in '{folder}', whose owner may be a stranger")
+
     def test_the_program_runs_a_scene_from_elsewhere(self):
         gloam = self.prefix / "bin" / "gloam"
         cache = {"GLOAM_CACHE": str(self.folder / "cache")}
