@@ -1,7 +1,7 @@
 // Paths per second, and the share of a bare Embree loop that traces the very same rays. All figures
 // are of CPU time over all threads, medians of alternating runs: they stand on a busy machine.
-//   path_rate [--picture FILE.ppm] [--spp N] [--depth N] [--direct] [--plain] [--size WxH]
-//             [--runs N] [--export FOLDER] [--json]
+//   path_rate [--picture FILE.ppm] [--spp N] [--depth N] [--direct] [--plain] [--meshes]
+//             [--size WxH] [--runs N] [--export FOLDER] [--json]
 
 #include <algorithm>
 #include <chrono>
@@ -34,6 +34,7 @@ Arguments parse(int argc, char** argv) {
     const bool more = i + 1 < argc;
     if (arg == "--direct") a.settings.tier = RenderTier::kDirect;
     if (arg == "--plain") a.room.plain = true;
+    if (arg == "--meshes") a.room.meshes = true;
     if (arg == "--json") a.json = true;
     if (!more) continue;
     if (arg == "--picture") a.picture = argv[++i];
@@ -141,13 +142,7 @@ TriangleMesh world_mesh(const SceneBuilder& b, const InstanceDescription& in) {
   if (in.shape == ShapeType::kMesh) {
     mesh = b.description.meshes[static_cast<size_t>(in.mesh)];
   } else if (in.shape == ShapeType::kBox) {
-    for (int k = 0; k < 8; ++k) {
-      mesh.positions.push_back({(k & 1) != 0 ? in.size.x : -in.size.x,
-                                (k & 2) != 0 ? in.size.y : -in.size.y,
-                                (k & 4) != 0 ? in.size.z : -in.size.z});
-    }
-    mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
-                    2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+    mesh = make_box(in.size);
   } else {  // curved shapes: a fine ball squeezed to the bounds is work enough alike
     mesh = make_ball(24);
     const Vec3f h = in.shape == ShapeType::kSphere ? Vec3f{in.size.x, in.size.x, in.size.x}

@@ -8,7 +8,8 @@ namespace gloam {
 struct RoomOptions {
   int robot_triangles = 418000;
   bool textured = true;
-  bool plain = false;  ///< Lambert only, one area light: what every path tracer has alike
+  bool plain = false;   ///< Lambert only, one area light: what every path tracer has alike
+  bool meshes = false;  ///< furniture and walls as triangle meshes, not as MuJoCo's boxes
 };
 
 inline int room_material(SceneBuilder* b, const RoomOptions& options, Vec3f color, float roughness,
@@ -42,8 +43,13 @@ inline SceneBuilder make_room(const RoomOptions& options) {
     m.textures.base_color = b.add_texture(make_checker(256, 2, 90, 200));
     floor = b.add_material(m);
   }
-  const auto box = [&b](Vec3f half, Vec3f p, int material, float yaw = 0) {
-    b.add(ShapeType::kBox, half, rigid({0, 0, 1}, yaw, p), material);
+  const auto box = [&b, &options](Vec3f half, Vec3f p, int material, float yaw = 0) {
+    const Affine3f X = rigid({0, 0, 1}, yaw, p);
+    if (options.meshes) {
+      b.add(ShapeType::kMesh, {}, X, material, 0, b.add_mesh(make_box(half)));
+    } else {
+      b.add(ShapeType::kBox, half, X, material);
+    }
   };
   box({3.1f, 2.6f, 0.05f}, {0, 0, -0.05f}, floor);
   box({3.1f, 2.6f, 0.05f}, {0, 0, 2.85f}, white);

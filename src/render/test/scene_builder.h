@@ -128,6 +128,18 @@ class SceneBuilder {
   PoseFrame frame;
 };
 
+/// The twelve triangles of a box, without normals.
+inline TriangleMesh make_box(Vec3f half) {
+  TriangleMesh mesh;
+  for (int k = 0; k < 8; ++k) {
+    mesh.positions.push_back({(k & 1) != 0 ? half.x : -half.x, (k & 2) != 0 ? half.y : -half.y,
+                              (k & 4) != 0 ? half.z : -half.z});
+  }
+  mesh.indices = {0, 2, 3, 0, 3, 1, 4, 5, 7, 4, 7, 6, 0, 1, 5, 0, 5, 4,
+                  2, 6, 7, 2, 7, 3, 0, 4, 6, 0, 6, 2, 1, 3, 7, 1, 7, 5};
+  return mesh;
+}
+
 /// A sphere of `rings` x 2 `rings` quads, smooth normals and uvs; radius 1 + bumps.
 inline TriangleMesh make_ball(int rings, float bump = 0, int bumps = 5) {
   TriangleMesh mesh;
