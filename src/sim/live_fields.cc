@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstring>
+#include <type_traits>
 
 #include "base/check.h"
 #include "base/hash.h"
@@ -166,6 +168,18 @@ uint64_t live_fields_digest(const LiveFields& live) {
     hash = hash_span<float>(live.values[field], hash);
   }
   return hash;
+}
+
+void own_live_field(LiveFieldId field, mjModel& model, std::vector<std::byte>* storage) {
+  GLOAM_CHECK(field != LiveFieldId::kBodyMass, "masses need a model of their own");
+  visit_field(model, field, [&](auto&& array, mjtSize n) {
+    using Array = std::remove_reference_t<decltype(array)>;
+    if constexpr (std::is_pointer_v<Array>) {  // the options are the model's own anyway
+      storage->resize(static_cast<size_t>(n) * sizeof(*array));
+      if (n > 0) std::memcpy(storage->data(), array, storage->size());
+      array = reinterpret_cast<Array>(storage->data());
+    }
+  });
 }
 
 Status write_live_field(const mjModel& world_model, LiveFieldId field,

@@ -34,9 +34,14 @@ std::shared_ptr<const LiveFields> change_live_field(const mjModel& world_model,
 /// Hash of the version number and of all changed values.
 uint64_t live_fields_digest(const LiveFields& live);
 
-/// Writes one field into `model`, a private copy of `world_model`. New masses scale the inertias
-/// and renew what the model derives from them, as mj_setConst does; that needs `scratch`, a mjData
-/// of the model whose content is lost. Errors: what MuJoCo says of the new values.
+/// Gives `model`, which refers to another model's arrays, an array of its own for this field, in
+/// `storage`. Not for kBodyMass, from which MuJoCo derives values all over the model.
+void own_live_field(LiveFieldId field, mjModel& model, std::vector<std::byte>* storage);
+
+/// Writes one field into `model`, a private copy of `world_model`, or one that owns the field. New
+/// masses scale the inertias and renew what the model derives from them, as mj_setConst does; that
+/// needs `scratch`, a mjData of the model whose content is lost. Errors: what MuJoCo says of the
+/// new values.
 Status write_live_field(const mjModel& world_model, LiveFieldId field,
                         std::span<const float> values, mjModel& model, mjData* scratch);
 

@@ -38,17 +38,33 @@ Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledW
 // Refers to the arrays of `model`, meshes of 70 MB among them; the options are copied and changed.
 void Stepper::take_model(const mjModel& model) {
   model_ = model;
+  owns_all_ = false;
   model_.opt.disableflags |= mjDSBL_AUTORESET;
   if (timestep_) model_.opt.timestep = *timestep_;
 }
 
 // Live fields are written into the arrays: not into those that all simulations of the World share.
-bool Stepper::own_the_arrays() {
-  mjModel* copy = own_arrays_.get();
+// Masses alone need all arrays, which takes tens of milliseconds where there are large meshes.
+bool Stepper::own_the_field(LiveFieldId field) {
+  const bool is_owned = live_ != nullptr && !live_->values[static_cast<size_t>(field)].empty();
+  if (owns_all_ || is_owned) return true;
+  if (field != LiveFieldId::kBodyMass) {
+    own_live_field(field, model_, &own_fields_[static_cast<size_t>(field)]);
+    return true;
+  }
+  mjModel* copy = own_model_.get();
   const bool ok = try_mujoco([&] { copy = mj_copyModel(copy, world_->model.get()); });
   if (!ok || copy == nullptr) return fail({ErrorKind::kInput, mujoco_error_message()});
-  if (own_arrays_ == nullptr) own_arrays_.reset(copy);
+  if (own_model_ == nullptr) own_model_.reset(copy);
   take_model(*copy);
+  owns_all_ = true;
+  for (int f = 0; live_ != nullptr && f < kLiveFieldCount; ++f) {  // what changed before
+    const std::vector<float>& values = live_->values[static_cast<size_t>(f)];
+    if (values.empty()) continue;
+    const Status written = write_live_field(*world_->model, static_cast<LiveFieldId>(f), values,
+                                            model_, scratch_.get());
+    if (!written) return fail(written.error());
+  }
   return true;
 }
 
@@ -56,7 +72,7 @@ bool Stepper::reset() {
   failed_ = false;
   if (live_ != nullptr) {
     live_.reset();
-    if (!own_the_arrays()) return false;
+    take_model(*world_->model);
   }
   inputs_->reset();
   // Sensors and the warm start of the solver are computed by a forward pass. The sensors are
@@ -96,7 +112,7 @@ void Stepper::apply(const Command& command) {
       command.what);
 }
 
-// The one Command that allocates: a new version of the fields.
+// The one Command that allocates: a new version of the fields, and an array when one first changes.
 void Stepper::change_live(const SetLiveField& change) {
   if (change.field == LiveFieldId::kBodyMass && scratch_ == nullptr) {
     mjData* scratch = nullptr;
@@ -107,7 +123,7 @@ void Stepper::change_live(const SetLiveField& change) {
     }
     scratch_.reset(scratch);
   }
-  if (live_ == nullptr && !own_the_arrays()) return;
+  if (!own_the_field(change.field)) return;
   live_ = change_live_field(*world_->model, live_.get(), change, ++live_changes_);
   const uint64_t digest = live_fields_digest(*live_);
   hash_ = hash_bytes(&digest, sizeof(digest), hash_);

@@ -59,7 +59,7 @@ class Stepper {
   void restore_last_good_state();
   void compute_sensors();
   void change_live(const SetLiveField& change);
-  bool own_the_arrays();
+  bool own_the_field(LiveFieldId field);
   void take_model(const mjModel& model);
   void count_diagnostics();
 
@@ -67,7 +67,9 @@ class Stepper {
   std::optional<double> timestep_;
   uint64_t seed_ = 0;
   mjModel model_;  // options of its own; its arrays are the World's until a live field changes
-  ModelPtr own_arrays_;  // then model_'s arrays are these
+  std::array<std::vector<std::byte>, kLiveFieldCount> own_fields_;  // of model_, where changed
+  ModelPtr own_model_;  // once masses change model_'s arrays are all this one's
+  bool owns_all_ = false;
   DataPtr data_;
   StateReader reader_;  // of data_
   DataPtr scratch_;     // for mj_setConst; made on first use

@@ -72,8 +72,8 @@ class Row {
       if (!found[j]) continue;  // the sky's guides are zero
       Surface s = make_surface(job_.scene, samples_[j], hits[j], cones_[j]);
       uint32_t more = 0;
-      const bool visible = shows(job_.scene, s) || find_first(job_.scene, job_.tracer, samples_[j], cones_[j],
-                                                  &s, &hits[j], &more);
+      const bool visible = shows(job_.scene, s) || find_first(job_.scene, job_.tracer, samples_[j],
+                                                              cones_[j], &s, &hits[j], &more);
       rays_ += more;
       if (!visible) continue;
       film_->albedo[pixel(x_[j])] += s.base_color / static_cast<float>(count_);

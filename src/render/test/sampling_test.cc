@@ -313,8 +313,9 @@ TEST(Sampling, EmittersAreSampledByTheDensityTheyReport) {
       if (probe.tracer.trace(ray, false, &hit)) {
         const Surface s = make_surface(probe.view, ray, hit, {});
         e = s.emission.x * kPi;
-        density =
-            lights::instance_pdf(probe.view, probe.view.instances[s.instance], p, s.p, s.geometric, 0) * kPi / wi.z;
+        density = lights::instance_pdf(probe.view, probe.view.instances[s.instance], p, s.p,
+                                       s.geometric, 0) *
+                  kPi / wi.z;
       }
       by_bsdf.add(e);
       total.add(density);

@@ -150,6 +150,43 @@ TEST_F(CommandTest, LiveFieldsOfOneSimulationReachNoOtherOfItsWorld) {
   EXPECT_NEAR(velocity(), 8 / 2.0 * 0.1, 1e-12);
 }
 
+TEST_F(CommandTest, FieldsKeepTheirChangesInWhateverOrderTheyCome) {
+  const mjModel& m = *world->model;
+  const double friction_before = m.geom_friction[0];
+  const int cart = body("cart").id;
+  double friction = 0, mass = 0, m0 = 0;
+  sim->set_step_hook([&](const mjModel* model, mjData*) {
+    friction = model->geom_friction[0], mass = model->body_mass[cart], m0 = model->dof_M0[0];
+  });
+  const auto set = [&](int64_t step, LiveFieldId field, int first, float value) {
+    ASSERT_TRUE(sim->post({step, SetLiveField{field, first, {value}}}).ok());
+  };
+  const auto expect = [&](double f, double kilograms) {
+    EXPECT_EQ(friction, f);
+    EXPECT_EQ(mass, kilograms);
+    EXPECT_NEAR(m0, kilograms, 1e-12);  // what MuJoCo derives from the mass
+    EXPECT_EQ(m.geom_friction[0], friction_before) << "the World has changed";
+    EXPECT_EQ(m.body_mass[cart], 2) << "the World has changed";
+  };
+  set(2, LiveFieldId::kGeomFriction, 0, 0.25f);
+  set(4, LiveFieldId::kBodyMass, cart, 8);
+  set(6, LiveFieldId::kGeomFriction, 0, 0.5f);
+  sim->start();
+  ASSERT_TRUE(sim->step(3).ok());
+  expect(0.25, 2);
+  ASSERT_TRUE(sim->step(2).ok());
+  expect(0.25, 8);
+  ASSERT_TRUE(sim->step(2).ok());
+  expect(0.5, 8);
+  ASSERT_TRUE(sim->reset().ok());
+  ASSERT_TRUE(sim->step(1).ok());
+  expect(friction_before, 2);
+  set(2, LiveFieldId::kBodyMass, cart, 4);
+  set(3, LiveFieldId::kGeomFriction, 0, 0.75f);
+  ASSERT_TRUE(sim->step(3).ok());
+  expect(0.75, 4);
+}
+
 TEST_F(CommandTest, LiveFieldsAreInTheHash) {
   auto hash = [this](std::vector<Command> commands) {
     auto sim = make_simulator(world, lockstep());
