@@ -79,8 +79,7 @@ GLOAM_HD MaskOf<F> hit_solid(const ScannedSolid& solid, const InstanceView& inst
   MaskOf<F> hit = active & (enter <= leave) & (leave > 0.0f) & (enter < tmax);
   if (!solid.is_bounds) {
     if (!any(hit)) return hit;
-    const AffineOf<F> X_WG{in_all_lanes<F>(instance.X_WG.x), in_all_lanes<F>(instance.X_WG.y),
-                           in_all_lanes<F>(instance.X_WG.z), in_all_lanes<F>(instance.X_WG.p)};
+    const AffineOf<F> X_WG = pose_in_all_lanes<F>(instance.X_WG);
     const Vec3Of<F> o_G = to_frame(X_WG, ray.o - X_WG.p), d_G = to_frame(X_WG, ray.d);
     if (instance.shape != ShapeType::kBox) {
       each_lane(hit, [&](int i) {

@@ -68,6 +68,10 @@ GLOAM_HD Vec3Of<F> in_all_lanes(Vec3f v) {
   return {F(v.x), F(v.y), F(v.z)};
 }
 template <class F>
+GLOAM_HD AffineOf<F> pose_in_all_lanes(const Affine3f& X) {
+  return {in_all_lanes<F>(X.x), in_all_lanes<F>(X.y), in_all_lanes<F>(X.z), in_all_lanes<F>(X.p)};
+}
+template <class F>
 GLOAM_HD Vec3f lane(const Vec3Of<F>& v, int i) {
   return {lane(v.x, i), lane(v.y, i), lane(v.z, i)};
 }

@@ -107,57 +107,66 @@ GLOAM_HD LightSampleOf<F> sample_sun(const LightView& light, Vec2Of<F> u) {
   return s;
 }
 
-/// A box that stands still, without textures: every lane takes its own face.
+/// A point on an emitter and its outward normal.
 template <class F>
-GLOAM_HD LightSampleOf<F> sample_box(const InstanceView& instance, Vec3f emission, Vec3Of<F> p,
-                                     F pick, Vec2Of<F> u) {
+struct EmitterPointOf {
+  Vec3Of<F> p_G, p_W, n_W;
+};
+using EmitterPoint = EmitterPointOf<float>;
+
+/// Towards a box, from outside: every lane takes its own face.
+template <class F>
+GLOAM_HD LightSampleOf<F> sample_box(Vec3f size, const Affine3f& X_WG, Vec3Of<F> p, F pick,
+                                     Vec2Of<F> u, EmitterPointOf<F>* at) {
   LightSampleOf<F> s;
-  const Affine3f& X_WG = instance.X_WG;
-  const Vec3Of<F> x = in_all_lanes<F>(X_WG.x), y = in_all_lanes<F>(X_WG.y),
-                  z = in_all_lanes<F>(X_WG.z), origin = in_all_lanes<F>(X_WG.p);
-  const Vec3Of<F> d = p - origin, p_G{dot(d, x), dot(d, y), dot(d, z)};
-  Vec3Of<F> q, n_G;
-  const F pdf_area = sample_box_from(instance.size, p_G, pick, u, &q, &n_G);
-  const Vec3Of<F> p_W = x * q.x + y * q.y + z * q.z + origin;
-  const Vec3Of<F> n_W = x * n_G.x + y * n_G.y + z * n_G.z;
-  const Vec3Of<F> to = p_W - p;
+  const AffineOf<F> X = pose_in_all_lanes<F>(X_WG);
+  Vec3Of<F> n_G;
+  const F pdf_area = sample_box_from(size, to_frame(X, p - X.p), pick, u, &at->p_G, &n_G);
+  at->p_W = transform_point(X, at->p_G);
+  at->n_W = transform_vector(X, n_G);
+  const Vec3Of<F> to = at->p_W - p;
   const F d2 = dot(to, to);
   s.distance = square_root(d2);
   s.wi = to / s.distance;
-  const F cosine = -dot(s.wi, n_W);
-  s.radiance = in_all_lanes<F>(emission);
+  const F cosine = -dot(s.wi, at->n_W);
   s.pdf = select((pdf_area > 0.0f) & (cosine > 1e-6f) & (s.distance > 1e-6f),
                  pdf_area * d2 / cosine, F(0.0f));
-  s.lift = n_W * surface_step(p_W, F(0.0f));
+  s.lift = at->n_W * surface_step(at->p_W, F(0.0f));
   return s;
 }
 
-/// A sphere that stands still, without textures, seen from outside.
+/// Towards a sphere, from outside.
 template <class F>
-GLOAM_HD LightSampleOf<F> sample_ball(const InstanceView& instance, Vec3f emission, Vec3Of<F> p,
-                                      Vec2Of<F> u) {
+GLOAM_HD LightSampleOf<F> sample_ball(float radius, const Affine3f& X_WG, Vec3Of<F> p, Vec2Of<F> u,
+                                      EmitterPointOf<F>* at) {
   LightSampleOf<F> s;
-  const Vec3Of<F> to = in_all_lanes<F>(instance.X_WG.p) - p;
-  const float r2 = sqr(instance.size.x);
+  const AffineOf<F> X = pose_in_all_lanes<F>(X_WG);
+  const Vec3Of<F> to = X.p - p;
+  const float r2 = sqr(radius);
   const F d2 = dot(to, to), one_minus_cos = one_minus_cos_of(min(r2 / d2, 1.0f));
   s.wi = FrameOf<F>::from_z(to / square_root(d2)).to_world(sample_cone(one_minus_cos, u));
   const F along = dot(to, s.wi);
   s.distance = along - safe_sqrt(r2 - max(d2 - along * along, 0.0f));
-  const Vec3Of<F> p_W = p + s.wi * s.distance;
-  const Vec3Of<F> n_W = normalize(p_W - in_all_lanes<F>(instance.X_WG.p));
-  s.radiance = in_all_lanes<F>(emission);
+  at->p_W = p + s.wi * s.distance;
+  at->n_W = normalize(at->p_W - X.p);
+  at->p_G = to_frame(X, at->n_W) * F(radius);
   s.pdf = select(s.distance > 1e-6f, cone_pdf(one_minus_cos), F(0.0f));
-  s.lift = n_W * surface_step(p_W, F(0.0f));
+  s.lift = at->n_W * surface_step(at->p_W, F(0.0f));
   return s;
+}
+template <class F>
+GLOAM_HD MaskOf<F> is_outside_ball(float radius, Vec3f center, Vec3Of<F> p) {
+  return length_squared(in_all_lanes<F>(center) - p) > sqr(radius) * 1.0001f;
 }
 
 /// Density per solid angle at p of the direction to a point of an emitting instance.
 GLOAM_HD float instance_pdf(const SceneView& scene, const InstanceView& instance, Vec3f p,
                             Vec3f hit_p, Vec3f hit_normal, float time) {
   if (instance.shape == ShapeType::kSphere) {
-    const Vec3f to = pose_at(instance, time).p - p;
-    const float d2 = dot(to, to), r2 = sqr(instance.size.x);
-    if (d2 > r2 * 1.0001f) return cone_pdf(one_minus_cos_of(r2 / d2));
+    const Vec3f center = pose_at(instance, time).p;
+    if (is_outside_ball(instance.size.x, center, p)) {
+      return cone_pdf(one_minus_cos_of(sqr(instance.size.x) / length_squared(center - p)));
+    }
   }
   float pdf_area = is_mesh(instance.shape) ? 1.0f / scene.meshes[instance.mesh].area : 0.0f;
   if (!is_mesh(instance.shape)) {
@@ -172,6 +181,34 @@ GLOAM_HD float instance_pdf(const SceneView& scene, const InstanceView& instance
   return cosine > 1e-6f ? pdf_area * d2 / cosine : 0.0f;
 }
 
+/// A point of a mesh, by area; `hit` tells where it lies on its triangle.
+GLOAM_HD EmitterPoint sample_mesh(const MeshView& mesh, const Affine3f& X_WG, float pick, Vec2f u,
+                                  float time, RayHit* hit) {
+  uint32_t low = 0, high = mesh.area_cdf.size - 1;
+  while (low < high) {
+    const uint32_t middle = (low + high) / 2;
+    if (pick < mesh.area_cdf[middle]) {
+      high = middle;
+    } else {
+      low = middle + 1;
+    }
+  }
+  hit->primitive = low;
+  const float root = sqrtf(u.x);
+  hit->u = root * (1.0f - u.y);
+  hit->v = root * u.y;
+  const uint32_t* index = mesh.indices.data + 3 * static_cast<size_t>(low);
+  const Vec3f a = mesh_vertex(mesh, index[0], time);
+  const Vec3f e1 = mesh_vertex(mesh, index[1], time) - a;
+  const Vec3f e2 = mesh_vertex(mesh, index[2], time) - a;
+  EmitterPoint at;
+  at.p_G = a + e1 * hit->u + e2 * hit->v;
+  at.p_W = transform_point(X_WG, at.p_G);
+  at.n_W = normalize(transform_vector(X_WG, cross(e1, e2)));
+  return at;
+}
+
+/// Any emitting instance: moving, textured, of whatever shape.
 GLOAM_HD LightSample sample_instance(const SceneView& scene, const LightView& light, Vec3f p,
                                      float pick, Vec2f u, float time) {
   LightSample s;
@@ -179,64 +216,37 @@ GLOAM_HD LightSample sample_instance(const SceneView& scene, const LightView& li
   const MaterialView& material = scene.materials[instance.material];
   const Affine3f X_WG = pose_at(instance, time);
   RayHit hit;
-  Vec3f p_W, n_W, p_G;
-  if (is_mesh(instance.shape)) {
-    const MeshView& mesh = scene.meshes[instance.mesh];
-    uint32_t low = 0, high = mesh.area_cdf.size - 1;
-    while (low < high) {
-      const uint32_t middle = (low + high) / 2;
-      if (pick < mesh.area_cdf[middle]) {
-        high = middle;
-      } else {
-        low = middle + 1;
-      }
-    }
-    hit.primitive = low;
-    const float root = sqrtf(u.x);
-    hit.u = root * (1.0f - u.y);
-    hit.v = root * u.y;
-    const uint32_t* index = mesh.indices.data + 3 * static_cast<size_t>(low);
-    const Vec3f a = mesh_vertex(mesh, index[0], time);
-    const Vec3f e1 = mesh_vertex(mesh, index[1], time) - a;
-    const Vec3f e2 = mesh_vertex(mesh, index[2], time) - a;
-    p_G = a + e1 * hit.u + e2 * hit.v;
-    p_W = transform_point(X_WG, p_G);
-    n_W = normalize(transform_vector(X_WG, cross(e1, e2)));
-  } else if (const float d2 = length_squared(X_WG.p - p), r2 = sqr(instance.size.x);
-             instance.shape == ShapeType::kSphere && d2 > r2 * 1.0001f) {
-    const Frame frame = Frame::from_z((X_WG.p - p) / sqrtf(d2));
-    const Vec3f wi = frame.to_world(sample_cone(one_minus_cos_of(r2 / d2), u));
-    const float along = dot(X_WG.p - p, wi);
-    p_W = p + wi * (along - safe_sqrt(r2 - max(d2 - along * along, 0.0f)));
-    n_W = normalize(p_W - X_WG.p);
-    p_G = to_frame(X_WG, n_W) * instance.size.x;
+  EmitterPoint at;
+  if (instance.shape == ShapeType::kBox) {
+    s = sample_box(instance.size, X_WG, p, pick, u, &at);
+  } else if (instance.shape == ShapeType::kSphere && is_outside_ball(instance.size.x, X_WG.p, p)) {
+    s = sample_ball(instance.size.x, X_WG, p, u, &at);
   } else {
-    Vec3f n_G;
-    if (instance.shape != ShapeType::kBox) {
-      p_G = sample_shape(instance.shape, instance.size, pick, u, &n_G);
-    } else if (!(sample_box_from(instance.size, to_frame(X_WG, p - X_WG.p), pick, u, &p_G, &n_G) >
-                 0)) {
-      return s;
+    if (is_mesh(instance.shape)) {
+      at = sample_mesh(scene.meshes[instance.mesh], X_WG, pick, u, time, &hit);
+    } else {
+      Vec3f n_G;
+      at.p_G = sample_shape(instance.shape, instance.size, pick, u, &n_G);
+      at.p_W = transform_point(X_WG, at.p_G);
+      at.n_W = transform_vector(X_WG, n_G);
     }
-    p_W = transform_point(X_WG, p_G);
-    n_W = transform_vector(X_WG, n_G);
+    const Vec3f to = at.p_W - p;
+    s.distance = length(to);
+    if (!(s.distance > 1e-6f)) return s;
+    s.wi = to / s.distance;
+    if (!is_mesh(instance.shape) && dot(s.wi, at.n_W) >= 0) return s;  // its back is dark
+    s.pdf = instance_pdf(scene, instance, p, at.p_W, at.n_W, time);
+    s.lift = leave_surface(at.p_W, at.n_W, -s.wi, 0.0f) - at.p_W;
   }
-  const Vec3f to = p_W - p;
-  s.distance = length(to);
-  if (!(s.distance > 1e-6f)) return s;
-  s.wi = to / s.distance;
-  if (!is_mesh(instance.shape) && dot(s.wi, n_W) >= 0) return s;  // its back is dark
   Surface surface;
   surface.emission = material.emission;
   surface.opacity = material.opacity;
   if (material.textured) {
-    surface.geometric = surface.normal = n_W;
-    surfaces::apply_textures(scene, instance, hit, X_WG, p_G, 0.0f, time, &surface);
+    surface.geometric = surface.normal = at.n_W;
+    surfaces::apply_textures(scene, instance, hit, X_WG, at.p_G, 0.0f, time, &surface);
   }
   s.radiance = surface.emission * surface.opacity;
-  if (max_component(s.radiance) <= 0) return s;
-  s.pdf = instance_pdf(scene, instance, p, p_W, n_W, time);
-  s.lift = leave_surface(p_W, n_W, -s.wi, 0.0f) - p_W;
+  if (max_component(s.radiance) <= 0) s.pdf = 0;
   return s;
 }
 
@@ -257,20 +267,20 @@ GLOAM_HD LightSampleOf<F> sample_one_light(const SceneView& scene, uint32_t inde
     const InstanceView& instance = scene.instances[light.instance];
     const MaterialView& material = scene.materials[instance.material];
     const bool plain = !instance.moving && !material.textured;
-    const Vec3f emission = material.emission * material.opacity;
+    lights::EmitterPointOf<F> at;
     if (plain && instance.shape == ShapeType::kBox) {
-      s = lights::sample_box(instance, emission, p, pick, u);
+      s = lights::sample_box(instance.size, instance.X_WG, p, pick, u, &at);
+      s.radiance = in_all_lanes<F>(material.emission * material.opacity);
     } else if (plain && instance.shape == ShapeType::kSphere &&
-               all((!active) | (length_squared(in_all_lanes<F>(instance.X_WG.p) - p) >
-                                sqr(instance.size.x) * 1.0001f))) {
-      s = lights::sample_ball(instance, emission, p, u);
+               all((!active) | lights::is_outside_ball(instance.size.x, instance.X_WG.p, p))) {
+      s = lights::sample_ball(instance.size.x, instance.X_WG, p, u, &at);
+      s.radiance = in_all_lanes<F>(material.emission * material.opacity);
     } else {
-      for (int i = 0; i < Lanes<F>::kCount; ++i) {
-        if (!lane(active, i)) continue;
+      each_lane(active, [&](int i) {
         set_lane(&s, i,
                  lights::sample_instance(scene, light, lane(p, i), lane(pick, i), lane(u, i),
                                          lane(time, i)));
-      }
+      });
     }
   }
   s.casts_shadow = light.casts_shadow;
