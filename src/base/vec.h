@@ -83,6 +83,11 @@ template <class F>
 GLOAM_HD Vec3Of<F> transform_point(const AffineOf<F>& X_AB, Vec3Of<F> p_B) {
   return transform_vector(X_AB, p_B) + X_AB.p;
 }
+/// Column by column: between two poses close to each other.
+template <class F>
+GLOAM_HD AffineOf<F> lerp(const AffineOf<F>& a, const AffineOf<F>& b, F t) {
+  return {lerp(a.x, b.x, t), lerp(a.y, b.y, t), lerp(a.z, b.z, t), lerp(a.p, b.p, t)};
+}
 /// X_AC = X_AB X_BC.
 GLOAM_HD Affine3f operator*(const Affine3f& X_AB, const Affine3f& X_BC) {
   return {transform_vector(X_AB, X_BC.x), transform_vector(X_AB, X_BC.y),

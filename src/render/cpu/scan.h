@@ -45,26 +45,14 @@ GLOAM_HD Vec3Of<F> inverse_of(Vec3Of<F> d) {
   return {1.0f / d.x, 1.0f / d.y, 1.0f / d.z};
 }
 
-/// Distance to an infinite plane seen from above, or to a plane of finite width; lanes that hit it
-/// before tmax.
+/// Lanes that hit the plane before tmax, and where.
 template <class F>
 GLOAM_HD MaskOf<F> hit_plane(const InstanceView& plane, const RayOf<F>& ray, F tmax, F* t) {
-  Vec3Of<F> X[4];
-  const Affine3f &a = plane.X_WG, &b = plane.X_WG_close;
-  const Vec3f open[4] = {a.x, a.y, a.z, a.p}, close[4] = {b.x, b.y, b.z, b.p};
-  for (int k = 0; k < 4; ++k) {
-    X[k] = in_all_lanes<F>(open[k]);
-    if (plane.moving) X[k] = lerp(X[k], in_all_lanes<F>(close[k]), ray.time);
-  }
-  const Vec3Of<F> o = ray.o - X[3];
-  const F slope = dot(ray.d, X[2]);
-  *t = -dot(o, X[2]) / slope;
-  MaskOf<F> hit = (slope < 0.0f) & (*t > 0.0f) & (*t < tmax);
-  for (int k = 0; k < 2; ++k) {
-    if (!(plane.size[k] > 0)) continue;
-    hit = hit & (magnitude(dot(o, X[k]) + *t * dot(ray.d, X[k])) <= plane.size[k]);
-  }
-  return hit;
+  AffineOf<F> X_WG = pose_in_all_lanes<F>(plane.X_WG);
+  if (plane.moving) X_WG = lerp(X_WG, pose_in_all_lanes<F>(plane.X_WG_close), ray.time);
+  *t = shapes::hit_plane(plane.size, to_frame(X_WG, ray.o - X_WG.p), to_frame(X_WG, ray.d), F(0.0f),
+                         tmax);
+  return *t > 0.0f;
 }
 
 /// Of the `active` lanes those that hit the solid before tmax, and where. `inverse` as above, in

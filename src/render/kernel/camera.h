@@ -18,8 +18,7 @@ struct CameraView32 {
 
 GLOAM_HD Affine3f camera_pose_at(const CameraPose& pose, float time) {
   if (!pose.moving || time == 0) return pose.X_WC_open;
-  const Affine3f &a = pose.X_WC_open, &b = pose.X_WC_close;
-  return {lerp(a.x, b.x, time), lerp(a.y, b.y, time), lerp(a.z, b.z, time), lerp(a.p, b.p, time)};
+  return lerp(pose.X_WC_open, pose.X_WC_close, time);
 }
 
 /// Ray through the point (u, v) [px] of the picture, and its footprint.

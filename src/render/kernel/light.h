@@ -48,12 +48,11 @@ GLOAM_HD F spot_falloff(const LightView& light, Vec3Of<F> to_p) {
   F share = select(cosine >= light.cos_inner, F(1.0f), F(0.0f));
   const MaskOf<F> rim = (cosine > light.cos_cutoff) & (cosine < light.cos_inner);
   if (!any(rim)) return share;
-  for (int i = 0; i < Lanes<F>::kCount; ++i) {
-    if (!lane(rim, i)) continue;
+  each_lane(rim, [&](int i) {
     const float angle = acosf(clamp(lane(cosine, i), -1.0f, 1.0f));
     const float x = (light.cutoff - angle) / max(light.cutoff - light.inner, 1e-6f);
     set_lane(&share, i, x * x * (3.0f - 2.0f * x));
-  }
+  });
   return share;
 }
 

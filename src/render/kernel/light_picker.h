@@ -94,12 +94,10 @@ class LightPickerOf {
       pick -= sky_share_;
     }
     if (count_ > kMaxWeighedLights) {
-      for (int i = 0; i < Lanes<F>::kCount; ++i) {
-        if (lane(open, i)) {
-          set_lane(&out, i,
-                   sample_by_power(scene, lane(p, i), lane(pick, i), lane(u, i), lane(time, i)));
-        }
-      }
+      each_lane(open, [&](int i) {
+        set_lane(&out, i,
+                 sample_by_power(scene, lane(p, i), lane(pick, i), lane(u, i), lane(time, i)));
+      });
       return out;
     }
     F before = 0.0f, taken = 0.0f;
@@ -128,18 +126,17 @@ class LightPickerOf {
   /// First visibilities of the guide's rows for the surfaces, and the sky there.
   GLOAM_HD void find_rows(const LightGuide& guide, Vec3Of<F> p, Vec3Of<F> n, Mask active,
                           Uint* first, Mask* guided) {
-    for (int i = 0; i < Lanes<F>::kCount; ++i) {
-      if (!lane(active, i)) continue;
+    each_lane(active, [&](int i) {
       const int row = guide.row_at(lane(p, i), lane(n, i));
       set_lane(&sky_strength_, i, 0.0f);
-      if (row < 0) continue;
+      if (row < 0) return;
       set_lane(guided, i, true);
       set_lane(first, i, static_cast<uint32_t>(row) * guide.lights);
       const SkyCone& sky = guide.sky[static_cast<uint32_t>(row)];
       set_lane(&sky_strength_, i, sky.strength);
       set_lane(&sky_one_minus_cos_, i, sky.one_minus_cos);
       set_lane(&sky_axis_, i, sky.axis);
-    }
+    });
   }
   GLOAM_HD static LightSample sample_by_power(const SceneView& scene, Vec3f p, float pick, Vec2f u,
                                               float time) {

@@ -172,9 +172,7 @@ struct SceneView {
 /// `between` is room for it.
 GLOAM_HD const Affine3f& pose_at(const InstanceView& instance, float time, Affine3f* between) {
   if (!instance.moving || time == 0) return instance.X_WG;
-  const Affine3f &a = instance.X_WG, &b = instance.X_WG_close;
-  *between = {lerp(a.x, b.x, time), lerp(a.y, b.y, time), lerp(a.z, b.z, time),
-              lerp(a.p, b.p, time)};
+  *between = lerp(instance.X_WG, instance.X_WG_close, time);
   return *between;
 }
 GLOAM_HD Affine3f pose_at(const InstanceView& instance, float time) {

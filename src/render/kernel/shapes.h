@@ -37,30 +37,14 @@ GLOAM_HD float nearest_root(float a, float b, float disc, float tmin, float tmax
   return -1.0f;
 }
 
-GLOAM_HD float hit_plane(Vec3f size, Vec3f o, Vec3f d, float tmin, float tmax) {
-  if (d.z >= 0) return -1.0f;  // one-sided, as MuJoCo's rays see it
-  const float t = -o.z / d.z;
-  if (!(t > tmin && t < tmax)) return -1.0f;
-  if (size.x > 0 && fabsf(o.x + t * d.x) > size.x) return -1.0f;
-  if (size.y > 0 && fabsf(o.y + t * d.y) > size.y) return -1.0f;
-  return t;
-}
-
-GLOAM_HD float hit_box(Vec3f size, Vec3f o, Vec3f d, float tmin, float tmax) {
-  float enter = -1e30f, leave = 1e30f;
-  const float os[3] = {o.x, o.y, o.z}, ds[3] = {d.x, d.y, d.z}, hs[3] = {size.x, size.y, size.z};
-  for (int i = 0; i < 3; ++i) {
-    if (ds[i] == 0) {
-      if (fabsf(os[i]) > hs[i]) return -1.0f;
-      continue;
-    }
-    const float inv = 1.0f / ds[i], side = copysignf(hs[i], ds[i]);
-    enter = max(enter, (-side - os[i]) * inv);
-    leave = min(leave, (side - os[i]) * inv);
-  }
-  if (enter > leave) return -1.0f;
-  if (enter > tmin && enter < tmax) return enter;
-  return leave > tmin && leave < tmax ? leave : -1.0f;
+/// One-sided, as MuJoCo's rays see it.
+template <class F>
+GLOAM_HD F hit_plane(Vec3f size, Vec3Of<F> o, Vec3Of<F> d, F tmin, F tmax) {
+  const F t = -o.z / d.z;
+  auto hit = (d.z < 0.0f) & (t > tmin) & (t < tmax);
+  if (size.x > 0) hit = hit & (magnitude(o.x + t * d.x) <= size.x);
+  if (size.y > 0) hit = hit & (magnitude(o.y + t * d.y) <= size.y);
+  return select(hit, t, F(-1.0f));
 }
 
 /// Sphere of radius 1 scaled by `axes`.
@@ -112,14 +96,13 @@ GLOAM_HD float hit_capsule(float radius, float half, Vec3f o, Vec3f d, float tmi
 
 }  // namespace shapes
 
-/// Nearest hit of the ray (in G) with tmin < t < tmax, or a value <= 0. `d` need not be unit.
+/// Of all but boxes, which are crossed in lanes or are triangles: nearest hit of the ray (in G)
+/// with tmin < t < tmax, or a value <= 0. `d` need not be unit.
 GLOAM_HD float intersect_shape(ShapeType shape, Vec3f size, Vec3f o, Vec3f d, float tmin,
                                float tmax) {
   switch (shape) {
     case ShapeType::kPlane:
       return shapes::hit_plane(size, o, d, tmin, tmax);
-    case ShapeType::kBox:
-      return shapes::hit_box(size, o, d, tmin, tmax);
     case ShapeType::kSphere:
       return shapes::hit_ellipsoid({size.x, size.x, size.x}, o, d, tmin, tmax);
     case ShapeType::kEllipsoid:

@@ -39,21 +39,10 @@ GLOAM_HD Vec3Of<F> to_frame(const AffineOf<F>& X_AB, Vec3Of<F> v_A) {
 
 template <class F>
 GLOAM_HD Surface lane(const SurfaceOf<F>& s, int i) {
-  Surface one;
-  one.p = lane(s.p, i);
-  one.geometric = lane(s.geometric, i);
-  one.normal = lane(s.normal, i);
-  one.t = lane(s.t, i);
-  one.outside = lane(s.outside, i);
-  one.instance = lane(s.instance, i);
-  one.base_color = lane(s.base_color, i);
-  one.emission = lane(s.emission, i);
-  one.metallic = lane(s.metallic, i);
-  one.roughness = lane(s.roughness, i);
-  one.f0 = lane(s.f0, i);
-  one.f90 = lane(s.f90, i);
-  one.opacity = lane(s.opacity, i);
-  return one;
+  return {lane(s.p, i),        lane(s.geometric, i), lane(s.normal, i),     lane(s.t, i),
+          lane(s.outside, i),  lane(s.instance, i),  lane(s.base_color, i), lane(s.emission, i),
+          lane(s.metallic, i), lane(s.roughness, i), lane(s.f0, i),         lane(s.f90, i),
+          lane(s.opacity, i)};
 }
 
 namespace surfaces {
