@@ -2,11 +2,12 @@
 """Runs Gloam's tests: `./gloam test [fast|full] [--only NAME]`.
 
 fast  everything that takes about a minute once built
-      (no tier) what CI runs: format, lint of changed files, all tests, ASan+UBSan over unit tests, TSan over sim
-full  the same plus every sanitizer over everything, long fuzzing and sweeps; resumable: finished parts are kept in
-      build/full_state.json until the source changes
+      (no tier) what CI runs: format, lint of changed files, all tests, ASan+UBSan over unit tests, TSan over base and sim
+full  the same plus lint of every file, every sanitizer over everything, ten minutes of fuzzing per target and sweeps over
+      200 seeds: hours, but resumable: parts that passed are kept in build/full_state.json until the source changes
 """
 import argparse
+import hashlib
 import json
 import os
 import re
@@ -50,7 +51,7 @@ def environment():
     env.setdefault("GLOAM_TEST_DATA", str(fetch_data.default_folder()))
     env.setdefault("ASAN_OPTIONS", "detect_leaks=1:abort_on_error=0:allocator_may_return_null=1")
     env.setdefault("LSAN_OPTIONS", f"suppressions={ROOT}/tests/lsan.supp:print_suppressions=0")
-    env.setdefault("TSAN_OPTIONS", f"suppressions={ROOT}/tests/tsan.supp:halt_on_error=1")
+    env.setdefault("TSAN_OPTIONS", f"suppressions={ROOT}/tests/tsan.supp:ignore_noninstrumented_modules=1:halt_on_error=1")
     return env
 
 
@@ -86,6 +87,8 @@ def gtest(tally, preset, module, only=None, shard_filter=None):
     command = [str(program), f"--gtest_output=json:{report}", "--gtest_brief=1"]
     if only or shard_filter:
         command.append(f"--gtest_filter={only or shard_filter}")
+    if only and "DISABLED_" in only:
+        command.append("--gtest_also_run_disabled_tests")
     start = time.time()
     result = run(command, timeout=3600)
     name = f"{module} ({preset})"
@@ -135,34 +138,36 @@ def check_format(tally):
               "" if ok else "    not formatted (clang-format-19 -i FILE): " + " ".join(bad))
 
 
-def check_lint(tally):
+def check_lint_of_changes(tally):
     """clang-tidy on the sources that the last commits changed: the whole tree would take half an hour."""
-    start = time.time()
     base = run(["git", "rev-list", "-1", "--before=12 hours ago", "HEAD"]).stdout.strip()
     changed = run(["git", "diff", "--name-only", "--diff-filter=d", base or "HEAD", "--", "src/*.cc", "apps/*.cc"]).stdout.split()
     if not base:
         changed = tracked("src/*.cc", "apps/*.cc")
-    changed = [name for name in changed if "/fuzz/" not in name and "/test/" not in name][:40]
-    if not changed:
+    check_lint(tally, changed, at_most=40)
+
+
+def check_lint(tally, files, at_most=None):
+    start = time.time()
+    files = [name for name in files if "/fuzz/" not in name and "/test/" not in name][:at_most]
+    if not files:
         tally.add("lint", 1, 0, 0, time.time() - start)
         return
     result = run(["xargs", "-P2", "-n4", f"clang-tidy{CLANG}", "-p", str(BUILD / "release"), "--quiet",
                   # The compile commands are GCC's: what only Clang warns of, or does not know, is not looked for.
                   *("--extra-arg=-Wno-" + name for name in ("unknown-warning-option", "unused-command-line-argument",
                                                             "deprecated-declarations", "bitwise-instead-of-logical"))],
-                 text_in="\n".join(changed))
+                 text_in="\n".join(files))
     errors = [line for line in result.stdout.splitlines() if re.search(r"(error|warning): .*\[", line)]
     ok = result.returncode == 0
-    tally.add(f"lint ({len(changed)} files)", int(ok), int(not ok), 0, time.time() - start,
+    tally.add(f"lint ({len(files)} files)", int(ok), int(not ok), 0, time.time() - start,
               "" if ok else "\n".join("    " + line for line in errors[:30]) or tail(result.stdout))
 
 
-def fuzz(tally, seconds, targets=()):
-    """Fuzzes the named targets, or all there are."""
-    if not build(tally, "fuzz", targets or ["fuzzers"]):
+def fuzz(tally, seconds, targets):
+    if not build(tally, "fuzz", targets):
         return
-    names = targets or [program.name for program in (BUILD / "fuzz" / "bin").glob("*_fuzz")]
-    for program in [BUILD / "fuzz" / "bin" / name for name in sorted(names)]:
+    for program in [BUILD / "fuzz" / "bin" / name for name in targets]:
         start = time.time()
         corpus = BUILD / "fuzz" / "corpus" / program.name
         corpus.mkdir(parents=True, exist_ok=True)
@@ -216,44 +221,57 @@ def ci(tally):
     for module in UNIT:
         gtest(tally, "release", module)
     python_tests(tally, "*_test.py", "tests/e2e")
-    check_lint(tally)
+    check_lint_of_changes(tally)
     if build(tally, "asan", [f"gloam_{module}_test" for module in UNIT if (ROOT / "src" / module / "test").is_dir()]):
         for module in UNIT:
             gtest(tally, "asan", module, shard_filter="-*Slow*:*Allocat*")
-    # base/ is left out: TBB is not built with TSan, which then reports TBB's own synchronisation.
-    if build(tally, "tsan", ["gloam_sim_test"]):
-        gtest(tally, "tsan", "sim", shard_filter="-*Slow*:*Allocat*")
+    if build(tally, "tsan", ["gloam_base_test", "gloam_sim_test"]):
+        for module in ("base", "sim"):
+            gtest(tally, "tsan", module, shard_filter="-*Slow*:*Allocat*")
     fuzz(tally, 15, ["scene_toml_fuzz", "model_path_fuzz", "model_xml_fuzz"])
 
 
 def full(tally):
-    """Everything; parts that passed on this very source are not run again."""
+    """Everything; parts that passed on this very source are not run again. The record of what passed goes to bench/history."""
+    version = source_version()
     state_file = BUILD / "full_state.json"
-    version = run(["git", "describe", "--always", "--dirty"]).stdout.strip()
     state = json.loads(state_file.read_text()) if state_file.exists() else {}
-    if state.get("version") != version:
-        state = {"version": version, "done": {}}
+    if state.get("source") != version:
+        state = {"source": version, "passed": {}}
     parts = {
-        "ci": lambda t: ci(t),
-        "asan all": lambda t: build(t, "asan") and [gtest(t, "asan", m) for m in UNIT],
-        "tsan all": lambda t: build(t, "tsan") and [gtest(t, "tsan", m) for m in UNIT],
-        "fuzz long": lambda t: fuzz(t, seconds=3600),
+        "ci": ci,
+        "lint of all": lambda t: check_lint(t, tracked("src/*.cc", "apps/*.cc")),
+        "sweeps": lambda t: [gtest(t, "release", m, "*.DISABLED_Sweep*") for m in UNIT],
     }
+    for preset in ("asan", "tsan"):
+        for module in [m for m in UNIT if (ROOT / "src" / m / "test").is_dir()]:
+            parts[f"{preset} {module}"] = lambda t, p=preset, m=module: build(t, p, [f"gloam_{m}_test"]) and gtest(t, p, m)
+    for target in sorted(path.stem for path in (ROOT / "src").glob("*/fuzz/*_fuzz.cc")):
+        parts[f"fuzz {target}"] = lambda t, name=target: fuzz(t, 600, [name])
     for name, part in parts.items():
-        if name in state["done"]:
-            print(f"kept {name}: passed before on {version}")
-            tally.passed += state["done"][name]["passed"]
-            continue
-        own, start = Tally(), time.time()
-        part(own)
-        tally.passed, tally.failed, tally.skipped = tally.passed + own.passed, tally.failed + own.failed, tally.skipped + own.skipped
-        tally.broken += own.broken
-        if not own.failed:
-            state["done"][name] = {"passed": own.passed, "skipped": own.skipped, "seconds": round(time.time() - start)}
+        if name not in state["passed"]:
+            own, start = Tally(), time.time()
+            part(own)
+            tally.failed, tally.broken = tally.failed + own.failed, tally.broken + own.broken
+            if own.failed:
+                continue
+            state["passed"][name] = {"tests": own.passed, "skipped": own.skipped, "seconds": round(time.time() - start)}
             state_file.write_text(json.dumps(state, indent=1))
+        else:
+            print(f"kept {name}: passed before on this source")
+        tally.passed += state["passed"][name]["tests"]
+        tally.skipped += state["passed"][name]["skipped"]
+    state["not_passed"] = [name for name in parts if name not in state["passed"]]
     history = ROOT / "bench" / "history"
     history.mkdir(parents=True, exist_ok=True)
-    (history / f"full_tests_{version}.json").write_text(json.dumps(state, indent=1))
+    (history / f"full_tests_{time.strftime('%F')}_{version}.json").write_text(json.dumps(state, indent=1))
+
+
+def source_version():
+    """Of all that a test can see."""
+    files = [name for name in tracked("*") if not name.startswith(("bench/history/", "CHANGELOG"))]
+    listing = run(["git", "hash-object", "--stdin-paths"], text_in="\n".join(files)).stdout
+    return hashlib.sha256(("\n".join(files) + listing).encode()).hexdigest()[:12]
 
 
 if __name__ == "__main__":
