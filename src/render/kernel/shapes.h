@@ -41,7 +41,7 @@ GLOAM_HD float nearest_root(float a, float b, float disc, float tmin, float tmax
 template <class F>
 GLOAM_HD F hit_plane(Vec3f size, Vec3Of<F> o, Vec3Of<F> d, F tmin, F tmax) {
   const F t = -o.z / d.z;
-  auto hit = (d.z < 0.0f) & (t > tmin) & (t < tmax);
+  MaskOf<F> hit = (d.z < 0.0f) & (t > tmin) & (t < tmax);
   if (size.x > 0) hit = hit & (magnitude(o.x + t * d.x) <= size.x);
   if (size.y > 0) hit = hit & (magnitude(o.y + t * d.y) <= size.y);
   return select(hit, t, F(-1.0f));
@@ -121,7 +121,7 @@ template <class F>
 GLOAM_HD Vec3Of<F> snap_to_box(Vec3Of<F> size, Vec3Of<F>* p) {
   const F gap_x = size.x - magnitude(p->x), gap_y = size.y - magnitude(p->y),
           gap_z = size.z - magnitude(p->z);
-  const auto x = (gap_x <= gap_y) & (gap_x <= gap_z), y = (gap_y <= gap_z) & !x, z = !(x | y);
+  const MaskOf<F> x = (gap_x <= gap_y) & (gap_x <= gap_z), y = (gap_y <= gap_z) & !x, z = !(x | y);
   const F zero = 0.0f, one = 1.0f;
   const Vec3Of<F> side{select(p->x < 0.0f, -one, one), select(p->y < 0.0f, -one, one),
                        select(p->z < 0.0f, -one, one)};
