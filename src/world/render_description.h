@@ -34,10 +34,24 @@ struct MaterialDescription {
   Vec3f base_color{0.5f, 0.5f, 0.5f};  ///< linear, multiplies the texture
   float opacity = 1;
   float metallic = 0;
-  float roughness = 0.5f;     ///< of the specular layer, 0..1 (alpha = roughness²)
-  float specular_weight = 1;  ///< 0..1, scales the dielectric layer
-  float ior = 1.5f;           ///< of the dielectric layer
-  Vec3f emission{0, 0, 0};    ///< luminance per channel [cd/m²]
+  float roughness = 0.5f;         ///< of the specular layer, 0..1 (alpha = roughness²)
+  float specular_weight = 1;      ///< 0..1, scales the dielectric layer
+  float ior = 1.5f;               ///< of the dielectric layer
+  Vec3f emission{0, 0, 0};        ///< luminance per channel [cd/m²]
+  float anisotropy = 0;           ///< 0..1, draws highlights out along the tangent
+  float anisotropy_rotation = 0;  ///< from the tangent, counter-clockwise, in turns
+  float transmission_weight = 0;  ///< 0..1: glass
+  /// Of light that has gone `transmission_depth` deep, or, where that is 0, through the surface
+  /// once.
+  Vec3f transmission_color{1, 1, 1};
+  float transmission_depth = 0;  ///< [m]
+  bool thin_walled = false;      ///< a sheet: nothing is inside, nothing is bent
+  float subsurface_weight = 0;   ///< 0..1
+  Vec3f subsurface_color{0.8f, 0.8f, 0.8f};
+  float coat_weight = 0, coat_roughness = 0, coat_ior = 1.6f;
+  Vec3f coat_color{1, 1, 1};  ///< of light that has gone in and out through the coat
+  float fuzz_weight = 0, fuzz_roughness = 0.5f;
+  Vec3f fuzz_color{1, 1, 1};
   TextureMapping mapping = TextureMapping::kNone;
   bool texture_uniform = false;  ///< MuJoCo's texuniform: repeats per metre, not per object
   Vec2f texture_repeat{1, 1};

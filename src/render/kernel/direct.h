@@ -20,12 +20,13 @@ struct DirectState {
   bool is_shadow = false;
   uint32_t layers = 0, passed = 0;
   uint32_t next_light = 0;
-  float transmittance = 1;  ///< of the surfaces passed so far
+  Vec3f transmittance{1, 1, 1};  ///< of the surfaces passed so far
+  Vec3f passing;                 ///< light that passes the surface met last
   RayCone cone;
   Sampler sampler;
   LightPicker picker;
   Surface s;
-  Bsdf bsdf;
+  LayeredBsdf bsdf;
   Frame frame;
   Vec3f wo, view_d, light_radiance;
 };
@@ -40,6 +41,18 @@ GLOAM_HD void direct_start(DirectState* state, const Ray& ray, RayCone cone, Sam
 
 namespace directs {
 
+/// Light that passes the surface; what glass bends goes straight on here.
+GLOAM_HD Vec3f passing_light_of(const SceneView& scene, const Surface& s, Vec3f d) {
+  Vec3f passing = passing_light(s);
+  const int row = scene.materials[scene.instances[s.instance].material].layers;
+  if (row < 0) return passing;
+  const MaterialLayers& m = scene.layers[static_cast<uint32_t>(row)];
+  if (m.straight || m.transmission <= 0) return passing;
+  float cos_t;
+  const float f = fresnel_dielectric(fabsf(dot(s.normal, d)), m.ior, &cos_t);
+  return passing + m.tint * (s.opacity * m.transmission * (1.0f - s.metallic) * (1.0f - f));
+}
+
 /// A surface that the view meets: what it gives off, and the ambient light.
 GLOAM_HD void meet_surface(const SceneView& scene, DirectState* d, const RayHit& hit) {
   d->s = make_surface(scene, d->ray, hit, d->cone);
@@ -52,10 +65,11 @@ GLOAM_HD void meet_surface(const SceneView& scene, DirectState* d, const RayHit&
     d->result.albedo = d->s.base_color;
     d->result.normal = d->s.normal;
   }
+  d->passing = passing_light_of(scene, d->s, d->ray.d);
   ++d->layers;
   float a, b;
   layer_albedo(*scene.albedo, d->s.roughness, d->wo.z, &a, &b);
-  const Vec3f albedo = d->bsdf.diffuse + d->bsdf.f0 * a + d->bsdf.f90 * b;
+  const Vec3f albedo = d->bsdf.base.diffuse + d->bsdf.base.f0 * a + d->bsdf.base.f90 * b;
   d->result.radiance +=
       (d->s.emission + albedo * scene.ambient.on(d->s.normal)) * (d->transmittance * d->s.opacity);
   d->next_light = 0;
@@ -78,7 +92,7 @@ GLOAM_HD bool next_shadow(const SceneView& scene, DirectState* d) {
     float pdf;
     const float share = all ? 1.0f : 1.0f / static_cast<float>(kMaxDirectLights);
     d->light_radiance = eval_bsdf(d->bsdf, d->wo, d->frame.to_local(light.wi), &pdf) *
-                        light.radiance * (d->transmittance * s.opacity * share / light.pdf);
+                        light.radiance * d->transmittance * (s.opacity * share / light.pdf);
     if (max_component(d->light_radiance) <= 0) continue;
     if (!light.casts_shadow) {
       d->result.radiance += d->light_radiance;
@@ -101,8 +115,9 @@ GLOAM_HD bool direct_advance(const SceneView& scene, DirectState* d, bool found,
   if (d->is_shadow) {
     if (found && scene.has_transparent && d->passed < kMaxPassed) {
       const Surface blocker = make_surface(scene, d->ray, hit, {});
-      if (blocker.opacity < 1.0f) {
-        d->light_radiance *= 1.0f - blocker.opacity;
+      if (const Vec3f passing = directs::passing_light_of(scene, blocker, d->ray.d);
+          max_component(passing) > 0.0f) {
+        d->light_radiance *= passing;
         d->ray.o = leave_surface(blocker.p, blocker.geometric, d->ray.d, hit.t);
         d->ray.tmax -= hit.t;
         ++d->passed;
@@ -121,8 +136,8 @@ GLOAM_HD bool direct_advance(const SceneView& scene, DirectState* d, bool found,
   d->is_shadow = directs::next_shadow(scene, d);
   d->any = d->is_shadow && !scene.has_transparent;
   if (d->is_shadow) return true;
-  d->transmittance *= 1.0f - d->s.opacity;
-  if (d->transmittance < 0.004f || d->layers >= kMaxPassed) return false;
+  d->transmittance *= d->passing;
+  if (max_component(d->transmittance) < 0.004f || d->layers >= kMaxPassed) return false;
   d->ray.o = leave_surface(d->s.p, d->s.geometric, d->view_d, d->s.t);
   d->ray.d = d->view_d;
   d->ray.tmax = 1e30f;

@@ -80,6 +80,11 @@ GLOAM_HD Vec2f lane(const Vec2Of<F>& v, int i) {
   return {lane(v.x, i), lane(v.y, i)};
 }
 template <class F>
+GLOAM_HD void set_lane(Vec2Of<F>* v, int i, Vec2f value) {
+  set_lane(&v->x, i, value.x);
+  set_lane(&v->y, i, value.y);
+}
+template <class F>
 GLOAM_HD void set_lane(Vec3Of<F>* v, int i, Vec3f value) {
   set_lane(&v->x, i, value.x);
   set_lane(&v->y, i, value.y);

@@ -11,15 +11,19 @@ namespace gloam {
 inline constexpr uint32_t kMaxWeighedLights = 16;
 
 /// A bound, up to a factor, of what light i brings to the surface at p with the geometric normal n
-/// if nothing is in between; zero only if it brings nothing.
+/// if nothing is in between; zero only if it brings nothing. Light from behind counts where the
+/// surface lets it through.
 template <class F>
-GLOAM_HD F light_weight(const LightView& light, Vec3Of<F> p, Vec3Of<F> n) {
+GLOAM_HD F light_weight(const LightView& light, Vec3Of<F> p, Vec3Of<F> n,
+                        MaskOf<F> both_sides = false) {
   if (light.kind == LightKind::kDirectional) {
-    const F cosine = -dot(in_all_lanes<F>(light.direction), n);
+    F cosine = -dot(in_all_lanes<F>(light.direction), n);
+    cosine = select(both_sides, magnitude(cosine), cosine);
     return select(cosine > -light.radius, light.strength * (max(cosine, 0.0f) + 0.05f), F(0.0f));
   }
   const Vec3Of<F> to = in_all_lanes<F>(light.p) - p;
-  const F height = dot(to, n) + light.reach;
+  const F above = dot(to, n);
+  const F height = select(both_sides, magnitude(above), above) + light.reach;
   const F distance2 = dot(to, to);
   const F inv_d2 = 1.0f / max(max(distance2, light.reach * light.reach), 1e-8f);
   const F cosine = min(height * square_root(inv_d2), 1.0f);
@@ -39,17 +43,19 @@ class LightPickerOf {
   using Uint = UintOf<F>;
 
   /// For the surfaces at p with the geometric normals n, in the `active` lanes; the others keep
-  /// what they were prepared for.
-  GLOAM_HD void prepare(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, Mask active = true) {
+  /// what they were prepared for. `both_sides`: those that let light through.
+  GLOAM_HD void prepare(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, Mask active = true,
+                        Mask both_sides = false) {
     count_ = scene.lights.size;
     if (count_ > kMaxWeighedLights) return;
     Uint first{};  // of the guide's visibilities
     Mask guided = false;
-    if (scene.guide.nx > 0) find_rows(scene.guide, p, n, active, &first, &guided);
+    sky_strength_ = select(active & both_sides, F(0.0f), sky_strength_);
+    if (scene.guide.nx > 0) find_rows(scene.guide, p, n, active & !both_sides, &first, &guided);
     F weight[kMaxWeighedLights], total = 0.0f, sky = 0.0f;
     for (uint32_t i = 0; i < count_; ++i) {
       const LightView& light = scene.lights[i];
-      weight[i] = light_weight(light, p, n);
+      weight[i] = light_weight(light, p, n, both_sides);
       if (light.guide >= 0 && any(guided)) {
         const F visible = gather(scene.guide.visible.data + light.guide, first);
         weight[i] *= select(guided, visible, F(1.0f));

@@ -41,7 +41,33 @@ struct State {
   F pdf_bsdf = 0.0f;        ///< of the direction of the path's ray; 0 = from the camera
   Vec3Of<F> from;           ///< the last scattering vertex
   LightPickerOf<F> picker;  ///< of that vertex
+  Vec3Of<F> absorption;     ///< of the glass that the path is in [1/m]
 };
+
+/// Share of light that glass lets through on a way of length t.
+template <class F>
+GLOAM_HD Vec3Of<F> through_glass(Vec3Of<F> absorption, F t) {
+  Vec3Of<F> share = in_all_lanes<F>({1, 1, 1});
+  each_lane(max_component(absorption) > 0.0f, [&](int i) {
+    const Vec3f depth = lane(absorption, i) * lane(t, i);
+    set_lane(&share, i, {expf(-depth.x), expf(-depth.y), expf(-depth.z)});
+  });
+  return share;
+}
+
+/// Absorption beyond the surfaces of the lanes in `crossing`.
+template <class F>
+GLOAM_HD Vec3Of<F> absorption_beyond(const SceneView& scene, const SurfaceOf<F>& v,
+                                     MaskOf<F> crossing, Vec3Of<F> here) {
+  if (scene.layers.size == 0) return here;
+  each_lane(crossing, [&](int i) {
+    const int row = scene.materials[scene.instances[lane(v.instance, i)].material].layers;
+    if (row < 0) return;
+    const MaterialLayers& m = scene.layers[static_cast<uint32_t>(row)];
+    if (!m.thin) set_lane(&here, i, lane(v.outside, i) ? m.absorption : Vec3f{});
+  });
+  return here;
+}
 
 /// Weighs what the surfaces give off against the light sampling of the last vertex.
 template <class F>
@@ -86,11 +112,11 @@ GLOAM_HD Vec3Of<F> transmit(const SceneView& scene, const Tracer& tracer, RayOf<
     open = tracer.closest(ray, open, false, &hit);
     if (!any(open)) break;
     const SurfaceOf<F> s = make_surface(scene, ray, hit, {}, open);
-    const F through = passed < kMaxPassed ? 1.0f - s.opacity : F(0.0f);
+    const Vec3Of<F> through = passed < kMaxPassed ? passing_light(s) : Vec3Of<F>{};
     light = select<F>(open, light * through, light);
     ray.o = select<F>(open, leave_surface(s.p, s.geometric, ray.d, hit.t), ray.o);
     ray.tmax = select(open, ray.tmax - hit.t, ray.tmax);
-    open = open & (through > 0.0f) & (ray.tmax > 0.0f);
+    open = open & (max_component(through) > 0.0f) & (ray.tmax > 0.0f);
   }
   return light;
 }
@@ -102,19 +128,22 @@ GLOAM_HD MaskOf<F> scatter(const SceneView& scene, const Tracer& tracer, const P
                            State<F>* path, const SurfaceOf<F>& v, MaskOf<F> active) {
   const Vec3Of<F> wo_W = -path->ray.d;
   FrameOf<F> frame;
-  const BsdfOf<F> bsdf = surface_bsdf(scene, v, wo_W, &frame);
+  const LayeredBsdfOf<F> bsdf = surface_bsdf(scene, v, wo_W, &frame, active);
   const Vec3Of<F> wo = frame.to_local(wo_W);
+  const MaskOf<F> both_sides = bsdf.layered & ((bsdf.p_glass > 0.0f) | (bsdf.p_beyond > 0.0f));
 
-  path->picker.prepare(scene, v.p, v.geometric, active);
+  path->picker.prepare(scene, v.p, v.geometric, active, both_sides);
   const Vec2Of<F> choice = path->sampler.next_2d(active);  // of the light, of the lobe
   const Vec2Of<F> u_light = path->sampler.next_2d(active);
   const LightSampleOf<F> light =
       path->picker.sample(scene, v.p, choice.x, u_light, path->ray.time, path->cone_spread, active);
-  MaskOf<F> lit = active & (light.pdf > 0.0f) & (dot(light.wi, v.geometric) > 0.0f);
+  F side = dot(light.wi, v.geometric);
+  MaskOf<F> lit = active & (light.pdf > 0.0f) & ((side > 0.0f) | (both_sides & (side < 0.0f)));
   if (any(lit)) {
     F pdf;
-    const Vec3Of<F> f = eval_bsdf(bsdf, wo, frame.to_local(light.wi), &pdf);
-    lit = lit & (max_component(f) > 0.0f);
+    const Vec3Of<F> wi = frame.to_local(light.wi);
+    const Vec3Of<F> f = eval_bsdf(bsdf, wo, wi, &pdf);
+    lit = lit & (max_component(f) > 0.0f) & (wi.z * side > 0.0f);
     const F weight = select(light.is_delta, F(1.0f), mis_weight(light.pdf, pdf));
     Vec3Of<F> arriving = path->throughput * f * light.radiance * (weight / light.pdf);
     const MaskOf<F> shadowed = lit & light.casts_shadow;
@@ -124,6 +153,11 @@ GLOAM_HD MaskOf<F> scatter(const SceneView& scene, const Tracer& tracer, const P
       arriving = select<F>(shadowed,
                            arriving * transmit(scene, tracer, shadow, shadowed, &path->result.rays),
                            arriving);
+    }
+    if (scene.layers.size > 0) {
+      const Vec3Of<F> around =
+          paths::absorption_beyond(scene, v, lit & (side < 0.0f), path->absorption);
+      arriving *= through_glass(around, light.distance);
     }
     path->result.radiance += select<F>(lit, arriving, Vec3Of<F>{});
   }
@@ -136,8 +170,10 @@ GLOAM_HD MaskOf<F> scatter(const SceneView& scene, const Tracer& tracer, const P
   if (!any(next)) return next;
   const BsdfSampleOf<F> sample = sample_bsdf(bsdf, wo, choice.y, u);
   const Vec3Of<F> wi = frame.to_world(sample.wi);
-  next = next & (sample.pdf > 0.0f) & (dot(wi, v.geometric) > 0.0f) &
+  side = dot(wi, v.geometric);
+  next = next & (sample.pdf > 0.0f) & (sample.wi.z * side > 0.0f) &
          (max_component(sample.weight) > 0.0f);
+  path->absorption = absorption_beyond(scene, v, next & (side < 0.0f), path->absorption);
   path->throughput = select<F>(next, path->throughput * sample.weight, path->throughput);
   path->pdf_bsdf = select(next, sample.pdf, path->pdf_bsdf);
   path->from = select<F>(next, v.p, path->from);
@@ -191,15 +227,26 @@ GLOAM_HD PathResultOf<F> trace_path(const SceneView& scene, const Tracer& tracer
     const Mask last = found & (path.depth > 0u) & (path.depth + 1u >= max_depth);
     if (any(last)) found = found & !paths::gives_nothing(scene, hit, last);
     if (!any(found)) break;
+    if (scene.layers.size > 0 && any(max_component(path.absorption) > 0.0f)) {
+      path.throughput *= paths::through_glass(path.absorption, hit.t);
+    }
 
     SurfaceOf<F> v =
         make_surface(scene, path.ray, hit, RayConeOf<F>{path.cone_width, path.cone_spread}, found);
     paths::weigh_emission(scene, path, found, &v);
     Mask through = false;
     if (scene.has_transparent) {
-      const Mask thin = found & (v.opacity < 1.0f) & !(path.passed >= kMaxPassed);
-      if (any(thin)) through = thin & (path.sampler.next_1d(thin) >= v.opacity);
+      const F met = met_share(v);
+      const Mask thin = found & (met < 1.0f) & !(path.passed >= kMaxPassed);
+      if (any(thin)) through = thin & (path.sampler.next_1d(thin) >= met);
       path.passed = select(through, path.passed + 1u, UintOf<F>(0u));
+      // A clear sheet takes its own share of each colour.
+      if (const Mask sheet = thin & (max_component(v.straight) > 0.0f); any(sheet)) {
+        const Vec3Of<F> passing = path.throughput * passing_light(v) / (1.0f - met);
+        path.throughput =
+            select<F>(sheet, select<F>(through, passing, path.throughput * (v.opacity / met)),
+                      path.throughput);
+      }
     }
     Mask solid = found & !through;
     path.cone_width = select(found, path.cone_width + path.cone_spread * hit.t, path.cone_width);

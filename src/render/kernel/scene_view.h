@@ -51,6 +51,25 @@ struct Texel {
   uint16_t r = 0, g = 0, b = 0, a = 0;
 };
 
+/// What lies over the base of a material, or makes glass of it; names after OpenPBR 1.1.
+struct MaterialLayers {
+  float coat_weight = 0, coat_roughness = 0;
+  float coat_f0 = 0.04f;  ///< at normal incidence
+  Vec3f coat_color{1, 1, 1};
+  float fuzz_weight = 0, fuzz_roughness = 0.5f;
+  Vec3f fuzz_color{1, 1, 1};
+  float transmission = 0;
+  float ior = 1.5f;       ///< of glass
+  Vec3f tint{1, 1, 1};    ///< of light at each passage through the surface of glass
+  Vec3f absorption;       ///< inside glass [1/m]
+  bool thin = false;      ///< a sheet without an inside
+  bool straight = false;  ///< a smooth sheet: what goes through goes on as if it were not there
+  float subsurface = 0;
+  Vec3f subsurface_color{1, 1, 1};
+  float anisotropy = 0;
+  float cos_rotation = 1, sin_rotation = 0;  ///< of the highlights' long axis from the tangent
+};
+
 struct MaterialView {
   Vec3f base_color;
   Vec3f emission;
@@ -60,7 +79,8 @@ struct MaterialView {
   TextureMapping mapping = TextureMapping::kNone;
   bool texture_uniform = false;
   bool textured = false;     ///< any texture at all
-  bool transparent = false;  ///< opacity below one somewhere
+  bool transparent = false;  ///< opacity below one somewhere, or a straight sheet
+  int layers = -1;           ///< row of SceneView::layers
   Vec2f texture_repeat{1, 1};
   MaterialTextures textures;
 };
@@ -147,6 +167,18 @@ struct AmbientCube {
 struct AlbedoTable {
   static constexpr int kSize = 32;
   float a[kSize * kSize], b[kSize * kSize];  ///< rows of roughness 0..1, columns of cosine 0..1
+  float fuzz[kSize * kSize];                 ///< of sheen::lobe, the same rows and columns
+};
+
+/// Directional albedo of single scattering on rough glass, reflected and let through.
+struct GlassTable {
+  static constexpr int kSize = 16;
+  float albedo[kSize * kSize * kSize];  ///< by axis_of(eta) -1..1, roughness 0..1, cosine 0..1
+  /// Index of refraction beyond / here, 1/3 to 3, as -1..1.
+  GLOAM_HD static float axis_of(float eta) {
+    return clamp(2.0f * (eta - 1.0f) / (eta + 1.0f), -1.0f, 1.0f);
+  }
+  GLOAM_HD static float eta_at(float axis) { return (2.0f + axis) / (2.0f - axis); }
 };
 
 struct SceneView {
@@ -157,13 +189,15 @@ struct SceneView {
   DeviceSpan<const TextureLevel> texture_levels;
   DeviceSpan<const Texel> texels;
   DeviceSpan<const LightView> lights;
+  DeviceSpan<const MaterialLayers> layers;
   const AlbedoTable* albedo = nullptr;
+  const GlassTable* glass = nullptr;  ///< where some material is glass
   LightGuide guide;
   int sky_texture = -1;
   float sky_scale = 0;
   Vec3f sky_ambient;             ///< for indirect rays
   AmbientCube ambient;           ///< for the direct stage
-  bool has_transparent = false;  ///< some material lets light through
+  bool has_transparent = false;  ///< some material lets light straight through
   bool has_emitters = false;  ///< something that a ray can hit gives light: sky, sphere, instance
   bool has_visible_lights = false;  ///< some sphere or sun can be hit
 };

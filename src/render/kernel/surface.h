@@ -1,7 +1,7 @@
 #pragma once
 // From a hit to the surface there: position, normals, textures, BSDF. Device-safe.
 
-#include "render/kernel/bsdf.h"
+#include "render/kernel/layered_bsdf.h"
 #include "render/kernel/shapes.h"
 #include "render/kernel/texture.h"
 #include "world/texture_coordinates.h"
@@ -28,6 +28,8 @@ struct SurfaceOf {
   F metallic{}, roughness{};
   F f0{}, f90{};  ///< as in MaterialView
   F opacity = F(1.0f);
+  Vec3Of<F> straight;  ///< of light on what is opaque, the share that goes straight through: sheets
+  Vec3Of<F> tangent;   ///< along which highlights are drawn out; zero = they are round
 };
 using Surface = SurfaceOf<float>;
 
@@ -42,7 +44,7 @@ GLOAM_HD Surface lane(const SurfaceOf<F>& s, int i) {
   return {lane(s.p, i),        lane(s.geometric, i), lane(s.normal, i),     lane(s.t, i),
           lane(s.outside, i),  lane(s.instance, i),  lane(s.base_color, i), lane(s.emission, i),
           lane(s.metallic, i), lane(s.roughness, i), lane(s.f0, i),         lane(s.f90, i),
-          lane(s.opacity, i)};
+          lane(s.opacity, i),  lane(s.straight, i),  lane(s.tangent, i)};
 }
 
 namespace surfaces {
@@ -180,6 +182,32 @@ GLOAM_HD void apply_textures(const SceneView& scene, const InstanceView& instanc
 
 }  // namespace surfaces
 
+namespace surfaces {
+
+/// What the layers of a material need to know of the place: highlights' direction, clear sheets.
+GLOAM_HD void find_layers(const SceneView& scene, const InstanceView& instance, const RayHit& hit,
+                          const Affine3f& X_WG, Vec3f d, float time, Surface* s) {
+  const int row = scene.materials[instance.material].layers;
+  if (row < 0) return;
+  const MaterialLayers& m = scene.layers[static_cast<uint32_t>(row)];
+  Vec3f u, v;
+  if (m.anisotropy > 0 && tangents(scene, instance, hit, time, &u, &v)) {
+    const Vec3f across = transform_vector(X_WG, u);
+    const Vec3f x = across - s->normal * dot(across, s->normal);
+    if (length_squared(x) > 0) {
+      const Vec3f t = normalize(x);
+      s->tangent = t * m.cos_rotation + cross(s->normal, t) * m.sin_rotation;
+    }
+  }
+  if (m.straight) {
+    float cos_t;
+    const float f = fresnel_dielectric(fabsf(dot(s->normal, d)), m.ior, &cos_t);
+    s->straight = m.tint * (m.transmission * (1.0f - s->metallic) * (1.0f - f) / (1.0f + f));
+  }
+}
+
+}  // namespace surfaces
+
 /// The surfaces that the lanes of `found` have hit. `cone` is that of the ray at its origin.
 template <class F>
 GLOAM_HD SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>& ray,
@@ -193,6 +221,7 @@ GLOAM_HD SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>& ray,
   AffineOf<F> X_WG;
   Vec3Of<F> size, corner[3];  // of the shape; shading normals of a triangle's corners
   MaskOf<F> mesh = false, smooth = false, box = false, moving = false, textured = false;
+  MaskOf<F> layered = false;
   each_lane(found, [&](int i) {
     const InstanceView& instance = scene.instances[lane(hit.instance, i)];
     const MaterialView& m = scene.materials[instance.material];
@@ -206,6 +235,7 @@ GLOAM_HD SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>& ray,
     set_lane(&s.f90, i, m.f90);
     set_lane(&s.opacity, i, m.opacity);
     if (m.textured) set_lane(&textured, i, true);
+    if (m.layers >= 0) set_lane(&layered, i, true);
     if (is_mesh(instance.shape)) {
       set_lane(&mesh, i, true);
       const DeviceSpan<const Vec3f>& normals = scene.meshes[instance.mesh].corner_normals;
@@ -278,16 +308,56 @@ GLOAM_HD SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>& ray,
   if (any(away)) {
     s.normal = select<F>(away, normalize(s.normal - ray.d * (1e-2f - facing)), s.normal);
   }
+  each_lane(found & layered, [&](int i) {
+    Surface one = lane(s, i);
+    surfaces::find_layers(scene, scene.instances[one.instance], lane(hit, i), lane(X_WG, i),
+                          lane(ray.d, i), lane(ray.time, i), &one);
+    set_lane(&s.straight, i, one.straight);
+    set_lane(&s.tangent, i, one.tangent);
+  });
   return s;
+}
+
+/// Of the light on a surface the share that is met: the rest passes as if nothing were there.
+template <class F>
+GLOAM_HD F met_share(const SurfaceOf<F>& s) {
+  return s.opacity * (1.0f - max_component(s.straight));
+}
+/// Light that passes straight through the surface.
+template <class F>
+GLOAM_HD Vec3Of<F> passing_light(const SurfaceOf<F>& s) {
+  const F gap = 1.0f - s.opacity;
+  return Vec3Of<F>{gap, gap, gap} + s.straight * s.opacity;
 }
 
 /// BSDF of the surface for the direction `wo` towards the viewer; `frame` is its shading frame.
 template <class F>
-GLOAM_HD BsdfOf<F> surface_bsdf(const SceneView& scene, const SurfaceOf<F>& s, Vec3Of<F> wo,
-                                FrameOf<F>* frame) {
+GLOAM_HD LayeredBsdfOf<F> surface_bsdf(const SceneView& scene, const SurfaceOf<F>& s, Vec3Of<F> wo,
+                                       FrameOf<F>* frame, MaskOf<F> active = true) {
   *frame = FrameOf<F>::from_z(s.normal);
-  return make_bsdf(*scene.albedo, s.base_color, s.metallic, s.roughness, s.f0, s.f90,
-                   max(dot(wo, s.normal), 1e-4f));
+  const MaskOf<F> drawn_out = length_squared(s.tangent) > 0.0f;
+  if (any(drawn_out)) {
+    const Vec3Of<F> x = normalize(s.tangent - s.normal * dot(s.tangent, s.normal));
+    frame->x = select<F>(drawn_out, x, frame->x);
+    frame->y = select<F>(drawn_out, cross(s.normal, x), frame->y);
+  }
+  Vec3Of<F> wo_local = frame->to_local(wo);
+  wo_local.z = max(wo_local.z, 1e-4f);
+  LayeredBsdfOf<F> bsdf;
+  bsdf.base = make_bsdf(*scene.albedo, s.base_color, s.base_color, s.metallic, F(1.0f), s.roughness,
+                        s.f0, s.f90, F(0.0f), wo_local);
+  if (scene.layers.size > 0) {
+    each_lane(active, [&](int i) {
+      const int row = scene.materials[scene.instances[lane(s.instance, i)].material].layers;
+      if (row < 0) return;
+      const SurfaceParameters base{lane(s.base_color, i), lane(s.metallic, i), lane(s.roughness, i),
+                                   lane(s.f0, i),         lane(s.f90, i),      lane(s.outside, i)};
+      set_lane(
+          &bsdf, i,
+          make_layered(scene, scene.layers[static_cast<uint32_t>(row)], base, lane(wo_local, i)));
+    });
+  }
+  return bsdf;
 }
 
 }  // namespace gloam

@@ -1,7 +1,10 @@
 #include "render/scene/albedo_table.h"
 
+#include <cmath>
+
 #include "base/parallel.h"
 #include "base/rng.h"
+#include "render/kernel/layered_bsdf.h"
 #include "render/kernel/sampler.h"
 
 namespace gloam {
@@ -11,7 +14,7 @@ void fill_albedo_table(AlbedoTable* table) {
   constexpr uint32_t kPoints = 256;
   parallel_for("albedo table", n, [table](int64_t row) {
     const float roughness = static_cast<float>(row) / (n - 1);
-    const float alpha = max(roughness * roughness, 1e-3f), alpha2 = alpha * alpha;
+    const Vec2f alpha = ggx_widths(roughness, 0.0f);
     for (int column = 0; column < n; ++column) {
       const float cos_o = max(static_cast<float>(column) / (n - 1), 2e-3f);
       const Vec3f wo{safe_sqrt(1.0f - cos_o * cos_o), 0, cos_o};
@@ -21,8 +24,8 @@ void fill_albedo_table(AlbedoTable* table) {
         const Vec3f h = ggx::sample_half(alpha, wo, u);
         const float cos_oh = dot(wo, h), cos_i = 2.0f * cos_oh * h.z - cos_o;
         if (cos_i <= 0) continue;
-        const float root_o = ggx::smith_root(alpha2, cos_o);
-        const float root_i = ggx::smith_root(alpha2, cos_i);
+        const Vec3f wi = h * (2.0f * cos_oh) - wo;
+        const float root_o = ggx::smith_root(alpha, wo), root_i = ggx::smith_root(alpha, wi);
         // G2 / G1 of the height-correlated Smith function.
         const float g = cos_i * (cos_o + root_o) / (cos_i * root_o + cos_o * root_i);
         const float f = ggx::schlick(cos_oh);
@@ -31,6 +34,55 @@ void fill_albedo_table(AlbedoTable* table) {
       }
       table->a[row * n + column] = a / kPoints;
       table->b[row * n + column] = b / kPoints;
+      const float fuzz_alpha = max(roughness * roughness, 1e-2f);
+      float fuzz = 0;
+      for (uint32_t i = 0; i < kPoints; ++i) {
+        const Vec3f wi = sample_cosine_hemisphere(
+            Vec2f{(static_cast<float>(i) + 0.5f) / kPoints, uniform_float(reverse_bits(i))});
+        fuzz += sheen::lobe(fuzz_alpha, cos_o, wi.z, normalize(wo + wi).z) * kPi;
+      }
+      table->fuzz[row * n + column] = fuzz / kPoints;
+    }
+  });
+}
+
+void fill_glass_table(GlassTable* table) {
+  constexpr int n = GlassTable::kSize;
+  constexpr uint32_t kPoints = 256;
+  parallel_for("glass table", n * n, [table](int64_t row) {
+    const float axis = 2.0f * static_cast<float>(row / n) / (n - 1) - 1.0f;
+    const float roughness = static_cast<float>(row % n) / (n - 1);
+    LayeredBsdf b;
+    b.layered = true;
+    b.eta = GlassTable::eta_at(axis);
+    if (std::fabs(b.eta - 1) < 1e-3f) b.eta = 1.001f;
+    b.glass = b.p_glass = 1;
+    b.p_base = 0;
+    b.under = b.tint = {1, 1, 1};
+    b.glass_alpha = ggx_widths(roughness, 0.0f);
+    for (int column = 0; column < n; ++column) {
+      const float cos_o = max(static_cast<float>(column) / (n - 1), 1e-2f);
+      const Vec3f wo{safe_sqrt(1.0f - cos_o * cos_o), 0, cos_o};
+      b.glass_root = ggx::smith_root(b.glass_alpha, wo);
+      float sum = 0;
+      for (uint32_t i = 0; i < kPoints; ++i) {
+        const float x = (static_cast<float>(i) + 0.5f) / kPoints;
+        const Vec2f u{x, uniform_float(reverse_bits(i))};
+        // Both sides of each microfacet: the choice between them adds no noise.
+        const Vec3f h = ggx::sample_half(b.glass_alpha, wo, u);
+        float cos_t;
+        const float cos_h = dot(wo, h), f = fresnel_dielectric(cos_h, b.eta, &cos_t);
+        const Vec3f r = h * (2.0f * cos_h) - wo;
+        const Vec3f t = h * (cos_h / b.eta - cos_t) - wo / b.eta;
+        // G2 / G1 of the height-correlated Smith function.
+        const auto seen = [&](Vec3f wi) {
+          const float away = std::fabs(wi.z), root_i = ggx::smith_root(b.glass_alpha, wi);
+          return away * (cos_o + b.glass_root) / (away * b.glass_root + cos_o * root_i);
+        };
+        if (r.z > 0) sum += f * seen(r);
+        if (t.z < 0 && f < 1) sum += (1 - f) * seen(t);
+      }
+      table->albedo[row * n + column] = sum / kPoints;
     }
   });
 }

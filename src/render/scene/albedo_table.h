@@ -5,5 +5,6 @@ namespace gloam {
 
 /// Integrates the layer's directional albedo by a fixed point set: the same on every machine.
 void fill_albedo_table(AlbedoTable* table);
+void fill_glass_table(GlassTable* table);
 
 }  // namespace gloam

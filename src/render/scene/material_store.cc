@@ -1,12 +1,52 @@
 #include "render/scene/material_store.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/check.h"
 #include "world/visual_rules.h"
 
 namespace gloam {
 namespace {
+
+bool has_layers(const MaterialDescription& m) {
+  return m.anisotropy > 0 || m.transmission_weight > 0 || m.subsurface_weight > 0 ||
+         m.coat_weight > 0 || m.fuzz_weight > 0;
+}
+
+MaterialLayers layers_of(const MaterialDescription& in) {
+  const auto unit = [](float x) { return clamp(x, 0.0f, 1.0f); };
+  const auto color = [&](Vec3f c) { return Vec3f{unit(c.x), unit(c.y), unit(c.z)}; };
+  MaterialLayers out;
+  out.coat_weight = unit(in.coat_weight);
+  out.coat_roughness = unit(in.coat_roughness);
+  out.coat_f0 = sqr((in.coat_ior - 1) / (in.coat_ior + 1));
+  out.coat_color = color(in.coat_color);
+  out.fuzz_weight = unit(in.fuzz_weight);
+  out.fuzz_roughness = unit(in.fuzz_roughness);
+  out.fuzz_color = color(in.fuzz_color);
+  out.transmission = unit(in.transmission_weight);
+  // Light that is not bent at all has no direction to be sampled about.
+  out.ior = std::fabs(in.ior - 1) < 1e-3f ? 1.001f : clamp(in.ior, 1.0f / 3, 3.0f);
+  out.thin = in.thin_walled;
+  // Below that roughness the lobe is narrower than the kernel's narrowest.
+  out.straight = out.thin && out.transmission > 0 && in.roughness < 0.032f;
+  const Vec3f through = color(in.transmission_color);
+  if (in.transmission_depth > 0 && !out.thin) {
+    const auto per_metre = [&](float t) {
+      return -std::log(max(t, 1e-4f)) / in.transmission_depth;
+    };
+    out.absorption = {per_metre(through.x), per_metre(through.y), per_metre(through.z)};
+  } else {
+    out.tint = through;
+  }
+  out.subsurface = unit(in.subsurface_weight);
+  out.subsurface_color = color(in.subsurface_color);
+  out.anisotropy = clamp(in.anisotropy, 0.0f, 0.98f);
+  out.cos_rotation = std::cos(2 * kPi * in.anisotropy_rotation);
+  out.sin_rotation = std::sin(2 * kPi * in.anisotropy_rotation);
+  return out;
+}
 
 MaterialView view_of(const MaterialDescription& in, const TextureStore& textures) {
   MaterialView out;
@@ -28,7 +68,7 @@ MaterialView view_of(const MaterialDescription& in, const TextureStore& textures
                       t.normal,     t.opacity,   t.emission};
   out.textured = in.mapping != TextureMapping::kNone &&
                  std::any_of(std::begin(used), std::end(used), [](int i) { return i >= 0; });
-  out.transparent = out.opacity < 1;
+  out.transparent = out.opacity < 1 || (in.transmission_weight > 0 && layers_of(in).straight);
   if (out.textured) {
     out.transparent |= t.opacity >= 0 || (t.base_color >= 0 && textures.has_alpha[t.base_color]);
   }
@@ -65,7 +105,10 @@ MaterialView live_view(const MaterialDescription& described, const std::array<fl
 
 MaterialStore::MaterialStore(const RenderDescription& description, const TextureStore& textures) {
   for (const MaterialDescription& material : description.materials) {
+    layer_rows_.push_back(has_layers(material) ? static_cast<int>(layers_.size()) : -1);
+    if (has_layers(material)) layers_.push_back(layers_of(material));
     views_.push_back(view_of(material, textures));
+    views_.back().layers = layer_rows_.back();
   }
 }
 
@@ -85,6 +128,7 @@ bool MaterialStore::update(const RenderDescription& description, const TextureSt
       // Materials of drawn things that are not simulated never change.
       const bool is_live = in.model_material >= 0;
       views_[i] = is_live ? live_view(in, rgba, frame, textures) : view_of(in, textures);
+      views_[i].layers = layer_rows_[i];
     }
   }
   for (size_t i = 0; i < instances->size(); ++i) {
@@ -100,6 +144,7 @@ bool MaterialStore::update(const RenderDescription& description, const TextureSt
     views_.push_back(live_view(
         material, own_color ? rgba : rgba_at(frame.material_rgba, material.model_material), frame,
         textures));
+    views_.back().layers = layer_rows_[static_cast<size_t>(in.material)];
   }
   return true;
 }

@@ -22,9 +22,12 @@ class MaterialStore {
               const PoseFrame& frame, std::vector<InstanceView>* instances);
 
   const std::vector<MaterialView>& views() const { return views_; }
+  const std::vector<MaterialLayers>& layers() const { return layers_; }
 
  private:
   std::vector<MaterialView> views_;  // those of the description, then own ones of instances
+  std::vector<MaterialLayers> layers_;
+  std::vector<int> layer_rows_;  ///< by described material; -1 = none
   uint64_t live_serial_ = 0;
 };
 

@@ -112,6 +112,12 @@ Result<std::unique_ptr<RenderScene>> RenderScene::make(const RenderDescription& 
   GLOAM_TRY(scene->meshes_, MeshStore::make(description));
   fill_albedo_table(&scene->albedo_);
   scene->materials_ = MaterialStore(description, scene->textures_);
+  const std::vector<MaterialLayers>& layers = scene->materials_.layers();
+  if (std::any_of(layers.begin(), layers.end(),
+                  [](const MaterialLayers& m) { return m.transmission > 0 && !m.thin; })) {
+    scene->glass_ = std::make_unique<GlassTable>();
+    fill_glass_table(scene->glass_.get());
+  }
   for (const InstanceDescription& in : description.instances) {
     InstanceView out;
     out.shape = in.shape;
@@ -215,7 +221,9 @@ SceneView RenderScene::view_from(const Affine3f& X_WC) {
   view.texture_levels = span_of(textures_.levels);
   view.texels = span_of(textures_.texels);
   view.lights = span_of(lights_.lights());
+  view.layers = span_of(materials_.layers());
   view.albedo = &albedo_;
+  view.glass = glass_.get();
   const SkyDescription& sky = description_.sky;
   view.sky_texture = sky.scale > 0 ? sky.texture : -1;
   view.sky_scale = sky.scale;

@@ -55,6 +55,7 @@ class RenderScene {
   MeshStore meshes_;
   LightTable lights_;
   AlbedoTable albedo_;
+  std::unique_ptr<GlassTable> glass_;  ///< where some material is glass
   MaterialStore materials_;
   Vec3f sky_ambient_;  ///< [cd/m²]
   std::vector<InstanceView> instances_;

@@ -127,7 +127,7 @@ Mean one_technique(const Probe& probe, const CameraView& view, bool by_light, in
       const Surface s = make_surface(probe.view, ray, hit, cone);
       value = s.emission.x;
       Frame frame;
-      const Bsdf bsdf = surface_bsdf(probe.view, s, -ray.d, &frame);
+      const LayeredBsdf bsdf = surface_bsdf(probe.view, s, -ray.d, &frame);
       const Vec3f wo = frame.to_local(-ray.d);
       const float pick = sampler.next_1d();
       const Vec2f u = sampler.next_2d();

@@ -2,68 +2,15 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
-
 #include <fmt/format.h>
 
 #include "base/rng.h"
 #include "render/scene/albedo_table.h"
+#include "render/test/direction_check.h"
 #include "render/test/probe.h"
 
 namespace gloam {
 namespace {
-
-/// Chi-square test of `sample` (directions; false = none) against `pdf` per solid angle on a grid
-/// of the sphere. Also checks that the density integrates to the share of samples that exist.
-void check_directions(const std::function<bool(uint32_t, Vec3f*)>& sample,
-                      const std::function<double(Vec3f)>& pdf, const char* name) {
-  constexpr int kRows = 16, kColumns = 32, kFine = 12, kDraws = 200000;
-  std::vector<double> expected(kRows * kColumns), observed(kRows * kColumns);
-  double integral = 0;
-  for (int row = 0; row < kRows * kFine; ++row) {
-    for (int column = 0; column < kColumns * kFine; ++column) {
-      const float z = -1 + 2 * (row + 0.5f) / (kRows * kFine);
-      const float phi = 2 * kPi * (column + 0.5f) / (kColumns * kFine), r = std::sqrt(1 - z * z);
-      const double share = pdf({r * std::cos(phi), r * std::sin(phi), z}) * 4 * kPi /
-                           (kRows * kColumns * kFine * kFine);
-      expected[row / kFine * kColumns + column / kFine] += share * kDraws;
-      integral += share;
-    }
-  }
-  int made = 0;
-  for (uint32_t i = 0; i < kDraws; ++i) {
-    Vec3f d;
-    if (!sample(i, &d)) continue;
-    ++made;
-    EXPECT_NEAR(length(d), 1, 1e-4) << name;
-    double phi = std::atan2(d.y, d.x);
-    if (phi < 0) phi += 2 * kPi;
-    const int row = std::min(kRows - 1, static_cast<int>((d.z + 1) * 0.5 * kRows));
-    const int column = std::min(kColumns - 1, static_cast<int>(phi / (2 * kPi) * kColumns));
-    observed[row * kColumns + column] += 1;
-  }
-  EXPECT_NEAR(integral, static_cast<double>(made) / kDraws, 0.01) << name;
-  double chi2 = 0, pooled_expected = 0, pooled_observed = 0;
-  int cells = 0;
-  for (size_t i = 0; i < expected.size(); ++i) {
-    pooled_expected += expected[i];
-    pooled_observed += observed[i];
-    if (pooled_expected < 50) continue;
-    // The grid integrates the density to about 1 %: that is not the sampler's error.
-    const double gap =
-        std::max(0.0, std::abs(pooled_observed - pooled_expected) - 0.01 * pooled_expected);
-    chi2 += gap * gap / pooled_expected;
-    pooled_expected = pooled_observed = 0;
-    ++cells;
-  }
-  EXPECT_LT(chi2, cells + 5 * std::sqrt(2.0 * cells)) << name << " over " << cells << " cells";
-}
-
-/// The sampler that chi-square tests draw from: independent points, as the test assumes.
-Vec2f random_2d(uint32_t i, uint32_t k) {
-  const Philox4 d = philox4x32(99, k, i);
-  return {uniform_float(d.v[0]), uniform_float(d.v[1])};
-}
 
 TEST(Sampling, DomainsMatchTheirDensities) {
   check_directions(
@@ -87,15 +34,18 @@ TEST(Sampling, DomainsMatchTheirDensities) {
       [&](Vec3f d) { return d.z > 0.75f ? cone_pdf(one_minus_cos) : 0.0f; }, "cone");
 }
 
+Bsdf make_plain(const AlbedoTable& table, Vec3f color, float metallic, float roughness, Vec3f wo) {
+  return make_bsdf(table, color, color, metallic, 1.0f, roughness, 0.04f, 1.0f, 0.0f, wo);
+}
+
 TEST(Sampling, BsdfMatchesItsDensity) {
   AlbedoTable table;
   fill_albedo_table(&table);
   for (const float roughness : {0.35f, 0.6f, 1.0f}) {
     for (const float metallic : {0.0f, 1.0f}) {
       for (const float cos_o : {0.95f, 0.5f, 0.15f}) {
-        const Bsdf bsdf =
-            make_bsdf(table, {0.6f, 0.5f, 0.4f}, metallic, roughness, 0.04f, 1.0f, cos_o);
         const Vec3f wo{std::sqrt(1 - cos_o * cos_o), 0, cos_o};
+        const Bsdf bsdf = make_plain(table, {0.6f, 0.5f, 0.4f}, metallic, roughness, wo);
         const std::string name =
             fmt::format("roughness {} metallic {} cos {}", roughness, metallic, cos_o);
         check_directions(
@@ -127,7 +77,7 @@ TEST(Sampling, BsdfNeverGainsEnergyAndWhiteLosesNone) {
     for (const float cos_o : {1.0f, 0.7f, 0.4f, 0.2f, 0.08f}) {
       const Vec3f wo{std::sqrt(1 - cos_o * cos_o), 0, cos_o};
       for (const float metallic : {0.0f, 0.5f, 1.0f}) {
-        const Bsdf white = make_bsdf(table, {1, 1, 1}, metallic, roughness, 0.04f, 1.0f, cos_o);
+        const Bsdf white = make_plain(table, {1, 1, 1}, metallic, roughness, wo);
         Mean mean;
         for (uint32_t i = 0; i < 20000; ++i) {
           const BsdfSample s = sample_bsdf(white, wo, random_2d(i, 1).x, random_2d(i, 0));
@@ -146,7 +96,7 @@ TEST(Sampling, DielectricLayerMatchesBruteForceAlbedo) {
   for (const float roughness : {0.3f, 0.8f}) {
     for (const float cos_o : {0.9f, 0.3f}) {
       const Vec3f wo{std::sqrt(1 - cos_o * cos_o), 0, cos_o};
-      const Bsdf bsdf = make_bsdf(table, {0, 0, 0}, 0.0f, roughness, 0.04f, 1.0f, cos_o);
+      const Bsdf bsdf = make_plain(table, {0, 0, 0}, 0.0f, roughness, wo);
       Mean brute;  // uniform directions: independent of the layer's own sampling
       for (uint32_t i = 0; i < 400000; ++i) {
         Vec3f wi = sample_sphere(random_2d(i, 0));
