@@ -51,8 +51,16 @@ GLOAM_HD ProceduralSample procedural_noise(const ProceduralDescription& d,
   return s;
 }
 
+/// Places beyond 1000 km, and what is no number, are brought back to there; a normal that is none
+/// counts as +z.
 GLOAM_HD ProceduralSample eval_procedural(const ProceduralDescription& d,
-                                          const ProceduralPoint& at) {
+                                          const ProceduralPoint& asked) {
+  constexpr float kFar = 1e6f;
+  ProceduralPoint at = asked;
+  at.p = {clamp(at.p.x, -kFar, kFar), clamp(at.p.y, -kFar, kFar), clamp(at.p.z, -kFar, kFar)};
+  at.footprint = clamp(at.footprint, 0.0f, kFar);
+  const float n2 = dot(at.n, at.n);
+  if (!(n2 > 1e-6f && n2 < 1e6f)) at.n = {0, 0, 1};
   switch (d.kind) {
     case ProceduralKind::kNoise:
       return procedural_noise(d, at);

@@ -54,7 +54,7 @@ GLOAM_HD float wet_albedo(float a, float absorbed) {
 
 struct Wetness {
   float amount = 0;       ///< 0 dry, 0.5 soaked without a film, 1 all under water where level
-  float porosity = 0.6f;  ///< 0 glass and metal, 0.6 concrete, brick, wood, 0.9 soil
+  float porosity = 0.8f;  ///< 0 glass and metal, 0.8 concrete, brick and wood, 1 soil
   uint32_t seed = 0;
 };
 

@@ -11,6 +11,23 @@ GLOAM_HD bool warp_on_top(Weave weave, int column, int row) {
   return weave == Weave::kPlain ? ((column + row) & 1) == 0 : ((column - row) & 3) < 2;
 }
 
+/// Share of the crossings in the square of `width` < 3 crossings about (u, v) at which the weft
+/// lies on top, by area.
+GLOAM_HD float weft_share(Weave weave, const CellSplit& u, const CellSplit& v, float width) {
+  const float half = 0.5f * width;
+  float sum = 0;
+  for (int y = -2; y <= 2; ++y) {
+    const float top = static_cast<float>(y) - v.f;
+    const float high = min(top + 1.0f, half) - max(top, -half);
+    for (int x = -2; x <= 2 && high > 0; ++x) {
+      const float left = static_cast<float>(x) - u.f;
+      const float wide = min(left + 1.0f, half) - max(left, -half);
+      if (wide > 0 && !warp_on_top(weave, u.cell + x, v.cell + y)) sum += wide * high;
+    }
+  }
+  return sum / (width * width);
+}
+
 }  // namespace fabrics
 
 /// Warp (color_a) and weft (color_b) yarns `scale` apart, plain or 2/2 twill. Near by each yarn is
@@ -61,9 +78,11 @@ GLOAM_HD ProceduralSample procedural_fabric(const ProceduralDescription& d,
                              : slub(static_cast<float>(cv.cell), on.u, d.seed + 2u));
   }
   const Noise wear = fbm(at.p, 7.0f, 2, 0.5f, foot, d.seed + 7u);
-  // The diagonal of a twill is four crossings long and outlives its yarns.
-  const float pattern = noise_left((d.weave == Weave::kTwill ? 0.9f : 2.0f) * cells);
-  const float weft_share = 0.5f + (warp ? -0.5f : 0.5f) * pattern;
+  const float pattern = 1.0f - smooth_step(1.5f, 3.0f, cells);
+  float weft_share = 0.5f;
+  if (pattern > 0) {
+    weft_share = lerp(0.5f, fabrics::weft_share(d.weave, cu, cv, max(cells, 0.02f)), pattern);
+  }
   s.base_color =
       lerp(d.color_a, d.color_b, weft_share) *
       max(shade * (1.0f + d.variation * (0.16f * tone + 0.05f * wear.field.value)), 0.0f);

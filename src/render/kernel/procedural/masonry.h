@@ -132,11 +132,14 @@ GLOAM_HD ProceduralSample procedural_tiles(const ProceduralDescription& d,
     from_v = cell.v;
     smaller = pitch_u;
     const float mean = sqr(1.0f - d.gap / pitch_u);
-    const float t = smooth_step(0.05f, 0.9f, foot / pitch_u);
+    const float t = smooth_step(0.1f, 0.8f, foot / pitch_u);
     const auto share = [&](float width) {
-      const float x = (cell.inner.value - 0.5f * d.gap) / width + 0.5f;
+      // Of an interval across the nearest border, what lies outside the joint.
+      const float half = 0.5f * d.gap, lo = cell.inner.value - 0.5f * width, hi = lo + width;
+      const float joint = clamp(hi, -half, half) - clamp(lo, -half, half);
+      const auto in_joint = [&](float x) { return fabsf(x) < half ? 1.0f : 0.0f; };
       const Field here =
-          compose(cell.inner, clamp(x, 0.0f, 1.0f), x > 0 && x < 1 ? 1.0f / width : 0.0f);
+          compose(cell.inner, 1.0f - joint / width, (in_joint(lo) - in_joint(hi)) / width);
       return here * (1.0f - t) + mean * t;
     };
     tile = share(sharp).value;

@@ -41,11 +41,8 @@ struct SurfaceFrame {
   GLOAM_HD Field field_v() const { return {v, along_v}; }
 };
 
-/// The part of the gradient g that lies in the surface of normal n.
-GLOAM_HD Vec3f in_surface(Vec3f g, Vec3f n) {
-  const float n2 = dot(n, n);
-  return n2 > 1e-12f ? g - n * (dot(g, n) / n2) : g;
-}
+/// The part of the gradient g that lies in the surface of normal n, which is not 0.
+GLOAM_HD Vec3f in_surface(Vec3f g, Vec3f n) { return g - n * (dot(g, n) / dot(n, n)); }
 
 /// Unit interval t in [0, 1) after the integer part, and that part.
 struct Repeat {

@@ -27,8 +27,8 @@ GLOAM_HD ProceduralSample procedural_marble(const ProceduralDescription& d,
     const float sigma = sqrtf(soft * soft + n.lost);
     return soft_step(n.field.value + half, sigma) - soft_step(n.field.value - half, sigma);
   };
-  const float sharp = band(great, 0.012f, 0.022f), halo = band(great, 0.06f, 0.25f);
-  const float hair = band(small, 0.006f, 0.022f);
+  const float sharp = band(great, 0.03f, 0.035f), halo = band(great, 0.1f, 0.3f);
+  const float hair = band(small, 0.012f, 0.025f);
   const float cloud = 0.5f + 0.16f * small.field.value + 0.12f * wx.field.value;
   const float vein =
       clamp(d.amount * (0.62f * sharp + 0.95f * halo + 0.42f * hair * (0.4f + halo * 3.0f)) +

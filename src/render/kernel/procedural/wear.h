@@ -85,14 +85,13 @@ GLOAM_HD ProceduralSample procedural_scratches(const ProceduralDescription& d,
 GLOAM_HD ProceduralSample procedural_dirt(const ProceduralDescription& d,
                                           const ProceduralPoint& at) {
   const Noise ragged = fbm(at.p, 1.0f / d.scale, 5, 0.68f, at.footprint, d.seed + 1u);
-  const float n2 = dot(at.n, at.n);
-  const float up = n2 > 1e-12f ? at.n.z / sqrtf(n2) : 1.0f;
+  const float up = at.n.z / length(at.n);
   const float splash = at.height > 0 ? 1.0f / (1.0f + sqr(at.height / 0.15f)) : 1.0f;
   const float exposure =
       1.3f * splash + 0.6f * max(up, 0.0f) - 1.8f * clamp(at.convexity, -1.0f, 1.0f);
   // ±4 covers the noise: nothing at 0, everything at 1.
   const float level = lerp(-4.0f, 4.0f, d.amount) + exposure * 4.0f * d.amount * (1.0f - d.amount);
-  const float sigma = sqrtf(0.09f + ragged.lost);
+  const float sigma = sqrtf(0.3f + ragged.lost);
   ProceduralSample s;
   const Field cover = soft_step(ragged.field + level, sigma);
   s.mask = d.amount > 0 ? cover.value : 0.0f;

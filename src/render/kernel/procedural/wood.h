@@ -53,14 +53,13 @@ GLOAM_HD LogPoint board(const ProceduralDescription& d, const ProceduralPoint& a
 
 /// Share of late wood in a ring seen through `width` rings: it grows as t³ over the year and ends
 /// sharply. Mean 1/4.
-GLOAM_HD float late_wood(float rings, float width) {
+GLOAM_HD Field late_wood(Field rings, float width) {
   const float w = max(width, 0.06f);
-  const auto below = [](float t) {
-    const float base = floorf(t), f = t - base;
-    return 0.25f * (base + sqr(f * f));
-  };
-  const float t = rings - floorf(rings);
-  return (below(t + 0.5f * w) - below(t - 0.5f * w)) / w;
+  const auto year = [](float t) { return t - floorf(t); };
+  const auto below = [&](float t) { return 0.25f * (floorf(t) + sqr(sqr(year(t)))); };
+  const auto at = [&](float t) { return year(t) * sqr(year(t)); };
+  const float t = year(rings.value), lo = t - 0.5f * w, hi = t + 0.5f * w;
+  return compose(rings, (below(hi) - below(lo)) / w, (at(hi) - at(lo)) / w);
 }
 
 }  // namespace woods
@@ -80,19 +79,21 @@ GLOAM_HD ProceduralSample procedural_wood(const ProceduralDescription& d,
   const float radius = sqrtf(q.x * q.x + q.y * q.y), inv = 1.0f / max(radius, 1e-4f);
   const float wobble = 0.012f + 0.6f * d.scale;  // [m]
   const Vec3f slope_log = Vec3f{q.x * inv, q.y * inv, 0} + bend.field.gradient * wobble;
-  const float rings = (radius + wobble * bend.field.value) / d.scale;
+  const Field rings = Field{radius + wobble * bend.field.value, slope_log} * (1.0f / d.scale);
   // Rings cut at a slant are wide on the surface: the footprint in rings is the projected one.
   const Vec3f slope = patterns::in_surface(to_material(slope_log), at.n);
   const float blur =
       sqrtf(sqr(foot * length(slope) / d.scale) + 12.0f * bend.lost * sqr(wobble / d.scale));
-  const float late = woods::late_wood(rings, blur);
+  const Field late_field = woods::late_wood(rings, blur);
+  const float late = late_field.value;
   // Good and bad years, over about five rings.
-  const Noise years = filtered_noise({rings * 0.21f, 0, 0}, {1, 1, 1}, blur * 0.21f, d.seed + 5u);
+  const Noise years =
+      filtered_noise({rings.value * 0.21f, 0, 0}, {1, 1, 1}, blur * 0.21f, d.seed + 5u);
   const Noise fibre = fbm(q, {1100.0f, 1100.0f, 22.0f}, 2, 0.8f, foot, d.seed + 7u);
   const Noise streak = filtered_noise(q, {150.0f, 150.0f, 2.2f}, foot, d.seed + 9u);
   const Noise pore = filtered_noise(q, {1700.0f, 1700.0f, 55.0f}, foot, d.seed + 10u);
   const float pore_sigma = sqrtf(0.12f + pore.lost);
-  const Field pores = soft_step(pore.field - (1.75f + 0.5f * late), pore_sigma);
+  const Field pores = soft_step(pore.field - late_field * 0.5f - 1.75f, pore_sigma);
   float ray = 0;
   const float ray_left = noise_left(foot * 1400.0f);
   if (d.amount > 0 && ray_left > 0) {
@@ -104,7 +105,7 @@ GLOAM_HD ProceduralSample procedural_wood(const ProceduralDescription& d,
   }
   const float body = clamp(
       0.12f + 0.95f * late * (1.0f + 0.35f * years.field.value) +
-          d.variation * (0.07f * years.field.value + 0.1f * streak.field.value + 0.45f * log.tone) +
+          d.variation * (0.07f * years.field.value + 0.1f * streak.field.value + 0.9f * log.tone) +
           0.07f * fibre.field.value,
       0.0f, 1.0f);
   Vec3f color = lerp(d.color_a, d.color_b, body);
