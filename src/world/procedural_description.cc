@@ -28,11 +28,11 @@ ProceduralDescription default_procedural(ProceduralKind kind) {
       d.amount = 0.4f;
       break;
     case ProceduralKind::kMarble:
-      d.color_a = {0.78f, 0.77f, 0.75f};
+      d.color_a = {0.76f, 0.75f, 0.73f};
       d.color_b = {0.2f, 0.215f, 0.235f};
       d.scale = 0.35f;
       d.roughness = 0.12f;
-      d.amount = 0.7f;
+      d.amount = 0.85f;
       break;
     case ProceduralKind::kConcrete:
       d.color_a = {0.45f, 0.44f, 0.42f};
@@ -84,13 +84,13 @@ ProceduralDescription default_procedural(ProceduralKind kind) {
       d.color_b = {0.66f, 0.67f, 0.68f};
       d.scale = 0.12f;
       d.gap = 0.0003f;
-      d.depth = 0.00002f;
+      d.depth = 0.00005f;
       d.roughness = 0.25f;
-      d.gap_roughness = 0.55f;
+      d.gap_roughness = 0.6f;
       d.metallic = 1;
       d.axis = {1, 0, 0};
       d.variation = 0.25f;
-      d.amount = 0.7f;
+      d.amount = 0.9f;
       break;
     case ProceduralKind::kDirt:
       d.color_a = {0.6f, 0.6f, 0.58f};
@@ -99,7 +99,7 @@ ProceduralDescription default_procedural(ProceduralKind kind) {
       d.depth = 0.0003f;
       d.roughness = 0.4f;
       d.gap_roughness = 0.95f;
-      d.amount = 0.4f;
+      d.amount = 0.3f;
       break;
   }
   return d;

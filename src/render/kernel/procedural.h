@@ -1,6 +1,6 @@
 #pragma once
 // Procedural materials by kind. To add one: a function in a header of procedural/, a line in
-// eval_procedural and, for its usual look, a case in world/procedural_description.cc. Device-safe.
+// of_kind and, for its usual look, a case in world/procedural_description.cc. Device-safe.
 //
 // A sample is the mean over a square of `footprint` on the surface: details fade as they become
 // smaller than it, thresholds widen by what their noise lost, joints are integrated. Heights are
@@ -51,16 +51,9 @@ GLOAM_HD ProceduralSample procedural_noise(const ProceduralDescription& d,
   return s;
 }
 
-/// Places beyond 1000 km, and what is no number, are brought back to there; a normal that is none
-/// counts as +z.
-GLOAM_HD ProceduralSample eval_procedural(const ProceduralDescription& d,
-                                          const ProceduralPoint& asked) {
-  constexpr float kFar = 1e6f;
-  ProceduralPoint at = asked;
-  at.p = {clamp(at.p.x, -kFar, kFar), clamp(at.p.y, -kFar, kFar), clamp(at.p.z, -kFar, kFar)};
-  at.footprint = clamp(at.footprint, 0.0f, kFar);
-  const float n2 = dot(at.n, at.n);
-  if (!(n2 > 1e-6f && n2 < 1e6f)) at.n = {0, 0, 1};
+namespace procedurals {
+
+GLOAM_HD ProceduralSample of_kind(const ProceduralDescription& d, const ProceduralPoint& at) {
   switch (d.kind) {
     case ProceduralKind::kNoise:
       return procedural_noise(d, at);
@@ -82,6 +75,24 @@ GLOAM_HD ProceduralSample eval_procedural(const ProceduralDescription& d,
       return procedural_dirt(d, at);
   }
   return {};
+}
+
+}  // namespace procedurals
+
+/// Places beyond 1000 km, and what is no number, are brought back to there; a normal that is none
+/// counts as +z. Colours, roughness and weights are in [0, 1].
+GLOAM_HD ProceduralSample eval_procedural(const ProceduralDescription& d, ProceduralPoint at) {
+  constexpr float kFar = 1e6f;
+  at.p = {clamp(at.p.x, -kFar, kFar), clamp(at.p.y, -kFar, kFar), clamp(at.p.z, -kFar, kFar)};
+  at.footprint = clamp(at.footprint, 0.0f, kFar);
+  const float n2 = dot(at.n, at.n);
+  if (!(n2 > 1e-6f && n2 < 1e6f)) at.n = {0, 0, 1};
+  ProceduralSample s = procedurals::of_kind(d, at);
+  const auto share = [](float x) { return clamp(x, 0.0f, 1.0f); };
+  s.base_color = {share(s.base_color.x), share(s.base_color.y), share(s.base_color.z)};
+  s.roughness = share(s.roughness);
+  s.mask = share(s.mask);
+  return s;
 }
 
 /// Unit normal of the surface with normal n (unit) under its relief.

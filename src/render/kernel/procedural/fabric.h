@@ -49,13 +49,13 @@ GLOAM_HD ProceduralSample procedural_fabric(const ProceduralDescription& d,
   const float run = (warp ? cv.f : cu.f) + (before ? 1.0f : 0.0f) - 0.5f * length;
   const float a = 2.0f * run / length;
   // Heights are 0 on all borders of floats, so that neighbours meet.
-  const float round = 1.0f - 4.0f * side * side, dip = 1.0f - a * a;
+  const float round = 1.0f - 4.0f * side * side, dip = 1.0f - sqr(a * a);
   const float near = noise_left(2.2f * cells);
   const Vec3f across = warp ? on.along_u : on.along_v, along = warp ? on.along_v : on.along_u;
   ProceduralSample s;
   Field height{round * dip,
-               (across * (-8.0f * side * dip) + along * (-4.0f * a / length * round)) * f};
-  constexpr float kMeanHeight = 4.0f / 9.0f;  // 2/3 each way
+               (across * (-8.0f * side * dip) + along * (-8.0f * a * a * a / length * round)) * f};
+  constexpr float kMeanHeight = 8.0f / 15.0f;  // 2/3 across, 4/5 along
   // Fibres twist about the yarn: slanted furrows, six across.
   const float twist_near = noise_left(7.0f * cells);
   const Noise furrow = filtered_noise(
@@ -64,7 +64,7 @@ GLOAM_HD ProceduralSample procedural_fabric(const ProceduralDescription& d,
           along * (run * 1.5f),
       {1, 1, 1}, 7.0f * cells, d.seed + 3u);
   const float shade = 1.0f + near * 0.75f * (height.value - kMeanHeight) +
-                      0.1f * twist_near * furrow.field.value * round;
+                      0.16f * twist_near * furrow.field.value * round;
   // Slubs: each yarn thickens and fades along its length, over about 60 yarns.
   const float yarn_left = noise_left(1.6f * cells);
   const auto slub = [&](float yarn, float along_yarn, uint32_t seed) {

@@ -138,8 +138,8 @@ GLOAM_HD ProceduralSample procedural_tiles(const ProceduralDescription& d,
       const float half = 0.5f * d.gap, lo = cell.inner.value - 0.5f * width, hi = lo + width;
       const float joint = clamp(hi, -half, half) - clamp(lo, -half, half);
       const auto in_joint = [&](float x) { return fabsf(x) < half ? 1.0f : 0.0f; };
-      const Field here =
-          compose(cell.inner, 1.0f - joint / width, (in_joint(lo) - in_joint(hi)) / width);
+      const Field here = compose(cell.inner, 1.0f - clamp(joint / width, 0.0f, 1.0f),
+                                 (in_joint(lo) - in_joint(hi)) / width);
       return here * (1.0f - t) + mean * t;
     };
     tile = share(sharp).value;

@@ -15,12 +15,12 @@ GLOAM_HD ProceduralSample procedural_marble(const ProceduralDescription& d,
   const Noise wy = filtered_noise(at.p, {1.3f * f, 1.3f * f, 1.3f * f}, at.footprint, d.seed + 21u);
   const Vec3f bent = at.p + Vec3f{wx.field.value + 0.3f * wy.field.value, wy.field.value,
                                   wx.field.value - wy.field.value} *
-                                (0.22f * d.scale);
+                                (0.17f * d.scale);
   const float foot = 1.4f * at.footprint;  // warping packs the pattern closer
-  // The plane of the veins lies askew, and they run long along it.
-  const Vec3f leaning{bent.x * 0.8f + bent.y * 0.3f + bent.z * 0.5f,
-                      0.45f * (bent.y * 0.9f - bent.x * 0.3f),
-                      0.45f * (bent.z * 0.85f - bent.x * 0.5f)};
+  // Veins follow the bedding, which lies askew: they run long within it.
+  const Vec3f leaning{0.62f * bent.x + 0.48f * bent.y - 0.62f * bent.z,
+                      0.3f * (0.79f * bent.y - 0.61f * bent.x),
+                      0.3f * (0.48f * bent.x + 0.38f * bent.y + 0.79f * bent.z)};
   const Noise great = fbm(leaning, 0.8f * f, 3, 0.45f, foot, d.seed + 31u);
   const Noise small = fbm(leaning, 2.6f * f, 2, 0.5f, foot, d.seed + 41u);
   const auto band = [](const Noise& n, float half, float soft) {
@@ -30,9 +30,11 @@ GLOAM_HD ProceduralSample procedural_marble(const ProceduralDescription& d,
   const float sharp = band(great, 0.03f, 0.035f), halo = band(great, 0.1f, 0.3f);
   const float hair = band(small, 0.012f, 0.025f);
   const float cloud = 0.5f + 0.16f * small.field.value + 0.12f * wx.field.value;
+  // Veins come and go.
+  const float strength = d.amount * clamp(0.6f + 0.45f * wy.field.value, 0.0f, 1.3f);
   const float vein =
-      clamp(d.amount * (0.62f * sharp + 0.95f * halo + 0.42f * hair * (0.4f + halo * 3.0f)) +
-                0.22f * d.variation * cloud,
+      clamp(strength * (0.6f * sharp + 0.75f * halo + 0.3f * hair * (0.3f + 2.5f * halo)) +
+                0.3f * d.variation * cloud,
             0.0f, 1.0f);
   ProceduralSample s;
   s.base_color = lerp(d.color_a, d.color_b, vein);

@@ -91,7 +91,7 @@ GLOAM_HD ProceduralSample procedural_dirt(const ProceduralDescription& d,
       1.3f * splash + 0.6f * max(up, 0.0f) - 1.8f * clamp(at.convexity, -1.0f, 1.0f);
   // ±4 covers the noise: nothing at 0, everything at 1.
   const float level = lerp(-4.0f, 4.0f, d.amount) + exposure * 4.0f * d.amount * (1.0f - d.amount);
-  const float sigma = sqrtf(0.3f + ragged.lost);
+  const float sigma = sqrtf(0.8f + ragged.lost);
   ProceduralSample s;
   const Field cover = soft_step(ragged.field + level, sigma);
   s.mask = d.amount > 0 ? cover.value : 0.0f;

@@ -2,6 +2,7 @@
 // Wood cut from logs, solid or in boards. Device-safe.
 
 #include "render/kernel/procedural/pattern.h"
+#include "render/kernel/ray.h"
 
 namespace gloam {
 namespace woods {
@@ -33,8 +34,10 @@ GLOAM_HD LogPoint board(const ProceduralDescription& d, const ProceduralPoint& a
   u.value += shift;
   const patterns::Repeat piece = patterns::repeat(u.value, d.size_u);
   const uint32_t h = hash_cell(row.index, piece.index, 0x58, d.seed), g = mix_bits(h + 1u);
-  const float turn = 2.0f * kPi * hash_unit(h, 0), out = d.pith * (0.25f + 1.5f * hash_unit(h, 1));
-  const float c = cosf(turn), s = sinf(turn), v = row.offset - 0.5f * d.size_v;
+  const float out = d.pith * (0.25f + 1.5f * hash_unit(h, 1));
+  float s, c;
+  sincos_turn(hash_unit(h, 0), &s, &c);
+  const float v = row.offset - 0.5f * d.size_v;
   LogPoint log;
   log.q = {c * v - s * on.across + out, s * v + c * on.across,
            piece.offset + 30.0f * hash_unit(g, 0)};
@@ -89,7 +92,7 @@ GLOAM_HD ProceduralSample procedural_wood(const ProceduralDescription& d,
   // Good and bad years, over about five rings.
   const Noise years =
       filtered_noise({rings.value * 0.21f, 0, 0}, {1, 1, 1}, blur * 0.21f, d.seed + 5u);
-  const Noise fibre = fbm(q, {1100.0f, 1100.0f, 22.0f}, 2, 0.8f, foot, d.seed + 7u);
+  const Noise fibre = filtered_noise(q, {1400.0f, 1400.0f, 26.0f}, foot, d.seed + 7u);
   const Noise streak = filtered_noise(q, {150.0f, 150.0f, 2.2f}, foot, d.seed + 9u);
   const Noise pore = filtered_noise(q, {1700.0f, 1700.0f, 55.0f}, foot, d.seed + 10u);
   const float pore_sigma = sqrtf(0.12f + pore.lost);
