@@ -177,7 +177,8 @@ GLOAM_HD Noise sum_octaves(Vec3f p, Vec3f frequency, int octaves, float gain, fl
   weight = squares ? 1.0f / sqrtf(total) : 1.0f / total;
   Noise sum;
   for (int i = 0; i < octaves; ++i, weight *= gain, frequency *= 2.03f) {
-    const Noise n = filtered_noise(p, frequency, footprint, seed + static_cast<uint32_t>(i));
+    const Noise n =
+        filtered_noise(p, frequency, footprint, seed + 0x01000193u * static_cast<uint32_t>(i));
     sum.field = sum.field + shape(n) * weight;
     sum.lost += weight * weight * n.lost;
   }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 
 #include "base/rng.h"
@@ -68,9 +69,6 @@ TEST(Procedural, TheFootprintsValueIsTheMeanOverIt) {
       EXPECT_LT(std::sqrt(squares), 0.04) << c.name << ", " << width << " m";
       EXPECT_NEAR(bias, 0, 0.012) << c.name << ", " << width << " m";
       EXPECT_NEAR(rough, 0, 0.015) << c.name << ", " << width << " m";
-      if (getenv("GLOAM_PRINT"))
-        printf("%-22s w %6.4f rms %.4f bias %+.4f rough %+.4f\n", c.name, width, std::sqrt(squares),
-               bias, rough);
     }
   }
 }
@@ -90,9 +88,6 @@ TEST(Procedural, FarAwayOnlyTheMeanIsLeft) {
       }
       const double variance =
           std::max(0.0, squares / kPlaces - sqr(static_cast<float>(sum / kPlaces)));
-      if (getenv("GLOAM_PRINT"))
-        printf("%-22s w %8.4f mean %.4f sd %.4f\n", c.name, width, sum / kPlaces,
-               std::sqrt(variance));
       EXPECT_LE(variance, before * 1.05 + 1e-6) << c.name << ", " << width << " m";
       before = variance;
       if (width == 0) mean = sum / kPlaces;
@@ -126,8 +121,6 @@ TEST(Procedural, ReliefComesWithItsGradient) {
       std::sort(errors.begin(), errors.end());
       // One in ten may sit on a border, where slopes break.
       const double rms = std::sqrt(squares);
-      if (getenv("GLOAM_PRINT"))
-        printf("%-22s slope %.5f median %.5f 90%% %.5f\n", c.name, rms, errors[1000], errors[1800]);
       EXPECT_LT(errors[1800], 0.06 * rms + 2e-4) << c.name << ", footprint " << footprint;
     }
   }
@@ -143,7 +136,6 @@ TEST(Procedural, ReliefHasNoSteps) {
       if (i > 0) largest = max(largest, fabsf(h - before));
       before = h;
     }
-    if (getenv("GLOAM_PRINT")) printf("%-22s step %.2g\n", c.name, largest);
     EXPECT_LT(largest, c.d.kind == ProceduralKind::kWood ? 6e-5f : 1.9e-5f) << c.name;
   }
 }

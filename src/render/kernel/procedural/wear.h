@@ -66,7 +66,7 @@ GLOAM_HD ProceduralSample procedural_scratches(const ProceduralDescription& d,
     const float size = 1.0f - 0.2f * static_cast<float>(i);
     const wearing::Scratches l =
         wearing::layer(on, main + spread * kPi * d.variation, d.scale * size,
-                       0.09f * d.scale * size, d.gap * size, d.amount, at.footprint, seed);
+                       0.035f * d.scale * size, d.gap * size, d.amount, at.footprint, seed);
     clean *= 1.0f - min(l.share, 1.0f);
     s.relief = s.relief - l.groove * (d.depth * size);
   }
