@@ -41,7 +41,7 @@ GLOAM_HD float upwards(Vec3f n) {
 
 /// Albedo of a rough porous surface with albedo `a` under a film of water: light that it scatters
 /// is thrown back inside at the water's surface and absorbed again (Ångström 1925; Lekner and Dorf
-/// 1988, "Why some things are darker when wet", eq. 2): (1 - F)(1 - p) a / (1 - p a), with p = the
+/// 1988, "Why some things are darker when wet"): (1 - F)(1 - p) a / (1 - p a), with p = the
 /// share that diffuse light loses back inside at the surface n = 4/3 (0.474) and F the share
 /// reflected on entry, which the coat adds, so it is left out here. A film on the grains lets the
 /// light go in deeper: only `absorbed` of the effect is taken.
