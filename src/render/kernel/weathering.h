@@ -39,15 +39,19 @@ GLOAM_HD float upwards(Vec3f n) {
   return n2 > 1e-12f && n2 < 1e12f ? n.z / sqrtf(n2) : 1.0f;
 }
 
-/// Albedo of a rough porous surface with albedo `a` under a film of water: light that it scatters
-/// is thrown back inside at the water's surface and absorbed again (Ångström 1925; Lekner and Dorf
-/// 1988, "Why some things are darker when wet"): (1 - F)(1 - p) a / (1 - p a), with p = the
-/// share that diffuse light loses back inside at the surface n = 4/3 (0.474) and F the share
-/// reflected on entry, which the coat adds, so it is left out here. A film on the grains lets the
-/// light go in deeper: only `absorbed` of the effect is taken.
-GLOAM_HD float wet_albedo(float a, float absorbed) {
+/// Albedo of a porous surface of dry albedo `a` when water fills `pores` (0..1) of it. Two effects:
+/// between grains in water light scatters more forwards and goes deeper (Twomey, Bohren and
+/// Mergenthaler 1986, "Reflectance and albedo differences between wet and dry surfaces"), taken as
+/// half the scattering in Kubelka and Munk's K/S = (1 - a)² / 2a, which gives sands the measured
+/// half of their albedo; and what comes out is in part thrown back inside at the water's surface
+/// and absorbed anew (Lekner and Dorf 1988, "Why some things are darker when wet"): (1 - p) a / (1
+/// - p a), p = 0.474 for diffuse light inside n = 4/3. What the water reflects itself is the
+/// coat's.
+GLOAM_HD float wet_albedo(float a, float pores) {
   constexpr float kInside = 0.474f;
-  return lerp(a, a * (1.0f - kInside) / (1.0f - kInside * a), absorbed);
+  const float ratio = sqr(1.0f - a) / max(a, 1e-4f);  // K / S with half the scattering
+  const float deep = 1.0f / (1.0f + ratio + sqrtf(ratio * ratio + 2.0f * ratio));
+  return lerp(a, min(deep * (1.0f - kInside) / (1.0f - kInside * deep), a), pores);
 }
 
 }  // namespace weathering
