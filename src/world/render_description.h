@@ -13,6 +13,7 @@
 #include "geometry/mesh.h"
 #include "gloam/camera.h"
 #include "gloam/result.h"
+#include "world/procedural_description.h"
 #include "world/shape_type.h"
 
 namespace gloam {
@@ -52,6 +53,8 @@ struct MaterialDescription {
   Vec3f coat_color{1, 1, 1};  ///< of light that has gone in and out through the coat
   float fuzz_weight = 0, fuzz_roughness = 0.5f;
   Vec3f fuzz_color{1, 1, 1};
+  int pattern = -1, wear = -1;  ///< rows of RenderDescription::procedurals, in the geom's frame
+  float wetness = 0, porosity = 0.8f, dust = 0, snow = 0;  ///< 0..1
   TextureMapping mapping = TextureMapping::kNone;
   bool texture_uniform = false;  ///< MuJoCo's texuniform: repeats per metre, not per object
   Vec2f texture_repeat{1, 1};
@@ -145,6 +148,7 @@ struct RenderDescription {
   std::vector<DeformableDescription> deformables;
   std::vector<TextureDescription> textures;
   std::vector<MaterialDescription> materials;
+  std::vector<ProceduralDescription> procedurals;
   std::vector<InstanceDescription> instances;
   std::vector<HeightFieldDescription> height_fields;
   std::vector<LightDescription> lights;

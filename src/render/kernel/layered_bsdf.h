@@ -203,6 +203,7 @@ struct SurfaceParameters {
   Vec3f base_color;
   float metallic = 0, roughness = 0, f0 = 0, f90 = 0;
   bool outside = true;
+  float coat_weight = 0, coat_roughness = 0, coat_f0 = 0.04f, fuzz_weight = 0;
 };
 
 /// The layers `m` over `s`; `wo` in the shading frame, z > 0.
@@ -213,7 +214,7 @@ GLOAM_HD LayeredBsdf make_layered(const SceneView& scene, const MaterialLayers& 
   b.layered = true;
   b.under = {1, 1, 1};
   float a, f;
-  const float fuzz = m.fuzz_weight * (s.outside ? 1.0f : 0.0f);
+  const float fuzz = s.fuzz_weight * (s.outside ? 1.0f : 0.0f);
   float fuzz_albedo = 0;
   if (fuzz > 0) {
     b.fuzz = m.fuzz_color * fuzz;
@@ -222,17 +223,17 @@ GLOAM_HD LayeredBsdf make_layered(const SceneView& scene, const MaterialLayers& 
     b.under *= 1.0f - max_component(b.fuzz) * fuzz_albedo;
   }
   const Vec3f under_fuzz = b.under;
-  const float coat = m.coat_weight * (s.outside ? 1.0f : 0.0f);
+  const float coat = s.coat_weight * (s.outside ? 1.0f : 0.0f);
   float coat_albedo = 0;
   if (coat > 0) {
-    b.coat_alpha = ggx_widths(m.coat_roughness, 0.0f).x;
+    b.coat_alpha = ggx_widths(s.coat_roughness, 0.0f).x;
     b.coat_root = ggx::smith_root(Vec2f{b.coat_alpha, b.coat_alpha}, wo);
-    layer_albedo(table, m.coat_roughness, wo.z, &a, &f);
+    layer_albedo(table, s.coat_roughness, wo.z, &a, &f);
     const float single = max(a + f, 1e-3f);
-    const float gain = 1.0f + m.coat_f0 * (1.0f - single) / single;
-    coat_albedo = (m.coat_f0 * a + f) * gain;
+    const float gain = 1.0f + s.coat_f0 * (1.0f - single) / single;
+    coat_albedo = (s.coat_f0 * a + f) * gain;
     const float share = coat * gain * under_fuzz.x;  // fuzz dims all channels alike
-    b.coat_f0 = share * m.coat_f0;
+    b.coat_f0 = share * s.coat_f0;
     b.coat_f90 = share;
     b.under = b.under * lerp(Vec3f{1, 1, 1}, m.coat_color, coat) * (1.0f - coat * coat_albedo);
   }

@@ -3,6 +3,7 @@
 // them. Device-safe.
 
 #include "render/kernel/ray.h"
+#include "world/procedural_description.h"
 #include "world/render_description.h"
 
 namespace gloam {
@@ -68,6 +69,8 @@ struct MaterialLayers {
   Vec3f subsurface_color{1, 1, 1};
   float anisotropy = 0;
   float cos_rotation = 1, sin_rotation = 0;  ///< of the highlights' long axis from the tangent
+  int pattern = -1, wear = -1;               ///< rows of SceneView::procedurals
+  float wetness = 0, porosity = 0.8f, dust = 0, snow = 0;  ///< as in kernel/weathering.h
 };
 
 struct MaterialView {
@@ -190,6 +193,7 @@ struct SceneView {
   DeviceSpan<const Texel> texels;
   DeviceSpan<const LightView> lights;
   DeviceSpan<const MaterialLayers> layers;
+  DeviceSpan<const ProceduralDescription> procedurals;
   const AlbedoTable* albedo = nullptr;
   const GlassTable* glass = nullptr;  ///< where some material is glass
   LightGuide guide;

@@ -11,7 +11,8 @@ namespace {
 
 bool has_layers(const MaterialDescription& m) {
   return m.anisotropy > 0 || m.transmission_weight > 0 || m.subsurface_weight > 0 ||
-         m.coat_weight > 0 || m.fuzz_weight > 0;
+         m.coat_weight > 0 || m.fuzz_weight > 0 || m.pattern >= 0 || m.wear >= 0 || m.wetness > 0 ||
+         m.dust > 0 || m.snow > 0;
 }
 
 MaterialLayers layers_of(const MaterialDescription& in) {
@@ -45,6 +46,12 @@ MaterialLayers layers_of(const MaterialDescription& in) {
   out.anisotropy = clamp(in.anisotropy, 0.0f, 0.98f);
   out.cos_rotation = std::cos(2 * kPi * in.anisotropy_rotation);
   out.sin_rotation = std::sin(2 * kPi * in.anisotropy_rotation);
+  out.pattern = in.pattern;
+  out.wear = in.wear;
+  out.wetness = unit(in.wetness);
+  out.porosity = unit(in.porosity);
+  out.dust = unit(in.dust);
+  out.snow = unit(in.snow);
   return out;
 }
 

@@ -16,6 +16,12 @@ Status check_references(const RenderDescription& d) {
   const auto bad = [](std::string what) { return Error{ErrorKind::kInput, std::move(what)}; };
   const auto is_texture = [&](int t) { return t >= -1 && t < static_cast<int>(d.textures.size()); };
   for (const MaterialDescription& m : d.materials) {
+    for (const int row : {m.pattern, m.wear}) {
+      if (row < -1 || row >= static_cast<int>(d.procedurals.size())) {
+        return bad(
+            fmt::format("material '{}' refers to pattern {}, which does not exist", m.name, row));
+      }
+    }
     const MaterialTextures& t = m.textures;
     for (const int texture : {t.base_color, t.roughness, t.metallic, t.occlusion, t.orm, t.normal,
                               t.opacity, t.emission}) {
@@ -221,6 +227,7 @@ SceneView RenderScene::view_from(const Affine3f& X_WC) {
   view.texture_levels = span_of(textures_.levels);
   view.texels = span_of(textures_.texels);
   view.lights = span_of(lights_.lights());
+  view.procedurals = span_of(description_.procedurals);
   view.layers = span_of(materials_.layers());
   view.albedo = &albedo_;
   view.glass = glass_.get();

@@ -18,7 +18,11 @@ class LayeredBsdfTest : public testing::Test {
     fill_albedo_table(&tables_->albedo);
     fill_glass_table(&tables_->glass);
   }
-  static LayeredBsdf make(const MaterialLayers& m, const SurfaceParameters& s, Vec3f wo) {
+  static LayeredBsdf make(const MaterialLayers& m, SurfaceParameters s, Vec3f wo) {
+    s.coat_weight = m.coat_weight;
+    s.coat_roughness = m.coat_roughness;
+    s.coat_f0 = m.coat_f0;
+    s.fuzz_weight = m.fuzz_weight;
     SceneView view;
     view.albedo = &tables_->albedo;
     view.glass = &tables_->glass;

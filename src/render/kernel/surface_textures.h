@@ -1,0 +1,146 @@
+#pragma once
+// What a material's textures make of a surface. Device-safe.
+
+#include "render/kernel/shapes.h"
+#include "render/kernel/surface_point.h"
+#include "render/kernel/texture.h"
+#include "world/texture_coordinates.h"
+
+namespace gloam {
+
+namespace surfaces {
+
+struct TextureCoordinates {
+  Vec2f uv;
+  Vec3f direction_G;    ///< for cube textures
+  float footprint = 0;  ///< in texture lengths
+};
+
+/// Texture lengths per metre along the surface, the mean of both directions, repeats included.
+GLOAM_HD float texture_density(const InstanceView& instance, const MaterialView& material) {
+  const Vec3f size = instance.size, h = instance.half_size;
+  const bool uniform = material.texture_uniform;
+  Vec2f scale{0.5f, 0.5f};
+  switch (instance.shape) {
+    case ShapeType::kSphere:
+    case ShapeType::kEllipsoid:
+    case ShapeType::kCylinder:
+    case ShapeType::kCapsule: {
+      const bool round =
+          instance.shape == ShapeType::kSphere || instance.shape == ShapeType::kEllipsoid;
+      scale = {0.5f * kInvPi / h.x, round ? kInvPi / h.z : 0.5f / size.y};
+      if (uniform) scale = {scale.x * size.x, scale.y * size.x};
+      break;
+    }
+    case ShapeType::kPlane:
+    case ShapeType::kBox:
+    case ShapeType::kMesh:
+    case ShapeType::kDeformable:
+      if (!uniform && h.x > 0) scale.x /= h.x;
+      if (!uniform && h.y > 0) scale.y /= h.y;
+      break;
+  }
+  return sqrtf(scale.x * scale.y * material.texture_repeat.x * material.texture_repeat.y);
+}
+
+/// Where the hit lies on the material's textures, by the rules of world/texture_coordinates.h.
+/// `n_G` = unit geometric normal in the shape's frame.
+GLOAM_HD TextureCoordinates texture_coordinates(const SceneView& scene,
+                                                const InstanceView& instance,
+                                                const MaterialView& material, const RayHit& hit,
+                                                Vec3f p_G, Vec3f n_G, float width) {
+  TextureCoordinates out;
+  if (material.mapping == TextureMapping::kCube) {
+    out.direction_G =
+        texture_cube_direction(instance.shape, p_G, instance.size, material.texture_uniform);
+    const Vec3f h = instance.half_size;
+    const float reach = max(max_component(h), 1e-9f);
+    out.footprint = 0.5f * width * length(out.direction_G) / max(length(p_G), 1e-3f * reach) /
+                    max(length(out.direction_G), 1e-9f);
+    return out;
+  }
+  const bool has_uv = is_mesh(instance.shape) && !scene.meshes[instance.mesh].uvs.empty();
+  Vec2f uv;
+  float density = 0;
+  if (has_uv) {
+    const TriangleUv& t = scene.meshes[instance.mesh].uvs[hit.primitive];
+    uv = t.corner[0] * (1.0f - hit.u - hit.v) + t.corner[1] * hit.u + t.corner[2] * hit.v;
+    density = t.density * sqrtf(material.texture_repeat.x * material.texture_repeat.y);
+    if (material.texture_uniform) density *= sqrtf(instance.size.x * instance.size.y);
+  } else {
+    density = texture_density(instance, material);
+  }
+  out.uv = texture_uv(instance.shape, p_G, n_G, instance.size, uv, has_uv, material.texture_repeat,
+                      material.texture_uniform);
+  out.footprint = width * density;
+  return out;
+}
+
+GLOAM_HD Rgba lookup(const SceneView& scene, const MaterialView& material, int texture,
+                     const TextureCoordinates& at) {
+  return material.mapping == TextureMapping::kCube && scene.textures[texture].face_count == 6
+             ? lookup_cube(scene, texture, at.direction_G, at.footprint)
+             : lookup_2d(scene, texture, at.uv, at.footprint);
+}
+
+/// Tangents of increasing u and v in the frame G, not normalised; false where the map is singular.
+GLOAM_HD bool tangents(const SceneView& scene, const InstanceView& instance, const RayHit& hit,
+                       float time, Vec3f* tangent_u, Vec3f* tangent_v) {
+  if (!is_mesh(instance.shape)) {
+    *tangent_u = {1, 0, 0};
+    *tangent_v = {0, 1, 0};
+    return true;
+  }
+  const MeshView& mesh = scene.meshes[instance.mesh];
+  if (mesh.uvs.empty()) return false;
+  const uint32_t* index = mesh.indices.data + 3 * static_cast<size_t>(hit.primitive);
+  const Vec3f a = mesh_vertex(mesh, index[0], time);
+  const Vec3f e1 = mesh_vertex(mesh, index[1], time) - a;
+  const Vec3f e2 = mesh_vertex(mesh, index[2], time) - a;
+  const TriangleUv& t = mesh.uvs[hit.primitive];
+  const Vec2f d1 = t.corner[1] - t.corner[0], d2 = t.corner[2] - t.corner[0];
+  const float det = d1.x * d2.y - d2.x * d1.y;
+  if (fabsf(det) < 1e-12f) return false;
+  *tangent_u = (e1 * d2.y - e2 * d1.y) / det;
+  *tangent_v = (e2 * d1.x - e1 * d2.x) / det;
+  return true;
+}
+
+/// Of the surface `s` of an instance, at p_G in its frame.
+GLOAM_HD void apply_textures(const SceneView& scene, const InstanceView& instance,
+                             const RayHit& hit, const Affine3f& X_WG, Vec3f p_G, float width,
+                             float time, Surface* s) {
+  const Vec3f n_G = to_frame(X_WG, s->geometric);
+  const MaterialView& m = scene.materials[instance.material];
+  const MaterialTextures& map = m.textures;
+  const TextureCoordinates at = texture_coordinates(scene, instance, m, hit, p_G, n_G, width);
+  if (map.base_color >= 0) {
+    const Rgba texel = lookup(scene, m, map.base_color, at);
+    s->base_color *= texel.rgb;
+    s->emission *= texel.rgb;  // MuJoCo: emission is a share of the surface's own colour
+    s->opacity *= texel.a;
+  }
+  if (map.orm >= 0) {
+    const Vec3f orm = lookup(scene, m, map.orm, at).rgb;
+    s->roughness *= orm.y;
+    s->metallic *= orm.z;
+  }
+  if (map.roughness >= 0) s->roughness *= lookup(scene, m, map.roughness, at).rgb.x;
+  if (map.metallic >= 0) s->metallic *= lookup(scene, m, map.metallic, at).rgb.x;
+  if (map.opacity >= 0) s->opacity *= lookup(scene, m, map.opacity, at).rgb.x;
+  if (map.emission >= 0) s->emission *= lookup(scene, m, map.emission, at).rgb;
+  Vec3f u, v;
+  if (map.normal >= 0 && m.mapping == TextureMapping::kUv &&
+      tangents(scene, instance, hit, time, &u, &v)) {
+    const Vec3f n = lookup(scene, m, map.normal, at).rgb * 2.0f - Vec3f{1, 1, 1};
+    const Vec3f x = transform_vector(X_WG, u), y = transform_vector(X_WG, v), z = s->normal;
+    const Vec3f tx = x - z * dot(z, x), ty = y - z * dot(z, y);
+    if (length_squared(tx) > 0 && length_squared(ty) > 0) {
+      s->normal = normalize(normalize(tx) * n.x + normalize(ty) * n.y + z * max(n.z, 0.05f));
+    }
+  }
+}
+
+}  // namespace surfaces
+
+}  // namespace gloam
