@@ -9,7 +9,8 @@
 
 namespace gloam {
 
-/// Scattering and extinction [1/m] at one height.
+/// Scattering and extinction [1/m] at one height, light in the aerosol's forward peak left out of
+/// both: it goes on with the beam.
 struct AirAt {
   Bands rayleigh, aerosol, extinction;
 };
@@ -36,9 +37,11 @@ class Air {
   Air(double turbidity, double ground_albedo, double altitude);
 
   double ground() const { return ground_; }
-  /// Part of the sun's irradiance that reaches the radius r, the sun's zenith angle being `angle`
-  /// there [rad] and that of the horizon `horizon`.
+  /// Part of the sun's irradiance that reaches the radius r, straight or in the forward peak, the
+  /// sun's zenith angle being `angle` there [rad] and that of the horizon `horizon`.
   Bands sunlight(double r, double angle, double horizon) const;
+  /// The straight beam alone: what a surface gets from the sun's disc.
+  Bands beam(double r, double angle) const;
   double horizon(double r) const;
   /// A ray from the radius r with zenith cosine mu to the ground or out of the air.
   AirRay march(double r, double mu, int count) const;
@@ -58,7 +61,7 @@ class Air {
   Bands scattered_at(double r, double angle, const std::vector<AirRay>& rays) const;
 
   double ground_, albedo_;
-  Bands rayleigh_, aerosol_, aerosol_extinction_, ozone_;  ///< at unit density [1/m]
+  Bands rayleigh_, aerosol_, aerosol_extinction_, aerosol_peak_, ozone_;  ///< [1/m] at unit density
   std::vector<Bands> sunlight_;   ///< (kRadii x kCosines) of the whole sun, by column lengths
   std::vector<Bands> scattered_;  ///< (kHeights x kAngles)
   double first_angle_ = 0;
@@ -67,5 +70,9 @@ class Air {
 /// Phase functions [1/sr] of the angle's cosine between the sun's beam and the view.
 double rayleigh_phase(double cosine);
 double aerosol_phase(double cosine);
+/// For the first scattering, which has its peak: to go with AirStep::aerosol, which has not
+/// (Nakajima and Tanaka 1988, "Algorithms for radiative intensity calculations in moderately thick
+/// atmospheres using a truncation approximation").
+double single_aerosol_phase(double cosine);
 
 }  // namespace gloam

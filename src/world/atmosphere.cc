@@ -58,7 +58,7 @@ class Sky {
     air_.prepare_scattered(sun_angle_);
   }
 
-  Bands sun() const { return air_.sunlight(eye_, sun_angle_, air_.horizon(eye_)); }
+  Bands sun() const { return air_.beam(eye_, sun_angle_); }
 
   /// One per azimuth for views of the zenith cosine mu; `sky_light`: irradiance of level ground by
   /// the sky, per solar irradiance.
@@ -84,9 +84,8 @@ class Sky {
         }
       }
       if (!ray.meets_ground) continue;
-      const double angle = sun_angle(ray.length, air_.ground());
-      const float cosine = static_cast<float>(std::max(0.0, std::cos(angle)));
-      const Bands sun = air_.sunlight(air_.ground(), angle, M_PI / 2);
+      const float cosine = static_cast<float>(std::max(0.0, std::cos(sun_angle_)));
+      const Bands sun = this->sun();
       const float reflected = static_cast<float>(air_.ground_albedo() / M_PI);
       for (int b = 0; b < kBandCount; ++b) {
         parts.even[b] += ray.transmittance[b] * reflected * (cosine * sun[b] + sky_light[b]);
@@ -108,7 +107,7 @@ class Sky {
         const double ends = i == 0 || i == kAzimuths - 1 ? 0.5 : 1;
         const float w = static_cast<float>(2 * M_PI * ends / (kAzimuths - 1) * weight[k] * mu[k]);
         const float rayleigh = w * static_cast<float>(rayleigh_phase(cosine));
-        const float aerosol = w * static_cast<float>(aerosol_phase(cosine));
+        const float aerosol = w * static_cast<float>(single_aerosol_phase(cosine));
         const Parts& parts = rows[k][i];
         for (int b = 0; b < kBandCount; ++b) {
           sum[b] += rayleigh * parts.rayleigh[b] + aerosol * parts.aerosol[b] + w * parts.even[b];
@@ -182,7 +181,8 @@ Result<SkyLight> make_sky(const AtmosphereOptions& options) {
                             mu[row] * options.to_sun.z;
       const ColorParts parts = between(nodes, away / M_PI * (kAzimuths - 1));
       const Vec3f light = parts.rayleigh * static_cast<float>(rayleigh_phase(cosine)) +
-                          parts.aerosol * static_cast<float>(aerosol_phase(cosine)) + parts.even;
+                          parts.aerosol * static_cast<float>(single_aerosol_phase(cosine)) +
+                          parts.even;
       out.texels[static_cast<size_t>(row) * out.width + column] =
           at_least_zero(light) + Vec3f{night, night, night};
     }

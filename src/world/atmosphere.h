@@ -3,7 +3,10 @@
 // atmosphere; the first scattering is integrated exactly along every ray with the sun's beam
 // attenuated by all three, all further ones come from the mean radiance at each height by the
 // closure of Hillaire 2020, "A scalable and production ready sky and atmosphere rendering
-// technique" (isotropic, light from the ground included), in sixteen bands of wavelength.
+// technique" (isotropic, light from the ground included; a part of the aerosol's forward peak stays
+// with the beam), in sixteen bands of wavelength. Against path tracing of the same air, luminance
+// is within a tenth at turbidity 2 (within a third beside a sun on the horizon and in twilight),
+// within a third at turbidity 5 (half beside a set sun).
 //
 // The model: molecules of the U.S. Standard Atmosphere 1976; 300 Dobson units of ozone in a
 // triangle from 10 to 40 km; aerosol of scale height 1.2 km, Ångström exponent 1.3,

@@ -92,7 +92,7 @@ TEST(Atmosphere, BeamFollowsBeersLaw) {
   };
   for (const Mass m :
        {Mass{90, 1, 0.002}, Mass{60, 1.154, 0.005}, Mass{30, 1.994, 0.01}, Mass{10, 5.586, 0.03}}) {
-    const Bands sun = air.sunlight(air.ground(), (90 - m.elevation) * kDegree, M_PI / 2);
+    const Bands sun = air.beam(air.ground(), (90 - m.elevation) * kDegree);
     for (int b = 0; b < kBandCount; ++b) {
       const double nm = kFirstBand + kBandWidth * b;
       const double molecules = rayleigh_cross_section(nm) * kMolecules * kMoleculeColumn;
