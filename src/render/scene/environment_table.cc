@@ -108,7 +108,8 @@ double running_sum(const double* weights, int n, float* out) {
   for (int i = 0; i < n; ++i) padded += weights[i] > 0 ? weights[i] + least : 0;
   double sum = 0;
   for (int i = 0; i < n; ++i) {
-    out[i] = total > 0 ? static_cast<float>(sum / padded) : static_cast<float>(static_cast<double>(i) / n);
+    out[i] = total > 0 ? static_cast<float>(sum / padded)
+                       : static_cast<float>(static_cast<double>(i) / n);
     sum += weights[i] > 0 ? weights[i] + least : 0;
   }
   // From the last light on: 1 exactly, so that no draw falls on the dark end.

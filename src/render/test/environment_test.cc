@@ -239,6 +239,18 @@ TEST(Environment, OneBrightTexelIsFound) {
   EXPECT_LT(std::sqrt(rest.variance / kMany), 0.1 * band);
 }
 
+TEST(Environment, FaintTexelsBesideASunAreStillDrawn) {
+  std::vector<Vec3f> texels(256 * 128, Vec3f{1e-6f, 1e-6f, 1e-6f});
+  texels[40 * 256 + 3] = {1e12f, 1e12f, 1e12f};
+  const EnvironmentTable table = table_of(256, 128, texels);
+  const EnvironmentView map = table.view(kUpright, 1);
+  for (uint32_t i = 0; i < 20000; ++i) {
+    const Vec2f u = random_2d(i);
+    const Vec3f d = direction(std::acos(1 - 2.0 * u.x), 2 * M_PI * u.y);
+    ASSERT_GT(environment_pdf(map, d), 0);
+  }
+}
+
 TEST(Environment, PolesAreSampledAndFinite) {
   std::vector<Vec3f> texels(64 * 40, Vec3f{0, 0, 0});
   for (int column = 0; column < 64; ++column) {
