@@ -2,7 +2,7 @@
 // What the kernel reads: plain arrays in the memory of the side that runs it. render/scene fills
 // them. Device-safe.
 
-#include "render/kernel/ray.h"
+#include "render/kernel/medium_view.h"
 #include "world/render_description.h"
 
 namespace gloam {
@@ -159,6 +159,7 @@ struct SceneView {
   DeviceSpan<const LightView> lights;
   const AlbedoTable* albedo = nullptr;
   LightGuide guide;
+  MediaView media;
   int sky_texture = -1;
   float sky_scale = 0;
   Vec3f sky_ambient;             ///< for indirect rays

@@ -1,0 +1,177 @@
+#include "render/scene/volume_store.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cfloat>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "render/scene/black_body.h"
+
+namespace gloam {
+namespace {
+
+int cells_along(int voxels) { return (voxels + kBoundsVoxels - 1) / kBoundsVoxels; }
+
+bool is_amount(float x) { return x >= 0 && x <= FLT_MAX; }
+
+/// Bounds of the voxels that trilinear lookups in the cells of one row read. False if some value is
+/// no amount. Works along x in chunks, so that the room for it is on the stack.
+bool bound_row(const VolumeView& v, const float* grid, int cell_y, int cell_z,
+               DensityBounds* cells) {
+  constexpr int kCells = 32, kRoom = kCells * kBoundsVoxels + 2;
+  const int y0 = std::max(cell_y * kBoundsVoxels - 1, 0);
+  const int y1 = std::min((cell_y + 1) * kBoundsVoxels, v.ny - 1);
+  const int z0 = std::max(cell_z * kBoundsVoxels - 1, 0);
+  const int z1 = std::min((cell_z + 1) * kBoundsVoxels, v.nz - 1);
+  int bad = 0;
+  for (int first = 0; first < v.cells_x; first += kCells) {
+    const int last = std::min(first + kCells, v.cells_x);
+    const int x0 = std::max(first * kBoundsVoxels - 1, 0);
+    const int x1 = std::min(last * kBoundsVoxels, v.nx - 1);
+    float low[kRoom], high[kRoom];
+    std::fill(low, low + kRoom, FLT_MAX);
+    std::fill(high, high + kRoom, 0.0f);
+    for (int z = z0; z <= z1; ++z) {
+      for (int y = y0; y <= y1; ++y) {
+        const float* row = grid + (static_cast<size_t>(z) * v.ny + y) * v.nx + x0;
+        for (int x = 0; x <= x1 - x0; ++x) {
+          low[x] = min(low[x], row[x]);
+          high[x] = max(high[x], row[x]);
+          bad |= !is_amount(row[x]);
+        }
+      }
+    }
+    for (int cell = first; cell < last; ++cell) {
+      const int from = std::max(cell * kBoundsVoxels - 1, 0) - x0;
+      const int to = std::min((cell + 1) * kBoundsVoxels, v.nx - 1) - x0;
+      cells[cell] = {v.fade > 0 ? 0.0f : *std::min_element(low + from, low + to + 1),
+                     *std::max_element(high + from, high + to + 1)};
+    }
+  }
+  return bad == 0;
+}
+
+/// False if some density is no amount.
+bool bound_cells(const VolumeView& v, const float* grid, std::vector<DensityBounds>* cells) {
+  std::atomic<bool> good = true;
+  parallel_for("volumes", static_cast<int64_t>(v.cells_y) * v.cells_z, [&](int64_t row) {
+    const int y = static_cast<int>(row % v.cells_y), z = static_cast<int>(row / v.cells_y);
+    if (!bound_row(v, grid, y, z, cells->data() + row * v.cells_x)) good = false;
+  });
+  return good;
+}
+
+bool holds_amounts(const std::vector<float>& grid) {
+  std::atomic<bool> good = true;
+  constexpr int64_t kGrain = 1 << 18;
+  parallel_for_range("volumes", static_cast<int64_t>(grid.size()), kGrain,
+                     [&](int64_t begin, int64_t end) {
+                       int bad = 0;
+                       for (int64_t i = begin; i < end; ++i) bad |= !is_amount(grid[i]);
+                       if (bad != 0) good = false;
+                     });
+  return good;
+}
+
+Error refuse_value(const VolumeDescription& volume, const std::vector<float>& grid,
+                   const char* what) {
+  const size_t i = std::find_if_not(grid.begin(), grid.end(), is_amount) - grid.begin();
+  const size_t nx = static_cast<size_t>(volume.nx), ny = static_cast<size_t>(volume.ny);
+  return {ErrorKind::kInput,
+          fmt::format("volume '{}' has a {} of {} in voxel ({}, {}, {}); it must be 0 or more",
+                      volume.name, what, grid[i], i % nx, i / nx % ny, i / nx / ny)};
+}
+
+template <class T>
+DeviceSpan<const T> span_of(const std::vector<T>& v) {
+  return {v.data(), static_cast<uint32_t>(v.size())};
+}
+
+VolumeView place(const VolumeDescription& in, VolumeView out) {
+  out.nx = in.nx;
+  out.ny = in.ny;
+  out.nz = in.nz;
+  // Even fields need no voxels, whatever their number.
+  if (!in.density && !in.temperature) out.nx = out.ny = out.nz = 1;
+  const Vec3f n{static_cast<float>(out.nx), static_cast<float>(out.ny),
+                static_cast<float>(out.nz)};
+  out.voxel = {in.size.x / n.x, in.size.y / n.y, in.size.z / n.z};
+  const Affine3f X_VG{{out.voxel.x, 0, 0}, {0, out.voxel.y, 0}, {0, 0, out.voxel.z},
+                      in.size * -0.5f};
+  out.X_GW = inverse(in.X_WV * X_VG);
+  out.cells_x = cells_along(out.nx);
+  out.cells_y = cells_along(out.ny);
+  out.cells_z = cells_along(out.nz);
+  out.even_density = in.even_density;
+  out.even_temperature = in.even_temperature;
+  out.fade = in.fade;
+  return out;
+}
+
+}  // namespace
+
+Result<VolumeStore> VolumeStore::make(const std::vector<MediumDescription>& media,
+                                      const std::vector<VolumeDescription>& volumes) {
+  for (const MediumDescription& medium : media) GLOAM_TRY_STATUS(check_medium(medium));
+  if (volumes.size() > kMaxVolumes) {
+    return Error{ErrorKind::kInput,
+                 fmt::format("the scene has {} volumes of participating media; the limit is {}",
+                             volumes.size(), kMaxVolumes),
+                 {},
+                 "join volumes of the same medium into one grid"};
+  }
+  VolumeStore store;
+  store.views_.resize(volumes.size());
+  store.fields_.resize(volumes.size());
+  if (!volumes.empty()) store.black_body_ = make_black_body_table();
+  for (size_t i = 0; i < volumes.size(); ++i) {
+    GLOAM_TRY_STATUS(check_volume(volumes[i], media.size()));
+    const MediumDescription& medium = media[static_cast<size_t>(volumes[i].medium)];
+    VolumeView& view = store.views_[i];
+    std::copy(medium.mass_extinction.begin(), medium.mass_extinction.end(), view.mass_extinction);
+    std::copy(medium.albedo.begin(), medium.albedo.end(), view.albedo);
+    std::copy(medium.g.begin(), medium.g.end(), view.g);
+    view.emission = medium.emission;
+    GLOAM_TRY_STATUS(store.replace(i, volumes[i]));
+  }
+  return store;
+}
+
+Status VolumeStore::replace(size_t volume, const VolumeDescription& with) {
+  GLOAM_CHECK(volume < views_.size(), "there is no such volume");
+  GLOAM_TRY_STATUS(check_volume(with, static_cast<size_t>(with.medium) + 1));
+  VolumeView& old = views_[volume];
+  Fields& fields = fields_[volume];
+  VolumeView view = place(with, old);
+  const bool same_bounds = !fields.cells.empty() && with.density == fields.density &&
+                           view.nx == old.nx && view.ny == old.ny && view.nz == old.nz &&
+                           view.fade == old.fade && view.even_density == old.even_density;
+  if (!same_bounds) {
+    fields.spare.resize(static_cast<size_t>(view.cells_x) * view.cells_y * view.cells_z);
+    if (!with.density) {
+      std::fill(fields.spare.begin(), fields.spare.end(),
+                DensityBounds{view.fade > 0 ? 0.0f : view.even_density, view.even_density});
+    } else if (!bound_cells(view, with.density->data(), &fields.spare)) {
+      return refuse_value(with, *with.density, "density");
+    }
+  }
+  if (with.temperature && with.temperature != fields.temperature &&
+      !holds_amounts(*with.temperature)) {
+    return refuse_value(with, *with.temperature, "temperature");
+  }
+  if (!same_bounds) fields.cells.swap(fields.spare);
+  fields.density = with.density;
+  fields.temperature = with.temperature;
+  view.cells = span_of(fields.cells);
+  view.density = with.density ? span_of(*with.density) : DeviceSpan<const float>{};
+  view.temperature = with.temperature ? span_of(*with.temperature) : DeviceSpan<const float>{};
+  old = view;
+  return {};
+}
+
+MediaView VolumeStore::view() const { return {span_of(views_), {span_of(black_body_)}}; }
+
+}  // namespace gloam
