@@ -131,11 +131,11 @@ GLOAM_HD Vec3f transmittance(const MediaView& media, const Ray& ray, float tmax,
     if (!(k_max > 0) || !walk.start(volume, ray, tmax)) continue;
     const Vec3f share = k / k_max;
     float mass = 0;  // per area, of the lower bounds [kg/m²]
-    float t = 0, wanted = -1;  // optical depth between the bounds to the next collision
+    float t = 0, wanted = 0;  // optical depth between the bounds to the next collision
     do {
       const float low = walk.low(), range = walk.high() - low, rate = k_max * range;
       mass += low * (walk.to() - t);
-      if (wanted < 0 && rate > 0) wanted = -logf(1.0f - random.next());
+      if (wanted <= 0 && rate > 0) wanted = -logf(1.0f - random.next());
       while (rate * (walk.to() - t) > wanted) {
         t += wanted / rate;
         wanted = -logf(1.0f - random.next());
@@ -148,7 +148,7 @@ GLOAM_HD Vec3f transmittance(const MediaView& media, const Ray& ray, float tmax,
           passed *= kRoulette / most;
         }
       }
-      if (rate > 0) wanted = max(wanted - rate * (walk.to() - t), 0.0f);
+      wanted -= rate * (walk.to() - t);
       t = walk.to();
     } while (walk.advance());
     passed *= media::exp_of(k * -mass);
