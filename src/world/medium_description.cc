@@ -79,8 +79,8 @@ Status check_volume(const VolumeDescription& volume, size_t media) {
     return bad_input(fmt::format("volume '{}' has a pose that is not rigid", volume.name));
   }
   const auto bad = [&](const char* what, float value) {
-    return bad_input(fmt::format("volume '{}' has a {} of {}; it must be 0 or more", volume.name,
-                                 what, value));
+    return bad_input(
+        fmt::format("volume '{}' has a {} of {}; it must be 0 or more", volume.name, what, value));
   };
   const auto is_amount = [](float x) { return x >= 0 && std::isfinite(x); };
   if (!is_amount(volume.even_density)) return bad("density", volume.even_density);

@@ -34,16 +34,16 @@ using VolumeGrid = std::shared_ptr<const std::vector<float>>;
 /// Volumes of more voxels than this are refused (1 GiB of floats).
 inline constexpr uint64_t kMaxVolumeVoxels = uint64_t{1} << 28;
 
-/// A box that holds a medium; between voxels the field is trilinear, and constant from the outermost
-/// voxels' centres to the walls.
+/// A box that holds a medium; between voxels the field is trilinear, and constant from the
+/// outermost voxels' centres to the walls.
 struct VolumeDescription {
   std::string name;
-  int medium = 0;         ///< row of the media
-  Affine3f X_WV;          ///< rigid; V sits at the centre of the box
-  Vec3f size{1, 1, 1};    ///< edges of the box [m]
+  int medium = 0;       ///< row of the media
+  Affine3f X_WV;        ///< rigid; V sits at the centre of the box
+  Vec3f size{1, 1, 1};  ///< edges of the box [m]
   int nx = 1, ny = 1, nz = 1;
-  VolumeGrid density;     ///< [kg/m³], >= 0; null = even_density everywhere
-  VolumeGrid temperature; ///< [K], >= 0; null = even_temperature everywhere
+  VolumeGrid density;            ///< [kg/m³], >= 0; null = even_density everywhere
+  VolumeGrid temperature;        ///< [K], >= 0; null = even_temperature everywhere
   float even_density = 0;        ///< [kg/m³]
   float even_temperature = 293;  ///< [K]
   float fade = 0;  ///< the density falls smoothly to zero over this distance from the walls [m]
@@ -51,8 +51,8 @@ struct VolumeDescription {
 
 /// Errors: values that are not finite or outside their range.
 Status check_medium(const MediumDescription& medium);
-/// Errors: sizes that are not positive, too many voxels, grids that do not hold one value per voxel.
-/// The values themselves are checked where they are read.
+/// Errors: sizes that are not positive, too many voxels, grids that do not hold one value per
+/// voxel. The values themselves are checked where they are read.
 Status check_volume(const VolumeDescription& volume, size_t media);
 /// To be asked before memory for a grid is.
 Status check_volume_voxels(const std::string& name, int64_t nx, int64_t ny, int64_t nz);

@@ -33,10 +33,10 @@ class WalkRandom {
 
 /// What became of a ray on its way to tmax.
 struct MediumEvent {
-  float t = 0;          ///< distance at which it is scattered, or tmax [m]
-  int volume = -1;      ///< row of the volume that scatters it; -1 = it arrives
-  Vec3f weight;         ///< per band, of the light that comes from there
-  Vec3f emission;       ///< what the media on the way send back along the ray [cd/m²]
+  float t = 0;      ///< distance at which it is scattered, or tmax [m]
+  int volume = -1;  ///< row of the volume that scatters it; -1 = it arrives
+  Vec3f weight;     ///< per band, of the light that comes from there
+  Vec3f emission;   ///< what the media on the way send back along the ray [cd/m²]
 };
 
 namespace media {
@@ -130,7 +130,7 @@ GLOAM_HD Vec3f transmittance(const MediaView& media, const Ray& ray, float tmax,
     const float k_max = max_component(k);
     if (!(k_max > 0) || !walk.start(volume, ray, tmax)) continue;
     const Vec3f share = k / k_max;
-    float mass = 0;  // per area, of the lower bounds [kg/m²]
+    float mass = 0;           // per area, of the lower bounds [kg/m²]
     float t = 0, wanted = 0;  // optical depth between the bounds to the next collision
     do {
       const float low = walk.low(), range = walk.high() - low, rate = k_max * range;

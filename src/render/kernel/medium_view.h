@@ -52,7 +52,8 @@ struct BlackBodyTable {
   /// Darkness below kLow (there it is under 0.01 cd/m²); above kHigh as there.
   GLOAM_HD Vec3f at(float temperature) const {
     if (!(temperature >= kLow) || luminance.empty()) return {};
-    const float x = (1 / kLow - 1 / min(temperature, kHigh)) * ((kSize - 1) / (1 / kLow - 1 / kHigh));
+    const float x =
+        (1 / kLow - 1 / min(temperature, kHigh)) * ((kSize - 1) / (1 / kLow - 1 / kHigh));
     const int i = static_cast<int>(min(x, kSize - 2.0f));
     return lerp(luminance[i], luminance[i + 1], x - static_cast<float>(i));
   }

@@ -64,9 +64,9 @@ class CellWalk {
   }
 
   GLOAM_HD const VolumeView& volume() const { return *volume_; }
-  GLOAM_HD float low() const { return low_; }    ///< bounds of the density here [kg/m³]
+  GLOAM_HD float low() const { return low_; }  ///< bounds of the density here [kg/m³]
   GLOAM_HD float high() const { return high_; }
-  GLOAM_HD float to() const { return to_; }  ///< distance at which the cell ends [m]
+  GLOAM_HD float to() const { return to_; }    ///< distance at which the cell ends [m]
   GLOAM_HD float end() const { return end_; }  ///< distance at which the ray leaves the box [m]
 
  private:

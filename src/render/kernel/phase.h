@@ -33,32 +33,34 @@ GLOAM_HD int draw_band(Vec3f shares, float u) {
   return shares.z > 0 ? 2 : 0;  // never a band without a share, however the sum is rounded
 }
 
-/// Per band [1/sr]. `pdf`: of sample_phase().
-GLOAM_HD Vec3f eval_phase(const VolumeView& volume, Bands bands, Vec3f shares, float cosine,
+/// Per band [1/sr]. `pdf`: of sample_phase() with the same throughput.
+GLOAM_HD Vec3f eval_phase(const VolumeView& volume, Bands bands, Vec3f throughput, float cosine,
                           float* pdf) {
   const Vec3f g = bands.of(volume.g);
   const Vec3f p{henyey_greenstein(g.x, cosine), henyey_greenstein(g.y, cosine),
                 henyey_greenstein(g.z, cosine)};
-  *pdf = dot(shares, p);
+  *pdf = dot(band_shares(throughput), p);
   return p;
 }
 
 struct PhaseSample {
-  Vec3f wi;      ///< where the path goes on, unit
-  float pdf = 0; ///< [1/sr]
-  Vec3f weight;  ///< phase / pdf, per band
+  Vec3f wi;       ///< where the path goes on, unit
+  float pdf = 0;  ///< [1/sr]
+  Vec3f weight;   ///< phase / pdf, per band
 };
 
-/// `d`: direction of flight before, unit.
-GLOAM_HD PhaseSample sample_phase(const VolumeView& volume, Bands bands, Vec3f shares, Vec3f d,
+/// `d`: direction of flight before, unit. `throughput`: of the path as it is scattered, the weight
+/// of sample_distance() included.
+GLOAM_HD PhaseSample sample_phase(const VolumeView& volume, Bands bands, Vec3f throughput, Vec3f d,
                                   float u_band, Vec2f u) {
   PhaseSample sample;
-  const float z = sample_henyey_greenstein(bands.of(volume.g)[draw_band(shares, u_band)], u.x);
+  const int band = draw_band(band_shares(throughput), u_band);
+  const float z = sample_henyey_greenstein(bands.of(volume.g)[band], u.x);
   const float r = safe_sqrt(1.0f - z * z);
   float s, c;
   sincos_turn(u.y, &s, &c);
   sample.wi = Frame::from_z(d).to_world({r * c, r * s, z});
-  const Vec3f p = eval_phase(volume, bands, shares, z, &sample.pdf);
+  const Vec3f p = eval_phase(volume, bands, throughput, z, &sample.pdf);
   sample.weight = p / sample.pdf;
   return sample;
 }

@@ -96,11 +96,10 @@ VolumeView place(const VolumeDescription& in, VolumeView out) {
   out.nz = in.nz;
   // Even fields need no voxels, whatever their number.
   if (!in.density && !in.temperature) out.nx = out.ny = out.nz = 1;
-  const Vec3f n{static_cast<float>(out.nx), static_cast<float>(out.ny),
-                static_cast<float>(out.nz)};
+  const Vec3f n{static_cast<float>(out.nx), static_cast<float>(out.ny), static_cast<float>(out.nz)};
   out.voxel = {in.size.x / n.x, in.size.y / n.y, in.size.z / n.z};
-  const Affine3f X_VG{{out.voxel.x, 0, 0}, {0, out.voxel.y, 0}, {0, 0, out.voxel.z},
-                      in.size * -0.5f};
+  const Affine3f X_VG{
+      {out.voxel.x, 0, 0}, {0, out.voxel.y, 0}, {0, 0, out.voxel.z}, in.size * -0.5f};
   out.X_GW = inverse(in.X_WV * X_VG);
   out.cells_x = cells_along(out.nx);
   out.cells_y = cells_along(out.ny);

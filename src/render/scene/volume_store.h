@@ -1,5 +1,6 @@
 #pragma once
-// Volumes as the kernel reads them: their grids as they were handed over, and bounds of the density.
+// Volumes as the kernel reads them: their grids as they were handed over, and bounds of the
+// density.
 
 #include <vector>
 

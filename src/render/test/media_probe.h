@@ -88,8 +88,8 @@ struct RaySums {
 };
 
 /// Midpoint rule in small steps over what medium_at() says.
-inline RaySums integrate_ray(const MediaView& media, const Ray& ray, float tmax,
-                             Bands bands = {}, int steps = 40000) {
+inline RaySums integrate_ray(const MediaView& media, const Ray& ray, float tmax, Bands bands = {},
+                             int steps = 40000) {
   RaySums sums;
   const double dt = static_cast<double>(tmax) / steps;
   for (int i = 0; i < steps; ++i) {

@@ -77,8 +77,8 @@ TEST(Medium, EvenMediaFollowBeerLambertExactly) {
 TEST(Medium, GridOfEqualValuesIsAnEvenMedium) {
   MediaBuilder even, grid;
   for (MediaBuilder* b : {&even, &grid}) {
-    VolumeDescription& v = b->add_box({2, 1, 0.6f}, {0.1f, 0, 0}, 0.9f,
-                                      b->add_medium({4, 2.5f, 1}, {0.5f, 0.9f, 1}));
+    VolumeDescription& v =
+        b->add_box({2, 1, 0.6f}, {0.1f, 0, 0}, 0.9f, b->add_medium({4, 2.5f, 1}, {0.5f, 0.9f, 1}));
     v.X_WV = rigid(normalize(Vec3f{1, 2, 0.5f}), 0.7f, {0.1f, 0, 0});
     if (b == &even) continue;
     v.nx = 37;
@@ -165,8 +165,7 @@ TEST(Medium, FreePathsAreUnbiasedPerBand) {
       Mean passed[3], scattered[3], emission[3];
       for (uint32_t i = 0; i < 60000; ++i) {
         Sampler s = independent(i, 1);
-        const MediumEvent e =
-            sample_distance(store.view(), c.ray, c.tmax, {}, throughput, &s);
+        const MediumEvent e = sample_distance(store.view(), c.ray, c.tmax, {}, throughput, &s);
         EXPECT_LT(dot(shares, e.weight), 1.0001f);
         for (int k = 0; k < 3; ++k) {
           passed[k].add(e.volume < 0 ? e.weight[k] : 0);
@@ -202,8 +201,8 @@ TEST(Medium, FreePathsFollowTheirDensity) {
   std::vector<double> expected(kBins + 1), observed(kBins + 1);
   double before = 1;
   for (int i = 0; i < kBins; ++i) {
-    const double after =
-        integrate_ray(store.view(), ray, kFar * (i + 1) / kBins, {}, 500 * (i + 1)).transmittance[0];
+    const double after = integrate_ray(store.view(), ray, kFar * (i + 1) / kBins, {}, 500 * (i + 1))
+                             .transmittance[0];
     expected[i] = (before - after) * kDraws;
     before = after;
   }
@@ -229,9 +228,9 @@ TEST(Medium, MarchingConvergesToTheQuadrature) {
   const VolumeStore store = three_volumes().build();
   for (const RayCase& c : rays_through()) {
     const RaySums expected = integrate_ray(store.view(), c.ray, min(c.tmax, 5));
-    const MarchResult m = march(
-        store.view(), c.ray, c.tmax, 0.05f, 1000, {},
-        [](const MediumPoint& p, Vec3f, float) { return p.scattering * 100.0f; });
+    const MarchResult m =
+        march(store.view(), c.ray, c.tmax, 0.05f, 1000, {},
+              [](const MediumPoint& p, Vec3f, float) { return p.scattering * 100.0f; });
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(m.transmittance[k], expected.transmittance[k],
                   0.02 * expected.transmittance[k] + 1e-3)
