@@ -13,22 +13,16 @@ namespace gloam {
 /// that what comes after keeps its place in the sequence.
 class WalkRandom {
  public:
-  GLOAM_HD explicit WalkRandom(Sampler* sampler) : sampler_(sampler) {}
+  GLOAM_HD explicit WalkRandom(Vec2f u)
+      : state_(mix_bits(static_cast<uint32_t>(u.x * 0x1p24f))),
+        step_(mix_bits(static_cast<uint32_t>(u.y * 0x1p24f) ^ 0x9E3779B9u) | 1u) {}
   GLOAM_HD float next() {
-    if (step_ == 0) start();
     state_ += step_;
     return static_cast<float>(mix_bits(state_) >> 8) * 0x1p-24f;
   }
 
  private:
-  GLOAM_HD void start() {
-    const Vec2f u = sampler_->next_2d();
-    state_ = mix_bits(static_cast<uint32_t>(u.x * 0x1p24f));
-    step_ = mix_bits(static_cast<uint32_t>(u.y * 0x1p24f) ^ 0x9E3779B9u) | 1u;
-  }
-
-  Sampler* sampler_;
-  uint32_t state_ = 0, step_ = 0;  ///< step_ 0 = nothing was drawn yet
+  uint32_t state_, step_;
 };
 
 /// What became of a ray on its way to tmax.
@@ -49,9 +43,10 @@ GLOAM_HD Vec3f exp_of(Vec3f x) { return {expf(x.x), expf(x.y), expf(x.z)}; }
 /// `throughput`; `weight` is the balance heuristic's over the three that might have made them
 /// (Miller et al. 2019, "A null-scattering path integral formulation of light transport"), so
 /// dot(shares, weight) <= 1. Per density, null collisions are as likely in every band, so that
-/// their probabilities drop out of it.
+/// their probabilities drop out of it. `u`: for the band and the first distance, [0, 1)²; well
+/// spread points pay there. `random`: for all else.
 GLOAM_HD MediumEvent sample_distance(const MediaView& media, const Ray& ray, float tmax,
-                                     Bands bands, Vec3f throughput, Sampler* sampler) {
+                                     Bands bands, Vec3f throughput, Vec2f u, WalkRandom random) {
   MediumEvent event;
   event.t = tmax;
   event.weight = {1, 1, 1};
@@ -59,11 +54,9 @@ GLOAM_HD MediumEvent sample_distance(const MediaView& media, const Ray& ray, flo
   if (walk.is_over()) return event;
 
   const Vec3f shares = band_shares(throughput);
-  const Vec2f first = sampler->next_2d();
-  WalkRandom random(sampler);
-  const int hero = draw_band(shares, first.x);
-  float wanted = -logf(1.0f - first.y);  // optical depth of bounds to the next collision
-  Vec3f excess;                          // optical depth of bounds since the last, over the hero's
+  const int hero = draw_band(shares, u.x);
+  float wanted = -logf(1.0f - u.y);  // optical depth of bounds to the next collision
+  Vec3f excess;                      // optical depth of bounds since the last, over the hero's
   float t = 0;
   const auto settle = [&](Vec3f factor) {
     const Vec3f q = event.weight * media::exp_of(-excess) * factor;
@@ -91,16 +84,16 @@ GLOAM_HD MediumEvent sample_distance(const MediaView& media, const Ray& ray, flo
       const VolumeView& volume = walk[i].volume();
       const float high = walk[i].high(), low = walk[i].low();
       settle(bands.of(volume.mass_extinction));
-      const float u = random.next() * high;
+      const float drawn = random.next() * high;
       const bool glows = volume.emission > 0;
       const Vec3f p_G = transform_point(volume.X_GW, ray.o + ray.d * t);
-      const float density = u < low && !glows ? low : media::density_at(volume, p_G);
+      const float density = drawn < low && !glows ? low : media::density_at(volume, p_G);
       const Vec3f albedo = bands.of(volume.albedo);
       if (glows) {
         event.emission += event.weight * (Vec3f{1, 1, 1} - albedo) *
                           media::glow_at(media, volume, p_G, bands) * (density / high);
       }
-      if (u < density) {
+      if (drawn < density) {
         event.t = t;
         event.volume = static_cast<int>(&volume - media.volumes.data);
         event.weight *= albedo;
@@ -118,11 +111,10 @@ GLOAM_HD MediumEvent sample_distance(const MediaView& media, const Ray& ray, flo
 /// Share of light that passes, per band. Where the bounds of the density meet (an even medium),
 /// exact; elsewhere an estimate between 0 and 1 up to roulette.
 GLOAM_HD Vec3f transmittance(const MediaView& media, const Ray& ray, float tmax, Bands bands,
-                             Sampler* sampler) {
+                             WalkRandom random) {
   // Below this share, few rays carry on for many.
   constexpr float kRoulette = 0.1f;
   Vec3f passed{1, 1, 1};
-  WalkRandom random(sampler);
   for (uint32_t i = 0; i < media.volumes.size; ++i) {
     const VolumeView& volume = media.volumes[i];
     CellWalk walk;

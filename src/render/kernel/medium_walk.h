@@ -81,6 +81,16 @@ class CellWalk {
   bool is_inside_;
 };
 
+/// Whether some part of the segment [0, tmax] lies in a volume. Where none does, the random walks
+/// of medium.h draw nothing.
+GLOAM_HD bool meets_media(const MediaView& media, const Ray& ray, float tmax) {
+  CellWalk walk;
+  for (uint32_t i = 0; i < media.volumes.size; ++i) {
+    if (walk.start(media.volumes[i], ray, tmax)) return true;
+  }
+  return false;
+}
+
 /// Several volumes at once: segments on which no bound changes.
 class MediumWalk {
  public:

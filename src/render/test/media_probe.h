@@ -82,6 +82,16 @@ inline Sampler independent(uint32_t i, uint64_t stream = 0) {
   return Sampler::make((stream << 32) + i + 1, 7, 0, 0, 0, 0);
 }
 
+inline MediumEvent sample_distance(const MediaView& media, const Ray& ray, float tmax, Bands bands,
+                                   Vec3f throughput, Sampler* sampler) {
+  const Vec2f u = sampler->next_2d();
+  return sample_distance(media, ray, tmax, bands, throughput, u, WalkRandom(sampler->next_2d()));
+}
+inline Vec3f transmittance(const MediaView& media, const Ray& ray, float tmax, Bands bands,
+                           Sampler* sampler) {
+  return transmittance(media, ray, tmax, bands, WalkRandom(sampler->next_2d()));
+}
+
 struct RaySums {
   double transmittance[3] = {1, 1, 1};
   double scattered[3] = {}, emission[3] = {};  ///< integrals of T sigma_s and T sigma_a L
