@@ -85,7 +85,7 @@ GLOAM_HD MediumEvent sample_distance(const MediaView& media, const Ray& ray, flo
       const float high = walk[i].high(), low = walk[i].low();
       settle(bands.of(volume.mass_extinction));
       const float drawn = random.next() * high;
-      const bool glows = volume.emission > 0;
+      const bool glows = media::glows(volume, walk[i].hottest(), bands);
       const Vec3f p_G = transform_point(volume.X_GW, ray.o + ray.d * t);
       const float density = drawn < low && !glows ? low : media::density_at(volume, p_G);
       const Vec3f albedo = bands.of(volume.albedo);

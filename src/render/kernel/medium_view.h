@@ -11,9 +11,10 @@ inline constexpr int kBoundsVoxels = 8;
 /// Volumes of a scene, at most: a ray may pass through all of them at once.
 inline constexpr int kMaxVolumes = 32;
 
-/// Of the density in a cell [kg/m³].
-struct DensityBounds {
-  float low = 0, high = 0;
+/// What no lookup in a cell exceeds.
+struct CellBounds {
+  float low = 0, high = 0;  ///< of the density [kg/m³]
+  float hottest = 0;        ///< [K]
 };
 
 /// Three bands that are computed side by side: red, green and blue of a camera, or one band thrice.
@@ -36,7 +37,7 @@ struct VolumeView {
   int cells_x = 1, cells_y = 1, cells_z = 1;
   float even_density = 0, even_temperature = 0, fade = 0;  ///< [kg/m³], [K], [m]
   DeviceSpan<const float> density, temperature;            ///< [kg/m³], [K]; empty = even
-  DeviceSpan<const DensityBounds> cells;                   ///< (cells_z x cells_y x cells_x)
+  DeviceSpan<const CellBounds> cells;                      ///< (cells_z x cells_y x cells_x)
   float mass_extinction[kMediumBands] = {};                ///< [m²/kg]
   float albedo[kMediumBands] = {};
   float g[kMediumBands] = {};
@@ -103,6 +104,11 @@ GLOAM_HD float temperature_at(const VolumeView& v, Vec3f p_G) {
 GLOAM_HD bool is_inside(const VolumeView& v, Vec3f p_G) {
   return p_G.x >= 0 && p_G.y >= 0 && p_G.z >= 0 && p_G.x <= static_cast<float>(v.nx) &&
          p_G.y <= static_cast<float>(v.ny) && p_G.z <= static_cast<float>(v.nz);
+}
+
+/// Something in a cell may glow in these bands.
+GLOAM_HD bool glows(const VolumeView& v, float hottest, Bands bands) {
+  return v.emission > 0 && hottest >= BlackBodyTable::kLow && bands.is_visible();
 }
 
 /// What black bodies would send at this point, times the medium's emission [cd/m²].

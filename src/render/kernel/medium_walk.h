@@ -41,7 +41,7 @@ class CellWalk {
     }
     volume_ = &volume;
     is_inside_ = false;
-    low_ = high_ = 0;
+    low_ = high_ = hottest_ = 0;
     to_ = begin;
     return true;
   }
@@ -56,9 +56,10 @@ class CellWalk {
     }
     is_inside_ = true;
     axis_ = next_[0] <= next_[1] ? (next_[0] <= next_[2] ? 0 : 2) : (next_[1] <= next_[2] ? 1 : 2);
-    const DensityBounds bounds = volume_->cells[static_cast<uint32_t>(index_)];
+    const CellBounds bounds = volume_->cells[static_cast<uint32_t>(index_)];
     low_ = bounds.low;
     high_ = bounds.high;
+    hottest_ = bounds.hottest;
     to_ = min(end_, max(to_, next_[axis_]));
     return true;
   }
@@ -66,7 +67,8 @@ class CellWalk {
   GLOAM_HD const VolumeView& volume() const { return *volume_; }
   GLOAM_HD float low() const { return low_; }  ///< bounds of the density here [kg/m³]
   GLOAM_HD float high() const { return high_; }
-  GLOAM_HD float to() const { return to_; }    ///< distance at which the cell ends [m]
+  GLOAM_HD float hottest() const { return hottest_; }  ///< [K]
+  GLOAM_HD float to() const { return to_; }            ///< distance at which the cell ends [m]
   GLOAM_HD float end() const { return end_; }  ///< distance at which the ray leaves the box [m]
 
  private:
@@ -74,7 +76,7 @@ class CellWalk {
 
   // Nothing is initialised before start(): most of MediumWalk's are never used.
   const VolumeView* volume_;
-  float low_, high_, to_, end_;
+  float low_, high_, hottest_, to_, end_;
   float next_[3], delta_[3];  ///< distances: to the next wall across each axis, between walls [m]
   int stride_[3], left_[3];   ///< along each axis: in cells_, cells that follow
   int index_, axis_;

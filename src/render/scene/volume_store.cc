@@ -17,10 +17,11 @@ int cells_along(int voxels) { return (voxels + kBoundsVoxels - 1) / kBoundsVoxel
 
 bool is_amount(float x) { return x >= 0 && x <= FLT_MAX; }
 
-/// Bounds of the voxels that trilinear lookups in the cells of one row read. False if some value is
-/// no amount. Works along x in chunks, so that the room for it is on the stack.
-bool bound_row(const VolumeView& v, const float* grid, int cell_y, int cell_z,
-               DensityBounds* cells) {
+/// Calls store(cell, low, high) with the bounds of what trilinear lookups in the cells of one row
+/// read. False if some value is no amount. Works along x in chunks, so that the room for it is on
+/// the stack.
+template <class Store>
+bool bound_row(const VolumeView& v, const float* grid, int cell_y, int cell_z, const Store& store) {
   constexpr int kCells = 32, kRoom = kCells * kBoundsVoxels + 2;
   const int y0 = std::max(cell_y * kBoundsVoxels - 1, 0);
   const int y1 = std::min((cell_y + 1) * kBoundsVoxels, v.ny - 1);
@@ -47,33 +48,36 @@ bool bound_row(const VolumeView& v, const float* grid, int cell_y, int cell_z,
     for (int cell = first; cell < last; ++cell) {
       const int from = std::max(cell * kBoundsVoxels - 1, 0) - x0;
       const int to = std::min((cell + 1) * kBoundsVoxels, v.nx - 1) - x0;
-      cells[cell] = {v.fade > 0 ? 0.0f : *std::min_element(low + from, low + to + 1),
-                     *std::max_element(high + from, high + to + 1)};
+      store(cell, *std::min_element(low + from, low + to + 1),
+            *std::max_element(high + from, high + to + 1));
     }
   }
   return bad == 0;
 }
 
-/// False if some density is no amount.
-bool bound_cells(const VolumeView& v, const float* grid, std::vector<DensityBounds>* cells) {
-  std::atomic<bool> good = true;
-  parallel_for("volumes", static_cast<int64_t>(v.cells_y) * v.cells_z, [&](int64_t row) {
-    const int y = static_cast<int>(row % v.cells_y), z = static_cast<int>(row / v.cells_y);
-    if (!bound_row(v, grid, y, z, cells->data() + row * v.cells_x)) good = false;
-  });
-  return good;
-}
+struct FieldsAreGood {
+  std::atomic<bool> density = true, temperature = true;
+};
 
-bool holds_amounts(const std::vector<float>& grid) {
-  std::atomic<bool> good = true;
-  constexpr int64_t kGrain = 1 << 18;
-  parallel_for_range("volumes", static_cast<int64_t>(grid.size()), kGrain,
-                     [&](int64_t begin, int64_t end) {
-                       int bad = 0;
-                       for (int64_t i = begin; i < end; ++i) bad |= !is_amount(grid[i]);
-                       if (bad != 0) good = false;
-                     });
-  return good;
+void bound_cells(const VolumeView& v, const VolumeGrid& density, const VolumeGrid& temperature,
+                 std::vector<CellBounds>* cells, FieldsAreGood* good) {
+  const CellBounds even{v.fade > 0 ? 0.0f : v.even_density, v.even_density, v.even_temperature};
+  cells->assign(static_cast<size_t>(v.cells_x) * v.cells_y * v.cells_z, even);
+  const bool fades = v.fade > 0;
+  parallel_for("volumes", static_cast<int64_t>(v.cells_y) * v.cells_z, [&](int64_t i) {
+    const int y = static_cast<int>(i % v.cells_y), z = static_cast<int>(i / v.cells_y);
+    CellBounds* row = cells->data() + i * v.cells_x;
+    if (density && !bound_row(v, density->data(), y, z, [&](int cell, float low, float high) {
+          row[cell].low = fades ? 0.0f : low;
+          row[cell].high = high;
+        })) {
+      good->density = false;
+    }
+    if (temperature && !bound_row(v, temperature->data(), y, z,
+                                  [&](int cell, float, float high) { row[cell].hottest = high; })) {
+      good->temperature = false;
+    }
+  });
 }
 
 Error refuse_value(const VolumeDescription& volume, const std::vector<float>& grid,
@@ -146,22 +150,17 @@ Status VolumeStore::replace(size_t volume, const VolumeDescription& with) {
   Fields& fields = fields_[volume];
   VolumeView view = place(with, old);
   const bool same_bounds = !fields.cells.empty() && with.density == fields.density &&
-                           view.nx == old.nx && view.ny == old.ny && view.nz == old.nz &&
-                           view.fade == old.fade && view.even_density == old.even_density;
+                           with.temperature == fields.temperature && view.nx == old.nx &&
+                           view.ny == old.ny && view.nz == old.nz && view.fade == old.fade &&
+                           view.even_density == old.even_density &&
+                           view.even_temperature == old.even_temperature;
   if (!same_bounds) {
-    fields.spare.resize(static_cast<size_t>(view.cells_x) * view.cells_y * view.cells_z);
-    if (!with.density) {
-      std::fill(fields.spare.begin(), fields.spare.end(),
-                DensityBounds{view.fade > 0 ? 0.0f : view.even_density, view.even_density});
-    } else if (!bound_cells(view, with.density->data(), &fields.spare)) {
-      return refuse_value(with, *with.density, "density");
-    }
+    FieldsAreGood good;
+    bound_cells(view, with.density, with.temperature, &fields.spare, &good);
+    if (!good.density) return refuse_value(with, *with.density, "density");
+    if (!good.temperature) return refuse_value(with, *with.temperature, "temperature");
+    fields.cells.swap(fields.spare);
   }
-  if (with.temperature && with.temperature != fields.temperature &&
-      !holds_amounts(*with.temperature)) {
-    return refuse_value(with, *with.temperature, "temperature");
-  }
-  if (!same_bounds) fields.cells.swap(fields.spare);
   fields.density = with.density;
   fields.temperature = with.temperature;
   view.cells = span_of(fields.cells);

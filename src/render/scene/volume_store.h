@@ -26,7 +26,7 @@ class VolumeStore {
  private:
   struct Fields {
     VolumeGrid density, temperature;
-    std::vector<DensityBounds> cells, spare;  ///< spare: room for the next ones
+    std::vector<CellBounds> cells, spare;  ///< spare: room for the next ones
   };
 
   std::vector<VolumeView> views_;

@@ -27,7 +27,7 @@ double length_in_box(const VolumeDescription& v, const Ray& ray, double tmax) {
 }
 
 const Vec3f kNothing{};
-Vec3f no_source(const MediumPoint&, Vec3f, float) { return kNothing; }
+Vec3f no_source(const MediumPoint&, Vec3f) { return kNothing; }
 
 struct RayCase {
   const char* name;
@@ -116,7 +116,7 @@ MediaBuilder three_volumes() {
   noise.size = {1.6f, 1.1f, 1.3f};
   noise.X_WV = rigid(normalize(Vec3f{0.3f, 1, 0.4f}), 0.5f, {0.2f, 0.1f, 0});
   b.add(noise, b.add_medium({6, 3, 1}, {0.9f, 0.6f, 0.3f}, {0.6f, 0.6f, 0.6f}));
-  VolumeDescription plume = make_plume(24, 0.8f, 3500);
+  VolumeDescription plume = make_plume(48, 0.8f, 3500);
   plume.X_WV.p = {-0.1f, 0, 0.2f};
   plume.fade = 0.1f;
   b.add(plume, b.add_medium({5, 6, 8}, {0.2f, 0.3f, 0.4f}, {}, 1));
@@ -235,9 +235,8 @@ TEST(Medium, MarchingConvergesToTheQuadrature) {
   const VolumeStore store = three_volumes().build();
   for (const RayCase& c : rays_through()) {
     const RaySums expected = integrate_ray(store.view(), c.ray, min(c.tmax, 5));
-    const MarchResult m =
-        march(store.view(), c.ray, c.tmax, 0.05f, 1000, {},
-              [](const MediumPoint& p, Vec3f, float) { return p.scattering * 100.0f; });
+    const MarchResult m = march(store.view(), c.ray, c.tmax, 0.05f, 1000, {},
+                                [](const MediumPoint& p, Vec3f) { return p.scattering * 100.0f; });
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(m.transmittance[k], expected.transmittance[k],
                   0.02 * expected.transmittance[k] + 1e-3)
@@ -253,7 +252,7 @@ TEST(Medium, MarchTakesAboutTheStepsItIsAllowed) {
   for (const int max_steps : {1, 8, 100}) {
     int steps = 0;
     march(store.view(), rays_through()[0].ray, 4, 1e-4f, max_steps, {},
-          [&](const MediumPoint&, Vec3f, float) {
+          [&](const MediumPoint&, Vec3f) {
             ++steps;
             return Vec3f{};
           });

@@ -62,9 +62,9 @@ inline VolumeDescription make_plume(int n, float density, float hot, uint32_t se
         const float sway_x = 0.25f * h * (value_noise({0.3f, 7.7f, 5 * h}, seed + 91) - 0.5f);
         const float sway_y = 0.25f * h * (value_noise({4.9f, 2.2f, 5 * h}, seed + 92) - 0.5f);
         const float ripple = fractal_noise(q, 5, seed) - 0.5f;
-        const float radius = 0.07f + 0.26f * h;
+        const float radius = 0.07f + 0.3f * h;
         const float x = p.x - sway_x, y = p.y - sway_y;
-        const float inside = 1 - std::sqrt(x * x + y * y) / radius + 1.6f * ripple;
+        const float inside = 1 - std::sqrt(x * x + y * y) / radius + (1.2f + 3 * h) * ripple;
         const float top = clamp((0.96f - h) * 8, 0.0f, 1.0f);
         const float amount = clamp(inside, 0.0f, 1.0f) * top;
         const size_t at = (static_cast<size_t>(k) * n + j) * n + i;

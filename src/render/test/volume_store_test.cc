@@ -159,8 +159,8 @@ TEST(VolumeStore, ReplacesOneVolumeAsIfMadeAnew) {
   b.add(make_noise_volume(40, 30, 20, 2, 1), medium);
   b.add(make_noise_volume(20, 20, 20, 2, 2), medium);
   VolumeStore store = b.build();
-  const DensityBounds* untouched = store.view().volumes[0].cells.data;
-  std::vector<const DensityBounds*> rooms;
+  const CellBounds* untouched = store.view().volumes[0].cells.data;
+  std::vector<const CellBounds*> rooms;
   for (uint32_t seed = 3; seed < 9; ++seed) {
     VolumeDescription next = make_noise_volume(20, 20, 20, 2, seed);
     next.medium = medium;
