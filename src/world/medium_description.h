@@ -34,6 +34,9 @@ using VolumeGrid = std::shared_ptr<const std::vector<float>>;
 /// Volumes of more voxels than this are refused (1 GiB of floats).
 inline constexpr uint64_t kMaxVolumeVoxels = uint64_t{1} << 28;
 
+/// Thicker media are refused [1/m]: they are surfaces.
+inline constexpr float kMaxExtinction = 1e5f;
+
 /// A box that holds a medium; between voxels the field is trilinear, and constant from the
 /// outermost voxels' centres to the walls.
 struct VolumeDescription {

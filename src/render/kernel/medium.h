@@ -35,6 +35,10 @@ struct MediumEvent {
 
 namespace media {
 
+/// Share of its distance by which a walk moves on at least: less would be lost to rounding, and
+/// where a medium is that thick far away, the walk would not end.
+inline constexpr float kLeastStep = 1.2e-7f;
+
 GLOAM_HD Vec3f exp_of(Vec3f x) { return {expf(x.x), expf(x.y), expf(x.z)}; }
 
 }  // namespace media
@@ -70,16 +74,17 @@ GLOAM_HD MediumEvent sample_distance(const MediaView& media, const Ray& ray, flo
     }
     const Vec3f over = bound - Vec3f{bound[hero], bound[hero], bound[hero]};
     while (bound[hero] * (walk.to() - t) > wanted) {
-      const float step = wanted / bound[hero];
+      const float step = max(wanted / bound[hero], media::kLeastStep * t);
       t += step;
       excess += over * step;
       wanted = -logf(1.0f - random.next());
       // Each volume collides as often as its bound says.
       float pick = random.next() * bound[hero];
       int i = 0;
-      for (; i + 1 < walk.count(); ++i) {
-        pick -= bands.of(walk[i].volume().mass_extinction)[hero] * walk[i].high();
-        if (pick < 0) break;
+      for (int k = 0; k < walk.count() && pick >= 0; ++k) {
+        const float rate = bands.of(walk[k].volume().mass_extinction)[hero] * walk[k].high();
+        if (rate > 0) i = k;
+        pick -= rate;
       }
       const VolumeView& volume = walk[i].volume();
       const float high = walk[i].high(), low = walk[i].low();
@@ -129,7 +134,7 @@ GLOAM_HD Vec3f transmittance(const MediaView& media, const Ray& ray, float tmax,
       mass += low * (walk.to() - t);
       if (wanted <= 0 && rate > 0) wanted = -logf(1.0f - random.next());
       while (rate * (walk.to() - t) > wanted) {
-        t += wanted / rate;
+        t += max(wanted / rate, media::kLeastStep * t);
         wanted = -logf(1.0f - random.next());
         const Vec3f p_G = transform_point(volume.X_GW, ray.o + ray.d * t);
         const float part = clamp((media::density_at(volume, p_G) - low) / range, 0.0f, 1.0f);

@@ -89,6 +89,21 @@ Error refuse_value(const VolumeDescription& volume, const std::vector<float>& gr
                       volume.name, what, grid[i], i % nx, i / nx % ny, i / nx / ny)};
 }
 
+Status check_extinction(const std::string& name, const VolumeView& v,
+                        const std::vector<CellBounds>& cells) {
+  float high = 0;
+  for (const CellBounds& cell : cells) high = max(high, cell.high);
+  const float k = *std::max_element(v.mass_extinction, v.mass_extinction + kMediumBands);
+  if (k * high <= kMaxExtinction) return {};
+  return Error{
+      ErrorKind::kInput,
+      fmt::format("volume '{}' has an extinction of up to {:.3g} 1/m ({:.3g} m²/kg at {:.3g} "
+                  "kg/m³); the limit is {:.3g}",
+                  name, k * high, k, high, kMaxExtinction),
+      {},
+      "make what is so thick a surface"};
+}
+
 template <class T>
 DeviceSpan<const T> span_of(const std::vector<T>& v) {
   return {v.data(), static_cast<uint32_t>(v.size())};
@@ -159,6 +174,7 @@ Status VolumeStore::replace(size_t volume, const VolumeDescription& with) {
     bound_cells(view, with.density, with.temperature, &fields.spare, &good);
     if (!good.density) return refuse_value(with, *with.density, "density");
     if (!good.temperature) return refuse_value(with, *with.temperature, "temperature");
+    GLOAM_TRY_STATUS(check_extinction(with.name, view, fields.spare));
     fields.cells.swap(fields.spare);
   }
   fields.density = with.density;

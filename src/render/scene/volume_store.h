@@ -12,7 +12,7 @@ class VolumeStore {
  public:
   VolumeStore() = default;
   /// Errors: media and volumes that check_medium and check_volume refuse, more than kMaxVolumes,
-  /// grids with values that are negative or not finite.
+  /// grids with values that are negative or not finite, extinctions above kMaxExtinction.
   static Result<VolumeStore> make(const std::vector<MediumDescription>& media,
                                   const std::vector<VolumeDescription>& volumes);
 

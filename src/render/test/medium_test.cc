@@ -263,6 +263,24 @@ TEST(Medium, MarchTakesAboutTheStepsItIsAllowed) {
   }
 }
 
+TEST(Medium, WalksFromFarAwayEnd) {
+  MediaBuilder b;
+  VolumeDescription v;
+  v.name = "speck";  // one thick voxel in a cell that is empty else
+  v.nx = v.ny = v.nz = 8;
+  std::vector<float> values(512);
+  values[0] = 1;
+  v.density = grid_of(values);
+  b.add(v, b.add_medium({2e4f, 2e4f, 1e4f}, {1, 1, 1}));
+  const VolumeStore store = b.build();
+  for (uint32_t i = 0; i < 50; ++i) {
+    Sampler s = draw(i);
+    const Ray ray = make_ray({-1e5f, 0.1f, 0.2f}, {1, 0, 0});
+    EXPECT_EQ(transmittance(store.view(), ray, 1e30f, {}, &s), (Vec3f{1, 1, 1}));
+    EXPECT_EQ(sample_distance(store.view(), ray, 1e30f, {}, {1, 1, 1}, &s).volume, -1);
+  }
+}
+
 TEST(Medium, SameDrawsSameAnswers) {
   const VolumeStore one = three_volumes().build();
   set_thread_count(1);

@@ -240,6 +240,9 @@ TEST(VolumeStore, RefusesWhatCannotBe) {
   says(refusal([](MediaBuilder* b) { b->media[0].mass_extinction[0] = NAN; }), "mass extinction");
   says(refusal([](MediaBuilder* b) { b->media[0].g[1] = 1; }), "band green");
   says(refusal([](MediaBuilder* b) { b->media[0].emission = -1; }), "emission of -1");
+  says(refusal([](MediaBuilder* b) { b->media[0].mass_extinction[5] = 1e30f; }),
+       "extinction of up");
+  says(refusal(with_value(1e9f, false)), "extinction of up to 4e+09 1/m");
   says(refusal([](MediaBuilder* b) { b->volumes.resize(33, b->volumes[0]); }), "limit is 32");
 }
 
