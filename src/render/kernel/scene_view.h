@@ -2,6 +2,7 @@
 // What the kernel reads: plain arrays in the memory of the side that runs it. render/scene fills
 // them. Device-safe.
 
+#include "render/kernel/medium_view.h"
 #include "render/kernel/ray.h"
 #include "world/procedural_description.h"
 #include "world/render_description.h"
@@ -197,6 +198,7 @@ struct SceneView {
   const AlbedoTable* albedo = nullptr;
   const GlassTable* glass = nullptr;  ///< where some material is glass
   LightGuide guide;
+  MediaView media;
   int sky_texture = -1;
   float sky_scale = 0;
   Vec3f sky_ambient;             ///< for indirect rays

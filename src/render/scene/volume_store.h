@@ -1,0 +1,37 @@
+#pragma once
+// Volumes as the kernel reads them: their grids as they were handed over, and bounds of the
+// density.
+
+#include <vector>
+
+#include "render/kernel/medium_view.h"
+
+namespace gloam {
+
+class VolumeStore {
+ public:
+  VolumeStore() = default;
+  /// Errors: media and volumes that check_medium and check_volume refuse, more than kMaxVolumes,
+  /// grids with values that are negative or not finite, extinctions above kMaxExtinction.
+  static Result<VolumeStore> make(const std::vector<MediumDescription>& media,
+                                  const std::vector<VolumeDescription>& volumes);
+
+  /// Another pose, other grids or another number of voxels of one volume; its medium stays. Nothing
+  /// is allocated while the number of voxels stays. Errors as of make(): then all is as it was.
+  Status replace(size_t volume, const VolumeDescription& with);
+
+  /// Valid until the next replace(), or until the store is moved or gone.
+  MediaView view() const;
+
+ private:
+  struct Fields {
+    VolumeGrid density, temperature;
+    std::vector<CellBounds> cells, spare;  ///< spare: room for the next ones
+  };
+
+  std::vector<VolumeView> views_;
+  std::vector<Fields> fields_;  ///< of each volume
+  std::vector<Vec3f> black_body_;
+};
+
+}  // namespace gloam
