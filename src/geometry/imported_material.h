@@ -58,9 +58,7 @@ struct TextureRef {
 };
 
 /// Colours are linear Rec. 709, weights and shares 0..1.
-struct ImportedMaterial {
-  std::string name;
-
+struct MaterialValues {
   Vec3f base_color = {1, 1, 1};
   TextureRef base_color_texture;
   float metallic = 0;
@@ -115,6 +113,10 @@ struct ImportedMaterial {
 
   bool double_sided = false;
   bool unlit = false;  ///< base_color is shown as it is (KHR_materials_unlit)
+};
+
+struct ImportedMaterial : MaterialValues {
+  std::string name;
 };
 
 }  // namespace gloam

@@ -132,8 +132,11 @@ Result<std::vector<uint8_t>> ModelFolder::read(std::string_view name, const Sour
 void ProgressCount::add(uint64_t done) {
   const uint64_t now = done_.fetch_add(done) + done;
   if (!report_ || total_ == 0) return;
-  const std::unique_lock lock(mutex_, std::try_to_lock);
-  if (!lock.owns_lock()) return;
+  std::unique_lock lock(mutex_, std::defer_lock);
+  if (now >= total_)
+    lock.lock();  // the end is always told
+  else if (!lock.try_lock())
+    return;
   const double share = std::min(1.0, static_cast<double>(now) / static_cast<double>(total_));
   if (share <= reported_ || (share < 1 && share < reported_ + 0.005)) return;
   reported_ = share;

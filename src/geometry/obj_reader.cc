@@ -391,7 +391,7 @@ class ObjReader {
         materials_.try_emplace(name, static_cast<int>(model_.materials.size()));
     if (is_new) {
       add_note(&model_, fmt::format("the material '{}' is not described anywhere", name));
-      model_.materials.push_back({name});
+      model_.materials.emplace_back().name = name;
     }
     return it->second;
   }
