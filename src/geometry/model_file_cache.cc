@@ -189,7 +189,7 @@ bool load_entry(const fs::path& path, uint64_t content, ModelFolder beside,
   return true;
 }
 
-void store_entry(const fs::path& path, Entry entry) {
+void store_entry(const fs::path& path, Entry& entry) {
   Writer out;
   uint64_t head[2] = {kMagic, 0};
   out(head[0]);

@@ -205,7 +205,8 @@ TEST(Obj, ErrorsNameTheLine) {
     points += fmt::format("v {} {} 0\n", i, i == 0 || i == 2999 ? -9 : i % 2);
     polygon += fmt::format(" {}", 3000 - i);
   }
-  EXPECT_THAT(error_for(points + polygon + "\n", "a.obj"), HasSubstr("concave and has 3000 corners"));
+  EXPECT_THAT(error_for(points + polygon + "\n", "a.obj"),
+              HasSubstr("concave and has 3000 corners"));
   const ModelFile flat = read_ok(start + "v 2 0 0\nf 1 2 4\nf 1 2\nf 1 2 3\n", "a.obj");
   EXPECT_EQ(flat.dropped_triangles, 2u);
   EXPECT_EQ(flat.meshes.at(0).triangle_count(), 1u);
