@@ -20,6 +20,15 @@ namespace {
 
 constexpr float kFullWhite = 100;  // [cd/m²]
 
+// The material at hand with what decides how its older keys are read.
+struct Now {
+  ImportedMaterial m;
+  std::optional<float> exponent;          // Ns
+  std::optional<float> roughness;         // Pr
+  std::optional<Vec3f> specular, filter;  // Ks, Tf
+  int illum = 2;
+};
+
 class MtlParser {
  public:
   MtlParser(const ModelSource& source, std::string file, MemoryBudget* budget, ModelFile* model)
@@ -47,15 +56,6 @@ class MtlParser {
   }
 
  private:
-  // The material at hand with what decides how its older keys are read.
-  struct Now {
-    ImportedMaterial m;
-    std::optional<float> exponent;          // Ns
-    std::optional<float> roughness;         // Pr
-    std::optional<Vec3f> specular, filter;  // Ks, Tf
-    int illum = 2;
-  };
-
   Error bad(std::string message) const {
     return {ErrorKind::kInput, std::move(message), {file_, line_, 0}, "repair the library"};
   }
