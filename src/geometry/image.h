@@ -15,4 +15,10 @@ struct Image8 {
   std::vector<uint8_t> texels;  ///< (height x width x channels)
 };
 
+/// Float texels, linear Rec. 709, as environment maps have them.
+struct ImageF {
+  int width = 0, height = 0, channels = 0;
+  std::vector<float> texels;  ///< (height x width x channels)
+};
+
 }  // namespace gloam

@@ -1,6 +1,7 @@
 #include "geometry/image_file.h"
 
 #include "base/files.h"
+#include "geometry/image_exr.h"
 
 namespace gloam {
 
@@ -15,6 +16,33 @@ Result<Image8> read_image(const std::filesystem::path& path) {
                "is neither a PNG nor a JPEG picture",
                {path.string(), 0, 0},
                "convert it to PNG"};
+}
+
+Result<ImageF> decode_float_image(std::span<const uint8_t> bytes, const std::string& name,
+                                  uint64_t max_pixels) {
+  if (bytes.size() >= 2 && bytes[0] == '#' && bytes[1] == '?')
+    return decode_hdr(bytes, name, max_pixels);
+  GLOAM_TRY(const ExrImage exr, decode_exr(bytes, name, 4 * max_pixels));
+  std::vector<const std::vector<float>*> planes;
+  for (const char* channel : {"R", "G", "B", "A"}) {
+    if (const std::vector<float>* plane = exr.find(channel)) planes.push_back(plane);
+  }
+  if (exr.find("R") == nullptr || planes.size() < 3) {
+    planes = {exr.find("Y") != nullptr ? exr.find("Y") : &exr.planes.front()};
+    if (exr.find("Y") == nullptr && exr.planes.size() != 1)
+      return Error{ErrorKind::kInput, "has neither R, G and B nor one grey channel", {name, 0, 0}};
+  }
+  ImageF out{exr.width, exr.height, static_cast<int>(planes.size()), {}};
+  out.texels.resize(planes.front()->size() * planes.size());
+  for (size_t c = 0; c < planes.size(); ++c)
+    for (size_t i = 0; i < planes[c]->size(); ++i)
+      out.texels[i * planes.size() + c] = (*planes[c])[i];
+  return out;
+}
+
+Result<ImageF> read_float_image(const std::filesystem::path& path) {
+  GLOAM_TRY(const std::vector<uint8_t> bytes, read_file(path, uint64_t{2} << 30));
+  return decode_float_image(bytes, path.string());
 }
 
 }  // namespace gloam

@@ -17,9 +17,9 @@
 
 #include "base/files.h"
 #include "base/log.h"
+#include "geometry/image_exr.h"
 #include "geometry/image_file.h"
 #include "record/run_folder.h"
-#include "render/film/exr.h"
 
 namespace gloam {
 namespace {

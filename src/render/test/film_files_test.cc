@@ -10,6 +10,7 @@
 
 #include "base/files.h"
 #include "base/rng.h"
+#include "geometry/image_exr.h"
 #include "geometry/image_file.h"
 #include "gloam/picture.h"
 #include "render/film/color_map.h"

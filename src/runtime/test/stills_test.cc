@@ -4,9 +4,9 @@
 #include <limits>
 
 #include "base/files.h"
+#include "geometry/image_exr.h"
 #include "geometry/image_file.h"
 #include "gloam/run.h"
-#include "render/film/exr.h"
 #include "scenes.h"
 
 namespace gloam {

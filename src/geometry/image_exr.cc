@@ -6,11 +6,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
-#include <limits>
 
-#include "render/film/exr.h"
+#include "geometry/image_exr.h"
+#include "geometry/small_float.h"
 
 namespace gloam {
 namespace {
@@ -66,16 +65,6 @@ struct Header {
   int64_t min_y = 0, width = 0, height = 0;
   size_t row_bytes = 0;
 };
-
-float half_to_float(uint16_t h) {
-  const float sign = (h & 0x8000) != 0 ? -1.0f : 1.0f;
-  const int exponent = (h >> 10) & 31, mantissa = h & 1023;
-  if (exponent == 31)
-    return mantissa != 0 ? std::numeric_limits<float>::quiet_NaN()
-                         : sign * std::numeric_limits<float>::infinity();
-  return sign * (exponent == 0 ? std::ldexp(static_cast<float>(mantissa), -24)
-                               : std::ldexp(static_cast<float>(mantissa + 1024), exponent - 25));
-}
 
 /// "" or what is wrong.
 std::string read_channels(Cursor cursor, Header* header) {

@@ -1,0 +1,8 @@
+#include "geometry/model_source.h"
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  gloam::ModelFileOptions options;
+  options.limits.decoded_bytes = 64 << 20;
+  (void)gloam::read_stl({"fuzz.stl", {data, size}, nullptr, &options}).ok();
+  return 0;
+}

@@ -1,0 +1,205 @@
+// The node hierarchy of glTF, flattened.
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "geometry/gltf/document.h"
+
+namespace gloam {
+namespace {
+
+// Y up to Z up: (x, y, z) -> (x, -z, y).
+constexpr Affine3f kZUp{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}, {0, 0, 0}};
+
+Affine3f from_matrix(const JsonNode& node) {
+  float m[16];
+  if (!node.numbers(m, 16)) return {};
+  if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
+    node.fail("is no affine map: its last row must be 0 0 0 1");
+  return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
+}
+
+Affine3f from_parts(const JsonNode& node) {
+  float q[4] = {0, 0, 0, 1};  // x y z w
+  if (node["rotation"].numbers(q, 4)) {
+    const float norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    if (!(norm > 1e-6f && std::isfinite(norm))) {
+      node["rotation"].fail("is no rotation: the quaternion is zero or too large");
+      return {};
+    }
+    for (float& v : q) v /= norm;
+  }
+  const auto [x, y, z, w] = q;
+  const Vec3f scale = node["scale"].vec3({1, 1, 1});
+  Affine3f out;
+  out.x = Vec3f{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)} * scale.x;
+  out.y = Vec3f{2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)} * scale.y;
+  out.z = Vec3f{2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)} * scale.z;
+  out.p = node["translation"].vec3({0, 0, 0});
+  return out;
+}
+
+bool is_finite(const Affine3f& X) {
+  for (const Vec3f& v : {X.x, X.y, X.z, X.p})
+    if (!(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z))) return false;
+  return true;
+}
+
+ImportedLight read_light(const JsonNode& node) {
+  ImportedLight out;
+  out.name = node["name"].text().substr(0, kMaxName);
+  const std::string type = node["type"].text();
+  if (type == "spot") {
+    out.type = ImportedLightType::kSpot;
+    out.inner_cone = node["spot"]["innerConeAngle"].number(0, 0, kPi / 2);
+    out.outer_cone = node["spot"]["outerConeAngle"].number(kPi / 4, 0, kPi / 2 + 1e-4f);
+    if (!(out.inner_cone < out.outer_cone))
+      node["spot"].fail("innerConeAngle must be less than outerConeAngle");
+  } else if (type == "directional") {
+    out.type = ImportedLightType::kDirectional;
+  } else if (type != "point") {
+    node["type"].fail("is none of point, spot, directional");
+  }
+  out.color = node["color"].vec3({1, 1, 1}, 0);
+  out.intensity = node["intensity"].number(1, 0);
+  out.range = node["range"].number(0, 0);
+  return out;
+}
+
+class NodeReader {
+ public:
+  NodeReader(GltfDocument* document, const GltfMeshTable& meshes, ModelFile* model)
+      : document_(document), meshes_(meshes), model_(model), nodes_(document->root()["nodes"]) {}
+
+  void read() {
+    const JsonNode lights = document_->root()["extensions"]["KHR_lights_punctual"]["lights"];
+    for (size_t i = 0; i < lights.size() && ok(); ++i) lights_.push_back(read_light(lights.at(i)));
+    if (!find_parents() || !refuse_cycles()) return;
+    std::vector<int> roots = find_roots();
+    struct Visit {
+      int node;
+      Affine3f X_FP;  // of the parent
+    };
+    std::vector<Visit> stack;
+    for (auto it = roots.rbegin(); it != roots.rend(); ++it) stack.push_back({*it, kZUp});
+    while (!stack.empty() && ok()) {
+      const Visit visit = stack.back();
+      stack.pop_back();
+      const JsonNode node = nodes_.at(static_cast<size_t>(visit.node));
+      const Affine3f X_FN =
+          visit.X_FP * (node["matrix"].exists() ? from_matrix(node["matrix"]) : from_parts(node));
+      if (!is_finite(X_FN)) return node.fail("its place is not finite");
+      add_content(node, X_FN);
+      const std::vector<int>& children = children_[static_cast<size_t>(visit.node)];
+      for (auto it = children.rbegin(); it != children.rend(); ++it) stack.push_back({*it, X_FN});
+    }
+  }
+
+ private:
+  bool ok() const { return document_->errors().ok(); }
+
+  // The hierarchy is a forest by the standard: a node has one parent at most.
+  bool find_parents() {
+    const size_t count = nodes_.size();
+    parents_.assign(count, -1);
+    children_.resize(count);
+    for (size_t i = 0; i < count && ok(); ++i) {
+      const JsonNode children = nodes_.at(i)["children"];
+      for (size_t k = 0; k < children.size() && ok(); ++k) {
+        const int child = children.at(k).required_index(count, "node");
+        if (child < 0) return false;
+        int& parent = parents_[static_cast<size_t>(child)];
+        if (parent >= 0)
+          children.at(k).fail(fmt::format("node {} has two parents, {} and {}", child, parent, i),
+                              "nodes must form a tree");
+        parent = static_cast<int>(i);
+        children_[i].push_back(child);
+      }
+    }
+    return ok();
+  }
+
+  bool refuse_cycles() {
+    enum : uint8_t { kNew, kOnPath, kDone };
+    std::vector<uint8_t> state(parents_.size(), kNew);
+    std::vector<int> path;
+    for (size_t i = 0; i < parents_.size(); ++i) {
+      path.clear();
+      int n = static_cast<int>(i);
+      while (n >= 0 && state[static_cast<size_t>(n)] == kNew) {
+        state[static_cast<size_t>(n)] = kOnPath;
+        path.push_back(n);
+        n = parents_[static_cast<size_t>(n)];
+      }
+      if (n >= 0 && state[static_cast<size_t>(n)] == kOnPath) {
+        nodes_.at(static_cast<size_t>(n)).fail("is its own ancestor", "nodes must form a tree");
+        return false;
+      }
+      for (const int visited : path) state[static_cast<size_t>(visited)] = kDone;
+    }
+    return true;
+  }
+
+  std::vector<int> find_roots() {
+    std::vector<int> out;
+    const JsonNode scenes = document_->root()["scenes"];
+    if (scenes.size() == 0) {
+      for (size_t i = 0; i < parents_.size(); ++i)
+        if (parents_[i] < 0) out.push_back(static_cast<int>(i));
+      return out;
+    }
+    const int named = document_->root()["scene"].index(scenes.size(), "scene");
+    if (scenes.size() > 1)
+      add_note(model_, fmt::format("of {} scenes only one is read", scenes.size()));
+    const JsonNode roots = scenes.at(static_cast<size_t>(std::max(named, 0)))["nodes"];
+    std::vector<bool> taken(parents_.size(), false);
+    for (size_t i = 0; i < roots.size() && ok(); ++i) {
+      const int root = roots.at(i).required_index(parents_.size(), "node");
+      if (root < 0) break;
+      if (parents_[static_cast<size_t>(root)] >= 0 || taken[static_cast<size_t>(root)])
+        roots.at(i).fail(fmt::format("node {} is no root, or is named twice", root));
+      taken[static_cast<size_t>(root)] = true;
+      out.push_back(root);
+    }
+    return out;
+  }
+
+  void add_content(const JsonNode& node, const Affine3f& X_FN) {
+    if (node["skin"].exists()) add_note(model_, "skins are left out: the mesh is not bent");
+    if (node["camera"].exists()) add_note(model_, "cameras are left out");
+    const ModelLimits& limits = document_->source().options->limits;
+    const std::string name = node["name"].text().substr(0, kMaxName);
+    if (const int mesh = node["mesh"].index(meshes_.parts.size(), "mesh"); mesh >= 0) {
+      for (const GltfMeshTable::Part& part : meshes_.parts[static_cast<size_t>(mesh)]) {
+        if (model_->instances.size() >= limits.instances)
+          return node.fail(fmt::format("there are more than {} instances", limits.instances));
+        model_->instances.push_back({name, part.mesh, part.material, X_FN});
+      }
+    }
+    const int light =
+        node["extensions"]["KHR_lights_punctual"]["light"].index(lights_.size(), "light");
+    if (light < 0) return;
+    if (model_->lights.size() >= limits.instances)
+      return node.fail(fmt::format("there are more than {} lights", limits.instances));
+    model_->lights.push_back(lights_[static_cast<size_t>(light)]);
+    model_->lights.back().X_FL = X_FN;
+    if (!name.empty()) model_->lights.back().name = name;
+  }
+
+  GltfDocument* document_;
+  const GltfMeshTable& meshes_;
+  ModelFile* model_;
+  JsonNode nodes_;
+  std::vector<int> parents_;
+  std::vector<std::vector<int>> children_;
+  std::vector<ImportedLight> lights_;
+};
+
+}  // namespace
+
+void read_gltf_nodes(GltfDocument* document, const GltfMeshTable& meshes, ModelFile* model) {
+  NodeReader(document, meshes, model).read();
+}
+
+}  // namespace gloam

@@ -1,0 +1,232 @@
+// Damaged files of every kind: readers must answer, within their memory. GLOAM_MUTATIONS: how many
+// per reader (default 200).
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <functional>
+
+#include "base/rng.h"
+#include "geometry/image_file.h"
+#include "geometry/mtl_reader.h"
+#include "geometry/test/gltf_builder.h"
+#include "geometry/test/image_writer.h"
+#include "geometry/test/largest_request.h"
+#include "geometry/test/read_helper.h"
+#include "geometry/text_lines.h"
+
+namespace gloam {
+namespace {
+
+class Mutator {
+ public:
+  explicit Mutator(uint64_t seed) : stream_{seed, 77} {}
+  uint32_t draw(size_t n) { return static_cast<uint32_t>(stream_.draw(0, count_++).v[0] % n); }
+
+  // Flipped bits, changed bytes and digits, cuts, copies of a part over another.
+  std::string mutate(std::string text) {
+    for (uint32_t times = 1 + draw(4); times > 0 && !text.empty(); --times) {
+      const size_t at = draw(text.size());
+      switch (draw(7)) {
+        case 0:
+          text[at] = static_cast<char>(text[at] ^ (1 << draw(8)));
+          break;
+        case 1:
+          text[at] = static_cast<char>(draw(256));
+          break;
+        case 2:
+          text.resize(at);
+          break;
+        case 3:
+          text.erase(at, 1 + draw(64));
+          break;
+        case 4:
+          text.insert(draw(text.size()), text.substr(at, 1 + draw(64)));
+          break;
+        case 5: {
+          const std::string part = text.substr(at, 1 + draw(16));
+          text.replace(std::min<size_t>(draw(text.size()), text.size() - part.size()), part.size(),
+                       part);
+          break;
+        }
+        default: {  // a number becomes another that tends to break things
+          static const char* const kNumbers[] = {
+              "-1", "0", "4294967296", "1e39", "99999999", "1099511627776", "nan", "2147483647"};
+          const size_t digit = text.find_first_of("0123456789", at);
+          if (digit == std::string::npos) break;
+          text.replace(digit, 1, kNumbers[draw(8)]);
+        }
+      }
+    }
+    return text;
+  }
+
+ private:
+  RandomStream stream_;
+  uint32_t count_ = 0;
+};
+
+size_t mutation_count() {
+  const char* count = std::getenv("GLOAM_MUTATIONS");
+  return count != nullptr ? static_cast<size_t>(std::atoi(count)) : 200;
+}
+
+std::string gltf_seed(bool binary) {
+  GltfBuilder file;
+  const int p = file.add_positions({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 1}});
+  const int n = file.add_accessor(std::vector<Vec3f>(4, {0, 0, 1}), "VEC3", 5126, 4);
+  const int uv =
+      file.add_accessor(std::vector<uint16_t>{0, 1, 2, 3, 4, 5, 6, 7}, "VEC2", 5123, 4, true);
+  const int i = file.add_accessor(std::vector<uint8_t>{0, 1, 2, 3}, "SCALAR", 5121, 4);
+  const int sparse_at = file.add_view(std::vector<uint8_t>{1});
+  const int sparse_of = file.add_view(std::vector<Vec3f>{{2, 2, 2}});
+  file.json["accessors"][0]["sparse"] = {
+      {"count", 1},
+      {"indices", {{"bufferView", sparse_at}, {"componentType", 5121}}},
+      {"values", {{"bufferView", sparse_of}}}};
+  file.json["images"] = {{{"bufferView", 0}, {"mimeType", "image/png"}}};
+  file.json["samplers"] = {{{"wrapS", 33071}}};
+  file.json["textures"] = {{{"source", 0}, {"sampler", 0}}};
+  file.json["materials"] = {{{"normalTexture", {{"index", 0}, {"scale", 0.5}}},
+                             {"extensions",
+                              {{"KHR_materials_clearcoat", {{"clearcoatFactor", 0.5}}},
+                               {"KHR_materials_volume", {{"attenuationColor", {0.5, 0.25, 1}}}}}}}};
+  const int mesh =
+      file.add_mesh({{"attributes", {{"POSITION", p}, {"NORMAL", n}, {"TEXCOORD_0", uv}}},
+                     {"indices", i},
+                     {"material", 0},
+                     {"mode", 5}});
+  file.json["extensions"]["KHR_lights_punctual"]["lights"] = {
+      {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.25}}}}};
+  file.json["nodes"] = {{{"mesh", mesh}, {"rotation", {0, 0, 0, 1}}},
+                        {{"children", {0}}, {"scale", {1, 2, 3}}},
+                        {{"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}};
+  file.json["scenes"] = {{{"nodes", {1, 2}}}};
+  file.json["extensionsRequired"] = {"KHR_lights_punctual"};
+  return binary ? file.glb() : file.gltf();
+}
+
+std::string stl_seed(bool binary) {
+  if (!binary) {
+    std::string out = "solid a\n";
+    for (int i = 0; i < 4; ++i)
+      out += fmt::format(
+          "facet normal 0 0 1\nouter loop\nvertex {} 0 0\nvertex 1 {} 0\nvertex 0 0 1\nendloop\n"
+          "endfacet\n",
+          i, i);
+    return out + "endsolid\n";
+  }
+  std::string out(80, 'h');
+  out += raw(uint32_t{4});
+  for (int i = 0; i < 4; ++i) {
+    const float triangle[12] = {0, 0, 1, 0, 0, 0, 1, static_cast<float>(i), 0, 0, 0, 1};
+    out += raw(triangle) + raw(uint16_t{0});
+  }
+  return out;
+}
+
+std::string ply_seed(bool binary) {
+  std::string out = fmt::format(
+      "ply\nformat {} 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n",
+      binary ? "binary_little_endian" : "ascii");
+  if (!binary) return out + "0 0 0\n2 0 0\n2 2 0\n1 0.5 0\n0 2 0\n5 0 1 2 3 4\n3 0 1 2\n";
+  const float positions[15] = {0, 0, 0, 2, 0, 0, 2, 2, 0, 1, 0.5f, 0, 0, 2, 0};
+  const int32_t first[5] = {0, 1, 2, 3, 4}, second[3] = {0, 1, 2};
+  return out + raw(positions) + raw(uint8_t{5}) + raw(first) + raw(uint8_t{3}) + raw(second);
+}
+
+struct Reader {
+  const char* name;
+  std::vector<std::string> seeds;
+  std::function<bool(const std::string&)> read;  // whether the file was fine
+};
+
+std::vector<Reader> all_readers() {
+  static ModelFileOptions options;
+  options.limits.decoded_bytes = 16 << 20;
+  const auto model = [](Result<ModelFile> (*read)(const ModelSource&)) {
+    return [read](const std::string& text) {
+      return read({"mutated", as_bytes(text), nullptr, &options}).ok();
+    };
+  };
+  std::vector<uint8_t> texels;
+  for (int i = 0; i < 40 * 4; ++i) texels.push_back(static_cast<uint8_t>(i < 80 ? 7 : i));
+  return {
+      {"glTF", {gltf_seed(false)}, model(read_gltf)},
+      {"GLB", {gltf_seed(true)}, model(read_glb)},
+      {"OBJ",
+       {"mtllib a.mtl\nv 0 0 0\nv 2 0 0\nv 2 2 0\nv 1 0.5 0\nv 0 2 0\nvt 0 1\nvn 0 0 1\n"
+        "usemtl a\nf 1/1/1 2/1/1 3//1 4 5\ng b\nf -3 -2 -1\nusemtl c\nf 1 2 \\\n 4\n"},
+       model(read_obj)},
+      {"MTL",
+       {"newmtl a\nKd 0.5 0.5 0.5\nNs 20\nKe 1 0 0\nPr 0.5\nmap_Kd -s 2 2 1 -o 0 1 a.png\n"
+        "newmtl b\nd 0.5\nillum 6\nTf 1 0 1\nmap_Bump -bm 2 b.png\n"},
+       [](const std::string& text) {
+         ModelFile out;
+         MemoryBudget budget(16 << 20);
+         return parse_mtl({"mutated", {}, nullptr, &options}, text, "mutated", &budget, &out).ok();
+       }},
+      {"STL", {stl_seed(false), stl_seed(true)}, model(read_stl)},
+      {"PLY", {ply_seed(false), ply_seed(true)}, model(read_ply)},
+      {"HDR",
+       {hdr_file(20, 2, texels, HdrPacking::kNone), hdr_file(20, 2, texels, HdrPacking::kOld),
+        hdr_file(20, 2, texels, HdrPacking::kNew)},
+       [](const std::string& text) {
+         return decode_float_image(as_bytes(text), "mutated", 1 << 20).ok();
+       }},
+      {"EXR",
+       {exr_file(3, 2, {"B", "G", "R"},
+                 {{1, 2, 3, 4, 5, 6}, {1, 2, 3, 4, 5, 6}, {1, 2, 3, 4, 5, 6}})},
+       [](const std::string& text) {
+         return decode_float_image(as_bytes(text), "mutated", 1 << 20).ok();
+       }},
+      {"KTX",
+       {ktx_file(0x1401, 0x1907, 0x8C41, 3, 2, {"abcdefghi...jklmnopqr..."}),
+        ktx_file(0x8C3B, 0x1907, 0x8C3A, 1, 1, {"abcd", "abcd", "abcd", "abcd", "abcd", "abcd"})},
+       [](const std::string& text) { return decode_ktx(as_bytes(text), "mutated", 1 << 20).ok(); }},
+  };
+}
+
+TEST(Mutations, EveryReaderAnswersEveryFile) {
+  for (const Reader& reader : all_readers()) {
+    for (const std::string& seed : reader.seeds)
+      ASSERT_TRUE(reader.read(seed)) << reader.name << ": the file is not fine to begin with";
+    size_t refused = 0;
+    for (size_t i = 0; i < mutation_count(); ++i) {
+      const std::string file = Mutator(i).mutate(reader.seeds[i % reader.seeds.size()]);
+      largest_request = 0;
+      refused += reader.read(file) ? 0 : 1;
+      ASSERT_LT(largest_request, size_t{16} << 20) << reader.name << ", file " << i;
+    }
+    EXPECT_GT(refused, mutation_count() / 10) << reader.name << ": the changes do no harm";
+  }
+}
+
+// Files that claim much and hold nothing.
+TEST(Mutations, ClaimsAloneTakeNoMemory) {
+  const auto with = [](std::string file, const std::string& from, const std::string& to) {
+    file.replace(file.find(from), from.size(), to);
+    return file;
+  };
+  std::string many_triangles = stl_seed(true);
+  std::memset(many_triangles.data() + 80, 0x7f, 4);
+  const std::vector<std::pair<std::string, std::string>> files = {
+      {"a.gltf", with(gltf_seed(false), "\"count\":4", "\"count\":1099511627776")},
+      {"a.gltf", with(gltf_seed(false), "\"count\":4", "\"count\":80000000")},
+      {"a.ply", with(ply_seed(true), "vertex 5", "vertex 1099511627776")},
+      {"a.ply", with(ply_seed(false), "vertex 5", "vertex 1099511627776")},
+      {"a.ply", with(ply_seed(true), "face 2", "face 1099511627776")},
+      {"a.stl", many_triangles},
+      {"a.obj", "v 0 0 0\nf 1 1 1099511627776\n"},
+  };
+  for (const auto& [name, text] : files) {
+    largest_request = 0;
+    EXPECT_FALSE(read_text(text, name).ok()) << name;
+    EXPECT_LT(largest_request, size_t{1} << 20) << name;
+  }
+}
+
+}  // namespace
+}  // namespace gloam
