@@ -11,7 +11,7 @@
 namespace gloam {
 
 /// Value noise in [0, 1): trilinear with smoothed weights between hashed lattice points.
-inline float value_noise(Vec3f p, uint32_t seed) {
+inline float plume_noise(Vec3f p, uint32_t seed) {
   const Vec3f base{std::floor(p.x), std::floor(p.y), std::floor(p.z)}, f = p - base;
   const auto smooth = [](float t) { return t * t * (3 - 2 * t); };
   const auto corner = [&](int dx, int dy, int dz) {
@@ -35,7 +35,7 @@ inline float value_noise(Vec3f p, uint32_t seed) {
 inline float fractal_noise(Vec3f p, int octaves, uint32_t seed) {
   float sum = 0, amplitude = 0.5f;
   for (int i = 0; i < octaves; ++i, amplitude *= 0.5f) {
-    sum += amplitude * value_noise(p, seed + static_cast<uint32_t>(i));
+    sum += amplitude * plume_noise(p, seed + static_cast<uint32_t>(i));
     p = p * 2.03f + Vec3f{17.1f, 5.3f, 9.7f};
   }
   return sum / (1 - 2 * amplitude);
@@ -59,8 +59,8 @@ inline VolumeDescription make_plume(int n, float density, float hot, uint32_t se
         const Vec3f p{(static_cast<float>(i) + 0.5f) * inv - 0.5f,
                       (static_cast<float>(j) + 0.5f) * inv - 0.5f, 2 * h};
         const Vec3f q = p * 4.0f - Vec3f{0, 0, 3 * h};
-        const float sway_x = 0.25f * h * (value_noise({0.3f, 7.7f, 5 * h}, seed + 91) - 0.5f);
-        const float sway_y = 0.25f * h * (value_noise({4.9f, 2.2f, 5 * h}, seed + 92) - 0.5f);
+        const float sway_x = 0.25f * h * (plume_noise({0.3f, 7.7f, 5 * h}, seed + 91) - 0.5f);
+        const float sway_y = 0.25f * h * (plume_noise({4.9f, 2.2f, 5 * h}, seed + 92) - 0.5f);
         const float ripple = fractal_noise(q, 5, seed) - 0.5f;
         const float radius = 0.07f + 0.3f * h;
         const float x = p.x - sway_x, y = p.y - sway_y;
