@@ -209,8 +209,8 @@ class PlyReader {
           *at += size_of(*p.count_type);
         }
         const size_t size = size_of(p.type);
-        if (count < 0 || count > static_cast<double>((body_.size() - *at) / size))
-          return ends_early(element, *at);
+        const size_t room = (body_.size() - *at) / size;
+        if (!(count >= 0 && count <= static_cast<double>(room))) return ends_early(element, *at);
         const auto n = static_cast<uint32_t>(count);
         if (is_face_list(element, p)) {
           faces_.sizes.push_back(n);

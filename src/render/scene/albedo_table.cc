@@ -50,7 +50,8 @@ void fill_glass_table(GlassTable* table) {
   constexpr int n = GlassTable::kSize;
   constexpr uint32_t kPoints = 256;
   parallel_for("glass table", n * n, [table](int64_t row) {
-    const float axis = 2.0f * static_cast<float>(row / n) / (n - 1) - 1.0f;
+    const int64_t plane = row / n;
+    const float axis = 2.0f * static_cast<float>(plane) / (n - 1) - 1.0f;
     const float roughness = static_cast<float>(row % n) / (n - 1);
     LayeredBsdf b;
     b.layered = true;
