@@ -83,6 +83,58 @@ struct CameraOptions {
   SourceLoc loc = {};
 };
 
+/// [material.pattern] and [material.wear]: a material made by formula, in metres
+/// (docs/materials.md). What is not given is the kind's own: solid oak, Carrara marble, a red brick
+/// wall …
+struct PatternOptions {
+  std::string kind = {};  ///< noise wood marble concrete brick tiles fabric scratches dirt
+  uint64_t seed = 0;
+  std::optional<Vec3> color_a = {};      ///< ground, linear Rec. 709, 0 … 1
+  std::optional<Vec3> color_b = {};      ///< late wood, veins, brick's other end, weft, dirt
+  std::optional<Vec3> color_c = {};      ///< pores, seams, mortar, grout
+  std::optional<double> scale = {};      ///< characteristic length [m]
+  std::optional<double> size_u = {};     ///< length of a board, panel, brick or tile [m]
+  std::optional<double> size_v = {};     ///< its other side [m]
+  std::optional<double> gap = {};        ///< joint, or width of a scratch [m]
+  std::optional<double> depth = {};      ///< of joints, pores, yarns [m]
+  std::optional<double> roughness = {};  ///< of the ground, 0 … 1
+  std::optional<double> coat = {};       ///< varnish or glaze, 0 … 1
+  std::optional<double> variation = {};  ///< between units, 0 … 1
+  std::optional<double> amount = {};     ///< of pores, veins, scratches or dirt, 0 … 1
+  std::optional<Vec3> axis = {};         ///< of the grain or the scratches
+  std::string basis = "fbm";             ///< noise: fbm turbulence ridged cells
+  std::string bond = "running";          ///< brick: running stack english
+  std::string tile = "square";           ///< tiles: square hexagon
+  std::string weave = "plain";           ///< fabric: plain twill
+  SourceLoc loc = {};
+};
+
+/// [[material]]: what MJCF cannot say of one of its materials; names after OpenPBR 1.1. Colour,
+/// roughness, metalness, emission, opacity and textures stay those of the MJCF material.
+struct MaterialOptions {
+  std::string name = {};  ///< of the model's material, robot prefix included; * stands for any text
+  std::optional<double> ior = {};  ///< index of refraction, 1 … 3
+  double anisotropy = 0;           ///< 0 … 1, draws highlights out along the texture's u
+  double anisotropy_rotation = 0;  ///< [turns], counter-clockwise
+  double transmission_weight = 0;  ///< 0 … 1: glass
+  Vec3 transmission_color = {1, 1,
+                             1};  ///< at transmission_depth, or of one passage where that is 0
+  double transmission_depth = 0;  ///< [m]
+  bool thin_walled = false;       ///< a sheet: window panes, leaves, paper
+  double subsurface_weight = 0;   ///< 0 … 1; light that goes through, of sheets
+  Vec3 subsurface_color = {0.8, 0.8, 0.8};
+  double coat_weight = 0, coat_roughness = 0, coat_ior = 1.6;
+  Vec3 coat_color = {1, 1, 1};
+  double fuzz_weight = 0, fuzz_roughness = 0.5;
+  Vec3 fuzz_color = {1, 1, 1};
+  std::optional<PatternOptions> pattern = {};  ///< multiplies the colour, sets roughness and bumps
+  std::optional<PatternOptions> wear = {};     ///< scratches or dirt over it
+  double wetness = 0;                          ///< 0 dry … 1 under water where level
+  double porosity = 0.8;                       ///< 0 glass and metal … 0.8 concrete, wood
+  double dust = 0, snow = 0;                   ///< 0 … 1
+  SourceLoc loc = {};
+};
+
 /// [[push]]: a velocity kick for robustness tests: an impulse at the body's centre of mass.
 struct PushOptions {
   std::string body = {};
@@ -124,6 +176,7 @@ struct Scene {
   EnvironmentOptions environment = {};
   std::vector<RobotOptions> robots = {};  ///< in source order
   std::vector<CameraOptions> cameras = {};
+  std::vector<MaterialOptions> materials = {};
   std::vector<PushOptions> pushes = {};
   SimOptions sim = {};
   RenderOptions render = {};

@@ -81,6 +81,63 @@ void visit_fields(Visitor& v, CameraOptions& o) {
 }
 
 template <class Visitor>
+void visit_fields(Visitor& v, PatternOptions& o) {
+  const FieldRule share{.min = 0, .max = 1};
+  const FieldRule length{.unit = "m", .min = 1e-5, .max = kLargestLength};
+  v("kind", o.kind,
+    FieldRule{.required = true,
+              .choices = {"noise", "wood", "marble", "concrete", "brick", "tiles", "fabric",
+                          "scratches", "dirt"}});
+  v("seed", o.seed, FieldRule{.max = 4294967295.0});
+  v("color_a", o.color_a, share);
+  v("color_b", o.color_b, share);
+  v("color_c", o.color_c, share);
+  v("scale", o.scale, length);
+  v("size_u", o.size_u, FieldRule{.unit = "m", .min = 0, .max = kLargestLength});
+  v("size_v", o.size_v, FieldRule{.unit = "m", .min = 0, .max = kLargestLength});
+  v("gap", o.gap, FieldRule{.unit = "m", .min = 0, .max = kLargestLength});
+  v("depth", o.depth, FieldRule{.unit = "m", .min = 0, .max = kLargestLength});
+  v("roughness", o.roughness, share);
+  v("coat", o.coat, share);
+  v("variation", o.variation, share);
+  v("amount", o.amount, share);
+  v("axis", o.axis, FieldRule{.min = -1, .max = 1});
+  v("basis", o.basis, FieldRule{.choices = {"fbm", "turbulence", "ridged", "cells"}});
+  v("bond", o.bond, FieldRule{.choices = {"running", "stack", "english"}});
+  v("tile", o.tile, FieldRule{.choices = {"square", "hexagon"}});
+  v("weave", o.weave, FieldRule{.choices = {"plain", "twill"}});
+}
+
+template <class Visitor>
+void visit_fields(Visitor& v, MaterialOptions& o) {
+  const FieldRule share{.min = 0, .max = 1};
+  v("name", o.name, FieldRule{.required = true});
+  v("ior", o.ior, FieldRule{.min = 1, .max = 3});
+  v("anisotropy", o.anisotropy, share);
+  v("anisotropy_rotation", o.anisotropy_rotation, FieldRule{.unit = "turn", .min = -1, .max = 1});
+  v("transmission_weight", o.transmission_weight, share);
+  v("transmission_color", o.transmission_color, share);
+  v("transmission_depth", o.transmission_depth,
+    FieldRule{.unit = "m", .min = 0, .max = kLargestLength});
+  v("thin_walled", o.thin_walled, FieldRule{});
+  v("subsurface_weight", o.subsurface_weight, share);
+  v("subsurface_color", o.subsurface_color, share);
+  v("coat_weight", o.coat_weight, share);
+  v("coat_roughness", o.coat_roughness, share);
+  v("coat_ior", o.coat_ior, FieldRule{.min = 1, .max = 3});
+  v("coat_color", o.coat_color, share);
+  v("fuzz_weight", o.fuzz_weight, share);
+  v("fuzz_roughness", o.fuzz_roughness, share);
+  v("fuzz_color", o.fuzz_color, share);
+  v("pattern", o.pattern, FieldRule{});
+  v("wear", o.wear, FieldRule{});
+  v("wetness", o.wetness, share);
+  v("porosity", o.porosity, share);
+  v("dust", o.dust, share);
+  v("snow", o.snow, share);
+}
+
+template <class Visitor>
 void visit_fields(Visitor& v, PushOptions& o) {
   v("body", o.body, FieldRule{.required = true});
   v("time", o.time, FieldRule{.unit = "s", .min = 0, .max = kLongestTime, .required = true});
@@ -127,6 +184,7 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("environment", scene.environment, FieldRule{});
   v("robot", scene.robots, FieldRule{});
   v("camera", scene.cameras, FieldRule{});
+  v("material", scene.materials, FieldRule{});
   v("push", scene.pushes, FieldRule{});
   v("render", scene.render, FieldRule{});
   v("record", scene.record, FieldRule{});

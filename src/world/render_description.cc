@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/parallel.h"
+#include "world/authored_material.h"
 #include "world/visual_camera.h"
 #include "world/visual_deformable.h"
 #include "world/visual_label.h"
@@ -269,6 +270,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     visual->convert_meshes();
     visual->materials().load_textures();
   }
+  GLOAM_TRY_STATUS(author_materials(world.scene.materials, &out));
   out.ev100 = exposure(levels, out);
   return out;
 }

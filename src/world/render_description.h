@@ -63,6 +63,7 @@ struct MaterialDescription {
   int model_material = -1;      ///< row of PoseFrame::material_rgba and its kin, -1 = none
   std::array<float, 4> rgba{};  ///< display colour and opacity as in the model
   bool own_color = false;       ///< that is the geom's: material_rgba does not apply
+  float own_ior = 0;            ///< given by the scene instead of the rules'; 0 = not given
   bool can_mirror = false;      ///< reflectance counts: of planes and boxes
 };
 

@@ -35,6 +35,7 @@ void set_look(const ModelSurface& surface, MaterialDescription* material) {
     material->specular_weight = 1;
     material->roughness = min(material->roughness, 0.1f);
   }
+  if (material->own_ior > 0) material->ior = material->own_ior;
   if (surface.roughness >= 0)
     material->roughness = clamp(surface.roughness, 0, 1);
   else if (textures.roughness >= 0 || textures.orm >= 0)

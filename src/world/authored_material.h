@@ -1,0 +1,13 @@
+#pragma once
+// What a scene file says of the model's materials beyond MJCF.
+
+#include "gloam/scene.h"
+#include "world/render_description.h"
+
+namespace gloam {
+
+/// Applies the scene's [[material]] tables to the described materials, in source order, names
+/// before patterns with a *. Errors: a table that fits no material.
+Status author_materials(const std::vector<MaterialOptions>& options, RenderDescription* out);
+
+}  // namespace gloam
