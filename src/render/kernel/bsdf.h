@@ -138,7 +138,7 @@ GLOAM_HD BsdfSampleOf<F> sample_bsdf(const BsdfOf<F>& bsdf, Vec3Of<F> wo, F pick
   sample.wi = sample_cosine_hemisphere(u);
   if (any(layer)) {
     const Vec3Of<F> h = ggx::sample_half(bsdf.alpha, wo, u);
-    sample.wi = select<F>(layer, h * (2.0f * dot(wo, h)) - wo, sample.wi);
+    sample.wi = select<F>(layer, mirror(wo, h), sample.wi);
   }
   const Vec3Of<F> value = eval_bsdf(bsdf, wo, sample.wi, &sample.pdf);
   const MaskOf<F> valid = sample.pdf > 1e-12f;

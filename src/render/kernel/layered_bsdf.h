@@ -80,8 +80,7 @@ GLOAM_HD Vec3Of<F> sample_glass(const LayeredBsdfOf<F>& b, Vec3Of<F> wo, F pick,
   F cos_t;
   const F reflects = glass_reflects(b, cos_o, &cos_t);
   const MaskOf<F> mirrors = pick < reflection_chance(b, reflects);
-  const Vec3Of<F> r = h * (2.0f * cos_o) - wo;
-  const Vec3Of<F> t = h * (cos_o / b.eta - cos_t) - wo / b.eta;
+  const Vec3Of<F> r = mirror(wo, h), t = refract(wo, h, b.eta, cos_o, cos_t);
   const MaskOf<F> bent = !(mirrors | b.thin);
   const MaskOf<F> right_side = select(bent, t.z < 0.0f, r.z > 0.0f);
   const Vec3Of<F> wi = select<F>(mirrors, r, select<F>(b.thin, Vec3Of<F>{r.x, r.y, -r.z}, t));
@@ -161,7 +160,7 @@ GLOAM_HD BsdfSampleOf<F> sample_bsdf(const LayeredBsdfOf<F>& b, Vec3Of<F> wo, F 
   Vec3Of<F> wi = sample.wi;
   if (any(of_coat)) {
     const Vec3Of<F> h = ggx::sample_half(Vec2Of<F>{b.coat_alpha, b.coat_alpha}, wo, u);
-    wi = select<F>(of_coat, h * (2.0f * dot(wo, h)) - wo, wi);
+    wi = select<F>(of_coat, mirror(wo, h), wi);
   }
   if (any(of_glass)) {
     wi = select<F>(of_glass, layers::sample_glass(b, wo, own, u), wi);

@@ -18,6 +18,17 @@ GLOAM_HD F fresnel_dielectric(F cos_i, F eta, F* cos_t) {
   return select(sin2_t >= 1.0f, F(1.0f), 0.5f * (s * s + p * p));
 }
 
+/// wo mirrored about h.
+template <class F>
+GLOAM_HD Vec3Of<F> mirror(Vec3Of<F> wo, Vec3Of<F> h) {
+  return h * (2.0f * dot(wo, h)) - wo;
+}
+/// wo refracted at h into a medium of relative index eta, with the cosines of both sides.
+template <class F>
+GLOAM_HD Vec3Of<F> refract(Vec3Of<F> wo, Vec3Of<F> h, F eta, F cos_o, F cos_t) {
+  return h * (cos_o / eta - cos_t) - wo / eta;
+}
+
 namespace ggx {
 
 /// Smith's Lambda term times 2 cos, plus cos. `alpha`: widths along x and y.
@@ -54,6 +65,11 @@ GLOAM_HD F schlick(F cosine) {
 template <class F>
 GLOAM_HD F visibility(F cos_o, F root_o, F cos_i, F root_i) {
   return 0.5f / (cos_i * root_o + cos_o * root_i);
+}
+/// G2 / G1: of what leaves a visible microfacet, the share that is not caught by others.
+template <class F>
+GLOAM_HD F escaping(F cos_o, F root_o, F cos_i, F root_i) {
+  return cos_i * (cos_o + root_o) / (cos_i * root_o + cos_o * root_i);
 }
 
 }  // namespace ggx

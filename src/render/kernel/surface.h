@@ -118,9 +118,8 @@ GLOAM_HD LayeredBsdfOf<F> surface_bsdf(const SceneView& scene, const SurfaceOf<F
   *frame = FrameOf<F>::from_z(s.normal);
   const MaskOf<F> drawn_out = length_squared(s.tangent) > 0.0f;
   if (any(drawn_out)) {
-    const Vec3Of<F> x = normalize(s.tangent - s.normal * dot(s.tangent, s.normal));
-    frame->x = select<F>(drawn_out, x, frame->x);
-    frame->y = select<F>(drawn_out, cross(s.normal, x), frame->y);
+    frame->x = select<F>(drawn_out, s.tangent, frame->x);
+    frame->y = select<F>(drawn_out, cross(s.normal, s.tangent), frame->y);
   }
   Vec3Of<F> wo_local = frame->to_local(wo);
   wo_local.z = max(wo_local.z, 1e-4f);

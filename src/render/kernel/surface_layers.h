@@ -98,8 +98,7 @@ GLOAM_HD void apply_layers(const SceneView& scene, const RayHit& hit, const Affi
   s->coat_f0 = m.coat_f0;
   s->fuzz_weight = m.fuzz_weight;
   const float side = s->outside ? 1.0f : -1.0f;
-  Vec3f n_W = s->normal * side;  // reliefs rise outwards
-  const Vec3f geometric_W = s->geometric * side;
+  const Vec3f geometric_W = s->geometric * side;  // outwards
   if (m.pattern >= 0 || m.wear >= 0 || m.wetness + m.dust + m.snow > 0) {
     Field relief = apply_patterns(scene, m, p_G, to_frame(X_WG, geometric_W), width, s);
     relief.gradient = transform_vector(X_WG, relief.gradient);
@@ -108,8 +107,7 @@ GLOAM_HD void apply_layers(const SceneView& scene, const RayHit& hit, const Affi
       const Field snow = apply_weather(m, geometric_W, width, &bump, s);
       relief = relief * bump + snow;
     }
-    n_W = bumped_normal(n_W, relief);
-    s->normal = face_viewer(n_W * side, d);
+    s->normal = face_viewer(bumped_normal(s->normal * side, relief) * side, d);
   }
   Vec3f u, v;
   if (m.anisotropy > 0 && tangents(scene, instance, hit, time, &u, &v)) {

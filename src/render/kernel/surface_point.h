@@ -32,7 +32,7 @@ struct SurfaceOf {
   F f0{}, f90{};  ///< as in MaterialView
   F opacity = F(1.0f);
   Vec3Of<F> straight;  ///< of light on what is opaque, the share that goes straight through: sheets
-  Vec3Of<F> tangent;   ///< along which highlights are drawn out; zero = they are round
+  Vec3Of<F> tangent;   ///< unit, across `normal`: highlights are drawn out along it; zero = round
   // Of materials with layers alone: as in MaterialLayers, patterns and weather included.
   F coat_weight{}, coat_roughness{}, coat_f0{}, fuzz_weight{};
 };

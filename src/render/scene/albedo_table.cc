@@ -4,7 +4,7 @@
 
 #include "base/parallel.h"
 #include "base/rng.h"
-#include "render/kernel/layered_bsdf.h"
+#include "render/kernel/bsdf.h"
 #include "render/kernel/sampler.h"
 
 namespace gloam {
@@ -24,10 +24,9 @@ void fill_albedo_table(AlbedoTable* table) {
         const Vec3f h = ggx::sample_half(alpha, wo, u);
         const float cos_oh = dot(wo, h), cos_i = 2.0f * cos_oh * h.z - cos_o;
         if (cos_i <= 0) continue;
-        const Vec3f wi = h * (2.0f * cos_oh) - wo;
-        const float root_o = ggx::smith_root(alpha, wo), root_i = ggx::smith_root(alpha, wi);
-        // G2 / G1 of the height-correlated Smith function.
-        const float g = cos_i * (cos_o + root_o) / (cos_i * root_o + cos_o * root_i);
+        const Vec3f wi = mirror(wo, h);
+        const float g =
+            ggx::escaping(cos_o, ggx::smith_root(alpha, wo), cos_i, ggx::smith_root(alpha, wi));
         const float f = ggx::schlick(cos_oh);
         a += g * (1.0f - f);
         b += g * f;
@@ -53,32 +52,23 @@ void fill_glass_table(GlassTable* table) {
     const int64_t plane = row / n;
     const float axis = 2.0f * static_cast<float>(plane) / (n - 1) - 1.0f;
     const float roughness = static_cast<float>(row % n) / (n - 1);
-    LayeredBsdf b;
-    b.layered = true;
-    b.eta = GlassTable::eta_at(axis);
-    if (std::fabs(b.eta - 1) < 1e-3f) b.eta = 1.001f;
-    b.glass = b.p_glass = 1;
-    b.p_base = 0;
-    b.under = b.tint = {1, 1, 1};
-    b.glass_alpha = ggx_widths(roughness, 0.0f);
+    const Vec2f alpha = ggx_widths(roughness, 0.0f);
+    const float eta = GlassTable::eta_at(axis);
     for (int column = 0; column < n; ++column) {
       const float cos_o = max(static_cast<float>(column) / (n - 1), 1e-2f);
       const Vec3f wo{safe_sqrt(1.0f - cos_o * cos_o), 0, cos_o};
-      b.glass_root = ggx::smith_root(b.glass_alpha, wo);
+      const float root_o = ggx::smith_root(alpha, wo);
       float sum = 0;
       for (uint32_t i = 0; i < kPoints; ++i) {
         const float x = (static_cast<float>(i) + 0.5f) / kPoints;
         const Vec2f u{x, uniform_float(reverse_bits(i))};
         // Both sides of each microfacet: the choice between them adds no noise.
-        const Vec3f h = ggx::sample_half(b.glass_alpha, wo, u);
+        const Vec3f h = ggx::sample_half(alpha, wo, u);
         float cos_t;
-        const float cos_h = dot(wo, h), f = fresnel_dielectric(cos_h, b.eta, &cos_t);
-        const Vec3f r = h * (2.0f * cos_h) - wo;
-        const Vec3f t = h * (cos_h / b.eta - cos_t) - wo / b.eta;
-        // G2 / G1 of the height-correlated Smith function.
+        const float cos_h = dot(wo, h), f = fresnel_dielectric(cos_h, eta, &cos_t);
+        const Vec3f r = mirror(wo, h), t = refract(wo, h, eta, cos_h, cos_t);
         const auto seen = [&](Vec3f wi) {
-          const float away = std::fabs(wi.z), root_i = ggx::smith_root(b.glass_alpha, wi);
-          return away * (cos_o + b.glass_root) / (away * b.glass_root + cos_o * root_i);
+          return ggx::escaping(cos_o, root_o, std::fabs(wi.z), ggx::smith_root(alpha, wi));
         };
         if (r.z > 0) sum += f * seen(r);
         if (t.z < 0 && f < 1) sum += (1 - f) * seen(t);

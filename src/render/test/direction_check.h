@@ -5,10 +5,11 @@
 
 #include <cmath>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "base/rng.h"
-#include "base/vec.h"
+#include "render/kernel/layered_bsdf.h"
 
 namespace gloam {
 
@@ -62,6 +63,28 @@ inline void check_directions(const std::function<bool(uint32_t, Vec3f*)>& sample
 inline Vec2f random_2d(uint32_t i, uint32_t k) {
   const Philox4 d = philox4x32(99, k, i);
   return {uniform_float(d.v[0]), uniform_float(d.v[1])};
+}
+
+/// What sample_bsdf makes against eval_bsdf, for a Bsdf or a LayeredBsdf.
+template <class B>
+void check_bsdf(const B& bsdf, Vec3f wo, const std::string& name) {
+  check_directions(
+      [&](uint32_t i, Vec3f* d) {
+        const BsdfSample s = sample_bsdf(bsdf, wo, random_2d(i, 1).x, random_2d(i, 0));
+        *d = s.wi;
+        if (s.pdf <= 0) return false;
+        float pdf = 0;
+        const Vec3f f = eval_bsdf(bsdf, wo, s.wi, &pdf);
+        EXPECT_FLOAT_EQ(pdf, s.pdf);
+        EXPECT_NEAR(f.x, s.weight.x * pdf, 1e-4f * (1 + f.x));
+        return true;
+      },
+      [&](Vec3f d) {
+        float pdf = 0;
+        eval_bsdf(bsdf, wo, d, &pdf);
+        return pdf;
+      },
+      name.c_str());
 }
 
 }  // namespace gloam

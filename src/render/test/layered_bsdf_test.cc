@@ -97,23 +97,7 @@ TEST_F(LayeredBsdfTest, SamplesMatchTheirDensity) {
       const Vec3f wo = direction(cos_o);
       const LayeredBsdf bsdf = make(c.layers, c.surface, wo);
       EXPECT_NEAR(bsdf.p_base + bsdf.p_coat + bsdf.p_fuzz + bsdf.p_glass + bsdf.p_beyond, 1, 1e-5f);
-      check_directions(
-          [&](uint32_t i, Vec3f* d) {
-            const BsdfSample s = sample_bsdf(bsdf, wo, random_2d(i, 1).x, random_2d(i, 0));
-            *d = s.wi;
-            if (s.pdf <= 0) return false;
-            float pdf = 0;
-            const Vec3f f = eval_bsdf(bsdf, wo, s.wi, &pdf);
-            EXPECT_FLOAT_EQ(pdf, s.pdf);
-            EXPECT_NEAR(f.x, s.weight.x * pdf, 1e-4f * (1 + f.x));
-            return true;
-          },
-          [&](Vec3f d) {
-            float pdf = 0;
-            eval_bsdf(bsdf, wo, d, &pdf);
-            return pdf;
-          },
-          fmt::format("{} cos {}", c.name, cos_o).c_str());
+      check_bsdf(bsdf, wo, fmt::format("{} cos {}", c.name, cos_o));
     }
   }
 }

@@ -46,25 +46,8 @@ TEST(Sampling, BsdfMatchesItsDensity) {
       for (const float cos_o : {0.95f, 0.5f, 0.15f}) {
         const Vec3f wo{std::sqrt(1 - cos_o * cos_o), 0, cos_o};
         const Bsdf bsdf = make_plain(table, {0.6f, 0.5f, 0.4f}, metallic, roughness, wo);
-        const std::string name =
-            fmt::format("roughness {} metallic {} cos {}", roughness, metallic, cos_o);
-        check_directions(
-            [&](uint32_t i, Vec3f* d) {
-              const BsdfSample s = sample_bsdf(bsdf, wo, random_2d(i, 1).x, random_2d(i, 0));
-              *d = s.wi;
-              if (s.pdf <= 0) return false;
-              float pdf = 0;
-              const Vec3f f = eval_bsdf(bsdf, wo, s.wi, &pdf);
-              EXPECT_FLOAT_EQ(pdf, s.pdf);
-              EXPECT_NEAR(f.x, s.weight.x * pdf, 1e-4f * (1 + f.x));
-              return true;
-            },
-            [&](Vec3f d) {
-              float pdf = 0;
-              eval_bsdf(bsdf, wo, d, &pdf);
-              return pdf;
-            },
-            name.c_str());
+        check_bsdf(bsdf, wo,
+                   fmt::format("roughness {} metallic {} cos {}", roughness, metallic, cos_o));
       }
     }
   }
