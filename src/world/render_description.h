@@ -13,6 +13,9 @@
 #include "geometry/mesh.h"
 #include "gloam/camera.h"
 #include "gloam/result.h"
+#include "world/ies_profile.h"
+#include "world/light_schedule.h"
+#include "world/medium_description.h"
 #include "world/procedural_description.h"
 #include "world/shape_type.h"
 
@@ -39,6 +42,8 @@ struct MaterialDescription {
   float specular_weight = 1;      ///< 0..1, scales the dielectric layer
   float ior = 1.5f;               ///< of the dielectric layer
   Vec3f emission{0, 0, 0};        ///< luminance per channel [cd/m²]
+  bool emits_outwards = false;    ///< the back of a mesh's triangles is dark
+  int schedule = -1;              ///< row of RenderDescription::schedules, of the emission
   float anisotropy = 0;           ///< 0..1, draws highlights out along the tangent
   float anisotropy_rotation = 0;  ///< from the tangent, counter-clockwise, in turns
   float transmission_weight = 0;  ///< 0..1: glass
@@ -125,12 +130,27 @@ struct LightDescription {
   Vec3f ambient{0, 0, 0};  ///< MuJoCo's; a part of SkyDescription::ambient while it is active, the
                            ///< headlight's always
   bool is_static = false;  ///< never moves: fixed to a body that is welded to the world
-  int light = -1;  ///< row of PoseFrame's light poses; -1 = headlight: sits at the camera, shines
-                   ///< along its axis
+  int profile = -1;        ///< row of ies_profiles: `intensity` is where the profile is at its most
+  int schedule = -1;       ///< row of schedules, a factor on `intensity`
+  // Where it is: row of PoseFrame's light poses; or fixed to a body, shining along its own -Z; or,
+  // with neither, the headlight: at the camera, along its axis.
+  int light = -1;
+  int body = -1;
+  Affine3f X_BL;
+};
+
+/// Light from far away, laid out as SkyLight::texels (world/atmosphere.h).
+struct EnvironmentDescription {
+  std::string name;
+  int width = 0, height = 0;  ///< [texels]; 0 = none
+  std::vector<Vec3f> texels;  ///< (height x width), linear Rec. 709, finite, >= 0
+  float scale = 1;            ///< [cd/m²] of a texel of one
+  float turn = 0;             ///< about the world's Z, counter-clockwise from above [rad]
 };
 
 /// What rays that leave the scene see.
 struct SkyDescription {
+  EnvironmentDescription environment;  ///< instead of the texture
   int texture = -1;        ///< cube texture (MuJoCo's skybox), luminance = sRGB value * scale
   float scale = 0;         ///< [cd/m²] of a white texel
   Vec3f ambient{0, 0, 0};  ///< constant luminance per channel [cd/m²], added for indirect rays only
@@ -153,6 +173,11 @@ struct RenderDescription {
   std::vector<InstanceDescription> instances;
   std::vector<HeightFieldDescription> height_fields;
   std::vector<LightDescription> lights;
+  std::vector<IesProfile> ies_profiles;
+  std::vector<LightSchedule> schedules;
+  uint64_t schedule_seed = 1;
+  std::vector<MediumDescription> media;
+  std::vector<VolumeDescription> volumes;
   std::vector<CameraDescription>
       cameras;  ///< all of the model's, then one free camera that frames the model, "free"
   SkyDescription sky;
