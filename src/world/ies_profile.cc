@@ -162,20 +162,7 @@ double flux_of(const IesProfile& p) {
 }  // namespace
 
 float IesProfile::intensity(Vec3f d_L) const {
-  const float y =
-      std::atan2(std::hypot(d_L.x, d_L.y), -d_L.z) * kInvPi * static_cast<float>(rows - 1);
-  const int row = std::clamp(static_cast<int>(y), 0, rows - 2);
-  float x = 0;
-  if (columns > 1) {
-    x = std::atan2(d_L.y, d_L.x) * 0.5f * kInvPi * static_cast<float>(columns);
-    if (x < 0) x += static_cast<float>(columns);
-  }
-  const int column = static_cast<int>(x) % columns, beside = (column + 1) % columns;
-  const float* row0 = candela.data() + static_cast<size_t>(row) * columns;
-  const float* row1 = row0 + columns;
-  const float share = x - std::floor(x);
-  return lerp(lerp(row0[column], row0[beside], share), lerp(row1[column], row1[beside], share),
-              clamp(y - static_cast<float>(row), 0, 1));
+  return ies_intensity(candela.data(), rows, columns, d_L);
 }
 
 Result<IesProfile> parse_ies(std::string_view text, const std::string& name) {

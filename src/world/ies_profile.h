@@ -12,6 +12,24 @@
 
 namespace gloam {
 
+/// Bilinear look-up in a grid as IesProfile has it, towards the unit direction d_L.
+GLOAM_HD float ies_intensity(const float* grid, int rows, int columns, Vec3f d_L) {
+  const float y = atan2f(square_root(d_L.x * d_L.x + d_L.y * d_L.y), -d_L.z) * kInvPi *
+                  static_cast<float>(rows - 1);
+  const int row = static_cast<int>(clamp(y, 0.0f, static_cast<float>(rows - 2)));
+  float x = 0;
+  if (columns > 1) {
+    x = atan2f(d_L.y, d_L.x) * 0.5f * kInvPi * static_cast<float>(columns);
+    if (x < 0) x += static_cast<float>(columns);
+  }
+  const int column = static_cast<int>(x) % columns, beside = (column + 1) % columns;
+  const float* row0 = grid + static_cast<size_t>(row) * static_cast<size_t>(columns);
+  const float* row1 = row0 + columns;
+  const float share = x - floorf(x);
+  return lerp(lerp(row0[column], row0[beside], share), lerp(row1[column], row1[beside], share),
+              clamp(y - static_cast<float>(row), 0.0f, 1.0f));
+}
+
 /// Luminous intensity on a regular grid about the luminaire's frame L: it hangs from +Z and shines
 /// along -Z. Row i is at the angle pi i / (rows - 1) from -Z; column j at 2 pi j / columns from +X
 /// towards +Y; one column when it is the same all around.

@@ -150,11 +150,11 @@ struct EnvironmentDescription {
 
 /// What rays that leave the scene see.
 struct SkyDescription {
-  EnvironmentDescription environment;  ///< instead of the texture
   int texture = -1;        ///< cube texture (MuJoCo's skybox), luminance = sRGB value * scale
   float scale = 0;         ///< [cd/m²] of a white texel
   Vec3f ambient{0, 0, 0};  ///< constant luminance per channel [cd/m²], added for indirect rays only
                            ///< (MuJoCo's ambient lights)
+  EnvironmentDescription environment;  ///< instead of the texture
 };
 
 struct CameraDescription {

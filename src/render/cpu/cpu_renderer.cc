@@ -88,6 +88,7 @@ class CpuRenderer final : public Renderer {
     if (settings.tier == RenderTier::kDirect && settings.spp > 0) {
       job.scene.ambient = measure_ambient(job.scene, job.tracer, job.camera, film->width,
                                           film->height, settings.max_depth);
+      job.scene.environment.row_cdf = {};  // it stands for the sky's light: none is drawn
     }
     job.settings = settings;
     job.path = {settings.max_depth, settings.roulette_depth};

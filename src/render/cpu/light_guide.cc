@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "render/kernel/light_picker.h"
 
 namespace gloam {
 namespace {
@@ -191,7 +192,7 @@ void LightGuideStore::conclude(int row) {
   }
   // The outermost of a few directions lies well inside the opening.
   cone.one_minus_cos = cone.one_minus_cos * (1.0f + 1.0f / static_cast<float>(rays)) + 1e-3f;
-  if (cone.one_minus_cos > kWidest) return;
+  if (cone.one_minus_cos > kWidest) cone.one_minus_cos = 0;
   cone.strength = light * (4 * kPi / static_cast<float>(kSkyRays * count));
   sky_[static_cast<size_t>(row)] = cone;
 }
@@ -199,7 +200,8 @@ void LightGuideStore::conclude(int row) {
 void LightGuideStore::build(SceneView scene, const EmbreeTracer& statics,
                             const std::vector<LightView>& lights) {
   grid_ = {};
-  const bool has_sky = scene.sky_texture >= 0 || luminance(scene.sky_ambient) > 0;
+  const bool has_sky = scene.environment.illuminance > 0 || scene.sky_texture >= 0 ||
+                       luminance(scene.sky_ambient) > 0;
   const bool has_choice = has_sky || lights.size() > 1;
   const bool has_walls = statics.rows.size > statics.first_still;
   if (!has_walls || lights.size() > kMaxWeighedLights || !has_choice) {

@@ -40,31 +40,42 @@ GLOAM_HD void set_lane(LightSampleOf<F>* s, int i, const LightSample& value) {
   set_lane(&s->casts_shadow, i, value.casts_shadow);
 }
 
-/// Share of a lamp's full intensity in the direction from its centre to p.
+/// Share of a lamp's full intensity in the unit direction from its centre.
 template <class F>
-GLOAM_HD F spot_falloff(const LightView& light, Vec3Of<F> to_p) {
-  if (light.kind != LightKind::kSpot) return 1.0f;
-  const F cosine = dot(in_all_lanes<F>(light.direction), to_p);
-  F share = select(cosine >= light.cos_inner, F(1.0f), F(0.0f));
-  const MaskOf<F> rim = (cosine > light.cos_cutoff) & (cosine < light.cos_inner);
-  if (!any(rim)) return share;
-  each_lane(rim, [&](int i) {
-    const float angle = acosf(clamp(lane(cosine, i), -1.0f, 1.0f));
-    const float x = (light.cutoff - angle) / max(light.cutoff - light.inner, 1e-6f);
-    set_lane(&share, i, x * x * (3.0f - 2.0f * x));
-  });
+GLOAM_HD F lamp_share(const SceneView& scene, const LightView& light, Vec3Of<F> d) {
+  F share = 1.0f;
+  if (light.kind == LightKind::kSpot) {
+    const F cosine = dot(in_all_lanes<F>(light.direction), d);
+    share = select(cosine >= light.cos_inner, F(1.0f), F(0.0f));
+    each_lane((cosine > light.cos_cutoff) & (cosine < light.cos_inner), [&](int i) {
+      const float angle = acosf(clamp(lane(cosine, i), -1.0f, 1.0f));
+      const float x = (light.cutoff - angle) / max(light.cutoff - light.inner, 1e-6f);
+      set_lane(&share, i, x * x * (3.0f - 2.0f * x));
+    });
+  }
+  if (light.profile >= 0) {
+    const ProfileView& profile = scene.profiles[static_cast<uint32_t>(light.profile)];
+    const Frame R_WL{light.x, cross(light.x, light.direction), -light.direction};
+    each_lane(share > 0.0f, [&](int i) {
+      const float of_profile =
+          ies_intensity(scene.profile_values.data + profile.first, profile.rows, profile.columns,
+                        R_WL.to_local(lane(d, i)));
+      set_lane(&share, i, lane(share, i) * of_profile);
+    });
+  }
   return share;
 }
 
 namespace lights {
 
 template <class F>
-GLOAM_HD LightSampleOf<F> sample_lamp(const LightView& light, Vec3Of<F> p, Vec2Of<F> u) {
+GLOAM_HD LightSampleOf<F> sample_lamp(const SceneView& scene, const LightView& light, Vec3Of<F> p,
+                                      Vec2Of<F> u) {
   LightSampleOf<F> s;
   const Vec3Of<F> to = in_all_lanes<F>(light.p) - p;
   const F d2 = max(dot(to, to), 1e-12f), d = square_root(d2);
   const Vec3Of<F> axis = to / d;
-  const Vec3Of<F> intensity = in_all_lanes<F>(light.intensity) * spot_falloff(light, -axis);
+  const Vec3Of<F> intensity = in_all_lanes<F>(light.intensity) * lamp_share(scene, light, -axis);
   const float r2 = light.radius * light.radius;
   // Within the sphere it acts as a point.
   const MaskOf<F> point = MaskOf<F>(light.is_delta) | (d2 <= r2 * 1.0001f);
@@ -233,7 +244,8 @@ GLOAM_HD LightSample sample_instance(const SceneView& scene, const LightView& li
     s.distance = length(to);
     if (!(s.distance > 1e-6f)) return s;
     s.wi = to / s.distance;
-    if (!is_mesh(instance.shape) && dot(s.wi, at.n_W) >= 0) return s;  // its back is dark
+    const bool one_sided = !is_mesh(instance.shape) || material.emits_outwards;
+    if (one_sided && dot(s.wi, at.n_W) >= 0) return s;  // its back is dark
     s.pdf = instance_pdf(scene, instance, p, at.p_W, at.n_W, time);
     s.lift = leave_surface(at.p_W, at.n_W, -s.wi, 0.0f) - at.p_W;
   }
@@ -261,7 +273,7 @@ GLOAM_HD LightSampleOf<F> sample_one_light(const SceneView& scene, uint32_t inde
   if (light.kind == LightKind::kDirectional) {
     s = lights::sample_sun(light, u);
   } else if (light.kind != LightKind::kInstance) {
-    s = lights::sample_lamp(light, p, u);
+    s = lights::sample_lamp(scene, light, p, u);
   } else {
     const InstanceView& instance = scene.instances[light.instance];
     const MaterialView& material = scene.materials[instance.material];

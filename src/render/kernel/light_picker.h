@@ -4,34 +4,38 @@
 // shown to the camera. Device-safe.
 
 #include "render/kernel/light.h"
+#include "render/kernel/sky.h"
 
 namespace gloam {
 
 /// Scenes with more lights select by power alone.
 inline constexpr uint32_t kMaxWeighedLights = 16;
 
-/// A bound, up to a factor, of what light i brings to the surface at p with the geometric normal n
-/// if nothing is in between; zero only if it brings nothing. Light from behind counts where the
-/// surface lets it through.
+/// A bound, up to a factor, of what the light brings to the surface at p with the geometric normal
+/// n if nothing is in between; zero only if it brings nothing. Light from behind counts where the
+/// surface lets it through; points in a medium (n = 0) take it from all around.
 template <class F>
-GLOAM_HD F light_weight(const LightView& light, Vec3Of<F> p, Vec3Of<F> n,
+GLOAM_HD F light_weight(const SceneView& scene, const LightView& light, Vec3Of<F> p, Vec3Of<F> n,
                         MaskOf<F> both_sides = false) {
+  const MaskOf<F> floats = !(length_squared(n) > 0.0f);
   if (light.kind == LightKind::kDirectional) {
     F cosine = -dot(in_all_lanes<F>(light.direction), n);
-    cosine = select(both_sides, magnitude(cosine), cosine);
+    cosine = select(floats, F(1.0f), select(both_sides, magnitude(cosine), cosine));
     return select(cosine > -light.radius, light.strength * (max(cosine, 0.0f) + 0.05f), F(0.0f));
   }
   const Vec3Of<F> to = in_all_lanes<F>(light.p) - p;
-  const F above = dot(to, n);
-  const F height = select(both_sides, magnitude(above), above) + light.reach;
-  const F distance2 = dot(to, to);
+  const F distance2 = dot(to, to), above = dot(to, n);
+  const F height =
+      select(floats, square_root(distance2), select(both_sides, magnitude(above), above)) +
+      light.reach;
   const F inv_d2 = 1.0f / max(max(distance2, light.reach * light.reach), 1e-8f);
   const F cosine = min(height * square_root(inv_d2), 1.0f);
+  F weight = select(height > 0.0f, light.strength * inv_d2 * (cosine + 0.05f), F(0.0f));
   // Outside the cone of a spot nothing arrives.
-  const F cone = light.kind == LightKind::kSpot
-                     ? spot_falloff(light, -to / square_root(max(distance2, 1e-12f)))
-                     : F(1.0f);
-  return select(height > 0.0f, light.strength * inv_d2 * (cosine + 0.05f) * cone, F(0.0f));
+  if (light.kind == LightKind::kSpot || light.profile >= 0) {
+    weight *= lamp_share(scene, light, -to / square_root(max(distance2, 1e-12f)));
+  }
+  return weight;
 }
 
 /// How lights are taken at one surface: in proportion to light_weight where there are few, by power
@@ -42,49 +46,67 @@ class LightPickerOf {
   using Mask = MaskOf<F>;
   using Uint = UintOf<F>;
 
-  /// For the surfaces at p with the geometric normals n, in the `active` lanes; the others keep
-  /// what they were prepared for. `both_sides`: those that let light through.
+  /// For the surfaces at p with the geometric normals n, or points in a medium (n = 0), in the
+  /// `active` lanes; the others keep what they were prepared for. `both_sides`: those that let
+  /// light through.
   GLOAM_HD void prepare(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, Mask active = true,
                         Mask both_sides = false) {
     count_ = scene.lights.size;
-    if (count_ > kMaxWeighedLights) return;
     Uint first{};  // of the guide's visibilities
     Mask guided = false;
     sky_strength_ = select(active & both_sides, F(0.0f), sky_strength_);
     if (scene.guide.nx > 0) find_rows(scene.guide, p, n, active & !both_sides, &first, &guided);
-    F weight[kMaxWeighedLights], total = 0.0f, sky = 0.0f;
-    for (uint32_t i = 0; i < count_; ++i) {
+    const bool weighs = count_ <= kMaxWeighedLights;
+    F weight[kMaxWeighedLights], total = 0.0f;
+    for (uint32_t i = 0; weighs && i < count_; ++i) {
       const LightView& light = scene.lights[i];
-      weight[i] = light_weight(light, p, n, both_sides);
+      weight[i] = light_weight(scene, light, p, n, both_sides);
       if (light.guide >= 0 && any(guided)) {
         const F visible = gather(scene.guide.visible.data + light.guide, first);
         weight[i] *= select(guided, visible, F(1.0f));
       }
       total += weight[i];
     }
-    if (any(sky_strength_ > 0.0f)) {
+    F cone = 0.0f, map = 0.0f;  // the ways to the sky
+    const Mask narrow = (sky_strength_ > 0.0f) & (sky_one_minus_cos_ > 0.0f);
+    if (any(narrow)) {
       const F reach = square_root(min(2.0f * sky_one_minus_cos_, 1.0f));
       const F cosine = dot(sky_axis_, n) + reach;
-      sky = select(cosine > 0.0f, sky_strength_ * (min(cosine, 1.0f) + 0.05f), F(0.0f));
-      total += sky;
+      cone = select(narrow & (cosine > 0.0f), sky_strength_ * (min(cosine, 1.0f) + 0.05f), F(0.0f));
     }
+    if (!scene.environment.row_cdf.empty()) {
+      // Of even light from all around a surface gets a quarter. Beside a cone the map is for what
+      // is so bright and small that cones and guides miss it.
+      const F even = 0.25f * scene.environment.illuminance;
+      map = select(guided, max(0.25f * sky_strength_, 0.02f * even), even);
+    }
+    const F sky = cone + map;
+    total = weighs ? total + sky : 2.0f * sky;  // lights that are not weighed get half
     const F inverse = select(total > 0.0f, 1.0f / total, F(0.0f));
-    for (uint32_t i = 0; i < count_; ++i) {
+    for (uint32_t i = 0; weighs && i < count_; ++i) {
       share_[i] = select(active, weight[i] * inverse, share_[i]);
     }
-    sky_share_ = select(active, sky * inverse, sky_share_);
+    lights_share_ = select(active, 1.0f - sky * inverse, lights_share_);
+    cone_share_ = select(active, cone * inverse, cone_share_);
+    map_share_ = select(active, map * inverse, map_share_);
   }
 
-  /// Density with which sample() makes the direction d for its sky.
-  GLOAM_HD F sky_pdf(Vec3Of<F> d) const {
-    if (!any(sky_share_ > 0.0f)) return 0.0f;
-    const Mask inside = (sky_share_ > 0.0f) & (dot(d, sky_axis_) >= 1.0f - sky_one_minus_cos_);
-    return select(inside, sky_share_ * cone_pdf(sky_one_minus_cos_), F(0.0f));
+  /// Density with which sample() makes the direction d for its sky, in the `active` lanes.
+  GLOAM_HD F sky_pdf(const SceneView& scene, Vec3Of<F> d, Mask active) const {
+    const Mask inside =
+        active & (cone_share_ > 0.0f) & (dot(d, sky_axis_) >= 1.0f - sky_one_minus_cos_);
+    F pdf = 0.0f;
+    if (any(inside)) pdf = select(inside, cone_share_ * cone_pdf(sky_one_minus_cos_), pdf);
+    each_lane(active & (map_share_ > 0.0f), [&](int i) {
+      const float of_map = environment_pdf(scene.environment, lane(d, i));
+      set_lane(&pdf, i, lane(pdf, i) + lane(map_share_, i) * of_map);
+    });
+    return pdf;
   }
 
   /// Probability of taking light i.
   GLOAM_HD F probability(const SceneView& scene, uint32_t i) const {
-    return count_ > kMaxWeighedLights ? F(scene.lights[i].probability) : share_[i];
+    return count_ > kMaxWeighedLights ? lights_share_ * scene.lights[i].probability : share_[i];
   }
 
   /// Takes a light, or the sky, and a direction from p towards it, for the `active` lanes.
@@ -93,17 +115,20 @@ class LightPickerOf {
                                    F spread, Mask active = true) const {
     LightSampleOf<F> out;
     Mask open = active;
-    if (any(sky_share_ > 0.0f)) {
-      const Mask sky = active & (pick < sky_share_);
-      if (any(sky)) out = select(sky, sample_sky(scene, u, spread), out);
+    const F sky_share = cone_share_ + map_share_;
+    if (any(sky_share > 0.0f)) {
+      const Mask sky = active & (pick < sky_share);
+      if (any(sky)) out = select(sky, sample_sky(scene, pick < cone_share_, u, spread, sky), out);
       open = active & !sky;
-      pick -= sky_share_;
+      pick -= sky_share;
     }
     if (count_ > kMaxWeighedLights) {
+      pick = clamp(pick / lights_share_, 0.0f, 0.9999999f);
       each_lane(open, [&](int i) {
         set_lane(&out, i,
                  sample_by_power(scene, lane(p, i), lane(pick, i), lane(u, i), lane(time, i)));
       });
+      out.pdf = select(open, out.pdf * lights_share_, out.pdf);
       return out;
     }
     F before = 0.0f, taken = 0.0f;
@@ -161,12 +186,19 @@ class LightPickerOf {
     s.pdf *= taken;
     return s;
   }
-  GLOAM_HD LightSampleOf<F> sample_sky(const SceneView& scene, Vec2Of<F> u, F spread) const {
+  /// In the cone, or by the map.
+  GLOAM_HD LightSampleOf<F> sample_sky(const SceneView& scene, Mask in_cone, Vec2Of<F> u, F spread,
+                                       Mask active) const {
     LightSampleOf<F> s;
-    s.wi = FrameOf<F>::from_z(sky_axis_).to_world(sample_cone(sky_one_minus_cos_, u));
+    if (any(active & in_cone)) {
+      s.wi = FrameOf<F>::from_z(sky_axis_).to_world(sample_cone(sky_one_minus_cos_, u));
+    }
+    each_lane(active & !in_cone, [&](int i) {
+      set_lane(&s.wi, i, environment_sample(scene.environment, lane(u, i)).wi);
+    });
     s.distance = 1e7f;
-    s.radiance = sky_radiance_of(scene, s.wi, spread) + in_all_lanes<F>(scene.sky_ambient);
-    s.pdf = sky_pdf(s.wi);
+    s.radiance = sky_radiance_of(scene, s.wi, spread, active) + in_all_lanes<F>(scene.sky_ambient);
+    s.pdf = sky_pdf(scene, s.wi, active);
     return s;
   }
 
@@ -174,22 +206,25 @@ class LightPickerOf {
   F share_[kMaxWeighedLights];
   Vec3Of<F> sky_axis_;
   F sky_one_minus_cos_{}, sky_strength_{};
-  F sky_share_{};
+  F cone_share_{}, map_share_{};  ///< of the two ways to the sky
+  F lights_share_{};
 };
 using LightPicker = LightPickerOf<float>;
 
 /// Light of lamps and suns that a scattered ray meets before `tmax`, each weighted against
-/// `picker` at `from`, the surface that scattered it, by the density `pdf_bsdf` of its direction.
-template <class F>
+/// `picker` at `from`, the point that scattered it, by the density `pdf_bsdf` of its direction.
+/// `passing(F t, Mask)`: share of light that media on the way let through.
+template <class F, class Passing>
 GLOAM_HD Vec3Of<F> visible_lights(const SceneView& scene, const RayOf<F>& ray, F tmax,
-                                  Vec3Of<F> from, const LightPickerOf<F>& picker, F pdf_bsdf) {
+                                  Vec3Of<F> from, const LightPickerOf<F>& picker, F pdf_bsdf,
+                                  const Passing& passing) {
   Vec3Of<F> sum;
   for (uint32_t i = 0; i < scene.lights.size; ++i) {
     const LightView& light = scene.lights[i];
     if (light.is_delta || !light.casts_shadow || light.kind == LightKind::kInstance) continue;
     const float r2 = light.radius * light.radius;
     Vec3Of<F> radiance;
-    F sin2 = r2;
+    F sin2 = r2, t = tmax;
     MaskOf<F> seen;
     if (light.kind == LightKind::kDirectional) {
       seen = (tmax >= 1e29f) &
@@ -197,17 +232,17 @@ GLOAM_HD Vec3Of<F> visible_lights(const SceneView& scene, const RayOf<F>& ray, F
       if (!any(seen)) continue;
       radiance = in_all_lanes<F>(light.intensity / (kPi * r2));
     } else {
-      const F t = enter_sphere(ray, light.p, light.radius);
+      t = enter_sphere(ray, light.p, light.radius);
       const Vec3Of<F> to = in_all_lanes<F>(light.p) - from;
       const F d2 = dot(to, to);
       seen = (t > 0.0f) & (t < tmax) & (d2 > r2 * 1.0001f);
       if (!any(seen)) continue;
       radiance = in_all_lanes<F>(light.intensity) *
-                 (spot_falloff(light, -to / square_root(d2)) / (kPi * r2));
+                 (lamp_share(scene, light, -to / square_root(d2)) / (kPi * r2));
       sin2 = min(r2 / d2, 1.0f);
     }
     const F pdf = picker.probability(scene, i) * cone_pdf(one_minus_cos_of(sin2));
-    sum += select<F>(seen, radiance * mis_weight(pdf_bsdf, pdf), Vec3Of<F>{});
+    sum += select<F>(seen, radiance * passing(t, seen) * mis_weight(pdf_bsdf, pdf), Vec3Of<F>{});
   }
   return sum;
 }

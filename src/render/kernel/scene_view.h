@@ -2,6 +2,7 @@
 // What the kernel reads: plain arrays in the memory of the side that runs it. render/scene fills
 // them. Device-safe.
 
+#include "render/kernel/environment.h"
 #include "render/kernel/medium_view.h"
 #include "render/kernel/ray.h"
 #include "world/procedural_description.h"
@@ -77,6 +78,7 @@ struct MaterialLayers {
 struct MaterialView {
   Vec3f base_color;
   Vec3f emission;
+  bool emits_outwards = false;  ///< as in MaterialDescription
   float opacity = 1, metallic = 0, roughness = 0.5f;
   float f0 = 0.04f;  ///< of the dielectric layer at normal incidence, specular weight included
   float f90 = 1;     ///< of the dielectric layer at grazing incidence
@@ -97,6 +99,8 @@ struct LightView {
   bool is_delta = false;                              ///< no extent: cannot be hit
   Vec3f p;                                            ///< of the centre [m]
   Vec3f direction;                                    ///< along which it shines, unit
+  Vec3f x;                                            ///< across it, unit; of lamps with a profile
+  int profile = -1;                                   ///< row of SceneView::profiles
   Vec3f intensity;                                    ///< [cd]; directional: [lx]
   float radius = 0;                                   ///< [m]; directional: sine of the half angle
   float cutoff = 0, cos_cutoff = -1, cos_inner = -1;  ///< spot: half angle [rad] and cosines
@@ -109,11 +113,17 @@ struct LightView {
   float cdf = 0;          ///< running sum of probabilities
 };
 
-/// A cone in which the sky is seen.
+/// IesProfile's grid relative to its most.
+struct ProfileView {
+  uint32_t first = 0;  ///< row of SceneView::profile_values
+  int rows = 0, columns = 0;
+};
+
+/// Where the sky is seen.
 struct SkyCone {
   Vec3f axis;
-  float one_minus_cos = 0;  ///< of the half angle
-  float strength = 0;       ///< illuminance on a surface that faces it [lx]; 0 = no such cone
+  float one_minus_cos = 0;  ///< of the cone's half angle; 0 = all around, or nowhere
+  float strength = 0;       ///< luminance over what is seen [cd sr/m² = lx]
 };
 
 /// What static geometry lets through to the cells of a regular grid. It steers sampling alone: a
@@ -145,9 +155,11 @@ struct LightGuide {
     if (a.y >= a.x) return n.y >= 0 ? 2 : 3;
     return n.x >= 0 ? 0 : 1;
   }
-  /// The row for a surface at p with the normal n; -1 outside the grid, or without one.
+  /// The row for a surface at p with the normal n, or a point in a medium (n = 0); -1 outside the
+  /// grid.
   GLOAM_HD int row_at(Vec3f p, Vec3f n) const {
     if (nx == 0) return -1;
+    if (!(length_squared(n) > 0)) return cell_at(p);
     const float edge = 1.0f / per_metre;
     const int cell = cell_at(p + n * (1e-3f * edge));
     const int row = cell >= 0 ? surface_row[kFacings * cell + facing_of(n)] : -1;
@@ -193,12 +205,15 @@ struct SceneView {
   DeviceSpan<const TextureLevel> texture_levels;
   DeviceSpan<const Texel> texels;
   DeviceSpan<const LightView> lights;
+  DeviceSpan<const ProfileView> profiles;
+  DeviceSpan<const float> profile_values;
   DeviceSpan<const MaterialLayers> layers;
   DeviceSpan<const ProceduralDescription> procedurals;
   const AlbedoTable* albedo = nullptr;
   const GlassTable* glass = nullptr;  ///< where some material is glass
   LightGuide guide;
   MediaView media;
+  EnvironmentView environment;  ///< instead of sky_texture
   int sky_texture = -1;
   float sky_scale = 0;
   Vec3f sky_ambient;             ///< for indirect rays

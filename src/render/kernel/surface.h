@@ -19,7 +19,7 @@ GLOAM_HD SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>& ray,
   AffineOf<F> X_WG;
   Vec3Of<F> size, corner[3];  // of the shape; shading normals of a triangle's corners
   MaskOf<F> mesh = false, smooth = false, box = false, moving = false, textured = false;
-  MaskOf<F> layered = false;
+  MaskOf<F> layered = false, outwards = false;
   each_lane(found, [&](int i) {
     const InstanceView& instance = scene.instances[lane(hit.instance, i)];
     const MaterialView& m = scene.materials[instance.material];
@@ -34,6 +34,7 @@ GLOAM_HD SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>& ray,
     set_lane(&s.opacity, i, m.opacity);
     if (m.textured) set_lane(&textured, i, true);
     if (m.layers >= 0) set_lane(&layered, i, true);
+    if (m.emits_outwards) set_lane(&outwards, i, true);
     if (is_mesh(instance.shape)) {
       set_lane(&mesh, i, true);
       const DeviceSpan<const Vec3f>& normals = scene.meshes[instance.mesh].corner_normals;
@@ -98,7 +99,7 @@ GLOAM_HD SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>& ray,
   });
   const MaskOf<F> inside = cosine > 0.0f;
   s.outside = !inside;
-  s.emission = select<F>(solid & inside, Vec3Of<F>{}, s.emission);
+  s.emission = select<F>((solid | outwards) & inside, Vec3Of<F>{}, s.emission);
   s.geometric = select<F>(inside, -s.geometric, s.geometric);
   s.normal = select<F>(inside, -s.normal, s.normal);
   s.normal = face_viewer(s.normal, ray.d);

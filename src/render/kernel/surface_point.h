@@ -27,7 +27,7 @@ struct SurfaceOf {
   MaskOf<F> outside = true;  ///< seen from the side that normals point to
   UintOf<F> instance{};      ///< row of SceneView::instances
   Vec3Of<F> base_color;
-  Vec3Of<F> emission;  ///< towards the viewer: meshes shine to both sides, others outwards
+  Vec3Of<F> emission;  ///< towards the viewer
   F metallic{}, roughness{};
   F f0{}, f90{};  ///< as in MaterialView
   F opacity = F(1.0f);

@@ -127,22 +127,4 @@ GLOAM_HD Rgba lookup_cube(const SceneView& scene, int texture, Vec3f d, float fo
                               t * inv + 0.5f, footprint, false);
 }
 
-/// Luminance of the sky texture towards the unit world direction d [cd/m²]. MuJoCo turns its skybox
-/// by 90 degrees about +X.
-GLOAM_HD Vec3f sky_radiance(const SceneView& scene, Vec3f d, float spread) {
-  if (scene.sky_texture < 0) return {0, 0, 0};
-  return lookup_cube(scene, scene.sky_texture, {d.x, d.z, -d.y}, spread).rgb * scene.sky_scale;
-}
-
-/// The same for directions in lanes.
-template <class F>
-GLOAM_HD Vec3Of<F> sky_radiance_of(const SceneView& scene, Vec3Of<F> d, F spread) {
-  Vec3Of<F> out;
-  if (scene.sky_texture < 0) return out;
-  for (int i = 0; i < Lanes<F>::kCount; ++i) {
-    set_lane(&out, i, sky_radiance(scene, lane(d, i), lane(spread, i)));
-  }
-  return out;
-}
-
 }  // namespace gloam

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "render/kernel/shapes.h"
+#include "render/scene/pose.h"
 #include "world/visual_rules.h"
 
 namespace gloam {
@@ -15,6 +16,8 @@ float light_power(const LightView& light, float scene_radius) {
   return strength * 2 * kPi * (1.0f - light.cos_cutoff);
 }
 
+bool is_headlight(const LightDescription& light) { return light.light < 0 && light.body < 0; }
+
 LightView describe_light(const LightDescription& in) {
   LightView out;
   out.kind = in.type == LightType::kPoint  ? LightKind::kPoint
@@ -23,6 +26,7 @@ LightView describe_light(const LightDescription& in) {
   out.casts_shadow = in.casts_shadow;
   out.intensity = in.intensity;
   out.radius = max(in.radius, 0.0f);
+  out.profile = in.profile;
   out.is_delta = out.radius <= 0;
   if (out.kind == LightKind::kSpot) {
     out.cos_cutoff = clamp(in.cos_cutoff, -1.0f, 1.0f);
@@ -54,7 +58,7 @@ void set_bounds(const InstanceView& instance, const std::vector<MeshView>& meshe
 
 // The guide's rows are those of the description, whatever is live: it is built once.
 bool is_guided(const LightDescription& light) {
-  return light.is_static && light.casts_shadow && light.light >= 0;
+  return light.is_static && light.casts_shadow && !is_headlight(light);
 }
 bool is_guided(const RenderDescription& description, const InstanceDescription& instance) {
   const MaterialDescription& material =
@@ -68,9 +72,24 @@ Vec3f row(const std::vector<double>& values, int i) {
           static_cast<float>(values[3 * i + 2])};
 }
 
+/// Puts a lamp where the frame has it; the headlight stays where it is.
+void place(const LightDescription& in, const PoseFrame& frame, LightView* light) {
+  if (in.light >= 0) {
+    light->p = row(frame.light_p, in.light);
+    light->direction = normalize(row(frame.light_dir, in.light));
+    light->x = Frame::from_z(-light->direction).x;
+  } else if (in.body >= 0) {
+    const Affine3f X_WL = pose_in_world(frame, in.body, in.X_BL);
+    light->p = X_WL.p;
+    light->direction = -normalize(X_WL.z);
+    light->x = normalize(X_WL.x);
+  }
+}
+
 }  // namespace
 
 void LightTable::update(const RenderDescription& description, const PoseFrame& frame,
+                        const std::vector<float>& levels,
                         const std::vector<MaterialView>& materials,
                         const std::vector<MeshView>& meshes, std::vector<InstanceView>* instances) {
   const bool live = frame.live_serial != 0;
@@ -79,24 +98,24 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
   std::vector<float> power;
   const float scene_radius = max(description.extent, 1.0f);
   int guide = 0;
+  size_t row_of_light = 0;
   for (const LightDescription& in : description.lights) {
     const int row_of_guide = is_guided(in) ? guide++ : -1;
+    const float level = levels[row_of_light++];
     const bool follows = live && in.light >= 0;
     const size_t i = follows ? static_cast<size_t>(in.light) : 0;
     if (follows ? frame.light_active[i] == 0 : !in.active) continue;
     LightView light = describe_light(in);
     light.guide = row_of_guide;
-    if (in.light >= 0) {
-      light.p = row(frame.light_p, in.light);
-      light.direction = normalize(row(frame.light_dir, in.light));
-    }
+    place(in, frame, &light);
     if (follows) {
       const float* diffuse = &frame.light_diffuse[3 * i];
       light.intensity = light_intensity({diffuse[0], diffuse[1], diffuse[2]},
                                         frame.light_intensity[i], in.legacy_scale);
     }
+    light.intensity *= level;
     if (!(luminance(light.intensity) > 0)) continue;
-    if (in.light < 0) headlights_.push_back(lights_.size());
+    if (is_headlight(in)) headlights_.push_back(lights_.size());
     light.strength = luminance(light.intensity);
     light.reach = light.kind == LightKind::kDirectional ? 0.0f : light.radius;
     lights_.push_back(light);
@@ -111,8 +130,9 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
     const bool is_mesh =
         instance.shape == ShapeType::kMesh || instance.shape == ShapeType::kDeformable;
     const MaterialView& material = materials[instance.material];
+    const float sides = is_mesh && !material.emits_outwards ? 2.0f : 1.0f;
     const float area =
-        is_mesh ? 2 * meshes[instance.mesh].area : shape_area(instance.shape, instance.size);
+        sides * (is_mesh ? meshes[instance.mesh].area : shape_area(instance.shape, instance.size));
     const float strength = luminance(material.emission) * kPi * area * material.opacity;
     if (!(strength > 0)) continue;
     instance.light = static_cast<int>(lights_.size());
@@ -143,10 +163,8 @@ std::vector<LightView> LightTable::guided(const RenderDescription& description,
   std::vector<LightView> lights;
   for (const LightDescription& in : description.lights) {
     if (!is_guided(in)) continue;
-    LightView light = describe_light(in);
-    light.p = row(frame.light_p, in.light);
-    light.direction = normalize(row(frame.light_dir, in.light));
-    lights.push_back(light);
+    lights.push_back(describe_light(in));
+    place(in, frame, &lights.back());
   }
   for (size_t i = 0; i < description.instances.size(); ++i) {
     if (!is_guided(description, description.instances[i])) continue;

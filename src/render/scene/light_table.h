@@ -11,9 +11,10 @@ namespace gloam {
 class LightTable {
  public:
   /// Poses and live fields of the frame; then the emitters among `instances`, whose `light` is set.
+  /// `levels`: of the description's lights, by their schedules.
   void update(const RenderDescription& description, const PoseFrame& frame,
-              const std::vector<MaterialView>& materials, const std::vector<MeshView>& meshes,
-              std::vector<InstanceView>* instances);
+              const std::vector<float>& levels, const std::vector<MaterialView>& materials,
+              const std::vector<MeshView>& meshes, std::vector<InstanceView>* instances);
   /// Headlights sit at the camera.
   void place_headlights(const Affine3f& X_WC);
 

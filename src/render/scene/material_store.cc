@@ -60,6 +60,7 @@ MaterialView view_of(const MaterialDescription& in, const TextureStore& textures
   const auto unit = [](float x) { return clamp(x, 0.0f, 1.0f); };
   out.base_color = {unit(in.base_color.x), unit(in.base_color.y), unit(in.base_color.z)};
   out.emission = {max(in.emission.x, 0), max(in.emission.y, 0), max(in.emission.z, 0)};
+  out.emits_outwards = in.emits_outwards;
   out.opacity = unit(in.opacity);
   out.metallic = unit(in.metallic);
   out.roughness = unit(in.roughness);
@@ -116,6 +117,13 @@ MaterialStore::MaterialStore(const RenderDescription& description, const Texture
     if (has_layers(material)) layers_.push_back(layers_of(material));
     views_.push_back(view_of(material, textures));
     views_.back().layers = layer_rows_.back();
+    emission_.push_back(views_.back().emission);
+  }
+}
+
+void MaterialStore::dim(const RenderDescription& description, const std::vector<float>& levels) {
+  for (size_t i = 0; i < levels.size(); ++i) {
+    if (description.materials[i].schedule >= 0) views_[i].emission = emission_[i] * levels[i];
   }
 }
 
@@ -136,6 +144,7 @@ bool MaterialStore::update(const RenderDescription& description, const TextureSt
       const bool is_live = in.model_material >= 0;
       views_[i] = is_live ? live_view(in, rgba, frame, textures) : view_of(in, textures);
       views_[i].layers = layer_rows_[i];
+      emission_[i] = views_[i].emission;
     }
   }
   for (size_t i = 0; i < instances->size(); ++i) {

@@ -21,6 +21,9 @@ class MaterialStore {
   bool update(const RenderDescription& description, const TextureStore& textures,
               const PoseFrame& frame, std::vector<InstanceView>* instances);
 
+  /// Scales what the described materials give off.
+  void dim(const RenderDescription& description, const std::vector<float>& levels);
+
   const std::vector<MaterialView>& views() const { return views_; }
   const std::vector<MaterialLayers>& layers() const { return layers_; }
 
@@ -28,6 +31,7 @@ class MaterialStore {
   std::vector<MaterialView> views_;  // those of the description, then own ones of instances
   std::vector<MaterialLayers> layers_;
   std::vector<int> layer_rows_;  ///< by described material; -1 = none
+  std::vector<Vec3f> emission_;  ///< by described material, undimmed
   uint64_t live_serial_ = 0;
 };
 

@@ -7,6 +7,7 @@
 #include "base/check.h"
 #include "render/kernel/shapes.h"
 #include "render/scene/albedo_table.h"
+#include "render/scene/pose.h"
 #include "world/visual_rules.h"
 
 namespace gloam {
@@ -30,6 +31,22 @@ Status check_references(const RenderDescription& d) {
                                texture));
       }
     }
+  }
+  for (const MaterialDescription& m : d.materials) {
+    if (m.schedule >= static_cast<int>(d.schedules.size())) {
+      return bad(fmt::format("material '{}' refers to schedule {}, which does not exist", m.name,
+                             m.schedule));
+    }
+  }
+  for (const LightDescription& light : d.lights) {
+    if (light.schedule >= static_cast<int>(d.schedules.size()) ||
+        light.profile >= static_cast<int>(d.ies_profiles.size())) {
+      return bad(fmt::format("light '{}' refers to schedule {} or profile {}, which does not exist",
+                             light.name, light.schedule, light.profile));
+    }
+  }
+  for (const LightSchedule& schedule : d.schedules) {
+    GLOAM_TRY_STATUS(check_schedule(schedule, {}));
   }
   if (!is_texture(d.sky.texture)) return bad("the sky refers to a texture that does not exist");
   for (size_t i = 0; i < d.instances.size(); ++i) {
@@ -68,26 +85,6 @@ Status check_references(const RenderDescription& d) {
   return {};
 }
 
-/// X_WG = X_WB X_BG in double precision, rounded once.
-Affine3f pose_of(const PoseFrame& frame, const InstanceDescription& instance) {
-  const size_t b = static_cast<size_t>(instance.body);
-  GLOAM_CHECK(frame.body_p.size() >= 3 * (b + 1) && frame.body_R.size() >= 9 * (b + 1),
-              "the pose frame lacks a body");
-  const double *p = &frame.body_p[3 * b], *R = &frame.body_R[9 * b];
-  const auto rotate = [R](Vec3f v, const double* offset) {
-    double out[3];
-    for (int i = 0; i < 3; ++i) {
-      out[i] = R[3 * i] * v.x + R[3 * i + 1] * v.y + R[3 * i + 2] * v.z +
-               (offset != nullptr ? offset[i] : 0.0);
-    }
-    return Vec3f{static_cast<float>(out[0]), static_cast<float>(out[1]),
-                 static_cast<float>(out[2])};
-  };
-  const Affine3f& X_BG = instance.X_BG;
-  return {rotate(X_BG.x, nullptr), rotate(X_BG.y, nullptr), rotate(X_BG.z, nullptr),
-          rotate(X_BG.p, p)};
-}
-
 /// MuJoCo's ambient light of all lamps that are on, and of the headlight.
 Vec3f live_ambient(const RenderDescription& description, const PoseFrame& frame) {
   if (frame.live_serial == 0) return description.sky.ambient;
@@ -104,6 +101,27 @@ bool is_same(const Affine3f& a, const Affine3f& b) {
   return a.x == b.x && a.y == b.y && a.z == b.z && a.p == b.p;
 }
 
+/// Mean of the factors that schedules give while the shutter is open; `first_lamp` tells lamps from
+/// materials.
+template <class Rows>
+void mean_levels(const RenderDescription& description, const Rows& rows, size_t first_lamp,
+                 double open, double close, std::vector<float>* levels) {
+  constexpr int kTimes = 8;  // the finest ripples of lamps are as long as usual shutters
+  levels->assign(rows.size(), 1.0f);
+  for (size_t i = 0; i < rows.size(); ++i) {
+    if (rows[i].schedule < 0) continue;
+    const LightSchedule& schedule = description.schedules[static_cast<size_t>(rows[i].schedule)];
+    const int times = close > open ? kTimes : 1;
+    double sum = 0;
+    for (int k = 0; k < times; ++k) {
+      const double time = times == 1 ? open : open + (close - open) * (k + 0.5) / times;
+      sum += light_level(schedule, time, description.schedule_seed,
+                         static_cast<uint32_t>(first_lamp + i));
+    }
+    (*levels)[i] = static_cast<float>(sum / times);
+  }
+}
+
 template <class T>
 DeviceSpan<const T> span_of(const std::vector<T>& v) {
   return {v.data(), static_cast<uint32_t>(v.size())};
@@ -116,6 +134,12 @@ Result<std::unique_ptr<RenderScene>> RenderScene::make(const RenderDescription& 
   std::unique_ptr<RenderScene> scene(new RenderScene(description));
   GLOAM_TRY(scene->textures_, make_texture_store(description.textures));
   GLOAM_TRY(scene->meshes_, MeshStore::make(description));
+  GLOAM_TRY(scene->volumes_, VolumeStore::make(description.media, description.volumes));
+  scene->profiles_ = make_profile_store(description.ies_profiles);
+  if (const EnvironmentDescription& map = description.sky.environment; map.width > 0) {
+    GLOAM_TRY(scene->environment_,
+              EnvironmentTable::make(map.width, map.height, map.texels, map.name));
+  }
   fill_albedo_table(&scene->albedo_);
   scene->materials_ = MaterialStore(description, scene->textures_);
   const std::vector<MaterialLayers>& layers = scene->materials_.layers();
@@ -191,8 +215,17 @@ void RenderScene::follow_live_fields(const PoseFrame& frame) {
   mesh_views_ = meshes_.views(description_);
 }
 
+void RenderScene::follow_schedules(const PoseFrame& open, const PoseFrame& close) {
+  const RenderDescription& d = description_;
+  mean_levels(d, d.lights, 0, open.time, close.time, &light_levels_);
+  if (d.schedules.empty()) return;
+  mean_levels(d, d.materials, d.lights.size(), open.time, close.time, &material_levels_);
+  materials_.dim(d, material_levels_);
+}
+
 void RenderScene::update(const PoseFrame& open, const PoseFrame& close, const PoseFrame& previous) {
   follow_live_fields(open);
+  follow_schedules(open, close);
   if (!description_.deformables.empty()) {
     meshes_.update(description_, open, close, previous);
     mesh_views_ = meshes_.views(description_);
@@ -201,13 +234,15 @@ void RenderScene::update(const PoseFrame& open, const PoseFrame& close, const Po
     InstanceView& out = instances_[i];
     if (out.shape == ShapeType::kDeformable) continue;
     const InstanceDescription& in = description_.instances[i];
-    out.X_WG = pose_of(open, in);
-    out.X_WG_close = &open == &close || in.is_static ? out.X_WG : pose_of(close, in);
-    out.X_WG_previous = &open == &previous || in.is_static ? out.X_WG : pose_of(previous, in);
+    out.X_WG = pose_in_world(open, in.body, in.X_BG);
+    out.X_WG_close =
+        &open == &close || in.is_static ? out.X_WG : pose_in_world(close, in.body, in.X_BG);
+    out.X_WG_previous =
+        &open == &previous || in.is_static ? out.X_WG : pose_in_world(previous, in.body, in.X_BG);
     out.moving = !is_same(out.X_WG, out.X_WG_close);
     out.has_moved = !is_same(out.X_WG, out.X_WG_previous);
   }
-  lights_.update(description_, open, materials_.views(), mesh_views_, &instances_);
+  lights_.update(description_, open, light_levels_, materials_.views(), mesh_views_, &instances_);
 }
 
 bool RenderScene::has_motion() const {
@@ -227,11 +262,18 @@ SceneView RenderScene::view_from(const Affine3f& X_WC) {
   view.texture_levels = span_of(textures_.levels);
   view.texels = span_of(textures_.texels);
   view.lights = span_of(lights_.lights());
+  view.profiles = span_of(profiles_.profiles);
+  view.profile_values = span_of(profiles_.values);
+  view.media = volumes_.view();
   view.procedurals = span_of(description_.procedurals);
   view.layers = span_of(materials_.layers());
   view.albedo = &albedo_;
   view.glass = glass_.get();
   const SkyDescription& sky = description_.sky;
+  if (environment_) {
+    view.environment =
+        environment_->view(turned_about_z(sky.environment.turn), sky.environment.scale);
+  }
   view.sky_texture = sky.scale > 0 ? sky.texture : -1;
   view.sky_scale = sky.scale;
   view.sky_ambient = sky_ambient_;
@@ -245,8 +287,11 @@ SceneView RenderScene::view_from(const Affine3f& X_WC) {
     view.has_visible_lights |=
         !light.is_delta && light.casts_shadow && light.kind != LightKind::kInstance;
   }
-  view.has_emitters |=
-      view.has_visible_lights || view.sky_texture >= 0 || max_component(sky_ambient_) > 0;
+  for (const VolumeDescription& volume : description_.volumes) {
+    view.has_emitters |= description_.media[static_cast<size_t>(volume.medium)].emission > 0;
+  }
+  view.has_emitters |= view.has_visible_lights || view.environment.illuminance > 0 ||
+                       view.sky_texture >= 0 || max_component(sky_ambient_) > 0;
   return view;
 }
 

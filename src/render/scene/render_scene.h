@@ -2,12 +2,16 @@
 // The buffers behind a SceneView: made once from a RenderDescription, moved by PoseFrames.
 
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "render/scene/environment_table.h"
 #include "render/scene/light_table.h"
 #include "render/scene/material_store.h"
 #include "render/scene/mesh_store.h"
+#include "render/scene/profile_store.h"
 #include "render/scene/texture_store.h"
+#include "render/scene/volume_store.h"
 
 namespace gloam {
 
@@ -49,15 +53,20 @@ class RenderScene {
   explicit RenderScene(const RenderDescription& description) : description_(description) {}
   void follow_live_fields(const PoseFrame& frame);
   void follow_materials();
+  void follow_schedules(const PoseFrame& open, const PoseFrame& close);
 
   const RenderDescription& description_;
   TextureStore textures_;
   MeshStore meshes_;
   LightTable lights_;
+  ProfileStore profiles_;
+  std::optional<EnvironmentTable> environment_;
+  VolumeStore volumes_;
   AlbedoTable albedo_;
   std::unique_ptr<GlassTable> glass_;  ///< where some material is glass
   MaterialStore materials_;
-  Vec3f sky_ambient_;  ///< [cd/m²]
+  Vec3f sky_ambient_;                                  ///< [cd/m²]
+  std::vector<float> light_levels_, material_levels_;  ///< by schedule, of the description's rows
   std::vector<InstanceView> instances_;
   std::vector<MeshView> mesh_views_;
   std::vector<bool> drawn_;            ///< by instance

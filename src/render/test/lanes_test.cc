@@ -157,8 +157,40 @@ SceneBuilder varied_scene() {
   return b;
 }
 
-TEST(Lanes, PathsEqualThoseOfOneFloat) {
-  const SceneBuilder b = varied_scene();
+/// The same under a map of the sky, in glowing fog, with a lamp that has a profile.
+SceneBuilder foggy_scene() {
+  SceneBuilder b = varied_scene();
+  EnvironmentDescription& map = b.description.sky.environment;
+  map = {"map", 32, 16, {}};
+  for (int i = 0; i < 32 * 16; ++i) {
+    map.texels.push_back(Vec3f{5, 6, 8} * (i == 100 ? 500.0f : 1.0f));
+  }
+  IesProfile profile;
+  profile.rows = 3;
+  profile.columns = 2;
+  profile.candela = {3, 3, 2, 1, 0, 0};
+  profile.most = 3;
+  b.description.ies_profiles = {profile};
+  b.description.lights[0].profile = 0;
+  MediumDescription fog;
+  fog.mass_extinction = {0.1f, 0.2f, 0.3f, 0, 0, 0};
+  fog.albedo = {0.9f, 0.8f, 0.7f, 0, 0, 0};
+  fog.g = {0.7f, 0.6f, 0.5f, 0, 0, 0};
+  fog.emission = 1e-4f;
+  b.description.media = {fog};
+  VolumeDescription box;
+  box.size = {4, 4, 4};
+  box.even_density = 1;
+  box.even_temperature = 1500;
+  box.fade = 0.5f;
+  b.description.volumes = {box};
+  return b;
+}
+
+class LanePaths : public testing::TestWithParam<bool> {};
+
+TEST_P(LanePaths, EqualThoseOfOneFloat) {
+  const SceneBuilder b = GetParam() ? foggy_scene() : varied_scene();
   const Probe probe(b);
   const CameraView view = SceneBuilder::camera(look_at({0, -4, 1.8f}, {0, 0.5f, 0.6f}), 64, 48, 55);
   CameraView32 camera;
@@ -206,6 +238,8 @@ TEST(Lanes, PathsEqualThoseOfOneFloat) {
   EXPECT_GT(lit, 1500) << "the scene is too dark to compare";
   EXPECT_EQ(different, 0) << "paths in lanes differ from single paths";
 }
+
+INSTANTIATE_TEST_SUITE_P(ClearAndFoggy, LanePaths, testing::Bool());
 
 }  // namespace
 }  // namespace gloam

@@ -1,0 +1,94 @@
+#pragma once
+// The path stage in participating media. Device-safe.
+
+#include "render/kernel/path_state.h"
+
+namespace gloam::paths {
+
+/// Where media scatter rays.
+template <class F>
+struct MediumVertexOf {
+  MaskOf<F> scattered = false;
+  F t{};               ///< distance along the ray [m]
+  UintOf<F> volume{};  ///< row of MediaView::volumes
+};
+
+/// Takes the media along the rays of the `active` lanes up to `tmax` into account.
+template <class F>
+GLOAM_HD MediumVertexOf<F> cross_media(const SceneView& scene, F tmax, MaskOf<F> active,
+                                       State<F>* path) {
+  MediumVertexOf<F> v;
+  const Vec2Of<F> first = path->sampler.next_2d(active), later = path->sampler.next_2d(active);
+  each_lane(active, [&](int i) {
+    const Vec3f throughput = lane(path->throughput, i);
+    const MediumEvent event =
+        sample_distance(scene.media, lane(path->ray, i), lane(tmax, i), {}, throughput,
+                        lane(first, i), WalkRandom(lane(later, i)));
+    set_lane(&path->result.radiance, i,
+             lane(path->result.radiance, i) + throughput * event.emission);
+    set_lane(&path->throughput, i, throughput * event.weight);
+    if (event.volume < 0) return;
+    set_lane(&v.scattered, i, true);
+    set_lane(&v.t, i, event.t);
+    set_lane(&v.volume, i, static_cast<uint32_t>(event.volume));
+  });
+  return v;
+}
+
+/// Phase functions of the vertices for light from wi, and their densities.
+template <class F>
+GLOAM_HD Vec3Of<F> eval_phases(const SceneView& scene, const State<F>& path,
+                               const MediumVertexOf<F>& v, Vec3Of<F> wi, MaskOf<F> active, F* pdf) {
+  Vec3Of<F> value;
+  each_lane(active, [&](int i) {
+    const float cosine = dot(lane(path.ray.d, i), lane(wi, i));
+    float density;
+    set_lane(&value, i,
+             eval_phase(scene.media.volumes[lane(v.volume, i)], {}, lane(path.throughput, i),
+                        cosine, &density));
+    set_lane(pdf, i, density);
+  });
+  return value;
+}
+
+/// Samples one light and one direction at the vertices of the `active` lanes; returns the lanes
+/// whose path goes on.
+template <class F, class Tracer>
+GLOAM_HD MaskOf<F> scatter_in_media(const SceneView& scene, const Tracer& tracer,
+                                    const PathOptions& options, State<F>* path,
+                                    const MediumVertexOf<F>& v, MaskOf<F> active) {
+  const Vec3Of<F> p = path->ray.o + path->ray.d * v.t;
+  path->picker.prepare(scene, p, Vec3Of<F>{}, active);
+  const Vec2Of<F> choice = path->sampler.next_2d(active);  // of the light, of the band
+  const Vec2Of<F> u_light = path->sampler.next_2d(active);
+  const LightSampleOf<F> light =
+      path->picker.sample(scene, p, choice.x, u_light, path->ray.time, path->cone_spread, active);
+  const MaskOf<F> lit = active & (light.pdf > 0.0f);
+  if (any(lit)) {
+    F pdf = 1.0f;
+    const Vec3Of<F> f = eval_phases(scene, *path, v, light.wi, lit, &pdf);
+    const F weight = select(light.is_delta, F(1.0f), mis_weight(light.pdf, pdf));
+    RayOf<F> shadow = path->ray;
+    aim_shadow_ray(p, Vec3Of<F>{}, F(0.0f), light, &shadow);
+    const Vec3Of<F> arriving =
+        bring_light(scene, tracer, shadow, light.casts_shadow, lit,
+                    path->throughput * f * light.radiance * (weight / light.pdf), path);
+    path->result.radiance += select<F>(lit, arriving, Vec3Of<F>{});
+  }
+  const MaskOf<F> next = may_go_on(scene, options, *path, active);
+  const Vec2Of<F> u = path->sampler.next_2d(next);
+  Vec3Of<F> wi, weight;
+  F pdf = 1.0f;
+  each_lane(next, [&](int i) {
+    const PhaseSample s =
+        sample_phase(scene.media.volumes[lane(v.volume, i)], {}, lane(path->throughput, i),
+                     lane(path->ray.d, i), lane(choice.y, i), lane(u, i));
+    set_lane(&wi, i, s.wi);
+    set_lane(&weight, i, s.weight);
+    set_lane(&pdf, i, s.pdf);
+  });
+  go_on(next, p, p, wi, weight, pdf, path);
+  return next;
+}
+
+}  // namespace gloam::paths
