@@ -21,7 +21,7 @@ void RunOptions::add_rendering(CLI::App& command) {
   command.add_option("--max-depth", max_depth, "Longest light path, in vertices")
       ->check(CLI::Range(1, 64));
   command.add_option("--tier", tier, "path: unbiased light; direct: fast, one ambient light")
-      ->check(CLI::IsMember({"path", "direct"}));
+      ->check(CLI::IsMember({"path", "fast", "direct"}));
   command.add_option("--ev", ev100, "Exposure value at ISO 100; default: by the scene's light");
   command.add_flag("--no-denoise", no_denoise, "Show the samples as they are");
   command.add_option("--threads", threads, "Threads for rendering; 0 = all")

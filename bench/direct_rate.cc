@@ -1,7 +1,7 @@
 // Time of one RGB picture of the direct tier (primary hit, direct light, shadows), as a live camera
 // takes it: physics has moved, so every frame solves poses, moves the scene, renders, tone-maps.
 //
-//   direct_rate MODEL CAMERA [--size WxH] [--spp N] [--frames N] [--picture FILE.png]
+//   direct_rate MODEL CAMERA [--size WxH] [--spp N] [--frames N] [--tier T] [--picture FILE.png]
 //
 // No denoising. Prints the medians over the frames, without the two that warm up, as
 // "WALL ms CPU ms"; physics itself is not timed.
@@ -23,7 +23,7 @@ namespace gloam {
 namespace {
 
 struct Options {
-  const char *model = nullptr, *camera = nullptr, *picture = nullptr;
+  const char *model = nullptr, *camera = nullptr, *picture = nullptr, *tier = "direct";
   int width = 640, height = 480, spp = 1, frames = 20;
 };
 
@@ -47,7 +47,7 @@ Status run(const Options& options) {
   CameraRequest request;
   request.camera = options.camera;
   request.width = options.width, request.height = options.height;
-  request.render.tier = "direct";
+  request.render.tier = options.tier;
   request.render.spp = options.spp;
   request.render.denoise = false;
   GLOAM_TRY(const auto sensor, CameraSensor::create(shared->description, request, 1));
@@ -93,6 +93,8 @@ int main(int argc, char** argv) {
       options.spp = std::max(1, std::atoi(argv[++i]));
     } else if (word == "--frames" && more) {
       options.frames = std::max(1, std::atoi(argv[++i]));
+    } else if (word == "--tier" && more) {
+      options.tier = argv[++i];
     } else if (word == "--picture" && more) {
       options.picture = argv[++i];
     } else {
@@ -101,8 +103,8 @@ int main(int argc, char** argv) {
   }
   if (options.camera == nullptr) {
     fmt::print(stderr,
-               "usage: direct_rate MODEL CAMERA [--size WxH] [--spp N] [--frames N] [--picture "
-               "FILE.png]\n");
+               "usage: direct_rate MODEL CAMERA [--size WxH] [--spp N] [--frames N] [--tier T] "
+               "[--picture FILE.png]\n");
     return 2;
   }
   const gloam::Status status = gloam::run(options);

@@ -22,6 +22,14 @@ struct CameraView {
 enum class RenderTier : uint8_t {
   kPath,    ///< unbiased path tracing
   kDirect,  ///< primary hit, direct light with shadows, one ambient light by facing
+  kFast,    ///< direct light, cached indirect light, one specular bounce; filtered over pictures
+};
+
+/// What the fast tier remembers of one camera's earlier pictures. A picture is a function of the
+/// scene, the seed and the pictures since the history was made.
+class ViewHistory {
+ public:
+  virtual ~ViewHistory() = default;
 };
 
 struct RenderSettings {
@@ -37,6 +45,7 @@ struct RenderSettings {
   /// For a denoiser, of pictures with fewer samples than this: albedo and normal of so many rays at
   /// edges, of the pixel's centre elsewhere. 0 = always those of the samples. Needs exact_channels.
   int guide_samples = 0;
+  ViewHistory* history = nullptr;  ///< fast tier: of this camera; null = a picture by itself
 };
 
 struct RenderStats {
@@ -55,6 +64,8 @@ class Renderer {
   /// Fills `film` (resized to the view's resolution).
   virtual RenderStats render(const CameraView& view, const RenderSettings& settings,
                              Film* film) = 0;
+  /// For RenderSettings::history; of this renderer alone.
+  virtual std::unique_ptr<ViewHistory> make_history() const = 0;
 };
 
 /// "Embree 3.13.5"

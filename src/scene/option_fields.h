@@ -153,7 +153,7 @@ void visit_fields(Visitor& v, SimOptions& o) {
 
 template <class Visitor>
 void visit_fields(Visitor& v, RenderOptions& o) {
-  v("tier", o.tier, FieldRule{.choices = {"path", "direct"}});
+  v("tier", o.tier, FieldRule{.choices = {"path", "fast", "direct"}});
   v("spp", o.spp, FieldRule{.min = 1, .max = 65536});
   v("max_depth", o.max_depth, FieldRule{.min = 1, .max = 64});
   v("denoise", o.denoise, FieldRule{});

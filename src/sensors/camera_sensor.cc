@@ -145,19 +145,22 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
   RenderSettings& settings = sensor->settings_;
   if (request.render.tier == "path") {
     settings.tier = RenderTier::kPath;
+  } else if (request.render.tier == "fast") {
+    settings.tier = RenderTier::kFast;
   } else if (request.render.tier == "direct") {
     settings.tier = RenderTier::kDirect;
   } else {
     return Error{ErrorKind::kInput,
                  fmt::format("there is no render tier '{}'", request.render.tier),
                  {},
-                 "one of: path, direct"};
+                 "one of: path, fast, direct"};
   }
   settings.spp = channels.light() ? request.render.spp : 0;
   settings.max_depth = request.render.max_depth;
   settings.roulette_depth = 3;  // unbiased, and dim paths are a third of all rays in a room
   settings.seed = hash_bytes(request.camera.data(), request.camera.size(), seed);
-  if (request.render.denoise && channels.light()) {
+  if (settings.tier == RenderTier::kFast && !channels.light()) settings.tier = RenderTier::kDirect;
+  if (request.render.denoise && channels.light() && settings.tier != RenderTier::kFast) {
     sensor->denoiser_ = make_denoiser({});
     settings.guide_samples = 4;
   }
@@ -192,6 +195,10 @@ std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
   {
     const std::lock_guard lock(renderer_mutex);
     renderer.update(now, now, previous);
+    if (settings_.tier == RenderTier::kFast && history_ == nullptr) {
+      history_ = renderer.make_history();
+      settings_.history = history_.get();
+    }
     renderer.render(view, settings_, &film_);
   }
   auto frame = std::make_shared<CameraFrame>();

@@ -58,6 +58,7 @@ class CameraSensor {
   Intrinsics intrinsics_;
   Rational rate_;
   float ev100_ = 0;
+  std::unique_ptr<ViewHistory> history_;  // of the fast tier
   std::unique_ptr<Denoiser> denoiser_;  // null: the samples as they are
   Film film_;
   std::vector<Vec3f> clean_;

@@ -1,7 +1,6 @@
 // The kernel's stages over Embree and all threads of parallel_for.
 
 #include <fmt/format.h>
-#include <immintrin.h>
 
 #include <algorithm>
 #include <chrono>
@@ -12,23 +11,12 @@
 #include "render/cpu/ambient.h"
 #include "render/cpu/edge_samples.h"
 #include "render/cpu/embree_scene.h"
+#include "render/cpu/fast_tier.h"
 #include "render/cpu/light_guide.h"
 #include "render/cpu/tile.h"
 
 namespace gloam {
 namespace {
-
-/// Denormals are zero while a tile is rendered, whatever thread does it.
-class FlushDenormals {
- public:
-  FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040u); }
-  ~FlushDenormals() { _mm_setcsr(saved_); }
-  FlushDenormals(const FlushDenormals&) = delete;
-  FlushDenormals& operator=(const FlushDenormals&) = delete;
-
- private:
-  unsigned saved_;
-};
 
 CameraView32 make_camera(const CameraView& view) {
   CameraView32 camera;
@@ -85,6 +73,16 @@ class CpuRenderer final : public Renderer {
       job.scene.guide = guide_.view();
     }
     job.camera = make_camera(view);
+    if (settings.tier == RenderTier::kFast) {
+      job.scene.environment.row_cdf = {};  // the cache has the sky's light: none is drawn
+      FastHistory own;
+      auto* history = static_cast<FastHistory*>(settings.history);
+      RenderStats stats = (history != nullptr ? *history : own)
+                              .render(job.scene, job.tracer, job.camera, settings, film);
+      stats.trace_seconds =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      return stats;
+    }
     if (settings.tier == RenderTier::kDirect && settings.spp > 0) {
       job.scene.ambient = measure_ambient(job.scene, job.tracer, job.camera, film->width,
                                           film->height, settings.max_depth);
@@ -127,6 +125,10 @@ class CpuRenderer final : public Renderer {
     total.trace_seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return total;
+  }
+
+  std::unique_ptr<ViewHistory> make_history() const override {
+    return std::make_unique<FastHistory>();
   }
 
  private:

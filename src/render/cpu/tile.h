@@ -1,6 +1,8 @@
 #pragma once
 // One tile of a picture: its paths in lanes, or in waves of single rays traced in packets.
 
+#include <immintrin.h>
+
 #include <algorithm>
 #include <memory>
 
@@ -12,6 +14,18 @@
 namespace gloam {
 
 inline constexpr int kTile = 16;  // [px]
+
+/// Denormals are zero while a tile is rendered, whatever thread does it.
+class FlushDenormals {
+ public:
+  FlushDenormals() : saved_(_mm_getcsr()) { _mm_setcsr(saved_ | 0x8040u); }
+  ~FlushDenormals() { _mm_setcsr(saved_); }
+  FlushDenormals(const FlushDenormals&) = delete;
+  FlushDenormals& operator=(const FlushDenormals&) = delete;
+
+ private:
+  unsigned saved_;
+};
 
 /// One render call: everything that its pixels share.
 struct Job {

@@ -1,0 +1,322 @@
+#pragma once
+// The fast stage: first surfaces with direct light of every lamp, one specular bounce, and indirect
+// light from the irradiance cache. What is noisy comes out apart, for the filter. Device-safe.
+
+#include "render/kernel/irradiance_cache.h"
+#include "render/kernel/path.h"
+
+namespace gloam {
+
+/// Scenes with more lights than this draw so many of them at each surface.
+inline constexpr uint32_t kMaxFastLights = kMaxWeighedLights, kDrawnLights = 4;
+/// Surfaces rougher than this reflect the light of the cache instead of what a ray finds.
+inline constexpr float kMaxTracedRoughness = 0.4f;
+
+/// A cell that a surface needs.
+struct CacheRequest {
+  uint64_t key = 0;  ///< 0 = none
+  Vec3f p, n;        ///< where rays for it may start
+};
+
+/// What one camera ray saw: base + through (albedo (direct + cached) + cached specular + specular).
+template <class F>
+struct FastSampleOf {
+  Vec3Of<F> base;     ///< [cd/m²], without noise
+  Vec3Of<F> through;  ///< share of the first solid surface's light that gets to the camera
+  MaskOf<F> solid = false;
+  SurfaceOf<F> surface;  ///< that surface
+  RayHitOf<F> hit;       ///< t: distance from the camera
+  Vec3Of<F> albedo;      ///< diffuse
+  Vec3Of<F> gloss;       ///< directional albedo of what reflects the cache's light
+  Vec3Of<F> direct;      ///< diffuse light of lamps over `albedo` [cd/m²]
+  Vec3Of<F> specular;    ///< [cd/m²]
+  UintOf<F> rays = 0u;
+};
+
+namespace fasts {
+
+/// The BSDF without its diffuse parts, sampled by itself.
+template <class F>
+GLOAM_HD LayeredBsdfOf<F> specular_part(LayeredBsdfOf<F> b) {
+  b.base.diffuse = {};
+  b.base.p_layer = select(b.base.p_layer > 0.0f, F(1.0f), F(0.0f));
+  b.beyond = {};
+  return b;
+}
+template <class F>
+GLOAM_HD Vec3Of<F> diffuse_albedo(const LayeredBsdfOf<F>& b) {
+  return select<F>(b.layered, b.base.diffuse * b.under, b.base.diffuse);
+}
+
+/// Light that the cache has for surfaces, and the cells that should be there.
+template <class F>
+GLOAM_HD Vec3Of<F> cached_light(const IrradianceCacheView& cache, const SurfaceOf<F>& v,
+                                MaskOf<F> active, Vec2Of<F> u, F w, int coarser,
+                                CacheRequest* requests) {
+  Vec3Of<F> light;
+  each_lane(active, [&](int i) {
+    const Vec3f p = lane(v.p, i), n = lane(v.normal, i);
+    const uint64_t key = cache_key(cache, p, n, {lane(u.x, i), lane(u.y, i), lane(w, i)}, coarser);
+    if (requests != nullptr)
+      requests[i] = {key,
+                     leave_surface(p, lane(v.geometric, i), lane(v.geometric, i), lane(v.t, i)), n};
+    if (const int cell = find_cell(cache, key); cell >= 0) {
+      set_lane(&light, i, cache.light[static_cast<uint32_t>(cell)]);
+    }
+  });
+  return light;
+}
+
+/// Direct light of one lamp sample at the vertices: diffuse over albedo, and the rest. `traced`:
+/// lanes whose specular ray may find the lamp too.
+template <class F, class Tracer>
+GLOAM_HD void add_light(const SceneView& scene, const Tracer& tracer, paths::State<F>* path,
+                        const SurfaceOf<F>& v, const LayeredBsdfOf<F>& shiny,
+                        const FrameOf<F>& frame, Vec3Of<F> wo, MaskOf<F> traced, MaskOf<F> active,
+                        const LightSampleOf<F>& light, Vec3Of<F>* diffuse, Vec3Of<F>* specular) {
+  MaskOf<F> lit = active & (light.pdf > 0.0f) & (dot(light.wi, v.geometric) > 0.0f);
+  if (!any(lit)) return;
+  const Vec3Of<F> wi = frame.to_local(light.wi);
+  lit = lit & (wi.z > 0.0f);
+  F pdf;
+  const Vec3Of<F> f = eval_bsdf(shiny, wo, wi, &pdf);
+  const F weight = select(light.is_delta | !traced, F(1.0f), mis_weight(light.pdf, pdf));
+  RayOf<F> shadow = path->ray;
+  aim_shadow_ray(v.p, v.geometric, v.t, light, &shadow);
+  const Vec3Of<F> arriving = paths::bring_light(scene, tracer, shadow, light.casts_shadow, lit,
+                                                light.radiance * (1.0f / light.pdf), path);
+  *diffuse += select<F>(lit, arriving * (wi.z * kInvPi), Vec3Of<F>{});
+  *specular += select<F>(lit, arriving * f * weight, Vec3Of<F>{});
+}
+
+/// Direct light at the vertices of the `active` lanes: of every light where there are few, or of
+/// `drawn` of them.
+template <class F, class Tracer>
+GLOAM_HD void direct_light(const SceneView& scene, const Tracer& tracer, paths::State<F>* path,
+                           const SurfaceOf<F>& v, const LayeredBsdfOf<F>& shiny,
+                           const FrameOf<F>& frame, Vec3Of<F> wo, MaskOf<F> traced,
+                           MaskOf<F> active, bool every, uint32_t drawn, Vec3Of<F>* diffuse,
+                           Vec3Of<F>* specular) {
+  if (scene.lights.size == 0) return;
+  path->picker.prepare(scene, v.p, v.geometric, active);
+  if (every) drawn = scene.lights.size;
+  const F first = path->sampler.next_1d(active);
+  for (uint32_t k = 0; k < drawn; ++k) {
+    LightSampleOf<F> light;
+    const Vec2Of<F> u = path->sampler.next_2d(active);
+    if (every) {
+      const MaskOf<F> near = active & (path->picker.probability(scene, k) > 0.0f);
+      if (!any(near)) continue;
+      const F pick = path->sampler.next_1d(active);
+      light = sample_one_light(scene, k, v.p, pick, u, path->ray.time, near);
+      light.pdf = select(near, light.pdf, F(0.0f));
+    } else {
+      const F pick = (first + static_cast<float>(k)) * (1.0f / static_cast<float>(drawn));
+      light = path->picker.sample(scene, v.p, pick, u, path->ray.time, path->cone_spread, active);
+      light.pdf *= static_cast<float>(drawn);
+    }
+    add_light(scene, tracer, path, v, shiny, frame, wo, traced, active, light, diffuse, specular);
+  }
+}
+
+/// Density with which direct_light() finds the point of an emitter that path->ray has hit.
+template <class F>
+GLOAM_HD F emitter_pdf(const SceneView& scene, const paths::State<F>& path, const SurfaceOf<F>& s,
+                       bool every, uint32_t drawn, MaskOf<F> active) {
+  F pdf = 0.0f;
+  each_lane(active, [&](int i) {
+    const InstanceView& instance = scene.instances[lane(s.instance, i)];
+    if (instance.light < 0) return;
+    const auto row = static_cast<uint32_t>(instance.light);
+    const float chance =
+        every ? 1.0f : static_cast<float>(drawn) * lane(path.picker.probability(scene, row), i);
+    set_lane(&pdf, i,
+             chance * lights::instance_pdf(scene, instance, lane(path.from, i), lane(s.p, i),
+                                           lane(s.geometric, i), lane(path.ray.time, i)));
+  });
+  return pdf;
+}
+
+/// Light along path->ray in the `active` lanes, from its first surface that is not clear glass.
+/// What lamps themselves send counts by `lamps`: not at all where that is none of the path's
+/// business, or weighed against direct_light() by path->pdf_bsdf.
+template <class F, class Tracer>
+GLOAM_HD Vec3Of<F> gather(const SceneView& scene, const Tracer& tracer,
+                          const IrradianceCacheView& cache, bool count_lamps, MaskOf<F> active,
+                          paths::State<F>* path, CacheRequest* requests) {
+  constexpr int kMaxEvents = 5;  // in and out of two glasses
+  Vec3Of<F> sum, throughput = in_all_lanes<F>({1, 1, 1});
+  const bool every = scene.lights.size <= kMaxFastLights;
+  MaskOf<F> first = true;
+  for (int event = 0; event < kMaxEvents && any(active); ++event) {
+    RayHitOf<F> hit;
+    path->result.rays += select(active, UintOf<F>(1u), UintOf<F>(0u));
+    const MaskOf<F> found = tracer.closest(path->ray, active, false, &hit);
+    if (const MaskOf<F> missed = active & !found; any(missed)) {
+      const Vec3Of<F> sky = sky_radiance_of(scene, path->ray.d, path->cone_spread, missed) +
+                            in_all_lanes<F>(scene.sky_ambient);
+      sum += select<F>(missed, throughput * sky, Vec3Of<F>{});
+    }
+    active = found;
+    if (!any(active)) break;
+    SurfaceOf<F> v = make_surface(scene, path->ray, hit,
+                                  RayConeOf<F>{path->cone_width, path->cone_spread}, active);
+    path->cone_width = path->cone_width + path->cone_spread * hit.t;
+    if (const MaskOf<F> shines = active & (max_component(v.emission) > 0.0f); any(shines)) {
+      const F pdf = emitter_pdf(scene, *path, v, every, kDrawnLights, shines & first);
+      const F weight = select(first & (pdf > 0.0f),
+                              count_lamps ? mis_weight(path->pdf_bsdf, pdf) : F(0.0f), F(1.0f));
+      sum += select<F>(shines, throughput * v.emission * (v.opacity * weight), Vec3Of<F>{});
+    }
+    MaskOf<F> through = false;
+    if (scene.has_transparent) {
+      const F met = met_share(v);
+      const MaskOf<F> thin = active & (met < 1.0f);
+      if (any(thin)) through = thin & (path->sampler.next_1d(thin) >= met);
+      const Vec3Of<F> share = select<F>(through, passing_light(v) / (1.0f - met),
+                                        in_all_lanes<F>({1, 1, 1}) * (v.opacity / met));
+      throughput =
+          select<F>(thin & (max_component(v.straight) > 0.0f), throughput * share, throughput);
+    }
+    const Vec3Of<F> wo_W = -path->ray.d;
+    FrameOf<F> frame;
+    const LayeredBsdfOf<F> bsdf = surface_bsdf(scene, v, wo_W, &frame, active & !through);
+    const Vec3Of<F> wo = frame.to_local(wo_W);
+    const MaskOf<F> glass = active & !through & bsdf.layered & (bsdf.p_glass > 0.3f);
+    const MaskOf<F> matt = active & !through & !glass;
+    if (any(matt)) {
+      const LayeredBsdfOf<F> shiny = specular_part(bsdf);
+      Vec3Of<F> diffuse, specular;
+      direct_light(scene, tracer, path, v, shiny, frame, wo, MaskOf<F>(false), matt, false, 1,
+                   &diffuse, &specular);
+      const Vec2Of<F> u = path->sampler.next_2d(matt);
+      const F w = path->sampler.next_1d(matt);
+      diffuse += cached_light(cache, v, matt, u, w, 2, requests);
+      F a, b;
+      layer_albedo(*scene.albedo, v.roughness, wo.z, &a, &b);
+      const Vec3Of<F> albedo = diffuse_albedo(bsdf) + bsdf.base.f0 * a + bsdf.base.f90 * b;
+      sum += select<F>(matt, throughput * (albedo * diffuse + specular), Vec3Of<F>{});
+    }
+    if (any(glass)) {
+      const Vec2Of<F> u = path->sampler.next_2d(glass);
+      const BsdfSampleOf<F> s = sample_bsdf(bsdf, wo, path->sampler.next_1d(glass), u);
+      const Vec3Of<F> wi = frame.to_world(s.wi);
+      const MaskOf<F> goes = glass & (s.pdf > 0.0f);
+      throughput = select<F>(goes, throughput * s.weight, throughput);
+      path->ray.o = select<F>(goes, leave_surface(v.p, v.geometric, wi, v.t), path->ray.o);
+      path->ray.d = select<F>(goes, wi, path->ray.d);
+      first = first & !goes;
+      active = goes | through;
+    } else {
+      active = through;
+    }
+    path->ray.o =
+        select<F>(through, leave_surface(v.p, v.geometric, path->ray.d, hit.t), path->ray.o);
+  }
+  return sum;
+}
+
+}  // namespace fasts
+
+/// The camera ray's picture. `requests`: one per lane, for the first solid surface; then one per
+/// lane for the specular ray's. Panes in front of that surface are shaded without a bounce.
+template <class F, class Tracer>
+GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer,
+                                    const IrradianceCacheView& cache, const RayOf<F>& ray,
+                                    F cone_width, F cone_spread, const SamplerOf<F>& sampler,
+                                    MaskOf<F> active, CacheRequest* requests) {
+  using Mask = MaskOf<F>;
+  FastSampleOf<F> out;
+  out.through = in_all_lanes<F>({1, 1, 1});
+  paths::State<F> path;
+  path.ray = ray;
+  path.cone_width = cone_width;
+  path.cone_spread = cone_spread;
+  path.sampler = sampler;
+  const bool every = scene.lights.size <= kMaxFastLights;
+  F way = 0.0f;
+  for (uint32_t passed = 0; passed < kMaxPassed && any(active); ++passed) {
+    RayHitOf<F> hit;
+    path.result.rays += select(active, UintOf<F>(1u), UintOf<F>(0u));
+    const Mask found = tracer.closest(path.ray, active, passed == 0, &hit);
+    if (const Mask missed = active & !found; any(missed)) {
+      each_lane(missed, [&](int i) {
+        const Vec3f sky = sky_radiance(scene, lane(path.ray.d, i), lane(path.cone_spread, i));
+        set_lane(&out.base, i, lane(out.base, i) + lane(out.through, i) * sky);
+      });
+    }
+    active = found;
+    if (!any(active)) break;
+    const SurfaceOf<F> v =
+        make_surface(scene, path.ray, hit, RayConeOf<F>{path.cone_width, path.cone_spread}, active);
+    path.cone_width = path.cone_width + path.cone_spread * hit.t;
+    way += hit.t;
+    const Vec3Of<F> wo_W = -path.ray.d;
+    FrameOf<F> frame;
+    const LayeredBsdfOf<F> bsdf = surface_bsdf(scene, v, wo_W, &frame, active);
+    const LayeredBsdfOf<F> shiny = fasts::specular_part(bsdf);
+    const Vec3Of<F> wo = frame.to_local(wo_W);
+    const Vec3Of<F> passing = scene.has_transparent ? passing_light(v) : Vec3Of<F>{};
+    const Mask solid = active & !(max_component(passing) > 0.0f);
+    const Mask glass = bsdf.layered & (bsdf.p_glass > 0.0f);
+    const Mask traced =
+        solid & (glass | ((v.roughness < kMaxTracedRoughness) & (bsdf.base.p_layer > 0.0f)) |
+                 (bsdf.layered & (bsdf.p_coat > 0.0f)));
+    Vec3Of<F> diffuse, specular;
+    fasts::direct_light(scene, tracer, &path, v, shiny, frame, wo, traced, active, every,
+                        kDrawnLights, &diffuse, &specular);
+    const Vec2Of<F> u = path.sampler.next_2d(active);
+    const F w = path.sampler.next_1d(active);
+    CacheRequest asked[Lanes<F>::kCount];
+    const Vec3Of<F> cached = fasts::cached_light(cache, v, active, u, w, 0, asked);
+    const Vec3Of<F> albedo = fasts::diffuse_albedo(bsdf);
+    F a, b;
+    layer_albedo(*scene.albedo, v.roughness, wo.z, &a, &b);
+    const Vec3Of<F> gloss = select<F>(traced, Vec3Of<F>{}, bsdf.base.f0 * a + bsdf.base.f90 * b);
+    each_lane(active, [&](int i) { requests[i] = asked[i]; });
+
+    const Mask pane = active & !solid;
+    const Vec3Of<F> shade = albedo * (diffuse + cached) + gloss * cached + specular;
+    out.base += out.through * select<F>(active, v.emission * v.opacity, Vec3Of<F>{});
+    out.base += out.through * select<F>(pane, shade * v.opacity, Vec3Of<F>{});
+    out.solid = out.solid | solid;
+    each_lane(solid, [&](int i) {
+      set_lane(&out.surface.p, i, lane(v.p, i));
+      set_lane(&out.surface.geometric, i, lane(v.geometric, i));
+      set_lane(&out.surface.instance, i, lane(v.instance, i));
+      set_lane(&out.surface, i, lane(v, i));
+      set_lane(&out.hit.primitive, i, lane(hit.primitive, i));
+      set_lane(&out.hit.u, i, lane(hit.u, i));
+      set_lane(&out.hit.v, i, lane(hit.v, i));
+    });
+    out.hit.t = select(solid, way, out.hit.t);
+    out.albedo = select<F>(solid, albedo, out.albedo);
+    out.gloss = select<F>(solid, gloss, out.gloss);
+    out.direct = select<F>(solid, diffuse, out.direct);
+    if (any(traced)) {
+      const Vec2Of<F> toss = path.sampler.next_2d(traced);
+      const F pick = path.sampler.next_1d(traced);
+      const BsdfSampleOf<F> s = sample_bsdf(shiny, wo, pick, toss);
+      const Vec3Of<F> wi = frame.to_world(s.wi);
+      const Mask goes = traced & (s.pdf > 0.0f) & (max_component(s.weight) > 0.0f);
+      paths::State<F> bounce = path;
+      bounce.result.rays = 0u;
+      bounce.ray.o = select<F>(goes, leave_surface(v.p, v.geometric, wi, v.t), path.ray.o);
+      bounce.ray.d = select<F>(goes, wi, path.ray.d);
+      bounce.from = v.p;
+      bounce.pdf_bsdf = s.pdf;
+      const Vec3Of<F> seen =
+          fasts::gather(scene, tracer, cache, true, goes, &bounce, requests + Lanes<F>::kCount);
+      path.result.rays += bounce.result.rays;
+      specular += select<F>(goes, seen * s.weight, Vec3Of<F>{});
+    }
+    out.specular = select<F>(solid, specular, out.specular);
+    out.through = select<F>(pane, out.through * passing, out.through);
+    active = pane & (max_component(out.through) > 0.004f);
+    path.ray.o = select<F>(active, leave_surface(v.p, v.geometric, path.ray.d, hit.t), path.ray.o);
+  }
+  out.rays = path.result.rays;
+  return out;
+}
+
+}  // namespace gloam
