@@ -4,10 +4,11 @@
 // shown to the camera. Device-safe.
 
 #include "render/kernel/light.h"
+#include "render/kernel/light_tree.h"
 
 namespace gloam {
 
-/// Scenes with more lights select by power alone.
+/// Scenes with more lights select by a tree.
 inline constexpr uint32_t kMaxWeighedLights = 16;
 
 /// A bound, up to a factor, of what light i brings to the surface at p with the geometric normal n
@@ -34,8 +35,8 @@ GLOAM_HD F light_weight(const LightView& light, Vec3Of<F> p, Vec3Of<F> n,
   return select(height > 0.0f, light.strength * inv_d2 * (cosine + 0.05f) * cone, F(0.0f));
 }
 
-/// How lights are taken at one surface: in proportion to light_weight where there are few, by power
-/// alone where there are many.
+/// How lights are taken at one surface: in proportion to light_weight where there are few, by a
+/// tree where there are many.
 template <class F>
 class LightPickerOf {
  public:
@@ -47,7 +48,11 @@ class LightPickerOf {
   GLOAM_HD void prepare(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, Mask active = true,
                         Mask both_sides = false) {
     count_ = scene.lights.size;
-    if (count_ > kMaxWeighedLights) return;
+    if (count_ > kMaxWeighedLights) {
+      p_ = select<F>(active, p, p_);
+      n_ = select<F>(active, select<F>(both_sides, Vec3Of<F>{}, n), n_);
+      return;
+    }
     Uint first{};  // of the guide's visibilities
     Mask guided = false;
     sky_strength_ = select(active & both_sides, F(0.0f), sky_strength_);
@@ -82,9 +87,12 @@ class LightPickerOf {
     return select(inside, sky_share_ * cone_pdf(sky_one_minus_cos_), F(0.0f));
   }
 
-  /// Probability of taking light i.
-  GLOAM_HD F probability(const SceneView& scene, uint32_t i) const {
-    return count_ > kMaxWeighedLights ? F(scene.lights[i].probability) : share_[i];
+  /// Probabilities of taking light i where there are few.
+  GLOAM_HD F shares(uint32_t i) const { return share_[i]; }
+  /// Probability of taking light i in the lane `at`.
+  GLOAM_HD float probability(const SceneView& scene, uint32_t i, int at) const {
+    if (count_ <= kMaxWeighedLights) return lane(share_[i], at);
+    return light_tree::probability(scene.light_tree, i, lane(p_, at), lane(n_, at));
   }
 
   /// Takes a light, or the sky, and a direction from p towards it, for the `active` lanes.
@@ -102,7 +110,8 @@ class LightPickerOf {
     if (count_ > kMaxWeighedLights) {
       each_lane(open, [&](int i) {
         set_lane(&out, i,
-                 sample_by_power(scene, lane(p, i), lane(pick, i), lane(u, i), lane(time, i)));
+                 sample_by_tree(scene, lane(p, i), lane(n_, i), lane(pick, i), lane(u, i),
+                                lane(time, i)));
       });
       return out;
     }
@@ -144,21 +153,13 @@ class LightPickerOf {
       set_lane(&sky_axis_, i, sky.axis);
     });
   }
-  GLOAM_HD static LightSample sample_by_power(const SceneView& scene, Vec3f p, float pick, Vec2f u,
-                                              float time) {
-    uint32_t index = 0, high = scene.lights.size - 1;
-    while (index < high) {
-      const uint32_t middle = (index + high) / 2;
-      if (pick < scene.lights[middle].cdf) {
-        high = middle;
-      } else {
-        index = middle + 1;
-      }
-    }
-    const float taken = scene.lights[index].probability;
-    pick = clamp((pick - (scene.lights[index].cdf - taken)) / taken, 0.0f, 0.9999999f);
-    LightSample s = sample_one_light(scene, index, p, pick, u, time);
-    s.pdf *= taken;
+  GLOAM_HD static LightSample sample_by_tree(const SceneView& scene, Vec3f p, Vec3f n, float pick,
+                                             Vec2f u, float time) {
+    const LightChoice choice =
+        light_tree::choose(scene.light_tree, p, n, light_tree::lengthen(pick, u));
+    if (!(choice.probability > 0)) return {};
+    LightSample s = sample_one_light(scene, choice.light, p, choice.rest, u, time);
+    s.pdf *= choice.probability;
     return s;
   }
   GLOAM_HD LightSampleOf<F> sample_sky(const SceneView& scene, Vec2Of<F> u, F spread) const {
@@ -172,43 +173,66 @@ class LightPickerOf {
 
   uint32_t count_ = 0;
   F share_[kMaxWeighedLights];
+  Vec3Of<F> p_, n_;  ///< of the surface where there are many lights; n_ = 0: takes from all sides
   Vec3Of<F> sky_axis_;
   F sky_one_minus_cos_{}, sky_strength_{};
   F sky_share_{};
 };
 using LightPicker = LightPickerOf<float>;
 
-/// Light of lamps and suns that a scattered ray meets before `tmax`, each weighted against
-/// `picker` at `from`, the surface that scattered it, by the density `pdf_bsdf` of its direction.
+/// Light i of lamps and suns, as in visible_lights. `probability`: of taking it at `from`.
+template <class F, class Probability>
+GLOAM_HD Vec3Of<F> visible_light(const SceneView& scene, uint32_t i, const RayOf<F>& ray, F tmax,
+                                 Vec3Of<F> from, F pdf_bsdf, const Probability& probability) {
+  const LightView& light = scene.lights[i];
+  if (light.is_delta || !light.casts_shadow || light.kind == LightKind::kInstance) return {};
+  const float r2 = light.radius * light.radius;
+  Vec3Of<F> radiance;
+  F sin2 = r2;
+  MaskOf<F> seen;
+  if (light.kind == LightKind::kDirectional) {
+    seen = (tmax >= 1e29f) &
+           (-dot(ray.d, in_all_lanes<F>(light.direction)) >= 1.0f - one_minus_cos_of(r2));
+    if (!any(seen)) return {};
+    radiance = in_all_lanes<F>(light.intensity / (kPi * r2));
+  } else {
+    const F t = enter_sphere(ray, light.p, light.radius);
+    const Vec3Of<F> to = in_all_lanes<F>(light.p) - from;
+    const F d2 = dot(to, to);
+    seen = (t > 0.0f) & (t < tmax) & (d2 > r2 * 1.0001f);
+    if (!any(seen)) return {};
+    radiance = in_all_lanes<F>(light.intensity) *
+               (spot_falloff(light, -to / square_root(d2)) / (kPi * r2));
+    sin2 = min(r2 / d2, 1.0f);
+  }
+  const F pdf = probability() * cone_pdf(one_minus_cos_of(sin2));
+  return select<F>(seen, radiance * mis_weight(pdf_bsdf, pdf), Vec3Of<F>{});
+}
+
+/// Light of lamps and suns that the scattered rays of the `active` lanes meet before `tmax`, each
+/// weighted against `picker` at `from`, the surface that scattered it, by the density `pdf_bsdf` of
+/// its direction.
 template <class F>
 GLOAM_HD Vec3Of<F> visible_lights(const SceneView& scene, const RayOf<F>& ray, F tmax,
-                                  Vec3Of<F> from, const LightPickerOf<F>& picker, F pdf_bsdf) {
+                                  Vec3Of<F> from, const LightPickerOf<F>& picker, F pdf_bsdf,
+                                  MaskOf<F> active) {
   Vec3Of<F> sum;
-  for (uint32_t i = 0; i < scene.lights.size; ++i) {
-    const LightView& light = scene.lights[i];
-    if (light.is_delta || !light.casts_shadow || light.kind == LightKind::kInstance) continue;
-    const float r2 = light.radius * light.radius;
-    Vec3Of<F> radiance;
-    F sin2 = r2;
-    MaskOf<F> seen;
-    if (light.kind == LightKind::kDirectional) {
-      seen = (tmax >= 1e29f) &
-             (-dot(ray.d, in_all_lanes<F>(light.direction)) >= 1.0f - one_minus_cos_of(r2));
-      if (!any(seen)) continue;
-      radiance = in_all_lanes<F>(light.intensity / (kPi * r2));
-    } else {
-      const F t = enter_sphere(ray, light.p, light.radius);
-      const Vec3Of<F> to = in_all_lanes<F>(light.p) - from;
-      const F d2 = dot(to, to);
-      seen = (t > 0.0f) & (t < tmax) & (d2 > r2 * 1.0001f);
-      if (!any(seen)) continue;
-      radiance = in_all_lanes<F>(light.intensity) *
-                 (spot_falloff(light, -to / square_root(d2)) / (kPi * r2));
-      sin2 = min(r2 / d2, 1.0f);
+  if (scene.lights.size <= kMaxWeighedLights) {
+    for (uint32_t i = 0; i < scene.lights.size; ++i) {
+      sum += visible_light(scene, i, ray, tmax, from, pdf_bsdf, [&] { return picker.shares(i); });
     }
-    const F pdf = picker.probability(scene, i) * cone_pdf(one_minus_cos_of(sin2));
-    sum += select<F>(seen, radiance * mis_weight(pdf_bsdf, pdf), Vec3Of<F>{});
+    return sum;
   }
+  each_lane(active, [&](int at) {
+    const Ray one = lane(ray, at);
+    const float most = lane(tmax, at);
+    Vec3f light;
+    light_tree::each_shown(scene.light_tree, one, most, [&](uint32_t i) {
+      light += visible_light<float>(scene, i, one, most, lane(from, at), lane(pdf_bsdf, at),
+                                    [&] { return picker.probability(scene, i, at); });
+    });
+    set_lane(&sum, at, light);
+  });
   return sum;
 }
 

@@ -78,7 +78,7 @@ GLOAM_HD void weigh_emission(const SceneView& scene, const State<F>& path, MaskO
     const InstanceView& instance = scene.instances[lane(s->instance, i)];
     if (instance.light < 0) return;
     const float selected =
-        lane(path.picker.probability(scene, static_cast<uint32_t>(instance.light)), i);
+        path.picker.probability(scene, static_cast<uint32_t>(instance.light), i);
     const float pdf =
         selected * lights::instance_pdf(scene, instance, lane(path.from, i), lane(s->p, i),
                                         lane(s->geometric, i), lane(path.ray.time, i));
@@ -213,8 +213,9 @@ GLOAM_HD PathResultOf<F> trace_path(const SceneView& scene, const Tracer& tracer
     Mask found = tracer.closest(path.ray, active, coherent, &hit);
     const Mask scattered = path.pdf_bsdf > 0.0f;
     if (scene.has_visible_lights && any(active & scattered)) {
-      const Vec3Of<F> lamps = visible_lights(scene, path.ray, select(found, hit.t, F(1e30f)),
-                                             path.from, path.picker, path.pdf_bsdf);
+      const Vec3Of<F> lamps =
+          visible_lights(scene, path.ray, select(found, hit.t, F(1e30f)), path.from, path.picker,
+                         path.pdf_bsdf, active & scattered);
       path.result.radiance += select<F>(active & scattered, path.throughput * lamps, Vec3Of<F>{});
     }
     if (const Mask missed = active & !found; any(missed)) {

@@ -227,6 +227,7 @@ SceneView RenderScene::view_from(const Affine3f& X_WC) {
   view.texture_levels = span_of(textures_.levels);
   view.texels = span_of(textures_.texels);
   view.lights = span_of(lights_.lights());
+  view.light_tree = lights_.tree();
   view.procedurals = span_of(description_.procedurals);
   view.layers = span_of(materials_.layers());
   view.albedo = &albedo_;
@@ -241,10 +242,7 @@ SceneView RenderScene::view_from(const Affine3f& X_WC) {
     view.has_transparent |= material.transparent;
     view.has_emitters |= max_component(material.emission) > 0;
   }
-  for (const LightView& light : lights_.lights()) {
-    view.has_visible_lights |=
-        !light.is_delta && light.casts_shadow && light.kind != LightKind::kInstance;
-  }
+  view.has_visible_lights = lights_.has_visible();
   view.has_emitters |=
       view.has_visible_lights || view.sky_texture >= 0 || max_component(sky_ambient_) > 0;
   return view;
