@@ -54,8 +54,8 @@ GLOAM_HD float mean_inverse_square(Vec3f to, Vec3f h, float d2) {
   const bool x = h.x >= h.y && h.x >= h.z, y = !x && h.y >= h.z;
   const float e = x ? h.x : (y ? h.y : h.z), along = x ? to.x : (y ? to.y : to.z);
   const float e2 = e * e, h2 = dot(h, h), along2 = along * along;
-  const float across2 = max(max(d2 - along2, 0.0f) + (h2 - e2) * (1.0f / 3.0f),
-                            max(1e-4f * e2, 1e-12f));
+  const float across2 =
+      max(max(d2 - along2, 0.0f) + (h2 - e2) * (1.0f / 3.0f), max(1e-4f * e2, 1e-12f));
   const float near2 = across2 + along2;
   if (e2 < 1e-3f * near2) return 1.0f / near2;
   const float width = 2.0f * e * sqrtf(across2);
@@ -88,9 +88,9 @@ GLOAM_HD float bound(const LightNode& node, Vec3f p, Vec3f n) {
   if (node.spread + node.falloff < kPi && d2 > r2) {
     const float inv_d = 1.0f / sqrtf(d2);
     const float seen_within = 0.5f * kPi - fast_acos(sqrtf(r2) * inv_d);  // of the box
-    const float share = fade(fast_acos(-dot(to, node.axis) * inv_d) - node.spread - seen_within -
-                                 kAngleSlack,
-                             node.falloff);
+    const float share =
+        fade(fast_acos(-dot(to, node.axis) * inv_d) - node.spread - seen_within - kAngleSlack,
+             node.falloff);
     if (!(share > 0)) return 0;
     weight *= share;
   }

@@ -68,8 +68,8 @@ void set_bounds(const InstanceView& instance, const std::vector<MeshView>& meshe
   light->half = (high - low) * 0.5f;
   light->reach = length(light->half);
   if (!is_mesh(instance.shape)) {
-    light->reach = min(light->reach, length(h) + tip +
-                                         0.5f * length(instance.X_WG_close.p - instance.X_WG.p));
+    light->reach =
+        min(light->reach, length(h) + tip + 0.5f * length(instance.X_WG_close.p - instance.X_WG.p));
   }
   if (instance.shape == ShapeType::kPlane && !instance.moving) {  // its back is dark
     light->direction = normalize(instance.X_WG.z);
@@ -184,6 +184,7 @@ std::vector<LightView> LightTable::guided(const RenderDescription& description,
                                           const PoseFrame& frame) {
   std::vector<LightView> lights;
   for (const LightDescription& in : description.lights) {
+    if (lights.size() > kMaxWeighedLights) return lights;  // too many for a guide
     if (!is_guided(in)) continue;
     LightView light = describe_light(in);
     light.p = row(frame.light_p, in.light);
@@ -191,6 +192,7 @@ std::vector<LightView> LightTable::guided(const RenderDescription& description,
     lights.push_back(light);
   }
   for (size_t i = 0; i < description.instances.size(); ++i) {
+    if (lights.size() > kMaxWeighedLights) return lights;
     if (!is_guided(description, description.instances[i])) continue;
     LightView light;
     light.kind = LightKind::kInstance;

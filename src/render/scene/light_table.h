@@ -18,7 +18,8 @@ class LightTable {
   void place_headlights(const Affine3f& X_WC);
 
   /// Static lights that cast shadows, whether on or off, and static things described as emitters,
-  /// in the order of LightView::guide.
+  /// in the order of LightView::guide; of more than kMaxWeighedLights, for which there is no guide,
+  /// one more than that.
   static std::vector<LightView> guided(const RenderDescription& description,
                                        const PoseFrame& frame);
 

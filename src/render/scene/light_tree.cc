@@ -41,8 +41,8 @@ void merge_cones(const LightNode& a, const LightNode& b, LightNode* out) {
     return;
   }
   const float turn = out->spread - wide.spread;
-  out->axis = normalize(wide.axis * std::cos(turn) +
-                        cross(normal / sine, wide.axis) * std::sin(turn));
+  out->axis =
+      normalize(wide.axis * std::cos(turn) + cross(normal / sine, wide.axis) * std::sin(turn));
 }
 
 void bound_two(const LightNode& a, const LightNode& b, LightNode* out) {

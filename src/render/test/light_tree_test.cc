@@ -7,8 +7,8 @@
 #include <chrono>
 
 #include "base/parallel.h"
+#include "render/kernel/light_picker.h"
 #include "render/test/light_crowd.h"
-#include "render/test/probe.h"
 
 namespace gloam {
 namespace {
@@ -69,8 +69,7 @@ TEST_P(LightTreeTest, DrawsFollowTheProbabilities) {
     std::vector<double> seen(lights_.size());
     for (uint32_t k = 0; k < kDraws; ++k) {
       const LightChoice c = light_tree::choose(
-          tree_.view(), at.p, at.n,
-          light_tree::lengthen(random_2d(k, 1).x, random_2d(k, 2)));
+          tree_.view(), at.p, at.n, light_tree::lengthen(random_2d(k, 1).x, random_2d(k, 2)));
       if (!(c.probability > 0)) continue;
       ASSERT_NEAR(c.probability, light_tree::probability(tree_.view(), c.light, at.p, at.n),
                   1e-4f * c.probability);
@@ -81,15 +80,15 @@ TEST_P(LightTreeTest, DrawsFollowTheProbabilities) {
     double chi2 = 0, expected = 0, observed = 0;
     int cells = 0;
     for (uint32_t i = 0; i < lights_.size(); ++i) {
-      expected += kDraws * static_cast<double>(
-                               light_tree::probability(tree_.view(), i, at.p, at.n));
+      expected +=
+          kDraws * static_cast<double>(light_tree::probability(tree_.view(), i, at.p, at.n));
       observed += seen[i];
       if (expected < 50) continue;
       chi2 += (observed - expected) * (observed - expected) / expected;
       expected = observed = 0;
       ++cells;
     }
-    EXPECT_LT(chi2, cells + 5 * std::sqrt(2.0 * cells)) << cells << " cells";
+    EXPECT_LE(chi2, cells + 5 * std::sqrt(2.0 * cells)) << cells << " cells";
   }
 }
 
@@ -114,8 +113,9 @@ TEST_P(LightTreeTest, RaysFindAllLampsOnTheirWay) {
   for (uint32_t k = 0; k < 300; ++k) {
     Ray ray;
     const LightView& aim = lights_[(k * 7919) % lights_.size()];
-    ray.o = (Vec3f{random_2d(k, 4).x, random_2d(k, 4).y, random_2d(k, 5).x} * 2.0f -
-             Vec3f{1, 1, 1}) * GetParam().extent;
+    ray.o =
+        (Vec3f{random_2d(k, 4).x, random_2d(k, 4).y, random_2d(k, 5).x} * 2.0f - Vec3f{1, 1, 1}) *
+        GetParam().extent;
     ray.d = normalize(aim.p - ray.o);
     if (!(length(ray.d) > 0.9f)) continue;
     ray.tmax = k % 2 == 0 ? 1e30f : GetParam().extent;
@@ -129,10 +129,10 @@ TEST_P(LightTreeTest, RaysFindAllLampsOnTheirWay) {
       if (light.is_delta || light.kind == LightKind::kInstance) continue;
       const bool is_sun = light.kind == LightKind::kDirectional;
       const float t = is_sun ? 0 : enter_sphere(ray, light.p, light.radius);
-      const bool hit = is_sun ? ray.tmax >= 1e29f &&
-                                    -dot(ray.d, light.direction) >=
-                                        1 - one_minus_cos_of(light.radius * light.radius)
-                              : t > 0 && t < ray.tmax;
+      const bool hit =
+          is_sun ? ray.tmax >= 1e29f && -dot(ray.d, light.direction) >=
+                                            1 - one_minus_cos_of(light.radius * light.radius)
+                 : t > 0 && t < ray.tmax;
       EXPECT_TRUE(!hit || visited[i]) << "light " << i;
       met += hit ? 1 : 0;
     }
@@ -207,6 +207,53 @@ TEST(LightTree, AllLightsAtOnePlaceAreTakenByPowerAndDirection) {
     sum += share;
   }
   EXPECT_NEAR(sum, 1, 1e-4);
+}
+
+/// Relative variance of one draw's estimate of the illuminance at p, exactly: by the tree, and by
+/// power alone with a quarter of the draws evenly.
+struct DrawVariance {
+  double tree = 0, power = 0;
+};
+DrawVariance draw_variance(const std::vector<LightView>& lights, const LightTreeView& tree, Vec3f p,
+                           Vec3f n) {
+  double sum = 0, total = 0, by_tree = 0, by_power = 0;
+  for (const LightView& light : lights) total += static_cast<double>(light.strength);
+  for (uint32_t i = 0; i < lights.size(); ++i) {
+    const Vec3f to = lights[i].p - p;
+    const double d2 = static_cast<double>(dot(to, to));
+    const double brings = lights[i].strength * std::max(0.0f, dot(to, n)) / (d2 * std::sqrt(d2));
+    if (!(brings > 0)) continue;
+    sum += brings;
+    by_tree += brings * brings / light_tree::probability(tree, i, p, n);
+    by_power += brings * brings / (0.75 * lights[i].strength / total + 0.25 / lights.size());
+  }
+  return {by_tree / (sum * sum) - 1, by_power / (sum * sum) - 1};
+}
+
+TEST(LightTree, IsFarLessNoisyThanPowerInALongCorridor) {
+  std::vector<LightView> lights(1000);
+  for (size_t i = 0; i < lights.size(); ++i) {
+    lights[i].p = {2.0f * static_cast<float>(i), 0, 2.8f};
+    lights[i].strength = i % 7 == 0 ? 1000.0f : 100.0f;
+  }
+  LightTree tree;
+  tree.build(lights, {});
+  DrawVariance mean;
+  constexpr int kPoints = 200;
+  for (uint32_t k = 0; k < kPoints; ++k) {
+    const Vec2f u = random_2d(k, 1);
+    const bool on_floor = k % 2 == 0;
+    const Vec3f p =
+        on_floor ? Vec3f{u.x * 2000, u.y * 2 - 1, 0} : Vec3f{u.x * 2000, -1, u.y * 2.7f};
+    const DrawVariance at =
+        draw_variance(lights, tree.view(), p, on_floor ? Vec3f{0, 0, 1} : Vec3f{0, 1, 0});
+    mean.tree += at.tree / kPoints;
+    mean.power += at.power / kPoints;
+    EXPECT_LT(at.tree, 3) << "at " << p.x;
+  }
+  // 0.2 against 230 when this was written.
+  EXPECT_LT(mean.tree, 0.6);
+  EXPECT_GT(mean.power, 100);
 }
 
 TEST(LightTree, AMillionLightsAreBuiltInTime) {
