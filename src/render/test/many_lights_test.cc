@@ -151,5 +151,22 @@ TEST(ManyLights, AFrameLikeTheLastKeepsThePicture) {
   EXPECT_EQ(moved.radiance, fresh.radiance) << "the picture depends on those before it";
 }
 
+TEST(ManyLights, LightsThatAreNotFiniteAreLeftOut) {
+  SceneBuilder b = hall(kAll);
+  RenderSettings settings;
+  settings.spp = 4;
+  const CameraView view = SceneBuilder::camera(look_at({5, -6, 4.5f}, {0, 0, 0.5f}), 16, 16);
+  const Film film = b.render(view, settings);
+  LightDescription lamp;
+  for (const float intensity : {HUGE_VALF, std::nanf(""), -1.0f, 0.0f}) {
+    lamp.intensity = Vec3f{1, 1, 1} * intensity;
+    b.add_light(lamp, {0, 0, 2});
+  }
+  lamp.intensity = {1, 1, 1};
+  b.add_light(lamp, {std::nanf(""), 0, 2});
+  b.add_light(lamp, {HUGE_VALF, 0, 2});
+  EXPECT_EQ(b.render(view, settings).radiance, film.radiance);
+}
+
 }  // namespace
 }  // namespace gloam
