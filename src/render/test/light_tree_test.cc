@@ -268,7 +268,7 @@ TEST(LightTree, AMillionLightsAreBuiltInTime) {
   RecordProperty("seconds", std::to_string(seconds));
   const size_t bytes = tree.view().nodes.size * sizeof(LightNode) + lights.size() * 4;
   EXPECT_LE(bytes, 200u * lights.size());
-  EXPECT_LT(seconds, 8) << "on a busy machine; about 1 s on two free cores";
+  EXPECT_LT(seconds, 30) << "1 s of CPU without sanitizers";
   std::printf("%.2f s, %.0f MB\n", seconds, static_cast<double>(bytes) * 1e-6);
 }
 
