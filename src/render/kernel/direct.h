@@ -7,7 +7,7 @@
 
 namespace gloam {
 
-/// Scenes with more lights than this draw so many of them by power.
+/// Scenes with more lights than this draw so many of them by the tree.
 inline constexpr uint32_t kMaxDirectLights = kMaxWeighedLights;
 
 struct DirectState {

@@ -105,7 +105,7 @@ GLOAM_HD void direct_light(const SceneView& scene, const Tracer& tracer, paths::
     LightSampleOf<F> light;
     const Vec2Of<F> u = path->sampler.next_2d(active);
     if (every) {
-      const MaskOf<F> near = active & (path->picker.probability(scene, k) > 0.0f);
+      const MaskOf<F> near = active & (path->picker.shares(k) > 0.0f);
       if (!any(near)) continue;
       const F pick = path->sampler.next_1d(active);
       light = sample_one_light(scene, k, v.p, pick, u, path->ray.time, near);
@@ -129,7 +129,7 @@ GLOAM_HD F emitter_pdf(const SceneView& scene, const paths::State<F>& path, cons
     if (instance.light < 0) return;
     const auto row = static_cast<uint32_t>(instance.light);
     const float chance =
-        every ? 1.0f : static_cast<float>(drawn) * lane(path.picker.probability(scene, row), i);
+        every ? 1.0f : static_cast<float>(drawn) * path.picker.probability(scene, row, i);
     set_lane(&pdf, i,
              chance * lights::instance_pdf(scene, instance, lane(path.from, i), lane(s.p, i),
                                            lane(s.geometric, i), lane(path.ray.time, i)));

@@ -4,11 +4,12 @@
 // shown to the camera. Device-safe.
 
 #include "render/kernel/light.h"
+#include "render/kernel/light_tree.h"
 #include "render/kernel/sky.h"
 
 namespace gloam {
 
-/// Scenes with more lights select by power alone.
+/// Scenes with more lights select by a tree.
 inline constexpr uint32_t kMaxWeighedLights = 16;
 
 /// A bound, up to a factor, of what the light brings to the surface at p with the geometric normal
@@ -38,8 +39,8 @@ GLOAM_HD F light_weight(const SceneView& scene, const LightView& light, Vec3Of<F
   return weight;
 }
 
-/// How lights are taken at one surface: in proportion to light_weight where there are few, by power
-/// alone where there are many.
+/// How lights are taken at one surface: in proportion to light_weight where there are few, by a
+/// tree where there are many.
 template <class F>
 class LightPickerOf {
  public:
@@ -52,6 +53,8 @@ class LightPickerOf {
   GLOAM_HD void prepare(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, Mask active = true,
                         Mask both_sides = false) {
     count_ = scene.lights.size;
+    p_ = select<F>(active, p, p_);
+    n_ = select<F>(active, select<F>(both_sides, Vec3Of<F>{}, n), n_);
     Uint first{};  // of the guide's visibilities
     Mask guided = false;
     sky_strength_ = select(active & both_sides, F(0.0f), sky_strength_);
@@ -104,9 +107,13 @@ class LightPickerOf {
     return pdf;
   }
 
-  /// Probability of taking light i.
-  GLOAM_HD F probability(const SceneView& scene, uint32_t i) const {
-    return count_ > kMaxWeighedLights ? lights_share_ * scene.lights[i].probability : share_[i];
+  /// Probabilities of taking light i where there are few.
+  GLOAM_HD F shares(uint32_t i) const { return share_[i]; }
+  /// Probability of taking light i in the lane `at`.
+  GLOAM_HD float probability(const SceneView& scene, uint32_t i, int at) const {
+    if (count_ <= kMaxWeighedLights) return lane(share_[i], at);
+    return lane(lights_share_, at) *
+           light_tree::probability(scene.light_tree, i, lane(p_, at), lane(n_, at));
   }
 
   /// Takes a light, or the sky, and a direction from p towards it, for the `active` lanes.
@@ -126,7 +133,8 @@ class LightPickerOf {
       pick = clamp(pick / lights_share_, 0.0f, 0.9999999f);
       each_lane(open, [&](int i) {
         set_lane(&out, i,
-                 sample_by_power(scene, lane(p, i), lane(pick, i), lane(u, i), lane(time, i)));
+                 sample_by_tree(scene, lane(p, i), lane(n_, i), lane(pick, i), lane(u, i),
+                                lane(time, i)));
       });
       out.pdf = select(open, out.pdf * lights_share_, out.pdf);
       return out;
@@ -169,21 +177,13 @@ class LightPickerOf {
       set_lane(&sky_axis_, i, sky.axis);
     });
   }
-  GLOAM_HD static LightSample sample_by_power(const SceneView& scene, Vec3f p, float pick, Vec2f u,
-                                              float time) {
-    uint32_t index = 0, high = scene.lights.size - 1;
-    while (index < high) {
-      const uint32_t middle = (index + high) / 2;
-      if (pick < scene.lights[middle].cdf) {
-        high = middle;
-      } else {
-        index = middle + 1;
-      }
-    }
-    const float taken = scene.lights[index].probability;
-    pick = clamp((pick - (scene.lights[index].cdf - taken)) / taken, 0.0f, 0.9999999f);
-    LightSample s = sample_one_light(scene, index, p, pick, u, time);
-    s.pdf *= taken;
+  GLOAM_HD static LightSample sample_by_tree(const SceneView& scene, Vec3f p, Vec3f n, float pick,
+                                             Vec2f u, float time) {
+    const LightChoice choice =
+        light_tree::choose(scene.light_tree, p, n, light_tree::lengthen(pick, u));
+    if (!(choice.probability > 0)) return {};
+    LightSample s = sample_one_light(scene, choice.light, p, choice.rest, u, time);
+    s.pdf *= choice.probability;
     return s;
   }
   /// In the cone, or by the map.
@@ -204,6 +204,7 @@ class LightPickerOf {
 
   uint32_t count_ = 0;
   F share_[kMaxWeighedLights];
+  Vec3Of<F> p_, n_;  ///< of the surface where there are many lights; n_ = 0: takes from all sides
   Vec3Of<F> sky_axis_;
   F sky_one_minus_cos_{}, sky_strength_{};
   F cone_share_{}, map_share_{};  ///< of the two ways to the sky
@@ -211,39 +212,68 @@ class LightPickerOf {
 };
 using LightPicker = LightPickerOf<float>;
 
-/// Light of lamps and suns that a scattered ray meets before `tmax`, each weighted against
-/// `picker` at `from`, the point that scattered it, by the density `pdf_bsdf` of its direction.
-/// `passing(F t, Mask)`: share of light that media on the way let through.
+/// Light i of lamps and suns, as in visible_lights. `probability`: of taking it at `from`.
+template <class F, class Probability, class Passing>
+GLOAM_HD Vec3Of<F> visible_light(const SceneView& scene, uint32_t i, const RayOf<F>& ray, F tmax,
+                                 Vec3Of<F> from, F pdf_bsdf, MaskOf<F> active,
+                                 const Probability& probability, const Passing& passing) {
+  const LightView& light = scene.lights[i];
+  if (light.is_delta || !light.casts_shadow || light.kind == LightKind::kInstance) return {};
+  const float r2 = light.radius * light.radius;
+  Vec3Of<F> radiance;
+  F sin2 = r2, t = tmax;
+  MaskOf<F> seen;
+  if (light.kind == LightKind::kDirectional) {
+    seen = active & (tmax >= 1e29f) &
+           (-dot(ray.d, in_all_lanes<F>(light.direction)) >= 1.0f - one_minus_cos_of(r2));
+    if (!any(seen)) return {};
+    radiance = in_all_lanes<F>(light.intensity / (kPi * r2));
+  } else {
+    t = enter_sphere(ray, light.p, light.radius);
+    const Vec3Of<F> to = in_all_lanes<F>(light.p) - from;
+    const F d2 = dot(to, to);
+    seen = active & (t > 0.0f) & (t < tmax) & (d2 > r2 * 1.0001f);
+    if (!any(seen)) return {};
+    radiance = in_all_lanes<F>(light.intensity) *
+               (lamp_share(scene, light, -to / square_root(d2)) / (kPi * r2));
+    sin2 = min(r2 / d2, 1.0f);
+  }
+  if (!scene.media.volumes.empty()) {
+    each_lane(seen, [&](int at) {
+      set_lane(&radiance, at, lane(radiance, at) * passing(at, lane(t, at)));
+    });
+  }
+  const F pdf = probability() * cone_pdf(one_minus_cos_of(sin2));
+  return select<F>(seen, radiance * mis_weight(pdf_bsdf, pdf), Vec3Of<F>{});
+}
+
+/// Light of lamps and suns that the scattered rays of the `active` lanes meet before `tmax`, each
+/// weighted against `picker` at `from`, the point that scattered it, by the density `pdf_bsdf` of
+/// its direction. `passing(lane, t)`: share of light that media let through up to there.
 template <class F, class Passing>
 GLOAM_HD Vec3Of<F> visible_lights(const SceneView& scene, const RayOf<F>& ray, F tmax,
                                   Vec3Of<F> from, const LightPickerOf<F>& picker, F pdf_bsdf,
-                                  const Passing& passing) {
+                                  MaskOf<F> active, const Passing& passing) {
   Vec3Of<F> sum;
-  for (uint32_t i = 0; i < scene.lights.size; ++i) {
-    const LightView& light = scene.lights[i];
-    if (light.is_delta || !light.casts_shadow || light.kind == LightKind::kInstance) continue;
-    const float r2 = light.radius * light.radius;
-    Vec3Of<F> radiance;
-    F sin2 = r2, t = tmax;
-    MaskOf<F> seen;
-    if (light.kind == LightKind::kDirectional) {
-      seen = (tmax >= 1e29f) &
-             (-dot(ray.d, in_all_lanes<F>(light.direction)) >= 1.0f - one_minus_cos_of(r2));
-      if (!any(seen)) continue;
-      radiance = in_all_lanes<F>(light.intensity / (kPi * r2));
-    } else {
-      t = enter_sphere(ray, light.p, light.radius);
-      const Vec3Of<F> to = in_all_lanes<F>(light.p) - from;
-      const F d2 = dot(to, to);
-      seen = (t > 0.0f) & (t < tmax) & (d2 > r2 * 1.0001f);
-      if (!any(seen)) continue;
-      radiance = in_all_lanes<F>(light.intensity) *
-                 (lamp_share(scene, light, -to / square_root(d2)) / (kPi * r2));
-      sin2 = min(r2 / d2, 1.0f);
+  if (scene.lights.size <= kMaxWeighedLights) {
+    for (uint32_t i = 0; i < scene.lights.size; ++i) {
+      sum += visible_light(
+          scene, i, ray, tmax, from, pdf_bsdf, active, [&] { return picker.shares(i); }, passing);
     }
-    const F pdf = picker.probability(scene, i) * cone_pdf(one_minus_cos_of(sin2));
-    sum += select<F>(seen, radiance * passing(t, seen) * mis_weight(pdf_bsdf, pdf), Vec3Of<F>{});
+    return sum;
   }
+  each_lane(active, [&](int at) {
+    const Ray one = lane(ray, at);
+    const float most = lane(tmax, at);
+    Vec3f light;
+    light_tree::each_shown(scene.light_tree, one, most, [&](uint32_t i) {
+      light += visible_light<float>(
+          scene, i, one, most, lane(from, at), lane(pdf_bsdf, at), true,
+          [&] { return picker.probability(scene, i, at); },
+          [&](int, float t) { return passing(at, t); });
+    });
+    set_lane(&sum, at, light);
+  });
   return sum;
 }
 

@@ -85,12 +85,11 @@ GLOAM_HD PathResultOf<F> trace_path(const SceneView& scene, const Tracer& tracer
     Mask found = tracer.closest(path.ray, active, coherent, &hit);
     const Mask scattered = path.pdf_bsdf > 0.0f;
     if (scene.has_visible_lights && any(active & scattered)) {
+      const Vec2Of<F> u = scene.media.volumes.empty() ? Vec2Of<F>{} : path.sampler.next_2d(active);
       const Vec3Of<F> lamps = visible_lights(
           scene, path.ray, select(found, hit.t, F(1e30f)), path.from, path.picker, path.pdf_bsdf,
-          [&](F t, Mask seen) {
-            RayOf<F> to_lamp = path.ray;
-            to_lamp.tmax = t;
-            return paths::through_media(scene, to_lamp, seen & active & scattered, &path.sampler);
+          active & scattered, [&](int i, float t) {
+            return transmittance(scene.media, lane(path.ray, i), t, {}, WalkRandom(lane(u, i)));
           });
       path.result.radiance += select<F>(active & scattered, path.throughput * lamps, Vec3Of<F>{});
     }

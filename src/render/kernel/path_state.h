@@ -77,8 +77,7 @@ GLOAM_HD void weigh_emission(const SceneView& scene, const State<F>& path, MaskO
   each_lane(sampled, [&](int i) {
     const InstanceView& instance = scene.instances[lane(s->instance, i)];
     if (instance.light < 0) return;
-    const float selected =
-        lane(path.picker.probability(scene, static_cast<uint32_t>(instance.light)), i);
+    const float selected = path.picker.probability(scene, static_cast<uint32_t>(instance.light), i);
     const float pdf =
         selected * lights::instance_pdf(scene, instance, lane(path.from, i), lane(s->p, i),
                                         lane(s->geometric, i), lane(path.ray.time, i));

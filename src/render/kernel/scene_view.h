@@ -3,6 +3,7 @@
 // them. Device-safe.
 
 #include "render/kernel/environment.h"
+#include "render/kernel/light_tree_view.h"
 #include "render/kernel/medium_view.h"
 #include "render/kernel/ray.h"
 #include "world/procedural_description.h"
@@ -109,8 +110,12 @@ struct LightView {
   float reach = 0;     ///< radius of a sphere about p that holds all of it [m]
   uint32_t instance = 0;  ///< kInstance
   int guide = -1;         ///< row of LightGuide::visible; -1 = it moves, or has none
-  float probability = 0;  ///< of selection by power alone
-  float cdf = 0;          ///< running sum of probabilities
+  // Bounds for the tree; not of directional lights.
+  Vec3f half;          ///< half the size of a box about p that holds all of it [m]
+  float spread = kPi;  ///< angle from `direction` up to which it shines in full [rad]
+  float falloff = 0;   ///< angle beyond that over which it fades to nothing [rad]
+
+  friend bool operator==(const LightView&, const LightView&) = default;
 };
 
 /// IesProfile's grid relative to its most.
@@ -207,6 +212,7 @@ struct SceneView {
   DeviceSpan<const LightView> lights;
   DeviceSpan<const ProfileView> profiles;
   DeviceSpan<const float> profile_values;
+  LightTreeView light_tree;  ///< of scenes with more than kMaxWeighedLights
   DeviceSpan<const MaterialLayers> layers;
   DeviceSpan<const ProceduralDescription> procedurals;
   const AlbedoTable* albedo = nullptr;

@@ -1,20 +1,15 @@
 #include "render/scene/light_table.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "render/kernel/light_picker.h"
 #include "render/kernel/shapes.h"
 #include "render/scene/pose.h"
 #include "world/visual_rules.h"
 
 namespace gloam {
 namespace {
-
-/// Power that a light brings into the scene [lm], to weigh lights against each other.
-float light_power(const LightView& light, float scene_radius) {
-  const float strength = luminance(light.intensity);
-  if (light.kind == LightKind::kDirectional) return strength * kPi * scene_radius * scene_radius;
-  return strength * 2 * kPi * (1.0f - light.cos_cutoff);
-}
 
 bool is_headlight(const LightDescription& light) { return light.light < 0 && light.body < 0; }
 
@@ -28,32 +23,69 @@ LightView describe_light(const LightDescription& in) {
   out.radius = max(in.radius, 0.0f);
   out.profile = in.profile;
   out.is_delta = out.radius <= 0;
+  if (out.kind == LightKind::kDirectional) out.spread = std::asin(min(out.radius, 1.0f));
   if (out.kind == LightKind::kSpot) {
     out.cos_cutoff = clamp(in.cos_cutoff, -1.0f, 1.0f);
     out.cutoff = std::acos(out.cos_cutoff);
     out.inner = out.cutoff * (1.0f - clamp(in.softness, 0.0f, 1.0f));
     out.cos_inner = std::cos(out.inner);
+    out.spread = out.inner;
+    out.falloff = out.cutoff - out.inner;
   }
   return out;
 }
 
-/// A sphere that holds the emitter during the shutter.
+/// A sphere and a box that hold the emitter during the shutter, and the cone in which it shines.
 void set_bounds(const InstanceView& instance, const std::vector<MeshView>& meshes,
                 LightView* light) {
-  light->p = (instance.X_WG.p + instance.X_WG_close.p) * 0.5f;
-  const bool soft = instance.shape == ShapeType::kDeformable;
-  if (soft || instance.shape == ShapeType::kMesh) {
+  Vec3f low{1e30f, 1e30f, 1e30f}, high = -low;
+  const auto add = [&](Vec3f p) {
+    low = {min(low.x, p.x), min(low.y, p.y), min(low.z, p.z)};
+    high = {max(high.x, p.x), max(high.y, p.y), max(high.z, p.z)};
+  };
+  const auto add_G = [&](Vec3f p_G) {
+    add(transform_point(instance.X_WG, p_G));
+    if (instance.moving) add(transform_point(instance.X_WG_close, p_G));
+  };
+  const Vec3f h = shape_half_size(instance.shape, instance.size);
+  const float tip = instance.shape == ShapeType::kCapsule ? instance.size.x : 0.0f;
+  if (instance.shape == ShapeType::kDeformable) {
     const MeshView& mesh = meshes[instance.mesh];
-    if (soft) light->p = mesh.positions.empty() ? Vec3f{} : mesh.positions[0];
-    for (uint32_t i = 0; i < mesh.positions.size; ++i) {
-      light->reach = max(light->reach, length(mesh.positions[i] - (soft ? light->p : Vec3f{})));
+    for (uint32_t i = 0; i < mesh.positions.size; ++i) add(mesh.positions[i]);
+    for (uint32_t i = 0; i < mesh.positions_close.size; ++i) add(mesh.positions_close[i]);
+  } else if (instance.shape == ShapeType::kMesh) {
+    const MeshView& mesh = meshes[instance.mesh];
+    for (uint32_t i = 0; i < mesh.positions.size; ++i) add_G(mesh.positions[i]);
+  } else if (instance.shape == ShapeType::kSphere) {
+    for (const Vec3f p : {instance.X_WG.p, instance.X_WG_close.p}) {
+      add(p - h);
+      add(p + h);
     }
-    if (!mesh.positions_close.empty()) light->reach *= 2;
   } else {
-    const Vec3f h = shape_half_size(instance.shape, instance.size);
-    light->reach = length(h) + (instance.shape == ShapeType::kCapsule ? instance.size.x : 0.0f);
+    for (int i = 0; i < 8; ++i) {
+      add_G({(i & 1) != 0 ? h.x : -h.x, (i & 2) != 0 ? h.y : -h.y,
+             (i & 4) != 0 ? h.z + tip : -h.z - tip});
+    }
   }
-  light->reach += 0.5f * length(instance.X_WG_close.p - instance.X_WG.p);
+  if (low.x > high.x) return;  // a mesh without vertices
+  light->p = (low + high) * 0.5f;
+  light->half = (high - low) * 0.5f;
+  light->reach = length(light->half);
+  if (!is_mesh(instance.shape)) {
+    light->reach =
+        min(light->reach, length(h) + tip + 0.5f * length(instance.X_WG_close.p - instance.X_WG.p));
+  }
+  if (instance.shape == ShapeType::kPlane && !instance.moving) {  // its back is dark
+    light->direction = normalize(instance.X_WG.z);
+    light->spread = 0;
+    light->falloff = 0.5f * kPi;
+  }
+}
+
+bool is_finite(const LightView& light) {
+  constexpr float kMost = 1e18f;  // squares and their sums stay finite
+  const float far = fabsf(light.p.x) + fabsf(light.p.y) + fabsf(light.p.z);
+  return light.strength < kMost && far < kMost && light.reach < kMost;
 }
 
 // The guide's rows are those of the description, whatever is live: it is built once.
@@ -93,10 +125,9 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
                         const std::vector<MaterialView>& materials,
                         const std::vector<MeshView>& meshes, std::vector<InstanceView>* instances) {
   const bool live = frame.live_serial != 0;
-  lights_.clear();
-  headlights_.clear();
-  std::vector<float> power;
-  const float scene_radius = max(description.extent, 1.0f);
+  const std::vector<LightView> before = std::exchange(lights_, {});
+  const std::vector<uint32_t> headlights_before = std::exchange(headlights_, {});
+  lights_.reserve(before.size());
   int guide = 0;
   size_t row_of_light = 0;
   for (const LightDescription& in : description.lights) {
@@ -115,11 +146,12 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
     }
     light.intensity *= level;
     if (!(luminance(light.intensity) > 0)) continue;
-    if (is_headlight(in)) headlights_.push_back(lights_.size());
     light.strength = luminance(light.intensity);
     light.reach = light.kind == LightKind::kDirectional ? 0.0f : light.radius;
+    light.half = Vec3f{1, 1, 1} * light.reach;
+    if (!is_finite(light)) continue;
+    if (is_headlight(in)) headlights_.push_back(static_cast<uint32_t>(lights_.size()));
     lights_.push_back(light);
-    power.push_back(light_power(light, scene_radius));
   }
   for (size_t i = 0; i < instances->size(); ++i) {
     InstanceView& instance = (*instances)[i];
@@ -135,26 +167,36 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
         sides * (is_mesh ? meshes[instance.mesh].area : shape_area(instance.shape, instance.size));
     const float strength = luminance(material.emission) * kPi * area * material.opacity;
     if (!(strength > 0)) continue;
-    instance.light = static_cast<int>(lights_.size());
     LightView light;
     light.kind = LightKind::kInstance;
     light.instance = static_cast<uint32_t>(i);
     light.guide = row_of_guide;
     light.strength = strength / (4 * kPi);
     set_bounds(instance, meshes, &light);
+    if (!is_finite(light)) continue;
+    instance.light = static_cast<int>(lights_.size());
     lights_.push_back(light);
-    power.push_back(strength);
   }
-  // A share of draws goes to all lights alike: a weak lamp near a surface matters as much as a
-  // strong one far away.
-  constexpr float kUniformShare = 0.25f;
-  double total = 0, sum = 0;
-  for (const float p : power) total += p;
-  for (size_t i = 0; i < lights_.size(); ++i) {
-    const double p = (1 - kUniformShare) * power[i] / total +
-                     kUniformShare / static_cast<double>(lights_.size());
-    lights_[i].probability = static_cast<float>(p);
-    lights_[i].cdf = static_cast<float>(sum += p);
+  update_tree(before, headlights_before);
+}
+
+void LightTable::update_tree(const std::vector<LightView>& before,
+                             const std::vector<uint32_t>& headlights_before) {
+  if (headlights_ == headlights_before) {  // which stay at the last camera until the next
+    for (const uint32_t i : headlights_) {
+      if (i >= before.size()) break;
+      lights_[i].p = before[i].p;
+      lights_[i].direction = before[i].direction;
+    }
+  }
+  if (lights_ == before) return;
+  has_visible_ = std::any_of(lights_.begin(), lights_.end(), [](const LightView& light) {
+    return !light.is_delta && light.casts_shadow && light.kind != LightKind::kInstance;
+  });
+  if (lights_.size() > kMaxWeighedLights) {
+    tree_.build(lights_, headlights_);
+  } else {
+    tree_ = {};
   }
 }
 
@@ -162,11 +204,13 @@ std::vector<LightView> LightTable::guided(const RenderDescription& description,
                                           const PoseFrame& frame) {
   std::vector<LightView> lights;
   for (const LightDescription& in : description.lights) {
+    if (lights.size() > kMaxWeighedLights) return lights;  // too many for a guide
     if (!is_guided(in)) continue;
     lights.push_back(describe_light(in));
     place(in, frame, &lights.back());
   }
   for (size_t i = 0; i < description.instances.size(); ++i) {
+    if (lights.size() > kMaxWeighedLights) return lights;
     if (!is_guided(description, description.instances[i])) continue;
     LightView light;
     light.kind = LightKind::kInstance;
@@ -177,10 +221,11 @@ std::vector<LightView> LightTable::guided(const RenderDescription& description,
 }
 
 void LightTable::place_headlights(const Affine3f& X_WC) {
-  for (const size_t i : headlights_) {
+  for (const uint32_t i : headlights_) {
     lights_[i].p = X_WC.p;
     lights_[i].direction = normalize(-X_WC.z);
   }
+  if (lights_.size() > kMaxWeighedLights) tree_.move_headlights(lights_, headlights_);
 }
 
 }  // namespace gloam

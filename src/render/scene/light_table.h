@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "render/kernel/scene_view.h"
+#include "render/scene/light_tree.h"
 #include "sim/pose_frame.h"
 
 namespace gloam {
@@ -19,15 +19,26 @@ class LightTable {
   void place_headlights(const Affine3f& X_WC);
 
   /// Static lights that cast shadows, whether on or off, and static things described as emitters,
-  /// in the order of LightView::guide.
+  /// in the order of LightView::guide; of more than kMaxWeighedLights, for which there is no guide,
+  /// one more than that.
   static std::vector<LightView> guided(const RenderDescription& description,
                                        const PoseFrame& frame);
 
   const std::vector<LightView>& lights() const { return lights_; }
+  /// Over them where they are many, else empty.
+  LightTreeView tree() const { return tree_.view(); }
+  /// Some sphere or sun can be hit.
+  bool has_visible() const { return has_visible_; }
 
  private:
+  /// Brings the tree up to date where `before`, the lights of the last update, were others.
+  void update_tree(const std::vector<LightView>& before,
+                   const std::vector<uint32_t>& headlights_before);
+
   std::vector<LightView> lights_;
-  std::vector<size_t> headlights_;  ///< rows of lights_
+  std::vector<uint32_t> headlights_;  ///< rows of lights_
+  LightTree tree_;
+  bool has_visible_ = false;
 };
 
 }  // namespace gloam

@@ -265,6 +265,7 @@ SceneView RenderScene::view_from(const Affine3f& X_WC) {
   view.profiles = span_of(profiles_.profiles);
   view.profile_values = span_of(profiles_.values);
   view.media = volumes_.view();
+  view.light_tree = lights_.tree();
   view.procedurals = span_of(description_.procedurals);
   view.layers = span_of(materials_.layers());
   view.albedo = &albedo_;
@@ -283,10 +284,7 @@ SceneView RenderScene::view_from(const Affine3f& X_WC) {
     view.has_transparent |= material.transparent;
     view.has_emitters |= max_component(material.emission) > 0;
   }
-  for (const LightView& light : lights_.lights()) {
-    view.has_visible_lights |=
-        !light.is_delta && light.casts_shadow && light.kind != LightKind::kInstance;
-  }
+  view.has_visible_lights = lights_.has_visible();
   for (const VolumeDescription& volume : description_.volumes) {
     view.has_emitters |= description_.media[static_cast<size_t>(volume.medium)].emission > 0;
   }

@@ -142,7 +142,7 @@ TEST(Light, LightsAddUp) {
               4 * std::hypot(all.standard_error(), d.standard_error()) + 1e-3 * all.mean);
 }
 
-TEST(Light, ManyLightsAreSelectedByPowerWithoutBias) {
+TEST(Light, ManyLightsAddUpWithoutBias) {
   SceneBuilder b;
   LightDescription light;
   double expected = 0;
