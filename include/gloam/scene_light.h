@@ -120,7 +120,7 @@ struct SkyOptions {
 struct VolumePatternOptions {
   std::string kind = {};  ///< plume: rises from the middle of the floor; cloud: fills the box
   uint64_t seed = 0;
-  int resolution = 64;  ///< voxels along the longest edge, 8 … 512
+  int resolution = 64;  ///< voxels along the longest edge, 8 … 256
   SourceLoc loc = {};
 };
 

@@ -103,7 +103,7 @@ template <class Visitor>
 void visit_fields(Visitor& v, VolumePatternOptions& o) {
   v("kind", o.kind, FieldRule{.required = true, .choices = {"plume", "cloud"}});
   v("seed", o.seed, FieldRule{.max = 4294967295.0});
-  v("resolution", o.resolution, FieldRule{.min = 8, .max = 512});
+  v("resolution", o.resolution, FieldRule{.min = 8, .max = 256});
 }
 
 template <class Visitor>
