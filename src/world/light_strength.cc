@@ -44,7 +44,8 @@ Vec3f black_body_color(double temperature) {
     const Xyz m = color_matching(nm);
     x += power * m.x, y += power * m.y, z += power * m.z;
   }
-  return color_of_xyz({x / y, 1, z / y});
+  const Vec3f color = color_of_xyz({x / y, 1, z / y});
+  return color / luminance(color);
 }
 
 Vec3f light_color(const LightOptions& light) {

@@ -54,7 +54,8 @@ double plume(const RandomStream& random, double x, double y, double z, const dou
   const double width = 0.12 + 0.45 * z, r = std::hypot(u, v) / width;
   const double torn = billows(random, 4 * n[0], 4 * n[1], 3 * n[2]);
   const double dilution = 0.12 * 0.12 / (width * width);  // what rises is spread over its section
-  const double edge = std::exp(-r * r) * smooth_step(0.15 + 0.25 * z, 0.75, torn + 0.35 * (1 - z));
+  const double edge = std::max(std::exp(-r * r) - 0.02, 0.0) *
+                      smooth_step(0.15 + 0.25 * z, 0.75, torn + 0.35 * (1 - z));
   return edge * std::sqrt(dilution) * (1 - smooth_step(0.85, 1, z));
 }
 
