@@ -8,16 +8,19 @@ namespace gloam {
 
 float illuminance(const EnvironmentDescription& e, Vec3f n) {
   std::vector<double> rows(static_cast<size_t>(e.height));
+  std::vector<double> along(static_cast<size_t>(e.width));  // n, level, along each column
+  for (size_t column = 0; column < along.size(); ++column) {
+    const double azimuth = M_PI * (1 - 2 * (static_cast<double>(column) + 0.5) / e.width);
+    along[column] = n.x * std::cos(azimuth) + n.y * std::sin(azimuth);
+  }
   parallel_for("sky illuminance", e.height, [&](int64_t row) {
     const double polar = M_PI * (static_cast<double>(row) + 0.5) / e.height;
     const double sine = std::sin(polar), z = std::cos(polar);
     double sum = 0;
-    for (int column = 0; column < e.width; ++column) {
-      const double azimuth = M_PI * (1 - 2 * (column + 0.5) / e.width);
-      const double cosine = sine * (n.x * std::cos(azimuth) + n.y * std::sin(azimuth)) + n.z * z;
-      if (cosine <= 0) continue;
-      sum += cosine * luminance(e.texels[static_cast<size_t>(row) * static_cast<size_t>(e.width) +
-                                         static_cast<size_t>(column)]);
+    const Vec3f* texels = &e.texels[static_cast<size_t>(row) * along.size()];
+    for (size_t column = 0; column < along.size(); ++column) {
+      const double cosine = sine * along[column] + n.z * z;
+      if (cosine > 0) sum += cosine * luminance(texels[column]);
     }
     const double zone = std::cos(M_PI * static_cast<double>(row) / e.height) -
                         std::cos(M_PI * static_cast<double>(row + 1) / e.height);
