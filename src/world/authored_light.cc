@@ -221,7 +221,10 @@ Status LightAuthor::add(const LightOptions& options) {
     out_->schedules.push_back(std::move(parts));
   }
   const Vec3f p_W = transform_point(poses_[static_cast<size_t>(body)], pose_of(options).p);
-  const float distance = light_distance(p_W, *out_);
+  // A lamp that is carried about shines ahead, not at the middle of who carries it.
+  constexpr float kCarried = 1;  // [m]
+  float distance = light_distance(p_W, *out_);
+  if (!is_static_[static_cast<size_t>(body)]) distance = max(distance, kCarried);
   const bool is_lamp =
       options.type == "point" || options.type == "spot" || options.type == "directional";
   GLOAM_TRY_STATUS(is_lamp ? add_lamp(options, body, schedule, distance)

@@ -299,6 +299,11 @@ TEST_F(AuthoredLight, TheHeadlightYieldsAndTheExposureFollows) {
   const RenderDescription wall = describe(
       {{.name = "a", .type = "rect", .position = {0, 0, 2}, .luminance = 50, .size = {{99, 99}}}});
   EXPECT_NEAR(wall.ev100, ev(50 + 10), 1e-3) << "no brighter than right in front of it";
+  world_ = visual_test::compile(R"(<mujoco><statistic extent='0.4'/><worldbody><body name='arm'>
+      <joint/><geom size='.1'/></body></worldbody></mujoco>)");
+  const RenderDescription torch =
+      describe({{.name = "a", .type = "point", .body = "arm", .intensity = 1000}});
+  EXPECT_NEAR(torch.ev100, ev(1000 / M_PI + 10), 1e-3) << "what is carried shines a metre ahead";
 }
 
 TEST_F(AuthoredLight, HundredThousandLampsTakeNoQuadraticTime) {
