@@ -222,7 +222,7 @@ Status LightAuthor::add(const LightOptions& options) {
   }
   const Vec3f p_W = transform_point(poses_[static_cast<size_t>(body)], pose_of(options).p);
   // A lamp that is carried about shines ahead, not at the middle of who carries it.
-  constexpr float kCarried = 1;  // [m]
+  constexpr float kCarried = 2;  // [m]
   float distance = light_distance(p_W, *out_);
   if (!is_static_[static_cast<size_t>(body)]) distance = max(distance, kCarried);
   const bool is_lamp =

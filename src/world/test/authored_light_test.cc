@@ -303,7 +303,7 @@ TEST_F(AuthoredLight, TheHeadlightYieldsAndTheExposureFollows) {
       <joint/><geom size='.1'/></body></worldbody></mujoco>)");
   const RenderDescription torch =
       describe({{.name = "a", .type = "point", .body = "arm", .intensity = 1000}});
-  EXPECT_NEAR(torch.ev100, ev(1000 / M_PI + 10), 1e-3) << "what is carried shines a metre ahead";
+  EXPECT_NEAR(torch.ev100, ev(250 / M_PI + 10), 1e-3) << "what is carried shines ahead";
 }
 
 TEST_F(AuthoredLight, HundredThousandLampsTakeNoQuadraticTime) {
