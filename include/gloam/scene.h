@@ -3,7 +3,6 @@
 // file and line. One options struct per feature: the same struct is filled from TOML, C++ and
 // (later) Python.
 
-#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "gloam/result.h"
+#include "gloam/scene_light.h"
 #include "gloam/types.h"
 
 namespace gloam {
@@ -177,6 +177,9 @@ struct Scene {
   std::vector<RobotOptions> robots = {};  ///< in source order
   std::vector<CameraOptions> cameras = {};
   std::vector<MaterialOptions> materials = {};
+  std::vector<LightOptions> lights = {};
+  std::optional<SkyOptions> sky = {};
+  std::vector<VolumeOptions> volumes = {};
   std::vector<PushOptions> pushes = {};
   SimOptions sim = {};
   RenderOptions render = {};

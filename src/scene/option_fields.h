@@ -6,29 +6,14 @@
 // A Visitor is called once per field as visitor(key, member, FieldRule). Where they stand in the
 // file is the reader's business: `loc` members are not listed.
 
-#include <limits>
 #include <string>
-#include <string_view>
-#include <vector>
 
 #include "gloam/scene.h"
+#include "scene/field_rule.h"
+#include "scene/light_fields.h"
+#include "scene/pattern_names.h"
 
 namespace gloam {
-
-struct FieldRule {
-  std::string_view unit = {};  ///< "" = none or text
-  double min = -std::numeric_limits<double>::infinity();
-  double max = std::numeric_limits<double>::infinity();
-  bool open = false;                           ///< min and max themselves are not allowed
-  bool required = false;                       ///< must stand in the file
-  std::vector<std::string_view> choices = {};  ///< closed list of words; empty = any
-  bool identifier = false;  ///< a name: not empty, no '/' and no control characters
-};
-
-inline constexpr double kLongestTime = 1e9;    // [s] 30 years
-inline constexpr double kLargestLength = 1e6;  // [m]
-inline constexpr double kLargestSpeed = 1e4;   // [m/s], [rad/s]
-inline constexpr double kFastestRate = 1e6;    // [Hz]
 
 template <class Visitor>
 void visit_fields(Visitor& v, VelocityGoal& o) {
@@ -82,59 +67,54 @@ void visit_fields(Visitor& v, CameraOptions& o) {
 
 template <class Visitor>
 void visit_fields(Visitor& v, PatternOptions& o) {
-  const FieldRule share{.min = 0, .max = 1};
   const FieldRule length{.unit = "m", .min = 1e-5, .max = kLargestLength};
-  v("kind", o.kind,
-    FieldRule{.required = true,
-              .choices = {"noise", "wood", "marble", "concrete", "brick", "tiles", "fabric",
-                          "scratches", "dirt"}});
+  v("kind", o.kind, FieldRule{.required = true, .choices = words(kPatternKinds)});
   v("seed", o.seed, FieldRule{.max = 4294967295.0});
-  v("color_a", o.color_a, share);
-  v("color_b", o.color_b, share);
-  v("color_c", o.color_c, share);
+  v("color_a", o.color_a, kShare);
+  v("color_b", o.color_b, kShare);
+  v("color_c", o.color_c, kShare);
   v("scale", o.scale, length);
   v("size_u", o.size_u, FieldRule{.unit = "m", .min = 0, .max = kLargestLength});
   v("size_v", o.size_v, FieldRule{.unit = "m", .min = 0, .max = kLargestLength});
   v("gap", o.gap, FieldRule{.unit = "m", .min = 0, .max = kLargestLength});
   v("depth", o.depth, FieldRule{.unit = "m", .min = 0, .max = kLargestLength});
-  v("roughness", o.roughness, share);
-  v("coat", o.coat, share);
-  v("variation", o.variation, share);
-  v("amount", o.amount, share);
+  v("roughness", o.roughness, kShare);
+  v("coat", o.coat, kShare);
+  v("variation", o.variation, kShare);
+  v("amount", o.amount, kShare);
   v("axis", o.axis, FieldRule{.min = -1, .max = 1});
-  v("basis", o.basis, FieldRule{.choices = {"fbm", "turbulence", "ridged", "cells"}});
-  v("bond", o.bond, FieldRule{.choices = {"running", "stack", "english"}});
-  v("tile", o.tile, FieldRule{.choices = {"square", "hexagon"}});
-  v("weave", o.weave, FieldRule{.choices = {"plain", "twill"}});
+  v("basis", o.basis, FieldRule{.choices = words(kNoiseBases)});
+  v("bond", o.bond, FieldRule{.choices = words(kBrickBonds)});
+  v("tile", o.tile, FieldRule{.choices = words(kTileShapes)});
+  v("weave", o.weave, FieldRule{.choices = words(kWeaves)});
 }
 
 template <class Visitor>
 void visit_fields(Visitor& v, MaterialOptions& o) {
-  const FieldRule share{.min = 0, .max = 1};
   v("name", o.name, FieldRule{.required = true});
   v("ior", o.ior, FieldRule{.min = 1, .max = 3});
-  v("anisotropy", o.anisotropy, share);
+  v("anisotropy", o.anisotropy, kShare);
   v("anisotropy_rotation", o.anisotropy_rotation, FieldRule{.unit = "turn", .min = -1, .max = 1});
-  v("transmission_weight", o.transmission_weight, share);
-  v("transmission_color", o.transmission_color, share);
+  v("transmission_weight", o.transmission_weight, kShare);
+  v("transmission_color", o.transmission_color, kShare);
   v("transmission_depth", o.transmission_depth,
     FieldRule{.unit = "m", .min = 0, .max = kLargestLength});
   v("thin_walled", o.thin_walled, FieldRule{});
-  v("subsurface_weight", o.subsurface_weight, share);
-  v("subsurface_color", o.subsurface_color, share);
-  v("coat_weight", o.coat_weight, share);
-  v("coat_roughness", o.coat_roughness, share);
+  v("subsurface_weight", o.subsurface_weight, kShare);
+  v("subsurface_color", o.subsurface_color, kShare);
+  v("coat_weight", o.coat_weight, kShare);
+  v("coat_roughness", o.coat_roughness, kShare);
   v("coat_ior", o.coat_ior, FieldRule{.min = 1, .max = 3});
-  v("coat_color", o.coat_color, share);
-  v("fuzz_weight", o.fuzz_weight, share);
-  v("fuzz_roughness", o.fuzz_roughness, share);
-  v("fuzz_color", o.fuzz_color, share);
+  v("coat_color", o.coat_color, kShare);
+  v("fuzz_weight", o.fuzz_weight, kShare);
+  v("fuzz_roughness", o.fuzz_roughness, kShare);
+  v("fuzz_color", o.fuzz_color, kShare);
   v("pattern", o.pattern, FieldRule{});
   v("wear", o.wear, FieldRule{});
-  v("wetness", o.wetness, share);
-  v("porosity", o.porosity, share);
-  v("dust", o.dust, share);
-  v("snow", o.snow, share);
+  v("wetness", o.wetness, kShare);
+  v("porosity", o.porosity, kShare);
+  v("dust", o.dust, kShare);
+  v("snow", o.snow, kShare);
 }
 
 template <class Visitor>
@@ -185,6 +165,9 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("robot", scene.robots, FieldRule{});
   v("camera", scene.cameras, FieldRule{});
   v("material", scene.materials, FieldRule{});
+  v("light", scene.lights, FieldRule{});
+  v("sky", scene.sky, FieldRule{});
+  v("volume", scene.volumes, FieldRule{});
   v("push", scene.pushes, FieldRule{});
   v("render", scene.render, FieldRule{});
   v("record", scene.record, FieldRule{});

@@ -45,6 +45,13 @@ Status check_file(const fs::path& path, const std::string& as_written, const Sou
                  suggest_file(path)};
   if (!fs::is_regular_file(status))
     return Error{ErrorKind::kInput, fmt::format("'{}' is not a file", name), loc};
+  return {};
+}
+
+// check_file, and by its name it is no scene and no archive.
+Status check_model_file(const fs::path& path, const std::string& as_written, const SourceLoc& loc) {
+  GLOAM_TRY_STATUS(check_file(path, as_written, loc));
+  const std::string name = as_written.substr(0, 200);
   const std::string extension = lower(path.extension().string());
   if (extension == ".toml") {
     return Error{ErrorKind::kInput, fmt::format("'{}' is a scene; a model is wanted here", name),
@@ -58,27 +65,65 @@ Status check_file(const fs::path& path, const std::string& as_written, const Sou
   return {};
 }
 
-// Makes a path of the scene absolute and refuses it if it leaves the scene's root.
-Status resolve(fs::path* file, const fs::path& scene_file, const ModelRoot& root,
-               const FileAccess& access, const SourceLoc& loc) {
-  const std::string written = file->string();
-  const std::string refusal = why_not_a_path(written);
-  if (!refusal.empty())
-    return Error{ErrorKind::kInput, fmt::format("the file '{:.80}' {}", written, refusal), loc};
-  const fs::path path = absolute_path(*file, absolute_path(scene_file, "").parent_path());
-  std::vector<ModelRoot> roots{root};
-  for (const auto& [name, folder] : access.packages) {
-    std::error_code code;
-    const fs::path canonical = fs::weakly_canonical(folder, code);
-    roots.push_back({absolute_path(folder, ""), canonical, canonical});
+// Finds the files that a scene names.
+class FileFinder {
+ public:
+  FileFinder(const fs::path& scene_file, const ModelRoot& root, const FileAccess& access)
+      : folder_(absolute_path(scene_file, "").parent_path()), roots_{root} {
+    for (const auto& [name, folder] : access.packages) {
+      std::error_code code;
+      const fs::path canonical = fs::weakly_canonical(folder, code);
+      roots_.push_back({absolute_path(folder, ""), canonical, canonical});
+    }
   }
-  const std::string why = why_not_readable(path, roots);
-  if (!why.empty()) {
-    return Error{ErrorKind::kInput, fmt::format("the file '{:.200}' {}", written, why), loc,
-                 "--root FOLDER widens what the scene may read"};
+
+  // Makes a path of the scene absolute and refuses it if it leaves the scene's root. No path, no
+  // file.
+  Status find(fs::path* file, const SourceLoc& loc) const {
+    if (file->empty()) return {};
+    const std::string written = file->string();
+    GLOAM_TRY_STATUS(resolve(file, written, loc));
+    return check_file(*file, written, loc);
   }
-  GLOAM_TRY_STATUS(check_file(path, written, loc));
-  *file = path;
+  Status find_model(fs::path* file, const SourceLoc& loc) const {
+    if (file->empty()) return {};
+    const std::string written = file->string();
+    GLOAM_TRY_STATUS(resolve(file, written, loc));
+    return check_model_file(*file, written, loc);
+  }
+
+ private:
+  Status resolve(fs::path* file, const std::string& written, const SourceLoc& loc) const {
+    const std::string refusal = why_not_a_path(written);
+    if (!refusal.empty())
+      return Error{ErrorKind::kInput, fmt::format("the file '{:.80}' {}", written, refusal), loc};
+    const fs::path path = absolute_path(*file, folder_);
+    const std::string why = why_not_readable(path, roots_);
+    if (!why.empty()) {
+      return Error{ErrorKind::kInput, fmt::format("the file '{:.200}' {}", written, why), loc,
+                   "--root FOLDER widens what the scene may read"};
+    }
+    *file = path;
+    return {};
+  }
+
+  fs::path folder_;
+  std::vector<ModelRoot> roots_;
+};
+
+Status find_files(const FileFinder& finder, Scene* scene) {
+  GLOAM_TRY_STATUS(finder.find_model(&scene->environment.file, scene->environment.loc));
+  for (RobotOptions& robot : scene->robots)
+    GLOAM_TRY_STATUS(finder.find_model(&robot.file, robot.loc));
+  for (LightOptions& light : scene->lights) {
+    GLOAM_TRY_STATUS(finder.find(&light.file, light.loc));
+    GLOAM_TRY_STATUS(finder.find(&light.ies, light.loc));
+  }
+  if (scene->sky) GLOAM_TRY_STATUS(finder.find(&scene->sky->file, scene->sky->loc));
+  for (VolumeOptions& volume : scene->volumes) {
+    GLOAM_TRY_STATUS(finder.find(&volume.grid, volume.loc));
+    GLOAM_TRY_STATUS(finder.find(&volume.temperature_grid, volume.loc));
+  }
   return {};
 }
 
@@ -89,7 +134,7 @@ Result<Scene> load_scene(const fs::path& path, const FileAccess& access) {
   scene.access = access;
   const std::string extension = lower(path.extension().string());
   if (extension != ".toml") {
-    GLOAM_TRY_STATUS(check_file(absolute_path(path, ""), path.string(), {}));
+    GLOAM_TRY_STATUS(check_model_file(absolute_path(path, ""), path.string(), {}));
     scene.name = path.stem().string();
     scene.bare_model = absolute_path(path, "");
     return scene;
@@ -105,11 +150,7 @@ Result<Scene> load_scene(const fs::path& path, const FileAccess& access) {
   scene.name = path.stem().string();
   GLOAM_TRY_STATUS(read_scene_toml(*text, path.string(), &scene));
   GLOAM_TRY(const ModelRoot root, find_model_root(path, access));
-  if (!scene.environment.file.empty()) {
-    GLOAM_TRY_STATUS(resolve(&scene.environment.file, path, root, access, scene.environment.loc));
-  }
-  for (RobotOptions& robot : scene.robots)
-    GLOAM_TRY_STATUS(resolve(&robot.file, path, root, access, robot.loc));
+  GLOAM_TRY_STATUS(find_files(FileFinder(path, root, access), &scene));
   GLOAM_TRY_STATUS(validate_scene(scene));
   if (scene.robots.empty() && scene.environment.file.empty()) {
     return Error{ErrorKind::kInput,

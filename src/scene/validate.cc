@@ -9,6 +9,7 @@
 
 #include "base/text.h"
 #include "scene/option_fields.h"
+#include "scene/validate_light.h"
 
 namespace gloam {
 namespace {
@@ -47,6 +48,11 @@ class FieldChecker {
   void check(std::string_view key, const Vec3& v, const FieldRule& rule) {
     for (const double x : {v.x, v.y, v.z}) number(key, x, rule);
   }
+  void check(std::string_view key, const std::array<double, 2>& v, const FieldRule& rule) {
+    for (const double x : v) number(key, x, rule);
+  }
+  void check(std::string_view, const CalendarDate&, const FieldRule&) {}  // validate_light.h
+  void check(std::string_view, const ClockTime&, const FieldRule&) {}
   void check(std::string_view key, const Quat& q, const FieldRule&) {
     const double square = q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z;
     if (!(std::abs(square - 1) < 1e-6)) fail(key, "is not a unit quaternion");
@@ -133,6 +139,11 @@ Status validate_scene(const Scene& scene) {
   GLOAM_TRY_STATUS(refuse_duplicates(scene.robots, "robot"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.cameras, "camera"));
   for (const CameraOptions& camera : scene.cameras) GLOAM_TRY_STATUS(validate_camera(camera));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.lights, "light"));
+  for (const LightOptions& light : scene.lights) GLOAM_TRY_STATUS(validate_light(light));
+  if (scene.sky) GLOAM_TRY_STATUS(validate_sky(*scene.sky));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.volumes, "volume"));
+  for (const VolumeOptions& volume : scene.volumes) GLOAM_TRY_STATUS(validate_volume(volume));
   for (const RobotOptions& robot : scene.robots) {
     for (size_t i = 1; i < robot.controller.goals.size(); ++i) {
       const VelocityGoal& goal = robot.controller.goals[i];

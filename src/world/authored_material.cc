@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "scene/pattern_names.h"
 
 namespace gloam {
 namespace {
@@ -25,17 +26,16 @@ bool fits(std::string_view pattern, std::string_view name) {
   return false;
 }
 
-/// Place of a word in a list, which is the value of its enum.
+static_assert(kPatternKinds.size() == kProceduralKindCount);
+
+/// The value of an enum from its name.
 template <class Enum>
-Enum enum_of(std::string_view word, std::initializer_list<std::string_view> words) {
-  const auto found = std::find(words.begin(), words.end(), word);
-  return static_cast<Enum>(found == words.end() ? 0 : found - words.begin());
+Enum named(std::string_view word, std::span<const std::string_view> names) {
+  return static_cast<Enum>(place_of(word, names));
 }
 
 ProceduralDescription pattern_of(const PatternOptions& in) {
-  ProceduralDescription out = default_procedural(enum_of<ProceduralKind>(
-      in.kind,
-      {"noise", "wood", "marble", "concrete", "brick", "tiles", "fabric", "scratches", "dirt"}));
+  ProceduralDescription out = default_procedural(named<ProceduralKind>(in.kind, kPatternKinds));
   const auto number = [](const std::optional<double>& from, float* to) {
     if (from) *to = static_cast<float>(*from);
   };
@@ -59,10 +59,10 @@ ProceduralDescription pattern_of(const PatternOptions& in) {
     const Vec3f axis = color_of(*in.axis);
     if (length_squared(axis) > 1e-6f) out.axis = normalize(axis);
   }
-  out.basis = enum_of<NoiseBasis>(in.basis, {"fbm", "turbulence", "ridged", "cells"});
-  out.bond = enum_of<BrickBond>(in.bond, {"running", "stack", "english"});
-  out.tile = enum_of<TileShape>(in.tile, {"square", "hexagon"});
-  out.weave = enum_of<Weave>(in.weave, {"plain", "twill"});
+  out.basis = named<NoiseBasis>(in.basis, kNoiseBases);
+  out.bond = named<BrickBond>(in.bond, kBrickBonds);
+  out.tile = named<TileShape>(in.tile, kTileShapes);
+  out.weave = named<Weave>(in.weave, kWeaves);
   return out;
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "base/text.h"
+#include "world/look_at.h"
 
 namespace gloam {
 namespace {
@@ -14,24 +15,6 @@ namespace {
 struct DataDeleter {
   void operator()(mjData* data) const { mj_deleteData(data); }
 };
-
-/// Cameras look along their -Z with +Y up; "up" is Z of the frame the camera is placed in.
-Quat look_at(const Vec3& from, const Vec3& to) {
-  double z[3] = {from.x - to.x, from.y - to.y, from.z - to.z};
-  mju_normalize3(z);
-  double up[3] = {0, 0, 1}, x[3], y[3];
-  mju_cross(x, up, z);
-  if (mju_norm3(x) < 1e-6) {  // straight up or down: the picture's top points along +Y
-    const double forward[3] = {0, 1, 0};
-    mju_cross(x, forward, z);
-  }
-  mju_normalize3(x);
-  mju_cross(y, z, x);
-  const double R[9] = {x[0], y[0], z[0], x[1], y[1], z[1], x[2], y[2], z[2]};
-  double q[4];
-  mju_mat2Quat(q, R);
-  return {q[0], q[1], q[2], q[3]};
-}
 
 Quat orientation_of(const CameraOptions& camera) {
   if (camera.orientation) return *camera.orientation;

@@ -6,7 +6,10 @@
 #include <optional>
 
 #include "base/parallel.h"
+#include "world/authored_light.h"
 #include "world/authored_material.h"
+#include "world/authored_sky.h"
+#include "world/authored_volume.h"
 #include "world/visual_camera.h"
 #include "world/visual_deformable.h"
 #include "world/visual_label.h"
@@ -255,15 +258,11 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
   choose_what_is_shown(m, world, first_visual, &out.instances);
   describe_deformables(m, poses, &simulated.materials(), &labels, &out);
   describe_cameras(m, &out);
-  const LightLevels levels = describe_light(m, poses, &simulated.materials(), &out);
+  LightLevels levels = describe_light(m, world.scene, poses, &simulated.materials(), &out);
   for (LightDescription& light : out.lights) {
     light.is_static = light.light >= 0 && m.light_mode[light.light] == mjCAMLIGHT_FIXED &&
                       is_static[static_cast<size_t>(m.light_bodyid[light.light])];
   }
-  if (labels.overflowed())
-    out.unsupported.push_back(
-        {ErrorKind::kUnsupported, "there are more than 65535 objects; the last share one label"});
-
   simulated.convert_meshes();
   simulated.materials().load_textures();
   if (visual) {
@@ -271,6 +270,12 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     visual->materials().load_textures();
   }
   GLOAM_TRY_STATUS(author_materials(world.scene.materials, &out));
+  GLOAM_TRY_STATUS(author_lights(world, poses, is_static, &labels, &levels, &out));
+  if (world.scene.sky) GLOAM_TRY_STATUS(author_sky(*world.scene.sky, &levels, &out));
+  GLOAM_TRY_STATUS(author_volumes(world.scene.volumes, &out));
+  if (labels.overflowed())
+    out.unsupported.push_back(
+        {ErrorKind::kUnsupported, "there are more than 65535 objects; the last share one label"});
   out.ev100 = exposure(levels, out);
   return out;
 }

@@ -50,14 +50,8 @@ Xyz color_matching(double nm) {
           1.217 * lobe(nm, 437.0, 11.8, 36.0) + 0.681 * lobe(nm, 459.0, 26.0, 13.8)};
 }
 
-Vec3f color_of_sunlight(const Bands& share) {
-  static const std::array<Xyz, kBandCount> tristimulus = band_tristimulus();
-  double x = 0, y = 0, z = 0;
-  for (int i = 0; i < kBandCount; ++i) {
-    x += share[i] * tristimulus[i].x, y += share[i] * tristimulus[i].y;
-    z += share[i] * tristimulus[i].z;
-  }
-  // ITU-R BT.709 primaries, D65.
+Vec3f color_of_xyz(Xyz color) {
+  const auto [x, y, z] = color;
   const double rgb[3] = {3.2404542 * x - 1.5371385 * y - 0.4985314 * z,
                          -0.9692660 * x + 1.8760108 * y + 0.0415560 * z,
                          0.0556434 * x - 0.2040259 * y + 1.0572252 * z};
@@ -67,6 +61,16 @@ Vec3f color_of_sunlight(const Bands& share) {
     return static_cast<float>(std::max(0.0, y + keep * (c - y)));
   };
   return {channel(rgb[0]), channel(rgb[1]), channel(rgb[2])};
+}
+
+Vec3f color_of_sunlight(const Bands& share) {
+  static const std::array<Xyz, kBandCount> tristimulus = band_tristimulus();
+  double x = 0, y = 0, z = 0;
+  for (int i = 0; i < kBandCount; ++i) {
+    x += share[i] * tristimulus[i].x, y += share[i] * tristimulus[i].y;
+    z += share[i] * tristimulus[i].z;
+  }
+  return color_of_xyz({x, y, z});
 }
 
 double rayleigh_cross_section(double wavelength) {

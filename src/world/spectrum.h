@@ -21,11 +21,14 @@ struct Xyz {
 };
 Xyz color_matching(double wavelength);
 
+/// Linear Rec. 709 (primaries and D65 of ITU-R BT.709) of the same luminance. Colours outside of it
+/// go towards grey of the same luminance until none is negative.
+Vec3f color_of_xyz(Xyz color);
+
 /// Linear Rec. 709 with luminance in [cd/m²] (illuminance in [lx]) of light that has `share` of the
 /// sun's spectral irradiance above the air in each band, per steradian (or not). The sun: ASTM
 /// G173-03, extraterrestrial, at 1 au. Within a band `share` is constant; light from 700 to 720 nm
-/// counts to the last one. Colours outside of Rec. 709 go towards grey of the same luminance until
-/// none is negative.
+/// counts to the last one.
 Vec3f color_of_sunlight(const Bands& share);
 
 /// Scattering cross-section of a molecule of dry air [m²]: Bodhaine et al. 1999, "On Rayleigh

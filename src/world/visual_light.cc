@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "world/environment.h"
 #include "world/visual_rules.h"
 
 namespace gloam {
@@ -14,9 +15,6 @@ Vec3f vec3(const float* v) { return {v[0], v[1], v[2]}; }
 Vec3f vec3(const mjtNum* v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
 }
-
-/// A light that sits at the centre is taken to be meant for things this share of the extent away.
-constexpr float kNearestShare = 0.25f;
 
 LightDescription model_light(const mjModel& m, int i, float distance) {
   LightDescription light;
@@ -63,14 +61,21 @@ void set_image_light(const mjModel& m, int i, MaterialTable* materials, RenderDe
 
 }  // namespace
 
-LightLevels describe_light(const mjModel& model, const std::vector<Affine3f>& poses,
-                           MaterialTable* materials, RenderDescription* out) {
+float light_distance(Vec3f p_W, const RenderDescription& scene) {
+  constexpr float kNearestShare = 0.25f;
+  return max(length(p_W - scene.center), kNearestShare * max(scene.extent, 1e-3f));
+}
+
+LightLevels describe_light(const mjModel& model, const Scene& scene,
+                           const std::vector<Affine3f>& poses, MaterialTable* materials,
+                           RenderDescription* out) {
   LightLevels levels;
+  const bool own_sky = scene.sky.has_value();
+  levels.photometric = own_sky || !scene.lights.empty();
   out->center = vec3(model.stat.center);
   out->extent = static_cast<float>(model.stat.extent);
-  const float nearest = kNearestShare * max(out->extent, 1e-3f);
 
-  for (int i = 0; i < static_cast<int>(model.ntex) && out->sky.texture < 0; ++i)
+  for (int i = 0; i < static_cast<int>(model.ntex) && out->sky.texture < 0 && !own_sky; ++i)
     if (model.tex_type[i] == mjTEXTURE_SKYBOX) {
       out->sky.texture = materials->texture_row(i, ColorSpace::kSrgb);
       out->sky.scale = kWhiteLuminance;
@@ -79,20 +84,22 @@ LightLevels describe_light(const mjModel& model, const std::vector<Affine3f>& po
   Vec3f ambient{};
   for (int i = 0; i < static_cast<int>(model.nlight); ++i) {
     if (model.light_type[i] == mjLIGHT_IMAGE) {
-      if (model.light_active[i] != 0) set_image_light(model, i, materials, out);
+      if (model.light_active[i] != 0 && !own_sky) set_image_light(model, i, materials, out);
       continue;
     }
     const Vec3f p_W =
         poses[static_cast<size_t>(model.light_bodyid[i])].p + vec3(model.light_pos0 + 3 * i);
-    const float distance = max(length(p_W - out->center), nearest);
+    const float distance = light_distance(p_W, *out);
     out->lights.push_back(model_light(model, i, distance));
-    const LightDescription& light = out->lights.back();
+    LightDescription& light = out->lights.back();
+    if (own_sky) light.ambient = {};
     if (!light.active) continue;
     ambient += light.ambient;
     levels.photometric = levels.photometric || model.light_intensity[i] > 0;
     const float lux = luminance(light.intensity);
     levels.illuminance.push_back(light.type == LightType::kDirectional ? lux : lux / sqr(distance));
   }
+  if (own_sky) return levels;
 
   const auto& headlight = model.vis.headlight;
   constexpr int kAuto = 2;
@@ -119,6 +126,7 @@ float exposure(const LightLevels& levels, const RenderDescription& scene) {
   if (scene.sky.texture >= 0)
     surround +=
         scene.sky.scale * mean_luminance(scene.textures[static_cast<size_t>(scene.sky.texture)]);
+  if (scene.sky.environment.width > 0) surround += brightest_side(scene.sky.environment) * kInvPi;
   return scene_ev100(levels.illuminance, surround, levels.photometric);
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "gloam/scene.h"
 #include "world/render_description.h"
 #include "world/visual_material.h"
 
@@ -14,12 +15,20 @@ namespace gloam {
 /// How much light there is, for the exposure.
 struct LightLevels {
   std::vector<float> illuminance;  ///< [lx] of each active light, facing it at the model's centre
-  bool photometric = false;        ///< an active light has an intensity in cd
+  bool photometric = false;        ///< an active light has an intensity in cd, or the scene says
+                                   ///< what light there is
 };
 
-/// Fills lights (headlight last) and sky. `poses` = X_WB at qpos0.
-LightLevels describe_light(const mjModel& model, const std::vector<Affine3f>& poses,
-                           MaterialTable* materials, RenderDescription* out);
+/// Fills the model's lights (headlight last) and sky, center and extent. `poses` = X_WB at qpos0.
+/// What stands in for a sky in a model is left out where `scene` has one, and so is an automatic
+/// headlight where it has lamps.
+LightLevels describe_light(const mjModel& model, const Scene& scene,
+                           const std::vector<Affine3f>& poses, MaterialTable* materials,
+                           RenderDescription* out);
+
+/// How far what a light at p_W is meant for is taken to be away [m]: the model's centre, or a
+/// quarter of its extent if that is further.
+float light_distance(Vec3f p_W, const RenderDescription& scene);
 
 /// EV100 of the described scene, whose textures are loaded.
 float exposure(const LightLevels& levels, const RenderDescription& scene);

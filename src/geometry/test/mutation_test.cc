@@ -13,8 +13,10 @@
 #include "geometry/test/gltf_builder.h"
 #include "geometry/test/image_writer.h"
 #include "geometry/test/largest_request.h"
+#include "geometry/test/npy_writer.h"
 #include "geometry/test/read_helper.h"
 #include "geometry/text_lines.h"
+#include "geometry/volume_file.h"
 
 namespace gloam {
 namespace {
@@ -186,6 +188,10 @@ std::vector<Reader> all_readers() {
        {ktx_file(0x1401, 0x1907, 0x8C41, 3, 2, {"abcdefghi...jklmnopqr..."}),
         ktx_file(0x8C3B, 0x1907, 0x8C3A, 1, 1, {"abcd", "abcd", "abcd", "abcd", "abcd", "abcd"})},
        [](const std::string& text) { return decode_ktx(as_bytes(text), "mutated", 1 << 20).ok(); }},
+      {"NPY",
+       {npy_file(npy_head("1, 2, 2"), npy_values(std::vector<float>{0, 1, 2, 3})),
+        npy_file(npy_head("2, 1, 1", "<f8"), npy_values(std::vector<double>{4, 5}), 2)},
+       [](const std::string& text) { return decode_npy(as_bytes(text), "mutated", 1 << 20).ok(); }},
   };
 }
 

@@ -49,6 +49,14 @@ class OptionSetter {
     assign(key, member, rule);
   }
 
+  // A table that may be left out comes into being with its first option.
+  template <OptionStruct T>
+  void set(std::string_view key, std::optional<T>& member, const FieldRule& rule, size_t next) {
+    if (next >= names_.size()) return assign(key, member, rule);
+    if (!member) member.emplace();
+    descend(*member, next);
+  }
+
   template <class T>
   void assign(std::string_view key, T& member, const FieldRule& rule) {
     toml::table table;

@@ -16,6 +16,7 @@
 
 #include "base/text.h"
 #include "scene/option_fields.h"
+#include "scene/toml/calendar.h"
 #include "scene/toml/toml_reader.h"
 
 namespace gloam {
@@ -227,6 +228,25 @@ class TableReader {
   void read(const toml::node& node, const std::string& key, Vec3& out, const FieldRule& rule) {
     double v[3] = {};
     if (read_numbers(node, key, v, rule)) out = {v[0], v[1], v[2]};
+  }
+
+  void read(const toml::node& node, const std::string& key, std::array<double, 2>& out,
+            const FieldRule& rule) {
+    double v[2] = {};
+    if (read_numbers(node, key, v, rule)) out = {v[0], v[1]};
+  }
+
+  void read(const toml::node& node, const std::string& key, CalendarDate& out, const FieldRule&) {
+    const auto date = read_date(node);
+    if (!date) return fail(node, fmt::format("'{}' is no date", key), "write it as 2026-06-21");
+    out = *date;
+  }
+
+  void read(const toml::node& node, const std::string& key, ClockTime& out, const FieldRule&) {
+    const auto time = read_time(node);
+    if (!time)
+      return fail(node, fmt::format("'{}' is no time of day", key), "write it as 14:30:00");
+    out = *time;
   }
 
   void read(const toml::node& node, const std::string& key, Quat& out, const FieldRule& rule) {

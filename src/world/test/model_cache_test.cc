@@ -11,6 +11,7 @@
 #include "scene/test/temp_folder.h"
 #include "world/level.h"
 #include "world/model_compare.h"
+#include "world/render_description.h"
 
 namespace gloam {
 namespace {
@@ -76,6 +77,18 @@ TEST_F(ModelCache, NoticesEveryChange) {
   ASSERT_NE(load_cached_world(scene_), nullptr);
   fs::remove(folder_.path() / "m.obj");
   EXPECT_EQ(load_cached_world(scene_), nullptr);
+}
+
+// Lamps, skies and volumes are no part of the entry: they are described afresh.
+TEST_F(ModelCache, TablesOfLightAreThoseOfTheSceneAtHand) {
+  store();
+  const auto describe = [&](double lux) {
+    scene_.lights = {{.name = "sun", .type = "directional", .illuminance = lux}};
+    const auto loaded = load_cached_world(scene_);
+    return loaded != nullptr ? describe_for_rendering(*loaded)->lights.back().intensity.x : -1;
+  };
+  EXPECT_FLOAT_EQ(describe(10), 10);
+  EXPECT_FLOAT_EQ(describe(20), 20);
 }
 
 TEST_F(ModelCache, DamagedEntriesAreAsGoodAsNone) {

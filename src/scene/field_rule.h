@@ -1,0 +1,29 @@
+#pragma once
+// What one option of a scene file may hold.
+
+#include <limits>
+#include <string_view>
+#include <vector>
+
+#include "gloam/scene.h"
+
+namespace gloam {
+
+struct FieldRule {
+  std::string_view unit = {};  ///< "" = none or text
+  double min = -std::numeric_limits<double>::infinity();
+  double max = std::numeric_limits<double>::infinity();
+  bool open = false;                           ///< min and max themselves are not allowed
+  bool required = false;                       ///< must stand in the file
+  std::vector<std::string_view> choices = {};  ///< closed list of words; empty = any
+  bool identifier = false;  ///< a name: not empty, no '/' and no control characters
+};
+
+inline const FieldRule kShare{.min = 0, .max = 1};
+
+inline constexpr double kLongestTime = 1e9;    // [s] 30 years
+inline constexpr double kLargestLength = 1e6;  // [m]
+inline constexpr double kLargestSpeed = 1e4;   // [m/s], [rad/s]
+inline constexpr double kFastestRate = 1e6;    // [Hz]
+
+}  // namespace gloam

@@ -1,0 +1,355 @@
+// [[light]], [sky] and [[volume]] of scene files.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "gloam/scene.h"
+#include "scene/test/temp_folder.h"
+#include "scene/validate.h"
+
+namespace gloam {
+namespace {
+
+using ::testing::HasSubstr;
+
+class SceneLight : public ::testing::Test {
+ protected:
+  SceneLight() {
+    folder_.write("robot.xml", "<mujoco><worldbody><body name='b'/></worldbody></mujoco>");
+    folder_.write("lamp.ies", "IESNA");
+    folder_.write("sky.hdr", "#?RADIANCE");
+    folder_.write("smoke.npy", "NUMPY");
+  }
+  Result<Scene> load(const std::string& text) {
+    return load_scene(folder_.write("scene.toml", "environment.file = \"robot.xml\"\n" + text));
+  }
+  std::string error_of(const std::string& text) {
+    const Result<Scene> scene = load(text);
+    return scene.ok() ? "" : scene.error().to_string();
+  }
+  TempFolder folder_;
+};
+
+TEST_F(SceneLight, ReadsLampsAndTheirSchedules) {
+  const Result<Scene> scene = load(R"(
+[[light]]
+name = "desk"
+type = "spot"
+body = "b"
+position = [0, 0, 1]
+look_at = [0, 1, 0]
+flux = 800
+temperature = 2700
+radius = 0.03
+angle = 35
+softness = 0.2
+ies = "lamp.ies"
+casts_shadow = false
+[light.schedule]
+on_off = { period = 2, duty = 0.25, phase = 0.5 }
+keys = [{ time = 0, level = 0 }, { time = 1, level = 1 }]
+hold = true
+mains = { frequency = 60, depth = 0.1 }
+starter = { at = 1 }
+flame = { bandwidth = 3 }
+[[light]]
+name = "panel"
+type = "rect"
+luminance = 4000
+size = [0.6, 1.2]
+orientation = [2, 0, 0, 0]
+color = [1, 0.5, 0.25]
+)");
+  ASSERT_TRUE(scene.ok()) << scene.error().to_string();
+  ASSERT_EQ(scene->lights.size(), 2u);
+  const LightOptions& desk = scene->lights[0];
+  EXPECT_EQ(desk.type, "spot");
+  EXPECT_EQ(desk.look_at, (Vec3{0, 1, 0}));
+  EXPECT_EQ(desk.flux, 800);
+  EXPECT_EQ(desk.ies, folder_.path() / "lamp.ies");
+  EXPECT_FALSE(desk.casts_shadow);
+  ASSERT_TRUE(desk.schedule.has_value());
+  EXPECT_EQ(desk.schedule->on_off->duty, 0.25);
+  EXPECT_EQ(desk.schedule->keys.at(1).time, 1);
+  EXPECT_TRUE(desk.schedule->hold);
+  EXPECT_EQ(desk.schedule->mains->frequency, 60);
+  EXPECT_EQ(desk.schedule->starter->at, 1);
+  EXPECT_EQ(desk.schedule->flame->bandwidth, 3);
+  EXPECT_EQ(desk.loc.line, 3);
+  EXPECT_EQ(scene->lights[1].size, (std::array<double, 2>{0.6, 1.2}));
+  EXPECT_EQ(scene->lights[1].orientation, (Quat{1, 0, 0, 0}));
+}
+
+TEST_F(SceneLight, ReadsDatesOfTomlAndDatesAsText) {
+  const char* place = "latitude = 48.1\nlongitude = 11.6\nutc_offset = 2\n";
+  for (const char* when : {"date = 2026-06-21\ntime = 14:30:15.5\n",
+                           "date = \"2026-06-21\"\ntime = \"14:30:15.5\"\n"}) {
+    const Result<Scene> scene = load(std::string("[sky]\n") + place + when);
+    ASSERT_TRUE(scene.ok()) << scene.error().to_string();
+    EXPECT_EQ(scene->sky->date, (CalendarDate{2026, 6, 21}));
+    EXPECT_EQ(scene->sky->time, (ClockTime{14, 30, 15.5}));
+    EXPECT_EQ(scene->sky->latitude, 48.1);
+  }
+  const Result<Scene> scene =
+      load(std::string("[sky]\n") + place + "date = \"2024-02-29\"\ntime = \"06:05\"\n");
+  ASSERT_TRUE(scene.ok()) << scene.error().to_string();
+  EXPECT_EQ(scene->sky->time, (ClockTime{6, 5, 0}));
+}
+
+TEST_F(SceneLight, ReadsVolumes) {
+  const Result<Scene> scene = load(R"(
+[[volume]]
+name = "haze"
+size = [10, 10, 3]
+medium = "fog"
+visibility = 30
+fade = 0.5
+[[volume]]
+name = "puff"
+position = [1, 0, 0.5]
+size = [1, 1, 1]
+mass_extinction = [3000]
+albedo = [0.9, 0.9, 0.9, 0.8, 0.7, 0.1]
+g = [0.3]
+density = 1e-3
+pattern = { kind = "plume", seed = 3, resolution = 32 }
+[[volume]]
+name = "grid"
+size = [1, 1, 1]
+medium = "smoke"
+density = 1
+grid = "smoke.npy"
+)");
+  ASSERT_TRUE(scene.ok()) << scene.error().to_string();
+  ASSERT_EQ(scene->volumes.size(), 3u);
+  EXPECT_EQ(scene->volumes[0].visibility, 30);
+  EXPECT_EQ(scene->volumes[1].albedo.size(), 6u);
+  EXPECT_EQ(scene->volumes[1].pattern->seed, 3u);
+  EXPECT_EQ(scene->volumes[2].grid, folder_.path() / "smoke.npy");
+}
+
+struct BadLight {
+  const char* what;
+  const char* text;
+  std::vector<const char*> expected;  // all of these stand in the message
+};
+
+class BadLights : public SceneLight, public ::testing::WithParamInterface<BadLight> {};
+
+TEST_P(BadLights, AreOneClearLineWithItsPlace) {
+  const std::string message = error_of(GetParam().text);
+  EXPECT_THAT(message, HasSubstr("scene.toml:"));
+  for (const char* part : GetParam().expected) EXPECT_THAT(message, HasSubstr(part));
+  EXPECT_EQ(message.find('\n'), std::string::npos);
+}
+
+#define LAMP(type) "[[light]]\nname = \"a\"\ntype = \"" type "\"\n"
+#define VOLUME "[[volume]]\nname = \"a\"\nsize = [1, 1, 1]\n"
+#define PLACE "[sky]\nlatitude = 0\nlongitude = 0\n"
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadLights,
+    ::testing::Values(
+        BadLight{"no_type", "[[light]]\nname = \"a\"\n", {"scene.toml:2", "'type' is missing"}},
+        BadLight{"bad_type", LAMP("point_light"), {"'type' cannot be 'point_light'"}},
+        BadLight{"near_type", LAMP("spott"), {"did you mean 'spot'?"}},
+        BadLight{"no_strength", LAMP("point"), {"light 'a' of type point has no strength", "[lm]"}},
+        BadLight{"two_strengths",
+                 LAMP("point") "flux = 1\nintensity = 1\n",
+                 {"has both 'intensity' and 'flux'"}},
+        BadLight{"lux_of_a_point",
+                 LAMP("point") "illuminance = 1\n",
+                 {"scene.toml:2", "has no 'illuminance'", "intensity, flux"}},
+        BadLight{"candela_of_the_sun",
+                 LAMP("directional") "intensity = 1\n",
+                 {"has no 'intensity'", "it has illuminance"}},
+        BadLight{"no_lux", LAMP("directional"), {"needs 'illuminance'"}},
+        BadLight{
+            "luminance_of_a_point", LAMP("point") "luminance = 1\n", {"a luminance but no radius"}},
+        BadLight{"luminance_of_a_file",
+                 LAMP("point") "luminance = 1\nradius = 1\nies = \"lamp.ies\"\n",
+                 {"both 'luminance' and 'ies'"}},
+        BadLight{"no_size", LAMP("rect") "flux = 1\n", {"needs 'size'"}},
+        BadLight{"one_size", LAMP("rect") "flux = 1\nsize = [1]\n", {"must have 2 numbers, not 1"}},
+        BadLight{"flat_size", LAMP("rect") "flux = 1\nsize = [1, 0]\n", {"'size[1]' is 0"}},
+        BadLight{"radius_of_a_rect",
+                 LAMP("rect") "flux = 1\nsize = [1, 1]\nradius = 1\n",
+                 {"has no 'radius'", "it has size"}},
+        BadLight{"no_radius", LAMP("disk") "flux = 1\n", {"needs 'radius'"}},
+        BadLight{"zero_radius", LAMP("sphere") "flux = 1\nradius = 0\n", {"a radius of 0 m"}},
+        BadLight{"candela_of_a_mesh",
+                 LAMP("mesh") "intensity = 1\nfile = \"robot.xml\"\n",
+                 {"has no 'intensity'"}},
+        BadLight{"no_mesh", LAMP("mesh") "flux = 1\n", {"needs 'file'"}},
+        BadLight{"missing_mesh",
+                 LAMP("mesh") "flux = 1\nfile = \"lampp.ies\"\n",
+                 {"there is no file 'lampp.ies'", "did you mean 'lamp.ies'?"}},
+        BadLight{"mesh_outside",
+                 LAMP("mesh") "flux = 1\nfile = \"/etc/passwd\"\n",
+                 {"lies outside", "--root"}},
+        BadLight{"ies_outside",
+                 LAMP("point") "ies = \"../../../../../../../etc/passwd\"\n",
+                 {"lies outside"}},
+        BadLight{"ies_of_a_disk",
+                 LAMP("disk") "flux = 1\nradius = 1\nies = \"lamp.ies\"\n",
+                 {"has no 'ies'"}},
+        BadLight{"two_colors",
+                 LAMP("point") "flux = 1\ncolor = [1, 1, 1]\ntemperature = 3000\n",
+                 {"both 'color' and 'temperature'"}},
+        BadLight{"black", LAMP("point") "flux = 1\ncolor = [0, 0, 0]\n", {"no hue"}},
+        BadLight{"cold", LAMP("point") "flux = 1\ntemperature = 20\n", {"from 1000 to 20000 K"}},
+        BadLight{"not_a_number", LAMP("point") "flux = nan\n", {"scene.toml:5", "'flux' is nan"}},
+        BadLight{"negative", LAMP("point") "flux = -1\n", {"'flux' is -1"}},
+        BadLight{"no_cone", LAMP("spot") "flux = 1\nangle = 0\n", {"a cone of 0 degrees"}},
+        BadLight{"wide_sun", LAMP("directional") "illuminance = 1\nangle = 120\n", {"at most 90"}},
+        BadLight{"two_poses",
+                 LAMP("spot") "flux = 1\nlook_at = [1, 0, 0]\norientation = [1, 0, 0, 0]\n",
+                 {"both 'look_at' and 'orientation'"}},
+        BadLight{"at_itself", LAMP("spot") "flux = 1\nlook_at = [0, 0, 0]\n", {"it stands in"}},
+        BadLight{"shadowless_panel",
+                 LAMP("sphere") "flux = 1\nradius = 1\ncasts_shadow = false\n",
+                 {"cannot shine without shadows"}},
+        BadLight{"two_of_a_name",
+                 LAMP("point") "flux = 1\n" LAMP("point") "flux = 1\n",
+                 {"two lights named 'a'", "line 2"}},
+        BadLight{"unknown_part",
+                 LAMP("point") "flux = 1\nschedule = { mainz = {} }\n",
+                 {"unknown key 'mainz'", "did you mean 'mains'?"}},
+        BadLight{"bad_duty",
+                 LAMP("point") "flux = 1\nschedule = { on_off = { duty = 2 } }\n",
+                 {"'duty' is 2"}},
+        BadLight{"key_without_level",
+                 LAMP("point") "flux = 1\nschedule = { keys = [{ time = 1 }] }\n",
+                 {"'level' is missing"}},
+
+        BadLight{"empty_sky", "[sky]\n", {"scene.toml:2", "[sky] is empty", "sun_elevation"}},
+        BadLight{"no_time", PLACE "date = 2026-06-21\n", {"needs 'time'"}},
+        BadLight{"no_place", "[sky]\ndate = 2026-06-21\ntime = 12:00:00\n", {"needs 'latitude'"}},
+        BadLight{"no_day",
+                 PLACE "date = \"2026-02-30\"\ntime = \"12:00\"\n",
+                 {"there is no 2026-02-30"}},
+        BadLight{"no_month", PLACE "date = \"2026-13-01\"\ntime = \"12:00\"\n", {"no 2026-13-01"}},
+        BadLight{"bad_date",
+                 PLACE "date = \"21.6.2026\"\ntime = \"12:00\"\n",
+                 {"scene.toml:5", "'date' is no date", "2026-06-21"}},
+        BadLight{"number_as_date", PLACE "date = 2026\ntime = \"12:00\"\n", {"'date' is no date"}},
+        BadLight{"bad_time", PLACE "date = 2026-06-21\ntime = \"noon\"\n", {"no time of day"}},
+        BadLight{"late_time", PLACE "date = 2026-06-21\ntime = \"24:00\"\n", {"is 24:00:00"}},
+        BadLight{"far_north", "[sky]\nsun_elevation = 91\n", {"from -90 to 90 deg"}},
+        BadLight{"sun_and_date",
+                 "[sky]\nsun_elevation = 30\ndate = 2026-06-21\n",
+                 {"a [sky] by the sun's position has no 'date'"}},
+        BadLight{"only_azimuth", "[sky]\nsun_azimuth = 30\n", {"needs 'sun_elevation'"}},
+        BadLight{"murk", "[sky]\nsun_elevation = 30\nturbidity = 20\n", {"from 1 to 10"}},
+        BadLight{"turned_clear",
+                 "[sky]\nsun_elevation = 30\nturn = 20\n",
+                 {"has no 'turn'", "sun_elevation, sun_azimuth"}},
+        BadLight{"file_and_turbidity",
+                 "[sky]\nfile = \"sky.hdr\"\nturbidity = 2\n",
+                 {"a [sky] from a file has no 'turbidity'"}},
+        BadLight{"file_scaled_twice",
+                 "[sky]\nfile = \"sky.hdr\"\nscale = 2\nilluminance = 2\n",
+                 {"both 'scale' and 'illuminance'"}},
+        BadLight{"missing_map", "[sky]\nfile = \"skyy.hdr\"\n", {"did you mean 'sky.hdr'?"}},
+        BadLight{"even_and_albedo",
+                 "[sky]\nluminance = 1\nground_albedo = 0.1\n",
+                 {"an even [sky] has no 'ground_albedo'"}},
+        BadLight{"two_skies", "[[sky]]\nluminance = 1\n", {"'sky' must be a table, not an array"}},
+
+        BadLight{"no_box", "[[volume]]\nname = \"a\"\nmedium = \"fog\"\n", {"'size' is missing"}},
+        BadLight{"flat_box",
+                 "[[volume]]\nname = \"a\"\nsize = [1, 1, 0]\nmedium = \"fog\"\ndensity = 1\n",
+                 {"'size[2]' is 0"}},
+        BadLight{"no_medium", VOLUME "density = 1\n", {"neither 'medium' nor 'mass_extinction'"}},
+        BadLight{"two_media",
+                 VOLUME "density = 1\nmedium = \"fog\"\nmass_extinction = [1]\n",
+                 {"both 'medium' and 'mass_extinction'"}},
+        BadLight{"half_own", VOLUME "density = 1\nmedium = \"fog\"\ng = [0.1]\n", {"of its own"}},
+        BadLight{"three_bands",
+                 VOLUME "density = 1\nmass_extinction = [1, 1, 1]\n",
+                 {"3 numbers in 'mass_extinction'", "905 nm"}},
+        BadLight{"no_amount", VOLUME "medium = \"fog\"\n", {"neither 'density' nor 'visibility'"}},
+        BadLight{"two_amounts",
+                 VOLUME "medium = \"fog\"\ndensity = 1\nvisibility = 1\n",
+                 {"both 'density' and 'visibility'"}},
+        BadLight{
+            "forward_g", VOLUME "density = 1\nmass_extinction = [1]\ng = [1]\n", {"'g[0]' is 1"}},
+        BadLight{"grid_and_pattern",
+                 VOLUME "medium = \"fog\"\ndensity = 1\ngrid = \"smoke.npy\"\n"
+                        "pattern = { kind = \"cloud\" }\n",
+                 {"both 'grid' and 'pattern'"}},
+        BadLight{"bad_pattern",
+                 VOLUME "medium = \"fog\"\ndensity = 1\npattern = { kind = \"plum\" }\n",
+                 {"did you mean 'plume'?"}},
+        BadLight{"huge_pattern",
+                 VOLUME "medium = \"fog\"\ndensity = 1\n"
+                        "pattern = { kind = \"plume\", resolution = 5000 }\n",
+                 {"'resolution' is 5000"}},
+        BadLight{"two_volumes",
+                 VOLUME "medium = \"fog\"\ndensity = 1\n" VOLUME "medium = \"fog\"\ndensity = 1\n",
+                 {"two volumes named 'a'"}}),
+    [](const auto& info) { return info.param.what; });
+
+// Scenes made in code have met no reader.
+TEST(SceneInCode, IsHeldToTheSameRules) {
+  const auto error = [](const Scene& scene) {
+    const Status status = validate_scene(scene);
+    return status.ok() ? "" : status.error().to_string();
+  };
+  Scene scene;
+  scene.materials.resize(1);
+  scene.materials[0].name = "wall";
+  scene.materials[0].pattern = PatternOptions{.kind = "brick"};
+  EXPECT_EQ(error(scene), "");
+  scene.materials[0].pattern->kind = "bricks";
+  EXPECT_THAT(error(scene), HasSubstr("did you mean 'brick'?"));
+  scene.materials[0].pattern = PatternOptions{.kind = "brick", .bond = "flemish"};
+  EXPECT_THAT(error(scene), HasSubstr("'flemish'"));
+  scene.materials[0].pattern.reset();
+  scene.materials[0].wear = PatternOptions{};
+  EXPECT_THAT(error(scene), HasSubstr("'kind'"));
+  scene.materials.clear();
+
+  scene.lights = {LightOptions{.name = "a", .type = "point", .flux = 1}};
+  EXPECT_EQ(error(scene), "");
+  scene.lights[0].flux = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(error(scene), HasSubstr("'flux'"));
+  scene.lights[0] = LightOptions{.name = "a", .type = "rect", .flux = 1, .size = {{1, -1}}};
+  EXPECT_THAT(error(scene), HasSubstr("'size'"));
+  scene.lights[0] = LightOptions{.name = "a", .flux = 1};
+  EXPECT_THAT(error(scene), HasSubstr("'type'"));
+  scene.lights.clear();
+
+  scene.sky = SkyOptions{.date = CalendarDate{2026, 4, 31},
+                         .time = ClockTime{12, 0, 0},
+                         .latitude = 0,
+                         .longitude = 0};
+  EXPECT_THAT(error(scene), HasSubstr("there is no 2026-04-31"));
+  scene.sky->date->day = -1;
+  EXPECT_NE(error(scene), "");
+  scene.sky->date->day = 30;
+  EXPECT_EQ(error(scene), "");
+  scene.sky->time->minute = 60;
+  EXPECT_NE(error(scene), "");
+}
+
+TEST_F(SceneLight, OptionsMayBeSetWhetherTheirTableStandsThereOrNot) {
+  Scene scene = load("[[light]]\nname = \"a\"\ntype = \"point\"\nflux = 1\n").value();
+  const auto set = [&](std::string_view path, std::string_view value) {
+    const Status status = set_option(scene, path, value);
+    return status.ok() ? "" : status.error().to_string();
+  };
+  EXPECT_EQ(set("light.a.flux", "100"), "");
+  EXPECT_EQ(scene.lights[0].flux, 100);
+  EXPECT_EQ(set("light.a.schedule.mains.depth", "0.1"), "");
+  EXPECT_EQ(scene.lights[0].schedule->mains->depth, 0.1);
+  EXPECT_EQ(set("sky.sun_elevation", "30"), "");
+  EXPECT_EQ(set("sky.turbidity", "5"), "");
+  EXPECT_EQ(scene.sky->turbidity, 5);
+  EXPECT_THAT(set("sky.turbidty", "5"), HasSubstr("did you mean 'turbidity'?"));
+  EXPECT_THAT(set("sky.date", "2026-06-21"), HasSubstr("has no 'date'"));
+  EXPECT_EQ(scene.sky->date, std::nullopt);  // unchanged
+}
+
+}  // namespace
+}  // namespace gloam

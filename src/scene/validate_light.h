@@ -1,0 +1,12 @@
+#pragma once
+// What goes together in [[light]], [sky] and [[volume]]; ranges are checked elsewhere.
+
+#include "gloam/scene.h"
+
+namespace gloam {
+
+Status validate_light(const LightOptions& light);
+Status validate_sky(const SkyOptions& sky);
+Status validate_volume(const VolumeOptions& volume);
+
+}  // namespace gloam
