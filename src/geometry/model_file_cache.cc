@@ -14,7 +14,7 @@ namespace gloam {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr uint64_t kMagic = 0x31304C444D4F4C47ull;  // "GLOMDL01": changes with what readers give
+constexpr uint64_t kMagic = 0x32304C444D4F4C47ull;  // "GLOMDL02": changes with what readers give
 constexpr uint64_t kLargestEntry = uint64_t{8} << 30;
 constexpr size_t kHashedPiece = size_t{16} << 20;
 
@@ -131,7 +131,7 @@ void visit(F& f, ModelPart& p) {
 template <class F>
 void visit(F& f, ModelFile& m) {
   f(m.meshes), f(m.materials), f(m.images), f(m.instances), f(m.lights), f(m.dropped_triangles);
-  f(m.notes);
+  f(m.was_y_up), f(m.notes);
 }
 
 // Hash of large data: pieces side by side, then their hashes.

@@ -22,7 +22,8 @@ struct FieldRule {
   bool open = false;                           ///< min and max themselves are not allowed
   bool required = false;                       ///< must stand in the file
   std::vector<std::string_view> choices = {};  ///< closed list of words; empty = any
-  bool identifier = false;  ///< a name: not empty, no '/' and no control characters
+  bool identifier = false;     ///< a name: not empty, no '/' and no control characters
+  bool one_for_three = false;  ///< a vector may be written as one number
 };
 
 inline constexpr double kLongestTime = 1e9;    // [s] 30 years
@@ -112,6 +113,10 @@ template <class Visitor>
 void visit_fields(Visitor& v, MaterialOptions& o) {
   const FieldRule share{.min = 0, .max = 1};
   v("name", o.name, FieldRule{.required = true});
+  v("base_color", o.base_color, share);
+  v("metallic", o.metallic, share);
+  v("roughness", o.roughness, share);
+  v("emission", o.emission, FieldRule{.unit = "cd/m2", .min = 0, .max = 1e12});
   v("ior", o.ior, FieldRule{.min = 1, .max = 3});
   v("anisotropy", o.anisotropy, share);
   v("anisotropy_rotation", o.anisotropy_rotation, FieldRule{.unit = "turn", .min = -1, .max = 1});
@@ -135,6 +140,21 @@ void visit_fields(Visitor& v, MaterialOptions& o) {
   v("porosity", o.porosity, share);
   v("dust", o.dust, share);
   v("snow", o.snow, share);
+  v("bump", o.bump, FieldRule{});
+  v("bump_scale", o.bump_scale, FieldRule{.unit = "m", .min = -10, .max = 10});
+}
+
+template <class Visitor>
+void visit_fields(Visitor& v, VisualOptions& o) {
+  v("name", o.name, FieldRule{.required = true, .identifier = true});
+  v("file", o.file, FieldRule{.required = true});
+  v("body", o.body, FieldRule{});
+  v("position", o.X_BV.p, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
+  v("orientation", o.X_BV.q, FieldRule{.unit = "wxyz"});
+  v("scale", o.scale, FieldRule{.min = 1e-6, .max = 1e6, .one_for_three = true});
+  v("up", o.up, FieldRule{.choices = {"auto", "y", "z"}});
+  v("unit", o.unit, FieldRule{.unit = "m", .min = 1e-9, .max = 1e6});
+  v("casts_shadow", o.casts_shadow, FieldRule{});
 }
 
 template <class Visitor>
@@ -185,6 +205,7 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("robot", scene.robots, FieldRule{});
   v("camera", scene.cameras, FieldRule{});
   v("material", scene.materials, FieldRule{});
+  v("visual", scene.visuals, FieldRule{});
   v("push", scene.pushes, FieldRule{});
   v("render", scene.render, FieldRule{});
   v("record", scene.record, FieldRule{});

@@ -110,12 +110,18 @@ Result<Scene> load_scene(const fs::path& path, const FileAccess& access) {
   }
   for (RobotOptions& robot : scene.robots)
     GLOAM_TRY_STATUS(resolve(&robot.file, path, root, access, robot.loc));
+  for (VisualOptions& visual : scene.visuals)
+    GLOAM_TRY_STATUS(resolve(&visual.file, path, root, access, visual.loc));
+  for (MaterialOptions& material : scene.materials) {
+    if (material.bump.empty()) continue;
+    GLOAM_TRY_STATUS(resolve(&material.bump, path, root, access, material.loc));
+  }
   GLOAM_TRY_STATUS(validate_scene(scene));
-  if (scene.robots.empty() && scene.environment.file.empty()) {
+  if (scene.robots.empty() && scene.environment.file.empty() && scene.visuals.empty()) {
     return Error{ErrorKind::kInput,
                  "the scene has nothing in it",
                  {path.string(), 0, 0},
-                 "add at least one [[robot]] or an [environment]"};
+                 "add at least one [[robot]], [[visual]] or an [environment]"};
   }
   return scene;
 }

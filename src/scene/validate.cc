@@ -132,6 +132,7 @@ Status validate_scene(const Scene& scene) {
   GLOAM_TRY_STATUS(std::move(status));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.robots, "robot"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.cameras, "camera"));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.visuals, "visual"));
   for (const CameraOptions& camera : scene.cameras) GLOAM_TRY_STATUS(validate_camera(camera));
   for (const RobotOptions& robot : scene.robots) {
     for (size_t i = 1; i < robot.controller.goals.size(); ++i) {

@@ -9,6 +9,7 @@
 #include "world/authored_material.h"
 #include "world/visual_camera.h"
 #include "world/visual_deformable.h"
+#include "world/visual_file.h"
 #include "world/visual_label.h"
 #include "world/visual_light.h"
 #include "world/visual_material.h"
@@ -185,15 +186,17 @@ std::vector<bool> static_bodies(const mjModel& m) {
 /// Robots collide with simpler shapes than they show. In MJCF those are in the groups 3 and up,
 /// which MuJoCo hides; in a URDF they are the geoms of the model, and the visuals, where a link has
 /// some, are `instances` from `first_visual` on. Something that moves on joints and has nothing to
-/// show shows what it collides with.
+/// show shows what it collides with. The scene's visuals, from `first_file` on, count as shown and
+/// take nothing else's place.
 void choose_what_is_shown(const mjModel& m, const CompiledWorld& world, size_t first_visual,
-                          std::vector<InstanceDescription>* instances) {
+                          size_t first_file, std::vector<InstanceDescription>* instances) {
   const auto body_of = [&](size_t i) { return static_cast<size_t>((*instances)[i].body); };
   const auto root_of = [&](size_t i) { return static_cast<size_t>(m.body_rootid[body_of(i)]); };
   std::vector<bool> has_visuals(static_cast<size_t>(m.nbody)), root_shows(has_visuals);
   for (size_t i = first_visual; i < instances->size(); ++i) {
     // The world's own geoms are the scene's, unless the robot stands alone.
-    if (body_of(i) > 0 || !world.scene.bare_model.empty()) has_visuals[body_of(i)] = true;
+    if (i < first_file && (body_of(i) > 0 || !world.scene.bare_model.empty()))
+      has_visuals[body_of(i)] = true;
     root_shows[root_of(i)] = true;
   }
   constexpr int kFirstHiddenGroup = 3;
@@ -252,13 +255,25 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     }
   }
 
-  choose_what_is_shown(m, world, first_visual, &out.instances);
+  const size_t first_file = out.instances.size();
+  LightLevels levels;
+  const auto add_part = [&](InstanceDescription instance, int body, std::string name, int visual,
+                            const std::string& visual_name) {
+    constexpr int kVisualFile = -3;
+    add(std::move(instance), body, visual_name, kVisualFile, visual);
+    out.instances.back().label.geom = std::move(name);
+  };
+  GLOAM_TRY_STATUS(describe_visuals(world, poses, add_part, &levels, &out));
+  choose_what_is_shown(m, world, first_visual, first_file, &out.instances);
   describe_deformables(m, poses, &simulated.materials(), &labels, &out);
   describe_cameras(m, &out);
-  const LightLevels levels = describe_light(m, poses, &simulated.materials(), &out);
+  levels = describe_light(m, poses, std::move(levels), &simulated.materials(), &out);
   for (LightDescription& light : out.lights) {
-    light.is_static = light.light >= 0 && m.light_mode[light.light] == mjCAMLIGHT_FIXED &&
-                      is_static[static_cast<size_t>(m.light_bodyid[light.light])];
+    if (light.body >= 0)
+      light.is_static = is_static[static_cast<size_t>(light.body)];
+    else
+      light.is_static = light.light >= 0 && m.light_mode[light.light] == mjCAMLIGHT_FIXED &&
+                        is_static[static_cast<size_t>(m.light_bodyid[light.light])];
   }
   if (labels.overflowed())
     out.unsupported.push_back(

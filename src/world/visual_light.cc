@@ -63,12 +63,21 @@ void set_image_light(const mjModel& m, int i, MaterialTable* materials, RenderDe
 
 }  // namespace
 
+void LightLevels::add(const LightDescription& light, float distance) {
+  const float lux = luminance(light.intensity);
+  photometric = photometric || lux > 0;
+  illuminance.push_back(light.type == LightType::kDirectional ? lux : lux / sqr(distance));
+}
+
+float light_distance(const mjModel& model, Vec3f p_W) {
+  const float nearest = kNearestShare * max(static_cast<float>(model.stat.extent), 1e-3f);
+  return max(length(p_W - vec3(model.stat.center)), nearest);
+}
+
 LightLevels describe_light(const mjModel& model, const std::vector<Affine3f>& poses,
-                           MaterialTable* materials, RenderDescription* out) {
-  LightLevels levels;
+                           LightLevels levels, MaterialTable* materials, RenderDescription* out) {
   out->center = vec3(model.stat.center);
   out->extent = static_cast<float>(model.stat.extent);
-  const float nearest = kNearestShare * max(out->extent, 1e-3f);
 
   for (int i = 0; i < static_cast<int>(model.ntex) && out->sky.texture < 0; ++i)
     if (model.tex_type[i] == mjTEXTURE_SKYBOX) {
@@ -84,7 +93,7 @@ LightLevels describe_light(const mjModel& model, const std::vector<Affine3f>& po
     }
     const Vec3f p_W =
         poses[static_cast<size_t>(model.light_bodyid[i])].p + vec3(model.light_pos0 + 3 * i);
-    const float distance = max(length(p_W - out->center), nearest);
+    const float distance = light_distance(model, p_W);
     out->lights.push_back(model_light(model, i, distance));
     const LightDescription& light = out->lights.back();
     if (!light.active) continue;
