@@ -213,6 +213,27 @@ void choose_what_is_shown(const mjModel& m, const CompiledWorld& world, size_t f
     if (root_moves[root_of(i)] && !root_shows[root_of(i)]) (*instances)[i].shown = true;
 }
 
+/// The model, or where it has nothing to draw, the scene's visuals at qpos0. `out` holds them.
+Framing framing_of(const mjModel& m, const std::vector<Affine3f>& poses, size_t first_file,
+                   const RenderDescription& out) {
+  const auto& center = m.stat.center;
+  const Framing model{{center[0], center[1], center[2]}, m.stat.extent};
+  const bool has_own = first_file > 0 || m.nflex > 0 || m.nskin > 0;
+  if (has_own || out.instances.empty()) return model;
+  constexpr float kFar = 1e30f;
+  Vec3f low{kFar, kFar, kFar}, high = -low;
+  for (const InstanceDescription& in : out.instances) {
+    const Affine3f X_WG = poses[static_cast<size_t>(in.body)] * in.X_BG;
+    for (const Vec3f& p_G : out.meshes[static_cast<size_t>(in.mesh)].positions) {
+      const Vec3f p = transform_point(X_WG, p_G);
+      low = {min(low.x, p.x), min(low.y, p.y), min(low.z, p.z)};
+      high = {max(high.x, p.x), max(high.y, p.y), max(high.z, p.z)};
+    }
+  }
+  const Vec3f middle = (low + high) * 0.5f;
+  return {{middle.x, middle.y, middle.z}, max(length(high - low), 1e-3f)};
+}
+
 }  // namespace
 
 Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
@@ -264,10 +285,14 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     out.instances.back().label.geom = std::move(name);
   };
   GLOAM_TRY_STATUS(describe_visuals(world, poses, add_part, &levels, &out));
+  const Framing framing = framing_of(m, poses, first_file, out);
   choose_what_is_shown(m, world, first_visual, first_file, &out.instances);
   describe_deformables(m, poses, &simulated.materials(), &labels, &out);
-  describe_cameras(m, &out);
+  describe_cameras(m, framing, &out);
   levels = describe_light(m, poses, std::move(levels), &simulated.materials(), &out);
+  out.center = {static_cast<float>(framing.center.x), static_cast<float>(framing.center.y),
+                static_cast<float>(framing.center.z)};
+  out.extent = static_cast<float>(framing.extent);
   for (LightDescription& light : out.lights) {
     if (light.body >= 0)
       light.is_static = is_static[static_cast<size_t>(light.body)];

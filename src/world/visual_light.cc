@@ -76,9 +76,6 @@ float light_distance(const mjModel& model, Vec3f p_W) {
 
 LightLevels describe_light(const mjModel& model, const std::vector<Affine3f>& poses,
                            LightLevels levels, MaterialTable* materials, RenderDescription* out) {
-  out->center = vec3(model.stat.center);
-  out->extent = static_cast<float>(model.stat.extent);
-
   for (int i = 0; i < static_cast<int>(model.ntex) && out->sky.texture < 0; ++i)
     if (model.tex_type[i] == mjTEXTURE_SKYBOX) {
       out->sky.texture = materials->texture_row(i, ColorSpace::kSrgb);

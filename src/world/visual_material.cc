@@ -25,10 +25,12 @@ struct Texels {
   std::unique_ptr<mjtByte, void (*)(void*)> owned{nullptr, mju_free};  ///< of by-reference textures
 };
 
-/// MuJoCo keeps a KTX file as it is: a row of its bytes, without channels.
+/// MuJoCo keeps a KTX file as it is: a row of its bytes as one channel.
 bool is_ktx(const Texels& texels, int channels) {
-  return channels == 0 && texels.height == 1 && texels.width >= 4 &&
-         std::memcmp(texels.data, "\xabKTX", 4) == 0;
+  constexpr std::string_view kMagic = "\xabKTX 11\xbb\r\n\x1a\n";
+  return channels == 1 && texels.height == 1 && texels.data != nullptr &&
+         texels.width >= static_cast<int>(kMagic.size()) &&
+         std::memcmp(texels.data, kMagic.data(), kMagic.size()) == 0;
 }
 
 /// As cut_faces, of the bytes of a KTX file.
