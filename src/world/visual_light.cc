@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "world/ktx_light.h"
 #include "world/visual_rules.h"
 
 namespace gloam {
@@ -49,16 +50,30 @@ LightDescription model_light(const mjModel& m, int i, float distance) {
   return light;
 }
 
-/// Cube textures only; the light's intensity is the luminance of a white texel, if it has one.
+/// A cube texture or the cube of a KTX file; the light's intensity is the luminance of a white
+/// texel, if it has one.
 void set_image_light(const mjModel& m, int i, MaterialTable* materials, RenderDescription* out) {
   const int texid = m.light_texid[i];
-  if (texid < 0 || m.tex_type[texid] == mjTEXTURE_2D) {
-    out->unsupported.push_back({ErrorKind::kUnsupported,
-                                fmt::format("image light {} has no cube texture; it is dark", i)});
+  const float scale = m.light_intensity[i] > 0 ? m.light_intensity[i] : kWhiteLuminance;
+  const char* name = texid >= 0 ? mj_id2name(&m, mjOBJ_TEXTURE, texid) : nullptr;
+  SkyDescription& sky = out->sky;
+  if (texid >= 0 && m.tex_type[texid] != mjTEXTURE_2D) {
+    sky.texture = materials->texture_row(texid, ColorSpace::kSrgb);
+    sky.scale = scale;
     return;
   }
-  out->sky.texture = materials->texture_row(texid, ColorSpace::kSrgb);
-  out->sky.scale = m.light_intensity[i] > 0 ? m.light_intensity[i] : kWhiteLuminance;
+  const KtxImage ktx = texid >= 0 ? embedded_ktx(m, texid) : KtxImage();
+  if (ktx.float_faces.size() == 6) {
+    sky.environment = environment_of(ktx, name != nullptr ? name : "");
+    sky.environment.scale = scale;
+  } else if (ktx.faces.size() == 6) {
+    sky.texture = static_cast<int>(out->textures.size());
+    sky.scale = scale;
+    out->textures.push_back({name != nullptr ? name : "", ktx.faces});
+  } else {
+    out->unsupported.push_back({ErrorKind::kUnsupported,
+                                fmt::format("image light {} has no cube texture; it is dark", i)});
+  }
 }
 
 }  // namespace

@@ -64,6 +64,18 @@ std::string cut_faces(const Texels& texels, int channels, bool cube, ColorSpace 
 
 }  // namespace
 
+KtxImage embedded_ktx(const mjModel& model, int texid) {
+  if (model.tex_adr[texid] < 0) return {};
+  Texels texels;
+  texels.data = model.tex_data + model.tex_adr[texid];
+  texels.width = model.tex_width[texid];
+  texels.height = model.tex_height[texid];
+  if (!is_ktx(texels, model.tex_nchannel[texid])) return {};
+  Result<KtxImage> image =
+      decode_ktx({texels.data, static_cast<size_t>(texels.width)}, "the KTX file");
+  return image.ok() ? std::move(*image) : KtxImage();
+}
+
 const float* drawn_rgba(const mjModel& model, int matid, const float* rgba) {
   return matid >= 0 && is_default_rgba(rgba) ? model.mat_rgba + 4 * matid : rgba;
 }

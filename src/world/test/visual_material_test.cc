@@ -5,6 +5,7 @@
 
 #include "geometry/test/image_writer.h"
 #include "visual_test_model.h"
+#include "world/ktx_light.h"
 #include "world/visual_rules.h"
 
 namespace gloam {
@@ -67,14 +68,15 @@ TEST_F(VisualTextureFiles, ByReferenceIsTheSameAsEmbedded) {
 }
 
 TEST_F(VisualTextureFiles, KtxIsReadThoughMuJoCoKeepsItsBytes) {
-  const std::string assets =
-      "<texture name='t' type='2d' file='t.ktx'/><material name='m' texture='t'/>";
+  const auto assets = [](const std::string& file) {  // MuJoCo remembers files by their names
+    return "<texture name='t' type='2d' file='" + file + "'/><material name='m' texture='t'/>";
+  };
   // RGBA of 2 x 1 texels, rows from the bottom as OpenGL has them.
   const auto ktx = [](const std::vector<std::string>& faces) {
     return ktx_file(0x1401, 0x1908, 0x8058, 2, 1, faces);
   };
   std::ofstream(folder_ / "t.ktx", std::ios::binary) << ktx({"abcdefgh"});
-  const RenderDescription out = describe(compile_here("", assets));
+  const RenderDescription out = describe(compile_here("", assets("t.ktx")));
   EXPECT_TRUE(out.unsupported.empty());
   const Image8& image = color_image(out);
   EXPECT_EQ(image.width, 2);
@@ -82,10 +84,44 @@ TEST_F(VisualTextureFiles, KtxIsReadThoughMuJoCoKeepsItsBytes) {
   EXPECT_EQ(std::string(image.texels.begin(), image.texels.end()), "abcdefgh");
   EXPECT_EQ(image.color_space, ColorSpace::kSrgb);
 
-  std::ofstream(folder_ / "t.ktx", std::ios::binary) << ktx({"abcdefgh"}).substr(0, 50);
-  const RenderDescription cut = describe(compile_here("", assets));
+  std::ofstream(folder_ / "cut.ktx", std::ios::binary) << ktx({"abcdefgh"}).substr(0, 50);
+  const RenderDescription cut = describe(compile_here("", assets("cut.ktx")));
   ASSERT_EQ(cut.unsupported.size(), 1u);
   EXPECT_NE(cut.unsupported[0].message.find("texture 't' cannot be read"), std::string::npos);
+}
+
+TEST_F(VisualTextureFiles, KtxCubesLightTheSceneAsMuJoCoTurnsItsSky) {
+  std::vector<std::string> faces;  // +x -x +y -y +z -z, each of one texel with its own red
+  for (int i = 0; i < 6; ++i)
+    faces.push_back(raw(1.0f + static_cast<float>(i)) + raw(0.0f) + raw(0.0f));
+  std::ofstream(folder_ / "cube.ktx", std::ios::binary)
+      << ktx_file(0x1406, 0x1907, 0x8815, 1, 1, faces);
+  const RenderDescription out = describe(
+      compile("<mujoco><compiler texturedir='" + folder_.string() +
+              "'/><asset><texture name='t' type='2d' file='cube.ktx'/></asset><worldbody><light "
+              "type='image' texture='t' intensity='200'/><geom size='1'/></worldbody></mujoco>"));
+  const EnvironmentDescription& e = out.sky.environment;
+  ASSERT_EQ(e.width, 4);
+  ASSERT_EQ(e.height, 2);
+  EXPECT_EQ(e.scale, 200);
+  for (const Vec3f& texel : e.texels) EXPECT_GE(texel.x, 1);
+  const EnvironmentDescription fine = environment_of(
+      [&] {
+        KtxImage cube;
+        for (int i = 0; i < 6; ++i)
+          cube.float_faces.push_back({8, 8, 1, std::vector<float>(64, static_cast<float>(i + 1))});
+        return cube;
+      }(),
+      "fine");
+  const auto at = [&](int row, int column) {
+    return fine.texels[static_cast<size_t>(fine.width * row + column)].x;
+  };
+  EXPECT_EQ(at(8, 16), 1);  // +X
+  EXPECT_EQ(at(8, 0), 2);   // -X
+  EXPECT_EQ(at(0, 5), 3);   // up is the cube's +Y
+  EXPECT_EQ(at(15, 5), 4);
+  EXPECT_EQ(at(8, 24), 5);  // -Y is the cube's +Z
+  EXPECT_EQ(at(8, 8), 6);   // +Y
 }
 
 TEST_F(VisualTextureFiles, ColoursAreSrgbWhateverTheFileSays) {
