@@ -157,6 +157,7 @@ TEST(Mesh, TrianglesWithoutAreaShineAndCastNothing) {
     b.add(ShapeType::kPlane, {}, {}, b.add_diffuse({0.5f, 0.5f, 0.5f}));
     RenderSettings settings;
     settings.spp = 64;
+    settings.variance = true;
     return picture_mean(
         b.render(SceneBuilder::camera(look_at({2, 0, 1}, {}), 16, 16, 30), settings));
   };
