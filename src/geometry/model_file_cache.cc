@@ -107,6 +107,7 @@ bool load_entry(const fs::path& path, uint64_t content, ModelFolder beside,
   visit_parts(in, entry.model);
   if (!in.is_done()) return false;
   *out = std::move(entry.model);
+  fs::last_write_time(path, fs::file_time_type::clock::now(), code);  // used now: evict it late
   return true;
 }
 
