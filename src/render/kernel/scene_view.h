@@ -83,10 +83,10 @@ struct MaterialView {
   float f90 = 1;     ///< of the dielectric layer at grazing incidence
   TextureMapping mapping = TextureMapping::kNone;
   bool texture_uniform = false;
-  bool textured = false;     ///< any texture at all
-  bool transparent = false;  ///< opacity below one somewhere, or a straight sheet
+  bool textured = false;       ///< any texture at all
+  bool transparent = false;    ///< opacity below one somewhere, or a straight sheet
   bool glows_in_color = true;  ///< base_color's texture multiplies the emission
-  int layers = -1;           ///< row of SceneView::layers
+  int layers = -1;             ///< row of SceneView::layers
   Vec2f texture_repeat{1, 1};
   MaterialTextures textures;
   float bump_scale = 0;  ///< [m] that a bump of 1 stands above one of 0
