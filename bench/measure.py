@@ -3,9 +3,11 @@
 Whatever is compared runs in turns within the same minutes, so that a busy machine is busy for both.
 """
 import json
+import math
 import os
 import shutil
 import statistics
+import struct
 import subprocess
 import sys
 import tempfile
@@ -202,5 +204,39 @@ def first_picture(quick):
                   f"wall; CPU time of all threads {statistics.median(cpus):.1f} s; 640x480, 1 sample a pixel, denoised")
 
 
+def write_waves(path, side):
+    """A binary PLY of 2 side² triangles with normals: a square metre of waves."""
+    row = struct.Struct("<6f")
+    with open(path, "wb") as out:
+        out.write((f"ply\nformat binary_little_endian 1.0\nelement vertex {(side + 1) ** 2}\n" +
+                   "".join(f"property float {name}\n" for name in ("x", "y", "z", "nx", "ny", "nz")) +
+                   f"element face {2 * side * side}\nproperty list uchar int vertex_indices\nend_header\n").encode())
+        waves = [(0.01 * math.sin(60 * i / side), 0.6 * math.cos(60 * i / side)) for i in range(side + 1)]
+        for j, (h, hy) in enumerate(waves):
+            out.write(b"".join(row.pack(i / side, j / side, h + g, -gx, -hy, 1) for i, (g, gx) in enumerate(waves)))
+        face = struct.Struct("<BiiiBiii")
+        for j in range(side):
+            first = j * (side + 1)
+            out.write(b"".join(face.pack(3, a, a + 1, a + side + 2, 3, a, a + side + 2, a + side + 1)
+                               for a in range(first, first + side)))
+
+
+def import_time(quick):
+    """a scene with a scanned mesh of five million triangles: first start and second"""
+    side = 500 if quick else 1600
+    with tempfile.TemporaryDirectory(prefix="gloam_bench_") as folder:
+        write_waves(Path(folder) / "waves.ply", side)
+        scene = Path(folder) / "scene.toml"
+        scene.write_text('[[visual]]\nname = "waves"\nfile = "waves.ply"\n')
+        ratios, notes = [], []
+        for _ in range(1 if quick else 3):
+            shutil.rmtree(Path(folder) / "cache", ignore_errors=True)
+            first, second = [seconds_until_ready(f"{folder}/cache", BIN / "bench_load_time", scene, "render") for _ in range(2)]
+            ratios.append(second[0] / first[0])
+            notes.append(f"{first[1]:.2f} and {second[1]:.2f}")
+    yield at_most(f"second start / first, PLY of {2 * side * side / 1e6:.1f} M triangles", statistics.median(ratios), 0.9,
+                  f"CPU time to the first ray; wall {', '.join(notes)} s")
+
+
 # With the seconds that each takes on two cores: the first estimate of the time left.
-ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, direct_tier: 90, load_time: 120, first_picture: 15}
+ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, direct_tier: 90, load_time: 120, import_time: 60, first_picture: 15}

@@ -110,28 +110,51 @@ struct PatternOptions {
 };
 
 /// [[material]]: what MJCF cannot say of one of its materials; names after OpenPBR 1.1. Colour,
-/// roughness, metalness, emission, opacity and textures stay those of the MJCF material.
+/// roughness, metalness, emission, opacity and textures of an MJCF material stay the model's. What
+/// is not given stays as the file has it that the material came with, or as in OpenPBR.
 struct MaterialOptions {
-  std::string name = {};  ///< of the model's material, robot prefix included; * stands for any text
-  std::optional<double> ior = {};  ///< index of refraction, 1 … 3
-  double anisotropy = 0;           ///< 0 … 1, draws highlights out along the texture's u
-  double anisotropy_rotation = 0;  ///< [turns], counter-clockwise
-  double transmission_weight = 0;  ///< 0 … 1: glass
-  Vec3 transmission_color = {1, 1,
-                             1};  ///< at transmission_depth, or of one passage where that is 0
-  double transmission_depth = 0;  ///< [m]
-  bool thin_walled = false;       ///< a sheet: window panes, leaves, paper
-  double subsurface_weight = 0;   ///< 0 … 1; light that goes through, of sheets
-  Vec3 subsurface_color = {0.8, 0.8, 0.8};
-  double coat_weight = 0, coat_roughness = 0, coat_ior = 1.6;
-  Vec3 coat_color = {1, 1, 1};
-  double fuzz_weight = 0, fuzz_roughness = 0.5;
-  Vec3 fuzz_color = {1, 1, 1};
+  /// Of the model's material, robot prefix included, or "VISUAL/MATERIAL"; * stands for any text.
+  std::string name = {};
+  // Of materials of [[visual]]s alone; these multiply the file's textures.
+  std::optional<Vec3> base_color = {};                  ///< linear Rec. 709, 0 … 1
+  std::optional<double> metallic = {}, roughness = {};  ///< 0 … 1
+  std::optional<Vec3> emission = {};                    ///< luminance per channel [cd/m²]
+  // Of all materials.
+  std::optional<double> ior = {};                  ///< index of refraction, 1 … 3
+  std::optional<double> anisotropy = {};           ///< 0 … 1, along the texture's u
+  std::optional<double> anisotropy_rotation = {};  ///< [turns], counter-clockwise
+  std::optional<double> transmission_weight = {};  ///< 0 … 1: glass
+  /// At transmission_depth, or of one passage where that is 0.
+  std::optional<Vec3> transmission_color = {};
+  std::optional<double> transmission_depth = {};  ///< [m]
+  std::optional<bool> thin_walled = {};           ///< a sheet: window panes, leaves, paper
+  std::optional<double> subsurface_weight = {};   ///< 0 … 1; light that goes through, of sheets
+  std::optional<Vec3> subsurface_color = {};      ///< default 0.8
+  std::optional<double> coat_weight = {}, coat_roughness = {}, coat_ior = {};  ///< ior: 1.6
+  std::optional<Vec3> coat_color = {};
+  std::optional<double> fuzz_weight = {}, fuzz_roughness = {};  ///< roughness: 0.5
+  std::optional<Vec3> fuzz_color = {};
   std::optional<PatternOptions> pattern = {};  ///< multiplies the colour, sets roughness and bumps
   std::optional<PatternOptions> wear = {};     ///< scratches or dirt over it
-  double wetness = 0;                          ///< 0 dry … 1 under water where level
-  double porosity = 0.8;                       ///< 0 glass and metal … 0.8 concrete, wood
-  double dust = 0, snow = 0;                   ///< 0 … 1
+  std::optional<double> wetness = {};          ///< 0 dry … 1 under water where level
+  std::optional<double> porosity = {};         ///< 0 glass and metal … 0.8 concrete, wood
+  std::optional<double> dust = {}, snow = {};  ///< 0 … 1
+  /// PNG or JPEG of heights, relative to the scene file, on the texture's coordinates; empty = none
+  std::filesystem::path bump = {};
+  std::optional<double> bump_scale = {};  ///< [m] that white stands above black, default 0.001
+  SourceLoc loc = {};
+};
+
+/// [[visual]]: a glTF, GLB, OBJ, STL or PLY file that is drawn and has no physics.
+struct VisualOptions {
+  std::string name = {};            ///< unique; its materials are "NAME/MATERIAL"
+  std::filesystem::path file = {};  ///< relative to the scene file
+  std::string body = {};            ///< full name of the body it is fixed to; empty = world
+  Pose X_BV = {};                   ///< where it is in that body
+  Vec3 scale = {1, 1, 1};   ///< along the visual's axes, after `up`; > 0; one number for all three
+  std::string up = "auto";  ///< y | z: axis of the file that points up; auto = y of glTF, else z
+  double unit = 1;          ///< [m] of one unit of the file
+  bool casts_shadow = true;
   SourceLoc loc = {};
 };
 
@@ -180,6 +203,7 @@ struct Scene {
   std::vector<LightOptions> lights = {};
   std::optional<SkyOptions> sky = {};
   std::vector<VolumeOptions> volumes = {};
+  std::vector<VisualOptions> visuals = {};
   std::vector<PushOptions> pushes = {};
   SimOptions sim = {};
   RenderOptions render = {};

@@ -8,6 +8,9 @@ namespace gloam {
 
 enum class ColorSpace : uint8_t { kLinear, kSrgb };
 
+/// What a texture shows beyond its edges.
+enum class TextureWrap : uint8_t { kRepeat, kMirror, kClamp };
+
 /// 8-bit texels of a texture.
 struct Image8 {
   int width = 0, height = 0, channels = 0;

@@ -11,7 +11,6 @@
 
 namespace gloam {
 
-enum class TextureWrap : uint8_t { kRepeat, kMirror, kClamp };
 enum class AlphaMode : uint8_t {
   kOpaque,  ///< opacity counts as 1
   kMask,    ///< there where opacity >= alpha_cutoff, absent elsewhere

@@ -53,6 +53,7 @@ struct ModelFile {
   std::vector<ImportedInstance> instances;
   std::vector<ImportedLight> lights;
   uint64_t dropped_triangles = 0;  ///< of no area
+  bool was_y_up = false;           ///< glTF: turned into Gloam's axes
   /// What the file has and Gloam leaves out (skins, missing pictures …), one sentence each.
   std::vector<std::string> notes;
 };

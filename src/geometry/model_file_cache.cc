@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cstring>
-#include <type_traits>
 
+#include "base/archive.h"
 #include "base/files.h"
 #include "base/hash.h"
 #include "base/log.h"
@@ -14,125 +14,46 @@ namespace gloam {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr uint64_t kMagic = 0x31304C444D4F4C47ull;  // "GLOMDL01": changes with what readers give
+constexpr uint64_t kMagic = 0x32304C444D4F4C47ull;  // "GLOMDL02": changes with what readers give
 constexpr uint64_t kLargestEntry = uint64_t{8} << 30;
 constexpr size_t kHashedPiece = size_t{16} << 20;
 
-// One function each says what an entry holds, for writing, and in the same order for reading.
-class Writer {
- public:
-  std::vector<uint8_t> bytes;
-  template <class T>
-    requires std::is_trivially_copyable_v<T>
-  void operator()(T& value) {
-    append(&value, sizeof(T));
-  }
-  void operator()(std::string& text) { put(text); }
-  template <class T>
-  void operator()(std::vector<T>& values) {
-    if constexpr (std::is_trivially_copyable_v<T>) {
-      put(values);
-    } else {
-      uint64_t count = values.size();
-      (*this)(count);
-      for (T& value : values) visit(*this, value);
-    }
-  }
+}  // namespace
 
- private:
-  template <class Container>
-  void put(Container& values) {
-    uint64_t count = values.size();
-    (*this)(count);
-    append(values.data(), count * sizeof(values[0]));
-  }
-  void append(const void* from, size_t size) {
-    const auto* begin = static_cast<const uint8_t*>(from);
-    bytes.insert(bytes.end(), begin, begin + size);
-  }
-};
-
-// Every read is bounded; after the first that fails all others fail.
-class Reader {
- public:
-  explicit Reader(std::span<const uint8_t> bytes) : bytes_(bytes) {}
-  bool is_done() const { return ok_ && bytes_.empty(); }
-  template <class T>
-    requires std::is_trivially_copyable_v<T>
-  void operator()(T& value) {
-    if (take(sizeof(T))) std::memcpy(&value, taken_.data(), sizeof(T));
-  }
-  void operator()(std::string& text) { get(text); }
-  template <class T>
-  void operator()(std::vector<T>& values) {
-    if constexpr (std::is_trivially_copyable_v<T>) {
-      get(values);
-    } else {
-      uint64_t count = 0;
-      (*this)(count);
-      if (count > bytes_.size()) ok_ = false;  // each takes a byte at least
-      for (uint64_t i = 0; i < count && ok_; ++i) visit(*this, values.emplace_back());
-    }
-  }
-
- private:
-  template <class Container>
-  void get(Container& values) {
-    uint64_t count = 0;
-    (*this)(count);
-    const size_t size = sizeof(values[0]);
-    if (!ok_ || count > bytes_.size() / size || !take(count * size)) {
-      ok_ = false;
-      return;
-    }
-    values.resize(count);
-    if (count > 0) std::memcpy(values.data(), taken_.data(), count * size);
-  }
-  bool take(uint64_t size) {
-    if (!ok_ || size > bytes_.size()) return ok_ = false;
-    taken_ = bytes_.first(size);
-    bytes_ = bytes_.subspan(size);
-    return true;
-  }
-  std::span<const uint8_t> bytes_, taken_;
-  bool ok_ = true;
-};
-
+// What an entry holds, for writing, and in the same order for reading.
 template <class F>
-void visit(F& f, TriangleMesh& m) {
+void visit_parts(F& f, TriangleMesh& m) {
   f(m.positions), f(m.normals), f(m.uvs), f(m.indices), f(m.uvs1);
 }
 template <class F>
-void visit(F& f, ImportedImage& i) {
+void visit_parts(F& f, ImportedImage& i) {
   f(i.name), f(i.bytes);
 }
 template <class F>
-void visit(F& f, ImportedInstance& i) {
+void visit_parts(F& f, ImportedInstance& i) {
   f(i.name), f(i.mesh), f(i.material), f(i.X_FI);
 }
 template <class F>
-void visit(F& f, ImportedLight& l) {
+void visit_parts(F& f, ImportedLight& l) {
   f(l.name), f(l.type), f(l.color), f(l.intensity), f(l.range), f(l.inner_cone), f(l.outer_cone);
   f(l.X_FL);
 }
 template <class F>
-void visit(F& f, ImportedMaterial& m) {
+void visit_parts(F& f, ImportedMaterial& m) {
   f(m.name);
   f(static_cast<MaterialValues&>(m));
 }
 template <class F>
-void visit(F& f, std::string& text) {
-  f(text);
-}
-template <class F>
-void visit(F& f, ModelPart& p) {
+void visit_parts(F& f, ModelPart& p) {
   f(p.name), f(p.exists), f(p.hash);
 }
 template <class F>
-void visit(F& f, ModelFile& m) {
+void visit_parts(F& f, ModelFile& m) {
   f(m.meshes), f(m.materials), f(m.images), f(m.instances), f(m.lights), f(m.dropped_triangles);
-  f(m.notes);
+  f(m.was_y_up), f(m.notes);
 }
+
+namespace {
 
 // Hash of large data: pieces side by side, then their hashes.
 uint64_t hash_large(std::span<const uint8_t> bytes) {
@@ -178,25 +99,26 @@ bool load_entry(const fs::path& path, uint64_t content, ModelFolder beside,
   std::memcpy(head, bytes->data(), sizeof(head));
   const auto body = std::span<const uint8_t>(*bytes).subspan(sizeof(head));
   if (head[0] != kMagic || head[1] != hash_large(body)) return false;
-  Reader in(body);
+  ArchiveReader in(body);
   Entry entry;
   in(entry.content);
   in(entry.parts);
   if (entry.content != content || !are_unchanged(entry.parts, &beside, options)) return false;
-  visit(in, entry.model);
+  visit_parts(in, entry.model);
   if (!in.is_done()) return false;
   *out = std::move(entry.model);
+  fs::last_write_time(path, fs::file_time_type::clock::now(), code);  // used now: evict it late
   return true;
 }
 
 void store_entry(const fs::path& path, Entry& entry) {
-  Writer out;
+  ArchiveWriter out;
   uint64_t head[2] = {kMagic, 0};
   out(head[0]);
   out(head[1]);
   out(entry.content);
   out(entry.parts);
-  visit(out, entry.model);
+  visit_parts(out, entry.model);
   head[1] = hash_large(std::span<const uint8_t>(out.bytes).subspan(sizeof(head)));
   std::memcpy(out.bytes.data(), head, sizeof(head));
   Status status = make_folder(path.parent_path());

@@ -16,7 +16,8 @@ struct FieldRule {
   bool open = false;                           ///< min and max themselves are not allowed
   bool required = false;                       ///< must stand in the file
   std::vector<std::string_view> choices = {};  ///< closed list of words; empty = any
-  bool identifier = false;  ///< a name: not empty, no '/' and no control characters
+  bool identifier = false;     ///< a name: not empty, no '/' and no control characters
+  bool one_for_three = false;  ///< a vector may be written as one number
 };
 
 inline const FieldRule kShare{.min = 0, .max = 1};

@@ -92,6 +92,10 @@ void visit_fields(Visitor& v, PatternOptions& o) {
 template <class Visitor>
 void visit_fields(Visitor& v, MaterialOptions& o) {
   v("name", o.name, FieldRule{.required = true});
+  v("base_color", o.base_color, kShare);
+  v("metallic", o.metallic, kShare);
+  v("roughness", o.roughness, kShare);
+  v("emission", o.emission, FieldRule{.unit = "cd/m2", .min = 0, .max = 1e12});
   v("ior", o.ior, FieldRule{.min = 1, .max = 3});
   v("anisotropy", o.anisotropy, kShare);
   v("anisotropy_rotation", o.anisotropy_rotation, FieldRule{.unit = "turn", .min = -1, .max = 1});
@@ -115,6 +119,21 @@ void visit_fields(Visitor& v, MaterialOptions& o) {
   v("porosity", o.porosity, kShare);
   v("dust", o.dust, kShare);
   v("snow", o.snow, kShare);
+  v("bump", o.bump, FieldRule{});
+  v("bump_scale", o.bump_scale, FieldRule{.unit = "m", .min = -10, .max = 10});
+}
+
+template <class Visitor>
+void visit_fields(Visitor& v, VisualOptions& o) {
+  v("name", o.name, FieldRule{.required = true, .identifier = true});
+  v("file", o.file, FieldRule{.required = true});
+  v("body", o.body, FieldRule{});
+  v("position", o.X_BV.p, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
+  v("orientation", o.X_BV.q, FieldRule{.unit = "wxyz"});
+  v("scale", o.scale, FieldRule{.min = 1e-6, .max = 1e6, .one_for_three = true});
+  v("up", o.up, FieldRule{.choices = {"auto", "y", "z"}});
+  v("unit", o.unit, FieldRule{.unit = "m", .min = 1e-9, .max = 1e6});
+  v("casts_shadow", o.casts_shadow, FieldRule{});
 }
 
 template <class Visitor>
@@ -168,6 +187,7 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("light", scene.lights, FieldRule{});
   v("sky", scene.sky, FieldRule{});
   v("volume", scene.volumes, FieldRule{});
+  v("visual", scene.visuals, FieldRule{});
   v("push", scene.pushes, FieldRule{});
   v("render", scene.render, FieldRule{});
   v("record", scene.record, FieldRule{});

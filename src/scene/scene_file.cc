@@ -115,6 +115,10 @@ Status find_files(const FileFinder& finder, Scene* scene) {
   GLOAM_TRY_STATUS(finder.find_model(&scene->environment.file, scene->environment.loc));
   for (RobotOptions& robot : scene->robots)
     GLOAM_TRY_STATUS(finder.find_model(&robot.file, robot.loc));
+  for (VisualOptions& visual : scene->visuals)
+    GLOAM_TRY_STATUS(finder.find(&visual.file, visual.loc));
+  for (MaterialOptions& material : scene->materials)
+    GLOAM_TRY_STATUS(finder.find(&material.bump, material.loc));
   for (LightOptions& light : scene->lights) {
     GLOAM_TRY_STATUS(finder.find(&light.file, light.loc));
     GLOAM_TRY_STATUS(finder.find(&light.ies, light.loc));
@@ -152,11 +156,11 @@ Result<Scene> load_scene(const fs::path& path, const FileAccess& access) {
   GLOAM_TRY(const ModelRoot root, find_model_root(path, access));
   GLOAM_TRY_STATUS(find_files(FileFinder(path, root, access), &scene));
   GLOAM_TRY_STATUS(validate_scene(scene));
-  if (scene.robots.empty() && scene.environment.file.empty()) {
+  if (scene.robots.empty() && scene.environment.file.empty() && scene.visuals.empty()) {
     return Error{ErrorKind::kInput,
                  "the scene has nothing in it",
                  {path.string(), 0, 0},
-                 "add at least one [[robot]] or an [environment]"};
+                 "add at least one [[robot]], [[visual]] or an [environment]"};
   }
   return scene;
 }

@@ -138,6 +138,7 @@ Status validate_scene(const Scene& scene) {
   GLOAM_TRY_STATUS(std::move(status));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.robots, "robot"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.cameras, "camera"));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.visuals, "visual"));
   for (const CameraOptions& camera : scene.cameras) GLOAM_TRY_STATUS(validate_camera(camera));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.lights, "light"));
   for (const LightOptions& light : scene.lights) GLOAM_TRY_STATUS(validate_light(light));

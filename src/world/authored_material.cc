@@ -5,10 +5,13 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "geometry/image_file.h"
 #include "scene/pattern_names.h"
 
 namespace gloam {
 namespace {
+
+constexpr float kBumpScale = 1e-3f;  // [m] unless given
 
 Vec3f color_of(const Vec3& c) {
   return {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)};
@@ -66,30 +69,55 @@ ProceduralDescription pattern_of(const PatternOptions& in) {
   return out;
 }
 
-void apply(const MaterialOptions& in, int pattern, int wear, MaterialDescription* out) {
-  const auto f = [](double x) { return static_cast<float>(x); };
-  if (in.ior) out->ior = out->own_ior = f(*in.ior);
-  out->anisotropy = f(in.anisotropy);
-  out->anisotropy_rotation = f(in.anisotropy_rotation);
-  out->transmission_weight = f(in.transmission_weight);
-  out->transmission_color = color_of(in.transmission_color);
-  out->transmission_depth = f(in.transmission_depth);
-  out->thin_walled = in.thin_walled;
-  out->subsurface_weight = f(in.subsurface_weight);
-  out->subsurface_color = color_of(in.subsurface_color);
-  out->coat_weight = f(in.coat_weight);
-  out->coat_roughness = f(in.coat_roughness);
-  out->coat_ior = f(in.coat_ior);
-  out->coat_color = color_of(in.coat_color);
-  out->fuzz_weight = f(in.fuzz_weight);
-  out->fuzz_roughness = f(in.fuzz_roughness);
-  out->fuzz_color = color_of(in.fuzz_color);
-  out->pattern = pattern;
-  out->wear = wear;
-  out->wetness = f(in.wetness);
-  out->porosity = f(in.porosity);
-  out->dust = f(in.dust);
-  out->snow = f(in.snow);
+void apply(const MaterialOptions& in, int pattern, int wear, int bump, MaterialDescription* out) {
+  const auto number = [](const std::optional<double>& from, float* to) {
+    if (from) *to = static_cast<float>(*from);
+  };
+  const auto color = [](const std::optional<Vec3>& from, Vec3f* to) {
+    if (from) *to = color_of(*from);
+  };
+  color(in.base_color, &out->base_color);
+  number(in.metallic, &out->metallic);
+  number(in.roughness, &out->roughness);
+  color(in.emission, &out->emission);
+  number(in.ior, &out->ior);
+  number(in.ior, &out->own_ior);
+  number(in.anisotropy, &out->anisotropy);
+  number(in.anisotropy_rotation, &out->anisotropy_rotation);
+  number(in.transmission_weight, &out->transmission_weight);
+  color(in.transmission_color, &out->transmission_color);
+  number(in.transmission_depth, &out->transmission_depth);
+  if (in.thin_walled) out->thin_walled = *in.thin_walled;
+  number(in.subsurface_weight, &out->subsurface_weight);
+  color(in.subsurface_color, &out->subsurface_color);
+  number(in.coat_weight, &out->coat_weight);
+  number(in.coat_roughness, &out->coat_roughness);
+  number(in.coat_ior, &out->coat_ior);
+  color(in.coat_color, &out->coat_color);
+  number(in.fuzz_weight, &out->fuzz_weight);
+  number(in.fuzz_roughness, &out->fuzz_roughness);
+  color(in.fuzz_color, &out->fuzz_color);
+  if (pattern >= 0) out->pattern = pattern;
+  if (wear >= 0) out->wear = wear;
+  number(in.wetness, &out->wetness);
+  number(in.porosity, &out->porosity);
+  number(in.dust, &out->dust);
+  number(in.snow, &out->snow);
+  if (bump >= 0) {
+    out->mapping = TextureMapping::kUv;
+    out->textures.bump = bump;
+    out->bump_scale = kBumpScale;
+  }
+  number(in.bump_scale, &out->bump_scale);
+}
+
+/// Why the table cannot be applied to a material, or "".
+std::string why_not(const MaterialOptions& in, const MaterialDescription& material) {
+  if (!material.imported && (in.base_color || in.metallic || in.roughness || in.emission))
+    return "comes from the model: say its colour, metalness, roughness and emission there";
+  if (!in.bump.empty() && material.mapping == TextureMapping::kCube)
+    return "has a cube texture, which cannot be joined by a bump map";
+  return {};
 }
 
 }  // namespace
@@ -109,10 +137,20 @@ Status author_materials(const std::vector<MaterialOptions>& options, RenderDescr
       return static_cast<int>(out->procedurals.size()) - 1;
     };
     const int pattern = row_of(o->pattern), wear = row_of(o->wear);
+    int bump = -1;
+    if (!o->bump.empty()) {
+      GLOAM_TRY(Image8 heights, read_image(o->bump));
+      heights.color_space = ColorSpace::kLinear;
+      bump = static_cast<int>(out->textures.size());
+      out->textures.push_back({o->bump.filename().string(), {std::move(heights)}});
+    }
     bool found = false;
     for (MaterialDescription& material : out->materials) {
       if (material.name.empty() || !fits(o->name, material.name)) continue;
-      apply(*o, pattern, wear, &material);
+      if (const std::string why = why_not(*o, material); !why.empty())
+        return Error{ErrorKind::kInput, fmt::format("material '{}' {}", material.name, why),
+                     o->loc};
+      apply(*o, pattern, wear, bump, &material);
       found = true;
     }
     if (found) continue;

@@ -7,7 +7,8 @@
 namespace gloam {
 
 /// Applies the scene's [[material]] tables to the described materials, in source order, names
-/// before patterns with a *. Errors: a table that fits no material.
+/// before patterns with a *. Errors: a table that fits no material, a bump map that cannot be read,
+/// colours of a material that the model itself describes.
 Status author_materials(const std::vector<MaterialOptions>& options, RenderDescription* out);
 
 }  // namespace gloam

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <thread>
 
+#include "base/archive.h"
 #include "base/files.h"
 #include "base/hash.h"
 #include "base/log.h"
@@ -20,128 +21,77 @@ namespace gloam {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr uint64_t kMagic = 0x31444C574D4F4C47ull;  // "GLOMWLD1": changes with the layout below
+/// What an entry holds beside the models.
+struct CacheEntry {
+  std::vector<Dependency> dependencies;
+  int initial_key = -1;
+  std::vector<RobotInstance> robots;  // without their options
+  std::vector<VisualOnlyGeom> visual_only;
+  std::vector<Error> unsupported;
+  bool has_plugins = false;
+};
+
+}  // namespace
+
+// For writing, and in the same order for reading.
+template <class F>
+void visit_parts(F& f, Dependency& d) {
+  std::string path = d.path.string();
+  f(path), f(d.exists), f(d.hash);
+  d.path = path;
+}
+template <class F>
+void visit_parts(F& f, RobotInstance& r) {
+  f(r.name), f(r.prefix), f(r.root_body);
+}
+template <class F>
+void visit_parts(F& f, Error& e) {
+  f(e.kind), f(e.message), f(e.loc.file), f(e.loc.line), f(e.loc.column), f(e.hint);
+}
+
+namespace {
+
+template <class F>
+void visit_entry(F& f, CacheEntry& e) {
+  f(e.dependencies), f(e.initial_key), f(e.robots), f(e.visual_only), f(e.unsupported);
+  f(e.has_plugins);
+}
+
+constexpr uint64_t kMagic = 0x32444C574D4F4C47ull;  // "GLOMWLD2": changes with the layout below
 constexpr uint64_t kLargestCache = uint64_t{4} << 30;
 constexpr uint64_t kLargestEntry = uint64_t{2} << 30;
 
 fs::path model_cache_folder() { return cache_folder() / "models"; }
 
-class Writer {
- public:
-  std::string bytes;
-  template <class T>
-    requires(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>)
-  void put(const T& value) {
-    bytes.append(reinterpret_cast<const char*>(&value), sizeof(T));
-  }
-  void put(const std::string& text) {
-    put(static_cast<uint64_t>(text.size()));
-    bytes += text;
-  }
-  void put(const Error& error) {
-    put(error.kind);
-    put(error.message);
-    put(error.loc.file);
-    put(error.loc.line);
-    put(error.loc.column);
-    put(error.hint);
-  }
-  void put_model(const mjModel* model) {
-    const uint64_t size = model == nullptr ? 0 : static_cast<uint64_t>(mj_sizeModel(model));
-    put(size);
-    if (size == 0) return;
-    const size_t at = bytes.size();
-    bytes.resize(at + size);
-    mj_saveModel(model, nullptr, bytes.data() + at, static_cast<mjtSize>(size));
-  }
-};
+void put_model(const mjModel* model, ArchiveWriter* out) {
+  const uint64_t size = model == nullptr ? 0 : static_cast<uint64_t>(mj_sizeModel(model));
+  const std::span<uint8_t> block = out->block(size);
+  if (size > 0) mj_saveModel(model, nullptr, block.data(), static_cast<mjtSize>(size));
+}
 
-// Every read is bounded; after the first that fails all others fail.
-class Reader {
- public:
-  explicit Reader(std::span<const uint8_t> bytes) : bytes_(bytes) {}
-  bool ok() const { return ok_; }
-  template <class T>
-    requires std::is_trivially_copyable_v<T>
-  T get() {
-    T value{};
-    if (const uint8_t* from = take(sizeof(T))) std::memcpy(&value, from, sizeof(T));
-    return value;
-  }
-  std::string text() {
-    const uint64_t size = get<uint64_t>();
-    const uint8_t* from = take(size);
-    return from == nullptr ? std::string() : std::string(reinterpret_cast<const char*>(from), size);
-  }
-  Error error() {
-    Error out;
-    out.kind = get<ErrorKind>();
-    out.message = text();
-    out.loc.file = text();
-    out.loc.line = get<int>();
-    out.loc.column = get<int>();
-    out.hint = text();
-    return out;
-  }
-  ModelPtr model() {
-    const uint64_t size = get<uint64_t>();
-    const uint8_t* from = size == 0 ? nullptr : take(size);
-    if (from == nullptr) return nullptr;
-    mjModel* model = nullptr;
-    const MujocoWarningCapture warnings;
-    if (!try_mujoco([&] { model = mj_loadModelBuffer(from, static_cast<mjtSize>(size)); }))
-      model = nullptr;
-    if (model == nullptr) ok_ = false;
-    return ModelPtr(model);
-  }
-  /// A count of things that take at least one byte each.
-  uint64_t count() {
-    const uint64_t n = get<uint64_t>();
-    if (n > bytes_.size() - at_) ok_ = false;
-    return ok_ ? n : 0;
-  }
-
- private:
-  const uint8_t* take(uint64_t size) {
-    if (!ok_ || size > bytes_.size() - at_) {
-      ok_ = false;
-      return nullptr;
-    }
-    const uint8_t* from = bytes_.data() + at_;
-    at_ += size;
-    return from;
-  }
-  std::span<const uint8_t> bytes_;
-  size_t at_ = 0;
-  bool ok_ = true;
-};
+ModelPtr get_model(ArchiveReader* in) {
+  const std::span<const uint8_t> block = in->block();
+  if (block.empty()) return nullptr;
+  mjModel* model = nullptr;
+  const MujocoWarningCapture warnings;
+  const auto size = static_cast<mjtSize>(block.size());
+  if (!try_mujoco([&] { model = mj_loadModelBuffer(block.data(), size); })) model = nullptr;
+  if (model == nullptr) in->fail();
+  return ModelPtr(model);
+}
 
 constexpr size_t kHeaderSize = 2 * sizeof(uint64_t);  // magic, hash of the rest
 
-std::string serialise(const CompiledWorld& world, const std::vector<Dependency>& dependencies) {
-  Writer out;
-  out.put(kMagic);
-  out.put(uint64_t{0});
-  out.put(static_cast<uint64_t>(dependencies.size()));
-  for (const Dependency& dependency : dependencies) {
-    out.put(dependency.path.string());
-    out.put(dependency.exists);
-    out.put(dependency.hash);
-  }
-  out.put(world.initial_key);
-  out.put(static_cast<uint64_t>(world.robots.size()));
-  for (const RobotInstance& robot : world.robots) {
-    out.put(robot.name);
-    out.put(robot.prefix);
-    out.put(robot.root_body);
-  }
-  out.put(static_cast<uint64_t>(world.visual_only.size()));
-  for (const VisualOnlyGeom& geom : world.visual_only) out.put(geom);
-  out.put(static_cast<uint64_t>(world.unsupported.size()));
-  for (const Error& error : world.unsupported) out.put(error);
-  out.put(world.model->nplugin > 0);
-  out.put_model(world.model.get());
-  out.put_model(world.visual_model.get());
+std::vector<uint8_t> serialise(const CompiledWorld& world,
+                               const std::vector<Dependency>& dependencies) {
+  CacheEntry entry{dependencies,      world.initial_key, world.robots,
+                   world.visual_only, world.unsupported, world.model->nplugin > 0};
+  ArchiveWriter out;
+  out(kMagic);
+  out(uint64_t{0});
+  visit_entry(out, entry);
+  put_model(world.model.get(), &out);
+  put_model(world.visual_model.get(), &out);
   const uint64_t hash = hash_bytes(out.bytes.data() + kHeaderSize, out.bytes.size() - kHeaderSize);
   std::memcpy(out.bytes.data() + sizeof(kMagic), &hash, sizeof(hash));
   return std::move(out.bytes);
@@ -149,13 +99,12 @@ std::string serialise(const CompiledWorld& world, const std::vector<Dependency>&
 
 void write_entry(const CompiledWorld& world, const std::vector<Dependency>& dependencies) {
   const fs::path folder = model_cache_folder();
-  const std::string entry = serialise(world, dependencies);
+  const std::vector<uint8_t> entry = serialise(world, dependencies);
   if (entry.size() > kLargestEntry) return;
   Status status = make_folder(folder);
   if (status.ok()) {
     const fs::path path = folder / (hash_to_hex(world_cache_key(world.scene)) + ".world");
-    status =
-        write_file_atomic(path, {reinterpret_cast<const uint8_t*>(entry.data()), entry.size()});
+    status = write_file_atomic(path, entry);
   }
   if (!status.ok()) return log_debug("cache not written: {}", status.error().to_string());
   trim_cache(folder, kLargestCache);
@@ -214,39 +163,40 @@ BackgroundWriter& background_writer() {
 }  // namespace
 
 uint64_t world_cache_key(const Scene& scene) {
-  Writer key;
-  key.put(kMagic);
-  key.put(std::string(mj_versionString()));
-  key.put(absolute_path(scene.bare_model, "").string());
-  key.put(scene.bare_model.empty());
-  key.put(scene.environment.file.empty() ? "" : absolute_path(scene.environment.file, "").string());
-  key.put(scene.name);
-  key.put(scene.access.root.string());
-  key.put(scene.access.strict);
+  ArchiveWriter key;
+  key(kMagic);
+  key(std::string(mj_versionString()));
+  key(absolute_path(scene.bare_model, "").string());
+  key(scene.bare_model.empty());
+  key(scene.environment.file.empty() ? std::string()
+                                     : absolute_path(scene.environment.file, "").string());
+  key(scene.name);
+  key(scene.access.root.string());
+  key(scene.access.strict);
   for (const auto& [name, folder] : scene.access.packages) {
-    key.put(name);
-    key.put(absolute_path(folder, "").string());
+    key(name);
+    key(absolute_path(folder, "").string());
   }
-  key.put(scene.sim.timestep.value_or(0));
+  key(scene.sim.timestep.value_or(0));
   for (const RobotOptions& robot : scene.robots) {
-    key.put(robot.name);
-    key.put(absolute_path(robot.file, "").string());
-    key.put(robot.X_WR);
-    key.put(robot.keyframe);
-    key.put(robot.loc.line);  // stands in cached messages
+    key(robot.name);
+    key(absolute_path(robot.file, "").string());
+    key(robot.X_WR);
+    key(robot.keyframe);
+    key(robot.loc.line);  // stands in cached messages
   }
   for (const CameraOptions& camera : scene.cameras) {
-    key.put(camera.name);
-    key.put(camera.body);
-    key.put(camera.track);
-    key.put(camera.position);
-    key.put(camera.look_at.has_value());
-    key.put(camera.look_at.value_or(Vec3{}));
-    key.put(camera.orientation.has_value());
-    key.put(camera.orientation.value_or(Quat{}));
-    key.put(camera.fovy);
-    key.put(camera.width);
-    key.put(camera.height);
+    key(camera.name);
+    key(camera.body);
+    key(camera.track);
+    key(camera.position);
+    key(camera.look_at.has_value());
+    key(camera.look_at.value_or(Vec3{}));
+    key(camera.orientation.has_value());
+    key(camera.orientation.value_or(Quat{}));
+    key(camera.fovy);
+    key(camera.width);
+    key(camera.height);
   }
   return hash_bytes(key.bytes.data(), key.bytes.size());
 }
@@ -257,8 +207,10 @@ std::shared_ptr<CompiledWorld> load_cached_world(const Scene& scene) {
   if (!fs::exists(path, code)) return nullptr;
   const Result<std::vector<uint8_t>> bytes = read_file(path, kLargestEntry);
   if (!bytes.ok()) return nullptr;
-  Reader header(*bytes);
-  const uint64_t magic = header.get<uint64_t>(), hash = header.get<uint64_t>();
+  ArchiveReader header(*bytes);
+  uint64_t magic = 0, hash = 0;
+  header(magic);
+  header(hash);
   if (!header.ok() || magic != kMagic) return nullptr;
   const std::span<const uint8_t> payload = std::span(*bytes).subspan(kHeaderSize);
   if (hash_bytes(payload.data(), payload.size()) != hash) return nullptr;
@@ -273,31 +225,23 @@ std::shared_ptr<CompiledWorld> load_cached_world(const Scene& scene) {
   for (const RobotOptions& robot : scene.robots) admit(robot.file);
   if (!admitted) return nullptr;
 
-  Reader in(payload);
-  for (uint64_t i = in.count(); i > 0 && in.ok(); --i) {
-    Dependency dependency;
-    dependency.path = in.text();
-    dependency.exists = in.get<bool>();
-    dependency.hash = in.get<uint64_t>();
-    if (!in.ok() || !files.is_unchanged(dependency)) return nullptr;
-  }
+  ArchiveReader in(payload);
+  CacheEntry entry;
+  visit_entry(in, entry);
+  if (!in.ok() || !std::all_of(entry.dependencies.begin(), entry.dependencies.end(),
+                               [&](const Dependency& d) { return files.is_unchanged(d); }))
+    return nullptr;
   auto world = std::make_shared<CompiledWorld>();
   world->scene = scene;
-  world->initial_key = in.get<int>();
-  for (uint64_t i = 0, n = in.count(); i < n && in.ok(); ++i) {
-    RobotInstance robot;
-    robot.name = in.text();
-    robot.prefix = in.text();
-    robot.root_body = in.get<int>();
-    if (i < scene.robots.size()) robot.options = scene.robots[i];
-    world->robots.push_back(std::move(robot));
-  }
-  for (uint64_t n = in.count(); n > 0 && in.ok(); --n)
-    world->visual_only.push_back(in.get<VisualOnlyGeom>());
-  for (uint64_t n = in.count(); n > 0 && in.ok(); --n) world->unsupported.push_back(in.error());
-  if (in.get<bool>()) load_mujoco_plugins();  // a model with plugins loads only where they are
-  world->model = in.model();
-  world->visual_model = in.model();
+  world->initial_key = entry.initial_key;
+  world->robots = std::move(entry.robots);
+  for (size_t i = 0; i < world->robots.size() && i < scene.robots.size(); ++i)
+    world->robots[i].options = scene.robots[i];
+  world->visual_only = std::move(entry.visual_only);
+  world->unsupported = std::move(entry.unsupported);
+  if (entry.has_plugins) load_mujoco_plugins();  // it loads only where they are
+  world->model = get_model(&in);
+  world->visual_model = get_model(&in);
   if (!in.ok() || world->model == nullptr) return nullptr;
   fs::last_write_time(path, fs::file_time_type::clock::now(), code);  // used now: evict it late
   return world;

@@ -12,6 +12,7 @@
 #include "world/authored_volume.h"
 #include "world/visual_camera.h"
 #include "world/visual_deformable.h"
+#include "world/visual_file.h"
 #include "world/visual_label.h"
 #include "world/visual_light.h"
 #include "world/visual_material.h"
@@ -188,15 +189,17 @@ std::vector<bool> static_bodies(const mjModel& m) {
 /// Robots collide with simpler shapes than they show. In MJCF those are in the groups 3 and up,
 /// which MuJoCo hides; in a URDF they are the geoms of the model, and the visuals, where a link has
 /// some, are `instances` from `first_visual` on. Something that moves on joints and has nothing to
-/// show shows what it collides with.
+/// show shows what it collides with. The scene's visuals, from `first_file` on, count as shown and
+/// take nothing else's place.
 void choose_what_is_shown(const mjModel& m, const CompiledWorld& world, size_t first_visual,
-                          std::vector<InstanceDescription>* instances) {
+                          size_t first_file, std::vector<InstanceDescription>* instances) {
   const auto body_of = [&](size_t i) { return static_cast<size_t>((*instances)[i].body); };
   const auto root_of = [&](size_t i) { return static_cast<size_t>(m.body_rootid[body_of(i)]); };
   std::vector<bool> has_visuals(static_cast<size_t>(m.nbody)), root_shows(has_visuals);
   for (size_t i = first_visual; i < instances->size(); ++i) {
     // The world's own geoms are the scene's, unless the robot stands alone.
-    if (body_of(i) > 0 || !world.scene.bare_model.empty()) has_visuals[body_of(i)] = true;
+    if (i < first_file && (body_of(i) > 0 || !world.scene.bare_model.empty()))
+      has_visuals[body_of(i)] = true;
     root_shows[root_of(i)] = true;
   }
   constexpr int kFirstHiddenGroup = 3;
@@ -213,11 +216,35 @@ void choose_what_is_shown(const mjModel& m, const CompiledWorld& world, size_t f
     if (root_moves[root_of(i)] && !root_shows[root_of(i)]) (*instances)[i].shown = true;
 }
 
+/// The model, or where it has nothing to draw, the scene's visuals at qpos0. `out` holds them.
+Framing framing_of(const mjModel& m, const std::vector<Affine3f>& poses, size_t first_file,
+                   const RenderDescription& out) {
+  const auto& center = m.stat.center;
+  const Framing model{{center[0], center[1], center[2]}, m.stat.extent};
+  const bool has_own = first_file > 0 || m.nflex > 0 || m.nskin > 0;
+  if (has_own || out.instances.empty()) return model;
+  constexpr float kFar = 1e30f;
+  Vec3f low{kFar, kFar, kFar}, high = -low;
+  for (const InstanceDescription& in : out.instances) {
+    const Affine3f X_WG = poses[static_cast<size_t>(in.body)] * in.X_BG;
+    for (const Vec3f& p_G : out.meshes[static_cast<size_t>(in.mesh)].positions) {
+      const Vec3f p = transform_point(X_WG, p_G);
+      low = {min(low.x, p.x), min(low.y, p.y), min(low.z, p.z)};
+      high = {max(high.x, p.x), max(high.y, p.y), max(high.z, p.z)};
+    }
+  }
+  const Vec3f middle = (low + high) * 0.5f;
+  return {{middle.x, middle.y, middle.z}, max(length(high - low), 1e-3f)};
+}
+
 }  // namespace
 
 Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
   const mjModel& m = *world.model;
   RenderDescription out;
+  out.center = {static_cast<float>(m.stat.center[0]), static_cast<float>(m.stat.center[1]),
+                static_cast<float>(m.stat.center[2])};
+  out.extent = static_cast<float>(m.stat.extent);
   LabelTable labels(world);
   const std::vector<Affine3f> poses = body_poses_at_qpos0(m);
   const std::vector<bool> is_static = static_bodies(m);
@@ -255,13 +282,29 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     }
   }
 
-  choose_what_is_shown(m, world, first_visual, &out.instances);
+  const size_t first_file = out.instances.size();
+  LightLevels levels;
+  const auto add_part = [&](InstanceDescription instance, int body, std::string name, int visual,
+                            const std::string& visual_name) {
+    constexpr int kVisualFile = -3;
+    add(std::move(instance), body, visual_name, kVisualFile, visual);
+    out.instances.back().label.geom = std::move(name);
+  };
+  GLOAM_TRY_STATUS(describe_visuals(world, poses, add_part, &levels, &out));
+  const Framing framing = framing_of(m, poses, first_file, out);
+  choose_what_is_shown(m, world, first_visual, first_file, &out.instances);
   describe_deformables(m, poses, &simulated.materials(), &labels, &out);
-  describe_cameras(m, &out);
-  LightLevels levels = describe_light(m, world.scene, poses, &simulated.materials(), &out);
+  describe_cameras(m, framing, &out);
+  levels = describe_light(m, world.scene, poses, std::move(levels), &simulated.materials(), &out);
+  out.center = {static_cast<float>(framing.center.x), static_cast<float>(framing.center.y),
+                static_cast<float>(framing.center.z)};
+  out.extent = static_cast<float>(framing.extent);
   for (LightDescription& light : out.lights) {
-    light.is_static = light.light >= 0 && m.light_mode[light.light] == mjCAMLIGHT_FIXED &&
-                      is_static[static_cast<size_t>(m.light_bodyid[light.light])];
+    if (light.body >= 0)
+      light.is_static = is_static[static_cast<size_t>(light.body)];
+    else
+      light.is_static = light.light >= 0 && m.light_mode[light.light] == mjCAMLIGHT_FIXED &&
+                        is_static[static_cast<size_t>(m.light_bodyid[light.light])];
   }
   simulated.convert_meshes();
   simulated.materials().load_textures();

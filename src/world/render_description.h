@@ -30,6 +30,7 @@ struct MaterialTextures {
       orm = -1;     ///< linear; orm = occlusion, roughness, metallic in r, g, b
   int normal = -1;  ///< tangent space, linear
   int opacity = -1, emission = -1;
+  int bump = -1;  ///< linear; heights of MaterialDescription::bump_scale
 };
 
 /// Names after OpenPBR 1.1.
@@ -64,6 +65,9 @@ struct MaterialDescription {
   bool texture_uniform = false;  ///< MuJoCo's texuniform: repeats per metre, not per object
   Vec2f texture_repeat{1, 1};
   MaterialTextures textures;
+  float bump_scale = 0;        ///< [m] that a bump of 1 stands above one of 0
+  bool glows_in_color = true;  ///< base_color's texture multiplies the emission (MuJoCo's rule)
+  bool imported = false;       ///< came with a [[visual]], not with the model
   // What set_look() (world/visual_rules.h) makes the values above from when they change live.
   int model_material = -1;      ///< row of PoseFrame::material_rgba and its kin, -1 = none
   std::array<float, 4> rgba{};  ///< display colour and opacity as in the model
@@ -77,6 +81,7 @@ struct TextureDescription {
   /// 1 (2-D), or 6 in the order right, left, up, down, front, back (MuJoCo's cube). Of one texture
   /// used both as colour and as data there are two rows: they differ in colour space.
   std::vector<Image8> faces;
+  TextureWrap wrap_u = TextureWrap::kRepeat, wrap_v = TextureWrap::kRepeat;  ///< 2-D alone
 };
 
 /// One drawn thing. Its row index + 1 is its `part` in pictures.

@@ -61,7 +61,7 @@ CameraDescription model_camera(const mjModel& m, int i, std::vector<Error>* unsu
   return camera;
 }
 
-CameraDescription free_camera(const mjModel& m) {
+CameraDescription free_camera(const mjModel& m, const Framing& framing) {
   CameraDescription camera;
   camera.name = "free";
   Intrinsics& k = camera.intrinsics;
@@ -76,7 +76,7 @@ CameraDescription free_camera(const mjModel& m) {
 
   const double azimuth = m.vis.global.azimuth * kDegree;
   const double elevation = m.vis.global.elevation * kDegree;
-  const double distance = 1.5 * m.stat.extent;  // MuJoCo's mjv_defaultFreeCamera
+  const double distance = 1.5 * framing.extent;  // MuJoCo's mjv_defaultFreeCamera
   const double forward[3] = {std::cos(elevation) * std::cos(azimuth),
                              std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
   const double up[3] = {-std::sin(elevation) * std::cos(azimuth),
@@ -85,9 +85,9 @@ CameraDescription free_camera(const mjModel& m) {
   camera.X_WC.x = {f(std::sin(azimuth)), f(-std::cos(azimuth)), 0};
   camera.X_WC.y = {f(up[0]), f(up[1]), f(up[2])};
   camera.X_WC.z = {f(-forward[0]), f(-forward[1]), f(-forward[2])};
-  camera.X_WC.p = {f(m.stat.center[0] - distance * forward[0]),
-                   f(m.stat.center[1] - distance * forward[1]),
-                   f(m.stat.center[2] - distance * forward[2])};
+  camera.X_WC.p = {f(framing.center.x - distance * forward[0]),
+                   f(framing.center.y - distance * forward[1]),
+                   f(framing.center.z - distance * forward[2])};
   return camera;
 }
 
@@ -100,10 +100,10 @@ std::string camera_name(const mjModel& m, int id) {
   return name;
 }
 
-void describe_cameras(const mjModel& model, RenderDescription* out) {
+void describe_cameras(const mjModel& model, const Framing& framing, RenderDescription* out) {
   for (int i = 0; i < static_cast<int>(model.ncam); ++i)
     out->cameras.push_back(model_camera(model, i, &out->unsupported));
-  out->cameras.push_back(free_camera(model));
+  out->cameras.push_back(free_camera(model, framing));
 }
 
 }  // namespace gloam

@@ -7,10 +7,16 @@
 
 namespace gloam {
 
+/// What the free camera looks at.
+struct Framing {
+  Vec3 center;        ///< [m]
+  double extent = 1;  ///< about the diameter [m]
+};
+
 /// A name for camera `id`: its own, or "camera_ID" when the model gives none.
 std::string camera_name(const mjModel& model, int id);
 
 /// All cameras of the model, then the free camera "free" as MuJoCo's viewer first shows it.
-void describe_cameras(const mjModel& model, RenderDescription* out);
+void describe_cameras(const mjModel& model, const Framing& framing, RenderDescription* out);
 
 }  // namespace gloam

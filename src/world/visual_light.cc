@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "world/environment.h"
+#include "world/ktx_light.h"
 #include "world/visual_rules.h"
 
 namespace gloam {
@@ -47,19 +48,39 @@ LightDescription model_light(const mjModel& m, int i, float distance) {
   return light;
 }
 
-/// Cube textures only; the light's intensity is the luminance of a white texel, if it has one.
+/// A cube texture or the cube of a KTX file; the light's intensity is the luminance of a white
+/// texel, if it has one.
 void set_image_light(const mjModel& m, int i, MaterialTable* materials, RenderDescription* out) {
   const int texid = m.light_texid[i];
-  if (texid < 0 || m.tex_type[texid] == mjTEXTURE_2D) {
-    out->unsupported.push_back({ErrorKind::kUnsupported,
-                                fmt::format("image light {} has no cube texture; it is dark", i)});
+  const float scale = m.light_intensity[i] > 0 ? m.light_intensity[i] : kWhiteLuminance;
+  const char* name = texid >= 0 ? mj_id2name(&m, mjOBJ_TEXTURE, texid) : nullptr;
+  SkyDescription& sky = out->sky;
+  if (texid >= 0 && m.tex_type[texid] != mjTEXTURE_2D) {
+    sky.texture = materials->texture_row(texid, ColorSpace::kSrgb);
+    sky.scale = scale;
     return;
   }
-  out->sky.texture = materials->texture_row(texid, ColorSpace::kSrgb);
-  out->sky.scale = m.light_intensity[i] > 0 ? m.light_intensity[i] : kWhiteLuminance;
+  const KtxImage ktx = texid >= 0 ? embedded_ktx(m, texid) : KtxImage();
+  if (ktx.float_faces.size() == 6) {
+    sky.environment = environment_of(ktx, name != nullptr ? name : "");
+    sky.environment.scale = scale;
+  } else if (ktx.faces.size() == 6) {
+    sky.texture = static_cast<int>(out->textures.size());
+    sky.scale = scale;
+    out->textures.push_back({name != nullptr ? name : "", ktx.faces});
+  } else {
+    out->unsupported.push_back({ErrorKind::kUnsupported,
+                                fmt::format("image light {} has no cube texture; it is dark", i)});
+  }
 }
 
 }  // namespace
+
+void LightLevels::add(const LightDescription& light, float distance) {
+  const float lux = luminance(light.intensity);
+  photometric = photometric || lux > 0;
+  illuminance.push_back(light.type == LightType::kDirectional ? lux : lux / sqr(distance));
+}
 
 float light_distance(Vec3f p_W, const RenderDescription& scene) {
   constexpr float kNearestShare = 0.25f;
@@ -67,13 +88,10 @@ float light_distance(Vec3f p_W, const RenderDescription& scene) {
 }
 
 LightLevels describe_light(const mjModel& model, const Scene& scene,
-                           const std::vector<Affine3f>& poses, MaterialTable* materials,
-                           RenderDescription* out) {
-  LightLevels levels;
+                           const std::vector<Affine3f>& poses, LightLevels levels,
+                           MaterialTable* materials, RenderDescription* out) {
   const bool own_sky = scene.sky.has_value();
-  levels.photometric = own_sky || !scene.lights.empty();
-  out->center = vec3(model.stat.center);
-  out->extent = static_cast<float>(model.stat.extent);
+  levels.photometric = levels.photometric || own_sky || !scene.lights.empty();
 
   for (int i = 0; i < static_cast<int>(model.ntex) && out->sky.texture < 0 && !own_sky; ++i)
     if (model.tex_type[i] == mjTEXTURE_SKYBOX) {

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "base/parallel.h"
+#include "geometry/image_file.h"
 #include "world/visual_rules.h"
 
 namespace gloam {
@@ -24,13 +25,31 @@ struct Texels {
   std::unique_ptr<mjtByte, void (*)(void*)> owned{nullptr, mju_free};  ///< of by-reference textures
 };
 
+/// MuJoCo keeps a KTX file as it is: a row of its bytes as one channel.
+bool is_ktx(const Texels& texels, int channels) {
+  constexpr std::string_view kMagic = "\xabKTX 11\xbb\r\n\x1a\n";
+  return channels == 1 && texels.height == 1 && texels.data != nullptr &&
+         texels.width >= static_cast<int>(kMagic.size()) &&
+         std::memcmp(texels.data, kMagic.data(), kMagic.size()) == 0;
+}
+
+/// As cut_faces, of the bytes of a KTX file.
+std::string decode_faces(const Texels& texels, ColorSpace color_space, std::vector<Image8>* faces) {
+  Result<KtxImage> image =
+      decode_ktx({texels.data, static_cast<size_t>(texels.width)}, "the KTX file");
+  if (!image.ok()) return fmt::format("cannot be read: {}", image.error().to_string());
+  if (image->faces.size() != 1) return "is a KTX file without a picture of bytes";
+  image->faces[0].color_space = color_space;  // the role decides, as in MaterialTable::layer
+  *faces = std::move(image->faces);
+  return "";
+}
+
 /// Cuts the texels into one image or six; returns what is wrong, or "".
 std::string cut_faces(const Texels& texels, int channels, bool cube, ColorSpace color_space,
                       std::vector<Image8>* faces) {
   const auto* bytes = texels.data;
   const int64_t size = int64_t{texels.width} * texels.height * channels;
   if (bytes == nullptr || size <= 0) return "has no texels";
-  if (size >= 4 && std::memcmp(bytes, "\xabKTX", 4) == 0) return "is a KTX file, which is not read";
   const int face_height = cube ? texels.width : texels.height;
   const bool six = cube && texels.height == 6 * texels.width;
   if (cube && !six && texels.height != texels.width) return "is not a cube";
@@ -44,6 +63,18 @@ std::string cut_faces(const Texels& texels, int channels, bool cube, ColorSpace 
 }
 
 }  // namespace
+
+KtxImage embedded_ktx(const mjModel& model, int texid) {
+  if (model.tex_adr[texid] < 0) return {};
+  Texels texels;
+  texels.data = model.tex_data + model.tex_adr[texid];
+  texels.width = model.tex_width[texid];
+  texels.height = model.tex_height[texid];
+  if (!is_ktx(texels, model.tex_nchannel[texid])) return {};
+  Result<KtxImage> image =
+      decode_ktx({texels.data, static_cast<size_t>(texels.width)}, "the KTX file");
+  return image.ok() ? std::move(*image) : KtxImage();
+}
 
 const float* drawn_rgba(const mjModel& model, int matid, const float* rgba) {
   return matid >= 0 && is_default_rgba(rgba) ? model.mat_rgba + 4 * matid : rgba;
@@ -150,8 +181,12 @@ void MaterialTable::load_textures() {
       texels.data = data;
     }
     std::vector<Image8> faces;
-    problem = cut_faces(texels, model_.tex_nchannel[texid], model_.tex_type[texid] != mjTEXTURE_2D,
-                        texture.faces.front().color_space, &faces);
+    const int channels = model_.tex_nchannel[texid];
+    const ColorSpace color_space = texture.faces.front().color_space;
+    problem = is_ktx(texels, channels)
+                  ? decode_faces(texels, color_space, &faces)
+                  : cut_faces(texels, channels, model_.tex_type[texid] != mjTEXTURE_2D, color_space,
+                              &faces);
     if (problem.empty()) texture.faces = std::move(faces);
   });
   for (size_t i = 0; i < problems.size(); ++i)

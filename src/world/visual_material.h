@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "geometry/image_file.h"
 #include "world/render_description.h"
 
 namespace gloam {
@@ -43,6 +44,10 @@ class MaterialTable {
   std::map<std::pair<int, ColorSpace>, int> texture_rows_;
   std::vector<PendingTexture> pending_;
 };
+
+/// What is in a texture whose texels are a KTX file inside the model; empty when they are not, or
+/// are damaged.
+KtxImage embedded_ktx(const mjModel& model, int texid);
 
 /// Colour that MuJoCo draws an element with: its own where that differs from the default, else its
 /// material's.

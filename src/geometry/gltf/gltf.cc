@@ -21,6 +21,7 @@ Result<ModelFile> read_document(const ModelSource& source, std::span<const uint8
                                 std::span<const uint8_t> bin) {
   GLOAM_TRY(const std::unique_ptr<GltfDocument> document, GltfDocument::open(source, json, bin));
   ModelFile model;
+  model.was_y_up = true;
   const JsonErrors& errors = document->errors();
   if (document->root()["animations"].exists()) add_note(&model, "animations are left out");
   read_gltf_images(document.get(), &model);

@@ -1,5 +1,5 @@
 #pragma once
-// Writes HDR, EXR and KTX files for tests.
+// Writes PNG, HDR, EXR and KTX files for tests.
 
 #include <cstdint>
 #include <cstring>
@@ -14,6 +14,43 @@ inline std::string raw(const void* data, size_t size) {
 template <class T>
 std::string raw(const T& value) {
   return raw(&value, sizeof(T));
+}
+
+/// PNG of 8 bits with 1 to 4 channels, rows from the top, in one block that is not compressed.
+/// `srgb` adds that chunk.
+inline std::string png_file(int width, int height, int channels, const std::vector<uint8_t>& texels,
+                            bool srgb = false) {
+  const auto be32 = [](uint32_t v) {
+    return std::string{static_cast<char>(v >> 24), static_cast<char>(v >> 16),
+                       static_cast<char>(v >> 8), static_cast<char>(v)};
+  };
+  const auto chunk = [&](const std::string& type, const std::string& data) {
+    uint32_t crc = 0xffffffffu;
+    for (const char c : type + data) {
+      crc ^= static_cast<uint8_t>(c);
+      for (int k = 0; k < 8; ++k) crc = (crc >> 1) ^ ((crc & 1) != 0 ? 0xEDB88320u : 0u);
+    }
+    return be32(static_cast<uint32_t>(data.size())) + type + data + be32(~crc);
+  };
+  const auto stride = static_cast<size_t>(width * channels);
+  std::string rows;
+  for (size_t y = 0; y < static_cast<size_t>(height); ++y)
+    rows += '\0' + raw(texels.data() + y * stride, stride);
+  uint32_t a = 1, b = 0;
+  for (const char c : rows) {
+    a = (a + static_cast<uint8_t>(c)) % 65521;
+    b = (b + a) % 65521;
+  }
+  const auto n = static_cast<uint16_t>(rows.size());
+  const auto m = static_cast<uint16_t>(~n);
+  const std::string zlib = "\x78\x01\x01" + raw(n) + raw(m) + rows + be32((b << 16) | a);
+  constexpr char kColorTypes[] = {0, 4, 2, 6};
+  const std::string kind{8, kColorTypes[channels - 1], 0, 0, 0};
+  return std::string("\x89PNG\r\n\x1a\n", 8) +
+         chunk("IHDR",
+               be32(static_cast<uint32_t>(width)) + be32(static_cast<uint32_t>(height)) + kind) +
+         (srgb ? chunk("sRGB", std::string(1, '\0')) : "") + chunk("IDAT", zlib) +
+         chunk("IEND", "");
 }
 
 enum class HdrPacking { kNone, kOld, kNew };

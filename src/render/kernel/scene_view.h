@@ -50,6 +50,7 @@ struct TextureView {
   int level_count = 0;  ///< of each face
   int face_count = 1;   ///< 1 or 6
   float log2_size = 0;  ///< log2 of sqrt(width height) of the finest level
+  TextureWrap wrap_u = TextureWrap::kRepeat, wrap_v = TextureWrap::kRepeat;
 };
 struct Texel {
   uint16_t r = 0, g = 0, b = 0, a = 0;
@@ -85,11 +86,13 @@ struct MaterialView {
   float f90 = 1;     ///< of the dielectric layer at grazing incidence
   TextureMapping mapping = TextureMapping::kNone;
   bool texture_uniform = false;
-  bool textured = false;     ///< any texture at all
-  bool transparent = false;  ///< opacity below one somewhere, or a straight sheet
-  int layers = -1;           ///< row of SceneView::layers
+  bool textured = false;       ///< any texture at all
+  bool transparent = false;    ///< opacity below one somewhere, or a straight sheet
+  bool glows_in_color = true;  ///< base_color's texture multiplies the emission
+  int layers = -1;             ///< row of SceneView::layers
   Vec2f texture_repeat{1, 1};
   MaterialTextures textures;
+  float bump_scale = 0;  ///< [m] that a bump of 1 stands above one of 0
 };
 
 enum class LightKind : uint8_t { kPoint, kSpot, kDirectional, kInstance };

@@ -1,6 +1,7 @@
 #pragma once
 // What a material's textures make of a surface. Device-safe.
 
+#include "render/kernel/procedural.h"
 #include "render/kernel/shapes.h"
 #include "render/kernel/surface_point.h"
 #include "render/kernel/texture.h"
@@ -13,6 +14,7 @@ namespace surfaces {
 struct TextureCoordinates {
   Vec2f uv;
   Vec3f direction_G;    ///< for cube textures
+  float density = 0;    ///< texture lengths per metre, of 2-D textures
   float footprint = 0;  ///< in texture lengths
 };
 
@@ -72,6 +74,7 @@ GLOAM_HD TextureCoordinates texture_coordinates(const SceneView& scene,
   }
   out.uv = texture_uv(instance.shape, p_G, n_G, instance.size, uv, has_uv, material.texture_repeat,
                       material.texture_uniform);
+  out.density = density;
   out.footprint = width * density;
   return out;
 }
@@ -106,6 +109,41 @@ GLOAM_HD bool tangents(const SceneView& scene, const InstanceView& instance, con
   return true;
 }
 
+/// Slope of the material's bump map along the surface, in the frame G [m/m], by differences over a
+/// texel or what the ray sees, whichever is wider. `n_G` = unit geometric normal.
+GLOAM_HD Vec3f bump_gradient(const SceneView& scene, const InstanceView& instance,
+                             const MaterialView& m, const RayHit& hit, const TextureCoordinates& at,
+                             Vec3f p_G, Vec3f n_G, float width, float time) {
+  const TextureView& texture = scene.textures[m.textures.bump];
+  const TextureLevel& finest = scene.texture_levels[texture.first_level];
+  const float texels =
+      sqrtf(static_cast<float>(finest.width) * static_cast<float>(finest.height)) * at.density;
+  if (!(texels > 0)) return {};
+  const float step = 0.5f * max(1.0f / texels, width);  // [m] to either side
+  const bool has_uv = is_mesh(instance.shape) && !scene.meshes[instance.mesh].uvs.empty();
+  Vec3f u_slope, v_slope;  // change of u and v per metre
+  if (has_uv) {
+    Vec3f along_u, along_v;
+    if (!tangents(scene, instance, hit, time, &along_u, &along_v)) return {};
+    const Vec3f n = cross(along_u, along_v);
+    const float inv = 1.0f / length_squared(n);
+    const Vec2f c = m.texture_uniform ? Vec2f{instance.size.x, instance.size.y} : Vec2f{1, 1};
+    u_slope = cross(along_v, n) * (inv * c.x * m.texture_repeat.x);
+    v_slope = cross(n, along_u) * (inv * c.y * m.texture_repeat.y);
+  }
+  const auto height = [&](Vec3f shift) {
+    const Vec2f uv = has_uv ? at.uv + Vec2f{dot(u_slope, shift), dot(v_slope, shift)}
+                            : texture_uv(instance.shape, p_G + shift, n_G, instance.size, {}, false,
+                                         m.texture_repeat, m.texture_uniform);
+    return lookup_2d(scene, m.textures.bump, uv, at.footprint).rgb.x;
+  };
+  const Frame frame = Frame::from_z(n_G);
+  const Vec3f x = frame.x * step, y = frame.y * step;
+  const float scale = m.bump_scale / (2.0f * step);
+  return frame.x * ((height(x) - height(-x)) * scale) +
+         frame.y * ((height(y) - height(-y)) * scale);
+}
+
 /// Of the surface `s` of an instance, at p_G in its frame.
 GLOAM_HD void apply_textures(const SceneView& scene, const InstanceView& instance,
                              const RayHit& hit, const Affine3f& X_WG, Vec3f p_G, float width,
@@ -117,7 +155,7 @@ GLOAM_HD void apply_textures(const SceneView& scene, const InstanceView& instanc
   if (map.base_color >= 0) {
     const Rgba texel = lookup(scene, m, map.base_color, at);
     s->base_color *= texel.rgb;
-    s->emission *= texel.rgb;  // MuJoCo: emission is a share of the surface's own colour
+    if (m.glows_in_color) s->emission *= texel.rgb;
     s->opacity *= texel.a;
   }
   if (map.orm >= 0) {
@@ -137,6 +175,12 @@ GLOAM_HD void apply_textures(const SceneView& scene, const InstanceView& instanc
     const Vec3f tx = x - z * dot(z, x), ty = y - z * dot(z, y);
     if (length_squared(tx) > 0 && length_squared(ty) > 0) {
       s->normal = normalize(normalize(tx) * n.x + normalize(ty) * n.y + z * max(n.z, 0.05f));
+    }
+  }
+  if (map.bump >= 0 && m.mapping == TextureMapping::kUv) {
+    const Vec3f slope = bump_gradient(scene, instance, m, hit, at, p_G, n_G, width, time);
+    if (length_squared(slope) > 0) {
+      s->normal = bumped_normal(s->normal, {0, transform_vector(X_WG, slope)});
     }
   }
 }

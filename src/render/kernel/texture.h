@@ -1,6 +1,6 @@
 #pragma once
-// Filtered texture look-ups: trilinear over mip levels by an isotropic footprint. 2-D textures
-// repeat; cube faces are clamped. Device-safe.
+// Filtered texture look-ups: trilinear over mip levels by an isotropic footprint. Cube faces are
+// clamped. Device-safe.
 
 #include <cstring>
 
@@ -30,17 +30,19 @@ GLOAM_HD float log2_of(float x) {
 
 /// Coordinates in texels of level `level`; `row` grows downwards.
 GLOAM_HD Rgba bilinear(const SceneView& scene, const TextureLevel& level, float x, float row,
-                       bool repeat) {
+                       bool repeat_x, bool repeat_y) {
   const float fx = x * static_cast<float>(level.width) - 0.5f;
   const float fy = row * static_cast<float>(level.height) - 0.5f;
   const float bx = floorf(fx), by = floorf(fy);
   const float wx = fx - bx, wy = fy - by;
   int x0 = static_cast<int>(bx), y0 = static_cast<int>(by), x1 = x0 + 1, y1 = y0 + 1;
   const int w = level.width, h = level.height;
-  if (repeat) {  // coordinates are in [0, 1): one step outside at most
+  if (repeat_x) {  // coordinates are in [0, 1): one step outside at most
     x0 = x0 < 0 ? x0 + w : x0;
-    y0 = y0 < 0 ? y0 + h : y0;
     x1 = x1 >= w ? 0 : x1;
+  }
+  if (repeat_y) {
+    y0 = y0 < 0 ? y0 + h : y0;
     y1 = y1 >= h ? 0 : y1;
   }
   x0 = x0 < 0 ? 0 : (x0 >= w ? w - 1 : x0);
@@ -75,7 +77,7 @@ GLOAM_HD Rgba bilinear(const SceneView& scene, const TextureLevel& level, float 
 }
 
 GLOAM_HD Rgba trilinear(const SceneView& scene, const TextureView& texture, int face, float x,
-                        float row, float footprint, bool repeat) {
+                        float row, float footprint, bool repeat_x, bool repeat_y) {
   // Footprint of one texel at level 0 is 2^-log2_size.
   const float lod = footprint > 0 ? log2_of(footprint) + texture.log2_size : 0.0f;
   const float top = static_cast<float>(texture.level_count - 1);
@@ -83,20 +85,32 @@ GLOAM_HD Rgba trilinear(const SceneView& scene, const TextureView& texture, int 
   const float base = floorf(level);
   const TextureLevel* levels = scene.texture_levels.data + texture.first_level +
                                face * texture.level_count + static_cast<int>(base);
-  const Rgba fine = bilinear(scene, levels[0], x, row, repeat);
+  const Rgba fine = bilinear(scene, levels[0], x, row, repeat_x, repeat_y);
   const float w = level - base;
   if (w < 0.01f || base >= top) return fine;
-  const Rgba coarse = bilinear(scene, levels[1], x, row, repeat);
+  const Rgba coarse = bilinear(scene, levels[1], x, row, repeat_x, repeat_y);
   return {lerp(fine.rgb, coarse.rgb, w), lerp(fine.a, coarse.a, w)};
+}
+
+/// A coordinate brought into the picture, 0 … 1.
+GLOAM_HD float wrapped(float x, TextureWrap wrap) {
+  if (wrap == TextureWrap::kClamp) return clamp(x, 0.0f, 1.0f);
+  if (wrap == TextureWrap::kMirror) {
+    const float turn = x - 2.0f * floorf(0.5f * x);
+    return turn > 1.0f ? 2.0f - turn : turn;
+  }
+  return min(x - floorf(x), 0.9999999f);
 }
 
 }  // namespace texturing
 
 /// `uv`: v grows upwards. `footprint`: width of what is seen, in texture lengths.
 GLOAM_HD Rgba lookup_2d(const SceneView& scene, int texture, Vec2f uv, float footprint) {
-  const float x = uv.x - floorf(uv.x), v = 1.0f - uv.y;
-  return texturing::trilinear(scene, scene.textures[texture], 0, min(x, 0.9999999f),
-                              min(v - floorf(v), 0.9999999f), footprint, true);
+  const TextureView& view = scene.textures[texture];
+  return texturing::trilinear(scene, view, 0, texturing::wrapped(uv.x, view.wrap_u),
+                              texturing::wrapped(1.0f - uv.y, view.wrap_v), footprint,
+                              view.wrap_u == TextureWrap::kRepeat,
+                              view.wrap_v == TextureWrap::kRepeat);
 }
 
 /// `direction` need not be unit. Faces right +X, left -X, up +Y, down -Y, front +Z, back -Z, laid
@@ -124,7 +138,7 @@ GLOAM_HD Rgba lookup_cube(const SceneView& scene, int texture, Vec3f d, float fo
   }
   const float inv = m > 0 ? 0.5f / m : 0.0f;
   return texturing::trilinear(scene, view, view.face_count == 6 ? face : 0, s * inv + 0.5f,
-                              t * inv + 0.5f, footprint, false);
+                              t * inv + 0.5f, footprint, false, false);
 }
 
 }  // namespace gloam

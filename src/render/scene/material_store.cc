@@ -71,9 +71,11 @@ MaterialView view_of(const MaterialDescription& in, const TextureStore& textures
   out.texture_uniform = in.texture_uniform;
   out.texture_repeat = in.texture_repeat;
   out.textures = in.textures;
+  out.bump_scale = in.bump_scale;
+  out.glows_in_color = in.glows_in_color;
   const MaterialTextures& t = in.textures;
   const int used[] = {t.base_color, t.roughness, t.metallic, t.orm,
-                      t.normal,     t.opacity,   t.emission};
+                      t.normal,     t.opacity,   t.emission, t.bump};
   out.textured = in.mapping != TextureMapping::kNone &&
                  std::any_of(std::begin(used), std::end(used), [](int i) { return i >= 0; });
   out.transparent = out.opacity < 1 || (in.transmission_weight > 0 && layers_of(in).straight);

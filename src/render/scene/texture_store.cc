@@ -93,6 +93,8 @@ Result<TextureStore> make_texture_store(const std::vector<TextureDescription>& t
     TextureView view;
     view.first_level = static_cast<uint32_t>(store.levels.size());
     view.face_count = static_cast<int>(texture.faces.size());
+    view.wrap_u = texture.wrap_u;
+    view.wrap_v = texture.wrap_v;
     const int width = texture.faces[0].width, height = texture.faces[0].height;
     view.log2_size = 0.5f * std::log2(static_cast<float>(width) * static_cast<float>(height));
     for (size_t face = 0; face < texture.faces.size(); ++face) {

@@ -227,6 +227,11 @@ class TableReader {
 
   void read(const toml::node& node, const std::string& key, Vec3& out, const FieldRule& rule) {
     double v[3] = {};
+    if (rule.one_for_three && node.is_number()) {
+      read(node, key, v[0], rule);
+      if (status_->ok()) out = {v[0], v[0], v[0]};
+      return;
+    }
     if (read_numbers(node, key, v, rule)) out = {v[0], v[1], v[2]};
   }
 

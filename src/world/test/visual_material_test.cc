@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <fstream>
 
+#include "geometry/test/image_writer.h"
 #include "visual_test_model.h"
+#include "world/ktx_light.h"
 #include "world/visual_rules.h"
 
 namespace gloam {
@@ -13,55 +15,14 @@ using visual_test::compile;
 using visual_test::describe;
 using visual_test::expect_near;
 
-/// Smallest PNG writer: 8-bit RGB, stored (not compressed) zlib blocks. `srgb` adds that chunk.
-std::string png(int width, int height, const std::vector<uint8_t>& rgb, bool srgb) {
-  const auto be32 = [](uint32_t v) {
-    return std::string{static_cast<char>(v >> 24), static_cast<char>(v >> 16),
-                       static_cast<char>(v >> 8), static_cast<char>(v)};
-  };
-  const auto chunk = [&](const std::string& type, const std::string& data) {
-    uint32_t crc = 0xffffffffu;
-    for (const char c : type + data) {
-      crc ^= static_cast<uint8_t>(c);
-      for (int k = 0; k < 8; ++k) crc = (crc >> 1) ^ ((crc & 1) != 0 ? 0xEDB88320u : 0u);
-    }
-    return be32(static_cast<uint32_t>(data.size())) + type + data + be32(~crc);
-  };
-  std::string rows;
-  for (int y = 0; y < height; ++y) {
-    rows += '\0';
-    for (int i = 0; i < 3 * width; ++i)
-      rows += static_cast<char>(rgb[static_cast<size_t>(3 * width * y + i)]);
-  }
-  uint32_t a = 1, b = 0;
-  for (const char c : rows) {
-    a = (a + static_cast<uint8_t>(c)) % 65521;
-    b = (b + a) % 65521;
-  }
-  const auto n = static_cast<uint16_t>(rows.size());
-  const auto m = static_cast<uint16_t>(~n);
-  std::string zlib = "\x78\x01\x01";
-  for (const uint16_t v : {n, m}) {
-    zlib += static_cast<char>(v & 255);
-    zlib += static_cast<char>(v >> 8);
-  }
-  zlib += rows + be32((b << 16) | a);
-  return std::string("\x89PNG\r\n\x1a\n", 8) +
-         chunk("IHDR", be32(static_cast<uint32_t>(width)) + be32(static_cast<uint32_t>(height)) +
-                           std::string("\x08\x02\x00\x00\x00", 5)) +
-         (srgb ? chunk("sRGB", std::string(1, '\0')) : "") + chunk("IDAT", zlib) +
-         chunk("IEND", "");
-}
-
-/// A folder with t.png (2 x 3 texels: red, green / blue, grey / black, white) that vanishes.
 class VisualTextureFiles : public testing::Test {
  protected:
   void SetUp() override {
     folder_ = std::filesystem::temp_directory_path() /
               ("gloam_visual_" + std::to_string(reinterpret_cast<uintptr_t>(this)));
     std::filesystem::create_directories(folder_);
-    std::ofstream(folder_ / "t.png", std::ios::binary) << png(2, 3, kTexels, false);
-    std::ofstream(folder_ / "s.png", std::ios::binary) << png(2, 3, kTexels, true);
+    std::ofstream(folder_ / "t.png", std::ios::binary) << png_file(2, 3, 3, kTexels);
+    std::ofstream(folder_ / "s.png", std::ios::binary) << png_file(2, 3, 3, kTexels, true);
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
@@ -104,6 +65,63 @@ TEST_F(VisualTextureFiles, ByReferenceIsTheSameAsEmbedded) {
   ASSERT_EQ(out.unsupported.size(), 1u) << "a file that has gone is said, not fatal";
   EXPECT_NE(out.unsupported[0].message.find("texture 't' cannot be read"), std::string::npos);
   EXPECT_EQ(color_image(out).texels, (std::vector<uint8_t>{255, 255, 255}));
+}
+
+TEST_F(VisualTextureFiles, KtxIsReadThoughMuJoCoKeepsItsBytes) {
+  const auto assets = [](const std::string& file) {  // MuJoCo remembers files by their names
+    return "<texture name='t' type='2d' file='" + file + "'/><material name='m' texture='t'/>";
+  };
+  // RGBA of 2 x 1 texels, rows from the bottom as OpenGL has them.
+  const auto ktx = [](const std::vector<std::string>& faces) {
+    return ktx_file(0x1401, 0x1908, 0x8058, 2, 1, faces);
+  };
+  std::ofstream(folder_ / "t.ktx", std::ios::binary) << ktx({"abcdefgh"});
+  const RenderDescription out = describe(compile_here("", assets("t.ktx")));
+  EXPECT_TRUE(out.unsupported.empty());
+  const Image8& image = color_image(out);
+  EXPECT_EQ(image.width, 2);
+  EXPECT_EQ(image.channels, 4);
+  EXPECT_EQ(std::string(image.texels.begin(), image.texels.end()), "abcdefgh");
+  EXPECT_EQ(image.color_space, ColorSpace::kSrgb);
+
+  std::ofstream(folder_ / "cut.ktx", std::ios::binary) << ktx({"abcdefgh"}).substr(0, 50);
+  const RenderDescription cut = describe(compile_here("", assets("cut.ktx")));
+  ASSERT_EQ(cut.unsupported.size(), 1u);
+  EXPECT_NE(cut.unsupported[0].message.find("texture 't' cannot be read"), std::string::npos);
+}
+
+TEST_F(VisualTextureFiles, KtxCubesLightTheSceneAsMuJoCoTurnsItsSky) {
+  std::vector<std::string> faces;  // +x -x +y -y +z -z, each of one texel with its own red
+  for (int i = 0; i < 6; ++i)
+    faces.push_back(raw(1.0f + static_cast<float>(i)) + raw(0.0f) + raw(0.0f));
+  std::ofstream(folder_ / "cube.ktx", std::ios::binary)
+      << ktx_file(0x1406, 0x1907, 0x8815, 1, 1, faces);
+  const RenderDescription out = describe(
+      compile("<mujoco><compiler texturedir='" + folder_.string() +
+              "'/><asset><texture name='t' type='2d' file='cube.ktx'/></asset><worldbody><light "
+              "type='image' texture='t' intensity='200'/><geom size='1'/></worldbody></mujoco>"));
+  const EnvironmentDescription& e = out.sky.environment;
+  ASSERT_EQ(e.width, 4);
+  ASSERT_EQ(e.height, 2);
+  EXPECT_EQ(e.scale, 200);
+  for (const Vec3f& texel : e.texels) EXPECT_GE(texel.x, 1);
+  const EnvironmentDescription fine = environment_of(
+      [&] {
+        KtxImage cube;
+        for (int i = 0; i < 6; ++i)
+          cube.float_faces.push_back({8, 8, 1, std::vector<float>(64, static_cast<float>(i + 1))});
+        return cube;
+      }(),
+      "fine");
+  const auto at = [&](int row, int column) {
+    return fine.texels[static_cast<size_t>(fine.width * row + column)].x;
+  };
+  EXPECT_EQ(at(8, 16), 1);  // +X
+  EXPECT_EQ(at(8, 0), 2);   // -X
+  EXPECT_EQ(at(0, 5), 3);   // up is the cube's +Y
+  EXPECT_EQ(at(15, 5), 4);
+  EXPECT_EQ(at(8, 24), 5);  // -Y is the cube's +Z
+  EXPECT_EQ(at(8, 8), 6);   // +Y
 }
 
 TEST_F(VisualTextureFiles, ColoursAreSrgbWhateverTheFileSays) {

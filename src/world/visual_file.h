@@ -1,0 +1,24 @@
+#pragma once
+// [[visual]] tables: model files that are drawn and not simulated.
+
+#include <functional>
+#include <vector>
+
+#include "world/render_description.h"
+#include "world/visual_light.h"
+#include "world/world.h"
+
+namespace gloam {
+
+/// Puts an instance on a body into the description and labels it. `name` = its own; `visual` =
+/// index and name of the [[visual]] that it is a part of.
+using AddVisualPart = std::function<void(InstanceDescription instance, int body, std::string name,
+                                         int visual, const std::string& visual_name)>;
+
+/// Reads the scene's visuals, by way of the cache on disk, and adds their meshes, textures,
+/// materials, instances and lights. `poses` = X_WB at qpos0. Errors: no such body, a file that
+/// cannot be read.
+Status describe_visuals(const CompiledWorld& world, const std::vector<Affine3f>& poses,
+                        const AddVisualPart& add, LightLevels* levels, RenderDescription* out);
+
+}  // namespace gloam
