@@ -1,0 +1,180 @@
+#include "render/cpu/adaptive_tile.h"
+
+#include <algorithm>
+#include <memory>
+
+namespace gloam {
+
+namespace {
+
+class AdaptiveTile {
+ public:
+  AdaptiveTile(const Job& job, int x0, int y0)
+      : job_(job), x0_(x0), y0_(y0), most_(job.settings.spp / 2) {
+    const Tile all(job, x0, y0);
+    Film& film = *job.film;
+    for (int i = 0; i < all.count(); ++i) {
+      Block& block = blocks_[block_of(all.index(i))];
+      block.open = true;
+      ++block.pixels;
+      const size_t pixel = all.pixel_of(i);
+      film.radiance[pixel] = film.albedo[pixel] = film.normal[pixel] = {};
+      if (job.settings.variance) film.variance[pixel] = {};
+      film.sample_count[pixel] = 0;
+    }
+  }
+
+  void render(RenderStats* stats) {
+    int drawn = 0;
+    while (std::any_of(blocks_, std::end(blocks_), [](const Block& b) { return b.open; })) {
+      const int next = drawn == 0 ? kLeastAdaptiveSpp / 2 : std::min(2 * drawn, most_);
+      Tile tile(job_, x0_, y0_, [this](int index) { return blocks_[block_of(index)].open; });
+      for (int half = 0; half < 2; ++half) draw(&tile, half, drawn, next);
+      stats->rays += tile.rays();
+      stats->paths += 2 * static_cast<uint64_t>(tile.count()) * static_cast<uint64_t>(next - drawn);
+      drawn = next;
+      decide(tile, drawn, stats);
+    }
+  }
+
+ private:
+  static constexpr int kBatches = 4;
+  static constexpr int kSide = 4;  // of a block [px]
+  static constexpr int kAcross = kTile / kSide;
+  static_assert(kTile % kSide == 0 && kLeastAdaptiveSpp >= 2 * kBatches);
+
+  struct Batch {
+    Vec3f mean;
+    int count = 0;
+    void add(const Batch& b) {
+      count += b.count;
+      mean += (b.mean - mean) * (static_cast<float>(b.count) / static_cast<float>(count));
+    }
+  };
+  struct Half {
+    Batch batches[kBatches];
+    Batch all() const {
+      Batch sum;
+      for (const Batch& b : batches) sum.add(b);
+      return sum;
+    }
+    /// Of the mean, per channel.
+    Vec3f variance(const Batch& all) const {
+      Vec3f squares;
+      for (const Batch& b : batches) {
+        const Vec3f d = b.mean - all.mean;
+        squares += d * d * static_cast<float>(b.count);
+      }
+      return squares / (static_cast<float>(all.count) * (kBatches - 1));
+    }
+  };
+  struct Block {
+    bool open = false;  ///< is sampled
+    int pixels = 0;
+    int counted[2] = {0, 0};     ///< samples of a half's mean; 0 = not decided
+    double squares[2] = {0, 0};  ///< of the errors that a half shows
+  };
+
+  static int block_of(int index) {
+    int x, y;
+    tile_pixel(index, &x, &y);
+    return y / kSide * kAcross + x / kSide;
+  }
+
+  /// The samples [drawn, next) of one half. In the first round they make four batches; later those
+  /// before make two and these the others.
+  void draw(Tile* tile, int half, int drawn, int next) {
+    const int parts = drawn == 0 ? kBatches : kBatches / 2;
+    for (int i = 0; drawn > 0 && i < tile->count(); ++i) {
+      Batch* b = halves_[half][tile->index(i)].batches;
+      for (int k = 0; k < kBatches / 2; ++k) {
+        const Batch later = b[2 * k + 1];
+        b[k] = b[2 * k];
+        b[k].add(later);
+      }
+    }
+    Film& film = *job_.film;
+    constexpr uint64_t kOtherHalf = 0xD1B54A32D192ED03u;  // any number: another scrambling
+    const uint64_t seed = job_.settings.seed ^ (half == 0 ? 0 : kOtherHalf);
+    for (int part = 0; part < parts; ++part) {
+      const int begin = drawn + (next - drawn) * part / parts;
+      const int end = drawn + (next - drawn) * (part + 1) / parts;
+      tile->render_path({seed, begin, end - begin});
+      for (int i = 0; i < tile->count(); ++i) {
+        PixelMean& mean = tile->mean(i);
+        halves_[half][tile->index(i)].batches[kBatches - parts + part] = {mean.radiance,
+                                                                          mean.count};
+        const size_t pixel = tile->pixel_of(i);
+        film.albedo[pixel] += mean.albedo * static_cast<float>(mean.count);
+        film.normal[pixel] += mean.normal * static_cast<float>(mean.count);
+        mean = {};
+      }
+    }
+  }
+
+  void decide(const Tile& tile, int drawn, RenderStats* stats) {
+    for (Block& block : blocks_) block.squares[0] = block.squares[1] = 0;
+    for (int i = 0; i < tile.count(); ++i) {
+      for (int half = 0; half < 2; ++half) {
+        const Half& samples = halves_[half][tile.index(i)];
+        const Batch all = samples.all();
+        // Of the mean of two such halves.
+        const float variance = mean_of_channels(samples.variance(all)) / 2;
+        const float value = max(mean_of_channels(all.mean), job_.settings.error_floor);
+        const double square = value > 0 ? double{variance} / (double{value} * value) : 0;
+        blocks_[block_of(tile.index(i))].squares[half] += square;
+      }
+    }
+    const double target = double{job_.settings.error} * job_.settings.error;
+    bool fixed[2][kAcross * kAcross] = {};
+    for (int b = 0; b < kAcross * kAcross; ++b) {
+      Block& block = blocks_[b];
+      if (!block.open) continue;
+      bool reached = true;
+      for (int half = 0; half < 2; ++half) {
+        const bool enough = block.squares[1 - half] <= target * block.pixels;
+        reached = reached && (enough || block.counted[half] > 0);
+        fixed[half][b] = block.counted[half] == 0 && (enough || drawn == most_);
+        if (fixed[half][b]) block.counted[half] = drawn;
+      }
+      if (!reached && drawn == most_) stats->unreached += static_cast<uint64_t>(block.pixels);
+      block.open = block.counted[0] == 0 || block.counted[1] == 0;
+    }
+    for (int i = 0; i < tile.count(); ++i) {
+      const int b = block_of(tile.index(i));
+      for (int half = 0; half < 2; ++half) {
+        if (fixed[half][b]) count(halves_[half][tile.index(i)], tile.pixel_of(i));
+      }
+      if (!blocks_[b].open) finish_guides(tile.pixel_of(i), 2 * drawn);
+    }
+  }
+
+  /// The mean of a half becomes part of the picture.
+  void count(const Half& half, size_t pixel) {
+    Film& film = *job_.film;
+    const Batch all = half.all();
+    film.radiance[pixel] += all.mean * 0.5f;
+    if (job_.settings.variance) film.variance[pixel] += half.variance(all) * 0.25f;
+    film.sample_count[pixel] += static_cast<uint32_t>(all.count);
+  }
+  /// Guides are the means of all that was drawn.
+  void finish_guides(size_t pixel, int drawn) {
+    job_.film->albedo[pixel] *= 1.0f / static_cast<float>(drawn);
+    job_.film->normal[pixel] *= 1.0f / static_cast<float>(drawn);
+  }
+
+  static float mean_of_channels(Vec3f c) { return (c.x + c.y + c.z) / 3; }
+
+  const Job& job_;
+  const int x0_, y0_, most_;
+  Block blocks_[kAcross * kAcross];
+  Half halves_[2][kTile * kTile];
+};
+
+}  // namespace
+
+void render_adaptive(const Job& job, int x0, int y0, RenderStats* stats) {
+  std::make_unique<AdaptiveTile>(job, x0, y0)->render(stats);
+}
+
+}  // namespace gloam
