@@ -10,26 +10,40 @@ namespace {
 class AdaptiveTile {
  public:
   AdaptiveTile(const Job& job, int x0, int y0)
-      : job_(job), x0_(x0), y0_(y0), most_(job.settings.spp / 2) {
-    const Tile all(job, x0, y0);
-    Film& film = *job.film;
+      : job_(job), x0_(x0), y0_(y0), most_(job.settings.spp / 2) {}
+
+  /// Sum over the pixels of the squares of the errors that single samples have.
+  double look(RenderStats* stats) {
+    Tile tile(job_, x0_, y0_);
+    draw(&tile, 0, kPilotSeed, 0, kPilotSamples);
+    stats->rays += tile.rays();
+    stats->paths += static_cast<uint64_t>(tile.count()) * kPilotSamples;
+    double sum = 0;
+    for (int i = 0; i < tile.count(); ++i) {
+      sum += kPilotSamples * square_error(halves_[0][tile.index(i)]);
+    }
+    return sum;
+  }
+
+  void render(int least, RenderStats* stats) {
+    const Tile all(job_, x0_, y0_);
+    Film& film = *job_.film;
     for (int i = 0; i < all.count(); ++i) {
       Block& block = blocks_[block_of(all.index(i))];
       block.open = true;
       ++block.pixels;
       const size_t pixel = all.pixel_of(i);
       film.radiance[pixel] = film.albedo[pixel] = film.normal[pixel] = {};
-      if (job.settings.variance) film.variance[pixel] = {};
+      if (job_.settings.variance) film.variance[pixel] = {};
       film.sample_count[pixel] = 0;
     }
-  }
-
-  void render(RenderStats* stats) {
     int drawn = 0;
     while (std::any_of(blocks_, std::end(blocks_), [](const Block& b) { return b.open; })) {
-      const int next = drawn == 0 ? kLeastAdaptiveSpp / 2 : std::min(2 * drawn, most_);
+      const int next = drawn == 0 ? std::min(least, most_) : std::min(2 * drawn, most_);
       Tile tile(job_, x0_, y0_, [this](int index) { return blocks_[block_of(index)].open; });
-      for (int half = 0; half < 2; ++half) draw(&tile, half, drawn, next);
+      for (int half = 0; half < 2; ++half) {
+        draw(&tile, half, half == 0 ? 0 : kOtherHalf, drawn, next);
+      }
       stats->rays += tile.rays();
       stats->paths += 2 * static_cast<uint64_t>(tile.count()) * static_cast<uint64_t>(next - drawn);
       drawn = next;
@@ -39,9 +53,14 @@ class AdaptiveTile {
 
  private:
   static constexpr int kBatches = 4;
-  static constexpr int kSide = 4;  // of a block [px]
+  static constexpr int kPilotSamples = 8;
+  // Any numbers: scramblings of their own.
+  static constexpr uint64_t kOtherHalf = 0xD1B54A32D192ED03u, kPilotSeed = 0x8CB92BA72F3D8DD7u;
+  static constexpr int kSide = 8;  // of a block [px]
   static constexpr int kAcross = kTile / kSide;
   static_assert(kTile % kSide == 0 && kLeastAdaptiveSpp >= 2 * kBatches);
+
+  static float mean_of_channels(Vec3f c) { return (c.x + c.y + c.z) / 3; }
 
   struct Batch {
     Vec3f mean;
@@ -57,6 +76,18 @@ class AdaptiveTile {
       Batch sum;
       for (const Batch& b : batches) sum.add(b);
       return sum;
+    }
+    /// Of all channels, without the brightest and the darkest batch: one bright path among few
+    /// samples raises the variance and must not raise what that is compared with.
+    float value() const {
+      float least = INFINITY, most = 0, sum = 0;
+      for (const Batch& b : batches) {
+        const float x = mean_of_channels(b.mean);
+        least = min(least, x);
+        most = max(most, x);
+        sum += x;
+      }
+      return (sum - least - most) / (kBatches - 2);
     }
     /// Of the mean, per channel.
     Vec3f variance(const Batch& all) const {
@@ -75,6 +106,11 @@ class AdaptiveTile {
     double squares[2] = {0, 0};  ///< of the errors that a half shows
   };
 
+  double square_error(const Half& half) const {
+    const float variance = mean_of_channels(half.variance(half.all()));
+    const float value = max(half.value(), job_.settings.error_floor);
+    return value > 0 ? double{variance} / (double{value} * value) : 0;
+  }
   static int block_of(int index) {
     int x, y;
     tile_pixel(index, &x, &y);
@@ -83,7 +119,7 @@ class AdaptiveTile {
 
   /// The samples [drawn, next) of one half. In the first round they make four batches; later those
   /// before make two and these the others.
-  void draw(Tile* tile, int half, int drawn, int next) {
+  void draw(Tile* tile, int half, uint64_t other, int drawn, int next) {
     const int parts = drawn == 0 ? kBatches : kBatches / 2;
     for (int i = 0; drawn > 0 && i < tile->count(); ++i) {
       Batch* b = halves_[half][tile->index(i)].batches;
@@ -94,12 +130,10 @@ class AdaptiveTile {
       }
     }
     Film& film = *job_.film;
-    constexpr uint64_t kOtherHalf = 0xD1B54A32D192ED03u;  // any number: another scrambling
-    const uint64_t seed = job_.settings.seed ^ (half == 0 ? 0 : kOtherHalf);
     for (int part = 0; part < parts; ++part) {
       const int begin = drawn + (next - drawn) * part / parts;
       const int end = drawn + (next - drawn) * (part + 1) / parts;
-      tile->render_path({seed, begin, end - begin});
+      tile->render_path({job_.settings.seed ^ other, begin, end - begin});
       for (int i = 0; i < tile->count(); ++i) {
         PixelMean& mean = tile->mean(i);
         halves_[half][tile->index(i)].batches[kBatches - parts + part] = {mean.radiance,
@@ -116,13 +150,9 @@ class AdaptiveTile {
     for (Block& block : blocks_) block.squares[0] = block.squares[1] = 0;
     for (int i = 0; i < tile.count(); ++i) {
       for (int half = 0; half < 2; ++half) {
-        const Half& samples = halves_[half][tile.index(i)];
-        const Batch all = samples.all();
         // Of the mean of two such halves.
-        const float variance = mean_of_channels(samples.variance(all)) / 2;
-        const float value = max(mean_of_channels(all.mean), job_.settings.error_floor);
-        const double square = value > 0 ? double{variance} / (double{value} * value) : 0;
-        blocks_[block_of(tile.index(i))].squares[half] += square;
+        blocks_[block_of(tile.index(i))].squares[half] +=
+            square_error(halves_[half][tile.index(i)]) / 2;
       }
     }
     const double target = double{job_.settings.error} * job_.settings.error;
@@ -163,8 +193,6 @@ class AdaptiveTile {
     job_.film->normal[pixel] *= 1.0f / static_cast<float>(drawn);
   }
 
-  static float mean_of_channels(Vec3f c) { return (c.x + c.y + c.z) / 3; }
-
   const Job& job_;
   const int x0_, y0_, most_;
   Block blocks_[kAcross * kAcross];
@@ -173,8 +201,20 @@ class AdaptiveTile {
 
 }  // namespace
 
-void render_adaptive(const Job& job, int x0, int y0, RenderStats* stats) {
-  std::make_unique<AdaptiveTile>(job, x0, y0)->render(stats);
+double look_adaptive(const Job& job, int x0, int y0, RenderStats* stats) {
+  return std::make_unique<AdaptiveTile>(job, x0, y0)->look(stats);
+}
+
+int least_adaptive(const RenderSettings& settings, double square_error) {
+  constexpr double kShare = 0.5;
+  const double even = square_error / (double{settings.error} * settings.error);
+  int least = kLeastAdaptiveSpp / 2;
+  while (4 * least < settings.spp && 2 * 1.414 * least < kShare * even) least *= 2;
+  return least;
+}
+
+void render_adaptive(const Job& job, int x0, int y0, int least, RenderStats* stats) {
+  std::make_unique<AdaptiveTile>(job, x0, y0)->render(least, stats);
 }
 
 }  // namespace gloam

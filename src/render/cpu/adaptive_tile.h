@@ -17,8 +17,17 @@
 
 namespace gloam {
 
+/// Looks at a few samples of one tile, which count in no mean. Returns the sum over its pixels of
+/// the squares of the errors that one sample has.
+double look_adaptive(const Job& job, int x0, int y0, RenderStats* stats);
+
+/// Samples of a half before the first decision: half of what an even picture whose samples have
+/// `square_error`, the mean over its pixels, would need. Light that is rare is seen in the picture
+/// long before it is seen in every block.
+int least_adaptive(const RenderSettings& settings, double square_error);
+
 /// Fills the film's light, guides and sample counts of one tile until settings.error is reached or
 /// settings.spp samples are drawn (of an odd number, one less). `job.log2_samples` is for one half.
-void render_adaptive(const Job& job, int x0, int y0, RenderStats* stats);
+void render_adaptive(const Job& job, int x0, int y0, int least, RenderStats* stats);
 
 }  // namespace gloam

@@ -113,18 +113,15 @@ class CpuRenderer final : public Renderer {
     const int64_t samples =
         adaptive ? settings.spp / 2 : int64_t{settings.first_sample} + settings.spp;
     while ((int64_t{1} << job.log2_samples) < samples) ++job.log2_samples;
-    const int columns = (film->width + kTile - 1) / kTile,
-              rows = (film->height + kTile - 1) / kTile;
-    tiles_.assign(static_cast<size_t>(columns) * rows, {});
+    columns_ = (film->width + kTile - 1) / kTile;
+    tiles_.assign(static_cast<size_t>(columns_) * ((film->height + kTile - 1) / kTile), {});
     const int64_t count = static_cast<int64_t>(tiles_.size());
+    const int least = adaptive ? look(job) : 0;
     RenderWatch watch(settings.progress, count);
-    parallel_for("render tiles", count, [&](int64_t i) {
+    for_tiles(count, [&](int64_t i) {
       if (watch.stopped()) return;
-      const FlushDenormals flush;
       const int64_t tile = settings.progress ? scattered(i, count) : i;
-      const int x0 = static_cast<int>(tile % columns) * kTile;
-      const int y0 = static_cast<int>(tile / columns) * kTile;
-      render_tile(job, x0, y0, &tiles_[static_cast<size_t>(tile)]);
+      render_tile(job, tile, least);
       watch.tile_done();
     });
     RenderStats total;
@@ -145,10 +142,34 @@ class CpuRenderer final : public Renderer {
   }
 
  private:
-  static void render_tile(const Job& job, int x0, int y0, RenderStats* stats) {
+  template <class F>
+  static void for_tiles(int64_t count, const F& f) {
+    parallel_for("render tiles", count, [&](int64_t i) {
+      const FlushDenormals flush;
+      f(i);
+    });
+  }
+  int x_of(int64_t tile) const { return static_cast<int>(tile % columns_) * kTile; }
+  int y_of(int64_t tile) const { return static_cast<int>(tile / columns_) * kTile; }
+
+  /// What to begin with in adaptive sampling.
+  int look(const Job& job) {
+    const int64_t count = static_cast<int64_t>(tiles_.size());
+    std::vector<double> squares(tiles_.size());
+    for_tiles(count, [&](int64_t i) {
+      squares[static_cast<size_t>(i)] =
+          look_adaptive(job, x_of(i), y_of(i), &tiles_[static_cast<size_t>(i)]);
+    });
+    const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
+    return least_adaptive(job.settings, sum / static_cast<double>(job.film->pixel_count()));
+  }
+
+  void render_tile(const Job& job, int64_t tile, int least) {
     const RenderSettings& settings = job.settings;
+    RenderStats* stats = &tiles_[static_cast<size_t>(tile)];
+    const int x0 = x_of(tile), y0 = y_of(tile);
     if (settings.error > 0) {
-      render_adaptive(job, x0, y0, stats);
+      render_adaptive(job, x0, y0, least, stats);
       if (settings.exact_channels) {
         Tile pixels(job, x0, y0);
         pixels.render_channels();
@@ -169,6 +190,7 @@ class CpuRenderer final : public Renderer {
   std::unique_ptr<RenderScene> scene_;
   std::unique_ptr<EmbreeScene> embree_;
   std::vector<RenderStats> tiles_;
+  int columns_ = 0;  ///< of tiles
   std::vector<LightView> guided_lights_;
   LightGuideStore guide_;
   bool updated_ = false, has_guide_ = false;
