@@ -1,31 +1,35 @@
 #include "render/cpu/adaptive_tile.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 
 namespace gloam {
 
 namespace {
 
+/// Rounds double: the number of samples that is nearest to the one wanted, by its ratio.
+constexpr double kRounding = 1.41421356;
+
 class AdaptiveTile {
  public:
   AdaptiveTile(const Job& job, int x0, int y0)
       : job_(job), x0_(x0), y0_(y0), most_(job.settings.spp / 2) {}
 
-  /// Sum over the pixels of the squares of the errors that single samples have.
+  /// See look_adaptive.
   double look(RenderStats* stats) {
     Tile tile(job_, x0_, y0_);
     draw(&tile, 0, kPilotSeed, 0, kPilotSamples);
     stats->rays += tile.rays();
     stats->paths += static_cast<uint64_t>(tile.count()) * kPilotSamples;
-    double sum = 0;
-    for (int i = 0; i < tile.count(); ++i) {
-      sum += kPilotSamples * square_error(halves_[0][tile.index(i)]);
-    }
-    return sum;
+    for (int i = 0; i < tile.count(); ++i) ++blocks_[block_of(tile.index(i))].pixels;
+    add_squares(tile, 0);
+    double squares = 0;
+    for (const Block& block : blocks_) squares += block.squares[0];
+    return std::sqrt(kPilotSamples * squares / tile.count());
   }
 
-  void render(int least, RenderStats* stats) {
+  void render(const AdaptivePlan& plan, RenderStats* stats) {
     const Tile all(job_, x0_, y0_);
     Film& film = *job_.film;
     for (int i = 0; i < all.count(); ++i) {
@@ -39,7 +43,7 @@ class AdaptiveTile {
     }
     int drawn = 0;
     while (std::any_of(blocks_, std::end(blocks_), [](const Block& b) { return b.open; })) {
-      const int next = drawn == 0 ? std::min(least, most_) : std::min(2 * drawn, most_);
+      const int next = drawn == 0 ? std::min(plan.least, most_) : std::min(2 * drawn, most_);
       Tile tile(job_, x0_, y0_, [this](int index) { return blocks_[block_of(index)].open; });
       for (int half = 0; half < 2; ++half) {
         draw(&tile, half, half == 0 ? 0 : kOtherHalf, drawn, next);
@@ -47,7 +51,7 @@ class AdaptiveTile {
       stats->rays += tile.rays();
       stats->paths += 2 * static_cast<uint64_t>(tile.count()) * static_cast<uint64_t>(next - drawn);
       drawn = next;
-      decide(tile, drawn, stats);
+      decide(tile, plan, drawn, stats);
     }
   }
 
@@ -103,13 +107,24 @@ class AdaptiveTile {
     bool open = false;  ///< is sampled
     int pixels = 0;
     int counted[2] = {0, 0};     ///< samples of a half's mean; 0 = not decided
-    double squares[2] = {0, 0};  ///< of the errors that a half shows
+    double squares[2] = {0, 0};  ///< sum of the squares of the errors of a half's means
+    float value = 0;             ///< mean over the pixels
   };
 
-  double square_error(const Half& half) const {
-    const float variance = mean_of_channels(half.variance(half.all()));
-    const float value = max(half.value(), job_.settings.error_floor);
-    return value > 0 ? double{variance} / (double{value} * value) : 0;
+  /// Of the errors of a half's means, per block.
+  void add_squares(const Tile& tile, int half) {
+    for (Block& block : blocks_) block.squares[half] = block.value = 0;
+    for (int i = 0; i < tile.count(); ++i) {
+      Block& block = blocks_[block_of(tile.index(i))];
+      block.value += halves_[half][tile.index(i)].value() / static_cast<float>(block.pixels);
+    }
+    for (int i = 0; i < tile.count(); ++i) {
+      const Half& samples = halves_[half][tile.index(i)];
+      Block& block = blocks_[block_of(tile.index(i))];
+      const double value = max((samples.value() + block.value) / 2, job_.settings.error_floor);
+      const float variance = mean_of_channels(samples.variance(samples.all()));
+      block.squares[half] += value > 0 ? double{variance} / (value * value) : 0;
+    }
   }
   static int block_of(int index) {
     int x, y;
@@ -146,23 +161,15 @@ class AdaptiveTile {
     }
   }
 
-  void decide(const Tile& tile, int drawn, RenderStats* stats) {
-    for (Block& block : blocks_) block.squares[0] = block.squares[1] = 0;
-    for (int i = 0; i < tile.count(); ++i) {
-      for (int half = 0; half < 2; ++half) {
-        // Of the mean of two such halves.
-        blocks_[block_of(tile.index(i))].squares[half] +=
-            square_error(halves_[half][tile.index(i)]) / 2;
-      }
-    }
-    const double target = double{job_.settings.error} * job_.settings.error;
+  void decide(const Tile& tile, const AdaptivePlan& plan, int drawn, RenderStats* stats) {
+    for (int half = 0; half < 2; ++half) add_squares(tile, half);
     bool fixed[2][kAcross * kAcross] = {};
     for (int b = 0; b < kAcross * kAcross; ++b) {
       Block& block = blocks_[b];
       if (!block.open) continue;
       bool reached = true;
       for (int half = 0; half < 2; ++half) {
-        const bool enough = block.squares[1 - half] <= target * block.pixels;
+        const bool enough = wanted(plan, block, 1 - half, drawn) <= kRounding * 2 * drawn;
         reached = reached && (enough || block.counted[half] > 0);
         fixed[half][b] = block.counted[half] == 0 && (enough || drawn == most_);
         if (fixed[half][b]) block.counted[half] = drawn;
@@ -177,6 +184,11 @@ class AdaptiveTile {
       }
       if (!blocks_[b].open) finish_guides(tile.pixel_of(i), 2 * drawn);
     }
+  }
+
+  /// Samples of a pixel of the block, as the half shows that has `drawn` of them.
+  static double wanted(const AdaptivePlan& plan, const Block& block, int half, int drawn) {
+    return plan.per_deviation * std::sqrt(drawn * block.squares[half] / block.pixels);
   }
 
   /// The mean of a half becomes part of the picture.
@@ -205,16 +217,28 @@ double look_adaptive(const Job& job, int x0, int y0, RenderStats* stats) {
   return std::make_unique<AdaptiveTile>(job, x0, y0)->look(stats);
 }
 
-int least_adaptive(const RenderSettings& settings, double square_error) {
-  constexpr double kShare = 0.5;
-  const double even = square_error / (double{settings.error} * settings.error);
-  int least = kLeastAdaptiveSpp / 2;
-  while (4 * least < settings.spp && 2 * 1.414 * least < kShare * even) least *= 2;
-  return least;
+AdaptivePlan plan_adaptive(const RenderSettings& settings, const std::vector<double>& deviations,
+                           const std::vector<int>& pixels) {
+  double sum = 0, squares = 0, count = 0;
+  for (size_t i = 0; i < deviations.size(); ++i) {
+    sum += deviations[i] * pixels[i];
+    squares += deviations[i] * deviations[i] * pixels[i];
+    count += pixels[i];
+  }
+  AdaptivePlan plan;
+  const double target = double{settings.error} * settings.error;
+  plan.per_deviation = sum / count / target;
+  plan.least = kLeastAdaptiveSpp / 2;
+  constexpr double kLeastShare = 0.5;
+  while (4 * plan.least <= settings.spp &&
+         kRounding * 2 * plan.least < kLeastShare * squares / count / target) {
+    plan.least *= 2;
+  }
+  return plan;
 }
 
-void render_adaptive(const Job& job, int x0, int y0, int least, RenderStats* stats) {
-  std::make_unique<AdaptiveTile>(job, x0, y0)->render(least, stats);
+void render_adaptive(const Job& job, int x0, int y0, const AdaptivePlan& plan, RenderStats* stats) {
+  std::make_unique<AdaptiveTile>(job, x0, y0)->render(plan, stats);
 }
 
 }  // namespace gloam

@@ -116,12 +116,12 @@ class CpuRenderer final : public Renderer {
     columns_ = (film->width + kTile - 1) / kTile;
     tiles_.assign(static_cast<size_t>(columns_) * ((film->height + kTile - 1) / kTile), {});
     const int64_t count = static_cast<int64_t>(tiles_.size());
-    const int least = adaptive ? look(job) : 0;
+    const AdaptivePlan plan = adaptive ? look(job) : AdaptivePlan();
     RenderWatch watch(settings.progress, count);
     for_tiles(count, [&](int64_t i) {
       if (watch.stopped()) return;
       const int64_t tile = settings.progress ? scattered(i, count) : i;
-      render_tile(job, tile, least);
+      render_tile(job, tile, plan);
       watch.tile_done();
     });
     RenderStats total;
@@ -152,24 +152,24 @@ class CpuRenderer final : public Renderer {
   int x_of(int64_t tile) const { return static_cast<int>(tile % columns_) * kTile; }
   int y_of(int64_t tile) const { return static_cast<int>(tile / columns_) * kTile; }
 
-  /// What to begin with in adaptive sampling.
-  int look(const Job& job) {
-    const int64_t count = static_cast<int64_t>(tiles_.size());
-    std::vector<double> squares(tiles_.size());
-    for_tiles(count, [&](int64_t i) {
-      squares[static_cast<size_t>(i)] =
-          look_adaptive(job, x_of(i), y_of(i), &tiles_[static_cast<size_t>(i)]);
+  AdaptivePlan look(const Job& job) {
+    std::vector<double> deviations(tiles_.size());
+    std::vector<int> pixels(tiles_.size());
+    for_tiles(static_cast<int64_t>(tiles_.size()), [&](int64_t tile) {
+      const auto i = static_cast<size_t>(tile);
+      deviations[i] = look_adaptive(job, x_of(tile), y_of(tile), &tiles_[i]);
+      pixels[i] = std::min(kTile, job.film->width - x_of(tile)) *
+                  std::min(kTile, job.film->height - y_of(tile));
     });
-    const double sum = std::accumulate(squares.begin(), squares.end(), 0.0);
-    return least_adaptive(job.settings, sum / static_cast<double>(job.film->pixel_count()));
+    return plan_adaptive(job.settings, deviations, pixels);
   }
 
-  void render_tile(const Job& job, int64_t tile, int least) {
+  void render_tile(const Job& job, int64_t tile, const AdaptivePlan& plan) {
     const RenderSettings& settings = job.settings;
     RenderStats* stats = &tiles_[static_cast<size_t>(tile)];
     const int x0 = x_of(tile), y0 = y_of(tile);
     if (settings.error > 0) {
-      render_adaptive(job, x0, y0, least, stats);
+      render_adaptive(job, x0, y0, plan, stats);
       if (settings.exact_channels) {
         Tile pixels(job, x0, y0);
         pixels.render_channels();

@@ -1,5 +1,5 @@
 #pragma once
-// Three scenes whose noise is uneven, for the tests and the bench of adaptive sampling.
+// Scenes with noise of several kinds, for the tests and the bench of adaptive sampling.
 
 #include "render/test/scene_builder.h"
 
@@ -73,8 +73,29 @@ inline NoiseScene lamp_scene(int width, int height) {
       1};
 }
 
+/// A sunny yard, whose light has no noise, and in it a shed that is lit through its door.
+inline NoiseScene yard_scene(int width, int height) {
+  SceneBuilder b;
+  const int stone = b.add_diffuse({0.5f, 0.5f, 0.5f});
+  b.add(ShapeType::kPlane, {0, 0, 0}, {}, stone);
+  const auto box = [&](Vec3f half, Vec3f p) {
+    b.add(ShapeType::kBox, half, translation(p), stone);
+  };
+  box({0.05f, 0.5f, 0.5f}, {-0.5f, 1, 0.5f});
+  box({0.05f, 0.5f, 0.5f}, {0.5f, 1, 0.5f});
+  box({0.55f, 0.05f, 0.5f}, {0, 1.5f, 0.5f});
+  box({0.55f, 0.55f, 0.05f}, {0, 1, 1.05f});
+  LightDescription sun;
+  sun.type = LightType::kDirectional;
+  sun.intensity = {100, 96, 90};
+  b.add_light(sun, {0, 0, 5}, {0.6f, 0.5f, -0.7f});
+  return {"yard", b,
+          SceneBuilder::camera(look_at({0, -2.5f, 1.4f}, {0, 0.6f, 0.4f}), width, height, 55), 1};
+}
+
 inline std::vector<NoiseScene> noise_scenes(int width, int height) {
-  return {room_scene(width, height), caustic_scene(width, height), lamp_scene(width, height)};
+  return {room_scene(width, height), caustic_scene(width, height), lamp_scene(width, height),
+          yard_scene(width, height)};
 }
 
 }  // namespace gloam
