@@ -1,7 +1,8 @@
 // What adaptive sampling reaches: the true error of its pictures, from renders that differ in their
 // seed alone, against the error asked for; and how many times the samples an even picture needs for
 // the same error.
-//   adaptive_error [--error E] [--spp MOST] [--size WxH] [--seeds N] [--json] [--pictures FOLDER]
+//   adaptive_error [--error E] [--spp MOST] [--size WxH] [--seeds N] [--scene NAME] [--json]
+//     [--pictures FOLDER]
 
 #include <algorithm>
 #include <cmath>
@@ -23,7 +24,7 @@ struct Arguments {
   double error = 0.05;
   int spp = 4096, width = 128, height = 96, seeds = 8;
   bool json = false;
-  std::string pictures;
+  std::string pictures, scene;  // empty = all
 };
 
 /// Of each pixel over renders with different seeds.
@@ -99,8 +100,10 @@ int main(int argc, char** argv) {
     if (arg == "--seeds") a.seeds = std::atoi(argv[++i]);
     if (arg == "--size") std::sscanf(argv[++i], "%dx%d", &a.width, &a.height);
     if (arg == "--pictures") a.pictures = argv[++i];
+    if (arg == "--scene") a.scene = argv[++i];
   }
   for (const NoiseScene& scene : noise_scenes(a.width, a.height)) {
+    if (!a.scene.empty() && a.scene != scene.name) continue;
     auto renderer = scene.builder.make();
     RenderSettings settings;
     settings.exact_channels = false;
