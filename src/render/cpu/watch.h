@@ -18,7 +18,7 @@ class RenderWatch {
   void tile_done() {
     const int64_t done = done_.fetch_add(1, std::memory_order_relaxed) + 1;
     const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (!progress_ || !lock.owns_lock()) return;
+    if (!progress_ || !lock.owns_lock() || stopped()) return;
     const auto now = std::chrono::steady_clock::now();
     if (now < next_) return;
     next_ = now + std::chrono::milliseconds(100);
