@@ -105,8 +105,11 @@ TEST(Adaptive, ReachesWhatIsAskedFor) {
     const std::string name = scene.name;
     const float error = name == "yard" ? 0.02f : 0.2f;
     const double reached = error_of(adaptive(scene, error, name == "yard" ? 4096 : 1024), &samples);
-    // Rare bright paths make the caustic's error uncertain, in the estimate as in the truth.
-    EXPECT_NEAR(reached / error, 1, name == "caustic" ? 0.5 : 0.3) << name;
+    if (name == "caustic") {  // rare bright paths: better than asked for, or little worse
+      EXPECT_LT(reached / error, 1.3);
+    } else {
+      EXPECT_NEAR(reached / error, 1, 0.3) << name;
+    }
     if (name != "yard") continue;
     // Most of that picture has no noise: fewer samples are enough.
     const int as_many = static_cast<int>(samples + 1);
