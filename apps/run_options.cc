@@ -17,7 +17,13 @@ void RunOptions::add_simulation(CLI::App& command) {
 void RunOptions::add_rendering(CLI::App& command) {
   command.add_option("--camera", cameras, "Camera by name (repeatable); default: all");
   command.add_option("--resolution", resolution, "WIDTHxHEIGHT of every camera");
-  command.add_option("--spp", spp, "Samples per pixel")->check(CLI::Range(1, 65536));
+  command.add_option("--spp", spp, "Samples per pixel; with --error at most, default 4096")
+      ->check(CLI::Range(1, 65536));
+  command
+      .add_option("--error", error,
+                  "Sample each pixel until its standard error is this share of its value, as 0.02; "
+                  "path tier")
+      ->check(CLI::Range(1e-4, 1.0));
   command.add_option("--max-depth", max_depth, "Longest light path, in vertices")
       ->check(CLI::Range(1, 64));
   command.add_option("--tier", tier, "path: unbiased light; direct: fast, one ambient light")
@@ -50,6 +56,10 @@ Result<Scene> RunOptions::load(const std::string& file) {
   if (duration) scene.sim.duration = *duration;
   if (seed) scene.sim.seed = *seed;
   if (timestep) scene.sim.timestep = *timestep;
+  if (error) {
+    scene.render.error = error;
+    scene.render.spp.reset();  // the scene's is a number for every pixel
+  }
   if (spp) scene.render.spp = *spp;
   if (max_depth) scene.render.max_depth = *max_depth;
   if (!tier.empty()) scene.render.tier = tier;

@@ -11,7 +11,7 @@ namespace gloam::cli {
 
 /// Holds what was given; apply() changes the scene accordingly.
 struct RunOptions {
-  std::optional<double> duration, timestep, ev100;
+  std::optional<double> duration, timestep, ev100, error;
   std::optional<uint64_t> seed;
   std::optional<int> spp, max_depth;
   std::string tier, resolution;

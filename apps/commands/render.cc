@@ -19,9 +19,9 @@ struct RenderCommand {
 int render(const RenderCommand& command_line, const Globals& globals) {
   RenderCommand command = command_line;
   constexpr int kStillSamples = 64;
-  if (!command.options.spp) command.options.spp = kStillSamples;
   auto scene = command.options.load(command.file);
   if (!scene.ok()) return fail(scene.error());
+  if (!command.options.spp && !scene->render.error) scene->render.spp = kStillSamples;
   auto world = World::compile(*scene);
   if (!world.ok()) return fail(world.error());
 
@@ -74,11 +74,14 @@ void add_render(CLI::App& app, Globals& globals, Action& action) {
   auto command = std::make_shared<RenderCommand>();
   sub->add_option("FILE", command->file, "Scene or model")->required();
   command->options.add_rendering(*sub);
-  sub->get_option("--output")->description("Channels: rgb depth segmentation normal albedo motion");
+  sub->get_option("--output")
+      ->description("Channels: rgb radiance samples depth segmentation normal albedo motion");
   sub->add_option("--time", command->time, "Simulation time of the picture in seconds")
       ->check(non_negative_number());
   sub->add_option("--out", command->out, "Folder for the pictures; default: here");
-  sub->footer("Example:\n  gloam render robot.xml --camera free --spp 256 --resolution 1280x720");
+  sub->footer(
+      "Examples:\n  gloam render robot.xml --camera free --spp 256 --resolution 1280x720\n"
+      "  gloam render room.toml --error 0.02 --no-denoise --output rgb,radiance,samples");
   sub->callback([&globals, &action, command] {
     action = [&globals, command] { return render(*command, globals); };
   });

@@ -36,6 +36,7 @@ struct CameraFrame {
   std::vector<uint16_t> semantic;  ///< class id of the label table, 0 = nothing, (height x width)
   std::vector<float> normal;       ///< unit, world axes, 0 = nothing, (height x width x 3)
   std::vector<float> albedo;       ///< (height x width x 3), 0..1
+  std::vector<uint32_t> samples;   ///< light paths in the mean of a pixel, (height x width)
   std::vector<float> motion;  ///< optical flow from the previous frame of this camera to this one
                               ///< [px], (height x width x 2)
 };

@@ -176,13 +176,19 @@ struct SimOptions {
 
 /// [render]
 struct RenderOptions {
-  std::string tier = "path";  ///< path | direct (primary hit, direct light and shadows only)
-  int spp = 4;                ///< samples per pixel, 1 … 65536
-  int max_depth = 5;          ///< path vertices after the camera, 1 … 64
+  std::string tier = "path";    ///< path | direct (primary hit, direct light and shadows only)
+  std::optional<int> spp = {};  ///< samples per pixel, 1 … 65536; with `error` at most, from 16
+  /// Of the path tier: each pixel is sampled until its standard error is this share of its value,
+  /// 0.0001 … 1 (docs/light.md); empty = as many samples in every pixel.
+  std::optional<double> error = {};
+  int max_depth = 5;  ///< path vertices after the camera, 1 … 64
   bool denoise = true;
   std::optional<double> ev100 =
       {};  ///< exposure value at ISO 100; empty = the scene's rule (docs/light.md)
   SourceLoc loc = {};
+
+  /// spp, or where it is empty 4, with `error` 4096.
+  int samples() const { return spp.value_or(error ? 4096 : 4); }
 };
 
 /// [record]

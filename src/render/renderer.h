@@ -2,6 +2,7 @@
 // The renderer's face: one World's visuals, moved by PoseFrames, seen by any number of cameras.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -34,7 +35,7 @@ class ViewHistory {
 
 struct RenderSettings {
   RenderTier tier = RenderTier::kPath;
-  int spp = 4;           ///< samples per pixel of this call
+  int spp = 4;           ///< samples per pixel of this call; with `error` at most
   int first_sample = 0;  ///< index of the first of them: calls with disjoint ranges may be averaged
   int max_depth = 5;     ///< path vertices after the camera (Mitsuba's max_depth)
   int roulette_depth = 100;  ///< vertices before Russian roulette starts (Mitsuba's rr_depth)
@@ -46,11 +47,24 @@ struct RenderSettings {
   /// edges, of the pixel's centre elsewhere. 0 = always those of the samples. Needs exact_channels.
   int guide_samples = 0;
   ViewHistory* history = nullptr;  ///< fast tier: of this camera; null = a picture by itself
+  /// Path tier: sampling goes on until the standard error of a pixel's mean is this share of its
+  /// value (render/cpu/adaptive_tile.h), 0 … 1; 0 = `spp` samples in every pixel. Then first_sample
+  /// is 0 and spp at least kLeastAdaptiveSpp.
+  float error = 0;
+  float error_floor = 0;  ///< [cd/m²] darker pixels count as of this value
+  /// Told how much of the picture is done, 0..1, about ten times a second, from the threads that
+  /// render but never by two at once. Returns false to end the render: the film then is unfinished.
+  std::function<bool(double done)> progress = {};
 };
+
+/// Samples of a pixel before its error is looked at.
+inline constexpr int kLeastAdaptiveSpp = 16;
 
 struct RenderStats {
   uint64_t paths = 0, rays = 0;
+  uint64_t unreached = 0;    ///< pixels that had `spp` samples and not yet the error asked for
   double trace_seconds = 0;  ///< wall time of the call [s]
+  bool finished = true;      ///< false: `progress` ended it
 };
 
 /// Not thread-safe; renders with all threads of parallel_for. The RenderDescription must outlive

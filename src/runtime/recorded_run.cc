@@ -109,9 +109,11 @@ RunInfo run_info(const World& world, const RunRequest& request, double timestep,
   info.timestep = timestep;
   info.duration = duration;
   info.settings = {{"tier", scene.render.tier},
-                   {"spp", std::to_string(scene.render.spp)},
+                   {"spp", std::to_string(scene.render.samples())},
                    {"max_depth", std::to_string(scene.render.max_depth)},
                    {"denoise", scene.render.denoise ? "true" : "false"}};
+  if (scene.render.error)
+    info.settings.push_back({"error", fmt::format("{}", *scene.render.error)});
   return info;
 }
 

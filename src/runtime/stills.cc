@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "base/files.h"
+#include "base/log.h"
 #include "gloam/run.h"
 #include "render/film/exr.h"
 #include "render/film/png.h"
@@ -10,6 +11,20 @@
 #include "runtime/run_to_step.h"
 
 namespace gloam {
+namespace {
+
+void tell_what_was_reached(const CameraRequest& request, const CameraFrame& frame,
+                           const RenderStats& stats) {
+  const double pixels =
+      static_cast<double>(frame.intrinsics.width) * static_cast<double>(frame.intrinsics.height);
+  const double unreached = static_cast<double>(stats.unreached) / pixels;
+  log_info("camera {}: {:.0f} samples per pixel; {:.1f} % of the picture is above {:g} % error{}",
+           frame.camera, static_cast<double>(stats.paths) / pixels, 100 * unreached,
+           100 * *request.render.error,
+           unreached > 0 ? fmt::format(" at {} samples", request.render.samples()) : "");
+}
+
+}  // namespace
 
 Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
                                                const std::vector<CameraRequest>& requests,
@@ -37,7 +52,16 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
       return Error{ErrorKind::kInterrupted, "interrupted"};
     }
     GLOAM_TRY(auto sensor, CameraSensor::create(shared->description, requests[i], options.seed));
-    frames.push_back(*sensor->capture(*shared->renderer, shared->mutex, poses, poses, 0));
+    const double share = 1 / static_cast<double>(requests.size());
+    sensor->set_progress([&](double part) {
+      return !progress || progress({"rendering", done + share * part, seconds()});
+    });
+    const auto frame = sensor->capture(*shared->renderer, shared->mutex, poses, poses, 0);
+    if (frame == nullptr) return Error{ErrorKind::kInterrupted, "interrupted"};
+    if (requests[i].render.error) {
+      tell_what_was_reached(requests[i], *frame, sensor->stats());
+    }
+    frames.push_back(*frame);
   }
   return frames;
 }
@@ -66,6 +90,10 @@ Result<std::vector<std::filesystem::path>> write_frame(const CameraFrame& frame,
   if (!frame.rgb.empty()) GLOAM_TRY_STATUS(write(".png", encode_png8(width, height, 3, frame.rgb)));
   if (!frame.radiance.empty())
     GLOAM_TRY_STATUS(write_planes(".exr", frame.radiance, {"R", "G", "B"}));
+  if (!frame.samples.empty()) {
+    const std::vector<float> counts(frame.samples.begin(), frame.samples.end());
+    GLOAM_TRY_STATUS(write_planes("_samples.exr", counts, {"samples"}));
+  }
   if (!frame.depth.empty()) {
     GLOAM_TRY_STATUS(
         write("_depth.png", encode_png16(width, height, depth_to_millimetres(frame.depth))));

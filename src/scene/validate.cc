@@ -128,6 +128,21 @@ Status validate_camera(const CameraOptions& camera) {
   return {};
 }
 
+Status validate_render(const RenderOptions& render) {
+  if (!render.error) return {};
+  if (render.tier != "path") {
+    return Error{ErrorKind::kInput,
+                 fmt::format("'error' of [render] is for the path tier, not for '{}'", render.tier),
+                 render.loc, "give 'spp' alone, or tier = \"path\""};
+  }
+  if (render.samples() < 16) {
+    return Error{ErrorKind::kInput,
+                 fmt::format("'spp' of [render] is {}: too few to tell an error", render.samples()),
+                 render.loc, "with 'error' it is the most samples of a pixel: 16 … 65536"};
+  }
+  return {};
+}
+
 }  // namespace
 
 Status validate_scene(const Scene& scene) {
@@ -139,6 +154,7 @@ Status validate_scene(const Scene& scene) {
   GLOAM_TRY_STATUS(refuse_duplicates(scene.robots, "robot"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.cameras, "camera"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.visuals, "visual"));
+  GLOAM_TRY_STATUS(validate_render(scene.render));
   for (const CameraOptions& camera : scene.cameras) GLOAM_TRY_STATUS(validate_camera(camera));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.lights, "light"));
   for (const LightOptions& light : scene.lights) GLOAM_TRY_STATUS(validate_light(light));

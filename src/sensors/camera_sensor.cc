@@ -47,8 +47,16 @@ Status check_numbers(const CameraRequest& request) {
     return refuse(fmt::format("a picture of {} x {} pixels is not in 1 … {} on both sides", width,
                               height, kMaxSide));
   }
-  if (request.render.spp < 1 || request.render.spp > 65536)
-    return refuse(fmt::format("spp = {} is not in 1 … 65536", request.render.spp));
+  const RenderOptions& render = request.render;
+  const int least = render.error ? kLeastAdaptiveSpp : 1;
+  if (render.samples() < least || render.samples() > 65536) {
+    return refuse(fmt::format("spp = {} is not in {} … 65536{}", render.samples(), least,
+                              render.error ? ", the most samples of a pixel with 'error'" : ""));
+  }
+  if (render.error && !(*render.error >= 1e-4 && *render.error <= 1))
+    return refuse(fmt::format("error = {} is not in 0.0001 … 1", *render.error));
+  if (render.error && render.tier != "path")
+    return refuse("an error to reach is for the path tier alone");
   if (request.render.max_depth < 1 || request.render.max_depth > 64)
     return refuse(fmt::format("max_depth = {} is not in 1 … 64", request.render.max_depth));
   return {};
@@ -106,7 +114,7 @@ Result<CameraChannels> CameraChannels::parse(const std::vector<std::string>& nam
       {"rgb", &channels.rgb},       {"radiance", &channels.radiance},
       {"depth", &channels.depth},   {"normal", &channels.normal},
       {"albedo", &channels.albedo}, {"segmentation", &channels.segmentation},
-      {"motion", &channels.motion}};
+      {"motion", &channels.motion}, {"samples", &channels.samples}};
   std::vector<std::string> all;
   for (const auto& entry : known) all.push_back(entry.first);
   for (const std::string& name : names) {
@@ -155,7 +163,13 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
                  {},
                  "one of: path, fast, direct"};
   }
-  settings.spp = channels.light() ? request.render.spp : 0;
+  settings.spp = channels.light() ? request.render.samples() : 0;
+  if (request.render.error && channels.light()) {
+    // Darker than this share of the display's top, an error shows less and less (docs/light.md).
+    constexpr float kFloor = 0.05f;
+    settings.error = static_cast<float>(*request.render.error);
+    settings.error_floor = kFloor * max_luminance(sensor->ev100_);
+  }
   settings.max_depth = request.render.max_depth;
   settings.roulette_depth = 3;  // unbiased, and dim paths are a third of all rays in a room
   settings.seed = hash_bytes(request.camera.data(), request.camera.size(), seed);
@@ -199,8 +213,9 @@ std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
       history_ = renderer.make_history();
       settings_.history = history_.get();
     }
-    renderer.render(view, settings_, &film_);
+    stats_ = renderer.render(view, settings_, &film_);
   }
+  if (!stats_.finished) return nullptr;
   auto frame = std::make_shared<CameraFrame>();
   convert(now, frame_index, view, frame.get());
   return frame;
@@ -221,6 +236,10 @@ void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const Came
     if (channels_.rgb)
       tone_map(*radiance, film_.width, film_.height, {.ev100 = ev100_}, &frame->rgb);
     if (channels_.radiance) frame->radiance = flatten(*radiance);
+    if (channels_.samples) {
+      frame->samples = film_.sample_count;
+      frame->samples.resize(film_.pixel_count(), static_cast<uint32_t>(settings_.spp));
+    }
   }
   if (channels_.depth) frame->depth = film_.depth;
   if (channels_.normal) frame->normal = flatten(film_.center_normal);

@@ -2,9 +2,11 @@
 // A camera: an instant's poses in, one CameraFrame out. Every channel is of the same rays; the
 // picture is a pure function of (World, seed, camera, frame index, poses).
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "gloam/camera.h"
@@ -19,10 +21,10 @@ namespace gloam {
 
 /// Which channels of a CameraFrame are filled.
 struct CameraChannels {
-  bool rgb = false, radiance = false, depth = false, segmentation = false;
+  bool rgb = false, radiance = false, samples = false, depth = false, segmentation = false;
   bool normal = false, albedo = false, motion = false;
   static Result<CameraChannels> parse(const std::vector<std::string>& names);
-  bool light() const { return rgb || radiance; }
+  bool light() const { return rgb || radiance || samples; }
   bool geometry() const { return depth || segmentation || normal || albedo || motion; }
 };
 
@@ -35,10 +37,17 @@ class CameraSensor {
 
   /// Renders the instant of `now`. `renderer_mutex` is held while the shared renderer works, not
   /// while this sensor denoises and converts. `previous` is the instant of the frame before, for
-  /// motion.
+  /// motion. Null if the progress callback ended it.
   std::shared_ptr<const CameraFrame> capture(Renderer& renderer, std::mutex& renderer_mutex,
                                              const PoseFrame& now, const PoseFrame& previous,
                                              int64_t frame_index);
+
+  /// Of each picture's rendering, see RenderSettings::progress.
+  void set_progress(std::function<bool(double done)> progress) {
+    settings_.progress = std::move(progress);
+  }
+  /// Of the last picture.
+  const RenderStats& stats() const { return stats_; }
 
   const Intrinsics& intrinsics() const { return intrinsics_; }
   const Rational& rate() const { return rate_; }
@@ -55,6 +64,7 @@ class CameraSensor {
   const int camera_;
   const CameraChannels channels_;
   RenderSettings settings_;
+  RenderStats stats_;
   Intrinsics intrinsics_;
   Rational rate_;
   float ev100_ = 0;

@@ -4,16 +4,19 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numeric>
 
 #include "base/check.h"
 #include "base/log.h"
 #include "base/parallel.h"
+#include "render/cpu/adaptive_tile.h"
 #include "render/cpu/ambient.h"
 #include "render/cpu/edge_samples.h"
 #include "render/cpu/embree_scene.h"
 #include "render/cpu/fast_tier.h"
 #include "render/cpu/light_guide.h"
 #include "render/cpu/tile.h"
+#include "render/cpu/watch.h"
 
 namespace gloam {
 namespace {
@@ -39,12 +42,21 @@ void resize_film(const CameraView& view, const RenderSettings& settings, Film* f
   film->albedo.resize(n);
   film->normal.resize(n);
   film->variance.resize(settings.variance ? n : 0);
+  film->sample_count.resize(settings.error > 0 ? n : 0);
   film->depth.resize(exact);
   film->distance.resize(exact);
   film->part.resize(exact);
   film->center_normal.resize(exact);
   film->center_albedo.resize(exact);
   film->motion.resize(exact);
+}
+
+/// Tile `i` of the order in which tiles are rendered: far apart, so that those which are done tell
+/// how long the others will take. A bijection: the step has no divisor in common with `tiles`.
+int64_t scattered(int64_t i, int64_t tiles) {
+  int64_t step = static_cast<int64_t>(0.6180339887 * static_cast<double>(tiles)) | 1;
+  while (std::gcd(step, tiles) != 1) ++step;
+  return i * step % tiles;
 }
 
 class CpuRenderer final : public Renderer {
@@ -93,31 +105,32 @@ class CpuRenderer final : public Renderer {
     job.film = film;
     job.has_motion = job.camera.pose.moving || scene_->has_motion();
     job.centered = settings.tier == RenderTier::kDirect && settings.spp == 1 && !job.has_motion;
-    while ((int64_t{1} << job.log2_samples) < int64_t{settings.first_sample} + settings.spp) {
-      ++job.log2_samples;
-    }
-    const int columns = (film->width + kTile - 1) / kTile,
-              rows = (film->height + kTile - 1) / kTile;
-    tiles_.assign(static_cast<size_t>(columns) * rows, {});
-    parallel_for("render tiles", static_cast<int64_t>(tiles_.size()), [&](int64_t tile) {
-      const FlushDenormals flush;
-      const int x0 = static_cast<int>(tile % columns) * kTile;
-      const int y0 = static_cast<int>(tile / columns) * kTile;
-      Tile pixels(job, x0, y0);
-      if (settings.tier == RenderTier::kDirect) {
-        pixels.render_direct();
-      } else {
-        pixels.render_path();
-      }
-      if (settings.exact_channels) pixels.render_channels();
-      pixels.store_means(&tiles_[tile]);
+    const bool adaptive = settings.error > 0;
+    GLOAM_CHECK(!adaptive || (settings.tier == RenderTier::kPath && settings.first_sample == 0 &&
+                              settings.spp >= kLeastAdaptiveSpp),
+                "adaptive sampling is of the path tier, from sample 0, of 16 and more");
+    const int64_t samples =
+        adaptive ? settings.spp / 2 : int64_t{settings.first_sample} + settings.spp;
+    while ((int64_t{1} << job.log2_samples) < samples) ++job.log2_samples;
+    columns_ = (film->width + kTile - 1) / kTile;
+    tiles_.assign(static_cast<size_t>(columns_) * ((film->height + kTile - 1) / kTile), {});
+    const int64_t count = static_cast<int64_t>(tiles_.size());
+    const AdaptivePlan plan = adaptive ? look(job) : AdaptivePlan();
+    RenderWatch watch(settings.progress, count);
+    for_tiles(count, [&](int64_t i) {
+      if (watch.stopped()) return;
+      const int64_t tile = settings.progress ? scattered(i, count) : i;
+      render_tile(job, tile, plan);
+      watch.tile_done();
     });
     RenderStats total;
     for (const RenderStats& tile : tiles_) {
       total.paths += tile.paths;
       total.rays += tile.rays;
+      total.unreached += tile.unreached;
     }
-    if (settings.spp > 0 && settings.spp < settings.guide_samples) {
+    total.finished = !watch.stopped();
+    if (total.finished && settings.spp > 0 && settings.spp < settings.guide_samples) {
       GLOAM_CHECK(settings.exact_channels, "guide samples need the exact channels");
       total.rays += refine_guides({job.scene, job.tracer, job.camera, job.has_motion},
                                   settings.guide_samples, film);
@@ -132,9 +145,55 @@ class CpuRenderer final : public Renderer {
   }
 
  private:
+  template <class F>
+  static void for_tiles(int64_t count, const F& f) {
+    parallel_for("render tiles", count, [&](int64_t i) {
+      const FlushDenormals flush;
+      f(i);
+    });
+  }
+  int x_of(int64_t tile) const { return static_cast<int>(tile % columns_) * kTile; }
+  int y_of(int64_t tile) const { return static_cast<int>(tile / columns_) * kTile; }
+
+  AdaptivePlan look(const Job& job) {
+    std::vector<double> deviations(tiles_.size());
+    std::vector<int> pixels(tiles_.size());
+    for_tiles(static_cast<int64_t>(tiles_.size()), [&](int64_t tile) {
+      const auto i = static_cast<size_t>(tile);
+      deviations[i] = look_adaptive(job, x_of(tile), y_of(tile), &tiles_[i]);
+      pixels[i] = std::min(kTile, job.film->width - x_of(tile)) *
+                  std::min(kTile, job.film->height - y_of(tile));
+    });
+    return plan_adaptive(job.settings, deviations, pixels);
+  }
+
+  void render_tile(const Job& job, int64_t tile, const AdaptivePlan& plan) {
+    const RenderSettings& settings = job.settings;
+    RenderStats* stats = &tiles_[static_cast<size_t>(tile)];
+    const int x0 = x_of(tile), y0 = y_of(tile);
+    if (settings.error > 0) {
+      render_adaptive(job, x0, y0, plan, stats);
+      if (settings.exact_channels) {
+        Tile pixels(job, x0, y0);
+        pixels.render_channels();
+        stats->rays += pixels.rays();
+      }
+      return;
+    }
+    Tile pixels(job, x0, y0);
+    if (settings.tier == RenderTier::kDirect) {
+      pixels.render_direct();
+    } else {
+      pixels.render_path({settings.seed, settings.first_sample, settings.spp});
+    }
+    if (settings.exact_channels) pixels.render_channels();
+    pixels.store_means(stats);
+  }
+
   std::unique_ptr<RenderScene> scene_;
   std::unique_ptr<EmbreeScene> embree_;
   std::vector<RenderStats> tiles_;
+  int columns_ = 0;  ///< of tiles
   std::vector<LightView> guided_lights_;
   LightGuideStore guide_;
   bool updated_ = false, has_guide_ = false;

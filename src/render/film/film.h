@@ -10,8 +10,9 @@ namespace gloam {
 
 struct Film {
   int width = 0, height = 0;
-  std::vector<Vec3f> radiance;  ///< mean over samples, linear Rec. 709 [cd/m²]
-  std::vector<Vec3f> variance;  ///< of that mean, per channel; empty unless asked for
+  std::vector<Vec3f> radiance;         ///< mean over samples, linear Rec. 709 [cd/m²]
+  std::vector<Vec3f> variance;         ///< of that mean, per channel; empty unless asked for
+  std::vector<uint32_t> sample_count;  ///< in that mean; empty where every pixel has as many
   // Guides for a denoiser; means over samples, unless RenderSettings::guide_samples asks for
   // better.
   std::vector<Vec3f> albedo;  ///< 0..1; sky: 0

@@ -221,6 +221,18 @@ TEST_F(CameraSensorTest, WhatItCannotDoIsAnError) {
       {"-64 x 48", [](CameraRequest& r) { r.width = -64; }},
       {"16385", [](CameraRequest& r) { r.height = 16385; }},
       {"spp", [](CameraRequest& r) { r.render.spp = 65537; }},
+      {"error", [](CameraRequest& r) { r.render.error = 0; }},
+      {"error", [](CameraRequest& r) { r.render.error = std::nan(""); }},
+      {"path tier",
+       [](CameraRequest& r) {
+         r.render.tier = "direct";
+         r.render.spp = 64;
+         r.render.error = 0.1;
+       }},
+      {"16", [](CameraRequest& r) {
+         r.render.spp = 15;
+         r.render.error = 0.1;
+       }},
       {"max_depth", [](CameraRequest& r) { r.render.max_depth = -1; }},
   };
   for (const Case& one : cases) {

@@ -1,0 +1,179 @@
+// A tile's paths in lanes, or in waves of single rays traced in packets.
+
+#include "render/cpu/tile.h"
+
+#include <algorithm>
+#include <memory>
+
+#include "render/cpu/wave.h"
+#include "render/kernel/direct.h"
+
+namespace gloam {
+namespace {
+
+/// Samples of a pixel that run side by side in lanes, at most: their rays keep together.
+constexpr int kTogether = 4;
+
+struct CenterState {
+  Ray ray;
+  bool any = false;
+};
+
+}  // namespace
+
+void store_channels(Film* film, size_t pixel, const ExactChannels& c) {
+  film->depth[pixel] = c.depth;
+  film->distance[pixel] = c.distance;
+  film->part[pixel] = c.part;
+  film->center_normal[pixel] = c.normal;
+  film->center_albedo[pixel] = c.albedo;
+  film->motion[pixel] = c.motion;
+}
+
+template <class State, class Start, class Advance, class Finish>
+void Tile::sample(Wave<State>* wave, int index, const Start& start, const Advance& advance,
+                  const Finish& finish) {
+  const RenderSettings& settings = job_.settings;
+  wave->count = count_;
+  for (int i = 0; i < count_; ++i) {
+    Sampler sampler = Sampler::make(
+        settings.seed, settings.frame, static_cast<uint32_t>(x_[i]), static_cast<uint32_t>(y_[i]),
+        static_cast<uint32_t>(settings.first_sample + index), job_.log2_samples);
+    Vec2f offset;
+    float time = 0;
+    if (!job_.centered) {
+      offset = sample_pixel_filter(sampler.next_2d());
+      if (job_.has_motion) time = sampler.next_1d();
+    }
+    RayCone cone;
+    const Ray ray = center_ray(i, offset, time, &cone);
+    start(&wave->states[i], ray, cone, sampler);
+  }
+  wave->run(job_.scene, job_.tracer, advance);
+  for (int i = 0; i < count_; ++i) {
+    mean_[i].add(wave->states[i].result);
+    rays_ += wave->states[i].result.rays;
+    finish(i, wave->states[i]);
+  }
+}
+
+void Tile::render_path(const SampleRange& range) {
+  for (int done = 0; done < range.count; done += kTogether) {
+    const int together = std::min(kTogether, range.count - done);
+    for (int first = 0; first < count_ * together; first += kLaneCount) {
+      sample_lanes(first, {range.seed, range.first + done, together});
+    }
+  }
+}
+
+void Tile::render_direct() {
+  const auto wave = std::make_unique<Wave<DirectState>>();
+  for (int index = 0; index < job_.settings.spp; ++index) {
+    sample(
+        wave.get(), index, direct_start,
+        [this](DirectState* state, bool found, const RayHit& hit) {
+          return direct_advance(job_.scene, state, found, hit);
+        },
+        [this](int i, const DirectState& state) {
+          known_[i] =
+              job_.centered && (state.layers == 0 || (state.layers == 1 && state.has_first));
+          center_found_[i] = state.has_first;
+          center_hit_[i] = state.first;
+        });
+  }
+}
+
+void Tile::render_channels() {
+  const auto wave = std::make_unique<Wave<CenterState>>();
+  for (int i = 0; i < count_; ++i) {
+    RayCone cone;
+    wave->states[i].ray = center_ray(i, {}, 0, &cone);
+    if (!known_[i]) wave->alive[wave->count++] = i;
+  }
+  const int traced = wave->count;
+  std::copy(wave->alive, wave->alive + traced, trace_list_);
+  wave->trace_closest(job_.tracer);
+  rays_ += static_cast<uint64_t>(traced);
+  for (int j = 0; j < traced; ++j) {
+    center_found_[trace_list_[j]] = wave->found[trace_list_[j]];
+    center_hit_[trace_list_[j]] = wave->hits[trace_list_[j]];
+  }
+  for (int i = 0; i < count_; ++i) store(i, wave->states[i].ray);
+}
+
+void Tile::store_means(RenderStats* stats) const {
+  Film& film = *job_.film;
+  for (int i = 0; i < count_; ++i) {
+    const size_t pixel = pixel_of(i);
+    film.radiance[pixel] = mean_[i].radiance;
+    film.albedo[pixel] = mean_[i].albedo;
+    film.normal[pixel] = mean_[i].normal;
+    if (job_.settings.variance) film.variance[pixel] = mean_[i].variance();
+  }
+  stats->paths = static_cast<uint64_t>(count_) * static_cast<uint64_t>(job_.settings.spp);
+  stats->rays = rays_;
+}
+
+/// Paths from the one on that is `first` when each pixel has all samples of `range`.
+void Tile::sample_lanes(int first, const SampleRange& range) {
+  using F = FloatLanes;
+  const int together = range.count;
+  const int used = std::min(kLaneCount, count_ * together - first);
+  MaskLanes active = false;
+  UintLanes x, y, sample;
+  int pixel[kLaneCount];
+  for (int i = 0; i < kLaneCount; ++i) {
+    const int path = first + std::min(i, used - 1);
+    pixel[i] = path / together;
+    set_lane(&active, i, i < used);
+    set_lane(&x, i, static_cast<uint32_t>(x_[pixel[i]]));
+    set_lane(&y, i, static_cast<uint32_t>(y_[pixel[i]]));
+    set_lane(&sample, i, static_cast<uint32_t>(range.first + path % together));
+  }
+  auto sampler =
+      SamplerOf<F>::make(range.seed, job_.settings.frame, x, y, sample, job_.log2_samples);
+  const Vec2Of<F> filter = sampler.next_2d();
+  const F time = job_.has_motion ? sampler.next_1d() : F(0.0f);
+  RayOf<F> ray;
+  ray.time = time;
+  F width, spread;
+  for (int i = 0; i < kLaneCount; ++i) {
+    RayCone cone;
+    const Ray one =
+        center_ray(pixel[i], sample_pixel_filter(lane(filter, i)), lane(time, i), &cone);
+    set_lane(&ray.o, i, one.o);
+    set_lane(&ray.d, i, one.d);
+    set_lane(&width, i, cone.width);
+    set_lane(&spread, i, cone.spread);
+  }
+  const PathResultOf<F> result =
+      trace_path(job_.scene, job_.tracer, ray, width, spread, job_.path, sampler, active);
+  for (int i = 0; i < used; ++i) {
+    mean_[pixel[i]].add({lane(result.radiance, i), lane(result.albedo, i), lane(result.normal, i),
+                         lane(result.rays, i)});
+    rays_ += lane(result.rays, i);
+  }
+}
+
+void Tile::store(int i, const Ray& ray) {
+  RayCone cone;
+  center_ray(i, {}, 0, &cone);
+  if (!center_found_[i]) {
+    store_channels(job_.film, pixel_of(i), describe_sky(job_.camera, ray));
+    return;
+  }
+  Surface s = make_surface(job_.scene, ray, center_hit_[i], cone);
+  if (!shows(job_.scene, s)) {
+    uint32_t rays = 0;
+    const bool found = find_first(job_.scene, job_.tracer, ray, cone, &s, &center_hit_[i], &rays);
+    rays_ += rays;
+    if (!found) {
+      store_channels(job_.film, pixel_of(i), describe_sky(job_.camera, ray));
+      return;
+    }
+  }
+  store_channels(job_.film, pixel_of(i),
+                 describe_surface(job_.scene, job_.camera, ray, s, center_hit_[i]));
+}
+
+}  // namespace gloam

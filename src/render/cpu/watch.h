@@ -1,0 +1,37 @@
+#pragma once
+// Lets a caller watch a render and end it: counts finished tiles from many threads.
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <mutex>
+
+namespace gloam {
+
+class RenderWatch {
+ public:
+  RenderWatch(std::function<bool(double)> progress, int64_t tiles)
+      : progress_(std::move(progress)), tiles_(tiles) {}
+
+  bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
+  /// One more tile is finished.
+  void tile_done() {
+    const int64_t done = done_.fetch_add(1, std::memory_order_relaxed) + 1;
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (!progress_ || !lock.owns_lock() || stopped()) return;
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_) return;
+    next_ = now + std::chrono::milliseconds(100);
+    if (!progress_(static_cast<double>(done) / static_cast<double>(tiles_))) stopped_ = true;
+  }
+
+ private:
+  const std::function<bool(double)> progress_;
+  const int64_t tiles_;
+  std::atomic<int64_t> done_{0};
+  std::atomic<bool> stopped_{false};
+  std::mutex mutex_;
+  std::chrono::steady_clock::time_point next_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace gloam
