@@ -85,7 +85,8 @@ GLOAM_HD PathResultOf<F> trace_path(const SceneView& scene, const Tracer& tracer
     Mask found = tracer.closest(path.ray, active, coherent, &hit);
     const Mask scattered = path.pdf_bsdf > 0.0f;
     if (scene.has_visible_lights && any(active & scattered)) {
-      const Vec2Of<F> u = scene.media.volumes.empty() ? Vec2Of<F>{} : path.sampler.next_2d(active);
+      Vec2Of<F> u;
+      if (!scene.media.volumes.empty()) u = path.sampler.next_2d(active & scattered);
       const Vec3Of<F> lamps = visible_lights(
           scene, path.ray, select(found, hit.t, F(1e30f)), path.from, path.picker, path.pdf_bsdf,
           active & scattered, [&](int i, float t) {
