@@ -1,0 +1,1 @@
+"""Glass, sheets and gaps."""
