@@ -51,10 +51,11 @@ class Lobe(mi.BSDF):
     def __init__(self, props):
         mi.BSDF.__init__(self, props)
         p = json.loads(props["parameters"])
-        self.scale = {name: 1.0 for name in LOBES} | p["scales"]
-        unknown = set(self.scale) - set(LOBES)
+        scales = {name: 1.0 for name in LOBES} | p["scales"]
+        unknown = set(scales) - set(LOBES)
         if unknown:
             raise ValueError(f"there are no lobes {unknown}")
+        self.scale = {name: dr.opaque(mi.Float, scale) for name, scale in scales.items()}  # no kernel of its own for each
         color = mi.Color3f(p["color"])
         self.color, self.metallic, self.f90 = color, p["metallic"], min(2 * p["specular"], 1)
         self.ior = p.get("ior", 1.5)

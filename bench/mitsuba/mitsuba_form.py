@@ -59,7 +59,7 @@ def shape_dict(shape, mesh_file):
         out["emitter"] = {"type": "area", "radiance": light}
     if material.layers.get("transmission_depth", 0) > 0:
         density = [-math.log(t) / material.layers["transmission_depth"] for t in material.layers["transmission_color"]]
-        out["interior"] = {"type": "homogeneous", "albedo": 0.0, "sigma_t": rgb(density)}
+        out["interior"] = {"type": "homogeneous", "albedo": 0.0, "scale": max(density), "sigma_t": rgb(scaled(density, 1 / max(density)))}
     return out
 
 

@@ -1,8 +1,8 @@
 """Renders scenes with Mitsuba 3 (llvm_ad_rgb): means over blocks of pixels, in independent batches.
 
 Needs: pip install mitsuba numpy; DRJIT_LIBLLVM_PATH. Called by judge.py, one process for many pictures:
-    python mitsuba_render.py FOLDER < JSON lines {"scene": …, "scaled": name of what is scaled by 1.03 or "", "batches": …, "share": of the spp}
-Writes FOLDER/SCENE[.SCALED].blocks in the format of bench/path_blocks.cc and prints a line as each is done.
+    python mitsuba_render.py FOLDER < JSON lines {"scene": …, "scaled": name of what is scaled by 3 % or "", "batches": …}
+Writes FOLDER/SCENE.SCALED.mitsuba in the format of bench/path_blocks.cc and prints a line with "file" as each is done.
 """
 import json
 import sys
@@ -38,18 +38,17 @@ def render_batch(scene, spp, seed):
     return light.mean(axis=3, dtype=np.float64).transpose(1, 2, 0)
 
 
-def render(name, scaled, batches, share, folder):
+def render(name, scaled, batches, path):
     description = scenes.ALL[name].describe(Scales(scaled))
-    scene = mitsuba_form.load(description, folder)
+    scene = mitsuba_form.load(description, path.parent)
     width, height = SIZE
-    spp = max(1, round(description.reference_spp * share))
+    spp = description.reference_spp
     blocks, picture = [], np.zeros((height, width, 3))
     for seed in range(batches):
         one = render_batch(scene, spp, seed)
         picture += one / batches
         blocks.append(one.reshape(height // BLOCK, BLOCK, width // BLOCK, BLOCK, 3).mean(axis=(1, 3)))
-    header = {"width": width, "height": height, "block": BLOCK, "batches": batches, "spp": spp}
-    path = folder / (f"{name}.{scaled}.blocks" if scaled else f"{name}.blocks")
+    header = {"width": width, "height": height, "block": BLOCK, "batches": batches, "spp": spp, "mitsuba": mi.__version__}
     path.write_bytes(json.dumps(header).encode() + b"\n" + np.array(blocks, np.float32).tobytes() + picture.astype(np.float32).tobytes())
 
 
@@ -57,7 +56,8 @@ def main():
     folder = Path(sys.argv[1])
     for line in sys.stdin:
         job, start = json.loads(line), time.time()
-        render(job["scene"], job["scaled"], job["batches"], job["share"], folder)
+        job["file"] = f"{job['scene']}.{job['scaled']}.mitsuba"
+        render(job["scene"], job["scaled"], job["batches"], folder / job["file"])
         print(json.dumps({**job, "seconds": round(time.time() - start, 1)}), flush=True)
 
 

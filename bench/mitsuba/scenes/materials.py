@@ -5,9 +5,9 @@ from description import Scene, scaled
 from scenes.registry import scene
 
 
-def on_floor(k, spp=32, floor=(0.3, 0.3, 0.3), **more):
+def on_floor(k, floor=(0.3, 0.3, 0.3), **more):
     """A matt floor under an even sky and a panel from above: what most lobes are judged in."""
-    s = Scene(eye=(0, -4.2, 2.2), target=(0, 0, 0.55), fovy=38, max_depth=8, spp=spp, **more)
+    s = Scene(eye=(0, -4.2, 2.2), target=(0, 0, 0.55), fovy=38, max_depth=8, **more)
     s.sky(150, 170, 190)
     s.box(s.material("floor", color=floor, native="diffuse"), (0, 0, -0.05), (4, 4, 0.05))
     panel = s.material("panel", color=(0.8, 0.8, 0.8), emission=400 * k("panel"), native="diffuse")
@@ -24,7 +24,7 @@ def trio(s, materials):
 
 @scene("matt walls, inter-reflection, an emitting box")
 def diffuse(k):
-    s = Scene(eye=(0, -3.3, 1), target=(0, 0, 1), fovy=44, max_depth=24, spp=48)
+    s = Scene(eye=(0, -3.3, 1), target=(0, 0, 1), fovy=44, max_depth=24)
     white = s.material("white", color=scaled((0.7, 0.7, 0.7), k("white")), native="diffuse")
     red = s.material("red", color=scaled((0.6, 0.1, 0.08), k("red")), native="diffuse")
     green = s.material("green", color=scaled((0.12, 0.5, 0.15), k("green")), native="diffuse")
@@ -89,18 +89,21 @@ def fuzz(k):
     return s
 
 
-def tube(center, radius, half, turn, steps=48):
-    """Triangles of an upright cylinder's side with smooth normals; u runs around, v up."""
-    def corner(i, up):
-        angle = turn + 2 * math.pi * i / steps
+def tin(center, radius, half, steps=48):
+    """Triangles of an upright closed cylinder, smooth around; u runs around the side and along x on the lid, v up and along y."""
+    def side(i, up):
+        angle = 0.1 + 2 * math.pi * i / steps
         normal = (math.cos(angle), math.sin(angle), 0)
         at = tuple(c + radius * n for c, n in zip(center, normal))
         return (at[0], at[1], center[2] + (half if up else -half)), normal, (i / steps, float(up))
 
+    def lid(at):
+        return at, (0, 0, 1), (at[0] - center[0], at[1] - center[1])
+
     corners = []
     for i in range(steps):
-        a, b, c, d = corner(i, False), corner(i + 1, False), corner(i + 1, True), corner(i, True)
-        corners += [a, b, c, a, c, d]
+        a, b, c, d = side(i, False), side(i + 1, False), side(i + 1, True), side(i, True)
+        corners += [a, b, c, a, c, d, lid((center[0], center[1], center[2] + half)), lid(d[0]), lid(c[0])]
     return corners
 
 
@@ -110,5 +113,5 @@ def anisotropy(k):
     for i, (x, rough, layers) in enumerate([(-1.1, 0.4, {"anisotropy": 0.8}), (0, 0.5, {"anisotropy": 0.6, "anisotropy_rotation": 0.125}),
                                             (1.1, 0.3, {"anisotropy": 0.9, "anisotropy_rotation": 0.25})]):
         brushed = s.material(f"brushed{i}", color=(0.8, 0.75, 0.7), metallic=1.0, roughness=rough, layers=layers, lobes=k.lobe("metal"))
-        s.mesh(brushed, tube((x, 0, 0.7), 0.45, 0.7, 0.1))
+        s.mesh(brushed, tin((x, 0, 0.7), 0.45, 0.7))
     return s

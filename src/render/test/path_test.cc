@@ -20,7 +20,8 @@ Mean furnace(ShapeType shape, const MaterialDescription& material, int depth) {
   SceneBuilder b;
   Image8 face{1, 1, 3, ColorSpace::kLinear, {255, 255, 255}};
   b.description.textures.push_back({"sky", std::vector<Image8>(6, face)});
-  b.description.sky = {0, 1.0f, {}};
+  b.description.sky.texture = 0;
+  b.description.sky.scale = 1;
   const int m = b.add_material(material);
   if (shape == ShapeType::kMesh) {
     b.add(shape, {}, {}, m, 0, b.add_mesh(make_ball(24)));
