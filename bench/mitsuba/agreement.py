@@ -46,7 +46,7 @@ class Agreement:
 
     def __str__(self):
         return (f"{self.share:.1%} of blocks, chi-square {self.chi_square:.2f}, picture z {self.picture_z:+.1f}, "
-                f"difference {100 * self.difference:+.3f} %")
+                f"difference {100 * self.difference:+.3f} %, errors up to {100 * self.ours:.2f} and {100 * self.theirs:.2f} %")
 
 
 def read(path):

@@ -57,6 +57,7 @@ class Scene:
         self.spp, self.reference_spp = spp, reference_spp  # per batch
         self.materials, self.shapes, self.lights = [], [], []
         self.sky_bytes = None       # display colour of the sky, 8 bits a channel
+        self.sky_scale = 1.0        # in Mitsuba alone
         self.headlight = None       # MJCF's diffuse
 
     def material(self, name, **what):
@@ -75,19 +76,19 @@ class Scene:
     def light(self, kind, intensity, **what):
         self.lights.append(Light(kind, intensity, **what))
 
-    def sky(self, *display):
+    def sky(self, k, *display):
         """Even light from all around; MJCF has it as 8-bit display colours, of which 255 is 100 cd/m²."""
-        self.sky_bytes = display
+        self.sky_bytes, self.sky_scale = display, k.lobe("sky")["sky"]
 
     @property
     def sky_radiance(self):
-        return tuple(100 * linear(byte / 255) for byte in self.sky_bytes)
+        return tuple(100 * linear(byte / 255) for byte in self.sky_bytes or (0, 0, 0))
 
 
 class Scales:
     """What a scene asks for the scale of each of its lobes and lights. Remembers the names."""
 
-    def __init__(self, scaled="", factor=1.03):
+    def __init__(self, scaled="", factor=0.97):
         self.scaled, self.factor, self.inputs, self.lobes = scaled, factor, [], []
 
     def __call__(self, name):

@@ -207,6 +207,8 @@ class Lobe(mi.BSDF):
                     mirrors = left < chance * self._reflects(dr.dot(v, h), eta)
                     way = dr.select(mirrors, way, bent)
                     mine &= dr.select(mirrors, way.z > 0, way.z < 0)
+                else:
+                    mine &= way.z > 0  # below, others have a density
             l = dr.select(mine, way, l)
             open_ &= ~(left < chance)
             left -= chance

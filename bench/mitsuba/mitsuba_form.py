@@ -18,16 +18,17 @@ def rgb(color):
 
 def load(scene, folder):
     """mi.Scene; meshes go through files in `folder`."""
+    sky = scaled(scene.sky_radiance, scene.sky_scale)
     out = {"type": "scene", "integrator": integrator(scene), "sensor": sensor(scene)}
     for i, shape in enumerate(scene.shapes):
         out[f"shape{i}"] = shape_dict(shape, folder / f"mitsuba_mesh{i}.obj")
     for i, light in enumerate(scene.lights):
-        out[f"light{i}"] = light_dict(light)
+        out[f"light{i}"] = light_dict(light, sky)
     if scene.headlight is not None:  # docs/light.md
         out["headlight"] = {"type": "directional", "direction": list(normalize(subtract(scene.target, scene.eye))),
                             "irradiance": rgb(scaled(scene.headlight, 100 * math.pi))}
     if scene.sky_bytes:
-        out["sky"] = {"type": "constant", "radiance": rgb(scene.sky_radiance)}
+        out["sky"] = {"type": "constant", "radiance": rgb(sky)}
     return mi.load_dict(out)
 
 
@@ -77,7 +78,8 @@ def bitmap(rows, factor=(1, 1, 1), display=True):
 def bsdf_dict(m):
     out = native_dict(m) if m.native else lobe_dict(m)
     if "normal" in m.maps:
-        out = {"type": "normalmap", "normalmap": bitmap(m.maps["normal"], display=False), "bsdf": out}
+        out = {"type": "normalmap", "normalmap": bitmap(m.maps["normal"], display=False), "bsdf": out,
+               "use_shadowing_function": False, "flip_invalid_normals": False}
     if m.native in ("diffuse", "mirror"):
         out = {"type": "twosided", "bsdf": out}
     if "opacity" in m.maps:
@@ -107,19 +109,20 @@ def lobe_dict(m):
     return {"type": "gloam_lobe", "parameters": json.dumps(parameters)}
 
 
-def light_dict(light):
+def light_dict(light, behind):
+    """`behind`: radiance of the sky, which a far disc would hide."""
     if light.kind == "spot":
         return {"type": "gloam_spot", "position": list(light.position), "direction": list(normalize(light.direction)),
                 "intensity_rgb": list(light.intensity), "cutoff": light.cutoff, "inner": light.cutoff * (1 - light.softness)}
-    radius, place = light.radius, list(light.position)
+    radius, place, hidden = light.radius, list(light.position), (0, 0, 0)
     if light.kind == "directional":
         axis = normalize(light.direction)
         if radius == 0:
             return {"type": "directional", "direction": list(axis), "irradiance": rgb(light.intensity)}
-        radius, place, squared = FAR * radius, [-FAR * x for x in axis], radius**2
+        radius, place, squared, hidden = FAR * radius, [-FAR * x for x in axis], radius**2, behind
     elif radius == 0:
         return {"type": "point", "position": place, "intensity": rgb(light.intensity)}
     else:
         squared = radius**2
     return {"type": "sphere", "center": place, "radius": radius, "bsdf": {"type": "diffuse", "reflectance": 0.0},
-            "emitter": {"type": "area", "radiance": rgb(scaled(light.intensity, 1 / (math.pi * squared)))}}
+            "emitter": {"type": "area", "radiance": rgb(i / (math.pi * squared) + h for i, h in zip(light.intensity, hidden))}}

@@ -11,7 +11,7 @@ from scenes.registry import scene
 @scene("white furnace: no white thing differs from the even sky", exact=lambda s: closed_form.even(s, s.sky_radiance))
 def furnace(k):
     s = Scene(eye=(0, -5, 1.6), target=(0, 0, 0), fovy=30, max_depth=64)
-    s.sky(188, 188, 188)
+    s.sky(k, 188, 188, 188)
     white = {"color": (1, 1, 1)}
     materials = [s.material("matt", native="diffuse", **white),
                  s.material("mirror", metallic=1.0, roughness=0.0, native="mirror", **white),
@@ -120,7 +120,7 @@ def pane_radiance(s):
 @scene("the even sky in and through a tinted pane: Fresnel's formulas", exact=pane_radiance)
 def pane_in_sky(k):
     s = Scene(eye=(0.0, -1.0, 0), target=(0.6, 0, 0.1), fovy=70, max_depth=4)
-    s.sky(200, 180, 160)
+    s.sky(k, 200, 180, 160)
     pane = s.material("pane", color=(1, 1, 1), roughness=0.0, native="pane", lobes=k.lobe("reflection"),
                       layers={"transmission_weight": 1, "thin_walled": True, "ior": 1.6, "transmission_color": scaled((0.9, 0.5, 0.2), k("tint"))})
     s.mesh(pane, quad((-50, 0, -50), (100, 0, 0), (0, 0, 100)))

@@ -12,7 +12,7 @@ def glass(k):
              s.material("dense", color=(1, 1, 1), roughness=0.0, native="glass", lobes=lobes,
                         layers={"transmission_weight": 1, "ior": 1.7, "transmission_color": scaled((0.9, 0.6, 0.6), k("tint"))}),
              s.material("bottle", color=(1, 1, 1), roughness=0.0, native="glass", lobes=lobes,
-                        layers={"transmission_weight": 1, "ior": 1.45, "transmission_depth": 0.5,
+                        layers={"transmission_weight": 1, "ior": 1.45, "transmission_depth": 0.5 / k("absorption"),
                                 "transmission_color": (0.35, 0.8, 0.5)})])
     return s
 
@@ -22,7 +22,7 @@ def ground_glass(k):
     s = on_floor(k, floor=(0.5, 0.4, 0.25))
     lobes = k.lobe("reflection") | k.lobe("transmission")
     trio(s, [s.material(f"ground{i}", color=(1, 1, 1), roughness=rough, native="rough_glass", lobes=lobes,
-                        layers={"transmission_weight": 1, "ior": ior}) for i, (rough, ior) in enumerate([(0.15, 1.5), (0.2, 1.33)])])
+                        layers={"transmission_weight": 1, "ior": ior}) for i, (rough, ior) in enumerate([(0.1, 1.5), (0.15, 1.33)])])
     return s
 
 
@@ -41,7 +41,7 @@ def rough_glass(k):
 def behind(k, sheets):
     """Upright sheets before a coloured ball and a wall, a panel behind them and the sky before."""
     s = Scene(eye=(0, -4, 1.2), target=(0, 0, 0.9), fovy=38, max_depth=12)
-    s.sky(120, 120, 120)
+    s.sky(k, 120, 120, 120)
     s.box(s.material("floor", color=(0.4, 0.4, 0.4), native="diffuse"), (0, 0, -0.05), (4, 4, 0.05))
     s.box(s.material("wall", color=(0.2, 0.35, 0.5), native="diffuse"), (0, 2, 1), (4, 0.05, 1))
     s.sphere(s.material("ball", color=(0.7, 0.3, 0.1), native="diffuse"), (0.1, 0.8, 0.5), 0.5)
@@ -82,7 +82,7 @@ def frosted(k):
 
 @scene("leaves and paper: diffuse light through sheets")
 def leaf(k):
-    lobes = k.lobe("beyond") | k.lobe("diffuse")
+    lobes = k.lobe("beyond") | k.lobe("diffuse") | k.lobe("layer")
     return behind(k, lambda s: [
         s.material(f"leaf{i}", color=color, roughness=0.5, specular=specular, lobes=lobes,
                    layers={"thin_walled": True, "subsurface_weight": weight, "subsurface_color": inside})

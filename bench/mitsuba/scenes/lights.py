@@ -42,7 +42,7 @@ def directional(k):
 @scene("a sun with an angular radius, and an even sky")
 def sun(k):
     s = stage()
-    s.sky(90, 110, 140)
+    s.sky(k, 90, 110, 140)
     s.light("directional", scaled((300, 280, 240), k("sun")), direction=(0.6, 1, -1.1), radius=0.1)
     return s
 
@@ -91,6 +91,5 @@ def many_lamps(k):
 def headlight(k):
     s = Scene(eye=(0, -3, 1), target=(0, 0, 0.5), fovy=40, max_depth=2)
     s.headlight = scaled((0.6, 0.5, 0.4), k("headlight"))
-    s.sky(20, 30, 40)
     s.sphere(s.material("ball", color=(0.7, 0.7, 0.7), native="diffuse"), (0, 0, 0.5), 0.7)
     return s

@@ -8,7 +8,7 @@ from scenes.registry import scene
 def on_floor(k, floor=(0.3, 0.3, 0.3), **more):
     """A matt floor under an even sky and a panel from above: what most lobes are judged in."""
     s = Scene(eye=(0, -4.2, 2.2), target=(0, 0, 0.55), fovy=38, max_depth=8, **more)
-    s.sky(150, 170, 190)
+    s.sky(k, 150, 170, 190)
     s.box(s.material("floor", color=floor, native="diffuse"), (0, 0, -0.05), (4, 4, 0.05))
     panel = s.material("panel", color=(0.8, 0.8, 0.8), emission=400 * k("panel"), native="diffuse")
     s.box(panel, (0.8, -0.6, 3.2), (0.7, 0.5, 0.02))
@@ -17,24 +17,24 @@ def on_floor(k, floor=(0.3, 0.3, 0.3), **more):
 
 def trio(s, materials):
     """Two balls and a box of up to three materials."""
-    s.sphere(materials[0], (-0.95, 0, 0.55), 0.55)
-    s.sphere(materials[-1], (0.95, 0.1, 0.55), 0.55)
-    s.box(materials[len(materials) // 2], (0, 0.5, 0.4), (0.3, 0.3, 0.4), turn=0.5)
+    s.sphere(materials[0], (-0.95, 0, 0.56), 0.55)
+    s.sphere(materials[-1], (0.95, 0.1, 0.56), 0.55)
+    s.box(materials[len(materials) // 2], (0, 0.5, 0.42), (0.3, 0.3, 0.4), turn=0.5)  # glass must not share a face with the floor
 
 
 @scene("matt walls, inter-reflection, an emitting box")
 def diffuse(k):
-    s = Scene(eye=(0, -3.3, 1), target=(0, 0, 1), fovy=44, max_depth=24)
+    s = Scene(eye=(0, -3.3, 1), target=(0, 0, 1), fovy=44, max_depth=8)
     white = s.material("white", color=scaled((0.7, 0.7, 0.7), k("white")), native="diffuse")
     red = s.material("red", color=scaled((0.6, 0.1, 0.08), k("red")), native="diffuse")
     green = s.material("green", color=scaled((0.12, 0.5, 0.15), k("green")), native="diffuse")
-    lamp = s.material("lamp", color=(0.8, 0.7, 0.5), emission=2000 * k("lamp"), native="diffuse")
+    lamp = s.material("lamp", color=(0.8, 0.7, 0.5), emission=300 * k("lamp"), native="diffuse")
     s.box(white, (0, 0, -0.05), (1.1, 1.1, 0.05))
     s.box(white, (0, 0, 2.05), (1.1, 1.1, 0.05))
     s.box(white, (0, 1.05, 1), (1.1, 0.05, 1))
     s.box(red, (-1.05, 0, 1), (0.05, 1.1, 1))
     s.box(green, (1.05, 0, 1), (0.05, 1.1, 1))
-    s.box(lamp, (0, 0, 1.93), (0.35, 0.35, 0.02))
+    s.box(lamp, (0, 0, 1.99), (0.7, 0.7, 0.02))  # let into the ceiling
     s.box(white, (-0.4, 0.3, 0.55), (0.28, 0.28, 0.55), turn=0.3)
     s.sphere(white, (0.45, -0.2, 0.35), 0.35)
     return s

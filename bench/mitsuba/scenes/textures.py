@@ -15,10 +15,10 @@ def noise(x, y, channel=0):
     return (h ^ (h >> 16)) & 255
 
 
-def board(k):
+def board(k, max_depth=8):
     """A wall and a floor that face the viewer well, lit by the sky and a panel."""
-    s = Scene(eye=(0, -3.2, 1.3), target=(0, 0, 0.75), fovy=40, max_depth=8)
-    s.sky(110, 120, 130)
+    s = Scene(eye=(0, -3.2, 1.3), target=(0, 0, 0.75), fovy=40, max_depth=max_depth)
+    s.sky(k, 110, 120, 130)
     s.box(s.material("panel", color=(0.8, 0.8, 0.8), emission=500 * k("panel"), native="diffuse"), (-1.5, -1.5, 2.6), (0.5, 0.5, 0.02))
     return s
 
@@ -40,7 +40,7 @@ def colour_map(k):
 
 @scene("relief by a normal map")
 def normal_map(k):
-    s = board(k)
+    s = board(k, max_depth=2)  # on scattered light Gloam averages relief that a pixel cannot see, which flattens it: docs/mitsuba.md
     relief = texels(8, lambda x, y: (96 + noise(x, y) // 4, 96 + noise(x, y, 1) // 4, 240))
     color = scaled((0.7, 0.7, 0.65), k("colour"))
     hang(s, *(s.material(name, color=color, maps={"normal": relief}, native="diffuse") for name in ("wall", "floor")))
@@ -61,5 +61,6 @@ def screen(k):
     picture = texels(8, lambda x, y: tuple(40 + noise(x, y, c) * 4 // 5 for c in range(3)))
     shine = s.material("screen", color=(0, 0, 0), emission=300 * k("screen"), maps={"emissive": picture}, native="diffuse")
     s.mesh(shine, quad((-1.2, 0.6, 0.15), (2.4, 0, 0), (0, 0, 1.4)))
+    s.box(s.material("back", color=(0, 0, 0), native="diffuse"), (0, 0.631, 0.85), (1.2, 0.03, 0.7))  # Mitsuba's shines forwards alone
     s.sphere(s.material("ball", color=(0.7, 0.7, 0.7), native="diffuse"), (0.3, -0.3, 0.35), 0.35)
     return s
