@@ -52,7 +52,7 @@ class Light:
 
 
 class Scene:
-    def __init__(self, eye, target, fovy=40.0, max_depth=16, spp=16, reference_spp=32):
+    def __init__(self, eye, target, fovy=40.0, max_depth=16, spp=32, reference_spp=32):
         self.eye, self.target, self.fovy, self.max_depth = eye, target, fovy, max_depth
         self.spp, self.reference_spp = spp, reference_spp  # per batch
         self.materials, self.shapes, self.lights = [], [], []

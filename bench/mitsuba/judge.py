@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Judges the path tier: the same scenes by Gloam and by Mitsuba 3, compared block by block (docs/mitsuba.md).
 
-  ./gloam mitsuba             renders all scenes with both programs and compares them (a quarter of an hour)
+  ./gloam mitsuba             renders all scenes with both programs and compares them (five minutes)
   ./gloam mitsuba --stored    compares with the references that are kept here; needs no Mitsuba (a minute)
   ./gloam mitsuba --keep      also keeps Mitsuba's pictures, and those with one lobe or light scaled by 3 %, as references,
-                              and writes docs/mitsuba.md's table and pictures (an hour)
+                              and writes docs/mitsuba.md's table and pictures (a quarter of an hour)
 """
 import argparse
 import json
@@ -136,11 +136,11 @@ def from_mitsuba(names, folder, mutated):
 def main():
     parser = argparse.ArgumentParser(prog="./gloam mitsuba", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
                                      epilog="Scenes: " + ", ".join(scenes.ALL))
-    parser.add_argument("--only", metavar="NAME", default="", help="scenes with NAME in their name")
+    parser.add_argument("--only", metavar="NAME", default="", help="the scene NAME, or those with NAME in their name")
     parser.add_argument("--stored", action="store_true", help="against the references that are kept")
     parser.add_argument("--keep", action="store_true", help="keep Mitsuba's pictures as references; write the table and pictures")
     args = parser.parse_args()
-    names = [name for name in scenes.ALL if args.only in name]
+    names = [args.only] if args.only in scenes.ALL else [name for name in scenes.ALL if args.only in name]
     if not names or (args.stored and args.keep):
         parser.error(f"no scene has '{args.only}' in its name" if not names else "--stored and --keep exclude each other")
     with tempfile.TemporaryDirectory(prefix="gloam_mitsuba_") as scratch:

@@ -13,6 +13,11 @@ import mitsuba as mi
 LOBES = ("diffuse", "layer", "metal", "coat", "fuzz", "reflection", "transmission", "beyond")
 
 
+def as_data(color):
+    """Data, so that another value needs no kernel of its own."""
+    return mi.Color3f(*(dr.opaque(mi.Float, c) for c in color))
+
+
 class Table:
     """Values over a cosine from 0 to 1, linear in between."""
 
@@ -55,8 +60,8 @@ class Lobe(mi.BSDF):
         unknown = set(scales) - set(LOBES)
         if unknown:
             raise ValueError(f"there are no lobes {unknown}")
-        self.scale = {name: dr.opaque(mi.Float, scale) for name, scale in scales.items()}  # no kernel of its own for each
-        color = mi.Color3f(p["color"])
+        self.scale = {name: dr.opaque(mi.Float, scale) for name, scale in scales.items()}
+        color = as_data(p["color"])
         self.color, self.metallic, self.f90 = color, p["metallic"], min(2 * p["specular"], 1)
         self.ior = p.get("ior", 1.5)
         self.f0 = ((self.ior - 1) / (self.ior + 1)) ** 2 * self.f90
@@ -67,7 +72,7 @@ class Lobe(mi.BSDF):
         self.a, self.b = Table(a), Table(b)
         self.coat, self.fuzz = p.get("coat_weight", 0), p.get("fuzz_weight", 0)
         if self.coat > 0:
-            self.coat_ggx, self.coat_color = ggx(p.get("coat_roughness", 0)), mi.Color3f(p.get("coat_color", [1, 1, 1]))
+            self.coat_ggx, self.coat_color = ggx(p.get("coat_roughness", 0)), as_data(p.get("coat_color", [1, 1, 1]))
             ior = p.get("coat_ior", 1.6)
             self.coat_f0 = ((ior - 1) / (ior + 1)) ** 2
             a, b = lobe_tables.layer_columns(p.get("coat_roughness", 0))
@@ -75,15 +80,15 @@ class Lobe(mi.BSDF):
         if self.fuzz > 0:
             rough = p.get("fuzz_roughness", 0.5)
             self.fuzz_power = 1 / max(rough**2, 1e-2)
-            self.fuzz_color = mi.Color3f(p.get("fuzz_color", [1, 1, 1])) * self.fuzz
-            self.fuzz_top = max(p.get("fuzz_color", [1, 1, 1])) * self.fuzz
+            self.fuzz_color = as_data([c * self.fuzz for c in p.get("fuzz_color", [1, 1, 1])])
+            self.fuzz_top = dr.opaque(mi.Float, max(p.get("fuzz_color", [1, 1, 1])) * self.fuzz)
             self.fuzz_albedo = Table(lobe_tables.fuzz_columns(rough))
         self.glass, self.thin = p.get("transmission_weight", 0), p.get("thin_walled", False)
-        self.tint = mi.Color3f(p.get("transmission_color", [1, 1, 1]) if p.get("transmission_depth", 0) == 0 else [1, 1, 1])
+        self.tint = as_data(p.get("transmission_color", [1, 1, 1]) if p.get("transmission_depth", 0) == 0 else [1, 1, 1])
         if self.glass > 0 and not self.thin:
             self.glass_albedo = [Table(lobe_tables.glass_columns(self.roughness, eta)) for eta in (self.ior, 1 / self.ior)]
         self.subsurface = p.get("subsurface_weight", 0)
-        self.inside = mi.Color3f(p.get("subsurface_color", [0.8, 0.8, 0.8])) * (0.5 if self.thin else 1)
+        self.inside = as_data([c * (0.5 if self.thin else 1) for c in p.get("subsurface_color", [0.8, 0.8, 0.8])])
         opaque = 1 - self.glass
         weights = {"cosine": 0.5 * opaque + 0.1 * (self.fuzz > 0), "base": (0.3 + 0.7 * self.metallic) * opaque + 1e-3,
                    "coat": 0.5 * (self.coat > 0), "glass": self.glass, "beyond": 0.5 * (self.thin and self.subsurface > 0)}

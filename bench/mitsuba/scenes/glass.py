@@ -1,12 +1,12 @@
 """Glass, sheets and gaps."""
-from description import Scene, scaled
+from description import Scales, Scene, scaled
 from scenes.materials import on_floor, trio
 from scenes.registry import scene
 
 
 @scene("clear and coloured solid glass")
 def glass(k):
-    s = on_floor(k, floor=(0.5, 0.4, 0.25))
+    s = on_floor(floor=(0.5, 0.4, 0.25), reference_spp=160)
     lobes = k.lobe("reflection") | k.lobe("transmission")
     trio(s, [s.material("clear", color=(1, 1, 1), roughness=0.0, native="glass", lobes=lobes, layers={"transmission_weight": 1, "ior": 1.5}),
              s.material("dense", color=(1, 1, 1), roughness=0.0, native="glass", lobes=lobes,
@@ -19,7 +19,7 @@ def glass(k):
 
 @scene("glass of little roughness, against Mitsuba's own")
 def ground_glass(k):
-    s = on_floor(k, floor=(0.5, 0.4, 0.25))
+    s = on_floor(floor=(0.5, 0.4, 0.25))
     lobes = k.lobe("reflection") | k.lobe("transmission")
     trio(s, [s.material(f"ground{i}", color=(1, 1, 1), roughness=rough, native="rough_glass", lobes=lobes,
                         layers={"transmission_weight": 1, "ior": ior}) for i, (rough, ior) in enumerate([(0.1, 1.5), (0.15, 1.33)])])
@@ -28,7 +28,7 @@ def ground_glass(k):
 
 @scene("rough glass, half glass and half plastic")
 def rough_glass(k):
-    s = on_floor(k, floor=(0.5, 0.4, 0.25))
+    s = on_floor(floor=(0.5, 0.4, 0.25))
     lobes = k.lobe("reflection") | k.lobe("transmission")
     trio(s, [s.material("ice", color=(1, 1, 1), roughness=0.4, lobes=lobes, layers={"transmission_weight": 1, "ior": 1.5}),
              s.material("milk", color=(1, 1, 1), roughness=0.7, lobes=lobes,
@@ -38,9 +38,9 @@ def rough_glass(k):
     return s
 
 
-def behind(k, sheets):
-    """Upright sheets before a coloured ball and a wall, a panel behind them and the sky before."""
-    s = Scene(eye=(0, -4, 1.2), target=(0, 0, 0.9), fovy=38, max_depth=12)
+def behind(sheets, k=Scales()):
+    """Upright sheets before a coloured ball and a wall, a panel behind them and the sky before. With `k` its lights can be scaled."""
+    s = Scene(eye=(0, -4, 1.2), target=(0, 0, 0.9), fovy=38, max_depth=12, reference_spp=160)
     s.sky(k, 120, 120, 120)
     s.box(s.material("floor", color=(0.4, 0.4, 0.4), native="diffuse"), (0, 0, -0.05), (4, 4, 0.05))
     s.box(s.material("wall", color=(0.2, 0.35, 0.5), native="diffuse"), (0, 2, 1), (4, 0.05, 1))
@@ -65,7 +65,7 @@ def quad(corner, along, up):
 @scene("clear and tinted panes that lamps shine through")
 def pane(k):
     lobes = k.lobe("reflection")
-    return behind(k, lambda s: [
+    return behind(lambda s: [
         s.material(f"pane{i}", color=(1, 1, 1), roughness=0.0, native="pane", lobes=lobes,
                    layers={"transmission_weight": 1, "thin_walled": True, "ior": ior, "transmission_color": scaled(tint, k("tint"))})
         for i, (ior, tint) in enumerate([(1.5, (0.95, 0.95, 0.95)), (1.5, (0.9, 0.4, 0.3)), (2.2, (0.4, 0.6, 0.9))])])
@@ -74,7 +74,7 @@ def pane(k):
 @scene("frosted panes")
 def frosted(k):
     lobes = k.lobe("reflection") | k.lobe("transmission")
-    return behind(k, lambda s: [
+    return behind(lambda s: [
         s.material(f"frost{i}", color=(1, 1, 1), roughness=rough, lobes=lobes,
                    layers={"transmission_weight": 1, "thin_walled": True, "ior": 1.5, "transmission_color": tint})
         for i, (rough, tint) in enumerate([(0.3, (0.97, 0.97, 0.97)), (0.5, (0.9, 0.5, 0.4)), (0.8, (0.5, 0.7, 0.9))])])
@@ -83,7 +83,7 @@ def frosted(k):
 @scene("leaves and paper: diffuse light through sheets")
 def leaf(k):
     lobes = k.lobe("beyond") | k.lobe("diffuse") | k.lobe("layer")
-    return behind(k, lambda s: [
+    return behind(lambda s: [
         s.material(f"leaf{i}", color=color, roughness=0.5, specular=specular, lobes=lobes,
                    layers={"thin_walled": True, "subsurface_weight": weight, "subsurface_color": inside})
         for i, (color, specular, weight, inside) in enumerate([((0.1, 0.3, 0.05), 0.5, 0.6, (0.4, 0.9, 0.1)),
@@ -93,6 +93,6 @@ def leaf(k):
 
 @scene("surfaces that are partly there")
 def opacity(k):
-    return behind(k, lambda s: [
+    return behind(lambda s: [
         s.material(f"veil{i}", color=scaled(color, k("veil")), opacity=alpha, native="diffuse")
-        for i, (color, alpha) in enumerate([((0.8, 0.8, 0.8), 0.25), ((0.8, 0.2, 0.2), 0.5), ((0.1, 0.1, 0.1), 0.75)])])
+        for i, (color, alpha) in enumerate([((0.8, 0.8, 0.8), 0.25), ((0.8, 0.2, 0.2), 0.5), ((0.1, 0.1, 0.1), 0.75)])], k)

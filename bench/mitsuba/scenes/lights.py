@@ -49,15 +49,15 @@ def sun(k):
 
 @scene("luminous spheres: a lamp's bulb and an emitting ball")
 def sphere_lamp(k):
-    s = stage()
+    s = stage(spp=96, reference_spp=64)
     s.light("point", scaled((80, 70, 60), k("bulb")), position=(1.6, -1.8, 2.0), radius=0.3)
-    s.sphere(s.material("globe", color=(0.6, 0.8, 0.9), emission=500 * k("globe"), native="diffuse"), (0, -0.9, 0.3), 0.3)
+    s.sphere(s.material("globe", color=(0.6, 0.8, 0.9), emission=300 * k("globe"), native="diffuse"), (0.1, -0.9, 0.7), 0.25)
     return s
 
 
 @scene("an emitting mesh")
 def mesh_lamp(k):
-    s = stage()
+    s = stage(spp=64, reference_spp=64)
     glow = s.material("glow", color=(0.9, 0.8, 0.6), emission=700 * k("glow"), native="diffuse")
     s.mesh(glow, octahedron((0, -0.7, 1.5), 0.35))
     return s

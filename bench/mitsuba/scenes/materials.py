@@ -1,12 +1,12 @@
 """Lobes of opaque surfaces."""
 import math
 
-from description import Scene, scaled
+from description import Scales, Scene, scaled
 from scenes.registry import scene
 
 
-def on_floor(k, floor=(0.3, 0.3, 0.3), **more):
-    """A matt floor under an even sky and a panel from above: what most lobes are judged in."""
+def on_floor(k=Scales(), floor=(0.3, 0.3, 0.3), **more):
+    """A matt floor under an even sky and a panel from above: what most lobes are judged in. With `k` its lights can be scaled."""
     s = Scene(eye=(0, -4.2, 2.2), target=(0, 0, 0.55), fovy=38, max_depth=8, **more)
     s.sky(k, 150, 170, 190)
     s.box(s.material("floor", color=floor, native="diffuse"), (0, 0, -0.05), (4, 4, 0.05))
@@ -24,7 +24,7 @@ def trio(s, materials):
 
 @scene("matt walls, inter-reflection, an emitting box")
 def diffuse(k):
-    s = Scene(eye=(0, -3.3, 1), target=(0, 0, 1), fovy=44, max_depth=8)
+    s = Scene(eye=(0, -3.3, 1), target=(0, 0, 1), fovy=36, max_depth=8, reference_spp=64)
     white = s.material("white", color=scaled((0.7, 0.7, 0.7), k("white")), native="diffuse")
     red = s.material("red", color=scaled((0.6, 0.1, 0.08), k("red")), native="diffuse")
     green = s.material("green", color=scaled((0.12, 0.5, 0.15), k("green")), native="diffuse")
@@ -51,14 +51,14 @@ def metal(k):
 
 @scene("mirrors")
 def mirror(k):
-    s = on_floor(k, floor=(0.35, 0.2, 0.12))
+    s = on_floor(floor=(0.35, 0.2, 0.12))
     trio(s, [s.material("mirror", color=(1, 1, 1), metallic=1.0, roughness=0.0, native="mirror", lobes=k.lobe("metal"))])
     return s
 
 
 @scene("rough dielectric layers over matt colour")
 def dielectric(k):
-    s = on_floor(k)
+    s = on_floor()
     trio(s, [s.material(f"plastic{i}", color=scaled(color, k("base")), roughness=rough, specular=0.5, lobes=k.lobe("layer"),
                         layers={"ior": ior})
              for i, (color, rough, ior) in enumerate([((0.02, 0.02, 0.025), 0.15, 1.5), ((0.1, 0.02, 0.02), 0.35, 2.0),
@@ -68,7 +68,7 @@ def dielectric(k):
 
 @scene("clear and coloured coats")
 def coat(k):
-    s = on_floor(k)
+    s = on_floor(spp=64)
     trio(s, [s.material("lacquer", color=(0.3, 0.03, 0.03), roughness=0.5, specular=0.5, lobes=k.lobe("coat"),
                         layers={"coat_weight": 1, "coat_roughness": 0.1}),
              s.material("black", color=(0, 0, 0), lobes=k.lobe("coat"),
@@ -80,7 +80,7 @@ def coat(k):
 
 @scene("fuzz over dark and coloured cloth")
 def fuzz(k):
-    s = on_floor(k)
+    s = on_floor()
     trio(s, [s.material(f"velvet{i}", color=color, lobes=k.lobe("fuzz"),
                         layers={"fuzz_weight": weight, "fuzz_roughness": rough, "fuzz_color": scaled(tint, k("fuzz_color"))})
              for i, (color, weight, rough, tint) in enumerate([((0, 0, 0), 1.0, 0.5, (0.8, 0.6, 0.9)),
@@ -109,7 +109,7 @@ def tin(center, radius, half, steps=48):
 
 @scene("brushed metal and lacquer: highlights drawn out along the texture's u")
 def anisotropy(k):
-    s = on_floor(k)
+    s = on_floor()
     for i, (x, rough, layers) in enumerate([(-1.1, 0.4, {"anisotropy": 0.8}), (0, 0.5, {"anisotropy": 0.6, "anisotropy_rotation": 0.125}),
                                             (1.1, 0.3, {"anisotropy": 0.9, "anisotropy_rotation": 0.25})]):
         brushed = s.material(f"brushed{i}", color=(0.8, 0.75, 0.7), metallic=1.0, roughness=rough, layers=layers, lobes=k.lobe("metal"))

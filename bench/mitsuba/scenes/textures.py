@@ -50,7 +50,7 @@ def normal_map(k):
 @scene("holes by a picture of opacity")
 def cut_out(k):
     holes = texels(8, lambda x, y: (noise(x, y) if x + y > 4 else 255,))
-    return behind(k, lambda s: [s.material(f"lace{i}", color=scaled(color, k("lace")), maps={"opacity": holes}, native="diffuse")
+    return behind(lambda s: [s.material(f"lace{i}", color=scaled(color, k("lace")), maps={"opacity": holes}, native="diffuse")
                                 for i, color in enumerate([(0.8, 0.8, 0.8), (0.8, 0.5, 0.2), (0.1, 0.1, 0.1)])])
 
 
@@ -62,5 +62,6 @@ def screen(k):
     shine = s.material("screen", color=(0, 0, 0), emission=300 * k("screen"), maps={"emissive": picture}, native="diffuse")
     s.mesh(shine, quad((-1.2, 0.6, 0.15), (2.4, 0, 0), (0, 0, 1.4)))
     s.box(s.material("back", color=(0, 0, 0), native="diffuse"), (0, 0.631, 0.85), (1.2, 0.03, 0.7))  # Mitsuba's shines forwards alone
+    s.spp = 96
     s.sphere(s.material("ball", color=(0.7, 0.7, 0.7), native="diffuse"), (0.3, -0.3, 0.35), 0.35)
     return s
