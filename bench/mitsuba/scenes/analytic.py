@@ -102,7 +102,7 @@ def panel_radiance(s):
 
 @scene("an emitting box over a plane: Lambert's formula for polygons", exact=panel_radiance)
 def panel_on_plane(k):
-    s = plane(k)
+    s = plane(k, reference_spp=64)
     glow = s.material("glow", color=(0.9, 0.8, 0.7), emission=120 * k("panel"), native="diffuse")
     s.box(glow, (0.2, 3.6, 1.2), (1.0, 0.6, 0.2))
     return s

@@ -76,8 +76,8 @@ def frosted(k):
     lobes = k.lobe("reflection") | k.lobe("transmission")
     return behind(lambda s: [
         s.material(f"frost{i}", color=(1, 1, 1), roughness=rough, lobes=lobes,
-                   layers={"transmission_weight": 1, "thin_walled": True, "ior": 1.5, "transmission_color": tint})
-        for i, (rough, tint) in enumerate([(0.3, (0.97, 0.97, 0.97)), (0.5, (0.9, 0.5, 0.4)), (0.8, (0.5, 0.7, 0.9))])])
+                   layers={"transmission_weight": 1, "thin_walled": True, "ior": ior, "transmission_color": tint})
+        for i, (rough, ior, tint) in enumerate([(0.3, 1.5, (0.97, 0.97, 0.97)), (0.5, 2.0, (0.9, 0.5, 0.4)), (0.8, 2.4, (0.3, 0.5, 0.7))])])
 
 
 @scene("leaves and paper: diffuse light through sheets")

@@ -25,7 +25,7 @@ def point(k):
 
 @scene("spots, hard and soft")
 def spot(k):
-    s = stage()
+    s = stage(reference_spp=160)
     s.light("spot", scaled((400, 360, 300), k("hard")), position=(-1.5, -2, 3), direction=(0.5, 1.1, -1.6), cutoff=0.45, softness=0.0)
     s.light("spot", scaled((200, 260, 320), k("soft")), position=(1.5, -2, 3), direction=(-0.3, 1, -1.2), cutoff=0.8, softness=0.7)
     return s
@@ -57,7 +57,7 @@ def sphere_lamp(k):
 
 @scene("an emitting mesh")
 def mesh_lamp(k):
-    s = stage(spp=64, reference_spp=64)
+    s = stage(spp=64, reference_spp=96)
     glow = s.material("glow", color=(0.9, 0.8, 0.6), emission=700 * k("glow"), native="diffuse")
     s.mesh(glow, octahedron((0, -0.7, 1.5), 0.35))
     return s

@@ -56,12 +56,11 @@ def cut_out(k):
 
 @scene("a screen: a picture that shines")
 def screen(k):
-    s = Scene(eye=(0, -3.2, 1.3), target=(0, 0, 0.7), fovy=42, max_depth=12)
+    s = Scene(eye=(0, -3.2, 1.3), target=(0, 0, 0.7), fovy=42, max_depth=12, spp=96, reference_spp=64)
     s.box(s.material("room", color=(0.6, 0.6, 0.6), native="diffuse"), (0, 0, -0.05), (4, 4, 0.05))
     picture = texels(8, lambda x, y: tuple(40 + noise(x, y, c) * 4 // 5 for c in range(3)))
     shine = s.material("screen", color=(0, 0, 0), emission=300 * k("screen"), maps={"emissive": picture}, native="diffuse")
     s.mesh(shine, quad((-1.2, 0.6, 0.15), (2.4, 0, 0), (0, 0, 1.4)))
     s.box(s.material("back", color=(0, 0, 0), native="diffuse"), (0, 0.631, 0.85), (1.2, 0.03, 0.7))  # Mitsuba's shines forwards alone
-    s.spp = 96
     s.sphere(s.material("ball", color=(0.7, 0.7, 0.7), native="diffuse"), (0.3, -0.3, 0.35), 0.35)
     return s
