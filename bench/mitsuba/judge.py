@@ -101,7 +101,7 @@ def say(text):
     print(f"gloam: {text}", file=sys.stderr, flush=True)
 
 
-def compare_all(names, folder, pictures_of):
+def compare_all(folder, pictures_of):
     """Prints a line for each scene; returns rows for the table, and whether all is well."""
     rows, well = {}, True
     for name, (header, estimates) in pictures_of:
@@ -146,7 +146,7 @@ def main():
     with tempfile.TemporaryDirectory(prefix="gloam_mitsuba_") as scratch:
         folder = Path(scratch)
         pictures = ((name, stored(name)) for name in names) if args.stored else from_mitsuba(names, folder, args.keep)
-        rows, well = compare_all(names, folder, pictures)
+        rows, well = compare_all(folder, pictures)
         if args.keep:
             import report
             report.write(rows, folder, complete=not args.only)
