@@ -242,6 +242,7 @@ def full(tally):
         "ci": ci,
         "lint of all": lambda t: check_lint(t, tracked("src/*.cc", "apps/*.cc")),
         "sweeps": lambda t: gtest(t, "release", "control", "*.DISABLED_Sweep*"),
+        "Mitsuba's mutations": lambda t: python_tests(t, "mitsuba_mutations.py", "tests/e2e"),
     }
     for preset in ("asan", "tsan"):
         for module in [m for m in UNIT if (ROOT / "src" / m / "test").is_dir()]:

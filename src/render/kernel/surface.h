@@ -131,8 +131,11 @@ GLOAM_HD LayeredBsdfOf<F> surface_bsdf(const SceneView& scene, const SurfaceOf<F
     each_lane(active, [&](int i) {
       const int row = scene.materials[scene.instances[lane(s.instance, i)].material].layers;
       if (row < 0) return;
-      const SurfaceParameters base{lane(s.base_color, i), lane(s.metallic, i), lane(s.roughness, i),
-                                   lane(s.f0, i),         lane(s.f90, i),      lane(s.outside, i)};
+      const SurfaceParameters base{lane(s.base_color, i),  lane(s.metallic, i),
+                                   lane(s.roughness, i),   lane(s.f0, i),
+                                   lane(s.f90, i),         lane(s.outside, i),
+                                   lane(s.coat_weight, i), lane(s.coat_roughness, i),
+                                   lane(s.coat_f0, i),     lane(s.fuzz_weight, i)};
       set_lane(
           &bsdf, i,
           make_layered(scene, scene.layers[static_cast<uint32_t>(row)], base, lane(wo_local, i)));

@@ -179,6 +179,27 @@ TEST_F(LayeredBsdfTest, SingleScatteringOfGlassIsReciprocal) {
   }
 }
 
+TEST_F(LayeredBsdfTest, CoatAndFuzzShowInPictures) {
+  const auto brightness = [](float coat, float fuzz) {
+    SceneBuilder b;
+    b.description.sky.ambient = {1, 1, 1};
+    MaterialDescription m;
+    m.base_color = {0, 0, 0};
+    m.specular_weight = 0;
+    m.coat_weight = coat;
+    m.fuzz_weight = fuzz;
+    b.add(ShapeType::kBox, {1, 1, 1}, {}, b.add_material(m));
+    RenderSettings settings;
+    settings.spp = 16;
+    settings.variance = true;
+    return picture_mean(b.render(b.camera(look_at({0, 0, 3}, {}), 8, 8), settings)).mean;
+  };
+  EXPECT_EQ(brightness(0, 0), 0);
+  // A smooth coat of index 1.6 reflects 5.3 % of even light where it faces the viewer.
+  EXPECT_NEAR(brightness(1, 0), 0.0533, 0.003);
+  EXPECT_GT(brightness(0, 1), 0.01);
+}
+
 TEST_F(LayeredBsdfTest, OddValuesGiveNumbers) {
   for (const Case& c : cases()) {
     for (const float roughness : {0.0f, 1.0f}) {

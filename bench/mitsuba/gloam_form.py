@@ -1,0 +1,104 @@
+"""Writes a scene for Gloam: MJCF with its textures and meshes, and a scene file with what MJCF cannot say."""
+import math
+import struct
+import zlib
+
+from description import SIZE, display, luminance, normalize
+
+CAMERA = "judge"
+
+
+def write(scene, folder):
+    """Returns the path of the scene file."""
+    folder.mkdir(parents=True, exist_ok=True)
+    assets, geoms = [], []
+    if scene.sky_bytes:
+        rgb = numbers(byte / 255 for byte in scene.sky_bytes)
+        assets.append(f'<texture type="skybox" builtin="flat" rgb1="{rgb}" rgb2="{rgb}" width="8" height="48"/>')
+    for material in scene.materials:
+        assets += material_assets(material, folder)
+    for i, shape in enumerate(scene.shapes):
+        place = f'pos="{numbers(shape.position)}" euler="0 0 {shape.turn!r}"'
+        if shape.kind == "mesh":
+            write_obj(folder / f"mesh{i}.obj", shape.corners)
+            assets.append(f'<mesh name="mesh{i}" file="mesh{i}.obj" inertia="shell"/>')
+            geoms.append(f'<geom type="mesh" mesh="mesh{i}" material="{shape.material.name}"/>')
+        else:
+            geoms.append(f'<geom type="{shape.kind}" size="{numbers(shape.size)}" {place} material="{shape.material.name}"/>')
+    head = 'active="0"' if scene.headlight is None else f'active="1" diffuse="{numbers(scene.headlight)}" ambient="0 0 0"'
+    (folder / "scene.xml").write_text("\n".join([
+        '<mujoco><compiler angle="radian"/><statistic center="0 0 0" extent="4"/>', f"<visual><headlight {head}/></visual>",
+        "<asset>", *assets, "</asset>", '<default><geom contype="0" conaffinity="0"/></default>',
+        "<worldbody>", *(light_element(light) for light in scene.lights), *geoms, "</worldbody></mujoco>", ""]))
+    path = folder / "scene.toml"
+    path.write_text("\n".join(['[environment]\nfile = "scene.xml"\n', camera_table(scene), f"[render]\nmax_depth = {scene.max_depth}\n",
+                               *(material_table(material) for material in scene.materials if material.layers)]))
+    return path
+
+
+def numbers(values):
+    return " ".join(repr(float(value)) for value in values)
+
+
+def camera_table(scene):
+    return (f'[[camera]]\nname = "{CAMERA}"\nposition = {list(map(float, scene.eye))}\nlook_at = {list(map(float, scene.target))}\n'
+            f"fovy = {float(scene.fovy)}\nwidth = {SIZE[0]}\nheight = {SIZE[1]}\n")
+
+
+def toml_value(value):
+    if isinstance(value, bool):
+        return str(value).lower()
+    return str(list(map(float, value))) if isinstance(value, (tuple, list)) else repr(float(value))
+
+
+def material_table(material):
+    return f'[[material]]\nname = "{material.name}"\n' + "".join(f"{key} = {toml_value(v)}\n" for key, v in material.layers.items())
+
+
+def material_assets(material, folder):
+    rgba = numbers([*map(display, material.color), material.opacity])
+    out, layers = [], []
+    for role, rows in material.maps.items():
+        file = f"{material.name}_{role}.png"
+        write_png(folder / file, rows)
+        channels = "" if len(rows[0][0]) == 3 else f' nchannel="{len(rows[0][0])}"'
+        out.append(f'<texture name="{material.name}_{role}" type="2d" file="{file}"{channels}/>')
+        layers.append(f'<layer role="{role}" texture="{material.name}_{role}"/>')
+    out.append(f'<material name="{material.name}" rgba="{rgba}" metallic="{material.metallic!r}" roughness="{material.roughness!r}" '
+               f'specular="{material.specular!r}" emission="{material.emission / 100!r}">{"".join(layers)}</material>')
+    return out
+
+
+def light_element(light):
+    place = f'pos="{numbers(light.position)}" dir="{numbers(normalize(light.direction))}"'
+    shape = f'bulbradius="{light.radius!r}"'
+    if light.kind == "spot":
+        shape += f' cutoff="{math.degrees(light.cutoff)!r}" softness="{light.softness!r}"'
+    if not light.legacy:
+        candela = luminance(light.intensity)
+        colour = f'intensity="{candela!r}" diffuse="{numbers(c / candela for c in light.intensity)}"'
+    else:  # docs/light.md: as bright as it makes white at the model's centre, which is the origin
+        square = 1 if light.kind == "directional" else max(sum(x * x for x in light.position), 1)
+        colour = f'diffuse="{numbers(c / (100 * math.pi * square) for c in light.intensity)}"'
+    return f'<light type="{light.kind}" {place} {shape} {colour} ambient="0 0 0" specular="0 0 0" castshadow="true"/>'
+
+
+def write_obj(path, corners):
+    lines = []
+    for position, normal, uv in corners:
+        lines += [f"v {numbers(position)}", f"vn {numbers(normal)}", f"vt {numbers(uv)}"]
+    for i in range(0, len(corners), 3):
+        lines.append("f " + " ".join(f"{j}/{j}/{j}" for j in range(i + 1, i + 4)))
+    path.write_text("\n".join(lines) + "\n")
+
+
+def write_png(path, rows):
+    """8-bit texels, row by row from the top, each a tuple of 1, 3 or 4 channels."""
+    kind = {1: 0, 3: 2, 4: 6}[len(rows[0][0])]
+    raw = b"".join(b"\0" + bytes(value for texel in row for value in texel) for row in rows)
+
+    def chunk(name, data):
+        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
+
+    header = struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, kind, 0, 0, 0)
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(raw, 9)) + chunk(b"IEND", b""))
