@@ -53,7 +53,7 @@ Status run(const Options& options) {
   GLOAM_TRY(const auto fast, CameraSensor::create(shared->description, request, 1));
   request.render.tier = "path";
   request.render.spp = options.spp;
-  request.render.denoise = false;
+  request.render.denoise = true;  // what is left of the noise of so many samples
   GLOAM_TRY(const auto path, CameraSensor::create(shared->description, request, 1));
 
   const Rational step_rate = simulation->step_rate();

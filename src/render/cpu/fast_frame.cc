@@ -28,22 +28,24 @@ void store3(FastPlane3* plane, int x, int y, const Vec3Of<FloatLanes>& v) {
   store(plane->c[2].at(x, y), v.z);
 }
 
-/// Mean and deviation of a signal's luminance around a pixel, on its own part.
-void around(const FastFrame& f, int s, int x, int y, Vec3f* mean, Vec3f* deviation) {
-  const float part = *f.part.at(x, y);
-  Vec3f sum, squares;
-  float n = 0;
+/// Means and deviations of a signal around the pixels from x on, of each on its own part.
+void around(const FastFrame& f, int s, int x, int y, Vec3Of<FloatLanes>* mean,
+            Vec3Of<FloatLanes>* deviation) {
+  using F = FloatLanes;
+  const F part = load(f.part.at(x, y));
+  Vec3Of<F> sum, squares;
+  F n = 0.0f;
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
-      if (*f.part.at(x + dx, y + dy) != part) continue;
-      const Vec3f v = f.signal[s].get(x + dx, y + dy);
-      sum += v;
-      squares += v * v;
-      ++n;
+      const F same = select(load(f.part.at(x + dx, y + dy)) == part, F(1.0f), F(0.0f));
+      const Vec3Of<F> v = load3(f.signal[s], x + dx, y + dy);
+      sum += v * same;
+      squares += v * v * same;
+      n += same;
     }
   }
   *mean = sum / n;
-  const Vec3f variance = squares / n - *mean * *mean;
+  const Vec3Of<F> variance = squares / n - *mean * *mean;
   *deviation = {safe_sqrt(variance.x), safe_sqrt(variance.y), safe_sqrt(variance.z)};
 }
 
@@ -85,30 +87,37 @@ void FastFilter::accumulate(const FastFrame& before, FastFrame* frame) {
   for (FastPlane3& plane : b) plane.resize(f.width, f.height, 0);
   parallel_for("fast history", f.height, [&](int64_t row) {
     const int y = static_cast<int>(row);
-    for (int x = 0; x < f.width; ++x) {
-      int bx, by;
-      const bool known = has_before && find_before(before, f, x, y, &bx, &by);
-      const float age = known ? std::min(*before.age.at(bx, by) + 1, kLongest) : 1.0f;
-      *f.age.at(x, y) = age;
+    for (int first = 0; first < f.width; first += kLaneCount) {
+      Vec3Of<FloatLanes> low[kFastSignals], high[kFastSignals];
       for (int s = 0; s < kFastSignals; ++s) {
-        const Vec3f now = f.signal[s].get(x, y);
-        const float l = luminance(now);
-        if (!known) {
-          a[s].set(x, y, now);
-          *f.mean[s].at(x, y) = l;
-          *f.square[s].at(x, y) = l * l;
-          continue;
+        Vec3Of<FloatLanes> mean, deviation;
+        around(f, s, first, y, &mean, &deviation);
+        low[s] = mean - deviation * FloatLanes(kRange);
+        high[s] = mean + deviation * FloatLanes(kRange);
+      }
+      for (int x = first; x < min(first + kLaneCount, f.width); ++x) {
+        int bx, by;
+        const bool known = has_before && find_before(before, f, x, y, &bx, &by);
+        const float age = known ? min(*before.age.at(bx, by) + 1, kLongest) : 1.0f;
+        *f.age.at(x, y) = age;
+        for (int s = 0; s < kFastSignals; ++s) {
+          const Vec3f now = f.signal[s].get(x, y);
+          const float l = luminance(now);
+          if (!known) {
+            a[s].set(x, y, now);
+            *f.mean[s].at(x, y) = l;
+            *f.square[s].at(x, y) = l * l;
+            continue;
+          }
+          // What is out of the range of its neighbours is a trail of what has moved on.
+          const Vec3f old = before.signal[s].get(bx, by);
+          const Vec3f least = lane(low[s], x - first), most = lane(high[s], x - first);
+          const Vec3f kept{clamp(old.x, least.x, most.x), clamp(old.y, least.y, most.y),
+                           clamp(old.z, least.z, most.z)};
+          a[s].set(x, y, lerp(kept, now, 1 / age));
+          *f.mean[s].at(x, y) = lerp(*before.mean[s].at(bx, by), l, 1 / age);
+          *f.square[s].at(x, y) = lerp(*before.square[s].at(bx, by), l * l, 1 / age);
         }
-        // What is out of the range of its neighbours is a trail of what has moved on.
-        Vec3f mean, deviation;
-        around(f, s, x, y, &mean, &deviation);
-        const Vec3f low = mean - deviation * kRange, high = mean + deviation * kRange;
-        const Vec3f old = before.signal[s].get(bx, by);
-        const Vec3f kept{clamp(old.x, low.x, high.x), clamp(old.y, low.y, high.y),
-                         clamp(old.z, low.z, high.z)};
-        a[s].set(x, y, lerp(kept, now, 1 / age));
-        *f.mean[s].at(x, y) = lerp(*before.mean[s].at(bx, by), l, 1 / age);
-        *f.square[s].at(x, y) = lerp(*before.square[s].at(bx, by), l * l, 1 / age);
       }
     }
   });

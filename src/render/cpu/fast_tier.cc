@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "render/cpu/fast_edges.h"
 #include "render/cpu/tile.h"
 #include "render/kernel/fast.h"
 
@@ -63,7 +64,7 @@ void FastHistory::trace(const SceneView& scene, const EmbreeTracer& tracer,
         set_lane(&width, i, cone.width);
         set_lane(&spread, i, cone.spread);
       }
-      CacheRequest requests[2 * kLaneCount];
+      CacheRequest requests[3 * kLaneCount];
       const FastSampleOf<F> sample = trace_fast(
           scene, tracer, cache, ray, width, spread,
           SamplerOf<F>::make(settings.seed, settings.frame, px, py, 0u, 0), active, requests);
@@ -71,6 +72,7 @@ void FastHistory::trace(const SceneView& scene, const EmbreeTracer& tracer,
         if (!lane(active, i)) continue;
         asked[static_cast<size_t>(tile)].add(requests[i]);
         asked[static_cast<size_t>(tile)].add(requests[kLaneCount + i]);
+        asked[static_cast<size_t>(tile)].add(requests[2 * kLaneCount + i]);
         const int x = xs[i], y = ys[i];
         const size_t pixel = static_cast<size_t>(y) * film->width + x;
         const bool solid = lane(sample.solid, i);
@@ -145,6 +147,7 @@ RenderStats FastHistory::render(const SceneView& scene, const EmbreeTracer& trac
   filter_.accumulate(before_, &now_);
   filter_.smooth(now_);
   compose(film);
+  rays_ += smooth_edges(scene, tracer, camera, now_, film);
   std::swap(now_, before_);
   RenderStats stats;
   stats.paths = film->pixel_count();

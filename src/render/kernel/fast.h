@@ -3,6 +3,7 @@
 // light from the irradiance cache. What is noisy comes out apart, for the filter. Device-safe.
 
 #include "render/kernel/irradiance_cache.h"
+#include "render/kernel/medium_march.h"
 #include "render/kernel/path.h"
 
 namespace gloam {
@@ -80,7 +81,9 @@ GLOAM_HD void add_light(const SceneView& scene, const Tracer& tracer, paths::Sta
   lit = lit & (wi.z > 0.0f);
   F pdf;
   const Vec3Of<F> f = eval_bsdf(shiny, wo, wi, &pdf);
-  const F weight = select(light.is_delta | !traced, F(1.0f), mis_weight(light.pdf, pdf));
+  // Lamps without a surface are met by no ray here.
+  const MaskOf<F> hittable = traced & (length_squared(light.lift) > 0.0f);
+  const F weight = select(hittable, mis_weight(light.pdf, pdf), F(1.0f));
   RayOf<F> shadow = path->ray;
   aim_shadow_ray(v.p, v.geometric, v.t, light, &shadow);
   const Vec3Of<F> arriving = paths::bring_light(scene, tracer, shadow, light.casts_shadow, lit,
@@ -216,10 +219,60 @@ GLOAM_HD Vec3Of<F> gather(const SceneView& scene, const Tracer& tracer,
   return sum;
 }
 
+/// Light of one lamp sample that media at p_W scatter against the direction of the ray
+/// [cd/m² per m].
+template <class Tracer>
+GLOAM_HD Vec3f scattered_light(const SceneView& scene, const Tracer& tracer, const Ray& ray,
+                               const MediumPoint& point, Vec3f p_W, WalkRandom* random,
+                               uint32_t* rays) {
+  LightPicker picker;
+  picker.prepare(scene, p_W, Vec3f{});
+  const float pick = random->next();
+  const Vec2f u{random->next(), random->next()};
+  const LightSample light = picker.sample(scene, p_W, pick, u, ray.time, 0.0f);
+  if (!(light.pdf > 0) || !(max_component(point.scattering) > 0)) return {};
+  Ray shadow = ray;
+  aim_shadow_ray(p_W, Vec3f{}, 0.0f, light, &shadow);
+  Vec3f share{1, 1, 1};
+  if (light.casts_shadow) share = paths::transmit(scene, tracer, shadow, true, rays);
+  if (!(max_component(share) > 0)) return {};
+  share *= transmittance(scene.media, shadow, shadow.tmax, {}, *random);
+  const float cosine = dot(ray.d, light.wi);
+  const auto phase = [&](float scattering, float g_scattering) {
+    const float g = scattering > 0 ? g_scattering / scattering : 0.0f;
+    return scattering * henyey_greenstein(g, cosine);
+  };
+  const Vec3f s = point.scattering, g = point.g_scattering;
+  return Vec3f{phase(s.x, g.x), phase(s.y, g.y), phase(s.z, g.z)} * share * light.radiance /
+         light.pdf;
+}
+
+/// Marches the camera's rays through media up to `tmax`: what they scatter once and give off goes
+/// into out->base, what they leave of the rest into out->through.
+template <class F, class Tracer>
+GLOAM_HD void cross_media(const SceneView& scene, const Tracer& tracer, F tmax, MaskOf<F> active,
+                          paths::State<F>* path, FastSampleOf<F>* out) {
+  constexpr int kSteps = 8;
+  const Vec2Of<F> u = path->sampler.next_2d(active);
+  each_lane(active, [&](int i) {
+    WalkRandom random(lane(u, i));
+    const Ray ray = lane(path->ray, i);
+    uint32_t rays = 0;
+    const MarchResult m =
+        march(scene.media, ray, lane(tmax, i), 0.0f, kSteps, {},
+              [&](const MediumPoint& point, Vec3f p_W) {
+                return scattered_light(scene, tracer, ray, point, p_W, &random, &rays);
+              });
+    set_lane(&path->result.rays, i, lane(path->result.rays, i) + rays);
+    set_lane(&out->base, i, lane(out->base, i) + lane(out->through, i) * m.radiance);
+    set_lane(&out->through, i, lane(out->through, i) * m.transmittance);
+  });
+}
+
 }  // namespace fasts
 
-/// The camera ray's picture. `requests`: one per lane, for the first solid surface; then one per
-/// lane for the specular ray's. Panes in front of that surface are shaded without a bounce.
+/// The camera ray's picture. `requests`: one per lane for the first solid surface, one for the
+/// specular ray's, one for the last pane in front. Panes are shaded without a bounce.
 template <class F, class Tracer>
 GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer,
                                     const IrradianceCacheView& cache, const RayOf<F>& ray,
@@ -239,6 +292,9 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
     RayHitOf<F> hit;
     path.result.rays += select(active, UintOf<F>(1u), UintOf<F>(0u));
     const Mask found = tracer.closest(path.ray, active, passed == 0, &hit);
+    if (!scene.media.volumes.empty()) {
+      fasts::cross_media(scene, tracer, select(found, hit.t, F(1e30f)), active, &path, &out);
+    }
     if (const Mask missed = active & !found; any(missed)) {
       each_lane(missed, [&](int i) {
         const Vec3f sky = sky_radiance(scene, lane(path.ray.d, i), lane(path.cone_spread, i));
@@ -273,7 +329,8 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
     F a, b;
     layer_albedo(*scene.albedo, v.roughness, wo.z, &a, &b);
     const Vec3Of<F> gloss = select<F>(traced, Vec3Of<F>{}, bsdf.base.f0 * a + bsdf.base.f90 * b);
-    each_lane(active, [&](int i) { requests[i] = asked[i]; });
+    each_lane(active,
+              [&](int i) { requests[lane(solid, i) ? i : 2 * Lanes<F>::kCount + i] = asked[i]; });
 
     const Mask pane = active & !solid;
     const Vec3Of<F> shade = albedo * (diffuse + cached) + gloss * cached + specular;

@@ -214,7 +214,7 @@ TEST_F(CameraSensorTest, WhatItCannotDoIsAnError) {
   const std::vector<Case> cases = {
       {"plain", [](CameraRequest& r) { r.camera = "plane"; }},
       {"segmentation", [](CameraRequest& r) { r.outputs = {"segmentatoin"}; }},
-      {"direct", [](CameraRequest& r) { r.render.tier = "fast"; }},
+      {"direct", [](CameraRequest& r) { r.render.tier = "raster"; }},
       {"rate", [](CameraRequest& r) { r.rate = {-1, 1}; }},
       {"rate", [](CameraRequest& r) { r.rate = {1, 0}; }},
       {"0 x 48", [](CameraRequest& r) { r.width = 0; }},
