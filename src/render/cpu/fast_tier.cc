@@ -10,7 +10,8 @@
 namespace gloam {
 namespace {
 
-constexpr float kCellPixels = 32;  // edge of a cache's cell, at least, in the picture
+constexpr float kCellPixels = 32;     // edge of a cache's cell in the picture,
+constexpr float kWidestCell = 0.05f;  // or over its distance if that is less
 constexpr int kWarmUp = 6;         // updates of the cache before the first picture
 
 /// Requests of one tile, each cell's first.
@@ -33,7 +34,7 @@ struct TileRequests {
 void FastHistory::trace(const SceneView& scene, const EmbreeTracer& tracer,
                         const CameraView32& camera, const RenderSettings& settings, Film* film) {
   using F = FloatLanes;
-  const float edge = kCellPixels / camera.fx;
+  const float edge = min(kCellPixels / camera.fx, kWidestCell);
   const IrradianceCacheView cache = cache_.view(camera.pose.X_WC_open.p, edge);
   const int columns = (film->width + kTile - 1) / kTile, rows = (film->height + kTile - 1) / kTile;
   std::vector<TileRequests> asked(static_cast<size_t>(columns) * rows);
@@ -127,7 +128,7 @@ RenderStats FastHistory::render(const SceneView& scene, const EmbreeTracer& trac
   rays_ = 0;
   now_.resize(film->width, film->height);
   const Vec3f eye = camera.pose.X_WC_open.p;
-  const float edge = kCellPixels / camera.fx;
+  const float edge = min(kCellPixels / camera.fx, kWidestCell);
   for (bool again = true; again; warm_ = true) {
     again = !warm_;  // a first picture is traced twice: its specular rays saw no cache
     trace(scene, tracer, camera, settings, film);

@@ -8,10 +8,10 @@ namespace gloam {
 namespace {
 
 constexpr int kRays = 32;            // of a cell and update
-constexpr int kMemory = 6 * kRays;   // rays that a cell's mean is of, at most
+constexpr int kMemory = 5 * kRays;   // rays that a cell's mean is of, at most
 constexpr uint32_t kForgotten = 30;  // updates after which a cell that nobody asks for goes
 constexpr size_t kMostCells = 2500;  // of an update, but for a first picture's
-constexpr float kSurprise = 3;       // standard errors
+constexpr float kSurprise = 2.5f;    // standard errors
 constexpr float kSpread = 0.15f;     // of the rays' cones: no fine texture is sought
 
 }  // namespace

@@ -61,9 +61,12 @@ GLOAM_HD Vec3Of<F> cached_light(const IrradianceCacheView& cache, const SurfaceO
     if (requests != nullptr)
       requests[i] = {key,
                      leave_surface(p, lane(v.geometric, i), lane(v.geometric, i), lane(v.t, i)), n};
-    if (const int cell = find_cell(cache, key); cell >= 0) {
-      set_lane(&light, i, cache.light[static_cast<uint32_t>(cell)]);
+    int cell = find_cell(cache, key);
+    // Until a cell is there, the one about the point itself or a larger one stands for it.
+    for (int more = 0; cell < 0 && more < 3; ++more) {
+      cell = find_cell(cache, cache_key(cache, p, n, {0.5f, 0.5f, 0.0f}, coarser + more));
     }
+    if (cell >= 0) set_lane(&light, i, cache.light[static_cast<uint32_t>(cell)]);
   });
   return light;
 }
@@ -140,7 +143,7 @@ GLOAM_HD F emitter_pdf(const SceneView& scene, const paths::State<F>& path, cons
   return pdf;
 }
 
-/// Light along path->ray in the `active` lanes, from its first surface that is not clear glass.
+/// Light along path->ray in the `active` lanes, from its first surface that is no glass or mirror.
 /// What lamps themselves send counts by `lamps`: not at all where that is none of the path's
 /// business, or weighed against direct_light() by path->pdf_bsdf.
 template <class F, class Tracer>
@@ -185,7 +188,10 @@ GLOAM_HD Vec3Of<F> gather(const SceneView& scene, const Tracer& tracer,
     FrameOf<F> frame;
     const LayeredBsdfOf<F> bsdf = surface_bsdf(scene, v, wo_W, &frame, active & !through);
     const Vec3Of<F> wo = frame.to_local(wo_W);
-    const MaskOf<F> glass = active & !through & bsdf.layered & (bsdf.p_glass > 0.3f);
+    // What glass and mirrors show lies further on.
+    const MaskOf<F> mirror =
+        (!bsdf.layered) & (bsdf.base.p_layer > 0.8f) & (v.roughness < kMaxTracedRoughness);
+    const MaskOf<F> glass = active & !through & (mirror | (bsdf.layered & (bsdf.p_glass > 0.3f)));
     const MaskOf<F> matt = active & !through & !glass;
     if (any(matt)) {
       const LayeredBsdfOf<F> shiny = specular_part(bsdf);

@@ -1,0 +1,179 @@
+// The fast tier: against closed forms, against the path tier, when light goes out, and bit by bit.
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "base/parallel.h"
+#include "render/test/media_probe.h"
+
+namespace gloam {
+namespace {
+
+RenderSettings fast_settings(ViewHistory* history, uint32_t frame) {
+  RenderSettings s;
+  s.tier = RenderTier::kFast;
+  s.history = history;
+  s.frame = frame;
+  s.max_depth = 8;
+  return s;
+}
+
+/// A closed room with a lamp behind a wall: half of it has indirect light alone.
+SceneBuilder divided_room() {
+  SceneBuilder b;
+  const int white = b.add_diffuse({0.7f, 0.7f, 0.7f}), red = b.add_diffuse({0.6f, 0.2f, 0.2f});
+  b.add(ShapeType::kBox, {2, 2, 0.1f}, translation({0, 0, -0.1f}), white);
+  b.add(ShapeType::kBox, {2, 2, 0.1f}, translation({0, 0, 2.1f}), white);
+  for (const float side : {-1.0f, 1.0f}) {
+    b.add(ShapeType::kBox, {0.1f, 2, 1}, translation({2.1f * side, 0, 1}), side < 0 ? red : white);
+    b.add(ShapeType::kBox, {2, 0.1f, 1}, translation({0, 2.1f * side, 1}), white);
+  }
+  b.add(ShapeType::kBox, {0.05f, 1, 1}, translation({0, 1, 1}), white);
+  b.add(ShapeType::kBox, {0.3f, 0.3f, 0.01f}, translation({1, 1, 1.9f}),
+        b.add_emitter({100, 100, 100}));
+  b.description.extent = 5;
+  return b;
+}
+CameraView room_view() {
+  return SceneBuilder::camera(look_at({-1.6f, -1.6f, 1.2f}, {0.3f, 0.8f, 0.8f}), 96, 72, 60);
+}
+
+double mean_luminance(const Film& film) {
+  double sum = 0;
+  for (const Vec3f& c : film.radiance) sum += luminance(c);
+  return sum / static_cast<double>(film.radiance.size());
+}
+
+TEST(Fast, IndirectLightIsThatOfThePathTier) {
+  const SceneBuilder b = divided_room();
+  RenderSettings path;
+  path.spp = 256;
+  path.max_depth = 8;
+  const Film exact = b.render(room_view(), path);
+  const auto renderer = b.make();
+  const auto history = renderer->make_history();
+  Film film;
+  for (uint32_t i = 0; i < 8; ++i) {
+    renderer->render(room_view(), fast_settings(history.get(), i), &film);
+  }
+  EXPECT_NEAR(mean_luminance(film), mean_luminance(exact), 0.05 * mean_luminance(exact));
+  // Blocks of 12 x 12 pixels: what is lit, what is in the shade, what is red.
+  for (int by = 0; by < 6; ++by) {
+    for (int bx = 0; bx < 8; ++bx) {
+      double a = 0, c = 0;
+      for (int i = 0; i < 144; ++i) {
+        const size_t pixel = static_cast<size_t>((by * 12 + i / 12) * 96 + bx * 12 + i % 12);
+        a += luminance(film.radiance[pixel]);
+        c += luminance(exact.radiance[pixel]);
+      }
+      EXPECT_NEAR(a / c, 1, 0.25) << "block " << bx << " " << by;
+    }
+  }
+}
+
+TEST(Fast, ARoomIsDarkSoonAfterItsLampGoesOut) {
+  SceneBuilder b = divided_room();
+  b.description.materials.back().schedule = 0;
+  b.description.schedules.push_back({{Keyframes{{{0, 1}, {1, 0}}, false}}});
+  const auto renderer = b.make();
+  const auto history = renderer->make_history();
+  Film film;
+  const auto show = [&](uint32_t i, double time) {
+    PoseFrame frame = b.frame;
+    frame.time = time;
+    renderer->update(frame, frame, frame);
+    renderer->render(room_view(), fast_settings(history.get(), i), &film);
+    return mean_luminance(film);
+  };
+  double lit = 0;
+  for (uint32_t i = 0; i < 5; ++i) lit = show(i, 0);
+  for (uint32_t i = 5; i < 14; ++i) show(i, 2);
+  EXPECT_LT(show(14, 2), 0.01 * lit) << "ten pictures after the lamp went out";
+}
+
+TEST(Fast, PicturesAreTheSameForAnyNumberOfThreads) {
+  const SceneBuilder b = divided_room();
+  std::vector<Vec3f> pictures[2];
+  for (const int threads : {1, 3}) {
+    set_thread_count(threads);
+    const auto renderer = b.make();
+    const auto history = renderer->make_history();
+    Film film;
+    for (uint32_t i = 0; i < 3; ++i) {
+      renderer->render(room_view(), fast_settings(history.get(), i), &film);
+    }
+    pictures[threads == 3] = film.radiance;
+  }
+  set_thread_count(0);
+  ASSERT_EQ(pictures[0].size(), pictures[1].size());
+  EXPECT_EQ(std::memcmp(pictures[0].data(), pictures[1].data(), pictures[0].size() * sizeof(Vec3f)),
+            0);
+}
+
+TEST(Fast, ExactChannelsAreThoseOfThePathTier) {
+  const SceneBuilder b = divided_room();
+  RenderSettings path;
+  path.spp = 1;
+  const Film exact = b.render(room_view(), path);
+  const auto renderer = b.make();
+  Film film;
+  renderer->render(room_view(), fast_settings(nullptr, 0), &film);
+  EXPECT_EQ(film.part, exact.part);
+  for (size_t i = 0; i < film.depth.size(); ++i) EXPECT_FLOAT_EQ(film.depth[i], exact.depth[i]);
+}
+
+TEST(Fast, NothingTrailsBehindWhatMoves) {
+  // A dark ball crosses a bright floor: where it was, the floor is as if it had never been there.
+  SceneBuilder b;
+  b.add(ShapeType::kPlane, {0, 0, 1}, {}, b.add_diffuse({0.7f, 0.7f, 0.7f}));
+  const int body = b.add_body(translation({-1, 0, 0.3f}));
+  b.add(ShapeType::kSphere, {0.3f, 0, 0}, {}, b.add_diffuse({0.02f, 0.02f, 0.02f}), body);
+  LightDescription sun;
+  sun.type = LightType::kDirectional;
+  sun.intensity = {100, 100, 100};
+  b.add_light(sun, {}, {0, 0, -1});
+  const CameraView view = SceneBuilder::camera(look_at({0, -3, 3}, {0, 0, 0}), 96, 72, 40);
+  const auto renderer = b.make();
+  const auto history = renderer->make_history();
+  Film film;
+  PoseFrame before = b.frame, now = b.frame;
+  for (uint32_t i = 0; i < 12; ++i) {
+    SceneBuilder::set_body(&now, body, translation({-1 + 0.15f * static_cast<float>(i), 0, 0.3f}));
+    renderer->update(now, now, before);
+    renderer->render(view, fast_settings(history.get(), i), &film);
+    before = now;
+  }
+  const auto floor_at = [&](float x) {  // under the ball's way, once in its shade
+    CameraView32 camera;
+    camera.fx = camera.fy = static_cast<float>(view.intrinsics.fx);
+    camera.cx = 48;
+    camera.cy = 36;
+    Vec2f at;
+    EXPECT_TRUE(project(camera, view.X_WC_open, {x, 0, 0}, &at));
+    return film.radiance[static_cast<size_t>(at.y) * 96 + static_cast<size_t>(at.x)].x;
+  };
+  const float clear = 0.7f * 100 / kPi;
+  EXPECT_NEAR(floor_at(-1), clear, 0.05f * clear);
+  EXPECT_NEAR(floor_at(0), clear, 0.05f * clear) << "left a second before";
+  EXPECT_NEAR(floor_at(0.2f), clear, 0.08f * clear) << "left two pictures before";
+}
+
+TEST(Fast, MediaDimByBeerLambert) {
+  for (const float k : {0.2f, 1.0f}) {
+    MediaBuilder fog;
+    fog.add_box({2, 2, 2}, {0, 0, 0}, 1, fog.add_medium({k, k, k}, {}));
+    SceneBuilder b;
+    b.description.media = fog.media;
+    b.description.volumes = fog.volumes;
+    b.add(ShapeType::kBox, {1, 0.1f, 1}, translation({0, 3, 0}), b.add_emitter({100, 100, 100}));
+    const CameraView view = SceneBuilder::camera(look_at({0, -4, 0}, {0, 0, 0}), 8, 8, 1);
+    Film film;
+    b.make()->render(view, fast_settings(nullptr, 0), &film);
+    const double expected = 100 * std::exp(-2 * k);
+    EXPECT_NEAR(mean_luminance(film), expected, 0.02 * expected) << "extinction " << k;
+  }
+}
+
+}  // namespace
+}  // namespace gloam
