@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/files.h"
+#include "base/memory.h"
 #include "geometry/model_source.h"
 
 namespace gloam {
@@ -51,6 +52,13 @@ Result<ModelFile> read_model_bytes(const ModelSource& source) {
 }
 
 Result<ModelFile> read_model_file(const fs::path& path, const ModelFileOptions& options) {
+  constexpr uint64_t kGrowth = 4;  // of what is unpacked over a file, with the file, at most
+  std::error_code code;
+  const uint64_t size = fs::file_size(path, code);
+  if (!code && size <= options.limits.file_bytes) {
+    GLOAM_TRY_STATUS(check_memory(kGrowth * size, fmt::format("unpacking '{}'", path.string()),
+                                  "use a mesh of fewer triangles"));
+  }
   GLOAM_TRY(const std::vector<uint8_t> bytes, read_file(path, options.limits.file_bytes));
   GLOAM_TRY(ModelFolder folder, ModelFolder::open(path, options.root));
   return read_model_bytes({path.string(), bytes, &folder, &options});
