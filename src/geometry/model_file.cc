@@ -36,6 +36,9 @@ bool is_binary_stl(std::span<const uint8_t> bytes) {
 
 Result<ModelFile> read_model_bytes(const ModelSource& source) {
   const std::span<const uint8_t> bytes = source.bytes;
+  constexpr uint64_t kGrowth = 3;  // of what is unpacked over the file, nearly at most
+  GLOAM_TRY_STATUS(check_memory(kGrowth * bytes.size(), fmt::format("unpacking '{}'", source.name),
+                                "use a mesh of fewer triangles"));
   if (starts_with(bytes, "glTF")) return read_glb(source);
   if (starts_with(bytes, "ply\n") || starts_with(bytes, "ply\r")) return read_ply(source);
   std::string ending = fs::path(source.name).extension().string();
@@ -52,13 +55,6 @@ Result<ModelFile> read_model_bytes(const ModelSource& source) {
 }
 
 Result<ModelFile> read_model_file(const fs::path& path, const ModelFileOptions& options) {
-  constexpr uint64_t kGrowth = 4;  // of what is unpacked over a file, with the file, at most
-  std::error_code code;
-  const uint64_t size = fs::file_size(path, code);
-  if (!code && size <= options.limits.file_bytes) {
-    GLOAM_TRY_STATUS(check_memory(kGrowth * size, fmt::format("unpacking '{}'", path.string()),
-                                  "use a mesh of fewer triangles"));
-  }
   GLOAM_TRY(const std::vector<uint8_t> bytes, read_file(path, options.limits.file_bytes));
   GLOAM_TRY(ModelFolder folder, ModelFolder::open(path, options.root));
   return read_model_bytes({path.string(), bytes, &folder, &options});
