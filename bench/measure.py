@@ -238,5 +238,15 @@ def import_time(quick):
                   f"CPU time to the first ray; wall {', '.join(notes)} s")
 
 
+def adaptive_sampling(quick):
+    """--error against an even picture of as many samples"""
+    lines = run(BIN / "bench_adaptive_error", "--json", "--error", 0.1, "--size", "64x48", "--seeds", 4 if quick else 8).strip().splitlines()
+    scenes = [json.loads(line) for line in lines]
+    each = ", ".join(f"{s['scene']} {s['gain']:.2f}" for s in scenes)
+    yield at_least("--error: worth of a sample against even sampling, worst scene", min(s["gain"] for s in scenes), 0.5,
+                   f"each: {each}; 0.1 asked for, reached {', '.join(format(s['reached'], '.3f') for s in scenes)}")
+
+
 # With the seconds that each takes on two cores: the first estimate of the time left.
-ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, direct_tier: 90, load_time: 120, import_time: 60, first_picture: 15}
+ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, direct_tier: 90, load_time: 120, import_time: 60, first_picture: 15,
+       adaptive_sampling: 120}

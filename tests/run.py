@@ -3,8 +3,8 @@
 
 fast  everything that takes about a minute once built
       (no tier) what CI runs: format, lint of changed files, all tests, ASan+UBSan over unit tests, TSan over base and sim
-full  the same plus lint of every file, every sanitizer over everything, five minutes of fuzzing per target and sweeps over
-      200 seeds: an hour or more, but resumable: parts that passed are kept in build/full_state.json until the source changes
+full  the same plus lint of every file, every sanitizer over everything, 10 000 damaged files for every reader, five minutes of
+      fuzzing per target and sweeps over 200 seeds: an hour or more, but resumable: parts that passed are kept in build/full_state.json until the source changes
 """
 import argparse
 import hashlib
@@ -104,6 +104,19 @@ def gtest(tally, preset, module, only=None, shard_filter=None):
     if result.returncode != 0 and failed == 0:
         failed = 1  # a sanitizer spoke after the last test
     tally.add(name, max(ran - failed - skipped, 0), failed, skipped, seconds, "" if not failed else tail(result.stdout, 80))
+
+
+MUTATIONS = 10_000  # damaged files per reader; without GLOAM_MUTATIONS the tests take 200
+
+
+def mutations(tally, module):
+    """The readers of one module on damaged files, under the address sanitizer."""
+    if build(tally, "asan", [f"gloam_{module}_test"]):
+        os.environ["GLOAM_MUTATIONS"] = str(MUTATIONS)
+        try:
+            gtest(tally, "asan", module, shard_filter="*Mutations*")
+        finally:
+            del os.environ["GLOAM_MUTATIONS"]
 
 
 def python_tests(tally, pattern, folder="tests", only=None):
@@ -244,6 +257,8 @@ def full(tally):
         "sweeps": lambda t: gtest(t, "release", "control", "*.DISABLED_Sweep*"),
         "Mitsuba's mutations": lambda t: python_tests(t, "mitsuba_mutations.py", "tests/e2e"),
     }
+    for module in mutated_modules():
+        parts[f"{MUTATIONS} mutations {module}"] = lambda t, m=module: mutations(t, m)
     for preset in ("asan", "tsan"):
         for module in [m for m in UNIT if (ROOT / "src" / m / "test").is_dir()]:
             parts[f"{preset} {module}"] = lambda t, p=preset, m=module: build(t, p, [f"gloam_{m}_test"]) and gtest(t, p, m)
@@ -266,6 +281,11 @@ def full(tally):
     history = ROOT / "bench" / "history"
     history.mkdir(parents=True, exist_ok=True)
     (history / f"full_tests_{time.strftime('%F')}_{version}.json").write_text(json.dumps(state, indent=1))
+
+
+def mutated_modules():
+    """Those with a test of the suite Mutations: a reader's."""
+    return [m for m in UNIT if any("Mutations" in path.read_text() for path in (ROOT / "src" / m / "test").glob("*_test.cc"))]
 
 
 def source_version():

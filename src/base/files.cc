@@ -12,6 +12,8 @@
 #include <system_error>
 #include <vector>
 
+#include "base/memory.h"
+
 namespace gloam {
 namespace fs = std::filesystem;
 namespace {
@@ -33,6 +35,8 @@ Result<Container> read_bytes(const fs::path& path, uint64_t max_size) {
     return io_error(
         path, fmt::format("has {} bytes; the limit for this kind of file is {}", size, max_size));
   }
+  GLOAM_TRY_STATUS(check_memory(size, fmt::format("reading '{}'", path.string()),
+                                "free some memory or use a smaller file"));
   std::ifstream in(path, std::ios::binary);
   if (!in)
     return io_error(path, fmt::format("cannot open: {}", std::strerror(errno)),

@@ -40,9 +40,9 @@ Result<ImageF> decode_float_image(std::span<const uint8_t> bytes, const std::str
   return out;
 }
 
-Result<ImageF> read_float_image(const std::filesystem::path& path) {
+Result<ImageF> read_float_image(const std::filesystem::path& path, uint64_t max_pixels) {
   GLOAM_TRY(const std::vector<uint8_t> bytes, read_file(path, uint64_t{2} << 30));
-  return decode_float_image(bytes, path.string());
+  return decode_float_image(bytes, path.string(), max_pixels);
 }
 
 }  // namespace gloam

@@ -59,6 +59,7 @@ Result<ImageF> decode_float_image(std::span<const uint8_t> bytes, const std::str
 /// PNG or JPEG by its first bytes, not by the name of the file.
 Result<Image8> read_image(const std::filesystem::path& path);
 /// The same for HDR and EXR.
-Result<ImageF> read_float_image(const std::filesystem::path& path);
+Result<ImageF> read_float_image(const std::filesystem::path& path,
+                                uint64_t max_pixels = kMaxImagePixels);
 
 }  // namespace gloam

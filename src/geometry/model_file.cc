@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/files.h"
+#include "base/memory.h"
 #include "geometry/model_source.h"
 
 namespace gloam {
@@ -35,6 +36,9 @@ bool is_binary_stl(std::span<const uint8_t> bytes) {
 
 Result<ModelFile> read_model_bytes(const ModelSource& source) {
   const std::span<const uint8_t> bytes = source.bytes;
+  constexpr uint64_t kGrowth = 3;  // of what is unpacked over the file, nearly at most
+  GLOAM_TRY_STATUS(check_memory(kGrowth * bytes.size(), fmt::format("unpacking '{}'", source.name),
+                                "use a mesh of fewer triangles"));
   if (starts_with(bytes, "glTF")) return read_glb(source);
   if (starts_with(bytes, "ply\n") || starts_with(bytes, "ply\r")) return read_ply(source);
   std::string ending = fs::path(source.name).extension().string();

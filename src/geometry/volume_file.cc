@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "base/files.h"
+#include "base/memory.h"
 
 namespace gloam {
 namespace {
@@ -160,7 +161,9 @@ Result<VolumeFile> read_npy(const std::filesystem::path& path, uint64_t max_voxe
     in.read(reinterpret_cast<char*>(start.data()), static_cast<std::streamsize>(start.size()));
     start.resize(static_cast<size_t>(std::max<std::streamsize>(in.gcount(), 0)));
     GLOAM_TRY(const Head head, HeadReader(start, name).read());
-    GLOAM_TRY_STATUS(count_voxels(head, size, name, max_voxels));
+    GLOAM_TRY(const uint64_t count, count_voxels(head, size, name, max_voxels));
+    GLOAM_TRY_STATUS(check_memory(size + count * sizeof(float), fmt::format("reading '{}'", name),
+                                  "use fewer voxels"));
   }
   GLOAM_TRY(const std::vector<uint8_t> bytes, read_file(path, kLongestHead + 12 + 8 * max_voxels));
   return decode_npy(bytes, name, max_voxels);

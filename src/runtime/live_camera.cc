@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/log.h"
+#include "base/memory.h"
 
 namespace gloam {
 
@@ -21,6 +22,13 @@ Result<std::unique_ptr<LiveCamera>> LiveCamera::open(Simulator& simulator,
   std::unique_ptr<LiveCamera> camera(
       new LiveCamera(simulator, std::move(shared), std::move(on_frame)));
   GLOAM_TRY(camera->sensor_, CameraSensor::create(camera->shared_->description, request, seed));
+  const Intrinsics& k = camera->sensor_->intrinsics();
+  const PictureMemory memory = camera->sensor_->memory();
+  constexpr uint64_t kInFlight = 2;  // frames that are made and looked at
+  GLOAM_TRY_STATUS(check_memory(
+      memory.working + kInFlight * memory.frame,
+      fmt::format("camera '{}': pictures of {} x {} pixels", request.camera, k.width, k.height),
+      "lower the resolution"));
   const std::shared_ptr<const CompiledWorld> world(std::shared_ptr<void>(), &simulator.world());
   GLOAM_TRY(camera->solver_, PoseSolver::create(world));
   // Two in the queue keep the camera busy; more would only make a live picture older.

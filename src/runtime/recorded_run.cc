@@ -9,6 +9,7 @@
 
 #include "base/files.h"
 #include "base/hash.h"
+#include "base/memory.h"
 #include "gloam/program.h"
 #include "gloam/run.h"
 #include "record/recorder.h"
@@ -160,15 +161,22 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
     GLOAM_TRY(auto shared, simulation->renderer());
     GLOAM_TRY(const auto requests, camera_requests(world, request, shared->description, rate));
     RunInfo info = run_info(world, request, 1 / rate.value(), duration);
+    uint64_t memory = 0;
     for (const CameraRequest& camera : requests) {
       GLOAM_TRY(const auto sensor,
                 CameraSensor::create(shared->description, camera, request.simulation.seed));
       // Before an older recording is replaced: the simulation would refuse it later.
       GLOAM_TRY_STATUS(StepSchedule::make(camera.rate, {0, 1}, simulator.timestep()));
+      const PictureMemory pictures = sensor->memory();
+      constexpr uint64_t kBeside = 2;  // frames that are made and written beside those that wait
+      memory += pictures.working +
+                (kBeside + static_cast<uint64_t>(RecorderOptions().queue_frames)) * pictures.frame;
       const CameraOptions* own = find_options(scene, camera.camera);
       info.cameras.push_back({camera.camera, sensor->intrinsics(), camera.rate,
                               own != nullptr ? own->outputs : std::nullopt});
     }
+    GLOAM_TRY_STATUS(check_memory(memory, fmt::format("recording {} camera(s)", requests.size()),
+                                  "lower the resolution or record fewer cameras"));
     GLOAM_TRY(info.labels, simulation->labels());
     info.metric_columns = metrics.columns();
     info.plots = metrics.plots();

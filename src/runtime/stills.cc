@@ -1,9 +1,11 @@
 // gloam::render_stills and write_frame.
 
+#include <algorithm>
 #include <chrono>
 
 #include "base/files.h"
 #include "base/log.h"
+#include "base/memory.h"
 #include "gloam/run.h"
 #include "render/film/exr.h"
 #include "render/film/png.h"
@@ -24,6 +26,22 @@ void tell_what_was_reached(const CameraRequest& request, const CameraFrame& fram
            unreached > 0 ? fmt::format(" at {} samples", request.render.samples()) : "");
 }
 
+/// All pictures are kept; one at a time is made or written.
+Status check_room(const std::vector<std::unique_ptr<CameraSensor>>& sensors) {
+  uint64_t kept = 0, most = 0;
+  for (const auto& sensor : sensors) {
+    const PictureMemory memory = sensor->memory();
+    kept += memory.frame;
+    most = std::max(most, memory.working + memory.frame);
+  }
+  const Intrinsics& k = sensors.front()->intrinsics();
+  return check_memory(kept + most,
+                      sensors.size() == 1
+                          ? fmt::format("a picture of {} x {} pixels", k.width, k.height)
+                          : fmt::format("making {} pictures", sensors.size()),
+                      "lower the resolution or ask for fewer outputs or cameras");
+}
+
 }  // namespace
 
 Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
@@ -38,10 +56,16 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
   options.timestep = world.compiled()->scene.sim.timestep.value_or(0);
   GLOAM_TRY(auto simulation, LiveSimulation::create(world, options));
   GLOAM_TRY(const int64_t steps, step_of_time(time, simulation->step_rate(), "a time"));
+  GLOAM_TRY(auto shared, simulation->renderer());
+  std::vector<std::unique_ptr<CameraSensor>> sensors;
+  for (const CameraRequest& request : requests) {
+    GLOAM_TRY(auto sensor, CameraSensor::create(shared->description, request, options.seed));
+    sensors.push_back(std::move(sensor));
+  }
+  if (!sensors.empty()) GLOAM_TRY_STATUS(check_room(sensors));
   GLOAM_TRY_STATUS(
       run_to_step(simulation->simulator(), steps, "simulating", seconds(), progress, {}));
 
-  GLOAM_TRY(auto shared, simulation->renderer());
   GLOAM_TRY(auto solver, PoseSolver::create(world.compiled()));
   PoseFrame poses;
   GLOAM_TRY_STATUS(solver->solve(simulation->latest(), poses));
@@ -51,7 +75,7 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
     if (progress && !progress({"rendering", done, seconds()})) {
       return Error{ErrorKind::kInterrupted, "interrupted"};
     }
-    GLOAM_TRY(auto sensor, CameraSensor::create(shared->description, requests[i], options.seed));
+    const std::unique_ptr<CameraSensor> sensor = std::move(sensors[i]);  // its film goes with it
     const double share = 1 / static_cast<double>(requests.size());
     sensor->set_progress([&](double part) {
       return !progress || progress({"rendering", done + share * part, seconds()});

@@ -182,6 +182,30 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
   return sensor;
 }
 
+PictureMemory CameraSensor::memory() const {
+  const auto pixels =
+      static_cast<uint64_t>(intrinsics_.width) * static_cast<uint64_t>(intrinsics_.height);
+  // Planes of render/film/film.h and render/cpu/fast_frame.h; two of the latter and the filter's.
+  uint64_t pixel = 36;
+  if (settings_.exact_channels) pixel += 44;
+  if (settings_.error > 0) pixel += 4;
+  if (settings_.tier == RenderTier::kFast) pixel += 400;
+  PictureMemory out;
+  if (denoiser_ != nullptr) {
+    // Measured with Open Image Denoise 2.5, which goes over larger pictures in tiles.
+    constexpr uint64_t kDenoiser = 600, kTile = uint64_t{2160} * 2160;
+    pixel += sizeof(Vec3f);
+    out.working = kDenoiser * std::min(pixels, kTile);
+  }
+  out.working += pixel * pixels;
+  const CameraChannels& c = channels_;
+  const auto of = [](bool wanted, uint64_t bytes) { return wanted ? bytes : 0; };
+  out.frame =
+      pixels * (of(c.rgb, 3) + of(c.radiance, 12) + of(c.samples, 4) + of(c.depth, 4) +
+                of(c.normal, 12) + of(c.albedo, 12) + of(c.motion, 8) + of(c.segmentation, 8));
+  return out;
+}
+
 void CameraSensor::set_free_pose(const Pose& X_WC) {
   const std::lock_guard lock(pose_mutex_);
   free_pose_ = to_affine(X_WC);

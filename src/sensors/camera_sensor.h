@@ -28,6 +28,12 @@ struct CameraChannels {
   bool geometry() const { return depth || segmentation || normal || albedo || motion; }
 };
 
+/// What pictures take, nearly [bytes].
+struct PictureMemory {
+  uint64_t working = 0;  ///< of the sensor, from its first picture on
+  uint64_t frame = 0;    ///< of each CameraFrame
+};
+
 class CameraSensor {
  public:
   /// `description` must outlive the sensor. Errors: unknown camera (with the nearest name), channel
@@ -51,6 +57,8 @@ class CameraSensor {
 
   const Intrinsics& intrinsics() const { return intrinsics_; }
   const Rational& rate() const { return rate_; }
+  /// To be compared with memory_room() before the first picture.
+  PictureMemory memory() const;
   /// Pose of the free camera in the world; may be set from any thread.
   void set_free_pose(const Pose& X_WC);
   Pose free_pose() const;
@@ -69,7 +77,7 @@ class CameraSensor {
   Rational rate_;
   float ev100_ = 0;
   std::unique_ptr<ViewHistory> history_;  // of the fast tier
-  std::unique_ptr<Denoiser> denoiser_;  // null: the samples as they are
+  std::unique_ptr<Denoiser> denoiser_;    // null: the samples as they are
   Film film_;
   std::vector<Vec3f> clean_;
   mutable std::mutex pose_mutex_;

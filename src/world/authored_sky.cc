@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "base/memory.h"
 #include "geometry/image_file.h"
 #include "world/atmosphere.h"
 #include "world/environment.h"
@@ -24,7 +26,9 @@ Error in_sky(const SkyOptions& options, const Error& error) {
 
 Status read_map(const SkyOptions& options, EnvironmentDescription* out) {
   const std::string name = options.file.filename().string();
-  const Result<ImageF> image = read_float_image(options.file);
+  constexpr uint64_t kPixelBytes = 64;  // decoded, as texels, and the tables to draw from them
+  const uint64_t most = std::min(kMaxImagePixels, memory_room().bytes / kPixelBytes);
+  const Result<ImageF> image = read_float_image(options.file, most);
   if (!image.ok()) return in_sky(options, image.error());
   if (image->width != 2 * image->height) {
     return sky_error(options,

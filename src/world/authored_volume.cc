@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/memory.h"
 #include "base/text.h"
 #include "geometry/volume_file.h"
 #include "world/medium_presets.h"
@@ -96,6 +97,13 @@ Status set_grid(const VolumeOptions& options, VolumeFile grid, float scale,
 Status set_grids(const VolumeOptions& options, float density, VolumeDescription* volume) {
   volume->even_density = density;
   if (options.pattern) {
+    const auto edge = static_cast<uint64_t>(options.pattern->resolution);
+    GLOAM_TRY_STATUS(
+        placed(check_memory(edge * edge * edge * sizeof(float),
+                            fmt::format("volume '{}': a pattern of up to {} voxels along an edge",
+                                        options.name, edge),
+                            "lower its resolution"),
+               options));
     return set_grid(options, make_pattern(*options.pattern, volume->size), density, volume,
                     &volume->density);
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/memory.h"
 #include "base/parallel.h"
 #include "geometry/image_file.h"
 #include "world/visual_rules.h"
@@ -110,7 +111,8 @@ Result<ImportedTextures> ImportedTextures::decode(const ModelFile& model, const 
   for (size_t i = 0; i < is_used.size(); ++i)
     if (is_used[i]) used.push_back(i);
 
-  uint64_t left = kMostPixels;
+  constexpr uint64_t kPixelBytes = 24;  // decoded, as a texture, and mip-mapped
+  uint64_t left = std::min(kMostPixels, memory_room().bytes / kPixelBytes);
   const auto at_once = static_cast<size_t>(std::max(thread_count(), 1));
   for (size_t first = 0; first < used.size(); first += at_once) {
     const size_t count = std::min(at_once, used.size() - first);
@@ -134,11 +136,12 @@ Result<ImportedTextures> ImportedTextures::decode(const ModelFile& model, const 
                                     "convert it to PNG"});
     }
     if (pixels > left)
-      return Error{ErrorKind::kInput,
-                   fmt::format("{}: the pictures have more than {} million pixels", what,
-                               kMostPixels / 1000000),
-                   {},
-                   "use smaller pictures"};
+      return Error{
+          ErrorKind::kInput,
+          fmt::format("{}: the pictures have {} million pixels more than there is room for", what,
+                      (pixels - left) / 1000000 + 1),
+          {},
+          "use smaller pictures"};
     left -= pixels;
   }
   return made;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "world/spectrum.h"
+#include "world/black_body.h"
 
 namespace gloam {
 namespace {
@@ -35,21 +35,11 @@ double profile_share(const IesProfile& profile, double angle) {
 
 }  // namespace
 
-Vec3f black_body_color(double temperature) {
-  constexpr double kSecondRadiation = 1.438776877e7;  // h c / k [nm K]
-  double x = 0, y = 0, z = 0;
-  for (int nm = 380; nm <= 780; nm += 5) {
-    const double power =
-        1e14 / (std::pow(nm, 5) * std::expm1(kSecondRadiation / (nm * temperature)));
-    const Xyz m = color_matching(nm);
-    x += power * m.x, y += power * m.y, z += power * m.z;
-  }
-  const Vec3f color = color_of_xyz({x / y, 1, z / y});
-  return color / luminance(color);
-}
-
 Vec3f light_color(const LightOptions& light) {
-  if (light.temperature) return black_body_color(*light.temperature);
+  if (light.temperature) {
+    const Vec3f glow = black_body_luminance(*light.temperature);
+    return glow / luminance(glow);
+  }
   if (!light.color) return {1, 1, 1};
   const Vec3f color{static_cast<float>(light.color->x), static_cast<float>(light.color->y),
                     static_cast<float>(light.color->z)};

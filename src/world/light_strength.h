@@ -7,11 +7,8 @@
 
 namespace gloam {
 
-/// Linear Rec. 709 of luminance 1, of a black body at `temperature` [K], 1000..20000: Planck's law
-/// over color_matching(). Colours outside of Rec. 709 (below some 1900 K) go towards grey.
-Vec3f black_body_color(double temperature);
-
-/// The lamp's hue: linear Rec. 709 of luminance 1; white when none is given.
+/// The lamp's hue: linear Rec. 709 of luminance 1, of its colour or of a black body of its
+/// temperature; white when none is given.
 Vec3f light_color(const LightOptions& light);
 
 /// What an intensity of 1 cd gives altogether [lm], a factor [sr]: of a point or spot light whose

@@ -50,11 +50,16 @@ Xyz color_matching(double nm) {
           1.217 * lobe(nm, 437.0, 11.8, 36.0) + 0.681 * lobe(nm, 459.0, 26.0, 13.8)};
 }
 
-Vec3f color_of_xyz(Xyz color) {
+std::array<double, 3> rec709_of(Xyz color) {
   const auto [x, y, z] = color;
-  const double rgb[3] = {3.2404542 * x - 1.5371385 * y - 0.4985314 * z,
-                         -0.9692660 * x + 1.8760108 * y + 0.0415560 * z,
-                         0.0556434 * x - 0.2040259 * y + 1.0572252 * z};
+  return {3.2404542 * x - 1.5371385 * y - 0.4985314 * z,
+          -0.9692660 * x + 1.8760108 * y + 0.0415560 * z,
+          0.0556434 * x - 0.2040259 * y + 1.0572252 * z};
+}
+
+Vec3f color_of_xyz(Xyz color) {
+  const double y = color.y;
+  const std::array<double, 3> rgb = rec709_of(color);
   const double least = std::min({rgb[0], rgb[1], rgb[2]});
   const double keep = least < 0 && y > 0 ? y / (y - least) : 1;
   const auto channel = [&](double c) {

@@ -21,7 +21,10 @@ struct Xyz {
 };
 Xyz color_matching(double wavelength);
 
-/// Linear Rec. 709 (primaries and D65 of ITU-R BT.709) of the same luminance. Colours outside of it
+/// Linear Rec. 709 (primaries and D65 of ITU-R BT.709); channels below zero are out of its gamut.
+std::array<double, 3> rec709_of(Xyz color);
+
+/// The same within the gamut, of the same luminance: colours outside of it
 /// go towards grey of the same luminance until none is negative.
 Vec3f color_of_xyz(Xyz color);
 

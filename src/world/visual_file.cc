@@ -191,8 +191,11 @@ class VisualImporter {
     for (const std::string& note : model.notes) add(note);
     if (model.dropped_triangles > 0)
       add(fmt::format("{} triangles without area are left out", model.dropped_triangles));
-    if (model.instances.empty() && model.lights.empty())
-      add("there is nothing to draw in the file");
+    const bool has_triangles = std::any_of(
+        model.instances.begin(), model.instances.end(), [&](const ImportedInstance& in) {
+          return !model.meshes[static_cast<size_t>(in.mesh)].indices.empty();
+        });
+    if (!has_triangles && model.lights.empty()) add("there is nothing to draw in the file");
   }
 
   /// Fills the rows of meshes that were handed out. The last user of a mesh takes it.

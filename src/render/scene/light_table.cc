@@ -35,9 +35,33 @@ LightView describe_light(const LightDescription& in) {
   return out;
 }
 
+/// The cone of the normals of a mesh that shines on their side alone. Nothing if it is as wide as
+/// half of all directions: then hardly a place is dark, and closed meshes are known at once.
+void set_cone(const InstanceView& instance, const MeshView& mesh, LightView* light) {
+  const auto corners = [&](uint32_t i) {  // twice its area along its normal, in G
+    const Vec3f a = mesh.positions[mesh.indices[i]];
+    return cross(mesh.positions[mesh.indices[i + 1]] - a, mesh.positions[mesh.indices[i + 2]] - a);
+  };
+  Vec3f sum;
+  for (uint32_t i = 0; i + 2 < mesh.indices.size; i += 3) sum += corners(i);
+  if (!(length(sum) > 0)) return;
+  const Vec3f axis = normalize(sum);
+  float spread = 0;
+  for (uint32_t i = 0; i + 2 < mesh.indices.size; i += 3) {
+    const Vec3f normal = corners(i);
+    const float cosine = dot(normal, axis), sine = length(cross(normal, axis));
+    if (!(cosine > 0 || sine > 0)) continue;  // of no area
+    spread = max(spread, std::atan2(sine, cosine));
+    if (spread >= 0.5f * kPi) return;
+  }
+  light->direction = normalize(transform_vector(instance.X_WG, axis));
+  light->spread = spread;
+  light->falloff = 0.5f * kPi;
+}
+
 /// A sphere and a box that hold the emitter during the shutter, and the cone in which it shines.
-void set_bounds(const InstanceView& instance, const std::vector<MeshView>& meshes,
-                LightView* light) {
+void set_bounds(const InstanceView& instance, bool is_one_sided,
+                const std::vector<MeshView>& meshes, LightView* light) {
   Vec3f low{1e30f, 1e30f, 1e30f}, high = -low;
   const auto add = [&](Vec3f p) {
     low = {min(low.x, p.x), min(low.y, p.y), min(low.z, p.z)};
@@ -80,6 +104,8 @@ void set_bounds(const InstanceView& instance, const std::vector<MeshView>& meshe
     light->spread = 0;
     light->falloff = 0.5f * kPi;
   }
+  if (instance.shape == ShapeType::kMesh && is_one_sided && !instance.moving)
+    set_cone(instance, meshes[instance.mesh], light);
 }
 
 bool is_finite(const LightView& light) {
@@ -172,7 +198,7 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
     light.instance = static_cast<uint32_t>(i);
     light.guide = row_of_guide;
     light.strength = strength / (4 * kPi);
-    set_bounds(instance, meshes, &light);
+    set_bounds(instance, material.emits_outwards, meshes, &light);
     if (!is_finite(light)) continue;
     instance.light = static_cast<int>(lights_.size());
     lights_.push_back(light);

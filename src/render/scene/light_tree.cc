@@ -94,9 +94,9 @@ class Builder {
     leaf.axis = in.direction;
     leaf.spread = in.spread;
     leaf.falloff = in.falloff;
-    // The mean intensity of a plane is a quarter of its most.
-    const bool is_plane = in.kind == LightKind::kInstance && in.spread < kPi;
-    leaf.power = in.strength * scale_ * (is_plane ? 4.0f : 1.0f);
+    // The mean intensity of a plane is a quarter of its most; that of a bent panel is more.
+    const bool is_panel = in.kind == LightKind::kInstance && in.spread < kPi;
+    leaf.power = in.strength * scale_ * (is_panel ? 4.0f : 1.0f);
     const bool shown = in.kind != LightKind::kInstance && !in.is_delta && in.casts_shadow;
     leaf.flags = LightNode::kLeaf | (far ? LightNode::kFar : 0u) | (shown ? LightNode::kShown : 0u);
     leaf.first = light;

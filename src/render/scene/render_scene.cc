@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "base/memory.h"
 #include "render/kernel/shapes.h"
 #include "render/scene/albedo_table.h"
 #include "render/scene/pose.h"
@@ -12,6 +13,23 @@
 
 namespace gloam {
 namespace {
+
+/// What drawing takes beside the description: of a triangle its shading and its share of the BVH,
+/// of a texel its linear one and the smaller levels, of a voxel its share of the majorants.
+uint64_t bytes_to_draw(const RenderDescription& d) {
+  constexpr uint64_t kTriangle = 250, kTexel = 11, kEnvironment = 24, kVoxel = 4;
+  uint64_t bytes = kEnvironment * d.sky.environment.texels.size();
+  for (const TriangleMesh& mesh : d.meshes) bytes += kTriangle * mesh.triangle_count();
+  for (const DeformableDescription& deformable : d.deformables)
+    bytes += kTriangle * deformable.rest.triangle_count();
+  for (const TextureDescription& texture : d.textures)
+    for (const Image8& face : texture.faces)
+      bytes += kTexel * static_cast<uint64_t>(face.width) * static_cast<uint64_t>(face.height);
+  for (const VolumeDescription& volume : d.volumes)
+    for (const VolumeGrid& grid : {volume.density, volume.temperature})
+      if (grid != nullptr) bytes += kVoxel * grid->size();
+  return bytes;
+}
 
 Status check_references(const RenderDescription& d) {
   const auto bad = [](std::string what) { return Error{ErrorKind::kInput, std::move(what)}; };
@@ -130,6 +148,9 @@ DeviceSpan<const T> span_of(const std::vector<T>& v) {
 }  // namespace
 
 Result<std::unique_ptr<RenderScene>> RenderScene::make(const RenderDescription& description) {
+  GLOAM_TRY_STATUS(check_memory(bytes_to_draw(description),
+                                "drawing the scene's meshes and textures",
+                                "use fewer triangles, smaller textures or coarser volumes"));
   GLOAM_TRY_STATUS(check_references(description));
   std::unique_ptr<RenderScene> scene(new RenderScene(description));
   GLOAM_TRY(scene->textures_, make_texture_store(description.textures));

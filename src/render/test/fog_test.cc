@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "render/scene/black_body.h"
 #include "render/test/media_probe.h"
+#include "world/black_body.h"
 
 namespace gloam {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "render/scene/black_body.h"
 #include "render/test/media_probe.h"
+#include "world/black_body.h"
 
 namespace gloam {
 namespace {

@@ -200,7 +200,7 @@ TEST(IesProfile, WrongFilesSayWhereAndWhy) {
   EXPECT_FALSE(read_ies("no/such/file.ies").ok());
 }
 
-TEST(IesProfile, DamagedFilesDoNoHarm) {
+TEST(Mutations, IesFilesDoNoHarm) {
   const std::string seeds[] = {
       ies_file(1, range(0, 90, 15), range(0, 90, 30), [](double v, double h) { return v + h; }),
       ies_file(

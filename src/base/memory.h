@@ -1,0 +1,27 @@
+#pragma once
+// How much memory there still is. Linux promises memory that it has not, and ends the process that
+// then uses it: what a user asks for is compared with this before it is taken.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "gloam/result.h"
+
+namespace gloam {
+
+struct MemoryRoom {
+  uint64_t bytes = UINT64_MAX;  ///< that this process may still take
+  std::string limit;            ///< what sets that bound, after "by"; empty: nothing known
+};
+
+/// The least of: memory of the machine that is free or can be freed, what is left of the limits of
+/// the process's control groups (version 1 and 2), and of its own limits (ulimit -v, ulimit -d).
+/// `root`: where proc/ and sys/ are.
+MemoryRoom memory_room(const std::filesystem::path& root = "/");
+
+/// Error (kInput) naming the need and the room if `bytes` are more than there is room for. `what`
+/// needs them; `hint`: how to need less.
+Status check_memory(uint64_t bytes, const std::string& what, const std::string& hint);
+
+}  // namespace gloam
