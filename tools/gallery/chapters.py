@@ -17,6 +17,7 @@ class Picture:
     camera: str
     size: tuple[int, int]
     spp: int
+    time: float                  # of the simulation [s]
 
     @property
     def name(self):
@@ -51,13 +52,13 @@ def element(folder, set_name, name):
 
 def read_picture(folder, chapter, data, defaults):
     entry = {**defaults, **data}
-    unknown = set(entry) - {"name", "title", "set", "toml", "mjcf", "camera", "size", "spp"}
+    unknown = set(entry) - {"name", "title", "set", "toml", "mjcf", "camera", "size", "spp", "time"}
     if unknown:
         raise ValueError(f"chapter {chapter}: unknown {', '.join(sorted(unknown))} of picture '{entry.get('name')}'")
     base = (folder / "sets" / f"{entry['set']}.toml").read_text()
     mjcf = "\n".join(element(folder, entry["set"], name) for name in entry.get("mjcf", []))
     return Picture(chapter, entry["name"], entry["title"], base, entry.get("toml", ""), mjcf, entry.get("camera", "view"),
-                   tuple(entry.get("size", (320, 240))), entry.get("spp", 128))
+                   tuple(entry.get("size", (320, 240))), entry.get("spp", 40), entry.get("time", 0))
 
 
 def read_chapters(folder):

@@ -44,8 +44,8 @@ def render(picture, folder, quick):
     """Writes folder/NAME.jpg; returns what is wrong with it, or nothing."""
     scene, scratch = write_scene(picture, folder), folder / "scratch" / picture.file_name
     width, height, spp = (80, 60, 4) if quick else (*picture.size, picture.spp)
-    done = subprocess.run([PROGRAM, "render", scene, "--root", ROOT, "--camera", picture.camera, "--spp", str(spp), "--resolution", f"{width}x{height}",
-                           "--out", scratch, "--output", "rgb", "radiance", *(["--threads", "1"] if quick else [])],
+    done = subprocess.run([PROGRAM, "render", scene, "--root", ROOT, "--camera", picture.camera, "--time", str(picture.time),
+                           "--spp", str(spp), "--resolution", f"{width}x{height}", "--out", scratch, "--output", "rgb", "radiance", *(["--threads", "1"] if quick else [])],
                           stdin=subprocess.DEVNULL, capture_output=True, text=True)
     if done.returncode != 0:
         return done.stderr.strip()

@@ -118,11 +118,15 @@ def within(azimuth, elevation, at, size):
     return min(max((1.08 - edge) / 0.16, 0), 1)
 
 
+# (azimuth, elevation) and size [deg], light
+SOFT_BOXES = [((-140, 46), (34, 24), (3.0, 2.9, 2.75)), ((-30, 32), (18, 36), (1.6, 1.75, 2.0)), ((155, 30), (8, 50), (2.4, 2.4, 2.4))]
+
+
 def studio(azimuth, elevation):
-    """A grey room with two soft boxes and a strip, in cd/m² of a soft box."""
+    """A grey room with two soft boxes and a strip, in arbitrary units."""
     shade = 0.055 + 0.045 * max(elevation, 0) / 90
     color = [shade * 1.02, shade, shade * 0.97]
-    for at, size, light in [((-150, 48), (60, 34), (1.0, 0.97, 0.92)), ((-20, 35), (34, 40), (0.55, 0.6, 0.7)), ((95, 25), (14, 60), (0.8, 0.8, 0.8))]:
+    for at, size, light in SOFT_BOXES:
         share = within(azimuth, elevation, at, size)
         color = [c + share * (l - c) for c, l in zip(color, light)]
     return color
