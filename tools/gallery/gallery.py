@@ -11,6 +11,7 @@ import argparse
 import os
 import subprocess
 import sys
+import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -19,7 +20,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 import page  # noqa: E402
 from chapters import read_chapters  # noqa: E402
-from pixels import fault  # noqa: E402
+from pixels import fault, jpeg  # noqa: E402
 
 ROOT = HERE.parent.parent
 PROGRAM = ROOT / "build" / os.environ.get("GLOAM_PRESET", "release") / "bin" / "gloam"
@@ -42,21 +43,19 @@ def write_scene(picture, folder):
 
 def render(picture, folder, quick):
     """Writes folder/NAME.jpg; returns what is wrong with it, or nothing."""
-    scene, scratch = write_scene(picture, folder), folder / "scratch" / picture.file_name
+    scene = write_scene(picture, folder)
     width, height, spp = (80, 60, 4) if quick else (*picture.size, picture.spp)
-    done = subprocess.run([PROGRAM, "render", scene, "--root", ROOT, "--camera", picture.camera, "--time", str(picture.time),
-                           "--spp", str(spp), "--resolution", f"{width}x{height}", "--out", scratch, "--output", "rgb", "radiance", *(["--threads", "1"] if quick else [])],
-                          stdin=subprocess.DEVNULL, capture_output=True, text=True)
-    if done.returncode != 0:
-        return done.stderr.strip()
-    shot = scratch / picture.camera
-    wrong = fault(f"{shot}.png", f"{shot}.exr")
-    # Complete or absent, also after Ctrl-C.
-    subprocess.run(["ffmpeg", "-v", "error", "-y", "-i", f"{shot}.png", "-pix_fmt", "yuv444p", "-q:v", "2", "-flags", "+bitexact", scratch / "new.jpg"], check=True)
-    (scratch / "new.jpg").replace(folder / f"{picture.file_name}.jpg")
-    for leftover in scratch.iterdir():
-        leftover.unlink()
-    scratch.rmdir()
+    with tempfile.TemporaryDirectory(prefix="gloam_gallery_") as scratch:
+        done = subprocess.run([PROGRAM, "render", scene, "--root", ROOT, "--camera", picture.camera, "--time", str(picture.time),
+                               "--spp", str(spp), "--resolution", f"{width}x{height}", "--out", scratch, "--output", "rgb", "radiance",
+                               *(["--threads", "1"] if quick else [])], stdin=subprocess.DEVNULL, capture_output=True, text=True)
+        if done.returncode != 0:
+            return done.stderr.strip()
+        shot = Path(scratch) / picture.camera
+        wrong, data = fault(f"{shot}.png", f"{shot}.exr"), jpeg(f"{shot}.png")
+    new = folder / f"{picture.file_name}.jpg.new"     # complete or absent, also after Ctrl-C
+    new.write_bytes(data)
+    new.replace(folder / f"{picture.file_name}.jpg")
     return wrong
 
 

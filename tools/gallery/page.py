@@ -25,14 +25,18 @@ def table(pictures):
     return "<table>\n" + "\n".join("<tr>\n" + "\n".join(map(cell, row)) + "\n</tr>" for row in rows) + "\n</table>"
 
 
-def write(chapters, folder):
-    """README.md of the pictures that are in the folder."""
+def text(chapters, folder):
+    """The page of the pictures that are in the folder."""
     parts, contents = [], []
     for chapter in chapters:
         there = [picture for picture in chapter.pictures if (folder / f"{picture.file_name}.jpg").exists()]
         if there:
             contents.append(f"[{chapter.title}](#{chapter.title.lower().replace(' ', '-')})")
             parts.append(f"## {chapter.title}\n{chapter.text}\n\n{table(there)}\n")
+    return HEAD.format(contents=" · ".join(contents)) + "\n" + "\n".join(parts)
+
+
+def write(chapters, folder):
     new = folder / "README.md.new"
-    new.write_text(HEAD.format(contents=" · ".join(contents)) + "\n" + "\n".join(parts))
+    new.write_text(text(chapters, folder))
     os.replace(new, folder / "README.md")

@@ -1,23 +1,32 @@
-"""What can be told of a picture without knowing what it shows."""
+"""Pictures by ffmpeg, and what can be told of one without knowing what it shows."""
 import array
 import subprocess
 
 
-def raw(path, form):
-    return subprocess.run(["ffmpeg", "-v", "error", "-i", path, "-f", "rawvideo", "-pix_fmt", form, "-"], check=True, capture_output=True).stdout
+def ffmpeg(path, *form):
+    return subprocess.run(["ffmpeg", "-v", "error", "-i", path, *form, "-"], stdin=subprocess.DEVNULL, check=True, capture_output=True).stdout
+
+
+def jpeg(path):
+    return ffmpeg(path, "-pix_fmt", "yuv444p", "-q:v", "2", "-flags", "+bitexact", "-f", "mjpeg")
+
+
+def raw(path, pixels):
+    return ffmpeg(path, "-f", "rawvideo", "-pix_fmt", pixels)
 
 
 def fault(png, exr):
     """Why this cannot be a good picture: not numbers, black, white, or all one colour; None if it can."""
-    light = array.array("f", raw(exr, "gbrpf32le"))
-    bad = sum(not 0 <= value < 1e9 for value in light)
-    if bad:
-        return f"{bad} values of {len(light)} are no light: negative, infinite or not numbers"
-    return fault_of_display(raw(png, "gray"))
+    return fault_of_light(array.array("f", raw(exr, "gbrpf32le"))) or fault_of_display(raw(png, "gray"))
+
+
+def fault_of_light(values):
+    bad = sum(not 0 <= value < 1e9 for value in values)
+    return f"{bad} values of {len(values)} are no light: negative, infinite or not numbers" if bad else None
 
 
 def fault_of_display(grey):
-    """The same of the displayed picture's grey values, 0 … 255."""
+    """Of the displayed picture's grey values, 0 … 255."""
     mean, count = sum(grey) / len(grey), len(grey)
     if mean < 12:
         return f"black: mean {mean:.0f} of 255"
