@@ -104,10 +104,15 @@ def packed(values):
 
 def hdr(width, color_at):
     """Equirectangular; color_at(azimuth, elevation) in degrees, azimuth counter-clockwise from +X, the picture's middle."""
-    height, rows = width // 2, b""
+    height, rows, step = width // 2, b"", 360 / width
+
+    def texel(x, y):
+        parts = [color_at(180 - step * (x + i), 90 - step * (y + j)) for i in (0.25, 0.75) for j in (0.25, 0.75)]
+        return rgbe([sum(c) / 4 for c in zip(*parts)])
+
     for y in range(height):
-        texels = [rgbe(color_at(180 - 360 * (x + 0.5) / width, 90 - 180 * (y + 0.5) / height)) for x in range(width)]
-        rows += bytes([2, 2, width >> 8, width & 255]) + b"".join(packed(bytes(t[c] for t in texels)) for c in range(4))
+        row = [texel(x, y) for x in range(width)]
+        rows += bytes([2, 2, width >> 8, width & 255]) + b"".join(packed(bytes(t[c] for t in row)) for c in range(4))
     return b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n" + f"-Y {height} +X {width}\n".encode() + rows
 
 
@@ -138,9 +143,9 @@ def evening(azimuth, elevation):
     if elevation < 0:
         return [0.05, 0.055, 0.04]
     house = 200 <= azimuth % 360 < 320
-    if house and elevation < 14 + 4 * (int(azimuth % 360 / 20) % 3):
-        lit = azimuth % 10 > 5 and elevation % 6 > 3 and (int(azimuth % 360 / 10) * 7 + int(elevation / 6) * 5) % 3 == 0
-        return [1.6, 1.0, 0.45] if lit else [0.07, 0.06, 0.06]
+    if house and elevation < 9 + 3 * (int(azimuth % 360 / 20) % 3):
+        lit = azimuth % 5 > 3 and elevation % 3 > 1.2 and (int(azimuth % 360 / 5) * 7 + int(elevation / 3) * 5) % 3 == 0
+        return [1.6, 1.0, 0.45] if lit else [0.09, 0.08, 0.085]
     if elevation < hills:
         return [0.03, 0.05, 0.045]
     low = math.exp(-elevation / 14)
@@ -187,7 +192,7 @@ def downlight():
 
 def main():
     PROPS.mkdir(parents=True, exist_ok=True)
-    for name, data in {"object.glb": test_object(), "sheet.glb": sheet(), "studio.hdr": hdr(512, studio), "evening.hdr": hdr(512, evening),
+    for name, data in {"object.glb": test_object(), "sheet.glb": sheet(), "studio.hdr": hdr(512, studio), "evening.hdr": hdr(1024, evening),
                        "dimples.png": dimples(), "holes.png": holes(), "downlight.ies": downlight()}.items():
         (PROPS / name).write_bytes(data)
 
