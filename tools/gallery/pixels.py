@@ -8,7 +8,7 @@ def ffmpeg(path, *form):
 
 
 def jpeg(path):
-    return ffmpeg(path, "-pix_fmt", "yuv444p", "-q:v", "2", "-flags", "+bitexact", "-f", "mjpeg")
+    return ffmpeg(path, "-pix_fmt", "yuv444p", "-q:v", "6", "-flags", "+bitexact", "-f", "mjpeg")
 
 
 def raw(path, pixels):
