@@ -67,9 +67,9 @@ def torus(radius, thickness, sides=14):
 
 
 class Glb:
-    def __init__(self):
+    def __init__(self, maker="make_lantern.py"):
         self.data = b""
-        self.json = {"asset": {"version": "2.0", "generator": "Gloam tools/make_lantern.py"}, "scene": 0, "scenes": [{"nodes": []}],
+        self.json = {"asset": {"version": "2.0", "generator": f"Gloam tools/{maker}"}, "scene": 0, "scenes": [{"nodes": []}],
                      "nodes": [], "meshes": [], "materials": [], "accessors": [], "bufferViews": [], "buffers": [{}]}
 
     def add(self, kind, value):
@@ -174,4 +174,5 @@ def main():
     (FOLDER / "hammered.png").write_bytes(hammered())
 
 
-main()
+if __name__ == "__main__":
+    main()

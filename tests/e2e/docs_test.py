@@ -10,7 +10,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 # The tests and the benches themselves: this test is part of the first, the others take an hour.
-NOT_HERE = re.compile(r"^(\./gloam (test|bench|mitsuba)\b|\./gloam demo$|git clone|cd )")
+NOT_HERE = re.compile(r"^(\./gloam (test|bench|mitsuba|gallery)\b|\./gloam demo$|git clone|cd )")
 MINUTES = 60
 
 

@@ -1,0 +1,84 @@
+"""Every scene of ./gloam gallery still renders, and docs/gallery holds what its chapters say."""
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+from e2e.support import ROOT
+
+sys.path.insert(0, str(ROOT / "tools" / "gallery"))
+import gallery  # noqa: E402
+import page  # noqa: E402
+import pixels  # noqa: E402
+from chapters import read_chapters  # noqa: E402
+
+MEGABYTE = 1 << 20
+
+
+def gallery_run(*arguments):
+    return subprocess.run([sys.executable, ROOT / "tools" / "gallery" / "gallery.py", *arguments], stdin=subprocess.DEVNULL,
+                          capture_output=True, text=True)
+
+
+class Gallery(unittest.TestCase):
+    def scratch(self):
+        (ROOT / "build").mkdir(exist_ok=True)
+        folder = tempfile.TemporaryDirectory(prefix="gallery_test_", dir=ROOT / "build")
+        self.addCleanup(folder.cleanup)
+        return Path(folder.name)
+
+    def test_every_scene_renders_to_something_to_see(self):
+        folder = self.scratch()
+        done = gallery_run("--quick", "--out", folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for chapter in read_chapters(gallery.HERE):
+            for picture in chapter.pictures:
+                self.assertTrue((folder / f"{picture.file_name}.jpg").stat().st_size > 500, picture.name)
+
+    def test_a_picture_is_the_same_each_time(self):
+        folders = [self.scratch(), self.scratch()]
+        for folder in folders:
+            self.assertEqual(gallery_run("--quick", "--only", "materials/g", "--out", folder).returncode, 0)
+        first, second = ({path.name: path.read_bytes() for path in folder.glob("*.jpg")} for folder in folders)
+        self.assertGreaterEqual(len(first), 3)
+        self.assertEqual(first, second)
+
+    def test_the_book_is_what_the_chapters_say(self):
+        chapters, book = read_chapters(gallery.HERE), gallery.BOOK
+        pictures = [picture for chapter in chapters for picture in chapter.pictures]
+        names = {picture.file_name for picture in pictures}
+        self.assertEqual({path.stem for path in book.glob("*.jpg")}, names, "pictures there, and pictures wanted: ./gloam gallery --only NAME")
+        self.assertEqual({path.stem for path in (book / "scenes").iterdir()}, names)
+        for picture in pictures:
+            self.assertEqual((book / "scenes" / f"{picture.file_name}.toml").read_text(), picture.scene(),
+                             f"{picture.name} has changed since its picture was made: ./gloam gallery --only {picture.name}")
+        self.assertEqual((book / "README.md").read_text(), page.text(chapters, book))
+        size = sum(path.stat().st_size for path in book.rglob("*") if path.is_file())
+        self.assertLess(size, 3 * MEGABYTE)
+
+    def test_what_matches_nothing_is_said(self):
+        done = gallery_run("--only", "no such picture")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("no picture has 'no such picture' in its name", done.stderr)
+
+
+class Faults(unittest.TestCase):
+    """Pictures that cannot be good are told from those that can."""
+
+    def test_of_the_display(self):
+        scene = bytes(range(40, 200)) * 10
+        for name, grey, words in [("black", bytes(1600), "black"), ("white", bytes([255]) * 1600, "white"),
+                                  ("half white", bytes([255]) * 900 + scene[:700], "white"),
+                                  ("flat", bytes([128]) * 1600, "nothing to see")]:
+            self.assertIn(words, pixels.fault_of_display(grey) or "", name)
+        self.assertIsNone(pixels.fault_of_display(scene))
+
+    def test_of_light(self):
+        self.assertIsNone(pixels.fault_of_light([0.0, 3.5, 1e6]))
+        for value in (float("nan"), float("inf"), -1.0):
+            self.assertIn("1 values of 2", pixels.fault_of_light([1.0, value]) or "")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,75 @@
+"""What the gallery shows: chapters/*.toml as values."""
+import re
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+
+@dataclass
+class Picture:
+    """One picture: a set, and the lines that are added to it."""
+    chapter: str
+    key: str
+    title: str
+    base: str                    # text of the set's scene; may be empty
+    toml: str                    # added to it
+    mjcf: str                    # of the set's model, shown beside it
+    camera: str
+    size: tuple[int, int]
+    spp: int
+    time: float                  # of the simulation [s]
+
+    @property
+    def name(self):
+        return f"{self.chapter}/{self.key}"
+
+    @property
+    def file_name(self):
+        return f"{self.chapter}_{self.key}"
+
+    def scene(self):
+        return f"{self.base.rstrip()}\n\n{self.toml}" if self.base else self.toml
+
+
+@dataclass
+class Chapter:
+    key: str
+    title: str
+    text: str
+    pictures: list[Picture]
+
+
+def element(folder, set_name, name):
+    """The element of the set's model that has this name, as it stands there."""
+    text = (folder / "sets" / f"{set_name}.xml").read_text()
+    found = re.search(rf'^ *<(\w+) name="{name}"[^>]*?(/>|>.*?</\1>)', text, re.M | re.S)
+    if not found:
+        raise ValueError(f"sets/{set_name}.xml has no element '{name}'")
+    lines = found.group(0).splitlines()
+    margin = len(lines[0]) - len(lines[0].lstrip())
+    return "\n".join(line[margin:] for line in lines)
+
+
+def read_picture(folder, chapter, data, defaults):
+    entry = {**defaults, **data}
+    unknown = set(entry) - {"name", "title", "set", "toml", "mjcf", "camera", "size", "spp", "time"}
+    if unknown:
+        raise ValueError(f"chapter {chapter}: unknown {', '.join(sorted(unknown))} of picture '{entry.get('name')}'")
+    base = (folder / "sets" / f"{entry['set']}.toml").read_text()
+    mjcf = "\n".join(element(folder, entry["set"], name) for name in entry.get("mjcf", []))
+    return Picture(chapter, entry["name"], entry["title"], base, entry.get("toml", ""), mjcf, entry.get("camera", "view"),
+                   tuple(entry.get("size", (320, 240))), entry.get("spp", 40), entry.get("time", 0))
+
+
+def read_chapters(folder):
+    """Chapters in the order of their files' names: "20_patterns.toml" is chapter "patterns"."""
+    chapters = []
+    for path in sorted((Path(folder) / "chapters").glob("*.toml")):
+        data, key = tomllib.loads(path.read_text()), path.stem.split("_", 1)[1]
+        pictures = [read_picture(Path(folder), key, picture, data.get("all", {})) for picture in data["picture"]]
+        chapters.append(Chapter(key, data["title"], data.get("text", "").strip(), pictures))
+    names = [picture.file_name for chapter in chapters for picture in chapter.pictures]
+    twice = {name for name in names if names.count(name) > 1}
+    if twice:
+        raise ValueError(f"more than one picture is called {', '.join(sorted(twice))}")
+    return chapters

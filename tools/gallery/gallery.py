@@ -1,0 +1,110 @@
+#!/usr/bin/env python3
+"""Makes docs/gallery: a picture of every material, pattern, lamp, sky and medium that Gloam has, with the scene that makes it.
+
+  ./gloam gallery                all pictures, scenes and the page (ten minutes on two cores)
+  ./gloam gallery --only glass   pictures with "glass" in chapter/name; the page is made of what is there
+  ./gloam gallery --quick        small and noisy, into build/gallery: does every scene still render?
+
+Chapters are tools/gallery/chapters/*.toml, each picture a few lines that are added to a set of tools/gallery/sets.
+"""
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+import page  # noqa: E402
+from chapters import read_chapters  # noqa: E402
+from pixels import fault, jpeg  # noqa: E402
+
+ROOT = HERE.parent.parent
+PROGRAM = ROOT / "build" / os.environ.get("GLOAM_PRESET", "release") / "bin" / "gloam"
+BOOK = ROOT / "docs" / "gallery"
+DRAFT = ROOT / "build" / "gallery"
+TO_ROOT = "../../../"     # from the sets, and from the book's scenes
+
+
+def say(text, end="\n"):
+    print(f"gloam: {text}", file=sys.stderr, flush=True, end=end)
+
+
+def write_scene(picture, folder):
+    """The picture's whole scene, as a file that `gloam render` takes."""
+    path = folder / "scenes" / f"{picture.file_name}.toml"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(picture.scene().replace(TO_ROOT, os.path.relpath(ROOT, path.parent) + "/"))
+    return path
+
+
+def render(picture, folder, quick):
+    """Writes folder/NAME.jpg; returns what is wrong with it, or nothing."""
+    scene = write_scene(picture, folder)
+    width, height, spp = (80, 60, 4) if quick else (*picture.size, picture.spp)
+    with tempfile.TemporaryDirectory(prefix="gloam_gallery_") as scratch:
+        done = subprocess.run([PROGRAM, "render", scene, "--root", ROOT, "--camera", picture.camera, "--time", str(picture.time),
+                               "--spp", str(spp), "--resolution", f"{width}x{height}", "--out", scratch, "--output", "rgb", "radiance",
+                               *(["--threads", "1"] if quick else [])], stdin=subprocess.DEVNULL, capture_output=True, text=True)
+        if done.returncode != 0:
+            return done.stderr.strip()
+        shot = Path(scratch) / picture.camera
+        wrong, data = fault(f"{shot}.png", f"{shot}.exr"), jpeg(f"{shot}.png")
+    new = folder / f"{picture.file_name}.jpg.new"     # complete or absent, also after Ctrl-C
+    new.write_bytes(data)
+    new.replace(folder / f"{picture.file_name}.jpg")
+    return wrong
+
+
+def render_all(pictures, folder, quick):
+    """Renders with progress and the time left; returns the names of pictures that are wrong."""
+    broken, start = [], time.monotonic()
+    cost = [1 if quick else picture.size[0] * picture.size[1] * picture.spp for picture in pictures]
+    with ThreadPoolExecutor(os.cpu_count() if quick else 1) as pool:
+        jobs = [pool.submit(render, picture, folder, quick) for picture in pictures]
+        try:
+            for i, (picture, job) in enumerate(zip(pictures, jobs)):
+                wrong, share = job.result(), sum(cost[:i + 1]) / sum(cost)
+                left = (time.monotonic() - start) * (1 - share) / share
+                if wrong:
+                    broken.append(picture.name)
+                    say(f"{picture.name}: {wrong}")
+                elif sys.stderr.isatty() or i % 10 == 9:
+                    say(f"{i + 1} of {len(pictures)}: {picture.name}, about {left:.0f} s left")
+        except BaseException:
+            pool.shutdown(cancel_futures=True)
+            raise
+    return broken
+
+
+def main():
+    parser = argparse.ArgumentParser(prog="./gloam gallery", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--only", metavar="TEXT", default="", help="pictures with TEXT in chapter/name")
+    parser.add_argument("--quick", action="store_true", help="small and noisy pictures")
+    parser.add_argument("--out", type=Path, help="another folder than docs/gallery or build/gallery, inside the repository")
+    args = parser.parse_args()
+    folder = (args.out or (DRAFT if args.quick else BOOK)).resolve()
+    if not folder.is_relative_to(ROOT):
+        parser.error(f"{folder} is not inside {ROOT}, where the scenes find their sets")
+    chapters = read_chapters(HERE)
+    pictures = [picture for chapter in chapters for picture in chapter.pictures if args.only in picture.name]
+    if not pictures:
+        parser.error(f"no picture has '{args.only}' in its name")
+    broken = render_all(pictures, folder, args.quick)
+    page.write(chapters, folder)
+    say(f"{len(pictures) - len(broken)} of {len(pictures)} pictures are well: {folder}")
+    print(folder / "README.md")
+    return 1 if broken else 0
+
+
+if __name__ == "__main__":
+    try:
+        sys.exit(main())
+    except (OSError, ValueError, subprocess.CalledProcessError) as problem:
+        say(f"error: {problem}")
+        sys.exit(1)
+    except KeyboardInterrupt:
+        sys.exit(130)
