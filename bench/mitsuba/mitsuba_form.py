@@ -5,15 +5,9 @@ import math
 import lobe  # noqa: F401  registers gloam_lobe
 import mitsuba as mi
 import numpy as np
-import spot  # noqa: F401  registers gloam_spot
 from description import SIZE, linear, normalize, scaled, subtract
-from gloam_form import write_obj
-
-FAR = 1e4  # [m] of a sun that is a disc
-
-
-def rgb(color):
-    return {"type": "rgb", "value": list(map(float, color))}
+from gloam_files import write_obj
+from mitsuba_light import environment_dict, lamp_dict, light_dict, rgb, volume_dict
 
 
 def load(scene, folder):
@@ -24,6 +18,12 @@ def load(scene, folder):
         out[f"shape{i}"] = shape_dict(shape, folder / f"mitsuba_mesh{i}.obj")
     for i, light in enumerate(scene.lights):
         out[f"light{i}"] = light_dict(light, sky)
+    for i, lamp in enumerate(scene.lamps):
+        out[f"lamp{i}"] = lamp_dict(lamp, folder / f"mitsuba_lamp{i}.obj")
+    for i, volume in enumerate(scene.volumes):
+        out[f"volume{i}"] = volume_dict(volume)
+    if scene.environment:
+        out["environment"] = environment_dict(scene.environment)
     if scene.headlight is not None:  # docs/light.md
         out["headlight"] = {"type": "directional", "direction": list(normalize(subtract(scene.target, scene.eye))),
                             "irradiance": rgb(scaled(scene.headlight, 100 * math.pi))}
@@ -34,7 +34,8 @@ def load(scene, folder):
 
 def integrator(scene):
     absorbs = any("transmission_depth" in m.layers for m in scene.materials)
-    return {"type": "volpath" if absorbs else "path", "max_depth": scene.max_depth, "rr_depth": 1000}
+    coloured = any(len(set(volume.extinction)) > 1 for volume in scene.volumes)  # which volpath takes one channel at a time
+    return {"type": "volpathmis" if coloured else "volpath" if absorbs or scene.volumes else "path", "max_depth": scene.max_depth, "rr_depth": 1000}
 
 
 def sensor(scene):
@@ -107,22 +108,3 @@ def lobe_dict(m):
     parameters = {"color": m.color, "metallic": m.metallic, "roughness": m.roughness, "specular": m.specular, **m.layers,
                   "scales": m.lobes}
     return {"type": "gloam_lobe", "parameters": json.dumps(parameters)}
-
-
-def light_dict(light, behind):
-    """`behind`: radiance of the sky, which a far disc would hide."""
-    if light.kind == "spot":
-        return {"type": "gloam_spot", "position": list(light.position), "direction": list(normalize(light.direction)),
-                "intensity_rgb": list(light.intensity), "cutoff": light.cutoff, "inner": light.cutoff * (1 - light.softness)}
-    radius, place, hidden = light.radius, list(light.position), (0, 0, 0)
-    if light.kind == "directional":
-        axis = normalize(light.direction)
-        if radius == 0:
-            return {"type": "directional", "direction": list(axis), "irradiance": rgb(light.intensity)}
-        radius, place, squared, hidden = FAR * radius, [-FAR * x for x in axis], radius**2, behind
-    elif radius == 0:
-        return {"type": "point", "position": place, "intensity": rgb(light.intensity)}
-    else:
-        squared = radius**2
-    return {"type": "sphere", "center": place, "radius": radius, "bsdf": {"type": "diffuse", "reflectance": 0.0},
-            "emitter": {"type": "area", "radiance": rgb(i / (math.pi * squared) + h for i, h in zip(light.intensity, hidden))}}
