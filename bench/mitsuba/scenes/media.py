@@ -9,9 +9,9 @@ from scenes.registry import scene
 
 @scene("even fog that scatters to all sides, a ball that shines within")
 def fog(k):
-    s = stage(reference_spp=64)
+    s = stage(spp=72, reference_spp=104)
     s.max_depth = 6
-    s.lamp("sphere", "intensity", 60 * k("lamp"), color=(1, 0.9, 0.7), position=(0.5, -0.8, 1.5), size=(0.2,))
+    s.lamp("sphere", "intensity", 60 * k("lamp"), color=(1, 0.9, 0.7), position=(0.5, -0.8, 1.5), size=(0.35,))
     s.volume(position=(0, -0.2, 1.0), size=(3.6, 2.4, 1.9), extinction=scaled((0.5, 0.5, 0.5), k("extinction")), albedo=(0.9, 0.7, 0.4))
     return s
 
