@@ -9,7 +9,7 @@ which no input of a material can scale, goes into `lobes` of the material, and s
 import math
 from dataclasses import dataclass, field
 
-SIZE = (96, 72)  # pixels of every picture
+SIZE = (96, 72)  # pixels of every picture that is compared
 BLOCK = 8
 FILTER_SIGMA, FILTER_CUT = 0.42, 1.25  # [px] of the pixel's filter, as in src/render/kernel/camera.h
 
@@ -137,9 +137,10 @@ class SkyMap:
 
 
 class Scene:
-    def __init__(self, eye, target, fovy=40.0, max_depth=16, spp=32, reference_spp=32):
+    def __init__(self, eye, target, fovy=40.0, max_depth=16, spp=32, reference_spp=32, size=SIZE):
         self.eye, self.target, self.fovy, self.max_depth = eye, target, fovy, max_depth
         self.spp, self.reference_spp = spp, reference_spp  # per batch
+        self.size = size            # [px]
         self.materials, self.shapes, self.lights = [], [], []
         self.sky_bytes = None       # display colour of the sky, 8 bits a channel
         self.sky_scale = 1.0        # in Mitsuba alone

@@ -2,7 +2,7 @@
 import math
 
 import gloam_light
-from description import SIZE, display, luminance, normalize
+from description import display, luminance, normalize
 from gloam_files import numbers, toml_value, write_obj, write_png
 
 CAMERA = "judge"
@@ -38,7 +38,7 @@ def write(scene, folder):
 
 def camera_table(scene):
     return (f'[[camera]]\nname = "{CAMERA}"\nposition = {list(map(float, scene.eye))}\nlook_at = {list(map(float, scene.target))}\n'
-            f"fovy = {float(scene.fovy)}\nwidth = {SIZE[0]}\nheight = {SIZE[1]}\n")
+            f"fovy = {float(scene.fovy)}\nwidth = {scene.size[0]}\nheight = {scene.size[1]}\n")
 
 
 def material_table(material):
