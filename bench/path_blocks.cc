@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -46,6 +47,11 @@ double cpu_seconds() {
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
+double median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
+  return values[values.size() / 2];
+}
+
 /// Appends the means over whole blocks, row by row.
 void add_blocks(const CameraFrame& frame, int block, std::vector<float>* out) {
   const int width = frame.intrinsics.width, height = frame.intrinsics.height;
@@ -79,10 +85,13 @@ Status render_blocks(const Arguments& a) {
   request.render.denoise = false;
   std::vector<float> blocks, picture;
   Intrinsics size;
+  std::vector<double> seconds;
   for (int i = 0; i < a.batches; ++i) {
     const uint64_t seed = a.seed * 1000003 + static_cast<uint64_t>(i);
     GLOAM_TRY(const auto sensor, CameraSensor::create(shared->description, request, seed));
+    const double before = cpu_seconds();
     const auto frame = sensor->capture(*shared->renderer, shared->mutex, poses, poses, 0);
+    seconds.push_back(cpu_seconds() - before);
     add_blocks(*frame, a.block, &blocks);
     picture.resize(frame->radiance.size());
     for (size_t k = 0; k < picture.size(); ++k) {
@@ -92,8 +101,9 @@ Status render_blocks(const Arguments& a) {
   }
   const std::string header = fmt::format(
       "{{\"width\": {}, \"height\": {}, \"block\": {}, \"batches\": {}, \"spp\": {}, "
-      "\"max_depth\": {}, \"cpu_seconds\": {:.3f}}}\n",
-      size.width, size.height, a.block, a.batches, a.spp, request.render.max_depth, cpu_seconds());
+      "\"max_depth\": {}, \"cpu_seconds\": {:.3f}, \"cpu_of_batch\": {:.5f}}}\n",
+      size.width, size.height, a.block, a.batches, a.spp, request.render.max_depth, cpu_seconds(),
+      median(seconds));
   std::vector<uint8_t> bytes(header.begin(), header.end());
   for (const std::vector<float>* values : {&blocks, &picture}) {
     const auto* raw = reinterpret_cast<const uint8_t*>(values->data());

@@ -9,8 +9,9 @@ which no input of a material can scale, goes into `lobes` of the material, and s
 import math
 from dataclasses import dataclass, field
 
-SIZE = (96, 72)  # pixels of every picture
+SIZE = (96, 72)  # pixels of every picture that is compared
 BLOCK = 8
+FILTER_SIGMA, FILTER_CUT = 0.42, 1.25  # [px] of the pixel's filter, as in src/render/kernel/camera.h
 
 
 @dataclass
@@ -51,14 +52,100 @@ class Light:
     legacy: bool = False            # without an intensity, as most MJCF lights: diffuse alone
 
 
+@dataclass
+class Lamp:
+    """A [[light]] of the scene file (docs/light.md). It shines along its own -Z."""
+    kind: str                       # rect, disk, sphere, mesh; profile: a point with a photometric file
+    unit: str                       # of `strength`: luminance, intensity, flux; profile: multiplier of the file
+    strength: float
+    color: tuple = (1, 1, 1)        # the hue alone counts
+    position: tuple = (0, 0, 0)
+    orientation: tuple = (1, 0, 0, 0)            # w, x, y, z
+    size: tuple = ()                # rect: edges along its x and y; disk, sphere: radius
+    corners: list = field(default_factory=list)  # mesh: as of Shape, in the lamp's frame
+    profile: list = field(default_factory=list)  # [cd] rows of even horizontal angles from +X once around, each of even
+    #                                              vertical ones, 0 to 90 degrees from -Z; nothing beyond
+
+    def area(self):
+        if self.kind == "rect":
+            return self.size[0] * self.size[1]
+        if self.kind == "mesh":
+            return sum(triangle_area(*(c[0] for c in self.corners[i:i + 3])) for i in range(0, len(self.corners), 3))
+        return math.pi * self.size[0] ** 2 * (4 if self.kind == "sphere" else 1)
+
+    def radiance(self):
+        """Per channel: area lamps obey Lambert's law."""
+        across = math.pi * self.size[0] ** 2 if self.kind == "sphere" else self.area()  # as seen from the front
+        per = {"luminance": 1, "intensity": across, "flux": math.pi * self.area()}[self.unit]
+        return scaled(self.hue(), self.strength / per)
+
+    def hue(self):
+        return scaled(self.color, 1 / luminance(self.color))
+
+
+@dataclass
+class Volume:
+    """A [[volume]]: a box of a medium (docs/media.md)."""
+    position: tuple
+    size: tuple                     # edges
+    extinction: tuple               # [1/m] per channel, of a value of one
+    albedo: tuple = (0, 0, 0)
+    g: float = 0.0
+    orientation: tuple = (1, 0, 0, 0)
+    grid: list = field(default_factory=list)     # [z][y][x] of values, at the centres of voxels
+    temperature: float = 0.0        # [K]
+    emission: float = 0.0           # 1 = Kirchhoff's law; has no counterpart in Mitsuba
+
+
+@dataclass
+class EvenSky:
+    """[sky] with a luminance."""
+    luminance: float
+    color: tuple
+
+    def radiance(self, _):
+        return scaled(self.color, self.luminance / luminance(self.color))
+
+
+@dataclass
+class SkyMap:
+    """[sky] with a picture: a gradient from nadir to zenith and soft patches of light, by illuminance of level ground [lx]."""
+    illuminance: float
+    zenith: tuple
+    nadir: tuple
+    patches: list = field(default_factory=list)  # (unit direction, sharpness, colour)
+    turn: float = 0.0               # counter-clockwise from above [deg]
+
+    def value(self, d_E):
+        """Of the picture, in its own frame."""
+        up = 0.5 + 0.5 * d_E[2]
+        out = [n + up * (z - n) for z, n in zip(self.zenith, self.nadir)]
+        for axis, sharpness, color in self.patches:
+            weight = math.exp(sharpness * (sum(a * b for a, b in zip(axis, d_E)) - 1))
+            out = [o + weight * c for o, c in zip(out, color)]
+        return out
+
+    def scale(self):
+        """[cd/m²] of a value of one."""
+        rows, total = 256, 0.0
+        for i in range(rows):
+            z = (i + 0.5) / rows  # equal steps of z are equal areas
+            for j in range(2 * rows):
+                a, r = math.pi * (j + 0.5) / rows, math.sqrt(1 - z * z)
+                total += z * luminance(self.value((r * math.cos(a), r * math.sin(a), z)))
+        return self.illuminance / (2 * math.pi * total / (2 * rows * rows))
+
+
 class Scene:
-    def __init__(self, eye, target, fovy=40.0, max_depth=16, spp=32, reference_spp=32):
+    def __init__(self, eye, target, fovy=40.0, max_depth=16, spp=32, reference_spp=32, size=SIZE):
         self.eye, self.target, self.fovy, self.max_depth = eye, target, fovy, max_depth
         self.spp, self.reference_spp = spp, reference_spp  # per batch
+        self.size = size            # [px]
         self.materials, self.shapes, self.lights = [], [], []
         self.sky_bytes = None       # display colour of the sky, 8 bits a channel
         self.sky_scale = 1.0        # in Mitsuba alone
         self.headlight = None       # MJCF's diffuse
+        self.lamps, self.volumes, self.environment = [], [], None  # what the scene file has: Lamp, Volume, EvenSky or SkyMap
 
     def material(self, name, **what):
         self.materials.append(Material(name, **what))
@@ -75,6 +162,12 @@ class Scene:
 
     def light(self, kind, intensity, **what):
         self.lights.append(Light(kind, intensity, **what))
+
+    def lamp(self, kind, unit, strength, **what):
+        self.lamps.append(Lamp(kind, unit, strength, **what))
+
+    def volume(self, **what):
+        self.volumes.append(Volume(**what))
 
     def sky(self, k, *display):
         """Even light from all around; MJCF has it as 8-bit display colours, of which 255 is 100 cd/m²."""
@@ -119,6 +212,25 @@ def display(value):
 
 def luminance(color):
     return 0.2126 * color[0] + 0.7152 * color[1] + 0.0722 * color[2]
+
+
+def triangle_area(a, b, c):
+    (ax, ay, az), (bx, by, bz) = subtract(b, a), subtract(c, a)
+    return 0.5 * math.hypot(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
+
+
+def about(axis, degrees):
+    """Quaternion (w, x, y, z) of a turn."""
+    half = math.radians(degrees) / 2
+    return (math.cos(half), *scaled(normalize(axis), math.sin(half)))
+
+
+def rotation(q):
+    """Rows of the matrix of a unit quaternion (w, x, y, z)."""
+    w, x, y, z = q
+    return [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]]
 
 
 def subtract(a, b):

@@ -1,9 +1,9 @@
 """Writes a scene for Gloam: MJCF with its textures and meshes, and a scene file with what MJCF cannot say."""
 import math
-import struct
-import zlib
 
-from description import SIZE, display, luminance, normalize
+import gloam_light
+from description import display, luminance, normalize
+from gloam_files import numbers, toml_value, write_obj, write_png
 
 CAMERA = "judge"
 
@@ -32,23 +32,13 @@ def write(scene, folder):
         "<worldbody>", *(light_element(light) for light in scene.lights), *geoms, "</worldbody></mujoco>", ""]))
     path = folder / "scene.toml"
     path.write_text("\n".join(['[environment]\nfile = "scene.xml"\n', camera_table(scene), f"[render]\nmax_depth = {scene.max_depth}\n",
-                               *(material_table(material) for material in scene.materials if material.layers)]))
+                               *(material_table(material) for material in scene.materials if material.layers), *gloam_light.tables(scene, folder)]))
     return path
-
-
-def numbers(values):
-    return " ".join(repr(float(value)) for value in values)
 
 
 def camera_table(scene):
     return (f'[[camera]]\nname = "{CAMERA}"\nposition = {list(map(float, scene.eye))}\nlook_at = {list(map(float, scene.target))}\n'
-            f"fovy = {float(scene.fovy)}\nwidth = {SIZE[0]}\nheight = {SIZE[1]}\n")
-
-
-def toml_value(value):
-    if isinstance(value, bool):
-        return str(value).lower()
-    return str(list(map(float, value))) if isinstance(value, (tuple, list)) else repr(float(value))
+            f"fovy = {float(scene.fovy)}\nwidth = {scene.size[0]}\nheight = {scene.size[1]}\n")
 
 
 def material_table(material):
@@ -81,24 +71,3 @@ def light_element(light):
         square = 1 if light.kind == "directional" else max(sum(x * x for x in light.position), 1)
         colour = f'diffuse="{numbers(c / (100 * math.pi * square) for c in light.intensity)}"'
     return f'<light type="{light.kind}" {place} {shape} {colour} ambient="0 0 0" specular="0 0 0" castshadow="true"/>'
-
-
-def write_obj(path, corners):
-    lines = []
-    for position, normal, uv in corners:
-        lines += [f"v {numbers(position)}", f"vn {numbers(normal)}", f"vt {numbers(uv)}"]
-    for i in range(0, len(corners), 3):
-        lines.append("f " + " ".join(f"{j}/{j}/{j}" for j in range(i + 1, i + 4)))
-    path.write_text("\n".join(lines) + "\n")
-
-
-def write_png(path, rows):
-    """8-bit texels, row by row from the top, each a tuple of 1, 3 or 4 channels."""
-    kind = {1: 0, 3: 2, 4: 6}[len(rows[0][0])]
-    raw = b"".join(b"\0" + bytes(value for texel in row for value in texel) for row in rows)
-
-    def chunk(name, data):
-        return struct.pack(">I", len(data)) + name + data + struct.pack(">I", zlib.crc32(name + data))
-
-    header = struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, kind, 0, 0, 0)
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(raw, 9)) + chunk(b"IEND", b""))

@@ -42,15 +42,22 @@ def render(name, folder, scaled=""):
 
 def stored(name):
     """(header, estimates by what is scaled); refuses references of an earlier description."""
+    if not scenes.ALL[name].peer:
+        return from_formula(name, mutated=True)
     header, estimates = references.read(name)
     if header["digest"] != references.digest(scenes.ALL[name].describe(Scales())):
         raise RuntimeError(f"{name} has changed since its reference was made: ./gloam mitsuba --keep --only {name}")
     return header, estimates
 
 
-def closed_form(name):
+def closed_form(name, scaled=""):
     entry = scenes.ALL[name]
-    return agreement.exact(entry.exact(entry.describe(Scales()))) if entry.exact else None
+    return agreement.exact(entry.exact(entry.describe(Scales(scaled)))) if entry.exact else None
+
+
+def from_formula(name, mutated):
+    """As `stored`, of a scene that Mitsuba cannot render."""
+    return {"spp": 0, "batches": 0}, {scaled: closed_form(name, scaled) for scaled in ["", *(scales_of(name)[0] if mutated else [])]}
 
 
 def scales_of(name):
@@ -62,6 +69,8 @@ def scales_of(name):
 
 def judge(name, ours, theirs):
     """Named agreements of one scene: with Mitsuba, and of both with the closed form where there is one."""
+    if not scenes.ALL[name].peer:
+        return {"closed form": agreement.compare(ours, theirs)}
     found = {"Mitsuba": agreement.compare(ours, theirs)}
     truth = closed_form(name)
     if truth:
@@ -118,7 +127,10 @@ def compare_all(folder, pictures_of):
 
 
 def from_mitsuba(names, folder, mutated):
-    jobs = [(name, scaled) for name in names for scaled in ["", *(sum(scales_of(name), []) if mutated else [])]]
+    yield from ((name, from_formula(name, mutated)) for name in names if not scenes.ALL[name].peer)
+    jobs = [(name, scaled) for name in names if scenes.ALL[name].peer for scaled in ["", *(sum(scales_of(name), []) if mutated else [])]]
+    if not jobs:
+        return
     estimates = {}
     for done, (name, scaled, (header, estimate, _)) in enumerate(ask_mitsuba(jobs, folder), 1):
         say(f"Mitsuba: {name} {scaled} ({done} of {len(jobs)})")

@@ -5,25 +5,26 @@ import math
 import lobe  # noqa: F401  registers gloam_lobe
 import mitsuba as mi
 import numpy as np
-import spot  # noqa: F401  registers gloam_spot
-from description import SIZE, linear, normalize, scaled, subtract
-from gloam_form import write_obj
-
-FAR = 1e4  # [m] of a sun that is a disc
+from description import linear, normalize, scaled, subtract
+from gloam_files import write_obj
+from mitsuba_light import environment_dict, lamp_dict, light_dict, rgb, volume_dict
 
 
-def rgb(color):
-    return {"type": "rgb", "value": list(map(float, color))}
-
-
-def load(scene, folder):
-    """mi.Scene; meshes go through files in `folder`."""
+def load(scene, folder, sampler="independent", roulette=1000):
+    """mi.Scene; meshes go through files in `folder`. Paths may end by chance from the depth `roulette` on."""
     sky = scaled(scene.sky_radiance, scene.sky_scale)
-    out = {"type": "scene", "integrator": integrator(scene), "sensor": sensor(scene)}
+    out = {"type": "scene", "integrator": {**integrator(scene), "rr_depth": roulette},
+           "sensor": {**sensor(scene), "sampler": {"type": sampler}}}
     for i, shape in enumerate(scene.shapes):
         out[f"shape{i}"] = shape_dict(shape, folder / f"mitsuba_mesh{i}.obj")
     for i, light in enumerate(scene.lights):
         out[f"light{i}"] = light_dict(light, sky)
+    for i, lamp in enumerate(scene.lamps):
+        out[f"lamp{i}"] = lamp_dict(lamp, folder / f"mitsuba_lamp{i}.obj")
+    for i, volume in enumerate(scene.volumes):
+        out[f"volume{i}"] = volume_dict(volume)
+    if scene.environment:
+        out["environment"] = environment_dict(scene.environment)
     if scene.headlight is not None:  # docs/light.md
         out["headlight"] = {"type": "directional", "direction": list(normalize(subtract(scene.target, scene.eye))),
                             "irradiance": rgb(scaled(scene.headlight, 100 * math.pi))}
@@ -34,13 +35,14 @@ def load(scene, folder):
 
 def integrator(scene):
     absorbs = any("transmission_depth" in m.layers for m in scene.materials)
-    return {"type": "volpath" if absorbs else "path", "max_depth": scene.max_depth, "rr_depth": 1000}
+    coloured = any(len(set(volume.extinction)) > 1 for volume in scene.volumes)  # which volpath takes one channel at a time
+    return {"type": "volpathmis" if coloured else "volpath" if absorbs or scene.volumes else "path", "max_depth": scene.max_depth}
 
 
 def sensor(scene):
     view = mi.ScalarTransform4f().look_at(origin=list(scene.eye), target=list(scene.target), up=[0, 0, 1])
     return {"type": "perspective", "fov_axis": "y", "fov": scene.fovy, "to_world": view,
-            "film": {"type": "hdrfilm", "width": SIZE[0], "height": SIZE[1], "rfilter": {"type": "box"}}}
+            "film": {"type": "hdrfilm", "width": scene.size[0], "height": scene.size[1], "rfilter": {"type": "box"}}}
 
 
 def shape_dict(shape, mesh_file):
@@ -80,7 +82,7 @@ def bsdf_dict(m):
     if "normal" in m.maps:
         out = {"type": "normalmap", "normalmap": bitmap(m.maps["normal"], display=False), "bsdf": out,
                "use_shadowing_function": False, "flip_invalid_normals": False}
-    if m.native in ("diffuse", "mirror"):
+    if m.native in ("diffuse", "mirror", "white_metal"):
         out = {"type": "twosided", "bsdf": out}
     if "opacity" in m.maps:
         out = {"type": "mask", "opacity": bitmap(m.maps["opacity"], display=False), "bsdf": out}
@@ -93,6 +95,8 @@ def native_dict(m):
     scale = {name: m.lobes.get(name, 1.0) for name in lobe.LOBES}
     if m.native == "diffuse":
         return {"type": "diffuse", "reflectance": bitmap(m.maps["rgb"], m.color) if "rgb" in m.maps else rgb(m.color)}
+    if m.native == "white_metal":  # without a colour both have no Fresnel term; smooth enough, masking twice over is none
+        return {"type": "roughconductor", "material": "none", "distribution": "ggx", "alpha": m.roughness**2}
     if m.native == "mirror":
         return {"type": "conductor", "material": "none", "specular_reflectance": rgb(scaled(m.color, scale["metal"]))}
     tint = m.layers.get("transmission_color", (1, 1, 1)) if m.layers.get("transmission_depth", 0) == 0 else (1, 1, 1)
@@ -107,22 +111,3 @@ def lobe_dict(m):
     parameters = {"color": m.color, "metallic": m.metallic, "roughness": m.roughness, "specular": m.specular, **m.layers,
                   "scales": m.lobes}
     return {"type": "gloam_lobe", "parameters": json.dumps(parameters)}
-
-
-def light_dict(light, behind):
-    """`behind`: radiance of the sky, which a far disc would hide."""
-    if light.kind == "spot":
-        return {"type": "gloam_spot", "position": list(light.position), "direction": list(normalize(light.direction)),
-                "intensity_rgb": list(light.intensity), "cutoff": light.cutoff, "inner": light.cutoff * (1 - light.softness)}
-    radius, place, hidden = light.radius, list(light.position), (0, 0, 0)
-    if light.kind == "directional":
-        axis = normalize(light.direction)
-        if radius == 0:
-            return {"type": "directional", "direction": list(axis), "irradiance": rgb(light.intensity)}
-        radius, place, squared, hidden = FAR * radius, [-FAR * x for x in axis], radius**2, behind
-    elif radius == 0:
-        return {"type": "point", "position": place, "intensity": rgb(light.intensity)}
-    else:
-        squared = radius**2
-    return {"type": "sphere", "center": place, "radius": radius, "bsdf": {"type": "diffuse", "reflectance": 0.0},
-            "emitter": {"type": "area", "radiance": rgb(i / (math.pi * squared) + h for i, h in zip(light.intensity, hidden))}}

@@ -16,9 +16,7 @@ mi.set_variant("llvm_ad_rgb")
 import drjit as dr  # noqa: E402
 import mitsuba_form  # noqa: E402
 import scenes  # noqa: E402
-from description import BLOCK, SIZE, Scales  # noqa: E402
-
-SIGMA, CUT = 0.42, 1.25  # [px] of the pixel's filter, as in src/render/kernel/camera.h
+from description import BLOCK, FILTER_CUT, FILTER_SIGMA, SIZE, Scales  # noqa: E402
 
 
 def render_batch(scene, spp, seed):
@@ -29,7 +27,7 @@ def render_batch(scene, spp, seed):
     sampler.seed(seed, count)
     pixel = dr.arange(mi.UInt32, count) // spp
     u = sampler.next_2d()
-    radius = SIGMA * dr.sqrt(-2 * dr.log(1 - u.x * (1 - np.exp(-0.5 * (CUT / SIGMA) ** 2))))
+    radius = FILTER_SIGMA * dr.sqrt(-2 * dr.log(1 - u.x * (1 - np.exp(-0.5 * (FILTER_CUT / FILTER_SIGMA) ** 2))))
     s, c = dr.sincos(2 * dr.pi * u.y)
     place = mi.Point2f(mi.Float(pixel % width) + 0.5 + radius * c, mi.Float(pixel // width) + 0.5 + radius * s)
     ray, weight = scene.sensors()[0].sample_ray(0, 0.5, place / mi.Point2f(width, height), mi.Point2f(0.5))

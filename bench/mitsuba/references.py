@@ -13,6 +13,7 @@ FOLDER = Path(__file__).resolve().parent / "references"
 def digest(scene):
     """Of what a scene says, so that a reference of another one is not compared with."""
     said = [scene.eye, scene.target, scene.fovy, scene.max_depth, scene.shapes, scene.lights, scene.sky_bytes, scene.headlight]
+    said += [part for part in (scene.lamps, scene.volumes, scene.environment) if part]
     return hashlib.sha256(repr(said).encode()).hexdigest()[:16]
 
 

@@ -21,14 +21,17 @@ def write(rows, folder, complete):
              "|---|---|---|---|---|---|---|---|---|", *(lines[name] for name in scenes.ALL if name in lines)]
     PAGE.write_text(head + BEGIN + "\n" + "\n".join(table) + "\n" + END + tail)
     if complete:
-        sheet = {"folder": str(folder), "out": str(ROOT / "docs" / "images" / "mitsuba.jpg"), "scenes": list(rows)}
+        sheet = {"folder": str(folder), "out": str(ROOT / "docs" / "images" / "mitsuba.jpg"), "scenes": [name for name in scenes.ALL if scenes.ALL[name].peer]}
         subprocess.run([measure.peer_python(), HERE / "sheet.py", json.dumps(sheet)], check=True)
 
 
 def table_line(name, row):
-    found = row["found"]["Mitsuba"]
+    peer = scenes.ALL[name].peer
+    found = row["found"]["Mitsuba" if peer else "closed form"]
     what = scenes.ALL[name].title
-    if "closed form" in row["found"]:
+    if not peer:
+        what += " (the closed form alone)"
+    elif "closed form" in row["found"]:
         what += f" (from the closed form: {100 * row['found']['closed form'].difference:+.3f} %)"
     return (f"| {name} | {what} | {found.share:.1%} | {found.chi_square:.2f} | {found.picture_z:+.1f} | {100 * found.difference:+.3f} % | "
             f"{100 * found.ours:.2f} / {100 * found.theirs:.2f} % | {row['spp']} / {row['reference_spp']} | "

@@ -1,7 +1,7 @@
 """Scenes with a closed form: both programs are held against it."""
 import math
 
-from description import Scene, scaled
+from description import Scene, about, rotation, scaled
 from scenes import closed_form
 from scenes.closed_form import floor_point, polygon_irradiance, sheet_reflects
 from scenes.glass import quad
@@ -78,6 +78,41 @@ def lamps_on_plane(k):
     s.light("spot", scaled((60, 80, 100), k("spot")), position=(0.2, 1.5, 2.5), direction=(-0.1, -0.6, -1), cutoff=0.7, softness=0.5)
     s.light("directional", scaled((20, 20, 30), k("sun")), direction=(0.5, 0.4, -1))
     s.light("directional", scaled((30, 20, 20), k("wide_sun")), direction=(-0.8, 0.1, -1), radius=0.15)
+    return s
+
+
+def profile_radiance(s):
+    def candela(lamp, d):
+        x, y, z = (closed_form.dot(axis, d) for axis in zip(*rotation(lamp.orientation)))
+        around, down = len(lamp.profile), len(lamp.profile[0])
+        v = math.acos(max(-1.0, min(1.0, -z))) * 2 / math.pi * (down - 1)
+        h = math.atan2(y, x) % (2 * math.pi) / (2 * math.pi) * around
+        if v >= down - 1:
+            return 0.0
+        i, j = int(v), int(h) % around
+        rows = [row[i] + (v - i) * (row[i + 1] - row[i]) for row in (lamp.profile[j], lamp.profile[(j + 1) % around])]
+        return (rows[0] + (h - int(h)) * (rows[1] - rows[0])) * lamp.strength
+
+    def radiance(eye, direction):
+        p = floor_point(eye, direction)
+        total = [0.0, 0.0, 0.0]
+        for lamp in s.lamps:
+            to = [a - b for a, b in zip(lamp.position, p)]
+            square = closed_form.dot(to, to)
+            share = candela(lamp, [-t / math.sqrt(square) for t in to]) * to[2] / square**1.5
+            total = [t + share * c for t, c in zip(total, lamp.hue())]
+        return [t * c / math.pi for t, c in zip(total, s.materials[0].color)]
+    return closed_form.blocks(s, radiance)
+
+
+@scene("lamps with photometric files over a plane: the inverse square of their candela", exact=profile_radiance)
+def profile_on_plane(k):
+    s = plane(k)
+    steps = range(19)  # of 5 degrees, from straight down to the side; fine enough for the pixel's filter not to matter
+    wings = [[(40 + 60 * math.sin(0.12 * i + math.pi * j / 18) ** 2) * math.cos(math.pi * i / 36) ** 2 for i in steps] for j in range(36)]
+    cone = [[100 * math.cos(math.pi * i / 36) ** 4 for i in steps]]  # the same all around
+    s.lamp("profile", "times", 1.5 * k("wings"), color=(1.0, 0.8, 0.5), position=(-0.8, 0.2, 1.4), orientation=about((0.2, 1, 0.4), 25), profile=wings)
+    s.lamp("profile", "times", 2.0 * k("cone"), color=(0.5, 0.7, 1.0), position=(1.0, 0.6, 1.5), orientation=about((1, 0, 0), -20), profile=cone)
     return s
 
 

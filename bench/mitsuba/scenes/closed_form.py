@@ -1,9 +1,9 @@
 """Radiance of blocks of pixels where it has a closed form."""
 import math
 
-from description import BLOCK, SIZE, normalize, subtract
+from description import BLOCK, FILTER_CUT, FILTER_SIGMA, SIZE, normalize, subtract
 
-SUB = 4  # points of a pixel a side
+POINTS = 16  # of a pixel
 
 
 def dot(a, b):
@@ -15,22 +15,35 @@ def cross(a, b):
 
 
 def blocks(scene, radiance):
-    """Means of radiance(eye, unit direction) over each block; the pixel's filter is far below what varies here."""
+    """Means of radiance(eye, unit direction) over each block, as the pixel's filter sees it."""
     forward = normalize(subtract(scene.target, scene.eye))
     right = normalize(cross(forward, (0, 0, 1)))
     up = cross(right, forward)
     width, height = SIZE
     focal = 0.5 * height / math.tan(math.radians(scene.fovy) / 2)
+    spread = filter_points(BLOCK**2 * POINTS)
     out = []
     for row in range(height // BLOCK):
         for column in range(width // BLOCK):
             total = [0.0, 0.0, 0.0]
-            for i in range((BLOCK * SUB) ** 2):
-                x = (column * BLOCK + (i % (BLOCK * SUB) + 0.5) / SUB - width / 2) / focal
-                y = (height / 2 - row * BLOCK - (i // (BLOCK * SUB) + 0.5) / SUB) / focal
+            for i, (dx, dy) in enumerate(spread):
+                pixel = i // POINTS
+                x = (column * BLOCK + pixel % BLOCK + 0.5 + dx - width / 2) / focal
+                y = (height / 2 - row * BLOCK - pixel // BLOCK - 0.5 - dy) / focal
                 direction = normalize(tuple(f + x * r + y * u for f, r, u in zip(forward, right, up)))
                 total = [t + c for t, c in zip(total, radiance(scene.eye, direction))]
-            out.append(tuple(t / (BLOCK * SUB) ** 2 for t in total))
+            out.append(tuple(t / len(spread) for t in total))
+    return out
+
+
+def filter_points(count):
+    """Offsets from a pixel's centre by its filter [px]: Roberts' R2 sequence, in pairs whose mean is zero."""
+    cut, out = 1 - math.exp(-0.5 * (FILTER_CUT / FILTER_SIGMA) ** 2), []
+    for i in range(1, count // 2 + 1):
+        u, v = i * 0.7548776662466927 % 1, i * 0.5698402909980532 % 1
+        radius = FILTER_SIGMA * math.sqrt(-2 * math.log(1 - u * cut))
+        x, y = radius * math.cos(2 * math.pi * v), radius * math.sin(2 * math.pi * v)
+        out += [(x, y), (-x, -y)]
     return out
 
 

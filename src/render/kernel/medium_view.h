@@ -46,7 +46,7 @@ struct VolumeView {
 
 /// Luminance of black bodies by 1 / T, from kLow to kHigh.
 struct BlackBodyTable {
-  static constexpr int kSize = 512;
+  static constexpr int kSize = 1024;
   static constexpr float kLow = 800, kHigh = 10000;  ///< [K]
   DeviceSpan<const Vec3f> luminance;                 ///< linear Rec. 709 [cd/m²], (kSize)
 

@@ -234,7 +234,7 @@ TEST(BlackBody, MatchesWhatIsKnownOfIt) {
   const BlackBodyTable table{{values.data(), static_cast<uint32_t>(values.size())}};
   for (float t = 801; t < 9990; t *= 1.013f) {
     const Vec3f exact = black_body_luminance(t), found = table.at(t);
-    EXPECT_LT(length(found - exact), 1e-3f * length(exact)) << t << " K";
+    EXPECT_LT(length(found - exact), 2e-4f * length(exact)) << t << " K";
   }
   EXPECT_EQ(table.at(799), Vec3f{});
   EXPECT_LT(luminance(table.at(800)), 0.01f) << "nothing that is seen is cut off";
