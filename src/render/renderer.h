@@ -43,8 +43,8 @@ struct RenderSettings {
   uint32_t frame = 0;          ///< draws are keyed (seed, frame, pixel, sample)
   bool exact_channels = true;  ///< depth, distance, part, center_normal, center_albedo, motion
   bool variance = false;
-  /// For a denoiser, of pictures with fewer samples than this or with volumes: albedo and normal of
-  /// this many rays at edges (volumes: up to 16), of the pixel's centre elsewhere; 0 = the samples'.
+  /// For a denoiser, of pictures with fewer samples than this: albedo and normal of so many rays at
+  /// edges, of the pixel's centre elsewhere. 0 = always those of the samples. Needs exact_channels.
   int guide_samples = 0;
   ViewHistory* history = nullptr;  ///< fast tier: of this camera; null = a picture by itself
   /// Path tier: sampling goes on until the standard error of a pixel's mean is this share of its

@@ -21,8 +21,6 @@
 namespace gloam {
 namespace {
 
-constexpr int kMostGuideRays = 16;
-
 CameraView32 make_camera(const CameraView& view) {
   CameraView32 camera;
   camera.fx = static_cast<float>(view.intrinsics.fx);
@@ -132,12 +130,10 @@ class CpuRenderer final : public Renderer {
       total.unreached += tile.unreached;
     }
     total.finished = !watch.stopped();
-    // Paths end in a medium by chance: a denoiser would take that for texture of what is behind it.
-    const bool misty = settings.guide_samples > 0 && !job.scene.media.volumes.empty();
-    if (total.finished && settings.spp > 0 && (misty || settings.spp < settings.guide_samples)) {
+    if (total.finished && settings.spp > 0 && settings.spp < settings.guide_samples) {
       GLOAM_CHECK(settings.exact_channels, "guide samples need the exact channels");
-      const int rays = std::clamp(settings.spp, settings.guide_samples, kMostGuideRays);
-      total.rays += refine_guides({job.scene, job.tracer, job.camera, job.has_motion}, rays, film);
+      total.rays += refine_guides({job.scene, job.tracer, job.camera, job.has_motion},
+                                  settings.guide_samples, film);
     }
     total.trace_seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
-#include "render/test/media_probe.h"
+#include "render/test/scene_builder.h"
 
 namespace gloam {
 namespace {
@@ -64,20 +64,6 @@ TEST_F(EdgeSamplesTest, LeaveLightAndExactChannelsAlone) {
 
 TEST_F(EdgeSamplesTest, AreNotTakenWhereThePictureHasAsMany) {
   EXPECT_EQ(render(4, 4).albedo, render(4, 0).albedo);
-}
-
-TEST_F(EdgeSamplesTest, AreThoseOfTheSurfacesBehindAMedium) {
-  MediaBuilder fog;
-  fog.add_box({4, 1, 4}, {0, -1.5f, 0}, 1, fog.add_medium({0.7f, 0.7f, 0.7f}, {0.9f, 0.9f, 0.9f}));
-  SceneBuilder misty = make_slats();
-  misty.description.media = fog.media;
-  misty.description.volumes = fog.volumes;
-  RenderSettings settings;
-  settings.spp = 8;
-  settings.guide_samples = 4;
-  const Film clear = render(7, 8), seen = misty.render(view_, settings);
-  EXPECT_LT(difference(seen.albedo, clear.albedo), 1e-6);
-  EXPECT_LT(difference(seen.normal, clear.normal), 1e-6);
 }
 
 TEST_F(EdgeSamplesTest, AreEqualForAnyNumberOfThreads) {
