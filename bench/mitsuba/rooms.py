@@ -81,7 +81,7 @@ def lamps_room(size=SIZE):
     s.box(metal, (1.2, -0.2, 0.3), (0.25, 0.25, 0.299), turn=0.5)
     for i in range(16):
         color = ((1, 0.6, 0.3), (0.5, 0.7, 1), (1, 0.9, 0.8), (0.5, 1, 0.6))[i % 4]
-        s.lamp("sphere", "flux", 60 + 15 * i, color=color, position=(-1.6 + 1.05 * (i % 4), -1.4 + 0.95 * (i // 4), 2.3 - 0.07 * (i % 3)), size=(0.04,))
+        s.lamp("sphere", "flux", 60 + 15 * i, color=color, position=(-1.6 + 1.05 * (i % 4), -1.4 + 0.95 * (i // 4), 2.3 - 0.07 * (i % 3)), size=(0.09,))
     return s
 
 
