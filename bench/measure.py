@@ -118,6 +118,22 @@ def path_tier(quick):
                    f"{share:.0%} of the bare Embree loop (aim 65 %)")
 
 
+def equal_error(quick):
+    """time to an equal error against Mitsuba 3.9 (llvm_ad_rgb) in three rooms: same lobes, lights, size, depth"""
+    library = next(Path("/usr/lib").glob("*/libLLVM*19*.so*"), None) if peer_python() else None
+    if library is None:
+        raise RuntimeError("libLLVM 19 is missing: apt-get install libllvm19")
+    size = ["--spp", "4,16", "--pictures", 4, "--samplers", "independent"] if quick else []
+    text = run(peer_python(), ROOT / "bench" / "mitsuba" / "equal_error.py", CACHE / "bench_rooms", BIN / "bench_path_blocks", *size,
+               DRJIT_LIBLLVM_PATH=str(library))
+    for room in map(json.loads, text.strip().splitlines()):
+        ratios = room["ratio"].values()
+        yield at_least(f"Mitsuba's CPU time / ours at equal error: {room['room']}", statistics.geometric_mean(ratios), 2.0,
+                       f"{', '.join(f'{ratio:.2f} at {spp}' for spp, ratio in room['ratio'].items())} samples; Mitsuba's best: {room['best']}; "
+                       f"slopes {room['slopes'][0]:.2f}, {room['slopes'][1]:.2f}; the light {'agrees' if room['agrees'] else 'DIFFERS'}: "
+                       f"{room['agreement']}")
+
+
 def boxes_scene():
     """Go1, a floor and 20 boxes under a shadowing light, beside a copy of the robot's files."""
     folder = CACHE / "bench_boxes"
@@ -248,5 +264,5 @@ def adaptive_sampling(quick):
 
 
 # With the seconds that each takes on two cores: the first estimate of the time left.
-ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, direct_tier: 90, load_time: 120, import_time: 60, first_picture: 15,
-       adaptive_sampling: 120}
+ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, load_time: 120, import_time: 60,
+       first_picture: 15, adaptive_sampling: 120}

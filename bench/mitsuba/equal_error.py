@@ -7,7 +7,7 @@ Either program renders independent pictures of the same scene, size and depth, w
 
     relMSE = mean of variance / (value² + (0.1 mean)²), over pixels and channels,
 
-where the variance of one picture is that between the pictures and `value` their mean: the estimators have no bias but
+where the variance of one picture is that between the pictures, and `value` the mean of those of the most samples: the estimators have no bias but
 what `agreement` finds, so this is the squared error against each program's own reference with the noise of the reference
 taken off. Time is the CPU time of the rendering alone: scenes are loaded and kernels compiled before. Of Mitsuba's samplers,
 the one with the least time times error counts. At equal error, time goes as error x time, as error falls as 1 / time; the
@@ -35,9 +35,11 @@ from description import BLOCK, SIZE  # noqa: E402
 SAMPLERS = ("independent", "stratified", "multijitter", "orthogonal", "ldsampler")
 
 
-def rel_mse(pictures):
-    mean = pictures.mean(axis=0)
-    return float((pictures.var(axis=0, ddof=1) / (mean**2 + (0.1 * mean.mean()) ** 2)).mean())
+def rel_mse(runs):
+    """By samples a pixel, of (seconds, pictures); values are those of the most samples."""
+    value = runs[max(runs)][1].mean(axis=0)
+    below = value**2 + (0.1 * value.mean()) ** 2
+    return {spp: (seconds, float((pictures.var(axis=0, ddof=1) / below).mean())) for spp, (seconds, pictures) in runs.items()}
 
 
 def gloam(program, scene, folder, name, spp, count, block=1):
@@ -89,18 +91,12 @@ def slope(spps, work):
 def measure(program, name, folder, a):
     spps, room = [int(spp) for spp in a.spp.split(",")], rooms.ALL[name]
     found = agree(program, room, folder, name)
-    ours = {}
-    for spp in spps:
-        seconds, pictures = gloam(program, room(), folder, name, spp, a.pictures)
-        ours[spp] = (seconds, rel_mse(pictures))
+    ours = rel_mse({spp: gloam(program, room(), folder, name, spp, a.pictures) for spp in spps})
     theirs = {}
     for sampler in a.samplers.split(","):
         for roulette in (5, 1000):
-            scene, work = mitsuba_form.load(room(), folder, sampler, roulette), {}
-            for spp in spps:
-                seconds, pictures = mitsuba(scene, spp, a.pictures)
-                work[spp] = (seconds, rel_mse(pictures))
-            theirs[f"{sampler}, roulette from {roulette}"] = work
+            scene = mitsuba_form.load(room(), folder, sampler, roulette)
+            theirs[f"{sampler}, roulette from {roulette}"] = rel_mse({spp: mitsuba(scene, spp, a.pictures) for spp in spps})
     product = {who: math.prod(t * e for t, e in work.values()) ** (1 / len(spps)) for who, work in theirs.items()}
     best = min(product, key=product.get)
     return {"room": name, "agrees": found.agrees, "agreement": str(found),

@@ -23,6 +23,7 @@ import scenes  # noqa: E402
 from description import BLOCK, Scales  # noqa: E402
 
 ROOT = HERE.parent.parent
+sys.path.insert(0, str(ROOT / "bench"))
 BATCHES = 32            # of either program
 MUTATED_SHARE = 0.5     # of the batches, for pictures that must differ
 
@@ -86,7 +87,6 @@ def undetected(ours, estimates):
 
 def ask_mitsuba(jobs, folder):
     """Renders by Mitsuba: (scene, scaled) pairs, one process."""
-    sys.path.insert(0, str(ROOT / "bench"))
     import measure
     library = next(Path("/usr/lib").glob("*/libLLVM*19*.so*"), None) if measure.peer_python() else None
     if library is None:

@@ -1,12 +1,11 @@
 """Three rooms in which the time to an equal error is measured. Mitsuba has each material, lamp and sky of its own."""
-from description import EvenSky, Scales, Scene, SkyMap, normalize  # noqa: F401
+from description import Scene, SkyMap, normalize
 
 SIZE = (320, 240)
-ONE = Scales()
 
 
 def shell(s, x, y, z, window=False):
-    """Walls, floor and ceiling of a room from the origin's floor, and an open side for nobody: the camera stands inside."""
+    """A room of half edges x and y and the height z, its floor at the origin; the camera stands inside."""
     white = s.material("white", color=(0.75, 0.73, 0.7), native="diffuse")
     wood = s.material("wood", color=(0.4, 0.25, 0.13), native="diffuse")
     blue = s.material("blue", color=(0.2, 0.3, 0.5), native="diffuse")
@@ -43,8 +42,8 @@ def furnish(s):
     s.sphere(green, (0.6, 0.7, 0.85), 0.1)
 
 
-def camera(s_size=SIZE):
-    return Scene(eye=(-0.6, -1.9, 1.5), target=(0.15, 0.8, 0.95), fovy=55, max_depth=8, size=s_size)
+def camera(size):
+    return Scene(eye=(-0.6, -1.9, 1.5), target=(0.15, 0.8, 0.95), fovy=55, max_depth=8, size=size)
 
 
 def panel_room(size=SIZE):
@@ -82,7 +81,7 @@ def lamps_room(size=SIZE):
     s.box(metal, (1.2, -0.2, 0.3), (0.25, 0.25, 0.299), turn=0.5)
     for i in range(16):
         color = ((1, 0.6, 0.3), (0.5, 0.7, 1), (1, 0.9, 0.8), (0.5, 1, 0.6))[i % 4]
-        s.lamp("sphere", "flux", 60 + 15 * i, color=color, position=(-1.6 + 1.05 * (i % 4), -1.4 + 0.95 * (i // 4), 2.3 - 0.07 * (i % 3)), size=(0.04,))
+        s.lamp("sphere", "flux", 60 + 15 * i, color=color, position=(-1.6 + 1.05 * (i % 4), -1.4 + 0.95 * (i // 4), 2.3 - 0.07 * (i % 3)), size=(0.09,))
     return s
 
 

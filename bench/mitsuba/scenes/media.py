@@ -23,9 +23,9 @@ def coloured_fog(k):
     s.sky(k, 60, 70, 90)
     s.light("point", scaled((300, 300, 300), k("lamp")), position=(1.2, 1.2, 2.4))
     s.light("directional", (80, 80, 80), direction=(0.5, 0.4, -1))
-    s.volume(position=(-0.8, -0.9, 0.9), size=(1.2, 0.7, 1.4), extinction=scaled((0.6, 1.2, 2.4), k("forward")), albedo=(0.95, 0.9, 0.8), g=0.7,
+    s.volume(position=(-0.75, -0.9, 1.0), size=(1.4, 1.0, 1.6), extinction=scaled((1.2, 2.0, 3.2), k("forward")), albedo=(0.95, 0.9, 0.8), g=0.7,
              orientation=about((0.2, 0.3, 1), 30))
-    s.volume(position=(0.8, -0.6, 0.9), size=(1.1, 0.9, 1.2), extinction=scaled((2.0, 1.0, 0.5), k("back")), albedo=(0.8, 0.8, 0.95), g=-0.4,
+    s.volume(position=(0.85, -0.6, 1.0), size=(1.3, 1.1, 1.4), extinction=scaled((3.2, 2.0, 1.2), k("back")), albedo=(0.8, 0.8, 0.95), g=-0.4,
              orientation=about((1, 0.1, 0.4), 20))
     return s
 
@@ -90,7 +90,7 @@ def glow_radiance(s):
 
 @scene("glowing gas that absorbs, before an even sky: Kirchhoff's and Planck's laws", exact=glow_radiance, peer=False)
 def glow(k):
-    s = Scene(eye=(0.1, -3.0, 0.2), target=(0, 0, 0), fovy=40, max_depth=3)
+    s = Scene(eye=(0.1, -3.0, 0.2), target=(0, 0, 0), fovy=40, max_depth=3, spp=8)
     s.environment = EvenSky(400 * k("sky"), (0.5, 0.7, 1.0))
     s.volume(position=(0, 0, 0), size=(4, 2, 4), extinction=scaled((0.2, 0.5, 1.0), k("extinction")), orientation=about((0.3, 0.1, 1), 20),
              temperature=2200.0, emission=5e-4 * k("emission"))
