@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kCellPixels = 32;     // edge of a cache's cell in the picture,
 constexpr float kWidestCell = 0.05f;  // or over its distance if that is less
-constexpr int kWarmUp = 6;         // updates of the cache before the first picture
+constexpr int kWarmUp = 10;           // updates of the cache before the first picture
 
 /// Requests of one tile, each cell's first.
 struct TileRequests {

@@ -58,7 +58,8 @@ void IrradianceCache::ask(const std::vector<CacheRequest>& requests) {
 }
 
 uint64_t IrradianceCache::trace(const SceneView& scene, const EmbreeTracer& tracer,
-                                const IrradianceCacheView& cache, uint64_t seed, uint32_t frame) {
+                                const IrradianceCacheView& cache, uint64_t seed, uint32_t frame,
+                                bool remembers) {
   using F = FloatLanes;
   std::vector<uint64_t> rays(asked_.size());
   next_ = light_;
@@ -106,12 +107,13 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const EmbreeTracer& trac
           const float l = luminance(mean), before = luminance(light_[row]);
           const float error = safe_sqrt((squares / kRays - l * l) / kRays);
           if (fabsf(l - before) > kSurprise * error + 0.02f * before) share = max(share, 0.75f);
+          if (!remembers) share = 1;  // too little of the light had come round before
           next_[row] = lerp(light_[row], mean, share);
         }
       });
   std::swap(light_, next_);
   for (const uint32_t row : asked_) {
-    cells_[row].samples += kRays;
+    cells_[row].samples = remembers ? cells_[row].samples + kRays : kRays;
     cells_[row].last_traced = update_;
   }
   uint64_t total = 0;
@@ -135,7 +137,8 @@ uint64_t IrradianceCache::update(const SceneView& scene, const EmbreeTracer& tra
     std::stable_sort(asked_.begin(), asked_.end(),
                      [&](uint32_t a, uint32_t b) { return waits(a) > waits(b); });
     if (settle == 1 && asked_.size() > kMostCells) asked_.resize(kMostCells);
-    rays += trace(scene, tracer, view(eye, edge_per_metre), seed + static_cast<uint64_t>(i), frame);
+    rays += trace(scene, tracer, view(eye, edge_per_metre), seed + static_cast<uint64_t>(i), frame,
+                  settle == 1);
   }
   forget();
   return rays;

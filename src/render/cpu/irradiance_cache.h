@@ -33,7 +33,7 @@ class IrradianceCache {
   uint32_t slot_of(uint64_t key) const;
   void rebuild(size_t slots);
   uint64_t trace(const SceneView& scene, const EmbreeTracer& tracer,
-                 const IrradianceCacheView& cache, uint64_t seed, uint32_t frame);
+                 const IrradianceCacheView& cache, uint64_t seed, uint32_t frame, bool remembers);
   void forget();
 
   std::vector<uint64_t> keys_;

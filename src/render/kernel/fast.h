@@ -57,7 +57,10 @@ GLOAM_HD Vec3Of<F> cached_light(const IrradianceCacheView& cache, const SurfaceO
   Vec3Of<F> light;
   each_lane(active, [&](int i) {
     const Vec3f p = lane(v.p, i), n = lane(v.normal, i);
-    const uint64_t key = cache_key(cache, p, n, {lane(u.x, i), lane(u.y, i), lane(w, i)}, coarser);
+    // Light that goes on is a mean over many lookups anyway: there, blurring would only leak.
+    const Vec3f jitter =
+        coarser > 0 ? Vec3f{0.5f, 0.5f, 0.0f} : Vec3f{lane(u.x, i), lane(u.y, i), lane(w, i)};
+    const uint64_t key = cache_key(cache, p, n, jitter, coarser);
     if (requests != nullptr)
       requests[i] = {key,
                      leave_surface(p, lane(v.geometric, i), lane(v.geometric, i), lane(v.t, i)), n};
@@ -200,7 +203,7 @@ GLOAM_HD Vec3Of<F> gather(const SceneView& scene, const Tracer& tracer,
                    &diffuse, &specular);
       const Vec2Of<F> u = path->sampler.next_2d(matt);
       const F w = path->sampler.next_1d(matt);
-      diffuse += cached_light(cache, v, matt, u, w, 2, requests);
+      diffuse += cached_light(cache, v, matt, u, w, 1, requests);
       F a, b;
       layer_albedo(*scene.albedo, v.roughness, wo.z, &a, &b);
       const Vec3Of<F> albedo = diffuse_albedo(bsdf) + bsdf.base.f0 * a + bsdf.base.f90 * b;
