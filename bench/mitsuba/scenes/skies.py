@@ -21,7 +21,7 @@ def even_sky(k):
 
 @scene("a sky by a picture, turned, with a bright patch")
 def sky_map(k):
-    s = open_air(spp=40, reference_spp=64)
+    s = open_air(spp=40, reference_spp=80)
     s.environment = SkyMap(illuminance=5000 * k("sky"), zenith=(0.5, 0.8, 1.6), nadir=(0.5, 0.3, 0.2), turn=40, patches=[
         (normalize((0.4, -0.8, 0.7)), 60.0, (60.0, 50.0, 35.0)), (normalize((-0.5, 0.9, 0.2)), 25.0, (2.0, 0.5, 3.0))])
     return s
