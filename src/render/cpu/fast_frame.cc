@@ -71,7 +71,7 @@ void FastFrame::resize(int w, int h) {
     mean[s].resize(w, h, 0);
     square[s].resize(w, h, 0);
   }
-  age.resize(w, h, 0);
+  age.resize(w, h, 1);  // beyond the picture too: noise is divided by it
   for (FastPlane3* plane : {&p, &n, &base, &albedo, &gloss, &through}) plane->resize(w, h, 0);
   part.resize(w, h, -1);
   distance.resize(w, h, 0);
