@@ -26,7 +26,9 @@ void RunOptions::add_rendering(CLI::App& command) {
       ->check(CLI::Range(1e-4, 1.0));
   command.add_option("--max-depth", max_depth, "Longest light path, in vertices")
       ->check(CLI::Range(1, 64));
-  command.add_option("--tier", tier, "path: unbiased light; fast: interactive, filtered; direct: one ambient light")
+  command
+      .add_option("--tier", tier,
+                  "path: unbiased light; fast: interactive, filtered; direct: one ambient light")
       ->check(CLI::IsMember({"path", "fast", "direct"}));
   command.add_option("--ev", ev100, "Exposure value at ISO 100; default: by the scene's light");
   command.add_flag("--no-denoise", no_denoise, "Show the samples as they are");

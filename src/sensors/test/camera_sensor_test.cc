@@ -229,7 +229,8 @@ TEST_F(CameraSensorTest, WhatItCannotDoIsAnError) {
          r.render.spp = 64;
          r.render.error = 0.1;
        }},
-      {"16", [](CameraRequest& r) {
+      {"16",
+       [](CameraRequest& r) {
          r.render.spp = 15;
          r.render.error = 0.1;
        }},
