@@ -80,11 +80,14 @@ void FastFrame::resize(int w, int h) {
   key.assign(motion.size(), 0);
 }
 
+void FastFilter::resize(int width, int height) {
+  for (FastPlane3& plane : a) plane.resize(width, height, 0);
+  for (FastPlane3& plane : b) plane.resize(width, height, 0);
+}
+
 void FastFilter::accumulate(const FastFrame& before, FastFrame* frame) {
   FastFrame& f = *frame;
   const bool has_before = before.width == f.width && before.height == f.height;
-  for (FastPlane3& plane : a) plane.resize(f.width, f.height, 0);
-  for (FastPlane3& plane : b) plane.resize(f.width, f.height, 0);
   parallel_for("fast history", f.height, [&](int64_t row) {
     const int y = static_cast<int>(row);
     for (int first = 0; first < f.width; first += kLaneCount) {

@@ -61,6 +61,7 @@ struct FastFrame {
 struct FastFilter {
   FastPlane3 a[kFastSignals], b[kFastSignals];
 
+  void resize(int width, int height);
   /// Takes over from `before` what is the same place, as far as it agrees with what is new.
   void accumulate(const FastFrame& before, FastFrame* frame);
   /// Smooths the signals over surfaces.

@@ -126,7 +126,10 @@ RenderStats FastHistory::render(const SceneView& scene, const EmbreeTracer& trac
                                 const CameraView32& camera, const RenderSettings& settings,
                                 Film* film) {
   rays_ = 0;
-  now_.resize(film->width, film->height);
+  if (film->width != now_.width || film->height != now_.height) {
+    now_.resize(film->width, film->height);
+    filter_.resize(film->width, film->height);
+  }
   const Vec3f eye = camera.pose.X_WC_open.p;
   const float edge = min(kCellPixels / camera.fx, kWidestCell);
   for (bool again = true; again; warm_ = true) {
