@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "gloam/sensor.h"
 #include "gloam/types.h"
 
 namespace gloam {
@@ -25,7 +26,9 @@ struct CameraFrame {
   double time = 0;     ///< [s] simulation time of the exposure
   bool warmup = false;
   Intrinsics intrinsics;
-  Pose X_WC;  ///< pose of the camera; looks along -Z, +Y up (MuJoCo's convention)
+  double delivery = 0;  ///< [s] simulation time at which it reaches a reader, >= time
+  double ev100 = 0;     ///< exposure value of `rgb` and `raw`
+  Pose X_WC;            ///< pose of the camera; looks along -Z, +Y up (MuJoCo's convention)
 
   std::vector<uint8_t> rgb;     ///< tone-mapped sRGB, (height x width x 3)
   std::vector<float> radiance;  ///< linear Rec. 709 [cd/m²], (height x width x 3)
@@ -39,6 +42,13 @@ struct CameraFrame {
   std::vector<uint32_t> samples;   ///< light paths in the mean of a pixel, (height x width)
   std::vector<float> motion;  ///< optical flow from the previous frame of this camera to this one
                               ///< [px], (height x width x 2)
+  /// Numbers of the imager [DN]: behind a mosaic (height x width), else (height x width x 3).
+  std::vector<uint16_t> raw;
+  /// What the camera's stereo_depth model measures along the optical axis [m], 0 = nothing,
+  /// (height x width). `depth` is the truth.
+  std::vector<float> sensor_depth;
+  std::vector<Event> events;   ///< since the frame before, in order of time
+  std::vector<float> thermal;  ///< apparent temperature [K], (height x width)
 };
 
 /// One drawn geom: `part` indexes this table.

@@ -11,6 +11,7 @@
 
 #include "gloam/result.h"
 #include "gloam/scene_light.h"
+#include "gloam/scene_sensor.h"
 #include "gloam/types.h"
 
 namespace gloam {
@@ -78,8 +79,10 @@ struct CameraOptions {
   int width = 640, height = 480;  ///< [px], 1 … 16384
   Rational rate = {20, 1};        ///< frames per second of simulation time
   /// What is recorded of this camera, instead of what [record] says: video png depth_png depth_exr
-  /// segmentation; [] = its poses alone.
+  /// segmentation sensor_depth_png raw_png thermal_png
+  /// events; [] = its poses alone.
   std::optional<std::vector<std::string>> outputs = {};
+  CameraSensing sensing = {};  ///< imager, timing …: what happens between light and message
   SourceLoc loc = {};
 };
 
@@ -194,7 +197,7 @@ struct RenderOptions {
 /// [record]
 struct RecordOptions {
   std::vector<std::string> outputs = {
-      "video", "png"};  ///< video png depth_png depth_exr segmentation metrics contact_sheet
+      "video", "png"};  ///< those of CameraOptions::outputs, metrics contact_sheet sensors
   SourceLoc loc = {};
 };
 
@@ -211,6 +214,10 @@ struct Scene {
   std::vector<VolumeOptions> volumes = {};
   std::vector<VisualOptions> visuals = {};
   std::vector<PushOptions> pushes = {};
+  std::vector<StereoOptions> stereo = {};  ///< a compiled Scene has their cameras in `cameras`
+  std::vector<RgbdOptions> rgbd = {};      ///< likewise
+  std::vector<SensorOptions> sensors = {};
+  std::vector<TemperatureOptions> temperatures = {};
   SimOptions sim = {};
   RenderOptions render = {};
   RecordOptions record = {};

@@ -10,6 +10,7 @@
 
 #include "gloam/scene.h"
 #include "scene/field_rule.h"
+#include "scene/imager_fields.h"
 #include "scene/light_fields.h"
 #include "scene/pattern_names.h"
 
@@ -62,7 +63,9 @@ void visit_fields(Visitor& v, CameraOptions& o) {
   v("height", o.height, FieldRule{.unit = "px", .min = 1, .max = 16384});
   v("rate", o.rate, FieldRule{.unit = "Hz", .min = 0, .max = kFastestRate, .open = true});
   v("outputs", o.outputs,
-    FieldRule{.choices = {"video", "png", "depth_png", "depth_exr", "segmentation"}});
+    FieldRule{.choices = {"video", "png", "depth_png", "depth_exr", "segmentation",
+                          "sensor_depth_png", "raw_png", "thermal_png", "events"}});
+  visit_sensing(v, o.sensing);
 }
 
 template <class Visitor>
@@ -163,8 +166,9 @@ void visit_fields(Visitor& v, RenderOptions& o) {
 template <class Visitor>
 void visit_fields(Visitor& v, RecordOptions& o) {
   v("outputs", o.outputs,
-    FieldRule{.choices = {"video", "png", "depth_png", "depth_exr", "segmentation", "metrics",
-                          "contact_sheet"}});
+    FieldRule{.choices = {"video", "png", "depth_png", "depth_exr", "segmentation",
+                          "sensor_depth_png", "raw_png", "thermal_png", "events", "metrics",
+                          "contact_sheet", "sensors"}});
 }
 
 /// [scene]
@@ -190,6 +194,10 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("volume", scene.volumes, FieldRule{});
   v("visual", scene.visuals, FieldRule{});
   v("push", scene.pushes, FieldRule{});
+  v("stereo", scene.stereo, FieldRule{});
+  v("rgbd", scene.rgbd, FieldRule{});
+  v("sensor", scene.sensors, FieldRule{});
+  v("temperature", scene.temperatures, FieldRule{});
   v("render", scene.render, FieldRule{});
   v("record", scene.record, FieldRule{});
 }

@@ -9,6 +9,7 @@
 
 #include "base/text.h"
 #include "scene/option_fields.h"
+#include "scene/validate_imager.h"
 #include "scene/validate_light.h"
 
 namespace gloam {
@@ -155,7 +156,13 @@ Status validate_scene(const Scene& scene) {
   GLOAM_TRY_STATUS(refuse_duplicates(scene.cameras, "camera"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.visuals, "visual"));
   GLOAM_TRY_STATUS(validate_render(scene.render));
-  for (const CameraOptions& camera : scene.cameras) GLOAM_TRY_STATUS(validate_camera(camera));
+  for (const CameraOptions& camera : scene.cameras) {
+    GLOAM_TRY_STATUS(validate_camera(camera));
+    GLOAM_TRY_STATUS(validate_sensing(camera.name, camera.sensing));
+  }
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.stereo, "stereo rig"));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.rgbd, "rgbd rig"));
+  GLOAM_TRY_STATUS(validate_rigs(scene));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.lights, "light"));
   for (const LightOptions& light : scene.lights) GLOAM_TRY_STATUS(validate_light(light));
   if (scene.sky) GLOAM_TRY_STATUS(validate_sky(*scene.sky));

@@ -8,6 +8,7 @@
 #include "base/hash.h"
 #include "base/text.h"
 #include "render/film/tone_map.h"
+#include "sensors/timing.h"
 
 namespace gloam {
 namespace {
@@ -114,7 +115,9 @@ Result<CameraChannels> CameraChannels::parse(const std::vector<std::string>& nam
       {"rgb", &channels.rgb},       {"radiance", &channels.radiance},
       {"depth", &channels.depth},   {"normal", &channels.normal},
       {"albedo", &channels.albedo}, {"segmentation", &channels.segmentation},
-      {"motion", &channels.motion}, {"samples", &channels.samples}};
+      {"motion", &channels.motion}, {"samples", &channels.samples},
+      {"raw", &channels.raw},       {"sensor_depth", &channels.sensor_depth},
+      {"events", &channels.events}, {"thermal", &channels.thermal}};
   std::vector<std::string> all;
   for (const auto& entry : known) all.push_back(entry.first);
   for (const std::string& name : names) {
@@ -145,8 +148,12 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
   std::unique_ptr<CameraSensor> sensor(new CameraSensor(description, camera, channels));
   sensor->intrinsics_ = resized(described.intrinsics, request.width, request.height);
   sensor->rate_ = request.rate;
-  sensor->ev100_ =
-      request.render.ev100 ? static_cast<float>(*request.render.ev100) : description.ev100;
+  const double ev100 = request.render.ev100.value_or(static_cast<double>(description.ev100));
+  GLOAM_TRY(sensor->models_,
+            CameraModels::create(description, camera, sensor->intrinsics_,
+                                 {channels.rgb, channels.raw, channels.sensor_depth,
+                                  channels.events, channels.thermal},
+                                 ev100, sensor_seed(seed, request.camera)));
   sensor->free_pose_ = sensor->previous_free_pose_ =
       request.X_WC ? to_affine(*request.X_WC) : described.X_WC;
 
@@ -168,7 +175,7 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
     // Darker than this share of the display's top, an error shows less and less (docs/light.md).
     constexpr float kFloor = 0.05f;
     settings.error = static_cast<float>(*request.render.error);
-    settings.error_floor = kFloor * max_luminance(sensor->ev100_);
+    settings.error_floor = kFloor * max_luminance(static_cast<float>(sensor->models_->ev100()));
   }
   settings.max_depth = request.render.max_depth;
   settings.roulette_depth = 3;  // unbiased, and dim paths are a third of all rays in a room
@@ -197,12 +204,13 @@ PictureMemory CameraSensor::memory() const {
     pixel += sizeof(Vec3f);
     out.working = kDenoiser * std::min(pixels, kTile);
   }
-  out.working += pixel * pixels;
+  out.working += pixel * pixels + models_->memory();
   const CameraChannels& c = channels_;
   const auto of = [](bool wanted, uint64_t bytes) { return wanted ? bytes : 0; };
   out.frame =
       pixels * (of(c.rgb, 3) + of(c.radiance, 12) + of(c.samples, 4) + of(c.depth, 4) +
-                of(c.normal, 12) + of(c.albedo, 12) + of(c.motion, 8) + of(c.segmentation, 8));
+                of(c.normal, 12) + of(c.albedo, 12) + of(c.motion, 8) + of(c.segmentation, 8) +
+                of(c.raw, 6) + of(c.sensor_depth, 4) + of(c.events, 64) + of(c.thermal, 4));
   return out;
 }
 
@@ -257,8 +265,7 @@ void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const Came
   if (channels_.light()) {
     const std::vector<Vec3f>* radiance = &film_.radiance;
     if (denoiser_ != nullptr && denoiser_->denoise(film_, &clean_).ok()) radiance = &clean_;
-    if (channels_.rgb)
-      tone_map(*radiance, film_.width, film_.height, {.ev100 = ev100_}, &frame->rgb);
+    models_->develop(*radiance, frame);
     if (channels_.radiance) frame->radiance = flatten(*radiance);
     if (channels_.samples) {
       frame->samples = film_.sample_count;
@@ -269,6 +276,7 @@ void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const Came
   if (channels_.normal) frame->normal = flatten(film_.center_normal);
   if (channels_.albedo) frame->albedo = flatten(film_.center_albedo);
   if (channels_.motion) frame->motion = flatten(film_.motion);
+  models_->measure(film_, view, frame);
   if (channels_.segmentation) {
     frame->part = film_.part;
     frame->instance.resize(film_.part.size());

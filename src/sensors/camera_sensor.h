@@ -14,6 +14,7 @@
 #include "gloam/simulation.h"
 #include "render/film/denoise.h"
 #include "render/renderer.h"
+#include "sensors/camera_models.h"
 #include "sim/pose_frame.h"
 #include "world/render_description.h"
 
@@ -23,9 +24,12 @@ namespace gloam {
 struct CameraChannels {
   bool rgb = false, radiance = false, samples = false, depth = false, segmentation = false;
   bool normal = false, albedo = false, motion = false;
+  bool raw = false, sensor_depth = false, events = false, thermal = false;
   static Result<CameraChannels> parse(const std::vector<std::string>& names);
-  bool light() const { return rgb || radiance || samples; }
-  bool geometry() const { return depth || segmentation || normal || albedo || motion; }
+  bool light() const { return rgb || radiance || samples || raw || events; }
+  bool geometry() const {
+    return depth || segmentation || normal || albedo || motion || sensor_depth || thermal;
+  }
 };
 
 /// What pictures take, nearly [bytes].
@@ -48,6 +52,8 @@ class CameraSensor {
                                              const PoseFrame& now, const PoseFrame& previous,
                                              int64_t frame_index);
 
+  /// What an exposure meter says before a capture; without it the exposure is the camera's own.
+  void set_ev100(double ev100) { models_->set_ev100(ev100); }
   /// Of each picture's rendering, see RenderSettings::progress.
   void set_progress(std::function<bool(double done)> progress) {
     settings_.progress = std::move(progress);
@@ -75,7 +81,7 @@ class CameraSensor {
   RenderStats stats_;
   Intrinsics intrinsics_;
   Rational rate_;
-  float ev100_ = 0;
+  std::unique_ptr<CameraModels> models_;  // what happens after the light
   std::unique_ptr<ViewHistory> history_;  // of the fast tier
   std::unique_ptr<Denoiser> denoiser_;    // null: the samples as they are
   Film film_;

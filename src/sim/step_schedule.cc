@@ -85,6 +85,11 @@ int64_t StepSchedule::step_of(int64_t k) const {
   return static_cast<int64_t>(ceil_div(offset_ + k * stride_, unit_));
 }
 
+double StepSchedule::lateness_of(int64_t k) const {
+  const __int128 beyond = (offset_ + k * stride_) % unit_;
+  return beyond == 0 ? 0 : static_cast<double>(unit_ - beyond) / static_cast<double>(unit_);
+}
+
 int64_t StepSchedule::first_at_or_after(int64_t step) const {
   // ceil(t_k / timestep) >= step  <=>  t_k / timestep > step - 1.
   const __int128 reach = (static_cast<__int128>(step) - 1) * unit_ - offset_;

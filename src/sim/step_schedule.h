@@ -29,6 +29,8 @@ class StepSchedule {
 
   /// The step of event k >= 0.
   int64_t step_of(int64_t k) const;
+  /// By how much event k's step is later than t_k, 0 <= … < 1 [steps].
+  double lateness_of(int64_t k) const;
   /// The first event at or after `step`.
   int64_t first_at_or_after(int64_t step) const;
 

@@ -4,6 +4,7 @@
 #include "scene/validate.h"
 #include "world/level.h"
 #include "world/model_cache.h"
+#include "world/rigs.h"
 #include "world/urdf_visuals.h"
 
 namespace gloam {
@@ -43,9 +44,10 @@ RobotInstance bare_robot(const Scene& scene, const mjModel* model) {
 
 }  // namespace
 
-Result<World> World::compile(const Scene& scene) {
+Result<World> World::compile(const Scene& written) {
   install_mujoco_handler();
-  GLOAM_TRY_STATUS(validate_scene(scene));
+  GLOAM_TRY_STATUS(validate_scene(written));
+  GLOAM_TRY(const Scene scene, with_rig_cameras(written));
   if (std::shared_ptr<CompiledWorld> cached = load_cached_world(scene)) {
     if (!scene.bare_model.empty()) cached->robots = {bare_robot(scene, cached->model.get())};
     return World(std::move(cached));
