@@ -18,10 +18,12 @@ LiveCamera::LiveCamera(Simulator& simulator, std::shared_ptr<SharedRenderer> sha
 Result<std::unique_ptr<LiveCamera>> LiveCamera::open(Simulator& simulator,
                                                      std::shared_ptr<SharedRenderer> shared,
                                                      const CameraRequest& request, uint64_t seed,
-                                                     FrameCallback on_frame) {
+                                                     FrameCallback on_frame,
+                                                     std::shared_ptr<ExposureMeter> meter) {
   std::unique_ptr<LiveCamera> camera(
       new LiveCamera(simulator, std::move(shared), std::move(on_frame)));
   GLOAM_TRY(camera->sensor_, CameraSensor::create(camera->shared_->description, request, seed));
+  GLOAM_TRY_STATUS(camera->sensor_->set_temperatures(simulator.world().scene.temperatures));
   const Intrinsics& k = camera->sensor_->intrinsics();
   const PictureMemory memory = camera->sensor_->memory();
   constexpr uint64_t kInFlight = 2;  // frames that are made and looked at
@@ -31,11 +33,18 @@ Result<std::unique_ptr<LiveCamera>> LiveCamera::open(Simulator& simulator,
       "lower the resolution"));
   const std::shared_ptr<const CompiledWorld> world(std::shared_ptr<void>(), &simulator.world());
   GLOAM_TRY(camera->solver_, PoseSolver::create(world));
+  const std::optional<TimingOptions>& timing = camera->sensor_->sensing().timing;
+  GLOAM_TRY(camera->timing_,
+            SensorTiming::make(request.rate, timing.value_or(TimingOptions{}), simulator.timestep(),
+                               sensor_seed(seed, request.camera)));
+  camera->meter_ = std::move(meter);
   // Two in the queue keep the camera busy; more would only make a live picture older.
   const int capacity = request.required ? 2 : 1;
   GLOAM_TRY(camera->queue_,
-            simulator.subscribe(
-                {.rate = request.rate, .required = request.required, .capacity = capacity}));
+            simulator.subscribe({.rate = request.rate,
+                                 .due = timing ? due_steps(camera->timing_) : nullptr,
+                                 .required = request.required,
+                                 .capacity = capacity}));
   camera->required_ = request.required;
   camera->thread_ = std::thread([raw = camera.get()] { raw->run(); });
   return camera;
@@ -99,21 +108,17 @@ Status LiveCamera::status() const {
   return status_;
 }
 
-int64_t LiveCamera::frame_index(int64_t step) const {
-  // Frame k is exposed at the first step at or after k / rate, so this floor gives k back.
-  const Rational timestep = simulator_.timestep();
-  const auto num = static_cast<__int128>(step) * timestep.num * sensor_->rate().num;
-  return static_cast<int64_t>(num / (static_cast<__int128>(timestep.den) * sensor_->rate().den));
-}
-
 void LiveCamera::capture(const Snapshot& snapshot) {
+  const int64_t index = timing_.last_at_or_before(snapshot.step());
+  if (timing_.dropped(index)) return;
   if (const Status status = solver_->solve(snapshot, now_); !status.ok()) {
     log_error("a camera lost its poses: {}", status.error().to_string());
     return;
   }
+  if (meter_ != nullptr) sensor_->set_ev100(meter_->ev100_at(snapshot.step()));
   const bool continuous = has_previous_ && previous_.step <= now_.step;
   auto frame = sensor_->capture(*shared_->renderer, shared_->mutex, now_,
-                                continuous ? previous_ : now_, frame_index(snapshot.step()));
+                                continuous ? previous_ : now_, index);
   on_frame_(std::move(frame));
   std::swap(now_, previous_);
   has_previous_ = true;

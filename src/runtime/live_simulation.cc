@@ -48,6 +48,7 @@ Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& worl
   core.speed = options.speed;
   GLOAM_TRY(live->simulator_, Simulator::create(world.compiled(), core));
   GLOAM_TRY_STATUS(add_controllers(*world.compiled(), *live->simulator_));
+  GLOAM_TRY_STATUS(live->open_meters(options.pace != Pace::kRealTime));
   // The thread starts with the first call that moves time: hooks, controllers and cameras come
   // before.
   live->simulator_->start(0);
@@ -137,7 +138,39 @@ Result<std::shared_ptr<SharedRenderer>> LiveSimulation::renderer() {
 Result<std::unique_ptr<LiveCamera>> LiveSimulation::open_live_camera(const CameraRequest& request,
                                                                      FrameCallback on_frame) {
   GLOAM_TRY(auto shared, renderer());
-  return LiveCamera::open(*simulator_, std::move(shared), request, seed_, std::move(on_frame));
+  return LiveCamera::open(*simulator_, std::move(shared), request, seed_, std::move(on_frame),
+                          meter_of(request.camera));
+}
+
+// Exposure goes on from step 0 whether or not anyone opens the camera.
+Status LiveSimulation::open_meters(bool required) {
+  const Scene& scene = world_.compiled()->scene;
+  for (const CameraOptions& camera : scene.cameras) {
+    if (!camera.sensing.imager || !camera.sensing.imager->auto_exposure) continue;
+    GLOAM_TRY(auto shared, renderer());
+    GLOAM_TRY(meters_[camera.name], ExposureMeter::open(*simulator_, std::move(shared), camera,
+                                                        scene.render.max_depth, seed_, required));
+  }
+  return {};
+}
+
+std::shared_ptr<ExposureMeter> LiveSimulation::meter_of(const std::string& camera) const {
+  const auto found = meters_.find(camera);
+  return found != meters_.end() ? found->second : nullptr;
+}
+
+Result<std::unique_ptr<SensorStream>> LiveSimulation::open_sensor(const SensorRequest& request,
+                                                                  SensorCallback on_message) {
+  GLOAM_TRY(const SensorDescription sensor, find_sensor(*world_.compiled(), request.sensor));
+  GLOAM_TRY(auto live, LiveSensors::open(*simulator_, {sensor}, request.required, seed_,
+                                         std::move(on_message)));
+  return std::unique_ptr<SensorStream>(std::move(live));
+}
+
+Result<std::unique_ptr<LiveSensors>> LiveSimulation::open_all_sensors(bool required,
+                                                                      SensorCallback on_message) {
+  return LiveSensors::open(*simulator_, describe_sensors(*world_.compiled()), required, seed_,
+                           std::move(on_message));
 }
 
 Result<std::unique_ptr<CameraStream>> LiveSimulation::open_camera(const CameraRequest& request,

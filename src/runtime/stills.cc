@@ -60,6 +60,7 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
   std::vector<std::unique_ptr<CameraSensor>> sensors;
   for (const CameraRequest& request : requests) {
     GLOAM_TRY(auto sensor, CameraSensor::create(shared->description, request, options.seed));
+    GLOAM_TRY_STATUS(sensor->set_temperatures(world.compiled()->scene.temperatures));
     sensors.push_back(std::move(sensor));
   }
   if (!sensors.empty()) GLOAM_TRY_STATUS(check_room(sensors));
@@ -80,6 +81,8 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
     sensor->set_progress([&](double part) {
       return !progress || progress({"rendering", done + share * part, seconds()});
     });
+    if (const auto meter = simulation->meter_of(requests[i].camera))
+      sensor->set_ev100(meter->ev100_at(poses.step));
     const auto frame = sensor->capture(*shared->renderer, shared->mutex, poses, poses, 0);
     if (frame == nullptr) return Error{ErrorKind::kInterrupted, "interrupted"};
     if (requests[i].render.error) {

@@ -10,7 +10,10 @@
 #include "gloam/result.h"
 #include "render/film/film.h"
 #include "render/renderer.h"
+#include "sensors/event_camera.h"
 #include "sensors/imager/imager.h"
+#include "sensors/stereo_depth.h"
+#include "sensors/thermal_camera.h"
 #include "world/render_description.h"
 
 namespace gloam {
@@ -30,9 +33,13 @@ class CameraModels {
                                                       uint64_t seed);
 
   void set_ev100(double ev100);
+  /// The scene's [[temperature]]s, for thermal cameras. Error: one that fits nothing.
+  Status set_temperatures(const std::vector<TemperatureOptions>& temperatures);
   double ev100() const { return ev100_; }
   uint64_t memory() const;
 
+  /// When frame k arrives that was taken at `time` [s].
+  double delivery_of(int64_t k, double time) const;
   /// Fills rgb, raw and events from light [cd/m²], (height x width). The frame's index and time are
   /// set.
   void develop(const std::vector<Vec3f>& radiance, CameraFrame* frame);
@@ -51,9 +58,13 @@ class CameraModels {
   const CameraSensing sensing_;
   const Intrinsics intrinsics_;
   const ModelOutputs outputs_;
+  uint64_t seed_ = 0;
   double ev100_ = 0;
   Exposure exposure_;  // of that value, for the imager
   std::unique_ptr<Imager> imager_;
+  std::optional<StereoDepthModel> stereo_;
+  std::optional<EventCamera> events_;
+  std::optional<ThermalCamera> thermal_;
 };
 
 }  // namespace gloam

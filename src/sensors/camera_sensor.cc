@@ -259,6 +259,7 @@ void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const Came
   frame->index = frame_index;
   frame->step = now.step;
   frame->time = now.time;
+  frame->delivery = models_->delivery_of(frame_index, now.time);
   frame->intrinsics = intrinsics_;
   frame->X_WC = to_pose(view.X_WC_close);
 

@@ -54,6 +54,10 @@ class CameraSensor {
 
   /// What an exposure meter says before a capture; without it the exposure is the camera's own.
   void set_ev100(double ev100) { models_->set_ev100(ev100); }
+  /// The scene's [[temperature]]s, for the output thermal. Error: one that fits nothing.
+  Status set_temperatures(const std::vector<TemperatureOptions>& temperatures) {
+    return models_->set_temperatures(temperatures);
+  }
   /// Of each picture's rendering, see RenderSettings::progress.
   void set_progress(std::function<bool(double done)> progress) {
     settings_.progress = std::move(progress);
@@ -63,6 +67,9 @@ class CameraSensor {
 
   const Intrinsics& intrinsics() const { return intrinsics_; }
   const Rational& rate() const { return rate_; }
+  const CameraSensing& sensing() const {
+    return description_.cameras[static_cast<size_t>(camera_)].sensing;
+  }
   /// To be compared with memory_room() before the first picture.
   PictureMemory memory() const;
   /// Pose of the free camera in the world; may be set from any thread.

@@ -61,16 +61,20 @@ int64_t SensorTiming::first_at_or_after(int64_t step) const {
   return k;
 }
 
+std::function<int64_t(int64_t step)> due_steps(const SensorTiming& timing) {
+  return [timing](int64_t step) { return timing.step_of(timing.first_at_or_after(step)); };
+}
+
 bool SensorTiming::dropped(int64_t k) const {
   if (options_.drop <= 0) return false;
   const RandomStream stream{seed_, stream_id("timing.drop")};
   return stream.uniform(static_cast<uint64_t>(k), 0) < options_.drop;
 }
 
-double SensorTiming::delivery_of(int64_t k, double time) const {
-  double latency = options_.latency;
-  if (options_.latency_jitter > 0)
-    latency += options_.latency_jitter * cut_normal(seed_, stream_id("timing.latency"), k);
+double delivery_time(const TimingOptions& options, uint64_t seed, int64_t k, double time) {
+  double latency = options.latency;
+  if (options.latency_jitter > 0)
+    latency += options.latency_jitter * cut_normal(seed, stream_id("timing.latency"), k);
   return time + std::max(0.0, latency);
 }
 

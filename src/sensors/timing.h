@@ -2,12 +2,17 @@
 // When a sensor takes its samples and when they arrive: a pure function of (seed, sensor, number of
 // the sample), so it goes on in the same way whether or not anyone subscribes.
 
-#include "base/rng.h"
+#include <functional>
+#include <string>
+
 #include "gloam/result.h"
 #include "gloam/scene_imager.h"
 #include "sim/step_schedule.h"
 
 namespace gloam {
+
+/// When sample k arrives that was taken at `time` [s]; never before it, and in order.
+double delivery_time(const TimingOptions& options, uint64_t seed, int64_t k, double time);
 
 class SensorTiming {
  public:
@@ -25,8 +30,10 @@ class SensorTiming {
   int64_t last_at_or_before(int64_t step) const { return first_at_or_after(step + 1) - 1; }
   /// True if sample k is lost.
   bool dropped(int64_t k) const;
-  /// When sample k arrives that was taken at `time` [s]; never before it, and in order.
-  double delivery_of(int64_t k, double time) const;
+  /// delivery_time() of sample k.
+  double delivery_of(int64_t k, double time) const {
+    return delivery_time(options_, seed_, k, time);
+  }
 
  private:
   StepSchedule schedule_;
@@ -34,6 +41,9 @@ class SensorTiming {
   double timestep_ = 1;  // [s]
   uint64_t seed_ = 0;
 };
+
+/// For SubscriptionOptions::due.
+std::function<int64_t(int64_t step)> due_steps(const SensorTiming& timing);
 
 /// The seed of a sensor.
 uint64_t sensor_seed(uint64_t simulation_seed, const std::string& name);

@@ -59,13 +59,21 @@ Result<std::shared_ptr<SnapshotQueue>> SimLoop::subscribe(const SubscriptionOpti
   }
   GLOAM_TRY(StepSchedule schedule, StepSchedule::make(options.rate, options.phase, timestep_));
   Subscription subscription{std::make_shared<SnapshotQueue>(options, signal), schedule};
-  subscription.k = schedule.first_at_or_after(stepper_->step_count());
-  subscription.due = schedule.step_of(subscription.k);
+  subscription.find_due(stepper_->step_count());
   // Full queue, one with the reader, one being made.
   stepper_->pool().add_slots(options.capacity + 2);
   subscriptions_.push_back(subscription);
   find_next_publication();
   return subscription.queue;
+}
+
+void SimLoop::Subscription::find_due(int64_t from) {
+  if (queue->options().due) {
+    due = queue->options().due(from);
+  } else {
+    k = schedule.first_at_or_after(from);
+    due = schedule.step_of(k);
+  }
 }
 
 void SimLoop::find_next_publication() {
@@ -86,7 +94,11 @@ bool SimLoop::publish_due() {
       continue;
     }
     s.queue->publish(stepper_->snapshot());
-    s.due = s.schedule.step_of(++s.k);
+    if (s.queue->options().due) {
+      s.find_due(step + 1);
+    } else {
+      s.due = s.schedule.step_of(++s.k);
+    }
   }
   std::erase_if(subscriptions_, [this](const Subscription& s) {
     if (s.queue->closed()) dropped_by_closed_ += s.queue->dropped();
@@ -159,10 +171,7 @@ void SimLoop::begin_run() {
     slot.k = slot.due = 0;
     slot.controller->reset(&stepper_->model(), &stepper_->data());
   }
-  for (Subscription& s : subscriptions_) {
-    s.k = 0;
-    s.due = s.schedule.step_of(0);
-  }
+  for (Subscription& s : subscriptions_) s.find_due(0);
   find_next_publication();
 }
 

@@ -57,6 +57,7 @@ class SimLoop {
     std::shared_ptr<SnapshotQueue> queue;
     StepSchedule schedule;
     int64_t k = 0, due = 0;
+    void find_due(int64_t from);  // the first step at or after `from`
   };
 
   void apply(const Command& command);

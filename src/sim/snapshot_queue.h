@@ -2,6 +2,7 @@
 // A subscription's end at the consumer: Snapshots in order, on a schedule.
 
 #include <atomic>
+#include <functional>
 #include <memory>
 
 #include "sim/bounded_queue.h"
@@ -27,10 +28,13 @@ class Signal {
 struct SubscriptionOptions {
   Rational rate = {20, 1};  ///< Snapshots per second of simulation time, at most the step rate [Hz]
   Rational phase = {0, 1};  ///< time of the first one [s], >= 0
-  bool required = false;    ///< the simulation waits while the queue is full and nothing is lost
-                            ///< (but what it waits with when a reset comes); else the oldest are
-                            ///< dropped and counted
-  int capacity = 8;         ///< Snapshots that wait to be consumed, 1 … 65536
+  /// Instead of rate and phase, of schedules that are not even: the first step at or after the one
+  /// given at which there is a Snapshot. Pure; the sim thread calls it.
+  std::function<int64_t(int64_t step)> due = {};
+  bool required = false;  ///< the simulation waits while the queue is full and nothing is lost
+                          ///< (but what it waits with when a reset comes); else the oldest are
+                          ///< dropped and counted
+  int capacity = 8;       ///< Snapshots that wait to be consumed, 1 … 65536
 };
 
 /// Blocking reads from any number of threads; the sim thread is the only writer and takes no lock.

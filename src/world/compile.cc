@@ -5,6 +5,7 @@
 #include "world/level.h"
 #include "world/model_cache.h"
 #include "world/rigs.h"
+#include "world/sensor_description.h"
 #include "world/urdf_visuals.h"
 
 namespace gloam {
@@ -50,6 +51,7 @@ Result<World> World::compile(const Scene& written) {
   GLOAM_TRY(const Scene scene, with_rig_cameras(written));
   if (std::shared_ptr<CompiledWorld> cached = load_cached_world(scene)) {
     if (!scene.bare_model.empty()) cached->robots = {bare_robot(scene, cached->model.get())};
+    GLOAM_TRY_STATUS(check_sensors(*cached));
     return World(std::move(cached));
   }
   const auto start = std::chrono::steady_clock::now();
@@ -63,6 +65,7 @@ Result<World> World::compile(const Scene& written) {
   world->model = std::move(level.model);
   world->initial_key = level.initial_key;
   world->unsupported = std::move(level.unsupported);
+  GLOAM_TRY_STATUS(check_sensors(*world));
   add_urdf_visuals(scene, &files, world.get());
   if (std::chrono::steady_clock::now() - start > kWorthCaching)
     store_cached_world(world, files.dependencies());
