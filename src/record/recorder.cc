@@ -21,11 +21,13 @@
 namespace gloam {
 namespace {
 
+constexpr const char* kSensorsName = "sensors";
 constexpr size_t kQueuedRows = 4096;   // metric rows that may wait for the disk
 constexpr size_t kPlottedRows = 2000;  // kept in memory for the contact sheet
 
-const std::vector<std::string> kOutputs = {"video",        "png",     "depth_png",    "depth_exr",
-                                           "segmentation", "metrics", "contact_sheet"};
+const std::vector<std::string> kOutputs = {
+    "video",   "png",         "depth_png", "depth_exr", "segmentation",  "sensor_depth_png",
+    "raw_png", "thermal_png", "events",    "metrics",   "contact_sheet", "sensors"};
 
 /// The failure that ended a recording: what was written before it is complete, so its kind is
 /// kPartial. Others that follow from it are of no interest.
@@ -89,6 +91,7 @@ class FolderRecorder : public Recorder {
       if (outputs_of(info_.cameras[i]).contains("video"))
         entries_.push_back(file_names_[i] + ".mp4");
     }
+    if (outputs_.contains("sensors") && !info_.sensors.empty()) entries_.push_back(kSensorsName);
     entries_.push_back(kSummaryName);
     GLOAM_TRY_STATUS(write_summary(nullptr));
     GLOAM_TRY_STATUS(write_text("cameras.json", cameras_json(info_.cameras, file_names_)));
@@ -106,6 +109,7 @@ class FolderRecorder : public Recorder {
       GLOAM_TRY(CsvWriter metrics, CsvWriter::start(std::move(sink), info_.metric_columns));
       metrics_ = std::move(metrics);
     }
+    GLOAM_TRY_STATUS(open_sensors());
     metrics_worker_ = std::make_unique<Worker>(kQueuedRows, options_.wait);
     return {};
   }
@@ -135,6 +139,17 @@ class FolderRecorder : public Recorder {
     });
   }
 
+  void add_sensor(const SensorMessage& message) override {
+    const auto file = sensors_.find(message.sensor);
+    if (failure_.failed() || file == sensors_.end()) return;
+    std::vector<double> row = {static_cast<double>(message.index),
+                               static_cast<double>(message.step), message.time, message.delivery};
+    row.insert(row.end(), message.values.begin(), message.values.end());
+    metrics_worker_->post([this, csv = &file->second, row = std::move(row)] {
+      if (!failure_.failed()) failure_.report(csv->add(row));
+    });
+  }
+
   Status status() const override { return failure_.status(); }
 
   Status finish(const RunOutcome& outcome) override {
@@ -143,6 +158,7 @@ class FolderRecorder : public Recorder {
     // After a failure too: what can be ended properly should be.
     for (auto& [name, lane] : lanes_) failure_.report(lane->recorder.finish());
     if (metrics_) failure_.report(metrics_->finish());
+    for (auto& [name, csv] : sensors_) failure_.report(csv.finish());
     if (outputs_.contains("contact_sheet") && !failure_.failed()) {
       std::vector<const CameraRecorder*> cameras;
       for (const RecordedCamera& camera : info_.cameras)
@@ -166,6 +182,24 @@ class FolderRecorder : public Recorder {
     return outputs;
   }
 
+  Status open_sensors() {
+    if (!outputs_.contains("sensors") || info_.sensors.empty()) return {};
+    GLOAM_TRY_STATUS(options_.store->make_folder(options_.folder / kSensorsName));
+    std::set<std::string> taken;
+    for (const RecordedSensor& sensor : info_.sensors) {
+      std::string file_name = safe_file_name(sensor.name);
+      for (int i = 2; !taken.insert(file_name).second; ++i)
+        file_name = fmt::format("{}_{}", safe_file_name(sensor.name), i);
+      std::vector<std::string> columns = {"sample", "step", "time_s", "delivery_s"};
+      for (int i = 0; i < sensor.values; ++i) columns.push_back(fmt::format("value_{}", i));
+      GLOAM_TRY(std::unique_ptr<ByteSink> sink,
+                options_.store->create(options_.folder / kSensorsName / (file_name + ".csv")));
+      GLOAM_TRY(CsvWriter csv, CsvWriter::start(std::move(sink), columns));
+      sensors_.emplace(sensor.name, std::move(csv));
+    }
+    return {};
+  }
+
   static Status check_outputs(const std::set<std::string>& outputs) {
     for (const std::string& output : outputs) {
       if (std::find(kOutputs.begin(), kOutputs.end(), output) != kOutputs.end()) continue;
@@ -180,8 +214,8 @@ class FolderRecorder : public Recorder {
   Status check() {
     GLOAM_TRY_STATUS(check_outputs(outputs_));
     GLOAM_CHECK(options_.queue_frames > 0, "a queue holds at least one frame");
-    std::set<std::string> names,
-        taken = {"cameras.json", "labels.json", "metrics.csv", "contact_sheet.png", kSummaryName};
+    std::set<std::string> names, taken = {kSensorsName,  "cameras.json",      "labels.json",
+                                          "metrics.csv", "contact_sheet.png", kSummaryName};
     for (const RecordedCamera& camera : info_.cameras) {
       GLOAM_TRY_STATUS(check_outputs(outputs_of(camera)));
       if (!names.insert(camera.name).second)
@@ -236,6 +270,7 @@ class FolderRecorder : public Recorder {
   std::vector<std::string> entries_;     // of the folder, as listed in the summary
   FirstFailure failure_;
   std::optional<CsvWriter> metrics_;
+  std::map<std::string, CsvWriter> sensors_;  // by name
   int64_t metric_rows_ = 0;
   Timeline<std::vector<double>> rows_;
   // The threads come last, so they end before anything that they use.

@@ -5,6 +5,7 @@
 //   cameras.json        intrinsics, frames and file patterns of every camera
 //   labels.json         what the numbers in instance and semantic pictures mean
 //   metrics.csv         one row per add_metrics(); units in the column names
+//   sensors/NAME.csv    one row per add_sensor(): number, step, times, values
 //   contact_sheet.png   the run at a glance
 //   CAMERA.mp4          H.264
 //   CAMERA/poses.csv    pose of the camera's optical frame (Z forward, X right, Y down) per frame
@@ -12,6 +13,10 @@
 //   CAMERA/depth/000000.png      16-bit mm along the optical axis (ROS 16UC1), 0 = nothing or
 //                                beyond 65.535 m
 //   CAMERA/depth_exr/000000.exr  float m, channel Z (ROS 32FC1), +inf = nothing
+//   CAMERA/sensor_depth/000000.png  as depth, of a stereo_depth model
+//   CAMERA/raw/000000.png        16-bit numbers of the imager; three colours side by side in a row
+//   CAMERA/thermal/000000.png    16-bit hundredths of a kelvin
+//   CAMERA/events.csv            time_s, x, y, brighter
 //   CAMERA/instance/000000.png, CAMERA/semantic/000000.png   16-bit ids of labels.json
 //
 // Pictures are written whole or not at all, tables and videos only grow: after any failure
@@ -27,6 +32,7 @@
 
 #include "gloam/camera.h"
 #include "gloam/result.h"
+#include "gloam/sensor.h"
 #include "gloam/types.h"
 #include "record/file_store.h"
 
@@ -59,6 +65,11 @@ struct MetricPlot {
   std::string measured, commanded;
 };
 
+struct RecordedSensor {
+  std::string name;  ///< full name, as in SensorMessage::sensor
+  int values = 1;
+};
+
 using NamedText = std::pair<std::string, std::string>;
 using NamedNumber = std::pair<std::string, double>;
 
@@ -76,6 +87,7 @@ struct RunInfo {
   std::vector<LabelRow> labels;
   std::vector<std::string> metric_columns;  ///< the first is the time [s]
   std::vector<MetricPlot> plots;
+  std::vector<RecordedSensor> sensors;  ///< in the order that add_sensor() may be called for
 };
 
 /// What is known when it ended.
@@ -100,6 +112,9 @@ class Recorder {
   virtual void add_frame(std::shared_ptr<const CameraFrame> frame) = 0;
   /// One value per column. One thread.
   virtual void add_metrics(std::span<const double> row) = 0;
+
+  /// A sample of one of RunInfo::sensors. One thread.
+  virtual void add_sensor(const SensorMessage& message) = 0;
 
   /// The first failure so far, as ErrorKind::kPartial; it stops the recording.
   virtual Status status() const = 0;

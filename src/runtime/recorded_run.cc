@@ -32,8 +32,10 @@ bool wants(const std::vector<std::string>& outputs, const std::string& name) {
   return std::find(outputs.begin(), outputs.end(), name) != outputs.end();
 }
 
-// The channels that a camera must fill so that the recorder can write `outputs`.
-std::vector<std::string> channels_for(const std::vector<std::string>& outputs) {
+// The channels that a camera must fill so that the recorder can write `outputs`. What needs a model
+// is left out of cameras that have none.
+std::vector<std::string> channels_for(const std::vector<std::string>& outputs,
+                                      const CameraSensing& sensing) {
   std::vector<std::string> channels;
   if (wants(outputs, "video") || wants(outputs, "png") || wants(outputs, "contact_sheet"))
     channels.push_back("rgb");
@@ -43,6 +45,11 @@ std::vector<std::string> channels_for(const std::vector<std::string>& outputs) {
   }
   if (wants(outputs, "segmentation") || wants(outputs, "contact_sheet"))
     channels.push_back("segmentation");
+  if (wants(outputs, "raw_png") && sensing.imager) channels.push_back("raw");
+  if (wants(outputs, "sensor_depth_png") && sensing.stereo_depth)
+    channels.push_back("sensor_depth");
+  if (wants(outputs, "thermal_png") && sensing.thermal) channels.push_back("thermal");
+  if (wants(outputs, "events") && sensing.events) channels.push_back("events");
   return channels;
 }
 
@@ -83,7 +90,7 @@ Result<std::vector<CameraRequest>> camera_requests(const World& world, const Run
       camera.rate = request.rate;
     else if (options == nullptr && step_rate.value() < camera.rate.value())
       camera.rate = step_rate;
-    camera.outputs = channels_for(outputs);
+    camera.outputs = channels_for(outputs, options != nullptr ? options->sensing : CameraSensing{});
     camera.render = scene.render;
     camera.required = request.simulation.pace == Pace::kFast;
     requests.push_back(camera);
@@ -155,6 +162,7 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   RobotMetrics metrics(*world.compiled());
   std::unique_ptr<Recorder> recorder;
   std::vector<std::unique_ptr<LiveCamera>> cameras;
+  std::unique_ptr<LiveSensors> sensors;
   std::atomic<int64_t> frames{0};
   double prepared = 0;
   if (!request.out.empty()) {
@@ -180,6 +188,10 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
     GLOAM_TRY(info.labels, simulation->labels());
     info.metric_columns = metrics.columns();
     info.plots = metrics.plots();
+    if (wants(scene.record.outputs, "sensors")) {
+      for (const SensorDescription& sensor : describe_sensors(*world.compiled()))
+        info.sensors.push_back({sensor.name, sensor.count});
+    }
     RecorderOptions options;
     options.folder = request.out;
     options.overwrite = request.overwrite;
@@ -193,6 +205,11 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
                   recorder->add_frame(std::move(frame));
                 }));
       cameras.push_back(std::move(live));
+    }
+    if (!info.sensors.empty()) {
+      GLOAM_TRY(sensors, simulation->open_all_sensors(
+                             request.simulation.pace == Pace::kFast,
+                             [&](const SensorMessage& message) { recorder->add_sensor(message); }));
     }
     prepared = seconds_since(start);
   }
@@ -216,6 +233,8 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
     if (report.status.ok()) report.status = camera->status();
   }
   cameras.clear();
+  if (sensors != nullptr) sensors->drain();
+  sensors.reset();
   metrics_thread.join();
 
   report.out = request.out;

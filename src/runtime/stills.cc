@@ -126,6 +126,20 @@ Result<std::vector<std::filesystem::path>> write_frame(const CameraFrame& frame,
         write("_depth.png", encode_png16(width, height, depth_to_millimetres(frame.depth))));
     GLOAM_TRY_STATUS(write_planes("_depth.exr", frame.depth, {"Z"}));
   }
+  if (!frame.sensor_depth.empty()) {
+    GLOAM_TRY_STATUS(write("_sensor_depth.png",
+                           encode_png16(width, height, depth_to_millimetres(frame.sensor_depth))));
+    GLOAM_TRY_STATUS(write_planes("_sensor_depth.exr", frame.sensor_depth, {"Z"}));
+  }
+  if (!frame.raw.empty()) {
+    const int row = static_cast<int>(frame.raw.size() / static_cast<size_t>(height));
+    GLOAM_TRY_STATUS(write("_raw.png", encode_png16(row, height, frame.raw)));
+  }
+  if (!frame.thermal.empty()) {
+    GLOAM_TRY_STATUS(
+        write("_thermal.png", encode_png16(width, height, to_centikelvins(frame.thermal))));
+    GLOAM_TRY_STATUS(write_planes("_thermal.exr", frame.thermal, {"K"}));
+  }
   if (!frame.instance.empty()) {
     GLOAM_TRY_STATUS(write("_instance.png", encode_png16(width, height, frame.instance)));
     GLOAM_TRY_STATUS(write("_semantic.png", encode_png16(width, height, frame.semantic)));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 namespace gloam {
 namespace {
@@ -15,15 +16,16 @@ constexpr double kHottest = 6000;                    // [K]
 // Share of a black body's radiance below `wavelength` [µm].
 double share_below(double wavelength, double temperature) {
   const double x = kSecond / (wavelength * temperature);
-  double sum = 0;
-  for (int n = 1; n <= 500; ++n) {
-    const double i = n;
-    const double term = std::exp(-i * x) * (x * x * x / i + 3 * x * x / (i * i) +
-                                            6 * x / (i * i * i) + 6 / (i * i * i * i));
+  const double once = std::exp(-x);
+  double sum = 0, power = once;
+  for (int n = 1; n <= 500; ++n, power *= once) {
+    const double r = 1.0 / n;
+    const double term = power * r * (x * x * x + r * (3 * x * x + r * (6 * x + r * 6)));
     sum += term;
     if (term < 1e-13 * sum) break;
   }
-  return 15 / std::pow(std::numbers::pi, 4) * sum;
+  constexpr double kPi4 = 97.40909103400244;
+  return 15 / kPi4 * sum;
 }
 
 std::vector<double> make_table() {
@@ -50,7 +52,6 @@ double apparent_temperature(double radiance) {
   const double low = *(above - 1), slope = *above - low;
   double t = i + (radiance - low) / slope;
   t -= (thermal_radiance(t) - radiance) / slope;  // the slope hardly changes within a kelvin
-  t -= (thermal_radiance(t) - radiance) / slope;
   return std::clamp(t, i, i + 1);
 }
 
