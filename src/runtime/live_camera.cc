@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <new>
 #include <utility>
@@ -109,8 +110,8 @@ Status LiveCamera::status() const {
 }
 
 void LiveCamera::capture(const Snapshot& snapshot) {
-  const int64_t index = timing_.last_at_or_before(snapshot.step());
-  if (timing_.dropped(index)) return;
+  const int64_t index = std::max<int64_t>(0, timing_.last_at_or_before(snapshot.step()));
+  if (timing_.step_of(index) == snapshot.step() && timing_.dropped(index)) return;
   if (const Status status = solver_->solve(snapshot, now_); !status.ok()) {
     log_error("a camera lost its poses: {}", status.error().to_string());
     return;

@@ -48,7 +48,7 @@ World lab(const TempFolder& folder, const std::string& more) {
 std::vector<SensorMessage> stream(const World& world, const std::string& sensor, int64_t steps,
                                   int64_t open_at = 0, uint64_t seed = 1) {
   auto simulation = simulate(world, {.seed = seed});
-  if (open_at > 0) EXPECT_TRUE(simulation->run_until(open_at).ok());
+  EXPECT_TRUE(open_at == 0 || simulation->run_until(open_at).ok());
   std::mutex mutex;
   std::vector<SensorMessage> messages;
   auto opened = simulation->open_sensor({sensor, true}, [&](const SensorMessage& message) {
@@ -181,7 +181,7 @@ CameraRequest eye() {
 std::vector<CameraFrame> frames_of(const World& world, const CameraRequest& request, int64_t steps,
                                    int64_t open_at = 0) {
   auto simulation = simulate(world);
-  if (open_at > 0) EXPECT_TRUE(simulation->run_until(open_at).ok());
+  EXPECT_TRUE(open_at == 0 || simulation->run_until(open_at).ok());
   std::vector<CameraFrame> frames;
   auto camera = simulation->open_camera(
       request, [&](std::shared_ptr<const CameraFrame> frame) { frames.push_back(*frame); });
