@@ -38,9 +38,9 @@ constexpr float kSmoothMetal = 0.35f;  // roughness from which on metal scatters
 
 /// Share of the light that a material sends back in all directions.
 float scattered_share(const MaterialDescription& m) {
-  const float smooth = std::clamp(1 - m.roughness / kSmoothMetal, 0.0f, 1.0f);
+  const float rough = std::clamp(m.roughness / kSmoothMetal, 0.0f, 1.0f);
   const float through = m.thin_walled || m.transmission_weight > 0 ? m.transmission_weight : 0;
-  return m.opacity * (1 - through) * (1 - m.metallic * smooth);
+  return m.opacity * (1 - through) * (1 - m.metallic * (1 - rough * rough));
 }
 
 /// Pixels within `reach` [px] of a jump in disparity, in the direction of rows and columns.

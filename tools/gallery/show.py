@@ -5,7 +5,7 @@ import csv
 import pixels
 
 # Colours from cold to hot, and from near to far; between them straight lines.
-HEAT = [(0, 0, 4), (87, 16, 110), (188, 55, 84), (249, 142, 9), (252, 255, 164)]
+HEAT = [(30, 20, 90), (87, 16, 110), (188, 55, 84), (249, 142, 9), (252, 255, 164)]
 RANGE = [(122, 4, 3), (249, 98, 20), (225, 220, 55), (70, 248, 132), (40, 140, 240), (48, 18, 59)]
 
 

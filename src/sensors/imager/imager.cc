@@ -46,7 +46,8 @@ void Imager::develop(const std::vector<Vec3f>& radiance, const Exposure& exposur
   expose(radiance, exposure, frame, raw);
   if (rgb == nullptr) return;
   const auto ev100 = static_cast<float>(exposure.ev100());
-  join_colors(max_luminance(ev100));
+  const double full = pixels_ ? pixels_->full_share(pixels_->gains(exposure)) : INFINITY;
+  join_colors(max_luminance(ev100), static_cast<float>(full));
   tone_map(light_, intrinsics_.width, intrinsics_.height,
            {.ev100 = ev100, .neutral = options_.curve == "neutral"}, rgb);
   if (options_.jpeg <= 0) return;
@@ -98,7 +99,7 @@ void Imager::expose(const std::vector<Vec3f>& radiance, const Exposure& exposure
   });
 }
 
-void Imager::join_colors(float top_light) {
+void Imager::join_colors(float top_light, float full) {
   const size_t n = pixel_count(intrinsics_);
   if (mosaic_) {
     demosaic(*mosaic_, shares_, intrinsics_.width, intrinsics_.height, &light_);
@@ -113,14 +114,13 @@ void Imager::join_colors(float top_light) {
     for (Vec3f& light : light_) light = light * top_light;
     return;
   }
-  // Where red and blue are amplified they would outshine a green that is full: white is cut at one.
+  // Where red and blue are amplified they would outshine a green that is full: all are cut there.
   const Vec3f balance{static_cast<float>(options_.white_balance.x),
                       static_cast<float>(options_.white_balance.y),
                       static_cast<float>(options_.white_balance.z)};
-  const float cut = pixels_ ? 1.0f : INFINITY;
   for (Vec3f& light : light_) {
     light = light * balance;
-    light = Vec3f{min(light.x, cut), min(light.y, cut), min(light.z, cut)} * top_light;
+    light = Vec3f{min(light.x, full), min(light.y, full), min(light.z, full)} * top_light;
   }
 }
 

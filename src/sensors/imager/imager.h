@@ -32,7 +32,7 @@ class Imager {
   size_t sites_per_pixel() const { return mosaic_ || mono_ ? 1 : 3; }
   void expose(const std::vector<Vec3f>& radiance, const Exposure& exposure, int64_t frame,
               std::vector<uint16_t>* raw);
-  void join_colors(float top_light);
+  void join_colors(float top_light, float full);
 
   const ImagerOptions options_;
   const Intrinsics intrinsics_;

@@ -3,6 +3,7 @@
 // 11: photons become electrons (Poisson), the dark adds some, the read-out adds normal noise, the
 // converter rounds. Pixels differ in sensitivity (PRNU) and offset (DSNU), fixed per seed.
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -31,6 +32,11 @@ class PixelArray {
   double share(double reading) const {
     return (reading - options_.black_level * quantised_) /
            (top_ - options_.black_level * quantised_);
+  }
+  /// Share of the top of the scale at which a pixel is full: its well, or the converter.
+  double full_share(const Gains& gains) const {
+    return std::min(1.0, options_.full_well * gains.numbers_per_electron /
+                             (top_ - options_.black_level * quantised_));
   }
   bool quantised() const { return quantised_ != 0; }
 

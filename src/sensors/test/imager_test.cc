@@ -293,6 +293,11 @@ TEST(Imager, AMosaicOfAnEvenGreyStaysGreyAndWhiteBalanceIsNeutral) {
   EXPECT_LE(largest, 1);
   imager.develop(even(1e6f, 1e6f, 1e6f), kDay, 0, &rgb, nullptr);
   EXPECT_EQ(rgb[0], rgb[1]) << "what is full is white, not pink";
+  options.pixel->full_well = 2000;  // full below the top of the scale
+  Imager shallow(options, intrinsics(), 1);
+  shallow.develop(even(1e6f, 1e6f, 1e6f), kDay, 0, &rgb, nullptr);
+  EXPECT_NEAR(rgb[0], rgb[1], 1);
+  EXPECT_NEAR(rgb[2], rgb[1], 1);
 }
 
 TEST(Imager, CompressesAndCuts) {
