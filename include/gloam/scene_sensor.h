@@ -69,15 +69,15 @@ struct TemperatureOptions {
 };
 
 /// [[sensor]]: a model for MuJoCo's sensors. Of tables that fit a sensor, the last one counts.
-/// Units are the sensor's own; "white" and so on: docs/sensors.md.
+/// Units are the sensor's own. What is not given is the preset's, or off: docs/sensors.md.
 struct SensorOptions {
   std::string match = {};       ///< full name of the sensor; * stands for any text
   std::string preset = "none";  ///< none, adis16470_gyro … (docs/sensors.md)
   Rational rate = {100, 1};     ///< [Hz]
   std::optional<TimingOptions> timing = {};
   std::optional<double> noise = {};             ///< standard deviation of a sample
-  std::optional<double> noise_density = {};     ///< Allan deviation at 1 s: white [unit/√Hz]
-  std::optional<double> bias_instability = {};  ///< B of IEEE 952: flat part / 0.664 [unit]
+  std::optional<double> noise_density = {};     ///< white, one-sided [unit/√Hz]
+  std::optional<double> bias_instability = {};  ///< flat part of the Allan deviation [unit]
   std::optional<double> random_walk = {};       ///< K of IEEE 952: rate random walk [unit √Hz]
   std::optional<double> bias = {};              ///< standard deviation of the offset at the start
   std::optional<double> offset = {};            ///< known offset

@@ -261,6 +261,57 @@ keys = [ { time = 0, level = 0.01 }, { time = 0.5, level = 0.01 }, { time = 0.50
   }
 }
 
+const char* const kDvs = R"(
+[[camera]]
+name = "a/eye"
+[camera.events]
+threshold = 0.3
+[camera.thermal]
+[camera.imager]
+mosaic = "gbrg"
+pixel = { bits = 10 }
+[[temperature]]
+temperature = 330
+emissivity = 1
+[[light]]
+name = "lamp"
+type = "point"
+position = [1.5, 1, 0.5]
+intensity = 2000
+[light.schedule]
+keys = [ { time = 0, level = 0.2 }, { time = 0.101, level = 0.2 }, { time = 0.109, level = 1 } ]
+)";
+
+TEST(CameraOutputs, EventsTemperaturesAndNumbersComeThroughTheStream) {
+  const TempFolder folder;
+  const World world = lab(folder, kDvs);
+  CameraRequest request = eye();
+  request.outputs = {"events", "thermal", "raw"};
+  request.render = {.tier = "direct", .spp = 1, .denoise = false};
+  const auto frames = frames_of(world, request, 100);
+  ASSERT_EQ(frames.size(), 11u);
+  for (const CameraFrame& f : frames) {
+    // Between frames 5 and 6, at 0.1 and 0.12 s, light grows fivefold: log 5 / 0.3 = 5.4 events.
+    if (f.index == 6) {
+      EXPECT_NEAR(static_cast<double>(f.events.size()), 5.0 * 16 * 12, 50);
+      for (const Event& e : f.events) EXPECT_TRUE(e.brighter && e.time > 0.1 && e.time <= 0.12);
+    } else {
+      EXPECT_TRUE(f.events.empty()) << f.index;
+    }
+    EXPECT_NEAR(f.thermal.at(100), 330, 0.01);
+    EXPECT_EQ(f.raw.size(), size_t{16 * 12});
+  }
+  const World odd = lab(folder,
+                        "[[camera]]\nname = \"a/eye\"\nthermal = {}\n"
+                        "[[temperature]]\nbody = \"a/bal\"\n");
+  request.outputs = {"thermal"};
+  auto simulation = simulate(odd);
+  const auto opened = simulation->open_camera(request, [](auto) {});
+  ASSERT_FALSE(opened.ok());
+  EXPECT_NE(opened.error().to_string().find("a/bal"), std::string::npos);
+  EXPECT_NE(opened.error().to_string().find("scene.toml:"), std::string::npos);
+}
+
 TEST(RecordedSensors, AreTablesOfTheirSamples) {
   const TempFolder folder;
   const World world = lab(folder, R"(
@@ -269,8 +320,10 @@ match = "a/encoder"
 rate = 100
 noise = 0.01
 [record]
-outputs = ["sensors"]
-)");
+outputs = ["sensors", "events", "raw_png", "thermal_png", "sensor_depth_png"]
+[render]
+tier = "direct"
+)" + std::string(kDvs));
   RunRequest request;
   request.out = folder.path() / "run";
   request.duration = 0.5;
@@ -287,6 +340,14 @@ outputs = ["sensors"]
   while (std::getline(file, line)) ++rows;
   EXPECT_EQ(rows, 51);
   EXPECT_TRUE(std::filesystem::exists(request.out / "sensors" / "a_velocity.csv"));
+  const auto camera = request.out / "a_eye";
+  EXPECT_TRUE(std::filesystem::exists(camera / "raw" / "000003.png"));
+  EXPECT_TRUE(std::filesystem::exists(camera / "thermal" / "000003.png"));
+  EXPECT_FALSE(std::filesystem::exists(camera / "sensor_depth")) << "it has no such model";
+  std::ifstream events(camera / "events.csv");
+  ASSERT_TRUE(std::getline(events, line));
+  EXPECT_EQ(line, "time_s,x_px,y_px,brighter");
+  EXPECT_TRUE(std::getline(events, line)) << "the lamp's";
 }
 
 }  // namespace
