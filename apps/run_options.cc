@@ -37,7 +37,7 @@ void RunOptions::add_rendering(CLI::App& command) {
   command
       .add_option(
           "--output", outputs,
-          "What to record: video png depth_png depth_exr segmentation metrics contact_sheet")
+          "What to record: video png depth_png depth_exr segmentation lidar metrics contact_sheet")
       ->delimiter(',');
   add_access_options(command, access, packages);
 }

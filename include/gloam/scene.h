@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gloam/result.h"
+#include "gloam/scene_lidar.h"
 #include "gloam/scene_light.h"
 #include "gloam/types.h"
 
@@ -194,7 +195,8 @@ struct RenderOptions {
 /// [record]
 struct RecordOptions {
   std::vector<std::string> outputs = {
-      "video", "png"};  ///< video png depth_png depth_exr segmentation metrics contact_sheet
+      "video", "png",
+      "lidar"};  ///< video png depth_png depth_exr segmentation lidar metrics contact_sheet
   SourceLoc loc = {};
 };
 
@@ -205,6 +207,7 @@ struct Scene {
   EnvironmentOptions environment = {};
   std::vector<RobotOptions> robots = {};  ///< in source order
   std::vector<CameraOptions> cameras = {};
+  std::vector<LidarOptions> lidars = {};
   std::vector<MaterialOptions> materials = {};
   std::vector<LightOptions> lights = {};
   std::optional<SkyOptions> sky = {};

@@ -8,6 +8,7 @@
 
 #include "gloam/simulation.h"
 #include "runtime/live_camera.h"
+#include "runtime/live_lidar.h"
 
 namespace gloam {
 
@@ -30,6 +31,8 @@ class LiveSimulation final : public Simulation {
   void set_step_hook(std::function<void(const mjModel_*, mjData_*)> hook) override;
   Result<std::unique_ptr<CameraStream>> open_camera(const CameraRequest& request,
                                                     FrameCallback on_frame) override;
+  Result<std::unique_ptr<LidarStream>> open_lidar(const LidarRequest& request,
+                                                  ScanCallback on_scan) override;
   std::vector<std::string> camera_names() const override;
   Result<std::vector<LabelRow>> labels() override;
   Result<Pose> body_pose(Body body) override;
@@ -41,6 +44,8 @@ class LiveSimulation final : public Simulation {
   Result<std::shared_ptr<SharedRenderer>> renderer();
   Result<std::unique_ptr<LiveCamera>> open_live_camera(const CameraRequest& request,
                                                        FrameCallback on_frame);
+  Result<std::unique_ptr<LiveLidar>> open_live_lidar(const LidarRequest& request,
+                                                     ScanCallback on_scan);
 
  private:
   LiveSimulation(World world, uint64_t seed);

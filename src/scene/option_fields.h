@@ -10,6 +10,7 @@
 
 #include "gloam/scene.h"
 #include "scene/field_rule.h"
+#include "scene/lidar_fields.h"
 #include "scene/light_fields.h"
 #include "scene/pattern_names.h"
 
@@ -163,8 +164,8 @@ void visit_fields(Visitor& v, RenderOptions& o) {
 template <class Visitor>
 void visit_fields(Visitor& v, RecordOptions& o) {
   v("outputs", o.outputs,
-    FieldRule{.choices = {"video", "png", "depth_png", "depth_exr", "segmentation", "metrics",
-                          "contact_sheet"}});
+    FieldRule{.choices = {"video", "png", "depth_png", "depth_exr", "segmentation", "lidar",
+                          "metrics", "contact_sheet"}});
 }
 
 /// [scene]
@@ -184,6 +185,7 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("environment", scene.environment, FieldRule{});
   v("robot", scene.robots, FieldRule{});
   v("camera", scene.cameras, FieldRule{});
+  v("lidar", scene.lidars, FieldRule{});
   v("material", scene.materials, FieldRule{});
   v("light", scene.lights, FieldRule{});
   v("sky", scene.sky, FieldRule{});

@@ -2,6 +2,7 @@
 
 #include "scene/mujoco_guard.h"
 #include "scene/validate.h"
+#include "world/authored_lidar.h"
 #include "world/level.h"
 #include "world/model_cache.h"
 #include "world/urdf_visuals.h"
@@ -48,6 +49,7 @@ Result<World> World::compile(const Scene& scene) {
   GLOAM_TRY_STATUS(validate_scene(scene));
   if (std::shared_ptr<CompiledWorld> cached = load_cached_world(scene)) {
     if (!scene.bare_model.empty()) cached->robots = {bare_robot(scene, cached->model.get())};
+    GLOAM_TRY_STATUS(describe_lidars(*cached));
     return World(std::move(cached));
   }
   const auto start = std::chrono::steady_clock::now();
@@ -61,6 +63,7 @@ Result<World> World::compile(const Scene& scene) {
   world->model = std::move(level.model);
   world->initial_key = level.initial_key;
   world->unsupported = std::move(level.unsupported);
+  GLOAM_TRY_STATUS(describe_lidars(*world));
   add_urdf_visuals(scene, &files, world.get());
   if (std::chrono::steady_clock::now() - start > kWorthCaching)
     store_cached_world(world, files.dependencies());
