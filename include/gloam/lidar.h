@@ -14,14 +14,14 @@ namespace gloam {
 /// One scan: returns in the order in which the beams were fired. Names and meanings of x, y, z,
 /// intensity, ring and time are those of ROS drivers' PointCloud2 messages.
 struct LidarScan {
-  std::string lidar;   ///< name
-  int64_t index = 0;   ///< number of the scan since reset
-  int64_t step = 0;    ///< physics step at its end
-  double start = 0;    ///< simulation time at which it began [s]; `time` counts from there
-  double end = 0;      ///< [s]
-  int rings = 0;       ///< rows of the range image
-  int columns = 0;     ///< columns of the range image; 0 = the pattern has none
-  int beams = 0;       ///< fired, with and without a return
+  std::string lidar;  ///< name
+  int64_t index = 0;  ///< number of the scan since reset
+  int64_t step = 0;   ///< physics step at its end
+  double start = 0;   ///< simulation time at which it began [s]; `time` counts from there
+  double end = 0;     ///< [s]
+  int rings = 0;      ///< rows of the range image
+  int columns = 0;    ///< columns of the range image; 0 = the pattern has none
+  int beams = 0;      ///< fired, with and without a return
   bool deskewed = false;
   Pose X_WL_start, X_WL_end;  ///< of the sensor at both ends; x ahead, y to the left, z up
 

@@ -14,10 +14,10 @@ namespace gloam {
 /// What is not given is the preset's. Angles in degrees, as in data sheets. The sensor's frame: x
 /// ahead, y to the left, z up (ROS REP 103).
 struct LidarOptions {
-  std::string name = {};  ///< unique
-  std::string body = {};  ///< full name of the body it sits on; empty = world
-  Vec3 position = {};     ///< in the frame of `body` [m]
-  Quat orientation = {};  ///< in the frame of `body`
+  std::string name = {};          ///< unique
+  std::string body = {};          ///< full name of the body it sits on; empty = world
+  Vec3 position = {};             ///< in the frame of `body` [m]
+  Quat orientation = {};          ///< in the frame of `body`
   std::string preset = "OS1-64";  ///< named after data sheets; docs/lidar.md has the list
   /// How beams are spread: spinning (rings that turn), raster (a grid, column by column), flash (a
   /// grid, all at once), rosette (two prisms that turn).
@@ -25,25 +25,25 @@ struct LidarOptions {
   std::optional<Rational> rate = {};  ///< scans per second of simulation time [Hz]
   /// spinning: elevation of each ring, up [deg]
   std::optional<std::vector<double>> elevations = {};
-  std::optional<int> columns = {};                   ///< spinning: of a whole turn; raster; flash
-  std::optional<int> rows = {};                      ///< raster, flash
-  std::optional<int> points = {};                    ///< rosette: of a scan
+  std::optional<int> columns = {};                    ///< spinning: of a whole turn; raster; flash
+  std::optional<int> rows = {};                       ///< raster, flash
+  std::optional<int> points = {};                     ///< rosette: of a scan
   std::optional<std::array<double, 2>> azimuth = {};  ///< spinning: from, to, of -180 … 180 [deg]
   /// raster, flash: across and up; rosette: both the same [deg]
   std::optional<std::array<double, 2>> field_of_view = {};
   std::optional<bool> clockwise = {};  ///< spinning, seen from above
 
-  std::optional<int> wavelength = {};     ///< 905 or 1550 [nm]
-  std::optional<double> min_range = {};   ///< beams begin there [m]
-  std::optional<double> max_range = {};   ///< [m]
+  std::optional<int> wavelength = {};    ///< 905 or 1550 [nm]
+  std::optional<double> min_range = {};  ///< beams begin there [m]
+  std::optional<double> max_range = {};  ///< [m]
   /// At which a plate of 10 % reflectance is just detected: sets the threshold; 0 = all echoes are
   /// detected [m]
   std::optional<double> range_at_10_percent = {};
   std::optional<std::array<double, 2>> divergence = {};  ///< full angle at 1/e², across, up [deg]
-  std::optional<double> pulse_length = {};  ///< echoes closer together are one [m]
-  int footprint_rays = 1;                   ///< over the beam's cross-section, 1 … 32
-  std::optional<std::string> returns = {};  ///< first strongest last dual all
-  int most_returns = 3;                     ///< of `all`, 1 … 5
+  std::optional<double> pulse_length = {};               ///< echoes closer together are one [m]
+  int footprint_rays = 1;                                ///< over the beam's cross-section, 1 … 32
+  std::optional<std::string> returns = {};               ///< first strongest last dual all
+  int most_returns = 3;                                  ///< of `all`, 1 … 5
 
   /// Errors of range and amplitude, drop-outs at the threshold, speckle of what media send back.
   bool noise = false;

@@ -37,12 +37,12 @@ Status LidarRecorder::start() {
     GLOAM_TRY_STATUS(store_->make_folder(folder_ / format));
   }
   GLOAM_TRY(std::unique_ptr<ByteSink> sink, store_->create(folder_ / "scans.csv"));
-  GLOAM_TRY(CsvWriter table,
-            CsvWriter::start(std::move(sink),
-                             {"scan", "step", "start_s", "end_s", "points", "start_x_m",
-                              "start_y_m", "start_z_m", "start_qw", "start_qx", "start_qy",
-                              "start_qz", "end_x_m", "end_y_m", "end_z_m", "end_qw", "end_qx",
-                              "end_qy", "end_qz"}));
+  GLOAM_TRY(
+      CsvWriter table,
+      CsvWriter::start(std::move(sink),
+                       {"scan", "step", "start_s", "end_s", "points", "start_x_m", "start_y_m",
+                        "start_z_m", "start_qw", "start_qx", "start_qy", "start_qz", "end_x_m",
+                        "end_y_m", "end_z_m", "end_qw", "end_qx", "end_qy", "end_qz"}));
   table_ = std::move(table);
   return {};
 }
@@ -59,8 +59,20 @@ Status LidarRecorder::add(const LidarScan& scan) {
                         scan.start,
                         scan.end,
                         static_cast<double>(scan.size()),
-                        a.p.x, a.p.y, a.p.z, a.q.w, a.q.x, a.q.y, a.q.z,
-                        b.p.x, b.p.y, b.p.z, b.q.w, b.q.x, b.q.y, b.q.z};
+                        a.p.x,
+                        a.p.y,
+                        a.p.z,
+                        a.q.w,
+                        a.q.x,
+                        a.q.y,
+                        a.q.z,
+                        b.p.x,
+                        b.p.y,
+                        b.p.z,
+                        b.q.w,
+                        b.q.x,
+                        b.q.y,
+                        b.q.z};
   GLOAM_TRY_STATUS(table_->add(row));
   ++scans_;
   return {};

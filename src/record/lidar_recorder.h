@@ -15,8 +15,8 @@
 namespace gloam {
 
 struct RecordedLidar {
-  std::string name;  ///< as in LidarScan::lidar
-  Rational rate = {10, 1};                       ///< scans per second of simulation time
+  std::string name;                            ///< as in LidarScan::lidar
+  Rational rate = {10, 1};                     ///< scans per second of simulation time
   std::vector<std::string> formats = {"pcd"};  ///< pcd ply npy
 };
 

@@ -89,9 +89,10 @@ std::vector<uint8_t> encode_pcd(const LidarScan& scan) {
               return f.type == Type::kFloat32 ? std::string(" F") : std::string(" U");
             });
   header += "\nCOUNT" + joined(fields, [](const Field&) { return std::string(" 1"); });
-  header += fmt::format("\nWIDTH {}\nHEIGHT 1\nVIEWPOINT {} {} {} {} {} {} {}\nPOINTS {}\n"
-                        "DATA binary\n",
-                        scan.size(), p.x, p.y, p.z, q.w, q.x, q.y, q.z, scan.size());
+  header += fmt::format(
+      "\nWIDTH {}\nHEIGHT 1\nVIEWPOINT {} {} {} {} {} {} {}\nPOINTS {}\n"
+      "DATA binary\n",
+      scan.size(), p.x, p.y, p.z, q.w, q.x, q.y, q.z, scan.size());
   return assemble(header, fields, scan.size());
 }
 
@@ -104,10 +105,10 @@ std::vector<uint8_t> encode_ply(const LidarScan& scan) {
                                                  : "uchar";
     return fmt::format("property {} {}\n", type, f.name);
   };
-  const std::string header =
-      fmt::format("ply\nformat binary_little_endian 1.0\ncomment start {} s, end {} s\n"
-                  "element vertex {}\n{}end_header\n",
-                  scan.start, scan.end, scan.size(), joined(fields, property));
+  const std::string header = fmt::format(
+      "ply\nformat binary_little_endian 1.0\ncomment start {} s, end {} s\n"
+      "element vertex {}\n{}end_header\n",
+      scan.start, scan.end, scan.size(), joined(fields, property));
   return assemble(header, fields, scan.size());
 }
 

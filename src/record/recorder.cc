@@ -24,8 +24,8 @@ namespace {
 constexpr size_t kQueuedRows = 4096;   // metric rows that may wait for the disk
 constexpr size_t kPlottedRows = 2000;  // kept in memory for the contact sheet
 
-const std::vector<std::string> kOutputs = {"video",        "png",     "depth_png",    "depth_exr",
-                                           "segmentation", "lidar",   "metrics",      "contact_sheet"};
+const std::vector<std::string> kOutputs = {"video",        "png",   "depth_png", "depth_exr",
+                                           "segmentation", "lidar", "metrics",   "contact_sheet"};
 
 /// The failure that ended a recording: what was written before it is complete, so its kind is
 /// kPartial. Others that follow from it are of no interest.
@@ -282,7 +282,7 @@ class FolderRecorder : public Recorder {
   const std::set<std::string> outputs_;
   std::vector<std::string> file_names_;  // of the cameras
   std::vector<std::string> lidar_file_names_;
-  std::vector<std::string> entries_;     // of the folder, as listed in the summary
+  std::vector<std::string> entries_;  // of the folder, as listed in the summary
   FirstFailure failure_;
   std::optional<CsvWriter> metrics_;
   int64_t metric_rows_ = 0;

@@ -62,9 +62,9 @@ Result<std::unique_ptr<LiveLidar>> LiveLidar::open(Simulator& simulator,
   live->keys_.resize(static_cast<size_t>(live->stretches_) + 1);
   // Room for the keys of a scan, which come while the one before is traced.
   const int capacity = live->stretches_ + 1;
-  GLOAM_TRY(live->queue_,
-            simulator.subscribe(
-                {.rate = key_rate, .required = request.required, .capacity = capacity}));
+  GLOAM_TRY(
+      live->queue_,
+      simulator.subscribe({.rate = key_rate, .required = request.required, .capacity = capacity}));
   live->thread_ = std::thread([raw = live.get()] { raw->run(); });
   return live;
 }

@@ -41,11 +41,11 @@ class LiveLidar final : public LidarStream {
   std::unique_ptr<LidarSensor> sensor_;
   std::unique_ptr<PoseSolver> solver_;
   std::shared_ptr<SnapshotQueue> queue_;
-  StepSchedule schedule_;          // of the keys
-  int stretches_ = 1;              // of a scan, between its keys
-  std::vector<PoseFrame> keys_;    // of the scan that is being gathered
-  int64_t next_key_ = 0;           // number of the key that is expected
-  size_t gathered_ = 0;            // of keys_
+  StepSchedule schedule_;        // of the keys
+  int stretches_ = 1;            // of a scan, between its keys
+  std::vector<PoseFrame> keys_;  // of the scan that is being gathered
+  int64_t next_key_ = 0;         // number of the key that is expected
+  size_t gathered_ = 0;          // of keys_
   mutable std::mutex mutex_;
   Status status_;
   std::thread thread_;

@@ -97,8 +97,8 @@ Result<std::vector<RecordedLidar>> recorded_lidars(const World& world, Rational 
   const bool all = wants(scene.record.outputs, "lidar");
   std::vector<RecordedLidar> lidars;
   for (const LidarOptions& options : scene.lidars) {
-    const auto formats =
-        options.outputs.value_or(all ? std::vector<std::string>{"pcd"} : std::vector<std::string>{});
+    const auto formats = options.outputs.value_or(all ? std::vector<std::string>{"pcd"}
+                                                      : std::vector<std::string>{});
     if (formats.empty()) continue;
     GLOAM_TRY(const LidarModel model, make_lidar_model(options));
     GLOAM_TRY_STATUS(StepSchedule::make(model.rate, {0, 1}, timestep));

@@ -81,8 +81,9 @@ Result<LidarModel> make_lidar_model(const LidarOptions& options) {
   set_optics(options, &model.optics);
 
   if (!(model.optics.min_range < model.optics.max_range)) {
-    return bad(fmt::format("sees from {} m to {} m", model.optics.min_range, model.optics.max_range),
-               "'max_range' must be more than 'min_range'");
+    return bad(
+        fmt::format("sees from {} m to {} m", model.optics.min_range, model.optics.max_range),
+        "'max_range' must be more than 'min_range'");
   }
   switch (model.pattern) {
     case LidarPatternKind::kSpinning:

@@ -15,8 +15,7 @@ std::vector<LidarFiring> fire_grid(const LidarModel& model, bool at_once) {
       LidarFiring firing;
       firing.d = lidar_direction(model.width * (0.5 - (column + 0.5) / model.columns),
                                  model.height * ((row + 0.5) / model.rows - 0.5));
-      if (!at_once)
-        firing.time = static_cast<float>(firings.size()) / static_cast<float>(beams);
+      if (!at_once) firing.time = static_cast<float>(firings.size()) / static_cast<float>(beams);
       firing.ring = static_cast<uint16_t>(row);
       firing.column = static_cast<uint16_t>(column);
       firings.push_back(firing);

@@ -1,6 +1,6 @@
-// One beam through two prisms that turn at different speeds (Risley): a rosette that does not repeat
-// from scan to scan and fills the field of view the longer it looks. Thin prisms: each bends the
-// beam by a quarter of the field of view, and what they do adds up (to first order; Brazeal,
+// One beam through two prisms that turn at different speeds (Risley): a rosette that does not
+// repeat from scan to scan and fills the field of view the longer it looks. Thin prisms: each bends
+// the beam by a quarter of the field of view, and what they do adds up (to first order; Brazeal,
 // Wilkinson and Hochmair 2021, "A rigorous observation model for the Risley prism-based Livox
 // Mid-40 lidar sensor").
 

@@ -27,8 +27,8 @@ Result<std::unique_ptr<LidarSensor>> LidarSensor::create(const RenderDescription
                                                          uint64_t seed) {
   GLOAM_TRY(LidarModel model, make_lidar_model(lidar.options));
   const std::string& name = lidar.options.name;
-  return std::unique_ptr<LidarSensor>(new LidarSensor(
-      rendered, lidar, std::move(model), hash_bytes(name.data(), name.size(), seed)));
+  return std::unique_ptr<LidarSensor>(new LidarSensor(rendered, lidar, std::move(model),
+                                                      hash_bytes(name.data(), name.size(), seed)));
 }
 
 LidarSensor::LidarSensor(const RenderDescription& rendered, const LidarDescription& lidar,
@@ -57,8 +57,7 @@ void LidarSensor::plan(std::span<const PoseFrame> keys, int64_t index) {
   for (uint32_t i = 0; i < firings_.size(); ++i) {
     const LidarFiring& f = firings_[i];
     const auto above = std::upper_bound(cuts_.begin() + 1, cuts_.end(), f.time);
-    const auto stretch =
-        std::min(static_cast<uint32_t>(above - cuts_.begin()) - 1, last_stretch);
+    const auto stretch = std::min(static_cast<uint32_t>(above - cuts_.begin()) - 1, last_stretch);
     uint64_t key = uint64_t{stretch} << 40;
     if (pattern.grid) key |= (f.column / kBlock) << 20 | f.ring / kBlock;
     places[i] = {key, i, stretch};
@@ -132,8 +131,7 @@ void LidarSensor::write_points(std::span<const Affine3f> X_WL, LidarScan* scan) 
   const auto most = static_cast<size_t>(model_.optics.most_returns);
   const bool reflectivity = lidar_.options.intensity == "reflectivity";
   const double length = scan->end - scan->start;
-  for (auto* values :
-       {&scan->x, &scan->y, &scan->z, &scan->intensity, &scan->range, &scan->time}) {
+  for (auto* values : {&scan->x, &scan->y, &scan->z, &scan->intensity, &scan->range, &scan->time}) {
     values->reserve(firings_.size());
   }
   for (auto* values : {&scan->ring, &scan->column}) values->reserve(firings_.size());
@@ -152,7 +150,7 @@ void LidarSensor::write_points(std::span<const Affine3f> X_WL, LidarScan* scan) 
       if (lidar_.options.deskew) {
         const Ray ray = beam_ray(motions_[stretch], firing.d, beams_[beam].time);
         const Vec3f from_end = ray.o - end.p + ray.d * found.range;
-        p = to_frame(end, from_end);
+        p = {dot(from_end, end.x), dot(from_end, end.y), dot(from_end, end.z)};
       }
       scan->x.push_back(p.x);
       scan->y.push_back(p.y);

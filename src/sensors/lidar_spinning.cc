@@ -1,5 +1,5 @@
-// A column of lasers that turns about the sensor's z axis. A scan begins behind the sensor; the head
-// goes on turning while the lasers of a column fire one after the other.
+// A column of lasers that turns about the sensor's z axis. A scan begins behind the sensor; the
+// head goes on turning while the lasers of a column fire one after the other.
 
 #include <algorithm>
 #include <cmath>
@@ -24,7 +24,8 @@ std::vector<LidarFiring> fire_spinning(const LidarModel& model, int64_t) {
     const double begin = static_cast<double>(column) / model.columns;  // of a turn
     const double azimuth = std::remainder(M_PI + turn * begin, 2 * M_PI);
     constexpr double kRounding = 1e-6;
-    if (azimuth < model.azimuth_from - kRounding || azimuth > model.azimuth_to + kRounding) continue;
+    if (azimuth < model.azimuth_from - kRounding || azimuth > model.azimuth_to + kRounding)
+      continue;
     for (const size_t ring : order) {
       const double late = model.delays.empty() ? 0 : model.delays[ring] * model.rate.value();
       LidarFiring firing;

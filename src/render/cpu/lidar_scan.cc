@@ -43,8 +43,7 @@ void scan_packet(const ScanJob& job, const LidarBeam* beams, int count, LidarRet
         rays > 1 ? footprint_direction(optics, d_L, job.footprint[static_cast<size_t>(k)]) : d_L;
     // Media hardly vary within a footprint: one ray tells what comes back from them.
     trace_echoes(job.scene, job.tracer, optics, beam_ray(job.view.motion, d, time), active,
-                 1.0f / static_cast<float>(rays), echoes,
-                 job.has_media && k == 0 ? soft : nullptr);
+                 1.0f / static_cast<float>(rays), echoes, job.has_media && k == 0 ? soft : nullptr);
   }
   for (int i = 0; i < count; ++i) {
     if (job.has_media) soft[i].finish();

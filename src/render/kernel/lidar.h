@@ -18,8 +18,8 @@ namespace gloam {
 template <class F>
 GLOAM_HD Vec3Of<F> footprint_direction(const LidarOptics& optics, Vec3Of<F> d_L, Vec2f p) {
   const MaskOf<F> upright = magnitude(d_L.z) > 0.9999f;
-  const Vec3Of<F> flat = select<F>(upright, Vec3Of<F>{F(0.0f), F(1.0f), F(0.0f)},
-                                   Vec3Of<F>{-d_L.y, d_L.x, F(0.0f)});
+  const Vec3Of<F> flat =
+      select<F>(upright, Vec3Of<F>{F(0.0f), F(1.0f), F(0.0f)}, Vec3Of<F>{-d_L.y, d_L.x, F(0.0f)});
   const Vec3Of<F> left = normalize(flat), up = cross(d_L, left);
   return normalize(d_L + left * F(0.5f * optics.divergence.x * p.x) +
                    up * F(0.5f * optics.divergence.y * p.y));
@@ -151,8 +151,8 @@ GLOAM_HD void trace_echoes(const SceneView& scene, const Tracer& tracer, const L
     share *= passed;
     active = active & (share * share > lidar::kFaint);
     if (!any(active)) return;
-    absorption = paths::absorption_beyond(scene, s, active & (dot(d, s.geometric) < 0.0f),
-                                          absorption);
+    absorption =
+        paths::absorption_beyond(scene, s, active & (dot(d, s.geometric) < 0.0f), absorption);
     ray.o = select<F>(active, leave_surface(s.p, s.geometric, d, hit.t), ray.o);
     ray.d = select<F>(active, d, ray.d);
     ray.tmax = F(optics.max_range) - way;

@@ -156,7 +156,9 @@ GLOAM_HD void detect(const LidarOptics& optics, const LidarKey& key, LidarEchoes
   }
   e.resize(count);
   if (count == 0) return;
-  const auto take = [&](int from, int to) { out[to] = {e[from].range, e[from].signal, e[from].part}; };
+  const auto take = [&](int from, int to) {
+    out[to] = {e[from].range, e[from].signal, e[from].part};
+  };
   const auto strongest_but = [&](int other) {
     int best = -1;
     for (int i = 0; i < count; ++i) {

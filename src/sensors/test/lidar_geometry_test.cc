@@ -70,9 +70,9 @@ TEST(LidarGeometry, NothingIsSeenOutsideTheRangeOfTheSensor) {
 /// Sensor on body 1 (or the world) and a wall whose near side is at x = 10, instants `n` stretches
 /// apart over 0.1 s.
 struct Motion {
-  Vec3f v;            ///< of body 1 [m/s]
+  Vec3f v;             ///< of body 1 [m/s]
   float yaw_rate = 0;  ///< [rad/s]
-  Vec3f wall_v;       ///< of the wall's body [m/s]
+  Vec3f wall_v;        ///< of the wall's body [m/s]
 };
 std::vector<PoseFrame> instants(const SceneBuilder& scene, const Motion& motion, int n) {
   std::vector<PoseFrame> keys(static_cast<size_t>(n) + 1, scene.frame);
