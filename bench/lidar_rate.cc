@@ -135,14 +135,16 @@ Status run(const Arguments& arguments) {
   }
   const double ratio = median(theirs_ms) / median(ours_ms);
   const double share = 1.0 / static_cast<double>(firings.size());
-  fmt::print(arguments.json
-                 ? "{{\"name\": \"lidar_rate\", \"ratio\": {:.3f}, \"ours_ms\": {:.2f}, "
-                   "\"multiray_ms\": {:.2f}, \"two_threads_ms\": {:.2f}, \"beams\": {}, "
-                   "\"same\": {:.4f}, \"on_robot\": {:.4f}}}\n"
-                 : "{:.3f} times mj_multiRay: {:.2f} ms against {:.2f} ms; two threads {:.2f} ms; "
-                   "{} beams, of which {:.2%} agree and {:.1%} hit a body\n",
-             ratio, median(ours_ms), median(theirs_ms), median(two_ms), firings.size(),
-             static_cast<double>(same) * share, static_cast<double>(robot) * share);
+  const std::string text =
+      arguments.json
+          ? "{{\"name\": \"lidar_rate\", \"ratio\": {:.3f}, \"ours_ms\": {:.2f}, \"multiray_ms\": "
+            "{:.2f}, \"two_threads_ms\": {:.2f}, \"beams\": {}, \"same\": {:.4f}, \"on_robot\": "
+            "{:.4f}}}\n"
+          : "{:.3f} times mj_multiRay: {:.2f} ms against {:.2f} ms; two threads {:.2f} ms; {} beams, "
+            "of which a share of {:.4f} agrees and {:.4f} hits a body\n";
+  fmt::print(fmt::runtime(text), ratio, median(ours_ms), median(theirs_ms), median(two_ms),
+             firings.size(), static_cast<double>(same) * share,
+             static_cast<double>(robot) * share);
   return {};
 }
 

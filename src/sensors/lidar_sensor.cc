@@ -7,6 +7,7 @@
 #include "base/hash.h"
 #include "render/scene/pose.h"
 #include "sensors/camera_sensor.h"
+#include "world/medium_presets.h"
 
 namespace gloam {
 namespace {
@@ -33,7 +34,11 @@ Result<std::unique_ptr<LidarSensor>> LidarSensor::create(const RenderDescription
 
 LidarSensor::LidarSensor(const RenderDescription& rendered, const LidarDescription& lidar,
                          LidarModel model, uint64_t seed)
-    : rendered_(rendered), lidar_(lidar), model_(std::move(model)), seed_(seed) {}
+    : rendered_(rendered), lidar_(lidar), model_(std::move(model)), seed_(seed) {
+  for (const VolumeDescription& volume : rendered.volumes) {
+    lidar_ratios_.push_back(lidar_ratio(rendered.media[static_cast<size_t>(volume.medium)].name));
+  }
+}
 
 // Decides which beams are fired between which keys, and in which order they are traced.
 void LidarSensor::plan(std::span<const PoseFrame> keys, int64_t index) {
@@ -101,6 +106,8 @@ std::shared_ptr<const LidarScan> LidarSensor::scan(Renderer& renderer, std::mute
       LidarView view;
       view.motion = motions_.back();
       view.optics = model_.optics;
+      view.optics.lidar_ratios = {lidar_ratios_.data(),
+                                  static_cast<uint32_t>(lidar_ratios_.size())};
       view.seed = seed_;
       view.scan = static_cast<uint64_t>(index);
       view.beams = {beams_.data() + first, count};

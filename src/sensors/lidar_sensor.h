@@ -40,6 +40,7 @@ class LidarSensor {
   const LidarDescription lidar_;
   const LidarModel model_;
   const uint64_t seed_;
+  std::vector<float> lidar_ratios_;  ///< by volume [sr]
   std::vector<LidarFiring> firings_;
   std::vector<float> cuts_;           ///< of the keys, 0 … 1
   std::vector<LidarBeam> beams_;      ///< in the order in which they are traced

@@ -30,6 +30,9 @@ struct LidarOptics {
   float threshold = 0;  ///< least signal that is reported [1/m²]
   LidarReturns returns = LidarReturns::kStrongest;
   int most_returns = 1;  ///< 1 … kMostLidarReturns
+  /// Of each of the scene's volumes: extinction over backscattering coefficient [sr]; 0 = by its
+  /// phase function. Empty = all of them.
+  DeviceSpan<const float> lidar_ratios;
   // Noise: none without `noisy`.
   bool noisy = false;
   float range_sigma = 0;  ///< standard deviation of ranges at a signal without noise [m]

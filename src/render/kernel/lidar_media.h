@@ -109,10 +109,13 @@ GLOAM_HD float cross_media(const MediaView& media, const LidarOptics& optics, co
       for (int v = 0; v < walk.count(); ++v) {
         if (!(walk[v].high() > 0)) continue;
         const VolumeView& volume = walk[v].volume();
-        const float before = point.scattering.x;
+        const MediumPoint before = point;
         media::add_volume(media, volume, p_W, bands, &point);
-        backscatter +=
-            (point.scattering.x - before) * henyey_greenstein(bands.of(volume.g).x, -1.0f);
+        const auto row = static_cast<uint32_t>(&volume - media.volumes.data);
+        const float ratio = row < optics.lidar_ratios.size ? optics.lidar_ratios[row] : 0;
+        backscatter += ratio > 0 ? (point.extinction.x - before.extinction.x) / ratio
+                                 : (point.scattering.x - before.scattering.x) *
+                                       henyey_greenstein(bands.of(volume.g).x, -1.0f);
       }
       const float depth = point.extinction.x * (to - from);
       if (soft != nullptr && backscatter > 0) {

@@ -144,6 +144,22 @@ TEST(LidarInMedia, ThickFogAnswersAtTheRangeWhereItIsEntered) {
   EXPECT_NEAR(scan->intensity[0] / backscatter(0.4, beta, 4, 4, 5), 1, 0.01);
 }
 
+TEST(LidarInMedia, DropsScatterBackAsMeasuredNotAsTheirPhaseFunctionSays) {
+  SceneBuilder b;
+  MediumDescription fog = medium(0.4f, 0.4f, 1);
+  fog.name = "fog";
+  fog.g.fill(0.87f);
+  b.description.media.push_back(fog);
+  add_slab(&b, 4, 30, 1);
+  LidarOptions options = pencil();
+  options.pulse_length = 1;
+  options.intensity = "signal";
+  options.range_at_10_percent = 40;
+  const auto scan = scan_scene(b, options);
+  ASSERT_EQ(scan->size(), 1u);
+  EXPECT_NEAR(scan->intensity[0] / backscatter(0.4, 0.4 / 18.8, 4, 4, 5), 1, 0.01);
+}
+
 TEST(LidarInMedia, ThinFogGivesNoFalseReturnsWithoutNoise) {
   SceneBuilder b;
   b.description.media.push_back(medium(0.4f, 0.4f, 0.9f));
