@@ -273,7 +273,7 @@ def lidar_scene():
     (folder / "room.xml").write_text(f'<mujoco><worldbody><geom type="plane" size="5 5 .1"/>{walls}{boxes}</worldbody></mujoco>')
     scene = folder / "scene.toml"
     scene.write_text(f'[environment]\nfile = "room.xml"\n[[robot]]\nname = "go1"\nfile = "go1.xml"\nposition = [0, 0, 0.05]\n'
-                     '[[lidar]]\nname = "lidar"\npreset = "OS1-64"\ncolumns = 1024\nposition = [1.2, 0, 0.3]\norientation = [0, 0, 0, 1]\n'
+                     '[[lidar]]\nname = "lidar"\npreset = "OS1-64"\ncolumns = 1024\nposition = [0.72, 0.96, 0.3]\norientation = [0.4472136, 0, 0, -0.8944272]\n'
                      'min_range = 0.05\nrange_at_10_percent = 0\n')
     return scene
 
