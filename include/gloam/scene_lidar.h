@@ -11,6 +11,15 @@
 
 namespace gloam {
 
+/// [[lidar.surface]]: what a material is at the LiDAR's wavelength, which its colour does not tell.
+struct LidarSurfaceOptions {
+  std::string material = {};  ///< full name; * stands for any text; the last that fits counts
+  std::optional<double> diffuse = {};  ///< of its untextured base, 0 … 1; empty = its red
+  /// Coefficient of retroreflection [cd/(lx m²)] (ASTM D4956: 70 engineer grade, 580 prismatic).
+  double retro = 0;
+  SourceLoc loc = {};
+};
+
 /// What is not given is the preset's. Angles in degrees, as in data sheets. The sensor's frame: x
 /// ahead, y to the left, z up (ROS REP 103).
 struct LidarOptions {
@@ -44,6 +53,8 @@ struct LidarOptions {
   int footprint_rays = 1;                                ///< over the beam's cross-section, 1 … 32
   std::optional<std::string> returns = {};               ///< first strongest last dual all
   int most_returns = 3;                                  ///< of `all`, 1 … 5
+
+  std::vector<LidarSurfaceOptions> surfaces = {};
 
   /// Errors of range and amplitude, drop-outs at the threshold, speckle of what media send back.
   bool noise = false;

@@ -8,6 +8,13 @@
 namespace gloam {
 
 template <class Visitor>
+void visit_fields(Visitor& v, LidarSurfaceOptions& o) {
+  v("material", o.material, FieldRule{.required = true});
+  v("diffuse", o.diffuse, kShare);
+  v("retro", o.retro, FieldRule{.unit = "cd/(lx m²)", .min = 0, .max = 1e4});
+}
+
+template <class Visitor>
 void visit_fields(Visitor& v, LidarOptions& o) {
   const FieldRule range{.unit = "m", .min = 0, .max = kLargestLength};
   v("name", o.name, FieldRule{.required = true});
@@ -33,6 +40,7 @@ void visit_fields(Visitor& v, LidarOptions& o) {
   v("footprint_rays", o.footprint_rays, FieldRule{.min = 1, .max = 32});
   v("returns", o.returns, FieldRule{.choices = words(kLidarReturns)});
   v("most_returns", o.most_returns, FieldRule{.min = 1, .max = 5});
+  v("surface", o.surfaces, FieldRule{});
   v("noise", o.noise, FieldRule{});
   v("range_noise", o.range_noise, FieldRule{.unit = "m", .min = 0, .max = 10});
   v("motion_keys", o.motion_keys, FieldRule{.min = 1, .max = 64});

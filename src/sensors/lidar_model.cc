@@ -85,6 +85,16 @@ Result<LidarModel> make_lidar_model(const LidarOptions& options) {
         fmt::format("sees from {} m to {} m", model.optics.min_range, model.optics.max_range),
         "'max_range' must be more than 'min_range'");
   }
+  // Of a scan; the densest sensors that are sold have less than a million.
+  constexpr int64_t kMostBeams = int64_t{1} << 22;
+  const bool spins = model.pattern == LidarPatternKind::kSpinning;
+  const bool is_rosette = model.pattern == LidarPatternKind::kRosette;
+  const int64_t rings = spins ? static_cast<int64_t>(model.elevations.size()) : model.rows;
+  const int64_t beams = is_rosette ? model.points : rings * model.columns;
+  if (beams > kMostBeams) {
+    return bad(fmt::format("has {} beams; the limit is {}", beams, kMostBeams),
+               "lower 'columns', 'rows' or 'points'");
+  }
   switch (model.pattern) {
     case LidarPatternKind::kSpinning:
       if (model.elevations.empty()) {

@@ -1,12 +1,16 @@
 #include "sensors/lidar_sensor.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "base/check.h"
 #include "base/hash.h"
+#include "base/text.h"
 #include "render/scene/pose.h"
 #include "sensors/camera_sensor.h"
+#include "world/authored_material.h"
 #include "world/medium_presets.h"
 
 namespace gloam {
@@ -28,8 +32,10 @@ Result<std::unique_ptr<LidarSensor>> LidarSensor::create(const RenderDescription
                                                          uint64_t seed) {
   GLOAM_TRY(LidarModel model, make_lidar_model(lidar.options));
   const std::string& name = lidar.options.name;
-  return std::unique_ptr<LidarSensor>(new LidarSensor(rendered, lidar, std::move(model),
+  std::unique_ptr<LidarSensor> sensor(new LidarSensor(rendered, lidar, std::move(model),
                                                       hash_bytes(name.data(), name.size(), seed)));
+  GLOAM_TRY_STATUS(sensor->find_surfaces());
+  return sensor;
 }
 
 LidarSensor::LidarSensor(const RenderDescription& rendered, const LidarDescription& lidar,
@@ -38,6 +44,34 @@ LidarSensor::LidarSensor(const RenderDescription& rendered, const LidarDescripti
   for (const VolumeDescription& volume : rendered.volumes) {
     lidar_ratios_.push_back(lidar_ratio(rendered.media[static_cast<size_t>(volume.medium)].name));
   }
+}
+
+Status LidarSensor::find_surfaces() {
+  const std::vector<LidarSurfaceOptions>& wanted = lidar_.options.surfaces;
+  if (wanted.empty()) return {};
+  surfaces_.resize(rendered_.instances.size());
+  std::vector<bool> found(wanted.size());
+  for (size_t i = 0; i < surfaces_.size(); ++i) {
+    const auto row = static_cast<size_t>(rendered_.instances[i].material);
+    const MaterialDescription& material = rendered_.materials[row];
+    for (size_t k = 0; k < wanted.size(); ++k) {
+      if (material.name.empty() || !fits(wanted[k].material, material.name)) continue;
+      found[k] = true;
+      const double red = std::max(static_cast<double>(material.base_color.x), 1e-3);
+      surfaces_[i].diffuse = static_cast<float>(wanted[k].diffuse.value_or(red) / red);
+      surfaces_[i].retro = static_cast<float>(wanted[k].retro);
+    }
+  }
+  for (size_t k = 0; k < wanted.size(); ++k) {
+    if (found[k]) continue;
+    std::vector<std::string> names;
+    for (const MaterialDescription& material : rendered_.materials) names.push_back(material.name);
+    return Error{ErrorKind::kInput,
+                 fmt::format("lidar '{}': no material '{}' is drawn in this scene",
+                             lidar_.options.name, wanted[k].material),
+                 wanted[k].loc, suggest_name(wanted[k].material, names)};
+  }
+  return {};
 }
 
 // Decides which beams are fired between which keys, and in which order they are traced.
@@ -108,6 +142,7 @@ std::shared_ptr<const LidarScan> LidarSensor::scan(Renderer& renderer, std::mute
       view.optics = model_.optics;
       view.optics.lidar_ratios = {lidar_ratios_.data(),
                                   static_cast<uint32_t>(lidar_ratios_.size())};
+      view.optics.surfaces = {surfaces_.data(), static_cast<uint32_t>(surfaces_.size())};
       view.seed = seed_;
       view.scan = static_cast<uint64_t>(index);
       view.beams = {beams_.data() + first, count};

@@ -17,7 +17,8 @@ namespace gloam {
 
 class LidarSensor {
  public:
-  /// `rendered` must outlive the sensor. Errors: those of make_lidar_model().
+  /// `rendered` must outlive the sensor. Errors: those of make_lidar_model(),
+  /// a [[lidar.surface]] of no material.
   static Result<std::unique_ptr<LidarSensor>> create(const RenderDescription& rendered,
                                                      const LidarDescription& lidar, uint64_t seed);
 
@@ -32,6 +33,8 @@ class LidarSensor {
  private:
   LidarSensor(const RenderDescription& rendered, const LidarDescription& lidar, LidarModel model,
               uint64_t seed);
+  Status find_surfaces();
+  Status find_surfaces();
   void plan(std::span<const PoseFrame> keys, int64_t index);
   void write_points(std::span<const Affine3f> X_WL, LidarScan* scan) const;
   void add_truth(LidarScan* scan) const;
@@ -40,7 +43,9 @@ class LidarSensor {
   const LidarDescription lidar_;
   const LidarModel model_;
   const uint64_t seed_;
-  std::vector<float> lidar_ratios_;  ///< by volume [sr]
+  std::vector<float> lidar_ratios_;     ///< by volume [sr]
+  std::vector<LidarSurface> surfaces_;  ///< by instance; empty = as their colours say
+  std::vector<LidarSurface> surfaces_;  ///< by instance; empty = as their colours say
   std::vector<LidarFiring> firings_;
   std::vector<float> cuts_;           ///< of the keys, 0 … 1
   std::vector<LidarBeam> beams_;      ///< in the order in which they are traced

@@ -45,17 +45,29 @@ GLOAM_HD F blurred(F roughness, float blur) {
   return square_root(square_root(r2 * r2 + F(blur * blur)));
 }
 
-/// G of a surface. Of the bands that a colour knows, red is the nearest to a LiDAR's.
+/// G of a surface. Of the bands that a colour knows, red is the nearest to a LiDAR's. What
+/// retroreflectors send back (CIE 54.2:2001) is taken to fall with the cosine of incidence.
 template <class F>
-GLOAM_HD F reflectivity(const SceneView& scene, Vec3Of<F> back, float blur, MaskOf<F> found,
-                        SurfaceOf<F>* s, LayeredBsdfOf<F>* bsdf, FrameOf<F>* frame) {
+GLOAM_HD F reflectivity(const SceneView& scene, const LidarOptics& optics, Vec3Of<F> back,
+                        float blur, MaskOf<F> found, SurfaceOf<F>* s, LayeredBsdfOf<F>* bsdf,
+                        FrameOf<F>* frame) {
+  F retro{};
+  if (!optics.surfaces.empty()) {
+    each_lane(found, [&](int i) {
+      const LidarSurface& own = optics.surfaces[lane(s->instance, i)];
+      Vec3f color = lane(s->base_color, i);
+      color.x = min(color.x * own.diffuse, 1.0f);
+      set_lane(&s->base_color, i, color);
+      set_lane(&retro, i, own.retro);
+    });
+  }
   s->roughness = blurred(s->roughness, blur);
   s->coat_roughness = blurred(s->coat_roughness, blur);
   *bsdf = surface_bsdf(scene, *s, back, frame, found);
   Vec3Of<F> w = frame->to_local(back);
   w.z = max(w.z, 1e-4f);
   F pdf;
-  return eval_bsdf(*bsdf, w, w, &pdf).x * kPi * s->opacity;
+  return (eval_bsdf(*bsdf, w, w, &pdf).x + retro * w.z) * kPi * s->opacity;
 }
 
 /// What pass_glass() reads of a BSDF.
@@ -103,21 +115,22 @@ GLOAM_HD void trace_echoes(const SceneView& scene, const Tracer& tracer, const L
   F share = F(1.0f);            // of the pulse that arrives there
   F index = F(1.0f);            // of refraction
   Vec3Of<F> absorption;
+  const auto dim = [&](F length, F from, Backscatter* back) {
+    each_lane(active, [&](int i) {
+      const float before = lane(share, i);
+      set_lane(&share, i,
+               before * cross_media(scene.media, optics, lane(ray, i), lane(length, i),
+                                    lane(from, i), before, back == nullptr ? nullptr : &back[i]));
+    });
+  };
+  if (has_media) dim(way, F(0.0f), nullptr);
   ray.o += ray.d * way;
   ray.tmax = F(optics.max_range - optics.min_range);
   const RayConeOf<F> cone{F(0.0f), F(0.5f * (optics.divergence.x + optics.divergence.y))};
   for (int n = 0; n < lidar::kMostSurfaces && any(active); ++n) {
     RayHitOf<F> hit;
     const MaskOf<F> found = tracer.closest(ray, active, n == 0, &hit);
-    if (has_media) {
-      const F end = select(found, hit.t, ray.tmax);
-      each_lane(active, [&](int i) {
-        const float before = lane(share, i);
-        set_lane(&share, i,
-                 before * cross_media(scene.media, optics, lane(ray, i), lane(end, i), lane(way, i),
-                                      before, soft == nullptr ? nullptr : &soft[i]));
-      });
-    }
+    if (has_media) dim(select(found, hit.t, ray.tmax), way, soft);
     active = found;
     if (!any(active)) return;
     if (n > 0) share *= paths::through_glass(absorption, hit.t).x;
@@ -126,7 +139,7 @@ GLOAM_HD void trace_echoes(const SceneView& scene, const Tracer& tracer, const L
     const F roughness = s.roughness;
     LayeredBsdfOf<F> bsdf;
     FrameOf<F> frame;
-    const F g = lidar::reflectivity(scene, -ray.d, blur, active, &s, &bsdf, &frame);
+    const F g = lidar::reflectivity(scene, optics, -ray.d, blur, active, &s, &bsdf, &frame);
     way += hit.t * index;
     const F signal = g * share * share * pulse / (way * way);
     each_lane(active & (signal > 0.0f), [&](int i) {

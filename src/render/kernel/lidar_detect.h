@@ -19,6 +19,12 @@ enum class LidarReturns : uint8_t {
 inline constexpr int kMostLidarReturns = 5;
 inline constexpr int kMostFootprintRays = 32;
 
+/// What a surface is at a LiDAR's wavelength.
+struct LidarSurface {
+  float diffuse = 1;  ///< factor on its red
+  float retro = 0;    ///< coefficient of retroreflection [1/sr]
+};
+
 /// Of a LiDAR. Signals: see kernel/lidar.h.
 struct LidarOptics {
   MediumBand band = MediumBand::k905nm;
@@ -33,6 +39,7 @@ struct LidarOptics {
   /// Of each of the scene's volumes: extinction over backscattering coefficient [sr]; 0 = by its
   /// phase function. Empty = all of them.
   DeviceSpan<const float> lidar_ratios;
+  DeviceSpan<const LidarSurface> surfaces;  ///< of each instance; empty = as their colours say
   // Noise: none without `noisy`.
   bool noisy = false;
   float range_sigma = 0;  ///< standard deviation of ranges at a signal without noise [m]

@@ -57,6 +57,12 @@ deskew = true
 truth = true
 intensity = "signal"
 outputs = ["ply", "npy"]
+[[lidar.surface]]
+material = "leaf*"
+diffuse = 0.5
+[[lidar.surface]]
+material = "tape"
+retro = 250
 [[lidar]]
 name = "wall"
 pattern = "raster"
@@ -79,6 +85,9 @@ points = 5000
   EXPECT_EQ(roof.clockwise, false);
   EXPECT_EQ((*roof.divergence)[1], 0.2);
   EXPECT_EQ(roof.outputs->size(), 2u);
+  ASSERT_EQ(roof.surfaces.size(), 2u);
+  EXPECT_EQ(roof.surfaces[0].diffuse, 0.5);
+  EXPECT_EQ(roof.surfaces[1].retro, 250);
   EXPECT_FALSE(scene->lidars[1].outputs.has_value());
   EXPECT_EQ(scene->lidars[2].points, 5000);
 }
@@ -99,6 +108,8 @@ TEST_F(LidarToml, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(error_of("pulse_length = 0"), HasSubstr("pulse_length"));
   EXPECT_THAT(error_of("divergence = [0.1]"), HasSubstr("2 numbers"));
   EXPECT_THAT(error_of("outputs = [\"las\"]"), HasSubstr("las"));
+  EXPECT_THAT(error_of("[[lidar.surface]]\nretro = 3"), HasSubstr("'material' is missing"));
+  EXPECT_THAT(error_of("[[lidar.surface]]\nmaterial = \"a\"\ndiffuse = 2"), HasSubstr("0 to 1"));
   EXPECT_THAT(error_of("beams = 3"), HasSubstr("unknown key 'beams'"));
   EXPECT_THAT(error_of("[[lidar]]\nname = \"l\""), HasSubstr("two lidars named 'l'"));
   EXPECT_THAT(load("[[lidar]]\nbody = \"b\"").error().to_string(), HasSubstr("'name' is missing"));

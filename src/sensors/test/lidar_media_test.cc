@@ -54,6 +54,18 @@ TEST(LidarInMedia, ASlabDimsByTwoWayBeerLambertInTheSensorsOwnBand) {
   }
 }
 
+TEST(LidarInMedia, WhatLiesBeforeTheLeastRangeDimsToo) {
+  SceneBuilder b;
+  add_wall(&b, {0.5f, 50, 50}, {10.5f, 0, 0}, b.add_diffuse({0.5f, 0.5f, 0.5f}));
+  b.description.media.push_back(medium(0.1f, 0.1f));
+  add_slab(&b, -5, 7, 1);
+  LidarOptions options = pencil();
+  options.min_range = 2;
+  const auto scan = scan_scene(b, options);
+  ASSERT_EQ(scan->size(), 1u);
+  EXPECT_NEAR(scan->intensity[0] / (50 * std::exp(-2 * 0.1 * 7)), 1, 1e-4);
+}
+
 TEST(LidarInMedia, AnUnevenVolumeDimsAsItsIntegralSays) {
   SceneBuilder b;
   add_wall(&b, {0.5f, 50, 50}, {10.5f, 0, 0}, b.add_diffuse({0.5f, 0.5f, 0.5f}));

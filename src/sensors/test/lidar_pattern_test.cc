@@ -128,6 +128,24 @@ TEST(LidarGrid, CoversItsFieldEvenly) {
   EXPECT_FALSE(make_lidar_model(options).ok()) << "so does a rosette";
 }
 
+TEST(LidarModelOf, RefusesWhatDoesNotGoTogether) {
+  const auto error_of = [](LidarOptions options) {
+    options.name = "l";
+    const Result<LidarModel> model = make_lidar_model(options);
+    return model.ok() ? std::string() : model.error().to_string();
+  };
+  EXPECT_EQ(error_of({}), "");
+  EXPECT_NE(error_of({.preset = "Mid-40", .pattern = "spinning"}).find("elevations"),
+            std::string::npos);
+  // The preset's other end of the range.
+  EXPECT_NE(error_of({.max_range = 0.1}).find("min_range"), std::string::npos);
+  LidarOptions dense{.pattern = "raster"};
+  dense.rows = 4096;
+  dense.columns = 65535;
+  dense.field_of_view = {{60, 60}};
+  EXPECT_NE(error_of(dense).find("the limit"), std::string::npos);
+}
+
 TEST(LidarRosette, StaysInItsFieldAndFillsItOverTime) {
   const LidarModel model = model_of("Mid-40");
   // Cells of half a degree that have been looked at.

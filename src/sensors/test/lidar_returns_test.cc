@@ -104,6 +104,33 @@ TEST(LidarIntensity, AMirrorSendsBackAlmostOnlyAcrossTheBeam) {
   EXPECT_LT(aside, 0.1);
 }
 
+TEST(LidarIntensity, ASurfaceMayBeAnotherAtTheSensorsWavelength) {
+  SceneBuilder b;
+  MaterialDescription leaf;
+  leaf.name = "plant/leaf";
+  leaf.base_color = {0.05f, 0.3f, 0.04f};
+  leaf.specular_weight = 0;
+  MaterialDescription tape = leaf;
+  tape.name = "tape";
+  add_wall(&b, {0.5f, 2, 2}, {5.5f, 2, 0}, b.add_material(leaf));
+  add_wall(&b, {0.5f, 2, 2}, {5.5f, -2, 0}, b.add_material(tape));
+  LidarOptions options = pencil(1, 2);
+  options.field_of_view = {{20, 1}};
+  options.intensity = "signal";
+  options.surfaces = {{.material = "plant/*", .diffuse = 0.5}, {.material = "tape", .retro = 70}};
+  const auto scan = scan_scene(b, options);
+  ASSERT_EQ(scan->size(), 2u);
+  const double cosine = std::cos(5 * M_PI / 180), r2 = 25 / cosine / cosine;
+  EXPECT_NEAR(scan->intensity[0] * r2, 0.5 * cosine, 1e-3);
+  EXPECT_NEAR(scan->intensity[1] * r2, (0.05 + 70 * M_PI) * cosine, 0.1);
+
+  options.surfaces[1].material = "tap";
+  const LidarDescription lidar{options, 0, {}};
+  const auto refused = LidarSensor::create(b.description, lidar, 1);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().to_string().find("tape"), std::string::npos);
+}
+
 TEST(LidarIntensity, WaterDarkensWalls) {
   double intensity[2];
   for (int wet = 0; wet < 2; ++wet) {
