@@ -34,7 +34,6 @@ class LidarSensor {
   LidarSensor(const RenderDescription& rendered, const LidarDescription& lidar, LidarModel model,
               uint64_t seed);
   Status find_surfaces();
-  Status find_surfaces();
   void plan(std::span<const PoseFrame> keys, int64_t index);
   void write_points(std::span<const Affine3f> X_WL, LidarScan* scan) const;
   void add_truth(LidarScan* scan) const;
@@ -44,7 +43,6 @@ class LidarSensor {
   const LidarModel model_;
   const uint64_t seed_;
   std::vector<float> lidar_ratios_;     ///< by volume [sr]
-  std::vector<LidarSurface> surfaces_;  ///< by instance; empty = as their colours say
   std::vector<LidarSurface> surfaces_;  ///< by instance; empty = as their colours say
   std::vector<LidarFiring> firings_;
   std::vector<float> cuts_;           ///< of the keys, 0 … 1

@@ -147,10 +147,11 @@ TEST(LidarRecording, PointsAreInFilesThatSayWhatTheyHold) {
     EXPECT_TRUE(fs::exists(request.out / file)) << file;
   }
   EXPECT_FALSE(fs::exists(request.out / "rider/ply"));
-  const std::string summary = *read_file(request.out / "summary.json");
+  const std::string summary = *read_text_file(request.out / "summary.json");
   EXPECT_NE(summary.find("\"scans\": 5"), std::string::npos);
 
-  const std::string pcd = *read_file(request.out / "rider/pcd/000001.pcd");
+  const std::vector<uint8_t> bytes = *read_file(request.out / "rider/pcd/000001.pcd");
+  const std::string pcd(bytes.begin(), bytes.end());
   EXPECT_NE(pcd.find("FIELDS x y z intensity ring time range column return_number part instance "
                      "semantic\nSIZE 4 4 4 4 2 4 4 2 1 4 2 2\nTYPE F F F F U F F U U U U U\n"),
             std::string::npos);
