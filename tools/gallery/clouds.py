@@ -9,7 +9,7 @@ import struct
 import subprocess
 
 LETTERS = {"<f4": "f", "<u4": "I", "<u2": "H", "|u1": "B"}
-STOPS = [(38, 12, 92), (60, 80, 190), (36, 160, 170), (110, 205, 90), (250, 215, 60), (255, 110, 50)]   # dark to light
+STOPS = [(70, 60, 160), (70, 110, 220), (36, 160, 170), (110, 205, 90), (250, 215, 60), (255, 110, 50)]   # dark to light
 INK = (14, 15, 20)
 
 
@@ -48,8 +48,9 @@ class Panel:
         self.rgb = bytearray(bytes(INK) * (width * height))
 
     def dot(self, x, y, color, size):
-        for v in range(round(y - size / 2), round(y - size / 2) + size):
-            for u in range(round(x - size / 2), round(x - size / 2) + size):
+        left, top = math.floor(x) - (size - 1) // 2, math.floor(y) - (size - 1) // 2
+        for v in range(top, top + size):
+            for u in range(left, left + size):
                 if 0 <= u < self.width and 0 <= v < self.height:
                     at = 3 * (v * self.width + u)
                     self.rgb[at:at + 3] = bytes(color)

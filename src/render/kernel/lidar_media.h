@@ -14,8 +14,8 @@ namespace gloam {
 ///   pi Int beta T² / r² dr
 /// with the volume backscattering coefficient beta [1/(m sr)]. With noise it is speckle: drawn from
 /// the exponential distribution with that mean (Goodman 1985, "Statistical optics", 2.9), which
-/// neglects that wide receivers average some of it away. A run of bins above the threshold is one
-/// echo, at its peak.
+/// neglects that wide receivers average some of it away, and comes from anywhere in the bin. A run
+/// of bins above the threshold is one echo, at its peak.
 class Backscatter {
  public:
   GLOAM_HD Backscatter() = default;
@@ -34,7 +34,9 @@ class Backscatter {
       close();
       if (bin != bin_ + 1) end_run();
       bin_ = bin;
+      from_ = from;
     }
+    to_ = to;
     sum_ += signal;
     moment_ += signal * middle;
   }
@@ -47,13 +49,13 @@ class Backscatter {
  private:
   GLOAM_HD void close() {
     if (!(sum_ > 0)) return end_run();
-    const float range = moment_ / sum_;
-    float signal = sum_;
+    float range = moment_ / sum_, signal = sum_;
     sum_ = moment_ = 0;
     if (optics_->noisy) {
       const Philox4 bits =
           lidar::draw(key_, stream_id("lidar.backscatter"), static_cast<uint32_t>(bin_));
       signal *= -logf((static_cast<float>(bits.v[0] >> 8) + 0.5f) * 0x1p-24f);
+      range = lerp(from_, to_, uniform_float(bits.v[1]));
     }
     if (!(signal >= optics_->threshold)) return end_run();
     if (signal > peak_.signal) peak_ = {range, signal, 0};
@@ -68,6 +70,7 @@ class Backscatter {
   LidarEchoes* echoes_ = nullptr;
   int bin_ = -1;
   float sum_ = 0, moment_ = 0;
+  float from_ = 0, to_ = 0;  ///< what of the bin holds a medium [m]
   LidarEcho peak_{};
 };
 

@@ -68,7 +68,10 @@ TEST(LiveLidar, ScansFollowEachOtherWithoutAGapAndAreOfTheirOwnTimes) {
   for (size_t i = 0; i < all.size(); ++i) {
     const LidarScan& scan = *all[i];
     EXPECT_EQ(scan.index, static_cast<int64_t>(i));
-    EXPECT_DOUBLE_EQ(scan.start, 0.1 * static_cast<double>(i));
+    EXPECT_NEAR(scan.start, 0.1 * static_cast<double>(i), 1e-9);
+    if (i > 0) {
+      EXPECT_EQ(scan.start, all[i - 1]->end);
+    }
     EXPECT_NEAR(scan.end, scan.start + 0.1, 1e-12);
     EXPECT_NEAR(scan.X_WL_start.p.x, scan.start, 1e-6);
     EXPECT_NEAR(scan.X_WL_end.p.x, scan.end, 1e-6);
@@ -159,7 +162,7 @@ TEST(LidarRecording, PointsAreInFilesThatSayWhatTheyHold) {
   const size_t at = pcd.find("POINTS ") + 7;
   const auto points = std::stoul(pcd.substr(at));
   ASSERT_GT(points, 100u);
-  ASSERT_EQ(pcd.size() - data, points * 36);
+  ASSERT_EQ(pcd.size() - data, points * 37);
   float p[3];
   std::memcpy(p, pcd.data() + data, sizeof p);
   EXPECT_NEAR(p[1], 3, 1e-4);  // on the wall
