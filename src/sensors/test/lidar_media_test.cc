@@ -11,16 +11,6 @@ namespace {
 constexpr size_t k905 = static_cast<size_t>(MediumBand::k905nm);
 constexpr size_t k1550 = static_cast<size_t>(MediumBand::k1550nm);
 
-LidarOptions pencil(int rows = 1, int columns = 1) {
-  LidarOptions options = ideal_lidar();
-  options.pattern = "raster";
-  options.rows = rows;
-  options.columns = columns;
-  options.field_of_view = {{0.01, 0.01}};
-  options.returns = "all";
-  return options;
-}
-
 MediumDescription medium(float k_905, float k_1550, float albedo = 0) {
   MediumDescription m;
   m.name = "medium";

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "base/check.h"
 #include "render/test/scene_builder.h"
 #include "sensors/lidar_sensor.h"
@@ -18,6 +20,32 @@ inline LidarOptions ideal_lidar(const std::string& preset = "OS1-64") {
   options.min_range = 0.01;
   options.truth = true;
   return options;
+}
+
+/// `rows` x `columns` beams straight ahead, all but parallel.
+inline LidarOptions pencil(int rows = 1, int columns = 1) {
+  LidarOptions options = ideal_lidar();
+  options.pattern = "raster";
+  options.rows = rows;
+  options.columns = columns;
+  options.field_of_view = {{0.01, 0.01}};
+  options.returns = "all";
+  return options;
+}
+
+/// Mean and standard deviation.
+struct Moments {
+  double mean = 0, deviation = 0;
+  size_t n = 0;
+};
+inline Moments moments(const std::vector<float>& values) {
+  Moments m;
+  m.n = values.size();
+  for (const float v : values) m.mean += v;
+  m.mean /= static_cast<double>(m.n);
+  for (const float v : values) m.deviation += (v - m.mean) * (v - m.mean);
+  m.deviation = std::sqrt(m.deviation / static_cast<double>(m.n - 1));
+  return m;
 }
 
 /// A wall of half the size `half` about p.
