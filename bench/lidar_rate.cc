@@ -140,11 +140,11 @@ Status run(const Arguments& arguments) {
           ? "{{\"name\": \"lidar_rate\", \"ratio\": {:.3f}, \"ours_ms\": {:.2f}, \"multiray_ms\": "
             "{:.2f}, \"two_threads_ms\": {:.2f}, \"beams\": {}, \"same\": {:.4f}, \"on_robot\": "
             "{:.4f}}}\n"
-          : "{:.3f} times mj_multiRay: {:.2f} ms against {:.2f} ms; two threads {:.2f} ms; {} beams, "
+          : "{:.3f} times mj_multiRay: {:.2f} ms against {:.2f} ms; two threads {:.2f} ms; {} "
+            "beams, "
             "of which a share of {:.4f} agrees and {:.4f} hits a body\n";
   fmt::print(fmt::runtime(text), ratio, median(ours_ms), median(theirs_ms), median(two_ms),
-             firings.size(), static_cast<double>(same) * share,
-             static_cast<double>(robot) * share);
+             firings.size(), static_cast<double>(same) * share, static_cast<double>(robot) * share);
   return {};
 }
 
