@@ -37,8 +37,7 @@ void RunOptions::add_rendering(CLI::App& command) {
   command
       .add_option("--output", outputs,
                   "What to record: video png depth_png depth_exr segmentation sensor_depth_png "
-                  "raw_png thermal_png "
-                  "events metrics contact_sheet sensors")
+                  "raw_png thermal_png events lidar metrics contact_sheet sensors")
       ->delimiter(',');
   add_access_options(command, access, packages);
 }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gloam/result.h"
+#include "gloam/scene_lidar.h"
 #include "gloam/scene_light.h"
 #include "gloam/scene_sensor.h"
 #include "gloam/types.h"
@@ -197,7 +198,8 @@ struct RenderOptions {
 /// [record]
 struct RecordOptions {
   std::vector<std::string> outputs = {
-      "video", "png"};  ///< those of CameraOptions::outputs, metrics contact_sheet sensors
+      "video", "png",
+      "lidar"};  ///< those of CameraOptions::outputs, lidar metrics contact_sheet sensors
   SourceLoc loc = {};
 };
 
@@ -208,6 +210,7 @@ struct Scene {
   EnvironmentOptions environment = {};
   std::vector<RobotOptions> robots = {};  ///< in source order
   std::vector<CameraOptions> cameras = {};
+  std::vector<LidarOptions> lidars = {};
   std::vector<MaterialOptions> materials = {};
   std::vector<LightOptions> lights = {};
   std::optional<SkyOptions> sky = {};

@@ -11,6 +11,7 @@
 
 #include "gloam/camera.h"
 #include "gloam/command.h"
+#include "gloam/lidar.h"
 #include "gloam/result.h"
 #include "gloam/scene.h"
 #include "gloam/sensor.h"
@@ -120,6 +121,10 @@ class Simulation {
     return Error{ErrorKind::kUnsupported, "this simulation has no streams of sensors"};
   }
   virtual std::vector<std::string> camera_names() const = 0;
+  /// Opens the stream of a [[lidar]]; `on_scan` comes on the stream's own thread, scans in order.
+  virtual Result<std::unique_ptr<LidarStream>> open_lidar(const LidarRequest&, ScanCallback) {
+    return Error{.kind = ErrorKind::kUnsupported, .message = "this simulation has no lidars"};
+  }
   virtual Result<std::vector<LabelRow>> labels() = 0;
   /// What the ray through pixel (u, v) [px] of a frame hits in the latest Snapshot. Error: nothing
   /// there.

@@ -26,8 +26,9 @@ constexpr size_t kQueuedRows = 4096;   // metric rows that may wait for the disk
 constexpr size_t kPlottedRows = 2000;  // kept in memory for the contact sheet
 
 const std::vector<std::string> kOutputs = {
-    "video",   "png",         "depth_png", "depth_exr", "segmentation",  "sensor_depth_png",
-    "raw_png", "thermal_png", "events",    "metrics",   "contact_sheet", "sensors"};
+    "video",   "png",         "depth_png", "depth_exr", "segmentation", "sensor_depth_png",
+    "raw_png", "thermal_png", "events",    "lidar",     "metrics",      "contact_sheet",
+    "sensors"};
 
 /// The failure that ended a recording: what was written before it is complete, so its kind is
 /// kPartial. Others that follow from it are of no interest.
@@ -63,6 +64,14 @@ class FirstFailure {
   std::optional<Error> error_;
 };
 
+/// A LiDAR's files and the thread that writes them.
+struct LidarLane {
+  LidarLane(LidarRecorder lidar_recorder, size_t capacity, bool wait)
+      : recorder(std::move(lidar_recorder)), worker(capacity, wait) {}
+  LidarRecorder recorder;
+  Worker worker;  // after what it uses: it is destroyed, and so ends, first
+};
+
 /// A camera's files and the thread that writes them.
 struct CameraLane {
   CameraLane(CameraRecorder camera_recorder, size_t capacity, bool wait)
@@ -92,6 +101,7 @@ class FolderRecorder : public Recorder {
         entries_.push_back(file_names_[i] + ".mp4");
     }
     if (outputs_.contains("sensors") && !info_.sensors.empty()) entries_.push_back(kSensorsName);
+    entries_.insert(entries_.end(), lidar_file_names_.begin(), lidar_file_names_.end());
     entries_.push_back(kSummaryName);
     GLOAM_TRY_STATUS(write_summary(nullptr));
     GLOAM_TRY_STATUS(write_text("cameras.json", cameras_json(info_.cameras, file_names_)));
@@ -101,6 +111,13 @@ class FolderRecorder : public Recorder {
                               outputs_of(info_.cameras[i]), options_.store);
       GLOAM_TRY_STATUS(recorder.start());
       lanes_[info_.cameras[i].name] = std::make_unique<CameraLane>(
+          std::move(recorder), static_cast<size_t>(options_.queue_frames), options_.wait);
+    }
+    for (size_t i = 0; i < info_.lidars.size(); ++i) {
+      LidarRecorder recorder(info_.lidars[i], options_.folder / lidar_file_names_[i],
+                             options_.store);
+      GLOAM_TRY_STATUS(recorder.start());
+      lidar_lanes_[info_.lidars[i].name] = std::make_unique<LidarLane>(
           std::move(recorder), static_cast<size_t>(options_.queue_frames), options_.wait);
     }
     if (outputs_.contains("metrics")) {
@@ -121,6 +138,16 @@ class FolderRecorder : public Recorder {
     CameraRecorder* recorder = &lane->second->recorder;
     lane->second->worker.post([this, recorder, frame = std::move(frame)] {
       if (!failure_.failed()) failure_.attempt([&] { return recorder->add(*frame); });
+    });
+  }
+
+  void add_scan(std::shared_ptr<const LidarScan> scan) override {
+    const auto lane = lidar_lanes_.find(scan->lidar);
+    GLOAM_CHECK(lane != lidar_lanes_.end(), "a scan of a lidar that is not recorded");
+    if (failure_.failed()) return;
+    LidarRecorder* recorder = &lane->second->recorder;
+    lane->second->worker.post([this, recorder, scan = std::move(scan)] {
+      if (!failure_.failed()) failure_.attempt([&] { return recorder->add(*scan); });
     });
   }
 
@@ -154,9 +181,11 @@ class FolderRecorder : public Recorder {
 
   Status finish(const RunOutcome& outcome) override {
     for (auto& [name, lane] : lanes_) lane->worker.close();
+    for (auto& [name, lane] : lidar_lanes_) lane->worker.close();
     metrics_worker_->close();
     // After a failure too: what can be ended properly should be.
     for (auto& [name, lane] : lanes_) failure_.report(lane->recorder.finish());
+    for (auto& [name, lane] : lidar_lanes_) failure_.report(lane->recorder.finish());
     if (metrics_) failure_.report(metrics_->finish());
     for (auto& [name, csv] : sensors_) failure_.report(csv.finish());
     if (outputs_.contains("contact_sheet") && !failure_.failed()) {
@@ -239,6 +268,18 @@ class FolderRecorder : public Recorder {
         file_name = fmt::format("{}_{}", safe_file_name(camera.name), i);
       file_names_.push_back(file_name);
     }
+    names.clear();
+    for (const RecordedLidar& lidar : info_.lidars) {
+      if (!names.insert(lidar.name).second)
+        return Error{ErrorKind::kInput,
+                     fmt::format("two lidars are named '{}'", lidar.name),
+                     {},
+                     "rename one of them"};
+      std::string file_name = safe_file_name(lidar.name);
+      for (int i = 2; !taken.insert(file_name).second; ++i)
+        file_name = fmt::format("{}_{}", safe_file_name(lidar.name), i);
+      lidar_file_names_.push_back(file_name);
+    }
     return {};
   }
 
@@ -256,9 +297,17 @@ class FolderRecorder : public Recorder {
                         known ? lane->second->recorder.frames() : 0,
                         known ? lane->second->worker.dropped() : 0});
     }
+    std::vector<CameraCounts> scans;
+    for (size_t i = 0; i < info_.lidars.size(); ++i) {
+      const auto lane = lidar_lanes_.find(info_.lidars[i].name);
+      const bool known = lane != lidar_lanes_.end();
+      scans.push_back({info_.lidars[i].name, lidar_file_names_[i],
+                       known ? lane->second->recorder.scans() : 0,
+                       known ? lane->second->worker.dropped() : 0});
+    }
     const Status status = failure_.status();
     return write_text(kSummaryName,
-                      summary_json(info_, outcome, counts, metric_rows_,
+                      summary_json(info_, outcome, counts, scans, metric_rows_,
                                    metrics_worker_ ? metrics_worker_->dropped() : 0, entries_,
                                    status.ok() ? "" : status.error().to_string()));
   }
@@ -267,7 +316,8 @@ class FolderRecorder : public Recorder {
   const RunInfo info_;
   const std::set<std::string> outputs_;
   std::vector<std::string> file_names_;  // of the cameras
-  std::vector<std::string> entries_;     // of the folder, as listed in the summary
+  std::vector<std::string> lidar_file_names_;
+  std::vector<std::string> entries_;  // of the folder, as listed in the summary
   FirstFailure failure_;
   std::optional<CsvWriter> metrics_;
   std::map<std::string, CsvWriter> sensors_;  // by name
@@ -275,6 +325,7 @@ class FolderRecorder : public Recorder {
   Timeline<std::vector<double>> rows_;
   // The threads come last, so they end before anything that they use.
   std::map<std::string, std::unique_ptr<CameraLane>> lanes_;
+  std::map<std::string, std::unique_ptr<LidarLane>> lidar_lanes_;
   std::unique_ptr<Worker> metrics_worker_;
 };
 

@@ -18,6 +18,8 @@
 //   CAMERA/thermal/000000.png    16-bit hundredths of a kelvin
 //   CAMERA/events.csv            time_s, x, y, brighter
 //   CAMERA/instance/000000.png, CAMERA/semantic/000000.png   16-bit ids of labels.json
+//   LIDAR/scans.csv     times, points and poses (X ahead, Y to the left, Z up) of each scan
+//   LIDAR/pcd/000000.pcd, LIDAR/ply/…, LIDAR/npy/…   points (record/point_cloud_file.h)
 //
 // Pictures are written whole or not at all, tables and videos only grow: after any failure
 // everything written before it is readable.
@@ -35,6 +37,7 @@
 #include "gloam/sensor.h"
 #include "gloam/types.h"
 #include "record/file_store.h"
+#include "record/lidar_recorder.h"
 
 namespace gloam {
 
@@ -84,6 +87,7 @@ struct RunInfo {
   double duration = 0;              ///< planned [s]
   std::vector<NamedText> settings;  ///< renderer tier, samples, threads …
   std::vector<RecordedCamera> cameras;
+  std::vector<RecordedLidar> lidars;
   std::vector<LabelRow> labels;
   std::vector<std::string> metric_columns;  ///< the first is the time [s]
   std::vector<MetricPlot> plots;
@@ -102,7 +106,7 @@ struct RunOutcome {
 
 class Recorder {
  public:
-  /// Errors: the folder is in use or cannot be made, two cameras of one name, an unknown output,
+  /// Errors: the folder is in use or cannot be made, two sensors of one name, an unknown output,
   /// a picture too large for a video.
   static Result<std::unique_ptr<Recorder>> start(const RecorderOptions& options,
                                                  const RunInfo& info);
@@ -110,6 +114,8 @@ class Recorder {
 
   /// Frames of one camera come in order; frames of unknown cameras are a bug. Any thread.
   virtual void add_frame(std::shared_ptr<const CameraFrame> frame) = 0;
+  /// The same of scans.
+  virtual void add_scan(std::shared_ptr<const LidarScan> scan) = 0;
   /// One value per column. One thread.
   virtual void add_metrics(std::span<const double> row) = 0;
 

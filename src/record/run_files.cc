@@ -21,7 +21,8 @@ Json object(const Pairs& pairs) {
 }  // namespace
 
 std::string summary_json(const RunInfo& info, const RunOutcome* outcome,
-                         const std::vector<CameraCounts>& cameras, int64_t metric_rows,
+                         const std::vector<CameraCounts>& cameras,
+                         const std::vector<CameraCounts>& lidars, int64_t metric_rows,
                          uint64_t dropped_metric_rows, const std::vector<std::string>& entries,
                          const std::string& error) {
   Json out;
@@ -50,6 +51,16 @@ std::string summary_json(const RunInfo& info, const RunOutcome* outcome,
                     {"frames", camera.frames},
                     {"dropped_frames", camera.dropped}});
   out["cameras"] = list;
+  if (!lidars.empty()) {
+    list = Json::array();
+    for (size_t i = 0; i < lidars.size(); ++i)
+      list.push_back({{"name", lidars[i].name},
+                      {"folder", lidars[i].file_name},
+                      {"rate_hz", info.lidars[i].rate.value()},
+                      {"scans", lidars[i].frames},
+                      {"dropped_scans", lidars[i].dropped}});
+    out["lidars"] = list;
+  }
   out["metrics"] = {{"rows", metric_rows}, {"dropped_rows", dropped_metric_rows}};
   out["entries"] = entries;
   return dump(out);

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 
 #include "gloam/result.h"
@@ -12,6 +13,9 @@
 #include "world/render_description.h"
 
 namespace gloam {
+
+struct LidarView;    // render/lidar_view.h
+struct LidarReturn;  // render/kernel/lidar_detect.h
 
 /// A camera at the two ends of the shutter. C looks along -Z with +Y up.
 struct CameraView {
@@ -78,6 +82,8 @@ class Renderer {
   /// Fills `film` (resized to the view's resolution).
   virtual RenderStats render(const CameraView& view, const RenderSettings& settings,
                              Film* film) = 0;
+  /// Sends out the beams of a LiDAR; `returns`: view.optics.most_returns of each, in their order.
+  virtual void scan(const LidarView& view, std::span<LidarReturn> returns) = 0;
   /// For RenderSettings::history; of this renderer alone.
   virtual std::unique_ptr<ViewHistory> make_history() const = 0;
 };

@@ -179,6 +179,18 @@ Result<std::unique_ptr<CameraStream>> LiveSimulation::open_camera(const CameraRe
   return std::unique_ptr<CameraStream>(std::move(camera));
 }
 
+Result<std::unique_ptr<LiveLidar>> LiveSimulation::open_live_lidar(const LidarRequest& request,
+                                                                   ScanCallback on_scan) {
+  GLOAM_TRY(auto shared, renderer());
+  return LiveLidar::open(*simulator_, std::move(shared), request, seed_, std::move(on_scan));
+}
+
+Result<std::unique_ptr<LidarStream>> LiveSimulation::open_lidar(const LidarRequest& request,
+                                                                ScanCallback on_scan) {
+  GLOAM_TRY(auto lidar, open_live_lidar(request, std::move(on_scan)));
+  return std::unique_ptr<LidarStream>(std::move(lidar));
+}
+
 std::vector<std::string> LiveSimulation::camera_names() const {
   std::vector<std::string> names;
   for (const NamedElement& camera : world_.info().cameras) names.push_back(camera.name);

@@ -9,6 +9,7 @@
 #include "gloam/simulation.h"
 #include "runtime/exposure_meter.h"
 #include "runtime/live_camera.h"
+#include "runtime/live_lidar.h"
 #include "runtime/live_sensors.h"
 
 namespace gloam {
@@ -34,6 +35,8 @@ class LiveSimulation final : public Simulation {
                                                     FrameCallback on_frame) override;
   Result<std::unique_ptr<SensorStream>> open_sensor(const SensorRequest& request,
                                                     SensorCallback on_message) override;
+  Result<std::unique_ptr<LidarStream>> open_lidar(const LidarRequest& request,
+                                                  ScanCallback on_scan) override;
   std::vector<std::string> camera_names() const override;
   Result<std::vector<LabelRow>> labels() override;
   Result<Pose> body_pose(Body body) override;
@@ -49,6 +52,8 @@ class LiveSimulation final : public Simulation {
   Result<std::unique_ptr<LiveSensors>> open_all_sensors(bool required, SensorCallback on_message);
   /// Of an automatic exposure; null where a camera has none.
   std::shared_ptr<ExposureMeter> meter_of(const std::string& camera) const;
+  Result<std::unique_ptr<LiveLidar>> open_live_lidar(const LidarRequest& request,
+                                                     ScanCallback on_scan);
 
  private:
   Status open_meters(bool required);

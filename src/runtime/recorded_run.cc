@@ -98,6 +98,22 @@ Result<std::vector<CameraRequest>> camera_requests(const World& world, const Run
   return requests;
 }
 
+// Those LiDARs of the scene of which files are wanted.
+Result<std::vector<RecordedLidar>> recorded_lidars(const World& world, Rational timestep) {
+  const Scene& scene = world.compiled()->scene;
+  const bool all = wants(scene.record.outputs, "lidar");
+  std::vector<RecordedLidar> lidars;
+  for (const LidarOptions& options : scene.lidars) {
+    const auto formats = options.outputs.value_or(all ? std::vector<std::string>{"pcd"}
+                                                      : std::vector<std::string>{});
+    if (formats.empty()) continue;
+    GLOAM_TRY(const LidarModel model, make_lidar_model(options));
+    GLOAM_TRY_STATUS(StepSchedule::make(model.rate, {0, 1}, timestep));
+    lidars.push_back({options.name, model.rate, formats});
+  }
+  return lidars;
+}
+
 std::string scene_hash(const Scene& scene) {
   const auto path = scene.bare_model.empty() ? scene.file : scene.bare_model;
   if (path.empty()) return {};
@@ -163,12 +179,14 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   std::unique_ptr<Recorder> recorder;
   std::vector<std::unique_ptr<LiveCamera>> cameras;
   std::unique_ptr<LiveSensors> sensors;
+  std::vector<std::unique_ptr<LiveLidar>> lidars;
   std::atomic<int64_t> frames{0};
   double prepared = 0;
   if (!request.out.empty()) {
     GLOAM_TRY(auto shared, simulation->renderer());
     GLOAM_TRY(const auto requests, camera_requests(world, request, shared->description, rate));
     RunInfo info = run_info(world, request, 1 / rate.value(), duration);
+    GLOAM_TRY(info.lidars, recorded_lidars(world, simulator.timestep()));
     uint64_t memory = 0;
     for (const CameraRequest& camera : requests) {
       GLOAM_TRY(const auto sensor,
@@ -211,6 +229,13 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
                              request.simulation.pace == Pace::kFast,
                              [&](const SensorMessage& message) { recorder->add_sensor(message); }));
     }
+    for (const RecordedLidar& lidar : info.lidars) {
+      GLOAM_TRY(auto live,
+                simulation->open_live_lidar(
+                    {lidar.name, request.simulation.pace == Pace::kFast},
+                    [&](std::shared_ptr<const LidarScan> scan) { recorder->add_scan(scan); }));
+      lidars.push_back(std::move(live));
+    }
     prepared = seconds_since(start);
   }
   // Metrics at 100 Hz, or every step of slower models.
@@ -221,6 +246,7 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
 
   const auto recording = [&]() -> Status {
     for (const auto& camera : cameras) GLOAM_TRY_STATUS(camera->status());
+    for (const auto& lidar : lidars) GLOAM_TRY_STATUS(lidar->status());
     return recorder != nullptr ? recorder->status() : Status();
   };
   report.status = run_to_step(simulator, steps, cameras.empty() ? "simulating" : "rendering",
@@ -235,6 +261,11 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   cameras.clear();
   if (sensors != nullptr) sensors->drain();
   sensors.reset();
+  for (auto& lidar : lidars) {
+    lidar->drain();
+    if (report.status.ok()) report.status = lidar->status();
+  }
+  lidars.clear();
   metrics_thread.join();
 
   report.out = request.out;

@@ -11,6 +11,7 @@
 #include "gloam/scene.h"
 #include "scene/field_rule.h"
 #include "scene/imager_fields.h"
+#include "scene/lidar_fields.h"
 #include "scene/light_fields.h"
 #include "scene/pattern_names.h"
 
@@ -167,8 +168,8 @@ template <class Visitor>
 void visit_fields(Visitor& v, RecordOptions& o) {
   v("outputs", o.outputs,
     FieldRule{.choices = {"video", "png", "depth_png", "depth_exr", "segmentation",
-                          "sensor_depth_png", "raw_png", "thermal_png", "events", "metrics",
-                          "contact_sheet", "sensors"}});
+                          "sensor_depth_png", "raw_png", "thermal_png", "events", "lidar",
+                          "metrics", "contact_sheet", "sensors"}});
 }
 
 /// [scene]
@@ -188,6 +189,7 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("environment", scene.environment, FieldRule{});
   v("robot", scene.robots, FieldRule{});
   v("camera", scene.cameras, FieldRule{});
+  v("lidar", scene.lidars, FieldRule{});
   v("material", scene.materials, FieldRule{});
   v("light", scene.lights, FieldRule{});
   v("sky", scene.sky, FieldRule{});

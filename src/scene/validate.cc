@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "scene/option_fields.h"
 #include "scene/validate_imager.h"
+#include "scene/validate_lidar.h"
 #include "scene/validate_light.h"
 
 namespace gloam {
@@ -163,6 +164,8 @@ Status validate_scene(const Scene& scene) {
   GLOAM_TRY_STATUS(refuse_duplicates(scene.stereo, "stereo rig"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.rgbd, "rgbd rig"));
   GLOAM_TRY_STATUS(validate_rigs(scene));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.lidars, "lidar"));
+  for (const LidarOptions& lidar : scene.lidars) GLOAM_TRY_STATUS(validate_lidar(lidar));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.lights, "light"));
   for (const LightOptions& light : scene.lights) GLOAM_TRY_STATUS(validate_light(light));
   if (scene.sky) GLOAM_TRY_STATUS(validate_sky(*scene.sky));

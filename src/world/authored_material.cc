@@ -110,6 +110,17 @@ std::string why_not(const MaterialOptions& in, const MaterialDescription& materi
 
 }  // namespace
 
+bool fits(std::string_view pattern, std::string_view name) {
+  const size_t star = pattern.find('*');
+  if (star == std::string_view::npos) return pattern == name;
+  if (name.substr(0, star) != pattern.substr(0, star)) return false;
+  const std::string_view rest = pattern.substr(star + 1);
+  for (size_t at = star; at <= name.size(); ++at) {
+    if (fits(rest, name.substr(at))) return true;
+  }
+  return false;
+}
+
 Status author_materials(const std::vector<MaterialOptions>& options, RenderDescription* out) {
   // An exact name beats a pattern, a later table an earlier one.
   std::vector<const MaterialOptions*> order;

@@ -2,6 +2,7 @@
 
 #include "scene/mujoco_guard.h"
 #include "scene/validate.h"
+#include "world/authored_lidar.h"
 #include "world/level.h"
 #include "world/model_cache.h"
 #include "world/rigs.h"
@@ -52,6 +53,7 @@ Result<World> World::compile(const Scene& written) {
   if (std::shared_ptr<CompiledWorld> cached = load_cached_world(scene)) {
     if (!scene.bare_model.empty()) cached->robots = {bare_robot(scene, cached->model.get())};
     GLOAM_TRY_STATUS(check_sensors(*cached));
+    GLOAM_TRY_STATUS(describe_lidars(*cached));
     return World(std::move(cached));
   }
   const auto start = std::chrono::steady_clock::now();
@@ -66,6 +68,7 @@ Result<World> World::compile(const Scene& written) {
   world->initial_key = level.initial_key;
   world->unsupported = std::move(level.unsupported);
   GLOAM_TRY_STATUS(check_sensors(*world));
+  GLOAM_TRY_STATUS(describe_lidars(*world));
   add_urdf_visuals(scene, &files, world.get());
   if (std::chrono::steady_clock::now() - start > kWorthCaching)
     store_cached_world(world, files.dependencies());

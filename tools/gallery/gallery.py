@@ -19,6 +19,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
+import clouds  # noqa: E402
 import page  # noqa: E402
 import show  # noqa: E402
 from chapters import read_chapters  # noqa: E402
@@ -69,16 +70,31 @@ def shoot(picture, scene, scratch, size, spp, threads):
 def render(picture, folder, quick):
     """Writes folder/NAME.jpg; returns what is wrong with it, or nothing."""
     scene = write_scene(picture, folder)
+    if picture.panels:
+        return render_scans(picture, scene, folder)
     width, height, spp = (80, 60, 4) if quick else (*picture.size, picture.spp)
     with tempfile.TemporaryDirectory(prefix="gloam_gallery_") as scratch:
         path, wrong = shoot(picture, scene, Path(scratch), (width, height), spp, ["--threads", "1"] if quick else [])
         if path is None:
             return wrong
         wrong, data = wrong or fault_of_display(raw(path, "gray")), jpeg(path)
+    keep(picture, folder, data)
+    return wrong
+
+
+def render_scans(picture, scene, folder):
+    with tempfile.TemporaryDirectory(prefix="gloam_gallery_") as scratch:
+        done = subprocess.run([PROGRAM, "run", scene, "--root", ROOT, "--duration", str(picture.time), "--overwrite", "--resolution", "16x16",
+                               "--spp", "1", "--out", scratch], stdin=subprocess.DEVNULL, capture_output=True, text=True)
+        if done.returncode != 0:
+            return done.stderr.strip()
+        keep(picture, folder, clouds.jpeg(Path(scratch), picture.panels, picture.size))
+
+
+def keep(picture, folder, data):
     new = folder / f"{picture.file_name}.jpg.new"     # complete or absent, also after Ctrl-C
     new.write_bytes(data)
     new.replace(folder / f"{picture.file_name}.jpg")
-    return wrong
 
 
 def render_all(pictures, folder, quick):

@@ -14,6 +14,7 @@
 #include "render/cpu/edge_samples.h"
 #include "render/cpu/embree_scene.h"
 #include "render/cpu/fast_tier.h"
+#include "render/cpu/lidar_scan.h"
 #include "render/cpu/light_guide.h"
 #include "render/cpu/tile.h"
 #include "render/cpu/watch.h"
@@ -138,6 +139,11 @@ class CpuRenderer final : public Renderer {
     total.trace_seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return total;
+  }
+
+  void scan(const LidarView& view, std::span<LidarReturn> returns) override {
+    GLOAM_CHECK(updated_, "update must come before scan");
+    scan_beams(scene_->view_from(view.motion.X_WL), embree_->tracer(*scene_), view, returns);
   }
 
   std::unique_ptr<ViewHistory> make_history() const override {
