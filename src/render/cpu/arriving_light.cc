@@ -239,4 +239,26 @@ std::vector<float> find_arriving_light(const SceneView& scene, const EmbreeTrace
   return ArrivingLight(scene, statics, grid, rows).find();
 }
 
+float unevenness_of(const std::vector<float>& arriving, const std::vector<GuideRow>& rows) {
+  double sum = 0, count = 0;
+  for (size_t row = 0; row < rows.size(); ++row) {
+    const int facing = rows[row].facing;
+    if (facing < 0) continue;
+    count += 1;
+    const float* sums = &arriving[row * LightGuide::kSums];
+    double squares = 0;
+    for (uint32_t cell = 0; cell < kCells; ++cell) {
+      const float share = sums[cell + 1] - sums[cell];
+      const Vec3f d = direction_in(cell, {0.5f, 0.5f});
+      const float cosine = (facing % 2 == 0 ? d : -d)[facing / 2];
+      if (share > 0 && cosine <= 0) break;  // all is dark
+      if (!(cosine > 0)) continue;
+      const float even = cosine * (4 * kInvPi / kCells) / directions::area_per_solid_angle(d);
+      squares += static_cast<double>(sqr(share) / even);
+    }
+    sum += std::max(squares - 1, 0.0);
+  }
+  return count > 0 ? static_cast<float>(sum / count) : 0.0f;
+}
+
 }  // namespace gloam

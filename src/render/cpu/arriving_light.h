@@ -12,4 +12,8 @@ namespace gloam {
 std::vector<float> find_arriving_light(const SceneView& scene, const EmbreeTracer& statics,
                                        const LightGuide& grid, const std::vector<GuideRow>& rows);
 
+/// By how much directions by the cosine alone would miss what arrives at surfaces: the relative
+/// variance of its sum by one of them, a mean over the rows. 0: it comes evenly from all around.
+float unevenness_of(const std::vector<float>& arriving, const std::vector<GuideRow>& rows);
+
 }  // namespace gloam

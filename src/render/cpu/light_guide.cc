@@ -15,6 +15,7 @@ constexpr int kCellsAlong = 16;   // of the longest edge
 constexpr int kLightRays = 32;    // to each light from a cell
 constexpr float kFloor = 0.002f;  // share of a light that no ray has seen
 constexpr float kWorth = 0.02f;   // share of the map below which nothing is drawn from it
+constexpr float kEven = 0.5f;     // unevenness up to which the BSDF finds light as well
 constexpr float kShare = 0.75f;   // of directions by the guide, where surfaces are diffuse
 constexpr int kFacings = LightGuide::kFacings;
 
@@ -134,7 +135,7 @@ void LightGuideStore::build(SceneView scene, const EmbreeTracer& statics,
   // looking up directions costs more time than it saves noise.
   if (has_sky || has_sun) {
     arriving_ = find_arriving_light(scene, statics, view(), rows_);
-    grid_.share = kShare;
+    grid_.share = unevenness_of(arriving_, rows_) > kEven ? kShare : 0.0f;
   }
   visible_.resize(rows_.size() * grid_.lights);
   seen_.resize(visible_.size());

@@ -124,5 +124,22 @@ TEST(LightDirections, LeadToWhereTheSunShines) {
   EXPECT_GT(share_of(probe.view, ceiling, {0, 0, -1}, at_patch), 0.4);
 }
 
+TEST(LightDirections, AreLeftToTheBsdfInTheOpen) {
+  SceneBuilder b;
+  const int grey = b.add_diffuse({0.5f, 0.5f, 0.5f});
+  b.add(ShapeType::kBox, {4, 4, 0.1f}, translation({0, 0, -0.1f}), grey);
+  for (int i = 0; i < 9; ++i) {
+    const Vec3f p{static_cast<float>(i % 3) * 1.5f - 1.5f, static_cast<float>(i / 3) * 1.5f, 0.2f};
+    b.add(ShapeType::kBox, {0.2f, 0.2f, 0.2f}, translation(p), grey);
+  }
+  b.description.sky.ambient = {200, 200, 200};
+  Probe open(b), room(room_with_window({"sky", 0, 0, 200}, true));
+  open.guide();
+  room.guide();
+  ASSERT_GT(open.view.guide.nx, 0);
+  EXPECT_EQ(open.view.guide.share, 0);
+  EXPECT_GT(room.view.guide.share, 0.5f);
+}
+
 }  // namespace
 }  // namespace gloam
