@@ -69,7 +69,7 @@ class CpuRenderer final : public Renderer {
     scene_->update(open, close, previous);
     const Status status = embree_->update(*scene_);
     GLOAM_CHECK(status.ok(), "the BVH cannot be built: out of memory?");
-    if (!updated_) guided_lights_ = scene_->guided_lights(open);
+    if (!updated_) described_ = scene_->described_look(open);
     updated_ = true;
   }
 
@@ -81,8 +81,9 @@ class CpuRenderer final : public Renderer {
     job.scene = scene_->view_from(view.X_WC_open);
     job.tracer = embree_->tracer(*scene_);
     if (settings.tier == RenderTier::kPath) {
-      if (!has_guide_) guide_.build(job.scene, embree_->static_tracer(*scene_), guided_lights_);
+      if (!has_guide_) guide_.build(job.scene, embree_->static_tracer(*scene_), described_);
       has_guide_ = true;
+      described_ = {};
       job.scene.guide = guide_.view();
     }
     job.camera = make_camera(view);
@@ -200,7 +201,7 @@ class CpuRenderer final : public Renderer {
   std::unique_ptr<EmbreeScene> embree_;
   std::vector<RenderStats> tiles_;
   int columns_ = 0;  ///< of tiles
-  std::vector<LightView> guided_lights_;
+  DescribedLook described_;  ///< until the guide is built
   LightGuideStore guide_;
   bool updated_ = false, has_guide_ = false;
 };

@@ -121,7 +121,7 @@ GLOAM_HD void direct_light(const SceneView& scene, const Tracer& tracer, paths::
       light.pdf = select(near, light.pdf, F(0.0f));
     } else {
       const F pick = (first + static_cast<float>(k)) * (1.0f / static_cast<float>(drawn));
-      light = path->picker.sample(scene, v.p, pick, u, path->ray.time, path->cone_spread, active);
+      light = path->picker.sample(scene, v.p, pick, u, path->ray.time, active);
       light.pdf *= static_cast<float>(drawn);
     }
     add_light(scene, tracer, path, v, shiny, frame, wo, traced, active, light, diffuse, specular);
@@ -238,7 +238,7 @@ GLOAM_HD Vec3f scattered_light(const SceneView& scene, const Tracer& tracer, con
   picker.prepare(scene, p_W, Vec3f{});
   const float pick = random->next();
   const Vec2f u{random->next(), random->next()};
-  const LightSample light = picker.sample(scene, p_W, pick, u, ray.time, 0.0f);
+  const LightSample light = picker.sample(scene, p_W, pick, u, ray.time);
   if (!(light.pdf > 0) || !(max_component(point.scattering) > 0)) return {};
   Ray shadow = ray;
   aim_shadow_ray(p_W, Vec3f{}, 0.0f, light, &shadow);

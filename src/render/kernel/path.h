@@ -2,10 +2,20 @@
 // The path stage: one path, or one in each lane, from the camera to its end. Device-safe.
 
 #include "render/kernel/camera.h"
+#include "render/kernel/light_directions.h"
 #include "render/kernel/path_media.h"
 
 namespace gloam {
 namespace paths {
+
+/// Share of directions that are drawn from the guide instead of the BSDF: what is sharp finds its
+/// light by itself.
+template <class F>
+GLOAM_HD F guided_share(const LightGuide& guide, const LayeredBsdfOf<F>& bsdf, MaskOf<F> guided) {
+  F diffuse = 1.0f - bsdf.base.p_layer;
+  diffuse = select(bsdf.layered, diffuse * bsdf.p_base, diffuse);
+  return select(guided, guide.share * diffuse, F(0.0f));
+}
 
 /// Samples one light and one direction at the vertices of the `active` lanes; returns the lanes
 /// whose path goes on.
@@ -18,17 +28,20 @@ GLOAM_HD MaskOf<F> scatter(const SceneView& scene, const Tracer& tracer, const P
   const Vec3Of<F> wo = frame.to_local(wo_W);
   const MaskOf<F> both_sides = bsdf.layered & ((bsdf.p_glass > 0.0f) | (bsdf.p_beyond > 0.0f));
 
-  path->picker.prepare(scene, v.p, v.geometric, active, both_sides);
+  const GuideRowsOf<F> rows = path->picker.prepare(scene, v.p, v.geometric, active, both_sides);
+  const F guided = guided_share(scene.guide, bsdf, rows.guided);
   const Vec2Of<F> choice = path->sampler.next_2d(active);  // of the light, of the lobe
   const Vec2Of<F> u_light = path->sampler.next_2d(active);
   const LightSampleOf<F> light =
-      path->picker.sample(scene, v.p, choice.x, u_light, path->ray.time, path->cone_spread, active);
+      path->picker.sample(scene, v.p, choice.x, u_light, path->ray.time, active);
   F side = dot(light.wi, v.geometric);
   MaskOf<F> lit = active & (light.pdf > 0.0f) & ((side > 0.0f) | (both_sides & (side < 0.0f)));
   if (any(lit)) {
     F pdf;
     const Vec3Of<F> wi = frame.to_local(light.wi);
     const Vec3Of<F> f = eval_bsdf(bsdf, wo, wi, &pdf);
+    if (any(guided > 0.0f))
+      pdf = lerp(pdf, directions::pdf(scene.guide, rows.row, light.wi), guided);
     lit = lit & (max_component(f) > 0.0f) & (wi.z * side > 0.0f);
     const F weight = select(light.is_delta, F(1.0f), mis_weight(light.pdf, pdf));
     RayOf<F> shadow = path->ray;
@@ -46,8 +59,21 @@ GLOAM_HD MaskOf<F> scatter(const SceneView& scene, const Tracer& tracer, const P
   MaskOf<F> next = may_go_on(scene, options, *path, active);
   const Vec2Of<F> u = path->sampler.next_2d(next);
   if (!any(next)) return next;
-  const BsdfSampleOf<F> sample = sample_bsdf(bsdf, wo, choice.y, u);
-  const Vec3Of<F> wi = frame.to_world(sample.wi);
+  BsdfSampleOf<F> sample;
+  Vec3Of<F> wi;
+  if (any(guided > 0.0f)) {
+    const MaskOf<F> by_guide = choice.y < guided;
+    const Vec3Of<F> arriving = directions::sample(scene.guide, rows.row, u);
+    const F pick = clamp((choice.y - guided) / (1.0f - guided), 0.0f, 0.99999994f);
+    sample = sample_bsdf(bsdf, wo, pick, u, by_guide, frame.to_local(arriving));
+    wi = select<F>(by_guide, arriving, frame.to_world(sample.wi));
+    const F pdf = lerp(sample.pdf, directions::pdf(scene.guide, rows.row, wi), guided);
+    sample.weight *= sample.pdf / pdf;
+    sample.pdf = select(sample.pdf > 0.0f, pdf, F(0.0f));
+  } else {
+    sample = sample_bsdf(bsdf, wo, choice.y, u);
+    wi = frame.to_world(sample.wi);
+  }
   side = dot(wi, v.geometric);
   next = next & (sample.pdf > 0.0f) & (sample.wi.z * side > 0.0f) &
          (max_component(sample.weight) > 0.0f);

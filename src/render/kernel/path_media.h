@@ -62,7 +62,7 @@ GLOAM_HD MaskOf<F> scatter_in_media(const SceneView& scene, const Tracer& tracer
   const Vec2Of<F> choice = path->sampler.next_2d(active);  // of the light, of the band
   const Vec2Of<F> u_light = path->sampler.next_2d(active);
   const LightSampleOf<F> light =
-      path->picker.sample(scene, p, choice.x, u_light, path->ray.time, path->cone_spread, active);
+      path->picker.sample(scene, p, choice.x, u_light, path->ray.time, active);
   const MaskOf<F> lit = active & (light.pdf > 0.0f);
   if (any(lit)) {
     F pdf = 1.0f;

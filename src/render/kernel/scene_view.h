@@ -127,16 +127,10 @@ struct ProfileView {
   int rows = 0, columns = 0;
 };
 
-/// Where the sky is seen.
-struct SkyCone {
-  Vec3f axis;
-  float one_minus_cos = 0;  ///< of the cone's half angle; 0 = all around, or nowhere
-  float strength = 0;       ///< luminance over what is seen [cd sr/m² = lx]
-};
-
-/// What static geometry lets through to the cells of a regular grid. It steers sampling alone: a
-/// wrong guess costs noise, never the mean. A wall's two sides see different lights, so a cell has
-/// a row for static surfaces of each facing that it holds, and one for all else in it.
+/// What light static geometry lets through to the cells of a regular grid, and from where. It
+/// steers sampling alone: a wrong guess costs noise, never the mean. A wall's two sides see
+/// different lights, so a cell has a row for static surfaces of each facing that it holds, and one
+/// for all else in it.
 struct LightGuide {
   Vec3f low;            ///< corner of the grid [m]
   float per_metre = 0;  ///< 1 / edge of a cell
@@ -146,7 +140,14 @@ struct LightGuide {
   DeviceSpan<const int> surface_row;  ///< cell-major, one per facing; -1 = no such surface
   /// Row-major: share of each light that is seen, above zero.
   DeviceSpan<const float> visible;
-  DeviceSpan<const SkyCone> sky;  ///< one per row; the first rows are the cells'
+  DeviceSpan<const float> sky_visible;  ///< by row: the same of the environment map's light
+  /// Cells along an edge of the octahedral map of directions (kernel/light_directions.h).
+  static constexpr uint32_t kAcross = 16;
+  static constexpr uint32_t kSums = kAcross * kAcross + 1;
+  /// Row-major: running sums, 0 to 1, over the map's cells, of the light that arrives from each.
+  DeviceSpan<const float> arriving;
+  float share =
+      0;  ///< of directions that are drawn so on diffuse surfaces; the BSDF's are the rest
 
   GLOAM_HD int cell_at(Vec3f p) const {
     const Vec3f q = (p - low) * per_metre;

@@ -1,6 +1,7 @@
 #include "render/scene/light_table.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "render/kernel/light_picker.h"
@@ -114,6 +115,34 @@ bool is_finite(const LightView& light) {
   return light.strength < kMost && far < kMost && light.reach < kMost;
 }
 
+/// Instance `row` as a light; nothing where it gives off none.
+std::optional<LightView> emitter_of(const std::vector<InstanceView>& instances, size_t row,
+                                    const std::vector<MaterialView>& materials,
+                                    const std::vector<MeshView>& meshes) {
+  const InstanceView& instance = instances[row];
+  const bool is_mesh =
+      instance.shape == ShapeType::kMesh || instance.shape == ShapeType::kDeformable;
+  const MaterialView& material = materials[instance.material];
+  const float sides = is_mesh && !material.emits_outwards ? 2.0f : 1.0f;
+  const float area =
+      sides * (is_mesh ? meshes[instance.mesh].area : shape_area(instance.shape, instance.size));
+  const float strength = luminance(material.emission) * kPi * area * material.opacity;
+  if (!(strength > 0)) return {};
+  LightView light;
+  light.kind = LightKind::kInstance;
+  light.instance = static_cast<uint32_t>(row);
+  light.strength = strength / (4 * kPi);
+  set_bounds(instance, material.emits_outwards, meshes, &light);
+  if (!is_finite(light)) return {};
+  return light;
+}
+
+void set_strength(LightView* light) {
+  light->strength = luminance(light->intensity);
+  light->reach = light->kind == LightKind::kDirectional ? 0.0f : light->radius;
+  light->half = Vec3f{1, 1, 1} * light->reach;
+}
+
 // The guide's rows are those of the description, whatever is live: it is built once.
 bool is_guided(const LightDescription& light) {
   return light.is_static && light.casts_shadow && !is_headlight(light);
@@ -172,9 +201,7 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
     }
     light.intensity *= level;
     if (!(luminance(light.intensity) > 0)) continue;
-    light.strength = luminance(light.intensity);
-    light.reach = light.kind == LightKind::kDirectional ? 0.0f : light.radius;
-    light.half = Vec3f{1, 1, 1} * light.reach;
+    set_strength(&light);
     if (!is_finite(light)) continue;
     if (is_headlight(in)) headlights_.push_back(static_cast<uint32_t>(lights_.size()));
     lights_.push_back(light);
@@ -185,23 +212,11 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
     const int row_of_guide = is_guided(description, described) ? guide++ : -1;
     instance.light = -1;
     if (!described.shown) continue;
-    const bool is_mesh =
-        instance.shape == ShapeType::kMesh || instance.shape == ShapeType::kDeformable;
-    const MaterialView& material = materials[instance.material];
-    const float sides = is_mesh && !material.emits_outwards ? 2.0f : 1.0f;
-    const float area =
-        sides * (is_mesh ? meshes[instance.mesh].area : shape_area(instance.shape, instance.size));
-    const float strength = luminance(material.emission) * kPi * area * material.opacity;
-    if (!(strength > 0)) continue;
-    LightView light;
-    light.kind = LightKind::kInstance;
-    light.instance = static_cast<uint32_t>(i);
-    light.guide = row_of_guide;
-    light.strength = strength / (4 * kPi);
-    set_bounds(instance, material.emits_outwards, meshes, &light);
-    if (!is_finite(light)) continue;
+    std::optional<LightView> light = emitter_of(*instances, i, materials, meshes);
+    if (!light) continue;
+    light->guide = row_of_guide;
     instance.light = static_cast<int>(lights_.size());
-    lights_.push_back(light);
+    lights_.push_back(*light);
   }
   update_tree(before, headlights_before);
 }
@@ -227,21 +242,26 @@ void LightTable::update_tree(const std::vector<LightView>& before,
 }
 
 std::vector<LightView> LightTable::guided(const RenderDescription& description,
-                                          const PoseFrame& frame) {
+                                          const PoseFrame& frame,
+                                          const std::vector<MaterialView>& materials,
+                                          const std::vector<MeshView>& meshes,
+                                          std::vector<InstanceView>* instances) {
   std::vector<LightView> lights;
   for (const LightDescription& in : description.lights) {
     if (lights.size() > kMaxWeighedLights) return lights;  // too many for a guide
     if (!is_guided(in)) continue;
     lights.push_back(describe_light(in));
     place(in, frame, &lights.back());
+    set_strength(&lights.back());
   }
-  for (size_t i = 0; i < description.instances.size(); ++i) {
-    if (lights.size() > kMaxWeighedLights) return lights;
+  for (size_t i = 0; i < instances->size(); ++i) {
+    InstanceView& instance = (*instances)[i];
+    instance.material = static_cast<uint32_t>(description.instances[i].material);
+    instance.light = -1;
     if (!is_guided(description, description.instances[i])) continue;
-    LightView light;
-    light.kind = LightKind::kInstance;
-    light.instance = static_cast<uint32_t>(i);
-    lights.push_back(light);
+    if (lights.size() > kMaxWeighedLights) return lights;
+    instance.light = static_cast<int>(lights.size());
+    lights.push_back(emitter_of(*instances, i, materials, meshes).value_or(LightView{}));
   }
   return lights;
 }

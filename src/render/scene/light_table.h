@@ -20,9 +20,12 @@ class LightTable {
 
   /// Static lights that cast shadows, whether on or off, and static things described as emitters,
   /// in the order of LightView::guide; of more than kMaxWeighedLights, for which there is no guide,
-  /// one more than that.
-  static std::vector<LightView> guided(const RenderDescription& description,
-                                       const PoseFrame& frame);
+  /// one more than that. `materials` and `meshes` as described; `instances` get the materials and
+  /// lights that they are described with.
+  static std::vector<LightView> guided(const RenderDescription& description, const PoseFrame& frame,
+                                       const std::vector<MaterialView>& materials,
+                                       const std::vector<MeshView>& meshes,
+                                       std::vector<InstanceView>* instances);
 
   const std::vector<LightView>& lights() const { return lights_; }
   /// Over them where they are many, else empty.

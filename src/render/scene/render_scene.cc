@@ -266,6 +266,15 @@ void RenderScene::update(const PoseFrame& open, const PoseFrame& close, const Po
   lights_.update(description_, open, light_levels_, materials_.views(), mesh_views_, &instances_);
 }
 
+DescribedLook RenderScene::described_look(const PoseFrame& frame) const {
+  DescribedLook look;
+  look.materials = MaterialStore(description_, textures_).views();
+  look.instances = instances_;
+  look.lights =
+      LightTable::guided(description_, frame, look.materials, mesh_views_, &look.instances);
+  return look;
+}
+
 bool RenderScene::has_motion() const {
   return std::any_of(instances_.begin(), instances_.end(), [this](const InstanceView& in) {
     return in.shape == ShapeType::kDeformable ? !mesh_views_[in.mesh].positions_close.empty()

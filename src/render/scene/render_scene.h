@@ -15,6 +15,13 @@
 
 namespace gloam {
 
+/// The scene as described, whatever has been changed or switched off since.
+struct DescribedLook {
+  std::vector<MaterialView> materials;
+  std::vector<InstanceView> instances;  ///< static ones stand where they are
+  std::vector<LightView> lights;        ///< those with a row of LightGuide::visible
+};
+
 class RenderScene {
  public:
   /// The description must outlive it. Errors: indices that refer to nothing, sizes that are not
@@ -29,10 +36,8 @@ class RenderScene {
   const RenderDescription& description() const { return description_; }
   const std::vector<InstanceView>& instances() const { return instances_; }
   const std::vector<MeshView>& meshes() const { return mesh_views_; }
-  /// What a LightGuide has rows for.
-  std::vector<LightView> guided_lights(const PoseFrame& frame) const {
-    return LightTable::guided(description_, frame);
-  }
+  /// What a LightGuide is made of.
+  DescribedLook described_look(const PoseFrame& frame) const;
   /// Something moves between shutter open and close.
   bool has_motion() const;
   /// Invisible instances are in the tables but never traced: fully transparent ones and those

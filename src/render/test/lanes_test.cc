@@ -191,7 +191,9 @@ class LanePaths : public testing::TestWithParam<bool> {};
 
 TEST_P(LanePaths, EqualThoseOfOneFloat) {
   const SceneBuilder b = GetParam() ? foggy_scene() : varied_scene();
-  const Probe probe(b);
+  Probe probe(b);
+  probe.guide();
+  ASSERT_GT(probe.view.guide.nx, 0);
   const CameraView view = SceneBuilder::camera(look_at({0, -4, 1.8f}, {0, 0.5f, 0.6f}), 64, 48, 55);
   CameraView32 camera;
   camera.fx = camera.fy = static_cast<float>(view.intrinsics.fx);

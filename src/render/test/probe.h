@@ -2,6 +2,7 @@
 // A scene with its tracer, for tests that call the kernel themselves.
 
 #include "render/cpu/embree_scene.h"
+#include "render/cpu/light_guide.h"
 #include "render/kernel/channels.h"
 #include "render/kernel/direct.h"
 #include "render/test/scene_builder.h"
@@ -21,6 +22,12 @@ class Probe {
     tracer = embree_->tracer(*scene_);
   }
 
+  /// Gives the view its light guide.
+  void guide() {
+    guide_.build(view, embree_->static_tracer(*scene_), scene_->described_look(builder_.frame));
+    view.guide = guide_.view();
+  }
+
   SceneView view;
   EmbreeTracer tracer;
 
@@ -28,6 +35,7 @@ class Probe {
   SceneBuilder builder_;
   std::unique_ptr<RenderScene> scene_;
   std::unique_ptr<EmbreeScene> embree_;
+  LightGuideStore guide_;
 };
 
 inline Sampler draw(uint32_t i, uint64_t seed = 1) { return Sampler::make(seed, 0, 0, 0, i, 24); }
