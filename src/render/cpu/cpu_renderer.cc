@@ -93,6 +93,14 @@ class CpuRenderer final : public Renderer {
       auto* history = static_cast<FastHistory*>(settings.history);
       RenderStats stats = (history != nullptr ? *history : own)
                               .render(job.scene, job.tracer, job.camera, settings, film);
+      job.settings = settings;
+      job.film = film;
+      columns_ = (film->width + kTile - 1) / kTile;
+      const int64_t count = int64_t{columns_} * ((film->height + kTile - 1) / kTile);
+      if (settings.exact_channels) {
+        for_tiles(count,
+                  [&](int64_t tile) { Tile(job, x_of(tile), y_of(tile)).render_channels(); });
+      }
       stats.trace_seconds =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       return stats;
