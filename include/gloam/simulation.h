@@ -40,7 +40,7 @@ struct CameraRequest {
   Rational rate = {20, 1};      ///< frames per second of simulation time
   int width = 0, height = 0;    ///< [px]; 0 = the camera's own
   std::vector<std::string> outputs = {
-      "rgb"};  ///< rgb radiance samples depth segmentation normal albedo motion
+      "rgb"};  ///< rgb radiance samples depth distance segmentation normal albedo motion scene_flow
   RenderOptions render = {};
   std::optional<Pose> X_WC = {};  ///< of camera "free": where it stands at first
   bool required =

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "geometry/lens.h"
+
 namespace gloam {
 namespace {
 using Json = nlohmann::ordered_json;
@@ -68,16 +70,16 @@ std::string cameras_json(const std::vector<RecordedCamera>& cameras,
     one["rate_hz"] = {{"num", camera.rate.num}, {"den", camera.rate.den}};
     one["width_px"] = k.width;
     one["height_px"] = k.height;
-    one["projection"] = k.orthographic ? "orthographic" : "pinhole";
+    const CameraInfo info = camera_info(camera.name, k);
+    one["projection"] = k.orthographic || is_wide(k.lens) ? info.distortion_model : "pinhole";
     one["fx_px"] = k.fx;
     one["fy_px"] = k.fy;
     one["cx_px"] = k.cx;
     one["cy_px"] = k.cy;
     // ROS and OpenCV count pixel centres at integers, Gloam at integer + 0.5.
     if (!k.orthographic)
-      one["camera_info"] = {{"distortion_model", "plumb_bob"},
-                            {"d", {0, 0, 0, 0, 0}},
-                            {"k", {k.fx, 0.0, k.cx - 0.5, 0.0, k.fy, k.cy - 0.5, 0.0, 0.0, 1.0}}};
+      one["camera_info"] = {
+          {"distortion_model", info.distortion_model}, {"d", info.d}, {"k", info.k}};
     list.push_back(one);
   }
   Json out;
@@ -89,7 +91,7 @@ std::string cameras_json(const std::vector<RecordedCamera>& cameras,
        "poses.csv: of frame_id in the world; Z forward, X right, Y down; metres; "
        "quaternion w first"},
       {"depth",
-       "along Z of frame_id; depth/*.png 16-bit millimetres, 0 = nothing or beyond "
+       "along Z of frame_id, of equidistant and equirectangular cameras along the ray; depth/*.png 16-bit millimetres, 0 = nothing or beyond "
        "65.535 m; depth_exr/*.exr channel Z, float metres, inf = nothing"}};
   out["cameras"] = list;
   return dump(out);

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,10 +23,12 @@ namespace gloam {
 /// Which channels of a CameraFrame are filled.
 struct CameraChannels {
   bool rgb = false, radiance = false, samples = false, depth = false, segmentation = false;
-  bool normal = false, albedo = false, motion = false;
+  bool normal = false, albedo = false, motion = false, distance = false, scene_flow = false;
   static Result<CameraChannels> parse(const std::vector<std::string>& names);
   bool light() const { return rgb || radiance || samples; }
-  bool geometry() const { return depth || segmentation || normal || albedo || motion; }
+  bool geometry() const {
+    return depth || distance || segmentation || normal || albedo || motion || scene_flow;
+  }
 };
 
 /// What pictures take, nearly [bytes].
@@ -41,12 +44,21 @@ class CameraSensor {
   static Result<std::unique_ptr<CameraSensor>> create(const RenderDescription& description,
                                                       const CameraRequest& request, uint64_t seed);
 
-  /// Renders the instant of `now`. `renderer_mutex` is held while the shared renderer works, not
-  /// while this sensor denoises and converts. `previous` is the instant of the frame before, for
-  /// motion. Null if the progress callback ended it.
+  /// Renders the exposure that starts with the first of `keys`, which follow each other evenly and
+  /// reach over window(); with a single key the instant of that one. `renderer_mutex` is held while
+  /// the shared renderer works, not while this sensor denoises and converts. `previous` is the
+  /// first key of the frame before, for motion. Null if the progress callback ended it.
+  std::shared_ptr<const CameraFrame> capture(Renderer& renderer, std::mutex& renderer_mutex,
+                                             std::span<const PoseFrame* const> keys,
+                                             const PoseFrame& previous, int64_t frame_index);
   std::shared_ptr<const CameraFrame> capture(Renderer& renderer, std::mutex& renderer_mutex,
                                              const PoseFrame& now, const PoseFrame& previous,
-                                             int64_t frame_index);
+                                             int64_t frame_index) {
+    const PoseFrame* const key = &now;
+    return capture(renderer, renderer_mutex, {&key, 1}, previous, frame_index);
+  }
+  /// From the first row's exposure to the end of the last one's [s]; 0 = an instant.
+  Rational window() const;
 
   /// Of each picture's rendering, see RenderSettings::progress.
   void set_progress(std::function<bool(double done)> progress) {
@@ -65,8 +77,12 @@ class CameraSensor {
 
  private:
   CameraSensor(const RenderDescription& description, int camera, const CameraChannels& channels);
+  Shutter shutter(std::span<const PoseFrame* const> keys) const;
   void convert(const PoseFrame& now, int64_t frame_index, const CameraView& view,
                CameraFrame* frame);
+  const CameraDescription& camera() const {
+    return description_.cameras[static_cast<size_t>(camera_)];
+  }
 
   const RenderDescription& description_;
   const int camera_;

@@ -72,6 +72,7 @@ class EdgeRow {
     if (used_ > 0) tracer_.trace_packet(rays, used_, false, true, hits, found);
     rays_ += static_cast<uint64_t>(used_);
     for (int j = 0; j < used_; ++j) {
+      if (!sees(samples_[j])) continue;
       film_->radiance[pixel(x_[j], y_)] +=
           color_of(j, found[j], hits[j]) / static_cast<float>(kRays);
     }

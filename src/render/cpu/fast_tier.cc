@@ -57,7 +57,7 @@ void FastHistory::trace(const SceneView& scene, const EmbreeTracer& tracer,
         RayCone cone;
         const Ray one = camera_ray(camera, static_cast<float>(xs[i]) + 0.5f,
                                    static_cast<float>(ys[i]) + 0.5f, 0, &cone);
-        set_lane(&active, i, inside);
+        set_lane(&active, i, inside && sees(one));
         set_lane(&px, i, static_cast<uint32_t>(xs[i]));
         set_lane(&py, i, static_cast<uint32_t>(ys[i]));
         set_lane(&ray.o, i, one.o);
@@ -70,7 +70,7 @@ void FastHistory::trace(const SceneView& scene, const EmbreeTracer& tracer,
           scene, tracer, cache, ray, width, spread,
           SamplerOf<F>::make(settings.seed, settings.frame, px, py, 0u, 0), active, requests);
       for (int i = 0; i < kLaneCount; ++i) {
-        if (!lane(active, i)) continue;
+        if (xs[i] >= film->width || ys[i] >= film->height) continue;
         asked[static_cast<size_t>(tile)].add(requests[i]);
         asked[static_cast<size_t>(tile)].add(requests[kLaneCount + i]);
         asked[static_cast<size_t>(tile)].add(requests[2 * kLaneCount + i]);
@@ -94,8 +94,9 @@ void FastHistory::trace(const SceneView& scene, const EmbreeTracer& tracer,
         film->normal[pixel] = solid ? surface.normal : Vec3f{};
         const Ray one = lane(ray, i);
         const ExactChannels channels =
-            solid ? describe_surface(scene, camera, one, surface, lane(sample.hit, i))
-                  : describe_sky(camera, one);
+            solid             ? describe_surface(scene, camera, one, surface, lane(sample.hit, i))
+            : lane(active, i) ? describe_sky(camera, one)
+                              : ExactChannels();
         now_.motion[pixel] = channels.motion;
         if (settings.exact_channels) store_channels(film, pixel, channels);
         rays[static_cast<size_t>(tile)] += lane(sample.rays, i);
