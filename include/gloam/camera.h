@@ -29,6 +29,30 @@ struct Intrinsics {
   std::array<double, 8> distortion = {};  ///< in the order above; the rest is 0
 };
 
+/// Pixels, and the edges of the rectangle around them [px]; u1, v1 are those of the last ones' far
+/// sides. No pixels: u1 < u0.
+struct PixelBox {
+  int64_t pixels = 0;
+  int u0 = 1 << 30, v0 = 1 << 30, u1 = -1, v1 = -1;
+};
+
+/// One object in a picture. Its frame O is that of its first body that is drawn: the root of a
+/// robot, the world for what is fixed to it.
+struct ObjectView {
+  uint16_t instance = 0;  ///< as in LabelRow
+  std::string name;
+  uint16_t semantic = 0;
+  PixelBox seen;  ///< pixels whose centre shows it
+  PixelBox all;   ///< that would if nothing stood in front of it, within the picture
+  Pose X_WO;
+  Vec3 center, size;     ///< of the box along O's axes that holds all that is drawn of it [m]
+  bool endless = false;  ///< an infinite plane is part of it: it has no box in space
+  /// Share of it that is not hidden by others, 0 … 1.
+  double visibility() const {
+    return static_cast<double>(seen.pixels) / static_cast<double>(all.pixels);
+  }
+};
+
 /// One frame of one camera. Empty vectors are channels that were not asked for.
 struct CameraFrame {
   std::string camera;  ///< full name
@@ -44,8 +68,8 @@ struct CameraFrame {
   std::vector<uint8_t> rgb;     ///< tone-mapped sRGB, (height x width x 3)
   std::vector<float> radiance;  ///< linear Rec. 709 [cd/m²], (height x width x 3)
   // What follows is exact: of the ray through each pixel's centre, when its row's exposure starts.
-  std::vector<float> depth;  ///< along the optical axis, of fisheyes and panoramas along the ray
-                             ///< [m], +inf = nothing hit, (height x width)
+  std::vector<float> depth;     ///< along the optical axis, of fisheyes and panoramas along the ray
+                                ///< [m], +inf = nothing hit, (height x width)
   std::vector<float> distance;  ///< along the ray [m], +inf = nothing hit, (height x width)
   std::vector<uint32_t>
       part;  ///< row of the label table (one per drawn geom), 0 = nothing, (height x width)
@@ -56,8 +80,9 @@ struct CameraFrame {
   std::vector<uint32_t> samples;   ///< light paths in the mean of a pixel, (height x width)
   std::vector<float> motion;  ///< optical flow from the previous frame of this camera to this one
                               ///< [px], (height x width x 2)
-  std::vector<float> scene_flow;  ///< way of the point that is seen since the previous frame [m],
-                                  ///< world axes, (height x width x 3)
+  std::vector<float> scene_flow;    ///< way of the point that is seen since the previous frame [m],
+                                    ///< world axes, (height x width x 3)
+  std::vector<ObjectView> objects;  ///< that the picture holds or hides, by id
 };
 
 /// The content of ROS's sensor_msgs/CameraInfo. Pixel centres lie at integers there, so the

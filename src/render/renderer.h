@@ -50,6 +50,7 @@ struct RenderSettings {
   uint32_t frame = 0;  ///< draws are keyed (seed, frame, pixel, sample)
   /// depth, distance, part, center_normal, center_albedo, motion, scene_flow
   bool exact_channels = true;
+  bool cover = false;  ///< Film::cover, by the label's instance of what is drawn
   bool variance = false;
   /// For a denoiser, of pictures with fewer samples than this: albedo and normal of so many rays at
   /// edges, of the pixel's centre elsewhere. 0 = always those of the samples. Needs exact_channels.

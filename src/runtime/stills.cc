@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "gloam/run.h"
+#include "record/run_files.h"
 #include "render/film/exr.h"
 #include "render/film/png.h"
 #include "runtime/live_simulation.h"
@@ -150,6 +151,10 @@ Result<std::vector<std::filesystem::path>> write_frame(const CameraFrame& frame,
     GLOAM_TRY_STATUS(write_planes("_motion.exr", frame.motion, {"U", "V"}));
   if (!frame.scene_flow.empty())
     GLOAM_TRY_STATUS(write_planes("_scene_flow.exr", frame.scene_flow, {"X", "Y", "Z"}));
+  if (!frame.objects.empty()) {
+    const std::string text = objects_json(frame.objects);
+    GLOAM_TRY_STATUS(write("_boxes.json", std::vector<uint8_t>(text.begin(), text.end())));
+  }
   return written;
 }
 

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "render/film/tone_map.h"
 #include "render/scene/pose.h"
+#include "sensors/object_boxes.h"
 #include "sim/step_schedule.h"
 
 namespace gloam {
@@ -101,7 +102,8 @@ Result<CameraChannels> CameraChannels::parse(const std::vector<std::string>& nam
       {"depth", &channels.depth},       {"normal", &channels.normal},
       {"albedo", &channels.albedo},     {"segmentation", &channels.segmentation},
       {"motion", &channels.motion},     {"samples", &channels.samples},
-      {"distance", &channels.distance}, {"scene_flow", &channels.scene_flow}};
+      {"distance", &channels.distance}, {"scene_flow", &channels.scene_flow},
+      {"boxes", &channels.boxes}};
   std::vector<std::string> all;
   for (const auto& entry : known) all.push_back(entry.first);
   for (const std::string& name : names) {
@@ -172,6 +174,7 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
     sensor->denoiser_ = make_denoiser({});
     settings.guide_samples = 4;
   }
+  settings.cover = channels.boxes;
   settings.exact_channels = channels.geometry() || sensor->denoiser_ != nullptr;
   return sensor;
 }
@@ -278,6 +281,7 @@ void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const Came
     }
   }
   if (channels_.depth) frame->depth = film_.depth;
+  if (channels_.boxes) frame->objects = view_objects(description_, now, film_.cover);
   if (channels_.distance) frame->distance = film_.distance;
   if (channels_.scene_flow) frame->scene_flow = flatten(film_.scene_flow);
   if (channels_.normal) frame->normal = flatten(film_.center_normal);

@@ -24,6 +24,7 @@ namespace gloam {
 struct CameraChannels {
   bool rgb = false, radiance = false, samples = false, depth = false, segmentation = false;
   bool normal = false, albedo = false, motion = false, distance = false, scene_flow = false;
+  bool boxes = false;
   static Result<CameraChannels> parse(const std::vector<std::string>& names);
   bool light() const { return rgb || radiance || samples; }
   bool geometry() const {

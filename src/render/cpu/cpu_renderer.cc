@@ -15,6 +15,7 @@
 #include "render/cpu/embree_scene.h"
 #include "render/cpu/fast_tier.h"
 #include "render/cpu/light_guide.h"
+#include "render/cpu/object_cover.h"
 #include "render/cpu/tile.h"
 #include "render/cpu/watch.h"
 #include "render/scene/pose.h"
@@ -79,7 +80,10 @@ int64_t scattered(int64_t i, int64_t tiles) {
 class CpuRenderer final : public Renderer {
  public:
   CpuRenderer(std::unique_ptr<RenderScene> scene, std::unique_ptr<EmbreeScene> embree)
-      : scene_(std::move(scene)), embree_(std::move(embree)) {}
+      : scene_(std::move(scene)), embree_(std::move(embree)) {
+    for (const InstanceDescription& in : scene_->description().instances)
+      objects_.push_back(in.label.instance);
+  }
 
   using Renderer::update;
   void update(std::span<const PoseFrame* const> keys, const PoseFrame& previous) override {
@@ -94,6 +98,7 @@ class CpuRenderer final : public Renderer {
     GLOAM_CHECK(updated_, "update must come before render");
     const auto start = std::chrono::steady_clock::now();
     resize_film(view, settings, film);
+    film->cover.clear();
     Job job;
     job.camera = make_camera(view, &camera_keys_);
     job.scene = job.camera.pose.keys.empty() ? scene_->view_from(view.X_WC_open)
@@ -103,6 +108,11 @@ class CpuRenderer final : public Renderer {
       if (!has_guide_) guide_.build(job.scene, embree_->static_tracer(*scene_), guided_lights_);
       has_guide_ = true;
       job.scene.guide = guide_.view();
+    }
+    job.has_motion = !job.camera.pose.keys.empty() || scene_->has_motion();
+    if (settings.cover) {
+      film->cover = measure_cover(job.scene, job.tracer, job.camera, job.has_motion, film->width,
+                                  film->height, objects_);
     }
     if (settings.tier == RenderTier::kFast) {
       job.scene.environment.row_cdf = {};  // the cache has the sky's light: none is drawn
@@ -122,7 +132,6 @@ class CpuRenderer final : public Renderer {
     job.settings = settings;
     job.path = {settings.max_depth, settings.roulette_depth};
     job.film = film;
-    job.has_motion = !job.camera.pose.keys.empty() || scene_->has_motion();
     job.centered = settings.tier == RenderTier::kDirect && settings.spp == 1 && !job.has_motion &&
                    !(job.camera.aperture.radius > 0);
     const bool adaptive = settings.error > 0;
@@ -215,7 +224,8 @@ class CpuRenderer final : public Renderer {
   std::unique_ptr<EmbreeScene> embree_;
   std::vector<RenderStats> tiles_;
   std::vector<CameraKey> camera_keys_;
-  int columns_ = 0;  ///< of tiles
+  std::vector<uint16_t> objects_;  ///< by instance
+  int columns_ = 0;                ///< of tiles
   std::vector<LightView> guided_lights_;
   LightGuideStore guide_;
   bool updated_ = false, has_guide_ = false;

@@ -5,8 +5,14 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "gloam/camera.h"
 
 namespace gloam {
+
+/// What a picture has of one object, and would have if nothing stood in front.
+struct ObjectCover {
+  PixelBox seen, all;
+};
 
 struct Film {
   int width = 0, height = 0;
@@ -26,6 +32,8 @@ struct Film {
   std::vector<Vec3f> center_albedo;
   std::vector<Vec2f> motion;      ///< from the previous to this instant [px]
   std::vector<Vec3f> scene_flow;  ///< of the point that is seen, in that time, world [m]
+
+  std::vector<ObjectCover> cover;  ///< by object id, if asked for
 
   size_t pixel_count() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
 };

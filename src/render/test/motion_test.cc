@@ -247,6 +247,55 @@ TEST(Motion, DeformablesMoveThroughTheirKeys) {
   EXPECT_NEAR(at(film, 44, 32), 0.25, 0.05);
 }
 
+// A lamp that moves while the shutter is open lights as the mean over its places does; also one of
+// so many that a tree picks them, and a spot whose light never meets all of the floor.
+TEST(Motion, LampsMoveThroughTheirKeys) {
+  for (const bool spot : {false, true}) {
+    for (const int others : {0, 20}) {
+      SceneBuilder b;
+      b.add(ShapeType::kPlane, {}, {}, b.add_diffuse({0.8f, 0.8f, 0.8f}));
+      LightDescription lamp;
+      lamp.intensity = {10, 10, 10};
+      lamp.radius = 0.1f;
+      if (spot) {
+        lamp.type = LightType::kSpot;
+        lamp.cos_cutoff = std::cos(0.6f);
+      }
+      b.add_light(lamp, {-1, 0, 1});
+      lamp.intensity = {0.1f, 0.1f, 0.1f};
+      for (int i = 0; i < others; ++i)
+        b.add_light(lamp, {0.3f * static_cast<float>(i) - 3, 2, 1});
+      const auto place = [](PoseFrame* frame, float s) { frame->light_p[0] = -1 + 2 * s; };
+      const auto keys = make_keys(b.frame, 5, place);
+      RenderSettings settings;
+      settings.spp = 1024;
+      settings.max_depth = 2;
+      const CameraView view = SceneBuilder::camera(look_at({0, -4, 4}, {}), 12, 12, 50);
+      auto renderer = b.make();
+      renderer->update(pointers(keys), keys[0]);
+      Film moving, still;
+      renderer->render(view, settings, &moving);
+      constexpr int kPlaces = 16;
+      std::vector<double> mean(144);
+      settings.spp = 128;
+      for (int k = 0; k < kPlaces; ++k) {
+        PoseFrame frame = b.frame;
+        place(&frame, (static_cast<float>(k) + 0.5f) / kPlaces);
+        renderer->update(frame, frame, frame);
+        renderer->render(view, settings, &still);
+        for (size_t i = 0; i < mean.size(); ++i) mean[i] += still.radiance[i].x / kPlaces;
+      }
+      double all = 0, all_moving = 0;
+      for (size_t i = 0; i < mean.size(); ++i) {
+        EXPECT_NEAR(moving.radiance[i].x, mean[i], 0.12 * mean[i] + 0.01) << spot << others << i;
+        all += mean[i];
+        all_moving += moving.radiance[i].x;
+      }
+      EXPECT_NEAR(all_moving, all, 0.01 * all);
+    }
+  }
+}
+
 // A defocused point is a disk of the diameter 2 R f |1 / focus - 1 / z| px (thin lens), evenly lit.
 TEST(Motion, CirclesOfConfusionHaveTheThinLensesSize) {
   SceneBuilder b;

@@ -260,8 +260,8 @@ TEST(LiveCamera, WhatCannotBeOpenedSaysWhy) {
 // The ball flies along +X at 1 m/s, 2 m before the camera. Row v of 48 is read 0.1 s v / 48 later.
 TEST(LiveCamera, ARollingShutterSeesEachRowAtItsOwnTime) {
   const TempFolder folder;
-  auto simulation = simulate(
-      flight(folder, "[[camera]]\nname = \"a/fixed\"\nreadout_time = 0.1\nexposure_time = 0.004\n"));
+  auto simulation = simulate(flight(
+      folder, "[[camera]]\nname = \"a/fixed\"\nreadout_time = 0.1\nexposure_time = 0.004\n"));
   CameraRequest request = tiny("a/fixed", {10, 1});
   request.width = 64, request.height = 48;
   Frames frames;
