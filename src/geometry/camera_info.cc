@@ -41,9 +41,9 @@ CameraInfo camera_info(const std::string& camera, const Intrinsics& k) {
 }
 
 Pose optical_pose(const Pose& X_WC) {
-  // Half a turn about C's x axis, (0, 1, 0, 0), from the right.
+  // Half a turn about the camera's own x: q * (0, 1, 0, 0).
   const Quat& q = X_WC.q;
-  return {X_WC.p, {-q.x, q.w, q.z, -q.y}};
+  return {X_WC.p, {0 - q.x, q.w, q.z, 0 - q.y}};  // 0 - x: no minus zeros in tables
 }
 
 }  // namespace gloam
