@@ -271,7 +271,20 @@ void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const Came
 
   if (channels_.light()) {
     const std::vector<Vec3f>* radiance = &film_.radiance;
+    // Where the light is blurred, depth is sharp, and albedo and normal are of what covers a pixel
+    // in part: then they are no guides.
+    const bool blurred = camera().aperture_radius > 0 || camera().exposure_time > 0;
+    std::vector<float> depth;
+    std::vector<Vec3f> albedo, normal;
+    const auto swap_guides = [&] {
+      if (!blurred) return;
+      depth.swap(film_.depth);
+      albedo.swap(film_.albedo);
+      normal.swap(film_.normal);
+    };
+    swap_guides();
     if (denoiser_ != nullptr && denoiser_->denoise(film_, &clean_).ok()) radiance = &clean_;
+    swap_guides();
     if (channels_.rgb)
       tone_map(*radiance, film_.width, film_.height, {.ev100 = ev100_}, &frame->rgb);
     if (channels_.radiance) frame->radiance = flatten(*radiance);

@@ -159,7 +159,9 @@ class CpuRenderer final : public Renderer {
       total.unreached += tile.unreached;
     }
     total.finished = !watch.stopped();
-    const bool sharp = !(job.camera.aperture.radius > 0);  // guides of blurred things are blurred
+    // What is blurred has blurred guides: those of the samples.
+    const bool sharp =
+        !(job.camera.aperture.radius > 0) && !(job.has_motion && job.camera.shutter.length > 0);
     if (total.finished && settings.spp > 0 && settings.spp < settings.guide_samples && sharp) {
       GLOAM_CHECK(settings.exact_channels, "guide samples need the exact channels");
       total.rays += refine_guides({job.scene, job.tracer, job.camera, job.has_motion},
