@@ -173,6 +173,18 @@ def direct_tier(quick):
         yield at_least(f"direct tier: {label} / ours", wall, 3.0, f"{theirs:.0f} ms against {own:.0f} ms; in CPU time {cpu:.1f}")
 
 
+def truth(quick):
+    """exact depth and segmentation 640x480 against MuJoCo's depth pass plus its segmentation pass"""
+    scene = boxes_scene()
+    ours = [BIN / "bench_direct_rate", scene, "bench", "--truth", "--frames", 20]
+    theirs = [peer_python(), ROOT / "bench" / "peers" / "mujoco_render.py", scene, "bench", "truth", 640, 480, 8]
+    pairs = [(milliseconds(*theirs), milliseconds(*ours)) for _ in range(1 if quick else 5)]
+    wall, cpu = (statistics.median(a[k] / b[k] for a, b in pairs) for k in (0, 1))
+    their, own = (statistics.median(pair[k][0] for pair in pairs) for k in (0, 1))
+    yield at_least("depth + segmentation: MuJoCo classic's two passes (EGL) / ours", wall, 2.0,
+                   f"{their:.1f} ms against {own:.1f} ms; in CPU time {cpu:.1f}")
+
+
 def seconds_until_ready(cache, *command):
     """[CPU, wall] from the start of a process to the moment that it says it is ready."""
     start = time.monotonic()
@@ -289,5 +301,5 @@ def lidar(quick):
 
 
 # With the seconds that each takes on two cores: the first estimate of the time left.
-ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, load_time: 120, import_time: 60,
+ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, truth: 40, load_time: 120, import_time: 60,
        first_picture: 15, adaptive_sampling: 120, lidar: 15}

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "gloam/result.h"
+#include "gloam/scene_camera.h"
 #include "gloam/scene_lidar.h"
 #include "gloam/scene_light.h"
 #include "gloam/scene_sensor.h"
@@ -63,27 +64,6 @@ struct RobotOptions {
 struct EnvironmentOptions {
   std::filesystem::path file =
       {};  ///< MJCF; empty = nothing but a floor when a TOML scene has robots, nothing otherwise
-  SourceLoc loc = {};
-};
-
-/// [[camera]]: a camera added to the scene, fixed in the world or on a body.
-struct CameraOptions {
-  std::string name = {};
-  std::string body = {};  ///< full name of the body it sits on; empty = world
-  std::string track =
-      {};  ///< body whose position it follows with a fixed offset and heading; empty = none
-  Vec3 position = {};  ///< in the frame of `body`; for `track`: offset from it in world axes [m]
-  std::optional<Vec3> look_at = {};  ///< point to look at, in the same frame [m]
-  std::optional<Quat> orientation =
-      {};            ///< instead of look_at: looks along its -Z, up is +Y (MuJoCo's convention)
-  double fovy = 45;  ///< vertical field of view [deg], (0, 180)
-  int width = 640, height = 480;  ///< [px], 1 … 16384
-  Rational rate = {20, 1};        ///< frames per second of simulation time
-  /// What is recorded of this camera, instead of what [record] says: video png depth_png depth_exr
-  /// segmentation sensor_depth_png raw_png thermal_png
-  /// events; [] = its poses alone.
-  std::optional<std::vector<std::string>> outputs = {};
-  CameraSensing sensing = {};  ///< imager, timing …: what happens between light and message
   SourceLoc loc = {};
 };
 

@@ -41,9 +41,9 @@ struct CameraRequest {
   std::string camera = "free";  ///< full name, or "free": frames the whole model until moved
   Rational rate = {20, 1};      ///< frames per second of simulation time
   int width = 0, height = 0;    ///< [px]; 0 = the camera's own
-  std::vector<std::string> outputs = {
-      "rgb"};  ///< rgb radiance samples depth segmentation normal albedo motion
-               ///< raw sensor_depth events thermal (with their tables in the scene)
+  /// rgb radiance samples depth distance segmentation normal albedo motion scene_flow boxes; raw
+  /// sensor_depth events thermal (with their tables in the scene)
+  std::vector<std::string> outputs = {"rgb"};
   RenderOptions render = {};
   std::optional<Pose> X_WC = {};  ///< of camera "free": where it stands at first
   bool required =

@@ -16,12 +16,6 @@ constexpr int kThumbnailWidth = 320;  // [px]
 
 }  // namespace
 
-Pose optical_pose(const Pose& X_WC) {
-  // Half a turn about the camera's own x: q * (0, 1, 0, 0).
-  const Quat& q = X_WC.q;
-  return {X_WC.p, {0 - q.x, q.w, q.z, 0 - q.y}};  // 0 - x: no minus zeros in tables
-}
-
 Thumbnail make_thumbnail(const CameraFrame& frame, int width) {
   const int w = frame.intrinsics.width, h = frame.intrinsics.height;
   Thumbnail out;

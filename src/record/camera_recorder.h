@@ -67,7 +67,4 @@ class CameraRecorder {
 /// The channels shrunk to `width` pixels: colours averaged, depth and ids picked.
 Thumbnail make_thumbnail(const CameraFrame& frame, int width);
 
-/// Pose of the ROS optical frame (Z forward, X right, Y down) of a camera that looks along -Z.
-Pose optical_pose(const Pose& X_WC);
-
 }  // namespace gloam

@@ -27,6 +27,8 @@ std::string summary_json(const RunInfo& info, const RunOutcome* outcome,
 std::string cameras_json(const std::vector<RecordedCamera>& cameras,
                          const std::vector<std::string>& file_names);
 
+/// Objects of one picture, as in CameraFrame::objects.
+std::string objects_json(const std::vector<ObjectView>& objects);
 std::string labels_json(const std::vector<LabelRow>& labels);
 
 }  // namespace gloam

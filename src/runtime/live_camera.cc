@@ -45,7 +45,8 @@ Result<std::unique_ptr<LiveCamera>> LiveCamera::open(Simulator& simulator,
             simulator.subscribe({.rate = request.rate,
                                  .due = timing ? due_steps(camera->timing_) : nullptr,
                                  .required = request.required,
-                                 .capacity = capacity}));
+                                 .capacity = capacity,
+                                 .window = camera->sensor_->window()}));
   camera->required_ = request.required;
   camera->thread_ = std::thread([raw = camera.get()] { raw->run(); });
   return camera;
@@ -75,23 +76,27 @@ void LiveCamera::refresh() {
   changed_.notify_all();
 }
 
-Snapshot LiveCamera::wait_for_work() {
-  if (required_) return queue_->next();
+SnapshotWindow LiveCamera::wait_for_work() {
+  if (required_) return queue_->next_window();
   // A live camera also answers refresh() while the simulation is paused, so it looks at both.
   constexpr auto kLook = std::chrono::milliseconds(4);
   std::unique_lock lock(mutex_);
   for (;;) {
     if (closing_) return {};
-    if (Snapshot snapshot = queue_->try_next()) return snapshot;
+    if (SnapshotWindow window = queue_->try_next_window()) return window;
     if (queue_->closed()) return {};
-    if (std::exchange(refresh_wanted_, false)) return simulator_.latest();
+    if (std::exchange(refresh_wanted_, false)) {  // an instant: nothing moves
+      SnapshotWindow window;
+      window.add(simulator_.latest());
+      return window;
+    }
     changed_.wait_for(lock, kLook);
   }
 }
 
 void LiveCamera::run() {
   try {
-    while (const Snapshot snapshot = wait_for_work()) capture(snapshot);
+    while (const SnapshotWindow window = wait_for_work()) capture(window);
   } catch (const std::bad_alloc&) {
     const Intrinsics& k = sensor_->intrinsics();
     const std::lock_guard lock(mutex_);
@@ -109,19 +114,27 @@ Status LiveCamera::status() const {
   return status_;
 }
 
-void LiveCamera::capture(const Snapshot& snapshot) {
-  const int64_t index = std::max<int64_t>(0, timing_.last_at_or_before(snapshot.step()));
-  if (timing_.step_of(index) == snapshot.step() && timing_.dropped(index)) return;
-  if (const Status status = solver_->solve(snapshot, now_); !status.ok()) {
-    log_error("a camera lost its poses: {}", status.error().to_string());
-    return;
+void LiveCamera::capture(const SnapshotWindow& window) {
+  const int64_t step = window.all().front().step();
+  const int64_t index = std::max<int64_t>(0, timing_.last_at_or_before(step));
+  if (timing_.step_of(index) == step && timing_.dropped(index)) return;
+  keys_.resize(std::max(keys_.size(), static_cast<size_t>(window.count)));
+  std::vector<const PoseFrame*> keys;
+  for (const Snapshot& snapshot : window.all()) {
+    PoseFrame& key = keys_[keys.size()];
+    if (const Status status = solver_->solve(snapshot, key); !status.ok()) {
+      log_error("a camera lost its poses: {}", status.error().to_string());
+      return;
+    }
+    keys.push_back(&key);
   }
-  if (meter_ != nullptr) sensor_->set_ev100(meter_->ev100_at(snapshot.step()));
-  const bool continuous = has_previous_ && previous_.step <= now_.step;
-  auto frame = sensor_->capture(*shared_->renderer, shared_->mutex, now_,
-                                continuous ? previous_ : now_, index);
+  if (meter_ != nullptr) sensor_->set_ev100(meter_->ev100_at(step));
+  PoseFrame& now = keys_.front();
+  const bool continuous = has_previous_ && previous_.step <= now.step;
+  auto frame = sensor_->capture(*shared_->renderer, shared_->mutex, keys,
+                                continuous ? previous_ : now, index);
   on_frame_(std::move(frame));
-  std::swap(now_, previous_);
+  std::swap(now, previous_);
   has_previous_ = true;
 }
 

@@ -39,8 +39,8 @@ class LiveCamera final : public CameraStream {
  private:
   LiveCamera(Simulator& simulator, std::shared_ptr<SharedRenderer> shared, FrameCallback on_frame);
   void run();
-  Snapshot wait_for_work();
-  void capture(const Snapshot& snapshot);
+  SnapshotWindow wait_for_work();
+  void capture(const SnapshotWindow& window);
 
   Simulator& simulator_;
   std::shared_ptr<SharedRenderer> shared_;
@@ -51,7 +51,8 @@ class LiveCamera final : public CameraStream {
   std::unique_ptr<PoseSolver> solver_;
   std::shared_ptr<SnapshotQueue> queue_;
   bool required_ = false;
-  PoseFrame now_, previous_;
+  std::vector<PoseFrame> keys_;  ///< of the window that is exposed
+  PoseFrame previous_;           ///< the first of the window before
   bool has_previous_ = false;
   mutable std::mutex mutex_;
   std::condition_variable changed_;

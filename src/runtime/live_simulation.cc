@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "control/controllers.h"
+#include "geometry/lens.h"
 
 namespace gloam {
 namespace {
@@ -239,7 +240,7 @@ Result<PickResult> LiveSimulation::pick(const CameraFrame& frame, double u, doub
   const std::lock_guard lock(shared->mutex);
   // A picture of one pixel whose centre is (u, v).
   CameraView view;
-  view.X_WC_open = view.X_WC_close = view.X_WC_previous = to_affine(frame.X_WC);
+  view.X_WC_open = view.X_WC_previous = to_affine(frame.X_WC);
   view.intrinsics = frame.intrinsics;
   view.intrinsics.width = view.intrinsics.height = 1;
   view.intrinsics.cx = frame.intrinsics.cx - u + 0.5;
@@ -253,10 +254,13 @@ Result<PickResult> LiveSimulation::pick(const CameraFrame& frame, double u, doub
   if (part == 0) return Error{ErrorKind::kInput, "there is nothing under this pixel"};
 
   const Intrinsics& k = frame.intrinsics;
-  const auto depth = static_cast<double>(film.depth[0]);
-  const double scale = k.orthographic ? 1.0 : depth;
-  const Vec3f p_C{static_cast<float>((u - k.cx) / k.fx * scale),
-                  static_cast<float>(-(v - k.cy) / k.fy * scale), static_cast<float>(-depth)};
+  const auto distance = static_cast<double>(film.distance[0]);
+  double X = (u - k.cx) / k.fx, Y = (v - k.cy) / k.fy, Z = distance, angle = 0;
+  if (!k.orthographic) {
+    lens_unproject(make_lens<double>(k), X, Y, &X, &Y, &Z, &angle);
+    X *= distance, Y *= distance, Z *= distance;
+  }
+  const Vec3f p_C{static_cast<float>(X), static_cast<float>(-Y), static_cast<float>(-Z)};
   const Vec3f p_W = transform_point(view.X_WC_open, p_C);
   const InstanceDescription& instance = shared->description.instances[part - 1];
   const auto body = static_cast<size_t>(instance.body);

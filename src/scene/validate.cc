@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/text.h"
+#include "scene/camera_lens.h"
 #include "scene/option_fields.h"
 #include "scene/validate_imager.h"
 #include "scene/validate_lidar.h"
@@ -127,7 +128,7 @@ Status validate_camera(const CameraOptions& camera) {
                  fmt::format("camera '{}' looks at the point it stands in", camera.name),
                  camera.loc, "move 'look_at' or 'position'"};
   }
-  return {};
+  return validate_lens(camera);
 }
 
 Status validate_render(const RenderOptions& render) {

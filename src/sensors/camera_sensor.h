@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,12 +24,13 @@ namespace gloam {
 /// Which channels of a CameraFrame are filled.
 struct CameraChannels {
   bool rgb = false, radiance = false, samples = false, depth = false, segmentation = false;
-  bool normal = false, albedo = false, motion = false;
-  bool raw = false, sensor_depth = false, events = false, thermal = false;
+  bool normal = false, albedo = false, motion = false, distance = false, scene_flow = false;
+  bool boxes = false, raw = false, sensor_depth = false, events = false, thermal = false;
   static Result<CameraChannels> parse(const std::vector<std::string>& names);
   bool light() const { return rgb || radiance || samples || raw || events; }
   bool geometry() const {
-    return depth || segmentation || normal || albedo || motion || sensor_depth || thermal;
+    return depth || distance || segmentation || normal || albedo || motion || scene_flow ||
+           sensor_depth || thermal;
   }
 };
 
@@ -45,12 +47,21 @@ class CameraSensor {
   static Result<std::unique_ptr<CameraSensor>> create(const RenderDescription& description,
                                                       const CameraRequest& request, uint64_t seed);
 
-  /// Renders the instant of `now`. `renderer_mutex` is held while the shared renderer works, not
-  /// while this sensor denoises and converts. `previous` is the instant of the frame before, for
-  /// motion. Null if the progress callback ended it.
+  /// Renders the exposure that starts with the first of `keys`, which follow each other evenly and
+  /// reach over window(); with a single key the instant of that one. `renderer_mutex` is held while
+  /// the shared renderer works, not while this sensor denoises and converts. `previous` is the
+  /// first key of the frame before, for motion. Null if the progress callback ended it.
+  std::shared_ptr<const CameraFrame> capture(Renderer& renderer, std::mutex& renderer_mutex,
+                                             std::span<const PoseFrame* const> keys,
+                                             const PoseFrame& previous, int64_t frame_index);
   std::shared_ptr<const CameraFrame> capture(Renderer& renderer, std::mutex& renderer_mutex,
                                              const PoseFrame& now, const PoseFrame& previous,
-                                             int64_t frame_index);
+                                             int64_t frame_index) {
+    const PoseFrame* const key = &now;
+    return capture(renderer, renderer_mutex, {&key, 1}, previous, frame_index);
+  }
+  /// From the first row's exposure to the end of the last one's [s]; 0 = an instant.
+  Rational window() const;
 
   /// What an exposure meter says before a capture; without it the exposure is the camera's own.
   void set_ev100(double ev100) { models_->set_ev100(ev100); }
@@ -78,8 +89,12 @@ class CameraSensor {
 
  private:
   CameraSensor(const RenderDescription& description, int camera, const CameraChannels& channels);
+  Shutter shutter(std::span<const PoseFrame* const> keys) const;
   void convert(const PoseFrame& now, int64_t frame_index, const CameraView& view,
                CameraFrame* frame);
+  const CameraDescription& camera() const {
+    return description_.cameras[static_cast<size_t>(camera_)];
+  }
 
   const RenderDescription& description_;
   const int camera_;

@@ -119,7 +119,7 @@ std::vector<float> projector_signal(const RenderDescription& description, const 
       if (film.part[i] == 0) continue;
       const Vec3f ray_C{static_cast<float>((x + 0.5 - k.cx) / k.fx),
                         static_cast<float>(-(y + 0.5 - k.cy) / k.fy), -1};
-      const Vec3f ray = normalize(transform_vector(view.X_WC_close, ray_C));
+      const Vec3f ray = normalize(transform_vector(view.X_WC_open, ray_C));
       const float cosine = std::abs(dot(ray, film.center_normal[i]));
       const auto material = static_cast<size_t>(description.instances[film.part[i] - 1].material);
       signal[i] = luminance(film.center_albedo[i]) * cosine *

@@ -133,8 +133,8 @@ std::vector<float> ThermalCamera::see(const Film& film, const CameraView& view,
         if (has_media_ && !k.orthographic) {
           const Vec3f ray_C{static_cast<float>((x + 0.5 - k.cx) / k.fx),
                             static_cast<float>(-(y + 0.5 - k.cy) / k.fy), -1};
-          radiance = through_media(radiance, view.X_WC_close.p,
-                                   normalize(transform_vector(view.X_WC_close, ray_C)),
+          radiance = through_media(radiance, view.X_WC_open.p,
+                                   normalize(transform_vector(view.X_WC_open, ray_C)),
                                    double{film.distance[i]});
         }
         const auto key = static_cast<uint32_t>(i);

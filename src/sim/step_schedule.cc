@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -51,6 +52,15 @@ Rational exact_rational(double value) {
 int64_t step_at_or_after(Rational time, Rational timestep) {
   return static_cast<int64_t>(ceil_div(static_cast<__int128>(time.num) * timestep.den,
                                        static_cast<__int128>(time.den) * timestep.num));
+}
+
+KeySteps key_steps(Rational duration, Rational timestep) {
+  const int64_t steps = step_at_or_after(duration, timestep);
+  const int64_t most = KeySteps::kMost - 1;
+  KeySteps keys;
+  keys.stride = std::max<int64_t>((steps + most - 1) / most, 1);
+  keys.count = static_cast<int>((steps + keys.stride - 1) / keys.stride) + 1;
+  return keys;
 }
 
 Result<StepSchedule> StepSchedule::make(Rational rate, Rational phase, Rational timestep) {

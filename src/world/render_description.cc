@@ -300,6 +300,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
       if (options.name == camera.name) camera.sensing = options.sensing;
     }
   }
+  GLOAM_TRY_STATUS(set_optics(world.scene, &out.cameras));
   levels = describe_light(m, world.scene, poses, std::move(levels), &simulated.materials(), &out);
   out.center = {static_cast<float>(framing.center.x), static_cast<float>(framing.center.y),
                 static_cast<float>(framing.center.z)};

@@ -16,22 +16,39 @@
 #include "render/cpu/fast_tier.h"
 #include "render/cpu/lidar_scan.h"
 #include "render/cpu/light_guide.h"
+#include "render/cpu/object_cover.h"
 #include "render/cpu/tile.h"
 #include "render/cpu/watch.h"
+#include "render/scene/pose.h"
 
 namespace gloam {
 namespace {
 
-CameraView32 make_camera(const CameraView& view) {
+/// Rotation as a unit quaternion wxyz.
+CameraKey camera_key(const Affine3f& X) {
+  const Quat q = quaternion_of(X);
+  return {X.p,
+          {static_cast<float>(q.w), static_cast<float>(q.x), static_cast<float>(q.y),
+           static_cast<float>(q.z)}};
+}
+
+/// `keys`: room for what it refers to.
+CameraView32 make_camera(const CameraView& view, std::vector<CameraKey>* keys) {
   CameraView32 camera;
   camera.fx = static_cast<float>(view.intrinsics.fx);
   camera.fy = static_cast<float>(view.intrinsics.fy);
   camera.cx = static_cast<float>(view.intrinsics.cx);
   camera.cy = static_cast<float>(view.intrinsics.cy);
   camera.orthographic = view.intrinsics.orthographic;
-  camera.pose = {view.X_WC_open, view.X_WC_close, view.X_WC_previous};
-  const Affine3f &a = view.X_WC_open, &b = view.X_WC_close;
-  camera.pose.moving = !(a.x == b.x && a.y == b.y && a.z == b.z && a.p == b.p);
+  if (!view.intrinsics.orthographic) camera.lens = make_lens<float>(view.intrinsics);
+  camera.shutter = view.shutter;
+  camera.aperture = view.aperture;
+  camera.pose = {view.X_WC_open, view.X_WC_previous, {}};
+  keys->clear();
+  for (const Affine3f& X_WC : view.X_WC_keys) keys->push_back(camera_key(X_WC));
+  const bool moving = std::any_of(view.X_WC_keys.begin(), view.X_WC_keys.end(),
+                                  [&](const Affine3f& X) { return !is_same(X, view.X_WC_open); });
+  if (moving) camera.pose.keys = {keys->data(), static_cast<uint32_t>(keys->size())};
   return camera;
 }
 
@@ -50,6 +67,7 @@ void resize_film(const CameraView& view, const RenderSettings& settings, Film* f
   film->center_normal.resize(exact);
   film->center_albedo.resize(exact);
   film->motion.resize(exact);
+  film->scene_flow.resize(exact);
 }
 
 /// Tile `i` of the order in which tiles are rendered: far apart, so that those which are done tell
@@ -63,13 +81,17 @@ int64_t scattered(int64_t i, int64_t tiles) {
 class CpuRenderer final : public Renderer {
  public:
   CpuRenderer(std::unique_ptr<RenderScene> scene, std::unique_ptr<EmbreeScene> embree)
-      : scene_(std::move(scene)), embree_(std::move(embree)) {}
+      : scene_(std::move(scene)), embree_(std::move(embree)) {
+    for (const InstanceDescription& in : scene_->description().instances)
+      objects_.push_back(in.label.instance);
+  }
 
-  void update(const PoseFrame& open, const PoseFrame& close, const PoseFrame& previous) override {
-    scene_->update(open, close, previous);
+  using Renderer::update;
+  void update(std::span<const PoseFrame* const> keys, const PoseFrame& previous) override {
+    scene_->update(keys, previous);
     const Status status = embree_->update(*scene_);
     GLOAM_CHECK(status.ok(), "the BVH cannot be built: out of memory?");
-    if (!updated_) described_ = scene_->described_look(open);
+    if (!updated_) described_ = scene_->described_look(*keys.front());
     updated_ = true;
   }
 
@@ -77,8 +99,11 @@ class CpuRenderer final : public Renderer {
     GLOAM_CHECK(updated_, "update must come before render");
     const auto start = std::chrono::steady_clock::now();
     resize_film(view, settings, film);
+    film->cover.clear();
     Job job;
-    job.scene = scene_->view_from(view.X_WC_open);
+    job.camera = make_camera(view, &camera_keys_);
+    job.scene = job.camera.pose.keys.empty() ? scene_->view_from(view.X_WC_open)
+                                             : scene_->view_from(view.X_WC_open, view.X_WC_keys);
     job.tracer = embree_->tracer(*scene_);
     if (settings.tier == RenderTier::kPath) {
       if (!has_guide_) guide_.build(job.scene, embree_->static_tracer(*scene_), described_);
@@ -86,7 +111,11 @@ class CpuRenderer final : public Renderer {
       described_ = {};
       job.scene.guide = guide_.view();
     }
-    job.camera = make_camera(view);
+    job.has_motion = !job.camera.pose.keys.empty() || scene_->has_motion();
+    if (settings.cover) {
+      film->cover = measure_cover(job.scene, job.tracer, job.camera, job.has_motion, film->width,
+                                  film->height, objects_);
+    }
     if (settings.tier == RenderTier::kFast) {
       job.scene.environment.row_cdf = {};  // the cache has the sky's light: none is drawn
       FastHistory own;
@@ -113,8 +142,8 @@ class CpuRenderer final : public Renderer {
     job.settings = settings;
     job.path = {settings.max_depth, settings.roulette_depth};
     job.film = film;
-    job.has_motion = job.camera.pose.moving || scene_->has_motion();
-    job.centered = settings.tier == RenderTier::kDirect && settings.spp == 1 && !job.has_motion;
+    job.centered = settings.tier == RenderTier::kDirect && settings.spp == 1 && !job.has_motion &&
+                   !(job.camera.aperture.radius > 0);
     const bool adaptive = settings.error > 0;
     GLOAM_CHECK(!adaptive || (settings.tier == RenderTier::kPath && settings.first_sample == 0 &&
                               settings.spp >= kLeastAdaptiveSpp),
@@ -140,7 +169,10 @@ class CpuRenderer final : public Renderer {
       total.unreached += tile.unreached;
     }
     total.finished = !watch.stopped();
-    if (total.finished && settings.spp > 0 && settings.spp < settings.guide_samples) {
+    // What is blurred has blurred guides: those of the samples.
+    const bool sharp =
+        !(job.camera.aperture.radius > 0) && !(job.has_motion && job.camera.shutter.length > 0);
+    if (total.finished && settings.spp > 0 && settings.spp < settings.guide_samples && sharp) {
       GLOAM_CHECK(settings.exact_channels, "guide samples need the exact channels");
       total.rays += refine_guides({job.scene, job.tracer, job.camera, job.has_motion},
                                   settings.guide_samples, film);
@@ -208,8 +240,10 @@ class CpuRenderer final : public Renderer {
   std::unique_ptr<RenderScene> scene_;
   std::unique_ptr<EmbreeScene> embree_;
   std::vector<RenderStats> tiles_;
-  int columns_ = 0;  ///< of tiles
-  DescribedLook described_;  ///< until the guide is built
+  std::vector<CameraKey> camera_keys_;
+  std::vector<uint16_t> objects_;  ///< by instance
+  int columns_ = 0;                ///< of tiles
+  DescribedLook described_;        ///< until the guide is built
   LightGuideStore guide_;
   bool updated_ = false, has_guide_ = false;
 };
@@ -240,10 +274,14 @@ Result<std::unique_ptr<Renderer>> make_cpu_renderer(const RenderDescription& des
   return std::unique_ptr<Renderer>(new CpuRenderer(std::move(scene), std::move(embree)));
 }
 
-CameraView view_at(const RenderDescription& description, int camera, const PoseFrame& open,
-                   const PoseFrame& close, const PoseFrame& previous) {
+CameraView view_at(const RenderDescription& description, int camera,
+                   std::span<const PoseFrame* const> keys, const PoseFrame& previous) {
   const CameraDescription& in = description.cameras[static_cast<size_t>(camera)];
-  return {in.intrinsics, camera_pose(in, open), camera_pose(in, close), camera_pose(in, previous)};
+  CameraView view{in.intrinsics, camera_pose(in, *keys.front()), camera_pose(in, previous)};
+  if (keys.size() > 1) {
+    for (const PoseFrame* key : keys) view.X_WC_keys.push_back(camera_pose(in, *key));
+  }
+  return view;
 }
 
 }  // namespace gloam

@@ -47,7 +47,8 @@ class TileRequests {
 /// Four by four pixels, or half of them, and the rays through them.
 struct PixelBlock {
   int x = 0, y = 0;
-  MaskLanes active = false;
+  MaskLanes inside = false;  ///< of the picture
+  MaskLanes active = false;  ///< and the lens sees something there
   UintLanes px, py;
   RayOf<F> ray;
   F width, spread;
@@ -63,7 +64,9 @@ PixelBlock make_block(const CameraView32& camera, const FastFrame& frame, int x,
     RayCone cone;
     const Ray ray = camera_ray(camera, static_cast<float>(column) + 0.5f + offset.x,
                                static_cast<float>(row) + 0.5f + offset.y, 0, &cone);
-    set_lane(&block.active, i, column < frame.width && row < frame.height);
+    const bool inside = column < frame.width && row < frame.height;
+    set_lane(&block.inside, i, inside);
+    set_lane(&block.active, i, inside && sees(ray));
     set_lane(&block.px, i, static_cast<uint32_t>(column));
     set_lane(&block.py, i, static_cast<uint32_t>(row));
     set_lane(&block.ray.o, i, ray.o);
@@ -119,13 +122,13 @@ void store(const PixelBlock& block, const FastSampleOf<F>& sample, Vec2Of<F> mot
   frame->p.store_block(x, y, sample.p);
   frame->n.store_block(x, y, sample.normal);
   const F part = select(sample.solid, to_float(sample.hit.instance) + 1.0f, F(0.0f));
-  frame->part.store_block(x, y, select(block.active, part, F(-1.0f)));
+  frame->part.store_block(x, y, select(block.inside, part, F(-1.0f)));
   frame->distance.store_block(x, y, select(sample.solid, sample.hit.t, F(1e20f)));
   frame->roughness.store_block(x, y, sample.roughness);
   frame->near.store_block(x, y, sample.near);
   frame->motion_x.store_block(x, y, motion.x);
   frame->motion_y.store_block(x, y, motion.y);
-  each_lane(block.active, [&](int i) {
+  each_lane(block.inside, [&](int i) {
     const size_t pixel = static_cast<size_t>(y + i / 4) * frame->width + x + i % 4;
     frame->key[pixel] = lane(sample.solid, i) ? requests[i].key : 0;
   });

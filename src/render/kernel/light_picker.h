@@ -19,7 +19,9 @@ template <class F>
 GLOAM_HD F light_weight(const SceneView& scene, const LightView& light, Vec3Of<F> p, Vec3Of<F> n,
                         MaskOf<F> both_sides = false) {
   const MaskOf<F> floats = !(length_squared(n) > 0.0f);
+  const bool turns = light.first_key >= 0;
   if (light.kind == LightKind::kDirectional) {
+    if (turns) return light.strength;
     F cosine = -dot(in_all_lanes<F>(light.direction), n);
     cosine = select(floats, F(1.0f), select(both_sides, magnitude(cosine), cosine));
     return select(cosine > -light.radius, light.strength * (max(cosine, 0.0f) + 0.05f), F(0.0f));
@@ -33,7 +35,7 @@ GLOAM_HD F light_weight(const SceneView& scene, const LightView& light, Vec3Of<F
   const F cosine = min(height * square_root(inv_d2), 1.0f);
   F weight = select(height > 0.0f, light.strength * inv_d2 * (cosine + 0.05f), F(0.0f));
   // Outside the cone of a spot nothing arrives.
-  if (light.kind == LightKind::kSpot || light.profile >= 0) {
+  if (!turns && (light.kind == LightKind::kSpot || light.profile >= 0)) {
     weight *= lamp_share(scene, light, -to / square_root(max(distance2, 1e-12f)));
   }
   return weight;
@@ -194,13 +196,11 @@ class LightPickerOf {
 };
 using LightPicker = LightPickerOf<float>;
 
-/// Light i of lamps and suns, as in visible_lights. `probability`: of taking it at `from`.
+/// A lamp or sun that stands still, as in visible_lights. `probability`: of taking it at `from`.
 template <class F, class Probability, class Passing>
-GLOAM_HD Vec3Of<F> visible_light(const SceneView& scene, uint32_t i, const RayOf<F>& ray, F tmax,
-                                 Vec3Of<F> from, F pdf_bsdf, MaskOf<F> active,
-                                 const Probability& probability, const Passing& passing) {
-  const LightView& light = scene.lights[i];
-  if (light.is_delta || !light.casts_shadow || light.kind == LightKind::kInstance) return {};
+GLOAM_HD Vec3Of<F> still_light(const SceneView& scene, const LightView& light, const RayOf<F>& ray,
+                               F tmax, Vec3Of<F> from, F pdf_bsdf, MaskOf<F> active,
+                               const Probability& probability, const Passing& passing) {
   const float r2 = light.radius * light.radius;
   Vec3Of<F> radiance;
   F sin2 = r2, t = tmax;
@@ -227,6 +227,29 @@ GLOAM_HD Vec3Of<F> visible_light(const SceneView& scene, uint32_t i, const RayOf
   }
   const F pdf = probability() * cone_pdf(one_minus_cos_of(sin2));
   return select<F>(seen, radiance * mis_weight(pdf_bsdf, pdf), Vec3Of<F>{});
+}
+
+/// Light i of lamps and suns, as in visible_lights. `probability`: of taking it at `from`.
+template <class F, class Probability, class Passing>
+GLOAM_HD Vec3Of<F> visible_light(const SceneView& scene, uint32_t i, const RayOf<F>& ray, F tmax,
+                                 Vec3Of<F> from, F pdf_bsdf, MaskOf<F> active,
+                                 const Probability& probability, const Passing& passing) {
+  const LightView& light = scene.lights[i];
+  if (light.is_delta || !light.casts_shadow || light.kind == LightKind::kInstance) return {};
+  if (light.first_key < 0) {
+    return still_light(scene, light, ray, tmax, from, pdf_bsdf, active, probability, passing);
+  }
+  Vec3Of<F> sum;
+  each_lane(active, [&](int at) {
+    const Ray one = lane(ray, at);
+    const float chance = lane(F(probability()), at);
+    set_lane(&sum, at,
+             still_light<float>(
+                 scene, light_at(scene, light, one.time), one, lane(tmax, at), lane(from, at),
+                 lane(pdf_bsdf, at), true, [&] { return chance; },
+                 [&](int, float t) { return passing(at, t); }));
+  });
+  return sum;
 }
 
 /// Light of lamps and suns that the scattered rays of the `active` lanes meet before `tmax`, each

@@ -18,8 +18,12 @@ struct TriangleUv {
 };
 
 struct MeshView {
-  DeviceSpan<const Vec3f> positions;  ///< frame G [m]; deformables: world, shutter open
-  DeviceSpan<const Vec3f> positions_close, positions_previous;  ///< deformables only
+  DeviceSpan<const Vec3f> positions;           ///< frame G [m]; deformables: world, shutter open
+  DeviceSpan<const Vec3f> positions_previous;  ///< deformables only
+  /// Of deformables that move while the shutter is open: the positions at key_count times, one key
+  /// after the other.
+  DeviceSpan<const Vec3f> position_keys;
+  uint32_t key_count = 0;
   DeviceSpan<const uint32_t> indices;
   DeviceSpan<const Vec3f> corner_normals;  ///< three per triangle; empty = flat
   DeviceSpan<const TriangleUv> uvs;        ///< one per triangle; empty = none
@@ -29,7 +33,7 @@ struct MeshView {
 
 struct InstanceView {
   ShapeType shape = ShapeType::kBox;
-  bool moving = false;     ///< X_WG differs between shutter open and close
+  bool moving = false;     ///< while the shutter is open: `keys` holds poses that differ
   bool has_moved = false;  ///< X_WG_previous differs from X_WG
   uint32_t material = 0;
   uint32_t mesh = 0;
@@ -37,7 +41,9 @@ struct InstanceView {
   Vec3f size;       ///< [m]
   Vec3f half_size;  ///< of the object that textures are fitted to [m]
   Affine3f X_WG;    ///< at shutter open
-  Affine3f X_WG_close, X_WG_previous;
+  Affine3f X_WG_previous;
+  DeviceSpan<const Affine3f>
+      keys;  ///< evenly over times 0 … 1, the first is X_WG; empty unless moving
 };
 
 struct TextureLevel {
@@ -113,12 +119,19 @@ struct LightView {
   float reach = 0;     ///< radius of a sphere about p that holds all of it [m]
   uint32_t instance = 0;  ///< kInstance
   int guide = -1;         ///< row of LightGuide::visible; -1 = it moves, or has none
+  int first_key = -1;     ///< row of SceneView::light_keys of lamps and suns that move while the
+                          ///< shutter is open: then p, reach and half bound the way, and spread all
   // Bounds for the tree; not of directional lights.
   Vec3f half;          ///< half the size of a box about p that holds all of it [m]
   float spread = kPi;  ///< angle from `direction` up to which it shines in full [rad]
   float falloff = 0;   ///< angle beyond that over which it fades to nothing [rad]
 
   friend bool operator==(const LightView&, const LightView&) = default;
+};
+
+/// Where a lamp or sun is at one instant; as in LightView.
+struct LightKey {
+  Vec3f p, direction, x;
 };
 
 /// IesProfile's grid relative to its most.
@@ -214,6 +227,8 @@ struct SceneView {
   DeviceSpan<const TextureLevel> texture_levels;
   DeviceSpan<const Texel> texels;
   DeviceSpan<const LightView> lights;
+  DeviceSpan<const LightKey> light_keys;  ///< light_key_count of every light that moves
+  uint32_t light_key_count = 0;
   DeviceSpan<const ProfileView> profiles;
   DeviceSpan<const float> profile_values;
   LightTreeView light_tree;  ///< of scenes with more than kMaxWeighedLights
@@ -233,11 +248,22 @@ struct SceneView {
   bool has_visible_lights = false;  ///< some sphere or sun can be hit
 };
 
+/// The place of a time 0 … 1 among `count` >= 2 keys: the key before it, and the share of the way
+/// to the next.
+GLOAM_HD uint32_t key_before(uint32_t count, float time, float* share) {
+  const float at = clamp(time, 0.0f, 1.0f) * static_cast<float>(count - 1);
+  const uint32_t key = static_cast<uint32_t>(min(at, static_cast<float>(count - 2)));
+  *share = at - static_cast<float>(key);
+  return key;
+}
+
 /// Pose of an instance at a time in the shutter (linear between the keys, as Embree does);
 /// `between` is room for it.
 GLOAM_HD const Affine3f& pose_at(const InstanceView& instance, float time, Affine3f* between) {
   if (!instance.moving || time == 0) return instance.X_WG;
-  *between = lerp(instance.X_WG, instance.X_WG_close, time);
+  float share;
+  const uint32_t key = key_before(instance.keys.size, time, &share);
+  *between = lerp(instance.keys[key], instance.keys[key + 1], share);
   return *between;
 }
 GLOAM_HD Affine3f pose_at(const InstanceView& instance, float time) {
@@ -246,9 +272,10 @@ GLOAM_HD Affine3f pose_at(const InstanceView& instance, float time) {
 }
 
 GLOAM_HD Vec3f mesh_vertex(const MeshView& mesh, uint32_t i, float time) {
-  const Vec3f p = mesh.positions[i];
-  if (mesh.positions_close.empty() || time == 0) return p;
-  return lerp(p, mesh.positions_close[i], time);
+  if (mesh.position_keys.empty() || time == 0) return mesh.positions[i];
+  float share;
+  const uint32_t row = key_before(mesh.key_count, time, &share) * mesh.positions.size + i;
+  return lerp(mesh.position_keys[row], mesh.position_keys[row + mesh.positions.size], share);
 }
 
 }  // namespace gloam

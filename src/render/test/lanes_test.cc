@@ -199,7 +199,7 @@ TEST_P(LanePaths, EqualThoseOfOneFloat) {
   camera.fx = camera.fy = static_cast<float>(view.intrinsics.fx);
   camera.cx = static_cast<float>(view.intrinsics.cx);
   camera.cy = static_cast<float>(view.intrinsics.cy);
-  camera.pose = {view.X_WC_open, view.X_WC_open, view.X_WC_open};
+  camera.pose = {view.X_WC_open, view.X_WC_open, {}};
   const PathOptions options{6, 2};
   int different = 0, lit = 0;
   for (int first = 0; first < 64 * 48; first += kLaneCount) {

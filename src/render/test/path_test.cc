@@ -115,7 +115,7 @@ Mean one_technique(const Probe& probe, const CameraView& view, bool by_light, in
   camera.fx = camera.fy = static_cast<float>(view.intrinsics.fx);
   camera.cx = static_cast<float>(view.intrinsics.cx);
   camera.cy = static_cast<float>(view.intrinsics.cy);
-  camera.pose = {view.X_WC_open, view.X_WC_open, view.X_WC_open};
+  camera.pose = {view.X_WC_open, view.X_WC_open, {}};
   for (uint32_t i = 0; i < static_cast<uint32_t>(draws); ++i) {
     Sampler sampler = draw(i, 77);
     RayCone cone;
@@ -204,7 +204,7 @@ TEST(Path, LampsCloseToASurfaceLoseNothing) {
   CameraView32 camera;
   camera.fx = camera.fy = static_cast<float>(view.intrinsics.fx);
   camera.cx = camera.cy = 12;
-  camera.pose = {view.X_WC_open, view.X_WC_open, view.X_WC_open};
+  camera.pose = {view.X_WC_open, view.X_WC_open, {}};
   for (uint32_t i = 0; i < 1000000; ++i) {
     Sampler sampler = draw(i, 3);
     RayCone cone;

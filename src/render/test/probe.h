@@ -15,7 +15,8 @@ class Probe {
     auto scene = RenderScene::make(builder_.description);
     GLOAM_CHECK(scene.ok(), "the test's scene is refused");
     scene_ = std::move(*scene);
-    scene_->update(builder_.frame, builder_.frame, builder_.frame);
+    const PoseFrame* const key = &builder_.frame;
+    scene_->update({&key, 1}, builder_.frame);
     embree_ = std::move(*EmbreeScene::make());
     GLOAM_CHECK(embree_->update(*scene_).ok(), "the test's BVH fails");
     view = scene_->view_from({});
