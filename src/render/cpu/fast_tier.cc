@@ -23,24 +23,25 @@ float cell_edge(const CameraView32& camera) { return min(kCellPixels / camera.fx
 /// Requests of one tile: of each cell, one place by chance.
 class TileRequests {
  public:
+  explicit TileRequests(std::vector<CacheRequest>* list) : list_(*list) { list_.clear(); }
+
   void add(const CacheRequest& request, uint32_t dice) {
     if (request.key == 0) return;
     Slot& slot = slots_[caches::slot_of(request.key, kSlots)];
     if (slot.key != request.key) {
-      slot = {request.key, static_cast<uint32_t>(list.size()), 0};
-      list.push_back(request);
+      slot = {request.key, static_cast<uint32_t>(list_.size()), 0};
+      list_.push_back(request);
     }
-    if (dice % ++slot.count == 0) list[slot.row] = request;
+    if (dice % ++slot.count == 0) list_[slot.row] = request;
   }
 
-  std::vector<CacheRequest> list;
-
  private:
-  static constexpr size_t kSlots = 1024;
+  static constexpr size_t kSlots = 256;
   struct Slot {
     uint64_t key = 0;
     uint32_t row = 0, count = 0;
   };
+  std::vector<CacheRequest>& list_;
   Slot slots_[kSlots];
 };
 
@@ -146,11 +147,11 @@ void FastHistory::trace(const SceneView& scene, const EmbreeTracer& tracer,
   const bool still = a.x == b.x && a.y == b.y && a.z == b.z && a.p == b.p;
   const int columns = (now_.width + kTile - 1) / kTile, rows = (now_.height + kTile - 1) / kTile;
   const Vec2f turn = pattern.next_2d();
-  std::vector<TileRequests> asked(static_cast<size_t>(columns) * rows);
-  std::vector<uint64_t> rays(asked.size());
-  parallel_for("fast tiles", static_cast<int64_t>(asked.size()), [&](int64_t tile) {
+  asked_.resize(static_cast<size_t>(columns) * rows);
+  std::vector<uint64_t> rays(asked_.size());
+  parallel_for("fast tiles", static_cast<int64_t>(asked_.size()), [&](int64_t tile) {
     const FlushDenormals flush;
-    TileRequests& mine = asked[static_cast<size_t>(tile)];
+    TileRequests mine(&asked_[static_cast<size_t>(tile)]);
     for (int first = 0; first < kTile * kTile; first += kLaneCount) {
       int x, y;
       tile_pixel(first, &x, &y);
@@ -177,8 +178,8 @@ void FastHistory::trace(const SceneView& scene, const EmbreeTracer& tracer,
     }
   });
   requests_.clear();
-  for (const TileRequests& t : asked)
-    requests_.insert(requests_.end(), t.list.begin(), t.list.end());
+  for (const std::vector<CacheRequest>& list : asked_)
+    requests_.insert(requests_.end(), list.begin(), list.end());
   for (const uint64_t r : rays) rays_ += r;
 }
 

@@ -25,6 +25,7 @@ class FastHistory final : public ViewHistory {
   IrradianceCache cache_;
   FastFrame now_, before_;
   FastFilter filter_;
+  std::vector<std::vector<CacheRequest>> asked_;  ///< by tile
   std::vector<CacheRequest> requests_;
   uint64_t rays_ = 0;
   uint32_t pictures_ = 0;  ///< taken, those of one instant too
