@@ -11,35 +11,9 @@
 namespace gloam {
 namespace {
 
-bool is_infinite_plane(const InstanceView& instance) {
-  return instance.shape == ShapeType::kPlane && (instance.size.x <= 0 || instance.size.y <= 0);
-}
-/// Drawn, in one place, of finite extent.
-bool stands_still(const RenderScene& scene, size_t i) {
-  const InstanceView& in = scene.instances()[i];
-  return scene.is_fixed(i) && scene.is_drawn(i) && in.shape != ShapeType::kDeformable &&
-         !is_infinite_plane(in);
-}
-
 /// So many solids that stand still are scanned: 40 take half the time that they take in a BVH, and
 /// the time grows with their number.
 constexpr size_t kMaxScanned = 64;
-
-/// Of an analytic shape.
-Bounds exact_bounds(ShapeType shape, Vec3f size, const Affine3f& X) {
-  Vec3f h = shape_half_size(shape, size);
-  if (shape == ShapeType::kCapsule) h.z += size.x;
-  if (shape == ShapeType::kPlane) h.z = 0;
-  const auto reach = [&](float x, float y, float z) {
-    return fabsf(x) * h.x + fabsf(y) * h.y + fabsf(z) * h.z;
-  };
-  const Vec3f r{reach(X.x.x, X.y.x, X.z.x), reach(X.x.y, X.y.y, X.z.y), reach(X.x.z, X.y.z, X.z.z)};
-  return {X.p - r, X.p + r};
-}
-Bounds wider(const Bounds& b) {
-  const Vec3f room = (b.high - b.low) * 1e-5f + Vec3f{1e-6f, 1e-6f, 1e-6f};
-  return {b.low - room, b.high + room};
-}
 
 /// Over the whole time of the shutter.
 Bounds bounds_of(RTCScene scene) {
@@ -52,17 +26,9 @@ Bounds bounds_of(RTCScene scene) {
                  max(open.upper_z, close.upper_z)}});
 }
 
-bool lies_along_axes(const Affine3f& X) {
-  const auto is_axis = [](Vec3f v) {
-    return max_component(Vec3f{fabsf(v.x), fabsf(v.y), fabsf(v.z)}) > 1 - 1e-6f &&
-           fabsf(v.x) + fabsf(v.y) + fabsf(v.z) < 1 + 1e-6f;
-  };
-  return is_axis(X.x) && is_axis(X.y) && is_axis(X.z);
-}
-
-void shape_bounds(const RTCBoundsFunctionArguments* args) {
+void bound_shape(const RTCBoundsFunctionArguments* args) {
   const ShapeGeometry& g = *static_cast<const ShapeGeometry*>(args->geometryUserPtr);
-  const Bounds b = wider(exact_bounds(g.shape, g.size, g.X_SG));
+  const Bounds b = wider(shape_bounds(g.shape, g.size, g.X_SG));
   *args->bounds_o = {b.low.x, b.low.y, b.low.z, 0, b.high.x, b.high.y, b.high.z, 0};
 }
 
@@ -168,35 +134,10 @@ RtcOwner<RTCGeometry> EmbreeScene::shape_geometry(ShapeType shape, Vec3f size,
   shape_data_.push_back(std::make_unique<ShapeGeometry>(ShapeGeometry{shape, size, X_SG}));
   rtcSetGeometryUserPrimitiveCount(geometry.get(), 1);
   rtcSetGeometryUserData(geometry.get(), shape_data_.back().get());
-  rtcSetGeometryBoundsFunction(geometry.get(), shape_bounds, nullptr);
+  rtcSetGeometryBoundsFunction(geometry.get(), bound_shape, nullptr);
   rtcSetGeometryIntersectFunction(geometry.get(), shape_intersect);
   rtcSetGeometryOccludedFunction(geometry.get(), shape_occluded);
   return geometry;
-}
-
-bool EmbreeScene::is_scanned(size_t instance) const {
-  return std::any_of(solids_.begin(), solids_.end(),
-                     [&](const ScannedSolid& solid) { return solid.row == instance; });
-}
-
-/// Takes the largest: most rays end there.
-void EmbreeScene::choose_scanned(const RenderScene& scene) {
-  const std::vector<InstanceView>& instances = scene.instances();
-  std::vector<std::pair<float, uint32_t>> by_area;
-  for (size_t i = 0; i < instances.size(); ++i) {
-    const InstanceView& in = instances[i];
-    if (!stands_still(scene, i) || is_mesh(in.shape)) continue;
-    by_area.push_back({-shape_area(in.shape, in.size), static_cast<uint32_t>(i)});
-  }
-  std::sort(by_area.begin(), by_area.end());
-  by_area.resize(std::min(by_area.size(), kMaxScanned));
-  for (const auto& [area, row] : by_area) {
-    const InstanceView& in = instances[row];
-    const Bounds bounds = exact_bounds(in.shape, in.size, in.X_WG);
-    const bool is_bounds = in.shape == ShapeType::kBox && lies_along_axes(in.X_WG);
-    solids_.push_back({is_bounds ? bounds : wider(bounds), is_bounds, row});
-    rows_.push_back(row);
-  }
 }
 
 void EmbreeScene::build_fixed(const RenderScene& scene) {
@@ -205,7 +146,7 @@ void EmbreeScene::build_fixed(const RenderScene& scene) {
   const std::vector<InstanceView>& instances = scene.instances();
   for (size_t i = 0; i < instances.size(); ++i) {
     const InstanceView& in = instances[i];
-    if (!stands_still(scene, i) || is_scanned(i)) continue;
+    if (!stands_still(scene, i) || scanned_.holds(i)) continue;
     RtcOwner<RTCGeometry> geometry;
     if (is_mesh(in.shape)) {
       const MeshView& mesh = scene.meshes()[in.mesh];
@@ -279,15 +220,9 @@ void EmbreeScene::build(const RenderScene& scene) {
   shapes_.clear();
   shape_data_.clear();
   rows_.clear();
-  planes_.clear();
-  solids_.clear();
-  for (size_t i = 0; i < scene.instances().size(); ++i) {
-    if (is_infinite_plane(scene.instances()[i]) && scene.is_drawn(i)) {
-      planes_.push_back(static_cast<uint32_t>(i));
-    }
-  }
   build_moving(scene);
-  choose_scanned(scene);
+  scanned_ = ScanTable::choose(scene, kMaxScanned, 0);
+  for (const ScannedSolid& solid : scanned_.solids) rows_.push_back(solid.row);
   build_fixed(scene);
 }
 
@@ -353,7 +288,7 @@ EmbreeTracer EmbreeScene::tracer(const RenderScene& scene) const {
   if (moving_ != nullptr) tracer.moving = {moving_.get(), bounds_of(moving_.get())};
   tracer.rows = span(rows_);
   tracer.first_still = static_cast<uint32_t>(moving_geometries_.size());
-  tracer.scanned = {span(planes_), span(solids_), span(scene.instances())};
+  tracer.scanned = scanned_.list(scene);
   return tracer;
 }
 

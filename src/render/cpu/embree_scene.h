@@ -11,7 +11,7 @@
 
 #include "render/cpu/embree_tracer.h"
 #include "render/kernel/shapes.h"
-#include "render/scene/render_scene.h"
+#include "render/scene/scan_table.h"
 
 namespace gloam {
 
@@ -48,8 +48,6 @@ class EmbreeScene {
 
   EmbreeScene() = default;
   void build(const RenderScene& scene);
-  void choose_scanned(const RenderScene& scene);
-  bool is_scanned(size_t instance) const;
   void build_fixed(const RenderScene& scene);
   void build_moving(const RenderScene& scene);
   void build_shapes(const RenderScene& scene);
@@ -66,8 +64,7 @@ class EmbreeScene {
   std::vector<RtcOwner<RTCGeometry>> moving_geometries_;
   /// Embree id -> instance: those of moving_, then the scanned solids, then those of fixed_.
   std::vector<uint32_t> rows_;
-  std::vector<uint32_t> planes_;
-  std::vector<ScannedSolid> solids_;
+  ScanTable scanned_;
   std::optional<uint64_t> drawn_version_;                   ///< of the scene that is built
   std::vector<std::unique_ptr<ShapeGeometry>> shape_data_;  ///< Embree keeps pointers to them
 };

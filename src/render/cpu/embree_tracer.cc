@@ -86,6 +86,7 @@ void EmbreeTracer::resolve(uint32_t instance_id, uint32_t geometry_id, float tim
 
 bool EmbreeTracer::trace(const Ray& ray, bool any, RayHit* hit) const {
   if (!is_ray(ray)) return false;
+  if (own) return own->trace(ray, any, hit);
   float tmax = ray.tmax;
   const uint32_t row = scan(scanned, ray, true, any, &tmax);
   if (any && row != 0) return true;
@@ -125,6 +126,16 @@ bool EmbreeTracer::occluded(const Ray& ray, bool active) const {
 
 MaskLanes EmbreeTracer::closest(const RayOf<FloatLanes>& ray, MaskLanes active, bool coherent,
                                 RayHitOf<FloatLanes>* hit) const {
+  if (own) {
+    MaskLanes met = false;
+    each_lane(active, [&](int i) {
+      RayHit one;
+      if (!trace(lane(ray, i), false, &one)) return;
+      set_lane(&met, i, true);
+      set_lane(hit, i, one);
+    });
+    return met;
+  }
   active = active & is_ray(ray);
   FloatLanes tmax = ray.tmax;
   const UintLanes row = scan(scanned, ray, active, false, &tmax);
@@ -165,6 +176,14 @@ MaskLanes EmbreeTracer::closest(const RayOf<FloatLanes>& ray, MaskLanes active, 
 }
 
 MaskLanes EmbreeTracer::occluded(const RayOf<FloatLanes>& ray, MaskLanes active) const {
+  if (own) {
+    MaskLanes met = false;
+    each_lane(active, [&](int i) {
+      RayHit none;
+      set_lane(&met, i, trace(lane(ray, i), true, &none));
+    });
+    return met;
+  }
   active = active & is_ray(ray);
   FloatLanes tmax = ray.tmax;
   MaskLanes blocked = active & (scan(scanned, ray, active, true, &tmax) != 0u);

@@ -1,10 +1,12 @@
 #pragma once
-// What the kernel traces with: a short list that is scanned, and Embree's traversal of the rest.
+// What the kernel traces with: a short list that is scanned, and Embree's traversal of the rest; or
+// our own BVH for all of it.
 
 #include <embree3/rtcore.h>
 
-#include "render/cpu/scan.h"
-#include "render/kernel/scene_view.h"
+#include <optional>
+
+#include "render/kernel/bvh_tracer.h"
 
 namespace gloam {
 
@@ -37,6 +39,8 @@ class EmbreeTracer {
   DeviceSpan<const uint32_t> rows;  ///< Embree id -> instance, what moves first
   uint32_t first_still = 0;         ///< id of the first that never moves
   ScanList scanned;
+  /// Of our own BVH, which then answers for all that is above.
+  std::optional<BvhTracer> own;
 
  private:
   void resolve(uint32_t instance_id, uint32_t geometry_id, float time, RayHit* hit) const;

@@ -9,9 +9,6 @@
 
 namespace gloam {
 
-/// Scenes with more lights select by a tree.
-inline constexpr uint32_t kMaxWeighedLights = 16;
-
 /// A bound, up to a factor, of what the light brings to the surface at p with the geometric normal
 /// n if nothing is in between; zero only if it brings nothing. Light from behind counts where the
 /// surface lets it through; points in a medium (n = 0) take it from all around.
@@ -59,7 +56,7 @@ class LightPickerOf {
     Mask guided = false;
     sky_strength_ = select(active & both_sides, F(0.0f), sky_strength_);
     if (scene.guide.nx > 0) find_rows(scene.guide, p, n, active & !both_sides, &first, &guided);
-    const bool weighs = count_ <= kMaxWeighedLights;
+    const bool weighs = !scene.has_many_lights();
     F weight[kMaxWeighedLights], total = 0.0f;
     for (uint32_t i = 0; weighs && i < count_; ++i) {
       const LightView& light = scene.lights[i];
@@ -77,7 +74,7 @@ class LightPickerOf {
       const F cosine = dot(sky_axis_, n) + reach;
       cone = select(narrow & (cosine > 0.0f), sky_strength_ * (min(cosine, 1.0f) + 0.05f), F(0.0f));
     }
-    if (!scene.environment.row_cdf.empty()) {
+    if (scene.has_environment() && !scene.environment.row_cdf.empty()) {
       // Of even light from all around a surface gets a quarter. Beside a cone the map is for what
       // is so bright and small that cones and guides miss it.
       const F even = 0.25f * scene.environment.illuminance;
@@ -111,7 +108,7 @@ class LightPickerOf {
   GLOAM_HD F shares(uint32_t i) const { return share_[i]; }
   /// Probability of taking light i in the lane `at`.
   GLOAM_HD float probability(const SceneView& scene, uint32_t i, int at) const {
-    if (count_ <= kMaxWeighedLights) return lane(share_[i], at);
+    if (!scene.has_many_lights()) return lane(share_[i], at);
     return lane(lights_share_, at) *
            light_tree::probability(scene.light_tree, i, lane(p_, at), lane(n_, at));
   }
@@ -129,7 +126,7 @@ class LightPickerOf {
       open = active & !sky;
       pick -= sky_share;
     }
-    if (count_ > kMaxWeighedLights) {
+    if (scene.has_many_lights()) {
       pick = clamp(pick / lights_share_, 0.0f, 0.9999999f);
       each_lane(open, [&](int i) {
         set_lane(&out, i,
@@ -238,7 +235,7 @@ GLOAM_HD Vec3Of<F> visible_light(const SceneView& scene, uint32_t i, const RayOf
                (lamp_share(scene, light, -to / square_root(d2)) / (kPi * r2));
     sin2 = min(r2 / d2, 1.0f);
   }
-  if (!scene.media.volumes.empty()) {
+  if (scene.has_media()) {
     each_lane(seen, [&](int at) {
       set_lane(&radiance, at, lane(radiance, at) * passing(at, lane(t, at)));
     });
@@ -255,7 +252,7 @@ GLOAM_HD Vec3Of<F> visible_lights(const SceneView& scene, const RayOf<F>& ray, F
                                   Vec3Of<F> from, const LightPickerOf<F>& picker, F pdf_bsdf,
                                   MaskOf<F> active, const Passing& passing) {
   Vec3Of<F> sum;
-  if (scene.lights.size <= kMaxWeighedLights) {
+  if (!scene.has_many_lights()) {
     for (uint32_t i = 0; i < scene.lights.size; ++i) {
       sum += visible_light(
           scene, i, ray, tmax, from, pdf_bsdf, active, [&] { return picker.shares(i); }, passing);
