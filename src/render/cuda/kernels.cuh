@@ -70,7 +70,7 @@ __device__ __forceinline__ void store_mean(const DevicePicture& p, size_t pixel,
     before.normal = film.normal[pixel];
     if (film.squares != nullptr) before.squares = film.squares[pixel];
     before.count = p.done;
-    before.add(mean);
+    before.merge(mean);
     mean = before;
   }
   film.radiance[pixel] = mean.radiance;
@@ -99,14 +99,23 @@ __global__ void __launch_bounds__(kBlock, GLOAM_CUDA_BLOCKS)
   PixelMean mean;
   uint32_t rays = 0;
   if (at.inside) {
-    const int begin = p.samples * at.group / p.split, end = p.samples * (at.group + 1) / p.split;
-    for (int i = begin; i < end; ++i) {
-      RayCone cone;
-      Sampler sampler;
-      const Ray ray = sample_ray(p, at, p.first_sample + i, false, &cone, &sampler);
-      const PathResult result = run_path(scene, p.tracer, ray, cone, p.path, sampler);
-      mean.add(result);
-      rays += result.rays;
+    const int end = p.samples * (at.group + 1) / p.split;
+    int next = p.samples * at.group / p.split;
+    PathMachine path;
+    // A lane whose path has ended starts the next at once: it does not wait for its warp.
+    for (bool running = false; running || next < end;) {
+      if (!running) {
+        RayCone cone;
+        Sampler sampler;
+        const Ray ray = sample_ray(p, at, p.first_sample + next++, false, &cone, &sampler);
+        path.start(ray, cone, sampler);
+      }
+      RayHit hit;
+      const bool found = p.tracer.trace(path.ray(), path.any_hit(scene), &hit);
+      running = path.advance(scene, p.path, found, hit);
+      if (running) continue;
+      mean.add(path.result());
+      rays += path.result().rays;
     }
   }
   count_rays(p.film, rays);
@@ -114,7 +123,7 @@ __global__ void __launch_bounds__(kBlock, GLOAM_CUDA_BLOCKS)
     shares[threadIdx.x] = mean;
     __syncthreads();
     if (at.group > 0) return;
-    for (int k = 1; k < p.split; ++k) mean.add(shares[threadIdx.x + k * kWarp]);
+    for (int k = 1; k < p.split; ++k) mean.merge(shares[threadIdx.x + k * kWarp]);
   }
   if (at.inside) store_mean(p, at.pixel(p.width), mean);
 }

@@ -20,7 +20,7 @@ struct PixelMean {
     normal += (sample.normal - normal) * weight;
   }
   /// Adds the samples of another part (Chan, Golub and LeVeque 1979).
-  GLOAM_HD void add(const PixelMean& part) {
+  GLOAM_HD void merge(const PixelMean& part) {
     if (part.count == 0) return;
     const int both = count + part.count;
     const float weight = static_cast<float>(part.count) / static_cast<float>(both);

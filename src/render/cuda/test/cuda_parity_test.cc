@@ -111,6 +111,12 @@ std::vector<Case> cases() {
                           {-2 + 0.1f * static_cast<float>(i), 2 - 0.1f * static_cast<float>(i), 2});
   }
   all.push_back(crowd);
+  Case smoke{"smoke over layers", all_shapes(rich_material), {}, usual_view()};
+  MediaBuilder media;
+  media.add_box({3, 3, 2}, {0, 0, 1}, 0.4f, media.add_medium({1, 1.2f, 1.5f}, {0.8f, 0.7f, 0.6f}));
+  smoke.scene.description.media = media.media;
+  smoke.scene.description.volumes = media.volumes;
+  all.push_back(smoke);
   for (Case& c : all) {
     c.close = c.scene.frame;
     if (!c.moves) continue;
