@@ -99,6 +99,9 @@ Result<std::unique_ptr<Renderer>> make_cpu_renderer(const RenderDescription& des
 /// Renders on the first NVIDIA card what it has stages for (path and direct tier, exact channels),
 /// the rest on the CPU. Errors: as above; no CUDA in this build, no card.
 Result<std::unique_ptr<Renderer>> make_cuda_renderer(const RenderDescription& description);
+/// On "cpu", "cuda", or with "auto" on a card where this build and this machine have one.
+Result<std::unique_ptr<Renderer>> make_renderer(const RenderDescription& description,
+                                                const std::string& device);
 /// "NVIDIA H200", or why make_cuda_renderer would fail.
 Result<std::string> cuda_device_name();
 

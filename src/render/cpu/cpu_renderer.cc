@@ -1,5 +1,5 @@
-// The kernel's stages over Embree, or our own BVH, and all threads of parallel_for; on a card where
-// there is one.
+// The kernel's stages over Embree, or our own BVH, and all threads of
+// parallel_for; on a card where there is one.
 
 #include <fmt/format.h>
 
@@ -53,8 +53,9 @@ void resize_film(const CameraView& view, const RenderSettings& settings, Film* f
   film->motion.resize(exact);
 }
 
-/// Tile `i` of the order in which tiles are rendered: far apart, so that those which are done tell
-/// how long the others will take. A bijection: the step has no divisor in common with `tiles`.
+/// Tile `i` of the order in which tiles are rendered: far apart, so that those
+/// which are done tell how long the others will take. A bijection: the step has
+/// no divisor in common with `tiles`.
 int64_t scattered(int64_t i, int64_t tiles) {
   int64_t step = static_cast<int64_t>(0.6180339887 * static_cast<double>(tiles)) | 1;
   while (std::gcd(step, tiles) != 1) ++step;
@@ -63,7 +64,8 @@ int64_t scattered(int64_t i, int64_t tiles) {
 
 class CpuRenderer final : public Renderer {
  public:
-  /// Without `embree` rays go through our own BVH; `cuda`: stages that it has run there.
+  /// Without `embree` the CPU's rays go through our own BVH; `cuda`: runs what
+  /// it has stages for.
   CpuRenderer(std::unique_ptr<RenderScene> scene, std::unique_ptr<EmbreeScene> embree,
               std::unique_ptr<CudaStages> cuda = nullptr)
       : scene_(std::move(scene)), embree_(std::move(embree)), cuda_(std::move(cuda)) {}
@@ -73,9 +75,8 @@ class CpuRenderer final : public Renderer {
     if (embree_ != nullptr) {
       const Status status = embree_->update(*scene_);
       GLOAM_CHECK(status.ok(), "the BVH cannot be built: out of memory?");
-    } else {
-      own_.update(*scene_);
     }
+    if (embree_ == nullptr || cuda_ != nullptr) own_.update(*scene_);
     if (cuda_ != nullptr) cuda_->update(*scene_);
     if (!updated_) guided_lights_ = scene_->guided_lights(open);
     updated_ = true;
@@ -253,10 +254,6 @@ Affine3f camera_pose(const CameraDescription& camera, const PoseFrame& frame) {
 
 }  // namespace
 
-std::string ray_tracer_version() {
-  return fmt::format("Embree {}.{}.{}", RTC_VERSION_MAJOR, RTC_VERSION_MINOR, RTC_VERSION_PATCH);
-}
-
 Result<std::unique_ptr<Renderer>> make_cpu_renderer(const RenderDescription& description,
                                                     RayTracer tracer) {
   GLOAM_TRY(auto scene, RenderScene::make(description));
@@ -270,7 +267,22 @@ Result<std::unique_ptr<Renderer>> make_cpu_renderer(const RenderDescription& des
 Result<std::unique_ptr<Renderer>> make_cuda_renderer(const RenderDescription& description) {
   GLOAM_TRY(auto cuda, CudaStages::make());
   GLOAM_TRY(auto scene, RenderScene::make(description));
-  return std::unique_ptr<Renderer>(new CpuRenderer(std::move(scene), nullptr, std::move(cuda)));
+  GLOAM_TRY(auto embree, EmbreeScene::make());
+  return std::unique_ptr<Renderer>(
+      new CpuRenderer(std::move(scene), std::move(embree), std::move(cuda)));
+}
+
+Result<std::unique_ptr<Renderer>> make_renderer(const RenderDescription& description,
+                                                const std::string& device) {
+  if (device == "cuda") return make_cuda_renderer(description);
+  if (device == "auto") {
+    const auto card = cuda_device_name();
+    if (card.ok()) {
+      log_info("rendering on {}", *card);
+      return make_cuda_renderer(description);
+    }
+  }
+  return make_cpu_renderer(description);
 }
 
 Result<std::string> cuda_device_name() {

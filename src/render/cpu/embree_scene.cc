@@ -1,4 +1,4 @@
-#include "render/cpu/embree_scene.h"
+#include "render/cpu/embree_build.h"
 
 #include <fmt/format.h>
 
@@ -7,12 +7,13 @@
 
 #include "base/log.h"
 #include "base/parallel.h"
+#include "render/renderer.h"
 
 namespace gloam {
 namespace {
 
-/// So many solids that stand still are scanned: 40 take half the time that they take in a BVH, and
-/// the time grows with their number.
+/// So many solids that stand still are scanned: 40 take half the time that they
+/// take in a BVH, and the time grows with their number.
 constexpr size_t kMaxScanned = 64;
 
 /// Over the whole time of the shutter.
@@ -72,7 +73,8 @@ void set_transform(RTCGeometry geometry, unsigned key, const Affine3f& X) {
   rtcSetGeometryTransform(geometry, key, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
 }
 
-// Embree may read 16 bytes at the last vertex of a shared buffer: buffers it owns are padded.
+// Embree may read 16 bytes at the last vertex of a shared buffer: buffers it
+// owns are padded.
 void set_vertices(RTCGeometry geometry, unsigned key, const Vec3f* vertices, size_t count) {
   void* out = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, key, RTC_FORMAT_FLOAT3,
                                       sizeof(Vec3f), count);
@@ -87,32 +89,36 @@ void set_indices(RTCGeometry geometry, const uint32_t* indices, size_t triangles
 }  // namespace
 
 Result<std::unique_ptr<EmbreeScene>> EmbreeScene::make() {
-  std::unique_ptr<EmbreeScene> scene(new EmbreeScene);
-  scene->device_.reset(rtcNewDevice(nullptr));
-  if (scene->device_ == nullptr) {
+  RtcOwner<RTCDevice> device(rtcNewDevice(nullptr));
+  if (device == nullptr) {
     return Error{ErrorKind::kUnsupported,
                  fmt::format("Embree does not start (error {})",
                              static_cast<int>(rtcGetDeviceError(nullptr)))};
   }
-  return scene;
+  return std::unique_ptr<EmbreeScene>(new EmbreeBuild(std::move(device)));
 }
 
-RtcOwner<RTCScene> EmbreeScene::new_scene() {
+std::string ray_tracer_version() {
+  return fmt::format("Embree {}.{}.{}", RTC_VERSION_MAJOR, RTC_VERSION_MINOR, RTC_VERSION_PATCH);
+}
+
+RtcOwner<RTCScene> EmbreeBuild::new_scene() {
   RtcOwner<RTCScene> scene(rtcNewScene(device_.get()));
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_MEDIUM);
   return scene;
 }
 
-RtcOwner<RTCGeometry> EmbreeScene::mesh_geometry(const MeshView& mesh) {
+RtcOwner<RTCGeometry> EmbreeBuild::mesh_geometry(const MeshView& mesh) {
   RtcOwner<RTCGeometry> geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
   set_vertices(geometry.get(), 0, mesh.positions.data, mesh.positions.size);
   set_indices(geometry.get(), mesh.indices.data, mesh.indices.size / 3);
   return geometry;
 }
 
-// Boxes are triangles to Embree: its leaves test four of them faster than one callback.
-RtcOwner<RTCGeometry> EmbreeScene::box_geometry(Vec3f size, const Affine3f& X_SG) {
+// Boxes are triangles to Embree: its leaves test four of them faster than one
+// callback.
+RtcOwner<RTCGeometry> EmbreeBuild::box_geometry(Vec3f size, const Affine3f& X_SG) {
   RtcOwner<RTCGeometry> geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
   Vec3f corner[8];
   for (int i = 0; i < 8; ++i) {
@@ -127,7 +133,7 @@ RtcOwner<RTCGeometry> EmbreeScene::box_geometry(Vec3f size, const Affine3f& X_SG
   return geometry;
 }
 
-RtcOwner<RTCGeometry> EmbreeScene::shape_geometry(ShapeType shape, Vec3f size,
+RtcOwner<RTCGeometry> EmbreeBuild::shape_geometry(ShapeType shape, Vec3f size,
                                                   const Affine3f& X_SG) {
   if (shape == ShapeType::kBox) return box_geometry(size, X_SG);
   RtcOwner<RTCGeometry> geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));
@@ -140,7 +146,7 @@ RtcOwner<RTCGeometry> EmbreeScene::shape_geometry(ShapeType shape, Vec3f size,
   return geometry;
 }
 
-void EmbreeScene::build_fixed(const RenderScene& scene) {
+void EmbreeBuild::build_fixed(const RenderScene& scene) {
   fixed_ = new_scene();
   bool empty = true;
   const std::vector<InstanceView>& instances = scene.instances();
@@ -172,7 +178,7 @@ void EmbreeScene::build_fixed(const RenderScene& scene) {
   }
 }
 
-void EmbreeScene::build_shapes(const RenderScene& scene) {
+void EmbreeBuild::build_shapes(const RenderScene& scene) {
   std::vector<RTCScene> to_commit;
   const std::vector<InstanceView>& instances = scene.instances();
   for (size_t i = 0; i < instances.size(); ++i) {
@@ -202,7 +208,7 @@ void EmbreeScene::build_shapes(const RenderScene& scene) {
                [&](int64_t i) { rtcCommitScene(to_commit[i]); });
 }
 
-void EmbreeScene::rebuild_mesh(const RenderScene& scene, uint32_t mesh) {
+void EmbreeBuild::rebuild_mesh(const RenderScene& scene, uint32_t mesh) {
   const auto shape = shapes_.find({ShapeType::kMesh, mesh, 0, 0, 0});
   if (shape == shapes_.end()) return;  // it is not drawn
   const RtcOwner<RTCGeometry> geometry = mesh_geometry(scene.meshes()[mesh]);
@@ -212,7 +218,7 @@ void EmbreeScene::rebuild_mesh(const RenderScene& scene, uint32_t mesh) {
   rtcCommitScene(shape->second.get());
 }
 
-void EmbreeScene::build(const RenderScene& scene) {
+void EmbreeBuild::build(const RenderScene& scene) {
   drawn_version_ = scene.drawn_version();
   moving_geometries_.clear();
   moving_.reset();
@@ -226,7 +232,7 @@ void EmbreeScene::build(const RenderScene& scene) {
   build_fixed(scene);
 }
 
-void EmbreeScene::build_moving(const RenderScene& scene) {
+void EmbreeBuild::build_moving(const RenderScene& scene) {
   moving_ = new_scene();
   rtcSetSceneFlags(moving_.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
   build_shapes(scene);
@@ -242,7 +248,7 @@ void EmbreeScene::build_moving(const RenderScene& scene) {
   if (rows_.empty()) moving_.reset();
 }
 
-Status EmbreeScene::update(const RenderScene& scene) {
+Status EmbreeBuild::update(const RenderScene& scene) {
   if (drawn_version_ != scene.drawn_version()) build(scene);
   for (const uint32_t mesh : scene.rebuilt_meshes()) rebuild_mesh(scene, mesh);
   for (size_t g = 0; g < moving_geometries_.size(); ++g) {
@@ -271,14 +277,14 @@ Status EmbreeScene::update(const RenderScene& scene) {
   return {};
 }
 
-EmbreeTracer EmbreeScene::static_tracer(const RenderScene& scene) const {
+EmbreeTracer EmbreeBuild::static_tracer(const RenderScene& scene) const {
   EmbreeTracer tracer = this->tracer(scene);
   tracer.moving = {};
   tracer.scanned.planes = {};
   return tracer;
 }
 
-EmbreeTracer EmbreeScene::tracer(const RenderScene& scene) const {
+EmbreeTracer EmbreeBuild::tracer(const RenderScene& scene) const {
   const auto span = [](const auto& v) {
     return DeviceSpan<const std::decay_t<decltype(v[0])>>{v.data(),
                                                           static_cast<uint32_t>(v.size())};
