@@ -238,7 +238,7 @@ void compare_light(RenderTier tier, int spp) {
   }
 }
 
-TEST_F(CudaParity, PathsBringTheSameLight) { compare_light(RenderTier::kPath, 256); }
+TEST_F(CudaParity, PathsBringTheSameLight) { compare_light(RenderTier::kPath, 128); }
 TEST_F(CudaParity, TheDirectStageBringsTheSameLight) { compare_light(RenderTier::kDirect, 64); }
 
 TEST_F(CudaParity, ABrighterLampIsNotTheSameLight) {
