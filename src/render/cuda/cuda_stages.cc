@@ -72,7 +72,8 @@ class Card final : public CudaStages {
     start_.record(stream_);
     scene_.upload(job.view, job.bvh, job.bvh.tracer(job.scene), stream_, &picture);
     uploaded_.record(stream_);
-    check(cudaMemsetAsync(film_.data(), 0, film_bytes_, stream_), "the card's memory cannot be set");
+    check(cudaMemsetAsync(film_.data(), 0, film_bytes_, stream_),
+          "the card's memory cannot be set");
     RenderStats stats;
     const auto begin = std::chrono::steady_clock::now();
     double told = 0;

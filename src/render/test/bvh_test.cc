@@ -135,12 +135,12 @@ TEST(Bvh, AMillionRaysHitWhatTheyHitInEmbree) {
       all.hits, all.lost, all.gained, all.far, all.other_thing, all.worst,
       static_cast<double>(all.worst_corner));
   EXPECT_GT(all.hits, kRays / 2);
-  EXPECT_LE(all.lost + all.gained, kRays / 20'000);
-  EXPECT_LE(all.far, kRays / 5'000);
-  EXPECT_LE(all.other_thing, kRays / 1'000);
+  EXPECT_LE(all.lost + all.gained, 2);
+  EXPECT_LE(all.far, kRays / 10'000);
+  EXPECT_LE(all.other_thing, kRays / 20'000);
   EXPECT_EQ(all.turned, 0);
   EXPECT_LE(all.worst_corner, 0.01f);
-  EXPECT_LE(all.other_any, kRays / 100'000);
+  EXPECT_LE(all.other_any, 2);
 }
 
 }  // namespace
