@@ -37,9 +37,9 @@ void RunOptions::add_rendering(CLI::App& command) {
   command.add_option("--threads", threads, "Threads for rendering; 0 = all")
       ->check(CLI::Range(0, 1024));
   command
-      .add_option(
-          "--output", outputs,
-          "What to record: video png depth_png depth_exr segmentation metrics contact_sheet")
+      .add_option("--output", outputs,
+                  "What to record: video png depth_png depth_exr segmentation sensor_depth_png "
+                  "raw_png thermal_png events lidar metrics contact_sheet sensors")
       ->delimiter(',');
   add_access_options(command, access, packages);
 }

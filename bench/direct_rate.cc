@@ -2,6 +2,7 @@
 // takes it: physics has moved, so every frame solves poses, moves the scene, renders, tone-maps.
 //
 //   direct_rate MODEL CAMERA [--size WxH] [--spp N] [--frames N] [--tier T] [--picture FILE.png]
+//   direct_rate MODEL CAMERA --truth [--size WxH] [--frames N]: depth and segmentation instead
 //
 // No denoising. Prints the medians over the frames, without the two that warm up, as
 // "WALL ms CPU ms"; physics itself is not timed.
@@ -25,6 +26,7 @@ namespace {
 struct Options {
   const char *model = nullptr, *camera = nullptr, *picture = nullptr, *tier = "direct";
   int width = 640, height = 480, spp = 1, frames = 20;
+  bool truth = false;
 };
 
 double seconds(clockid_t clock) {
@@ -50,6 +52,7 @@ Status run(const Options& options) {
   request.render.tier = options.tier;
   request.render.spp = options.spp;
   request.render.denoise = false;
+  if (options.truth) request.outputs = {"depth", "segmentation"};
   GLOAM_TRY(const auto sensor, CameraSensor::create(shared->description, request, 1));
 
   constexpr int kWarmUp = 2;
@@ -95,6 +98,8 @@ int main(int argc, char** argv) {
       options.frames = std::max(1, std::atoi(argv[++i]));
     } else if (word == "--tier" && more) {
       options.tier = argv[++i];
+    } else if (word == "--truth") {
+      options.truth = true;
     } else if (word == "--picture" && more) {
       options.picture = argv[++i];
     } else {
@@ -104,7 +109,7 @@ int main(int argc, char** argv) {
   if (options.camera == nullptr) {
     fmt::print(stderr,
                "usage: direct_rate MODEL CAMERA [--size WxH] [--spp N] [--frames N] [--tier T] "
-               "[--picture FILE.png]\n");
+               "[--picture FILE.png] [--truth]\n");
     return 2;
   }
   const gloam::Status status = gloam::run(options);

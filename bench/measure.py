@@ -173,6 +173,18 @@ def direct_tier(quick):
         yield at_least(f"direct tier: {label} / ours", wall, 3.0, f"{theirs:.0f} ms against {own:.0f} ms; in CPU time {cpu:.1f}")
 
 
+def truth(quick):
+    """exact depth and segmentation 640x480 against MuJoCo's depth pass plus its segmentation pass"""
+    scene = boxes_scene()
+    ours = [BIN / "bench_direct_rate", scene, "bench", "--truth", "--frames", 20]
+    theirs = [peer_python(), ROOT / "bench" / "peers" / "mujoco_render.py", scene, "bench", "truth", 640, 480, 8]
+    pairs = [(milliseconds(*theirs), milliseconds(*ours)) for _ in range(1 if quick else 5)]
+    wall, cpu = (statistics.median(a[k] / b[k] for a, b in pairs) for k in (0, 1))
+    their, own = (statistics.median(pair[k][0] for pair in pairs) for k in (0, 1))
+    yield at_least("depth + segmentation: MuJoCo classic's two passes (EGL) / ours", wall, 2.0,
+                   f"{their:.1f} ms against {own:.1f} ms; in CPU time {cpu:.1f}")
+
+
 def seconds_until_ready(cache, *command):
     """[CPU, wall] from the start of a process to the moment that it says it is ready."""
     start = time.monotonic()
@@ -263,6 +275,31 @@ def adaptive_sampling(quick):
                    f"each: {each}; 0.1 asked for, reached {', '.join(format(s['reached'], '.3f') for s in scenes)}")
 
 
+def lidar_scene():
+    """Go1, a floor, four walls and 20 boxes; a LiDAR of 64 x 1024 beams 1.2 m from the robot."""
+    folder = CACHE / "bench_lidar"
+    shutil.copytree(robot("go1").parent, folder, dirs_exist_ok=True)
+    boxes = "".join(f'<geom type="box" size=".1 .1 .1" pos="{-1.5 + 0.75 * (i % 5):g} {-2.25 + 1.5 * (i // 5):g} 0.1"/>' for i in range(20))
+    walls = "".join(f'<geom type="box" size="{size}" pos="{x} {y} 1.4"/>' for size, x, y in
+                    (("3.1 .05 1.4", 0, 2.6), ("3.1 .05 1.4", 0, -2.6), (".05 2.6 1.4", 3.1, 0), (".05 2.6 1.4", -3.1, 0)))
+    (folder / "room.xml").write_text(f'<mujoco><worldbody><geom type="plane" size="5 5 .1"/>{walls}{boxes}</worldbody></mujoco>')
+    scene = folder / "scene.toml"
+    scene.write_text(f'[environment]\nfile = "room.xml"\n[[robot]]\nname = "go1"\nfile = "go1.xml"\nposition = [0, 0, 0.05]\n'
+                     '[[lidar]]\nname = "lidar"\npreset = "OS1-64"\ncolumns = 1024\nposition = [0.72, 0.96, 0.3]\norientation = [0.4472136, 0, 0, -0.8944272]\n'
+                     'min_range = 0.05\nrange_at_10_percent = 0\n')
+    return scene
+
+
+def lidar(quick):
+    """a scan of 64 x 1024 beams 1.2 m from a moving robot against mj_multiRay with the same rays, one thread each"""
+    data = run_json(BIN / "bench_lidar_rate", lidar_scene(), "--json", "--runs", 5 if quick else 21)
+    if data["same"] < 0.97:
+        raise RuntimeError(f"only {data['same']:.1%} of the ranges agree with mj_multiRay")
+    yield at_least("LiDAR 64 x 1024 near Go1: mj_multiRay's CPU time / ours", data["ratio"], 4.0,
+                   f"{data['ours_ms']:.1f} ms with motion and intensity against {data['multiray_ms']:.1f} ms; two threads "
+                   f"{data['two_threads_ms']:.1f} ms; {data['same']:.1%} of the ranges agree, {data['on_robot']:.0%} hit the robot")
+
+
 # With the seconds that each takes on two cores: the first estimate of the time left.
-ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, load_time: 120, import_time: 60,
-       first_picture: 15, adaptive_sampling: 120}
+ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, truth: 40, load_time: 120, import_time: 60,
+       first_picture: 15, adaptive_sampling: 120, lidar: 15}

@@ -111,7 +111,7 @@ std::vector<std::vector<RecordedRay>> record_rays(const Probe& probe, const Came
   camera.fx = camera.fy = static_cast<float>(view.intrinsics.fx);
   camera.cx = static_cast<float>(view.intrinsics.cx);
   camera.cy = static_cast<float>(view.intrinsics.cy);
-  camera.pose = {view.X_WC_open, view.X_WC_open, view.X_WC_open};
+  camera.pose = {view.X_WC_open, view.X_WC_open, {}};
   std::vector<std::vector<RecordedRay>> rows(static_cast<size_t>(view.intrinsics.height));
   parallel_for("record", view.intrinsics.height, [&](int64_t y) {
     const RecordingTracer tracer{&probe.tracer, &rows[static_cast<size_t>(y)]};

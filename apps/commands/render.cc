@@ -75,7 +75,9 @@ void add_render(CLI::App& app, Globals& globals, Action& action) {
   sub->add_option("FILE", command->file, "Scene or model")->required();
   command->options.add_rendering(*sub);
   sub->get_option("--output")
-      ->description("Channels: rgb radiance samples depth segmentation normal albedo motion");
+      ->description(
+          "Channels: rgb radiance samples depth distance segmentation normal albedo motion "
+          "scene_flow boxes");
   sub->add_option("--time", command->time, "Simulation time of the picture in seconds")
       ->check(non_negative_number());
   sub->add_option("--out", command->out, "Folder for the pictures; default: here");

@@ -58,6 +58,7 @@ int run(const RunCommand& command_line, const Globals& globals) {
   if (!command.options.outputs.empty()) {
     scene->record.outputs = command.options.outputs;
     for (CameraOptions& camera : scene->cameras) camera.outputs.reset();
+    for (LidarOptions& lidar : scene->lidars) lidar.outputs.reset();
   }
   auto world = World::compile(*scene);
   if (!world.ok()) return fail(world.error());

@@ -1,20 +1,57 @@
 #pragma once
 // What cameras put out: one message per frame, every channel of the same instant and the same rays.
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "gloam/sensor.h"
 #include "gloam/types.h"
 
 namespace gloam {
 
-/// Pinhole intrinsics in pixels. Pixel centres lie at integer + 0.5; u to the right, v down.
+/// How a lens maps directions to the picture (docs/cameras.md); ROS's names where it has one.
+enum class LensModel : uint8_t {
+  kPinhole,
+  kPlumbBob,            ///< Brown–Conrady: k1 k2 p1 p2 k3
+  kRationalPolynomial,  ///< k1 k2 p1 p2 k3 k4 k5 k6
+  kEquidistant,         ///< Kannala–Brandt fisheye: k1 k2 k3 k4
+  kEquirectangular,     ///< longitude to the right, latitude up; fx, fy are px per radian
+};
+
+/// A camera's picture in pixels. Pixel centres lie at integer + 0.5; u to the right, v down.
 struct Intrinsics {
   int width = 640, height = 480;  ///< [px]
   double fx = 0, fy = 0;          ///< focal lengths [px]
   double cx = 0, cy = 0;          ///< principal point [px] from the top left corner of the picture
-  bool orthographic = false;      ///< then fx, fy are px per metre
+  bool orthographic = false;      ///< then fx, fy are px per metre and there is no other lens
+  LensModel lens = LensModel::kPinhole;
+  std::array<double, 8> distortion = {};  ///< in the order above; the rest is 0
+};
+
+/// Pixels, and the edges of the rectangle around them [px]; u1, v1 are those of the last ones' far
+/// sides. No pixels: u1 < u0.
+struct PixelBox {
+  int64_t pixels = 0;
+  int u0 = 1 << 30, v0 = 1 << 30, u1 = -1, v1 = -1;
+};
+
+/// One object in a picture. Its frame O is that of its first body that is drawn: the root of a
+/// robot, the world for what is fixed to it.
+struct ObjectView {
+  uint16_t instance = 0;  ///< as in LabelRow
+  std::string name;
+  uint16_t semantic = 0;
+  PixelBox seen;  ///< pixels whose centre shows it
+  PixelBox all;   ///< that would if nothing stood in front of it, within the picture
+  Pose X_WO;
+  Vec3 center, size;     ///< of the box along O's axes that holds all that is drawn of it [m]
+  bool endless = false;  ///< an infinite plane is part of it: it has no box in space
+  /// Share of it that is not hidden by others, 0 … 1.
+  double visibility() const {
+    return static_cast<double>(seen.pixels) / static_cast<double>(all.pixels);
+  }
 };
 
 /// One frame of one camera. Empty vectors are channels that were not asked for.
@@ -22,14 +59,21 @@ struct CameraFrame {
   std::string camera;  ///< full name
   int64_t index = 0;   ///< frame number since reset
   int64_t step = 0;    ///< physics step of the exposure
-  double time = 0;     ///< [s] simulation time of the exposure
+  double time = 0;     ///< [s] simulation time at which the first row's exposure starts
   bool warmup = false;
   Intrinsics intrinsics;
-  Pose X_WC;  ///< pose of the camera; looks along -Z, +Y up (MuJoCo's convention)
+  double delivery = 0;  ///< [s] simulation time at which it reaches a reader, >= time
+  double ev100 = 0;     ///< exposure value of `rgb` and `raw`
+  Pose X_WC;  ///< pose of the camera at `time`; looks along -Z, +Y up (MuJoCo's convention)
+  double exposure_time = 0;  ///< of each row [s]
+  double readout_time = 0;   ///< from the first row's exposure to the last one's [s]
 
   std::vector<uint8_t> rgb;     ///< tone-mapped sRGB, (height x width x 3)
   std::vector<float> radiance;  ///< linear Rec. 709 [cd/m²], (height x width x 3)
-  std::vector<float> depth;  ///< along the optical axis [m], +inf = nothing hit, (height x width)
+  // What follows is exact: of the ray through each pixel's centre, when its row's exposure starts.
+  std::vector<float> depth;     ///< along the optical axis, of fisheyes and panoramas along the ray
+                                ///< [m], +inf = nothing hit, (height x width)
+  std::vector<float> distance;  ///< along the ray [m], +inf = nothing hit, (height x width)
   std::vector<uint32_t>
       part;  ///< row of the label table (one per drawn geom), 0 = nothing, (height x width)
   std::vector<uint16_t> instance;  ///< object id of the label table, 0 = nothing, (height x width)
@@ -39,7 +83,32 @@ struct CameraFrame {
   std::vector<uint32_t> samples;   ///< light paths in the mean of a pixel, (height x width)
   std::vector<float> motion;  ///< optical flow from the previous frame of this camera to this one
                               ///< [px], (height x width x 2)
+  /// Numbers of the imager [DN]: behind a mosaic (height x width), else (height x width x 3).
+  std::vector<uint16_t> raw;
+  /// What the camera's stereo_depth model measures along the optical axis [m], 0 = nothing,
+  /// (height x width). `depth` is the truth.
+  std::vector<float> sensor_depth;
+  std::vector<Event> events;   ///< since the frame before, in order of time
+  std::vector<float> thermal;  ///< apparent temperature [K], (height x width)
+  std::vector<float> scene_flow;    ///< way of the point that is seen since the previous frame [m],
+                                    ///< world axes, (height x width x 3)
+  std::vector<ObjectView> objects;  ///< that the picture holds or hides, by id
 };
+
+/// The content of ROS's sensor_msgs/CameraInfo. Pixel centres lie at integers there, so the
+/// principal point is 0.5 less than in Intrinsics.
+struct CameraInfo {
+  std::string frame_id;  ///< "NAME_optical_frame": Z forward, X right, Y down
+  int width = 0, height = 0;
+  std::string distortion_model;  ///< ROS's, or "equirectangular" or "orthographic", which it lacks
+  std::vector<double> d;
+  std::array<double, 9> k = {};   ///< row-major
+  std::array<double, 9> r = {};   ///< row-major; the identity: pictures are not rectified
+  std::array<double, 12> p = {};  ///< row-major
+};
+CameraInfo camera_info(const std::string& camera, const Intrinsics& intrinsics);
+/// Pose in the world of a camera's optical frame.
+Pose optical_pose(const Pose& X_WC);
 
 /// One drawn geom: `part` indexes this table.
 struct LabelRow {

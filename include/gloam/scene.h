@@ -10,7 +10,10 @@
 #include <vector>
 
 #include "gloam/result.h"
+#include "gloam/scene_camera.h"
+#include "gloam/scene_lidar.h"
 #include "gloam/scene_light.h"
+#include "gloam/scene_sensor.h"
 #include "gloam/types.h"
 
 namespace gloam {
@@ -61,25 +64,6 @@ struct RobotOptions {
 struct EnvironmentOptions {
   std::filesystem::path file =
       {};  ///< MJCF; empty = nothing but a floor when a TOML scene has robots, nothing otherwise
-  SourceLoc loc = {};
-};
-
-/// [[camera]]: a camera added to the scene, fixed in the world or on a body.
-struct CameraOptions {
-  std::string name = {};
-  std::string body = {};  ///< full name of the body it sits on; empty = world
-  std::string track =
-      {};  ///< body whose position it follows with a fixed offset and heading; empty = none
-  Vec3 position = {};  ///< in the frame of `body`; for `track`: offset from it in world axes [m]
-  std::optional<Vec3> look_at = {};  ///< point to look at, in the same frame [m]
-  std::optional<Quat> orientation =
-      {};            ///< instead of look_at: looks along its -Z, up is +Y (MuJoCo's convention)
-  double fovy = 45;  ///< vertical field of view [deg], (0, 180)
-  int width = 640, height = 480;  ///< [px], 1 … 16384
-  Rational rate = {20, 1};        ///< frames per second of simulation time
-  /// What is recorded of this camera, instead of what [record] says: video png depth_png depth_exr
-  /// segmentation; [] = its poses alone.
-  std::optional<std::vector<std::string>> outputs = {};
   SourceLoc loc = {};
 };
 
@@ -196,7 +180,8 @@ struct RenderOptions {
 /// [record]
 struct RecordOptions {
   std::vector<std::string> outputs = {
-      "video", "png"};  ///< video png depth_png depth_exr segmentation metrics contact_sheet
+      "video", "png",
+      "lidar"};  ///< those of CameraOptions::outputs, lidar metrics contact_sheet sensors
   SourceLoc loc = {};
 };
 
@@ -207,12 +192,17 @@ struct Scene {
   EnvironmentOptions environment = {};
   std::vector<RobotOptions> robots = {};  ///< in source order
   std::vector<CameraOptions> cameras = {};
+  std::vector<LidarOptions> lidars = {};
   std::vector<MaterialOptions> materials = {};
   std::vector<LightOptions> lights = {};
   std::optional<SkyOptions> sky = {};
   std::vector<VolumeOptions> volumes = {};
   std::vector<VisualOptions> visuals = {};
   std::vector<PushOptions> pushes = {};
+  std::vector<StereoOptions> stereo = {};  ///< a compiled Scene has their cameras in `cameras`
+  std::vector<RgbdOptions> rgbd = {};      ///< likewise
+  std::vector<SensorOptions> sensors = {};
+  std::vector<TemperatureOptions> temperatures = {};
   SimOptions sim = {};
   RenderOptions render = {};
   RecordOptions record = {};

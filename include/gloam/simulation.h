@@ -11,8 +11,10 @@
 
 #include "gloam/camera.h"
 #include "gloam/command.h"
+#include "gloam/lidar.h"
 #include "gloam/result.h"
 #include "gloam/scene.h"
+#include "gloam/sensor.h"
 #include "gloam/snapshot.h"
 #include "gloam/world.h"
 
@@ -39,8 +41,9 @@ struct CameraRequest {
   std::string camera = "free";  ///< full name, or "free": frames the whole model until moved
   Rational rate = {20, 1};      ///< frames per second of simulation time
   int width = 0, height = 0;    ///< [px]; 0 = the camera's own
-  std::vector<std::string> outputs = {
-      "rgb"};  ///< rgb radiance samples depth segmentation normal albedo motion
+  /// rgb radiance samples depth distance segmentation normal albedo motion scene_flow boxes; raw
+  /// sensor_depth events thermal (with their tables in the scene)
+  std::vector<std::string> outputs = {"rgb"};
   RenderOptions render = {};
   std::optional<Pose> X_WC = {};  ///< of camera "free": where it stands at first
   bool required =
@@ -112,7 +115,16 @@ class Simulation {
   /// Opens a stream; `on_frame` comes on the stream's own thread, frames in order.
   virtual Result<std::unique_ptr<CameraStream>> open_camera(const CameraRequest& request,
                                                             FrameCallback on_frame) = 0;
+  /// Opens a stream of one of MuJoCo's sensors, with the model of the scene's [[sensor]] (without
+  /// one: the truth, at every step). Errors: no such sensor, a rate above the step rate.
+  virtual Result<std::unique_ptr<SensorStream>> open_sensor(const SensorRequest&, SensorCallback) {
+    return Error{ErrorKind::kUnsupported, "this simulation has no streams of sensors"};
+  }
   virtual std::vector<std::string> camera_names() const = 0;
+  /// Opens the stream of a [[lidar]]; `on_scan` comes on the stream's own thread, scans in order.
+  virtual Result<std::unique_ptr<LidarStream>> open_lidar(const LidarRequest&, ScanCallback) {
+    return Error{.kind = ErrorKind::kUnsupported, .message = "this simulation has no lidars"};
+  }
   virtual Result<std::vector<LabelRow>> labels() = 0;
   /// What the ray through pixel (u, v) [px] of a frame hits in the latest Snapshot. Error: nothing
   /// there.

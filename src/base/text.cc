@@ -54,4 +54,25 @@ std::string suggest_name(std::string_view word, std::span<const std::string> can
   return fmt::format("one of: {}", fmt::join(candidates, ", "));
 }
 
+bool fits_pattern(std::string_view pattern, std::string_view name) {
+  // The last star may take one letter more whenever what follows it does not fit.
+  size_t p = 0, n = 0, star = std::string_view::npos, taken = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = p++;
+      taken = n;
+    } else if (p < pattern.size() && pattern[p] == name[n]) {
+      ++p;
+      ++n;
+    } else if (star != std::string_view::npos) {
+      p = star + 1;
+      n = ++taken;
+    } else {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
 }  // namespace gloam

@@ -15,4 +15,7 @@ std::string nearest_name(std::string_view word, std::span<const std::string> can
 /// empty.
 std::string suggest_name(std::string_view word, std::span<const std::string> candidates);
 
+/// True if `name` is `pattern` with any text in the place of each *.
+bool fits_pattern(std::string_view pattern, std::string_view name);
+
 }  // namespace gloam

@@ -46,26 +46,24 @@ static_assert(sizeof(BvhTriangle) == 48);
 
 /// A mesh or one solid in its place, in frame G.
 struct alignas(16) BvhInstance {
-  Vec3f row[3];            ///< of R_GW
-  Vec3f shift;             ///< p_G = rows p_W + shift
-  BvhRef root = 0;         ///< of a mesh; bvh::kNothing = a solid
-  uint32_t id = 0;         ///< what a hit reports
-  int32_t motion = -1;     ///< row of BvhView::motion; -1 = stands still
-  uint32_t close_key = 0;  ///< of a mesh that changes its form: triangles from those of the
-                           ///< shutter's opening to those of its close; 0 = it does not
+  Vec3f row[3];           ///< of R_GW
+  Vec3f shift;            ///< p_G = rows p_W + shift
+  BvhRef root = 0;        ///< of a mesh; bvh::kNothing = a solid
+  uint32_t id = 0;        ///< what a hit reports
+  int32_t motion = -1;    ///< first row of BvhView::motion; -1 = stands still
+  uint32_t key_step = 0;  ///< of a mesh that changes its form: triangles from those of one key to
+                          ///< those of the next; 0 = it does not
 };
 static_assert(sizeof(BvhInstance) == 64);
-
-/// Pose of an instance at both ends of the shutter; linear in between.
-struct BvhMotion {
-  Affine3f X_WG_open, X_WG_close;
-};
 
 struct BvhView {
   const BvhNode* nodes = nullptr;
   const BvhTriangle* triangles = nullptr;
   const BvhInstance* instances = nullptr;
-  const BvhMotion* motion = nullptr;
+  /// X_WG of the instances that move, key_count of each: evenly over times 0 … 1, linear in
+  /// between.
+  const Affine3f* motion = nullptr;
+  uint32_t key_count = 0;
   BvhRef root = bvh::kNothing;
 };
 

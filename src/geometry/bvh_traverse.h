@@ -4,6 +4,7 @@
 // result does not depend on the shape of the tree.
 
 #include "geometry/bvh.h"
+#include "geometry/motion_keys.h"
 
 namespace gloam {
 
@@ -82,6 +83,20 @@ GLOAM_HD float meet_triangle(Vec3f a_W, Vec3f b_W, Vec3f c_W, Vec3f o, Vec3f d, 
   return t;
 }
 
+struct Corners {
+  Vec3f a, b, c;
+};
+
+/// Of a triangle of the instance, in its frame.
+GLOAM_HD Corners corners_at(const BvhView& view, const BvhInstance& instance,
+                            const BvhTriangle* triangle, float time) {
+  if (instance.key_step == 0 || !(time > 0)) return {triangle->a, triangle->b, triangle->c};
+  float share;
+  const BvhTriangle* from = triangle + instance.key_step * key_before(view.key_count, time, &share);
+  const BvhTriangle* to = from + instance.key_step;
+  return {lerp(from->a, to->a, share), lerp(from->b, to->b, share), lerp(from->c, to->c, share)};
+}
+
 struct LocalRay {
   Vec3f o, d;
 };
@@ -89,8 +104,9 @@ struct LocalRay {
 GLOAM_HD LocalRay into_instance(const BvhView& view, const BvhInstance& instance, Vec3f o, Vec3f d,
                                 float time) {
   if (instance.motion >= 0 && time > 0) {
-    const BvhMotion& m = view.motion[instance.motion];
-    const Affine3f X_GW = inverse(lerp(m.X_WG_open, m.X_WG_close, time));
+    float share;
+    const Affine3f* key = view.motion + instance.motion + key_before(view.key_count, time, &share);
+    const Affine3f X_GW = inverse(lerp(key[0], key[1], share));
     return {transform_point(X_GW, o), transform_vector(X_GW, d)};
   }
   const Vec3f* row = instance.row;
@@ -140,15 +156,9 @@ GLOAM_HD bool traverse(const BvhView& view, const Solids& solids, Vec3f o, Vec3f
       const uint32_t begin = first_triangle(ref), end = begin + triangle_count(ref);
       for (uint32_t i = begin; i < end; ++i) {
         const BvhTriangle* triangle = view.triangles + i;
-        Vec3f a = triangle->a, b = triangle->b, c = triangle->c;
-        if (in.close_key != 0 && time > 0) {
-          const BvhTriangle* close = triangle + in.close_key;
-          a = lerp(a, close->a, time);
-          b = lerp(b, close->b, time);
-          c = lerp(c, close->c, time);
-        }
+        const Corners at = corners_at(view, in, triangle, time);
         float u, v;
-        const float t = meet_triangle(a, b, c, local.o, local.d, best, &u, &v);
+        const float t = meet_triangle(at.a, at.b, at.c, local.o, local.d, best, &u, &v);
         if (!(t > 0)) continue;
         if (any) return true;
         const uint32_t primitive = triangle->primitive;

@@ -16,12 +16,6 @@ constexpr int kThumbnailWidth = 320;  // [px]
 
 }  // namespace
 
-Pose optical_pose(const Pose& X_WC) {
-  // Half a turn about the camera's own x: q * (0, 1, 0, 0).
-  const Quat& q = X_WC.q;
-  return {X_WC.p, {0 - q.x, q.w, q.z, 0 - q.y}};  // 0 - x: no minus zeros in tables
-}
-
 Thumbnail make_thumbnail(const CameraFrame& frame, int width) {
   const int w = frame.intrinsics.width, h = frame.intrinsics.height;
   Thumbnail out;
@@ -70,6 +64,12 @@ Status CameraRecorder::start() {
             CsvWriter::start(std::move(sink), {"frame", "step", "time_s", "x_m", "y_m", "z_m", "qw",
                                                "qx", "qy", "qz"}));
   poses_ = std::move(poses);
+  if (writes("events")) {
+    GLOAM_TRY(sink, store_->create(folder_ / file_name_ / "events.csv"));
+    GLOAM_TRY(CsvWriter events,
+              CsvWriter::start(std::move(sink), {"time_s", "x_px", "y_px", "brighter"}));
+    events_ = std::move(events);
+  }
   return {};
 }
 
@@ -77,6 +77,7 @@ Status CameraRecorder::add(const CameraFrame& frame) {
   GLOAM_TRY_STATUS(write_pictures(frame));
   GLOAM_TRY_STATUS(write_video(frame));
   GLOAM_TRY_STATUS(write_pose(frame));
+  GLOAM_TRY_STATUS(write_events(frame));
   ++frames_;
   if (writes("contact_sheet")) {
     if (thumbnails_.wants_next()) {
@@ -100,6 +101,16 @@ Status CameraRecorder::write_pictures(const CameraFrame& frame) {
     GLOAM_TRY(const std::vector<uint8_t> bytes, encode_exr(w, h, {&channel, 1}));
     GLOAM_TRY_STATUS(write_picture("depth_exr", "exr", frame.index, bytes));
   }
+  if (writes("sensor_depth_png") && !frame.sensor_depth.empty())
+    GLOAM_TRY_STATUS(write_picture("sensor_depth", "png", frame.index,
+                                   encode_png16(w, h, depth_to_millimetres(frame.sensor_depth))));
+  if (writes("raw_png") && !frame.raw.empty()) {
+    const int row = static_cast<int>(frame.raw.size() / static_cast<size_t>(h));
+    GLOAM_TRY_STATUS(write_picture("raw", "png", frame.index, encode_png16(row, h, frame.raw)));
+  }
+  if (writes("thermal_png") && !frame.thermal.empty())
+    GLOAM_TRY_STATUS(write_picture("thermal", "png", frame.index,
+                                   encode_png16(w, h, to_centikelvins(frame.thermal))));
   if (writes("segmentation")) {
     if (!frame.instance.empty())
       GLOAM_TRY_STATUS(
@@ -116,6 +127,16 @@ Status CameraRecorder::write_picture(const char* kind, const char* extension, in
   const std::filesystem::path folder = folder_ / file_name_ / kind;
   if (made_folders_.insert(kind).second) GLOAM_TRY_STATUS(store_->make_folder(folder));
   return store_->write_file(folder / fmt::format("{:06}.{}", index, extension), bytes);
+}
+
+Status CameraRecorder::write_events(const CameraFrame& frame) {
+  if (!events_) return {};
+  for (const Event& event : frame.events) {
+    const double row[] = {event.time, static_cast<double>(event.x), static_cast<double>(event.y),
+                          event.brighter ? 1.0 : 0.0};
+    GLOAM_TRY_STATUS(events_->add(row));
+  }
+  return {};
 }
 
 Status CameraRecorder::write_video(const CameraFrame& frame) {
@@ -150,7 +171,9 @@ Status CameraRecorder::write_pose(const CameraFrame& frame) {
 Status CameraRecorder::finish() {
   Status video = video_ ? video_->finish() : Status();
   Status poses = poses_ ? poses_->finish() : Status();
-  return video.ok() ? poses : video;
+  Status events = events_ ? events_->finish() : Status();
+  if (!video.ok()) return video;
+  return poses.ok() ? events : poses;
 }
 
 }  // namespace gloam

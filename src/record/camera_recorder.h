@@ -49,6 +49,7 @@ class CameraRecorder {
   Status write_picture(const char* kind, const char* extension, int64_t index,
                        std::span<const uint8_t> bytes);
   Status write_pose(const CameraFrame& frame);
+  Status write_events(const CameraFrame& frame);
   Status write_video(const CameraFrame& frame);
 
   RecordedCamera camera_;
@@ -57,7 +58,7 @@ class CameraRecorder {
   std::set<std::string> outputs_;
   std::shared_ptr<FileStore> store_;
   std::set<std::string> made_folders_;
-  std::optional<CsvWriter> poses_;
+  std::optional<CsvWriter> poses_, events_;
   std::optional<VideoWriter> video_;
   int64_t frames_ = 0;
   Timeline<Thumbnail> thumbnails_;
@@ -65,8 +66,5 @@ class CameraRecorder {
 
 /// The channels shrunk to `width` pixels: colours averaged, depth and ids picked.
 Thumbnail make_thumbnail(const CameraFrame& frame, int width);
-
-/// Pose of the ROS optical frame (Z forward, X right, Y down) of a camera that looks along -Z.
-Pose optical_pose(const Pose& X_WC);
 
 }  // namespace gloam

@@ -21,11 +21,14 @@
 namespace gloam {
 namespace {
 
+constexpr const char* kSensorsName = "sensors";
 constexpr size_t kQueuedRows = 4096;   // metric rows that may wait for the disk
 constexpr size_t kPlottedRows = 2000;  // kept in memory for the contact sheet
 
-const std::vector<std::string> kOutputs = {"video",        "png",     "depth_png",    "depth_exr",
-                                           "segmentation", "metrics", "contact_sheet"};
+const std::vector<std::string> kOutputs = {
+    "video",   "png",         "depth_png", "depth_exr", "segmentation", "sensor_depth_png",
+    "raw_png", "thermal_png", "events",    "lidar",     "metrics",      "contact_sheet",
+    "sensors"};
 
 /// The failure that ended a recording: what was written before it is complete, so its kind is
 /// kPartial. Others that follow from it are of no interest.
@@ -61,6 +64,14 @@ class FirstFailure {
   std::optional<Error> error_;
 };
 
+/// A LiDAR's files and the thread that writes them.
+struct LidarLane {
+  LidarLane(LidarRecorder lidar_recorder, size_t capacity, bool wait)
+      : recorder(std::move(lidar_recorder)), worker(capacity, wait) {}
+  LidarRecorder recorder;
+  Worker worker;  // after what it uses: it is destroyed, and so ends, first
+};
+
 /// A camera's files and the thread that writes them.
 struct CameraLane {
   CameraLane(CameraRecorder camera_recorder, size_t capacity, bool wait)
@@ -89,6 +100,8 @@ class FolderRecorder : public Recorder {
       if (outputs_of(info_.cameras[i]).contains("video"))
         entries_.push_back(file_names_[i] + ".mp4");
     }
+    if (outputs_.contains("sensors") && !info_.sensors.empty()) entries_.push_back(kSensorsName);
+    entries_.insert(entries_.end(), lidar_file_names_.begin(), lidar_file_names_.end());
     entries_.push_back(kSummaryName);
     GLOAM_TRY_STATUS(write_summary(nullptr));
     GLOAM_TRY_STATUS(write_text("cameras.json", cameras_json(info_.cameras, file_names_)));
@@ -100,12 +113,20 @@ class FolderRecorder : public Recorder {
       lanes_[info_.cameras[i].name] = std::make_unique<CameraLane>(
           std::move(recorder), static_cast<size_t>(options_.queue_frames), options_.wait);
     }
+    for (size_t i = 0; i < info_.lidars.size(); ++i) {
+      LidarRecorder recorder(info_.lidars[i], options_.folder / lidar_file_names_[i],
+                             options_.store);
+      GLOAM_TRY_STATUS(recorder.start());
+      lidar_lanes_[info_.lidars[i].name] = std::make_unique<LidarLane>(
+          std::move(recorder), static_cast<size_t>(options_.queue_frames), options_.wait);
+    }
     if (outputs_.contains("metrics")) {
       GLOAM_TRY(std::unique_ptr<ByteSink> sink,
                 options_.store->create(options_.folder / "metrics.csv"));
       GLOAM_TRY(CsvWriter metrics, CsvWriter::start(std::move(sink), info_.metric_columns));
       metrics_ = std::move(metrics);
     }
+    GLOAM_TRY_STATUS(open_sensors());
     metrics_worker_ = std::make_unique<Worker>(kQueuedRows, options_.wait);
     return {};
   }
@@ -117,6 +138,16 @@ class FolderRecorder : public Recorder {
     CameraRecorder* recorder = &lane->second->recorder;
     lane->second->worker.post([this, recorder, frame = std::move(frame)] {
       if (!failure_.failed()) failure_.attempt([&] { return recorder->add(*frame); });
+    });
+  }
+
+  void add_scan(std::shared_ptr<const LidarScan> scan) override {
+    const auto lane = lidar_lanes_.find(scan->lidar);
+    GLOAM_CHECK(lane != lidar_lanes_.end(), "a scan of a lidar that is not recorded");
+    if (failure_.failed()) return;
+    LidarRecorder* recorder = &lane->second->recorder;
+    lane->second->worker.post([this, recorder, scan = std::move(scan)] {
+      if (!failure_.failed()) failure_.attempt([&] { return recorder->add(*scan); });
     });
   }
 
@@ -135,14 +166,28 @@ class FolderRecorder : public Recorder {
     });
   }
 
+  void add_sensor(const SensorMessage& message) override {
+    const auto file = sensors_.find(message.sensor);
+    if (failure_.failed() || file == sensors_.end()) return;
+    std::vector<double> row = {static_cast<double>(message.index),
+                               static_cast<double>(message.step), message.time, message.delivery};
+    row.insert(row.end(), message.values.begin(), message.values.end());
+    metrics_worker_->post([this, csv = &file->second, row = std::move(row)] {
+      if (!failure_.failed()) failure_.report(csv->add(row));
+    });
+  }
+
   Status status() const override { return failure_.status(); }
 
   Status finish(const RunOutcome& outcome) override {
     for (auto& [name, lane] : lanes_) lane->worker.close();
+    for (auto& [name, lane] : lidar_lanes_) lane->worker.close();
     metrics_worker_->close();
     // After a failure too: what can be ended properly should be.
     for (auto& [name, lane] : lanes_) failure_.report(lane->recorder.finish());
+    for (auto& [name, lane] : lidar_lanes_) failure_.report(lane->recorder.finish());
     if (metrics_) failure_.report(metrics_->finish());
+    for (auto& [name, csv] : sensors_) failure_.report(csv.finish());
     if (outputs_.contains("contact_sheet") && !failure_.failed()) {
       std::vector<const CameraRecorder*> cameras;
       for (const RecordedCamera& camera : info_.cameras)
@@ -166,6 +211,24 @@ class FolderRecorder : public Recorder {
     return outputs;
   }
 
+  Status open_sensors() {
+    if (!outputs_.contains("sensors") || info_.sensors.empty()) return {};
+    GLOAM_TRY_STATUS(options_.store->make_folder(options_.folder / kSensorsName));
+    std::set<std::string> taken;
+    for (const RecordedSensor& sensor : info_.sensors) {
+      std::string file_name = safe_file_name(sensor.name);
+      for (int i = 2; !taken.insert(file_name).second; ++i)
+        file_name = fmt::format("{}_{}", safe_file_name(sensor.name), i);
+      std::vector<std::string> columns = {"sample", "step", "time_s", "delivery_s"};
+      for (int i = 0; i < sensor.values; ++i) columns.push_back(fmt::format("value_{}", i));
+      GLOAM_TRY(std::unique_ptr<ByteSink> sink,
+                options_.store->create(options_.folder / kSensorsName / (file_name + ".csv")));
+      GLOAM_TRY(CsvWriter csv, CsvWriter::start(std::move(sink), columns));
+      sensors_.emplace(sensor.name, std::move(csv));
+    }
+    return {};
+  }
+
   static Status check_outputs(const std::set<std::string>& outputs) {
     for (const std::string& output : outputs) {
       if (std::find(kOutputs.begin(), kOutputs.end(), output) != kOutputs.end()) continue;
@@ -180,8 +243,8 @@ class FolderRecorder : public Recorder {
   Status check() {
     GLOAM_TRY_STATUS(check_outputs(outputs_));
     GLOAM_CHECK(options_.queue_frames > 0, "a queue holds at least one frame");
-    std::set<std::string> names,
-        taken = {"cameras.json", "labels.json", "metrics.csv", "contact_sheet.png", kSummaryName};
+    std::set<std::string> names, taken = {kSensorsName,  "cameras.json",      "labels.json",
+                                          "metrics.csv", "contact_sheet.png", kSummaryName};
     for (const RecordedCamera& camera : info_.cameras) {
       GLOAM_TRY_STATUS(check_outputs(outputs_of(camera)));
       if (!names.insert(camera.name).second)
@@ -205,6 +268,18 @@ class FolderRecorder : public Recorder {
         file_name = fmt::format("{}_{}", safe_file_name(camera.name), i);
       file_names_.push_back(file_name);
     }
+    names.clear();
+    for (const RecordedLidar& lidar : info_.lidars) {
+      if (!names.insert(lidar.name).second)
+        return Error{ErrorKind::kInput,
+                     fmt::format("two lidars are named '{}'", lidar.name),
+                     {},
+                     "rename one of them"};
+      std::string file_name = safe_file_name(lidar.name);
+      for (int i = 2; !taken.insert(file_name).second; ++i)
+        file_name = fmt::format("{}_{}", safe_file_name(lidar.name), i);
+      lidar_file_names_.push_back(file_name);
+    }
     return {};
   }
 
@@ -222,9 +297,17 @@ class FolderRecorder : public Recorder {
                         known ? lane->second->recorder.frames() : 0,
                         known ? lane->second->worker.dropped() : 0});
     }
+    std::vector<CameraCounts> scans;
+    for (size_t i = 0; i < info_.lidars.size(); ++i) {
+      const auto lane = lidar_lanes_.find(info_.lidars[i].name);
+      const bool known = lane != lidar_lanes_.end();
+      scans.push_back({info_.lidars[i].name, lidar_file_names_[i],
+                       known ? lane->second->recorder.scans() : 0,
+                       known ? lane->second->worker.dropped() : 0});
+    }
     const Status status = failure_.status();
     return write_text(kSummaryName,
-                      summary_json(info_, outcome, counts, metric_rows_,
+                      summary_json(info_, outcome, counts, scans, metric_rows_,
                                    metrics_worker_ ? metrics_worker_->dropped() : 0, entries_,
                                    status.ok() ? "" : status.error().to_string()));
   }
@@ -233,13 +316,16 @@ class FolderRecorder : public Recorder {
   const RunInfo info_;
   const std::set<std::string> outputs_;
   std::vector<std::string> file_names_;  // of the cameras
-  std::vector<std::string> entries_;     // of the folder, as listed in the summary
+  std::vector<std::string> lidar_file_names_;
+  std::vector<std::string> entries_;  // of the folder, as listed in the summary
   FirstFailure failure_;
   std::optional<CsvWriter> metrics_;
+  std::map<std::string, CsvWriter> sensors_;  // by name
   int64_t metric_rows_ = 0;
   Timeline<std::vector<double>> rows_;
   // The threads come last, so they end before anything that they use.
   std::map<std::string, std::unique_ptr<CameraLane>> lanes_;
+  std::map<std::string, std::unique_ptr<LidarLane>> lidar_lanes_;
   std::unique_ptr<Worker> metrics_worker_;
 };
 

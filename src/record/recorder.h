@@ -5,6 +5,7 @@
 //   cameras.json        intrinsics, frames and file patterns of every camera
 //   labels.json         what the numbers in instance and semantic pictures mean
 //   metrics.csv         one row per add_metrics(); units in the column names
+//   sensors/NAME.csv    one row per add_sensor(): number, step, times, values
 //   contact_sheet.png   the run at a glance
 //   CAMERA.mp4          H.264
 //   CAMERA/poses.csv    pose of the camera's optical frame (Z forward, X right, Y down) per frame
@@ -12,7 +13,13 @@
 //   CAMERA/depth/000000.png      16-bit mm along the optical axis (ROS 16UC1), 0 = nothing or
 //                                beyond 65.535 m
 //   CAMERA/depth_exr/000000.exr  float m, channel Z (ROS 32FC1), +inf = nothing
+//   CAMERA/sensor_depth/000000.png  as depth, of a stereo_depth model
+//   CAMERA/raw/000000.png        16-bit numbers of the imager; three colours side by side in a row
+//   CAMERA/thermal/000000.png    16-bit hundredths of a kelvin
+//   CAMERA/events.csv            time_s, x, y, brighter
 //   CAMERA/instance/000000.png, CAMERA/semantic/000000.png   16-bit ids of labels.json
+//   LIDAR/scans.csv     times, points and poses (X ahead, Y to the left, Z up) of each scan
+//   LIDAR/pcd/000000.pcd, LIDAR/ply/…, LIDAR/npy/…   points (record/point_cloud_file.h)
 //
 // Pictures are written whole or not at all, tables and videos only grow: after any failure
 // everything written before it is readable.
@@ -27,8 +34,10 @@
 
 #include "gloam/camera.h"
 #include "gloam/result.h"
+#include "gloam/sensor.h"
 #include "gloam/types.h"
 #include "record/file_store.h"
+#include "record/lidar_recorder.h"
 
 namespace gloam {
 
@@ -59,6 +68,11 @@ struct MetricPlot {
   std::string measured, commanded;
 };
 
+struct RecordedSensor {
+  std::string name;  ///< full name, as in SensorMessage::sensor
+  int values = 1;
+};
+
 using NamedText = std::pair<std::string, std::string>;
 using NamedNumber = std::pair<std::string, double>;
 
@@ -73,9 +87,11 @@ struct RunInfo {
   double duration = 0;              ///< planned [s]
   std::vector<NamedText> settings;  ///< renderer tier, samples, threads …
   std::vector<RecordedCamera> cameras;
+  std::vector<RecordedLidar> lidars;
   std::vector<LabelRow> labels;
   std::vector<std::string> metric_columns;  ///< the first is the time [s]
   std::vector<MetricPlot> plots;
+  std::vector<RecordedSensor> sensors;  ///< in the order that add_sensor() may be called for
 };
 
 /// What is known when it ended.
@@ -90,7 +106,7 @@ struct RunOutcome {
 
 class Recorder {
  public:
-  /// Errors: the folder is in use or cannot be made, two cameras of one name, an unknown output,
+  /// Errors: the folder is in use or cannot be made, two sensors of one name, an unknown output,
   /// a picture too large for a video.
   static Result<std::unique_ptr<Recorder>> start(const RecorderOptions& options,
                                                  const RunInfo& info);
@@ -98,8 +114,13 @@ class Recorder {
 
   /// Frames of one camera come in order; frames of unknown cameras are a bug. Any thread.
   virtual void add_frame(std::shared_ptr<const CameraFrame> frame) = 0;
+  /// The same of scans.
+  virtual void add_scan(std::shared_ptr<const LidarScan> scan) = 0;
   /// One value per column. One thread.
   virtual void add_metrics(std::span<const double> row) = 0;
+
+  /// A sample of one of RunInfo::sensors. One thread.
+  virtual void add_sensor(const SensorMessage& message) = 0;
 
   /// The first failure so far, as ErrorKind::kPartial; it stops the recording.
   virtual Status status() const = 0;

@@ -2,6 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "geometry/lens.h"
+
 namespace gloam {
 namespace {
 using Json = nlohmann::ordered_json;
@@ -21,7 +23,8 @@ Json object(const Pairs& pairs) {
 }  // namespace
 
 std::string summary_json(const RunInfo& info, const RunOutcome* outcome,
-                         const std::vector<CameraCounts>& cameras, int64_t metric_rows,
+                         const std::vector<CameraCounts>& cameras,
+                         const std::vector<CameraCounts>& lidars, int64_t metric_rows,
                          uint64_t dropped_metric_rows, const std::vector<std::string>& entries,
                          const std::string& error) {
   Json out;
@@ -50,6 +53,16 @@ std::string summary_json(const RunInfo& info, const RunOutcome* outcome,
                     {"frames", camera.frames},
                     {"dropped_frames", camera.dropped}});
   out["cameras"] = list;
+  if (!lidars.empty()) {
+    list = Json::array();
+    for (size_t i = 0; i < lidars.size(); ++i)
+      list.push_back({{"name", lidars[i].name},
+                      {"folder", lidars[i].file_name},
+                      {"rate_hz", info.lidars[i].rate.value()},
+                      {"scans", lidars[i].frames},
+                      {"dropped_scans", lidars[i].dropped}});
+    out["lidars"] = list;
+  }
   out["metrics"] = {{"rows", metric_rows}, {"dropped_rows", dropped_metric_rows}};
   out["entries"] = entries;
   return dump(out);
@@ -68,16 +81,16 @@ std::string cameras_json(const std::vector<RecordedCamera>& cameras,
     one["rate_hz"] = {{"num", camera.rate.num}, {"den", camera.rate.den}};
     one["width_px"] = k.width;
     one["height_px"] = k.height;
-    one["projection"] = k.orthographic ? "orthographic" : "pinhole";
+    const CameraInfo info = camera_info(camera.name, k);
+    one["projection"] = k.orthographic || is_wide(k.lens) ? info.distortion_model : "pinhole";
     one["fx_px"] = k.fx;
     one["fy_px"] = k.fy;
     one["cx_px"] = k.cx;
     one["cy_px"] = k.cy;
     // ROS and OpenCV count pixel centres at integers, Gloam at integer + 0.5.
     if (!k.orthographic)
-      one["camera_info"] = {{"distortion_model", "plumb_bob"},
-                            {"d", {0, 0, 0, 0, 0}},
-                            {"k", {k.fx, 0.0, k.cx - 0.5, 0.0, k.fy, k.cy - 0.5, 0.0, 0.0, 1.0}}};
+      one["camera_info"] = {
+          {"distortion_model", info.distortion_model}, {"d", info.d}, {"k", info.k}};
     list.push_back(one);
   }
   Json out;
@@ -89,10 +102,37 @@ std::string cameras_json(const std::vector<RecordedCamera>& cameras,
        "poses.csv: of frame_id in the world; Z forward, X right, Y down; metres; "
        "quaternion w first"},
       {"depth",
-       "along Z of frame_id; depth/*.png 16-bit millimetres, 0 = nothing or beyond "
+       "along Z of frame_id, of equidistant and equirectangular cameras along the ray; depth/*.png "
+       "16-bit millimetres, 0 = nothing or beyond "
        "65.535 m; depth_exr/*.exr channel Z, float metres, inf = nothing"}};
   out["cameras"] = list;
   return dump(out);
+}
+
+std::string objects_json(const std::vector<ObjectView>& objects) {
+  const auto box = [](const PixelBox& b) {
+    return b.pixels > 0 ? Json{b.u0, b.v0, b.u1, b.v1} : Json();
+  };
+  Json list = Json::array();
+  for (const ObjectView& object : objects) {
+    Json one;
+    one["instance"] = object.instance;
+    one["name"] = object.name;
+    one["semantic"] = object.semantic;
+    one["visibility"] = object.visibility();
+    one["pixels"] = object.seen.pixels;
+    one["box_px"] = box(object.seen);
+    one["whole_box_px"] = box(object.all);
+    const Pose& X = object.X_WO;
+    one["position_m"] = {X.p.x, X.p.y, X.p.z};
+    one["quaternion_wxyz"] = {X.q.w, X.q.x, X.q.y, X.q.z};
+    if (!object.endless) {
+      one["box_center_m"] = {object.center.x, object.center.y, object.center.z};
+      one["box_size_m"] = {object.size.x, object.size.y, object.size.z};
+    }
+    list.push_back(one);
+  }
+  return dump({{"objects", list}});
 }
 
 std::string labels_json(const std::vector<LabelRow>& labels) {

@@ -9,6 +9,7 @@
 
 namespace gloam {
 
+/// Of a camera, or, with scans for frames, of a LiDAR.
 struct CameraCounts {
   std::string name, file_name;
   int64_t frames = 0;
@@ -17,7 +18,8 @@ struct CameraCounts {
 
 /// `outcome` null: the run is still going on. `entries` = names in the folder that belong to it.
 std::string summary_json(const RunInfo& info, const RunOutcome* outcome,
-                         const std::vector<CameraCounts>& cameras, int64_t metric_rows,
+                         const std::vector<CameraCounts>& cameras,
+                         const std::vector<CameraCounts>& lidars, int64_t metric_rows,
                          uint64_t dropped_metric_rows, const std::vector<std::string>& entries,
                          const std::string& error);
 
@@ -25,6 +27,8 @@ std::string summary_json(const RunInfo& info, const RunOutcome* outcome,
 std::string cameras_json(const std::vector<RecordedCamera>& cameras,
                          const std::vector<std::string>& file_names);
 
+/// Objects of one picture, as in CameraFrame::objects.
+std::string objects_json(const std::vector<ObjectView>& objects);
 std::string labels_json(const std::vector<LabelRow>& labels);
 
 }  // namespace gloam

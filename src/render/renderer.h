@@ -4,20 +4,30 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "gloam/result.h"
 #include "render/film/film.h"
+#include "render/kernel/camera.h"
 #include "sim/pose_frame.h"
 #include "world/render_description.h"
 
 namespace gloam {
 
-/// A camera at the two ends of the shutter. C looks along -Z with +Y up.
+struct LidarView;    // render/lidar_view.h
+struct LidarReturn;  // render/kernel/lidar_detect.h
+
+/// A camera, where it is, and when it sees. C looks along -Z with +Y up. Times are those of the
+/// scene's keys: 0 the first, 1 the last.
 struct CameraView {
   Intrinsics intrinsics;
-  Affine3f X_WC_open, X_WC_close;
-  Affine3f X_WC_previous;  ///< at the previous frame, for `motion`
+  Affine3f X_WC_open;                 ///< at time 0
+  Affine3f X_WC_previous;             ///< at the previous frame, for `motion`
+  std::vector<Affine3f> X_WC_keys{};  ///< one per key of the scene; empty = it stands still
+  Shutter shutter{};                  ///< of the exact channels its opening counts
+  Aperture aperture{};                ///< path tier; the exact channels are of its middle
 };
 
 enum class RenderTier : uint8_t {
@@ -40,8 +50,10 @@ struct RenderSettings {
   int max_depth = 5;     ///< path vertices after the camera (Mitsuba's max_depth)
   int roulette_depth = 100;  ///< vertices before Russian roulette starts (Mitsuba's rr_depth)
   uint64_t seed = 1;
-  uint32_t frame = 0;          ///< draws are keyed (seed, frame, pixel, sample)
-  bool exact_channels = true;  ///< depth, distance, part, center_normal, center_albedo, motion
+  uint32_t frame = 0;  ///< draws are keyed (seed, frame, pixel, sample)
+  /// depth, distance, part, center_normal, center_albedo, motion, scene_flow
+  bool exact_channels = true;
+  bool cover = false;  ///< Film::cover, by the label's instance of what is drawn
   bool variance = false;
   /// For a denoiser, of pictures with fewer samples than this: albedo and normal of so many rays at
   /// edges, of the pixel's centre elsewhere. 0 = always those of the samples. Needs exact_channels.
@@ -74,12 +86,21 @@ struct RenderStats {
 class Renderer {
  public:
   virtual ~Renderer() = default;
-  /// Moves instances, lights and deformables. `open` and `close` bracket the shutter (may be the
-  /// same object); `previous` is the frame before, for motion vectors.
-  virtual void update(const PoseFrame& open, const PoseFrame& close, const PoseFrame& previous) = 0;
+  /// Moves instances, lights and deformables. `keys`: one or more frames that follow each other
+  /// evenly in time and bracket the exposure of all rows; between them everything moves evenly.
+  /// `previous` is the frame before, for motion vectors. Lights and live fields are those of the
+  /// first key.
+  virtual void update(std::span<const PoseFrame* const> keys, const PoseFrame& previous) = 0;
+  /// Two keys, or one if they are the same object.
+  void update(const PoseFrame& open, const PoseFrame& close, const PoseFrame& previous) {
+    const PoseFrame* const keys[] = {&open, &close};
+    update(std::span(keys, &open == &close ? 1 : 2), previous);
+  }
   /// Fills `film` (resized to the view's resolution).
   virtual RenderStats render(const CameraView& view, const RenderSettings& settings,
                              Film* film) = 0;
+  /// Sends out the beams of a LiDAR; `returns`: view.optics.most_returns of each, in their order.
+  virtual void scan(const LidarView& view, std::span<LidarReturn> returns) = 0;
   /// For RenderSettings::history; of this renderer alone.
   virtual std::unique_ptr<ViewHistory> make_history() const = 0;
 };
@@ -105,8 +126,8 @@ Result<std::unique_ptr<Renderer>> make_renderer(const RenderDescription& descrip
 /// "NVIDIA H200", or why make_cuda_renderer would fail.
 Result<std::string> cuda_device_name();
 
-/// Camera `camera` of the description as it stands in `frame`.
-CameraView view_at(const RenderDescription& description, int camera, const PoseFrame& open,
-                   const PoseFrame& close, const PoseFrame& previous);
+/// Camera `camera` of the description as it stands in the frames, which are those of update().
+CameraView view_at(const RenderDescription& description, int camera,
+                   std::span<const PoseFrame* const> keys, const PoseFrame& previous);
 
 }  // namespace gloam

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <new>
 #include <utility>
@@ -18,10 +19,12 @@ LiveCamera::LiveCamera(Simulator& simulator, std::shared_ptr<SharedRenderer> sha
 Result<std::unique_ptr<LiveCamera>> LiveCamera::open(Simulator& simulator,
                                                      std::shared_ptr<SharedRenderer> shared,
                                                      const CameraRequest& request, uint64_t seed,
-                                                     FrameCallback on_frame) {
+                                                     FrameCallback on_frame,
+                                                     std::shared_ptr<ExposureMeter> meter) {
   std::unique_ptr<LiveCamera> camera(
       new LiveCamera(simulator, std::move(shared), std::move(on_frame)));
   GLOAM_TRY(camera->sensor_, CameraSensor::create(camera->shared_->description, request, seed));
+  GLOAM_TRY_STATUS(camera->sensor_->set_temperatures(simulator.world().scene.temperatures));
   const Intrinsics& k = camera->sensor_->intrinsics();
   const PictureMemory memory = camera->sensor_->memory();
   constexpr uint64_t kInFlight = 2;  // frames that are made and looked at
@@ -31,11 +34,19 @@ Result<std::unique_ptr<LiveCamera>> LiveCamera::open(Simulator& simulator,
       "lower the resolution"));
   const std::shared_ptr<const CompiledWorld> world(std::shared_ptr<void>(), &simulator.world());
   GLOAM_TRY(camera->solver_, PoseSolver::create(world));
+  const std::optional<TimingOptions>& timing = camera->sensor_->sensing().timing;
+  GLOAM_TRY(camera->timing_,
+            SensorTiming::make(request.rate, timing.value_or(TimingOptions{}), simulator.timestep(),
+                               sensor_seed(seed, request.camera)));
+  camera->meter_ = std::move(meter);
   // Two in the queue keep the camera busy; more would only make a live picture older.
   const int capacity = request.required ? 2 : 1;
   GLOAM_TRY(camera->queue_,
-            simulator.subscribe(
-                {.rate = request.rate, .required = request.required, .capacity = capacity}));
+            simulator.subscribe({.rate = request.rate,
+                                 .due = timing ? due_steps(camera->timing_) : nullptr,
+                                 .required = request.required,
+                                 .capacity = capacity,
+                                 .window = camera->sensor_->window()}));
   camera->required_ = request.required;
   camera->thread_ = std::thread([raw = camera.get()] { raw->run(); });
   return camera;
@@ -65,23 +76,27 @@ void LiveCamera::refresh() {
   changed_.notify_all();
 }
 
-Snapshot LiveCamera::wait_for_work() {
-  if (required_) return queue_->next();
+SnapshotWindow LiveCamera::wait_for_work() {
+  if (required_) return queue_->next_window();
   // A live camera also answers refresh() while the simulation is paused, so it looks at both.
   constexpr auto kLook = std::chrono::milliseconds(4);
   std::unique_lock lock(mutex_);
   for (;;) {
     if (closing_) return {};
-    if (Snapshot snapshot = queue_->try_next()) return snapshot;
+    if (SnapshotWindow window = queue_->try_next_window()) return window;
     if (queue_->closed()) return {};
-    if (std::exchange(refresh_wanted_, false)) return simulator_.latest();
+    if (std::exchange(refresh_wanted_, false)) {  // an instant: nothing moves
+      SnapshotWindow window;
+      window.add(simulator_.latest());
+      return window;
+    }
     changed_.wait_for(lock, kLook);
   }
 }
 
 void LiveCamera::run() {
   try {
-    while (const Snapshot snapshot = wait_for_work()) capture(snapshot);
+    while (const SnapshotWindow window = wait_for_work()) capture(window);
   } catch (const std::bad_alloc&) {
     const Intrinsics& k = sensor_->intrinsics();
     const std::lock_guard lock(mutex_);
@@ -99,23 +114,27 @@ Status LiveCamera::status() const {
   return status_;
 }
 
-int64_t LiveCamera::frame_index(int64_t step) const {
-  // Frame k is exposed at the first step at or after k / rate, so this floor gives k back.
-  const Rational timestep = simulator_.timestep();
-  const auto num = static_cast<__int128>(step) * timestep.num * sensor_->rate().num;
-  return static_cast<int64_t>(num / (static_cast<__int128>(timestep.den) * sensor_->rate().den));
-}
-
-void LiveCamera::capture(const Snapshot& snapshot) {
-  if (const Status status = solver_->solve(snapshot, now_); !status.ok()) {
-    log_error("a camera lost its poses: {}", status.error().to_string());
-    return;
+void LiveCamera::capture(const SnapshotWindow& window) {
+  const int64_t step = window.all().front().step();
+  const int64_t index = std::max<int64_t>(0, timing_.last_at_or_before(step));
+  if (timing_.step_of(index) == step && timing_.dropped(index)) return;
+  keys_.resize(std::max(keys_.size(), static_cast<size_t>(window.count)));
+  std::vector<const PoseFrame*> keys;
+  for (const Snapshot& snapshot : window.all()) {
+    PoseFrame& key = keys_[keys.size()];
+    if (const Status status = solver_->solve(snapshot, key); !status.ok()) {
+      log_error("a camera lost its poses: {}", status.error().to_string());
+      return;
+    }
+    keys.push_back(&key);
   }
-  const bool continuous = has_previous_ && previous_.step <= now_.step;
-  auto frame = sensor_->capture(*shared_->renderer, shared_->mutex, now_,
-                                continuous ? previous_ : now_, frame_index(snapshot.step()));
+  if (meter_ != nullptr) sensor_->set_ev100(meter_->ev100_at(step));
+  PoseFrame& now = keys_.front();
+  const bool continuous = has_previous_ && previous_.step <= now.step;
+  auto frame = sensor_->capture(*shared_->renderer, shared_->mutex, keys,
+                                continuous ? previous_ : now, index);
   on_frame_(std::move(frame));
-  std::swap(now_, previous_);
+  std::swap(now, previous_);
   has_previous_ = true;
 }
 

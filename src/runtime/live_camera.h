@@ -8,8 +8,10 @@
 #include <thread>
 
 #include "gloam/simulation.h"
+#include "runtime/exposure_meter.h"
 #include "runtime/shared_renderer.h"
 #include "sensors/camera_sensor.h"
+#include "sensors/timing.h"
 #include "sim/pose_solver.h"
 #include "sim/simulator.h"
 
@@ -20,7 +22,8 @@ class LiveCamera final : public CameraStream {
   static Result<std::unique_ptr<LiveCamera>> open(Simulator& simulator,
                                                   std::shared_ptr<SharedRenderer> shared,
                                                   const CameraRequest& request, uint64_t seed,
-                                                  FrameCallback on_frame);
+                                                  FrameCallback on_frame,
+                                                  std::shared_ptr<ExposureMeter> meter = nullptr);
   ~LiveCamera() override;
 
   void set_pose(const Pose& X_WC) override;
@@ -36,18 +39,20 @@ class LiveCamera final : public CameraStream {
  private:
   LiveCamera(Simulator& simulator, std::shared_ptr<SharedRenderer> shared, FrameCallback on_frame);
   void run();
-  Snapshot wait_for_work();
-  void capture(const Snapshot& snapshot);
-  int64_t frame_index(int64_t step) const;
+  SnapshotWindow wait_for_work();
+  void capture(const SnapshotWindow& window);
 
   Simulator& simulator_;
   std::shared_ptr<SharedRenderer> shared_;
   FrameCallback on_frame_;
   std::unique_ptr<CameraSensor> sensor_;
+  SensorTiming timing_;
+  std::shared_ptr<ExposureMeter> meter_;  // null: the exposure stays
   std::unique_ptr<PoseSolver> solver_;
   std::shared_ptr<SnapshotQueue> queue_;
   bool required_ = false;
-  PoseFrame now_, previous_;
+  std::vector<PoseFrame> keys_;  ///< of the window that is exposed
+  PoseFrame previous_;           ///< the first of the window before
   bool has_previous_ = false;
   mutable std::mutex mutex_;
   std::condition_variable changed_;

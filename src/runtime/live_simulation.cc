@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "control/controllers.h"
+#include "geometry/lens.h"
 
 namespace gloam {
 namespace {
@@ -48,6 +49,7 @@ Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& worl
   core.speed = options.speed;
   GLOAM_TRY(live->simulator_, Simulator::create(world.compiled(), core));
   GLOAM_TRY_STATUS(add_controllers(*world.compiled(), *live->simulator_));
+  GLOAM_TRY_STATUS(live->open_meters(options.pace != Pace::kRealTime));
   // The thread starts with the first call that moves time: hooks, controllers and cameras come
   // before.
   live->simulator_->start(0);
@@ -137,13 +139,57 @@ Result<std::shared_ptr<SharedRenderer>> LiveSimulation::renderer() {
 Result<std::unique_ptr<LiveCamera>> LiveSimulation::open_live_camera(const CameraRequest& request,
                                                                      FrameCallback on_frame) {
   GLOAM_TRY(auto shared, renderer());
-  return LiveCamera::open(*simulator_, std::move(shared), request, seed_, std::move(on_frame));
+  return LiveCamera::open(*simulator_, std::move(shared), request, seed_, std::move(on_frame),
+                          meter_of(request.camera));
+}
+
+// Exposure goes on from step 0 whether or not anyone opens the camera.
+Status LiveSimulation::open_meters(bool required) {
+  const Scene& scene = world_.compiled()->scene;
+  for (const CameraOptions& camera : scene.cameras) {
+    if (!camera.sensing.imager || !camera.sensing.imager->auto_exposure) continue;
+    GLOAM_TRY(auto shared, renderer());
+    GLOAM_TRY(meters_[camera.name], ExposureMeter::open(*simulator_, std::move(shared), camera,
+                                                        scene.render.max_depth, seed_, required));
+  }
+  return {};
+}
+
+std::shared_ptr<ExposureMeter> LiveSimulation::meter_of(const std::string& camera) const {
+  const auto found = meters_.find(camera);
+  return found != meters_.end() ? found->second : nullptr;
+}
+
+Result<std::unique_ptr<SensorStream>> LiveSimulation::open_sensor(const SensorRequest& request,
+                                                                  SensorCallback on_message) {
+  GLOAM_TRY(const SensorDescription sensor, find_sensor(*world_.compiled(), request.sensor));
+  GLOAM_TRY(auto live, LiveSensors::open(*simulator_, {sensor}, request.required, seed_,
+                                         std::move(on_message)));
+  return std::unique_ptr<SensorStream>(std::move(live));
+}
+
+Result<std::unique_ptr<LiveSensors>> LiveSimulation::open_all_sensors(bool required,
+                                                                      SensorCallback on_message) {
+  return LiveSensors::open(*simulator_, describe_sensors(*world_.compiled()), required, seed_,
+                           std::move(on_message));
 }
 
 Result<std::unique_ptr<CameraStream>> LiveSimulation::open_camera(const CameraRequest& request,
                                                                   FrameCallback on_frame) {
   GLOAM_TRY(auto camera, open_live_camera(request, std::move(on_frame)));
   return std::unique_ptr<CameraStream>(std::move(camera));
+}
+
+Result<std::unique_ptr<LiveLidar>> LiveSimulation::open_live_lidar(const LidarRequest& request,
+                                                                   ScanCallback on_scan) {
+  GLOAM_TRY(auto shared, renderer());
+  return LiveLidar::open(*simulator_, std::move(shared), request, seed_, std::move(on_scan));
+}
+
+Result<std::unique_ptr<LidarStream>> LiveSimulation::open_lidar(const LidarRequest& request,
+                                                                ScanCallback on_scan) {
+  GLOAM_TRY(auto lidar, open_live_lidar(request, std::move(on_scan)));
+  return std::unique_ptr<LidarStream>(std::move(lidar));
 }
 
 std::vector<std::string> LiveSimulation::camera_names() const {
@@ -194,7 +240,7 @@ Result<PickResult> LiveSimulation::pick(const CameraFrame& frame, double u, doub
   const std::lock_guard lock(shared->mutex);
   // A picture of one pixel whose centre is (u, v).
   CameraView view;
-  view.X_WC_open = view.X_WC_close = view.X_WC_previous = to_affine(frame.X_WC);
+  view.X_WC_open = view.X_WC_previous = to_affine(frame.X_WC);
   view.intrinsics = frame.intrinsics;
   view.intrinsics.width = view.intrinsics.height = 1;
   view.intrinsics.cx = frame.intrinsics.cx - u + 0.5;
@@ -208,10 +254,13 @@ Result<PickResult> LiveSimulation::pick(const CameraFrame& frame, double u, doub
   if (part == 0) return Error{ErrorKind::kInput, "there is nothing under this pixel"};
 
   const Intrinsics& k = frame.intrinsics;
-  const auto depth = static_cast<double>(film.depth[0]);
-  const double scale = k.orthographic ? 1.0 : depth;
-  const Vec3f p_C{static_cast<float>((u - k.cx) / k.fx * scale),
-                  static_cast<float>(-(v - k.cy) / k.fy * scale), static_cast<float>(-depth)};
+  const auto distance = static_cast<double>(film.distance[0]);
+  double X = (u - k.cx) / k.fx, Y = (v - k.cy) / k.fy, Z = distance, angle = 0;
+  if (!k.orthographic) {
+    lens_unproject(make_lens<double>(k), X, Y, &X, &Y, &Z, &angle);
+    X *= distance, Y *= distance, Z *= distance;
+  }
+  const Vec3f p_C{static_cast<float>(X), static_cast<float>(-Y), static_cast<float>(-Z)};
   const Vec3f p_W = transform_point(view.X_WC_open, p_C);
   const InstanceDescription& instance = shared->description.instances[part - 1];
   const auto body = static_cast<size_t>(instance.body);

@@ -7,7 +7,10 @@
 #include <optional>
 
 #include "gloam/simulation.h"
+#include "runtime/exposure_meter.h"
 #include "runtime/live_camera.h"
+#include "runtime/live_lidar.h"
+#include "runtime/live_sensors.h"
 
 namespace gloam {
 
@@ -30,6 +33,10 @@ class LiveSimulation final : public Simulation {
   void set_step_hook(std::function<void(const mjModel_*, mjData_*)> hook) override;
   Result<std::unique_ptr<CameraStream>> open_camera(const CameraRequest& request,
                                                     FrameCallback on_frame) override;
+  Result<std::unique_ptr<SensorStream>> open_sensor(const SensorRequest& request,
+                                                    SensorCallback on_message) override;
+  Result<std::unique_ptr<LidarStream>> open_lidar(const LidarRequest& request,
+                                                  ScanCallback on_scan) override;
   std::vector<std::string> camera_names() const override;
   Result<std::vector<LabelRow>> labels() override;
   Result<Pose> body_pose(Body body) override;
@@ -41,8 +48,15 @@ class LiveSimulation final : public Simulation {
   Result<std::shared_ptr<SharedRenderer>> renderer();
   Result<std::unique_ptr<LiveCamera>> open_live_camera(const CameraRequest& request,
                                                        FrameCallback on_frame);
+  /// All sensors of the model in one stream.
+  Result<std::unique_ptr<LiveSensors>> open_all_sensors(bool required, SensorCallback on_message);
+  /// Of an automatic exposure; null where a camera has none.
+  std::shared_ptr<ExposureMeter> meter_of(const std::string& camera) const;
+  Result<std::unique_ptr<LiveLidar>> open_live_lidar(const LidarRequest& request,
+                                                     ScanCallback on_scan);
 
  private:
+  Status open_meters(bool required);
   LiveSimulation(World world, uint64_t seed);
   void restart_speed_clock();
   Status solve_latest(PoseFrame& poses);
@@ -52,6 +66,7 @@ class LiveSimulation final : public Simulation {
   std::unique_ptr<Simulator> simulator_;
   std::mutex renderer_mutex_;
   std::shared_ptr<SharedRenderer> renderer_;
+  std::map<std::string, std::shared_ptr<ExposureMeter>> meters_;  // by camera
   std::mutex solver_mutex_;
   std::unique_ptr<PoseSolver> solver_;  // for questions about the latest instant
   std::atomic<bool> paused_{true}, stop_requested_{false};

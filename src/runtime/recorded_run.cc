@@ -32,8 +32,10 @@ bool wants(const std::vector<std::string>& outputs, const std::string& name) {
   return std::find(outputs.begin(), outputs.end(), name) != outputs.end();
 }
 
-// The channels that a camera must fill so that the recorder can write `outputs`.
-std::vector<std::string> channels_for(const std::vector<std::string>& outputs) {
+// The channels that a camera must fill so that the recorder can write `outputs`. What needs a model
+// is left out of cameras that have none.
+std::vector<std::string> channels_for(const std::vector<std::string>& outputs,
+                                      const CameraSensing& sensing) {
   std::vector<std::string> channels;
   if (wants(outputs, "video") || wants(outputs, "png") || wants(outputs, "contact_sheet"))
     channels.push_back("rgb");
@@ -43,6 +45,11 @@ std::vector<std::string> channels_for(const std::vector<std::string>& outputs) {
   }
   if (wants(outputs, "segmentation") || wants(outputs, "contact_sheet"))
     channels.push_back("segmentation");
+  if (wants(outputs, "raw_png") && sensing.imager) channels.push_back("raw");
+  if (wants(outputs, "sensor_depth_png") && sensing.stereo_depth)
+    channels.push_back("sensor_depth");
+  if (wants(outputs, "thermal_png") && sensing.thermal) channels.push_back("thermal");
+  if (wants(outputs, "events") && sensing.events) channels.push_back("events");
   return channels;
 }
 
@@ -83,12 +90,28 @@ Result<std::vector<CameraRequest>> camera_requests(const World& world, const Run
       camera.rate = request.rate;
     else if (options == nullptr && step_rate.value() < camera.rate.value())
       camera.rate = step_rate;
-    camera.outputs = channels_for(outputs);
+    camera.outputs = channels_for(outputs, options != nullptr ? options->sensing : CameraSensing{});
     camera.render = scene.render;
     camera.required = request.simulation.pace == Pace::kFast;
     requests.push_back(camera);
   }
   return requests;
+}
+
+// Those LiDARs of the scene of which files are wanted.
+Result<std::vector<RecordedLidar>> recorded_lidars(const World& world, Rational timestep) {
+  const Scene& scene = world.compiled()->scene;
+  const bool all = wants(scene.record.outputs, "lidar");
+  std::vector<RecordedLidar> lidars;
+  for (const LidarOptions& options : scene.lidars) {
+    const auto formats = options.outputs.value_or(all ? std::vector<std::string>{"pcd"}
+                                                      : std::vector<std::string>{});
+    if (formats.empty()) continue;
+    GLOAM_TRY(const LidarModel model, make_lidar_model(options));
+    GLOAM_TRY_STATUS(StepSchedule::make(model.rate, {0, 1}, timestep));
+    lidars.push_back({options.name, model.rate, formats});
+  }
+  return lidars;
 }
 
 std::string scene_hash(const Scene& scene) {
@@ -155,12 +178,15 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   RobotMetrics metrics(*world.compiled());
   std::unique_ptr<Recorder> recorder;
   std::vector<std::unique_ptr<LiveCamera>> cameras;
+  std::unique_ptr<LiveSensors> sensors;
+  std::vector<std::unique_ptr<LiveLidar>> lidars;
   std::atomic<int64_t> frames{0};
   double prepared = 0;
   if (!request.out.empty()) {
     GLOAM_TRY(auto shared, simulation->renderer());
     GLOAM_TRY(const auto requests, camera_requests(world, request, shared->description, rate));
     RunInfo info = run_info(world, request, 1 / rate.value(), duration);
+    GLOAM_TRY(info.lidars, recorded_lidars(world, simulator.timestep()));
     uint64_t memory = 0;
     for (const CameraRequest& camera : requests) {
       GLOAM_TRY(const auto sensor,
@@ -180,6 +206,10 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
     GLOAM_TRY(info.labels, simulation->labels());
     info.metric_columns = metrics.columns();
     info.plots = metrics.plots();
+    if (wants(scene.record.outputs, "sensors")) {
+      for (const SensorDescription& sensor : describe_sensors(*world.compiled()))
+        info.sensors.push_back({sensor.name, sensor.count});
+    }
     RecorderOptions options;
     options.folder = request.out;
     options.overwrite = request.overwrite;
@@ -194,6 +224,18 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
                 }));
       cameras.push_back(std::move(live));
     }
+    if (!info.sensors.empty()) {
+      GLOAM_TRY(sensors, simulation->open_all_sensors(
+                             request.simulation.pace == Pace::kFast,
+                             [&](const SensorMessage& message) { recorder->add_sensor(message); }));
+    }
+    for (const RecordedLidar& lidar : info.lidars) {
+      GLOAM_TRY(auto live,
+                simulation->open_live_lidar(
+                    {lidar.name, request.simulation.pace == Pace::kFast},
+                    [&](std::shared_ptr<const LidarScan> scan) { recorder->add_scan(scan); }));
+      lidars.push_back(std::move(live));
+    }
     prepared = seconds_since(start);
   }
   // Metrics at 100 Hz, or every step of slower models.
@@ -204,6 +246,7 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
 
   const auto recording = [&]() -> Status {
     for (const auto& camera : cameras) GLOAM_TRY_STATUS(camera->status());
+    for (const auto& lidar : lidars) GLOAM_TRY_STATUS(lidar->status());
     return recorder != nullptr ? recorder->status() : Status();
   };
   report.status = run_to_step(simulator, steps, cameras.empty() ? "simulating" : "rendering",
@@ -216,6 +259,13 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
     if (report.status.ok()) report.status = camera->status();
   }
   cameras.clear();
+  if (sensors != nullptr) sensors->drain();
+  sensors.reset();
+  for (auto& lidar : lidars) {
+    lidar->drain();
+    if (report.status.ok()) report.status = lidar->status();
+  }
+  lidars.clear();
   metrics_thread.join();
 
   report.out = request.out;

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <map>
+#include <set>
 
 #include "base/files.h"
 #include "base/log.h"
 #include "base/memory.h"
 #include "gloam/run.h"
+#include "record/run_files.h"
 #include "render/film/exr.h"
 #include "render/film/png.h"
 #include "runtime/live_simulation.h"
@@ -60,15 +63,23 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
   std::vector<std::unique_ptr<CameraSensor>> sensors;
   for (const CameraRequest& request : requests) {
     GLOAM_TRY(auto sensor, CameraSensor::create(shared->description, request, options.seed));
+    GLOAM_TRY_STATUS(sensor->set_temperatures(world.compiled()->scene.temperatures));
     sensors.push_back(std::move(sensor));
   }
   if (!sensors.empty()) GLOAM_TRY_STATUS(check_room(sensors));
-  GLOAM_TRY_STATUS(
-      run_to_step(simulation->simulator(), steps, "simulating", seconds(), progress, {}));
-
+  const Rational timestep = simulation->simulator().timestep();
+  std::set<int64_t> wanted;  // steps, over all cameras' exposures
+  for (const auto& sensor : sensors) {
+    const KeySteps keys = key_steps(sensor->window(), timestep);
+    for (int k = 0; k < keys.count; ++k) wanted.insert(steps + k * keys.stride);
+  }
   GLOAM_TRY(auto solver, PoseSolver::create(world.compiled()));
-  PoseFrame poses;
-  GLOAM_TRY_STATUS(solver->solve(simulation->latest(), poses));
+  std::map<int64_t, PoseFrame> poses;
+  for (const int64_t step : wanted) {
+    GLOAM_TRY_STATUS(
+        run_to_step(simulation->simulator(), step, "simulating", seconds(), progress, {}));
+    GLOAM_TRY_STATUS(solver->solve(simulation->latest(), poses[step]));
+  }
   std::vector<CameraFrame> frames;
   for (size_t i = 0; i < requests.size(); ++i) {
     const double done = static_cast<double>(i) / static_cast<double>(requests.size());
@@ -80,7 +91,13 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
     sensor->set_progress([&](double part) {
       return !progress || progress({"rendering", done + share * part, seconds()});
     });
-    const auto frame = sensor->capture(*shared->renderer, shared->mutex, poses, poses, 0);
+    if (const auto meter = simulation->meter_of(requests[i].camera))
+      sensor->set_ev100(meter->ev100_at(steps));
+    const KeySteps keys = key_steps(sensor->window(), timestep);
+    std::vector<const PoseFrame*> exposure;
+    for (int k = 0; k < keys.count; ++k) exposure.push_back(&poses[steps + k * keys.stride]);
+    const auto frame =
+        sensor->capture(*shared->renderer, shared->mutex, exposure, *exposure.front(), 0);
     if (frame == nullptr) return Error{ErrorKind::kInterrupted, "interrupted"};
     if (requests[i].render.error) {
       tell_what_was_reached(requests[i], *frame, sensor->stats());
@@ -123,6 +140,22 @@ Result<std::vector<std::filesystem::path>> write_frame(const CameraFrame& frame,
         write("_depth.png", encode_png16(width, height, depth_to_millimetres(frame.depth))));
     GLOAM_TRY_STATUS(write_planes("_depth.exr", frame.depth, {"Z"}));
   }
+  if (!frame.sensor_depth.empty()) {
+    GLOAM_TRY_STATUS(write("_sensor_depth.png",
+                           encode_png16(width, height, depth_to_millimetres(frame.sensor_depth))));
+    GLOAM_TRY_STATUS(write_planes("_sensor_depth.exr", frame.sensor_depth, {"Z"}));
+  }
+  if (!frame.raw.empty()) {
+    const int row = static_cast<int>(frame.raw.size() / static_cast<size_t>(height));
+    GLOAM_TRY_STATUS(write("_raw.png", encode_png16(row, height, frame.raw)));
+  }
+  if (!frame.thermal.empty()) {
+    GLOAM_TRY_STATUS(
+        write("_thermal.png", encode_png16(width, height, to_centikelvins(frame.thermal))));
+    GLOAM_TRY_STATUS(write_planes("_thermal.exr", frame.thermal, {"K"}));
+  }
+  if (!frame.distance.empty())
+    GLOAM_TRY_STATUS(write_planes("_distance.exr", frame.distance, {"distance"}));
   if (!frame.instance.empty()) {
     GLOAM_TRY_STATUS(write("_instance.png", encode_png16(width, height, frame.instance)));
     GLOAM_TRY_STATUS(write("_semantic.png", encode_png16(width, height, frame.semantic)));
@@ -133,6 +166,12 @@ Result<std::vector<std::filesystem::path>> write_frame(const CameraFrame& frame,
     GLOAM_TRY_STATUS(write_planes("_albedo.exr", frame.albedo, {"R", "G", "B"}));
   if (!frame.motion.empty())
     GLOAM_TRY_STATUS(write_planes("_motion.exr", frame.motion, {"U", "V"}));
+  if (!frame.scene_flow.empty())
+    GLOAM_TRY_STATUS(write_planes("_scene_flow.exr", frame.scene_flow, {"X", "Y", "Z"}));
+  if (!frame.objects.empty()) {
+    const std::string text = objects_json(frame.objects);
+    GLOAM_TRY_STATUS(write("_boxes.json", std::vector<uint8_t>(text.begin(), text.end())));
+  }
   return written;
 }
 

@@ -10,6 +10,8 @@
 
 #include "gloam/scene.h"
 #include "scene/field_rule.h"
+#include "scene/imager_fields.h"
+#include "scene/lidar_fields.h"
 #include "scene/light_fields.h"
 #include "scene/pattern_names.h"
 
@@ -50,6 +52,26 @@ void visit_fields(Visitor& v, EnvironmentOptions& o) {
 }
 
 template <class Visitor>
+void visit_fields(Visitor& v, LensOptions& o) {
+  const FieldRule pixels{.unit = "px", .min = 0, .max = 1e6, .open = true};
+  const FieldRule length{.unit = "m", .min = 0, .max = 1, .open = true};
+  v("model", o.model,
+    FieldRule{.required = true,
+              .choices = {"pinhole", "plumb_bob", "rational_polynomial", "equidistant",
+                          "equirectangular"}});
+  v("d", o.d, FieldRule{.min = -1e6, .max = 1e6});
+  v("fx", o.fx, pixels);
+  v("fy", o.fy, pixels);
+  v("cx", o.cx, FieldRule{.unit = "px", .min = -1e6, .max = 1e6});
+  v("cy", o.cy, FieldRule{.unit = "px", .min = -1e6, .max = 1e6});
+  v("focal_length", o.focal_length, length);
+  v("sensor_size", o.sensor_size, length);
+  v("f_number", o.f_number, FieldRule{.min = 0.1, .max = 1000});
+  v("focus_distance", o.focus_distance,
+    FieldRule{.unit = "m", .min = 0, .max = kLargestLength, .open = true});
+}
+
+template <class Visitor>
 void visit_fields(Visitor& v, CameraOptions& o) {
   v("name", o.name, FieldRule{.required = true});
   v("body", o.body, FieldRule{});
@@ -61,8 +83,13 @@ void visit_fields(Visitor& v, CameraOptions& o) {
   v("width", o.width, FieldRule{.unit = "px", .min = 1, .max = 16384});
   v("height", o.height, FieldRule{.unit = "px", .min = 1, .max = 16384});
   v("rate", o.rate, FieldRule{.unit = "Hz", .min = 0, .max = kFastestRate, .open = true});
+  v("lens", o.lens, FieldRule{});
+  v("exposure_time", o.exposure_time, FieldRule{.unit = "s", .min = 0, .max = 100});
+  v("readout_time", o.readout_time, FieldRule{.unit = "s", .min = 0, .max = 100});
   v("outputs", o.outputs,
-    FieldRule{.choices = {"video", "png", "depth_png", "depth_exr", "segmentation"}});
+    FieldRule{.choices = {"video", "png", "depth_png", "depth_exr", "segmentation",
+                          "sensor_depth_png", "raw_png", "thermal_png", "events"}});
+  visit_sensing(v, o.sensing);
 }
 
 template <class Visitor>
@@ -164,8 +191,9 @@ void visit_fields(Visitor& v, RenderOptions& o) {
 template <class Visitor>
 void visit_fields(Visitor& v, RecordOptions& o) {
   v("outputs", o.outputs,
-    FieldRule{.choices = {"video", "png", "depth_png", "depth_exr", "segmentation", "metrics",
-                          "contact_sheet"}});
+    FieldRule{.choices = {"video", "png", "depth_png", "depth_exr", "segmentation",
+                          "sensor_depth_png", "raw_png", "thermal_png", "events", "lidar",
+                          "metrics", "contact_sheet", "sensors"}});
 }
 
 /// [scene]
@@ -185,12 +213,17 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("environment", scene.environment, FieldRule{});
   v("robot", scene.robots, FieldRule{});
   v("camera", scene.cameras, FieldRule{});
+  v("lidar", scene.lidars, FieldRule{});
   v("material", scene.materials, FieldRule{});
   v("light", scene.lights, FieldRule{});
   v("sky", scene.sky, FieldRule{});
   v("volume", scene.volumes, FieldRule{});
   v("visual", scene.visuals, FieldRule{});
   v("push", scene.pushes, FieldRule{});
+  v("stereo", scene.stereo, FieldRule{});
+  v("rgbd", scene.rgbd, FieldRule{});
+  v("sensor", scene.sensors, FieldRule{});
+  v("temperature", scene.temperatures, FieldRule{});
   v("render", scene.render, FieldRule{});
   v("record", scene.record, FieldRule{});
 }

@@ -16,6 +16,10 @@ inline constexpr std::array<std::string_view, 4> kNoiseBases = {"fbm", "turbulen
 inline constexpr std::array<std::string_view, 3> kBrickBonds = {"running", "stack", "english"};
 inline constexpr std::array<std::string_view, 2> kTileShapes = {"square", "hexagon"};
 inline constexpr std::array<std::string_view, 2> kWeaves = {"plain", "twill"};
+inline constexpr std::array<std::string_view, 3> kStereoPresets = {"none", "d435", "kinect"};
+inline constexpr std::array<std::string_view, 8> kSignalPresets = {
+    "none",         "adis16470_gyro", "adis16470_accel", "bmi088_gyro",
+    "bmi088_accel", "mpu6050_gyro",   "mpu6050_accel",   "as5048a"};
 
 /// For FieldRule::choices.
 inline std::vector<std::string_view> words(std::span<const std::string_view> list) {

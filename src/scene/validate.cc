@@ -8,7 +8,10 @@
 #include <optional>
 
 #include "base/text.h"
+#include "scene/camera_lens.h"
 #include "scene/option_fields.h"
+#include "scene/validate_imager.h"
+#include "scene/validate_lidar.h"
 #include "scene/validate_light.h"
 
 namespace gloam {
@@ -125,7 +128,7 @@ Status validate_camera(const CameraOptions& camera) {
                  fmt::format("camera '{}' looks at the point it stands in", camera.name),
                  camera.loc, "move 'look_at' or 'position'"};
   }
-  return {};
+  return validate_lens(camera);
 }
 
 Status validate_render(const RenderOptions& render) {
@@ -155,7 +158,15 @@ Status validate_scene(const Scene& scene) {
   GLOAM_TRY_STATUS(refuse_duplicates(scene.cameras, "camera"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.visuals, "visual"));
   GLOAM_TRY_STATUS(validate_render(scene.render));
-  for (const CameraOptions& camera : scene.cameras) GLOAM_TRY_STATUS(validate_camera(camera));
+  for (const CameraOptions& camera : scene.cameras) {
+    GLOAM_TRY_STATUS(validate_camera(camera));
+    GLOAM_TRY_STATUS(validate_sensing(camera.name, camera.sensing));
+  }
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.stereo, "stereo rig"));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.rgbd, "rgbd rig"));
+  GLOAM_TRY_STATUS(validate_rigs(scene));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.lidars, "lidar"));
+  for (const LidarOptions& lidar : scene.lidars) GLOAM_TRY_STATUS(validate_lidar(lidar));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.lights, "light"));
   for (const LightOptions& light : scene.lights) GLOAM_TRY_STATUS(validate_light(light));
   if (scene.sky) GLOAM_TRY_STATUS(validate_sky(*scene.sky));

@@ -8,6 +8,10 @@
 #include "base/hash.h"
 #include "base/text.h"
 #include "render/film/tone_map.h"
+#include "render/scene/pose.h"
+#include "sensors/object_boxes.h"
+#include "sensors/timing.h"
+#include "sim/step_schedule.h"
 
 namespace gloam {
 namespace {
@@ -27,9 +31,12 @@ Intrinsics resized(const Intrinsics& from, int width, int height) {
   const double scale = static_cast<double>(height) / from.height;
   to.width = width;
   to.height = height;
-  to.fx = from.fx * scale;
+  // Panoramas keep what they hold from left to right, too.
+  const double across =
+      from.lens == LensModel::kEquirectangular ? static_cast<double>(width) / from.width : scale;
+  to.fx = from.fx * across;
   to.fy = from.fy * scale;
-  to.cx = width * 0.5 + (from.cx - from.width * 0.5) * scale;
+  to.cx = width * 0.5 + (from.cx - from.width * 0.5) * across;
   to.cy = height * 0.5 + (from.cy - from.height * 0.5) * scale;
   return to;
 }
@@ -76,26 +83,7 @@ Result<int> find_camera(const RenderDescription& description, const std::string&
 
 }  // namespace
 
-Pose to_pose(const Affine3f& X) {
-  // Shepperd's method: the largest of the four squared components is never near zero.
-  const double m00 = X.x.x, m10 = X.x.y, m20 = X.x.z, m01 = X.y.x, m11 = X.y.y, m21 = X.y.z;
-  const double m02 = X.z.x, m12 = X.z.y, m22 = X.z.z;
-  const double ww = 1 + m00 + m11 + m22, xx = 1 + m00 - m11 - m22, yy = 1 - m00 + m11 - m22,
-               zz = 1 - m00 - m11 + m22;
-  Quat q;
-  if (ww >= xx && ww >= yy && ww >= zz) {
-    q = {ww, m21 - m12, m02 - m20, m10 - m01};
-  } else if (xx >= yy && xx >= zz) {
-    q = {m21 - m12, xx, m10 + m01, m02 + m20};
-  } else if (yy >= zz) {
-    q = {m02 - m20, m10 + m01, yy, m21 + m12};
-  } else {
-    q = {m10 - m01, m02 + m20, m21 + m12, zz};
-  }
-  const double scale =
-      (q.w < 0 ? -1.0 : 1.0) / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
-  return {{X.p.x, X.p.y, X.p.z}, {q.w * scale, q.x * scale, q.y * scale, q.z * scale}};
-}
+Pose to_pose(const Affine3f& X) { return {{X.p.x, X.p.y, X.p.z}, quaternion_of(X)}; }
 
 Affine3f to_affine(const Pose& X) {
   const auto& [w, x, y, z] = X.q;
@@ -111,10 +99,14 @@ Affine3f to_affine(const Pose& X) {
 Result<CameraChannels> CameraChannels::parse(const std::vector<std::string>& names) {
   CameraChannels channels;
   const std::vector<std::pair<std::string, bool*>> known = {
-      {"rgb", &channels.rgb},       {"radiance", &channels.radiance},
-      {"depth", &channels.depth},   {"normal", &channels.normal},
-      {"albedo", &channels.albedo}, {"segmentation", &channels.segmentation},
-      {"motion", &channels.motion}, {"samples", &channels.samples}};
+      {"rgb", &channels.rgb},           {"radiance", &channels.radiance},
+      {"depth", &channels.depth},       {"normal", &channels.normal},
+      {"albedo", &channels.albedo},     {"segmentation", &channels.segmentation},
+      {"motion", &channels.motion},     {"samples", &channels.samples},
+      {"distance", &channels.distance}, {"scene_flow", &channels.scene_flow},
+      {"boxes", &channels.boxes},       {"raw", &channels.raw},
+      {"events", &channels.events},     {"sensor_depth", &channels.sensor_depth},
+      {"thermal", &channels.thermal}};
   std::vector<std::string> all;
   for (const auto& entry : known) all.push_back(entry.first);
   for (const std::string& name : names) {
@@ -144,9 +136,20 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
   const CameraDescription& described = description.cameras[static_cast<size_t>(camera)];
   std::unique_ptr<CameraSensor> sensor(new CameraSensor(description, camera, channels));
   sensor->intrinsics_ = resized(described.intrinsics, request.width, request.height);
+  if (const std::string fault =
+          described.intrinsics.orthographic ? "" : lens_fault(sensor->intrinsics_);
+      !fault.empty()) {
+    return Error{ErrorKind::kInput,
+                 fmt::format("camera '{}' at {} x {} pixels: {}", request.camera,
+                             sensor->intrinsics_.width, sensor->intrinsics_.height, fault)};
+  }
   sensor->rate_ = request.rate;
-  sensor->ev100_ =
-      request.render.ev100 ? static_cast<float>(*request.render.ev100) : description.ev100;
+  const double ev100 = request.render.ev100.value_or(static_cast<double>(description.ev100));
+  GLOAM_TRY(sensor->models_,
+            CameraModels::create(description, camera, sensor->intrinsics_,
+                                 {channels.rgb, channels.raw, channels.sensor_depth,
+                                  channels.events, channels.thermal},
+                                 ev100, sensor_seed(seed, request.camera)));
   sensor->free_pose_ = sensor->previous_free_pose_ =
       request.X_WC ? to_affine(*request.X_WC) : described.X_WC;
 
@@ -168,7 +171,7 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
     // Darker than this share of the display's top, an error shows less and less (docs/light.md).
     constexpr float kFloor = 0.05f;
     settings.error = static_cast<float>(*request.render.error);
-    settings.error_floor = kFloor * max_luminance(sensor->ev100_);
+    settings.error_floor = kFloor * max_luminance(static_cast<float>(sensor->models_->ev100()));
   }
   settings.max_depth = request.render.max_depth;
   settings.roulette_depth = 3;  // unbiased, and dim paths are a third of all rays in a room
@@ -178,6 +181,7 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
     sensor->denoiser_ = make_denoiser({});
     settings.guide_samples = 4;
   }
+  settings.cover = channels.boxes;
   settings.exact_channels = channels.geometry() || sensor->denoiser_ != nullptr;
   return sensor;
 }
@@ -187,7 +191,7 @@ PictureMemory CameraSensor::memory() const {
       static_cast<uint64_t>(intrinsics_.width) * static_cast<uint64_t>(intrinsics_.height);
   // Planes of render/film/film.h and render/cpu/fast_frame.h; two of the latter and the filter's.
   uint64_t pixel = 36;
-  if (settings_.exact_channels) pixel += 44;
+  if (settings_.exact_channels) pixel += 56;
   if (settings_.error > 0) pixel += 4;
   if (settings_.tier == RenderTier::kFast) pixel += 400;
   PictureMemory out;
@@ -197,12 +201,13 @@ PictureMemory CameraSensor::memory() const {
     pixel += sizeof(Vec3f);
     out.working = kDenoiser * std::min(pixels, kTile);
   }
-  out.working += pixel * pixels;
+  out.working += pixel * pixels + models_->memory();
   const CameraChannels& c = channels_;
   const auto of = [](bool wanted, uint64_t bytes) { return wanted ? bytes : 0; };
-  out.frame =
-      pixels * (of(c.rgb, 3) + of(c.radiance, 12) + of(c.samples, 4) + of(c.depth, 4) +
-                of(c.normal, 12) + of(c.albedo, 12) + of(c.motion, 8) + of(c.segmentation, 8));
+  out.frame = pixels * (of(c.rgb, 3) + of(c.radiance, 12) + of(c.samples, 4) + of(c.depth, 4) +
+                        of(c.normal, 12) + of(c.albedo, 12) + of(c.motion, 8) +
+                        of(c.segmentation, 8) + of(c.distance, 4) + of(c.scene_flow, 12) +
+                        of(c.raw, 6) + of(c.sensor_depth, 4) + of(c.events, 64) + of(c.thermal, 4));
   return out;
 }
 
@@ -218,21 +223,25 @@ Pose CameraSensor::free_pose() const {
 
 std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
                                                          std::mutex& renderer_mutex,
-                                                         const PoseFrame& now,
+                                                         std::span<const PoseFrame* const> keys,
                                                          const PoseFrame& previous,
                                                          int64_t frame_index) {
-  CameraView view = view_at(description_, camera_, now, now, previous);
+  const PoseFrame& now = *keys.front();
+  CameraView view = view_at(description_, camera_, keys, previous);
   view.intrinsics = intrinsics_;
-  if (description_.cameras[static_cast<size_t>(camera_)].camera < 0) {
+  view.shutter = shutter(keys);
+  view.aperture = {camera().aperture_radius, camera().focus_distance};
+  if (camera().camera < 0) {
     const std::lock_guard lock(pose_mutex_);
-    view.X_WC_open = view.X_WC_close = free_pose_;
+    view.X_WC_open = free_pose_;
+    view.X_WC_keys.clear();
     view.X_WC_previous = previous_free_pose_;
     previous_free_pose_ = free_pose_;
   }
   settings_.frame = static_cast<uint32_t>(frame_index);
   {
     const std::lock_guard lock(renderer_mutex);
-    renderer.update(now, now, previous);
+    renderer.update(keys, previous);
     if (settings_.tier == RenderTier::kFast && history_ == nullptr) {
       history_ = renderer.make_history();
       settings_.history = history_.get();
@@ -245,20 +254,47 @@ std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
   return frame;
 }
 
+Rational CameraSensor::window() const {
+  return exact_rational(camera().exposure_time + camera().readout_time);
+}
+
+Shutter CameraSensor::shutter(std::span<const PoseFrame* const> keys) const {
+  const double length = keys.back()->time - keys.front()->time;
+  if (!(length > 0)) return {.open = 0, .length = 0, .row = 0};
+  return {.open = 0,
+          .length = static_cast<float>(camera().exposure_time / length),
+          .row = static_cast<float>(camera().readout_time / length / intrinsics_.height)};
+}
+
 void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const CameraView& view,
                            CameraFrame* frame) {
-  frame->camera = description_.cameras[static_cast<size_t>(camera_)].name;
+  frame->camera = camera().name;
   frame->index = frame_index;
   frame->step = now.step;
   frame->time = now.time;
+  frame->delivery = models_->delivery_of(frame_index, now.time);
   frame->intrinsics = intrinsics_;
-  frame->X_WC = to_pose(view.X_WC_close);
+  frame->X_WC = to_pose(view.X_WC_open);
+  frame->exposure_time = camera().exposure_time;
+  frame->readout_time = camera().readout_time;
 
   if (channels_.light()) {
     const std::vector<Vec3f>* radiance = &film_.radiance;
+    // Where the light is blurred, depth is sharp, and albedo and normal are of what covers a pixel
+    // in part: then they are no guides.
+    const bool blurred = camera().aperture_radius > 0 || camera().exposure_time > 0;
+    std::vector<float> depth;
+    std::vector<Vec3f> albedo, normal;
+    const auto swap_guides = [&] {
+      if (!blurred) return;
+      depth.swap(film_.depth);
+      albedo.swap(film_.albedo);
+      normal.swap(film_.normal);
+    };
+    swap_guides();
     if (denoiser_ != nullptr && denoiser_->denoise(film_, &clean_).ok()) radiance = &clean_;
-    if (channels_.rgb)
-      tone_map(*radiance, film_.width, film_.height, {.ev100 = ev100_}, &frame->rgb);
+    swap_guides();
+    models_->develop(*radiance, frame);
     if (channels_.radiance) frame->radiance = flatten(*radiance);
     if (channels_.samples) {
       frame->samples = film_.sample_count;
@@ -266,9 +302,13 @@ void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const Came
     }
   }
   if (channels_.depth) frame->depth = film_.depth;
+  if (channels_.boxes) frame->objects = view_objects(description_, now, film_.cover);
+  if (channels_.distance) frame->distance = film_.distance;
+  if (channels_.scene_flow) frame->scene_flow = flatten(film_.scene_flow);
   if (channels_.normal) frame->normal = flatten(film_.center_normal);
   if (channels_.albedo) frame->albedo = flatten(film_.center_albedo);
   if (channels_.motion) frame->motion = flatten(film_.motion);
+  models_->measure(film_, view, frame);
   if (channels_.segmentation) {
     frame->part = film_.part;
     frame->instance.resize(film_.part.size());

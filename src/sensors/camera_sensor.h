@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "gloam/simulation.h"
 #include "render/film/denoise.h"
 #include "render/renderer.h"
+#include "sensors/camera_models.h"
 #include "sim/pose_frame.h"
 #include "world/render_description.h"
 
@@ -22,10 +24,14 @@ namespace gloam {
 /// Which channels of a CameraFrame are filled.
 struct CameraChannels {
   bool rgb = false, radiance = false, samples = false, depth = false, segmentation = false;
-  bool normal = false, albedo = false, motion = false;
+  bool normal = false, albedo = false, motion = false, distance = false, scene_flow = false;
+  bool boxes = false, raw = false, sensor_depth = false, events = false, thermal = false;
   static Result<CameraChannels> parse(const std::vector<std::string>& names);
-  bool light() const { return rgb || radiance || samples; }
-  bool geometry() const { return depth || segmentation || normal || albedo || motion; }
+  bool light() const { return rgb || radiance || samples || raw || events; }
+  bool geometry() const {
+    return depth || distance || segmentation || normal || albedo || motion || scene_flow ||
+           sensor_depth || thermal;
+  }
 };
 
 /// What pictures take, nearly [bytes].
@@ -41,13 +47,28 @@ class CameraSensor {
   static Result<std::unique_ptr<CameraSensor>> create(const RenderDescription& description,
                                                       const CameraRequest& request, uint64_t seed);
 
-  /// Renders the instant of `now`. `renderer_mutex` is held while the shared renderer works, not
-  /// while this sensor denoises and converts. `previous` is the instant of the frame before, for
-  /// motion. Null if the progress callback ended it.
+  /// Renders the exposure that starts with the first of `keys`, which follow each other evenly and
+  /// reach over window(); with a single key the instant of that one. `renderer_mutex` is held while
+  /// the shared renderer works, not while this sensor denoises and converts. `previous` is the
+  /// first key of the frame before, for motion. Null if the progress callback ended it.
+  std::shared_ptr<const CameraFrame> capture(Renderer& renderer, std::mutex& renderer_mutex,
+                                             std::span<const PoseFrame* const> keys,
+                                             const PoseFrame& previous, int64_t frame_index);
   std::shared_ptr<const CameraFrame> capture(Renderer& renderer, std::mutex& renderer_mutex,
                                              const PoseFrame& now, const PoseFrame& previous,
-                                             int64_t frame_index);
+                                             int64_t frame_index) {
+    const PoseFrame* const key = &now;
+    return capture(renderer, renderer_mutex, {&key, 1}, previous, frame_index);
+  }
+  /// From the first row's exposure to the end of the last one's [s]; 0 = an instant.
+  Rational window() const;
 
+  /// What an exposure meter says before a capture; without it the exposure is the camera's own.
+  void set_ev100(double ev100) { models_->set_ev100(ev100); }
+  /// The scene's [[temperature]]s, for the output thermal. Error: one that fits nothing.
+  Status set_temperatures(const std::vector<TemperatureOptions>& temperatures) {
+    return models_->set_temperatures(temperatures);
+  }
   /// Of each picture's rendering, see RenderSettings::progress.
   void set_progress(std::function<bool(double done)> progress) {
     settings_.progress = std::move(progress);
@@ -57,6 +78,9 @@ class CameraSensor {
 
   const Intrinsics& intrinsics() const { return intrinsics_; }
   const Rational& rate() const { return rate_; }
+  const CameraSensing& sensing() const {
+    return description_.cameras[static_cast<size_t>(camera_)].sensing;
+  }
   /// To be compared with memory_room() before the first picture.
   PictureMemory memory() const;
   /// Pose of the free camera in the world; may be set from any thread.
@@ -65,8 +89,12 @@ class CameraSensor {
 
  private:
   CameraSensor(const RenderDescription& description, int camera, const CameraChannels& channels);
+  Shutter shutter(std::span<const PoseFrame* const> keys) const;
   void convert(const PoseFrame& now, int64_t frame_index, const CameraView& view,
                CameraFrame* frame);
+  const CameraDescription& camera() const {
+    return description_.cameras[static_cast<size_t>(camera_)];
+  }
 
   const RenderDescription& description_;
   const int camera_;
@@ -75,7 +103,7 @@ class CameraSensor {
   RenderStats stats_;
   Intrinsics intrinsics_;
   Rational rate_;
-  float ev100_ = 0;
+  std::unique_ptr<CameraModels> models_;  // what happens after the light
   std::unique_ptr<ViewHistory> history_;  // of the fast tier
   std::unique_ptr<Denoiser> denoiser_;    // null: the samples as they are
   Film film_;

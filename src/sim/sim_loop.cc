@@ -4,10 +4,14 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
+
+#include "base/check.h"
 
 namespace gloam {
 namespace {
 constexpr int kLargestQueue = 65536;
+constexpr double kLongestWindow = 1000;  // [s]
 constexpr int64_t kNever = std::numeric_limits<int64_t>::max();
 }  // namespace
 
@@ -58,14 +62,31 @@ Result<std::shared_ptr<SnapshotQueue>> SimLoop::subscribe(const SubscriptionOpti
                                                 options.capacity, kLargestQueue)};
   }
   GLOAM_TRY(StepSchedule schedule, StepSchedule::make(options.rate, options.phase, timestep_));
-  Subscription subscription{std::make_shared<SnapshotQueue>(options, signal), schedule};
-  subscription.k = schedule.first_at_or_after(stepper_->step_count());
-  subscription.due = schedule.step_of(subscription.k);
-  // Full queue, one with the reader, one being made.
-  stepper_->pool().add_slots(options.capacity + 2);
-  subscriptions_.push_back(subscription);
+  if (options.window.num < 0 || options.window.den <= 0 || options.window.value() > kLongestWindow)
+    return Error{ErrorKind::kUsage, fmt::format("a window of {:g} s is not in 0 … {} s",
+                                                options.window.value(), kLongestWindow)};
+  Subscription subscription;
+  subscription.queue = std::make_shared<SnapshotQueue>(options, signal);
+  subscription.schedule = schedule;
+  subscription.keys = key_steps(options.window, timestep_);
+  // Events may come a step early or late, those of uneven schedules a quarter of a period: a window
+  // must end before so many more have begun.
+  const int64_t period = schedule.step_of(Subscription::kMostPending) - schedule.step_of(0);
+  const int64_t room = period - 2 - (options.due ? period / 4 / Subscription::kMostPending : 0);
+  if (subscription.keys.length() > room) {
+    return Error{ErrorKind::kUsage,
+                 fmt::format("a window of {:g} s is too long for {:g} events a second",
+                             options.window.value(), options.rate.value()),
+                 {},
+                 "shorten it or lower the rate"};
+  }
+  subscription.begin(stepper_->step_count());
+  // Full queue, one with the reader, those being made.
+  const int made = options.window.num > 0 ? Subscription::kMostPending : 1;
+  stepper_->pool().add_slots((options.capacity + 1 + made) * subscription.keys.count);
+  subscriptions_.push_back(std::move(subscription));
   find_next_publication();
-  return subscription.queue;
+  return subscriptions_.back().queue;
 }
 
 void SimLoop::find_next_publication() {
@@ -75,18 +96,49 @@ void SimLoop::find_next_publication() {
   }
 }
 
+int64_t SimLoop::Subscription::event_from(int64_t step) const {
+  if (queue->options().due) return queue->options().due(step);
+  return schedule.step_of(schedule.first_at_or_after(step));
+}
+
+void SimLoop::Subscription::begin(int64_t from) {
+  event = due = event_from(from);
+  for (Pending& window : pending) window = {};
+  pending_count = 0;
+}
+
+/// Takes the Snapshot of this step where it belongs, and hands out what is complete. False when
+/// there is no room for it.
+bool SimLoop::Subscription::publish(int64_t step, Stepper& stepper) {
+  if (event <= step) {
+    GLOAM_CHECK(pending_count < kMostPending, "windows overlap more than was agreed");
+    pending[static_cast<size_t>(pending_count++)].first = step;
+    event = event_from(event + 1);
+  }
+  const auto next_key = [&](const Pending& p) { return p.first + p.window.count * keys.stride; };
+  for (int i = 0; i < pending_count; ++i) {
+    Pending& p = pending[static_cast<size_t>(i)];
+    if (p.window.count < keys.count && next_key(p) <= step) p.window.add(stepper.snapshot());
+  }
+  while (pending_count > 0 && pending[0].window.count == keys.count) {
+    if (queue->options().required && queue->full()) return false;
+    queue->publish(std::exchange(pending[0].window, {}));
+    std::rotate(pending.begin(), pending.begin() + 1, pending.begin() + pending_count);
+    --pending_count;
+  }
+  due = event;
+  for (int i = 0; i < pending_count; ++i)
+    due = std::min(due, next_key(pending[static_cast<size_t>(i)]));
+  return true;
+}
+
 bool SimLoop::publish_due() {
   const int64_t step = stepper_->step_count();
   if (step < next_publication_) return true;
   bool all = true;
   for (Subscription& s : subscriptions_) {
     if (s.due > step || s.queue->closed()) continue;
-    if (s.queue->options().required && s.queue->full()) {
-      all = false;
-      continue;
-    }
-    s.queue->publish(stepper_->snapshot());
-    s.due = s.schedule.step_of(++s.k);
+    all = s.publish(step, *stepper_) && all;
   }
   std::erase_if(subscriptions_, [this](const Subscription& s) {
     if (s.queue->closed()) dropped_by_closed_ += s.queue->dropped();
@@ -159,10 +211,7 @@ void SimLoop::begin_run() {
     slot.k = slot.due = 0;
     slot.controller->reset(&stepper_->model(), &stepper_->data());
   }
-  for (Subscription& s : subscriptions_) {
-    s.k = 0;
-    s.due = s.schedule.step_of(0);
-  }
+  for (Subscription& s : subscriptions_) s.begin(0);
   find_next_publication();
 }
 

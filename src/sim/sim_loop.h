@@ -54,9 +54,24 @@ class SimLoop {
     int64_t k = 0, due = 0;
   };
   struct Subscription {
+    /// A window that is not yet handed out.
+    struct Pending {
+      int64_t first = 0;  // step
+      SnapshotWindow window;
+    };
+    static constexpr int kMostPending = 5;
+
     std::shared_ptr<SnapshotQueue> queue;
     StepSchedule schedule;
-    int64_t k = 0, due = 0;
+    KeySteps keys;
+    int64_t event = 0;                            // step of the next event
+    int64_t due = 0;                              // step at which something has to be done
+    std::array<Pending, kMostPending> pending{};  // in the order of their events
+    int pending_count = 0;
+
+    int64_t event_from(int64_t step) const;  // the first at or after it
+    void begin(int64_t from);
+    bool publish(int64_t step, Stepper& stepper);
   };
 
   void apply(const Command& command);

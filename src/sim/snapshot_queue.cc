@@ -7,17 +7,17 @@ namespace gloam {
 SnapshotQueue::SnapshotQueue(const SubscriptionOptions& options, std::shared_ptr<Signal> sim_signal)
     : options_(options), queue_(2 * options.capacity), sim_signal_(std::move(sim_signal)) {}
 
-Snapshot SnapshotQueue::try_next() {
-  Snapshot snapshot;
-  if (queue_.try_pop(snapshot) && options_.required) sim_signal_->raise();
-  return snapshot;
+SnapshotWindow SnapshotQueue::try_next_window() {
+  SnapshotWindow window;
+  if (queue_.try_pop(window) && options_.required) sim_signal_->raise();
+  return window;
 }
 
-Snapshot SnapshotQueue::next() {
+SnapshotWindow SnapshotQueue::next_window() {
   for (;;) {
     const uint32_t ticket = readers_.ticket();
     const bool was_closed = closed();
-    if (Snapshot snapshot = try_next()) return snapshot;
+    if (SnapshotWindow window = try_next_window()) return window;
     if (was_closed) return {};
     readers_.wait(ticket);
   }
@@ -29,13 +29,13 @@ void SnapshotQueue::close() {
   sim_signal_->raise();
 }
 
-void SnapshotQueue::publish(Snapshot snapshot) {
-  Snapshot oldest;
+void SnapshotQueue::publish(SnapshotWindow window) {
+  SnapshotWindow oldest;
   while (full() && queue_.try_pop(oldest)) {
     oldest = {};
     dropped_.fetch_add(1, std::memory_order_relaxed);
   }
-  if (!queue_.try_push(snapshot)) dropped_.fetch_add(1, std::memory_order_relaxed);
+  if (!queue_.try_push(window)) dropped_.fetch_add(1, std::memory_order_relaxed);
   readers_.raise();
 }
 

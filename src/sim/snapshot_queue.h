@@ -1,11 +1,12 @@
 #pragma once
-// A subscription's end at the consumer: Snapshots in order, on a schedule.
+// A subscription's end at the consumer: Snapshots, or windows of them, in order, on a schedule.
 
 #include <atomic>
+#include <functional>
 #include <memory>
 
 #include "sim/bounded_queue.h"
-#include "sim/snapshot.h"
+#include "sim/snapshot_window.h"
 
 namespace gloam {
 
@@ -27,10 +28,17 @@ class Signal {
 struct SubscriptionOptions {
   Rational rate = {20, 1};  ///< Snapshots per second of simulation time, at most the step rate [Hz]
   Rational phase = {0, 1};  ///< time of the first one [s], >= 0
-  bool required = false;    ///< the simulation waits while the queue is full and nothing is lost
-                            ///< (but what it waits with when a reset comes); else the oldest are
-                            ///< dropped and counted
-  int capacity = 8;         ///< Snapshots that wait to be consumed, 1 … 65536
+  /// Instead of rate and phase, of schedules that are not even: the first step at or after the one
+  /// given at which there is a Snapshot. Pure; the sim thread calls it.
+  std::function<int64_t(int64_t step)> due = {};
+  bool required = false;  ///< the simulation waits while the queue is full and nothing is lost
+                          ///< (but what it waits with when a reset comes); else the oldest are
+                          ///< dropped and counted
+  int capacity = 8;       ///< Snapshots (or windows) that wait to be consumed, 1 … 65536
+  /// Length of a window from each event on [s], >= 0: instead of one Snapshot there are several, as
+  /// key_steps() says, handed out together once the last of them is there. An event is dropped as a
+  /// whole. Windows may reach beyond the next event, up to four of them.
+  Rational window = {0, 1};
 };
 
 /// Blocking reads from any number of threads; the sim thread is the only writer and takes no lock.
@@ -38,11 +46,14 @@ class SnapshotQueue final : public SnapshotSource {
  public:
   SnapshotQueue(const SubscriptionOptions& options, std::shared_ptr<Signal> sim_signal);
 
-  /// The next Snapshot; waits for it. Empty once the simulation has stopped or this queue was
-  /// closed, and everything before that has been read.
-  Snapshot next() override;
-  /// The next Snapshot if there is one now, else an empty one.
-  Snapshot try_next();
+  /// The next window; waits for it. Empty once the simulation has stopped or this queue was closed,
+  /// and everything before that has been read.
+  SnapshotWindow next_window();
+  /// The next window if there is one now, else an empty one.
+  SnapshotWindow try_next_window();
+  /// Likewise of a window its first Snapshot, for subscriptions without windows.
+  Snapshot next() override { return std::move(next_window().keys[0]); }
+  Snapshot try_next() { return std::move(try_next_window().keys[0]); }
   /// Ends the subscription: the simulation forgets it, waiting readers return.
   void close();
 
@@ -54,11 +65,11 @@ class SnapshotQueue final : public SnapshotSource {
   // ---- the sim thread's side ----
   bool full() const { return queue_.size() >= options_.capacity; }
   /// Required queues must not be full.
-  void publish(Snapshot snapshot);
+  void publish(SnapshotWindow window);
 
  private:
   SubscriptionOptions options_;
-  BoundedQueue<Snapshot> queue_;
+  BoundedQueue<SnapshotWindow> queue_;
   Signal readers_;
   std::shared_ptr<Signal> sim_signal_;
   std::atomic<bool> closed_{false};

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 
@@ -53,6 +54,15 @@ int64_t step_at_or_after(Rational time, Rational timestep) {
                                        static_cast<__int128>(time.den) * timestep.num));
 }
 
+KeySteps key_steps(Rational duration, Rational timestep) {
+  const int64_t steps = step_at_or_after(duration, timestep);
+  const int64_t most = KeySteps::kMost - 1;
+  KeySteps keys;
+  keys.stride = std::max<int64_t>((steps + most - 1) / most, 1);
+  keys.count = static_cast<int>((steps + keys.stride - 1) / keys.stride) + 1;
+  return keys;
+}
+
 Result<StepSchedule> StepSchedule::make(Rational rate, Rational phase, Rational timestep) {
   if (!in_range(rate) || rate.num == 0) {
     return Error{
@@ -83,6 +93,11 @@ Result<StepSchedule> StepSchedule::make(Rational rate, Rational phase, Rational 
 int64_t StepSchedule::step_of(int64_t k) const {
   if (unit_ == 1) return static_cast<int64_t>(offset_ + k * stride_);  // no slow 128-bit division
   return static_cast<int64_t>(ceil_div(offset_ + k * stride_, unit_));
+}
+
+double StepSchedule::lateness_of(int64_t k) const {
+  const __int128 beyond = (offset_ + k * stride_) % unit_;
+  return beyond == 0 ? 0 : static_cast<double>(unit_ - beyond) / static_cast<double>(unit_);
 }
 
 int64_t StepSchedule::first_at_or_after(int64_t step) const {

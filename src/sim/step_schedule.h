@@ -17,6 +17,18 @@ Rational exact_rational(double value);
 /// First step at or after `time` [s].
 int64_t step_at_or_after(Rational time, Rational timestep);
 
+/// Steps at even distances that bracket a time span from its first step on.
+struct KeySteps {
+  static constexpr int kMost = 17;
+  int count = 1;       ///< 1 … kMost; 1 = the span has no length
+  int64_t stride = 1;  ///< steps from one to the next
+
+  int64_t length() const { return (count - 1) * stride; }
+};
+/// The closest such steps for a span of `duration` >= 0 [s]: every step, of long spans every
+/// second, third …
+KeySteps key_steps(Rational duration, Rational timestep);
+
 /// Events k = 0, 1, … at t_k = phase + k / rate. Event k falls on the first step at or after t_k:
 /// where the rate does not divide the step rate, events are late by less than one step and never
 /// drift. A rate above the step rate is refused, so no two events share a step.
@@ -29,6 +41,8 @@ class StepSchedule {
 
   /// The step of event k >= 0.
   int64_t step_of(int64_t k) const;
+  /// By how much event k's step is later than t_k, 0 <= … < 1 [steps].
+  double lateness_of(int64_t k) const;
   /// The first event at or after `step`.
   int64_t first_at_or_after(int64_t step) const;
 

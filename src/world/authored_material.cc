@@ -17,18 +17,6 @@ Vec3f color_of(const Vec3& c) {
   return {static_cast<float>(c.x), static_cast<float>(c.y), static_cast<float>(c.z)};
 }
 
-/// `pattern` with any text in the place of each *.
-bool fits(std::string_view pattern, std::string_view name) {
-  const size_t star = pattern.find('*');
-  if (star == std::string_view::npos) return pattern == name;
-  if (name.substr(0, star) != pattern.substr(0, star)) return false;
-  const std::string_view rest = pattern.substr(star + 1);
-  for (size_t at = star; at <= name.size(); ++at) {
-    if (fits(rest, name.substr(at))) return true;
-  }
-  return false;
-}
-
 static_assert(kPatternKinds.size() == kProceduralKindCount);
 
 /// The value of an enum from its name.
@@ -122,6 +110,17 @@ std::string why_not(const MaterialOptions& in, const MaterialDescription& materi
 
 }  // namespace
 
+bool fits(std::string_view pattern, std::string_view name) {
+  const size_t star = pattern.find('*');
+  if (star == std::string_view::npos) return pattern == name;
+  if (name.substr(0, star) != pattern.substr(0, star)) return false;
+  const std::string_view rest = pattern.substr(star + 1);
+  for (size_t at = star; at <= name.size(); ++at) {
+    if (fits(rest, name.substr(at))) return true;
+  }
+  return false;
+}
+
 Status author_materials(const std::vector<MaterialOptions>& options, RenderDescription* out) {
   // An exact name beats a pattern, a later table an earlier one.
   std::vector<const MaterialOptions*> order;
@@ -146,7 +145,7 @@ Status author_materials(const std::vector<MaterialOptions>& options, RenderDescr
     }
     bool found = false;
     for (MaterialDescription& material : out->materials) {
-      if (material.name.empty() || !fits(o->name, material.name)) continue;
+      if (material.name.empty() || !fits_pattern(o->name, material.name)) continue;
       if (const std::string why = why_not(*o, material); !why.empty())
         return Error{ErrorKind::kInput, fmt::format("material '{}' {}", material.name, why),
                      o->loc};

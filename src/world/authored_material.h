@@ -11,4 +11,7 @@ namespace gloam {
 /// colours of a material that the model itself describes.
 Status author_materials(const std::vector<MaterialOptions>& options, RenderDescription* out);
 
+/// Whether a name is what a pattern says, in which * stands for any text.
+bool fits(std::string_view pattern, std::string_view name);
+
 }  // namespace gloam

@@ -2,8 +2,11 @@
 
 #include "scene/mujoco_guard.h"
 #include "scene/validate.h"
+#include "world/authored_lidar.h"
 #include "world/level.h"
 #include "world/model_cache.h"
+#include "world/rigs.h"
+#include "world/sensor_description.h"
 #include "world/urdf_visuals.h"
 
 namespace gloam {
@@ -43,11 +46,14 @@ RobotInstance bare_robot(const Scene& scene, const mjModel* model) {
 
 }  // namespace
 
-Result<World> World::compile(const Scene& scene) {
+Result<World> World::compile(const Scene& written) {
   install_mujoco_handler();
-  GLOAM_TRY_STATUS(validate_scene(scene));
+  GLOAM_TRY_STATUS(validate_scene(written));
+  GLOAM_TRY(const Scene scene, with_rig_cameras(written));
   if (std::shared_ptr<CompiledWorld> cached = load_cached_world(scene)) {
     if (!scene.bare_model.empty()) cached->robots = {bare_robot(scene, cached->model.get())};
+    GLOAM_TRY_STATUS(check_sensors(*cached));
+    GLOAM_TRY_STATUS(describe_lidars(*cached));
     return World(std::move(cached));
   }
   const auto start = std::chrono::steady_clock::now();
@@ -61,6 +67,8 @@ Result<World> World::compile(const Scene& scene) {
   world->model = std::move(level.model);
   world->initial_key = level.initial_key;
   world->unsupported = std::move(level.unsupported);
+  GLOAM_TRY_STATUS(check_sensors(*world));
+  GLOAM_TRY_STATUS(describe_lidars(*world));
   add_urdf_visuals(scene, &files, world.get());
   if (std::chrono::steady_clock::now() - start > kWorthCaching)
     store_cached_world(world, files.dependencies());

@@ -43,4 +43,14 @@ std::vector<std::string> medium_names() {
   return names;
 }
 
+float lidar_ratio(std::string_view name) {
+  // Drops at 905 nm: O'Connor, Illingworth and Hogan 2004, "A technique for autocalibration of
+  // cloud lidar". Others at 1064 nm, as polluted continental air and dust: Omar et al. 2009, "The
+  // CALIPSO automated aerosol classification and lidar ratio selection algorithm".
+  if (name == "fog" || name == "mist") return 18.8f;
+  if (name == "haze") return 30;
+  if (name == "dust") return 55;
+  return 0;
+}
+
 }  // namespace gloam

@@ -295,6 +295,12 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
   choose_what_is_shown(m, world, first_visual, first_file, &out.instances);
   describe_deformables(m, poses, &simulated.materials(), &labels, &out);
   describe_cameras(m, framing, &out);
+  for (CameraDescription& camera : out.cameras) {
+    for (const CameraOptions& options : world.scene.cameras) {
+      if (options.name == camera.name) camera.sensing = options.sensing;
+    }
+  }
+  GLOAM_TRY_STATUS(set_optics(world.scene, &out.cameras));
   levels = describe_light(m, world.scene, poses, std::move(levels), &simulated.materials(), &out);
   out.center = {static_cast<float>(framing.center.x), static_cast<float>(framing.center.y),
                 static_cast<float>(framing.center.z)};

@@ -13,6 +13,7 @@
 #include "geometry/mesh.h"
 #include "gloam/camera.h"
 #include "gloam/result.h"
+#include "gloam/scene_sensor.h"
 #include "world/ies_profile.h"
 #include "world/light_schedule.h"
 #include "world/medium_description.h"
@@ -167,6 +168,9 @@ struct CameraDescription {
   Intrinsics intrinsics;
   int camera = -1;  ///< row of PoseFrame's camera poses; -1 = free camera at X_WC
   Affine3f X_WC;
+  CameraSensing sensing;  ///< of the scene's [[camera]] of this name
+  float aperture_radius = 0, focus_distance = 1;  ///< [m]; radius 0 = everything is sharp
+  double exposure_time = 0, readout_time = 0;     ///< as in CameraOptions [s]
 };
 
 struct RenderDescription {

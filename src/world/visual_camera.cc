@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+
+#include "scene/camera_lens.h"
 
 namespace gloam {
 namespace {
@@ -98,6 +101,23 @@ std::string camera_name(const mjModel& m, int id) {
   std::string name = fmt::format("camera_{}", id);
   while (mj_name2id(&m, mjOBJ_CAMERA, name.c_str()) >= 0) name += '_';
   return name;
+}
+
+Status set_optics(const Scene& scene, std::vector<CameraDescription>* cameras) {
+  for (const CameraOptions& options : scene.cameras) {
+    const auto camera =
+        std::find_if(cameras->begin(), cameras->end(),
+                     [&](const CameraDescription& c) { return c.name == options.name; });
+    if (camera == cameras->end()) continue;
+    GLOAM_TRY_STATUS(apply_lens(options, &camera->intrinsics));
+    camera->exposure_time = options.exposure_time;
+    camera->readout_time = options.readout_time;
+    if (!options.lens || !options.lens->f_number) continue;
+    camera->aperture_radius =
+        static_cast<float>(0.5 * *options.lens->focal_length / *options.lens->f_number);
+    camera->focus_distance = static_cast<float>(*options.lens->focus_distance);
+  }
+  return {};
 }
 
 void describe_cameras(const mjModel& model, const Framing& framing, RenderDescription* out) {

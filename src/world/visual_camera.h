@@ -3,6 +3,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include "gloam/scene.h"
 #include "world/render_description.h"
 
 namespace gloam {
@@ -15,6 +16,9 @@ struct Framing {
 
 /// A name for camera `id`: its own, or "camera_ID" when the model gives none.
 std::string camera_name(const mjModel& model, int id);
+
+/// Lenses and shutters that the scene gives to cameras. Errors: a lens that cannot be right.
+Status set_optics(const Scene& scene, std::vector<CameraDescription>* cameras);
 
 /// All cameras of the model, then the free camera "free" as MuJoCo's viewer first shows it.
 void describe_cameras(const mjModel& model, const Framing& framing, RenderDescription* out);

@@ -18,6 +18,8 @@ class Picture:
     size: tuple[int, int]
     spp: int
     time: float                  # of the simulation [s]
+    panels: list[dict]           # of LiDAR scans (clouds.py), instead of a camera's picture
+    show: str = "rgb"            # what of it is shown: rgb raw sensor_depth thermal events
 
     @property
     def name(self):
@@ -52,13 +54,14 @@ def element(folder, set_name, name):
 
 def read_picture(folder, chapter, data, defaults):
     entry = {**defaults, **data}
-    unknown = set(entry) - {"name", "title", "set", "toml", "mjcf", "camera", "size", "spp", "time"}
+    unknown = set(entry) - {"name", "title", "set", "toml", "mjcf", "camera", "size", "spp", "time", "panels", "show"}
     if unknown:
         raise ValueError(f"chapter {chapter}: unknown {', '.join(sorted(unknown))} of picture '{entry.get('name')}'")
     base = (folder / "sets" / f"{entry['set']}.toml").read_text()
     mjcf = "\n".join(element(folder, entry["set"], name) for name in entry.get("mjcf", []))
     return Picture(chapter, entry["name"], entry["title"], base, entry.get("toml", ""), mjcf, entry.get("camera", "view"),
-                   tuple(entry.get("size", (320, 240))), entry.get("spp", 40), entry.get("time", 0))
+                   tuple(entry.get("size", (320, 240))), entry.get("spp", 40), entry.get("time", 0),
+                   entry.get("panels", []), entry.get("show", "rgb"))
 
 
 def read_chapters(folder):

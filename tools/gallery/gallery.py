@@ -8,6 +8,7 @@
 Chapters are tools/gallery/chapters/*.toml, each picture a few lines that are added to a set of tools/gallery/sets.
 """
 import argparse
+import array
 import os
 import subprocess
 import sys
@@ -18,9 +19,11 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
+import clouds  # noqa: E402
 import page  # noqa: E402
+import show  # noqa: E402
 from chapters import read_chapters  # noqa: E402
-from pixels import fault, jpeg  # noqa: E402
+from pixels import fault_of_display, fault_of_light, jpeg, raw  # noqa: E402
 
 ROOT = HERE.parent.parent
 PROGRAM = ROOT / "build" / os.environ.get("GLOAM_PRESET", "release") / "bin" / "gloam"
@@ -41,22 +44,57 @@ def write_scene(picture, folder):
     return path
 
 
+def gloam(*arguments):
+    """Runs the program; returns what it complains of, or nothing."""
+    done = subprocess.run([PROGRAM, *arguments], stdin=subprocess.DEVNULL, capture_output=True, text=True)
+    return done.stderr.strip() if done.returncode != 0 else None
+
+
+def shoot(picture, scene, scratch, size, spp, threads):
+    """The picture as a file that ffmpeg reads, and what is wrong with it."""
+    common = [scene, "--root", ROOT, "--camera", picture.camera, "--spp", str(spp), "--resolution", f"{size[0]}x{size[1]}",
+              "--out", scratch / "out", *threads]
+    shot = scratch / "out" / picture.camera
+    if picture.show == "events":
+        wrong = gloam("run", *common, "--duration", str(picture.time), "--output", "events")
+        return None if wrong else show.write_ppm(scratch / "shown.ppm", size, show.events(shot, size)), wrong
+    channels = ["rgb", "radiance"] if picture.show == "rgb" else [picture.show]
+    wrong = gloam("render", *common, "--time", str(picture.time), "--output", *channels)
+    if wrong:
+        return None, wrong
+    if picture.show == "rgb":
+        return f"{shot}.png", fault_of_light(array.array("f", raw(f"{shot}.exr", "gbrpf32le")))
+    return show.write_ppm(scratch / "shown.ppm", size, getattr(show, picture.show)(shot, size)), None
+
+
 def render(picture, folder, quick):
     """Writes folder/NAME.jpg; returns what is wrong with it, or nothing."""
     scene = write_scene(picture, folder)
+    if picture.panels:
+        return render_scans(picture, scene, folder)
     width, height, spp = (80, 60, 4) if quick else (*picture.size, picture.spp)
     with tempfile.TemporaryDirectory(prefix="gloam_gallery_") as scratch:
-        done = subprocess.run([PROGRAM, "render", scene, "--root", ROOT, "--camera", picture.camera, "--time", str(picture.time),
-                               "--spp", str(spp), "--resolution", f"{width}x{height}", "--out", scratch, "--output", "rgb", "radiance",
-                               *(["--threads", "1"] if quick else [])], stdin=subprocess.DEVNULL, capture_output=True, text=True)
+        path, wrong = shoot(picture, scene, Path(scratch), (width, height), spp, ["--threads", "1"] if quick else [])
+        if path is None:
+            return wrong
+        wrong, data = wrong or fault_of_display(raw(path, "gray")), jpeg(path)
+    keep(picture, folder, data)
+    return wrong
+
+
+def render_scans(picture, scene, folder):
+    with tempfile.TemporaryDirectory(prefix="gloam_gallery_") as scratch:
+        done = subprocess.run([PROGRAM, "run", scene, "--root", ROOT, "--duration", str(picture.time), "--overwrite", "--resolution", "16x16",
+                               "--spp", "1", "--out", scratch], stdin=subprocess.DEVNULL, capture_output=True, text=True)
         if done.returncode != 0:
             return done.stderr.strip()
-        shot = Path(scratch) / picture.camera
-        wrong, data = fault(f"{shot}.png", f"{shot}.exr"), jpeg(f"{shot}.png")
+        keep(picture, folder, clouds.jpeg(Path(scratch), picture.panels, picture.size))
+
+
+def keep(picture, folder, data):
     new = folder / f"{picture.file_name}.jpg.new"     # complete or absent, also after Ctrl-C
     new.write_bytes(data)
     new.replace(folder / f"{picture.file_name}.jpg")
-    return wrong
 
 
 def render_all(pictures, folder, quick):

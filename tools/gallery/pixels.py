@@ -15,11 +15,6 @@ def raw(path, pixels):
     return ffmpeg(path, "-f", "rawvideo", "-pix_fmt", pixels)
 
 
-def fault(png, exr):
-    """Why this cannot be a good picture: not numbers, black, white, or all one colour; None if it can."""
-    return fault_of_light(array.array("f", raw(exr, "gbrpf32le"))) or fault_of_display(raw(png, "gray"))
-
-
 def fault_of_light(values):
     bad = sum(not 0 <= value < 1e9 for value in values)
     return f"{bad} values of {len(values)} are no light: negative, infinite or not numbers" if bad else None

@@ -15,24 +15,42 @@
 #include "render/cpu/edge_samples.h"
 #include "render/cpu/embree_scene.h"
 #include "render/cpu/fast_tier.h"
+#include "render/cpu/lidar_scan.h"
 #include "render/cpu/light_guide.h"
+#include "render/cpu/object_cover.h"
 #include "render/cpu/tile.h"
 #include "render/cpu/watch.h"
 #include "render/cuda/cuda_stages.h"
+#include "render/scene/pose.h"
 
 namespace gloam {
 namespace {
 
-CameraView32 make_camera(const CameraView& view) {
+/// Rotation as a unit quaternion wxyz.
+CameraKey camera_key(const Affine3f& X) {
+  const Quat q = quaternion_of(X);
+  return {X.p,
+          {static_cast<float>(q.w), static_cast<float>(q.x), static_cast<float>(q.y),
+           static_cast<float>(q.z)}};
+}
+
+/// `keys`: room for what it refers to.
+CameraView32 make_camera(const CameraView& view, std::vector<CameraKey>* keys) {
   CameraView32 camera;
   camera.fx = static_cast<float>(view.intrinsics.fx);
   camera.fy = static_cast<float>(view.intrinsics.fy);
   camera.cx = static_cast<float>(view.intrinsics.cx);
   camera.cy = static_cast<float>(view.intrinsics.cy);
   camera.orthographic = view.intrinsics.orthographic;
-  camera.pose = {view.X_WC_open, view.X_WC_close, view.X_WC_previous};
-  const Affine3f &a = view.X_WC_open, &b = view.X_WC_close;
-  camera.pose.moving = !(a.x == b.x && a.y == b.y && a.z == b.z && a.p == b.p);
+  if (!view.intrinsics.orthographic) camera.lens = make_lens<float>(view.intrinsics);
+  camera.shutter = view.shutter;
+  camera.aperture = view.aperture;
+  camera.pose = {view.X_WC_open, view.X_WC_previous, {}};
+  keys->clear();
+  for (const Affine3f& X_WC : view.X_WC_keys) keys->push_back(camera_key(X_WC));
+  const bool moving = std::any_of(view.X_WC_keys.begin(), view.X_WC_keys.end(),
+                                  [&](const Affine3f& X) { return !is_same(X, view.X_WC_open); });
+  if (moving) camera.pose.keys = {keys->data(), static_cast<uint32_t>(keys->size())};
   return camera;
 }
 
@@ -51,6 +69,7 @@ void resize_film(const CameraView& view, const RenderSettings& settings, Film* f
   film->center_normal.resize(exact);
   film->center_albedo.resize(exact);
   film->motion.resize(exact);
+  film->scene_flow.resize(exact);
 }
 
 /// Tile `i` of the order in which tiles are rendered: far apart, so that those
@@ -68,17 +87,21 @@ class CpuRenderer final : public Renderer {
   /// it has stages for.
   CpuRenderer(std::unique_ptr<RenderScene> scene, std::unique_ptr<EmbreeScene> embree,
               std::unique_ptr<CudaStages> cuda = nullptr)
-      : scene_(std::move(scene)), embree_(std::move(embree)), cuda_(std::move(cuda)) {}
+      : scene_(std::move(scene)), embree_(std::move(embree)), cuda_(std::move(cuda)) {
+    for (const InstanceDescription& in : scene_->description().instances)
+      objects_.push_back(in.label.instance);
+  }
 
-  void update(const PoseFrame& open, const PoseFrame& close, const PoseFrame& previous) override {
-    scene_->update(open, close, previous);
+  using Renderer::update;
+  void update(std::span<const PoseFrame* const> keys, const PoseFrame& previous) override {
+    scene_->update(keys, previous);
     if (embree_ != nullptr) {
       const Status status = embree_->update(*scene_);
       GLOAM_CHECK(status.ok(), "the BVH cannot be built: out of memory?");
     }
     if (embree_ == nullptr || cuda_ != nullptr) own_.update(*scene_);
     if (cuda_ != nullptr) cuda_->update(*scene_);
-    if (!updated_) guided_lights_ = scene_->guided_lights(open);
+    if (!updated_) described_ = scene_->described_look(*keys.front());
     updated_ = true;
   }
 
@@ -86,21 +109,37 @@ class CpuRenderer final : public Renderer {
     GLOAM_CHECK(updated_, "update must come before render");
     const auto start = std::chrono::steady_clock::now();
     resize_film(view, settings, film);
+    film->cover.clear();
     Job job;
-    job.scene = scene_->view_from(view.X_WC_open);
-    job.tracer = embree_ != nullptr ? embree_->tracer(*scene_) : by_own(own_.tracer(*scene_));
+    job.camera = make_camera(view, &camera_keys_);
+    job.scene = job.camera.pose.keys.empty() ? scene_->view_from(view.X_WC_open)
+                                             : scene_->view_from(view.X_WC_open, view.X_WC_keys);
+    job.tracer = tracer();
     if (settings.tier == RenderTier::kPath) {
-      if (!has_guide_) guide_.build(job.scene, static_tracer(), guided_lights_);
+      if (!has_guide_) guide_.build(job.scene, static_tracer(), described_);
       has_guide_ = true;
+      described_ = {};
       job.scene.guide = guide_.view();
     }
-    job.camera = make_camera(view);
+    job.has_motion = !job.camera.pose.keys.empty() || scene_->has_motion();
+    if (settings.cover) {
+      film->cover = measure_cover(job.scene, job.tracer, job.camera, job.has_motion, film->width,
+                                  film->height, objects_);
+    }
     if (settings.tier == RenderTier::kFast) {
       job.scene.environment.row_cdf = {};  // the cache has the sky's light: none is drawn
       FastHistory own;
       auto* history = static_cast<FastHistory*>(settings.history);
       RenderStats stats = (history != nullptr ? *history : own)
                               .render(job.scene, job.tracer, job.camera, settings, film);
+      job.settings = settings;
+      job.film = film;
+      columns_ = (film->width + kTile - 1) / kTile;
+      const int64_t count = int64_t{columns_} * ((film->height + kTile - 1) / kTile);
+      if (settings.exact_channels) {
+        for_tiles(count,
+                  [&](int64_t tile) { Tile(job, x_of(tile), y_of(tile)).render_channels(); });
+      }
       stats.trace_seconds =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       return stats;
@@ -109,7 +148,6 @@ class CpuRenderer final : public Renderer {
     const bool on_card = cuda_ != nullptr && !adaptive;
     job.settings = settings;
     job.path = {settings.max_depth, settings.roulette_depth};
-    job.has_motion = job.camera.pose.moving || scene_->has_motion();
     if (settings.tier == RenderTier::kDirect && settings.spp > 0) {
       job.scene.ambient =
           on_card ? mean_ambient(cuda_->trace_ambient(on_cuda(job), film->width, film->height))
@@ -118,7 +156,8 @@ class CpuRenderer final : public Renderer {
       job.scene.environment.row_cdf = {};  // it stands for the sky's light: none is drawn
     }
     job.film = film;
-    job.centered = settings.tier == RenderTier::kDirect && settings.spp == 1 && !job.has_motion;
+    job.centered = settings.tier == RenderTier::kDirect && settings.spp == 1 && !job.has_motion &&
+                   !(job.camera.aperture.radius > 0);
     GLOAM_CHECK(!adaptive || (settings.tier == RenderTier::kPath && settings.first_sample == 0 &&
                               settings.spp >= kLeastAdaptiveSpp),
                 "adaptive sampling is of the path tier, from sample 0, of 16 and more");
@@ -126,7 +165,10 @@ class CpuRenderer final : public Renderer {
         adaptive ? settings.spp / 2 : int64_t{settings.first_sample} + settings.spp;
     while ((int64_t{1} << job.log2_samples) < samples) ++job.log2_samples;
     RenderStats total = on_card ? cuda_->render(on_cuda(job), film) : render_tiles(job);
-    if (total.finished && settings.spp > 0 && settings.spp < settings.guide_samples) {
+    // What is blurred has blurred guides: those of the samples.
+    const bool sharp =
+        !(job.camera.aperture.radius > 0) && !(job.has_motion && job.camera.shutter.length > 0);
+    if (total.finished && settings.spp > 0 && settings.spp < settings.guide_samples && sharp) {
       GLOAM_CHECK(settings.exact_channels, "guide samples need the exact channels");
       total.rays += refine_guides({job.scene, job.tracer, job.camera, job.has_motion},
                                   settings.guide_samples, film);
@@ -134,6 +176,11 @@ class CpuRenderer final : public Renderer {
     total.trace_seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return total;
+  }
+
+  void scan(const LidarView& view, std::span<LidarReturn> returns) override {
+    GLOAM_CHECK(updated_, "update must come before scan");
+    scan_beams(scene_->view_from(view.motion.X_WL), tracer(), view, returns);
   }
 
   std::unique_ptr<ViewHistory> make_history() const override {
@@ -146,6 +193,9 @@ class CpuRenderer final : public Renderer {
     tracer.rows = {own_.still().data(), static_cast<uint32_t>(own_.still().size())};
     tracer.own = own;
     return tracer;
+  }
+  EmbreeTracer tracer() const {
+    return embree_ != nullptr ? embree_->tracer(*scene_) : by_own(own_.tracer(*scene_));
   }
   EmbreeTracer static_tracer() const {
     return embree_ != nullptr ? embree_->static_tracer(*scene_)
@@ -232,8 +282,10 @@ class CpuRenderer final : public Renderer {
   BvhScene own_;
   std::unique_ptr<CudaStages> cuda_;
   std::vector<RenderStats> tiles_;
-  int columns_ = 0;  ///< of tiles
-  std::vector<LightView> guided_lights_;
+  std::vector<CameraKey> camera_keys_;
+  std::vector<uint16_t> objects_;  ///< by instance
+  int columns_ = 0;                ///< of tiles
+  DescribedLook described_;        ///< until the guide is built
   LightGuideStore guide_;
   bool updated_ = false, has_guide_ = false;
 };
@@ -290,10 +342,14 @@ Result<std::string> cuda_device_name() {
   return cuda->device_name();
 }
 
-CameraView view_at(const RenderDescription& description, int camera, const PoseFrame& open,
-                   const PoseFrame& close, const PoseFrame& previous) {
+CameraView view_at(const RenderDescription& description, int camera,
+                   std::span<const PoseFrame* const> keys, const PoseFrame& previous) {
   const CameraDescription& in = description.cameras[static_cast<size_t>(camera)];
-  return {in.intrinsics, camera_pose(in, open), camera_pose(in, close), camera_pose(in, previous)};
+  CameraView view{in.intrinsics, camera_pose(in, *keys.front()), camera_pose(in, previous)};
+  if (keys.size() > 1) {
+    for (const PoseFrame* key : keys) view.X_WC_keys.push_back(camera_pose(in, *key));
+  }
+  return view;
 }
 
 }  // namespace gloam

@@ -54,7 +54,8 @@ class Row {
     // One pattern for every pixel and picture: what stands still must not flicker.
     Sampler sampler = Sampler::make(0, 0, 0, 0, static_cast<uint32_t>(k), 0);
     const Vec2f offset = sample_pixel_filter(sampler.next_2d());
-    const float time = job_.has_motion ? sampler.next_1d() : 0.0f;
+    const float u = job_.has_motion ? sampler.next_1d() : 0.0f;
+    const float time = job_.has_motion ? job_.camera.time_of(y_, u) : 0.0f;
     x_[used_] = x;
     samples_[used_] = camera_ray(job_.camera, static_cast<float>(x) + 0.5f + offset.x,
                                  static_cast<float>(y_) + 0.5f + offset.y, time, &cones_[used_]);

@@ -256,14 +256,15 @@ Status EmbreeBuild::update(const RenderScene& scene) {
     const InstanceView& in = scene.instances()[rows_[g]];
     if (in.shape == ShapeType::kDeformable) {
       const MeshView& mesh = scene.meshes()[in.mesh];
-      const bool blurred = !mesh.positions_close.empty();
-      rtcSetGeometryTimeStepCount(geometry, blurred ? 2 : 1);
-      set_vertices(geometry, 0, mesh.positions.data, mesh.positions.size);
-      if (blurred) set_vertices(geometry, 1, mesh.positions_close.data, mesh.positions_close.size);
+      const size_t n = mesh.positions.size;
+      rtcSetGeometryTimeStepCount(geometry, std::max(mesh.key_count, 1u));
+      set_vertices(geometry, 0, mesh.positions.data, n);
+      for (unsigned k = 1; k < mesh.key_count; ++k)
+        set_vertices(geometry, k, mesh.position_keys.data + k * n, n);
     } else {
-      rtcSetGeometryTimeStepCount(geometry, in.moving ? 2 : 1);
+      rtcSetGeometryTimeStepCount(geometry, std::max(in.keys.size, 1u));
       set_transform(geometry, 0, in.X_WG);
-      if (in.moving) set_transform(geometry, 1, in.X_WG_close);
+      for (unsigned k = 1; k < in.keys.size; ++k) set_transform(geometry, k, in.keys[k]);
     }
     rtcCommitGeometry(geometry);
   }

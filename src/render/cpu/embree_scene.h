@@ -1,9 +1,8 @@
 #pragma once
-// Embree behind one face: acceleration structures of a RenderScene and the
-// Tracer that the kernel is compiled with. Static geometry is one BVH, built
-// once; each moving geom is an instance of the BVH of its shape with one or two
-// motion keys. Infinite planes and the largest simple solids that stand still
-// stay outside, in a short list.
+// Embree behind one face: acceleration structures of a RenderScene and the Tracer that the kernel
+// is compiled with. Static geometry is one BVH, built once; each moving geom is an instance of the
+// BVH of its shape with one or more motion keys. Infinite planes and the largest simple solids that
+// stand still stay outside, in a short list.
 
 #include <memory>
 

@@ -20,6 +20,24 @@ class FastPlane {
     return values_.data() + static_cast<ptrdiff_t>(y + kBorder) * stride_ + x + kBorder;
   }
   const float* at(int x, int y) const { return const_cast<FastPlane*>(this)->at(x, y); }
+  FloatLanes load(int x, int y) const {
+    FloatLanes out;
+    __builtin_memcpy(&out.v, at(x, y), sizeof out.v);
+    return out;
+  }
+  void store(int x, int y, FloatLanes v) { __builtin_memcpy(at(x, y), &v.v, sizeof v.v); }
+  /// Lanes in rows of four, as tile_pixel() orders them.
+  void store_block(int x, int y, FloatLanes v) {
+    for (int row = 0; row < kLaneCount / 4; ++row) {
+      __builtin_memcpy(at(x, y + row), reinterpret_cast<const char*>(&v.v) + 16 * row, 16);
+    }
+  }
+  /// The values at the pixels (x, y), whole numbers up to kBorder outside.
+  FloatLanes gather_at(FloatLanes x, FloatLanes y) const {
+    const auto stride = static_cast<uint32_t>(stride_);
+    constexpr float kShift = kBorder;
+    return gather(values_.data(), to_uint(y + kShift) * stride + to_uint(x + kShift));
+  }
 
  private:
   std::vector<float> values_;
@@ -35,24 +53,50 @@ struct FastPlane3 {
   void set(int x, int y, Vec3f v) {
     for (int k = 0; k < 3; ++k) *c[k].at(x, y) = v[k];
   }
+  Vec3Of<FloatLanes> load(int x, int y) const {
+    return {c[0].load(x, y), c[1].load(x, y), c[2].load(x, y)};
+  }
+  void store(int x, int y, const Vec3Of<FloatLanes>& v) {
+    c[0].store(x, y, v.x);
+    c[1].store(x, y, v.y);
+    c[2].store(x, y, v.z);
+  }
+  void store_block(int x, int y, const Vec3Of<FloatLanes>& v) {
+    c[0].store_block(x, y, v.x);
+    c[1].store_block(x, y, v.y);
+    c[2].store_block(x, y, v.z);
+  }
+  Vec3Of<FloatLanes> gather_at(FloatLanes x, FloatLanes y) const {
+    return {c[0].gather_at(x, y), c[1].gather_at(x, y), c[2].gather_at(x, y)};
+  }
 };
 
-/// The noisy parts: light of lamps, of the cache, of mirrors.
-enum FastSignal { kDirectSignal, kCachedSignal, kSpecularSignal, kFastSignals };
+/// The noisy parts: light of lamps, of mirrors, of the cache. The last changes little from picture
+/// to picture and has no past of its own.
+enum FastSignal { kDirectSignal, kSpecularSignal, kCachedSignal, kFastSignals };
+inline constexpr int kKeptSignals = kCachedSignal;
+/// Smoother surfaces show sharp pictures of other things.
+inline constexpr float kMirror = 0.25f;
 
 struct FastFrame {
   int width = 0, height = 0;
   FastPlane3 signal[kFastSignals];
-  /// Mean and mean square of the luminance of each signal over earlier pictures.
-  FastPlane mean[kFastSignals], square[kFastSignals];
+  /// Mean and mean square of the luminance of signals over earlier pictures.
+  FastPlane mean[kKeptSignals], square[kKeptSignals];
   FastPlane age;  ///< pictures that a pixel's signals are the mean of
   FastPlane3 p, n;
   FastPlane part;      ///< of the first solid surface; 0 = none, -1 = beyond the border
   FastPlane distance;  ///< [m]
   FastPlane roughness;
-  FastPlane3 base, albedo, gloss, through;
-  std::vector<Vec2f> motion;  ///< [px]
-  std::vector<uint64_t> key;  ///< of the cache's cell
+  FastPlane near;  ///< FastSampleOf::near
+  FastPlane3 base, albedo, gloss;
+  FastPlane motion_x, motion_y;  ///< [px]
+  std::vector<uint64_t> key;     ///< of the cache's cell
+  FastPlane gleam;      ///< least share of this picture in `resolved`: of moving highlights
+  FastPlane edge;       ///< 1 beside another part
+  FastPlane3 color;     ///< of this picture
+  FastPlane3 resolved;  ///< of this one and those before
+  FastPlane pictures;   ///< that `resolved` is the mean of; 0 = unknown
 
   void resize(int w, int h);
 };
@@ -67,5 +111,9 @@ struct FastFilter {
   /// Smooths the signals over surfaces.
   void smooth(const FastFrame& frame);
 };
+
+/// Means of frame->color and the pictures before: rays through other points of the pixels each time
+/// make edges and textures smooth.
+void resolve(const FastFrame& before, FastFrame* frame);
 
 }  // namespace gloam

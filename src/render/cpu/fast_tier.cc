@@ -1,105 +1,179 @@
 #include "render/cpu/fast_tier.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/parallel.h"
-#include "render/cpu/fast_edges.h"
 #include "render/cpu/tile.h"
 #include "render/kernel/fast.h"
 
 namespace gloam {
 namespace {
 
-constexpr float kCellPixels = 32;     // edge of a cache's cell in the picture,
-constexpr float kWidestCell = 0.05f;  // or over its distance if that is less
-constexpr int kWarmUp = 10;           // updates of the cache before the first picture
+using F = FloatLanes;
 
-/// Requests of one tile, each cell's first.
-struct TileRequests {
-  static constexpr size_t kSlots = 1024;
-  std::vector<CacheRequest> list;
-  uint64_t seen[kSlots] = {};
+constexpr float kCellPixels = 32;       // edge of a cache's cell in the picture,
+constexpr float kWidestCell = 0.05f;    // or over its distance if that is less
+constexpr int kWarmUp = 12;             // updates of the cache before the first picture
+constexpr uint32_t kFirstPictures = 8;  // of the first instant, one upon the other
+constexpr uint32_t kPattern = 16;       // points of a pixel that pictures go through in turn
 
-  void add(const CacheRequest& request) {
+float cell_edge(const CameraView32& camera) { return min(kCellPixels / camera.fx, kWidestCell); }
+
+/// Requests of one tile: of each cell, one place by chance.
+class TileRequests {
+ public:
+  void add(const CacheRequest& request, uint32_t dice) {
     if (request.key == 0) return;
-    uint64_t& slot = seen[caches::slot_of(request.key, kSlots)];
-    if (slot == request.key) return;
-    slot = request.key;
-    list.push_back(request);
+    Slot& slot = slots_[caches::slot_of(request.key, kSlots)];
+    if (slot.key != request.key) {
+      slot = {request.key, static_cast<uint32_t>(list.size()), 0};
+      list.push_back(request);
+    }
+    if (dice % ++slot.count == 0) list[slot.row] = request;
   }
+
+  std::vector<CacheRequest> list;
+
+ private:
+  static constexpr size_t kSlots = 1024;
+  struct Slot {
+    uint64_t key = 0;
+    uint32_t row = 0, count = 0;
+  };
+  Slot slots_[kSlots];
 };
+
+/// Four by four pixels, or half of them, and the rays through them.
+struct PixelBlock {
+  int x = 0, y = 0;
+  MaskLanes inside = false;  ///< of the picture
+  MaskLanes active = false;  ///< and the lens sees something there
+  UintLanes px, py;
+  RayOf<F> ray;
+  F width, spread;
+};
+
+PixelBlock make_block(const CameraView32& camera, const FastFrame& frame, int x, int y,
+                      Vec2f offset) {
+  PixelBlock block;
+  block.x = x;
+  block.y = y;
+  for (int i = 0; i < kLaneCount; ++i) {
+    const int column = x + i % 4, row = y + i / 4;
+    RayCone cone;
+    const Ray ray = camera_ray(camera, static_cast<float>(column) + 0.5f + offset.x,
+                               static_cast<float>(row) + 0.5f + offset.y, 0, &cone);
+    const bool inside = column < frame.width && row < frame.height;
+    set_lane(&block.inside, i, inside);
+    set_lane(&block.active, i, inside && sees(ray));
+    set_lane(&block.px, i, static_cast<uint32_t>(column));
+    set_lane(&block.py, i, static_cast<uint32_t>(row));
+    set_lane(&block.ray.o, i, ray.o);
+    set_lane(&block.ray.d, i, ray.d);
+    set_lane(&block.width, i, cone.width);
+    set_lane(&block.spread, i, cone.spread);
+  }
+  return block;
+}
+
+/// Way of what is seen since the previous picture [px].
+Vec2Of<F> find_motion(const SceneView& scene, const CameraView32& camera, bool still,
+                      const PixelBlock& block, const FastSampleOf<F>& sample) {
+  Vec2Of<F> motion;
+  each_lane(block.active, [&](int i) {
+    if (!lane(sample.solid, i)) {
+      if (!still) set_lane(&motion, i, describe_sky(camera, lane(block.ray, i)).motion);
+      return;
+    }
+    const RayHit hit = lane(sample.hit, i);
+    const InstanceView& instance = scene.instances[hit.instance];
+    if (still && !instance.has_moved && instance.shape != ShapeType::kDeformable) return;
+    Surface s;
+    s.p = lane(sample.p, i);
+    s.instance = hit.instance;
+    set_lane(&motion, i, describe_surface(scene, camera, lane(block.ray, i), s, hit).motion);
+  });
+  return motion;
+}
+
+/// Points of [0, 1)² for the pixels from `first` on of four by four, each in a part of its own.
+Vec2Of<F> stratified(int first, Vec2f turn) {
+  constexpr int kOrder[16] = {0, 10, 5, 15, 12, 6, 9, 3, 8, 2, 13, 7, 4, 14, 1, 11};
+  Vec2Of<F> u;
+  for (int i = 0; i < kLaneCount; ++i) {
+    const int k = kOrder[(first + i) % 16];
+    const Vec2f p{(static_cast<float>(k % 4) + turn.x) / 4,
+                  (static_cast<float>(k / 4) + turn.y) / 4};
+    set_lane(&u, i, p);
+  }
+  return u;
+}
+
+void store(const PixelBlock& block, const FastSampleOf<F>& sample, Vec2Of<F> motion,
+           const CacheRequest* requests, FastFrame* frame) {
+  const int x = block.x, y = block.y;
+  const auto solid = [&](const Vec3Of<F>& v) { return select<F>(sample.solid, v, Vec3Of<F>{}); };
+  frame->base.store_block(x, y, sample.base);
+  frame->albedo.store_block(x, y, solid(sample.albedo * sample.through));
+  frame->gloss.store_block(x, y, solid(sample.gloss * sample.through));
+  frame->signal[kDirectSignal].store_block(x, y, sample.direct);
+  frame->signal[kSpecularSignal].store_block(x, y, sample.specular * sample.through);
+  frame->p.store_block(x, y, sample.p);
+  frame->n.store_block(x, y, sample.normal);
+  const F part = select(sample.solid, to_float(sample.hit.instance) + 1.0f, F(0.0f));
+  frame->part.store_block(x, y, select(block.inside, part, F(-1.0f)));
+  frame->distance.store_block(x, y, select(sample.solid, sample.hit.t, F(1e20f)));
+  frame->roughness.store_block(x, y, sample.roughness);
+  frame->near.store_block(x, y, sample.near);
+  frame->motion_x.store_block(x, y, motion.x);
+  frame->motion_y.store_block(x, y, motion.y);
+  each_lane(block.inside, [&](int i) {
+    const size_t pixel = static_cast<size_t>(y + i / 4) * frame->width + x + i % 4;
+    frame->key[pixel] = lane(sample.solid, i) ? requests[i].key : 0;
+  });
+}
 
 }  // namespace
 
 void FastHistory::trace(const SceneView& scene, const EmbreeTracer& tracer,
-                        const CameraView32& camera, const RenderSettings& settings, Film* film) {
-  using F = FloatLanes;
-  const float edge = min(kCellPixels / camera.fx, kWidestCell);
-  const IrradianceCacheView cache = cache_.view(camera.pose.X_WC_open.p, edge);
-  const int columns = (film->width + kTile - 1) / kTile, rows = (film->height + kTile - 1) / kTile;
+                        const CameraView32& camera, const RenderSettings& settings, uint32_t pass) {
+  const IrradianceCacheView cache = cache_.view(camera.pose.X_WC_open.p, cell_edge(camera));
+  Sampler pattern = Sampler::make(0, 0, 0, 0, pictures_ % kPattern, 3);
+  const Vec2f offset = sample_pixel_filter(pattern.next_2d());
+  // Pictures of one instant have no way between them.
+  const Affine3f &a = camera.pose.X_WC_open, &b = camera.pose.X_WC_previous;
+  const bool still = a.x == b.x && a.y == b.y && a.z == b.z && a.p == b.p;
+  const int columns = (now_.width + kTile - 1) / kTile, rows = (now_.height + kTile - 1) / kTile;
+  const Vec2f turn = pattern.next_2d();
   std::vector<TileRequests> asked(static_cast<size_t>(columns) * rows);
   std::vector<uint64_t> rays(asked.size());
   parallel_for("fast tiles", static_cast<int64_t>(asked.size()), [&](int64_t tile) {
     const FlushDenormals flush;
-    const int x0 = static_cast<int>(tile % columns) * kTile;
-    const int y0 = static_cast<int>(tile / columns) * kTile;
+    TileRequests& mine = asked[static_cast<size_t>(tile)];
     for (int first = 0; first < kTile * kTile; first += kLaneCount) {
-      MaskLanes active = false;
-      UintLanes px, py;
-      RayOf<F> ray;
-      F width, spread;
-      int xs[kLaneCount], ys[kLaneCount];
-      for (int i = 0; i < kLaneCount; ++i) {
-        tile_pixel(first + i, &xs[i], &ys[i]);
-        xs[i] += x0;
-        ys[i] += y0;
-        const bool inside = xs[i] < film->width && ys[i] < film->height;
-        RayCone cone;
-        const Ray one = camera_ray(camera, static_cast<float>(xs[i]) + 0.5f,
-                                   static_cast<float>(ys[i]) + 0.5f, 0, &cone);
-        set_lane(&active, i, inside);
-        set_lane(&px, i, static_cast<uint32_t>(xs[i]));
-        set_lane(&py, i, static_cast<uint32_t>(ys[i]));
-        set_lane(&ray.o, i, one.o);
-        set_lane(&ray.d, i, one.d);
-        set_lane(&width, i, cone.width);
-        set_lane(&spread, i, cone.spread);
-      }
+      int x, y;
+      tile_pixel(first, &x, &y);
+      x += static_cast<int>(tile % columns) * kTile;
+      y += static_cast<int>(tile / columns) * kTile;
+      if (x >= now_.width || y >= now_.height) continue;
+      const PixelBlock block = make_block(camera, now_, x, y, offset);
+      SamplerOf<F> sampler =
+          SamplerOf<F>::make(settings.seed, settings.frame, block.px, block.py, pass, 0);
+      const Vec2Of<F> near_u = stratified(first, turn);
       CacheRequest requests[3 * kLaneCount];
-      const FastSampleOf<F> sample = trace_fast(
-          scene, tracer, cache, ray, width, spread,
-          SamplerOf<F>::make(settings.seed, settings.frame, px, py, 0u, 0), active, requests);
-      for (int i = 0; i < kLaneCount; ++i) {
-        if (!lane(active, i)) continue;
-        asked[static_cast<size_t>(tile)].add(requests[i]);
-        asked[static_cast<size_t>(tile)].add(requests[kLaneCount + i]);
-        asked[static_cast<size_t>(tile)].add(requests[2 * kLaneCount + i]);
-        const int x = xs[i], y = ys[i];
-        const size_t pixel = static_cast<size_t>(y) * film->width + x;
-        const bool solid = lane(sample.solid, i);
-        const Surface surface = lane(sample.surface, i);
-        const Vec3f through = lane(sample.through, i);
-        now_.base.set(x, y, lane(sample.base, i));
-        now_.albedo.set(x, y, solid ? lane(sample.albedo, i) * through : Vec3f{});
-        now_.gloss.set(x, y, solid ? lane(sample.gloss, i) * through : Vec3f{});
-        now_.signal[kDirectSignal].set(x, y, lane(sample.direct, i));
-        now_.signal[kSpecularSignal].set(x, y, lane(sample.specular, i) * through);
-        now_.p.set(x, y, surface.p);
-        now_.n.set(x, y, surface.normal);
-        *now_.part.at(x, y) = solid ? static_cast<float>(surface.instance + 1) : 0.0f;
-        *now_.distance.at(x, y) = lane(sample.hit.t, i);
-        *now_.roughness.at(x, y) = surface.roughness;
-        now_.key[pixel] = solid ? requests[i].key : 0;
-        film->albedo[pixel] = solid ? surface.base_color : Vec3f{};
-        film->normal[pixel] = solid ? surface.normal : Vec3f{};
-        const Ray one = lane(ray, i);
-        const ExactChannels channels =
-            solid ? describe_surface(scene, camera, one, surface, lane(sample.hit, i))
-                  : describe_sky(camera, one);
-        now_.motion[pixel] = channels.motion;
-        if (settings.exact_channels) store_channels(film, pixel, channels);
-        rays[static_cast<size_t>(tile)] += lane(sample.rays, i);
+      const FastSampleOf<F> sample =
+          trace_fast(scene, tracer, cache, block.ray, block.width, block.spread, sampler, near_u,
+                     block.active, requests);
+      store(block, sample,
+            pass == 0 ? find_motion(scene, camera, still, block, sample) : Vec2Of<F>{}, requests,
+            &now_);
+      const uint32_t dice = static_cast<uint32_t>(first) * 0x9E3779B9u + pictures_ * 0x85EBCA6Bu;
+      for (uint32_t i = 0; i < 3 * kLaneCount; ++i) {
+        mine.add(requests[i], (dice + i * 0xC2B2AE35u) >> 8);
       }
+      each_lane(block.active,
+                [&](int i) { rays[static_cast<size_t>(tile)] += lane(sample.rays, i); });
     }
   });
   requests_.clear();
@@ -108,18 +182,57 @@ void FastHistory::trace(const SceneView& scene, const EmbreeTracer& tracer,
   for (const uint64_t r : rays) rays_ += r;
 }
 
-void FastHistory::compose(Film* film) const {
-  parallel_for("fast picture", film->height, [&](int64_t row) {
+void FastHistory::look_up(const IrradianceCacheView& cache) {
+  parallel_for("fast light", now_.height, [&](int64_t row) {
     const int y = static_cast<int>(row);
-    for (int x = 0; x < film->width; ++x) {
-      const Vec3f direct = filter_.a[kDirectSignal].get(x, y);
-      const Vec3f cached = filter_.a[kCachedSignal].get(x, y);
-      const Vec3f specular = filter_.a[kSpecularSignal].get(x, y);
-      film->radiance[static_cast<size_t>(y) * film->width + x] =
-          now_.base.get(x, y) + now_.albedo.get(x, y) * (direct + cached) +
-          now_.gloss.get(x, y) * cached + specular;
+    for (int x = 0; x < now_.width; ++x) {
+      const int cell = find_cell(cache, now_.key[static_cast<size_t>(y) * now_.width + x]);
+      now_.signal[kCachedSignal].set(
+          x, y,
+          cell >= 0 ? light_at(cache.light[static_cast<uint32_t>(cell)], *now_.near.at(x, y))
+                    : Vec3f{});
     }
   });
+}
+
+void FastHistory::compose() {
+  parallel_for("fast picture", now_.height, [&](int64_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < now_.width; x += kLaneCount) {
+      const Vec3Of<F> cached = filter_.a[kCachedSignal].load(x, y);
+      const Vec3Of<F> diffuse = filter_.a[kDirectSignal].load(x, y) + cached;
+      const Vec3Of<F> specular = filter_.a[kSpecularSignal].load(x, y);
+      const Vec3Of<F> color = now_.base.load(x, y) + now_.albedo.load(x, y) * diffuse +
+                              now_.gloss.load(x, y) * cached + specular;
+      now_.color.store(x, y, color);
+      const MaskLanes moves =
+          !((now_.motion_x.load(x, y) == F(0.0f)) & (now_.motion_y.load(x, y) == F(0.0f)));
+      const F gleam = 0.5f * luminance(specular) / max(luminance(color), F(1e-6f));
+      now_.gleam.store(x, y, select(moves & (now_.roughness.load(x, y) < kMirror), gleam, F(0.0f)));
+    }
+  });
+}
+
+void FastHistory::add_picture(const SceneView& scene, const EmbreeTracer& tracer,
+                              const CameraView32& camera, const RenderSettings& settings,
+                              uint32_t pass) {
+  const Vec3f eye = camera.pose.X_WC_open.p;
+  const float edge = cell_edge(camera);
+  for (bool again = true; again;) {
+    again = cache_.size() == 0;  // a first picture is traced twice: its rays saw no cache
+    trace(scene, tracer, camera, settings, pass);
+    cache_.ask(requests_);
+    rays_ += cache_.update(scene, tracer, eye, edge, settings.seed + pass, settings.frame,
+                           again ? kWarmUp : 1);
+    if (requests_.empty()) break;
+  }
+  look_up(cache_.view(eye, edge));
+  filter_.accumulate(before_, &now_);
+  filter_.smooth(now_);
+  compose();
+  resolve(before_, &now_);
+  std::swap(now_, before_);
+  ++pictures_;
 }
 
 RenderStats FastHistory::render(const SceneView& scene, const EmbreeTracer& tracer,
@@ -128,31 +241,20 @@ RenderStats FastHistory::render(const SceneView& scene, const EmbreeTracer& trac
   rays_ = 0;
   if (film->width != now_.width || film->height != now_.height) {
     now_.resize(film->width, film->height);
+    before_.resize(film->width, film->height);
     filter_.resize(film->width, film->height);
+    pictures_ = 0;
   }
-  const Vec3f eye = camera.pose.X_WC_open.p;
-  const float edge = min(kCellPixels / camera.fx, kWidestCell);
-  for (bool again = true; again; warm_ = true) {
-    again = !warm_;  // a first picture is traced twice: its specular rays saw no cache
-    trace(scene, tracer, camera, settings, film);
-    cache_.ask(requests_);
-    rays_ +=
-        cache_.update(scene, tracer, eye, edge, settings.seed, settings.frame, warm_ ? 1 : kWarmUp);
+  const uint32_t passes = pictures_ == 0 ? kFirstPictures : 1;
+  for (uint32_t pass = 0; pass < passes; ++pass) {
+    add_picture(scene, tracer, camera, settings, pass);
   }
-  const IrradianceCacheView cache = cache_.view(eye, edge);
-  parallel_for("fast light", film->height, [&](int64_t row) {
-    const int y = static_cast<int>(row);
+  parallel_for("fast film", film->height, [&](int64_t y) {
     for (int x = 0; x < film->width; ++x) {
-      const int cell = find_cell(cache, now_.key[static_cast<size_t>(y) * film->width + x]);
-      now_.signal[kCachedSignal].set(
-          x, y, cell >= 0 ? cache.light[static_cast<uint32_t>(cell)] : Vec3f{});
+      film->radiance[static_cast<size_t>(y) * film->width + x] =
+          before_.resolved.get(x, static_cast<int>(y));
     }
   });
-  filter_.accumulate(before_, &now_);
-  filter_.smooth(now_);
-  compose(film);
-  rays_ += smooth_edges(scene, tracer, camera, now_, film);
-  std::swap(now_, before_);
   RenderStats stats;
   stats.paths = film->pixel_count();
   stats.rays = rays_;

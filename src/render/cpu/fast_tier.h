@@ -9,21 +9,25 @@ namespace gloam {
 
 class FastHistory final : public ViewHistory {
  public:
-  /// Renders into film->radiance, albedo, normal and the exact channels.
+  /// Renders into film->radiance.
   RenderStats render(const SceneView& scene, const EmbreeTracer& tracer, const CameraView32& camera,
                      const RenderSettings& settings, Film* film);
 
  private:
+  /// One picture of the sequence; `pass` tells those of one instant apart.
+  void add_picture(const SceneView& scene, const EmbreeTracer& tracer, const CameraView32& camera,
+                   const RenderSettings& settings, uint32_t pass);
   void trace(const SceneView& scene, const EmbreeTracer& tracer, const CameraView32& camera,
-             const RenderSettings& settings, Film* film);
-  void compose(Film* film) const;
+             const RenderSettings& settings, uint32_t pass);
+  void look_up(const IrradianceCacheView& cache);
+  void compose();
 
   IrradianceCache cache_;
   FastFrame now_, before_;
   FastFilter filter_;
   std::vector<CacheRequest> requests_;
   uint64_t rays_ = 0;
-  bool warm_ = false;
+  uint32_t pictures_ = 0;  ///< taken, those of one instant too
 };
 
 }  // namespace gloam

@@ -75,6 +75,12 @@ Vec3f point_in_cell(const LightGuide& grid, int cell, Vec3f u) {
   return grid.low + q * (1.0f / grid.per_metre);
 }
 
+SurfacePoint start_of(const LightGuide& grid, const GuideRow& row, int ray, Sampler* sampler) {
+  const Vec3f u = next_3d(sampler);
+  if (row.facing < 0) return {point_in_cell(grid, row.cell, u), {0, 0, 0}};
+  return row.points[static_cast<size_t>(ray) % row.points.size()];
+}
+
 std::vector<SurfacePoint> find_surface(const SceneView& scene, const EmbreeTracer& statics,
                                        const LightGuide& grid, int cell, int facing) {
   constexpr int kRays = 16, kLayers = 4;
@@ -101,6 +107,27 @@ std::vector<SurfacePoint> find_surface(const SceneView& scene, const EmbreeTrace
     }
   }
   return points;
+}
+
+int neighborhood(const LightGuide& grid, const std::vector<GuideRow>& rows, int row, int* out) {
+  const int cell = rows[static_cast<size_t>(row)].cell;
+  const int facing = rows[static_cast<size_t>(row)].facing;
+  const int n[3] = {grid.nx, grid.ny, grid.nz}, stride[3] = {1, n[0], n[0] * n[1]};
+  int count = 0;
+  out[count++] = row;
+  const auto add = [&](int other) {
+    const int found =
+        facing < 0
+            ? other
+            : grid.surface_row[static_cast<uint32_t>(LightGuide::kFacings * other + facing)];
+    if (found >= 0) out[count++] = found;
+  };
+  for (int k = 0; k < 3; ++k) {
+    const int at = cell / stride[k] % n[k];
+    if (at > 0) add(cell - stride[k]);
+    if (at + 1 < n[k]) add(cell + stride[k]);
+  }
+  return count;
 }
 
 Sampler guide_sampler(int row, int ray, uint32_t purpose) {

@@ -21,9 +21,22 @@ struct SurfacePoint {
   Vec3f p, n;  ///< just off the surface [m], and its unit normal
 };
 
+/// Where the rays of one row of the guide start: at surfaces, or anywhere in the cell.
+struct GuideRow {
+  int cell = 0;
+  int facing = -1;  ///< -1: anywhere
+  std::vector<SurfacePoint> points;
+};
+
+/// Where ray `ray` of the row starts; n = 0: anywhere in the cell.
+SurfacePoint start_of(const LightGuide& grid, const GuideRow& row, int ray, Sampler* sampler);
+
 /// Points in the cell on the outside of static surfaces that face `facing` (LightGuide::facing_of).
 std::vector<SurfacePoint> find_surface(const SceneView& scene, const EmbreeTracer& statics,
                                        const LightGuide& grid, int cell, int facing);
+
+/// The row and up to six like it in cells that share a face with its own.
+int neighborhood(const LightGuide& grid, const std::vector<GuideRow>& rows, int row, int* out);
 
 /// Draws for ray `ray` of the row `row`; `purpose` keeps those for different ends apart.
 Sampler guide_sampler(int row, int ray, uint32_t purpose);

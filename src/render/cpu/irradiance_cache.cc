@@ -1,6 +1,7 @@
 #include "render/cpu/irradiance_cache.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "base/parallel.h"
 
@@ -8,10 +9,13 @@ namespace gloam {
 namespace {
 
 constexpr int kRays = 32;            // of a cell and update
-constexpr int kMemory = 5 * kRays;   // rays that a cell's mean is of, at most
+constexpr int kMemory = 10 * kRays;  // rays that a cell's mean is of, at most
 constexpr uint32_t kForgotten = 30;  // updates after which a cell that nobody asks for goes
 constexpr size_t kMostCells = 2500;  // of an update, but for a first picture's
-constexpr float kSurprise = 2.5f;    // standard errors
+constexpr float kSurprise = 3;       // standard errors,
+constexpr float kNoChange = 0.02f;   // and this share, that a region's light may be off
+constexpr float kBrightest = 4;      // of a lamp's light by way of a mirror, over the cell's mean
+constexpr int kMostRounds = 3;       // of an update while light changes in many cells
 constexpr float kSpread = 0.15f;     // of the rays' cones: no fine texture is sought
 
 }  // namespace
@@ -46,85 +50,166 @@ void IrradianceCache::ask(const std::vector<CacheRequest>& requests) {
       keys_[slot] = request.key;
       rows_[slot] = static_cast<uint32_t>(cells_.size());
       cells_.push_back({request.key});
-      light_.emplace_back();
+      light_.push_back({mean_});
       starts_.resize(cells_.size() * kStarts);
     }
     const uint32_t row = rows_[slot];
     Cell& cell = cells_[row];
     cell.last_asked = update_;
-    if (cell.starts < kStarts)
-      starts_[row * kStarts + static_cast<size_t>(cell.starts++)] = request;
+    // Of many places that ask, some by chance: rays start all over the cell.
+    const auto count = static_cast<uint32_t>(cell.starts++);
+    const uint32_t place = count < kStarts ? count : dice() % (count + 1);
+    if (place < kStarts) starts_[row * kStarts + place] = request;
+  }
+}
+
+uint32_t IrradianceCache::dice() {
+  dice_ = dice_ * 6364136223846793005ull + 1442695040888963407ull;
+  return static_cast<uint32_t>(dice_ >> 33);
+}
+
+void IrradianceCache::trace_cell(const SceneView& scene, const EmbreeTracer& tracer,
+                                 const IrradianceCacheView& cache, uint64_t seed, uint32_t frame,
+                                 size_t k) {
+  using F = FloatLanes;
+  const uint32_t row = asked_[k];
+  const Cell& cell = cells_[row];
+  const float edge = caches::edge_of(cell.key), before = luminance(light_[row].all);
+  const auto starts = static_cast<size_t>(std::min(cell.starts, kStarts));
+  const float brightest = before > 0 ? kBrightest * before : 1e30f;
+  Traced& out = traced_[k];
+  out = {};
+  out.is_new = cell.samples == 0;
+  out.before = before;
+  for (int first = 0; first < kRays; first += kLaneCount) {
+    paths::State<F> path;
+    UintLanes index;
+    for (int i = 0; i < kLaneCount; ++i) set_lane(&index, i, static_cast<uint32_t>(first + i));
+    const uint64_t mixed = cell.key * 0x9E3779B97F4A7C15ull;
+    path.sampler = SamplerOf<F>::make(seed ^ mixed, frame, UintLanes(0u), UintLanes(0u), index, 6);
+    path.throughput = in_all_lanes<F>({1, 1, 1});
+    const Vec3Of<F> local = sample_cosine_hemisphere(path.sampler.next_2d());
+    for (int i = 0; i < kLaneCount; ++i) {
+      const CacheRequest& start = starts_[row * kStarts + static_cast<size_t>(first + i) % starts];
+      set_lane(&path.ray.o, i, start.p);
+      set_lane(&path.ray.d, i, Frame::from_z(start.n).to_world(lane(local, i)));
+    }
+    path.cone_spread = kSpread;
+    path.from = path.ray.o;
+    CacheRequest met[kLaneCount];
+    const fasts::GatheredOf<F> light =
+        fasts::gather(scene, tracer, cache, false, MaskLanes(true), &path, met);
+    for (int i = 0; i < kLaneCount; ++i) {
+      const Vec3f caustic = lane(light.caustic, i);
+      const Vec3f one =
+          lane(light.light, i) + caustic * (brightest / max(luminance(caustic), brightest));
+      const bool near = lane(light.way, i) < edge;
+      out.light.all += one;
+      if (near) out.light.near += one;
+      out.light.share += near ? 1.0f : 0.0f;
+      out.variance += sqr(luminance(one));
+      out.rays += lane(path.result.rays, i);
+    }
+    if (first == 0) std::copy_n(met, kFurther, &further_[k * kFurther]);
+  }
+  constexpr float kPer = 1.0f / kRays;
+  CellLight& light = out.light;
+  light = {light.all * kPer, light.near * kPer, light.share * kPer};
+  out.variance = max(out.variance * kPer - sqr(luminance(light.all)), 0.0f) * kPer;
+}
+
+void IrradianceCache::find_changes() {
+  // A cell's few rays say little; those of a region together tell a change of the light from noise.
+  // By the spread of those rays alone, cells that met few of the bright ones would count as
+  // changed.
+  order_.clear();
+  for (size_t k = 0; k < traced_.size(); ++k) {
+    if (!traced_[k].is_new) order_.emplace_back(cells_[asked_[k]].key & caches::kRegion, k);
+  }
+  std::sort(order_.begin(), order_.end());
+  for (size_t first = 0, next = 0; first < order_.size(); first = next) {
+    float change = 0, variance = 0, light = 0;
+    for (; next < order_.size() && order_[next].first == order_[first].first; ++next) {
+      const size_t k = order_[next].second;
+      const float before = luminance(light_[asked_[k]].all);
+      light += before;
+      change += luminance(traced_[k].light.all) - before;
+      variance += max(traced_[k].variance, cells_[asked_[k]].variance);
+    }
+    const bool changed = fabsf(change) > kSurprise * sqrtf(variance) + kNoChange * light;
+    for (size_t i = first; i < next; ++i) traced_[order_[i].second].changed = changed;
   }
 }
 
 uint64_t IrradianceCache::trace(const SceneView& scene, const EmbreeTracer& tracer,
                                 const IrradianceCacheView& cache, uint64_t seed, uint32_t frame,
                                 bool remembers) {
-  using F = FloatLanes;
-  std::vector<uint64_t> rays(asked_.size());
-  next_ = light_;
+  traced_.resize(asked_.size());
   further_.assign(asked_.size() * kFurther, {});
-  parallel_for_range(
-      "irradiance cache", static_cast<int64_t>(asked_.size()), 4, [&](int64_t begin, int64_t end) {
-        for (int64_t k = begin; k < end; ++k) {
-          const uint32_t row = asked_[static_cast<size_t>(k)];
-          const Cell& cell = cells_[row];
-          Vec3f sum;
-          float squares = 0;
-          for (int first = 0; first < kRays; first += kLaneCount) {
-            paths::State<F> path;
-            UintLanes index;
-            for (int i = 0; i < kLaneCount; ++i)
-              set_lane(&index, i, static_cast<uint32_t>(first + i));
-            const uint64_t mixed = cell.key * 0x9E3779B97F4A7C15ull;
-            path.sampler =
-                SamplerOf<F>::make(seed ^ mixed, frame, UintLanes(0u), UintLanes(0u), index, 6);
-            path.throughput = in_all_lanes<F>({1, 1, 1});
-            const Vec3Of<F> local = sample_cosine_hemisphere(path.sampler.next_2d());
-            for (int i = 0; i < kLaneCount; ++i) {
-              const CacheRequest& start =
-                  starts_[row * kStarts + static_cast<size_t>((first + i) % cell.starts)];
-              set_lane(&path.ray.o, i, start.p);
-              set_lane(&path.ray.d, i, Frame::from_z(start.n).to_world(lane(local, i)));
-            }
-            path.cone_spread = kSpread;
-            path.from = path.ray.o;
-            CacheRequest met[kLaneCount];
-            const Vec3Of<F> light =
-                fasts::gather(scene, tracer, cache, false, MaskLanes(true), &path, met);
-            for (int i = 0; i < kLaneCount; ++i) {
-              sum += lane(light, i);
-              squares += sqr(luminance(lane(light, i)));
-              rays[static_cast<size_t>(k)] += lane(path.result.rays, i);
-            }
-            if (first == 0)
-              std::copy_n(met, kFurther, &further_[static_cast<size_t>(k) * kFurther]);
-          }
-          const Vec3f mean = sum / static_cast<float>(kRays);
-          float share = static_cast<float>(kRays) /
-                        static_cast<float>(std::min(cell.samples, kMemory) + kRays);
-          // What noise does not explain is a change of the light.
-          const float l = luminance(mean), before = luminance(light_[row]);
-          const float error = safe_sqrt((squares / kRays - l * l) / kRays);
-          if (fabsf(l - before) > kSurprise * error + 0.02f * before) share = max(share, 0.75f);
-          if (!remembers) share = 1;  // too little of the light had come round before
-          next_[row] = lerp(light_[row], mean, share);
-        }
-      });
-  std::swap(light_, next_);
-  for (const uint32_t row : asked_) {
-    cells_[row].samples = remembers ? cells_[row].samples + kRays : kRays;
-    cells_[row].last_traced = update_;
+  parallel_for_range("irradiance cache", static_cast<int64_t>(asked_.size()), 4,
+                     [&](int64_t begin, int64_t end) {
+                       for (int64_t k = begin; k < end; ++k)
+                         trace_cell(scene, tracer, cache, seed, frame, static_cast<size_t>(k));
+                     });
+  find_changes();
+  uint64_t rays = 0;
+  for (size_t k = 0; k < asked_.size(); ++k) {
+    const Traced& traced = traced_[k];
+    Cell& cell = cells_[asked_[k]];
+    CellLight& light = light_[asked_[k]];
+    // As long as little of the light has come round, what there was before is no part of the mean.
+    if (!remembers || traced.changed) cell.samples = std::min(cell.samples, kRays / 8);
+    if (!remembers) cell.samples = 0;
+    const float share = static_cast<float>(kRays) / static_cast<float>(cell.samples + kRays);
+    light = {lerp(light.all, traced.light.all, share), lerp(light.near, traced.light.near, share),
+             lerp(light.share, traced.light.share, share)};
+    cell.variance = lerp(cell.variance, traced.variance, share);
+    cell.samples = std::min(cell.samples + kRays, kMemory);
+    cell.last_traced = update_;
+    rays += traced.rays;
   }
-  uint64_t total = 0;
-  for (const uint64_t r : rays) total += r;
-  return total;
+  Vec3f sum;
+  for (const CellLight& light : light_) sum += light.all;
+  mean_ = light_.empty() ? Vec3f{} : sum / static_cast<float>(light_.size());
+  return rays;
+}
+
+void IrradianceCache::extrapolate(int round, bool remembers) {
+  // Light that comes round once more in each of them dies away as a geometric series: its sum is
+  // known from two terms (Aitken 1926).
+  constexpr double kMostRatio = 0.97, kWorthIt = 0.004;
+  const auto counts = [&](size_t k) {
+    return !traced_[k].is_new && (!remembers || traced_[k].changed);
+  };
+  double change = 0, light = 0;
+  for (size_t k = 0; k < asked_.size(); ++k) {
+    if (!counts(k)) continue;
+    light += luminance(light_[asked_[k]].all);
+    change += luminance(light_[asked_[k]].all) - traced_[k].before;
+  }
+  const double last = std::exchange(last_change_, change);
+  terms_ = round == 0 ? 1 : terms_ + 1;
+  if (terms_ < 3 || !(std::abs(change) > kWorthIt * light) || last == 0) return;
+  const double ratio = change / last;
+  if (!(ratio > 0 && ratio < kMostRatio)) return;
+  const auto factor = static_cast<float>(std::max(0.0, 1 + change * ratio / ((1 - ratio) * light)));
+  for (size_t k = 0; k < asked_.size(); ++k) {
+    if (!counts(k)) continue;
+    CellLight& cell = light_[asked_[k]];
+    cell.all = cell.all * factor;
+    cell.near = cell.near * factor;
+  }
+  terms_ = 0;
 }
 
 uint64_t IrradianceCache::update(const SceneView& scene, const EmbreeTracer& tracer, Vec3f eye,
                                  float edge_per_metre, uint64_t seed, uint32_t frame, int settle) {
   uint64_t rays = 0;
-  for (int i = 0; i < settle; ++i) {
+  const bool settling = settle > 1;
+  int rounds = settle;
+  for (int i = 0; i < rounds; ++i) {
+    // The last quarter of many rounds is a mean: by then most of the light has come round.
+    const bool remembers = !settling || 4 * i >= 3 * settle;
     ask(std::vector<CacheRequest>(std::move(further_)));
     asked_.clear();
     for (uint32_t row = 0; row < cells_.size(); ++row) {
@@ -136,9 +221,15 @@ uint64_t IrradianceCache::update(const SceneView& scene, const EmbreeTracer& tra
     };
     std::stable_sort(asked_.begin(), asked_.end(),
                      [&](uint32_t a, uint32_t b) { return waits(a) > waits(b); });
-    if (settle == 1 && asked_.size() > kMostCells) asked_.resize(kMostCells);
+    if (!settling && i == 0 && asked_.size() > kMostCells) asked_.resize(kMostCells);
     rays += trace(scene, tracer, view(eye, edge_per_metre), seed + static_cast<uint64_t>(i), frame,
-                  settle == 1);
+                  remembers);
+    // A lamp went on or off: what it sends comes round by one reflection each time.
+    const auto changed = std::count_if(traced_.begin(), traced_.end(),
+                                       [](const Traced& traced) { return traced.changed; });
+    const bool many = 8 * changed > static_cast<int64_t>(asked_.size());
+    if (!remembers || (!settling && many)) extrapolate(i, remembers);
+    if (!settling && many && rounds < kMostRounds) ++rounds;
   }
   forget();
   return rays;
@@ -166,6 +257,7 @@ IrradianceCacheView IrradianceCache::view(Vec3f eye, float edge_per_metre) const
   view.keys = {keys_.data(), static_cast<uint32_t>(keys_.size())};
   view.cells = {rows_.data(), static_cast<uint32_t>(rows_.size())};
   view.light = {light_.data(), static_cast<uint32_t>(light_.size())};
+  view.mean = mean_;
   view.eye = eye;
   view.edge_per_metre = edge_per_metre;
   return view;

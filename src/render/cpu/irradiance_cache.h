@@ -1,6 +1,7 @@
 #pragma once
 // The cells behind an IrradianceCacheView: which there are, and what light they hold.
 
+#include <utility>
 #include <vector>
 
 #include "render/cpu/embree_tracer.h"
@@ -26,24 +27,46 @@ class IrradianceCache {
     uint64_t key = 0;
     uint32_t last_asked = 0, last_traced = 0;  ///< update
     int starts = 0;                            ///< places that asked since the last update
+    float variance = 0;                        ///< of the luminance of a round's mean
     int samples = 0;                           ///< rays that `light` is the mean of
   };
-  static constexpr int kStarts = 4, kFurther = 4;
+  /// What a cell's rays of one round brought.
+  struct Traced {
+    CellLight light;
+    float variance = 0, before = 0;        ///< of its luminance; luminance before the round
+    bool is_new = false, changed = false;  ///< it had no light yet; it is not what it was
+    uint64_t rays = 0;
+  };
+  static constexpr int kStarts = 4, kFurther = 8;
 
+  /// The same sequence each time.
+  uint32_t dice();
   uint32_t slot_of(uint64_t key) const;
   void rebuild(size_t slots);
+  /// Cell k of asked_ into traced_.
+  void trace_cell(const SceneView& scene, const EmbreeTracer& tracer,
+                  const IrradianceCacheView& cache, uint64_t seed, uint32_t frame, size_t k);
+  void find_changes();
   uint64_t trace(const SceneView& scene, const EmbreeTracer& tracer,
                  const IrradianceCacheView& cache, uint64_t seed, uint32_t frame, bool remembers);
+  /// After each round: to where the light would come in many more.
+  void extrapolate(int round, bool remembers);
   void forget();
 
   std::vector<uint64_t> keys_;
   std::vector<uint32_t> rows_;  ///< of each slot
   std::vector<Cell> cells_;
   std::vector<CacheRequest> starts_;  ///< (cells x kStarts)
-  std::vector<Vec3f> light_, next_;
-  std::vector<uint32_t> asked_;        ///< rows
+  std::vector<CellLight> light_;
+  double last_change_ = 0;                          ///< of the light in a round [cd/m²]
+  int terms_ = 0;                                   ///< rounds since the last extrapolation
+  std::vector<uint32_t> asked_;                     ///< rows
+  std::vector<Traced> traced_;                      ///< of asked_
+  std::vector<std::pair<uint64_t, size_t>> order_;  ///< of traced_, by region
   std::vector<CacheRequest> further_;  ///< of places that the last rays met: (asked x kFurther)
+  Vec3f mean_;
   uint32_t update_ = 0;
+  uint64_t dice_ = 1;
 };
 
 }  // namespace gloam

@@ -28,6 +28,7 @@ void store_channels(Film* film, size_t pixel, const ExactChannels& c) {
   film->center_normal[pixel] = c.normal;
   film->center_albedo[pixel] = c.albedo;
   film->motion[pixel] = c.motion;
+  film->scene_flow[pixel] = c.scene_flow;
 }
 
 template <class State, class Start, class Advance, class Finish>
@@ -39,19 +40,21 @@ void Tile::sample(Wave<State>* wave, int index, const Start& start, const Advanc
     Sampler sampler = Sampler::make(
         settings.seed, settings.frame, static_cast<uint32_t>(x_[i]), static_cast<uint32_t>(y_[i]),
         static_cast<uint32_t>(settings.first_sample + index), job_.log2_samples);
-    Vec2f offset;
+    Vec2f offset, lens;
     float time = 0;
     if (!job_.centered) {
       offset = sample_pixel_filter(sampler.next_2d());
-      if (job_.has_motion) time = sampler.next_1d();
+      if (job_.has_motion) time = job_.camera.time_of(y_[i], sampler.next_1d());
+      if (job_.camera.aperture.radius > 0) lens = sampler.next_2d();
     }
     RayCone cone;
-    const Ray ray = center_ray(i, offset, time, &cone);
+    const Ray ray = pixel_ray(i, offset, time, &cone, &lens);
+    sees_[i] = sees(ray);
     start(&wave->states[i], ray, cone, sampler);
   }
   wave->run(job_.scene, job_.tracer, advance);
   for (int i = 0; i < count_; ++i) {
-    mean_[i].add(wave->states[i].result);
+    mean_[i].add(sees_[i] ? wave->states[i].result : PathResult{});
     rays_ += wave->states[i].result.rays;
     finish(i, wave->states[i]);
   }
@@ -87,7 +90,7 @@ void Tile::render_channels() {
   const auto wave = std::make_unique<Wave<CenterState>>();
   for (int i = 0; i < count_; ++i) {
     RayCone cone;
-    wave->states[i].ray = center_ray(i, {}, 0, &cone);
+    wave->states[i].ray = center_ray(i, &cone);
     if (!known_[i]) wave->alive[wave->count++] = i;
   }
   const int traced = wave->count;
@@ -134,13 +137,18 @@ void Tile::sample_lanes(int first, const SampleRange& range) {
       SamplerOf<F>::make(range.seed, job_.settings.frame, x, y, sample, job_.log2_samples);
   const Vec2Of<F> filter = sampler.next_2d();
   const F time = job_.has_motion ? sampler.next_1d() : F(0.0f);
+  Vec2Of<F> lens;
+  if (job_.camera.aperture.radius > 0) lens = sampler.next_2d();
   RayOf<F> ray;
-  ray.time = time;
   F width, spread;
   for (int i = 0; i < kLaneCount; ++i) {
     RayCone cone;
+    const Vec2f lens_point = lane(lens, i);
+    const float when = job_.has_motion ? job_.camera.time_of(y_[pixel[i]], lane(time, i)) : 0.0f;
     const Ray one =
-        center_ray(pixel[i], sample_pixel_filter(lane(filter, i)), lane(time, i), &cone);
+        pixel_ray(pixel[i], sample_pixel_filter(lane(filter, i)), when, &cone, &lens_point);
+    if (!sees(one)) set_lane(&active, i, false);
+    set_lane(&ray.time, i, one.time);
     set_lane(&ray.o, i, one.o);
     set_lane(&ray.d, i, one.d);
     set_lane(&width, i, cone.width);
@@ -157,7 +165,7 @@ void Tile::sample_lanes(int first, const SampleRange& range) {
 
 void Tile::store(int i, const Ray& ray) {
   RayCone cone;
-  center_ray(i, {}, 0, &cone);
+  center_ray(i, &cone);
   if (!center_found_[i]) {
     store_channels(job_.film, pixel_of(i), describe_sky(job_.camera, ray));
     return;

@@ -95,9 +95,13 @@ class Tile {
   template <class State, class Start, class Advance, class Finish>
   void sample(Wave<State>* wave, int index, const Start& start, const Advance& advance,
               const Finish& finish);
-  Ray center_ray(int i, Vec2f offset, float time, RayCone* cone) const {
+  Ray pixel_ray(int i, Vec2f offset, float time, RayCone* cone, const Vec2f* lens) const {
     return camera_ray(job_.camera, static_cast<float>(x_[i]) + 0.5f + offset.x,
-                      static_cast<float>(y_[i]) + 0.5f + offset.y, time, cone);
+                      static_cast<float>(y_[i]) + 0.5f + offset.y, time, cone, lens);
+  }
+  /// Of the exact channels.
+  Ray center_ray(int i, RayCone* cone) const {
+    return pixel_ray(i, {}, job_.has_motion ? job_.camera.time_of(y_[i], 0) : 0.0f, cone, nullptr);
   }
   void store(int i, const Ray& ray);
 
@@ -106,7 +110,7 @@ class Tile {
   uint64_t rays_ = 0;
   int x_[kTile * kTile], y_[kTile * kTile], index_[kTile * kTile], trace_list_[kTile * kTile];
   PixelMean mean_[kTile * kTile];
-  bool known_[kTile * kTile] = {}, center_found_[kTile * kTile] = {};
+  bool known_[kTile * kTile] = {}, center_found_[kTile * kTile] = {}, sees_[kTile * kTile];
   RayHit center_hit_[kTile * kTile];
 };
 

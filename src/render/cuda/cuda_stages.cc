@@ -53,7 +53,7 @@ class Card final : public CudaStages {
 
   std::vector<AmbientPath> trace_ambient(const CudaJob& job, int width, int height) override {
     DevicePicture picture = make_picture(job, width, height);
-    scene_.upload(job.view, job.bvh, job.bvh.tracer(job.scene), stream_, &picture);
+    scene_.upload(job.view, job.camera, job.bvh, job.bvh.tracer(job.scene), stream_, &picture);
     std::vector<AmbientPath> paths(size_t{1} << kLog2AmbientPaths);
     auto* device = ambient_.reserve_of<AmbientPath>(paths.size());
     cuda::launch_ambient(picture, device, stream_);
@@ -70,7 +70,7 @@ class Card final : public CudaStages {
     DevicePicture picture = make_picture(job, film->width, film->height);
     place_film(*film, &picture.film);
     start_.record(stream_);
-    scene_.upload(job.view, job.bvh, job.bvh.tracer(job.scene), stream_, &picture);
+    scene_.upload(job.view, job.camera, job.bvh, job.bvh.tracer(job.scene), stream_, &picture);
     uploaded_.record(stream_);
     check(cudaMemsetAsync(film_.data(), 0, film_bytes_, stream_),
           "the card's memory cannot be set");
@@ -116,7 +116,6 @@ class Card final : public CudaStages {
  private:
   static DevicePicture make_picture(const CudaJob& job, int width, int height) {
     DevicePicture picture;
-    picture.camera = job.camera;
     picture.path = job.path;
     picture.width = width;
     picture.height = height;
@@ -125,7 +124,7 @@ class Card final : public CudaStages {
     picture.log2_samples = job.log2_samples;
     picture.has_motion = job.has_motion;
     picture.centered = job.centered;
-    picture.plain = job.view.is_plain();
+    picture.plain = job.view.is_plain() && job.camera.is_plain();
     return picture;
   }
 
@@ -142,6 +141,7 @@ class Card final : public CudaStages {
     visit(film.center_normal, &device->center_normal);
     visit(film.center_albedo, &device->center_albedo);
     visit(film.motion, &device->motion);
+    visit(film.scene_flow, &device->scene_flow);
   }
 
   void place_film(const Film& film, DeviceFilm* device) {

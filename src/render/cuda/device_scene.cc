@@ -50,20 +50,24 @@ MeshView DeviceScene::keep_mesh(const MeshView& mesh, bool deforms, Parcel* parc
   out.uvs = keep(mesh.uvs);
   out.area_cdf = deforms ? parcel->put(mesh.area_cdf) : keep(mesh.area_cdf);
   out.positions = deforms ? parcel->put(mesh.positions) : keep(mesh.positions);
-  out.positions_close = parcel->put(mesh.positions_close);
+  out.position_keys = parcel->put(mesh.position_keys);
   out.positions_previous = parcel->put(mesh.positions_previous);
   out.corner_normals = deforms ? parcel->put(mesh.corner_normals) : keep(mesh.corner_normals);
   return out;
 }
 
-void DeviceScene::fill(const SceneView& scene, const BvhScene& bvh, const BvhTracer& tracer,
-                       Parcel* parcel, DevicePicture* picture) {
+void DeviceScene::fill(const SceneView& scene, const CameraView32& camera, const BvhScene& bvh,
+                       const BvhTracer& tracer, Parcel* parcel, DevicePicture* picture) {
   SceneView& out = picture->scene;
   out = scene;
+  picture->camera = camera;
+  picture->camera.pose.keys = parcel->put(camera.pose.keys);
   std::vector<bool> deforms(scene.meshes.size);
-  for (uint32_t i = 0; i < scene.instances.size; ++i) {
-    const InstanceView& instance = scene.instances[i];
+  std::vector<InstanceView> instances(scene.instances.data,
+                                      scene.instances.data + scene.instances.size);
+  for (InstanceView& instance : instances) {
     if (instance.shape == ShapeType::kDeformable) deforms[instance.mesh] = true;
+    if (instance.moving) instance.keys = parcel->put(instance.keys);
   }
   std::vector<MeshView> meshes;
   for (uint32_t i = 0; i < scene.meshes.size; ++i) {
@@ -77,11 +81,12 @@ void DeviceScene::fill(const SceneView& scene, const BvhScene& bvh, const BvhTra
     volume.cells = keep(volume.cells);
     volumes.push_back(volume);
   }
-  out.instances = parcel->put(scene.instances);
+  out.instances = parcel->put(instances);
   out.meshes = parcel->put(meshes);
   out.materials = parcel->put(scene.materials);
   out.layers = parcel->put(scene.layers);
   out.lights = parcel->put(scene.lights);
+  out.light_keys = parcel->put(scene.light_keys);
   out.light_tree.nodes = parcel->put(scene.light_tree.nodes);
   out.light_tree.leaf_of = parcel->put(scene.light_tree.leaf_of);
   out.media.volumes = parcel->put(volumes);
@@ -98,7 +103,8 @@ void DeviceScene::fill(const SceneView& scene, const BvhScene& bvh, const BvhTra
   }
   out.guide.surface_row = keep(scene.guide.surface_row);
   out.guide.visible = keep(scene.guide.visible);
-  out.guide.sky = keep(scene.guide.sky);
+  out.guide.sky_visible = keep(scene.guide.sky_visible);
+  out.guide.arriving = keep(scene.guide.arriving);
   out.environment.texels = keep(scene.environment.texels);
   out.environment.levels = keep(scene.environment.levels);
   out.environment.row_cdf = keep(scene.environment.row_cdf);
@@ -107,6 +113,7 @@ void DeviceScene::fill(const SceneView& scene, const BvhScene& bvh, const BvhTra
   BvhTracer& device = picture->tracer;
   device.bvh.instances = parcel->put(bvh.instances()).data;
   device.bvh.motion = parcel->put(bvh.motion()).data;
+  device.bvh.key_count = tracer.bvh.key_count;
   device.bvh.root = tracer.bvh.root;
   device.scanned.planes = parcel->put(tracer.scanned.planes);
   device.scanned.solids = parcel->put(tracer.scanned.solids);
@@ -128,13 +135,13 @@ void DeviceScene::upload_trees(const BvhScene& bvh, Stream stream) {
   copy(bvh.triangles(), bvh.fresh_triangles(), &triangles_);
 }
 
-void DeviceScene::upload(const SceneView& scene, const BvhScene& bvh, const BvhTracer& tracer,
-                         Stream stream, DevicePicture* picture) {
+void DeviceScene::upload(const SceneView& scene, const CameraView32& camera, const BvhScene& bvh,
+                         const BvhTracer& tracer, Stream stream, DevicePicture* picture) {
   Parcel parcel;
-  fill(scene, bvh, tracer, &parcel, picture);
+  fill(scene, camera, bvh, tracer, &parcel, picture);
   const size_t bytes = parcel.used;
   parcel = {staging_.reserve(bytes), static_cast<char*>(parcel_.reserve(bytes)), 0};
-  fill(scene, bvh, tracer, &parcel, picture);
+  fill(scene, camera, bvh, tracer, &parcel, picture);
   check(cudaMemcpyAsync(parcel.device, parcel.host, bytes, cudaMemcpyHostToDevice, stream),
         "the scene cannot be copied to the card");
   upload_trees(bvh, stream);

@@ -15,10 +15,10 @@ class DeviceScene {
  public:
   /// The host's tables of meshes have been made anew: forgets what it knows of them.
   void forget() { kept_.clear(); }
-  /// Sets the pointers of picture->scene and picture->tracer. The copy has been made when the
-  /// stream has come so far; until then the tables must stay as they are.
-  void upload(const SceneView& scene, const BvhScene& bvh, const BvhTracer& tracer, Stream stream,
-              DevicePicture* picture);
+  /// Sets the pointers of picture->scene, picture->camera and picture->tracer. The copy has been
+  /// made when the stream has come so far; until then the tables must stay as they are.
+  void upload(const SceneView& scene, const CameraView32& camera, const BvhScene& bvh,
+              const BvhTracer& tracer, Stream stream, DevicePicture* picture);
 
  private:
   struct Kept {
@@ -41,8 +41,8 @@ class DeviceScene {
   DeviceSpan<const T> keep(DeviceSpan<const T> span);
   const void* keep(const void* data, size_t bytes);
   MeshView keep_mesh(const MeshView& mesh, bool deforms, Parcel* parcel);
-  void fill(const SceneView& scene, const BvhScene& bvh, const BvhTracer& tracer, Parcel* parcel,
-            DevicePicture* picture);
+  void fill(const SceneView& scene, const CameraView32& camera, const BvhScene& bvh,
+            const BvhTracer& tracer, Parcel* parcel, DevicePicture* picture);
   void upload_trees(const BvhScene& bvh, Stream stream);
 
   std::map<const void*, Kept> kept_;  ///< by the host's address

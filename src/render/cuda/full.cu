@@ -1,5 +1,4 @@
 // The kernels of any scene, and the choice between them and the plain ones.
-#define GLOAM_CUDA_BLOCKS 4  // 128 registers a thread: so much shading spills anyway
 #include "render/cuda/kernels.cuh"
 
 namespace gloam::cuda {

@@ -7,7 +7,7 @@
 #include "render/kernel/pixel_mean.h"
 
 #ifndef GLOAM_CUDA_BLOCKS
-#define GLOAM_CUDA_BLOCKS 8  // of 128 threads on a multiprocessor: 64 registers a thread
+#define GLOAM_CUDA_BLOCKS 4  // of 128 threads on a multiprocessor: 128 registers a thread
 #endif
 
 namespace gloam::cuda {
@@ -50,14 +50,15 @@ __device__ __forceinline__ Ray sample_ray(const DevicePicture& p, const Place& a
   *sampler =
       Sampler::make(p.seed, p.frame, static_cast<uint32_t>(at.x), static_cast<uint32_t>(at.y),
                     static_cast<uint32_t>(sample), p.log2_samples);
-  Vec2f offset;
+  Vec2f offset, lens;
   float time = 0;
   if (!centered) {
     offset = sample_pixel_filter(sampler->next_2d());
-    if (p.has_motion) time = sampler->next_1d();
+    if (p.has_motion) time = p.camera.time_of(at.y, sampler->next_1d());
+    if (p.camera.has_aperture()) lens = sampler->next_2d();
   }
   return camera_ray(p.camera, static_cast<float>(at.x) + 0.5f + offset.x,
-                    static_cast<float>(at.y) + 0.5f + offset.y, time, cone);
+                    static_cast<float>(at.y) + 0.5f + offset.y, time, cone, &lens);
 }
 
 /// The mean of this launch into the film, after that of earlier ones.
@@ -87,6 +88,7 @@ __device__ __forceinline__ void store_channels(const DeviceFilm& film, size_t pi
   film.center_normal[pixel] = c.normal;
   film.center_albedo[pixel] = c.albedo;
   film.motion[pixel] = c.motion;
+  film.scene_flow[pixel] = c.scene_flow;
 }
 
 /// Each warp has a tile's pixels and a share of their samples; the warps of a tile meet in shared
@@ -108,6 +110,10 @@ __global__ void __launch_bounds__(kBlock, GLOAM_CUDA_BLOCKS)
         RayCone cone;
         Sampler sampler;
         const Ray ray = sample_ray(p, at, p.first_sample + next++, false, &cone, &sampler);
+        if (!sees(ray)) {
+          mean.add({});
+          continue;
+        }
         path.start(ray, cone, sampler);
       }
       RayHit hit;
@@ -147,7 +153,7 @@ __global__ void __launch_bounds__(kBlock, GLOAM_CUDA_BLOCKS)
       do {
         found = p.tracer.trace(state.ray, state.any, &hit);
       } while (direct_advance(scene, &state, found, hit));
-      mean.add(state.result);
+      mean.add(sees(ray) ? state.result : PathResult{});
       rays += state.result.rays;
       if (!p.centered || p.film.part == nullptr) continue;
       const bool known = state.layers == 0 || (state.layers == 1 && state.has_first);
@@ -177,8 +183,9 @@ __global__ void __launch_bounds__(kBlock, GLOAM_CUDA_BLOCKS)
   const size_t pixel = at.pixel(p.width);
   if (at.inside && (!unknown_alone || p.film.part[pixel] == kUnknownPart)) {
     RayCone cone;
+    const float time = p.has_motion ? p.camera.time_of(at.y, 0) : 0.0f;
     const Ray ray = camera_ray(p.camera, static_cast<float>(at.x) + 0.5f,
-                               static_cast<float>(at.y) + 0.5f, 0, &cone);
+                               static_cast<float>(at.y) + 0.5f, time, &cone);
     Surface s;
     RayHit hit;
     const bool found = find_first(scene, p.tracer, ray, cone, &s, &hit, &rays);

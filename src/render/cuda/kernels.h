@@ -21,6 +21,7 @@ struct DeviceFilm {
   Vec3f* center_normal = nullptr;
   Vec3f* center_albedo = nullptr;
   Vec2f* motion = nullptr;
+  Vec3f* scene_flow = nullptr;
   unsigned long long* rays = nullptr;  ///< one number: traced so far
 };
 
@@ -40,7 +41,7 @@ struct DevicePicture {
   bool last = true;                   ///< launch: the film is finished
   bool has_motion = false;            ///< something moves while the shutter is open
   bool centered = false;  ///< direct stage: its sample answers for the exact channels too
-  bool plain = false;     ///< SceneView::is_plain(), here
+  bool plain = false;     ///< as SceneView::is_plain() and CameraView32::is_plain() say
 };
 
 /// What the direct stage leaves in `part` where the exact channels need rays of their own.

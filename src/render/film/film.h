@@ -5,8 +5,14 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "gloam/camera.h"
 
 namespace gloam {
+
+/// What a picture has of one object, and would have if nothing stood in front.
+struct ObjectCover {
+  PixelBox seen, all;
+};
 
 struct Film {
   int width = 0, height = 0;
@@ -18,12 +24,16 @@ struct Film {
   std::vector<Vec3f> albedo;  ///< 0..1; sky: 0
   std::vector<Vec3f> normal;  ///< shading normal, world; sky: 0
   // Exact channels: of the ray through the pixel's centre, never averaged.
-  std::vector<float> depth;          ///< along the optical axis [m]; +inf = nothing
+  std::vector<float>
+      depth;  ///< along the optical axis, of wide lenses the distance [m]; +inf = nothing
   std::vector<float> distance;       ///< along the ray [m]; +inf = nothing
   std::vector<uint32_t> part;        ///< instance index + 1; 0 = nothing
   std::vector<Vec3f> center_normal;  ///< geometric-shading normal at the centre, world; 0 = nothing
   std::vector<Vec3f> center_albedo;
-  std::vector<Vec2f> motion;  ///< from the previous to this instant [px]
+  std::vector<Vec2f> motion;      ///< from the previous to this instant [px]
+  std::vector<Vec3f> scene_flow;  ///< of the point that is seen, in that time, world [m]
+
+  std::vector<ObjectCover> cover;  ///< by object id, if asked for
 
   size_t pixel_count() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
 };

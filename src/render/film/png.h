@@ -20,4 +20,7 @@ std::vector<uint8_t> encode_png16(int width, int height, std::span<const uint16_
 /// 0 = nothing hit, or outside of what 16 bits hold (below 0.5 mm, from 65.5355 m).
 std::vector<uint16_t> depth_to_millimetres(std::span<const float> depth);
 
+/// Temperatures [K] as most thermal cameras put them out: hundredths of a kelvin, 0 … 655.35 K.
+std::vector<uint16_t> to_centikelvins(std::span<const float> temperature);
+
 }  // namespace gloam

@@ -54,8 +54,8 @@ void tone_map(const std::vector<Vec3f>& radiance, int width, int height,
       for (int x = 0; x < width; ++x) {
         const size_t i = static_cast<size_t>(y) * static_cast<size_t>(width) + x;
         const Vec3f light = radiance[i] * scale;
-        const Vec3f color =
-            tone_curve_neutral({sanitize(light.x), sanitize(light.y), sanitize(light.z)});
+        Vec3f color{sanitize(light.x), sanitize(light.y), sanitize(light.z)};
+        if (settings.neutral) color = tone_curve_neutral(color);
         const float threshold = settings.dither ? gradient_noise(x, y) : 0.5f;
         for (int c = 0; c < 3; ++c) {
           const float level = 255 * srgb_encode(clamp(color[c], 0, 1)) + threshold;

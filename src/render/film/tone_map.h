@@ -23,6 +23,7 @@ float srgb_decode(float encoded);
 
 struct ToneMapSettings {
   float ev100 = 0;
+  bool neutral = true;  ///< false: no tone curve, what is above the top of the scale is cut
   bool dither = true;  ///< spreads the rounding error so that smooth gradients show no bands
 };
 

@@ -131,8 +131,10 @@ GLOAM_HD Vec3Of<F> eval_bsdf(const BsdfOf<F>& bsdf, Vec3Of<F> wo, Vec3Of<F> wi, 
   return select<F>(above, value, Vec3Of<F>{});
 }
 
+/// The lanes of `given` take the direction `wi` instead of one by `pick` and `u`.
 template <class F>
-GLOAM_HD BsdfSampleOf<F> sample_bsdf(const BsdfOf<F>& bsdf, Vec3Of<F> wo, F pick, Vec2Of<F> u) {
+GLOAM_HD BsdfSampleOf<F> sample_bsdf(const BsdfOf<F>& bsdf, Vec3Of<F> wo, F pick, Vec2Of<F> u,
+                                     MaskOf<F> given = false, Vec3Of<F> wi = {}) {
   BsdfSampleOf<F> sample;
   const MaskOf<F> layer = pick < bsdf.p_layer;
   sample.wi = sample_cosine_hemisphere(u);
@@ -140,6 +142,7 @@ GLOAM_HD BsdfSampleOf<F> sample_bsdf(const BsdfOf<F>& bsdf, Vec3Of<F> wo, F pick
     const Vec3Of<F> h = ggx::sample_half(bsdf.alpha, wo, u);
     sample.wi = select<F>(layer, mirror(wo, h), sample.wi);
   }
+  sample.wi = select<F>(given, wi, sample.wi);
   const Vec3Of<F> value = eval_bsdf(bsdf, wo, sample.wi, &sample.pdf);
   const MaskOf<F> valid = sample.pdf > 1e-12f;
   sample.weight = select<F>(valid, value / sample.pdf, Vec3Of<F>{});

@@ -55,20 +55,12 @@ struct BvhTracer {
   GLOAM_HD Vec3f normal_of(const BvhHit& hit, float time) const {
     const BvhInstance& in = bvh.instances[hit.instance];
     if (in.root == bvh::kNothing) return {};
-    const BvhTriangle* triangle = bvh.triangles + hit.triangle;
-    Vec3f a = triangle->a, b = triangle->b, c = triangle->c;
+    const bvh::Corners at = bvh::corners_at(bvh, in, bvh.triangles + hit.triangle, time);
+    const Vec3f n = cross(at.b - at.a, at.c - at.a);
     const InstanceView& instance = scanned.instances[in.id];
-    if (instance.shape == ShapeType::kDeformable) {
-      if (in.close_key != 0 && time > 0) {
-        const BvhTriangle* close = triangle + in.close_key;
-        a = lerp(a, close->a, time);
-        b = lerp(b, close->b, time);
-        c = lerp(c, close->c, time);
-      }
-      return cross(b - a, c - a);
-    }
+    if (instance.shape == ShapeType::kDeformable) return n;
     Affine3f between;
-    return transform_vector(pose_at(instance, time, &between), cross(b - a, c - a));
+    return transform_vector(pose_at(instance, time, &between), n);
   }
 };
 

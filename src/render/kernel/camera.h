@@ -1,28 +1,96 @@
 #pragma once
-// Pinhole and orthographic cameras. C looks along -Z with +Y up. Device-safe.
+// Cameras: pixels to rays and points to pixels. C looks along -Z with +Y up. Device-safe.
 
+#include "geometry/lens.h"
 #include "render/kernel/surface.h"
 
 namespace gloam {
 
+/// A camera's pose at one instant; the rotation as a unit quaternion wxyz.
+struct CameraKey {
+  Vec3f p;
+  float q[4] = {1, 0, 0, 0};
+};
+
 struct CameraPose {
-  Affine3f X_WC_open, X_WC_close, X_WC_previous;
-  bool moving = false;
+  Affine3f X_WC_open;                ///< at time 0
+  Affine3f X_WC_previous;            ///< at the frame before
+  DeviceSpan<const CameraKey> keys;  ///< evenly over times 0 … 1; empty = it stands still
+};
+
+/// When the rows of a picture are exposed, in times of the scene's keys, 0 … 1.
+struct Shutter {
+  float open = 0;    ///< of the first row
+  float length = 1;  ///< of every row's exposure
+  float row = 0;     ///< delay from a row to the next: above 0 a rolling shutter
+};
+
+/// The opening of a thin lens.
+struct Aperture {
+  float radius = 0;  ///< [m]; 0 = all is sharp
+  float focus = 1;   ///< distance of what is sharp [m]: along the axis, of wide lenses along rays
 };
 
 struct CameraView32 {
   float fx = 1, fy = 1, cx = 0, cy = 0;  ///< [px]; orthographic: [px/m]
   bool orthographic = false;
   CameraPose pose;
+  LensOf<float> lens;
+  Shutter shutter;
+  Aperture aperture;
+
+  GLOAM_HD bool is_plain() const {
+    return lens.model == LensModel::kPinhole && !(aperture.radius > 0);
+  }
+  GLOAM_HD bool is_pinhole() const { return kPlainScenes || lens.model == LensModel::kPinhole; }
+  GLOAM_HD bool has_aperture() const { return !kPlainScenes && aperture.radius > 0; }
+  /// The time of row `y` when a share `u` of its exposure has passed.
+  GLOAM_HD float time_of(int y, float u) const {
+    return min(shutter.open + shutter.row * static_cast<float>(y) + shutter.length * u, 1.0f);
+  }
 };
 
-GLOAM_HD Affine3f camera_pose_at(const CameraPose& pose, float time) {
-  if (!pose.moving || time == 0) return pose.X_WC_open;
-  return lerp(pose.X_WC_open, pose.X_WC_close, time);
+/// The rotation that a unit quaternion wxyz makes, about the point p.
+GLOAM_HD Affine3f pose_of(const float* q, Vec3f p) {
+  const float w = q[0], x = q[1], y = q[2], z = q[3];
+  return {{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)},
+          {2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)},
+          {2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)},
+          p};
 }
 
-/// Ray through the point (u, v) [px] of the picture, and its footprint.
-GLOAM_HD Ray camera_ray(const CameraView32& camera, float u, float v, float time, RayCone* cone) {
+/// Between two keys, which are close: positions evenly, rotations by the mean of their quaternions
+/// made unit, so that the camera stays rigid.
+GLOAM_HD Affine3f camera_pose_at(const CameraPose& pose, float time) {
+  if (pose.keys.empty() || time == 0) return pose.X_WC_open;
+  float share;
+  const uint32_t key = key_before(pose.keys.size, time, &share);
+  const CameraKey &a = pose.keys[key], &b = pose.keys[key + 1];
+  float inner = 0, square = 0, q[4];
+  for (int i = 0; i < 4; ++i) inner += a.q[i] * b.q[i];
+  for (int i = 0; i < 4; ++i) {
+    q[i] = lerp(a.q[i], inner < 0 ? -b.q[i] : b.q[i], share);
+    square += q[i] * q[i];
+  }
+  const float scale = 1.0f / sqrtf(square);
+  for (float& value : q) value *= scale;
+  return pose_of(q, lerp(a.p, b.p, share));
+}
+
+/// Whether the ray of a pixel sees anything: some lenses leave parts of the picture black. Rays of
+/// such pixels end where they start.
+GLOAM_HD bool sees(const Ray& ray) { return ray.tmax > 0; }
+
+/// The point (x, y) of the plane across the unit vector d.
+GLOAM_HD Vec3f across(Vec3f d, float x, float y) {
+  const Frame frame = Frame::from_z(d);
+  return frame.x * x + frame.y * y;
+}
+
+/// Ray through the point (u, v) [px] of the picture, and its footprint. `lens`: a point of the unit
+/// square that picks one of the aperture's; the middle of the aperture when there is none.
+GLOAM_HD Ray camera_ray(const CameraView32& camera, float u, float v, float time, RayCone* cone,
+                        const Vec2f* lens = nullptr) {
   const Affine3f X_WC = camera_pose_at(camera.pose, time);
   const float x = (u - camera.cx) / camera.fx, y = (camera.cy - v) / camera.fy;
   Ray ray;
@@ -31,17 +99,47 @@ GLOAM_HD Ray camera_ray(const CameraView32& camera, float u, float v, float time
     ray.o = transform_point(X_WC, {x, y, 0});
     ray.d = normalize(-X_WC.z);
     *cone = {1.0f / camera.fx, 0.0f};
-  } else {
-    ray.o = X_WC.p;
-    ray.d = normalize(transform_vector(X_WC, {x, y, -1.0f}));
-    *cone = {0.0f, 1.0f / (camera.fx * sqrtf(1.0f + x * x + y * y))};
+    return ray;
   }
+  ray.o = X_WC.p;
+  Vec3f d_C{x, y, -1.0f};
+  if (camera.is_pinhole()) {
+    ray.d = normalize(transform_vector(X_WC, d_C));
+    *cone = {0.0f, 1.0f / (camera.fx * sqrtf(1.0f + x * x + y * y))};
+  } else {
+    float X, Y, Z, angle;
+    if (!lens_unproject(camera.lens, x, -y, &X, &Y, &Z, &angle)) {
+      ray.d = normalize(-X_WC.z);
+      ray.tmax = 0;
+      *cone = {};
+      return ray;
+    }
+    d_C = {X, -Y, -Z};
+    ray.d = normalize(transform_vector(X_WC, d_C));
+    *cone = {0.0f, angle / sqrtf(camera.fx * camera.fy)};
+  }
+  if (lens == nullptr || !camera.has_aperture()) return ray;
+  float sine, cosine;
+  sincos_turn(lens->y, &sine, &cosine);
+  const float r = camera.aperture.radius * sqrtf(lens->x);
+  const bool wide = is_wide(camera.lens.model);
+  const Vec3f o_C =
+      wide ? across(normalize(d_C), r * cosine, r * sine) : Vec3f{r * cosine, r * sine, 0.0f};
+  const Vec3f sharp_C = d_C * (wide ? camera.aperture.focus : -camera.aperture.focus / d_C.z);
+  ray.o = transform_point(X_WC, o_C);
+  ray.d = normalize(transform_vector(X_WC, sharp_C - o_C));
   return ray;
 }
 
-/// Where the point p_W appears [px]; false behind the camera.
+/// Where the point p_W appears [px]; false where the camera does not see it.
 GLOAM_HD bool project(const CameraView32& camera, const Affine3f& X_WC, Vec3f p_W, Vec2f* uv) {
   const Vec3f p = transform_point(inverse(X_WC), p_W);
+  if (!camera.orthographic && !camera.is_pinhole()) {
+    float x, y;
+    if (!lens_project(camera.lens, p.x, -p.y, -p.z, &x, &y)) return false;
+    *uv = {camera.cx + camera.fx * x, camera.cy + camera.fy * y};
+    return true;
+  }
   if (!camera.orthographic && p.z > -1e-9f) return false;
   const float s = camera.orthographic ? 1.0f : -1.0f / p.z;
   *uv = {camera.cx + camera.fx * p.x * s, camera.cy - camera.fy * p.y * s};

@@ -25,12 +25,14 @@ struct FastSampleOf {
   Vec3Of<F> base;     ///< [cd/m²], without noise
   Vec3Of<F> through;  ///< share of the first solid surface's light that gets to the camera
   MaskOf<F> solid = false;
-  SurfaceOf<F> surface;  ///< that surface
-  RayHitOf<F> hit;       ///< t: distance from the camera
-  Vec3Of<F> albedo;      ///< diffuse
-  Vec3Of<F> gloss;       ///< directional albedo of what reflects the cache's light
-  Vec3Of<F> direct;      ///< diffuse light of lamps over `albedo` [cd/m²]
-  Vec3Of<F> specular;    ///< [cd/m²]
+  RayHitOf<F> hit;      ///< of that surface; t: distance from the camera
+  Vec3Of<F> p, normal;  ///< where it is, world [m], and its shading normal
+  F roughness = 0.0f;
+  Vec3Of<F> albedo;    ///< diffuse
+  Vec3Of<F> gloss;     ///< directional albedo of what reflects the cache's light
+  Vec3Of<F> direct;    ///< diffuse light of lamps over `albedo` [cd/m²]
+  Vec3Of<F> specular;  ///< [cd/m²]
+  F near = 0.0f;       ///< 1 where one direction meets something less than a cell's edge away
   UintOf<F> rays = 0u;
 };
 
@@ -49,33 +51,39 @@ GLOAM_HD Vec3Of<F> diffuse_albedo(const LayeredBsdfOf<F>& b) {
   return select<F>(b.layered, b.base.diffuse * b.under, b.base.diffuse);
 }
 
-/// Light that the cache has for surfaces, and the cells that should be there.
+/// The cells of surfaces; asks for them if `requests` is there.
+template <class F>
+GLOAM_HD CacheCellOf<F> ask_cells(const IrradianceCacheView& cache, const SurfaceOf<F>& v,
+                                  MaskOf<F> active, Vec3Of<F> jitter, uint32_t coarser,
+                                  CacheRequest* requests) {
+  const CacheCellOf<F> cells = cache_cell<F>(cache, v.p, v.normal, jitter, coarser);
+  if (requests == nullptr) return cells;
+  const Vec3Of<F> start = leave_surface(v.p, v.geometric, v.geometric, v.t);
+  each_lane(active,
+            [&](int i) { requests[i] = {cache_key(cells, i), lane(start, i), lane(v.normal, i)}; });
+  return cells;
+}
+
+/// What the cache holds for them. Until a cell is there, the one about the point itself or a larger
+/// one stands for it,
+/// or the mean of all.
 template <class F>
 GLOAM_HD Vec3Of<F> cached_light(const IrradianceCacheView& cache, const SurfaceOf<F>& v,
-                                MaskOf<F> active, Vec2Of<F> u, F w, int coarser,
-                                CacheRequest* requests) {
+                                const CacheCellOf<F>& cells, MaskOf<F> active, uint32_t coarser) {
   Vec3Of<F> light;
   each_lane(active, [&](int i) {
-    const Vec3f p = lane(v.p, i), n = lane(v.normal, i);
-    // Light that goes on is a mean over many lookups anyway: there, blurring would only leak.
-    const Vec3f jitter =
-        coarser > 0 ? Vec3f{0.5f, 0.5f, 0.0f} : Vec3f{lane(u.x, i), lane(u.y, i), lane(w, i)};
-    const uint64_t key = cache_key(cache, p, n, jitter, coarser);
-    if (requests != nullptr)
-      requests[i] = {key,
-                     leave_surface(p, lane(v.geometric, i), lane(v.geometric, i), lane(v.t, i)), n};
-    int cell = find_cell(cache, key);
-    // Until a cell is there, the one about the point itself or a larger one stands for it.
-    for (int more = 0; cell < 0 && more < 3; ++more) {
-      cell = find_cell(cache, cache_key(cache, p, n, {0.5f, 0.5f, 0.0f}, coarser + more));
+    int cell = find_cell(cache, cache_key(cells, i));
+    for (uint32_t more = 0; cell < 0 && more < 3; ++more) {
+      cell = find_cell(cache, cache_key(cache, lane(v.p, i), lane(v.normal, i), {0.5f, 0.5f, 0.0f},
+                                        coarser + more));
     }
-    if (cell >= 0) set_lane(&light, i, cache.light[static_cast<uint32_t>(cell)]);
+    set_lane(&light, i, cell >= 0 ? cache.light[static_cast<uint32_t>(cell)].all : cache.mean);
   });
   return light;
 }
 
 /// Direct light of one lamp sample at the vertices: diffuse over albedo, and the rest. `traced`:
-/// lanes whose specular ray may find the lamp too.
+/// lanes whose specular ray may find the lamp too, if it has an extent.
 template <class F, class Tracer>
 GLOAM_HD void add_light(const SceneView& scene, const Tracer& tracer, paths::State<F>* path,
                         const SurfaceOf<F>& v, const LayeredBsdfOf<F>& shiny,
@@ -87,9 +95,7 @@ GLOAM_HD void add_light(const SceneView& scene, const Tracer& tracer, paths::Sta
   lit = lit & (wi.z > 0.0f);
   F pdf;
   const Vec3Of<F> f = eval_bsdf(shiny, wo, wi, &pdf);
-  // Lamps without a surface are met by no ray here.
-  const MaskOf<F> hittable = traced & (length_squared(light.lift) > 0.0f);
-  const F weight = select(hittable, mis_weight(light.pdf, pdf), F(1.0f));
+  const F weight = select(traced & !light.is_delta, mis_weight(light.pdf, pdf), F(1.0f));
   RayOf<F> shadow = path->ray;
   aim_shadow_ray(v.p, v.geometric, v.t, light, &shadow);
   const Vec3Of<F> arriving = paths::bring_light(scene, tracer, shadow, light.casts_shadow, lit,
@@ -121,11 +127,18 @@ GLOAM_HD void direct_light(const SceneView& scene, const Tracer& tracer, paths::
       light.pdf = select(near, light.pdf, F(0.0f));
     } else {
       const F pick = (first + static_cast<float>(k)) * (1.0f / static_cast<float>(drawn));
-      light = path->picker.sample(scene, v.p, pick, u, path->ray.time, path->cone_spread, active);
+      light = path->picker.sample(scene, v.p, pick, u, path->ray.time, active);
       light.pdf *= static_cast<float>(drawn);
     }
     add_light(scene, tracer, path, v, shiny, frame, wo, traced, active, light, diffuse, specular);
   }
+}
+
+/// Probability with which direct_light() takes the light of a row.
+template <class F>
+GLOAM_HD float chance_of(const SceneView& scene, const paths::State<F>& path, uint32_t row,
+                         bool every, uint32_t drawn, int i) {
+  return every ? 1.0f : static_cast<float>(drawn) * path.picker.probability(scene, row, i);
 }
 
 /// Density with which direct_light() finds the point of an emitter that path->ray has hit.
@@ -136,9 +149,8 @@ GLOAM_HD F emitter_pdf(const SceneView& scene, const paths::State<F>& path, cons
   each_lane(active, [&](int i) {
     const InstanceView& instance = scene.instances[lane(s.instance, i)];
     if (instance.light < 0) return;
-    const auto row = static_cast<uint32_t>(instance.light);
     const float chance =
-        every ? 1.0f : static_cast<float>(drawn) * path.picker.probability(scene, row, i);
+        chance_of(scene, path, static_cast<uint32_t>(instance.light), every, drawn, i);
     set_lane(&pdf, i,
              chance * lights::instance_pdf(scene, instance, lane(path.from, i), lane(s.p, i),
                                            lane(s.geometric, i), lane(path.ray.time, i)));
@@ -146,21 +158,125 @@ GLOAM_HD F emitter_pdf(const SceneView& scene, const paths::State<F>& path, cons
   return pdf;
 }
 
-/// Light along path->ray in the `active` lanes, from its first surface that is no glass or mirror.
-/// What lamps themselves send counts by `lamps`: not at all where that is none of the path's
-/// business, or weighed against direct_light() by path->pdf_bsdf.
+/// Light of one lamp sample that media at p_W scatter against the direction of the ray
+/// [cd/m² per m].
+template <class Tracer>
+GLOAM_HD Vec3f scattered_light(const SceneView& scene, const Tracer& tracer, const Ray& ray,
+                               const MediumPoint& point, Vec3f p_W, WalkRandom* random,
+                               uint32_t* rays) {
+  LightPicker picker;
+  picker.prepare(scene, p_W, Vec3f{});
+  const float pick = random->next();
+  const Vec2f u{random->next(), random->next()};
+  const LightSample light = picker.sample(scene, p_W, pick, u, ray.time);
+  if (!(light.pdf > 0) || !(max_component(point.scattering) > 0)) return {};
+  Ray shadow = ray;
+  aim_shadow_ray(p_W, Vec3f{}, 0.0f, light, &shadow);
+  Vec3f share{1, 1, 1};
+  if (light.casts_shadow) share = paths::transmit(scene, tracer, shadow, true, rays);
+  if (!(max_component(share) > 0)) return {};
+  share *= transmittance(scene.media, shadow, shadow.tmax, {}, *random);
+  const float cosine = dot(ray.d, light.wi);
+  const auto phase = [&](float scattering, float g_scattering) {
+    const float g = scattering > 0 ? g_scattering / scattering : 0.0f;
+    return scattering * henyey_greenstein(g, cosine);
+  };
+  const Vec3f s = point.scattering, g = point.g_scattering;
+  return Vec3f{phase(s.x, g.x), phase(s.y, g.y), phase(s.z, g.z)} * share * light.radiance /
+         light.pdf;
+}
+
+/// What media along path->ray up to `tmax` do to light: scatter once and give off, and let through.
+template <class F>
+struct MediaLightOf {
+  Vec3Of<F> radiance, through;
+};
 template <class F, class Tracer>
-GLOAM_HD Vec3Of<F> gather(const SceneView& scene, const Tracer& tracer,
-                          const IrradianceCacheView& cache, bool count_lamps, MaskOf<F> active,
-                          paths::State<F>* path, CacheRequest* requests) {
+GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& tracer, F tmax,
+                                     MaskOf<F> active, int steps, paths::State<F>* path) {
+  MediaLightOf<F> out{{}, in_all_lanes<F>({1, 1, 1})};
+  if (scene.media.volumes.empty()) return out;
+  const Vec2Of<F> u = path->sampler.next_2d(active);
+  each_lane(active, [&](int i) {
+    WalkRandom random(lane(u, i));
+    const Ray ray = lane(path->ray, i);
+    uint32_t rays = 0;
+    const MarchResult m = march(
+        scene.media, ray, lane(tmax, i), 0.0f, steps, {}, [&](const MediumPoint& point, Vec3f p_W) {
+          return scattered_light(scene, tracer, ray, point, p_W, &random, &rays);
+        });
+    set_lane(&path->result.rays, i, lane(path->result.rays, i) + rays);
+    set_lane(&out.radiance, i, m.radiance);
+    set_lane(&out.through, i, m.transmittance);
+  });
+  return out;
+}
+
+/// Light of lamps' spheres and of suns that path->ray meets before `tmax`, weighed against
+/// direct_light() at path->from.
+template <class F>
+GLOAM_HD Vec3Of<F> lamps_met(const SceneView& scene, const paths::State<F>& path, F tmax,
+                             MaskOf<F> active) {
+  const auto clear = [](int, float) { return Vec3f{1, 1, 1}; };
+  Vec3Of<F> sum;
+  if (scene.lights.size <= kMaxFastLights) {
+    for (uint32_t i = 0; i < scene.lights.size; ++i) {
+      sum += visible_light(
+          scene, i, path.ray, tmax, path.from, path.pdf_bsdf, active, [] { return F(1.0f); },
+          clear);
+    }
+    return sum;
+  }
+  each_lane(active, [&](int at) {
+    const Ray ray = lane(path.ray, at);
+    const float most = lane(tmax, at);
+    Vec3f light;
+    light_tree::each_shown(scene.light_tree, ray, most, [&](uint32_t i) {
+      light += visible_light<float>(
+          scene, i, ray, most, lane(path.from, at), lane(path.pdf_bsdf, at), true,
+          [&] { return chance_of(scene, path, i, false, kDrawnLights, at); }, clear);
+    });
+    set_lane(&sum, at, light);
+  });
+  return sum;
+}
+
+/// What a ray brings.
+template <class F>
+struct GatheredOf {
+  Vec3Of<F> light;    ///< [cd/m²]
+  Vec3Of<F> caustic;  ///< of lamps in mirrors and glass, where count_lamps is false
+  F way = 1e30f;      ///< to the first surface [m]
+};
+
+/// Light along path->ray in the `active` lanes, from its first surface that is no glass or mirror.
+/// What lamps themselves send is weighed against direct_light() by path->pdf_bsdf if `count_lamps`;
+/// if not, it is none of the path's business.
+template <class F, class Tracer>
+GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
+                              const IrradianceCacheView& cache, bool count_lamps, MaskOf<F> active,
+                              paths::State<F>* path, CacheRequest* requests) {
   constexpr int kMaxEvents = 5;  // in and out of two glasses
-  Vec3Of<F> sum, throughput = in_all_lanes<F>({1, 1, 1});
+  GatheredOf<F> out;
+  Vec3Of<F>&sum = out.light, throughput = in_all_lanes<F>({1, 1, 1});
   const bool every = scene.lights.size <= kMaxFastLights;
   MaskOf<F> first = true;
   for (int event = 0; event < kMaxEvents && any(active); ++event) {
     RayHitOf<F> hit;
     path->result.rays += select(active, UintOf<F>(1u), UintOf<F>(0u));
     const MaskOf<F> found = tracer.closest(path->ray, active, false, &hit);
+    if (event == 0) out.way = select(found, hit.t, out.way);
+    if (!scene.media.volumes.empty()) {
+      constexpr int kSteps = 4;
+      const F tmax = select(found, hit.t, F(1e30f));
+      const MediaLightOf<F> media = cross_media(scene, tracer, tmax, active, kSteps, path);
+      sum += select<F>(active, throughput * media.radiance, Vec3Of<F>{});
+      throughput = select<F>(active, throughput * media.through, throughput);
+    }
+    if (count_lamps && scene.has_visible_lights) {
+      const Vec3Of<F> lamps = lamps_met(scene, *path, select(found, hit.t, F(1e30f)), active);
+      sum += select<F>(active, throughput * lamps, Vec3Of<F>{});
+    }
     if (const MaskOf<F> missed = active & !found; any(missed)) {
       const Vec3Of<F> sky = sky_radiance_of(scene, path->ray.d, path->cone_spread, missed) +
                             in_all_lanes<F>(scene.sky_ambient);
@@ -175,7 +291,10 @@ GLOAM_HD Vec3Of<F> gather(const SceneView& scene, const Tracer& tracer,
       const F pdf = emitter_pdf(scene, *path, v, every, kDrawnLights, shines & first);
       const F weight = select(first & (pdf > 0.0f),
                               count_lamps ? mis_weight(path->pdf_bsdf, pdf) : F(0.0f), F(1.0f));
-      sum += select<F>(shines, throughput * v.emission * (v.opacity * weight), Vec3Of<F>{});
+      const Vec3Of<F> light = throughput * v.emission * (v.opacity * weight);
+      const MaskOf<F> caustic = shines & (!first) & MaskOf<F>(!count_lamps);
+      sum += select<F>(shines & !caustic, light, Vec3Of<F>{});
+      out.caustic += select<F>(caustic, light, Vec3Of<F>{});
     }
     MaskOf<F> through = false;
     if (scene.has_transparent) {
@@ -201,13 +320,22 @@ GLOAM_HD Vec3Of<F> gather(const SceneView& scene, const Tracer& tracer,
       Vec3Of<F> diffuse, specular;
       direct_light(scene, tracer, path, v, shiny, frame, wo, MaskOf<F>(false), matt, false, 1,
                    &diffuse, &specular);
-      const Vec2Of<F> u = path->sampler.next_2d(matt);
-      const F w = path->sampler.next_1d(matt);
-      diffuse += cached_light(cache, v, matt, u, w, 1, requests);
+      // Light that goes on is a mean over many lookups anyway: there, blurring would only leak.
+      Vec3Of<F> jitter = in_all_lanes<F>({0.5f, 0.5f, 0.0f});
+      uint32_t coarser = 1;
+      if (count_lamps) {  // in a mirror
+        const Vec2Of<F> u = path->sampler.next_2d(matt);
+        jitter = {u.x, u.y, path->sampler.next_1d(matt)};
+        coarser = 0;
+      }
+      const CacheCellOf<F> cells = ask_cells(cache, v, matt, jitter, coarser, requests);
+      const Vec3Of<F> cached = cached_light(cache, v, cells, matt, coarser);
       F a, b;
       layer_albedo(*scene.albedo, v.roughness, wo.z, &a, &b);
-      const Vec3Of<F> albedo = diffuse_albedo(bsdf) + bsdf.base.f0 * a + bsdf.base.f90 * b;
-      sum += select<F>(matt, throughput * (albedo * diffuse + specular), Vec3Of<F>{});
+      const Vec3Of<F> gloss = bsdf.base.f0 * a + bsdf.base.f90 * b;
+      const Vec3Of<F> leaving =
+          diffuse_albedo(bsdf) * (diffuse + cached) + gloss * cached + specular;
+      sum += select<F>(matt, throughput * leaving, Vec3Of<F>{});
     }
     if (any(glass)) {
       const Vec2Of<F> u = path->sampler.next_2d(glass);
@@ -218,6 +346,9 @@ GLOAM_HD Vec3Of<F> gather(const SceneView& scene, const Tracer& tracer,
       path->ray.o = select<F>(goes, leave_surface(v.p, v.geometric, wi, v.t), path->ray.o);
       path->ray.d = select<F>(goes, wi, path->ray.d);
       first = first & !goes;
+      // No light was drawn for this bounce: what it meets counts in full.
+      path->pdf_bsdf = select(goes, F(1e12f), path->pdf_bsdf);
+      path->from = select<F>(goes, v.p, path->from);
       active = goes | through;
     } else {
       active = through;
@@ -225,68 +356,19 @@ GLOAM_HD Vec3Of<F> gather(const SceneView& scene, const Tracer& tracer,
     path->ray.o =
         select<F>(through, leave_surface(v.p, v.geometric, path->ray.d, hit.t), path->ray.o);
   }
-  return sum;
-}
-
-/// Light of one lamp sample that media at p_W scatter against the direction of the ray
-/// [cd/m² per m].
-template <class Tracer>
-GLOAM_HD Vec3f scattered_light(const SceneView& scene, const Tracer& tracer, const Ray& ray,
-                               const MediumPoint& point, Vec3f p_W, WalkRandom* random,
-                               uint32_t* rays) {
-  LightPicker picker;
-  picker.prepare(scene, p_W, Vec3f{});
-  const float pick = random->next();
-  const Vec2f u{random->next(), random->next()};
-  const LightSample light = picker.sample(scene, p_W, pick, u, ray.time, 0.0f);
-  if (!(light.pdf > 0) || !(max_component(point.scattering) > 0)) return {};
-  Ray shadow = ray;
-  aim_shadow_ray(p_W, Vec3f{}, 0.0f, light, &shadow);
-  Vec3f share{1, 1, 1};
-  if (light.casts_shadow) share = paths::transmit(scene, tracer, shadow, true, rays);
-  if (!(max_component(share) > 0)) return {};
-  share *= transmittance(scene.media, shadow, shadow.tmax, {}, *random);
-  const float cosine = dot(ray.d, light.wi);
-  const auto phase = [&](float scattering, float g_scattering) {
-    const float g = scattering > 0 ? g_scattering / scattering : 0.0f;
-    return scattering * henyey_greenstein(g, cosine);
-  };
-  const Vec3f s = point.scattering, g = point.g_scattering;
-  return Vec3f{phase(s.x, g.x), phase(s.y, g.y), phase(s.z, g.z)} * share * light.radiance /
-         light.pdf;
-}
-
-/// Marches the camera's rays through media up to `tmax`: what they scatter once and give off goes
-/// into out->base, what they leave of the rest into out->through.
-template <class F, class Tracer>
-GLOAM_HD void cross_media(const SceneView& scene, const Tracer& tracer, F tmax, MaskOf<F> active,
-                          paths::State<F>* path, FastSampleOf<F>* out) {
-  constexpr int kSteps = 8;
-  const Vec2Of<F> u = path->sampler.next_2d(active);
-  each_lane(active, [&](int i) {
-    WalkRandom random(lane(u, i));
-    const Ray ray = lane(path->ray, i);
-    uint32_t rays = 0;
-    const MarchResult m =
-        march(scene.media, ray, lane(tmax, i), 0.0f, kSteps, {},
-              [&](const MediumPoint& point, Vec3f p_W) {
-                return scattered_light(scene, tracer, ray, point, p_W, &random, &rays);
-              });
-    set_lane(&path->result.rays, i, lane(path->result.rays, i) + rays);
-    set_lane(&out->base, i, lane(out->base, i) + lane(out->through, i) * m.radiance);
-    set_lane(&out->through, i, lane(out->through, i) * m.transmittance);
-  });
+  return out;
 }
 
 }  // namespace fasts
 
-/// The camera ray's picture. `requests`: one per lane for the first solid surface, one for the
-/// specular ray's, one for the last pane in front. Panes are shaded without a bounce.
+/// The camera ray's picture. `near_u` in [0, 1)²: the direction of FastSampleOf::near. `requests`:
+/// one per lane for the first solid surface, one for the specular ray's, one for the last pane in
+/// front.
 template <class F, class Tracer>
 GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer,
                                     const IrradianceCacheView& cache, const RayOf<F>& ray,
                                     F cone_width, F cone_spread, const SamplerOf<F>& sampler,
-                                    MaskOf<F> active, CacheRequest* requests) {
+                                    Vec2Of<F> near_u, MaskOf<F> active, CacheRequest* requests) {
   using Mask = MaskOf<F>;
   FastSampleOf<F> out;
   out.through = in_all_lanes<F>({1, 1, 1});
@@ -302,7 +384,11 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
     path.result.rays += select(active, UintOf<F>(1u), UintOf<F>(0u));
     const Mask found = tracer.closest(path.ray, active, passed == 0, &hit);
     if (!scene.media.volumes.empty()) {
-      fasts::cross_media(scene, tracer, select(found, hit.t, F(1e30f)), active, &path, &out);
+      constexpr int kSteps = 8;
+      const F tmax = select(found, hit.t, F(1e30f));
+      const auto media = fasts::cross_media(scene, tracer, tmax, active, kSteps, &path);
+      out.base += select<F>(active, out.through * media.radiance, Vec3Of<F>{});
+      out.through = select<F>(active, out.through * media.through, out.through);
     }
     if (const Mask missed = active & !found; any(missed)) {
       each_lane(missed, [&](int i) {
@@ -325,15 +411,28 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
     const Mask solid = active & !(max_component(passing) > 0.0f);
     const Mask glass = bsdf.layered & (bsdf.p_glass > 0.0f);
     const Mask traced =
-        solid & (glass | ((v.roughness < kMaxTracedRoughness) & (bsdf.base.p_layer > 0.0f)) |
-                 (bsdf.layered & (bsdf.p_coat > 0.0f)));
+        active & (glass | ((v.roughness < kMaxTracedRoughness) & (bsdf.base.p_layer > 0.0f)) |
+                  (bsdf.layered & (bsdf.p_coat > 0.0f)));
     Vec3Of<F> diffuse, specular;
     fasts::direct_light(scene, tracer, &path, v, shiny, frame, wo, traced, active, every,
                         kDrawnLights, &diffuse, &specular);
     const Vec2Of<F> u = path.sampler.next_2d(active);
-    const F w = path.sampler.next_1d(active);
+    const Vec3Of<F> jitter{u.x, u.y, path.sampler.next_1d(active)};
+    const Mask pane = active & !solid;
     CacheRequest asked[Lanes<F>::kCount];
-    const Vec3Of<F> cached = fasts::cached_light(cache, v, active, u, w, 0, asked);
+    const CacheCellOf<F> cells = fasts::ask_cells(cache, v, active, jitter, 0, asked);
+    // What the first solid surface has of the cache is looked up when its cells have been traced.
+    const Vec3Of<F> cached = fasts::cached_light(cache, v, cells, pane, 0);
+    if (any(solid)) {
+      const Vec3Of<F> out_W =
+          FrameOf<F>::from_z(v.normal).to_world(sample_cosine_hemisphere(near_u));
+      RayOf<F> near = path.ray;
+      near.o = leave_surface(v.p, v.geometric, v.geometric, v.t);
+      near.d = out_W;
+      near.tmax = cells.edge;
+      path.result.rays += select(solid, UintOf<F>(1u), UintOf<F>(0u));
+      out.near = select(solid & tracer.occluded(near, solid), F(1.0f), out.near);
+    }
     const Vec3Of<F> albedo = fasts::diffuse_albedo(bsdf);
     F a, b;
     layer_albedo(*scene.albedo, v.roughness, wo.z, &a, &b);
@@ -341,24 +440,6 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
     each_lane(active,
               [&](int i) { requests[lane(solid, i) ? i : 2 * Lanes<F>::kCount + i] = asked[i]; });
 
-    const Mask pane = active & !solid;
-    const Vec3Of<F> shade = albedo * (diffuse + cached) + gloss * cached + specular;
-    out.base += out.through * select<F>(active, v.emission * v.opacity, Vec3Of<F>{});
-    out.base += out.through * select<F>(pane, shade * v.opacity, Vec3Of<F>{});
-    out.solid = out.solid | solid;
-    each_lane(solid, [&](int i) {
-      set_lane(&out.surface.p, i, lane(v.p, i));
-      set_lane(&out.surface.geometric, i, lane(v.geometric, i));
-      set_lane(&out.surface.instance, i, lane(v.instance, i));
-      set_lane(&out.surface, i, lane(v, i));
-      set_lane(&out.hit.primitive, i, lane(hit.primitive, i));
-      set_lane(&out.hit.u, i, lane(hit.u, i));
-      set_lane(&out.hit.v, i, lane(hit.v, i));
-    });
-    out.hit.t = select(solid, way, out.hit.t);
-    out.albedo = select<F>(solid, albedo, out.albedo);
-    out.gloss = select<F>(solid, gloss, out.gloss);
-    out.direct = select<F>(solid, diffuse, out.direct);
     if (any(traced)) {
       const Vec2Of<F> toss = path.sampler.next_2d(traced);
       const F pick = path.sampler.next_1d(traced);
@@ -371,11 +452,28 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
       bounce.ray.d = select<F>(goes, wi, path.ray.d);
       bounce.from = v.p;
       bounce.pdf_bsdf = s.pdf;
+      bounce.cone_spread += 0.2f * square_root(min(1.0f / (kPi * s.pdf), F(1.0f)));
       const Vec3Of<F> seen =
-          fasts::gather(scene, tracer, cache, true, goes, &bounce, requests + Lanes<F>::kCount);
+          fasts::gather(scene, tracer, cache, true, goes, &bounce, requests + Lanes<F>::kCount)
+              .light;
       path.result.rays += bounce.result.rays;
       specular += select<F>(goes, seen * s.weight, Vec3Of<F>{});
     }
+    const Vec3Of<F> shade = albedo * (diffuse + cached) + gloss * cached + specular;
+    out.base += out.through * select<F>(active, v.emission * v.opacity, Vec3Of<F>{});
+    out.base += out.through * select<F>(pane, shade * v.opacity, Vec3Of<F>{});
+    out.solid = out.solid | solid;
+    out.p = select<F>(solid, v.p, out.p);
+    out.normal = select<F>(solid, v.normal, out.normal);
+    out.roughness = select(solid, v.roughness, out.roughness);
+    out.hit.instance = select(solid, hit.instance, out.hit.instance);
+    out.hit.primitive = select(solid, hit.primitive, out.hit.primitive);
+    out.hit.u = select(solid, hit.u, out.hit.u);
+    out.hit.v = select(solid, hit.v, out.hit.v);
+    out.hit.t = select(solid, way, out.hit.t);
+    out.albedo = select<F>(solid, albedo, out.albedo);
+    out.gloss = select<F>(solid, gloss, out.gloss);
+    out.direct = select<F>(solid, diffuse, out.direct);
     out.specular = select<F>(solid, specular, out.specular);
     out.through = select<F>(pane, out.through * passing, out.through);
     active = pane & (max_component(out.through) > 0.004f);

@@ -7,58 +7,106 @@
 
 namespace gloam {
 
+/// Light on the surfaces of a cell, as the luminance of even surroundings [cd/m²].
+struct CellLight {
+  Vec3f all;        ///< from everywhere
+  Vec3f near;       ///< of that, from surfaces less than the cell's edge away
+  float share = 0;  ///< of directions that meet such surfaces
+};
+
+/// Light at a place in the cell from which the share `near` of directions meet what is near: in
+/// corners and under things it differs from the cell's mean.
+GLOAM_HD Vec3f light_at(const CellLight& cell, float near) {
+  // Where the cell knows little of what is near, that is taken for a good deal darker than the
+  // rest.
+  constexpr float kDoubt = 0.01f, kDarker = 0.35f;
+  const Vec3f far = (cell.all - cell.near) / max(1.0f - cell.share, 0.05f);
+  const Vec3f close = (cell.near + far * (kDoubt * kDarker)) / (cell.share + kDoubt);
+  return lerp(far, close, near);
+}
+
 struct IrradianceCacheView {
   DeviceSpan<const uint64_t> keys;   ///< open addressing, size a power of two; 0 = free
   DeviceSpan<const uint32_t> cells;  ///< row of `light` of each key
-  /// Luminance of even surroundings that would light the cell's surfaces as strongly [cd/m²].
-  DeviceSpan<const Vec3f> light;
+  DeviceSpan<const CellLight> light;
+  Vec3f mean;  ///< of all cells, for those that are not there yet
   Vec3f eye;
   float edge_per_metre = 0.03f;  ///< edge of a cell over its distance from the eye
 };
 
 namespace caches {
 
-GLOAM_HD float bits_to_float(uint32_t bits) {
-  float x;
-  memcpy(&x, &bits, sizeof x);
-  return x;
-}
-GLOAM_HD uint32_t float_to_bits(float x) {
-  uint32_t bits;
-  memcpy(&bits, &x, sizeof bits);
-  return bits;
-}
-
 /// First place of a key in a table of `size` (a power of two).
 GLOAM_HD uint32_t slot_of(uint64_t key, uint32_t size) {
   return static_cast<uint32_t>((key * 0x9E3779B97F4A7C15ull) >> 32) & (size - 1u);
 }
 
+/// What the keys of one region have alike: four cells wide, of all facings.
+inline constexpr uint64_t kRegion =
+    ~(uint64_t{7} | uint64_t{3} << 9 | uint64_t{3} << 27 | uint64_t{3} << 45);
+
+/// Edge of the cell of a key [m].
+GLOAM_HD float edge_of(uint64_t key) {
+  // Exponents from 2^-32 on are told by their last six bits.
+  const auto low = static_cast<uint32_t>(key >> 3 & 63u);
+  return from_bits(((low >= 32u ? 64u : 128u) + low) << 23);
+}
+
 }  // namespace caches
 
-/// The cell for a surface at p with the normal n; 0 = none. `jitter` in [0, 1)³ blurs the borders
-/// of cells, facings and sizes; `coarser`: doublings of the edge.
-GLOAM_HD uint64_t cache_key(const IrradianceCacheView& cache, Vec3f p, Vec3f n, Vec3f jitter,
-                            int coarser) {
+/// A cell before its numbers are packed.
+template <class F>
+struct CacheCellOf {
+  Vec3Of<F> place;  ///< whole numbers of edges
+  UintOf<F> exponent, facing;
+  F edge;  ///< [m]
+};
+
+/// The cells for surfaces at p with the normals n. `jitter` in [0, 1)³ blurs the borders of cells,
+/// facings and sizes; `coarser`: doublings of the edge.
+template <class F>
+GLOAM_HD CacheCellOf<F> cache_cell(const IrradianceCacheView& cache, Vec3Of<F> p, Vec3Of<F> n,
+                                   Vec3Of<F> jitter, uint32_t coarser) {
+  const Vec3Of<F> from_eye = p - in_all_lanes<F>(cache.eye);
   // The greatest power of two up to edge (1 + jitter), so that sizes blend.
-  const float wanted = max(length(p - cache.eye) * cache.edge_per_metre, 0.01f) * (1.0f + jitter.z);
-  const uint32_t exponent = (caches::float_to_bits(wanted) >> 23) + static_cast<uint32_t>(coarser);
-  const float edge = caches::bits_to_float(exponent << 23), per_edge = 1.0f / edge;
-  const Vec3f bent = n + Vec3f{jitter.x - 0.5f, jitter.y - 0.5f, jitter.z - 0.5f} * 0.3f;
-  const Vec3f a{fabsf(bent.x), fabsf(bent.y), fabsf(bent.z)};
-  const int axis = a.z >= a.x && a.z >= a.y ? 2 : (a.y >= a.x ? 1 : 0);
-  const uint64_t facing = static_cast<uint64_t>(2 * axis + (bent[axis] < 0 ? 1 : 0));
-  const Frame frame = Frame::from_z(n);
+  const F wanted = max(square_root(dot(from_eye, from_eye)) * cache.edge_per_metre, F(0.01f)) *
+                   (1.0f + jitter.z);
+  CacheCellOf<F> cell;
+  cell.exponent = (to_bits(wanted) >> 23) + coarser;
+  cell.edge = from_bits(cell.exponent << 23);
+  const F per_edge = 1.0f / cell.edge;
+  const Vec3Of<F> shift{jitter.x - 0.5f, jitter.y - 0.5f, jitter.z - 0.5f};
+  const Vec3Of<F> bent = n + shift * F(0.3f);
+  const Vec3Of<F> a{magnitude(bent.x), magnitude(bent.y), magnitude(bent.z)};
+  const MaskOf<F> up = (a.z >= a.x) & (a.z >= a.y), along_y = (!up) & (a.y >= a.x);
+  const F most = select(up, bent.z, select(along_y, bent.y, bent.x));
+  const auto two = [](MaskOf<F> m, uint32_t yes) {
+    return select(m, UintOf<F>(yes), UintOf<F>(0u));
+  };
+  cell.facing = two(up, 4) + two(along_y, 2) + two(most < 0.0f, 1);
+  const FrameOf<F> frame = FrameOf<F>::from_z(n);
   // Off the surface, as faces of rooms and boxes like to lie on the borders of cells.
-  const Vec3f at =
-      p + (frame.x * (jitter.x - 0.5f) + frame.y * (jitter.y - 0.5f) + n * 0.3f) * edge;
-  uint64_t key = facing | static_cast<uint64_t>(exponent & 63u) << 3 | uint64_t{1} << 63;
+  const Vec3Of<F> at =
+      (p + (frame.x * shift.x + frame.y * shift.y + n * F(0.3f)) * cell.edge) * per_edge;
+  cell.place = {floor_of(at.x), floor_of(at.y), floor_of(at.z)};
+  return cell;
+}
+
+/// The key of one cell; 0 = none.
+template <class F>
+GLOAM_HD uint64_t cache_key(const CacheCellOf<F>& cell, int i) {
+  uint64_t key =
+      lane(cell.facing, i) | uint64_t{lane(cell.exponent, i) & 63u} << 3 | uint64_t{1} << 63;
+  const Vec3f place = lane(cell.place, i);
   for (int k = 0; k < 3; ++k) {
-    const float x = floorf(at[k] * per_edge);
-    if (!(fabsf(x) < 1e6f)) return 0;
-    key |= (static_cast<uint64_t>(static_cast<int64_t>(x)) & 0x3FFFFu) << (9 + 18 * k);
+    if (!(fabsf(place[k]) < 1e6f)) return 0;
+    key |= (static_cast<uint64_t>(static_cast<int64_t>(place[k])) & 0x3FFFFu) << (9 + 18 * k);
   }
   return key;
+}
+GLOAM_HD uint64_t cache_key(const IrradianceCacheView& cache, Vec3f p, Vec3f n, Vec3f jitter,
+                            uint32_t coarser) {
+  return cache_key(cache_cell<float>(cache, p, n, jitter, coarser), 0);
 }
 
 /// Row of the key's cell, or -1.

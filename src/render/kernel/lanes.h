@@ -22,6 +22,17 @@ GLOAM_HD uint32_t to_uint(float x) { return static_cast<uint32_t>(static_cast<in
 /// x in [0, 2^31).
 GLOAM_HD float to_float(uint32_t x) { return static_cast<float>(static_cast<int32_t>(x)); }
 GLOAM_HD float gather(const float* table, uint32_t index) { return table[index]; }
+/// The bits of a float, and back.
+GLOAM_HD uint32_t to_bits(float x) {
+  uint32_t bits;
+  __builtin_memcpy(&bits, &x, sizeof bits);
+  return bits;
+}
+GLOAM_HD float from_bits(uint32_t bits) {
+  float x;
+  __builtin_memcpy(&x, &bits, sizeof x);
+  return x;
+}
 GLOAM_HD float lane(float x, int) { return x; }
 GLOAM_HD uint32_t lane(uint32_t x, int) { return x; }
 GLOAM_HD bool lane(bool x, int) { return x; }

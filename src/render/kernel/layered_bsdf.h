@@ -138,9 +138,11 @@ GLOAM_HD Vec3Of<F> eval_bsdf(const LayeredBsdfOf<F>& b, Vec3Of<F> wo, Vec3Of<F> 
   return value;
 }
 
+/// As of BsdfOf; what is given lies on the near side.
 template <class F>
-GLOAM_HD BsdfSampleOf<F> sample_bsdf(const LayeredBsdfOf<F>& b, Vec3Of<F> wo, F pick, Vec2Of<F> u) {
-  if (kPlainScenes || !any(b.layered)) return sample_bsdf(b.base, wo, pick, u);
+GLOAM_HD BsdfSampleOf<F> sample_bsdf(const LayeredBsdfOf<F>& b, Vec3Of<F> wo, F pick, Vec2Of<F> u,
+                                     MaskOf<F> given = false, Vec3Of<F> wi_given = {}) {
+  if (kPlainScenes || !any(b.layered)) return sample_bsdf(b.base, wo, pick, u, given, wi_given);
   // Each part takes its share of `pick`, and stretches it to [0, 1).
   MaskOf<F> open = true;
   F own = pick, left = pick;
@@ -156,7 +158,7 @@ GLOAM_HD BsdfSampleOf<F> sample_bsdf(const LayeredBsdfOf<F>& b, Vec3Of<F> wo, F 
   const MaskOf<F> of_beyond = !(of_base | of_coat | of_fuzz | of_glass);
   own = select(b.layered, own, pick);
   BsdfSampleOf<F> sample;
-  if (any(of_base)) sample = sample_bsdf(b.base, wo, own, u);
+  if (any(of_base)) sample = sample_bsdf(b.base, wo, own, u, given, wi_given);
   Vec3Of<F> wi = sample.wi;
   if (any(of_coat)) {
     const Vec3Of<F> h = ggx::sample_half(Vec2Of<F>{b.coat_alpha, b.coat_alpha}, wo, u);
@@ -170,7 +172,9 @@ GLOAM_HD BsdfSampleOf<F> sample_bsdf(const LayeredBsdfOf<F>& b, Vec3Of<F> wo, F 
     wi = select<F>(of_fuzz, d, select<F>(of_beyond, -d, wi));
   }
   // Only glass chooses the side by itself: what others put on the wrong side is lost.
-  const MaskOf<F> right_side = of_glass | select(of_beyond, wi.z < 0.0f, wi.z > 0.0f);
+  const MaskOf<F> right_side =
+      select(given, wi_given.z > 0.0f, of_glass | select(of_beyond, wi.z < 0.0f, wi.z > 0.0f));
+  wi = select<F>(given, wi_given, wi);
   F pdf;
   const Vec3Of<F> value = eval_bsdf(b, wo, wi, &pdf);
   const MaskOf<F> valid = right_side & (pdf > 1e-12f);

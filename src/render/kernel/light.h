@@ -66,6 +66,21 @@ GLOAM_HD F lamp_share(const SceneView& scene, const LightView& light, Vec3Of<F> 
   return share;
 }
 
+/// A lamp or sun as it is at a time in the shutter: evenly between its keys.
+GLOAM_HD LightView light_at(const SceneView& scene, const LightView& light, float time) {
+  LightView now = light;
+  if (light.first_key < 0) return now;
+  float share;
+  const uint32_t row =
+      static_cast<uint32_t>(light.first_key) + key_before(scene.light_key_count, time, &share);
+  const LightKey &a = scene.light_keys[row], &b = scene.light_keys[row + 1];
+  now.p = lerp(a.p, b.p, share);
+  now.direction = normalize(lerp(a.direction, b.direction, share));
+  now.x = normalize(lerp(a.x, b.x, share));
+  now.first_key = -1;
+  return now;
+}
+
 namespace lights {
 
 template <class F>
@@ -270,7 +285,15 @@ GLOAM_HD LightSampleOf<F> sample_one_light(const SceneView& scene, uint32_t inde
                                            F pick, Vec2Of<F> u, F time, MaskOf<F> active = true) {
   const LightView& light = scene.lights[index];
   LightSampleOf<F> s;
-  if (light.kind == LightKind::kDirectional) {
+  if (light.first_key >= 0) {
+    each_lane(active, [&](int i) {
+      const LightView now = light_at(scene, light, lane(time, i));
+      set_lane(&s, i,
+               now.kind == LightKind::kDirectional
+                   ? lights::sample_sun(now, lane(u, i))
+                   : lights::sample_lamp(scene, now, lane(p, i), lane(u, i)));
+    });
+  } else if (light.kind == LightKind::kDirectional) {
     s = lights::sample_sun(light, u);
   } else if (light.kind != LightKind::kInstance) {
     s = lights::sample_lamp(scene, light, p, u);

@@ -16,7 +16,9 @@ template <class F>
 GLOAM_HD F light_weight(const SceneView& scene, const LightView& light, Vec3Of<F> p, Vec3Of<F> n,
                         MaskOf<F> both_sides = false) {
   const MaskOf<F> floats = !(length_squared(n) > 0.0f);
+  const bool turns = light.first_key >= 0;
   if (light.kind == LightKind::kDirectional) {
+    if (turns) return light.strength;
     F cosine = -dot(in_all_lanes<F>(light.direction), n);
     cosine = select(floats, F(1.0f), select(both_sides, magnitude(cosine), cosine));
     return select(cosine > -light.radius, light.strength * (max(cosine, 0.0f) + 0.05f), F(0.0f));
@@ -30,11 +32,18 @@ GLOAM_HD F light_weight(const SceneView& scene, const LightView& light, Vec3Of<F
   const F cosine = min(height * square_root(inv_d2), 1.0f);
   F weight = select(height > 0.0f, light.strength * inv_d2 * (cosine + 0.05f), F(0.0f));
   // Outside the cone of a spot nothing arrives.
-  if (light.kind == LightKind::kSpot || light.profile >= 0) {
+  if (!turns && (light.kind == LightKind::kSpot || light.profile >= 0)) {
     weight *= lamp_share(scene, light, -to / square_root(max(distance2, 1e-12f)));
   }
   return weight;
 }
+
+/// Rows of the scene's guide, in the `guided` lanes.
+template <class F>
+struct GuideRowsOf {
+  UintOf<F> row{};
+  MaskOf<F> guided = false;
+};
 
 /// How lights are taken at one surface: in proportion to light_weight where there are few, by a
 /// tree where there are many.
@@ -47,59 +56,49 @@ class LightPickerOf {
   /// For the surfaces at p with the geometric normals n, or points in a medium (n = 0), in the
   /// `active` lanes; the others keep what they were prepared for. `both_sides`: those that let
   /// light through.
-  GLOAM_HD void prepare(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, Mask active = true,
-                        Mask both_sides = false) {
+  /// Returns the rows of the scene's guide there.
+  GLOAM_HD GuideRowsOf<F> prepare(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n,
+                                  Mask active = true, Mask both_sides = false) {
     count_ = scene.lights.size;
     p_ = select<F>(active, p, p_);
     n_ = select<F>(active, select<F>(both_sides, Vec3Of<F>{}, n), n_);
-    Uint first{};  // of the guide's visibilities
-    Mask guided = false;
-    sky_strength_ = select(active & both_sides, F(0.0f), sky_strength_);
-    if (scene.guide.nx > 0) find_rows(scene.guide, p, n, active & !both_sides, &first, &guided);
+    GuideRowsOf<F> rows;
+    if (scene.guide.nx > 0) rows = find_rows(scene.guide, p, n, active & !both_sides);
     const bool weighs = !scene.has_many_lights();
     F weight[kMaxWeighedLights], total = 0.0f;
     for (uint32_t i = 0; weighs && i < count_; ++i) {
       const LightView& light = scene.lights[i];
       weight[i] = light_weight(scene, light, p, n, both_sides);
-      if (light.guide >= 0 && any(guided)) {
-        const F visible = gather(scene.guide.visible.data + light.guide, first);
-        weight[i] *= select(guided, visible, F(1.0f));
+      if (light.guide >= 0 && any(rows.guided)) {
+        const F visible =
+            gather(scene.guide.visible.data + light.guide, rows.row * Uint(scene.guide.lights));
+        weight[i] *= select(rows.guided, visible, F(1.0f));
       }
       total += weight[i];
     }
-    F cone = 0.0f, map = 0.0f;  // the ways to the sky
-    const Mask narrow = (sky_strength_ > 0.0f) & (sky_one_minus_cos_ > 0.0f);
-    if (any(narrow)) {
-      const F reach = square_root(min(2.0f * sky_one_minus_cos_, 1.0f));
-      const F cosine = dot(sky_axis_, n) + reach;
-      cone = select(narrow & (cosine > 0.0f), sky_strength_ * (min(cosine, 1.0f) + 0.05f), F(0.0f));
-    }
+    F sky = 0.0f;
     if (scene.has_environment() && !scene.environment.row_cdf.empty()) {
-      // Of even light from all around a surface gets a quarter. Beside a cone the map is for what
-      // is so bright and small that cones and guides miss it.
-      const F even = 0.25f * scene.environment.illuminance;
-      map = select(guided, max(0.25f * sky_strength_, 0.02f * even), even);
+      sky = 0.25f * scene.environment.illuminance;  // of even light from all around
+      if (any(rows.guided)) {
+        // Of what is seen through windows the guide has the better directions.
+        const F visible = gather(scene.guide.sky_visible.data, rows.row);
+        sky = select(rows.guided, sky * visible * visible, sky);
+      }
     }
-    const F sky = cone + map;
     total = weighs ? total + sky : 2.0f * sky;  // lights that are not weighed get half
     const F inverse = select(total > 0.0f, 1.0f / total, F(0.0f));
     for (uint32_t i = 0; weighs && i < count_; ++i) {
       share_[i] = select(active, weight[i] * inverse, share_[i]);
     }
-    lights_share_ = select(active, 1.0f - sky * inverse, lights_share_);
-    cone_share_ = select(active, cone * inverse, cone_share_);
-    map_share_ = select(active, map * inverse, map_share_);
+    sky_share_ = select(active, sky * inverse, sky_share_);
+    return rows;
   }
 
   /// Density with which sample() makes the direction d for its sky, in the `active` lanes.
   GLOAM_HD F sky_pdf(const SceneView& scene, Vec3Of<F> d, Mask active) const {
-    const Mask inside =
-        active & (cone_share_ > 0.0f) & (dot(d, sky_axis_) >= 1.0f - sky_one_minus_cos_);
     F pdf = 0.0f;
-    if (any(inside)) pdf = select(inside, cone_share_ * cone_pdf(sky_one_minus_cos_), pdf);
-    each_lane(active & (map_share_ > 0.0f), [&](int i) {
-      const float of_map = environment_pdf(scene.environment, lane(d, i));
-      set_lane(&pdf, i, lane(pdf, i) + lane(map_share_, i) * of_map);
+    each_lane(active & (sky_share_ > 0.0f), [&](int i) {
+      set_lane(&pdf, i, lane(sky_share_, i) * environment_pdf(scene.environment, lane(d, i)));
     });
     return pdf;
   }
@@ -109,31 +108,29 @@ class LightPickerOf {
   /// Probability of taking light i in the lane `at`.
   GLOAM_HD float probability(const SceneView& scene, uint32_t i, int at) const {
     if (!scene.has_many_lights()) return lane(share_[i], at);
-    return lane(lights_share_, at) *
+    return (1.0f - lane(sky_share_, at)) *
            light_tree::probability(scene.light_tree, i, lane(p_, at), lane(n_, at));
   }
 
   /// Takes a light, or the sky, and a direction from p towards it, for the `active` lanes.
-  /// `spread`: of the sky's cone.
   GLOAM_HD LightSampleOf<F> sample(const SceneView& scene, Vec3Of<F> p, F pick, Vec2Of<F> u, F time,
-                                   F spread, Mask active = true) const {
+                                   Mask active = true) const {
     LightSampleOf<F> out;
     Mask open = active;
-    const F sky_share = cone_share_ + map_share_;
-    if (any(sky_share > 0.0f)) {
-      const Mask sky = active & (pick < sky_share);
-      if (any(sky)) out = select(sky, sample_sky(scene, pick < cone_share_, u, spread, sky), out);
+    if (const Mask sky = active & (pick < sky_share_); any(sky)) {
+      each_lane(sky, [&](int i) { set_lane(&out, i, sample_sky(scene, lane(u, i), i)); });
       open = active & !sky;
-      pick -= sky_share;
     }
+    pick -= sky_share_;
     if (scene.has_many_lights()) {
-      pick = clamp(pick / lights_share_, 0.0f, 0.9999999f);
+      const F lights_share = 1.0f - sky_share_;
+      pick = clamp(pick / lights_share, 0.0f, 0.9999999f);
       each_lane(open, [&](int i) {
         set_lane(&out, i,
                  sample_by_tree(scene, lane(p, i), lane(n_, i), lane(pick, i), lane(u, i),
                                 lane(time, i)));
       });
-      out.pdf = select(open, out.pdf * lights_share_, out.pdf);
+      out.pdf = select(open, out.pdf * lights_share, out.pdf);
       return out;
     }
     F before = 0.0f, taken = 0.0f;
@@ -159,20 +156,16 @@ class LightPickerOf {
   }
 
  private:
-  /// First visibilities of the guide's rows for the surfaces, and the sky there.
-  GLOAM_HD void find_rows(const LightGuide& guide, Vec3Of<F> p, Vec3Of<F> n, Mask active,
-                          Uint* first, Mask* guided) {
+  GLOAM_HD static GuideRowsOf<F> find_rows(const LightGuide& guide, Vec3Of<F> p, Vec3Of<F> n,
+                                           Mask active) {
+    GuideRowsOf<F> rows;
     each_lane(active, [&](int i) {
       const int row = guide.row_at(lane(p, i), lane(n, i));
-      set_lane(&sky_strength_, i, 0.0f);
       if (row < 0) return;
-      set_lane(guided, i, true);
-      set_lane(first, i, static_cast<uint32_t>(row) * guide.lights);
-      const SkyCone& sky = guide.sky[static_cast<uint32_t>(row)];
-      set_lane(&sky_strength_, i, sky.strength);
-      set_lane(&sky_one_minus_cos_, i, sky.one_minus_cos);
-      set_lane(&sky_axis_, i, sky.axis);
+      set_lane(&rows.guided, i, true);
+      set_lane(&rows.row, i, static_cast<uint32_t>(row));
     });
+    return rows;
   }
   GLOAM_HD static LightSample sample_by_tree(const SceneView& scene, Vec3f p, Vec3f n, float pick,
                                              Vec2f u, float time) {
@@ -183,39 +176,28 @@ class LightPickerOf {
     s.pdf *= choice.probability;
     return s;
   }
-  /// In the cone, or by the map.
-  GLOAM_HD LightSampleOf<F> sample_sky(const SceneView& scene, Mask in_cone, Vec2Of<F> u, F spread,
-                                       Mask active) const {
-    LightSampleOf<F> s;
-    if (any(active & in_cone)) {
-      s.wi = FrameOf<F>::from_z(sky_axis_).to_world(sample_cone(sky_one_minus_cos_, u));
-    }
-    each_lane(active & !in_cone, [&](int i) {
-      set_lane(&s.wi, i, environment_sample(scene.environment, lane(u, i)).wi);
-    });
+  GLOAM_HD LightSample sample_sky(const SceneView& scene, Vec2f u, int at) const {
+    const EnvironmentSample sky = environment_sample(scene.environment, u);
+    LightSample s;
+    s.wi = sky.wi;
     s.distance = 1e7f;
-    s.radiance = sky_radiance_of(scene, s.wi, spread, active) + in_all_lanes<F>(scene.sky_ambient);
-    s.pdf = sky_pdf(scene, s.wi, active);
+    s.radiance = sky.radiance + scene.sky_ambient;
+    s.pdf = sky.pdf * lane(sky_share_, at);
     return s;
   }
 
   uint32_t count_ = 0;
   F share_[kMaxWeighedLights];
   Vec3Of<F> p_, n_;  ///< of the surface where there are many lights; n_ = 0: takes from all sides
-  Vec3Of<F> sky_axis_;
-  F sky_one_minus_cos_{}, sky_strength_{};
-  F cone_share_{}, map_share_{};  ///< of the two ways to the sky
-  F lights_share_{};
+  F sky_share_{};    ///< of the environment map
 };
 using LightPicker = LightPickerOf<float>;
 
-/// Light i of lamps and suns, as in visible_lights. `probability`: of taking it at `from`.
+/// A lamp or sun that stands still, as in visible_lights. `probability`: of taking it at `from`.
 template <class F, class Probability, class Passing>
-GLOAM_HD Vec3Of<F> visible_light(const SceneView& scene, uint32_t i, const RayOf<F>& ray, F tmax,
-                                 Vec3Of<F> from, F pdf_bsdf, MaskOf<F> active,
-                                 const Probability& probability, const Passing& passing) {
-  const LightView& light = scene.lights[i];
-  if (light.is_delta || !light.casts_shadow || light.kind == LightKind::kInstance) return {};
+GLOAM_HD Vec3Of<F> still_light(const SceneView& scene, const LightView& light, const RayOf<F>& ray,
+                               F tmax, Vec3Of<F> from, F pdf_bsdf, MaskOf<F> active,
+                               const Probability& probability, const Passing& passing) {
   const float r2 = light.radius * light.radius;
   Vec3Of<F> radiance;
   F sin2 = r2, t = tmax;
@@ -242,6 +224,29 @@ GLOAM_HD Vec3Of<F> visible_light(const SceneView& scene, uint32_t i, const RayOf
   }
   const F pdf = probability() * cone_pdf(one_minus_cos_of(sin2));
   return select<F>(seen, radiance * mis_weight(pdf_bsdf, pdf), Vec3Of<F>{});
+}
+
+/// Light i of lamps and suns, as in visible_lights. `probability`: of taking it at `from`.
+template <class F, class Probability, class Passing>
+GLOAM_HD Vec3Of<F> visible_light(const SceneView& scene, uint32_t i, const RayOf<F>& ray, F tmax,
+                                 Vec3Of<F> from, F pdf_bsdf, MaskOf<F> active,
+                                 const Probability& probability, const Passing& passing) {
+  const LightView& light = scene.lights[i];
+  if (light.is_delta || !light.casts_shadow || light.kind == LightKind::kInstance) return {};
+  if (light.first_key < 0) {
+    return still_light(scene, light, ray, tmax, from, pdf_bsdf, active, probability, passing);
+  }
+  Vec3Of<F> sum;
+  each_lane(active, [&](int at) {
+    const Ray one = lane(ray, at);
+    const float chance = lane(F(probability()), at);
+    set_lane(&sum, at,
+             still_light<float>(
+                 scene, light_at(scene, light, one.time), one, lane(tmax, at), lane(from, at),
+                 lane(pdf_bsdf, at), true, [&] { return chance; },
+                 [&](int, float t) { return passing(at, t); }));
+  });
+  return sum;
 }
 
 /// Light of lamps and suns that the scattered rays of the `active` lanes meet before `tmax`, each

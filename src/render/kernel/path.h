@@ -2,10 +2,20 @@
 // The path stage: one path, or one in each lane, from the camera to its end. Device-safe.
 
 #include "render/kernel/camera.h"
+#include "render/kernel/light_directions.h"
 #include "render/kernel/path_media.h"
 
 namespace gloam {
 namespace paths {
+
+/// Share of directions that are drawn from the guide instead of the BSDF: what is sharp finds its
+/// light by itself.
+template <class F>
+GLOAM_HD F guided_share(const LightGuide& guide, const LayeredBsdfOf<F>& bsdf, MaskOf<F> guided) {
+  F diffuse = 1.0f - bsdf.base.p_layer;
+  diffuse = select(bsdf.layered, diffuse * bsdf.p_base, diffuse);
+  return select(guided, guide.share * diffuse, F(0.0f));
+}
 
 /// The BSDF at the vertices of paths, and what was drawn for the choice of its lobe.
 template <class F>
@@ -14,6 +24,8 @@ struct ScatterOf {
   LayeredBsdfOf<F> bsdf;
   Vec3Of<F> wo;  ///< in `frame`
   F lobe{};
+  GuideRowsOf<F> rows;
+  F guided{};  ///< share of directions by the guide
 };
 
 /// Samples one light at the vertices of the `active` lanes.
@@ -26,12 +38,13 @@ GLOAM_HD NextEventOf<F> aim_at_light(const SceneView& scene, State<F>* path, con
   const LayeredBsdfOf<F>& bsdf = at->bsdf;
   const MaskOf<F> both_sides = bsdf.layered & ((bsdf.p_glass > 0.0f) | (bsdf.p_beyond > 0.0f));
 
-  path->picker.prepare(scene, v.p, v.geometric, active, both_sides);
+  at->rows = path->picker.prepare(scene, v.p, v.geometric, active, both_sides);
+  at->guided = guided_share(scene.guide, bsdf, at->rows.guided);
   const Vec2Of<F> choice = path->sampler.next_2d(active);  // of the light, of the lobe
   at->lobe = choice.y;
   const Vec2Of<F> u_light = path->sampler.next_2d(active);
   const LightSampleOf<F> light =
-      path->picker.sample(scene, v.p, choice.x, u_light, path->ray.time, path->cone_spread, active);
+      path->picker.sample(scene, v.p, choice.x, u_light, path->ray.time, active);
   const F side = dot(light.wi, v.geometric);
   NextEventOf<F> event;
   event.lit = active & (light.pdf > 0.0f) & ((side > 0.0f) | (both_sides & (side < 0.0f)));
@@ -39,6 +52,9 @@ GLOAM_HD NextEventOf<F> aim_at_light(const SceneView& scene, State<F>* path, con
   F pdf;
   const Vec3Of<F> wi = at->frame.to_local(light.wi);
   const Vec3Of<F> f = eval_bsdf(bsdf, at->wo, wi, &pdf);
+  if (any(at->guided > 0.0f)) {
+    pdf = lerp(pdf, directions::pdf(scene.guide, at->rows.row, light.wi), at->guided);
+  }
   event.lit = event.lit & (max_component(f) > 0.0f) & (wi.z * side > 0.0f);
   event.casts_shadow = light.casts_shadow;
   const F weight = select(light.is_delta, F(1.0f), mis_weight(light.pdf, pdf));
@@ -61,8 +77,21 @@ GLOAM_HD MaskOf<F> turn(const SceneView& scene, const PathOptions& options, Stat
   MaskOf<F> next = may_go_on(scene, options, *path, active);
   const Vec2Of<F> u = path->sampler.next_2d(next);
   if (!any(next)) return next;
-  const BsdfSampleOf<F> sample = sample_bsdf(at.bsdf, at.wo, at.lobe, u);
-  const Vec3Of<F> wi = at.frame.to_world(sample.wi);
+  BsdfSampleOf<F> sample;
+  Vec3Of<F> wi;
+  if (any(at.guided > 0.0f)) {
+    const MaskOf<F> by_guide = at.lobe < at.guided;
+    const Vec3Of<F> arriving = directions::sample(scene.guide, at.rows.row, u);
+    const F pick = clamp((at.lobe - at.guided) / (1.0f - at.guided), 0.0f, 0.99999994f);
+    sample = sample_bsdf(at.bsdf, at.wo, pick, u, by_guide, at.frame.to_local(arriving));
+    wi = select<F>(by_guide, arriving, at.frame.to_world(sample.wi));
+    const F pdf = lerp(sample.pdf, directions::pdf(scene.guide, at.rows.row, wi), at.guided);
+    sample.weight *= sample.pdf / pdf;
+    sample.pdf = select(sample.pdf > 0.0f, pdf, F(0.0f));
+  } else {
+    sample = sample_bsdf(at.bsdf, at.wo, at.lobe, u);
+    wi = at.frame.to_world(sample.wi);
+  }
   const F side = dot(wi, v.geometric);
   next = next & (sample.pdf > 0.0f) & (sample.wi.z * side > 0.0f) &
          (max_component(sample.weight) > 0.0f);

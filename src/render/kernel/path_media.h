@@ -63,7 +63,7 @@ GLOAM_HD NextEventOf<F> aim_at_light_in_media(const SceneView& scene, State<F>* 
   *band = choice.y;
   const Vec2Of<F> u_light = path->sampler.next_2d(active);
   const LightSampleOf<F> light =
-      path->picker.sample(scene, p, choice.x, u_light, path->ray.time, path->cone_spread, active);
+      path->picker.sample(scene, p, choice.x, u_light, path->ray.time, active);
   NextEventOf<F> event;
   event.lit = active & (light.pdf > 0.0f);
   if (!any(event.lit)) return event;

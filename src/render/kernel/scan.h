@@ -49,7 +49,12 @@ GLOAM_HD Vec3Of<F> inverse_of(Vec3Of<F> d) {
 template <class F>
 GLOAM_HD MaskOf<F> hit_plane(const InstanceView& plane, const RayOf<F>& ray, F tmax, F* t) {
   AffineOf<F> X_WG = pose_in_all_lanes<F>(plane.X_WG);
-  if (plane.moving) X_WG = lerp(X_WG, pose_in_all_lanes<F>(plane.X_WG_close), ray.time);
+  if (plane.moving) {
+    each_lane(MaskOf<F>(true), [&](int i) {
+      Affine3f between;
+      set_lane(&X_WG, i, pose_at(plane, lane(ray.time, i), &between));
+    });
+  }
   *t = shapes::hit_plane(plane.size, to_frame(X_WG, ray.o - X_WG.p), to_frame(X_WG, ray.d), F(0.0f),
                          tmax);
   return *t > 0.0f;

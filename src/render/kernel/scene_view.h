@@ -2,6 +2,7 @@
 // What the kernel reads: plain arrays in the memory of the side that runs it. render/scene fills
 // them. Device-safe.
 
+#include "geometry/motion_keys.h"
 #include "render/kernel/environment.h"
 #include "render/kernel/light_tree_view.h"
 #include "render/kernel/medium_view.h"
@@ -18,8 +19,12 @@ struct TriangleUv {
 };
 
 struct MeshView {
-  DeviceSpan<const Vec3f> positions;  ///< frame G [m]; deformables: world, shutter open
-  DeviceSpan<const Vec3f> positions_close, positions_previous;  ///< deformables only
+  DeviceSpan<const Vec3f> positions;           ///< frame G [m]; deformables: world, shutter open
+  DeviceSpan<const Vec3f> positions_previous;  ///< deformables only
+  /// Of deformables that move while the shutter is open: the positions at key_count times, one key
+  /// after the other.
+  DeviceSpan<const Vec3f> position_keys;
+  uint32_t key_count = 0;
   DeviceSpan<const uint32_t> indices;
   DeviceSpan<const Vec3f> corner_normals;  ///< three per triangle; empty = flat
   DeviceSpan<const TriangleUv> uvs;        ///< one per triangle; empty = none
@@ -29,7 +34,7 @@ struct MeshView {
 
 struct InstanceView {
   ShapeType shape = ShapeType::kBox;
-  bool moving = false;     ///< X_WG differs between shutter open and close
+  bool moving = false;     ///< while the shutter is open: `keys` holds poses that differ
   bool has_moved = false;  ///< X_WG_previous differs from X_WG
   uint32_t material = 0;
   uint32_t mesh = 0;
@@ -37,7 +42,9 @@ struct InstanceView {
   Vec3f size;       ///< [m]
   Vec3f half_size;  ///< of the object that textures are fitted to [m]
   Affine3f X_WG;    ///< at shutter open
-  Affine3f X_WG_close, X_WG_previous;
+  Affine3f X_WG_previous;
+  DeviceSpan<const Affine3f>
+      keys;  ///< evenly over times 0 … 1, the first is X_WG; empty unless moving
 };
 
 struct TextureLevel {
@@ -113,6 +120,8 @@ struct LightView {
   float reach = 0;     ///< radius of a sphere about p that holds all of it [m]
   uint32_t instance = 0;  ///< kInstance
   int guide = -1;         ///< row of LightGuide::visible; -1 = it moves, or has none
+  int first_key = -1;     ///< row of SceneView::light_keys of lamps and suns that move while the
+                          ///< shutter is open: then p, reach and half bound the way, and spread all
   // Bounds for the tree; not of directional lights.
   Vec3f half;          ///< half the size of a box about p that holds all of it [m]
   float spread = kPi;  ///< angle from `direction` up to which it shines in full [rad]
@@ -121,22 +130,21 @@ struct LightView {
   friend bool operator==(const LightView&, const LightView&) = default;
 };
 
+/// Where a lamp or sun is at one instant; as in LightView.
+struct LightKey {
+  Vec3f p, direction, x;
+};
+
 /// IesProfile's grid relative to its most.
 struct ProfileView {
   uint32_t first = 0;  ///< row of SceneView::profile_values
   int rows = 0, columns = 0;
 };
 
-/// Where the sky is seen.
-struct SkyCone {
-  Vec3f axis;
-  float one_minus_cos = 0;  ///< of the cone's half angle; 0 = all around, or nowhere
-  float strength = 0;       ///< luminance over what is seen [cd sr/m² = lx]
-};
-
-/// What static geometry lets through to the cells of a regular grid. It steers sampling alone: a
-/// wrong guess costs noise, never the mean. A wall's two sides see different lights, so a cell has
-/// a row for static surfaces of each facing that it holds, and one for all else in it.
+/// What light static geometry lets through to the cells of a regular grid, and from where. It
+/// steers sampling alone: a wrong guess costs noise, never the mean. A wall's two sides see
+/// different lights, so a cell has a row for static surfaces of each facing that it holds, and one
+/// for all else in it.
 struct LightGuide {
   Vec3f low;            ///< corner of the grid [m]
   float per_metre = 0;  ///< 1 / edge of a cell
@@ -146,7 +154,14 @@ struct LightGuide {
   DeviceSpan<const int> surface_row;  ///< cell-major, one per facing; -1 = no such surface
   /// Row-major: share of each light that is seen, above zero.
   DeviceSpan<const float> visible;
-  DeviceSpan<const SkyCone> sky;  ///< one per row; the first rows are the cells'
+  DeviceSpan<const float> sky_visible;  ///< by row: the same of the environment map's light
+  /// Cells along an edge of the octahedral map of directions (kernel/light_directions.h).
+  static constexpr uint32_t kAcross = 16;
+  static constexpr uint32_t kSums = kAcross * kAcross + 1;
+  /// Row-major: running sums, 0 to 1, over the map's cells, of the light that arrives from each.
+  DeviceSpan<const float> arriving;
+  float share =
+      0;  ///< of directions that are drawn so on diffuse surfaces; the BSDF's are the rest
 
   GLOAM_HD int cell_at(Vec3f p) const {
     const Vec3f q = (p - low) * per_metre;
@@ -224,6 +239,8 @@ struct SceneView {
   DeviceSpan<const TextureLevel> texture_levels;
   DeviceSpan<const Texel> texels;
   DeviceSpan<const LightView> lights;
+  DeviceSpan<const LightKey> light_keys;  ///< light_key_count of every light that moves
+  uint32_t light_key_count = 0;
   DeviceSpan<const ProfileView> profiles;
   DeviceSpan<const float> profile_values;
   LightTreeView light_tree;  ///< of scenes with more than kMaxWeighedLights
@@ -260,7 +277,9 @@ struct SceneView {
 /// `between` is room for it.
 GLOAM_HD const Affine3f& pose_at(const InstanceView& instance, float time, Affine3f* between) {
   if (!instance.moving || time == 0) return instance.X_WG;
-  *between = lerp(instance.X_WG, instance.X_WG_close, time);
+  float share;
+  const uint32_t key = key_before(instance.keys.size, time, &share);
+  *between = lerp(instance.keys[key], instance.keys[key + 1], share);
   return *between;
 }
 GLOAM_HD Affine3f pose_at(const InstanceView& instance, float time) {
@@ -269,9 +288,10 @@ GLOAM_HD Affine3f pose_at(const InstanceView& instance, float time) {
 }
 
 GLOAM_HD Vec3f mesh_vertex(const MeshView& mesh, uint32_t i, float time) {
-  const Vec3f p = mesh.positions[i];
-  if (mesh.positions_close.empty() || time == 0) return p;
-  return lerp(p, mesh.positions_close[i], time);
+  if (mesh.position_keys.empty() || time == 0) return mesh.positions[i];
+  float share;
+  const uint32_t row = key_before(mesh.key_count, time, &share) * mesh.positions.size + i;
+  return lerp(mesh.position_keys[row], mesh.position_keys[row + mesh.positions.size], share);
 }
 
 }  // namespace gloam

@@ -56,6 +56,8 @@ struct FloatLanes {
 };
 inline float lane(const FloatLanes& x, int i) { return x.v[i]; }
 inline void set_lane(FloatLanes* x, int i, float value) { x->v[i] = value; }
+inline UintLanes to_bits(FloatLanes x) { return reinterpret_cast<UintLanes::Native>(x.v); }
+inline FloatLanes from_bits(UintLanes x) { return reinterpret_cast<FloatLanes::Native>(x.v); }
 
 }  // namespace gloam
 

@@ -24,7 +24,9 @@ std::vector<BvhBox> triangle_boxes(const MeshView& mesh) {
                          for (int k = 0; k < 3; ++k) {
                            const uint32_t v = mesh.indices[static_cast<uint32_t>(3 * i + k)];
                            box.add(mesh.positions[v]);
-                           if (!mesh.positions_close.empty()) box.add(mesh.positions_close[v]);
+                           for (uint32_t key = 1; key < mesh.key_count; ++key) {
+                             box.add(mesh.position_keys[key * mesh.positions.size + v]);
+                           }
                          }
                        }
                      });
@@ -84,7 +86,7 @@ void BvhScene::lay_out(const RenderScene& scene) {
   top_.first_node = 0;
   static_top_.first_node = static_cast<uint32_t>(top);
   nodes_.assign(2 * top, {});
-  triangles_.assign(1, {});  // keys are never 0 rows apart
+  triangles_.clear();
   for (const bool deforms : {true, false}) {
     for (uint32_t i = 0; i < meshes_.size(); ++i) {
       if (meshes_[i].deforms == deforms) place_mesh(scene, i);
@@ -112,14 +114,15 @@ void BvhScene::place_mesh(const RenderScene& scene, uint32_t row) {
     nodes_.push_back(node);
   }
   mesh.root = in_all(mesh.tree.root);
-  triangles_.resize(triangles_.size() + mesh.tree.order.size() * (mesh.deforms ? 2 : 1));
+  triangles_.resize(triangles_.size() +
+                    mesh.tree.order.size() * (mesh.deforms ? room_for_keys_ : 1));
   place_triangles(scene.meshes()[row], mesh);
 }
 
-/// Those at the shutter's opening, then of deformables those at its close.
+/// Those at the shutter's opening, then of deformables those at the other keys.
 void BvhScene::place_triangles(const MeshView& mesh, const MeshTree& tree) {
   const size_t count = tree.tree.order.size();
-  const auto place = [&](const DeviceSpan<const Vec3f>& positions, size_t first) {
+  const auto place = [&](const Vec3f* positions, size_t first) {
     for (size_t i = 0; i < count; ++i) {
       const uint32_t primitive = tree.tree.order[i];
       BvhTriangle& t = triangles_[first + i];
@@ -129,10 +132,10 @@ void BvhScene::place_triangles(const MeshView& mesh, const MeshTree& tree) {
       t.primitive = primitive;
     }
   };
-  place(mesh.positions, tree.first_triangle);
-  if (tree.deforms) {
-    place(mesh.positions_close.empty() ? mesh.positions : mesh.positions_close,
-          tree.first_triangle + count);
+  place(mesh.positions.data, tree.first_triangle);
+  for (uint32_t key = 1; key < mesh.key_count; ++key) {
+    place(mesh.position_keys.data + size_t{key} * mesh.positions.size,
+          tree.first_triangle + key * count);
   }
 }
 
@@ -162,13 +165,14 @@ BvhBox BvhScene::box_of(const RenderScene& scene, const BvhInstance& instance) c
                              : as_box(wider(shape_bounds(in.shape, in.size, X_WG)));
   };
   BvhBox box = at(in.X_WG);
-  // Every point moves along a line between the keys: the box over both holds its way.
-  if (in.moving) box.add(at(in.X_WG_close));
+  // Every point moves along a line between two keys: the box over all holds its way.
+  for (uint32_t key = 1; key < in.keys.size; ++key) box.add(at(in.keys[key]));
   return box;
 }
 
 void BvhScene::place_instances(const RenderScene& scene) {
   motion_.clear();
+  key_count_ = 1;
   for (BvhInstance& out : instances_) {
     const InstanceView& in = scene.instances()[out.id];
     const Affine3f& X = in.shape == ShapeType::kDeformable ? Affine3f{} : in.X_WG;
@@ -181,16 +185,18 @@ void BvhScene::place_instances(const RenderScene& scene) {
     }
     out.shift = {shift[0], shift[1], shift[2]};
     out.motion = -1;
-    out.close_key = 0;
+    out.key_step = 0;
     if (in.moving && in.shape != ShapeType::kDeformable) {
       out.motion = static_cast<int32_t>(motion_.size());
-      motion_.push_back({in.X_WG, in.X_WG_close});
+      key_count_ = in.keys.size;
+      motion_.insert(motion_.end(), in.keys.data, in.keys.data + in.keys.size);
     }
     if (!is_mesh(in.shape)) continue;
     const MeshTree& mesh = meshes_[in.mesh];
     out.root = mesh.root;
-    if (mesh.deforms && !scene.meshes()[in.mesh].positions_close.empty()) {
-      out.close_key = static_cast<uint32_t>(mesh.tree.order.size());
+    if (mesh.deforms && scene.meshes()[in.mesh].key_count > 1) {
+      key_count_ = scene.meshes()[in.mesh].key_count;
+      out.key_step = static_cast<uint32_t>(mesh.tree.order.size());
     }
   }
 }
@@ -220,6 +226,11 @@ void BvhScene::place_top(const std::vector<BvhBox>& boxes, bool anew, TopTree* t
 
 void BvhScene::update(const RenderScene& scene) {
   bool anew = drawn_version_ != scene.drawn_version();
+  for (const MeshView& mesh : scene.meshes()) {
+    if (mesh.key_count <= room_for_keys_) continue;
+    room_for_keys_ = mesh.key_count;
+    anew = true;
+  }
   for (const uint32_t mesh : scene.rebuilt_meshes()) {
     if (mesh >= meshes_.size()) continue;
     anew |= !meshes_[mesh].tree.order.empty();
@@ -243,8 +254,9 @@ void BvhScene::update(const RenderScene& scene) {
 }
 
 BvhTracer BvhScene::tracer(const RenderScene& scene) const {
-  return {{nodes_.data(), triangles_.data(), instances_.data(), motion_.data(), top_.root},
-          scanned_.list(scene)};
+  return {
+      {nodes_.data(), triangles_.data(), instances_.data(), motion_.data(), key_count_, top_.root},
+      scanned_.list(scene)};
 }
 
 BvhTracer BvhScene::static_tracer(const RenderScene& scene) const {

@@ -24,7 +24,7 @@ class BvhScene {
   const std::vector<BvhNode>& nodes() const { return nodes_; }
   const std::vector<BvhTriangle>& triangles() const { return triangles_; }
   const std::vector<BvhInstance>& instances() const { return instances_; }
-  const std::vector<BvhMotion>& motion() const { return motion_; }
+  const std::vector<Affine3f>& motion() const { return motion_; }
   /// Instances that never move.
   const std::vector<uint32_t>& still() const { return still_; }
   /// Changes whenever anything but the first nodes and triangles may have.
@@ -62,7 +62,9 @@ class BvhScene {
   std::vector<BvhNode> nodes_;    ///< of top_, of static_top_, of deformables, of rigid meshes
   std::vector<BvhTriangle> triangles_;  ///< of deformables, of rigid meshes
   std::vector<BvhInstance> instances_;
-  std::vector<BvhMotion> motion_;
+  std::vector<Affine3f> motion_;  ///< key_count_ of each that moves
+  uint32_t key_count_ = 1;        ///< of all that moves
+  uint32_t room_for_keys_ = 2;    ///< of deformables, in triangles_
   TopTree top_, static_top_;
   ScanTable scanned_;
   std::vector<uint32_t> still_;

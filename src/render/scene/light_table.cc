@@ -1,6 +1,7 @@
 #include "render/scene/light_table.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "render/kernel/light_picker.h"
@@ -69,22 +70,24 @@ void set_bounds(const InstanceView& instance, bool is_one_sided,
   };
   const auto add_G = [&](Vec3f p_G) {
     add(transform_point(instance.X_WG, p_G));
-    if (instance.moving) add(transform_point(instance.X_WG_close, p_G));
+    for (uint32_t k = 0; k < instance.keys.size; ++k) add(transform_point(instance.keys[k], p_G));
   };
   const Vec3f h = shape_half_size(instance.shape, instance.size);
   const float tip = instance.shape == ShapeType::kCapsule ? instance.size.x : 0.0f;
   if (instance.shape == ShapeType::kDeformable) {
     const MeshView& mesh = meshes[instance.mesh];
     for (uint32_t i = 0; i < mesh.positions.size; ++i) add(mesh.positions[i]);
-    for (uint32_t i = 0; i < mesh.positions_close.size; ++i) add(mesh.positions_close[i]);
+    for (uint32_t i = 0; i < mesh.position_keys.size; ++i) add(mesh.position_keys[i]);
   } else if (instance.shape == ShapeType::kMesh) {
     const MeshView& mesh = meshes[instance.mesh];
     for (uint32_t i = 0; i < mesh.positions.size; ++i) add_G(mesh.positions[i]);
   } else if (instance.shape == ShapeType::kSphere) {
-    for (const Vec3f p : {instance.X_WG.p, instance.X_WG_close.p}) {
+    const auto add_ball = [&](Vec3f p) {
       add(p - h);
       add(p + h);
-    }
+    };
+    add_ball(instance.X_WG.p);
+    for (uint32_t k = 0; k < instance.keys.size; ++k) add_ball(instance.keys[k].p);
   } else {
     for (int i = 0; i < 8; ++i) {
       add_G({(i & 1) != 0 ? h.x : -h.x, (i & 2) != 0 ? h.y : -h.y,
@@ -95,10 +98,8 @@ void set_bounds(const InstanceView& instance, bool is_one_sided,
   light->p = (low + high) * 0.5f;
   light->half = (high - low) * 0.5f;
   light->reach = length(light->half);
-  if (!is_mesh(instance.shape)) {
-    light->reach =
-        min(light->reach, length(h) + tip + 0.5f * length(instance.X_WG_close.p - instance.X_WG.p));
-  }
+  if (!is_mesh(instance.shape) && !instance.moving)
+    light->reach = min(light->reach, length(h) + tip);
   if (instance.shape == ShapeType::kPlane && !instance.moving) {  // its back is dark
     light->direction = normalize(instance.X_WG.z);
     light->spread = 0;
@@ -112,6 +113,34 @@ bool is_finite(const LightView& light) {
   constexpr float kMost = 1e18f;  // squares and their sums stay finite
   const float far = fabsf(light.p.x) + fabsf(light.p.y) + fabsf(light.p.z);
   return light.strength < kMost && far < kMost && light.reach < kMost;
+}
+
+/// Instance `row` as a light; nothing where it gives off none.
+std::optional<LightView> emitter_of(const std::vector<InstanceView>& instances, size_t row,
+                                    const std::vector<MaterialView>& materials,
+                                    const std::vector<MeshView>& meshes) {
+  const InstanceView& instance = instances[row];
+  const bool is_mesh =
+      instance.shape == ShapeType::kMesh || instance.shape == ShapeType::kDeformable;
+  const MaterialView& material = materials[instance.material];
+  const float sides = is_mesh && !material.emits_outwards ? 2.0f : 1.0f;
+  const float area =
+      sides * (is_mesh ? meshes[instance.mesh].area : shape_area(instance.shape, instance.size));
+  const float strength = luminance(material.emission) * kPi * area * material.opacity;
+  if (!(strength > 0)) return {};
+  LightView light;
+  light.kind = LightKind::kInstance;
+  light.instance = static_cast<uint32_t>(row);
+  light.strength = strength / (4 * kPi);
+  set_bounds(instance, material.emits_outwards, meshes, &light);
+  if (!is_finite(light)) return {};
+  return light;
+}
+
+void set_strength(LightView* light) {
+  light->strength = luminance(light->intensity);
+  light->reach = light->kind == LightKind::kDirectional ? 0.0f : light->radius;
+  light->half = Vec3f{1, 1, 1} * light->reach;
 }
 
 // The guide's rows are those of the description, whatever is live: it is built once.
@@ -146,11 +175,30 @@ void place(const LightDescription& in, const PoseFrame& frame, LightView* light)
 
 }  // namespace
 
-void LightTable::update(const RenderDescription& description, const PoseFrame& frame,
-                        const std::vector<float>& levels,
+/// A light that moves: bounds of its way, for its selection.
+void LightTable::set_keys(std::span<const LightKey> keys, LightView* light) {
+  light->first_key = static_cast<int>(keys_.size());
+  key_count_ = static_cast<uint32_t>(keys.size());
+  keys_.insert(keys_.end(), keys.begin(), keys.end());
+  light->spread = kPi;
+  if (light->kind == LightKind::kDirectional) return;
+  Vec3f low = keys[0].p, high = low;
+  for (const LightKey& key : keys) {
+    low = {min(low.x, key.p.x), min(low.y, key.p.y), min(low.z, key.p.z)};
+    high = {max(high.x, key.p.x), max(high.y, key.p.y), max(high.z, key.p.z)};
+  }
+  light->p = (low + high) * 0.5f;
+  light->half = (high - low) * 0.5f + Vec3f{1, 1, 1} * light->radius;
+  light->reach = length((high - low) * 0.5f) + light->radius;
+}
+
+void LightTable::update(const RenderDescription& description,
+                        std::span<const PoseFrame* const> keys, const std::vector<float>& levels,
                         const std::vector<MaterialView>& materials,
                         const std::vector<MeshView>& meshes, std::vector<InstanceView>* instances) {
+  const PoseFrame& frame = *keys.front();
   const bool live = frame.live_serial != 0;
+  keys_.clear();
   const std::vector<LightView> before = std::exchange(lights_, {});
   const std::vector<uint32_t> headlights_before = std::exchange(headlights_, {});
   lights_.reserve(before.size());
@@ -172,9 +220,18 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
     }
     light.intensity *= level;
     if (!(luminance(light.intensity) > 0)) continue;
-    light.strength = luminance(light.intensity);
-    light.reach = light.kind == LightKind::kDirectional ? 0.0f : light.radius;
-    light.half = Vec3f{1, 1, 1} * light.reach;
+    set_strength(&light);
+    if (keys.size() > 1 && !in.is_static && !is_headlight(in)) {
+      std::vector<LightKey> way;
+      LightView at = light;
+      bool moving = false;
+      for (const PoseFrame* key : keys) {
+        place(in, *key, &at);
+        way.push_back({at.p, at.direction, at.x});
+        moving |= !(at.p == light.p && at.direction == light.direction && at.x == light.x);
+      }
+      if (moving) set_keys(way, &light);
+    }
     if (!is_finite(light)) continue;
     if (is_headlight(in)) headlights_.push_back(static_cast<uint32_t>(lights_.size()));
     lights_.push_back(light);
@@ -185,24 +242,13 @@ void LightTable::update(const RenderDescription& description, const PoseFrame& f
     const int row_of_guide = is_guided(description, described) ? guide++ : -1;
     instance.light = -1;
     if (!described.shown) continue;
-    const bool is_mesh =
-        instance.shape == ShapeType::kMesh || instance.shape == ShapeType::kDeformable;
-    const MaterialView& material = materials[instance.material];
-    const float sides = is_mesh && !material.emits_outwards ? 2.0f : 1.0f;
-    const float area =
-        sides * (is_mesh ? meshes[instance.mesh].area : shape_area(instance.shape, instance.size));
-    const float strength = luminance(material.emission) * kPi * area * material.opacity;
-    if (!(strength > 0)) continue;
-    LightView light;
-    light.kind = LightKind::kInstance;
-    light.instance = static_cast<uint32_t>(i);
-    light.guide = row_of_guide;
-    light.strength = strength / (4 * kPi);
-    set_bounds(instance, material.emits_outwards, meshes, &light);
-    if (!is_finite(light)) continue;
+    std::optional<LightView> light = emitter_of(*instances, i, materials, meshes);
+    if (!light) continue;
+    light->guide = row_of_guide;
     instance.light = static_cast<int>(lights_.size());
-    lights_.push_back(light);
+    lights_.push_back(*light);
   }
+  lamp_keys_ = keys_.size();
   update_tree(before, headlights_before);
 }
 
@@ -227,29 +273,41 @@ void LightTable::update_tree(const std::vector<LightView>& before,
 }
 
 std::vector<LightView> LightTable::guided(const RenderDescription& description,
-                                          const PoseFrame& frame) {
+                                          const PoseFrame& frame,
+                                          const std::vector<MaterialView>& materials,
+                                          const std::vector<MeshView>& meshes,
+                                          std::vector<InstanceView>* instances) {
   std::vector<LightView> lights;
   for (const LightDescription& in : description.lights) {
     if (lights.size() > kMaxWeighedLights) return lights;  // too many for a guide
     if (!is_guided(in)) continue;
     lights.push_back(describe_light(in));
     place(in, frame, &lights.back());
+    set_strength(&lights.back());
   }
-  for (size_t i = 0; i < description.instances.size(); ++i) {
-    if (lights.size() > kMaxWeighedLights) return lights;
+  for (size_t i = 0; i < instances->size(); ++i) {
+    InstanceView& instance = (*instances)[i];
+    instance.material = static_cast<uint32_t>(description.instances[i].material);
+    instance.light = -1;
     if (!is_guided(description, description.instances[i])) continue;
-    LightView light;
-    light.kind = LightKind::kInstance;
-    light.instance = static_cast<uint32_t>(i);
-    lights.push_back(light);
+    if (lights.size() > kMaxWeighedLights) return lights;
+    instance.light = static_cast<int>(lights.size());
+    lights.push_back(emitter_of(*instances, i, materials, meshes).value_or(LightView{}));
   }
   return lights;
 }
 
-void LightTable::place_headlights(const Affine3f& X_WC) {
+void LightTable::place_headlights(const Affine3f& X_WC, std::span<const Affine3f> keys) {
+  keys_.resize(lamp_keys_);
   for (const uint32_t i : headlights_) {
-    lights_[i].p = X_WC.p;
-    lights_[i].direction = normalize(-X_WC.z);
+    LightView& light = lights_[i];
+    light.p = X_WC.p;
+    light.direction = normalize(-X_WC.z);
+    light.first_key = -1;
+    if (keys.empty()) continue;
+    std::vector<LightKey> way;
+    for (const Affine3f& X : keys) way.push_back({X.p, normalize(-X.z), light.x});
+    set_keys(way, &light);
   }
   if (lights_.size() > kMaxWeighedLights) tree_.move_headlights(lights_, headlights_);
 }

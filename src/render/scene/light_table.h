@@ -1,6 +1,7 @@
 #pragma once
 // The lights that are sampled, and how often.
 
+#include <span>
 #include <vector>
 
 #include "render/scene/light_tree.h"
@@ -10,21 +11,27 @@ namespace gloam {
 
 class LightTable {
  public:
-  /// Poses and live fields of the frame; then the emitters among `instances`, whose `light` is set.
-  /// `levels`: of the description's lights, by their schedules.
-  void update(const RenderDescription& description, const PoseFrame& frame,
+  /// Poses of the keys and live fields of the first; then the emitters among `instances`, whose
+  /// `light` is set. `levels`: of the description's lights, by their schedules.
+  void update(const RenderDescription& description, std::span<const PoseFrame* const> keys,
               const std::vector<float>& levels, const std::vector<MaterialView>& materials,
               const std::vector<MeshView>& meshes, std::vector<InstanceView>* instances);
-  /// Headlights sit at the camera.
-  void place_headlights(const Affine3f& X_WC);
+  /// Headlights sit at the camera. `keys`: where it is at the keys; empty = it stands still.
+  void place_headlights(const Affine3f& X_WC, std::span<const Affine3f> keys);
 
   /// Static lights that cast shadows, whether on or off, and static things described as emitters,
   /// in the order of LightView::guide; of more than kMaxWeighedLights, for which there is no guide,
-  /// one more than that.
-  static std::vector<LightView> guided(const RenderDescription& description,
-                                       const PoseFrame& frame);
+  /// one more than that. `materials` and `meshes` as described; `instances` get the materials and
+  /// lights that they are described with.
+  static std::vector<LightView> guided(const RenderDescription& description, const PoseFrame& frame,
+                                       const std::vector<MaterialView>& materials,
+                                       const std::vector<MeshView>& meshes,
+                                       std::vector<InstanceView>* instances);
 
   const std::vector<LightView>& lights() const { return lights_; }
+  /// SceneView::light_keys.
+  const std::vector<LightKey>& keys() const { return keys_; }
+  uint32_t key_count() const { return key_count_; }
   /// Over them where they are many, else empty.
   LightTreeView tree() const { return tree_.view(); }
   /// Some sphere or sun can be hit.
@@ -35,7 +42,12 @@ class LightTable {
   void update_tree(const std::vector<LightView>& before,
                    const std::vector<uint32_t>& headlights_before);
 
+  void set_keys(std::span<const LightKey> keys, LightView* light);
+
   std::vector<LightView> lights_;
+  std::vector<LightKey> keys_;
+  size_t lamp_keys_ = 0;  ///< of keys_; the rest is of headlights
+  uint32_t key_count_ = 0;
   std::vector<uint32_t> headlights_;  ///< rows of lights_
   LightTree tree_;
   bool has_visible_ = false;

@@ -107,8 +107,8 @@ Result<MeshStore> MeshStore::make(const RenderDescription& description) {
   return store;
 }
 
-void MeshStore::update(const RenderDescription& description, const PoseFrame& open,
-                       const PoseFrame& close, const PoseFrame& previous) {
+void MeshStore::update(const RenderDescription& description, std::span<const PoseFrame* const> keys,
+                       const PoseFrame& previous) {
   const size_t rigid = description.meshes.size();
   for (size_t d = 0; d < description.deformables.size(); ++d) {
     const DeformableDescription& deformable = description.deformables[d];
@@ -117,14 +117,21 @@ void MeshStore::update(const RenderDescription& description, const PoseFrame& op
     const auto take = [&](const PoseFrame& frame, std::vector<Vec3f>* out) {
       GLOAM_CHECK(frame.vertices.size() >= 3 * (deformable.first_vertex + n),
                   "the pose frame lacks vertices of a deformable");
-      out->resize(n);
       const float* v = frame.vertices.data() + 3 * deformable.first_vertex;
-      for (size_t i = 0; i < n; ++i) (*out)[i] = {v[3 * i], v[3 * i + 1], v[3 * i + 2]};
+      for (size_t i = 0; i < n; ++i) out->push_back({v[3 * i], v[3 * i + 1], v[3 * i + 2]});
     };
-    take(open, &buffers.open);
-    take(close, &buffers.close);
+    buffers.open.clear();
+    buffers.previous.clear();
+    buffers.keys.clear();
+    take(*keys.front(), &buffers.open);
     take(previous, &buffers.previous);
-    buffers.moving = buffers.open != buffers.close;
+    if (keys.size() > 1) {
+      for (const PoseFrame* key : keys) take(*key, &buffers.keys);
+    }
+    bool moving = false;
+    for (size_t k = 1; k < keys.size() && !moving; ++k)
+      moving = !std::equal(buffers.open.begin(), buffers.open.end(), buffers.keys.begin() + k * n);
+    buffers.key_count = moving ? static_cast<uint32_t>(keys.size()) : 0;
     recompute_normals(deformable.rest, &buffers);
     if (!buffers.area_cdf.empty()) make_samplable(description, static_cast<uint32_t>(rigid + d));
   }
@@ -178,7 +185,8 @@ std::vector<MeshView> MeshStore::views(const RenderDescription& description) con
     const TriangleMesh& mesh = mesh_at(description, i);
     MeshView& view = views[i];
     view.positions = span_of(buffers.open.empty() ? mesh.positions : buffers.open);
-    if (buffers.moving) view.positions_close = span_of(buffers.close);
+    if (buffers.key_count > 0) view.position_keys = span_of(buffers.keys);
+    view.key_count = buffers.key_count;
     view.positions_previous = span_of(buffers.previous);
     view.indices = span_of(mesh.indices);
     view.corner_normals = span_of(buffers.corner_normals);

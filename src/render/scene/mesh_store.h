@@ -2,6 +2,7 @@
 // Meshes as the kernel reads them, with per-triangle shading data.
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "render/kernel/scene_view.h"
@@ -14,11 +15,12 @@ struct MeshBuffers {
   std::vector<Vec3f> corner_normals;
   std::vector<TriangleUv> uvs;
   std::vector<float> area_cdf;
-  float area = 0;                            ///< [m²]
-  Vec3f half_extents;                        ///< of the bounding box of the rest positions [m]
-  std::vector<Vec3f> open, close, previous;  ///< deformables: world positions [m]
-  std::optional<TriangleMesh> rebuilt;       ///< height fields: instead of the description's
-  bool moving = false;                       ///< deformables: open and close differ
+  float area = 0;                       ///< [m²]
+  Vec3f half_extents;                   ///< of the bounding box of the rest positions [m]
+  std::vector<Vec3f> open, previous;    ///< deformables: world positions [m]
+  std::vector<Vec3f> keys;              ///< and at all keys, one after the other
+  std::optional<TriangleMesh> rebuilt;  ///< height fields: instead of the description's
+  uint32_t key_count = 0;               ///< deformables: 0 = none moves
 };
 
 class MeshStore {
@@ -27,7 +29,7 @@ class MeshStore {
   static Result<MeshStore> make(const RenderDescription& description);
 
   /// Takes the deformables' vertices from the frames and recomputes their normals.
-  void update(const RenderDescription& description, const PoseFrame& open, const PoseFrame& close,
+  void update(const RenderDescription& description, std::span<const PoseFrame* const> keys,
               const PoseFrame& previous);
   /// Makes the mesh of a height field anew from the frame's data, or as described where the frame
   /// has none. False when it stays as it was.

@@ -1,8 +1,11 @@
 #pragma once
 // Where things fixed to bodies are.
 
+#include <cmath>
+
 #include "base/check.h"
 #include "base/vec.h"
+#include "gloam/types.h"
 #include "sim/pose_frame.h"
 
 namespace gloam {
@@ -24,6 +27,32 @@ inline Affine3f pose_in_world(const PoseFrame& frame, int body, const Affine3f& 
   };
   return {rotate(X_BG.x, nullptr), rotate(X_BG.y, nullptr), rotate(X_BG.z, nullptr),
           rotate(X_BG.p, p)};
+}
+
+inline bool is_same(const Affine3f& a, const Affine3f& b) {
+  return a.x == b.x && a.y == b.y && a.z == b.z && a.p == b.p;
+}
+
+/// The rotation of a rigid pose, w >= 0.
+inline Quat quaternion_of(const Affine3f& X) {
+  // Shepperd's method: the largest of the four squared components is never near zero.
+  const double m00 = X.x.x, m10 = X.x.y, m20 = X.x.z, m01 = X.y.x, m11 = X.y.y, m21 = X.y.z;
+  const double m02 = X.z.x, m12 = X.z.y, m22 = X.z.z;
+  const double ww = 1 + m00 + m11 + m22, xx = 1 + m00 - m11 - m22, yy = 1 - m00 + m11 - m22,
+               zz = 1 - m00 - m11 + m22;
+  Quat q;
+  if (ww >= xx && ww >= yy && ww >= zz) {
+    q = {ww, m21 - m12, m02 - m20, m10 - m01};
+  } else if (xx >= yy && xx >= zz) {
+    q = {m21 - m12, xx, m10 + m01, m02 + m20};
+  } else if (yy >= zz) {
+    q = {m02 - m20, m10 + m01, yy, m21 + m12};
+  } else {
+    q = {m10 - m01, m02 + m20, m21 + m12, zz};
+  }
+  const double scale =
+      (q.w < 0 ? -1.0 : 1.0) / std::sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
+  return {q.w * scale, q.x * scale, q.y * scale, q.z * scale};
 }
 
 }  // namespace gloam

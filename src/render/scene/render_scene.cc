@@ -115,10 +115,6 @@ Vec3f live_ambient(const RenderDescription& description, const PoseFrame& frame)
   return sum * kWhiteLuminance;
 }
 
-bool is_same(const Affine3f& a, const Affine3f& b) {
-  return a.x == b.x && a.y == b.y && a.z == b.z && a.p == b.p;
-}
-
 /// Mean of the factors that schedules give while the shutter is open; `first_lamp` tells lamps from
 /// materials.
 template <class Rows>
@@ -244,37 +240,69 @@ void RenderScene::follow_schedules(const PoseFrame& open, const PoseFrame& close
   materials_.dim(d, material_levels_);
 }
 
-void RenderScene::update(const PoseFrame& open, const PoseFrame& close, const PoseFrame& previous) {
+void RenderScene::update(std::span<const PoseFrame* const> keys, const PoseFrame& previous) {
+  GLOAM_CHECK(!keys.empty(), "there is no key");
+  const PoseFrame& open = *keys.front();
   follow_live_fields(open);
-  follow_schedules(open, close);
+  follow_schedules(open, *keys.back());
   if (!description_.deformables.empty()) {
-    meshes_.update(description_, open, close, previous);
+    meshes_.update(description_, keys, previous);
     mesh_views_ = meshes_.views(description_);
   }
+  pose_keys_.clear();
   for (size_t i = 0; i < instances_.size(); ++i) {
     InstanceView& out = instances_[i];
     if (out.shape == ShapeType::kDeformable) continue;
     const InstanceDescription& in = description_.instances[i];
     out.X_WG = pose_in_world(open, in.body, in.X_BG);
-    out.X_WG_close =
-        &open == &close || in.is_static ? out.X_WG : pose_in_world(close, in.body, in.X_BG);
     out.X_WG_previous =
         &open == &previous || in.is_static ? out.X_WG : pose_in_world(previous, in.body, in.X_BG);
-    out.moving = !is_same(out.X_WG, out.X_WG_close);
     out.has_moved = !is_same(out.X_WG, out.X_WG_previous);
+    out.moving = !in.is_static && add_keys(keys, in, out.X_WG);
   }
-  lights_.update(description_, open, light_levels_, materials_.views(), mesh_views_, &instances_);
+  const size_t count = keys.size();
+  size_t row = 0;
+  for (InstanceView& out : instances_) {
+    out.keys = {};
+    if (out.shape == ShapeType::kDeformable || !out.moving) continue;
+    out.keys = {pose_keys_.data() + row, static_cast<uint32_t>(count)};
+    row += count;
+  }
+  lights_.update(description_, keys, light_levels_, materials_.views(), mesh_views_, &instances_);
+}
+
+/// Adds the instance's poses at all keys, if they are not all the same.
+bool RenderScene::add_keys(std::span<const PoseFrame* const> keys, const InstanceDescription& in,
+                           const Affine3f& X_WG) {
+  const size_t first = pose_keys_.size();
+  bool moving = false;
+  for (const PoseFrame* key : keys) {
+    pose_keys_.push_back(key == keys.front() ? X_WG : pose_in_world(*key, in.body, in.X_BG));
+    moving |= !is_same(pose_keys_.back(), X_WG);
+  }
+  if (!moving) pose_keys_.resize(first);
+  return moving;
+}
+
+DescribedLook RenderScene::described_look(const PoseFrame& frame) const {
+  DescribedLook look;
+  look.materials = MaterialStore(description_, textures_).views();
+  look.instances = instances_;
+  look.lights =
+      LightTable::guided(description_, frame, look.materials, mesh_views_, &look.instances);
+  return look;
 }
 
 bool RenderScene::has_motion() const {
-  return std::any_of(instances_.begin(), instances_.end(), [this](const InstanceView& in) {
-    return in.shape == ShapeType::kDeformable ? !mesh_views_[in.mesh].positions_close.empty()
-                                              : in.moving;
-  });
+  return !lights_.keys().empty() ||
+         std::any_of(instances_.begin(), instances_.end(), [this](const InstanceView& in) {
+           return in.shape == ShapeType::kDeformable ? !mesh_views_[in.mesh].position_keys.empty()
+                                                     : in.moving;
+         });
 }
 
-SceneView RenderScene::view_from(const Affine3f& X_WC) {
-  lights_.place_headlights(X_WC);
+SceneView RenderScene::view_from(const Affine3f& X_WC, std::span<const Affine3f> keys) {
+  lights_.place_headlights(X_WC, keys);
   SceneView view;
   view.instances = span_of(instances_);
   view.meshes = span_of(mesh_views_);
@@ -283,6 +311,8 @@ SceneView RenderScene::view_from(const Affine3f& X_WC) {
   view.texture_levels = span_of(textures_.levels);
   view.texels = span_of(textures_.texels);
   view.lights = span_of(lights_.lights());
+  view.light_keys = span_of(lights_.keys());
+  view.light_key_count = lights_.key_count();
   view.profiles = span_of(profiles_.profiles);
   view.profile_values = span_of(profiles_.values);
   view.media = volumes_.view();

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "render/scene/environment_table.h"
@@ -15,24 +16,30 @@
 
 namespace gloam {
 
+/// The scene as described, whatever has been changed or switched off since.
+struct DescribedLook {
+  std::vector<MaterialView> materials;
+  std::vector<InstanceView> instances;  ///< static ones stand where they are
+  std::vector<LightView> lights;        ///< those with a row of LightGuide::visible
+};
+
 class RenderScene {
  public:
   /// The description must outlive it. Errors: indices that refer to nothing, sizes that are not
   /// positive, broken meshes and textures.
   static Result<std::unique_ptr<RenderScene>> make(const RenderDescription& description);
 
-  /// `open` and `close` bracket the shutter; `previous` is the frame before.
-  void update(const PoseFrame& open, const PoseFrame& close, const PoseFrame& previous);
-  /// Scene with its headlights at the camera. Valid until the next update or view_from.
-  SceneView view_from(const Affine3f& X_WC);
+  /// As Renderer::update.
+  void update(std::span<const PoseFrame* const> keys, const PoseFrame& previous);
+  /// Scene with its headlights at the camera, which is at `keys` at the scene's keys; empty = it
+  /// stands still. Valid until the next update or view_from.
+  SceneView view_from(const Affine3f& X_WC, std::span<const Affine3f> keys = {});
 
   const RenderDescription& description() const { return description_; }
   const std::vector<InstanceView>& instances() const { return instances_; }
   const std::vector<MeshView>& meshes() const { return mesh_views_; }
-  /// What a LightGuide has rows for.
-  std::vector<LightView> guided_lights(const PoseFrame& frame) const {
-    return LightTable::guided(description_, frame);
-  }
+  /// What a LightGuide is made of.
+  DescribedLook described_look(const PoseFrame& frame) const;
   /// Something moves between shutter open and close.
   bool has_motion() const;
   /// Invisible instances are in the tables but never traced: fully transparent ones and those
@@ -54,6 +61,8 @@ class RenderScene {
   void follow_live_fields(const PoseFrame& frame);
   void follow_materials();
   void follow_schedules(const PoseFrame& open, const PoseFrame& close);
+  bool add_keys(std::span<const PoseFrame* const> keys, const InstanceDescription& in,
+                const Affine3f& X_WG);
 
   const RenderDescription& description_;
   TextureStore textures_;
@@ -68,6 +77,7 @@ class RenderScene {
   Vec3f sky_ambient_;                                  ///< [cd/m²]
   std::vector<float> light_levels_, material_levels_;  ///< by schedule, of the description's rows
   std::vector<InstanceView> instances_;
+  std::vector<Affine3f> pose_keys_;  ///< of the instances that move while the shutter is open
   std::vector<MeshView> mesh_views_;
   std::vector<bool> drawn_;            ///< by instance
   std::vector<bool> is_height_field_;  ///< by mesh

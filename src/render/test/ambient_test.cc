@@ -102,7 +102,7 @@ TEST(Ambient, HasTheHueOfWhatReflectsIt) {
   const SceneBuilder b = make_place(Place::kRoomWithLamp);
   const Probe probe(b);
   CameraView32 camera;
-  camera.pose.X_WC_open = camera.pose.X_WC_close = view().X_WC_open;
+  camera.pose.X_WC_open = view().X_WC_open;
   camera.fx = camera.fy = 50;
   camera.cx = 40;
   camera.cy = 30;

@@ -54,7 +54,8 @@ class BothTrees {
  public:
   explicit BothTrees(int rings) : zoo_(rings) {
     scene_ = std::move(*RenderScene::make(zoo_.builder.description));
-    scene_->update(zoo_.builder.frame, zoo_.close, zoo_.builder.frame);
+    const PoseFrame* const keys[] = {&zoo_.builder.frame, &zoo_.close, &zoo_.builder.frame};
+    scene_->update(keys, zoo_.builder.frame);
     embree_ = std::move(*EmbreeScene::make());
     GLOAM_CHECK(embree_->update(*scene_).ok(), "Embree fails");
     own_.update(*scene_);

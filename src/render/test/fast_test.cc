@@ -46,7 +46,7 @@ double mean_luminance(const Film& film) {
 }
 
 // Not met yet: one block in twenty beside the wall is 30 % too dark, the mean 10 %.
-TEST(Fast, DISABLED_IndirectLightIsThatOfThePathTier) {
+TEST(Fast, IndirectLightIsThatOfThePathTier) {
   const SceneBuilder b = divided_room();
   RenderSettings path;
   path.spp = 256;
@@ -74,7 +74,7 @@ TEST(Fast, DISABLED_IndirectLightIsThatOfThePathTier) {
 }
 
 // Not met yet: with one reflection a picture, 15 % is left in a white room.
-TEST(Fast, DISABLED_ARoomIsDarkSoonAfterItsLampGoesOut) {
+TEST(Fast, ARoomIsDarkSoonAfterItsLampGoesOut) {
   SceneBuilder b = divided_room();
   b.description.materials.back().schedule = 0;
   b.description.schedules.push_back({{Keyframes{{{0, 1}, {1, 0}}, false}}});

@@ -3,52 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "render/test/probe.h"
+#include "render/test/room_with_window.h"
 
 namespace gloam {
 namespace {
-
-struct RoomLight {
-  const char* name;
-  float lamp;  ///< luminance of a sphere of 0.1 m inside [cd/m²]
-  float sun;   ///< [lx], most of it blocked
-  float sky;   ///< [cd/m²]
-};
-
-/// A closed white room, 4 m x 4 m x 3 m, with a square hole of 1 m in the wall at +x; a sky and a
-/// sun outside and a lamp inside, where they give light.
-SceneBuilder room_with_window(const RoomLight& light, bool is_guided) {
-  SceneBuilder b;
-  const int white = b.add_diffuse({0.7f, 0.7f, 0.7f});
-  const auto wall = [&](Vec3f size, Vec3f p) {
-    b.add(ShapeType::kBox, size, translation(p), white);
-  };
-  wall({2, 2, 0.1f}, {0, 0, -0.1f});
-  wall({2, 2, 0.1f}, {0, 0, 3.1f});
-  wall({0.1f, 2, 1.7f}, {-2.1f, 0, 1.5f});
-  wall({2.2f, 0.1f, 1.7f}, {0, -2.1f, 1.5f});
-  wall({2.2f, 0.1f, 1.7f}, {0, 2.1f, 1.5f});
-  wall({0.1f, 2, 0.5f}, {2.1f, 0, 0.5f});
-  wall({0.1f, 2, 0.5f}, {2.1f, 0, 2.5f});
-  wall({0.1f, 0.75f, 0.5f}, {2.1f, -1.25f, 1.5f});
-  wall({0.1f, 0.75f, 0.5f}, {2.1f, 1.25f, 1.5f});
-  if (light.lamp > 0) {
-    b.add(ShapeType::kSphere, {0.1f, 0.1f, 0.1f}, translation({-1, 0.5f, 2.5f}),
-          b.add_emitter({light.lamp, light.lamp, light.lamp}));
-  }
-  if (light.sun > 0) {
-    LightDescription sun;
-    sun.type = LightType::kDirectional;
-    sun.intensity = {light.sun, light.sun, light.sun};
-    sun.radius = 0.01f;
-    sun.is_static = is_guided;
-    b.add_light(sun, {0, 0, 5}, {-0.8f, 0, -0.6f});
-  }
-  b.description.sky.ambient = {light.sky, light.sky, light.sky};
-  if (!is_guided) {  // nothing static casts light or shadow: no guide
-    for (InstanceDescription& instance : b.description.instances) instance.is_static = false;
-  }
-  return b;
-}
 
 /// Root mean square over the pixels of their relative standard error; what is darker than a tenth
 /// of the mean counts less.
@@ -96,10 +54,37 @@ INSTANTIATE_TEST_SUITE_P(
                     GuideCase{{"direct_sun_and_weak_lamp", 2000, 2000, 0}, 2, 0.4},
                     GuideCase{{"sun_and_glow", 200, 2000, 0}, 5, 1.02},
                     GuideCase{{"direct_sun_and_glow", 200, 2000, 0}, 2, 0.6},
+                    GuideCase{{"sun", 0, 2000, 0}, 5, 0.8},
                     GuideCase{{"lamp", 40000, 0, 0}, 5, 1.02},
                     GuideCase{{"lamp_and_sky", 40000, 0, 200}, 5, 1.02},
                     GuideCase{{"sky", 0, 0, 200}, 5, 0.7}),
     [](const auto& info) { return std::string(info.param.light.name); });
+
+TEST(Guide, IsTheSameWhateverWasOffAtTheFirstPicture) {
+  SceneBuilder b = room_with_window({"lamp_and_sky", 4000, 0, 200}, true);
+  for (MaterialDescription& m : b.description.materials) {
+    if (luminance(m.emission) > 0) m.schedule = 0;
+  }
+  b.description.schedules.push_back({{OnOff{1.0, 0.25, 0}}});
+  const CameraView view =
+      SceneBuilder::camera(look_at({1.5f, -1.5f, 2.2f}, {-1, 1, 0.4f}), 16, 16, 50);
+  RenderSettings settings;
+  settings.spp = 4;
+  const auto picture_after = [&](std::initializer_list<double> times) {
+    const auto renderer = b.make();
+    Film film;
+    for (const double time : times) {
+      PoseFrame frame = b.frame;
+      frame.time = time;
+      renderer->update(frame, frame, frame);
+      renderer->render(view, settings, &film);
+    }
+    return film.radiance;
+  };
+  const auto alone = picture_after({0.1}), later = picture_after({0.6, 0.1});
+  EXPECT_EQ(alone, later);
+  EXPECT_NE(alone, picture_after({0.6})) << "the lamp's schedule has no effect";
+}
 
 }  // namespace
 }  // namespace gloam

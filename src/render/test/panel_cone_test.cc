@@ -38,7 +38,8 @@ SceneBuilder row_of_panels(int count, bool outwards) {
 std::unique_ptr<RenderScene> scene_of(const SceneBuilder& b) {
   auto scene = RenderScene::make(b.description);
   GLOAM_CHECK(scene.ok(), "the test's scene is refused");
-  (*scene)->update(b.frame, b.frame, b.frame);
+  const PoseFrame* const key = &b.frame;
+  (*scene)->update({&key, 1}, b.frame);
   return std::move(*scene);
 }
 

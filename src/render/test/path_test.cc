@@ -115,7 +115,7 @@ Mean one_technique(const Probe& probe, const CameraView& view, bool by_light, in
   camera.fx = camera.fy = static_cast<float>(view.intrinsics.fx);
   camera.cx = static_cast<float>(view.intrinsics.cx);
   camera.cy = static_cast<float>(view.intrinsics.cy);
-  camera.pose = {view.X_WC_open, view.X_WC_open, view.X_WC_open};
+  camera.pose = {view.X_WC_open, view.X_WC_open, {}};
   for (uint32_t i = 0; i < static_cast<uint32_t>(draws); ++i) {
     Sampler sampler = draw(i, 77);
     RayCone cone;
@@ -135,7 +135,7 @@ Mean one_technique(const Probe& probe, const CameraView& view, bool by_light, in
       if (by_light) {
         LightPicker picker;
         picker.prepare(probe.view, s.p, s.geometric);
-        const LightSample light = picker.sample(probe.view, s.p, pick, u, 0, 0);
+        const LightSample light = picker.sample(probe.view, s.p, pick, u, 0);
         if (light.pdf > 0 && dot(light.wi, s.geometric) > 0) {
           float pdf = 0;
           const Vec3f f = eval_bsdf(bsdf, wo, frame.to_local(light.wi), &pdf);
@@ -204,7 +204,7 @@ TEST(Path, LampsCloseToASurfaceLoseNothing) {
   CameraView32 camera;
   camera.fx = camera.fy = static_cast<float>(view.intrinsics.fx);
   camera.cx = camera.cy = 12;
-  camera.pose = {view.X_WC_open, view.X_WC_open, view.X_WC_open};
+  camera.pose = {view.X_WC_open, view.X_WC_open, {}};
   for (uint32_t i = 0; i < 1000000; ++i) {
     Sampler sampler = draw(i, 3);
     RayCone cone;

@@ -2,6 +2,7 @@
 // A scene with its tracer, for tests that call the kernel themselves.
 
 #include "render/cpu/embree_scene.h"
+#include "render/cpu/light_guide.h"
 #include "render/kernel/channels.h"
 #include "render/kernel/direct.h"
 #include "render/test/scene_builder.h"
@@ -14,11 +15,18 @@ class Probe {
     auto scene = RenderScene::make(builder_.description);
     GLOAM_CHECK(scene.ok(), "the test's scene is refused");
     scene_ = std::move(*scene);
-    scene_->update(builder_.frame, builder_.frame, builder_.frame);
+    const PoseFrame* const key = &builder_.frame;
+    scene_->update({&key, 1}, builder_.frame);
     embree_ = std::move(*EmbreeScene::make());
     GLOAM_CHECK(embree_->update(*scene_).ok(), "the test's BVH fails");
     view = scene_->view_from({});
     tracer = embree_->tracer(*scene_);
+  }
+
+  /// Gives the view its light guide.
+  void guide() {
+    guide_.build(view, embree_->static_tracer(*scene_), scene_->described_look(builder_.frame));
+    view.guide = guide_.view();
   }
 
   SceneView view;
@@ -28,6 +36,7 @@ class Probe {
   SceneBuilder builder_;
   std::unique_ptr<RenderScene> scene_;
   std::unique_ptr<EmbreeScene> embree_;
+  LightGuideStore guide_;
 };
 
 inline Sampler draw(uint32_t i, uint64_t seed = 1) { return Sampler::make(seed, 0, 0, 0, i, 24); }

@@ -107,7 +107,7 @@ class SceneBuilder {
     view.intrinsics.fy = view.intrinsics.fx = 0.5 * height / std::tan(fovy_degrees * kPi / 360);
     view.intrinsics.cx = 0.5 * width;
     view.intrinsics.cy = 0.5 * height;
-    view.X_WC_open = view.X_WC_close = view.X_WC_previous = X_WC;
+    view.X_WC_open = view.X_WC_previous = X_WC;
     return view;
   }
 

@@ -80,7 +80,7 @@ Mean without_sampling(const SceneBuilder& b, int paths) {
   CameraView32 camera;
   camera.fx = camera.fy = static_cast<float>(view.intrinsics.fx);
   camera.cx = camera.cy = 12;
-  camera.pose = {view.X_WC_open, view.X_WC_open, view.X_WC_open};
+  camera.pose = {view.X_WC_open, view.X_WC_open, {}};
   Mean mean;
   for (int i = 0; i < paths; ++i) {
     Sampler sampler = draw(static_cast<uint32_t>(i));

@@ -174,7 +174,8 @@ int64_t pixels_alone(const RenderDescription& whole, size_t instance, const Pose
   auto renderer = make_cpu_renderer(alone);
   EXPECT_TRUE(renderer.ok());
   (*renderer)->update(poses, poses, poses);
-  CameraView view = view_at(alone, static_cast<int>(alone.cameras.size()) - 1, poses, poses, poses);
+  const PoseFrame* const keys[] = {&poses};
+  CameraView view = view_at(alone, static_cast<int>(alone.cameras.size()) - 1, keys, poses);
   view.intrinsics = {64, 64, 64, 64, 32, 32};
   RenderSettings settings;
   settings.spp = 0;
@@ -186,7 +187,7 @@ int64_t pixels_alone(const RenderDescription& whole, size_t instance, const Pose
     X_WC.p = Vec3f{static_cast<float>(center[0]), static_cast<float>(center[1]),
                    static_cast<float>(center[2])} +
              back * static_cast<float>(3 * radius);
-    view.X_WC_open = view.X_WC_close = view.X_WC_previous = X_WC;
+    view.X_WC_open = view.X_WC_previous = X_WC;
     Film film;
     (*renderer)->render(view, settings, &film);
     pixels += std::count(film.part.begin(), film.part.end(), instance + 1);

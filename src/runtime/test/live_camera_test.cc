@@ -257,5 +257,39 @@ TEST(LiveCamera, WhatCannotBeOpenedSaysWhy) {
   ASSERT_TRUE(simulation->run_until(10).ok()) << "and nothing was left behind that it waits for";
 }
 
+// The ball flies along +X at 1 m/s, 2 m before the camera. Row v of 48 is read 0.1 s v / 48 later.
+TEST(LiveCamera, ARollingShutterSeesEachRowAtItsOwnTime) {
+  const TempFolder folder;
+  auto simulation = simulate(flight(
+      folder, "[[camera]]\nname = \"a/fixed\"\nreadout_time = 0.1\nexposure_time = 0.004\n"));
+  CameraRequest request = tiny("a/fixed", {10, 1});
+  request.width = 64, request.height = 48;
+  Frames frames;
+  auto stream = open(*simulation, request, frames);
+  ASSERT_TRUE(simulation->run_until(200).ok());
+  stream.reset();
+  const auto all = frames.all();
+  ASSERT_EQ(all.size(), 3u) << "those from 0.3 and 0.4 s on are not read out at 0.4 s";
+  for (const auto& frame : all) {
+    EXPECT_EQ(frame->readout_time, 0.1);
+    EXPECT_EQ(frame->step, 50 * frame->index);
+    const Intrinsics& k = frame->intrinsics;
+    int rows = 0;
+    for (int y = 0; y < k.height; ++y) {
+      double sum = 0, x_sum = 0;
+      for (int x = 0; x < k.width; ++x) {
+        if (frame->depth[static_cast<size_t>(y * k.width + x)] > 2.5) continue;  // the wall
+        ++sum;
+        x_sum += x + 0.5;
+      }
+      if (sum < 4) continue;
+      ++rows;
+      const double at = frame->time + 0.1 * y / k.height;
+      EXPECT_NEAR(x_sum / sum, k.cx + k.fx * at / 2, 0.51) << frame->time << ", row " << y;
+    }
+    EXPECT_GE(rows, 9);
+  }
+}
+
 }  // namespace
 }  // namespace gloam

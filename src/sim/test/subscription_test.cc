@@ -170,5 +170,78 @@ TEST(Pace, PauseStopsAndResumeGoesOn) {
   EXPECT_GE(sim->latest().step(), paused_at + 100);
 }
 
+// A window of 20 ms at steps of 2 ms has 11 keys; at 30 Hz windows begin on steps 0, 17, 34, 50.
+TEST(Subscription, WindowsHoldEvenStepsFromTheirEventOn) {
+  auto sim = make_simulator(world_from_mjcf(kBall), lockstep());
+  auto queue =
+      *sim->subscribe({.rate = {30, 1}, .required = true, .capacity = 100, .window = {20, 1000}});
+  sim->start();
+  ASSERT_TRUE(sim->step(100).ok());
+  for (const int first : {0, 17, 34, 50, 67, 84}) {
+    const SnapshotWindow window = queue->try_next_window();
+    ASSERT_EQ(window.count, 11) << first;
+    for (int k = 0; k < 11; ++k) EXPECT_EQ(window.keys[static_cast<size_t>(k)].step(), first + k);
+  }
+  EXPECT_FALSE(queue->try_next_window()) << "the window from step 100 on is not complete";
+}
+
+// Whole revolutions of 0.1 s at 10 Hz: the end of one is the beginning of the next.
+TEST(Subscription, WindowsMayTouchAndOverlap) {
+  auto sim = make_simulator(world_from_mjcf(kBall), lockstep());
+  auto whole =
+      *sim->subscribe({.rate = {10, 1}, .required = true, .capacity = 9, .window = {1, 10}});
+  auto twice =
+      *sim->subscribe({.rate = {10, 1}, .required = true, .capacity = 9, .window = {1, 5}});
+  sim->start();
+  ASSERT_TRUE(sim->step(200).ok());
+  for (int n = 0; n < 3; ++n) {
+    const SnapshotWindow window = whole->try_next_window();
+    ASSERT_EQ(window.count, 14) << "50 steps in strides of 4";
+    EXPECT_EQ(window.keys[0].step(), 50 * n);
+    EXPECT_EQ(window.keys[12].step() - window.keys[0].step(), 48);
+    EXPECT_EQ(window.keys[13].step() - window.keys[0].step(), 52);
+  }
+  for (int n = 0; n < 2; ++n) {
+    const SnapshotWindow window = twice->try_next_window();
+    EXPECT_EQ(window.keys[0].step(), 50 * n);
+    EXPECT_GE(window.keys[static_cast<size_t>(window.count) - 1].step(), 50 * n + 100);
+  }
+}
+
+TEST(Subscription, AWindowIsLostAsAWhole) {
+  auto sim = make_simulator(world_from_mjcf(kBall), lockstep());
+  auto queue = *sim->subscribe({.rate = {50, 1}, .capacity = 2, .window = {4, 1000}});
+  sim->start();
+  ASSERT_TRUE(sim->step(100).ok());
+  EXPECT_EQ(queue->dropped(), 8);
+  for (const int first : {80, 90}) {
+    const SnapshotWindow window = queue->try_next_window();
+    ASSERT_EQ(window.count, 3);
+    EXPECT_EQ(window.keys[0].step(), first);
+    EXPECT_EQ(window.keys[2].step(), first + 2);
+  }
+}
+
+TEST(Subscription, AResetBeginsItsWindowsAnew) {
+  auto sim = make_simulator(world_from_mjcf(kBall), lockstep());
+  auto queue = *sim->subscribe({.rate = {50, 1}, .capacity = 8, .window = {16, 1000}});
+  sim->start();
+  ASSERT_TRUE(sim->step(5).ok());
+  ASSERT_TRUE(sim->reset().ok());
+  ASSERT_TRUE(sim->step(9).ok());
+  const SnapshotWindow window = queue->try_next_window();
+  ASSERT_EQ(window.count, 9);
+  for (int k = 0; k < 9; ++k) EXPECT_EQ(window.keys[static_cast<size_t>(k)].step(), k);
+  EXPECT_FALSE(queue->try_next_window());
+}
+
+TEST(Subscription, WindowsThatMakeNoSenseAreRefused) {
+  auto sim = make_simulator(world_from_mjcf(kBall), lockstep());
+  EXPECT_FALSE(sim->subscribe({.rate = {50, 1}, .window = {-1, 100}}).ok());
+  EXPECT_FALSE(sim->subscribe({.rate = {50, 1}, .window = {1, 0}}).ok());
+  EXPECT_FALSE(sim->subscribe({.rate = {50, 1}, .window = {1, 5}}).ok());
+  EXPECT_TRUE(sim->subscribe({.rate = {500, 1}, .window = {6, 1000}}).ok());
+}
+
 }  // namespace
 }  // namespace gloam

@@ -124,7 +124,8 @@ std::vector<Case> cases() {
       c.close.body_p[3 * body] += 0.08;
       c.close.body_p[3 * body + 2] += 0.05;
     }
-    c.view.X_WC_close.p += Vec3f{0.02f, 0, 0};
+    c.view.X_WC_keys = {c.view.X_WC_open, c.view.X_WC_open};
+    c.view.X_WC_keys.back().p += Vec3f{0.02f, 0, 0};
   }
   return all;
 }

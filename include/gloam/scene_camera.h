@@ -1,0 +1,63 @@
+#pragma once
+// What a scene says of its cameras: where they stand, their lenses and shutters. Part of
+// gloam/scene.h; docs/cameras.md has examples.
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gloam/result.h"
+#include "gloam/scene_sensor.h"
+#include "gloam/types.h"
+
+namespace gloam {
+
+/// camera.lens: how directions become pixels, in the terms of ROS's CameraInfo, or in millimetres.
+/// Pixels are those of the camera's own width and height, and their centres lie at integer + 0.5:
+/// cx and cy are 0.5 more than in files of OpenCV and ROS.
+struct LensOptions {
+  /// pinhole | plumb_bob | rational_polynomial | equidistant (fisheye) | equirectangular
+  std::string model = "pinhole";
+  /// plumb_bob: k1 k2 p1 p2 [k3], rational_polynomial: k1 k2 p1 p2 k3 k4 k5 k6, equidistant: k1 k2
+  /// k3 k4; missing ones are 0.
+  std::vector<double> d = {};
+  /// Focal lengths [px], equirectangular: [px/rad]. Empty: fy = fx; both by `fovy`, of a panorama
+  /// so that the picture holds all directions.
+  std::optional<double> fx = {}, fy = {};
+  std::optional<double> cx = {}, cy = {};   ///< principal point [px]; empty = the middle
+  std::optional<double> focal_length = {};  ///< [m], > 0; with sensor_size instead of fx, fy
+  std::optional<std::array<double, 2>> sensor_size = {};  ///< width, height [m], > 0
+  /// Focal length by the diameter of the opening: what is not at focus_distance is blurred (path
+  /// tier). Needs focal_length. Empty = everything is sharp.
+  std::optional<double> f_number = {};
+  std::optional<double> focus_distance = {};  ///< from the lens's centre [m], > 0
+  SourceLoc loc = {};
+};
+
+/// [[camera]]: a camera added to the scene, fixed in the world or on a body.
+struct CameraOptions {
+  std::string name = {};
+  std::string body = {};  ///< full name of the body it sits on; empty = world
+  std::string track =
+      {};  ///< body whose position it follows with a fixed offset and heading; empty = none
+  Vec3 position = {};  ///< in the frame of `body`; for `track`: offset from it in world axes [m]
+  std::optional<Vec3> look_at = {};  ///< point to look at, in the same frame [m]
+  std::optional<Quat> orientation =
+      {};            ///< instead of look_at: looks along its -Z, up is +Y (MuJoCo's convention)
+  double fovy = 45;  ///< vertical field of view [deg], (0, 180)
+  int width = 640, height = 480;  ///< [px], 1 … 16384
+  Rational rate = {20, 1};        ///< frames per second of simulation time
+  std::optional<LensOptions> lens = {};
+  /// How long each row sees light [s], >= 0: what moves is blurred. 0 = an instant.
+  double exposure_time = 0;
+  /// From the first row's exposure to the last one's [s], >= 0: above 0 a rolling shutter.
+  double readout_time = 0;
+  /// What is recorded of this camera, instead of what [record] says: video png depth_png depth_exr
+  /// segmentation sensor_depth_png raw_png thermal_png events; [] = its poses alone.
+  std::optional<std::vector<std::string>> outputs = {};
+  CameraSensing sensing = {};  ///< imager, timing …: what happens between light and message
+  SourceLoc loc = {};
+};
+
+}  // namespace gloam

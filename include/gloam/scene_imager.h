@@ -1,0 +1,82 @@
+#pragma once
+// What happens between light and message: [camera.imager], [camera.timing]. Every model is off
+// until its table or value is there (docs/sensors.md).
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "gloam/result.h"
+#include "gloam/types.h"
+
+namespace gloam {
+
+/// [camera.timing], [sensor.timing]: when samples are taken and when they arrive. Sample k is taken
+/// at the first physics step at or after phase + k / rate + its jitter.
+struct TimingOptions {
+  Rational phase = {0, 1};    ///< time of sample 0 [s], >= 0
+  double jitter = 0;          ///< of the instant of a sample: standard deviation, cut at four [s]
+  double latency = 0;         ///< from the instant to the delivery [s]
+  double latency_jitter = 0;  ///< standard deviation of the latency, cut at four [s]
+  double drop = 0;            ///< share of samples that are lost, independent of each other, 0 … 1
+  SourceLoc loc = {};
+};
+
+/// [camera.imager.exposure]: by ISO 12232, as EV100 in docs/light.md.
+struct ExposureOptions {
+  double f_number = 2.8;
+  double shutter = 0.01;  ///< [s]
+  double iso = 100;       ///< saturation-based speed
+  SourceLoc loc = {};
+};
+
+/// [camera.imager.auto_exposure]: meters a picture of 32 pixels' width of its own at the camera's
+/// rate, from the start of the simulation on. Reflected-light meter of ISO 2720.
+struct AutoExposureOptions {
+  double time_constant = 0.5;        ///< of the approach to the metered exposure value [s]
+  double compensation = 0;           ///< brighter by so many stops [EV]
+  std::string metering = "average";  ///< average | center: a Gaussian of a quarter of the width
+  double min_ev100 = -6, max_ev100 = 18;
+  double max_shutter = 0.02;  ///< the shutter opens up to this before the gain rises [s]
+  double max_iso = 1600;      ///< then the gain rises to this
+  SourceLoc loc = {};
+};
+
+/// [camera.imager.vignetting]: factor on the light at a pixel.
+struct VignettingOptions {
+  bool cos4 = false;  ///< by the angle of the pixel's ray with the axis of a pinhole
+  /// 1 + a r² + b r⁴ + c r⁶, r = distance from the picture's centre by half its diagonal
+  Vec3 polynomial = {0, 0, 0};
+  SourceLoc loc = {};
+};
+
+/// [camera.imager.pixel]: from light to numbers, EMVA 1288 release 4.0 (linear model).
+struct PixelOptions {
+  double full_well = 10000;         ///< electrons at which a pixel is full
+  double quantum_efficiency = 0.6;  ///< electrons per photon of 555 nm, 0 … 1
+  double pitch = 3.5;               ///< of the pixels [µm]
+  bool shot_noise = false;          ///< the number of electrons is Poisson's
+  double read_noise = 0;            ///< standard deviation in the dark [electrons]
+  double dark_current = 0;          ///< [electrons/s]; with shot_noise it has its own
+  double prnu = 0;                  ///< spread of the pixels' sensitivity, a share
+  double dsnu = 0;                  ///< spread of the pixels' offsets [electrons]
+  int bits = 0;                     ///< of the converter, 1 … 16; 0 = no quantisation
+  int black_level = 0;              ///< number that stands for no light [DN]
+  SourceLoc loc = {};
+};
+
+/// [camera.imager]
+struct ImagerOptions {
+  std::optional<ExposureOptions> exposure = {};
+  std::optional<AutoExposureOptions> auto_exposure = {};  ///< takes its f-number from `exposure`
+  std::optional<VignettingOptions> vignetting = {};
+  std::optional<PixelOptions> pixel = {};
+  std::string mosaic = "none";     ///< none rggb bggr grbg gbrg mono: colours of the top left 2 x 2
+  Vec3 white_balance = {1, 1, 1};  ///< gains that make the sensor's red, green, blue neutral, >= 1
+  std::string curve = "neutral";   ///< neutral | srgb: rolls highlights off, or clips them
+  int jpeg = 0;                    ///< quality of the compression, 1 … 100; 0 = none
+  uint64_t seed = 0;               ///< beside the simulation's and the camera's name
+  SourceLoc loc = {};
+};
+
+}  // namespace gloam

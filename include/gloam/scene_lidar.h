@@ -1,0 +1,73 @@
+#pragma once
+// [[lidar]]: a LiDAR added to the scene (docs/lidar.md).
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gloam/result.h"
+#include "gloam/types.h"
+
+namespace gloam {
+
+/// [[lidar.surface]]: what a material is at the LiDAR's wavelength, which its colour does not tell.
+struct LidarSurfaceOptions {
+  std::string material = {};  ///< full name; * stands for any text; the last that fits counts
+  std::optional<double> diffuse = {};  ///< of its untextured base, 0 … 1; empty = its red
+  /// Coefficient of retroreflection [cd/(lx m²)] (ASTM D4956: 70 engineer grade, 580 prismatic).
+  double retro = 0;
+  SourceLoc loc = {};
+};
+
+/// What is not given is the preset's. Angles in degrees, as in data sheets. The sensor's frame: x
+/// ahead, y to the left, z up (ROS REP 103).
+struct LidarOptions {
+  std::string name = {};          ///< unique
+  std::string body = {};          ///< full name of the body it sits on; empty = world
+  Vec3 position = {};             ///< in the frame of `body` [m]
+  Quat orientation = {};          ///< in the frame of `body`
+  std::string preset = "OS1-64";  ///< named after data sheets; docs/lidar.md has the list
+  /// How beams are spread: spinning (rings that turn), raster (a grid, column by column), flash (a
+  /// grid, all at once), rosette (two prisms that turn).
+  std::optional<std::string> pattern = {};
+  std::optional<Rational> rate = {};  ///< scans per second of simulation time [Hz]
+  /// spinning: elevation of each ring, up [deg]
+  std::optional<std::vector<double>> elevations = {};
+  std::optional<int> columns = {};                    ///< spinning: of a whole turn; raster; flash
+  std::optional<int> rows = {};                       ///< raster, flash
+  std::optional<int> points = {};                     ///< rosette: of a scan
+  std::optional<std::array<double, 2>> azimuth = {};  ///< spinning: from, to, of -180 … 180 [deg]
+  /// raster, flash: across and up; rosette: both the same [deg]
+  std::optional<std::array<double, 2>> field_of_view = {};
+  std::optional<bool> clockwise = {};  ///< spinning, seen from above
+
+  std::optional<int> wavelength = {};    ///< 905 or 1550 [nm]
+  std::optional<double> min_range = {};  ///< beams begin there [m]
+  std::optional<double> max_range = {};  ///< [m]
+  /// At which a plate of 10 % reflectance is just detected: sets the threshold; 0 = all echoes are
+  /// detected [m]
+  std::optional<double> range_at_10_percent = {};
+  std::optional<std::array<double, 2>> divergence = {};  ///< full angle at 1/e², across, up [deg]
+  std::optional<double> pulse_length = {};               ///< echoes closer together are one [m]
+  int footprint_rays = 1;                                ///< over the beam's cross-section, 1 … 32
+  std::optional<std::string> returns = {};               ///< first strongest last dual all
+  int most_returns = 3;                                  ///< of `all`, 1 … 5
+
+  std::vector<LidarSurfaceOptions> surfaces = {};
+
+  /// Errors of range and amplitude, drop-outs at the threshold, speckle of what media send back.
+  bool noise = false;
+  std::optional<double> range_noise = {};  ///< standard deviation where the signal is strong [m]
+
+  int motion_keys = 4;  ///< times per scan that poses are taken, in between evenly moved; 1 … 64
+  bool deskew = false;  ///< points in the frame at the end of the scan, not at their own times
+  bool truth = false;   ///< part, instance and semantic of each point
+  std::string intensity = "reflectivity";  ///< reflectivity (0 … 255, calibrated) | signal
+  /// Files of each scan: pcd ply npy; empty = pcd if [record] lists "lidar", which it does unless
+  /// told otherwise.
+  std::optional<std::vector<std::string>> outputs = {};
+  SourceLoc loc = {};
+};
+
+}  // namespace gloam

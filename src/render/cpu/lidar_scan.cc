@@ -1,0 +1,79 @@
+#include "render/cpu/lidar_scan.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "base/parallel.h"
+#include "render/cpu/tile.h"
+#include "render/kernel/lidar.h"
+
+namespace gloam {
+namespace {
+
+constexpr int kLanes = kLaneCount;
+
+struct ScanJob {
+  const SceneView& scene;
+  const EmbreeTracer& tracer;
+  const LidarView& view;
+  std::array<Vec2f, kMostFootprintRays> footprint;
+  bool has_media;
+};
+
+/// Up to kLanes beams that follow each other.
+void scan_packet(const ScanJob& job, const LidarBeam* beams, int count, LidarReturn* out) {
+  const LidarOptics& optics = job.view.optics;
+  Vec3Of<FloatLanes> d_L;
+  FloatLanes time;
+  MaskLanes active = false;
+  LidarEchoes echoes[kLanes];
+  LidarKey keys[kLanes];
+  Backscatter soft[kLanes];
+  for (int i = 0; i < kLanes; ++i) {
+    const LidarBeam& beam = beams[std::min(i, count - 1)];
+    set_lane(&d_L, i, beam.d);
+    set_lane(&time, i, beam.time);
+    set_lane(&active, i, i < count);
+    keys[i] = {job.view.seed, job.view.scan, beam.id};
+    if (job.has_media) soft[i] = Backscatter(optics, keys[i], &echoes[i]);
+  }
+  const int rays = optics.footprint_rays;
+  for (int k = 0; k < rays; ++k) {
+    const Vec3Of<FloatLanes> d =
+        rays > 1 ? footprint_direction(optics, d_L, job.footprint[static_cast<size_t>(k)]) : d_L;
+    // Media hardly vary within a footprint: one ray tells what comes back from them.
+    trace_echoes(job.scene, job.tracer, optics, beam_ray(job.view.motion, d, time), active,
+                 1.0f / static_cast<float>(rays), echoes, job.has_media && k == 0 ? soft : nullptr);
+  }
+  for (int i = 0; i < count; ++i) {
+    if (job.has_media) soft[i].finish();
+    detect(optics, keys[i], &echoes[i], out + static_cast<size_t>(i) * optics.most_returns);
+  }
+}
+
+}  // namespace
+
+void scan_beams(const SceneView& scene, const EmbreeTracer& tracer, const LidarView& view,
+                std::span<LidarReturn> returns) {
+  const LidarOptics& optics = view.optics;
+  GLOAM_CHECK(optics.footprint_rays >= 1 && optics.footprint_rays <= kMostFootprintRays &&
+                  optics.most_returns >= 1 && optics.most_returns <= kMostLidarReturns,
+              "numbers of rays and returns are within their bounds");
+  GLOAM_CHECK(returns.size() == view.beams.size() * static_cast<size_t>(optics.most_returns),
+              "there is room for every return");
+  const ScanJob job{scene, tracer, view, footprint_points(optics.footprint_rays),
+                    !scene.media.volumes.empty()};
+  const auto beams = static_cast<int64_t>(view.beams.size());
+  parallel_for_range("lidar beams", (beams + kLanes - 1) / kLanes, 16,
+                     [&](int64_t begin, int64_t end) {
+                       const FlushDenormals flush;
+                       for (int64_t packet = begin; packet < end; ++packet) {
+                         const int64_t first = packet * kLanes;
+                         scan_packet(job, &view.beams[static_cast<size_t>(first)],
+                                     static_cast<int>(std::min<int64_t>(kLanes, beams - first)),
+                                     &returns[static_cast<size_t>(first * optics.most_returns)]);
+                       }
+                     });
+}
+
+}  // namespace gloam

@@ -1,0 +1,15 @@
+#pragma once
+// The LiDAR kernel over Embree's packets and all threads of parallel_for.
+
+#include <span>
+
+#include "render/cpu/embree_tracer.h"
+#include "render/lidar_view.h"
+
+namespace gloam {
+
+/// `returns`: view.optics.most_returns of each beam, in the order of the beams.
+void scan_beams(const SceneView& scene, const EmbreeTracer& tracer, const LidarView& view,
+                std::span<LidarReturn> returns);
+
+}  // namespace gloam

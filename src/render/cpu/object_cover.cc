@@ -1,0 +1,74 @@
+#include "render/cpu/object_cover.h"
+
+#include <algorithm>
+
+#include "base/parallel.h"
+#include "render/kernel/channels.h"
+
+namespace gloam {
+namespace {
+
+constexpr int kChunks = 32;       // of rows, which have counts of their own
+constexpr int kMostPassed = 256;  // surfaces along one ray
+
+void add_pixel(int x, int y, PixelBox* box) {
+  box->u0 = std::min(box->u0, x);
+  box->v0 = std::min(box->v0, y);
+  box->u1 = std::max(box->u1, x + 1);
+  box->v1 = std::max(box->v1, y + 1);
+  ++box->pixels;
+}
+
+void add_box(const PixelBox& from, PixelBox* to) {
+  to->u0 = std::min(to->u0, from.u0);
+  to->v0 = std::min(to->v0, from.v0);
+  to->u1 = std::max(to->u1, from.u1);
+  to->v1 = std::max(to->v1, from.v1);
+  to->pixels += from.pixels;
+}
+
+}  // namespace
+
+std::vector<ObjectCover> measure_cover(const SceneView& scene, const EmbreeTracer& tracer,
+                                       const CameraView32& camera, bool has_motion, int width,
+                                       int height, const std::vector<uint16_t>& object_of) {
+  const size_t count =
+      object_of.empty() ? 0 : *std::max_element(object_of.begin(), object_of.end()) + size_t{1};
+  std::vector<std::vector<ObjectCover>> parts(kChunks, std::vector<ObjectCover>(count));
+  parallel_for("object cover", kChunks, [&](int64_t chunk) {
+    std::vector<ObjectCover>& covers = parts[static_cast<size_t>(chunk)];
+    std::vector<int> last(count, -1);  // pixel in which the object was met
+    for (int y = static_cast<int>(chunk) * height / kChunks;
+         y < (static_cast<int>(chunk) + 1) * height / kChunks; ++y) {
+      for (int x = 0; x < width; ++x) {
+        RayCone cone;
+        Ray ray = camera_ray(camera, static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f,
+                             has_motion ? camera.time_of(y, 0) : 0.0f, &cone);
+        bool first = true;
+        for (int passed = 0; sees(ray) && passed < kMostPassed; ++passed) {
+          RayHit hit;
+          if (!tracer.trace(ray, false, &hit)) break;
+          const Surface s = make_surface(scene, ray, hit, cone);
+          const uint16_t object = object_of[s.instance];
+          if (shows(scene, s)) {
+            if (first) add_pixel(x, y, &covers[object].seen);
+            first = false;
+            if (last[object] != y * width + x) add_pixel(x, y, &covers[object].all);
+            last[object] = y * width + x;
+          }
+          ray.o = leave_surface(s.p, s.geometric, ray.d, hit.t);
+        }
+      }
+    }
+  });
+  std::vector<ObjectCover> covers(count);
+  for (const auto& part : parts) {
+    for (size_t i = 0; i < count; ++i) {
+      add_box(part[i].seen, &covers[i].seen);
+      add_box(part[i].all, &covers[i].all);
+    }
+  }
+  return covers;
+}
+
+}  // namespace gloam

@@ -1,0 +1,33 @@
+#pragma once
+// A LiDAR's beams while it moves. Device-safe.
+
+#include "render/kernel/ray.h"
+
+namespace gloam {
+
+/// Where a sensor is while it scans: L turns evenly about a fixed axis and moves evenly. Times run
+/// from 0 to 1.
+struct LidarMotion {
+  Affine3f X_WL;   ///< at 0
+  Vec3f shift;     ///< of its origin until 1 [m]
+  Vec3f axis;      ///< of its turn, unit, in L
+  float turn = 0;  ///< [turns]
+};
+
+template <class F>
+GLOAM_HD RayOf<F> beam_ray(const LidarMotion& motion, Vec3Of<F> d_L, F time) {
+  RayOf<F> ray;
+  if (motion.turn != 0) {  // Rodrigues' formula
+    F s, c;
+    const F turn = time * motion.turn;
+    sincos_turn(turn - floor_of(turn), &s, &c);
+    const Vec3Of<F> axis = in_all_lanes<F>(motion.axis);
+    d_L = d_L * c + cross(axis, d_L) * s + axis * (dot(axis, d_L) * (1.0f - c));
+  }
+  ray.d = normalize(transform_vector(pose_in_all_lanes<F>(motion.X_WL), d_L));
+  ray.o = in_all_lanes<F>(motion.X_WL.p) + in_all_lanes<F>(motion.shift) * time;
+  ray.time = time;
+  return ray;
+}
+
+}  // namespace gloam

@@ -1,0 +1,35 @@
+#pragma once
+// One LiDAR's beams in one window of time, as the renderer takes them.
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "render/kernel/lidar_detect.h"
+#include "render/kernel/lidar_motion.h"
+
+namespace gloam {
+
+struct LidarBeam {
+  Vec3f d;          ///< unit, in the sensor's frame L: x ahead, y to the left, z up
+  float time = 0;   ///< 0 … 1 between the instants that the renderer was updated to
+  uint32_t id = 0;  ///< of the beam in its scan, for its draws
+};
+
+/// Beams that follow each other are traced together: neighbours in space should be neighbours here.
+struct LidarView {
+  LidarMotion motion;
+  LidarOptics optics;
+  uint64_t seed = 1;
+  uint64_t scan = 0;  ///< draws are keyed (seed, scan, beam)
+  std::span<const LidarBeam> beams;
+};
+
+/// Even motion from one pose to another; L turns by less than half a turn.
+LidarMotion make_lidar_motion(const Affine3f& X_WL_open, const Affine3f& X_WL_close);
+
+/// Rays of a footprint, in half angles at 1/e²: as many as asked for, of the same share of a
+/// Gaussian beam each; a single one is its axis.
+std::array<Vec2f, kMostFootprintRays> footprint_points(int rays);
+
+}  // namespace gloam

@@ -1,0 +1,119 @@
+#include "runtime/live_lidar.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <new>
+#include <utility>
+
+#include "base/log.h"
+#include "base/text.h"
+
+namespace gloam {
+namespace {
+
+Result<LidarDescription> find_lidar(const CompiledWorld& world, const std::string& name) {
+  GLOAM_TRY(const std::vector<LidarDescription> lidars, describe_lidars(world));
+  std::vector<std::string> names;
+  for (const LidarDescription& lidar : lidars) {
+    if (lidar.options.name == name) return lidar;
+    names.push_back(lidar.options.name);
+  }
+  return Error{ErrorKind::kInput,
+               fmt::format("there is no lidar '{}'", name),
+               {},
+               names.empty() ? "the scene has no [[lidar]]" : suggest_name(name, names)};
+}
+
+}  // namespace
+
+int motion_stretches(Rational rate, Rational timestep, int wanted) {
+  // Steps of a scan: an integer, or cut as told.
+  const __int128 num = static_cast<__int128>(rate.den) * timestep.den;
+  const __int128 den = static_cast<__int128>(rate.num) * timestep.num;
+  if (num < den) return 1;
+  const __int128 steps = num / den;
+  const int most = static_cast<int>(std::min<__int128>(steps, 64));
+  wanted = std::min(wanted, most);
+  if (num % den != 0) return wanted;
+  for (int n = wanted; n <= most; ++n) {
+    if (steps % n == 0) return n;
+  }
+  return wanted;
+}
+
+LiveLidar::LiveLidar(std::shared_ptr<SharedRenderer> shared, ScanCallback on_scan)
+    : shared_(std::move(shared)), on_scan_(std::move(on_scan)) {}
+
+Result<std::unique_ptr<LiveLidar>> LiveLidar::open(Simulator& simulator,
+                                                   std::shared_ptr<SharedRenderer> shared,
+                                                   const LidarRequest& request, uint64_t seed,
+                                                   ScanCallback on_scan) {
+  GLOAM_TRY(const LidarDescription lidar, find_lidar(simulator.world(), request.lidar));
+  std::unique_ptr<LiveLidar> live(new LiveLidar(std::move(shared), std::move(on_scan)));
+  GLOAM_TRY(live->sensor_, LidarSensor::create(live->shared_->description, lidar, seed));
+  const std::shared_ptr<const CompiledWorld> world(std::shared_ptr<void>(), &simulator.world());
+  GLOAM_TRY(live->solver_, PoseSolver::create(world));
+  const Rational rate = live->sensor_->model().rate;
+  live->stretches_ =
+      motion_stretches(rate, simulator.timestep(), live->sensor_->options().motion_keys);
+  const Rational key_rate{rate.num * live->stretches_, rate.den};
+  GLOAM_TRY(live->schedule_, StepSchedule::make(key_rate, {0, 1}, simulator.timestep()));
+  live->keys_.resize(static_cast<size_t>(live->stretches_) + 1);
+  // Room for the keys of a scan, which come while the one before is traced.
+  const int capacity = live->stretches_ + 1;
+  GLOAM_TRY(
+      live->queue_,
+      simulator.subscribe({.rate = key_rate, .required = request.required, .capacity = capacity}));
+  live->thread_ = std::thread([raw = live.get()] { raw->run(); });
+  return live;
+}
+
+LiveLidar::~LiveLidar() {
+  if (queue_ != nullptr) queue_->close();  // null when open() failed
+  if (thread_.joinable()) thread_.join();
+}
+
+void LiveLidar::drain() {
+  if (thread_.joinable()) thread_.join();
+}
+
+Status LiveLidar::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
+void LiveLidar::run() {
+  try {
+    while (const Snapshot snapshot = queue_->next()) take(snapshot);
+  } catch (const std::bad_alloc&) {
+    const std::lock_guard lock(mutex_);
+    status_ = Error{ErrorKind::kPartial,
+                    fmt::format("out of memory for scans of lidar '{}'", sensor_->options().name),
+                    {},
+                    "lower its number of beams"};
+    log_error("a lidar stopped: {}", status_.error().to_string());
+    queue_->close();  // the simulation must not wait for it
+  }
+}
+
+// Key k is the instant of step schedule_.step_of(k); scan s lies between the keys s * stretches_
+// and (s + 1) * stretches_. After a gap or a reset, scans begin anew where the next one can.
+void LiveLidar::take(const Snapshot& snapshot) {
+  const int64_t key = schedule_.first_at_or_after(snapshot.step());
+  if (schedule_.step_of(key) != snapshot.step()) return;
+  if (key != next_key_) gathered_ = 0;
+  next_key_ = key + 1;
+  if (gathered_ == 0 && key % stretches_ != 0) return;
+  if (const Status status = solver_->solve(snapshot, keys_[gathered_]); !status.ok()) {
+    log_error("a lidar lost its poses: {}", status.error().to_string());
+    gathered_ = 0;
+    return;
+  }
+  if (++gathered_ < keys_.size()) return;
+  on_scan_(sensor_->scan(*shared_->renderer, shared_->mutex, keys_, key / stretches_ - 1));
+  std::swap(keys_.front(), keys_.back());  // the end of one scan begins the next
+  gathered_ = 1;
+}
+
+}  // namespace gloam

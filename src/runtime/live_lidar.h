@@ -1,0 +1,58 @@
+#pragma once
+// A LiDAR of a running simulation: a thread that gathers the instants of each scan and turns them
+// into points.
+
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "gloam/lidar.h"
+#include "runtime/shared_renderer.h"
+#include "sensors/lidar_sensor.h"
+#include "sim/pose_solver.h"
+#include "sim/simulator.h"
+
+namespace gloam {
+
+class LiveLidar final : public LidarStream {
+ public:
+  /// Errors: no such LiDAR, numbers that do not go together, a rate above the step rate.
+  static Result<std::unique_ptr<LiveLidar>> open(Simulator& simulator,
+                                                 std::shared_ptr<SharedRenderer> shared,
+                                                 const LidarRequest& request, uint64_t seed,
+                                                 ScanCallback on_scan);
+  ~LiveLidar() override;
+
+  /// Snapshots that were lost; a scan that lacks one is not made.
+  int64_t dropped() const override { return queue_->dropped(); }
+  /// Waits until the queue has ended (the simulation stopped) and every scan was delivered.
+  void drain();
+  /// Why it delivers no more scans, if so: it ran out of memory.
+  Status status() const;
+
+ private:
+  LiveLidar(std::shared_ptr<SharedRenderer> shared, ScanCallback on_scan);
+  void run();
+  void take(const Snapshot& snapshot);
+
+  std::shared_ptr<SharedRenderer> shared_;
+  ScanCallback on_scan_;
+  std::unique_ptr<LidarSensor> sensor_;
+  std::unique_ptr<PoseSolver> solver_;
+  std::shared_ptr<SnapshotQueue> queue_;
+  StepSchedule schedule_;        // of the keys
+  int stretches_ = 1;            // of a scan, between its keys
+  std::vector<PoseFrame> keys_;  // of the scan that is being gathered
+  int64_t next_key_ = 0;         // number of the key that is expected
+  size_t gathered_ = 0;          // of keys_
+  mutable std::mutex mutex_;
+  Status status_;
+  std::thread thread_;
+};
+
+/// How many even stretches a scan is cut into: at least `wanted` where that is possible, and such
+/// that the instants between them are steps of the simulation where that is possible.
+int motion_stretches(Rational rate, Rational timestep, int wanted);
+
+}  // namespace gloam

@@ -1,0 +1,70 @@
+#pragma once
+// The models of one camera that come after the light, in a row: imager, stereo depth, events,
+// thermal. A camera without them puts out what it always did, bit by bit.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "gloam/camera.h"
+#include "gloam/result.h"
+#include "render/film/film.h"
+#include "render/renderer.h"
+#include "sensors/event_camera.h"
+#include "sensors/imager/imager.h"
+#include "sensors/stereo_depth.h"
+#include "sensors/thermal_camera.h"
+#include "world/render_description.h"
+
+namespace gloam {
+
+/// What a camera is asked for beyond the truth.
+struct ModelOutputs {
+  bool rgb = false, raw = false, sensor_depth = false, events = false, thermal = false;
+};
+
+class CameraModels {
+ public:
+  /// Of camera row `camera`; `ev100` where its imager does not say, `seed` of sensor_seed().
+  /// Errors: an output without its table in the scene.
+  static Result<std::unique_ptr<CameraModels>> create(const RenderDescription& description,
+                                                      int camera, const Intrinsics& intrinsics,
+                                                      const ModelOutputs& outputs, double ev100,
+                                                      uint64_t seed);
+
+  void set_ev100(double ev100);
+  /// The scene's [[temperature]]s, for thermal cameras. Error: one that fits nothing.
+  Status set_temperatures(const std::vector<TemperatureOptions>& temperatures);
+  double ev100() const { return ev100_; }
+  uint64_t memory() const;
+
+  /// When frame k arrives that was taken at `time` [s].
+  double delivery_of(int64_t k, double time) const;
+  /// Fills rgb, raw and events from light [cd/m²], (height x width). The frame's index and time are
+  /// set.
+  void develop(const std::vector<Vec3f>& radiance, CameraFrame* frame);
+  /// Fills sensor_depth and thermal from the exact channels.
+  void measure(const Film& film, const CameraView& view, CameraFrame* frame);
+
+ private:
+  CameraModels(const RenderDescription& description, int camera, const Intrinsics& intrinsics,
+               const ModelOutputs& outputs)
+      : description_(description),
+        sensing_(description.cameras[static_cast<size_t>(camera)].sensing),
+        intrinsics_(intrinsics),
+        outputs_(outputs) {}
+
+  const RenderDescription& description_;
+  const CameraSensing sensing_;
+  const Intrinsics intrinsics_;
+  const ModelOutputs outputs_;
+  uint64_t seed_ = 0;
+  double ev100_ = 0;
+  Exposure exposure_;  // of that value, for the imager
+  std::unique_ptr<Imager> imager_;
+  std::optional<StereoDepthModel> stereo_;
+  std::optional<EventCamera> events_;
+  std::optional<ThermalCamera> thermal_;
+};
+
+}  // namespace gloam

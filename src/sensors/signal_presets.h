@@ -1,0 +1,29 @@
+#pragma once
+// Errors of a sensor that puts out numbers, and those of parts by their data sheets.
+
+#include "gloam/scene_sensor.h"
+
+namespace gloam {
+
+/// SensorOptions with nothing left out; 0 = off. Units: the sensor's own.
+struct SignalErrors {
+  double noise = 0;             ///< standard deviation of a sample
+  double noise_density = 0;     ///< white, one-sided [unit/√Hz]
+  double bias_instability = 0;  ///< flat part of the Allan deviation
+  double random_walk = 0;       ///< [unit √Hz]: Allan deviation K √(τ / 3)
+  double bias = 0;              ///< standard deviation of the offset at the start
+  double offset = 0;
+  double scale_error = 0;  ///< standard deviation, a share
+  double range = 0;        ///< largest magnitude
+  double resolution = 0;
+};
+
+/// What the table says, else what its preset says, else nothing. Of "±x" in a data sheet: a typical
+/// value counts as one standard deviation, a tolerance as three.
+///
+/// adis16470_*: Analog Devices, ADIS16470 Rev. C (2019). bmi088_*: Bosch Sensortec,
+/// BST-BMI088-DS001-14 (2018), ±2000 °/s and ±24 g. mpu6050_*: InvenSense, PS-MPU-6000A-00 Rev. 3.4
+/// (2013), ±250 °/s and ±2 g. as5048a: ams, AS5048A (14 bits a turn).
+SignalErrors signal_errors(const SensorOptions& options);
+
+}  // namespace gloam

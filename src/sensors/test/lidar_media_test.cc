@@ -1,0 +1,221 @@
+// LiDARs in participating media: against Beer and Lambert, quadratures, and the camera.
+
+#include <cmath>
+
+#include "render/test/media_probe.h"
+#include "sensors/test/lidar_scene.h"
+
+namespace gloam {
+namespace {
+
+constexpr size_t k905 = static_cast<size_t>(MediumBand::k905nm);
+constexpr size_t k1550 = static_cast<size_t>(MediumBand::k1550nm);
+
+MediumDescription medium(float k_905, float k_1550, float albedo = 0) {
+  MediumDescription m;
+  m.name = "medium";
+  m.mass_extinction[k905] = k_905;
+  m.mass_extinction[k1550] = k_1550;
+  m.albedo.fill(albedo);
+  return m;
+}
+/// A slab across the x axis.
+void add_slab(SceneBuilder* b, float from, float to, float density) {
+  VolumeDescription v;
+  v.name = "slab";
+  v.size = {to - from, 20, 20};
+  v.X_WV.p = {0.5f * (from + to), 0, 0};
+  v.even_density = density;
+  b->description.volumes.push_back(v);
+}
+
+TEST(LidarInMedia, ASlabDimsByTwoWayBeerLambertInTheSensorsOwnBand) {
+  SceneBuilder b;
+  add_wall(&b, {0.5f, 50, 50}, {10.5f, 0, 0}, b.add_diffuse({0.5f, 0.5f, 0.5f}));
+  b.description.media.push_back(medium(0.2f, 0.05f));
+  add_slab(&b, 3, 7, 1.5f);
+  for (const auto& [wavelength, k] : {std::pair(905, 0.2), std::pair(1550, 0.05)}) {
+    LidarOptions options = pencil();
+    options.wavelength = wavelength;
+    const auto scan = scan_scene(b, options);
+    ASSERT_EQ(scan->size(), 1u);
+    EXPECT_NEAR(scan->intensity[0] / (50 * std::exp(-2 * k * 1.5 * 4)), 1, 1e-4) << wavelength;
+    EXPECT_NEAR(scan->range[0], 10, 1e-4) << "a dimmer return is not a nearer one";
+  }
+}
+
+TEST(LidarInMedia, WhatLiesBeforeTheLeastRangeDimsToo) {
+  SceneBuilder b;
+  add_wall(&b, {0.5f, 50, 50}, {10.5f, 0, 0}, b.add_diffuse({0.5f, 0.5f, 0.5f}));
+  b.description.media.push_back(medium(0.1f, 0.1f));
+  add_slab(&b, -5, 7, 1);
+  LidarOptions options = pencil();
+  options.min_range = 2;
+  const auto scan = scan_scene(b, options);
+  ASSERT_EQ(scan->size(), 1u);
+  EXPECT_NEAR(scan->intensity[0] / (50 * std::exp(-2 * 0.1 * 7)), 1, 1e-4);
+}
+
+TEST(LidarInMedia, AnUnevenVolumeDimsAsItsIntegralSays) {
+  SceneBuilder b;
+  add_wall(&b, {0.5f, 50, 50}, {10.5f, 0, 0}, b.add_diffuse({0.5f, 0.5f, 0.5f}));
+  b.description.media.push_back(medium(0.6f, 0.6f));
+  VolumeDescription cloud = make_noise_volume(60, 40, 40, 1, 3);
+  cloud.size = {6, 4, 4};
+  cloud.X_WV.p = {5, 0.2f, 0.1f};
+  b.description.volumes.push_back(cloud);
+  LidarOptions options = pencil(24, 24);
+  options.field_of_view = {{20, 20}};
+  const auto scan = scan_scene(b, options);
+  auto store = VolumeStore::make(b.description.media, b.description.volumes);
+  ASSERT_TRUE(store.ok());
+  double lowest = 1;
+  for (size_t i = 0; i < scan->size(); ++i) {
+    Ray ray;
+    ray.d = normalize(point(*scan, i));
+    const double t =
+        integrate_ray(store->view(), ray, scan->range[i], Bands::only(MediumBand::k905nm), 4000)
+            .transmittance[0];
+    const double cosine = 10 / static_cast<double>(scan->range[i]);
+    EXPECT_NEAR(scan->intensity[i] / (50 * cosine * t * t), 1, 0.02);
+    lowest = std::min(lowest, t);
+  }
+  EXPECT_LT(lowest, 0.8) << "this test is about extinction";
+}
+
+TEST(LidarInMedia, TheCameraSeesTheSameExtinction) {
+  // One volume for both; behind it a wall that glows for the one and reflects for the other.
+  SceneBuilder b;
+  MaterialDescription glow;
+  glow.base_color = {0.5f, 0.5f, 0.5f};
+  glow.specular_weight = 0;
+  glow.emission = {100, 100, 100};
+  add_wall(&b, {0.5f, 50, 50}, {10.5f, 0, 0}, b.add_material(glow));
+  MediumDescription m = medium(0.3f, 0.3f);
+  m.mass_extinction.fill(0.3f);
+  b.description.media.push_back(m);
+  VolumeDescription cloud = make_noise_volume(60, 40, 40, 1, 3);
+  cloud.size = {6, 4, 4};
+  cloud.X_WV.p = {5, 0, 0};
+  b.description.volumes.push_back(cloud);
+  const auto scan = scan_scene(b, pencil());
+  ASSERT_EQ(scan->size(), 1u);
+
+  const Affine3f X_WC{{0, -1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, 0, 0}};  // looks along +x
+  RenderSettings settings;
+  settings.spp = 256;
+  settings.max_depth = 1;
+  settings.variance = true;
+  const Film film = b.render(SceneBuilder::camera(X_WC, 8, 8, 0.01), settings);
+  double mean = 0, variance = 0;
+  for (size_t i = 0; i < film.radiance.size(); ++i) {
+    mean += film.radiance[i].x / 64;
+    variance += film.variance[i].x / 64 / 64;
+  }
+  const double one_way = mean / 100;
+  EXPECT_NEAR(std::sqrt(scan->intensity[0] / 50), one_way,
+              3 * std::sqrt(variance) / 100 + 0.005 * one_way);
+  EXPECT_LT(one_way, 0.97) << "this test is about extinction";
+}
+
+/// pi beta Int exp(-2 k r) / r² dr from a to b, in a medium that begins at `begin`.
+double backscatter(double k, double beta, double begin, double a, double b) {
+  double sum = 0;
+  constexpr int n = 20000;
+  for (int i = 0; i < n; ++i) {
+    const double r = a + (b - a) * (i + 0.5) / n;
+    sum += std::exp(-2 * k * (r - begin)) / (r * r);
+  }
+  return M_PI * beta * sum * (b - a) / n;
+}
+
+TEST(LidarInMedia, ThickFogAnswersAtTheRangeWhereItIsEntered) {
+  SceneBuilder b;
+  b.description.media.push_back(medium(0.4f, 0.4f, 0.9f));
+  add_slab(&b, 4, 30, 1);
+  LidarOptions options = pencil();
+  options.pulse_length = 1;
+  options.intensity = "signal";
+  options.range_at_10_percent = 40;
+  const auto scan = scan_scene(b, options);
+  ASSERT_EQ(scan->size(), 1u);
+  EXPECT_EQ(scan->part[0], 0u) << "it is no surface";
+  EXPECT_GT(scan->range[0], 4);
+  EXPECT_LT(scan->range[0], 5);
+  const double beta = 0.4 * 0.9 / (4 * M_PI);  // isotropic
+  EXPECT_NEAR(scan->intensity[0] / backscatter(0.4, beta, 4, 4, 5), 1, 0.01);
+}
+
+TEST(LidarInMedia, DropsScatterBackAsMeasuredNotAsTheirPhaseFunctionSays) {
+  SceneBuilder b;
+  MediumDescription fog = medium(0.4f, 0.4f, 1);
+  fog.name = "fog";
+  fog.g.fill(0.87f);
+  b.description.media.push_back(fog);
+  add_slab(&b, 4, 30, 1);
+  LidarOptions options = pencil();
+  options.pulse_length = 1;
+  options.intensity = "signal";
+  options.range_at_10_percent = 40;
+  const auto scan = scan_scene(b, options);
+  ASSERT_EQ(scan->size(), 1u);
+  EXPECT_NEAR(scan->intensity[0] / backscatter(0.4, 0.4 / 18.8, 4, 4, 5), 1, 0.01);
+}
+
+TEST(LidarInMedia, ThinFogGivesNoFalseReturnsWithoutNoise) {
+  SceneBuilder b;
+  b.description.media.push_back(medium(0.4f, 0.4f, 0.9f));
+  add_slab(&b, 4, 30, 1e-3f);
+  LidarOptions options = pencil();
+  options.range_at_10_percent = 40;
+  EXPECT_EQ(scan_scene(b, options)->size(), 0u);
+}
+
+TEST(LidarInMedia, FalseReturnsOfSpeckleComeAsOftenAsTheExponentialLawSays) {
+  SceneBuilder b;
+  const float k = 0.3f, albedo = 0.9f;
+  b.description.media.push_back(medium(k, k, albedo));
+  add_slab(&b, 3.1f, 3.9f, 1e-2f);
+  add_slab(&b, 6.1f, 6.9f, 1e-2f);
+  LidarOptions options = pencil(320, 320);
+  options.pulse_length = 1;
+  options.noise = true;
+  options.range_noise = 0;
+  options.intensity = "signal";
+  const double beta = 1e-2 * k * albedo / (4 * M_PI);
+  const double near = backscatter(1e-2 * k, beta, 3.1, 3.1, 3.9);
+  const double far = backscatter(1e-2 * k, beta, 5.3, 6.1, 6.9);  // 0.8 m of the first are behind
+  const double threshold = 1.5 * near;
+  options.range_at_10_percent = std::sqrt(0.1 / threshold);
+  const auto scan = scan_scene(b, options);
+  constexpr double n = 320 * 320;
+  double count[2] = {}, sum[2] = {};
+  for (size_t i = 0; i < scan->size(); ++i) {
+    const int slab = scan->range[i] < 5 ? 0 : 1;
+    ++count[slab];
+    sum[slab] += scan->intensity[i];
+  }
+  const double mean[2] = {near, far};
+  for (int slab = 0; slab < 2; ++slab) {
+    // The receiver's own noise, a twelfth of the threshold, is drawn on top of what is detected:
+    // some at the threshold drop again.
+    double share = 0, total = 0;  // of those that are reported: how many, and their signals' sum
+    constexpr int steps = 4000;
+    for (int i = 0; i < steps; ++i) {
+      const double z = -6 + 12 * (i + 0.5) / steps;  // normal quantile of the error
+      const double weight = std::exp(-0.5 * z * z) / std::sqrt(2 * M_PI) * 12 / steps;
+      const double least = threshold * std::max(1.0, 1 - z / 12);
+      const double above = weight * std::exp(-least / mean[slab]);
+      share += above;
+      // Without memory: what lies over a threshold exceeds it as the signal exceeds zero.
+      total += above * (least + mean[slab] + z / 12 * threshold);
+    }
+    EXPECT_NEAR(count[slab] / n, share, 3 * std::sqrt(share * (1 - share) / n)) << slab;
+    ASSERT_GT(count[slab], 100);
+    EXPECT_NEAR(sum[slab] / count[slab], total / share,
+                3 * std::hypot(mean[slab], threshold / 12) / std::sqrt(count[slab]));
+  }
+}
+
+}  // namespace
+}  // namespace gloam

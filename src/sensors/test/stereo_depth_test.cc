@@ -1,0 +1,168 @@
+// Depth of an active stereo camera against its parameters.
+#include "sensors/stereo_depth.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "base/parallel.h"
+#include "sensors/test/statistics.h"
+
+namespace gloam {
+namespace {
+
+constexpr int kWidth = 500, kHeight = 240;
+constexpr size_t kPixels = size_t{kWidth} * kHeight;
+
+Intrinsics intrinsics() {
+  Intrinsics k;
+  k.width = kWidth;
+  k.height = kHeight;
+  k.fx = k.fy = 400;
+  k.cx = kWidth / 2.0;
+  k.cy = kHeight / 2.0;
+  return k;
+}
+
+std::vector<float> wall(float depth) { return std::vector<float>(kPixels, depth); }
+
+std::vector<float> measure(const StereoDepthModel& model, const std::vector<float>& depth,
+                           const std::vector<float>& signal = {}, int64_t frame = 0,
+                           uint64_t seed = 5) {
+  return measure_stereo_depth(model, intrinsics(), depth, signal, seed, frame);
+}
+
+TEST(StereoDepth, WithNothingOnItIsTheTruth) {
+  const auto out = measure({}, wall(2.5f));
+  for (const float z : out) EXPECT_NEAR(z, 2.5f, 1e-6f);
+  EXPECT_EQ(measure({}, wall(std::numeric_limits<float>::infinity()))[7], 0) << "nothing there";
+}
+
+TEST(StereoDepth, DisparityHasItsNoise) {
+  const StereoDepthModel model{.baseline = 0.05, .noise = 0.08};
+  std::vector<double> disparity, depth;
+  for (const float z : measure(model, wall(2))) {
+    disparity.push_back(400 * 0.05 / double{z});
+    depth.push_back(double{z});
+  }
+  expect_moments(disparity, 10, 0.0064, "disparity");
+  // Z² / (f B) sigma, to first order.
+  const Moments m = moments(depth);
+  EXPECT_NEAR(m.deviation(), 4 / 20.0 * 0.08, 3 * m.deviation_error() + 1e-4);
+}
+
+TEST(StereoDepth, StepsOfTheDisparity) {
+  const StereoDepthModel model{.baseline = 0.05, .subpixel = 0.125};
+  for (const float truth : {0.61f, 1.3f, 2.77f}) {
+    const double d = 20 / double{measure(model, wall(truth))[0]};
+    EXPECT_NEAR(d / 0.125, std::round(d / 0.125), 1e-4);
+    EXPECT_LE(std::abs(d - 20 / double{truth}), 0.0625 + 1e-4);
+  }
+  // With noise well above the steps, rounding adds a twelfth of their square.
+  std::vector<double> disparity;
+  for (const float z : measure({.baseline = 0.05, .subpixel = 0.125, .noise = 0.25}, wall(2)))
+    disparity.push_back(20 / double{z});
+  expect_moments(disparity, 10, 0.0625 + 0.125 * 0.125 / 12, "noise and steps");
+}
+
+TEST(StereoDepth, EndsAtItsRanges) {
+  const StereoDepthModel model{
+      .baseline = 0.05, .min_range = 0.3, .max_range = 6, .max_disparity = 40};
+  EXPECT_EQ(measure(model, wall(0.29f))[0], 0);
+  EXPECT_EQ(measure(model, wall(0.45f))[0], 0) << "a disparity of 44 px";
+  EXPECT_GT(measure(model, wall(0.55f))[0], 0);
+  EXPECT_GT(measure(model, wall(5.9f))[0], 0);
+  EXPECT_EQ(measure(model, wall(6.1f))[0], 0);
+}
+
+// A box 1 m away before a wall at 2 m: disparities 20 and 10 px.
+std::vector<float> box() {
+  std::vector<float> depth = wall(2);
+  for (int y = 0; y < kHeight; ++y) std::fill_n(depth.begin() + y * kWidth + 200, 100, 1.0f);
+  return depth;
+}
+
+TEST(StereoDepth, HidesWhatTheSecondEyeDoesNotSee) {
+  const auto lost_columns = [](double baseline) {
+    const auto out = measure({.baseline = baseline, .occlusion = true}, box());
+    std::vector<int> columns;
+    for (int x = 0; x < kWidth; ++x) {
+      if (out[static_cast<size_t>(100 * kWidth + x)] == 0) columns.push_back(x);
+    }
+    return columns;
+  };
+  // The right eye sees the box shifted left by 10 px against the wall: it covers as much beside
+  // it, and the left 10 px of the wall are outside its picture.
+  std::vector<int> expected;
+  for (int x = 0; x < 10; ++x) expected.push_back(x);
+  for (int x = 190; x < 200; ++x) expected.push_back(x);
+  EXPECT_EQ(lost_columns(0.05), expected);
+  expected.clear();
+  for (int x = 300; x < 310; ++x) expected.push_back(x);
+  for (int x = 490; x < 500; ++x) expected.push_back(x);
+  EXPECT_EQ(lost_columns(-0.05), expected) << "an eye to the left";
+}
+
+TEST(StereoDepth, ASlantedWallHidesNothingOfItself) {
+  std::vector<float> depth(kPixels);
+  for (size_t i = 0; i < kPixels; ++i)
+    depth[i] = 1 / (0.4f + 0.001f * static_cast<float>(i % kWidth));
+  const auto out = measure({.baseline = 0.05, .occlusion = true}, depth);
+  for (size_t x = 20; x < kWidth; ++x) EXPECT_GT(out[100 * kWidth + x], 0) << x;
+}
+
+TEST(StereoDepth, LosesTheEdges) {
+  for (const int reach : {1, 3}) {
+    const auto out = measure({.baseline = 0.05, .edge_loss = reach}, box());
+    for (int x = 150; x < 350; ++x) {
+      const int edge = std::min({std::abs(2 * x + 1 - 400), std::abs(2 * x + 1 - 600)});
+      EXPECT_EQ(out[static_cast<size_t>(100 * kWidth + x)] == 0, edge < 2 * reach) << x;
+    }
+  }
+}
+
+TEST(StereoDepth, WeakSignalsAreLostByChance) {
+  const StereoDepthModel model{.baseline = 0.05, .half_signal = 0.01};
+  for (const float signal : {0.002f, 0.01f, 0.03f, 1.0f}) {
+    const auto out = measure(model, wall(1), std::vector<float>(kPixels, signal));
+    const double kept =
+        static_cast<double>(std::count_if(out.begin(), out.end(), [](float z) { return z > 0; })) /
+        kPixels;
+    const double s = double{signal} / 0.01, p = s * s / (1 + s * s);
+    expect_within(kept, p, std::sqrt(p * (1 - p) / kPixels), "kept");
+  }
+  for (const float z : measure(model, wall(1), wall(0))) EXPECT_EQ(z, 0) << "black";
+}
+
+TEST(StereoDepth, DrawsAreKeyedAndThreadsDoNotMatter) {
+  StereoDepthOptions options;
+  options.preset = "d435";
+  const StereoDepthModel model = stereo_depth_model(options);
+  const std::vector<float> signal(kPixels, 0.01f);
+  const auto reference = measure(model, box(), signal);
+  for (const int threads : {1, 3}) {
+    set_thread_count(threads);
+    EXPECT_EQ(measure(model, box(), signal), reference);
+  }
+  set_thread_count(0);
+  EXPECT_NE(measure(model, box(), signal, 1), reference);
+  EXPECT_NE(measure(model, box(), signal, 0, 6), reference);
+}
+
+TEST(StereoDepth, ThePresetsAreTheirPapers) {
+  StereoDepthOptions options;
+  options.preset = "kinect";
+  const StereoDepthModel kinect = stereo_depth_model(options);
+  // Khoshelham and Elberink: 1.425e-5 Z² cm with Z in cm, f = 586 px.
+  const double sigma = 500.0 * 500 / (586 * kinect.baseline * 100) * kinect.noise;
+  EXPECT_NEAR(sigma, 1.425e-5 * 500 * 500, 0.05);
+  options.preset = "d435";
+  options.noise = 0.5;
+  options.edge_loss = 0;
+  const StereoDepthModel d435 = stereo_depth_model(options);
+  EXPECT_EQ(d435.noise, 0.5) << "the table wins";
+  EXPECT_EQ(d435.edge_loss, 0);
+  EXPECT_EQ(d435.max_disparity, 126);
+}
+
+}  // namespace
+}  // namespace gloam

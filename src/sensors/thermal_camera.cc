@@ -1,0 +1,155 @@
+#include "sensors/thermal_camera.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "base/text.h"
+#include "sensors/draw.h"
+#include "sensors/thermal_band.h"
+
+namespace gloam {
+namespace {
+
+constexpr double kRoom = 293.15;    // [K]
+constexpr double kReference = 300;  // of NETD [K]
+constexpr int kMarchSteps = 64;     // along a ray through all volumes
+constexpr int kBand = static_cast<int>(MediumBand::k8to14um);
+
+bool fits(const TemperatureOptions& o, const LabelRow& label) {
+  return fits_pattern(o.body, label.body) && fits_pattern(o.material, label.material);
+}
+
+double sent_by(const TemperatureOptions& o) {
+  return o.emissivity * thermal_radiance(o.temperature) +
+         (1 - o.emissivity) * thermal_radiance(o.ambient);
+}
+
+// Where the ray is inside the volume's box, [near, far] along it; false = nowhere.
+bool crosses(const VolumeView& v, Vec3f origin_G, Vec3f direction_G, double* near, double* far) {
+  double t0 = 0, t1 = std::numeric_limits<double>::infinity();
+  const float ends[3] = {static_cast<float>(v.nx), static_cast<float>(v.ny),
+                         static_cast<float>(v.nz)};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double o = double{origin_G[axis]}, d = double{direction_G[axis]};
+    if (std::abs(d) < 1e-12) {
+      if (o < 0 || o > double{ends[axis]}) return false;
+      continue;
+    }
+    const double a = -o / d, b = (double{ends[axis]} - o) / d;
+    t0 = std::max(t0, std::min(a, b));
+    t1 = std::min(t1, std::max(a, b));
+  }
+  *near = t0;
+  *far = t1;
+  return t0 < t1;
+}
+
+}  // namespace
+
+Result<ThermalCamera> ThermalCamera::make(const ThermalOptions& options,
+                                          const std::vector<TemperatureOptions>& temperatures,
+                                          const RenderDescription& description, uint64_t seed) {
+  ThermalCamera camera(options, seed ^ options.seed);
+  LabelRow sky;
+  sky.body = "sky";
+  std::vector<const LabelRow*> labels = {&sky};
+  for (const InstanceDescription& instance : description.instances)
+    labels.push_back(&instance.label);
+  camera.radiance_.assign(labels.size(), sent_by({.temperature = kRoom, .ambient = kRoom}));
+  for (const TemperatureOptions& o : temperatures) {
+    bool found = false;
+    for (size_t part = 0; part < labels.size(); ++part) {
+      if (!fits(o, *labels[part])) continue;
+      // The sky is what it is called by its own name alone.
+      if (part == 0 && o.body != "sky") continue;
+      camera.radiance_[part] = sent_by(o);
+      found = true;
+    }
+    if (!found)
+      return Error{ErrorKind::kInput,
+                   fmt::format("a [[temperature]] fits nothing: body '{}', material '{}'", o.body,
+                               o.material),
+                   o.loc, "names are full names; * stands for any text"};
+  }
+  GLOAM_TRY(camera.volumes_, VolumeStore::make(description.media, description.volumes));
+  camera.has_media_ = !description.volumes.empty();
+  return camera;
+}
+
+double ThermalCamera::through_media(double radiance, Vec3f origin, Vec3f direction,
+                                    double distance) const {
+  const MediaView media = volumes_.view();
+  double from = std::numeric_limits<double>::infinity(), to = 0;
+  for (uint32_t i = 0; i < media.volumes.size; ++i) {
+    const VolumeView& v = media.volumes[i];
+    double near = 0, far = 0;
+    if (!crosses(v, transform_point(v.X_GW, origin), transform_vector(v.X_GW, direction), &near,
+                 &far))
+      continue;
+    from = std::min(from, near);
+    to = std::max(to, std::min(far, distance));
+  }
+  if (!(from < to)) return radiance;
+  const double step = (to - from) / kMarchSteps;
+  // From the back to the front; scattering brings in the light of the surroundings.
+  static const double room = thermal_radiance(kRoom);
+  for (int j = kMarchSteps - 1; j >= 0; --j) {
+    const Vec3f p = origin + direction * static_cast<float>(from + (j + 0.5) * step);
+    double extinction = 0, source = 0;  // [1/m], [W/(m² sr m)]
+    for (uint32_t i = 0; i < media.volumes.size; ++i) {
+      const VolumeView& v = media.volumes[i];
+      const Vec3f p_G = transform_point(v.X_GW, p);
+      if (!media::is_inside(v, p_G)) continue;
+      const double k = double{v.mass_extinction[kBand]} * double{media::density_at(v, p_G)};
+      const double albedo = double{v.albedo[kBand]};
+      extinction += k;
+      source += k * (1 - albedo) * thermal_radiance(double{media::temperature_at(v, p_G)}) +
+                k * albedo * room;
+    }
+    if (extinction <= 0) continue;
+    const double kept = std::exp(-extinction * step);
+    radiance = radiance * kept + source / extinction * (1 - kept);
+  }
+  return radiance;
+}
+
+std::vector<float> ThermalCamera::see(const Film& film, const CameraView& view,
+                                      int64_t frame) const {
+  const Intrinsics& k = view.intrinsics;
+  const double per_kelvin = thermal_radiance(kReference + 0.5) - thermal_radiance(kReference - 0.5);
+  const RandomStream noise{seed_, stream_id("thermal.noise")},
+      pattern{seed_, stream_id("thermal.pattern")};
+  std::vector<float> out(film.depth.size());
+  parallel_for_range("thermal", film.height, 4, [&](int64_t begin, int64_t end) {
+    for (int y = static_cast<int>(begin); y < end; ++y) {
+      for (int x = 0; x < film.width; ++x) {
+        const size_t i =
+            static_cast<size_t>(y) * static_cast<size_t>(film.width) + static_cast<size_t>(x);
+        double radiance = radiance_[film.part[i]];
+        if (has_media_ && !k.orthographic) {
+          const Vec3f ray_C{static_cast<float>((x + 0.5 - k.cx) / k.fx),
+                            static_cast<float>(-(y + 0.5 - k.cy) / k.fy), -1};
+          radiance = through_media(radiance, view.X_WC_open.p,
+                                   normalize(transform_vector(view.X_WC_open, ray_C)),
+                                   double{film.distance[i]});
+        }
+        const auto key = static_cast<uint32_t>(i);
+        if (options_.netd > 0)
+          radiance +=
+              options_.netd * per_kelvin * draw_normal(noise, static_cast<uint64_t>(frame), key);
+        if (options_.fixed_pattern > 0)
+          radiance += options_.fixed_pattern * per_kelvin * draw_normal(pattern, 0, key);
+        double t = apparent_temperature(radiance);
+        if (options_.step > 0) t = options_.step * std::round(t / options_.step);
+        out[i] = static_cast<float>(std::clamp(t, options_.min, options_.max));
+      }
+    }
+  });
+  return out;
+}
+
+}  // namespace gloam

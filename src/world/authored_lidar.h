@@ -1,0 +1,23 @@
+#pragma once
+// The scene file's [[lidar]] tables on the compiled model's bodies, without MuJoCo types.
+
+#include <vector>
+
+#include "base/vec.h"
+#include "gloam/result.h"
+#include "gloam/scene.h"
+
+namespace gloam {
+
+struct CompiledWorld;
+
+struct LidarDescription {
+  LidarOptions options;
+  int body = 0;  ///< that it moves with
+  Pose X_BL;
+};
+
+/// Error: no such body, with the nearest name.
+Result<std::vector<LidarDescription>> describe_lidars(const CompiledWorld& world);
+
+}  // namespace gloam
