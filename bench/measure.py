@@ -275,6 +275,21 @@ def adaptive_sampling(quick):
                    f"each: {each}; 0.1 asked for, reached {', '.join(format(s['reached'], '.3f') for s in scenes)}")
 
 
+def fast_tier(quick):
+    """a picture of 640 x 480 of a furnished room with a moving robot of 418,000 triangles against a bare Embree loop that traces its primary
+    and one shadow ray; how far five moving scenes are from the path tier"""
+    data = run_json(BIN / "bench_path_rate", "--fast", "--meshes", "--json", "--runs", 7 if quick else 25)
+    yield at_most("fast tier 640 x 480: CPU time / bare primary and shadow loop", data["cpu_over_bare"], 2.75, f"{data['cpu_ms']:.0f} ms CPU, {data['wall_ms']:.0f} ms wall")
+    result = subprocess.run([peer_python(), ROOT / "bench" / "fast_error.py", *(["--quick"] if quick else [])], capture_output=True, text=True)
+    lines = result.stdout.splitlines()
+    if not lines or not lines[-1].startswith("worst"):
+        raise RuntimeError((result.stderr or result.stdout).strip().splitlines()[-1])
+    mean, p95 = (float(part.split()[-1]) for part in lines[-1].replace("(", ",").split(",") if "mean" in part or "95 %" in part)
+    each = "; ".join(" ".join(line.split(";")[0].split()) for line in lines[:-1])
+    yield at_most("fast tier: mean LDR-FLIP against the path tier, worst scene", mean, 0.08, each)
+    yield at_most("fast tier: 95th percentile of LDR-FLIP, worst scene", p95, 0.25, "of the same pictures")
+
+
 def lidar_scene():
     """Go1, a floor, four walls and 20 boxes; a LiDAR of 64 x 1024 beams 1.2 m from the robot."""
     folder = CACHE / "bench_lidar"
@@ -301,5 +316,5 @@ def lidar(quick):
 
 
 # With the seconds that each takes on two cores: the first estimate of the time left.
-ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, truth: 40, load_time: 120, import_time: 60,
+ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, fast_tier: 400, truth: 40, load_time: 120, import_time: 60,
        first_picture: 15, adaptive_sampling: 120, lidar: 15}

@@ -300,8 +300,11 @@ int main(int argc, char** argv) {
   if (a.json) {
     std::printf(
         "{\"name\": \"path_rate\", \"rays_per_path\": %.4f, \"mpaths_per_s\": %.4f, "
-        "\"bare_mpaths_per_s\": %.4f, \"wall_ms\": %.2f, \"cpu_ms\": %.2f, \"mean\": %.4f}\n",
-        per_path, rate, bare_rate, median(render_wall) * 1e3, median(render_cpu) * 1e3, mean);
+        "\"bare_mpaths_per_s\": %.4f, \"wall_ms\": %.2f, \"cpu_ms\": %.2f, \"cpu_over_bare\": "
+        "%.4f, "
+        "\"mean\": %.4f}\n",
+        per_path, rate, bare_rate, median(render_wall) * 1e3, median(render_cpu) * 1e3,
+        median(render_cpu) / median(bare_cpu), mean);
   } else {
     std::printf("build %.0f ms; %d threads; wall %.1f ms; CPU %.1f ms per picture\n", build * 1e3,
                 thread_count(), median(render_wall) * 1e3, median(render_cpu) * 1e3);

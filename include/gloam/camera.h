@@ -88,8 +88,8 @@ struct CameraFrame {
   /// What the camera's stereo_depth model measures along the optical axis [m], 0 = nothing,
   /// (height x width). `depth` is the truth.
   std::vector<float> sensor_depth;
-  std::vector<Event> events;   ///< since the frame before, in order of time
-  std::vector<float> thermal;  ///< apparent temperature [K], (height x width)
+  std::vector<Event> events;        ///< since the frame before, in order of time
+  std::vector<float> thermal;       ///< apparent temperature [K], (height x width)
   std::vector<float> scene_flow;    ///< way of the point that is seen since the previous frame [m],
                                     ///< world axes, (height x width x 3)
   std::vector<ObjectView> objects;  ///< that the picture holds or hides, by id

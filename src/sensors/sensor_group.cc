@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-
 namespace gloam {
 
 Result<SensorGroup> SensorGroup::make(const std::vector<SensorDescription>& sensors,

@@ -7,7 +7,8 @@ namespace gloam {
 /// Chang and Rhee 1984, "Blackbody radiation functions". `temperature` [K] in 0 … 6000.
 double thermal_radiance(double temperature);
 
-/// The temperature of a black body of that radiance [K]: the inverse, within 2e-4 K from 20 K on, 0 … 6000.
+/// The temperature of a black body of that radiance [K]: the inverse, within 2e-4 K from 20 K on, 0
+/// … 6000.
 double apparent_temperature(double radiance);
 
 }  // namespace gloam

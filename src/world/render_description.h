@@ -168,7 +168,7 @@ struct CameraDescription {
   Intrinsics intrinsics;
   int camera = -1;  ///< row of PoseFrame's camera poses; -1 = free camera at X_WC
   Affine3f X_WC;
-  CameraSensing sensing;  ///< of the scene's [[camera]] of this name
+  CameraSensing sensing;                          ///< of the scene's [[camera]] of this name
   float aperture_radius = 0, focus_distance = 1;  ///< [m]; radius 0 = everything is sharp
   double exposure_time = 0, readout_time = 0;     ///< as in CameraOptions [s]
 };

@@ -8,7 +8,7 @@
 namespace gloam {
 namespace {
 
-constexpr float kRange = 1.5f;       // of deviations around a pixel that its past may have
+constexpr float kRange = 1.2f;       // of deviations around a pixel that its past may have
 constexpr float kLongest = 8;        // pictures in a mean: older ones fade
 constexpr float kSpike = 4;          // times its neighbours, at most, that a mirror's light may be
 constexpr int kPatch = 16;           // [px], in which a change of the light is sought:
@@ -112,7 +112,7 @@ class Accumulation {
 
   void blend(int first, int y) {
     Vec3Of<FloatLanes> low[kKeptSignals], high[kKeptSignals];
-    FloatLanes level;
+    FloatLanes level, spread[kKeptSignals];
     for (int s = 0; s < kKeptSignals; ++s) {
       Vec3Of<FloatLanes> mean, deviation;
       around(f_, s, first, y, &mean, &deviation);
@@ -120,6 +120,7 @@ class Accumulation {
         const FloatLanes own = luminance(f_.signal[s].load(first, y));
         level = max((luminance(mean) * 9.0f - own) * 0.125f, 0.0f);
       }
+      spread[s] = sqr(luminance(deviation));
       low[s] = mean - deviation * FloatLanes(kRange);
       high[s] = mean + deviation * FloatLanes(kRange);
     }
@@ -142,7 +143,7 @@ class Accumulation {
         if (!place.known) {
           out_[s].set(x, y, now);
           *f_.mean[s].at(x, y) = l;
-          *f_.square[s].at(x, y) = l * l;
+          *f_.square[s].at(x, y) = l * l + lane(spread[s], x - first);  // until more is known
           continue;
         }
         // What is out of the range of its neighbours is a trail of what has moved on.
@@ -204,10 +205,9 @@ void FastFilter::smooth(const FastFrame& f) {
           own[s] = luminance(sum[s]);
           total[s] = 1.0f;
           if (s >= kKeptSignals) continue;
-          // Few pictures say little about the noise: they are smoothed as if it were large.
           const F mean = f.mean[s].load(x, y);
           const F variance = max(f.square[s].load(x, y) - mean * mean, 0.0f);
-          const F noise = square_root(variance / age) + select(age < 4.0f, own[s] * 0.3f, F(0.0f));
+          const F noise = square_root(variance / age);
           sharp[s] = 1.0f / (2.0f * noise + 0.005f * own[s] + 1e-4f);
         }
         for (int dy = -1; dy <= 1; ++dy) {

@@ -117,9 +117,8 @@ int neighborhood(const LightGuide& grid, const std::vector<GuideRow>& rows, int 
   out[count++] = row;
   const auto add = [&](int other) {
     const int found =
-        facing < 0
-            ? other
-            : grid.surface_row[static_cast<uint32_t>(LightGuide::kFacings * other + facing)];
+        facing < 0 ? other
+                   : grid.surface_row[static_cast<uint32_t>(LightGuide::kFacings * other + facing)];
     if (found >= 0) out[count++] = found;
   };
   for (int k = 0; k < 3; ++k) {

@@ -15,6 +15,7 @@ constexpr size_t kMostCells = 2500;  // of an update, but for a first picture's
 constexpr float kSurprise = 3;       // standard errors,
 constexpr float kNoChange = 0.02f;   // and this share, that a region's light may be off
 constexpr float kBrightest = 4;      // of a lamp's light by way of a mirror, over the cell's mean
+constexpr float kFades = 0.1f;       // share of all light that must have changed to change all
 constexpr int kMostRounds = 3;       // of an update while light changes in many cells
 constexpr float kSpread = 0.15f;     // of the rays' cones: no fine texture is sought
 
@@ -127,6 +128,7 @@ void IrradianceCache::find_changes() {
     if (!traced_[k].is_new) order_.emplace_back(cells_[asked_[k]].key & caches::kRegion, k);
   }
   std::sort(order_.begin(), order_.end());
+  float change_of_all = 0, variance_of_all = 0, light_of_all = 0;
   for (size_t first = 0, next = 0; first < order_.size(); first = next) {
     float change = 0, variance = 0, light = 0;
     for (; next < order_.size() && order_[next].first == order_[first].first; ++next) {
@@ -138,6 +140,13 @@ void IrradianceCache::find_changes() {
     }
     const bool changed = fabsf(change) > kSurprise * sqrtf(variance) + kNoChange * light;
     for (size_t i = first; i < next; ++i) traced_[order_[i].second].changed = changed;
+    change_of_all += change;
+    variance_of_all += variance;
+    light_of_all += light;
+  }
+  // What fades everywhere is seen here long before it is seen in each region.
+  if (fabsf(change_of_all) > kSurprise * sqrtf(variance_of_all) + kFades * light_of_all) {
+    for (Traced& traced : traced_) traced.changed = true;
   }
 }
 

@@ -24,7 +24,7 @@ float srgb_decode(float encoded);
 struct ToneMapSettings {
   float ev100 = 0;
   bool neutral = true;  ///< false: no tone curve, what is above the top of the scale is cut
-  bool dither = true;  ///< spreads the rounding error so that smooth gradients show no bands
+  bool dither = true;   ///< spreads the rounding error so that smooth gradients show no bands
 };
 
 /// Radiance [cd/m²], (height x width), to 8-bit sRGB, (height x width x 3). The dither is a fixed

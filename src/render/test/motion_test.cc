@@ -263,8 +263,7 @@ TEST(Motion, LampsMoveThroughTheirKeys) {
       }
       b.add_light(lamp, {-1, 0, 1});
       lamp.intensity = {0.1f, 0.1f, 0.1f};
-      for (int i = 0; i < others; ++i)
-        b.add_light(lamp, {0.3f * static_cast<float>(i) - 3, 2, 1});
+      for (int i = 0; i < others; ++i) b.add_light(lamp, {0.3f * static_cast<float>(i) - 3, 2, 1});
       const auto place = [](PoseFrame* frame, float s) { frame->light_p[0] = -1 + 2 * s; };
       const auto keys = make_keys(b.frame, 5, place);
       RenderSettings settings;

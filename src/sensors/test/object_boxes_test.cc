@@ -37,7 +37,8 @@ std::vector<ObjectView> see(const char* model) {
   const auto description = std::move(describe_for_rendering(*world.compiled())).value();
   auto renderer = std::move(make_cpu_renderer(description)).value();
   auto solver = std::move(PoseSolver::create(world.compiled())).value();
-  auto simulator = std::move(Simulator::create(world.compiled(), {.pace = Pace::kLockstep})).value();
+  auto simulator =
+      std::move(Simulator::create(world.compiled(), {.pace = Pace::kLockstep})).value();
   simulator->start();
   PoseFrame poses;
   EXPECT_TRUE(solver->solve(simulator->latest(), poses).ok());
