@@ -108,7 +108,8 @@ Status run(const Arguments& a) {
         std::find(a.cameras.begin(), a.cameras.end(), name) == a.cameras.end()) {
       continue;
     }
-    CameraView view = view_at(description, static_cast<int>(i), poses, poses, poses);
+    const PoseFrame* const key = &poses;
+    CameraView view = view_at(description, static_cast<int>(i), {&key, 1}, poses);
     Intrinsics& k = view.intrinsics;
     const double scale = static_cast<double>(a.height) / k.height;
     k.fx *= scale;

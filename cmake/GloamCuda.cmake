@@ -7,6 +7,8 @@ if(NOT GLOAM_CUDA)
 endif()
 set(GLOAM_CUDA_ARCH 90 CACHE STRING "Compute capability of the card, without its point; later ones compile its PTX")
 
+option(GLOAM_CUDA_PTX "Leave making machine code of the largest kernels to the card's driver" OFF)
+
 set(cuda_wheels ${CMAKE_SOURCE_DIR}/.venv/cuda/nvidia/cu13)
 find_program(GLOAM_NVCC nvcc HINTS ENV CUDA_PATH PATHS /usr/local/cuda ${cuda_wheels} PATH_SUFFIXES bin)
 if(NOT GLOAM_NVCC)
@@ -27,12 +29,16 @@ function(gloam_cuda_sources target)
     set(object ${CMAKE_CURRENT_BINARY_DIR}/${name}.cu.o)
     # The plain kernels are small: what they leave out must fold away in all that they call.
     set(inlining inline)
+    set(code compute_${GLOAM_CUDA_ARCH})
     if(name STREQUAL "plain")
       set(inlining __forceinline__)
     endif()
+    if(name STREQUAL "plain" OR NOT GLOAM_CUDA_PTX)
+      set(code sm_${GLOAM_CUDA_ARCH},${code})
+    endif()
     add_custom_command(OUTPUT ${object}
       COMMAND ${GLOAM_NVCC} -std=c++20 -O3 --expt-relaxed-constexpr -ccbin ${CMAKE_CXX_COMPILER} -Xcompiler -fPIC
-        -gencode arch=compute_${GLOAM_CUDA_ARCH},code=[sm_${GLOAM_CUDA_ARCH},compute_${GLOAM_CUDA_ARCH}]
+        -gencode arch=compute_${GLOAM_CUDA_ARCH},code=[${code}]
         -DGLOAM_INLINE=${inlining} -I${CMAKE_SOURCE_DIR}/src -I${CMAKE_SOURCE_DIR}/include
         -MD -MF ${object}.d -c ${source} -o ${object}
       MAIN_DEPENDENCY ${source} DEPFILE ${object}.d COMMENT "Compiling ${file} for the card" VERBATIM)

@@ -241,8 +241,8 @@ def ci(tally):
     if build(tally, "tsan", ["gloam_base_test", "gloam_sim_test"]):
         for module in ("base", "sim"):
             gtest(tally, "tsan", module, shard_filter="-*Slow*:*Allocat*")
-    if build(tally, "cuda", ["gloam_cuda_test"]):  # without a card this shows that the card's source compiles
-        gtest(tally, "cuda", "cuda")
+    if build(tally, "cuda-test", ["gloam_cuda_test"]):  # without a card this shows that the card's source compiles
+        gtest(tally, "cuda-test", "cuda")
     fuzz(tally, 15, ["scene_toml_fuzz", "model_path_fuzz", "model_xml_fuzz"])
 
 

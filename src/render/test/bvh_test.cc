@@ -10,10 +10,10 @@ namespace gloam {
 namespace {
 
 /// All shapes, still and moving (within the shutter too), two large meshes of which one stands in
-/// several places, and a floor without end.
+/// several places, one that changes its form, and a floor without end.
 struct Zoo {
   SceneBuilder builder;
-  PoseFrame close;
+  PoseFrame close;  ///< the second of three keys: all goes back to where it was
 
   explicit Zoo(int rings) {
     SceneBuilder& b = builder;
@@ -45,7 +45,16 @@ struct Zoo {
             body, mesh);
     }
     b.add(ShapeType::kPlane, {0, 0, 1}, translation({0, 0, -1}), material);
+    DeformableDescription jelly;
+    jelly.rest = make_ball(24, 0.4f);
+    b.description.deformables.push_back(jelly);
+    b.add(ShapeType::kDeformable, {}, {}, material, 0, 0);
+    b.description.instances.back().is_static = false;
     close = b.frame;
+    for (const Vec3f& p : jelly.rest.positions) {
+      for (const float v : {p.x, p.y, p.z + 2}) b.frame.vertices.push_back(v);
+      for (const float v : {1.5f * p.x + 1, p.y, 0.7f * p.z + 2}) close.vertices.push_back(v);
+    }
     for (const auto& [body, X_WB] : ends) SceneBuilder::set_body(&close, body, X_WB);
   }
 };
@@ -55,6 +64,8 @@ class BothTrees {
   explicit BothTrees(int rings) : zoo_(rings) {
     scene_ = std::move(*RenderScene::make(zoo_.builder.description));
     const PoseFrame* const keys[] = {&zoo_.builder.frame, &zoo_.close, &zoo_.builder.frame};
+    scene_->update({keys, 1}, zoo_.builder.frame);
+    own_.update(*scene_);
     scene_->update(keys, zoo_.builder.frame);
     embree_ = std::move(*EmbreeScene::make());
     GLOAM_CHECK(embree_->update(*scene_).ok(), "Embree fails");

