@@ -30,6 +30,8 @@ void RunOptions::add_rendering(CLI::App& command) {
       .add_option("--tier", tier,
                   "path: unbiased light; fast: interactive, filtered; direct: one ambient light")
       ->check(CLI::IsMember({"path", "fast", "direct"}));
+  command.add_option("--device", device, "What renders; auto: an NVIDIA card where there is one")
+      ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   command.add_option("--ev", ev100, "Exposure value at ISO 100; default: by the scene's light");
   command.add_flag("--no-denoise", no_denoise, "Show the samples as they are");
   command.add_option("--threads", threads, "Threads for rendering; 0 = all")
@@ -65,6 +67,7 @@ Result<Scene> RunOptions::load(const std::string& file) {
   if (spp) scene.render.spp = *spp;
   if (max_depth) scene.render.max_depth = *max_depth;
   if (!tier.empty()) scene.render.tier = tier;
+  if (!device.empty()) scene.render.device = device;
   if (ev100) scene.render.ev100 = *ev100;
   if (no_denoise) scene.render.denoise = false;
   set_thread_count(threads);

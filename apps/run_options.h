@@ -14,7 +14,7 @@ struct RunOptions {
   std::optional<double> duration, timestep, ev100, error;
   std::optional<uint64_t> seed;
   std::optional<int> spp, max_depth;
-  std::string tier, resolution;
+  std::string tier, device, resolution;
   std::vector<std::string> cameras, outputs, settings, packages;
   bool no_denoise = false;
   int threads = 0;

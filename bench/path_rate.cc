@@ -13,6 +13,7 @@
 
 #include "base/parallel.h"
 #include "bench/room_scene.h"
+#include "render/cpu/embree_build.h"
 #include "render/test/probe.h"
 
 using namespace gloam;

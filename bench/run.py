@@ -16,9 +16,11 @@ import time
 from pathlib import Path
 
 import measure
+import measure_card
 from measure import ROOT, say
 
 HISTORY = ROOT / "bench" / "history"
+SUBJECTS = {**measure.ALL, **measure_card.ALL}  # with the seconds that each takes
 
 
 class Progress:
@@ -96,10 +98,10 @@ def keep(record):
     return path
 
 
-def choose(only):
-    chosen = [subject for subject in measure.ALL if only in subject.__name__]
+def choose(only, subjects):
+    chosen = [subject for subject in subjects if only in subject.__name__]
     if not chosen:
-        names = ", ".join(subject.__name__ for subject in measure.ALL)
+        names = ", ".join(subject.__name__ for subject in subjects)
         say(f"error: nothing that is measured has '{only}' in its name; there are: {names}")
         sys.exit(2)
     return chosen
@@ -107,7 +109,7 @@ def choose(only):
 
 def measure_all(chosen, before, args):
     """Rows, seconds by subject, and the names of the subjects that could not be measured."""
-    expected = {subject: (before or {}).get("seconds", {}).get(subject.__name__, measure.ALL[subject]) for subject in chosen}
+    expected = {subject: (before or {}).get("seconds", {}).get(subject.__name__, SUBJECTS[subject]) for subject in chosen}
     if args.quick:
         expected = {subject: seconds / 4 for subject, seconds in expected.items()}
     rows, seconds, failed, progress = [], {}, [], Progress(expected)
@@ -136,8 +138,9 @@ def main():
     parser.add_argument("--only", metavar="NAME", default="", help="only what has NAME in its name; not kept in the history")
     parser.add_argument("--quick", action="store_true", help="few repetitions, rough figures: to see that it works; not kept")
     parser.add_argument("--json", action="store_true", help="print the record of the run as JSON")
+    parser.add_argument("--device", choices=["cpu", "cuda"], default="cpu", help="cuda: what an NVIDIA card does; not kept")
     args = parser.parse_args()
-    chosen = choose(args.only)
+    chosen = choose(args.only, measure_card.ALL if args.device == "cuda" else measure.ALL)
     here = machine()
     before = previous_run(here)
     busy = os.getloadavg()[0]
@@ -150,7 +153,7 @@ def main():
         print(json.dumps(record, indent=1, ensure_ascii=False))
     if failed:
         return 3 if rows else 1
-    if not (args.only or args.quick):
+    if not (args.only or args.quick or args.device == "cuda"):
         say(f"kept in {os.path.relpath(keep(record))}")
     return 0
 

@@ -143,7 +143,7 @@ def tracked(*patterns):
 
 def check_format(tally):
     start = time.time()
-    files = tracked("*.h", "*.cc")
+    files = tracked("*.h", "*.cc", "*.cu", "*.cuh")
     result = run([f"clang-format{CLANG}", "--dry-run", "--Werror", *files])
     ok = result.returncode == 0
     bad = sorted(set(re.findall(r"^(\S+?):\d+:\d+: error", result.stdout, re.M)))
@@ -162,7 +162,7 @@ def check_lint_of_changes(tally):
 
 def check_lint(tally, files, at_most=None):
     start = time.time()
-    files = [name for name in files if "/fuzz/" not in name and "/test/" not in name][:at_most]
+    files = [name for name in files if not re.search("/(fuzz|test|cuda)/", name)][:at_most]
     if not files:
         tally.add("lint", 1, 0, 0, time.time() - start)
         return
@@ -241,6 +241,8 @@ def ci(tally):
     if build(tally, "tsan", ["gloam_base_test", "gloam_sim_test"]):
         for module in ("base", "sim"):
             gtest(tally, "tsan", module, shard_filter="-*Slow*:*Allocat*")
+    if build(tally, "cuda-test", ["gloam_cuda_test"]):  # without a card this shows that the card's source compiles
+        gtest(tally, "cuda-test", "cuda")
     fuzz(tally, 15, ["scene_toml_fuzz", "model_path_fuzz", "model_xml_fuzz"])
 
 

@@ -166,6 +166,8 @@ struct RenderOptions {
   /// 0.0001 … 1 (docs/light.md); empty = as many samples in every pixel.
   std::optional<double> error = {};
   int max_depth = 5;  ///< path vertices after the camera, 1 … 64
+  /// cpu | cuda | auto (an NVIDIA card where this build and this machine have one, else the CPU).
+  std::string device = "auto";
   bool denoise = true;
   std::optional<double> ev100 =
       {};  ///< exposure value at ISO 100; empty = the scene's rule (docs/light.md)

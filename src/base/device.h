@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #ifdef __CUDACC__
-#define GLOAM_HD __host__ __device__ inline
+#define GLOAM_HD __host__ __device__ GLOAM_INLINE
 #else
 #define GLOAM_HD inline
 #endif

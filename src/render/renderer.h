@@ -76,7 +76,9 @@ struct RenderStats {
   uint64_t paths = 0, rays = 0;
   uint64_t unreached = 0;    ///< pixels that had `spp` samples and not yet the error asked for
   double trace_seconds = 0;  ///< wall time of the call [s]
-  bool finished = true;      ///< false: `progress` ended it
+  /// On a card: time of the stages, and of the copy of the scene before them [s].
+  double device_seconds = 0, upload_seconds = 0;
+  bool finished = true;  ///< false: `progress` ended it
 };
 
 /// Not thread-safe; renders with all threads of parallel_for. The RenderDescription must outlive
@@ -106,9 +108,23 @@ class Renderer {
 /// "Embree 3.13.5"
 std::string ray_tracer_version();
 
-/// Renders on the CPU with Embree. Errors: out of memory, a description that refers to things it
-/// does not hold.
-Result<std::unique_ptr<Renderer>> make_cpu_renderer(const RenderDescription& description);
+enum class RayTracer : uint8_t {
+  kEmbree,
+  kOwn,  ///< our own BVH, which is the card's too: slower, to compare with
+};
+
+/// Renders on the CPU. Errors: out of memory, a description that refers to things it does not hold.
+Result<std::unique_ptr<Renderer>> make_cpu_renderer(const RenderDescription& description,
+                                                    RayTracer tracer = RayTracer::kEmbree);
+
+/// Renders on the first NVIDIA card what it has stages for (path and direct tier, exact channels),
+/// the rest on the CPU. Errors: as above; no CUDA in this build, no card.
+Result<std::unique_ptr<Renderer>> make_cuda_renderer(const RenderDescription& description);
+/// On "cpu", "cuda", or with "auto" on a card where this build and this machine have one.
+Result<std::unique_ptr<Renderer>> make_renderer(const RenderDescription& description,
+                                                const std::string& device);
+/// "NVIDIA H200", or why make_cuda_renderer would fail.
+Result<std::string> cuda_device_name();
 
 /// Camera `camera` of the description as it stands in the frames, which are those of update().
 CameraView view_at(const RenderDescription& description, int camera,

@@ -21,7 +21,7 @@ Result<std::shared_ptr<SharedRenderer>> SharedRenderer::create(const CompiledWor
   auto shared = std::make_shared<SharedRenderer>();
   GLOAM_TRY(shared->description, describe_for_rendering(world));
   report_left_out(shared->description.unsupported);
-  GLOAM_TRY(shared->renderer, make_cpu_renderer(shared->description));
+  GLOAM_TRY(shared->renderer, make_renderer(shared->description, world.scene.render.device));
   return shared;
 }
 

@@ -183,6 +183,7 @@ void visit_fields(Visitor& v, RenderOptions& o) {
   v("spp", o.spp, FieldRule{.min = 1, .max = 65536});
   v("error", o.error, FieldRule{.min = 1e-4, .max = 1});
   v("max_depth", o.max_depth, FieldRule{.min = 1, .max = 64});
+  v("device", o.device, FieldRule{.choices = {"auto", "cpu", "cuda"}});
   v("denoise", o.denoise, FieldRule{});
   v("ev100", o.ev100, FieldRule{.unit = "EV", .min = -30, .max = 30});
 }

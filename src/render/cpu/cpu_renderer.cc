@@ -1,4 +1,5 @@
-// The kernel's stages over Embree and all threads of parallel_for.
+// The kernel's stages over Embree, or our own BVH, and all threads of
+// parallel_for; on a card where there is one.
 
 #include <fmt/format.h>
 
@@ -19,6 +20,7 @@
 #include "render/cpu/object_cover.h"
 #include "render/cpu/tile.h"
 #include "render/cpu/watch.h"
+#include "render/cuda/cuda_stages.h"
 #include "render/scene/pose.h"
 
 namespace gloam {
@@ -70,8 +72,9 @@ void resize_film(const CameraView& view, const RenderSettings& settings, Film* f
   film->scene_flow.resize(exact);
 }
 
-/// Tile `i` of the order in which tiles are rendered: far apart, so that those which are done tell
-/// how long the others will take. A bijection: the step has no divisor in common with `tiles`.
+/// Tile `i` of the order in which tiles are rendered: far apart, so that those
+/// which are done tell how long the others will take. A bijection: the step has
+/// no divisor in common with `tiles`.
 int64_t scattered(int64_t i, int64_t tiles) {
   int64_t step = static_cast<int64_t>(0.6180339887 * static_cast<double>(tiles)) | 1;
   while (std::gcd(step, tiles) != 1) ++step;
@@ -80,8 +83,11 @@ int64_t scattered(int64_t i, int64_t tiles) {
 
 class CpuRenderer final : public Renderer {
  public:
-  CpuRenderer(std::unique_ptr<RenderScene> scene, std::unique_ptr<EmbreeScene> embree)
-      : scene_(std::move(scene)), embree_(std::move(embree)) {
+  /// Without `embree` the CPU's rays go through our own BVH; `cuda`: runs what
+  /// it has stages for.
+  CpuRenderer(std::unique_ptr<RenderScene> scene, std::unique_ptr<EmbreeScene> embree,
+              std::unique_ptr<CudaStages> cuda = nullptr)
+      : scene_(std::move(scene)), embree_(std::move(embree)), cuda_(std::move(cuda)) {
     for (const InstanceDescription& in : scene_->description().instances)
       objects_.push_back(in.label.instance);
   }
@@ -89,8 +95,12 @@ class CpuRenderer final : public Renderer {
   using Renderer::update;
   void update(std::span<const PoseFrame* const> keys, const PoseFrame& previous) override {
     scene_->update(keys, previous);
-    const Status status = embree_->update(*scene_);
-    GLOAM_CHECK(status.ok(), "the BVH cannot be built: out of memory?");
+    if (embree_ != nullptr) {
+      const Status status = embree_->update(*scene_);
+      GLOAM_CHECK(status.ok(), "the BVH cannot be built: out of memory?");
+    }
+    if (embree_ == nullptr || cuda_ != nullptr) own_.update(*scene_);
+    if (cuda_ != nullptr) cuda_->update(*scene_);
     if (!updated_) described_ = scene_->described_look(*keys.front());
     updated_ = true;
   }
@@ -104,9 +114,9 @@ class CpuRenderer final : public Renderer {
     job.camera = make_camera(view, &camera_keys_);
     job.scene = job.camera.pose.keys.empty() ? scene_->view_from(view.X_WC_open)
                                              : scene_->view_from(view.X_WC_open, view.X_WC_keys);
-    job.tracer = embree_->tracer(*scene_);
+    job.tracer = tracer();
     if (settings.tier == RenderTier::kPath) {
-      if (!has_guide_) guide_.build(job.scene, embree_->static_tracer(*scene_), described_);
+      if (!has_guide_) guide_.build(job.scene, static_tracer(), described_);
       has_guide_ = true;
       described_ = {};
       job.scene.guide = guide_.view();
@@ -134,23 +144,73 @@ class CpuRenderer final : public Renderer {
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       return stats;
     }
-    if (settings.tier == RenderTier::kDirect && settings.spp > 0) {
-      job.scene.ambient = measure_ambient(job.scene, job.tracer, job.camera, film->width,
-                                          film->height, settings.max_depth);
-      job.scene.environment.row_cdf = {};  // it stands for the sky's light: none is drawn
-    }
+    const bool adaptive = settings.error > 0;
+    const bool on_card = cuda_ != nullptr && !adaptive;
     job.settings = settings;
     job.path = {settings.max_depth, settings.roulette_depth};
+    if (settings.tier == RenderTier::kDirect && settings.spp > 0) {
+      job.scene.ambient =
+          on_card ? mean_ambient(cuda_->trace_ambient(on_cuda(job), film->width, film->height))
+                  : measure_ambient(job.scene, job.tracer, job.camera, film->width, film->height,
+                                    settings.max_depth);
+      job.scene.environment.row_cdf = {};  // it stands for the sky's light: none is drawn
+    }
     job.film = film;
     job.centered = settings.tier == RenderTier::kDirect && settings.spp == 1 && !job.has_motion &&
                    !(job.camera.aperture.radius > 0);
-    const bool adaptive = settings.error > 0;
     GLOAM_CHECK(!adaptive || (settings.tier == RenderTier::kPath && settings.first_sample == 0 &&
                               settings.spp >= kLeastAdaptiveSpp),
                 "adaptive sampling is of the path tier, from sample 0, of 16 and more");
     const int64_t samples =
         adaptive ? settings.spp / 2 : int64_t{settings.first_sample} + settings.spp;
     while ((int64_t{1} << job.log2_samples) < samples) ++job.log2_samples;
+    RenderStats total = on_card ? cuda_->render(on_cuda(job), film) : render_tiles(job);
+    // What is blurred has blurred guides: those of the samples.
+    const bool sharp =
+        !(job.camera.aperture.radius > 0) && !(job.has_motion && job.camera.shutter.length > 0);
+    if (total.finished && settings.spp > 0 && settings.spp < settings.guide_samples && sharp) {
+      GLOAM_CHECK(settings.exact_channels, "guide samples need the exact channels");
+      total.rays += refine_guides({job.scene, job.tracer, job.camera, job.has_motion},
+                                  settings.guide_samples, film);
+    }
+    total.trace_seconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return total;
+  }
+
+  void scan(const LidarView& view, std::span<LidarReturn> returns) override {
+    GLOAM_CHECK(updated_, "update must come before scan");
+    scan_beams(scene_->view_from(view.motion.X_WL), tracer(), view, returns);
+  }
+
+  std::unique_ptr<ViewHistory> make_history() const override {
+    return std::make_unique<FastHistory>();
+  }
+
+ private:
+  EmbreeTracer by_own(const BvhTracer& own) const {
+    EmbreeTracer tracer;
+    tracer.rows = {own_.still().data(), static_cast<uint32_t>(own_.still().size())};
+    tracer.own = own;
+    return tracer;
+  }
+  EmbreeTracer tracer() const {
+    return embree_ != nullptr ? embree_->tracer(*scene_) : by_own(own_.tracer(*scene_));
+  }
+  EmbreeTracer static_tracer() const {
+    return embree_ != nullptr ? embree_->static_tracer(*scene_)
+                              : by_own(own_.static_tracer(*scene_));
+  }
+  CudaJob on_cuda(const Job& job) const {
+    return {*scene_,          own_,           job.scene,   job.camera, job.settings, job.path,
+            job.log2_samples, job.has_motion, job.centered};
+  }
+
+  /// The picture by all threads.
+  RenderStats render_tiles(const Job& job) {
+    const RenderSettings& settings = job.settings;
+    const Film* film = job.film;
+    const bool adaptive = settings.error > 0;
     columns_ = (film->width + kTile - 1) / kTile;
     tiles_.assign(static_cast<size_t>(columns_) * ((film->height + kTile - 1) / kTile), {});
     const int64_t count = static_cast<int64_t>(tiles_.size());
@@ -169,29 +229,9 @@ class CpuRenderer final : public Renderer {
       total.unreached += tile.unreached;
     }
     total.finished = !watch.stopped();
-    // What is blurred has blurred guides: those of the samples.
-    const bool sharp =
-        !(job.camera.aperture.radius > 0) && !(job.has_motion && job.camera.shutter.length > 0);
-    if (total.finished && settings.spp > 0 && settings.spp < settings.guide_samples && sharp) {
-      GLOAM_CHECK(settings.exact_channels, "guide samples need the exact channels");
-      total.rays += refine_guides({job.scene, job.tracer, job.camera, job.has_motion},
-                                  settings.guide_samples, film);
-    }
-    total.trace_seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return total;
   }
 
-  void scan(const LidarView& view, std::span<LidarReturn> returns) override {
-    GLOAM_CHECK(updated_, "update must come before scan");
-    scan_beams(scene_->view_from(view.motion.X_WL), embree_->tracer(*scene_), view, returns);
-  }
-
-  std::unique_ptr<ViewHistory> make_history() const override {
-    return std::make_unique<FastHistory>();
-  }
-
- private:
   template <class F>
   static void for_tiles(int64_t count, const F& f) {
     parallel_for("render tiles", count, [&](int64_t i) {
@@ -238,7 +278,9 @@ class CpuRenderer final : public Renderer {
   }
 
   std::unique_ptr<RenderScene> scene_;
-  std::unique_ptr<EmbreeScene> embree_;
+  std::unique_ptr<EmbreeScene> embree_;  ///< null: own_ instead
+  BvhScene own_;
+  std::unique_ptr<CudaStages> cuda_;
   std::vector<RenderStats> tiles_;
   std::vector<CameraKey> camera_keys_;
   std::vector<uint16_t> objects_;  ///< by instance
@@ -264,14 +306,40 @@ Affine3f camera_pose(const CameraDescription& camera, const PoseFrame& frame) {
 
 }  // namespace
 
-std::string ray_tracer_version() {
-  return fmt::format("Embree {}.{}.{}", RTC_VERSION_MAJOR, RTC_VERSION_MINOR, RTC_VERSION_PATCH);
+Result<std::unique_ptr<Renderer>> make_cpu_renderer(const RenderDescription& description,
+                                                    RayTracer tracer) {
+  GLOAM_TRY(auto scene, RenderScene::make(description));
+  std::unique_ptr<EmbreeScene> embree;
+  if (tracer == RayTracer::kEmbree) {
+    GLOAM_TRY(embree, EmbreeScene::make());
+  }
+  return std::unique_ptr<Renderer>(new CpuRenderer(std::move(scene), std::move(embree)));
 }
 
-Result<std::unique_ptr<Renderer>> make_cpu_renderer(const RenderDescription& description) {
+Result<std::unique_ptr<Renderer>> make_cuda_renderer(const RenderDescription& description) {
+  GLOAM_TRY(auto cuda, CudaStages::make());
   GLOAM_TRY(auto scene, RenderScene::make(description));
   GLOAM_TRY(auto embree, EmbreeScene::make());
-  return std::unique_ptr<Renderer>(new CpuRenderer(std::move(scene), std::move(embree)));
+  return std::unique_ptr<Renderer>(
+      new CpuRenderer(std::move(scene), std::move(embree), std::move(cuda)));
+}
+
+Result<std::unique_ptr<Renderer>> make_renderer(const RenderDescription& description,
+                                                const std::string& device) {
+  if (device == "cuda") return make_cuda_renderer(description);
+  if (device == "auto") {
+    const auto card = cuda_device_name();
+    if (card.ok()) {
+      log_info("rendering on {}", *card);
+      return make_cuda_renderer(description);
+    }
+  }
+  return make_cpu_renderer(description);
+}
+
+Result<std::string> cuda_device_name() {
+  GLOAM_TRY(const auto cuda, CudaStages::make());
+  return cuda->device_name();
 }
 
 CameraView view_at(const RenderDescription& description, int camera,

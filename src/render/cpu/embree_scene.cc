@@ -1,4 +1,4 @@
-#include "render/cpu/embree_scene.h"
+#include "render/cpu/embree_build.h"
 
 #include <fmt/format.h>
 
@@ -7,39 +7,14 @@
 
 #include "base/log.h"
 #include "base/parallel.h"
+#include "render/renderer.h"
 
 namespace gloam {
 namespace {
 
-bool is_infinite_plane(const InstanceView& instance) {
-  return instance.shape == ShapeType::kPlane && (instance.size.x <= 0 || instance.size.y <= 0);
-}
-/// Drawn, in one place, of finite extent.
-bool stands_still(const RenderScene& scene, size_t i) {
-  const InstanceView& in = scene.instances()[i];
-  return scene.is_fixed(i) && scene.is_drawn(i) && in.shape != ShapeType::kDeformable &&
-         !is_infinite_plane(in);
-}
-
-/// So many solids that stand still are scanned: 40 take half the time that they take in a BVH, and
-/// the time grows with their number.
+/// So many solids that stand still are scanned: 40 take half the time that they
+/// take in a BVH, and the time grows with their number.
 constexpr size_t kMaxScanned = 64;
-
-/// Of an analytic shape.
-Bounds exact_bounds(ShapeType shape, Vec3f size, const Affine3f& X) {
-  Vec3f h = shape_half_size(shape, size);
-  if (shape == ShapeType::kCapsule) h.z += size.x;
-  if (shape == ShapeType::kPlane) h.z = 0;
-  const auto reach = [&](float x, float y, float z) {
-    return fabsf(x) * h.x + fabsf(y) * h.y + fabsf(z) * h.z;
-  };
-  const Vec3f r{reach(X.x.x, X.y.x, X.z.x), reach(X.x.y, X.y.y, X.z.y), reach(X.x.z, X.y.z, X.z.z)};
-  return {X.p - r, X.p + r};
-}
-Bounds wider(const Bounds& b) {
-  const Vec3f room = (b.high - b.low) * 1e-5f + Vec3f{1e-6f, 1e-6f, 1e-6f};
-  return {b.low - room, b.high + room};
-}
 
 /// Over the whole time of the shutter.
 Bounds bounds_of(RTCScene scene) {
@@ -52,17 +27,9 @@ Bounds bounds_of(RTCScene scene) {
                  max(open.upper_z, close.upper_z)}});
 }
 
-bool lies_along_axes(const Affine3f& X) {
-  const auto is_axis = [](Vec3f v) {
-    return max_component(Vec3f{fabsf(v.x), fabsf(v.y), fabsf(v.z)}) > 1 - 1e-6f &&
-           fabsf(v.x) + fabsf(v.y) + fabsf(v.z) < 1 + 1e-6f;
-  };
-  return is_axis(X.x) && is_axis(X.y) && is_axis(X.z);
-}
-
-void shape_bounds(const RTCBoundsFunctionArguments* args) {
+void bound_shape(const RTCBoundsFunctionArguments* args) {
   const ShapeGeometry& g = *static_cast<const ShapeGeometry*>(args->geometryUserPtr);
-  const Bounds b = wider(exact_bounds(g.shape, g.size, g.X_SG));
+  const Bounds b = wider(shape_bounds(g.shape, g.size, g.X_SG));
   *args->bounds_o = {b.low.x, b.low.y, b.low.z, 0, b.high.x, b.high.y, b.high.z, 0};
 }
 
@@ -106,7 +73,8 @@ void set_transform(RTCGeometry geometry, unsigned key, const Affine3f& X) {
   rtcSetGeometryTransform(geometry, key, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, columns);
 }
 
-// Embree may read 16 bytes at the last vertex of a shared buffer: buffers it owns are padded.
+// Embree may read 16 bytes at the last vertex of a shared buffer: buffers it
+// owns are padded.
 void set_vertices(RTCGeometry geometry, unsigned key, const Vec3f* vertices, size_t count) {
   void* out = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, key, RTC_FORMAT_FLOAT3,
                                       sizeof(Vec3f), count);
@@ -121,32 +89,36 @@ void set_indices(RTCGeometry geometry, const uint32_t* indices, size_t triangles
 }  // namespace
 
 Result<std::unique_ptr<EmbreeScene>> EmbreeScene::make() {
-  std::unique_ptr<EmbreeScene> scene(new EmbreeScene);
-  scene->device_.reset(rtcNewDevice(nullptr));
-  if (scene->device_ == nullptr) {
+  RtcOwner<RTCDevice> device(rtcNewDevice(nullptr));
+  if (device == nullptr) {
     return Error{ErrorKind::kUnsupported,
                  fmt::format("Embree does not start (error {})",
                              static_cast<int>(rtcGetDeviceError(nullptr)))};
   }
-  return scene;
+  return std::unique_ptr<EmbreeScene>(new EmbreeBuild(std::move(device)));
 }
 
-RtcOwner<RTCScene> EmbreeScene::new_scene() {
+std::string ray_tracer_version() {
+  return fmt::format("Embree {}.{}.{}", RTC_VERSION_MAJOR, RTC_VERSION_MINOR, RTC_VERSION_PATCH);
+}
+
+RtcOwner<RTCScene> EmbreeBuild::new_scene() {
   RtcOwner<RTCScene> scene(rtcNewScene(device_.get()));
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_MEDIUM);
   return scene;
 }
 
-RtcOwner<RTCGeometry> EmbreeScene::mesh_geometry(const MeshView& mesh) {
+RtcOwner<RTCGeometry> EmbreeBuild::mesh_geometry(const MeshView& mesh) {
   RtcOwner<RTCGeometry> geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
   set_vertices(geometry.get(), 0, mesh.positions.data, mesh.positions.size);
   set_indices(geometry.get(), mesh.indices.data, mesh.indices.size / 3);
   return geometry;
 }
 
-// Boxes are triangles to Embree: its leaves test four of them faster than one callback.
-RtcOwner<RTCGeometry> EmbreeScene::box_geometry(Vec3f size, const Affine3f& X_SG) {
+// Boxes are triangles to Embree: its leaves test four of them faster than one
+// callback.
+RtcOwner<RTCGeometry> EmbreeBuild::box_geometry(Vec3f size, const Affine3f& X_SG) {
   RtcOwner<RTCGeometry> geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
   Vec3f corner[8];
   for (int i = 0; i < 8; ++i) {
@@ -161,51 +133,26 @@ RtcOwner<RTCGeometry> EmbreeScene::box_geometry(Vec3f size, const Affine3f& X_SG
   return geometry;
 }
 
-RtcOwner<RTCGeometry> EmbreeScene::shape_geometry(ShapeType shape, Vec3f size,
+RtcOwner<RTCGeometry> EmbreeBuild::shape_geometry(ShapeType shape, Vec3f size,
                                                   const Affine3f& X_SG) {
   if (shape == ShapeType::kBox) return box_geometry(size, X_SG);
   RtcOwner<RTCGeometry> geometry(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_USER));
   shape_data_.push_back(std::make_unique<ShapeGeometry>(ShapeGeometry{shape, size, X_SG}));
   rtcSetGeometryUserPrimitiveCount(geometry.get(), 1);
   rtcSetGeometryUserData(geometry.get(), shape_data_.back().get());
-  rtcSetGeometryBoundsFunction(geometry.get(), shape_bounds, nullptr);
+  rtcSetGeometryBoundsFunction(geometry.get(), bound_shape, nullptr);
   rtcSetGeometryIntersectFunction(geometry.get(), shape_intersect);
   rtcSetGeometryOccludedFunction(geometry.get(), shape_occluded);
   return geometry;
 }
 
-bool EmbreeScene::is_scanned(size_t instance) const {
-  return std::any_of(solids_.begin(), solids_.end(),
-                     [&](const ScannedSolid& solid) { return solid.row == instance; });
-}
-
-/// Takes the largest: most rays end there.
-void EmbreeScene::choose_scanned(const RenderScene& scene) {
-  const std::vector<InstanceView>& instances = scene.instances();
-  std::vector<std::pair<float, uint32_t>> by_area;
-  for (size_t i = 0; i < instances.size(); ++i) {
-    const InstanceView& in = instances[i];
-    if (!stands_still(scene, i) || is_mesh(in.shape)) continue;
-    by_area.push_back({-shape_area(in.shape, in.size), static_cast<uint32_t>(i)});
-  }
-  std::sort(by_area.begin(), by_area.end());
-  by_area.resize(std::min(by_area.size(), kMaxScanned));
-  for (const auto& [area, row] : by_area) {
-    const InstanceView& in = instances[row];
-    const Bounds bounds = exact_bounds(in.shape, in.size, in.X_WG);
-    const bool is_bounds = in.shape == ShapeType::kBox && lies_along_axes(in.X_WG);
-    solids_.push_back({is_bounds ? bounds : wider(bounds), is_bounds, row});
-    rows_.push_back(row);
-  }
-}
-
-void EmbreeScene::build_fixed(const RenderScene& scene) {
+void EmbreeBuild::build_fixed(const RenderScene& scene) {
   fixed_ = new_scene();
   bool empty = true;
   const std::vector<InstanceView>& instances = scene.instances();
   for (size_t i = 0; i < instances.size(); ++i) {
     const InstanceView& in = instances[i];
-    if (!stands_still(scene, i) || is_scanned(i)) continue;
+    if (!stands_still(scene, i) || scanned_.holds(i)) continue;
     RtcOwner<RTCGeometry> geometry;
     if (is_mesh(in.shape)) {
       const MeshView& mesh = scene.meshes()[in.mesh];
@@ -231,7 +178,7 @@ void EmbreeScene::build_fixed(const RenderScene& scene) {
   }
 }
 
-void EmbreeScene::build_shapes(const RenderScene& scene) {
+void EmbreeBuild::build_shapes(const RenderScene& scene) {
   std::vector<RTCScene> to_commit;
   const std::vector<InstanceView>& instances = scene.instances();
   for (size_t i = 0; i < instances.size(); ++i) {
@@ -261,7 +208,7 @@ void EmbreeScene::build_shapes(const RenderScene& scene) {
                [&](int64_t i) { rtcCommitScene(to_commit[i]); });
 }
 
-void EmbreeScene::rebuild_mesh(const RenderScene& scene, uint32_t mesh) {
+void EmbreeBuild::rebuild_mesh(const RenderScene& scene, uint32_t mesh) {
   const auto shape = shapes_.find({ShapeType::kMesh, mesh, 0, 0, 0});
   if (shape == shapes_.end()) return;  // it is not drawn
   const RtcOwner<RTCGeometry> geometry = mesh_geometry(scene.meshes()[mesh]);
@@ -271,7 +218,7 @@ void EmbreeScene::rebuild_mesh(const RenderScene& scene, uint32_t mesh) {
   rtcCommitScene(shape->second.get());
 }
 
-void EmbreeScene::build(const RenderScene& scene) {
+void EmbreeBuild::build(const RenderScene& scene) {
   drawn_version_ = scene.drawn_version();
   moving_geometries_.clear();
   moving_.reset();
@@ -279,19 +226,13 @@ void EmbreeScene::build(const RenderScene& scene) {
   shapes_.clear();
   shape_data_.clear();
   rows_.clear();
-  planes_.clear();
-  solids_.clear();
-  for (size_t i = 0; i < scene.instances().size(); ++i) {
-    if (is_infinite_plane(scene.instances()[i]) && scene.is_drawn(i)) {
-      planes_.push_back(static_cast<uint32_t>(i));
-    }
-  }
   build_moving(scene);
-  choose_scanned(scene);
+  scanned_ = ScanTable::choose(scene, kMaxScanned, 0);
+  for (const ScannedSolid& solid : scanned_.solids) rows_.push_back(solid.row);
   build_fixed(scene);
 }
 
-void EmbreeScene::build_moving(const RenderScene& scene) {
+void EmbreeBuild::build_moving(const RenderScene& scene) {
   moving_ = new_scene();
   rtcSetSceneFlags(moving_.get(), RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_DYNAMIC);
   build_shapes(scene);
@@ -307,7 +248,7 @@ void EmbreeScene::build_moving(const RenderScene& scene) {
   if (rows_.empty()) moving_.reset();
 }
 
-Status EmbreeScene::update(const RenderScene& scene) {
+Status EmbreeBuild::update(const RenderScene& scene) {
   if (drawn_version_ != scene.drawn_version()) build(scene);
   for (const uint32_t mesh : scene.rebuilt_meshes()) rebuild_mesh(scene, mesh);
   for (size_t g = 0; g < moving_geometries_.size(); ++g) {
@@ -337,14 +278,14 @@ Status EmbreeScene::update(const RenderScene& scene) {
   return {};
 }
 
-EmbreeTracer EmbreeScene::static_tracer(const RenderScene& scene) const {
+EmbreeTracer EmbreeBuild::static_tracer(const RenderScene& scene) const {
   EmbreeTracer tracer = this->tracer(scene);
   tracer.moving = {};
   tracer.scanned.planes = {};
   return tracer;
 }
 
-EmbreeTracer EmbreeScene::tracer(const RenderScene& scene) const {
+EmbreeTracer EmbreeBuild::tracer(const RenderScene& scene) const {
   const auto span = [](const auto& v) {
     return DeviceSpan<const std::decay_t<decltype(v[0])>>{v.data(),
                                                           static_cast<uint32_t>(v.size())};
@@ -354,7 +295,7 @@ EmbreeTracer EmbreeScene::tracer(const RenderScene& scene) const {
   if (moving_ != nullptr) tracer.moving = {moving_.get(), bounds_of(moving_.get())};
   tracer.rows = span(rows_);
   tracer.first_still = static_cast<uint32_t>(moving_geometries_.size());
-  tracer.scanned = {span(planes_), span(solids_), span(scene.instances())};
+  tracer.scanned = scanned_.list(scene);
   return tracer;
 }
 

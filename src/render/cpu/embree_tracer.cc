@@ -1,12 +1,15 @@
 #include "render/cpu/embree_tracer.h"
 
+#include <embree3/rtcore.h>
+
 #include <cstring>
 #include <type_traits>
 
 namespace gloam {
 namespace {
 
-/// Embree may stop the program at what is no ray, as hostile scenes can make: it hits nothing.
+/// Embree may stop the program at what is no ray, as hostile scenes can make:
+/// it hits nothing.
 template <class F>
 MaskOf<F> is_ray(const RayOf<F>& ray) {
   const F far = magnitude(ray.o.x) + magnitude(ray.o.y) + magnitude(ray.o.z);
@@ -84,7 +87,7 @@ void EmbreeTracer::resolve(uint32_t instance_id, uint32_t geometry_id, float tim
   }
 }
 
-bool EmbreeTracer::trace(const Ray& ray, bool any, RayHit* hit) const {
+bool EmbreeTracer::by_embree(const Ray& ray, bool any, RayHit* hit) const {
   if (!is_ray(ray)) return false;
   float tmax = ray.tmax;
   const uint32_t row = scan(scanned, ray, true, any, &tmax);
@@ -115,16 +118,8 @@ bool EmbreeTracer::trace(const Ray& ray, bool any, RayHit* hit) const {
   return row != 0;
 }
 
-bool EmbreeTracer::closest(const Ray& ray, bool active, bool, RayHit* hit) const {
-  return active && trace(ray, false, hit);
-}
-bool EmbreeTracer::occluded(const Ray& ray, bool active) const {
-  RayHit hit;
-  return active && trace(ray, true, &hit);
-}
-
-MaskLanes EmbreeTracer::closest(const RayOf<FloatLanes>& ray, MaskLanes active, bool coherent,
-                                RayHitOf<FloatLanes>* hit) const {
+MaskLanes EmbreeTracer::closest_by_embree(const RayOf<FloatLanes>& ray, MaskLanes active,
+                                          bool coherent, RayHitOf<FloatLanes>* hit) const {
   active = active & is_ray(ray);
   FloatLanes tmax = ray.tmax;
   const UintLanes row = scan(scanned, ray, active, false, &tmax);
@@ -164,7 +159,7 @@ MaskLanes EmbreeTracer::closest(const RayOf<FloatLanes>& ray, MaskLanes active, 
   return found | met;
 }
 
-MaskLanes EmbreeTracer::occluded(const RayOf<FloatLanes>& ray, MaskLanes active) const {
+MaskLanes EmbreeTracer::occluded_by_embree(const RayOf<FloatLanes>& ray, MaskLanes active) const {
   active = active & is_ray(ray);
   FloatLanes tmax = ray.tmax;
   MaskLanes blocked = active & (scan(scanned, ray, active, true, &tmax) != 0u);
@@ -181,26 +176,6 @@ MaskLanes EmbreeTracer::occluded(const RayOf<FloatLanes>& ray, MaskLanes active)
     blocked = blocked | (open & (load<FloatLanes>(q.tfar) < 0.0f));
   }
   return blocked;
-}
-
-void EmbreeTracer::trace_packet(const Ray* const* rays, int count, bool any, bool coherent,
-                                RayHit* hits, bool* found) const {
-  RayOf<FloatLanes> ray;
-  MaskLanes active = false;
-  for (int i = 0; i < kPacket; ++i) {
-    const Ray& one = *rays[i < count ? i : 0];
-    set_lane(&active, i, i < count);
-    set_lane(&ray.o, i, one.o);
-    set_lane(&ray.d, i, one.d);
-    set_lane(&ray.tmax, i, one.tmax);
-    set_lane(&ray.time, i, one.time);
-  }
-  RayHitOf<FloatLanes> hit;
-  const MaskLanes met = any ? occluded(ray, active) : closest(ray, active, coherent, &hit);
-  for (int i = 0; i < count; ++i) {
-    found[i] = lane(met, i);
-    if (found[i] && !any) hits[i] = lane(hit, i);
-  }
 }
 
 }  // namespace gloam

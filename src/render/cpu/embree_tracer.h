@@ -1,17 +1,19 @@
 #pragma once
-// What the kernel traces with: a short list that is scanned, and Embree's traversal of the rest.
+// What the kernel traces with: a short list that is scanned, and Embree's
+// traversal of the rest; or our own BVH for all of it.
 
-#include <embree3/rtcore.h>
+#include <optional>
 
-#include "render/cpu/scan.h"
-#include "render/kernel/scene_view.h"
+#include "render/kernel/bvh_tracer.h"
+
+struct RTCSceneTy;  // Embree's RTCScene points to it
 
 namespace gloam {
 
 /// A scene of Embree's and what it lies in.
 struct EmbreePart {
-  RTCScene scene = nullptr;  ///< null = nothing
-  Bounds bounds;             ///< a little wider than the scene
+  RTCSceneTy* scene = nullptr;  ///< null = nothing
+  Bounds bounds;                ///< a little wider than the scene
 };
 
 /// Cheap to copy; valid until the scene's next update.
@@ -31,14 +33,20 @@ class EmbreeTracer {
   void trace_packet(const Ray* const* rays, int count, bool any, bool coherent, RayHit* hits,
                     bool* found) const;
 
-  // Two scenes, one after the other: an instance around all that is static would cost every ray
-  // more.
+  // Two scenes, one after the other: an instance around all that is static
+  // would cost every ray more.
   EmbreePart fixed, moving;
   DeviceSpan<const uint32_t> rows;  ///< Embree id -> instance, what moves first
   uint32_t first_still = 0;         ///< id of the first that never moves
   ScanList scanned;
+  /// Of our own BVH, which then answers for all that is above.
+  std::optional<BvhTracer> own;
 
  private:
+  bool by_embree(const Ray& ray, bool any, RayHit* hit) const;
+  MaskLanes closest_by_embree(const RayOf<FloatLanes>& ray, MaskLanes active, bool coherent,
+                              RayHitOf<FloatLanes>* hit) const;
+  MaskLanes occluded_by_embree(const RayOf<FloatLanes>& ray, MaskLanes active) const;
   void resolve(uint32_t instance_id, uint32_t geometry_id, float time, RayHit* hit) const;
 };
 

@@ -6,6 +6,7 @@
 #include "render/cpu/embree_tracer.h"
 #include "render/kernel/channels.h"
 #include "render/kernel/path.h"
+#include "render/kernel/pixel_mean.h"
 #include "render/renderer.h"
 
 namespace gloam {
@@ -36,25 +37,6 @@ struct Job {
   /// A single direct sample goes through the pixel's centre, and serves the exact channels too.
   bool centered = false;
   Film* film = nullptr;
-};
-
-/// Mean over the samples of a pixel and the variance of that mean (Welford 1962).
-struct PixelMean {
-  Vec3f radiance, squares, albedo, normal;
-  int count = 0;
-
-  void add(const PathResult& sample) {
-    ++count;
-    const float weight = 1.0f / static_cast<float>(count);
-    const Vec3f delta = sample.radiance - radiance;
-    radiance += delta * weight;
-    squares += delta * (sample.radiance - radiance);
-    albedo += (sample.albedo - albedo) * weight;
-    normal += (sample.normal - normal) * weight;
-  }
-  Vec3f variance() const {
-    return count < 2 ? Vec3f{} : squares / (static_cast<float>(count) * (count - 1));
-  }
 };
 
 void store_channels(Film* film, size_t pixel, const ExactChannels& channels);

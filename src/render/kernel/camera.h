@@ -39,6 +39,11 @@ struct CameraView32 {
   Shutter shutter;
   Aperture aperture;
 
+  GLOAM_HD bool is_plain() const {
+    return lens.model == LensModel::kPinhole && !(aperture.radius > 0);
+  }
+  GLOAM_HD bool is_pinhole() const { return kPlainScenes || lens.model == LensModel::kPinhole; }
+  GLOAM_HD bool has_aperture() const { return !kPlainScenes && aperture.radius > 0; }
   /// The time of row `y` when a share `u` of its exposure has passed.
   GLOAM_HD float time_of(int y, float u) const {
     return min(shutter.open + shutter.row * static_cast<float>(y) + shutter.length * u, 1.0f);
@@ -97,9 +102,8 @@ GLOAM_HD Ray camera_ray(const CameraView32& camera, float u, float v, float time
     return ray;
   }
   ray.o = X_WC.p;
-  const bool pinhole = camera.lens.model == LensModel::kPinhole;
   Vec3f d_C{x, y, -1.0f};
-  if (pinhole) {
+  if (camera.is_pinhole()) {
     ray.d = normalize(transform_vector(X_WC, d_C));
     *cone = {0.0f, 1.0f / (camera.fx * sqrtf(1.0f + x * x + y * y))};
   } else {
@@ -114,7 +118,7 @@ GLOAM_HD Ray camera_ray(const CameraView32& camera, float u, float v, float time
     ray.d = normalize(transform_vector(X_WC, d_C));
     *cone = {0.0f, angle / sqrtf(camera.fx * camera.fy)};
   }
-  if (lens == nullptr || !(camera.aperture.radius > 0)) return ray;
+  if (lens == nullptr || !camera.has_aperture()) return ray;
   float sine, cosine;
   sincos_turn(lens->y, &sine, &cosine);
   const float r = camera.aperture.radius * sqrtf(lens->x);
@@ -130,7 +134,7 @@ GLOAM_HD Ray camera_ray(const CameraView32& camera, float u, float v, float time
 /// Where the point p_W appears [px]; false where the camera does not see it.
 GLOAM_HD bool project(const CameraView32& camera, const Affine3f& X_WC, Vec3f p_W, Vec2f* uv) {
   const Vec3f p = transform_point(inverse(X_WC), p_W);
-  if (!camera.orthographic && camera.lens.model != LensModel::kPinhole) {
+  if (!camera.orthographic && !camera.is_pinhole()) {
     float x, y;
     if (!lens_project(camera.lens, p.x, -p.y, -p.z, &x, &y)) return false;
     *uv = {camera.cx + camera.fx * x, camera.cy + camera.fy * y};

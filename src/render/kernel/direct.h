@@ -44,6 +44,7 @@ namespace directs {
 /// Light that passes the surface; what glass bends goes straight on here.
 GLOAM_HD Vec3f passing_light_of(const SceneView& scene, const Surface& s, Vec3f d) {
   Vec3f passing = passing_light(s);
+  if (!scene.has_layers()) return passing;
   const int row = scene.materials[scene.instances[s.instance].material].layers;
   if (row < 0) return passing;
   const MaterialLayers& m = scene.layers[static_cast<uint32_t>(row)];
@@ -73,12 +74,12 @@ GLOAM_HD void meet_surface(const SceneView& scene, DirectState* d, const RayHit&
   d->result.radiance +=
       (d->s.emission + albedo * scene.ambient.on(d->s.normal)) * (d->transmittance * d->s.opacity);
   d->next_light = 0;
-  if (scene.lights.size > kMaxDirectLights) d->picker.prepare(scene, d->s.p, d->s.geometric);
+  if (scene.has_many_lights()) d->picker.prepare(scene, d->s.p, d->s.geometric);
 }
 
 /// Sets the shadow ray of the next light that can reach the surface; false when none is left.
 GLOAM_HD bool next_shadow(const SceneView& scene, DirectState* d) {
-  const bool all = scene.lights.size <= kMaxDirectLights;
+  const bool all = !scene.has_many_lights();
   const uint32_t count = all ? scene.lights.size : kMaxDirectLights;
   const Surface& s = d->s;
   while (d->next_light < count) {
@@ -112,7 +113,7 @@ GLOAM_HD bool direct_advance(const SceneView& scene, DirectState* d, bool found,
                              const RayHit& hit) {
   ++d->result.rays;
   if (d->is_shadow) {
-    if (found && scene.has_transparent && d->passed < kMaxPassed) {
+    if (found && scene.lets_light_through() && d->passed < kMaxPassed) {
       const Surface blocker = make_surface(scene, d->ray, hit, {});
       if (const Vec3f passing = directs::passing_light_of(scene, blocker, d->ray.d);
           max_component(passing) > 0.0f) {
@@ -133,7 +134,7 @@ GLOAM_HD bool direct_advance(const SceneView& scene, DirectState* d, bool found,
     directs::meet_surface(scene, d, hit);
   }
   d->is_shadow = directs::next_shadow(scene, d);
-  d->any = d->is_shadow && !scene.has_transparent;
+  d->any = d->is_shadow && !scene.lets_light_through();
   if (d->is_shadow) return true;
   d->transmittance *= d->passing;
   if (max_component(d->transmittance) < 0.004f || d->layers >= kMaxPassed) return false;

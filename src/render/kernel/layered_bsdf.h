@@ -104,7 +104,7 @@ GLOAM_HD F eval_coat(const LayeredBsdfOf<F>& b, Vec3Of<F> wo, Vec3Of<F> wi, F* p
 template <class F>
 GLOAM_HD Vec3Of<F> eval_bsdf(const LayeredBsdfOf<F>& b, Vec3Of<F> wo, Vec3Of<F> wi, F* pdf) {
   Vec3Of<F> value = eval_bsdf(b.base, wo, wi, pdf);
-  if (!any(b.layered)) return value;
+  if (kPlainScenes || !any(b.layered)) return value;
   const MaskOf<F> near = b.layered & (wo.z > 0.0f) & (wi.z > 0.0f);
   const MaskOf<F> far = b.layered & (wo.z > 0.0f) & (wi.z < 0.0f);
   value = select<F>(b.layered, value * b.under, value);
@@ -142,7 +142,7 @@ GLOAM_HD Vec3Of<F> eval_bsdf(const LayeredBsdfOf<F>& b, Vec3Of<F> wo, Vec3Of<F> 
 template <class F>
 GLOAM_HD BsdfSampleOf<F> sample_bsdf(const LayeredBsdfOf<F>& b, Vec3Of<F> wo, F pick, Vec2Of<F> u,
                                      MaskOf<F> given = false, Vec3Of<F> wi_given = {}) {
-  if (!any(b.layered)) return sample_bsdf(b.base, wo, pick, u, given, wi_given);
+  if (kPlainScenes || !any(b.layered)) return sample_bsdf(b.base, wo, pick, u, given, wi_given);
   // Each part takes its share of `pick`, and stretches it to [0, 1).
   MaskOf<F> open = true;
   F own = pick, left = pick;

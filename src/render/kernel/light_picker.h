@@ -9,9 +9,6 @@
 
 namespace gloam {
 
-/// Scenes with more lights select by a tree.
-inline constexpr uint32_t kMaxWeighedLights = 16;
-
 /// A bound, up to a factor, of what the light brings to the surface at p with the geometric normal
 /// n if nothing is in between; zero only if it brings nothing. Light from behind counts where the
 /// surface lets it through; points in a medium (n = 0) take it from all around.
@@ -67,7 +64,7 @@ class LightPickerOf {
     n_ = select<F>(active, select<F>(both_sides, Vec3Of<F>{}, n), n_);
     GuideRowsOf<F> rows;
     if (scene.guide.nx > 0) rows = find_rows(scene.guide, p, n, active & !both_sides);
-    const bool weighs = count_ <= kMaxWeighedLights;
+    const bool weighs = !scene.has_many_lights();
     F weight[kMaxWeighedLights], total = 0.0f;
     for (uint32_t i = 0; weighs && i < count_; ++i) {
       const LightView& light = scene.lights[i];
@@ -80,7 +77,7 @@ class LightPickerOf {
       total += weight[i];
     }
     F sky = 0.0f;
-    if (!scene.environment.row_cdf.empty()) {
+    if (scene.has_environment() && !scene.environment.row_cdf.empty()) {
       sky = 0.25f * scene.environment.illuminance;  // of even light from all around
       if (any(rows.guided)) {
         // Of what is seen through windows the guide has the better directions.
@@ -110,7 +107,7 @@ class LightPickerOf {
   GLOAM_HD F shares(uint32_t i) const { return share_[i]; }
   /// Probability of taking light i in the lane `at`.
   GLOAM_HD float probability(const SceneView& scene, uint32_t i, int at) const {
-    if (count_ <= kMaxWeighedLights) return lane(share_[i], at);
+    if (!scene.has_many_lights()) return lane(share_[i], at);
     return (1.0f - lane(sky_share_, at)) *
            light_tree::probability(scene.light_tree, i, lane(p_, at), lane(n_, at));
   }
@@ -125,7 +122,7 @@ class LightPickerOf {
       open = active & !sky;
     }
     pick -= sky_share_;
-    if (count_ > kMaxWeighedLights) {
+    if (scene.has_many_lights()) {
       const F lights_share = 1.0f - sky_share_;
       pick = clamp(pick / lights_share, 0.0f, 0.9999999f);
       each_lane(open, [&](int i) {
@@ -220,7 +217,7 @@ GLOAM_HD Vec3Of<F> still_light(const SceneView& scene, const LightView& light, c
                (lamp_share(scene, light, -to / square_root(d2)) / (kPi * r2));
     sin2 = min(r2 / d2, 1.0f);
   }
-  if (!scene.media.volumes.empty()) {
+  if (scene.has_media()) {
     each_lane(seen, [&](int at) {
       set_lane(&radiance, at, lane(radiance, at) * passing(at, lane(t, at)));
     });
@@ -260,7 +257,7 @@ GLOAM_HD Vec3Of<F> visible_lights(const SceneView& scene, const RayOf<F>& ray, F
                                   Vec3Of<F> from, const LightPickerOf<F>& picker, F pdf_bsdf,
                                   MaskOf<F> active, const Passing& passing) {
   Vec3Of<F> sum;
-  if (scene.lights.size <= kMaxWeighedLights) {
+  if (!scene.has_many_lights()) {
     for (uint32_t i = 0; i < scene.lights.size; ++i) {
       sum += visible_light(
           scene, i, ray, tmax, from, pdf_bsdf, active, [&] { return picker.shares(i); }, passing);

@@ -51,30 +51,38 @@ GLOAM_HD Vec3Of<F> eval_phases(const SceneView& scene, const State<F>& path,
   return value;
 }
 
-/// Samples one light and one direction at the vertices of the `active` lanes; returns the lanes
-/// whose path goes on.
-template <class F, class Tracer>
-GLOAM_HD MaskOf<F> scatter_in_media(const SceneView& scene, const Tracer& tracer,
-                                    const PathOptions& options, State<F>* path,
-                                    const MediumVertexOf<F>& v, MaskOf<F> active) {
+/// Samples one light at the vertices of the `active` lanes. `band` is what was drawn for the choice
+/// of a band.
+template <class F>
+GLOAM_HD NextEventOf<F> aim_at_light_in_media(const SceneView& scene, State<F>* path,
+                                              const MediumVertexOf<F>& v, MaskOf<F> active,
+                                              F* band) {
   const Vec3Of<F> p = path->ray.o + path->ray.d * v.t;
   path->picker.prepare(scene, p, Vec3Of<F>{}, active);
   const Vec2Of<F> choice = path->sampler.next_2d(active);  // of the light, of the band
+  *band = choice.y;
   const Vec2Of<F> u_light = path->sampler.next_2d(active);
   const LightSampleOf<F> light =
       path->picker.sample(scene, p, choice.x, u_light, path->ray.time, active);
-  const MaskOf<F> lit = active & (light.pdf > 0.0f);
-  if (any(lit)) {
-    F pdf = 1.0f;
-    const Vec3Of<F> f = eval_phases(scene, *path, v, light.wi, lit, &pdf);
-    const F weight = select(light.is_delta, F(1.0f), mis_weight(light.pdf, pdf));
-    RayOf<F> shadow = path->ray;
-    aim_shadow_ray(p, Vec3Of<F>{}, F(0.0f), light, &shadow);
-    const Vec3Of<F> arriving =
-        bring_light(scene, tracer, shadow, light.casts_shadow, lit,
-                    path->throughput * f * light.radiance * (weight / light.pdf), path);
-    path->result.radiance += select<F>(lit, arriving, Vec3Of<F>{});
-  }
+  NextEventOf<F> event;
+  event.lit = active & (light.pdf > 0.0f);
+  if (!any(event.lit)) return event;
+  F pdf = 1.0f;
+  const Vec3Of<F> f = eval_phases(scene, *path, v, light.wi, event.lit, &pdf);
+  const F weight = select(light.is_delta, F(1.0f), mis_weight(light.pdf, pdf));
+  event.casts_shadow = light.casts_shadow;
+  event.shadow = path->ray;
+  aim_shadow_ray(p, Vec3Of<F>{}, F(0.0f), light, &event.shadow);
+  event.arriving = path->throughput * f * light.radiance * (weight / light.pdf);
+  return event;
+}
+
+/// Samples one direction at the vertices of the `active` lanes; returns the lanes whose path goes
+/// on.
+template <class F>
+GLOAM_HD MaskOf<F> turn_in_media(const SceneView& scene, const PathOptions& options, State<F>* path,
+                                 const MediumVertexOf<F>& v, F band, MaskOf<F> active) {
+  const Vec3Of<F> p = path->ray.o + path->ray.d * v.t;
   const MaskOf<F> next = may_go_on(scene, options, *path, active);
   const Vec2Of<F> u = path->sampler.next_2d(next);
   Vec3Of<F> wi, weight;
@@ -82,13 +90,29 @@ GLOAM_HD MaskOf<F> scatter_in_media(const SceneView& scene, const Tracer& tracer
   each_lane(next, [&](int i) {
     const PhaseSample s =
         sample_phase(scene.media.volumes[lane(v.volume, i)], {}, lane(path->throughput, i),
-                     lane(path->ray.d, i), lane(choice.y, i), lane(u, i));
+                     lane(path->ray.d, i), lane(band, i), lane(u, i));
     set_lane(&wi, i, s.wi);
     set_lane(&weight, i, s.weight);
     set_lane(&pdf, i, s.pdf);
   });
   go_on(next, p, p, wi, weight, pdf, path);
   return next;
+}
+
+/// Samples one light and one direction at the vertices of the `active` lanes; returns the lanes
+/// whose path goes on.
+template <class F, class Tracer>
+GLOAM_HD MaskOf<F> scatter_in_media(const SceneView& scene, const Tracer& tracer,
+                                    const PathOptions& options, State<F>* path,
+                                    const MediumVertexOf<F>& v, MaskOf<F> active) {
+  F band{};
+  const NextEventOf<F> event = aim_at_light_in_media(scene, path, v, active, &band);
+  if (any(event.lit)) {
+    const Vec3Of<F> arriving = bring_light(scene, tracer, event.shadow, event.casts_shadow,
+                                           event.lit, event.arriving, path);
+    path->result.radiance += select<F>(event.lit, arriving, Vec3Of<F>{});
+  }
+  return turn_in_media(scene, options, path, v, band, active);
 }
 
 }  // namespace gloam::paths

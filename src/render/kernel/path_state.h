@@ -44,6 +44,14 @@ struct State {
   Vec3Of<F> absorption;     ///< of the glass that the path is in [1/m]
 };
 
+/// A shadow ray and the light that arrives along it where nothing is in between.
+template <class F>
+struct NextEventOf {
+  RayOf<F> shadow;
+  MaskOf<F> lit = false, casts_shadow = false;
+  Vec3Of<F> arriving;
+};
+
 /// Share of light that glass lets through on a way of length t.
 template <class F>
 GLOAM_HD Vec3Of<F> through_glass(Vec3Of<F> absorption, F t) {
@@ -59,7 +67,7 @@ GLOAM_HD Vec3Of<F> through_glass(Vec3Of<F> absorption, F t) {
 template <class F>
 GLOAM_HD Vec3Of<F> absorption_beyond(const SceneView& scene, const SurfaceOf<F>& v,
                                      MaskOf<F> crossing, Vec3Of<F> here) {
-  if (scene.layers.size == 0) return here;
+  if (!scene.has_layers()) return here;
   each_lane(crossing, [&](int i) {
     const int row = scene.materials[scene.instances[lane(v.instance, i)].material].layers;
     if (row < 0) return;
@@ -101,7 +109,7 @@ template <class F, class Tracer>
 GLOAM_HD Vec3Of<F> transmit(const SceneView& scene, const Tracer& tracer, RayOf<F> ray,
                             MaskOf<F> open, UintOf<F>* rays) {
   Vec3Of<F> light = in_all_lanes<F>({1, 1, 1});
-  if (!scene.has_transparent) {
+  if (!scene.lets_light_through()) {
     *rays += select(open, UintOf<F>(1u), UintOf<F>(0u));
     return select<F>(tracer.occluded(ray, open), Vec3Of<F>{}, light);
   }
@@ -125,7 +133,7 @@ template <class F>
 GLOAM_HD Vec3Of<F> through_media(const SceneView& scene, const RayOf<F>& ray, MaskOf<F> active,
                                  SamplerOf<F>* sampler) {
   Vec3Of<F> share = in_all_lanes<F>({1, 1, 1});
-  if (scene.media.volumes.empty()) return share;
+  if (!scene.has_media()) return share;
   const Vec2Of<F> u = sampler->next_2d(active);
   each_lane(active, [&](int i) {
     const Ray one = lane(ray, i);

@@ -33,6 +33,15 @@ GLOAM_HD RayHit lane(const RayHitOf<F>& hit, int i) {
   return {lane(hit.t, i), lane(hit.instance, i), lane(hit.primitive, i),
           lane(hit.u, i), lane(hit.v, i),        lane(hit.normal, i)};
 }
+template <class F>
+GLOAM_HD void set_lane(RayHitOf<F>* hit, int i, const RayHit& value) {
+  set_lane(&hit->t, i, value.t);
+  set_lane(&hit->instance, i, value.instance);
+  set_lane(&hit->primitive, i, value.primitive);
+  set_lane(&hit->u, i, value.u);
+  set_lane(&hit->v, i, value.v);
+  set_lane(&hit->normal, i, value.normal);
+}
 
 /// Sine and cosine of 2 pi u, u in [0, 1): error < 1e-6; the same on every device.
 template <class F>

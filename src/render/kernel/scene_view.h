@@ -2,6 +2,7 @@
 // What the kernel reads: plain arrays in the memory of the side that runs it. render/scene fills
 // them. Device-safe.
 
+#include "geometry/motion_keys.h"
 #include "render/kernel/environment.h"
 #include "render/kernel/light_tree_view.h"
 #include "render/kernel/medium_view.h"
@@ -219,6 +220,17 @@ struct GlassTable {
   GLOAM_HD static float eta_at(float axis) { return (2.0f + axis) / (2.0f - axis); }
 };
 
+/// Kernels on a card may be made for scenes without anything special alone: what they leave out is
+/// then known when they are compiled, and they are several times shorter.
+#if defined(__CUDA_ARCH__) && defined(GLOAM_PLAIN_KERNELS)
+inline constexpr bool kPlainScenes = true;
+#else
+inline constexpr bool kPlainScenes = false;
+#endif
+
+/// Scenes with more lights select by a tree.
+inline constexpr uint32_t kMaxWeighedLights = 16;
+
 struct SceneView {
   DeviceSpan<const InstanceView> instances;
   DeviceSpan<const MeshView> meshes;
@@ -246,16 +258,20 @@ struct SceneView {
   bool has_transparent = false;  ///< some material lets light straight through
   bool has_emitters = false;  ///< something that a ray can hit gives light: sky, sphere, instance
   bool has_visible_lights = false;  ///< some sphere or sun can be hit
-};
 
-/// The place of a time 0 … 1 among `count` >= 2 keys: the key before it, and the share of the way
-/// to the next.
-GLOAM_HD uint32_t key_before(uint32_t count, float time, float* share) {
-  const float at = clamp(time, 0.0f, 1.0f) * static_cast<float>(count - 1);
-  const uint32_t key = static_cast<uint32_t>(min(at, static_cast<float>(count - 2)));
-  *share = at - static_cast<float>(key);
-  return key;
-}
+  GLOAM_HD bool has_textures() const { return !kPlainScenes && textures.size > 0; }
+  GLOAM_HD bool has_layers() const { return !kPlainScenes && layers.size > 0; }
+  GLOAM_HD bool has_media() const { return !kPlainScenes && media.volumes.size > 0; }
+  GLOAM_HD bool has_environment() const { return !kPlainScenes && !environment.levels.empty(); }
+  GLOAM_HD bool has_sky_texture() const { return !kPlainScenes && sky_texture >= 0; }
+  GLOAM_HD bool lets_light_through() const { return !kPlainScenes && has_transparent; }
+  GLOAM_HD bool has_many_lights() const { return !kPlainScenes && lights.size > kMaxWeighedLights; }
+  GLOAM_HD bool is_plain() const {
+    return textures.empty() && layers.empty() && media.volumes.empty() &&
+           environment.levels.empty() && sky_texture < 0 && !has_transparent &&
+           lights.size <= kMaxWeighedLights;
+  }
+};
 
 /// Pose of an instance at a time in the shutter (linear between the keys, as Embree does);
 /// `between` is room for it.

@@ -8,8 +8,8 @@ namespace gloam {
 /// Luminance of the sky towards the unit world direction d [cd/m²], filtered over a cone of the
 /// full angle `spread` [rad]. MuJoCo turns its skybox by 90 degrees about +X.
 GLOAM_HD Vec3f sky_radiance(const SceneView& scene, Vec3f d, float spread) {
-  if (!scene.environment.levels.empty()) return environment_radiance(scene.environment, d, spread);
-  if (scene.sky_texture < 0) return {0, 0, 0};
+  if (scene.has_environment()) return environment_radiance(scene.environment, d, spread);
+  if (!scene.has_sky_texture()) return {0, 0, 0};
   return lookup_cube(scene, scene.sky_texture, {d.x, d.z, -d.y}, spread).rgb * scene.sky_scale;
 }
 
@@ -19,8 +19,8 @@ template <class F>
 GLOAM_HD Vec3Of<F> sky_radiance_of(const SceneView& scene, Vec3Of<F> d, F spread,
                                    MaskOf<F> active) {
   Vec3Of<F> out;
-  const bool filter = scene.environment.levels.empty();
-  if (filter && scene.sky_texture < 0) return out;
+  const bool filter = !scene.has_environment();
+  if (filter && !scene.has_sky_texture()) return out;
   each_lane(active, [&](int i) {
     set_lane(&out, i, sky_radiance(scene, lane(d, i), filter ? lane(spread, i) : 0.0f));
   });

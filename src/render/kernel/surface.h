@@ -86,7 +86,7 @@ GLOAM_HD SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>& ray,
     return (lane(cone.width, i) + lane(cone.spread, i) * lane(hit.t, i)) /
            sqrtf(max(fabsf(lane(cosine, i)), 0.05f));
   };
-  each_lane(textured, [&](int i) {
+  each_lane(textured & scene.has_textures(), [&](int i) {
     Surface one = lane(s, i);
     surfaces::apply_textures(scene, scene.instances[one.instance], lane(hit, i), lane(X_WG, i),
                              lane(p_G, i), width_at(i), lane(ray.time, i), &one);
@@ -103,7 +103,7 @@ GLOAM_HD SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>& ray,
   s.geometric = select<F>(inside, -s.geometric, s.geometric);
   s.normal = select<F>(inside, -s.normal, s.normal);
   s.normal = face_viewer(s.normal, ray.d);
-  each_lane(found & layered, [&](int i) {
+  each_lane(found & layered & scene.has_layers(), [&](int i) {
     Surface one = lane(s, i);
     surfaces::apply_layers(scene, lane(hit, i), lane(X_WG, i), lane(p_G, i), lane(ray.d, i),
                            width_at(i), lane(ray.time, i), &one);
@@ -127,7 +127,7 @@ GLOAM_HD LayeredBsdfOf<F> surface_bsdf(const SceneView& scene, const SurfaceOf<F
   LayeredBsdfOf<F> bsdf;
   bsdf.base = make_bsdf(*scene.albedo, s.base_color, s.base_color, s.metallic, F(1.0f), s.roughness,
                         s.f0, s.f90, F(0.0f), wo_local);
-  if (scene.layers.size > 0) {
+  if (scene.has_layers()) {
     each_lane(active, [&](int i) {
       const int row = scene.materials[scene.instances[lane(s.instance, i)].material].layers;
       if (row < 0) return;

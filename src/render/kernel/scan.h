@@ -1,7 +1,7 @@
 #pragma once
 // What every ray is tested against one by one, in lanes: infinite planes, and the largest simple
 // solids that stand still. For a few that takes a fraction of what a BVH takes, and a room is made
-// of them.
+// of them. Device-safe.
 
 #include "render/kernel/surface.h"
 

@@ -1,0 +1,68 @@
+#pragma once
+// Memory on the card and pinned memory beside it, freed with their owners.
+
+#include <cuda_runtime_api.h>
+
+#include <cstddef>
+
+#include "base/check.h"
+
+namespace gloam::cuda {
+
+/// What fails here is a bug, a broken driver or a full card: nothing of the user's to mend.
+inline void check(cudaError_t error, const char* what) {
+  if (error != cudaSuccess) check_failed("CUDA", 0, cudaGetErrorString(error), what);
+}
+
+/// Grows, never shrinks; growing loses the contents.
+class DeviceBuffer {
+ public:
+  DeviceBuffer() = default;
+  DeviceBuffer(const DeviceBuffer&) = delete;
+  DeviceBuffer& operator=(const DeviceBuffer&) = delete;
+  ~DeviceBuffer() { cudaFree(data_); }
+
+  void* reserve(size_t bytes) {
+    if (bytes > size_) {
+      check(cudaFree(data_), "memory of the card cannot be freed");
+      data_ = nullptr;
+      check(cudaMalloc(&data_, bytes), "the card's memory is full");
+      size_ = bytes;
+    }
+    return data_;
+  }
+  template <class T>
+  T* reserve_of(size_t count) {
+    return static_cast<T*>(reserve(count * sizeof(T)));
+  }
+  void* data() const { return data_; }
+
+ private:
+  void* data_ = nullptr;
+  size_t size_ = 0;
+};
+
+/// Host memory that the card copies from and to at full speed.
+class PinnedBuffer {
+ public:
+  PinnedBuffer() = default;
+  PinnedBuffer(const PinnedBuffer&) = delete;
+  PinnedBuffer& operator=(const PinnedBuffer&) = delete;
+  ~PinnedBuffer() { cudaFreeHost(data_); }
+
+  char* reserve(size_t bytes) {
+    if (bytes > size_) {
+      check(cudaFreeHost(data_), "pinned memory cannot be freed");
+      data_ = nullptr;
+      check(cudaMallocHost(&data_, bytes), "no pinned memory is left");
+      size_ = bytes;
+    }
+    return static_cast<char*>(data_);
+  }
+
+ private:
+  void* data_ = nullptr;
+  size_t size_ = 0;
+};
+
+}  // namespace gloam::cuda

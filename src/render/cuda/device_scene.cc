@@ -1,0 +1,152 @@
+#include "render/cuda/device_scene.h"
+
+#include <cstring>
+#include <type_traits>
+
+namespace gloam::cuda {
+namespace {
+
+constexpr size_t kAlign = 256;
+
+}  // namespace
+
+const void* DeviceScene::Parcel::put(const void* data, size_t bytes) {
+  if (bytes == 0) return nullptr;
+  const size_t at = used;
+  used += (bytes + kAlign - 1) / kAlign * kAlign;
+  if (host == nullptr) return nullptr;  // measuring
+  std::memcpy(host + at, data, bytes);
+  return device + at;
+}
+template <class T>
+DeviceSpan<const T> DeviceScene::Parcel::put(DeviceSpan<const T> span) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  return {static_cast<const T*>(put(span.data, span.size * sizeof(T))), span.size};
+}
+template <class T>
+DeviceSpan<const T> DeviceScene::Parcel::put(const std::vector<T>& v) {
+  return put(DeviceSpan<const T>{v.data(), static_cast<uint32_t>(v.size())});
+}
+
+const void* DeviceScene::keep(const void* data, size_t bytes) {
+  if (bytes == 0 || data == nullptr) return nullptr;
+  Kept& kept = kept_[data];
+  if (kept.bytes != bytes) {
+    kept.bytes = bytes;
+    check(cudaMemcpy(kept.buffer.reserve(bytes), data, bytes, cudaMemcpyHostToDevice),
+          "the scene cannot be copied to the card");
+  }
+  return kept.buffer.data();
+}
+template <class T>
+DeviceSpan<const T> DeviceScene::keep(DeviceSpan<const T> span) {
+  static_assert(std::is_trivially_copyable_v<T>);
+  return {static_cast<const T*>(keep(span.data, span.size * sizeof(T))), span.size};
+}
+
+MeshView DeviceScene::keep_mesh(const MeshView& mesh, bool deforms, Parcel* parcel) {
+  MeshView out = mesh;
+  out.indices = keep(mesh.indices);
+  out.uvs = keep(mesh.uvs);
+  out.area_cdf = deforms ? parcel->put(mesh.area_cdf) : keep(mesh.area_cdf);
+  out.positions = deforms ? parcel->put(mesh.positions) : keep(mesh.positions);
+  out.position_keys = parcel->put(mesh.position_keys);
+  out.positions_previous = parcel->put(mesh.positions_previous);
+  out.corner_normals = deforms ? parcel->put(mesh.corner_normals) : keep(mesh.corner_normals);
+  return out;
+}
+
+void DeviceScene::fill(const SceneView& scene, const CameraView32& camera, const BvhScene& bvh,
+                       const BvhTracer& tracer, Parcel* parcel, DevicePicture* picture) {
+  SceneView& out = picture->scene;
+  out = scene;
+  picture->camera = camera;
+  picture->camera.pose.keys = parcel->put(camera.pose.keys);
+  std::vector<bool> deforms(scene.meshes.size);
+  std::vector<InstanceView> instances(scene.instances.data,
+                                      scene.instances.data + scene.instances.size);
+  for (InstanceView& instance : instances) {
+    if (instance.shape == ShapeType::kDeformable) deforms[instance.mesh] = true;
+    if (instance.moving) instance.keys = parcel->put(instance.keys);
+  }
+  std::vector<MeshView> meshes;
+  for (uint32_t i = 0; i < scene.meshes.size; ++i) {
+    meshes.push_back(keep_mesh(scene.meshes[i], deforms[i], parcel));
+  }
+  std::vector<VolumeView> volumes;
+  for (uint32_t i = 0; i < scene.media.volumes.size; ++i) {
+    VolumeView volume = scene.media.volumes[i];
+    volume.density = keep(volume.density);
+    volume.temperature = keep(volume.temperature);
+    volume.cells = keep(volume.cells);
+    volumes.push_back(volume);
+  }
+  out.instances = parcel->put(instances);
+  out.meshes = parcel->put(meshes);
+  out.materials = parcel->put(scene.materials);
+  out.layers = parcel->put(scene.layers);
+  out.lights = parcel->put(scene.lights);
+  out.light_keys = parcel->put(scene.light_keys);
+  out.light_tree.nodes = parcel->put(scene.light_tree.nodes);
+  out.light_tree.leaf_of = parcel->put(scene.light_tree.leaf_of);
+  out.media.volumes = parcel->put(volumes);
+  out.media.black_body.luminance = keep(scene.media.black_body.luminance);
+  out.textures = keep(scene.textures);
+  out.texture_levels = keep(scene.texture_levels);
+  out.texels = keep(scene.texels);
+  out.profiles = keep(scene.profiles);
+  out.profile_values = keep(scene.profile_values);
+  out.procedurals = keep(scene.procedurals);
+  out.albedo = static_cast<const AlbedoTable*>(keep(scene.albedo, sizeof(AlbedoTable)));
+  if (scene.glass != nullptr) {
+    out.glass = static_cast<const GlassTable*>(keep(scene.glass, sizeof(GlassTable)));
+  }
+  out.guide.surface_row = keep(scene.guide.surface_row);
+  out.guide.visible = keep(scene.guide.visible);
+  out.guide.sky_visible = keep(scene.guide.sky_visible);
+  out.guide.arriving = keep(scene.guide.arriving);
+  out.environment.texels = keep(scene.environment.texels);
+  out.environment.levels = keep(scene.environment.levels);
+  out.environment.row_cdf = keep(scene.environment.row_cdf);
+  out.environment.column_cdf = keep(scene.environment.column_cdf);
+
+  BvhTracer& device = picture->tracer;
+  device.bvh.instances = parcel->put(bvh.instances()).data;
+  device.bvh.motion = parcel->put(bvh.motion()).data;
+  device.bvh.key_count = tracer.bvh.key_count;
+  device.bvh.root = tracer.bvh.root;
+  device.scanned.planes = parcel->put(tracer.scanned.planes);
+  device.scanned.solids = parcel->put(tracer.scanned.solids);
+  device.scanned.instances = out.instances;
+}
+
+void DeviceScene::upload_trees(const BvhScene& bvh, Stream stream) {
+  const bool all = bvh_version_ != bvh.version();
+  bvh_version_ = bvh.version();
+  const auto copy = [&](const auto& from, size_t fresh, DeviceBuffer* to) {
+    const size_t element = sizeof(from[0]);
+    void* device = to->reserve(from.size() * element);
+    const size_t bytes = (all ? from.size() : fresh) * element;
+    if (bytes == 0) return;
+    check(cudaMemcpyAsync(device, from.data(), bytes, cudaMemcpyHostToDevice, stream),
+          "the BVH cannot be copied to the card");
+  };
+  copy(bvh.nodes(), bvh.fresh_nodes(), &nodes_);
+  copy(bvh.triangles(), bvh.fresh_triangles(), &triangles_);
+}
+
+void DeviceScene::upload(const SceneView& scene, const CameraView32& camera, const BvhScene& bvh,
+                         const BvhTracer& tracer, Stream stream, DevicePicture* picture) {
+  Parcel parcel;
+  fill(scene, camera, bvh, tracer, &parcel, picture);
+  const size_t bytes = parcel.used;
+  parcel = {staging_.reserve(bytes), static_cast<char*>(parcel_.reserve(bytes)), 0};
+  fill(scene, camera, bvh, tracer, &parcel, picture);
+  check(cudaMemcpyAsync(parcel.device, parcel.host, bytes, cudaMemcpyHostToDevice, stream),
+        "the scene cannot be copied to the card");
+  upload_trees(bvh, stream);
+  picture->tracer.bvh.nodes = static_cast<const BvhNode*>(nodes_.data());
+  picture->tracer.bvh.triangles = static_cast<const BvhTriangle*>(triangles_.data());
+}
+
+}  // namespace gloam::cuda

@@ -1,0 +1,62 @@
+#pragma once
+// What the host asks of the card: plain structures that both compilers see, and the launches.
+
+#include "render/kernel/ambient.h"
+#include "render/kernel/bvh_tracer.h"
+#include "render/kernel/path_state.h"
+
+struct CUstream_st;
+
+namespace gloam {
+
+/// Channels in device memory, one entry per pixel; null = not wanted.
+struct DeviceFilm {
+  Vec3f* radiance = nullptr;
+  Vec3f* squares = nullptr;  ///< sums of squared differences from the mean; at the end the variance
+  Vec3f* albedo = nullptr;
+  Vec3f* normal = nullptr;
+  float* depth = nullptr;
+  float* distance = nullptr;
+  uint32_t* part = nullptr;
+  Vec3f* center_normal = nullptr;
+  Vec3f* center_albedo = nullptr;
+  Vec2f* motion = nullptr;
+  Vec3f* scene_flow = nullptr;
+  unsigned long long* rays = nullptr;  ///< one number: traced so far
+};
+
+/// One picture of one world: everything that its pixels share. Pointers are the device's.
+struct DevicePicture {
+  SceneView scene;
+  BvhTracer tracer;
+  CameraView32 camera;
+  PathOptions path;
+  DeviceFilm film;
+  int width = 0, height = 0;
+  uint64_t seed = 1;
+  uint32_t frame = 0, log2_samples = 0;
+  int first_sample = 0, samples = 0;  ///< of this launch
+  int done = 0;                       ///< samples of earlier launches, in the film
+  int split = 1;                      ///< warps that share a pixel's samples: 1, 2 or 4
+  bool last = true;                   ///< launch: the film is finished
+  bool has_motion = false;            ///< something moves while the shutter is open
+  bool centered = false;  ///< direct stage: its sample answers for the exact channels too
+  bool plain = false;     ///< as SceneView::is_plain() and CameraView32::is_plain() say
+};
+
+/// What the direct stage leaves in `part` where the exact channels need rays of their own.
+inline constexpr uint32_t kUnknownPart = ~0u;
+
+namespace cuda {
+
+using Stream = CUstream_st*;
+
+void launch_path(const DevicePicture& picture, Stream stream);
+void launch_direct(const DevicePicture& picture, Stream stream);
+/// Of all pixels, or those of kUnknownPart alone.
+void launch_channels(const DevicePicture& picture, bool unknown_alone, Stream stream);
+/// (1 << kLog2AmbientPaths) paths.
+void launch_ambient(const DevicePicture& picture, AmbientPath* paths, Stream stream);
+
+}  // namespace cuda
+}  // namespace gloam

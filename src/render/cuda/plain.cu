@@ -1,0 +1,17 @@
+// The kernels of scenes without anything special.
+#define GLOAM_PLAIN_KERNELS
+#include "render/cuda/kernels.cuh"
+
+namespace gloam::cuda {
+
+void launch_plain_path(const DevicePicture& p, Stream stream) {
+  path_kernel<<<blocks_for(p, p.split), kBlock, 0, stream>>>(p);
+}
+void launch_plain_direct(const DevicePicture& p, Stream stream) {
+  direct_kernel<<<blocks_for(p, 1), kBlock, 0, stream>>>(p);
+}
+void launch_plain_channels(const DevicePicture& p, bool unknown_alone, Stream stream) {
+  channels_kernel<<<blocks_for(p, 1), kBlock, 0, stream>>>(p, unknown_alone);
+}
+
+}  // namespace gloam::cuda

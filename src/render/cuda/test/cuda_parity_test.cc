@@ -1,0 +1,311 @@
+// What the card makes is what the CPU makes: exact channels to 1e-5, radiance by a Z-test, and the
+// same bits from run to run.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <functional>
+
+#include "render/test/media_probe.h"
+
+namespace gloam {
+namespace {
+
+constexpr int kWidth = 192, kHeight = 128;
+
+struct Case {
+  const char* name;
+  SceneBuilder scene;
+  PoseFrame close;  ///< of the shutter
+  CameraView view;
+  bool moves = false;
+};
+
+LightDescription lamp(Vec3f intensity, float radius) {
+  LightDescription light;
+  light.intensity = intensity;
+  light.radius = radius;
+  return light;
+}
+
+/// Every shape on a floor between walls, under two lamps.
+SceneBuilder all_shapes(const std::function<int(SceneBuilder*, int)>& material) {
+  SceneBuilder b;
+  const int white = b.add_diffuse({0.7f, 0.7f, 0.7f});
+  b.add(ShapeType::kBox, {4, 4, 0.1f}, translation({0, 0, -0.1f}), white);
+  b.add(ShapeType::kBox, {0.1f, 4, 2}, translation({3, 0, 2}), material(&b, 0));
+  b.add(ShapeType::kPlane, {0, 0, 1}, translation({0, 0, -0.5f}), white);
+  const ShapeType shapes[] = {ShapeType::kBox,     ShapeType::kSphere,   ShapeType::kEllipsoid,
+                              ShapeType::kCapsule, ShapeType::kCylinder, ShapeType::kPlane,
+                              ShapeType::kMesh};
+  const int ball = b.add_mesh(make_ball(60, 0.2f));
+  for (int i = 0; i < 21; ++i) {
+    const float a = 0.9f * static_cast<float>(i), r = 0.4f + 0.1f * static_cast<float>(i);
+    const Vec3f p{r * std::cos(a), r * std::sin(a), 0.5f + 0.05f * static_cast<float>(i % 5)};
+    const ShapeType shape = shapes[i % 7];
+    const Affine3f X = rigid(normalize(Vec3f{1, 0.3f * static_cast<float>(i % 4), 0.5f}), a, p);
+    const int body = i % 2 == 0 ? 0 : b.add_body(X);
+    const bool mesh = shape == ShapeType::kMesh;
+    if (mesh && b.description.instances.size() < 12) {
+      for (Vec3f& v : b.description.meshes[static_cast<size_t>(ball)].positions) v = v * 0.25f;
+    }
+    b.add(shape, {0.2f, 0.15f, 0.12f}, body == 0 ? X : Affine3f{}, material(&b, i), body,
+          mesh ? ball : -1);
+  }
+  b.add_light(lamp({60, 55, 50}, 0.1f), {-1, -1, 3});
+  b.add_light(lamp({20, 25, 40}, 0), {1, 2, 2.5f});
+  b.description.extent = 4;
+  return b;
+}
+
+CameraView usual_view() {
+  return SceneBuilder::camera(look_at({-3.2f, -2.4f, 1.9f}, {0, 0, 0.5f}), kWidth, kHeight, 50);
+}
+
+int plain_material(SceneBuilder* b, int i) {
+  MaterialDescription m;
+  m.base_color = {0.3f + 0.1f * static_cast<float>(i % 5), 0.5f,
+                  0.8f - 0.1f * static_cast<float>(i % 7)};
+  m.roughness = 0.2f + 0.1f * static_cast<float>(i % 6);
+  m.metallic = i % 3 == 0 ? 1.0f : 0.0f;
+  return b->add_material(m);
+}
+
+int rich_material(SceneBuilder* b, int i) {
+  MaterialDescription m;
+  m.base_color = {0.8f, 0.6f, 0.4f};
+  m.roughness = 0.3f;
+  if (i % 4 == 0) {
+    m.mapping = TextureMapping::kUv;
+    m.textures.base_color = b->add_texture(make_checker(64, 4, 60, 220));
+  }
+  if (i % 4 == 1) {
+    m.transmission_weight = 1;
+    m.roughness = 0.1f;
+  }
+  if (i % 4 == 2) {
+    m.coat_weight = 0.8f;
+    m.fuzz_weight = 0.3f;
+  }
+  if (i % 4 == 3) m.opacity = 0.6f;
+  return b->add_material(m);
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  all.push_back({"plain", all_shapes(plain_material), {}, usual_view()});
+  all.push_back({"plain, moving", all_shapes(plain_material), {}, usual_view(), true});
+  all.push_back(
+      {"layers, textures, glass, transparency", all_shapes(rich_material), {}, usual_view()});
+  Case glow{"emitters and an even sky", all_shapes(plain_material), {}, usual_view()};
+  glow.scene.add(ShapeType::kBox, {0.5f, 0.5f, 0.02f}, translation({0, 0, 3}),
+                 glow.scene.add_emitter({90, 80, 70}));
+  glow.scene.add(ShapeType::kSphere, {0.15f, 0, 0}, translation({-1, 1, 1.5f}),
+                 glow.scene.add_emitter({400, 300, 100}));
+  glow.scene.description.sky.ambient = {2, 2.5f, 3};
+  all.push_back(glow);
+  Case crowd{"many lights", all_shapes(plain_material), {}, usual_view()};
+  for (int i = 0; i < 40; ++i) {
+    crowd.scene.add_light(lamp({3, 3, 3}, i % 2 == 0 ? 0.05f : 0.0f),
+                          {-2 + 0.1f * static_cast<float>(i), 2 - 0.1f * static_cast<float>(i), 2});
+  }
+  all.push_back(crowd);
+  Case smoke{"smoke over layers", all_shapes(rich_material), {}, usual_view()};
+  MediaBuilder media;
+  media.add_box({3, 3, 2}, {0, 0, 1}, 0.4f, media.add_medium({1, 1.2f, 1.5f}, {0.8f, 0.7f, 0.6f}));
+  smoke.scene.description.media = media.media;
+  smoke.scene.description.volumes = media.volumes;
+  all.push_back(smoke);
+  Case lens{"a wide lens' rolling shutter", all_shapes(plain_material), {}, usual_view(), true};
+  lens.view.intrinsics.lens = LensModel::kEquidistant;
+  lens.view.shutter = {0.1f, 0.5f, 0.4f / kHeight};
+  all.push_back(lens);
+  Case soft{"an aperture", all_shapes(rich_material), {}, usual_view()};
+  soft.view.aperture = {0.05f, 3};
+  all.push_back(soft);
+  for (Case& c : all) {
+    c.close = c.scene.frame;
+    if (!c.moves) continue;
+    for (size_t body = 1; 3 * body < c.close.body_p.size(); ++body) {
+      c.close.body_p[3 * body] += 0.08;
+      c.close.body_p[3 * body + 2] += 0.05;
+    }
+    c.view.X_WC_keys = {c.view.X_WC_open, c.view.X_WC_open};
+    c.view.X_WC_keys.back().p += Vec3f{0.02f, 0, 0};
+  }
+  return all;
+}
+
+class CudaParity : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto name = cuda_device_name();
+    if (!name.ok()) GTEST_SKIP() << name.error().to_string();
+    std::printf("on %s\n", name->c_str());
+  }
+};
+
+std::unique_ptr<Renderer> on_card(const Case& c) {
+  auto renderer = make_cuda_renderer(c.scene.description);
+  GLOAM_CHECK(renderer.ok(), "the test's scene is refused");
+  (*renderer)->update(c.scene.frame, c.close, c.scene.frame);
+  return std::move(*renderer);
+}
+std::unique_ptr<Renderer> on_cpu(const Case& c) {
+  auto renderer = make_cpu_renderer(c.scene.description, RayTracer::kOwn);
+  GLOAM_CHECK(renderer.ok(), "the test's scene is refused");
+  (*renderer)->update(c.scene.frame, c.close, c.scene.frame);
+  return std::move(*renderer);
+}
+
+template <class T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+}
+
+TEST_F(CudaParity, ExactChannelsAreTheCpusToAHundredThousandth) {
+  for (const Case& c : cases()) {
+    RenderSettings settings;
+    settings.spp = 1;
+    Film card, cpu;
+    on_card(c)->render(c.view, settings, &card);
+    on_cpu(c)->render(c.view, settings, &cpu);
+    int other_part = 0, far = 0, turned = 0, albedo = 0, motion = 0;
+    const auto differs = [](float a, float b, float scale) {
+      return !(a == b) && !(std::fabs(a - b) <= 1e-5f * scale);
+    };
+    for (size_t i = 0; i < card.pixel_count(); ++i) {
+      if (card.part[i] != cpu.part[i]) {
+        ++other_part;
+        continue;
+      }
+      far += differs(card.depth[i], cpu.depth[i], max(cpu.depth[i], 1.0f)) ||
+             differs(card.distance[i], cpu.distance[i], max(cpu.distance[i], 1.0f));
+      turned += length(card.center_normal[i] - cpu.center_normal[i]) > 1e-4f;
+      albedo += length(card.center_albedo[i] - cpu.center_albedo[i]) > 1e-4f;
+      motion += differs(card.motion[i].x, cpu.motion[i].x, 100.0f) ||
+                differs(card.motion[i].y, cpu.motion[i].y, 100.0f);
+    }
+    std::printf(
+        "%s: of %zu pixels %d show another part, %d another depth, %d another normal, %d "
+        "another albedo, %d another motion\n",
+        c.name, card.pixel_count(), other_part, far, turned, albedo, motion);
+    const int few = static_cast<int>(card.pixel_count() / 2000);  // at edges
+    EXPECT_LE(other_part, few) << c.name;
+    // Sines of wide lenses round otherwise, and near the horizon of a floor little is a long way.
+    EXPECT_LE(far, is_wide(c.view.intrinsics.lens) ? 2 * few : few) << c.name;
+    EXPECT_LE(turned, few) << c.name;
+    EXPECT_LE(albedo, 4 * few) << c.name;  // texels' edges as well
+    EXPECT_LE(motion, few) << c.name;
+  }
+}
+
+/// Share of 8 x 8 blocks whose means differ by more than chance allows at 1 %, and than `allowed`
+/// of their light.
+double unlike_blocks(const Film& a, const Film& b, double allowed, double* mean_z2) {
+  int blocks = 0, unlike = 0;
+  double sum = 0;
+  for (int y = 0; y + 8 <= a.height; y += 8) {
+    for (int x = 0; x + 8 <= a.width; x += 8) {
+      double difference = 0, variance = 0, light = 0;
+      for (int k = 0; k < 64; ++k) {
+        const size_t i = static_cast<size_t>(y + k / 8) * a.width + x + k % 8;
+        difference += luminance(a.radiance[i]) - luminance(b.radiance[i]);
+        light += luminance(b.radiance[i]);
+        for (const Vec3f& v : {a.variance[i], b.variance[i]}) {
+          variance += sqr(0.2126f) * v.x + sqr(0.7152f) * v.y + sqr(0.0722f) * v.z +
+                      2 * 0.2126f * 0.7152f * std::sqrt(v.x * v.y) +
+                      2 * 0.7152f * 0.0722f * std::sqrt(v.y * v.z) +
+                      2 * 0.2126f * 0.0722f * std::sqrt(v.x * v.z);
+        }
+      }
+      ++blocks;
+      const double left = std::max(0.0, std::fabs(difference) - allowed * light);
+      const double z = variance > 0 ? left / std::sqrt(variance) : 0;
+      sum += z * z;
+      unlike += z > 2.576;
+    }
+  }
+  *mean_z2 = sum / blocks;
+  return static_cast<double>(unlike) / blocks;
+}
+
+void compare_light(RenderTier tier, int spp, double allowed) {
+  for (const Case& c : cases()) {
+    RenderSettings settings;
+    settings.tier = tier;
+    settings.spp = spp;
+    settings.variance = true;
+    settings.exact_channels = false;
+    Film card, cpu;
+    on_card(c)->render(c.view, settings, &card);
+    settings.seed = 2;
+    on_cpu(c)->render(c.view, settings, &cpu);
+    double z2 = 0;
+    const double unlike = unlike_blocks(card, cpu, allowed, &z2);
+    std::printf("%s: %.2f %% of blocks differ, mean z² %.3f\n", c.name, 100 * unlike, z2);
+    EXPECT_LE(unlike, 0.05) << c.name;
+    EXPECT_LE(z2, 1.5) << c.name;
+  }
+}
+
+TEST_F(CudaParity, PathsBringTheSameLight) { compare_light(RenderTier::kPath, 128, 0); }
+
+// The few paths that measure the ambient light part at a rounding in glass and smoke: it is then
+// another by nearly a percent in all pixels, as it is between Embree and our own BVH on one CPU.
+TEST_F(CudaParity, TheDirectStageBringsTheSameLight) {
+  compare_light(RenderTier::kDirect, 64, 0.02);
+}
+
+TEST_F(CudaParity, ABrighterLampIsNotTheSameLight) {
+  Case c = cases().front();
+  RenderSettings settings;
+  settings.spp = 256;
+  settings.variance = true;
+  Film card, cpu;
+  on_card(c)->render(c.view, settings, &card);
+  c.scene.description.lights[0].intensity = c.scene.description.lights[0].intensity * 1.03f;
+  settings.seed = 2;
+  on_cpu(c)->render(c.view, settings, &cpu);
+  double z2 = 0;
+  EXPECT_GT(unlike_blocks(card, cpu, 0, &z2), 0.05);
+}
+
+TEST_F(CudaParity, EveryRunGivesTheSameBits) {
+  for (const Case& c : cases()) {
+    for (const RenderTier tier : {RenderTier::kPath, RenderTier::kDirect}) {
+      RenderSettings settings;
+      settings.tier = tier;
+      settings.spp = 100;  // more than one launch
+      settings.variance = true;
+      Film first, second;
+      on_card(c)->render(c.view, settings, &first);
+      const auto again = on_card(c);
+      again->render(c.view, settings, &second);
+      again->render(c.view, settings, &second);
+      EXPECT_TRUE(same_bits(first.radiance, second.radiance)) << c.name;
+      EXPECT_TRUE(same_bits(first.variance, second.variance)) << c.name;
+      EXPECT_TRUE(same_bits(first.albedo, second.albedo)) << c.name;
+      EXPECT_TRUE(same_bits(first.depth, second.depth)) << c.name;
+      EXPECT_TRUE(same_bits(first.part, second.part)) << c.name;
+    }
+  }
+}
+
+TEST_F(CudaParity, AnEndedRenderSaysSo) {
+  const Case c = cases().front();
+  RenderSettings settings;
+  settings.spp = 4096;
+  int told = 0;
+  settings.progress = [&](double) {
+    ++told;
+    return false;
+  };
+  Film film;
+  const RenderStats stats = on_card(c)->render(c.view, settings, &film);
+  EXPECT_EQ(stats.finished, told == 0);
+}
+
+}  // namespace
+}  // namespace gloam

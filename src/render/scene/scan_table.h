@@ -1,0 +1,31 @@
+#pragma once
+// Which instances every ray is tested against one by one (render/kernel/scan.h).
+
+#include <vector>
+
+#include "geometry/bvh_build.h"
+#include "render/kernel/scan.h"
+#include "render/scene/render_scene.h"
+
+namespace gloam {
+
+bool is_infinite_plane(const InstanceView& instance);
+/// Drawn, in one place, of finite extent.
+bool stands_still(const RenderScene& scene, size_t instance);
+/// Of an analytic shape.
+Bounds shape_bounds(ShapeType shape, Vec3f size, const Affine3f& X_WG);
+/// With room for rounding.
+Bounds wider(const Bounds& bounds);
+
+struct ScanTable {
+  std::vector<uint32_t> planes;      ///< rows of infinite planes
+  std::vector<ScannedSolid> solids;  ///< the largest first
+
+  /// Takes all infinite planes, and of the solids that stand still the `most` largest: most rays
+  /// end there. Those with less than `least_share` of the largest's surface are left out.
+  static ScanTable choose(const RenderScene& scene, size_t most, float least_share);
+  bool holds(size_t instance) const;
+  ScanList list(const RenderScene& scene) const;
+};
+
+}  // namespace gloam
