@@ -147,18 +147,23 @@ void visit_fields(Visitor& v, SensorOptions& o) {
   v("seed", o.seed, FieldRule{});
 }
 
-template <class Visitor>
-void visit_rig(Visitor& v, RigOptions& o) {
-  const FieldRule place{.unit = "m", .min = -kLargestLength, .max = kLargestLength};
-  v("name", o.name, FieldRule{.required = true, .identifier = true});
-  v("body", o.body, FieldRule{});
-  v("position", o.position, place);
-  v("look_at", o.look_at, place);
+/// What cameras and rigs of them have alike: where they stand, what they see, how often.
+template <class Visitor, class Options>
+void visit_view(Visitor& v, Options& o) {
+  v("position", o.position, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
+  v("look_at", o.look_at, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
   v("orientation", o.orientation, FieldRule{.unit = "wxyz"});
   v("fovy", o.fovy, FieldRule{.unit = "deg", .min = 0, .max = 180, .open = true});
   v("width", o.width, FieldRule{.unit = "px", .min = 1, .max = 16384});
   v("height", o.height, FieldRule{.unit = "px", .min = 1, .max = 16384});
   v("rate", o.rate, FieldRule{.unit = "Hz", .min = 0, .max = kFastestRate, .open = true});
+}
+
+template <class Visitor>
+void visit_rig(Visitor& v, RigOptions& o) {
+  v("name", o.name, FieldRule{.required = true, .identifier = true});
+  v("body", o.body, FieldRule{});
+  visit_view(v, o);
 }
 
 template <class Visitor>

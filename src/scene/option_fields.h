@@ -76,13 +76,7 @@ void visit_fields(Visitor& v, CameraOptions& o) {
   v("name", o.name, FieldRule{.required = true});
   v("body", o.body, FieldRule{});
   v("track", o.track, FieldRule{});
-  v("position", o.position, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
-  v("look_at", o.look_at, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
-  v("orientation", o.orientation, FieldRule{.unit = "wxyz"});
-  v("fovy", o.fovy, FieldRule{.unit = "deg", .min = 0, .max = 180, .open = true});
-  v("width", o.width, FieldRule{.unit = "px", .min = 1, .max = 16384});
-  v("height", o.height, FieldRule{.unit = "px", .min = 1, .max = 16384});
-  v("rate", o.rate, FieldRule{.unit = "Hz", .min = 0, .max = kFastestRate, .open = true});
+  visit_view(v, o);
   v("lens", o.lens, FieldRule{});
   v("exposure_time", o.exposure_time, FieldRule{.unit = "s", .min = 0, .max = 100});
   v("readout_time", o.readout_time, FieldRule{.unit = "s", .min = 0, .max = 100});

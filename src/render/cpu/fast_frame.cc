@@ -17,27 +17,6 @@ constexpr float kHaste = 8;          // and what of the rest is taken over at on
 constexpr int kRounds = 3;           // of smoothing, each twice as wide
 constexpr float kTolerance = 0.01f;  // of places on one plane, over their distance
 
-/// Means and deviations of a signal around the pixels from x on, of each on its own part.
-void around(const FastFrame& f, int s, int x, int y, Vec3Of<FloatLanes>* mean,
-            Vec3Of<FloatLanes>* deviation) {
-  using F = FloatLanes;
-  const F part = f.part.load(x, y);
-  Vec3Of<F> sum, squares;
-  F n = 0.0f;
-  for (int dy = -1; dy <= 1; ++dy) {
-    for (int dx = -1; dx <= 1; ++dx) {
-      const F same = select(f.part.load(x + dx, y + dy) == part, F(1.0f), F(0.0f));
-      const Vec3Of<F> v = f.signal[s].load(x + dx, y + dy);
-      sum += v * same;
-      squares += v * v * same;
-      n += same;
-    }
-  }
-  *mean = sum / n;
-  const Vec3Of<F> variance = squares / n - *mean * *mean;
-  *deviation = {safe_sqrt(variance.x), safe_sqrt(variance.y), safe_sqrt(variance.z)};
-}
-
 /// Where a pixel was in the picture before, if it is the same place.
 bool find_before(const FastFrame& before, const FastFrame& f, int x, int y, int* bx, int* by) {
   *bx = static_cast<int>(std::floor(static_cast<float>(x) + 0.5f - *f.motion_x.at(x, y)));
@@ -47,34 +26,6 @@ bool find_before(const FastFrame& before, const FastFrame& f, int x, int y, int*
   return part > 0 && *before.part.at(*bx, *by) == part &&
          dot(f.n.get(x, y), before.n.get(*bx, *by)) > 0.8f;
 }
-
-}  // namespace
-
-void FastFrame::resize(int w, int h) {
-  if (w == width && h == height) return;
-  width = w;
-  height = h;
-  for (FastPlane3& plane : signal) plane.resize(w, h, 0);
-  for (int s = 0; s < kKeptSignals; ++s) {
-    mean[s].resize(w, h, 0);
-    square[s].resize(w, h, 0);
-  }
-  age.resize(w, h, 1);  // beyond the picture too: noise is divided by it
-  for (FastPlane3* plane : {&p, &n, &base, &albedo, &gloss, &color, &resolved})
-    plane->resize(w, h, 0);
-  part.resize(w, h, -1);
-  distance.resize(w, h, 0);
-  for (FastPlane* plane : {&roughness, &near, &motion_x, &motion_y, &pictures, &gleam, &edge})
-    plane->resize(w, h, 0);
-  key.assign(static_cast<size_t>(w) * h, 0);
-}
-
-void FastFilter::resize(int width, int height) {
-  for (FastPlane3& plane : a) plane.resize(width, height, 0);
-  for (FastPlane3& plane : b) plane.resize(width, height, 0);
-}
-
-namespace {
 
 /// One patch's share of accumulate().
 class Accumulation {
@@ -114,8 +65,9 @@ class Accumulation {
     Vec3Of<FloatLanes> low[kKeptSignals], high[kKeptSignals];
     FloatLanes level, spread[kKeptSignals];
     for (int s = 0; s < kKeptSignals; ++s) {
-      Vec3Of<FloatLanes> mean, deviation;
-      around(f_, s, first, y, &mean, &deviation);
+      const auto [mean, deviation] = neighbour_moments(f_.signal[s], first, y, [&](int dx, int dy) {
+        return f_.part.load(first + dx, y + dy) == f_.part.load(first, y);
+      });
       if (s == kSpecularSignal) {  // without the pixel itself
         const FloatLanes own = luminance(f_.signal[s].load(first, y));
         level = max((luminance(mean) * 9.0f - own) * 0.125f, 0.0f);
@@ -172,6 +124,29 @@ class Accumulation {
 };
 
 }  // namespace
+
+void FastFrame::resize(int w, int h) {
+  width = w;
+  height = h;
+  for (FastPlane3& plane : signal) plane.resize(w, h, 0);
+  for (int s = 0; s < kKeptSignals; ++s) {
+    mean[s].resize(w, h, 0);
+    square[s].resize(w, h, 0);
+  }
+  age.resize(w, h, 1);  // beyond the picture too: noise is divided by it
+  for (FastPlane3* plane : {&p, &n, &base, &albedo, &gloss, &color, &resolved})
+    plane->resize(w, h, 0);
+  part.resize(w, h, -1);
+  distance.resize(w, h, 0);
+  for (FastPlane* plane : {&roughness, &near, &motion_x, &motion_y, &pictures, &gleam, &edge})
+    plane->resize(w, h, 0);
+  key.assign(static_cast<size_t>(w) * h, 0);
+}
+
+void FastFilter::resize(int width, int height) {
+  for (FastPlane3& plane : a) plane.resize(width, height, 0);
+  for (FastPlane3& plane : b) plane.resize(width, height, 0);
+}
 
 void FastFilter::accumulate(const FastFrame& before, FastFrame* frame) {
   const int columns = (frame->width + kPatch - 1) / kPatch;

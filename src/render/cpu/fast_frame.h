@@ -101,6 +101,28 @@ struct FastFrame {
   void resize(int w, int h);
 };
 
+/// Mean and deviation of a plane over 3 x 3 pixels, of those that count.
+struct NeighbourMoments {
+  Vec3Of<FloatLanes> mean, deviation;
+};
+/// Around the pixels from (x, y) on; counts(dx, dy): which of the lanes' neighbours do.
+template <class Counts>
+NeighbourMoments neighbour_moments(const FastPlane3& plane, int x, int y, const Counts& counts) {
+  Vec3Of<FloatLanes> sum, squares;
+  FloatLanes n = 0.0f;
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const FloatLanes one = select(counts(dx, dy), FloatLanes(1.0f), FloatLanes(0.0f));
+      const Vec3Of<FloatLanes> v = plane.load(x + dx, y + dy);
+      sum += v * one;
+      squares += v * v * one;
+      n += one;
+    }
+  }
+  const Vec3Of<FloatLanes> mean = sum / n, variance = squares / n - mean * mean;
+  return {mean, {safe_sqrt(variance.x), safe_sqrt(variance.y), safe_sqrt(variance.z)}};
+}
+
 /// Room for the filter; the smoothed signals are in `a` at the end.
 struct FastFilter {
   FastPlane3 a[kFastSignals], b[kFastSignals];

@@ -16,15 +16,14 @@ constexpr float kSlack = 0.015f;     // and of its mean: light that flickers is 
 
 /// What the 3 x 3 pixels around those from (x, y) on say.
 struct Around {
-  Vec3Of<F> mean, deviation;
+  NeighbourMoments color;
   F motion_x, motion_y;  ///< of what is in front, so that edges go with it
   MaskLanes edge = false;
 };
 
 Around look_around(const FastFrame& f, int x, int y) {
   Around out;
-  Vec3Of<F> sum, squares;
-  F n = 0.0f, nearest = f.distance.load(x, y);
+  F nearest = f.distance.load(x, y);
   const F part = f.part.load(x, y);
   out.motion_x = f.motion_x.load(x, y);
   out.motion_y = f.motion_y.load(x, y);
@@ -33,11 +32,6 @@ Around look_around(const FastFrame& f, int x, int y) {
       const F other = f.part.load(x + dx, y + dy);
       const MaskLanes inside = other >= 0.0f, apart = inside & !(other == part);
       out.edge = out.edge | apart;
-      const F one = select(inside, F(1.0f), F(0.0f));
-      const Vec3Of<F> v = f.color.load(x + dx, y + dy);
-      sum += v * one;
-      squares += v * v * one;
-      n += one;
       const F distance = f.distance.load(x + dx, y + dy);
       const MaskLanes nearer = apart & (distance < nearest);
       nearest = select(nearer, distance, nearest);
@@ -45,9 +39,8 @@ Around look_around(const FastFrame& f, int x, int y) {
       out.motion_y = select(nearer, f.motion_y.load(x + dx, y + dy), out.motion_y);
     }
   }
-  out.mean = sum / n;
-  const Vec3Of<F> variance = squares / n - out.mean * out.mean;
-  out.deviation = {safe_sqrt(variance.x), safe_sqrt(variance.y), safe_sqrt(variance.z)};
+  out.color = neighbour_moments(
+      f.color, x, y, [&](int dx, int dy) { return f.part.load(x + dx, y + dy) >= 0.0f; });
   return out;
 }
 
@@ -104,8 +97,8 @@ void resolve_lanes(const FastFrame& before, int x, int y, FastFrame* frame) {
   }
   const MaskLanes same = around.edge | (edge > 0.0f) | (part == f.part.load(x, y));
   const MaskLanes known = inside & same & (pictures > 0.0f);
-  const Vec3Of<F> reach = around.deviation * F(kRange) + around.mean * F(kSlack);
-  const Vec3Of<F> least = around.mean - reach, most = around.mean + reach;
+  const Vec3Of<F> reach = around.color.deviation * F(kRange) + around.color.mean * F(kSlack);
+  const Vec3Of<F> least = around.color.mean - reach, most = around.color.mean + reach;
   const auto keep = [](F value, F low, F high) { return max(clamp(value, low, high), F(0.0f)); };
   const Vec3Of<F> kept{keep(past.x, least.x, most.x), keep(past.y, least.y, most.y),
                        keep(past.z, least.z, most.z)};
