@@ -1,5 +1,7 @@
 #include "run_options.h"
 
+#include <fmt/ranges.h>
+
 #include "gloam/program.h"
 
 namespace gloam::cli {
@@ -38,8 +40,7 @@ void RunOptions::add_rendering(CLI::App& command) {
       ->check(CLI::Range(0, 1024));
   command
       .add_option("--output", outputs,
-                  "What to record: video png depth_png depth_exr segmentation sensor_depth_png "
-                  "raw_png thermal_png events lidar metrics contact_sheet sensors")
+                  fmt::format("What to record: {}", fmt::join(kRecordOutputs, " ")))
       ->delimiter(',');
   add_access_options(command, access, packages);
 }

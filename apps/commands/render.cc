@@ -35,6 +35,8 @@ int render(const RenderCommand& command_line, const Globals& globals) {
     CameraRequest request;
     request.camera = camera;
     request.render = scene->render;
+    for (const CameraOptions& options : scene->cameras)
+      if (options.name == camera) request.rate = options.rate;
     request.outputs =
         command.options.outputs.empty() ? std::vector<std::string>{"rgb"} : command.options.outputs;
     if (!command.options.resolution.empty()) {
@@ -77,7 +79,7 @@ void add_render(CLI::App& app, Globals& globals, Action& action) {
   sub->get_option("--output")
       ->description(
           "Channels: rgb radiance samples depth distance segmentation normal albedo motion "
-          "scene_flow boxes");
+          "scene_flow boxes; raw sensor_depth thermal of cameras with these models");
   sub->add_option("--time", command->time, "Simulation time of the picture in seconds")
       ->check(non_negative_number());
   sub->add_option("--out", command->out, "Folder for the pictures; default: here");

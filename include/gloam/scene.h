@@ -3,6 +3,7 @@
 // file and line. One options struct per feature: the same struct is filled from TOML, C++ and
 // (later) Python.
 
+#include <algorithm>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -177,11 +178,19 @@ struct RenderOptions {
   int samples() const { return spp.value_or(error ? 4096 : 4); }
 };
 
+/// What can be recorded of a run: of all cameras, and of the rest.
+inline constexpr auto kRecordOutputs = [] {
+  constexpr std::array<std::string_view, 4> kRest = {"lidar", "metrics", "contact_sheet",
+                                                     "sensors"};
+  std::array<std::string_view, kCameraOutputs.size() + kRest.size()> all;
+  std::copy(kRest.begin(), kRest.end(),
+            std::copy(kCameraOutputs.begin(), kCameraOutputs.end(), all.begin()));
+  return all;
+}();
+
 /// [record]
 struct RecordOptions {
-  std::vector<std::string> outputs = {
-      "video", "png",
-      "lidar"};  ///< those of CameraOptions::outputs, lidar metrics contact_sheet sensors
+  std::vector<std::string> outputs = {"video", "png", "lidar"};  ///< of kRecordOutputs
   SourceLoc loc = {};
 };
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gloam/result.h"
@@ -12,6 +13,27 @@
 #include "gloam/types.h"
 
 namespace gloam {
+
+/// What can be recorded of a camera.
+inline constexpr std::array<std::string_view, 19> kCameraOutputs = {"video",
+                                                                    "png",
+                                                                    "radiance_exr",
+                                                                    "samples_exr",
+                                                                    "depth_png",
+                                                                    "depth_exr",
+                                                                    "distance_exr",
+                                                                    "segmentation",
+                                                                    "normal_exr",
+                                                                    "albedo_exr",
+                                                                    "motion_exr",
+                                                                    "scene_flow_exr",
+                                                                    "boxes_json",
+                                                                    "sensor_depth_png",
+                                                                    "sensor_depth_exr",
+                                                                    "raw_png",
+                                                                    "thermal_png",
+                                                                    "thermal_exr",
+                                                                    "events"};
 
 /// camera.lens: how directions become pixels, in the terms of ROS's CameraInfo, or in millimetres.
 /// Pixels are those of the camera's own width and height, and their centres lie at integer + 0.5:
@@ -53,8 +75,8 @@ struct CameraOptions {
   double exposure_time = 0;
   /// From the first row's exposure to the last one's [s], >= 0: above 0 a rolling shutter.
   double readout_time = 0;
-  /// What is recorded of this camera, instead of what [record] says: video png depth_png depth_exr
-  /// segmentation sensor_depth_png raw_png thermal_png events; [] = its poses alone.
+  /// Those of kCameraOutputs that are recorded, instead of what [record] says; [] = its poses
+  /// alone.
   std::optional<std::vector<std::string>> outputs = {};
   CameraSensing sensing = {};  ///< imager, timing …: what happens between light and message
   SourceLoc loc = {};

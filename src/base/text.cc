@@ -49,7 +49,7 @@ std::string nearest_name(std::string_view word, std::span<const std::string> can
 std::string suggest_name(std::string_view word, std::span<const std::string> candidates) {
   const std::string near = nearest_name(word, candidates);
   if (!near.empty()) return fmt::format("did you mean '{}'?", near);
-  constexpr size_t kShortList = 12;
+  constexpr size_t kShortList = 24;
   if (candidates.empty() || candidates.size() > kShortList) return {};
   return fmt::format("one of: {}", fmt::join(candidates, ", "));
 }

@@ -5,8 +5,7 @@
 #include <algorithm>
 
 #include "base/check.h"
-#include "render/film/exr.h"
-#include "render/film/png.h"
+#include "record/frame_files.h"
 
 namespace gloam {
 namespace {
@@ -90,43 +89,16 @@ Status CameraRecorder::add(const CameraFrame& frame) {
 }
 
 Status CameraRecorder::write_pictures(const CameraFrame& frame) {
-  const int w = frame.intrinsics.width, h = frame.intrinsics.height;
-  if (writes("png") && !frame.rgb.empty())
-    GLOAM_TRY_STATUS(write_picture("rgb", "png", frame.index, encode_png8(w, h, 3, frame.rgb)));
-  if (writes("depth_png") && !frame.depth.empty())
-    GLOAM_TRY_STATUS(write_picture("depth", "png", frame.index,
-                                   encode_png16(w, h, depth_to_millimetres(frame.depth))));
-  if (writes("depth_exr") && !frame.depth.empty()) {
-    const ExrChannel channel{"Z", frame.depth.data()};
-    GLOAM_TRY(const std::vector<uint8_t> bytes, encode_exr(w, h, {&channel, 1}));
-    GLOAM_TRY_STATUS(write_picture("depth_exr", "exr", frame.index, bytes));
-  }
-  if (writes("sensor_depth_png") && !frame.sensor_depth.empty())
-    GLOAM_TRY_STATUS(write_picture("sensor_depth", "png", frame.index,
-                                   encode_png16(w, h, depth_to_millimetres(frame.sensor_depth))));
-  if (writes("raw_png") && !frame.raw.empty()) {
-    const int row = static_cast<int>(frame.raw.size() / static_cast<size_t>(h));
-    GLOAM_TRY_STATUS(write_picture("raw", "png", frame.index, encode_png16(row, h, frame.raw)));
-  }
-  if (writes("thermal_png") && !frame.thermal.empty())
-    GLOAM_TRY_STATUS(write_picture("thermal", "png", frame.index,
-                                   encode_png16(w, h, to_centikelvins(frame.thermal))));
-  if (writes("segmentation")) {
-    if (!frame.instance.empty())
-      GLOAM_TRY_STATUS(
-          write_picture("instance", "png", frame.index, encode_png16(w, h, frame.instance)));
-    if (!frame.semantic.empty())
-      GLOAM_TRY_STATUS(
-          write_picture("semantic", "png", frame.index, encode_png16(w, h, frame.semantic)));
+  for (const FrameFile& file : frame_files()) {
+    if (!writes(file.output)) continue;
+    GLOAM_TRY(const std::vector<uint8_t> bytes, file.encode(frame));
+    if (bytes.empty()) continue;
+    const std::filesystem::path folder = folder_ / file_name_ / file.folder;
+    if (made_folders_.insert(file.folder).second) GLOAM_TRY_STATUS(store_->make_folder(folder));
+    GLOAM_TRY_STATUS(
+        store_->write_file(folder / fmt::format("{:06}.{}", frame.index, file.extension()), bytes));
   }
   return {};
-}
-
-Status CameraRecorder::write_picture(const char* kind, const char* extension, int64_t index,
-                                     std::span<const uint8_t> bytes) {
-  const std::filesystem::path folder = folder_ / file_name_ / kind;
-  if (made_folders_.insert(kind).second) GLOAM_TRY_STATUS(store_->make_folder(folder));
-  return store_->write_file(folder / fmt::format("{:06}.{}", index, extension), bytes);
 }
 
 Status CameraRecorder::write_events(const CameraFrame& frame) {

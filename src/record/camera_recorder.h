@@ -46,8 +46,6 @@ class CameraRecorder {
 
  private:
   Status write_pictures(const CameraFrame& frame);
-  Status write_picture(const char* kind, const char* extension, int64_t index,
-                       std::span<const uint8_t> bytes);
   Status write_pose(const CameraFrame& frame);
   Status write_events(const CameraFrame& frame);
   Status write_video(const CameraFrame& frame);

@@ -10,6 +10,7 @@
 
 #include "base/check.h"
 #include "base/text.h"
+#include "gloam/scene.h"
 #include "record/camera_recorder.h"
 #include "record/csv.h"
 #include "record/run_files.h"
@@ -24,11 +25,6 @@ namespace {
 constexpr const char* kSensorsName = "sensors";
 constexpr size_t kQueuedRows = 4096;   // metric rows that may wait for the disk
 constexpr size_t kPlottedRows = 2000;  // kept in memory for the contact sheet
-
-const std::vector<std::string> kOutputs = {
-    "video",   "png",         "depth_png", "depth_exr", "segmentation", "sensor_depth_png",
-    "raw_png", "thermal_png", "events",    "lidar",     "metrics",      "contact_sheet",
-    "sensors"};
 
 /// The failure that ended a recording: what was written before it is complete, so its kind is
 /// kPartial. Others that follow from it are of no interest.
@@ -231,11 +227,12 @@ class FolderRecorder : public Recorder {
 
   static Status check_outputs(const std::set<std::string>& outputs) {
     for (const std::string& output : outputs) {
-      if (std::find(kOutputs.begin(), kOutputs.end(), output) != kOutputs.end()) continue;
+      const std::vector<std::string> known(kRecordOutputs.begin(), kRecordOutputs.end());
+      if (std::find(known.begin(), known.end(), output) != known.end()) continue;
       return Error{ErrorKind::kUsage,
                    fmt::format("there is no output '{}'", output),
                    {},
-                   suggest_name(output, kOutputs)};
+                   suggest_name(output, known)};
     }
     return {};
   }

@@ -9,7 +9,7 @@
 //   contact_sheet.png   the run at a glance
 //   CAMERA.mp4          H.264
 //   CAMERA/poses.csv    pose of the camera's optical frame (Z forward, X right, Y down) per frame
-//   CAMERA/rgb/000000.png        8-bit sRGB
+//   CAMERA/rgb/000000.png        8-bit sRGB; the kinds of pictures are in record/frame_files.cc:
 //   CAMERA/depth/000000.png      16-bit mm along the optical axis (ROS 16UC1), 0 = nothing or
 //                                beyond 65.535 m
 //   CAMERA/depth_exr/000000.exr  float m, channel Z (ROS 32FC1), +inf = nothing
@@ -17,7 +17,9 @@
 //   CAMERA/raw/000000.png        16-bit numbers of the imager; three colours side by side in a row
 //   CAMERA/thermal/000000.png    16-bit hundredths of a kelvin
 //   CAMERA/events.csv            time_s, x, y, brighter
-//   CAMERA/instance/000000.png, CAMERA/semantic/000000.png   16-bit ids of labels.json
+//   CAMERA/instance/000000.png, CAMERA/semantic/…, CAMERA/part/…   16-bit ids of labels.json
+//   CAMERA/motion/000000.exr     px, channels U and V; scene_flow, normal: X, Y, Z; albedo: R, G, B
+//   CAMERA/boxes/000000.json     objects, their boxes and visibility
 //   LIDAR/scans.csv     times, points and poses (X ahead, Y to the left, Z up) of each scan
 //   LIDAR/pcd/000000.pcd, LIDAR/ply/…, LIDAR/npy/…   points (record/point_cloud_file.h)
 //

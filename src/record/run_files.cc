@@ -104,7 +104,9 @@ std::string cameras_json(const std::vector<RecordedCamera>& cameras,
       {"depth",
        "along Z of frame_id, of equidistant and equirectangular cameras along the ray; depth/*.png "
        "16-bit millimetres, 0 = nothing or beyond "
-       "65.535 m; depth_exr/*.exr channel Z, float metres, inf = nothing"}};
+       "65.535 m; depth_exr/*.exr channel Z, float metres, inf = nothing"},
+      {"motion",
+       "motion/*.exr pixels since the frame before; scene_flow/*.exr metres, world axes"}};
   out["cameras"] = list;
   return dump(out);
 }

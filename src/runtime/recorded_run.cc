@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 #include <thread>
 
 #include "base/files.h"
@@ -12,6 +13,7 @@
 #include "base/memory.h"
 #include "gloam/program.h"
 #include "gloam/run.h"
+#include "record/frame_files.h"
 #include "record/recorder.h"
 #include "runtime/live_simulation.h"
 #include "runtime/robot_metrics.h"
@@ -36,21 +38,17 @@ bool wants(const std::vector<std::string>& outputs, const std::string& name) {
 // is left out of cameras that have none.
 std::vector<std::string> channels_for(const std::vector<std::string>& outputs,
                                       const CameraSensing& sensing) {
-  std::vector<std::string> channels;
-  if (wants(outputs, "video") || wants(outputs, "png") || wants(outputs, "contact_sheet"))
-    channels.push_back("rgb");
-  if (wants(outputs, "depth_png") || wants(outputs, "depth_exr") ||
-      wants(outputs, "contact_sheet")) {
-    channels.push_back("depth");
-  }
-  if (wants(outputs, "segmentation") || wants(outputs, "contact_sheet"))
-    channels.push_back("segmentation");
-  if (wants(outputs, "raw_png") && sensing.imager) channels.push_back("raw");
-  if (wants(outputs, "sensor_depth_png") && sensing.stereo_depth)
-    channels.push_back("sensor_depth");
-  if (wants(outputs, "thermal_png") && sensing.thermal) channels.push_back("thermal");
-  if (wants(outputs, "events") && sensing.events) channels.push_back("events");
-  return channels;
+  std::set<std::string> channels;
+  for (const FrameFile& file : frame_files())
+    if (wants(outputs, file.output)) channels.insert(file.channel);
+  if (wants(outputs, "video")) channels.insert("rgb");
+  if (wants(outputs, "events")) channels.insert("events");
+  if (wants(outputs, "contact_sheet")) channels.insert({"rgb", "depth", "segmentation"});
+  if (!sensing.imager) channels.erase("raw");
+  if (!sensing.stereo_depth) channels.erase("sensor_depth");
+  if (!sensing.thermal) channels.erase("thermal");
+  if (!sensing.events) channels.erase("events");
+  return {channels.begin(), channels.end()};
 }
 
 const CameraOptions* find_options(const Scene& scene, const std::string& camera) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -9,9 +10,7 @@
 #include "base/log.h"
 #include "base/memory.h"
 #include "gloam/run.h"
-#include "record/run_files.h"
-#include "render/film/exr.h"
-#include "render/film/png.h"
+#include "record/frame_files.h"
 #include "runtime/live_simulation.h"
 #include "runtime/run_to_step.h"
 
@@ -27,6 +26,11 @@ void tell_what_was_reached(const CameraRequest& request, const CameraFrame& fram
            frame.camera, static_cast<double>(stats.paths) / pixels, 100 * unreached,
            100 * *request.render.error,
            unreached > 0 ? fmt::format(" at {} samples", request.render.samples()) : "");
+}
+
+/// Against which a still's motion counts: that of the picture 1 / rate earlier, or the first.
+int64_t step_of_frame_before(int64_t step, Rational rate, Rational step_rate) {
+  return std::max<int64_t>(0, step - std::llround(step_rate.value() / rate.value()));
 }
 
 /// All pictures are kept; one at a time is made or written.
@@ -69,8 +73,11 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
   if (!sensors.empty()) GLOAM_TRY_STATUS(check_room(sensors));
   const Rational timestep = simulation->simulator().timestep();
   std::set<int64_t> wanted;  // steps, over all cameras' exposures
-  for (const auto& sensor : sensors) {
-    const KeySteps keys = key_steps(sensor->window(), timestep);
+  std::vector<int64_t> previous;
+  for (size_t i = 0; i < requests.size(); ++i) {
+    previous.push_back(step_of_frame_before(steps, requests[i].rate, simulation->step_rate()));
+    wanted.insert(previous.back());
+    const KeySteps keys = key_steps(sensors[i]->window(), timestep);
     for (int k = 0; k < keys.count; ++k) wanted.insert(steps + k * keys.stride);
   }
   GLOAM_TRY(auto solver, PoseSolver::create(world.compiled()));
@@ -97,7 +104,7 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
     std::vector<const PoseFrame*> exposure;
     for (int k = 0; k < keys.count; ++k) exposure.push_back(&poses[steps + k * keys.stride]);
     const auto frame =
-        sensor->capture(*shared->renderer, shared->mutex, exposure, *exposure.front(), 0);
+        sensor->capture(*shared->renderer, shared->mutex, exposure, poses[previous[i]], 0);
     if (frame == nullptr) return Error{ErrorKind::kInterrupted, "interrupted"};
     if (requests[i].render.error) {
       tell_what_was_reached(requests[i], *frame, sensor->stats());
@@ -112,65 +119,11 @@ Result<std::vector<std::filesystem::path>> write_frame(const CameraFrame& frame,
                                                        const std::string& name) {
   GLOAM_TRY_STATUS(make_folder(folder));
   std::vector<std::filesystem::path> written;
-  const int width = frame.intrinsics.width, height = frame.intrinsics.height;
-  const auto write = [&](const std::string& suffix, const std::vector<uint8_t>& bytes) -> Status {
-    const auto path = folder / (name + suffix);
-    GLOAM_TRY_STATUS(write_file_atomic(path, bytes));
-    written.push_back(path);
-    return {};
-  };
-  const auto write_planes = [&](const std::string& suffix, const std::vector<float>& values,
-                                const std::vector<std::string>& channels) -> Status {
-    std::vector<ExrChannel> planes;
-    for (size_t c = 0; c < channels.size(); ++c) {
-      planes.push_back({channels[c], values.data() + c, static_cast<int>(channels.size())});
-    }
-    GLOAM_TRY(const auto bytes, encode_exr(width, height, planes));
-    return write(suffix, bytes);
-  };
-  if (!frame.rgb.empty()) GLOAM_TRY_STATUS(write(".png", encode_png8(width, height, 3, frame.rgb)));
-  if (!frame.radiance.empty())
-    GLOAM_TRY_STATUS(write_planes(".exr", frame.radiance, {"R", "G", "B"}));
-  if (!frame.samples.empty()) {
-    const std::vector<float> counts(frame.samples.begin(), frame.samples.end());
-    GLOAM_TRY_STATUS(write_planes("_samples.exr", counts, {"samples"}));
-  }
-  if (!frame.depth.empty()) {
-    GLOAM_TRY_STATUS(
-        write("_depth.png", encode_png16(width, height, depth_to_millimetres(frame.depth))));
-    GLOAM_TRY_STATUS(write_planes("_depth.exr", frame.depth, {"Z"}));
-  }
-  if (!frame.sensor_depth.empty()) {
-    GLOAM_TRY_STATUS(write("_sensor_depth.png",
-                           encode_png16(width, height, depth_to_millimetres(frame.sensor_depth))));
-    GLOAM_TRY_STATUS(write_planes("_sensor_depth.exr", frame.sensor_depth, {"Z"}));
-  }
-  if (!frame.raw.empty()) {
-    const int row = static_cast<int>(frame.raw.size() / static_cast<size_t>(height));
-    GLOAM_TRY_STATUS(write("_raw.png", encode_png16(row, height, frame.raw)));
-  }
-  if (!frame.thermal.empty()) {
-    GLOAM_TRY_STATUS(
-        write("_thermal.png", encode_png16(width, height, to_centikelvins(frame.thermal))));
-    GLOAM_TRY_STATUS(write_planes("_thermal.exr", frame.thermal, {"K"}));
-  }
-  if (!frame.distance.empty())
-    GLOAM_TRY_STATUS(write_planes("_distance.exr", frame.distance, {"distance"}));
-  if (!frame.instance.empty()) {
-    GLOAM_TRY_STATUS(write("_instance.png", encode_png16(width, height, frame.instance)));
-    GLOAM_TRY_STATUS(write("_semantic.png", encode_png16(width, height, frame.semantic)));
-  }
-  if (!frame.normal.empty())
-    GLOAM_TRY_STATUS(write_planes("_normal.exr", frame.normal, {"X", "Y", "Z"}));
-  if (!frame.albedo.empty())
-    GLOAM_TRY_STATUS(write_planes("_albedo.exr", frame.albedo, {"R", "G", "B"}));
-  if (!frame.motion.empty())
-    GLOAM_TRY_STATUS(write_planes("_motion.exr", frame.motion, {"U", "V"}));
-  if (!frame.scene_flow.empty())
-    GLOAM_TRY_STATUS(write_planes("_scene_flow.exr", frame.scene_flow, {"X", "Y", "Z"}));
-  if (!frame.objects.empty()) {
-    const std::string text = objects_json(frame.objects);
-    GLOAM_TRY_STATUS(write("_boxes.json", std::vector<uint8_t>(text.begin(), text.end())));
+  for (const FrameFile& file : frame_files()) {
+    GLOAM_TRY(const std::vector<uint8_t> bytes, file.encode(frame));
+    if (bytes.empty()) continue;
+    written.push_back(folder / (name + file.suffix));
+    GLOAM_TRY_STATUS(write_file_atomic(written.back(), bytes));
   }
   return written;
 }

@@ -80,9 +80,7 @@ void visit_fields(Visitor& v, CameraOptions& o) {
   v("lens", o.lens, FieldRule{});
   v("exposure_time", o.exposure_time, FieldRule{.unit = "s", .min = 0, .max = 100});
   v("readout_time", o.readout_time, FieldRule{.unit = "s", .min = 0, .max = 100});
-  v("outputs", o.outputs,
-    FieldRule{.choices = {"video", "png", "depth_png", "depth_exr", "segmentation",
-                          "sensor_depth_png", "raw_png", "thermal_png", "events"}});
+  v("outputs", o.outputs, FieldRule{.choices = words(kCameraOutputs)});
   visit_sensing(v, o.sensing);
 }
 
@@ -184,10 +182,7 @@ void visit_fields(Visitor& v, RenderOptions& o) {
 
 template <class Visitor>
 void visit_fields(Visitor& v, RecordOptions& o) {
-  v("outputs", o.outputs,
-    FieldRule{.choices = {"video", "png", "depth_png", "depth_exr", "segmentation",
-                          "sensor_depth_png", "raw_png", "thermal_png", "events", "lidar",
-                          "metrics", "contact_sheet", "sensors"}});
+  v("outputs", o.outputs, FieldRule{.choices = words(kRecordOutputs)});
 }
 
 /// [scene]

@@ -19,7 +19,7 @@ class Picture:
     spp: int
     time: float                  # of the simulation [s]
     panels: list[dict]           # of LiDAR scans (clouds.py), instead of a camera's picture
-    show: str = "rgb"            # what of it is shown: rgb raw sensor_depth thermal events
+    show: str = "rgb"            # what of it is shown: rgb, or a function of show.py
 
     @property
     def name(self):

@@ -29,6 +29,7 @@ ROOT = HERE.parent.parent
 PROGRAM = ROOT / "build" / os.environ.get("GLOAM_PRESET", "release") / "bin" / "gloam"
 BOOK = ROOT / "docs" / "gallery"
 DRAFT = ROOT / "build" / "gallery"
+CHANNELS = {"rgb": ["rgb", "radiance"], "boxes": ["rgb", "boxes"], "parts": ["segmentation"]}  # others have one, of their name
 TO_ROOT = "../../../"     # from the sets, and from the book's scenes
 
 
@@ -58,7 +59,7 @@ def shoot(picture, scene, scratch, size, spp, threads):
     if picture.show == "events":
         wrong = gloam("run", *common, "--duration", str(picture.time), "--output", "events")
         return None if wrong else show.write_ppm(scratch / "shown.ppm", size, show.events(shot, size)), wrong
-    channels = ["rgb", "radiance"] if picture.show == "rgb" else [picture.show]
+    channels = CHANNELS.get(picture.show, [picture.show])
     wrong = gloam("render", *common, "--time", str(picture.time), "--output", *channels)
     if wrong:
         return None, wrong

@@ -1,7 +1,12 @@
-"""Pictures of what sensors put out that is no picture: raw numbers, measured depth, temperatures, events."""
+"""Pictures of what cameras put out that is no picture: depth, ids, normals, flow, raw numbers, temperatures, events."""
 import array
+import colorsys
 import csv
+import json
+import math
+from pathlib import Path
 
+import exr
 import pixels
 
 # Colours from cold to hot, and from near to far; between them straight lines.
@@ -25,11 +30,67 @@ def raw(shot, size):
     return bytes(level for value in values for level in [round(255 * (value / top) ** (1 / 2.2))] * 3)
 
 
+def depth(shot, size):
+    return ranges(grey16(f"{shot}_depth.png"))
+
+
 def sensor_depth(shot, size):
-    values = grey16(f"{shot}_sensor_depth.png")
+    return ranges(grey16(f"{shot}_sensor_depth.png"))
+
+
+def ranges(values):
     seen = sorted(value for value in values if value) or [1]
     low, high = seen[len(seen) // 50], seen[-1 - len(seen) // 50] + 1
-    return b"".join(color((value - low) / (high - low), RANGE) if value else bytes(3) for value in values)
+    return b"".join(color(math.log(value / low) / math.log(high / low), RANGE) if value else bytes(3) for value in values)
+
+
+def colour_of(number):
+    """Hues a golden angle apart, so that neighbours in the list look unlike each other."""
+    if number == 0:
+        return bytes(3)
+    share = (0.1 + number * 0.381966) % 1
+    return bytes(round(255 * c) for c in colorsys.hsv_to_rgb(share, 0.55 + 0.3 * (number % 2), 0.95))
+
+
+def segmentation(shot, size):
+    return b"".join(map(colour_of, grey16(f"{shot}_instance.png")))
+
+
+def parts(shot, size):
+    return b"".join(map(colour_of, grey16(f"{shot}_part.png")))
+
+
+def normal(shot, size):
+    planes = exr.read(Path(f"{shot}_normal.exr"))
+    return bytes(round(127.5 + 127.5 * value) for xyz in zip(planes["X"], planes["Y"], planes["Z"]) for value in xyz)
+
+
+def albedo(shot, size):
+    planes = exr.read(Path(f"{shot}_albedo.exr"))
+    return bytes(round(255 * min(max(value, 0), 1) ** (1 / 2.2)) for rgb in zip(planes["R"], planes["G"], planes["B"]) for value in rgb)
+
+
+def motion(shot, size):
+    """Hue: whereto; saturation and value: how far, of the fastest pixel. Grey stands still."""
+    planes = exr.read(Path(f"{shot}_motion.exr"))
+    flow = list(zip(planes["U"], planes["V"]))
+    most = max(math.hypot(u, v) for u, v in flow) or 1
+    polar = ((math.atan2(v, u) / (2 * math.pi) % 1, math.hypot(u, v) / most) for u, v in flow)
+    shades = (colorsys.hsv_to_rgb(whereto, far, 0.35 + 0.65 * far) for whereto, far in polar)
+    return bytes(round(255 * c) for shade in shades for c in shade)
+
+
+def boxes(shot, size):
+    """Rectangles around what is seen of each object, but for what fills the picture."""
+    out = bytearray(pixels.raw(f"{shot}.png", "rgb24"))
+    for thing in json.loads(Path(f"{shot}_boxes.json").read_text())["objects"]:
+        if not thing["box_px"] or thing["pixels"] > 0.2 * size[0] * size[1]:
+            continue
+        u0, v0, u1, v1 = thing["box_px"]
+        rim = [(u, v) for u in range(u0, u1) for v in (v0, v1 - 1)] + [(u, v) for v in range(v0, v1) for u in (u0, u1 - 1)]
+        for u, v in rim:
+            out[3 * (v * size[0] + u):3 * (v * size[0] + u) + 3] = colour_of(thing["instance"])
+    return bytes(out)
 
 
 def thermal(shot, size):

@@ -29,7 +29,7 @@ rate = 25
 duration = 0.4
 seed = 5
 [record]
-outputs = ["png", "depth_png", "depth_exr", "segmentation", "video", "metrics", "contact_sheet"]
+outputs = ["png", "depth_png", "depth_exr", "segmentation", "motion_exr", "scene_flow_exr", "boxes_json", "normal_exr", "video", "metrics", "contact_sheet"]
 )";
 
 class RecordedRun : public ::testing::Test {
@@ -114,7 +114,8 @@ TEST_F(RecordedRun, HoldsWhatTheSceneAsksFor) {
   EXPECT_GE(json["timings_s"]["total_s"], json["timings_s"]["run_s"]);
   EXPECT_EQ(count_lines(report.out / "metrics.csv"), 42u);
   EXPECT_EQ(count_lines(report.out / "side" / "poses.csv"), 12u);
-  for (const char* kind : {"rgb", "depth", "depth_exr", "instance", "semantic"}) {
+  for (const char* kind : {"rgb", "depth", "depth_exr", "instance", "semantic", "part", "motion",
+                           "scene_flow", "boxes", "normal"}) {
     const auto folder = fs::directory_iterator(report.out / "side" / kind);
     EXPECT_EQ(std::distance(fs::begin(folder), fs::end(folder)), 11) << kind;
   }

@@ -36,6 +36,26 @@ TEST(Stills, ArePicturesOfTheInstantAskedFor) {
   }
 }
 
+TEST(Stills, MotionCountsFromThePictureBefore) {
+  const TempFolder folder;
+  const World world = flight(folder);
+  CameraRequest request = small("a/fixed");
+  request.outputs = {"motion", "scene_flow", "segmentation"};
+  request.rate = {10, 1};
+  for (const double time : {0.0, 0.04, 0.2}) {
+    const auto frames = render_stills(world, time, {request}, {});
+    ASSERT_TRUE(frames.ok()) << frames.error().to_string();
+    const CameraFrame& frame = frames->front();
+    float farthest = 0, most_pixels = 0;
+    for (size_t i = 0; i < frame.part.size(); ++i) {
+      farthest = std::max(farthest, frame.scene_flow[3 * i]);
+      most_pixels = std::max(most_pixels, frame.motion[2 * i]);
+    }
+    EXPECT_NEAR(farthest, std::min(time, 0.1), 1e-5) << "the ball flies at 1 m/s";
+    EXPECT_EQ(most_pixels > 0.1f, time > 0);
+  }
+}
+
 TEST(Stills, SayWhatIsWrong) {
   const TempFolder folder;
   const World world = flight(folder);
@@ -61,13 +81,15 @@ TEST(Stills, EveryChannelIsWrittenAndReadsBack) {
   const fs::path out = folder.path() / "new" / "pictures";
   const auto written = write_frame(frame, out, "fixed");
   ASSERT_TRUE(written.ok()) << written.error().to_string();
-  EXPECT_EQ(written->size(), 9u);
+  EXPECT_EQ(written->size(), 10u);
   EXPECT_EQ(read_image(out / "fixed.png")->texels, frame.rgb);
   const auto png16 = [&](const std::string& name) {
     return decode_png16(read_file(out / name).value(), name).value().texels;
   };
   EXPECT_EQ(png16("fixed_instance.png"), frame.instance);
   EXPECT_EQ(png16("fixed_semantic.png"), frame.semantic);
+  const auto parts = png16("fixed_part.png");
+  EXPECT_EQ(std::vector<uint32_t>(parts.begin(), parts.end()), frame.part);
   const auto millimetres = png16("fixed_depth.png");
   for (size_t i = 0; i < millimetres.size(); ++i) {
     const float d = frame.depth[i];
