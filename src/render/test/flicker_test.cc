@@ -126,7 +126,9 @@ TEST(Flicker, WhatMovesUnderAStrobeIsSeenWhereItWasLit) {
     const double here = film.radiance[static_cast<size_t>(32 * kSide + x)].x;
     light += here;
     // It goes from -2.5 … -1.5 m to -1.7 … -0.7 m meanwhile.
-    if (x < 6 || x > 26) EXPECT_EQ(here, 0) << x;
+    if (x < 6 || x > 26) {
+      EXPECT_EQ(here, 0) << x;
+    }
   }
   EXPECT_NEAR(light, 100 * 10 * 0.2, 10) << "the light of 1 m for a fifth of the time";
 }
