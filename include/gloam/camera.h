@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,23 @@ struct Intrinsics {
   LensModel lens = LensModel::kPinhole;
   std::array<double, 8> distortion = {};  ///< in the order above; the rest is 0
 };
+
+/// What a point of the picture shows lies on this ray, in the camera's frame C: it looks along -Z
+/// with +Y up.
+struct PixelRay {
+  Vec3 p_C;  ///< where it starts; other than 0 of orthographic cameras alone [m]
+  Vec3 d_C;  ///< unit
+  /// CameraFrame::depth of what is seen over its distance along the ray.
+  double depth_share = 1;
+
+  /// The point at a distance along the ray [m].
+  Vec3 at(double distance) const {
+    return {p_C.x + distance * d_C.x, p_C.y + distance * d_C.y, p_C.z + distance * d_C.z};
+  }
+  Vec3 at_depth(double depth) const { return at(depth / depth_share); }
+};
+/// Of the point (u, v) [px], of every lens; none where the lens sees nothing.
+std::optional<PixelRay> pixel_ray(const Intrinsics& intrinsics, double u, double v);
 
 /// Pixels, and the edges of the rectangle around them [px]; u1, v1 are those of the last ones' far
 /// sides. No pixels: u1 < u0.

@@ -52,6 +52,22 @@ double lens_reach(const LensOf<double>& lens) {
   return lens.model == LensModel::kEquidistant ? angle : std::tan(angle);
 }
 
+PixelRays::PixelRays(const Intrinsics& intrinsics)
+    : intrinsics_(intrinsics), lens_(make_lens<double>(intrinsics)) {}
+
+std::optional<PixelRay> PixelRays::at(double u, double v) const {
+  const Intrinsics& k = intrinsics_;
+  const double x = (u - k.cx) / k.fx, y = (v - k.cy) / k.fy;
+  if (k.orthographic) return PixelRay{.p_C = {x, -y, 0}, .d_C = {0, 0, -1}};
+  double X, Y, Z, angle;
+  if (!lens_unproject(lens_, x, y, &X, &Y, &Z, &angle)) return std::nullopt;
+  return PixelRay{.d_C = {X, -Y, -Z}, .depth_share = is_wide(k.lens) ? 1 : Z};
+}
+
+std::optional<PixelRay> pixel_ray(const Intrinsics& intrinsics, double u, double v) {
+  return PixelRays(intrinsics).at(u, v);
+}
+
 std::string lens_fault(const Intrinsics& k) {
   const auto finite = [](double x) { return std::isfinite(x); };
   if (!(k.fx > 0 && k.fy > 0) || !finite(k.fx) || !finite(k.fy))

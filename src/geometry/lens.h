@@ -8,8 +8,11 @@
 // method for conventional, wide-angle, and fish-eye lenses" (2006) as ROS's equidistant.
 
 #include <cmath>
+#include <optional>
+#include <string>
 
 #include "base/device.h"
+#include "base/vec.h"
 #include "gloam/camera.h"
 
 namespace gloam {
@@ -214,6 +217,23 @@ LensOf<T> make_lens(const Intrinsics& intrinsics) {
   out.reach = static_cast<T>(lens.reach);
   return out;
 }
+
+/// In single precision, as the renderer's poses are.
+inline Vec3f to_vec3f(const Vec3& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+
+/// Rays of a camera's pixels: the lens's, whatever it is. For many pixels of one camera;
+/// pixel_ray() of gloam/camera.h for a single one. Host only.
+class PixelRays {
+ public:
+  explicit PixelRays(const Intrinsics& intrinsics);
+  std::optional<PixelRay> at(double u, double v) const;
+
+ private:
+  Intrinsics intrinsics_;
+  LensOf<double> lens_;
+};
 
 /// Why the camera's lens cannot be right: focal lengths that are not positive, coefficients that
 /// are not finite, a distortion that folds within the picture. Empty = nothing is wrong.

@@ -251,16 +251,9 @@ Result<PickResult> LiveSimulation::pick(const CameraFrame& frame, double u, doub
   settings.spp = 0;
   shared->renderer->render(view, settings, &film);
   const uint32_t part = film.part.empty() ? 0 : film.part[0];
-  if (part == 0) return Error{ErrorKind::kInput, "there is nothing under this pixel"};
-
-  const Intrinsics& k = frame.intrinsics;
-  const auto distance = static_cast<double>(film.distance[0]);
-  double X = (u - k.cx) / k.fx, Y = (v - k.cy) / k.fy, Z = distance, angle = 0;
-  if (!k.orthographic) {
-    lens_unproject(make_lens<double>(k), X, Y, &X, &Y, &Z, &angle);
-    X *= distance, Y *= distance, Z *= distance;
-  }
-  const Vec3f p_C{static_cast<float>(X), static_cast<float>(-Y), static_cast<float>(-Z)};
+  const std::optional<PixelRay> ray = pixel_ray(frame.intrinsics, u, v);
+  if (part == 0 || !ray) return Error{ErrorKind::kInput, "there is nothing under this pixel"};
+  const Vec3f p_C = to_vec3f(ray->at(static_cast<double>(film.distance[0])));
   const Vec3f p_W = transform_point(view.X_WC_open, p_C);
   const InstanceDescription& instance = shared->description.instances[part - 1];
   const auto body = static_cast<size_t>(instance.body);

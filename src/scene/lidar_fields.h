@@ -35,7 +35,7 @@ void visit_fields(Visitor& v, LidarOptions& o) {
   v("min_range", o.min_range, range);
   v("max_range", o.max_range, range);
   v("range_at_10_percent", o.range_at_10_percent, range);
-  v("divergence", o.divergence, FieldRule{.unit = "deg", .min = 0, .max = 10});
+  v("divergence", o.divergence, FieldRule{.unit = "deg", .min = 0, .max = 60});
   v("pulse_length", o.pulse_length, FieldRule{.unit = "m", .min = 1e-3, .max = 100});
   v("footprint_rays", o.footprint_rays, FieldRule{.min = 1, .max = 32});
   v("returns", o.returns, FieldRule{.choices = words(kLidarReturns)});

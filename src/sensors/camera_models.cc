@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "geometry/lens.h"
 #include "render/film/tone_map.h"
 #include "sensors/timing.h"
 
@@ -30,6 +31,15 @@ Result<std::unique_ptr<CameraModels>> CameraModels::create(const RenderDescripti
   };
   if (outputs.raw && !sensing.imager) return refuse("raw", "imager");
   if (outputs.sensor_depth && !sensing.stereo_depth) return refuse("sensor_depth", "stereo_depth");
+  if (outputs.sensor_depth && (intrinsics.orthographic || is_wide(intrinsics.lens))) {
+    return Error{ErrorKind::kInput,
+                 fmt::format("camera '{}' cannot match two such pictures: disparity is of lenses "
+                             "that keep straight lines, nearly",
+                             description.cameras[static_cast<size_t>(camera)].name),
+                 {},
+                 "give a camera with a [camera.stereo_depth] the lens pinhole, plumb_bob or "
+                 "rational_polynomial"};
+  }
   if (outputs.events && !sensing.events) return refuse("events", "events");
   if (outputs.thermal && !sensing.thermal) return refuse("thermal", "thermal");
   const bool own = sensing.imager && sensing.imager->exposure;

@@ -238,7 +238,8 @@ std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
     view.X_WC_previous = previous_free_pose_;
     previous_free_pose_ = free_pose_;
   }
-  settings_.frame = static_cast<uint32_t>(frame_index);
+  // An event camera sees changes: with the same draws in every picture, what stands still has none.
+  settings_.frame = sensing().events ? 0 : static_cast<uint32_t>(frame_index);
   {
     const std::lock_guard lock(renderer_mutex);
     renderer.update(keys, previous);
@@ -280,20 +281,13 @@ void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const Came
 
   if (channels_.light()) {
     const std::vector<Vec3f>* radiance = &film_.radiance;
-    // Where the light is blurred, depth is sharp, and albedo and normal are of what covers a pixel
-    // in part: then they are no guides.
+    // Where the light is blurred, albedo and normal are, too: means over the same samples. Depth
+    // is sharp and no guide.
     const bool blurred = camera().aperture_radius > 0 || camera().exposure_time > 0;
-    std::vector<float> depth;
-    std::vector<Vec3f> albedo, normal;
-    const auto swap_guides = [&] {
-      if (!blurred) return;
-      depth.swap(film_.depth);
-      albedo.swap(film_.albedo);
-      normal.swap(film_.normal);
-    };
-    swap_guides();
+    std::vector<float> sharp;
+    if (blurred) sharp.swap(film_.depth);
     if (denoiser_ != nullptr && denoiser_->denoise(film_, &clean_).ok()) radiance = &clean_;
-    swap_guides();
+    if (blurred) sharp.swap(film_.depth);
     models_->develop(*radiance, frame);
     if (channels_.radiance) frame->radiance = flatten(*radiance);
     if (channels_.samples) {

@@ -12,6 +12,8 @@ struct LidarPreset {
   LidarModel (*make)();
 };
 
+/// Approximate where a sheet is silent or a unit has its own calibration: rings and beam of the
+/// HDL-64E, beams of the VLP-16 and the HDL-32E, which the same page says.
 /// Null where there is none of that name.
 const LidarPreset* find_lidar_preset(std::string_view name);
 

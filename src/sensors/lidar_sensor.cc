@@ -74,7 +74,7 @@ Status LidarSensor::find_surfaces() {
   return {};
 }
 
-// Decides which beams are fired between which keys, and in which order they are traced.
+// Decides when beams are fired among the keys, and in which order they are traced.
 void LidarSensor::plan(std::span<const PoseFrame> keys, int64_t index) {
   const double start = keys.front().time, length = keys.back().time - start;
   std::vector<float> cuts;
@@ -105,17 +105,14 @@ void LidarSensor::plan(std::span<const PoseFrame> keys, int64_t index) {
                    [](const Place& a, const Place& b) { return a.key < b.key; });
   beams_.resize(places.size());
   place_.resize(places.size());
-  first_beam_.assign(cuts_.size(), places.size());
-  for (size_t b = places.size(); b-- > 0;) {
-    const LidarFiring& f = firings_[places[b].firing];
-    const float from = cuts_[places[b].stretch], to = cuts_[places[b].stretch + 1];
-    const float time = to > from ? std::clamp((f.time - from) / (to - from), 0.0f, 1.0f) : 0.0f;
-    beams_[b] = {f.d, time, places[b].firing};
-    place_[places[b].firing] = static_cast<uint32_t>(b);
-    first_beam_[places[b].stretch] = b;
-  }
-  for (size_t k = cuts_.size() - 1; k-- > 0;) {  // stretches without a beam
-    first_beam_[k] = std::min(first_beam_[k], first_beam_[k + 1]);
+  const auto stretches = static_cast<float>(cuts_.size() - 1);
+  for (size_t b = 0; b < places.size(); ++b) {
+    const auto& [key, firing, stretch] = places[b];
+    const LidarFiring& f = firings_[firing];
+    const float from = cuts_[stretch], to = cuts_[stretch + 1];
+    const float share = to > from ? std::clamp((f.time - from) / (to - from), 0.0f, 1.0f) : 0.0f;
+    beams_[b] = {f.d, (static_cast<float>(stretch) + share) / stretches, firing};
+    place_[firing] = static_cast<uint32_t>(b);
   }
 }
 
@@ -124,30 +121,27 @@ std::shared_ptr<const LidarScan> LidarSensor::scan(Renderer& renderer, std::mute
   GLOAM_CHECK(keys.size() >= 2, "a scan has a beginning and an end");
   plan(keys, index);
   std::vector<Affine3f> X_WL;
+  std::vector<const PoseFrame*> frames;
   for (const PoseFrame& key : keys) {
     X_WL.push_back(pose_in_world(key, lidar_.body, to_affine(lidar_.X_BL)));
+    frames.push_back(&key);
   }
-  const auto most = static_cast<size_t>(model_.optics.most_returns);
-  returns_.resize(beams_.size() * most);
   motions_.clear();
+  for (size_t k = 0; k + 1 < keys.size(); ++k)
+    motions_.push_back(make_lidar_motion(X_WL[k], X_WL[k + 1]));
+  LidarView view;
+  view.motions = motions_;
+  view.optics = model_.optics;
+  view.optics.lidar_ratios = {lidar_ratios_.data(), static_cast<uint32_t>(lidar_ratios_.size())};
+  view.optics.surfaces = {surfaces_.data(), static_cast<uint32_t>(surfaces_.size())};
+  view.seed = seed_;
+  view.scan = static_cast<uint64_t>(index);
+  view.beams = beams_;
+  returns_.resize(beams_.size() * static_cast<size_t>(model_.optics.most_returns));
   {
     const std::lock_guard lock(renderer_mutex);
-    for (size_t k = 0; k + 1 < keys.size(); ++k) {
-      motions_.push_back(make_lidar_motion(X_WL[k], X_WL[k + 1]));
-      const size_t first = first_beam_[k], count = first_beam_[k + 1] - first;
-      if (count == 0) continue;
-      renderer.update(keys[k], keys[k + 1], keys[k]);
-      LidarView view;
-      view.motion = motions_.back();
-      view.optics = model_.optics;
-      view.optics.lidar_ratios = {lidar_ratios_.data(),
-                                  static_cast<uint32_t>(lidar_ratios_.size())};
-      view.optics.surfaces = {surfaces_.data(), static_cast<uint32_t>(surfaces_.size())};
-      view.seed = seed_;
-      view.scan = static_cast<uint64_t>(index);
-      view.beams = {beams_.data() + first, count};
-      renderer.scan(view, {returns_.data() + first * most, count * most});
-    }
+    renderer.update(frames, keys.front());
+    renderer.scan(view, returns_);
   }
   auto scan = std::make_shared<LidarScan>();
   scan->lidar = lidar_.options.name;
@@ -179,18 +173,17 @@ void LidarSensor::write_points(std::span<const Affine3f> X_WL, LidarScan* scan) 
   for (auto* values : {&scan->ring, &scan->column}) values->reserve(firings_.size());
   scan->return_number.reserve(firings_.size());
   const Affine3f& end = X_WL.back();
-  size_t stretch = 0;
+  const DeviceSpan<const LidarMotion> motions{motions_.data(),
+                                              static_cast<uint32_t>(motions_.size())};
   for (size_t i = 0; i < firings_.size(); ++i) {
     const LidarFiring& firing = firings_[i];
     const size_t beam = place_[i];
-    while (stretch > 0 && beam < first_beam_[stretch]) --stretch;
-    while (beam >= first_beam_[stretch + 1]) ++stretch;
     for (size_t r = 0; r < most; ++r) {
       const LidarReturn& found = returns_[beam * most + r];
       if (!(found.range > 0)) break;
       Vec3f p = firing.d * found.range;
       if (lidar_.options.deskew) {
-        const Ray ray = beam_ray(motions_[stretch], firing.d, beams_[beam].time);
+        const Ray ray = beam_ray(motions, firing.d, beams_[beam].time);
         const Vec3f from_end = ray.o - end.p + ray.d * found.range;
         p = {dot(from_end, end.x), dot(from_end, end.y), dot(from_end, end.z)};
       }

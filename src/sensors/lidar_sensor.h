@@ -1,7 +1,7 @@
 #pragma once
 // A LiDAR: the poses of one scan in, one LidarScan out, a pure function of (World, seed, LiDAR,
-// index of the scan, poses). The scan is cut at the instants that poses are given for; between two
-// of them everything moves evenly, sensor and bodies alike, and each beam has its own time.
+// index of the scan, poses). Between two of the instants that poses are given for everything moves
+// evenly, sensor and bodies alike, and each beam has its own time.
 
 #include <memory>
 #include <mutex>
@@ -45,11 +45,11 @@ class LidarSensor {
   std::vector<float> lidar_ratios_;     ///< by volume [sr]
   std::vector<LidarSurface> surfaces_;  ///< by instance; empty = as their colours say
   std::vector<LidarFiring> firings_;
-  std::vector<float> cuts_;           ///< of the keys, 0 … 1
-  std::vector<LidarBeam> beams_;      ///< in the order in which they are traced
-  std::vector<size_t> first_beam_;    ///< of each stretch between keys, and the end
+  std::vector<float> cuts_;  ///< of the keys, 0 … 1
+  /// In the order in which they are traced. Their times count every stretch as equally long.
+  std::vector<LidarBeam> beams_;
   std::vector<uint32_t> place_;       ///< in beams_, by firing
-  std::vector<LidarMotion> motions_;  ///< of the stretches
+  std::vector<LidarMotion> motions_;  ///< of the stretches between keys
   std::vector<LidarReturn> returns_;  ///< by beams_
 };
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/parallel.h"
+#include "geometry/lens.h"
 #include "scene/pattern_names.h"
 #include "sensors/draw.h"
 
@@ -111,15 +112,15 @@ StereoDepthModel stereo_depth_model(const StereoDepthOptions& o) {
 std::vector<float> projector_signal(const RenderDescription& description, const Film& film,
                                     const CameraView& view) {
   std::vector<float> signal(film.depth.size(), 0);
-  const Intrinsics& k = view.intrinsics;
+  const PixelRays rays(view.intrinsics);
   for (int y = 0; y < film.height; ++y) {
     for (int x = 0; x < film.width; ++x) {
       const size_t i =
           static_cast<size_t>(y) * static_cast<size_t>(film.width) + static_cast<size_t>(x);
       if (film.part[i] == 0) continue;
-      const Vec3f ray_C{static_cast<float>((x + 0.5 - k.cx) / k.fx),
-                        static_cast<float>(-(y + 0.5 - k.cy) / k.fy), -1};
-      const Vec3f ray = normalize(transform_vector(view.X_WC_open, ray_C));
+      const std::optional<PixelRay> ray_C = rays.at(x + 0.5, y + 0.5);
+      if (!ray_C) continue;
+      const Vec3f ray = transform_vector(view.X_WC_open, to_vec3f(ray_C->d_C));
       const float cosine = std::abs(dot(ray, film.center_normal[i]));
       const auto material = static_cast<size_t>(description.instances[film.part[i] - 1].material);
       signal[i] = luminance(film.center_albedo[i]) * cosine *

@@ -37,7 +37,7 @@ struct StereoDepthModel {
 
 /// What the table says, else what its preset says, else nothing. d435: Intel RealSense D400 series
 /// (baseline 50 mm, 126 disparities, 1/32 px: white paper "Subpixel Linearity Improvement"; 0.08 px
-/// of noise: "Best-Known-Methods for Tuning Intel RealSense D400 Depth Cameras"). kinect:
+/// of noise: what its makers advise to reckon with, librealsense issue 3904). kinect:
 /// Khoshelham and Elberink 2012 (75 mm, steps and noise of 1/8 and 1/16 px, 0.5 … 5 m). Their edge
 /// and signal losses are estimates.
 StereoDepthModel stereo_depth_model(const StereoDepthOptions& options);

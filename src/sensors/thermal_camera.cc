@@ -8,6 +8,7 @@
 
 #include "base/parallel.h"
 #include "base/text.h"
+#include "geometry/lens.h"
 #include "sensors/draw.h"
 #include "sensors/thermal_band.h"
 
@@ -119,7 +120,7 @@ double ThermalCamera::through_media(double radiance, Vec3f origin, Vec3f directi
 
 std::vector<float> ThermalCamera::see(const Film& film, const CameraView& view,
                                       int64_t frame) const {
-  const Intrinsics& k = view.intrinsics;
+  const PixelRays rays(view.intrinsics);
   const double per_kelvin = thermal_radiance(kReference + 0.5) - thermal_radiance(kReference - 0.5);
   const RandomStream noise{seed_, stream_id("thermal.noise")},
       pattern{seed_, stream_id("thermal.pattern")};
@@ -130,11 +131,9 @@ std::vector<float> ThermalCamera::see(const Film& film, const CameraView& view,
         const size_t i =
             static_cast<size_t>(y) * static_cast<size_t>(film.width) + static_cast<size_t>(x);
         double radiance = radiance_[film.part[i]];
-        if (has_media_ && !k.orthographic) {
-          const Vec3f ray_C{static_cast<float>((x + 0.5 - k.cx) / k.fx),
-                            static_cast<float>(-(y + 0.5 - k.cy) / k.fy), -1};
-          radiance = through_media(radiance, view.X_WC_open.p,
-                                   normalize(transform_vector(view.X_WC_open, ray_C)),
+        if (const auto ray_C = has_media_ ? rays.at(x + 0.5, y + 0.5) : std::nullopt) {
+          radiance = through_media(radiance, transform_point(view.X_WC_open, to_vec3f(ray_C->p_C)),
+                                   transform_vector(view.X_WC_open, to_vec3f(ray_C->d_C)),
                                    double{film.distance[i]});
         }
         const auto key = static_cast<uint32_t>(i);

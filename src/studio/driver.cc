@@ -231,7 +231,7 @@ void Driver::do_message(int64_t client, const DragStartMessage& message) {
   drag_ = Drag{.client = client,
                .body = hit->body,
                .point_B = hit->point_B,
-               .depth = depth_of(frame->X_WC, hit->point_W),
+               .depth = depth_of(frame->X_WC, frame->intrinsics, hit->point_W),
                .u = message.u,
                .v = message.v,
                .target_W = hit->point_W};
@@ -262,9 +262,9 @@ void Driver::pull(bool active) {
 void Driver::follow_drag() {
   const auto frame = publisher_.newest();
   if (!frame) return;
-  const Vec3 target = point_at(frame->X_WC, frame->intrinsics, drag_->u, drag_->v, drag_->depth);
-  if (norm(target - drag_->target_W) < 1e-9) return;
-  drag_->target_W = target;
+  const auto target = point_at(frame->X_WC, frame->intrinsics, drag_->u, drag_->v, drag_->depth);
+  if (!target || norm(*target - drag_->target_W) < 1e-9) return;
+  drag_->target_W = *target;
   pull(true);
 }
 

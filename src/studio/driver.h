@@ -56,7 +56,8 @@ class Driver {
     int64_t client;
     ControlMessage message;
   };
-  /// A body point held in the plane that faces the camera at `depth` [m], under pixel (u, v).
+  /// A body point held at a depth [m] as CameraFrame::depth, under (u, v) [px]: in the plane that
+  /// faces the camera, with a fisheye on a sphere about it.
   struct Drag {
     int64_t client;
     Body body;

@@ -43,11 +43,17 @@ double depth_of(const Pose& X_WC, const Vec3& p_W) {
   return dot(rotate(X_WC.q, {0, 0, -1}), p_W - X_WC.p);
 }
 
-Vec3 point_at(const Pose& X_WC, const Intrinsics& intrinsics, double u, double v, double depth) {
-  const double scale = intrinsics.orthographic ? 1 : depth;
-  const Vec3 p_C = {(u - intrinsics.cx) / intrinsics.fx * scale,
-                    -(v - intrinsics.cy) / intrinsics.fy * scale, -depth};
-  return X_WC.p + rotate(X_WC.q, p_C);
+double depth_of(const Pose& X_WC, const Intrinsics& intrinsics, const Vec3& p_W) {
+  const bool along_the_ray =
+      intrinsics.lens == LensModel::kEquidistant || intrinsics.lens == LensModel::kEquirectangular;
+  return along_the_ray ? norm(p_W - X_WC.p) : depth_of(X_WC, p_W);
+}
+
+std::optional<Vec3> point_at(const Pose& X_WC, const Intrinsics& intrinsics, double u, double v,
+                             double depth) {
+  const std::optional<PixelRay> ray = pixel_ray(intrinsics, u, v);
+  if (!ray) return std::nullopt;
+  return X_WC.p + rotate(X_WC.q, ray->at_depth(depth));
 }
 
 OrbitCamera::OrbitCamera(const Pose& X_WC, double distance)

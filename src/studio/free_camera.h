@@ -1,6 +1,8 @@
 #pragma once
 // Geometry of the mouse: the free camera that orbits a pivot, and the plane a body is dragged in.
 
+#include <optional>
+
 #include "gloam/camera.h"
 #include "gloam/types.h"
 
@@ -16,9 +18,12 @@ Vec3 rotate(const Quat& q, const Vec3& v);
 
 /// Distance of a point in front of the camera, along its optical axis [m].
 double depth_of(const Pose& X_WC, const Vec3& p_W);
+/// Depth [m] of a point as CameraFrame::depth: of fisheyes and panoramas along the ray.
+double depth_of(const Pose& X_WC, const Intrinsics& intrinsics, const Vec3& p_W);
 
-/// The point at `depth` [m] along the optical axis that is seen at pixel (u, v).
-Vec3 point_at(const Pose& X_WC, const Intrinsics& intrinsics, double u, double v, double depth);
+/// The point at such a depth that is seen at (u, v) [px]; none where the lens sees nothing.
+std::optional<Vec3> point_at(const Pose& X_WC, const Intrinsics& intrinsics, double u, double v,
+                             double depth);
 
 /// A camera that looks at a pivot and stays upright (Z up).
 class OrbitCamera {

@@ -37,7 +37,8 @@ Result<std::string> encode_picture(const CameraFrame& frame, uint64_t sequence, 
   const Pose& X = frame.X_WC;
   for (const double value : {X.p.x, X.p.y, X.p.z, X.q.w, X.q.x, X.q.y, X.q.z})
     append(packet, value);
-  packet.append(kPictureHeaderSize - packet.size(), '\0');
+  append<uint32_t>(packet, static_cast<uint32_t>(k.lens));
+  for (const double value : k.distortion) append<float>(packet, static_cast<float>(value));
   packet.append(jpeg.begin(), jpeg.end());
   return packet;
 }

@@ -9,7 +9,7 @@
 
 namespace gloam::studio {
 
-inline constexpr size_t kPictureHeaderSize = 120;
+inline constexpr size_t kPictureHeaderSize = 152;
 
 /// Header and JPEG of one frame. `sequence` counts the frames that came from the renderer, so that
 /// gaps tell a client what it has not been sent; `camera` is a row of the hello message's list.

@@ -121,7 +121,7 @@ let pictures = Promise.resolve();  // decoded one after the other: they must not
 
 async function showPicture(bytes) {
   const view = new DataView(bytes);
-  if (bytes.byteLength < 120 || view.getUint32(0) !== 0x474c5631) return;
+  if (bytes.byteLength < 152 || view.getUint32(0) !== 0x474c5631) return;
   const sequence = view.getBigUint64(8, true);
   if (lastSequence !== 0n && sequence > lastSequence) missed += Number(sequence - lastSequence) - 1;
   lastSequence = sequence;
@@ -131,6 +131,8 @@ async function showPicture(bytes) {
     fx: view.getFloat32(44, true), fy: view.getFloat32(48, true), cx: view.getFloat32(52, true), cy: view.getFloat32(56, true),
     p: [60, 68, 76].map((at) => view.getFloat64(at, true)),
     q: [84, 92, 100, 108].map((at) => view.getFloat64(at, true)),
+    lens: view.getUint32(116, true),
+    d: [0, 1, 2, 3, 4, 5, 6, 7].map((i) => view.getFloat32(120 + 4 * i, true)),
   };
   try {
     const image = await createImageBitmap(new Blob([new Uint8Array(bytes, view.getUint32(4, true))], { type: "image/jpeg" }));
@@ -166,6 +168,22 @@ function toPixel(event) {
 
 function inPicture({ u, v }) { return u >= 0 && v >= 0 && u < canvas.width && v < canvas.height; }
 
+/** Place in the picture, in focal lengths, of the direction (x, y, z): right, down, ahead (docs/cameras.md); null when it is behind. */
+function throughLens({ orthographic, lens, d }, x, y, z) {
+  if (orthographic) return [x, y];
+  if (lens === 4) return [Math.atan2(x, z), Math.atan2(y, Math.hypot(x, z))];
+  if (lens === 3) {
+    const across = Math.hypot(x, y), t = Math.atan2(across, z), t2 = t * t;
+    const scale = across > 0 ? t * (1 + t2 * (d[0] + t2 * (d[1] + t2 * (d[2] + t2 * d[3])))) / across : 0;
+    return [x * scale, y * scale];
+  }
+  if (z <= 0) return null;
+  const a = x / z, b = y / z, r2 = a * a + b * b;
+  if (lens === 0) return [a, b];
+  const radial = (1 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]))) / (1 + r2 * (d[5] + r2 * (d[6] + r2 * d[7])));
+  return [a * radial + 2 * d[2] * a * b + d[3] * (r2 + 2 * a * a), b * radial + d[2] * (r2 + 2 * b * b) + 2 * d[3] * a * b];
+}
+
 /** Pixel of a point in the world, or null when it lies behind the camera. */
 function project(point) {
   const [w, x, y, z] = picture.q, d = point.map((value, i) => value - picture.p[i]);
@@ -174,9 +192,8 @@ function project(point) {
   const up = [2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)];
   const back = [2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)];
   const dot = (axis) => axis[0] * d[0] + axis[1] * d[1] + axis[2] * d[2];
-  const depth = picture.orthographic ? 1 : -dot(back);
-  if (depth <= 0) return null;
-  return { u: picture.cx + picture.fx * dot(right) / depth, v: picture.cy - picture.fy * dot(up) / depth };
+  const at = throughLens(picture, dot(right), -dot(up), -dot(back));
+  return at && { u: picture.cx + picture.fx * at[0], v: picture.cy + picture.fy * at[1] };
 }
 
 function drawPull() {

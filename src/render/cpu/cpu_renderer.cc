@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <numeric>
+#include <utility>
 
 #include "base/check.h"
 #include "base/log.h"
@@ -114,6 +115,8 @@ class CpuRenderer final : public Renderer {
     job.camera = make_camera(view, &camera_keys_);
     job.scene = job.camera.pose.keys.empty() ? scene_->view_from(view.X_WC_open)
                                              : scene_->view_from(view.X_WC_open, view.X_WC_keys);
+    // What is measured before the picture, and the fast tier, know no times: mean lamps.
+    const DeviceSpan<const float> levels = std::exchange(job.scene.light_levels, {});
     job.tracer = tracer();
     if (settings.tier == RenderTier::kPath) {
       if (!has_guide_) guide_.build(job.scene, static_tracer(), described_);
@@ -121,7 +124,12 @@ class CpuRenderer final : public Renderer {
       described_ = {};
       job.scene.guide = guide_.view();
     }
-    job.has_motion = !job.camera.pose.keys.empty() || scene_->has_motion();
+    const bool moves = !job.camera.pose.keys.empty() || scene_->has_motion();
+    // Where all rows see all of the keys' time and nothing moves, the mean is exact and not noisy.
+    const Shutter& shutter = job.camera.shutter;
+    const bool flickers =
+        scene_->has_flicker() && (moves || shutter.row > 0 || shutter.open + shutter.length < 1);
+    job.has_motion = moves || flickers;
     if (settings.cover) {
       film->cover = measure_cover(job.scene, job.tracer, job.camera, job.has_motion, film->width,
                                   film->height, objects_);
@@ -155,6 +163,7 @@ class CpuRenderer final : public Renderer {
                                     settings.max_depth);
       job.scene.environment.row_cdf = {};  // it stands for the sky's light: none is drawn
     }
+    if (flickers) job.scene.light_levels = levels;
     job.film = film;
     job.centered = settings.tier == RenderTier::kDirect && settings.spp == 1 && !job.has_motion &&
                    !(job.camera.aperture.radius > 0);
@@ -167,7 +176,7 @@ class CpuRenderer final : public Renderer {
     RenderStats total = on_card ? cuda_->render(on_cuda(job), film) : render_tiles(job);
     // What is blurred has blurred guides: those of the samples.
     const bool sharp =
-        !(job.camera.aperture.radius > 0) && !(job.has_motion && job.camera.shutter.length > 0);
+        !(job.camera.aperture.radius > 0) && !(moves && job.camera.shutter.length > 0);
     if (total.finished && settings.spp > 0 && settings.spp < settings.guide_samples && sharp) {
       GLOAM_CHECK(settings.exact_channels, "guide samples need the exact channels");
       total.rays += refine_guides({job.scene, job.tracer, job.camera, job.has_motion},
@@ -180,7 +189,7 @@ class CpuRenderer final : public Renderer {
 
   void scan(const LidarView& view, std::span<LidarReturn> returns) override {
     GLOAM_CHECK(updated_, "update must come before scan");
-    scan_beams(scene_->view_from(view.motion.X_WL), tracer(), view, returns);
+    scan_beams(scene_->view_from(view.motions.front().X_WL), tracer(), view, returns);
   }
 
   std::unique_ptr<ViewHistory> make_history() const override {

@@ -16,6 +16,7 @@ struct ScanJob {
   const SceneView& scene;
   const EmbreeTracer& tracer;
   const LidarView& view;
+  DeviceSpan<const LidarMotion> motions;
   std::array<Vec2f, kMostFootprintRays> footprint;
   bool has_media;
 };
@@ -42,7 +43,7 @@ void scan_packet(const ScanJob& job, const LidarBeam* beams, int count, LidarRet
     const Vec3Of<FloatLanes> d =
         rays > 1 ? footprint_direction(optics, d_L, job.footprint[static_cast<size_t>(k)]) : d_L;
     // Media hardly vary within a footprint: one ray tells what comes back from them.
-    trace_echoes(job.scene, job.tracer, optics, beam_ray(job.view.motion, d, time), active,
+    trace_echoes(job.scene, job.tracer, optics, beam_ray(job.motions, d, time), active,
                  1.0f / static_cast<float>(rays), echoes, job.has_media && k == 0 ? soft : nullptr);
   }
   for (int i = 0; i < count; ++i) {
@@ -61,7 +62,13 @@ void scan_beams(const SceneView& scene, const EmbreeTracer& tracer, const LidarV
               "numbers of rays and returns are within their bounds");
   GLOAM_CHECK(returns.size() == view.beams.size() * static_cast<size_t>(optics.most_returns),
               "there is room for every return");
-  const ScanJob job{scene, tracer, view, footprint_points(optics.footprint_rays),
+  const DeviceSpan<const LidarMotion> motions{view.motions.data(),
+                                              static_cast<uint32_t>(view.motions.size())};
+  const ScanJob job{scene,
+                    tracer,
+                    view,
+                    motions,
+                    footprint_points(optics.footprint_rays),
                     !scene.media.volumes.empty()};
   const auto beams = static_cast<int64_t>(view.beams.size());
   parallel_for_range("lidar beams", (beams + kLanes - 1) / kLanes, 16,

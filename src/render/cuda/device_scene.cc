@@ -87,6 +87,7 @@ void DeviceScene::fill(const SceneView& scene, const CameraView32& camera, const
   out.layers = parcel->put(scene.layers);
   out.lights = parcel->put(scene.lights);
   out.light_keys = parcel->put(scene.light_keys);
+  out.light_levels = parcel->put(scene.light_levels);
   out.light_tree.nodes = parcel->put(scene.light_tree.nodes);
   out.light_tree.leaf_of = parcel->put(scene.light_tree.leaf_of);
   out.media.volumes = parcel->put(volumes);

@@ -1,6 +1,7 @@
 #pragma once
 // A LiDAR's beams while it moves. Device-safe.
 
+#include "geometry/motion_keys.h"
 #include "render/kernel/ray.h"
 
 namespace gloam {
@@ -26,6 +27,32 @@ GLOAM_HD RayOf<F> beam_ray(const LidarMotion& motion, Vec3Of<F> d_L, F time) {
   }
   ray.d = normalize(transform_vector(pose_in_all_lanes<F>(motion.X_WL), d_L));
   ray.o = in_all_lanes<F>(motion.X_WL.p) + in_all_lanes<F>(motion.shift) * time;
+  ray.time = time;
+  return ray;
+}
+
+/// Of a sensor that moves through several such stretches, equally long, one after the other.
+template <class F>
+GLOAM_HD RayOf<F> beam_ray(DeviceSpan<const LidarMotion> stretches, Vec3Of<F> d_L, F time) {
+  uint32_t stretch[Lanes<F>::kCount];
+  F share{};
+  bool together = true;  // beams are in the order of time, nearly
+  each_lane(MaskOf<F>(true), [&](int i) {
+    float one;
+    stretch[i] = key_before(stretches.size + 1, lane(time, i), &one);
+    set_lane(&share, i, one);
+    together = together && stretch[i] == stretch[0];
+  });
+  RayOf<F> ray;
+  if (together) {
+    ray = beam_ray(stretches[stretch[0]], d_L, share);
+  } else {
+    each_lane(MaskOf<F>(true), [&](int i) {
+      const Ray one = beam_ray<float>(stretches[stretch[i]], lane(d_L, i), lane(share, i));
+      set_lane(&ray.o, i, one.o);
+      set_lane(&ray.d, i, one.d);
+    });
+  }
   ray.time = time;
   return ray;
 }

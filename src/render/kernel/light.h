@@ -317,6 +317,13 @@ GLOAM_HD LightSampleOf<F> sample_one_light(const SceneView& scene, uint32_t inde
       });
     }
   }
+  if (scene.has_flicker() && light.levels >= 0) {
+    each_lane(active, [&](int i) {
+      const float level = level_at(scene, light.levels, lane(time, i));
+      set_lane(&s.radiance, i, lane(s.radiance, i) * level);
+      if (!(level > 0)) set_lane(&s.pdf, i, 0.0f);
+    });
+  }
   s.casts_shadow = light.casts_shadow;
   // What cannot be hit must be found here alone.
   if (!light.casts_shadow && light.kind != LightKind::kInstance) s.is_delta = true;

@@ -233,18 +233,19 @@ GLOAM_HD Vec3Of<F> visible_light(const SceneView& scene, uint32_t i, const RayOf
                                  const Probability& probability, const Passing& passing) {
   const LightView& light = scene.lights[i];
   if (light.is_delta || !light.casts_shadow || light.kind == LightKind::kInstance) return {};
-  if (light.first_key < 0) {
+  const bool flickers = scene.has_flicker() && light.levels >= 0;
+  if (light.first_key < 0 && !flickers) {
     return still_light(scene, light, ray, tmax, from, pdf_bsdf, active, probability, passing);
   }
   Vec3Of<F> sum;
   each_lane(active, [&](int at) {
     const Ray one = lane(ray, at);
     const float chance = lane(F(probability()), at);
-    set_lane(&sum, at,
-             still_light<float>(
-                 scene, light_at(scene, light, one.time), one, lane(tmax, at), lane(from, at),
-                 lane(pdf_bsdf, at), true, [&] { return chance; },
-                 [&](int, float t) { return passing(at, t); }));
+    const Vec3f even = still_light<float>(
+        scene, light_at(scene, light, one.time), one, lane(tmax, at), lane(from, at),
+        lane(pdf_bsdf, at), true, [&] { return chance; },
+        [&](int, float t) { return passing(at, t); });
+    set_lane(&sum, at, flickers ? even * level_at(scene, light.levels, one.time) : even);
   });
   return sum;
 }

@@ -97,6 +97,7 @@ struct MaterialView {
   bool transparent = false;    ///< opacity below one somewhere, or a straight sheet
   bool glows_in_color = true;  ///< base_color's texture multiplies the emission
   int layers = -1;             ///< row of SceneView::layers
+  int levels = -1;             ///< row of SceneView::light_levels
   Vec2f texture_repeat{1, 1};
   MaterialTextures textures;
   float bump_scale = 0;  ///< [m] that a bump of 1 stands above one of 0
@@ -122,6 +123,7 @@ struct LightView {
   int guide = -1;         ///< row of LightGuide::visible; -1 = it moves, or has none
   int first_key = -1;     ///< row of SceneView::light_keys of lamps and suns that move while the
                           ///< shutter is open: then p, reach and half bound the way, and spread all
+  int levels = -1;        ///< row of SceneView::light_levels; -1 = it is even
   // Bounds for the tree; not of directional lights.
   Vec3f half;          ///< half the size of a box about p that holds all of it [m]
   float spread = kPi;  ///< angle from `direction` up to which it shines in full [rad]
@@ -241,6 +243,10 @@ struct SceneView {
   DeviceSpan<const LightView> lights;
   DeviceSpan<const LightKey> light_keys;  ///< light_key_count of every light that moves
   uint32_t light_key_count = 0;
+  /// Of lights that flicker while the shutter is open: their light in light_level_count even spans
+  /// of time, as shares of its mean.
+  DeviceSpan<const float> light_levels;
+  uint32_t light_level_count = 0;
   DeviceSpan<const ProfileView> profiles;
   DeviceSpan<const float> profile_values;
   LightTreeView light_tree;  ///< of scenes with more than kMaxWeighedLights
@@ -263,15 +269,24 @@ struct SceneView {
   GLOAM_HD bool has_layers() const { return !kPlainScenes && layers.size > 0; }
   GLOAM_HD bool has_media() const { return !kPlainScenes && media.volumes.size > 0; }
   GLOAM_HD bool has_environment() const { return !kPlainScenes && !environment.levels.empty(); }
+  GLOAM_HD bool has_flicker() const { return !kPlainScenes && light_levels.size > 0; }
   GLOAM_HD bool has_sky_texture() const { return !kPlainScenes && sky_texture >= 0; }
   GLOAM_HD bool lets_light_through() const { return !kPlainScenes && has_transparent; }
   GLOAM_HD bool has_many_lights() const { return !kPlainScenes && lights.size > kMaxWeighedLights; }
   GLOAM_HD bool is_plain() const {
     return textures.empty() && layers.empty() && media.volumes.empty() &&
            environment.levels.empty() && sky_texture < 0 && !has_transparent &&
-           lights.size <= kMaxWeighedLights;
+           light_levels.empty() && lights.size <= kMaxWeighedLights;
   }
 };
+
+/// Light of a row of SceneView::light_levels at a time in the shutter, as a share of its mean.
+GLOAM_HD float level_at(const SceneView& scene, int row, float time) {
+  const uint32_t count = scene.light_level_count;
+  const float at = clamp(time, 0.0f, 1.0f) * static_cast<float>(count);
+  const uint32_t bin = static_cast<uint32_t>(min(at, static_cast<float>(count - 1)));
+  return scene.light_levels[static_cast<uint32_t>(row) * count + bin];
+}
 
 /// Pose of an instance at a time in the shutter (linear between the keys, as Embree does);
 /// `between` is room for it.

@@ -26,7 +26,9 @@ GLOAM_HD SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>& ray,
     Affine3f between;
     set_lane(&X_WG, i, pose_at(instance, lane(ray.time, i), &between));
     set_lane(&s.base_color, i, m.base_color);
-    set_lane(&s.emission, i, m.emission);
+    const bool flickers = scene.has_flicker() && m.levels >= 0;
+    set_lane(&s.emission, i,
+             flickers ? m.emission * level_at(scene, m.levels, lane(ray.time, i)) : m.emission);
     set_lane(&s.metallic, i, m.metallic);
     set_lane(&s.roughness, i, m.roughness);
     set_lane(&s.f0, i, m.f0);

@@ -132,6 +132,7 @@ std::optional<LightView> emitter_of(const std::vector<InstanceView>& instances, 
   light.kind = LightKind::kInstance;
   light.instance = static_cast<uint32_t>(row);
   light.strength = strength / (4 * kPi);
+  light.levels = material.levels;
   set_bounds(instance, material.emits_outwards, meshes, &light);
   if (!is_finite(light)) return {};
   return light;
@@ -193,7 +194,8 @@ void LightTable::set_keys(std::span<const LightKey> keys, LightView* light) {
 }
 
 void LightTable::update(const RenderDescription& description,
-                        std::span<const PoseFrame* const> keys, const std::vector<float>& levels,
+                        std::span<const PoseFrame* const> keys,
+                        const std::vector<LightLevel>& levels,
                         const std::vector<MaterialView>& materials,
                         const std::vector<MeshView>& meshes, std::vector<InstanceView>* instances) {
   const PoseFrame& frame = *keys.front();
@@ -206,7 +208,7 @@ void LightTable::update(const RenderDescription& description,
   size_t row_of_light = 0;
   for (const LightDescription& in : description.lights) {
     const int row_of_guide = is_guided(in) ? guide++ : -1;
-    const float level = levels[row_of_light++];
+    const LightLevel& level = levels[row_of_light++];
     const bool follows = live && in.light >= 0;
     const size_t i = follows ? static_cast<size_t>(in.light) : 0;
     if (follows ? frame.light_active[i] == 0 : !in.active) continue;
@@ -218,7 +220,8 @@ void LightTable::update(const RenderDescription& description,
       light.intensity = light_intensity({diffuse[0], diffuse[1], diffuse[2]},
                                         frame.light_intensity[i], in.legacy_scale);
     }
-    light.intensity *= level;
+    light.intensity *= level.mean;
+    light.levels = level.row;
     if (!(luminance(light.intensity) > 0)) continue;
     set_strength(&light);
     if (keys.size() > 1 && !in.is_static && !is_headlight(in)) {

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "render/scene/level_table.h"
 #include "render/scene/light_tree.h"
 #include "sim/pose_frame.h"
 
@@ -14,7 +15,7 @@ class LightTable {
   /// Poses of the keys and live fields of the first; then the emitters among `instances`, whose
   /// `light` is set. `levels`: of the description's lights, by their schedules.
   void update(const RenderDescription& description, std::span<const PoseFrame* const> keys,
-              const std::vector<float>& levels, const std::vector<MaterialView>& materials,
+              const std::vector<LightLevel>& levels, const std::vector<MaterialView>& materials,
               const std::vector<MeshView>& meshes, std::vector<InstanceView>* instances);
   /// Headlights sit at the camera. `keys`: where it is at the keys; empty = it stands still.
   void place_headlights(const Affine3f& X_WC, std::span<const Affine3f> keys);

@@ -123,9 +123,12 @@ MaterialStore::MaterialStore(const RenderDescription& description, const Texture
   }
 }
 
-void MaterialStore::dim(const RenderDescription& description, const std::vector<float>& levels) {
+void MaterialStore::dim(const RenderDescription& description,
+                        const std::vector<LightLevel>& levels) {
   for (size_t i = 0; i < levels.size(); ++i) {
-    if (description.materials[i].schedule >= 0) views_[i].emission = emission_[i] * levels[i];
+    if (description.materials[i].schedule < 0) continue;
+    views_[i].emission = emission_[i] * levels[i].mean;
+    views_[i].levels = levels[i].row;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/kernel/scene_view.h"
+#include "render/scene/level_table.h"
 #include "render/scene/texture_store.h"
 #include "sim/pose_frame.h"
 
@@ -22,7 +23,7 @@ class MaterialStore {
               const PoseFrame& frame, std::vector<InstanceView>* instances);
 
   /// Scales what the described materials give off.
-  void dim(const RenderDescription& description, const std::vector<float>& levels);
+  void dim(const RenderDescription& description, const std::vector<LightLevel>& levels);
 
   const std::vector<MaterialView>& views() const { return views_; }
   const std::vector<MaterialLayers>& layers() const { return layers_; }

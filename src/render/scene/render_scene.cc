@@ -115,27 +115,6 @@ Vec3f live_ambient(const RenderDescription& description, const PoseFrame& frame)
   return sum * kWhiteLuminance;
 }
 
-/// Mean of the factors that schedules give while the shutter is open; `first_lamp` tells lamps from
-/// materials.
-template <class Rows>
-void mean_levels(const RenderDescription& description, const Rows& rows, size_t first_lamp,
-                 double open, double close, std::vector<float>* levels) {
-  constexpr int kTimes = 8;  // the finest ripples of lamps are as long as usual shutters
-  levels->assign(rows.size(), 1.0f);
-  for (size_t i = 0; i < rows.size(); ++i) {
-    if (rows[i].schedule < 0) continue;
-    const LightSchedule& schedule = description.schedules[static_cast<size_t>(rows[i].schedule)];
-    const int times = close > open ? kTimes : 1;
-    double sum = 0;
-    for (int k = 0; k < times; ++k) {
-      const double time = times == 1 ? open : open + (close - open) * (k + 0.5) / times;
-      sum += light_level(schedule, time, description.schedule_seed,
-                         static_cast<uint32_t>(first_lamp + i));
-    }
-    (*levels)[i] = static_cast<float>(sum / times);
-  }
-}
-
 template <class T>
 DeviceSpan<const T> span_of(const std::vector<T>& v) {
   return {v.data(), static_cast<uint32_t>(v.size())};
@@ -232,19 +211,12 @@ void RenderScene::follow_live_fields(const PoseFrame& frame) {
   mesh_views_ = meshes_.views(description_);
 }
 
-void RenderScene::follow_schedules(const PoseFrame& open, const PoseFrame& close) {
-  const RenderDescription& d = description_;
-  mean_levels(d, d.lights, 0, open.time, close.time, &light_levels_);
-  if (d.schedules.empty()) return;
-  mean_levels(d, d.materials, d.lights.size(), open.time, close.time, &material_levels_);
-  materials_.dim(d, material_levels_);
-}
-
 void RenderScene::update(std::span<const PoseFrame* const> keys, const PoseFrame& previous) {
   GLOAM_CHECK(!keys.empty(), "there is no key");
   const PoseFrame& open = *keys.front();
   follow_live_fields(open);
-  follow_schedules(open, *keys.back());
+  levels_.update(description_, open.time, keys.back()->time);
+  if (!description_.schedules.empty()) materials_.dim(description_, levels_.materials());
   if (!description_.deformables.empty()) {
     meshes_.update(description_, keys, previous);
     mesh_views_ = meshes_.views(description_);
@@ -268,7 +240,8 @@ void RenderScene::update(std::span<const PoseFrame* const> keys, const PoseFrame
     out.keys = {pose_keys_.data() + row, static_cast<uint32_t>(count)};
     row += count;
   }
-  lights_.update(description_, keys, light_levels_, materials_.views(), mesh_views_, &instances_);
+  lights_.update(description_, keys, levels_.lights(), materials_.views(), mesh_views_,
+                 &instances_);
 }
 
 /// Adds the instance's poses at all keys, if they are not all the same.
@@ -313,6 +286,8 @@ SceneView RenderScene::view_from(const Affine3f& X_WC, std::span<const Affine3f>
   view.lights = span_of(lights_.lights());
   view.light_keys = span_of(lights_.keys());
   view.light_key_count = lights_.key_count();
+  view.light_levels = span_of(levels_.bins());
+  view.light_level_count = levels_.bin_count();
   view.profiles = span_of(profiles_.profiles);
   view.profile_values = span_of(profiles_.values);
   view.media = volumes_.view();

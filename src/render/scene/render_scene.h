@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/scene/environment_table.h"
+#include "render/scene/level_table.h"
 #include "render/scene/light_table.h"
 #include "render/scene/material_store.h"
 #include "render/scene/mesh_store.h"
@@ -42,6 +43,8 @@ class RenderScene {
   DescribedLook described_look(const PoseFrame& frame) const;
   /// Something moves between shutter open and close.
   bool has_motion() const;
+  /// Some light flickers between shutter open and close.
+  bool has_flicker() const { return !levels_.bins().empty(); }
   /// Invisible instances are in the tables but never traced: fully transparent ones and those
   /// that are not shown.
   bool is_drawn(size_t instance) const { return drawn_[instance]; }
@@ -60,7 +63,6 @@ class RenderScene {
   explicit RenderScene(const RenderDescription& description) : description_(description) {}
   void follow_live_fields(const PoseFrame& frame);
   void follow_materials();
-  void follow_schedules(const PoseFrame& open, const PoseFrame& close);
   bool add_keys(std::span<const PoseFrame* const> keys, const InstanceDescription& in,
                 const Affine3f& X_WG);
 
@@ -74,8 +76,8 @@ class RenderScene {
   AlbedoTable albedo_;
   std::unique_ptr<GlassTable> glass_;  ///< where some material is glass
   MaterialStore materials_;
-  Vec3f sky_ambient_;                                  ///< [cd/m²]
-  std::vector<float> light_levels_, material_levels_;  ///< by schedule, of the description's rows
+  Vec3f sky_ambient_;  ///< [cd/m²]
+  LevelTable levels_;
   std::vector<InstanceView> instances_;
   std::vector<Affine3f> pose_keys_;  ///< of the instances that move while the shutter is open
   std::vector<MeshView> mesh_views_;

@@ -8,14 +8,6 @@
 namespace gloam {
 namespace {
 
-RenderSettings settings_of(int spp, int depth) {
-  RenderSettings s;
-  s.spp = spp;
-  s.max_depth = depth;
-  s.variance = true;
-  return s;
-}
-
 /// A scene with one even medium in a box.
 SceneBuilder with_fog(Vec3f size, Vec3f center, Vec3f extinction, Vec3f albedo, Vec3f g = {},
                       float emission = 0, float temperature = 293) {

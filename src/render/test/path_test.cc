@@ -7,14 +7,6 @@
 namespace gloam {
 namespace {
 
-RenderSettings settings_of(int spp, int depth = 5) {
-  RenderSettings s;
-  s.spp = spp;
-  s.max_depth = depth;
-  s.variance = true;
-  return s;
-}
-
 /// Mean luminance of an object that fills the view, under a sky of luminance 1.
 Mean furnace(ShapeType shape, const MaterialDescription& material, int depth) {
   SceneBuilder b;

@@ -28,6 +28,15 @@ inline Affine3f rigid(Vec3f axis, float angle, Vec3f p) {
 
 inline Affine3f translation(Vec3f p) { return {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, p}; }
 
+/// Of the path tier, with variances.
+inline RenderSettings settings_of(int spp, int depth = 5) {
+  RenderSettings s;
+  s.spp = spp;
+  s.max_depth = depth;
+  s.variance = true;
+  return s;
+}
+
 class SceneBuilder {
  public:
   SceneBuilder() { add_body({}); }

@@ -7,14 +7,6 @@
 namespace gloam {
 namespace {
 
-RenderSettings settings_of(int spp, int depth = 5) {
-  RenderSettings s;
-  s.spp = spp;
-  s.max_depth = depth;
-  s.variance = true;
-  return s;
-}
-
 EnvironmentDescription even_map(Vec3f luminance) {
   return {"even", 64, 32, std::vector<Vec3f>(64 * 32, luminance)};
 }

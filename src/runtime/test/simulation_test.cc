@@ -120,6 +120,22 @@ TEST(LiveSimulation, APixelLeadsToTheBodyBehindIt) {
   EXPECT_FALSE(simulation->pick(frame, 32, 24).ok());
 }
 
+TEST(LiveSimulation, APixelOfAFisheyeLeadsToTheBodyInItsDirection) {
+  const TempFolder folder;
+  auto simulation = simulate(flight(folder));
+  CameraFrame frame;
+  frame.intrinsics = {128, 48, 50, 50, 32, 24};
+  frame.intrinsics.lens = LensModel::kEquidistant;
+  // Turned to the left by 60 degrees: the ball, straight along +Y, is 60 degrees to the right.
+  const double s = std::sqrt(0.5), c30 = std::cos(M_PI / 6), s30 = std::sin(M_PI / 6);
+  frame.X_WC = {{0, -2, 0}, {c30 * s, c30 * s, s30 * s, s30 * s}};
+  const auto hit = simulation->pick(frame, 32 + 50 * M_PI / 3, 24);
+  ASSERT_TRUE(hit.ok()) << hit.error().to_string();
+  EXPECT_EQ(hit->name, "a/ball");
+  EXPECT_NEAR(hit->point_W.x, 0, 1e-4);
+  EXPECT_NEAR(hit->point_W.y, -0.2, 1e-4);
+}
+
 TEST(LiveSimulation, OptionsOutOfRangeAreRefused) {
   const TempFolder folder;
   const World world = flight(folder);

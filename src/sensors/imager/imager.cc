@@ -29,12 +29,14 @@ Imager::Imager(const ImagerOptions& options, const Intrinsics& intrinsics, uint6
   if (!mono_ && options.mosaic != "none") mosaic_.emplace(options.mosaic);
   const size_t sites = pixel_count(intrinsics) * sites_per_pixel();
   if (options.pixel) pixels_.emplace(*options.pixel, sites, seed ^ options.seed);
+  if (options.vignetting) vignetting_ = vignetting(*options.vignetting, intrinsics);
   shares_.resize(sites);
 }
 
 uint64_t Imager::memory(const ImagerOptions& options, const Intrinsics& intrinsics) {
   const uint64_t sites = options.mosaic == "none" ? 3 : 1;
   uint64_t per_pixel = sizeof(float) * sites + sizeof(Vec3f);
+  if (options.vignetting) per_pixel += sizeof(float);
   if (options.pixel)
     per_pixel += sizeof(float) * sites *
                  ((options.pixel->prnu > 0 ? 1u : 0u) + (options.pixel->dsnu > 0 ? 1u : 0u));
@@ -84,8 +86,7 @@ void Imager::expose(const std::vector<Vec3f>& radiance, const Exposure& exposure
       for (int x = 0; x < intrinsics_.width; ++x) {
         const size_t i = static_cast<size_t>(y) * width + static_cast<size_t>(x);
         Vec3f light = radiance[i];
-        if (options_.vignetting)
-          light = light * vignetting(*options_.vignetting, intrinsics_, x, y);
+        if (!vignetting_.empty()) light = light * vignetting_[i];
         if (mono_) {
           take(i, luminance(light));
         } else if (mosaic_) {

@@ -168,25 +168,25 @@ TEST_P(CameraLensTest, DepthIsThatOfTheWalls) {
   ASSERT_EQ(load(kWalls, std::string("lens = ") + GetParam().lens), "");
   const auto frame = capture({"depth", "distance", "segmentation"});
   const Intrinsics& k = frame->intrinsics;
-  const auto lens = make_lens<double>(k);
+  const PixelRays rays(k);
+  const auto off_the_walls = [](Vec3 p) {
+    return std::abs(std::max({std::abs(p.x) / 3, std::abs(p.y) / 2.5, std::abs(p.z) / 4}) - 1);
+  };
   double worst = 0;
   int seen = 0, dark = 0;
   for (int y = 0; y < k.height; ++y) {
     for (int x = 0; x < k.width; ++x) {
       const size_t i = static_cast<size_t>(y * k.width + x);
-      double X, Y, Z, angle;
-      if (!lens_unproject(lens, (x + 0.5 - k.cx) / k.fx, (y + 0.5 - k.cy) / k.fy, &X, &Y, &Z,
-                          &angle)) {
+      const auto ray = rays.at(x + 0.5, y + 0.5);
+      if (!ray) {
         ++dark;
         EXPECT_EQ(frame->part[i], 0u);
         EXPECT_TRUE(std::isinf(frame->depth[i]) && std::isinf(frame->distance[i]));
         continue;
       }
       ++seen;
-      const double distance = std::min({3 / std::abs(X), 2.5 / std::abs(Y), 4 / std::abs(Z)});
-      const double depth = is_wide(k.lens) ? distance : distance * Z;
-      worst = std::max({worst, std::abs(frame->distance[i] - distance) / distance,
-                        std::abs(frame->depth[i] - depth) / depth});
+      worst = std::max({worst, off_the_walls(ray->at(double{frame->distance[i]})),
+                        off_the_walls(ray->at_depth(double{frame->depth[i]}))});
     }
   }
   EXPECT_LT(worst, 1e-4);

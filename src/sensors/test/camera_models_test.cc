@@ -6,6 +6,7 @@
 #include "scene/test/temp_folder.h"
 #include "sensors/camera_sensor.h"
 #include "sensors/stereo_depth.h"
+#include "sensors/test/statistics.h"
 #include "sim/pose_solver.h"
 #include "sim/simulator.h"
 
@@ -135,6 +136,38 @@ TEST_F(CameraModelsTest, DarkAndShinyThingsSendTheProjectorsLightAway) {
   EXPECT_LT(kept("chrome"), 0.05);
 }
 
+// Light that does not change makes no events, however few paths a pixel has.
+TEST_F(CameraModelsTest, AStillSceneMakesNoEventsButTheirNoise) {
+  load(camera("quiet", "events = { threshold = 0.1 }\n") + camera("plain") +
+       camera("noisy", "events = { threshold = 0.1, noise_rate = 5 }\n"));
+  const auto frames = [&](const char* name, const char* tier, const char* output) {
+    CameraRequest request{.camera = name};
+    request.outputs = {output};
+    request.render = {.tier = tier, .spp = 2, .denoise = false};
+    auto sensor = std::move(CameraSensor::create(description_, request, 1)).value();
+    std::vector<std::shared_ptr<const CameraFrame>> out;
+    PoseFrame now = poses_;
+    for (int k = 0; k < 5; ++k) {
+      now.time = 0.02 * k;
+      out.push_back(sensor->capture(*renderer_, mutex_, now, poses_, k));
+    }
+    return out;
+  };
+  const auto plain = frames("plain", "path", "radiance");
+  size_t changed = 0;
+  for (size_t i = 0; i < plain[0]->radiance.size(); ++i)
+    changed += std::abs(std::log((plain[0]->radiance[i] + 1) / (plain[1]->radiance[i] + 1))) > 0.1f;
+  EXPECT_GT(changed, 500u) << "the scene must have noise for this test to mean something";
+  for (const char* tier : {"path", "direct"}) {
+    for (const auto& frame : frames("quiet", tier, "events"))
+      EXPECT_EQ(frame->events.size(), 0u) << tier << ", frame " << frame->index;
+    size_t noise = 0;
+    for (const auto& frame : frames("noisy", tier, "events")) noise += frame->events.size();
+    const double mean = 5 * 0.08 * 120 * 90;
+    expect_within(static_cast<double>(noise), mean, std::sqrt(mean), tier);
+  }
+}
+
 TEST_F(CameraModelsTest, RigsAreTheirCameras) {
   load(
       "[[stereo]]\nname = \"eyes\"\nbaseline = 0.2\nwidth = 120\nheight = 90\nlook_at = [0, 2, 0]\n"
@@ -156,6 +189,12 @@ TEST_F(CameraModelsTest, AnOutputWithoutItsModelIsAnError) {
     ASSERT_FALSE(sensor.ok()) << output;
     EXPECT_NE(sensor.error().to_string().find(output), std::string::npos);
   }
+  load(camera("wide",
+              "lens = { model = \"equidistant\", fx = 40 }\n"
+              "stereo_depth = { baseline = 0.05 }\n"));
+  const auto wide = make("wide", {"sensor_depth"});
+  ASSERT_FALSE(wide.ok()) << "a fisheye's pictures are not matched along rows";
+  EXPECT_NE(wide.error().to_string().find("plumb_bob"), std::string::npos);
   const auto scene = load_scene(
       folder_.write("twice.toml", "[environment]\nfile = \"tiles.xml\"\n" + camera("eyes/left") +
                                       "[[stereo]]\nname = \"eyes\"\n"));

@@ -132,6 +132,28 @@ TEST_F(CameraSensorTest, ExactChannelsAreThoseOfTheRoom) {
       << "only what was asked for";
 }
 
+TEST_F(CameraSensorTest, AnOrthographicCameraSeesAlongParallelRays) {
+  auto sensor = make(ask("parallel", {"depth", "distance"}));
+  const PoseFrame now = poses_at(0);
+  const auto frame = capture(*sensor, now, now);
+  const Intrinsics& k = frame->intrinsics;
+  int on_ball = 0;
+  for (int y = 0; y < k.height; ++y) {
+    for (int x = 0; x < k.width; ++x) {
+      const size_t i = pixel(*frame, x, y);
+      const auto ray = pixel_ray(k, x + 0.5, y + 0.5);
+      ASSERT_TRUE(ray.has_value());
+      const double r2 = ray->p_C.x * ray->p_C.x + ray->p_C.y * ray->p_C.y;
+      const double depth = r2 < 0.25 ? 2 - std::sqrt(0.25 - r2) : 4;
+      if (std::abs(r2 - 0.25) < 0.01) continue;  // the ball's edge
+      on_ball += r2 < 0.25;
+      EXPECT_NEAR(frame->depth[i], depth, 1e-4 * depth) << x << ", " << y;
+      EXPECT_EQ(frame->distance[i], frame->depth[i]);
+    }
+  }
+  EXPECT_GT(on_ball, 300) << "24 px per metre";
+}
+
 TEST_F(CameraSensorTest, MotionIsTheFlowOfWhatMoved) {
   auto sensor = make(ask("plain", {"motion", "segmentation", "depth"}));
   const PoseFrame before = poses_at(1), now = poses_at(11);

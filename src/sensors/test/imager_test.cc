@@ -15,15 +15,7 @@ namespace {
 constexpr int kWidth = 400, kHeight = 300;
 constexpr size_t kPixels = size_t{kWidth} * kHeight;
 
-Intrinsics intrinsics() {
-  Intrinsics k;
-  k.width = kWidth;
-  k.height = kHeight;
-  k.fx = k.fy = 250;
-  k.cx = kWidth / 2.0;
-  k.cy = kHeight / 2.0;
-  return k;
-}
+Intrinsics intrinsics() { return {kWidth, kHeight, 250, 250, kWidth / 2.0, kHeight / 2.0}; }
 
 std::vector<Vec3f> even(float r, float g, float b) {
   return std::vector<Vec3f>(kPixels, {r, g, b});
@@ -105,17 +97,29 @@ TEST(AutoExposure, MetersTheMeanOrTheMiddle) {
   EXPECT_GT(metered_luminance(light.data(), 32, 24, true), 1.8 * average - 10);
 }
 
-TEST(Vignetting, IsTheFourthPowerOfTheCosine) {
+TEST(Vignetting, IsTheFourthPowerOfTheCosineOfTheLenssRay) {
+  Intrinsics k{.width = 4, .height = 1, .fx = 2, .fy = 2, .cx = 0.5, .cy = 0.5};
+  k.lens = LensModel::kEquidistant;  // half a radian per pixel
+  for (int x = 0; x < 4; ++x) {
+    EXPECT_NEAR(vignetting({.cos4 = true}, k)[static_cast<size_t>(x)],
+                std::pow(std::cos(0.5 * x), 4), 1e-6);
+  }
+  k.width = 8;
+  EXPECT_EQ(vignetting({.cos4 = true}, k)[4], 0) << "from behind no light comes through a hole";
+}
+
+TEST(Vignetting, OfAPinholeIsThatOfItsTangent) {
   const Intrinsics k = intrinsics();
+  const auto at = [](int x, int y) { return static_cast<size_t>(y * kWidth + x); };
+  const std::vector<float> cos4 = vignetting({.cos4 = true}, k);
   for (const auto& [x, y] : {std::pair{0, 0}, {200, 150}, {399, 20}}) {
     const double a = (x + 0.5 - k.cx) / k.fx, b = (y + 0.5 - k.cy) / k.fy;
-    const double cosine = std::cos(std::atan(std::hypot(a, b)));
-    EXPECT_NEAR(vignetting({.cos4 = true}, k, x, y), std::pow(cosine, 4), 1e-6);
+    EXPECT_NEAR(cos4[at(x, y)], std::pow(std::cos(std::atan(std::hypot(a, b))), 4), 1e-6);
   }
-  const float corner = vignetting({.polynomial = {-0.3, -0.1, 0.02}}, k, 0, 0);
+  const float corner = vignetting({.polynomial = {-0.3, -0.1, 0.02}}, k)[0];
   const double r2 = (199.5 * 199.5 + 149.5 * 149.5) / (200.0 * 200 + 150 * 150);
   EXPECT_NEAR(corner, 1 - 0.3 * r2 - 0.1 * r2 * r2 + 0.02 * r2 * r2 * r2, 1e-6);
-  EXPECT_EQ(vignetting({.polynomial = {-3, 0, 0}}, k, 0, 0), 0) << "light is never negative";
+  EXPECT_EQ(vignetting({.polynomial = {-3, 0, 0}}, k)[0], 0) << "light is never negative";
 }
 
 TEST(Imager, NumbersAreProportionalToLightAndFullAtTheTopOfTheScale) {

@@ -171,6 +171,38 @@ TEST(LidarMotion, MoreKeysFollowACurvedWayBetter) {
   EXPECT_NEAR(worst[1], 0.1 / 64, 0.0003);
 }
 
+// Keys that are not evenly in time: sensor and wall go from one to the next evenly all the same.
+TEST(LidarMotion, EveryStretchBetweenKeysHasItsOwnLength) {
+  const SceneBuilder b = wall_ahead();
+  const std::vector<double> times = {0, 0.011, 0.034, 0.05, 0.083, 0.1};
+  std::vector<PoseFrame> keys(times.size(), b.frame);
+  const auto sensor_at = [](double t) { return 40 * t * t; };
+  const auto wall_at = [](double t) { return 10 - 60 * t * t; };
+  for (size_t k = 0; k < times.size(); ++k) {
+    keys[k].time = 5 + times[k];
+    const auto sensor = static_cast<float>(sensor_at(times[k]));
+    const auto wall = static_cast<float>(wall_at(times[k]) + 0.5);
+    SceneBuilder::set_body(&keys[k], 1, translation({sensor, 0, 0}));
+    SceneBuilder::set_body(&keys[k], 2, translation({wall, 0, 0}));
+  }
+  LidarOptions options = forward_lidar();
+  options.deskew = true;
+  const auto distorted = scan_scene(b, forward_lidar(), 1, keys);
+  const auto deskewed = scan_scene(b, options, 1, keys);
+  ASSERT_EQ(distorted->size(), static_cast<size_t>(distorted->beams));
+  for (size_t i = 0; i < distorted->size(); ++i) {
+    const double t = distorted->time[i];
+    size_t k = 1;
+    while (k + 1 < times.size() && times[k] < t) ++k;
+    const double share = (t - times[k - 1]) / (times[k] - times[k - 1]);
+    const auto between = [&](const auto& at) {
+      return at(times[k - 1]) + share * (at(times[k]) - at(times[k - 1]));
+    };
+    EXPECT_NEAR(distorted->x[i], between(wall_at) - between(sensor_at), 1e-3) << "at " << t << " s";
+    EXPECT_NEAR(deskewed->x[i], between(wall_at) - sensor_at(0.1), 1e-3);
+  }
+}
+
 TEST(LidarMotion, PointsAreStampedWithTheirFirings) {
   const SceneBuilder room = box_room({6, 4, 3});
   const auto vlp = scan_scene(room, ideal_lidar("VLP-16"), 0, [&] {

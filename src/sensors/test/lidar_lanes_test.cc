@@ -37,7 +37,9 @@ TEST(LidarKernel, OneFloatAndLanesSeeTheSame) {
   const Probe probe(b);
 
   LidarView view;
-  view.motion = make_lidar_motion({}, rigid({0, 0, 1}, 0.05f, {0.3f, 0.1f, 0}));
+  const Affine3f turned = rigid({0, 0, 1}, 0.05f, {0.3f, 0.1f, 0});
+  const LidarMotion stretches[2] = {make_lidar_motion({}, turned), make_lidar_motion(turned, {})};
+  view.motions = stretches;
   view.optics.divergence = {0.004f, 0.002f};
   view.optics.returns = LidarReturns::kAll;
   view.optics.most_returns = 5;
@@ -58,7 +60,8 @@ TEST(LidarKernel, OneFloatAndLanesSeeTheSame) {
     LidarEchoes echoes;
     Backscatter soft(view.optics, key, &echoes);
     trace_echoes<float>(probe.view, probe.tracer, view.optics,
-                        beam_ray<float>(view.motion, beam.d, beam.time), true, 1, &echoes, &soft);
+                        beam_ray<float>({stretches, 2}, beam.d, beam.time), true, 1, &echoes,
+                        &soft);
     soft.finish();
     detect(view.optics, key, &echoes, &one_by_one[beam.id * 5]);
   }

@@ -129,15 +129,20 @@ double backscatter(double k, double beta, double begin, double a, double b) {
   return M_PI * beta * sum * (b - a) / n;
 }
 
-TEST(LidarInMedia, ThickFogAnswersAtTheRangeWhereItIsEntered) {
+/// What a LiDAR that sees a plate of 10 % at 40 m gets back of `m` from 4 to 30 m.
+std::shared_ptr<const LidarScan> scan_fog(const MediumDescription& m, float density = 1) {
   SceneBuilder b;
-  b.description.media.push_back(medium(0.4f, 0.4f, 0.9f));
-  add_slab(&b, 4, 30, 1);
+  b.description.media.push_back(m);
+  add_slab(&b, 4, 30, density);
   LidarOptions options = pencil();
   options.pulse_length = 1;
   options.intensity = "signal";
   options.range_at_10_percent = 40;
-  const auto scan = scan_scene(b, options);
+  return scan_scene(b, options);
+}
+
+TEST(LidarInMedia, ThickFogAnswersAtTheRangeWhereItIsEntered) {
+  const auto scan = scan_fog(medium(0.4f, 0.4f, 0.9f));
   ASSERT_EQ(scan->size(), 1u);
   EXPECT_EQ(scan->part[0], 0u) << "it is no surface";
   EXPECT_GT(scan->range[0], 4);
@@ -147,28 +152,16 @@ TEST(LidarInMedia, ThickFogAnswersAtTheRangeWhereItIsEntered) {
 }
 
 TEST(LidarInMedia, DropsScatterBackAsMeasuredNotAsTheirPhaseFunctionSays) {
-  SceneBuilder b;
   MediumDescription fog = medium(0.4f, 0.4f, 1);
   fog.name = "fog";
   fog.g.fill(0.87f);
-  b.description.media.push_back(fog);
-  add_slab(&b, 4, 30, 1);
-  LidarOptions options = pencil();
-  options.pulse_length = 1;
-  options.intensity = "signal";
-  options.range_at_10_percent = 40;
-  const auto scan = scan_scene(b, options);
+  const auto scan = scan_fog(fog);
   ASSERT_EQ(scan->size(), 1u);
   EXPECT_NEAR(scan->intensity[0] / backscatter(0.4, 0.4 / 18.8, 4, 4, 5), 1, 0.01);
 }
 
 TEST(LidarInMedia, ThinFogGivesNoFalseReturnsWithoutNoise) {
-  SceneBuilder b;
-  b.description.media.push_back(medium(0.4f, 0.4f, 0.9f));
-  add_slab(&b, 4, 30, 1e-3f);
-  LidarOptions options = pencil();
-  options.range_at_10_percent = 40;
-  EXPECT_EQ(scan_scene(b, options)->size(), 0u);
+  EXPECT_EQ(scan_fog(medium(0.4f, 0.4f, 0.9f), 1e-3f)->size(), 0u);
 }
 
 TEST(LidarInMedia, FalseReturnsOfSpeckleComeAsOftenAsTheExponentialLawSays) {

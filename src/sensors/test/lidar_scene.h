@@ -8,6 +8,7 @@
 #include "base/check.h"
 #include "render/test/scene_builder.h"
 #include "sensors/lidar_sensor.h"
+#include "sensors/test/statistics.h"
 
 namespace gloam {
 
@@ -31,21 +32,6 @@ inline LidarOptions pencil(int rows = 1, int columns = 1) {
   options.field_of_view = {{0.01, 0.01}};
   options.returns = "all";
   return options;
-}
-
-/// Mean and standard deviation.
-struct Moments {
-  double mean = 0, deviation = 0;
-  size_t n = 0;
-};
-inline Moments moments(const std::vector<float>& values) {
-  Moments m;
-  m.n = values.size();
-  for (const float v : values) m.mean += v;
-  m.mean /= static_cast<double>(m.n);
-  for (const float v : values) m.deviation += (v - m.mean) * (v - m.mean);
-  m.deviation = std::sqrt(m.deviation / static_cast<double>(m.n - 1));
-  return m;
 }
 
 /// A wall of half the size `half` about p.

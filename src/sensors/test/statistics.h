@@ -16,13 +16,14 @@ struct Moments {
   double deviation_error() const { return variance_error / (2 * deviation()); }
 };
 
-inline Moments moments(const std::vector<double>& samples) {
+template <class T>
+Moments moments(const std::vector<T>& samples) {
   const auto n = static_cast<double>(samples.size());
   Moments out;
-  for (const double x : samples) out.mean += x / n;
+  for (const T x : samples) out.mean += double{x} / n;
   double fourth = 0;
-  for (const double x : samples) {
-    const double d2 = (x - out.mean) * (x - out.mean);
+  for (const T x : samples) {
+    const double d2 = (double{x} - out.mean) * (double{x} - out.mean);
     out.variance += d2 / (n - 1);
     fourth += d2 * d2 / n;
   }
@@ -37,8 +38,8 @@ inline void expect_within(double measured, double expected, double error, const 
   EXPECT_NEAR(measured, expected, 3 * error) << what;
 }
 
-inline void expect_moments(const std::vector<double>& samples, double mean, double variance,
-                           const char* what) {
+template <class T>
+void expect_moments(const std::vector<T>& samples, double mean, double variance, const char* what) {
   const Moments m = moments(samples);
   expect_within(m.mean, mean, m.mean_error, what);
   expect_within(m.variance, variance, m.variance_error, what);

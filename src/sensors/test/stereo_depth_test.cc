@@ -13,15 +13,7 @@ namespace {
 constexpr int kWidth = 500, kHeight = 240;
 constexpr size_t kPixels = size_t{kWidth} * kHeight;
 
-Intrinsics intrinsics() {
-  Intrinsics k;
-  k.width = kWidth;
-  k.height = kHeight;
-  k.fx = k.fy = 400;
-  k.cx = kWidth / 2.0;
-  k.cy = kHeight / 2.0;
-  return k;
-}
+Intrinsics intrinsics() { return {kWidth, kHeight, 400, 400, kWidth / 2.0, kHeight / 2.0}; }
 
 std::vector<float> wall(float depth) { return std::vector<float>(kPixels, depth); }
 
@@ -131,6 +123,29 @@ TEST(StereoDepth, WeakSignalsAreLostByChance) {
     expect_within(kept, p, std::sqrt(p * (1 - p) / kPixels), "kept");
   }
   for (const float z : measure(model, wall(1), wall(0))) EXPECT_EQ(z, 0) << "black";
+}
+
+// A wall that faces the ray of a pixel sends back its albedo over Z², whatever the lens.
+TEST(StereoDepth, TheProjectorsLightComesBackAlongTheLenssRays) {
+  RenderDescription description;
+  description.instances.resize(1);
+  description.materials.resize(1);
+  description.materials[0].roughness = 1;
+  const double a = 0.6, b = 0.4, factor = 1 - 0.25 * (a * a + b * b);  // of plumb_bob
+  CameraView view;
+  view.intrinsics = {.width = 1, .height = 1, .fx = 100, .fy = 100};
+  view.intrinsics.lens = LensModel::kPlumbBob;
+  view.intrinsics.distortion = {-0.25};
+  view.intrinsics.cx = 0.5 - 100 * a * factor;
+  view.intrinsics.cy = 0.5 - 100 * b * factor;
+  Film film;
+  film.width = film.height = 1;
+  film.part = {1};
+  film.depth = {2};
+  film.center_albedo = {{0.5f, 0.5f, 0.5f}};
+  film.center_normal = {
+      normalize(Vec3f{static_cast<float>(-a), static_cast<float>(b), 1})};  // back along the ray
+  EXPECT_NEAR(projector_signal(description, film, view)[0], 0.5 / 4, 1e-6);
 }
 
 TEST(StereoDepth, DrawsAreKeyedAndThreadsDoNotMatter) {

@@ -130,5 +130,36 @@ TEST(Thermal, MediaDimInTheirOwnBandAndGlow) {
               apparent_temperature(before * planck(350) + (1 - before) * planck(280)), 0.02);
 }
 
+// 60 degrees off the axis of a fisheye the way through a slab is twice as long.
+TEST(Thermal, MediaDimAlongTheLenssRays) {
+  RenderDescription description = two_things();
+  MediumDescription medium;
+  medium.mass_extinction.fill(2);
+  medium.albedo.fill(0);
+  description.media.push_back(medium);
+  VolumeDescription slab;
+  slab.X_WV.p = {0, 0, -1};
+  slab.size = {20, 20, 0.5f};
+  slab.even_density = 0.8f;
+  slab.even_temperature = 280;
+  description.volumes.push_back(slab);
+  CameraView fisheye = view();
+  fisheye.intrinsics.lens = LensModel::kEquidistant;
+  fisheye.intrinsics.fx = fisheye.intrinsics.fy = 100;
+  fisheye.intrinsics.cx = 0.5 - 100 * M_PI / 3;  // of the first pixel
+  fisheye.intrinsics.cy = 0.5;
+  const ThermalCamera camera = make({}, description, {{.temperature = 350, .emissivity = 1}});
+  const double kept = std::exp(-2 * 0.8 * 0.5 * 2);
+  EXPECT_NEAR(camera.see(film_of(1, 9), fisheye, 0)[0],
+              apparent_temperature(kept * planck(350) + (1 - kept) * planck(280)), 0.02);
+  // Parallel rays all cross it straight.
+  CameraView parallel = view();
+  parallel.intrinsics.orthographic = true;
+  parallel.intrinsics.fx = parallel.intrinsics.fy = 100;
+  const double straight = std::exp(-2 * 0.8 * 0.5);
+  EXPECT_NEAR(camera.see(film_of(1, 9), parallel, 0)[0],
+              apparent_temperature(straight * planck(350) + (1 - straight) * planck(280)), 0.02);
+}
+
 }  // namespace
 }  // namespace gloam

@@ -283,7 +283,7 @@ void FakeSimulation::draw(CameraFrame& frame) const {
   frame.rgb.resize(size_t{3} * static_cast<size_t>(k.width * k.height));
   for (int v = 0; v < k.height; ++v) {
     for (int u = 0; u < k.width; ++u) {
-      const Vec3 along = unit(point_at(frame.X_WC, k, u + 0.5, v + 0.5, 1) - frame.X_WC.p);
+      const Vec3 along = unit(*point_at(frame.X_WC, k, u + 0.5, v + 0.5, 1) - frame.X_WC.p);
       const Hit hit = cast(list, frame.X_WC.p, along);
       Vec3 color = {0.66, 0.74, 0.84};
       if (hit.body >= 0) {
@@ -307,7 +307,7 @@ Result<Pose> FakeSimulation::body_pose(Body body) {
 Result<PickResult> FakeSimulation::pick(const CameraFrame& frame, double u, double v) {
   const auto list = balls();
   const Hit hit = cast(list, frame.X_WC.p,
-                       unit(point_at(frame.X_WC, frame.intrinsics, u, v, 1) - frame.X_WC.p));
+                       unit(*point_at(frame.X_WC, frame.intrinsics, u, v, 1) - frame.X_WC.p));
   if (hit.body < 0) return Error{.message = "nothing is there"};
   const Vec3 origin = hit.body > 0 ? list[static_cast<size_t>(hit.body - 1)].center : Vec3{};
   const std::string name = hit.body > 0 ? list[static_cast<size_t>(hit.body - 1)].name : "world";

@@ -76,14 +76,28 @@ TEST(FreeCamera, StraightDownKeepsTheTopOfThePicture) {
 TEST(DragPlane, PixelAndDepthGiveThePointBack) {
   const Intrinsics k = {640, 480, 500, 510, 310, 245};
   const Pose pose = OrbitCamera({{1, 2, 3}, {0.9, 0.3, 0.1, std::sqrt(1 - 0.91)}}, 2).pose();
-  const Vec3 point = point_at(pose, k, 100, 400, 2.5);
+  const Vec3 point = *point_at(pose, k, 100, 400, 2.5);
   EXPECT_NEAR(depth_of(pose, point), 2.5, 1e-9);
   // Middle of the picture: straight ahead.
-  expect_near(point_at(pose, k, 310, 245, 2), pose.p + 2 * rotate(pose.q, {0, 0, -1}), 1e-9);
+  expect_near(*point_at(pose, k, 310, 245, 2), pose.p + 2 * rotate(pose.q, {0, 0, -1}), 1e-9);
   // v grows downwards.
-  EXPECT_LT(point_at(kAlongY, k, 310, 400, 2).z, 1);
+  EXPECT_LT(point_at(kAlongY, k, 310, 400, 2)->z, 1);
   const Intrinsics parallel = {640, 480, 100, 100, 320, 240, true};
-  expect_near(point_at(kAlongY, parallel, 420, 240, 2), {1, -3, 1}, 1e-9);
+  expect_near(*point_at(kAlongY, parallel, 420, 240, 2), {1, -3, 1}, 1e-9);
+}
+
+// What is dragged stays under the mouse, whatever the lens.
+TEST(DragPlane, OfAFisheyeIsASphereAboutTheCamera) {
+  Intrinsics k{.width = 400, .height = 400, .fx = 100, .fy = 100, .cx = 200, .cy = 200};
+  k.lens = LensModel::kEquidistant;
+  const double right_angle = 200 + 100 * std::numbers::pi / 2;
+  const Vec3 beside = *point_at(kAlongY, k, right_angle, 200, 2);
+  expect_near(beside, kAlongY.p + Vec3{2, 0, 0}, 1e-6);
+  EXPECT_NEAR(depth_of(kAlongY, k, beside), 2, 1e-6);
+  k.lens = LensModel::kPlumbBob;
+  k.distortion = {-0.1};  // a tangent of 0.5 shrinks by 2.5 %
+  expect_near(*point_at(kAlongY, k, 200 + 100 * 0.5 * 0.975, 200, 2), kAlongY.p + Vec3{1, 2, 0},
+              1e-6);
 }
 
 }  // namespace

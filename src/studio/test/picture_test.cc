@@ -60,6 +60,8 @@ TEST(Picture, HeaderHoldsWhatThePageProjectsWith) {
   frame.index = 77;
   frame.time = 3.85;
   frame.X_WC = {{1, 2, 3}, {0.5, -0.5, 0.5, -0.5}};
+  frame.intrinsics.lens = LensModel::kEquidistant;
+  frame.intrinsics.distortion = {0.25, 0, 0, 0, 0, 0, 0, -0.5};
   const auto packet = encode_picture(frame, 12, 2);
   ASSERT_TRUE(packet.ok());
   const auto at = [&]<class T>(size_t offset, T) {
@@ -84,6 +86,9 @@ TEST(Picture, HeaderHoldsWhatThePageProjectsWith) {
   EXPECT_EQ(at(76, double{}), 3.0);
   EXPECT_EQ(at(84, double{}), 0.5);
   EXPECT_EQ(at(108, double{}), -0.5);
+  EXPECT_EQ(at(116, uint32_t{}), 3u);
+  EXPECT_EQ(at(120, float{}), 0.25f);
+  EXPECT_EQ(at(148, float{}), -0.5f);
   int width = 0, height = 0;
   decode(std::string_view(*packet).substr(kPictureHeaderSize), width, height);
   EXPECT_EQ(width, 32);
