@@ -61,8 +61,7 @@ struct BoxRay {
 /// Of three, in one instruction on Hopper: distances above zero are ordered as their bits are. In
 /// between the order of what lies below zero does not matter.
 __device__ __forceinline__ float most_or_zero(float a, float b, float c) {
-  return __int_as_float(
-      __vimax3_s32_relu(__float_as_int(a), __float_as_int(b), __float_as_int(c)));
+  return __int_as_float(__vimax3_s32_relu(__float_as_int(a), __float_as_int(b), __float_as_int(c)));
 }
 __device__ __forceinline__ float least_of_three(float a, float b, float c) {
   return __int_as_float(__vimin3_s32(__float_as_int(a), __float_as_int(b), __float_as_int(c)));
@@ -114,7 +113,8 @@ struct Corners {
 template <bool kMoves>
 GLOAM_HD Corners corners_at(const BvhView& view, const BvhInstance& instance,
                             const BvhTriangle* triangle, float time) {
-  if (!kMoves || instance.key_step == 0 || !(time > 0)) return {triangle->a, triangle->b, triangle->c};
+  if (!kMoves || instance.key_step == 0 || !(time > 0))
+    return {triangle->a, triangle->b, triangle->c};
   float share;
   const BvhTriangle* from = triangle + instance.key_step * key_before(view.key_count, time, &share);
   const BvhTriangle* to = from + instance.key_step;

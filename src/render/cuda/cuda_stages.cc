@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstring>
 
+#include "base/parallel.h"
 #include "render/cuda/device_scene.h"
 
 namespace gloam {
@@ -169,7 +170,12 @@ class Card final : public CudaStages {
     each_channel(*film, &picture.film, [&](auto& channel, auto* pointer) {
       if (channel.empty()) return;
       const size_t at = static_cast<size_t>(reinterpret_cast<const char*>(*pointer) - base);
-      std::memcpy(channel.data(), host + at, channel.size() * sizeof(channel[0]));
+      char* const to = reinterpret_cast<char*>(channel.data());
+      parallel_for_range("copy from the card", channel.size() * sizeof(channel[0]), 1 << 20,
+                         [&](int64_t begin, int64_t end) {
+                           std::memcpy(to + begin, host + at + begin,
+                                       static_cast<size_t>(end - begin));
+                         });
     });
     unsigned long long rays = 0;
     std::memcpy(&rays, host + film_bytes_ - sizeof rays, sizeof rays);

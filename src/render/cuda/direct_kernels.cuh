@@ -18,40 +18,41 @@ __device__ __forceinline__ void store_channels(const DeviceFilm& film, size_t pi
   film.scene_flow[pixel] = c.scene_flow;
 }
 
-__global__ void __launch_bounds__(kBlock, GLOAM_CUDA_BLOCKS)
+__global__ void __launch_bounds__(kBlock, kBlocks)
     direct_kernel(const __grid_constant__ DevicePicture p) {
+  __shared__ PixelMean means[kBlock];  // in registers it would crowd out others
   const SceneView& scene = p.scene;
   const Place at = place_of(p.width, p.height, 1);
   uint32_t rays = 0;
   if (at.inside) {
     const size_t pixel = at.pixel(p.width);
-    PixelMean mean;
+    PixelMean& mean = means[threadIdx.x];
+    mean = {};
+    const bool describes = p.centered && p.film.part != nullptr;
     for (int i = 0; i < p.samples; ++i) {
       RayCone cone;
       Sampler sampler;
       const Ray ray = sample_ray(p, at, p.first_sample + i, p.centered, &cone, &sampler);
+      const bool seen = sees(ray);
       DirectState state;
       direct_start(&state, ray, cone, sampler);
       RayHit hit;
       bool found;
       do {
         found = p.tracer.trace(state.ray, state.any, &hit);
-      } while (direct_advance(scene, &state, found, hit));
-      mean.add(sees(ray) ? state.result : PathResult{});
+      } while (direct_advance(
+          scene, &state, found, hit, [&](const Ray& view, const Surface& s, const RayHit& first) {
+            if (!describes) return;
+            if (state.has_first && shows(scene, s)) {
+              store_channels(p.film, pixel, describe_surface(scene, p.camera, view, s, first));
+            } else {
+              p.film.part[pixel] = kUnknownPart;
+            }
+          }));
+      mean.add(seen ? state.result : PathResult{});
       rays += state.result.rays;
-      if (!p.centered || p.film.part == nullptr) continue;
-      const bool known = state.layers == 0 || (state.layers == 1 && state.has_first);
-      if (!known) {
-        p.film.part[pixel] = kUnknownPart;
-      } else if (!state.has_first) {
-        store_channels(p.film, pixel, describe_sky(p.camera, ray));
-      } else {
-        const Surface s = make_surface<float>(scene, ray, state.first, cone);
-        if (shows(scene, s)) {
-          store_channels(p.film, pixel, describe_surface(scene, p.camera, ray, s, state.first));
-        } else {
-          p.film.part[pixel] = kUnknownPart;
-        }
+      if (describes && state.layers == 0) {
+        store_channels(p.film, pixel, describe_sky(p.camera, state.ray));
       }
     }
     store_mean(p, pixel, mean);
@@ -59,7 +60,7 @@ __global__ void __launch_bounds__(kBlock, GLOAM_CUDA_BLOCKS)
   count_rays(p.film, rays);
 }
 
-__global__ void __launch_bounds__(kBlock, GLOAM_CUDA_BLOCKS)
+__global__ void __launch_bounds__(kBlock, kBlocks)
     channels_kernel(const __grid_constant__ DevicePicture p, bool unknown_alone) {
   const SceneView& scene = p.scene;
   const Place at = place_of(p.width, p.height, 1);

@@ -7,9 +7,15 @@
 namespace gloam::cuda {
 namespace {
 
+#ifdef GLOAM_PLAIN_KERNELS
+constexpr int kPathBlocks = kPlainPathBlocks;
+#else
+constexpr int kPathBlocks = kBlocks;
+#endif
+
 /// Each warp has a tile's pixels and a share of their samples; the warps of a tile meet in shared
 /// memory, in order.
-__global__ void __launch_bounds__(kBlock, GLOAM_CUDA_BLOCKS)
+__global__ void __launch_bounds__(kBlock, kPathBlocks)
     path_kernel(const __grid_constant__ DevicePicture p) {
   __shared__ PixelMean means[kBlock];
   const SceneView& scene = p.scene;
@@ -36,8 +42,7 @@ __global__ void __launch_bounds__(kBlock, GLOAM_CUDA_BLOCKS)
       }
       RayHit hit;
       bool shadowed;
-      const bool found =
-          p.tracer.trace_both(path.shadow(scene), path.ray(scene), &shadowed, &hit);
+      const bool found = p.tracer.trace_both(path.shadow(scene), path.ray(scene), &shadowed, &hit);
       running = path.advance(scene, p.path, shadowed, found, hit);
       if (running) continue;
       mean.add(path.result());

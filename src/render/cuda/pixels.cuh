@@ -1,17 +1,16 @@
 #pragma once
-// Pixels to threads, and what all kernels share. All shading and traversal is that of render/kernel.
+// Pixels to threads, and what all kernels share. All shading and traversal is that of
+// render/kernel.
 
 #include "render/cuda/kernels.h"
 #include "render/kernel/pixel_mean.h"
-
-#ifndef GLOAM_CUDA_BLOCKS
-#define GLOAM_CUDA_BLOCKS 4  // of 128 threads on a multiprocessor: 128 registers a thread
-#endif
 
 namespace gloam::cuda {
 namespace {  // each of the files that include this has kernels of its own
 
 constexpr int kBlock = 128, kWarp = 32, kWarps = kBlock / kWarp;
+/// Blocks on a multiprocessor: 128 registers a thread; of the short kernel of plain paths 64.
+constexpr int kBlocks = 4, kPlainPathBlocks = 8;
 constexpr int kTileWidth = 8, kTileHeight = 4;  ///< pixels of a warp
 
 /// Pixel of a thread when each tile of 8 x 4 has one warp, or `split` warps of a block.
@@ -20,13 +19,20 @@ struct Place {
   bool inside;
   __device__ size_t pixel(int width) const { return static_cast<size_t>(y) * width + x; }
 };
+/// The rows of tiles in the order in which they start: from the middle of the picture to its rims.
+/// What takes long is mostly in the middle, and must not start last, when the card runs empty.
+__device__ __forceinline__ int from_the_middle(int i, int count) {
+  return count / 2 + (i % 2 == 0 ? i / 2 : -(i + 1) / 2);
+}
+
 __device__ __forceinline__ Place place_of(int width, int height, int split) {
   const int warp = threadIdx.x / kWarp, lane = threadIdx.x % kWarp;
   const int columns = (width + kTileWidth - 1) / kTileWidth;
   const int tile = blockIdx.x * (kWarps / split) + warp / split;
   Place p;
   p.x = tile % columns * kTileWidth + lane % kTileWidth;
-  p.y = tile / columns * kTileHeight + lane / kTileWidth;
+  p.y = from_the_middle(tile / columns, (height + kTileHeight - 1) / kTileHeight) * kTileHeight +
+        lane / kTileWidth;
   p.group = warp % split;
   p.inside = p.x < width && p.y < height;
   return p;

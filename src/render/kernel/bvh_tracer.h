@@ -47,9 +47,8 @@ struct BvhTracer {
     const uint32_t row = tmax > 0 ? scan(scanned, ray, true, false, &tmax) : 0;
     const BvhShadow before{shadow.o, shadow.d, *shadowed ? 0.0f : shadow.tmax};
     BvhHit found;
-    const bool in_tree =
-        traverse<!kPlainScenes>(bvh, BvhSolids{scanned.instances}, ray.o, ray.d, ray.time, tmax,
-                                false, &found, &before, shadowed);
+    const bool in_tree = traverse<!kPlainScenes>(bvh, BvhSolids{scanned.instances}, ray.o, ray.d,
+                                                 ray.time, tmax, false, &found, &before, shadowed);
     return nearest(ray, in_tree, found, row, tmax, hit);
   }
   GLOAM_HD bool closest(const Ray& ray, bool active, bool, RayHit* hit) const {
@@ -74,7 +73,8 @@ struct BvhTracer {
   GLOAM_HD Vec3f normal_of(const BvhHit& hit, float time) const {
     const BvhInstance& in = bvh.instances[hit.instance];
     if (in.root == bvh::kNothing) return {};
-    const bvh::Corners at = bvh::corners_at<!kPlainScenes>(bvh, in, bvh.triangles + hit.triangle, time);
+    const bvh::Corners at =
+        bvh::corners_at<!kPlainScenes>(bvh, in, bvh.triangles + hit.triangle, time);
     const Vec3f n = cross(at.b - at.a, at.c - at.a);
     const InstanceView& instance = scanned.instances[in.id];
     if (instance.shape == ShapeType::kDeformable) return n;

@@ -112,8 +112,7 @@ class PathMachine {
   bool goes_on_ = true;     ///< the path itself
 };
 
-/// As trace_path. A Tracer has
-///   bool trace_both(const Ray& shadow, const Ray&, bool* shadowed, RayHit*) const.
+/// As trace_path.
 template <class Tracer>
 GLOAM_HD PathResult run_path(const SceneView& scene, const Tracer& tracer, const Ray& ray,
                              RayCone cone, const PathOptions& options, const Sampler& sampler) {
@@ -123,7 +122,9 @@ GLOAM_HD PathResult run_path(const SceneView& scene, const Tracer& tracer, const
   RayHit hit;
   bool shadowed, found;
   do {
-    found = tracer.trace_both(path.shadow(scene), path.ray(scene), &shadowed, &hit);
+    const Ray before = path.shadow(scene), next = path.ray(scene);
+    shadowed = before.tmax > 0 && tracer.occluded(before, true);
+    found = next.tmax > 0 && tracer.closest(next, true, false, &hit);
   } while (path.advance(scene, options, shadowed, found, hit));
   return path.result();
 }

@@ -221,8 +221,8 @@ struct GlassTable {
 };
 
 /// Kernels on a card may be made for scenes without anything special alone, in which nothing moves
-/// while the shutter is open: what they leave out is then known when they are compiled, and they are
-/// several times shorter.
+/// while the shutter is open: what they leave out is then known when they are compiled, and they
+/// are several times shorter.
 #if defined(__CUDA_ARCH__) && defined(GLOAM_PLAIN_KERNELS)
 inline constexpr bool kPlainScenes = true;
 #else
