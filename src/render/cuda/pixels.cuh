@@ -19,22 +19,22 @@ struct Place {
   bool inside;
   __device__ size_t pixel(int width) const { return static_cast<size_t>(y) * width + x; }
 };
+
 /// The rows of tiles in the order in which they start: from the middle of the picture to its rims.
 /// What takes long is mostly in the middle, and must not start last, when the card runs empty.
 __device__ __forceinline__ int from_the_middle(int i, int count) {
   return count / 2 + (i % 2 == 0 ? i / 2 : -(i + 1) / 2);
 }
-
 __device__ __forceinline__ Place place_of(int width, int height, int split) {
   const int warp = threadIdx.x / kWarp, lane = threadIdx.x % kWarp;
   const int columns = (width + kTileWidth - 1) / kTileWidth;
+  const int rows = (height + kTileHeight - 1) / kTileHeight;
   const int tile = blockIdx.x * (kWarps / split) + warp / split;
   Place p;
   p.x = tile % columns * kTileWidth + lane % kTileWidth;
-  p.y = from_the_middle(tile / columns, (height + kTileHeight - 1) / kTileHeight) * kTileHeight +
-        lane / kTileWidth;
+  p.y = from_the_middle(tile / columns, rows) * kTileHeight + lane / kTileWidth;
   p.group = warp % split;
-  p.inside = p.x < width && p.y < height;
+  p.inside = tile < columns * rows && p.x < width && p.y < height;
   return p;
 }
 inline unsigned blocks_for(const DevicePicture& p, int split) {
