@@ -22,7 +22,7 @@ __global__ void __launch_bounds__(kBlock, kBlocks)
     direct_kernel(const __grid_constant__ DevicePicture p) {
   __shared__ PixelMean means[kBlock];  // in registers it would crowd out others
   const SceneView& scene = p.scene;
-  const Place at = place_of(p.width, p.height, 1);
+  const Place at = place_of(p.width, p.height, 1, true);
   uint32_t rays = 0;
   if (at.inside) {
     const size_t pixel = at.pixel(p.width);
@@ -63,7 +63,7 @@ __global__ void __launch_bounds__(kBlock, kBlocks)
 __global__ void __launch_bounds__(kBlock, kBlocks)
     channels_kernel(const __grid_constant__ DevicePicture p, bool unknown_alone) {
   const SceneView& scene = p.scene;
-  const Place at = place_of(p.width, p.height, 1);
+  const Place at = place_of(p.width, p.height, 1, true);
   uint32_t rays = 0;
   const size_t pixel = at.pixel(p.width);
   if (at.inside && (!unknown_alone || p.film.part[pixel] == kUnknownPart)) {

@@ -19,7 +19,7 @@ __global__ void __launch_bounds__(kBlock, kPathBlocks)
     path_kernel(const __grid_constant__ DevicePicture p) {
   __shared__ PixelMean means[kBlock];
   const SceneView& scene = p.scene;
-  const Place at = place_of(p.width, p.height, p.split);
+  const Place at = place_of(p.width, p.height, p.split, false);
   PixelMean& mean = means[threadIdx.x];
   mean = {};
   uint32_t rays = 0;

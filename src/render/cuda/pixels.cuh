@@ -20,19 +20,20 @@ struct Place {
   __device__ size_t pixel(int width) const { return static_cast<size_t>(y) * width + x; }
 };
 
-/// The rows of tiles in the order in which they start: from the middle of the picture to its rims.
-/// What takes long is mostly in the middle, and must not start last, when the card runs empty.
+/// The rows of tiles from the middle of the picture to its rims. What takes long is mostly in the
+/// middle; where the whole picture takes little longer, it must not start last.
 __device__ __forceinline__ int from_the_middle(int i, int count) {
   return count / 2 + (i % 2 == 0 ? i / 2 : -(i + 1) / 2);
 }
-__device__ __forceinline__ Place place_of(int width, int height, int split) {
+__device__ __forceinline__ Place place_of(int width, int height, int split, bool middle_first) {
   const int warp = threadIdx.x / kWarp, lane = threadIdx.x % kWarp;
   const int columns = (width + kTileWidth - 1) / kTileWidth;
   const int rows = (height + kTileHeight - 1) / kTileHeight;
   const int tile = blockIdx.x * (kWarps / split) + warp / split;
   Place p;
   p.x = tile % columns * kTileWidth + lane % kTileWidth;
-  p.y = from_the_middle(tile / columns, rows) * kTileHeight + lane / kTileWidth;
+  const int row = tile / columns;
+  p.y = (middle_first ? from_the_middle(row, rows) : row) * kTileHeight + lane / kTileWidth;
   p.group = warp % split;
   p.inside = tile < columns * rows && p.x < width && p.y < height;
   return p;
