@@ -267,7 +267,7 @@ struct SceneView {
   GLOAM_HD bool has_sky_texture() const { return !kPlainScenes && sky_texture >= 0; }
   GLOAM_HD bool lets_light_through() const { return !kPlainScenes && has_transparent; }
   GLOAM_HD bool has_many_lights() const { return !kPlainScenes && lights.size > kMaxWeighedLights; }
-  GLOAM_HD bool guides_directions() const { return !kPlainScenes && guide.share > 0; }
+  GLOAM_HD bool guides_directions() const { return guide.share > 0; }
   /// On the host alone: it reads the lights.
   bool is_plain() const {
     bool lamps = lights.size <= kMaxWeighedLights;
