@@ -27,19 +27,21 @@ function(gloam_cuda_sources target)
     get_filename_component(name ${file} NAME_WE)
     set(source ${CMAKE_CURRENT_SOURCE_DIR}/${file})
     set(object ${CMAKE_CURRENT_BINARY_DIR}/${name}.cu.o)
-    # The plain kernels are small: what they leave out must fold away in all that they call.
-    set(inlining inline)
+    set(flags -DGLOAM_INLINE=inline)
     set(code compute_${GLOAM_CUDA_ARCH})
-    if(name STREQUAL "plain")
-      set(inlining __forceinline__)
+    if(name MATCHES "^plain")  # these kernels are small: what they leave out must fold away in all that they call
+      set(flags -DGLOAM_INLINE=__forceinline__)
     endif()
-    if(name STREQUAL "plain" OR NOT GLOAM_CUDA_PTX)
+    if(name MATCHES "^plain" OR NOT GLOAM_CUDA_PTX)
       set(code sm_${GLOAM_CUDA_ARCH},${code})
+    endif()
+    if(name MATCHES "path$")  # light is judged by its mean; what must be exact is in other files
+      list(APPEND flags -use_fast_math)
     endif()
     add_custom_command(OUTPUT ${object}
       COMMAND ${GLOAM_NVCC} -std=c++20 -O3 --expt-relaxed-constexpr -ccbin ${CMAKE_CXX_COMPILER} -Xcompiler -fPIC
         -gencode arch=compute_${GLOAM_CUDA_ARCH},code=[${code}]
-        -DGLOAM_INLINE=${inlining} -I${CMAKE_SOURCE_DIR}/src -I${CMAKE_SOURCE_DIR}/include
+        ${flags} -I${CMAKE_SOURCE_DIR}/src -I${CMAKE_SOURCE_DIR}/include
         -MD -MF ${object}.d -c ${source} -o ${object}
       MAIN_DEPENDENCY ${source} DEPFILE ${object}.d COMMENT "Compiling ${file} for the card" VERBATIM)
     target_sources(${target} PRIVATE ${object})

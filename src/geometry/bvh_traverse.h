@@ -31,6 +31,14 @@ GLOAM_HD float most(float a, float b) {
   return a > b ? a : b;
 #endif
 }
+/// Within rounding: a card has an instruction for that, and ten for the last bit.
+GLOAM_HD float about_one_by(float x) {
+#ifdef __CUDA_ARCH__
+  return __fdividef(1.0f, x);
+#else
+  return 1.0f / x;
+#endif
+}
 GLOAM_HD float away_from_zero(float x) { return fabsf(x) < 1e-18f ? copysignf(1e-18f, x) : x; }
 
 /// A ray as boxes are tested with it.
@@ -39,15 +47,29 @@ struct BoxRay {
   Vec3f slack;            ///< rounding of distances
 
   GLOAM_HD static BoxRay make(Vec3f o, Vec3f d) {
-    constexpr float kRounding = 4e-7f;
+    constexpr float kRounding = 6e-7f;
     BoxRay r;
-    r.inverse = {1.0f / away_from_zero(d.x), 1.0f / away_from_zero(d.y),
-                 1.0f / away_from_zero(d.z)};
+    r.inverse = {about_one_by(away_from_zero(d.x)), about_one_by(away_from_zero(d.y)),
+                 about_one_by(away_from_zero(d.z))};
     r.scaled = o * r.inverse;
     r.slack = Vec3f{fabsf(r.scaled.x), fabsf(r.scaled.y), fabsf(r.scaled.z)} * kRounding;
     return r;
   }
 };
+
+#ifdef __CUDA_ARCH__
+/// Of three, in one instruction on Hopper: distances above zero are ordered as their bits are. In
+/// between the order of what lies below zero does not matter.
+__device__ __forceinline__ float most_or_zero(float a, float b, float c) {
+  return __int_as_float(__vimax3_s32_relu(__float_as_int(a), __float_as_int(b), __float_as_int(c)));
+}
+__device__ __forceinline__ float least_of_three(float a, float b, float c) {
+  return __int_as_float(__vimin3_s32(__float_as_int(a), __float_as_int(b), __float_as_int(c)));
+}
+#else
+inline float most_or_zero(float a, float b, float c) { return most(most(a, b), most(c, 0.0f)); }
+inline float least_of_three(float a, float b, float c) { return least(least(a, b), c); }
+#endif
 
 /// Whether the ray meets the box up to tmax, and where it enters.
 GLOAM_HD bool meets_box(Vec3f center, Vec3f half, const BoxRay& ray, float tmax, float* enter) {
@@ -57,8 +79,8 @@ GLOAM_HD bool meets_box(Vec3f center, Vec3f half, const BoxRay& ray, float tmax,
   const float hx = half.x * fabsf(ray.inverse.x) + ray.slack.x,
               hy = half.y * fabsf(ray.inverse.y) + ray.slack.y,
               hz = half.z * fabsf(ray.inverse.z) + ray.slack.z;
-  *enter = most(most(cx - hx, cy - hy), most(cz - hz, 0.0f));
-  const float leave = least(least(cx + hx, cy + hy), least(cz + hz, tmax));
+  *enter = most_or_zero(cx - hx, cy - hy, cz - hz);
+  const float leave = least(least_of_three(cx + hx, cy + hy, cz + hz), tmax);
   return *enter <= leave;
 }
 
@@ -88,9 +110,11 @@ struct Corners {
 };
 
 /// Of a triangle of the instance, in its frame.
+template <bool kMoves>
 GLOAM_HD Corners corners_at(const BvhView& view, const BvhInstance& instance,
                             const BvhTriangle* triangle, float time) {
-  if (instance.key_step == 0 || !(time > 0)) return {triangle->a, triangle->b, triangle->c};
+  if (!kMoves || instance.key_step == 0 || !(time > 0))
+    return {triangle->a, triangle->b, triangle->c};
   float share;
   const BvhTriangle* from = triangle + instance.key_step * key_before(view.key_count, time, &share);
   const BvhTriangle* to = from + instance.key_step;
@@ -101,9 +125,10 @@ struct LocalRay {
   Vec3f o, d;
 };
 
+template <bool kMoves>
 GLOAM_HD LocalRay into_instance(const BvhView& view, const BvhInstance& instance, Vec3f o, Vec3f d,
                                 float time) {
-  if (instance.motion >= 0 && time > 0) {
+  if (kMoves && instance.motion >= 0 && time > 0) {
     float share;
     const Affine3f* key = view.motion + instance.motion + key_before(view.key_count, time, &share);
     const Affine3f X_GW = inverse(lerp(key[0], key[1], share));
@@ -116,24 +141,36 @@ GLOAM_HD LocalRay into_instance(const BvhView& view, const BvhInstance& instance
 
 }  // namespace bvh
 
-/// The closest hit up to tmax, or with `any` just whether there is one. `solids` answers for
-/// instances without triangles:
+/// A shadow ray before another ray.
+struct BvhShadow {
+  Vec3f o, d;
+  float tmax = 0;  ///< 0 = there is none
+};
+
+/// The closest hit up to tmax, or with `any` just whether there is one. `shadow`, if there may be
+/// one, goes before: *shadowed tells whether it hits anything; where tmax is 0 it goes alone. On a
+/// card both rays in one loop keep lanes at work that are done with one of them early.
+/// `solids` answers for instances without triangles:
 ///   float meet(const BvhInstance&, Vec3f o_G, Vec3f d_G, float time, float tmax) const
-/// is the distance in (0, tmax], or a value <= 0.
-template <class Solids>
+/// is the distance in (0, tmax], or a value <= 0. kMoves: something may move in time.
+template <bool kMoves, class Solids>
 GLOAM_HD bool traverse(const BvhView& view, const Solids& solids, Vec3f o, Vec3f d, float time,
-                       float tmax, bool any, BvhHit* hit) {
+                       float tmax, bool any, BvhHit* hit, const BvhShadow* shadow = nullptr,
+                       bool* shadowed = nullptr) {
   using namespace bvh;
   constexpr int kStack = kMeshDepth + kTopDepth + 2;
   BvhRef stack[kStack];
   int top = 0;
   stack[top++] = kNothing;  // the end
+  bool in_shadow = shadow != nullptr && shadow->tmax > 0;
+  if (!in_shadow && !(tmax > 0)) return false;
+  Vec3f from = in_shadow ? shadow->o : o, along = in_shadow ? shadow->d : d;
+  float best = in_shadow ? shadow->tmax : tmax;
   BvhRef ref = view.root;
-  LocalRay local{o, d};
-  BoxRay box = BoxRay::make(o, d);
+  LocalRay local{from, along};
+  BoxRay box = BoxRay::make(from, along);
   bool in_mesh = false;
   uint32_t instance = 0;
-  float best = tmax;
   bool found = false;
   while (true) {
     while ((ref & kKind) == 0) {
@@ -151,16 +188,20 @@ GLOAM_HD bool traverse(const BvhView& view, const Solids& solids, Vec3f o, Vec3f
         ref = stack[--top];
       }
     }
+    bool enough = false;
     if ((ref & kKind) == kTriangles) {
       const BvhInstance& in = view.instances[instance];
       const uint32_t begin = first_triangle(ref), end = begin + triangle_count(ref);
       for (uint32_t i = begin; i < end; ++i) {
         const BvhTriangle* triangle = view.triangles + i;
-        const Corners at = corners_at(view, in, triangle, time);
+        const Corners at = corners_at<kMoves>(view, in, triangle, time);
         float u, v;
         const float t = meet_triangle(at.a, at.b, at.c, local.o, local.d, best, &u, &v);
         if (!(t > 0)) continue;
-        if (any) return true;
+        if (any || in_shadow) {
+          enough = true;
+          break;
+        }
         const uint32_t primitive = triangle->primitive;
         if (found && t == best &&
             (hit->id < in.id || (hit->id == in.id && hit->primitive < primitive))) {
@@ -174,12 +215,13 @@ GLOAM_HD bool traverse(const BvhView& view, const Solids& solids, Vec3f o, Vec3f
     } else if ((ref & kKind) == kInstance) {
       const uint32_t next = ref & ~kKind;
       const BvhInstance& in = view.instances[next];
-      const LocalRay inside = into_instance(view, in, o, d, time);
+      const LocalRay inside = into_instance<kMoves>(view, in, from, along, time);
       if (in.root == kNothing) {
         const float t = solids.meet(in, inside.o, inside.d, time, best);
         if (t > 0) {
-          if (any) return true;
-          if (!(found && t == best && hit->id < in.id)) {
+          if (any || in_shadow) {
+            enough = true;
+          } else if (!(found && t == best && hit->id < in.id)) {
             *hit = {t, 0, 0, next, 0, in.id, 0};
             best = t;
             found = true;
@@ -195,14 +237,27 @@ GLOAM_HD bool traverse(const BvhView& view, const Solids& solids, Vec3f o, Vec3f
         ref = in.root;
       }
     }
-    if (ref == kNothing) {
-      if (!in_mesh) break;
+    if (enough && !in_shadow) return true;
+    if (ref != kNothing && !enough) continue;
+    if (in_mesh && !enough) {
       in_mesh = false;  // what was put off before it lies in the world again
-      local = {o, d};
-      box = BoxRay::make(o, d);
+      local = {from, along};
+      box = BoxRay::make(from, along);
       ref = stack[--top];
-      if (ref == kNothing) break;
+      if (ref != kNothing) continue;
     }
+    if (!in_shadow) break;
+    *shadowed = enough;
+    if (!(tmax > 0)) break;
+    in_shadow = false;
+    in_mesh = false;
+    from = o;
+    along = d;
+    best = tmax;
+    local = {o, d};
+    box = BoxRay::make(o, d);
+    top = 1;
+    ref = view.root;
   }
   return found;
 }

@@ -75,7 +75,8 @@ void Tile::render_direct() {
     sample(
         wave.get(), index, direct_start,
         [this](DirectState* state, bool found, const RayHit& hit) {
-          return direct_advance(job_.scene, state, found, hit);
+          return direct_advance(job_.scene, state, found, hit,
+                                [](const Ray&, const Surface&, const RayHit&) {});
         },
         [this](int i, const DirectState& state) {
           known_[i] =

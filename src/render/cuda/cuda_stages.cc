@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstring>
 
+#include "base/parallel.h"
 #include "render/cuda/device_scene.h"
 
 namespace gloam {
@@ -68,6 +69,7 @@ class Card final : public CudaStages {
   RenderStats render(const CudaJob& job, Film* film) override {
     const RenderSettings& settings = job.settings;
     DevicePicture picture = make_picture(job, film->width, film->height);
+    const bool plain = job.view.is_plain() && job.camera.is_plain() && !job.has_motion;
     place_film(*film, &picture.film);
     start_.record(stream_);
     scene_.upload(job.view, job.camera, job.bvh, job.bvh.tracer(job.scene), stream_, &picture);
@@ -84,9 +86,9 @@ class Card final : public CudaStages {
       picture.split = picture.samples >= 4 ? 4 : (picture.samples >= 2 ? 2 : 1);
       picture.last = done + picture.samples == settings.spp;
       if (settings.tier == RenderTier::kPath) {
-        cuda::launch_path(picture, stream_);
+        (plain ? cuda::launch_plain_path : cuda::launch_full_path)(picture, stream_);
       } else {
-        cuda::launch_direct(picture, stream_);
+        (plain ? cuda::launch_plain_direct : cuda::launch_full_direct)(picture, stream_);
       }
       check(cudaGetLastError(), "a kernel does not start");
       if (!settings.progress || picture.last) continue;
@@ -101,7 +103,8 @@ class Card final : public CudaStages {
     if (settings.exact_channels) {
       const bool centered = job.centered && settings.spp == 1;
       if (!centered || job.view.has_transparent) {
-        cuda::launch_channels(picture, centered, stream_);
+        (plain ? cuda::launch_plain_channels : cuda::launch_full_channels)(picture, centered,
+                                                                           stream_);
         check(cudaGetLastError(), "a kernel does not start");
       }
     }
@@ -124,7 +127,6 @@ class Card final : public CudaStages {
     picture.log2_samples = job.log2_samples;
     picture.has_motion = job.has_motion;
     picture.centered = job.centered;
-    picture.plain = job.view.is_plain() && job.camera.is_plain();
     return picture;
   }
 
@@ -168,7 +170,12 @@ class Card final : public CudaStages {
     each_channel(*film, &picture.film, [&](auto& channel, auto* pointer) {
       if (channel.empty()) return;
       const size_t at = static_cast<size_t>(reinterpret_cast<const char*>(*pointer) - base);
-      std::memcpy(channel.data(), host + at, channel.size() * sizeof(channel[0]));
+      char* const to = reinterpret_cast<char*>(channel.data());
+      parallel_for_range("copy from the card", channel.size() * sizeof(channel[0]), 1 << 20,
+                         [&](int64_t begin, int64_t end) {
+                           std::memcpy(to + begin, host + at + begin,
+                                       static_cast<size_t>(end - begin));
+                         });
     });
     unsigned long long rays = 0;
     std::memcpy(&rays, host + film_bytes_ - sizeof rays, sizeof rays);

@@ -41,7 +41,6 @@ struct DevicePicture {
   bool last = true;                   ///< launch: the film is finished
   bool has_motion = false;            ///< something moves while the shutter is open
   bool centered = false;  ///< direct stage: its sample answers for the exact channels too
-  bool plain = false;     ///< as SceneView::is_plain() and CameraView32::is_plain() say
 };
 
 /// What the direct stage leaves in `part` where the exact channels need rays of their own.
@@ -51,11 +50,16 @@ namespace cuda {
 
 using Stream = CUstream_st*;
 
-void launch_path(const DevicePicture& picture, Stream stream);
-void launch_direct(const DevicePicture& picture, Stream stream);
+// Of plain pictures, and of any. Those of paths round as the card likes it best; what must be exact
+// rounds as on the CPU.
+void launch_plain_path(const DevicePicture& picture, Stream stream);
+void launch_full_path(const DevicePicture& picture, Stream stream);
+void launch_plain_direct(const DevicePicture& picture, Stream stream);
+void launch_full_direct(const DevicePicture& picture, Stream stream);
 /// Of all pixels, or those of kUnknownPart alone.
-void launch_channels(const DevicePicture& picture, bool unknown_alone, Stream stream);
-/// (1 << kLog2AmbientPaths) paths.
+void launch_plain_channels(const DevicePicture& picture, bool unknown_alone, Stream stream);
+void launch_full_channels(const DevicePicture& picture, bool unknown_alone, Stream stream);
+/// (1 << kLog2AmbientPaths) paths of any picture.
 void launch_ambient(const DevicePicture& picture, AmbientPath* paths, Stream stream);
 
 }  // namespace cuda

@@ -1,12 +1,9 @@
-// The kernels of scenes without anything special.
+// Of scenes without anything special: the direct stage and the exact channels.
 #define GLOAM_PLAIN_KERNELS
-#include "render/cuda/kernels.cuh"
+#include "render/cuda/direct_kernels.cuh"
 
 namespace gloam::cuda {
 
-void launch_plain_path(const DevicePicture& p, Stream stream) {
-  path_kernel<<<blocks_for(p, p.split), kBlock, 0, stream>>>(p);
-}
 void launch_plain_direct(const DevicePicture& p, Stream stream) {
   direct_kernel<<<blocks_for(p, 1), kBlock, 0, stream>>>(p);
 }

@@ -35,13 +35,21 @@ struct BvhTracer {
     const uint32_t row = scan(scanned, ray, true, any, &tmax);
     if (any && row != 0) return true;
     BvhHit found;
-    if (traverse(bvh, BvhSolids{scanned.instances}, ray.o, ray.d, ray.time, tmax, any, &found)) {
-      if (!any)
-        *hit = {found.t, found.id, found.primitive, found.u, found.v, normal_of(found, ray.time)};
-      return true;
-    }
-    if (row != 0) *hit = {.t = tmax, .instance = row - 1};
-    return row != 0;
+    const bool in_tree = traverse<!kPlainScenes>(bvh, BvhSolids{scanned.instances}, ray.o, ray.d,
+                                                 ray.time, tmax, any, &found);
+    return any ? in_tree : nearest(ray, in_tree, found, row, tmax, hit);
+  }
+  /// The closest hit of the ray, and whether the shadow ray before it hits anything; a ray with
+  /// tmax 0 is none.
+  GLOAM_HD bool trace_both(const Ray& shadow, const Ray& ray, bool* shadowed, RayHit* hit) const {
+    float lit = shadow.tmax, tmax = ray.tmax;
+    *shadowed = lit > 0 && scan(scanned, shadow, true, true, &lit) != 0;
+    const uint32_t row = tmax > 0 ? scan(scanned, ray, true, false, &tmax) : 0;
+    const BvhShadow before{shadow.o, shadow.d, *shadowed ? 0.0f : shadow.tmax};
+    BvhHit found;
+    const bool in_tree = traverse<!kPlainScenes>(bvh, BvhSolids{scanned.instances}, ray.o, ray.d,
+                                                 ray.time, tmax, false, &found, &before, shadowed);
+    return nearest(ray, in_tree, found, row, tmax, hit);
   }
   GLOAM_HD bool closest(const Ray& ray, bool active, bool, RayHit* hit) const {
     return active && trace(ray, false, hit);
@@ -52,10 +60,21 @@ struct BvhTracer {
   }
 
  private:
+  /// What the tree has found, or else the row of the scan.
+  GLOAM_HD bool nearest(const Ray& ray, bool in_tree, const BvhHit& found, uint32_t row, float tmax,
+                        RayHit* hit) const {
+    if (in_tree) {
+      *hit = {found.t, found.id, found.primitive, found.u, found.v, normal_of(found, ray.time)};
+    } else if (row != 0) {
+      *hit = {.t = tmax, .instance = row - 1};
+    }
+    return in_tree || row != 0;
+  }
   GLOAM_HD Vec3f normal_of(const BvhHit& hit, float time) const {
     const BvhInstance& in = bvh.instances[hit.instance];
     if (in.root == bvh::kNothing) return {};
-    const bvh::Corners at = bvh::corners_at(bvh, in, bvh.triangles + hit.triangle, time);
+    const bvh::Corners at =
+        bvh::corners_at<!kPlainScenes>(bvh, in, bvh.triangles + hit.triangle, time);
     const Vec3f n = cross(at.b - at.a, at.c - at.a);
     const InstanceView& instance = scanned.instances[in.id];
     if (instance.shape == ShapeType::kDeformable) return n;

@@ -62,7 +62,7 @@ GLOAM_HD Affine3f pose_of(const float* q, Vec3f p) {
 /// Between two keys, which are close: positions evenly, rotations by the mean of their quaternions
 /// made unit, so that the camera stays rigid.
 GLOAM_HD Affine3f camera_pose_at(const CameraPose& pose, float time) {
-  if (pose.keys.empty() || time == 0) return pose.X_WC_open;
+  if (kPlainScenes || pose.keys.empty() || time == 0) return pose.X_WC_open;
   float share;
   const uint32_t key = key_before(pose.keys.size, time, &share);
   const CameraKey &a = pose.keys[key], &b = pose.keys[key + 1];

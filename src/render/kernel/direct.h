@@ -66,7 +66,7 @@ GLOAM_HD void meet_surface(const SceneView& scene, DirectState* d, const RayHit&
     d->result.albedo = d->s.base_color;
     d->result.normal = d->s.normal;
   }
-  d->passing = passing_light_of(scene, d->s, d->ray.d);
+  if (!kPlainScenes) d->passing = passing_light_of(scene, d->s, d->ray.d);
   ++d->layers;
   float a, b;
   layer_albedo(*scene.albedo, d->s.roughness, d->wo.z, &a, &b);
@@ -108,9 +108,10 @@ GLOAM_HD bool next_shadow(const SceneView& scene, DirectState* d) {
 }  // namespace directs
 
 /// Takes the hit of state->ray; false when state->result is final. Transparent surfaces are
-/// composited front to back.
-GLOAM_HD bool direct_advance(const SceneView& scene, DirectState* d, bool found,
-                             const RayHit& hit) {
+/// composited front to back. Of the first of them, met(ray, surface, hit) is told.
+template <class Met>
+GLOAM_HD bool direct_advance(const SceneView& scene, DirectState* d, bool found, const RayHit& hit,
+                             const Met& met) {
   ++d->result.rays;
   if (d->is_shadow) {
     if (found && scene.lets_light_through() && d->passed < kMaxPassed) {
@@ -131,11 +132,14 @@ GLOAM_HD bool direct_advance(const SceneView& scene, DirectState* d, bool found,
       d->result.radiance += sky_radiance(scene, d->ray.d, d->cone.spread) * d->transmittance;
       return false;
     }
+    const Ray ray = d->ray;
     directs::meet_surface(scene, d, hit);
+    if (d->layers == 1) met(ray, d->s, hit);
   }
   d->is_shadow = directs::next_shadow(scene, d);
   d->any = d->is_shadow && !scene.lets_light_through();
   if (d->is_shadow) return true;
+  if (kPlainScenes) return false;
   d->transmittance *= d->passing;
   if (max_component(d->transmittance) < 0.004f || d->layers >= kMaxPassed) return false;
   d->ray.o = leave_surface(d->s.p, d->s.geometric, d->view_d, d->s.t);

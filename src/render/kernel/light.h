@@ -53,7 +53,7 @@ GLOAM_HD F lamp_share(const SceneView& scene, const LightView& light, Vec3Of<F> 
       set_lane(&share, i, x * x * (3.0f - 2.0f * x));
     });
   }
-  if (light.profile >= 0) {
+  if (!kPlainScenes && light.profile >= 0) {
     const ProfileView& profile = scene.profiles[static_cast<uint32_t>(light.profile)];
     const Frame R_WL{light.x, cross(light.x, light.direction), -light.direction};
     each_lane(share > 0.0f, [&](int i) {
@@ -285,7 +285,7 @@ GLOAM_HD LightSampleOf<F> sample_one_light(const SceneView& scene, uint32_t inde
                                            F pick, Vec2Of<F> u, F time, MaskOf<F> active = true) {
   const LightView& light = scene.lights[index];
   LightSampleOf<F> s;
-  if (light.first_key >= 0) {
+  if (!kPlainScenes && light.first_key >= 0) {
     each_lane(active, [&](int i) {
       const LightView now = light_at(scene, light, lane(time, i));
       set_lane(&s, i,
@@ -295,7 +295,7 @@ GLOAM_HD LightSampleOf<F> sample_one_light(const SceneView& scene, uint32_t inde
     });
   } else if (light.kind == LightKind::kDirectional) {
     s = lights::sample_sun(light, u);
-  } else if (light.kind != LightKind::kInstance) {
+  } else if (kPlainScenes || light.kind != LightKind::kInstance) {
     s = lights::sample_lamp(scene, light, p, u);
   } else {
     const InstanceView& instance = scene.instances[light.instance];

@@ -16,7 +16,7 @@ template <class F>
 GLOAM_HD F light_weight(const SceneView& scene, const LightView& light, Vec3Of<F> p, Vec3Of<F> n,
                         MaskOf<F> both_sides = false) {
   const MaskOf<F> floats = !(length_squared(n) > 0.0f);
-  const bool turns = light.first_key >= 0;
+  const bool turns = !kPlainScenes && light.first_key >= 0;
   if (light.kind == LightKind::kDirectional) {
     if (turns) return light.strength;
     F cosine = -dot(in_all_lanes<F>(light.direction), n);
@@ -45,6 +45,12 @@ struct GuideRowsOf {
   MaskOf<F> guided = false;
 };
 
+/// Room for the probabilities of lights, one each.
+template <class F>
+struct LightSharesOf {
+  F of[kMaxWeighedLights];
+};
+
 /// How lights are taken at one surface: in proportion to light_weight where there are few, by a
 /// tree where there are many.
 template <class F>
@@ -52,6 +58,14 @@ class LightPickerOf {
  public:
   using Mask = MaskOf<F>;
   using Uint = UintOf<F>;
+
+  /// On a card the probabilities lie apart: what is indexed at run time lies in memory, and would
+  /// draw all of a path's state there with it. To be called there before all else.
+#ifdef __CUDACC__
+  GLOAM_HD void keep_in(LightSharesOf<F>* room) { share_ = room->of; }
+#else
+  void keep_in(LightSharesOf<F>*) {}
+#endif
 
   /// For the surfaces at p with the geometric normals n, or points in a medium (n = 0), in the
   /// `active` lanes; the others keep what they were prepared for. `both_sides`: those that let
@@ -90,14 +104,14 @@ class LightPickerOf {
     for (uint32_t i = 0; weighs && i < count_; ++i) {
       share_[i] = select(active, weight[i] * inverse, share_[i]);
     }
-    sky_share_ = select(active, sky * inverse, sky_share_);
+    if (scene.has_environment()) sky_share_ = select(active, sky * inverse, sky_share_);
     return rows;
   }
 
   /// Density with which sample() makes the direction d for its sky, in the `active` lanes.
   GLOAM_HD F sky_pdf(const SceneView& scene, Vec3Of<F> d, Mask active) const {
     F pdf = 0.0f;
-    each_lane(active & (sky_share_ > 0.0f), [&](int i) {
+    each_lane(active & (sky_share_ > 0.0f) & scene.has_environment(), [&](int i) {
       set_lane(&pdf, i, lane(sky_share_, i) * environment_pdf(scene.environment, lane(d, i)));
     });
     return pdf;
@@ -117,11 +131,12 @@ class LightPickerOf {
                                    Mask active = true) const {
     LightSampleOf<F> out;
     Mask open = active;
-    if (const Mask sky = active & (pick < sky_share_); any(sky)) {
+    if (scene.has_environment()) {
+      const Mask sky = active & (pick < sky_share_);
       each_lane(sky, [&](int i) { set_lane(&out, i, sample_sky(scene, lane(u, i), i)); });
       open = active & !sky;
+      pick -= sky_share_;
     }
-    pick -= sky_share_;
     if (scene.has_many_lights()) {
       const F lights_share = 1.0f - sky_share_;
       pick = clamp(pick / lights_share, 0.0f, 0.9999999f);
@@ -145,6 +160,12 @@ class LightPickerOf {
     }
     open = open & (taken > 0.0f);
     pick = clamp((pick - before) / taken, 0.0f, 0.9999999f);
+    if constexpr (Lanes<F>::kCount == 1) {
+      if (!open) return out;
+      out = sample_one_light(scene, index, p, pick, u, time);
+      out.pdf *= taken;
+      return out;
+    }
     for (uint32_t i = 0; i < count_; ++i) {
       const Mask mine = open & (index == i);
       if (!any(mine)) continue;
@@ -187,7 +208,11 @@ class LightPickerOf {
   }
 
   uint32_t count_ = 0;
+#ifdef __CUDACC__
+  F* share_ = nullptr;
+#else
   F share_[kMaxWeighedLights];
+#endif
   Vec3Of<F> p_, n_;  ///< of the surface where there are many lights; n_ = 0: takes from all sides
   F sky_share_{};    ///< of the environment map
 };
@@ -234,7 +259,7 @@ GLOAM_HD Vec3Of<F> visible_light(const SceneView& scene, uint32_t i, const RayOf
   const LightView& light = scene.lights[i];
   if (light.is_delta || !light.casts_shadow || light.kind == LightKind::kInstance) return {};
   const bool flickers = scene.has_flicker() && light.levels >= 0;
-  if (light.first_key < 0 && !flickers) {
+  if (kPlainScenes || (light.first_key < 0 && !flickers)) {
     return still_light(scene, light, ray, tmax, from, pdf_bsdf, active, probability, passing);
   }
   Vec3Of<F> sum;

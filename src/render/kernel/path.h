@@ -39,7 +39,7 @@ GLOAM_HD NextEventOf<F> aim_at_light(const SceneView& scene, State<F>* path, con
   const MaskOf<F> both_sides = bsdf.layered & ((bsdf.p_glass > 0.0f) | (bsdf.p_beyond > 0.0f));
 
   at->rows = path->picker.prepare(scene, v.p, v.geometric, active, both_sides);
-  at->guided = guided_share(scene.guide, bsdf, at->rows.guided);
+  if (scene.guides_directions()) at->guided = guided_share(scene.guide, bsdf, at->rows.guided);
   const Vec2Of<F> choice = path->sampler.next_2d(active);  // of the light, of the lobe
   at->lobe = choice.y;
   const Vec2Of<F> u_light = path->sampler.next_2d(active);
@@ -52,7 +52,7 @@ GLOAM_HD NextEventOf<F> aim_at_light(const SceneView& scene, State<F>* path, con
   F pdf;
   const Vec3Of<F> wi = at->frame.to_local(light.wi);
   const Vec3Of<F> f = eval_bsdf(bsdf, at->wo, wi, &pdf);
-  if (any(at->guided > 0.0f)) {
+  if (scene.guides_directions() && any(at->guided > 0.0f)) {
     pdf = lerp(pdf, directions::pdf(scene.guide, at->rows.row, light.wi), at->guided);
   }
   event.lit = event.lit & (max_component(f) > 0.0f) & (wi.z * side > 0.0f);
@@ -79,7 +79,7 @@ GLOAM_HD MaskOf<F> turn(const SceneView& scene, const PathOptions& options, Stat
   if (!any(next)) return next;
   BsdfSampleOf<F> sample;
   Vec3Of<F> wi;
-  if (any(at.guided > 0.0f)) {
+  if (scene.guides_directions() && any(at.guided > 0.0f)) {
     const MaskOf<F> by_guide = at.lobe < at.guided;
     const Vec3Of<F> arriving = directions::sample(scene.guide, at.rows.row, u);
     const F pick = clamp((at.lobe - at.guided) / (1.0f - at.guided), 0.0f, 0.99999994f);
@@ -221,6 +221,8 @@ GLOAM_HD PathResultOf<F> trace_path(const SceneView& scene, const Tracer& tracer
                                     MaskOf<F> active = true) {
   using Mask = MaskOf<F>;
   paths::State<F> path;
+  LightSharesOf<F> shares;
+  path.picker.keep_in(&shares);
   path.ray = ray;
   path.cone_width = cone_width;
   path.cone_spread = cone_spread;

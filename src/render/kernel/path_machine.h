@@ -8,7 +8,7 @@
 namespace gloam {
 namespace paths {
 
-/// A shadow ray on its way through surfaces that let light through.
+/// A shadow ray, maybe on its way through surfaces that let light through.
 struct ShadowWalk {
   Ray ray;
   Vec3f arriving;
@@ -17,10 +17,6 @@ struct ShadowWalk {
 
 /// Takes the surface that the shadow ray has hit; true where the ray goes on behind it.
 GLOAM_HD bool pass_surface(const SceneView& scene, const RayHit& hit, ShadowWalk* walk) {
-  if (!scene.lets_light_through()) {
-    walk->arriving = {};
-    return false;
-  }
   const Surface s = make_surface<float>(scene, walk->ray, hit, {});
   walk->arriving *= walk->passed < kMaxPassed ? passing_light(s) : Vec3f{};
   walk->ray.o = leave_surface(s.p, s.geometric, walk->ray.d, hit.t);
@@ -31,12 +27,15 @@ GLOAM_HD bool pass_surface(const SceneView& scene, const RayHit& hit, ShadowWalk
 
 }  // namespace paths
 
-/// One path, advanced by one ray at a time: trace ray(), with any_hit() whatever comes first, and
-/// give the answer to advance() until it returns false.
+/// One path, advanced from vertex to vertex: trace shadow(), then ray(), neither where its tmax is
+/// 0, and give the answers to advance() until it returns false.
 class PathMachine {
  public:
-  GLOAM_HD void start(const Ray& ray, RayCone cone, const Sampler& sampler) {
+  /// `shares` is the path's as long as it runs.
+  GLOAM_HD void start(const Ray& ray, RayCone cone, const Sampler& sampler,
+                      LightSharesOf<float>* shares) {
     path_ = {};
+    path_.picker.keep_in(shares);
     path_.ray = ray;
     path_.cone_width = cone.width;
     path_.cone_spread = cone.spread;
@@ -46,34 +45,43 @@ class PathMachine {
     goes_on_ = true;
   }
 
-  GLOAM_HD Ray ray() const { return in_shadow_ ? shadow_.ray : path_.ray; }
-  GLOAM_HD bool any_hit(const SceneView& scene) const {
-    return in_shadow_ && !scene.lets_light_through();
+  /// Any hit ends it.
+  GLOAM_HD Ray shadow(const SceneView& scene) const {
+    Ray ray = shadow_.ray;
+    if (!in_shadow_ || scene.lets_light_through()) ray.tmax = 0;
+    return ray;
+  }
+  GLOAM_HD Ray ray(const SceneView& scene) const {
+    if (in_shadow_ && scene.lets_light_through()) return shadow_.ray;
+    Ray ray = path_.ray;
+    if (!goes_on_) ray.tmax = 0;
+    return ray;
   }
   GLOAM_HD const PathResult& result() const { return path_.result; }
 
-  GLOAM_HD bool advance(const SceneView& scene, const PathOptions& options, bool found,
-                        const RayHit& hit) {
-    ++path_.result.rays;
-    bool arrives = false;  // what the shadow ray brings
+  GLOAM_HD bool advance(const SceneView& scene, const PathOptions& options, bool shadowed,
+                        bool found, const RayHit& hit) {
     if (in_shadow_) {
-      in_shadow_ = found && paths::pass_surface(scene, hit, &shadow_);
-      arrives = !in_shadow_;
-    } else {
-      const paths::ArrivalOf<float> at = paths::arrive(scene, options, &path_, true, found, hit);
-      goes_on_ = at.through;
-      if (at.scatters) arrives = scatter(scene, options, at);
+      ++path_.result.rays;
+      if (scene.lets_light_through()) {
+        in_shadow_ = found && paths::pass_surface(scene, hit, &shadow_);
+        if (!in_shadow_) bring_light(scene);
+        return in_shadow_ || goes_on_;
+      }
+      in_shadow_ = false;
+      if (!shadowed) bring_light(scene);
     }
-    if (arrives && max_component(shadow_.arriving) > 0) {
-      path_.result.radiance +=
-          shadow_.arriving * paths::through_media(scene, shadow_.ray, true, &path_.sampler);
-    }
+    if (!goes_on_) return false;
+    ++path_.result.rays;
+    const paths::ArrivalOf<float> at = paths::arrive(scene, options, &path_, true, found, hit);
+    goes_on_ = at.through;
+    if (at.scatters) scatter(scene, options, at);
     return in_shadow_ || goes_on_;
   }
 
  private:
-  /// Aims the shadow ray and turns the path. True where light arrives without a shadow ray.
-  GLOAM_HD bool scatter(const SceneView& scene, const PathOptions& options,
+  /// Aims the shadow ray and turns the path.
+  GLOAM_HD void scatter(const SceneView& scene, const PathOptions& options,
                         const paths::ArrivalOf<float>& at) {
     paths::NextEventOf<float> event;
     if (at.mote.scattered) {
@@ -85,29 +93,39 @@ class PathMachine {
       event = paths::aim_at_light(scene, &path_, at.v, true, &how);
       goes_on_ = paths::turn(scene, options, &path_, at.v, how, true);
     }
-    if (!event.lit) return false;
+    if (!event.lit) return;
     shadow_ = {event.shadow, event.arriving, 0};
     in_shadow_ = event.casts_shadow;
-    return !in_shadow_;
+    if (!in_shadow_) bring_light(scene);
+  }
+
+  /// The light that is left of the shadow ray's.
+  GLOAM_HD void bring_light(const SceneView& scene) {
+    if (!(max_component(shadow_.arriving) > 0)) return;
+    path_.result.radiance +=
+        shadow_.arriving * paths::through_media(scene, shadow_.ray, true, &path_.sampler);
   }
 
   paths::State<float> path_;
   paths::ShadowWalk shadow_;
-  bool in_shadow_ = false;
-  bool goes_on_ = true;  ///< the path itself, after its shadow ray
+  bool in_shadow_ = false;  ///< a shadow ray is to be traced
+  bool goes_on_ = true;     ///< the path itself
 };
 
-/// As trace_path. A Tracer has  bool trace(const Ray&, bool any, RayHit*) const.
+/// As trace_path.
 template <class Tracer>
 GLOAM_HD PathResult run_path(const SceneView& scene, const Tracer& tracer, const Ray& ray,
                              RayCone cone, const PathOptions& options, const Sampler& sampler) {
+  LightSharesOf<float> shares;
   PathMachine path;
-  path.start(ray, cone, sampler);
+  path.start(ray, cone, sampler, &shares);
   RayHit hit;
-  bool found;
+  bool shadowed, found;
   do {
-    found = tracer.trace(path.ray(), path.any_hit(scene), &hit);
-  } while (path.advance(scene, options, found, hit));
+    const Ray before = path.shadow(scene), next = path.ray(scene);
+    shadowed = before.tmax > 0 && tracer.occluded(before, true);
+    found = next.tmax > 0 && tracer.closest(next, true, false, &hit);
+  } while (path.advance(scene, options, shadowed, found, hit));
   return path.result();
 }
 

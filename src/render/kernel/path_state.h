@@ -81,6 +81,7 @@ GLOAM_HD Vec3Of<F> absorption_beyond(const SceneView& scene, const SurfaceOf<F>&
 template <class F>
 GLOAM_HD void weigh_emission(const SceneView& scene, const State<F>& path, MaskOf<F> found,
                              SurfaceOf<F>* s) {
+  if (kPlainScenes) return;  // without emitters that are sampled
   const MaskOf<F> sampled = found & (max_component(s->emission) > 0.0f) & (path.pdf_bsdf > 0.0f);
   each_lane(sampled, [&](int i) {
     const InstanceView& instance = scene.instances[lane(s->instance, i)];

@@ -49,7 +49,7 @@ GLOAM_HD Vec3Of<F> inverse_of(Vec3Of<F> d) {
 template <class F>
 GLOAM_HD MaskOf<F> hit_plane(const InstanceView& plane, const RayOf<F>& ray, F tmax, F* t) {
   AffineOf<F> X_WG = pose_in_all_lanes<F>(plane.X_WG);
-  if (plane.moving) {
+  if (!kPlainScenes && plane.moving) {
     each_lane(MaskOf<F>(true), [&](int i) {
       Affine3f between;
       set_lane(&X_WG, i, pose_at(plane, lane(ray.time, i), &between));

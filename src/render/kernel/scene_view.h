@@ -222,8 +222,9 @@ struct GlassTable {
   GLOAM_HD static float eta_at(float axis) { return (2.0f + axis) / (2.0f - axis); }
 };
 
-/// Kernels on a card may be made for scenes without anything special alone: what they leave out is
-/// then known when they are compiled, and they are several times shorter.
+/// Kernels on a card may be made for scenes without anything special alone, in which nothing moves
+/// while the shutter is open: what they leave out is then known when they are compiled, and they
+/// are several times shorter.
 #if defined(__CUDA_ARCH__) && defined(GLOAM_PLAIN_KERNELS)
 inline constexpr bool kPlainScenes = true;
 #else
@@ -273,10 +274,17 @@ struct SceneView {
   GLOAM_HD bool has_sky_texture() const { return !kPlainScenes && sky_texture >= 0; }
   GLOAM_HD bool lets_light_through() const { return !kPlainScenes && has_transparent; }
   GLOAM_HD bool has_many_lights() const { return !kPlainScenes && lights.size > kMaxWeighedLights; }
-  GLOAM_HD bool is_plain() const {
-    return textures.empty() && layers.empty() && media.volumes.empty() &&
-           environment.levels.empty() && sky_texture < 0 && !has_transparent &&
-           light_levels.empty() && lights.size <= kMaxWeighedLights;
+  GLOAM_HD bool guides_directions() const { return guide.share > 0; }
+  /// On the host alone: it reads the lights.
+  bool is_plain() const {
+    bool lamps = lights.size <= kMaxWeighedLights;
+    for (uint32_t i = 0; lamps && i < lights.size; ++i) {
+      const LightView& light = lights[i];
+      lamps = light.kind != LightKind::kInstance && light.profile < 0;
+    }
+    return lamps && textures.empty() && layers.empty() && media.volumes.empty() &&
+           environment.levels.empty() && sky_texture < 0 && light_levels.empty() &&
+           !has_transparent;
   }
 };
 
@@ -291,7 +299,7 @@ GLOAM_HD float level_at(const SceneView& scene, int row, float time) {
 /// Pose of an instance at a time in the shutter (linear between the keys, as Embree does);
 /// `between` is room for it.
 GLOAM_HD const Affine3f& pose_at(const InstanceView& instance, float time, Affine3f* between) {
-  if (!instance.moving || time == 0) return instance.X_WG;
+  if (kPlainScenes || !instance.moving || time == 0) return instance.X_WG;
   float share;
   const uint32_t key = key_before(instance.keys.size, time, &share);
   *between = lerp(instance.keys[key], instance.keys[key + 1], share);
@@ -303,7 +311,7 @@ GLOAM_HD Affine3f pose_at(const InstanceView& instance, float time) {
 }
 
 GLOAM_HD Vec3f mesh_vertex(const MeshView& mesh, uint32_t i, float time) {
-  if (mesh.position_keys.empty() || time == 0) return mesh.positions[i];
+  if (kPlainScenes || mesh.position_keys.empty() || time == 0) return mesh.positions[i];
   float share;
   const uint32_t row = key_before(mesh.key_count, time, &share) * mesh.positions.size + i;
   return lerp(mesh.position_keys[row], mesh.position_keys[row + mesh.positions.size], share);

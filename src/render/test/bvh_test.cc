@@ -98,6 +98,32 @@ Ray random_ray(uint32_t i) {
   return ray;
 }
 
+TEST(Bvh, AShadowRayAndARayTogetherHitWhatTheyHitAlone) {
+  const BothTrees both(20);
+  int blocked = 0, hits = 0;
+  for (uint32_t i = 0; i < 100'000; ++i) {
+    Ray shadow = random_ray(2 * i), ray = random_ray(2 * i + 1);
+    ray.time = shadow.time;  // of one path
+    if (i % 3 == 1) shadow.tmax = 0;
+    if (i % 3 == 2) ray.tmax = 0;
+    RayHit none, alone, together;
+    const bool blocks = shadow.tmax > 0 && both.ours.trace(shadow, true, &none);
+    const bool found = ray.tmax > 0 && both.ours.trace(ray, false, &alone);
+    bool shadowed;
+    ASSERT_EQ(both.ours.trace_both(shadow, ray, &shadowed, &together), found) << i;
+    ASSERT_EQ(shadowed, blocks) << i;
+    blocked += blocks;
+    hits += found;
+    if (!found) continue;
+    ASSERT_EQ(alone.t, together.t) << i;
+    ASSERT_EQ(alone.instance, together.instance) << i;
+    ASSERT_EQ(alone.primitive, together.primitive) << i;
+    ASSERT_EQ(alone.normal, together.normal) << i;
+  }
+  EXPECT_GT(blocked, 20'000);
+  EXPECT_GT(hits, 20'000);
+}
+
 TEST(Bvh, AMillionRaysHitWhatTheyHitInEmbree) {
   const BothTrees both(120);  // 57,600 triangles a ball
   constexpr int kRays = 1'000'000;

@@ -26,7 +26,10 @@ SceneBuilder stage(bool rich) {
   b.add(ShapeType::kBox, {0.1f, 4, 2}, translation({2, 0, 2}), metal);
   b.add(ShapeType::kMesh, {}, translation({0, 0, 0.8f}), glass, 0, b.add_mesh(make_ball(12, 0.1f)));
   b.add(ShapeType::kSphere, {0.5f, 0, 0}, translation({0, 1.4f, 0.5f}), sheer);
-  b.add(ShapeType::kBox, {0.4f, 0.4f, 0.01f}, translation({0, 0, 3}), b.add_emitter({50, 40, 30}));
+  if (rich) {
+    b.add(ShapeType::kBox, {0.4f, 0.4f, 0.01f}, translation({0, 0, 3}),
+          b.add_emitter({50, 40, 30}));
+  }
   LightDescription lamp;
   lamp.intensity = {30, 30, 30};
   lamp.radius = 0.1f;

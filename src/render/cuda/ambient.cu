@@ -1,0 +1,38 @@
+// Of any scene: the paths that measure its ambient light.
+#include "render/cuda/kernels.h"
+
+namespace gloam::cuda {
+namespace {
+
+constexpr int kWarp = 32;
+
+/// Few paths, but with several places that trace: one function for all.
+struct CalledTracer {
+  const BvhTracer& tracer;
+
+  __device__ __noinline__ bool trace(const Ray& ray, bool any, RayHit* hit) const {
+    return tracer.trace(ray, any, hit);
+  }
+  __device__ bool closest(const Ray& ray, bool active, bool, RayHit* hit) const {
+    return active && trace(ray, false, hit);
+  }
+  __device__ bool occluded(const Ray& ray, bool active) const {
+    RayHit hit;
+    return active && trace(ray, true, &hit);
+  }
+};
+
+__global__ void __launch_bounds__(kWarp)
+    ambient_kernel(const __grid_constant__ DevicePicture p, AmbientPath* paths) {
+  const uint32_t i = blockIdx.x * kWarp + threadIdx.x;
+  paths[i] = ambient_path(p.scene, CalledTracer{p.tracer}, p.camera, p.width, p.height,
+                          p.path.max_depth, i);
+}
+
+}  // namespace
+
+void launch_ambient(const DevicePicture& p, AmbientPath* paths, Stream stream) {
+  ambient_kernel<<<(1u << kLog2AmbientPaths) / kWarp, kWarp, 0, stream>>>(p, paths);
+}
+
+}  // namespace gloam::cuda

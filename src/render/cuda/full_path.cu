@@ -1,0 +1,10 @@
+// Of any scene: the path stage.
+#include "render/cuda/path_kernel.cuh"
+
+namespace gloam::cuda {
+
+void launch_full_path(const DevicePicture& p, Stream stream) {
+  path_kernel<<<blocks_for(p, p.split), kBlock, 0, stream>>>(p);
+}
+
+}  // namespace gloam::cuda
