@@ -56,6 +56,7 @@ class ChannelLanes {
     }
     if (any(open)) found = job_.tracer.closest(ray, open, true, hit);
     each_lane(open, [&](int) { ++rays_; });
+    if (centers == nullptr) return found;
     each_lane(inside_ & !open, [&](int i) {
       set_lane(&found, i, centers->found[first_ + i]);
       set_lane(hit, i, centers->hits[first_ + i]);

@@ -2,8 +2,6 @@
 // Pixels two by two, where lanes are blocks of pixels four wide: i ^ 1 is beside lane i, i ^ 4
 // above or below it. Device-safe; one float is alone.
 
-#include <utility>
-
 #include "render/kernel/lanes.h"
 
 namespace gloam {
@@ -13,14 +11,17 @@ GLOAM_HD float flip(float x) {
   return x;
 }
 #ifndef __CUDACC__
-template <int kFlip, int... kLane>
-FloatLanes flip_lanes(FloatLanes x, std::integer_sequence<int, kLane...>) {
-  return __builtin_shufflevector(x.v, x.v, (kLane ^ kFlip)...);
-}
 /// Lane i ^ kFlip in lane i.
 template <int kFlip>
 FloatLanes flip(FloatLanes x) {
-  return flip_lanes<kFlip>(x, std::make_integer_sequence<int, kLaneCount>{});
+#ifdef __AVX512F__
+  return __builtin_shufflevector(x.v, x.v, 0 ^ kFlip, 1 ^ kFlip, 2 ^ kFlip, 3 ^ kFlip, 4 ^ kFlip,
+                                 5 ^ kFlip, 6 ^ kFlip, 7 ^ kFlip, 8 ^ kFlip, 9 ^ kFlip, 10 ^ kFlip,
+                                 11 ^ kFlip, 12 ^ kFlip, 13 ^ kFlip, 14 ^ kFlip, 15 ^ kFlip);
+#else
+  return __builtin_shufflevector(x.v, x.v, 0 ^ kFlip, 1 ^ kFlip, 2 ^ kFlip, 3 ^ kFlip, 4 ^ kFlip,
+                                 5 ^ kFlip, 6 ^ kFlip, 7 ^ kFlip);
+#endif
 }
 #endif
 template <int kFlip, class F>
