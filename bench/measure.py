@@ -182,7 +182,7 @@ def truth(quick):
     wall, cpu = (statistics.median(a[k] / b[k] for a, b in pairs) for k in (0, 1))
     their, own = (statistics.median(pair[k][0] for pair in pairs) for k in (0, 1))
     yield at_least("depth + segmentation: MuJoCo classic's two passes (EGL) / ours", wall, 2.0,
-                   f"{their:.1f} ms against {own:.1f} ms; in CPU time {cpu:.1f}")
+                   f"wall, medians of turns: {their:.1f} ms against {own:.1f} ms; in CPU time {cpu:.1f}")
 
 
 def seconds_until_ready(cache, *command):
@@ -279,7 +279,9 @@ def fast_tier(quick):
     """a picture of 640 x 480 of a furnished room with a moving robot of 418,000 triangles against a bare Embree loop that traces its primary
     and one shadow ray; how far five moving scenes are from the path tier"""
     data = run_json(BIN / "bench_path_rate", "--fast", "--meshes", "--json", "--runs", 7 if quick else 25)
-    yield at_most("fast tier 640 x 480: CPU time / bare primary and shadow loop", data["cpu_over_bare"], 2.75, f"{data['cpu_ms']:.0f} ms CPU, {data['wall_ms']:.0f} ms wall")
+    yield at_most("fast tier 640 x 480: CPU time / bare primary and shadow loop", data["cpu_over_bare"], 2.75,
+                  f"medians of turns in one process, all threads: {data['cpu_ms']:.0f} ms CPU, {data['wall_ms']:.0f} ms wall; the bare loop "
+                  f"{data['cpu_ms'] / data['cpu_over_bare']:.0f} ms CPU")
     result = subprocess.run([peer_python(), ROOT / "bench" / "fast_error.py", *(["--quick"] if quick else [])], capture_output=True, text=True)
     lines = result.stdout.splitlines()
     if not lines or not lines[-1].startswith("worst"):
@@ -290,31 +292,36 @@ def fast_tier(quick):
     yield at_most("fast tier: 95th percentile of LDR-FLIP, worst scene", p95, 0.25, "of the same pictures")
 
 
-def lidar_scene():
-    """Go1, a floor, four walls and 20 boxes; a LiDAR of 64 x 1024 beams 1.2 m from the robot."""
+def lidar_scene(name, model):
+    """Go1, a floor, four walls and 20 boxes; a LiDAR of 64 x 1024 beams 1.2 m from the robot, which it faces."""
     folder = CACHE / "bench_lidar"
     shutil.copytree(robot("go1").parent, folder, dirs_exist_ok=True)
     boxes = "".join(f'<geom type="box" size=".1 .1 .1" pos="{-1.5 + 0.75 * (i % 5):g} {-2.25 + 1.5 * (i // 5):g} 0.1"/>' for i in range(20))
     walls = "".join(f'<geom type="box" size="{size}" pos="{x} {y} 1.4"/>' for size, x, y in
                     (("3.1 .05 1.4", 0, 2.6), ("3.1 .05 1.4", 0, -2.6), (".05 2.6 1.4", 3.1, 0), (".05 2.6 1.4", -3.1, 0)))
     (folder / "room.xml").write_text(f'<mujoco><worldbody><geom type="plane" size="5 5 .1"/>{walls}{boxes}</worldbody></mujoco>')
-    scene = folder / "scene.toml"
+    scene = folder / f"{name}.toml"
     scene.write_text(f'[environment]\nfile = "room.xml"\n[[robot]]\nname = "go1"\nfile = "go1.xml"\nposition = [0, 0, 0.05]\n'
-                     '[[lidar]]\nname = "lidar"\npreset = "OS1-64"\ncolumns = 1024\nposition = [0.72, 0.96, 0.3]\norientation = [0.4472136, 0, 0, -0.8944272]\n'
+                     f'[[lidar]]\nname = "lidar"\n{model}\nposition = [0.72, 0.96, 0.3]\norientation = [0.4472136, 0, 0, -0.8944272]\n'
                      'min_range = 0.05\nrange_at_10_percent = 0\n')
     return scene
 
 
 def lidar(quick):
-    """a scan of 64 x 1024 beams 1.2 m from a moving robot against mj_multiRay with the same rays, one thread each"""
-    data = run_json(BIN / "bench_lidar_rate", lidar_scene(), "--json", "--runs", 5 if quick else 21)
-    if data["same"] < 0.97:
-        raise RuntimeError(f"only {data['same']:.1%} of the ranges agree with mj_multiRay")
-    yield at_least("LiDAR 64 x 1024 near Go1: mj_multiRay's CPU time / ours", data["ratio"], 4.0,
-                   f"{data['ours_ms']:.1f} ms with motion and intensity against {data['multiray_ms']:.1f} ms; two threads "
-                   f"{data['two_threads_ms']:.1f} ms; {data['same']:.1%} of the ranges agree, {data['on_robot']:.0%} hit the robot")
+    """scans of 64 x 1024 beams 1.2 m from a moving robot against mj_multiRay with the same rays, one thread each"""
+    looks = {"all around (OS1-64)": lidar_scene("around", 'preset = "OS1-64"\ncolumns = 1024'),
+             "60 x 40 degrees towards it": lidar_scene("ahead", 'pattern = "raster"\nrows = 64\ncolumns = 1024\nrate = 10\nfield_of_view = [60, 40]')}
+    ratios, notes = [], []
+    for look, scene in looks.items():
+        data = run_json(BIN / "bench_lidar_rate", scene, "--json", "--runs", 5 if quick else 21)
+        if data["same"] < 0.97:
+            raise RuntimeError(f"{look}: only {data['same']:.1%} of the ranges agree with mj_multiRay")
+        ratios.append(data["ratio"])
+        notes.append(f"{look}: {data['ratio']:.1f}, {data['ours_ms']:.1f} ms with motion and intensity against {data['multiray_ms']:.1f} ms, two threads "
+                     f"{data['two_threads_ms']:.1f} ms wall, {data['same']:.1%} of the ranges agree, {data['on_robot']:.0%} hit the robot")
+    yield at_least("LiDAR 64 x 1024 near Go1: mj_multiRay's CPU time / ours", min(ratios), 4.0, "; ".join(notes))
 
 
 # With the seconds that each takes on two cores: the first estimate of the time left.
 ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, fast_tier: 400, truth: 40, load_time: 120, import_time: 60,
-       first_picture: 15, adaptive_sampling: 120, lidar: 15}
+       first_picture: 15, adaptive_sampling: 120, lidar: 25}

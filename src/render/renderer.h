@@ -50,13 +50,13 @@ struct RenderSettings {
   int max_depth = 5;     ///< path vertices after the camera (Mitsuba's max_depth)
   int roulette_depth = 100;  ///< vertices before Russian roulette starts (Mitsuba's rr_depth)
   uint64_t seed = 1;
-  uint32_t frame = 0;  ///< draws are keyed (seed, frame, pixel, sample)
-  /// depth, distance, part, center_normal, center_albedo, motion, scene_flow
-  bool exact_channels = true;
-  bool cover = false;  ///< Film::cover, by the label's instance of what is drawn
+  uint32_t frame = 0;          ///< draws are keyed (seed, frame, pixel, sample)
+  bool exact_channels = true;  ///< depth, distance, part
+  bool exact_details = true;   ///< with them center_normal, center_albedo, motion, scene_flow
+  bool cover = false;          ///< Film::cover, by the label's instance of what is drawn
   bool variance = false;
   /// For a denoiser, of pictures with fewer samples than this: albedo and normal of so many rays at
-  /// edges, of the pixel's centre elsewhere. 0 = always those of the samples. Needs exact_channels.
+  /// edges, of the pixel's centre elsewhere. 0 = always those of the samples. Needs exact_details.
   int guide_samples = 0;
   ViewHistory* history = nullptr;  ///< fast tier: of this camera; null = a picture by itself
   /// Path tier: sampling goes on until the standard error of a pixel's mean is this share of its

@@ -183,6 +183,7 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
   }
   settings.cover = channels.boxes;
   settings.exact_channels = channels.geometry() || sensor->denoiser_ != nullptr;
+  settings.exact_details = channels.details() || sensor->denoiser_ != nullptr;
   return sensor;
 }
 
@@ -190,8 +191,8 @@ PictureMemory CameraSensor::memory() const {
   const auto pixels =
       static_cast<uint64_t>(intrinsics_.width) * static_cast<uint64_t>(intrinsics_.height);
   // Planes of render/film/film.h and render/cpu/fast_frame.h; two of the latter and the filter's.
-  uint64_t pixel = 36;
-  if (settings_.exact_channels) pixel += 56;
+  uint64_t pixel = channels_.light() ? 36 : 0;
+  if (settings_.exact_channels) pixel += settings_.exact_details ? 56 : 12;
   if (settings_.error > 0) pixel += 4;
   if (settings_.tier == RenderTier::kFast) pixel += 400;
   PictureMemory out;

@@ -32,6 +32,8 @@ struct CameraChannels {
     return depth || distance || segmentation || normal || albedo || motion || scene_flow ||
            sensor_depth || thermal;
   }
+  /// More than where things are and which.
+  bool details() const { return normal || albedo || motion || scene_flow || sensor_depth; }
 };
 
 /// What pictures take, nearly [bytes].

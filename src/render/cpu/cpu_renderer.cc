@@ -15,6 +15,7 @@
 #include "render/cpu/ambient.h"
 #include "render/cpu/edge_samples.h"
 #include "render/cpu/embree_scene.h"
+#include "render/cpu/exact_channels.h"
 #include "render/cpu/fast_tier.h"
 #include "render/cpu/lidar_scan.h"
 #include "render/cpu/light_guide.h"
@@ -59,18 +60,20 @@ void resize_film(const CameraView& view, const RenderSettings& settings, Film* f
   film->width = view.intrinsics.width;
   film->height = view.intrinsics.height;
   const size_t n = film->pixel_count(), exact = settings.exact_channels ? n : 0;
-  film->radiance.resize(n);
-  film->albedo.resize(n);
-  film->normal.resize(n);
+  const size_t details = settings.exact_details ? exact : 0;
+  const size_t light = settings.spp > 0 || settings.tier == RenderTier::kFast ? n : 0;
+  film->radiance.resize(light);
+  film->albedo.resize(light);
+  film->normal.resize(light);
   film->variance.resize(settings.variance ? n : 0);
   film->sample_count.resize(settings.error > 0 ? n : 0);
   film->depth.resize(exact);
   film->distance.resize(exact);
   film->part.resize(exact);
-  film->center_normal.resize(exact);
-  film->center_albedo.resize(exact);
-  film->motion.resize(exact);
-  film->scene_flow.resize(exact);
+  film->center_normal.resize(details);
+  film->center_albedo.resize(details);
+  film->motion.resize(details);
+  film->scene_flow.resize(details);
 }
 
 /// Tile `i` of the order in which tiles are rendered: far apart, so that those
@@ -146,7 +149,7 @@ class CpuRenderer final : public Renderer {
       const int64_t count = int64_t{columns_} * ((film->height + kTile - 1) / kTile);
       if (settings.exact_channels) {
         for_tiles(count,
-                  [&](int64_t tile) { Tile(job, x_of(tile), y_of(tile)).render_channels(); });
+                  [&](int64_t tile) { render_channels(job, x_of(tile), y_of(tile), nullptr); });
       }
       stats.trace_seconds =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -178,7 +181,8 @@ class CpuRenderer final : public Renderer {
     const bool sharp =
         !(job.camera.aperture.radius > 0) && !(moves && job.camera.shutter.length > 0);
     if (total.finished && settings.spp > 0 && settings.spp < settings.guide_samples && sharp) {
-      GLOAM_CHECK(settings.exact_channels, "guide samples need the exact channels");
+      GLOAM_CHECK(settings.exact_channels && settings.exact_details,
+                  "guide samples need the exact channels");
       total.rays += refine_guides({job.scene, job.tracer, job.camera, job.has_motion},
                                   settings.guide_samples, film);
     }
@@ -269,21 +273,22 @@ class CpuRenderer final : public Renderer {
     const int x0 = x_of(tile), y0 = y_of(tile);
     if (settings.error > 0) {
       render_adaptive(job, x0, y0, plan, stats);
-      if (settings.exact_channels) {
-        Tile pixels(job, x0, y0);
-        pixels.render_channels();
-        stats->rays += pixels.rays();
-      }
+      if (settings.exact_channels) stats->rays += render_channels(job, x0, y0, nullptr);
       return;
     }
-    Tile pixels(job, x0, y0);
-    if (settings.tier == RenderTier::kDirect) {
-      pixels.render_direct();
-    } else {
-      pixels.render_path({settings.seed, settings.first_sample, settings.spp});
+    CenterHits centers;
+    if (settings.spp > 0) {
+      Tile pixels(job, x0, y0);
+      if (settings.tier == RenderTier::kDirect) {
+        pixels.render_direct(&centers);
+      } else {
+        pixels.render_path({settings.seed, settings.first_sample, settings.spp});
+      }
+      pixels.store_means(stats);
     }
-    if (settings.exact_channels) pixels.render_channels();
-    pixels.store_means(stats);
+    if (settings.exact_channels) {
+      stats->rays += render_channels(job, x0, y0, job.centered ? &centers : nullptr);
+    }
   }
 
   std::unique_ptr<RenderScene> scene_;

@@ -1,7 +1,6 @@
 #include "render/cpu/fast_frame.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "base/parallel.h"
 
@@ -16,15 +15,41 @@ constexpr float kNoChange = 0.01f;   // a share that may be noise,
 constexpr float kHaste = 8;          // and what of the rest is taken over at once
 constexpr int kRounds = 3;           // of smoothing, each twice as wide
 constexpr float kTolerance = 0.01f;  // of places on one plane, over their distance
+constexpr float kFarthest = 1e8f;    // deviations squared, so that products stay finite
 
-/// Where a pixel was in the picture before, if it is the same place.
-bool find_before(const FastFrame& before, const FastFrame& f, int x, int y, int* bx, int* by) {
-  *bx = static_cast<int>(std::floor(static_cast<float>(x) + 0.5f - *f.motion_x.at(x, y)));
-  *by = static_cast<int>(std::floor(static_cast<float>(y) + 0.5f - *f.motion_y.at(x, y)));
-  if (*bx < 0 || *by < 0 || *bx >= f.width || *by >= f.height) return false;
-  const float part = *f.part.at(x, y);
-  return part > 0 && *before.part.at(*bx, *by) == part &&
-         dot(f.n.get(x, y), before.n.get(*bx, *by)) > 0.8f;
+using F = FloatLanes;
+
+/// Where the pixels from (x, y) on were in the picture before.
+struct Before {
+  F x, y;
+  MaskLanes known = false;  ///< the same place was seen then
+  bool rests = false;       ///< all were where they are
+
+  F of(const FastPlane& plane, int here_x, int here_y) const {
+    return rests ? plane.load(here_x, here_y) : plane.gather_at(x, y);
+  }
+  Vec3Of<F> of(const FastPlane3& plane, int here_x, int here_y) const {
+    return rests ? plane.load(here_x, here_y) : plane.gather_at(x, y);
+  }
+};
+
+Before find_before(const FastFrame& before, const FastFrame& f, int x, int y) {
+  F column;
+  for (int i = 0; i < kLaneCount; ++i) set_lane(&column, i, static_cast<float>(x + i));
+  const F motion_x = f.motion_x.load(x, y), motion_y = f.motion_y.load(x, y);
+  const F from_x = floor_of(column + 0.5f - motion_x);
+  const F from_y = floor_of(static_cast<float>(y) + 0.5f - motion_y);
+  const MaskLanes inside = (from_x >= 0.0f) & (from_y >= 0.0f) &
+                           (from_x < static_cast<float>(f.width)) &
+                           (from_y < static_cast<float>(f.height));
+  Before out;
+  out.rests = all((motion_x == F(0.0f)) & (motion_y == F(0.0f)));
+  out.x = select(inside, from_x, F(0.0f));
+  out.y = select(inside, from_y, F(0.0f));
+  const F part = f.part.load(x, y);
+  out.known = inside & (part > 0.0f) & (out.of(before.part, x, y) == part) &
+              (dot(f.n.load(x, y), out.of(before.n, x, y)) > 0.8f);
+  return out;
 }
 
 /// One patch's share of accumulate().
@@ -36,90 +61,83 @@ class Accumulation {
   void run() {
     find_past();
     for (int y = y0_; y < y1_; ++y) {
-      for (int x = x0_; x < x1_; x += kLaneCount) blend(x, y);
+      for (int part = 0; part < kParts; ++part) blend(x0_ + part * kLaneCount, y, part);
     }
   }
 
  private:
+  static constexpr int kParts = kPatch / kLaneCount;  // of a row
+
   void find_past() {
-    float now[kKeptSignals] = {}, past[kKeptSignals] = {};
+    // By columns, so that the sums are the same for any number of lanes.
+    F now[kKeptSignals][kParts], past[kKeptSignals][kParts];
     for (int y = y0_; y < y1_; ++y) {
-      for (int x = x0_; x < x1_; ++x) {
-        Place& place = places_[y - y0_][x - x0_];
-        place.known = find_before(before_, f_, x, y, &place.x, &place.y);
-        if (!place.known) continue;
+      for (int part = 0; part < kParts; ++part) {
+        const int x = x0_ + part * kLaneCount;
+        Before& place = places_[y - y0_][part];
+        place = find_before(before_, f_, x, y);
         for (int s = 0; s < kKeptSignals; ++s) {
-          now[s] += luminance(f_.signal[s].get(x, y));
-          past[s] += luminance(before_.signal[s].get(place.x, place.y));
+          const F new_light = luminance(f_.signal[s].load(x, y));
+          const F old_light = luminance(place.of(before_.signal[s], x, y));
+          now[s][part] += select(place.known, new_light, F(0.0f));
+          past[s][part] += select(place.known, old_light, F(0.0f));
         }
       }
     }
     // Where the light of a whole tile is another, old pictures say little.
     for (int s = 0; s < kKeptSignals; ++s) {
-      const float change = fabsf(now[s] - past[s]) / max(max(now[s], past[s]), 1e-6f);
+      const float a = sum_of(now[s]), b = sum_of(past[s]);
+      const float change = fabsf(a - b) / max(max(a, b), 1e-6f);
       least_share_[s] = clamp((change - kNoChange) * kHaste, 0.0f, 1.0f);
     }
   }
-
-  void blend(int first, int y) {
-    Vec3Of<FloatLanes> low[kKeptSignals], high[kKeptSignals];
-    FloatLanes level, spread[kKeptSignals];
-    for (int s = 0; s < kKeptSignals; ++s) {
-      const auto [mean, deviation] = neighbour_moments(f_.signal[s], first, y, [&](int dx, int dy) {
-        return f_.part.load(first + dx, y + dy) == f_.part.load(first, y);
-      });
-      if (s == kSpecularSignal) {  // without the pixel itself
-        const FloatLanes own = luminance(f_.signal[s].load(first, y));
-        level = max((luminance(mean) * 9.0f - own) * 0.125f, 0.0f);
-      }
-      spread[s] = sqr(luminance(deviation));
-      low[s] = mean - deviation * FloatLanes(kRange);
-      high[s] = mean + deviation * FloatLanes(kRange);
-    }
-    for (int x = first; x < min(first + kLaneCount, x1_); ++x) {
-      const Place& place = places_[y - y0_][x - x0_];
-      const float age = place.known ? min(*before_.age.at(place.x, place.y) + 1, kLongest) : 1.0f;
-      *f_.age.at(x, y) = age;
-      const bool moves = *f_.motion_x.at(x, y) != 0 || *f_.motion_y.at(x, y) != 0;
-      for (int s = 0; s < kKeptSignals; ++s) {
-        Vec3f now = f_.signal[s].get(x, y);
-        float l = luminance(now), share = max(1 / age, least_share_[s]);
-        if (s == kSpecularSignal) {
-          // Of rays that a rough surface scatters, few meet a lamp.
-          const float most = kSpike * lane(level, x - first);
-          if (l > most) now = now * (most / l);
-          l = min(l, most);
-          // What mirrors show does not go along with them.
-          if (moves && *f_.roughness.at(x, y) < kMirror) share = max(share, 0.5f);
-        }
-        if (!place.known) {
-          out_[s].set(x, y, now);
-          *f_.mean[s].at(x, y) = l;
-          *f_.square[s].at(x, y) = l * l + lane(spread[s], x - first);  // until more is known
-          continue;
-        }
-        // What is out of the range of its neighbours is a trail of what has moved on.
-        const Vec3f old = before_.signal[s].get(place.x, place.y);
-        const Vec3f least = lane(low[s], x - first), most = lane(high[s], x - first);
-        const Vec3f kept{clamp(old.x, least.x, most.x), clamp(old.y, least.y, most.y),
-                         clamp(old.z, least.z, most.z)};
-        out_[s].set(x, y, lerp(kept, now, share));
-        *f_.mean[s].at(x, y) = lerp(*before_.mean[s].at(place.x, place.y), l, share);
-        *f_.square[s].at(x, y) = lerp(*before_.square[s].at(place.x, place.y), l * l, share);
-      }
-    }
+  static float sum_of(const F (&columns)[kParts]) {
+    float sum = 0;
+    for (int i = 0; i < kPatch; ++i) sum += lane(columns[i / kLaneCount], i % kLaneCount);
+    return sum;
   }
 
-  struct Place {
-    int x = 0, y = 0;
-    bool known = false;
-  };
+  void blend(int x, int y, int part) {
+    const Before& place = places_[y - y0_][part];
+    const F own_part = f_.part.load(x, y);
+    const F longer = min(place.of(before_.age, x, y) + 1.0f, kLongest);
+    const F age = select(place.known, longer, F(1.0f));
+    f_.age.store(x, y, age);
+    for (int s = 0; s < kKeptSignals; ++s) {
+      const auto [mean, deviation] = neighbour_moments(f_.signal[s], x, y, [&](int dx, int dy) {
+        return f_.part.load(x + dx, y + dy) == own_part;
+      });
+      Vec3Of<F> now = f_.signal[s].load(x, y);
+      F l = luminance(now), share = max(1.0f / age, least_share_[s]);
+      if (s == kSpecularSignal) {
+        // Of rays that a rough surface scatters, few meet a lamp: no brighter than the others.
+        const F most = kSpike * max((luminance(mean) * 9.0f - l) * 0.125f, 0.0f);
+        now = select<F>(l > most, now * (most / l), now);
+        l = min(l, most);
+        // What mirrors show does not go along with them.
+        const MaskLanes moves =
+            !((f_.motion_x.load(x, y) == F(0.0f)) & (f_.motion_y.load(x, y) == F(0.0f)));
+        share = select(moves & (f_.roughness.load(x, y) < kMirror), max(share, 0.5f), share);
+      }
+      // What is out of the range of its neighbours is a trail of what has moved on.
+      const Vec3Of<F> old = place.of(before_.signal[s], x, y);
+      const Vec3Of<F> least = mean - deviation * F(kRange), most = mean + deviation * F(kRange);
+      const Vec3Of<F> kept{clamp(old.x, least.x, most.x), clamp(old.y, least.y, most.y),
+                           clamp(old.z, least.z, most.z)};
+      out_[s].store(x, y, select<F>(place.known, lerp(kept, now, share), now));
+      const F old_mean = place.of(before_.mean[s], x, y);
+      f_.mean[s].store(x, y, select(place.known, lerp(old_mean, l, share), l));
+      const F old_square = place.of(before_.square[s], x, y);
+      const F spread = sqr(luminance(deviation));  // until more is known
+      f_.square[s].store(x, y, select(place.known, lerp(old_square, l * l, share), l * l + spread));
+    }
+  }
 
   const FastFrame& before_;
   FastFrame& f_;
   FastPlane3* out_;
-  const int x0_, y0_, x1_ = min(x0_ + kPatch, f_.width), y1_ = min(y0_ + kPatch, f_.height);
-  Place places_[kPatch][kPatch];
+  const int x0_, y0_, y1_ = min(y0_ + kPatch, f_.height);
+  Before places_[kPatch][kParts];
   float least_share_[kKeptSignals] = {};
 };
 
@@ -165,7 +183,6 @@ void FastFilter::smooth(const FastFrame& f) {
     const FastPlane3* from = round == 0 ? f.signal : (round % 2 == 1 ? a : b);
     FastPlane3* to = round % 2 == 0 ? a : b;
     parallel_for("fast filter", f.height, [&](int64_t row) {
-      using F = FloatLanes;
       const int y = static_cast<int>(row);
       for (int x = 0; x < f.width; x += kLaneCount) {
         const F part = f.part.load(x, y);
@@ -173,6 +190,7 @@ void FastFilter::smooth(const FastFrame& f) {
         const F scale =
             1.0f / (kTolerance * static_cast<float>(step) * f.distance.load(x, y) + 1e-4f);
         const F age = f.age.load(x, y), rough = f.roughness.load(x, y);
+        const F mirror = min(rough * rough * 8.0f, 1.0f);
         Vec3Of<F> sum[kFastSignals];
         F total[kFastSignals], sharp[kFastSignals], own[kFastSignals];
         for (int s = 0; s < kFastSignals; ++s) {
@@ -195,17 +213,19 @@ void FastFilter::smooth(const FastFrame& f) {
             const F off = dot(n, f.p.load(qx, qy) - p) * scale;
             const F tap =
                 same * f16 * max(1.0f - off * off, 0.0f) * (dx != 0 && dy != 0 ? 0.5f : 0.75f);
+            Vec3Of<F> v[kFastSignals];
+            F apart[kKeptSignals];
+            for (int s = 0; s < kFastSignals; ++s) v[s] = from[s].load(qx, qy);
+            for (int s = 0; s < kKeptSignals; ++s) {
+              const F d = (luminance(v[s]) - own[s]) * sharp[s];
+              apart[s] = 1.0f + sqr(min(d * d, kFarthest));
+            }
+            const F w = tap / (apart[0] * apart[1]);  // one division for both
+            // Sharp mirrors show what is far behind them.
+            const F weight[kFastSignals] = {w * apart[1], w * apart[0] * mirror, tap};
             for (int s = 0; s < kFastSignals; ++s) {
-              const Vec3Of<F> v = from[s].load(qx, qy);
-              F w = tap;
-              if (s != kCachedSignal) {
-                const F d = (luminance(v) - own[s]) * sharp[s];
-                w = w / (1.0f + d * d * d * d);
-              }
-              // Sharp mirrors show what is far behind them.
-              if (s == kSpecularSignal) w = w * min(rough * rough * 8.0f, 1.0f);
-              sum[s] += v * w;
-              total[s] += w;
+              sum[s] += v[s] * weight[s];
+              total[s] += weight[s];
             }
           }
         }

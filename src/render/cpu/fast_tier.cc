@@ -25,6 +25,8 @@ class TileRequests {
  public:
   explicit TileRequests(std::vector<CacheRequest>* list) : list_(*list) { list_.clear(); }
 
+  static constexpr uint32_t kDice = 1u << 24;
+  /// `dice`: below kDice.
   void add(const CacheRequest& request, uint32_t dice) {
     if (request.key == 0) return;
     Slot& slot = slots_[caches::slot_of(request.key, kSlots)];
@@ -32,7 +34,7 @@ class TileRequests {
       slot = {request.key, static_cast<uint32_t>(list_.size()), 0};
       list_.push_back(request);
     }
-    if (dice % ++slot.count == 0) list_[slot.row] = request;
+    if (uint64_t{dice} * ++slot.count < kDice) list_[slot.row] = request;
   }
 
  private:
@@ -52,7 +54,7 @@ struct PixelBlock {
   MaskLanes active = false;  ///< and the lens sees something there
   UintLanes px, py;
   RayOf<F> ray;
-  F width, spread;
+  RayConeOf<F> cone;
 };
 
 PixelBlock make_block(const CameraView32& camera, const FastFrame& frame, int x, int y,
@@ -60,42 +62,33 @@ PixelBlock make_block(const CameraView32& camera, const FastFrame& frame, int x,
   PixelBlock block;
   block.x = x;
   block.y = y;
+  F u, v;
   for (int i = 0; i < kLaneCount; ++i) {
     const int column = x + i % 4, row = y + i / 4;
-    RayCone cone;
-    const Ray ray = camera_ray(camera, static_cast<float>(column) + 0.5f + offset.x,
-                               static_cast<float>(row) + 0.5f + offset.y, 0, &cone);
-    const bool inside = column < frame.width && row < frame.height;
-    set_lane(&block.inside, i, inside);
-    set_lane(&block.active, i, inside && sees(ray));
+    set_lane(&block.inside, i, column < frame.width && row < frame.height);
     set_lane(&block.px, i, static_cast<uint32_t>(column));
     set_lane(&block.py, i, static_cast<uint32_t>(row));
-    set_lane(&block.ray.o, i, ray.o);
-    set_lane(&block.ray.d, i, ray.d);
-    set_lane(&block.width, i, cone.width);
-    set_lane(&block.spread, i, cone.spread);
+    set_lane(&u, i, static_cast<float>(column) + 0.5f + offset.x);
+    set_lane(&v, i, static_cast<float>(row) + 0.5f + offset.y);
   }
+  block.ray = camera_rays(camera, u, v, F(0.0f), &block.cone);
+  block.active = block.inside & (block.ray.tmax > 0.0f);
   return block;
 }
 
 /// Way of what is seen since the previous picture [px].
-Vec2Of<F> find_motion(const SceneView& scene, const CameraView32& camera, bool still,
-                      const PixelBlock& block, const FastSampleOf<F>& sample) {
-  Vec2Of<F> motion;
-  each_lane(block.active, [&](int i) {
-    if (!lane(sample.solid, i)) {
-      if (!still) set_lane(&motion, i, describe_sky(camera, lane(block.ray, i)).motion);
-      return;
-    }
-    const RayHit hit = lane(sample.hit, i);
-    const InstanceView& instance = scene.instances[hit.instance];
-    if (still && !instance.has_moved && instance.shape != ShapeType::kDeformable) return;
-    Surface s;
-    s.p = lane(sample.p, i);
-    s.instance = hit.instance;
-    set_lane(&motion, i, describe_surface(scene, camera, lane(block.ray, i), s, hit).motion);
-  });
-  return motion;
+Vec2Of<F> motion_of(const SceneView& scene, const CameraView32& camera, const PixelBlock& block,
+                    const FastSampleOf<F>& sample) {
+  const MaskLanes solid = block.active & sample.solid;
+  const Vec3Of<F> before = previous_points(scene, sample.p, sample.hit, block.ray.time, solid);
+  return find_motion(camera, block.ray, sample.p, before, solid, block.active);
+}
+
+/// Pixels take turns from picture to picture.
+FastTurnsOf<F> turns_of(const PixelBlock& block, uint32_t picture) {
+  constexpr uint32_t kOrder[4] = {0, 3, 1, 2};
+  const UintLanes place = (block.px & 1u) + (block.py & 1u) * 2u;
+  return {((block.px + block.py + picture) & 1u) == 0u, place == kOrder[picture % 4]};
 }
 
 /// Points of [0, 1)² for the pixels from `first` on of four by four, each in a part of its own.
@@ -142,9 +135,6 @@ void FastHistory::trace(const SceneView& scene, const EmbreeTracer& tracer,
   const IrradianceCacheView cache = cache_.view(camera.pose.X_WC_open.p, cell_edge(camera));
   Sampler pattern = Sampler::make(0, 0, 0, 0, pictures_ % kPattern, 3);
   const Vec2f offset = sample_pixel_filter(pattern.next_2d());
-  // Pictures of one instant have no way between them.
-  const Affine3f &a = camera.pose.X_WC_open, &b = camera.pose.X_WC_previous;
-  const bool still = a.x == b.x && a.y == b.y && a.z == b.z && a.p == b.p;
   const int columns = (now_.width + kTile - 1) / kTile, rows = (now_.height + kTile - 1) / kTile;
   const Vec2f turn = pattern.next_2d();
   asked_.resize(static_cast<size_t>(columns) * rows);
@@ -164,11 +154,11 @@ void FastHistory::trace(const SceneView& scene, const EmbreeTracer& tracer,
       const Vec2Of<F> near_u = stratified(first, turn);
       CacheRequest requests[3 * kLaneCount];
       const FastSampleOf<F> sample =
-          trace_fast(scene, tracer, cache, block.ray, block.width, block.spread, sampler, near_u,
-                     block.active, requests);
-      store(block, sample,
-            pass == 0 ? find_motion(scene, camera, still, block, sample) : Vec2Of<F>{}, requests,
-            &now_);
+          trace_fast(scene, tracer, cache, block.ray, block.cone.width, block.cone.spread, sampler,
+                     near_u, turns_of(block, pictures_), block.active, requests);
+      // Pictures of one instant have no way between them.
+      const Vec2Of<F> motion = pass == 0 ? motion_of(scene, camera, block, sample) : Vec2Of<F>{};
+      store(block, sample, motion, requests, &now_);
       const uint32_t dice = static_cast<uint32_t>(first) * 0x9E3779B9u + pictures_ * 0x85EBCA6Bu;
       for (uint32_t i = 0; i < 3 * kLaneCount; ++i) {
         mine.add(requests[i], (dice + i * 0xC2B2AE35u) >> 8);

@@ -14,22 +14,7 @@ namespace {
 /// Samples of a pixel that run side by side in lanes, at most: their rays keep together.
 constexpr int kTogether = 4;
 
-struct CenterState {
-  Ray ray;
-  bool any = false;
-};
-
 }  // namespace
-
-void store_channels(Film* film, size_t pixel, const ExactChannels& c) {
-  film->depth[pixel] = c.depth;
-  film->distance[pixel] = c.distance;
-  film->part[pixel] = c.part;
-  film->center_normal[pixel] = c.normal;
-  film->center_albedo[pixel] = c.albedo;
-  film->motion[pixel] = c.motion;
-  film->scene_flow[pixel] = c.scene_flow;
-}
 
 template <class State, class Start, class Advance, class Finish>
 void Tile::sample(Wave<State>* wave, int index, const Start& start, const Advance& advance,
@@ -69,7 +54,7 @@ void Tile::render_path(const SampleRange& range) {
   }
 }
 
-void Tile::render_direct() {
+void Tile::render_direct(CenterHits* centers) {
   const auto wave = std::make_unique<Wave<DirectState>>();
   for (int index = 0; index < job_.settings.spp; ++index) {
     sample(
@@ -78,31 +63,14 @@ void Tile::render_direct() {
           return direct_advance(job_.scene, state, found, hit,
                                 [](const Ray&, const Surface&, const RayHit&) {});
         },
-        [this](int i, const DirectState& state) {
-          known_[i] =
+        [&](int i, const DirectState& state) {
+          const int at = index_[i];
+          centers->known[at] =
               job_.centered && (state.layers == 0 || (state.layers == 1 && state.has_first));
-          center_found_[i] = state.has_first;
-          center_hit_[i] = state.first;
+          centers->found[at] = state.has_first;
+          centers->hits[at] = state.first;
         });
   }
-}
-
-void Tile::render_channels() {
-  const auto wave = std::make_unique<Wave<CenterState>>();
-  for (int i = 0; i < count_; ++i) {
-    RayCone cone;
-    wave->states[i].ray = center_ray(i, &cone);
-    if (!known_[i]) wave->alive[wave->count++] = i;
-  }
-  const int traced = wave->count;
-  std::copy(wave->alive, wave->alive + traced, trace_list_);
-  wave->trace_closest(job_.tracer);
-  rays_ += static_cast<uint64_t>(traced);
-  for (int j = 0; j < traced; ++j) {
-    center_found_[trace_list_[j]] = wave->found[trace_list_[j]];
-    center_hit_[trace_list_[j]] = wave->hits[trace_list_[j]];
-  }
-  for (int i = 0; i < count_; ++i) store(i, wave->states[i].ray);
 }
 
 void Tile::store_means(RenderStats* stats) const {
@@ -162,27 +130,6 @@ void Tile::sample_lanes(int first, const SampleRange& range) {
                          lane(result.rays, i)});
     rays_ += lane(result.rays, i);
   }
-}
-
-void Tile::store(int i, const Ray& ray) {
-  RayCone cone;
-  center_ray(i, &cone);
-  if (!center_found_[i]) {
-    store_channels(job_.film, pixel_of(i), describe_sky(job_.camera, ray));
-    return;
-  }
-  Surface s = make_surface(job_.scene, ray, center_hit_[i], cone);
-  if (!shows(job_.scene, s)) {
-    uint32_t rays = 0;
-    const bool found = find_first(job_.scene, job_.tracer, ray, cone, &s, &center_hit_[i], &rays);
-    rays_ += rays;
-    if (!found) {
-      store_channels(job_.film, pixel_of(i), describe_sky(job_.camera, ray));
-      return;
-    }
-  }
-  store_channels(job_.film, pixel_of(i),
-                 describe_surface(job_.scene, job_.camera, ray, s, center_hit_[i]));
 }
 
 }  // namespace gloam

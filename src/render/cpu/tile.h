@@ -39,14 +39,18 @@ struct Job {
   Film* film = nullptr;
 };
 
-void store_channels(Film* film, size_t pixel, const ExactChannels& channels);
-
 /// Pixel `index` of a full tile: 4 x 4 blocks, so that packets of primary rays are compact.
 inline void tile_pixel(int index, int* x, int* y) {
   const int block = index / 16, in = index % 16;
   *x = block % (kTile / 4) * 4 + in % 4;
   *y = block / (kTile / 4) * 4 + in / 4;
 }
+
+/// What rays through the centres of a tile's pixels have met, in tile_pixel()'s order.
+struct CenterHits {
+  bool known[kTile * kTile] = {}, found[kTile * kTile] = {};
+  RayHit hits[kTile * kTile];
+};
 
 template <class State>
 struct Wave;
@@ -77,11 +81,8 @@ class Tile {
 
   /// Adds samples of the path tier to the means.
   void render_path(const SampleRange& range);
-  /// All samples of the direct tier.
-  void render_direct();
-  /// Exact channels into the film: centre rays in packets, except those that a centred sample has
-  /// answered.
-  void render_channels();
+  /// All samples of the direct tier. Those that are centred serve the exact channels too.
+  void render_direct(CenterHits* centers);
   void store_means(RenderStats* stats) const;
 
   int count() const { return count_; }
@@ -99,19 +100,13 @@ class Tile {
     return camera_ray(job_.camera, static_cast<float>(x_[i]) + 0.5f + offset.x,
                       static_cast<float>(y_[i]) + 0.5f + offset.y, time, cone, lens);
   }
-  /// Of the exact channels.
-  Ray center_ray(int i, RayCone* cone) const {
-    return pixel_ray(i, {}, job_.has_motion ? job_.camera.time_of(y_[i], 0) : 0.0f, cone, nullptr);
-  }
-  void store(int i, const Ray& ray);
 
   const Job& job_;
   int count_ = 0;
   uint64_t rays_ = 0;
-  int x_[kTile * kTile], y_[kTile * kTile], index_[kTile * kTile], trace_list_[kTile * kTile];
+  int x_[kTile * kTile], y_[kTile * kTile], index_[kTile * kTile];
   PixelMean mean_[kTile * kTile];
-  bool known_[kTile * kTile] = {}, center_found_[kTile * kTile] = {}, sees_[kTile * kTile];
-  RayHit center_hit_[kTile * kTile];
+  bool sees_[kTile * kTile];
 };
 
 }  // namespace gloam

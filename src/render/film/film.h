@@ -16,6 +16,7 @@ struct ObjectCover {
 
 struct Film {
   int width = 0, height = 0;
+  // Of light; empty where no samples are asked for.
   std::vector<Vec3f> radiance;         ///< mean over samples, linear Rec. 709 [cd/m²]
   std::vector<Vec3f> variance;         ///< of that mean, per channel; empty unless asked for
   std::vector<uint32_t> sample_count;  ///< in that mean; empty where every pixel has as many

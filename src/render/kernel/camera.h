@@ -18,6 +18,12 @@ struct CameraPose {
   DeviceSpan<const CameraKey> keys;  ///< evenly over times 0 … 1; empty = it stands still
 };
 
+/// Whether the camera is where it was at the frame before.
+GLOAM_HD bool stands_still(const CameraPose& pose) {
+  const Affine3f &a = pose.X_WC_open, &b = pose.X_WC_previous;
+  return pose.keys.empty() && a.x == b.x && a.y == b.y && a.z == b.z && a.p == b.p;
+}
+
 /// When the rows of a picture are exposed, in times of the scene's keys, 0 … 1.
 struct Shutter {
   float open = 0;    ///< of the first row
@@ -131,19 +137,57 @@ GLOAM_HD Ray camera_ray(const CameraView32& camera, float u, float v, float time
   return ray;
 }
 
+/// camera_ray() of many points, through the middle of the aperture.
+template <class F>
+GLOAM_HD RayOf<F> camera_rays(const CameraView32& camera, F u, F v, F time, RayConeOf<F>* cone) {
+  RayOf<F> rays;
+  if (!camera.orthographic && camera.is_pinhole() && camera.pose.keys.empty()) {
+    const F x = (u - camera.cx) / camera.fx, y = (camera.cy - v) / camera.fy;
+    const AffineOf<F> X_WC = pose_in_all_lanes<F>(camera.pose.X_WC_open);
+    rays.o = X_WC.p;
+    rays.d = normalize(transform_vector(X_WC, Vec3Of<F>{x, y, F(-1.0f)}));
+    rays.time = time;
+    *cone = {F(0.0f), 1.0f / (camera.fx * square_root(1.0f + x * x + y * y))};
+    return rays;
+  }
+  each_lane(MaskOf<F>(true), [&](int i) {
+    RayCone one;
+    const Ray ray = camera_ray(camera, lane(u, i), lane(v, i), lane(time, i), &one);
+    set_lane(&rays.o, i, ray.o);
+    set_lane(&rays.d, i, ray.d);
+    set_lane(&rays.tmax, i, ray.tmax);
+    set_lane(&rays.time, i, ray.time);
+    set_lane(&cone->width, i, one.width);
+    set_lane(&cone->spread, i, one.spread);
+  });
+  return rays;
+}
+
+/// Where the points p_W of the `active` lanes appear [px]; returns the lanes that the camera sees.
+template <class F>
+GLOAM_HD MaskOf<F> project_points(const CameraView32& camera, const Affine3f& X_WC, Vec3Of<F> p_W,
+                                  MaskOf<F> active, Vec2Of<F>* uv) {
+  const Vec3Of<F> p = transform_point(pose_in_all_lanes<F>(inverse(X_WC)), p_W);
+  if (!camera.orthographic && !camera.is_pinhole()) {
+    MaskOf<F> seen = false;
+    each_lane(active, [&](int i) {
+      float x, y;
+      const Vec3f one = lane(p, i);
+      if (!lens_project(camera.lens, one.x, -one.y, -one.z, &x, &y)) return;
+      set_lane(&seen, i, true);
+      set_lane(uv, i, {camera.cx + camera.fx * x, camera.cy + camera.fy * y});
+    });
+    return seen;
+  }
+  const MaskOf<F> seen = active & (MaskOf<F>(camera.orthographic) | !(p.z > -1e-9f));
+  const F s = camera.orthographic ? F(1.0f) : -1.0f / p.z;
+  *uv = {camera.cx + camera.fx * p.x * s, camera.cy - camera.fy * p.y * s};
+  return seen;
+}
+
 /// Where the point p_W appears [px]; false where the camera does not see it.
 GLOAM_HD bool project(const CameraView32& camera, const Affine3f& X_WC, Vec3f p_W, Vec2f* uv) {
-  const Vec3f p = transform_point(inverse(X_WC), p_W);
-  if (!camera.orthographic && !camera.is_pinhole()) {
-    float x, y;
-    if (!lens_project(camera.lens, p.x, -p.y, -p.z, &x, &y)) return false;
-    *uv = {camera.cx + camera.fx * x, camera.cy + camera.fy * y};
-    return true;
-  }
-  if (!camera.orthographic && p.z > -1e-9f) return false;
-  const float s = camera.orthographic ? 1.0f : -1.0f / p.z;
-  *uv = {camera.cx + camera.fx * p.x * s, camera.cy - camera.fy * p.y * s};
-  return true;
+  return project_points<float>(camera, X_WC, p_W, true, uv);
 }
 
 /// Offset from the pixel's centre [px], by importance sampling of the pixel filter: a Gaussian of

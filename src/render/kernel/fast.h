@@ -5,6 +5,7 @@
 #include "render/kernel/irradiance_cache.h"
 #include "render/kernel/medium_march.h"
 #include "render/kernel/path.h"
+#include "render/kernel/quads.h"
 
 namespace gloam {
 
@@ -12,11 +13,21 @@ namespace gloam {
 inline constexpr uint32_t kMaxFastLights = kMaxWeighedLights, kDrawnLights = 4;
 /// Surfaces rougher than this reflect the light of the cache instead of what a ray finds.
 inline constexpr float kMaxTracedRoughness = 0.4f;
+/// Of two by two pixels on a surface as rough as this, one sends out a ray for all: what they
+/// reflect is blurred over more than that.
+inline constexpr float kLeastSharedRoughness = 0.2f;
 
 /// A cell that a surface needs.
 struct CacheRequest {
   uint64_t key = 0;  ///< 0 = none
   Vec3f p, n;        ///< where rays for it may start
+};
+
+/// Lanes that send out rays for others of their quad too, where that will do.
+template <class F>
+struct FastTurnsOf {
+  MaskOf<F> of_two = true;   ///< one of each pair side by side
+  MaskOf<F> of_four = true;  ///< one of each quad
 };
 
 /// What one camera ray saw: base + through (albedo (direct + cached) + cached specular + specular).
@@ -71,13 +82,15 @@ template <class F>
 GLOAM_HD Vec3Of<F> cached_light(const IrradianceCacheView& cache, const SurfaceOf<F>& v,
                                 const CacheCellOf<F>& cells, MaskOf<F> active, uint32_t coarser) {
   Vec3Of<F> light;
+  int cell[Lanes<F>::kCount];  // all before the first is read: the memory is waited for once
+  each_lane(active, [&](int i) { cell[i] = find_cell(cache, cache_key(cells, i)); });
   each_lane(active, [&](int i) {
-    int cell = find_cell(cache, cache_key(cells, i));
-    for (uint32_t more = 0; cell < 0 && more < 3; ++more) {
-      cell = find_cell(cache, cache_key(cache, lane(v.p, i), lane(v.normal, i), {0.5f, 0.5f, 0.0f},
-                                        coarser + more));
+    for (uint32_t more = 0; cell[i] < 0 && more < 3; ++more) {
+      cell[i] = find_cell(cache, cache_key(cache, lane(v.p, i), lane(v.normal, i),
+                                           {0.5f, 0.5f, 0.0f}, coarser + more));
     }
-    set_lane(&light, i, cell >= 0 ? cache.light[static_cast<uint32_t>(cell)].all : cache.mean);
+    const bool known = cell[i] >= 0;
+    set_lane(&light, i, known ? cache.light[static_cast<uint32_t>(cell[i])].all : cache.mean);
   });
   return light;
 }
@@ -363,12 +376,13 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
 
 /// The camera ray's picture. `near_u` in [0, 1)²: the direction of FastSampleOf::near. `requests`:
 /// one per lane for the first solid surface, one for the specular ray's, one for the last pane in
-/// front.
+/// front. Lanes come in quads.
 template <class F, class Tracer>
 GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer,
                                     const IrradianceCacheView& cache, const RayOf<F>& ray,
                                     F cone_width, F cone_spread, const SamplerOf<F>& sampler,
-                                    Vec2Of<F> near_u, MaskOf<F> active, CacheRequest* requests) {
+                                    Vec2Of<F> near_u, const FastTurnsOf<F>& turns, MaskOf<F> active,
+                                    CacheRequest* requests) {
   using Mask = MaskOf<F>;
   FastSampleOf<F> out;
   out.through = in_all_lanes<F>({1, 1, 1});
@@ -430,13 +444,17 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
       near.o = leave_surface(v.p, v.geometric, v.geometric, v.t);
       near.d = out_W;
       near.tmax = cells.edge;
-      path.result.rays += select(solid, UintOf<F>(1u), UintOf<F>(0u));
-      out.near = select(solid & tracer.occluded(near, solid), F(1.0f), out.near);
+      const Mask borrows = even_quads<F>(solid, hit.instance, v.normal) & !turns.of_two;
+      const Mask goes = solid & !borrows;
+      path.result.rays += select(goes, UintOf<F>(1u), UintOf<F>(0u));
+      const F met = select(tracer.occluded(near, goes), F(1.0f), F(0.0f));
+      out.near = select(solid, select(borrows, flip<1>(met), met), out.near);
     }
     const Vec3Of<F> albedo = fasts::diffuse_albedo(bsdf);
     F a, b;
     layer_albedo(*scene.albedo, v.roughness, wo.z, &a, &b);
-    const Vec3Of<F> gloss = select<F>(traced, Vec3Of<F>{}, bsdf.base.f0 * a + bsdf.base.f90 * b);
+    const Vec3Of<F> reflected = bsdf.base.f0 * a + bsdf.base.f90 * b;
+    const Vec3Of<F> gloss = select<F>(traced, Vec3Of<F>{}, reflected);
     each_lane(active,
               [&](int i) { requests[lane(solid, i) ? i : 2 * Lanes<F>::kCount + i] = asked[i]; });
 
@@ -445,19 +463,34 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
       const F pick = path.sampler.next_1d(traced);
       const BsdfSampleOf<F> s = sample_bsdf(shiny, wo, pick, toss);
       const Vec3Of<F> wi = frame.to_world(s.wi);
-      const Mask goes = traced & (s.pdf > 0.0f) & (max_component(s.weight) > 0.0f);
-      paths::State<F> bounce = path;
-      bounce.result.rays = 0u;
-      bounce.ray.o = select<F>(goes, leave_surface(v.p, v.geometric, wi, v.t), path.ray.o);
-      bounce.ray.d = select<F>(goes, wi, path.ray.d);
-      bounce.from = v.p;
-      bounce.pdf_bsdf = s.pdf;
-      bounce.cone_spread += 0.2f * square_root(min(1.0f / (kPi * s.pdf), F(1.0f)));
+      const Mask shares = traced & !bsdf.layered & (v.roughness >= kLeastSharedRoughness);
+      const Mask together = even_quads<F>(shares, hit.instance, v.normal);
+      const Mask borrows = together & !turns.of_four;
+      const Mask goes = traced & !borrows & (s.pdf > 0.0f) & (max_component(s.weight) > 0.0f);
+      // A path is large: this one bounces and comes back.
+      const RayOf<F> view = path.ray;
+      const F width = path.cone_width, spread = path.cone_spread;
+      const SamplerOf<F> later = path.sampler;
+      path.ray.o = select<F>(goes, leave_surface(v.p, v.geometric, wi, v.t), view.o);
+      path.ray.d = select<F>(goes, wi, view.d);
+      path.from = v.p;
+      path.pdf_bsdf = s.pdf;
+      path.cone_spread += 0.2f * square_root(min(1.0f / (kPi * s.pdf), F(1.0f)));
       const Vec3Of<F> seen =
-          fasts::gather(scene, tracer, cache, true, goes, &bounce, requests + Lanes<F>::kCount)
-              .light;
-      path.result.rays += bounce.result.rays;
-      specular += select<F>(goes, seen * s.weight, Vec3Of<F>{});
+          fasts::gather(scene, tracer, cache, true, goes, &path, requests + Lanes<F>::kCount).light;
+      path.ray = view;
+      path.cone_width = width;
+      path.cone_spread = spread;
+      path.sampler = later;
+      Vec3Of<F> shine = select<F>(goes, seen * s.weight, Vec3Of<F>{});
+      if (any(borrows)) {
+        const auto over = [](F x, F y) { return x / max(y, F(1e-6f)); };
+        const Vec3Of<F> share{over(shine.x, reflected.x), over(shine.y, reflected.y),
+                              over(shine.z, reflected.z)};
+        const Vec3Of<F> lent = quad_sums(select<F>(together, share, Vec3Of<F>{}));
+        shine = select<F>(borrows, lent * reflected, shine);
+      }
+      specular += shine;
     }
     const Vec3Of<F> shade = albedo * (diffuse + cached) + gloss * cached + specular;
     out.base += out.through * select<F>(active, v.emission * v.opacity, Vec3Of<F>{});

@@ -45,6 +45,12 @@ GLOAM_HD void each_lane(bool mask, const Visit& visit) {
   if (mask) visit(0);
 }
 
+/// Calls visit(lanes, value) for every value that `key` has in the lanes of the mask.
+template <class Visit>
+GLOAM_HD void each_value(bool mask, uint32_t key, const Visit& visit) {
+  if (mask) visit(true, key);
+}
+
 template <class F>
 struct Lanes {  // float
   static constexpr int kCount = 1;

@@ -74,6 +74,15 @@ template <class Visit>
 void each_lane(MaskLanes mask, const Visit& visit) {
   for (uint32_t left = bits_of(mask); left != 0; left &= left - 1) visit(__builtin_ctz(left));
 }
+template <class Visit>
+void each_value(MaskLanes mask, UintLanes key, const Visit& visit) {
+  for (MaskLanes left = mask; any(left);) {
+    const uint32_t value = lane(key, __builtin_ctz(bits_of(left)));
+    const MaskLanes same = left & (key == value);
+    visit(same, value);
+    left = left & !same;
+  }
+}
 inline FloatLanes clamp(FloatLanes x, FloatLanes lo, FloatLanes hi) { return min(max(x, lo), hi); }
 inline FloatLanes lerp(FloatLanes a, FloatLanes b, FloatLanes t) { return a + (b - a) * t; }
 inline FloatLanes sqr(FloatLanes x) { return x * x; }

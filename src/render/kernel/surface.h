@@ -6,48 +6,86 @@
 
 namespace gloam {
 
-/// The surfaces that the lanes of `found` have hit. `cone` is that of the ray at its origin.
+namespace surfaces {
+
+/// What the rest of make_surface() needs of the first part.
 template <class F>
-GLOAM_HD SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>& ray,
-                                   const RayHitOf<F>& hit, RayConeOf<F> cone,
-                                   MaskOf<F> found = true) {
-  SurfaceOf<F> s;
+struct PlacedOf {
+  AffineOf<F> X_WG;
+  Vec3Of<F> p_G;
+  MaskOf<F> solid = false;                                        ///< no mesh
+  MaskOf<F> textured = false, layered = false, outwards = false;  ///< as in MaterialView
+};
+
+/// Shading normals of a triangle's corners.
+template <class F>
+GLOAM_HD Vec3Of<F> corner_normal(const Vec3f* normals, UintOf<F> first) {
+  const float* data = &normals->x;
+  return {gather(data, first), gather(data + 1, first), gather(data + 2, first)};
+}
+
+/// Place, normals without textures, and the material's own numbers.
+template <class F>
+GLOAM_HD PlacedOf<F> place_surface(const SceneView& scene, const RayOf<F>& ray,
+                                   const RayHitOf<F>& hit, MaskOf<F> found, SurfaceOf<F>* surface) {
+  SurfaceOf<F>& s = *surface;
   s.instance = hit.instance;
   s.t = hit.t;
   s.p = ray.o + ray.d * hit.t;
 
-  AffineOf<F> X_WG;
-  Vec3Of<F> size, corner[3];  // of the shape; shading normals of a triangle's corners
-  MaskOf<F> mesh = false, smooth = false, box = false, moving = false, textured = false;
-  MaskOf<F> layered = false, outwards = false;
-  each_lane(found, [&](int i) {
-    const InstanceView& instance = scene.instances[lane(hit.instance, i)];
+  PlacedOf<F> out;
+  AffineOf<F>& X_WG = out.X_WG;
+  Vec3Of<F> size, corner[3];  // of the shape; of a triangle
+  MaskOf<F> mesh = false, smooth = false, box = false, moving = false;
+  // Rays side by side meet few different things.
+  each_value(found, hit.instance, [&](MaskOf<F> same, uint32_t row) {
+    const InstanceView& instance = scene.instances[row];
     const MaterialView& m = scene.materials[instance.material];
-    Affine3f between;
-    set_lane(&X_WG, i, pose_at(instance, lane(ray.time, i), &between));
-    set_lane(&s.base_color, i, m.base_color);
-    const bool flickers = scene.has_flicker() && m.levels >= 0;
-    set_lane(&s.emission, i,
-             flickers ? m.emission * level_at(scene, m.levels, lane(ray.time, i)) : m.emission);
-    set_lane(&s.metallic, i, m.metallic);
-    set_lane(&s.roughness, i, m.roughness);
-    set_lane(&s.f0, i, m.f0);
-    set_lane(&s.f90, i, m.f90);
-    set_lane(&s.opacity, i, m.opacity);
-    if (m.textured) set_lane(&textured, i, true);
-    if (m.layers >= 0) set_lane(&layered, i, true);
-    if (m.emits_outwards) set_lane(&outwards, i, true);
+    const auto put = [&](F* to, float value) { *to = select(same, F(value), *to); };
+    const auto put3 = [&](Vec3Of<F>* to, Vec3f value) {
+      *to = select<F>(same, in_all_lanes<F>(value), *to);
+    };
+    if (instance.moving) {
+      each_lane(same, [&](int i) {
+        Affine3f between;
+        set_lane(&X_WG, i, pose_at(instance, lane(ray.time, i), &between));
+      });
+    } else {
+      put3(&X_WG.x, instance.X_WG.x);
+      put3(&X_WG.y, instance.X_WG.y);
+      put3(&X_WG.z, instance.X_WG.z);
+      put3(&X_WG.p, instance.X_WG.p);
+    }
+    put3(&s.base_color, m.base_color);
+    if (scene.has_flicker() && m.levels >= 0) {
+      each_lane(same, [&](int i) {
+        set_lane(&s.emission, i, m.emission * level_at(scene, m.levels, lane(ray.time, i)));
+      });
+    } else {
+      put3(&s.emission, m.emission);
+    }
+    put(&s.metallic, m.metallic);
+    put(&s.roughness, m.roughness);
+    put(&s.f0, m.f0);
+    put(&s.f90, m.f90);
+    put(&s.opacity, m.opacity);
+    if (m.textured) out.textured = out.textured | same;
+    if (m.layers >= 0) out.layered = out.layered | same;
+    if (m.emits_outwards) out.outwards = out.outwards | same;
     if (is_mesh(instance.shape)) {
-      set_lane(&mesh, i, true);
+      mesh = mesh | same;
       const DeviceSpan<const Vec3f>& normals = scene.meshes[instance.mesh].corner_normals;
       if (normals.empty()) return;
-      set_lane(&smooth, i, true);
-      const size_t first = 3 * static_cast<size_t>(lane(hit.primitive, i));
-      for (int k = 0; k < 3; ++k) set_lane(&corner[k], i, normals.data[first + k]);
+      smooth = smooth | same;
+      // Lanes take indices below 2^31: meshes of more triangles would not fit into memory.
+      const UintOf<F> first = select(same, hit.primitive * UintOf<F>(9u), UintOf<F>(0u));
+      for (int k = 0; k < 3; ++k) {
+        corner[k] = select<F>(same, corner_normal<F>(normals.data + k, first), corner[k]);
+      }
     } else {
-      if (instance.moving) set_lane(&moving, i, true);
-      if (instance.shape == ShapeType::kBox) set_lane(&box, i, true);
-      set_lane(&size, i, instance.size);
+      if (instance.moving) moving = moving | same;
+      if (instance.shape == ShapeType::kBox) box = box | same;
+      put3(&size, instance.size);
     }
   });
 
@@ -64,8 +102,8 @@ GLOAM_HD SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>& ray,
       s.normal = select<F>(smooth, normalize(transform_vector(X_WG, mean)), s.normal);
     }
   }
-  const MaskOf<F> solid = found & !mesh;
-  Vec3Of<F> p_G = to_frame(X_WG, s.p - X_WG.p);
+  const MaskOf<F> solid = out.solid = found & !mesh;
+  Vec3Of<F>& p_G = out.p_G = to_frame(X_WG, s.p - X_WG.p);
   if (any(solid)) {
     Vec3Of<F> on_G = p_G, n_G;
     if (any(box)) n_G = snap_to_box(size, &on_G);
@@ -82,16 +120,28 @@ GLOAM_HD SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>& ray,
     s.geometric = select<F>(solid, n, s.geometric);
     s.normal = select<F>(solid, n, s.normal);
   }
+  return out;
+}
+
+}  // namespace surfaces
+
+/// The surfaces that the lanes of `found` have hit. `cone` is that of the ray at its origin.
+template <class F>
+GLOAM_HD SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>& ray,
+                                   const RayHitOf<F>& hit, RayConeOf<F> cone,
+                                   MaskOf<F> found = true) {
+  SurfaceOf<F> s;
+  const surfaces::PlacedOf<F> at = surfaces::place_surface(scene, ray, hit, found, &s);
   const F cosine = dot(s.geometric, ray.d);
   // The footprint is an ellipse; its mean axis keeps near texels sharp without aliasing far ones.
   const auto width_at = [&](int i) {
     return (lane(cone.width, i) + lane(cone.spread, i) * lane(hit.t, i)) /
            sqrtf(max(fabsf(lane(cosine, i)), 0.05f));
   };
-  each_lane(textured & scene.has_textures(), [&](int i) {
+  each_lane(at.textured & scene.has_textures(), [&](int i) {
     Surface one = lane(s, i);
-    surfaces::apply_textures(scene, scene.instances[one.instance], lane(hit, i), lane(X_WG, i),
-                             lane(p_G, i), width_at(i), lane(ray.time, i), &one);
+    surfaces::apply_textures(scene, scene.instances[one.instance], lane(hit, i), lane(at.X_WG, i),
+                             lane(at.p_G, i), width_at(i), lane(ray.time, i), &one);
     set_lane(&s.normal, i, one.normal);
     set_lane(&s.base_color, i, one.base_color);
     set_lane(&s.emission, i, one.emission);
@@ -101,13 +151,13 @@ GLOAM_HD SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>& ray,
   });
   const MaskOf<F> inside = cosine > 0.0f;
   s.outside = !inside;
-  s.emission = select<F>((solid | outwards) & inside, Vec3Of<F>{}, s.emission);
+  s.emission = select<F>((at.solid | at.outwards) & inside, Vec3Of<F>{}, s.emission);
   s.geometric = select<F>(inside, -s.geometric, s.geometric);
   s.normal = select<F>(inside, -s.normal, s.normal);
   s.normal = face_viewer(s.normal, ray.d);
-  each_lane(found & layered & scene.has_layers(), [&](int i) {
+  each_lane(found & at.layered & scene.has_layers(), [&](int i) {
     Surface one = lane(s, i);
-    surfaces::apply_layers(scene, lane(hit, i), lane(X_WG, i), lane(p_G, i), lane(ray.d, i),
+    surfaces::apply_layers(scene, lane(hit, i), lane(at.X_WG, i), lane(at.p_G, i), lane(ray.d, i),
                            width_at(i), lane(ray.time, i), &one);
     set_lane(&s, i, one);
   });

@@ -72,6 +72,45 @@ TEST(Fast, IndirectLightIsThatOfThePathTier) {
   }
 }
 
+/// A rough metal floor before a wall of light: all that it shows is by reflection, and three of
+/// four of its pixels take that from the one beside them.
+SceneBuilder polished_floor() {
+  SceneBuilder b;
+  MaterialDescription metal;
+  metal.base_color = {0.9f, 0.7f, 0.4f};
+  metal.metallic = 1;
+  metal.roughness = 0.3f;
+  b.add(ShapeType::kBox, {6, 3, 0.1f}, translation({0, 0, -0.1f}), b.add_material(metal));
+  b.add(ShapeType::kBox, {6, 0.02f, 3}, translation({0, 2, 3}), b.add_emitter({50, 60, 70}));
+  b.description.extent = 5;
+  return b;
+}
+
+TEST(Fast, RoughReflectionsAreThoseOfThePathTier) {
+  const SceneBuilder b = polished_floor();
+  const CameraView view = SceneBuilder::camera(look_at({0, -2, 1}, {0, 1, 0.2f}), 96, 72, 50);
+  RenderSettings path;
+  path.spp = 256;
+  const Film exact = b.render(view, path);
+  const auto renderer = b.make();
+  const auto history = renderer->make_history();
+  Film film;
+  for (uint32_t i = 0; i < 8; ++i) {
+    renderer->render(view, fast_settings(history.get(), i), &film);
+  }
+  for (int by = 4; by < 6; ++by) {  // of the floor
+    for (int bx = 0; bx < 8; ++bx) {
+      double a = 0, c = 0;
+      for (int i = 0; i < 144; ++i) {
+        const size_t pixel = static_cast<size_t>((by * 12 + i / 12) * 96 + bx * 12 + i % 12);
+        a += luminance(film.radiance[pixel]);
+        c += luminance(exact.radiance[pixel]);
+      }
+      EXPECT_NEAR(a / c, 1, 0.12) << "block " << bx << " " << by;
+    }
+  }
+}
+
 TEST(Fast, ARoomIsDarkSoonAfterItsLampGoesOut) {
   SceneBuilder b = divided_room();
   b.description.materials.back().schedule = 0;
