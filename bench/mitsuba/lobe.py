@@ -52,6 +52,12 @@ def schlick(cosine):
     return dr.clip(1 - cosine, 0, 1) ** 5
 
 
+def under_coat(roughness, coat_roughness, coat):
+    """OpenPBR 1.1, "Roughening"."""
+    both = min(roughness**4 + 2 * coat_roughness**4, 1) ** 0.25
+    return roughness + coat * (both - roughness)
+
+
 class Lobe(mi.BSDF):
     def __init__(self, props):
         mi.BSDF.__init__(self, props)
@@ -65,12 +71,12 @@ class Lobe(mi.BSDF):
         self.color, self.metallic, self.f90 = color, p["metallic"], min(2 * p["specular"], 1)
         self.ior = p.get("ior", 1.5)
         self.f0 = ((self.ior - 1) / (self.ior + 1)) ** 2 * self.f90
-        self.roughness = p["roughness"]
+        self.coat, self.fuzz = p.get("coat_weight", 0), p.get("fuzz_weight", 0)
+        self.roughness = under_coat(p["roughness"], p.get("coat_roughness", 0), self.coat)
         self.base = ggx(self.roughness, p.get("anisotropy", 0))
         self.turn = 2 * dr.pi * p.get("anisotropy_rotation", 0)
         a, b = lobe_tables.layer_columns(self.roughness)
         self.a, self.b = Table(a), Table(b)
-        self.coat, self.fuzz = p.get("coat_weight", 0), p.get("fuzz_weight", 0)
         if self.coat > 0:
             self.coat_ggx, self.coat_color = ggx(p.get("coat_roughness", 0)), as_data(p.get("coat_color", [1, 1, 1]))
             ior = p.get("coat_ior", 1.6)
@@ -131,6 +137,17 @@ class Lobe(mi.BSDF):
             possible &= through_ok
         return h, self._reflects(vh, eta), through, jacobian, possible
 
+    def _darkening(self, cosine):
+        """OpenPBR 1.1, "Darkening", of the base that is no glass."""
+        ior = (1 + self.coat_f0**0.5) / (1 - self.coat_f0**0.5)
+        matt = 1 - (1 - (self.coat_f0 + (1 - self.coat_f0) / 21)) / ior**2
+        diffuse = dr.lerp(self.color, self.inside * (2 if self.thin else 1), self.subsurface)
+        albedo = dr.lerp(dr.lerp(diffuse, mi.Color3f(1), self.f0), self.color, self.metallic)
+        smooth = self.f0 + self.metallic * (1 - self.f0)
+        back = dr.lerp(dr.lerp(mi.Float(self.coat_f0), 1, schlick(cosine)), matt, 1 + smooth * (self.roughness - 1))
+        back = dr.minimum(back, 0.999)
+        return dr.lerp(mi.Color3f(1), (1 - back) / (1 - albedo * back), self.coat)
+
     def _value(self, v, l, outside, eta):
         """f times the cosine of l."""
         above, below = (v.z > 0) & (l.z > 0), (v.z > 0) & (l.z < 0)
@@ -151,6 +168,9 @@ class Lobe(mi.BSDF):
             value += dr.select(above & outside, under * lobe * self.scale["coat"], 0)
             passes = dr.lerp(mi.Color3f(1), self.coat_color, self.coat) * (1 - self.coat * (self.coat_f0 * a + b) * gain)
             under *= dr.select(outside, passes, 1)
+            dark = dr.select(outside, self._darkening(v.z), 1)
+        else:
+            dark = mi.Color3f(1)
         a, b = self.a(v.z), self.b(v.z)
         single = dr.maximum(a + b, 1e-3)
         missing = (1 - single) / single
@@ -161,9 +181,9 @@ class Lobe(mi.BSDF):
         layer = dr.lerp(mi.Float(self.f0), self.f90, f) * gain * dielectric * self.scale["layer"]
         metal = dr.lerp(self.color, mi.Color3f(1), f) * (1 + self.color * missing) * self.metallic * self.scale["metal"]
         base += (metal + layer) * self.base.eval(h) * shadowing(self.base, v, l, h) / (4 * v.z)
-        value += dr.select(above, under * base, 0)
+        value += dr.select(above, under * dark * base, 0)
         if self.thin and self.subsurface > 0:
-            value += dr.select(below, under * self.inside * self.subsurface * left * self.scale["beyond"] * -l.z * dr.inv_pi, 0)
+            value += dr.select(below, under * dark * self.inside * self.subsurface * left * self.scale["beyond"] * -l.z * dr.inv_pi, 0)
         if self.glass > 0:
             h, reflects, through, jacobian, possible = self._glass(v, l, eta)
             single = dr.maximum(a + b, 1e-3) if self.thin else \

@@ -95,7 +95,7 @@ def native_dict(m):
     scale = {name: m.lobes.get(name, 1.0) for name in lobe.LOBES}
     if m.native == "diffuse":
         return {"type": "diffuse", "reflectance": bitmap(m.maps["rgb"], m.color) if "rgb" in m.maps else rgb(m.color)}
-    if m.native == "white_metal":  # without a colour both have no Fresnel term; smooth enough, masking twice over is none
+    if m.native == "white_metal":  # without a colour both have no Fresnel term
         return {"type": "roughconductor", "material": "none", "distribution": "ggx", "alpha": m.roughness**2}
     if m.native == "mirror":
         return {"type": "conductor", "material": "none", "specular_reflectance": rgb(scaled(m.color, scale["metal"]))}

@@ -4,7 +4,7 @@ import subprocess
 
 import measure
 import scenes
-from judge import HERE, ROOT
+from judge import HERE, ROOT, closed_form
 
 PAGE = ROOT / "docs" / "mitsuba.md"
 BEGIN, END = "<!-- table: ./gloam mitsuba --keep -->", "<!-- end of table -->"
@@ -21,7 +21,8 @@ def write(rows, folder, complete):
              "|---|---|---|---|---|---|---|---|---|", *(lines[name] for name in scenes.ALL if name in lines)]
     PAGE.write_text(head + BEGIN + "\n" + "\n".join(table) + "\n" + END + tail)
     if complete:
-        sheet = {"folder": str(folder), "out": str(ROOT / "docs" / "images" / "mitsuba.jpg"), "scenes": [name for name in scenes.ALL if scenes.ALL[name].peer]}
+        sheet = {"folder": str(folder), "out": str(ROOT / "docs" / "images" / "mitsuba.jpg"), "scenes": list(scenes.ALL),
+                 "exact": {name: closed_form(name).mean for name in scenes.ALL if not scenes.ALL[name].peer}}
         subprocess.run([measure.peer_python(), HERE / "sheet.py", json.dumps(sheet)], check=True)
 
 

@@ -72,7 +72,8 @@ def lamps_room(size=SIZE):
     s = camera(size)
     shell(s, 2.2, 2.1, 2.6)
     furnish(s)
-    metal = s.material("metal", color=(1, 1, 1), metallic=1.0, roughness=0.25, native="white_metal")
+    # Smooth: Mitsuba's rough metal loses the light that it scatters more than once, 9 % of what grazes it at a roughness of 0.25.
+    metal = s.material("metal", color=(1, 1, 1), metallic=1.0, roughness=0.15, native="white_metal")
     mirror = s.material("mirror", color=(1, 1, 1), metallic=1.0, roughness=0.0, native="mirror")
     glass = s.material("glass", color=(1, 1, 1), roughness=0.0, native="glass", layers={"transmission_weight": 1, "ior": 1.5})
     s.sphere(metal, (-0.25, 0.5, 0.89), 0.15)

@@ -117,6 +117,9 @@ struct MaterialOptions {
   std::optional<Vec3> subsurface_color = {};      ///< default 0.8
   std::optional<double> coat_weight = {}, coat_roughness = {}, coat_ior = {};  ///< ior: 1.6
   std::optional<Vec3> coat_color = {};
+  /// 0 … 1, default 1: light that the coat throws back down is dimmed by the base again, as it is
+  /// beneath real lacquer; 0: the base keeps its colour (OpenPBR 1.1)
+  std::optional<double> coat_darkening = {};
   std::optional<double> fuzz_weight = {}, fuzz_roughness = {};  ///< roughness: 0.5
   std::optional<Vec3> fuzz_color = {};
   std::optional<PatternOptions> pattern = {};  ///< multiplies the colour, sets roughness and bumps
@@ -124,6 +127,8 @@ struct MaterialOptions {
   std::optional<double> wetness = {};          ///< 0 dry … 1 under water where level
   std::optional<double> porosity = {};         ///< 0 glass and metal … 0.8 concrete, wood
   std::optional<double> dust = {}, snow = {};  ///< 0 … 1
+  /// PNG or JPEG, as `bump`; their red times the number of the same name. Empty = none.
+  std::filesystem::path coat_weight_map = {}, coat_roughness_map = {}, transmission_weight_map = {};
   /// PNG or JPEG of heights, relative to the scene file, on the texture's coordinates; empty = none
   std::filesystem::path bump = {};
   std::optional<double> bump_scale = {};  ///< [m] that white stands above black, default 0.001

@@ -129,6 +129,7 @@ void visit_fields(Visitor& v, MaterialOptions& o) {
   v("coat_roughness", o.coat_roughness, kShare);
   v("coat_ior", o.coat_ior, FieldRule{.min = 1, .max = 3});
   v("coat_color", o.coat_color, kShare);
+  v("coat_darkening", o.coat_darkening, kShare);
   v("fuzz_weight", o.fuzz_weight, kShare);
   v("fuzz_roughness", o.fuzz_roughness, kShare);
   v("fuzz_color", o.fuzz_color, kShare);
@@ -138,6 +139,9 @@ void visit_fields(Visitor& v, MaterialOptions& o) {
   v("porosity", o.porosity, kShare);
   v("dust", o.dust, kShare);
   v("snow", o.snow, kShare);
+  v("coat_weight_map", o.coat_weight_map, FieldRule{});
+  v("coat_roughness_map", o.coat_roughness_map, FieldRule{});
+  v("transmission_weight_map", o.transmission_weight_map, FieldRule{});
   v("bump", o.bump, FieldRule{});
   v("bump_scale", o.bump_scale, FieldRule{.unit = "m", .min = -10, .max = 10});
 }

@@ -117,8 +117,12 @@ Status find_files(const FileFinder& finder, Scene* scene) {
     GLOAM_TRY_STATUS(finder.find_model(&robot.file, robot.loc));
   for (VisualOptions& visual : scene->visuals)
     GLOAM_TRY_STATUS(finder.find(&visual.file, visual.loc));
-  for (MaterialOptions& material : scene->materials)
-    GLOAM_TRY_STATUS(finder.find(&material.bump, material.loc));
+  for (MaterialOptions& material : scene->materials) {
+    for (auto* map : {&material.bump, &material.coat_weight_map, &material.coat_roughness_map,
+                      &material.transmission_weight_map}) {
+      GLOAM_TRY_STATUS(finder.find(map, material.loc));
+    }
+  }
   for (LightOptions& light : scene->lights) {
     GLOAM_TRY_STATUS(finder.find(&light.file, light.loc));
     GLOAM_TRY_STATUS(finder.find(&light.ies, light.loc));

@@ -57,7 +57,35 @@ ProceduralDescription pattern_of(const PatternOptions& in) {
   return out;
 }
 
-void apply(const MaterialOptions& in, int pattern, int wear, int bump, MaterialDescription* out) {
+/// Rows of RenderDescription::textures that a table brings.
+struct OwnTextures {
+  int bump = -1, coat_weight = -1, coat_roughness = -1, transmission = -1;
+};
+
+Result<int> add_texture(const std::filesystem::path& file, RenderDescription* out) {
+  if (file.empty()) return -1;
+  GLOAM_TRY(Image8 image, read_image(file));
+  image.color_space = ColorSpace::kLinear;
+  out->textures.push_back({file.filename().string(), {std::move(image)}});
+  return static_cast<int>(out->textures.size()) - 1;
+}
+
+Result<OwnTextures> add_textures(const MaterialOptions& in, RenderDescription* out) {
+  OwnTextures own;
+  GLOAM_TRY(own.bump, add_texture(in.bump, out));
+  GLOAM_TRY(own.coat_weight, add_texture(in.coat_weight_map, out));
+  GLOAM_TRY(own.coat_roughness, add_texture(in.coat_roughness_map, out));
+  GLOAM_TRY(own.transmission, add_texture(in.transmission_weight_map, out));
+  return own;
+}
+
+bool has_own_texture(const MaterialOptions& in) {
+  return !(in.bump.empty() && in.coat_weight_map.empty() && in.coat_roughness_map.empty() &&
+           in.transmission_weight_map.empty());
+}
+
+void apply(const MaterialOptions& in, int pattern, int wear, const OwnTextures& own,
+           MaterialDescription* out) {
   const auto number = [](const std::optional<double>& from, float* to) {
     if (from) *to = static_cast<float>(*from);
   };
@@ -82,6 +110,7 @@ void apply(const MaterialOptions& in, int pattern, int wear, int bump, MaterialD
   number(in.coat_roughness, &out->coat_roughness);
   number(in.coat_ior, &out->coat_ior);
   color(in.coat_color, &out->coat_color);
+  number(in.coat_darkening, &out->coat_darkening);
   number(in.fuzz_weight, &out->fuzz_weight);
   number(in.fuzz_roughness, &out->fuzz_roughness);
   color(in.fuzz_color, &out->fuzz_color);
@@ -91,11 +120,14 @@ void apply(const MaterialOptions& in, int pattern, int wear, int bump, MaterialD
   number(in.porosity, &out->porosity);
   number(in.dust, &out->dust);
   number(in.snow, &out->snow);
-  if (bump >= 0) {
-    out->mapping = TextureMapping::kUv;
-    out->textures.bump = bump;
+  if (has_own_texture(in)) out->mapping = TextureMapping::kUv;
+  if (own.bump >= 0) {
+    out->textures.bump = own.bump;
     out->bump_scale = kBumpScale;
   }
+  if (own.coat_weight >= 0) out->textures.coat_weight = own.coat_weight;
+  if (own.coat_roughness >= 0) out->textures.coat_roughness = own.coat_roughness;
+  if (own.transmission >= 0) out->textures.transmission = own.transmission;
   number(in.bump_scale, &out->bump_scale);
 }
 
@@ -103,8 +135,8 @@ void apply(const MaterialOptions& in, int pattern, int wear, int bump, MaterialD
 std::string why_not(const MaterialOptions& in, const MaterialDescription& material) {
   if (!material.imported && (in.base_color || in.metallic || in.roughness || in.emission))
     return "comes from the model: say its colour, metalness, roughness and emission there";
-  if (!in.bump.empty() && material.mapping == TextureMapping::kCube)
-    return "has a cube texture, which cannot be joined by a bump map";
+  if (has_own_texture(in) && material.mapping == TextureMapping::kCube)
+    return "has a cube texture, which cannot be joined by a bump map or maps of layers";
   return {};
 }
 
@@ -136,20 +168,14 @@ Status author_materials(const std::vector<MaterialOptions>& options, RenderDescr
       return static_cast<int>(out->procedurals.size()) - 1;
     };
     const int pattern = row_of(o->pattern), wear = row_of(o->wear);
-    int bump = -1;
-    if (!o->bump.empty()) {
-      GLOAM_TRY(Image8 heights, read_image(o->bump));
-      heights.color_space = ColorSpace::kLinear;
-      bump = static_cast<int>(out->textures.size());
-      out->textures.push_back({o->bump.filename().string(), {std::move(heights)}});
-    }
+    GLOAM_TRY(const OwnTextures own, add_textures(*o, out));
     bool found = false;
     for (MaterialDescription& material : out->materials) {
       if (material.name.empty() || !fits_pattern(o->name, material.name)) continue;
       if (const std::string why = why_not(*o, material); !why.empty())
         return Error{ErrorKind::kInput, fmt::format("material '{}' {}", material.name, why),
                      o->loc};
-      apply(*o, pattern, wear, bump, &material);
+      apply(*o, pattern, wear, own, &material);
       found = true;
     }
     if (found) continue;

@@ -53,9 +53,11 @@ class SurfaceMaker {
 
   /// A material's textures share one set of coordinates: those of the first of these.
   void choose_uvs() {
-    const TextureRef* shown[] = {
-        &in_.base_color_texture, &in_.roughness_texture, &in_.metallic_texture, &in_.normal_texture,
-        &in_.emission_texture,   &in_.opacity_texture,   &in_.bump_texture};
+    const TextureRef* shown[] = {&in_.base_color_texture,     &in_.roughness_texture,
+                                 &in_.metallic_texture,       &in_.normal_texture,
+                                 &in_.emission_texture,       &in_.opacity_texture,
+                                 &in_.bump_texture,           &in_.coat_weight_texture,
+                                 &in_.coat_roughness_texture, &in_.transmission_texture};
     bool all_repeat = true;
     for (const TextureRef* texture : shown) {
       if (!textures_->has(*texture)) continue;
@@ -162,9 +164,14 @@ class SurfaceMaker {
   }
 
   void set_layers() {
-    m().coat_weight = in_.coat_weight * mean_of(in_.coat_weight_texture, "coat weight");
-    m().coat_roughness = in_.coat_roughness * mean_of(in_.coat_roughness_texture, "coat roughness");
+    m().coat_weight = in_.coat_weight;
+    m().coat_roughness = in_.coat_roughness;
     m().coat_ior = kCoatIor;
+    m().coat_darkening = 0;  // glTF's coat dims the base by what it reflects alone
+    if (in_.coat_weight > 0) {
+      m().textures.coat_weight = row_of(in_.coat_weight_texture, "coat weight");
+      m().textures.coat_roughness = row_of(in_.coat_roughness_texture, "coat roughness");
+    }
     if (m().coat_weight > 0 && in_.coat_normal_texture.ok())
       leave_out("the coat's normal map is left out: it has the base's");
     m().fuzz_weight = in_.fuzz_weight;
@@ -180,9 +187,9 @@ class SurfaceMaker {
   /// glTF and MTL colour light that goes through by the base colour, once; the renderer colours it
   /// either at the surface or with depth.
   void set_transmission() {
-    m().transmission_weight =
-        in_.transmission_weight * mean_of(in_.transmission_texture, "transmission");
+    m().transmission_weight = in_.transmission_weight;
     if (!(m().transmission_weight > 0)) return;
+    m().textures.transmission = row_of(in_.transmission_texture, "transmission");
     m().thin_walled = in_.thin_walled;
     Vec3f tint = in_.base_color;
     if (textures_->has(in_.base_color_texture)) {

@@ -32,6 +32,12 @@ struct MaterialTextures {
   int normal = -1;  ///< tangent space, linear
   int opacity = -1, emission = -1;
   int bump = -1;  ///< linear; heights of MaterialDescription::bump_scale
+  int coat_weight = -1, coat_roughness = -1, transmission = -1;  ///< linear
+
+  std::array<int, 12> all() const {
+    return {base_color, roughness, metallic,    occlusion,      orm,         normal, opacity,
+            emission,   bump,      coat_weight, coat_roughness, transmission};
+  }
 };
 
 /// Names after OpenPBR 1.1.
@@ -57,6 +63,7 @@ struct MaterialDescription {
   float subsurface_weight = 0;   ///< 0..1
   Vec3f subsurface_color{0.8f, 0.8f, 0.8f};
   float coat_weight = 0, coat_roughness = 0, coat_ior = 1.6f;
+  float coat_darkening = 1;   ///< 0..1, of the base by light that the coat throws back down
   Vec3f coat_color{1, 1, 1};  ///< of light that has gone in and out through the coat
   float fuzz_weight = 0, fuzz_roughness = 0.5f;
   Vec3f fuzz_color{1, 1, 1};

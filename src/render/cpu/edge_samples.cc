@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "render/kernel/channels.h"
+#include "render/kernel/medium_march.h"
 #include "render/kernel/sampler.h"
 
 namespace gloam {
@@ -44,6 +45,7 @@ class Row {
       for (int k = 0; edge && k < count_; ++k) add(x, k);
     }
     flush();
+    for (int x = 0; job_.scene.has_media() && x < film_->width; ++x) veil(x);
     return rays_;
   }
 
@@ -60,6 +62,21 @@ class Row {
     samples_[used_] = camera_ray(job_.camera, static_cast<float>(x) + 0.5f + offset.x,
                                  static_cast<float>(y_) + 0.5f + offset.y, time, &cones_[used_]);
     if (++used_ == kPacket) flush();
+  }
+
+  /// Media before the surface: what scatters first counts, each by the light that it takes.
+  void veil(int x) {
+    constexpr int kSteps = 64;
+    RayCone cone;
+    const Ray ray = camera_ray(job_.camera, static_cast<float>(x) + 0.5f,
+                               static_cast<float>(y_) + 0.5f, 0.0f, &cone);
+    const size_t i = pixel(x);
+    const MarchResult m = march(job_.scene.media, ray, min(film_->distance[i], 1e30f), 0.0f, kSteps,
+                                {}, [](const MediumPoint& at, Vec3f) { return at.scattering; });
+    const Vec3f albedo = film_->albedo[i] * m.transmittance + m.radiance;
+    // What glows is brighter than any albedo.
+    film_->albedo[i] = {min(albedo.x, 1.0f), min(albedo.y, 1.0f), min(albedo.z, 1.0f)};
+    film_->normal[i] *= luminance(m.transmittance);
   }
 
   void flush() {

@@ -16,7 +16,8 @@ struct EdgeSamples {
 
 /// Where shape and albedo hardly change from pixel to pixel, the film's albedo and normal become
 /// those at the pixel's centre; at edges, the mean over `count` rays through the pixel's filter,
-/// which end at the first surface. The film has the exact channels. Returns the rays traced.
+/// which end at the first surface. Media before it take their share, with their own
+/// albedo and no normal. The film has the exact channels. Returns the rays traced.
 uint64_t refine_guides(const EdgeSamples& job, int count, Film* film);
 
 }  // namespace gloam

@@ -48,10 +48,10 @@ GLOAM_HD Vec3f passing_light_of(const SceneView& scene, const Surface& s, Vec3f 
   const int row = scene.materials[scene.instances[s.instance].material].layers;
   if (row < 0) return passing;
   const MaterialLayers& m = scene.layers[static_cast<uint32_t>(row)];
-  if (m.straight || m.transmission <= 0) return passing;
+  if (m.straight || s.transmission <= 0) return passing;
   float cos_t;
   const float f = fresnel_dielectric(fabsf(dot(s.normal, d)), m.ior, &cos_t);
-  return passing + m.tint * (s.opacity * m.transmission * (1.0f - s.metallic) * (1.0f - f));
+  return passing + m.tint * (s.opacity * s.transmission * (1.0f - s.metallic) * (1.0f - f));
 }
 
 /// A surface that the view meets: what it gives off, and the ambient light.

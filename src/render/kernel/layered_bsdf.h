@@ -206,8 +206,30 @@ struct SurfaceParameters {
   Vec3f base_color;
   float metallic = 0, roughness = 0, f0 = 0, f90 = 0;
   bool outside = true;
-  float coat_weight = 0, coat_roughness = 0, coat_f0 = 0.04f, fuzz_weight = 0;
+  float coat_weight = 0, coat_roughness = 0, coat_f0 = 0.04f, coat_darkening = 0, fuzz_weight = 0;
+  float transmission = 0;
 };
+
+/// Roughness that lobes seem to have through a rough coat of the weight `coat`, which blurs what
+/// goes in and what comes out (OpenPBR 1.1, "Roughening").
+GLOAM_HD float roughness_under_coat(float roughness, float coat_roughness, float coat) {
+  if (!(coat * coat_roughness > 0)) return roughness;
+  const float blurred = min(sqr(sqr(roughness)) + 2.0f * sqr(sqr(coat_roughness)), 1.0f);
+  return lerp(roughness, sqrtf(sqrtf(blurred)), coat);
+}
+
+/// Share of the base's light that is left where a coat throws a part back down again and again:
+/// OpenPBR 1.1, "Darkening". `base`: its albedo; `roughness`: 0 mirror … 1 diffuse.
+GLOAM_HD Vec3f darkened_by_coat(float coat_f0, float cosine, float roughness, Vec3f base) {
+  const float root = sqrtf(coat_f0), ior = (1.0f + root) / (1.0f - root);
+  const float mean = coat_f0 + (1.0f - coat_f0) * (1.0f / 21.0f);  // of Schlick's term, all around
+  const float diffuse = 1.0f - (1.0f - mean) / sqr(ior);
+  const float thrown_back =
+      min(lerp(lerp(coat_f0, 1.0f, ggx::schlick(cosine)), diffuse, roughness), 0.999f);
+  const float passes = 1.0f - thrown_back;
+  return {passes / (1.0f - base.x * thrown_back), passes / (1.0f - base.y * thrown_back),
+          passes / (1.0f - base.z * thrown_back)};
+}
 
 /// The layers `m` over `s`; `wo` in the shading frame, z > 0.
 GLOAM_HD LayeredBsdf make_layered(const SceneView& scene, const MaterialLayers& m,
@@ -240,25 +262,40 @@ GLOAM_HD LayeredBsdf make_layered(const SceneView& scene, const MaterialLayers& 
     b.coat_f90 = share;
     b.under = b.under * lerp(Vec3f{1, 1, 1}, m.coat_color, coat) * (1.0f - coat * coat_albedo);
   }
-  const float through = m.transmission * (1.0f - s.metallic);
-  b.base = make_bsdf(table, s.base_color, Vec3f{1, 1, 1}, s.metallic, 1.0f - m.transmission,
-                     s.roughness, s.f0, s.f90, m.anisotropy, wo);
+  const float roughness = roughness_under_coat(s.roughness, s.coat_roughness, coat);
+  const float through = s.transmission * (1.0f - s.metallic);
+  b.base = make_bsdf(table, s.base_color, Vec3f{1, 1, 1}, s.metallic, 1.0f - s.transmission,
+                     roughness, s.f0, s.f90, m.anisotropy, wo);
   const float base_share = b.base.diffuse.x;  // of light that gets below the base's own layer
   const Vec3f inside = m.subsurface_color * (m.thin ? 0.5f : 1.0f);
   b.base.diffuse = lerp(s.base_color, inside, m.subsurface) * base_share;
   if (m.thin) b.beyond = inside * (m.subsurface * base_share);
+  if (coat * s.coat_darkening > 0) {
+    // Glass is not dimmed: what the coat throws back goes through.
+    const Vec3f white{1, 1, 1};
+    const Vec3f diffuse = lerp(s.base_color, m.subsurface_color, m.subsurface);
+    const Vec3f albedo = lerp(lerp(diffuse, white, s.f0), s.base_color, s.metallic);
+    const float smooth = lerp(s.f0, 1.0f, s.metallic);
+    const Vec3f left =
+        lerp(white, darkened_by_coat(s.coat_f0, wo.z, lerp(1.0f, roughness, smooth), albedo),
+             coat * s.coat_darkening);
+    b.base.diffuse *= left;
+    b.base.f0 *= left;
+    b.base.f90 *= left;
+    b.beyond *= left;
+  }
   if (through > 0) {
     b.thin = m.thin;
     b.straight = m.straight;
     b.eta = s.outside || m.thin ? m.ior : 1.0f / m.ior;
     b.tint = m.tint;
-    b.glass_alpha = ggx_widths(s.roughness, m.anisotropy);
+    b.glass_alpha = ggx_widths(roughness, m.anisotropy);
     b.glass_root = ggx::smith_root(b.glass_alpha, wo);
-    layer_albedo(table, s.roughness, wo.z, &a, &f);
-    b.glass = through /
-              (m.thin ? max(a + f, 1e-3f) : glass_albedo(*scene.glass, s.roughness, wo.z, b.eta));
+    layer_albedo(table, roughness, wo.z, &a, &f);
+    b.glass =
+        through / (m.thin ? max(a + f, 1e-3f) : glass_albedo(*scene.glass, roughness, wo.z, b.eta));
   }
-  layer_albedo(table, s.roughness, wo.z, &a, &f);
+  layer_albedo(table, roughness, wo.z, &a, &f);
   const float weight[5] = {luminance((b.base.diffuse + b.base.f0 * a + b.base.f90 * f) * b.under),
                            coat * coat_albedo * under_fuzz.x, max_component(b.fuzz) * fuzz_albedo,
                            through * luminance(b.under), luminance(b.beyond * b.under)};

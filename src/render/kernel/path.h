@@ -185,6 +185,12 @@ GLOAM_HD ArrivalOf<F> arrive(const SceneView& scene, const PathOptions& options,
   path.cone_width =
       select(found | mote.scattered, path.cone_width + path.cone_spread * way, path.cone_width);
   const Mask first = solid & !path.seen_first;
+  if (const Mask hidden = mote.scattered & !path.seen_first; any(hidden)) {
+    each_lane(hidden, [&](int i) {
+      set_lane(&path.result.albedo, i,
+               Bands{}.of(scene.media.volumes[lane(mote.volume, i)].albedo));
+    });
+  }
   path.seen_first = path.seen_first | first | mote.scattered;
   path.result.albedo = select<F>(first, v.base_color, path.result.albedo);
   path.result.normal = select<F>(first, v.normal, path.result.normal);

@@ -18,7 +18,7 @@ struct PathOptions {
 template <class F>
 struct PathResultOf {
   Vec3Of<F> radiance;   ///< [cd/m²]
-  Vec3Of<F> albedo;     ///< of the first surface, 0 = sky or medium
+  Vec3Of<F> albedo;     ///< of the first surface, or the medium that scattered before it; 0 = sky
   Vec3Of<F> normal;     ///< of the first surface, 0 = sky or medium
   UintOf<F> rays = 0u;  ///< traced
 };

@@ -67,6 +67,7 @@ struct Texel {
 struct MaterialLayers {
   float coat_weight = 0, coat_roughness = 0;
   float coat_f0 = 0.04f;  ///< at normal incidence
+  float coat_darkening = 1;
   Vec3f coat_color{1, 1, 1};
   float fuzz_weight = 0, fuzz_roughness = 0.5f;
   Vec3f fuzz_color{1, 1, 1};

@@ -187,7 +187,8 @@ GLOAM_HD LayeredBsdfOf<F> surface_bsdf(const SceneView& scene, const SurfaceOf<F
                                    lane(s.roughness, i),   lane(s.f0, i),
                                    lane(s.f90, i),         lane(s.outside, i),
                                    lane(s.coat_weight, i), lane(s.coat_roughness, i),
-                                   lane(s.coat_f0, i),     lane(s.fuzz_weight, i)};
+                                   lane(s.coat_f0, i),     lane(s.coat_darkening, i),
+                                   lane(s.fuzz_weight, i), lane(s.transmission, i)};
       set_lane(
           &bsdf, i,
           make_layered(scene, scene.layers[static_cast<uint32_t>(row)], base, lane(wo_local, i)));

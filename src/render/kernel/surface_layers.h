@@ -86,6 +86,20 @@ GLOAM_HD Field apply_weather(const MaterialLayers& m, Vec3f n_W, float width, fl
   return cover.relief;
 }
 
+/// Shares of the layers by their textures. `n_G` = unit geometric normal, outwards.
+GLOAM_HD void apply_layer_textures(const SceneView& scene, const InstanceView& instance,
+                                   const RayHit& hit, Vec3f p_G, Vec3f n_G, float width,
+                                   Surface* s) {
+  const MaterialView& m = scene.materials[instance.material];
+  const MaterialTextures& map = m.textures;
+  const bool any = map.coat_weight >= 0 || map.coat_roughness >= 0 || map.transmission >= 0;
+  if (!any || m.mapping == TextureMapping::kNone) return;
+  const TextureCoordinates at = texture_coordinates(scene, instance, m, hit, p_G, n_G, width);
+  if (map.coat_weight >= 0) s->coat_weight *= lookup(scene, m, map.coat_weight, at).rgb.x;
+  if (map.coat_roughness >= 0) s->coat_roughness *= lookup(scene, m, map.coat_roughness, at).rgb.x;
+  if (map.transmission >= 0) s->transmission *= lookup(scene, m, map.transmission, at).rgb.x;
+}
+
 /// All that a material with layers is at the place of the surface `s`, seen along d by a ray
 /// `width` wide there [m].
 GLOAM_HD void apply_layers(const SceneView& scene, const RayHit& hit, const Affine3f& X_WG,
@@ -97,20 +111,27 @@ GLOAM_HD void apply_layers(const SceneView& scene, const RayHit& hit, const Affi
   s->coat_roughness = m.coat_roughness;
   s->coat_f0 = m.coat_f0;
   s->fuzz_weight = m.fuzz_weight;
+  s->transmission = m.transmission;
+  s->coat_darkening = m.coat_darkening;
   const float side = s->outside ? 1.0f : -1.0f;
   const Vec3f geometric_W = s->geometric * side;  // outwards
+  const Vec3f n_G = to_frame(X_WG, geometric_W);
+  apply_layer_textures(scene, instance, hit, p_G, n_G, width, s);
   if (m.pattern >= 0 || m.wear >= 0 || m.wetness + m.dust + m.snow > 0) {
-    Field relief = apply_patterns(scene, m, p_G, to_frame(X_WG, geometric_W), width, s);
+    Field relief = apply_patterns(scene, m, p_G, n_G, width, s);
     relief.gradient = transform_vector(X_WG, relief.gradient);
     if (m.wetness + m.dust + m.snow > 0) {
+      // Water darkens by what it does to the albedo beneath (wet_albedo).
+      const float dry = s->coat_weight * s->coat_darkening;
       float bump;
       const Field snow = apply_weather(m, geometric_W, width, &bump, s);
       relief = relief * bump + snow;
+      s->coat_darkening = s->coat_weight > 0 ? min(dry / s->coat_weight, 1.0f) : 0.0f;
     }
     s->normal = face_viewer(bumped_normal(s->normal * side, relief) * side, d);
   }
   Vec3f u, v;
-  if (m.anisotropy > 0 && tangents(scene, instance, hit, time, &u, &v)) {
+  if (m.anisotropy > 0 && tangents(scene, instance, hit, p_G, n_G, time, &u, &v)) {
     const Vec3f along = transform_vector(X_WG, u);
     const Vec3f x = along - s->normal * dot(along, s->normal);
     if (length_squared(x) > 0) {
@@ -121,7 +142,7 @@ GLOAM_HD void apply_layers(const SceneView& scene, const RayHit& hit, const Affi
   if (m.straight) {
     float cos_t;
     const float f = fresnel_dielectric(fabsf(dot(s->normal, d)), m.ior, &cos_t);
-    s->straight = m.tint * (m.transmission * (1.0f - s->metallic) * (1.0f - f) / (1.0f + f));
+    s->straight = m.tint * (s->transmission * (1.0f - s->metallic) * (1.0f - f) / (1.0f + f));
   }
 }
 

@@ -34,7 +34,7 @@ struct SurfaceOf {
   Vec3Of<F> straight;  ///< of light on what is opaque, the share that goes straight through: sheets
   Vec3Of<F> tangent;   ///< unit, across `normal`: highlights are drawn out along it; zero = round
   // Of materials with layers alone: as in MaterialLayers, patterns and weather included.
-  F coat_weight{}, coat_roughness{}, coat_f0{}, fuzz_weight{};
+  F coat_weight{}, coat_roughness{}, coat_f0{}, coat_darkening{}, fuzz_weight{}, transmission{};
 };
 using Surface = SurfaceOf<float>;
 
@@ -58,7 +58,9 @@ GLOAM_HD Surface lane(const SurfaceOf<F>& s, int i) {
           lane(s.coat_weight, i),
           lane(s.coat_roughness, i),
           lane(s.coat_f0, i),
-          lane(s.fuzz_weight, i)};
+          lane(s.coat_darkening, i),
+          lane(s.fuzz_weight, i),
+          lane(s.transmission, i)};
 }
 
 /// What textures and layers change.
@@ -75,7 +77,9 @@ GLOAM_HD void set_lane(SurfaceOf<F>* s, int i, const Surface& value) {
   set_lane(&s->coat_weight, i, value.coat_weight);
   set_lane(&s->coat_roughness, i, value.coat_roughness);
   set_lane(&s->coat_f0, i, value.coat_f0);
+  set_lane(&s->coat_darkening, i, value.coat_darkening);
   set_lane(&s->fuzz_weight, i, value.fuzz_weight);
+  set_lane(&s->transmission, i, value.transmission);
 }
 
 /// Of the light on a surface the share that is met: the rest passes as if nothing were there.

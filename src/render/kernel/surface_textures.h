@@ -86,12 +86,41 @@ GLOAM_HD Rgba lookup(const SceneView& scene, const MaterialView& material, int t
              : lookup_2d(scene, texture, at.uv, at.footprint);
 }
 
+/// The same of analytic shapes at p_G, where the unit geometric normal is n_G: as
+/// world/texture_coordinates.h lays textures on them. Only right along the surface.
+GLOAM_HD void shape_tangents(ShapeType shape, Vec3f p_G, Vec3f n_G, Vec3f* tangent_u,
+                             Vec3f* tangent_v) {
+  const float ax = fabsf(n_G.x), ay = fabsf(n_G.y), az = fabsf(n_G.z);
+  *tangent_u = {1, 0, 0};
+  *tangent_v = {0, 1, 0};
+  switch (shape) {
+    case ShapeType::kBox:
+      if (az >= ax && az >= ay) return;
+      if (ax > ay) *tangent_u = {0, 1, 0};
+      *tangent_v = {0, 0, 1};
+      return;
+    case ShapeType::kCylinder:
+      if (az > 0.5f) {
+        *tangent_v = {0, -1, 0};
+        return;
+      }
+      [[fallthrough]];
+    case ShapeType::kSphere:
+    case ShapeType::kEllipsoid:
+    case ShapeType::kCapsule:
+      *tangent_u = {-p_G.y, p_G.x, 0};
+      *tangent_v = {0, 0, 1};
+      return;
+    default:
+      return;
+  }
+}
+
 /// Tangents of increasing u and v in the frame G, not normalised; false where the map is singular.
 GLOAM_HD bool tangents(const SceneView& scene, const InstanceView& instance, const RayHit& hit,
-                       float time, Vec3f* tangent_u, Vec3f* tangent_v) {
+                       Vec3f p_G, Vec3f n_G, float time, Vec3f* tangent_u, Vec3f* tangent_v) {
   if (!is_mesh(instance.shape)) {
-    *tangent_u = {1, 0, 0};
-    *tangent_v = {0, 1, 0};
+    shape_tangents(instance.shape, p_G, n_G, tangent_u, tangent_v);
     return true;
   }
   const MeshView& mesh = scene.meshes[instance.mesh];
@@ -124,7 +153,7 @@ GLOAM_HD Vec3f bump_gradient(const SceneView& scene, const InstanceView& instanc
   Vec3f u_slope, v_slope;  // change of u and v per metre
   if (has_uv) {
     Vec3f along_u, along_v;
-    if (!tangents(scene, instance, hit, time, &along_u, &along_v)) return {};
+    if (!tangents(scene, instance, hit, p_G, n_G, time, &along_u, &along_v)) return {};
     const Vec3f n = cross(along_u, along_v);
     const float inv = 1.0f / length_squared(n);
     const Vec2f c = m.texture_uniform ? Vec2f{instance.size.x, instance.size.y} : Vec2f{1, 1};
@@ -169,7 +198,7 @@ GLOAM_HD void apply_textures(const SceneView& scene, const InstanceView& instanc
   if (map.emission >= 0) s->emission *= lookup(scene, m, map.emission, at).rgb;
   Vec3f u, v;
   if (map.normal >= 0 && m.mapping == TextureMapping::kUv &&
-      tangents(scene, instance, hit, time, &u, &v)) {
+      tangents(scene, instance, hit, p_G, n_G, time, &u, &v)) {
     const Vec3f n = lookup(scene, m, map.normal, at).rgb * 2.0f - Vec3f{1, 1, 1};
     const Vec3f x = transform_vector(X_WG, u), y = transform_vector(X_WG, v), z = s->normal;
     const Vec3f tx = x - z * dot(z, x), ty = y - z * dot(z, y);

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/check.h"
+#include "render/kernel/layered_bsdf.h"
 #include "world/visual_rules.h"
 
 namespace gloam {
@@ -22,6 +23,7 @@ MaterialLayers layers_of(const MaterialDescription& in) {
   out.coat_weight = unit(in.coat_weight);
   out.coat_roughness = unit(in.coat_roughness);
   out.coat_f0 = sqr((in.coat_ior - 1) / (in.coat_ior + 1));
+  out.coat_darkening = unit(in.coat_darkening);
   out.coat_color = color(in.coat_color);
   out.fuzz_weight = unit(in.fuzz_weight);
   out.fuzz_roughness = unit(in.fuzz_roughness);
@@ -31,7 +33,8 @@ MaterialLayers layers_of(const MaterialDescription& in) {
   out.ior = std::fabs(in.ior - 1) < 1e-3f ? 1.001f : clamp(in.ior, 1.0f / 3, 3.0f);
   out.thin = in.thin_walled;
   // Below that roughness the lobe is narrower than the kernel's narrowest.
-  out.straight = out.thin && out.transmission > 0 && in.roughness < 0.032f;
+  const float seen = roughness_under_coat(in.roughness, out.coat_roughness, out.coat_weight);
+  out.straight = out.thin && out.transmission > 0 && seen < 0.032f;
   const Vec3f through = color(in.transmission_color);
   if (in.transmission_depth > 0 && !out.thin) {
     const auto per_metre = [&](float t) {
@@ -74,6 +77,7 @@ MaterialView view_of(const MaterialDescription& in, const TextureStore& textures
   out.bump_scale = in.bump_scale;
   out.glows_in_color = in.glows_in_color;
   const MaterialTextures& t = in.textures;
+  // The layers look theirs up themselves, and occlusion is traced.
   const int used[] = {t.base_color, t.roughness, t.metallic, t.orm,
                       t.normal,     t.opacity,   t.emission, t.bump};
   out.textured = in.mapping != TextureMapping::kNone &&

@@ -41,9 +41,7 @@ Status check_references(const RenderDescription& d) {
             fmt::format("material '{}' refers to pattern {}, which does not exist", m.name, row));
       }
     }
-    const MaterialTextures& t = m.textures;
-    for (const int texture : {t.base_color, t.roughness, t.metallic, t.occlusion, t.orm, t.normal,
-                              t.opacity, t.emission, t.bump}) {
+    for (const int texture : m.textures.all()) {
       if (!is_texture(texture)) {
         return bad(fmt::format("material '{}' refers to texture {}, which does not exist", m.name,
                                texture));

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
-#include "render/test/scene_builder.h"
+#include "render/test/media_probe.h"
 
 namespace gloam {
 namespace {
@@ -53,6 +53,35 @@ TEST_F(EdgeSamplesTest, DoNotFlickerWhereNothingMoves) {
   EXPECT_EQ(first.albedo, second.albedo);
   EXPECT_EQ(first.normal, second.normal);
   EXPECT_NE(first.radiance, second.radiance);
+}
+
+/// Smoke that is not in its guides is taken for the pattern behind it, and that for smoke.
+TEST_F(EdgeSamplesTest, SmokeHidesWhatIsBehindItByItsTransmittance) {
+  const float depth = 0.7f;
+  MediaBuilder smoke;
+  smoke.add_box({8, 1, 8}, {0, 0, 0}, 1,
+                smoke.add_medium({depth, depth, depth}, {0.6f, 0.5f, 0.4f}));
+  SceneBuilder b;
+  b.add(ShapeType::kBox, {4, 0.1f, 4}, translation({0, 2, 0}), b.add_diffuse({0.8f, 0.1f, 0.1f}));
+  b.description.sky.ambient = {100, 100, 100};
+  b.description.media = smoke.media;
+  b.description.volumes = smoke.volumes;
+  const CameraView view = SceneBuilder::camera(look_at({0, -4, 0}, {}), 16, 16, 2);
+  RenderSettings settings;
+  settings.spp = 1;
+  settings.guide_samples = 4;
+  const Film refined = b.render(view, settings);
+  const float through = std::exp(-depth);
+  const Vec3f truth = Vec3f{0.8f, 0.1f, 0.1f} * through + Vec3f{0.6f, 0.5f, 0.4f} * (1 - through);
+  settings.spp = 1024;
+  const Film many = b.render(view, settings);
+  Vec3f mean;
+  for (size_t i = 0; i < refined.albedo.size(); ++i) {
+    EXPECT_LT(length(refined.albedo[i] - truth), 2e-3f) << "albedo of pixel " << i;
+    EXPECT_LT(length(refined.normal[i] - Vec3f{0, -through, 0}), 2e-3f) << "normal of pixel " << i;
+    mean += many.albedo[i] / static_cast<float>(many.albedo.size());
+  }
+  EXPECT_LT(length(mean - truth), 5e-3f) << "many samples say otherwise";
 }
 
 TEST_F(EdgeSamplesTest, LeaveLightAndExactChannelsAlone) {

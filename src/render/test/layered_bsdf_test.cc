@@ -22,7 +22,9 @@ class LayeredBsdfTest : public testing::Test {
     s.coat_weight = m.coat_weight;
     s.coat_roughness = m.coat_roughness;
     s.coat_f0 = m.coat_f0;
+    s.coat_darkening = m.coat_darkening;
     s.fuzz_weight = m.fuzz_weight;
+    s.transmission = m.transmission;
     SceneView view;
     view.albedo = &tables_->albedo;
     view.glass = &tables_->glass;
@@ -125,6 +127,49 @@ TEST_F(LayeredBsdfTest, WhiteLosesNoEnergyAndNothingGains) {
       EXPECT_NEAR(m.mean, 1, 4 * m.standard_error() + slack) << c.name << " cos " << cos_o;
     }
   }
+}
+
+/// Of a matt base under a smooth coat the light that is thrown back and forth between them is a
+/// geometric series (Elias et al. 2001, the interfaced Lambertian surface).
+TEST_F(LayeredBsdfTest, CoatThrowsLightBackOnItsBase) {
+  MaterialLayers coat;
+  coat.coat_weight = 1;
+  coat.coat_f0 = sqr(0.5f / 2.5f);  // of index 1.5
+  SurfaceParameters matt = base(0.5f);
+  matt.f0 = matt.f90 = 0;
+  const float mean = 0.04f + 0.96f / 21;  // of Schlick's term over the cosine
+  const float back = 1 - (1 - mean) / sqr(1.5f);
+  for (const float albedo : {0.1f, 0.5f, 0.9f}) {
+    matt.base_color = {albedo, albedo, albedo};
+    for (const float cos_o : {1.0f, 0.4f}) {
+      const Vec3f wo = direction(cos_o);
+      const float reflected = lerp(0.04f, 1.0f, ggx::schlick(cos_o));
+      const float truth = reflected + (1 - reflected) * albedo * (1 - back) / (1 - back * albedo);
+      const Mean m = energy(make(coat, matt, wo), wo, 40000);
+      EXPECT_NEAR(m.mean, truth, 4 * m.standard_error() + 0.003)
+          << "albedo " << albedo << " cos " << cos_o;
+    }
+  }
+  coat.coat_darkening = 0;
+  const Vec3f up{0, 0, 1};
+  const Mean m = energy(make(coat, matt, up), up, 40000);
+  EXPECT_NEAR(m.mean, 0.04 + 0.96 * 0.9, 4 * m.standard_error() + 0.003)
+      << "without darkening the base keeps its colour";
+}
+
+TEST_F(LayeredBsdfTest, RoughCoatBlursWhatLiesUnderIt) {
+  MaterialLayers coat;
+  coat.coat_weight = 1;
+  const Vec3f wo = direction(0.8f);
+  const auto width = [&](float roughness) {
+    return make(coat, base(roughness, 1), wo).base.alpha.x;
+  };
+  EXPECT_EQ(width(0.2f), sqr(0.2f)) << "a smooth coat blurs nothing";
+  coat.coat_roughness = 0.4f;
+  // Gaussians of slopes: the coat's counts on the way in and out.
+  const float both = std::sqrt(std::pow(0.2f, 4.0f) + 2 * std::pow(0.4f, 4.0f));
+  EXPECT_NEAR(width(0.2f), both, 1e-5f);
+  EXPECT_NEAR(width(1.0f), 1, 1e-5f) << "nothing is rougher than rough";
 }
 
 TEST_F(LayeredBsdfTest, SmoothGlassFollowsFresnelAndSnell) {

@@ -153,6 +153,61 @@ TEST(Texture, NormalMapTiltsTowardsItsTexel) {
   EXPECT_LT(length(film.center_normal[0] - Vec3f{0, 0.6f, 0.8f}), 0.01);  // u runs along +y here
 }
 
+TEST(Texture, NormalMapsFollowTheTextureRoundEveryShape) {
+  struct Case {
+    const char* what;
+    ShapeType shape;
+    Vec3f from;    ///< looks at the origin [m]
+    Vec3f normal;  ///< of the surface seen
+    Vec3f u;       ///< along which the texture's u grows there
+  };
+  const Case cases[] = {
+      {"top of a box", ShapeType::kBox, {0, 0, 3}, {0, 0, 1}, {1, 0, 0}},
+      {"box across x", ShapeType::kBox, {3, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+      {"box against x", ShapeType::kBox, {-3, 0, 0}, {-1, 0, 0}, {0, 1, 0}},
+      {"box across y", ShapeType::kBox, {0, 3, 0}, {0, 1, 0}, {1, 0, 0}},
+      {"ball", ShapeType::kSphere, {3, 0, 0}, {1, 0, 0}, {0, 1, 0}},
+      {"ball from behind", ShapeType::kSphere, {-3, 0, 0}, {-1, 0, 0}, {0, -1, 0}},
+      {"wall of a cylinder", ShapeType::kCylinder, {0, 3, 0}, {0, 1, 0}, {-1, 0, 0}},
+  };
+  for (const Case& c : cases) {
+    SceneBuilder b;
+    MaterialDescription m;
+    m.mapping = TextureMapping::kUv;
+    m.textures.normal = b.add_texture({1, 1, 3, ColorSpace::kLinear, {204, 128, 230}});
+    b.add(c.shape, {1, 1, 1}, {}, b.add_material(m));
+    RenderSettings settings;
+    settings.spp = 1;
+    const Film film = b.render(SceneBuilder::camera(look_at(c.from, {}), 1, 1, 0.1), settings);
+    const Vec3f expected = c.u * 0.6f + c.normal * 0.8f;
+    EXPECT_LT(length(film.center_normal[0] - expected), 0.01) << c.what;
+  }
+}
+
+TEST(Texture, LayersHaveMapsOfTheirOwn) {
+  SceneBuilder b;
+  MaterialDescription m;
+  m.mapping = TextureMapping::kUv;
+  m.coat_weight = 0.5f;
+  m.coat_roughness = 1;
+  m.transmission_weight = 1;
+  const auto grey = [&](uint8_t texel) {
+    return b.add_texture({1, 1, 1, ColorSpace::kLinear, {texel}});
+  };
+  m.textures.coat_weight = grey(51);
+  m.textures.coat_roughness = grey(102);
+  m.textures.transmission = grey(153);
+  b.add(ShapeType::kBox, {1, 1, 1}, {}, b.add_material(m));
+  const Probe probe(b);
+  const Ray ray = make_ray({0, 0, 3}, {0, 0, -1});
+  RayHit hit;
+  ASSERT_TRUE(probe.tracer.trace(ray, false, &hit));
+  const Surface s = make_surface(probe.view, ray, hit, RayCone{});
+  EXPECT_NEAR(s.coat_weight, 0.5f * 0.2f, 1e-5f);
+  EXPECT_NEAR(s.coat_roughness, 0.4f, 1e-5f);
+  EXPECT_NEAR(s.transmission, 0.6f, 1e-5f);
+}
+
 TEST(Texture, RoughnessAndMetallicComeFromTheirMaps) {
   SceneBuilder b;
   // orm: occlusion 1, roughness 0.2, metallic 1.

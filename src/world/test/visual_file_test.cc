@@ -220,6 +220,7 @@ TEST_F(VisualFile, MaterialsKeepTheirLayers) {
   EXPECT_EQ(m.coat_weight, 0.8f);
   EXPECT_EQ(m.coat_roughness, 0.1f);
   EXPECT_EQ(m.coat_ior, 1.5f);
+  EXPECT_EQ(m.coat_darkening, 0) << "glTF's coat leaves the base its colour";
   EXPECT_EQ(m.ior, 1.33f);
   EXPECT_EQ(m.fuzz_weight, 1);
   expect_near(m.fuzz_color, {0.1f, 0.2f, 0.3f}, 1e-6f);
@@ -286,6 +287,33 @@ TEST_F(VisualFile, TexturesAreTakenChannelByChannel) {
   const RenderDescription opaque = described(visual(folder.write("b.glb", file.glb())));
   const MaterialDescription& p = material_named(opaque, "lamp/paint");
   EXPECT_EQ(opaque.textures[static_cast<size_t>(p.textures.base_color)].faces[0].channels, 3);
+}
+
+TEST_F(VisualFile, LayersHaveTexturesOfTheirOwn) {
+  GltfBuilder file = material_file(Json::object());
+  const int picture = add_picture(&file, png_file(2, 1, 3, {1, 51, 153, 2, 102, 204}));
+  file.json["materials"][0]["extensions"] = {
+      {"KHR_materials_clearcoat",
+       {{"clearcoatFactor", 0.8},
+        {"clearcoatTexture", {{"index", picture}}},
+        {"clearcoatRoughnessFactor", 0.5},
+        {"clearcoatRoughnessTexture", {{"index", picture}}}}},
+      {"KHR_materials_transmission",
+       {{"transmissionFactor", 0.9}, {"transmissionTexture", {{"index", picture}}}}}};
+  const RenderDescription d = described(visual(folder.write("a.glb", file.glb())));
+  const MaterialDescription& m = material_named(d, "lamp/paint");
+  EXPECT_EQ(m.mapping, TextureMapping::kUv);
+  EXPECT_EQ(m.coat_weight, 0.8f);
+  EXPECT_EQ(m.coat_roughness, 0.5f);
+  EXPECT_EQ(m.transmission_weight, 0.9f);
+  const auto texels = [&](int row) {
+    EXPECT_GE(row, 0);
+    return row < 0 ? std::vector<uint8_t>{} : d.textures[static_cast<size_t>(row)].faces[0].texels;
+  };
+  EXPECT_THAT(texels(m.textures.coat_weight), testing::ElementsAre(1, 2)) << "red";
+  EXPECT_THAT(texels(m.textures.coat_roughness), testing::ElementsAre(51, 102)) << "green";
+  EXPECT_THAT(texels(m.textures.transmission), testing::ElementsAre(1, 2)) << "red";
+  EXPECT_EQ(notes(d), "");
 }
 
 TEST_F(VisualFile, UvTransformsGoIntoTheMeshOrTheRepeats) {
@@ -384,6 +412,7 @@ TEST_F(VisualFile, MaterialTablesReachItsMaterials) {
   o.base_color = Vec3{0.5, 0.25, 0.125};
   o.dust = 0.5;
   o.bump = folder.write("h.png", png_file(2, 1, 1, {0, 255}));
+  o.coat_weight_map = folder.write("c.png", png_file(2, 1, 1, {10, 20}));
   w.scene.materials = {o};
   const RenderDescription d = describe(w);
   const MaterialDescription& m = material_named(d, "lamp/paint");
@@ -391,6 +420,9 @@ TEST_F(VisualFile, MaterialTablesReachItsMaterials) {
   EXPECT_EQ(m.dust, 0.5f);
   EXPECT_EQ(m.coat_weight, 0.8f) << "what the table does not say stays the file's";
   EXPECT_EQ(m.bump_scale, 0.001f);
+  ASSERT_GE(m.textures.coat_weight, 0);
+  EXPECT_THAT(d.textures[static_cast<size_t>(m.textures.coat_weight)].faces[0].texels,
+              testing::ElementsAre(10, 20));
   EXPECT_EQ(d.textures[static_cast<size_t>(m.textures.bump)].faces[0].color_space,
             ColorSpace::kLinear);
 }
