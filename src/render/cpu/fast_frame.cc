@@ -1,4 +1,4 @@
-#include "render/cpu/fast_frame.h"
+#include "render/cpu/fast_filter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,21 +17,12 @@ constexpr float kHaste = 8;          // and what of the rest is taken over at on
 constexpr int kRounds = 3;           // of smoothing, each twice as wide
 constexpr float kTolerance = 0.01f;  // of places on one plane, over their distance
 
-/// Where a pixel was in the picture before, if it is the same place.
-bool find_before(const FastFrame& before, const FastFrame& f, int x, int y, int* bx, int* by) {
-  *bx = static_cast<int>(std::floor(static_cast<float>(x) + 0.5f - *f.motion_x.at(x, y)));
-  *by = static_cast<int>(std::floor(static_cast<float>(y) + 0.5f - *f.motion_y.at(x, y)));
-  if (*bx < 0 || *by < 0 || *bx >= f.width || *by >= f.height) return false;
-  const float part = *f.part.at(x, y);
-  return part > 0 && *before.part.at(*bx, *by) == part &&
-         dot(f.n.get(x, y), before.n.get(*bx, *by)) > 0.8f;
-}
-
 /// One patch's share of accumulate().
 class Accumulation {
  public:
-  Accumulation(const FastFrame& before, int x0, int y0, FastFrame* frame, FastPlane3* out)
-      : before_(before), f_(*frame), out_(out), x0_(x0), y0_(y0) {}
+  Accumulation(const FastFrame& before, const LightGain* gain, int x0, int y0, FastFrame* frame,
+               FastPlane3* out)
+      : before_(before), gain_(gain), f_(*frame), out_(out), x0_(x0), y0_(y0) {}
 
   void run() {
     find_past();
@@ -99,13 +90,15 @@ class Accumulation {
           continue;
         }
         // What is out of the range of its neighbours is a trail of what has moved on.
-        const Vec3f old = before_.signal[s].get(place.x, place.y);
+        const float gain = gain_[s].at(x, y);
+        const Vec3f old = before_.signal[s].get(place.x, place.y) * gain;
         const Vec3f least = lane(low[s], x - first), most = lane(high[s], x - first);
         const Vec3f kept{clamp(old.x, least.x, most.x), clamp(old.y, least.y, most.y),
                          clamp(old.z, least.z, most.z)};
         out_[s].set(x, y, lerp(kept, now, share));
-        *f_.mean[s].at(x, y) = lerp(*before_.mean[s].at(place.x, place.y), l, share);
-        *f_.square[s].at(x, y) = lerp(*before_.square[s].at(place.x, place.y), l * l, share);
+        *f_.mean[s].at(x, y) = lerp(*before_.mean[s].at(place.x, place.y) * gain, l, share);
+        *f_.square[s].at(x, y) =
+            lerp(*before_.square[s].at(place.x, place.y) * sqr(gain), l * l, share);
       }
     }
   }
@@ -116,6 +109,7 @@ class Accumulation {
   };
 
   const FastFrame& before_;
+  const LightGain* gain_;  // of each signal
   FastFrame& f_;
   FastPlane3* out_;
   const int x0_, y0_, x1_ = min(x0_ + kPatch, f_.width), y1_ = min(y0_ + kPatch, f_.height);
@@ -146,14 +140,25 @@ void FastFrame::resize(int w, int h) {
 void FastFilter::resize(int width, int height) {
   for (FastPlane3& plane : a) plane.resize(width, height, 0);
   for (FastPlane3& plane : b) plane.resize(width, height, 0);
+  for (LightGain& signal : gain) signal.resize(width, height);
+  color_gain.resize(width, height);
 }
 
 void FastFilter::accumulate(const FastFrame& before, FastFrame* frame) {
+  for (int s = 0; s < kKeptSignals; ++s) {
+    gain[s].measure([&](int x, int y, float* now, float* past) {
+      int bx, by;
+      if (!find_before(before, *frame, x, y, &bx, &by)) return false;
+      *now = luminance(frame->signal[s].get(x, y));
+      *past = luminance(before.signal[s].get(bx, by));
+      return true;
+    });
+  }
   const int columns = (frame->width + kPatch - 1) / kPatch;
   const int rows = (frame->height + kPatch - 1) / kPatch;
   parallel_for("fast history", int64_t{columns} * rows, [&](int64_t i) {
     const int x = static_cast<int>(i % columns), y = static_cast<int>(i / columns);
-    Accumulation(before, x * kPatch, y * kPatch, frame, a).run();
+    Accumulation(before, gain, x * kPatch, y * kPatch, frame, a).run();
   });
   for (int s = 0; s < kKeptSignals; ++s) std::swap(frame->signal[s], a[s]);
 }
