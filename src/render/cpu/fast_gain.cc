@@ -6,8 +6,8 @@
 namespace gloam {
 namespace {
 
-constexpr float kLeast = 8;     // pixels that tell of a patch
-constexpr float kSureness = 1;  // standard errors that a change may be by chance
+constexpr float kLeast = 8;        // pixels that tell of a patch
+constexpr float kSureness = 1.5f;  // standard errors that a change may be by chance
 constexpr float kMostGain = 4;
 
 }  // namespace
