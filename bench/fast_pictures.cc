@@ -2,40 +2,115 @@
 // at the same instants, for bench/fast_error.py to compare.
 //
 //   fast_pictures SCENE CAMERA OUT [--size WxH] [--rate HZ] [--frames N] [--at I,J …] [--spp N]
+//                 [--references FOLDER]
 //
 // Writes OUT/fast_I.png and OUT/path_I.png for the frames I, J … (default: the last), and prints
-// "frame I mean FAST PATH" with the mean luminance of both [cd/m²].
+// "frame I mean FAST PATH" with the mean luminance of both [cd/m²]. The path tier's picture is the
+// mean of two with half of the samples each, half_0_I.png and half_1_I.png, which tell how much
+// noise is left in it. In FOLDER they are kept for the next time.
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <set>
 #include <string_view>
 
 #include "base/files.h"
+#include "base/hash.h"
+#include "base/vec.h"
 #include "gloam/scene.h"
 #include "render/film/png.h"
+#include "render/film/tone_map.h"
 #include "runtime/live_simulation.h"
 
 namespace gloam {
 namespace {
 
 struct Options {
-  std::string model, camera, out;
+  std::string model, camera, out, references;
   int width = 320, height = 240, rate = 20, frames = 20, spp = 512;
   std::set<int> at;
 };
 
-double mean_luminance(const CameraFrame& frame) {
+using Radiance = std::vector<float>;  // [cd/m²], (height x width x 3)
+
+double mean_luminance(const Radiance& radiance) {
   double sum = 0;
-  const size_t n = frame.radiance.size() / 3;
+  const size_t n = radiance.size() / 3;
   for (size_t i = 0; i < n; ++i) {
-    sum += 0.2126 * frame.radiance[3 * i] + 0.7152 * frame.radiance[3 * i + 1] +
-           0.0722 * frame.radiance[3 * i + 2];
+    sum += luminance(Vec3f{radiance[3 * i], radiance[3 * i + 1], radiance[3 * i + 2]});
   }
   return sum / static_cast<double>(n);
+}
+
+/// What takes pictures of one instant.
+struct Studio {
+  SharedRenderer& shared;
+  CameraRequest request;
+
+  Result<Radiance> path_picture(const PoseFrame& now, const PoseFrame& before, int spp,
+                                bool denoise, uint64_t seed) const {
+    CameraRequest path = request;
+    path.render.tier = "path";
+    path.render.spp = spp;
+    path.render.denoise = denoise;
+    GLOAM_TRY(const auto sensor, CameraSensor::create(shared.description, path, seed));
+    return sensor->capture(*shared.renderer, shared.mutex, now, before, 0)->radiance;
+  }
+};
+
+/// Two independent pictures of the path tier with half of the samples each, without what is left
+/// of their noise; out of `folder` if they have been taken before.
+Result<std::array<Radiance, 2>> references(const Studio& studio, const PoseFrame& now,
+                                           const PoseFrame& before, int spp,
+                                           const std::string& folder) {
+  std::array<Radiance, 2> halves;
+  std::filesystem::path kept;
+  if (!folder.empty()) {
+    // A few samples tell whether scene, instant, camera and path tier are those of the last time.
+    GLOAM_TRY(const Radiance few, studio.path_picture(now, before, 4, false, 1));
+    const uint64_t key = hash_span(std::span<const float>(few), static_cast<uint64_t>(spp));
+    kept = std::filesystem::path(folder) / (hash_to_hex(key) + ".f32");
+    if (std::filesystem::exists(kept)) {
+      GLOAM_TRY(const std::vector<uint8_t> bytes, read_file(kept));
+      for (size_t i = 0; i < 2; ++i) {
+        halves[i].resize(few.size());
+        const size_t size = few.size() * sizeof(float);
+        if (bytes.size() != 2 * size) {
+          return Error{ErrorKind::kInput, kept.string() + " is cut short: remove it"};
+        }
+        std::memcpy(halves[i].data(), bytes.data() + i * size, size);
+      }
+      return halves;
+    }
+  }
+  for (uint64_t i = 0; i < 2; ++i) {
+    GLOAM_TRY(halves[i], studio.path_picture(now, before, std::max(1, spp / 2), true, 2 + i));
+  }
+  if (!folder.empty()) {
+    Radiance both = halves[0];
+    both.insert(both.end(), halves[1].begin(), halves[1].end());
+    const auto* bytes = reinterpret_cast<const uint8_t*>(both.data());
+    GLOAM_TRY_STATUS(make_folder(folder));
+    GLOAM_TRY_STATUS(write_file_atomic(kept, {bytes, both.size() * sizeof(float)}));
+  }
+  return halves;
+}
+
+Status write_picture(const Options& options, const std::string& name, const Radiance& radiance,
+                     float ev100) {
+  std::vector<Vec3f> colors(radiance.size() / 3);
+  for (size_t i = 0; i < colors.size(); ++i) {
+    colors[i] = {radiance[3 * i], radiance[3 * i + 1], radiance[3 * i + 2]};
+  }
+  std::vector<uint8_t> rgb;
+  tone_map(colors, options.width, options.height, {.ev100 = ev100}, &rgb);
+  return write_file_atomic(fmt::format("{}/{}.png", options.out, name),
+                           encode_png8(options.width, options.height, 3, rgb));
 }
 
 Status run(const Options& options) {
@@ -47,14 +122,13 @@ Status run(const Options& options) {
   CameraRequest request;
   request.camera = options.camera;
   request.width = options.width, request.height = options.height;
-  request.outputs = {"rgb", "radiance"};
+  request.outputs = {"radiance"};
   request.render = scene.render;
+  const Studio studio{*shared, request};
   request.render.tier = "fast";
   GLOAM_TRY(const auto fast, CameraSensor::create(shared->description, request, 1));
-  request.render.tier = "path";
-  request.render.spp = options.spp;
-  request.render.denoise = true;  // what is left of the noise of so many samples
-  GLOAM_TRY(const auto path, CameraSensor::create(shared->description, request, 1));
+  const auto ev100 = static_cast<float>(
+      scene.render.ev100.value_or(static_cast<double>(shared->description.ev100)));
 
   const Rational step_rate = simulation->step_rate();
   const auto step_of = [&](int frame) {
@@ -69,14 +143,17 @@ Status run(const Options& options) {
     const PoseFrame& before = i > 0 ? previous : now;
     const auto quick = fast->capture(*shared->renderer, shared->mutex, now, before, i);
     if (options.at.contains(i)) {
-      const auto exact = path->capture(*shared->renderer, shared->mutex, now, before, i);
-      for (const auto& [name, frame] : {std::pair{"fast", quick}, std::pair{"path", exact}}) {
-        GLOAM_TRY_STATUS(
-            write_file_atomic(fmt::format("{}/{}_{}.png", options.out, name, i),
-                              encode_png8(options.width, options.height, 3, frame->rgb)));
+      GLOAM_TRY(const auto halves,
+                references(studio, now, before, options.spp, options.references));
+      Radiance path = halves[0];
+      for (size_t k = 0; k < path.size(); ++k) path[k] = 0.5f * (path[k] + halves[1][k]);
+      GLOAM_TRY_STATUS(write_picture(options, fmt::format("fast_{}", i), quick->radiance, ev100));
+      GLOAM_TRY_STATUS(write_picture(options, fmt::format("path_{}", i), path, ev100));
+      for (int k = 0; k < 2; ++k) {
+        GLOAM_TRY_STATUS(write_picture(options, fmt::format("half_{}_{}", k, i), halves[k], ev100));
       }
-      fmt::print("frame {} mean {:.4f} {:.4f}\n", i, mean_luminance(*quick),
-                 mean_luminance(*exact));
+      fmt::print("frame {} mean {:.4f} {:.4f}\n", i, mean_luminance(quick->radiance),
+                 mean_luminance(path));
     }
     std::swap(now, previous);
   }
@@ -100,6 +177,8 @@ int main(int argc, char** argv) {
       options.frames = std::max(1, std::atoi(argv[++i]));
     } else if (word == "--spp" && more) {
       options.spp = std::max(1, std::atoi(argv[++i]));
+    } else if (word == "--references" && more) {
+      options.references = argv[++i];
     } else if (word == "--at" && more) {
       for (char* at = argv[++i]; *at != 0; at += *at == ',') {
         options.at.insert(static_cast<int>(std::strtol(at, &at, 10)));
@@ -111,7 +190,7 @@ int main(int argc, char** argv) {
   if (words.size() != 3) {
     fmt::print(stderr,
                "usage: fast_pictures SCENE CAMERA OUT [--size WxH] [--rate HZ] [--frames N] "
-               "[--at I,J] [--spp N]\n");
+               "[--at I,J] [--spp N] [--references FOLDER]\n");
     return 2;
   }
   options.model = words[0], options.camera = words[1], options.out = words[2];

@@ -1,4 +1,4 @@
-#include "render/cpu/fast_frame.h"
+#include "render/cpu/fast_filter.h"
 
 #include <algorithm>
 
@@ -19,47 +19,15 @@ constexpr float kFarthest = 1e8f;    // deviations squared, so that products sta
 
 using F = FloatLanes;
 
-/// Where the pixels from (x, y) on were in the picture before.
-struct Before {
-  F x, y;
-  MaskLanes known = false;  ///< the same place was seen then
-  bool rests = false;       ///< all were where they are
-
-  F of(const FastPlane& plane, int here_x, int here_y) const {
-    return rests ? plane.load(here_x, here_y) : plane.gather_at(x, y);
-  }
-  Vec3Of<F> of(const FastPlane3& plane, int here_x, int here_y) const {
-    return rests ? plane.load(here_x, here_y) : plane.gather_at(x, y);
-  }
-};
-
-Before find_before(const FastFrame& before, const FastFrame& f, int x, int y) {
-  F column;
-  for (int i = 0; i < kLaneCount; ++i) set_lane(&column, i, static_cast<float>(x + i));
-  const F motion_x = f.motion_x.load(x, y), motion_y = f.motion_y.load(x, y);
-  const F from_x = floor_of(column + 0.5f - motion_x);
-  const F from_y = floor_of(static_cast<float>(y) + 0.5f - motion_y);
-  const MaskLanes inside = (from_x >= 0.0f) & (from_y >= 0.0f) &
-                           (from_x < static_cast<float>(f.width)) &
-                           (from_y < static_cast<float>(f.height));
-  Before out;
-  out.rests = all((motion_x == F(0.0f)) & (motion_y == F(0.0f)));
-  out.x = select(inside, from_x, F(0.0f));
-  out.y = select(inside, from_y, F(0.0f));
-  const F part = f.part.load(x, y);
-  out.known = inside & (part > 0.0f) & (out.of(before.part, x, y) == part) &
-              (dot(f.n.load(x, y), out.of(before.n, x, y)) > 0.8f);
-  return out;
-}
-
 /// One patch's share of accumulate().
 class Accumulation {
  public:
-  Accumulation(const FastFrame& before, int x0, int y0, FastFrame* frame, FastPlane3* out)
-      : before_(before), f_(*frame), out_(out), x0_(x0), y0_(y0) {}
+  Accumulation(const FastFrame& before, const LightGain* gain, int x0, int y0, FastFrame* frame,
+               FastPlane3* out)
+      : before_(before), gain_(gain), f_(*frame), out_(out), x0_(x0), y0_(y0) {}
 
   void run() {
-    find_past();
+    find_places();
     for (int y = y0_; y < y1_; ++y) {
       for (int part = 0; part < kParts; ++part) blend(x0_ + part * kLaneCount, y, part);
     }
@@ -68,14 +36,14 @@ class Accumulation {
  private:
   static constexpr int kParts = kPatch / kLaneCount;  // of a row
 
-  void find_past() {
+  void find_places() {
     // By columns, so that the sums are the same for any number of lanes.
     F now[kKeptSignals][kParts], past[kKeptSignals][kParts];
     for (int y = y0_; y < y1_; ++y) {
       for (int part = 0; part < kParts; ++part) {
         const int x = x0_ + part * kLaneCount;
-        Before& place = places_[y - y0_][part];
-        place = find_before(before_, f_, x, y);
+        FastPast& place = places_[y - y0_][part];
+        place = find_past(before_, f_, x, y);
         for (int s = 0; s < kKeptSignals; ++s) {
           const F new_light = luminance(f_.signal[s].load(x, y));
           const F old_light = luminance(place.of(before_.signal[s], x, y));
@@ -98,7 +66,7 @@ class Accumulation {
   }
 
   void blend(int x, int y, int part) {
-    const Before& place = places_[y - y0_][part];
+    const FastPast& place = places_[y - y0_][part];
     const F own_part = f_.part.load(x, y);
     const F longer = min(place.of(before_.age, x, y) + 1.0f, kLongest);
     const F age = select(place.known, longer, F(1.0f));
@@ -120,24 +88,26 @@ class Accumulation {
         share = select(moves & (f_.roughness.load(x, y) < kMirror), max(share, 0.5f), share);
       }
       // What is out of the range of its neighbours is a trail of what has moved on.
-      const Vec3Of<F> old = place.of(before_.signal[s], x, y);
+      const F gain = gain_[s].from(x, y);
+      const Vec3Of<F> old = place.of(before_.signal[s], x, y) * gain;
       const Vec3Of<F> least = mean - deviation * F(kRange), most = mean + deviation * F(kRange);
       const Vec3Of<F> kept{clamp(old.x, least.x, most.x), clamp(old.y, least.y, most.y),
                            clamp(old.z, least.z, most.z)};
       out_[s].store(x, y, select<F>(place.known, lerp(kept, now, share), now));
-      const F old_mean = place.of(before_.mean[s], x, y);
+      const F old_mean = place.of(before_.mean[s], x, y) * gain;
       f_.mean[s].store(x, y, select(place.known, lerp(old_mean, l, share), l));
-      const F old_square = place.of(before_.square[s], x, y);
+      const F old_square = place.of(before_.square[s], x, y) * sqr(gain);
       const F spread = sqr(luminance(deviation));  // until more is known
       f_.square[s].store(x, y, select(place.known, lerp(old_square, l * l, share), l * l + spread));
     }
   }
 
   const FastFrame& before_;
+  const LightGain* gain_;  // of each signal
   FastFrame& f_;
   FastPlane3* out_;
   const int x0_, y0_, y1_ = min(y0_ + kPatch, f_.height);
-  Before places_[kPatch][kParts];
+  FastPast places_[kPatch][kParts];
   float least_share_[kKeptSignals] = {};
 };
 
@@ -164,14 +134,18 @@ void FastFrame::resize(int w, int h) {
 void FastFilter::resize(int width, int height) {
   for (FastPlane3& plane : a) plane.resize(width, height, 0);
   for (FastPlane3& plane : b) plane.resize(width, height, 0);
+  for (LightGain& signal : gain) signal.resize(width, height);
+  color_gain.resize(width, height);
 }
 
 void FastFilter::accumulate(const FastFrame& before, FastFrame* frame) {
+  for (int s = 0; s < kKeptSignals; ++s)
+    gain[s].measure(before, before.signal[s], *frame, frame->signal[s]);
   const int columns = (frame->width + kPatch - 1) / kPatch;
   const int rows = (frame->height + kPatch - 1) / kPatch;
   parallel_for("fast history", int64_t{columns} * rows, [&](int64_t i) {
     const int x = static_cast<int>(i % columns), y = static_cast<int>(i / columns);
-    Accumulation(before, x * kPatch, y * kPatch, frame, a).run();
+    Accumulation(before, gain, x * kPatch, y * kPatch, frame, a).run();
   });
   for (int s = 0; s < kKeptSignals; ++s) std::swap(frame->signal[s], a[s]);
 }

@@ -123,19 +123,4 @@ NeighbourMoments neighbour_moments(const FastPlane3& plane, int x, int y, const 
   return {mean, {safe_sqrt(variance.x), safe_sqrt(variance.y), safe_sqrt(variance.z)}};
 }
 
-/// Room for the filter; the smoothed signals are in `a` at the end.
-struct FastFilter {
-  FastPlane3 a[kFastSignals], b[kFastSignals];
-
-  void resize(int width, int height);
-  /// Takes over from `before` what is the same place, as far as it agrees with what is new.
-  void accumulate(const FastFrame& before, FastFrame* frame);
-  /// Smooths the signals over surfaces.
-  void smooth(const FastFrame& frame);
-};
-
-/// Means of frame->color and the pictures before: rays through other points of the pixels each time
-/// make edges and textures smooth.
-void resolve(const FastFrame& before, FastFrame* frame);
-
 }  // namespace gloam

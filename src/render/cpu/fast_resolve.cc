@@ -2,7 +2,7 @@
 // "High-quality temporal supersampling", 2014; clipping after Salvi 2016).
 
 #include "base/parallel.h"
-#include "render/cpu/fast_frame.h"
+#include "render/cpu/fast_filter.h"
 
 namespace gloam {
 namespace {
@@ -70,7 +70,7 @@ Vec3Of<F> interpolate(const FastPlane3& plane, int width, int height, F x, F y) 
   return sum;
 }
 
-void resolve_lanes(const FastFrame& before, int x, int y, FastFrame* frame) {
+void resolve_lanes(const FastFrame& before, const LightGain& gain, int x, int y, FastFrame* frame) {
   FastFrame& f = *frame;
   const Vec3Of<F> now = f.color.load(x, y);
   const Around around = look_around(f, x, y);
@@ -95,6 +95,7 @@ void resolve_lanes(const FastFrame& before, int x, int y, FastFrame* frame) {
     part = before.part.gather_at(nx, ny);
     edge = before.edge.gather_at(nx, ny);
   }
+  past = past * gain.from(x, y);
   const MaskLanes same = around.edge | (edge > 0.0f) | (part == f.part.load(x, y));
   const MaskLanes known = inside & same & (pictures > 0.0f);
   const Vec3Of<F> reach = around.color.deviation * F(kRange) + around.color.mean * F(kSlack);
@@ -112,10 +113,11 @@ void resolve_lanes(const FastFrame& before, int x, int y, FastFrame* frame) {
 
 }  // namespace
 
-void resolve(const FastFrame& before, FastFrame* frame) {
+void resolve(const FastFrame& before, LightGain* gain, FastFrame* frame) {
+  gain->measure(before, before.color, *frame, frame->color);
   parallel_for("fast resolve", frame->height, [&](int64_t y) {
     for (int x = 0; x < frame->width; x += kLaneCount) {
-      resolve_lanes(before, x, static_cast<int>(y), frame);
+      resolve_lanes(before, *gain, x, static_cast<int>(y), frame);
     }
   });
 }

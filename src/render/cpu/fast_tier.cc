@@ -221,7 +221,7 @@ void FastHistory::add_picture(const SceneView& scene, const EmbreeTracer& tracer
   filter_.accumulate(before_, &now_);
   filter_.smooth(now_);
   compose();
-  resolve(before_, &now_);
+  resolve(before_, &filter_.color_gain, &now_);
   std::swap(now_, before_);
   ++pictures_;
 }

@@ -1,7 +1,7 @@
 #pragma once
 // The fast tier: what a camera remembers from picture to picture, and one picture more.
 
-#include "render/cpu/fast_frame.h"
+#include "render/cpu/fast_filter.h"
 #include "render/cpu/irradiance_cache.h"
 #include "render/renderer.h"
 

@@ -14,10 +14,11 @@ constexpr uint32_t kForgotten = 30;  // updates after which a cell that nobody a
 constexpr size_t kMostCells = 2500;  // of an update, but for a first picture's
 constexpr float kSurprise = 3;       // standard errors,
 constexpr float kNoChange = 0.02f;   // and this share, that a region's light may be off
-constexpr float kBrightest = 4;      // of a lamp's light by way of a mirror, over the cell's mean
-constexpr float kFades = 0.1f;       // share of all light that must have changed to change all
-constexpr int kMostRounds = 3;       // of an update while light changes in many cells
-constexpr float kSpread = 0.15f;     // of the rays' cones: no fine texture is sought
+constexpr float kBrightest = 4;   // of a lamp's light by way of what shines, over the cell's mean:
+                                  // few rays meet it, and the rest is the wide region's
+constexpr float kFades = 0.1f;    // share of all light that must have changed to change all
+constexpr int kMostRounds = 3;    // of an update while light changes in many cells
+constexpr float kSpread = 0.15f;  // of the rays' cones: no fine texture is sought
 
 }  // namespace
 
@@ -102,8 +103,9 @@ void IrradianceCache::trace_cell(const SceneView& scene, const EmbreeTracer& tra
         fasts::gather(scene, tracer, cache, false, MaskLanes(true), &path, met);
     for (int i = 0; i < kLaneCount; ++i) {
       const Vec3f caustic = lane(light.caustic, i);
-      const Vec3f one =
-          lane(light.light, i) + caustic * (brightest / max(luminance(caustic), brightest));
+      const Vec3f kept = caustic * (brightest / max(luminance(caustic), brightest));
+      const Vec3f one = lane(light.light, i) + kept;
+      out.excess += caustic - kept;
       const bool near = lane(light.way, i) < edge;
       out.light.all += one;
       if (near) out.light.near += one;
@@ -116,38 +118,61 @@ void IrradianceCache::trace_cell(const SceneView& scene, const EmbreeTracer& tra
   constexpr float kPer = 1.0f / kRays;
   CellLight& light = out.light;
   light = {light.all * kPer, light.near * kPer, light.share * kPer};
+  out.excess = out.excess * kPer;
   out.variance = max(out.variance * kPer - sqr(luminance(light.all)), 0.0f) * kPer;
+}
+
+template <class Visit>
+void IrradianceCache::each_group(uint64_t mask, const Visit& visit) {
+  order_.clear();
+  for (size_t k = 0; k < traced_.size(); ++k) {
+    order_.emplace_back(cells_[asked_[k]].key & mask, k);
+  }
+  std::sort(order_.begin(), order_.end());
+  for (size_t first = 0, next = 0; first < order_.size(); first = next) {
+    while (next < order_.size() && order_[next].first == order_[first].first) ++next;
+    visit(std::span(order_).subspan(first, next - first));
+  }
+}
+
+IrradianceCache::LightChange IrradianceCache::change_of(std::span<const Member> group) const {
+  LightChange sum;
+  for (const auto& [key, k] : group) {
+    if (traced_[k].is_new) continue;
+    const float past = luminance(light_[asked_[k]].all);
+    sum.light += past;
+    sum.change += luminance(traced_[k].light.all) - past;
+    // By the spread of these few rays alone, cells that met few of the bright ones would count as
+    // changed.
+    sum.variance += max(traced_[k].variance, cells_[asked_[k]].variance);
+  }
+  return sum;
 }
 
 void IrradianceCache::find_changes() {
   // A cell's few rays say little; those of a region together tell a change of the light from noise.
-  // By the spread of those rays alone, cells that met few of the bright ones would count as
-  // changed.
-  order_.clear();
-  for (size_t k = 0; k < traced_.size(); ++k) {
-    if (!traced_[k].is_new) order_.emplace_back(cells_[asked_[k]].key & caches::kRegion, k);
-  }
-  std::sort(order_.begin(), order_.end());
-  float change_of_all = 0, variance_of_all = 0, light_of_all = 0;
-  for (size_t first = 0, next = 0; first < order_.size(); first = next) {
-    float change = 0, variance = 0, light = 0;
-    for (; next < order_.size() && order_[next].first == order_[first].first; ++next) {
-      const size_t k = order_[next].second;
-      const float before = luminance(light_[asked_[k]].all);
-      light += before;
-      change += luminance(traced_[k].light.all) - before;
-      variance += max(traced_[k].variance, cells_[asked_[k]].variance);
-    }
-    const bool changed = fabsf(change) > kSurprise * sqrtf(variance) + kNoChange * light;
-    for (size_t i = first; i < next; ++i) traced_[order_[i].second].changed = changed;
-    change_of_all += change;
-    variance_of_all += variance;
-    light_of_all += light;
-  }
+  each_group(caches::kRegion, [&](std::span<const Member> group) {
+    const LightChange sum = change_of(group);
+    const bool changed =
+        fabsf(sum.change) > kSurprise * sqrtf(sum.variance) + kNoChange * sum.light;
+    for (const auto& [key, k] : group) traced_[k].changed = changed && !traced_[k].is_new;
+  });
   // What fades everywhere is seen here long before it is seen in each region.
-  if (fabsf(change_of_all) > kSurprise * sqrtf(variance_of_all) + kFades * light_of_all) {
-    for (Traced& traced : traced_) traced.changed = true;
-  }
+  each_group(0, [&](std::span<const Member> group) {
+    const LightChange sum = change_of(group);
+    if (fabsf(sum.change) > kSurprise * sqrtf(sum.variance) + kFades * sum.light) {
+      for (Traced& traced : traced_) traced.changed = true;
+    }
+  });
+}
+
+void IrradianceCache::spread_caustics() {
+  each_group(caches::kWideRegion | caches::kFacing, [&](std::span<const Member> group) {
+    Vec3f sum;
+    for (const auto& [key, k] : group) sum += traced_[k].excess;
+    const Vec3f each = sum / static_cast<float>(group.size());
+    for (const auto& [key, k] : group) traced_[k].light.all += each;
+  });
 }
 
 uint64_t IrradianceCache::trace(const SceneView& scene, const EmbreeTracer& tracer,
@@ -160,6 +185,7 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const EmbreeTracer& trac
                        for (int64_t k = begin; k < end; ++k)
                          trace_cell(scene, tracer, cache, seed, frame, static_cast<size_t>(k));
                      });
+  spread_caustics();
   find_changes();
   uint64_t rays = 0;
   for (size_t k = 0; k < asked_.size(); ++k) {

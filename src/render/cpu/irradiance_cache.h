@@ -1,6 +1,7 @@
 #pragma once
 // The cells behind an IrradianceCacheView: which there are, and what light they hold.
 
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -33,9 +34,14 @@ class IrradianceCache {
   /// What a cell's rays of one round brought.
   struct Traced {
     CellLight light;
-    float variance = 0, before = 0;        ///< of its luminance; luminance before the round
+    Vec3f excess;                    ///< of lamps by way of what shines: what is above the limit
+    float variance = 0, before = 0;  ///< of its luminance; luminance before the round
     bool is_new = false, changed = false;  ///< it had no light yet; it is not what it was
     uint64_t rays = 0;
+  };
+  /// Of several cells: what they had, how much more the last rays brought, variance of that.
+  struct LightChange {
+    float light = 0, change = 0, variance = 0;
   };
   static constexpr int kStarts = 4, kFurther = 8;
 
@@ -46,7 +52,14 @@ class IrradianceCache {
   /// Cell k of asked_ into traced_.
   void trace_cell(const SceneView& scene, const EmbreeTracer& tracer,
                   const IrradianceCacheView& cache, uint64_t seed, uint32_t frame, size_t k);
+  /// visit(group): of the cells of traced_ those whose keys are alike under the mask.
+  using Member = std::pair<uint64_t, size_t>;  // masked key, row of traced_
+  template <class Visit>
+  void each_group(uint64_t mask, const Visit& visit);
+  LightChange change_of(std::span<const Member> group) const;
   void find_changes();
+  /// Gives what is above the limit to all cells of a wide region that face the same way.
+  void spread_caustics();
   uint64_t trace(const SceneView& scene, const EmbreeTracer& tracer,
                  const IrradianceCacheView& cache, uint64_t seed, uint32_t frame, bool remembers);
   /// After each round: to where the light would come in many more.
@@ -58,11 +71,11 @@ class IrradianceCache {
   std::vector<Cell> cells_;
   std::vector<CacheRequest> starts_;  ///< (cells x kStarts)
   std::vector<CellLight> light_;
-  double last_change_ = 0;                          ///< of the light in a round [cd/m²]
-  int terms_ = 0;                                   ///< rounds since the last extrapolation
-  std::vector<uint32_t> asked_;                     ///< rows
-  std::vector<Traced> traced_;                      ///< of asked_
-  std::vector<std::pair<uint64_t, size_t>> order_;  ///< of traced_, by region
+  double last_change_ = 0;             ///< of the light in a round [cd/m²]
+  int terms_ = 0;                      ///< rounds since the last extrapolation
+  std::vector<uint32_t> asked_;        ///< rows
+  std::vector<Traced> traced_;         ///< of asked_
+  std::vector<Member> order_;          ///< by group
   std::vector<CacheRequest> further_;  ///< of places that the last rays met: (asked x kFurther)
   Vec3f mean_;
   uint32_t update_ = 0;

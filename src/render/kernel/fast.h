@@ -127,6 +127,7 @@ GLOAM_HD void direct_light(const SceneView& scene, const Tracer& tracer, paths::
                            Vec3Of<F>* specular) {
   if (scene.lights.size == 0) return;
   path->picker.prepare(scene, v.p, v.geometric, active);
+  path->picker.leave_out_sky(scene);  // that is the cache's
   if (every) drawn = scene.lights.size;
   const F first = path->sampler.next_1d(active);
   for (uint32_t k = 0; k < drawn; ++k) {
@@ -258,7 +259,7 @@ GLOAM_HD Vec3Of<F> lamps_met(const SceneView& scene, const paths::State<F>& path
 template <class F>
 struct GatheredOf {
   Vec3Of<F> light;    ///< [cd/m²]
-  Vec3Of<F> caustic;  ///< of lamps in mirrors and glass, where count_lamps is false
+  Vec3Of<F> caustic;  ///< of lamps by way of what shines, where count_lamps is false
   F way = 1e30f;      ///< to the first surface [m]
 };
 
@@ -346,9 +347,10 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
       F a, b;
       layer_albedo(*scene.albedo, v.roughness, wo.z, &a, &b);
       const Vec3Of<F> gloss = bsdf.base.f0 * a + bsdf.base.f90 * b;
-      const Vec3Of<F> leaving =
-          diffuse_albedo(bsdf) * (diffuse + cached) + gloss * cached + specular;
+      const Vec3Of<F> leaving = diffuse_albedo(bsdf) * (diffuse + cached) + gloss * cached;
       sum += select<F>(matt, throughput * leaving, Vec3Of<F>{});
+      Vec3Of<F>& gleam = count_lamps ? sum : out.caustic;
+      gleam += select<F>(matt, throughput * specular, Vec3Of<F>{});
     }
     if (any(glass)) {
       const Vec2Of<F> u = path->sampler.next_2d(glass);

@@ -44,6 +44,10 @@ GLOAM_HD uint32_t slot_of(uint64_t key, uint32_t size) {
 /// What the keys of one region have alike: four cells wide, of all facings.
 inline constexpr uint64_t kRegion =
     ~(uint64_t{7} | uint64_t{3} << 9 | uint64_t{3} << 27 | uint64_t{3} << 45);
+/// Sixteen cells wide, of all facings; and the facing of a cell.
+inline constexpr uint64_t kWideRegion =
+    ~(uint64_t{7} | uint64_t{15} << 9 | uint64_t{15} << 27 | uint64_t{15} << 45);
+inline constexpr uint64_t kFacing = 7;
 
 /// Edge of the cell of a key [m].
 GLOAM_HD float edge_of(uint64_t key) {

@@ -108,6 +108,13 @@ class LightPickerOf {
     return rows;
   }
 
+  /// After prepare(): the sky is none of this picker's business.
+  GLOAM_HD void leave_out_sky(const SceneView& scene) {
+    const F rest = 1.0f - sky_share_, scale = select(rest > 1e-6f, 1.0f / rest, F(0.0f));
+    for (uint32_t i = 0; !scene.has_many_lights() && i < count_; ++i) share_[i] *= scale;
+    sky_share_ = 0.0f;
+  }
+
   /// Density with which sample() makes the direction d for its sky, in the `active` lanes.
   GLOAM_HD F sky_pdf(const SceneView& scene, Vec3Of<F> d, Mask active) const {
     F pdf = 0.0f;

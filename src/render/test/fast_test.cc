@@ -111,6 +111,30 @@ TEST(Fast, RoughReflectionsAreThoseOfThePathTier) {
   }
 }
 
+TEST(Fast, TheSkysLightIsCountedOnce) {
+  // A corner under an even sky: what its sides send each other is a third of their light.
+  SceneBuilder b;
+  const int white = b.add_diffuse({0.8f, 0.8f, 0.8f});
+  b.add(ShapeType::kBox, {2, 2, 0.1f}, translation({0, 0, -0.1f}), white);
+  b.add(ShapeType::kBox, {0.1f, 2, 1}, translation({-1.1f, 0, 1}), white);
+  b.add(ShapeType::kBox, {0.1f, 2, 1}, translation({1.1f, 0, 1}), white);
+  EnvironmentDescription& sky = b.description.sky.environment;
+  sky.width = 2, sky.height = 1;
+  sky.texels.assign(2, {100, 100, 100});
+  const CameraView view = SceneBuilder::camera(look_at({0, -0.5f, 3}, {0, 0, 0}), 48, 32, 40);
+  RenderSettings path;
+  path.spp = 256;
+  path.max_depth = 40;
+  const double exact = mean_luminance(b.render(view, path));
+  const auto renderer = b.make();
+  const auto history = renderer->make_history();
+  Film film;
+  for (uint32_t i = 0; i < 4; ++i) {
+    renderer->render(view, fast_settings(history.get(), i), &film);
+  }
+  EXPECT_NEAR(mean_luminance(film), exact, 0.03 * exact);
+}
+
 TEST(Fast, ARoomIsDarkSoonAfterItsLampGoesOut) {
   SceneBuilder b = divided_room();
   b.description.materials.back().schedule = 0;
@@ -129,6 +153,56 @@ TEST(Fast, ARoomIsDarkSoonAfterItsLampGoesOut) {
   for (uint32_t i = 0; i < 5; ++i) lit = show(i, 0);
   for (uint32_t i = 5; i < 14; ++i) show(i, 2);
   EXPECT_LT(show(14, 2), 0.01 * lit) << "ten pictures after the lamp went out";
+}
+
+TEST(Fast, LightThatGrowsIsNotBehind) {
+  // A lamp over a floor brightens by 5 % of its first level per picture: a mean over pictures must
+  // not show the level of some pictures ago.
+  SceneBuilder b;
+  b.add(ShapeType::kPlane, {0, 0, 1}, {}, b.add_diffuse({0.7f, 0.7f, 0.7f}));
+  const int lamp = b.add_emitter({100, 100, 100});
+  b.add(ShapeType::kBox, {0.5f, 0.5f, 0.02f}, translation({0, 2, 3}), lamp);
+  b.description.materials[static_cast<size_t>(lamp)].schedule = 0;
+  b.description.schedules.push_back({{Keyframes{{{0, 1}, {1, 2}}, true}}});
+  const CameraView view = SceneBuilder::camera(look_at({0, -3, 3}, {0, 0, 0}), 96, 72, 40);
+  const auto show = [&](Renderer* renderer, ViewHistory* history, uint32_t i) {
+    PoseFrame frame = b.frame;
+    frame.time = 0.05 * i;
+    renderer->update(frame, frame, frame);
+    Film film;
+    renderer->render(view, fast_settings(history, i), &film);
+    return mean_luminance(film);
+  };
+  const auto renderer = b.make();
+  const auto history = renderer->make_history();
+  double followed = 0;
+  for (uint32_t i = 0; i <= 12; ++i) followed = show(renderer.get(), history.get(), i);
+  const auto other = b.make();
+  const double expected = show(other.get(), nullptr, 12);
+  EXPECT_NEAR(followed, expected, 0.03 * expected) << "a picture lasts a twentieth of a second";
+}
+
+TEST(Fast, LampsInMirrorsLightTheRoom) {
+  // Few of a cell's rays meet a lamp by way of a mirror: what they bring is kept all the same.
+  SceneBuilder b = divided_room();
+  MaterialDescription mirror;
+  mirror.base_color = {0.9f, 0.9f, 0.9f};
+  mirror.metallic = 1;
+  mirror.roughness = 0.05f;
+  b.add(ShapeType::kBox, {0.9f, 0.01f, 0.9f}, translation({1, 1.9f, 1}), b.add_material(mirror));
+  const CameraView view =
+      SceneBuilder::camera(look_at({1.6f, -1.8f, 1.5f}, {0.9f, 0.9f, 0}), 96, 72, 60);
+  RenderSettings path;
+  path.spp = 512;
+  path.max_depth = 40;
+  const double exact = mean_luminance(b.render(view, path));
+  const auto renderer = b.make();
+  const auto history = renderer->make_history();
+  Film film;
+  for (uint32_t i = 0; i < 8; ++i) {
+    renderer->render(view, fast_settings(history.get(), i), &film);
+  }
+  EXPECT_NEAR(mean_luminance(film), exact, 0.03 * exact);
 }
 
 TEST(Fast, PicturesAreTheSameForAnyNumberOfThreads) {

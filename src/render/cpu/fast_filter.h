@@ -1,0 +1,25 @@
+#pragma once
+// From noisy pictures of the fast tier to smooth ones: over pictures, over surfaces, over points of
+// the pixels.
+
+#include "render/cpu/fast_gain.h"
+
+namespace gloam {
+
+/// Room for the filter; the smoothed signals are in `a` at the end.
+struct FastFilter {
+  FastPlane3 a[kFastSignals], b[kFastSignals];
+  LightGain gain[kKeptSignals], color_gain;  ///< of the signals, and of the whole light
+
+  void resize(int width, int height);
+  /// Takes over from `before` what is the same place, as far as it agrees with what is new.
+  void accumulate(const FastFrame& before, FastFrame* frame);
+  /// Smooths the signals over surfaces.
+  void smooth(const FastFrame& frame);
+};
+
+/// Means of frame->color and the pictures before: rays through other points of the pixels each time
+/// make edges and textures smooth.
+void resolve(const FastFrame& before, LightGain* gain, FastFrame* frame);
+
+}  // namespace gloam

@@ -1,0 +1,43 @@
+#pragma once
+// How much the light has changed since the picture before, by place in the picture. A mean over
+// pictures lags behind light that changes evenly; brought up to the new level first, it does not.
+
+#include <cstdint>
+#include <vector>
+
+#include "base/parallel.h"
+#include "render/cpu/fast_frame.h"
+
+namespace gloam {
+
+/// Where the pixels from (x, y) on were in the picture before.
+struct FastPast {
+  FloatLanes x, y;
+  MaskLanes known = false;  ///< the same place was seen then
+  bool rests = false;       ///< all were where they are
+
+  FloatLanes of(const FastPlane& plane, int here_x, int here_y) const {
+    return rests ? plane.load(here_x, here_y) : plane.gather_at(x, y);
+  }
+  Vec3Of<FloatLanes> of(const FastPlane3& plane, int here_x, int here_y) const {
+    return rests ? plane.load(here_x, here_y) : plane.gather_at(x, y);
+  }
+};
+FastPast find_past(const FastFrame& before, const FastFrame& f, int x, int y);
+
+class LightGain {
+ public:
+  void resize(int width, int height);
+  /// Compares luminances of the pixels with those of the same places before.
+  void measure(const FastFrame& before, const FastPlane3& old_light, const FastFrame& now,
+               const FastPlane3& light);
+  /// Light now over light before, about the pixels from (x, y) on.
+  FloatLanes from(int x, int y) const;
+
+ private:
+  int height_ = 0, columns_ = 0, rows_ = 0;
+  bool changed_ = false;     ///< a gain is not 1
+  std::vector<float> gain_;  ///< of patches, (rows x columns)
+};
+
+}  // namespace gloam
