@@ -88,7 +88,7 @@ struct RecordedRay {
 
 /// Writes down what it traces.
 struct RecordingTracer {
-  const EmbreeTracer* tracer;
+  const CpuTracer* tracer;
   std::vector<RecordedRay>* rays;
   bool trace(const Ray& ray, bool any, RayHit* hit) const {
     rays->push_back({ray, any});

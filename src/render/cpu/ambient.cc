@@ -4,7 +4,7 @@
 
 namespace gloam {
 
-std::vector<AmbientPath> trace_ambient(const SceneView& scene, const EmbreeTracer& tracer,
+std::vector<AmbientPath> trace_ambient(const SceneView& scene, const CpuTracer& tracer,
                                        const CameraView32& camera, int width, int height,
                                        int max_depth) {
   std::vector<AmbientPath> paths(size_t{1} << kLog2AmbientPaths);

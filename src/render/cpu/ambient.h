@@ -10,7 +10,7 @@ namespace gloam {
 
 /// Paths from points that the camera sees, of at most `max_depth` segments from the camera on. They
 /// are the same in every picture, so that what they find changes no faster than the view does.
-std::vector<AmbientPath> trace_ambient(const SceneView& scene, const EmbreeTracer& tracer,
+std::vector<AmbientPath> trace_ambient(const SceneView& scene, const CpuTracer& tracer,
                                        const CameraView32& camera, int width, int height,
                                        int max_depth);
 
@@ -18,7 +18,7 @@ std::vector<AmbientPath> trace_ambient(const SceneView& scene, const EmbreeTrace
 /// themselves.
 AmbientCube mean_ambient(const std::vector<AmbientPath>& paths);
 
-inline AmbientCube measure_ambient(const SceneView& scene, const EmbreeTracer& tracer,
+inline AmbientCube measure_ambient(const SceneView& scene, const CpuTracer& tracer,
                                    const CameraView32& camera, int width, int height,
                                    int max_depth) {
   return mean_ambient(trace_ambient(scene, tracer, camera, width, height, max_depth));

@@ -44,7 +44,7 @@ float beside(const Map& map, uint32_t cell) {
 
 class ArrivingLight {
  public:
-  ArrivingLight(const SceneView& scene, const EmbreeTracer& statics, const LightGuide& grid,
+  ArrivingLight(const SceneView& scene, const CpuTracer& statics, const LightGuide& grid,
                 const std::vector<GuideRow>& rows)
       : scene_(scene), statics_(statics), grid_(grid), rows_(rows), even_(rows.size() * kProbes) {
     scene_.guide = {};
@@ -224,7 +224,7 @@ class ArrivingLight {
   }
 
   SceneView scene_;
-  const EmbreeTracer& statics_;
+  const CpuTracer& statics_;
   const LightGuide grid_;
   const std::vector<GuideRow>& rows_;
   std::vector<uint32_t> cells_[LightGuide::kFacings + 1];  ///< of the map, before each facing
@@ -234,7 +234,7 @@ class ArrivingLight {
 
 }  // namespace
 
-std::vector<float> find_arriving_light(const SceneView& scene, const EmbreeTracer& statics,
+std::vector<float> find_arriving_light(const SceneView& scene, const CpuTracer& statics,
                                        const LightGuide& grid, const std::vector<GuideRow>& rows) {
   return ArrivingLight(scene, statics, grid, rows).find();
 }

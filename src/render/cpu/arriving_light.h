@@ -9,7 +9,7 @@ namespace gloam {
 /// by the light on them, which is that of the scene's lights, with shadows, and what the rows where
 /// they lie reflect among themselves. Lights count by what they light alone: they are sampled
 /// directly. `grid`: with its surface rows.
-std::vector<float> find_arriving_light(const SceneView& scene, const EmbreeTracer& statics,
+std::vector<float> find_arriving_light(const SceneView& scene, const CpuTracer& statics,
                                        const LightGuide& grid, const std::vector<GuideRow>& rows);
 
 /// By how much directions by the cosine alone would miss what arrives at surfaces: the relative

@@ -201,16 +201,16 @@ class CpuRenderer final : public Renderer {
   }
 
  private:
-  EmbreeTracer by_own(const BvhTracer& own) const {
-    EmbreeTracer tracer;
+  CpuTracer by_own(const BvhTracer& own) const {
+    CpuTracer tracer;
     tracer.rows = {own_.still().data(), static_cast<uint32_t>(own_.still().size())};
     tracer.own = own;
     return tracer;
   }
-  EmbreeTracer tracer() const {
+  CpuTracer tracer() const {
     return embree_ != nullptr ? embree_->tracer(*scene_) : by_own(own_.tracer(*scene_));
   }
-  EmbreeTracer static_tracer() const {
+  CpuTracer static_tracer() const {
     return embree_ != nullptr ? embree_->static_tracer(*scene_)
                               : by_own(own_.static_tracer(*scene_));
   }

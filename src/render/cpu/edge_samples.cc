@@ -100,7 +100,7 @@ class Row {
     used_ = 0;
   }
 
-  static constexpr int kPacket = EmbreeTracer::kPacket;
+  static constexpr int kPacket = CpuTracer::kPacket;
 
   const EdgeSamples& job_;
   const int count_, y_;

@@ -9,7 +9,7 @@ namespace gloam {
 
 struct EdgeSamples {
   SceneView scene;
-  EmbreeTracer tracer;
+  CpuTracer tracer;
   CameraView32 camera;
   bool has_motion = false;  ///< something moves while the shutter is open
 };

@@ -36,8 +36,8 @@ class EmbreeBuild final : public EmbreeScene {
   explicit EmbreeBuild(RtcOwner<RTCDevice> device) : device_(std::move(device)) {}
 
   Status update(const RenderScene& scene) override;
-  EmbreeTracer tracer(const RenderScene& scene) const override;
-  EmbreeTracer static_tracer(const RenderScene& scene) const override;
+  CpuTracer tracer(const RenderScene& scene) const override;
+  CpuTracer static_tracer(const RenderScene& scene) const override;
 
  private:
   using ShapeKey = std::tuple<ShapeType, uint32_t, float, float, float>;

@@ -278,19 +278,19 @@ Status EmbreeBuild::update(const RenderScene& scene) {
   return {};
 }
 
-EmbreeTracer EmbreeBuild::static_tracer(const RenderScene& scene) const {
-  EmbreeTracer tracer = this->tracer(scene);
+CpuTracer EmbreeBuild::static_tracer(const RenderScene& scene) const {
+  CpuTracer tracer = this->tracer(scene);
   tracer.moving = {};
   tracer.scanned.planes = {};
   return tracer;
 }
 
-EmbreeTracer EmbreeBuild::tracer(const RenderScene& scene) const {
+CpuTracer EmbreeBuild::tracer(const RenderScene& scene) const {
   const auto span = [](const auto& v) {
     return DeviceSpan<const std::decay_t<decltype(v[0])>>{v.data(),
                                                           static_cast<uint32_t>(v.size())};
   };
-  EmbreeTracer tracer;
+  CpuTracer tracer;
   if (fixed_ != nullptr) tracer.fixed = {fixed_.get(), bounds_of(fixed_.get())};
   if (moving_ != nullptr) tracer.moving = {moving_.get(), bounds_of(moving_.get())};
   tracer.rows = span(rows_);

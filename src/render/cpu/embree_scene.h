@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "render/cpu/embree_tracer.h"
+#include "render/cpu/cpu_tracer.h"
 #include "render/scene/render_scene.h"
 
 namespace gloam {
@@ -21,9 +21,9 @@ class EmbreeScene {
   /// Builds what is missing, moves what moves. `scene` must be updated before
   /// and stay the same object.
   virtual Status update(const RenderScene& scene) = 0;
-  virtual EmbreeTracer tracer(const RenderScene& scene) const = 0;
+  virtual CpuTracer tracer(const RenderScene& scene) const = 0;
   /// Of what never moves alone, without infinite planes; no scene = nothing.
-  virtual EmbreeTracer static_tracer(const RenderScene& scene) const = 0;
+  virtual CpuTracer static_tracer(const RenderScene& scene) const = 0;
 };
 
 }  // namespace gloam

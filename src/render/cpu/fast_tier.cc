@@ -130,8 +130,8 @@ void store(const PixelBlock& block, const FastSampleOf<F>& sample, Vec2Of<F> mot
 
 }  // namespace
 
-void FastHistory::trace(const SceneView& scene, const EmbreeTracer& tracer,
-                        const CameraView32& camera, const RenderSettings& settings, uint32_t pass) {
+void FastHistory::trace(const SceneView& scene, const CpuTracer& tracer, const CameraView32& camera,
+                        const RenderSettings& settings, uint32_t pass) {
   const IrradianceCacheView cache = cache_.view(camera.pose.X_WC_open.p, cell_edge(camera));
   Sampler pattern = Sampler::make(0, 0, 0, 0, pictures_ % kPattern, 3);
   const Vec2f offset = sample_pixel_filter(pattern.next_2d());
@@ -204,7 +204,7 @@ void FastHistory::compose() {
   });
 }
 
-void FastHistory::add_picture(const SceneView& scene, const EmbreeTracer& tracer,
+void FastHistory::add_picture(const SceneView& scene, const CpuTracer& tracer,
                               const CameraView32& camera, const RenderSettings& settings,
                               uint32_t pass) {
   const Vec3f eye = camera.pose.X_WC_open.p;
@@ -226,7 +226,7 @@ void FastHistory::add_picture(const SceneView& scene, const EmbreeTracer& tracer
   ++pictures_;
 }
 
-RenderStats FastHistory::render(const SceneView& scene, const EmbreeTracer& tracer,
+RenderStats FastHistory::render(const SceneView& scene, const CpuTracer& tracer,
                                 const CameraView32& camera, const RenderSettings& settings,
                                 Film* film) {
   rays_ = 0;

@@ -10,14 +10,14 @@ namespace gloam {
 class FastHistory final : public ViewHistory {
  public:
   /// Renders into film->radiance.
-  RenderStats render(const SceneView& scene, const EmbreeTracer& tracer, const CameraView32& camera,
+  RenderStats render(const SceneView& scene, const CpuTracer& tracer, const CameraView32& camera,
                      const RenderSettings& settings, Film* film);
 
  private:
   /// One picture of the sequence; `pass` tells those of one instant apart.
-  void add_picture(const SceneView& scene, const EmbreeTracer& tracer, const CameraView32& camera,
+  void add_picture(const SceneView& scene, const CpuTracer& tracer, const CameraView32& camera,
                    const RenderSettings& settings, uint32_t pass);
-  void trace(const SceneView& scene, const EmbreeTracer& tracer, const CameraView32& camera,
+  void trace(const SceneView& scene, const CpuTracer& tracer, const CameraView32& camera,
              const RenderSettings& settings, uint32_t pass);
   void look_up(const IrradianceCacheView& cache);
   void compose();

@@ -81,7 +81,7 @@ SurfacePoint start_of(const LightGuide& grid, const GuideRow& row, int ray, Samp
   return row.points[static_cast<size_t>(ray) % row.points.size()];
 }
 
-std::vector<SurfacePoint> find_surface(const SceneView& scene, const EmbreeTracer& statics,
+std::vector<SurfacePoint> find_surface(const SceneView& scene, const CpuTracer& statics,
                                        const LightGuide& grid, int cell, int facing) {
   constexpr int kRays = 16, kLayers = 4;
   const int axis = facing / 2;

@@ -32,7 +32,7 @@ struct GuideRow {
 SurfacePoint start_of(const LightGuide& grid, const GuideRow& row, int ray, Sampler* sampler);
 
 /// Points in the cell on the outside of static surfaces that face `facing` (LightGuide::facing_of).
-std::vector<SurfacePoint> find_surface(const SceneView& scene, const EmbreeTracer& statics,
+std::vector<SurfacePoint> find_surface(const SceneView& scene, const CpuTracer& statics,
                                        const LightGuide& grid, int cell, int facing);
 
 /// The row and up to six like it in cells that share a face with its own.

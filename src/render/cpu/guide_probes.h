@@ -9,7 +9,7 @@ namespace gloam {
 /// Traces rays a packet at a time. What is clear, or may be somewhere, is passed.
 class Probes {
  public:
-  Probes(const SceneView& scene, const EmbreeTracer& tracer) : scene_(scene), tracer_(tracer) {}
+  Probes(const SceneView& scene, const CpuTracer& tracer) : scene_(scene), tracer_(tracer) {}
 
   /// Calls seen(i, ray) for each ray of make(i, &ray), i in [0, n), that nothing blocks; rays for
   /// which make returns false are left out.
@@ -33,7 +33,7 @@ class Probes {
  private:
   template <class Make, class Done>
   void in_packets(int n, bool any, const Make& make, const Done& done) const {
-    constexpr int kPacket = EmbreeTracer::kPacket;
+    constexpr int kPacket = CpuTracer::kPacket;
     Ray rays[kPacket];
     const Ray* pointers[kPacket];
     RayHit hits[kPacket];
@@ -73,7 +73,7 @@ class Probes {
   }
 
   const SceneView& scene_;
-  const EmbreeTracer& tracer_;
+  const CpuTracer& tracer_;
 };
 
 }  // namespace gloam

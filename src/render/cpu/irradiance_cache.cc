@@ -70,7 +70,7 @@ uint32_t IrradianceCache::dice() {
   return static_cast<uint32_t>(dice_ >> 33);
 }
 
-void IrradianceCache::trace_cell(const SceneView& scene, const EmbreeTracer& tracer,
+void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer,
                                  const IrradianceCacheView& cache, uint64_t seed, uint32_t frame,
                                  size_t k) {
   using F = FloatLanes;
@@ -175,7 +175,7 @@ void IrradianceCache::spread_caustics() {
   });
 }
 
-uint64_t IrradianceCache::trace(const SceneView& scene, const EmbreeTracer& tracer,
+uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
                                 const IrradianceCacheView& cache, uint64_t seed, uint32_t frame,
                                 bool remembers) {
   traced_.resize(asked_.size());
@@ -237,7 +237,7 @@ void IrradianceCache::extrapolate(int round, bool remembers) {
   terms_ = 0;
 }
 
-uint64_t IrradianceCache::update(const SceneView& scene, const EmbreeTracer& tracer, Vec3f eye,
+uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer, Vec3f eye,
                                  float edge_per_metre, uint64_t seed, uint32_t frame, int settle) {
   uint64_t rays = 0;
   const bool settling = settle > 1;

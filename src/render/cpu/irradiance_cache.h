@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "render/cpu/embree_tracer.h"
+#include "render/cpu/cpu_tracer.h"
 #include "render/kernel/fast.h"
 
 namespace gloam {
@@ -17,8 +17,8 @@ class IrradianceCache {
   void ask(const std::vector<CacheRequest>& requests);
   /// Traces rays from all cells that were asked for since the last update. `settle`: how many
   /// times; light is reflected once more each time. Returns the number of rays.
-  uint64_t update(const SceneView& scene, const EmbreeTracer& tracer, Vec3f eye,
-                  float edge_per_metre, uint64_t seed, uint32_t frame, int settle);
+  uint64_t update(const SceneView& scene, const CpuTracer& tracer, Vec3f eye, float edge_per_metre,
+                  uint64_t seed, uint32_t frame, int settle);
 
   IrradianceCacheView view(Vec3f eye, float edge_per_metre) const;
   size_t size() const { return cells_.size(); }
@@ -50,8 +50,8 @@ class IrradianceCache {
   uint32_t slot_of(uint64_t key) const;
   void rebuild(size_t slots);
   /// Cell k of asked_ into traced_.
-  void trace_cell(const SceneView& scene, const EmbreeTracer& tracer,
-                  const IrradianceCacheView& cache, uint64_t seed, uint32_t frame, size_t k);
+  void trace_cell(const SceneView& scene, const CpuTracer& tracer, const IrradianceCacheView& cache,
+                  uint64_t seed, uint32_t frame, size_t k);
   /// visit(group): of the cells of traced_ those whose keys are alike under the mask.
   using Member = std::pair<uint64_t, size_t>;  // masked key, row of traced_
   template <class Visit>
@@ -60,8 +60,8 @@ class IrradianceCache {
   void find_changes();
   /// Gives what is above the limit to all cells of a wide region that face the same way.
   void spread_caustics();
-  uint64_t trace(const SceneView& scene, const EmbreeTracer& tracer,
-                 const IrradianceCacheView& cache, uint64_t seed, uint32_t frame, bool remembers);
+  uint64_t trace(const SceneView& scene, const CpuTracer& tracer, const IrradianceCacheView& cache,
+                 uint64_t seed, uint32_t frame, bool remembers);
   /// After each round: to where the light would come in many more.
   void extrapolate(int round, bool remembers);
   void forget();

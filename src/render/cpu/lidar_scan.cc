@@ -14,7 +14,7 @@ constexpr int kLanes = kLaneCount;
 
 struct ScanJob {
   const SceneView& scene;
-  const EmbreeTracer& tracer;
+  const CpuTracer& tracer;
   const LidarView& view;
   DeviceSpan<const LidarMotion> motions;
   std::array<Vec2f, kMostFootprintRays> footprint;
@@ -54,7 +54,7 @@ void scan_packet(const ScanJob& job, const LidarBeam* beams, int count, LidarRet
 
 }  // namespace
 
-void scan_beams(const SceneView& scene, const EmbreeTracer& tracer, const LidarView& view,
+void scan_beams(const SceneView& scene, const CpuTracer& tracer, const LidarView& view,
                 std::span<LidarReturn> returns) {
   const LidarOptics& optics = view.optics;
   GLOAM_CHECK(optics.footprint_rays >= 1 && optics.footprint_rays <= kMostFootprintRays &&

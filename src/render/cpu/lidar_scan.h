@@ -3,13 +3,13 @@
 
 #include <span>
 
-#include "render/cpu/embree_tracer.h"
+#include "render/cpu/cpu_tracer.h"
 #include "render/lidar_view.h"
 
 namespace gloam {
 
 /// `returns`: view.optics.most_returns of each beam, in the order of the beams.
-void scan_beams(const SceneView& scene, const EmbreeTracer& tracer, const LidarView& view,
+void scan_beams(const SceneView& scene, const CpuTracer& tracer, const LidarView& view,
                 std::span<LidarReturn> returns);
 
 }  // namespace gloam

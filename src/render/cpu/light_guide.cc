@@ -21,7 +21,7 @@ constexpr int kFacings = LightGuide::kFacings;
 
 }  // namespace
 
-void LightGuideStore::find_rows(const SceneView& scene, const EmbreeTracer& statics) {
+void LightGuideStore::find_rows(const SceneView& scene, const CpuTracer& statics) {
   const int cells = grid_.nx * grid_.ny * grid_.nz;
   std::vector<GuideRow> surfaces(static_cast<size_t>(cells) * kFacings);
   parallel_for("light guide surfaces", cells, [&](int64_t cell) {
@@ -41,8 +41,7 @@ void LightGuideStore::find_rows(const SceneView& scene, const EmbreeTracer& stat
   }
 }
 
-void LightGuideStore::look_for_lights(const SceneView& scene, const EmbreeTracer& statics,
-                                      int row) {
+void LightGuideStore::look_for_lights(const SceneView& scene, const CpuTracer& statics, int row) {
   const GuideRow& from = rows_[static_cast<size_t>(row)];
   for (uint32_t light = 0; light < grid_.lights; ++light) {
     int seen = 0, sent = 0;
@@ -70,7 +69,7 @@ void LightGuideStore::look_for_lights(const SceneView& scene, const EmbreeTracer
   }
 }
 
-void LightGuideStore::look_for_sky(const SceneView& scene, const EmbreeTracer& statics, int row) {
+void LightGuideStore::look_for_sky(const SceneView& scene, const CpuTracer& statics, int row) {
   const GuideRow& from = rows_[static_cast<size_t>(row)];
   const LightGuide guide = view();
   float seen = 0;
@@ -110,8 +109,7 @@ void LightGuideStore::conclude(int row) {
   sky_visible_[static_cast<size_t>(row)] = sky > kWorth ? sky : 0.0f;
 }
 
-void LightGuideStore::build(SceneView scene, const EmbreeTracer& statics,
-                            const DescribedLook& look) {
+void LightGuideStore::build(SceneView scene, const CpuTracer& statics, const DescribedLook& look) {
   grid_ = {};
   const bool has_sky = scene.environment.illuminance > 0 || scene.sky_texture >= 0 ||
                        luminance(scene.sky_ambient) > 0;

@@ -14,13 +14,13 @@ class LightGuideStore {
  public:
   /// A function of what never moves alone, so a picture does not depend on those made before it.
   /// Without static geometry the guide is empty.
-  void build(SceneView scene, const EmbreeTracer& statics, const DescribedLook& look);
+  void build(SceneView scene, const CpuTracer& statics, const DescribedLook& look);
   LightGuide view() const;
 
  private:
-  void find_rows(const SceneView& scene, const EmbreeTracer& statics);
-  void look_for_lights(const SceneView& scene, const EmbreeTracer& statics, int row);
-  void look_for_sky(const SceneView& scene, const EmbreeTracer& statics, int row);
+  void find_rows(const SceneView& scene, const CpuTracer& statics);
+  void look_for_lights(const SceneView& scene, const CpuTracer& statics, int row);
+  void look_for_sky(const SceneView& scene, const CpuTracer& statics, int row);
   /// What the row and its neighbours have seen.
   void conclude(int row);
 

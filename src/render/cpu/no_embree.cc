@@ -9,13 +9,11 @@ Result<std::unique_ptr<EmbreeScene>> EmbreeScene::make() { return std::unique_pt
 
 std::string ray_tracer_version() { return "Gloam's own BVH"; }
 
-bool EmbreeTracer::by_embree(const Ray&, bool, RayHit*) const { return false; }
-MaskLanes EmbreeTracer::closest_by_embree(const RayOf<FloatLanes>&, MaskLanes, bool,
-                                          RayHitOf<FloatLanes>*) const {
+bool CpuTracer::by_embree(const Ray&, bool, RayHit*) const { return false; }
+MaskLanes CpuTracer::closest_by_embree(const RayOf<FloatLanes>&, MaskLanes, bool,
+                                       RayHitOf<FloatLanes>*) const {
   return false;
 }
-MaskLanes EmbreeTracer::occluded_by_embree(const RayOf<FloatLanes>&, MaskLanes) const {
-  return false;
-}
+MaskLanes CpuTracer::occluded_by_embree(const RayOf<FloatLanes>&, MaskLanes) const { return false; }
 
 }  // namespace gloam

@@ -29,7 +29,7 @@ void add_box(const PixelBox& from, PixelBox* to) {
 
 }  // namespace
 
-std::vector<ObjectCover> measure_cover(const SceneView& scene, const EmbreeTracer& tracer,
+std::vector<ObjectCover> measure_cover(const SceneView& scene, const CpuTracer& tracer,
                                        const CameraView32& camera, bool has_motion, int width,
                                        int height, const std::vector<uint16_t>& object_of) {
   const size_t count =

@@ -1,7 +1,7 @@
 #pragma once
 // How much of each object a camera sees, and how much it would see with nothing in front.
 
-#include "render/cpu/embree_tracer.h"
+#include "render/cpu/cpu_tracer.h"
 #include "render/film/film.h"
 #include "render/kernel/camera.h"
 
@@ -9,7 +9,7 @@ namespace gloam {
 
 /// By object, which `object_of` tells for every instance (0 = none): counts the pixels whose centre
 /// ray meets the object first, and those whose ray meets it at all.
-std::vector<ObjectCover> measure_cover(const SceneView& scene, const EmbreeTracer& tracer,
+std::vector<ObjectCover> measure_cover(const SceneView& scene, const CpuTracer& tracer,
                                        const CameraView32& camera, bool has_motion, int width,
                                        int height, const std::vector<uint16_t>& object_of);
 

@@ -3,7 +3,7 @@
 
 #include <immintrin.h>
 
-#include "render/cpu/embree_tracer.h"
+#include "render/cpu/cpu_tracer.h"
 #include "render/kernel/channels.h"
 #include "render/kernel/path.h"
 #include "render/kernel/pixel_mean.h"
@@ -28,7 +28,7 @@ class FlushDenormals {
 /// One render call: everything that its pixels share.
 struct Job {
   SceneView scene;
-  EmbreeTracer tracer;
+  CpuTracer tracer;
   CameraView32 camera;
   RenderSettings settings;
   PathOptions path;

@@ -1,23 +1,23 @@
 // Embree or our own BVH, ray by ray or in lanes.
 
-#include "render/cpu/embree_tracer.h"
+#include "render/cpu/cpu_tracer.h"
 
 namespace gloam {
 
-bool EmbreeTracer::trace(const Ray& ray, bool any, RayHit* hit) const {
+bool CpuTracer::trace(const Ray& ray, bool any, RayHit* hit) const {
   return own ? own->trace(ray, any, hit) : by_embree(ray, any, hit);
 }
 
-bool EmbreeTracer::closest(const Ray& ray, bool active, bool, RayHit* hit) const {
+bool CpuTracer::closest(const Ray& ray, bool active, bool, RayHit* hit) const {
   return active && trace(ray, false, hit);
 }
-bool EmbreeTracer::occluded(const Ray& ray, bool active) const {
+bool CpuTracer::occluded(const Ray& ray, bool active) const {
   RayHit hit;
   return active && trace(ray, true, &hit);
 }
 
-MaskLanes EmbreeTracer::closest(const RayOf<FloatLanes>& ray, MaskLanes active, bool coherent,
-                                RayHitOf<FloatLanes>* hit) const {
+MaskLanes CpuTracer::closest(const RayOf<FloatLanes>& ray, MaskLanes active, bool coherent,
+                             RayHitOf<FloatLanes>* hit) const {
   if (!own) return closest_by_embree(ray, active, coherent, hit);
   *hit = {};
   MaskLanes met = false;
@@ -30,7 +30,7 @@ MaskLanes EmbreeTracer::closest(const RayOf<FloatLanes>& ray, MaskLanes active, 
   return met;
 }
 
-MaskLanes EmbreeTracer::occluded(const RayOf<FloatLanes>& ray, MaskLanes active) const {
+MaskLanes CpuTracer::occluded(const RayOf<FloatLanes>& ray, MaskLanes active) const {
   if (!own) return occluded_by_embree(ray, active);
   MaskLanes met = false;
   each_lane(active, [&](int i) {
@@ -40,8 +40,8 @@ MaskLanes EmbreeTracer::occluded(const RayOf<FloatLanes>& ray, MaskLanes active)
   return met;
 }
 
-void EmbreeTracer::trace_packet(const Ray* const* rays, int count, bool any, bool coherent,
-                                RayHit* hits, bool* found) const {
+void CpuTracer::trace_packet(const Ray* const* rays, int count, bool any, bool coherent,
+                             RayHit* hits, bool* found) const {
   RayOf<FloatLanes> ray;
   MaskLanes active = false;
   for (int i = 0; i < kPacket; ++i) {

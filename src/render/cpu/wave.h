@@ -17,10 +17,10 @@ struct Wave {
   int count = 0;
 
   /// The closest hit of each path in `alive`.
-  void trace_closest(const EmbreeTracer& tracer) { trace_kind(tracer, false, true); }
+  void trace_closest(const CpuTracer& tracer) { trace_kind(tracer, false, true); }
 
   template <class Advance>
-  void run(const SceneView& scene, const EmbreeTracer& tracer, const Advance& advance) {
+  void run(const SceneView& scene, const CpuTracer& tracer, const Advance& advance) {
     for (int i = 0; i < count; ++i) alive[i] = i;
     for (bool first_round = true; count > 0; first_round = false) {
       trace_kind(tracer, false, first_round);
@@ -66,8 +66,8 @@ struct Wave {
     __builtin_prefetch(mesh.indices.data + 3 * triangle);
   }
 
-  void trace_kind(const EmbreeTracer& tracer, bool any, bool coherent) {
-    constexpr int n = EmbreeTracer::kPacket;
+  void trace_kind(const CpuTracer& tracer, bool any, bool coherent) {
+    constexpr int n = CpuTracer::kPacket;
     const Ray* rays[n];
     int who[n], used = 0;
     RayHit packet_hits[n];

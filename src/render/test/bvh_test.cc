@@ -76,7 +76,7 @@ class BothTrees {
   bool is_mesh(uint32_t instance) const {
     return gloam::is_mesh(scene_->instances()[instance].shape);
   }
-  EmbreeTracer theirs;
+  CpuTracer theirs;
   BvhTracer ours;
 
  private:

@@ -71,7 +71,7 @@ TEST(Lanes, SamplersDrawTheSameNumbersAndWaitWhereInactive) {
 /// Traces the rays of lanes one by one: packets round otherwise, and now and then a ray takes
 /// another way.
 struct OneByOne {
-  const EmbreeTracer& tracer;
+  const CpuTracer& tracer;
 
   MaskLanes closest(const RayOf<FloatLanes>& ray, MaskLanes active, bool coherent,
                     RayHitOf<FloatLanes>* hit) const {

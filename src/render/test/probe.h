@@ -30,7 +30,7 @@ class Probe {
   }
 
   SceneView view;
-  EmbreeTracer tracer;
+  CpuTracer tracer;
 
  private:
   SceneBuilder builder_;

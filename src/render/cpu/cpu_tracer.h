@@ -17,7 +17,7 @@ struct EmbreePart {
 };
 
 /// Cheap to copy; valid until the scene's next update.
-class EmbreeTracer {
+class CpuTracer {
  public:
   static constexpr int kPacket = kLaneCount;
 

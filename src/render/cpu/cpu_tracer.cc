@@ -1,4 +1,4 @@
-#include "render/cpu/embree_tracer.h"
+#include "render/cpu/cpu_tracer.h"
 
 #include <embree3/rtcore.h>
 
@@ -75,8 +75,7 @@ void occlude(MaskLanes active, RTCScene scene, RTCIntersectContext* context, Pac
 
 }  // namespace
 
-void EmbreeTracer::resolve(uint32_t instance_id, uint32_t geometry_id, float time,
-                           RayHit* hit) const {
+void CpuTracer::resolve(uint32_t instance_id, uint32_t geometry_id, float time, RayHit* hit) const {
   if (instance_id == RTC_INVALID_GEOMETRY_ID) {
     hit->instance = rows[geometry_id];
   } else {
@@ -87,7 +86,7 @@ void EmbreeTracer::resolve(uint32_t instance_id, uint32_t geometry_id, float tim
   }
 }
 
-bool EmbreeTracer::by_embree(const Ray& ray, bool any, RayHit* hit) const {
+bool CpuTracer::by_embree(const Ray& ray, bool any, RayHit* hit) const {
   if (!is_ray(ray)) return false;
   float tmax = ray.tmax;
   const uint32_t row = scan(scanned, ray, true, any, &tmax);
@@ -118,8 +117,8 @@ bool EmbreeTracer::by_embree(const Ray& ray, bool any, RayHit* hit) const {
   return row != 0;
 }
 
-MaskLanes EmbreeTracer::closest_by_embree(const RayOf<FloatLanes>& ray, MaskLanes active,
-                                          bool coherent, RayHitOf<FloatLanes>* hit) const {
+MaskLanes CpuTracer::closest_by_embree(const RayOf<FloatLanes>& ray, MaskLanes active,
+                                       bool coherent, RayHitOf<FloatLanes>* hit) const {
   active = active & is_ray(ray);
   FloatLanes tmax = ray.tmax;
   const UintLanes row = scan(scanned, ray, active, false, &tmax);
@@ -159,7 +158,7 @@ MaskLanes EmbreeTracer::closest_by_embree(const RayOf<FloatLanes>& ray, MaskLane
   return found | met;
 }
 
-MaskLanes EmbreeTracer::occluded_by_embree(const RayOf<FloatLanes>& ray, MaskLanes active) const {
+MaskLanes CpuTracer::occluded_by_embree(const RayOf<FloatLanes>& ray, MaskLanes active) const {
   active = active & is_ray(ray);
   FloatLanes tmax = ray.tmax;
   MaskLanes blocked = active & (scan(scanned, ray, active, true, &tmax) != 0u);
