@@ -130,7 +130,7 @@ std::vector<std::vector<RecordedRay>> record_rays(const Probe& probe, const Came
         for (int i = 0; going && i < most; ++i) {
           RayHit hit;
           const bool found = tracer.trace(state.ray, state.any, &hit);
-          going = direct_advance(probe.view, &state, found, hit);
+          going = direct_advance(probe.view, &state, found, hit, [](const auto&...) {});
         }
       } else {
         trace_path(probe.view, tracer, ray, cone.width, cone.spread, {settings.max_depth, 100},

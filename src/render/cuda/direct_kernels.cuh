@@ -12,6 +12,7 @@ __device__ __forceinline__ void store_channels(const DeviceFilm& film, size_t pi
   film.depth[pixel] = c.depth;
   film.distance[pixel] = c.distance;
   film.part[pixel] = c.part;
+  if (film.center_normal == nullptr) return;
   film.center_normal[pixel] = c.normal;
   film.center_albedo[pixel] = c.albedo;
   film.motion[pixel] = c.motion;
