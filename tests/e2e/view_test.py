@@ -58,6 +58,7 @@ class ViewTest(ProgramTest):
         self.program.stderr.close()
 
     def time(self):
+        self.page.wait("!isNaN(parseFloat(document.getElementById('time').innerText))")  # a first picture may come before it
         return float(self.page.text("time").split()[0])
 
     def pull_to_the_right(self):
