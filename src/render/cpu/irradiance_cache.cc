@@ -10,6 +10,9 @@ namespace {
 
 constexpr int kRays = 32;            // of a cell and update
 constexpr int kMemory = 10 * kRays;  // rays that a cell's mean is of, at most
+constexpr float kStirred = 40;       // of a cell that sees moving things in all directions, as many
+                                     // times less
+constexpr float kSettles = 0.75f;    // of what a cell saw move, from update to update
 constexpr uint32_t kForgotten = 30;  // updates after which a cell that nobody asks for goes
 constexpr size_t kMostCells = 2500;  // of an update, but for a first picture's
 constexpr float kSurprise = 3;       // standard errors,
@@ -110,6 +113,8 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
       out.light.all += one;
       if (near) out.light.near += one;
       out.light.share += near ? 1.0f : 0.0f;
+      if (lane(light.way, i) < 1e30f && scene.instances[lane(light.first, i)].has_moved)
+        out.stir += 1.0f / kRays;
       out.variance += sqr(luminance(one));
       out.rays += lane(path.result.rays, i);
     }
@@ -195,6 +200,9 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
     // As long as little of the light has come round, what there was before is no part of the mean.
     if (!remembers || traced.changed) cell.samples = std::min(cell.samples, kRays / 8);
     if (!remembers) cell.samples = 0;
+    cell.stir = max(traced.stir, kSettles * cell.stir);
+    const auto memory = static_cast<int>(kMemory / (1 + kStirred * cell.stir));
+    cell.samples = std::min(cell.samples, std::max(memory - kRays, 0));
     const float share = static_cast<float>(kRays) / static_cast<float>(cell.samples + kRays);
     light = {lerp(light.all, traced.light.all, share), lerp(light.near, traced.light.near, share),
              lerp(light.share, traced.light.share, share)};
@@ -250,9 +258,12 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
     for (uint32_t row = 0; row < cells_.size(); ++row) {
       if (cells_[row].starts > 0) asked_.push_back(row);
     }
-    // Those that have waited longest, new ones before all; of these in the order of their making.
+    // Those that have waited longest, above all where things move, new ones before all; of these in
+    // the order of their making.
     const auto waits = [this](uint32_t row) {
-      return cells_[row].samples == 0 ? update_ + 1 : update_ - cells_[row].last_traced;
+      const Cell& cell = cells_[row];
+      if (cell.samples == 0) return 1e9f;
+      return static_cast<float>(update_ - cell.last_traced) * (1 + kStirred * cell.stir);
     };
     std::stable_sort(asked_.begin(), asked_.end(),
                      [&](uint32_t a, uint32_t b) { return waits(a) > waits(b); });

@@ -29,6 +29,7 @@ class IrradianceCache {
     uint32_t last_asked = 0, last_traced = 0;  ///< update
     int starts = 0;                            ///< places that asked since the last update
     float variance = 0;                        ///< of the luminance of a round's mean
+    float stir = 0;                            ///< share of directions in which things moved lately
     int samples = 0;                           ///< rays that `light` is the mean of
   };
   /// What a cell's rays of one round brought.
@@ -36,6 +37,7 @@ class IrradianceCache {
     CellLight light;
     Vec3f excess;                    ///< of lamps by way of what shines: what is above the limit
     float variance = 0, before = 0;  ///< of its luminance; luminance before the round
+    float stir = 0;                  ///< share of the rays that met what has moved
     bool is_new = false, changed = false;  ///< it had no light yet; it is not what it was
     uint64_t rays = 0;
   };

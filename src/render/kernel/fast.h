@@ -11,8 +11,9 @@ namespace gloam {
 
 /// Scenes with more lights than this draw so many of them at each surface.
 inline constexpr uint32_t kMaxFastLights = kMaxWeighedLights, kDrawnLights = 4;
-/// Surfaces rougher than this reflect the light of the cache instead of what a ray finds.
-inline constexpr float kMaxTracedRoughness = 0.4f;
+/// Surfaces rougher than this reflect the light of the cache instead of what a ray finds: that is
+/// of all directions alike.
+inline constexpr float kMaxTracedRoughness = 0.6f;
 /// Of two by two pixels on a surface as rough as this, one sends out a ray for all: what they
 /// reflect is blurred over more than that.
 inline constexpr float kLeastSharedRoughness = 0.2f;
@@ -261,6 +262,7 @@ struct GatheredOf {
   Vec3Of<F> light;    ///< [cd/m²]
   Vec3Of<F> caustic;  ///< of lamps by way of what shines, where count_lamps is false
   F way = 1e30f;      ///< to the first surface [m]
+  UintOf<F> first;    ///< instance of that, if there is one
 };
 
 /// Light along path->ray in the `active` lanes, from its first surface that is no glass or mirror.
@@ -279,7 +281,10 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
     RayHitOf<F> hit;
     path->result.rays += select(active, UintOf<F>(1u), UintOf<F>(0u));
     const MaskOf<F> found = tracer.closest(path->ray, active, false, &hit);
-    if (event == 0) out.way = select(found, hit.t, out.way);
+    if (event == 0) {
+      out.way = select(found, hit.t, out.way);
+      out.first = hit.instance;
+    }
     if (!scene.media.volumes.empty()) {
       constexpr int kSteps = 4;
       const F tmax = select(found, hit.t, F(1e30f));
