@@ -96,10 +96,9 @@ Vec2Of<F> stratified(int first, Vec2f turn) {
   constexpr int kOrder[16] = {0, 10, 5, 15, 12, 6, 9, 3, 8, 2, 13, 7, 4, 14, 1, 11};
   Vec2Of<F> u;
   for (int i = 0; i < kLaneCount; ++i) {
-    const int k = kOrder[(first + i) % 16];
-    const Vec2f p{(static_cast<float>(k % 4) + turn.x) / 4,
-                  (static_cast<float>(k / 4) + turn.y) / 4};
-    set_lane(&u, i, p);
+    const int k = kOrder[(first + i) % 16], column = k % 4, row = k / 4;
+    set_lane(&u, i,
+             {(static_cast<float>(column) + turn.x) / 4, (static_cast<float>(row) + turn.y) / 4});
   }
   return u;
 }
