@@ -29,8 +29,9 @@ struct Arrival {
 
 Vec3f direction_in(uint32_t cell, Vec2f u) {
   constexpr float kEdge = 2.0f / kAcross;
-  return directions::from_square(Vec2f{(static_cast<float>(cell % kAcross) + u.x) * kEdge - 1.0f,
-                                       (static_cast<float>(cell / kAcross) + u.y) * kEdge - 1.0f});
+  const uint32_t x = cell % kAcross, y = cell / kAcross;
+  return directions::from_square(Vec2f{(static_cast<float>(x) + u.x) * kEdge - 1.0f,
+                                       (static_cast<float>(y) + u.y) * kEdge - 1.0f});
 }
 
 using Map = std::array<float, kCells>;

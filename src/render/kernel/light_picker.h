@@ -102,6 +102,7 @@ class LightPickerOf {
     total = weighs ? total + sky : 2.0f * sky;  // lights that are not weighed get half
     const F inverse = select(total > 0.0f, 1.0f / total, F(0.0f));
     for (uint32_t i = 0; weighs && i < count_; ++i) {
+      // Written above for all of them. NOLINTNEXTLINE(clang-analyzer-core.CallAndMessage)
       share_[i] = select(active, weight[i] * inverse, share_[i]);
     }
     if (scene.has_environment()) sky_share_ = select(active, sky * inverse, sky_share_);
