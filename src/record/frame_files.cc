@@ -20,7 +20,7 @@ Result<Bytes> png8(const CameraFrame& frame, const std::vector<uint8_t>& values)
   return encode_png8(frame.intrinsics.width, frame.intrinsics.height, 3, values);
 }
 
-/// `values` has as many in a row of pixels as it has more than the picture has pixels.
+/// Several values of a pixel (a raw picture's colours) stand side by side in its row.
 Result<Bytes> png16(const CameraFrame& frame, const std::vector<uint16_t>& values) {
   if (values.empty()) return Bytes{};
   const size_t height = static_cast<size_t>(frame.intrinsics.height);

@@ -45,29 +45,45 @@ double mean_luminance(const Film& film) {
   return sum / static_cast<double>(film.radiance.size());
 }
 
-TEST(Fast, IndirectLightIsThatOfThePathTier) {
-  const SceneBuilder b = divided_room();
+Film path_picture(const SceneBuilder& b, const CameraView& view, int spp, int max_depth) {
   RenderSettings path;
-  path.spp = 256;
-  path.max_depth = 40;  // light comes round in the cache without end
-  const Film exact = b.render(room_view(), path);
+  path.spp = spp;
+  path.max_depth = max_depth;
+  return b.render(view, path);
+}
+constexpr int kEndless = 40;  // light comes round in the cache without end
+
+/// The last of `count` pictures of what stands still.
+Film fast_picture(const SceneBuilder& b, const CameraView& view, uint32_t count) {
   const auto renderer = b.make();
   const auto history = renderer->make_history();
   Film film;
-  for (uint32_t i = 0; i < 8; ++i) {
-    renderer->render(room_view(), fast_settings(history.get(), i), &film);
+  for (uint32_t i = 0; i < count; ++i) {
+    renderer->render(view, fast_settings(history.get(), i), &film);
   }
+  return film;
+}
+
+/// Light of `film` over that of `exact` in block (bx, by) of 12 x 12 pixels; both are 96 wide.
+double block_ratio(const Film& film, const Film& exact, int bx, int by) {
+  double a = 0, c = 0;
+  for (int i = 0; i < 144; ++i) {
+    const size_t pixel = static_cast<size_t>((by * 12 + i / 12) * 96 + bx * 12 + i % 12);
+    a += luminance(film.radiance[pixel]);
+    c += luminance(exact.radiance[pixel]);
+  }
+  return a / c;
+}
+
+TEST(Fast, IndirectLightIsThatOfThePathTier) {
+  const SceneBuilder b = divided_room();
+  const Film exact = path_picture(b, room_view(), 256, kEndless);
+  const Film film = fast_picture(b, room_view(), 8);
   EXPECT_NEAR(mean_luminance(film), mean_luminance(exact), 0.07 * mean_luminance(exact));
   // Blocks of 12 x 12 pixels: what is lit, what is in the shade, what is red.
   for (int by = 0; by < 6; ++by) {
     for (int bx = 0; bx < 8; ++bx) {
-      double a = 0, c = 0;
-      for (int i = 0; i < 144; ++i) {
-        const size_t pixel = static_cast<size_t>((by * 12 + i / 12) * 96 + bx * 12 + i % 12);
-        a += luminance(film.radiance[pixel]);
-        c += luminance(exact.radiance[pixel]);
-      }
-      EXPECT_NEAR(a / c, 1, 0.25) << "block " << bx << " " << by;
+      EXPECT_NEAR(block_ratio(film, exact, bx, by), 1, 0.25) << "block " << bx << " " << by;
     }
   }
 }
@@ -89,24 +105,11 @@ SceneBuilder polished_floor() {
 TEST(Fast, RoughReflectionsAreThoseOfThePathTier) {
   const SceneBuilder b = polished_floor();
   const CameraView view = SceneBuilder::camera(look_at({0, -2, 1}, {0, 1, 0.2f}), 96, 72, 50);
-  RenderSettings path;
-  path.spp = 256;
-  const Film exact = b.render(view, path);
-  const auto renderer = b.make();
-  const auto history = renderer->make_history();
-  Film film;
-  for (uint32_t i = 0; i < 8; ++i) {
-    renderer->render(view, fast_settings(history.get(), i), &film);
-  }
+  const Film exact = path_picture(b, view, 256, RenderSettings{}.max_depth);
+  const Film film = fast_picture(b, view, 8);
   for (int by = 4; by < 6; ++by) {  // of the floor
     for (int bx = 0; bx < 8; ++bx) {
-      double a = 0, c = 0;
-      for (int i = 0; i < 144; ++i) {
-        const size_t pixel = static_cast<size_t>((by * 12 + i / 12) * 96 + bx * 12 + i % 12);
-        a += luminance(film.radiance[pixel]);
-        c += luminance(exact.radiance[pixel]);
-      }
-      EXPECT_NEAR(a / c, 1, 0.12) << "block " << bx << " " << by;
+      EXPECT_NEAR(block_ratio(film, exact, bx, by), 1, 0.12) << "block " << bx << " " << by;
     }
   }
 }
@@ -122,17 +125,8 @@ TEST(Fast, TheSkysLightIsCountedOnce) {
   sky.width = 2, sky.height = 1;
   sky.texels.assign(2, {100, 100, 100});
   const CameraView view = SceneBuilder::camera(look_at({0, -0.5f, 3}, {0, 0, 0}), 48, 32, 40);
-  RenderSettings path;
-  path.spp = 256;
-  path.max_depth = 40;
-  const double exact = mean_luminance(b.render(view, path));
-  const auto renderer = b.make();
-  const auto history = renderer->make_history();
-  Film film;
-  for (uint32_t i = 0; i < 4; ++i) {
-    renderer->render(view, fast_settings(history.get(), i), &film);
-  }
-  EXPECT_NEAR(mean_luminance(film), exact, 0.03 * exact);
+  const double exact = mean_luminance(path_picture(b, view, 256, kEndless));
+  EXPECT_NEAR(mean_luminance(fast_picture(b, view, 4)), exact, 0.03 * exact);
 }
 
 TEST(Fast, ARoomIsDarkSoonAfterItsLampGoesOut) {
@@ -192,17 +186,8 @@ TEST(Fast, LampsInMirrorsLightTheRoom) {
   b.add(ShapeType::kBox, {0.9f, 0.01f, 0.9f}, translation({1, 1.9f, 1}), b.add_material(mirror));
   const CameraView view =
       SceneBuilder::camera(look_at({1.6f, -1.8f, 1.5f}, {0.9f, 0.9f, 0}), 96, 72, 60);
-  RenderSettings path;
-  path.spp = 512;
-  path.max_depth = 40;
-  const double exact = mean_luminance(b.render(view, path));
-  const auto renderer = b.make();
-  const auto history = renderer->make_history();
-  Film film;
-  for (uint32_t i = 0; i < 8; ++i) {
-    renderer->render(view, fast_settings(history.get(), i), &film);
-  }
-  EXPECT_NEAR(mean_luminance(film), exact, 0.03 * exact);
+  const double exact = mean_luminance(path_picture(b, view, 512, kEndless));
+  EXPECT_NEAR(mean_luminance(fast_picture(b, view, 8)), exact, 0.03 * exact);
 }
 
 TEST(Fast, PicturesAreTheSameForAnyNumberOfThreads) {

@@ -107,8 +107,8 @@ TEST(Thermal, NoiseHasItsTemperatureDifference) {
   set_thread_count(0);
 }
 
-// A slab before a warm thing: Beer and Lambert's law, and what the slab itself gives off.
-TEST(Thermal, MediaDimInTheirOwnBandAndGlow) {
+/// A slab of 0.5 m at 280 K before the things, which takes 2 * 0.8 of the heat per metre.
+RenderDescription behind_a_slab(float width) {
   RenderDescription description = two_things();
   MediumDescription medium;
   medium.mass_extinction.fill(1000);  // opaque in every other band
@@ -117,10 +117,16 @@ TEST(Thermal, MediaDimInTheirOwnBandAndGlow) {
   description.media.push_back(medium);
   VolumeDescription slab;
   slab.X_WV.p = {0, 0, -1};
-  slab.size = {4, 4, 0.5f};
+  slab.size = {width, width, 0.5f};
   slab.even_density = 0.8f;
   slab.even_temperature = 280;
   description.volumes.push_back(slab);
+  return description;
+}
+
+// A slab before a warm thing: Beer and Lambert's law, and what the slab itself gives off.
+TEST(Thermal, MediaDimInTheirOwnBandAndGlow) {
+  const RenderDescription description = behind_a_slab(4);
   const ThermalCamera camera = make({}, description, {{.temperature = 350, .emissivity = 1}});
   const double kept = std::exp(-2 * 0.8 * 0.5);
   const double expected = kept * planck(350) + (1 - kept) * planck(280);
@@ -132,17 +138,7 @@ TEST(Thermal, MediaDimInTheirOwnBandAndGlow) {
 
 // 60 degrees off the axis of a fisheye the way through a slab is twice as long.
 TEST(Thermal, MediaDimAlongTheLenssRays) {
-  RenderDescription description = two_things();
-  MediumDescription medium;
-  medium.mass_extinction.fill(2);
-  medium.albedo.fill(0);
-  description.media.push_back(medium);
-  VolumeDescription slab;
-  slab.X_WV.p = {0, 0, -1};
-  slab.size = {20, 20, 0.5f};
-  slab.even_density = 0.8f;
-  slab.even_temperature = 280;
-  description.volumes.push_back(slab);
+  const RenderDescription description = behind_a_slab(20);
   CameraView fisheye = view();
   fisheye.intrinsics.lens = LensModel::kEquidistant;
   fisheye.intrinsics.fx = fisheye.intrinsics.fy = 100;
