@@ -6,9 +6,10 @@
 
 namespace gloam {
 
-/// Room for the filter; the smoothed signals are in `a` at the end.
+/// Room for the filter.
 struct FastFilter {
   FastPlane3 a[kFastSignals], b[kFastSignals];
+  FastPlane deviation[kKeptSignals];  ///< of the signals' means, by the pixels around
   LightGain gain[kKeptSignals], color_gain;  ///< of the signals, and of the whole light
 
   void resize(int width, int height);
@@ -16,6 +17,14 @@ struct FastFilter {
   void accumulate(const FastFrame& before, FastFrame* frame);
   /// Smooths the signals over surfaces.
   void smooth(const FastFrame& frame);
+  const FastPlane3& smoothed(FastSignal signal) const {
+    return signal == kCachedSignal ? a[signal] : b[signal];
+  }
+
+ private:
+  /// One round for the signals from kFirst on, over pixels 2^round apart.
+  template <int kFirst>
+  void smooth_signals(const FastFrame& f, int round, const FastPlane3* from, FastPlane3* to);
 };
 
 /// Means of frame->color and the pictures before: rays through other points of the pixels each time

@@ -7,13 +7,12 @@
 namespace gloam {
 namespace {
 
-constexpr float kRange = 1.2f;       // of deviations around a pixel that its past may have
+constexpr float kRange = 1.6f;       // of deviations around a pixel that its past may have
 constexpr float kLongest = 8;        // pictures in a mean: older ones fade
 constexpr float kSpike = 4;          // times its neighbours, at most, that a mirror's light may be
 constexpr int kPatch = 16;           // [px], in which a change of the light is sought:
 constexpr float kNoChange = 0.01f;   // a share that may be noise,
 constexpr float kHaste = 8;          // and what of the rest is taken over at once
-constexpr int kRounds = 3;           // of smoothing, each twice as wide
 constexpr float kTolerance = 0.01f;  // of places on one plane, over their distance
 constexpr float kFarthest = 1e8f;    // deviations squared, so that products stay finite
 
@@ -134,6 +133,7 @@ void FastFrame::resize(int w, int h) {
 void FastFilter::resize(int width, int height) {
   for (FastPlane3& plane : a) plane.resize(width, height, 0);
   for (FastPlane3& plane : b) plane.resize(width, height, 0);
+  for (FastPlane& plane : deviation) plane.resize(width, height, 0);
   for (LightGain& signal : gain) signal.resize(width, height);
   color_gain.resize(width, height);
 }
@@ -150,65 +150,92 @@ void FastFilter::accumulate(const FastFrame& before, FastFrame* frame) {
   for (int s = 0; s < kKeptSignals; ++s) std::swap(frame->signal[s], a[s]);
 }
 
-void FastFilter::smooth(const FastFrame& f) {
-  static_assert(kRounds % 2 == 1, "the last round ends in a");
-  for (int round = 0; round < kRounds; ++round) {
-    const int step = 1 << round;
-    const FastPlane3* from = round == 0 ? f.signal : (round % 2 == 1 ? a : b);
-    FastPlane3* to = round % 2 == 0 ? a : b;
-    parallel_for("fast filter", f.height, [&](int64_t row) {
-      const int y = static_cast<int>(row);
-      for (int x = 0; x < f.width; x += kLaneCount) {
-        const F part = f.part.load(x, y);
-        const Vec3Of<F> p = f.p.load(x, y), n = f.n.load(x, y);
-        const F scale =
-            1.0f / (kTolerance * static_cast<float>(step) * f.distance.load(x, y) + 1e-4f);
-        const F age = f.age.load(x, y), rough = f.roughness.load(x, y);
-        const F mirror = min(rough * rough * 8.0f, 1.0f);
-        Vec3Of<F> sum[kFastSignals];
-        F total[kFastSignals], sharp[kFastSignals], own[kFastSignals];
-        for (int s = 0; s < kFastSignals; ++s) {
-          sum[s] = from[s].load(x, y);
-          own[s] = luminance(sum[s]);
-          total[s] = 1.0f;
-          if (s >= kKeptSignals) continue;
-          const F mean = f.mean[s].load(x, y);
-          const F variance = max(f.square[s].load(x, y) - mean * mean, 0.0f);
-          const F noise = square_root(variance / age);
-          sharp[s] = 1.0f / (2.0f * noise + 0.005f * own[s] + 1e-4f);
-        }
-        for (int dy = -1; dy <= 1; ++dy) {
-          for (int dx = -1; dx <= 1; ++dx) {
-            if (dx == 0 && dy == 0) continue;
-            const int qx = x + dx * step, qy = y + dy * step;
-            const F same = select(f.part.load(qx, qy) == part, F(1.0f), F(0.0f));
-            const F facing = max(dot(n, f.n.load(qx, qy)), 0.0f);
-            const F f4 = sqr(sqr(facing)), f16 = sqr(sqr(f4));
-            const F off = dot(n, f.p.load(qx, qy) - p) * scale;
-            const F tap =
-                same * f16 * max(1.0f - off * off, 0.0f) * (dx != 0 && dy != 0 ? 0.5f : 0.75f);
-            Vec3Of<F> v[kFastSignals];
-            F apart[kKeptSignals];
-            for (int s = 0; s < kFastSignals; ++s) v[s] = from[s].load(qx, qy);
-            for (int s = 0; s < kKeptSignals; ++s) {
-              const F d = (luminance(v[s]) - own[s]) * sharp[s];
-              apart[s] = 1.0f + sqr(min(d * d, kFarthest));
-            }
-            const F w = tap / (apart[0] * apart[1]);  // one division for both
+namespace {
+
+/// Deviation of what is shown of a signal: of the pixels around together, as few samples say little
+/// of it.
+F deviation_at(const FastFrame& f, int signal, int x, int y) {
+  const F part = f.part.load(x, y);
+  F variance, n;
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      const F one = select(f.part.load(x + dx, y + dy) == part, F(1.0f), F(0.0f));
+      const F mean = f.mean[signal].load(x + dx, y + dy);
+      variance += one * max(f.square[signal].load(x + dx, y + dy) - mean * mean, 0.0f);
+      n += one;
+    }
+  }
+  return square_root(variance / (n * f.age.load(x, y)));
+}
+
+}  // namespace
+
+template <int kFirst>
+void FastFilter::smooth_signals(const FastFrame& f, int round, const FastPlane3* from,
+                                FastPlane3* to) {
+  constexpr int kKept = std::max<int>(kFirst, kKeptSignals);  // where those that are kept end
+  const int step = 1 << round;
+  parallel_for("fast filter", f.height, [&](int64_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < f.width; x += kLaneCount) {
+      const F part = f.part.load(x, y);
+      const Vec3Of<F> p = f.p.load(x, y), n = f.n.load(x, y);
+      const F scale =
+          1.0f / (kTolerance * static_cast<float>(step) * f.distance.load(x, y) + 1e-4f);
+      const F rough = f.roughness.load(x, y);
+      const F mirror = min(rough * rough * 8.0f, 1.0f);
+      Vec3Of<F> sum[kFastSignals];
+      F total[kFastSignals], sharp[kFastSignals], own[kFastSignals];
+      for (int s = kFirst; s < kFastSignals; ++s) {
+        sum[s] = from[s].load(x, y);
+        total[s] = 1.0f;
+      }
+      for (int s = kFirst; s < kKept; ++s) {
+        if (round == 0) deviation[s].store(x, y, deviation_at(f, s, x, y));
+        own[s] = luminance(sum[s]);
+        sharp[s] = 1.0f / (2.0f * deviation[s].load(x, y) + 0.005f * own[s] + 1e-4f);
+      }
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          if (dx == 0 && dy == 0) continue;
+          const int qx = x + dx * step, qy = y + dy * step;
+          const F same = select(f.part.load(qx, qy) == part, F(1.0f), F(0.0f));
+          const F facing = max(dot(n, f.n.load(qx, qy)), 0.0f);
+          const F f4 = sqr(sqr(facing)), f16 = sqr(sqr(f4));
+          const F off = dot(n, f.p.load(qx, qy) - p) * scale;
+          const F tap =
+              same * f16 * max(1.0f - off * off, 0.0f) * (dx != 0 && dy != 0 ? 0.5f : 0.75f);
+          Vec3Of<F> v[kFastSignals];
+          F apart[kFastSignals];
+          for (int s = kFirst; s < kFastSignals; ++s) v[s] = from[s].load(qx, qy);
+          for (int s = kFirst; s < kKept; ++s) {
+            const F d = (luminance(v[s]) - own[s]) * sharp[s];
+            apart[s] = 1.0f + sqr(min(d * d, kFarthest));
+          }
+          F weight[kFastSignals];
+          weight[kCachedSignal] = tap;
+          if constexpr (kFirst < kKeptSignals) {
+            const F w = tap / (apart[kDirectSignal] * apart[kSpecularSignal]);  // one division
+            weight[kDirectSignal] = w * apart[kSpecularSignal];
             // Sharp mirrors show what is far behind them.
-            const F weight[kFastSignals] = {w * apart[1], w * apart[0] * mirror, tap};
-            for (int s = 0; s < kFastSignals; ++s) {
-              sum[s] += v[s] * weight[s];
-              total[s] += weight[s];
-            }
+            weight[kSpecularSignal] = w * apart[kDirectSignal] * mirror;
+          }
+          for (int s = kFirst; s < kFastSignals; ++s) {
+            sum[s] += v[s] * weight[s];
+            total[s] += weight[s];
           }
         }
-        for (int s = 0; s < kFastSignals; ++s) {
-          to[s].store(x, y, sum[s] / total[s]);
-        }
       }
-    });
-  }
+      for (int s = kFirst; s < kFastSignals; ++s) to[s].store(x, y, sum[s] / total[s]);
+    }
+  });
+}
+
+void FastFilter::smooth(const FastFrame& f) {
+  smooth_signals<0>(f, 0, f.signal, a);
+  smooth_signals<0>(f, 1, a, b);
+  // Light of lamps has edges; that of the cache has few.
+  smooth_signals<kCachedSignal>(f, 2, b, a);
 }
 
 }  // namespace gloam

@@ -10,7 +10,7 @@ namespace {
 using F = FloatLanes;
 
 constexpr float kMostPictures = 16;  // in a mean: older ones fade;
-constexpr float kMostMoving = 6;     // where they lie between pixels, each blurs a little
+constexpr float kMostMoving = 4;     // where they lie between pixels, each blurs a little
 constexpr float kRange = 1;          // of deviations around a pixel that its past may have,
 constexpr float kSlack = 0.015f;     // and of its mean: light that flickers is noise
 

@@ -189,9 +189,9 @@ void FastHistory::compose() {
   parallel_for("fast picture", now_.height, [&](int64_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < now_.width; x += kLaneCount) {
-      const Vec3Of<F> cached = filter_.a[kCachedSignal].load(x, y);
-      const Vec3Of<F> diffuse = filter_.a[kDirectSignal].load(x, y) + cached;
-      const Vec3Of<F> specular = filter_.a[kSpecularSignal].load(x, y);
+      const Vec3Of<F> cached = filter_.smoothed(kCachedSignal).load(x, y);
+      const Vec3Of<F> diffuse = filter_.smoothed(kDirectSignal).load(x, y) + cached;
+      const Vec3Of<F> specular = filter_.smoothed(kSpecularSignal).load(x, y);
       const Vec3Of<F> color = now_.base.load(x, y) + now_.albedo.load(x, y) * diffuse +
                               now_.gloss.load(x, y) * cached + specular;
       now_.color.store(x, y, color);

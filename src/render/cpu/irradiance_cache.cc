@@ -17,8 +17,13 @@ constexpr uint32_t kForgotten = 30;  // updates after which a cell that nobody a
 constexpr size_t kMostCells = 2500;  // of an update, but for a first picture's
 constexpr float kSurprise = 3;       // standard errors,
 constexpr float kNoChange = 0.02f;   // and this share, that a region's light may be off
-constexpr float kBrightest = 4;   // of a lamp's light by way of what shines, over the cell's mean:
-                                  // few rays meet it, and the rest is the wide region's
+constexpr float kBrightest = 16;   // times a cell's mean: what a ray brings beyond that is the
+                                   // region's, as few rays meet it
+constexpr float kMostTold = 500;  // cells and updates that a region's excess is the mean of,
+constexpr float kAtChange = 4;    // and where the light has changed;
+constexpr float kGuessed = 20;    // it counts as that of so many more cells of a wider region
+constexpr uint64_t kExcessRegions[] = {caches::kWideRegion | caches::kFacing,
+                                       caches::kRegion | caches::kFacing};
 constexpr float kFades = 0.1f;    // share of all light that must have changed to change all
 constexpr int kMostRounds = 3;    // of an update while light changes in many cells
 constexpr float kSpread = 0.15f;  // of the rays' cones: no fine texture is sought
@@ -73,13 +78,29 @@ uint32_t IrradianceCache::dice() {
   return static_cast<uint32_t>(dice_ >> 33);
 }
 
+float IrradianceCache::luminance_beside(uint64_t key) const {
+  float sum = 0, rays = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const bool up : {false, true}) {
+      const uint32_t slot = slot_of(caches::beside(key, axis, up));
+      if (keys_[slot] == 0) continue;
+      const auto weight = static_cast<float>(cells_[rows_[slot]].samples);
+      sum += luminance(light_[rows_[slot]].all) * weight;
+      rays += weight;
+    }
+  }
+  return rays > 0 ? sum / rays : luminance(mean_);
+}
+
 void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer,
                                  const IrradianceCacheView& cache, uint64_t seed, uint32_t frame,
                                  size_t k) {
   using F = FloatLanes;
   const uint32_t row = asked_[k];
   const Cell& cell = cells_[row];
-  const float edge = caches::edge_of(cell.key), before = luminance(light_[row].all);
+  const float edge = caches::edge_of(cell.key);
+  const float before =
+      cell.samples == 0 ? luminance_beside(cell.key) : luminance(light_[row].all);
   const auto starts = static_cast<size_t>(std::min(cell.starts, kStarts));
   const float brightest = before > 0 ? kBrightest * before : 1e30f;
   Traced& out = traced_[k];
@@ -105,10 +126,9 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
     const fasts::GatheredOf<F> light =
         fasts::gather(scene, tracer, cache, false, MaskLanes(true), &path, met);
     for (int i = 0; i < kLaneCount; ++i) {
-      const Vec3f caustic = lane(light.caustic, i);
-      const Vec3f kept = caustic * (brightest / max(luminance(caustic), brightest));
-      const Vec3f one = lane(light.light, i) + kept;
-      out.excess += caustic - kept;
+      const Vec3f all = lane(light.light, i);
+      const Vec3f one = all * (brightest / max(luminance(all), brightest));
+      out.excess += all - one;
       const bool near = lane(light.way, i) < edge;
       out.light.all += one;
       if (near) out.light.near += one;
@@ -171,13 +191,40 @@ void IrradianceCache::find_changes() {
   });
 }
 
-void IrradianceCache::spread_caustics() {
-  each_group(caches::kWideRegion | caches::kFacing, [&](std::span<const Member> group) {
-    Vec3f sum;
-    for (const auto& [key, k] : group) sum += traced_[k].excess;
-    const Vec3f each = sum / static_cast<float>(group.size());
-    for (const auto& [key, k] : group) traced_[k].light.all += each;
-  });
+void IrradianceCache::Excess::add(Vec3f more, size_t count, float most) {
+  const float all = max(cells + static_cast<float>(count), 1.0f), kept = min(1.0f, most / all);
+  sum = (sum + more) * kept;
+  cells = all * kept;
+}
+
+void IrradianceCache::spread_excess() {
+  Vec3f all;
+  for (const Traced& traced : traced_) all += traced.excess;
+  excess_.add(all, traced_.size(), kMostTold);
+  excess_.each = excess_.sum / excess_.cells;
+  // From wide to narrow: what little a region has seen is completed by the wider one's.
+  for (size_t level = 0; level < kLevels; ++level) {
+    each_group(kExcessRegions[level], [&](std::span<const Member> group) {
+      const uint64_t key = group.front().first;
+      const Excess& wider =
+          level == 0 ? excess_ : regions_[level - 1][key & kExcessRegions[level - 1]];
+      Vec3f sum;
+      for (const auto& [_, k] : group) sum += traced_[k].excess;
+      Excess& region = regions_[level][key];
+      region.add(sum, group.size(), kMostTold);
+      region.last_traced = update_;
+      region.each = (region.sum + wider.each * kGuessed) / (region.cells + kGuessed);
+      if (level + 1 < kLevels) return;
+      for (const auto& [_, k] : group) traced_[k].light.all += region.each;
+    });
+  }
+}
+
+void IrradianceCache::forget_excess(uint64_t key) {
+  excess_.add({}, 0, kAtChange);
+  for (size_t level = 0; level < kLevels; ++level) {
+    regions_[level][key & kExcessRegions[level]].add({}, 0, kAtChange);
+  }
 }
 
 uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
@@ -190,7 +237,7 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
                        for (int64_t k = begin; k < end; ++k)
                          trace_cell(scene, tracer, cache, seed, frame, static_cast<size_t>(k));
                      });
-  spread_caustics();
+  spread_excess();
   find_changes();
   uint64_t rays = 0;
   for (size_t k = 0; k < asked_.size(); ++k) {
@@ -200,12 +247,12 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
     // As long as little of the light has come round, what there was before is no part of the mean.
     if (!remembers || traced.changed) cell.samples = std::min(cell.samples, kRays / 8);
     if (!remembers) cell.samples = 0;
+    if (traced.changed) forget_excess(cell.key);
     cell.stir = max(traced.stir, kSettles * cell.stir);
     const auto memory = static_cast<int>(kMemory / (1 + kStirred * cell.stir));
     cell.samples = std::min(cell.samples, std::max(memory - kRays, 0));
     const float share = static_cast<float>(kRays) / static_cast<float>(cell.samples + kRays);
-    light = {lerp(light.all, traced.light.all, share), lerp(light.near, traced.light.near, share),
-             lerp(light.share, traced.light.share, share)};
+    light = lerp(light, traced.light, share);
     cell.variance = lerp(cell.variance, traced.variance, share);
     cell.samples = std::min(cell.samples + kRays, kMemory);
     cell.last_traced = update_;
@@ -283,6 +330,11 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
 
 void IrradianceCache::forget() {
   ++update_;
+  for (auto& regions : regions_) {
+    std::erase_if(regions, [&](const auto& region) {
+      return region.second.last_traced + kForgotten < update_;
+    });
+  }
   size_t kept = 0;
   for (size_t row = 0; row < cells_.size(); ++row) {
     cells_[row].starts = 0;

@@ -2,6 +2,7 @@
 // The cells behind an IrradianceCacheView: which there are, and what light they hold.
 
 #include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -35,7 +36,7 @@ class IrradianceCache {
   /// What a cell's rays of one round brought.
   struct Traced {
     CellLight light;
-    Vec3f excess;                    ///< of lamps by way of what shines: what is above the limit
+    Vec3f excess;                    ///< of rays that bring more than is likely: what is above that
     float variance = 0, before = 0;  ///< of its luminance; luminance before the round
     float stir = 0;                  ///< share of the rays that met what has moved
     bool is_new = false, changed = false;  ///< it had no light yet; it is not what it was
@@ -45,12 +46,24 @@ class IrradianceCache {
   struct LightChange {
     float light = 0, change = 0, variance = 0;
   };
+  /// Of Traced::excess in a region: a sum over cells and updates, where old ones fade.
+  struct Excess {
+    Vec3f sum, each;  ///< each: share of a cell
+    float cells = 0;
+    uint32_t last_traced = 0;
+
+    /// Of `count` cells more; from then on as that of `most` cells.
+    void add(Vec3f more, size_t count, float most);
+  };
+  static constexpr size_t kLevels = 2;  ///< wide regions, and narrow ones in them
   static constexpr int kStarts = 4, kFurther = 8;
 
   /// The same sequence each time.
   uint32_t dice();
   uint32_t slot_of(uint64_t key) const;
   void rebuild(size_t slots);
+  /// Of the cells beside that of a key, or of all if there are none.
+  float luminance_beside(uint64_t key) const;
   /// Cell k of asked_ into traced_.
   void trace_cell(const SceneView& scene, const CpuTracer& tracer, const IrradianceCacheView& cache,
                   uint64_t seed, uint32_t frame, size_t k);
@@ -60,8 +73,9 @@ class IrradianceCache {
   void each_group(uint64_t mask, const Visit& visit);
   LightChange change_of(std::span<const Member> group) const;
   void find_changes();
-  /// Gives what is above the limit to all cells of a wide region that face the same way.
-  void spread_caustics();
+  /// Gives what is above the limit to all cells of a region that face the same way.
+  void spread_excess();
+  void forget_excess(uint64_t key);
   uint64_t trace(const SceneView& scene, const CpuTracer& tracer, const IrradianceCacheView& cache,
                  uint64_t seed, uint32_t frame, bool remembers);
   /// After each round: to where the light would come in many more.
@@ -80,6 +94,8 @@ class IrradianceCache {
   std::vector<Member> order_;          ///< by group
   std::vector<CacheRequest> further_;  ///< of places that the last rays met: (asked x kFurther)
   Vec3f mean_;
+  Excess excess_;  ///< of all
+  std::unordered_map<uint64_t, Excess> regions_[kLevels];  ///< by masked key
   uint32_t update_ = 0;
   uint64_t dice_ = 1;
 };

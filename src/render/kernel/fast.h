@@ -68,7 +68,7 @@ template <class F>
 GLOAM_HD CacheCellOf<F> ask_cells(const IrradianceCacheView& cache, const SurfaceOf<F>& v,
                                   MaskOf<F> active, Vec3Of<F> jitter, uint32_t coarser,
                                   CacheRequest* requests) {
-  const CacheCellOf<F> cells = cache_cell<F>(cache, v.p, v.normal, jitter, coarser);
+  const CacheCellOf<F> cells = cache_cell<F>(cache, v.p, v.normal, v.outside, jitter, coarser);
   if (requests == nullptr) return cells;
   const Vec3Of<F> start = leave_surface(v.p, v.geometric, v.geometric, v.t);
   each_lane(active,
@@ -87,7 +87,7 @@ GLOAM_HD Vec3Of<F> cached_light(const IrradianceCacheView& cache, const SurfaceO
   each_lane(active, [&](int i) { cell[i] = find_cell(cache, cache_key(cells, i)); });
   each_lane(active, [&](int i) {
     for (uint32_t more = 0; cell[i] < 0 && more < 3; ++more) {
-      cell[i] = find_cell(cache, cache_key(cache, lane(v.p, i), lane(v.normal, i),
+      cell[i] = find_cell(cache, cache_key(cache, lane(v.p, i), lane(v.normal, i), lane(v.outside, i),
                                            {0.5f, 0.5f, 0.0f}, coarser + more));
     }
     const bool known = cell[i] >= 0;
@@ -259,10 +259,9 @@ GLOAM_HD Vec3Of<F> lamps_met(const SceneView& scene, const paths::State<F>& path
 /// What a ray brings.
 template <class F>
 struct GatheredOf {
-  Vec3Of<F> light;    ///< [cd/m²]
-  Vec3Of<F> caustic;  ///< of lamps by way of what shines, where count_lamps is false
-  F way = 1e30f;      ///< to the first surface [m]
-  UintOf<F> first;    ///< instance of that, if there is one
+  Vec3Of<F> light;  ///< [cd/m²]
+  F way = 1e30f;    ///< to the first surface [m]
+  UintOf<F> first;  ///< instance of that, if there is one
 };
 
 /// Light along path->ray in the `active` lanes, from its first surface that is no glass or mirror.
@@ -310,10 +309,7 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
       const F pdf = emitter_pdf(scene, *path, v, every, kDrawnLights, shines & first);
       const F weight = select(first & (pdf > 0.0f),
                               count_lamps ? mis_weight(path->pdf_bsdf, pdf) : F(0.0f), F(1.0f));
-      const Vec3Of<F> light = throughput * v.emission * (v.opacity * weight);
-      const MaskOf<F> caustic = shines & (!first) & MaskOf<F>(!count_lamps);
-      sum += select<F>(shines & !caustic, light, Vec3Of<F>{});
-      out.caustic += select<F>(caustic, light, Vec3Of<F>{});
+      sum += select<F>(shines, throughput * v.emission * (v.opacity * weight), Vec3Of<F>{});
     }
     MaskOf<F> through = false;
     if (scene.has_transparent) {
@@ -352,10 +348,9 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
       F a, b;
       layer_albedo(*scene.albedo, v.roughness, wo.z, &a, &b);
       const Vec3Of<F> gloss = bsdf.base.f0 * a + bsdf.base.f90 * b;
-      const Vec3Of<F> leaving = diffuse_albedo(bsdf) * (diffuse + cached) + gloss * cached;
+      const Vec3Of<F> leaving =
+          diffuse_albedo(bsdf) * (diffuse + cached) + gloss * cached + specular;
       sum += select<F>(matt, throughput * leaving, Vec3Of<F>{});
-      Vec3Of<F>& gleam = count_lamps ? sum : out.caustic;
-      gleam += select<F>(matt, throughput * specular, Vec3Of<F>{});
     }
     if (any(glass)) {
       const Vec2Of<F> u = path->sampler.next_2d(glass);

@@ -14,6 +14,10 @@ struct CellLight {
   float share = 0;  ///< of directions that meet such surfaces
 };
 
+GLOAM_HD CellLight lerp(const CellLight& a, const CellLight& b, float t) {
+  return {lerp(a.all, b.all, t), lerp(a.near, b.near, t), lerp(a.share, b.share, t)};
+}
+
 /// Light at a place in the cell from which the share `near` of directions meet what is near: in
 /// corners and under things it differs from the cell's mean.
 GLOAM_HD Vec3f light_at(const CellLight& cell, float near) {
@@ -49,6 +53,13 @@ inline constexpr uint64_t kWideRegion =
     ~(uint64_t{7} | uint64_t{15} << 9 | uint64_t{15} << 27 | uint64_t{15} << 45);
 inline constexpr uint64_t kFacing = 7;
 
+/// Key of the cell next along an axis, of the same facing.
+GLOAM_HD uint64_t beside(uint64_t key, int axis, bool up) {
+  const int shift = 9 + 18 * axis;
+  const uint64_t mask = uint64_t{axis < 2 ? 0x3FFFFu : 0x1FFFFu} << shift, one = uint64_t{1} << shift;
+  return (key & ~mask) | ((up ? key + one : key - one) & mask);
+}
+
 /// Edge of the cell of a key [m].
 GLOAM_HD float edge_of(uint64_t key) {
   // Exponents from 2^-32 on are told by their last six bits.
@@ -62,15 +73,16 @@ GLOAM_HD float edge_of(uint64_t key) {
 template <class F>
 struct CacheCellOf {
   Vec3Of<F> place;  ///< whole numbers of edges
-  UintOf<F> exponent, facing;
+  UintOf<F> exponent, facing, inside;
   F edge;  ///< [m]
 };
 
-/// The cells for surfaces at p with the normals n. `jitter` in [0, 1)³ blurs the borders of cells,
+/// The cells for surfaces at p with the normals n, seen from the `outside`: inner sides of panes lie
+/// where their outer sides do. `jitter` in [0, 1)³ blurs the borders of cells,
 /// facings and sizes; `coarser`: doublings of the edge.
 template <class F>
 GLOAM_HD CacheCellOf<F> cache_cell(const IrradianceCacheView& cache, Vec3Of<F> p, Vec3Of<F> n,
-                                   Vec3Of<F> jitter, uint32_t coarser) {
+                                   MaskOf<F> outside, Vec3Of<F> jitter, uint32_t coarser) {
   const Vec3Of<F> from_eye = p - in_all_lanes<F>(cache.eye);
   // The greatest power of two up to edge (1 + jitter), so that sizes blend.
   const F wanted = max(square_root(dot(from_eye, from_eye)) * cache.edge_per_metre, F(0.01f)) *
@@ -88,6 +100,7 @@ GLOAM_HD CacheCellOf<F> cache_cell(const IrradianceCacheView& cache, Vec3Of<F> p
     return select(m, UintOf<F>(yes), UintOf<F>(0u));
   };
   cell.facing = two(up, 4) + two(along_y, 2) + two(most < 0.0f, 1);
+  cell.inside = two(!outside, 1);
   const FrameOf<F> frame = FrameOf<F>::from_z(n);
   // Off the surface, as faces of rooms and boxes like to lie on the borders of cells.
   const Vec3Of<F> at =
@@ -99,18 +112,19 @@ GLOAM_HD CacheCellOf<F> cache_cell(const IrradianceCacheView& cache, Vec3Of<F> p
 /// The key of one cell; 0 = none.
 template <class F>
 GLOAM_HD uint64_t cache_key(const CacheCellOf<F>& cell, int i) {
-  uint64_t key =
-      lane(cell.facing, i) | uint64_t{lane(cell.exponent, i) & 63u} << 3 | uint64_t{1} << 63;
+  uint64_t key = lane(cell.facing, i) | uint64_t{lane(cell.exponent, i) & 63u} << 3 |
+                 uint64_t{lane(cell.inside, i)} << 62 | uint64_t{1} << 63;
   const Vec3f place = lane(cell.place, i);
   for (int k = 0; k < 3; ++k) {
     if (!(fabsf(place[k]) < 1e6f)) return 0;
-    key |= (static_cast<uint64_t>(static_cast<int64_t>(place[k])) & 0x3FFFFu) << (9 + 18 * k);
+    const uint32_t bits = k < 2 ? 0x3FFFFu : 0x1FFFFu;
+    key |= (static_cast<uint64_t>(static_cast<int64_t>(place[k])) & bits) << (9 + 18 * k);
   }
   return key;
 }
-GLOAM_HD uint64_t cache_key(const IrradianceCacheView& cache, Vec3f p, Vec3f n, Vec3f jitter,
-                            uint32_t coarser) {
-  return cache_key(cache_cell<float>(cache, p, n, jitter, coarser), 0);
+GLOAM_HD uint64_t cache_key(const IrradianceCacheView& cache, Vec3f p, Vec3f n, bool outside,
+                            Vec3f jitter, uint32_t coarser) {
+  return cache_key(cache_cell<float>(cache, p, n, outside, jitter, coarser), 0);
 }
 
 /// Row of the key's cell, or -1.
