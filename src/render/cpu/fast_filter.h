@@ -9,7 +9,7 @@ namespace gloam {
 /// Room for the filter.
 struct FastFilter {
   FastPlane3 a[kFastSignals], b[kFastSignals];
-  FastPlane deviation[kKeptSignals];  ///< of the signals' means, by the pixels around
+  FastPlane deviation[kKeptSignals];         ///< of the signals' means, by the pixels around
   LightGain gain[kKeptSignals], color_gain;  ///< of the signals, and of the whole light
 
   void resize(int width, int height);

@@ -17,11 +17,11 @@ constexpr uint32_t kForgotten = 30;  // updates after which a cell that nobody a
 constexpr size_t kMostCells = 2500;  // of an update, but for a first picture's
 constexpr float kSurprise = 3;       // standard errors,
 constexpr float kNoChange = 0.02f;   // and this share, that a region's light may be off
-constexpr float kBrightest = 16;   // times a cell's mean: what a ray brings beyond that is the
-                                   // region's, as few rays meet it
-constexpr float kMostTold = 500;  // cells and updates that a region's excess is the mean of,
-constexpr float kAtChange = 4;    // and where the light has changed;
-constexpr float kGuessed = 20;    // it counts as that of so many more cells of a wider region
+constexpr float kBrightest = 16;     // times a cell's mean: what a ray brings beyond that is the
+                                     // region's, as few rays meet it
+constexpr float kMostTold = 500;     // cells and updates that a region's excess is the mean of,
+constexpr float kAtChange = 4;       // and where the light has changed;
+constexpr float kGuessed = 20;       // it counts as that of so many more cells of a wider region
 constexpr uint64_t kExcessRegions[] = {caches::kWideRegion | caches::kFacing,
                                        caches::kRegion | caches::kFacing};
 constexpr float kFades = 0.1f;    // share of all light that must have changed to change all
@@ -99,8 +99,7 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
   const uint32_t row = asked_[k];
   const Cell& cell = cells_[row];
   const float edge = caches::edge_of(cell.key);
-  const float before =
-      cell.samples == 0 ? luminance_beside(cell.key) : luminance(light_[row].all);
+  const float before = cell.samples == 0 ? luminance_beside(cell.key) : luminance(light_[row].all);
   const auto starts = static_cast<size_t>(std::min(cell.starts, kStarts));
   const float brightest = before > 0 ? kBrightest * before : 1e30f;
   Traced& out = traced_[k];

@@ -94,7 +94,7 @@ class IrradianceCache {
   std::vector<Member> order_;          ///< by group
   std::vector<CacheRequest> further_;  ///< of places that the last rays met: (asked x kFurther)
   Vec3f mean_;
-  Excess excess_;  ///< of all
+  Excess excess_;                                          ///< of all
   std::unordered_map<uint64_t, Excess> regions_[kLevels];  ///< by masked key
   uint32_t update_ = 0;
   uint64_t dice_ = 1;

@@ -87,8 +87,8 @@ GLOAM_HD Vec3Of<F> cached_light(const IrradianceCacheView& cache, const SurfaceO
   each_lane(active, [&](int i) { cell[i] = find_cell(cache, cache_key(cells, i)); });
   each_lane(active, [&](int i) {
     for (uint32_t more = 0; cell[i] < 0 && more < 3; ++more) {
-      cell[i] = find_cell(cache, cache_key(cache, lane(v.p, i), lane(v.normal, i), lane(v.outside, i),
-                                           {0.5f, 0.5f, 0.0f}, coarser + more));
+      cell[i] = find_cell(cache, cache_key(cache, lane(v.p, i), lane(v.normal, i),
+                                           lane(v.outside, i), {0.5f, 0.5f, 0.0f}, coarser + more));
     }
     const bool known = cell[i] >= 0;
     set_lane(&light, i, known ? cache.light[static_cast<uint32_t>(cell[i])].all : cache.mean);
@@ -377,8 +377,8 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
 }  // namespace fasts
 
 /// The camera ray's picture. `near_u` in [0, 1)²: the direction of FastSampleOf::near. `requests`:
-/// one per lane for the first solid surface, one for the specular ray's, one for the last pane in
-/// front. Lanes come in quads.
+/// one per lane for the first solid surface, one for the specular ray's, one for a pane in front.
+/// Lanes come in quads.
 template <class F, class Tracer>
 GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer,
                                     const IrradianceCacheView& cache, const RayOf<F>& ray,
@@ -457,7 +457,10 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
     layer_albedo(*scene.albedo, v.roughness, wo.z, &a, &b);
     const Vec3Of<F> reflected = bsdf.base.f0 * a + bsdf.base.f90 * b;
     const Vec3Of<F> gloss = select<F>(traced, Vec3Of<F>{}, reflected);
-    each_lane(active,
+    // Of several panes any, by chance.
+    const F chosen = passed == 0 ? F(0.0f) : path.sampler.next_1d(pane);
+    const Mask one = solid | (pane & (chosen * static_cast<float>(passed + 1) < 1.0f));
+    each_lane(one,
               [&](int i) { requests[lane(solid, i) ? i : 2 * Lanes<F>::kCount + i] = asked[i]; });
 
     if (any(traced)) {

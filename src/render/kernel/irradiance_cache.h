@@ -56,7 +56,8 @@ inline constexpr uint64_t kFacing = 7;
 /// Key of the cell next along an axis, of the same facing.
 GLOAM_HD uint64_t beside(uint64_t key, int axis, bool up) {
   const int shift = 9 + 18 * axis;
-  const uint64_t mask = uint64_t{axis < 2 ? 0x3FFFFu : 0x1FFFFu} << shift, one = uint64_t{1} << shift;
+  const uint64_t mask = uint64_t{axis < 2 ? 0x3FFFFu : 0x1FFFFu} << shift,
+                 one = uint64_t{1} << shift;
   return (key & ~mask) | ((up ? key + one : key - one) & mask);
 }
 
@@ -77,9 +78,9 @@ struct CacheCellOf {
   F edge;  ///< [m]
 };
 
-/// The cells for surfaces at p with the normals n, seen from the `outside`: inner sides of panes lie
-/// where their outer sides do. `jitter` in [0, 1)³ blurs the borders of cells,
-/// facings and sizes; `coarser`: doublings of the edge.
+/// The cells for surfaces at p with the normals n, seen from the `outside`: inner sides of panes
+/// lie where their outer sides do. `jitter` in [0, 1)³ blurs the borders of cells, facings and
+/// sizes; `coarser`: doublings of the edge.
 template <class F>
 GLOAM_HD CacheCellOf<F> cache_cell(const IrradianceCacheView& cache, Vec3Of<F> p, Vec3Of<F> n,
                                    MaskOf<F> outside, Vec3Of<F> jitter, uint32_t coarser) {

@@ -190,6 +190,46 @@ TEST(Fast, LampsInMirrorsLightTheRoom) {
   EXPECT_NEAR(mean_luminance(fast_picture(b, view, 8)), exact, 0.03 * exact);
 }
 
+TEST(Fast, InnerSidesOfPanesHaveLightOfTheirOwn) {
+  // A lamp behind a thin pane lights its inner sides. Its outer side, two centimetres off and
+  // facing the same way, gets nothing of that.
+  SceneBuilder b;
+  MaterialDescription pane;
+  pane.base_color = {0.9f, 0.9f, 0.9f};
+  pane.specular_weight = 0;
+  pane.opacity = 0.35f;
+  b.add(ShapeType::kBox, {1, 0.01f, 1}, {}, b.add_material(pane));
+  b.add(ShapeType::kSphere, {0.1f, 0, 0}, translation({0, 1.5f, 2}), b.add_emitter({50, 50, 50}));
+  b.description.extent = 5;
+  const CameraView view = SceneBuilder::camera(look_at({0, -3, 0}, {}), 96, 72, 25);
+  const double exact = mean_luminance(path_picture(b, view, 256, kEndless));
+  EXPECT_NEAR(mean_luminance(fast_picture(b, view, 8)), exact, 0.04 * exact);
+}
+
+TEST(Fast, ARareBrightRayMakesNoSpot) {
+  // A small bright lamp that the cells of matt walls see in a mirror alone: a block of a wall is
+  // as bright as those around it, whether or not one of its cells' rays met the lamp.
+  SceneBuilder b = divided_room();
+  MaterialDescription mirror;
+  mirror.base_color = {0.9f, 0.9f, 0.9f};
+  mirror.metallic = 1;
+  mirror.roughness = 0.03f;
+  b.add(ShapeType::kBox, {0.02f, 1.5f, 0.9f}, translation({1.95f, -0.3f, 1}),
+        b.add_material(mirror));
+  b.add(ShapeType::kSphere, {0.05f, 0, 0}, translation({0.5f, -1.2f, 1.7f}),
+        b.add_emitter({2000, 2000, 2000}));
+  const CameraView view =
+      SceneBuilder::camera(look_at({1.5f, -0.6f, 1}, {-2, -0.6f, 1}), 96, 72, 50);
+  const Film film = fast_picture(b, view, 2), exact = path_picture(b, view, 128, kEndless);
+  double worst = 0;
+  for (int by = 1; by < 5; ++by) {
+    for (int bx = 1; bx < 7; ++bx) {
+      worst = std::max(worst, std::abs(block_ratio(film, exact, bx, by) - 1));
+    }
+  }
+  EXPECT_LT(worst, 0.15) << "a spot on an even wall";
+}
+
 TEST(Fast, PicturesAreTheSameForAnyNumberOfThreads) {
   const SceneBuilder b = divided_room();
   std::vector<Vec3f> pictures[2];
