@@ -145,7 +145,7 @@ TEST(Bvh, ARayHitsTheSameByStepsAndByRuns) {
     ASSERT_EQ(b.u, a.u) << i;
     ASSERT_EQ(b.v, a.v) << i;
   }
-  EXPECT_GT(hits, 20'000);
+  EXPECT_GT(hits, 10'000) << "the rest hits what stands outside the tree";
 }
 
 TEST(Bvh, AMillionRaysHitWhatTheyHitInEmbree) {
