@@ -60,10 +60,17 @@ def machine():
     return {"cpu": names[0] if names else os.uname().machine, "cores": os.cpu_count()}
 
 
+def commit():
+    try:
+        return measure.run("git", "-C", ROOT, "describe", "--always", "--dirty").strip()
+    except (RuntimeError, OSError):
+        return "unknown"  # sources without their history, or a machine without git
+
+
 def versions():
     listed = re.findall(r"^(mujoco|mitsuba)==(\S+)$", (ROOT / "bench" / "requirements.txt").read_text(), re.M)
     return {"gloam": measure.run(measure.BIN / "gloam", "--version").strip().replace("\n", ", "),
-            "commit": measure.run("git", "-C", ROOT, "describe", "--always", "--dirty").strip(),
+            "commit": commit(),
             "peers": ", ".join(f"{name} {version}" for name, version in listed)}
 
 

@@ -152,8 +152,10 @@ struct BvhShadow {
 /// card both rays in one loop keep lanes at work that are done with one of them early.
 /// `solids` answers for instances without triangles:
 ///   float meet(const BvhInstance&, Vec3f o_G, Vec3f d_G, float time, float tmax) const
-/// is the distance in (0, tmax], or a value <= 0. kMoves: something may move in time.
-template <bool kMoves, class Solids>
+/// is the distance in (0, tmax], or a value <= 0. kMoves: something may move in time. kByStep: a
+/// turn of the loop is a node or a triangle, not all nodes on the way to a leaf and then the leaf:
+/// no lane of a card waits for another's run, which ends few long rays sooner.
+template <bool kMoves, bool kByStep, class Solids>
 GLOAM_HD bool traverse(const BvhView& view, const Solids& solids, Vec3f o, Vec3f d, float time,
                        float tmax, bool any, BvhHit* hit, const BvhShadow* shadow = nullptr,
                        bool* shadowed = nullptr) {
@@ -187,11 +189,13 @@ GLOAM_HD bool traverse(const BvhView& view, const Solids& solids, Vec3f o, Vec3f
       } else {
         ref = stack[--top];
       }
+      if (kByStep) break;
     }
     bool enough = false;
     if ((ref & kKind) == kTriangles) {
       const BvhInstance& in = view.instances[instance];
-      const uint32_t begin = first_triangle(ref), end = begin + triangle_count(ref);
+      const uint32_t begin = first_triangle(ref), left = triangle_count(ref),
+                     end = begin + (kByStep ? 1 : left);
       for (uint32_t i = begin; i < end; ++i) {
         const BvhTriangle* triangle = view.triangles + i;
         const Corners at = corners_at<kMoves>(view, in, triangle, time);
@@ -211,7 +215,7 @@ GLOAM_HD bool traverse(const BvhView& view, const Solids& solids, Vec3f o, Vec3f
         best = t;
         found = true;
       }
-      ref = stack[--top];
+      ref = kByStep && left > 1 ? triangles_ref(end, left - 1) : stack[--top];
     } else if ((ref & kKind) == kInstance) {
       const uint32_t next = ref & ~kKind;
       const BvhInstance& in = view.instances[next];

@@ -65,7 +65,7 @@ void resize_film(const CameraView& view, const RenderSettings& settings, Film* f
   film->radiance.resize(light);
   film->albedo.resize(light);
   film->normal.resize(light);
-  film->variance.resize(settings.variance ? n : 0);
+  film->variance.resize(settings.variance ? light : 0);
   film->sample_count.resize(settings.error > 0 ? n : 0);
   film->depth.resize(exact);
   film->distance.resize(exact);

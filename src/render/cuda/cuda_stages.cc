@@ -74,7 +74,8 @@ class Card final : public CudaStages {
     start_.record(stream_);
     scene_.upload(job.view, job.camera, job.bvh, job.bvh.tracer(job.scene), stream_, &picture);
     uploaded_.record(stream_);
-    check(cudaMemsetAsync(film_.data(), 0, film_bytes_, stream_),
+    // The channels need no zeros: the launches write every pixel of each.
+    check(cudaMemsetAsync(picture.film.rays, 0, sizeof *picture.film.rays, stream_),
           "the card's memory cannot be set");
     RenderStats stats;
     const auto begin = std::chrono::steady_clock::now();
@@ -199,6 +200,10 @@ Result<std::unique_ptr<CudaStages>> CudaStages::make() {
   const auto none = [](std::string why) {
     return Error{ErrorKind::kUnsupported, std::move(why), {}, "use --device cpu, or auto"};
   };
+  int driver = 0;
+  if (cudaDriverGetVersion(&driver) == cudaSuccess && driver == 0) {
+    return none("no NVIDIA card to render with: its driver is not installed");
+  }
   int count = 0;
   if (const cudaError_t error = cudaGetDeviceCount(&count); error != cudaSuccess || count == 0) {
     return none(fmt::format("no NVIDIA card to render with: {}",

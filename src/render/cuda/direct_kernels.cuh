@@ -9,14 +9,14 @@ namespace {
 
 __device__ __forceinline__ void store_channels(const DeviceFilm& film, size_t pixel,
                                                const ExactChannels& c) {
-  film.depth[pixel] = c.depth;
-  film.distance[pixel] = c.distance;
-  film.part[pixel] = c.part;
+  put(film.depth + pixel, c.depth);
+  put(film.distance + pixel, c.distance);
+  put(film.part + pixel, c.part);
   if (film.center_normal == nullptr) return;
-  film.center_normal[pixel] = c.normal;
-  film.center_albedo[pixel] = c.albedo;
-  film.motion[pixel] = c.motion;
-  film.scene_flow[pixel] = c.scene_flow;
+  put(film.center_normal + pixel, c.normal);
+  put(film.center_albedo + pixel, c.albedo);
+  put(film.motion + pixel, c.motion);
+  put(film.scene_flow + pixel, c.scene_flow);
 }
 
 __global__ void __launch_bounds__(kBlock, kBlocks)

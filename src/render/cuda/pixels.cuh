@@ -66,6 +66,22 @@ __device__ __forceinline__ Ray sample_ray(const DevicePicture& p, const Place& a
                     static_cast<float>(at.y) + 0.5f + offset.y, time, cone, &lens);
 }
 
+// A film goes past the caches: no kernel reads it while there is room to keep, and the tree needs
+// that room.
+template <class T>
+__device__ __forceinline__ void put(T* at, T value) {
+  __stcs(at, value);
+}
+__device__ __forceinline__ void put(Vec2f* at, Vec2f v) {
+  __stcs(&at->x, v.x);
+  __stcs(&at->y, v.y);
+}
+__device__ __forceinline__ void put(Vec3f* at, Vec3f v) {
+  __stcs(&at->x, v.x);
+  __stcs(&at->y, v.y);
+  __stcs(&at->z, v.z);
+}
+
 /// The mean of this launch into the film, after that of earlier ones.
 __device__ __forceinline__ void store_mean(const DevicePicture& p, size_t pixel, PixelMean mean) {
   const DeviceFilm& film = p.film;
@@ -79,10 +95,10 @@ __device__ __forceinline__ void store_mean(const DevicePicture& p, size_t pixel,
     before.merge(mean);
     mean = before;
   }
-  film.radiance[pixel] = mean.radiance;
-  film.albedo[pixel] = mean.albedo;
-  film.normal[pixel] = mean.normal;
-  if (film.squares != nullptr) film.squares[pixel] = p.last ? mean.variance() : mean.squares;
+  put(film.radiance + pixel, mean.radiance);
+  put(film.albedo + pixel, mean.albedo);
+  put(film.normal + pixel, mean.normal);
+  if (film.squares != nullptr) put(film.squares + pixel, p.last ? mean.variance() : mean.squares);
 }
 
 }  // namespace

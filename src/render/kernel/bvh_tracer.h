@@ -35,8 +35,8 @@ struct BvhTracer {
     const uint32_t row = scan(scanned, ray, true, any, &tmax);
     if (any && row != 0) return true;
     BvhHit found;
-    const bool in_tree = traverse<!kPlainScenes>(bvh, BvhSolids{scanned.instances}, ray.o, ray.d,
-                                                 ray.time, tmax, any, &found);
+    const bool in_tree = traverse<!kPlainScenes, kPlainScenes>(
+        bvh, BvhSolids{scanned.instances}, ray.o, ray.d, ray.time, tmax, any, &found);
     return any ? in_tree : nearest(ray, in_tree, found, row, tmax, hit);
   }
   /// The closest hit of the ray, and whether the shadow ray before it hits anything; a ray with
@@ -47,8 +47,9 @@ struct BvhTracer {
     const uint32_t row = tmax > 0 ? scan(scanned, ray, true, false, &tmax) : 0;
     const BvhShadow before{shadow.o, shadow.d, *shadowed ? 0.0f : shadow.tmax};
     BvhHit found;
-    const bool in_tree = traverse<!kPlainScenes>(bvh, BvhSolids{scanned.instances}, ray.o, ray.d,
-                                                 ray.time, tmax, false, &found, &before, shadowed);
+    const bool in_tree =
+        traverse<!kPlainScenes, false>(bvh, BvhSolids{scanned.instances}, ray.o, ray.d, ray.time,
+                                       tmax, false, &found, &before, shadowed);
     return nearest(ray, in_tree, found, row, tmax, hit);
   }
   GLOAM_HD bool closest(const Ray& ray, bool active, bool, RayHit* hit) const {

@@ -124,6 +124,30 @@ TEST(Bvh, AShadowRayAndARayTogetherHitWhatTheyHitAlone) {
   EXPECT_GT(hits, 20'000);
 }
 
+TEST(Bvh, ARayHitsTheSameByStepsAndByRuns) {
+  const BothTrees both(20);
+  const BvhSolids solids{both.ours.scanned.instances};
+  int hits = 0;
+  for (uint32_t i = 0; i < 100'000; ++i) {
+    const Ray ray = random_ray(i);
+    const bool any = i % 5 == 0;
+    BvhHit a, b;
+    const bool by_runs =
+        traverse<true, false>(both.ours.bvh, solids, ray.o, ray.d, ray.time, ray.tmax, any, &a);
+    const bool by_steps =
+        traverse<true, true>(both.ours.bvh, solids, ray.o, ray.d, ray.time, ray.tmax, any, &b);
+    ASSERT_EQ(by_steps, by_runs) << i;
+    if (!by_runs || any) continue;
+    ++hits;
+    ASSERT_EQ(b.t, a.t) << i;
+    ASSERT_EQ(b.id, a.id) << i;
+    ASSERT_EQ(b.primitive, a.primitive) << i;
+    ASSERT_EQ(b.u, a.u) << i;
+    ASSERT_EQ(b.v, a.v) << i;
+  }
+  EXPECT_GT(hits, 10'000) << "the rest hits what stands outside the tree";
+}
+
 TEST(Bvh, AMillionRaysHitWhatTheyHitInEmbree) {
   const BothTrees both(120);  // 57,600 triangles a ball
   constexpr int kRays = 1'000'000;
