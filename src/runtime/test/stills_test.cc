@@ -112,7 +112,7 @@ TEST(Stills, PartsBeyond16BitsAreToldApart) {
   folder.write("tiles.xml", R"(
 <mujoco model="tiles">
   <worldbody>
-    <camera name="fixed" pos="127.5 128 1" xyaxes="1 0 0 0 1 0" fovy="170"/>
+    <camera name="fixed" pos="127.5 128 150" xyaxes="1 0 0 0 1 0" fovy="85"/>
     <replicate count="256" offset="1 0 0">
       <replicate count="257" offset="0 1 0">
         <geom type="box" size="0.5 0.5 0.1" contype="0" conaffinity="0"/>
