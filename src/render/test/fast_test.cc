@@ -203,7 +203,8 @@ TEST(Fast, ManyPanelsAreCountedOnce) {
         b.add_diffuse({0.5f, 0.5f, 0.5f}));
   const int mesh = b.add_mesh(make_panel()), on = add_panel_material(&b, true);
   for (int i = 0; i < 30; ++i) {
-    const Vec3f p{0.6f * static_cast<float>(i % 6) - 1.5f, 0.6f * static_cast<float>(i / 6) - 1.2f,
+    const int column = i % 6, row = i / 6;
+    const Vec3f p{0.6f * static_cast<float>(column) - 1.5f, 0.6f * static_cast<float>(row) - 1.2f,
                   -1};
     b.add(ShapeType::kMesh, {}, translation(p), on, 0, mesh);
   }
