@@ -25,6 +25,10 @@ int run_program(int argc, char** argv) {
       "Example: gloam run examples/demo.toml --out results/first\nExit codes: 0 ok, 1 failure, 2 "
       "usage, 3 partial, 130 interrupted");
 
+  app.failure_message([](const CLI::App*, const CLI::Error& error) {
+    return "gloam: error: " + std::string(error.what()) + " (run with --help)\n";
+  });
+
   Globals globals;
   bool verbose = false;
   app.add_flag("--json", globals.json, "Print data as JSON on stdout");

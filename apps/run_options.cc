@@ -19,7 +19,10 @@ void RunOptions::add_simulation(CLI::App& command) {
 void RunOptions::add_rendering(CLI::App& command) {
   command.add_option("--camera", cameras, "Camera by name (repeatable); default: all");
   command.add_option("--resolution", resolution, "WIDTHxHEIGHT of every camera");
-  command.add_option("--spp", spp, "Samples per pixel; with --error at most, default 4096")
+  command
+      .add_option(
+          "--spp", spp,
+          "Samples per pixel; default: the scene's, or 4; with --error at most, default 4096")
       ->check(CLI::Range(1, 65536));
   command
       .add_option("--error", error,

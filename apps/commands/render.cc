@@ -10,6 +10,8 @@
 namespace gloam::cli {
 namespace {
 
+constexpr int kStillSamples = 64;  // a scene's own are those of its videos
+
 struct RenderCommand {
   std::string file, out = ".";
   RunOptions options;
@@ -18,7 +20,6 @@ struct RenderCommand {
 
 int render(const RenderCommand& command_line, const Globals& globals) {
   RenderCommand command = command_line;
-  constexpr int kStillSamples = 64;
   auto scene = command.options.load(command.file);
   if (!scene.ok()) return fail(scene.error());
   if (!command.options.spp && !scene->render.error) scene->render.spp = kStillSamples;
@@ -80,12 +81,17 @@ void add_render(CLI::App& app, Globals& globals, Action& action) {
       ->description(
           "Channels: rgb radiance samples depth distance segmentation normal albedo motion "
           "scene_flow boxes; raw sensor_depth thermal of cameras with these models");
+  sub->get_option("--spp")->description(fmt::format(
+      "Samples per pixel; default: {}, whatever the scene says; with --error at most, default "
+      "4096",
+      kStillSamples));
   sub->add_option("--time", command->time, "Simulation time of the picture in seconds")
       ->check(non_negative_number());
   sub->add_option("--out", command->out, "Folder for the pictures; default: here");
   sub->footer(
       "Examples:\n  gloam render robot.xml --camera free --spp 256 --resolution 1280x720\n"
-      "  gloam render room.toml --error 0.02 --no-denoise --output rgb,radiance,samples");
+      "  gloam render room.toml --error 0.02 --no-denoise --output rgb,radiance,samples\n"
+      "  gloam render examples/two_robots.toml --time 1 --output depth,segmentation,boxes");
   sub->callback([&globals, &action, command] {
     action = [&globals, command] { return render(*command, globals); };
   });

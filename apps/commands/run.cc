@@ -106,7 +106,8 @@ void add_run(CLI::App& app, Globals& globals, Action& action) {
       ->check(CLI::Range(0, 65535));
   sub->footer(
       "Examples:\n  gloam run examples/demo.toml --duration 3\n  gloam run robot.xml --out "
-      "results/robot --camera front\n  gloam run robot.urdf --view");
+      "results/robot --camera front\n  gloam run examples/lidar.toml --duration 1 --output "
+      "lidar,sensors,depth_exr\n  gloam run robot.urdf --view");
   sub->callback([&globals, &action, command] {
     action = [&globals, command] { return run(*command, globals); };
   });

@@ -94,6 +94,7 @@ struct CameraFrame {
   std::vector<float> distance;  ///< along the ray [m], +inf = nothing hit, (height x width)
   std::vector<uint32_t>
       part;  ///< row of the label table (one per drawn geom), 0 = nothing, (height x width)
+  uint32_t part_count = 0;         ///< rows of the label table: the most that `part` may hold
   std::vector<uint16_t> instance;  ///< object id of the label table, 0 = nothing, (height x width)
   std::vector<uint16_t> semantic;  ///< class id of the label table, 0 = nothing, (height x width)
   std::vector<float> normal;       ///< unit, world axes, 0 = nothing, (height x width x 3)

@@ -40,7 +40,7 @@ struct RunReport {
   double sim_time = 0;   ///< [s]
   double wall_time = 0;  ///< [s]
   uint64_t hash = 0;
-  int64_t frames = 0;
+  int64_t frames = 0;                ///< of all cameras, whose files are whole
   std::vector<std::string> written;  ///< the main result files, for people
   std::vector<std::pair<std::string, double>>
       results;    ///< velocity errors, falls … as in summary.json

@@ -86,6 +86,7 @@ GLOAM_HD T rising_root(T start, T high, const Value& value) {
   for (int i = 0; i < 40; ++i) {
     T slope;
     const T off = value(at, &slope);
+    if (off == 0) return at;
     if (off > 0) {
       high = at;
     } else {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstring>
 #include <initializer_list>
 
@@ -36,16 +35,22 @@ Result<Bytes> exr(const CameraFrame& frame, const std::vector<float>& values,
   return encode_exr(frame.intrinsics.width, frame.intrinsics.height, channels);
 }
 
+/// 16 bits where they can number all parts of the world, which the frame need not show. Else three
+/// bytes as in COCO's panoptic pictures: part = R + 256 G + 65536 B (Kirillov et al. 2019).
 Result<Bytes> parts(const CameraFrame& frame) {
-  constexpr uint32_t kMost = 65535;
-  if (!frame.part.empty() && *std::max_element(frame.part.begin(), frame.part.end()) > kMost)
+  constexpr uint32_t kMost16 = 0xFFFF, kMost24 = 0xFFFFFF;
+  if (frame.part_count <= kMost16) return png16(frame, {frame.part.begin(), frame.part.end()});
+  if (frame.part_count > kMost24)
     return Error{ErrorKind::kUsage,
-                 fmt::format("camera '{}' sees more than {} parts, which 16-bit pictures cannot "
-                             "number",
-                             frame.camera, kMost),
+                 fmt::format("the scene of camera '{}' has {} parts; pictures number {} at most",
+                             frame.camera, frame.part_count, kMost24),
                  {},
                  "read CameraFrame::part instead"};
-  return png16(frame, {frame.part.begin(), frame.part.end()});
+  std::vector<uint8_t> rgb;
+  rgb.reserve(3 * frame.part.size());
+  for (const uint32_t part : frame.part)
+    for (const int shift : {0, 8, 16}) rgb.push_back(static_cast<uint8_t>(part >> shift));
+  return png8(frame, rgb);
 }
 
 Result<Bytes> boxes(const CameraFrame& frame) {

@@ -196,6 +196,12 @@ class FolderRecorder : public Recorder {
     return failure_.status();
   }
 
+  int64_t frames() const override {
+    int64_t sum = 0;
+    for (const auto& [name, lane] : lanes_) sum += lane->recorder.frames();
+    return sum;
+  }
+
   const std::filesystem::path& folder() const override { return options_.folder; }
 
  private:

@@ -129,6 +129,8 @@ class Recorder {
   /// Writes what is queued, ends videos, makes contact sheet and summary. Returns what status()
   /// does then. Call once.
   virtual Status finish(const RunOutcome& outcome) = 0;
+  /// After finish(): frames all of whose files are whole.
+  virtual int64_t frames() const = 0;
   virtual const std::filesystem::path& folder() const = 0;
 };
 

@@ -178,7 +178,6 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   std::vector<std::unique_ptr<LiveCamera>> cameras;
   std::unique_ptr<LiveSensors> sensors;
   std::vector<std::unique_ptr<LiveLidar>> lidars;
-  std::atomic<int64_t> frames{0};
   double prepared = 0;
   if (!request.out.empty()) {
     GLOAM_TRY(auto shared, simulation->renderer());
@@ -217,7 +216,6 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
     for (const CameraRequest& camera : requests) {
       GLOAM_TRY(auto live,
                 simulation->open_live_camera(camera, [&](std::shared_ptr<const CameraFrame> frame) {
-                  frames.fetch_add(1);
                   recorder->add_frame(std::move(frame));
                 }));
       cameras.push_back(std::move(live));
@@ -270,7 +268,6 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   report.steps = last.step();
   report.sim_time = last.time();
   report.hash = last.hash();
-  report.frames = frames;
   if (recorder != nullptr) {
     RunOutcome outcome;
     outcome.exit_reason = report.status.ok() ? "completed" : report.status.error().to_string();
@@ -283,6 +280,7 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
     outcome.results = metrics.summary();
     const Status finished = recorder->finish(outcome);
     if (report.status.ok()) report.status = finished;
+    report.frames = recorder->frames();
     for (const char* name : {"contact_sheet.png", "metrics.csv", "summary.json", "labels.json"}) {
       if (std::filesystem::exists(request.out / name))
         report.written.push_back((request.out / name).string());

@@ -306,6 +306,7 @@ void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const Came
   models_->measure(film_, view, frame);
   if (channels_.segmentation) {
     frame->part = film_.part;
+    frame->part_count = static_cast<uint32_t>(description_.instances.size());
     frame->instance.resize(film_.part.size());
     frame->semantic.resize(film_.part.size());
     for (size_t i = 0; i < film_.part.size(); ++i) {

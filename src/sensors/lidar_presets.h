@@ -12,9 +12,7 @@ struct LidarPreset {
   LidarModel (*make)();
 };
 
-/// Approximate where a sheet is silent or a unit has its own calibration: rings and beam of the
-/// HDL-64E, beams of the VLP-16 and the HDL-32E, which the same page says.
-/// Null where there is none of that name.
+/// Null where there is none of that name. What is approximate in them the same page says.
 const LidarPreset* find_lidar_preset(std::string_view name);
 
 /// Least signal of a receiver that just detects a plate of 10 % reflectance at `range` [m]; 0 = 0.

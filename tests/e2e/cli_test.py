@@ -46,8 +46,8 @@ class Mistakes(ProgramTest):
         return lines[0]
 
     def test_unknown_command_and_option_are_usage_errors(self):
-        self.gloam("rnu", expect=2)
-        self.gloam("run", "--no-such-option", "x.xml", expect=2)
+        self.assertIn("gloam: error: ", self.gloam("rnu", expect=2).stderr)
+        self.assertIn("gloam: error: ", self.gloam("run", "--no-such-option", "x.xml", expect=2).stderr)
         self.gloam(expect=2)
 
     def test_missing_file(self):

@@ -54,6 +54,27 @@ TEST(Lens, OfKnownPointsAreWhatTheFormulasSay) {
   EXPECT_NEAR(y, -M_PI_4, 1e-12);
 }
 
+TEST(Lens, ARootThatIsMetIsKept) {
+  int asked = 0;
+  const auto line = [&](float at, float* slope) {
+    ++asked;
+    *slope = 1;
+    return at - 0.3f;
+  };
+  EXPECT_EQ(lenses::rising_root(0.3f, 2.0f, line), 0.3f);
+  EXPECT_EQ(asked, 1) << "the first guess is the root";
+  EXPECT_EQ(lenses::rising_root(1.0f, 2.0f, line), 0.3f);
+  EXPECT_EQ(asked, 3) << "Newton's first step leads to the root of a line";
+  // A fisheye without coefficients: the radius is the angle.
+  const auto lens = make_lens<float>(camera(LensModel::kEquidistant, {}));
+  for (const float radius : {0.0f, 0.1f, 0.7f, 1.3f}) {
+    float X, Y, Z, angle;
+    ASSERT_TRUE(lens_unproject(lens, radius, 0.0f, &X, &Y, &Z, &angle));
+    EXPECT_EQ(X, std::sin(radius));
+    EXPECT_EQ(Z, std::cos(radius));
+  }
+}
+
 // In single precision, as kernels run it: 0.01 px over the whole picture.
 TEST(Lens, ProjectsBackWhatItUnprojects) {
   std::mt19937 random(1);

@@ -173,13 +173,14 @@ TEST_F(RecorderTest, EveryOutputOfACameraHasItsFiles) {
 TEST_F(RecorderTest, MorePartsThanAPictureCanNumberAreRefused) {
   CameraFrame frame;
   frame.intrinsics = intrinsics();
-  frame.part.assign(size_t{kWidth} * kHeight, 65535);
+  frame.part.assign(size_t{kWidth} * kHeight, 1);
   const auto parts = std::find_if(frame_files().begin(), frame_files().end(), [](const auto& file) {
     return std::string(file.folder) == "part";
   });
   ASSERT_NE(parts, frame_files().end());
+  frame.part_count = (1 << 24) - 1;
   EXPECT_TRUE(parts->encode(frame).ok());
-  frame.part.back() = 65536;
+  ++frame.part_count;
   EXPECT_FALSE(parts->encode(frame).ok());
 }
 
@@ -531,6 +532,7 @@ TEST_F(RecorderTest, AfterAFailureNothingMoreIsWrittenAndNobodyWaits) {
   full = false;  // too late: a gap in the middle of a recording would be worse than its end
   for (int i = 50; i < 60; ++i) (*recorder)->add_frame(make_frame("chase", i));
   EXPECT_FALSE((*recorder)->finish({}).ok());
+  EXPECT_LE((*recorder)->frames(), 1) << "those that were not written do not count";
   EXPECT_TRUE(fs::exists(run() / "chase" / "rgb" / "000000.png"));
   EXPECT_FALSE(fs::exists(run() / "chase" / "rgb" / "000059.png"));
   const nlohmann::json summary = read_json(run() / "summary.json");

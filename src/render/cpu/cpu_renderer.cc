@@ -14,13 +14,13 @@
 #include "render/cpu/adaptive_tile.h"
 #include "render/cpu/ambient.h"
 #include "render/cpu/edge_samples.h"
-#include "render/cpu/embree_scene.h"
 #include "render/cpu/exact_channels.h"
 #include "render/cpu/fast_tier.h"
 #include "render/cpu/lidar_scan.h"
 #include "render/cpu/light_guide.h"
 #include "render/cpu/object_cover.h"
 #include "render/cpu/tile.h"
+#include "render/cpu/traced_scene.h"
 #include "render/cpu/watch.h"
 #include "render/cuda/cuda_stages.h"
 #include "render/scene/pose.h"
@@ -91,21 +91,16 @@ class CpuRenderer final : public Renderer {
   /// it has stages for.
   CpuRenderer(std::unique_ptr<RenderScene> scene, std::unique_ptr<EmbreeScene> embree,
               std::unique_ptr<CudaStages> cuda = nullptr)
-      : scene_(std::move(scene)), embree_(std::move(embree)), cuda_(std::move(cuda)) {
-    for (const InstanceDescription& in : scene_->description().instances)
+      : traced_(std::move(scene), std::move(embree), cuda != nullptr), cuda_(std::move(cuda)) {
+    for (const InstanceDescription& in : traced_.scene().description().instances)
       objects_.push_back(in.label.instance);
   }
 
   using Renderer::update;
   void update(std::span<const PoseFrame* const> keys, const PoseFrame& previous) override {
-    scene_->update(keys, previous);
-    if (embree_ != nullptr) {
-      const Status status = embree_->update(*scene_);
-      GLOAM_CHECK(status.ok(), "the BVH cannot be built: out of memory?");
-    }
-    if (embree_ == nullptr || cuda_ != nullptr) own_.update(*scene_);
-    if (cuda_ != nullptr) cuda_->update(*scene_);
-    if (!updated_) described_ = scene_->described_look(*keys.front());
+    traced_.update(keys, previous);
+    if (cuda_ != nullptr) cuda_->update(scene());
+    if (!updated_) described_ = scene().described_look(*keys.front());
     updated_ = true;
   }
 
@@ -116,22 +111,22 @@ class CpuRenderer final : public Renderer {
     film->cover.clear();
     Job job;
     job.camera = make_camera(view, &camera_keys_);
-    job.scene = job.camera.pose.keys.empty() ? scene_->view_from(view.X_WC_open)
-                                             : scene_->view_from(view.X_WC_open, view.X_WC_keys);
+    job.scene = job.camera.pose.keys.empty() ? scene().view_from(view.X_WC_open)
+                                             : scene().view_from(view.X_WC_open, view.X_WC_keys);
     // What is measured before the picture, and the fast tier, know no times: mean lamps.
     const DeviceSpan<const float> levels = std::exchange(job.scene.light_levels, {});
-    job.tracer = tracer();
+    job.tracer = traced_.tracer();
     if (settings.tier == RenderTier::kPath) {
-      if (!has_guide_) guide_.build(job.scene, static_tracer(), described_);
+      if (!has_guide_) guide_.build(job.scene, traced_.static_tracer(), described_);
       has_guide_ = true;
       described_ = {};
       job.scene.guide = guide_.view();
     }
-    const bool moves = !job.camera.pose.keys.empty() || scene_->has_motion();
+    const bool moves = !job.camera.pose.keys.empty() || scene().has_motion();
     // Where all rows see all of the keys' time and nothing moves, the mean is exact and not noisy.
     const Shutter& shutter = job.camera.shutter;
     const bool flickers =
-        scene_->has_flicker() && (moves || shutter.row > 0 || shutter.open + shutter.length < 1);
+        scene().has_flicker() && (moves || shutter.row > 0 || shutter.open + shutter.length < 1);
     job.has_motion = moves || flickers;
     if (settings.cover) {
       film->cover = measure_cover(job.scene, job.tracer, job.camera, job.has_motion, film->width,
@@ -193,7 +188,7 @@ class CpuRenderer final : public Renderer {
 
   void scan(const LidarView& view, std::span<LidarReturn> returns) override {
     GLOAM_CHECK(updated_, "update must come before scan");
-    scan_beams(scene_->view_from(view.motions.front().X_WL), tracer(), view, returns);
+    scan_beams(scene().view_from(view.motions.front().X_WL), traced_.tracer(), view, returns);
   }
 
   std::unique_ptr<ViewHistory> make_history() const override {
@@ -201,22 +196,11 @@ class CpuRenderer final : public Renderer {
   }
 
  private:
-  CpuTracer by_own(const BvhTracer& own) const {
-    CpuTracer tracer;
-    tracer.rows = {own_.still().data(), static_cast<uint32_t>(own_.still().size())};
-    tracer.own = own;
-    return tracer;
-  }
-  CpuTracer tracer() const {
-    return embree_ != nullptr ? embree_->tracer(*scene_) : by_own(own_.tracer(*scene_));
-  }
-  CpuTracer static_tracer() const {
-    return embree_ != nullptr ? embree_->static_tracer(*scene_)
-                              : by_own(own_.static_tracer(*scene_));
-  }
+  RenderScene& scene() { return traced_.scene(); }
+  const RenderScene& scene() const { return traced_.scene(); }
   CudaJob on_cuda(const Job& job) const {
-    return {*scene_,          own_,           job.scene,   job.camera, job.settings, job.path,
-            job.log2_samples, job.has_motion, job.centered};
+    return {scene(),  traced_.own(),    job.scene,      job.camera,  job.settings,
+            job.path, job.log2_samples, job.has_motion, job.centered};
   }
 
   /// The picture by all threads.
@@ -291,9 +275,7 @@ class CpuRenderer final : public Renderer {
     }
   }
 
-  std::unique_ptr<RenderScene> scene_;
-  std::unique_ptr<EmbreeScene> embree_;  ///< null: own_ instead
-  BvhScene own_;
+  TracedScene traced_;
   std::unique_ptr<CudaStages> cuda_;
   std::vector<RenderStats> tiles_;
   std::vector<CameraKey> camera_keys_;

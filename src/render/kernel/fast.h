@@ -156,23 +156,6 @@ GLOAM_HD float chance_of(const SceneView& scene, const paths::State<F>& path, ui
   return every ? 1.0f : static_cast<float>(drawn) * path.picker.probability(scene, row, i);
 }
 
-/// Density with which direct_light() finds the point of an emitter that path->ray has hit.
-template <class F>
-GLOAM_HD F emitter_pdf(const SceneView& scene, const paths::State<F>& path, const SurfaceOf<F>& s,
-                       bool every, uint32_t drawn, MaskOf<F> active) {
-  F pdf = 0.0f;
-  each_lane(active, [&](int i) {
-    const InstanceView& instance = scene.instances[lane(s.instance, i)];
-    if (instance.light < 0) return;
-    const float chance =
-        chance_of(scene, path, static_cast<uint32_t>(instance.light), every, drawn, i);
-    set_lane(&pdf, i,
-             chance * lights::instance_pdf(scene, instance, lane(path.from, i), lane(s.p, i),
-                                           lane(s.geometric, i), lane(path.ray.time, i)));
-  });
-  return pdf;
-}
-
 /// Light of one lamp sample that media at p_W scatter against the direction of the ray
 /// [cd/m² per m].
 template <class Tracer>
@@ -306,7 +289,10 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
                                   RayConeOf<F>{path->cone_width, path->cone_spread}, active);
     path->cone_width = path->cone_width + path->cone_spread * hit.t;
     if (const MaskOf<F> shines = active & (max_component(v.emission) > 0.0f); any(shines)) {
-      const F pdf = emitter_pdf(scene, *path, v, every, kDrawnLights, shines & first);
+      const F pdf = paths::emitter_pdf(scene, *path, v, shines & first, [&](uint32_t row, int i) {
+        // What lamps send to a cell counts where surfaces ask it: no picker is prepared there.
+        return count_lamps ? chance_of(scene, *path, row, every, kDrawnLights, i) : 1.0f;
+      });
       const F weight = select(first & (pdf > 0.0f),
                               count_lamps ? mis_weight(path->pdf_bsdf, pdf) : F(0.0f), F(1.0f));
       sum += select<F>(shines, throughput * v.emission * (v.opacity * weight), Vec3Of<F>{});

@@ -77,21 +77,35 @@ GLOAM_HD Vec3Of<F> absorption_beyond(const SceneView& scene, const SurfaceOf<F>&
   return here;
 }
 
+/// Density with which light sampling finds the points of emitters that path.ray has hit from
+/// path.from, if it takes the light of a row with the probability chance(row, lane).
+template <class F, class Chance>
+GLOAM_HD F emitter_pdf(const SceneView& scene, const State<F>& path, const SurfaceOf<F>& s,
+                       MaskOf<F> active, const Chance& chance) {
+  F pdf = 0.0f;
+  each_lane(active, [&](int i) {
+    const InstanceView& instance = scene.instances[lane(s.instance, i)];
+    if (instance.light < 0) return;
+    set_lane(&pdf, i,
+             chance(static_cast<uint32_t>(instance.light), i) *
+                 lights::instance_pdf(scene, instance, lane(path.from, i), lane(s.p, i),
+                                      lane(s.geometric, i), lane(path.ray.time, i)));
+  });
+  return pdf;
+}
+
 /// Weighs what the surfaces give off against the light sampling of the last vertex.
 template <class F>
 GLOAM_HD void weigh_emission(const SceneView& scene, const State<F>& path, MaskOf<F> found,
                              SurfaceOf<F>* s) {
   if (kPlainScenes) return;  // without emitters that are sampled
   const MaskOf<F> sampled = found & (max_component(s->emission) > 0.0f) & (path.pdf_bsdf > 0.0f);
-  each_lane(sampled, [&](int i) {
-    const InstanceView& instance = scene.instances[lane(s->instance, i)];
-    if (instance.light < 0) return;
-    const float selected = path.picker.probability(scene, static_cast<uint32_t>(instance.light), i);
-    const float pdf =
-        selected * lights::instance_pdf(scene, instance, lane(path.from, i), lane(s->p, i),
-                                        lane(s->geometric, i), lane(path.ray.time, i));
-    set_lane(&s->emission, i, lane(s->emission, i) * mis_weight(lane(path.pdf_bsdf, i), pdf));
+  if (!any(sampled)) return;
+  const F pdf = emitter_pdf(scene, path, *s, sampled, [&](uint32_t row, int i) {
+    return path.picker.probability(scene, row, i);
   });
+  s->emission =
+      select<F>(sampled & (pdf > 0.0f), s->emission * mis_weight(path.pdf_bsdf, pdf), s->emission);
 }
 
 /// Lanes whose surface can neither scatter any more nor give off light: most of the last ones.

@@ -6,6 +6,7 @@
 
 #include "base/parallel.h"
 #include "render/test/media_probe.h"
+#include "render/test/panel.h"
 
 namespace gloam {
 namespace {
@@ -124,6 +125,10 @@ TEST(Fast, TheSkysLightIsCountedOnce) {
   EnvironmentDescription& sky = b.description.sky.environment;
   sky.width = 2, sky.height = 1;
   sky.texels.assign(2, {100, 100, 100});
+  LightDescription sun;  // a faint one: without any lamp no light is drawn at all
+  sun.type = LightType::kDirectional;
+  sun.intensity = {1, 1, 1};
+  b.add_light(sun, {}, {0, 0, -1});
   const CameraView view = SceneBuilder::camera(look_at({0, -0.5f, 3}, {0, 0, 0}), 48, 32, 40);
   const double exact = mean_luminance(path_picture(b, view, 256, kEndless));
   EXPECT_NEAR(mean_luminance(fast_picture(b, view, 4)), exact, 0.03 * exact);
@@ -228,6 +233,25 @@ TEST(Fast, ARareBrightRayMakesNoSpot) {
     }
   }
   EXPECT_LT(worst, 0.15) << "a spot on an even wall";
+}
+
+TEST(Fast, ManyPanelsAreCountedOnce) {
+  // Panels of which a tree takes some, with their backs to the world's origin: no light sampling
+  // there would find them, but that at the floor does.
+  SceneBuilder b;
+  b.add(ShapeType::kBox, {2, 2, 0.1f}, translation({0, 0, -3.1f}),
+        b.add_diffuse({0.5f, 0.5f, 0.5f}));
+  const int mesh = b.add_mesh(make_panel()), on = add_panel_material(&b, true);
+  for (int i = 0; i < 30; ++i) {
+    const int column = i % 6, row = i / 6;
+    const Vec3f p{0.6f * static_cast<float>(column) - 1.5f, 0.6f * static_cast<float>(row) - 1.2f,
+                  -1};
+    b.add(ShapeType::kMesh, {}, translation(p), on, 0, mesh);
+  }
+  b.description.extent = 5;
+  const CameraView view = SceneBuilder::camera(look_at({0, -3, -1.2f}, {0, 0, -3}), 48, 32, 30);
+  const double exact = mean_luminance(path_picture(b, view, 256, kEndless));
+  EXPECT_NEAR(mean_luminance(fast_picture(b, view, 4)), exact, 0.03 * exact);
 }
 
 TEST(Fast, PicturesAreTheSameForAnyNumberOfThreads) {

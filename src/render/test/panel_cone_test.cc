@@ -4,25 +4,10 @@
 
 #include "render/kernel/light_tree.h"
 #include "render/scene/render_scene.h"
-#include "render/test/scene_builder.h"
+#include "render/test/panel.h"
 
 namespace gloam {
 namespace {
-
-/// A quarter of a metre, seen from -Z.
-TriangleMesh make_panel() {
-  TriangleMesh mesh;
-  mesh.positions = {{-0.25f, -0.25f, 0}, {0.25f, -0.25f, 0}, {0.25f, 0.25f, 0}, {-0.25f, 0.25f, 0}};
-  mesh.indices = {0, 2, 1, 0, 3, 2};
-  return mesh;
-}
-
-int add_panel_material(SceneBuilder* b, bool outwards) {
-  MaterialDescription m;
-  m.emission = {100, 100, 100};
-  m.emits_outwards = outwards;
-  return b->add_material(m);
-}
 
 /// `count` panels in a row along x, every second turned over, at z = 2.
 SceneBuilder row_of_panels(int count, bool outwards) {

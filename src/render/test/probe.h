@@ -1,31 +1,35 @@
 #pragma once
 // A scene with its tracer, for tests that call the kernel themselves.
 
-#include "render/cpu/embree_scene.h"
 #include "render/cpu/light_guide.h"
+#include "render/cpu/traced_scene.h"
 #include "render/kernel/channels.h"
 #include "render/kernel/direct.h"
 #include "render/test/scene_builder.h"
 
 namespace gloam {
 
+/// What a renderer of the scene traces with; `keeps_own`: our own BVH beside Embree.
+inline TracedScene trace_scene(const SceneBuilder& builder, bool keeps_own = false) {
+  auto scene = RenderScene::make(builder.description);
+  GLOAM_CHECK(scene.ok(), "the test's scene is refused");
+  auto embree = EmbreeScene::make();
+  GLOAM_CHECK(embree.ok(), "Embree does not start");
+  return {std::move(*scene), std::move(*embree), keeps_own};
+}
+
 class Probe {
  public:
-  explicit Probe(const SceneBuilder& builder) : builder_(builder) {
-    auto scene = RenderScene::make(builder_.description);
-    GLOAM_CHECK(scene.ok(), "the test's scene is refused");
-    scene_ = std::move(*scene);
+  explicit Probe(const SceneBuilder& builder) : builder_(builder), traced_(trace_scene(builder_)) {
     const PoseFrame* const key = &builder_.frame;
-    scene_->update({&key, 1}, builder_.frame);
-    embree_ = std::move(*EmbreeScene::make());
-    GLOAM_CHECK(embree_->update(*scene_).ok(), "the test's BVH fails");
-    view = scene_->view_from({});
-    tracer = embree_->tracer(*scene_);
+    traced_.update({&key, 1}, builder_.frame);
+    view = traced_.scene().view_from({});
+    tracer = traced_.tracer();
   }
 
   /// Gives the view its light guide.
   void guide() {
-    guide_.build(view, embree_->static_tracer(*scene_), scene_->described_look(builder_.frame));
+    guide_.build(view, traced_.static_tracer(), traced_.scene().described_look(builder_.frame));
     view.guide = guide_.view();
   }
 
@@ -34,8 +38,7 @@ class Probe {
 
  private:
   SceneBuilder builder_;
-  std::unique_ptr<RenderScene> scene_;
-  std::unique_ptr<EmbreeScene> embree_;
+  TracedScene traced_;
   LightGuideStore guide_;
 };
 

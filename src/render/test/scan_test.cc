@@ -52,6 +52,7 @@ Ray ray_through_heap(uint32_t i) {
 
 TEST(Scan, FindsWhatEmbreeFinds) {
   const Probe scan(heap_of_solids(true)), bvh(heap_of_solids(false));
+  if (scan.tracer.own) GTEST_SKIP() << "solids are scanned beside Embree, which this build lacks";
   ASSERT_EQ(scan.tracer.scanned.solids.size, static_cast<uint32_t>(kSolids));
   ASSERT_EQ(scan.tracer.fixed.scene, nullptr);
   for (uint32_t i = 0; i < bvh.tracer.scanned.solids.size; ++i) {
@@ -110,6 +111,7 @@ TEST(Scan, TakesTheLargestOfManyAndLeavesTheRestToEmbree) {
           material);
   }
   const Probe probe(b);
+  if (probe.tracer.own) GTEST_SKIP() << "solids are scanned beside Embree, which this build lacks";
   ASSERT_EQ(probe.tracer.scanned.solids.size, 64u);
   for (uint32_t i = 0; i < 64; ++i) EXPECT_EQ(probe.tracer.scanned.solids[i].row, 199 - i);
   for (int i = 0; i < 200; ++i) {

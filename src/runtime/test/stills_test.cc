@@ -1,5 +1,6 @@
 // Stills and the files of one frame.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -104,6 +105,40 @@ TEST(Stills, EveryChannelIsWrittenAndReadsBack) {
     EXPECT_EQ((*exr("fixed_normal.exr").find("Y"))[i], frame.normal[3 * i + 1]);
     if (i > 40) break;
   }
+}
+
+TEST(Stills, PartsBeyond16BitsAreToldApart) {
+  const TempFolder folder;
+  folder.write("tiles.xml", R"(
+<mujoco model="tiles">
+  <worldbody>
+    <camera name="fixed" pos="127.5 128 150" xyaxes="1 0 0 0 1 0" fovy="85"/>
+    <replicate count="256" offset="1 0 0">
+      <replicate count="257" offset="0 1 0">
+        <geom type="box" size="0.5 0.5 0.1" contype="0" conaffinity="0"/>
+      </replicate>
+    </replicate>
+  </worldbody>
+</mujoco>)");
+  const World world = compile_file(folder.path() / "tiles.xml");
+  CameraRequest request = small("fixed");
+  request.width = request.height = 256;
+  request.outputs = {"segmentation"};
+  const auto frames = render_stills(world, 0, {request}, {});
+  ASSERT_TRUE(frames.ok()) << frames.error().to_string();
+  const CameraFrame& frame = frames->front();
+  const auto written = write_frame(frame, folder.path(), "fixed");
+  ASSERT_TRUE(written.ok()) << written.error().to_string();
+  const auto picture = read_image(folder.path() / "fixed_part.png");
+  ASSERT_TRUE(picture.ok()) << picture.error().to_string();
+  ASSERT_EQ(picture->channels, 3);
+  std::vector<uint32_t> parts;
+  for (size_t i = 0; i < frame.part.size(); ++i) {
+    const uint8_t* p = &picture->texels[3 * i];
+    parts.push_back(p[0] + 256u * p[1] + 65536u * p[2]);
+  }
+  EXPECT_EQ(parts, frame.part);
+  EXPECT_GT(*std::max_element(parts.begin(), parts.end()), 65535u);
 }
 
 TEST(Stills, AFolderThatCannotBeMadeIsNamed) {

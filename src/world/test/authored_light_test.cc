@@ -38,8 +38,7 @@ class AuthoredLight : public ::testing::Test {
   std::string error_of(LightOptions light) {
     light.loc = {"scene.toml", 7, 1};
     world_.scene.lights = {std::move(light)};
-    const auto result = describe_for_rendering(world_);
-    return result.ok() ? "" : result.error().to_string();
+    return visual_test::refusal(world_);
   }
   static const LightDescription& lamp(const RenderDescription& d, const std::string& name) {
     for (const LightDescription& light : d.lights) {

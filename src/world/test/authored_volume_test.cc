@@ -33,8 +33,7 @@ class AuthoredVolume : public ::testing::Test {
   std::string error_of(VolumeOptions volume) {
     volume.loc = {"scene.toml", 7, 1};
     world_.scene.volumes = {std::move(volume)};
-    const auto result = describe_for_rendering(world_);
-    return result.ok() ? "" : result.error().to_string();
+    return visual_test::refusal(world_);
   }
   CompiledWorld world_;
   TempFolder folder_;

@@ -44,10 +44,7 @@ class VisualFile : public testing::Test {
     return v;
   }
   RenderDescription described(const VisualOptions& v) const { return describe(world({v})); }
-  std::string error(const VisualOptions& v) const {
-    const auto result = describe_for_rendering(world({v}));
-    return result.ok() ? "no error" : result.error().to_string();
-  }
+  std::string error(const VisualOptions& v) const { return visual_test::refusal(world({v})); }
 
   TestFolder folder;
 };
@@ -467,9 +464,7 @@ TEST_F(VisualFile, BadInputIsNamed) {
       folder.write("in/a.obj", "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"))});
   w.scene.access.strict = true;
   w.scene.file = folder.path / "in/scene.toml";
-  const auto result = describe_for_rendering(w);
-  ASSERT_FALSE(result.ok());
-  EXPECT_THAT(result.error().to_string(), HasSubstr("leads out of the folder"));
+  EXPECT_THAT(visual_test::refusal(w), HasSubstr("leads out of the folder"));
 }
 
 TEST_F(VisualFile, TrianglesWithoutAreaAreLeftOutAndSaid) {

@@ -28,6 +28,12 @@ inline RenderDescription describe(const CompiledWorld& world) {
 }
 inline RenderDescription describe(const std::string& xml) { return describe(compile(xml)); }
 
+/// Why a world cannot be described; "" where it can.
+inline std::string refusal(const CompiledWorld& world) {
+  const auto result = describe_for_rendering(world);
+  return result.ok() ? "" : result.error().to_string();
+}
+
 inline void expect_near(Vec3f a, Vec3f b, float tolerance) {
   EXPECT_NEAR(a.x, b.x, tolerance);
   EXPECT_NEAR(a.y, b.y, tolerance);
