@@ -162,7 +162,7 @@ class LightPickerOf {
   /// Probability of taking light i in the lane `at`.
   GLOAM_HD float probability(const SceneView& scene, uint32_t i, int at) const {
     if (!scene.has_many_lights()) return lane(share_[i], at);
-    return (1.0f - lane(sky_share_, at) - lane(glow_share_, at)) *
+    return lane(lights_share(scene), at) *
            light_tree::probability(scene.light_tree, i, lane(p_, at), lane(n_, at));
   }
 
@@ -186,14 +186,14 @@ class LightPickerOf {
       pick -= glow_share_;
     }
     if (scene.has_many_lights()) {
-      const F lights_share = 1.0f - sky_share_ - glow_share_;
-      pick = clamp(pick / lights_share, 0.0f, 0.9999999f);
+      const F of_lights = lights_share(scene);
+      pick = clamp(pick / of_lights, 0.0f, 0.9999999f);
       each_lane(open, [&](int i) {
         set_lane(&out, i,
                  sample_by_tree(scene, lane(p, i), lane(n_, i), lane(pick, i), lane(u, i),
                                 lane(time, i)));
       });
-      out.pdf = select(open, out.pdf * lights_share, out.pdf);
+      out.pdf = select(open, out.pdf * of_lights, out.pdf);
       return out;
     }
     F before = 0.0f, taken = 0.0f;
@@ -228,6 +228,10 @@ class LightPickerOf {
   }
 
  private:
+  /// What the sky and media leave to the lights.
+  GLOAM_HD F lights_share(const SceneView& scene) const {
+    return scene.has_glow() ? 1.0f - sky_share_ - glow_share_ : 1.0f - sky_share_;
+  }
   GLOAM_HD static GuideRowsOf<F> find_rows(const LightGuide& guide, Vec3Of<F> p, Vec3Of<F> n,
                                            Mask active) {
     GuideRowsOf<F> rows;
