@@ -9,12 +9,15 @@ namespace {
 
 constexpr int kVoxels = kBoundsVoxels * kBoundsVoxels * kBoundsVoxels;
 
+/// The i-th cell, or voxel, of rows of nx and layers of nx x ny.
+Vec3f place_of(int i, int nx, int ny) {
+  const int x = i % nx, y = i / nx % ny, z = i / (nx * ny);
+  return {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)};
+}
+
 /// Corner of a cell [voxels].
 Vec3f corner_of(const VolumeView& v, uint32_t cell) {
-  const int i = static_cast<int>(cell);
-  return Vec3f{static_cast<float>(i % v.cells_x), static_cast<float>(i / v.cells_x % v.cells_y),
-               static_cast<float>(i / (v.cells_x * v.cells_y))} *
-         static_cast<float>(kBoundsVoxels);
+  return place_of(static_cast<int>(cell), v.cells_x, v.cells_y) * static_cast<float>(kBoundsVoxels);
 }
 
 /// Mean luminance that a voxel gives off per metre [cd/m³], from the eight middles of its octants:
@@ -39,9 +42,7 @@ double sum_voxels(const MediaView& media, const VolumeView& v, uint32_t cell, fl
   const Vec3f corner = corner_of(v, cell);
   double power[kVoxels], total = 0, before = 0;
   for (int i = 0; i < kVoxels; ++i) {
-    const Vec3f low = corner + Vec3f{static_cast<float>(i % kBoundsVoxels),
-                                     static_cast<float>(i / kBoundsVoxels % kBoundsVoxels),
-                                     static_cast<float>(i / (kBoundsVoxels * kBoundsVoxels))};
+    const Vec3f low = corner + place_of(i, kBoundsVoxels, kBoundsVoxels);
     const bool exists = low.x < static_cast<float>(v.nx) && low.y < static_cast<float>(v.ny) &&
                         low.z < static_cast<float>(v.nz);
     power[i] = exists ? power_at(media, v, low) : 0;
