@@ -22,8 +22,9 @@ VolumeDescription make_flame(Vec3f size, Vec3f foot) {
   flame.X_WV = rigid({0, 0, 1}, 0.5f, foot + Vec3f{0, 0, 0.5f * size.z});
   std::vector<float> densities, temperatures;
   for (int i = 0; i < flame.nx * flame.ny * flame.nz; ++i) {
-    const Vec3f q = Vec3f{static_cast<float>(i % 20) - 9.5f, static_cast<float>(i / 20 % 20) - 9.5f,
-                          0.5f * (static_cast<float>(i / 400) - 19.5f)} *
+    const int x = i % 20, y = i / 20 % 20, z = i / 400;
+    const Vec3f q = Vec3f{static_cast<float>(x) - 9.5f, static_cast<float>(y) - 9.5f,
+                          0.5f * (static_cast<float>(z) - 19.5f)} *
                     0.1f;
     const float inside = max(1 - dot(q, q), 0.0f);
     densities.push_back(inside);
@@ -93,8 +94,8 @@ TEST(Glow, PointsAreDrawnByTheirDensity) {
   constexpr int kPerVoxel = 4;
   for (int i = 0; i < 20 * 20 * 40 * kPerVoxel * kPerVoxel * kPerVoxel; ++i) {
     constexpr int kX = 20 * kPerVoxel;
-    const Vec3f p_G = (Vec3f{static_cast<float>(i % kX), static_cast<float>(i / kX % kX),
-                             static_cast<float>(i / (kX * kX))} +
+    const int x = i % kX, y = i / kX % kX, z = i / (kX * kX);
+    const Vec3f p_G = (Vec3f{static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)} +
                        Vec3f{0.5f, 0.5f, 0.5f}) *
                       (1.0f / kPerVoxel);
     const float power =
