@@ -160,28 +160,26 @@ GLOAM_HD LightSampleOf<F> sample_box(Vec3f size, const Affine3f& X_WG, Vec3Of<F>
   return s;
 }
 
-/// Towards a sphere, from outside.
+/// Towards spheres, from outside; every lane may have its own. `normal`: there.
 template <class F>
-GLOAM_HD LightSampleOf<F> sample_ball(float radius, const Affine3f& X_WG, Vec3Of<F> p, Vec2Of<F> u,
-                                      EmitterPointOf<F>* at) {
+GLOAM_HD LightSampleOf<F> sample_ball(F radius, Vec3Of<F> center, Vec3Of<F> p, Vec2Of<F> u,
+                                      Vec3Of<F>* normal) {
   LightSampleOf<F> s;
-  const AffineOf<F> X = pose_in_all_lanes<F>(X_WG);
-  const Vec3Of<F> to = X.p - p;
-  const float r2 = sqr(radius);
+  const Vec3Of<F> to = center - p;
+  const F r2 = sqr(radius);
   const F d2 = dot(to, to), one_minus_cos = one_minus_cos_of(min(r2 / d2, 1.0f));
   s.wi = FrameOf<F>::from_z(to / square_root(d2)).to_world(sample_cone(one_minus_cos, u));
   const F along = dot(to, s.wi);
   s.distance = along - safe_sqrt(r2 - max(d2 - along * along, 0.0f));
-  at->p_W = p + s.wi * s.distance;
-  at->n_W = normalize(at->p_W - X.p);
-  at->p_G = to_frame(X, at->n_W) * F(radius);
+  const Vec3Of<F> there = p + s.wi * s.distance;
+  *normal = normalize(there - center);
   s.pdf = select(s.distance > 1e-6f, cone_pdf(one_minus_cos), F(0.0f));
-  s.lift = at->n_W * surface_step(at->p_W, F(0.0f));
+  s.lift = *normal * surface_step(there, F(0.0f));
   return s;
 }
 template <class F>
-GLOAM_HD MaskOf<F> is_outside_ball(float radius, Vec3f center, Vec3Of<F> p) {
-  return length_squared(in_all_lanes<F>(center) - p) > sqr(radius) * 1.0001f;
+GLOAM_HD MaskOf<F> is_outside_ball(F radius, Vec3Of<F> center, Vec3Of<F> p) {
+  return length_squared(center - p) > sqr(radius) * 1.0001f;
 }
 
 /// Density per solid angle at p of the direction to a point of an emitting instance.
@@ -245,7 +243,8 @@ GLOAM_HD LightSample sample_instance(const SceneView& scene, const LightView& li
   if (instance.shape == ShapeType::kBox) {
     s = sample_box(instance.size, X_WG, p, pick, u, &at);
   } else if (instance.shape == ShapeType::kSphere && is_outside_ball(instance.size.x, X_WG.p, p)) {
-    s = sample_ball(instance.size.x, X_WG, p, u, &at);
+    s = sample_ball(instance.size.x, X_WG.p, p, u, &at.n_W);
+    at.p_G = to_frame(X_WG, at.n_W) * instance.size.x;
   } else {
     if (is_mesh(instance.shape)) {
       at = sample_mesh(scene.meshes[instance.mesh], X_WG, pick, u, time, &hit);
@@ -300,14 +299,9 @@ GLOAM_HD LightSampleOf<F> sample_one_light(const SceneView& scene, uint32_t inde
   } else {
     const InstanceView& instance = scene.instances[light.instance];
     const MaterialView& material = scene.materials[instance.material];
-    const bool plain = !instance.moving && !material.textured;
     lights::EmitterPointOf<F> at;
-    if (plain && instance.shape == ShapeType::kBox) {
+    if (instance.shape == ShapeType::kBox && !instance.moving && !material.textured) {
       s = lights::sample_box(instance.size, instance.X_WG, p, pick, u, &at);
-      s.radiance = in_all_lanes<F>(material.emission * material.opacity);
-    } else if (plain && instance.shape == ShapeType::kSphere &&
-               all((!active) | lights::is_outside_ball(instance.size.x, instance.X_WG.p, p))) {
-      s = lights::sample_ball(instance.size.x, instance.X_WG, p, u, &at);
       s.radiance = in_all_lanes<F>(material.emission * material.opacity);
     } else {
       each_lane(active, [&](int i) {

@@ -3,7 +3,7 @@
 // spheres of lamps and the disc of a sun are seen in reflections, do not block rays, and are not
 // shown to the camera. Device-safe.
 
-#include "render/kernel/light.h"
+#include "render/kernel/glow.h"
 #include "render/kernel/light_tree.h"
 #include "render/kernel/sky.h"
 
@@ -106,7 +106,39 @@ class LightPickerOf {
       share_[i] = select(active, weight[i] * inverse, share_[i]);
     }
     if (scene.has_environment()) sky_share_ = select(active, sky * inverse, sky_share_);
+    if (scene.has_glow()) total_ = select(active, weighs ? total : F(-1.0f), total_);
     return rows;
+  }
+
+  /// After prepare(): media that glow get their share of choices, too.
+  GLOAM_HD void add_glow(const SceneView& scene, Mask active) {
+    each_lane(active, [&](int i) {
+      float glow = 0;
+      for (uint32_t k = 0; k < scene.media.glows.size; ++k) {
+        glow += glow::weight(scene.media.glows[k], lane(p_, i), lane(n_, i));
+      }
+      const float total = lane(total_, i);
+      const float share = total < 0 ? 0.5f : glow / (glow + total);  // lights that are not weighed
+      set_lane(&glow_share_, i, glow > 0 ? share : 0.0f);
+    });
+    const F rest = select(active, 1.0f - glow_share_, F(1.0f));
+    for (uint32_t i = 0; !scene.has_many_lights() && i < count_; ++i) share_[i] *= rest;
+    if (scene.has_environment()) sky_share_ *= rest;
+  }
+
+  /// Density per solid angle, as in glow::pdf, with which sample() finds the point p_W, p_G in the
+  /// volume of scene.media.glows[row], in the lane `at`.
+  GLOAM_HD float glow_pdf(const SceneView& scene, int row, int at, Vec3f p_W, Vec3f p_G) const {
+    const Vec3f p = lane(p_, at), n = lane(n_, at);
+    if (!(lane(glow_share_, at) > 0)) return 0;
+    float total = 0, mine = 0;
+    for (uint32_t k = 0; k < scene.media.glows.size; ++k) {
+      const float weight = glow::weight(scene.media.glows[k], p, n);
+      total += weight;
+      if (static_cast<int>(k) == row) mine = weight;
+    }
+    return lane(glow_share_, at) * mine / total *
+           glow::pdf(scene.media, scene.media.glows[static_cast<uint32_t>(row)], p, p_W, p_G);
   }
 
   /// After prepare(): the sky is none of this picker's business.
@@ -130,7 +162,7 @@ class LightPickerOf {
   /// Probability of taking light i in the lane `at`.
   GLOAM_HD float probability(const SceneView& scene, uint32_t i, int at) const {
     if (!scene.has_many_lights()) return lane(share_[i], at);
-    return (1.0f - lane(sky_share_, at)) *
+    return lane(lights_share(scene), at) *
            light_tree::probability(scene.light_tree, i, lane(p_, at), lane(n_, at));
   }
 
@@ -145,15 +177,23 @@ class LightPickerOf {
       open = active & !sky;
       pick -= sky_share_;
     }
+    if (scene.has_glow()) {
+      const Mask glowing = open & (pick < glow_share_);
+      each_lane(glowing, [&](int i) {
+        set_lane(&out, i, sample_glow(scene, i, lane(pick, i), lane(u, i)));
+      });
+      open = open & !glowing;
+      pick -= glow_share_;
+    }
     if (scene.has_many_lights()) {
-      const F lights_share = 1.0f - sky_share_;
-      pick = clamp(pick / lights_share, 0.0f, 0.9999999f);
+      const F of_lights = lights_share(scene);
+      pick = clamp(pick / of_lights, 0.0f, 0.9999999f);
       each_lane(open, [&](int i) {
         set_lane(&out, i,
                  sample_by_tree(scene, lane(p, i), lane(n_, i), lane(pick, i), lane(u, i),
                                 lane(time, i)));
       });
-      out.pdf = select(open, out.pdf * lights_share, out.pdf);
+      out.pdf = select(open, out.pdf * of_lights, out.pdf);
       return out;
     }
     F before = 0.0f, taken = 0.0f;
@@ -174,7 +214,10 @@ class LightPickerOf {
       out.pdf *= taken;
       return out;
     }
-    for (uint32_t i = 0; i < count_; ++i) {
+    const Mask balls = sample_balls(scene, p, u, open, index, &out);
+    out.pdf = select(balls, out.pdf * taken, out.pdf);
+    open = open & !balls;
+    for (uint32_t i = 0; any(open) && i < count_; ++i) {
       const Mask mine = open & (index == i);
       if (!any(mine)) continue;
       LightSampleOf<F> s = sample_one_light(scene, i, p, pick, u, time, mine);
@@ -185,6 +228,10 @@ class LightPickerOf {
   }
 
  private:
+  /// What the sky and media leave to the lights.
+  GLOAM_HD F lights_share(const SceneView& scene) const {
+    return scene.has_glow() ? 1.0f - sky_share_ - glow_share_ : 1.0f - sky_share_;
+  }
   GLOAM_HD static GuideRowsOf<F> find_rows(const LightGuide& guide, Vec3Of<F> p, Vec3Of<F> n,
                                            Mask active) {
     GuideRowsOf<F> rows;
@@ -205,6 +252,48 @@ class LightPickerOf {
     s.pdf *= choice.probability;
     return s;
   }
+  /// Towards those lights `index` of the `active` lanes that are balls around none of the points p,
+  /// all at once; returns their lanes.
+  GLOAM_HD static Mask sample_balls(const SceneView& scene, Vec3Of<F> p, Vec2Of<F> u, Mask active,
+                                    Uint index, LightSampleOf<F>* out) {
+    Mask balls = false;
+    Vec3Of<F> center, radiance;
+    F radius = 1.0f;
+    each_lane(active, [&](int i) {
+      const LightView& light = scene.lights[lane(index, i)];
+      if (!light.is_ball) return;
+      set_lane(&balls, i, true);
+      set_lane(&center, i, light.p);
+      set_lane(&radius, i, light.radius);
+      set_lane(&radiance, i, light.intensity);
+    });
+    if (!any(balls)) return balls;
+    balls = balls & lights::is_outside_ball(radius, center, p);
+    Vec3Of<F> normal;
+    LightSampleOf<F> s = lights::sample_ball(radius, center, p, u, &normal);
+    s.radiance = radiance;
+    *out = select(balls, s, *out);
+    return balls;
+  }
+  GLOAM_HD LightSample sample_glow(const SceneView& scene, int at, float pick, Vec2f u) const {
+    const Vec3f p = lane(p_, at), n = lane(n_, at);
+    const DeviceSpan<const GlowView>& glows = scene.media.glows;
+    float total = 0, before = 0, taken = 0;
+    for (uint32_t k = 0; k < glows.size; ++k) total += glow::weight(glows[k], p, n);
+    const float wanted = pick / lane(glow_share_, at) * total;
+    uint32_t row = 0;
+    for (uint32_t k = 0; k < glows.size && before + taken <= wanted; ++k) {
+      const float weight = glow::weight(glows[k], p, n);
+      if (!(weight > 0)) continue;
+      before += taken;
+      taken = weight;
+      row = k;
+    }
+    const float rest = clamp((wanted - before) / taken, 0.0f, 0.9999999f);
+    LightSample s = glow::sample(scene.media, glows[row], p, rest, u);
+    s.pdf *= lane(glow_share_, at) * taken / total;
+    return s;
+  }
   GLOAM_HD LightSample sample_sky(const SceneView& scene, Vec2f u, int at) const {
     const EnvironmentSample sky = environment_sample(scene.environment, u);
     LightSample s;
@@ -221,8 +310,10 @@ class LightPickerOf {
 #else
   F share_[kMaxWeighedLights];
 #endif
-  Vec3Of<F> p_, n_;  ///< of the surface where there are many lights; n_ = 0: takes from all sides
+  Vec3Of<F> p_, n_;  ///< of the surface; n_ = 0: takes from all sides
   F sky_share_{};    ///< of the environment map
+  F glow_share_{};   ///< of media that glow
+  F total_{};        ///< what the shares were before they were divided by it; -1 = is not known
 };
 using LightPicker = LightPickerOf<float>;
 

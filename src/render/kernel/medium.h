@@ -41,6 +41,11 @@ inline constexpr float kLeastStep = 1.2e-7f;
 
 GLOAM_HD Vec3f exp_of(Vec3f x) { return {expf(x.x), expf(x.y), expf(x.z)}; }
 
+/// All of what glows, for sample_distance().
+struct AllGlow {
+  GLOAM_HD float operator()(const VolumeView&, Vec3f, Vec3f) const { return 1; }
+};
+
 }  // namespace media
 
 /// Where the ray is scattered first. One band makes the decisions, drawn by its share in
@@ -48,9 +53,11 @@ GLOAM_HD Vec3f exp_of(Vec3f x) { return {expf(x.x), expf(x.y), expf(x.z)}; }
 /// (Miller et al. 2019, "A null-scattering path integral formulation of light transport"), so
 /// dot(shares, weight) <= 1. Per density, null collisions are as likely in every band, so that
 /// their probabilities drop out of it. `u`: for the band and the first distance, [0, 1)²; well
-/// spread points pay there. `random`: for all else.
+/// spread points pay there. `random`: for all else. share(volume, p_W, p_G): of what glows there.
+template <class Share = media::AllGlow>
 GLOAM_HD MediumEvent sample_distance(const MediaView& media, const Ray& ray, float tmax,
-                                     Bands bands, Vec3f throughput, Vec2f u, WalkRandom random) {
+                                     Bands bands, Vec3f throughput, Vec2f u, WalkRandom random,
+                                     const Share& share = {}) {
   MediumEvent event;
   event.t = tmax;
   event.weight = {1, 1, 1};
@@ -91,12 +98,13 @@ GLOAM_HD MediumEvent sample_distance(const MediaView& media, const Ray& ray, flo
       settle(bands.of(volume.mass_extinction));
       const float drawn = random.next() * high;
       const bool glows = media::glows(volume, walk[i].hottest(), bands);
-      const Vec3f p_G = transform_point(volume.X_GW, ray.o + ray.d * t);
+      const Vec3f p_W = ray.o + ray.d * t, p_G = transform_point(volume.X_GW, p_W);
       const float density = drawn < low && !glows ? low : media::density_at(volume, p_G);
       const Vec3f albedo = bands.of(volume.albedo);
       if (glows) {
         event.emission += event.weight * (Vec3f{1, 1, 1} - albedo) *
-                          media::glow_at(media, volume, p_G, bands) * (density / high);
+                          media::glow_at(media, volume, p_G, bands) *
+                          (density / high * share(volume, p_W, p_G));
       }
       if (drawn < density) {
         event.t = t;

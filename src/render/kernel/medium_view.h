@@ -42,6 +42,22 @@ struct VolumeView {
   float albedo[kMediumBands] = {};
   float g[kMediumBands] = {};
   float emission = 0;
+  int glow = -1;  ///< row of MediaView::glows
+};
+
+/// Where a volume gives off light, to draw points of it: a cell of the grid of bounds, then one of
+/// its voxels. Steers sampling alone.
+struct GlowView {
+  static constexpr uint32_t kSums = kBoundsVoxels * kBoundsVoxels * kBoundsVoxels + 1;
+  uint32_t volume = 0;
+  Affine3f X_WG;                       ///< voxels to world
+  Vec3f center;                        ///< of a box that holds all that glows [m]
+  float reach = 0;                     ///< half its diagonal [m]
+  float strength = 0;                  ///< mean luminous intensity, at most [cd]
+  float voxels_per_volume = 0;         ///< [1/m³]
+  DeviceSpan<const float> cell_sums;   ///< running sums of the cells' shares, 0 to 1
+  DeviceSpan<const int> rows;          ///< of each cell; -1 = dark
+  DeviceSpan<const float> voxel_sums;  ///< the same of a cell's voxels, x fastest; kSums in a row
 };
 
 /// Luminance of black bodies by 1 / T, from kLow to kHigh.
@@ -62,6 +78,7 @@ struct BlackBodyTable {
 
 struct MediaView {
   DeviceSpan<const VolumeView> volumes;
+  DeviceSpan<const GlowView> glows;
   BlackBodyTable black_body;
 };
 

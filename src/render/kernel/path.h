@@ -39,6 +39,7 @@ GLOAM_HD NextEventOf<F> aim_at_light(const SceneView& scene, State<F>* path, con
   const MaskOf<F> both_sides = bsdf.layered & ((bsdf.p_glass > 0.0f) | (bsdf.p_beyond > 0.0f));
 
   at->rows = path->picker.prepare(scene, v.p, v.geometric, active, both_sides);
+  if (scene.has_glow()) path->picker.add_glow(scene, active);
   if (scene.guides_directions()) at->guided = guided_share(scene.guide, bsdf, at->rows.guided);
   const Vec2Of<F> choice = path->sampler.next_2d(active);  // of the light, of the lobe
   at->lobe = choice.y;

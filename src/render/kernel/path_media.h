@@ -21,9 +21,14 @@ GLOAM_HD MediumVertexOf<F> cross_media(const SceneView& scene, F tmax, MaskOf<F>
   const Vec2Of<F> first = path->sampler.next_2d(active), later = path->sampler.next_2d(active);
   each_lane(active, [&](int i) {
     const Vec3f throughput = lane(path->throughput, i);
+    const auto share = [&](const VolumeView& volume, Vec3f p_W, Vec3f p_G) {
+      const float pdf = lane(path->pdf_bsdf, i);
+      if (!scene.has_glow() || volume.glow < 0 || !(pdf > 0)) return 1.0f;
+      return mis_weight(pdf, path->picker.glow_pdf(scene, volume.glow, i, p_W, p_G));
+    };
     const MediumEvent event =
         sample_distance(scene.media, lane(path->ray, i), lane(tmax, i), {}, throughput,
-                        lane(first, i), WalkRandom(lane(later, i)));
+                        lane(first, i), WalkRandom(lane(later, i)), share);
     set_lane(&path->result.radiance, i,
              lane(path->result.radiance, i) + throughput * event.emission);
     set_lane(&path->throughput, i, throughput * event.weight);
@@ -59,6 +64,7 @@ GLOAM_HD NextEventOf<F> aim_at_light_in_media(const SceneView& scene, State<F>* 
                                               F* band) {
   const Vec3Of<F> p = path->ray.o + path->ray.d * v.t;
   path->picker.prepare(scene, p, Vec3Of<F>{}, active);
+  if (scene.has_glow()) path->picker.add_glow(scene, active);
   const Vec2Of<F> choice = path->sampler.next_2d(active);  // of the light, of the band
   *band = choice.y;
   const Vec2Of<F> u_light = path->sampler.next_2d(active);

@@ -110,11 +110,12 @@ struct LightView {
   LightKind kind = LightKind::kPoint;
   bool casts_shadow = true;
   bool is_delta = false;                              ///< no extent: cannot be hit
+  bool is_ball = false;                               ///< kInstance: an even sphere at rest
   Vec3f p;                                            ///< of the centre [m]
   Vec3f direction;                                    ///< along which it shines, unit
   Vec3f x;                                            ///< across it, unit; of lamps with a profile
   int profile = -1;                                   ///< row of SceneView::profiles
-  Vec3f intensity;                                    ///< [cd]; directional: [lx]
+  Vec3f intensity;                                    ///< [cd]; directional: [lx]; balls: [cd/m²]
   float radius = 0;                                   ///< [m]; directional: sine of the half angle
   float cutoff = 0, cos_cutoff = -1, cos_inner = -1;  ///< spot: half angle [rad] and cosines
   float inner = 0;                                    ///< spot: half angle of full intensity [rad]
@@ -232,6 +233,12 @@ inline constexpr bool kPlainScenes = true;
 inline constexpr bool kPlainScenes = false;
 #endif
 
+#ifdef __CUDA_ARCH__
+inline constexpr bool kOnCard = true;
+#else
+inline constexpr bool kOnCard = false;
+#endif
+
 /// Scenes with more lights select by a tree.
 inline constexpr uint32_t kMaxWeighedLights = 16;
 
@@ -270,6 +277,9 @@ struct SceneView {
   GLOAM_HD bool has_textures() const { return !kPlainScenes && textures.size > 0; }
   GLOAM_HD bool has_layers() const { return !kPlainScenes && layers.size > 0; }
   GLOAM_HD bool has_media() const { return !kPlainScenes && media.volumes.size > 0; }
+  /// Some medium's light is drawn. Not on a card, where rays find it by chance alone: kernels for
+  /// all scenes are too long as they are.
+  GLOAM_HD bool has_glow() const { return !kOnCard && media.glows.size > 0; }
   GLOAM_HD bool has_environment() const { return !kPlainScenes && !environment.levels.empty(); }
   GLOAM_HD bool has_flicker() const { return !kPlainScenes && light_levels.size > 0; }
   GLOAM_HD bool has_sky_texture() const { return !kPlainScenes && sky_texture >= 0; }

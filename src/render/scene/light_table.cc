@@ -135,6 +135,13 @@ std::optional<LightView> emitter_of(const std::vector<InstanceView>& instances, 
   light.levels = material.levels;
   set_bounds(instance, material.emits_outwards, meshes, &light);
   if (!is_finite(light)) return {};
+  if (instance.shape == ShapeType::kSphere && !instance.moving && !material.textured &&
+      light.levels < 0) {
+    light.is_ball = true;
+    light.p = instance.X_WG.p;
+    light.radius = instance.size.x;
+    light.intensity = material.emission * material.opacity;
+  }
   return light;
 }
 

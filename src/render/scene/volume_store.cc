@@ -144,6 +144,8 @@ Result<VolumeStore> VolumeStore::make(const std::vector<MediumDescription>& medi
   VolumeStore store;
   store.views_.resize(volumes.size());
   store.fields_.resize(volumes.size());
+  store.glow_tables_.resize(volumes.size());
+  store.glows_.reserve(volumes.size());
   if (!volumes.empty()) store.black_body_ = make_black_body_table();
   for (size_t i = 0; i < volumes.size(); ++i) {
     GLOAM_TRY_STATUS(check_volume(volumes[i], media.size()));
@@ -183,9 +185,21 @@ Status VolumeStore::replace(size_t volume, const VolumeDescription& with) {
   view.density = with.density ? span_of(*with.density) : DeviceSpan<const float>{};
   view.temperature = with.temperature ? span_of(*with.temperature) : DeviceSpan<const float>{};
   old = view;
+  if (old.emission > 0) find_glow(volume);
   return {};
 }
 
-MediaView VolumeStore::view() const { return {span_of(views_), {span_of(black_body_)}}; }
+void VolumeStore::find_glow(size_t changed) {
+  glow_tables_[changed].build(view(), static_cast<uint32_t>(changed));
+  glows_.clear();
+  for (size_t i = 0; i < views_.size(); ++i) {
+    views_[i].glow = glow_tables_[i].is_dark() ? -1 : static_cast<int>(glows_.size());
+    if (!glow_tables_[i].is_dark()) glows_.push_back(glow_tables_[i].view());
+  }
+}
+
+MediaView VolumeStore::view() const {
+  return {span_of(views_), span_of(glows_), {span_of(black_body_)}};
+}
 
 }  // namespace gloam

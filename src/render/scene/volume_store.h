@@ -1,10 +1,10 @@
 #pragma once
-// Volumes as the kernel reads them: their grids as they were handed over, and bounds of the
-// density.
+// Volumes as the kernel reads them: their grids as they were handed over, bounds of the density,
+// and where they give off light.
 
 #include <vector>
 
-#include "render/kernel/medium_view.h"
+#include "render/scene/glow_table.h"
 
 namespace gloam {
 
@@ -17,20 +17,26 @@ class VolumeStore {
                                   const std::vector<VolumeDescription>& volumes);
 
   /// Another pose, other grids or another number of voxels of one volume; its medium stays. Nothing
-  /// is allocated while the number of voxels stays. Errors as of make(): then all is as it was.
+  /// is allocated while the number of voxels stays and no more of it glows. Errors as of make():
+  /// then all is as it was.
   Status replace(size_t volume, const VolumeDescription& with);
 
   /// Valid until the next replace(), or until the store is moved or gone.
   MediaView view() const;
 
  private:
+  /// Volume `changed` has other fields or another pose.
+  void find_glow(size_t changed);
+
   struct Fields {
     VolumeGrid density, temperature;
     std::vector<CellBounds> cells, spare;  ///< spare: room for the next ones
   };
 
   std::vector<VolumeView> views_;
-  std::vector<Fields> fields_;  ///< of each volume
+  std::vector<Fields> fields_;          ///< of each volume
+  std::vector<GlowTable> glow_tables_;  ///< of each volume
+  std::vector<GlowView> glows_;         ///< of those that glow
   std::vector<Vec3f> black_body_;
 };
 

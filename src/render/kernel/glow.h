@@ -1,0 +1,106 @@
+#pragma once
+// Points of media that glow, in proportion to what they give off: light that a small flame sends
+// into a room is seldom found by chance (Villemin and Hery 2013, "Practical illumination from
+// flames"). What rays find on their way has its share in it, by multiple importance sampling point
+// by point, so that points close by and inside of the medium do no harm. Device-safe.
+
+#include "render/kernel/light.h"
+#include "render/kernel/medium.h"
+
+namespace gloam::glow {
+
+/// A bound, up to a factor, of what the medium brings to a surface at p with the normal n, or a
+/// point that takes light from all sides (n = 0); as light_weight().
+GLOAM_HD float weight(const GlowView& glow, Vec3f p, Vec3f n) {
+  const Vec3f to = glow.center - p;
+  const float d2 = max(dot(to, to), max(sqr(glow.reach), 1e-8f));
+  float cosine = 1;
+  if (length_squared(n) > 0) {
+    const float height = dot(to, n) + glow.reach;
+    if (!(height > 0)) return 0;
+    cosine = min(height / sqrtf(d2), 1.0f);
+  }
+  return glow.strength / d2 * (cosine + 0.05f);
+}
+
+/// The last of `count` entries whose running sum is not above `pick`.
+GLOAM_HD uint32_t find(const float* sums, uint32_t count, float pick) {
+  uint32_t low = 0;
+  while (count > 1) {
+    const uint32_t half = count / 2;
+    if (sums[low + half] <= pick) {
+      low += half;
+      count -= half;
+    } else {
+      count = half;
+    }
+  }
+  return low;
+}
+
+/// Collisions per metre at a point of a cell, of the mean band: what makes a density of directions
+/// into one of points that rays find.
+GLOAM_HD float collision_rate(const VolumeView& volume, uint32_t cell) {
+  const Vec3f k = Bands{}.of(volume.mass_extinction);
+  return (k.x + k.y + k.z) * (1.0f / 3) * volume.cells[cell].high;
+}
+
+GLOAM_HD uint32_t cell_along(float x, int cells) {
+  return static_cast<uint32_t>(clamp(static_cast<int>(x * (1.0f / kBoundsVoxels)), 0, cells - 1));
+}
+
+/// Density with which sample() finds the point x, p_G in the volume, from p: per solid angle, for
+/// the share of it that rays find there.
+GLOAM_HD float pdf(const MediaView& media, const GlowView& glow, Vec3f p, Vec3f x, Vec3f p_G) {
+  const VolumeView& v = media.volumes[glow.volume];
+  const uint32_t i = cell_along(p_G.x, v.cells_x), j = cell_along(p_G.y, v.cells_y),
+                 k = cell_along(p_G.z, v.cells_z);
+  const uint32_t cell =
+      (k * static_cast<uint32_t>(v.cells_y) + j) * static_cast<uint32_t>(v.cells_x) + i;
+  const int row = glow.rows[cell];
+  if (row < 0) return 0;
+  const auto within = [](float at, uint32_t along) {
+    const int voxel = static_cast<int>(at) - static_cast<int>(along * kBoundsVoxels);
+    return static_cast<uint32_t>(clamp(voxel, 0, kBoundsVoxels - 1));
+  };
+  const uint32_t voxel =
+      (within(p_G.z, k) * kBoundsVoxels + within(p_G.y, j)) * kBoundsVoxels + within(p_G.x, i);
+  const float* sums = glow.voxel_sums.data + static_cast<size_t>(row) * GlowView::kSums + voxel;
+  const float share = (glow.cell_sums[cell + 1] - glow.cell_sums[cell]) * (sums[1] - sums[0]);
+  return share * glow.voxels_per_volume * length_squared(x - p) / collision_rate(v, cell);
+}
+
+/// A point of the medium as a light for p, by pick and u in [0, 1).
+GLOAM_HD LightSample sample(const MediaView& media, const GlowView& glow, Vec3f p, float pick,
+                            Vec2f u) {
+  LightSample s;
+  const VolumeView& v = media.volumes[glow.volume];
+  const float* cells = glow.cell_sums.data;
+  const uint32_t cell = find(cells, glow.cell_sums.size - 1, pick);
+  const int row = glow.rows[cell];
+  if (row < 0) return s;
+  const float of_cell = cells[cell + 1] - cells[cell];
+  const float* sums = glow.voxel_sums.data + static_cast<size_t>(row) * GlowView::kSums;
+  const float rest = clamp((pick - cells[cell]) / of_cell, 0.0f, 0.99999994f);
+  const uint32_t voxel = find(sums, GlowView::kSums - 1, rest);
+  const uint32_t nx = static_cast<uint32_t>(v.cells_x), ny = static_cast<uint32_t>(v.cells_y);
+  const auto at = [](uint32_t of_cells, uint32_t of_voxels, float inside) {
+    return static_cast<float>(of_cells * kBoundsVoxels + of_voxels % kBoundsVoxels) + inside;
+  };
+  const Vec3f p_G{
+      at(cell % nx, voxel, u.x), at(cell / nx % ny, voxel / kBoundsVoxels, u.y),
+      at(cell / (nx * ny), voxel / (kBoundsVoxels * kBoundsVoxels), WalkRandom(u).next())};
+  const Vec3f to = transform_point(glow.X_WG, p_G) - p;
+  s.distance = length(to);
+  if (!(s.distance > 1e-6f)) return s;
+  s.wi = to / s.distance;
+  const float rate = collision_rate(v, cell);
+  const Vec3f absorption = Bands{}.of(v.mass_extinction) * (Vec3f{1, 1, 1} - Bands{}.of(v.albedo));
+  s.radiance = absorption * media::glow_at(media, v, p_G, {}) * (media::density_at(v, p_G) / rate);
+  s.pdf =
+      of_cell * (sums[voxel + 1] - sums[voxel]) * glow.voxels_per_volume * sqr(s.distance) / rate;
+  if (!(max_component(s.radiance) > 0)) s.pdf = 0;
+  return s;
+}
+
+}  // namespace gloam::glow
