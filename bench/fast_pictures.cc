@@ -53,18 +53,18 @@ struct Studio {
   CameraRequest request;
 
   Result<Radiance> path_picture(const PoseFrame& now, const PoseFrame& before, int spp,
-                                bool denoise, uint64_t seed) const {
+                                uint64_t seed) const {
     CameraRequest path = request;
     path.render.tier = "path";
     path.render.spp = spp;
-    path.render.denoise = denoise;
+    path.render.denoise = false;  // it would move what is to be told from the fast tier's
     GLOAM_TRY(const auto sensor, CameraSensor::create(shared.description, path, seed));
     return sensor->capture(*shared.renderer, shared.mutex, now, before, 0)->radiance;
   }
 };
 
-/// Two independent pictures of the path tier with half of the samples each, without what is left
-/// of their noise; out of `folder` if they have been taken before.
+/// Two independent pictures of the path tier with half of the samples each; out of `folder` if they
+/// have been taken before.
 Result<std::array<Radiance, 2>> references(const Studio& studio, const PoseFrame& now,
                                            const PoseFrame& before, int spp,
                                            const std::string& folder) {
@@ -72,7 +72,7 @@ Result<std::array<Radiance, 2>> references(const Studio& studio, const PoseFrame
   std::filesystem::path kept;
   if (!folder.empty()) {
     // A few samples tell whether scene, instant, camera and path tier are those of the last time.
-    GLOAM_TRY(const Radiance few, studio.path_picture(now, before, 4, false, 1));
+    GLOAM_TRY(const Radiance few, studio.path_picture(now, before, 4, 1));
     const uint64_t key = hash_span(std::span<const float>(few), static_cast<uint64_t>(spp));
     kept = std::filesystem::path(folder) / (hash_to_hex(key) + ".f32");
     if (std::filesystem::exists(kept)) {
@@ -89,7 +89,7 @@ Result<std::array<Radiance, 2>> references(const Studio& studio, const PoseFrame
     }
   }
   for (uint64_t i = 0; i < 2; ++i) {
-    GLOAM_TRY(halves[i], studio.path_picture(now, before, std::max(1, spp / 2), true, 2 + i));
+    GLOAM_TRY(halves[i], studio.path_picture(now, before, std::max(1, spp / 2), 2 + i));
   }
   if (!folder.empty()) {
     Radiance both = halves[0];
