@@ -95,8 +95,9 @@ TEST(PanelCone, ATreeOfPanelsLightsAFloorAsTheSumOfThem) {
     b.add(ShapeType::kPlane, {}, {}, b.add_diffuse({0.5f, 0.5f, 0.5f}));
     const int mesh = b.add_mesh(make_panel()), on = add_panel_material(&b, true);
     for (int i = first; i < first + count; ++i) {
-      const Vec3f p{0.6f * static_cast<float>(i % 6) - 1.5f,
-                    0.6f * static_cast<float>(i / 6) - 1.5f, 1};
+      const int column = i % 6, row = i / 6;
+      const Vec3f p{0.6f * static_cast<float>(column) - 1.5f, 0.6f * static_cast<float>(row) - 1.5f,
+                    1};
       const float tilt = 0.3f * static_cast<float>(i % 7) - 0.9f;
       b.add(ShapeType::kMesh, {}, rigid({0, 1, 0}, i % 3 == 0 ? kPi - tilt : tilt, p), on, 0, mesh);
     }
