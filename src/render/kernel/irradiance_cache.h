@@ -53,11 +53,20 @@ inline constexpr uint64_t kWideRegion =
     ~(uint64_t{7} | uint64_t{15} << 9 | uint64_t{15} << 27 | uint64_t{15} << 45);
 inline constexpr uint64_t kFacing = 7;
 
+/// The part of a key that tells the place along an axis.
+struct PlaceBits {
+  int shift;
+  uint64_t mask;
+};
+GLOAM_HD PlaceBits place_bits(int axis) {
+  const int shift = 9 + 18 * axis;
+  return {shift, uint64_t{axis < 2 ? 0x3FFFFu : 0x1FFFFu} << shift};
+}
+
 /// Key of the cell next along an axis, of the same facing.
 GLOAM_HD uint64_t beside(uint64_t key, int axis, bool up) {
-  const int shift = 9 + 18 * axis;
-  const uint64_t mask = uint64_t{axis < 2 ? 0x3FFFFu : 0x1FFFFu} << shift,
-                 one = uint64_t{1} << shift;
+  const auto [shift, mask] = place_bits(axis);
+  const uint64_t one = uint64_t{1} << shift;
   return (key & ~mask) | ((up ? key + one : key - one) & mask);
 }
 
@@ -118,8 +127,8 @@ GLOAM_HD uint64_t cache_key(const CacheCellOf<F>& cell, int i) {
   const Vec3f place = lane(cell.place, i);
   for (int k = 0; k < 3; ++k) {
     if (!(fabsf(place[k]) < 1e6f)) return 0;
-    const uint32_t bits = k < 2 ? 0x3FFFFu : 0x1FFFFu;
-    key |= (static_cast<uint64_t>(static_cast<int64_t>(place[k])) & bits) << (9 + 18 * k);
+    const auto [shift, mask] = caches::place_bits(k);
+    key |= (static_cast<uint64_t>(static_cast<int64_t>(place[k])) << shift) & mask;
   }
   return key;
 }

@@ -89,15 +89,20 @@ TEST(Fast, IndirectLightIsThatOfThePathTier) {
   }
 }
 
+int add_metal(SceneBuilder* b, Vec3f color, float roughness) {
+  MaterialDescription metal;
+  metal.base_color = color;
+  metal.metallic = 1;
+  metal.roughness = roughness;
+  return b->add_material(metal);
+}
+
 /// A rough metal floor before a wall of light: all that it shows is by reflection, and three of
 /// four of its pixels take that from the one beside them.
 SceneBuilder polished_floor() {
   SceneBuilder b;
-  MaterialDescription metal;
-  metal.base_color = {0.9f, 0.7f, 0.4f};
-  metal.metallic = 1;
-  metal.roughness = 0.3f;
-  b.add(ShapeType::kBox, {6, 3, 0.1f}, translation({0, 0, -0.1f}), b.add_material(metal));
+  b.add(ShapeType::kBox, {6, 3, 0.1f}, translation({0, 0, -0.1f}),
+        add_metal(&b, {0.9f, 0.7f, 0.4f}, 0.3f));
   b.add(ShapeType::kBox, {6, 0.02f, 3}, translation({0, 2, 3}), b.add_emitter({50, 60, 70}));
   b.description.extent = 5;
   return b;
@@ -184,11 +189,8 @@ TEST(Fast, LightThatGrowsIsNotBehind) {
 TEST(Fast, LampsInMirrorsLightTheRoom) {
   // Few of a cell's rays meet a lamp by way of a mirror: what they bring is kept all the same.
   SceneBuilder b = divided_room();
-  MaterialDescription mirror;
-  mirror.base_color = {0.9f, 0.9f, 0.9f};
-  mirror.metallic = 1;
-  mirror.roughness = 0.05f;
-  b.add(ShapeType::kBox, {0.9f, 0.01f, 0.9f}, translation({1, 1.9f, 1}), b.add_material(mirror));
+  b.add(ShapeType::kBox, {0.9f, 0.01f, 0.9f}, translation({1, 1.9f, 1}),
+        add_metal(&b, {0.9f, 0.9f, 0.9f}, 0.05f));
   const CameraView view =
       SceneBuilder::camera(look_at({1.6f, -1.8f, 1.5f}, {0.9f, 0.9f, 0}), 96, 72, 60);
   const double exact = mean_luminance(path_picture(b, view, 512, kEndless));
@@ -215,12 +217,8 @@ TEST(Fast, ARareBrightRayMakesNoSpot) {
   // A small bright lamp that the cells of matt walls see in a mirror alone: a block of a wall is
   // as bright as those around it, whether or not one of its cells' rays met the lamp.
   SceneBuilder b = divided_room();
-  MaterialDescription mirror;
-  mirror.base_color = {0.9f, 0.9f, 0.9f};
-  mirror.metallic = 1;
-  mirror.roughness = 0.03f;
   b.add(ShapeType::kBox, {0.02f, 1.5f, 0.9f}, translation({1.95f, -0.3f, 1}),
-        b.add_material(mirror));
+        add_metal(&b, {0.9f, 0.9f, 0.9f}, 0.03f));
   b.add(ShapeType::kSphere, {0.05f, 0, 0}, translation({0.5f, -1.2f, 1.7f}),
         b.add_emitter({2000, 2000, 2000}));
   const CameraView view =
