@@ -23,6 +23,13 @@ GLOAM_HD float weight(const GlowView& glow, Vec3f p, Vec3f n) {
   return glow.strength / d2 * (cosine + 0.05f);
 }
 
+/// That of all of them.
+GLOAM_HD float weight(const DeviceSpan<const GlowView>& glows, Vec3f p, Vec3f n) {
+  float sum = 0;
+  for (uint32_t k = 0; k < glows.size; ++k) sum += weight(glows[k], p, n);
+  return sum;
+}
+
 /// The last of `count` entries whose running sum is not above `pick`.
 GLOAM_HD uint32_t find(const float* sums, uint32_t count, float pick) {
   uint32_t low = 0;

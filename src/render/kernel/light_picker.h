@@ -113,10 +113,7 @@ class LightPickerOf {
   /// After prepare(): media that glow get their share of choices, too.
   GLOAM_HD void add_glow(const SceneView& scene, Mask active) {
     each_lane(active, [&](int i) {
-      float glow = 0;
-      for (uint32_t k = 0; k < scene.media.glows.size; ++k) {
-        glow += glow::weight(scene.media.glows[k], lane(p_, i), lane(n_, i));
-      }
+      const float glow = glow::weight(scene.media.glows, lane(p_, i), lane(n_, i));
       const float total = lane(total_, i);
       const float share = total < 0 ? 0.5f : glow / (glow + total);  // lights that are not weighed
       set_lane(&glow_share_, i, glow > 0 ? share : 0.0f);
@@ -131,14 +128,10 @@ class LightPickerOf {
   GLOAM_HD float glow_pdf(const SceneView& scene, int row, int at, Vec3f p_W, Vec3f p_G) const {
     const Vec3f p = lane(p_, at), n = lane(n_, at);
     if (!(lane(glow_share_, at) > 0)) return 0;
-    float total = 0, mine = 0;
-    for (uint32_t k = 0; k < scene.media.glows.size; ++k) {
-      const float weight = glow::weight(scene.media.glows[k], p, n);
-      total += weight;
-      if (static_cast<int>(k) == row) mine = weight;
-    }
-    return lane(glow_share_, at) * mine / total *
-           glow::pdf(scene.media, scene.media.glows[static_cast<uint32_t>(row)], p, p_W, p_G);
+    const GlowView& mine = scene.media.glows[static_cast<uint32_t>(row)];
+    const float total = glow::weight(scene.media.glows, p, n);
+    return lane(glow_share_, at) * glow::weight(mine, p, n) / total *
+           glow::pdf(scene.media, mine, p, p_W, p_G);
   }
 
   /// After prepare(): the sky is none of this picker's business.
@@ -278,8 +271,8 @@ class LightPickerOf {
   GLOAM_HD LightSample sample_glow(const SceneView& scene, int at, float pick, Vec2f u) const {
     const Vec3f p = lane(p_, at), n = lane(n_, at);
     const DeviceSpan<const GlowView>& glows = scene.media.glows;
-    float total = 0, before = 0, taken = 0;
-    for (uint32_t k = 0; k < glows.size; ++k) total += glow::weight(glows[k], p, n);
+    const float total = glow::weight(glows, p, n);
+    float before = 0, taken = 0;
     const float wanted = pick / lane(glow_share_, at) * total;
     uint32_t row = 0;
     for (uint32_t k = 0; k < glows.size && before + taken <= wanted; ++k) {
