@@ -1,10 +1,12 @@
 // The command line: thin, sees include/gloam/ only.
 
+#include <algorithm>
 #include <array>
 #include <iostream>
 
 #include "command.h"
 #include "gloam/program.h"
+#include "words.h"
 
 namespace gloam::cli {
 namespace {
@@ -15,7 +17,7 @@ constexpr std::array kCommands = {add_demo, add_run,    add_render,
 int run_program(int argc, char** argv) {
   CLI::App app{
       "Gloam: a robotics simulator. Physics is exactly MuJoCo, light is path-traced.\n"
-      "Also: ./gloam setup | test | bench | doctor (see ./gloam help)"};
+      "In the source tree also: ./gloam setup | test | bench | mitsuba | gallery | pack | doctor"};
   app.name("gloam");
   app.require_subcommand(1);
   app.fallthrough();
@@ -24,10 +26,6 @@ int run_program(int argc, char** argv) {
   app.footer(
       "Example: gloam run examples/demo.toml --out results/first\nExit codes: 0 ok, 1 failure, 2 "
       "usage, 3 partial, 130 interrupted");
-
-  app.failure_message([](const CLI::App*, const CLI::Error& error) {
-    return "gloam: error: " + std::string(error.what()) + " (run with --help)\n";
-  });
 
   Globals globals;
   bool verbose = false;
@@ -41,8 +39,10 @@ int run_program(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error, std::cout, std::cerr);
-    return code == 0 ? 0 : 2;
+    if (error.get_exit_code() == 0) return app.exit(error, std::cout, std::cerr);  // --help
+    // The program's own options take no value: the first word is the command.
+    const auto word = std::find_if(argv + 1, argv + argc, [](const char* w) { return *w != '-'; });
+    return fail(explain(app, word != argv + argc ? *word : "", error));
   }
   if (verbose) set_log_level(LogLevel::kDebug);
   if (globals.quiet) set_log_level(LogLevel::kWarning);

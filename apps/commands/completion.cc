@@ -6,32 +6,10 @@
 #include <cstdio>
 
 #include "command.h"
+#include "words.h"
 
 namespace gloam::cli {
 namespace {
-
-std::vector<std::string> option_names(const CLI::App& app) {
-  std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options()) {
-    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
-    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
-  }
-  return names;
-}
-
-// Commands of the start script, which are not part of the program.
-const std::vector<std::pair<std::string, std::string>> kScriptCommands = {
-    {"setup", "Install what is missing and build"},
-    {"test", "Run the tests"},
-    {"bench", "Measure against peers and limits"},
-    {"doctor", "Say what is missing on this machine and how to mend it"}};
-
-std::vector<std::pair<std::string, std::string>> commands(const CLI::App& root) {
-  auto list = kScriptCommands;
-  for (const CLI::App* sub : root.get_subcommands({}))
-    list.emplace_back(sub->get_name(), sub->get_description());
-  return list;
-}
 
 std::string bash_script(const CLI::App& root) {
   std::string names, cases;

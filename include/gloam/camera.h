@@ -58,9 +58,9 @@ struct PixelBox {
 /// One object in a picture. Its frame O is that of its first body that is drawn: the root of a
 /// robot, the world for what is fixed to it.
 struct ObjectView {
-  uint16_t instance = 0;  ///< as in LabelRow
+  uint32_t instance = 0;  ///< as in LabelRow
   std::string name;
-  uint16_t semantic = 0;
+  uint32_t semantic = 0;
   PixelBox seen;  ///< pixels whose centre shows it
   PixelBox all;   ///< that would if nothing stood in front of it, within the picture
   Pose X_WO;
@@ -94,9 +94,9 @@ struct CameraFrame {
   std::vector<float> distance;  ///< along the ray [m], +inf = nothing hit, (height x width)
   std::vector<uint32_t>
       part;  ///< row of the label table (one per drawn geom), 0 = nothing, (height x width)
-  uint32_t part_count = 0;         ///< rows of the label table: the most that `part` may hold
-  std::vector<uint16_t> instance;  ///< object id of the label table, 0 = nothing, (height x width)
-  std::vector<uint16_t> semantic;  ///< class id of the label table, 0 = nothing, (height x width)
+  uint32_t part_count = 0;  ///< rows of the label table: the most that any of these ids may be
+  std::vector<uint32_t> instance;  ///< object id of the label table, 0 = nothing, (height x width)
+  std::vector<uint32_t> semantic;  ///< class id of the label table, 0 = nothing, (height x width)
   std::vector<float> normal;       ///< unit, world axes, 0 = nothing, (height x width x 3)
   std::vector<float> albedo;       ///< (height x width x 3), 0..1
   std::vector<uint32_t> samples;   ///< light paths in the mean of a pixel, (height x width)
@@ -133,10 +133,10 @@ Pose optical_pose(const Pose& X_WC);
 struct LabelRow {
   uint32_t part = 0;
   std::string geom, body, material;  ///< full names; "" when unnamed
-  uint16_t instance =
+  uint32_t instance =
       0;  ///< id of the object (body directly under the world, or robot) it belongs to
   std::string instance_name;
-  uint16_t semantic = 0;
+  uint32_t semantic = 0;
   std::string semantic_name;  ///< class: robot's or object's name without trailing digits; "floor",
                               ///< "wall" …
 };

@@ -38,7 +38,7 @@ struct LidarScan {
   std::vector<uint8_t> return_number;  ///< 0 = the first that the sensor reports of this beam, (n)
   // Truth, empty unless asked for.
   std::vector<uint32_t> part;                ///< row of the label table, 0 = a medium, (n)
-  std::vector<uint16_t> instance, semantic;  ///< ids of the label table, 0 = a medium, (n)
+  std::vector<uint32_t> instance, semantic;  ///< ids of the label table, 0 = a medium, (n)
 
   size_t size() const { return x.size(); }
 };

@@ -2,7 +2,9 @@
 // The program itself: version, where its files are, its logging and threads.
 
 #include <filesystem>
+#include <span>
 #include <string>
+#include <string_view>
 
 #include "gloam/result.h"
 
@@ -20,6 +22,10 @@ Result<std::filesystem::path> gloam_home();
 enum class LogLevel { kDebug, kInfo, kWarning, kError, kOff };
 /// Lowest level that is printed to stderr; default kInfo.
 void set_log_level(LogLevel level);
+
+/// "did you mean 'x'?", the candidate nearest to `word`; or, when nothing is close and the list is
+/// short, "one of: a, b, c"; may be empty.
+std::string suggest_name(std::string_view word, std::span<const std::string> candidates);
 
 /// Threads for rendering and loading; 0 = all processors. Results do not depend on it.
 void set_thread_count(int n);

@@ -166,7 +166,7 @@ struct SimOptions {
 
 /// [render]
 struct RenderOptions {
-  std::string tier = "path";    ///< path | direct (primary hit, direct light and shadows only)
+  std::string tier = "path";    ///< path | fast | direct (docs/light.md)
   std::optional<int> spp = {};  ///< samples per pixel, 1 … 65536; with `error` at most, from 16
   /// Of the path tier: each pixel is sampled until its standard error is this share of its value,
   /// 0.0001 … 1 (docs/light.md); empty = as many samples in every pixel.

@@ -24,7 +24,7 @@ struct Thumbnail {
   int width = 0, height = 0;
   std::vector<uint8_t> rgb;  ///< empty = the frame had none; likewise below
   std::vector<float> depth;  ///< [m]
-  std::vector<uint16_t> instance;
+  std::vector<uint32_t> instance;
 };
 
 class CameraRecorder {

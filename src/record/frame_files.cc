@@ -36,10 +36,10 @@ Result<Bytes> exr(const CameraFrame& frame, const std::vector<float>& values,
 }
 
 /// 16 bits where they can number all parts of the world, which the frame need not show. Else three
-/// bytes as in COCO's panoptic pictures: part = R + 256 G + 65536 B (Kirillov et al. 2019).
-Result<Bytes> parts(const CameraFrame& frame) {
+/// bytes as in COCO's panoptic pictures: id = R + 256 G + 65536 B (Kirillov et al. 2019).
+Result<Bytes> ids(const CameraFrame& frame, const std::vector<uint32_t>& values) {
   constexpr uint32_t kMost16 = 0xFFFF, kMost24 = 0xFFFFFF;
-  if (frame.part_count <= kMost16) return png16(frame, {frame.part.begin(), frame.part.end()});
+  if (frame.part_count <= kMost16) return png16(frame, {values.begin(), values.end()});
   if (frame.part_count > kMost24)
     return Error{ErrorKind::kUsage,
                  fmt::format("the scene of camera '{}' has {} parts; pictures number {} at most",
@@ -47,9 +47,9 @@ Result<Bytes> parts(const CameraFrame& frame) {
                  {},
                  "read CameraFrame::part instead"};
   std::vector<uint8_t> rgb;
-  rgb.reserve(3 * frame.part.size());
-  for (const uint32_t part : frame.part)
-    for (const int shift : {0, 8, 16}) rgb.push_back(static_cast<uint8_t>(part >> shift));
+  rgb.reserve(3 * values.size());
+  for (const uint32_t id : values)
+    for (const int shift : {0, 8, 16}) rgb.push_back(static_cast<uint8_t>(id >> shift));
   return png8(frame, rgb);
 }
 
@@ -82,10 +82,11 @@ constexpr FrameFile kFiles[] = {
     {"thermal_exr", "thermal", "thermal_exr", "_thermal.exr",
      [](const F& f) { return exr(f, f.thermal, {"K"}); }},
     {"segmentation", "segmentation", "instance", "_instance.png",
-     [](const F& f) { return png16(f, f.instance); }},
+     [](const F& f) { return ids(f, f.instance); }},
     {"segmentation", "segmentation", "semantic", "_semantic.png",
-     [](const F& f) { return png16(f, f.semantic); }},
-    {"segmentation", "segmentation", "part", "_part.png", parts},
+     [](const F& f) { return ids(f, f.semantic); }},
+    {"segmentation", "segmentation", "part", "_part.png",
+     [](const F& f) { return ids(f, f.part); }},
     {"normal_exr", "normal", "normal", "_normal.exr",
      [](const F& f) { return exr(f, f.normal, {"X", "Y", "Z"}); }},
     {"albedo_exr", "albedo", "albedo", "_albedo.exr",

@@ -43,8 +43,8 @@ std::vector<Field> fields_of(const LidarScan& s) {
                                {"return_number", Type::kUint8, s.return_number.data()}};
   if (s.part.size() == s.size()) {
     fields.push_back({"part", Type::kUint32, s.part.data()});
-    fields.push_back({"instance", Type::kUint16, s.instance.data()});
-    fields.push_back({"semantic", Type::kUint16, s.semantic.data()});
+    fields.push_back({"instance", Type::kUint32, s.instance.data()});
+    fields.push_back({"semantic", Type::kUint32, s.semantic.data()});
   }
   return fields;
 }

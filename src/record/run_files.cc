@@ -138,8 +138,8 @@ std::string objects_json(const std::vector<ObjectView>& objects) {
 }
 
 std::string labels_json(const std::vector<LabelRow>& labels) {
-  std::map<uint16_t, std::string> categories;
-  std::map<uint16_t, std::pair<std::string, uint16_t>> instances;
+  std::map<uint32_t, std::string> categories;
+  std::map<uint32_t, std::pair<std::string, uint32_t>> instances;
   Json parts = Json::array();
   for (const LabelRow& row : labels) {
     if (row.semantic != 0) categories.try_emplace(row.semantic, row.semantic_name);

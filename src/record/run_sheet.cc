@@ -97,12 +97,12 @@ SheetRow depth_row(const std::string& name, const std::vector<const Thumbnail*>&
 
 SheetRow instance_row(const std::string& name, const std::vector<const Thumbnail*>& frames,
                       const std::vector<LabelRow>& labels) {
-  std::map<uint16_t, int64_t> area;
+  std::map<uint32_t, int64_t> area;
   for (const Thumbnail* frame : frames)
-    for (const uint16_t id : frame->instance) ++area[id];
-  std::map<uint16_t, std::string> names;
+    for (const uint32_t id : frame->instance) ++area[id];
+  std::map<uint32_t, std::string> names;
   for (const LabelRow& label : labels) names.try_emplace(label.instance, label.instance_name);
-  std::vector<std::pair<int64_t, uint16_t>> by_area;
+  std::vector<std::pair<int64_t, uint32_t>> by_area;
   for (const auto& [id, pixels] : area)
     if (id != 0) by_area.push_back({-pixels, id});
   std::sort(by_area.begin(), by_area.end());
@@ -112,8 +112,7 @@ SheetRow instance_row(const std::string& name, const std::vector<const Thumbnail
                                                ? names[id]
                                                : fmt::format("object {}", id)});
   for (const Thumbnail* frame : frames)
-    row.pictures.push_back(
-        paint(frame, &Thumbnail::instance, [](uint16_t id) { return label_color(id); }));
+    row.pictures.push_back(paint(frame, &Thumbnail::instance, label_color));
   return row;
 }
 

@@ -207,7 +207,7 @@ PictureMemory CameraSensor::memory() const {
   const auto of = [](bool wanted, uint64_t bytes) { return wanted ? bytes : 0; };
   out.frame = pixels * (of(c.rgb, 3) + of(c.radiance, 12) + of(c.samples, 4) + of(c.depth, 4) +
                         of(c.normal, 12) + of(c.albedo, 12) + of(c.motion, 8) +
-                        of(c.segmentation, 8) + of(c.distance, 4) + of(c.scene_flow, 12) +
+                        of(c.segmentation, 12) + of(c.distance, 4) + of(c.scene_flow, 12) +
                         of(c.raw, 6) + of(c.sensor_depth, 4) + of(c.events, 64) + of(c.thermal, 4));
   return out;
 }

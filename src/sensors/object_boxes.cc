@@ -72,9 +72,9 @@ void add_instance(const RenderDescription& description, const PoseFrame& frame,
 
 std::vector<ObjectView> view_objects(const RenderDescription& description, const PoseFrame& frame,
                                      const std::vector<ObjectCover>& cover) {
-  std::map<uint16_t, std::vector<const InstanceDescription*>> objects;
+  std::map<uint32_t, std::vector<const InstanceDescription*>> objects;
   for (const InstanceDescription& in : description.instances) {
-    const uint16_t id = in.label.instance;
+    const uint32_t id = in.label.instance;
     if (in.shown && id < cover.size() && cover[id].all.pixels > 0) objects[id].push_back(&in);
   }
   std::vector<ObjectView> out;

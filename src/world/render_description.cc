@@ -322,9 +322,6 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
   GLOAM_TRY_STATUS(author_lights(world, poses, is_static, &labels, &levels, &out));
   if (world.scene.sky) GLOAM_TRY_STATUS(author_sky(*world.scene.sky, &levels, &out));
   GLOAM_TRY_STATUS(author_volumes(world.scene.volumes, &out));
-  if (labels.overflowed())
-    out.unsupported.push_back(
-        {ErrorKind::kUnsupported, "there are more than 65535 objects; the last share one label"});
   out.ev100 = exposure(levels, out);
   return out;
 }

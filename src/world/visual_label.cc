@@ -4,19 +4,10 @@ namespace gloam {
 namespace {
 
 constexpr int kRobotKind = -1, kBodyKind = -2;
-constexpr size_t kMaxId = 65535;  // ids are 16 bits wide in pictures
 
 template <class Key>
-uint16_t id_of(std::map<Key, uint16_t>* ids, const Key& key, bool* overflowed) {
-  const auto found = ids->find(key);
-  if (found != ids->end()) return found->second;
-  if (ids->size() >= kMaxId) {
-    *overflowed = true;
-    return kMaxId;
-  }
-  const auto id = static_cast<uint16_t>(ids->size() + 1);
-  ids->emplace(key, id);
-  return id;
+uint32_t id_of(std::map<Key, uint32_t>* ids, const Key& key) {
+  return ids->try_emplace(key, static_cast<uint32_t>(ids->size() + 1)).first->second;
 }
 
 }  // namespace
@@ -60,8 +51,8 @@ LabelRow LabelTable::label(int body, const std::string& own_name, int kind, int 
     }
     row.semantic_name = semantic_class(row.instance_name);
   }
-  row.instance = id_of(&instances_, key, &overflowed_);
-  row.semantic = id_of(&classes_, row.semantic_name, &overflowed_);
+  row.instance = id_of(&instances_, key);
+  row.semantic = id_of(&classes_, row.semantic_name);
   return row;
 }
 

@@ -26,16 +26,13 @@ class LabelTable {
   /// which names the object if the body is the world. `kind`, `id` make world geoms distinct.
   LabelRow label(int body, const std::string& own_name, int kind, int id);
   bool is_robot(int body) const { return robot_of(body) >= 0; }
-  /// More objects than ids: the last id is shared.
-  bool overflowed() const { return overflowed_; }
 
  private:
   int robot_of(int body) const;
 
   const CompiledWorld& world_;
-  std::map<std::pair<int, int>, uint16_t> instances_;
-  std::map<std::string, uint16_t> classes_;
-  bool overflowed_ = false;
+  std::map<std::pair<int, int>, uint32_t> instances_;
+  std::map<std::string, uint32_t> classes_;
 };
 
 }  // namespace gloam

@@ -155,7 +155,7 @@ TEST(Thumbnail, AveragesColoursAndPicksIds) {
   EXPECT_EQ(small.width, 2);
   EXPECT_EQ(small.height, 1);
   EXPECT_EQ(small.rgb, std::vector<uint8_t>(6, 150));
-  EXPECT_EQ(small.instance, (std::vector<uint16_t>{1, 5}));
+  EXPECT_EQ(small.instance, (std::vector<uint32_t>{1, 5}));
   EXPECT_TRUE(small.depth.empty());
 }
 

@@ -279,7 +279,7 @@ class CpuRenderer final : public Renderer {
   std::unique_ptr<CudaStages> cuda_;
   std::vector<RenderStats> tiles_;
   std::vector<CameraKey> camera_keys_;
-  std::vector<uint16_t> objects_;  ///< by instance
+  std::vector<uint32_t> objects_;  ///< by instance
   int columns_ = 0;                ///< of tiles
   DescribedLook described_;        ///< until the guide is built
   LightGuideStore guide_;

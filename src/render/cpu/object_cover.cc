@@ -31,7 +31,7 @@ void add_box(const PixelBox& from, PixelBox* to) {
 
 std::vector<ObjectCover> measure_cover(const SceneView& scene, const CpuTracer& tracer,
                                        const CameraView32& camera, bool has_motion, int width,
-                                       int height, const std::vector<uint16_t>& object_of) {
+                                       int height, const std::vector<uint32_t>& object_of) {
   const size_t count =
       object_of.empty() ? 0 : *std::max_element(object_of.begin(), object_of.end()) + size_t{1};
   std::vector<std::vector<ObjectCover>> parts(kChunks, std::vector<ObjectCover>(count));
@@ -49,7 +49,7 @@ std::vector<ObjectCover> measure_cover(const SceneView& scene, const CpuTracer& 
           RayHit hit;
           if (!tracer.trace(ray, false, &hit)) break;
           const Surface s = make_surface(scene, ray, hit, cone);
-          const uint16_t object = object_of[s.instance];
+          const uint32_t object = object_of[s.instance];
           if (shows(scene, s)) {
             if (first) add_pixel(x, y, &covers[object].seen);
             first = false;

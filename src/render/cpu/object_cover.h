@@ -11,6 +11,6 @@ namespace gloam {
 /// ray meets the object first, and those whose ray meets it at all.
 std::vector<ObjectCover> measure_cover(const SceneView& scene, const CpuTracer& tracer,
                                        const CameraView32& camera, bool has_motion, int width,
-                                       int height, const std::vector<uint16_t>& object_of);
+                                       int height, const std::vector<uint32_t>& object_of);
 
 }  // namespace gloam

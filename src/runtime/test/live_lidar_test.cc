@@ -156,7 +156,7 @@ TEST(LidarRecording, PointsAreInFilesThatSayWhatTheyHold) {
   const std::vector<uint8_t> bytes = *read_file(request.out / "rider/pcd/000001.pcd");
   const std::string pcd(bytes.begin(), bytes.end());
   EXPECT_NE(pcd.find("FIELDS x y z intensity ring time range column return_number part instance "
-                     "semantic\nSIZE 4 4 4 4 2 4 4 2 1 4 2 2\nTYPE F F F F U F F U U U U U\n"),
+                     "semantic\nSIZE 4 4 4 4 2 4 4 2 1 4 4 4\nTYPE F F F F U F F U U U U U\n"),
             std::string::npos);
   const size_t data = pcd.find("DATA binary\n") + 12;
   const size_t at = pcd.find("POINTS ") + 7;

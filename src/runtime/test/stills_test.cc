@@ -1,5 +1,7 @@
 // Stills and the files of one frame.
 
+#include <gmock/gmock.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -87,10 +89,9 @@ TEST(Stills, EveryChannelIsWrittenAndReadsBack) {
   const auto png16 = [&](const std::string& name) {
     return decode_png16(read_file(out / name).value(), name).value().texels;
   };
-  EXPECT_EQ(png16("fixed_instance.png"), frame.instance);
-  EXPECT_EQ(png16("fixed_semantic.png"), frame.semantic);
-  const auto parts = png16("fixed_part.png");
-  EXPECT_EQ(std::vector<uint32_t>(parts.begin(), parts.end()), frame.part);
+  EXPECT_THAT(png16("fixed_instance.png"), testing::ElementsAreArray(frame.instance));
+  EXPECT_THAT(png16("fixed_semantic.png"), testing::ElementsAreArray(frame.semantic));
+  EXPECT_THAT(png16("fixed_part.png"), testing::ElementsAreArray(frame.part));
   const auto millimetres = png16("fixed_depth.png");
   for (size_t i = 0; i < millimetres.size(); ++i) {
     const float d = frame.depth[i];
@@ -107,7 +108,7 @@ TEST(Stills, EveryChannelIsWrittenAndReadsBack) {
   }
 }
 
-TEST(Stills, PartsBeyond16BitsAreToldApart) {
+TEST(Stills, PartsAndObjectsBeyond16BitsAreToldApart) {
   const TempFolder folder;
   folder.write("tiles.xml", R"(
 <mujoco model="tiles">
@@ -129,16 +130,21 @@ TEST(Stills, PartsBeyond16BitsAreToldApart) {
   const CameraFrame& frame = frames->front();
   const auto written = write_frame(frame, folder.path(), "fixed");
   ASSERT_TRUE(written.ok()) << written.error().to_string();
-  const auto picture = read_image(folder.path() / "fixed_part.png");
-  ASSERT_TRUE(picture.ok()) << picture.error().to_string();
-  ASSERT_EQ(picture->channels, 3);
-  std::vector<uint32_t> parts;
-  for (size_t i = 0; i < frame.part.size(); ++i) {
-    const uint8_t* p = &picture->texels[3 * i];
-    parts.push_back(p[0] + 256u * p[1] + 65536u * p[2]);
-  }
-  EXPECT_EQ(parts, frame.part);
-  EXPECT_GT(*std::max_element(parts.begin(), parts.end()), 65535u);
+  const auto ids = [&](const char* name) {
+    const auto picture = read_image(folder.path() / name);
+    EXPECT_TRUE(picture.ok() && picture->channels == 3) << name;
+    std::vector<uint32_t> values;
+    for (size_t i = 0; i < frame.part.size(); ++i) {
+      const uint8_t* p = &picture->texels[3 * i];
+      values.push_back(p[0] + 256u * p[1] + 65536u * p[2]);
+    }
+    return values;
+  };
+  EXPECT_EQ(ids("fixed_part.png"), frame.part);
+  EXPECT_GT(*std::max_element(frame.part.begin(), frame.part.end()), 65535u);
+  EXPECT_EQ(ids("fixed_instance.png"), frame.instance);
+  EXPECT_EQ(frame.instance, frame.part) << "each tile is an object of one part";
+  EXPECT_EQ(ids("fixed_semantic.png"), frame.semantic);
 }
 
 TEST(Stills, AFolderThatCannotBeMadeIsNamed) {

@@ -32,7 +32,7 @@ TEST_P(Manual, ShowsValidScenes) {
 
 INSTANTIATE_TEST_SUITE_P(Pages, Manual,
                          ::testing::Values("scenes.md", "materials.md", "light.md", "media.md",
-                                           "cameras.md", "lidar.md", "sensors.md"));
+                                           "import.md", "cameras.md", "lidar.md", "sensors.md"));
 
 }  // namespace
 }  // namespace gloam

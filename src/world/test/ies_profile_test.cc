@@ -10,7 +10,7 @@
 #include <cstdlib>
 #include <functional>
 
-#include "base/rng.h"
+#include "geometry/test/mutator.h"
 
 namespace gloam {
 namespace {
@@ -206,34 +206,10 @@ TEST(Mutations, IesFilesDoNoHarm) {
       ies_file(
           2, range(-90, 90, 30), range(0, 90, 30), [](double v, double) { return 90 + v; },
           "TILT=INCLUDE\n1\n2\n0 90\n1 1\n")};
-  const char* variable = std::getenv("GLOAM_MUTATIONS");
-  const int count = variable != nullptr ? std::atoi(variable) : 200;
-  int read = 0;
-  for (int i = 0; i < count; ++i) {
-    std::string text = seeds[i % 2];
-    const auto draw = [&](uint32_t k, size_t n) {
-      return philox4x32(17, k, static_cast<uint64_t>(i)).v[0] % n;
-    };
-    for (uint32_t k = 0; k <= draw(0, 4); ++k) {
-      const size_t at = draw(10 * k + 1, text.size());
-      switch (draw(10 * k + 2, 5)) {
-        case 0:
-          text[at] = static_cast<char>(draw(10 * k + 3, 256));
-          break;
-        case 1:
-          text.erase(at, draw(10 * k + 3, 40));
-          break;
-        case 2:
-          text.insert(at, std::string(draw(10 * k + 3, 5), '9'));
-          break;
-        case 3:
-          text.insert(at, " -1e308 ");
-          break;
-        default:
-          text.insert(at, text.substr(draw(10 * k + 3, text.size()), 30));
-      }
-      if (text.empty()) text = "\n";
-    }
+  const size_t count = mutation_count();
+  size_t read = 0;
+  for (size_t i = 0; i < count; ++i) {
+    const std::string text = Mutator(i).mutate(seeds[i % 2]);
     const Result<IesProfile> profile = parse_ies(text, "damaged.ies");
     if (!profile.ok()) {
       EXPECT_EQ(profile.error().to_string().rfind("damaged.ies:", 0), 0u) << text;

@@ -1,0 +1,23 @@
+#pragma once
+// The words of the command line: what may be typed, and what was meant by what may not.
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gloam/result.h"
+
+namespace gloam::cli {
+
+/// Names and descriptions of all commands, those of the start script included, which are not part
+/// of the program.
+std::vector<std::pair<std::string, std::string>> commands(const CLI::App& root);
+/// "--name" and "-n" of an App's own options.
+std::vector<std::string> option_names(const CLI::App& app);
+
+/// What `error` says of a command line whose first word is `word` ("" if there is none but
+/// options): with the nearest command or option where one of that name does not exist.
+Error explain(const CLI::App& root, const std::string& word, const CLI::ParseError& error);
+
+}  // namespace gloam::cli

@@ -1,0 +1,73 @@
+// Damaged scene files and models: what is wrong is told in one line, and nothing else happens.
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <functional>
+
+#include "base/files.h"
+#include "geometry/test/mutator.h"
+#include "scene/toml/toml_reader.h"
+#include "scene/urdf_text.h"
+#include "scene/validate.h"
+#include "scene/xml_scan.h"
+
+namespace gloam {
+namespace {
+
+/// Mutations of `seeds` in turns; `read` tells whether one was fine.
+void expect_answers(const std::vector<std::string>& seeds,
+                    const std::function<Status(const std::string&)>& read) {
+  for (const std::string& seed : seeds) {
+    const Status status = read(seed);
+    ASSERT_TRUE(status.ok()) << "not fine to begin with: " << status.error().to_string();
+  }
+  const size_t count = mutation_count();
+  size_t refused = 0;
+  for (size_t i = 0; i < count; ++i) {
+    const std::string text = Mutator(i).mutate(seeds[i % seeds.size()]);
+    const Status status = read(text);
+    if (status.ok()) continue;
+    ++refused;
+    const std::string told = status.error().to_string();
+    ASSERT_TRUE(told.starts_with("damaged") && told.find('\n') == std::string::npos)
+        << "file " << i << ": " << told << "\n"
+        << text;
+  }
+  EXPECT_GT(refused, count / 10) << "no harm is done";
+  EXPECT_LT(refused, count) << "hardly a file is read to its end";
+}
+
+TEST(Mutations, SceneFilesDoNoHarm) {
+  std::vector<std::string> seeds;
+  const std::filesystem::path folder =
+      std::string(GLOAM_SOURCE_DIR) + "/tests/fuzz/scene_toml_fuzz";
+  for (const char* name : {"light.toml", "sensors.toml"})
+    seeds.push_back(read_text_file(folder / name).value());
+  expect_answers(seeds, [](const std::string& text) -> Status {
+    Scene scene;
+    GLOAM_TRY_STATUS(read_scene_toml(text, "damaged.toml", &scene));
+    return validate_scene(scene);
+  });
+}
+
+TEST(Mutations, ModelsDoNoHarm) {
+  const std::vector<std::string> seeds = {
+      R"(<mujoco model="a"><compiler meshdir="meshes"/><include file="b.xml"/>
+<asset><mesh name="m" file="m.stl"/><texture name="t" builtin="checker" width="64" height="64"/></asset>
+<worldbody><replicate count="3"><geom type="mesh" mesh="m"/></replicate></worldbody></mujoco>)",
+      R"(<robot name="b"><link name="base"><visual><geometry><mesh filename="meshes/a.stl"/></geometry></visual>
+<collision><geometry><box size="1 2 3"/></geometry></collision></link>
+<link name="tip"/><joint name="j" type="revolute"><parent link="base"/><child link="tip"/></joint></robot>)"};
+  expect_answers(seeds, [](const std::string& text) -> Status {
+    GLOAM_TRY(const XmlScan scan, scan_model_xml(text, "damaged.xml"));
+    for (const FileReference& reference : scan.references)
+      EXPECT_TRUE(has_element_at(text, reference.element, reference.line));
+    if (scan.root == "robot")
+      GLOAM_TRY_STATUS(prepare_urdf(text, "damaged.urdf", {}, [](const auto&) { return true; }));
+    return {};
+  });
+}
+
+}  // namespace
+}  // namespace gloam
