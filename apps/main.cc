@@ -1,7 +1,11 @@
 // The command line: thin, sees include/gloam/ only.
 
+#include <poll.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <iostream>
 
 #include "command.h"
@@ -50,6 +54,14 @@ int run_program(int argc, char** argv) {
   return action();
 }
 
+/// Whether all that was printed has arrived. A reader that has seen enough (`| head`) is no fault.
+int finish_data() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
+  pollfd out{STDOUT_FILENO, POLLOUT, 0};
+  if (::poll(&out, 1, 0) == 1 && (out.revents & POLLERR) != 0) return 0;
+  return fail({ErrorKind::kIo, "standard output takes no more", {}, "is the disk full?"});
+}
+
 }  // namespace
 }  // namespace gloam::cli
 
@@ -62,7 +74,8 @@ int main(int argc, char** argv) {
   }
 #endif
   try {
-    return gloam::cli::run_program(argc, argv);
+    const int code = gloam::cli::run_program(argc, argv);
+    return code != 0 ? code : gloam::cli::finish_data();
   } catch (const std::bad_alloc&) {
     std::cerr << "gloam: error: out of memory (lower the resolution or the size of the scene)\n";
     return 1;

@@ -6,17 +6,12 @@
 
 namespace gloam::cli {
 
-void RunOptions::add_simulation(CLI::App& command) {
-  command.add_option("--duration", duration, "Seconds of simulation time")
-      ->check(positive_number());
+void RunOptions::add_to(CLI::App& command) {
   command.add_option("--seed", seed, "Seed of everything random");
   command.add_option("--timestep", timestep, "Physics time step in seconds; default: the model's")
       ->check(positive_number());
   command.add_option("--set", settings,
                      "Change one setting of the scene, as sim.duration=5 (repeatable)");
-}
-
-void RunOptions::add_rendering(CLI::App& command) {
   command.add_option("--camera", cameras, "Camera by name (repeatable); default: all");
   command.add_option("--resolution", resolution, "WIDTHxHEIGHT of every camera");
   command

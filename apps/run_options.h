@@ -20,8 +20,7 @@ struct RunOptions {
   int threads = 0;
   FileAccess access;
 
-  void add_simulation(CLI::App& command);
-  void add_rendering(CLI::App& command);
+  void add_to(CLI::App& command);
   /// Loads the scene and applies every option to it.
   Result<Scene> load(const std::string& file);
 };

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "gloam/program.h"
 
 namespace gloam::cli {
@@ -36,13 +38,14 @@ std::vector<std::string> option_names(const CLI::App& app) {
 }
 
 Error explain(const CLI::App& root, const std::string& word, const CLI::ParseError& error) {
-  std::vector<std::string> options = option_names(root);
-  if (!word.empty() && root.get_subcommand_no_throw(word) == nullptr) {
-    std::vector<std::string> names = {"--help"};  // for "gloam help"
-    for (const auto& [name, text] : commands(root)) names.push_back(name);
-    return {ErrorKind::kUsage, fmt::format("there is no command '{}'", word), {},
+  std::vector<std::string> names = {"--help"};  // for "gloam help"
+  for (const auto& [name, text] : commands(root)) names.push_back(name);
+  if (!word.empty() && std::ranges::find(names, word) == names.end())
+    return {ErrorKind::kUsage,
+            fmt::format("there is no command '{}'", word),
+            {},
             suggest_name(word, names)};
-  }
+  std::vector<std::string> options = option_names(root);
   for (const CLI::App* sub : root.get_subcommands())
     for (const std::string& name : option_names(*sub)) options.push_back(name);
   for (const std::string& extra : root.remaining(true)) {

@@ -76,7 +76,7 @@ void add_render(CLI::App& app, Globals& globals, Action& action) {
   CLI::App* sub = app.add_subcommand("render", "Render stills of a scene or model");
   auto command = std::make_shared<RenderCommand>();
   sub->add_option("FILE", command->file, "Scene or model")->required();
-  command->options.add_rendering(*sub);
+  command->options.add_to(*sub);
   sub->get_option("--output")
       ->description(
           "Channels: rgb radiance samples depth distance segmentation normal albedo motion "

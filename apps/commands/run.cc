@@ -92,8 +92,9 @@ void add_run(CLI::App& app, Globals& globals, Action& action) {
       app.add_subcommand("run", "Simulate a scene (.toml) or any MJCF/URDF as it stands");
   auto command = std::make_shared<RunCommand>();
   sub->add_option("FILE", command->file, "Scene or model")->required();
-  command->options.add_simulation(*sub);
-  command->options.add_rendering(*sub);
+  sub->add_option("--duration", command->options.duration, "Seconds of simulation time")
+      ->check(positive_number());
+  command->options.add_to(*sub);
   sub->add_option("--out", command->out, "Results folder; default for scenes: results/NAME");
   sub->add_flag("--overwrite", command->overwrite, "Replace an existing results folder");
   sub->add_flag("--realtime", command->realtime,

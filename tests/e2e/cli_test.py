@@ -63,6 +63,16 @@ class Mistakes(ProgramTest):
         self.complains(2, "render", "x.xml", "--spp", "many", words=["spp", "many", "--help"])
         self.complains(2, words=["--help"])
 
+    def test_output_that_nobody_can_keep(self):
+        model = self.write("robot.xml", PENDULUM)
+        for arguments in (["info", model], ["completion", "bash"], ["--help"]):
+            with open("/dev/full", "w") as full:
+                done = subprocess.run([PROGRAM, *arguments], stdout=full, stderr=subprocess.PIPE, text=True)
+            self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), arguments)
+            self.assertIn("gloam: error: standard output", done.stderr)
+        quiet = subprocess.run(["bash", "-c", f"set -o pipefail; {PROGRAM} completion fish | true"], capture_output=True, text=True)
+        self.assertEqual((quiet.returncode, quiet.stderr), (0, ""), "a reader that has seen enough")
+
     def test_missing_file(self):
         self.complains(1, "run", "missing.xml", words=["missing.xml", "there is no file"])
 
@@ -202,6 +212,14 @@ class Work(ProgramTest):
         self.assertEqual([body["name"] for body in info["bodies"]], ["world", "arm"])
         self.assertEqual(info["nu"], 1)
         self.assertEqual([camera["name"] for camera in info["cameras"]], ["side"])
+
+    def test_a_still_takes_the_settings_of_a_run(self):
+        model = self.write("robot.xml", PENDULUM)
+        pictures = []
+        for settings in ([], ["--seed", "2"], ["--set", "render.max_depth=1"]):
+            self.gloam("render", model, "--spp", "1", "--no-denoise", "--resolution", "32x24", "--out", "out", *settings)
+            pictures.append((self.folder / "out" / "side.png").read_bytes())
+        self.assertEqual(len(set(pictures)), 3)
 
     def test_render_writes_a_picture(self):
         model = self.write("m.xml", PENDULUM)
