@@ -12,7 +12,8 @@
 namespace gloam {
 
 /// [camera.timing], [sensor.timing]: when samples are taken and when they arrive. Sample k is taken
-/// at the first physics step at or after phase + k / rate + its jitter.
+/// at the first physics step at or after phase + k / rate + its jitter, the aperture uncertainty of
+/// IEEE Std 1241-2010; losses are independent of each other (no source but simplicity).
 struct TimingOptions {
   Rational phase = {0, 1};    ///< time of sample 0 [s], >= 0
   double jitter = 0;          ///< of the instant of a sample: standard deviation, cut at four [s]
@@ -42,7 +43,8 @@ struct AutoExposureOptions {
   SourceLoc loc = {};
 };
 
-/// [camera.imager.vignetting]: factor on the light at a pixel.
+/// [camera.imager.vignetting]: factor on the light at a pixel (Gardner 1947, "Validity of the
+/// cosine-fourth-power law of illumination"; polynomial: Goldman 2010).
 struct VignettingOptions {
   bool cos4 = false;  ///< by the angle of the pixel's ray with the axis of a pinhole
   /// 1 + a r² + b r⁴ + c r⁶, r = distance from the picture's centre by half its diagonal
@@ -65,7 +67,8 @@ struct PixelOptions {
   SourceLoc loc = {};
 };
 
-/// [camera.imager]
+/// [camera.imager]: also Bayer's mosaic, demosaiced by Malvar, He and Cutler 2004, and baseline JPEG
+/// (ITU-T T.81).
 struct ImagerOptions {
   std::optional<ExposureOptions> exposure = {};
   std::optional<AutoExposureOptions> auto_exposure = {};  ///< takes its f-number from `exposure`

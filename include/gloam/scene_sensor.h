@@ -12,7 +12,7 @@ namespace gloam {
 
 /// [camera.stereo_depth]: what a depth camera with two eyes and a pattern projector measures, as
 /// the output sensor_depth. The camera is the reference eye. What a preset does not say and the
-/// table leaves out is off.
+/// table leaves out is off. Khoshelham and Elberink 2012; Keselman et al. 2017.
 struct StereoDepthOptions {
   std::string preset = "none";             ///< none | d435 | kinect
   std::optional<double> baseline = {};     ///< second eye along the camera's +X [m], not 0
@@ -29,7 +29,8 @@ struct StereoDepthOptions {
   SourceLoc loc = {};
 };
 
-/// [camera.events]: an event camera, output events.
+/// [camera.events]: an event camera, output events (Rebecq, Gehrig and Scaramuzza 2018, "ESIM";
+/// Gallego et al. 2020, "Event-based Vision: A Survey").
 struct EventOptions {
   double threshold = 0.2;  ///< change of log light that makes an event, both signs
   double mismatch = 0;     ///< spread of the pixels' thresholds, same unit
@@ -40,7 +41,8 @@ struct EventOptions {
   SourceLoc loc = {};
 };
 
-/// [camera.thermal]: a bolometer camera for 8 … 14 µm, output thermal.
+/// [camera.thermal]: a bolometer camera for 8 … 14 µm, output thermal. Its noise is told as by ASTM
+/// E1543, "Noise Equivalent Temperature Difference of Thermal Imaging Systems".
 struct ThermalOptions {
   double netd = 0;             ///< noise-equivalent temperature difference at 300 K [K]
   double fixed_pattern = 0;    ///< spread of the pixels' offsets, at 300 K [K]
@@ -69,7 +71,8 @@ struct TemperatureOptions {
 };
 
 /// [[sensor]]: a model for MuJoCo's sensors. Of tables that fit a sensor, the last one counts.
-/// Units are the sensor's own. What is not given is the preset's, or off: docs/sensors.md.
+/// Units are the sensor's own. What is not given is the preset's, or off: docs/sensors.md. Terms:
+/// IEEE Std 952-1997.
 struct SensorOptions {
   std::string match = {};       ///< full name of the sensor; * stands for any text
   std::string preset = "none";  ///< none, adis16470_gyro … (docs/sensors.md)

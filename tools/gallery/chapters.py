@@ -14,7 +14,7 @@ class Picture:
     base: str                    # text of the set's scene; may be empty
     toml: str                    # added to it
     mjcf: str                    # of the set's model, shown beside it
-    camera: str
+    camera: str                  # or the sensor, of signals
     size: tuple[int, int]
     spp: int
     time: float                  # of the simulation [s]

@@ -1,6 +1,6 @@
 """Pictures of LiDAR scans: from above, along the sensor's axis, or as range images.
 
-A picture's `panels` stand side by side, each {lidar, view = above | ahead | range, color = intensity | height | distance | medium,
+A picture's `panels` stand side by side, each {lidar, view = above | ahead | range, color = intensity | height | distance | medium | return,
 scans = [first, last], span = [m] across (above), [deg] across (ahead)}.
 """
 import ast
@@ -11,6 +11,7 @@ import subprocess
 LETTERS = {"<f4": "f", "<u4": "I", "<u2": "H", "|u1": "B"}
 STOPS = [(70, 60, 160), (70, 110, 220), (36, 160, 170), (110, 205, 90), (250, 215, 60), (255, 110, 50)]   # dark to light
 INK = (14, 15, 20)
+MARKS = {"medium": lambda point: point["part"] == 0, "return": lambda point: point["return_number"] > 0}   # what is red
 
 
 def read_npy(path):
@@ -31,8 +32,8 @@ def shade(value):
 
 
 def color_of(point, kind, low, high):
-    if kind == "medium":
-        return (255, 90, 60) if point["part"] == 0 else (150, 190, 235)
+    if kind in MARKS:
+        return (255, 90, 60) if MARKS[kind](point) else (150, 190, 235)
     return shade((value_of(point, kind) - low) / (high - low))
 
 
@@ -60,7 +61,7 @@ def draw(panel, spec, points):
     kind = spec.get("color", "intensity")
     if not points:
         raise ValueError(f"lidar '{spec['lidar']}' sees nothing")
-    values = sorted(value_of(p, kind) for p in points) if kind != "medium" else [0, 1]
+    values = sorted(value_of(p, kind) for p in points) if kind not in MARKS else [0, 1]
     low, high = values[len(values) // 50], max(values[-1 - len(values) // 50], values[len(values) // 50] + 1e-6)
     middle_x, middle_y = panel.width / 2, panel.height / 2
     if spec["view"] == "range":

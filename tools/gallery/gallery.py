@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes docs/gallery: a picture of every material, pattern, lamp, sky and medium that Gloam has, with the scene that makes it.
+"""Makes docs/gallery: a picture of every material, pattern, lamp, sky, medium, lens and sensor that Gloam has, with the scene that makes it.
 
   ./gloam gallery                all pictures, scenes and the page (some ten minutes on two cores)
   ./gloam gallery --only glass   pictures with "glass" in chapter/name; the page is made of what is there
@@ -29,7 +29,7 @@ ROOT = HERE.parent.parent
 PROGRAM = ROOT / "build" / os.environ.get("GLOAM_PRESET", "release") / "bin" / "gloam"
 BOOK = ROOT / "docs" / "gallery"
 DRAFT = ROOT / "build" / "gallery"
-CHANNELS = {"rgb": ["rgb", "radiance"], "boxes": ["rgb", "boxes"], "parts": ["segmentation"]}  # others have one, of their name
+CHANNELS = {"rgb": ["rgb", "radiance"], "boxes": ["rgb", "boxes"], "parts": ["segmentation"], "classes": ["segmentation"]}  # others have one, of their name
 TO_ROOT = "../../../"     # from the sets, and from the book's scenes
 
 
@@ -53,9 +53,13 @@ def gloam(*arguments):
 
 def shoot(picture, scene, scratch, size, spp, threads):
     """The picture as a file that ffmpeg reads, and what is wrong with it."""
+    out = scratch / "out"
+    if picture.show == "signals":
+        wrong = gloam("run", scene, "--root", ROOT, "--duration", str(picture.time), "--output", "sensors", "--out", out)
+        return None if wrong else show.write_ppm(scratch / "shown.ppm", size, show.signals(out, picture.camera, size)), wrong
     common = [scene, "--root", ROOT, "--camera", picture.camera, "--spp", str(spp), "--resolution", f"{size[0]}x{size[1]}",
-              "--out", scratch / "out", *threads]
-    shot = scratch / "out" / picture.camera
+              "--out", out, *threads]
+    shot = out / picture.camera.replace("/", "_")
     if picture.show == "events":
         wrong = gloam("run", *common, "--duration", str(picture.time), "--output", "events")
         return None if wrong else show.write_ppm(scratch / "shown.ppm", size, show.events(shot, size)), wrong

@@ -52,12 +52,20 @@ def colour_of(number):
     return bytes(round(255 * c) for c in colorsys.hsv_to_rgb(share, 0.55 + 0.3 * (number % 2), 0.95))
 
 
+def distance(shot, size):
+    return ranges([value if value < math.inf else 0 for value in exr.read(Path(f"{shot}_distance.exr"))["distance"]])
+
+
 def segmentation(shot, size):
     return b"".join(map(colour_of, grey16(f"{shot}_instance.png")))
 
 
 def parts(shot, size):
     return b"".join(map(colour_of, grey16(f"{shot}_part.png")))
+
+
+def classes(shot, size):
+    return b"".join(map(colour_of, grey16(f"{shot}_semantic.png")))
 
 
 def normal(shot, size):
@@ -78,6 +86,13 @@ def motion(shot, size):
     polar = ((math.atan2(v, u) / (2 * math.pi) % 1, math.hypot(u, v) / most) for u, v in flow)
     shades = (colorsys.hsv_to_rgb(whereto, far, 0.35 + 0.65 * far) for whereto, far in polar)
     return bytes(round(255 * c) for shade in shades for c in shade)
+
+
+def scene_flow(shot, size):
+    """Red, green and blue by the way along X, Y and Z, of the fastest pixel at most."""
+    planes = exr.read(Path(f"{shot}_scene_flow.exr"))
+    most = max(abs(value) for name in "XYZ" for value in planes[name]) or 1
+    return bytes(round(127.5 + 127.5 * value / most) for xyz in zip(planes["X"], planes["Y"], planes["Z"]) for value in xyz)
 
 
 def boxes(shot, size):
@@ -106,6 +121,23 @@ def events(folder, size):
         for row in csv.DictReader(file):
             i = 3 * (int(row["y_px"]) * size[0] + int(row["x_px"]))
             out[i:i + 3] = (255, 90, 60) if row["brighter"] == "1" else (60, 120, 255)
+    return bytes(out)
+
+
+def signals(folder, name, size):
+    """Over time the value that changes most: of the sensor of this name white, over that of its namesake NAME_… red."""
+    truth, other = [[[float(x) for x in row[4:]] for row in list(csv.reader(open(path)))[1:]] for path in sorted(folder.glob(f"sensors/{name}*.csv"))]
+    column = max(range(len(truth[0])), key=lambda k: max(row[k] for row in truth) - min(row[k] for row in truth))
+    values = [row[column] for row in truth + other]
+    low, high = min(values), max(values)
+    out = bytearray([24, 24, 30] * (size[0] * size[1]))
+    for rows, color in ((other, (255, 90, 60)), (truth, (255, 255, 255))):
+        last = None
+        for x in range(size[0]):
+            y = round((0.95 - 0.9 * (rows[x * len(rows) // size[0]][column] - low) / (high - low)) * (size[1] - 1))
+            for v in range(min(y, y if last is None else last), max(y, y if last is None else last) + 1):
+                out[3 * (v * size[0] + x):3 * (v * size[0] + x) + 3] = bytes(color)
+            last = y
     return bytes(out)
 
 

@@ -162,7 +162,7 @@ TEST(LidarRecording, PointsAreInFilesThatSayWhatTheyHold) {
   const size_t at = pcd.find("POINTS ") + 7;
   const auto points = std::stoul(pcd.substr(at));
   ASSERT_GT(points, 100u);
-  ASSERT_EQ(pcd.size() - data, points * 37);
+  ASSERT_EQ(pcd.size() - data, points * 41);
   float p[3];
   std::memcpy(p, pcd.data() + data, sizeof p);
   EXPECT_NEAR(p[1], 3, 1e-4);  // on the wall
