@@ -67,8 +67,8 @@ struct PixelOptions {
   SourceLoc loc = {};
 };
 
-/// [camera.imager]: also Bayer's mosaic, demosaiced by Malvar, He and Cutler 2004, and baseline JPEG
-/// (ITU-T T.81).
+/// [camera.imager]: also Bayer's mosaic, demosaiced by Malvar, He and Cutler 2004, and baseline
+/// JPEG (ITU-T T.81).
 struct ImagerOptions {
   std::optional<ExposureOptions> exposure = {};
   std::optional<AutoExposureOptions> auto_exposure = {};  ///< takes its f-number from `exposure`
