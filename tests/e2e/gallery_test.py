@@ -50,6 +50,7 @@ class Gallery(unittest.TestCase):
         names = {picture.file_name for picture in pictures}
         self.assertEqual({path.stem for path in book.glob("*.jpg")}, names, "pictures there, and pictures wanted: ./gloam gallery --only NAME")
         self.assertEqual({path.stem for path in (book / "scenes").iterdir()}, names)
+        self.assertEqual({path.name for path in book.iterdir() if path.suffix != ".jpg"}, {"README.md", "scenes"}, "nothing else lies there")
         for picture in pictures:
             self.assertEqual((book / "scenes" / f"{picture.file_name}.toml").read_text(), picture.scene(),
                              f"{picture.name} has changed since its picture was made: ./gloam gallery --only {picture.name}")
