@@ -48,6 +48,7 @@ GLOAM_HD F distribution(Vec2Of<F> alpha, Vec3Of<F> h) {
 template <class F>
 GLOAM_HD Vec3Of<F> sample_half(Vec2Of<F> alpha, Vec3Of<F> wo, Vec2Of<F> u) {
   const Vec3Of<F> v = normalize(Vec3Of<F>{wo.x * alpha.x, wo.y * alpha.y, wo.z});
+  u = to_disc(u);
   const F z = (1.0f - u.x) * (1.0f + v.z) - v.z;
   const F r = safe_sqrt(1.0f - z * z);
   F s, c;
