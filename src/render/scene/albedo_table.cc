@@ -37,8 +37,10 @@ void fill_albedo_table(AlbedoTable* table) {
       const float fuzz_alpha = max(roughness * roughness, 1e-2f);
       float fuzz = 0;
       for (uint32_t i = 0; i < kPoints; ++i) {
-        const Vec3f wi = sample_cosine_hemisphere(
-            Vec2f{(static_cast<float>(i) + 0.5f) / kPoints, uniform_float(reverse_bits(i))});
+        const float r2 = (static_cast<float>(i) + 0.5f) / kPoints;
+        float sine, cosine;
+        sincos_turn(uniform_float(reverse_bits(i)), &sine, &cosine);
+        const Vec3f wi{sqrtf(r2) * cosine, sqrtf(r2) * sine, sqrtf(1.0f - r2)};
         fuzz += sheen::lobe(fuzz_alpha, cos_o, wi.z, normalize(wo + wi).z) * kPi;
       }
       table->fuzz[row * n + column] = fuzz / kPoints;
