@@ -122,8 +122,7 @@ class ArrivingLight {
           Sampler sampler = guide_sampler(row, i, 3 + 2 * round);
           LightPicker picker;
           picker.prepare(scene_, s.p, s.geometric);
-          const float pick = sampler.next_1d();
-          lights[i] = picker.sample(scene_, s.p, pick, sampler.next_2d(), 0.0f);
+          lights[i] = picker.sample(scene_, s.p, sampler.next_2d(), 0.0f);
         });
     probes.trace(
         kProbes,

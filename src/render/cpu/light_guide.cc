@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kCellsAlong = 16;   // of the longest edge
 constexpr int kLightRays = 32;    // to each light from a cell
-constexpr float kFloor = 0.002f;  // share of a light that no ray has seen
+constexpr float kFloor = 0.002f;  // gain of a light that no ray has seen
 constexpr float kWorth = 0.02f;   // share of the map below which nothing is drawn from it
 constexpr float kEven = 0.5f;     // unevenness up to which the BSDF finds light as well
 constexpr float kShare = 0.75f;   // of directions by the guide, where surfaces are diffuse
@@ -41,10 +41,12 @@ void LightGuideStore::find_rows(const SceneView& scene, const CpuTracer& statics
   }
 }
 
+/// With lights taken by the roots of their mean squares, one of them stands for all with the least
+/// noise.
 void LightGuideStore::look_for_lights(const SceneView& scene, const CpuTracer& statics, int row) {
   const GuideRow& from = rows_[static_cast<size_t>(row)];
   for (uint32_t light = 0; light < grid_.lights; ++light) {
-    int seen = 0, sent = 0;
+    float brought[kLightRays], expected = 0, found = 0;  // the latter two: sums of squares
     Probes(scene, statics)
         .trace(
             kLightRays,
@@ -52,20 +54,20 @@ void LightGuideStore::look_for_lights(const SceneView& scene, const CpuTracer& s
               Sampler sampler = guide_sampler(row, i, 0);
               const SurfacePoint start = start_of(grid_, from, i, &sampler);
               ray->o = start.p;
-              const float pick = sampler.next_1d();
+              expected += sqr(light_weight<float>(scene, scene.lights[light], start.p, start.n));
               const LightSample sample =
-                  sample_one_light(scene, light, ray->o, pick, sampler.next_2d(), 0.0f);
-              const bool is_behind = from.facing >= 0 && dot(sample.wi, start.n) <= 0;
-              if (!(sample.pdf > 0) || is_behind) return false;
-              ++sent;
+                  sample_one_light(scene, light, ray->o, sampler.next_2d(), 0.0f);
+              const float cosine = from.facing < 0 ? 1.0f : dot(sample.wi, start.n);
+              if (!(sample.pdf > 0 && cosine > 0)) return false;
+              brought[i] = luminance(sample.radiance) * cosine / sample.pdf;
               const Vec3f to = sample.wi * sample.distance + sample.lift;
               ray->d = normalize(to);
               ray->tmax = length(to) * 0.9999f;
               return true;
             },
-            [&seen](int, const Ray&) { ++seen; });
-    seen_[static_cast<size_t>(row) * grid_.lights + light] =
-        sent > 0 ? static_cast<float>(seen) / static_cast<float>(sent) : 0.0f;
+            [&](int i, const Ray&) { found += sqr(brought[i]); });
+    found_[static_cast<size_t>(row) * grid_.lights + light] =
+        expected > 0 ? std::sqrt(found / expected) : 0.0f;
   }
 }
 
@@ -102,7 +104,7 @@ void LightGuideStore::conclude(int row) {
     return max(count > 1 ? 0.5f * (of(row) + around) : of(row), kFloor);
   };
   for (uint32_t light = 0; light < grid_.lights; ++light) {
-    visible_[static_cast<size_t>(row) * grid_.lights + light] = smooth(seen_, grid_.lights, light);
+    gain_[static_cast<size_t>(row) * grid_.lights + light] = smooth(found_, grid_.lights, light);
   }
   if (sky_seen_.empty()) return;
   const float sky = smooth(sky_seen_, 1, 0);
@@ -135,8 +137,8 @@ void LightGuideStore::build(SceneView scene, const CpuTracer& statics, const Des
     arriving_ = find_arriving_light(scene, statics, view(), rows_);
     grid_.share = unevenness_of(arriving_, rows_) > kEven ? kShare : 0.0f;
   }
-  visible_.resize(rows_.size() * grid_.lights);
-  seen_.resize(visible_.size());
+  gain_.resize(rows_.size() * grid_.lights);
+  found_.resize(gain_.size());
   sky_visible_.resize(rows_.size());
   if (has_map) sky_seen_.resize(rows_.size());
   const auto count = static_cast<int64_t>(rows_.size());
@@ -146,14 +148,14 @@ void LightGuideStore::build(SceneView scene, const CpuTracer& statics, const Des
   });
   parallel_for("light guide rows", count, [&](int64_t row) { conclude(static_cast<int>(row)); });
   rows_ = {};
-  seen_ = {};
+  found_ = {};
   sky_seen_ = {};
 }
 
 LightGuide LightGuideStore::view() const {
   LightGuide guide = grid_;
   guide.surface_row = {surface_row_.data(), static_cast<uint32_t>(surface_row_.size())};
-  guide.visible = {visible_.data(), static_cast<uint32_t>(visible_.size())};
+  guide.gain = {gain_.data(), static_cast<uint32_t>(gain_.size())};
   guide.sky_visible = {sky_visible_.data(), static_cast<uint32_t>(sky_visible_.size())};
   guide.arriving = {arriving_.data(), static_cast<uint32_t>(arriving_.size())};
   return guide;

@@ -25,10 +25,10 @@ class LightGuideStore {
   void conclude(int row);
 
   LightGuide grid_;
-  std::vector<GuideRow> rows_;          ///< while building
-  std::vector<float> seen_, sky_seen_;  ///< as visible_ and sky_visible_; while building
+  std::vector<GuideRow> rows_;           ///< while building
+  std::vector<float> found_, sky_seen_;  ///< as gain_ and sky_visible_; while building
   std::vector<int> surface_row_;
-  std::vector<float> visible_, sky_visible_, arriving_;
+  std::vector<float> gain_, sky_visible_, arriving_;
 };
 
 }  // namespace gloam

@@ -103,7 +103,7 @@ void DeviceScene::fill(const SceneView& scene, const CameraView32& camera, const
     out.glass = static_cast<const GlassTable*>(keep(scene.glass, sizeof(GlassTable)));
   }
   out.guide.surface_row = keep(scene.guide.surface_row);
-  out.guide.visible = keep(scene.guide.visible);
+  out.guide.gain = keep(scene.guide.gain);
   out.guide.sky_visible = keep(scene.guide.sky_visible);
   out.guide.arriving = keep(scene.guide.arriving);
   out.environment.texels = keep(scene.environment.texels);

@@ -125,9 +125,10 @@ GLOAM_HD Ray camera_ray(const CameraView32& camera, float u, float v, float time
     *cone = {0.0f, angle / sqrtf(camera.fx * camera.fy)};
   }
   if (lens == nullptr || !camera.has_aperture()) return ray;
+  const Vec2f at = to_disc(*lens);
   float sine, cosine;
-  sincos_turn(lens->y, &sine, &cosine);
-  const float r = camera.aperture.radius * sqrtf(lens->x);
+  sincos_turn(at.y, &sine, &cosine);
+  const float r = camera.aperture.radius * sqrtf(at.x);
   const bool wide = is_wide(camera.lens.model);
   const Vec3f o_C =
       wide ? across(normalize(d_C), r * cosine, r * sine) : Vec3f{r * cosine, r * sine, 0.0f};
@@ -195,6 +196,7 @@ GLOAM_HD bool project(const CameraView32& camera, const Affine3f& X_WC, Vec3f p_
 /// sampling, Ernst et al. 2006).
 GLOAM_HD Vec2f sample_pixel_filter(Vec2f u) {
   constexpr float kSigma = 0.42f, kCut = 1.25f;
+  u = to_disc(u);
   const float reach = 1.0f - expf(-0.5f * kCut * kCut / (kSigma * kSigma));
   const float r = kSigma * sqrtf(-2.0f * logf(1.0f - u.x * reach));
   float s, c;

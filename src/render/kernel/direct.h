@@ -84,10 +84,9 @@ GLOAM_HD bool next_shadow(const SceneView& scene, DirectState* d) {
   const Surface& s = d->s;
   while (d->next_light < count) {
     const uint32_t index = d->next_light++;
-    const float pick = d->sampler.next_1d();
     const Vec2f u = d->sampler.next_2d();
-    const LightSample light = all ? sample_one_light(scene, index, s.p, pick, u, d->ray.time)
-                                  : d->picker.sample(scene, s.p, pick, u, d->ray.time);
+    const LightSample light = all ? sample_one_light(scene, index, s.p, u, d->ray.time)
+                                  : d->picker.sample(scene, s.p, u, d->ray.time);
     if (!(light.pdf > 0) || dot(light.wi, s.geometric) <= 0) continue;
     float pdf;
     const float share = all ? 1.0f : 1.0f / static_cast<float>(kMaxDirectLights);

@@ -130,19 +130,17 @@ GLOAM_HD void direct_light(const SceneView& scene, const Tracer& tracer, paths::
   path->picker.prepare(scene, v.p, v.geometric, active);
   path->picker.leave_out_sky(scene);  // that is the cache's
   if (every) drawn = scene.lights.size;
-  const F first = path->sampler.next_1d(active);
   for (uint32_t k = 0; k < drawn; ++k) {
     LightSampleOf<F> light;
-    const Vec2Of<F> u = path->sampler.next_2d(active);
+    Vec2Of<F> u = path->sampler.next_2d(active);
     if (every) {
       const MaskOf<F> near = active & (path->picker.shares(k) > 0.0f);
       if (!any(near)) continue;
-      const F pick = path->sampler.next_1d(active);
-      light = sample_one_light(scene, k, v.p, pick, u, path->ray.time, near);
+      light = sample_one_light(scene, k, v.p, u, path->ray.time, near);
       light.pdf = select(near, light.pdf, F(0.0f));
     } else {
-      const F pick = (first + static_cast<float>(k)) * (1.0f / static_cast<float>(drawn));
-      light = path->picker.sample(scene, v.p, pick, u, path->ray.time, active);
+      u.x = (u.x + static_cast<float>(k)) * (1.0f / static_cast<float>(drawn));
+      light = path->picker.sample(scene, v.p, u, path->ray.time, active);
       light.pdf *= static_cast<float>(drawn);
     }
     add_light(scene, tracer, path, v, shiny, frame, wo, traced, active, light, diffuse, specular);
@@ -164,9 +162,8 @@ GLOAM_HD Vec3f scattered_light(const SceneView& scene, const Tracer& tracer, con
                                uint32_t* rays) {
   LightPicker picker;
   picker.prepare(scene, p_W, Vec3f{});
-  const float pick = random->next();
   const Vec2f u{random->next(), random->next()};
-  const LightSample light = picker.sample(scene, p_W, pick, u, ray.time);
+  const LightSample light = picker.sample(scene, p_W, u, ray.time);
   if (!(light.pdf > 0) || !(max_component(point.scattering) > 0)) return {};
   Ray shadow = ray;
   aim_shadow_ray(p_W, Vec3f{}, 0.0f, light, &shadow);

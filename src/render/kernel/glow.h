@@ -77,26 +77,25 @@ GLOAM_HD float pdf(const MediaView& media, const GlowView& glow, Vec3f p, Vec3f 
   return share * glow.voxels_per_volume * length_squared(x - p) / collision_rate(v, cell);
 }
 
-/// A point of the medium as a light for p, by pick and u in [0, 1).
-GLOAM_HD LightSample sample(const MediaView& media, const GlowView& glow, Vec3f p, float pick,
-                            Vec2f u) {
+/// A point of the medium as a light for p: its voxel by u.x.
+GLOAM_HD LightSample sample(const MediaView& media, const GlowView& glow, Vec3f p, Vec2f u) {
   LightSample s;
   const VolumeView& v = media.volumes[glow.volume];
   const float* cells = glow.cell_sums.data;
-  const uint32_t cell = find(cells, glow.cell_sums.size - 1, pick);
+  const uint32_t cell = find(cells, glow.cell_sums.size - 1, u.x);
   const int row = glow.rows[cell];
   if (row < 0) return s;
   const float of_cell = cells[cell + 1] - cells[cell];
   const float* sums = glow.voxel_sums.data + static_cast<size_t>(row) * GlowView::kSums;
-  const float rest = clamp((pick - cells[cell]) / of_cell, 0.0f, 0.99999994f);
-  const uint32_t voxel = find(sums, GlowView::kSums - 1, rest);
+  const uint32_t voxel = find(sums, GlowView::kSums - 1, rest_of(u.x, cells[cell], of_cell));
   const uint32_t nx = static_cast<uint32_t>(v.cells_x), ny = static_cast<uint32_t>(v.cells_y);
   const auto at = [](uint32_t of_cells, uint32_t of_voxels, float inside) {
     return static_cast<float>(of_cells * kBoundsVoxels + of_voxels % kBoundsVoxels) + inside;
   };
-  const Vec3f p_G{
-      at(cell % nx, voxel, u.x), at(cell / nx % ny, voxel / kBoundsVoxels, u.y),
-      at(cell / (nx * ny), voxel / (kBoundsVoxels * kBoundsVoxels), WalkRandom(u).next())};
+  WalkRandom random(u);  // the choice of a voxel leaves too little of u.x
+  const Vec3f p_G{at(cell % nx, voxel, random.next()),
+                  at(cell / nx % ny, voxel / kBoundsVoxels, u.y),
+                  at(cell / (nx * ny), voxel / (kBoundsVoxels * kBoundsVoxels), random.next())};
   const Vec3f to = transform_point(glow.X_WG, p_G) - p;
   s.distance = length(to);
   if (!(s.distance > 1e-6f)) return s;

@@ -22,6 +22,7 @@ GLOAM_HD uint32_t to_uint(float x) { return static_cast<uint32_t>(static_cast<in
 /// x in [0, 2^31).
 GLOAM_HD float to_float(uint32_t x) { return static_cast<float>(static_cast<int32_t>(x)); }
 GLOAM_HD float gather(const float* table, uint32_t index) { return table[index]; }
+GLOAM_HD uint32_t gather(const uint32_t* table, uint32_t index) { return table[index]; }
 /// The bits of a float, and back.
 GLOAM_HD uint32_t to_bits(float x) {
   uint32_t bits;

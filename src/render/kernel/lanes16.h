@@ -81,5 +81,9 @@ inline FloatLanes gather(const float* table, UintLanes index) {
   return lanes::of(
       _mm512_mask_i32gather_ps(_mm512_setzero_ps(), lanes::kAll, lanes::native(index), table, 4));
 }
+inline UintLanes gather(const uint32_t* table, UintLanes index) {
+  return lanes::of(_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), lanes::kAll,
+                                               lanes::native(index), table, 4));
+}
 
 }  // namespace gloam

@@ -93,5 +93,10 @@ inline FloatLanes gather(const float* table, UintLanes index) {
   return out;
 #endif
 }
+inline UintLanes gather(const uint32_t* table, UintLanes index) {
+  UintLanes out;
+  for (int i = 0; i < kLaneCount; ++i) out.v[i] = table[index.v[i]];
+  return out;
+}
 
 }  // namespace gloam

@@ -139,25 +139,37 @@ struct EmitterPointOf {
 };
 using EmitterPoint = EmitterPointOf<float>;
 
-/// Towards a box, from outside: every lane takes its own face.
+/// Towards points of emitters that were drawn with a density per area.
 template <class F>
-GLOAM_HD LightSampleOf<F> sample_box(Vec3f size, const Affine3f& X_WG, Vec3Of<F> p, F pick,
-                                     Vec2Of<F> u, EmitterPointOf<F>* at) {
+GLOAM_HD LightSampleOf<F> aim_at(const EmitterPointOf<F>& at, F pdf_area, bool one_sided,
+                                 Vec3Of<F> p) {
   LightSampleOf<F> s;
-  const AffineOf<F> X = pose_in_all_lanes<F>(X_WG);
-  Vec3Of<F> n_G;
-  const F pdf_area = sample_box_from(size, to_frame(X, p - X.p), pick, u, &at->p_G, &n_G);
-  at->p_W = transform_point(X, at->p_G);
-  at->n_W = transform_vector(X, n_G);
-  const Vec3Of<F> to = at->p_W - p;
+  const Vec3Of<F> to = at.p_W - p;
   const F d2 = dot(to, to);
   s.distance = square_root(d2);
   s.wi = to / s.distance;
-  const F cosine = -dot(s.wi, at->n_W);
+  F cosine = -dot(s.wi, at.n_W), step = surface_step(at.p_W, F(0.0f));
+  if (!one_sided) {
+    step = select(cosine < 0.0f, -step, step);
+    cosine = magnitude(cosine);
+  }
   s.pdf = select((pdf_area > 0.0f) & (cosine > 1e-6f) & (s.distance > 1e-6f),
                  pdf_area * d2 / cosine, F(0.0f));
-  s.lift = at->n_W * surface_step(at->p_W, F(0.0f));
+  s.lift = at.n_W * step;
   return s;
+}
+
+/// A point on a face of a box that p sees, from outside: every lane takes its own face. Returns its
+/// density per area.
+template <class F>
+GLOAM_HD F sample_box(Vec3f size, const Affine3f& X_WG, Vec3Of<F> p, Vec2Of<F> u,
+                      EmitterPointOf<F>* at) {
+  const AffineOf<F> X = pose_in_all_lanes<F>(X_WG);
+  Vec3Of<F> n_G;
+  const F pdf_area = sample_box_from(size, to_frame(X, p - X.p), u, &at->p_G, &n_G);
+  at->p_W = transform_point(X, at->p_G);
+  at->n_W = transform_vector(X, n_G);
+  return pdf_area;
 }
 
 /// Towards spheres, from outside; every lane may have its own. `normal`: there.
@@ -204,64 +216,68 @@ GLOAM_HD float instance_pdf(const SceneView& scene, const InstanceView& instance
   return cosine > 1e-6f ? pdf_area * d2 / cosine : 0.0f;
 }
 
-/// A point of a mesh, by area; `hit` tells where it lies on its triangle.
-GLOAM_HD EmitterPoint sample_mesh(const MeshView& mesh, const Affine3f& X_WG, float pick, Vec2f u,
-                                  float time, RayHit* hit) {
-  uint32_t low = 0, high = mesh.area_cdf.size - 1;
-  while (low < high) {
-    const uint32_t middle = (low + high) / 2;
-    if (pick < mesh.area_cdf[middle]) {
-      high = middle;
-    } else {
-      low = middle + 1;
-    }
+/// A point of a mesh, by area: the triangle by u.x, the point on it by what is left of u.x and by
+/// u.y; `hit` tells where. Returns its density per area.
+template <class F>
+GLOAM_HD F sample_mesh(const MeshView& mesh, const Affine3f& X_WG, Vec2Of<F> u, F time,
+                       RayHitOf<F>* hit, EmitterPointOf<F>* at) {
+  const float* sums = mesh.area_cdf.data;
+  const uint32_t count = mesh.area_cdf.size - 1;
+  UintOf<F> low = 0u;  // the last triangle that begins no later than u.x
+  uint32_t step = 1;
+  while (step < count) step *= 2;
+  for (; step > 0; step /= 2) {
+    const UintOf<F> middle = low + step;
+    const MaskOf<F> inside = UintOf<F>(count) > middle;
+    const F begin = gather(sums, select(inside, middle, UintOf<F>(0u)));
+    low = select(inside & (begin <= u.x), middle, low);
   }
+  const F begin = gather(sums, low), end = gather(sums, low + 1u);
+  u.x = rest_of(u.x, begin, max(end - begin, 1e-30f));
   hit->primitive = low;
-  const float root = sqrtf(u.x);
-  hit->u = root * (1.0f - u.y);
-  hit->v = root * u.y;
-  const uint32_t* index = mesh.indices.data + 3 * static_cast<size_t>(low);
-  const Vec3f a = mesh_vertex(mesh, index[0], time);
-  const Vec3f e1 = mesh_vertex(mesh, index[1], time) - a;
-  const Vec3f e2 = mesh_vertex(mesh, index[2], time) - a;
-  EmitterPoint at;
-  at.p_G = a + e1 * hit->u + e2 * hit->v;
-  at.p_W = transform_point(X_WG, at.p_G);
-  at.n_W = normalize(transform_vector(X_WG, cross(e1, e2)));
-  return at;
+  // Heitz 2019, "A low-distortion map between triangle and square".
+  const MaskOf<F> upper = u.y > u.x;
+  const F half = 0.5f * select(upper, u.x, u.y);
+  hit->u = select(upper, half, u.x - half);
+  hit->v = select(upper, u.y - half, half);
+  Vec3Of<F> corner[3];
+  for (uint32_t k = 0; k < 3; ++k) {
+    corner[k] = mesh_vertices(mesh, gather(mesh.indices.data, low * 3u + k), time);
+  }
+  const Vec3Of<F> e1 = corner[1] - corner[0], e2 = corner[2] - corner[0];
+  const AffineOf<F> X = pose_in_all_lanes<F>(X_WG);
+  at->p_G = corner[0] + e1 * hit->u + e2 * hit->v;
+  at->p_W = transform_point(X, at->p_G);
+  at->n_W = normalize(transform_vector(X, cross(e1, e2)));
+  return 1.0f / mesh.area;
 }
 
 /// Any emitting instance: moving, textured, of whatever shape.
 GLOAM_HD LightSample sample_instance(const SceneView& scene, const LightView& light, Vec3f p,
-                                     float pick, Vec2f u, float time) {
+                                     Vec2f u, float time) {
   LightSample s;
   const InstanceView& instance = scene.instances[light.instance];
   const MaterialView& material = scene.materials[instance.material];
   const Affine3f X_WG = pose_at(instance, time);
   RayHit hit;
   EmitterPoint at;
-  if (instance.shape == ShapeType::kBox) {
-    s = sample_box(instance.size, X_WG, p, pick, u, &at);
-  } else if (instance.shape == ShapeType::kSphere && is_outside_ball(instance.size.x, X_WG.p, p)) {
+  if (instance.shape == ShapeType::kSphere && is_outside_ball(instance.size.x, X_WG.p, p)) {
     s = sample_ball(instance.size.x, X_WG.p, p, u, &at.n_W);
     at.p_G = to_frame(X_WG, at.n_W) * instance.size.x;
   } else {
-    if (is_mesh(instance.shape)) {
-      at = sample_mesh(scene.meshes[instance.mesh], X_WG, pick, u, time, &hit);
+    float pdf_area;
+    if (instance.shape == ShapeType::kBox) {
+      pdf_area = sample_box(instance.size, X_WG, p, u, &at);
+    } else if (is_mesh(instance.shape)) {
+      pdf_area = sample_mesh(scene.meshes[instance.mesh], X_WG, u, time, &hit, &at);
     } else {
       Vec3f n_G;
-      at.p_G = sample_shape(instance.shape, instance.size, pick, u, &n_G);
+      at.p_G = sample_shape(instance.shape, instance.size, u, &n_G);
       at.p_W = transform_point(X_WG, at.p_G);
       at.n_W = transform_vector(X_WG, n_G);
+      pdf_area = shape_pdf(instance.shape, instance.size, at.p_G);
     }
-    const Vec3f to = at.p_W - p;
-    s.distance = length(to);
-    if (!(s.distance > 1e-6f)) return s;
-    s.wi = to / s.distance;
-    const bool one_sided = !is_mesh(instance.shape) || material.emits_outwards;
-    if (one_sided && dot(s.wi, at.n_W) >= 0) return s;  // its back is dark
-    s.pdf = instance_pdf(scene, instance, p, at.p_W, at.n_W, time);
-    s.lift = leave_surface(at.p_W, at.n_W, -s.wi, 0.0f) - at.p_W;
+    s = aim_at(at, pdf_area, !is_mesh(instance.shape) || material.emits_outwards, p);
   }
   Surface surface;
   surface.emission = material.emission;
@@ -281,7 +297,7 @@ GLOAM_HD LightSample sample_instance(const SceneView& scene, const LightView& li
 /// its selection.
 template <class F>
 GLOAM_HD LightSampleOf<F> sample_one_light(const SceneView& scene, uint32_t index, Vec3Of<F> p,
-                                           F pick, Vec2Of<F> u, F time, MaskOf<F> active = true) {
+                                           Vec2Of<F> u, F time, MaskOf<F> active = true) {
   const LightView& light = scene.lights[index];
   LightSampleOf<F> s;
   if (!kPlainScenes && light.first_key >= 0) {
@@ -299,15 +315,19 @@ GLOAM_HD LightSampleOf<F> sample_one_light(const SceneView& scene, uint32_t inde
   } else {
     const InstanceView& instance = scene.instances[light.instance];
     const MaterialView& material = scene.materials[instance.material];
-    lights::EmitterPointOf<F> at;
-    if (instance.shape == ShapeType::kBox && !instance.moving && !material.textured) {
-      s = lights::sample_box(instance.size, instance.X_WG, p, pick, u, &at);
+    const bool is_box = instance.shape == ShapeType::kBox;
+    if ((is_box || is_mesh(instance.shape)) && !instance.moving && !material.textured) {
+      RayHitOf<F> hit;
+      lights::EmitterPointOf<F> at;
+      const F pdf_area = is_box ? lights::sample_box(instance.size, instance.X_WG, p, u, &at)
+                                : lights::sample_mesh(scene.meshes[instance.mesh], instance.X_WG, u,
+                                                      time, &hit, &at);
+      s = lights::aim_at(at, pdf_area, is_box || material.emits_outwards, p);
       s.radiance = in_all_lanes<F>(material.emission * material.opacity);
     } else {
       each_lane(active, [&](int i) {
         set_lane(&s, i,
-                 lights::sample_instance(scene, light, lane(p, i), lane(pick, i), lane(u, i),
-                                         lane(time, i)));
+                 lights::sample_instance(scene, light, lane(p, i), lane(u, i), lane(time, i)));
       });
     }
   }

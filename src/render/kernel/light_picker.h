@@ -84,9 +84,9 @@ class LightPickerOf {
       const LightView& light = scene.lights[i];
       weight[i] = light_weight(scene, light, p, n, both_sides);
       if (light.guide >= 0 && any(rows.guided)) {
-        const F visible =
-            gather(scene.guide.visible.data + light.guide, rows.row * Uint(scene.guide.lights));
-        weight[i] *= select(rows.guided, visible, F(1.0f));
+        const F gain =
+            gather(scene.guide.gain.data + light.guide, rows.row * Uint(scene.guide.lights));
+        weight[i] *= select(rows.guided, gain, F(1.0f));
       }
       total += weight[i];
     }
@@ -159,37 +159,43 @@ class LightPickerOf {
            light_tree::probability(scene.light_tree, i, lane(p_, at), lane(n_, at));
   }
 
-  /// Takes a light, or the sky, and a direction from p towards it, for the `active` lanes.
-  GLOAM_HD LightSampleOf<F> sample(const SceneView& scene, Vec3Of<F> p, F pick, Vec2Of<F> u, F time,
+  /// Takes a light, or the sky, by u.x and, by what is left of u.x and by u.y, a direction from p
+  /// towards it, for the `active` lanes: points u that are spread evenly are so over each light.
+  GLOAM_HD LightSampleOf<F> sample(const SceneView& scene, Vec3Of<F> p, Vec2Of<F> u, F time,
                                    Mask active = true) const {
     LightSampleOf<F> out;
     Mask open = active;
     if (scene.has_environment()) {
-      const Mask sky = active & (pick < sky_share_);
-      each_lane(sky, [&](int i) { set_lane(&out, i, sample_sky(scene, lane(u, i), i)); });
+      const Mask sky = active & (u.x < sky_share_);
+      each_lane(sky, [&](int i) {
+        const Vec2f at = lane(u, i);
+        const float x = rest_of(at.x, 0.0f, lane(sky_share_, i));
+        set_lane(&out, i, sample_sky(scene, {x, at.y}, i));
+      });
       open = active & !sky;
-      pick -= sky_share_;
     }
+    F before = sky_share_;
     if (scene.has_glow()) {
-      const Mask glowing = open & (pick < glow_share_);
+      const Mask glowing = open & (u.x < before + glow_share_);
       each_lane(glowing, [&](int i) {
-        set_lane(&out, i, sample_glow(scene, i, lane(pick, i), lane(u, i)));
+        const Vec2f at = lane(u, i);
+        const float x = rest_of(at.x, lane(before, i), lane(glow_share_, i));
+        set_lane(&out, i, sample_glow(scene, i, {x, at.y}));
       });
       open = open & !glowing;
-      pick -= glow_share_;
+      before += glow_share_;
     }
     if (scene.has_many_lights()) {
       const F of_lights = lights_share(scene);
-      pick = clamp(pick / of_lights, 0.0f, 0.9999999f);
+      u.x = rest_of(u.x, before, of_lights);
       each_lane(open, [&](int i) {
         set_lane(&out, i,
-                 sample_by_tree(scene, lane(p, i), lane(n_, i), lane(pick, i), lane(u, i),
-                                lane(time, i)));
+                 sample_by_tree(scene, lane(p, i), lane(n_, i), lane(u, i), lane(time, i)));
       });
       out.pdf = select(open, out.pdf * of_lights, out.pdf);
       return out;
     }
-    F before = 0.0f, taken = 0.0f;
+    F taken = 0.0f;
     Uint index{};
     Mask searching = open;
     for (uint32_t i = 0; i < count_; ++i) {
@@ -197,13 +203,13 @@ class LightPickerOf {
       before = select(can, before + taken, before);
       taken = select(can, share_[i], taken);
       index = select(can, Uint(i), index);
-      searching = searching & !(can & (pick < before + taken));
+      searching = searching & !(can & (u.x < before + taken));
     }
     open = open & (taken > 0.0f);
-    pick = clamp((pick - before) / taken, 0.0f, 0.9999999f);
+    u.x = rest_of(u.x, before, taken);
     if constexpr (Lanes<F>::kCount == 1) {
       if (!open) return out;
-      out = sample_one_light(scene, index, p, pick, u, time);
+      out = sample_one_light(scene, index, p, u, time);
       out.pdf *= taken;
       return out;
     }
@@ -213,7 +219,7 @@ class LightPickerOf {
     for (uint32_t i = 0; any(open) && i < count_; ++i) {
       const Mask mine = open & (index == i);
       if (!any(mine)) continue;
-      LightSampleOf<F> s = sample_one_light(scene, i, p, pick, u, time, mine);
+      LightSampleOf<F> s = sample_one_light(scene, i, p, u, time, mine);
       s.pdf *= taken;
       out = select(mine, s, out);
     }
@@ -236,12 +242,11 @@ class LightPickerOf {
     });
     return rows;
   }
-  GLOAM_HD static LightSample sample_by_tree(const SceneView& scene, Vec3f p, Vec3f n, float pick,
-                                             Vec2f u, float time) {
-    const LightChoice choice =
-        light_tree::choose(scene.light_tree, p, n, light_tree::lengthen(pick, u));
+  GLOAM_HD static LightSample sample_by_tree(const SceneView& scene, Vec3f p, Vec3f n, Vec2f u,
+                                             float time) {
+    const LightChoice choice = light_tree::choose(scene.light_tree, p, n, light_tree::lengthen(u));
     if (!(choice.probability > 0)) return {};
-    LightSample s = sample_one_light(scene, choice.light, p, choice.rest, u, time);
+    LightSample s = sample_one_light(scene, choice.light, p, {choice.rest, u.y}, time);
     s.pdf *= choice.probability;
     return s;
   }
@@ -268,12 +273,12 @@ class LightPickerOf {
     *out = select(balls, s, *out);
     return balls;
   }
-  GLOAM_HD LightSample sample_glow(const SceneView& scene, int at, float pick, Vec2f u) const {
+  GLOAM_HD LightSample sample_glow(const SceneView& scene, int at, Vec2f u) const {
     const Vec3f p = lane(p_, at), n = lane(n_, at);
     const DeviceSpan<const GlowView>& glows = scene.media.glows;
     const float total = glow::weight(glows, p, n);
     float before = 0, taken = 0;
-    const float wanted = pick / lane(glow_share_, at) * total;
+    const float wanted = u.x * total;
     uint32_t row = 0;
     for (uint32_t k = 0; k < glows.size && before + taken <= wanted; ++k) {
       const float weight = glow::weight(glows[k], p, n);
@@ -282,8 +287,7 @@ class LightPickerOf {
       taken = weight;
       row = k;
     }
-    const float rest = clamp((wanted - before) / taken, 0.0f, 0.9999999f);
-    LightSample s = glow::sample(scene.media, glows[row], p, rest, u);
+    LightSample s = glow::sample(scene.media, glows[row], p, {rest_of(wanted, before, taken), u.y});
     s.pdf *= lane(glow_share_, at) * taken / total;
     return s;
   }

@@ -113,16 +113,16 @@ GLOAM_HD void root_shares(const LightTreeView& tree, Vec3f p, Vec3f n, double* s
   }
 }
 
-/// Uniform in [0, 1), with `pick` as its first 24 bits and a hash of both draws behind them: a
-/// million lights use up all bits of one draw.
-GLOAM_HD double lengthen(float pick, Vec2f u) {
+/// Uniform in [0, 1), with u.x as its first 24 bits and a hash of both draws behind them: a million
+/// lights use up all bits of one draw.
+GLOAM_HD double lengthen(Vec2f u) {
   const auto bits = [](float x) { return static_cast<uint32_t>(x * 0x1p24f); };
-  uint64_t h = bits(pick) * 0x9E3779B97F4A7C15ull;  // SplitMix64's finalizer over all three
-  h ^= (static_cast<uint64_t>(bits(u.x)) << 32 | bits(u.y)) * 0xD6E8FEB86659FD93ull;
+  uint64_t h = bits(u.x) * 0x9E3779B97F4A7C15ull;  // SplitMix64's finalizer over both
+  h ^= bits(u.y) * 0xD6E8FEB86659FD93ull;
   h = (h ^ (h >> 30)) * 0xBF58476D1CE4E5B9ull;
   h = (h ^ (h >> 27)) * 0x94D049BB133111EBull;
   h ^= h >> 31;
-  return static_cast<double>(bits(pick)) * 0x1p-24 + static_cast<double>(h >> 36) * 0x1p-52;
+  return static_cast<double>(bits(u.x)) * 0x1p-24 + static_cast<double>(h >> 36) * 0x1p-52;
 }
 
 /// Takes a light for the point p with the normal n (0: none) by the uniform number `pick`.

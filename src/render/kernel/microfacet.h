@@ -44,16 +44,20 @@ GLOAM_HD F distribution(Vec2Of<F> alpha, Vec3Of<F> h) {
   return area * kInvPi / (k * k);
 }
 /// Half vector by the visible normals (Dupuy and Benyoub 2023, "Sampling visible GGX normals with
-/// spherical caps").
+/// spherical caps") at a point of the unit disc, given as by to_disc().
 template <class F>
-GLOAM_HD Vec3Of<F> sample_half(Vec2Of<F> alpha, Vec3Of<F> wo, Vec2Of<F> u) {
+GLOAM_HD Vec3Of<F> half_at(Vec2Of<F> alpha, Vec3Of<F> wo, Vec2Of<F> polar) {
   const Vec3Of<F> v = normalize(Vec3Of<F>{wo.x * alpha.x, wo.y * alpha.y, wo.z});
-  const F z = (1.0f - u.x) * (1.0f + v.z) - v.z;
+  const F z = (1.0f - polar.x) * (1.0f + v.z) - v.z;
   const F r = safe_sqrt(1.0f - z * z);
   F s, c;
-  sincos_turn(u.y, &s, &c);
+  sincos_turn(polar.y, &s, &c);
   const Vec3Of<F> h = Vec3Of<F>{r * c, r * s, z} + v;
   return normalize(Vec3Of<F>{h.x * alpha.x, h.y * alpha.y, max(h.z, 1e-6f)});
+}
+template <class F>
+GLOAM_HD Vec3Of<F> sample_half(Vec2Of<F> alpha, Vec3Of<F> wo, Vec2Of<F> u) {
+  return half_at(alpha, wo, to_disc(u));
 }
 /// (1 - cosine)^5, Schlick's weight.
 template <class F>

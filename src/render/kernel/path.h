@@ -8,6 +8,11 @@
 namespace gloam {
 namespace paths {
 
+/// Share of a path's weight behind its first vertex below which it may end by chance. The first
+/// vertex dims all of a pixel alike, and what the first reflections take off is not little: to end
+/// paths by their mere weight made more noise than it saved time.
+inline constexpr float kRouletteBelow = 0.25f;
+
 /// Share of directions that are drawn from the guide instead of the BSDF: what is sharp finds its
 /// light by itself.
 template <class F>
@@ -41,11 +46,9 @@ GLOAM_HD NextEventOf<F> aim_at_light(const SceneView& scene, State<F>* path, con
   at->rows = path->picker.prepare(scene, v.p, v.geometric, active, both_sides);
   if (scene.has_glow()) path->picker.add_glow(scene, active);
   if (scene.guides_directions()) at->guided = guided_share(scene.guide, bsdf, at->rows.guided);
-  const Vec2Of<F> choice = path->sampler.next_2d(active);  // of the light, of the lobe
-  at->lobe = choice.y;
-  const Vec2Of<F> u_light = path->sampler.next_2d(active);
-  const LightSampleOf<F> light =
-      path->picker.sample(scene, v.p, choice.x, u_light, path->ray.time, active);
+  at->lobe = path->sampler.next_1d(active);
+  const Vec2Of<F> u = path->sampler.next_2d(active);
+  const LightSampleOf<F> light = path->picker.sample(scene, v.p, u, path->ray.time, active);
   const F side = dot(light.wi, v.geometric);
   NextEventOf<F> event;
   event.lit = active & (light.pdf > 0.0f) & ((side > 0.0f) | (both_sides & (side < 0.0f)));
@@ -202,7 +205,7 @@ GLOAM_HD ArrivalOf<F> arrive(const SceneView& scene, const PathOptions& options,
   scatters = (solid | mote.scattered) & !(path.depth >= max_depth);
   if (const Mask chance = scatters & (path.depth > static_cast<uint32_t>(options.roulette_depth));
       any(chance)) {
-    const F survive = min(max_component(path.throughput), 0.95f);
+    const F survive = min(max_component(path.throughput) / (kRouletteBelow * path.scale), 1.0f);
     scatters = scatters & !(chance & (path.sampler.next_1d(chance) >= survive));
     path.throughput = select<F>(chance, path.throughput / survive, path.throughput);
   }

@@ -65,11 +65,9 @@ GLOAM_HD NextEventOf<F> aim_at_light_in_media(const SceneView& scene, State<F>* 
   const Vec3Of<F> p = path->ray.o + path->ray.d * v.t;
   path->picker.prepare(scene, p, Vec3Of<F>{}, active);
   if (scene.has_glow()) path->picker.add_glow(scene, active);
-  const Vec2Of<F> choice = path->sampler.next_2d(active);  // of the light, of the band
-  *band = choice.y;
-  const Vec2Of<F> u_light = path->sampler.next_2d(active);
-  const LightSampleOf<F> light =
-      path->picker.sample(scene, p, choice.x, u_light, path->ray.time, active);
+  *band = path->sampler.next_1d(active);
+  const Vec2Of<F> u = path->sampler.next_2d(active);
+  const LightSampleOf<F> light = path->picker.sample(scene, p, u, path->ray.time, active);
   NextEventOf<F> event;
   event.lit = active & (light.pdf > 0.0f);
   if (!any(event.lit)) return event;

@@ -38,6 +38,7 @@ struct State {
   F cone_width{}, cone_spread{};
   SamplerOf<F> sampler;
   Vec3Of<F> throughput;
+  F scale = 1.0f;           ///< the most of it behind the first vertex
   F pdf_bsdf = 0.0f;        ///< of the direction of the path's ray; 0 = from the camera
   Vec3Of<F> from;           ///< the last scattering vertex
   LightPickerOf<F> picker;  ///< of that vertex
@@ -177,6 +178,7 @@ GLOAM_HD void go_on(MaskOf<F> next, Vec3Of<F> p, Vec3Of<F> o, Vec3Of<F> wi, Vec3
                     State<F>* path) {
   path->throughput = select<F>(next, path->throughput * weight, path->throughput);
   path->pdf_bsdf = select(next, pdf, path->pdf_bsdf);
+  path->scale = select(next & (path->depth == 1u), max_component(path->throughput), path->scale);
   path->from = select<F>(next, p, path->from);
   // The cone widens with the lobe: texture detail that a broad lobe averages is not sought.
   const F widening = 0.2f * square_root(min(1.0f / (kPi * pdf), 1.0f));

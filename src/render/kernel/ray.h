@@ -58,13 +58,34 @@ GLOAM_HD void sincos_turn(F u, F* sine, F* cosine) {
   *cosine = select(((q + 1u) & 2u) != 0u, -b, b);
 }
 
+/// A point of the unit disc, by area, as its squared radius and the turns about the centre: both
+/// uniform in [0, 1), and of compact patches of u compact patches of the disc (Shirley and Chiu
+/// 1997, "A low distortion map between disk and square").
+template <class F>
+GLOAM_HD Vec2Of<F> to_disc(Vec2Of<F> u) {
+  const F a = u.x * 2.0f - 1.0f, b = u.y * 2.0f - 1.0f;
+  const MaskOf<F> wide = magnitude(a) > magnitude(b);
+  const F r = select(wide, a, b), across = select(wide, b, a);
+  const F q = across / select(magnitude(r) > 0.0f, r, F(1.0f));
+  const F turn = select(wide, q, 2.0f - q) * 0.125f + select(r < 0.0f, F(0.5f), F(0.0f));
+  return {min(r * r, 0.99999994f), select(turn < 0.0f, turn + 1.0f, turn)};
+}
+
 /// Cosine-weighted direction about +z; pdf = z / pi. (Malley's method.)
 template <class F>
 GLOAM_HD Vec3Of<F> sample_cosine_hemisphere(Vec2Of<F> u) {
+  u = to_disc(u);
   const F r = square_root(u.x);
   F s, c;
   sincos_turn(u.y, &s, &c);
   return {r * c, r * s, safe_sqrt(1.0f - u.x)};
+}
+
+/// After a choice by x, uniform in [0, 1), took what begins at `from` and is as long as `share`:
+/// where in it x lies, uniform in [0, 1) again. Points that are spread evenly stay so in each part.
+template <class F>
+GLOAM_HD F rest_of(F x, F from, F share) {
+  return clamp((x - from) / share, 0.0f, 0.99999994f);
 }
 
 /// Uniform direction on the unit sphere; pdf = 1 / (4 pi).
@@ -79,6 +100,7 @@ GLOAM_HD Vec3f sample_sphere(Vec2f u) {
 /// pdf = cone_pdf(one_minus_cos).
 template <class F>
 GLOAM_HD Vec3Of<F> sample_cone(F one_minus_cos, Vec2Of<F> u) {
+  u = to_disc(u);
   const F h = u.x * one_minus_cos;  // 1 - cos, kept small for narrow cones
   const F r = safe_sqrt(h * (2.0f - h));
   F s, c;

@@ -77,39 +77,19 @@ class SamplerOf {
   /// Lanes that are not `active` get a number too, but keep their place in the sequence.
   GLOAM_HD F next_1d(Mask active = true) {
     const Uint key = next_key(active);
-    const Mask late = dimension_ > Uint(kLowDiscrepancyDraws);
-    F out{};
-    if (any(!late)) {
-      const Uint i = reverse_bits(scramble_reversed(reversed_index_, key));
-      out = to_unit(reverse_bits(scramble_reversed(i, key * Uint(0x9E3779B9u) + Uint(1u))));
-    }
-    if (any(late)) out = select(late, to_unit(mix_bits(reversed_index_ ^ key)), out);
-    return out;
+    const Uint i = reverse_bits(scramble_reversed(reversed_index_, key));
+    return to_unit(reverse_bits(scramble_reversed(i, key * Uint(0x9E3779B9u) + Uint(1u))));
   }
 
   GLOAM_HD Vec2Of<F> next_2d(Mask active = true) {
     const Uint key = next_key(active);
-    const Mask late = dimension_ > Uint(kLowDiscrepancyDraws);
-    Vec2Of<F> out;
-    if (any(!late)) {
-      const Uint i = reverse_bits(scramble_reversed(reversed_index_, key));
-      out = {to_unit(reverse_bits(scramble_reversed(i, key * Uint(0x9E3779B9u) + Uint(1u)))),
-             to_unit(reverse_bits(
-                 scramble_reversed(sobol1_reversed(i), key * Uint(0x85EBCA6Bu) + Uint(2u))))};
-    }
-    if (any(late)) {
-      const Uint bits = mix_bits(reversed_index_ ^ key);
-      const Vec2Of<F> hashed{to_unit(bits), to_unit(mix_bits(bits + Uint(0x9E3779B9u)))};
-      out = select<F>(late, hashed, out);
-    }
-    return out;
+    const Uint i = reverse_bits(scramble_reversed(reversed_index_, key));
+    return {to_unit(reverse_bits(scramble_reversed(i, key * Uint(0x9E3779B9u) + Uint(1u)))),
+            to_unit(reverse_bits(
+                scramble_reversed(sobol1_reversed(i), key * Uint(0x85EBCA6Bu) + Uint(2u))))};
   }
 
  private:
-  /// Draws beyond this many of one path (after three vertices) are plain hashes: what is left
-  /// to gain there is less than what the points cost.
-  static constexpr uint32_t kLowDiscrepancyDraws = 10;
-
   GLOAM_HD Uint next_key(Mask active) {
     dimension_ += select(active, Uint(1u), Uint(0u));
     return mix_bits(Uint(seed_) + dimension_ * Uint(0x9E3779B9u));

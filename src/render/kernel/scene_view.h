@@ -28,8 +28,8 @@ struct MeshView {
   DeviceSpan<const uint32_t> indices;
   DeviceSpan<const Vec3f> corner_normals;  ///< three per triangle; empty = flat
   DeviceSpan<const TriangleUv> uvs;        ///< one per triangle; empty = none
-  DeviceSpan<const float> area_cdf;        ///< running sum of triangle areas / total; emitters only
-  float area = 0;                          ///< [m²]; emitters only
+  DeviceSpan<const float> area_cdf;  ///< running sums, 0 to 1, of triangle areas; emitters only
+  float area = 0;                    ///< [m²]; emitters only
 };
 
 struct InstanceView {
@@ -122,7 +122,7 @@ struct LightView {
   float strength = 0;  ///< luminous intensity [cd] (directional: illuminance [lx]), for selection
   float reach = 0;     ///< radius of a sphere about p that holds all of it [m]
   uint32_t instance = 0;  ///< kInstance
-  int guide = -1;         ///< row of LightGuide::visible; -1 = it moves, or has none
+  int guide = -1;         ///< row of LightGuide::gain; -1 = it moves, or has none
   int first_key = -1;     ///< row of SceneView::light_keys of lamps and suns that move while the
                           ///< shutter is open: then p, reach and half bound the way, and spread all
   int levels = -1;        ///< row of SceneView::light_levels; -1 = it is even
@@ -156,9 +156,9 @@ struct LightGuide {
   int nx = 0, ny = 0, nz = 0;
   uint32_t lights = 0;                ///< that have a weight
   DeviceSpan<const int> surface_row;  ///< cell-major, one per facing; -1 = no such surface
-  /// Row-major: share of each light that is seen, above zero.
-  DeviceSpan<const float> visible;
-  DeviceSpan<const float> sky_visible;  ///< by row: the same of the environment map's light
+  /// Row-major: root mean square of what each light brings, over that of light_weight; above zero.
+  DeviceSpan<const float> gain;
+  DeviceSpan<const float> sky_visible;  ///< by row: share of the environment map's light
   /// Cells along an edge of the octahedral map of directions (kernel/light_directions.h).
   static constexpr uint32_t kAcross = 16;
   static constexpr uint32_t kSums = kAcross * kAcross + 1;
@@ -321,11 +321,28 @@ GLOAM_HD Affine3f pose_at(const InstanceView& instance, float time) {
   return pose_at(instance, time, &between);
 }
 
+GLOAM_HD bool deforms_in_shutter(const MeshView& mesh) {
+  return !kPlainScenes && !mesh.position_keys.empty();
+}
 GLOAM_HD Vec3f mesh_vertex(const MeshView& mesh, uint32_t i, float time) {
-  if (kPlainScenes || mesh.position_keys.empty() || time == 0) return mesh.positions[i];
+  if (!deforms_in_shutter(mesh) || time == 0) return mesh.positions[i];
   float share;
   const uint32_t row = key_before(mesh.key_count, time, &share) * mesh.positions.size + i;
   return lerp(mesh.position_keys[row], mesh.position_keys[row + mesh.positions.size], share);
+}
+
+/// Corners i of a mesh.
+template <class F>
+GLOAM_HD Vec3Of<F> mesh_vertices(const MeshView& mesh, UintOf<F> i, F time) {
+  if (deforms_in_shutter(mesh)) {
+    Vec3Of<F> p;
+    each_lane(MaskOf<F>(true),
+              [&](int at) { set_lane(&p, at, mesh_vertex(mesh, lane(i, at), lane(time, at))); });
+    return p;
+  }
+  const float* coordinates = &mesh.positions.data->x;
+  return {gather(coordinates, i * 3u), gather(coordinates + 1, i * 3u),
+          gather(coordinates + 2, i * 3u)};
 }
 
 }  // namespace gloam

@@ -203,15 +203,17 @@ GLOAM_HD float shape_pdf(ShapeType shape, Vec3f s, Vec3f p) {
 }
 
 /// A point on the surface and its outward normal; density shape_pdf.
-GLOAM_HD Vec3f sample_shape(ShapeType shape, Vec3f s, float pick, Vec2f u, Vec3f* normal) {
+GLOAM_HD Vec3f sample_shape(ShapeType shape, Vec3f s, Vec2f u, Vec3f* normal) {
   Vec3f p;
   switch (shape) {
     case ShapeType::kBox: {
       const float yz = s.y * s.z, zx = s.z * s.x, xy = s.x * s.y, total = yz + zx + xy;
-      float x = pick * 2.0f;
-      const float side = x < 1 ? -1.0f : 1.0f;
-      x = (x < 1 ? x : x - 1) * total;
-      const float a = u.x * 2 - 1, b = u.y * 2 - 1;
+      const float side = u.x < 0.5f ? -1.0f : 1.0f;
+      const float x = rest_of(u.x, u.x < 0.5f ? 0.0f : 0.5f, 0.5f) * total;
+      const float within = x < yz        ? rest_of(x, 0.0f, yz)
+                           : x < yz + zx ? rest_of(x, yz, zx)
+                                         : rest_of(x, yz + zx, xy);
+      const float a = within * 2 - 1, b = u.y * 2 - 1;
       p = x < yz        ? Vec3f{side * s.x, a * s.y, b * s.z}
           : x < yz + zx ? Vec3f{a * s.x, side * s.y, b * s.z}
                         : Vec3f{a * s.x, b * s.y, side * s.z};
@@ -226,7 +228,9 @@ GLOAM_HD Vec3f sample_shape(ShapeType shape, Vec3f s, float pick, Vec2f u, Vec3f
       *normal = snap_to_shape(shape, s, &p);
       return p;
     case ShapeType::kCapsule: {
-      const bool wall = pick * (s.x + s.y) < s.y;
+      const float share = s.y / (s.x + s.y);  // of the wall
+      const bool wall = u.x < share;
+      u.x = wall ? rest_of(u.x, 0.0f, share) : rest_of(u.x, share, 1 - share);
       if (!wall) {
         *normal = sample_sphere(u);
         p = *normal * s.x;
@@ -241,12 +245,13 @@ GLOAM_HD Vec3f sample_shape(ShapeType shape, Vec3f s, float pick, Vec2f u, Vec3f
     case ShapeType::kCylinder: {
       float sine, cosine;
       sincos_turn(u.y, &sine, &cosine);
-      const float x = pick * (2 * s.y + s.x);
-      if (x < 2 * s.y) {
+      const float share = 2 * s.y / (2 * s.y + s.x);  // of the wall
+      if (u.x < share) {
         *normal = {cosine, sine, 0};
-        return {cosine * s.x, sine * s.x, (u.x * 2 - 1) * s.y};
+        return {cosine * s.x, sine * s.x, (rest_of(u.x, 0.0f, share) * 2 - 1) * s.y};
       }
-      const float side = x - 2 * s.y < 0.5f * s.x ? -1.0f : 1.0f, r = s.x * sqrtf(u.x);
+      const float x = rest_of(u.x, share, 1 - share), side = x < 0.5f ? -1.0f : 1.0f;
+      const float r = s.x * sqrtf(rest_of(x, x < 0.5f ? 0.0f : 0.5f, 0.5f));
       *normal = {0, 0, side};
       return {cosine * r, sine * r, side * s.y};
     }
@@ -258,8 +263,7 @@ GLOAM_HD Vec3f sample_shape(ShapeType shape, Vec3f s, float pick, Vec2f u, Vec3f
 
 /// A point on a face that p sees, its normal, and its density per area; 0 inside the box.
 template <class F>
-GLOAM_HD F sample_box_from(Vec3f s, Vec3Of<F> p, F pick, Vec2Of<F> u, Vec3Of<F>* q,
-                           Vec3Of<F>* normal) {
+GLOAM_HD F sample_box_from(Vec3f s, Vec3Of<F> p, Vec2Of<F> u, Vec3Of<F>* q, Vec3Of<F>* normal) {
   // At most one of two opposite faces is seen; they are taken by area times the height of p above.
   const float area[3] = {4 * s.y * s.z, 4 * s.z * s.x, 4 * s.x * s.y};
   F height[3], weight[3];
@@ -268,8 +272,10 @@ GLOAM_HD F sample_box_from(Vec3f s, Vec3Of<F> p, F pick, Vec2Of<F> u, Vec3Of<F>*
     weight[i] = height[i] * area[i];
   }
   const F total = weight[0] + weight[1] + weight[2];
-  pick *= total;
+  const F pick = u.x * total;
   const auto x = pick < weight[0], y = pick < weight[0] + weight[1];
+  const F from = select(x, F(0.0f), select(y, weight[0], weight[0] + weight[1]));
+  u.x = rest_of(pick, from, max(select(x, weight[0], select(y, weight[1], weight[2])), 1e-30f));
   const F side_x = select(p.x < 0.0f, F(-1.0f), F(1.0f)),
           side_y = select(p.y < 0.0f, F(-1.0f), F(1.0f)),
           side_z = select(p.z < 0.0f, F(-1.0f), F(1.0f));

@@ -19,9 +19,10 @@ void fill_albedo_table(AlbedoTable* table) {
       const float cos_o = max(static_cast<float>(column) / (n - 1), 2e-3f);
       const Vec3f wo{safe_sqrt(1.0f - cos_o * cos_o), 0, cos_o};
       float a = 0, b = 0;
+      // Few points integrate what is smooth best where they are even in polar coordinates.
       for (uint32_t i = 0; i < kPoints; ++i) {
-        const Vec2f u{(static_cast<float>(i) + 0.5f) / kPoints, uniform_float(reverse_bits(i))};
-        const Vec3f h = ggx::sample_half(alpha, wo, u);
+        const Vec2f polar{(static_cast<float>(i) + 0.5f) / kPoints, uniform_float(reverse_bits(i))};
+        const Vec3f h = ggx::half_at(alpha, wo, polar);
         const float cos_oh = dot(wo, h), cos_i = 2.0f * cos_oh * h.z - cos_o;
         if (cos_i <= 0) continue;
         const Vec3f wi = mirror(wo, h);
@@ -36,8 +37,10 @@ void fill_albedo_table(AlbedoTable* table) {
       const float fuzz_alpha = max(roughness * roughness, 1e-2f);
       float fuzz = 0;
       for (uint32_t i = 0; i < kPoints; ++i) {
-        const Vec3f wi = sample_cosine_hemisphere(
-            Vec2f{(static_cast<float>(i) + 0.5f) / kPoints, uniform_float(reverse_bits(i))});
+        const float r2 = (static_cast<float>(i) + 0.5f) / kPoints;
+        float sine, cosine;
+        sincos_turn(uniform_float(reverse_bits(i)), &sine, &cosine);
+        const Vec3f wi{sqrtf(r2) * cosine, sqrtf(r2) * sine, sqrtf(1.0f - r2)};
         fuzz += sheen::lobe(fuzz_alpha, cos_o, wi.z, normalize(wo + wi).z) * kPi;
       }
       table->fuzz[row * n + column] = fuzz / kPoints;
@@ -61,9 +64,9 @@ void fill_glass_table(GlassTable* table) {
       float sum = 0;
       for (uint32_t i = 0; i < kPoints; ++i) {
         const float x = (static_cast<float>(i) + 0.5f) / kPoints;
-        const Vec2f u{x, uniform_float(reverse_bits(i))};
+        const Vec2f polar{x, uniform_float(reverse_bits(i))};
         // Both sides of each microfacet: the choice between them adds no noise.
-        const Vec3f h = ggx::sample_half(alpha, wo, u);
+        const Vec3f h = ggx::half_at(alpha, wo, polar);
         float cos_t;
         const float cos_h = dot(wo, h), f = fresnel_dielectric(cos_h, eta, &cos_t);
         const Vec3f r = mirror(wo, h), t = refract(wo, h, eta, cos_h, cos_t);

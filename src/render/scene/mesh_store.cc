@@ -168,11 +168,11 @@ void MeshStore::make_samplable(const RenderDescription& description, uint32_t ro
   const TriangleMesh& mesh = mesh_at(description, row);
   MeshBuffers& buffers = meshes_[row];
   const std::vector<Vec3f>& positions = buffers.open.empty() ? mesh.positions : buffers.open;
-  buffers.area_cdf.resize(mesh.triangle_count());
+  buffers.area_cdf.assign(1, 0.0f);
   double sum = 0;
   for (size_t t = 0; t < mesh.triangle_count(); ++t) {
     sum += triangle_area(positions, &mesh.indices[3 * t]);
-    buffers.area_cdf[t] = static_cast<float>(sum);
+    buffers.area_cdf.push_back(static_cast<float>(sum));
   }
   buffers.area = static_cast<float>(sum);
   for (float& value : buffers.area_cdf) value /= max(buffers.area, 1e-30f);

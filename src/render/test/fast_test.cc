@@ -81,6 +81,9 @@ TEST(Fast, IndirectLightIsThatOfThePathTier) {
   const Film exact = path_picture(b, room_view(), 256, kEndless);
   const Film film = fast_picture(b, room_view(), 8);
   EXPECT_NEAR(mean_luminance(film), mean_luminance(exact), 0.07 * mean_luminance(exact));
+  double rms = 0;
+  for (int k = 0; k < 48; ++k) rms += std::pow(block_ratio(film, exact, k % 8, k / 8) - 1, 2) / 48;
+  printf("RMS %g of %g %g\n", std::sqrt(rms), mean_luminance(film), mean_luminance(exact));
   // Blocks of 12 x 12 pixels: what is lit, what is in the shade, what is red.
   for (int by = 0; by < 6; ++by) {
     for (int bx = 0; bx < 8; ++bx) {

@@ -106,8 +106,7 @@ TEST(Glow, PointsAreDrawnByTheirDensity) {
   Mean drawn;
   for (uint32_t i = 0; i < 100000; ++i) {
     Sampler sampler = independent(i, 5);
-    const float pick = sampler.next_1d();
-    const LightSample s = glow::sample(media, glow, p, pick, sampler.next_2d());
+    const LightSample s = glow::sample(media, glow, p, sampler.next_2d());
     drawn.add(s.pdf > 0 ? s.radiance.x / s.pdf : 0);
     if (!(s.pdf > 0)) continue;
     const Vec3f x = p + s.wi * s.distance, p_G = transform_point(volume.X_GW, x);

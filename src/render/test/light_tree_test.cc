@@ -68,8 +68,8 @@ TEST_P(LightTreeTest, DrawsFollowTheProbabilities) {
   for (const Receiver& at : receivers(GetParam().extent, 6)) {
     std::vector<double> seen(lights_.size());
     for (uint32_t k = 0; k < kDraws; ++k) {
-      const LightChoice c = light_tree::choose(
-          tree_.view(), at.p, at.n, light_tree::lengthen(random_2d(k, 1).x, random_2d(k, 2)));
+      const LightChoice c =
+          light_tree::choose(tree_.view(), at.p, at.n, light_tree::lengthen(random_2d(k, 1)));
       if (!(c.probability > 0)) continue;
       ASSERT_NEAR(c.probability, light_tree::probability(tree_.view(), c.light, at.p, at.n),
                   1e-4f * c.probability);
@@ -97,7 +97,7 @@ TEST_P(LightTreeTest, NoLightThatShinesIsLeftOut) {
   scene.lights = {lights_.data(), static_cast<uint32_t>(lights_.size())};
   for (const Receiver& at : receivers(GetParam().extent, 60)) {
     for (uint32_t i = 0; i < lights_.size(); i += 7) {
-      const LightSample s = sample_one_light(scene, i, at.p, 0.5f, random_2d(i, 3), 0.0f);
+      const LightSample s = sample_one_light(scene, i, at.p, random_2d(i, 3), 0.0f);
       const bool arrives = s.pdf > 0 && max_component(s.radiance) > 0 &&
                            (!(length_squared(at.n) > 0) || dot(s.wi, at.n) > 1e-5f);
       if (arrives) {

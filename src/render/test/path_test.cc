@@ -127,7 +127,7 @@ Mean one_technique(const Probe& probe, const CameraView& view, bool by_light, in
       if (by_light) {
         LightPicker picker;
         picker.prepare(probe.view, s.p, s.geometric);
-        const LightSample light = picker.sample(probe.view, s.p, pick, u, 0);
+        const LightSample light = picker.sample(probe.view, s.p, u, 0);
         if (light.pdf > 0 && dot(light.wi, s.geometric) > 0) {
           float pdf = 0;
           const Vec3f f = eval_bsdf(bsdf, wo, frame.to_local(light.wi), &pdf);

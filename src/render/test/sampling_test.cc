@@ -108,7 +108,7 @@ TEST(Sampling, ShapesAreSampledEvenly) {
     Mean nx, nz, volume, area;
     for (uint32_t i = 0; i < 200000; ++i) {
       Vec3f n;
-      Vec3f p = sample_shape(c.shape, c.size, random_2d(i, 1).x, random_2d(i, 0), &n);
+      Vec3f p = sample_shape(c.shape, c.size, random_2d(i, 0), &n);
       const float pdf = shape_pdf(c.shape, c.size, p);
       ASSERT_GT(pdf, 0);
       Vec3f q = p;
@@ -252,8 +252,7 @@ TEST(Sampling, EmittersAreSampledByTheDensityTheyReport) {
       }
       by_bsdf.add(e);
       total.add(density);
-      const LightSample light =
-          sample_one_light(probe.view, 0, p, random_2d(i, 1).x, random_2d(i, 2), 0.0f);
+      const LightSample light = sample_one_light(probe.view, 0, p, random_2d(i, 2), 0.0f);
       double direct = 0;
       Ray shadow = make_ray(p, light.wi);
       shadow.tmax = light.distance * 0.9999f;
