@@ -18,6 +18,22 @@ constexpr float kFarthest = 1e8f;    // deviations squared, so that products sta
 
 using F = FloatLanes;
 
+/// Mean luminance of a signal two pixels away on the same part; without bound where there is none.
+/// Pixels beside one another may show what one ray has brought.
+F luminance_about(const FastFrame& f, int signal, int x, int y) {
+  const F part = f.part.load(x, y);
+  F sum, n;
+  for (int dy = -2; dy <= 2; dy += 2) {
+    for (int dx = -2; dx <= 2; dx += 2) {
+      if (dx == 0 && dy == 0) continue;
+      const F one = select(f.part.load(x + dx, y + dy) == part, F(1.0f), F(0.0f));
+      sum += one * luminance(f.signal[signal].load(x + dx, y + dy));
+      n += one;
+    }
+  }
+  return select(n > 0.0f, sum / max(n, 1.0f), F(1e30f));
+}
+
 /// One patch's share of accumulate().
 class Accumulation {
  public:
@@ -78,7 +94,7 @@ class Accumulation {
       F l = luminance(now), share = max(1.0f / age, least_share_[s]);
       if (s == kSpecularSignal) {
         // Of rays that a rough surface scatters, few meet a lamp: no brighter than the others.
-        const F most = kSpike * max((luminance(mean) * 9.0f - l) * 0.125f, 0.0f);
+        const F most = kSpike * luminance_about(f_, s, x, y);
         now = select<F>(l > most, now * (most / l), now);
         l = min(l, most);
         // What mirrors show does not go along with them.

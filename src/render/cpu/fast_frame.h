@@ -80,6 +80,7 @@ inline constexpr float kMirror = 0.25f;
 
 struct FastFrame {
   int width = 0, height = 0;
+  Vec2f offset;  ///< of the rays from the pixels' centres [px]
   FastPlane3 signal[kFastSignals];
   /// Mean and mean square of the luminance of signals over earlier pictures.
   FastPlane mean[kKeptSignals], square[kKeptSignals];

@@ -3,19 +3,21 @@
 
 #include "base/parallel.h"
 #include "render/cpu/fast_filter.h"
+#include "render/kernel/camera.h"
 
 namespace gloam {
 namespace {
 
 using F = FloatLanes;
 
-constexpr float kMostPictures = 16;  // in a mean: older ones fade;
-constexpr float kMostMoving = 4;     // where they lie between pixels, each blurs a little
-constexpr float kRange = 1;          // of deviations around a pixel that its past may have,
-constexpr float kSlack = 0.015f;     // and of its mean: light that flickers is noise
+constexpr float kMostPictures = 8;  // in a mean: older ones fade;
+constexpr float kMostMoving = 2;    // where they lie between pixels, each blurs a little
+constexpr float kRange = 1;         // of deviations around a pixel that its past may have,
+constexpr float kSlack = 0.015f;    // and of its mean: light that flickers is noise
 
 /// What the 3 x 3 pixels around those from (x, y) on say.
 struct Around {
+  Vec3Of<F> now;  ///< their colours, weighted by the pixel filter
   NeighbourMoments color;
   F motion_x, motion_y;  ///< of what is in front, so that edges go with it
   MaskLanes edge = false;
@@ -27,10 +29,16 @@ Around look_around(const FastFrame& f, int x, int y) {
   const F part = f.part.load(x, y);
   out.motion_x = f.motion_x.load(x, y);
   out.motion_y = f.motion_y.load(x, y);
+  F total;
   for (int dy = -1; dy <= 1; ++dy) {
     for (int dx = -1; dx <= 1; ++dx) {
       const F other = f.part.load(x + dx, y + dy);
       const MaskLanes inside = other >= 0.0f, apart = inside & !(other == part);
+      const float weight =
+          pixel_filter(f.offset + Vec2f{static_cast<float>(dx), static_cast<float>(dy)});
+      const F w = select(inside, F(weight), F(0.0f));
+      out.now += f.color.load(x + dx, y + dy) * w;
+      total += w;
       out.edge = out.edge | apart;
       const F distance = f.distance.load(x + dx, y + dy);
       const MaskLanes nearer = apart & (distance < nearest);
@@ -39,6 +47,7 @@ Around look_around(const FastFrame& f, int x, int y) {
       out.motion_y = select(nearer, f.motion_y.load(x + dx, y + dy), out.motion_y);
     }
   }
+  out.now = out.now / max(total, F(1e-6f));
   out.color = neighbour_moments(
       f.color, x, y, [&](int dx, int dy) { return f.part.load(x + dx, y + dy) >= 0.0f; });
   return out;
@@ -72,8 +81,8 @@ Vec3Of<F> interpolate(const FastPlane3& plane, int width, int height, F x, F y) 
 
 void resolve_lanes(const FastFrame& before, const LightGain& gain, int x, int y, FastFrame* frame) {
   FastFrame& f = *frame;
-  const Vec3Of<F> now = f.color.load(x, y);
   const Around around = look_around(f, x, y);
+  const Vec3Of<F>& now = around.now;
   F column;
   for (int i = 0; i < kLaneCount; ++i) set_lane(&column, i, static_cast<float>(x + i));
   const F from_x = column - around.motion_x, from_y = static_cast<float>(y) - around.motion_y;

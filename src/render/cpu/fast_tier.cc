@@ -57,8 +57,7 @@ struct PixelBlock {
   RayConeOf<F> cone;
 };
 
-PixelBlock make_block(const CameraView32& camera, const FastFrame& frame, int x, int y,
-                      Vec2f offset) {
+PixelBlock make_block(const CameraView32& camera, const FastFrame& frame, int x, int y) {
   PixelBlock block;
   block.x = x;
   block.y = y;
@@ -68,8 +67,8 @@ PixelBlock make_block(const CameraView32& camera, const FastFrame& frame, int x,
     set_lane(&block.inside, i, column < frame.width && row < frame.height);
     set_lane(&block.px, i, static_cast<uint32_t>(column));
     set_lane(&block.py, i, static_cast<uint32_t>(row));
-    set_lane(&u, i, static_cast<float>(column) + 0.5f + offset.x);
-    set_lane(&v, i, static_cast<float>(row) + 0.5f + offset.y);
+    set_lane(&u, i, static_cast<float>(column) + 0.5f + frame.offset.x);
+    set_lane(&v, i, static_cast<float>(row) + 0.5f + frame.offset.y);
   }
   block.ray = camera_rays(camera, u, v, F(0.0f), &block.cone);
   block.active = block.inside & (block.ray.tmax > 0.0f);
@@ -133,7 +132,7 @@ void FastHistory::trace(const SceneView& scene, const CpuTracer& tracer, const C
                         const RenderSettings& settings, uint32_t pass) {
   const IrradianceCacheView cache = cache_.view(camera.pose.X_WC_open.p, cell_edge(camera));
   Sampler pattern = Sampler::make(0, 0, 0, 0, pictures_ % kPattern, 3);
-  const Vec2f offset = sample_pixel_filter(pattern.next_2d());
+  now_.offset = pattern.next_2d() - Vec2f{0.5f, 0.5f};
   const int columns = (now_.width + kTile - 1) / kTile, rows = (now_.height + kTile - 1) / kTile;
   const Vec2f turn = pattern.next_2d();
   asked_.resize(static_cast<size_t>(columns) * rows);
@@ -147,9 +146,8 @@ void FastHistory::trace(const SceneView& scene, const CpuTracer& tracer, const C
       x += static_cast<int>(tile % columns) * kTile;
       y += static_cast<int>(tile / columns) * kTile;
       if (x >= now_.width || y >= now_.height) continue;
-      const PixelBlock block = make_block(camera, now_, x, y, offset);
-      SamplerOf<F> sampler =
-          SamplerOf<F>::make(settings.seed, settings.frame, block.px, block.py, pass, 0);
+      const PixelBlock block = make_block(camera, now_, x, y);
+      const auto sampler = SamplerOf<F>::of_turn(settings.seed, block.px, block.py, pictures_);
       const Vec2Of<F> near_u = stratified(first, turn);
       CacheRequest requests[3 * kLaneCount];
       const FastSampleOf<F> sample =
@@ -212,8 +210,7 @@ void FastHistory::add_picture(const SceneView& scene, const CpuTracer& tracer,
     again = cache_.size() == 0;  // a first picture is traced twice: its rays saw no cache
     trace(scene, tracer, camera, settings, pass);
     cache_.ask(requests_);
-    rays_ += cache_.update(scene, tracer, eye, edge, settings.seed + pass, settings.frame,
-                           again ? kWarmUp : 1);
+    rays_ += cache_.update(scene, tracer, eye, edge, settings.seed, again ? kWarmUp : 1);
     if (requests_.empty()) break;
   }
   look_up(cache_.view(eye, edge));

@@ -10,6 +10,7 @@ namespace {
 
 constexpr int kRays = 32;            // of a cell and update
 constexpr int kMemory = 10 * kRays;  // rays that a cell's mean is of, at most
+constexpr uint32_t kRounds = 16;     // of rays through one set of points
 constexpr float kStirred = 40;       // of a cell that sees moving things in all directions, as many
                                      // times less
 constexpr float kSettles = 0.75f;    // of what a cell saw move, from update to update
@@ -93,8 +94,7 @@ float IrradianceCache::luminance_beside(uint64_t key) const {
 }
 
 void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer,
-                                 const IrradianceCacheView& cache, uint64_t seed, uint32_t frame,
-                                 size_t k) {
+                                 const IrradianceCacheView& cache, uint64_t seed, size_t k) {
   using F = FloatLanes;
   const uint32_t row = asked_[k];
   const Cell& cell = cells_[row];
@@ -109,9 +109,13 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
   for (int first = 0; first < kRays; first += kLaneCount) {
     paths::State<F> path;
     UintLanes index;
-    for (int i = 0; i < kLaneCount; ++i) set_lane(&index, i, static_cast<uint32_t>(first + i));
+    const uint32_t begin = cell.rounds % kRounds * kRays + static_cast<uint32_t>(first);
+    for (int i = 0; i < kLaneCount; ++i) set_lane(&index, i, begin + static_cast<uint32_t>(i));
     const uint64_t mixed = cell.key * 0x9E3779B97F4A7C15ull;
-    path.sampler = SamplerOf<F>::make(seed ^ mixed, frame, UintLanes(0u), UintLanes(0u), index, 6);
+    // Rays of one round after the other go on with the same points: all that a mean is of are
+    // spread evenly.
+    path.sampler = SamplerOf<F>::make(seed ^ mixed, cell.rounds / kRounds, UintLanes(0u),
+                                      UintLanes(0u), index, 0);
     path.throughput = in_all_lanes<F>({1, 1, 1});
     const Vec3Of<F> local = sample_cosine_hemisphere(path.sampler.next_2d());
     for (int i = 0; i < kLaneCount; ++i) {
@@ -227,14 +231,13 @@ void IrradianceCache::forget_excess(uint64_t key) {
 }
 
 uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
-                                const IrradianceCacheView& cache, uint64_t seed, uint32_t frame,
-                                bool remembers) {
+                                const IrradianceCacheView& cache, uint64_t seed, bool remembers) {
   traced_.resize(asked_.size());
   further_.assign(asked_.size() * kFurther, {});
   parallel_for_range("irradiance cache", static_cast<int64_t>(asked_.size()), 4,
                      [&](int64_t begin, int64_t end) {
                        for (int64_t k = begin; k < end; ++k)
-                         trace_cell(scene, tracer, cache, seed, frame, static_cast<size_t>(k));
+                         trace_cell(scene, tracer, cache, seed, static_cast<size_t>(k));
                      });
   spread_excess();
   find_changes();
@@ -247,6 +250,7 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
     if (!remembers || traced.changed) cell.samples = std::min(cell.samples, kRays / 8);
     if (!remembers) cell.samples = 0;
     if (traced.changed) forget_excess(cell.key);
+    ++cell.rounds;
     cell.stir = max(traced.stir, kSettles * cell.stir);
     const auto memory = static_cast<int>(kMemory / (1 + kStirred * cell.stir));
     cell.samples = std::min(cell.samples, std::max(memory - kRays, 0));
@@ -292,7 +296,7 @@ void IrradianceCache::extrapolate(int round, bool remembers) {
 }
 
 uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer, Vec3f eye,
-                                 float edge_per_metre, uint64_t seed, uint32_t frame, int settle) {
+                                 float edge_per_metre, uint64_t seed, int settle) {
   uint64_t rays = 0;
   const bool settling = settle > 1;
   int rounds = settle;
@@ -314,8 +318,7 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
     std::stable_sort(asked_.begin(), asked_.end(),
                      [&](uint32_t a, uint32_t b) { return waits(a) > waits(b); });
     if (!settling && i == 0 && asked_.size() > kMostCells) asked_.resize(kMostCells);
-    rays += trace(scene, tracer, view(eye, edge_per_metre), seed + static_cast<uint64_t>(i), frame,
-                  remembers);
+    rays += trace(scene, tracer, view(eye, edge_per_metre), seed, remembers);
     // A lamp went on or off: what it sends comes round by one reflection each time.
     const auto changed = std::count_if(traced_.begin(), traced_.end(),
                                        [](const Traced& traced) { return traced.changed; });

@@ -19,7 +19,7 @@ class IrradianceCache {
   /// Traces rays from all cells that were asked for since the last update. `settle`: how many
   /// times; light is reflected once more each time. Returns the number of rays.
   uint64_t update(const SceneView& scene, const CpuTracer& tracer, Vec3f eye, float edge_per_metre,
-                  uint64_t seed, uint32_t frame, int settle);
+                  uint64_t seed, int settle);
 
   IrradianceCacheView view(Vec3f eye, float edge_per_metre) const;
   size_t size() const { return cells_.size(); }
@@ -28,6 +28,7 @@ class IrradianceCache {
   struct Cell {
     uint64_t key = 0;
     uint32_t last_asked = 0, last_traced = 0;  ///< update
+    uint32_t rounds = 0;                       ///< of rays, since it was made
     int starts = 0;                            ///< places that asked since the last update
     float variance = 0;                        ///< of the luminance of a round's mean
     float stir = 0;                            ///< share of directions in which things moved lately
@@ -66,7 +67,7 @@ class IrradianceCache {
   float luminance_beside(uint64_t key) const;
   /// Cell k of asked_ into traced_.
   void trace_cell(const SceneView& scene, const CpuTracer& tracer, const IrradianceCacheView& cache,
-                  uint64_t seed, uint32_t frame, size_t k);
+                  uint64_t seed, size_t k);
   /// visit(group): of the cells of traced_ those whose keys are alike under the mask.
   using Member = std::pair<uint64_t, size_t>;  // masked key, row of traced_
   template <class Visit>
@@ -77,7 +78,7 @@ class IrradianceCache {
   void spread_excess();
   void forget_excess(uint64_t key);
   uint64_t trace(const SceneView& scene, const CpuTracer& tracer, const IrradianceCacheView& cache,
-                 uint64_t seed, uint32_t frame, bool remembers);
+                 uint64_t seed, bool remembers);
   /// After each round: to where the light would come in many more.
   void extrapolate(int round, bool remembers);
   void forget();

@@ -191,17 +191,24 @@ GLOAM_HD bool project(const CameraView32& camera, const Affine3f& X_WC, Vec3f p_
   return project_points<float>(camera, X_WC, p_W, true, uv);
 }
 
-/// Offset from the pixel's centre [px], by importance sampling of the pixel filter: a Gaussian of
-/// standard deviation 0.42 px cut at 1.25 px. All samples weigh the same (filter importance
-/// sampling, Ernst et al. 2006).
+/// The pixel filter is a Gaussian of this standard deviation [px], cut at the other [px].
+inline constexpr float kPixelFilterSigma = 0.42f, kPixelFilterCut = 1.25f;
+
+/// Offset from the pixel's centre [px], by importance sampling of the pixel filter. All samples
+/// weigh the same (filter importance sampling, Ernst et al. 2006).
 GLOAM_HD Vec2f sample_pixel_filter(Vec2f u) {
-  constexpr float kSigma = 0.42f, kCut = 1.25f;
   u = to_disc(u);
-  const float reach = 1.0f - expf(-0.5f * kCut * kCut / (kSigma * kSigma));
-  const float r = kSigma * sqrtf(-2.0f * logf(1.0f - u.x * reach));
+  const float reach = 1.0f - expf(-0.5f * sqr(kPixelFilterCut / kPixelFilterSigma));
+  const float r = kPixelFilterSigma * sqrtf(-2.0f * logf(1.0f - u.x * reach));
   float s, c;
   sincos_turn(u.y, &s, &c);
   return {r * c, r * s};
+}
+
+/// Weight, of any scale, of what is at an offset from the pixel's centre [px].
+GLOAM_HD float pixel_filter(Vec2f offset) {
+  const float r2 = sqr(offset.x) + sqr(offset.y);
+  return r2 < sqr(kPixelFilterCut) ? expf(-0.5f * r2 / sqr(kPixelFilterSigma)) : 0.0f;
 }
 
 }  // namespace gloam

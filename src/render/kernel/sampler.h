@@ -74,6 +74,16 @@ class SamplerOf {
     return s;
   }
 
+  /// One sample of each pixel and turn, for pictures that are averaged over turns and over pixels:
+  /// those of four by four pixels share 2^kLog2Turns points, and swap them from turn to turn so
+  /// that each pixel comes by all of them, the farthest ones first.
+  GLOAM_HD static SamplerOf of_turn(uint64_t seed, Uint x, Uint y, uint32_t turn) {
+    constexpr uint32_t kTurns = 1u << kLog2Turns;
+    SamplerOf s = make(seed, turn / kTurns, x, y, Uint(0u), 0);
+    s.reversed_index_ ^= reverse_bits(Uint(turn % kTurns));
+    return s;
+  }
+
   /// Lanes that are not `active` get a number too, but keep their place in the sequence.
   GLOAM_HD F next_1d(Mask active = true) {
     const Uint key = next_key(active);
@@ -90,6 +100,8 @@ class SamplerOf {
   }
 
  private:
+  static constexpr uint32_t kLog2Turns = 4;
+
   GLOAM_HD Uint next_key(Mask active) {
     dimension_ += select(active, Uint(1u), Uint(0u));
     return mix_bits(Uint(seed_) + dimension_ * Uint(0x9E3779B9u));

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "base/rng.h"
 #include "render/scene/albedo_table.h"
 #include "render/test/direction_check.h"
@@ -199,6 +201,44 @@ TEST(Sampling, PointsAreUniformStatelessAndWellSpread) {
   }
   EXPECT_NEAR(x.mean, 0, 4 * x.standard_error());
   EXPECT_NEAR(std::sqrt(r2.mean), 0.41, 0.01);
+}
+
+/// How many of 4 x 4 squares the points lie in.
+size_t squares_of(const std::vector<Vec2f>& points) {
+  std::set<int> squares;
+  for (const Vec2f& u : points) {
+    squares.insert(static_cast<int>(u.x * 4) + 4 * static_cast<int>(u.y * 4));
+  }
+  return squares.size();
+}
+
+TEST(Sampling, PointsOfTurnsAreWellSpreadOverTurnsAndOverPixels) {
+  const auto point = [](uint32_t x, uint32_t y, uint32_t turn) {
+    Sampler sampler = Sampler::of_turn(7, x, y, turn);
+    sampler.next_1d();
+    return sampler.next_2d();
+  };
+  for (const uint32_t period : {0u, 16u, 48u}) {
+    for (uint32_t y = 20; y < 24; ++y) {
+      for (uint32_t x = 36; x < 40; ++x) {
+        std::vector<Vec2f> of_pixel;
+        std::set<int> quadrants;
+        for (uint32_t turn = 0; turn < 16; ++turn) {
+          of_pixel.push_back(point(x, y, period + turn));
+          const Vec2f u = of_pixel.back();
+          if (turn < 4) quadrants.insert(static_cast<int>(u.x * 2) + 2 * static_cast<int>(u.y * 2));
+        }
+        EXPECT_EQ(squares_of(of_pixel), 16u) << "of one pixel over 16 turns";
+        EXPECT_EQ(quadrants.size(), 4u) << "of one pixel over its first four turns";
+      }
+    }
+  }
+  for (uint32_t turn = 0; turn < 20; ++turn) {
+    std::vector<Vec2f> of_block;
+    for (uint32_t i = 0; i < 16; ++i) of_block.push_back(point(36 + i % 4, 20 + i / 4, turn));
+    EXPECT_EQ(squares_of(of_block), 16u) << "of four by four pixels in turn " << turn;
+  }
+  EXPECT_NE(point(3, 5, 0).x, point(3, 5, 16).x) << "after 16 turns there are new points";
 }
 
 TEST(Sampling, SineAndCosineOfTurns) {
