@@ -5,9 +5,10 @@
 namespace gloam {
 namespace {
 
-constexpr int kPatch = 8;          // [px], in which the change is sought
-constexpr float kLeast = 8;        // pixels that tell of a patch
-constexpr float kSureness = 1.5f;  // standard errors that a change may be by chance
+constexpr int kPatch = 8;       // [px], in which the change is sought
+constexpr float kLeast = 8;     // pixels that tell of a patch
+constexpr float kSureness = 1;  // standard errors that a change may be by chance: points that are
+                                // spread over patches make it less than it seems
 constexpr float kMostGain = 4;
 
 using F = FloatLanes;

@@ -71,14 +71,18 @@ GLOAM_HD Vec2Of<F> to_disc(Vec2Of<F> u) {
   return {min(r * r, 0.99999994f), select(turn < 0.0f, turn + 1.0f, turn)};
 }
 
-/// Cosine-weighted direction about +z; pdf = z / pi. (Malley's method.)
+/// Cosine-weighted direction about +z, pdf = z / pi, over a point of the unit disc: its squared
+/// radius and the turns about the centre. (Malley's method.)
+template <class F>
+GLOAM_HD Vec3Of<F> cosine_direction(Vec2Of<F> disc) {
+  const F r = square_root(disc.x);
+  F s, c;
+  sincos_turn(disc.y, &s, &c);
+  return {r * c, r * s, safe_sqrt(1.0f - disc.x)};
+}
 template <class F>
 GLOAM_HD Vec3Of<F> sample_cosine_hemisphere(Vec2Of<F> u) {
-  u = to_disc(u);
-  const F r = square_root(u.x);
-  F s, c;
-  sincos_turn(u.y, &s, &c);
-  return {r * c, r * s, safe_sqrt(1.0f - u.x)};
+  return cosine_direction(to_disc(u));
 }
 
 /// After a choice by x, uniform in [0, 1), took what begins at `from` and is as long as `share`:

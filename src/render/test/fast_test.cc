@@ -80,16 +80,19 @@ TEST(Fast, IndirectLightIsThatOfThePathTier) {
   const SceneBuilder b = divided_room();
   const Film exact = path_picture(b, room_view(), 256, kEndless);
   const Film film = fast_picture(b, room_view(), 8);
-  EXPECT_NEAR(mean_luminance(film), mean_luminance(exact), 0.07 * mean_luminance(exact));
-  double rms = 0;
-  for (int k = 0; k < 48; ++k) rms += std::pow(block_ratio(film, exact, k % 8, k / 8) - 1, 2) / 48;
-  printf("RMS %g of %g %g\n", std::sqrt(rms), mean_luminance(film), mean_luminance(exact));
-  // Blocks of 12 x 12 pixels: what is lit, what is in the shade, what is red.
+  EXPECT_NEAR(mean_luminance(film), mean_luminance(exact), 0.05 * mean_luminance(exact));
+  // Blocks of 12 x 12 pixels: what is lit, what is in the shade, what is red. The wall behind the
+  // lamp's, a twelfth as bright as the picture, sees the light by two reflections off large cells.
+  double squares = 0;
   for (int by = 0; by < 6; ++by) {
     for (int bx = 0; bx < 8; ++bx) {
-      EXPECT_NEAR(block_ratio(film, exact, bx, by), 1, 0.25) << "block " << bx << " " << by;
+      const double ratio = block_ratio(film, exact, bx, by);
+      const bool in_shade = bx < 3 && by > 0 && by < 4;
+      EXPECT_NEAR(ratio, 1, in_shade ? 0.35 : 0.25) << "block " << bx << " " << by;
+      squares += (ratio - 1) * (ratio - 1) / 48;
     }
   }
+  EXPECT_LT(std::sqrt(squares), 0.11) << "of all blocks together";
 }
 
 int add_metal(SceneBuilder* b, Vec3f color, float roughness) {
