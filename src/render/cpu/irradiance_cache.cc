@@ -117,8 +117,8 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
     path.sampler = SamplerOf<F>::make(seed ^ mixed, cell.rounds / kRounds, UintLanes(0u),
                                       UintLanes(0u), index, 0);
     path.throughput = in_all_lanes<F>({1, 1, 1});
-    // Rings of one height each, as light that comes in from the side is seldom found: over compact
-    // patches of directions a rare bright lamp left spots.
+    // Each stratum is a part of a ring: over compact patches of directions a rare bright lamp left
+    // spots.
     const Vec3Of<F> local = cosine_direction(path.sampler.next_2d());
     for (int i = 0; i < kLaneCount; ++i) {
       const CacheRequest& start = starts_[row * kStarts + static_cast<size_t>(first + i) % starts];
