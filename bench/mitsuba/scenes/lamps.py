@@ -24,7 +24,7 @@ def round_lamp(k):
 
 @scene("a lamp by a mesh, closed and open")
 def mesh_light(k):
-    s = stage(spp=64, reference_spp=256)
+    s = stage(spp=128, reference_spp=256)
     s.lamp("mesh", "luminance", 600 * k("crystal"), color=(1, 0.7, 0.5), position=(0.1, -0.8, 1.2), orientation=about((1, 2, 3), 40),
            corners=octahedron((0, 0, 0), 0.3))
     s.lamp("mesh", "flux", 900 * k("roof"), color=(0.7, 0.9, 1), position=(-1.3, -0.5, 2.0), orientation=about((0, 0, 1), 30), corners=roof(0.5, 0.2))
