@@ -23,7 +23,18 @@ struct Around {
   MaskLanes edge = false;
 };
 
-Around look_around(const FastFrame& f, int x, int y) {
+/// The pixel filter over 3 x 3 pixels of a picture, row by row.
+struct FilterWeights {
+  explicit FilterWeights(Vec2f offset) {
+    for (int i = 0; i < 9; ++i) {
+      of[i] = pixel_filter(offset +
+                           Vec2f{static_cast<float>(i % 3 - 1), static_cast<float>(i / 3 - 1)});
+    }
+  }
+  float of[9];
+};
+
+Around look_around(const FastFrame& f, const FilterWeights& weights, int x, int y) {
   Around out;
   F nearest = f.distance.load(x, y);
   const F part = f.part.load(x, y);
@@ -34,9 +45,7 @@ Around look_around(const FastFrame& f, int x, int y) {
     for (int dx = -1; dx <= 1; ++dx) {
       const F other = f.part.load(x + dx, y + dy);
       const MaskLanes inside = other >= 0.0f, apart = inside & !(other == part);
-      const float weight =
-          pixel_filter(f.offset + Vec2f{static_cast<float>(dx), static_cast<float>(dy)});
-      const F w = select(inside, F(weight), F(0.0f));
+      const F w = select(inside, F(weights.of[3 * dy + dx + 4]), F(0.0f));
       out.now += f.color.load(x + dx, y + dy) * w;
       total += w;
       out.edge = out.edge | apart;
@@ -79,9 +88,10 @@ Vec3Of<F> interpolate(const FastPlane3& plane, int width, int height, F x, F y) 
   return sum;
 }
 
-void resolve_lanes(const FastFrame& before, const LightGain& gain, int x, int y, FastFrame* frame) {
+void resolve_lanes(const FastFrame& before, const LightGain& gain, const FilterWeights& weights,
+                   int x, int y, FastFrame* frame) {
   FastFrame& f = *frame;
-  const Around around = look_around(f, x, y);
+  const Around around = look_around(f, weights, x, y);
   const Vec3Of<F>& now = around.now;
   F column;
   for (int i = 0; i < kLaneCount; ++i) set_lane(&column, i, static_cast<float>(x + i));
@@ -124,9 +134,10 @@ void resolve_lanes(const FastFrame& before, const LightGain& gain, int x, int y,
 
 void resolve(const FastFrame& before, LightGain* gain, FastFrame* frame) {
   gain->measure(before, before.color, *frame, frame->color);
+  const FilterWeights weights(frame->offset);
   parallel_for("fast resolve", frame->height, [&](int64_t y) {
     for (int x = 0; x < frame->width; x += kLaneCount) {
-      resolve_lanes(before, *gain, x, static_cast<int>(y), frame);
+      resolve_lanes(before, *gain, weights, x, static_cast<int>(y), frame);
     }
   });
 }
