@@ -26,9 +26,11 @@ struct Around {
 /// The pixel filter over 3 x 3 pixels of a picture, row by row.
 struct FilterWeights {
   explicit FilterWeights(Vec2f offset) {
-    for (int i = 0; i < 9; ++i) {
-      of[i] = pixel_filter(offset +
-                           Vec2f{static_cast<float>(i % 3 - 1), static_cast<float>(i / 3 - 1)});
+    for (int dy = -1; dy <= 1; ++dy) {
+      for (int dx = -1; dx <= 1; ++dx) {
+        of[3 * dy + dx + 4] =
+            pixel_filter(offset + Vec2f{static_cast<float>(dx), static_cast<float>(dy)});
+      }
     }
   }
   float of[9];
