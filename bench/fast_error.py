@@ -3,10 +3,10 @@
     python3 bench/fast_error.py [--quick] [--only NAME] [--keep FOLDER]
 
 Each scene runs at 20 pictures a second; at some of them the path tier takes the same instant with
-many samples, which are kept in .cache/fast_references until scene or tier change. Prints the mean
-and the 95th percentile per pixel of LDR-FLIP (bench/flip.py), and how much of it noise of the path
-tier's own pictures may be: two of them with half of the samples each differ by that. Needs numpy
-and Pillow.
+many samples, which are kept in .cache/fast_references until the scene's file changes (remove
+them where the models it includes do). Prints the mean and the 95th percentile per pixel of
+LDR-FLIP (bench/flip.py), and how much of it noise of the path tier's own pictures may be: two of
+them with half of the samples each differ by that. Needs numpy and Pillow.
 """
 
 import argparse

@@ -63,23 +63,29 @@ struct Studio {
   }
 };
 
-/// Two independent pictures of the path tier with half of the samples each; out of `folder` if they
-/// have been taken before.
+/// What tells a scene's references apart from others. The path tier has no bias, so they stay true
+/// while its samples change.
+Result<uint64_t> key_of(const Options& options) {
+  GLOAM_TRY(const std::vector<uint8_t> text, read_file(options.model));
+  const int taken[] = {options.width, options.height, options.rate, options.spp};
+  return hash_span(std::span<const uint8_t>(text), hash_span(std::span<const int>(taken), 0));
+}
+
+/// Two independent pictures of the path tier with half of the samples each; those called `name` in
+/// `folder` if they have been taken before.
 Result<std::array<Radiance, 2>> references(const Studio& studio, const PoseFrame& now,
                                            const PoseFrame& before, int spp,
-                                           const std::string& folder) {
+                                           const std::string& folder, const std::string& name) {
   std::array<Radiance, 2> halves;
   std::filesystem::path kept;
   if (!folder.empty()) {
-    // A few samples tell whether scene, instant, camera and path tier are those of the last time.
-    GLOAM_TRY(const Radiance few, studio.path_picture(now, before, 4, 1));
-    const uint64_t key = hash_span(std::span<const float>(few), static_cast<uint64_t>(spp));
-    kept = std::filesystem::path(folder) / (hash_to_hex(key) + ".f32");
+    kept = std::filesystem::path(folder) / (name + ".f32");
     if (std::filesystem::exists(kept)) {
       GLOAM_TRY(const std::vector<uint8_t> bytes, read_file(kept));
+      const auto values = static_cast<size_t>(studio.request.width * studio.request.height) * 3;
+      const size_t size = values * sizeof(float);
       for (size_t i = 0; i < 2; ++i) {
-        halves[i].resize(few.size());
-        const size_t size = few.size() * sizeof(float);
+        halves[i].resize(values);
         if (bytes.size() != 2 * size) {
           return Error{ErrorKind::kInput, kept.string() + " is cut short: remove it"};
         }
@@ -130,6 +136,8 @@ Status run(const Options& options) {
   const auto ev100 = static_cast<float>(
       scene.render.ev100.value_or(static_cast<double>(shared->description.ev100)));
 
+  GLOAM_TRY(const uint64_t key, key_of(options));
+  const std::string stem = std::filesystem::path(options.model).stem().string();
   const Rational step_rate = simulation->step_rate();
   const auto step_of = [&](int frame) {
     return static_cast<int64_t>(frame) * step_rate.num / (step_rate.den * options.rate);
@@ -143,8 +151,8 @@ Status run(const Options& options) {
     const PoseFrame& before = i > 0 ? previous : now;
     const auto quick = fast->capture(*shared->renderer, shared->mutex, now, before, i);
     if (options.at.contains(i)) {
-      GLOAM_TRY(const auto halves,
-                references(studio, now, before, options.spp, options.references));
+      GLOAM_TRY(const auto halves, references(studio, now, before, options.spp, options.references,
+                                              fmt::format("{}_{}_{}", stem, hash_to_hex(key), i)));
       Radiance path = halves[0];
       for (size_t k = 0; k < path.size(); ++k) path[k] = 0.5f * (path[k] + halves[1][k]);
       GLOAM_TRY_STATUS(write_picture(options, fmt::format("fast_{}", i), quick->radiance, ev100));

@@ -7,6 +7,20 @@
 
 namespace gloam {
 
+/// What all rays of one picture share.
+struct FastView {
+  const SceneView& scene;
+  const CpuTracer& tracer;
+  const CameraView32& camera;
+  IrradianceCacheView cache;
+  uint64_t seed;
+};
+
+/// Requests of one tile: for surfaces in view, and for what mirrors show.
+struct AskedOfTile {
+  std::vector<CacheRequest> seen, mirrored;
+};
+
 class FastHistory final : public ViewHistory {
  public:
   /// Renders into film->radiance.
@@ -17,16 +31,18 @@ class FastHistory final : public ViewHistory {
   /// One picture of the sequence; `pass` tells those of one instant apart.
   void add_picture(const SceneView& scene, const CpuTracer& tracer, const CameraView32& camera,
                    const RenderSettings& settings, uint32_t pass);
-  void trace(const SceneView& scene, const CpuTracer& tracer, const CameraView32& camera,
-             const RenderSettings& settings, uint32_t pass);
+  void trace(const FastView& view, uint32_t pass);
+  /// From the pixel (x0, y0) on. Returns the number of rays.
+  uint64_t trace_tile(const FastView& view, uint32_t pass, int x0, int y0, AskedOfTile* asked);
   void look_up(const IrradianceCacheView& cache);
   void compose();
 
   IrradianceCache cache_;
   FastFrame now_, before_;
   FastFilter filter_;
-  std::vector<std::vector<CacheRequest>> asked_;  ///< by tile
+  std::vector<AskedOfTile> asked_;  ///< by tile
   std::vector<CacheRequest> requests_;
+  Vec2f turn_;  ///< in [0, 1)², of the directions of FastSampleOf::near
   uint64_t rays_ = 0;
   uint32_t pictures_ = 0;  ///< taken, those of one instant too
 };

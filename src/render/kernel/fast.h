@@ -31,7 +31,43 @@ struct FastTurnsOf {
   MaskOf<F> of_four = true;  ///< one of each quad
 };
 
-/// What one camera ray saw: base + through (albedo (direct + cached) + cached specular + specular).
+/// What becomes of the light that reflections' rays bring.
+template <class F>
+struct ReflectionUseOf {
+  MaskOf<F> goes = false;      ///< lanes that have a ray of their own
+  MaskOf<F> together = false;  ///< in quads that share what they have,
+  MaskOf<F> borrows = false;   ///< and have none
+  Vec3Of<F> weight;            ///< share of the ray's light that goes on to the camera
+  Vec3Of<F> albedo;            ///< of all light that is reflected
+};
+
+/// Rays from surfaces that reflect.
+template <class F>
+struct ReflectionOf {
+  ReflectionUseOf<F> use;
+  RayOf<F> ray;
+  F cone_width = 0.0f, cone_spread = 0.0f;
+  F pdf = 0.0f;            ///< of the ray's direction
+  Vec3Of<F> from, normal;  ///< the surface, and its geometric normal
+  SamplerOf<F> sampler;
+};
+
+/// The ray of lane i of `from` into lane k of `to`.
+template <class F>
+GLOAM_HD void copy_lane(const ReflectionOf<F>& from, int i, ReflectionOf<F>* to, int k) {
+  set_lane(&to->ray.o, k, lane(from.ray.o, i));
+  set_lane(&to->ray.d, k, lane(from.ray.d, i));
+  set_lane(&to->ray.time, k, lane(from.ray.time, i));
+  set_lane(&to->cone_width, k, lane(from.cone_width, i));
+  set_lane(&to->cone_spread, k, lane(from.cone_spread, i));
+  set_lane(&to->pdf, k, lane(from.pdf, i));
+  set_lane(&to->from, k, lane(from.from, i));
+  set_lane(&to->normal, k, lane(from.normal, i));
+  to->sampler.take_lane(k, from.sampler, i);
+}
+
+/// What one camera ray saw: base + through (albedo (direct + cached) + cached gloss + specular +
+/// what its reflection shows).
 template <class F>
 struct FastSampleOf {
   Vec3Of<F> base;     ///< [cd/m²], without noise
@@ -43,8 +79,9 @@ struct FastSampleOf {
   Vec3Of<F> albedo;    ///< diffuse
   Vec3Of<F> gloss;     ///< directional albedo of what reflects the cache's light
   Vec3Of<F> direct;    ///< diffuse light of lamps over `albedo` [cd/m²]
-  Vec3Of<F> specular;  ///< [cd/m²]
-  F near = 0.0f;       ///< 1 where one direction meets something less than a cell's edge away
+  Vec3Of<F> specular;  ///< of lamps [cd/m²]
+  ReflectionOf<F> reflection;
+  F near = 0.0f;  ///< 1 where one direction meets something less than a cell's edge away
   UintOf<F> rays = 0u;
 };
 
@@ -359,9 +396,41 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
 
 }  // namespace fasts
 
-/// The camera ray's picture. `near_u` in [0, 1)²: the direction of FastSampleOf::near. `requests`:
-/// one per lane for the first solid surface, one for the specular ray's, one for a pane in front.
-/// Lanes come in quads.
+/// Light that the rays of the `active` lanes bring [cd/m²].
+template <class F, class Tracer>
+GLOAM_HD Vec3Of<F> look_along(const SceneView& scene, const Tracer& tracer,
+                              const IrradianceCacheView& cache, const ReflectionOf<F>& r,
+                              MaskOf<F> active, UintOf<F>* rays, CacheRequest* requests) {
+  paths::State<F> path;
+  path.ray = r.ray;
+  path.cone_width = r.cone_width;
+  path.cone_spread = r.cone_spread;
+  path.from = r.from;
+  path.pdf_bsdf = r.pdf;
+  path.sampler = r.sampler;
+  if (scene.lights.size > kMaxFastLights) {  // for the chances of lamps that are met
+    path.picker.prepare(scene, r.from, r.normal, active);
+    path.picker.leave_out_sky(scene);
+  }
+  const Vec3Of<F> light = fasts::gather(scene, tracer, cache, true, active, &path, requests).light;
+  *rays += path.result.rays;
+  return light;
+}
+
+/// What goes on to the camera when the rays have brought the light `seen`.
+template <class F>
+GLOAM_HD Vec3Of<F> reflected_light(const ReflectionUseOf<F>& r, const Vec3Of<F>& seen) {
+  const Vec3Of<F> own = select<F>(r.goes, seen * r.weight, Vec3Of<F>{});
+  if (!any(r.borrows)) return own;
+  const auto over = [](F x, F y) { return x / max(y, F(1e-6f)); };
+  const Vec3Of<F> share{over(own.x, r.albedo.x), over(own.y, r.albedo.y), over(own.z, r.albedo.z)};
+  const Vec3Of<F> lent = quad_sums(select<F>(r.together, share, Vec3Of<F>{}));
+  return select<F>(r.borrows, lent * r.albedo, own);
+}
+
+/// The camera ray's picture, but for what FastSampleOf::reflection will bring. `near_u` in [0, 1)²:
+/// the direction of FastSampleOf::near. `requests`: one per lane for the first solid surface, one
+/// for what panes in front reflect, one for such a pane. Lanes come in quads.
 template <class F, class Tracer>
 GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer,
                                     const IrradianceCacheView& cache, const RayOf<F>& ray,
@@ -451,34 +520,41 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
       const F pick = path.sampler.next_1d(traced);
       const BsdfSampleOf<F> s = sample_bsdf(shiny, wo, pick, toss);
       const Vec3Of<F> wi = frame.to_world(s.wi);
-      const Mask shares = traced & !bsdf.layered & (v.roughness >= kLeastSharedRoughness);
-      const Mask together = even_quads<F>(shares, hit.instance, v.normal);
-      const Mask borrows = together & !turns.of_four;
-      const Mask goes = traced & !borrows & (s.pdf > 0.0f) & (max_component(s.weight) > 0.0f);
-      // A path is large: this one bounces and comes back.
-      const RayOf<F> view = path.ray;
-      const F width = path.cone_width, spread = path.cone_spread;
-      const SamplerOf<F> later = path.sampler;
-      path.ray.o = select<F>(goes, leave_surface(v.p, v.geometric, wi, v.t), view.o);
-      path.ray.d = select<F>(goes, wi, view.d);
-      path.from = v.p;
-      path.pdf_bsdf = s.pdf;
-      path.cone_spread += 0.2f * square_root(min(1.0f / (kPi * s.pdf), F(1.0f)));
-      const Vec3Of<F> seen =
-          fasts::gather(scene, tracer, cache, true, goes, &path, requests + Lanes<F>::kCount).light;
-      path.ray = view;
-      path.cone_width = width;
-      path.cone_spread = spread;
-      path.sampler = later;
-      Vec3Of<F> shine = select<F>(goes, seen * s.weight, Vec3Of<F>{});
-      if (any(borrows)) {
-        const auto over = [](F x, F y) { return x / max(y, F(1e-6f)); };
-        const Vec3Of<F> share{over(shine.x, reflected.x), over(shine.y, reflected.y),
-                              over(shine.z, reflected.z)};
-        const Vec3Of<F> lent = quad_sums(select<F>(together, share, Vec3Of<F>{}));
-        shine = select<F>(borrows, lent * reflected, shine);
+      const Mask shares = traced & solid & !bsdf.layered & (v.roughness >= kLeastSharedRoughness);
+      ReflectionOf<F> r;
+      ReflectionUseOf<F>& use = r.use;
+      use.together = even_quads<F>(shares, hit.instance, v.normal);
+      use.borrows = use.together & !turns.of_four;
+      use.goes = traced & !use.borrows & (s.pdf > 0.0f) & (max_component(s.weight) > 0.0f);
+      r.ray = path.ray;
+      r.ray.o = leave_surface(v.p, v.geometric, wi, v.t);
+      r.ray.d = wi;
+      r.cone_width = path.cone_width;
+      r.cone_spread = path.cone_spread + 0.2f * square_root(min(1.0f / (kPi * s.pdf), F(1.0f)));
+      r.pdf = s.pdf;
+      r.from = v.p;
+      r.normal = v.geometric;
+      r.sampler = path.sampler;
+      use.weight = s.weight;
+      use.albedo = reflected;
+      if (const Mask now = use.goes & pane; any(now)) {
+        specular += select<F>(now,
+                              s.weight * look_along(scene, tracer, cache, r, now, &path.result.rays,
+                                                    requests + Lanes<F>::kCount),
+                              Vec3Of<F>{});
       }
-      specular += shine;
+      use.goes = use.goes & solid;
+      if (passed == 0) {
+        out.reflection = r;
+      } else {
+        ReflectionUseOf<F>& all = out.reflection.use;
+        each_lane(solid, [&](int i) { copy_lane(r, i, &out.reflection, i); });
+        all.weight = select<F>(solid, use.weight, all.weight);
+        all.albedo = select<F>(solid, use.albedo, all.albedo);
+        all.goes = all.goes | use.goes;
+        all.together = all.together | use.together;
+        all.borrows = all.borrows | use.borrows;
+      }
     }
     const Vec3Of<F> shade = albedo * (diffuse + cached) + gloss * cached + specular;
     out.base += out.through * select<F>(active, v.emission * v.opacity, Vec3Of<F>{});

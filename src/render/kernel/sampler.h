@@ -84,6 +84,14 @@ class SamplerOf {
     return s;
   }
 
+  /// Goes on in the lane `to` from where `other`, of the same seed, frame and turn, is in its lane
+  /// `from`.
+  GLOAM_HD void take_lane(int to, const SamplerOf& other, int from) {
+    seed_ = other.seed_;
+    set_lane(&reversed_index_, to, lane(other.reversed_index_, from));
+    set_lane(&dimension_, to, lane(other.dimension_, from));
+  }
+
   /// Lanes that are not `active` get a number too, but keep their place in the sequence.
   GLOAM_HD F next_1d(Mask active = true) {
     const Uint key = next_key(active);
