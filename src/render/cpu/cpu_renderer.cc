@@ -116,7 +116,7 @@ class CpuRenderer final : public Renderer {
     // What is measured before the picture, and the fast tier, know no times: mean lamps.
     const DeviceSpan<const float> levels = std::exchange(job.scene.light_levels, {});
     job.tracer = traced_.tracer();
-    if (settings.tier == RenderTier::kPath) {
+    if (settings.tier != RenderTier::kDirect) {
       if (!has_guide_) guide_.build(job.scene, traced_.static_tracer(), described_);
       has_guide_ = true;
       described_ = {};

@@ -229,13 +229,8 @@ void FastFilter::smooth_signals(const FastFrame& f, int round, const FastPlane3*
             apart[s] = 1.0f + sqr(min(d * d, kFarthest));
           }
           F weight[kFastSignals];
-          weight[kCachedSignal] = tap;
-          if constexpr (kFirst < kKeptSignals) {
-            const F w = tap / (apart[kDirectSignal] * apart[kSpecularSignal]);  // one division
-            weight[kDirectSignal] = w * apart[kSpecularSignal];
-            // Sharp mirrors show what is far behind them.
-            weight[kSpecularSignal] = w * apart[kDirectSignal] * mirror;
-          }
+          for (int s = kFirst; s < kFastSignals; ++s) weight[s] = tap / apart[s];
+          if constexpr (kFirst <= kSpecularSignal) weight[kSpecularSignal] *= mirror;
           for (int s = kFirst; s < kFastSignals; ++s) {
             sum[s] += v[s] * weight[s];
             total[s] += weight[s];

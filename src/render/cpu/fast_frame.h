@@ -74,7 +74,7 @@ struct FastPlane3 {
 /// The noisy parts: light of lamps, of mirrors, of the cache. The last changes little from picture
 /// to picture and has no past of its own.
 enum FastSignal { kDirectSignal, kSpecularSignal, kCachedSignal, kFastSignals };
-inline constexpr int kKeptSignals = kCachedSignal;
+inline constexpr int kKeptSignals = kFastSignals;
 /// Smoother surfaces show sharp pictures of other things.
 inline constexpr float kMirror = 0.25f;
 

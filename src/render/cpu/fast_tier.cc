@@ -53,11 +53,13 @@ void FastHistory::compose() {
 void FastHistory::add_picture(const SceneView& scene, const CpuTracer& tracer,
                               const CameraView32& camera, const RenderSettings& settings,
                               uint32_t pass) {
+  SceneView plain = scene;  // rays of pixels go where they must
+  plain.guide = {};
   const Vec3f eye = camera.pose.X_WC_open.p;
   const float edge = cell_edge(camera);
   for (bool again = true; again;) {
     again = cache_.size() == 0;  // a first picture is traced twice: its rays saw no cache
-    trace({scene, tracer, camera, cache_.view(eye, edge), settings.seed}, pass);
+    trace({plain, tracer, camera, cache_.view(eye, edge), settings.seed}, pass);
     cache_.ask(requests_);
     rays_ += cache_.update(scene, tracer, eye, edge, settings.seed, again ? kWarmUp : 1);
     if (requests_.empty()) break;

@@ -4,11 +4,13 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "render/kernel/light_directions.h"
 
 namespace gloam {
 namespace {
 
 constexpr int kRays = 32;            // of a cell and update
+constexpr int kTogether = 8;         // of them go by the cosine, as many by the guide
 constexpr int kMemory = 10 * kRays;  // rays that a cell's mean is of, at most
 constexpr uint32_t kRounds = 16;     // of rays through one set of points
 constexpr float kStirred = 40;       // of a cell that sees moving things in all directions, as many
@@ -119,27 +121,43 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
     path.throughput = in_all_lanes<F>({1, 1, 1});
     // Each stratum is a part of a ring: over compact patches of directions a rare bright lamp left
     // spots.
-    const Vec3Of<F> local = cosine_direction(path.sampler.next_2d());
+    const Vec2Of<F> u = path.sampler.next_2d();
+    const Vec3Of<F> local = cosine_direction(u);
+    Vec3Of<F> normal;
+    MaskLanes seeks = false;
     for (int i = 0; i < kLaneCount; ++i) {
       const CacheRequest& start = starts_[row * kStarts + static_cast<size_t>(first + i) % starts];
       set_lane(&path.ray.o, i, start.p);
-      set_lane(&path.ray.d, i, Frame::from_z(start.n).to_world(lane(local, i)));
+      set_lane(&normal, i, start.n);
+      set_lane(&seeks, i, (first + i) / kTogether % 2 != 0);
+    }
+    path.ray.d = FrameOf<F>::from_z(normal).to_world(local);
+    F weight = 1.0f;
+    if (scene.guides_directions()) {
+      const GuideRowsOf<F> rows = find_rows<F>(scene.guide, path.ray.o, normal, true);
+      path.ray.d = select<F>(seeks & rows.guided, directions::sample(scene.guide, rows.row, u),
+                             path.ray.d);
+      const F even = max(dot(path.ray.d, normal), 0.0f) * kInvPi;
+      const F sought = directions::pdf(scene.guide, rows.row, path.ray.d);
+      weight = select(rows.guided, 2.0f * even / max(even + sought, F(1e-9f)), F(1.0f));
     }
     path.cone_spread = kSpread;
     path.from = path.ray.o;
     CacheRequest met[kLaneCount];
     const fasts::GatheredOf<F> light =
-        fasts::gather(scene, tracer, cache, false, MaskLanes(true), &path, met);
+        fasts::gather(scene, tracer, cache, false, weight > 0.0f, &path, met);
     for (int i = 0; i < kLaneCount; ++i) {
-      const Vec3f all = lane(light.light, i);
+      const float w = lane(weight, i);
+      if (!(w > 0)) continue;
+      const Vec3f all = lane(light.light, i) * w;
       const Vec3f one = all * (brightest / max(luminance(all), brightest));
       out.excess += all - one;
       const bool near = lane(light.way, i) < edge;
       out.light.all += one;
       if (near) out.light.near += one;
-      out.light.share += near ? 1.0f : 0.0f;
+      out.light.share += near ? w : 0.0f;
       if (lane(light.way, i) < 1e30f && scene.instances[lane(light.first, i)].has_moved)
-        out.stir += 1.0f / kRays;
+        out.stir += w / kRays;
       out.variance += sqr(luminance(one));
       out.rays += lane(path.result.rays, i);
     }

@@ -45,6 +45,20 @@ struct GuideRowsOf {
   MaskOf<F> guided = false;
 };
 
+/// Those of the points p on surfaces with the geometric normals n, in the `active` lanes.
+template <class F>
+GLOAM_HD GuideRowsOf<F> find_rows(const LightGuide& guide, Vec3Of<F> p, Vec3Of<F> n,
+                                  MaskOf<F> active) {
+  GuideRowsOf<F> rows;
+  each_lane(active, [&](int i) {
+    const int row = guide.row_at(lane(p, i), lane(n, i));
+    if (row < 0) return;
+    set_lane(&rows.guided, i, true);
+    set_lane(&rows.row, i, static_cast<uint32_t>(row));
+  });
+  return rows;
+}
+
 /// Room for the probabilities of lights, one each.
 template <class F>
 struct LightSharesOf {
@@ -230,17 +244,6 @@ class LightPickerOf {
   /// What the sky and media leave to the lights.
   GLOAM_HD F lights_share(const SceneView& scene) const {
     return scene.has_glow() ? 1.0f - sky_share_ - glow_share_ : 1.0f - sky_share_;
-  }
-  GLOAM_HD static GuideRowsOf<F> find_rows(const LightGuide& guide, Vec3Of<F> p, Vec3Of<F> n,
-                                           Mask active) {
-    GuideRowsOf<F> rows;
-    each_lane(active, [&](int i) {
-      const int row = guide.row_at(lane(p, i), lane(n, i));
-      if (row < 0) return;
-      set_lane(&rows.guided, i, true);
-      set_lane(&rows.row, i, static_cast<uint32_t>(row));
-    });
-    return rows;
   }
   GLOAM_HD static LightSample sample_by_tree(const SceneView& scene, Vec3f p, Vec3f n, Vec2f u,
                                              float time) {
