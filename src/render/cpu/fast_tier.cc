@@ -14,6 +14,7 @@ constexpr float kCellPixels = 32;       // edge of a cache's cell in the picture
 constexpr float kWidestCell = 0.05f;    // or over its distance if that is less
 constexpr int kWarmUp = 12;             // updates of the cache before the first picture
 constexpr uint32_t kFirstPictures = 8;  // of the first instant, one upon the other
+constexpr size_t kMostCells = 2500;     // of the cache that a later picture traces again
 
 float cell_edge(const CameraView32& camera) { return min(kCellPixels / camera.fx, kWidestCell); }
 
@@ -61,7 +62,8 @@ void FastHistory::add_picture(const SceneView& scene, const CpuTracer& tracer,
     again = cache_.size() == 0;  // a first picture is traced twice: its rays saw no cache
     trace({plain, tracer, camera, cache_.view(eye, edge), settings.seed}, pass);
     cache_.ask(requests_);
-    rays_ += cache_.update(scene, tracer, eye, edge, settings.seed, again ? kWarmUp : 1);
+    rays_ += cache_.update(scene, tracer, eye, edge, settings.seed, again ? kWarmUp : 1,
+                           pictures_ < kFirstPictures ? cache_.size() : kMostCells);
     if (requests_.empty()) break;
   }
   look_up(cache_.view(eye, edge));

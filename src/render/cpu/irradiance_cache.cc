@@ -17,7 +17,6 @@ constexpr float kStirred = 40;       // of a cell that sees moving things in all
                                      // times less
 constexpr float kSettles = 0.75f;    // of what a cell saw move, from update to update
 constexpr uint32_t kForgotten = 30;  // updates after which a cell that nobody asks for goes
-constexpr size_t kMostCells = 2500;  // of an update, but for a first picture's
 constexpr float kSurprise = 3;       // standard errors,
 constexpr float kNoChange = 0.02f;   // and this share, that a region's light may be off
 constexpr float kBrightest = 16;     // times a cell's mean: what a ray brings beyond that is the
@@ -316,7 +315,8 @@ void IrradianceCache::extrapolate(int round, bool remembers) {
 }
 
 uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer, Vec3f eye,
-                                 float edge_per_metre, uint64_t seed, int settle) {
+                                 float edge_per_metre, uint64_t seed, int settle,
+                                 size_t most_cells) {
   uint64_t rays = 0;
   const bool settling = settle > 1;
   int rounds = settle;
@@ -337,7 +337,7 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
     };
     std::stable_sort(asked_.begin(), asked_.end(),
                      [&](uint32_t a, uint32_t b) { return waits(a) > waits(b); });
-    if (!settling && i == 0 && asked_.size() > kMostCells) asked_.resize(kMostCells);
+    if (!settling && i == 0 && asked_.size() > most_cells) asked_.resize(most_cells);
     rays += trace(scene, tracer, view(eye, edge_per_metre), seed, remembers);
     // A lamp went on or off: what it sends comes round by one reflection each time.
     const auto changed = std::count_if(traced_.begin(), traced_.end(),

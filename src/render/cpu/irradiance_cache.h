@@ -17,9 +17,10 @@ class IrradianceCache {
   /// has asked for in a while.
   void ask(const std::vector<CacheRequest>& requests);
   /// Traces rays from all cells that were asked for since the last update. `settle`: how many
-  /// times; light is reflected once more each time. Returns the number of rays.
+  /// times; light is reflected once more each time; if once, only those `most_cells` that have
+  /// waited longest. Returns the number of rays.
   uint64_t update(const SceneView& scene, const CpuTracer& tracer, Vec3f eye, float edge_per_metre,
-                  uint64_t seed, int settle);
+                  uint64_t seed, int settle, size_t most_cells);
 
   IrradianceCacheView view(Vec3f eye, float edge_per_metre) const;
   size_t size() const { return cells_.size(); }
