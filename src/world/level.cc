@@ -12,6 +12,7 @@
 #include "world/finite_model.h"
 #include "world/level_cameras.h"
 #include "world/level_keyframe.h"
+#include "world/long_wait.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
@@ -50,6 +51,8 @@ Result<SpecPtr> parse_model(const fs::path& file, const FileAccess& access, Mode
   mjSpec* spec = nullptr;
   files->forget_failures();
   const MujocoWarningCapture warnings;
+  const LongWait wait(fmt::format("MuJoCo reads {}", file.filename().string()),
+                      files->slowest_replicate());
   const Status status =
       guarded([&] { spec = mj_parseXML(path.c_str(), files->vfs(), message, sizeof(message)); });
   if (!status.ok()) return files->explain(status.error().message, path);
@@ -193,6 +196,7 @@ Status compile(const Scene& scene, ModelFiles* files, Level* level) {
   const mjVFS* vfs = files->vfs();
   const int warnings_before = mjs_numWarnings(spec);
   const MujocoWarningCapture warnings;
+  const LongWait wait("MuJoCo compiles the model", 0);
   const Status status = guarded([&] { model = mj_compile(spec, vfs); });
   level->model.reset(model);
   const fs::path file = file_of(scene, "");
