@@ -12,6 +12,7 @@
 #include <string>
 
 #include "base/files.h"
+#include "bench/command_line.h"
 #include "render/film/png.h"
 #include "render/film/tone_map.h"
 #include "render/test/adaptive_scenes.h"
@@ -91,17 +92,15 @@ void write_counts(const std::string& file, const Film& film, int most) {
 
 int main(int argc, char** argv) {
   Arguments a;
-  for (int i = 1; i < argc; ++i) {
-    const std::string arg = argv[i];
-    if (arg == "--json") a.json = true;
-    if (i + 1 >= argc) continue;
-    if (arg == "--error") a.error = std::atof(argv[++i]);
-    if (arg == "--spp") a.spp = std::atoi(argv[++i]);
-    if (arg == "--seeds") a.seeds = std::atoi(argv[++i]);
-    if (arg == "--size") std::sscanf(argv[++i], "%dx%d", &a.width, &a.height);
-    if (arg == "--pictures") a.pictures = argv[++i];
-    if (arg == "--scene") a.scene = argv[++i];
-  }
+  CommandLine line(argc, argv);
+  a.json = line.flag("--json");
+  std::string error;
+  if (line.value("--error", &error)) a.error = std::atof(error.c_str());
+  line.value("--spp", &a.spp);
+  line.value("--seeds", &a.seeds);
+  line.size(&a.width, &a.height);
+  line.value("--pictures", &a.pictures);
+  line.value("--scene", &a.scene);
   for (const NoiseScene& scene : noise_scenes(a.width, a.height)) {
     if (!a.scene.empty() && a.scene != scene.name) continue;
     auto renderer = scene.builder.make();

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/command_line.h"
 #include "runtime/live_simulation.h"
 #include "runtime/run_to_step.h"
 
@@ -28,21 +29,13 @@ struct Arguments {
 
 Arguments parse(int argc, char** argv) {
   Arguments a;
-  for (int i = 1; i < argc; ++i) {
-    const std::string arg = argv[i];
-    if (arg == "--cpu") {
-      a.cpu = true;
-    } else if (arg == "--json") {
-      a.json = true;
-    } else if (arg.rfind("--", 0) != 0) {
-      a.model = arg;
-    } else if (i + 1 < argc) {
-      const char* value = argv[++i];
-      if (arg == "--camera") a.cameras.push_back(value);
-      if (arg == "--runs") a.runs = std::max(1, std::atoi(value));
-      if (arg == "--size") std::sscanf(value, "%dx%d", &a.width, &a.height);
-    }
-  }
+  CommandLine line(argc, argv);
+  a.cpu = line.flag("--cpu");
+  a.json = line.flag("--json");
+  for (std::string camera; line.value("--camera", &camera);) a.cameras.push_back(camera);
+  line.value("--runs", &a.runs);
+  line.size(&a.width, &a.height);
+  if (!line.words().empty()) a.model = line.words().back();
   return a;
 }
 
@@ -136,8 +129,4 @@ Status run(const Arguments& a) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  const Status status = run(parse(argc, argv));
-  if (!status.ok()) std::fprintf(stderr, "%s\n", status.error().to_string().c_str());
-  return status.ok() ? 0 : 1;
-}
+int main(int argc, char** argv) { return exit_code(run(parse(argc, argv))); }

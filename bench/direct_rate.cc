@@ -16,6 +16,7 @@
 #include <string_view>
 
 #include "base/files.h"
+#include "bench/command_line.h"
 #include "gloam/scene.h"
 #include "render/film/png.h"
 #include "runtime/live_simulation.h"
@@ -24,7 +25,7 @@ namespace gloam {
 namespace {
 
 struct Options {
-  const char *model = nullptr, *camera = nullptr, *picture = nullptr, *tier = "direct";
+  std::string model, camera, picture, tier = "direct";
   int width = 640, height = 480, spp = 1, frames = 20;
   bool truth = false;
 };
@@ -74,7 +75,7 @@ Status run(const Options& options) {
     wall.push_back(wall_end - wall_begin);
     cpu.push_back(cpu_end - cpu_begin);
   }
-  if (options.picture != nullptr) {
+  if (!options.picture.empty()) {
     GLOAM_TRY_STATUS(write_file_atomic(options.picture,
                                        encode_png8(options.width, options.height, 3, frame->rgb)));
   }
@@ -87,32 +88,19 @@ Status run(const Options& options) {
 
 int main(int argc, char** argv) {
   gloam::Options options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view word = argv[i];
-    const bool more = i + 1 < argc;
-    if (word == "--size" && more) {
-      std::sscanf(argv[++i], "%dx%d", &options.width, &options.height);
-    } else if (word == "--spp" && more) {
-      options.spp = std::max(1, std::atoi(argv[++i]));
-    } else if (word == "--frames" && more) {
-      options.frames = std::max(1, std::atoi(argv[++i]));
-    } else if (word == "--tier" && more) {
-      options.tier = argv[++i];
-    } else if (word == "--truth") {
-      options.truth = true;
-    } else if (word == "--picture" && more) {
-      options.picture = argv[++i];
-    } else {
-      (options.model == nullptr ? options.model : options.camera) = argv[i];
-    }
-  }
-  if (options.camera == nullptr) {
+  gloam::CommandLine line(argc, argv);
+  line.size(&options.width, &options.height);
+  line.value("--spp", &options.spp);
+  line.value("--frames", &options.frames);
+  line.value("--tier", &options.tier);
+  options.truth = line.flag("--truth");
+  line.value("--picture", &options.picture);
+  if (line.words().size() != 2) {
     fmt::print(stderr,
                "usage: direct_rate MODEL CAMERA [--size WxH] [--spp N] [--frames N] [--tier T] "
                "[--picture FILE.png] [--truth]\n");
     return 2;
   }
-  const gloam::Status status = gloam::run(options);
-  if (!status) fmt::print(stderr, "gloam: error: {}\n", status.error().to_string());
-  return status.ok() ? 0 : status.error().exit_code();
+  options.model = line.words()[0], options.camera = line.words()[1];
+  return gloam::exit_code(gloam::run(options));
 }

@@ -22,6 +22,7 @@
 #include "base/files.h"
 #include "base/hash.h"
 #include "base/vec.h"
+#include "bench/command_line.h"
 #include "gloam/scene.h"
 #include "render/film/png.h"
 #include "render/film/tone_map.h"
@@ -173,28 +174,17 @@ Status run(const Options& options) {
 
 int main(int argc, char** argv) {
   gloam::Options options;
-  std::vector<std::string> words;
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view word = argv[i];
-    const bool more = i + 1 < argc;
-    if (word == "--size" && more) {
-      std::sscanf(argv[++i], "%dx%d", &options.width, &options.height);
-    } else if (word == "--rate" && more) {
-      options.rate = std::max(1, std::atoi(argv[++i]));
-    } else if (word == "--frames" && more) {
-      options.frames = std::max(1, std::atoi(argv[++i]));
-    } else if (word == "--spp" && more) {
-      options.spp = std::max(1, std::atoi(argv[++i]));
-    } else if (word == "--references" && more) {
-      options.references = argv[++i];
-    } else if (word == "--at" && more) {
-      for (char* at = argv[++i]; *at != 0; at += *at == ',') {
-        options.at.insert(static_cast<int>(std::strtol(at, &at, 10)));
-      }
-    } else {
-      words.emplace_back(word);
-    }
-  }
+  gloam::CommandLine line(argc, argv);
+  line.size(&options.width, &options.height);
+  line.value("--rate", &options.rate);
+  line.value("--frames", &options.frames);
+  line.value("--spp", &options.spp);
+  line.value("--references", &options.references);
+  std::string frames;
+  line.value("--at", &frames);
+  for (char* at = frames.data(); *at != 0; at += *at == ',')
+    options.at.insert(static_cast<int>(std::strtol(at, &at, 10)));
+  const std::vector<std::string>& words = line.words();
   if (words.size() != 3) {
     fmt::print(stderr,
                "usage: fast_pictures SCENE CAMERA OUT [--size WxH] [--rate HZ] [--frames N] "
@@ -204,7 +194,5 @@ int main(int argc, char** argv) {
   options.model = words[0], options.camera = words[1], options.out = words[2];
   if (options.at.empty()) options.at = {options.frames - 1};
   std::filesystem::create_directories(options.out);
-  const gloam::Status status = gloam::run(options);
-  if (!status) fmt::print(stderr, "gloam: error: {}\n", status.error().to_string());
-  return status.ok() ? 0 : status.error().exit_code();
+  return gloam::exit_code(gloam::run(options));
 }

@@ -14,6 +14,7 @@
 #include <ctime>
 
 #include "base/parallel.h"
+#include "bench/command_line.h"
 #include "gloam/simulation.h"
 #include "sensors/lidar_sensor.h"
 #include "sim/pose_solver.h"
@@ -153,19 +154,11 @@ Status run(const Arguments& arguments) {
 
 int main(int argc, char** argv) {
   gloam::Arguments arguments;
-  for (int i = 1; i < argc; ++i) {
-    const std::string arg = argv[i];
-    if (arg == "--json") {
-      arguments.json = true;
-    } else if (arg == "--runs" && i + 1 < argc) {
-      arguments.runs = std::max(1, std::atoi(argv[++i]));
-    } else if (arg == "--footprint" && i + 1 < argc) {
-      arguments.footprint = std::clamp(std::atoi(argv[++i]), 1, 32);
-    } else {
-      arguments.scene = arg;
-    }
-  }
-  const gloam::Status status = gloam::run(arguments);
-  if (!status.ok()) fmt::print(stderr, "gloam: error: {}\n", status.error().to_string());
-  return status.ok() ? 0 : 1;
+  gloam::CommandLine line(argc, argv);
+  arguments.json = line.flag("--json");
+  line.value("--runs", &arguments.runs);
+  line.value("--footprint", &arguments.footprint);
+  arguments.footprint = std::min(arguments.footprint, 32);
+  if (!line.words().empty()) arguments.scene = line.words().back();
+  return gloam::exit_code(gloam::run(arguments));
 }

@@ -14,6 +14,7 @@
 #include <ctime>
 
 #include "base/files.h"
+#include "bench/command_line.h"
 #include "gloam/scene.h"
 #include "runtime/live_simulation.h"
 
@@ -29,15 +30,14 @@ struct Arguments {
 
 Arguments parse(int argc, char** argv) {
   Arguments a;
-  if (argc > 2) a.scene = argv[1], a.out = argv[2];
-  for (int i = 3; i + 1 < argc; i += 2) {
-    const std::string arg = argv[i];
-    if (arg == "--camera") a.camera = argv[i + 1];
-    if (arg == "--spp") a.spp = std::atoi(argv[i + 1]);
-    if (arg == "--batches") a.batches = std::atoi(argv[i + 1]);
-    if (arg == "--seed") a.seed = std::strtoull(argv[i + 1], nullptr, 10);
-    if (arg == "--block") a.block = std::atoi(argv[i + 1]);
-  }
+  CommandLine line(argc, argv);
+  line.value("--camera", &a.camera);
+  line.value("--spp", &a.spp);
+  line.value("--batches", &a.batches);
+  std::string seed;
+  if (line.value("--seed", &seed)) a.seed = std::strtoull(seed.c_str(), nullptr, 10);
+  line.value("--block", &a.block);
+  if (line.words().size() == 2) a.scene = line.words()[0], a.out = line.words()[1];
   return a;
 }
 
@@ -116,14 +116,12 @@ Status render_blocks(const Arguments& a) {
 
 int main(int argc, char** argv) {
   const Arguments a = parse(argc, argv);
-  if (a.out.empty() || a.spp < 1 || a.batches < 2 || a.block < 1) {
+  if (a.out.empty() || a.batches < 2) {
     std::fputs(
         "usage: path_blocks SCENE FILE [--camera NAME] [--spp N] [--batches N] [--seed N] "
         "[--block N]\n",
         stderr);
     return 2;
   }
-  const Status status = render_blocks(a);
-  if (!status.ok()) std::fprintf(stderr, "%s\n", status.error().to_string().c_str());
-  return status.ok() ? 0 : 1;
+  return exit_code(render_blocks(a));
 }

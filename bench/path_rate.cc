@@ -12,6 +12,7 @@
 #include <string>
 
 #include "base/parallel.h"
+#include "bench/command_line.h"
 #include "bench/room_scene.h"
 #include "render/cpu/embree_build.h"
 #include "render/test/probe.h"
@@ -30,22 +31,18 @@ struct Arguments {
 
 Arguments parse(int argc, char** argv) {
   Arguments a;
-  for (int i = 1; i < argc; ++i) {
-    const std::string arg = argv[i];
-    const bool more = i + 1 < argc;
-    if (arg == "--direct") a.settings.tier = RenderTier::kDirect;
-    if (arg == "--fast") a.settings.tier = RenderTier::kFast;
-    if (arg == "--plain") a.room.plain = true;
-    if (arg == "--meshes") a.room.meshes = true;
-    if (arg == "--json") a.json = true;
-    if (!more) continue;
-    if (arg == "--picture") a.picture = argv[++i];
-    if (arg == "--export") a.export_folder = argv[++i];
-    if (arg == "--spp") a.settings.spp = std::atoi(argv[++i]);
-    if (arg == "--runs") a.runs = std::atoi(argv[++i]);
-    if (arg == "--depth") a.settings.max_depth = std::atoi(argv[++i]);
-    if (arg == "--size") std::sscanf(argv[++i], "%dx%d", &a.width, &a.height);
-  }
+  CommandLine line(argc, argv);
+  if (line.flag("--direct")) a.settings.tier = RenderTier::kDirect;
+  if (line.flag("--fast")) a.settings.tier = RenderTier::kFast;
+  a.room.plain = line.flag("--plain");
+  a.room.meshes = line.flag("--meshes");
+  a.json = line.flag("--json");
+  line.value("--picture", &a.picture);
+  line.value("--export", &a.export_folder);
+  line.value("--spp", &a.settings.spp, 0);
+  line.value("--runs", &a.runs);
+  line.value("--depth", &a.settings.max_depth);
+  line.size(&a.width, &a.height);
   return a;
 }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/rng.h"
+#include "bench/command_line.h"
 #include "scene/mujoco_guard.h"
 #include "world/world.h"
 
@@ -75,11 +76,12 @@ inline void add_floor_and_motors(mjSpec* spec) {
 
 /// The model of a file. One without actuators gets a floor and a motor on every joint, so that the
 /// robot lies on the ground and moves; `bare` leaves it as it is.
-inline Result<std::shared_ptr<const CompiledWorld>> load_step_model(const char* file, bool bare) {
+inline Result<std::shared_ptr<const CompiledWorld>> load_step_model(const std::string& file,
+                                                                    bool bare) {
   install_mujoco_handler();
   char error[1000] = "";
   auto world = std::make_shared<CompiledWorld>();
-  const SpecPtr spec(mj_parseXML(file, nullptr, error, sizeof(error)));
+  const SpecPtr spec(mj_parseXML(file.c_str(), nullptr, error, sizeof(error)));
   if (!spec) return Error{ErrorKind::kInput, error};
   const bool has_actuators = mjs_firstElement(spec.get(), mjOBJ_ACTUATOR) != nullptr;
   if (!has_actuators && !bare) add_floor_and_motors(spec.get());
@@ -92,7 +94,7 @@ inline Result<std::shared_ptr<const CompiledWorld>> load_step_model(const char* 
 }
 
 struct StepOptions {
-  const char* model = nullptr;
+  std::string model;
   int pairs = 60;
   int block = 2000;  ///< steps
   bool bare = false, json = false;
@@ -102,27 +104,17 @@ struct StepOptions {
 inline int run_step_bench(int argc, char** argv, const char* name, int least_pairs,
                           Status (*run)(const StepOptions&)) {
   StepOptions options;
-  for (int i = 1; i < argc; ++i) {
-    const std::string_view word = argv[i];
-    if (word == "--bare") {
-      options.bare = true;
-    } else if (word == "--json") {
-      options.json = true;
-    } else if (word == "--pairs" && i + 1 < argc) {
-      options.pairs = std::max(least_pairs, std::atoi(argv[++i]));
-    } else if (word == "--block" && i + 1 < argc) {
-      options.block = std::max(1, std::atoi(argv[++i]));
-    } else {
-      options.model = argv[i];
-    }
-  }
-  if (options.model == nullptr) {
+  CommandLine line(argc, argv);
+  options.bare = line.flag("--bare");
+  options.json = line.flag("--json");
+  line.value("--pairs", &options.pairs, least_pairs);
+  line.value("--block", &options.block);
+  if (line.words().size() != 1) {
     fmt::print(stderr, "usage: {} MODEL.xml [--pairs N] [--block STEPS] [--bare] [--json]\n", name);
     return 2;
   }
-  const Status status = run(options);
-  if (!status) fmt::print(stderr, "gloam: error: {}\n", status.error().to_string());
-  return status.ok() ? 0 : status.error().exit_code();
+  options.model = line.words()[0];
+  return exit_code(run(options));
 }
 
 /// Median of ratios and the lower end of its one-sided 95 % confidence interval from order

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <new>
 #include <utility>
 
@@ -11,6 +12,17 @@
 #include "base/memory.h"
 
 namespace gloam {
+namespace {
+
+// Streams of which this is equal draw the same pictures of a camera.
+std::string pictures_of(const CameraRequest& request, const Intrinsics& k) {
+  const RenderOptions& render = request.render;
+  return fmt::format("{} {} {}x{} {} {} {} {} {} {}", request.camera, request.rate.value(), k.width,
+                     k.height, render.tier, render.samples(), render.error.value_or(0),
+                     render.max_depth, render.denoise, render.ev100.value_or(NAN));
+}
+
+}  // namespace
 
 LiveCamera::LiveCamera(Simulator& simulator, std::shared_ptr<SharedRenderer> shared,
                        FrameCallback on_frame)
@@ -26,6 +38,11 @@ Result<std::unique_ptr<LiveCamera>> LiveCamera::open(Simulator& simulator,
   GLOAM_TRY(camera->sensor_, CameraSensor::create(camera->shared_->description, request, seed));
   GLOAM_TRY_STATUS(camera->sensor_->set_temperatures(simulator.world().scene.temperatures));
   const Intrinsics& k = camera->sensor_->intrinsics();
+  if (const auto own = camera->sensor_->events()) {
+    auto events = camera->shared_->events.share(pictures_of(request, k), own);
+    if (request.required) camera->lead_.emplace(events);
+    camera->sensor_->share_events(std::move(events), request.required);
+  }
   const PictureMemory memory = camera->sensor_->memory();
   constexpr uint64_t kInFlight = 2;  // frames that are made and looked at
   GLOAM_TRY_STATUS(check_memory(
@@ -107,6 +124,7 @@ void LiveCamera::run() {
     if (!required_) log_error("a camera stopped: {}", status_.error().to_string());
     queue_->close();  // the simulation must not wait for it
   }
+  lead_.reset();
 }
 
 Status LiveCamera::status() const {

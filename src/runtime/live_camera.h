@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "gloam/simulation.h"
@@ -46,6 +47,7 @@ class LiveCamera final : public CameraStream {
   std::shared_ptr<SharedRenderer> shared_;
   FrameCallback on_frame_;
   std::unique_ptr<CameraSensor> sensor_;
+  std::optional<EventLead> lead_;  // of a required stream with events, until run() ends
   SensorTiming timing_;
   std::shared_ptr<ExposureMeter> meter_;  // null: the exposure stays
   std::unique_ptr<PoseSolver> solver_;

@@ -1,5 +1,7 @@
 // gloam::render_stills and write_frame.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -66,6 +68,14 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
   GLOAM_TRY(auto shared, simulation->renderer());
   std::vector<std::unique_ptr<CameraSensor>> sensors;
   for (const CameraRequest& request : requests) {
+    if (std::ranges::count(request.outputs, "events") > 0) {
+      return Error{ErrorKind::kInput,
+                   fmt::format("camera '{}': events are of all frames up to a time, so a still has "
+                               "none",
+                               request.camera),
+                   {},
+                   "record them: gloam run, with the output 'events'"};
+    }
     GLOAM_TRY(auto sensor, CameraSensor::create(shared->description, request, options.seed));
     GLOAM_TRY_STATUS(sensor->set_temperatures(world.compiled()->scene.temperatures));
     sensors.push_back(std::move(sensor));

@@ -3,12 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <regex>
 
 #include "base/check.h"
 #include "base/files.h"
 #include "base/hash.h"
+#include "base/log.h"
 #include "base/text.h"
 #include "scene/mujoco_guard.h"
 
@@ -46,6 +48,17 @@ size_t shared_tail(const fs::path& path, const fs::path& value) {
          a[a.size() - 1 - shared] == b[b.size() - 1 - shared])
     ++shared;
   return shared;
+}
+
+void tell_if_slow(const Replicate& replicate, const fs::path& file) {
+  constexpr double kSlow = 2;  // [s]
+  if (replicate.seconds < kSlow) return;
+  log_warning(
+      "{}:{}: MuJoCo takes about {:.0f} s for a <replicate> of {} copies, four times that for "
+      "twice "
+      "as many: put a <replicate> of {:.0f} into one of {:.0f} (docs/scenes.md)",
+      file.string(), replicate.line, replicate.seconds, replicate.copies,
+      std::ceil(std::sqrt(replicate.copies)), std::ceil(std::sqrt(replicate.copies)));
 }
 
 std::string one_line(std::string text) {
@@ -180,6 +193,8 @@ Status ModelFiles::scan(const fs::path& file, const fs::path& model, const Sourc
     return Error{ErrorKind::kInput, "the XML is larger than 64 MiB", {file.string(), 0, 0}};
   GLOAM_TRY(XmlScan scanned, scan_model_xml(text, file.string()));
   uses_plugins_ = uses_plugins_ || scanned.has_plugins;
+  slowest_replicate_ = std::max(slowest_replicate_, scanned.slowest.seconds);
+  tell_if_slow(scanned.slowest, file);
   const XmlScan& kept = scans_.emplace(file, std::move(scanned)).first->second;
   stack.push_back(file);
   for (const FileReference& reference : kept.references) {

@@ -44,6 +44,8 @@ class ModelFiles {
 
   /// Top element of a model that was added: "mujoco" or "robot".
   const std::string& root_element(const std::filesystem::path& file) const;
+  /// That MuJoCo takes for the slowest <replicate> of all files, roughly [s].
+  double slowest_replicate() const { return slowest_replicate_; }
   /// Text of a model or of a file that it includes, as on disk.
   const std::string& text(const std::filesystem::path& file) const;
   bool uses_plugins() const { return uses_plugins_; }
@@ -98,6 +100,7 @@ class ModelFiles {
   std::vector<ModelRoot> roots_;
   std::map<std::filesystem::path, XmlScan> scans_;
   bool uses_plugins_ = false;
+  double slowest_replicate_ = 0;  // [s]
 
   mutable std::mutex mutex_;  // MuJoCo's compiler reads assets on several threads
   std::map<std::filesystem::path, Content> contents_;

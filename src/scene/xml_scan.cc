@@ -136,6 +136,20 @@ Status check_sizes(const pugi::xml_node& node, const std::function<SourceLoc()>&
   return {};
 }
 
+// The elements that `node` becomes. MuJoCo attaches copies one by one and goes through all elements
+// of the copies so far at each: measured for 10⁴ to 5·10⁴ lights with 3.12 on a server's core.
+double weigh(const pugi::xml_node& node, const Lines& lines, Replicate* slowest) {
+  constexpr double kSeconds = 3e-8;  // of each copy and element
+  double inside = 0;
+  for (const pugi::xml_node& child : node.children())
+    if (child.type() == pugi::node_element) inside += weigh(child, lines, slowest);
+  if (std::string_view(node.name()) != "replicate") return 1 + inside;
+  const double copies = std::max(0.0, node.attribute("count").as_double());
+  const double seconds = kSeconds * copies * copies * inside;
+  if (seconds > slowest->seconds) *slowest = {seconds, copies, lines.at(node.offset_debug())};
+  return copies * inside;
+}
+
 }  // namespace
 
 Result<XmlScan> scan_model_xml(std::string_view text, const std::string& file) {
@@ -178,6 +192,7 @@ Result<XmlScan> scan_model_xml(std::string_view text, const std::string& file) {
     return true;
   });
   GLOAM_TRY_STATUS(std::move(status));
+  weigh(document.document_element(), lines, &scan.slowest);
   return scan;
 }
 

@@ -18,10 +18,18 @@ struct FileReference {
   int line = 0;           ///< of the element
 };
 
+/// A <replicate>, of which MuJoCo's time grows with the square of its copies.
+struct Replicate {
+  double seconds = 0;  ///< that MuJoCo takes for it, roughly
+  double copies = 0;
+  int line = 0;
+};
+
 struct XmlScan {
   std::string root;                       ///< name of the top element: "mujoco", "robot" …
   std::vector<FileReference> references;  ///< in document order
   bool has_plugins = false;               ///< an <extension> or <plugin> element
+  Replicate slowest;
 };
 
 /// `file` names the text in errors. Errors: not well-formed, nested deeper than 200, absurd sizes

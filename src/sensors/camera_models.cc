@@ -51,7 +51,8 @@ Result<std::unique_ptr<CameraModels>> CameraModels::create(const RenderDescripti
     models->imager_ = std::make_unique<Imager>(*sensing.imager, intrinsics, seed);
   if (outputs.sensor_depth) models->stereo_ = stereo_depth_model(*sensing.stereo_depth);
   if (outputs.events)
-    models->events_.emplace(*sensing.events, intrinsics.width, intrinsics.height, seed);
+    models->events_ = std::make_shared<EventTrack>(
+        EventCamera(*sensing.events, intrinsics.width, intrinsics.height, seed));
   GLOAM_TRY_STATUS(models->set_temperatures({}));
   return models;
 }
@@ -82,7 +83,7 @@ double CameraModels::delivery_of(int64_t k, double time) const {
   return sensing_.timing ? delivery_time(*sensing_.timing, seed_, k, time) : time;
 }
 
-void CameraModels::develop(const std::vector<Vec3f>& radiance, CameraFrame* frame) {
+void CameraModels::develop(const std::vector<Vec3f>& radiance, int64_t run, CameraFrame* frame) {
   frame->ev100 = ev100_;
   if (imager_) {
     imager_->develop(radiance, exposure_, frame->index, outputs_.rgb ? &frame->rgb : nullptr,
@@ -93,7 +94,7 @@ void CameraModels::develop(const std::vector<Vec3f>& radiance, CameraFrame* fram
   }
   if (events_) {
     const double top = static_cast<double>(max_luminance(static_cast<float>(ev100_)));
-    frame->events = events_->see(radiance, top, frame->time, frame->index);
+    frame->events = events_->see({run, frame->index}, frame->time, radiance, top, leads_events_);
   }
 }
 

@@ -10,7 +10,7 @@
 #include "gloam/result.h"
 #include "render/film/film.h"
 #include "render/renderer.h"
-#include "sensors/event_camera.h"
+#include "sensors/event_track.h"
 #include "sensors/imager/imager.h"
 #include "sensors/stereo_depth.h"
 #include "sensors/thermal_camera.h"
@@ -37,12 +37,18 @@ class CameraModels {
   Status set_temperatures(const std::vector<TemperatureOptions>& temperatures);
   double ev100() const { return ev100_; }
   uint64_t memory() const;
+  /// Of the output events, else null: the camera's own until it is given one that others share.
+  const std::shared_ptr<EventTrack>& events() const { return events_; }
+  void share_events(std::shared_ptr<EventTrack> events, bool leads) {
+    events_ = std::move(events);
+    leads_events_ = leads;
+  }
 
   /// When frame k arrives that was taken at `time` [s].
   double delivery_of(int64_t k, double time) const;
   /// Fills rgb, raw and events from light [cd/m²], (height x width). The frame's index and time are
-  /// set.
-  void develop(const std::vector<Vec3f>& radiance, CameraFrame* frame);
+  /// set; `run` counts the resets before it.
+  void develop(const std::vector<Vec3f>& radiance, int64_t run, CameraFrame* frame);
   /// Fills sensor_depth and thermal from the exact channels.
   void measure(const Film& film, const CameraView& view, CameraFrame* frame);
 
@@ -63,7 +69,8 @@ class CameraModels {
   Exposure exposure_;  // of that value, for the imager
   std::unique_ptr<Imager> imager_;
   std::optional<StereoDepthModel> stereo_;
-  std::optional<EventCamera> events_;
+  std::shared_ptr<EventTrack> events_;
+  bool leads_events_ = true;
   std::optional<ThermalCamera> thermal_;
 };
 

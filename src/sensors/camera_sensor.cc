@@ -289,7 +289,7 @@ void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const Came
     if (blurred) sharp.swap(film_.depth);
     if (denoiser_ != nullptr && denoiser_->denoise(film_, &clean_).ok()) radiance = &clean_;
     if (blurred) sharp.swap(film_.depth);
-    models_->develop(*radiance, frame);
+    models_->develop(*radiance, now.run, frame);
     if (channels_.radiance) frame->radiance = flatten(*radiance);
     if (channels_.samples) {
       frame->samples = film_.sample_count;

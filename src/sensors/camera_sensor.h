@@ -67,6 +67,12 @@ class CameraSensor {
 
   /// What an exposure meter says before a capture; without it the exposure is the camera's own.
   void set_ev100(double ev100) { models_->set_ev100(ev100); }
+  /// Of the output events, else null.
+  const std::shared_ptr<EventTrack>& events() const { return models_->events(); }
+  /// Before the first capture; `leads` as of EventTrack::see.
+  void share_events(std::shared_ptr<EventTrack> events, bool leads) {
+    models_->share_events(std::move(events), leads);
+  }
   /// The scene's [[temperature]]s, for the output thermal. Error: one that fits nothing.
   Status set_temperatures(const std::vector<TemperatureOptions>& temperatures) {
     return models_->set_temperatures(temperatures);

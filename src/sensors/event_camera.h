@@ -23,6 +23,8 @@ class EventCamera {
   /// time in order of pixels.
   std::vector<Event> see(const std::vector<Vec3f>& radiance, double top, double time,
                          int64_t frame);
+  /// The next frame is the first one.
+  void restart() { started_ = false; }
 
   /// Threshold of pixel i for brighter or darker light.
   double threshold(size_t i, bool brighter) const;

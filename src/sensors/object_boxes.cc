@@ -71,11 +71,11 @@ void add_instance(const RenderDescription& description, const PoseFrame& frame,
 }  // namespace
 
 std::vector<ObjectView> view_objects(const RenderDescription& description, const PoseFrame& frame,
-                                     const std::vector<ObjectCover>& cover) {
+                                     const std::map<uint32_t, ObjectCover>& cover) {
   std::map<uint32_t, std::vector<const InstanceDescription*>> objects;
   for (const InstanceDescription& in : description.instances) {
     const uint32_t id = in.label.instance;
-    if (in.shown && id < cover.size() && cover[id].all.pixels > 0) objects[id].push_back(&in);
+    if (in.shown && cover.contains(id)) objects[id].push_back(&in);
   }
   std::vector<ObjectView> out;
   for (const auto& [id, parts] : objects) {
@@ -83,8 +83,8 @@ std::vector<ObjectView> view_objects(const RenderDescription& description, const
     object.instance = id;
     object.name = parts.front()->label.instance_name;
     object.semantic = parts.front()->label.semantic;
-    object.seen = cover[id].seen;
-    object.all = cover[id].all;
+    object.seen = cover.at(id).seen;
+    object.all = cover.at(id).all;
     const InstanceDescription& root = **std::min_element(
         parts.begin(), parts.end(), [](const auto* a, const auto* b) { return a->body < b->body; });
     const Affine3f X_WO = pose_in_world(frame, root.body, {}), X_OW = inverse(X_WO);

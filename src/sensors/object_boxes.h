@@ -1,6 +1,7 @@
 #pragma once
 // Boxes around objects: in the picture and in space.
 
+#include <map>
 #include <vector>
 
 #include "gloam/camera.h"
@@ -13,6 +14,6 @@ namespace gloam {
 /// The objects of which `cover` has a pixel, in the order of their ids. An object's frame O is that
 /// of its first body that is drawn: the root of a robot, the world for what is fixed to it.
 std::vector<ObjectView> view_objects(const RenderDescription& description, const PoseFrame& frame,
-                                     const std::vector<ObjectCover>& cover);
+                                     const std::map<uint32_t, ObjectCover>& cover);
 
 }  // namespace gloam

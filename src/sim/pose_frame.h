@@ -9,6 +9,7 @@ namespace gloam {
 
 struct PoseFrame {
   int n_world = 1;
+  int64_t run = 0;  ///< resets before it
   int64_t step = 0;
   double time = 0;                ///< [s]
   std::vector<double> body_p;     ///< p_WB [m], (n_world x nbody x 3)

@@ -73,6 +73,7 @@ Status PoseSolver::solve(const Snapshot& snapshot, PoseFrame& frame) {
     if (layout_.has_tendons) mj_tendon(model, data);
   }));
   frame.n_world = 1;
+  frame.run = in.run;
   frame.step = in.step;
   frame.time = in.time;
   fill_poses(frame);

@@ -20,6 +20,7 @@ struct LiveFields {
 
 struct SnapshotData {
   std::shared_ptr<const CompiledWorld> world;
+  int64_t run = 0;  ///< resets before it
   int64_t step = 0;
   double time = 0;  ///< [s]
   uint64_t hash = 0;

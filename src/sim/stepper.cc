@@ -88,6 +88,7 @@ bool Stepper::reset() {
     mj_comPos(model, data);
     mj_getState(model, data, state_.data(), mjSTATE_INTEGRATION);
   });
+  ++run_;
   step_ = 0;
   snapshot_ = {};
   own_sensors_ = true;
@@ -201,6 +202,7 @@ void Stepper::count_diagnostics() {
 const Snapshot& Stepper::snapshot() {
   if (!snapshot_) {
     snapshot_ = pool_->make([this](SnapshotData& out) {
+      out.run = run_;
       out.step = step_;
       out.time = time();
       out.hash = hash_;

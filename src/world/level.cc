@@ -9,8 +9,10 @@
 #include "scene/mujoco_guard.h"
 #include "scene/mujoco_plugins.h"
 #include "scene/urdf_text.h"
+#include "world/finite_model.h"
 #include "world/level_cameras.h"
 #include "world/level_keyframe.h"
+#include "world/long_wait.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
@@ -49,6 +51,8 @@ Result<SpecPtr> parse_model(const fs::path& file, const FileAccess& access, Mode
   mjSpec* spec = nullptr;
   files->forget_failures();
   const MujocoWarningCapture warnings;
+  const LongWait wait(fmt::format("MuJoCo reads {}", file.filename().string()),
+                      files->slowest_replicate());
   const Status status =
       guarded([&] { spec = mj_parseXML(path.c_str(), files->vfs(), message, sizeof(message)); });
   if (!status.ok()) return files->explain(status.error().message, path);
@@ -147,6 +151,44 @@ Result<Level> assemble(const Scene& scene, ModelFiles* files, mjtConflict policy
   return level;
 }
 
+// The file that an element of this name comes from: a robot's, else the level's own.
+fs::path file_of(const Scene& scene, const std::string& name) {
+  for (const RobotOptions& robot : scene.robots) {
+    if (name.starts_with(robot.name + "/")) return robot.file;
+  }
+  return !scene.bare_model.empty()         ? scene.bare_model
+         : !scene.environment.file.empty() ? scene.environment.file
+         : scene.robots.empty()            ? scene.file
+                                           : scene.robots[0].file;
+}
+
+// As "line 3".
+std::string written_at(const mjSpec* spec, mjtObj type, int id) {
+  for (mjsElement* e = mjs_firstElement(spec, type); e != nullptr; e = mjs_nextElement(spec, e)) {
+    if (mjs_getId(e) != id) continue;
+    const mjString* info = nullptr;
+    if (const auto* body = mjs_asBody(e)) info = body->info;
+    if (const auto* joint = mjs_asJoint(e)) info = joint->info;
+    if (const auto* geom = mjs_asGeom(e)) info = geom->info;
+    if (const auto* site = mjs_asSite(e)) info = site->info;
+    if (const auto* camera = mjs_asCamera(e)) info = camera->info;
+    if (const auto* light = mjs_asLight(e)) info = light->info;
+    if (const auto* material = mjs_asMaterial(e)) info = material->info;
+    if (info != nullptr) return mjs_getString(info);
+  }
+  return {};
+}
+
+Status check_finite(const Scene& scene, const Level& level, const ModelFiles& files) {
+  const std::optional<NotFinite> found = find_not_finite(*level.model);
+  if (!found) return {};
+  const std::string place = written_at(level.spec.get(), found->type, found->id);
+  Error error =
+      files.explain(fmt::format("{}, {}", found->fault, place), file_of(scene, found->name));
+  error.hint = "MuJoCo reads nan and inf as numbers: give a finite one";
+  return error;
+}
+
 Status compile(const Scene& scene, ModelFiles* files, Level* level) {
   files->forget_failures();
   mjModel* model = nullptr;
@@ -154,16 +196,14 @@ Status compile(const Scene& scene, ModelFiles* files, Level* level) {
   const mjVFS* vfs = files->vfs();
   const int warnings_before = mjs_numWarnings(spec);
   const MujocoWarningCapture warnings;
+  const LongWait wait("MuJoCo compiles the model", 0);
   const Status status = guarded([&] { model = mj_compile(spec, vfs); });
   level->model.reset(model);
-  const fs::path file = !scene.bare_model.empty()         ? scene.bare_model
-                        : !scene.environment.file.empty() ? scene.environment.file
-                        : scene.robots.empty()            ? scene.file
-                                                          : scene.robots[0].file;
+  const fs::path file = file_of(scene, "");
   if (!status.ok() || model == nullptr)
     return files->explain(status.ok() ? mjs_getError(spec) : status.error().message, file);
   report_warnings(warnings, spec, warnings_before, file, &level->unsupported);
-  return {};
+  return check_finite(scene, *level, *files);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@ sys.path.insert(0, str(ROOT / "tools" / "gallery"))
 import gallery  # noqa: E402
 import page  # noqa: E402
 import pixels  # noqa: E402
+import plot  # noqa: E402
 from chapters import read_chapters  # noqa: E402
 
 MEGABYTE = 1 << 20
@@ -62,6 +63,30 @@ class Gallery(unittest.TestCase):
         done = gallery_run("--only", "no such picture")
         self.assertEqual(done.returncode, 2)
         self.assertIn("no picture has 'no such picture' in its name", done.stderr)
+
+
+class Plots(unittest.TestCase):
+    def test_axes_have_round_numbers_that_lie_in_the_range(self):
+        self.assertEqual([words for _, words in plot.ticks(-0.9, 6.9)], ["0", "1", "2", "3", "4", "5", "6"])
+        self.assertEqual([words for _, words in plot.ticks(0, 1.2)], ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0", "1.2"])
+        for low, high in [(0, 1), (-3e-4, 2e-4), (995, 1007), (-1e6, 1e6)]:
+            values = [value for value, _ in plot.ticks(low, high)]
+            self.assertTrue(4 <= len(values) <= 11 and low - 1e-9 <= values[0] and values[-1] <= high + 1e-9, values)
+
+    def test_a_value_is_drawn_where_the_axes_say(self):
+        picture = plot.Plot((360, 240), [0, 1], [-1, 1], "rate [rad/s]")
+        picture.series("gyro", [0, 1], [0.5, 0.5], (255, 90, 60))
+        u, v = picture.at(0.5, 0.5)
+        self.assertEqual(picture.rgb[3 * (v * 360 + u):][:3], bytes((255, 90, 60)))
+        self.assertEqual(u, (picture.at(0, 0)[0] + picture.at(1, 0)[0]) / 2)
+        self.assertLess(v, picture.at(0, 0)[1])
+
+    def test_every_plot_says_what_it_is_of_and_the_unit(self):
+        plots = [picture for chapter in read_chapters(gallery.HERE) for picture in chapter.pictures if picture.show == "signals"]
+        self.assertGreaterEqual(len(plots), 2)
+        for picture in plots:
+            self.assertRegex(picture.axis, r"^[a-z ]+ \[[a-z/]+\]$", picture.name)
+            self.assertLessEqual(set(picture.axis), set(plot.GLYPHS))
 
 
 class Faults(unittest.TestCase):

@@ -20,6 +20,7 @@ class Picture:
     time: float                  # of the simulation [s]
     panels: list[dict]           # of LiDAR scans (clouds.py), instead of a camera's picture
     show: str = "rgb"            # what of it is shown: rgb, or a function of show.py
+    axis: str = ""               # what signals are of, and their unit
 
     @property
     def name(self):
@@ -54,14 +55,14 @@ def element(folder, set_name, name):
 
 def read_picture(folder, chapter, data, defaults):
     entry = {**defaults, **data}
-    unknown = set(entry) - {"name", "title", "set", "toml", "mjcf", "camera", "size", "spp", "time", "panels", "show"}
+    unknown = set(entry) - {"name", "title", "set", "toml", "mjcf", "camera", "size", "spp", "time", "panels", "show", "axis"}
     if unknown:
         raise ValueError(f"chapter {chapter}: unknown {', '.join(sorted(unknown))} of picture '{entry.get('name')}'")
     base = (folder / "sets" / f"{entry['set']}.toml").read_text()
     mjcf = "\n".join(element(folder, entry["set"], name) for name in entry.get("mjcf", []))
     return Picture(chapter, entry["name"], entry["title"], base, entry.get("toml", ""), mjcf, entry.get("camera", "view"),
                    tuple(entry.get("size", (320, 240))), entry.get("spp", 40), entry.get("time", 0),
-                   entry.get("panels", []), entry.get("show", "rgb"))
+                   entry.get("panels", []), entry.get("show", "rgb"), entry.get("axis", ""))
 
 
 def read_chapters(folder):

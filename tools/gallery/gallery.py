@@ -56,7 +56,7 @@ def shoot(picture, scene, scratch, size, spp, threads):
     out = scratch / "out"
     if picture.show == "signals":
         wrong = gloam("run", scene, "--root", ROOT, "--duration", str(picture.time), "--output", "sensors", "--out", out)
-        return None if wrong else show.write_ppm(scratch / "shown.ppm", size, show.signals(out, picture.camera, size)), wrong
+        return None if wrong else show.write_ppm(scratch / "shown.ppm", picture.size, show.signals(out, picture.camera, picture.size, picture.axis)), wrong
     common = [scene, "--root", ROOT, "--camera", picture.camera, "--spp", str(spp), "--resolution", f"{size[0]}x{size[1]}",
               "--out", out, *threads]
     shot = out / picture.camera.replace("/", "_")

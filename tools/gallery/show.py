@@ -8,6 +8,7 @@ from pathlib import Path
 
 import exr
 import pixels
+import plot
 
 # Colours from cold to hot, and from near to far; between them straight lines.
 HEAT = [(30, 20, 90), (87, 16, 110), (188, 55, 84), (249, 142, 9), (252, 255, 164)]
@@ -124,21 +125,16 @@ def events(folder, size):
     return bytes(out)
 
 
-def signals(folder, name, size):
+def signals(folder, name, size, axis):
     """Over time the value that changes most: of the sensor of this name white, over that of its namesake NAME_… red."""
-    truth, other = [[[float(x) for x in row[4:]] for row in list(csv.reader(open(path)))[1:]] for path in sorted(folder.glob(f"sensors/{name}*.csv"))]
-    column = max(range(len(truth[0])), key=lambda k: max(row[k] for row in truth) - min(row[k] for row in truth))
-    values = [row[column] for row in truth + other]
-    low, high = min(values), max(values)
-    out = bytearray([24, 24, 30] * (size[0] * size[1]))
-    for rows, color in ((other, (255, 90, 60)), (truth, (255, 255, 255))):
-        last = None
-        for x in range(size[0]):
-            y = round((0.95 - 0.9 * (rows[x * len(rows) // size[0]][column] - low) / (high - low)) * (size[1] - 1))
-            for v in range(min(y, y if last is None else last), max(y, y if last is None else last) + 1):
-                out[3 * (v * size[0] + x):3 * (v * size[0] + x) + 3] = bytes(color)
-            last = y
-    return bytes(out)
+    tables = {path.stem: [[float(x) for x in row[2:]] for row in list(csv.reader(open(path)))[1:]] for path in sorted(folder.glob(f"sensors/{name}*.csv"))}
+    first = 2                       # time, delivery, then the values
+    column = max(range(first, len(tables[name][0])), key=lambda k: max(row[k] for row in tables[name]) - min(row[k] for row in tables[name]))
+    rows = [row for table in tables.values() for row in table]
+    picture = plot.Plot(size, [row[0] for row in rows], [row[column] for row in rows], axis)
+    for key, color in zip(sorted(tables, reverse=True), ((255, 90, 60), (255, 255, 255))):
+        picture.series(key, [row[0] for row in tables[key]], [row[column] for row in tables[key]], color)
+    return bytes(picture.rgb)
 
 
 def write_ppm(path, size, rgb):

@@ -1,6 +1,8 @@
 #include "render/cpu/object_cover.h"
 
 #include <algorithm>
+#include <unordered_map>
+#include <utility>
 
 #include "base/parallel.h"
 #include "render/kernel/channels.h"
@@ -29,15 +31,17 @@ void add_box(const PixelBox& from, PixelBox* to) {
 
 }  // namespace
 
-std::vector<ObjectCover> measure_cover(const SceneView& scene, const CpuTracer& tracer,
-                                       const CameraView32& camera, bool has_motion, int width,
-                                       int height, const std::vector<uint32_t>& object_of) {
-  const size_t count =
-      object_of.empty() ? 0 : *std::max_element(object_of.begin(), object_of.end()) + size_t{1};
-  std::vector<std::vector<ObjectCover>> parts(kChunks, std::vector<ObjectCover>(count));
+std::map<uint32_t, ObjectCover> measure_cover(const SceneView& scene, const CpuTracer& tracer,
+                                              const CameraView32& camera, bool has_motion,
+                                              int width, int height,
+                                              const std::vector<uint32_t>& object_of) {
+  struct Met {
+    ObjectCover cover;
+    int last = -1;  // pixel in which the object was met
+  };
+  std::vector<std::unordered_map<uint32_t, Met>> parts(kChunks);
   parallel_for("object cover", kChunks, [&](int64_t chunk) {
-    std::vector<ObjectCover>& covers = parts[static_cast<size_t>(chunk)];
-    std::vector<int> last(count, -1);  // pixel in which the object was met
+    std::unordered_map<uint32_t, Met>& objects = parts[static_cast<size_t>(chunk)];
     for (int y = static_cast<int>(chunk) * height / kChunks;
          y < (static_cast<int>(chunk) + 1) * height / kChunks; ++y) {
       for (int x = 0; x < width; ++x) {
@@ -49,23 +53,23 @@ std::vector<ObjectCover> measure_cover(const SceneView& scene, const CpuTracer& 
           RayHit hit;
           if (!tracer.trace(ray, false, &hit)) break;
           const Surface s = make_surface(scene, ray, hit, cone);
-          const uint32_t object = object_of[s.instance];
           if (shows(scene, s)) {
-            if (first) add_pixel(x, y, &covers[object].seen);
+            Met& met = objects[object_of[s.instance]];
+            if (first) add_pixel(x, y, &met.cover.seen);
             first = false;
-            if (last[object] != y * width + x) add_pixel(x, y, &covers[object].all);
-            last[object] = y * width + x;
+            if (std::exchange(met.last, y * width + x) != y * width + x)
+              add_pixel(x, y, &met.cover.all);
           }
           ray.o = leave_surface(s.p, s.geometric, ray.d, hit.t);
         }
       }
     }
   });
-  std::vector<ObjectCover> covers(count);
+  std::map<uint32_t, ObjectCover> covers;
   for (const auto& part : parts) {
-    for (size_t i = 0; i < count; ++i) {
-      add_box(part[i].seen, &covers[i].seen);
-      add_box(part[i].all, &covers[i].all);
+    for (const auto& [object, met] : part) {
+      add_box(met.cover.seen, &covers[object].seen);
+      add_box(met.cover.all, &covers[object].all);
     }
   }
   return covers;

@@ -9,8 +9,9 @@ namespace gloam {
 
 /// By object, which `object_of` tells for every instance (0 = none): counts the pixels whose centre
 /// ray meets the object first, and those whose ray meets it at all.
-std::vector<ObjectCover> measure_cover(const SceneView& scene, const CpuTracer& tracer,
-                                       const CameraView32& camera, bool has_motion, int width,
-                                       int height, const std::vector<uint32_t>& object_of);
+std::map<uint32_t, ObjectCover> measure_cover(const SceneView& scene, const CpuTracer& tracer,
+                                              const CameraView32& camera, bool has_motion,
+                                              int width, int height,
+                                              const std::vector<uint32_t>& object_of);
 
 }  // namespace gloam

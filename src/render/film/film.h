@@ -2,6 +2,7 @@
 // The planes that a render fills. Rows from the top; every plane is of the same rays.
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "base/vec.h"
@@ -34,7 +35,7 @@ struct Film {
   std::vector<Vec2f> motion;      ///< from the previous to this instant [px]
   std::vector<Vec3f> scene_flow;  ///< of the point that is seen, in that time, world [m]
 
-  std::vector<ObjectCover> cover;  ///< by object id, if asked for
+  std::map<uint32_t, ObjectCover> cover;  ///< of the objects that a ray meets, by id, if asked for
 
   size_t pixel_count() const { return static_cast<size_t>(width) * static_cast<size_t>(height); }
 };

@@ -52,6 +52,25 @@ TEST(XmlScan, RefusesWhatWouldHurtMuJoCo) {
   EXPECT_EQ(error_of("<m><size memory='100M'/><flexcomp count='10 10 10'/></m>"), "");
 }
 
+TEST(XmlScan, FindsTheReplicateThatTakesLong) {
+  const auto slowest = [](const std::string& inside) {
+    return scan_model_xml("<mujoco><worldbody>\n" + inside + "</worldbody></mujoco>", "m.xml")
+        ->slowest;
+  };
+  EXPECT_EQ(slowest("<light/>").seconds, 0);
+  const Replicate row = slowest("<geom/>\n<replicate count='50000'><light/></replicate>");
+  EXPECT_EQ(row.line, 3);
+  EXPECT_EQ(row.copies, 50000);
+  EXPECT_NEAR(row.seconds, 95, 50) << "as measured";
+  const auto nested = [&](const char* outer, const char* inner) {
+    return slowest(std::string("<replicate count='") + outer + "'><replicate count='" + inner +
+                   "'><light/></replicate></replicate>");
+  };
+  EXPECT_LT(nested("316", "316").seconds, 2);
+  EXPECT_NEAR(nested("1000", "100").seconds, 3, 2);
+  EXPECT_EQ(nested("10", "50000").copies, 50000) << "the inner one";
+}
+
 TEST(ModelFiles, CyclesAreNamed) {
   TempFolder folder;
   const fs::path a = folder.write("a.xml", "<mujoco>\n<include file='b.xml'/></mujoco>");

@@ -1,5 +1,5 @@
 // Events of known ramps of light.
-#include "sensors/event_camera.h"
+#include "sensors/event_track.h"
 
 #include <algorithm>
 #include <map>
@@ -121,6 +121,21 @@ TEST(Events, ThreadsDoNotMatterAndBadLightIsNoCrash) {
   camera.see(even(NAN), 1, 0, 0);
   EXPECT_LT(camera.see(even(INFINITY), 1, 0.1, 1).size(), 200 * kPixels);
   EXPECT_TRUE(camera.see(even(0.2), 1, 0.05, 0).empty()) << "a simulation that began anew";
+}
+
+TEST(EventTrack, AFrameHasItsEventsOnceAndForAll) {
+  EventTrack track(EventCamera({.threshold = 0.25}, kWidth, kHeight, 1));
+  const auto see = [&](EventTrack::Frame frame, double level) {
+    const auto time = 0.01 * static_cast<double>(frame.index);
+    return track.see(frame, time, even(light_of(level)), 1, false).size();
+  };
+  EXPECT_EQ(see({0, 0}, -2), 0u);
+  EXPECT_EQ(see({0, 3}, -1.74), kPixels);
+  EXPECT_EQ(see({0, 3}, -1), kPixels) << "another stream's picture of the same frame";
+  EXPECT_EQ(see({0, 2}, -1), 0u) << "a frame that was left behind";
+  EXPECT_EQ(see({0, 4}, -1.48), kPixels);
+  EXPECT_EQ(see({1, 5}, -1), 0u) << "the first frame after a reset";
+  EXPECT_EQ(see({1, 6}, -0.74), kPixels);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <fstream>
 #include <mutex>
 
 #include "scene/test/temp_folder.h"
@@ -28,13 +29,14 @@ const char* const kModel = R"(
   <body name="hidden" pos="-4 0 1"><freejoint/><geom type="box" size="0.5 0.5 0.5" mass="1"/></body>
 </worldbody></mujoco>)";
 
-std::vector<ObjectView> see(const char* model) {
+std::vector<ObjectView> see(const char* model, uint32_t first_id = 0) {
   const TempFolder folder;
   ::setenv("GLOAM_CACHE", (folder.path() / "cache").c_str(), 1);
   const auto scene = load_scene(folder.write("board.xml", model));
   if (!scene.ok()) ADD_FAILURE() << scene.error().to_string();
   const World world = std::move(World::compile(*scene)).value();
-  const auto description = std::move(describe_for_rendering(*world.compiled())).value();
+  auto description = std::move(describe_for_rendering(*world.compiled())).value();
+  for (InstanceDescription& in : description.instances) in.label.instance += first_id;
   auto renderer = std::move(make_cpu_renderer(description)).value();
   auto solver = std::move(PoseSolver::create(world.compiled())).value();
   auto simulator =
@@ -104,6 +106,31 @@ TEST(ObjectBoxes, EndlessFloorsHaveNone) {
   ASSERT_EQ(objects.size(), 1u);
   EXPECT_TRUE(objects[0].endless);
   EXPECT_EQ(objects[0].seen.pixels, 32 * 32);
+}
+
+// Most memory of this process since the last call [bytes].
+int64_t peak_memory() {
+  std::ifstream status("/proc/self/status");
+  std::string word;
+  int64_t kilobytes = 0;
+  while (status >> word) {
+    if (word == "VmHWM:") status >> kilobytes;
+  }
+  std::ofstream("/proc/self/clear_refs") << 5;
+  return kilobytes * 1024;
+}
+
+TEST(ObjectBoxes, MemoryIsForWhatIsSeenNotForAllThatThereIs) {
+  peak_memory();
+  const auto few = see(kModel);
+  const int64_t memory = peak_memory();
+  const auto many = see(kModel, 1'000'000);
+  EXPECT_LT(peak_memory() - memory, int64_t{50} << 20);
+  ASSERT_EQ(many.size(), few.size());
+  for (size_t i = 0; i < few.size(); ++i) {
+    EXPECT_EQ(many[i].instance, few[i].instance + 1'000'000);
+    EXPECT_EQ(many[i].seen.pixels, few[i].seen.pixels);
+  }
 }
 
 }  // namespace
