@@ -233,13 +233,10 @@ class LightPickerOf {
   }
   GLOAM_HD static GuideRowsOf<F> find_rows(const LightGuide& guide, Vec3Of<F> p, Vec3Of<F> n,
                                            Mask active) {
+    const UintOf<F> row = guide.row_at(p, n);
     GuideRowsOf<F> rows;
-    each_lane(active, [&](int i) {
-      const int row = guide.row_at(lane(p, i), lane(n, i));
-      if (row < 0) return;
-      set_lane(&rows.guided, i, true);
-      set_lane(&rows.row, i, static_cast<uint32_t>(row));
-    });
+    rows.guided = active & (row != LightGuide::kNone);
+    rows.row = select(rows.guided, row, UintOf<F>(0u));
     return rows;
   }
   GLOAM_HD static LightSample sample_by_tree(const SceneView& scene, Vec3f p, Vec3f n, Vec2f u,
