@@ -84,6 +84,13 @@ class SamplerOf {
     return s;
   }
 
+  /// The given lanes go on as `other`, of the same picture.
+  GLOAM_HD void take(Mask lanes, const SamplerOf& other) {
+    reversed_index_ = select(lanes, other.reversed_index_, reversed_index_);
+    dimension_ = select(lanes, other.dimension_, dimension_);
+    seed_ = other.seed_;
+  }
+
   /// Lanes that are not `active` get a number too, but keep their place in the sequence.
   GLOAM_HD F next_1d(Mask active = true) {
     const Uint key = next_key(active);
