@@ -118,7 +118,7 @@ class ArrivingLight {
           const Surface& s = met[i];
           if (scene_.instances[s.instance].light < 0) arrivals[i].light = luminance(s.emission);
           arrivals[i].albedo = luminance(s.base_color);
-          arrivals[i].row = grid_.row_at(s.p, s.geometric);
+          arrivals[i].row = static_cast<int>(grid_.row_at(s.p, s.geometric));
           Sampler sampler = guide_sampler(row, i, 3 + 2 * round);
           LightPicker picker;
           picker.prepare(scene_, s.p, s.geometric);

@@ -99,7 +99,7 @@ std::vector<SurfacePoint> find_surface(const SceneView& scene, const CpuTracer& 
       RayHit hit;
       if (!statics.trace(ray, false, &hit)) break;
       const Surface s = make_surface(scene, ray, hit, {});
-      if (s.outside && LightGuide::facing_of(s.geometric) == facing) {
+      if (s.outside && LightGuide::facing_of(s.geometric) == static_cast<uint32_t>(facing)) {
         points.push_back({leave_surface(s.p, s.geometric, s.geometric, s.t), s.geometric});
       }
       ray.o = leave_surface(s.p, s.geometric, ray.d, hit.t);
@@ -117,8 +117,10 @@ int neighborhood(const LightGuide& grid, const std::vector<GuideRow>& rows, int 
   out[count++] = row;
   const auto add = [&](int other) {
     const int found =
-        facing < 0 ? other
-                   : grid.surface_row[static_cast<uint32_t>(LightGuide::kFacings * other + facing)];
+        facing < 0
+            ? other
+            : static_cast<int>(
+                  grid.surface_row[static_cast<uint32_t>(LightGuide::kFacings * other + facing)]);
     if (found >= 0) out[count++] = found;
   };
   for (int k = 0; k < 3; ++k) {

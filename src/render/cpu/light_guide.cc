@@ -33,10 +33,10 @@ void LightGuideStore::find_rows(const SceneView& scene, const CpuTracer& statics
   });
   rows_.clear();
   for (int cell = 0; cell < cells; ++cell) rows_.push_back({cell, -1, {}});
-  surface_row_.assign(surfaces.size(), -1);
+  surface_row_.assign(surfaces.size(), LightGuide::kNone);
   for (size_t i = 0; i < surfaces.size(); ++i) {
     if (surfaces[i].points.empty()) continue;
-    surface_row_[i] = static_cast<int>(rows_.size());
+    surface_row_[i] = static_cast<uint32_t>(rows_.size());
     rows_.push_back(std::move(surfaces[i]));
   }
 }

@@ -27,7 +27,7 @@ class LightGuideStore {
   LightGuide grid_;
   std::vector<GuideRow> rows_;           ///< while building
   std::vector<float> found_, sky_seen_;  ///< as gain_ and sky_visible_; while building
-  std::vector<int> surface_row_;
+  std::vector<uint32_t> surface_row_;
   std::vector<float> gain_, sky_visible_, arriving_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <vector>
 
 #include "render/cpu/wave.h"
 #include "render/kernel/direct.h"
@@ -13,6 +14,8 @@ namespace {
 
 /// Samples of a pixel that run side by side in lanes, at most: their rays keep together.
 constexpr int kTogether = 4;
+/// Lanes without a path from which on new ones are begun: fewer do not pay for it.
+constexpr int kIdle = kLaneCount / 8;
 
 }  // namespace
 
@@ -46,10 +49,14 @@ void Tile::sample(Wave<State>* wave, int index, const Start& start, const Advanc
 }
 
 void Tile::render_path(const SampleRange& range) {
+  std::vector<PathResult> results(static_cast<size_t>(count_ * std::min(kTogether, range.count)));
   for (int done = 0; done < range.count; done += kTogether) {
     const int together = std::min(kTogether, range.count - done);
-    for (int first = 0; first < count_ * together; first += kLaneCount) {
-      sample_lanes(first, {range.seed, range.first + done, together});
+    trace_paths({range.seed, range.first + done, together}, results.data());
+    for (int path = 0; path < count_ * together; ++path) {
+      const PathResult& result = results[static_cast<size_t>(path)];
+      mean_[path / together].add(result);
+      rays_ += result.rays;
     }
   }
 }
@@ -86,50 +93,71 @@ void Tile::store_means(RenderStats* stats) const {
   stats->rays = rays_;
 }
 
-/// Paths from the one on that is `first` when each pixel has all samples of `range`.
-void Tile::sample_lanes(int first, const SampleRange& range) {
+/// All samples of `range` of each pixel: lanes whose path has ended begin another one.
+void Tile::trace_paths(const SampleRange& range, PathResult* results) {
   using F = FloatLanes;
-  const int together = range.count;
-  const int used = std::min(kLaneCount, count_ * together - first);
+  const int count = count_ * range.count;
+  paths::State<F> path;
   MaskLanes active = false;
+  int path_of[kLaneCount] = {}, begun = 0;
+  while (begun < count || any(active)) {
+    const bool coherent = !any(active);
+    const MaskLanes idle = !active;
+    if (begun < count && __builtin_popcount(bits_of(idle)) >= kIdle) {
+      MaskLanes starting = false;
+      each_lane(idle, [&](int i) {
+        if (begun == count) return;
+        path_of[i] = begun++;
+        set_lane(&starting, i, true);
+      });
+      MaskLanes seeing = starting;
+      path.start(camera_sample(range, path_of, &seeing), starting);
+      active = active | seeing;
+      each_lane(starting & !seeing, [&](int i) { results[path_of[i]] = {}; });
+    }
+    const MaskLanes before = active;
+    active = paths::advance(job_.scene, job_.tracer, job_.path, coherent, &path, active);
+    each_lane(before & !active, [&](int i) {
+      const PathResultOf<F>& r = path.result;
+      results[path_of[i]] = {lane(r.radiance, i), lane(r.albedo, i), lane(r.normal, i),
+                             lane(r.rays, i)};
+    });
+  }
+}
+
+/// The camera's rays for the paths path_of[i] of the lanes in `seeing`, when each pixel has all
+/// samples of `range`; takes those lanes out whose ray sees nothing.
+paths::CameraSampleOf<FloatLanes> Tile::camera_sample(const SampleRange& range, const int* path_of,
+                                                      MaskLanes* seeing) const {
+  paths::CameraSampleOf<FloatLanes> out;
   UintLanes x, y, sample;
   int pixel[kLaneCount];
   for (int i = 0; i < kLaneCount; ++i) {
-    const int path = first + std::min(i, used - 1);
-    pixel[i] = path / together;
-    set_lane(&active, i, i < used);
+    pixel[i] = path_of[i] / range.count;
     set_lane(&x, i, static_cast<uint32_t>(x_[pixel[i]]));
     set_lane(&y, i, static_cast<uint32_t>(y_[pixel[i]]));
-    set_lane(&sample, i, static_cast<uint32_t>(range.first + path % together));
+    set_lane(&sample, i, static_cast<uint32_t>(range.first + path_of[i] % range.count));
   }
-  auto sampler =
-      SamplerOf<F>::make(range.seed, job_.settings.frame, x, y, sample, job_.log2_samples);
-  const Vec2Of<F> filter = sampler.next_2d();
-  const F time = job_.has_motion ? sampler.next_1d() : F(0.0f);
-  Vec2Of<F> lens;
-  if (job_.camera.aperture.radius > 0) lens = sampler.next_2d();
-  RayOf<F> ray;
-  F width, spread;
-  for (int i = 0; i < kLaneCount; ++i) {
+  out.sampler =
+      SamplerOf<FloatLanes>::make(range.seed, job_.settings.frame, x, y, sample, job_.log2_samples);
+  const Vec2Of<FloatLanes> filter = out.sampler.next_2d();
+  const FloatLanes time = job_.has_motion ? out.sampler.next_1d() : FloatLanes(0.0f);
+  Vec2Of<FloatLanes> lens;
+  if (job_.camera.aperture.radius > 0) lens = out.sampler.next_2d();
+  each_lane(*seeing, [&](int i) {
     RayCone cone;
     const Vec2f lens_point = lane(lens, i);
     const float when = job_.has_motion ? job_.camera.time_of(y_[pixel[i]], lane(time, i)) : 0.0f;
-    const Ray one =
+    const Ray ray =
         pixel_ray(pixel[i], sample_pixel_filter(lane(filter, i)), when, &cone, &lens_point);
-    if (!sees(one)) set_lane(&active, i, false);
-    set_lane(&ray.time, i, one.time);
-    set_lane(&ray.o, i, one.o);
-    set_lane(&ray.d, i, one.d);
-    set_lane(&width, i, cone.width);
-    set_lane(&spread, i, cone.spread);
-  }
-  const PathResultOf<F> result =
-      trace_path(job_.scene, job_.tracer, ray, width, spread, job_.path, sampler, active);
-  for (int i = 0; i < used; ++i) {
-    mean_[pixel[i]].add({lane(result.radiance, i), lane(result.albedo, i), lane(result.normal, i),
-                         lane(result.rays, i)});
-    rays_ += lane(result.rays, i);
-  }
+    if (!sees(ray)) set_lane(seeing, i, false);
+    set_lane(&out.ray.time, i, ray.time);
+    set_lane(&out.ray.o, i, ray.o);
+    set_lane(&out.ray.d, i, ray.d);
+    set_lane(&out.cone_width, i, cone.width);
+    set_lane(&out.cone_spread, i, cone.spread);
+  });
+  return out;
 }
 
 }  // namespace gloam

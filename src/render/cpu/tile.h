@@ -92,7 +92,9 @@ class Tile {
   uint64_t rays() const { return rays_; }
 
  private:
-  void sample_lanes(int first, const SampleRange& range);
+  void trace_paths(const SampleRange& range, PathResult* results);
+  paths::CameraSampleOf<FloatLanes> camera_sample(const SampleRange& range, const int* path_of,
+                                                  MaskLanes* seeing) const;
   template <class State, class Start, class Advance, class Finish>
   void sample(Wave<State>* wave, int index, const Start& start, const Advance& advance,
               const Finish& finish);

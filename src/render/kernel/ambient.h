@@ -52,7 +52,7 @@ GLOAM_HD AmbientPath ambient_path(const SceneView& scene, const Tracer& tracer,
   Ray ray;
   ray.d = Frame::from_z(s.geometric).to_world(sample_cosine_hemisphere(u));
   ray.o = leave_surface(s.p, s.geometric, ray.d, s.t);
-  path.facing = LightGuide::facing_of(s.geometric);
+  path.facing = static_cast<int>(LightGuide::facing_of(s.geometric));
   path.light = ambient::incoming(scene, tracer, ray, max_depth, sampler);
   return path;
 }

@@ -49,13 +49,10 @@ struct GuideRowsOf {
 template <class F>
 GLOAM_HD GuideRowsOf<F> find_rows(const LightGuide& guide, Vec3Of<F> p, Vec3Of<F> n,
                                   MaskOf<F> active) {
+  const UintOf<F> row = guide.row_at(p, n);
   GuideRowsOf<F> rows;
-  each_lane(active, [&](int i) {
-    const int row = guide.row_at(lane(p, i), lane(n, i));
-    if (row < 0) return;
-    set_lane(&rows.guided, i, true);
-    set_lane(&rows.row, i, static_cast<uint32_t>(row));
-  });
+  rows.guided = active & (row != LightGuide::kNone);
+  rows.row = select(rows.guided, row, UintOf<F>(0u));
   return rows;
 }
 

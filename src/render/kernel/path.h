@@ -215,6 +215,25 @@ GLOAM_HD ArrivalOf<F> arrive(const SceneView& scene, const PathOptions& options,
   return out;
 }
 
+/// One segment of the paths of the `active` lanes and what becomes of them at its end; returns the
+/// lanes whose path goes on.
+template <class F, class Tracer>
+GLOAM_HD MaskOf<F> advance(const SceneView& scene, const Tracer& tracer, const PathOptions& options,
+                           bool coherent, State<F>* path, MaskOf<F> active) {
+  RayHitOf<F> hit;
+  path->result.rays += select(active, UintOf<F>(1u), UintOf<F>(0u));
+  const MaskOf<F> found = tracer.closest(path->ray, active, coherent, &hit);
+  const ArrivalOf<F> at = arrive(scene, options, path, active, found, hit);
+  active = at.through;
+  if (const MaskOf<F> on = at.scatters & !at.mote.scattered; any(on)) {
+    active = active | scatter(scene, tracer, options, path, at.v, on);
+  }
+  if (const MaskOf<F> in = at.scatters & at.mote.scattered; any(in)) {
+    active = active | scatter_in_media(scene, tracer, options, path, at.mote, in);
+  }
+  return active;
+}
+
 }  // namespace paths
 
 /// An unbiased estimate of the radiance along each camera ray of the `active` lanes. At each vertex
@@ -229,27 +248,12 @@ GLOAM_HD PathResultOf<F> trace_path(const SceneView& scene, const Tracer& tracer
                                     const RayOf<F>& ray, F cone_width, F cone_spread,
                                     const PathOptions& options, const SamplerOf<F>& sampler,
                                     MaskOf<F> active = true) {
-  using Mask = MaskOf<F>;
   paths::State<F> path;
   LightSharesOf<F> shares;
   path.picker.keep_in(&shares);
-  path.ray = ray;
-  path.cone_width = cone_width;
-  path.cone_spread = cone_spread;
-  path.sampler = sampler;
-  path.throughput = in_all_lanes<F>({1, 1, 1});
+  path.start({ray, cone_width, cone_spread, sampler}, true);
   for (bool coherent = true; any(active); coherent = false) {
-    RayHitOf<F> hit;
-    path.result.rays += select(active, UintOf<F>(1u), UintOf<F>(0u));
-    const Mask found = tracer.closest(path.ray, active, coherent, &hit);
-    const paths::ArrivalOf<F> at = paths::arrive(scene, options, &path, active, found, hit);
-    active = at.through;
-    if (const Mask on = at.scatters & !at.mote.scattered; any(on)) {
-      active = active | paths::scatter(scene, tracer, options, &path, at.v, on);
-    }
-    if (const Mask in = at.scatters & at.mote.scattered; any(in)) {
-      active = active | paths::scatter_in_media(scene, tracer, options, &path, at.mote, in);
-    }
+    active = paths::advance(scene, tracer, options, coherent, &path, active);
   }
   return path.result;
 }

@@ -29,6 +29,14 @@ inline constexpr uint32_t kMaxPassed = 64;
 
 namespace paths {
 
+/// A camera ray, how wide it is, and the numbers that are left to its path.
+template <class F>
+struct CameraSampleOf {
+  RayOf<F> ray;
+  F cone_width{}, cone_spread{};
+  SamplerOf<F> sampler;
+};
+
 template <class F>
 struct State {
   RayOf<F> ray;
@@ -43,6 +51,29 @@ struct State {
   Vec3Of<F> from;           ///< the last scattering vertex
   LightPickerOf<F> picker;  ///< of that vertex
   Vec3Of<F> absorption;     ///< of the glass that the path is in [1/m]
+
+  /// The given lanes begin a path; what the others are at stays.
+  GLOAM_HD void start(const CameraSampleOf<F>& camera, MaskOf<F> lanes) {
+    const MaskOf<F> others = !lanes;
+    ray.o = select<F>(lanes, camera.ray.o, ray.o);
+    ray.d = select<F>(lanes, camera.ray.d, ray.d);
+    ray.tmax = select(lanes, camera.ray.tmax, ray.tmax);
+    ray.time = select(lanes, camera.ray.time, ray.time);
+    cone_width = select(lanes, camera.cone_width, cone_width);
+    cone_spread = select(lanes, camera.cone_spread, cone_spread);
+    sampler.take(lanes, camera.sampler);
+    result.radiance = select<F>(lanes, Vec3Of<F>{}, result.radiance);
+    result.albedo = select<F>(lanes, Vec3Of<F>{}, result.albedo);
+    result.normal = select<F>(lanes, Vec3Of<F>{}, result.normal);
+    result.rays = select(lanes, UintOf<F>(0u), result.rays);
+    seen_first = seen_first & others;
+    depth = select(lanes, UintOf<F>(0u), depth);
+    passed = select(lanes, UintOf<F>(0u), passed);
+    throughput = select<F>(lanes, in_all_lanes<F>({1, 1, 1}), throughput);
+    scale = select(lanes, F(1.0f), scale);
+    pdf_bsdf = select(lanes, F(0.0f), pdf_bsdf);
+    absorption = select<F>(lanes, Vec3Of<F>{}, absorption);
+  }
 };
 
 /// A shadow ray and the light that arrives along it where nothing is in between.

@@ -91,6 +91,12 @@ class SamplerOf {
     set_lane(&reversed_index_, to, lane(other.reversed_index_, from));
     set_lane(&dimension_, to, lane(other.dimension_, from));
   }
+  /// The given lanes go on as `other`, of the same picture.
+  GLOAM_HD void take(Mask lanes, const SamplerOf& other) {
+    reversed_index_ = select(lanes, other.reversed_index_, reversed_index_);
+    dimension_ = select(lanes, other.dimension_, dimension_);
+    seed_ = other.seed_;
+  }
 
   /// Lanes that are not `active` get a number too, but keep their place in the sequence.
   GLOAM_HD F next_1d(Mask active = true) {

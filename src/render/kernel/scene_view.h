@@ -154,8 +154,9 @@ struct LightGuide {
   float per_metre = 0;  ///< 1 / edge of a cell
   static constexpr int kFacings = 6;
   int nx = 0, ny = 0, nz = 0;
-  uint32_t lights = 0;                ///< that have a weight
-  DeviceSpan<const int> surface_row;  ///< cell-major, one per facing; -1 = no such surface
+  uint32_t lights = 0;  ///< that have a weight
+  static constexpr uint32_t kNone = ~0u;
+  DeviceSpan<const uint32_t> surface_row;  ///< cell-major, one per facing; kNone = no such surface
   /// Row-major: root mean square of what each light brings, over that of light_weight; above zero.
   DeviceSpan<const float> gain;
   DeviceSpan<const float> sky_visible;  ///< by row: share of the environment map's light
@@ -167,30 +168,40 @@ struct LightGuide {
   float share =
       0;  ///< of directions that are drawn so on diffuse surfaces; the BSDF's are the rest
 
-  GLOAM_HD int cell_at(Vec3f p) const {
-    const Vec3f q = (p - low) * per_metre;
-    if (!(q.x >= 0 && q.y >= 0 && q.z >= 0 && q.x < static_cast<float>(nx) &&
-          q.y < static_cast<float>(ny) && q.z < static_cast<float>(nz))) {
-      return -1;
-    }
-    return (static_cast<int>(q.z) * ny + static_cast<int>(q.y)) * nx + static_cast<int>(q.x);
+  /// kNone outside the grid.
+  template <class F>
+  GLOAM_HD UintOf<F> cell_at(Vec3Of<F> p) const {
+    const Vec3Of<F> q = (p - in_all_lanes<F>(low)) * F(per_metre);
+    const MaskOf<F> inside = (q.x >= 0.0f) & (q.y >= 0.0f) & (q.z >= 0.0f) &
+                             (q.x < static_cast<float>(nx)) & (q.y < static_cast<float>(ny)) &
+                             (q.z < static_cast<float>(nz));
+    const auto along = [&](F x) { return to_uint(select(inside, x, F(0.0f))); };
+    const UintOf<F> cell = (along(q.z) * UintOf<F>(static_cast<uint32_t>(ny)) + along(q.y)) *
+                               UintOf<F>(static_cast<uint32_t>(nx)) +
+                           along(q.x);
+    return select(inside, cell, UintOf<F>(kNone));
   }
   /// Axis that a normal is nearest to: 2 k along the k-th, 2 k + 1 against it.
-  GLOAM_HD static int facing_of(Vec3f n) {
-    const Vec3f a{fabsf(n.x), fabsf(n.y), fabsf(n.z)};
-    if (a.z >= a.x && a.z >= a.y) return n.z >= 0 ? 4 : 5;
-    if (a.y >= a.x) return n.y >= 0 ? 2 : 3;
-    return n.x >= 0 ? 0 : 1;
+  template <class F>
+  GLOAM_HD static UintOf<F> facing_of(Vec3Of<F> n) {
+    const Vec3Of<F> a{magnitude(n.x), magnitude(n.y), magnitude(n.z)};
+    const MaskOf<F> z = (a.z >= a.x) & (a.z >= a.y), y = a.y >= a.x;
+    const F along = select(z, n.z, select(y, n.y, n.x));
+    const UintOf<F> axis = select(z, UintOf<F>(4u), select(y, UintOf<F>(2u), UintOf<F>(0u)));
+    return axis + select(along >= 0.0f, UintOf<F>(0u), UintOf<F>(1u));
   }
-  /// The row for a surface at p with the normal n, or a point in a medium (n = 0); -1 outside the
-  /// grid.
-  GLOAM_HD int row_at(Vec3f p, Vec3f n) const {
-    if (nx == 0) return -1;
-    if (!(length_squared(n) > 0)) return cell_at(p);
+  /// The rows for surfaces at p with the normals n, or points in a medium (n = 0); kNone outside
+  /// the grid.
+  template <class F>
+  GLOAM_HD UintOf<F> row_at(Vec3Of<F> p, Vec3Of<F> n) const {
+    if (nx == 0) return kNone;
     const float edge = 1.0f / per_metre;
-    const int cell = cell_at(p + n * (1e-3f * edge));
-    const int row = cell >= 0 ? surface_row[kFacings * cell + facing_of(n)] : -1;
-    return row >= 0 ? row : cell_at(p + n * (0.5f * edge));
+    const MaskOf<F> surface = length_squared(n) > 0.0f;
+    const UintOf<F> cell = cell_at(p + n * F(1e-3f * edge));
+    const MaskOf<F> inside = surface & (cell != kNone);
+    const UintOf<F> at = select(inside, cell * UintOf<F>(kFacings) + facing_of(n), UintOf<F>(0u));
+    const UintOf<F> row = select(inside, gather(surface_row.data, at), UintOf<F>(kNone));
+    return select(row != kNone, row, cell_at(p + n * F(0.5f * edge)));
   }
 };
 

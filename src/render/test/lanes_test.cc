@@ -189,17 +189,22 @@ SceneBuilder foggy_scene() {
 
 class LanePaths : public testing::TestWithParam<bool> {};
 
-TEST_P(LanePaths, EqualThoseOfOneFloat) {
-  const SceneBuilder b = GetParam() ? foggy_scene() : varied_scene();
-  Probe probe(b);
-  probe.guide();
-  ASSERT_GT(probe.view.guide.nx, 0);
+CameraView32 camera_of_64_by_48() {
   const CameraView view = SceneBuilder::camera(look_at({0, -4, 1.8f}, {0, 0.5f, 0.6f}), 64, 48, 55);
   CameraView32 camera;
   camera.fx = camera.fy = static_cast<float>(view.intrinsics.fx);
   camera.cx = static_cast<float>(view.intrinsics.cx);
   camera.cy = static_cast<float>(view.intrinsics.cy);
   camera.pose = {view.X_WC_open, view.X_WC_open, {}};
+  return camera;
+}
+
+TEST_P(LanePaths, EqualThoseOfOneFloat) {
+  const SceneBuilder b = GetParam() ? foggy_scene() : varied_scene();
+  Probe probe(b);
+  probe.guide();
+  ASSERT_GT(probe.view.guide.nx, 0);
+  const CameraView32 camera = camera_of_64_by_48();
   const PathOptions options{6, 2};
   int different = 0, lit = 0;
   for (int first = 0; first < 64 * 48; first += kLaneCount) {
@@ -239,6 +244,62 @@ TEST_P(LanePaths, EqualThoseOfOneFloat) {
   }
   EXPECT_GT(lit, 1500) << "the scene is too dark to compare";
   EXPECT_EQ(different, 0) << "paths in lanes differ from single paths";
+}
+
+TEST_P(LanePaths, MayBeginWhileOthersGoOn) {
+  Probe probe(GetParam() ? foggy_scene() : varied_scene());
+  probe.guide();
+  const CameraView32 camera = camera_of_64_by_48();
+  const PathOptions options{6, 2};
+  constexpr int kPaths = 64 * 48;
+  std::vector<PathResult> results(kPaths);
+  paths::State<FloatLanes> path;
+  MaskLanes active = false;
+  int path_of[kLaneCount] = {}, begun = 0, mixed = 0;
+  while (begun < kPaths || any(active)) {
+    mixed += any(active) && any(!active) && begun < kPaths;
+    paths::CameraSampleOf<FloatLanes> start;
+    UintLanes x, y;
+    MaskLanes starting = false;
+    each_lane(!active, [&](int i) {
+      if (begun == kPaths) return;
+      path_of[i] = begun++;
+      set_lane(&starting, i, true);
+      set_lane(&x, i, static_cast<uint32_t>(path_of[i] % 64));
+      set_lane(&y, i, static_cast<uint32_t>(path_of[i] / 64));
+      RayCone cone;
+      const Ray ray = camera_ray(camera, static_cast<float>(lane(x, i)) + 0.5f,
+                                 static_cast<float>(lane(y, i)) + 0.5f, 0, &cone);
+      set_lane(&start.ray.o, i, ray.o);
+      set_lane(&start.ray.d, i, ray.d);
+      set_lane(&start.cone_width, i, cone.width);
+      set_lane(&start.cone_spread, i, cone.spread);
+    });
+    start.sampler = SamplerOf<FloatLanes>::make(1, 0, x, y, 0u, 0);
+    path.start(start, starting);
+    const MaskLanes before = active | starting;
+    active = paths::advance(probe.view, OneByOne{probe.tracer}, options, false, &path, before);
+    each_lane(before & !active, [&](int i) {
+      PathResult& result = results[static_cast<size_t>(path_of[i])];
+      result.radiance = lane(path.result.radiance, i);
+      result.albedo = lane(path.result.albedo, i);
+      result.normal = lane(path.result.normal, i);
+      result.rays = lane(path.result.rays, i);
+    });
+  }
+  EXPECT_GT(mixed, 100) << "hardly a path began while another went on";
+  int different = 0;
+  for (uint32_t i = 0; i < kPaths; ++i) {
+    RayCone cone;
+    const Ray ray = camera_ray(camera, static_cast<float>(i % 64) + 0.5f,
+                               static_cast<float>(i / 64) + 0.5f, 0, &cone);
+    const PathResult one = trace_path(probe.view, probe.tracer, ray, cone.width, cone.spread,
+                                      options, Sampler::make(1, 0, i % 64, i / 64, 0, 0));
+    const PathResult& r = results[i];
+    different += !(one.radiance == r.radiance && one.albedo == r.albedo && one.normal == r.normal &&
+                   one.rays == r.rays);
+  }
+  EXPECT_EQ(different, 0) << "a path keeps something of the one before it in its lane";
 }
 
 INSTANTIATE_TEST_SUITE_P(ClearAndFoggy, LanePaths, testing::Bool());

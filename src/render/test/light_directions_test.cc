@@ -82,7 +82,7 @@ TEST(LightDirections, AreInLanesWhatTheyAreAlone) {
 /// Share of the directions at p, before the normal n, that `is_there` is true of.
 template <class Is>
 double share_of(const SceneView& view, Vec3f p, Vec3f n, const Is& is_there) {
-  const int row = view.guide.row_at(p, n);
+  const auto row = static_cast<int>(view.guide.row_at(p, n));
   GLOAM_CHECK(row >= 0, "the point lies in no row");
   int found = 0;
   constexpr uint32_t kDraws = 4000;
