@@ -2,7 +2,7 @@
 // at the same instants, for bench/fast_error.py to compare.
 //
 //   fast_pictures SCENE CAMERA OUT [--size WxH] [--rate HZ] [--frames N] [--at I,J …] [--spp N]
-//                 [--references FOLDER]
+//                 [--seed N] [--references FOLDER]
 //
 // Writes OUT/fast_I.png and OUT/path_I.png for the frames I, J … (default: the last), and prints
 // "frame I mean FAST PATH" with the mean luminance of both [cd/m²]. The path tier's picture is the
@@ -34,6 +34,7 @@ namespace {
 struct Options {
   std::string model, camera, out, references;
   int width = 320, height = 240, rate = 20, frames = 20, spp = 512;
+  int seed = 1;  ///< of the fast tier
   std::set<int> at;
 };
 
@@ -133,7 +134,8 @@ Status run(const Options& options) {
   request.render = scene.render;
   const Studio studio{*shared, request};
   request.render.tier = "fast";
-  GLOAM_TRY(const auto fast, CameraSensor::create(shared->description, request, 1));
+  GLOAM_TRY(const auto fast, CameraSensor::create(shared->description, request,
+                                                  static_cast<uint64_t>(options.seed)));
   const auto ev100 = static_cast<float>(
       scene.render.ev100.value_or(static_cast<double>(shared->description.ev100)));
 
@@ -179,6 +181,7 @@ int main(int argc, char** argv) {
   line.value("--rate", &options.rate);
   line.value("--frames", &options.frames);
   line.value("--spp", &options.spp);
+  line.value("--seed", &options.seed);
   line.value("--references", &options.references);
   std::string frames;
   line.value("--at", &frames);
@@ -188,7 +191,7 @@ int main(int argc, char** argv) {
   if (words.size() != 3) {
     fmt::print(stderr,
                "usage: fast_pictures SCENE CAMERA OUT [--size WxH] [--rate HZ] [--frames N] "
-               "[--at I,J] [--spp N] [--references FOLDER]\n");
+               "[--at I,J] [--spp N] [--seed N] [--references FOLDER]\n");
     return 2;
   }
   options.model = words[0], options.camera = words[1], options.out = words[2];
