@@ -55,7 +55,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--quick", action="store_true", help="one picture of each scene")
     parser.add_argument("--only", help="one scene")
-    parser.add_argument("--seeds", type=int, default=4, help="of the fast tier (default 4)")
+    parser.add_argument("--seeds", type=int, default=8, help="of the fast tier (default 8)")
     parser.add_argument("--keep", help="folder for the pictures")
     arguments = parser.parse_args()
     worst = [0.0, 0.0]

@@ -109,7 +109,9 @@ def gtest(tally, preset, module, only=None, shard_filter=None):
 # What CI leaves out under sanitizers: tests of speed and memory, and means of so many samples that they take minutes there; their
 # code runs in shorter tests, and they themselves in the full tier.
 TOO_SLOW_SANITIZED = ("-*Slow*:*Allocat*:Adaptive.HasTheMeanOfEvenSampling:Adaptive.ReachesWhatIsAskedFor:"
-                      "Fast.LampsInMirrorsLightTheRoom:Fast.IndirectLightIsThatOfThePathTier")
+                      "Fast.LampsInMirrorsLightTheRoom:Fast.IndirectLightIsThatOfThePathTier:Fast.ARareBrightRayMakesNoSpot:"
+                      "Fast.CellsLookForLightWhereTheGuideHasFoundIt:Path.WhiteFurnaceReturnsAllLight:"
+                      "ManyLights.ThePictureIsTheSumOfThoseOfEachLight")
 MUTATIONS = 10_000  # damaged files per reader; without GLOAM_MUTATIONS the tests take 200
 
 

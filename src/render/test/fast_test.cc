@@ -7,6 +7,7 @@
 #include "base/parallel.h"
 #include "render/test/media_probe.h"
 #include "render/test/panel.h"
+#include "render/test/room_with_window.h"
 
 namespace gloam {
 namespace {
@@ -90,14 +91,12 @@ TEST(Fast, IndirectLightIsThatOfThePathTier) {
   }
   for (Vec3f& c : film.radiance) c = c / static_cast<float>(kSeeds);
   EXPECT_NEAR(mean_luminance(film), mean_luminance(exact), 0.05 * mean_luminance(exact));
-  // Blocks of 12 x 12 pixels: what is lit, what is in the shade, what is red. The wall behind the
-  // lamp's, a twelfth as bright as the picture, sees the light by two reflections off large cells.
+  // Blocks of 12 x 12 pixels: what is lit, what is in the shade, what is red.
   double squares = 0;
   for (int by = 0; by < 6; ++by) {
     for (int bx = 0; bx < 8; ++bx) {
       const double ratio = block_ratio(film, exact, bx, by);
-      const bool in_shade = bx < 3 && by > 0 && by < 4;
-      EXPECT_NEAR(ratio, 1, in_shade ? 0.35 : 0.25) << "block " << bx << " " << by;
+      EXPECT_NEAR(ratio, 1, 0.25) << "block " << bx << " " << by;
       squares += (ratio - 1) * (ratio - 1) / 48;
     }
   }
@@ -238,14 +237,39 @@ TEST(Fast, ARareBrightRayMakesNoSpot) {
         b.add_emitter({2000, 2000, 2000}));
   const CameraView view =
       SceneBuilder::camera(look_at({1.5f, -0.6f, 1}, {-2, -0.6f, 1}), 96, 72, 50);
-  const Film film = fast_picture(b, view, 2), exact = path_picture(b, view, 128, kEndless);
-  double worst = 0;
-  for (int by = 1; by < 5; ++by) {
-    for (int bx = 1; bx < 7; ++bx) {
-      worst = std::max(worst, std::abs(block_ratio(film, exact, bx, by) - 1));
+  const Film exact = path_picture(b, view, 512, kEndless);
+  double worst = 0, squares = 0;
+  for (uint64_t seed = 0; seed < 3; ++seed) {
+    const Film film = fast_picture(b, view, 2, seed);
+    for (int by = 1; by < 5; ++by) {
+      for (int bx = 1; bx < 7; ++bx) {
+        const double off = block_ratio(film, exact, bx, by) - 1;
+        worst = std::max(worst, std::abs(off));
+        squares += off * off / (3 * 4 * 6);
+      }
     }
   }
-  EXPECT_LT(worst, 0.15) << "a spot on an even wall";
+  EXPECT_LT(worst, 0.25) << "a spot on an even wall";
+  EXPECT_LT(std::sqrt(squares), 0.085) << "of all blocks";
+}
+
+TEST(Fast, CellsLookForLightWhereTheGuideHasFoundIt) {
+  // The sun makes a patch on the floor, which lights the room: few of the directions from a wall
+  // lead there. Without the guide, which only what stands still has, as many rays know less.
+  const CameraView view =
+      SceneBuilder::camera(look_at({1.5f, -1.5f, 1.5f}, {-2, 0.5f, 1.2f}), 96, 72, 60);
+  double noise[2] = {};
+  for (const bool is_guided : {false, true}) {
+    const SceneBuilder b = room_with_window({"sun", 0, 5000, 0}, is_guided);
+    const Film one = fast_picture(b, view, 1, 0), other = fast_picture(b, view, 1, 1);
+    for (int by = 0; by < 6; ++by) {
+      for (int bx = 0; bx < 8; ++bx)
+        noise[is_guided ? 1 : 0] += std::pow(block_ratio(one, other, bx, by) - 1, 2) / 48;
+    }
+    const Film exact = path_picture(b, view, 64, kEndless);
+    EXPECT_NEAR(mean_luminance(one), mean_luminance(exact), 0.05 * mean_luminance(exact));
+  }
+  EXPECT_LT(noise[1], 0.5 * noise[0]) << "as if twice as many rays went";
 }
 
 TEST(Fast, ManyPanelsAreCountedOnce) {
