@@ -134,8 +134,8 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
     F weight = 1.0f;
     if (scene.guides_directions()) {
       const GuideRowsOf<F> rows = find_rows<F>(scene.guide, path.ray.o, normal, true);
-      path.ray.d = select<F>(seeks & rows.guided, directions::sample(scene.guide, rows.row, u),
-                             path.ray.d);
+      path.ray.d =
+          select<F>(seeks & rows.guided, directions::sample(scene.guide, rows.row, u), path.ray.d);
       const F even = max(dot(path.ray.d, normal), 0.0f) * kInvPi;
       const F sought = directions::pdf(scene.guide, rows.row, path.ray.d);
       weight = select(rows.guided, 2.0f * even / max(even + sought, F(1e-9f)), F(1.0f));
