@@ -1,6 +1,6 @@
 """How far the fast tier's pictures are from the path tier's: LDR-FLIP on five moving scenes.
 
-    python3 bench/fast_error.py [--quick] [--only NAME] [--seeds N] [--keep FOLDER]
+    python3 bench/fast_error.py [--quick] [--only NAME] [--seeds N] [--samples N] [--keep FOLDER]
 
 Each scene runs at 20 pictures a second; at some of them the path tier takes the same instant with
 many samples, which are kept in .cache/fast_references until the scene's file changes (remove
@@ -27,19 +27,19 @@ ROOT = pathlib.Path(__file__).resolve().parents[1]
 SCENES = {"moving_lamp": (0, 8, 20), "closing_door": (0, 6, 20), "running_robot": (0, 10, 20),
           "glass_and_mirrors": (0, 8, 20), "yard": (0, 8, 20)}
 MOST_MEAN, MOST_P95 = 0.08, 0.25
-SAMPLES = 32768  # of the references: half a minute each on an NVIDIA card, an hour on two cores
+SAMPLES = 8192  # of the references: seconds each on an NVIDIA card, up to 20 minutes on two cores
 
 
 def picture(path):
     return np.asarray(Image.open(path).convert("RGB")) / 255.0
 
 
-def compare(scene, at, seed, folder):
+def compare(scene, at, seed, samples, folder):
     """Rows of (mean, 95th percentile, mean between the path tier's halves, brightness of both), a frame each."""
     lines = subprocess.run(
         [ROOT / "build/release/bin/bench_fast_pictures", ROOT / "bench/fast_scenes" / f"{scene}.toml",
          "view", folder, "--frames", str(max(at) + 1), "--at", ",".join(map(str, at)), "--seed", str(seed),
-         "--spp", str(SAMPLES), "--references", ROOT / ".cache/fast_references"], check=True, capture_output=True, text=True).stdout.splitlines()
+         "--spp", str(samples), "--references", ROOT / ".cache/fast_references"], check=True, capture_output=True, text=True).stdout.splitlines()
     rows = []
     for frame, line in zip(at, lines):
         path, fast = (picture(f"{folder}/{who}_{frame}.png") for who in ("path", "fast"))
@@ -56,6 +56,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="one picture of each scene")
     parser.add_argument("--only", help="one scene")
     parser.add_argument("--seeds", type=int, default=8, help="of the fast tier (default 8)")
+    parser.add_argument("--samples", type=int, default=SAMPLES, help=f"of a reference's pixel (default {SAMPLES})")
     parser.add_argument("--keep", help="folder for the pictures")
     arguments = parser.parse_args()
     worst = [0.0, 0.0]
@@ -65,7 +66,7 @@ def main():
             if arguments.only and scene != arguments.only:
                 continue
             at = at[1:2] if arguments.quick else at
-            runs = np.array([compare(scene, at, seed, folder) for seed in range(1, arguments.seeds + 1)])
+            runs = np.array([compare(scene, at, seed, arguments.samples, folder) for seed in range(1, arguments.seeds + 1)])
             for frame, of_seeds in zip(at, runs.swapaxes(0, 1)):
                 mean, p95, noise, fast, path = of_seeds.mean(axis=0)
                 print(f"{scene:18} picture {frame:2}: FLIP mean {mean:.4f} (worst seed {of_seeds[:, 0].max():.4f}), 95 % {p95:.4f} "
