@@ -111,7 +111,7 @@ def gtest(tally, preset, module, only=None, shard_filter=None):
 TOO_SLOW_SANITIZED = ("-*Slow*:*Allocat*:Adaptive.HasTheMeanOfEvenSampling:Adaptive.ReachesWhatIsAskedFor:"
                       "Fast.LampsInMirrorsLightTheRoom:Fast.IndirectLightIsThatOfThePathTier:Fast.ARareBrightRayMakesNoSpot:"
                       "Fast.CellsLookForLightWhereTheGuideHasFoundIt:Path.WhiteFurnaceReturnsAllLight:"
-                      "ManyLights.ThePictureIsTheSumOfThoseOfEachLight")
+                      "ManyLights.ThePictureIsTheSumOfThoseOfEachLight:Adaptive.EndsWhenItsUserSaysSo")
 MUTATIONS = 10_000  # damaged files per reader; without GLOAM_MUTATIONS the tests take 200
 
 
