@@ -9,8 +9,8 @@ namespace gloam {
 /// Room for the filter.
 struct FastFilter {
   FastPlane3 a[kFastSignals], b[kFastSignals];
-  FastPlane deviation[kKeptSignals];         ///< of the signals' means, by the pixels around
-  LightGain gain[kKeptSignals], color_gain;  ///< of the signals, and of the whole light
+  FastPlane deviation[kFastSignals];         ///< of the signals' means, by the pixels around
+  LightGain gain[kFastSignals], color_gain;  ///< of the signals, and of the whole light
 
   void resize(int width, int height);
   /// Takes over from `before` what is the same place, as far as it agrees with what is new.

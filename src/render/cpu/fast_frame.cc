@@ -53,13 +53,13 @@ class Accumulation {
 
   void find_places() {
     // By columns, so that the sums are the same for any number of lanes.
-    F now[kKeptSignals][kParts], past[kKeptSignals][kParts];
+    F now[kFastSignals][kParts], past[kFastSignals][kParts];
     for (int y = y0_; y < y1_; ++y) {
       for (int part = 0; part < kParts; ++part) {
         const int x = x0_ + part * kLaneCount;
         FastPast& place = places_[y - y0_][part];
         place = find_past(before_, f_, x, y);
-        for (int s = 0; s < kKeptSignals; ++s) {
+        for (int s = 0; s < kFastSignals; ++s) {
           const F new_light = luminance(f_.signal[s].load(x, y));
           const F old_light = luminance(place.of(before_.signal[s], x, y));
           now[s][part] += select(place.known, new_light, F(0.0f));
@@ -68,7 +68,7 @@ class Accumulation {
       }
     }
     // Where the light of a whole tile is another, old pictures say little.
-    for (int s = 0; s < kKeptSignals; ++s) {
+    for (int s = 0; s < kFastSignals; ++s) {
       const float a = sum_of(now[s]), b = sum_of(past[s]);
       const float change = fabsf(a - b) / max(max(a, b), 1e-6f);
       least_share_[s] = clamp((change - kNoChange) * kHaste, 0.0f, 1.0f);
@@ -86,7 +86,7 @@ class Accumulation {
     const F longer = min(place.of(before_.age, x, y) + 1.0f, kLongest);
     const F age = select(place.known, longer, F(1.0f));
     f_.age.store(x, y, age);
-    for (int s = 0; s < kKeptSignals; ++s) {
+    for (int s = 0; s < kFastSignals; ++s) {
       const auto [mean, deviation] = neighbour_moments(f_.signal[s], x, y, [&](int dx, int dy) {
         return f_.part.load(x + dx, y + dy) == own_part;
       });
@@ -123,7 +123,7 @@ class Accumulation {
   FastPlane3* out_;
   const int x0_, y0_, y1_ = min(y0_ + kPatch, f_.height);
   FastPast places_[kPatch][kParts];
-  float least_share_[kKeptSignals] = {};
+  float least_share_[kFastSignals] = {};
 };
 
 }  // namespace
@@ -132,7 +132,7 @@ void FastFrame::resize(int w, int h) {
   width = w;
   height = h;
   for (FastPlane3& plane : signal) plane.resize(w, h, 0);
-  for (int s = 0; s < kKeptSignals; ++s) {
+  for (int s = 0; s < kFastSignals; ++s) {
     mean[s].resize(w, h, 0);
     square[s].resize(w, h, 0);
   }
@@ -155,7 +155,7 @@ void FastFilter::resize(int width, int height) {
 }
 
 void FastFilter::accumulate(const FastFrame& before, FastFrame* frame) {
-  for (int s = 0; s < kKeptSignals; ++s)
+  for (int s = 0; s < kFastSignals; ++s)
     gain[s].measure(before, before.signal[s], *frame, frame->signal[s]);
   const int columns = (frame->width + kPatch - 1) / kPatch;
   const int rows = (frame->height + kPatch - 1) / kPatch;
@@ -163,7 +163,7 @@ void FastFilter::accumulate(const FastFrame& before, FastFrame* frame) {
     const int x = static_cast<int>(i % columns), y = static_cast<int>(i / columns);
     Accumulation(before, gain, x * kPatch, y * kPatch, frame, a).run();
   });
-  for (int s = 0; s < kKeptSignals; ++s) std::swap(frame->signal[s], a[s]);
+  for (int s = 0; s < kFastSignals; ++s) std::swap(frame->signal[s], a[s]);
 }
 
 namespace {
@@ -189,7 +189,6 @@ F deviation_at(const FastFrame& f, int signal, int x, int y) {
 template <int kFirst>
 void FastFilter::smooth_signals(const FastFrame& f, int round, const FastPlane3* from,
                                 FastPlane3* to) {
-  constexpr int kKept = std::max<int>(kFirst, kKeptSignals);  // where those that are kept end
   const int step = 1 << round;
   parallel_for("fast filter", f.height, [&](int64_t row) {
     const int y = static_cast<int>(row);
@@ -205,8 +204,6 @@ void FastFilter::smooth_signals(const FastFrame& f, int round, const FastPlane3*
       for (int s = kFirst; s < kFastSignals; ++s) {
         sum[s] = from[s].load(x, y);
         total[s] = 1.0f;
-      }
-      for (int s = kFirst; s < kKept; ++s) {
         if (round == 0) deviation[s].store(x, y, deviation_at(f, s, x, y));
         own[s] = luminance(sum[s]);
         sharp[s] = 1.0f / (2.0f * deviation[s].load(x, y) + 0.005f * own[s] + 1e-4f);
@@ -222,14 +219,13 @@ void FastFilter::smooth_signals(const FastFrame& f, int round, const FastPlane3*
           const F tap =
               same * f16 * max(1.0f - off * off, 0.0f) * (dx != 0 && dy != 0 ? 0.5f : 0.75f);
           Vec3Of<F> v[kFastSignals];
-          F apart[kFastSignals];
-          for (int s = kFirst; s < kFastSignals; ++s) v[s] = from[s].load(qx, qy);
-          for (int s = kFirst; s < kKept; ++s) {
-            const F d = (luminance(v[s]) - own[s]) * sharp[s];
-            apart[s] = 1.0f + sqr(min(d * d, kFarthest));
-          }
           F weight[kFastSignals];
-          for (int s = kFirst; s < kFastSignals; ++s) weight[s] = tap / apart[s];
+          for (int s = kFirst; s < kFastSignals; ++s) {
+            v[s] = from[s].load(qx, qy);
+            const F d = (luminance(v[s]) - own[s]) * sharp[s];
+            weight[s] = tap / (1.0f + sqr(min(d * d, kFarthest)));
+          }
+          // Sharp mirrors show what is far behind them.
           if constexpr (kFirst <= kSpecularSignal) weight[kSpecularSignal] *= mirror;
           for (int s = kFirst; s < kFastSignals; ++s) {
             sum[s] += v[s] * weight[s];

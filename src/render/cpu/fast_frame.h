@@ -71,10 +71,8 @@ struct FastPlane3 {
   }
 };
 
-/// The noisy parts: light of lamps, of mirrors, of the cache. The last changes little from picture
-/// to picture and has no past of its own.
+/// The noisy parts: light of lamps, of mirrors, of the cache.
 enum FastSignal { kDirectSignal, kSpecularSignal, kCachedSignal, kFastSignals };
-inline constexpr int kKeptSignals = kFastSignals;
 /// Smoother surfaces show sharp pictures of other things.
 inline constexpr float kMirror = 0.25f;
 
@@ -83,7 +81,7 @@ struct FastFrame {
   Vec2f offset;  ///< of the rays from the pixels' centres [px]
   FastPlane3 signal[kFastSignals];
   /// Mean and mean square of the luminance of signals over earlier pictures.
-  FastPlane mean[kKeptSignals], square[kKeptSignals];
+  FastPlane mean[kFastSignals], square[kFastSignals];
   FastPlane age;  ///< pictures that a pixel's signals are the mean of
   FastPlane3 p, n;
   FastPlane part;      ///< of the first solid surface; 0 = none, -1 = beyond the border
