@@ -38,6 +38,7 @@ void EventTrack::count_leads(int more) {
 std::shared_ptr<EventTrack> EventTracks::share(const std::string& pictures,
                                                std::shared_ptr<EventTrack> own) {
   const std::lock_guard lock(mutex_);
+  std::erase_if(tracks_, [](const auto& track) { return track.second.expired(); });
   std::weak_ptr<EventTrack>& shared = tracks_[pictures];
   if (auto track = shared.lock()) return track;
   shared = own;
