@@ -2,16 +2,14 @@
 # .venv/cuda, whose layout CMake does not know. The runtime is linked statically and looks for the driver when it is first
 # called, so the program starts where there is none.
 option(GLOAM_CUDA "Compile the stages for NVIDIA cards" OFF)
-if(NOT GLOAM_CUDA)
-  return()
-endif()
 set(GLOAM_CUDA_ARCH 90 CACHE STRING "Compute capability of the card, without its point; later ones compile its PTX")
-
-option(GLOAM_CUDA_PTX "Leave making machine code of the largest kernels to the card's driver" OFF)
 
 set(cuda_wheels ${CMAKE_SOURCE_DIR}/.venv/cuda/nvidia/cu13)
 find_program(GLOAM_NVCC nvcc HINTS ENV CUDA_PATH PATHS /usr/local/cuda ${cuda_wheels} PATH_SUFFIXES bin)
 if(NOT GLOAM_NVCC)
+  if(NOT GLOAM_CUDA)
+    return()
+  endif()
   message(FATAL_ERROR "nvcc is missing: install a CUDA 13 toolkit, or run GLOAM_PRESET=cuda ./gloam setup")
 endif()
 get_filename_component(cuda_root ${GLOAM_NVCC} REALPATH)
@@ -32,7 +30,8 @@ function(gloam_cuda_sources target)
     if(name MATCHES "^plain")  # these kernels are small: what they leave out must fold away in all that they call
       set(flags -DGLOAM_INLINE=__forceinline__)
     endif()
-    if(name MATCHES "^plain" OR NOT GLOAM_CUDA_PTX)
+    # Where only a test asks for them, the card's driver is left to make machine code of the large kernels: minutes less.
+    if(name MATCHES "^plain" OR GLOAM_CUDA)
       set(code sm_${GLOAM_CUDA_ARCH},${code})
     endif()
     if(name MATCHES "path$")  # light is judged by its mean; what must be exact is in other files

@@ -2,11 +2,12 @@ if(GLOAM_FUZZ)
   add_custom_target(fuzzers)
 endif()
 
-# gloam_module(NAME [DEPENDS targets…] [TEST_DEPENDS targets…] [EXCLUDE files…])
+# gloam_module(NAME [FAST_TESTS] [DEPENDS targets…] [TEST_DEPENDS targets…] [EXCLUDE files…])
 # One folder of src/ = one static library gloam_NAME of all its .cc files (test/ and fuzz/ apart),
-# one test program gloam_NAME_test of test/*_test.cc, one fuzz program per fuzz/*_fuzz.cc.
+# one test program gloam_NAME_test of test/*_test.cc (FAST_TESTS: its tests do the work themselves, in code that headers
+# bring, so they are optimised like the library; the others are compiled in half the time), one fuzz program per fuzz/*_fuzz.cc.
 function(gloam_module name)
-  cmake_parse_arguments(arg "" "" "DEPENDS;TEST_DEPENDS;EXCLUDE" ${ARGN})
+  cmake_parse_arguments(arg "FAST_TESTS" "" "DEPENDS;TEST_DEPENDS;EXCLUDE" ${ARGN})
   set(folder ${CMAKE_SOURCE_DIR}/src/${name})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/*.cc)
   list(FILTER sources EXCLUDE REGEX "/(test|fuzz)/")
@@ -28,6 +29,9 @@ function(gloam_module name)
   if(tests)
     add_executable(${target}_test ${tests})
     target_link_libraries(${target}_test PRIVATE ${target} ${arg_TEST_DEPENDS} GTest::gtest GTest::gmock GTest::gtest_main)
+    if(NOT arg_FAST_TESTS)
+      target_compile_options(${target}_test PRIVATE ${GLOAM_TEST_OPTIMISE})
+    endif()
     target_compile_definitions(${target}_test PRIVATE GLOAM_SOURCE_DIR="${CMAKE_SOURCE_DIR}")
     add_test(NAME ${name} COMMAND ${target}_test)
     set_tests_properties(${name} PROPERTIES LABELS unit TIMEOUT 1200)

@@ -184,11 +184,11 @@ def check_lint(tally, files, at_most=None):
 
 
 def fuzz(tally, seconds, targets):
-    if not build(tally, "fuzz", targets):
+    if not build(tally, "asan", targets):
         return
-    for program in [BUILD / "fuzz" / "bin" / name for name in targets]:
+    for program in [BUILD / "asan" / "bin" / name for name in targets]:
         start = time.time()
-        corpus = BUILD / "fuzz" / "corpus" / program.name
+        corpus = BUILD / "asan" / "corpus" / program.name
         corpus.mkdir(parents=True, exist_ok=True)
         seeds = ROOT / "tests" / "fuzz" / program.name
         folders = [str(corpus)] + ([str(seeds)] if seeds.is_dir() else [])
@@ -247,8 +247,8 @@ def ci(tally):
     if build(tally, "tsan", ["gloam_base_test", "gloam_sim_test"]):
         for module in ("base", "sim"):
             gtest(tally, "tsan", module, shard_filter=TOO_SLOW_SANITIZED)
-    if build(tally, "cuda-test", ["gloam_cuda_test"]):  # without a card this shows that the card's source compiles
-        gtest(tally, "cuda-test", "cuda")
+    if build(tally, "release", ["gloam_cuda_test"]):  # without a card this shows that the card's source compiles
+        gtest(tally, "release", "cuda")
     fuzz(tally, 15, ["scene_toml_fuzz", "model_path_fuzz", "model_xml_fuzz"])
 
 

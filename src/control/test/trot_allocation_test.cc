@@ -9,7 +9,7 @@
 #include "control/trot_options.h"
 #include "trot_robots.h"
 
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__GLIBC__) && !defined(GLOAM_SANITIZED)
 
 namespace {
 thread_local long g_allocations = 0;

@@ -7,16 +7,12 @@
 
 #include "test_world.h"
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define GLOAM_SANITIZER_OWNS_MALLOC 1
-#endif
-
 namespace {
 thread_local bool counting = false;
 std::atomic<int64_t> allocations{0}, frees{0};
 }  // namespace
 
-#ifndef GLOAM_SANITIZER_OWNS_MALLOC
+#ifndef GLOAM_SANITIZED
 extern "C" {
 void* __libc_malloc(size_t size);
 void __libc_free(void* block);
@@ -35,7 +31,7 @@ namespace gloam {
 namespace {
 
 TEST(StepLoop, AllocatesNothingOnceWarm) {
-#ifdef GLOAM_SANITIZER_OWNS_MALLOC
+#ifdef GLOAM_SANITIZED
   GTEST_SKIP() << "the sanitizer owns malloc";
 #endif
   auto world = world_from_mjcf(kRichModel);
