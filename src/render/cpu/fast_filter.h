@@ -22,6 +22,7 @@ struct FastFilter {
   }
 
  private:
+  PlaneMemory memory_;
   /// One round for the signals from kFirst on, over pixels 2^round apart.
   template <int kFirst>
   void smooth_signals(const FastFrame& f, int round, const FastPlane3* from, FastPlane3* to);

@@ -1,6 +1,9 @@
 #include "render/cpu/fast_filter.h"
 
+#include <sys/mman.h>
+
 #include <algorithm>
+#include <new>
 
 #include "base/parallel.h"
 
@@ -128,29 +131,64 @@ class Accumulation {
 
 }  // namespace
 
+void PlaneMemory::resize(int width, int height, const std::vector<Member>& members) {
+  constexpr size_t kPage = size_t{2} << 20;  // [B] of x86-64's large pages
+  constexpr size_t kLine = 16,
+                   kWay = 1024;  // floats of a cache's line, and of a way of the first cache
+  constexpr int kBorder = FastPlane::kBorder;
+  const int stride = (width + kLaneCount - 1) / kLaneCount * kLaneCount + 2 * kBorder;
+  const size_t size = static_cast<size_t>(stride) * static_cast<size_t>(height + 2 * kBorder);
+  // The same pixel of planes beside one another must not fall into one set of the caches.
+  const size_t pitch = (size + kWay - 1) / kWay * kWay + 5 * kLine;
+  const size_t bytes = (pitch * members.size() * sizeof(float) + kPage - 1) / kPage * kPage;
+  floats_.reset();
+  floats_.reset(static_cast<float*>(std::aligned_alloc(kPage, bytes)));
+  if (!floats_) throw std::bad_alloc();
+  madvise(floats_.get(), bytes, MADV_HUGEPAGE);  // refused: slower, no more
+  float* next = floats_.get();
+  for (const auto& [plane, value] : members) {
+    plane->values_ = next;
+    plane->stride_ = stride;
+    std::fill_n(next, size, value);
+    next += pitch;
+  }
+}
+
 void FastFrame::resize(int w, int h) {
   width = w;
   height = h;
-  for (FastPlane3& plane : signal) plane.resize(w, h, 0);
+  std::vector<PlaneMemory::Member> members;
+  const auto add = [&](FastPlane& plane, float value = 0) { members.push_back({&plane, value}); };
+  const auto add3 = [&](FastPlane3& planes) {
+    for (FastPlane& plane : planes.c) add(plane);
+  };
   for (int s = 0; s < kFastSignals; ++s) {
-    mean[s].resize(w, h, 0);
-    square[s].resize(w, h, 0);
+    add3(signal[s]);
+    add(mean[s]);
+    add(square[s]);
   }
-  age.resize(w, h, 1);  // beyond the picture too: noise is divided by it
-  for (FastPlane3* plane : {&p, &n, &base, &albedo, &gloss, &color, &resolved})
-    plane->resize(w, h, 0);
-  part.resize(w, h, -1);
-  distance.resize(w, h, 0);
-  for (FastPlane* plane : {&roughness, &near, &motion_x, &motion_y, &pictures, &gleam, &edge})
-    plane->resize(w, h, 0);
+  add(age, 1);  // beyond the picture too: noise is divided by it
+  for (FastPlane3* planes : {&p, &n, &base, &albedo, &gloss, &color, &resolved}) add3(*planes);
+  add(part, -1);
+  for (FastPlane* plane :
+       {&distance, &roughness, &near, &motion_x, &motion_y, &pictures, &gleam, &edge}) {
+    add(*plane);
+  }
+  memory_.resize(w, h, members);
   key.assign(static_cast<size_t>(w) * h, 0);
 }
 
 void FastFilter::resize(int width, int height) {
-  for (FastPlane3& plane : a) plane.resize(width, height, 0);
-  for (FastPlane3& plane : b) plane.resize(width, height, 0);
-  for (FastPlane& plane : deviation) plane.resize(width, height, 0);
-  for (LightGain& signal : gain) signal.resize(width, height);
+  std::vector<PlaneMemory::Member> members;
+  for (int s = 0; s < kFastSignals; ++s) {
+    for (int k = 0; k < 3; ++k) {
+      members.push_back({&a[s].c[k], 0});
+      members.push_back({&b[s].c[k], 0});
+    }
+    members.push_back({&deviation[s], 0});
+    gain[s].resize(width, height);
+  }
+  memory_.resize(width, height, members);
   color_gain.resize(width, height);
 }
 

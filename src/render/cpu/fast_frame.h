@@ -1,6 +1,8 @@
 #pragma once
 // A picture of the fast tier before it is filtered, in planes of single floats with a border.
 
+#include <cstdlib>
+#include <memory>
 #include <vector>
 
 #include "base/vec.h"
@@ -9,15 +11,12 @@
 namespace gloam {
 
 /// Rows of floats with kBorder more on all sides; a lane's load may start anywhere in it.
+/// PlaneMemory holds them.
 class FastPlane {
  public:
   static constexpr int kBorder = 16;
-  void resize(int width, int height, float value) {
-    stride_ = (width + kLaneCount - 1) / kLaneCount * kLaneCount + 2 * kBorder;
-    values_.assign(static_cast<size_t>(stride_) * static_cast<size_t>(height + 2 * kBorder), value);
-  }
   float* at(int x, int y) {
-    return values_.data() + static_cast<ptrdiff_t>(y + kBorder) * stride_ + x + kBorder;
+    return values_ + static_cast<ptrdiff_t>(y + kBorder) * stride_ + x + kBorder;
   }
   const float* at(int x, int y) const { return const_cast<FastPlane*>(this)->at(x, y); }
   FloatLanes load(int x, int y) const {
@@ -36,19 +35,17 @@ class FastPlane {
   FloatLanes gather_at(FloatLanes x, FloatLanes y) const {
     const auto stride = static_cast<uint32_t>(stride_);
     constexpr float kShift = kBorder;
-    return gather(values_.data(), to_uint(y + kShift) * stride + to_uint(x + kShift));
+    return gather(values_, to_uint(y + kShift) * stride + to_uint(x + kShift));
   }
 
  private:
-  std::vector<float> values_;
+  friend class PlaneMemory;
+  float* values_ = nullptr;
   int stride_ = 0;
 };
 
 struct FastPlane3 {
   FastPlane c[3];
-  void resize(int width, int height, float value) {
-    for (FastPlane& p : c) p.resize(width, height, value);
-  }
   Vec3f get(int x, int y) const { return {*c[0].at(x, y), *c[1].at(x, y), *c[2].at(x, y)}; }
   void set(int x, int y, Vec3f v) {
     for (int k = 0; k < 3; ++k) *c[k].at(x, y) = v[k];
@@ -69,6 +66,24 @@ struct FastPlane3 {
   Vec3Of<FloatLanes> gather_at(FloatLanes x, FloatLanes y) const {
     return {c[0].gather_at(x, y), c[1].gather_at(x, y), c[2].gather_at(x, y)};
   }
+};
+
+/// The floats of planes of one size, in one piece: what goes over a picture walks along dozens of
+/// planes at once, and would wait for the memory's tables of pages and for caches.
+class PlaneMemory {
+ public:
+  /// A plane and the value that it is filled with.
+  struct Member {
+    FastPlane* plane;
+    float value;
+  };
+  void resize(int width, int height, const std::vector<Member>& members);
+
+ private:
+  struct Free {
+    void operator()(float* floats) const { std::free(floats); }
+  };
+  std::unique_ptr<float, Free> floats_;
 };
 
 /// The noisy parts: light of lamps, of mirrors, of the cache.
@@ -98,6 +113,9 @@ struct FastFrame {
   FastPlane pictures;   ///< that `resolved` is the mean of; 0 = unknown
 
   void resize(int w, int h);
+
+ private:
+  PlaneMemory memory_;
 };
 
 /// Mean and deviation of a plane over 3 x 3 pixels, of those that count.
