@@ -193,8 +193,10 @@ void FastFilter::resize(int width, int height) {
 }
 
 void FastFilter::accumulate(const FastFrame& before, FastFrame* frame) {
+  std::vector<LightChange> changes;
   for (int s = 0; s < kFastSignals; ++s)
-    gain[s].measure(before, before.signal[s], *frame, frame->signal[s]);
+    changes.push_back({before.signal[s], frame->signal[s], &gain[s]});
+  measure_gains(before, *frame, changes);
   const int columns = (frame->width + kPatch - 1) / kPatch;
   const int rows = (frame->height + kPatch - 1) / kPatch;
   parallel_for("fast history", int64_t{columns} * rows, [&](int64_t i) {

@@ -62,30 +62,40 @@ FastPast find_past(const FastFrame& before, const FastFrame& f, int x, int y) {
 }
 
 void LightGain::resize(int width, int height) {
-  height_ = height;
   columns_ = (width + kPatch - 1) / kPatch;
   rows_ = (height + kPatch - 1) / kPatch;
   changed_ = false;
   gain_.assign(static_cast<size_t>(columns_) * static_cast<size_t>(rows_), 1.0f);
 }
 
-void LightGain::measure(const FastFrame& before, const FastPlane3& old_light, const FastFrame& now,
-                        const FastPlane3& light) {
+void measure_gains(const FastFrame& before, const FastFrame& now,
+                   std::span<const LightChange> changes) {
   static_assert(kLaneCount % kPatch == 0);
-  parallel_for("fast gain", rows_, [&](int64_t row) {
+  const int columns = changes[0].gain->columns_;
+  parallel_for("fast gain", changes[0].gain->rows_, [&](int64_t row) {
     const int y0 = static_cast<int>(row) * kPatch;
-    for (int column = 0; column < columns_; column += kLaneCount / kPatch) {
+    for (int column = 0; column < columns; column += kLaneCount / kPatch) {
       const int x = column * kPatch;
-      Sums sums;
-      for (int y = y0; y < std::min(y0 + kPatch, height_); ++y) {
+      Sums sums[kFastSignals];
+      for (int y = y0; y < std::min(y0 + kPatch, now.height); ++y) {
         const FastPast past = find_past(before, now, x, y);
-        sums.add(past.known, luminance(light.load(x, y)), luminance(past.of(old_light, x, y)));
+        for (size_t i = 0; i < changes.size(); ++i) {
+          sums[i].add(past.known, luminance(changes[i].now.load(x, y)),
+                      luminance(past.of(changes[i].before, x, y)));
+        }
       }
-      for (int k = 0; k < std::min(kLaneCount / kPatch, columns_ - column); ++k)
-        gain_[static_cast<size_t>(row * columns_ + column + k)] = sums.gain(k * kPatch);
+      for (size_t i = 0; i < changes.size(); ++i) {
+        for (int k = 0; k < std::min(kLaneCount / kPatch, columns - column); ++k) {
+          changes[i].gain->gain_[static_cast<size_t>(row * columns + column + k)] =
+              sums[i].gain(k * kPatch);
+        }
+      }
     }
   });
-  changed_ = std::any_of(gain_.begin(), gain_.end(), [](float gain) { return gain != 1; });
+  for (const LightChange& change : changes) {
+    const std::vector<float>& gain = change.gain->gain_;
+    change.gain->changed_ = std::any_of(gain.begin(), gain.end(), [](float g) { return g != 1; });
+  }
 }
 
 FloatLanes LightGain::from(int x, int y) const {

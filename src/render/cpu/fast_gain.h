@@ -3,6 +3,7 @@
 // pictures lags behind light that changes evenly; brought up to the new level first, it does not.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "base/parallel.h"
@@ -25,17 +26,28 @@ struct FastPast {
 };
 FastPast find_past(const FastFrame& before, const FastFrame& f, int x, int y);
 
+class LightGain;
+/// One light in two pictures, and where to put how it has changed.
+struct LightChange {
+  const FastPlane3& before;
+  const FastPlane3& now;
+  LightGain* gain;
+};
+/// Compares luminances of the pixels with those of the same places before; of kFastSignals lights
+/// at most.
+void measure_gains(const FastFrame& before, const FastFrame& now,
+                   std::span<const LightChange> changes);
+
 class LightGain {
  public:
   void resize(int width, int height);
-  /// Compares luminances of the pixels with those of the same places before.
-  void measure(const FastFrame& before, const FastPlane3& old_light, const FastFrame& now,
-               const FastPlane3& light);
   /// Light now over light before, about the pixels from (x, y) on.
   FloatLanes from(int x, int y) const;
 
  private:
-  int height_ = 0, columns_ = 0, rows_ = 0;
+  friend void measure_gains(const FastFrame& before, const FastFrame& now,
+                            std::span<const LightChange> changes);
+  int columns_ = 0, rows_ = 0;
   bool changed_ = false;     ///< a gain is not 1
   std::vector<float> gain_;  ///< of patches, (rows x columns)
 };

@@ -135,7 +135,8 @@ void resolve_lanes(const FastFrame& before, const LightGain& gain, const FilterW
 }  // namespace
 
 void resolve(const FastFrame& before, LightGain* gain, FastFrame* frame) {
-  gain->measure(before, before.color, *frame, frame->color);
+  const LightChange change{before.color, frame->color, gain};
+  measure_gains(before, *frame, {&change, 1});
   const FilterWeights weights(frame->offset);
   parallel_for("fast resolve", frame->height, [&](int64_t y) {
     for (int x = 0; x < frame->width; x += kLaneCount) {
