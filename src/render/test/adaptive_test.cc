@@ -15,7 +15,7 @@ RenderSettings adaptive(const NoiseScene& scene, float error, int most) {
   s.error = error;
   s.error_floor = scene.floor;
   s.max_depth = 6;
-  s.roulette_depth = 2;
+  s.roulette_depth = 3;
   s.exact_channels = false;
   return s;
 }

@@ -270,7 +270,7 @@ TEST(Sampling, EmittersAreSampledByTheDensityTheyReport) {
     const int material = b.add_emitter({900, 900, 900});
     if (shape == ShapeType::kMesh && size.x > 0) {  // a sheet, which shines on one side
       b.description.materials.back().emits_outwards = true;
-      b.add(shape, {}, rigid({1, 2, 0}, 0.4f, {0.3f, 0.2f, 1.2f}), material, 0,
+      b.add(shape, {}, rigid(normalize(Vec3f{1, 2, 0}), 0.4f, {0.3f, 0.2f, 1.2f}), material, 0,
             b.add_mesh(make_panel()));
       return b;
     }
