@@ -107,7 +107,7 @@ int main(int argc, char** argv) {
     RenderSettings settings;
     settings.exact_channels = false;
     settings.max_depth = 6;
-    settings.roulette_depth = 3;
+    settings.roulette_depth = 2;
     settings.spp = a.spp;
     settings.error = static_cast<float>(a.error);
     settings.error_floor = scene.floor;

@@ -174,7 +174,7 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
     settings.error_floor = kFloor * max_luminance(static_cast<float>(sensor->models_->ev100()));
   }
   settings.max_depth = request.render.max_depth;
-  settings.roulette_depth = 3;  // unbiased, and spares the rays of dim paths
+  settings.roulette_depth = 2;  // unbiased, and spares the rays of dim paths
   settings.seed = hash_bytes(request.camera.data(), request.camera.size(), seed);
   if (settings.tier == RenderTier::kFast && !channels.light()) settings.tier = RenderTier::kDirect;
   if (request.render.denoise && channels.light() && settings.tier != RenderTier::kFast) {

@@ -131,32 +131,30 @@ paths::CameraSampleOf<FloatLanes> Tile::camera_sample(const SampleRange& range, 
                                                       MaskLanes* seeing) const {
   paths::CameraSampleOf<FloatLanes> out;
   UintLanes x, y, sample;
-  int pixel[kLaneCount];
-  for (int i = 0; i < kLaneCount; ++i) {
-    pixel[i] = path_of[i] / range.count;
-    set_lane(&x, i, static_cast<uint32_t>(x_[pixel[i]]));
-    set_lane(&y, i, static_cast<uint32_t>(y_[pixel[i]]));
+  each_lane(*seeing, [&](int i) {
+    const int pixel = path_of[i] / range.count;
+    set_lane(&x, i, static_cast<uint32_t>(x_[pixel]));
+    set_lane(&y, i, static_cast<uint32_t>(y_[pixel]));
     set_lane(&sample, i, static_cast<uint32_t>(range.first + path_of[i] % range.count));
-  }
+  });
   out.sampler =
       SamplerOf<FloatLanes>::make(range.seed, job_.settings.frame, x, y, sample, job_.log2_samples);
-  const Vec2Of<FloatLanes> filter = out.sampler.next_2d();
-  const FloatLanes time = job_.has_motion ? out.sampler.next_1d() : FloatLanes(0.0f);
+  const Vec2Of<FloatLanes> offset = sample_pixel_filter(out.sampler.next_2d());
+  FloatLanes time = 0.0f;
+  if (job_.has_motion) {
+    const FloatLanes share = out.sampler.next_1d();
+    each_lane(*seeing, [&](int i) {
+      set_lane(&time, i, job_.camera.time_of(static_cast<int>(lane(y, i)), lane(share, i)));
+    });
+  }
   Vec2Of<FloatLanes> lens;
   if (job_.camera.aperture.radius > 0) lens = out.sampler.next_2d();
-  each_lane(*seeing, [&](int i) {
-    RayCone cone;
-    const Vec2f lens_point = lane(lens, i);
-    const float when = job_.has_motion ? job_.camera.time_of(y_[pixel[i]], lane(time, i)) : 0.0f;
-    const Ray ray =
-        pixel_ray(pixel[i], sample_pixel_filter(lane(filter, i)), when, &cone, &lens_point);
-    if (!sees(ray)) set_lane(seeing, i, false);
-    set_lane(&out.ray.time, i, ray.time);
-    set_lane(&out.ray.o, i, ray.o);
-    set_lane(&out.ray.d, i, ray.d);
-    set_lane(&out.cone_width, i, cone.width);
-    set_lane(&out.cone_spread, i, cone.spread);
-  });
+  RayConeOf<FloatLanes> cone;
+  out.ray = camera_rays(job_.camera, to_float(x) + 0.5f + offset.x, to_float(y) + 0.5f + offset.y,
+                        time, &cone, &lens);
+  out.cone_width = cone.width;
+  out.cone_spread = cone.spread;
+  *seeing = *seeing & (out.ray.tmax > 0.0f);
   return out;
 }
 

@@ -138,11 +138,13 @@ GLOAM_HD Ray camera_ray(const CameraView32& camera, float u, float v, float time
   return ray;
 }
 
-/// camera_ray() of many points, through the middle of the aperture.
+/// camera_ray() of many points.
 template <class F>
-GLOAM_HD RayOf<F> camera_rays(const CameraView32& camera, F u, F v, F time, RayConeOf<F>* cone) {
+GLOAM_HD RayOf<F> camera_rays(const CameraView32& camera, F u, F v, F time, RayConeOf<F>* cone,
+                              const Vec2Of<F>* lens = nullptr) {
   RayOf<F> rays;
-  if (!camera.orthographic && camera.is_pinhole() && camera.pose.keys.empty()) {
+  const bool is_sharp = lens == nullptr || !camera.has_aperture();
+  if (!camera.orthographic && camera.is_pinhole() && is_sharp && camera.pose.keys.empty()) {
     const F x = (u - camera.cx) / camera.fx, y = (camera.cy - v) / camera.fy;
     const AffineOf<F> X_WC = pose_in_all_lanes<F>(camera.pose.X_WC_open);
     rays.o = X_WC.p;
@@ -153,7 +155,9 @@ GLOAM_HD RayOf<F> camera_rays(const CameraView32& camera, F u, F v, F time, RayC
   }
   each_lane(MaskOf<F>(true), [&](int i) {
     RayCone one;
-    const Ray ray = camera_ray(camera, lane(u, i), lane(v, i), lane(time, i), &one);
+    const Vec2f at = is_sharp ? Vec2f{} : lane(*lens, i);
+    const Ray ray =
+        camera_ray(camera, lane(u, i), lane(v, i), lane(time, i), &one, is_sharp ? nullptr : &at);
     set_lane(&rays.o, i, ray.o);
     set_lane(&rays.d, i, ray.d);
     set_lane(&rays.tmax, i, ray.tmax);
@@ -196,11 +200,12 @@ inline constexpr float kPixelFilterSigma = 0.42f, kPixelFilterCut = 1.25f;
 
 /// Offset from the pixel's centre [px], by importance sampling of the pixel filter. All samples
 /// weigh the same (filter importance sampling, Ernst et al. 2006).
-GLOAM_HD Vec2f sample_pixel_filter(Vec2f u) {
+template <class F>
+GLOAM_HD Vec2Of<F> sample_pixel_filter(Vec2Of<F> u) {
   u = to_disc(u);
-  const float reach = 1.0f - expf(-0.5f * sqr(kPixelFilterCut / kPixelFilterSigma));
-  const float r = kPixelFilterSigma * sqrtf(-2.0f * logf(1.0f - u.x * reach));
-  float s, c;
+  constexpr float kReach = 0.98807186f;  // 1 - exp(-(cut / sigma)² / 2)
+  const F r = kPixelFilterSigma * square_root(-2.0f * natural_log(1.0f - u.x * kReach));
+  F s, c;
   sincos_turn(u.y, &s, &c);
   return {r * c, r * s};
 }

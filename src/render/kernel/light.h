@@ -194,6 +194,20 @@ GLOAM_HD MaskOf<F> is_outside_ball(F radius, Vec3Of<F> center, Vec3Of<F> p) {
   return length_squared(center - p) > sqr(radius) * 1.0001f;
 }
 
+/// Towards points of a sheet: with no triangle to look up, and no seam in the points' even spread.
+template <class F>
+GLOAM_HD LightSampleOf<F> sample_sheet(const LightView& light, Vec3Of<F> p, Vec2Of<F> u) {
+  const Vec3f normal = cross(light.edges[0], light.edges[1]);
+  const float area = length(normal);
+  EmitterPointOf<F> at;
+  at.p_W = in_all_lanes<F>(light.p) + in_all_lanes<F>(light.edges[0]) * (u.x - 0.5f) +
+           in_all_lanes<F>(light.edges[1]) * (u.y - 0.5f);
+  at.n_W = in_all_lanes<F>(normal / area);
+  LightSampleOf<F> s = aim_at(at, F(1.0f / area), true, p);
+  s.radiance = in_all_lanes<F>(light.intensity);
+  return s;
+}
+
 /// Density per solid angle at p of the direction to a point of an emitting instance.
 GLOAM_HD float instance_pdf(const SceneView& scene, const InstanceView& instance, Vec3f p,
                             Vec3f hit_p, Vec3f hit_normal, float time) {
@@ -312,6 +326,8 @@ GLOAM_HD LightSampleOf<F> sample_one_light(const SceneView& scene, uint32_t inde
     s = lights::sample_sun(light, u);
   } else if (kPlainScenes || light.kind != LightKind::kInstance) {
     s = lights::sample_lamp(scene, light, p, u);
+  } else if (light.is_sheet) {
+    s = lights::sample_sheet(light, p, u);
   } else {
     const InstanceView& instance = scene.instances[light.instance];
     const MaterialView& material = scene.materials[instance.material];

@@ -11,7 +11,7 @@ namespace paths {
 /// Share of a path's weight behind its first vertex below which it may end by chance. The first
 /// vertex dims all of a pixel alike, and what the first reflections take off is not little: to end
 /// paths by their mere weight made more noise than it saved time.
-inline constexpr float kRouletteBelow = 0.25f;
+inline constexpr float kRouletteBelow = 0.35f;
 
 /// Share of directions that are drawn from the guide instead of the BSDF: what is sharp finds its
 /// light by itself.

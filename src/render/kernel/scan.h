@@ -17,9 +17,16 @@ struct ScannedSolid {
   uint32_t row = 0;        ///< of SceneView::instances
 };
 
+/// Solids close together: what misses their bounds misses all of them.
+struct ScanGroup {
+  Bounds bounds;
+  uint32_t first = 0, count = 0;  ///< of ScanList::solids
+};
+
 struct ScanList {
   DeviceSpan<const uint32_t> planes;  ///< rows of infinite planes, which may move
   DeviceSpan<const ScannedSolid> solids;
+  DeviceSpan<const ScanGroup> groups;  ///< of all solids; for rays in lanes
   DeviceSpan<const InstanceView> instances;
 };
 
@@ -45,6 +52,14 @@ GLOAM_HD Vec3Of<F> inverse_of(Vec3Of<F> d) {
   return {1.0f / d.x, 1.0f / d.y, 1.0f / d.z};
 }
 
+/// Lanes whose ray may meet the box before tmax. `inverse` as above.
+template <class F>
+GLOAM_HD MaskOf<F> may_meet(const Bounds& box, Vec3Of<F> o, Vec3Of<F> inverse, F tmax, F* enter,
+                            F* leave) {
+  cross_box(in_all_lanes<F>(box.low), in_all_lanes<F>(box.high), o, inverse, enter, leave);
+  return (*enter <= *leave) & (*leave > 0.0f) & (*enter < tmax);
+}
+
 /// Lanes that hit the plane before tmax, and where.
 template <class F>
 GLOAM_HD MaskOf<F> hit_plane(const InstanceView& plane, const RayOf<F>& ray, F tmax, F* t) {
@@ -67,9 +82,7 @@ GLOAM_HD MaskOf<F> hit_solid(const ScannedSolid& solid, const InstanceView& inst
                              const RayOf<F>& ray, Vec3Of<F> inverse, MaskOf<F> active, F tmax,
                              F* t) {
   F enter, leave;
-  cross_box(in_all_lanes<F>(solid.bounds.low), in_all_lanes<F>(solid.bounds.high), ray.o, inverse,
-            &enter, &leave);
-  MaskOf<F> hit = active & (enter <= leave) & (leave > 0.0f) & (enter < tmax);
+  MaskOf<F> hit = active & may_meet(solid.bounds, ray.o, inverse, tmax, &enter, &leave);
   if (!solid.is_bounds) {
     if (!any(hit)) return hit;
     const AffineOf<F> X_WG = pose_in_all_lanes<F>(instance.X_WG);
@@ -97,9 +110,7 @@ GLOAM_HD MaskOf<F> hit_solid(const ScannedSolid& solid, const InstanceView& inst
 template <class F>
 GLOAM_HD MaskOf<F> may_meet(const Bounds& box, const RayOf<F>& ray, F tmax) {
   F enter, leave;
-  scans::cross_box(in_all_lanes<F>(box.low), in_all_lanes<F>(box.high), ray.o,
-                   scans::inverse_of(ray.d), &enter, &leave);
-  return (enter <= leave) & (leave > 0.0f) & (enter < tmax);
+  return scans::may_meet(box, ray.o, scans::inverse_of(ray.d), tmax, &enter, &leave);
 }
 
 /// Row + 1 of the nearest thing of the list that the rays of the `active` lanes hit before *tmax,
@@ -121,11 +132,25 @@ GLOAM_HD UintOf<F> scan(const ScanList& list, const RayOf<F>& ray, MaskOf<F> act
     take(hit, t, row);
   }
   const Vec3Of<F> inverse = scans::inverse_of(ray.d);
-  for (uint32_t i = 0; i < list.solids.size && any(active); ++i) {
-    const ScannedSolid& solid = list.solids[i];
-    const MaskOf<F> hit =
-        scans::hit_solid(solid, list.instances[solid.row], ray, inverse, active, *tmax, &t);
-    take(hit, t, solid.row);
+  const auto test = [&](uint32_t first, uint32_t end) {
+    for (uint32_t i = first; i < end && any(active); ++i) {
+      const ScannedSolid& solid = list.solids[i];
+      const MaskOf<F> hit =
+          scans::hit_solid(solid, list.instances[solid.row], ray, inverse, active, *tmax, &t);
+      take(hit, t, solid.row);
+    }
+  };
+  if constexpr (Lanes<F>::kCount == 1) {
+    test(0, list.solids.size);
+    return nearest;
+  }
+  for (uint32_t i = 0; i < list.groups.size && any(active); ++i) {
+    const ScanGroup& group = list.groups[i];
+    F enter, leave;
+    const bool worth =
+        group.count == 1 ||
+        any(active & scans::may_meet(group.bounds, ray.o, inverse, *tmax, &enter, &leave));
+    if (worth) test(group.first, group.first + group.count);
   }
   return nearest;
 }

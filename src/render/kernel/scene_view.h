@@ -109,14 +109,16 @@ enum class LightKind : uint8_t { kPoint, kSpot, kDirectional, kInstance };
 struct LightView {
   LightKind kind = LightKind::kPoint;
   bool casts_shadow = true;
-  bool is_delta = false;                              ///< no extent: cannot be hit
-  bool is_ball = false;                               ///< kInstance: an even sphere at rest
-  Vec3f p;                                            ///< of the centre [m]
-  Vec3f direction;                                    ///< along which it shines, unit
-  Vec3f x;                                            ///< across it, unit; of lamps with a profile
-  int profile = -1;                                   ///< row of SceneView::profiles
-  Vec3f intensity;                                    ///< [cd]; directional: [lx]; balls: [cd/m²]
-  float radius = 0;                                   ///< [m]; directional: sine of the half angle
+  bool is_delta = false;  ///< no extent: cannot be hit
+  bool is_ball = false;   ///< kInstance: an even sphere at rest
+  bool is_sheet = false;  ///< kInstance: an even parallelogram at rest
+  Vec3f p;                ///< of the centre [m]
+  Vec3f direction;        ///< along which it shines, unit
+  Vec3f x;                ///< across it, unit; of lamps with a profile
+  int profile = -1;       ///< row of SceneView::profiles
+  Vec3f intensity;        ///< [cd]; directional: [lx]; balls and sheets: [cd/m²]
+  Vec3f edges[2];         ///< of a sheet about p, which shines along their cross product [m]
+  float radius = 0;       ///< [m]; directional: sine of the half angle
   float cutoff = 0, cos_cutoff = -1, cos_inner = -1;  ///< spot: half angle [rad] and cosines
   float inner = 0;                                    ///< spot: half angle of full intensity [rad]
   float strength = 0;  ///< luminous intensity [cd] (directional: illuminance [lx]), for selection

@@ -109,6 +109,22 @@ void set_bounds(const InstanceView& instance, bool is_one_sided,
     set_cone(instance, meshes[instance.mesh], light);
 }
 
+/// Whether the mesh is a parallelogram of two triangles, a c b and a d c, as lamps are; then sets
+/// the light's edges.
+bool set_sheet(const InstanceView& instance, const MeshView& mesh, LightView* light) {
+  if (mesh.indices.size != 6) return false;
+  const DeviceSpan<const uint32_t>& i = mesh.indices;
+  if (i[3] != i[0] || i[5] != i[1]) return false;
+  const Vec3f a = mesh.positions[i[0]], c = mesh.positions[i[1]];
+  const Vec3f to_b = mesh.positions[i[2]] - a, to_d = mesh.positions[i[4]] - a;
+  if (!(length(to_b + to_d - (c - a)) <= 1e-6f * length(c - a))) return false;
+  if (!(length(cross(to_d, to_b)) > 0)) return false;
+  light->p = transform_point(instance.X_WG, (a + c) * 0.5f);
+  light->edges[0] = transform_vector(instance.X_WG, to_d);
+  light->edges[1] = transform_vector(instance.X_WG, to_b);
+  return true;
+}
+
 bool is_finite(const LightView& light) {
   constexpr float kMost = 1e18f;  // squares and their sums stay finite
   const float far = fabsf(light.p.x) + fabsf(light.p.y) + fabsf(light.p.z);
@@ -135,13 +151,15 @@ std::optional<LightView> emitter_of(const std::vector<InstanceView>& instances, 
   light.levels = material.levels;
   set_bounds(instance, material.emits_outwards, meshes, &light);
   if (!is_finite(light)) return {};
-  if (instance.shape == ShapeType::kSphere && !instance.moving && !material.textured &&
-      light.levels < 0) {
+  if (instance.moving || material.textured) return light;
+  light.intensity = material.emission * material.opacity;
+  if (instance.shape == ShapeType::kSphere && light.levels < 0) {
     light.is_ball = true;
     light.p = instance.X_WG.p;
     light.radius = instance.size.x;
-    light.intensity = material.emission * material.opacity;
   }
+  light.is_sheet = instance.shape == ShapeType::kMesh && material.emits_outwards &&
+                   set_sheet(instance, meshes[instance.mesh], &light);
   return light;
 }
 

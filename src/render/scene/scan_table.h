@@ -19,7 +19,8 @@ Bounds wider(const Bounds& bounds);
 
 struct ScanTable {
   std::vector<uint32_t> planes;      ///< rows of infinite planes
-  std::vector<ScannedSolid> solids;  ///< the largest first
+  std::vector<ScannedSolid> solids;  ///< group by group
+  std::vector<ScanGroup> groups;     ///< that of the largest solid first
 
   /// Takes all infinite planes, and of the solids that stand still the `most` largest: most rays
   /// end there. Those with less than `least_share` of the largest's surface are left out.

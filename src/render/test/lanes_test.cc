@@ -37,6 +37,7 @@ TEST(Lanes, FunctionsOfOneNumberEqualTheFloats) {
   expect_equal_lanes("to_uint", 0, 1e6f, [](auto x) { return to_float(to_uint(x)); });
   expect_equal_lanes("min and max", -9, 9, [](auto x) { return min(max(x, -2.0f), 3.0f); });
   expect_equal_lanes("mis_weight", 0, 9, [](auto x) { return mis_weight(x, x * x); });
+  expect_equal_lanes("natural_log", 1e-6f, 9, [](auto x) { return natural_log(x); });
   expect_equal_lanes("sincos_turn", 0, 0.9999999f, [](auto x) {
     decltype(x) s, c;
     sincos_turn(x, &s, &c);
@@ -197,6 +198,32 @@ CameraView32 camera_of_64_by_48() {
   camera.cy = static_cast<float>(view.intrinsics.cy);
   camera.pose = {view.X_WC_open, view.X_WC_open, {}};
   return camera;
+}
+
+TEST(Lanes, RaysOfCamerasEqualSingleOnes) {
+  for (const float aperture : {0.0f, 0.05f}) {
+    CameraView32 camera = camera_of_64_by_48();
+    camera.aperture = {aperture, 3};
+    Vec2Of<FloatLanes> lens, pixel;
+    for (int i = 0; i < kLaneCount; ++i) {
+      Sampler sampler = draw(static_cast<uint32_t>(i));
+      set_lane(&lens, i, sampler.next_2d());
+      set_lane(&pixel, i, sampler.next_2d());
+    }
+    const Vec2Of<FloatLanes> offset = sample_pixel_filter(pixel);
+    RayConeOf<FloatLanes> cones;
+    const RayOf<FloatLanes> rays =
+        camera_rays(camera, offset.x + 9.5f, offset.y + 7.5f, FloatLanes(0.5f), &cones, &lens);
+    for (int i = 0; i < kLaneCount; ++i) {
+      const Vec2f at = lane(lens, i), from = sample_pixel_filter(lane(pixel, i));
+      RayCone cone;
+      const Ray ray = camera_ray(camera, from.x + 9.5f, from.y + 7.5f, 0.5f, &cone, &at);
+      EXPECT_EQ(ray.o, lane(rays.o, i));
+      EXPECT_EQ(ray.d, lane(rays.d, i));
+      EXPECT_EQ(ray.time, lane(rays.time, i));
+      EXPECT_EQ(cone.spread, lane(cones.spread, i));
+    }
+  }
 }
 
 TEST_P(LanePaths, EqualThoseOfOneFloat) {

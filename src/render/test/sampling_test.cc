@@ -9,6 +9,7 @@
 #include "base/rng.h"
 #include "render/scene/albedo_table.h"
 #include "render/test/direction_check.h"
+#include "render/test/panel.h"
 #include "render/test/probe.h"
 
 namespace gloam {
@@ -251,12 +252,28 @@ TEST(Sampling, SineAndCosineOfTurns) {
   }
 }
 
+TEST(Sampling, LogarithmsOfNumbersDownToTheLeastNormalOne) {
+  for (int i = 0; i < 10000; ++i) {
+    const float x =
+        i < 5000 ? 1.0f - static_cast<float>(i) / 5000 : std::exp2(0.025f * (i - 10000));
+    const double expected = std::log(static_cast<double>(x));
+    EXPECT_NEAR(natural_log(x), expected, 2e-7 + 1e-6 * std::fabs(expected)) << x;
+  }
+  EXPECT_EQ(natural_log(1.0f), 0.0f);
+}
+
 /// At a surface point, the mean over all three ways to use the two techniques must agree: BSDF
 /// alone, next event alone, and (through the whole renderer) both with their weights.
 TEST(Sampling, EmittersAreSampledByTheDensityTheyReport) {
   const auto build = [](ShapeType shape, Vec3f size) {
     SceneBuilder b;
     const int material = b.add_emitter({900, 900, 900});
+    if (shape == ShapeType::kMesh && size.x > 0) {  // a sheet, which shines on one side
+      b.description.materials.back().emits_outwards = true;
+      b.add(shape, {}, rigid(normalize(Vec3f{1, 2, 0}), 0.4f, {0.3f, 0.2f, 1.2f}), material, 0,
+            b.add_mesh(make_panel()));
+      return b;
+    }
     const Affine3f pose = rigid(normalize(Vec3f{1, 2, 0.5f}), 0.7f, {0.3f, 0.2f, 1.2f});
     if (shape == ShapeType::kMesh) {
       b.add(shape, {}, pose, material, 0, b.add_mesh(make_ball(4, 0.2f)));
@@ -273,9 +290,12 @@ TEST(Sampling, EmittersAreSampledByTheDensityTheyReport) {
                                                {ShapeType::kCapsule, {0.2f, 0.4f, 0}},
                                                {ShapeType::kCylinder, {0.3f, 0.3f, 0}},
                                                {ShapeType::kPlane, {0.4f, 0.6f, 0}},
-                                               {ShapeType::kMesh, {}}};
+                                               {ShapeType::kMesh, {}},
+                                               {ShapeType::kMesh, {1, 1, 1}}};
   for (const auto& [shape, size] : cases) {
     const Probe probe(build(shape, size));
+    const bool is_sheet = probe.view.lights[0].is_sheet;
+    EXPECT_EQ(is_sheet, shape == ShapeType::kMesh && size.x > 0);
     Mean by_bsdf, by_light, total;
     const Vec3f n{0, 0, 1}, p{0, 0, 0};
     for (uint32_t i = 0; i < 200000; ++i) {
@@ -304,7 +324,8 @@ TEST(Sampling, EmittersAreSampledByTheDensityTheyReport) {
     const double error = std::hypot(by_bsdf.standard_error(), by_light.standard_error());
     EXPECT_NEAR(by_bsdf.mean, by_light.mean, 4 * error) << "shape " << int(shape);
     EXPECT_GT(by_light.mean, 10) << "shape " << int(shape);
-    if (shape == ShapeType::kSphere || shape == ShapeType::kBox || shape == ShapeType::kPlane) {
+    if (shape == ShapeType::kSphere || shape == ShapeType::kBox || shape == ShapeType::kPlane ||
+        is_sheet) {
       EXPECT_NEAR(total.mean, 1, 4 * total.standard_error() + 2e-3) << "shape " << int(shape);
     }
   }
