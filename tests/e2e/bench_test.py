@@ -42,10 +42,13 @@ class Programs(ProgramTest):
 
     def test_cameras_load_both_sides_alike(self):
         model = self.write("pendulum.xml", PENDULUM)
-        data = json.loads(self.call("sim_beside_cameras", model, "--json", "--pairs", 10, "--block", 20000))
-        ours, bare = data["rendering_beside_simulator"], data["rendering_beside_bare"]
-        self.assertGreater(min(ours, bare), 0.2, data)  # both render
-        self.assertTrue(0.3 < ours / bare < 3, data)
+        ratios = []
+        for _ in range(3):  # a block is a few milliseconds: on a busy machine one run says little
+            data = json.loads(self.call("sim_beside_cameras", model, "--json", "--pairs", 10, "--block", 20000))
+            ours, bare = data["rendering_beside_simulator"], data["rendering_beside_bare"]
+            self.assertGreater(min(ours, bare), 0.2, data)  # both render
+            ratios.append(ours / bare)
+        self.assertTrue(0.3 < sorted(ratios)[1] < 3, ratios)
 
     def test_loading_tells_when_it_is_ready(self):
         model, start = self.write("pendulum.xml", PENDULUM), time.monotonic()

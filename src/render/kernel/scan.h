@@ -142,15 +142,15 @@ GLOAM_HD UintOf<F> scan(const ScanList& list, const RayOf<F>& ray, MaskOf<F> act
   };
   if constexpr (Lanes<F>::kCount == 1) {
     test(0, list.solids.size);
-    return nearest;
-  }
-  for (uint32_t i = 0; i < list.groups.size && any(active); ++i) {
-    const ScanGroup& group = list.groups[i];
-    F enter, leave;
-    const bool worth =
-        group.count == 1 ||
-        any(active & scans::may_meet(group.bounds, ray.o, inverse, *tmax, &enter, &leave));
-    if (worth) test(group.first, group.first + group.count);
+  } else {
+    for (uint32_t i = 0; i < list.groups.size && any(active); ++i) {
+      const ScanGroup& group = list.groups[i];
+      F enter, leave;
+      const bool worth =
+          group.count == 1 ||
+          any(active & scans::may_meet(group.bounds, ray.o, inverse, *tmax, &enter, &leave));
+      if (worth) test(group.first, group.first + group.count);
+    }
   }
   return nearest;
 }
