@@ -61,8 +61,9 @@ def robot(name):
 
 
 def peer_python():
-    python = CACHE / "bench_venv" / "bin" / "python"
-    if not python.exists():
+    python, wanted = CACHE / "bench_venv" / "bin" / "python", (ROOT / "bench" / "requirements.txt").read_text()
+    installed = CACHE / "bench_venv" / "requirements.txt"
+    if not installed.exists() or installed.read_text() != wanted:
         say("installing the peers (MuJoCo's renderers, Mitsuba; 300 MB) into .cache/bench_venv")
         missing = [p for p in PEER_PACKAGES if subprocess.run(["dpkg", "-s", p], capture_output=True).returncode != 0]
         if missing:
@@ -71,6 +72,8 @@ def peer_python():
         shutil.rmtree(fresh, ignore_errors=True)
         run(sys.executable, "-m", "venv", fresh)
         run(fresh / "bin" / "python", "-m", "pip", "install", "-q", "-r", ROOT / "bench" / "requirements.txt")
+        (fresh / "requirements.txt").write_text(wanted)
+        shutil.rmtree(CACHE / "bench_venv", ignore_errors=True)
         fresh.rename(CACHE / "bench_venv")
     return python
 
