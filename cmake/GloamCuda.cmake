@@ -15,8 +15,16 @@ endif()
 get_filename_component(cuda_root ${GLOAM_NVCC} REALPATH)
 get_filename_component(cuda_root ${cuda_root} DIRECTORY)
 get_filename_component(cuda_root ${cuda_root} DIRECTORY)
-find_library(GLOAM_CUDART cudart_static HINTS ${cuda_root} PATH_SUFFIXES lib lib64 REQUIRED NO_DEFAULT_PATH)
-find_path(GLOAM_CUDA_INCLUDE cuda_runtime_api.h HINTS ${cuda_root} PATH_SUFFIXES include REQUIRED NO_DEFAULT_PATH)
+set(required)
+if(GLOAM_CUDA)
+  set(required REQUIRED)
+endif()
+find_library(GLOAM_CUDART cudart_static HINTS ${cuda_root} PATH_SUFFIXES lib lib64 NO_DEFAULT_PATH ${required})
+find_path(GLOAM_CUDA_INCLUDE cuda_runtime_api.h HINTS ${cuda_root} PATH_SUFFIXES include NO_DEFAULT_PATH ${required})
+if(NOT GLOAM_CUDART OR NOT GLOAM_CUDA_INCLUDE)
+  return()  # half a toolkit, of which this build asks nothing
+endif()
+set(GLOAM_CAN_COMPILE_CUDA ON)
 message(STATUS "nvcc: ${GLOAM_NVCC}")
 
 # gloam_cuda_sources(TARGET FILE.cu…): compiles the files for the card and makes them part of the target.

@@ -5,7 +5,7 @@ endif()
 # gloam_module(NAME [FAST_TESTS] [DEPENDS targets…] [TEST_DEPENDS targets…] [EXCLUDE files…])
 # One folder of src/ = one static library gloam_NAME of all its .cc files (test/ and fuzz/ apart),
 # one test program gloam_NAME_test of test/*_test.cc (FAST_TESTS: its tests do the work themselves, in code that headers
-# bring, so they are optimised like the library; the others are compiled in half the time), one fuzz program per fuzz/*_fuzz.cc.
+# bring, so they are optimised like the library; the others are compiled in less time), one fuzz program per fuzz/*_fuzz.cc.
 function(gloam_module name)
   cmake_parse_arguments(arg "FAST_TESTS" "" "DEPENDS;TEST_DEPENDS;EXCLUDE" ${ARGN})
   set(folder ${CMAKE_SOURCE_DIR}/src/${name})

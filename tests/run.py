@@ -66,10 +66,11 @@ def tail(text, lines=40):
 
 def build(tally, preset, targets=()):
     start = time.time()
-    folder = BUILD / preset
-    result = None
-    if not (folder / "build.ninja").exists():
-        result = run(["cmake", "--preset", preset])
+    folder, presets = BUILD / preset, ROOT / "CMakePresets.json"
+    rules, result = folder / "build.ninja", None
+    # Afresh: where a preset has come to name another compiler, CMake would forget all else that it sets.
+    if not rules.exists() or rules.stat().st_mtime < presets.stat().st_mtime:
+        result = run(["cmake", "--fresh", "--preset", preset])
     if result is None or result.returncode == 0:
         result = run(["ninja", "-C", str(folder), *targets])
     ok = result.returncode == 0
@@ -247,6 +248,7 @@ def ci(tally):
     if build(tally, "tsan", ["gloam_base_test", "gloam_sim_test"]):
         for module in ("base", "sim"):
             gtest(tally, "tsan", module, shard_filter=TOO_SLOW_SANITIZED)
+    run(["cmake", "--preset", "release"])  # it may have been set up before nvcc was there
     if build(tally, "release", ["gloam_cuda_test"]):  # without a card this shows that the card's source compiles
         gtest(tally, "release", "cuda")
     fuzz(tally, 15, ["scene_toml_fuzz", "model_path_fuzz", "model_xml_fuzz"])
