@@ -19,7 +19,7 @@ add_library(gloam_xxhash ALIAS PkgConfig::XXHASH)
 pkg_check_modules(ZSTD IMPORTED_TARGET libzstd)
 pkg_check_modules(OPENH264 IMPORTED_TARGET openh264)
 
-# MuJoCo: a user's own package is honoured; otherwise the pinned wheel holds the library and all headers.
+# MuJoCo: a user's own package is honoured; otherwise the pinned wheel holds the library, all headers and the manual.
 find_package(mujoco 4.0.1 QUIET)
 if(NOT TARGET mujoco::mujoco)
   set(GLOAM_WHEELS ${CMAKE_SOURCE_DIR}/.venv/wheels CACHE PATH "Folder of the unpacked Python wheels")
@@ -33,3 +33,4 @@ if(NOT TARGET mujoco::mujoco)
     IMPORTED_SONAME libmujoco.so.4.0.1
     INTERFACE_INCLUDE_DIRECTORIES ${mujoco_dir}/include)
 endif()
+set(GLOAM_MUJOCO_DOC ${mujoco_dir}/doc CACHE PATH "MuJoCo's manual, as its wheel has it: texts and units of the schema")

@@ -30,7 +30,7 @@ file(CREATE_LINK ${mujoco_folder} ${CMAKE_BINARY_DIR}/${CMAKE_INSTALL_LIBDIR}/gl
 
 install(TARGETS gloam)
 install(TARGETS gloam_library EXPORT gloam)
-install(DIRECTORY ${CMAKE_SOURCE_DIR}/include/gloam DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(DIRECTORY ${CMAKE_SOURCE_DIR}/include/gloam ${CMAKE_BINARY_DIR}/generated/gloam DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/gloam)
 install(EXPORT gloam NAMESPACE gloam:: FILE gloamConfig.cmake DESTINATION ${package})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/gloamConfigVersion.cmake COMPATIBILITY SameMinorVersion)

@@ -1,0 +1,86 @@
+#include "scene/mjcf/node.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+
+#include "base/check.h"
+#include "base/text.h"
+
+namespace gloam::mjcf {
+
+const std::string* Node::value_of(const MjcfAttribute& attribute) const {
+  for (const auto& [known, value] : values) {
+    if (known == &attribute) return &value;
+  }
+  return nullptr;
+}
+
+void Node::set(const MjcfAttribute& attribute, std::string_view value) {
+  for (auto& [known, old] : values) {
+    if (known == &attribute) {
+      old = value;
+      return;
+    }
+  }
+  values.emplace_back(&attribute, value);
+}
+
+std::shared_ptr<Node> Node::add(std::string_view tag) {
+  const MjcfElement* below = MjcfSchema::get().child(*element, tag);
+  if (below == nullptr) return nullptr;
+  auto child = std::make_shared<Node>();
+  child->element = below;
+  child->parent = this;
+  children.push_back(child);
+  return child;
+}
+
+std::string_view Node::tag() const {
+  return parent == nullptr ? element->name : MjcfSchema::tag(*element, *parent->element);
+}
+
+Result<const MjcfAttribute*> attribute_of(const MjcfElement& element, std::string_view name,
+                                          const SourceLoc& loc) {
+  if (const MjcfAttribute* attribute = element.find(name)) return attribute;
+  std::vector<std::string> names;
+  for (const MjcfAttribute& attribute : element.attributes) names.emplace_back(attribute.name);
+  Error error{ErrorKind::kInput, fmt::format("<{}> has no attribute '{:.60}'", element.name, name),
+              loc};
+  const std::string near = nearest_name(name, names);
+  error.hint = !near.empty()   ? fmt::format("did you mean '{}'?", near)
+               : names.empty() ? "it has none"
+                               : fmt::format("it has {}", fmt::join(names, ", "));
+  return error;
+}
+
+Error wrong_tag(const MjcfElement& above, std::string_view tag, const SourceLoc& loc) {
+  const MjcfSchema& schema = MjcfSchema::get();
+  Error error{ErrorKind::kInput, fmt::format("<{:.60}> may not stand in <{}>", tag, above.name),
+              loc};
+  const std::vector<std::string> here = schema.tags_in(above);
+  if (const std::string near = nearest_name(tag, here); !near.empty()) {
+    error.hint = fmt::format("did you mean <{}>?", near);
+    return error;
+  }
+  std::set<std::string> places;
+  for (const MjcfElement& element : schema.elements()) {
+    if (element.name == tag && element.parent != nullptr)
+      places.insert(fmt::format("<{}>", element.parent->name));
+  }
+  error.hint = !places.empty() ? fmt::format("it stands in {}", fmt::join(places, ", "))
+               : here.empty()  ? "nothing stands in it"
+                               : fmt::format("there may be {}", fmt::join(here, ", "));
+  return error;
+}
+
+std::string number_text(double value) {
+  char text[40];
+  const auto [end, code] = std::to_chars(text, text + sizeof(text), value);
+  GLOAM_CHECK(code == std::errc(), "a number has more digits than a double can have");
+  return {text, end};
+}
+
+}  // namespace gloam::mjcf

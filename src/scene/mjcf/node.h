@@ -1,0 +1,48 @@
+#pragma once
+// What an Element of gloam/mjcf.h refers to.
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gloam/mjcf.h"
+#include "scene/mjcf/schema.h"
+
+namespace gloam::mjcf {
+
+struct Node : std::enable_shared_from_this<Node> {
+  const MjcfElement* element = nullptr;
+  Node* parent = nullptr;
+  std::vector<std::pair<const MjcfAttribute*, std::string>> values = {};  // as written, in order
+  std::vector<std::shared_ptr<Node>> children = {};
+  std::string comment = {};       // that stands before it
+  std::string last_comment = {};  // that stands behind its children
+  std::string content = {};       // CDATA, which <custom><text> reads
+  SourceLoc loc = {};
+
+  const std::string* value_of(const MjcfAttribute& attribute) const;
+  void set(const MjcfAttribute& attribute, std::string_view value);
+  /// Null if it may not stand here.
+  std::shared_ptr<Node> add(std::string_view tag);
+  std::string_view tag() const;
+};
+
+inline constexpr int kDeepestNode = 200;  // as deep as a model may be nested
+
+/// The attribute, or an Error that names the nearest.
+Result<const MjcfAttribute*> attribute_of(const MjcfElement& element, std::string_view name,
+                                          const SourceLoc& loc);
+/// The Error of a tag that may not stand in `above`.
+Error wrong_tag(const MjcfElement& above, std::string_view tag, const SourceLoc& loc);
+
+/// A number so that it is read back bit by bit, in as few digits as that takes.
+std::string number_text(double value);
+
+/// Into `root`, which is a fresh <mujoco>.
+Status read_xml(std::string_view text, const std::string& file, Node* root);
+Status read_toml(std::string_view text, const std::string& file, Node* root);
+std::string write_xml(const Node& root);
+std::string write_toml(const Node& root);
+
+}  // namespace gloam::mjcf

@@ -1,0 +1,215 @@
+// MJCF as TOML: [mujoco] holds an attribute per key and a table, or an array of tables, per tag.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "base/text.h"
+#include "scene/mjcf/node.h"
+#include "scene/toml/table_reader.h"
+
+namespace gloam::mjcf {
+namespace {
+
+SourceLoc loc_of(const toml::node& node, const std::string& file) {
+  const toml::source_position at = node.source().begin;
+  return {file, static_cast<int>(at.line), static_cast<int>(at.column)};
+}
+
+// As the attribute would be written in XML; nothing if TOML holds what no attribute takes.
+std::optional<std::string> text_of(const toml::node& node) {
+  if (const auto* text = node.as_string()) return text->get();
+  if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
+  if (const auto* number = node.as_floating_point()) return number_text(number->get());
+  if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
+  const auto* array = node.as_array();
+  if (array == nullptr) return {};
+  std::string text;
+  for (const toml::node& item : *array) {
+    const std::optional<std::string> word = item.is_array() ? std::nullopt : text_of(item);
+    if (!word) return {};
+    text += (text.empty() ? "" : " ") + *word;
+  }
+  return text;
+}
+
+// What `clampctrl = true` means where MJCF says enable.
+std::string keyword_of(const MjcfAttribute& attribute, const toml::node& node, std::string text) {
+  if (node.is_boolean() && attribute.keywords == "disable enable")
+    return text == "true" ? "enable" : "disable";
+  return text;
+}
+
+struct Below {
+  std::string tag;
+  const toml::table* table;
+};
+
+class Reader {
+ public:
+  explicit Reader(const std::string& file) : file_(file) {}
+
+  Status read(const toml::table& from, Node* to, int depth) const {
+    if (depth > kDeepestNode)
+      return Error{ErrorKind::kInput,
+                   fmt::format("tables are nested more than {} deep", kDeepestNode), to->loc};
+    std::vector<Below> below;
+    std::vector<std::pair<std::string, const toml::node*>> values;
+    for (const auto& [key, node] : from) {
+      const toml::array* array = node.as_array();
+      const bool has_tables = array != nullptr && !array->empty() && array->front().is_table();
+      if (const toml::table* table = node.as_table()) {
+        below.push_back({std::string(key.str()), table});
+      } else if (has_tables) {
+        for (const toml::node& item : *array) {
+          if (!item.is_table())
+            return Error{ErrorKind::kInput,
+                         fmt::format("'{}' holds tables and other things", key.str()),
+                         loc_of(item, file_)};
+          below.push_back({std::string(key.str()), item.as_table()});
+        }
+      } else {
+        values.emplace_back(std::string(key.str()), &node);
+      }
+    }
+    // toml++ sorts keys: the order of the elements, which numbers them, is that of the text.
+    const auto place = [](const toml::node* node) {
+      const toml::source_position at = node->source().begin;
+      return std::pair(at.line, at.column);
+    };
+    std::ranges::stable_sort(values, {}, [&](const auto& value) { return place(value.second); });
+    std::ranges::stable_sort(below, {}, [&](const Below& item) { return place(item.table); });
+    for (const auto& [key, node] : values) GLOAM_TRY_STATUS(read_value(key, *node, to));
+    for (const auto& [tag, table] : below) {
+      const std::shared_ptr<Node> child = to->add(tag);
+      if (child == nullptr) return wrong_tag(*to->element, tag, loc_of(*table, file_));
+      child->loc = loc_of(*table, file_);
+      GLOAM_TRY_STATUS(read(*table, child.get(), depth + 1));
+    }
+    return {};
+  }
+
+ private:
+  Status read_value(const std::string& key, const toml::node& node, Node* to) const {
+    const SourceLoc loc = loc_of(node, file_);
+    if (to->element->path == "mujoco/custom/text" && key == "content") {
+      to->content = text_of(node).value_or("");
+      return {};
+    }
+    GLOAM_TRY(const MjcfAttribute* attribute, attribute_of(*to->element, key, loc));
+    const std::optional<std::string> text = text_of(node);
+    if (!text)
+      return Error{ErrorKind::kInput, fmt::format("'{}' takes {}", key, describe_type(*attribute)),
+                   loc};
+    const std::string value = keyword_of(*attribute, node, *text);
+    if (Status status = check_mjcf_value(*attribute, value); !status.ok()) {
+      Error error = std::move(status).error();
+      error.loc = loc;
+      return error;
+    }
+    to->set(*attribute, value);
+    return {};
+  }
+
+  std::string file_;
+};
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (static_cast<unsigned char>(c) < 0x20) {
+      out += fmt::format("\\u{:04x}", static_cast<int>(c));
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+// Numbers as TOML writes them: 1e5 and .5 are 1e5 and 0.5, nan and inf keep their names.
+std::string toml_number(std::string word, bool is_real) {
+  if (word.starts_with('+')) word.erase(0, 1);
+  const size_t start = word.starts_with('-') ? 1 : 0;
+  if (word.size() > start && word[start] == '.') word.insert(start, "0");
+  const size_t point = word.find('.');
+  if (point != std::string::npos && (point + 1 == word.size() || !std::isdigit(word[point + 1])))
+    word.insert(point + 1, "0");
+  while (word.size() > start + 1 && word[start] == '0' && std::isdigit(word[start + 1]))
+    word.erase(start, 1);
+  const bool has_mark = word.find_first_of(".eEn") != std::string::npos;
+  return is_real && !has_mark ? word + ".0" : word;
+}
+
+std::string toml_value(const MjcfAttribute& attribute, const std::string& value) {
+  if (attribute.type == MjcfType::kString || attribute.type == MjcfType::kKeyword) {
+    if (value == "true" || value == "false")
+      return attribute.type == MjcfType::kKeyword ? value : quoted(value);
+    return quoted(value);
+  }
+  std::string list;
+  size_t count = 0;
+  for (size_t at = value.find_first_not_of(" \t\r\n"); at != std::string::npos; ++count) {
+    const size_t end = std::min(value.find_first_of(" \t\r\n", at), value.size());
+    list += (count == 0 ? "" : ", ") +
+            toml_number(value.substr(at, end - at), attribute.type == MjcfType::kReal);
+    at = value.find_first_not_of(" \t\r\n", end);
+  }
+  return count == 1 && attribute.least <= 1 ? list : fmt::format("[{}]", list);
+}
+
+void write_comment(const std::string& comment, std::string* out) {
+  if (comment.empty()) return;
+  size_t begin = 0;
+  while (begin <= comment.size()) {
+    const size_t end = std::min(comment.find('\n', begin), comment.size());
+    *out += fmt::format("#{}\n", comment.substr(begin, end - begin));
+    begin = end + 1;
+  }
+}
+
+void write(const Node& node, const std::string& path, bool is_list, std::string* out) {
+  *out += '\n';
+  write_comment(node.comment, out);
+  *out += is_list ? fmt::format("[[{}]]\n", path) : fmt::format("[{}]\n", path);
+  for (const auto& [attribute, value] : node.values)
+    *out += fmt::format("{} = {}\n", attribute->name, toml_value(*attribute, value));
+  if (!node.content.empty()) *out += fmt::format("content = {}\n", quoted(node.content));
+  for (const std::shared_ptr<Node>& child : node.children) {
+    const bool may_repeat = child->element->times == '*' || child->element->times == 'R';
+    const bool is_alone = std::ranges::count(node.children, child->tag(),
+                                             [](const auto& other) { return other->tag(); }) == 1;
+    const bool is_section =
+        child->element->parent != nullptr && child->element->parent->parent == nullptr && is_alone;
+    write(*child, fmt::format("{}.{}", path, child->tag()), may_repeat && !is_section, out);
+  }
+  write_comment(node.last_comment, out);
+}
+
+}  // namespace
+
+Status read_toml(std::string_view text, const std::string& file, Node* root) {
+  GLOAM_TRY(const toml::table table, parse_toml(text, file));
+  const toml::table* top = table["mujoco"].as_table();
+  for (const auto& [key, node] : table) {
+    if (key.str() != "mujoco")
+      return Error{ErrorKind::kInput, fmt::format("'{}' stands beside [mujoco]", key.str()),
+                   loc_of(node, file), "a model in TOML is all below [mujoco]"};
+  }
+  if (top == nullptr)
+    return Error{ErrorKind::kInput,
+                 "there is no [mujoco]",
+                 {file, 0, 0},
+                 "a model in TOML is all below [mujoco], a scene has [[robot]] (docs/scenes.md)"};
+  root->loc = loc_of(*top, file);
+  return Reader(file).read(*top, root, 1);
+}
+
+std::string write_toml(const Node& root) {
+  std::string text;
+  write(root, "mujoco", false, &text);
+  return text.substr(1);
+}
+
+}  // namespace gloam::mjcf
