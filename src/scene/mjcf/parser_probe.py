@@ -30,6 +30,10 @@ NEEDED = {
 }
 
 
+# Without these MuJoCo 4.0.1 ends the process instead of complaining.
+FATAL_WITHOUT = {"mujoco/asset/model": ["file"]}
+
+
 class Parser:
     def __init__(self, library):
         self.mujoco = ctypes.CDLL(str(library))
@@ -71,9 +75,9 @@ def document(path, attributes, needed):
 def required_attributes(parser, path, needed):
     """What the parser says an element lacks, filled in until it reads it."""
     attributes = dict(NEEDED.get(path, {}))
-    required = []
+    required = list(FATAL_WITHOUT.get(path, []))
     for _ in range(12):
-        complaint = parser.complaint(document(path, attributes, needed)) if path != "mujoco/asset/model" else None
+        complaint = parser.complaint(document(path, attributes, needed))
         missing = re.search(r"required attribute missing: '(\w+)'", complaint or "")
         short = re.search(r"attribute '(\w+)' does not have enough data", complaint or "")
         if missing:
@@ -104,7 +108,7 @@ def take(parser, path, name, base, needed, words):
     least, most = 0, UNBOUNDED
     for count in range(1, MOST_NUMBERS + 1):
         no = complaint(" ".join(["1"] * count))
-        if f"attribute '{name}' has too much data" in no:
+        if f"attribute '{name}' has too much data" in no or f"problem reading attribute '{name}'" in no:
             most = count - 1
             break
         if f"attribute '{name}' does not have enough data" in no:

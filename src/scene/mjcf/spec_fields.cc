@@ -248,6 +248,15 @@ std::vector<SpecObject> spec_objects(const mjSpec* spec) {
   return objects;
 }
 
+std::vector<SpecObject> spec_objects_of(mjsElement* element) {
+  std::vector<SpecObject> objects;
+  for (const ElementKind& kind : kKinds) {
+    if (kind.type == element->elemtype)
+      add(kind.owner, std::string(kind.owner), kind.as(element), &objects);
+  }
+  return objects;
+}
+
 std::string spec_text(const SpecObject& object, const SpecField& field) {
   const void* value = at(object, field);
   // Defaults lack some of their texts.

@@ -58,6 +58,9 @@ struct SpecObject {
 /// Everything in the spec: itself, what it holds by value, its elements and defaults, in its order.
 std::vector<SpecObject> spec_objects(const mjSpec* spec);
 
+/// One element and what it holds by value.
+std::vector<SpecObject> spec_objects_of(mjsElement* element);
+
 /// A field as text: numbers with all their digits, texts in quotes, lists in brackets. Handles are
 /// "".
 std::string spec_text(const SpecObject& object, const SpecField& field);

@@ -1,0 +1,223 @@
+#include "scene/mjcf/spec_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <set>
+
+#include "base/check.h"
+#include "scene/mjcf/specimen.h"
+
+namespace gloam {
+namespace {
+
+using mjcf::OwnedSpec;
+
+bool is_bits(const SpecField& field) {
+  return field.name == "authored" || field.name == "disableflags" || field.name == "enableflags" ||
+         field.name == "disableactuator";
+}
+
+// The objects of `spec` that an element owns, itself first: "mjsGeom" and its "mjsOrientation".
+std::vector<SpecObject> objects_of(const mjSpec* spec, mjsElement* element) {
+  std::vector<SpecObject> all =
+      element == nullptr ? spec_objects(spec) : spec_objects_of(element);
+  if (element == nullptr) {
+    const auto other = std::ranges::find_if(
+        all, [](const SpecObject& object) { return !object.label.starts_with("mjSpec"); });
+    all.erase(other, all.end());
+  }
+  return all;
+}
+
+// One attribute's documents: the value asked for, if any, and as many others as the parser takes.
+struct Readings {
+  std::vector<OwnedSpec> specs;
+  Status refused = {};  // why the value asked for was not taken
+};
+
+Readings read_values(const MjcfElement& element, const MjcfAttribute& attribute,
+                     const std::string* value) {
+  Readings readings;
+  mjcf::Specimen specimen = mjcf::make_specimen(element, attribute.name);
+  const auto read = [&] {
+    Result<OwnedSpec> spec = mjcf::parse_document(specimen.document);
+    if (!spec.ok()) return Status(spec.error());
+    readings.specs.push_back(std::move(spec).value());
+    return Status();
+  };
+  const auto read_with = [&](const std::string& text) {
+    Status status = specimen.element.set(attribute.name, text);
+    return status.ok() ? read() : status;
+  };
+  if (value != nullptr) {
+    readings.refused = read_with(*value);
+    if (!readings.refused.ok()) return readings;
+  }
+  if (!attribute.is_required) {
+    (void)specimen.element.clear(attribute.name).ok();
+    (void)read().ok();
+  }
+  for (const std::string& text : mjcf::values_to_try(attribute)) (void)read_with(text).ok();
+  return readings;
+}
+
+mjsElement* specimen_of(const mjSpec* spec, const MjcfElement& element) {
+  const mjtObj type = object_of(element);
+  return type == mjOBJ_UNKNOWN ? nullptr
+                               : mjs_findElement(spec, type, mjcf::kSpecimenName);
+}
+
+size_t size_of(SpecType type) {
+  switch (type) {
+    case SpecType::kBool:
+    case SpecType::kByte:
+    case SpecType::kChar:
+      return 1;
+    case SpecType::kInt:
+    case SpecType::kFloat:
+      return 4;
+    default:
+      return 8;
+  }
+}
+
+char* bytes_at(const SpecObject& object, const SpecField& field) {
+  return static_cast<char*>(const_cast<void*>(object.address)) + field.offset;
+}
+
+template <class T>
+T* pointer_at(const SpecObject& object, const SpecField& field) {
+  return *reinterpret_cast<T**>(bytes_at(object, field));
+}
+
+// Copies what `from` has elsewhere than `others`; true if there is anything.
+bool copy_changed(const SpecObject& from, const std::vector<SpecObject>& others,
+                  const SpecField& field, const SpecObject& to) {
+  if (field.type == SpecType::kStruct || field.type == SpecType::kHandle) return false;
+  const std::string text = spec_text(from, field);
+  if (std::ranges::all_of(others, [&](const SpecObject& o) { return spec_text(o, field) == text; }))
+    return false;
+  if (field.type < SpecType::kString) {
+    const size_t size = size_of(field.type);
+    for (int i = 0; i < field.count; ++i) {
+      char* const target = bytes_at(to, field) + size * static_cast<size_t>(i);
+      const char* const source = bytes_at(from, field) + size * static_cast<size_t>(i);
+      for (const SpecObject& other : others) {
+        const char* const differs = bytes_at(other, field) + size * static_cast<size_t>(i);
+        if (std::memcmp(source, differs, size) == 0) continue;
+        if (is_bits(field)) {
+          for (size_t b = 0; b < size; ++b) {
+            const char mask = static_cast<char>(source[b] ^ differs[b]);
+            target[b] = static_cast<char>((target[b] & ~mask) | (source[b] & mask));
+          }
+        } else {
+          std::memcpy(target, source, size);
+        }
+      }
+    }
+    return true;
+  }
+  if (field.type == SpecType::kString) {
+    mjs_setString(pointer_at<mjString>(to, field),
+                  mjs_getString(pointer_at<mjString>(from, field)));
+  } else if (field.type == SpecType::kStrings) {
+    const auto* source = pointer_at<mjStringVec>(from, field);
+    auto* dest = pointer_at<mjStringVec>(to, field);
+    for (int i = 0; mjs_getInStringVec(source, i) != nullptr; ++i) {
+      if (mjs_getInStringVec(dest, i) == nullptr) {
+        mjs_appendString(dest, mjs_getInStringVec(source, i));
+      } else {
+        mjs_setInStringVec(dest, i, mjs_getInStringVec(source, i));
+      }
+    }
+  } else if (field.type == SpecType::kInts) {
+    const mjIntVec& source = *pointer_at<mjIntVec>(from, field);
+    mjs_setInt(pointer_at<mjIntVec>(to, field), source.data(), static_cast<int>(source.size()));
+  } else if (field.type == SpecType::kFloats) {
+    const mjFloatVec& source = *pointer_at<mjFloatVec>(from, field);
+    mjs_setFloat(pointer_at<mjFloatVec>(to, field), source.data(), static_cast<int>(source.size()));
+  } else if (field.type == SpecType::kDoubles) {
+    const mjDoubleVec& source = *pointer_at<mjDoubleVec>(from, field);
+    mjs_setDouble(pointer_at<mjDoubleVec>(to, field), source.data(),
+                  static_cast<int>(source.size()));
+  } else {
+    return false;  // bytes and lists of lists: textures' pixels, skins' bones
+  }
+  return true;
+}
+
+}  // namespace
+
+mjtObj object_of(const MjcfElement& element) {
+  static const std::map<std::string_view, mjtObj> kByPath = {
+      {"mujoco/body", mjOBJ_BODY},         {"mujoco/body/inertial", mjOBJ_BODY},
+      {"mujoco/body/joint", mjOBJ_JOINT},  {"mujoco/body/freejoint", mjOBJ_JOINT},
+      {"mujoco/body/geom", mjOBJ_GEOM},    {"mujoco/body/site", mjOBJ_SITE},
+      {"mujoco/body/camera", mjOBJ_CAMERA}, {"mujoco/body/light", mjOBJ_LIGHT},
+      {"mujoco/body/frame", mjOBJ_FRAME},  {"mujoco/asset/mesh", mjOBJ_MESH},
+      {"mujoco/asset/hfield", mjOBJ_HFIELD}, {"mujoco/asset/skin", mjOBJ_SKIN},
+      {"mujoco/asset/texture", mjOBJ_TEXTURE}, {"mujoco/asset/material", mjOBJ_MATERIAL},
+      {"mujoco/contact/pair", mjOBJ_PAIR}, {"mujoco/contact/exclude", mjOBJ_EXCLUDE},
+      {"mujoco/deformable/flex", mjOBJ_FLEX}, {"mujoco/deformable/skin", mjOBJ_SKIN},
+      {"mujoco/custom/numeric", mjOBJ_NUMERIC}, {"mujoco/custom/text", mjOBJ_TEXT},
+      {"mujoco/custom/tuple", mjOBJ_TUPLE}, {"mujoco/keyframe/key", mjOBJ_KEY}};
+  if (const auto found = kByPath.find(element.path); found != kByPath.end()) return found->second;
+  const std::string_view section = element.parent == nullptr ? "" : element.parent->path;
+  return section == "mujoco/tendon"     ? mjOBJ_TENDON
+         : section == "mujoco/equality" ? mjOBJ_EQUALITY
+         : section == "mujoco/actuator" ? mjOBJ_ACTUATOR
+         : section == "mujoco/sensor"   ? mjOBJ_SENSOR
+                                        : mjOBJ_UNKNOWN;
+}
+
+std::vector<std::string> spec_places(const MjcfElement& element, const MjcfAttribute& attribute) {
+  const Readings readings = read_values(element, attribute, nullptr);
+  std::set<std::string> places;
+  for (size_t i = 1; i < readings.specs.size(); ++i) {
+    for (std::string place :
+         spec_difference(readings.specs[0].get(), readings.specs[i].get())) {
+      // "mjsGeom[2].alt.euler" is a field of mjsGeom.
+      for (size_t open = place.find('['); open != std::string::npos; open = place.find('['))
+        place.erase(open, place.find(']') - open + 1);
+      if (place.ends_with(".authored")) continue;  // says only that something was given
+      places.insert(place);
+    }
+  }
+  return {places.begin(), places.end()};
+}
+
+Status set_spec_attribute(mjSpec* spec, mjsElement* target, const MjcfElement& element,
+                          const MjcfAttribute& attribute, const std::string& value) {
+  if (attribute.name == "name" && target != nullptr) {
+    if (mjs_setName(target, value.c_str()) == 0) return {};
+    return Error{ErrorKind::kInput, fmt::format("the name '{:.60}' is taken", value)};
+  }
+  Readings readings = read_values(element, attribute, &value);
+  if (!readings.refused.ok()) return readings.refused;
+  const auto of = [&](size_t i) {
+    const mjSpec* read = readings.specs[i].get();
+    return objects_of(read, specimen_of(read, element));
+  };
+  const std::vector<SpecObject> wanted = of(0), to = objects_of(spec, target);
+  std::vector<std::vector<SpecObject>> others;
+  for (size_t i = 1; i < readings.specs.size(); ++i) {
+    others.push_back(of(i));
+    if (others.back().size() != wanted.size()) others.pop_back();
+  }
+  bool any = false;
+  for (size_t i = 0; i < std::min(wanted.size(), to.size()); ++i) {
+    std::vector<SpecObject> same;
+    for (const std::vector<SpecObject>& other : others) same.push_back(other[i]);
+    for (const SpecField& field : spec_fields_of(wanted[i].owner))
+      any = copy_changed(wanted[i], same, field, to[i]) || any;
+  }
+  if (any) return {};
+  return Error{ErrorKind::kUnsupported,
+               fmt::format("'{}' of <{}> cannot be changed once the model is read", attribute.name,
+                           element.name)};
+}
+
+}  // namespace gloam

@@ -1,0 +1,28 @@
+#pragma once
+// What each attribute of MJCF sets in a parsed model, and the same set in a model that is parsed
+// already. Nobody has written it down: MuJoCo's parser reads a document with and without the
+// attribute, and what differs is what it sets. So `kp` of a position servo or `euler` of a body mean
+// here what they mean in a file.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "scene/mjcf/schema.h"
+#include "scene/mjcf/spec_fields.h"
+
+namespace gloam {
+
+/// Fields that the attribute sets, as "mjsJoint.damping", "mjSpec.option.timestep". Empty: it tells
+/// the parser something and leaves nothing behind (<include file>, <replicate count> …).
+std::vector<std::string> spec_places(const MjcfElement& element, const MjcfAttribute& attribute);
+
+/// Sets an attribute of one element of `spec` as its file would; `target` is null for what a model
+/// has once: options, sizes, visuals. Errors: MuJoCo refuses the value, nothing could be set.
+Status set_spec_attribute(mjSpec* spec, mjsElement* target, const MjcfElement& element,
+                          const MjcfAttribute& attribute, const std::string& value);
+
+/// Kind of the element that MuJoCo makes of it; mjOBJ_UNKNOWN for what a model has once.
+mjtObj object_of(const MjcfElement& element);
+
+}  // namespace gloam
