@@ -97,14 +97,18 @@ def take(parser, path, name, base, needed, words):
     def complaint(value):
         return parser.complaint(document(path, {**others, name: value}, needed)) or ""
 
+    def is_no_number(value):
+        no = complaint(value)
+        return f"bad format in attribute '{name}'" in no or f"problem reading attribute '{name}'" in no
+
     no = complaint("zz")
     if "invalid keyword" in no:
         known = [word for word in words if "invalid keyword" not in complaint(word)]
         several = any("invalid keyword" not in complaint(f"{a} {b}") for a, b in zip(known, known[1:]))
         return {"type": "kKeyword", "least": 1, "most": len(known) if several else 1, "keywords": known}
-    if f"bad format in attribute '{name}'" not in no:
+    if not is_no_number("zz"):
         return {"type": "kString", "least": 1, "most": 1, "keywords": []}
-    kind = "kInt" if f"bad format in attribute '{name}'" in complaint("1.5") else "kReal"
+    kind = "kInt" if is_no_number("1.5") else "kReal"
     least, most = 0, UNBOUNDED
     for count in range(1, MOST_NUMBERS + 1):
         no = complaint(" ".join(["1"] * count))

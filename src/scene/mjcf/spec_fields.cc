@@ -6,6 +6,7 @@
 #include <mujoco/mjxmacro.h>
 
 #include <algorithm>
+#include <cstring>
 #include <type_traits>
 
 #include "scene/mjcf/node.h"
@@ -304,6 +305,27 @@ std::string spec_text(const SpecObject& object, const SpecField& field) {
   return "";
 }
 
+bool spec_equal(const SpecObject& a, const SpecObject& b, const SpecField& field) {
+  if (field.type < SpecType::kString)
+    return std::memcmp(at(a, field), at(b, field), spec_size(field.type) * static_cast<size_t>(field.count)) == 0;
+  if (field.type == SpecType::kStruct || field.type == SpecType::kHandle) return true;
+  return spec_text(a, field) == spec_text(b, field);
+}
+
+size_t spec_size(SpecType type) {
+  switch (type) {
+    case SpecType::kBool:
+    case SpecType::kByte:
+    case SpecType::kChar:
+      return 1;
+    case SpecType::kInt:
+    case SpecType::kFloat:
+      return 4;
+    default:
+      return 8;
+  }
+}
+
 std::vector<std::string> spec_difference(const mjSpec* a, const mjSpec* b) {
   const std::vector<SpecObject> in_a = spec_objects(a), in_b = spec_objects(b);
   std::vector<std::string> found;
@@ -321,7 +343,7 @@ std::vector<std::string> spec_difference(const mjSpec* a, const mjSpec* b) {
     }
     if (in_a[i].name != in_b[k].name) found.push_back(in_a[i].label + ".name");
     for (const SpecField& field : spec_fields_of(in_a[i].owner)) {
-      if (spec_text(in_a[i], field) != spec_text(in_b[k], field))
+      if (!spec_equal(in_a[i], in_b[k], field))
         found.push_back(fmt::format("{}.{}", in_a[i].label, field.name));
     }
     ++i, ++k;

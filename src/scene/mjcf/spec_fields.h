@@ -65,6 +65,11 @@ std::vector<SpecObject> spec_objects_of(mjsElement* element);
 /// "".
 std::string spec_text(const SpecObject& object, const SpecField& field);
 
+/// Do they hold the same, bit by bit? Handles always do.
+bool spec_equal(const SpecObject& a, const SpecObject& b, const SpecField& field);
+
+size_t spec_size(SpecType type);  ///< of one number [bytes]
+
 /// Where the two specs hold different values: "mjsGeom[2].size". Names count as a field `name`.
 std::vector<std::string> spec_difference(const mjSpec* a, const mjSpec* b);
 

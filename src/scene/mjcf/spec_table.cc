@@ -70,20 +70,6 @@ mjsElement* specimen_of(const mjSpec* spec, const MjcfElement& element) {
                                : mjs_findElement(spec, type, mjcf::kSpecimenName);
 }
 
-size_t size_of(SpecType type) {
-  switch (type) {
-    case SpecType::kBool:
-    case SpecType::kByte:
-    case SpecType::kChar:
-      return 1;
-    case SpecType::kInt:
-    case SpecType::kFloat:
-      return 4;
-    default:
-      return 8;
-  }
-}
-
 char* bytes_at(const SpecObject& object, const SpecField& field) {
   return static_cast<char*>(const_cast<void*>(object.address)) + field.offset;
 }
@@ -97,11 +83,10 @@ T* pointer_at(const SpecObject& object, const SpecField& field) {
 bool copy_changed(const SpecObject& from, const std::vector<SpecObject>& others,
                   const SpecField& field, const SpecObject& to) {
   if (field.type == SpecType::kStruct || field.type == SpecType::kHandle) return false;
-  const std::string text = spec_text(from, field);
-  if (std::ranges::all_of(others, [&](const SpecObject& o) { return spec_text(o, field) == text; }))
+  if (std::ranges::all_of(others, [&](const SpecObject& o) { return spec_equal(from, o, field); }))
     return false;
   if (field.type < SpecType::kString) {
-    const size_t size = size_of(field.type);
+    const size_t size = spec_size(field.type);
     for (int i = 0; i < field.count; ++i) {
       char* const target = bytes_at(to, field) + size * static_cast<size_t>(i);
       const char* const source = bytes_at(from, field) + size * static_cast<size_t>(i);
@@ -166,11 +151,46 @@ mjtObj object_of(const MjcfElement& element) {
       {"mujoco/custom/tuple", mjOBJ_TUPLE}, {"mujoco/keyframe/key", mjOBJ_KEY}};
   if (const auto found = kByPath.find(element.path); found != kByPath.end()) return found->second;
   const std::string_view section = element.parent == nullptr ? "" : element.parent->path;
+  if (section == "mujoco/deformable/flex") return mjOBJ_FLEX;
   return section == "mujoco/tendon"     ? mjOBJ_TENDON
          : section == "mujoco/equality" ? mjOBJ_EQUALITY
          : section == "mujoco/actuator" ? mjOBJ_ACTUATOR
          : section == "mujoco/sensor"   ? mjOBJ_SENSOR
                                         : mjOBJ_UNKNOWN;
+}
+
+namespace {
+
+// What tells elements of one kind from each other: a servo from a motor, a gyro from a touch sensor.
+int variant_of(mjsElement* element) {
+  if (const mjsActuator* actuator = mjs_asActuator(element))
+    return actuator->plugin.active ? -1 : actuator->type;
+  if (const mjsSensor* sensor = mjs_asSensor(element)) return sensor->type;
+  if (const mjsEquality* equality = mjs_asEquality(element)) return equality->type;
+  if (const mjsTendon* tendon = mjs_asTendon(element))
+    return mjs_getWrapNum(tendon) > 0 && mjs_getWrap(tendon, 0)->type == mjWRAP_JOINT ? 1 : 0;
+  return 0;
+}
+
+std::map<std::pair<mjtObj, int>, const MjcfElement*> all_variants() {
+  std::map<std::pair<mjtObj, int>, const MjcfElement*> variants;
+  for (const MjcfElement& element : MjcfSchema::get().elements()) {
+    const mjtObj type = object_of(element);
+    if (type == mjOBJ_UNKNOWN || element.find("name") == nullptr) continue;
+    const Result<OwnedSpec> spec = mjcf::parse_document(mjcf::make_specimen(element).document);
+    GLOAM_CHECK(spec.ok(), "MuJoCo does not read a specimen");
+    if (mjsElement* read = specimen_of(spec->get(), element))
+      variants.emplace(std::pair(type, variant_of(read)), &element);
+  }
+  return variants;
+}
+
+}  // namespace
+
+const MjcfElement* written_as(mjsElement* element) {
+  static const auto variants = all_variants();
+  const auto found = variants.find({element->elemtype, variant_of(element)});
+  return found == variants.end() ? nullptr : found->second;
 }
 
 std::vector<std::string> spec_places(const MjcfElement& element, const MjcfAttribute& attribute) {

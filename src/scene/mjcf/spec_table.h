@@ -25,4 +25,8 @@ Status set_spec_attribute(mjSpec* spec, mjsElement* target, const MjcfElement& e
 /// Kind of the element that MuJoCo makes of it; mjOBJ_UNKNOWN for what a model has once.
 mjtObj object_of(const MjcfElement& element);
 
+/// The element of MJCF that one of a spec is written with: <position> for a position servo. Null for
+/// kinds that MJCF has no element for.
+const MjcfElement* written_as(mjsElement* element);
+
 }  // namespace gloam

@@ -215,6 +215,11 @@ Specimen make_specimen(const MjcfElement& element, std::string_view attribute) {
     } else {
       at = add(at, below->name);
     }
+    if (at.path() == "mujoco/deformable/flex" && below != &element) {
+      set_all(at, needed_by(below->path));
+      name(named = at);
+      continue;
+    }
     if (at.path() == "mujoco/body" && below != &element) continue;
     set_all(at, below == &element && instead ? pairs_of(*instead) : needed_by(below->path));
   }
@@ -254,6 +259,14 @@ std::vector<std::string> values_to_try(const MjcfAttribute& attribute) {
     for (const std::string& value : {rising, equal, swinging}) values.push_back(value);
   }
   return values;
+}
+
+void set_unchecked(const Element& element, std::string_view attribute, std::string_view value) {
+  struct Opened : Element {
+    explicit Opened(const Element& element) : Element(element) {}
+    using Element::put;
+  };
+  Opened(element).put(attribute, value);
 }
 
 void SpecDeleter::operator()(mjSpec_* spec) const { mj_deleteSpec(spec); }

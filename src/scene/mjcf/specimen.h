@@ -28,6 +28,9 @@ Specimen make_specimen(const MjcfElement& element, std::string_view attribute = 
 /// Different values that the attribute takes, though not each in every context.
 std::vector<std::string> values_to_try(const MjcfAttribute& attribute);
 
+/// As Element::set, whatever the value.
+void set_unchecked(const Element& element, std::string_view attribute, std::string_view value);
+
 struct SpecDeleter {
   void operator()(mjSpec_* spec) const;
 };
