@@ -48,11 +48,11 @@ std::vector<SpecField> all_fields() {
 #define XVEC X
 #define GLOAM_FIELD(type, name, count) \
   fields.push_back({owner, #name, #type, type_of<type>(), count, offsetof(S, name)});
-#define GLOAM_LIST(structure, list)             \
-  {                                             \
-    using S = structure;                        \
+#define GLOAM_LIST(structure, list)                \
+  {                                                \
+    using S = structure;                           \
     constexpr std::string_view owner = #structure; \
-    list                                        \
+    list                                           \
   }
 #define X(type, name, count) GLOAM_FIELD(type, name, count)
   GLOAM_LIST(mjSpec, MJSPEC_FIELDS)
@@ -94,12 +94,11 @@ std::vector<SpecField> all_fields() {
   GLOAM_LIST(VisualRgba, MJVISUAL_RGBA_FIELDS)
   // These two have no list of MuJoCo's.
   GLOAM_LIST(mjVisual, X(VisualGlobal, global, 1) X(VisualQuality, quality, 1)
-                 X(VisualHeadlight, headlight, 1) X(VisualMap, map, 1) X(VisualScale, scale, 1)
-                     X(VisualRgba, rgba, 1))
-  GLOAM_LIST(mjLROpt, X(int, mode, 1) X(int, useexisting, 1) X(int, uselimit, 1)
-                 X(mjtNum, accel, 1) X(mjtNum, maxforce, 1) X(mjtNum, timeconst, 1)
-                     X(mjtNum, timestep, 1) X(mjtNum, inttotal, 1) X(mjtNum, interval, 1)
-                         X(mjtNum, tolrange, 1))
+                           X(VisualHeadlight, headlight, 1) X(VisualMap, map, 1)
+                               X(VisualScale, scale, 1) X(VisualRgba, rgba, 1))
+  GLOAM_LIST(mjLROpt, X(int, mode, 1) X(int, useexisting, 1) X(int, uselimit, 1) X(mjtNum, accel, 1)
+                          X(mjtNum, maxforce, 1) X(mjtNum, timeconst, 1) X(mjtNum, timestep, 1)
+                              X(mjtNum, inttotal, 1) X(mjtNum, interval, 1) X(mjtNum, tolrange, 1))
 #undef X
 #define X(name, count) GLOAM_FIELD(mjtNum, name, count)
   GLOAM_LIST(mjStatistic, MJSTATISTIC_FIELDS)
@@ -212,8 +211,8 @@ std::span<const SpecField> spec_fields() {
 std::span<const SpecField> spec_fields_of(std::string_view owner) {
   const std::span<const SpecField> all = spec_fields();
   const auto first = std::ranges::find(all, owner, &SpecField::owner);
-  const auto last = std::find_if(first, all.end(),
-                                 [&](const SpecField& field) { return field.owner != owner; });
+  const auto last =
+      std::find_if(first, all.end(), [&](const SpecField& field) { return field.owner != owner; });
   return {first, last};
 }
 
@@ -307,7 +306,8 @@ std::string spec_text(const SpecObject& object, const SpecField& field) {
 
 bool spec_equal(const SpecObject& a, const SpecObject& b, const SpecField& field) {
   if (field.type < SpecType::kString)
-    return std::memcmp(at(a, field), at(b, field), spec_size(field.type) * static_cast<size_t>(field.count)) == 0;
+    return std::memcmp(at(a, field), at(b, field),
+                       spec_size(field.type) * static_cast<size_t>(field.count)) == 0;
   if (field.type == SpecType::kStruct || field.type == SpecType::kHandle) return true;
   return spec_text(a, field) == spec_text(b, field);
 }
@@ -331,9 +331,9 @@ std::vector<std::string> spec_difference(const mjSpec* a, const mjSpec* b) {
   std::vector<std::string> found;
   size_t i = 0, k = 0;
   while (i < in_a.size() || k < in_b.size()) {
-    if (k == in_b.size() || (i < in_a.size() && in_a[i].label != in_b[k].label &&
-                             std::ranges::find(in_b, in_a[i].label, &SpecObject::label) ==
-                                 in_b.end())) {
+    if (k == in_b.size() ||
+        (i < in_a.size() && in_a[i].label != in_b[k].label &&
+         std::ranges::find(in_b, in_a[i].label, &SpecObject::label) == in_b.end())) {
       found.push_back(in_a[i++].label);
       continue;
     }

@@ -22,8 +22,7 @@ bool is_bits(const SpecField& field) {
 
 // The objects of `spec` that an element owns, itself first: "mjsGeom" and its "mjsOrientation".
 std::vector<SpecObject> objects_of(const mjSpec* spec, mjsElement* element) {
-  std::vector<SpecObject> all =
-      element == nullptr ? spec_objects(spec) : spec_objects_of(element);
+  std::vector<SpecObject> all = element == nullptr ? spec_objects(spec) : spec_objects_of(element);
   if (element == nullptr) {
     const auto other = std::ranges::find_if(
         all, [](const SpecObject& object) { return !object.label.starts_with("mjSpec"); });
@@ -66,8 +65,7 @@ Readings read_values(const MjcfElement& element, const MjcfAttribute& attribute,
 
 mjsElement* specimen_of(const mjSpec* spec, const MjcfElement& element) {
   const mjtObj type = object_of(element);
-  return type == mjOBJ_UNKNOWN ? nullptr
-                               : mjs_findElement(spec, type, mjcf::kSpecimenName);
+  return type == mjOBJ_UNKNOWN ? nullptr : mjs_findElement(spec, type, mjcf::kSpecimenName);
 }
 
 char* bytes_at(const SpecObject& object, const SpecField& field) {
@@ -138,17 +136,28 @@ bool copy_changed(const SpecObject& from, const std::vector<SpecObject>& others,
 
 mjtObj object_of(const MjcfElement& element) {
   static const std::map<std::string_view, mjtObj> kByPath = {
-      {"mujoco/body", mjOBJ_BODY},         {"mujoco/body/inertial", mjOBJ_BODY},
-      {"mujoco/body/joint", mjOBJ_JOINT},  {"mujoco/body/freejoint", mjOBJ_JOINT},
-      {"mujoco/body/geom", mjOBJ_GEOM},    {"mujoco/body/site", mjOBJ_SITE},
-      {"mujoco/body/camera", mjOBJ_CAMERA}, {"mujoco/body/light", mjOBJ_LIGHT},
-      {"mujoco/body/frame", mjOBJ_FRAME},  {"mujoco/asset/mesh", mjOBJ_MESH},
-      {"mujoco/asset/hfield", mjOBJ_HFIELD}, {"mujoco/asset/skin", mjOBJ_SKIN},
-      {"mujoco/asset/texture", mjOBJ_TEXTURE}, {"mujoco/asset/material", mjOBJ_MATERIAL},
-      {"mujoco/contact/pair", mjOBJ_PAIR}, {"mujoco/contact/exclude", mjOBJ_EXCLUDE},
-      {"mujoco/deformable/flex", mjOBJ_FLEX}, {"mujoco/deformable/skin", mjOBJ_SKIN},
-      {"mujoco/custom/numeric", mjOBJ_NUMERIC}, {"mujoco/custom/text", mjOBJ_TEXT},
-      {"mujoco/custom/tuple", mjOBJ_TUPLE}, {"mujoco/keyframe/key", mjOBJ_KEY}};
+      {"mujoco/body", mjOBJ_BODY},
+      {"mujoco/body/inertial", mjOBJ_BODY},
+      {"mujoco/body/joint", mjOBJ_JOINT},
+      {"mujoco/body/freejoint", mjOBJ_JOINT},
+      {"mujoco/body/geom", mjOBJ_GEOM},
+      {"mujoco/body/site", mjOBJ_SITE},
+      {"mujoco/body/camera", mjOBJ_CAMERA},
+      {"mujoco/body/light", mjOBJ_LIGHT},
+      {"mujoco/body/frame", mjOBJ_FRAME},
+      {"mujoco/asset/mesh", mjOBJ_MESH},
+      {"mujoco/asset/hfield", mjOBJ_HFIELD},
+      {"mujoco/asset/skin", mjOBJ_SKIN},
+      {"mujoco/asset/texture", mjOBJ_TEXTURE},
+      {"mujoco/asset/material", mjOBJ_MATERIAL},
+      {"mujoco/contact/pair", mjOBJ_PAIR},
+      {"mujoco/contact/exclude", mjOBJ_EXCLUDE},
+      {"mujoco/deformable/flex", mjOBJ_FLEX},
+      {"mujoco/deformable/skin", mjOBJ_SKIN},
+      {"mujoco/custom/numeric", mjOBJ_NUMERIC},
+      {"mujoco/custom/text", mjOBJ_TEXT},
+      {"mujoco/custom/tuple", mjOBJ_TUPLE},
+      {"mujoco/keyframe/key", mjOBJ_KEY}};
   if (const auto found = kByPath.find(element.path); found != kByPath.end()) return found->second;
   const std::string_view section = element.parent == nullptr ? "" : element.parent->path;
   if (section == "mujoco/deformable/flex") return mjOBJ_FLEX;
@@ -161,7 +170,8 @@ mjtObj object_of(const MjcfElement& element) {
 
 namespace {
 
-// What tells elements of one kind from each other: a servo from a motor, a gyro from a touch sensor.
+// What tells elements of one kind from each other: a servo from a motor, a gyro from a touch
+// sensor.
 int variant_of(mjsElement* element) {
   if (const mjsActuator* actuator = mjs_asActuator(element))
     return actuator->plugin.active ? -1 : actuator->type;
@@ -197,8 +207,7 @@ std::vector<std::string> spec_places(const MjcfElement& element, const MjcfAttri
   const Readings readings = read_values(element, attribute, nullptr);
   std::set<std::string> places;
   for (size_t i = 1; i < readings.specs.size(); ++i) {
-    for (std::string place :
-         spec_difference(readings.specs[0].get(), readings.specs[i].get())) {
+    for (std::string place : spec_difference(readings.specs[0].get(), readings.specs[i].get())) {
       // "mjsGeom[2].alt.euler" is a field of mjsGeom.
       for (size_t open = place.find('['); open != std::string::npos; open = place.find('['))
         place.erase(open, place.find(']') - open + 1);

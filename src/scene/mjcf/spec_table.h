@@ -1,8 +1,8 @@
 #pragma once
 // What each attribute of MJCF sets in a parsed model, and the same set in a model that is parsed
 // already. Nobody has written it down: MuJoCo's parser reads a document with and without the
-// attribute, and what differs is what it sets. So `kp` of a position servo or `euler` of a body mean
-// here what they mean in a file.
+// attribute, and what differs is what it sets. So `kp` of a position servo or `euler` of a body
+// mean here what they mean in a file.
 
 #include <string>
 #include <string_view>
@@ -25,8 +25,8 @@ Status set_spec_attribute(mjSpec* spec, mjsElement* target, const MjcfElement& e
 /// Kind of the element that MuJoCo makes of it; mjOBJ_UNKNOWN for what a model has once.
 mjtObj object_of(const MjcfElement& element);
 
-/// The element of MJCF that one of a spec is written with: <position> for a position servo. Null for
-/// kinds that MJCF has no element for.
+/// The element of MJCF that one of a spec is written with: <position> for a position servo. Null
+/// for kinds that MJCF has no element for.
 const MjcfElement* written_as(mjsElement* element);
 
 }  // namespace gloam

@@ -66,8 +66,7 @@ Attributes needed_by(std::string_view path) {
       {"body/geom", "size=1,1,1"},
       {"body/attach", "prefix=p body=b2"},
       {"body/replicate", "count=2"},
-      {"body/flexcomp",
-       "name=f type=grid count=3,3,3 spacing=.1,.1,.1 dim=3 mass=1 radius=.01"},
+      {"body/flexcomp", "name=f type=grid count=3,3,3 spacing=.1,.1,.1 dim=3 mass=1 radius=.01"},
       {"body/flexcomp/pin", "id=0"},
       {"deformable/flex", "name=fl dim=2 body=b vertex=0,0,0,1,0,0,0,1,0 element=0,1,2"},
       {"contact/pair", "geom1=g geom2=g2"},
@@ -120,7 +119,7 @@ Attributes needed_by(std::string_view path) {
            : name.starts_with("subtree")  ? "body=b"
            : name.starts_with("frame")    ? "objtype=body objname=b"
            : name.starts_with("e_") || name == "clock" || name == "plugin" ? ""
-                                                                            : "site=s";
+                                                                           : "site=s";
   }
   return pairs_of(list);
 }
@@ -144,12 +143,14 @@ class SpecimenFiles {
 };
 
 // Attributes that may not stand beside what their element usually has: what stands there instead.
-std::optional<std::string_view> instead_for(const MjcfElement& element, std::string_view attribute) {
+std::optional<std::string_view> instead_for(const MjcfElement& element,
+                                            std::string_view attribute) {
   struct Instead {
     std::string_view section, attributes, values;
   };
   static constexpr Instead kInstead[] = {
-      {"mujoco/actuator", "cranksite slidersite cranklength", "cranksite=s slidersite=s2 cranklength=1"},
+      {"mujoco/actuator", "cranksite slidersite cranklength",
+       "cranksite=s slidersite=s2 cranklength=1"},
       {"mujoco/actuator", "refsite", "site=s"},
       {"mujoco/equality", "site1 site2", "site1=s site2=s2"},
       {"mujoco/sensor", "body1 body2", "body1=b body2=b2"},
@@ -245,7 +246,8 @@ std::vector<std::string> values_to_try(const MjcfAttribute& attribute) {
     return values;
   }
   // Names of what is there, and what only some texts are: layers' roles, sizes of memory.
-  if (attribute.type == MjcfType::kString) return {"b2", "j", "s2", "cl", "geom", "sphere", "rgb", "normal", "1M", "xyz"};
+  if (attribute.type == MjcfType::kString)
+    return {"b2", "j", "s2", "cl", "geom", "sphere", "rgb", "normal", "1M", "xyz"};
   const int count = attribute.most == MjcfAttribute::kAnyLength ? 4 : attribute.most;
   for (const double first : {0.75, 2.0, 1.0, 0.0, 3.0}) {
     if (attribute.type == MjcfType::kInt && first == 0.75) continue;
@@ -259,14 +261,6 @@ std::vector<std::string> values_to_try(const MjcfAttribute& attribute) {
     for (const std::string& value : {rising, equal, swinging}) values.push_back(value);
   }
   return values;
-}
-
-void set_unchecked(const Element& element, std::string_view attribute, std::string_view value) {
-  struct Opened : Element {
-    explicit Opened(const Element& element) : Element(element) {}
-    using Element::put;
-  };
-  Opened(element).put(attribute, value);
 }
 
 void SpecDeleter::operator()(mjSpec_* spec) const { mj_deleteSpec(spec); }

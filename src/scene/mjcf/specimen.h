@@ -1,6 +1,6 @@
 #pragma once
-// For each element of MJCF a document in which MuJoCo reads it, and values that its attributes take:
-// what the parser makes of an attribute is found out by letting it read one (spec_table.h).
+// For each element of MJCF a document in which MuJoCo reads it, and values that its attributes
+// take: what the parser makes of an attribute is found out by letting it read one (spec_table.h).
 
 #include <memory>
 #include <string>
@@ -27,9 +27,6 @@ Specimen make_specimen(const MjcfElement& element, std::string_view attribute = 
 
 /// Different values that the attribute takes, though not each in every context.
 std::vector<std::string> values_to_try(const MjcfAttribute& attribute);
-
-/// As Element::set, whatever the value.
-void set_unchecked(const Element& element, std::string_view attribute, std::string_view value);
 
 struct SpecDeleter {
   void operator()(mjSpec_* spec) const;
