@@ -271,11 +271,11 @@ def import_time(quick):
 
 def adaptive_sampling(quick):
     """--error against an even picture of as many samples"""
-    lines = run(BIN / "bench_adaptive_error", "--json", "--error", 0.1, "--size", "64x48", "--seeds", 4 if quick else 8).strip().splitlines()
+    lines = run(BIN / "bench_adaptive_error", "--json", "--error", 0.05, "--size", "64x48", "--seeds", 2 if quick else 4).strip().splitlines()
     scenes = [json.loads(line) for line in lines]
     each = ", ".join(f"{s['scene']} {s['gain']:.2f}" for s in scenes)
     yield at_least("--error: worth of a sample against even sampling, worst scene", min(s["gain"] for s in scenes), 0.5,
-                   f"each: {each}; 0.1 asked for, reached {', '.join(format(s['reached'], '.3f') for s in scenes)}")
+                   f"each: {each}; 0.05 asked for, reached {', '.join(format(s['reached'], '.3f') for s in scenes)}")
 
 
 def fast_tier(quick):

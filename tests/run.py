@@ -224,13 +224,17 @@ def main():
     return 1 if tally.failed or not tally.passed else 0
 
 
-def fast(tally):
-    python_tests(tally, "folder_rule.py")
-    # Two at a time, longest first; the page's tests mostly wait.
+def units(tally, preset, shard_filter):
+    """All modules' unit tests but those of speed: two modules at a time, longest first (the page's tests mostly wait)."""
     longest = ["studio", "render", "control", "world"]
     with ThreadPoolExecutor(2) as pool:
         modules = longest + [module for module in UNIT if module not in longest]
-        list(pool.map(lambda module: gtest(tally, "release", module, shard_filter="-*Slow*"), modules))
+        list(pool.map(lambda module: gtest(tally, preset, module, shard_filter=shard_filter), modules))
+
+
+def fast(tally):
+    python_tests(tally, "folder_rule.py")
+    units(tally, "release", "-*Slow*")
     python_tests(tally, "cli_test.py", "tests/e2e")
 
 
@@ -238,13 +242,13 @@ def ci(tally):
     run([sys.executable, "tests/fetch_data.py"])
     check_format(tally)
     python_tests(tally, "folder_rule.py")
-    for module in UNIT:
-        gtest(tally, "release", module)
+    units(tally, "release", "-*Slow*")
+    for module in modules_with("Slow"):
+        gtest(tally, "release", module, shard_filter="*Slow*")
     python_tests(tally, "*_test.py", "tests/e2e")
     check_lint_of_changes(tally)
     if build(tally, "asan", [f"gloam_{module}_test" for module in UNIT if (ROOT / "src" / module / "test").is_dir()]):
-        for module in UNIT:
-            gtest(tally, "asan", module, shard_filter=TOO_SLOW_SANITIZED)
+        units(tally, "asan", TOO_SLOW_SANITIZED)
     if build(tally, "tsan", ["gloam_base_test", "gloam_sim_test"]):
         for module in ("base", "sim"):
             gtest(tally, "tsan", module, shard_filter=TOO_SLOW_SANITIZED)
@@ -267,7 +271,7 @@ def full(tally):
         "sweeps": lambda t: gtest(t, "release", "control", "*.DISABLED_Sweep*"),
         "Mitsuba's mutations": lambda t: python_tests(t, "mitsuba_mutations.py", "tests/e2e"),
     }
-    for module in mutated_modules():
+    for module in modules_with("Mutations"):
         parts[f"{MUTATIONS} mutations {module}"] = lambda t, m=module: mutations(t, m)
     for preset in ("asan", "tsan"):
         for module in [m for m in UNIT if (ROOT / "src" / m / "test").is_dir()]:
@@ -293,9 +297,9 @@ def full(tally):
     (history / f"full_tests_{time.strftime('%F')}_{version}.json").write_text(json.dumps(state, indent=1))
 
 
-def mutated_modules():
-    """Those with a test of the suite Mutations: a reader's."""
-    return [m for m in UNIT if any("Mutations" in path.read_text() for path in (ROOT / "src" / m / "test").glob("*_test.cc"))]
+def modules_with(word):
+    """Those whose tests' names hold it: "Mutations" is a reader's suite, "Slow" a test of speed."""
+    return [m for m in UNIT if any(word in path.read_text() for path in (ROOT / "src" / m / "test").glob("*_test.cc"))]
 
 
 def source_version():

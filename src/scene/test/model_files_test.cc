@@ -52,6 +52,24 @@ TEST(XmlScan, RefusesWhatWouldHurtMuJoCo) {
   EXPECT_EQ(error_of("<m><size memory='100M'/><flexcomp count='10 10 10'/></m>"), "");
 }
 
+TEST(XmlScan, RefusesWhatEndsMuJoCosProcess) {
+  const auto error_of = [](const std::string& text) {
+    const Result<XmlScan> scan = scan_model_xml("<mujoco>\n" + text + "</mujoco>", "m.xml");
+    return scan.ok() ? "" : scan.error().to_string();
+  };
+  EXPECT_EQ(error_of("<asset><model name='a'/></asset>"), "m.xml:2: <model> lacks 'file'");
+  EXPECT_EQ(error_of("<equality><connect body1='b' anchor=' '/></equality>"),
+            "m.xml:2: <connect> has an empty 'anchor': it takes 3 numbers");
+  EXPECT_EQ(error_of("<worldbody><flexcomp><plugin plugin=''/></flexcomp></worldbody>"),
+            "m.xml:2: <plugin> of a <flexcomp> has an empty 'plugin'");
+  for (const char* layers : {"0", "-1", "zz"})
+    EXPECT_EQ(
+        error_of(std::string("<flexcomp><contact activelayers='") + layers + "'/></flexcomp>"),
+        "m.xml:2: 'activelayers' of <contact> is less than 1");
+  EXPECT_EQ(error_of("<flexcomp><contact activelayers='2'/><plugin instance='i'/></flexcomp>"), "");
+  EXPECT_EQ(error_of("<connect site1='a' site2='b'/><asset><model file='a.xml'/></asset>"), "");
+}
+
 TEST(XmlScan, FindsTheReplicateThatTakesLong) {
   const auto slowest = [](const std::string& inside) {
     return scan_model_xml("<mujoco><worldbody>\n" + inside + "</worldbody></mujoco>", "m.xml")
