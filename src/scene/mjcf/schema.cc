@@ -16,7 +16,7 @@ constexpr MjcfType kString = MjcfType::kString, kInt = MjcfType::kInt, kReal = M
 
 #define GLOAM_ELEMENT(path, times, attributes)
 #define GLOAM_ATTRIBUTE(...) {__VA_ARGS__},
-constexpr MjcfAttribute kAttributes[] = {
+const MjcfAttribute kAttributes[] = {
 #include "mjcf_schema_table.inc"
 };
 #undef GLOAM_ELEMENT
@@ -95,7 +95,8 @@ const MjcfElement* MjcfSchema::find(std::string_view path) const {
 
 const MjcfElement* MjcfSchema::child(const MjcfElement& above, std::string_view name) const {
   if (name == include_->name) return include_;
-  const bool is_group = above.parent == body_ && above.times == 'R';  // <frame>, <replicate>
+  // <frame>, <replicate>
+  const bool is_group = body_ != nullptr && above.parent == body_ && above.times == 'R';
   const MjcfElement& holder = is_group ? *body_ : above;
   if (holder.times == 'R' && name == holder.name) return &holder;
   for (const MjcfElement* element : holder.children) {
