@@ -32,5 +32,5 @@ if(NOT TARGET mujoco::mujoco)
     IMPORTED_LOCATION ${mujoco_dir}/libmujoco.so.4.0.1
     IMPORTED_SONAME libmujoco.so.4.0.1
     INTERFACE_INCLUDE_DIRECTORIES ${mujoco_dir}/include)
+  set(GLOAM_MUJOCO_DOC ${mujoco_dir}/doc CACHE PATH "MuJoCo's manual, as its wheel has it: texts and units of the schema")
 endif()
-set(GLOAM_MUJOCO_DOC ${mujoco_dir}/doc CACHE PATH "MuJoCo's manual, as its wheel has it: texts and units of the schema")

@@ -39,7 +39,8 @@ class Element {
   std::vector<Element> children() const;
   std::vector<Element> children(std::string_view tag) const;
   std::optional<Element> parent() const;
-  /// Adds an element below, behind those that are there. Errors: it may not stand here.
+  /// Adds an element below, behind those that are there. Errors: it may not stand here, or
+  /// not twice.
   Result<Element> add(std::string_view tag);
   /// Takes it out of its document.
   void remove();

@@ -1,5 +1,5 @@
 #pragma once
-// Help with words that people mistype.
+// Words that people mistype, and bytes that are no text.
 
 #include <span>
 #include <string>
@@ -15,5 +15,8 @@ std::string nearest_name(std::string_view word, std::span<const std::string> can
 
 /// True if `name` is `pattern` with any text in the place of each *.
 bool fits_pattern(std::string_view pattern, std::string_view name);
+
+/// With U+FFFD in the place of every byte that is no part of UTF-8 (RFC 3629).
+std::string as_utf8(std::string_view text);
 
 }  // namespace gloam

@@ -8,12 +8,12 @@
 #include <cmath>
 #include <cstdlib>
 #include <functional>
-#include <pugixml.hpp>
+
+#include "scene/xml_text.h"
 
 namespace gloam {
 namespace {
 
-constexpr int kDeepest = 200;
 constexpr int64_t kMostElements = 4'000'000;
 
 // Sizes that only a mistake or an attack would ask for. The product of all numbers of the attribute
@@ -41,23 +41,6 @@ bool names_a_file(std::string_view element, std::string_view attribute) {
   if (attribute.starts_with("file")) return element != "key" && element != "text";
   return false;
 }
-
-class Lines {
- public:
-  explicit Lines(std::string_view text) {
-    for (size_t i = 0; i < text.size(); ++i) {
-      if (text[i] == '\n') ends_.push_back(i);
-    }
-  }
-  int at(ptrdiff_t offset) const {
-    const auto end = std::lower_bound(ends_.begin(), ends_.end(),
-                                      static_cast<size_t>(std::max<ptrdiff_t>(offset, 0)));
-    return static_cast<int>(end - ends_.begin()) + 1;
-  }
-
- private:
-  std::vector<size_t> ends_;
-};
 
 double product_of_numbers(const char* text) {
   double product = 1;
@@ -109,10 +92,6 @@ void walk(const pugi::xml_document& document, Visit&& visit) {
   }
 }
 
-pugi::xml_parse_result parse(std::string_view text, pugi::xml_document* document) {
-  return document->load_buffer(text.data(), text.size(), pugi::parse_default, pugi::encoding_utf8);
-}
-
 Status check_sizes(const pugi::xml_node& node, const std::function<SourceLoc()>& loc) {
   const std::string_view element = node.name();
   for (const SizeLimit& limit : kSizeLimits) {
@@ -161,7 +140,7 @@ Status check_fatal(const pugi::xml_node& node, const std::function<SourceLoc()>&
 
 // The elements that `node` becomes. MuJoCo attaches copies one by one and goes through all elements
 // of the copies so far at each: measured for 10⁴ to 5·10⁴ lights with 3.12 on a server's core.
-double weigh(const pugi::xml_node& node, const Lines& lines, Replicate* slowest) {
+double weigh(const pugi::xml_node& node, const XmlLines& lines, Replicate* slowest) {
   constexpr double kSeconds = 3e-8;  // of each copy and element
   double inside = 0;
   for (const pugi::xml_node& child : node.children())
@@ -177,27 +156,18 @@ double weigh(const pugi::xml_node& node, const Lines& lines, Replicate* slowest)
 
 Result<XmlScan> scan_model_xml(std::string_view text, const std::string& file) {
   pugi::xml_document document;
-  const pugi::xml_parse_result parsed = parse(text, &document);
-  const Lines lines(text);
+  GLOAM_TRY_STATUS(parse_xml(text, file, pugi::parse_default, &document));
+  const XmlLines lines(text);
   const auto loc_at = [&](ptrdiff_t offset) { return SourceLoc{file, lines.at(offset), 0}; };
-  if (!parsed) {
-    if (text.find_first_not_of(" \t\r\n") == std::string_view::npos)
-      return Error{ErrorKind::kInput, "the file is empty", {file, 0, 0}};
-    std::string what = parsed.description();
-    if (!what.empty())
-      what[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(what[0])));
-    return Error{ErrorKind::kInput, fmt::format("is not well-formed XML: {}", what),
-                 loc_at(parsed.offset)};
-  }
   XmlScan scan;
   scan.root = document.document_element().name();
   Status status;
   int64_t elements = 0;
   walk(document, [&](const pugi::xml_node& node, int depth) {
     const auto loc = [&] { return loc_at(node.offset_debug()); };
-    if (depth > kDeepest) {
+    if (depth > kDeepestXml) {
       status = Error{ErrorKind::kInput,
-                     fmt::format("elements are nested more than {} deep", kDeepest), loc()};
+                     fmt::format("elements are nested more than {} deep", kDeepestXml), loc()};
     } else if (++elements > kMostElements) {
       status =
           Error{ErrorKind::kInput, fmt::format("has more than {} elements", kMostElements), loc()};
@@ -222,8 +192,8 @@ Result<XmlScan> scan_model_xml(std::string_view text, const std::string& file) {
 
 bool has_element_at(std::string_view text, std::string_view name, int line) {
   pugi::xml_document document;
-  if (!parse(text, &document)) return false;
-  const Lines lines(text);
+  if (!parse_xml(text, "", pugi::parse_default, &document).ok()) return false;
+  const XmlLines lines(text);
   bool found = false;
   walk(document, [&](const pugi::xml_node& node, int) {
     found = (name.empty() || name == node.name()) && lines.at(node.offset_debug()) == line;
@@ -235,8 +205,8 @@ bool has_element_at(std::string_view text, std::string_view name, int line) {
 int line_of_element_with(std::string_view text, std::string_view name,
                          const std::vector<std::string>& words) {
   pugi::xml_document document;
-  if (!parse(text, &document)) return 0;
-  const Lines lines(text);
+  if (!parse_xml(text, "", pugi::parse_default, &document).ok()) return 0;
+  const XmlLines lines(text);
   int line = 0;
   walk(document, [&](const pugi::xml_node& node, int) {
     if (!name.empty() && name != node.name()) return true;

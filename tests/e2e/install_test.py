@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import tempfile
+import tomllib
 import unittest
 from pathlib import Path
 
@@ -75,23 +76,38 @@ class Install(unittest.TestCase):
         self.assertEqual(summary["exit_reason"], "completed")
         self.assertTrue((self.elsewhere / "out" / "contact_sheet.png").exists())
 
-    def test_the_page_of_the_documentation_builds_and_runs(self):
-        page = (ROOT / "docs" / "library.md").read_text()
-        project = self.folder / "project"
+    def program_of(self, page):
+        """The program that a page shows, built as library.md says."""
+        project = self.folder / page
         project.mkdir()
-        for language, name in [("cmake", "CMakeLists.txt"), ("cpp", "main.cc")]:
-            (project / name).write_text(re.search(rf"^```{language}\n(.*?)^```", page, re.M | re.S).group(1))
+        for language, source, name in [("cmake", "library.md", "CMakeLists.txt"), ("cpp", page, "main.cc")]:
+            text = (ROOT / "docs" / source).read_text()
+            (project / name).write_text(re.search(rf"^```{language}\n(.*?)^```", text, re.M | re.S).group(1))
         run(["cmake", "-S", project, "-B", project / "build", "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={self.prefix}",
              "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror"], "/")
         run(["cmake", "--build", project / "build"], "/")
-        said = run(hidden([project / "build" / "consumer", self.model]), self.elsewhere, GLOAM_CACHE=str(self.folder / "cache"))
+        return project / "build" / "consumer"
+
+    def test_the_page_of_models_makes_the_model_that_it_shows(self):
+        program = self.program_of("models.md")
+        run(hidden([program, "made.toml"]), self.elsewhere)
+        page = (ROOT / "docs" / "models.md").read_text()
+        shown = tomllib.loads(re.search(r"^```toml\n(.*?)^```", page, re.M | re.S).group(1))
+        self.assertEqual(tomllib.loads((self.elsewhere / "made.toml").read_text()), shown)
+        run(hidden([program, "made.xml"]), self.elsewhere)
+        ran = json.loads(run([BUILD / "bin" / "gloam", "run", "made.xml", "--duration", "0.1", "--json"], self.elsewhere))
+        self.assertEqual(ran["steps"], 100)
+
+    def test_the_page_of_the_library_builds_and_runs(self):
+        consumer = self.program_of("library.md")
+        said = run(hidden([consumer, self.model]), self.elsewhere, GLOAM_CACHE=str(self.folder / "cache"))
         program = json.loads(run([BUILD / "bin" / "gloam", "run", self.model, "--duration", "1", "--json"], self.elsewhere))
         self.assertIn(f"1.000 s, state hash {program['state_hash']}", said)
         run([BUILD / "bin" / "gloam", "render", self.model, "--camera", "free", "--time", "1", "--spp", "4", "--resolution", "64x48",
              "--out", "same"], self.elsewhere)
         pictures = [(self.elsewhere / name).read_bytes() for name in ["picture.png", "same/free.png"]]
         self.assertEqual(*pictures, "the library found its denoiser, too")
-        failed = subprocess.run([project / "build" / "consumer", "missing.xml"], capture_output=True, text=True)
+        failed = subprocess.run([consumer, "missing.xml"], capture_output=True, text=True)
         self.assertEqual(failed.returncode, 1)
         self.assertIn("missing.xml", failed.stderr)
 

@@ -92,5 +92,14 @@ TEST(Files, AtomicWriteReplacesTheWholeFileAndReportsFailure) {
   std::filesystem::remove_all(folder);
 }
 
+TEST(Text, BytesThatAreNoUtf8AreReplaced) {
+  EXPECT_EQ(as_utf8("a \u00fc \u20ac \U0001F600"), "a \u00fc \u20ac \U0001F600");
+  EXPECT_EQ(as_utf8("M\xfcller"), "M\uFFFDller");
+  EXPECT_EQ(as_utf8("\xe2\x82"), "\uFFFD\uFFFD") << "cut off";
+  EXPECT_EQ(as_utf8("\xc0\xaf"), "\uFFFD\uFFFD") << "longer than needed";
+  EXPECT_EQ(as_utf8("\xed\xa0\x80"), "\uFFFD\uFFFD\uFFFD") << "half of a surrogate pair";
+  EXPECT_EQ(as_utf8("\xf4\x90\x80\x80"), "\uFFFD\uFFFD\uFFFD\uFFFD") << "beyond Unicode";
+}
+
 }  // namespace
 }  // namespace gloam

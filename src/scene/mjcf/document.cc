@@ -31,13 +31,11 @@ Status check_node(const Node& node) {
                      fmt::format("lacks '{}': {}", attribute.name, describe_type(attribute))};
     }
     if (status.ok()) continue;
-    Error error = std::move(status).error();
+    Error error = status.error();
     const MjcfAttribute* named = node.element->find("name");
     const std::string* name = named == nullptr ? nullptr : node.value_of(*named);
-    error.message = fmt::format("<{}>{} {}", node.tag(),
-                                name == nullptr ? "" : fmt::format(" '{}'", *name), error.message);
-    error.loc = node.loc;
-    return error;
+    if (name != nullptr) error.message = fmt::format("'{}' {}", *name, error.message);
+    return node.refused(error);
   }
   for (const std::shared_ptr<Node>& child : node.children) GLOAM_TRY_STATUS(check_node(*child));
   return {};

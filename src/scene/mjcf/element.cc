@@ -2,7 +2,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "base/check.h"
 #include "scene/mjcf/node.h"
@@ -16,20 +15,14 @@ const MjcfAttribute& known(const Node& node, std::string_view attribute) {
   return *found;
 }
 
-// Words that cannot be read end the list: set() and the readers let none in.
+// Words that cannot be read are left out: set() and the readers let none in.
 template <class T>
-std::vector<T> numbers(const std::string& text) {
+std::vector<T> numbers(const std::optional<std::string>& text) {
   std::vector<T> list;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (true) {
-    while (at != end && (std::isspace(static_cast<unsigned char>(*at)) != 0 || *at == '+')) ++at;
-    T value{};
-    const auto [next, code] = std::from_chars(at, end, value);
-    if (code != std::errc()) return list;
-    list.push_back(value);
-    at = next;
+  for (const std::string_view word : split_words(text ? std::string_view(*text) : "")) {
+    if (const std::optional<T> value = read_number<T>(word)) list.push_back(*value);
   }
+  return list;
 }
 
 }  // namespace
@@ -46,13 +39,8 @@ Result<std::optional<std::string>> Element::get(std::string_view name) const {
 
 Status Element::set(std::string_view name, std::string_view value) {
   GLOAM_TRY(const MjcfAttribute* attribute, attribute_of(*node_->element, name, node_->loc));
-  Status status = check_mjcf_value(*attribute, value);
-  if (!status.ok()) {
-    Error error = status.error();
-    error.message = fmt::format("<{}> {}", tag(), error.message);
-    error.loc = node_->loc;
-    return error;
-  }
+  if (Status status = check_mjcf_value(*attribute, value); !status.ok())
+    return node_->refused(status.error());
   node_->set(*attribute, value);
   return {};
 }
@@ -89,8 +77,8 @@ std::optional<Element> Element::parent() const {
 }
 
 Result<Element> Element::add(std::string_view tag) {
-  if (std::shared_ptr<Node> child = node_->add(tag)) return Element(std::move(child));
-  return wrong_tag(*node_->element, tag, node_->loc);
+  GLOAM_TRY(std::shared_ptr<Node> child, node_->add(tag, node_->loc));
+  return Element(std::move(child));
 }
 
 void Element::remove() {
@@ -114,11 +102,11 @@ std::optional<int> Element::int_of(std::string_view attribute) const {
 }
 
 std::vector<double> Element::reals_of(std::string_view attribute) const {
-  return numbers<double>(text_of(attribute).value_or(""));
+  return numbers<double>(text_of(attribute));
 }
 
 std::vector<int> Element::ints_of(std::string_view attribute) const {
-  return numbers<int>(text_of(attribute).value_or(""));
+  return numbers<int>(text_of(attribute));
 }
 
 void Element::put(std::string_view attribute, std::string_view value) {
@@ -143,7 +131,8 @@ std::optional<bool> Element::flag_of(std::string_view attribute) const {
 std::vector<int> Element::places_of(std::string_view attribute,
                                     std::span<const std::string_view> words) const {
   std::vector<int> places;
-  for (const std::string_view word : split_words(text_of(attribute).value_or(""))) {
+  const std::string text = text_of(attribute).value_or("");
+  for (const std::string_view word : split_words(text)) {
     const auto found = std::ranges::find(words, word);
     if (found != words.end()) places.push_back(static_cast<int>(found - words.begin()));
   }
@@ -151,9 +140,9 @@ std::vector<int> Element::places_of(std::string_view attribute,
 }
 
 Element Element::add_known(std::string_view tag) {
-  std::shared_ptr<Node> child = node_->add(tag);
-  GLOAM_CHECK(child != nullptr, "a generated class names an element that may not stand there");
-  return Element(std::move(child));
+  Result<std::shared_ptr<Node>> child = node_->add(tag, node_->loc);
+  GLOAM_CHECK(child.ok(), "a generated class names an element that may not stand there");
+  return Element(std::move(child).value());
 }
 
 Element Element::find_or_add(std::string_view tag) {

@@ -10,51 +10,7 @@
 #include "base/text.h"
 
 namespace gloam::mjcf {
-
-const std::string* Node::value_of(const MjcfAttribute& attribute) const {
-  for (const auto& [known, value] : values) {
-    if (known == &attribute) return &value;
-  }
-  return nullptr;
-}
-
-void Node::set(const MjcfAttribute& attribute, std::string_view value) {
-  for (auto& [known, old] : values) {
-    if (known == &attribute) {
-      old = value;
-      return;
-    }
-  }
-  values.emplace_back(&attribute, value);
-}
-
-std::shared_ptr<Node> Node::add(std::string_view tag) {
-  const MjcfElement* below = MjcfSchema::get().child(*element, tag);
-  if (below == nullptr) return nullptr;
-  auto child = std::make_shared<Node>();
-  child->element = below;
-  child->parent = this;
-  children.push_back(child);
-  return child;
-}
-
-std::string_view Node::tag() const {
-  return parent == nullptr ? element->name : MjcfSchema::tag(*element, *parent->element);
-}
-
-Result<const MjcfAttribute*> attribute_of(const MjcfElement& element, std::string_view name,
-                                          const SourceLoc& loc) {
-  if (const MjcfAttribute* attribute = element.find(name)) return attribute;
-  std::vector<std::string> names;
-  for (const MjcfAttribute& attribute : element.attributes) names.emplace_back(attribute.name);
-  Error error{ErrorKind::kInput, fmt::format("<{}> has no attribute '{:.60}'", element.name, name),
-              loc};
-  const std::string near = nearest_name(name, names);
-  error.hint = !near.empty()   ? fmt::format("did you mean '{}'?", near)
-               : names.empty() ? "it has none"
-                               : fmt::format("it has {}", fmt::join(names, ", "));
-  return error;
-}
+namespace {
 
 Error wrong_tag(const MjcfElement& above, std::string_view tag, const SourceLoc& loc) {
   const MjcfSchema& schema = MjcfSchema::get();
@@ -73,6 +29,64 @@ Error wrong_tag(const MjcfElement& above, std::string_view tag, const SourceLoc&
   error.hint = !places.empty() ? fmt::format("it stands in {}", fmt::join(places, ", "))
                : here.empty()  ? "nothing stands in it"
                                : fmt::format("there may be {}", fmt::join(here, ", "));
+  return error;
+}
+
+}  // namespace
+
+const std::string* Node::value_of(const MjcfAttribute& attribute) const {
+  for (const auto& [known, value] : values) {
+    if (known == &attribute) return &value;
+  }
+  return nullptr;
+}
+
+void Node::set(const MjcfAttribute& attribute, std::string_view value) {
+  for (auto& [known, old] : values) {
+    if (known == &attribute) {
+      old = value;
+      return;
+    }
+  }
+  values.emplace_back(&attribute, value);
+}
+
+Result<std::shared_ptr<Node>> Node::add(std::string_view tag, const SourceLoc& place) {
+  const MjcfElement* below = MjcfSchema::get().child(*element, tag);
+  if (below == nullptr) return wrong_tag(*element, tag, place);
+  if (below->times == '?' &&
+      std::ranges::any_of(children, [&](const auto& child) { return child->element == below; }))
+    return Error{ErrorKind::kInput, fmt::format("<{}> stands twice in <{}>", tag, this->tag()),
+                 place};
+  auto child = std::make_shared<Node>();
+  child->element = below;
+  child->parent = this;
+  child->loc = place;
+  children.push_back(child);
+  return child;
+}
+
+std::string_view Node::tag() const {
+  return parent == nullptr ? element->name : MjcfSchema::tag(*element, *parent->element);
+}
+
+Error Node::refused(Error error) const {
+  error.message = fmt::format("<{}> {}", tag(), error.message);
+  error.loc = loc;
+  return error;
+}
+
+Result<const MjcfAttribute*> attribute_of(const MjcfElement& element, std::string_view name,
+                                          const SourceLoc& loc) {
+  if (const MjcfAttribute* attribute = element.find(name)) return attribute;
+  std::vector<std::string> names;
+  for (const MjcfAttribute& attribute : element.attributes) names.emplace_back(attribute.name);
+  Error error{ErrorKind::kInput, fmt::format("<{}> has no attribute '{:.60}'", element.name, name),
+              loc};
+  const std::string near = nearest_name(name, names);
+  error.hint = !near.empty()   ? fmt::format("did you mean '{}'?", near)
+               : names.empty() ? "it has none"
+                               : fmt::format("it has {}", fmt::join(names, ", "));
   return error;
 }
 

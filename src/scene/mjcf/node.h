@@ -18,23 +18,23 @@ struct Node : std::enable_shared_from_this<Node> {
   std::vector<std::shared_ptr<Node>> children = {};
   std::string comment = {};       // that stands before it
   std::string last_comment = {};  // that stands behind its children
-  std::string content = {};       // CDATA, which <custom><text> reads
+  std::string content = {};       // CDATA of a <text>
   SourceLoc loc = {};
 
   const std::string* value_of(const MjcfAttribute& attribute) const;
   void set(const MjcfAttribute& attribute, std::string_view value);
-  /// Null if it may not stand here.
-  std::shared_ptr<Node> add(std::string_view tag);
+  /// An element below. Errors: it may not stand here, or not twice; with `place`.
+  Result<std::shared_ptr<Node>> add(std::string_view tag, const SourceLoc& place);
   std::string_view tag() const;
+  /// The error of one of its attributes, with the element's tag and place.
+  Error refused(Error error) const;
 };
 
-inline constexpr int kDeepestNode = 200;  // as deep as a model may be nested
+inline constexpr std::string_view kTextPath = "mujoco/custom/text";
 
 /// The attribute, or an Error that names the nearest.
 Result<const MjcfAttribute*> attribute_of(const MjcfElement& element, std::string_view name,
                                           const SourceLoc& loc);
-/// The Error of a tag that may not stand in `above`.
-Error wrong_tag(const MjcfElement& above, std::string_view tag, const SourceLoc& loc);
 
 /// A number so that it is read back bit by bit, in as few digits as that takes.
 std::string number_text(double value);

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 
 #include "base/check.h"
 #include "base/text.h"
@@ -34,14 +33,6 @@ constexpr ElementRow kElements[] = {
 };
 #undef GLOAM_ELEMENT
 #undef GLOAM_ATTRIBUTE
-
-template <class T>
-bool reads_as(std::string_view word) {
-  if (word.starts_with('+')) word.remove_prefix(1);
-  T value{};
-  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
-  return code == std::errc() && end == word.data() + word.size();
-}
 
 }  // namespace
 
@@ -137,7 +128,7 @@ Status check_mjcf_value(const MjcfAttribute& attribute, std::string_view text) {
     }
   } else {
     for (const std::string_view word : words) {
-      if (attribute.type == kInt ? !reads_as<int>(word) : !reads_as<double>(word))
+      if (attribute.type == kInt ? !read_number<int>(word) : !read_number<double>(word))
         return complain(fmt::format("has '{:.30}', which is no {}number", word,
                                     attribute.type == kInt ? "whole " : ""));
     }

@@ -3,7 +3,9 @@
 // with type, length, keywords, default, unit and text. generate_schema.py makes the table when
 // Gloam is built, out of MuJoCo's own library and manual.
 
+#include <charconv>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -67,6 +69,16 @@ class MjcfSchema {
 
 /// The words of a list, without the blanks between; views of `text`.
 std::vector<std::string_view> split_words(std::string_view text);
+
+/// A whole word as a number; nothing if it is none, or too large.
+template <class T>
+std::optional<T> read_number(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  T value{};
+  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+  return code == std::errc() && end == word.data() + word.size() ? std::optional<T>(value)
+                                                                 : std::nullopt;
+}
 
 /// Is `text` what the attribute takes? Errors say what it takes and name the nearest keyword.
 Status check_mjcf_value(const MjcfAttribute& attribute, std::string_view text);

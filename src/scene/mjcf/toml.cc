@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 #include "base/text.h"
 #include "scene/mjcf/node.h"
 #include "scene/toml/table_reader.h"
+#include "scene/xml_text.h"
 
 namespace gloam::mjcf {
 namespace {
@@ -51,9 +51,9 @@ class Reader {
   explicit Reader(const std::string& file) : file_(file) {}
 
   Status read(const toml::table& from, Node* to, int depth) const {
-    if (depth > kDeepestNode)
+    if (depth > kDeepestXml)
       return Error{ErrorKind::kInput,
-                   fmt::format("tables are nested more than {} deep", kDeepestNode), to->loc};
+                   fmt::format("tables are nested more than {} deep", kDeepestXml), to->loc};
     std::vector<Below> below;
     std::vector<std::pair<std::string, const toml::node*>> values;
     for (const auto& [key, node] : from) {
@@ -82,9 +82,7 @@ class Reader {
     std::ranges::stable_sort(below, {}, [&](const Below& item) { return place(item.table); });
     for (const auto& [key, node] : values) GLOAM_TRY_STATUS(read_value(key, *node, to));
     for (const auto& [tag, table] : below) {
-      const std::shared_ptr<Node> child = to->add(tag);
-      if (child == nullptr) return wrong_tag(*to->element, tag, loc_of(*table, file_));
-      child->loc = loc_of(*table, file_);
+      GLOAM_TRY(const std::shared_ptr<Node> child, to->add(tag, loc_of(*table, file_)));
       GLOAM_TRY_STATUS(read(*table, child.get(), depth + 1));
     }
     return {};
@@ -93,7 +91,7 @@ class Reader {
  private:
   Status read_value(const std::string& key, const toml::node& node, Node* to) const {
     const SourceLoc loc = loc_of(node, file_);
-    if (to->element->path == "mujoco/custom/text" && key == "content") {
+    if (to->element->path == kTextPath && key == "content") {
       to->content = text_of(node).value_or("");
       return {};
     }
@@ -104,7 +102,7 @@ class Reader {
                    loc};
     const std::string value = keyword_of(*attribute, node, *text);
     if (Status status = check_mjcf_value(*attribute, value); !status.ok()) {
-      Error error = std::move(status).error();
+      Error error = to->refused(status.error());
       error.loc = loc;
       return error;
     }
@@ -117,9 +115,9 @@ class Reader {
 
 std::string quoted(const std::string& text) {
   std::string out = "\"";
-  for (const char c : text) {
+  for (const char c : as_utf8(text)) {
     if (c == '"' || c == '\\') out += '\\';
-    if (static_cast<unsigned char>(c) < 0x20) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
       out += fmt::format("\\u{:04x}", static_cast<int>(c));
     } else {
       out += c;
@@ -128,18 +126,10 @@ std::string quoted(const std::string& text) {
   return out + '"';
 }
 
-// Numbers as TOML writes them: 1e5 and .5 are 1e5 and 0.5, nan and inf keep their names.
-std::string toml_number(std::string word, bool is_real) {
-  if (word.starts_with('+')) word.erase(0, 1);
-  const size_t start = word.starts_with('-') ? 1 : 0;
-  if (word.size() > start && word[start] == '.') word.insert(start, "0");
-  const size_t point = word.find('.');
-  if (point != std::string::npos && (point + 1 == word.size() || !std::isdigit(word[point + 1])))
-    word.insert(point + 1, "0");
-  while (word.size() > start + 1 && word[start] == '0' && std::isdigit(word[start + 1]))
-    word.erase(start, 1);
-  const bool has_mark = word.find_first_of(".eEn") != std::string::npos;
-  return is_real && !has_mark ? word + ".0" : word;
+std::string toml_number(std::string_view word, MjcfType type) {
+  if (type == MjcfType::kInt) return std::to_string(read_number<int>(word).value_or(0));
+  const std::string text = number_text(read_number<double>(word).value_or(0));
+  return text.find_first_of(".eni") == std::string::npos ? text + ".0" : text;
 }
 
 std::string toml_value(const MjcfAttribute& attribute, const std::string& value) {
@@ -149,14 +139,10 @@ std::string toml_value(const MjcfAttribute& attribute, const std::string& value)
     return quoted(value);
   }
   std::string list;
-  size_t count = 0;
-  for (size_t at = value.find_first_not_of(" \t\r\n"); at != std::string::npos; ++count) {
-    const size_t end = std::min(value.find_first_of(" \t\r\n", at), value.size());
-    list += (count == 0 ? "" : ", ") +
-            toml_number(value.substr(at, end - at), attribute.type == MjcfType::kReal);
-    at = value.find_first_not_of(" \t\r\n", end);
-  }
-  return count == 1 && attribute.least <= 1 ? list : fmt::format("[{}]", list);
+  const std::vector<std::string_view> words = split_words(value);
+  for (const std::string_view word : words)
+    list += (list.empty() ? "" : ", ") + toml_number(word, attribute.type);
+  return words.size() == 1 && attribute.least <= 1 ? list : fmt::format("[{}]", list);
 }
 
 void write_comment(const std::string& comment, std::string* out) {
@@ -164,7 +150,9 @@ void write_comment(const std::string& comment, std::string* out) {
   size_t begin = 0;
   while (begin <= comment.size()) {
     const size_t end = std::min(comment.find('\n', begin), comment.size());
-    *out += fmt::format("#{}\n", comment.substr(begin, end - begin));
+    std::string line = as_utf8(comment.substr(begin, end - begin));
+    std::erase_if(line, [](char c) { return (c >= 0 && c < 0x20 && c != '\t') || c == 0x7f; });
+    *out += fmt::format("#{}\n", line);
     begin = end + 1;
   }
 }
@@ -177,11 +165,11 @@ void write(const Node& node, const std::string& path, bool is_list, std::string*
     *out += fmt::format("{} = {}\n", attribute->name, toml_value(*attribute, value));
   if (!node.content.empty()) *out += fmt::format("content = {}\n", quoted(node.content));
   for (const std::shared_ptr<Node>& child : node.children) {
-    const bool may_repeat = child->element->times == '*' || child->element->times == 'R';
     const bool is_alone = std::ranges::count(node.children, child->tag(),
                                              [](const auto& other) { return other->tag(); }) == 1;
-    const bool is_section =
-        child->element->parent != nullptr && child->element->parent->parent == nullptr && is_alone;
+    // <asset>, <option> … may stand twice and hardly ever do.
+    const bool is_section = node.parent == nullptr && is_alone;
+    const bool may_repeat = child->element->times == '*' || child->element->times == 'R';
     write(*child, fmt::format("{}.{}", path, child->tag()), may_repeat && !is_section, out);
   }
   write_comment(node.last_comment, out);

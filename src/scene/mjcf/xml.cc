@@ -2,54 +2,41 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <pugixml.hpp>
-
-#include "base/text.h"
 #include "scene/mjcf/node.h"
+#include "scene/xml_text.h"
 
 namespace gloam::mjcf {
 namespace {
 
 class Reader {
  public:
-  Reader(std::string_view text, const std::string& file) : file_(file) {
-    for (size_t i = text.find('\n'); i != std::string_view::npos; i = text.find('\n', i + 1))
-      line_ends_.push_back(static_cast<ptrdiff_t>(i));
-  }
+  Reader(std::string_view text, const std::string& file) : file_(file), lines_(text) {}
 
-  SourceLoc loc(ptrdiff_t offset) const {
-    const auto end = std::ranges::lower_bound(line_ends_, offset);
-    return {file_, static_cast<int>(end - line_ends_.begin()) + 1, 0};
+  SourceLoc loc(const pugi::xml_node& node) const {
+    return {file_, lines_.at(node.offset_debug()), 0};
   }
 
   Status read(const pugi::xml_node& from, Node* to, int depth) const {
-    to->loc = loc(from.offset_debug());
-    if (depth > kDeepestNode)
+    if (depth > kDeepestXml)
       return Error{ErrorKind::kInput,
-                   fmt::format("elements are nested more than {} deep", kDeepestNode), to->loc};
+                   fmt::format("elements are nested more than {} deep", kDeepestXml), to->loc};
     for (const pugi::xml_attribute& attribute : from.attributes()) {
       if (std::string_view(attribute.name()).starts_with("xmlns") ||
           std::string_view(attribute.name()).starts_with("xsi:"))
         continue;  // where an editor finds MJCF's schema
       GLOAM_TRY(const MjcfAttribute* known, attribute_of(*to->element, attribute.name(), to->loc));
-      if (Status status = check_mjcf_value(*known, attribute.value()); !status.ok()) {
-        Error error = std::move(status).error();
-        error.message = fmt::format("<{}> {}", from.name(), error.message);
-        error.loc = to->loc;
-        return error;
-      }
+      if (Status status = check_mjcf_value(*known, attribute.value()); !status.ok())
+        return to->refused(status.error());
       to->set(*known, attribute.value());
     }
     std::string comment;
     for (const pugi::xml_node& node : from.children()) {
       if (node.type() == pugi::node_comment) {
         comment += (comment.empty() ? "" : "\n") + std::string(node.value());
-      } else if (node.type() == pugi::node_cdata) {
+      } else if (node.type() == pugi::node_cdata && to->element->path == kTextPath) {
         to->content += node.value();
       } else if (node.type() == pugi::node_element) {
-        const std::shared_ptr<Node> child = to->add(node.name());
-        if (child == nullptr) return wrong_tag(*to->element, node.name(), loc(node.offset_debug()));
+        GLOAM_TRY(const std::shared_ptr<Node> child, to->add(node.name(), loc(node)));
         child->comment = std::exchange(comment, {});
         GLOAM_TRY_STATUS(read(node, child.get(), depth + 1));
       }
@@ -60,7 +47,7 @@ class Reader {
 
  private:
   std::string file_;
-  std::vector<ptrdiff_t> line_ends_;
+  XmlLines lines_;
 };
 
 void write(const Node& from, pugi::xml_node above) {
@@ -85,21 +72,15 @@ struct StringWriter : pugi::xml_writer {
 
 Status read_xml(std::string_view text, const std::string& file, Node* root) {
   pugi::xml_document document;
-  const pugi::xml_parse_result parsed = document.load_buffer(
-      text.data(), text.size(), pugi::parse_default | pugi::parse_comments, pugi::encoding_utf8);
+  GLOAM_TRY_STATUS(parse_xml(text, file, pugi::parse_default | pugi::parse_comments, &document));
   const Reader reader(text, file);
-  if (!parsed) {
-    std::string what = parsed.description();
-    if (!what.empty()) what[0] = static_cast<char>(std::tolower(what[0]));
-    return Error{ErrorKind::kInput, fmt::format("is not well-formed XML: {}", what),
-                 reader.loc(parsed.offset)};
-  }
   const pugi::xml_node top = document.document_element();
   if (root->element->name != top.name())
     return Error{ErrorKind::kInput,
                  fmt::format("the top element is <{:.40}>, and MJCF's is <{}>", top.name(),
                              root->element->name),
-                 reader.loc(top.offset_debug())};
+                 reader.loc(top)};
+  root->loc = reader.loc(top);
   return reader.read(top, root, 1);
 }
 

@@ -212,6 +212,8 @@ TEST(MjcfDocument, ErrorsNameLineAndWhatWasMeant) {
             "[m]");
   EXPECT_EQ(wrong("<motor/>"),
             "m.xml:3: <motor> may not stand in <body> (it stands in <actuator>, <default>)");
+  EXPECT_EQ(wrong("<body><inertial/><inertial/></body>"),
+            "m.xml:3: <inertial> stands twice in <body>");
   EXPECT_EQ(Document::from_xml("<robot/>", "r.urdf").error().to_string(),
             "r.urdf:1: the top element is <robot>, and MJCF's is <mujoco>");
   EXPECT_EQ(Document::from_toml("[mujoco]\n[[mujoco.worldbody.geom]]\nszie = 1\n", "m.toml")

@@ -1,0 +1,30 @@
+#pragma once
+// XML as pugixml reads it, with the lines of its elements.
+
+#include <cstddef>
+#include <pugixml.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gloam/result.h"
+
+namespace gloam {
+
+inline constexpr int kDeepestXml = 200;  ///< elements in each other, in files of strangers
+
+/// Which line an offset into a text is in.
+class XmlLines {
+ public:
+  explicit XmlLines(std::string_view text);
+  int at(ptrdiff_t offset) const;  ///< from 1
+
+ private:
+  std::vector<ptrdiff_t> ends_;
+};
+
+/// `options` are pugixml's parse_… flags. Errors: empty, not well-formed, with `file` and line.
+Status parse_xml(std::string_view text, const std::string& file, unsigned options,
+                 pugi::xml_document* document);
+
+}  // namespace gloam
