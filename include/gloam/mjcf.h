@@ -5,6 +5,7 @@
 // holds is what MuJoCo's parser reads; MuJoCo's manual says what it means.
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -117,14 +118,42 @@ class Document {
 
   /// Does every element have what the parser requires? Errors: the first that does not.
   Status check() const;
+  /// Without what MJCF has no attribute for ("not of MJCF" in gloam/mjcf_elements.h).
   std::string to_xml() const;
   std::string to_toml() const;
-  /// As .xml or .toml, by the name; replaces the file at once or not at all.
+  /// As .xml or .toml, by the name; replaces the file at once or not at all. Errors: those of
+  /// check(); something that only .toml can hold.
   Status save(const std::filesystem::path& file) const;
 
  private:
   explicit Document(Element root) : root_(std::move(root)) {}
   Element root_;
 };
+
+/// What this MuJoCo has, and by what it is given here: `gloam info --schema`.
+struct SchemaCoverage {
+  struct Attribute {
+    std::string name;           ///< "mujoco/body/joint/damping"
+    bool is_mirrored = false;   ///< the parser takes a value of it
+    bool is_spec_only = false;  ///< MJCF lacks it: of mjSpec, for models in TOML
+    std::string complaint;      ///< of the parser, where it takes none
+    /// That it sets: names of Fields, "mjsGeom.name" for the name of an element, "mjsGeom" where
+    /// there are more or fewer of them. Empty: it tells the parser something.
+    std::vector<std::string> fields;
+  };
+  struct Field {
+    std::string name;                     ///< "mjsJoint.damping"
+    std::vector<std::string> attributes;  ///< that set it
+    std::string follows_from;             ///< where none does and none can
+    bool is_mirrored() const { return !attributes.empty() || !follows_from.empty(); }
+  };
+  int elements = 0;
+  std::vector<Attribute> attributes;  ///< of the grammar, then those that are spec-only
+  std::vector<Field> fields;          ///< of mjSpec and all that is in it
+};
+
+/// Asks MuJoCo's parser about every attribute, which takes seconds. `progress` is told the share
+/// that is done, from any thread, and returns false to stop.
+SchemaCoverage find_schema_coverage(const std::function<bool(double)>& progress = {});
 
 }  // namespace gloam::mjcf

@@ -5,6 +5,7 @@
 #include "base/files.h"
 #include "base/text.h"
 #include "scene/mjcf/node.h"
+#include "scene/mjcf/spec_only.h"
 
 namespace gloam::mjcf {
 namespace fs = std::filesystem;
@@ -86,6 +87,7 @@ std::string Document::to_toml() const { return write_toml(*root_.node_); }
 
 Status Document::save(const fs::path& file) const {
   GLOAM_TRY_STATUS(check());
+  if (!is_toml(file)) GLOAM_TRY_STATUS(check_fits_xml(root_));
   return write_text_file_atomic(file, is_toml(file) ? to_toml() : to_xml());
 }
 

@@ -15,14 +15,9 @@ const MjcfAttribute& known(const Node& node, std::string_view attribute) {
   return *found;
 }
 
-// Words that cannot be read are left out: set() and the readers let none in.
 template <class T>
 std::vector<T> numbers(const std::optional<std::string>& text) {
-  std::vector<T> list;
-  for (const std::string_view word : split_words(text ? std::string_view(*text) : "")) {
-    if (const std::optional<T> value = read_number<T>(word)) list.push_back(*value);
-  }
-  return list;
+  return read_numbers<T>(text.value_or("")).value_or(std::vector<T>());
 }
 
 }  // namespace

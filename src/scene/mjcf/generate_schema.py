@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """Makes mjcf_schema_table.inc, every element and attribute of MJCF as the MuJoCo at hand has them, and a C++ class for each.
 
-  generate_schema.py --library libmujoco.so --doc MUJOCO/doc --table mjcf_schema_table.inc --header mjcf_elements.h
+  generate_schema.py --library libmujoco.so --spec mujoco/mjspec.h --doc MUJOCO/doc --table mjcf_schema_table.inc --header mjcf_elements.h
 
 The grammar (elements, attributes, how often each may stand) is the library's own, printed by mj_printSchema, and so
 are types and lengths: every attribute is given words and numbers, and the parser says what it takes. Keywords,
 defaults and texts are read out of the manual's XMLreference.rst, units out of XMLunits.rst. Without the manual (a
-MuJoCo of the system's) the table lacks these.
+MuJoCo of the system's) the table lacks these. What mjSpec has and MJCF has not is added, out of mjspec.h.
 """
 
 import argparse
@@ -17,7 +17,7 @@ import re
 import sys
 from pathlib import Path
 
-from parser_probe import ask_parser
+from parser_probe import UNBOUNDED, ask_parser
 from properties import elements_header
 
 INDENT = 3  # columns per level of what mj_printSchema prints
@@ -29,6 +29,35 @@ META_ELEMENTS = [
     ("mujoco/body/replicate", "R", "count sep offset euler"),
     ("mujoco/include", "*", "file"),
 ]
+
+# Of mjSpec's fields that no attribute of MJCF sets, those that are a user's to set: the element that has them here.
+SPEC_ONLY = {
+    "mujoco/size": ("mjSpec", ["nemax"]),
+    "mujoco/asset/mesh": ("mjsMesh", ["needsdf", "octree_maxdepth", "userfacenormal", "userfacetexcoord", "usernode", "usertet"]),
+    "mujoco/asset/texture": ("mjsTexture", ["data"]),
+    "mujoco/deformable/flex/elasticity": ("mjsFlex", ["elastic3d"]),
+}
+SPEC_TYPES = {  # type, least, most, keywords
+    "mjtBool": ("kKeyword", 1, 1, ["false", "true"]),
+    "int": ("kInt", 1, 1, []),
+    "mjIntVec*": ("kInt", 0, UNBOUNDED, []),
+    "mjByteVec*": ("kInt", 0, UNBOUNDED, []),
+    "mjDoubleVec*": ("kReal", 0, UNBOUNDED, []),
+}
+
+
+def spec_attributes(path, header):
+    """Attributes out of mjspec.h, with its comments."""
+    owner, names = SPEC_ONLY.get(path, ("", []))
+    struct = re.search(rf"typedef struct {owner}_ \{{(.*?)\n\}} {owner};", header, re.S) if owner else None
+    for name in names:
+        field = re.search(rf"^ +(\S+) +{name}; *// (.*)$", struct[1], re.M) if struct else None
+        if field is None:
+            sys.exit(f"mjspec.h has no {owner}.{name}: SPEC_ONLY names it")
+        kind, least, most, words = SPEC_TYPES[field[1]]
+        yield {"name": name, "type": kind, "least": least, "most": most, "keywords": words, "required": False, "default": "",
+               "unit": "", "doc": field[2], "owner": owner}
+
 
 def print_schema(library):
     size = 1 << 20
@@ -196,12 +225,13 @@ def table_rows(elements):
         yield f"GLOAM_ELEMENT({quote(element['path'])}, '{element['times']}', {len(element['attributes'])})\n"
         for a in element["attributes"]:
             yield (f"GLOAM_ATTRIBUTE({quote(a['name'])}, {a['type']}, {a['least']}, {a['most']}, {quote(' '.join(a['keywords']))}, "
-                   f"{str(a['required']).lower()}, {quote(a['default'])}, {quote(a['unit'])}, {quote(a['doc'])})\n")
+                   f"{str(a['required']).lower()}, {quote(a['default'])}, {quote(a['unit'])}, {quote(a['doc'])}, {quote(a['owner'])})\n")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--library", type=Path, required=True)
+    parser.add_argument("--spec", type=Path, required=True)
     parser.add_argument("--doc", type=Path, required=True)
     parser.add_argument("--table", type=Path, required=True)
     parser.add_argument("--header", type=Path, required=True)
@@ -210,6 +240,7 @@ def main():
     pages = {name: page.read_text(encoding="utf-8") if page.exists() else "" for name, page in pages.items()}
     reference = {**read_reference(pages["modeling.rst"]), **read_reference(pages["XMLreference.rst"])}
     units = read_units(pages["XMLunits.rst"])
+    spec = options.spec.read_text(encoding="utf-8")
     grammar = read_grammar(print_schema(options.library))
     taken = ask_parser(options.library, grammar, lambda path, name: keywords(describe(path, name, reference)))
     elements = []
@@ -220,7 +251,8 @@ def main():
             default = about["default"] or ""
             attributes.append({"name": name, **taken[path]["attributes"][name], "required": name in taken[path]["required"],
                                "default": default.split('"')[1] if default.startswith('"') else "",
-                               "unit": unit(path, name, units), "doc": about["doc"]})
+                               "unit": unit(path, name, units), "doc": about["doc"], "owner": ""})
+        attributes += spec_attributes(path, spec)
         elements.append({"path": path, "times": times, "attributes": attributes})
     options.table.write_text("".join(table_rows(elements)), encoding="utf-8")
     options.header.write_text(elements_header(elements), encoding="utf-8")

@@ -105,6 +105,8 @@ def comment(attribute):
         notes.append("required")
     if attribute["default"]:
         notes.append(f"default {attribute['default']}")
+    if attribute["owner"]:
+        notes.append(f"not of MJCF, of {attribute['owner']}: models in TOML only")
     text = ", ".join(notes)
     text = (text + ". " if text else "") + attribute["doc"]
     return "".join(f"  /// {line}\n" for line in textwrap.wrap(text, 96))

@@ -57,7 +57,9 @@ const MjcfSchema& MjcfSchema::get() {
   return schema;
 }
 
-MjcfSchema::MjcfSchema() : attribute_count_(static_cast<int>(std::size(kAttributes))) {
+MjcfSchema::MjcfSchema() {
+  attribute_count_ = static_cast<int>(
+      std::ranges::count(kAttributes, false, [](const auto& a) { return a.is_spec_only(); }));
   elements_.reserve(std::size(kElements));
   const MjcfAttribute* next = kAttributes;
   for (const ElementRow& row : kElements) {

@@ -28,6 +28,11 @@ struct MjcfAttribute {
   std::string_view otherwise;  ///< what holds where it is not given; "" = none, or it depends
   std::string_view unit;       ///< "kg m^2"; "m|rad": which of them, the joint or tendon says
   std::string_view text;       ///< of the manual
+  /// MJCF lacks it: the field of this name in one of mjSpec's structs, "mjsMesh". Only models in
+  /// TOML can give it.
+  std::string_view spec_owner;
+
+  bool is_spec_only() const { return !spec_owner.empty(); }
 };
 
 struct MjcfElement {
@@ -56,6 +61,7 @@ class MjcfSchema {
   /// Tags that may stand in it.
   std::vector<std::string> tags_in(const MjcfElement& above) const;
 
+  /// MJCF's own, without what is spec-only.
   int attribute_count() const { return attribute_count_; }
 
  private:
@@ -78,6 +84,18 @@ std::optional<T> read_number(std::string_view word) {
   const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
   return code == std::errc() && end == word.data() + word.size() ? std::optional<T>(value)
                                                                  : std::nullopt;
+}
+
+/// All words of a list as numbers; nothing if one is none.
+template <class T>
+std::optional<std::vector<T>> read_numbers(std::string_view text) {
+  std::vector<T> list;
+  for (const std::string_view word : split_words(text)) {
+    const std::optional<T> value = read_number<T>(word);
+    if (!value) return {};
+    list.push_back(*value);
+  }
+  return list;
 }
 
 /// Is `text` what the attribute takes? Errors say what it takes and name the nearest keyword.

@@ -1,15 +1,11 @@
 #include "scene/mjcf/spec_fields.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <mujoco/mjspecmacro.h>
 #include <mujoco/mjxmacro.h>
 
-#include <algorithm>
-#include <cstring>
+#include <map>
 #include <type_traits>
-
-#include "scene/mjcf/node.h"
 
 namespace gloam {
 namespace {
@@ -107,52 +103,6 @@ std::vector<SpecField> all_fields() {
   return fields;
 }
 
-const void* at(const SpecObject& object, const SpecField& field) {
-  return static_cast<const char*>(object.address) + field.offset;
-}
-
-template <class T>
-std::string numbers(const void* first, int count) {
-  const auto* values = static_cast<const T*>(first);
-  std::string text;
-  for (int i = 0; i < count; ++i) {
-    if (i > 0) text += ' ';
-    if constexpr (std::is_floating_point_v<T>) {
-      text += mjcf::number_text(values[i]);
-    } else {
-      text += std::to_string(values[i]);
-    }
-  }
-  return text;
-}
-
-template <class T>
-std::string list(const std::vector<T>& values) {
-  return "[" + numbers<T>(values.data(), static_cast<int>(values.size())) + "]";
-}
-
-template <class T>
-std::string lists(const std::vector<std::vector<T>>& values) {
-  std::string text = "[";
-  for (const std::vector<T>& inner : values) text += list(inner);
-  return text + "]";
-}
-
-// A vector that MuJoCo keeps: begin, end and capacity in every standard library.
-template <class T>
-const T& vector_at(const void* field) {
-  return **static_cast<T* const*>(field);
-}
-
-std::string strings(const mjStringVec* values) {
-  std::string text = "[";
-  for (int i = 0;; ++i) {
-    const char* value = mjs_getInStringVec(values, i);
-    if (value == nullptr) return text + "]";
-    text += fmt::format("'{}'", value);
-  }
-}
-
 void add(std::string_view owner, const std::string& label, const void* address,
          std::vector<SpecObject>* objects) {
   objects->push_back({owner, label, address, ""});
@@ -209,11 +159,17 @@ std::span<const SpecField> spec_fields() {
 }
 
 std::span<const SpecField> spec_fields_of(std::string_view owner) {
-  const std::span<const SpecField> all = spec_fields();
-  const auto first = std::ranges::find(all, owner, &SpecField::owner);
-  const auto last =
-      std::find_if(first, all.end(), [&](const SpecField& field) { return field.owner != owner; });
-  return {first, last};
+  static const auto by_owner = [] {
+    std::map<std::string_view, std::span<const SpecField>> rows;
+    const std::span<const SpecField> all = spec_fields();
+    for (size_t i = 0; i < all.size(); ++i) {
+      auto& row = rows.try_emplace(all[i].owner, all.subspan(i, 0)).first->second;
+      row = {row.data(), row.size() + 1};
+    }
+    return rows;
+  }();
+  const auto found = by_owner.find(owner);
+  return found == by_owner.end() ? std::span<const SpecField>() : found->second;
 }
 
 std::vector<SpecObject> spec_objects(const mjSpec* spec) {
@@ -255,100 +211,6 @@ std::vector<SpecObject> spec_objects_of(mjsElement* element) {
       add(kind.owner, std::string(kind.owner), kind.as(element), &objects);
   }
   return objects;
-}
-
-std::string spec_text(const SpecObject& object, const SpecField& field) {
-  const void* value = at(object, field);
-  // Defaults lack some of their texts.
-  if (field.type >= SpecType::kString && *static_cast<void* const*>(value) == nullptr) return "";
-  switch (field.type) {
-    case SpecType::kBool:
-      return numbers<mjtBool>(value, field.count);
-    case SpecType::kByte:
-      return numbers<mjtByte>(value, field.count);
-    case SpecType::kChar:
-      return {static_cast<const char*>(value),
-              strnlen(static_cast<const char*>(value), static_cast<size_t>(field.count))};
-    case SpecType::kInt:
-      return numbers<int>(value, field.count);
-    case SpecType::kSize:
-      return numbers<mjtSize>(value, field.count);
-    case SpecType::kUint64:
-      return numbers<uint64_t>(value, field.count);
-    case SpecType::kFloat:
-      return numbers<float>(value, field.count);
-    case SpecType::kDouble:
-      return numbers<double>(value, field.count);
-    case SpecType::kString:
-      return fmt::format("'{}'", mjs_getString(*static_cast<mjString* const*>(value)));
-    case SpecType::kStrings:
-      return strings(*static_cast<mjStringVec* const*>(value));
-    case SpecType::kInts:
-      return list(vector_at<mjIntVec>(value));
-    case SpecType::kFloats:
-      return list(vector_at<mjFloatVec>(value));
-    case SpecType::kDoubles:
-      return list(vector_at<mjDoubleVec>(value));
-    case SpecType::kBytes: {
-      const mjByteVec& bytes = vector_at<mjByteVec>(value);
-      return "[" + numbers<uint8_t>(bytes.data(), static_cast<int>(bytes.size())) + "]";
-    }
-    case SpecType::kIntLists:
-      return lists(vector_at<mjIntVecVec>(value));
-    case SpecType::kFloatLists:
-      return lists(vector_at<mjFloatVecVec>(value));
-    case SpecType::kStruct:
-    case SpecType::kHandle:
-      return "";
-  }
-  return "";
-}
-
-bool spec_equal(const SpecObject& a, const SpecObject& b, const SpecField& field) {
-  if (field.type < SpecType::kString)
-    return std::memcmp(at(a, field), at(b, field),
-                       spec_size(field.type) * static_cast<size_t>(field.count)) == 0;
-  if (field.type == SpecType::kStruct || field.type == SpecType::kHandle) return true;
-  return spec_text(a, field) == spec_text(b, field);
-}
-
-size_t spec_size(SpecType type) {
-  switch (type) {
-    case SpecType::kBool:
-    case SpecType::kByte:
-    case SpecType::kChar:
-      return 1;
-    case SpecType::kInt:
-    case SpecType::kFloat:
-      return 4;
-    default:
-      return 8;
-  }
-}
-
-std::vector<std::string> spec_difference(const mjSpec* a, const mjSpec* b) {
-  const std::vector<SpecObject> in_a = spec_objects(a), in_b = spec_objects(b);
-  std::vector<std::string> found;
-  size_t i = 0, k = 0;
-  while (i < in_a.size() || k < in_b.size()) {
-    if (k == in_b.size() ||
-        (i < in_a.size() && in_a[i].label != in_b[k].label &&
-         std::ranges::find(in_b, in_a[i].label, &SpecObject::label) == in_b.end())) {
-      found.push_back(in_a[i++].label);
-      continue;
-    }
-    if (i == in_a.size() || in_a[i].label != in_b[k].label) {
-      found.push_back(in_b[k++].label);
-      continue;
-    }
-    if (in_a[i].name != in_b[k].name) found.push_back(in_a[i].label + ".name");
-    for (const SpecField& field : spec_fields_of(in_a[i].owner)) {
-      if (!spec_equal(in_a[i], in_b[k], field))
-        found.push_back(fmt::format("{}.{}", in_a[i].label, field.name));
-    }
-    ++i, ++k;
-  }
-  return found;
 }
 
 }  // namespace gloam

@@ -61,16 +61,4 @@ std::vector<SpecObject> spec_objects(const mjSpec* spec);
 /// One element and what it holds by value.
 std::vector<SpecObject> spec_objects_of(mjsElement* element);
 
-/// A field as text: numbers with all their digits, texts in quotes, lists in brackets. Handles are
-/// "".
-std::string spec_text(const SpecObject& object, const SpecField& field);
-
-/// Do they hold the same, bit by bit? Handles always do.
-bool spec_equal(const SpecObject& a, const SpecObject& b, const SpecField& field);
-
-size_t spec_size(SpecType type);  ///< of one number [bytes]
-
-/// Where the two specs hold different values: "mjsGeom[2].size". Names count as a field `name`.
-std::vector<std::string> spec_difference(const mjSpec* a, const mjSpec* b);
-
 }  // namespace gloam

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/check.h"
+#include "scene/mjcf/spec_values.h"
 #include "scene/mjcf/specimen.h"
 
 namespace gloam {
@@ -34,7 +35,9 @@ std::vector<SpecObject> objects_of(const mjSpec* spec, mjsElement* element) {
 // One attribute's documents: the value asked for, if any, and as many others as the parser takes.
 struct Readings {
   std::vector<OwnedSpec> specs;
-  Status refused = {};  // why the value asked for was not taken
+  int taken = 0;          // of the values that were tried
+  Status complaint = {};  // about the last that was not taken
+  Status refused = {};    // why the value asked for was not taken
 };
 
 Readings read_values(const MjcfElement& element, const MjcfAttribute& attribute,
@@ -55,11 +58,20 @@ Readings read_values(const MjcfElement& element, const MjcfAttribute& attribute,
     readings.refused = read_with(*value);
     if (!readings.refused.ok()) return readings;
   }
+  if (const auto given = specimen.element.get(attribute.name); given.ok() && given->has_value())
+    readings.taken += read().ok() ? 1 : 0;
   if (!attribute.is_required) {
     (void)specimen.element.clear(attribute.name).ok();
     (void)read().ok();
   }
-  for (const std::string& text : mjcf::values_to_try(attribute)) (void)read_with(text).ok();
+  for (const std::string& text : mjcf::values_to_try(attribute)) {
+    Status status = read_with(text);
+    if (status.ok()) {
+      ++readings.taken;
+    } else {
+      readings.complaint = std::move(status);
+    }
+  }
   return readings;
 }
 
@@ -203,19 +215,18 @@ const MjcfElement* written_as(mjsElement* element) {
   return found == variants.end() ? nullptr : found->second;
 }
 
-std::vector<std::string> spec_places(const MjcfElement& element, const MjcfAttribute& attribute) {
+AttributeEffect find_effect(const MjcfElement& element, const MjcfAttribute& attribute) {
   const Readings readings = read_values(element, attribute, nullptr);
-  std::set<std::string> places;
+  std::set<std::string> fields;
   for (size_t i = 1; i < readings.specs.size(); ++i) {
-    for (std::string place : spec_difference(readings.specs[0].get(), readings.specs[i].get())) {
-      // "mjsGeom[2].alt.euler" is a field of mjsGeom.
-      for (size_t open = place.find('['); open != std::string::npos; open = place.find('['))
-        place.erase(open, place.find(']') - open + 1);
-      if (place.ends_with(".authored")) continue;  // says only that something was given
-      places.insert(place);
-    }
+    for (const SpecDifference& difference :
+         spec_difference(readings.specs[0].get(), readings.specs[i].get()))
+      fields.insert(difference.field);
   }
-  return {places.begin(), places.end()};
+  fields.erase("mjsCompiler.authored");  // says only that something was given
+  return {readings.taken > 0,
+          {fields.begin(), fields.end()},
+          readings.complaint.ok() ? "" : readings.complaint.error().message};
 }
 
 Status set_spec_attribute(mjSpec* spec, mjsElement* target, const MjcfElement& element,

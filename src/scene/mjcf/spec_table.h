@@ -13,9 +13,16 @@
 
 namespace gloam {
 
-/// Fields that the attribute sets, as "mjsJoint.damping", "mjSpec.option.timestep". Empty: it tells
-/// the parser something and leaves nothing behind (<include file>, <replicate count> …).
-std::vector<std::string> spec_places(const MjcfElement& element, const MjcfAttribute& attribute);
+/// What the parser makes of an attribute.
+struct AttributeEffect {
+  bool is_read = false;  ///< it takes one of the values that were tried
+  /// Fields that it sets, as "mjsJoint.damping", "mjOption.timestep", "mjsOrientation.euler";
+  /// "mjsGeom.name" for an element's name, "mjsWrap" for one more of them. Empty: it tells the
+  /// parser something and leaves nothing behind (<include file>, <replicate count> …).
+  std::vector<std::string> fields;
+  std::string complaint;  ///< of the parser, about the last value that it did not take
+};
+AttributeEffect find_effect(const MjcfElement& element, const MjcfAttribute& attribute);
 
 /// Sets an attribute of one element of `spec` as its file would; `target` is null for what a model
 /// has once: options, sizes, visuals. Errors: MuJoCo refuses the value, nothing could be set.

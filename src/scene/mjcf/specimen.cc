@@ -7,6 +7,7 @@
 #include <map>
 
 #include "base/check.h"
+#include "scene/mjcf/spec_only.h"
 #include "scene/mujoco_guard.h"
 #include "scene/mujoco_plugins.h"
 
@@ -19,11 +20,11 @@ constexpr const char* kSpecimenWorld = R"(<mujoco>
 <pair margin="0.25"/><equality solref="0.25 1"/><tendon margin="0.25"/><general group="4"/></default></default>
 <asset><texture name="t" builtin="flat" width="4" height="4" type="2d"/>
 <mesh name="me" vertex="0 0 0 1 0 0 0 1 0 0 0 1"/><material name="ma"/>
-<hfield name="hf" nrow="2" ncol="2" size="1 1 1 1"/></asset>
+<hfield name="hf" nrow="2" ncol="2" size="1 1 1 1"/><model name="mo" file="m.xml"/></asset>
 <worldbody><camera name="c"/><light name="li"/><geom name="floor" type="plane" size="1 1 1"/>
 <body name="b"><joint name="j" limited="true" range="0 1"/><geom name="g" size="1"/><site name="s"/></body>
 <body name="b2"><joint name="jb" type="ball"/><geom name="g2" size="1"/><site name="s2"/></body>
-</worldbody>
+<frame name="fr"><site/></frame></worldbody>
 <deformable><flex name="fx" dim="2" body="b" vertex="0 0 0 1 0 0 0 1 0" element="0 1 2"/></deformable>
 <tendon><fixed name="te"><joint joint="j" coef="1"/></fixed></tendon>
 <actuator><motor name="ac" joint="j"/></actuator></mujoco>)";
@@ -149,6 +150,17 @@ std::optional<std::string_view> instead_for(const MjcfElement& element,
     std::string_view section, attributes, values;
   };
   static constexpr Instead kInstead[] = {
+      {"mujoco/asset/mesh", "builtin", "name=x builtin=sphere params=1"},
+      {"mujoco/body/attach", "frame", "prefix=p frame=fr"},
+      {"mujoco/body/attach", "model", "prefix=p model=mo"},
+      {"mujoco/body/flexcomp", "mesh", "name=f type=mesh mesh=me dim=2 mass=1 radius=.01"},
+      {"mujoco/body/flexcomp", "point texcoord",
+       "name=f type=direct dim=1 mass=1 radius=.01 point=0,0,0,1,0,0 element=0,1"},
+      {"mujoco/actuator/dcmotor", "cranksite slidersite cranklength",
+       "motorconst=1,1 resistance=1 cranksite=s slidersite=s2 cranklength=1"},
+      {"mujoco/actuator/dcmotor", "refsite", "motorconst=1,1 resistance=1 site=s"},
+      {"mujoco/sensor/contact", "site", "site=s"},
+      {"mujoco/sensor/user", "objtype objname", "dim=1 objtype=body objname=b"},
       {"mujoco/actuator", "cranksite slidersite cranklength",
        "cranksite=s slidersite=s2 cranklength=1"},
       {"mujoco/actuator", "refsite", "site=s"},
@@ -157,6 +169,7 @@ std::optional<std::string_view> instead_for(const MjcfElement& element,
       {"mujoco/sensor", "subtree1", "subtree1=b"},
       {"mujoco/sensor", "subtree2", "subtree1=b subtree2=b2"},
       {"mujoco/sensor/rangefinder", "camera", "camera=c"},
+      {"mujoco/sensor/plugin", "objtype objname", "objtype=body objname=b"},
       {"mujoco/sensor", "refname reftype", "objtype=body objname=b reftype=body refname=b2"},
   };
   for (const Instead& row : kInstead) {
@@ -239,18 +252,11 @@ Specimen make_specimen(const MjcfElement& element, std::string_view attribute) {
   return {document, at, named};
 }
 
-std::vector<std::string> values_to_try(const MjcfAttribute& attribute) {
-  std::vector<std::string> values;
-  if (attribute.type == MjcfType::kKeyword) {
-    for (const std::string_view word : split_words(attribute.keywords)) values.emplace_back(word);
-    return values;
-  }
-  // Names of what is there, and what only some texts are: layers' roles, sizes of memory.
-  if (attribute.type == MjcfType::kString)
-    return {"b2", "j", "s2", "cl", "geom", "sphere", "rgb", "normal", "1M", "xyz"};
-  const int count = attribute.most == MjcfAttribute::kAnyLength ? 4 : attribute.most;
-  for (const double first : {0.75, 2.0, 1.0, 0.0, 3.0}) {
-    if (attribute.type == MjcfType::kInt && first == 0.75) continue;
+namespace {
+
+void append_numbers(MjcfType type, int count, std::vector<std::string>* values) {
+  for (const double first : {0.75, 2.0, 1.0, 0.0, 3.0, 8.0}) {
+    if (first == (type == MjcfType::kInt ? 0.75 : 8.0)) continue;
     std::string equal, rising, swinging;
     for (int i = 0; i < count; ++i) {
       const char* const space = i > 0 ? " " : "";
@@ -258,7 +264,26 @@ std::vector<std::string> values_to_try(const MjcfAttribute& attribute) {
       rising += fmt::format("{}{}", space, first + i);
       swinging += fmt::format("{}{}", space, i % 2 == 0 ? first : 0);
     }
-    for (const std::string& value : {rising, equal, swinging}) values.push_back(value);
+    for (const std::string& value : {rising, equal, swinging}) values->push_back(value);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> values_to_try(const MjcfAttribute& attribute) {
+  std::vector<std::string> values;
+  if (attribute.type == MjcfType::kKeyword) {
+    for (const std::string_view word : split_words(attribute.keywords)) values.emplace_back(word);
+    return values;
+  }
+  // Names of what is there, and what only some texts are: layers' roles, sizes, heights.
+  if (attribute.type == MjcfType::kString)
+    return {"b2",   "j",      "s2",  "cl",     "me", "mo",      "fr", "main",
+            "geom", "sphere", "rgb", "normal", "1M", "0 1 2 3", "xyz"};
+  if (attribute.most == MjcfAttribute::kAnyLength) {
+    for (const int length : {4, 12}) append_numbers(attribute.type, length, &values);
+  } else {
+    append_numbers(attribute.type, attribute.most, &values);
   }
   return values;
 }
@@ -269,13 +294,16 @@ Result<OwnedSpec> parse_document(const Document& document) {
   const std::string xml = document.to_xml();
   char message[1000] = "";
   mjSpec* spec = nullptr;
-  static const SpecimenFiles files;
+  static thread_local const SpecimenFiles files;
   const MujocoWarningCapture warnings;
   const Status status = guarded(
       [&] { spec = mj_parseXMLString(xml.c_str(), files.vfs(), message, sizeof(message)); });
   OwnedSpec owned(spec);
   if (!status.ok()) return status.error();
-  if (owned != nullptr) return owned;
+  if (owned != nullptr) {
+    GLOAM_TRY_STATUS(set_spec_only(document, owned.get()));
+    return owned;
+  }
   std::string why(message);
   why = why.substr(0, why.find('\n'));
   if (why.starts_with("XML Error: ")) why.erase(0, 11);

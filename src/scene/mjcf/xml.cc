@@ -25,6 +25,11 @@ class Reader {
           std::string_view(attribute.name()).starts_with("xsi:"))
         continue;  // where an editor finds MJCF's schema
       GLOAM_TRY(const MjcfAttribute* known, attribute_of(*to->element, attribute.name(), to->loc));
+      if (known->is_spec_only())
+        return to->refused({ErrorKind::kInput,
+                            fmt::format("has '{}', which MJCF has not", attribute.name()),
+                            {},
+                            "models in TOML have it"});
       if (Status status = check_mjcf_value(*known, attribute.value()); !status.ok())
         return to->refused(status.error());
       to->set(*known, attribute.value());
@@ -53,8 +58,10 @@ class Reader {
 void write(const Node& from, pugi::xml_node above) {
   if (!from.comment.empty()) above.append_child(pugi::node_comment).set_value(from.comment.c_str());
   pugi::xml_node to = above.append_child(std::string(from.tag()).c_str());
-  for (const auto& [attribute, value] : from.values)
-    to.append_attribute(std::string(attribute->name).c_str()) = value.c_str();
+  for (const auto& [attribute, value] : from.values) {
+    if (!attribute->is_spec_only())
+      to.append_attribute(std::string(attribute->name).c_str()) = value.c_str();
+  }
   if (!from.content.empty()) to.append_child(pugi::node_cdata).set_value(from.content.c_str());
   for (const std::shared_ptr<Node>& child : from.children) write(*child, to);
   if (!from.last_comment.empty())
