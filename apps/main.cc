@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdio>
 #include <iostream>
+#include <system_error>
 
 #include "command.h"
 #include "gloam/program.h"
@@ -76,6 +77,9 @@ int main(int argc, char** argv) {
   try {
     const int code = gloam::cli::run_program(argc, argv);
     return code != 0 ? code : gloam::cli::finish_data();
+  } catch (const std::system_error&) {
+    if (std::ferror(stdout) == 0) throw;
+    return gloam::cli::finish_data();  // fmt::print throws where nobody reads any more
   } catch (const std::bad_alloc&) {
     std::cerr << "gloam: error: out of memory (lower the resolution or the size of the scene)\n";
     return 1;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "schema_report.h"
 
 namespace gloam::cli {
 namespace {
@@ -14,6 +15,7 @@ struct InfoCommand {
   std::string file;
   FileAccess access;
   std::vector<std::string> packages;
+  bool schema = false;
 };
 
 using Section = std::pair<const char*, const std::vector<NamedElement>*>;
@@ -60,6 +62,7 @@ void print_text(const WorldInfo& info, const std::vector<Section>& sections) {
 }
 
 int info(const InfoCommand& command, const Globals& globals) {
+  if (command.schema) return report_schema(globals);
   auto world = load_world(command.file, command.access, command.packages);
   if (!world.ok()) return fail(world.error());
   const WorldInfo info = world->info();
@@ -77,10 +80,15 @@ void add_info(CLI::App& app, Globals& globals, Action& action) {
   CLI::App* sub =
       app.add_subcommand("info", "List what a scene or model holds, and what is not supported");
   auto command = std::make_shared<InfoCommand>();
-  sub->add_option("FILE", command->file, "Scene or model")->required();
+  CLI::Option* file = sub->add_option("FILE", command->file, "Scene or model");
+  CLI::Option* schema =
+      sub->add_flag("--schema", command->schema,
+                    "How much of MuJoCo's own schema is mirrored, and what sets what");
+  file->excludes(schema);
   add_access_options(*sub, command->access, command->packages);
-  sub->footer("Example:\n  gloam info robot.urdf --json");
+  sub->footer("Examples:\n  gloam info robot.urdf --json\n  gloam info --schema");
   sub->callback([&globals, &action, command] {
+    if (command->file.empty() && !command->schema) throw CLI::RequiredError("FILE");
     action = [&globals, command] { return info(*command, globals); };
   });
 }

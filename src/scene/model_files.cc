@@ -12,6 +12,7 @@
 #include "base/hash.h"
 #include "base/log.h"
 #include "base/text.h"
+#include "scene/mjcf/spec_only.h"
 #include "scene/mujoco_guard.h"
 
 namespace gloam {
@@ -154,6 +155,15 @@ Result<ModelFiles::Content> ModelFiles::open(const fs::path& path, std::string* 
     if (const Result<XmlScan> scan = scan_model_xml(*bytes, path.string()); !scan.ok())
       return fail(scan.error().kind, scan.error().message);
   }
+  if (extension == ".toml") {
+    Result<ModelText> model = translate_model(*bytes, path.string());
+    if (!model.ok()) {
+      failures_.push_back({path, model.error().message, model.error().kind});
+      return model.error();
+    }
+    *bytes = model->xml;
+    toml_models_.emplace(path, std::move(model).value());
+  }
   const uint64_t hash = hash_bytes(bytes->data(), bytes->size());
   *hash_text = hash_to_hex(hash);
   if (is_new) dependencies_.push_back({path, true, hash});
@@ -178,6 +188,7 @@ Status ModelFiles::scan(const fs::path& file, const fs::path& model, const Sourc
   std::string hash;
   Result<Content> content = open(file, &hash, true);
   if (!content.ok()) {
+    if (content.error().loc.line > 0) return content.error();  // it says itself where
     const bool is_named = !named_at.file.empty();  // else it comes from the command line
     Error error = content.error();
     error.message =
@@ -191,14 +202,20 @@ Status ModelFiles::scan(const fs::path& file, const fs::path& model, const Sourc
   const std::string& text = **content;
   if (text.size() > kLargestXml)
     return Error{ErrorKind::kInput, "the XML is larger than 64 MiB", {file.string(), 0, 0}};
-  GLOAM_TRY(XmlScan scanned, scan_model_xml(text, file.string()));
+  Result<XmlScan> scanning = scan_model_xml(text, file.string());
+  if (!scanning.ok()) {
+    Error error = scanning.error();
+    error.loc = written_at(error.loc);
+    return error;
+  }
+  XmlScan scanned = std::move(scanning).value();
   uses_plugins_ = uses_plugins_ || scanned.has_plugins;
   slowest_replicate_ = std::max(slowest_replicate_, scanned.slowest.seconds);
   tell_if_slow(scanned.slowest, file);
   const XmlScan& kept = scans_.emplace(file, std::move(scanned)).first->second;
   stack.push_back(file);
   for (const FileReference& reference : kept.references) {
-    const SourceLoc loc{file.string(), reference.line, 0};
+    const SourceLoc loc = written_at({file.string(), reference.line, 0});
     if (kept.root == "robot" && reference.element == "mesh") continue;  // see urdf_text.h
     if (reference.element == "compiler" && reference.value.empty()) continue;
     const std::string refusal = why_not_a_path(reference.value);
@@ -291,6 +308,27 @@ bool ModelFiles::readable(const fs::path& path) {
   return why_not_readable(absolute, roots_).empty() && fs::is_regular_file(absolute, code);
 }
 
+SourceLoc ModelFiles::written_at(SourceLoc loc) const {
+  const auto model = toml_models_.find(loc.file);
+  if (model == toml_models_.end() || loc.line <= 0) return loc;
+  const std::vector<int>& lines = model->second.lines;
+  loc.line = lines[std::min(static_cast<size_t>(loc.line), lines.size() - 1)];
+  return loc;
+}
+
+Status ModelFiles::set_spec_only(const fs::path& file, mjSpec* spec) const {
+  const fs::path path = absolute_path(file, "");
+  if (const auto model = toml_models_.find(path); model != toml_models_.end())
+    GLOAM_TRY_STATUS(gloam::set_spec_only(model->second.document, spec));
+  const auto scan = scans_.find(path);
+  if (scan == scans_.end()) return {};
+  for (const FileReference& reference : scan->second.references) {
+    if (reference.element == "include")
+      GLOAM_TRY_STATUS(set_spec_only(absolute_path(reference.value, path.parent_path()), spec));
+  }
+  return {};
+}
+
 SourceLoc ModelFiles::find_reference(const fs::path& path) const {
   SourceLoc best;
   size_t best_tail = 0;
@@ -303,7 +341,7 @@ SourceLoc ModelFiles::find_reference(const fs::path& path) const {
       }
     }
   }
-  return best;
+  return written_at(best);
 }
 
 // MuJoCo does not say which of the included files it means, and elements that were included have
@@ -326,7 +364,7 @@ void ModelFiles::find_place(const std::string& element, Error* error, const fs::
     if (line > 0 ? !has_element_at(*content->second, element, line)
                  : (line = line_of_element_with(*content->second, element, words)) == 0)
       continue;
-    error->loc = {file->first.string(), line, 0};
+    error->loc = written_at({file->first.string(), line, 0});
     return;
   }
 }

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "gloam/scene.h"
+#include "scene/mjcf/model_text.h"
 #include "scene/model_path.h"
 #include "scene/xml_scan.h"
 
@@ -54,6 +55,10 @@ class ModelFiles {
   void set_overlay(const std::filesystem::path& file, std::string text);
   void clear_overlay(const std::filesystem::path& file);
 
+  /// Sets in the spec of a model in TOML what XML could not carry there; nothing for others. After
+  /// parsing. Errors: with the line in its file.
+  Status set_spec_only(const std::filesystem::path& file, mjSpec* spec) const;
+
   /// Reads through the same checks. For files that Gloam itself needs (export, cache).
   Result<std::shared_ptr<const std::string>> read(const std::filesystem::path& path);
 
@@ -90,6 +95,8 @@ class ModelFiles {
   void find_place(const std::string& element, Error* error,
                   const std::filesystem::path& model) const;
   SourceLoc find_reference(const std::filesystem::path& path) const;
+  // Of a place in the XML of a model in TOML, the place in its file.
+  SourceLoc written_at(SourceLoc loc) const;
 
   static int provider_open(mjResource* resource);
   static int provider_read(mjResource* resource, const void** buffer);
@@ -105,6 +112,7 @@ class ModelFiles {
   mutable std::mutex mutex_;  // MuJoCo's compiler reads assets on several threads
   std::map<std::filesystem::path, Content> contents_;
   std::map<std::filesystem::path, Content> overlays_;
+  std::map<std::filesystem::path, ModelText> toml_models_;  // `contents_` holds their XML
   std::vector<Dependency> dependencies_;
   std::set<std::filesystem::path> depended_;
   std::vector<Failure> failures_;

@@ -5,6 +5,7 @@
 #include "base/files.h"
 #include "base/text.h"
 #include "gloam/scene.h"
+#include "scene/mjcf/model_text.h"
 #include "scene/model_path.h"
 #include "scene/toml/toml_reader.h"
 #include "scene/validate.h"
@@ -14,6 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr uint64_t kLargestScene = uint64_t{4} << 20;
+constexpr uint64_t kLargestModel = uint64_t{64} << 20;
 
 std::string lower(std::string text) {
   std::transform(text.begin(), text.end(), text.begin(),
@@ -54,8 +56,10 @@ Status check_model_file(const fs::path& path, const std::string& as_written, con
   const std::string name = as_written.substr(0, 200);
   const std::string extension = lower(path.extension().string());
   if (extension == ".toml") {
+    GLOAM_TRY(const std::string text, read_text_file(path, kLargestModel));
+    if (is_model_toml(text)) return {};
     return Error{ErrorKind::kInput, fmt::format("'{}' is a scene; a model is wanted here", name),
-                 loc, "give an MJCF (.xml) or URDF file"};
+                 loc, "give an MJCF (.xml) or URDF file, or a model in TOML (docs/models.md)"};
   }
   if (extension == ".mjz" || extension == ".zip" || extension == ".mjb") {
     return Error{ErrorKind::kUnsupported,
@@ -140,22 +144,27 @@ Status find_files(const FileFinder& finder, Scene* scene) {
 Result<Scene> load_scene(const fs::path& path, const FileAccess& access) {
   Scene scene;
   scene.access = access;
-  const std::string extension = lower(path.extension().string());
-  if (extension != ".toml") {
-    GLOAM_TRY_STATUS(check_model_file(absolute_path(path, ""), path.string(), {}));
-    scene.name = path.stem().string();
+  scene.name = path.stem().string();
+  const auto as_bare_model = [&] {
     scene.bare_model = absolute_path(path, "");
     return scene;
+  };
+  if (lower(path.extension().string()) != ".toml") {
+    GLOAM_TRY_STATUS(check_model_file(absolute_path(path, ""), path.string(), {}));
+    return as_bare_model();
   }
-  Result<std::string> text = read_text_file(path, kLargestScene);
+  Result<std::string> text = read_text_file(path, kLargestModel);
   if (!text.ok()) {
     Error error = std::move(text).error();
     std::error_code code;
     if (!fs::exists(path, code)) error.hint = suggest_file(absolute_path(path, ""));
     return error;
   }
+  if (is_model_toml(*text)) return as_bare_model();
+  if (text->size() > kLargestScene)
+    return Error{
+        ErrorKind::kInput, "a scene of more than 4 MiB is not read", {path.string(), 0, 0}};
   scene.file = path;
-  scene.name = path.stem().string();
   GLOAM_TRY_STATUS(read_scene_toml(*text, path.string(), &scene));
   GLOAM_TRY(const ModelRoot root, find_model_root(path, access));
   GLOAM_TRY_STATUS(find_files(FileFinder(path, root, access), &scene));

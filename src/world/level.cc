@@ -57,8 +57,10 @@ Result<SpecPtr> parse_model(const fs::path& file, const FileAccess& access, Mode
       guarded([&] { spec = mj_parseXML(path.c_str(), files->vfs(), message, sizeof(message)); });
   if (!status.ok()) return files->explain(status.error().message, path);
   if (spec == nullptr) return files->explain(message, path);
+  SpecPtr owned(spec);
+  GLOAM_TRY_STATUS(files->set_spec_only(path, spec));
   report_warnings(warnings, spec, 0, path, unsupported);
-  return SpecPtr(spec);
+  return owned;
 }
 
 void add_default_floor(mjSpec* spec) {

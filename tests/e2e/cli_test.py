@@ -70,8 +70,13 @@ class Mistakes(ProgramTest):
                 done = subprocess.run([PROGRAM, *arguments], stdout=full, stderr=subprocess.PIPE, text=True)
             self.assertEqual((done.returncode, done.stderr.count("\n")), (1, 1), arguments)
             self.assertIn("gloam: error: standard output", done.stderr)
-        quiet = subprocess.run(["bash", "-c", f"set -o pipefail; {PROGRAM} completion fish | true"], capture_output=True, text=True)
-        self.assertEqual((quiet.returncode, quiet.stderr), (0, ""), "a reader that has seen enough")
+        for command in ("completion fish", f"info {model}"):
+            quiet = subprocess.run(["bash", "-c", f"set -o pipefail; {PROGRAM} {command} | true"], capture_output=True, text=True)
+            self.assertEqual((quiet.returncode, quiet.stderr), (0, ""), f"{command}: a reader that has seen enough")
+
+    def test_info_wants_a_file_or_the_schema(self):
+        self.complains(2, "info", words=["FILE"])
+        self.complains(2, "info", "--schema", "m.xml", words=["--schema"])
 
     def test_missing_file(self):
         self.complains(1, "run", "missing.xml", words=["missing.xml", "there is no file"])
@@ -212,6 +217,14 @@ class Work(ProgramTest):
         self.assertEqual([body["name"] for body in info["bodies"]], ["world", "arm"])
         self.assertEqual(info["nu"], 1)
         self.assertEqual([camera["name"] for camera in info["cameras"]], ["side"])
+
+    def test_the_schema_is_mirrored_whole(self):
+        schema = json.loads(self.gloam("info", "--schema", "--json").stdout)
+        self.assertEqual((schema["mirrored"], schema["missing"]), (schema["total"], []))
+        self.assertGreaterEqual(schema["attributes"]["total"], 1900)
+        self.assertGreaterEqual(schema["fields"]["total"], 464)
+        self.assertIn("mujoco/actuator/position/kp", schema["field_attributes"]["mjsActuator.gainprm"])
+        self.assertIn("mjsActuator.gainprm", schema["attribute_fields"]["mujoco/actuator/position/kp"])
 
     def test_a_still_takes_the_settings_of_a_run(self):
         model = self.write("robot.xml", PENDULUM)

@@ -138,8 +138,11 @@ bool copy_changed(const SpecObject& from, const std::vector<SpecObject>& others,
     const mjDoubleVec& source = *pointer_at<mjDoubleVec>(from, field);
     mjs_setDouble(pointer_at<mjDoubleVec>(to, field), source.data(),
                   static_cast<int>(source.size()));
+  } else if (field.type == SpecType::kBytes) {
+    const mjByteVec& source = *pointer_at<mjByteVec>(from, field);
+    mjs_setBuffer(pointer_at<mjByteVec>(to, field), source.data(), static_cast<int>(source.size()));
   } else {
-    return false;  // bytes and lists of lists: textures' pixels, skins' bones
+    return false;  // lists of lists: skins' bones
   }
   return true;
 }

@@ -12,11 +12,6 @@
 namespace gloam::mjcf {
 namespace {
 
-SourceLoc loc_of(const toml::node& node, const std::string& file) {
-  const toml::source_position at = node.source().begin;
-  return {file, static_cast<int>(at.line), static_cast<int>(at.column)};
-}
-
 // As the attribute would be written in XML; nothing if TOML holds what no attribute takes.
 std::optional<std::string> text_of(const toml::node& node) {
   if (const auto* text = node.as_string()) return text->get();
@@ -180,16 +175,16 @@ void write(const Node& node, const std::string& path, bool is_list, std::string*
 Status read_toml(std::string_view text, const std::string& file, Node* root) {
   GLOAM_TRY(const toml::table table, parse_toml(text, file));
   const toml::table* top = table["mujoco"].as_table();
-  for (const auto& [key, node] : table) {
-    if (key.str() != "mujoco")
-      return Error{ErrorKind::kInput, fmt::format("'{}' stands beside [mujoco]", key.str()),
-                   loc_of(node, file), "a model in TOML is all below [mujoco]"};
-  }
   if (top == nullptr)
     return Error{ErrorKind::kInput,
                  "there is no [mujoco]",
                  {file, 0, 0},
                  "a model in TOML is all below [mujoco], a scene has [[robot]] (docs/scenes.md)"};
+  for (const auto& [key, node] : table) {
+    if (key.str() != "mujoco")
+      return Error{ErrorKind::kInput, fmt::format("'{}' stands beside [mujoco]", key.str()),
+                   loc_of(node, file), "a model in TOML is all below [mujoco]"};
+  }
   root->loc = loc_of(*top, file);
   return Reader(file).read(*top, root, 1);
 }

@@ -224,7 +224,7 @@ TEST(MjcfDocument, ErrorsNameLineAndWhatWasMeant) {
                 .error()
                 .to_string(),
             "m.toml:3:8: <geom> has no attribute 'szie' (did you mean 'size'?)");
-  EXPECT_EQ(Document::from_toml("[robot]\n", "m.toml").error().to_string(),
+  EXPECT_EQ(Document::from_toml("[robot]\n[mujoco]\n", "m.toml").error().to_string(),
             "m.toml:1:1: 'robot' stands beside [mujoco] (a model in TOML is all below [mujoco])");
   Document lacking = Document::make("m");
   Mujoco(lacking.root()).sensor().add_touch().set_name("t");

@@ -88,7 +88,8 @@ constexpr std::string_view kOnlyInFiles = R"(
 actuator/dcmotor/nominal actuator/intvelocity/actlimited actuator/pid/imax
 asset/material/layer/role asset/material/layer/texture asset/mesh/params asset/model/content_type
 asset/model/name asset/skin/bone/bindpos asset/skin/bone/bindquat asset/skin/bone/body
-asset/skin/bone/vertid asset/skin/bone/vertweight body/attach/body body/attach/prefix
+asset/skin/bone/vertid asset/skin/bone/vertweight body/attach/body body/attach/frame
+body/attach/model body/attach/prefix
 body/geom/castshadow body/replicate/count body/replicate/euler body/replicate/offset
 body/replicate/sep compiler/coordinate custom/tuple/element/objname custom/tuple/element/objtype
 custom/tuple/element/prm deformable/skin/bone/bindpos deformable/skin/bone/bindquat
