@@ -4,9 +4,9 @@
 #include <cstring>
 
 #include "base/archive.h"
+#include "base/cache.h"
 #include "base/files.h"
 #include "base/hash.h"
-#include "base/log.h"
 #include "base/parallel.h"
 #include "geometry/model_source.h"
 
@@ -71,7 +71,7 @@ uint64_t hash_large(std::span<const uint8_t> bytes) {
 fs::path entry_path(const fs::path& folder, const fs::path& model, uint64_t content) {
   const std::string ending = model.extension().string();
   const uint64_t key = hash_bytes(ending.data(), ending.size(), content ^ kMagic);
-  return folder / (hash_to_hex(key) + ".model");
+  return folder / cache_entry_name(kVisualCache, key);
 }
 
 struct Entry {
@@ -107,7 +107,7 @@ bool load_entry(const fs::path& path, uint64_t content, ModelFolder beside,
   visit_parts(in, entry.model);
   if (!in.is_done()) return false;
   *out = std::move(entry.model);
-  fs::last_write_time(path, fs::file_time_type::clock::now(), code);  // used now: evict it late
+  mark_cache_use(path);
   return true;
 }
 
@@ -121,9 +121,7 @@ void store_entry(const fs::path& path, Entry& entry) {
   visit_parts(out, entry.model);
   head[1] = hash_large(std::span<const uint8_t>(out.bytes).subspan(sizeof(head)));
   std::memcpy(out.bytes.data(), head, sizeof(head));
-  Status status = make_folder(path.parent_path());
-  if (status.ok()) status = write_file_atomic(path, out.bytes);
-  if (!status.ok()) log_debug("model not cached: {}", status.error().to_string());
+  keep_in_cache(path, out.bytes);
 }
 
 }  // namespace

@@ -123,19 +123,5 @@ TEST_F(ModelCache, AFolderThatCannotBeWrittenIsNoError) {
   EXPECT_TRUE(World::compile(scene_).ok());
 }
 
-TEST_F(ModelCache, DropsWhatWasUsedLongestAgo) {
-  const fs::path cache = folder_.path() / "trim";
-  for (int i = 0; i < 4; ++i) {
-    folder_.write("trim/" + std::to_string(i), std::string(1000, 'x'));
-    fs::last_write_time(cache / std::to_string(i),
-                        fs::file_time_type::clock::now() - std::chrono::hours(i));
-  }
-  trim_cache(cache, 2500);
-  EXPECT_TRUE(fs::exists(cache / "0"));
-  EXPECT_TRUE(fs::exists(cache / "1"));
-  EXPECT_FALSE(fs::exists(cache / "2"));
-  EXPECT_FALSE(fs::exists(cache / "3"));
-}
-
 }  // namespace
 }  // namespace gloam
