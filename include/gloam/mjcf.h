@@ -127,4 +127,7 @@ class Document {
   Element root_;
 };
 
+/// JSON Schema (draft 7) of models in TOML, for editors: docs/models.md.
+std::string model_schema();
+
 }  // namespace gloam::mjcf

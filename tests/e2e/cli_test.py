@@ -11,7 +11,7 @@ import unittest
 
 from e2e.support import PENDULUM, PROGRAM, ROOT, ProgramTest, video_frames
 
-COMMANDS = ["demo", "run", "render", "info", "export", "cache", "completion"]
+COMMANDS = ["demo", "run", "render", "info", "export", "cache", "schema", "completion"]
 SCRIPT_COMMANDS = re.findall(r"^  (\w+)\)$", (ROOT / "gloam").read_text(), re.M)
 
 
@@ -26,6 +26,11 @@ class Help(ProgramTest):
         self.assertIn("bench", SCRIPT_COMMANDS)
         for command in COMMANDS + SCRIPT_COMMANDS:
             self.assertIn(command, text)
+
+    def test_schemas_are_json(self):
+        self.assertIn("robot", json.loads(self.gloam("schema", "scene").stdout)["properties"])
+        self.assertIn("mujoco", json.loads(self.gloam("schema", "model").stdout)["properties"])
+        self.assertIn("scene", self.gloam("schema", "scenes", expect=2).stderr)
 
     def test_version_names_mujoco(self):
         self.assertIn("MuJoCo 4.0.1", self.gloam("--version").stdout)
