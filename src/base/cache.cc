@@ -15,6 +15,7 @@
 #include "base/files.h"
 #include "base/hash.h"
 #include "base/log.h"
+#include "base/parallel.h"
 #include "base/text.h"
 #include "gloam/program.h"
 
@@ -22,7 +23,9 @@ namespace gloam {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::array kFormats = {kModelCache, kVisualCache};
+constexpr std::array kFormats = {kModelCache, kVisualCache, kBvhCache};
+constexpr size_t kHeadSize = 2 * sizeof(uint64_t);  // the format's number, the hash of the rest
+constexpr size_t kHashedPiece = size_t{16} << 20;
 constexpr uint64_t kUsualLimit = uint64_t{10} << 30;
 // Older than that, what a writer has left aside is of one that died.
 constexpr std::chrono::hours kLongestWrite{1};
@@ -117,6 +120,33 @@ fs::path cache_folder(const CacheFormat& format) { return cache_folder() / forma
 
 std::string cache_entry_name(const CacheFormat& format, uint64_t key) {
   return hash_to_hex(key) + std::string(format.ending);
+}
+
+void begin_cache_entry(std::vector<uint8_t>* entry) { entry->assign(kHeadSize, 0); }
+
+void seal_cache_entry(uint64_t magic, std::vector<uint8_t>* entry) {
+  const uint64_t head[] = {magic, hash_large(std::as_bytes(std::span(*entry).subspan(kHeadSize)))};
+  std::memcpy(entry->data(), head, kHeadSize);
+}
+
+std::span<const uint8_t> unseal_cache_entry(uint64_t magic, std::span<const uint8_t> entry) {
+  uint64_t head[2];
+  static_assert(sizeof(head) == kHeadSize);
+  if (entry.size() < kHeadSize) return {};
+  std::memcpy(head, entry.data(), kHeadSize);
+  const std::span<const uint8_t> rest = entry.subspan(kHeadSize);
+  const bool is_whole = head[0] == magic && head[1] == hash_large(std::as_bytes(rest));
+  return is_whole ? rest : std::span<const uint8_t>();
+}
+
+uint64_t hash_large(std::span<const std::byte> bytes) {
+  std::vector<uint64_t> hashes(bytes.size() / kHashedPiece + 1);
+  parallel_for("hash", static_cast<int64_t>(hashes.size()), [&](int64_t i) {
+    const size_t begin = static_cast<size_t>(i) * kHashedPiece;
+    hashes[static_cast<size_t>(i)] =
+        hash_bytes(bytes.data() + begin, std::min(kHashedPiece, bytes.size() - begin));
+  });
+  return hash_span(std::span<const uint64_t>(hashes), bytes.size());
 }
 
 Result<uint64_t> cache_limit() {

@@ -6,10 +6,13 @@
 // is ever counted or removed: someone's files, which a mistaken GLOAM_CACHE may lead to, are left
 // alone. gloam/program.h lists and clears.
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "gloam/result.h"
 
@@ -25,8 +28,20 @@ inline constexpr CacheFormat kModelCache{"models", ".world",
                                          "compiled models with their hulls and textures"};
 inline constexpr CacheFormat kVisualCache{"visuals", ".model", "model files of [[visual]]s"};
 
-/// What every entry begins with; the format's own number follows.
+inline constexpr CacheFormat kBvhCache{"bvhs", ".bvh", "trees of large meshes, for cards"};
+
+/// What every entry begins with, as the first bytes of its format's number.
 inline constexpr std::string_view kCacheMagic = "GLOM";
+
+/// An entry is a head, by which it is known to be whole, and what the format has to say. First
+/// room for the head, then what is to be kept behind it, then the head itself.
+void begin_cache_entry(std::vector<uint8_t>* entry);
+void seal_cache_entry(uint64_t magic, std::vector<uint8_t>* entry);
+/// What is behind the head; nothing of an entry that is damaged or of another format.
+std::span<const uint8_t> unseal_cache_entry(uint64_t magic, std::span<const uint8_t> entry);
+
+/// Hash of large data, by all threads.
+uint64_t hash_large(std::span<const std::byte> bytes);
 
 /// Per-user cache folder ($XDG_CACHE_HOME/gloam or ~/.cache/gloam); $GLOAM_CACHE overrides.
 std::filesystem::path cache_folder();

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
-#include <cstring>
 #include <mutex>
 #include <thread>
 
@@ -57,7 +56,7 @@ void visit_entry(F& f, CacheEntry& e) {
   f(e.has_plugins);
 }
 
-constexpr uint64_t kMagic = 0x32444C574D4F4C47ull;  // "GLOMWLD2": changes with the layout below
+constexpr uint64_t kMagic = 0x33444C574D4F4C47ull;  // "GLOMWLD3": changes with the layout below
 constexpr uint64_t kLargestEntry = uint64_t{2} << 30;
 
 fs::path entry_of(const Scene& scene) {
@@ -81,20 +80,16 @@ ModelPtr get_model(ArchiveReader* in) {
   return ModelPtr(model);
 }
 
-constexpr size_t kHeaderSize = 2 * sizeof(uint64_t);  // magic, hash of the rest
-
 std::vector<uint8_t> serialise(const CompiledWorld& world,
                                const std::vector<Dependency>& dependencies) {
   CacheEntry entry{dependencies,      world.initial_key, world.robots,
                    world.visual_only, world.unsupported, world.model->nplugin > 0};
   ArchiveWriter out;
-  out(kMagic);
-  out(uint64_t{0});
+  begin_cache_entry(&out.bytes);
   visit_entry(out, entry);
   put_model(world.model.get(), &out);
   put_model(world.visual_model.get(), &out);
-  const uint64_t hash = hash_bytes(out.bytes.data() + kHeaderSize, out.bytes.size() - kHeaderSize);
-  std::memcpy(out.bytes.data() + sizeof(kMagic), &hash, sizeof(hash));
+  seal_cache_entry(kMagic, &out.bytes);
   return std::move(out.bytes);
 }
 
@@ -200,13 +195,8 @@ std::shared_ptr<CompiledWorld> load_cached_world(const Scene& scene) {
   if (!fs::exists(path, code)) return nullptr;
   const Result<std::vector<uint8_t>> bytes = read_file(path, kLargestEntry);
   if (!bytes.ok()) return nullptr;
-  ArchiveReader header(*bytes);
-  uint64_t magic = 0, hash = 0;
-  header(magic);
-  header(hash);
-  if (!header.ok() || magic != kMagic) return nullptr;
-  const std::span<const uint8_t> payload = std::span(*bytes).subspan(kHeaderSize);
-  if (hash_bytes(payload.data(), payload.size()) != hash) return nullptr;
+  const std::span<const uint8_t> payload = unseal_cache_entry(kMagic, *bytes);
+  if (payload.empty()) return nullptr;
 
   ModelFiles files;
   bool admitted = true;

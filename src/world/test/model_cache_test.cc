@@ -5,6 +5,7 @@
 
 #include <cstring>
 
+#include "base/cache.h"
 #include "base/files.h"
 #include "base/hash.h"
 #include "gloam/world.h"
@@ -109,10 +110,12 @@ TEST_F(ModelCache, DamagedEntriesAreAsGoodAsNone) {
     damage(bad);
   }
   // A right checksum over wrong content: counts that reach past the end.
-  std::string bad = good.substr(0, 16) + std::string(64, '\xff');
-  const uint64_t hash = hash_bytes(bad.data() + 16, 64);
-  std::memcpy(bad.data() + 8, &hash, sizeof(hash));
-  damage(bad);
+  const std::string bad = good.substr(0, 16) + std::string(64, '\xff');
+  std::vector<uint8_t> sealed(bad.begin(), bad.end());
+  uint64_t magic = 0;
+  std::memcpy(&magic, sealed.data(), sizeof(magic));
+  seal_cache_entry(magic, &sealed);
+  damage(std::string(sealed.begin(), sealed.end()));
 }
 
 TEST_F(ModelCache, AFolderThatCannotBeWrittenIsNoError) {
