@@ -25,6 +25,8 @@ void add_run(CLI::App& app, Globals& globals, Action& action);
 void add_render(CLI::App& app, Globals& globals, Action& action);
 void add_info(CLI::App& app, Globals& globals, Action& action);
 void add_export(CLI::App& app, Globals& globals, Action& action);
+void add_cache(CLI::App& app, Globals& globals, Action& action);
+void add_schema(CLI::App& app, Globals& globals, Action& action);
 void add_completion(CLI::App& app, Globals& globals, Action& action);
 
 /// Prints "error: …" on stderr and returns the exit code.

@@ -16,8 +16,8 @@
 namespace gloam::cli {
 namespace {
 
-constexpr std::array kCommands = {add_demo, add_run,    add_render,
-                                  add_info, add_export, add_completion};
+constexpr std::array kCommands = {add_demo,   add_run,   add_render, add_info,
+                                  add_export, add_cache, add_schema, add_completion};
 
 int run_program(int argc, char** argv) {
   CLI::App app{

@@ -156,4 +156,7 @@ struct SchemaCoverage {
 /// that is done, from any thread, and returns false to stop.
 SchemaCoverage find_schema_coverage(const std::function<bool(double)>& progress = {});
 
+/// JSON Schema (draft 7) of models in TOML, for editors: docs/models.md.
+std::string model_schema();
+
 }  // namespace gloam::mjcf

@@ -1,10 +1,14 @@
 #pragma once
-// The program itself: version, where its files are, its logging and threads.
+// The program itself: version, where its files are, its logging, threads and cache.
 
+#include <chrono>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "gloam/result.h"
 
@@ -26,6 +30,26 @@ void set_log_level(LogLevel level);
 /// "did you mean 'x'?", the candidate nearest to `word`; or, when nothing is close and the list is
 /// short, "one of: a, b, c"; may be empty.
 std::string suggest_name(std::string_view word, std::span<const std::string> candidates);
+
+/// One kind of what is kept on disk so that a second start is faster.
+struct CacheKind {
+  std::string name;  ///< "models", "visuals"
+  std::string what;  ///< for people
+  std::filesystem::path folder;
+  int64_t entries = 0;
+  uint64_t bytes = 0;  ///< with what is being written
+  std::optional<std::chrono::system_clock::time_point> oldest_use, newest_use;  ///< of an entry
+};
+struct CacheInfo {
+  std::filesystem::path folder;  ///< $GLOAM_CACHE, else $XDG_CACHE_HOME/gloam, else ~/.cache/gloam
+  uint64_t limit_bytes = 0;      ///< of all kinds together: $GLOAM_CACHE_SIZE, else 10 GiB
+  std::vector<CacheKind> kinds;
+};
+/// Errors: a folder that cannot be read, GLOAM_CACHE_SIZE is no size.
+Result<CacheInfo> cache_info();
+/// Removes all entries, or those of one kind, and says what they were; files that are no entries
+/// stay. Errors: there is no such kind, a folder or an entry that may not be changed.
+Result<std::vector<CacheKind>> clear_cache(std::string_view kind = {});
 
 /// Threads for rendering and loading; 0 = all processors. Results do not depend on it.
 void set_thread_count(int n);

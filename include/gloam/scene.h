@@ -73,7 +73,7 @@ struct EnvironmentOptions {
 /// wall …
 struct PatternOptions {
   std::string kind = {};  ///< noise wood marble concrete brick tiles fabric scratches dirt
-  uint64_t seed = 0;
+  uint64_t seed = 0;      ///< another piece of the same stuff
   std::optional<Vec3> color_a = {};      ///< ground, linear Rec. 709, 0 … 1
   std::optional<Vec3> color_b = {};      ///< late wood, veins, brick's other end, weft, dirt
   std::optional<Vec3> color_c = {};      ///< pores, seams, mortar, grout
@@ -116,12 +116,12 @@ struct MaterialOptions {
   std::optional<double> subsurface_weight = {};   ///< 0 … 1; light that goes through, of sheets
   std::optional<Vec3> subsurface_color = {};      ///< default 0.8
   std::optional<double> coat_weight = {}, coat_roughness = {}, coat_ior = {};  ///< ior: 1.6
-  std::optional<Vec3> coat_color = {};
+  std::optional<Vec3> coat_color = {};  ///< of the coat, linear Rec. 709, 0 … 1
   /// 0 … 1, default 1: light that the coat throws back down is dimmed by the base again, as it is
   /// beneath real lacquer; 0: the base keeps its colour (OpenPBR 1.1)
   std::optional<double> coat_darkening = {};
   std::optional<double> fuzz_weight = {}, fuzz_roughness = {};  ///< roughness: 0.5
-  std::optional<Vec3> fuzz_color = {};
+  std::optional<Vec3> fuzz_color = {};         ///< of the fibres, linear Rec. 709, 0 … 1
   std::optional<PatternOptions> pattern = {};  ///< multiplies the colour, sets roughness and bumps
   std::optional<PatternOptions> wear = {};     ///< scratches or dirt over it
   std::optional<double> wetness = {};          ///< 0 dry … 1 under water where level
@@ -141,30 +141,30 @@ struct VisualOptions {
   std::filesystem::path file = {};  ///< relative to the scene file
   std::string body = {};            ///< full name of the body it is fixed to; empty = world
   Pose X_BV = {};                   ///< where it is in that body
-  Vec3 scale = {1, 1, 1};   ///< along the visual's axes, after `up`; > 0; one number for all three
-  std::string up = "auto";  ///< y | z: axis of the file that points up; auto = y of glTF, else z
-  double unit = 1;          ///< [m] of one unit of the file
-  bool casts_shadow = true;
+  Vec3 scale = {1, 1, 1};    ///< along the visual's axes, after `up`; > 0; one number for all three
+  std::string up = "auto";   ///< y | z: axis of the file that points up; auto = y of glTF, else z
+  double unit = 1;           ///< [m] of one unit of the file
+  bool casts_shadow = true;  ///< false: light passes through it
   SourceLoc loc = {};
 };
 
 /// [[push]]: a velocity kick for robustness tests: an impulse at the body's centre of mass.
 struct PushOptions {
-  std::string body = {};
-  double time = 0;     ///< [s]
-  Vec3 velocity = {};  ///< change of the whole subtree's centre-of-mass velocity [m/s]
+  std::string body = {};  ///< full name
+  double time = 0;        ///< [s]
+  Vec3 velocity = {};     ///< change of the whole subtree's centre-of-mass velocity [m/s]
   SourceLoc loc = {};
 };
 
-/// [sim]
+/// [sim]: the physics of a run.
 struct SimOptions {
   std::optional<double> timestep = {};  ///< [s]; empty = the model's own
   double duration = 10;                 ///< [s] of simulation time, > 0
-  uint64_t seed = 1;
+  uint64_t seed = 1;                    ///< of everything random
   SourceLoc loc = {};
 };
 
-/// [render]
+/// [render]: how pictures are made.
 struct RenderOptions {
   std::string tier = "path";    ///< path | fast | direct (docs/light.md)
   std::optional<int> spp = {};  ///< samples per pixel, 1 … 65536; with `error` at most, from 16
@@ -174,7 +174,7 @@ struct RenderOptions {
   int max_depth = 5;  ///< path vertices after the camera, 1 … 64
   /// cpu | cuda | auto (an NVIDIA card where this build and this machine have one, else the CPU).
   std::string device = "auto";
-  bool denoise = true;
+  bool denoise = true;  ///< but of the fast tier, which has a filter of its own
   std::optional<double> ev100 =
       {};  ///< exposure value at ISO 100; empty = the scene's rule (docs/light.md)
   SourceLoc loc = {};
@@ -193,7 +193,7 @@ inline constexpr auto kRecordOutputs = [] {
   return all;
 }();
 
-/// [record]
+/// [record]: what is written of a run.
 struct RecordOptions {
   std::vector<std::string> outputs = {"video", "png", "lidar"};  ///< of kRecordOutputs
   SourceLoc loc = {};
@@ -232,5 +232,8 @@ Result<Scene> load_scene(const std::filesystem::path& path, const FileAccess& ac
 /// "robot.NAME.controller.kp", "camera.NAME.width" …, `toml_value` is the text after "=". Quotes
 /// around a string may be left out. The Scene is unchanged on error.
 Status set_option(Scene& scene, std::string_view path, std::string_view toml_value);
+
+/// JSON Schema (draft 7) of scene files, for editors: docs/scenes.md.
+std::string scene_schema();
 
 }  // namespace gloam

@@ -59,7 +59,7 @@ struct LensOptions {
 
 /// [[camera]]: a camera added to the scene, fixed in the world or on a body.
 struct CameraOptions {
-  std::string name = {};
+  std::string name = {};  ///< unique
   std::string body = {};  ///< full name of the body it sits on; empty = world
   std::string track =
       {};  ///< body whose position it follows with a fixed offset and heading; empty = none

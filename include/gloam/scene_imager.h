@@ -25,7 +25,7 @@ struct TimingOptions {
 
 /// [camera.imager.exposure]: by ISO 12232, as EV100 in docs/light.md.
 struct ExposureOptions {
-  double f_number = 2.8;
+  double f_number = 2.8;  ///< focal length by the diameter of the opening
   double shutter = 0.01;  ///< [s]
   double iso = 100;       ///< saturation-based speed
   SourceLoc loc = {};
@@ -37,7 +37,7 @@ struct AutoExposureOptions {
   double time_constant = 0.5;        ///< of the approach to the metered exposure value [s]
   double compensation = 0;           ///< brighter by so many stops [EV]
   std::string metering = "average";  ///< average | center: a Gaussian of a quarter of the width
-  double min_ev100 = -6, max_ev100 = 18;
+  double min_ev100 = -6, max_ev100 = 18;  ///< limits of the exposure value at ISO 100
   double max_shutter = 0.02;  ///< the shutter opens up to this before the gain rises [s]
   double max_iso = 1600;      ///< then the gain rises to this
   SourceLoc loc = {};

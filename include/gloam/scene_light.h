@@ -53,7 +53,7 @@ struct LightScheduleOptions {
 /// [[light]]: a lamp added to the scene. It shines along its own -Z. Its strength is exactly one of
 /// intensity, flux, luminance and illuminance; with `ies` it may be left to the file.
 struct LightOptions {
-  std::string name = {};
+  std::string name = {};                   ///< unique
   std::string type = {};                   ///< point spot directional rect disk sphere mesh
   std::string body = {};                   ///< full name of the body it is fixed to; empty = world
   Vec3 position = {};                      ///< in the frame of `body` [m]
@@ -102,8 +102,8 @@ struct SkyOptions {
   std::optional<double> luminance = {};  ///< even [cd/m²]
   std::optional<Vec3> color = {};        ///< even: linear Rec. 709, hue only
 
-  std::optional<CalendarDate> date = {};
-  std::optional<ClockTime> time = {};
+  std::optional<CalendarDate> date = {};     ///< 2026-06-21
+  std::optional<ClockTime> time = {};        ///< of day, by the clock there: 14:30:00
   std::optional<double> utc_offset = {};     ///< of the clock, east positive [h]; 0
   std::optional<double> latitude = {};       ///< north positive [deg]
   std::optional<double> longitude = {};      ///< east positive [deg]
@@ -119,19 +119,19 @@ struct SkyOptions {
 /// [volume.pattern]: a density made by formula, 0 … 1, times the volume's.
 struct VolumePatternOptions {
   std::string kind = {};  ///< plume: rises from the middle of the floor; cloud: fills the box
-  uint64_t seed = 0;
-  int resolution = 64;  ///< voxels along the longest edge, 8 … 256
+  uint64_t seed = 0;      ///< another shape of the same kind
+  int resolution = 64;    ///< voxels along the longest edge, 8 … 256
   SourceLoc loc = {};
 };
 
 /// [[volume]]: a box that holds a medium. How much is `density` or `visibility`: even, or of a
 /// value of one of `grid` or `pattern`.
 struct VolumeOptions {
-  std::string name = {};
-  Vec3 position = {};  ///< of the box's centre in the world [m]
-  std::optional<Quat> orientation = {};
-  Vec3 size = {};           ///< edges of the box [m]
-  std::string medium = {};  ///< smoke fog mist haze dust; empty = own numbers
+  std::string name = {};                 ///< unique
+  Vec3 position = {};                    ///< of the box's centre in the world [m]
+  std::optional<Quat> orientation = {};  ///< of the box in the world
+  Vec3 size = {};                        ///< edges of the box [m]
+  std::string medium = {};               ///< smoke fog mist haze dust; empty = own numbers
   /// Own numbers: one for all bands, or one each for red, green, blue, 905 nm, 1550 nm, 8–14 µm.
   std::vector<double> mass_extinction = {};  ///< [m²/kg]
   std::vector<double> albedo = {};           ///< of single scattering, 0 … 1

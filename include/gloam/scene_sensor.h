@@ -25,7 +25,7 @@ struct StereoDepthOptions {
   std::optional<int> edge_loss = {};       ///< nothing within so many pixels of a jump in depth
   std::optional<double> half_signal = {};  ///< signal of which half is lost; a white wall that
                                            ///< faces the camera at 1 m gives 1; 0 = nothing lost
-  uint64_t seed = 0;
+  uint64_t seed = 0;                       ///< beside the simulation's and the sensor's name
   SourceLoc loc = {};
 };
 
@@ -37,7 +37,7 @@ struct EventOptions {
   double refractory = 0;   ///< a pixel's dead time after an event [s]
   double noise_rate = 0;   ///< of each pixel's events without a change [Hz]
   double dark = 0.001;     ///< added light, as a share of the top of the scale
-  uint64_t seed = 0;
+  uint64_t seed = 0;       ///< beside the simulation's and the sensor's name
   SourceLoc loc = {};
 };
 
@@ -48,7 +48,7 @@ struct ThermalOptions {
   double fixed_pattern = 0;    ///< spread of the pixels' offsets, at 300 K [K]
   double step = 0;             ///< of the temperatures put out [K]; 0 = none
   double min = 0, max = 5000;  ///< range of the temperatures put out [K]
-  uint64_t seed = 0;
+  uint64_t seed = 0;           ///< beside the simulation's and the sensor's name
   SourceLoc loc = {};
 };
 
@@ -87,20 +87,20 @@ struct SensorOptions {
   std::optional<double> scale_error = {};       ///< standard deviation of the scale factor's error
   std::optional<double> range = {};             ///< largest magnitude; 0 = no limit
   std::optional<double> resolution = {};        ///< step; 0 = none
-  uint64_t seed = 0;
+  uint64_t seed = 0;                            ///< beside the simulation's and the sensor's name
   SourceLoc loc = {};
 };
 
 /// Where a rig stands and what its cameras have in common.
 struct RigOptions {
-  std::string name = {};
-  std::string body = {};  ///< full name of the body it sits on; empty = world
-  Vec3 position = {};     ///< of the left (or only reference) eye [m]
-  std::optional<Vec3> look_at = {};
-  std::optional<Quat> orientation = {};
-  double fovy = 58;  ///< [deg]
-  int width = 640, height = 480;
-  Rational rate = {30, 1};
+  std::string name = {};                 ///< unique; its cameras are NAME/…
+  std::string body = {};                 ///< full name of the body it sits on; empty = world
+  Vec3 position = {};                    ///< of the left (or only reference) eye [m]
+  std::optional<Vec3> look_at = {};      ///< point to look at, in the same frame [m]
+  std::optional<Quat> orientation = {};  ///< instead of look_at
+  double fovy = 58;                      ///< vertical field of view [deg]
+  int width = 640, height = 480;         ///< [px]
+  Rational rate = {30, 1};               ///< pictures per second of simulation time [Hz]
 };
 
 /// [[stereo]]: two alike, parallel cameras NAME/left and NAME/right.

@@ -3,12 +3,14 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
+#include <memory>
+#include <random>
 #include <system_error>
 #include <vector>
 
@@ -29,22 +31,31 @@ Result<Container> read_bytes(const fs::path& path, uint64_t max_size) {
   if (!fs::exists(status)) return io_error(path, "no such file", "check the path");
   if (fs::is_directory(status)) return io_error(path, "is a folder, not a file");
   if (!fs::is_regular_file(status)) return io_error(path, "is not a regular file");
-  const uint64_t size = fs::file_size(path, code);
-  if (code) return io_error(path, fmt::format("cannot read: {}", code.message()));
+  // From here on by the descriptor: another program may put a new file in the place of this one.
+  const int fd = ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+  if (fd < 0)
+    return io_error(path, fmt::format("cannot open: {}", std::strerror(errno)),
+                    "check its permissions");
+  const std::unique_ptr<const int, void (*)(const int*)> closer(&fd,
+                                                                [](const int* f) { ::close(*f); });
+  struct stat found{};
+  if (::fstat(fd, &found) != 0)
+    return io_error(path, fmt::format("cannot read: {}", std::strerror(errno)));
+  const auto size = static_cast<uint64_t>(found.st_size);
   if (size > max_size) {
     return io_error(
         path, fmt::format("has {} bytes; the limit for this kind of file is {}", size, max_size));
   }
   GLOAM_TRY_STATUS(check_memory(size, fmt::format("reading '{}'", path.string()),
                                 "free some memory or use a smaller file"));
-  std::ifstream in(path, std::ios::binary);
-  if (!in)
-    return io_error(path, fmt::format("cannot open: {}", std::strerror(errno)),
-                    "check its permissions");
   Container bytes(size, 0);
-  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (static_cast<uint64_t>(in.gcount()) != size)
-    return io_error(path, "ended while it was being read");
+  for (size_t done = 0; done < size;) {
+    const ssize_t n = ::read(fd, bytes.data() + done, size - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return io_error(path, fmt::format("cannot read: {}", std::strerror(errno)));
+    if (n == 0) return io_error(path, "ended while it was being read");
+    done += static_cast<size_t>(n);
+  }
   return bytes;
 }
 
@@ -59,8 +70,14 @@ Result<std::string> read_text_file(const fs::path& path, uint64_t max_size) {
 }
 
 Status write_file_atomic(const fs::path& path, std::span<const uint8_t> bytes) {
-  const std::string temporary = fmt::format("{}.{}.tmp", path.string(), ::getpid());
-  const int fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  // A name of this call's own: other threads, processes and machines may be writing the same file.
+  std::string temporary;
+  int fd = -1;
+  std::random_device random;
+  do {
+    temporary = fmt::format("{}.{:08x}{}", path.string(), random(), kTemporaryEnding);
+    fd = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+  } while (fd < 0 && errno == EEXIST);
   if (fd < 0) {
     return io_error(path, fmt::format("cannot write: {}", std::strerror(errno)),
                     "check the folder and its permissions");
@@ -124,15 +141,6 @@ Result<fs::path> gloam_home() {
                "the folder 'assets' was not found above the program",
                {},
                "set GLOAM_HOME to Gloam's folder"};
-}
-
-fs::path cache_folder() {
-  if (const char* cache = std::getenv("GLOAM_CACHE"); cache != nullptr && *cache != 0) return cache;
-  if (const char* xdg = std::getenv("XDG_CACHE_HOME"); xdg != nullptr && *xdg != 0)
-    return fs::path(xdg) / "gloam";
-  if (const char* home = std::getenv("HOME"); home != nullptr && *home != 0)
-    return fs::path(home) / ".cache" / "gloam";
-  return fs::temp_directory_path() / "gloam-cache";
 }
 
 }  // namespace gloam

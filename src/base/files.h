@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gloam/program.h"
@@ -19,15 +20,15 @@ Result<std::vector<uint8_t>> read_file(const std::filesystem::path& path,
 Result<std::string> read_text_file(const std::filesystem::path& path,
                                    uint64_t max_size = uint64_t{64} << 20);
 
+/// What a file is called while it is written: its name, a point, hexadecimal digits and this.
+inline constexpr std::string_view kTemporaryEnding = ".tmp";
+
 /// Writes to a temporary file beside `path` and renames it: readers see the old file or the new
-/// one, whole.
+/// one, whole, however many write at once.
 Status write_file_atomic(const std::filesystem::path& path, std::span<const uint8_t> bytes);
 Status write_text_file_atomic(const std::filesystem::path& path, const std::string& text);
 
 /// Creates a folder and its parents.
 Status make_folder(const std::filesystem::path& path);
-
-/// Per-user cache folder ($XDG_CACHE_HOME/gloam or ~/.cache/gloam); $GLOAM_CACHE overrides.
-std::filesystem::path cache_folder();
 
 }  // namespace gloam

@@ -1,13 +1,11 @@
 #include "geometry/model_file_cache.h"
 
 #include <algorithm>
-#include <cstring>
 
 #include "base/archive.h"
+#include "base/cache.h"
 #include "base/files.h"
 #include "base/hash.h"
-#include "base/log.h"
-#include "base/parallel.h"
 #include "geometry/model_source.h"
 
 namespace gloam {
@@ -16,7 +14,6 @@ namespace {
 
 constexpr uint64_t kMagic = 0x32304C444D4F4C47ull;  // "GLOMDL02": changes with what readers give
 constexpr uint64_t kLargestEntry = uint64_t{8} << 30;
-constexpr size_t kHashedPiece = size_t{16} << 20;
 
 }  // namespace
 
@@ -55,23 +52,12 @@ void visit_parts(F& f, ModelFile& m) {
 
 namespace {
 
-// Hash of large data: pieces side by side, then their hashes.
-uint64_t hash_large(std::span<const uint8_t> bytes) {
-  std::vector<uint64_t> hashes(bytes.size() / kHashedPiece + 1);
-  parallel_for("hash", static_cast<int64_t>(hashes.size()), [&](int64_t i) {
-    const size_t begin = static_cast<size_t>(i) * kHashedPiece;
-    hashes[static_cast<size_t>(i)] =
-        hash_bytes(bytes.data() + begin, std::min(kHashedPiece, bytes.size() - begin));
-  });
-  return hash_span(std::span<const uint64_t>(hashes), bytes.size());
-}
-
 // What a reader gives depends on the content, on how the file is called (its ending) and on the
 // limits, which are errors that are not kept.
 fs::path entry_path(const fs::path& folder, const fs::path& model, uint64_t content) {
   const std::string ending = model.extension().string();
   const uint64_t key = hash_bytes(ending.data(), ending.size(), content ^ kMagic);
-  return folder / (hash_to_hex(key) + ".model");
+  return folder / cache_entry_name(kVisualCache, key);
 }
 
 struct Entry {
@@ -94,12 +80,8 @@ bool load_entry(const fs::path& path, uint64_t content, ModelFolder beside,
   std::error_code code;
   if (!fs::exists(path, code)) return false;
   const Result<std::vector<uint8_t>> bytes = read_file(path, kLargestEntry);
-  uint64_t head[2];
-  if (!bytes.ok() || bytes->size() < sizeof(head)) return false;
-  std::memcpy(head, bytes->data(), sizeof(head));
-  const auto body = std::span<const uint8_t>(*bytes).subspan(sizeof(head));
-  if (head[0] != kMagic || head[1] != hash_large(body)) return false;
-  ArchiveReader in(body);
+  if (!bytes.ok()) return false;
+  ArchiveReader in(unseal_cache_entry(kMagic, *bytes));
   Entry entry;
   in(entry.content);
   in(entry.parts);
@@ -107,23 +89,18 @@ bool load_entry(const fs::path& path, uint64_t content, ModelFolder beside,
   visit_parts(in, entry.model);
   if (!in.is_done()) return false;
   *out = std::move(entry.model);
-  fs::last_write_time(path, fs::file_time_type::clock::now(), code);  // used now: evict it late
+  mark_cache_use(path);
   return true;
 }
 
 void store_entry(const fs::path& path, Entry& entry) {
   ArchiveWriter out;
-  uint64_t head[2] = {kMagic, 0};
-  out(head[0]);
-  out(head[1]);
+  begin_cache_entry(&out.bytes);
   out(entry.content);
   out(entry.parts);
   visit_parts(out, entry.model);
-  head[1] = hash_large(std::span<const uint8_t>(out.bytes).subspan(sizeof(head)));
-  std::memcpy(out.bytes.data(), head, sizeof(head));
-  Status status = make_folder(path.parent_path());
-  if (status.ok()) status = write_file_atomic(path, out.bytes);
-  if (!status.ok()) log_debug("model not cached: {}", status.error().to_string());
+  seal_cache_entry(kMagic, &out.bytes);
+  keep_in_cache(path, out.bytes);
 }
 
 }  // namespace
@@ -132,7 +109,7 @@ Result<ModelFile> read_model_file_cached(const fs::path& path, const fs::path& f
                                          const ModelFileOptions& options, bool* was_cached) {
   GLOAM_TRY(const std::vector<uint8_t> bytes, read_file(path, options.limits.file_bytes));
   GLOAM_TRY(ModelFolder beside, ModelFolder::open(path, options.root));
-  const uint64_t content = hash_large(bytes);
+  const uint64_t content = hash_large(std::as_bytes(std::span(bytes)));
   const fs::path entry = entry_path(folder, path, content);
   ModelFile cached;
   const bool found = load_entry(entry, content, beside, options, &cached);

@@ -189,9 +189,9 @@ void visit_fields(Visitor& v, RecordOptions& o) {
   v("outputs", o.outputs, FieldRule{.choices = words(kRecordOutputs)});
 }
 
-/// [scene]
+/// [scene]: the file itself.
 struct SceneHeader {
-  std::string name;
+  std::string name;  ///< in messages and results
 };
 template <class Visitor>
 void visit_fields(Visitor& v, SceneHeader& o) {

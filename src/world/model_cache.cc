@@ -6,14 +6,13 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
-#include <cstring>
 #include <mutex>
 #include <thread>
 
 #include "base/archive.h"
+#include "base/cache.h"
 #include "base/files.h"
 #include "base/hash.h"
-#include "base/log.h"
 #include "scene/mujoco_guard.h"
 #include "scene/mujoco_plugins.h"
 
@@ -57,11 +56,12 @@ void visit_entry(F& f, CacheEntry& e) {
   f(e.has_plugins);
 }
 
-constexpr uint64_t kMagic = 0x32444C574D4F4C47ull;  // "GLOMWLD2": changes with the layout below
-constexpr uint64_t kLargestCache = uint64_t{4} << 30;
+constexpr uint64_t kMagic = 0x33444C574D4F4C47ull;  // "GLOMWLD3": changes with the layout below
 constexpr uint64_t kLargestEntry = uint64_t{2} << 30;
 
-fs::path model_cache_folder() { return cache_folder() / "models"; }
+fs::path entry_of(const Scene& scene) {
+  return cache_folder(kModelCache) / cache_entry_name(kModelCache, world_cache_key(scene));
+}
 
 void put_model(const mjModel* model, ArchiveWriter* out) {
   const uint64_t size = model == nullptr ? 0 : static_cast<uint64_t>(mj_sizeModel(model));
@@ -80,34 +80,22 @@ ModelPtr get_model(ArchiveReader* in) {
   return ModelPtr(model);
 }
 
-constexpr size_t kHeaderSize = 2 * sizeof(uint64_t);  // magic, hash of the rest
-
 std::vector<uint8_t> serialise(const CompiledWorld& world,
                                const std::vector<Dependency>& dependencies) {
   CacheEntry entry{dependencies,      world.initial_key, world.robots,
                    world.visual_only, world.unsupported, world.model->nplugin > 0};
   ArchiveWriter out;
-  out(kMagic);
-  out(uint64_t{0});
+  begin_cache_entry(&out.bytes);
   visit_entry(out, entry);
   put_model(world.model.get(), &out);
   put_model(world.visual_model.get(), &out);
-  const uint64_t hash = hash_bytes(out.bytes.data() + kHeaderSize, out.bytes.size() - kHeaderSize);
-  std::memcpy(out.bytes.data() + sizeof(kMagic), &hash, sizeof(hash));
+  seal_cache_entry(kMagic, &out.bytes);
   return std::move(out.bytes);
 }
 
 void write_entry(const CompiledWorld& world, const std::vector<Dependency>& dependencies) {
-  const fs::path folder = model_cache_folder();
   const std::vector<uint8_t> entry = serialise(world, dependencies);
-  if (entry.size() > kLargestEntry) return;
-  Status status = make_folder(folder);
-  if (status.ok()) {
-    const fs::path path = folder / (hash_to_hex(world_cache_key(world.scene)) + ".world");
-    status = write_file_atomic(path, entry);
-  }
-  if (!status.ok()) return log_debug("cache not written: {}", status.error().to_string());
-  trim_cache(folder, kLargestCache);
+  if (entry.size() <= kLargestEntry) keep_in_cache(entry_of(world.scene), entry);
 }
 
 // A program that has just compiled a world goes on to start up; an entry of 70 MB can wait for
@@ -202,18 +190,13 @@ uint64_t world_cache_key(const Scene& scene) {
 }
 
 std::shared_ptr<CompiledWorld> load_cached_world(const Scene& scene) {
-  const fs::path path = model_cache_folder() / (hash_to_hex(world_cache_key(scene)) + ".world");
+  const fs::path path = entry_of(scene);
   std::error_code code;
   if (!fs::exists(path, code)) return nullptr;
   const Result<std::vector<uint8_t>> bytes = read_file(path, kLargestEntry);
   if (!bytes.ok()) return nullptr;
-  ArchiveReader header(*bytes);
-  uint64_t magic = 0, hash = 0;
-  header(magic);
-  header(hash);
-  if (!header.ok() || magic != kMagic) return nullptr;
-  const std::span<const uint8_t> payload = std::span(*bytes).subspan(kHeaderSize);
-  if (hash_bytes(payload.data(), payload.size()) != hash) return nullptr;
+  const std::span<const uint8_t> payload = unseal_cache_entry(kMagic, *bytes);
+  if (payload.empty()) return nullptr;
 
   ModelFiles files;
   bool admitted = true;
@@ -243,7 +226,7 @@ std::shared_ptr<CompiledWorld> load_cached_world(const Scene& scene) {
   world->model = get_model(&in);
   world->visual_model = get_model(&in);
   if (!in.ok() || world->model == nullptr) return nullptr;
-  fs::last_write_time(path, fs::file_time_type::clock::now(), code);  // used now: evict it late
+  mark_cache_use(path);
   return world;
 }
 
@@ -253,28 +236,5 @@ void store_cached_world(std::shared_ptr<const CompiledWorld> world,
 }
 
 void finish_cache_writes() { background_writer().finish(); }
-
-void trim_cache(const fs::path& folder, uint64_t limit) {
-  struct Entry {
-    fs::path path;
-    fs::file_time_type used;
-    uint64_t size;
-  };
-  std::vector<Entry> entries;
-  uint64_t total = 0;
-  std::error_code code;
-  for (fs::directory_iterator it(folder, code), end; !code && it != end; it.increment(code)) {
-    std::error_code ignored;
-    if (!it->is_regular_file(ignored)) continue;
-    entries.push_back({it->path(), it->last_write_time(ignored), it->file_size(ignored)});
-    total += entries.back().size;
-  }
-  std::sort(entries.begin(), entries.end(),
-            [](const Entry& a, const Entry& b) { return a.used < b.used; });
-  for (const Entry& entry : entries) {
-    if (total <= limit) break;
-    if (fs::remove(entry.path, code)) total -= entry.size;
-  }
-}
 
 }  // namespace gloam

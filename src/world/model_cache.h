@@ -21,7 +21,4 @@ void store_cached_world(std::shared_ptr<const CompiledWorld> world,
 /// Waits for entries that are being written. For tests and timings.
 void finish_cache_writes();
 
-/// Removes the entries that were used longest ago until the folder holds at most `limit` bytes.
-void trim_cache(const std::filesystem::path& folder, uint64_t limit);
-
 }  // namespace gloam

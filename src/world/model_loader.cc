@@ -6,18 +6,15 @@
 #include <chrono>
 #include <optional>
 
-#include "base/files.h"
+#include "base/cache.h"
 #include "base/log.h"
 #include "base/parallel.h"
 #include "geometry/model_file_cache.h"
 #include "scene/model_path.h"
-#include "world/model_cache.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr uint64_t kLargestCache = uint64_t{8} << 30;
 
 /// Tells of files that take long, every two seconds.
 class SlowProgress {
@@ -76,13 +73,12 @@ Result<std::vector<LoadedModel>> load_visual_files(const Scene& scene) {
     });
     if (!is_known) first.push_back(&visual);
   }
-  const fs::path cache = cache_folder() / "visuals";
+  const fs::path cache = cache_folder(kVisualCache);
   std::vector<std::optional<Result<ModelFile>>> read(first.size());
   parallel_for("model files", static_cast<int64_t>(first.size()), [&](int64_t i) {
     const auto k = static_cast<size_t>(i);
     read[k] = load(scene, *first[k], cache);
   });
-  trim_cache(cache, kLargestCache);
   std::vector<LoadedModel> out;
   for (size_t i = 0; i < first.size(); ++i) {
     GLOAM_TRY(ModelFile model, std::move(*read[i]));

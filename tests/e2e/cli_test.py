@@ -11,7 +11,7 @@ import unittest
 
 from e2e.support import PENDULUM, PROGRAM, ROOT, ProgramTest, video_frames
 
-COMMANDS = ["demo", "run", "render", "info", "export", "completion"]
+COMMANDS = ["demo", "run", "render", "info", "export", "cache", "schema", "completion"]
 SCRIPT_COMMANDS = re.findall(r"^  (\w+)\)$", (ROOT / "gloam").read_text(), re.M)
 
 
@@ -27,6 +27,11 @@ class Help(ProgramTest):
         for command in COMMANDS + SCRIPT_COMMANDS:
             self.assertIn(command, text)
 
+    def test_schemas_are_json(self):
+        self.assertIn("robot", json.loads(self.gloam("schema", "scene").stdout)["properties"])
+        self.assertIn("mujoco", json.loads(self.gloam("schema", "model").stdout)["properties"])
+        self.assertIn("scene", self.gloam("schema", "scenes", expect=2).stderr)
+
     def test_version_names_mujoco(self):
         self.assertIn("MuJoCo 4.0.1", self.gloam("--version").stdout)
 
@@ -41,6 +46,36 @@ class Help(ProgramTest):
         self.assertIn("render", answer.stdout, answer.stderr)
 
 
+class Cache(ProgramTest):
+    def test_lists_and_clears_what_it_keeps(self):
+        obj = self.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        scene = self.write("s.toml", f'[[visual]]\nname = "v"\nfile = "{obj.name}"\n[[camera]]\nname = "c"\nposition = [0, 0, 3]\n')
+        self.gloam("render", scene, "--spp", "1", "--resolution", "8x8", "--out", "out")
+        theirs = self.write("cache/visuals/theirs.model", "not Gloam's")
+        text = self.gloam("cache").stdout
+        self.assertIn(str(self.folder / "cache" / "visuals"), text)
+        self.assertIn("1 entry,", text)
+        data = json.loads(self.gloam("cache", "--json").stdout)
+        self.assertEqual([kind["name"] for kind in data["kinds"]], ["models", "visuals", "bvhs"])
+        self.assertEqual([kind["entries"] for kind in data["kinds"]], [0, 1, 0])
+        self.assertEqual(data["bytes"], data["kinds"][1]["bytes"])
+        self.assertEqual(data["limit_bytes"], 10 << 30)
+        self.assertIsNone(data["kinds"][0]["newest_use"])
+        self.assertRegex(data["kinds"][1]["newest_use"], r"^20\d\d-\d\d-\d\dT\d\d:\d\d:\d\dZ$")
+        self.gloam("cache", "clear", "models")
+        self.assertEqual(json.loads(self.gloam("cache", "--json").stdout)["kinds"][1]["entries"], 1)
+        removed = json.loads(self.gloam("cache", "clear", "--json").stdout)["removed"]
+        self.assertEqual([kind["entries"] for kind in removed], [0, 1, 0])
+        self.assertEqual(list((self.folder / "cache/visuals").iterdir()), [theirs])
+
+    def test_without_room_nothing_is_kept(self):
+        obj = self.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+        scene = self.write("s.toml", f'[[visual]]\nname = "v"\nfile = "{obj.name}"\n[[camera]]\nname = "c"\nposition = [0, 0, 3]\n')
+        for size, entries in [("0", 0), ("1K", 1)]:
+            self.gloam("render", scene, "--spp", "1", "--resolution", "8x8", "--out", f"out{size}", env={"GLOAM_CACHE_SIZE": size})
+            self.assertEqual(json.loads(self.gloam("cache", "--json").stdout)["kinds"][1]["entries"], entries)
+
+
 class Mistakes(ProgramTest):
     """Bad input: one line that names the file, the line, the cause; the right exit code; no crash."""
 
@@ -52,6 +87,14 @@ class Mistakes(ProgramTest):
             self.assertIn(word, lines[0])
         self.assertEqual(result.stdout, "")
         return lines[0]
+
+    def test_caches_that_cannot_be_used(self):
+        self.complains(2, "cache", "claer", words=["claer"])
+        self.complains(2, "cache", "clear", "modles", words=["there is no cache 'modles'", "did you mean 'models'?"])
+        self.complains(1, "cache", env={"GLOAM_CACHE_SIZE": "much"}, words=["GLOAM_CACHE_SIZE is 'much'", "20G"])
+        file = self.write("file", "no folder")
+        for arguments in (["cache"], ["cache", "clear"]):
+            self.complains(1, *arguments, env={"GLOAM_CACHE": str(file)}, words=[str(file), "cannot read the cache"])
 
     def test_unknown_command_and_option_are_usage_errors(self):
         self.complains(2, "rnu", words=["gloam: error: there is no command 'rnu'", "did you mean 'run'?"])

@@ -35,11 +35,12 @@ class Documentation(unittest.TestCase):
             os.symlink(ROOT / "gloam", Path(scratch) / "gloam")
             for name in ["examples", "assets"]:  # copies: a scene may not read through links out of its root
                 shutil.copytree(ROOT / name, Path(scratch) / name)
+            own = {**os.environ, "GLOAM_CACHE": str(Path(scratch) / "cache")}  # a page clears it
             for command in commands(path):
                 if NOT_HERE.match(command) or (NEEDS_A_CARD.match(command) and not shutil.which("nvidia-smi")):
                     continue
                 serves = "--view" in command
-                process = subprocess.Popen(["bash", "-c", "exec " + command if serves else command], cwd=scratch, text=True,
+                process = subprocess.Popen(["bash", "-c", "exec " + command if serves else command], cwd=scratch, text=True, env=own,
                                            stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
                 try:
                     output, _ = process.communicate(timeout=8 if serves else 15 * MINUTES)

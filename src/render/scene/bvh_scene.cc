@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
+#include "geometry/bvh_cache.h"
 
 namespace gloam {
 namespace {
@@ -74,7 +75,7 @@ void BvhScene::build(const RenderScene& scene) {
     mesh.deforms = in.shape == ShapeType::kDeformable;
     if (!mesh.tree.order.empty()) continue;
     const std::vector<BvhBox> boxes = triangle_boxes(scene.meshes()[in.mesh]);
-    mesh.tree = build_bvh(boxes, {4, bvh::kMeshDepth});
+    mesh.tree = build_bvh_cached(boxes, {4, bvh::kMeshDepth});
     mesh.box = box_of_all(boxes);
   }
   lay_out(scene);

@@ -1,0 +1,112 @@
+// gloam cache: what is kept on disk so that a second start is faster.
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+#include "gloam/program.h"
+
+namespace gloam::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using Time = std::optional<std::chrono::system_clock::time_point>;
+
+std::string mebibytes(uint64_t bytes) {
+  return fmt::format("{:.1f} MiB", static_cast<double>(bytes) / (1 << 20));
+}
+
+std::string entries_of(const CacheKind& kind) {
+  return fmt::format("{} {}", kind.entries, kind.entries == 1 ? "entry" : "entries");
+}
+
+std::string local_time(const Time& time) {
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(*time);
+  std::tm local{};
+  ::localtime_r(&seconds, &local);
+  return fmt::format("{:%Y-%m-%d %H:%M}", local);
+}
+
+Json utc_time(const Time& time) {
+  if (!time) return nullptr;
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(*time);
+  std::tm utc{};
+  ::gmtime_r(&seconds, &utc);
+  return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", utc);
+}
+
+Json as_json(const CacheKind& kind) {
+  return {{"name", kind.name},
+          {"what", kind.what},
+          {"folder", kind.folder.string()},
+          {"entries", kind.entries},
+          {"bytes", kind.bytes},
+          {"oldest_use", utc_time(kind.oldest_use)},
+          {"newest_use", utc_time(kind.newest_use)}};
+}
+
+int list(const Globals& globals) {
+  const Result<CacheInfo> info = cache_info();
+  if (!info.ok()) return fail(info.error());
+  uint64_t bytes = 0;
+  for (const CacheKind& kind : info->kinds) bytes += kind.bytes;
+  if (globals.json) {
+    Json json = {{"folder", info->folder.string()},
+                 {"bytes", bytes},
+                 {"limit_bytes", info->limit_bytes},
+                 {"kinds", Json::array()}};
+    for (const CacheKind& kind : info->kinds) json["kinds"].push_back(as_json(kind));
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    return 0;
+  }
+  fmt::print("{}: {} of at most {}\n", info->folder.string(), mebibytes(bytes),
+             mebibytes(info->limit_bytes));
+  for (const CacheKind& kind : info->kinds) {
+    fmt::print("\n{} in {}\n  {}\n  {}, {}", kind.name, kind.folder.string(), kind.what,
+               entries_of(kind), mebibytes(kind.bytes));
+    if (kind.oldest_use)
+      fmt::print("; last used from {} to {}", local_time(kind.oldest_use),
+                 local_time(kind.newest_use));
+    fmt::print("\n");
+  }
+  return 0;
+}
+
+int clear(const std::string& which, const Globals& globals) {
+  const Result<std::vector<CacheKind>> removed = clear_cache(which);
+  if (!removed.ok()) return fail(removed.error());
+  Json json = {{"removed", Json::array()}};
+  for (const CacheKind& kind : *removed) {
+    json["removed"].push_back(as_json(kind));
+    if (!globals.json)
+      fmt::print("{}: {} removed, {}\n", kind.name, entries_of(kind), mebibytes(kind.bytes));
+  }
+  if (globals.json) fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+  return 0;
+}
+
+}  // namespace
+
+void add_cache(CLI::App& app, Globals& globals, Action& action) {
+  CLI::App* sub = app.add_subcommand(
+      "cache", "List what is kept on disk so that a second start is faster, or clear it");
+  sub->require_subcommand(0, 1);
+  sub->footer(
+      "GLOAM_CACHE is the folder (default: ~/.cache/gloam), GLOAM_CACHE_SIZE the most that it "
+      "holds (default: 10G);\nwhat was used longest ago is dropped first.\n"
+      "Examples:\n  gloam cache\n  gloam cache clear visuals");
+  CLI::App* clearing = sub->add_subcommand("clear", "Remove the entries");
+  auto kind = std::make_shared<std::string>();
+  clearing->add_option("KIND", *kind, "Of one kind only, as gloam cache lists them");
+  clearing->footer("Example:\n  gloam cache clear");
+  sub->callback([&globals, &action, clearing, kind] {
+    action = [&globals, is_clear = clearing->parsed(), kind] {
+      return is_clear ? clear(*kind, globals) : list(globals);
+    };
+  });
+}
+
+}  // namespace gloam::cli
