@@ -16,6 +16,7 @@ find_package(benchmark QUIET)
 
 pkg_check_modules(XXHASH REQUIRED IMPORTED_TARGET libxxhash)
 add_library(gloam_xxhash ALIAS PkgConfig::XXHASH)
+pkg_check_modules(RE2 REQUIRED IMPORTED_TARGET re2)
 pkg_check_modules(ZSTD IMPORTED_TARGET libzstd)
 pkg_check_modules(OPENH264 IMPORTED_TARGET openh264)
 

@@ -61,6 +61,21 @@ struct RobotOptions {
   SourceLoc loc = {};
 };
 
+/// [override.ROBOT.TAG."PATTERN"]: one attribute of elements of a robot's model, as its file would
+/// give it. What names an element exactly beats what is a pattern, a later line an earlier one.
+struct OverrideOptions {
+  std::string robot = {};  ///< name of a [[robot]], or "environment"
+  /// Element of MJCF, "joint" or "position"; a section for all of its elements, "actuator"; what a
+  /// model has once, "option" or "visual/map".
+  std::string tag = {};
+  /// Name in the robot's own model, or a regular expression (RE2) for whole names; empty for what a
+  /// model has once.
+  std::string pattern = {};
+  std::string attribute = {};
+  std::string value = {};  ///< as in MJCF: "0.5", "1 0 0", "true"
+  SourceLoc loc = {};
+};
+
 /// [environment]: everything that is not a robot.
 struct EnvironmentOptions {
   std::filesystem::path file =
@@ -204,7 +219,8 @@ struct Scene {
   std::filesystem::path file = {};  ///< what it was read from; empty for scenes made in code
   FileAccess access = {};
   EnvironmentOptions environment = {};
-  std::vector<RobotOptions> robots = {};  ///< in source order
+  std::vector<RobotOptions> robots = {};        ///< in source order
+  std::vector<OverrideOptions> overrides = {};  ///< in source order
   std::vector<CameraOptions> cameras = {};
   std::vector<LidarOptions> lidars = {};
   std::vector<MaterialOptions> materials = {};

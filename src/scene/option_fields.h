@@ -205,6 +205,7 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("sim", scene.sim, FieldRule{});
   v("environment", scene.environment, FieldRule{});
   v("robot", scene.robots, FieldRule{});
+  v("override", scene.overrides, FieldRule{});
   v("camera", scene.cameras, FieldRule{});
   v("lidar", scene.lidars, FieldRule{});
   v("material", scene.materials, FieldRule{});

@@ -10,6 +10,7 @@
 #include "base/text.h"
 #include "scene/camera_lens.h"
 #include "scene/option_fields.h"
+#include "scene/overrides.h"
 #include "scene/validate_imager.h"
 #include "scene/validate_lidar.h"
 #include "scene/validate_light.h"
@@ -77,6 +78,10 @@ class FieldChecker {
   void check(std::string_view key, const std::optional<T>& value, const FieldRule& rule) {
     if (value) check(key, *value, rule);
   }
+  void check(std::string_view, const std::vector<OverrideOptions>&, const FieldRule&) {
+    // validate_overrides
+  }
+
   template <class T>
   void check(std::string_view key, const std::vector<T>& values, const FieldRule& rule) {
     for (const T& value : values) {
@@ -155,6 +160,7 @@ Status validate_scene(const Scene& scene) {
   visit_tables(checker, header, const_cast<Scene&>(scene));  // visitors that read do not write
   GLOAM_TRY_STATUS(std::move(status));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.robots, "robot"));
+  GLOAM_TRY_STATUS(validate_overrides(scene));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.cameras, "camera"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.visuals, "visual"));
   GLOAM_TRY_STATUS(validate_render(scene.render));

@@ -8,6 +8,7 @@
 #include "base/text.h"
 #include "scene/mujoco_guard.h"
 #include "scene/mujoco_plugins.h"
+#include "scene/overrides.h"
 #include "scene/urdf_text.h"
 #include "world/finite_model.h"
 #include "world/level_cameras.h"
@@ -142,10 +143,12 @@ Result<Level> assemble(const Scene& scene, ModelFiles* files, mjtConflict policy
     mjs_setString(level.spec->modelname, scene.name.c_str());
     if (!scene.robots.empty()) add_default_floor(level.spec.get());
   }
+  GLOAM_TRY_STATUS(apply_overrides(scene.overrides, kEnvironmentName, level.spec.get()));
   if (level.spec->compiler.conflict == mjCONFLICT_WARNING && !scene.robots.empty())
     level.spec->compiler.conflict = policy;
   for (const RobotOptions& robot : scene.robots) {
     GLOAM_TRY(SpecPtr child, parse_model(robot.file, scene.access, files, &level.unsupported));
+    GLOAM_TRY_STATUS(apply_overrides(scene.overrides, robot.name, child.get()));
     GLOAM_TRY_STATUS(attach_robot(level.spec.get(), robot, child.get(), files, &level.unsupported));
     level.robots.push_back({robot, std::move(child)});
   }

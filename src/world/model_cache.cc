@@ -173,6 +173,11 @@ uint64_t world_cache_key(const Scene& scene) {
     key(robot.keyframe);
     key(robot.loc.line);  // stands in cached messages
   }
+  for (const OverrideOptions& override : scene.overrides) {
+    for (const std::string* part :
+         {&override.robot, &override.tag, &override.pattern, &override.attribute, &override.value})
+      key(*part);
+  }
   for (const CameraOptions& camera : scene.cameras) {
     key(camera.name);
     key(camera.body);

@@ -232,22 +232,41 @@ AttributeEffect find_effect(const MjcfElement& element, const MjcfAttribute& att
           readings.complaint.ok() ? "" : readings.complaint.error().message};
 }
 
-Status set_spec_attribute(mjSpec* spec, mjsElement* target, const MjcfElement& element,
-                          const MjcfAttribute& attribute, const std::string& value) {
-  if (attribute.name == "name" && target != nullptr) {
-    if (mjs_setName(target, value.c_str()) == 0) return {};
-    return Error{ErrorKind::kInput, fmt::format("the name '{:.60}' is taken", value)};
+struct AttributeValue::Learned {
+  const MjcfElement* element;
+  const MjcfAttribute* attribute;
+  std::string value;
+  Readings readings = {};
+
+  std::vector<SpecObject> objects(size_t reading) const {
+    const mjSpec* spec = readings.specs[reading].get();
+    return objects_of(spec, specimen_of(spec, *element));
   }
-  Readings readings = read_values(element, attribute, &value);
-  if (!readings.refused.ok()) return readings.refused;
-  const auto of = [&](size_t i) {
-    const mjSpec* read = readings.specs[i].get();
-    return objects_of(read, specimen_of(read, element));
-  };
-  const std::vector<SpecObject> wanted = of(0), to = objects_of(spec, target);
+};
+
+AttributeValue::AttributeValue(std::unique_ptr<Learned> learned) : learned_(std::move(learned)) {}
+AttributeValue::~AttributeValue() = default;
+AttributeValue::AttributeValue(AttributeValue&&) noexcept = default;
+
+Result<AttributeValue> AttributeValue::read(const MjcfElement& element,
+                                            const MjcfAttribute& attribute,
+                                            const std::string& value) {
+  auto learned = std::make_unique<Learned>(Learned{&element, &attribute, value});
+  learned->readings = read_values(element, attribute, &value);
+  if (!learned->readings.refused.ok()) return learned->readings.refused.error();
+  return AttributeValue(std::move(learned));
+}
+
+Status AttributeValue::set(mjSpec* spec, mjsElement* target) const {
+  const Learned& l = *learned_;
+  if (l.attribute->name == "name" && target != nullptr) {
+    if (mjs_setName(target, l.value.c_str()) == 0) return {};
+    return Error{ErrorKind::kInput, fmt::format("the name '{:.60}' is taken", l.value)};
+  }
+  const std::vector<SpecObject> wanted = l.objects(0), to = objects_of(spec, target);
   std::vector<std::vector<SpecObject>> others;
-  for (size_t i = 1; i < readings.specs.size(); ++i) {
-    others.push_back(of(i));
+  for (size_t i = 1; i < l.readings.specs.size(); ++i) {
+    others.push_back(l.objects(i));
     if (others.back().size() != wanted.size()) others.pop_back();
   }
   bool any = false;
@@ -259,8 +278,8 @@ Status set_spec_attribute(mjSpec* spec, mjsElement* target, const MjcfElement& e
   }
   if (any) return {};
   return Error{ErrorKind::kUnsupported,
-               fmt::format("'{}' of <{}> cannot be changed once the model is read", attribute.name,
-                           element.name)};
+               fmt::format("'{}' of <{}> cannot be changed once the model is read",
+                           l.attribute->name, l.element->name)};
 }
 
 }  // namespace gloam

@@ -4,6 +4,7 @@
 // attribute, and what differs is what it sets. So `kp` of a position servo or `euler` of a body
 // mean here what they mean in a file.
 
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,10 +25,24 @@ struct AttributeEffect {
 };
 AttributeEffect find_effect(const MjcfElement& element, const MjcfAttribute& attribute);
 
-/// Sets an attribute of one element of `spec` as its file would; `target` is null for what a model
-/// has once: options, sizes, visuals. Errors: MuJoCo refuses the value, nothing could be set.
-Status set_spec_attribute(mjSpec* spec, mjsElement* target, const MjcfElement& element,
-                          const MjcfAttribute& attribute, const std::string& value);
+/// One value of an attribute, to be set in elements of parsed models as their files would.
+class AttributeValue {
+ public:
+  /// Errors: not what the attribute takes, MuJoCo's parser refuses it.
+  static Result<AttributeValue> read(const MjcfElement& element, const MjcfAttribute& attribute,
+                                     const std::string& value);
+  ~AttributeValue();
+  AttributeValue(AttributeValue&&) noexcept;
+
+  /// `target` is null for what a model has once: options, sizes, visuals. Errors: nothing of it
+  /// can be set once a model is parsed; a name that is taken.
+  Status set(mjSpec* spec, mjsElement* target) const;
+
+ private:
+  struct Learned;
+  explicit AttributeValue(std::unique_ptr<Learned> learned);
+  std::unique_ptr<Learned> learned_;
+};
 
 /// Kind of the element that MuJoCo makes of it; mjOBJ_UNKNOWN for what a model has once.
 mjtObj object_of(const MjcfElement& element);

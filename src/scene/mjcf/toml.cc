@@ -6,35 +6,35 @@
 
 #include "base/text.h"
 #include "scene/mjcf/node.h"
+#include "scene/mjcf/toml_value.h"
 #include "scene/toml/table_reader.h"
 #include "scene/xml_text.h"
 
-namespace gloam::mjcf {
-namespace {
+namespace gloam {
 
-// As the attribute would be written in XML; nothing if TOML holds what no attribute takes.
-std::optional<std::string> text_of(const toml::node& node) {
+std::optional<std::string> mjcf_text(const toml::node& node) {
   if (const auto* text = node.as_string()) return text->get();
   if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
-  if (const auto* number = node.as_floating_point()) return number_text(number->get());
+  if (const auto* number = node.as_floating_point()) return mjcf::number_text(number->get());
   if (const auto* flag = node.as_boolean()) return flag->get() ? "true" : "false";
   const auto* array = node.as_array();
   if (array == nullptr) return {};
   std::string text;
   for (const toml::node& item : *array) {
-    const std::optional<std::string> word = item.is_array() ? std::nullopt : text_of(item);
+    const std::optional<std::string> word = item.is_array() ? std::nullopt : mjcf_text(item);
     if (!word) return {};
     text += (text.empty() ? "" : " ") + *word;
   }
   return text;
 }
 
-// What `clampctrl = true` means where MJCF says enable.
-std::string keyword_of(const MjcfAttribute& attribute, const toml::node& node, std::string text) {
-  if (node.is_boolean() && attribute.keywords == "disable enable")
-    return text == "true" ? "enable" : "disable";
-  return text;
+std::string mjcf_keyword(const MjcfAttribute& attribute, std::string text) {
+  if (attribute.keywords != "disable enable") return text;
+  return text == "true" ? "enable" : text == "false" ? "disable" : text;
 }
+
+namespace mjcf {
+namespace {
 
 struct Below {
   std::string tag;
@@ -87,15 +87,15 @@ class Reader {
   Status read_value(const std::string& key, const toml::node& node, Node* to) const {
     const SourceLoc loc = loc_of(node, file_);
     if (to->element->path == kTextPath && key == "content") {
-      to->content = text_of(node).value_or("");
+      to->content = mjcf_text(node).value_or("");
       return {};
     }
     GLOAM_TRY(const MjcfAttribute* attribute, attribute_of(*to->element, key, loc));
-    const std::optional<std::string> text = text_of(node);
+    const std::optional<std::string> text = mjcf_text(node);
     if (!text)
       return Error{ErrorKind::kInput, fmt::format("'{}' takes {}", key, describe_type(*attribute)),
                    loc};
-    const std::string value = keyword_of(*attribute, node, *text);
+    const std::string value = mjcf_keyword(*attribute, *text);
     if (Status status = check_mjcf_value(*attribute, value); !status.ok()) {
       Error error = to->refused(status.error());
       error.loc = loc;
@@ -195,4 +195,5 @@ std::string write_toml(const Node& root) {
   return text.substr(1);
 }
 
-}  // namespace gloam::mjcf
+}  // namespace mjcf
+}  // namespace gloam

@@ -15,6 +15,7 @@
 
 #include "gloam/scene.h"
 #include "scene/option_fields.h"
+#include "scene/overrides.h"
 
 namespace gloam {
 
@@ -156,6 +157,21 @@ Json schema_of(const Options& value, const FieldRule& rule);
 
 template <class T>
 Json schema_of(const std::vector<T>& value, const FieldRule& rule);
+
+// [override.ROBOT.TAG."NAME"], and one name less or more for what a model has once.
+Json schema_of(const std::vector<OverrideOptions>& /*value*/, const FieldRule& /*rule*/) {
+  const Json value = {{"type", {"string", "number", "boolean", "array", "object"}}};
+  Json tags = Json::object();
+  for (const MjcfElement& element : MjcfSchema::get().elements()) {
+    const std::string tag(element.name);
+    if (!tags.contains(tag) && !overridden_elements(tag).empty())
+      tags[tag] = {{"type", "object"}, {"additionalProperties", value}};
+  }
+  return {{"type", "object"},
+          {"description", struct_text(OverrideOptions{})},
+          {"additionalProperties",
+           {{"type", "object"}, {"properties", tags}, {"additionalProperties", false}}}};
+}
 
 template <class T>
 Json schema_of(const std::optional<T>& /*value*/, const FieldRule& rule) {

@@ -30,6 +30,12 @@ std::string joined(const std::set<std::string>& list) {
   return text;
 }
 
+Status set_attribute(mjSpec* spec, mjsElement* target, const MjcfElement& element,
+                     const MjcfAttribute& attribute, const std::string& value) {
+  GLOAM_TRY(const AttributeValue read, AttributeValue::read(element, attribute, value));
+  return read.set(spec, target);
+}
+
 TEST(MjcfSpec, EveryElementHasASpecimenThatMuJoCoReads) {
   for (const MjcfElement& element : MjcfSchema::get().elements()) {
     const mjcf::Specimen specimen = mjcf::make_specimen(element);
@@ -123,7 +129,7 @@ TEST(MjcfSpec, SlowSettingAfterwardsIsTheSameAsWritingItInTheFile) {
                                  ? nullptr
                                  : mjs_findElement(later->get(), type, mjcf::kSpecimenName);
         ASSERT_TRUE(type == mjOBJ_UNKNOWN || target != nullptr) << element.path;
-        const Status status = set_spec_attribute(later->get(), target, element, attribute, value);
+        const Status status = set_attribute(later->get(), target, element, attribute, value);
         std::vector<SpecDifference> difference = spec_difference(later->get(), written->get());
         std::erase_if(difference,
                       [](const SpecDifference& d) { return d.field.ends_with(".info"); });
@@ -146,13 +152,12 @@ TEST(MjcfSpec, AServosGainIsSetWithAllThatFollowsFromIt) {
   ASSERT_TRUE(spec.ok());
   mjsElement* element = mjs_findElement(spec->get(), mjOBJ_ACTUATOR, "p");
   EXPECT_EQ(written_as(element), &position);
-  ASSERT_TRUE(set_spec_attribute(spec->get(), element, position, *position.find("kp"), "55").ok());
+  ASSERT_TRUE(set_attribute(spec->get(), element, position, *position.find("kp"), "55").ok());
   const mjsActuator* actuator = mjs_asActuator(element);
   EXPECT_EQ(actuator->gainprm[0], 55);
   EXPECT_EQ(actuator->biasprm[1], -55);
   EXPECT_EQ(actuator->biasprm[2], -3) << "the damping stays";
-  const Status status =
-      set_spec_attribute(spec->get(), element, position, *position.find("kp"), "much");
+  const Status status = set_attribute(spec->get(), element, position, *position.find("kp"), "much");
   EXPECT_FALSE(status.ok());
 }
 

@@ -125,9 +125,21 @@ Status set_option(Scene& scene, std::string_view path, std::string_view toml_val
   Scene changed = scene;
   SceneHeader header{scene.name};
   Status status;
-  OptionSetter setter(names, 0, *parsed->get("value"), where, &status);
-  visit_tables(setter, header, changed);
-  setter.finish();
+  if (names[0] == "override") {
+    // Its keys are names and patterns, which may be quoted: TOML reads them as in a file.
+    GLOAM_TRY(const toml::table line, parse_toml(fmt::format("{} = {}", path, toml_value), where));
+    if (const toml::table* table = line["override"].as_table())
+      status = read_overrides(*table, where, &changed.overrides);
+    else
+      status = Error{ErrorKind::kUsage,
+                     "'override' needs more",
+                     {where, 0, 0},
+                     "as in override.ROBOT.joint.NAME.damping"};
+  } else {
+    OptionSetter setter(names, 0, *parsed->get("value"), where, &status);
+    visit_tables(setter, header, changed);
+    setter.finish();
+  }
   if (status.ok()) {
     changed.name = header.name;
     status = validate_scene(changed);

@@ -17,6 +17,7 @@
 #include "base/text.h"
 #include "scene/option_fields.h"
 #include "scene/toml/calendar.h"
+#include "scene/toml/override_reader.h"
 #include "scene/toml/toml_reader.h"
 
 namespace gloam {
@@ -278,6 +279,14 @@ class TableReader {
     T value{};
     read(node, key, value, rule);
     if (status_->ok()) out = value;
+  }
+
+  void read(const toml::node& node, const std::string& key, std::vector<OverrideOptions>& out,
+            const FieldRule&) {
+    const toml::table* table = node.as_table();
+    if (table == nullptr) return wrong_type(node, key, "a table");
+    const Status status = read_overrides(*table, file_, &out);
+    if (status_->ok() && !status.ok()) *status_ = status.error();
   }
 
   // Arrays of plain values replace the default; arrays of tables too.
