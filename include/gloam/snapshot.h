@@ -41,7 +41,9 @@ class Snapshot {
 
   JointState operator[](Joint joint) const;
   SensorState operator[](SensorHandle sensor) const;
-  double control(Actuator actuator) const;
+  double control(Actuator actuator) const;  ///< the first of several
+
+  World world() const;  ///< of which this is an instant: after a recompile another one
 
   const SnapshotData& data() const { return *data_; }
 
