@@ -1,5 +1,6 @@
 // A recompile under open streams, as users of gloam::Simulation see it.
 
+#include <algorithm>
 #include <atomic>
 #include <mutex>
 #include <thread>
@@ -106,7 +107,8 @@ TEST(Recompile, StreamsGoOnInTheNewWorld) {
   ASSERT_GE(scans.all().size(), 3u);
   for (const auto& scan : scans.all()) {
     EXPECT_NE(scan->index, 2);
-    for (const float range : scan->range) EXPECT_EQ(range < 3, scan->index > 2);
+    const float farthest = *std::max_element(scan->range.begin(), scan->range.end());
+    EXPECT_EQ(farthest < 3, scan->index > 2) << "the wall, or the screen before it";
   }
 }
 
