@@ -18,6 +18,11 @@ struct SetControl {
   Actuator actuator;
   double value = 0;
 };
+/// Puts a joint somewhere else, or gives it another velocity, in the units of JointState.
+struct SetJointState {
+  Joint joint;
+  std::vector<double> qpos, qvel;  ///< all of the joint's numbers; empty = stays as it is
+};
 /// Velocity goal of the robot's controller, in its heading frame [m/s, m/s, rad/s].
 struct SetVelocityGoal {
   int robot = 0;
@@ -78,11 +83,13 @@ struct SetLiveField {
   std::vector<float> values;
 };
 
+/// Commands that wait when the simulation is recompiled are for the things of the same names from
+/// then on; those of which the thing is gone are thrown away.
 struct Command {
   static constexpr int64_t kNextStep = -1;
   int64_t step = kNextStep;  ///< applies before this step is taken
   std::variant<SetControl, SetVelocityGoal, SetMocapPose, SetWrench, AddVelocity, DragBody,
-               ResetSim, SetLiveField>
+               ResetSim, SetLiveField, SetJointState>
       what;
 };
 

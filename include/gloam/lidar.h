@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "gloam/result.h"
 #include "gloam/types.h"
 
 namespace gloam {
@@ -53,6 +54,8 @@ class LidarStream {
  public:
   virtual ~LidarStream() = default;
   virtual int64_t dropped() const = 0;
+  /// Why it delivers no more, if so: memory ran out, or a recompile took its LiDAR away.
+  virtual Status status() const { return {}; }
 };
 using ScanCallback = std::function<void(std::shared_ptr<const LidarScan>)>;
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "gloam/result.h"
+
 namespace gloam {
 
 /// One sample of one sensor.
@@ -29,6 +31,8 @@ class SensorStream {
  public:
   virtual ~SensorStream() = default;
   virtual int64_t dropped() const = 0;  ///< lost because the reader was slow, not by the model
+  /// Why it delivers no more, if so: a recompile took its sensor away.
+  virtual Status status() const { return {}; }
 };
 /// Comes on the stream's own thread as soon as a sample is made; who wants it at its time looks at
 /// `delivery`.

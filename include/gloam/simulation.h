@@ -61,6 +61,8 @@ class CameraStream {
   /// Renders the latest Snapshot again, also while the simulation is paused.
   virtual void refresh() = 0;
   virtual int64_t dropped() const = 0;
+  /// Why it delivers no more, if so: memory ran out, or a recompile took its camera away.
+  virtual Status status() const { return {}; }
 };
 using FrameCallback = std::function<void(std::shared_ptr<const CameraFrame>)>;
 
@@ -88,7 +90,25 @@ class Simulation {
                                                     const SimulationOptions& options);
   virtual ~Simulation() = default;
 
-  virtual const World& world() const = 0;
+  /// The one that runs; after a recompile another one.
+  virtual World world() const = 0;
+  /// Goes on in another World at the present step: a robot more, a box less, another mass. What has
+  /// the same full name (without a name: the same place among its like) keeps its state: joints of
+  /// the same type, activations, controls, mocap poses, external forces, drags, equalities, live
+  /// fields that were changed, plugins; robots keep their goals and controllers. What is new begins
+  /// as its scene says. Commands that wait are for the things of the same names; those whose thing
+  /// is gone are dropped. Streams go on: an exposure or scan that has begun is lost; those whose
+  /// camera, LiDAR or sensor is gone, or keeps another schedule, end and say so in status().
+  /// Handles must be found again. Time, step and the chain of hashes go on; ResetSim goes to the
+  /// initial state of the new World. The old World runs on while the new one is made, and after an
+  /// Error: a scene that does not compile, another timestep, a simulation that has failed.
+  virtual Status recompile(const World&) {
+    return Error{ErrorKind::kUnsupported, "this simulation cannot be recompiled"};
+  }
+  Status recompile(const Scene& scene) {
+    GLOAM_TRY(const World world, World::compile(scene));
+    return recompile(world);
+  }
   /// Steps until `step`, then pauses; blocks. Errors: diverged (the last good state is kept),
   /// stopped by request_stop().
   virtual Status run_until(int64_t step) = 0;

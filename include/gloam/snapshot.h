@@ -4,7 +4,10 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
+#include "gloam/result.h"
 #include "gloam/types.h"
 #include "gloam/world.h"
 
@@ -41,12 +44,65 @@ class Snapshot {
 
   JointState operator[](Joint joint) const;
   SensorState operator[](SensorHandle sensor) const;
-  double control(Actuator actuator) const;
+  double control(Actuator actuator) const;  ///< the first of several
+
+  World world() const;  ///< of which this is an instant: after a recompile another one
 
   const SnapshotData& data() const { return *data_; }
 
  private:
   std::shared_ptr<const SnapshotData> data_;
+};
+
+/// A body at an instant, world axes.
+struct BodyState {
+  Pose X_WB;
+  Vec3 velocity, angular_velocity;       ///< of its origin [m/s], [rad/s]
+  Vec3 external_force, external_torque;  ///< applied at its centre of mass [N], [N m]
+};
+
+struct TendonState {
+  double length = 0, velocity = 0;  ///< [m] or of a fixed tendon its joints' unit; per second
+};
+
+/// Two geoms that touch. Without a geom: of a flex.
+struct ContactState {
+  Geom geoms[2];
+  Vec3 position;        ///< between the surfaces [m]
+  Vec3 normal;          ///< unit, from the first geom to the second
+  Vec3 tangents[2];     ///< complete the frame
+  double distance = 0;  ///< of the surfaces; negative = they overlap [m]
+  Vec3 force, torque;   ///< on the second geom, world axes [N], [N m]
+};
+
+/// All that MuJoCo knows of an instant, as one forward pass tells from its Snapshot: poses,
+/// velocities, forces of actuators and contacts, any array by name. Keeps its room from one
+/// Snapshot to the next; used by one thread at a time. Errors: a handle of another World than the
+/// last Snapshot's, a name that there is not.
+class Instant {
+ public:
+  Instant();
+  ~Instant();
+  Instant(Instant&&) noexcept;
+  Instant& operator=(Instant&&) noexcept;
+
+  /// Comes before all else. Error: MuJoCo's.
+  Status solve(const Snapshot& snapshot);
+
+  Result<BodyState> body(Body body) const;
+  Result<TendonState> tendon(Tendon tendon) const;
+  Result<double> force(Actuator actuator) const;  ///< in the actuator's space: N, N m
+  std::vector<ContactState> contacts() const;
+
+  /// A field of mjData, mjModel or its options ("opt.gravity") by its name in MuJoCo, as numbers:
+  /// all of it row by row, or what belongs to one named element: value("xfrc_applied",
+  /// "go1/trunk"), value("qpos", "arm/elbow"), value("geom_friction", "floor").
+  Result<std::vector<double>> value(const std::string& field,
+                                    const std::string& element = {}) const;
+
+ private:
+  struct Solved;
+  std::unique_ptr<Solved> solved_;
 };
 
 }  // namespace gloam

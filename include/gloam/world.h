@@ -14,25 +14,20 @@ namespace gloam {
 
 struct CompiledWorld;  // src/world/world.h
 
-/// Typed index of a named element. Resolve once with World::find_*, then use on every Snapshot.
-struct Joint {
+/// Typed index of a named element. Resolve once with World::find_*, then use on every Snapshot of
+/// that World. After a recompile find it again: a handle of another World is refused.
+template <class Kind>
+struct Handle {
   int id = -1;
+  uint64_t world = 0;  ///< which World found it; 0 = an id of one's own, taken as it stands
 };
-struct Body {
-  int id = -1;
-};
-struct Actuator {
-  int id = -1;
-};
-struct SensorHandle {
-  int id = -1;
-};
-struct Camera {
-  int id = -1;
-};
-struct Geom {
-  int id = -1;
-};
+using Joint = Handle<struct JointKind>;
+using Body = Handle<struct BodyKind>;
+using Actuator = Handle<struct ActuatorKind>;
+using SensorHandle = Handle<struct SensorHandleKind>;
+using Camera = Handle<struct CameraKind>;
+using Geom = Handle<struct GeomKind>;
+using Tendon = Handle<struct TendonKind>;
 
 /// A name and its kind, for listings.
 struct NamedElement {
@@ -66,6 +61,7 @@ class World {
   Result<SensorHandle> find_sensor(const std::string& name) const;
   Result<Camera> find_camera(const std::string& name) const;
   Result<Geom> find_geom(const std::string& name) const;
+  Result<Tendon> find_tendon(const std::string& name) const;
 
   WorldInfo info() const;
 

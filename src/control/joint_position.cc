@@ -26,6 +26,19 @@ class JointPositionController final : public Controller {
     for (size_t i = 0; i < joints_.size(); ++i) target_[i] = data->qpos[joints_[i].qpos];
   }
 
+  // What is held stays where it was: a held joint sags, and would sag further each time.
+  void take_over(const mjModel* model, const mjData* data, const Controller& before) override {
+    reset(model, data);
+    const auto* old = dynamic_cast<const JointPositionController*>(&before);
+    if (old == nullptr || !hold_initial_ || !old->hold_initial_) return;
+    for (size_t i = 0; i < joints_.size(); ++i) {
+      for (size_t j = 0; j < old->joints_.size(); ++j) {
+        const bool same_name = joints_[i].name == old->joints_[j].name;
+        if (same_name && (i == j || !joints_[i].name.empty())) target_[i] = old->target_[j];
+      }
+    }
+  }
+
   void control(const mjModel*, mjData* data, int64_t, double, const VelocityTarget&) override {
     for (size_t i = 0; i < joints_.size(); ++i) {
       const DrivenJoint& joint = joints_[i];

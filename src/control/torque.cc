@@ -23,6 +23,11 @@ class TorqueController final : public Controller {
 
   void reset(const mjModel*, const mjData*) override { started_ = false; }
 
+  void take_over(const mjModel*, const mjData*, const Controller& before) override {
+    const auto* old = dynamic_cast<const TorqueController*>(&before);
+    started_ = old != nullptr && old->started_ && old->controls_ == controls_;
+  }
+
   void control(const mjModel*, mjData* data, int64_t, double, const VelocityTarget&) override {
     if (started_) return;
     started_ = true;

@@ -51,6 +51,7 @@ class Trot final : public TrotController {
   void reset(const mjModel* model, const mjData* data) override;
   void control(const mjModel* model, mjData* data, int64_t step, double period,
                const VelocityTarget& goal) override;
+  void take_over(const mjModel* model, const mjData* data, const Controller& before) override;
   const TrotStatus& status() const override { return status_; }
 
  private:
@@ -109,6 +110,15 @@ void Trot::reset(const mjModel*, const mjData* data) {
     ground_ += s_.foot_W[k].z() / 4;
   }
   shaper_.reset(s_, s_.p_WB.z() - ground_);
+}
+
+// The gait's numbers follow from the size of the legs: with other legs it starts over.
+void Trot::take_over(const mjModel* model, const mjData* data, const Controller& before) {
+  const auto* old = dynamic_cast<const Trot*>(&before);
+  if (old == nullptr || old->robot_.leg_length != robot_.leg_length) return reset(model, data);
+  const Quadruped robot = robot_;
+  *this = *old;
+  robot_ = robot;
 }
 
 void Trot::choose_gait(double dt) {

@@ -26,26 +26,45 @@ CameraRequest probe_request(const CameraOptions& camera, int max_depth) {
 }  // namespace
 
 Result<std::unique_ptr<ExposureMeter>> ExposureMeter::open(Simulator& simulator,
-                                                           std::shared_ptr<SharedRenderer> shared,
+                                                           SharedRenderers& renderers,
                                                            const CameraOptions& camera,
-                                                           int max_depth, uint64_t seed,
-                                                           bool required) {
-  std::unique_ptr<ExposureMeter> meter(
-      new ExposureMeter(std::move(shared), *camera.sensing.imager->auto_exposure));
+                                                           uint64_t seed, bool required) {
+  std::unique_ptr<ExposureMeter> meter(new ExposureMeter(simulator, renderers, camera, seed));
   meter->required_ = required;
-  GLOAM_TRY(meter->probe_, CameraSensor::create(meter->shared_->description,
-                                                probe_request(camera, max_depth), seed));
-  const std::shared_ptr<const CompiledWorld> world(std::shared_ptr<void>(), &simulator.world());
-  GLOAM_TRY(meter->solver_, PoseSolver::create(world));
-  GLOAM_TRY(meter->timing_,
-            SensorTiming::make(camera.rate, camera.sensing.timing.value_or(TimingOptions{}),
-                               simulator.timestep(), sensor_seed(seed, camera.name)));
+  GLOAM_TRY_STATUS(meter->follow(simulator.world()));
   GLOAM_TRY(meter->queue_, simulator.subscribe({.rate = camera.rate,
                                                 .due = due_steps(meter->timing_),
                                                 .required = required,
                                                 .capacity = 2}));
   meter->thread_ = std::thread([raw = meter.get()] { raw->run(); });
   return meter;
+}
+
+// Makes what meters a World: at first, and when a Snapshot of another one comes. The exposure goes
+// on from where it was.
+Status ExposureMeter::follow(const std::shared_ptr<const CompiledWorld>& world) {
+  const auto& cameras = world->scene.cameras;
+  const auto camera = std::find_if(cameras.begin(), cameras.end(), [this](const CameraOptions& c) {
+    return c.name == camera_ && c.sensing.imager && c.sensing.imager->auto_exposure;
+  });
+  if (camera == cameras.end())
+    return Error{ErrorKind::kInput, "camera '" + camera_ + "' has no automatic exposure any more"};
+  GLOAM_TRY(auto shared, renderers_.of(world));
+  GLOAM_TRY(auto probe,
+            CameraSensor::create(shared->description,
+                                 probe_request(*camera, world->scene.render.max_depth), seed_));
+  GLOAM_TRY(auto solver, PoseSolver::create(world));
+  GLOAM_TRY(SensorTiming timing,
+            SensorTiming::make(camera->rate, camera->sensing.timing.value_or(TimingOptions{}),
+                               simulator_.timestep(), sensor_seed(seed_, camera_)));
+  const std::lock_guard lock(mutex_);
+  if (probe_ != nullptr && !timing.same_steps(timing_))
+    return other_schedule("camera '" + camera_ + "'");
+  timing_ = timing;
+  probe_ = std::move(probe);
+  shared_ = std::move(shared);
+  solver_ = std::move(solver);
+  return {};
 }
 
 ExposureMeter::~ExposureMeter() {
@@ -57,6 +76,13 @@ void ExposureMeter::run() {
   PoseFrame poses;
   int64_t last_step = -1;
   while (const Snapshot snapshot = queue_->next()) {
+    const auto& world = snapshot.data().world;
+    if (world != shared_->world) {
+      if (const Status status = follow(world); !status.ok()) {
+        log_warning("an exposure meter stopped: {}", status.error().to_string());
+        break;
+      }
+    }
     if (const Status status = solver_->solve(snapshot, poses); !status.ok()) {
       log_error("an exposure meter lost its poses: {}", status.error().to_string());
       break;
@@ -76,14 +102,20 @@ void ExposureMeter::run() {
     last_step = snapshot.step();
     changed_.notify_all();
   }
+  queue_->close();  // the simulation must not wait for it
   const std::lock_guard lock(mutex_);
   ended_ = true;
   changed_.notify_all();
 }
 
+bool ExposureMeter::ended() {
+  const std::lock_guard lock(mutex_);
+  return ended_;
+}
+
 double ExposureMeter::ev100_at(int64_t step) {
-  const int64_t due = timing_.step_of(std::max<int64_t>(0, timing_.last_at_or_before(step)));
   std::unique_lock lock(mutex_);
+  const int64_t due = timing_.step_of(std::max<int64_t>(0, timing_.last_at_or_before(step)));
   const auto known = [&] {
     return ended_ || values_.contains(due) || (!values_.empty() && values_.begin()->first > due);
   };

@@ -22,21 +22,34 @@ class ExposureMeter {
   /// Of a [[camera]] with an auto_exposure. `required`: the simulation waits for it, so that the
   /// exposure is the same in every run.
   static Result<std::unique_ptr<ExposureMeter>> open(Simulator& simulator,
-                                                     std::shared_ptr<SharedRenderer> shared,
-                                                     const CameraOptions& camera, int max_depth,
-                                                     uint64_t seed, bool required);
+                                                     SharedRenderers& renderers,
+                                                     const CameraOptions& camera, uint64_t seed,
+                                                     bool required);
   ~ExposureMeter();
 
   /// Exposure value of a picture taken at `step`, a step that the simulation has come to; waits for
   /// its metering. Where that instant was lost, or the simulation has ended, the last one known.
   double ev100_at(int64_t step);
+  /// No more values come: the simulation has stopped, or a recompile took the camera away.
+  bool ended();
 
  private:
-  ExposureMeter(std::shared_ptr<SharedRenderer> shared, const AutoExposureOptions& options)
-      : shared_(std::move(shared)), options_(options), automatic_(options) {}
+  ExposureMeter(Simulator& simulator, SharedRenderers& renderers, const CameraOptions& camera,
+                uint64_t seed)
+      : simulator_(simulator),
+        renderers_(renderers),
+        camera_(camera.name),
+        seed_(seed),
+        options_(*camera.sensing.imager->auto_exposure),
+        automatic_(options_) {}
+  Status follow(const std::shared_ptr<const CompiledWorld>& world);
   void run();
 
-  std::shared_ptr<SharedRenderer> shared_;
+  Simulator& simulator_;
+  SharedRenderers& renderers_;
+  const std::string camera_;
+  const uint64_t seed_;
+  std::shared_ptr<SharedRenderer> shared_;  // of the World whose Snapshots come
   const AutoExposureOptions options_;
   AutoExposure automatic_;
   bool required_ = false;

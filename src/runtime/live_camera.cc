@@ -24,49 +24,70 @@ std::string pictures_of(const CameraRequest& request, const Intrinsics& k) {
 
 }  // namespace
 
-LiveCamera::LiveCamera(Simulator& simulator, std::shared_ptr<SharedRenderer> shared,
-                       FrameCallback on_frame)
-    : simulator_(simulator), shared_(std::move(shared)), on_frame_(std::move(on_frame)) {}
+LiveCamera::LiveCamera(Simulator& simulator, SharedRenderers& renderers,
+                       const CameraRequest& request, uint64_t seed, FrameCallback on_frame)
+    : simulator_(simulator),
+      renderers_(renderers),
+      request_(request),
+      seed_(seed),
+      on_frame_(std::move(on_frame)) {}
 
 Result<std::unique_ptr<LiveCamera>> LiveCamera::open(Simulator& simulator,
-                                                     std::shared_ptr<SharedRenderer> shared,
+                                                     SharedRenderers& renderers,
                                                      const CameraRequest& request, uint64_t seed,
                                                      FrameCallback on_frame,
                                                      std::shared_ptr<ExposureMeter> meter) {
   std::unique_ptr<LiveCamera> camera(
-      new LiveCamera(simulator, std::move(shared), std::move(on_frame)));
-  GLOAM_TRY(camera->sensor_, CameraSensor::create(camera->shared_->description, request, seed));
-  GLOAM_TRY_STATUS(camera->sensor_->set_temperatures(simulator.world().scene.temperatures));
-  const Intrinsics& k = camera->sensor_->intrinsics();
-  if (const auto own = camera->sensor_->events()) {
-    auto events = camera->shared_->events.share(pictures_of(request, k), own);
-    if (request.required) camera->lead_.emplace(events);
-    camera->sensor_->share_events(std::move(events), request.required);
-  }
-  const PictureMemory memory = camera->sensor_->memory();
-  constexpr uint64_t kInFlight = 2;  // frames that are made and looked at
-  GLOAM_TRY_STATUS(check_memory(
-      memory.working + kInFlight * memory.frame,
-      fmt::format("camera '{}': pictures of {} x {} pixels", request.camera, k.width, k.height),
-      "lower the resolution"));
-  const std::shared_ptr<const CompiledWorld> world(std::shared_ptr<void>(), &simulator.world());
-  GLOAM_TRY(camera->solver_, PoseSolver::create(world));
-  const std::optional<TimingOptions>& timing = camera->sensor_->sensing().timing;
-  GLOAM_TRY(camera->timing_,
-            SensorTiming::make(request.rate, timing.value_or(TimingOptions{}), simulator.timestep(),
-                               sensor_seed(seed, request.camera)));
+      new LiveCamera(simulator, renderers, request, seed, std::move(on_frame)));
+  GLOAM_TRY_STATUS(camera->follow(simulator.world()));
   camera->meter_ = std::move(meter);
   // Two in the queue keep the camera busy; more would only make a live picture older.
   const int capacity = request.required ? 2 : 1;
+  const bool timed = camera->sensor_->sensing().timing.has_value();
   GLOAM_TRY(camera->queue_,
             simulator.subscribe({.rate = request.rate,
-                                 .due = timing ? due_steps(camera->timing_) : nullptr,
+                                 .due = timed ? due_steps(camera->timing_) : nullptr,
                                  .required = request.required,
                                  .capacity = capacity,
                                  .window = camera->sensor_->window()}));
-  camera->required_ = request.required;
   camera->thread_ = std::thread([raw = camera.get()] { raw->run(); });
   return camera;
+}
+
+// Makes what takes pictures of a World: at first, and when a Snapshot of another one comes.
+Status LiveCamera::follow(const std::shared_ptr<const CompiledWorld>& world) {
+  GLOAM_TRY(auto shared, renderers_.of(world));
+  GLOAM_TRY(auto sensor, CameraSensor::create(shared->description, request_, seed_));
+  GLOAM_TRY_STATUS(sensor->set_temperatures(world->scene.temperatures));
+  const Intrinsics& k = sensor->intrinsics();
+  const PictureMemory memory = sensor->memory();
+  constexpr uint64_t kInFlight = 2;  // frames that are made and looked at
+  GLOAM_TRY_STATUS(check_memory(
+      memory.working + kInFlight * memory.frame,
+      fmt::format("camera '{}': pictures of {} x {} pixels", request_.camera, k.width, k.height),
+      "lower the resolution"));
+  GLOAM_TRY(auto solver, PoseSolver::create(world));
+  GLOAM_TRY(SensorTiming timing,
+            SensorTiming::make(request_.rate, sensor->sensing().timing.value_or(TimingOptions{}),
+                               simulator_.timestep(), sensor_seed(seed_, request_.camera)));
+  if (sensor_ != nullptr) {
+    if (!timing.same_steps(timing_) || sensor->window() != sensor_->window())
+      return other_schedule(fmt::format("camera '{}'", request_.camera));
+    sensor->set_free_pose(sensor_->free_pose());
+  }
+  lead_.reset();
+  if (const auto own = sensor->events()) {
+    auto events = shared->events.share(pictures_of(request_, k), own);
+    if (request_.required) lead_.emplace(events);
+    sensor->share_events(std::move(events), request_.required);
+  }
+  const std::lock_guard lock(mutex_);
+  sensor_ = std::move(sensor);
+  shared_ = std::move(shared);
+  solver_ = std::move(solver);
+  timing_ = timing;
+  has_previous_ = false;
+  return {};
 }
 
 LiveCamera::~LiveCamera() {
@@ -83,7 +104,15 @@ void LiveCamera::drain() {
   if (thread_.joinable()) thread_.join();
 }
 
-void LiveCamera::set_pose(const Pose& X_WC) { sensor_->set_free_pose(X_WC); }
+void LiveCamera::set_pose(const Pose& X_WC) {
+  const std::lock_guard lock(mutex_);
+  sensor_->set_free_pose(X_WC);
+}
+
+Pose LiveCamera::pose() const {
+  const std::lock_guard lock(mutex_);
+  return sensor_->free_pose();
+}
 
 void LiveCamera::refresh() {
   {
@@ -94,7 +123,7 @@ void LiveCamera::refresh() {
 }
 
 SnapshotWindow LiveCamera::wait_for_work() {
-  if (required_) return queue_->next_window();
+  if (request_.required) return queue_->next_window();
   // A live camera also answers refresh() while the simulation is paused, so it looks at both.
   constexpr auto kLook = std::chrono::milliseconds(4);
   std::unique_lock lock(mutex_);
@@ -113,18 +142,31 @@ SnapshotWindow LiveCamera::wait_for_work() {
 
 void LiveCamera::run() {
   try {
-    while (const SnapshotWindow window = wait_for_work()) capture(window);
+    while (const SnapshotWindow window = wait_for_work()) {
+      const auto& world = window.keys[0].data().world;
+      if (world != shared_->world) {
+        if (const Status status = follow(world); !status.ok()) {
+          end(status.error());
+          break;
+        }
+      }
+      capture(window);
+    }
   } catch (const std::bad_alloc&) {
     const Intrinsics& k = sensor_->intrinsics();
-    const std::lock_guard lock(mutex_);
-    status_ = Error{ErrorKind::kPartial,
-                    fmt::format("out of memory for pictures of {} x {} pixels", k.width, k.height),
-                    {},
-                    "lower the resolution"};
-    if (!required_) log_error("a camera stopped: {}", status_.error().to_string());
-    queue_->close();  // the simulation must not wait for it
+    end({ErrorKind::kPartial,
+         fmt::format("out of memory for pictures of {} x {} pixels", k.width, k.height),
+         {},
+         "lower the resolution"});
   }
   lead_.reset();
+}
+
+void LiveCamera::end(Error why) {
+  const std::lock_guard lock(mutex_);
+  if (!request_.required) log_error("a camera stopped: {}", why.to_string());
+  status_ = std::move(why);
+  queue_->close();  // the simulation must not wait for it
 }
 
 Status LiveCamera::status() const {

@@ -20,39 +20,42 @@ namespace gloam {
 
 class LiveCamera final : public CameraStream {
  public:
-  static Result<std::unique_ptr<LiveCamera>> open(Simulator& simulator,
-                                                  std::shared_ptr<SharedRenderer> shared,
+  static Result<std::unique_ptr<LiveCamera>> open(Simulator& simulator, SharedRenderers& renderers,
                                                   const CameraRequest& request, uint64_t seed,
                                                   FrameCallback on_frame,
                                                   std::shared_ptr<ExposureMeter> meter = nullptr);
   ~LiveCamera() override;
 
   void set_pose(const Pose& X_WC) override;
-  Pose pose() const override { return sensor_->free_pose(); }
+  Pose pose() const override;
   void refresh() override;
   int64_t dropped() const override { return queue_->dropped(); }
 
   /// Waits until the queue has ended (the simulation stopped) and every frame was delivered.
   void drain();
-  /// Why it delivers no more frames, if so: it ran out of memory.
-  Status status() const;
+  Status status() const override;
 
  private:
-  LiveCamera(Simulator& simulator, std::shared_ptr<SharedRenderer> shared, FrameCallback on_frame);
+  LiveCamera(Simulator& simulator, SharedRenderers& renderers, const CameraRequest& request,
+             uint64_t seed, FrameCallback on_frame);
+  Status follow(const std::shared_ptr<const CompiledWorld>& world);
   void run();
+  void end(Error why);
   SnapshotWindow wait_for_work();
   void capture(const SnapshotWindow& window);
 
   Simulator& simulator_;
-  std::shared_ptr<SharedRenderer> shared_;
+  SharedRenderers& renderers_;
+  const CameraRequest request_;
+  const uint64_t seed_;
   FrameCallback on_frame_;
+  std::shared_ptr<SharedRenderer> shared_;  // of the World whose Snapshots come
   std::unique_ptr<CameraSensor> sensor_;
   std::optional<EventLead> lead_;  // of a required stream with events, until run() ends
   SensorTiming timing_;
   std::shared_ptr<ExposureMeter> meter_;  // null: the exposure stays
   std::unique_ptr<PoseSolver> solver_;
   std::shared_ptr<SnapshotQueue> queue_;
-  bool required_ = false;
   std::vector<PoseFrame> keys_;  ///< of the window that is exposed
   PoseFrame previous_;           ///< the first of the window before
   bool has_previous_ = false;

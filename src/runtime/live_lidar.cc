@@ -42,31 +42,50 @@ int motion_stretches(Rational rate, Rational timestep, int wanted) {
   return wanted;
 }
 
-LiveLidar::LiveLidar(std::shared_ptr<SharedRenderer> shared, ScanCallback on_scan)
-    : shared_(std::move(shared)), on_scan_(std::move(on_scan)) {}
+LiveLidar::LiveLidar(Simulator& simulator, SharedRenderers& renderers, const LidarRequest& request,
+                     uint64_t seed, ScanCallback on_scan)
+    : simulator_(simulator),
+      renderers_(renderers),
+      request_(request),
+      seed_(seed),
+      on_scan_(std::move(on_scan)) {}
 
-Result<std::unique_ptr<LiveLidar>> LiveLidar::open(Simulator& simulator,
-                                                   std::shared_ptr<SharedRenderer> shared,
+Result<std::unique_ptr<LiveLidar>> LiveLidar::open(Simulator& simulator, SharedRenderers& renderers,
                                                    const LidarRequest& request, uint64_t seed,
                                                    ScanCallback on_scan) {
-  GLOAM_TRY(const LidarDescription lidar, find_lidar(simulator.world(), request.lidar));
-  std::unique_ptr<LiveLidar> live(new LiveLidar(std::move(shared), std::move(on_scan)));
-  GLOAM_TRY(live->sensor_, LidarSensor::create(live->shared_->description, lidar, seed));
-  const std::shared_ptr<const CompiledWorld> world(std::shared_ptr<void>(), &simulator.world());
-  GLOAM_TRY(live->solver_, PoseSolver::create(world));
-  const Rational rate = live->sensor_->model().rate;
-  live->stretches_ =
-      motion_stretches(rate, simulator.timestep(), live->sensor_->options().motion_keys);
-  const Rational key_rate{rate.num * live->stretches_, rate.den};
-  GLOAM_TRY(live->schedule_, StepSchedule::make(key_rate, {0, 1}, simulator.timestep()));
-  live->keys_.resize(static_cast<size_t>(live->stretches_) + 1);
+  std::unique_ptr<LiveLidar> live(
+      new LiveLidar(simulator, renderers, request, seed, std::move(on_scan)));
+  GLOAM_TRY_STATUS(live->follow(simulator.world()));
   // Room for the keys of a scan, which come while the one before is traced.
   const int capacity = live->stretches_ + 1;
-  GLOAM_TRY(
-      live->queue_,
-      simulator.subscribe({.rate = key_rate, .required = request.required, .capacity = capacity}));
+  GLOAM_TRY(live->queue_,
+            simulator.subscribe(
+                {.rate = live->key_rate_, .required = request.required, .capacity = capacity}));
   live->thread_ = std::thread([raw = live.get()] { raw->run(); });
   return live;
+}
+
+// Makes what scans a World: at first, and when a Snapshot of another one comes.
+Status LiveLidar::follow(const std::shared_ptr<const CompiledWorld>& world) {
+  GLOAM_TRY(const LidarDescription lidar, find_lidar(*world, request_.lidar));
+  GLOAM_TRY(auto shared, renderers_.of(world));
+  GLOAM_TRY(auto sensor, LidarSensor::create(shared->description, lidar, seed_));
+  GLOAM_TRY(auto solver, PoseSolver::create(world));
+  const Rational rate = sensor->model().rate;
+  const int stretches =
+      motion_stretches(rate, simulator_.timestep(), sensor->options().motion_keys);
+  const Rational key_rate{rate.num * stretches, rate.den};
+  if (sensor_ != nullptr && (stretches != stretches_ || key_rate != key_rate_))
+    return other_schedule(fmt::format("lidar '{}'", request_.lidar));
+  GLOAM_TRY(schedule_, StepSchedule::make(key_rate, {0, 1}, simulator_.timestep()));
+  stretches_ = stretches;
+  key_rate_ = key_rate;
+  keys_.resize(static_cast<size_t>(stretches) + 1);
+  gathered_ = 0;
+  sensor_ = std::move(sensor);
+  shared_ = std::move(shared);
+  solver_ = std::move(solver);
+  return {};
 }
 
 LiveLidar::~LiveLidar() {
@@ -85,16 +104,26 @@ Status LiveLidar::status() const {
 
 void LiveLidar::run() {
   try {
-    while (const Snapshot snapshot = queue_->next()) take(snapshot);
+    while (const Snapshot snapshot = queue_->next()) {
+      const auto& world = snapshot.data().world;
+      if (world != shared_->world) {
+        if (const Status status = follow(world); !status.ok()) return end(status.error());
+      }
+      take(snapshot);
+    }
   } catch (const std::bad_alloc&) {
-    const std::lock_guard lock(mutex_);
-    status_ = Error{ErrorKind::kPartial,
-                    fmt::format("out of memory for scans of lidar '{}'", sensor_->options().name),
-                    {},
-                    "lower its number of beams"};
-    log_error("a lidar stopped: {}", status_.error().to_string());
-    queue_->close();  // the simulation must not wait for it
+    end({ErrorKind::kPartial,
+         fmt::format("out of memory for scans of lidar '{}'", request_.lidar),
+         {},
+         "lower its number of beams"});
   }
+}
+
+void LiveLidar::end(Error why) {
+  const std::lock_guard lock(mutex_);
+  log_error("a lidar stopped: {}", why.to_string());
+  status_ = std::move(why);
+  queue_->close();  // the simulation must not wait for it
 }
 
 // Key k is the instant of step schedule_.step_of(k); scan s lies between the keys s * stretches_

@@ -18,8 +18,7 @@ namespace gloam {
 class LiveLidar final : public LidarStream {
  public:
   /// Errors: no such LiDAR, numbers that do not go together, a rate above the step rate.
-  static Result<std::unique_ptr<LiveLidar>> open(Simulator& simulator,
-                                                 std::shared_ptr<SharedRenderer> shared,
+  static Result<std::unique_ptr<LiveLidar>> open(Simulator& simulator, SharedRenderers& renderers,
                                                  const LidarRequest& request, uint64_t seed,
                                                  ScanCallback on_scan);
   ~LiveLidar() override;
@@ -28,19 +27,26 @@ class LiveLidar final : public LidarStream {
   int64_t dropped() const override { return queue_->dropped(); }
   /// Waits until the queue has ended (the simulation stopped) and every scan was delivered.
   void drain();
-  /// Why it delivers no more scans, if so: it ran out of memory.
-  Status status() const;
+  Status status() const override;
 
  private:
-  LiveLidar(std::shared_ptr<SharedRenderer> shared, ScanCallback on_scan);
+  LiveLidar(Simulator& simulator, SharedRenderers& renderers, const LidarRequest& request,
+            uint64_t seed, ScanCallback on_scan);
+  Status follow(const std::shared_ptr<const CompiledWorld>& world);
   void run();
+  void end(Error why);
   void take(const Snapshot& snapshot);
 
-  std::shared_ptr<SharedRenderer> shared_;
+  Simulator& simulator_;
+  SharedRenderers& renderers_;
+  const LidarRequest request_;
+  const uint64_t seed_;
   ScanCallback on_scan_;
+  std::shared_ptr<SharedRenderer> shared_;  // of the World whose Snapshots come
   std::unique_ptr<LidarSensor> sensor_;
   std::unique_ptr<PoseSolver> solver_;
   std::shared_ptr<SnapshotQueue> queue_;
+  Rational key_rate_ = {1, 1};   // [Hz]
   StepSchedule schedule_;        // of the keys
   int stretches_ = 1;            // of a scan, between its keys
   std::vector<PoseFrame> keys_;  // of the scan that is being gathered

@@ -17,21 +17,19 @@ double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-Status add_controllers(const CompiledWorld& world, Simulator& simulator) {
+Result<std::vector<RobotController>> make_controllers(const CompiledWorld& world) {
+  std::vector<RobotController> controllers;
   for (size_t i = 0; i < world.robots.size(); ++i) {
     const RobotInstance& robot = world.robots[i];
     if (robot.options.controller.type == "none") continue;
     GLOAM_TRY(auto controller, make_controller(world, robot));
-    GLOAM_TRY_STATUS(simulator.add_controller(static_cast<int>(i), std::move(controller),
-                                              robot.options.controller.rate));
+    controllers.push_back(
+        {static_cast<int>(i), std::move(controller), robot.options.controller.rate});
   }
-  return {};
+  return controllers;
 }
 
 }  // namespace
-
-LiveSimulation::LiveSimulation(World world, uint64_t seed)
-    : world_(std::move(world)), seed_(seed) {}
 
 Result<std::unique_ptr<Simulation>> Simulation::create(const World& world,
                                                        const SimulationOptions& options) {
@@ -41,19 +39,34 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const World& world,
 
 Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& world,
                                                                const SimulationOptions& options) {
-  std::unique_ptr<LiveSimulation> live(new LiveSimulation(world, options.seed));
+  std::unique_ptr<LiveSimulation> live(
+      new LiveSimulation(options.seed, options.pace != Pace::kRealTime));
   SimulatorOptions core;
   core.seed = options.seed;
   if (options.timestep != 0) core.timestep = options.timestep;
   core.pace = options.pace;
   core.speed = options.speed;
   GLOAM_TRY(live->simulator_, Simulator::create(world.compiled(), core));
-  GLOAM_TRY_STATUS(add_controllers(*world.compiled(), *live->simulator_));
-  GLOAM_TRY_STATUS(live->open_meters(options.pace != Pace::kRealTime));
+  GLOAM_TRY(auto controllers, make_controllers(*world.compiled()));
+  for (RobotController& c : controllers)
+    GLOAM_TRY_STATUS(live->simulator_->add_controller(c.robot, std::move(c.controller), c.rate));
+  GLOAM_TRY_STATUS(live->open_meters());
   // The thread starts with the first call that moves time: hooks, controllers and cameras come
   // before.
   live->simulator_->start(0);
   return live;
+}
+
+// What takes long, the renderer of the new World too, is made while the old one runs on. Streams
+// find it when the first Snapshot of the new World comes to them.
+Status LiveSimulation::recompile(const World& world) {
+  const std::lock_guard one_at_a_time(recompile_mutex_);
+  GLOAM_TRY(auto controllers, make_controllers(*world.compiled()));
+  if (renderers_.any()) GLOAM_TRY_STATUS(renderers_.of(world.compiled()));
+  const Status status = simulator_->recompile(world.compiled(), std::move(controllers));
+  renderers_.keep_only(simulator_->world());
+  GLOAM_TRY_STATUS(status);
+  return open_meters();
 }
 
 void LiveSimulation::restart_speed_clock() {
@@ -128,50 +141,45 @@ void LiveSimulation::set_step_hook(std::function<void(const mjModel_*, mjData_*)
   simulator_->set_step_hook(std::move(hook));
 }
 
-Result<std::shared_ptr<SharedRenderer>> LiveSimulation::renderer() {
-  const std::lock_guard lock(renderer_mutex_);
-  if (renderer_ == nullptr) {
-    GLOAM_TRY(renderer_, SharedRenderer::create(*world_.compiled()));
-  }
-  return renderer_;
-}
-
 Result<std::unique_ptr<LiveCamera>> LiveSimulation::open_live_camera(const CameraRequest& request,
                                                                      FrameCallback on_frame) {
-  GLOAM_TRY(auto shared, renderer());
-  return LiveCamera::open(*simulator_, std::move(shared), request, seed_, std::move(on_frame),
+  return LiveCamera::open(*simulator_, renderers_, request, seed_, std::move(on_frame),
                           meter_of(request.camera));
 }
 
-// Exposure goes on from step 0 whether or not anyone opens the camera.
-Status LiveSimulation::open_meters(bool required) {
-  const Scene& scene = world_.compiled()->scene;
-  for (const CameraOptions& camera : scene.cameras) {
+// Exposure goes on from step 0, or from the recompile that brought it, whether or not anyone opens
+// the camera.
+Status LiveSimulation::open_meters() {
+  const std::shared_ptr<const CompiledWorld> world = simulator_->world();
+  const std::lock_guard lock(meters_mutex_);
+  for (const CameraOptions& camera : world->scene.cameras) {
     if (!camera.sensing.imager || !camera.sensing.imager->auto_exposure) continue;
-    GLOAM_TRY(auto shared, renderer());
-    GLOAM_TRY(meters_[camera.name], ExposureMeter::open(*simulator_, std::move(shared), camera,
-                                                        scene.render.max_depth, seed_, required));
+    std::shared_ptr<ExposureMeter>& meter = meters_[camera.name];
+    if (meter != nullptr && !meter->ended()) continue;
+    GLOAM_TRY(meter, ExposureMeter::open(*simulator_, renderers_, camera, seed_, required_meters_));
   }
   return {};
 }
 
 std::shared_ptr<ExposureMeter> LiveSimulation::meter_of(const std::string& camera) const {
+  const std::lock_guard lock(meters_mutex_);
   const auto found = meters_.find(camera);
   return found != meters_.end() ? found->second : nullptr;
 }
 
 Result<std::unique_ptr<SensorStream>> LiveSimulation::open_sensor(const SensorRequest& request,
                                                                   SensorCallback on_message) {
-  GLOAM_TRY(const SensorDescription sensor, find_sensor(*world_.compiled(), request.sensor));
-  GLOAM_TRY(auto live, LiveSensors::open(*simulator_, {sensor}, request.required, seed_,
+  GLOAM_TRY(auto live, LiveSensors::open(*simulator_, {request.sensor}, request.required, seed_,
                                          std::move(on_message)));
   return std::unique_ptr<SensorStream>(std::move(live));
 }
 
 Result<std::unique_ptr<LiveSensors>> LiveSimulation::open_all_sensors(bool required,
                                                                       SensorCallback on_message) {
-  return LiveSensors::open(*simulator_, describe_sensors(*world_.compiled()), required, seed_,
-                           std::move(on_message));
+  std::vector<std::string> names;
+  for (const SensorDescription& sensor : describe_sensors(*simulator_->world()))
+    names.push_back(sensor.name);
+  return LiveSensors::open(*simulator_, names, required, seed_, std::move(on_message));
 }
 
 Result<std::unique_ptr<CameraStream>> LiveSimulation::open_camera(const CameraRequest& request,
@@ -182,8 +190,7 @@ Result<std::unique_ptr<CameraStream>> LiveSimulation::open_camera(const CameraRe
 
 Result<std::unique_ptr<LiveLidar>> LiveSimulation::open_live_lidar(const LidarRequest& request,
                                                                    ScanCallback on_scan) {
-  GLOAM_TRY(auto shared, renderer());
-  return LiveLidar::open(*simulator_, std::move(shared), request, seed_, std::move(on_scan));
+  return LiveLidar::open(*simulator_, renderers_, request, seed_, std::move(on_scan));
 }
 
 Result<std::unique_ptr<LidarStream>> LiveSimulation::open_lidar(const LidarRequest& request,
@@ -194,7 +201,7 @@ Result<std::unique_ptr<LidarStream>> LiveSimulation::open_lidar(const LidarReque
 
 std::vector<std::string> LiveSimulation::camera_names() const {
   std::vector<std::string> names;
-  for (const NamedElement& camera : world_.info().cameras) names.push_back(camera.name);
+  for (const NamedElement& camera : world().info().cameras) names.push_back(camera.name);
   names.emplace_back("free");
   return names;
 }
@@ -207,17 +214,27 @@ Result<std::vector<LabelRow>> LiveSimulation::labels() {
   return rows;
 }
 
-Status LiveSimulation::solve_latest(PoseFrame& poses) {
+// Returns the World of the instant.
+Result<std::shared_ptr<const CompiledWorld>> LiveSimulation::solve_latest(PoseFrame& poses) {
   const std::lock_guard lock(solver_mutex_);
-  if (solver_ == nullptr) {
-    GLOAM_TRY(solver_, PoseSolver::create(world_.compiled()));
+  const Snapshot latest = simulator_->latest();
+  const auto& world = latest.data().world;
+  if (solver_ == nullptr || solver_->world() != world) {
+    GLOAM_TRY(solver_, PoseSolver::create(world));
   }
-  return solver_->solve(simulator_->latest(), poses);
+  GLOAM_TRY_STATUS(solver_->solve(latest, poses));
+  return world;
 }
 
 Result<Pose> LiveSimulation::body_pose(Body body) {
   PoseFrame poses;
-  GLOAM_TRY_STATUS(solve_latest(poses));
+  GLOAM_TRY(const auto world, solve_latest(poses));
+  if (body.world != 0 && body.world != world->serial) {
+    return Error{ErrorKind::kInput,
+                 "the handle of a body is of another World than the one that runs",
+                 {},
+                 "find it again in Simulation::world()"};
+  }
   const auto id = static_cast<size_t>(body.id);
   if (body.id < 0 || 3 * id >= poses.body_p.size()) {
     return Error{ErrorKind::kInput, "there is no such body"};
@@ -234,9 +251,9 @@ Result<Pose> LiveSimulation::body_pose(Body body) {
 }
 
 Result<PickResult> LiveSimulation::pick(const CameraFrame& frame, double u, double v) {
-  GLOAM_TRY(auto shared, renderer());
   PoseFrame poses;
-  GLOAM_TRY_STATUS(solve_latest(poses));
+  GLOAM_TRY(const auto world, solve_latest(poses));
+  GLOAM_TRY(auto shared, renderers_.of(world));
   const std::lock_guard lock(shared->mutex);
   // A picture of one pixel whose centre is (u, v).
   CameraView view;
@@ -261,7 +278,7 @@ Result<PickResult> LiveSimulation::pick(const CameraFrame& frame, double u, doub
   const double* p = poses.body_p.data() + 3 * body;
   const double d[3] = {p_W.x - p[0], p_W.y - p[1], p_W.z - p[2]};
   PickResult result;
-  result.body = {instance.body};
+  result.body = {instance.body, world->serial};
   result.name = instance.label.body.empty() ? instance.label.instance_name : instance.label.body;
   result.point_W = {p_W.x, p_W.y, p_W.z};
   result.point_B = {R[0] * d[0] + R[3] * d[1] + R[6] * d[2],

@@ -18,7 +18,9 @@ class LiveSimulation final : public Simulation {
  public:
   static Result<std::unique_ptr<LiveSimulation>> create(const World& world,
                                                         const SimulationOptions& options);
-  const World& world() const override { return world_; }
+  World world() const override { return World(simulator_->world()); }
+  Status recompile(const World& world) override;
+  using Simulation::recompile;
   Status run_until(int64_t step) override;
   void resume() override;
   void pause() override;
@@ -45,7 +47,7 @@ class LiveSimulation final : public Simulation {
 
   // For the runtime's own jobs.
   Simulator& simulator() { return *simulator_; }
-  Result<std::shared_ptr<SharedRenderer>> renderer();
+  Result<std::shared_ptr<SharedRenderer>> renderer() { return renderers_.of(simulator_->world()); }
   Result<std::unique_ptr<LiveCamera>> open_live_camera(const CameraRequest& request,
                                                        FrameCallback on_frame);
   /// All sensors of the model in one stream.
@@ -56,16 +58,18 @@ class LiveSimulation final : public Simulation {
                                                      ScanCallback on_scan);
 
  private:
-  Status open_meters(bool required);
-  LiveSimulation(World world, uint64_t seed);
+  LiveSimulation(uint64_t seed, bool required_meters)
+      : seed_(seed), required_meters_(required_meters) {}
+  Status open_meters();
   void restart_speed_clock();
-  Status solve_latest(PoseFrame& poses);
+  Result<std::shared_ptr<const CompiledWorld>> solve_latest(PoseFrame& poses);
 
-  World world_;
-  uint64_t seed_;
+  const uint64_t seed_;
+  const bool required_meters_;
   std::unique_ptr<Simulator> simulator_;
-  std::mutex renderer_mutex_;
-  std::shared_ptr<SharedRenderer> renderer_;
+  SharedRenderers renderers_;
+  std::mutex recompile_mutex_;  // one at a time
+  mutable std::mutex meters_mutex_;
   std::map<std::string, std::shared_ptr<ExposureMeter>> meters_;  // by camera
   std::mutex solver_mutex_;
   std::unique_ptr<PoseSolver> solver_;  // for questions about the latest instant

@@ -17,12 +17,42 @@ void report_left_out(const std::vector<Error>& left_out) {
 
 }  // namespace
 
-Result<std::shared_ptr<SharedRenderer>> SharedRenderer::create(const CompiledWorld& world) {
+Result<std::shared_ptr<SharedRenderer>> SharedRenderer::create(
+    std::shared_ptr<const CompiledWorld> world) {
   auto shared = std::make_shared<SharedRenderer>();
-  GLOAM_TRY(shared->description, describe_for_rendering(world));
+  GLOAM_TRY(shared->description, describe_for_rendering(*world));
   report_left_out(shared->description.unsupported);
-  GLOAM_TRY(shared->renderer, make_renderer(shared->description, world.scene.render.device));
+  GLOAM_TRY(shared->renderer, make_renderer(shared->description, world->scene.render.device));
+  shared->world = std::move(world);
   return shared;
+}
+
+Result<std::shared_ptr<SharedRenderer>> SharedRenderers::of(
+    const std::shared_ptr<const CompiledWorld>& world) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& renderer : renderers_) {
+    if (renderer->world == world) return renderer;
+  }
+  GLOAM_TRY(auto made, SharedRenderer::create(world));
+  renderers_.push_back(made);
+  return made;
+}
+
+bool SharedRenderers::any() const {
+  const std::lock_guard lock(mutex_);
+  return !renderers_.empty();
+}
+
+void SharedRenderers::keep_only(const std::shared_ptr<const CompiledWorld>& world) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(renderers_, [&](const auto& renderer) { return renderer->world != world; });
+}
+
+Error other_schedule(const std::string& what) {
+  return {ErrorKind::kInput,
+          what + " takes its samples at other times in the recompiled World than its stream",
+          {},
+          "open the stream anew"};
 }
 
 }  // namespace gloam

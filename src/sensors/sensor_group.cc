@@ -47,6 +47,11 @@ std::function<int64_t(int64_t step)> SensorGroup::due() const {
   };
 }
 
+bool SensorGroup::same_steps(const SensorGroup& other) const {
+  return std::equal(members_.begin(), members_.end(), other.members_.begin(), other.members_.end(),
+                    [](const Member& a, const Member& b) { return a.timing.same_steps(b.timing); });
+}
+
 void SensorGroup::sample(const Snapshot& snapshot, const SensorCallback& deliver) {
   const SnapshotData& data = snapshot.data();
   for (Member& member : members_) {

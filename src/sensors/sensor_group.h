@@ -23,6 +23,9 @@ class SensorGroup {
   /// For SubscriptionOptions::due: the steps at which at least one of them has a sample.
   std::function<int64_t(int64_t step)> due() const;
 
+  /// True if `other` takes its samples at the same steps.
+  bool same_steps(const SensorGroup& other) const;
+
   /// Calls `deliver` with every sample that was taken at the Snapshot's step and is not dropped.
   /// A Snapshot before the last one begins anew.
   void sample(const Snapshot& snapshot, const SensorCallback& deliver);

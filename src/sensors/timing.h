@@ -28,6 +28,11 @@ class SensorTiming {
   int64_t first_at_or_after(int64_t step) const;
   /// The sample at `step`, or where there is none the last one before it; -1 = none yet.
   int64_t last_at_or_before(int64_t step) const { return first_at_or_after(step + 1) - 1; }
+  /// True if `other` takes its samples at the same steps.
+  bool same_steps(const SensorTiming& other) const {
+    return schedule_ == other.schedule_ && seed_ == other.seed_ &&
+           options_.jitter == other.options_.jitter;
+  }
   /// True if sample k is lost.
   bool dropped(int64_t k) const;
   /// delivery_time() of sample k.

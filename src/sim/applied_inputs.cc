@@ -14,6 +14,19 @@ AppliedInputs::AppliedInputs(const mjModel& model)
   drags_.reserve(static_cast<size_t>(model.nbody));
 }
 
+void AppliedInputs::take_over(const AppliedInputs& before, const Correspondence& same) {
+  for (size_t body = 0; body < same.body.size(); ++body) {
+    const int old = same.body[body];
+    if (old < 0) continue;
+    mju_copy(wrench_.data() + 6 * body, before.wrench_.data() + 6 * old, 6);
+    for (Drag drag : before.drags_) {
+      if (drag.body != old) continue;
+      drag.body = static_cast<int>(body);
+      drags_.push_back(drag);
+    }
+  }
+}
+
 void AppliedInputs::reset() {
   std::fill(wrench_.begin(), wrench_.end(), 0.0);
   drags_.clear();
@@ -21,6 +34,14 @@ void AppliedInputs::reset() {
 
 void AppliedInputs::apply(const mjModel& model, mjData& data, const SetControl& command) {
   data.ctrl[model.actuator_ctrladr[command.actuator.id]] = command.value;
+}
+
+void AppliedInputs::apply(const mjModel& model, mjData& data, const SetJointState& command) {
+  const int joint = command.joint.id;
+  double* qpos = data.qpos + model.jnt_qposadr[joint];
+  std::copy(command.qpos.begin(), command.qpos.end(), qpos);
+  if (command.qpos.size() >= 4) mju_normalize4(qpos + command.qpos.size() - 4);  // free, ball
+  std::copy(command.qvel.begin(), command.qvel.end(), data.qvel + model.jnt_dofadr[joint]);
 }
 
 void AppliedInputs::apply(const mjModel& model, mjData& data, const SetMocapPose& command) {

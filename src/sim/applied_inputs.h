@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "gloam/command.h"
+#include "sim/correspondence.h"
 
 namespace gloam {
 
@@ -14,10 +15,14 @@ class AppliedInputs {
  public:
   explicit AppliedInputs(const mjModel& model);
 
+  /// Goes on where another World's left off, with what remains of it.
+  void take_over(const AppliedInputs& before, const Correspondence& same);
+
   /// Forgets everything; the mjData has been reset by the caller.
   void reset();
 
   void apply(const mjModel& model, mjData& data, const SetControl& command);
+  void apply(const mjModel& model, mjData& data, const SetJointState& command);
   void apply(const mjModel& model, mjData& data, const SetMocapPose& command);
   void apply(const mjModel& model, mjData& data, const SetWrench& command);
   void apply(const mjModel& model, mjData& data, const AddVelocity& command);

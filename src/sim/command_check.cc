@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
+#include <span>
 
 #include "sim/live_fields.h"
+#include "sim/state_layout.h"
 
 namespace gloam {
 namespace {
@@ -14,11 +17,11 @@ Error refuse(std::string message, std::string hint = {}) {
   return Error{ErrorKind::kUsage, std::move(message), {}, std::move(hint)};
 }
 
+bool finite(std::span<const double> values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
 bool finite(std::initializer_list<double> values) {
-  for (const double value : values) {
-    if (!std::isfinite(value)) return false;
-  }
-  return true;
+  return finite(std::span(values.begin(), values.size()));
 }
 bool finite(Vec3 v) { return finite({v.x, v.y, v.z}); }
 
@@ -36,18 +39,35 @@ bool can_move(const mjModel& model, int body) {
 
 class Check {
  public:
-  Check(const mjModel& model, int robot_count) : model_(model), robot_count_(robot_count) {}
+  explicit Check(const CompiledWorld& world)
+      : serial_(world.serial),
+        model_(*world.model),
+        robot_count_(static_cast<int>(world.robots.size())) {}
 
   Status operator()(const SetControl& c) const {
-    if (c.actuator.id < 0 || c.actuator.id >= model_.nactuator) {
-      return refuse(fmt::format("there is no actuator number {}", c.actuator.id));
-    }
+    GLOAM_TRY_STATUS(check_handle(c.actuator, "actuator", 0, model_.nactuator));
     if (model_.actuator_ctrlnum[c.actuator.id] != 1) {
       return refuse(fmt::format("actuator {} takes {} controls, not one", c.actuator.id,
                                 model_.actuator_ctrlnum[c.actuator.id]),
                     "set its controls in a step hook or a controller");
     }
     if (!finite({c.value})) return refuse("a control is not a finite number");
+    return {};
+  }
+  Status operator()(const SetJointState& c) const {
+    GLOAM_TRY_STATUS(check_handle(c.joint, "joint", 0, model_.njnt));
+    const JointWidth width = joint_width(model_.jnt_type[c.joint.id]);
+    const auto fits = [](const std::vector<double>& values, int count) {
+      return values.empty() || values.size() == static_cast<size_t>(count);
+    };
+    if (!fits(c.qpos, width.qpos) || !fits(c.qvel, width.qvel)) {
+      return refuse(fmt::format("joint {} has {} positions and {} velocities, not {} and {}",
+                                c.joint.id, width.qpos, width.qvel, c.qpos.size(), c.qvel.size()),
+                    "give all of them, or none to leave them as they are");
+    }
+    if (!finite(c.qpos) || !finite(c.qvel)) return refuse("the state of a joint is not finite");
+    if (c.qpos.size() >= 4 && mju_norm(c.qpos.data() + c.qpos.size() - 4, 4) < 1e-6)
+      return refuse("the quaternion of a joint is zero");
     return {};
   }
   Status operator()(const SetVelocityGoal& c) const {
@@ -97,13 +117,20 @@ class Check {
   Status operator()(const SetLiveField& c) const { return check_live_field(model_, c); }
 
  private:
-  Status check_body(Body body) const {
-    if (body.id < 1 || body.id >= model_.nbody) {
-      return refuse(fmt::format("there is no body number {} that could move", body.id));
+  template <class Kind>
+  Status check_handle(Handle<Kind> handle, const char* kind, int first, mjtSize end) const {
+    if (handle.world != 0 && handle.world != serial_) {
+      return refuse(
+          fmt::format("a handle of a {} is of another World than the one that runs", kind),
+          "find it again in Simulation::world(): a recompile makes a new World");
     }
+    if (handle.id < first || handle.id >= end)
+      return refuse(fmt::format("there is no {} number {}", kind, handle.id));
     return {};
   }
+  Status check_body(Body body) const { return check_handle(body, "movable body", 1, model_.nbody); }
 
+  uint64_t serial_;
   const mjModel& model_;
   int robot_count_;
 };
@@ -119,11 +146,11 @@ int floating_joint(const mjModel& model, int body) {
   return -1;
 }
 
-Status check_command(const mjModel& model, int robot_count, const Command& command) {
+Status check_command(const CompiledWorld& world, const Command& command) {
   if (command.step < Command::kNextStep) {
     return refuse(fmt::format("a command cannot apply at step {}", command.step));
   }
-  return std::visit(Check(model, robot_count), command.what);
+  return std::visit(Check(world), command.what);
 }
 
 }  // namespace gloam

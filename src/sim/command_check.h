@@ -4,13 +4,15 @@
 #include <mujoco/mujoco.h>
 
 #include "gloam/command.h"
+#include "world/world.h"
 
 namespace gloam {
 
 /// The free joint that carries `body` (its own or that of the floating base it hangs from), or -1.
 int floating_joint(const mjModel& model, int body);
 
-/// Refuses unknown handles, numbers that are not finite, and effects the model cannot show.
-Status check_command(const mjModel& model, int robot_count, const Command& command);
+/// Refuses handles of nothing and of other Worlds, numbers that are not finite, and effects the
+/// model cannot show.
+Status check_command(const CompiledWorld& world, const Command& command);
 
 }  // namespace gloam

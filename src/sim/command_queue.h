@@ -5,6 +5,8 @@
 
 #include <atomic>
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "gloam/command.h"
@@ -33,9 +35,10 @@ class CommandQueue {
   std::vector<LoggedCommand> take_log();
   /// Commands that have applied, over all runs.
   int64_t applied() const { return applied_.load(std::memory_order_relaxed); }
-  /// Applied commands that the full log did not keep: a replay of it would not be exact.
+  /// What the log does not hold, so that a replay of it would not be exact: commands that found it
+  /// full, recompiles.
   int64_t log_lost() const { return log_lost_.load(std::memory_order_relaxed); }
-  /// Commands for later steps that a reset threw away.
+  /// Commands for later steps that a reset threw away, or a recompile that took their thing away.
   int64_t discarded() const { return discarded_.load(std::memory_order_relaxed); }
 
   // ---- the sim thread ----
@@ -58,6 +61,26 @@ class CommandQueue {
       if (reset) return true;
     }
     return false;
+  }
+  /// Between two steps: every Command that waits becomes translate(command), or is thrown away
+  /// where that is nothing. What was logged before is of another World: from here on the log cannot
+  /// be replayed. Allocates.
+  template <class Translate>
+  void translate(int64_t step, Translate&& translate) {
+    take_arrivals(step);
+    Node* all = pending_;
+    pending_ = pending_tail_ = nullptr;
+    while (all != nullptr) {
+      Node* node = std::exchange(all, all->next);
+      if (std::optional<Command> command = translate(static_cast<const Command&>(node->command))) {
+        node->command = std::move(*command);
+        insert(node);
+      } else {
+        discarded_.fetch_add(1, std::memory_order_relaxed);
+        retire(node);
+      }
+    }
+    log_lost_.fetch_add(1, std::memory_order_relaxed);
   }
   /// A reset that did not come as a Command: throws away everything that waits and logs a ResetSim.
   /// Allocates.

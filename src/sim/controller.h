@@ -17,8 +17,15 @@ struct VelocityTarget {
 class Controller {
  public:
   virtual ~Controller() = default;
-  /// The simulation stands at its initial state.
+  /// Begins anew: the simulation stands at its initial state, or a recompile brought the robot.
   virtual void reset(const mjModel* model, const mjData* data) = 0;
+  /// Goes on from `before`, the same robot's controller in the World before a recompile: what it
+  /// remembers of the robot counts, what it knows of the model is its own. Where that cannot be,
+  /// it begins anew from where the simulation stands.
+  virtual void take_over(const mjModel* model, const mjData* data, const Controller& before) {
+    static_cast<void>(before);
+    reset(model, data);
+  }
   /// Called before step `step`; writes d->ctrl of its own actuators only. `period` = time between
   /// calls [s].
   virtual void control(const mjModel* model, mjData* data, int64_t step, double period,

@@ -16,6 +16,7 @@ class PoseSolver {
   /// Fills `frame`; its buffers are used again. The Snapshot is of the same World. Error: MuJoCo's.
   Status solve(const Snapshot& snapshot, PoseFrame& frame);
 
+  const std::shared_ptr<const CompiledWorld>& world() const { return world_; }
   const DeformableLayout& layout() const { return layout_; }
 
  private:

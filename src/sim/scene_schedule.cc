@@ -38,7 +38,7 @@ Result<std::vector<Command>> scene_schedule(const CompiledWorld& world, Rational
   const int robot_count = static_cast<int>(world.robots.size());
   auto add = [&](Command command, double time, const SourceLoc& loc) -> Status {
     GLOAM_TRY(command.step, step_of_time(time, timestep, loc));
-    if (Status status = check_command(*world.model, robot_count, command); !status) {
+    if (Status status = check_command(world, command); !status) {
       Error error = status.error();
       error.kind = ErrorKind::kInput;
       error.loc = loc;

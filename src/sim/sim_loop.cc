@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/check.h"
+#include "sim/command_check.h"
 
 namespace gloam {
 namespace {
@@ -26,33 +27,67 @@ SimLoop::SimLoop(std::unique_ptr<Stepper> stepper, Rational timestep, CommandQue
       next_publication_(kNever) {}
 
 Status SimLoop::add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate) {
-  if (robot < 0 || robot >= static_cast<int>(goals_.size())) {
-    return Error{ErrorKind::kUsage, fmt::format("there is no robot number {}", robot)};
-  }
-  const SourceLoc& loc =
-      stepper_->world().robots[static_cast<size_t>(robot)].options.controller.loc;
-  Result<StepSchedule> schedule = StepSchedule::make(rate, {0, 1}, timestep_);
-  if (!schedule) {
-    Error error = schedule.error();
-    error.loc = loc;
-    return error;
-  }
-  // Calls must be evenly spaced: 1 / rate is a whole number of timesteps.
-  const __int128 steps = static_cast<__int128>(rate.den) * timestep_.den;
-  if (steps % (static_cast<__int128>(rate.num) * timestep_.num) != 0) {
-    return Error{ErrorKind::kInput,
-                 fmt::format("the controller's rate of {:g} Hz does not divide the simulation's "
-                             "step rate of {:g} Hz",
-                             rate.value(), 1 / timestep_.value()),
-                 loc, "choose a rate of which the step rate is a multiple"};
-  }
-  ControllerSlot slot{robot, std::move(controller), *schedule,
-                      static_cast<double>(rate.den) / static_cast<double>(rate.num)};
-  slot.k = slot.schedule.first_at_or_after(stepper_->step_count());
-  slot.due = slot.schedule.step_of(slot.k);
+  GLOAM_TRY(
+      ControllerSlot slot,
+      ControllerSlot::make(stepper_->world(), {robot, std::move(controller), rate}, timestep_));
+  slot.begin(stepper_->step_count());
   slot.controller->reset(&stepper_->model(), &stepper_->data());
   controllers_.push_back(std::move(slot));
   return {};
+}
+
+Status SimLoop::exchange(NextWorld& next, const Correspondence& same) {
+  if (stepper_->failed())
+    return Error{ErrorKind::kUsage,
+                 "a simulation that has failed cannot go on in another World",
+                 {},
+                 "reset it first"};
+  if (!replay_.empty())
+    return Error{ErrorKind::kUsage, "a log that is replayed is of one World: no recompile"};
+  if (!next.stepper->take_over(*stepper_, same)) return next.stepper->error();
+  std::swap(stepper_, next.stepper);
+  const int64_t step = stepper_->step_count();
+  for (ControllerSlot& slot : next.controllers) {
+    slot.begin(step);
+    const int old = same.robot[static_cast<size_t>(slot.robot)];
+    const auto before = std::find_if(controllers_.begin(), controllers_.end(),
+                                     [old](const ControllerSlot& s) { return s.robot == old; });
+    if (before == controllers_.end()) {
+      slot.controller->reset(&stepper_->model(), &stepper_->data());
+    } else {
+      slot.controller->take_over(&stepper_->model(), &stepper_->data(), *before->controller);
+    }
+  }
+  std::swap(controllers_, next.controllers);
+  std::swap(scene_commands_, next.scene_commands);
+  take_over_goals(same);
+  commands_.translate(step, [&](const Command& command) {
+    std::optional<Command> translated = same.translate(command);
+    if (translated && !check_command(same.after, *translated)) translated.reset();
+    return translated;
+  });
+  for (Subscription& s : subscriptions_) {
+    s.forget_windows();
+    stepper_->pool().add_slots(s.slots());
+  }
+  find_next_publication();
+  return {};
+}
+
+// What the scene said about earlier times is past; but the goal of a robot that is new is the last
+// of those that it would have got.
+void SimLoop::take_over_goals(const Correspondence& same) {
+  std::vector<VelocityTarget> before(same.robot.size());
+  std::swap(before, goals_);
+  for (scene_cursor_ = 0; scene_cursor_ < scene_commands_.size(); ++scene_cursor_) {
+    const Command& command = scene_commands_[scene_cursor_];
+    if (command.step >= stepper_->step_count()) break;
+    if (std::holds_alternative<SetVelocityGoal>(command.what)) apply(command);
+  }
+  for (size_t robot = 0; robot < same.robot.size(); ++robot) {
+    const int old = same.robot[robot];
+    if (old >= 0) goals_[robot] = before[static_cast<size_t>(old)];
+  }
 }
 
 Result<std::shared_ptr<SnapshotQueue>> SimLoop::subscribe(const SubscriptionOptions& options,
@@ -81,9 +116,7 @@ Result<std::shared_ptr<SnapshotQueue>> SimLoop::subscribe(const SubscriptionOpti
                  "shorten it or lower the rate"};
   }
   subscription.begin(stepper_->step_count());
-  // Full queue, one with the reader, those being made.
-  const int made = options.window.num > 0 ? Subscription::kMostPending : 1;
-  stepper_->pool().add_slots((options.capacity + 1 + made) * subscription.keys.count);
+  stepper_->pool().add_slots(subscription.slots());
   subscriptions_.push_back(std::move(subscription));
   find_next_publication();
   return subscriptions_.back().queue;
@@ -105,6 +138,26 @@ void SimLoop::Subscription::begin(int64_t from) {
   event = due = event_from(from);
   for (Pending& window : pending) window = {};
   pending_count = 0;
+}
+
+// The instants of a window are of one World: those that are not complete will never be. Complete
+// ones wait for room.
+void SimLoop::Subscription::forget_windows() {
+  int complete = 0;
+  while (complete < pending_count &&
+         pending[static_cast<size_t>(complete)].window.count == keys.count)
+    ++complete;
+  queue->count_lost(pending_count - complete);
+  for (int i = complete; i < pending_count; ++i) pending[static_cast<size_t>(i)] = {};
+  pending_count = complete;
+  if (complete == 0) due = event;
+}
+
+// Snapshots of a full queue, of one with the reader, and of those being made.
+int SimLoop::Subscription::slots() const {
+  const SubscriptionOptions& options = queue->options();
+  const int made = options.window.num > 0 ? kMostPending : 1;
+  return (options.capacity + 1 + made) * keys.count;
 }
 
 /// Takes the Snapshot of this step where it belongs, and hands out what is complete. False when

@@ -6,7 +6,8 @@
 #include <vector>
 
 #include "sim/command_queue.h"
-#include "sim/controller.h"
+#include "sim/controller_slot.h"
+#include "sim/correspondence.h"
 #include "sim/snapshot_queue.h"
 #include "sim/step_schedule.h"
 #include "sim/stepper.h"
@@ -17,6 +18,13 @@ namespace gloam {
 /// as input: it is in state and hash. MuJoCo functions that can fail need try_mujoco.
 using StepHook = std::function<void(const mjModel*, mjData*)>;
 
+/// What a SimLoop has of one World.
+struct NextWorld {
+  std::unique_ptr<Stepper> stepper;
+  std::vector<Command> scene_commands;
+  std::vector<ControllerSlot> controllers;
+};
+
 class SimLoop {
  public:
   /// `scene_commands` apply in every run, `replay` in the run each entry names; both sorted.
@@ -24,6 +32,9 @@ class SimLoop {
           std::vector<Command> scene_commands, std::vector<LoggedCommand> replay);
 
   Status add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate);
+  /// Goes on in another World at the present step. `next` comes as it was made, with what belongs
+  /// to its World; it gets back what was here before. Error: then nothing has changed.
+  Status exchange(NextWorld& next, const Correspondence& same);
   void set_step_hook(StepHook hook) { hook_ = std::move(hook); }
   Result<std::shared_ptr<SnapshotQueue>> subscribe(const SubscriptionOptions& options,
                                                    const std::shared_ptr<Signal>& signal);
@@ -46,13 +57,6 @@ class SimLoop {
   void close_queues();
 
  private:
-  struct ControllerSlot {
-    int robot;
-    std::unique_ptr<Controller> controller;
-    StepSchedule schedule;
-    double period;  // [s]
-    int64_t k = 0, due = 0;
-  };
   struct Subscription {
     /// A window that is not yet handed out.
     struct Pending {
@@ -71,6 +75,8 @@ class SimLoop {
 
     int64_t event_from(int64_t step) const;  // the first at or after it
     void begin(int64_t from);
+    void forget_windows();
+    int slots() const;
     bool publish(int64_t step, Stepper& stepper);
   };
 
@@ -78,6 +84,7 @@ class SimLoop {
   bool apply_commands();
   void run_controllers();
   void begin_run();
+  void take_over_goals(const Correspondence& same);
   void find_next_publication();
   VelocityTarget& goal_of(int robot) { return goals_[static_cast<size_t>(robot)]; }
 

@@ -36,11 +36,14 @@ Result<std::unique_ptr<Simulator>> Simulator::create(std::shared_ptr<const Compi
 
 Simulator::Simulator(std::unique_ptr<Stepper> stepper, Rational timestep, SimulatorOptions options,
                      std::vector<Command> scene_commands)
-    : pace_(options.pace),
+    : seed_(options.seed),
+      own_timestep_(options.timestep),
+      pace_(options.pace),
       commands_(options.command_capacity, options.log_capacity),
       loop_(std::move(stepper), timestep, commands_, std::move(scene_commands),
             std::move(options.replay)),
-      pacer_(timestep.value(), options.speed) {}
+      pacer_(timestep.value(), options.speed),
+      world_(loop_.stepper().shared_world()) {}
 
 Simulator::~Simulator() { stop(); }
 
@@ -199,9 +202,41 @@ void Simulator::set_pace(Pace pace, double speed) {
 }
 
 Status Simulator::post(Command command) {
-  const CompiledWorld& world = loop_.stepper().world();
-  GLOAM_TRY_STATUS(check_command(*world.model, static_cast<int>(world.robots.size()), command));
+  const std::lock_guard lock(world_mutex_);
+  GLOAM_TRY_STATUS(check_command(*world_, command));
   return commands_.post(std::move(command));
+}
+
+Status Simulator::check_timestep(const CompiledWorld& world) const {
+  const double now = timestep().value(), wanted = own_timestep_.value_or(world.model->opt.timestep);
+  if (exact_rational(wanted) == timestep()) return {};
+  return Error{
+      ErrorKind::kInput,
+      fmt::format("a recompile cannot change the timestep from {:g} s to {:g} s", now, wanted),
+      world.scene.sim.loc, "give the new scene the timestep of the old one"};
+}
+
+// All that takes long happens here, while the old World runs on.
+Status Simulator::recompile(std::shared_ptr<const CompiledWorld> world,
+                            std::vector<RobotController> controllers) {
+  const std::lock_guard one_at_a_time(recompile_mutex_);
+  GLOAM_TRY_STATUS(check_timestep(*world));
+  NextWorld next;
+  GLOAM_TRY(next.scene_commands, scene_schedule(*world, timestep()));
+  GLOAM_TRY(next.stepper, Stepper::create(world, seed_, own_timestep_));
+  for (RobotController& controller : controllers) {
+    GLOAM_TRY(ControllerSlot slot, ControllerSlot::make(*world, std::move(controller), timestep()));
+    next.controllers.push_back(std::move(slot));
+  }
+  const std::shared_ptr<const CompiledWorld> before = this->world();
+  const Correspondence same(*before, *world);
+  Status status;
+  call([&] {
+    const std::lock_guard lock(world_mutex_);
+    status = loop_.exchange(next, same);
+    if (status.ok()) world_ = world;
+  });
+  return status;
 }
 
 Status Simulator::add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate) {

@@ -33,10 +33,11 @@ struct SimCounters {
   int64_t snapshots_dropped = 0;   ///< by best-effort subscriptions whose reader was too slow
   int64_t pool_grown = 0;          ///< Snapshots allocated because readers held too many
   int64_t commands_applied = 0;    ///< posted ones, resets among them
-  int64_t commands_discarded = 0;  ///< that waited for a later step when a reset came
-  int64_t log_lost = 0;            ///< Commands missing in the log: a replay would not be exact
-  int64_t deadlines_missed = 0;    ///< steps that began late in real-time mode
-  int64_t most_contacts = 0;       ///< in one step
+  int64_t commands_discarded = 0;  ///< that waited when a reset came, or a recompile without
+                                   ///< their thing
+  int64_t log_lost = 0;  ///< missing in the log: Commands, recompiles: a replay would not be exact
+  int64_t deadlines_missed = 0;                ///< steps that began late in real-time mode
+  int64_t most_contacts = 0;                   ///< in one step
   std::array<int64_t, mjNWARNING> warnings{};  ///< of MuJoCo, by mjtWarning
 };
 
@@ -67,12 +68,19 @@ class Simulator {
   Status reset();
   void set_pace(Pace pace, double speed);
 
-  /// Checks a Command and queues it; never blocks. Errors: not a thing of this world, queue full.
+  /// Checks a Command and queues it; waits for nothing but a recompile's moment. Errors: not a
+  /// thing of this World, queue full.
   Status post(Command command);
   /// Runs before steps at `rate`, of which the step rate is a multiple; reset now and at every
   /// reset.
   Status add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate);
   void set_step_hook(StepHook hook);
+  /// Goes on in another World between two steps, with the state of what remains (state_transfer.h),
+  /// the Commands that wait (Correspondence::translate), all subscriptions (their next Snapshots
+  /// are of the new World; windows that have begun are lost) and these controllers. Error: then the
+  /// old World runs on; another timestep, a simulation that has failed, what MuJoCo says.
+  Status recompile(std::shared_ptr<const CompiledWorld> world,
+                   std::vector<RobotController> controllers);
   /// From the present step on. The reader holds what it got for as long as it likes.
   Result<std::shared_ptr<SnapshotQueue>> subscribe(const SubscriptionOptions& options);
   /// The present instant; after a failure the last good one.
@@ -90,11 +98,15 @@ class Simulator {
   Rational timestep() const { return loop_.timestep(); }
   /// CPU time of the sim thread [s]; 0 before start() and after stop().
   double cpu_time();
-  const CompiledWorld& world() const { return loop_.stepper().world(); }
+  std::shared_ptr<const CompiledWorld> world() const {
+    const std::lock_guard lock(world_mutex_);
+    return world_;
+  }
 
  private:
   Simulator(std::unique_ptr<Stepper> stepper, Rational timestep, SimulatorOptions options,
             std::vector<Command> scene_commands);
+  Status check_timestep(const CompiledWorld& world) const;
 
   void call(const std::function<void()>& f);
   void run_thread();
@@ -105,6 +117,8 @@ class Simulator {
   }
   void take_step();
 
+  const uint64_t seed_;
+  const std::optional<double> own_timestep_;  // [s]
   Pace pace_;
   CommandQueue commands_;
   SimLoop loop_;
@@ -119,6 +133,9 @@ class Simulator {
   std::shared_ptr<Signal> signal_ = std::make_shared<Signal>();
   std::atomic<bool> called_{false};
   std::atomic<int64_t> step_count_{0};
+  std::mutex recompile_mutex_;      // one at a time
+  mutable std::mutex world_mutex_;  // guards world_; a Command is checked and queued under it
+  std::shared_ptr<const CompiledWorld> world_;
   std::mutex join_mutex_;  // one thread at a time joins or asks for the handle
   std::mutex mutex_;       // guards what follows
   std::condition_variable changed_;

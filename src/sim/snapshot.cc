@@ -7,19 +7,11 @@
 namespace gloam {
 namespace {
 
-struct JointWidth {
-  size_t qpos, qvel;
-};
-
-JointWidth joint_width(int type) {
-  switch (type) {
-    case mjJNT_FREE:
-      return {7, 6};
-    case mjJNT_BALL:
-      return {4, 3};
-    default:
-      return {1, 1};
-  }
+template <class H>
+void check_handle(const SnapshotData& data, H handle, mjtSize count) {
+  GLOAM_CHECK(handle.world == 0 || handle.world == data.world->serial,
+              "a handle of another World than the Snapshot's: find it again");
+  GLOAM_CHECK(handle.id >= 0 && handle.id < count, "there is no such thing in this World");
 }
 
 }  // namespace
@@ -27,21 +19,24 @@ JointWidth joint_width(int type) {
 int64_t Snapshot::step() const { return data_->step; }
 double Snapshot::time() const { return data_->time; }
 uint64_t Snapshot::hash() const { return data_->hash; }
+World Snapshot::world() const { return World(data_->world); }
 std::span<const double> Snapshot::state() const { return data_->state; }
 
 JointState Snapshot::operator[](Joint joint) const {
   const mjModel& model = *data_->world->model;
-  GLOAM_CHECK(joint.id >= 0 && joint.id < model.njnt, "not a joint of this world");
+  check_handle(*data_, joint, model.njnt);
   const JointWidth width = joint_width(model.jnt_type[joint.id]);
   return {state_part(model, state(), mjSTATE_QPOS)
-              .subspan(static_cast<size_t>(model.jnt_qposadr[joint.id]), width.qpos),
+              .subspan(static_cast<size_t>(model.jnt_qposadr[joint.id]),
+                       static_cast<size_t>(width.qpos)),
           state_part(model, state(), mjSTATE_QVEL)
-              .subspan(static_cast<size_t>(model.jnt_dofadr[joint.id]), width.qvel)};
+              .subspan(static_cast<size_t>(model.jnt_dofadr[joint.id]),
+                       static_cast<size_t>(width.qvel))};
 }
 
 SensorState Snapshot::operator[](SensorHandle sensor) const {
   const mjModel& model = *data_->world->model;
-  GLOAM_CHECK(sensor.id >= 0 && sensor.id < model.nsensor, "not a sensor of this world");
+  check_handle(*data_, sensor, model.nsensor);
   return {std::span<const double>(data_->sensordata)
               .subspan(static_cast<size_t>(model.sensor_adr[sensor.id]),
                        static_cast<size_t>(model.sensor_dim[sensor.id])),
@@ -50,8 +45,10 @@ SensorState Snapshot::operator[](SensorHandle sensor) const {
 
 double Snapshot::control(Actuator actuator) const {
   const mjModel& model = *data_->world->model;
-  GLOAM_CHECK(actuator.id >= 0 && actuator.id < model.nu, "not an actuator of this world");
-  return state_part(model, state(), mjSTATE_CTRL)[static_cast<size_t>(actuator.id)];
+  check_handle(*data_, actuator, model.nactuator);
+  GLOAM_CHECK(model.actuator_ctrlnum[actuator.id] > 0, "an actuator without controls");
+  return state_part(model, state(),
+                    mjSTATE_CTRL)[static_cast<size_t>(model.actuator_ctrladr[actuator.id])];
 }
 
 }  // namespace gloam

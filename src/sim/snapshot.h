@@ -22,7 +22,8 @@ struct SnapshotData {
   std::shared_ptr<const CompiledWorld> world;
   int64_t run = 0;  ///< resets before it
   int64_t step = 0;
-  double time = 0;  ///< [s]
+  double time = 0;      ///< [s]
+  double timestep = 0;  ///< [s]
   uint64_t hash = 0;
   std::vector<double> state;               ///< mjSTATE_INTEGRATION
   std::vector<double> sensordata;          ///< (nsensordata), of the state before the last step

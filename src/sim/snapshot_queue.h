@@ -63,6 +63,8 @@ class SnapshotQueue final : public SnapshotSource {
   const SubscriptionOptions& options() const { return options_; }
 
   // ---- the sim thread's side ----
+  /// What could not be completed is lost.
+  void count_lost(int64_t count) { dropped_.fetch_add(count, std::memory_order_relaxed); }
   bool full() const { return queue_.size() >= options_.capacity; }
   /// Required queues must not be full.
   void publish(SnapshotWindow window);

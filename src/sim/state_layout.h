@@ -8,6 +8,21 @@
 
 namespace gloam {
 
+/// How many numbers a joint of a mjtJoint has.
+struct JointWidth {
+  int qpos, qvel;
+};
+constexpr JointWidth joint_width(int type) {
+  switch (type) {
+    case mjJNT_FREE:
+      return {7, 6};
+    case mjJNT_BALL:
+      return {4, 3};
+    default:
+      return {1, 1};
+  }
+}
+
 /// Length of the state vector.
 inline int state_size(const mjModel& model) { return mj_stateSize(&model, mjSTATE_INTEGRATION); }
 

@@ -41,6 +41,7 @@ class StepSchedule {
 
   /// The step of event k >= 0.
   int64_t step_of(int64_t k) const;
+  bool operator==(const StepSchedule&) const = default;
   /// By how much event k's step is later than t_k, 0 <= … < 1 [steps].
   double lateness_of(int64_t k) const;
   /// The first event at or after `step`.

@@ -8,6 +8,7 @@
 #include "sim/initial_state.h"
 #include "sim/live_fields.h"
 #include "sim/state_layout.h"
+#include "sim/state_transfer.h"
 
 namespace gloam {
 namespace {
@@ -99,6 +100,26 @@ bool Stepper::reset() {
   return true;
 }
 
+bool Stepper::take_over(const Stepper& before, const Correspondence& same) {
+  run_ = before.run_;
+  step_ = before.step_;
+  hash_ = before.hash_;
+  live_changes_ = before.live_changes_;
+  warnings_ = before.warnings_;
+  most_contacts_ = before.most_contacts_;
+  inputs_->take_over(*before.inputs_, same);
+  if (before.live_ != nullptr) {
+    for (const SetLiveField& change : remaining_live_fields(same, *before.live_)) {
+      change_live(change);
+      if (failed_) return false;
+    }
+  }
+  transfer_state(same, *before.data_, *data_);
+  mj_getState(&model_, data_.get(), state_.data(), mjSTATE_INTEGRATION);
+  hash_ = hash_span<double>(state_, hash_);
+  return stand_at_state() || fail({ErrorKind::kInput, mujoco_error_message()});
+}
+
 void Stepper::apply(const Command& command) {
   mjData& data = *data_;
   std::visit(
@@ -178,16 +199,26 @@ void Stepper::restore_last_good_state() {
   if (!try_mujoco([&] { data = mj_makeData(model); }) || data == nullptr) return;
   data_.reset(data);
   reader_ = StateReader(*model, *data);
+  std::fill(sensors_.begin(), sensors_.end(), 0.0);
+  static_cast<void>(stand_at_state());
+}
+
+// Makes mjData that of state_, with the sensors of this very instant, and with poses for the
+// controllers and hooks of the next step. False when MuJoCo refuses.
+bool Stepper::stand_at_state() {
   snapshot_ = {};
   own_sensors_ = true;
   sensor_stamp_ = state_[0];
-  std::fill(sensors_.begin(), sensors_.end(), 0.0);
-  static_cast<void>(try_mujoco([&] {
+  const mjModel* model = &model_;
+  mjData* data = data_.get();
+  return try_mujoco([&] {
     mj_setState(model, data, state_.data(), mjSTATE_INTEGRATION);
     mj_forward(model, data);
     mju_copy(sensors_.data(), data->sensordata, static_cast<int>(model->nsensordata));
     mj_setState(model, data, state_.data(), mjSTATE_INTEGRATION);
-  }));
+    mj_kinematics(model, data);
+    mj_comPos(model, data);
+  });
 }
 
 void Stepper::count_diagnostics() {
@@ -205,6 +236,7 @@ const Snapshot& Stepper::snapshot() {
       out.run = run_;
       out.step = step_;
       out.time = time();
+      out.timestep = model_.opt.timestep;
       out.hash = hash_;
       out.live = live_;
       out.sensor_stamp = sensor_stamp_;

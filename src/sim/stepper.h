@@ -27,6 +27,11 @@ class Stepper {
   /// Back to the initial state, live fields included. False and error() when MuJoCo refuses.
   bool reset();
 
+  /// Goes on at the step where `before`, of another World, stands, with the state of what remains.
+  /// To be called once, before the first step. False and error() when MuJoCo refuses; `before` is
+  /// as it was.
+  bool take_over(const Stepper& before, const Correspondence& same);
+
   /// Applies one checked Command now. Velocity goals and resets are not its business.
   void apply(const Command& command);
 
@@ -47,6 +52,7 @@ class Stepper {
   const mjModel& model() const { return model_; }
   mjData& data() { return *data_; }
   const CompiledWorld& world() const { return *world_; }
+  const std::shared_ptr<const CompiledWorld>& shared_world() const { return world_; }
   SnapshotPool& pool() { return *pool_; }
   /// MuJoCo's warnings since creation, by mjtWarning.
   const std::array<int64_t, mjNWARNING>& warnings() const { return warnings_; }
@@ -57,7 +63,7 @@ class Stepper {
   Stepper() = default;
   bool fail(Error error);
   void restore_last_good_state();
-  void compute_sensors();
+  bool stand_at_state();
   void change_live(const SetLiveField& change);
   bool own_the_field(LiveFieldId field);
   void take_model(const mjModel& model);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
+
 #include "base/text.h"
 #include "world/level.h"
 #include "world/visual_camera.h"
@@ -10,15 +12,16 @@
 namespace gloam {
 namespace {
 
-template <class Handle>
-Result<Handle> find(const mjModel* m, mjtObj type, mjtSize count, const char* kind,
-                    const std::string& name) {
+template <class H>
+Result<H> find(const CompiledWorld& world, mjtObj type, mjtSize mjModel::* count, const char* kind,
+               const std::string& name) {
+  const mjModel* m = world.model.get();
   const int id = mj_name2id(m, type, name.c_str());
-  if (id >= 0) return Handle{id};
+  if (id >= 0) return H{id, world.serial};
   return Error{ErrorKind::kInput,
                fmt::format("there is no {} '{}'", kind, name),
                {},
-               suggest_name(name, object_names(m, type, static_cast<int>(count)))};
+               suggest_name(name, object_names(m, type, static_cast<int>(m->*count)))};
 }
 
 std::string numbers(const mjtNum* values, int n) {
@@ -101,32 +104,35 @@ int64_t count_triangles(const mjModel* m, bool hidden_groups) {
 
 }  // namespace
 
+uint64_t next_world_serial() {
+  static std::atomic<uint64_t> last{0};
+  return ++last;
+}
+
 Result<Joint> World::find_joint(const std::string& name) const {
-  const mjModel* m = compiled_->model.get();
-  return find<Joint>(m, mjOBJ_JOINT, m->njnt, "joint", name);
+  return find<Joint>(*compiled_, mjOBJ_JOINT, &mjModel::njnt, "joint", name);
 }
 Result<Body> World::find_body(const std::string& name) const {
-  const mjModel* m = compiled_->model.get();
-  return find<Body>(m, mjOBJ_BODY, m->nbody, "body", name);
+  return find<Body>(*compiled_, mjOBJ_BODY, &mjModel::nbody, "body", name);
 }
 Result<Actuator> World::find_actuator(const std::string& name) const {
-  const mjModel* m = compiled_->model.get();
-  return find<Actuator>(m, mjOBJ_ACTUATOR, m->nactuator, "actuator", name);
+  return find<Actuator>(*compiled_, mjOBJ_ACTUATOR, &mjModel::nactuator, "actuator", name);
 }
 Result<SensorHandle> World::find_sensor(const std::string& name) const {
-  const mjModel* m = compiled_->model.get();
-  return find<SensorHandle>(m, mjOBJ_SENSOR, m->nsensor, "sensor", name);
+  return find<SensorHandle>(*compiled_, mjOBJ_SENSOR, &mjModel::nsensor, "sensor", name);
 }
 Result<Camera> World::find_camera(const std::string& name) const {
   const mjModel* m = compiled_->model.get();
   for (int i = 0; i < static_cast<int>(m->ncam); ++i) {
-    if (camera_name(*m, i) == name) return Camera{i};
+    if (camera_name(*m, i) == name) return Camera{i, compiled_->serial};
   }
-  return find<Camera>(m, mjOBJ_CAMERA, m->ncam, "camera", name);
+  return find<Camera>(*compiled_, mjOBJ_CAMERA, &mjModel::ncam, "camera", name);
 }
 Result<Geom> World::find_geom(const std::string& name) const {
-  const mjModel* m = compiled_->model.get();
-  return find<Geom>(m, mjOBJ_GEOM, m->ngeom, "geom", name);
+  return find<Geom>(*compiled_, mjOBJ_GEOM, &mjModel::ngeom, "geom", name);
+}
+Result<Tendon> World::find_tendon(const std::string& name) const {
+  return find<Tendon>(*compiled_, mjOBJ_TENDON, &mjModel::ntendon, "tendon", name);
 }
 
 WorldInfo World::info() const {

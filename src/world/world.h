@@ -37,7 +37,11 @@ struct VisualOnlyGeom {
   Pose X_BG;
 };
 
+/// A number that no other World of this process has.
+uint64_t next_world_serial();
+
 struct CompiledWorld {
+  const uint64_t serial = next_world_serial();  ///< what handles remember
   Scene scene;
   ModelPtr model;  ///< the whole level, exactly what stock MuJoCo would load
   /// Keyframe of `model` that the simulation starts from; -1 = mj_resetData's state. A scene whose

@@ -6,6 +6,7 @@
 
 #include "scene/mujoco_guard.h"
 #include "sim/simulator.h"
+#include "trot_robots.h"
 
 namespace gloam {
 namespace {
@@ -86,6 +87,65 @@ TEST(Torque, IsConstantUntilACommandChangesIt) {
   ASSERT_TRUE(sim->reset().ok());
   ASSERT_TRUE(sim->step(1).ok());
   EXPECT_EQ(sim->latest().control(Actuator{0}), 0.5);
+}
+
+std::vector<RobotController> controllers_of(const CompiledWorld& world) {
+  std::vector<RobotController> controllers;
+  controllers.push_back({0, *make_controller(world, world.robots[0]), {500, 1}});
+  return controllers;
+}
+
+TEST(JointPosition, HoldsOnThroughARecompile) {
+  const auto world = make_world({.type = "joint_position"});
+  auto sim = start(world);
+  ASSERT_TRUE(sim->post({.what = SetWrench{{2}, {0, 0, 8}, {}}}).ok());  // on body a
+  ASSERT_TRUE(sim->step(200).ok());
+  EXPECT_LT(sim->latest()[Joint{0}].position(), -0.01) << "it gives way";
+  const auto again = make_world({.type = "joint_position"});
+  ASSERT_TRUE(sim->recompile(again, controllers_of(*again)).ok());
+  ASSERT_TRUE(sim->post({.what = SetWrench{{2}, {}, {}}}).ok());
+  ASSERT_TRUE(sim->step(4000).ok());
+  EXPECT_NEAR(sim->latest()[Joint{0}].position(), 0, 1e-3) << "and comes back to where it began";
+}
+
+TEST(Torque, OfACommandSurvivesARecompile) {
+  const ControllerOptions options{.type = "torque", .target = {1, 0.5}};
+  auto sim = start(make_world(options));
+  ASSERT_TRUE(sim->step(10).ok());
+  ASSERT_TRUE(sim->post({.what = SetControl{Actuator{0}, -1}}).ok());
+  ASSERT_TRUE(sim->step(10).ok());
+  const auto again = make_world(options);
+  ASSERT_TRUE(sim->recompile(again, controllers_of(*again)).ok());
+  ASSERT_TRUE(sim->step(10).ok());
+  EXPECT_EQ(sim->latest().control(Actuator{0}), -1);
+  const auto stronger = make_world({.type = "torque", .target = {2, 0.5}});
+  ASSERT_TRUE(sim->recompile(stronger, controllers_of(*stronger)).ok());
+  ASSERT_TRUE(sim->step(1).ok());
+  EXPECT_EQ(sim->latest().control(Actuator{0}), 1) << "the scene asks for another one now";
+}
+
+// In the middle of a stride, to the same scene: not a bit of the walk changes.
+TEST(Trot, WalksOnThroughARecompile) {
+  const auto quadruped_world = [] {
+    auto world = std::make_shared<CompiledWorld>();
+    world->model = load_quadruped();
+    RobotInstance robot = robot_instance(*world->model);
+    robot.options.controller.type = "trot";
+    world->robots.push_back(robot);
+    return world;
+  };
+  const auto begin = [&] {
+    auto sim = start(quadruped_world());
+    EXPECT_TRUE(sim->post({.what = SetVelocityGoal{0, 0.5, 0, 0.3}}).ok());
+    EXPECT_TRUE(sim->step(733).ok());
+    return sim;
+  };
+  auto plain = begin(), changed = begin();
+  const auto again = quadruped_world();
+  ASSERT_TRUE(changed->recompile(again, controllers_of(*again)).ok());
+  ASSERT_TRUE(plain->step(500).ok() && changed->step(500).ok());
+  const Snapshot a = plain->latest(), b = changed->latest();
+  EXPECT_TRUE(std::equal(a.state().begin(), a.state().end(), b.state().begin()));
 }
 
 TEST(Controllers, AreFoundByNameAndErrorsSayWhatToDo) {

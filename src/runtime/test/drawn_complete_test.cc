@@ -262,7 +262,7 @@ TEST_P(SlowDrawnComplete, EveryGeomInViewIsInTheSegmentation) {
   RecordProperty("hidden_geoms", static_cast<int>(hidden.size()));
 
   // What others hide is there once they are gone.
-  auto shared = SharedRenderer::create(*world.compiled());
+  auto shared = SharedRenderer::create(world.compiled());
   ASSERT_TRUE(shared.ok());
   auto solver = PoseSolver::create(world.compiled());
   ASSERT_TRUE(solver.ok());

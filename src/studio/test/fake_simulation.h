@@ -20,7 +20,7 @@ class FakeSimulation : public Simulation {
   FakeSimulation();
   ~FakeSimulation() override;
 
-  const World& world() const override { return world_; }
+  World world() const override { return world_; }
   Status run_until(int64_t step) override;
   void resume() override;
   void pause() override;
