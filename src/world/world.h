@@ -41,7 +41,7 @@ struct VisualOnlyGeom {
 uint64_t next_world_serial();
 
 struct CompiledWorld {
-  const uint64_t serial = next_world_serial();  ///< what handles remember
+  uint64_t serial = next_world_serial();  ///< what handles remember
   Scene scene;
   ModelPtr model;  ///< the whole level, exactly what stock MuJoCo would load
   /// Keyframe of `model` that the simulation starts from; -1 = mj_resetData's state. A scene whose

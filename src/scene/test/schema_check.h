@@ -114,7 +114,7 @@ class Checker {
     if (word == "properties" || word == "additionalProperties") {
       if (!v.is_object()) return "";
       for (const auto& [key, value] : v.items()) {
-        const bool is_named = schema.at("properties").contains(key);
+        const bool is_named = schema.contains("properties") && schema["properties"].contains(key);
         if (is_named != (word == "properties")) continue;
         std::string wrong = check(is_named ? rule.at(key) : rule, value, at + "." + key);
         if (!wrong.empty()) return wrong;
