@@ -159,8 +159,9 @@ TEST_F(Override, MistakesNameTheirLineAndWhatWasMeant) {
             "scene.toml:5:1: '(' is no regular expression: missing ): (");
   EXPECT_EQ(complaint("[override.a.joint]\ndamping = 1\n"),
             "scene.toml:5:1: an override is a table (write [override.a.joint.\"NAME\"])");
-  EXPECT_EQ(complaint("[override.a.option.fast]\ntimestep = 1\n"),
-            "scene.toml:4:20: no element 'option/fast' can be overridden (did you mean 'option/flag'?)");
+  EXPECT_EQ(
+      complaint("[override.a.option.fast]\ntimestep = 1\n"),
+      "scene.toml:4:20: no element 'option/fast' can be overridden (did you mean 'option/flag'?)");
 }
 
 }  // namespace
