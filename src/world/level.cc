@@ -10,6 +10,7 @@
 #include "scene/mujoco_plugins.h"
 #include "scene/overrides.h"
 #include "scene/urdf_text.h"
+#include "world/endless_compile.h"
 #include "world/finite_model.h"
 #include "world/level_cameras.h"
 #include "world/level_keyframe.h"
@@ -198,6 +199,11 @@ Status compile(const Scene& scene, ModelFiles* files, Level* level) {
   files->forget_failures();
   mjModel* model = nullptr;
   mjSpec* spec = level->spec.get();
+  if (const std::optional<EndlessCompile> endless = find_endless_compile(*spec)) {
+    Error error = files->explain(endless->fault, file_of(scene, endless->name));
+    error.hint = "with muscles MuJoCo's compiler simulates: give 0 or more";
+    return error;
+  }
   const mjVFS* vfs = files->vfs();
   const int warnings_before = mjs_numWarnings(spec);
   const MujocoWarningCapture warnings;

@@ -84,5 +84,28 @@ TEST_F(FiniteModel, EndlessRangesAndWhatUsersKeepMayStay) {
   EXPECT_EQ(error_of({.geom = "type='plane' size='0 0 1'"}), "");
 }
 
+// Without the check these compile for ever.
+TEST_F(FiniteModel, ArmaturesWithWhichMusclesNeverCompileAreRefused) {
+  const auto error_of_muscle = [&](const char* joint, const char* muscle) {
+    const auto file = folder_.write(
+        "m.xml",
+        fmt::format("<mujoco><worldbody><body>\n<joint name='j' limited='true' range='0 1' {}/>\n"
+                    "<geom size='1'/></body></worldbody><actuator>\n<muscle name='m' joint='j' {}/>"
+                    "</actuator></mujoco>",
+                    joint, muscle));
+    const auto world = World::compile(*load_scene(file));
+    return world.ok() ? "" : world.error().to_string();
+  };
+  EXPECT_EQ(error_of_muscle("armature='0.1'", "armature='0.2'"), "");
+  EXPECT_THAT(error_of_muscle("armature='-1e9'", ""),
+              HasSubstr("m.xml:2: joint 'j': armature is -1000000000"));
+  EXPECT_THAT(error_of_muscle("armature='nan'", ""),
+              HasSubstr("m.xml:2: joint 'j': armature is nan"));
+  EXPECT_THAT(error_of_muscle("", "armature='nan'"),
+              HasSubstr("m.xml:4: actuator 'm': armature is nan"));
+  EXPECT_THAT(error_of_muscle("", "armature='-2147483648'"),
+              HasSubstr("m.xml:4: actuator 'm': armature is -2147483648"));
+}
+
 }  // namespace
 }  // namespace gloam
