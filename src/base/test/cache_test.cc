@@ -189,6 +189,11 @@ TEST_F(Cache, FoldersThatCannotBeUsedAreSaid) {
 
 // Every content that a reader sees is one that some writer wrote, whole; nothing is left behind.
 TEST_F(Cache, ThreadsAndProcessesMayRace) {
+#ifdef __has_feature
+#if __has_feature(thread_sanitizer)
+  GTEST_SKIP() << "the thread sanitizer has no threads in a forked process";
+#endif
+#endif
   constexpr int kProcesses = 3, kThreads = 2, kRounds = 150;
   constexpr size_t kSize = 200'000;
   const fs::path shared = entry(kModelCache, 7);
