@@ -25,7 +25,10 @@ void add_run(CLI::App& app, Globals& globals, Action& action);
 void add_render(CLI::App& app, Globals& globals, Action& action);
 void add_info(CLI::App& app, Globals& globals, Action& action);
 void add_export(CLI::App& app, Globals& globals, Action& action);
+void add_check(CLI::App& app, Globals& globals, Action& action);
 void add_cache(CLI::App& app, Globals& globals, Action& action);
+void add_props(CLI::App& app, Globals& globals, Action& action);
+void add_convert(CLI::App& app, Globals& globals, Action& action);
 void add_schema(CLI::App& app, Globals& globals, Action& action);
 void add_completion(CLI::App& app, Globals& globals, Action& action);
 
@@ -41,20 +44,15 @@ CLI::Validator non_negative_number();
 void add_access_options(CLI::App& command, FileAccess& access, std::vector<std::string>& packages);
 /// Parses `packages` (NAME=FOLDER) into `access`.
 Status apply_packages(FileAccess& access, const std::vector<std::string>& packages);
-/// Reads a scene or model within what `access` and `packages` allow, and compiles it.
-Result<World> load_world(const std::string& file, FileAccess access,
-                         const std::vector<std::string>& packages);
+/// World::compile; Ctrl-C ends the process meanwhile.
+Result<World> compile(const Scene& scene);
 /// "640x480" -> width, height.
 Status parse_resolution(const std::string& text, int& width, int& height);
 
 /// A progress line on stderr: a bar with ETA on a terminal, a line now and then elsewhere. Stops
-/// the job on Ctrl-C.
+/// the job on Ctrl-C; before the first call, while the job is prepared, the whole process.
 ProgressCallback progress_display(const Globals& globals);
 /// Ends the progress line.
 void finish_progress();
-
-/// From now on Ctrl-C and SIGTERM set a flag; a second one ends the process with 130.
-void catch_interrupts();
-bool interrupted();
 
 }  // namespace gloam::cli

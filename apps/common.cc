@@ -1,26 +1,19 @@
-// What several commands share: errors, interrupts, progress, option parsing.
+// What several commands share: errors, progress, option parsing.
 
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <charconv>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
+#include <memory>
 
 #include "command.h"
+#include "interrupt.h"
 
 namespace gloam::cli {
 namespace {
-
-std::atomic<bool> stop_requested{false};
-
-void on_signal(int signal) {
-  if (stop_requested.exchange(true))
-    ::_exit(128 + signal);  // the second one does not wait for files
-}
 
 std::string as_time(double seconds) {
   const auto whole = static_cast<int64_t>(seconds + 0.5);
@@ -38,18 +31,11 @@ int fail(const Error& error) {
   return error.exit_code();
 }
 
-void catch_interrupts() {
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow is an error where it is written
-}
-
-bool interrupted() { return stop_requested; }
-
 ProgressCallback progress_display(const Globals& globals) {
   const bool terminal = ::isatty(STDERR_FILENO) != 0;
-  return [terminal, quiet = globals.quiet, last_print = -1e9](const Progress& progress) mutable {
+  return [terminal, quiet = globals.quiet, last_print = -1e9,
+          preparing = std::make_shared<EndOnInterrupt>()](const Progress& progress) mutable {
+    preparing->release();
     // Nothing for the first moments: most commands end before anybody wonders.
     const double interval = terminal ? 0.2 : 10.0;
     if (!quiet && progress.seconds > 1.0 && progress.seconds - last_print >= interval) {
@@ -122,10 +108,8 @@ Status apply_packages(FileAccess& access, const std::vector<std::string>& packag
   return {};
 }
 
-Result<World> load_world(const std::string& file, FileAccess access,
-                         const std::vector<std::string>& packages) {
-  GLOAM_TRY_STATUS(apply_packages(access, packages));
-  GLOAM_TRY(const Scene scene, load_scene(file, access));
+Result<World> compile(const Scene& scene) {
+  const EndOnInterrupt watched;
   return World::compile(scene);
 }
 

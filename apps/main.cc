@@ -11,13 +11,15 @@
 
 #include "command.h"
 #include "gloam/program.h"
+#include "interrupt.h"
 #include "words.h"
 
 namespace gloam::cli {
 namespace {
 
-constexpr std::array kCommands = {add_demo,   add_run,   add_render, add_info,
-                                  add_export, add_cache, add_schema, add_completion};
+constexpr std::array kCommands = {add_demo,    add_run,    add_render,    add_info,
+                                  add_export,  add_check,  add_cache,     add_props,
+                                  add_convert, add_schema, add_completion};
 
 int run_program(int argc, char** argv) {
   CLI::App app{

@@ -6,12 +6,16 @@
 
 namespace gloam::cli {
 
-void RunOptions::add_to(CLI::App& command) {
+void SceneOptions::add_to(CLI::App& command) {
   command.add_option("--seed", seed, "Seed of everything random");
-  command.add_option("--timestep", timestep, "Physics time step in seconds; default: the model's")
-      ->check(positive_number());
   command.add_option("--set", settings,
                      "Change one setting of the scene, as sim.duration=5 (repeatable)");
+  add_access_options(command, access, packages);
+}
+
+void RunOptions::add_to(CLI::App& command) {
+  command.add_option("--timestep", timestep, "Physics time step in seconds; default: the model's")
+      ->check(positive_number());
   command.add_option("--camera", cameras, "Camera by name (repeatable); default: all");
   command.add_option("--resolution", resolution, "WIDTHxHEIGHT of every camera");
   command
@@ -40,10 +44,10 @@ void RunOptions::add_to(CLI::App& command) {
       .add_option("--output", outputs,
                   fmt::format("What to record: {}", fmt::join(kRecordOutputs, " ")))
       ->delimiter(',');
-  add_access_options(command, access, packages);
+  SceneOptions::add_to(command);
 }
 
-Result<Scene> RunOptions::load(const std::string& file) {
+Result<Scene> SceneOptions::load(const std::string& file) {
   GLOAM_TRY_STATUS(apply_packages(access, packages));
   GLOAM_TRY(Scene scene, load_scene(file, access));
   for (const std::string& setting : settings) {
@@ -56,8 +60,18 @@ Result<Scene> RunOptions::load(const std::string& file) {
     }
     GLOAM_TRY_STATUS(set_option(scene, setting.substr(0, split), setting.substr(split + 1)));
   }
-  if (duration) scene.sim.duration = *duration;
   if (seed) scene.sim.seed = *seed;
+  return scene;
+}
+
+Result<World> SceneOptions::compile(const std::string& file) {
+  GLOAM_TRY(const Scene scene, load(file));
+  return cli::compile(scene);
+}
+
+Result<Scene> RunOptions::load(const std::string& file) {
+  GLOAM_TRY(Scene scene, SceneOptions::load(file));
+  if (duration) scene.sim.duration = *duration;
   if (timestep) scene.sim.timestep = *timestep;
   if (error) {
     scene.render.error = error;

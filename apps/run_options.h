@@ -9,19 +9,28 @@
 
 namespace gloam::cli {
 
-/// Holds what was given; apply() changes the scene accordingly.
-struct RunOptions {
-  std::optional<double> duration, timestep, ev100, error;
+/// What all commands that load a scene may change about it.
+struct SceneOptions {
   std::optional<uint64_t> seed;
-  std::optional<int> spp, max_depth;
-  std::string tier, device, resolution;
-  std::vector<std::string> cameras, outputs, settings, packages;
-  bool no_denoise = false;
-  int threads = 0;
+  std::vector<std::string> settings, packages;
   FileAccess access;
 
   void add_to(CLI::App& command);
   /// Loads the scene and applies every option to it.
+  Result<Scene> load(const std::string& file);
+  Result<World> compile(const std::string& file);
+};
+
+/// Of commands that run or draw it.
+struct RunOptions : SceneOptions {
+  std::optional<double> duration, timestep, ev100, error;
+  std::optional<int> spp, max_depth;
+  std::string tier, device, resolution;
+  std::vector<std::string> cameras, outputs;
+  bool no_denoise = false;
+  int threads = 0;
+
+  void add_to(CLI::App& command);
   Result<Scene> load(const std::string& file);
 };
 

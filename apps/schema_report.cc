@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gloam/mjcf.h"
+#include "interrupt.h"
 
 namespace gloam::cli {
 namespace {

@@ -325,6 +325,42 @@ def lidar(quick):
     yield at_least("LiDAR 64 x 1024 near Go1: mj_multiRay's CPU time / ours", min(ratios), 4.0, "; ".join(notes))
 
 
+def environments(quick):
+    """generated places: until they are ready to render, and how fast they step"""
+    go1 = '[[robot]]\nname = "go1"\nfile = "go1/go1.xml"\n'
+    house = "[environment.house]\nseed = 3\nrooms = 6\n"
+    warehouse = "[environment.warehouse]\nseed = 2\nlength = 46\nwidth = 31\n"
+    with tempfile.TemporaryDirectory(prefix="gloam_bench_") as folder:
+        scene, warm = Path(folder) / "scene.toml", Path(folder) / "warm"
+        shutil.copytree(robot("go1").parent, Path(folder) / "go1")  # a scene reads nothing outside its folder
+        scene.write_text(house)
+        command, cold, cached = (BIN / "bench_load_time", scene, "render"), [], []
+        run(*command, GLOAM_CACHE=str(warm))
+        for i in range(2 if quick else 7):
+            cold.append(seconds_until_ready(Path(folder) / f"cold_{i}", *command)[1])
+            cached.append(seconds_until_ready(warm, *command)[1])
+        yield at_most("house of 6 rooms ready to render, cold [s]", statistics.median(cold), 5, "wall, generated and compiled")
+        yield at_most("the same from our cache [s]", statistics.median(cached), 1, "wall")
+        scene.write_text(house + go1)
+        data = run_json(BIN / "bench_place_rate", scene, 2 if quick else 10, GLOAM_CACHE=str(warm))
+        yield at_least("physics of the house with a Go1 / real time, one core", data["real_time"], 5,
+                       f"{data['things']} things, {data['dofs']} degrees of freedom, {data['contacts']} contacts, {data['step_us']:.0f} µs a step")
+        scene.write_text(warehouse)
+        data = run_json(BIN / "bench_place_rate", scene, 2 if quick else 10, GLOAM_CACHE=str(warm))
+        yield at_least("physics of a warehouse of 1,000 props / real time, one core", data["real_time"] * (data["things"] >= 1000), 1,
+                       f"{data['things']} things, {data['dofs']} degrees of freedom, {data['contacts']} contacts, {data['step_us']:.0f} µs a step")
+
+
+def hfield(quick):
+    """ground sampled from meshes into height fields"""
+    samples = "1e6" if quick else "4e6"
+    for triangles, layers in (("2e5", 1), ("2e6", 1), ("2e5", 2)):
+        one, two = (run_json(BIN / "bench_height_field_rate", triangles, samples, str(threads), str(layers)) for threads in (1, 2))
+        what = "from above" if layers == 1 else f"{layers} layers"
+        yield at_least(f"ground of {two['triangles'] / 1e6:.1f} M triangles, {what}: M samples/s on 2 cores", two["rate"] / 1e6, 5,
+                       f"{two['samples'] / 1e6:.0f} M samples in {two['seconds']:.2f} s wall, from the mesh to the heights; one thread {one['rate'] / 1e6:.1f} M/s")
+
+
 # With the seconds that each takes on two cores: the first estimate of the time left.
 ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, fast_tier: 400, truth: 40, load_time: 120, import_time: 60,
-       first_picture: 15, adaptive_sampling: 120, lidar: 25}
+       first_picture: 15, adaptive_sampling: 120, lidar: 25, environments: 60, hfield: 25}

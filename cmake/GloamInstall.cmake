@@ -44,5 +44,8 @@ endif()
 file(GLOB oidn ${GLOAM_WHEELS}/pyoidn/oidn/lib/libOpenImageDenoise.so.2 ${GLOAM_WHEELS}/pyoidn/oidn/lib/libOpenImageDenoise_core.so.*
   ${GLOAM_WHEELS}/pyoidn/oidn/lib/libOpenImageDenoise_device_cpu.so.* ${GLOAM_WHEELS}/pyoidn/oidn/lib/libtbb.so.12)
 install(FILES ${oidn} DESTINATION ${private}/oidn/lib)  # they look for each other in ../lib
+install(FILES ${GLOAM_WHEELS}/coacd/lib_coacd.so DESTINATION ${private}/coacd)
+file(GLOB coacd_libs ${GLOAM_WHEELS}/coacd.libs/*.so*)
+install(FILES ${coacd_libs} DESTINATION ${private}/coacd.libs)  # where it looks for them
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/assets ${CMAKE_SOURCE_DIR}/examples DESTINATION ${CMAKE_INSTALL_DATADIR}/gloam)
 install(FILES ${CMAKE_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -2,19 +2,18 @@
 
 #include <cstdio>
 
-#include "command.h"
+#include "run_options.h"
 
 namespace gloam::cli {
 namespace {
 
 struct ExportCommand {
   std::string file, out;
-  FileAccess access;
-  std::vector<std::string> packages;
+  SceneOptions scene;
 };
 
-int export_scene(const ExportCommand& command) {
-  auto world = load_world(command.file, command.access, command.packages);
+int export_scene(ExportCommand& command) {
+  auto world = command.scene.compile(command.file);
   if (!world.ok()) return fail(world.error());
   if (const Status status = world->export_mjcf(command.out); !status.ok())
     return fail(status.error());
@@ -30,7 +29,7 @@ void add_export(CLI::App& app, Globals& /*globals*/, Action& action) {
   sub->add_option("FILE", command->file, "Scene or model")->required();
   sub->add_option("--out", command->out, "Folder to write scene.xml and its assets into")
       ->required();
-  add_access_options(*sub, command->access, command->packages);
+  command->scene.add_to(*sub);
   sub->footer("Example:\n  gloam export examples/demo.toml --out exported");
   sub->callback([&action, command] { action = [command] { return export_scene(*command); }; });
 }

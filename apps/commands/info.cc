@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "command.h"
+#include "run_options.h"
 #include "schema_report.h"
 
 namespace gloam::cli {
@@ -13,8 +13,7 @@ namespace {
 
 struct InfoCommand {
   std::string file;
-  FileAccess access;
-  std::vector<std::string> packages;
+  SceneOptions scene;
   bool schema = false;
 };
 
@@ -28,6 +27,16 @@ void print_json(const WorldInfo& info, const std::vector<Section>& sections) {
                                  {"mass_kg", info.mass},
                                  {"model_bytes", info.model_bytes},
                                  {"triangles", info.triangles}};
+  auto& regions = json["regions"] = nlohmann::ordered_json::array();
+  for (const Region& r : info.regions) {
+    regions.push_back({{"name", r.name},
+                       {"label", r.label},
+                       {"low_m", {r.low.x, r.low.y, r.low.z}},
+                       {"high_m", {r.high.x, r.high.y, r.high.z}}});
+  }
+  auto& drawn = json["drawn"] = nlohmann::ordered_json::array();
+  for (const DrawnOption& d : info.drawn)
+    drawn.push_back({{"option", d.option}, {"value", d.value}});
   for (const auto& [title, elements] : sections) {
     auto& list = json[title] = nlohmann::ordered_json::array();
     for (const NamedElement& element : *elements)
@@ -45,6 +54,14 @@ void print_text(const WorldInfo& info, const std::vector<Section>& sections) {
              info.nv, info.nu, info.timestep, info.mass);
   fmt::print("{:.2f} MiB of model, {} triangles drawn\n",
              static_cast<double>(info.model_bytes) / (1 << 20), info.triangles);
+  if (!info.drawn.empty()) fmt::print("\ndrawn ({})\n", info.drawn.size());
+  for (const DrawnOption& d : info.drawn) fmt::print("  {} = {}\n", d.option, d.value);
+  if (!info.regions.empty()) fmt::print("\nregions ({})\n", info.regions.size());
+  for (const Region& r : info.regions) {
+    fmt::print("  {:<32} {}: {:.1f} x {:.1f} m around ({:.1f}, {:.1f}), floor at {:.2f} m\n",
+               r.name, r.label, r.high.x - r.low.x, r.high.y - r.low.y, (r.low.x + r.high.x) / 2,
+               (r.low.y + r.high.y) / 2, r.low.z);
+  }
   for (const auto& [title, elements] : sections) {
     if (elements->empty()) continue;
     fmt::print("\n{} ({})\n", title, elements->size());
@@ -61,9 +78,9 @@ void print_text(const WorldInfo& info, const std::vector<Section>& sections) {
   for (const Error& error : info.unsupported) fmt::print("  {}\n", error.to_string());
 }
 
-int info(const InfoCommand& command, const Globals& globals) {
+int info(InfoCommand& command, const Globals& globals) {
   if (command.schema) return report_schema(globals);
-  auto world = load_world(command.file, command.access, command.packages);
+  auto world = command.scene.compile(command.file);
   if (!world.ok()) return fail(world.error());
   const WorldInfo info = world->info();
   const std::vector<Section> sections = {{"bodies", &info.bodies},       {"joints", &info.joints},
@@ -85,7 +102,7 @@ void add_info(CLI::App& app, Globals& globals, Action& action) {
       sub->add_flag("--schema", command->schema,
                     "How much of MuJoCo's own schema is mirrored, and what sets what");
   file->excludes(schema);
-  add_access_options(*sub, command->access, command->packages);
+  command->scene.add_to(*sub);
   sub->footer("Examples:\n  gloam info robot.urdf --json\n  gloam info --schema");
   sub->callback([&globals, &action, command] {
     if (command->file.empty() && !command->schema) throw CLI::RequiredError("FILE");

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "gloam/view.h"
+#include "interrupt.h"
 #include "report.h"
 #include "run_options.h"
 
@@ -24,6 +25,7 @@ struct RunCommand {
 
 int watch(const World& world, const SimulationOptions& options, const RunCommand& command,
           const Scene& scene) {
+  EndOnInterrupt starting;
   auto simulation = Simulation::create(world, options);
   if (!simulation.ok()) return fail(simulation.error());
   ViewOptions view;
@@ -44,6 +46,7 @@ int watch(const World& world, const SimulationOptions& options, const RunCommand
   }
   auto server = ViewServer::start(**simulation, view);
   if (!server.ok()) return fail(server.error());
+  starting.release();
   std::fprintf(stderr, "gloam: open %s  (Ctrl-C ends it)\n", (*server)->url().c_str());
   (*simulation)->resume();
   while (!interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(100));
@@ -60,7 +63,7 @@ int run(const RunCommand& command_line, const Globals& globals) {
     for (CameraOptions& camera : scene->cameras) camera.outputs.reset();
     for (LidarOptions& lidar : scene->lidars) lidar.outputs.reset();
   }
-  auto world = World::compile(*scene);
+  auto world = compile(*scene);
   if (!world.ok()) return fail(world.error());
 
   RunRequest request;

@@ -20,7 +20,8 @@ struct Progress {
   double done = 0;     ///< 0..1
   double seconds = 0;  ///< wall time so far [s]
 };
-/// Called about ten times a second; returns false to stop the job (it still finishes its files).
+/// Called about ten times a second, first before any file is written; returns false to stop the job
+/// (it still finishes its files).
 using ProgressCallback = std::function<bool(const Progress&)>;
 
 struct RunRequest {

@@ -12,6 +12,7 @@
 
 #include "gloam/result.h"
 #include "gloam/scene_camera.h"
+#include "gloam/scene_environment.h"
 #include "gloam/scene_lidar.h"
 #include "gloam/scene_light.h"
 #include "gloam/scene_sensor.h"
@@ -76,10 +77,45 @@ struct OverrideOptions {
   SourceLoc loc = {};
 };
 
+/// A value as it stands in a scene file: "0.5", "[1, 0, 0]", "08:30:00", "\"oak\"".
+struct TomlText {
+  std::string text = {};
+};
+
+/// [[randomize]]: an option that sim.seed draws (docs/environments.md). One of the distributions.
+struct RandomizeOptions {
+  /// Path as of set_option; * in a name stands for any text, and each that it fits has its own draw
+  std::string option = {};
+  std::string operation = "set";           ///< set | add | scale: what is done to what is written
+  std::vector<TomlText> uniform = {};      ///< from, to
+  std::vector<TomlText> log_uniform = {};  ///< from, to; > 0
+  std::vector<TomlText> normal = {};       ///< mean, standard deviation; within the option's range
+  std::vector<TomlText> choice = {};       ///< one of these
+  std::vector<double> weights = {};        ///< of the choices; empty = equal
+  SourceLoc loc = {};
+};
+
+/// What came of a [[randomize]].
+struct DrawnOption {
+  std::string option = {};  ///< full path
+  std::string value = {};   ///< as in a scene file
+};
+
 /// [environment]: everything that is not a robot.
 struct EnvironmentOptions {
-  std::filesystem::path file =
-      {};  ///< MJCF; empty = nothing but a floor when a TOML scene has robots, nothing otherwise
+  /// MJCF, or a glTF, GLB, OBJ, STL or PLY file of a place; empty = nothing but a floor when a TOML
+  /// scene has robots, nothing otherwise
+  std::filesystem::path file = {};
+  std::string up = "auto";         ///< of a mesh file: y | z points up; auto = y of glTF, else z
+  double unit = 1;                 ///< of a mesh file: [m] of one of its units
+  std::string colliders = "auto";  ///< of a mesh file, each node's: as of [[object]]
+  // Instead of a file, one of the generators:
+  std::optional<HouseOptions> house = {};
+  std::optional<WarehouseOptions> warehouse = {};
+  std::optional<OfficeOptions> office = {};
+  std::optional<HallwayOptions> hallway = {};
+  std::optional<BedroomOptions> bedroom = {};
+  std::optional<TunnelOptions> tunnel = {};
   SourceLoc loc = {};
 };
 
@@ -160,6 +196,8 @@ struct VisualOptions {
   std::string up = "auto";   ///< y | z: axis of the file that points up; auto = y of glTF, else z
   double unit = 1;           ///< [m] of one unit of the file
   bool casts_shadow = true;  ///< false: light passes through it
+  /// Of the file, counted from 0; empty = all. Not in scene files: for what is made of nodes.
+  std::vector<int> parts = {};
   SourceLoc loc = {};
 };
 
@@ -219,6 +257,9 @@ struct Scene {
   std::filesystem::path file = {};  ///< what it was read from; empty for scenes made in code
   FileAccess access = {};
   EnvironmentOptions environment = {};
+  std::vector<PropOptions> props = {};
+  std::vector<ObjectOptions> objects = {};
+  std::vector<HeightFieldOptions> hfields = {};
   std::vector<RobotOptions> robots = {};        ///< in source order
   std::vector<OverrideOptions> overrides = {};  ///< in source order
   std::vector<CameraOptions> cameras = {};
@@ -233,6 +274,7 @@ struct Scene {
   std::vector<RgbdOptions> rgbd = {};      ///< likewise
   std::vector<SensorOptions> sensors = {};
   std::vector<TemperatureOptions> temperatures = {};
+  std::vector<RandomizeOptions> randomize = {};  ///< empty in a compiled Scene
   SimOptions sim = {};
   RenderOptions render = {};
   RecordOptions record = {};

@@ -1,9 +1,13 @@
 #pragma once
 // The view: one web page on loopback that shows a running Simulation and lets its user pause, step,
-// push and look around. The protocol between page and server is in docs/view_protocol.md.
+// push and look around; and the pictures that it sends. The protocol between page and server is in
+// docs/view_protocol.md.
 
+#include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "gloam/result.h"
 #include "gloam/scene.h"
@@ -46,5 +50,10 @@ class ViewServer {
   explicit ViewServer(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
+
+/// Baseline JPEG, 4:2:0, of 8-bit sRGB (height x width x 3). `quality` 1 … 100. Errors: `rgb` does
+/// not have the size of the picture, a side is not 1 … 65500 px, no memory.
+Result<std::vector<uint8_t>> encode_jpeg(int width, int height, std::span<const uint8_t> rgb,
+                                         int quality = 88);
 
 }  // namespace gloam

@@ -28,6 +28,7 @@ inline constexpr CacheFormat kModelCache{"models", ".world",
                                          "compiled models with their hulls and textures"};
 inline constexpr CacheFormat kVisualCache{"visuals", ".model", "model files of [[visual]]s"};
 inline constexpr CacheFormat kBvhCache{"bvhs", ".bvh", "trees of large meshes, for cards"};
+inline constexpr CacheFormat kHullCache{"hulls", ".hulls", "convex parts of meshes"};
 
 /// What every entry begins with, as the first bytes of its format's number.
 inline constexpr std::string_view kCacheMagic = "GLOM";

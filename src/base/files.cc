@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cctype>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -60,6 +61,12 @@ Result<Container> read_bytes(const fs::path& path, uint64_t max_size) {
 }
 
 }  // namespace
+
+std::string lower_extension(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
 
 Result<std::vector<uint8_t>> read_file(const fs::path& path, uint64_t max_size) {
   return read_bytes<std::vector<uint8_t>>(path, max_size);

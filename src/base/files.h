@@ -20,6 +20,9 @@ Result<std::vector<uint8_t>> read_file(const std::filesystem::path& path,
 Result<std::string> read_text_file(const std::filesystem::path& path,
                                    uint64_t max_size = uint64_t{64} << 20);
 
+/// ".toml" of "scene.TOML".
+std::string lower_extension(const std::filesystem::path& path);
+
 /// What a file is called while it is written: its name, a point, hexadecimal digits and this.
 inline constexpr std::string_view kTemporaryEnding = ".tmp";
 

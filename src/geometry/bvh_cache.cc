@@ -2,6 +2,7 @@
 
 #include "base/archive.h"
 #include "base/cache.h"
+#include "base/cache_writer.h"
 #include "base/files.h"
 #include "base/hash.h"
 
@@ -38,8 +39,7 @@ BvhTree build_bvh_cached(const std::vector<BvhBox>& boxes, const BvhBuild& optio
   ArchiveWriter out;
   begin_cache_entry(&out.bytes);
   visit_tree(out, tree, count);
-  seal_cache_entry(kMagic, &out.bytes);
-  keep_in_cache(path, out.bytes);
+  keep_in_cache_later(path, kMagic, std::move(out.bytes));
   return tree;
 }
 

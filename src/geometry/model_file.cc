@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
+#include <array>
 #include <cstring>
 
 #include "base/files.h"
@@ -41,9 +41,7 @@ Result<ModelFile> read_model_bytes(const ModelSource& source) {
                                 "use a mesh of fewer triangles"));
   if (starts_with(bytes, "glTF")) return read_glb(source);
   if (starts_with(bytes, "ply\n") || starts_with(bytes, "ply\r")) return read_ply(source);
-  std::string ending = fs::path(source.name).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = lower_extension(source.name);
   if (ending == ".obj") return read_obj(source);
   if (ending == ".stl" || is_binary_stl(bytes)) return read_stl(source);
   if (ending == ".gltf" || looks_like_json(bytes)) return read_gltf(source);
@@ -52,6 +50,11 @@ Result<ModelFile> read_model_bytes(const ModelSource& source) {
                "is none of glTF, GLB, OBJ, STL and PLY",
                {source.name, 0, 0},
                "convert it to GLB"};
+}
+
+bool is_model_file(const fs::path& path) {
+  constexpr std::array<std::string_view, 5> kEndings = {".gltf", ".glb", ".obj", ".stl", ".ply"};
+  return std::find(kEndings.begin(), kEndings.end(), lower_extension(path)) != kEndings.end();
 }
 
 Result<ModelFile> read_model_file(const fs::path& path, const ModelFileOptions& options) {

@@ -56,6 +56,9 @@ struct ModelFile {
   bool was_y_up = false;           ///< glTF: turned into Gloam's axes
   /// What the file has and Gloam leaves out (skins, missing pictures …), one sentence each.
   std::vector<std::string> notes;
+  /// Other files that it was made of, or that it names and that are not there; relative to its
+  /// folder. Known where it was read by way of the cache.
+  std::vector<std::string> parts;
 };
 
 struct ModelFileOptions {
@@ -72,5 +75,8 @@ struct ModelFileOptions {
 /// requires and Gloam lacks.
 Result<ModelFile> read_model_file(const std::filesystem::path& path,
                                   const ModelFileOptions& options = {});
+
+/// By its name: .gltf .glb .obj .stl .ply, in any case.
+bool is_model_file(const std::filesystem::path& path);
 
 }  // namespace gloam

@@ -4,6 +4,7 @@
 
 #include "base/archive.h"
 #include "base/cache.h"
+#include "base/cache_writer.h"
 #include "base/files.h"
 #include "base/hash.h"
 #include "geometry/model_source.h"
@@ -75,6 +76,10 @@ bool are_unchanged(const std::vector<ModelPart>& parts, ModelFolder* beside,
   });
 }
 
+void list_parts(const std::vector<ModelPart>& parts, ModelFile* model) {
+  for (const ModelPart& part : parts) model->parts.push_back(part.name);
+}
+
 bool load_entry(const fs::path& path, uint64_t content, ModelFolder beside,
                 const ModelFileOptions& options, ModelFile* out) {
   std::error_code code;
@@ -89,6 +94,7 @@ bool load_entry(const fs::path& path, uint64_t content, ModelFolder beside,
   visit_parts(in, entry.model);
   if (!in.is_done()) return false;
   *out = std::move(entry.model);
+  list_parts(entry.parts, out);
   mark_cache_use(path);
   return true;
 }
@@ -99,8 +105,7 @@ void store_entry(const fs::path& path, Entry& entry) {
   out(entry.content);
   out(entry.parts);
   visit_parts(out, entry.model);
-  seal_cache_entry(kMagic, &out.bytes);
-  keep_in_cache(path, out.bytes);
+  keep_in_cache_later(path, kMagic, std::move(out.bytes));
 }
 
 }  // namespace
@@ -121,6 +126,7 @@ Result<ModelFile> read_model_file_cached(const fs::path& path, const fs::path& f
   GLOAM_TRY(ModelFile model, read_model_bytes({path.string(), bytes, &beside, &options}));
   Entry made{content, beside.parts(), std::move(model)};
   store_entry(entry, made);
+  list_parts(made.parts, &made.model);
   return std::move(made.model);
 }
 

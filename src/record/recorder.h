@@ -88,6 +88,7 @@ struct RunInfo {
   double timestep = 0;              ///< [s]
   double duration = 0;              ///< planned [s]
   std::vector<NamedText> settings;  ///< renderer tier, samples, threads …
+  std::vector<NamedText> drawn;     ///< what came of [[randomize]]: option and value
   std::vector<RecordedCamera> cameras;
   std::vector<RecordedLidar> lidars;
   std::vector<LabelRow> labels;

@@ -39,6 +39,7 @@ std::string summary_json(const RunInfo& info, const RunOutcome* outcome,
   out["timestep_s"] = info.timestep;
   out["planned_s"] = info.duration;
   out["settings"] = object(info.settings);
+  if (!info.drawn.empty()) out["drawn"] = object(info.drawn);
   if (outcome != nullptr) {
     out["simulated_s"] = outcome->simulated;
     out["steps"] = outcome->steps;

@@ -23,48 +23,63 @@ CameraRequest probe_request(const CameraOptions& camera, int max_depth) {
   return request;
 }
 
+bool is_metered(const CameraOptions& camera) {
+  return camera.sensing.imager && camera.sensing.imager->auto_exposure;
+}
+
+// Null where it is not metered.
+const CameraOptions* find_metered(const CompiledWorld& world, const std::string& name) {
+  const auto& cameras = world.scene.cameras;
+  const auto camera = std::ranges::find(cameras, name, &CameraOptions::name);
+  return camera != cameras.end() && is_metered(*camera) ? &*camera : nullptr;
+}
+
+Result<SensorTiming> timing_of(const CameraOptions& camera, Rational timestep, uint64_t seed) {
+  return SensorTiming::make(camera.rate, camera.sensing.timing.value_or(TimingOptions{}), timestep,
+                            sensor_seed(seed, camera.name));
+}
+
 }  // namespace
 
 Result<std::unique_ptr<ExposureMeter>> ExposureMeter::open(Simulator& simulator,
                                                            SharedRenderers& renderers,
                                                            const CameraOptions& camera,
                                                            uint64_t seed, bool required) {
-  std::unique_ptr<ExposureMeter> meter(new ExposureMeter(simulator, renderers, camera, seed));
-  meter->required_ = required;
+  GLOAM_TRY(const SensorTiming timing, timing_of(camera, simulator.timestep(), seed));
+  std::unique_ptr<ExposureMeter> meter(
+      new ExposureMeter(simulator, renderers, camera, seed, timing, required));
   GLOAM_TRY_STATUS(meter->follow(simulator.world()));
-  GLOAM_TRY(meter->queue_, simulator.subscribe({.rate = camera.rate,
-                                                .due = due_steps(meter->timing_),
-                                                .required = required,
-                                                .capacity = 2}));
+  GLOAM_TRY(
+      meter->queue_,
+      simulator.subscribe(
+          {.rate = camera.rate, .due = due_steps(timing), .required = required, .capacity = 2}));
+  // Between two of its instants it begins with the present one: no picture waits for the next,
+  // which the simulation may not reach before that picture is made.
+  if (const Snapshot now = simulator.latest(); meter->instant_of(now.step()) < now.step())
+    GLOAM_TRY_STATUS(meter->meter(now));
   meter->thread_ = std::thread([raw = meter.get()] { raw->run(); });
   return meter;
 }
 
 // Makes what meters a World: at first, and when a Snapshot of another one comes. The exposure goes
-// on from where it was.
+// on from where it was, as the new World's camera says.
 Status ExposureMeter::follow(const std::shared_ptr<const CompiledWorld>& world) {
-  const auto& cameras = world->scene.cameras;
-  const auto camera = std::find_if(cameras.begin(), cameras.end(), [this](const CameraOptions& c) {
-    return c.name == camera_ && c.sensing.imager && c.sensing.imager->auto_exposure;
-  });
-  if (camera == cameras.end())
-    return Error{ErrorKind::kInput, "camera '" + camera_ + "' has no automatic exposure any more"};
+  const CameraOptions& camera = *find_metered(*world, camera_);
   GLOAM_TRY(auto shared, renderers_.of(world));
-  GLOAM_TRY(auto probe,
+  GLOAM_TRY(probe_,
             CameraSensor::create(shared->description,
-                                 probe_request(*camera, world->scene.render.max_depth), seed_));
-  GLOAM_TRY(auto solver, PoseSolver::create(world));
-  GLOAM_TRY(SensorTiming timing,
-            SensorTiming::make(camera->rate, camera->sensing.timing.value_or(TimingOptions{}),
-                               simulator_.timestep(), sensor_seed(seed_, camera_)));
-  const std::lock_guard lock(mutex_);
-  if (probe_ != nullptr && !timing.same_steps(timing_))
-    return other_schedule("camera '" + camera_ + "'");
-  timing_ = timing;
-  probe_ = std::move(probe);
+                                 probe_request(camera, world->scene.render.max_depth), seed_));
+  GLOAM_TRY(solver_, PoseSolver::create(world));
   shared_ = std::move(shared);
-  solver_ = std::move(solver);
+  automatic_.set_options(*camera.sensing.imager->auto_exposure);
   return {};
+}
+
+bool ExposureMeter::goes_on_in(const CompiledWorld& world) const {
+  const CameraOptions* camera = find_metered(world, camera_);
+  if (camera == nullptr) return false;
+  const auto timing = timing_of(*camera, simulator_.timestep(), seed_);
+  return timing.ok() && timing->same_steps(timing_);
 }
 
 ExposureMeter::~ExposureMeter() {
@@ -73,34 +88,16 @@ ExposureMeter::~ExposureMeter() {
 }
 
 void ExposureMeter::run() {
-  PoseFrame poses;
-  int64_t last_step = -1;
   while (const Snapshot snapshot = queue_->next()) {
     const auto& world = snapshot.data().world;
-    if (world != shared_->world) {
-      if (const Status status = follow(world); !status.ok()) {
-        log_warning("an exposure meter stopped: {}", status.error().to_string());
-        break;
-      }
-    }
-    if (const Status status = solver_->solve(snapshot, poses); !status.ok()) {
-      log_error("an exposure meter lost its poses: {}", status.error().to_string());
+    if (world != shared_->world && !goes_on_in(*world)) break;
+    Status status = world != shared_->world ? follow(world) : Status();
+    if (status.ok()) status = meter(snapshot);
+    if (!status.ok()) {
+      log_error("the exposure meter of camera '{}' stopped: {}", camera_,
+                status.error().to_string());
       break;
     }
-    const auto picture = probe_->capture(*shared_->renderer, shared_->mutex, poses, poses,
-                                         timing_.last_at_or_before(snapshot.step()));
-    const Intrinsics& k = picture->intrinsics;
-    automatic_.meter(metered_luminance(picture->radiance.data(), k.width, k.height,
-                                       options_.metering == "center"),
-                     snapshot.time());
-    {
-      const std::lock_guard lock(mutex_);
-      if (snapshot.step() <= last_step) values_.clear();  // the simulation began anew
-      values_[snapshot.step()] = newest_ = automatic_.ev100();
-      if (values_.size() > kRemembered) values_.erase(values_.begin());
-    }
-    last_step = snapshot.step();
-    changed_.notify_all();
   }
   queue_->close();  // the simulation must not wait for it
   const std::lock_guard lock(mutex_);
@@ -108,14 +105,31 @@ void ExposureMeter::run() {
   changed_.notify_all();
 }
 
-bool ExposureMeter::ended() {
+int64_t ExposureMeter::instant_of(int64_t step) const {
+  return timing_.step_of(std::max<int64_t>(0, timing_.last_at_or_before(step)));
+}
+
+Status ExposureMeter::meter(const Snapshot& snapshot) {
+  GLOAM_TRY_STATUS(solver_->solve(snapshot, poses_));
+  const auto picture = probe_->capture(*shared_->renderer, shared_->mutex, poses_, poses_,
+                                       timing_.last_at_or_before(snapshot.step()));
+  const Intrinsics& k = picture->intrinsics;
+  automatic_.meter(metered_luminance(picture->radiance.data(), k.width, k.height,
+                                     automatic_.options().metering == "center"),
+                   snapshot.time());
   const std::lock_guard lock(mutex_);
-  return ended_;
+  const int64_t instant = instant_of(snapshot.step());
+  if (!values_.empty() && instant <= values_.rbegin()->first)
+    values_.clear();  // the simulation began anew
+  values_[instant] = newest_ = automatic_.ev100();
+  if (values_.size() > kRemembered) values_.erase(values_.begin());
+  changed_.notify_all();
+  return {};
 }
 
 double ExposureMeter::ev100_at(int64_t step) {
   std::unique_lock lock(mutex_);
-  const int64_t due = timing_.step_of(std::max<int64_t>(0, timing_.last_at_or_before(step)));
+  const int64_t due = instant_of(step);
   const auto known = [&] {
     return ended_ || values_.contains(due) || (!values_.empty() && values_.begin()->first > due);
   };
@@ -127,6 +141,28 @@ double ExposureMeter::ev100_at(int64_t step) {
   }
   const auto found = values_.find(due);
   return found != values_.end() ? found->second : newest_;
+}
+
+Status ExposureMeters::open(Simulator& simulator, SharedRenderers& renderers) {
+  const std::shared_ptr<const CompiledWorld> world = simulator.world();
+  ByCamera meters;
+  for (const CameraOptions& camera : world->scene.cameras) {
+    if (!is_metered(camera)) continue;
+    std::shared_ptr<ExposureMeter>& meter = meters[camera.name];
+    meter = of(camera.name, *world);
+    if (meter != nullptr) continue;
+    GLOAM_TRY(meter, ExposureMeter::open(simulator, renderers, camera, seed_, required_));
+  }
+  const std::lock_guard lock(mutex_);
+  meters_.swap(meters);
+  return {};
+}
+
+std::shared_ptr<ExposureMeter> ExposureMeters::of(const std::string& camera,
+                                                  const CompiledWorld& world) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = meters_.find(camera);
+  return found != meters_.end() && found->second->goes_on_in(world) ? found->second : nullptr;
 }
 
 }  // namespace gloam

@@ -30,32 +30,37 @@ class ExposureMeter {
   /// Exposure value of a picture taken at `step`, a step that the simulation has come to; waits for
   /// its metering. Where that instant was lost, or the simulation has ended, the last one known.
   double ev100_at(int64_t step);
-  /// No more values come: the simulation has stopped, or a recompile took the camera away.
-  bool ended();
+  /// Has the camera an automatic exposure in `world`, at the same instants? In another World the
+  /// meter ends.
+  bool goes_on_in(const CompiledWorld& world) const;
 
  private:
   ExposureMeter(Simulator& simulator, SharedRenderers& renderers, const CameraOptions& camera,
-                uint64_t seed)
+                uint64_t seed, const SensorTiming& timing, bool required)
       : simulator_(simulator),
         renderers_(renderers),
         camera_(camera.name),
         seed_(seed),
-        options_(*camera.sensing.imager->auto_exposure),
-        automatic_(options_) {}
+        timing_(timing),
+        required_(required),
+        automatic_(*camera.sensing.imager->auto_exposure) {}
   Status follow(const std::shared_ptr<const CompiledWorld>& world);
   void run();
+  Status meter(const Snapshot& snapshot);
+  // The last step of the schedule that is not after `step`.
+  int64_t instant_of(int64_t step) const;
 
   Simulator& simulator_;
   SharedRenderers& renderers_;
   const std::string camera_;
   const uint64_t seed_;
+  const SensorTiming timing_;
+  const bool required_;
   std::shared_ptr<SharedRenderer> shared_;  // of the World whose Snapshots come
-  const AutoExposureOptions options_;
   AutoExposure automatic_;
-  bool required_ = false;
   std::unique_ptr<CameraSensor> probe_;
   std::unique_ptr<PoseSolver> solver_;
-  SensorTiming timing_;
+  PoseFrame poses_;
   std::shared_ptr<SnapshotQueue> queue_;
   std::mutex mutex_;
   std::condition_variable changed_;
@@ -63,6 +68,24 @@ class ExposureMeter {
   double newest_ = 0;
   bool ended_ = false;
   std::thread thread_;
+};
+
+/// The meters of a simulation. Any thread.
+class ExposureMeters {
+ public:
+  ExposureMeters(uint64_t seed, bool required) : seed_(seed), required_(required) {}
+  /// Opens those of the World that runs; what goes on in it stays open.
+  Status open(Simulator& simulator, SharedRenderers& renderers);
+  /// Of a camera in `world`; null where it has none, or is not open yet.
+  std::shared_ptr<ExposureMeter> of(const std::string& camera, const CompiledWorld& world) const;
+
+ private:
+  using ByCamera = std::map<std::string, std::shared_ptr<ExposureMeter>>;
+
+  const uint64_t seed_;
+  const bool required_;
+  mutable std::mutex mutex_;
+  ByCamera meters_;
 };
 
 }  // namespace gloam

@@ -25,22 +25,23 @@ std::string pictures_of(const CameraRequest& request, const Intrinsics& k) {
 }  // namespace
 
 LiveCamera::LiveCamera(Simulator& simulator, SharedRenderers& renderers,
-                       const CameraRequest& request, uint64_t seed, FrameCallback on_frame)
+                       const CameraRequest& request, uint64_t seed, FrameCallback on_frame,
+                       const ExposureMeters& meters)
     : simulator_(simulator),
       renderers_(renderers),
       request_(request),
       seed_(seed),
-      on_frame_(std::move(on_frame)) {}
+      on_frame_(std::move(on_frame)),
+      meters_(meters) {}
 
 Result<std::unique_ptr<LiveCamera>> LiveCamera::open(Simulator& simulator,
                                                      SharedRenderers& renderers,
                                                      const CameraRequest& request, uint64_t seed,
                                                      FrameCallback on_frame,
-                                                     std::shared_ptr<ExposureMeter> meter) {
+                                                     const ExposureMeters& meters) {
   std::unique_ptr<LiveCamera> camera(
-      new LiveCamera(simulator, renderers, request, seed, std::move(on_frame)));
+      new LiveCamera(simulator, renderers, request, seed, std::move(on_frame), meters));
   GLOAM_TRY_STATUS(camera->follow(simulator.world()));
-  camera->meter_ = std::move(meter);
   // Two in the queue keep the camera busy; more would only make a live picture older.
   const int capacity = request.required ? 2 : 1;
   const bool timed = camera->sensor_->sensing().timing.has_value();
@@ -87,6 +88,7 @@ Status LiveCamera::follow(const std::shared_ptr<const CompiledWorld>& world) {
   solver_ = std::move(solver);
   timing_ = timing;
   has_previous_ = false;
+  meter_ = nullptr;
   return {};
 }
 
@@ -188,6 +190,7 @@ void LiveCamera::capture(const SnapshotWindow& window) {
     }
     keys.push_back(&key);
   }
+  if (meter_ == nullptr) meter_ = meters_.of(request_.camera, *shared_->world);
   if (meter_ != nullptr) sensor_->set_ev100(meter_->ev100_at(step));
   PoseFrame& now = keys_.front();
   const bool continuous = has_previous_ && previous_.step <= now.step;

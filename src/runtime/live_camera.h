@@ -23,7 +23,7 @@ class LiveCamera final : public CameraStream {
   static Result<std::unique_ptr<LiveCamera>> open(Simulator& simulator, SharedRenderers& renderers,
                                                   const CameraRequest& request, uint64_t seed,
                                                   FrameCallback on_frame,
-                                                  std::shared_ptr<ExposureMeter> meter = nullptr);
+                                                  const ExposureMeters& meters);
   ~LiveCamera() override;
 
   void set_pose(const Pose& X_WC) override;
@@ -37,7 +37,7 @@ class LiveCamera final : public CameraStream {
 
  private:
   LiveCamera(Simulator& simulator, SharedRenderers& renderers, const CameraRequest& request,
-             uint64_t seed, FrameCallback on_frame);
+             uint64_t seed, FrameCallback on_frame, const ExposureMeters& meters);
   Status follow(const std::shared_ptr<const CompiledWorld>& world);
   void run();
   void end(Error why);
@@ -49,11 +49,12 @@ class LiveCamera final : public CameraStream {
   const CameraRequest request_;
   const uint64_t seed_;
   FrameCallback on_frame_;
+  const ExposureMeters& meters_;
   std::shared_ptr<SharedRenderer> shared_;  // of the World whose Snapshots come
   std::unique_ptr<CameraSensor> sensor_;
   std::optional<EventLead> lead_;  // of a required stream with events, until run() ends
   SensorTiming timing_;
-  std::shared_ptr<ExposureMeter> meter_;  // null: the exposure stays
+  std::shared_ptr<ExposureMeter> meter_;  // null: the exposure is the camera's own
   std::unique_ptr<PoseSolver> solver_;
   std::shared_ptr<SnapshotQueue> queue_;
   std::vector<PoseFrame> keys_;  ///< of the window that is exposed

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "control/controllers.h"
-#include "geometry/lens.h"
+#include "runtime/pick.h"
 
 namespace gloam {
 namespace {
@@ -50,7 +50,8 @@ Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& worl
   GLOAM_TRY(auto controllers, make_controllers(*world.compiled()));
   for (RobotController& c : controllers)
     GLOAM_TRY_STATUS(live->simulator_->add_controller(c.robot, std::move(c.controller), c.rate));
-  GLOAM_TRY_STATUS(live->open_meters());
+  // Exposure goes on from step 0, whether or not anyone opens the camera.
+  GLOAM_TRY_STATUS(live->meters_.open(*live->simulator_, live->renderers_));
   // The thread starts with the first call that moves time: hooks, controllers and cameras come
   // before.
   live->simulator_->start(0);
@@ -66,7 +67,7 @@ Status LiveSimulation::recompile(const World& world) {
   const Status status = simulator_->recompile(world.compiled(), std::move(controllers));
   renderers_.keep_only(simulator_->world());
   GLOAM_TRY_STATUS(status);
-  return open_meters();
+  return meters_.open(*simulator_, renderers_);
 }
 
 void LiveSimulation::restart_speed_clock() {
@@ -143,28 +144,7 @@ void LiveSimulation::set_step_hook(std::function<void(const mjModel_*, mjData_*)
 
 Result<std::unique_ptr<LiveCamera>> LiveSimulation::open_live_camera(const CameraRequest& request,
                                                                      FrameCallback on_frame) {
-  return LiveCamera::open(*simulator_, renderers_, request, seed_, std::move(on_frame),
-                          meter_of(request.camera));
-}
-
-// Exposure goes on from step 0, or from the recompile that brought it, whether or not anyone opens
-// the camera.
-Status LiveSimulation::open_meters() {
-  const std::shared_ptr<const CompiledWorld> world = simulator_->world();
-  const std::lock_guard lock(meters_mutex_);
-  for (const CameraOptions& camera : world->scene.cameras) {
-    if (!camera.sensing.imager || !camera.sensing.imager->auto_exposure) continue;
-    std::shared_ptr<ExposureMeter>& meter = meters_[camera.name];
-    if (meter != nullptr && !meter->ended()) continue;
-    GLOAM_TRY(meter, ExposureMeter::open(*simulator_, renderers_, camera, seed_, required_meters_));
-  }
-  return {};
-}
-
-std::shared_ptr<ExposureMeter> LiveSimulation::meter_of(const std::string& camera) const {
-  const std::lock_guard lock(meters_mutex_);
-  const auto found = meters_.find(camera);
-  return found != meters_.end() ? found->second : nullptr;
+  return LiveCamera::open(*simulator_, renderers_, request, seed_, std::move(on_frame), meters_);
 }
 
 Result<std::unique_ptr<SensorStream>> LiveSimulation::open_sensor(const SensorRequest& request,
@@ -253,38 +233,8 @@ Result<Pose> LiveSimulation::body_pose(Body body) {
 Result<PickResult> LiveSimulation::pick(const CameraFrame& frame, double u, double v) {
   PoseFrame poses;
   GLOAM_TRY(const auto world, solve_latest(poses));
-  GLOAM_TRY(auto shared, renderers_.of(world));
-  const std::lock_guard lock(shared->mutex);
-  // A picture of one pixel whose centre is (u, v).
-  CameraView view;
-  view.X_WC_open = view.X_WC_previous = to_affine(frame.X_WC);
-  view.intrinsics = frame.intrinsics;
-  view.intrinsics.width = view.intrinsics.height = 1;
-  view.intrinsics.cx = frame.intrinsics.cx - u + 0.5;
-  view.intrinsics.cy = frame.intrinsics.cy - v + 0.5;
-  shared->renderer->update(poses, poses, poses);
-  Film film;
-  RenderSettings settings;
-  settings.spp = 0;
-  shared->renderer->render(view, settings, &film);
-  const uint32_t part = film.part.empty() ? 0 : film.part[0];
-  const std::optional<PixelRay> ray = pixel_ray(frame.intrinsics, u, v);
-  if (part == 0 || !ray) return Error{ErrorKind::kInput, "there is nothing under this pixel"};
-  const Vec3f p_C = to_vec3f(ray->at(static_cast<double>(film.distance[0])));
-  const Vec3f p_W = transform_point(view.X_WC_open, p_C);
-  const InstanceDescription& instance = shared->description.instances[part - 1];
-  const auto body = static_cast<size_t>(instance.body);
-  const double* R = poses.body_R.data() + 9 * body;
-  const double* p = poses.body_p.data() + 3 * body;
-  const double d[3] = {p_W.x - p[0], p_W.y - p[1], p_W.z - p[2]};
-  PickResult result;
-  result.body = {instance.body, world->serial};
-  result.name = instance.label.body.empty() ? instance.label.instance_name : instance.label.body;
-  result.point_W = {p_W.x, p_W.y, p_W.z};
-  result.point_B = {R[0] * d[0] + R[3] * d[1] + R[6] * d[2],
-                    R[1] * d[0] + R[4] * d[1] + R[7] * d[2],
-                    R[2] * d[0] + R[5] * d[1] + R[8] * d[2]};
-  return result;
+  GLOAM_TRY(const auto shared, renderers_.of(world));
+  return pick_at(*shared, poses, frame, u, v);
 }
 
 Rational LiveSimulation::step_rate() const {

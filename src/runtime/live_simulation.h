@@ -52,25 +52,21 @@ class LiveSimulation final : public Simulation {
                                                        FrameCallback on_frame);
   /// All sensors of the model in one stream.
   Result<std::unique_ptr<LiveSensors>> open_all_sensors(bool required, SensorCallback on_message);
-  /// Of an automatic exposure; null where a camera has none.
-  std::shared_ptr<ExposureMeter> meter_of(const std::string& camera) const;
+  const ExposureMeters& meters() const { return meters_; }
   Result<std::unique_ptr<LiveLidar>> open_live_lidar(const LidarRequest& request,
                                                      ScanCallback on_scan);
 
  private:
   LiveSimulation(uint64_t seed, bool required_meters)
-      : seed_(seed), required_meters_(required_meters) {}
-  Status open_meters();
+      : seed_(seed), meters_(seed, required_meters) {}
   void restart_speed_clock();
   Result<std::shared_ptr<const CompiledWorld>> solve_latest(PoseFrame& poses);
 
   const uint64_t seed_;
-  const bool required_meters_;
   std::unique_ptr<Simulator> simulator_;
   SharedRenderers renderers_;
   std::mutex recompile_mutex_;  // one at a time
-  mutable std::mutex meters_mutex_;
-  std::map<std::string, std::shared_ptr<ExposureMeter>> meters_;  // by camera
+  ExposureMeters meters_;
   std::mutex solver_mutex_;
   std::unique_ptr<PoseSolver> solver_;  // for questions about the latest instant
   std::atomic<bool> paused_{true}, stop_requested_{false};

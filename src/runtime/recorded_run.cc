@@ -134,6 +134,7 @@ RunInfo run_info(const World& world, const RunRequest& request, double timestep,
                    {"spp", std::to_string(scene.render.samples())},
                    {"max_depth", std::to_string(scene.render.max_depth)},
                    {"denoise", scene.render.denoise ? "true" : "false"}};
+  for (const DrawnOption& d : world.compiled()->drawn) info.drawn.push_back({d.option, d.value});
   if (scene.render.error)
     info.settings.push_back({"error", fmt::format("{}", *scene.render.error)});
   return info;
@@ -212,6 +213,8 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
     options.overwrite = request.overwrite;
     options.outputs = scene.record.outputs;
     options.wait = request.simulation.pace == Pace::kFast;
+    if (progress && !progress({"preparing", 0, seconds_since(start)}))
+      return Error{ErrorKind::kInterrupted, "interrupted"};
     GLOAM_TRY(recorder, Recorder::start(options, info));
     for (const CameraRequest& camera : requests) {
       GLOAM_TRY(auto live,

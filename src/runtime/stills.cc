@@ -108,7 +108,7 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
     sensor->set_progress([&](double part) {
       return !progress || progress({"rendering", done + share * part, seconds()});
     });
-    if (const auto meter = simulation->meter_of(requests[i].camera))
+    if (const auto meter = simulation->meters().of(requests[i].camera, *shared->world))
       sensor->set_ev100(meter->ev100_at(steps));
     const KeySteps keys = key_steps(sensor->window(), timestep);
     std::vector<const PoseFrame*> exposure;

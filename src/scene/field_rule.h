@@ -2,6 +2,7 @@
 // What one option of a scene file may hold.
 
 #include <limits>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -19,6 +20,11 @@ struct FieldRule {
   bool identifier = false;     ///< a name: not empty, no '/' and no control characters
   bool one_for_three = false;  ///< a vector may be written as one number
 };
+
+/// For FieldRule::choices.
+inline std::vector<std::string_view> words(std::span<const std::string_view> list) {
+  return {list.begin(), list.end()};
+}
 
 inline const FieldRule kShare{.min = 0, .max = 1};
 

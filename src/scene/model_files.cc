@@ -19,23 +19,10 @@ namespace gloam {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr uint64_t kLargestXml = uint64_t{64} << 20;
 constexpr uint64_t kLargestAsset = uint64_t{1} << 30;
 constexpr uint64_t kLargestTotal = uint64_t{8} << 30;
 constexpr size_t kMostXmlFiles = 2000;
 constexpr size_t kDeepestInclude = 64;
-
-std::string lower_extension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
-
-bool is_container(const fs::path& path) {
-  const std::string extension = lower_extension(path);
-  return extension == ".mjz" || extension == ".zip" || extension == ".mjb";
-}
 
 bool leads_to_xml(const FileReference& reference) {
   return reference.element == "include" || reference.element == "model";
@@ -60,19 +47,6 @@ void tell_if_slow(const Replicate& replicate, const fs::path& file) {
       "as many: put a <replicate> of {:.0f} into one of {:.0f} (docs/scenes.md)",
       file.string(), replicate.line, replicate.seconds, replicate.copies,
       std::ceil(std::sqrt(replicate.copies)), std::ceil(std::sqrt(replicate.copies)));
-}
-
-std::string one_line(std::string text) {
-  while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back()))) text.pop_back();
-  std::string out;
-  for (const char c : text) {
-    if (c == '\n') {
-      out += "; ";
-    } else if (static_cast<unsigned char>(c) >= 0x20) {
-      out += c;
-    }
-  }
-  return out;
 }
 
 }  // namespace
@@ -200,7 +174,7 @@ Status ModelFiles::scan(const fs::path& file, const fs::path& model, const Sourc
     return error;
   }
   const std::string& text = **content;
-  if (text.size() > kLargestXml)
+  if (text.size() > kLargestModelText)
     return Error{ErrorKind::kInput, "the XML is larger than 64 MiB", {file.string(), 0, 0}};
   Result<XmlScan> scanning = scan_model_xml(text, file.string());
   if (!scanning.ok()) {
@@ -383,10 +357,7 @@ Error ModelFiles::explain(const std::string& message, const fs::path& model) con
     }
     return error;
   }
-  std::string text = one_line(message);
-  for (const std::string_view prefix : {"XML Error: ", "Error: ", "XML error: "}) {
-    if (text.starts_with(prefix)) text.erase(0, prefix.size());
-  }
+  std::string text = plain_message(message);
   static const std::regex kUnnamed("[;,]? *Element name '', id -?\\d+");
   static const std::regex kNamed("[;,]? *Element name ('[^']*'), id -?\\d+");
   text = std::regex_replace(text, kUnnamed, "");

@@ -69,6 +69,11 @@ std::vector<fs::path> candidate_roots(const fs::path& file) {
 
 }  // namespace
 
+bool is_container(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".mjz" || extension == ".zip" || extension == ".mjb";
+}
+
 fs::path absolute_path(const fs::path& path, const fs::path& base) {
   std::error_code code;
   fs::path joined = path.is_absolute() ? path : base / path;

@@ -10,6 +10,12 @@
 
 namespace gloam {
 
+/// Of one file of a model in XML or TOML [bytes].
+inline constexpr uint64_t kLargestModelText = uint64_t{64} << 20;
+
+/// By its name an archive or a binary model, which is not read.
+bool is_container(const std::filesystem::path& path);
+
 /// The folders one model may read from. All canonical.
 struct ModelRoot {
   std::filesystem::path folder;  ///< as MuJoCo spells paths below it: absolute, not canonical

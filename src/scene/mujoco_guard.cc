@@ -4,6 +4,7 @@
 #include <setjmp.h>
 
 #include <atomic>
+#include <cctype>
 #include <cstdio>
 #include <exception>
 #include <mutex>
@@ -48,6 +49,23 @@ void handle_message(const mjLogMessage* message) {
 }
 
 }  // namespace
+
+std::string plain_message(std::string_view said) {
+  const auto is_blank = [](char c) { return std::isspace(static_cast<unsigned char>(c)) != 0; };
+  while (!said.empty() && is_blank(said.back())) said.remove_suffix(1);
+  std::string text;
+  for (const char c : said) {
+    if (c == '\n') {
+      text += "; ";
+    } else if (static_cast<unsigned char>(c) >= 0x20) {
+      text += c;
+    }
+  }
+  for (const std::string_view prefix : {"XML Error: ", "Error: ", "XML error: "}) {
+    if (text.starts_with(prefix)) text.erase(0, prefix.size());
+  }
+  return text;
+}
 
 void install_mujoco_handler() {
   static std::once_flag once;

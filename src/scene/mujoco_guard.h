@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -18,6 +19,9 @@ void install_mujoco_handler();
 
 /// Message of the last guarded call of this thread that failed, until its next one.
 const char* mujoco_error_message();
+
+/// What MuJoCo says, as one line and without "XML Error: ".
+std::string plain_message(std::string_view said);
 
 /// Warnings that MuJoCo has logged in this process; mjData::warning counts them by type as well.
 int64_t mujoco_warning_count();

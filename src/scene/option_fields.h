@@ -9,6 +9,7 @@
 #include <string>
 
 #include "gloam/scene.h"
+#include "scene/environment_fields.h"
 #include "scene/field_rule.h"
 #include "scene/imager_fields.h"
 #include "scene/lidar_fields.h"
@@ -47,8 +48,28 @@ void visit_fields(Visitor& v, RobotOptions& o) {
 }
 
 template <class Visitor>
+void visit_fields(Visitor& v, RandomizeOptions& o) {
+  v("option", o.option, FieldRule{.required = true});
+  v("operation", o.operation, FieldRule{.choices = {"set", "add", "scale"}});
+  v("uniform", o.uniform, FieldRule{});
+  v("log_uniform", o.log_uniform, FieldRule{});
+  v("normal", o.normal, FieldRule{});
+  v("choice", o.choice, FieldRule{});
+  v("weights", o.weights, FieldRule{.min = 0, .max = 1e9});
+}
+
+template <class Visitor>
 void visit_fields(Visitor& v, EnvironmentOptions& o) {
   v("file", o.file, FieldRule{});
+  v("up", o.up, kUpAxis);
+  v("unit", o.unit, kFileUnit);
+  v("colliders", o.colliders, FieldRule{.choices = words(kColliderKinds)});
+  v("house", o.house, FieldRule{});
+  v("warehouse", o.warehouse, FieldRule{});
+  v("office", o.office, FieldRule{});
+  v("hallway", o.hallway, FieldRule{});
+  v("bedroom", o.bedroom, FieldRule{});
+  v("tunnel", o.tunnel, FieldRule{});
 }
 
 template <class Visitor>
@@ -153,9 +174,7 @@ void visit_fields(Visitor& v, VisualOptions& o) {
   v("body", o.body, FieldRule{});
   v("position", o.X_BV.p, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
   v("orientation", o.X_BV.q, FieldRule{.unit = "wxyz"});
-  v("scale", o.scale, FieldRule{.min = 1e-6, .max = 1e6, .one_for_three = true});
-  v("up", o.up, FieldRule{.choices = {"auto", "y", "z"}});
-  v("unit", o.unit, FieldRule{.unit = "m", .min = 1e-9, .max = 1e6});
+  visit_file_axes(v, o);
   v("casts_shadow", o.casts_shadow, FieldRule{});
 }
 
@@ -204,6 +223,9 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("scene", header, FieldRule{});
   v("sim", scene.sim, FieldRule{});
   v("environment", scene.environment, FieldRule{});
+  v("prop", scene.props, FieldRule{});
+  v("object", scene.objects, FieldRule{});
+  v("hfield", scene.hfields, FieldRule{});
   v("robot", scene.robots, FieldRule{});
   v("override", scene.overrides, FieldRule{});
   v("camera", scene.cameras, FieldRule{});
@@ -218,6 +240,7 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("rgbd", scene.rgbd, FieldRule{});
   v("sensor", scene.sensors, FieldRule{});
   v("temperature", scene.temperatures, FieldRule{});
+  v("randomize", scene.randomize, FieldRule{});
   v("render", scene.render, FieldRule{});
   v("record", scene.record, FieldRule{});
 }

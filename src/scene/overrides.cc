@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/text.h"
+#include "scene/mjcf/spec_kinds.h"
 #include "scene/mjcf/spec_table.h"
 #include "scene/mjcf/toml_value.h"
 

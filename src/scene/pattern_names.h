@@ -21,11 +21,6 @@ inline constexpr std::array<std::string_view, 8> kSignalPresets = {
     "none",         "adis16470_gyro", "adis16470_accel", "bmi088_gyro",
     "bmi088_accel", "mpu6050_gyro",   "mpu6050_accel",   "as5048a"};
 
-/// For FieldRule::choices.
-inline std::vector<std::string_view> words(std::span<const std::string_view> list) {
-  return {list.begin(), list.end()};
-}
-
 /// Place of a word that validate_scene() allows.
 inline size_t place_of(std::string_view word, std::span<const std::string_view> list) {
   size_t i = 0;

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <pugixml.hpp>
 #include <sstream>
 
+#include "base/files.h"
 #include "scene/model_path.h"
 
 namespace gloam {
@@ -14,8 +16,7 @@ namespace fs = std::filesystem;
 namespace {
 
 bool is_drawable_mesh(const fs::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = lower_extension(path);
   return extension == ".stl" || extension == ".obj" || extension == ".msh" || extension == ".ply";
 }
 
@@ -41,8 +42,10 @@ class Preparer {
                    {file_.string(), line_at(text_, parsed.offset), 0}};
     }
     const pugi::xml_node robot = document.child("robot");
+    GLOAM_TRY_STATUS(check_tree(robot));
     read_compiler(robot);
     UrdfText out;
+    list_pictures(robot, &out.unsupported);
     GLOAM_TRY(const bool is_stock, stock_finds_all(robot));
     GLOAM_TRY_STATUS(resolve_meshes(robot, "collision", nullptr));
     const bool has_visuals = robot.select_node("link/visual") && !stock_keeps_visuals_;
@@ -68,6 +71,49 @@ class Preparer {
   }
 
  private:
+  // What MuJoCo refuses without a name or a line.
+  Status check_tree(const pugi::xml_node& robot) const {
+    std::map<std::string, pugi::xml_node> links, joint_above;  // by the link's name
+    for (const pugi::xml_node& link : robot.children("link")) {
+      const auto [first, is_new] = links.emplace(link.attribute("name").value(), link);
+      if (is_new) continue;
+      return Error{ErrorKind::kInput,
+                   fmt::format("the link '{:.80}' is there twice, first in line {}", first->first,
+                               loc_of(first->second).line),
+                   loc_of(link)};
+    }
+    for (const pugi::xml_node& joint : robot.children("joint")) {
+      const std::string child = joint.child("child").attribute("link").value();
+      const auto [first, is_new] = joint_above.emplace(child, joint);
+      if (is_new) continue;
+      return Error{
+          ErrorKind::kInput,
+          fmt::format("the link '{:.80}' hangs from two joints, '{:.80}' and '{:.80}'", child,
+                      first->second.attribute("name").value(), joint.attribute("name").value()),
+          loc_of(joint)};
+    }
+    const bool has_root = links.empty() || std::ranges::any_of(links, [&](const auto& link) {
+                            return !joint_above.contains(link.first);
+                          });
+    if (has_root) return {};
+    return Error{ErrorKind::kInput, "every link hangs from a joint: the joints make a loop",
+                 loc_of(robot.child("joint")),
+                 "one link must be the root; close loops by <equality> in MJCF"};
+  }
+
+  // Of materials MuJoCo takes the colours.
+  void list_pictures(const pugi::xml_node& robot, std::vector<Error>* unsupported) const {
+    for (const pugi::xpath_node& found : robot.select_nodes(".//material/texture")) {
+      const pugi::xml_node texture = found.node();
+      unsupported->push_back({ErrorKind::kUnsupported,
+                              fmt::format("the picture '{:.200}' of material '{:.80}' is not drawn",
+                                          texture.attribute("filename").value(),
+                                          texture.parent().attribute("name").value()),
+                              loc_of(texture),
+                              "give the robot as MJCF, or draw it by a [[visual]]"});
+    }
+  }
+
   void read_compiler(const pugi::xml_node& robot) {
     for (const pugi::xml_node& mujoco : robot.children("mujoco")) {
       for (const pugi::xml_node& compiler : mujoco.children("compiler")) {
@@ -139,9 +185,11 @@ class Preparer {
     const size_t slash = std::min(rest.find('/'), rest.size());
     const std::string package = rest.substr(0, slash);
     const fs::path folder = find_package(package, file_, access_);
-    if (!folder.empty())
-      return absolute_path(rest.substr(std::min(slash + 1, rest.size())), folder);
-    if (exists_(stock_path(name))) return stock_path(name);
+    const fs::path inside =
+        folder.empty() ? fs::path()
+                       : absolute_path(rest.substr(std::min(slash + 1, rest.size())), folder);
+    if (exists_(stock_path(name)) && (inside.empty() || !exists_(inside))) return stock_path(name);
+    if (!inside.empty()) return inside;
     return Error{ErrorKind::kInput,
                  fmt::format("the folder of package '{:.80}' is not known", package), loc_of(mesh),
                  fmt::format("give it with --package {:.80}=FOLDER", package)};

@@ -9,8 +9,10 @@
 
 #include "base/text.h"
 #include "scene/camera_lens.h"
+#include "scene/environment/generators.h"
 #include "scene/option_fields.h"
 #include "scene/overrides.h"
+#include "scene/randomize.h"
 #include "scene/validate_imager.h"
 #include "scene/validate_lidar.h"
 #include "scene/validate_light.h"
@@ -45,6 +47,7 @@ class FieldChecker {
   void check(std::string_view key, int value, const FieldRule& rule) { number(key, value, rule); }
   void check(std::string_view, uint64_t, const FieldRule&) {}
   void check(std::string_view, bool, const FieldRule&) {}
+  void check(std::string_view, const TomlText&, const FieldRule&) {}
   void check(std::string_view key, const Rational& value, const FieldRule& rule) {
     if (value.den <= 0) return fail(key, "has no positive denominator");
     number(key, value.value(), rule);
@@ -120,6 +123,25 @@ Status refuse_duplicates(const std::vector<Options>& options, std::string_view k
   return {};
 }
 
+// An object's name is a body's and what segmentation calls it.
+Status validate_object_names(const Scene& scene) {
+  for (const ObjectOptions& object : scene.objects) {
+    const auto clash = [&](const auto& others, std::string_view kind) -> Status {
+      for (const auto& other : others) {
+        if (other.name != object.name) continue;
+        return Error{ErrorKind::kInput,
+                     fmt::format("object '{}' and {} '{}' have the same name", object.name, kind,
+                                 other.name),
+                     object.loc, "rename one of them"};
+      }
+      return {};
+    };
+    GLOAM_TRY_STATUS(clash(scene.props, "prop"));
+    GLOAM_TRY_STATUS(clash(scene.robots, "robot"));
+  }
+  return {};
+}
+
 Status validate_camera(const CameraOptions& camera) {
   const auto both = [&](const char* a, const char* b) {
     return Error{ErrorKind::kInput,
@@ -159,9 +181,15 @@ Status validate_scene(const Scene& scene) {
   SceneHeader header{scene.name};
   visit_tables(checker, header, const_cast<Scene&>(scene));  // visitors that read do not write
   GLOAM_TRY_STATUS(std::move(status));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.props, "prop"));
+  GLOAM_TRY_STATUS(validate_environment(scene));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.objects, "object"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.robots, "robot"));
+  GLOAM_TRY_STATUS(validate_object_names(scene));
   GLOAM_TRY_STATUS(validate_overrides(scene));
+  GLOAM_TRY_STATUS(validate_randomize(scene));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.cameras, "camera"));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.hfields, "hfield"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.visuals, "visual"));
   GLOAM_TRY_STATUS(validate_render(scene.render));
   for (const CameraOptions& camera : scene.cameras) {

@@ -11,8 +11,6 @@
 
 namespace gloam {
 namespace {
-constexpr int kLargestQueue = 65536;
-constexpr double kLongestWindow = 1000;  // [s]
 constexpr int64_t kNever = std::numeric_limits<int64_t>::max();
 }  // namespace
 
@@ -92,97 +90,19 @@ void SimLoop::take_over_goals(const Correspondence& same) {
 
 Result<std::shared_ptr<SnapshotQueue>> SimLoop::subscribe(const SubscriptionOptions& options,
                                                           const std::shared_ptr<Signal>& signal) {
-  if (options.capacity < 1 || options.capacity > kLargestQueue) {
-    return Error{ErrorKind::kUsage, fmt::format("a queue of {} Snapshots is not in 1 … {}",
-                                                options.capacity, kLargestQueue)};
-  }
-  GLOAM_TRY(StepSchedule schedule, StepSchedule::make(options.rate, options.phase, timestep_));
-  if (options.window.num < 0 || options.window.den <= 0 || options.window.value() > kLongestWindow)
-    return Error{ErrorKind::kUsage, fmt::format("a window of {:g} s is not in 0 … {} s",
-                                                options.window.value(), kLongestWindow)};
-  Subscription subscription;
-  subscription.queue = std::make_shared<SnapshotQueue>(options, signal);
-  subscription.schedule = schedule;
-  subscription.keys = key_steps(options.window, timestep_);
-  // Events may come a step early or late, those of uneven schedules a quarter of a period: a window
-  // must end before so many more have begun.
-  const int64_t period = schedule.step_of(Subscription::kMostPending) - schedule.step_of(0);
-  const int64_t room = period - 2 - (options.due ? period / 4 / Subscription::kMostPending : 0);
-  if (subscription.keys.length() > room) {
-    return Error{ErrorKind::kUsage,
-                 fmt::format("a window of {:g} s is too long for {:g} events a second",
-                             options.window.value(), options.rate.value()),
-                 {},
-                 "shorten it or lower the rate"};
-  }
+  GLOAM_TRY(Subscription subscription, Subscription::make(options, timestep_, signal));
   subscription.begin(stepper_->step_count());
   stepper_->pool().add_slots(subscription.slots());
   subscriptions_.push_back(std::move(subscription));
   find_next_publication();
-  return subscriptions_.back().queue;
+  return subscriptions_.back().queue();
 }
 
 void SimLoop::find_next_publication() {
   next_publication_ = kNever;
   for (const Subscription& s : subscriptions_) {
-    next_publication_ = std::min(next_publication_, s.due);
+    next_publication_ = std::min(next_publication_, s.due());
   }
-}
-
-int64_t SimLoop::Subscription::event_from(int64_t step) const {
-  if (queue->options().due) return queue->options().due(step);
-  return schedule.step_of(schedule.first_at_or_after(step));
-}
-
-void SimLoop::Subscription::begin(int64_t from) {
-  event = due = event_from(from);
-  for (Pending& window : pending) window = {};
-  pending_count = 0;
-}
-
-// The instants of a window are of one World: those that are not complete will never be. Complete
-// ones wait for room.
-void SimLoop::Subscription::forget_windows() {
-  int complete = 0;
-  while (complete < pending_count &&
-         pending[static_cast<size_t>(complete)].window.count == keys.count)
-    ++complete;
-  queue->count_lost(pending_count - complete);
-  for (int i = complete; i < pending_count; ++i) pending[static_cast<size_t>(i)] = {};
-  pending_count = complete;
-  if (complete == 0) due = event;
-}
-
-// Snapshots of a full queue, of one with the reader, and of those being made.
-int SimLoop::Subscription::slots() const {
-  const SubscriptionOptions& options = queue->options();
-  const int made = options.window.num > 0 ? kMostPending : 1;
-  return (options.capacity + 1 + made) * keys.count;
-}
-
-/// Takes the Snapshot of this step where it belongs, and hands out what is complete. False when
-/// there is no room for it.
-bool SimLoop::Subscription::publish(int64_t step, Stepper& stepper) {
-  if (event <= step) {
-    GLOAM_CHECK(pending_count < kMostPending, "windows overlap more than was agreed");
-    pending[static_cast<size_t>(pending_count++)].first = step;
-    event = event_from(event + 1);
-  }
-  const auto next_key = [&](const Pending& p) { return p.first + p.window.count * keys.stride; };
-  for (int i = 0; i < pending_count; ++i) {
-    Pending& p = pending[static_cast<size_t>(i)];
-    if (p.window.count < keys.count && next_key(p) <= step) p.window.add(stepper.snapshot());
-  }
-  while (pending_count > 0 && pending[0].window.count == keys.count) {
-    if (queue->options().required && queue->full()) return false;
-    queue->publish(std::exchange(pending[0].window, {}));
-    std::rotate(pending.begin(), pending.begin() + 1, pending.begin() + pending_count);
-    --pending_count;
-  }
-  due = event;
-  for (int i = 0; i < pending_count; ++i)
-    due = std::min(due, next_key(pending[static_cast<size_t>(i)]));
-  return true;
 }
 
 bool SimLoop::publish_due() {
@@ -190,12 +110,12 @@ bool SimLoop::publish_due() {
   if (step < next_publication_) return true;
   bool all = true;
   for (Subscription& s : subscriptions_) {
-    if (s.due > step || s.queue->closed()) continue;
+    if (s.due() > step || s.queue()->closed()) continue;
     all = s.publish(step, *stepper_) && all;
   }
   std::erase_if(subscriptions_, [this](const Subscription& s) {
-    if (s.queue->closed()) dropped_by_closed_ += s.queue->dropped();
-    return s.queue->closed();
+    if (s.queue()->closed()) dropped_by_closed_ += s.queue()->dropped();
+    return s.queue()->closed();
   });
   find_next_publication();
   return all;
@@ -270,12 +190,12 @@ void SimLoop::begin_run() {
 
 int64_t SimLoop::dropped() const {
   int64_t dropped = dropped_by_closed_;
-  for (const Subscription& s : subscriptions_) dropped += s.queue->dropped();
+  for (const Subscription& s : subscriptions_) dropped += s.queue()->dropped();
   return dropped;
 }
 
 void SimLoop::close_queues() {
-  for (const Subscription& s : subscriptions_) s.queue->close();
+  for (const Subscription& s : subscriptions_) s.queue()->close();
 }
 
 }  // namespace gloam

@@ -8,9 +8,8 @@
 #include "sim/command_queue.h"
 #include "sim/controller_slot.h"
 #include "sim/correspondence.h"
-#include "sim/snapshot_queue.h"
-#include "sim/step_schedule.h"
 #include "sim/stepper.h"
+#include "sim/subscription.h"
 
 namespace gloam {
 
@@ -57,29 +56,6 @@ class SimLoop {
   void close_queues();
 
  private:
-  struct Subscription {
-    /// A window that is not yet handed out.
-    struct Pending {
-      int64_t first = 0;  // step
-      SnapshotWindow window;
-    };
-    static constexpr int kMostPending = 5;
-
-    std::shared_ptr<SnapshotQueue> queue;
-    StepSchedule schedule;
-    KeySteps keys;
-    int64_t event = 0;                            // step of the next event
-    int64_t due = 0;                              // step at which something has to be done
-    std::array<Pending, kMostPending> pending{};  // in the order of their events
-    int pending_count = 0;
-
-    int64_t event_from(int64_t step) const;  // the first at or after it
-    void begin(int64_t from);
-    void forget_windows();
-    int slots() const;
-    bool publish(int64_t step, Stepper& stepper);
-  };
-
   void apply(const Command& command);
   bool apply_commands();
   void run_controllers();

@@ -72,28 +72,16 @@ class Transfer {
   }
 
   void histories() const {
-    const Parts parts_b = history_parts(b_), parts_a = history_parts(a_);
-    const auto copy = [&](const std::vector<int>& matched, const int* adr_b, const int* adr_a) {
-      for_each_pair(matched, [&](int b, int a) {
-        copy_block(from_.history, adr_b[b], parts_b.length(adr_b[b]), to_.history, adr_a[a],
-                   parts_a.length(adr_a[a]));
-      });
-    };
-    copy(same_.actuator, b_.actuator_historyadr, a_.actuator_historyadr);
-    copy(same_.sensor, b_.sensor_historyadr, a_.sensor_historyadr);
+    const Shared shared{from_.history, history_parts(b_), to_.history, history_parts(a_)};
+    copy_shared(shared, same_.actuator, b_.actuator_historyadr, a_.actuator_historyadr);
+    copy_shared(shared, same_.sensor, b_.sensor_historyadr, a_.sensor_historyadr);
   }
 
   void plastic() const {
-    const Parts parts_b = plastic_parts(b_), parts_a = plastic_parts(a_);
-    const auto copy = [&](const std::vector<int>& matched, const int* adr_b, const int* adr_a) {
-      for_each_pair(matched, [&](int b, int a) {
-        copy_block(from_.plastic, adr_b[b], parts_b.length(adr_b[b]), to_.plastic, adr_a[a],
-                   parts_a.length(adr_a[a]));
-      });
-    };
-    copy(same_.joint, b_.jnt_plasticadr, a_.jnt_plasticadr);
-    copy(same_.tendon, b_.tendon_plasticadr, a_.tendon_plasticadr);
-    copy(same_.flex, b_.flex_plasticadr, a_.flex_plasticadr);
+    const Shared shared{from_.plastic, plastic_parts(b_), to_.plastic, plastic_parts(a_)};
+    copy_shared(shared, same_.joint, b_.jnt_plasticadr, a_.jnt_plasticadr);
+    copy_shared(shared, same_.tendon, b_.tendon_plasticadr, a_.tendon_plasticadr);
+    copy_shared(shared, same_.flex, b_.flex_plasticadr, a_.flex_plasticadr);
   }
 
   void bodies() const {
@@ -121,6 +109,22 @@ class Transfer {
   }
 
  private:
+  // One array that elements of several kinds share, before and after.
+  struct Shared {
+    const mjtNum* from;
+    Parts parts_b;
+    mjtNum* to;
+    Parts parts_a;
+  };
+
+  static void copy_shared(const Shared& shared, const std::vector<int>& matched, const int* adr_b,
+                          const int* adr_a) {
+    for_each_pair(matched, [&](int b, int a) {
+      copy_block(shared.from, adr_b[b], shared.parts_b.length(adr_b[b]), shared.to, adr_a[a],
+                 shared.parts_a.length(adr_a[a]));
+    });
+  }
+
   static void copy_block(const mjtNum* from, int adr_b, int count_b, mjtNum* to, int adr_a,
                          int count_a) {
     if (count_b == count_a && count_a > 0) mju_copy(to + adr_a, from + adr_b, count_a);

@@ -3,7 +3,7 @@
 #include <bit>
 #include <cstring>
 
-#include "gloam/picture.h"
+#include "gloam/view.h"
 
 namespace gloam::studio {
 namespace {

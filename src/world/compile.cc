@@ -1,11 +1,16 @@
 #include <chrono>
 
+#include "scene/environment/generators.h"
+#include "scene/environment/place_writer.h"
 #include "scene/mujoco_guard.h"
+#include "scene/randomize.h"
 #include "scene/validate.h"
 #include "world/authored_lidar.h"
 #include "world/level.h"
+#include "world/mesh_object.h"
 #include "world/model_cache.h"
 #include "world/rigs.h"
+#include "world/sampled_ground.h"
 #include "world/sensor_description.h"
 #include "world/urdf_visuals.h"
 
@@ -44,13 +49,32 @@ RobotInstance bare_robot(const Scene& scene, const mjModel* model) {
   return robot;
 }
 
+// What is not in the model.
+void describe_place(const Place& place, CompiledWorld* world) {
+  world->regions = place.regions;
+  world->ev100 = place.ev100;
+}
+
 }  // namespace
 
 Result<World> World::compile(const Scene& written) {
   install_mujoco_handler();
   GLOAM_TRY_STATUS(validate_scene(written));
-  GLOAM_TRY(const Scene scene, with_rig_cameras(written));
-  if (std::shared_ptr<CompiledWorld> cached = load_cached_world(scene)) {
+  Scene scene = written;
+  std::vector<DrawnOption> drawn;
+  GLOAM_TRY_STATUS(draw_options(DrawStage::kPlace, &scene, &drawn));
+  GLOAM_TRY(const std::optional<Place> place, make_place(scene));
+  if (place) add_place_looks(*place, &scene);
+  GLOAM_TRY_STATUS(add_ground_looks(&scene));
+  GLOAM_TRY(const MeshObjects objects, load_mesh_objects(scene));
+  GLOAM_TRY_STATUS(add_object_visuals(objects, &scene));
+  GLOAM_TRY_STATUS(draw_options(DrawStage::kRest, &scene, &drawn));
+  scene.randomize.clear();
+  GLOAM_TRY(scene, with_rig_cameras(scene));
+  const uint64_t place_hash = (place ? place->hash() : 0) ^ objects.hash;
+  if (std::shared_ptr<CompiledWorld> cached = load_cached_world(scene, place_hash)) {
+    if (place) describe_place(*place, cached.get());
+    cached->drawn = drawn;
     if (!scene.bare_model.empty()) cached->robots = {bare_robot(scene, cached->model.get())};
     GLOAM_TRY_STATUS(check_sensors(*cached));
     GLOAM_TRY_STATUS(describe_lidars(*cached));
@@ -59,9 +83,12 @@ Result<World> World::compile(const Scene& written) {
   const auto start = std::chrono::steady_clock::now();
   ModelFiles files;
   GLOAM_TRY_STATUS(add_scene_files(scene, &files));
-  GLOAM_TRY(Level level, build_level(scene, &files));
+  GLOAM_TRY(Level level, build_level(scene, place, objects, &files));
   auto world = std::make_shared<CompiledWorld>();
   world->scene = scene;
+  world->place_hash = place_hash;
+  world->drawn = drawn;
+  if (place) describe_place(*place, world.get());
   world->robots = list_robots(level);
   if (!scene.bare_model.empty()) world->robots = {bare_robot(scene, level.model.get())};
   world->model = std::move(level.model);

@@ -1,14 +1,21 @@
+#include "world/export_mjcf.h"
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cstring>
 #include <map>
 #include <mutex>
 
 #include "base/files.h"
 #include "base/hash.h"
 #include "base/log.h"
+#include "geometry/png_writer.h"
+#include "scene/environment/generators.h"
 #include "scene/mujoco_guard.h"
 #include "world/level.h"
+#include "world/mesh_object.h"
 #include "world/model_compare.h"
 
 // Exported by MuJoCo 4.0.1 but declared in none of its headers: digits of the numbers in saved XML.
@@ -51,7 +58,8 @@ class AssetWriter {
       return write_one(e, mjs_asMesh(e)->file, m, m->mesh_pathadr);
     }));
     GLOAM_TRY_STATUS(each(spec, mjOBJ_HFIELD, [&](mjsElement* e) -> Status {
-      return write_one(e, mjs_asHField(e)->file, m, m->hfield_pathadr);
+      GLOAM_TRY_STATUS(write_one(e, mjs_asHField(e)->file, m, m->hfield_pathadr));
+      return write_heights(e, mjs_asHField(e), m);
     }));
     GLOAM_TRY_STATUS(each(spec, mjOBJ_SKIN, [&](mjsElement* e) -> Status {
       return write_one(e, mjs_asSkin(e)->file, m, m->skin_pathadr);
@@ -59,15 +67,42 @@ class AssetWriter {
     GLOAM_TRY_STATUS(each(spec, mjOBJ_TEXTURE, [&](mjsElement* e) -> Status {
       mjsTexture* texture = mjs_asTexture(e);
       GLOAM_TRY_STATUS(write_one(e, texture->file, m, m->tex_pathadr));
+      GLOAM_TRY_STATUS(write_pixels(e, texture, m));
       return write_faces(e, texture);
     }));
-    mjs_setString(spec->compiler.meshdir, "");
-    mjs_setString(spec->compiler.texturedir, "");
+    use_copies(&spec->compiler);
     spec->strippath = 0;
     return {};
   }
 
+  // In compiled values MuJoCo names files as they were found when it last compiled: now it finds
+  // the copies.
+  Status compile_again(mjSpec* spec) {
+    for (const mjtObj type : {mjOBJ_MESH, mjOBJ_HFIELD, mjOBJ_SKIN, mjOBJ_TEXTURE}) {
+      GLOAM_TRY_STATUS(each(spec, type, [&](mjsElement* e) -> Status {
+        use_copies(mjs_getCompiler(e));
+        if (mjSpec* origin = mjs_getOriginSpec(e); origin != nullptr) {
+          mjs_setString(origin->modelfiledir, fs::absolute(folder_).c_str());
+          origin->strippath = 0;
+        }
+        return {};
+      }));
+    }
+    mjs_setString(spec->modelfiledir, fs::absolute(folder_).c_str());
+    mjModel* model = nullptr;
+    const MujocoWarningCapture warnings;
+    GLOAM_TRY_STATUS(guarded([&] { model = mj_compile(spec, nullptr); }));
+    const ModelPtr compiled(model);
+    if (compiled == nullptr) return Error{ErrorKind::kUnsupported, mjs_getError(spec)};
+    return {};
+  }
+
  private:
+  static void use_copies(mjsCompiler* compiler) {
+    mjs_setString(compiler->meshdir, "");
+    mjs_setString(compiler->texturedir, "");
+  }
+
   template <class F>
   static Status each(mjSpec* spec, mjtObj type, F&& f) {
     for (mjsElement* e = mjs_firstElement(spec, type); e != nullptr; e = mjs_nextElement(spec, e))
@@ -81,6 +116,46 @@ class AssetWriter {
     if (name.empty() || id < 0 || pathadr[id] < 0) return {};
     GLOAM_TRY(const std::string copy, copy_asset(m->paths + pathadr[id]));
     mjs_setString(file, copy.c_str());
+    return {};
+  }
+
+  // Pictures of generated things come from no file, and MJCF has no other place for them.
+  Status write_pixels(mjsElement* element, mjsTexture* texture, const mjModel* m) {
+    const int id = mjs_getId(element);
+    const bool has_file = *mjs_getString(texture->file) != 0;
+    if (id < 0 || has_file || texture->builtin != mjBUILTIN_NONE || texture->type != mjTEXTURE_2D)
+      return {};
+    const int width = m->tex_width[id], height = m->tex_height[id], channels = m->tex_nchannel[id];
+    const auto size = static_cast<size_t>(width) * static_cast<size_t>(height * channels);
+    const std::vector<uint8_t> png =
+        encode_png8(width, height, channels, {m->tex_data + m->tex_adr[id], size});
+    std::string name = mjs_getString(mjs_getName(element));
+    std::replace(name.begin(), name.end(), '/', '_');
+    GLOAM_TRY(const std::string copy, write_copy(name, ".png", png));
+    mjs_setString(texture->file, copy.c_str());
+    mjs_setBuffer(texture->data, nullptr, 0);
+    return {};
+  }
+
+  // Heights that come from no file could stand in the XML, but a million of them do not belong
+  // there: MuJoCo's own binary format has rows, columns (int32) and the elevations (float).
+  Status write_heights(mjsElement* element, mjsHField* hfield, const mjModel* m) {
+    const int id = mjs_getId(element);
+    if (id < 0 || *mjs_getString(hfield->file) != 0) return {};
+    const int32_t shape[2] = {m->hfield_nrow[id], m->hfield_ncol[id]};
+    const std::span<const float> heights(
+        m->hfield_data + m->hfield_adr[id],
+        static_cast<size_t>(shape[0]) * static_cast<size_t>(shape[1]));
+    if (std::all_of(heights.begin(), heights.end(), [](float h) { return h == 0; })) return {};
+    std::vector<uint8_t> bytes(sizeof(shape) + heights.size_bytes());
+    std::memcpy(bytes.data(), shape, sizeof(shape));
+    std::memcpy(bytes.data() + sizeof(shape), heights.data(), heights.size_bytes());
+    std::string name = mjs_getString(mjs_getName(element));
+    std::replace(name.begin(), name.end(), '/', '_');
+    GLOAM_TRY(const std::string copy, write_copy(name, ".hfield", bytes));
+    mjs_setString(hfield->file, copy.c_str());
+    mjs_setFloat(hfield->userdata, nullptr, 0);
+    hfield->nrow = hfield->ncol = 0;
     return {};
   }
 
@@ -105,18 +180,22 @@ class AssetWriter {
     auto content = files_->read(path);
     if (!content.ok()) return content.error();
     const std::string& bytes = **content;
+    return write_copy(path.stem().string(), path.extension().string(),
+                      {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
+  }
+
+  Result<std::string> write_copy(const std::string& stem, const std::string& extension,
+                                 std::span<const uint8_t> bytes) {
     const uint64_t hash = hash_bytes(bytes.data(), bytes.size());
-    std::string name = path.filename().string();
+    std::string name = stem + extension;
     for (int number = 2;; ++number) {
       const auto [taken, is_new] = written_.emplace(name, hash);
       if (is_new) break;
       if (taken->second == hash) return fmt::format("{}/{}", kAssetFolder, name);
-      name = fmt::format("{}_{}{}", path.stem().string(), number, path.extension().string());
+      name = fmt::format("{}_{}{}", stem, number, extension);
     }
     GLOAM_TRY_STATUS(make_folder(folder_ / kAssetFolder));
-    GLOAM_TRY_STATUS(
-        write_file_atomic(folder_ / kAssetFolder / name,
-                          {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()}));
+    GLOAM_TRY_STATUS(write_file_atomic(folder_ / kAssetFolder / name, bytes));
     return fmt::format("{}/{}", kAssetFolder, name);
   }
 
@@ -125,9 +204,8 @@ class AssetWriter {
   std::map<std::string, uint64_t> written_;
 };
 
-// Writes the XML and loads it as any user of MuJoCo would. Empty = the same model came back.
-Result<std::vector<std::string>> save_and_compare(mjSpec* spec, const mjModel* wanted,
-                                                  const fs::path& path) {
+// Writes the XML and loads it as any user of MuJoCo would.
+Result<ExportedModel> save_and_compare(mjSpec* spec, const mjModel* wanted, const fs::path& path) {
   const std::string name = path.string();
   char message[2048] = "";
   int code = 0;
@@ -138,25 +216,35 @@ Result<std::vector<std::string>> save_and_compare(mjSpec* spec, const mjModel* w
     if (!saved.ok()) return saved.error();
   }
   if (code != 0) return Error{ErrorKind::kUnsupported, message, {name, 0, 0}};
-  mjModel* loaded = nullptr;
-  const MujocoWarningCapture warnings;
-  const Status status =
-      guarded([&] { loaded = mj_loadXML(name.c_str(), nullptr, message, sizeof(message)); });
-  const ModelPtr model(loaded);
-  mj_freeLastXML();
-  if (!status.ok()) return status.error();
-  if (model == nullptr) return Error{ErrorKind::kUnsupported, message, {name, 0, 0}};
-  return compare_models(wanted, model.get());
+  GLOAM_TRY(const ModelPtr model, load_stock_model(path));
+  ExportedModel exported;
+  exported.differing = compare_models(wanted, model.get(), &exported.compared);
+  return exported;
 }
 
 }  // namespace
 
-Status World::export_mjcf(const fs::path& folder) const {
+Result<ModelPtr> load_stock_model(const fs::path& file) {
+  const std::string name = file.string();
+  char message[2048] = "";
+  mjModel* loaded = nullptr;
+  const MujocoWarningCapture warnings;
+  const Status status =
+      guarded([&] { loaded = mj_loadXML(name.c_str(), nullptr, message, sizeof(message)); });
+  ModelPtr model(loaded);
+  mj_freeLastXML();
+  if (!status.ok()) return status.error();
+  if (model == nullptr) return Error{ErrorKind::kUnsupported, message, {name, 0, 0}};
+  return model;
+}
+
+Result<ExportedModel> write_mjcf(const CompiledWorld& world, const fs::path& folder) {
   // The spec is made anew: a World keeps what simulation needs, and a cached one never had it.
-  const CompiledWorld& world = *compiled_;
   ModelFiles files;
   GLOAM_TRY_STATUS(add_scene_files(world.scene, &files));
-  GLOAM_TRY(Level level, build_level(world.scene, &files));
+  GLOAM_TRY(const std::optional<Place> place, make_place(world.scene));
+  GLOAM_TRY(const MeshObjects objects, load_mesh_objects(world.scene));
+  GLOAM_TRY(Level level, build_level(world.scene, place, objects, &files));
   if (!compare_models(world.model.get(), level.model.get()).empty()) {
     return Error{ErrorKind::kInput,
                  "the model's files have changed since it was loaded",
@@ -170,22 +258,32 @@ Status World::export_mjcf(const fs::path& folder) const {
   const fs::path path = folder / "scene.xml";
   // As written keeps every number exact. Where MJCF cannot say a level as written (robots with
   // different compiler settings), the compiled values can.
+  ExportedModel last;
   std::string why;
   for (const bool compiled_values : {false, true}) {
     spec->compiler.savecompiled = compiled_values;
-    const Result<std::vector<std::string>> differing =
-        save_and_compare(spec, world.model.get(), path);
-    if (differing.ok() && differing->empty()) return {};
-    const std::string reason = differing.ok()
-                                   ? fmt::format("differs in {}", fmt::join(*differing, ", "))
-                                   : differing.error().message;
+    const Status ready = compiled_values ? assets.compile_again(spec) : Status();
+    Result<ExportedModel> exported =
+        ready.ok() ? save_and_compare(spec, world.model.get(), path) : ready.error();
+    if (exported.ok() && exported->differing.empty()) return exported;
+    const std::string reason =
+        exported.ok() ? fmt::format("differs in {}", fmt::join(exported->differing, ", "))
+                      : exported.error().message;
     log_debug("export {}: {}", compiled_values ? "of compiled values" : "as written", reason);
     if (!why.empty()) why += "; ";
     why += fmt::format("{}: {}", compiled_values ? "compiled values" : "as written", reason);
+    last = exported.ok() ? std::move(exported).value() : ExportedModel();
   }
+  last.why = fmt::format("{:.500}", why);
+  return last;
+}
+
+Status World::export_mjcf(const fs::path& folder) const {
+  GLOAM_TRY(const ExportedModel exported, write_mjcf(*compiled_, folder));
+  if (exported.why.empty()) return {};
   return Error{ErrorKind::kUnsupported,
-               fmt::format("MJCF cannot say this level exactly: {:.500}", why),
-               {path.string(), 0, 0},
+               "MJCF cannot say this level exactly: " + exported.why,
+               {(folder / "scene.xml").string(), 0, 0},
                "the file was written and is close, but not equal in every array"};
 }
 

@@ -6,6 +6,9 @@
 
 #include "base/check.h"
 #include "base/text.h"
+#include "geometry/model_file.h"
+#include "scene/environment/generators.h"
+#include "scene/environment/place_writer.h"
 #include "scene/mujoco_guard.h"
 #include "scene/mujoco_plugins.h"
 #include "scene/overrides.h"
@@ -15,6 +18,8 @@
 #include "world/level_cameras.h"
 #include "world/level_keyframe.h"
 #include "world/long_wait.h"
+#include "world/mesh_object.h"
+#include "world/sampled_ground.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
@@ -64,6 +69,8 @@ Result<SpecPtr> parse_model(const fs::path& file, const FileAccess& access, Mode
   report_warnings(warnings, spec, 0, path, unsupported);
   return owned;
 }
+
+bool names_mjcf(const EnvironmentOptions& e) { return !e.file.empty() && !is_model_file(e.file); }
 
 void add_default_floor(mjSpec* spec) {
   mjsTexture* texture = mjs_addTexture(spec, nullptr);
@@ -132,18 +139,26 @@ Status attach_robot(mjSpec* base, const RobotOptions& robot, mjSpec* child, Mode
   return {};
 }
 
-Result<Level> assemble(const Scene& scene, ModelFiles* files, mjtConflict policy) {
+Result<Level> assemble(const Scene& scene, const std::optional<Place>& place,
+                       const MeshObjects& objects, ModelFiles* files,
+                       const std::vector<SampledGround>& grounds, mjtConflict policy) {
   Level level;
   if (!scene.bare_model.empty()) {
     GLOAM_TRY(level.spec, parse_model(scene.bare_model, scene.access, files, &level.unsupported));
-  } else if (!scene.environment.file.empty()) {
+  } else if (names_mjcf(scene.environment)) {
     GLOAM_TRY(level.spec,
               parse_model(scene.environment.file, scene.access, files, &level.unsupported));
   } else {
     level.spec.reset(mj_makeSpec());
     mjs_setString(level.spec->modelname, scene.name.c_str());
-    if (!scene.robots.empty()) add_default_floor(level.spec.get());
+    const bool has_things = !scene.robots.empty() || !scene.objects.empty() || place;
+    if (!has_generator(scene.environment) && scene.environment.file.empty() && grounds.empty() &&
+        has_things)
+      add_default_floor(level.spec.get());
   }
+  if (place) GLOAM_TRY_STATUS(add_place(*place, level.spec.get()));
+  GLOAM_TRY_STATUS(add_grounds(grounds, level.spec.get()));
+  GLOAM_TRY_STATUS(add_objects(objects, level.spec.get(), &level.unsupported));
   GLOAM_TRY_STATUS(apply_overrides(scene.overrides, kEnvironmentName, level.spec.get()));
   if (level.spec->compiler.conflict == mjCONFLICT_WARNING && !scene.robots.empty())
     level.spec->compiler.conflict = policy;
@@ -231,23 +246,28 @@ std::vector<std::string> object_names(const mjModel* model, mjtObj type, int cou
 Status add_scene_files(const Scene& scene, ModelFiles* files) {
   if (!scene.bare_model.empty()) {
     GLOAM_TRY_STATUS(files->add_model(scene.bare_model, scene.access));
-  } else if (!scene.environment.file.empty()) {
+  } else if (names_mjcf(scene.environment)) {
     GLOAM_TRY_STATUS(files->add_model(scene.environment.file, scene.access, scene.environment.loc));
   }
   for (const RobotOptions& robot : scene.robots)
     GLOAM_TRY_STATUS(files->add_model(robot.file, scene.access, robot.loc));
+  GLOAM_TRY_STATUS(admit_ground_files(scene, files));
   if (files->uses_plugins()) load_mujoco_plugins();
   return {};
 }
 
-Result<Level> build_level(const Scene& scene, ModelFiles* files) {
+Result<Level> build_level(const Scene& scene, const std::optional<Place>& place,
+                          const MeshObjects& objects, ModelFiles* files) {
+  std::vector<Error> notes;
+  GLOAM_TRY(const std::vector<SampledGround> grounds, sample_grounds(scene, files, &notes));
   // MuJoCo's "merge" rules let a robot bring its solver settings along; where two files cannot both
   // be right ("merge" refuses), the earlier file wins and the rest is reported.
-  Result<Level> assembled = assemble(scene, files, mjCONFLICT_MERGE);
+  Result<Level> assembled = assemble(scene, place, objects, files, grounds, mjCONFLICT_MERGE);
   if (!assembled.ok() && assembled.error().message.find("onflict") != std::string::npos)
-    assembled = assemble(scene, files, mjCONFLICT_WARNING);
+    assembled = assemble(scene, place, objects, files, grounds, mjCONFLICT_WARNING);
   if (!assembled.ok()) return assembled;
   Level level = std::move(assembled).value();
+  level.unsupported.insert(level.unsupported.begin(), notes.begin(), notes.end());
   GLOAM_TRY_STATUS(add_cameras(scene, &level));
   add_initial_keyframe(scene, &level);
   GLOAM_TRY_STATUS(compile(scene, files, &level));

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/environment/place.h"
 #include "scene/model_files.h"
 #include "world/world.h"
 
@@ -15,6 +16,8 @@ struct LevelRobot {
   RobotOptions options;
   SpecPtr spec;
 };
+
+struct MeshObjects;
 
 struct Level {
   SpecPtr spec;
@@ -27,9 +30,12 @@ struct Level {
 /// Admits every model file of the scene: roots, scans. Errors as ModelFiles::add_model.
 Status add_scene_files(const Scene& scene, ModelFiles* files);
 
-/// Parses, attaches and compiles. `files` must hold the scene's files already and outlive the
-/// Level. After it, level.spec holds everything that the model does (for export).
-Result<Level> build_level(const Scene& scene, ModelFiles* files);
+/// Parses, attaches and compiles. `place` is what make_place() makes of the scene, `objects` what
+/// load_mesh_objects() does. `files` must
+/// hold the scene's files already and outlive the Level. After it, level.spec holds everything that
+/// the model does (for export).
+Result<Level> build_level(const Scene& scene, const std::optional<Place>& place,
+                          const MeshObjects& objects, ModelFiles* files);
 
 /// Names that MuJoCo gives its objects of one kind, "" where unnamed.
 std::vector<std::string> object_names(const mjModel* model, mjtObj type, int count);

@@ -4,17 +4,17 @@
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <chrono>
-#include <condition_variable>
-#include <mutex>
-#include <thread>
+#include <limits>
 
 #include "base/archive.h"
 #include "base/cache.h"
+#include "base/cache_writer.h"
 #include "base/files.h"
 #include "base/hash.h"
+#include "geometry/model_file.h"
 #include "scene/mujoco_guard.h"
 #include "scene/mujoco_plugins.h"
+#include "world/sampled_ground.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
@@ -59,8 +59,9 @@ void visit_entry(F& f, CacheEntry& e) {
 constexpr uint64_t kMagic = 0x33444C574D4F4C47ull;  // "GLOMWLD3": changes with the layout below
 constexpr uint64_t kLargestEntry = uint64_t{2} << 30;
 
-fs::path entry_of(const Scene& scene) {
-  return cache_folder(kModelCache) / cache_entry_name(kModelCache, world_cache_key(scene));
+fs::path entry_of(const Scene& scene, uint64_t place_hash) {
+  return cache_folder(kModelCache) /
+         cache_entry_name(kModelCache, world_cache_key(scene, place_hash));
 }
 
 void put_model(const mjModel* model, ArchiveWriter* out) {
@@ -89,68 +90,13 @@ std::vector<uint8_t> serialise(const CompiledWorld& world,
   visit_entry(out, entry);
   put_model(world.model.get(), &out);
   put_model(world.visual_model.get(), &out);
-  seal_cache_entry(kMagic, &out.bytes);
+  if (out.bytes.size() > kLargestEntry) return {};
   return std::move(out.bytes);
-}
-
-void write_entry(const CompiledWorld& world, const std::vector<Dependency>& dependencies) {
-  const std::vector<uint8_t> entry = serialise(world, dependencies);
-  if (entry.size() <= kLargestEntry) keep_in_cache(entry_of(world.scene), entry);
-}
-
-// A program that has just compiled a world goes on to start up; an entry of 70 MB can wait for
-// that.
-constexpr std::chrono::seconds kStartUp{2};
-
-// One writer at a time; its destructor at the end of the program waits for the last entry.
-class BackgroundWriter {
- public:
-  ~BackgroundWriter() { finish(); }
-  void start(std::shared_ptr<const CompiledWorld> world, std::vector<Dependency> dependencies) {
-    const std::lock_guard lock(mutex_);
-    join();
-    thread_ = std::thread([this, world = std::move(world), dependencies = std::move(dependencies)] {
-      wait_for_start_up();
-      write_entry(*world, dependencies);
-    });
-  }
-  void finish() {
-    const std::lock_guard lock(mutex_);
-    join();
-  }
-
- private:
-  void wait_for_start_up() {
-    std::unique_lock lock(hurry_mutex_);
-    hurried_.wait_for(lock, kStartUp, [this] { return hurry_; });
-  }
-  void set_hurry(bool hurry) {
-    const std::lock_guard lock(hurry_mutex_);
-    hurry_ = hurry;
-  }
-  void join() {
-    if (!thread_.joinable()) return;
-    set_hurry(true);
-    hurried_.notify_one();
-    thread_.join();
-    set_hurry(false);
-  }
-
-  std::mutex mutex_;
-  std::thread thread_;
-  std::mutex hurry_mutex_;
-  std::condition_variable hurried_;
-  bool hurry_ = false;  // someone waits for the entry
-};
-
-BackgroundWriter& background_writer() {
-  static BackgroundWriter writer;
-  return writer;
 }
 
 }  // namespace
 
-uint64_t world_cache_key(const Scene& scene) {
+uint64_t world_cache_key(const Scene& scene, uint64_t place_hash) {
   ArchiveWriter key;
   key(kMagic);
   key(std::string(mj_versionString()));
@@ -158,6 +104,7 @@ uint64_t world_cache_key(const Scene& scene) {
   key(scene.bare_model.empty());
   key(scene.environment.file.empty() ? std::string()
                                      : absolute_path(scene.environment.file, "").string());
+  key(place_hash);
   key(scene.name);
   key(scene.access.root.string());
   key(scene.access.strict);
@@ -172,6 +119,23 @@ uint64_t world_cache_key(const Scene& scene) {
     key(robot.X_WR);
     key(robot.keyframe);
     key(robot.loc.line);  // stands in cached messages
+  }
+  for (const HeightFieldOptions& o : scene.hfields) {
+    key(o.name);
+    key(absolute_path(o.file, "").string());
+    key(o.up);
+    constexpr double kAll = std::numeric_limits<double>::infinity();
+    const auto [low, high] = std::pair(o.low.value_or(std::array{-kAll, -kAll}),
+                                       o.high.value_or(std::array{kAll, kAll}));
+    const Vec3 friction = o.friction.value_or(Vec3{-1, -1, -1});
+    for (const double number :
+         {o.X_WF.p.x, o.X_WF.p.y, o.X_WF.p.z, o.X_WF.q.w, o.X_WF.q.x, o.X_WF.q.y, o.X_WF.q.z,
+          o.scale.x, o.scale.y, o.scale.z, o.unit, low[0], low[1], high[0], high[1], o.resolution,
+          friction.x, friction.y, friction.z})
+      key(number);
+    key(o.layers);
+    key(o.drawn);
+    key(o.loc.line);
   }
   for (const OverrideOptions& override : scene.overrides) {
     for (const std::string* part :
@@ -194,8 +158,8 @@ uint64_t world_cache_key(const Scene& scene) {
   return hash_bytes(key.bytes.data(), key.bytes.size());
 }
 
-std::shared_ptr<CompiledWorld> load_cached_world(const Scene& scene) {
-  const fs::path path = entry_of(scene);
+std::shared_ptr<CompiledWorld> load_cached_world(const Scene& scene, uint64_t place_hash) {
+  const fs::path path = entry_of(scene, place_hash);
   std::error_code code;
   if (!fs::exists(path, code)) return nullptr;
   const Result<std::vector<uint8_t>> bytes = read_file(path, kLargestEntry);
@@ -209,9 +173,9 @@ std::shared_ptr<CompiledWorld> load_cached_world(const Scene& scene) {
     admitted = admitted && (file.empty() || files.admit(file, scene.access).ok());
   };
   admit(scene.bare_model);
-  admit(scene.environment.file);
+  if (!is_model_file(scene.environment.file)) admit(scene.environment.file);
   for (const RobotOptions& robot : scene.robots) admit(robot.file);
-  if (!admitted) return nullptr;
+  if (!admitted || !admit_ground_files(scene, &files).ok()) return nullptr;
 
   ArchiveReader in(payload);
   CacheEntry entry;
@@ -237,9 +201,10 @@ std::shared_ptr<CompiledWorld> load_cached_world(const Scene& scene) {
 
 void store_cached_world(std::shared_ptr<const CompiledWorld> world,
                         std::vector<Dependency> dependencies) {
-  background_writer().start(std::move(world), std::move(dependencies));
+  const fs::path path = entry_of(world->scene, world->place_hash);
+  keep_in_cache_later(path, kMagic, 0, [world = std::move(world), files = std::move(dependencies)] {
+    return serialise(*world, files);
+  });
 }
-
-void finish_cache_writes() { background_writer().finish(); }
 
 }  // namespace gloam

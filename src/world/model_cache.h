@@ -7,18 +7,14 @@
 
 namespace gloam {
 
-/// Name of the entry for this scene.
-uint64_t world_cache_key(const Scene& scene);
+/// Name of the entry for this scene; `place_hash` = of what is generated for it, 0 = nothing.
+uint64_t world_cache_key(const Scene& scene, uint64_t place_hash = 0);
 
 /// The scene's entry, read and checked; null when there is none that holds good.
-std::shared_ptr<CompiledWorld> load_cached_world(const Scene& scene);
+std::shared_ptr<CompiledWorld> load_cached_world(const Scene& scene, uint64_t place_hash = 0);
 
-/// Writes the entry on a thread of its own, after the program has had two seconds to start up; its
-/// end waits for the entry. A cache that cannot be written is no error.
+/// Writes the entry while the program goes on (keep_in_cache_later).
 void store_cached_world(std::shared_ptr<const CompiledWorld> world,
                         std::vector<Dependency> dependencies);
-
-/// Waits for entries that are being written. For tests and timings.
-void finish_cache_writes();
 
 }  // namespace gloam

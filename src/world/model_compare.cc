@@ -14,10 +14,15 @@ bool says_where_it_came_from(std::string_view field) {
 
 }  // namespace
 
-std::vector<std::string> compare_models(const mjModel* a, const mjModel* b) {
+std::vector<std::string> compare_models(const mjModel* a, const mjModel* b, int* compared) {
   std::vector<std::string> differing;
+  int ignored = 0;
+  int& count = compared != nullptr ? *compared : ignored;
+  count = 0;
   const auto check = [&](const char* name, bool equal) {
-    if (!equal && !says_where_it_came_from(name)) differing.emplace_back(name);
+    if (says_where_it_came_from(name)) return;
+    ++count;
+    if (!equal) differing.emplace_back(name);
   };
 #define X(name) check(#name, a->name == b->name);
   MJMODEL_SIZES

@@ -5,33 +5,18 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
+#include <set>
 
 #include "base/cache.h"
 #include "base/log.h"
 #include "base/parallel.h"
 #include "geometry/model_file_cache.h"
 #include "scene/model_path.h"
+#include "world/load_progress.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
 namespace {
-
-/// Tells of files that take long, every two seconds.
-class SlowProgress {
- public:
-  explicit SlowProgress(std::string name) : name_(std::move(name)) {}
-  /// One call at a time.
-  void operator()(double share) {
-    const auto now = std::chrono::steady_clock::now();
-    if (now - last_ < std::chrono::seconds(2) || share >= 1) return;
-    last_ = now;
-    log_info("reading {}: {:.0f} %", name_, 100 * share);
-  }
-
- private:
-  std::string name_;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 /// Folder that the file's own pictures and libraries must lie in.
 Result<fs::path> root_of(const Scene& scene, const fs::path& file) {
@@ -50,39 +35,52 @@ Result<fs::path> root_of(const Scene& scene, const fs::path& file) {
   return canonical.parent_path();
 }
 
-Result<ModelFile> load(const Scene& scene, const VisualOptions& visual, const fs::path& cache) {
+}  // namespace
+
+Result<ModelFile> load_model_file(const Scene& scene, const fs::path& file, const std::string& user,
+                                  const SourceLoc& loc,
+                                  const std::function<void(double share)>& progress) {
   ModelFileOptions options;
-  GLOAM_TRY(options.root, root_of(scene, visual.file));
-  options.progress = SlowProgress(visual.file.filename().string());
-  Result<ModelFile> model = read_model_file_cached(visual.file, cache, options);
+  GLOAM_TRY(options.root, root_of(scene, file));
+  options.progress = progress;
+  Result<ModelFile> model = read_model_file_cached(file, cache_folder(kVisualCache), options);
   if (model.ok()) return model;
   const Error& error = model.error();
   return Error{error.kind,
-               fmt::format("visual '{}': {}", visual.name,
-                           Error{error.kind, error.message, error.loc}.to_string()),
-               visual.loc, error.hint};
+               fmt::format("{}: {}", user, Error{error.kind, error.message, error.loc}.to_string()),
+               loc, error.hint};
 }
 
-}  // namespace
-
-Result<std::vector<LoadedModel>> load_visual_files(const Scene& scene) {
-  std::vector<const VisualOptions*> first;  // visual of each file
-  for (const VisualOptions& visual : scene.visuals) {
-    const bool is_known = std::any_of(first.begin(), first.end(), [&](const VisualOptions* other) {
-      return other->file == visual.file;
-    });
-    if (!is_known) first.push_back(&visual);
+Result<std::vector<LoadedModel>> load_model_files(const Scene& scene,
+                                                  const std::vector<FileUse>& uses) {
+  std::vector<const FileUse*> first;  // of each file
+  std::set<fs::path> known;
+  for (const FileUse& use : uses)
+    if (known.insert(use.path).second) first.push_back(&use);
+  std::vector<uint64_t> sizes;
+  for (const FileUse* use : first) {
+    std::error_code code;
+    const uintmax_t size = fs::file_size(use->path, code);
+    sizes.push_back(code ? 0 : size);
   }
-  const fs::path cache = cache_folder(kVisualCache);
+  LoadProgress progress(sizes);
+  const auto start = std::chrono::steady_clock::now();
+  const auto report = [&](size_t file, double share) {
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+    const std::string text = progress.report(file, share, passed.count());
+    if (!text.empty()) log_info("{}", text);
+  };
   std::vector<std::optional<Result<ModelFile>>> read(first.size());
   parallel_for("model files", static_cast<int64_t>(first.size()), [&](int64_t i) {
     const auto k = static_cast<size_t>(i);
-    read[k] = load(scene, *first[k], cache);
+    read[k] = load_model_file(scene, first[k]->path, first[k]->user, first[k]->loc,
+                              [&](double share) { report(k, share); });
+    report(k, 1);
   });
   std::vector<LoadedModel> out;
   for (size_t i = 0; i < first.size(); ++i) {
     GLOAM_TRY(ModelFile model, std::move(*read[i]));
-    out.push_back({first[i]->file, first[i]->file.filename().string(), std::move(model)});
+    out.push_back({first[i]->path, first[i]->path.filename().string(), std::move(model)});
   }
   return out;
 }

@@ -1,7 +1,8 @@
 #pragma once
-// The model files of a scene's visuals, read by way of a cache on disk.
+// The model files of a scene's visuals and objects, read by way of a cache on disk.
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -16,9 +17,21 @@ struct LoadedModel {
   ModelFile model;
 };
 
-/// Reads each file that a visual names, once; says on stderr how far it is when that takes more
-/// than two seconds. What a file refers to is read within the scene's root (docs/security.md).
-/// Errors: as read_model_file, with the place of the [[visual]].
-Result<std::vector<LoadedModel>> load_visual_files(const Scene& scene);
+/// Reads one, by way of the cache. What it refers to is read within the scene's root
+/// (docs/security.md). Errors: as read_model_file, said of `user` at `loc`.
+Result<ModelFile> load_model_file(const Scene& scene, const std::filesystem::path& file,
+                                  const std::string& user, const SourceLoc& loc,
+                                  const std::function<void(double share)>& progress = {});
+
+struct FileUse {
+  std::filesystem::path path;
+  std::string user;  ///< "visual 'chair'", for messages
+  SourceLoc loc;
+};
+
+/// Reads each file, once; says on stderr how far it is when that takes more
+/// than two seconds. Errors: as load_model_file.
+Result<std::vector<LoadedModel>> load_model_files(const Scene& scene,
+                                                  const std::vector<FileUse>& uses);
 
 }  // namespace gloam

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/parallel.h"
+#include "world/authored_frame.h"
 #include "world/authored_light.h"
 #include "world/authored_material.h"
 #include "world/authored_sky.h"
@@ -319,10 +320,11 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     visual->materials().load_textures();
   }
   GLOAM_TRY_STATUS(author_materials(world.scene.materials, &out));
+  restore_authored_frames(m, &out);
   GLOAM_TRY_STATUS(author_lights(world, poses, is_static, &labels, &levels, &out));
   if (world.scene.sky) GLOAM_TRY_STATUS(author_sky(*world.scene.sky, &levels, &out));
   GLOAM_TRY_STATUS(author_volumes(world.scene.volumes, &out));
-  out.ev100 = exposure(levels, out);
+  out.ev100 = world.ev100 ? static_cast<float>(*world.ev100) : exposure(levels, out);
   return out;
 }
 

@@ -9,6 +9,7 @@
 
 #include "base/parallel.h"
 #include "base/text.h"
+#include "world/file_axes.h"
 #include "world/imported_surface.h"
 #include "world/level.h"
 #include "world/model_loader.h"
@@ -18,23 +19,6 @@ namespace gloam {
 namespace {
 
 constexpr float kFarthest = 1e9f;  // [m] a vertex from its mesh's origin
-
-/// glTF's axes to Gloam's: (x, y, z) -> (x, -z, y).
-constexpr Affine3f kYUpToZUp{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}, {0, 0, 0}};
-constexpr Affine3f kZUpToYUp{{1, 0, 0}, {0, 0, -1}, {0, 1, 0}, {0, 0, 0}};
-
-/// The file's content F in the body B.
-Affine3f placement(const VisualOptions& visual, bool was_y_up) {
-  const mjtNum p[3] = {visual.X_BV.p.x, visual.X_BV.p.y, visual.X_BV.p.z};
-  const mjtNum q[4] = {visual.X_BV.q.w, visual.X_BV.q.x, visual.X_BV.q.y, visual.X_BV.q.z};
-  const auto f = [&](double scale) { return static_cast<float>(scale * visual.unit); };
-  const Affine3f size{
-      {f(visual.scale.x), 0, 0}, {0, f(visual.scale.y), 0}, {0, 0, f(visual.scale.z)}, {}};
-  const bool is_y_up = visual.up == "y" || (visual.up == "auto" && was_y_up);
-  Affine3f X_BF = rigid_pose(p, q) * size;
-  if (is_y_up != was_y_up) X_BF = X_BF * (is_y_up ? kYUpToZUp : kZUpToYUp);
-  return X_BF;
-}
 
 /// Metres of one unit of the file, the mean of the three axes.
 float mean_scale(const VisualOptions& v) {
@@ -69,7 +53,10 @@ class VisualImporter {
       if (body < 0) return no_body(visual);
       bodies_.push_back(body);
     }
-    GLOAM_TRY(files_, load_visual_files(world_.scene));
+    std::vector<FileUse> uses;
+    for (const VisualOptions& v : world_.scene.visuals)
+      uses.push_back({v.file, fmt::format("visual '{}'", v.name), v.loc});
+    GLOAM_TRY(files_, load_model_files(world_.scene, uses));
     for (LoadedModel& file : files_) {
       GLOAM_TRY(ImportedTextures textures, ImportedTextures::decode(file.model, file.name, out_));
       file.model.images.clear();
@@ -92,7 +79,7 @@ class VisualImporter {
     const VisualOptions& visual = world_.scene.visuals[static_cast<size_t>(index)];
     const size_t file = file_of(visual);
     const ModelFile& model = files_[file].model;
-    const Affine3f X_BF = placement(visual, model.was_y_up);
+    const Affine3f X_BF = visual_placement(visual, model.was_y_up);
     first_surface_ = surfaces_.size();
     plain_ = -1;
     for (size_t i = 0; i < model.materials.size(); ++i) {
@@ -101,8 +88,11 @@ class VisualImporter {
       add_surface(describe_imported(material, visual.name + "/" + own, mean_scale(visual),
                                     &textures_[file], out_));
     }
-    for (size_t i = 0; i < model.instances.size(); ++i)
+    for (const int part : visual.parts) add_part(visual, index, file, part, X_BF);
+    if (!visual.parts.empty() && visual.parts[0] != 0) return;
+    for (size_t i = 0; i < model.instances.size() && visual.parts.empty(); ++i)
       add_part(visual, index, file, static_cast<int>(i), X_BF);
+    // What belongs to no part comes once, with the first.
     for (const ImportedLight& light : model.lights) add_light(visual, index, light, X_BF);
     report(visual, model);
   }
@@ -264,6 +254,12 @@ class VisualImporter {
 };
 
 }  // namespace
+
+Affine3f visual_placement(const VisualOptions& visual, bool was_y_up) {
+  const mjtNum p[3] = {visual.X_BV.p.x, visual.X_BV.p.y, visual.X_BV.p.z};
+  const mjtNum q[4] = {visual.X_BV.q.w, visual.X_BV.q.x, visual.X_BV.q.y, visual.X_BV.q.z};
+  return rigid_pose(p, q) * file_axes(visual.scale, visual.unit, visual.up, was_y_up);
+}
 
 Status describe_visuals(const CompiledWorld& world, const std::vector<Affine3f>& poses,
                         const AddVisualPart& add, LightLevels* levels, RenderDescription* out) {

@@ -15,6 +15,9 @@ namespace gloam {
 using AddVisualPart = std::function<void(InstanceDescription instance, int body, std::string name,
                                          int visual, const std::string& visual_name)>;
 
+/// The file's content F, in Gloam's axes, in the body B.
+Affine3f visual_placement(const VisualOptions& visual, bool was_y_up);
+
 /// Reads the scene's visuals, by way of the cache on disk, and adds their meshes, textures,
 /// materials, instances and lights. `poses` = X_WB at qpos0. Errors: no such body, a file that
 /// cannot be read.

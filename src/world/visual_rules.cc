@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/srgb.h"
+
 namespace gloam {
 
 Vec3f linear_color(Vec3f srgb) {
-  const auto channel = [](float x) {
-    return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
-  };
-  return {channel(srgb.x), channel(srgb.y), channel(srgb.z)};
+  return {srgb_decode(srgb.x), srgb_decode(srgb.y), srgb_decode(srgb.z)};
 }
 
 Vec3f emission_luminance(Vec3f color, float emission) {

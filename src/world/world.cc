@@ -79,6 +79,8 @@ std::string geom_detail(const mjModel* m, int geom) {
     if (const char* mesh = mj_id2name(m, mjOBJ_MESH, m->geom_dataid[geom]))
       text += fmt::format(" '{}'", mesh);
   }
+  if (const int field = m->geom_dataid[geom]; type == mjGEOM_HFIELD && field >= 0)
+    text += fmt::format(" of {} x {}", m->hfield_ncol[field], m->hfield_nrow[field]);
   return text + fmt::format(", group {}", m->geom_group[geom]);
 }
 
@@ -173,6 +175,8 @@ WorldInfo World::info() const {
   info.triangles = count_triangles(m, false);
   if (compiled_->visual_model != nullptr)
     info.triangles += count_triangles(compiled_->visual_model.get(), true);
+  info.regions = compiled_->regions;
+  info.drawn = compiled_->drawn;
   info.unsupported = compiled_->unsupported;
   return info;
 }

@@ -47,6 +47,10 @@ struct CompiledWorld {
   /// Keyframe of `model` that the simulation starts from; -1 = mj_resetData's state. A scene whose
   /// robots name keyframes gets one made of theirs, so that the start survives export.
   int initial_key = -1;
+  uint64_t place_hash = 0;      ///< of what was generated or made of meshes, 0 = nothing
+  std::optional<double> ev100;  ///< of a generated environment
+  std::vector<Region> regions;  ///< floors of a generated environment
+  std::vector<DrawnOption> drawn;
   std::vector<RobotInstance> robots;
   ModelPtr visual_model;  ///< source of visual_only meshes and materials; null when there are none
   std::vector<VisualOnlyGeom> visual_only;

@@ -9,9 +9,10 @@ import subprocess
 import time
 import unittest
 
+import fetch_data
 from e2e.support import PENDULUM, PROGRAM, ROOT, ProgramTest, video_frames
 
-COMMANDS = ["demo", "run", "render", "info", "export", "cache", "schema", "completion"]
+COMMANDS = ["demo", "run", "render", "info", "export", "check", "cache", "schema", "completion"]
 SCRIPT_COMMANDS = re.findall(r"^  (\w+)\)$", (ROOT / "gloam").read_text(), re.M)
 
 
@@ -56,7 +57,7 @@ class Cache(ProgramTest):
         self.assertIn(str(self.folder / "cache" / "visuals"), text)
         self.assertIn("1 entry,", text)
         data = json.loads(self.gloam("cache", "--json").stdout)
-        self.assertEqual([kind["name"] for kind in data["kinds"]], ["models", "visuals", "bvhs"])
+        self.assertEqual([kind["name"] for kind in data["kinds"]], ["models", "visuals", "bvhs", "hulls"])
         self.assertEqual([kind["entries"] for kind in data["kinds"]], [0, 1, 0])
         self.assertEqual(data["bytes"], data["kinds"][1]["bytes"])
         self.assertEqual(data["limit_bytes"], 10 << 30)
@@ -74,6 +75,48 @@ class Cache(ProgramTest):
         for size, entries in [("0", 0), ("1K", 1)]:
             self.gloam("render", scene, "--spp", "1", "--resolution", "8x8", "--out", f"out{size}", env={"GLOAM_CACHE_SIZE": size})
             self.assertEqual(json.loads(self.gloam("cache", "--json").stdout)["kinds"][1]["entries"], entries)
+
+
+class Check(ProgramTest):
+    """gloam check: one line a model, exit code 1 when one is not what stock MuJoCo makes of it or does not come back."""
+
+    def test_models_and_scenes_that_come_back(self):
+        model = self.write("m.xml", PENDULUM)
+        scene = self.write("s.toml", '[[robot]]\nname = "a"\nfile = "m.xml"\n')
+        text = self.gloam("check", model, scene).stdout.splitlines()
+        self.assertRegex(text[0], r"m.xml: 2 bodies, 1 joints, 2 geoms: equal to stock MuJoCo's; equal to its export \(\d+ fields, export \d+\.\d+ MB, ")
+        self.assertRegex(text[1], r"s.toml: 2 bodies, 1 joints, 3 geoms: equal to its export \(")
+        self.assertEqual(text[2], "2 of 2 passed")
+        data = json.loads(self.gloam("check", "--json", model).stdout)
+        self.assertEqual((data["passed"], data["failed"]), (1, 0))
+        self.assertEqual((data["models"][0]["stock_loads"], data["models"][0]["differs_from_stock"], data["models"][0]["differs_from_export"]), (True, [], []))
+        self.assertGreater(data["models"][0]["fields_compared"], 400)
+
+    def test_what_does_not_come_back_fails(self):
+        self.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+        lossy = self.write("m.toml", '[mujoco]\n[mujoco.asset]\n[[mujoco.asset.mesh]]\nname = "m"\nfile = "m.obj"\nneedsdf = true\n'
+                                     '[mujoco.worldbody]\n[[mujoco.worldbody.geom]]\ntype = "mesh"\nmesh = "m"\n')
+        self.assertRegex(self.gloam("check", lossy, expect=1).stdout, "m.toml: .* FAILED: differs from its export in ")
+
+    def test_what_does_not_load_fails(self):
+        good, bad = self.write("m.xml", PENDULUM), self.write("bad.xml", "<mujoco>\n<worldbdy/></mujoco>")
+        text = self.gloam("check", bad, good, "none.xml", expect=1).stdout.splitlines()
+        self.assertRegex(text[0], "bad.xml: FAILED: .*bad.xml:2: .*; stock MuJoCo does not load it: ")
+        self.assertIn("m.xml: 2 bodies", text[1])
+        self.assertRegex(text[2], "none.xml: FAILED: there is no file")
+        self.assertEqual(text[3], "1 of 3 passed")
+        outside = self.write("inner/m.xml", '<mujoco><include file="../part.xml"/></mujoco>')
+        self.write("part.xml", PENDULUM)
+        self.assertRegex(self.gloam("check", "--strict", outside, expect=1).stdout, "outside.*; stock MuJoCo loads it")
+
+    def test_robots_of_others(self):
+        robots = fetch_data.default_folder() / "mjlab/mjlab/asset_zoo/robots"
+        if not robots.is_dir():
+            self.skipTest("no third-party robots: run tests/fetch_data.py")
+        files = sorted(file for file in robots.rglob("*.xml"))
+        data = json.loads(self.gloam("check", "--json", *files, timeout=600).stdout)
+        self.assertEqual([model["file"] for model in data["models"] if not model["stock_loads"] or not model["passed"]], [])
+        self.assertEqual(data["passed"], len(files))
 
 
 class Mistakes(ProgramTest):
@@ -303,16 +346,19 @@ class Work(ProgramTest):
 
     def stopped_by(self, number, *arguments, started):
         """Starts the program, waits until started() holds, sends it the signal; returns its exit code and stderr."""
-        process = subprocess.Popen([str(PROGRAM), *map(str, arguments)], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                   env={**os.environ, "GLOAM_CACHE": str(self.folder / "cache")})
-        self.addCleanup(process.communicate)
+        with open(self.folder / "stderr.txt", "w") as stderr:
+            process = subprocess.Popen([str(PROGRAM), *map(str, arguments)], cwd=self.folder, stdout=subprocess.DEVNULL, stderr=stderr,
+                                       env={**os.environ, "GLOAM_CACHE": str(self.folder / "cache"), "TMPDIR": str(self.folder)})
+        self.addCleanup(process.wait)
         self.addCleanup(process.kill)  # before the other; does nothing to one that has ended
         deadline = time.time() + 60
         while not started() and process.poll() is None and time.time() < deadline:
             time.sleep(0.05)
         process.send_signal(number)
-        _, stderr = process.communicate(timeout=60)
-        return process.returncode, stderr
+        return process.wait(timeout=60), self.said()
+
+    def said(self):
+        return (self.folder / "stderr.txt").read_text()
 
     def test_ctrl_c_finishes_the_files(self):
         model = self.write("m.xml", PENDULUM)
@@ -334,9 +380,21 @@ class Work(ProgramTest):
         begin = time.time()
         code, stderr = self.stopped_by(signal.SIGINT, "render", model, "--time", "1e6", started=lambda: time.time() > begin + 1)
         self.assertEqual(code, 130, stderr)
-        begin = time.time()
-        code, stderr = self.stopped_by(signal.SIGINT, "run", model, "--view", "--port", "0", started=lambda: time.time() > begin + 1)
+        code, stderr = self.stopped_by(signal.SIGINT, "run", model, "--view", "--port", "0", started=lambda: "gloam: open" in self.said())
         self.assertEqual(code, 0, stderr)
+
+    def test_ctrl_c_does_not_wait_for_mujoco(self):
+        copies = '<replicate count="100000" offset="1 0 0"><body><joint/><geom size=".1"/></body></replicate>'  # takes it a quarter of an hour
+        model = self.write("m.xml", f"<mujoco><worldbody>{copies}</worldbody></mujoco>")
+        for command in (["run", "--out", "out"], ["render"], ["info"], ["check"]):
+            begin = []
+            started = lambda: "MuJoCo reads" in self.said() and not begin.append(time.time())  # noqa: E731
+            code, stderr = self.stopped_by(signal.SIGINT, *command, model, started=started)
+            self.assertEqual(code, 130, stderr)
+            self.assertLess(time.time() - begin[0], 5)
+            self.assertEqual([line for line in stderr.splitlines() if "error" in line], ["gloam: error: interrupted"])
+            self.assertFalse((self.folder / "out").exists())
+            self.assertEqual(list(self.folder.glob("gloam_check_*")), [], "no export is left")
 
 
 if __name__ == "__main__":

@@ -61,7 +61,11 @@ TEST(ModelFileCache, ASecondReadGivesTheSameUntilAFileChanges) {
   folder.write("m/m.bin", std::string(file.bin.begin(), file.bin.end()));
   folder.write("m/a.png", "picture");
   bool was_cached = true;
-  const auto read = [&] { return read_model_file_cached(path, cache, {}, &was_cached).value(); };
+  const auto read = [&] {
+    Result<ModelFile> model = read_model_file_cached(path, cache, {}, &was_cached);
+    finish_cache_writes();
+    return std::move(model).value();
+  };
   const ModelFile first = read();
   EXPECT_FALSE(was_cached);
   EXPECT_EQ(first.materials.at(0).roughness, 0.25f);
@@ -91,11 +95,13 @@ TEST(ModelFileCache, AMissingPictureOfAnObjThatTurnsUpIsRead) {
   const fs::path path = folder.write("m.obj", "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
   bool was_cached = false;
   EXPECT_EQ(read_model_file_cached(path, cache)->materials.size(), 0u);
+  finish_cache_writes();
   EXPECT_EQ(read_model_file_cached(path, cache, {}, &was_cached)->materials.size(), 0u);
   EXPECT_TRUE(was_cached);
   folder.write("m.mtl", "newmtl a\n");
   EXPECT_EQ(read_model_file_cached(path, cache, {}, &was_cached)->materials.size(), 1u);
   EXPECT_FALSE(was_cached);
+  EXPECT_EQ(read_model_file_cached(path, cache)->parts, std::vector<std::string>({"m.mtl"}));
 }
 
 TEST(ModelFileCache, DamagedEntriesAndUnusableFoldersDoNoHarm) {
@@ -105,6 +111,7 @@ TEST(ModelFileCache, DamagedEntriesAndUnusableFoldersDoNoHarm) {
   file.add_triangle();
   const fs::path path = folder.write("m.glb", file.glb());
   const auto whole_model = read_model_file_cached(path, cache).value();
+  finish_cache_writes();
   const std::vector<fs::path> entries = files_in(cache);
   ASSERT_EQ(entries.size(), 1u);
   const std::vector<uint8_t> whole = read_file(entries[0]).value();
@@ -117,12 +124,33 @@ TEST(ModelFileCache, DamagedEntriesAndUnusableFoldersDoNoHarm) {
       bytes[i] ^= 0x40;
     ASSERT_TRUE(write_file_atomic(entries[0], bytes).ok());
     const Result<ModelFile> model = read_model_file_cached(path, cache, {}, &was_cached);
+    finish_cache_writes();
     ASSERT_TRUE(model.ok());
     EXPECT_FALSE(was_cached) << i;
     EXPECT_EQ(model->meshes.at(0).positions, whole_model.meshes[0].positions);
   }
   folder.write("file", "not a folder");
   EXPECT_TRUE(read_model_file_cached(path, folder.path / "file").ok());
+}
+
+// The entry is made of what was read, whatever the reader's caller does with that meanwhile, and
+// the same file may be read again before it is written.
+TEST(ModelFileCache, EntriesAreWrittenBehindTheCaller) {
+  const TestFolder folder;
+  const fs::path cache = folder.path / "cache";
+  GltfBuilder file;
+  file.add_triangle();
+  const fs::path path = folder.write("m.glb", file.glb());
+  ModelFile first = read_model_file_cached(path, cache).value();
+  EXPECT_FALSE(fs::exists(cache));
+  const std::vector<Vec3f> positions = std::exchange(first.meshes.at(0).positions, {});
+  bool was_cached = true;
+  EXPECT_EQ(read_model_file_cached(path, cache, {}, &was_cached)->meshes[0].positions, positions);
+  EXPECT_FALSE(was_cached);
+  finish_cache_writes();
+  EXPECT_EQ(files_in(cache).size(), 1u);
+  EXPECT_EQ(read_model_file_cached(path, cache, {}, &was_cached)->meshes[0].positions, positions);
+  EXPECT_TRUE(was_cached);
 }
 
 // A grid of n x n squares with a height that no two vertices share.
@@ -192,6 +220,7 @@ TEST(ModelFileCache, BigMeshesComeBackWholeFromBothFormats) {
     const Seconds plain = time_of([&] { model = read_model_file(path); });
     check();
     const Seconds first = time_of(cached);
+    finish_cache_writes();
     check();
     const Seconds second = time_of(cached);
     check();

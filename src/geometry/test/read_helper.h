@@ -9,6 +9,7 @@
 #include <ostream>
 #include <string>
 
+#include "base/cache_writer.h"
 #include "geometry/model_source.h"
 
 namespace gloam {
@@ -43,7 +44,10 @@ class TestFolder {
     std::filesystem::remove_all(path);
     std::filesystem::create_directories(path);
   }
-  ~TestFolder() { std::filesystem::remove_all(path); }
+  ~TestFolder() {
+    finish_cache_writes();  // they may lie in here
+    std::filesystem::remove_all(path);
+  }
   TestFolder(const TestFolder&) = delete;
   TestFolder& operator=(const TestFolder&) = delete;
   std::filesystem::path write(const std::string& name, const std::string& content) const {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/srgb.h"
 #include "base/vec.h"
 #include "render/film/tone_map.h"
 

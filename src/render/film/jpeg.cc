@@ -5,7 +5,7 @@
 #include <jpeglib.h>
 
 #include "base/check.h"
-#include "gloam/picture.h"
+#include "gloam/view.h"
 
 namespace gloam {
 namespace {

@@ -1,20 +1,13 @@
 #pragma once
-// PNG files in memory. Fast settings: a recorder writes thousands of them. Readers:
-// geometry/image_file.h.
+// What 16-bit PNG files hold of measurements.
 
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "geometry/png_writer.h"
+
 namespace gloam {
-
-/// 8 bits per channel; 1 (grey), 2 (grey, alpha), 3 (RGB) or 4 (RGBA) channels, tagged sRGB.
-/// `pixels`: (height x width x channels).
-std::vector<uint8_t> encode_png8(int width, int height, int channels,
-                                 std::span<const uint8_t> pixels);
-
-/// 16-bit grey. `pixels`: (height x width).
-std::vector<uint8_t> encode_png16(int width, int height, std::span<const uint16_t> pixels);
 
 /// Depth as ROS and most data sets store it: metres to whole millimetres, rounded to nearest.
 /// 0 = nothing hit, or outside of what 16 bits hold (below 0.5 mm, from 65.5355 m).

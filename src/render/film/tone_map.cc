@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "base/srgb.h"
 
 namespace gloam {
 namespace {
@@ -33,14 +34,6 @@ Vec3f tone_curve_neutral(Vec3f color) {
   const float new_peak = 1 - kRoom * kRoom / (peak + kRoom - kStart);
   const float keep = 1 / (kDesaturation * (peak - new_peak) + 1);
   return lerp(Vec3f{new_peak, new_peak, new_peak}, color * (new_peak / peak), keep);
-}
-
-float srgb_encode(float linear) {
-  return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
-}
-
-float srgb_decode(float encoded) {
-  return encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
 }
 
 void tone_map(const std::vector<Vec3f>& radiance, int width, int height,

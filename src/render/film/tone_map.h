@@ -17,10 +17,6 @@ float max_luminance(float ev100);
 /// in >= 0, out 0..1.
 Vec3f tone_curve_neutral(Vec3f color);
 
-/// sRGB transfer function of IEC 61966-2-1, linear 0..1 to encoded 0..1, and its inverse.
-float srgb_encode(float linear);
-float srgb_decode(float encoded);
-
 struct ToneMapSettings {
   float ev100 = 0;
   bool neutral = true;  ///< false: no tone curve, what is above the top of the scale is cut

@@ -6,6 +6,7 @@
 #include <array>
 
 #include "base/parallel.h"
+#include "base/srgb.h"
 
 namespace gloam {
 namespace {
@@ -14,10 +15,7 @@ std::array<uint16_t, 256> decode_table(ColorSpace space) {
   std::array<uint16_t, 256> table;
   for (int i = 0; i < 256; ++i) {
     const double v = i / 255.0;
-    // IEC 61966-2-1.
-    const double linear = space == ColorSpace::kLinear
-                              ? v
-                              : (v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4));
+    const double linear = space == ColorSpace::kLinear ? v : srgb_decode(v);
     table[i] = static_cast<uint16_t>(linear * 65535.0 + 0.5);
   }
   return table;

@@ -10,9 +10,10 @@
 
 #include "base/files.h"
 #include "base/rng.h"
+#include "base/srgb.h"
 #include "geometry/image_exr.h"
 #include "geometry/image_file.h"
-#include "gloam/picture.h"
+#include "gloam/view.h"
 #include "render/film/color_map.h"
 #include "render/film/exr.h"
 #include "render/film/png.h"
@@ -34,8 +35,8 @@ std::vector<uint8_t> random_bytes(size_t n, uint64_t seed) {
 // --- tone map ---
 
 TEST(ToneMap, SrgbMatchesTheStandard) {
-  EXPECT_FLOAT_EQ(srgb_encode(0), 0);
-  EXPECT_NEAR(srgb_encode(1), 1, 1e-6);
+  EXPECT_FLOAT_EQ(srgb_encode(0.0f), 0);
+  EXPECT_NEAR(srgb_encode(1.0f), 1, 1e-6);
   EXPECT_NEAR(srgb_encode(0.0031308f), 0.04045f, 1e-5);  // where the two pieces meet
   EXPECT_NEAR(srgb_encode(0.18f), 0.46135613f, 1e-6);
   EXPECT_NEAR(srgb_encode(0.5f), 0.73535698f, 1e-6);

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "scene/randomize.h"
 #include "scene/toml/toml_reader.h"
 #include "scene/validate.h"
 
@@ -12,7 +13,11 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   gloam::Scene scene;
   const gloam::Status status = gloam::read_scene_toml(text, "fuzz.toml", &scene);
   if (status.ok()) {
-    (void)gloam::validate_scene(scene).ok();
+    if (gloam::validate_scene(scene).ok()) {
+      std::vector<gloam::DrawnOption> drawn;
+      (void)gloam::draw_options(gloam::DrawStage::kPlace, &scene, &drawn).ok();
+      (void)gloam::draw_options(gloam::DrawStage::kRest, &scene, &drawn).ok();
+    }
   } else if (status.error().message.empty() ||
              status.error().to_string().find('\n') != std::string::npos) {
     std::abort();

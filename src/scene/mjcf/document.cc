@@ -6,12 +6,11 @@
 #include "base/text.h"
 #include "scene/mjcf/node.h"
 #include "scene/mjcf/spec_only.h"
+#include "scene/model_path.h"
 
 namespace gloam::mjcf {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr uint64_t kLargestModel = uint64_t{64} << 20;
 
 std::shared_ptr<Node> fresh_root() {
   auto root = std::make_shared<Node>();
@@ -19,7 +18,7 @@ std::shared_ptr<Node> fresh_root() {
   return root;
 }
 
-bool is_toml(const fs::path& file) { return file.extension() == ".toml"; }
+bool is_toml(const fs::path& file) { return lower_extension(file) == ".toml"; }
 
 Status check_node(const Node& node) {
   for (const MjcfAttribute& attribute : node.element->attributes) {
@@ -51,7 +50,7 @@ Document Document::make(std::string_view model_name) {
 }
 
 Result<Document> Document::load(const fs::path& file) {
-  GLOAM_TRY(const std::string text, read_text_file(file, kLargestModel));
+  GLOAM_TRY(const std::string text, read_text_file(file, kLargestModelText));
   return is_toml(file) ? from_toml(text, file.string()) : from_xml(text, file.string());
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/check.h"
-#include "scene/toml/table_reader.h"
 
 namespace gloam {
 namespace {
@@ -32,11 +31,6 @@ Result<ModelText> translate_model(std::string_view toml, const std::string& file
     if (text.lines[i] == 0) text.lines[i] = text.lines[i - 1];
   }
   return text;
-}
-
-bool is_model_toml(std::string_view text) {
-  const Result<toml::table> table = parse_toml(text, "");
-  return table.ok() && table->contains("mujoco");
 }
 
 }  // namespace gloam

@@ -19,7 +19,4 @@ struct ModelText {
 /// Errors: those of Document::from_toml.
 Result<ModelText> translate_model(std::string_view toml, const std::string& file);
 
-/// Is this TOML a model: all below [mujoco]? What is not TOML is none.
-bool is_model_toml(std::string_view text);
-
 }  // namespace gloam

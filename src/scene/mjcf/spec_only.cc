@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "scene/mjcf/spec_table.h"
+#include "scene/mjcf/spec_kinds.h"
 #include "scene/mjcf/spec_values.h"
 
 namespace gloam {

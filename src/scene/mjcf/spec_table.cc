@@ -8,6 +8,7 @@
 #include <set>
 
 #include "base/check.h"
+#include "scene/mjcf/spec_kinds.h"
 #include "scene/mjcf/spec_values.h"
 #include "scene/mjcf/specimen.h"
 
@@ -75,9 +76,24 @@ Readings read_values(const MjcfElement& element, const MjcfAttribute& attribute,
   return readings;
 }
 
-mjsElement* specimen_of(const mjSpec* spec, const MjcfElement& element) {
-  const mjtObj type = object_of(element);
-  return type == mjOBJ_UNKNOWN ? nullptr : mjs_findElement(spec, type, mjcf::kSpecimenName);
+// One object of the specimen as the value asked for makes it, and as other values do.
+struct Example {
+  SpecObject wanted;
+  std::vector<SpecObject> others;
+};
+
+std::vector<Example> examples_of(const MjcfElement& element, const std::vector<OwnedSpec>& specs) {
+  std::vector<Example> examples;
+  for (const OwnedSpec& spec : specs) {
+    const std::vector<SpecObject> objects =
+        objects_of(spec.get(), specimen_of(spec.get(), element));
+    if (&spec == &specs.front()) {
+      for (const SpecObject& object : objects) examples.push_back({object, {}});
+    } else if (objects.size() == examples.size()) {
+      for (size_t i = 0; i < objects.size(); ++i) examples[i].others.push_back(objects[i]);
+    }
+  }
+  return examples;
 }
 
 char* bytes_at(const SpecObject& object, const SpecField& field) {
@@ -149,75 +165,6 @@ bool copy_changed(const SpecObject& from, const std::vector<SpecObject>& others,
 
 }  // namespace
 
-mjtObj object_of(const MjcfElement& element) {
-  static const std::map<std::string_view, mjtObj> kByPath = {
-      {"mujoco/body", mjOBJ_BODY},
-      {"mujoco/body/inertial", mjOBJ_BODY},
-      {"mujoco/body/joint", mjOBJ_JOINT},
-      {"mujoco/body/freejoint", mjOBJ_JOINT},
-      {"mujoco/body/geom", mjOBJ_GEOM},
-      {"mujoco/body/site", mjOBJ_SITE},
-      {"mujoco/body/camera", mjOBJ_CAMERA},
-      {"mujoco/body/light", mjOBJ_LIGHT},
-      {"mujoco/body/frame", mjOBJ_FRAME},
-      {"mujoco/asset/mesh", mjOBJ_MESH},
-      {"mujoco/asset/hfield", mjOBJ_HFIELD},
-      {"mujoco/asset/skin", mjOBJ_SKIN},
-      {"mujoco/asset/texture", mjOBJ_TEXTURE},
-      {"mujoco/asset/material", mjOBJ_MATERIAL},
-      {"mujoco/contact/pair", mjOBJ_PAIR},
-      {"mujoco/contact/exclude", mjOBJ_EXCLUDE},
-      {"mujoco/deformable/flex", mjOBJ_FLEX},
-      {"mujoco/deformable/skin", mjOBJ_SKIN},
-      {"mujoco/custom/numeric", mjOBJ_NUMERIC},
-      {"mujoco/custom/text", mjOBJ_TEXT},
-      {"mujoco/custom/tuple", mjOBJ_TUPLE},
-      {"mujoco/keyframe/key", mjOBJ_KEY}};
-  if (const auto found = kByPath.find(element.path); found != kByPath.end()) return found->second;
-  const std::string_view section = element.parent == nullptr ? "" : element.parent->path;
-  if (section == "mujoco/deformable/flex") return mjOBJ_FLEX;
-  return section == "mujoco/tendon"     ? mjOBJ_TENDON
-         : section == "mujoco/equality" ? mjOBJ_EQUALITY
-         : section == "mujoco/actuator" ? mjOBJ_ACTUATOR
-         : section == "mujoco/sensor"   ? mjOBJ_SENSOR
-                                        : mjOBJ_UNKNOWN;
-}
-
-namespace {
-
-// What tells elements of one kind from each other: a servo from a motor, a gyro from a touch
-// sensor.
-int variant_of(mjsElement* element) {
-  if (const mjsActuator* actuator = mjs_asActuator(element))
-    return actuator->plugin.active ? -1 : actuator->type;
-  if (const mjsSensor* sensor = mjs_asSensor(element)) return sensor->type;
-  if (const mjsEquality* equality = mjs_asEquality(element)) return equality->type;
-  if (const mjsTendon* tendon = mjs_asTendon(element))
-    return mjs_getWrapNum(tendon) > 0 && mjs_getWrap(tendon, 0)->type == mjWRAP_JOINT ? 1 : 0;
-  return 0;
-}
-
-std::map<std::pair<mjtObj, int>, const MjcfElement*> all_variants() {
-  std::map<std::pair<mjtObj, int>, const MjcfElement*> variants;
-  for (const MjcfElement& element : MjcfSchema::get().elements()) {
-    const mjtObj type = object_of(element);
-    if (type == mjOBJ_UNKNOWN || element.find("name") == nullptr) continue;
-    const Result<OwnedSpec> spec = mjcf::parse_document(mjcf::make_specimen(element).document);
-    GLOAM_CHECK(spec.ok(), "MuJoCo does not read a specimen");
-    if (mjsElement* read = specimen_of(spec->get(), element))
-      variants.emplace(std::pair(type, variant_of(read)), &element);
-  }
-  return variants;
-}
-
-}  // namespace
-
-const MjcfElement* written_as(mjsElement* element) {
-  static const auto variants = all_variants();
-  const auto found = variants.find({element->elemtype, variant_of(element)});
-  return found == variants.end() ? nullptr : found->second;
-}
-
 AttributeEffect find_effect(const MjcfElement& element, const MjcfAttribute& attribute) {
   const Readings readings = read_values(element, attribute, nullptr);
   std::set<std::string> fields;
@@ -236,12 +183,8 @@ struct AttributeValue::Learned {
   const MjcfElement* element;
   const MjcfAttribute* attribute;
   std::string value;
-  Readings readings = {};
-
-  std::vector<SpecObject> objects(size_t reading) const {
-    const mjSpec* spec = readings.specs[reading].get();
-    return objects_of(spec, specimen_of(spec, *element));
-  }
+  std::vector<OwnedSpec> specs;  // they own what `objects` points at
+  std::vector<Example> objects;
 };
 
 AttributeValue::AttributeValue(std::unique_ptr<Learned> learned) : learned_(std::move(learned)) {}
@@ -251,10 +194,11 @@ AttributeValue::AttributeValue(AttributeValue&&) noexcept = default;
 Result<AttributeValue> AttributeValue::read(const MjcfElement& element,
                                             const MjcfAttribute& attribute,
                                             const std::string& value) {
-  auto learned = std::make_unique<Learned>(Learned{&element, &attribute, value});
-  learned->readings = read_values(element, attribute, &value);
-  if (!learned->readings.refused.ok()) return learned->readings.refused.error();
-  return AttributeValue(std::move(learned));
+  Readings readings = read_values(element, attribute, &value);
+  if (!readings.refused.ok()) return readings.refused.error();
+  std::vector<Example> objects = examples_of(element, readings.specs);
+  return AttributeValue(std::make_unique<Learned>(
+      Learned{&element, &attribute, value, std::move(readings.specs), std::move(objects)}));
 }
 
 Status AttributeValue::set(mjSpec* spec, mjsElement* target) const {
@@ -263,18 +207,12 @@ Status AttributeValue::set(mjSpec* spec, mjsElement* target) const {
     if (mjs_setName(target, l.value.c_str()) == 0) return {};
     return Error{ErrorKind::kInput, fmt::format("the name '{:.60}' is taken", l.value)};
   }
-  const std::vector<SpecObject> wanted = l.objects(0), to = objects_of(spec, target);
-  std::vector<std::vector<SpecObject>> others;
-  for (size_t i = 1; i < l.readings.specs.size(); ++i) {
-    others.push_back(l.objects(i));
-    if (others.back().size() != wanted.size()) others.pop_back();
-  }
+  const std::vector<SpecObject> to = objects_of(spec, target);
   bool any = false;
-  for (size_t i = 0; i < std::min(wanted.size(), to.size()); ++i) {
-    std::vector<SpecObject> same;
-    for (const std::vector<SpecObject>& other : others) same.push_back(other[i]);
-    for (const SpecField& field : spec_fields_of(wanted[i].owner))
-      any = copy_changed(wanted[i], same, field, to[i]) || any;
+  for (size_t i = 0; i < std::min(l.objects.size(), to.size()); ++i) {
+    const auto& [wanted, others] = l.objects[i];
+    for (const SpecField& field : spec_fields_of(wanted.owner))
+      any = copy_changed(wanted, others, field, to[i]) || any;
   }
   if (any) return {};
   return Error{ErrorKind::kUnsupported,

@@ -44,11 +44,4 @@ class AttributeValue {
   std::unique_ptr<Learned> learned_;
 };
 
-/// Kind of the element that MuJoCo makes of it; mjOBJ_UNKNOWN for what a model has once.
-mjtObj object_of(const MjcfElement& element);
-
-/// The element of MJCF that one of a spec is written with: <position> for a position servo. Null
-/// for kinds that MJCF has no element for.
-const MjcfElement* written_as(mjsElement* element);
-
 }  // namespace gloam

@@ -7,7 +7,7 @@
 #include "base/text.h"
 #include "scene/mjcf/node.h"
 #include "scene/mjcf/toml_value.h"
-#include "scene/toml/table_reader.h"
+#include "scene/toml/toml_reader.h"
 #include "scene/xml_text.h"
 
 namespace gloam {

@@ -15,7 +15,7 @@
 
 #include "gloam/scene.h"
 #include "scene/option_fields.h"
-#include "scene/overrides.h"
+#include "scene/schema/override_schema.h"
 
 namespace gloam {
 
@@ -151,6 +151,10 @@ Json schema_of(const ClockTime& /*value*/, const FieldRule& /*rule*/) {
   return {{"type", "string"}, {"pattern", "^[0-9]{2}:[0-9]{2}(:[0-9]{2}([.][0-9]+)?)?$"}};
 }
 
+Json schema_of(const TomlText& /*value*/, const FieldRule& /*rule*/) {
+  return {{"type", {"boolean", "number", "string", "array"}}};
+}
+
 template <class Options>
   requires requires(Options& o) { struct_text(o); }
 Json schema_of(const Options& value, const FieldRule& rule);
@@ -158,19 +162,10 @@ Json schema_of(const Options& value, const FieldRule& rule);
 template <class T>
 Json schema_of(const std::vector<T>& value, const FieldRule& rule);
 
-// [override.ROBOT.TAG."NAME"], and one name less or more for what a model has once.
 Json schema_of(const std::vector<OverrideOptions>& /*value*/, const FieldRule& /*rule*/) {
-  const Json value = {{"type", {"string", "number", "boolean", "array", "object"}}};
-  Json tags = Json::object();
-  for (const MjcfElement& element : MjcfSchema::get().elements()) {
-    const std::string tag(element.name);
-    if (!tags.contains(tag) && !overridden_elements(tag).empty())
-      tags[tag] = {{"type", "object"}, {"additionalProperties", value}};
-  }
   return {{"type", "object"},
           {"description", struct_text(OverrideOptions{})},
-          {"additionalProperties",
-           {{"type", "object"}, {"properties", tags}, {"additionalProperties", false}}}};
+          {"additionalProperties", {{"$ref", "#/definitions/override"}}}};
 }
 
 template <class T>
@@ -185,7 +180,7 @@ Json schema_of(const std::vector<T>& value, const FieldRule& rule) {
   Json item = schema_of(T{}, rule);
   item.erase("default");
   Json schema = {{"type", "array"}, {"items", std::move(item)}};
-  if constexpr (!requires(T& o) { struct_text(o); })
+  if constexpr (!requires(T& o) { struct_text(o); } && !std::is_same_v<T, TomlText>)
     if (!value.empty()) schema["default"] = value;
   return schema;
 }
@@ -245,6 +240,7 @@ std::string scene_schema() {
   visit_tables(table, header, scene);
   Json schema = {{"$schema", "http://json-schema.org/draft-07/schema#"}, {"title", "Gloam scene"}};
   schema.update(table.take());
+  schema["definitions"] = override_definitions();
   return schema.dump(1);
 }
 

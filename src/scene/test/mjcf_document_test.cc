@@ -246,6 +246,8 @@ TEST(MjcfDocument, FilesAreWrittenWholeAndOnlyIfTheyCanBeRead) {
   EXPECT_FALSE(lacking.save(folder.path() / "pendulum.xml").ok());
   EXPECT_TRUE(Document::load(folder.path() / "pendulum.xml").ok());
   EXPECT_FALSE(Document::load(folder.path() / "nothing.xml").ok());
+  ASSERT_TRUE(pendulum().save(folder.path() / "UPPER.TOML").ok());
+  EXPECT_EQ(read_text_file(folder.path() / "UPPER.TOML").value(), pendulum().to_toml());
 }
 
 }  // namespace

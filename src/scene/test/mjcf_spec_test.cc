@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "scene/mjcf/spec_kinds.h"
 #include "scene/mjcf/spec_table.h"
 #include "scene/mjcf/spec_values.h"
 #include "scene/mjcf/specimen.h"

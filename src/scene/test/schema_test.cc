@@ -4,11 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <set>
 
 #include "base/files.h"
 #include "gloam/mjcf.h"
 #include "gloam/scene.h"
 #include "scene/mjcf/schema.h"
+#include "scene/overrides.h"
 #include "scene/test/schema_check.h"
 
 namespace gloam {
@@ -97,6 +99,50 @@ TEST(Schema, OfScenesRefusesWhatTheReaderRefuses) {
                           "[[visual]]\nname = \"v\"\nfile = \"v.obj\"\nscale = 0"})
     EXPECT_NE(with(bad), "") << bad;
   EXPECT_NE(scenes().check_toml("[[robot]]\nname = \"a\"\n"), "");
+}
+
+TEST(Schema, OfScenesOffersWhatAnOverrideMaySet) {
+  const auto with = [&](const std::string& more) {
+    return scenes().check_toml("[override.go1" + more);
+  };
+  for (const char* good :
+       {".joint.\"FR_.*\"]\ndamping = 0.5", ".joint.knee]\nsolref = [0.02, 1]\nlimited = true",
+        ".joint.knee]\nlimited = \"auto\"", ".actuator.\".*\"]\nkp = 3\ngear = [1, 0, 0]",
+        ".position.hip]\nkp = 3", ".option]\ntimestep = 0.001\nflag.energy = \"enable\"",
+        ".option.flag]\nenergy = true", ".visual.map]\nznear = 0.1", ".mesh.shell]\nneedsdf = true",
+        ".body.\".*\"]\nchildclass = \"c\"", ".sensor.\".*\"]\nnoise = 0.1"})
+    EXPECT_EQ(with(good), "") << good;
+  for (const char* bad :
+       {".joint.knee]\ndampng = 0.5", ".joint.knee]\ndamping = \"much\"",
+        ".joint.knee]\ntype = \"hing\"", ".joint.knee]\nkp = 3", ".jont.knee]\ndamping = 1",
+        ".joint]\nknee = 1", ".actuator.\".*\"]\ndamping_ratio = 3", ".motor.m]\nkp = 3",
+        ".option]\ntimstep = 0.001", ".option.flag]\nenergie = true", ".visual.mop]\nznear = 1"})
+    EXPECT_NE(with(bad), "") << bad;
+}
+
+// What the schema offers is what the reader takes: no name more, none less.
+TEST(Schema, OfScenesOffersTheAttributesOfEveryTag) {
+  const Json& definitions = scenes().root()["definitions"];
+  int attributes = 0;
+  for (const auto& [tag, table] : definitions["override"]["properties"].items()) {
+    std::set<std::string> names, offered;
+    const bool is_named =
+        table.contains("additionalProperties") && table["additionalProperties"].contains("$ref");
+    const Json& properties =
+        is_named ? definitions["override." + tag]["properties"] : table["properties"];
+    for (const auto& [name, schema] : properties.items()) {
+      if (schema.contains("$ref") || schema.contains("anyOf")) offered.insert(name);
+    }
+    for (const MjcfElement* element : overridden_elements(tag)) {
+      for (const MjcfAttribute& attribute : element->attributes) names.emplace(attribute.name);
+    }
+    EXPECT_EQ(offered, names) << tag;
+    attributes += static_cast<int>(names.size());
+  }
+  EXPECT_GT(attributes, 1000);
+  EXPECT_THAT(definitions["mujoco.body.joint.damping"]["description"].get<std::string>(),
+              HasSubstr("number"));
+  EXPECT_LT(scene_schema().size(), size_t{600} << 10) << "an editor fetches it at every start";
 }
 
 void expect_described(const Json& schema, const std::string& at) {

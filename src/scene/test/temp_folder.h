@@ -8,6 +8,8 @@
 #include <fstream>
 #include <string>
 
+#include "base/cache_writer.h"
+
 namespace gloam {
 
 class TempFolder {
@@ -21,6 +23,7 @@ class TempFolder {
     path_ = std::filesystem::canonical(path_);
   }
   ~TempFolder() {
+    finish_cache_writes();  // they may lie in here
     std::error_code code;
     std::filesystem::remove_all(path_.parent_path().parent_path().parent_path().parent_path(),
                                 code);

@@ -6,6 +6,7 @@
 
 #include "scene/mjcf/toml_value.h"
 #include "scene/overrides.h"
+#include "scene/toml/toml_reader.h"
 
 namespace gloam {
 namespace {
@@ -18,13 +19,8 @@ class Reader {
     const toml::table* table = node.as_table();
     if (table == nullptr) return wanted(fmt::format("[override.{}.TAG]", robot), loc);
     for (const auto& [key, below] : *table)
-      GLOAM_TRY_STATUS(read_tag(robot, std::string(key.str()), below, loc_of(key)));
+      GLOAM_TRY_STATUS(read_tag(robot, std::string(key.str()), below, loc_of(key, file_)));
     return {};
-  }
-
-  SourceLoc loc_of(const toml::key& key) const {
-    const toml::source_position at = key.source().begin;
-    return {file_, static_cast<int>(at.line), static_cast<int>(at.column)};
   }
 
   Error wanted(const std::string& what, const SourceLoc& loc) const {
@@ -43,7 +39,7 @@ class Reader {
     if (elements.empty()) return check_override(override);  // says which there are
     for (const auto& [key, below] : *table) {
       const std::string name(key.str());
-      override.loc = loc_of(key);
+      override.loc = loc_of(key, file_);
       if (once && below.is_table()) {
         GLOAM_TRY_STATUS(read_tag(robot, tag + "/" + name, below, override.loc));
       } else if (once) {
@@ -51,7 +47,7 @@ class Reader {
       } else if (const toml::table* attributes = below.as_table()) {
         override.pattern = name;
         for (const auto& [attribute, value] : *attributes) {
-          override.loc = loc_of(attribute);
+          override.loc = loc_of(attribute, file_);
           GLOAM_TRY_STATUS(read_value(override, std::string(attribute.str()), value));
         }
       } else {
@@ -84,7 +80,7 @@ Status read_overrides(const toml::table& table, const std::string& file,
   std::vector<OverrideOptions> read;
   Reader reader(file, &read);
   for (const auto& [robot, node] : table)
-    GLOAM_TRY_STATUS(reader.read_robot(std::string(robot.str()), node, reader.loc_of(robot)));
+    GLOAM_TRY_STATUS(reader.read_robot(std::string(robot.str()), node, loc_of(robot, file)));
   // toml++ sorts keys.
   std::ranges::stable_sort(read, {}, [](const OverrideOptions& override) {
     return std::pair(override.loc.line, override.loc.column);

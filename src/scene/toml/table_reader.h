@@ -3,13 +3,13 @@
 // template over every struct of option_fields.h, for two users: whole files and single overrides.
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <type_traits>
 #include <vector>
@@ -21,11 +21,6 @@
 #include "scene/toml/toml_reader.h"
 
 namespace gloam {
-
-inline SourceLoc loc_of(const toml::node& node, const std::string& file) {
-  const toml::source_position begin = node.source().begin;
-  return {file, static_cast<int>(begin.line), static_cast<int>(begin.column)};
-}
 
 inline const char* type_name(const toml::node& node) {
   switch (node.type()) {
@@ -55,9 +50,6 @@ inline std::string range_text(const FieldRule& rule) {
   return fmt::format("a finite number{}", unit);
 }
 
-/// Errors: syntax, with the place.
-Result<toml::table> parse_toml(std::string_view text, const std::string& file);
-
 class TableReader {
  public:
   TableReader(const toml::table& table, const std::string& file, std::string where, Status* status)
@@ -81,11 +73,8 @@ class TableReader {
     if (!status_->ok()) return;
     for (const auto& [key, node] : table_) {
       if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
-      const toml::source_position at = key.source().begin;
-      *status_ = Error{ErrorKind::kInput,
-                       fmt::format("unknown key '{}' in {}", key.str(), where_),
-                       {file_, static_cast<int>(at.line), static_cast<int>(at.column)},
-                       suggest_name(key.str(), known_)};
+      *status_ = Error{ErrorKind::kInput, fmt::format("unknown key '{}' in {}", key.str(), where_),
+                       loc_of(key, file_), suggest_name(key.str(), known_)};
       return;
     }
   }
@@ -105,6 +94,13 @@ class TableReader {
     if (!value) return wrong_type(node, key, "a string");
     if (!check_text(node, key, *value, rule)) return;
     out = *value;
+  }
+
+  // Any value, as it stands.
+  void read(const toml::node& node, const std::string&, TomlText& out, const FieldRule&) {
+    std::ostringstream text;
+    node.visit([&](const auto& value) { text << value; });
+    out.text = text.str();
   }
 
   bool check_text(const toml::node& node, const std::string& key, const std::string& value,
@@ -295,7 +291,8 @@ class TableReader {
             const FieldRule& rule) {
     const toml::array* array = node.as_array();
     if (array == nullptr) {
-      if constexpr (std::is_class_v<T> && !std::is_same_v<T, std::string>) {
+      if constexpr (std::is_class_v<T> && !std::is_same_v<T, std::string> &&
+                    !std::is_same_v<T, TomlText>) {
         return fail(node,
                     fmt::format("'{}' must be an array of tables, not {}", key, type_name(node)),
                     fmt::format("write [[{}]]", key));

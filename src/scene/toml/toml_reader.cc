@@ -34,20 +34,21 @@ Result<toml::table> parse_toml(std::string_view text, const std::string& file) {
     return std::move(parsed).table();
 #endif
   } catch (const toml::parse_error& error) {
-    const toml::source_position at = error.source().begin;
     std::string message(error.description());
     for (char& c : message) {
       if (static_cast<unsigned char>(c) < 0x20) c = ' ';
     }
-    return Error{ErrorKind::kInput,
-                 std::move(message),
-                 {file, static_cast<int>(at.line), static_cast<int>(at.column)},
+    return Error{ErrorKind::kInput, std::move(message), loc_of(error, file),
                  "this is not valid TOML"};
   }
 }
 
 Status read_scene_toml(std::string_view text, const std::string& file, Scene* scene) {
   GLOAM_TRY(const toml::table root, parse_toml(text, file));
+  return read_scene_toml(root, file, scene);
+}
+
+Status read_scene_toml(const toml::table& root, const std::string& file, Scene* scene) {
   if (root.empty())
     return Error{ErrorKind::kInput,
                  "the file is empty",

@@ -2,6 +2,8 @@
 // Reads TOML into option structs through visit_fields(). Only keys that stand in the text are
 // touched. The first error stops the reading.
 
+#include <toml++/toml.h>
+
 #include <string>
 #include <string_view>
 
@@ -9,8 +11,19 @@
 
 namespace gloam {
 
-/// Reads the text of a whole scene file into `scene`. `file` names it in errors. Paths stay as
-/// written. Errors: syntax, unknown key, wrong type, value out of range, missing key.
+/// Place of a toml::node, toml::key or toml::parse_error.
+template <class Parsed>
+SourceLoc loc_of(const Parsed& parsed, const std::string& file) {
+  const toml::source_position at = parsed.source().begin;
+  return {file, static_cast<int>(at.line), static_cast<int>(at.column)};
+}
+
+/// Errors: syntax, with the place.
+Result<toml::table> parse_toml(std::string_view text, const std::string& file);
+
+/// Reads a whole scene file into `scene`. `file` names it in errors. Paths stay as written. Errors:
+/// unknown key, wrong type, value out of range, missing key; of text, syntax.
+Status read_scene_toml(const toml::table& root, const std::string& file, Scene* scene);
 Status read_scene_toml(std::string_view text, const std::string& file, Scene* scene);
 
 /// Nearest fraction when `x` is exactly the double of one with a denominator of at most 10000.

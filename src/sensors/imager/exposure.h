@@ -33,6 +33,8 @@ class AutoExposure {
   /// `luminance` [cd/m²] metered at `time` [s]; earlier than the last = the simulation began anew.
   void meter(double luminance, double time);
   double ev100() const { return ev100_; }
+  const AutoExposureOptions& options() const { return options_; }
+  void set_options(const AutoExposureOptions& options) { options_ = options; }
 
  private:
   AutoExposureOptions options_;

@@ -5,7 +5,7 @@
 
 #include "base/parallel.h"
 #include "geometry/image_file.h"
-#include "gloam/picture.h"
+#include "gloam/view.h"
 #include "render/film/tone_map.h"
 #include "sensors/imager/vignetting.h"
 

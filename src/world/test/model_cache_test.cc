@@ -6,11 +6,13 @@
 #include <cstring>
 
 #include "base/cache.h"
+#include "base/cache_writer.h"
 #include "base/files.h"
 #include "base/hash.h"
 #include "gloam/world.h"
 #include "scene/test/temp_folder.h"
 #include "world/level.h"
+#include "world/mesh_object.h"
 #include "world/model_compare.h"
 #include "world/render_description.h"
 
@@ -36,7 +38,7 @@ class ModelCache : public ::testing::Test {
   std::shared_ptr<const CompiledWorld> store() {
     ModelFiles files;
     EXPECT_TRUE(add_scene_files(scene_, &files).ok());
-    Level level = build_level(scene_, &files).value();
+    Level level = build_level(scene_, {}, {}, &files).value();
     auto world = std::make_shared<CompiledWorld>();
     world->scene = scene_;
     world->model = std::move(level.model);

@@ -1,6 +1,7 @@
 // Models in TOML are models like any other: bare, as robots, with includes, and with what only
 // mjSpec has.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "base/files.h"
@@ -100,6 +101,9 @@ TEST_F(TomlModel, AScenesFileIsNoModel) {
       complaint(write("scene.toml", "[[robot]]\nname = 'a'\nfile = 'other.toml'\n")),
       "scene.toml:1:1: 'other.toml' is a scene; a model is wanted here (give an MJCF (.xml) or "
       "URDF file, or a model in TOML (docs/models.md))");
+  write("broken.toml", "[mujoco]\nmodel = \n");
+  EXPECT_THAT(complaint(write("scene.toml", "[[robot]]\nname = 'a'\nfile = 'broken.toml'\n")),
+              ::testing::StartsWith("broken.toml:2:"));
 }
 
 TEST_F(TomlModel, WhatOnlyMjSpecHasIsSet) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "base/cache_writer.h"
 #include "base/files.h"
 #include "geometry/test/gltf_builder.h"
 #include "geometry/test/image_writer.h"
@@ -488,6 +489,7 @@ TEST_F(VisualFile, ASecondStartReadsTheCache) {
   file.push("nodes", {{"mesh", 0}});
   const VisualOptions v = visual(folder.write("a.glb", file.glb()));
   const RenderDescription first = described(v);
+  finish_cache_writes();
   const auto entries = [&] {
     return std::distance(std::filesystem::directory_iterator(folder.path / "cache/visuals"), {});
   };

@@ -322,6 +322,32 @@ TEST_F(WorldTest, RobotsWithUnlikeCompilersExport) {
   EXPECT_TRUE(fs::exists(folder_.path() / "out" / "assets" / "part_2.obj"));
 }
 
+// One file has one <compiler>: only compiled values can say it, and those of turned meshes are as
+// near as rounding.
+TEST_F(WorldTest, WhatOnlyCompiledValuesSayIsExportedWithItsMeshes) {
+  folder_.write("other/part.obj",
+                "v 0 0 0\nv 2 0 0\nv 0 2 0\nv 0 0 2\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+  folder_.write("other/arm.xml",
+                "<mujoco><compiler inertiafromgeom='true' meshdir='.'/><asset><mesh name='part' "
+                "file='part.obj'/></asset><worldbody><body><inertial pos='0 0 0' mass='1' "
+                "diaginertia='1 1 1'/><freejoint/><geom type='mesh' mesh='part'/></body>"
+                "</worldbody></mujoco>");
+  const Result<World> world =
+      compile_text("s.toml",
+                   "[[robot]]\nname = \"a\"\nfile = \"arm.xml\"\n[[robot]]\nname = \"b\"\n"
+                   "file = \"other/arm.xml\"\n");
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  const Status exported = world->export_mjcf(folder_.path() / "out");
+  ASSERT_FALSE(exported.ok());
+  EXPECT_THAT(exported.error().message, HasSubstr("compiled values: differs in"));
+  const ModelPtr stock = load_stock(folder_.path() / "out" / "scene.xml");
+  const mjModel* m = world->compiled()->model.get();
+  ASSERT_EQ(stock->ngeom, m->ngeom);
+  ASSERT_EQ(stock->nmeshvert, m->nmeshvert);
+  for (mjtSize i = 0; i < 4 * m->ngeom; ++i)
+    EXPECT_NEAR(stock->geom_quat[i], m->geom_quat[i], 1e-12);
+}
+
 TEST_F(WorldTest, ExportSaysWhenItCannotWrite) {
   const Result<World> world = compile(folder_.path() / "arm.xml");
   ASSERT_TRUE(world.ok());

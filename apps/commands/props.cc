@@ -1,0 +1,49 @@
+// gloam props: the catalogue.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "command.h"
+#include "gloam/scene.h"
+
+namespace gloam::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+int list_props(const Globals& globals) {
+  const std::vector<PropInfo> props = prop_kinds();
+  if (globals.json) {
+    Json json = Json::array();
+    for (const PropInfo& p : props)
+      json.push_back({{"kind", p.kind},
+                      {"text", p.text},
+                      {"size", {p.size.x, p.size.y, p.size.z}},
+                      {"mass", p.mass},
+                      {"loose", p.loose}});
+    fmt::print("{}\n", json.dump(2));
+    return 0;
+  }
+  size_t width = 4;
+  for (const PropInfo& p : props) width = std::max(width, p.kind.size());
+  fmt::print("{:{}}  {:>18}  {:>8}  what\n", "kind", width, "size [m]", "mass");
+  for (const PropInfo& p : props)
+    fmt::print("{:{}}  {:>18}  {:>5.{}f} kg  {}{}\n", p.kind, width,
+               fmt::format("{:.2f} {:.2f} {:.2f}", p.size.x, p.size.y, p.size.z), p.mass,
+               p.mass < 10 ? 2 : 0, p.text, p.loose ? " (loose)" : "");
+  return 0;
+}
+
+}  // namespace
+
+void add_props(CLI::App& app, Globals& globals, Action& action) {
+  CLI::App* sub = app.add_subcommand("props", "List the things that [[prop]] can put into a scene");
+  sub->footer(
+      "Size is depth, width and height; things are fixed unless they are loose.\n"
+      "Examples:\n  gloam props\n  gloam --json props");
+  sub->callback([&globals, &action] { action = [&globals] { return list_props(globals); }; });
+}
+
+}  // namespace gloam::cli

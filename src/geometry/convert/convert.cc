@@ -1,0 +1,251 @@
+#include "geometry/convert/convert.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <optional>
+
+#include "geometry/convert/closest_point.h"
+#include "geometry/convert/decompose.h"
+#include "geometry/convert/fit.h"
+#include "geometry/convert/hull.h"
+#include "geometry/weld.h"
+
+namespace gloam {
+namespace {
+
+constexpr double kAlike = 0.01;     // distance of surfaces that count as one, of the size
+constexpr double kFlat = 1e-4;      // thickness of what is flat, of the longest side
+constexpr double kPlate = 1e-3;     // thickness that it gets, of the longest side
+constexpr double kExact = 1e-5;     // what the hull of the mesh leaves out, of the diagonal
+constexpr double kSmooth = 1e-3;    // what a hull may leave out, of the longest side
+constexpr double kSeam = 1e-6;      // between vertices that are one, of the diagonal
+constexpr size_t kMostNear = 4096;  // vertices of nearly one x that are compared
+constexpr int kHullVertices = 128;  // of a collider
+constexpr size_t kSamples = 4096;   // of a surface, to tell what shape it is
+
+double diagonal(const TriangleMesh& mesh) {
+  Vec3f low = mesh.positions[0], high = low;
+  for (const Vec3f p : mesh.positions) {
+    low = {min(low.x, p.x), min(low.y, p.y), min(low.z, p.z)};
+    high = {max(high.x, p.x), max(high.y, p.y), max(high.z, p.z)};
+  }
+  return length(high - low);
+}
+
+// Joins vertices closer than a millionth of the mesh's size. They are sorted along x: those of one
+// place are near each other in the list.
+TriangleMesh without_seams(TriangleMesh mesh) {
+  const std::vector<Vec3f>& p = mesh.positions;
+  const auto near = static_cast<float>(kSeam * diagonal(mesh));
+  std::vector<uint32_t> order(p.size()), vertex(p.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return p[a].x < p[b].x; });
+  std::iota(vertex.begin(), vertex.end(), 0);
+  for (size_t i = 0; i < order.size(); ++i) {
+    const uint32_t a = order[i];
+    for (size_t k = i; k-- > 0 && p[a].x - p[order[k]].x <= near && i - k < kMostNear;) {
+      const uint32_t b = order[k];
+      if (vertex[b] == b && length(p[a] - p[b]) <= near) {
+        vertex[a] = b;
+        break;
+      }
+    }
+  }
+  TriangleMesh out;
+  out.positions = mesh.positions;
+  for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
+    const uint32_t a = vertex[mesh.indices[t]], b = vertex[mesh.indices[t + 1]],
+                   c = vertex[mesh.indices[t + 2]];
+    if (a != b && b != c && c != a) out.indices.insert(out.indices.end(), {a, b, c});
+  }
+  return out;
+}
+
+// Corners at the same place, but for rounding, become one vertex; triangles without area go.
+Result<TriangleMesh> welded(const TriangleMesh& mesh) {
+  std::vector<Vec3f> corners;
+  corners.reserve(mesh.indices.size());
+  for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
+    const Vec3f a = mesh.positions[mesh.indices[t]], b = mesh.positions[mesh.indices[t + 1]],
+                c = mesh.positions[mesh.indices[t + 2]];
+    const double square = length_squared(a) + length_squared(b) + length_squared(c);
+    if (!std::isfinite(square)) return Error{ErrorKind::kInput, "has a vertex that is no number"};
+    if (a == b || b == c || c == a) continue;
+    corners.insert(corners.end(), {a, b, c});
+  }
+  if (corners.empty()) return Error{ErrorKind::kInput, "has no triangles"};
+  return without_seams(weld(corners));
+}
+
+double longest_side(const MeshCollider& box) {
+  return 2 * std::max({box.size.x, box.size.y, box.size.z});
+}
+double shortest_side(const MeshCollider& box) {
+  return 2 * std::min({box.size.x, box.size.y, box.size.z});
+}
+
+// A flat mesh with a back and walls along its rim, `thickness` apart.
+TriangleMesh plate_of(const TriangleMesh& flat, double thickness) {
+  Vec3d normal;
+  for (size_t t = 0; t < flat.triangle_count(); ++t) {
+    const Triangle3d c = triangle_of(flat, t);
+    const Vec3d n = cross(c[1] - c[0], c[2] - c[0]);
+    if (length_squared(n) > length_squared(normal)) normal = n;
+  }
+  normal = normal * (thickness / 2 / std::sqrt(length_squared(normal)));
+  const Vec3f up{static_cast<float>(normal.x), static_cast<float>(normal.y),
+                 static_cast<float>(normal.z)};
+  std::vector<std::pair<uint32_t, uint32_t>> edges;
+  for (size_t t = 0; t + 2 < flat.indices.size(); t += 3)
+    for (size_t k = 0; k < 3; ++k)
+      edges.emplace_back(flat.indices[t + k], flat.indices[t + (k + 1) % 3]);
+  std::sort(edges.begin(), edges.end());
+  TriangleMesh out;
+  const auto count = static_cast<uint32_t>(flat.positions.size());
+  for (const Vec3f p : flat.positions) out.positions.push_back(p + up);
+  for (const Vec3f p : flat.positions) out.positions.push_back(p - up);
+  out.indices = flat.indices;
+  for (size_t t = 0; t + 2 < flat.indices.size(); t += 3)
+    for (const size_t k : {t, t + 2, t + 1}) out.indices.push_back(flat.indices[k] + count);
+  for (const auto& [a, b] : edges)
+    if (!std::binary_search(edges.begin(), edges.end(), std::pair(b, a)))
+      out.indices.insert(out.indices.end(), {a, a + count, b, b, a + count, b + count});
+  return out;
+}
+
+class Converter {
+ public:
+  explicit Converter(const ConvertOptions& options) : options_(options) {}
+
+  Result<Converted> convert(const TriangleMesh& mesh) {
+    GLOAM_TRY(out_.mesh, welded(mesh));
+    GLOAM_TRY_STATUS(find_hull());
+    find_mass();
+    GLOAM_TRY_STATUS(add_colliders());
+    return std::move(out_);
+  }
+
+ private:
+  Status find_hull() {
+    hull_ = convex_hull(out_.mesh.positions, {.tolerance = kExact * diagonal(out_.mesh)});
+    if (!hull_.indices.empty()) box_ = box_around(hull_);
+    if (!hull_.indices.empty() && shortest_side(box_) >= kFlat * longest_side(box_)) return {};
+    const double thickness = kPlate * diagonal(out_.mesh);
+    const TriangleMesh plate = plate_of(out_.mesh, thickness);
+    const bool is_finite = std::all_of(plate.positions.begin(), plate.positions.end(),
+                                       [](Vec3f p) { return std::isfinite(p.x + p.y + p.z); });
+    if (is_finite) hull_ = convex_hull(plate.positions);
+    if (!is_finite || hull_.indices.empty())
+      return Error{ErrorKind::kInput, "has no extent: all of it is on a line"};
+    out_.mesh = plate;
+    box_ = box_around(hull_);
+    out_.notes.push_back(fmt::format("is flat: a plate {:.2g} m thick stands for it", thickness));
+    return {};
+  }
+
+  void find_mass() {
+    const EdgeCount edges = count_edges(out_.mesh);
+    MassProperties mass = mass_properties(out_.mesh);
+    if (edges.is_closed() && mass.volume < 0) {
+      out_.notes.emplace_back("looks inwards: its triangles are turned round");
+      for (size_t i = 0; i + 2 < out_.mesh.indices.size(); i += 3)
+        std::swap(out_.mesh.indices[i + 1], out_.mesh.indices[i + 2]);
+      mass = mass_properties(out_.mesh);
+    }
+    out_.is_closed = edges.is_closed() && is_physical(mass);
+    out_.mass = out_.is_closed ? mass : mass_properties(hull_);
+    if (edges.open > 0)
+      out_.notes.push_back(fmt::format(
+          "is open ({} edges with one triangle): volume and mass are its hull's", edges.open));
+    if (edges.tangled > 0)
+      out_.notes.push_back(
+          fmt::format("is not a manifold ({} edges where more than two triangles "
+                      "meet, or two that face differently): volume and mass are "
+                      "its hull's",
+                      edges.tangled));
+    if (edges.is_closed() && !out_.is_closed)
+      out_.notes.emplace_back("crosses itself: volume and mass are its hull's");
+  }
+
+  Status add_colliders() {
+    const std::string& kind = options_.colliders;
+    if (kind == "none") return {};
+    if (kind == "box") return add(box_);
+    if (kind == "sphere") return add(sphere_around(hull_));
+    if (kind == "capsule") return add(capsule_around(hull_));
+    if (kind == "hull") return add(hull_of(hull_.positions));
+    if (kind == "auto") {
+      if (std::optional<MeshCollider> shape = recognised()) return add(std::move(*shape));
+    }
+    GLOAM_TRY(const std::vector<TriangleMesh> parts,
+              decompose(out_.mesh, {options_.concavity, options_.max_hulls}));
+    for (const TriangleMesh& part : parts) {
+      MeshCollider collider = hull_of(part.positions);
+      // A part that is thin beside the whole would have no volume for MuJoCo.
+      if (!collider.hull.indices.empty()) GLOAM_TRY_STATUS(add(std::move(collider)));
+    }
+    return {};
+  }
+
+  Status add(MeshCollider collider) {
+    out_.colliders.push_back(std::move(collider));
+    return {};
+  }
+
+  MeshCollider hull_of(const std::vector<Vec3f>& points) const {
+    MeshCollider out;
+    out.hull =
+        convex_hull(points, {.vertices = kHullVertices, .tolerance = kSmooth * longest_side(box_)});
+    return out;
+  }
+
+  // The simplest shape that the mesh is, if any, its own hull the last. What the shape has and the
+  // mesh has not, such as a missing lid, counts as well as the other way.
+  std::optional<MeshCollider> recognised() {
+    const double most = kAlike * longest_side(box_);
+    const std::vector<SurfacePoint> samples = sample_surface(out_.mesh, kSamples);
+    std::optional<MeshQueries> mesh;
+    const auto is_alike = [&](const MeshCollider& shape) {
+      const ColliderDistance distance(shape);
+      const auto is_near = [&](Vec3d p) { return std::abs(distance(p)) < most; };
+      const size_t stride = out_.mesh.positions.size() / kSamples + 1;
+      for (size_t i = 0; i < out_.mesh.positions.size(); i += stride) {
+        const Vec3f p = out_.mesh.positions[i];
+        if (!is_near({p.x, p.y, p.z})) return false;
+      }
+      if (!std::all_of(samples.begin(), samples.end(),
+                       [&](const SurfacePoint& s) { return is_near(s.p); }))
+        return false;
+      if (!mesh) mesh.emplace(out_.mesh);
+      const std::vector<SurfacePoint> own = sample_surface(surface_of(shape), kSamples);
+      return std::all_of(own.begin(), own.end(), [&](const SurfacePoint& s) {
+        return mesh->distance(s.p, 2 * most) < most;
+      });
+    };
+    if (is_alike(box_)) return box_;
+    for (MeshCollider (*const around)(const TriangleMesh&) :
+         {&sphere_around, &cylinder_around, &capsule_around}) {
+      MeshCollider shape = around(hull_);
+      if (is_alike(shape)) return shape;
+    }
+    MeshCollider hull = hull_of(hull_.positions);
+    if (is_alike(hull)) return hull;
+    return {};
+  }
+
+  const ConvertOptions& options_;
+  Converted out_;
+  TriangleMesh hull_;
+  MeshCollider box_;
+};
+
+}  // namespace
+
+Result<Converted> convert_mesh(const TriangleMesh& mesh, const ConvertOptions& options) {
+  return Converter(options).convert(mesh);
+}
+
+}  // namespace gloam

@@ -1,0 +1,37 @@
+#pragma once
+// QuickConvert: what a mesh is in physics. Colliders, volume, mass.
+
+#include <string>
+
+#include "geometry/convert/collider.h"
+#include "gloam/result.h"
+
+namespace gloam {
+
+struct ConvertOptions {
+  std::string colliders = "auto";  ///< as ObjectOptions::colliders
+  double concavity = 0.05;         ///< as ObjectOptions
+  int max_hulls = 32;
+};
+
+struct Converted {
+  std::vector<MeshCollider> colliders;
+  MassProperties mass;  ///< of the mesh where it is closed, else of its hull
+  TriangleMesh mesh;    ///< the mesh, welded, looking outwards
+  bool is_closed = false;
+  std::vector<std::string> notes;  ///< for people: what is odd about it
+};
+
+/// Errors: no triangles, not finite, no extent, more than decompose() takes, CoACD is missing.
+/// A flat mesh becomes a plate as thick as a thousandth of its longest side.
+Result<Converted> convert_mesh(const TriangleMesh& mesh, const ConvertOptions& options);
+
+/// How the colliders compare with the mesh, by sampled points.
+struct Overlap {
+  double mean_distance = 0, max_distance = 0;   ///< between the surfaces, of both ways [m]
+  double mesh_volume = 0, collider_volume = 0;  ///< of closed meshes, of all colliders [m^3]
+  double shared = 0;  ///< of closed meshes: intersection over union, 0 … 1
+};
+Overlap overlap_of(const Converted& converted);
+
+}  // namespace gloam

@@ -1,0 +1,187 @@
+// CoACD through its C API, declared here from its public header
+// (https://github.com/SarahWeiii/CoACD, version 1.0.14): none is needed to build.
+
+#include "geometry/convert/decompose.h"
+
+#include <dlfcn.h>
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <mutex>
+
+#include "base/archive.h"
+#include "base/cache.h"
+#include "base/cache_writer.h"
+#include "base/files.h"
+#include "base/hash.h"
+
+namespace gloam {
+namespace {
+namespace fs = std::filesystem;
+
+constexpr const char* kLibrary = "lib_coacd.so";
+constexpr uint64_t kMagic = 0x31304C48'4D4F4C47ull;  // "GLOMHL01": changes with the layout
+
+// As the cache keeps it: an archive of whole meshes, with normals and more, is model_file_cache's.
+struct KeptHull {
+  std::vector<Vec3f> positions;
+  std::vector<uint32_t> indices;
+};
+template <class F>
+void visit_parts(F& f, KeptHull& hull) {
+  f(hull.positions), f(hull.indices);
+}
+
+struct CoacdMesh {
+  double* vertices;
+  uint64_t vertex_count;
+  int* triangles;
+  uint64_t triangle_count;
+};
+struct CoacdMeshes {
+  CoacdMesh* meshes;
+  uint64_t count;
+};
+
+struct CoacdApi {
+  CoacdMeshes (*run)(const CoacdMesh& mesh, double threshold, int max_hulls, int preprocess,
+                     int preprocess_resolution, int sample_resolution, int mcts_nodes,
+                     int mcts_iterations, int mcts_max_depth, bool pca, bool merge, bool decimate,
+                     int max_hull_vertices, bool extrude, double extrude_margin, int approximation,
+                     unsigned seed, bool real_metric) = nullptr;
+  void (*free)(CoacdMeshes) = nullptr;
+  void (*set_log_level)(const char* level) = nullptr;
+  uint64_t version = 0;  // hash of the library
+};
+
+std::vector<fs::path> candidates() {
+  if (const char* user = std::getenv("GLOAM_COACD"); user != nullptr && *user != 0) {
+    std::error_code code;
+    return {fs::is_directory(user, code) ? fs::path(user) / kLibrary : fs::path(user)};
+  }
+  std::vector<fs::path> paths;
+  if (const Result<fs::path> home = gloam_home(); home.ok()) {
+    paths.push_back(*home / ".venv" / "wheels" / "coacd" / kLibrary);
+    const fs::path prefix = home->parent_path().parent_path();  // of an installation
+    paths.push_back(prefix / "lib" / "gloam" / "coacd" / kLibrary);
+  }
+  return paths;
+}
+
+Result<CoacdApi> load_library() {
+  const Error missing{ErrorKind::kUnsupported,
+                      "CoACD, which takes meshes apart, is not installed",
+                      {},
+                      "run ./gloam setup, or set GLOAM_COACD to its lib_coacd.so; colliders = "
+                      "\"hull\" does without"};
+  for (const fs::path& path : candidates()) {
+    // Never unloaded: its threads may outlive the call. Its own symbols first: it has an spdlog
+    // within that is not ours.
+    void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE | RTLD_DEEPBIND);
+    if (library == nullptr) continue;
+    CoacdApi api;
+    const auto load = [&](auto& function, const char* name) {
+      function =
+          reinterpret_cast<std::remove_reference_t<decltype(function)>>(dlsym(library, name));
+      return function != nullptr;
+    };
+    const Result<std::vector<uint8_t>> bytes = read_file(path);
+    if (!load(api.run, "CoACD_run") || !load(api.free, "CoACD_freeMeshArray") ||
+        !load(api.set_log_level, "CoACD_setLogLevel") || !bytes.ok())
+      return missing;
+    api.version = hash_large(std::as_bytes(std::span(*bytes)));
+    api.set_log_level("off");
+    return api;
+  }
+  return missing;
+}
+
+std::vector<TriangleMesh> run(const CoacdApi& api, const TriangleMesh& mesh,
+                              const DecomposeOptions& options) {
+  std::vector<double> vertices;
+  for (const Vec3f p : mesh.positions) vertices.insert(vertices.end(), {p.x, p.y, p.z});
+  std::vector<int> triangles(mesh.indices.begin(), mesh.indices.end());
+  const CoacdMesh in{vertices.data(), mesh.positions.size(), triangles.data(),
+                     mesh.triangle_count()};
+  // Meshes that are not manifold it remeshes first, on a grid of 50 steps. Its search is given a
+  // fifth of its usual time: the parts are nearly as good.
+  constexpr int kPreprocessAuto = 0, kGrid = 50, kSamples = 2000, kHullVertices = 256;
+  constexpr int kNodes = 10, kIterations = 60, kDepth = 3;  // of the tree search
+  const CoacdMeshes parts =
+      api.run(in, options.concavity, options.max_hulls, kPreprocessAuto, kGrid, kSamples, kNodes,
+              kIterations, kDepth, false, true, false, kHullVertices, false, 0.01, 0, 0, false);
+  std::vector<TriangleMesh> out;
+  for (uint64_t i = 0; i < parts.count; ++i) {
+    const CoacdMesh& part = parts.meshes[i];
+    TriangleMesh& hull = out.emplace_back();
+    for (uint64_t v = 0; v < part.vertex_count; ++v) {
+      const double* p = part.vertices + 3 * v;
+      hull.positions.push_back(
+          {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+    }
+    hull.indices.assign(part.triangles, part.triangles + 3 * part.triangle_count);
+  }
+  api.free(parts);
+  return out;
+}
+
+bool load_entry(const fs::path& path, std::vector<TriangleMesh>* hulls) {
+  std::error_code code;
+  if (!fs::exists(path, code)) return false;
+  const Result<std::vector<uint8_t>> bytes = read_file(path);
+  if (!bytes.ok()) return false;
+  ArchiveReader in(unseal_cache_entry(kMagic, *bytes));
+  std::vector<KeptHull> kept;
+  in(kept);
+  if (!in.is_done() || kept.empty()) return false;
+  for (KeptHull& hull : kept)
+    hulls->push_back({.positions = std::move(hull.positions), .indices = std::move(hull.indices)});
+  mark_cache_use(path);
+  return true;
+}
+
+}  // namespace
+
+Result<std::vector<TriangleMesh>> decompose(const TriangleMesh& welded,
+                                            const DecomposeOptions& options) {
+  if (welded.triangle_count() > kMostDecomposed)
+    return Error{ErrorKind::kInput,
+                 fmt::format("{} triangles are too many to take apart: {} at most",
+                             welded.triangle_count(), kMostDecomposed),
+                 {},
+                 "give colliders = \"hull\" or \"none\", a mesh of fewer triangles, or for ground "
+                 "an [[hfield]]"};
+  static std::mutex one_at_a_time;
+  const std::lock_guard lock(one_at_a_time);
+  static const Result<CoacdApi> api = load_library();
+  if (!api.ok()) return api.error();
+  uint64_t key = hash_bytes(&options.concavity, sizeof(options.concavity), kMagic ^ api->version);
+  key = hash_bytes(&options.max_hulls, sizeof(options.max_hulls), key);
+  key = hash_span(std::span<const Vec3f>(welded.positions), key);
+  key = hash_span(std::span<const uint32_t>(welded.indices), key);
+  const fs::path entry = cache_folder(kHullCache) / cache_entry_name(kHullCache, key);
+  std::vector<TriangleMesh> hulls;
+  if (load_entry(entry, &hulls)) return hulls;
+  try {
+    hulls = run(*api, welded, options);
+  } catch (const std::exception& e) {
+    return Error{ErrorKind::kInput, fmt::format("CoACD gives up on the mesh: {}", e.what())};
+  } catch (...) {
+    hulls.clear();
+  }
+  if (hulls.empty())
+    return Error{
+        ErrorKind::kInput, "CoACD finds no parts in the mesh", {}, "give colliders = \"hull\""};
+  // At once: a run that starts now has the same parts.
+  ArchiveWriter out;
+  begin_cache_entry(&out.bytes);
+  std::vector<KeptHull> kept;
+  for (const TriangleMesh& hull : hulls) kept.push_back({hull.positions, hull.indices});
+  out(kept);
+  seal_cache_entry(kMagic, &out.bytes);
+  keep_in_cache(entry, out.bytes);
+  return hulls;
+}
+
+}  // namespace gloam

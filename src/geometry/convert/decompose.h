@@ -1,0 +1,24 @@
+#pragma once
+// Convex parts of a mesh, by CoACD (Wei et al. 2022, "Approximate convex decomposition for 3D
+// meshes with collision-aware concavity and tree search").
+
+#include "geometry/mesh.h"
+#include "gloam/result.h"
+
+namespace gloam {
+
+struct DecomposeOptions {
+  double concavity = 0.05;  ///< how far a part may be from its hull, 0.01 … 1
+  int max_hulls = 32;       ///< at most
+};
+
+/// More triangles are refused: the time grows with them, to minutes.
+inline constexpr size_t kMostDecomposed = 200'000;
+
+/// Hulls of the parts. CoACD does not give the same parts every time, so what it gave is kept in
+/// the cache, by the mesh, the options and the library. One call at a time; the library is told not
+/// to print. Errors: too many triangles, CoACD is not installed, it finds nothing.
+Result<std::vector<TriangleMesh>> decompose(const TriangleMesh& welded,
+                                            const DecomposeOptions& options);
+
+}  // namespace gloam

@@ -1,0 +1,353 @@
+#include "geometry/convert/convert.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+
+#include "base/rng.h"
+#include "geometry/convert/closest_point.h"
+#include "geometry/convert/decompose.h"
+#include "geometry/convert/fit.h"
+#include "geometry/convert/hull.h"
+#include "geometry/test/convert_shapes.h"
+
+namespace gloam {
+namespace {
+
+using test::chair;
+using test::l_shape;
+using test::mug;
+using test::torus;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+Converted convert(const TriangleMesh& mesh, const std::string& colliders = "auto") {
+  Result<Converted> made = convert_mesh(mesh, {.colliders = colliders});
+  EXPECT_TRUE(made.ok()) << made.error().to_string();
+  return made.ok() ? *made : Converted{};
+}
+
+const char* shape_of(const TriangleMesh& mesh) {
+  const Converted made = convert(mesh);
+  return made.colliders.size() == 1 ? word_of(made.colliders[0].type) : "parts";
+}
+
+TriangleMesh tilted(const Solid& solid) {
+  return solid.turned(Axis::kX, 33).turned(Axis::kZ, 71).moved(3, -2, 0.5f).mesh();
+}
+
+std::vector<Vec3f> random_points(int count, bool on_sphere) {
+  const RandomStream random{7, stream_id("hull")};
+  std::vector<Vec3f> out;
+  for (uint64_t i = 0; i < static_cast<uint64_t>(count); ++i) {
+    Vec3f p{static_cast<float>(random.uniform(i, 0)) - 0.5f,
+            static_cast<float>(random.uniform(i, 1)) - 0.5f,
+            static_cast<float>(random.uniform(i, 2)) - 0.5f};
+    out.push_back(on_sphere ? normalize(p) : p);
+  }
+  return out;
+}
+
+// Closed, and no point is outside.
+void expect_hull(const std::vector<Vec3f>& points, const TriangleMesh& hull) {
+  EXPECT_TRUE(count_edges(hull).is_closed());
+  EXPECT_EQ(hull.triangle_count(), 2 * hull.positions.size() - 4);  // Euler
+  MeshCollider collider;
+  collider.hull = hull;
+  const ColliderDistance distance(collider);
+  double highest = -1;
+  for (const Vec3f p : points) highest = std::max(highest, distance({p.x, p.y, p.z}));
+  EXPECT_LT(highest, 1e-5);
+}
+
+TEST(Hull, HoldsAllPoints) {
+  for (const bool on_sphere : {false, true}) {
+    const std::vector<Vec3f> points = random_points(3000, on_sphere);
+    const TriangleMesh hull = convex_hull(points);
+    expect_hull(points, hull);
+    EXPECT_TRUE(!on_sphere || hull.positions.size() == points.size());
+  }
+}
+
+TEST(Hull, OfAGridIsItsEightCorners) {
+  std::vector<Vec3f> points;
+  for (int i = 0; i < 1000; ++i)
+    points.push_back(
+        {static_cast<float>(i % 10), static_cast<float>(i / 10 % 10), static_cast<float>(i / 100)});
+  const TriangleMesh hull = convex_hull(points);
+  EXPECT_EQ(hull.positions.size(), 8u);
+  EXPECT_NEAR(mass_properties(hull).volume, 729, 1e-9);
+}
+
+TEST(Hull, OfFlatPointsIsEmpty) {
+  EXPECT_TRUE(convex_hull({}).indices.empty());
+  EXPECT_TRUE(convex_hull(std::vector<Vec3f>(9, Vec3f{1, 2, 3})).indices.empty());
+  std::vector<Vec3f> line, plane;
+  for (int i = 0; i < 50; ++i) {
+    const auto t = static_cast<float>(i);
+    line.push_back({t, 2 * t, 3 * t});
+    plane.push_back({t, std::fmod(7 * t, 11.0f), t + 1});
+  }
+  EXPECT_TRUE(convex_hull(line).indices.empty());
+  EXPECT_TRUE(convex_hull(plane).indices.empty());
+}
+
+TEST(Hull, LimitsTakeWhatSticksOutMost) {
+  const std::vector<Vec3f> points = random_points(20000, true);
+  const TriangleMesh few = convex_hull(points, {.vertices = 64});
+  EXPECT_EQ(few.positions.size(), 64u);
+  EXPECT_GT(mass_properties(few).volume, 0.85 * 4 * M_PI / 3);
+  const TriangleMesh near = convex_hull(points, {.tolerance = 0.02});
+  EXPECT_LT(near.positions.size(), 400u);
+  EXPECT_GT(mass_properties(near).volume, 0.95 * 4 * M_PI / 3);
+}
+
+TEST(Mass, OfABoxAndATorus) {
+  const MassProperties box = mass_properties(rounded_box({1, 2, 3}, 0).moved(100, 50, -20).mesh());
+  EXPECT_NEAR(box.volume, 6, 1e-5);
+  EXPECT_NEAR(box.center.x, 100, 1e-5);
+  EXPECT_NEAR(box.inertia[0], 6 * (4 + 9) / 12.0, 1e-4);
+  EXPECT_NEAR(box.inertia[1], 6 * (1 + 9) / 12.0, 1e-4);
+  EXPECT_NEAR(box.inertia[2], 6 * (1 + 4) / 12.0, 1e-4);
+  EXPECT_NEAR(box.inertia[3], 0, 1e-4);
+  // Turned by 45 degrees about z the products come out.
+  const MassProperties turned =
+      mass_properties(rounded_box({1, 2, 3}, 0).turned(Axis::kZ, 45).mesh());
+  EXPECT_NEAR(turned.inertia[3], 6 * (1 - 4) / 12.0 / 2 * -1, 2e-4);
+  const MassProperties ring = mass_properties(torus(1, 0.25f, 200));
+  const double volume = 2 * M_PI * M_PI * 0.25 * 0.25;
+  EXPECT_NEAR(ring.volume, volume, 2e-3 * volume);
+  EXPECT_NEAR(ring.inertia[2], volume * (1 + 0.75 * 0.0625), 4e-3 * volume);
+}
+
+TEST(Mass, EdgesTellClosedFromOpenAndTangled) {
+  TriangleMesh box;
+  box.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
+  box.indices = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+  EXPECT_TRUE(count_edges(box).is_closed());
+  TriangleMesh open = box;
+  open.indices.resize(9);
+  EXPECT_EQ(count_edges(open).open, 3u);
+  TriangleMesh fin = box;
+  fin.indices.insert(fin.indices.end(), {0, 1, 4});
+  EXPECT_EQ(count_edges(fin).tangled, 1u);
+  EXPECT_EQ(count_edges(fin).open, 2u);
+  std::swap(box.indices[0], box.indices[1]);  // one triangle looks inwards
+  EXPECT_EQ(count_edges(box).tangled, 3u);
+}
+
+TEST(ClosestPoint, OfATorusIsItsFormula) {
+  const TriangleMesh mesh = torus(1, 0.25f, 200);
+  const MeshQueries queries(mesh);
+  for (const Vec3f p : random_points(500, false)) {
+    const Vec3d at{3.0 * p.x, 3.0 * p.y, 3.0 * p.z};
+    const double d = std::hypot(std::hypot(at.x, at.y) - 1, at.z) - 0.25;
+    EXPECT_NEAR(queries.distance(at), std::abs(d), 2e-3);
+    EXPECT_TRUE(std::abs(d) < 2e-3 || queries.is_inside(at) == (d < 0));
+  }
+}
+
+TEST(Fit, FindsTurnedSolidsAgain) {
+  const auto hull = [](const Solid& s) { return convex_hull(tilted(s).positions); };
+  const MeshCollider box = box_around(hull(rounded_box({0.3f, 0.5f, 0.9f}, 0)));
+  EXPECT_NEAR(volume_of(box), 0.135, 1e-4);
+  const MeshCollider sphere = sphere_around(hull(ball(0.4f, 64)));
+  EXPECT_NEAR(sphere.size.x, 0.4, 1e-3);
+  const MeshCollider can = cylinder_around(hull(cylinder(0.2f, 0, 1, 0, 64)));
+  EXPECT_NEAR(can.size.x, 0.2, 1e-3);
+  EXPECT_NEAR(can.size.y, 0.5, 1e-3);
+  const MeshCollider pill = capsule_around(hull(ball(0.2f, 64) + ball(0.2f, 64).moved(0, 0, 1)));
+  EXPECT_NEAR(pill.size.x, 0.2, 2e-3);
+  EXPECT_NEAR(pill.size.y, 0.5, 4e-3);
+}
+
+TEST(Fit, ColliderDistancesAgreeWithTheirSurfaces) {
+  for (const MeshColliderType type : {MeshColliderType::kBox, MeshColliderType::kSphere,
+                                      MeshColliderType::kCylinder, MeshColliderType::kCapsule}) {
+    MeshCollider c;
+    c.type = type;
+    c.size = {0.3, 0.5, 0.7};
+    c.X_MG = {{0, 1, 0}, {0, 0, 1}, {1, 0, 0}, {1, 2, 3}};
+    const TriangleMesh surface = surface_of(c);
+    EXPECT_NEAR(mass_properties(surface).volume, volume_of(c), 3e-3 * volume_of(c))
+        << word_of(type);
+    const ColliderDistance distance(c);
+    const MeshQueries mesh(surface);
+    for (const Vec3f p : random_points(200, false)) {
+      const Vec3d at{1 + 3.0 * p.x, 2 + 3.0 * p.y, 3 + 3.0 * p.z};
+      EXPECT_NEAR(std::abs(distance(at)), mesh.distance(at), 2e-3) << word_of(type);
+    }
+  }
+}
+
+TEST(Fit, QuaternionsTurnAsTheirAxesDo) {
+  for (const Vec3f& axis : random_points(50, true)) {
+    const FrameOf<float> f = Frame::from_z(axis);
+    const auto d = [](Vec3f v) { return Vec3d{v.x, v.y, v.z}; };
+    const Quat q = quaternion_of({d(f.x), d(f.y), d(f.z), {}});
+    EXPECT_NEAR(2 * (q.x * q.z + q.w * q.y), axis.x, 1e-6);
+    EXPECT_NEAR(2 * (q.y * q.z - q.w * q.x), axis.y, 1e-6);
+    EXPECT_NEAR(1 - 2 * (q.x * q.x + q.y * q.y), axis.z, 1e-6);
+  }
+}
+
+TEST(Convert, RecognisesShapes) {
+  EXPECT_STREQ(shape_of(tilted(rounded_box({0.3f, 0.5f, 0.9f}, 0.005f, 2))), "box");
+  EXPECT_STREQ(shape_of(tilted(ball(0.4f, 32))), "sphere");
+  EXPECT_STREQ(shape_of(tilted(cylinder(0.2f, 0, 1, 0.002f, 48))), "cylinder");
+  EXPECT_STREQ(shape_of(tilted(lathe({{0, -0.7f},
+                                      {0.1f, -0.673f},
+                                      {0.173f, -0.6f},
+                                      {0.2f, -0.5f},
+                                      {0.2f, 0.5f},
+                                      {0.173f, 0.6f},
+                                      {0.1f, 0.673f},
+                                      {0, 0.7f}},
+                                     40))),
+               "capsule");
+  EXPECT_STREQ(shape_of(tilted(cone(0.4f, 0.1f, 0, 1, 0.002f, 40))), "hull");
+  EXPECT_STREQ(shape_of(tilted(Solid(convex_hull(random_points(30, true))))), "hull");
+}
+
+TEST(Convert, SmallestAroundOnRequest) {
+  const TriangleMesh mesh = l_shape();
+  EXPECT_NEAR(volume_of(convert(mesh, "box").colliders[0]), 0.2, 0.002);
+  EXPECT_NEAR(convert(mesh, "sphere").colliders[0].size.x, std::sqrt(0.51), 0.003);
+  EXPECT_EQ(convert(mesh, "capsule").colliders[0].type, MeshColliderType::kCapsule);
+  const Converted hull = convert(mesh, "hull");
+  EXPECT_NEAR(volume_of(hull.colliders[0]), 0.2 * (1 - 0.8 * 0.8 / 2), 1e-4);
+  EXPECT_NEAR(hull.mass.volume, 0.072, 1e-6);  // the mesh's all the same
+  EXPECT_THAT(convert(mesh, "none").colliders, IsEmpty());
+}
+
+TEST(Convert, OpenMeshesWeighAsTheirHull) {
+  TriangleMesh mesh = rounded_box({1, 1, 1}, 0).mesh();
+  mesh.indices.resize(mesh.indices.size() - 6);
+  const Converted made = convert(mesh, "hull");
+  EXPECT_FALSE(made.is_closed);
+  EXPECT_NEAR(made.mass.volume, 1, 1e-6);
+  EXPECT_THAT(made.notes, ElementsAre(HasSubstr("is open (4 edges")));
+}
+
+TEST(Convert, TurnsMeshesThatLookInwards) {
+  TriangleMesh mesh = l_shape();
+  for (size_t i = 0; i < mesh.indices.size(); i += 3)
+    std::swap(mesh.indices[i], mesh.indices[i + 1]);
+  const Converted made = convert(mesh, "hull");
+  EXPECT_TRUE(made.is_closed);
+  EXPECT_NEAR(made.mass.volume, 0.072, 1e-6);
+  EXPECT_THAT(made.notes, ElementsAre(HasSubstr("inwards")));
+}
+
+TEST(Convert, FlatMeshesBecomePlates) {
+  TriangleMesh mesh;
+  mesh.positions = {{0, 0, 1}, {2, 0, 1}, {2, 1, 1}, {0, 1, 1}};
+  mesh.indices = {0, 1, 2, 0, 2, 3};
+  const Converted made = convert(mesh);
+  ASSERT_EQ(made.colliders.size(), 1u);
+  EXPECT_EQ(made.colliders[0].type, MeshColliderType::kBox);
+  EXPECT_TRUE(made.is_closed);
+  EXPECT_NEAR(made.mass.volume, 2 * 1 * std::sqrt(5) * 1e-3, 1e-6);
+  EXPECT_THAT(made.notes, ElementsAre(HasSubstr("is flat")));
+}
+
+TEST(Convert, RefusesWhatIsNoMesh) {
+  const auto error = [](const TriangleMesh& mesh) {
+    const Result<Converted> made = convert_mesh(mesh, {});
+    return made.ok() ? "" : made.error().message;
+  };
+  TriangleMesh mesh;
+  EXPECT_THAT(error(mesh), HasSubstr("no triangles"));
+  mesh.positions = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {3, 3, 3}};
+  mesh.indices = {0, 1, 2, 1, 2, 3};
+  EXPECT_THAT(error(mesh), HasSubstr("no extent"));
+  mesh.positions.assign(4, {1, 2, 3});
+  EXPECT_THAT(error(mesh), HasSubstr("no triangles"));
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {NAN, 1, 0}};
+  mesh.indices = {0, 1, 2};
+  EXPECT_THAT(error(mesh), HasSubstr("no number"));
+}
+
+TEST(Convert, TakesNoMoreThanItCan) {
+  const TriangleMesh big = torus(1, 0.25f, 400);  // 320,000 triangles
+  const Result<Converted> parts = convert_mesh(big, {});
+  ASSERT_FALSE(parts.ok());
+  EXPECT_THAT(parts.error().message, HasSubstr("320000 triangles"));
+  EXPECT_THAT(parts.error().hint, HasSubstr("\"hull\""));
+  EXPECT_LE(convert(big, "hull").colliders[0].hull.positions.size(), 128u);
+}
+
+class PartsSlow : public testing::Test {
+ protected:
+  void SetUp() override {
+#ifdef GLOAM_SANITIZED
+    GTEST_SKIP() << "CoACD is loaded with its own symbols first, which sanitizers refuse";
+#endif
+  }
+  PartsSlow() {
+    folder_ =
+        std::filesystem::temp_directory_path() / ("gloam_parts_" + std::to_string(::getpid()));
+    ::setenv("GLOAM_CACHE", folder_.c_str(), 1);
+  }
+  ~PartsSlow() override {
+    ::unsetenv("GLOAM_CACHE");
+    std::filesystem::remove_all(folder_);
+  }
+  std::filesystem::path folder_;
+};
+
+TEST_F(PartsSlow, OfAnLAndATorusAndAMug) {
+  struct Case {
+    const char* name;
+    TriangleMesh mesh;
+    double shared, mean;  // at least, at most of the size
+  };
+  for (const Case& c :
+       {Case{"L", l_shape(), 0.97, 0.005}, Case{"torus", torus(1, 0.25f), 0.8, 0.02},
+        Case{"mug", mug(), 0.25, 0.02}}) {
+    const auto start = std::chrono::steady_clock::now();
+    const Converted made = convert(c.mesh);
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+    const Overlap overlap = overlap_of(made);
+    for (const std::string& note : made.notes) std::printf("%s %s\n", c.name, note.c_str());
+    const double size = length(Solid(c.mesh).high() - Solid(c.mesh).low());
+    EXPECT_GT(made.colliders.size(), 1u) << c.name;
+    EXPECT_GT(overlap.shared, c.shared) << c.name;
+    EXPECT_LT(overlap.mean_distance, c.mean * size) << c.name;
+    std::printf(
+        "%s: %.2f s, %zu hulls, closed %d, shared %.3f, volume %.4g of %.4g, distance mean %.3g "
+        "max %.3g "
+        "of the size\n",
+        c.name, passed.count(), made.colliders.size(), made.is_closed, overlap.shared,
+        overlap.collider_volume, overlap.mesh_volume, overlap.mean_distance / size,
+        overlap.max_distance / size);
+  }
+}
+
+TEST_F(PartsSlow, AreTheSameEveryTime) {
+  const TriangleMesh mesh = chair();
+  const auto run = [&] {
+    const auto start = std::chrono::steady_clock::now();
+    const Converted made = convert(mesh);
+    const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
+    return std::pair(made, passed.count());
+  };
+  const auto [first, cold] = run();
+  const auto [second, warm] = run();
+  ASSERT_EQ(first.colliders.size(), second.colliders.size());
+  for (size_t i = 0; i < first.colliders.size(); ++i) {
+    EXPECT_EQ(first.colliders[i].hull.indices, second.colliders[i].hull.indices);
+    EXPECT_TRUE(std::ranges::equal(first.colliders[i].hull.positions,
+                                   second.colliders[i].hull.positions,
+                                   [](Vec3f a, Vec3f b) { return (a == b) != 0; }));
+  }
+  std::printf("chair of %zu triangles: %zu hulls, %.2f s, %.3f s again\n", mesh.triangle_count(),
+              first.colliders.size(), cold, warm);
+}
+
+}  // namespace
+}  // namespace gloam

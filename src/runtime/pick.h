@@ -1,0 +1,14 @@
+#pragma once
+// What stands under a pixel.
+
+#include "gloam/simulation.h"
+#include "runtime/shared_renderer.h"
+#include "sim/pose_frame.h"
+
+namespace gloam {
+
+/// In the picture `frame`, at (u, v) [px], of what is drawn at `poses`. Error: nothing is there.
+Result<PickResult> pick_at(SharedRenderer& shared, const PoseFrame& poses, const CameraFrame& frame,
+                           double u, double v);
+
+}  // namespace gloam

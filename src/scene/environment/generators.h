@@ -1,0 +1,28 @@
+#pragma once
+// From what a scene says of its environment to a Place.
+
+#include <optional>
+
+#include "scene/environment/place.h"
+
+namespace gloam {
+
+// The generators, a file each. Errors: parameters that leave no room.
+Result<Place> make_house(const HouseOptions& options);
+Result<Place> make_warehouse(const WarehouseOptions& options);
+Result<Place> make_office(const OfficeOptions& options);
+Result<Place> make_hallway(const HallwayOptions& options);
+Result<Place> make_bedroom(const BedroomOptions& options);
+Result<Place> make_tunnel(const TunnelOptions& options);
+
+/// What the scene's environment and its [[prop]]s make; empty when it has neither. Errors: with the
+/// place in the scene file.
+Result<std::optional<Place>> make_place(const Scene& scene);
+
+/// Is the ground of the scene a generator's?
+bool has_generator(const EnvironmentOptions& environment);
+
+/// One generator at most, and not beside a file; props of known kinds.
+Status validate_environment(const Scene& scene);
+
+}  // namespace gloam

@@ -1,0 +1,24 @@
+#pragma once
+// [[randomize]]: options that sim.seed draws.
+
+#include <string>
+#include <vector>
+
+#include "gloam/scene.h"
+
+namespace gloam {
+
+/// What does not need the options' types: that each has one distribution, of so many values.
+Status validate_randomize(const Scene& scene);
+
+/// Which of them: those that decide what is generated come first, so that the rest can mean what a
+/// generator made, its lamps and materials.
+enum class DrawStage { kPlace, kRest };
+
+/// Draws the options of a stage, in the order of the file, and appends what came of them. A draw
+/// depends on sim.seed and the option's path alone: others do not disturb it. Errors: an unknown
+/// option; a distribution that the option cannot have; a value out of its range; what
+/// validate_scene finds wrong afterwards.
+Status draw_options(DrawStage stage, Scene* scene, std::vector<DrawnOption>* drawn);
+
+}  // namespace gloam

@@ -1,0 +1,34 @@
+#pragma once
+// [[object]]s, and places that come from a mesh file: a static object for each node.
+
+#include <vector>
+
+#include "world/level.h"
+
+namespace gloam {
+
+/// What is to be a body. Its frame is the file's, in Gloam's axes and metres.
+struct MeshObject {
+  ObjectOptions options;   ///< its name is no other's
+  std::vector<int> parts;  ///< instances of the file that it is; empty = all
+  TriangleMesh mesh;       ///< of them, in the body's frame
+};
+
+struct MeshObjects {
+  std::vector<MeshObject> objects;
+  std::vector<Error> notes;  ///< names that were changed, sizes that are odd
+  uint64_t hash = 0;         ///< of all that physics sees of them; 0 = there are none
+};
+
+/// Reads their files, by way of the cache on disk. Errors: a file that cannot be read, no such
+/// node, nothing in it.
+Result<MeshObjects> load_mesh_objects(const Scene& scene);
+
+/// Adds a [[visual]] for each. Errors: the scene has a visual of that name.
+Status add_object_visuals(const MeshObjects& objects, Scene* scene);
+
+/// Converts them (geometry/convert) and adds a body each, with its colliders in group 3. What is
+/// odd about the meshes is told in `unsupported`. Errors: convert_mesh's, names that the spec has.
+Status add_objects(const MeshObjects& objects, mjSpec* spec, std::vector<Error>* unsupported);
+
+}  // namespace gloam

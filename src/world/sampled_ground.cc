@@ -1,0 +1,213 @@
+#include "world/sampled_ground.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/log.h"
+#include "world/model_loader.h"
+#include "world/visual_file.h"
+
+namespace gloam {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double kFlat = 1e-6;          // [m] MuJoCo wants a height above 0, of flat fields too
+constexpr double kDoubtfulSize = 1000;  // [m] more of a file in metres is worth a question
+constexpr int kHiddenGroup = 3;         // of colliders
+
+VisualOptions visual_of(const HeightFieldOptions& o) {
+  VisualOptions visual;
+  visual.name = o.name;
+  visual.file = o.file;
+  visual.X_BV = o.X_WF;
+  visual.scale = o.scale;
+  visual.up = o.up;
+  visual.unit = o.unit;
+  visual.loc = o.loc;
+  return visual;
+}
+
+Error named(const HeightFieldOptions& o, Error error) {
+  error.message = fmt::format("hfield '{}': {}", o.name, error.message);
+  error.loc = o.loc;
+  return error;
+}
+
+/// The file's meshes where the picture has them, too.
+std::vector<PlacedMesh> place_meshes(const HeightFieldOptions& o, const ModelFile& model) {
+  const auto wide = [](Vec3f v) { return Vec3Of<double>{v.x, v.y, v.z}; };
+  std::vector<PlacedMesh> meshes;
+  const Affine3f X_WF = visual_placement(visual_of(o), model.was_y_up);
+  for (const ImportedInstance& in : model.instances) {
+    const Affine3f X = X_WF * in.X_FI;
+    meshes.push_back({&model.meshes[static_cast<size_t>(in.mesh)],
+                      {wide(X.x), wide(X.y), wide(X.z), wide(X.p)}});
+  }
+  return meshes;
+}
+
+/// The meshes' bounds over the ground, and what of them is to be sampled.
+struct Region {
+  std::array<double, 2> mesh_low{}, mesh_high{}, low{}, high{};
+
+  double extent() const { return std::max(mesh_high[0] - mesh_low[0], mesh_high[1] - mesh_low[1]); }
+  std::string text() const {
+    return fmt::format("the mesh reaches over x {:.4g} … {:.4g} m, y {:.4g} … {:.4g} m",
+                       mesh_low[0], mesh_high[0], mesh_low[1], mesh_high[1]);
+  }
+};
+
+Result<Region> region_of(const HeightFieldOptions& o, const std::vector<PlacedMesh>& meshes) {
+  Vec3Of<double> low, high;
+  if (!bounds_of(meshes, &low, &high))
+    return Error{ErrorKind::kInput, "there are no triangles in the file"};
+  Region region{{low.x, low.y}, {high.x, high.y}, {}, {}};
+  region.low = o.low.value_or(region.mesh_low);
+  region.high = o.high.value_or(region.mesh_high);
+  return region;
+}
+
+void report(const HeightFieldOptions& o, const Floors& floors,
+            const std::vector<HeightField>& fields, const HeightError& error) {
+  const HeightGrid& grid = floors.grid;
+  std::string more;
+  if (fields.size() > 1) more += fmt::format(", {} fields of floors above", fields.size() - 1);
+  if (fields[0].filled > 0)
+    more += fmt::format(", {} samples met nothing and were filled", fields[0].filled);
+  log_info(
+      "hfield '{}': {} x {} samples, {:.4g} x {:.4g} m apart{}; distance to the mesh: mean {:.2g} "
+      "m, "
+      "95 % below {:.2g} m, at most {:.2g} m",
+      o.name, grid.columns, grid.rows, grid.step[0], grid.step[1], more, error.mean, error.p95,
+      error.most);
+}
+
+Result<std::vector<HeightField>> sample(const HeightFieldOptions& o, const ModelFile& model,
+                                        std::vector<Error>* notes) {
+  const auto note = [&](std::string text, std::string hint) {
+    notes->push_back(named(o, {ErrorKind::kUnsupported, std::move(text), {}, std::move(hint)}));
+    log_warning("{}", notes->back().to_string());
+  };
+  const std::vector<PlacedMesh> meshes = place_meshes(o, model);
+  GLOAM_TRY(const Region region, region_of(o, meshes));
+  const bool is_doubtful = o.unit == 1 && region.extent() > kDoubtfulSize;
+  const std::string unit_hint = "if the file is in millimetres, give unit = 0.001";
+  if (is_doubtful) note(fmt::format("the mesh is {:.0f} m wide", region.extent()), unit_hint);
+  Result<HeightGrid> grid = make_height_grid(region.low, region.high, o.resolution, o.layers);
+  if (!grid.ok()) {
+    Error error = grid.error();
+    if (is_doubtful) error.hint += "; " + unit_hint;
+    if (error.hint.empty()) error.hint = region.text();
+    return error;
+  }
+  GLOAM_TRY(const Floors floors, sample_floors(meshes, *grid, o.layers));
+  Result<HeightField> ground = ground_of(floors);
+  if (!ground.ok()) {
+    return Error{ErrorKind::kInput,
+                 ground.error().message,
+                 {},
+                 region.text() + "; exactly vertical walls are no ground"};
+  }
+  GLOAM_TRY(std::vector<HeightField> fields, slabs_of(floors));
+  if (o.layers > 1 && fields.empty())
+    note("one layer was found: no floor lies under another",
+         "lower floors must face up: are the mesh's triangles turned inside out?");
+  fields.insert(fields.begin(), std::move(ground).value());
+  GLOAM_TRY(const HeightError error, height_error(meshes, floors, fields));
+  report(o, floors, fields, error);
+  return fields;
+}
+
+void add_field(const std::string& name, const HeightFieldOptions& o, const HeightField& field,
+               mjSpec* spec) {
+  const auto [low, high] = std::minmax_element(field.z.begin(), field.z.end());
+  const double base = *low, range = double{*high} - base;
+  std::vector<float> share;  // MuJoCo's elevations: 0 the lowest … 1 the highest
+  for (const float z : field.z)
+    share.push_back(range > 0 ? static_cast<float>((z - base) / range) : 0);
+  const HeightGrid& grid = field.grid;
+  const double half_x = grid.step[0] * (grid.columns - 1) / 2;
+  const double half_y = grid.step[1] * (grid.rows - 1) / 2;
+
+  mjsHField* hfield = mjs_addHField(spec);
+  mjs_setName(hfield->element, name.c_str());
+  hfield->nrow = grid.rows;
+  hfield->ncol = grid.columns;
+  const double size[4] = {half_x, half_y, std::max(range, kFlat), field.base};
+  std::copy(size, size + 4, hfield->size);
+  mjs_setFloat(hfield->userdata, share.data(), static_cast<int>(share.size()));
+
+  mjsGeom* geom = mjs_addGeom(mjs_findBody(spec, "world"), nullptr);
+  mjs_setName(geom->element, name.c_str());
+  geom->type = mjGEOM_HFIELD;
+  mjs_setString(geom->hfieldname, name.c_str());
+  const double middle[3] = {grid.low[0] + half_x, grid.low[1] + half_y, base};
+  std::copy(middle, middle + 3, geom->pos);
+  if (o.drawn) geom->group = kHiddenGroup;
+  if (o.friction) {
+    const double friction[3] = {o.friction->x, o.friction->y, o.friction->z};
+    std::copy(friction, friction + 3, geom->friction);
+  }
+}
+
+}  // namespace
+
+Status admit_ground_files(const Scene& scene, ModelFiles* files) {
+  for (const HeightFieldOptions& o : scene.hfields)
+    GLOAM_TRY_STATUS(files->admit(scene.file.empty() ? o.file : scene.file, scene.access));
+  return {};
+}
+
+Result<std::vector<SampledGround>> sample_grounds(const Scene& scene, ModelFiles* files,
+                                                  std::vector<Error>* notes) {
+  std::vector<SampledGround> grounds;
+  for (const HeightFieldOptions& o : scene.hfields) {
+    GLOAM_TRY(const ModelFile model,
+              load_model_file(scene, o.file, fmt::format("hfield '{}'", o.name), o.loc));
+    GLOAM_TRY_STATUS(files->read(o.file));
+    for (const std::string& part : model.parts)
+      (void)files->read(o.file.parent_path() / part);  // what is missing is remembered as missing
+    Result<std::vector<HeightField>> fields = sample(o, model, notes);
+    if (!fields.ok()) return named(o, fields.error());
+    grounds.push_back({o, std::move(fields).value()});
+  }
+  return grounds;
+}
+
+Status add_grounds(const std::vector<SampledGround>& grounds, mjSpec* spec) {
+  for (const SampledGround& ground : grounds) {
+    for (size_t i = 0; i < ground.fields.size(); ++i) {
+      const std::string& own = ground.options.name;
+      const std::string name = i == 0 ? own : fmt::format("{}_{}", own, i + 1);
+      for (const mjtObj type : {mjOBJ_GEOM, mjOBJ_HFIELD}) {
+        if (mjs_findElement(spec, type, name.c_str()) == nullptr) continue;
+        return named(ground.options, {ErrorKind::kInput,
+                                      fmt::format("the environment has a {} '{}' already",
+                                                  mju_type2Str(type), name),
+                                      {},
+                                      "give it another name"});
+      }
+      add_field(name, ground.options, ground.fields[i], spec);
+    }
+  }
+  return {};
+}
+
+Status add_ground_looks(Scene* scene) {
+  for (const HeightFieldOptions& o : scene->hfields) {
+    if (!o.drawn) continue;
+    const auto same = std::find_if(scene->visuals.begin(), scene->visuals.end(),
+                                   [&](const VisualOptions& v) { return v.name == o.name; });
+    if (same == scene->visuals.end()) {
+      scene->visuals.push_back(visual_of(o));
+    } else if (same->file != o.file) {
+      return named(
+          o,
+          {ErrorKind::kInput, "there is a [[visual]] of this name, too", {}, "rename one of them"});
+    }
+  }
+  return {};
+}
+
+}  // namespace gloam

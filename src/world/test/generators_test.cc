@@ -1,0 +1,221 @@
+// Generated places: valid, reachable, at rest, for every seed and size.
+
+#include <gtest/gtest.h>
+
+#include "base/files.h"
+#include "scene/test/temp_folder.h"
+#include "world/test/place_check.h"
+
+namespace gloam {
+namespace {
+
+// Of the grid that is walked [m]: doors leave 8 cm beside the probe, aisles half a metre.
+constexpr double kFine = 0.05, kCoarse = 0.1;
+
+class GeneratorsSlow : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ::setenv("GLOAM_CACHE", (folder_.path() / "cache").c_str(), 1);
+    ASSERT_TRUE(write_text_file_atomic(folder_.path() / "probe.xml", probe_model(0.3)).ok());
+  }
+  Scene with_probe(const EnvironmentOptions& environment) const {
+    Scene scene;
+    scene.environment = environment;
+    RobotOptions probe;
+    probe.name = "probe";
+    probe.file = folder_.path() / "probe.xml";
+    scene.robots = {probe};
+    return scene;
+  }
+  template <class Options>
+  Scene scene_of(std::optional<Options> EnvironmentOptions::* generator,
+                 const Options& options) const {
+    EnvironmentOptions environment;
+    environment.*generator = options;
+    return with_probe(environment);
+  }
+  Scene scene_of(const HouseOptions& o) const { return scene_of(&EnvironmentOptions::house, o); }
+  Scene scene_of(const WarehouseOptions& o) const {
+    return scene_of(&EnvironmentOptions::warehouse, o);
+  }
+  Scene scene_of(const OfficeOptions& o) const { return scene_of(&EnvironmentOptions::office, o); }
+  Scene scene_of(const HallwayOptions& o) const {
+    return scene_of(&EnvironmentOptions::hallway, o);
+  }
+  Scene scene_of(const BedroomOptions& o) const {
+    return scene_of(&EnvironmentOptions::bedroom, o);
+  }
+  Scene scene_of(const TunnelOptions& o) const { return scene_of(&EnvironmentOptions::tunnel, o); }
+  template <class Options>
+  void expect_sound(const Options& options, double cell, const std::string& which = {}) {
+    SCOPED_TRACE("seed " + std::to_string(options.seed) + which);
+    const Result<World> world = World::compile(scene_of(options));
+    ASSERT_TRUE(world.ok()) << world.error().to_string();
+    const PlaceReport report = check_place(*world->compiled(), cell);
+    EXPECT_LE(report.deepest_contact, 0.002) << report.deepest << " overlap";
+    EXPECT_LE(report.furthest, 0.02) << report.furthest_body << " moves of itself";
+    EXPECT_TRUE(report.unreached.empty())
+        << "no way to " << report.unreached[0] << " of " << report.unreached.size();
+    EXPECT_TRUE(report.blocked_doors.empty()) << report.blocked_doors[0];
+  }
+  template <class Options>
+  void expect_sound_seeds(uint64_t first, uint64_t last, double cell, Options options = {}) {
+    for (options.seed = first; options.seed <= last; ++options.seed) expect_sound(options, cell);
+  }
+  // Smaller than usual: every way is walked.
+  static WarehouseOptions small_warehouse() {
+    WarehouseOptions warehouse;
+    warehouse.length = 20;
+    warehouse.width = 12;
+    return warehouse;
+  }
+  static OfficeOptions small_office() {
+    OfficeOptions office;
+    office.length = 12;
+    office.width = 10;
+    return office;
+  }
+  static TunnelOptions short_tunnel() {
+    TunnelOptions tunnel;
+    tunnel.length = 40;
+    return tunnel;
+  }
+  TempFolder folder_;
+};
+
+TEST_F(GeneratorsSlow, MakeHousesThatAreReachableAndAtRest) {
+  expect_sound_seeds<HouseOptions>(1, 10, kFine);
+}
+TEST_F(GeneratorsSlow, DISABLED_SweepHousesOfHundredSeeds) {
+  expect_sound_seeds<HouseOptions>(1, 100, kFine);
+}
+TEST_F(GeneratorsSlow, DISABLED_SweepHousesOfAnotherHundred) {
+  expect_sound_seeds<HouseOptions>(101, 200, kFine);
+}
+
+TEST_F(GeneratorsSlow, MakeHousesOfAsManyRoomsAsAskedForOnOneOrTwoStoreys) {
+  for (const int storeys : {1, 2}) {
+    for (const int rooms : {3, 5, 12}) {
+      HouseOptions house;
+      house.seed = static_cast<uint64_t>(rooms);
+      house.rooms = rooms;
+      house.storeys = storeys;
+      expect_sound(house, kFine,
+                   ", rooms " + std::to_string(rooms) + ", storeys " + std::to_string(storeys));
+      const Result<World> world = World::compile(scene_of(house));
+      int count = 0;
+      for (const Region& region : world->compiled()->regions) count += region.label != "stairs";
+      EXPECT_EQ(count, std::max(rooms, storeys == 2 ? 4 : 3));
+    }
+  }
+}
+
+TEST_F(GeneratorsSlow, MakeHousesAtTheExtremesOfTheirParameters) {
+  for (const bool high : {false, true}) {
+    HouseOptions house;
+    house.ceiling = high ? 4 : 2.2;
+    house.passage = high ? 1.2 : 0.4;
+    house.clutter = high ? 1 : 0;
+    house.loose = high ? 1 : 0;
+    house.doors = high ? "closed" : "ajar";
+    house.roof = high;
+    expect_sound(house, kFine);
+  }
+}
+
+TEST_F(GeneratorsSlow, MakeWarehousesThatAreReachableAndAtRest) {
+  expect_sound_seeds(1, 10, kCoarse, small_warehouse());
+}
+TEST_F(GeneratorsSlow, DISABLED_SweepWarehousesOfHundredSeeds) {
+  expect_sound_seeds(1, 100, kCoarse, small_warehouse());
+}
+TEST_F(GeneratorsSlow, DISABLED_SweepWarehousesOfAnotherHundred) {
+  expect_sound_seeds(101, 200, kCoarse, small_warehouse());
+}
+
+TEST_F(GeneratorsSlow, MakeWarehousesAtTheExtremesOfTheirParameters) {
+  for (const bool high : {false, true}) {
+    WarehouseOptions warehouse;
+    warehouse.length = high ? 24 : 12;
+    warehouse.width = high ? 18 : 10;
+    warehouse.height = high ? 14 : 4;
+    warehouse.aisle = high ? 6 : 1.2;
+    warehouse.levels = high ? 6 : 1;
+    warehouse.fill = warehouse.clutter = high;
+    warehouse.loose = 0;
+    warehouse.dock_doors = high ? 12 : 0;
+    expect_sound(warehouse, kCoarse);
+  }
+}
+
+TEST_F(GeneratorsSlow, MakeOfficesThatAreReachableAndAtRest) {
+  expect_sound_seeds(1, 10, kFine, small_office());
+}
+TEST_F(GeneratorsSlow, DISABLED_SweepOfficesOfTwoHundredSeeds) {
+  expect_sound_seeds(1, 200, kFine, small_office());
+}
+TEST_F(GeneratorsSlow, MakeHallwaysThatAreReachableAndAtRest) {
+  expect_sound_seeds<HallwayOptions>(1, 10, kCoarse);
+}
+TEST_F(GeneratorsSlow, DISABLED_SweepHallwaysOfTwoHundredSeeds) {
+  expect_sound_seeds<HallwayOptions>(1, 200, kCoarse);
+}
+TEST_F(GeneratorsSlow, MakeBedroomsThatAreReachableAndAtRest) {
+  expect_sound_seeds<BedroomOptions>(1, 10, kFine);
+}
+TEST_F(GeneratorsSlow, DISABLED_SweepBedroomsOfTwoHundredSeeds) {
+  expect_sound_seeds<BedroomOptions>(1, 200, kFine);
+}
+TEST_F(GeneratorsSlow, MakeTunnelsThatAreReachableAndAtRest) {
+  expect_sound_seeds(1, 10, kCoarse, short_tunnel());
+}
+TEST_F(GeneratorsSlow, DISABLED_SweepTunnelsOfTwoHundredSeeds) {
+  expect_sound_seeds(1, 200, kCoarse, short_tunnel());
+}
+
+TEST_F(GeneratorsSlow, MakeTheOthersAtTheExtremesOfTheirParameters) {
+  for (const bool high : {false, true}) {
+    OfficeOptions office;
+    office.length = high ? 20 : 10;
+    office.width = high ? 14 : 9;
+    office.ceiling = high ? 4 : 2.4;
+    office.passage = high ? 1.2 : 0.4;
+    office.clutter = office.loose = high;
+    office.doors = high ? "closed" : "ajar";
+    expect_sound(office, kFine, ", office");
+    HallwayOptions hallway;
+    hallway.length = high ? 60 : 8;
+    hallway.width = high ? 6 : 1.6;
+    hallway.ceiling = high ? 5 : 2.3;
+    hallway.turns = high ? 3 : 0;
+    hallway.passage = high ? 1.2 : 0.4;
+    hallway.clutter = hallway.loose = high;
+    expect_sound(hallway, kCoarse, ", hallway");
+    BedroomOptions bedroom;
+    bedroom.width = bedroom.depth = high ? 8 : 3;
+    bedroom.ceiling = high ? 4 : 2.2;
+    bedroom.passage = high ? 1.2 : 0.4;
+    bedroom.clutter = bedroom.loose = high;
+    expect_sound(bedroom, kFine, ", bedroom");
+    TunnelOptions tunnel;
+    tunnel.length = high ? 120 : 20;
+    tunnel.width = high ? 12 : 3;
+    tunnel.height = high ? 9 : 2.6;
+    tunnel.curve = high ? 5000 : 60;
+    tunnel.lamps = high ? 60 : 4;
+    tunnel.clutter = tunnel.loose = tunnel.failed = high;
+    expect_sound(tunnel, kCoarse, ", tunnel");
+  }
+}
+
+TEST_F(GeneratorsSlow, MakeTheSameOfOneSeedAndAnotherOfTheNext) {
+  HouseOptions house;
+  const Result<World> one = World::compile(scene_of(house)),
+                      again = World::compile(scene_of(house));
+  EXPECT_EQ(one->compiled()->place_hash, again->compiled()->place_hash);
+  house.seed = 2;
+  EXPECT_NE(World::compile(scene_of(house))->compiled()->place_hash, one->compiled()->place_hash);
+}
+
+}  // namespace
+}  // namespace gloam

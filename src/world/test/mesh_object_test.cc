@@ -1,0 +1,226 @@
+#include "world/mesh_object.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+#include "base/cache_writer.h"
+#include "gloam/world.h"
+#include "scene/test/temp_folder.h"
+#include "world/export_mjcf.h"
+#include "world/render_description.h"
+
+namespace gloam {
+namespace {
+
+using testing::Contains;
+using testing::Field;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// A closed box as a group of an OBJ file; `first` = number of its first vertex.
+std::string obj_box(const std::string& group, Vec3 low, Vec3 high, int first) {
+  std::string text = "g " + group + "\n";
+  for (int i = 0; i < 8; ++i)
+    text += fmt::format("v {} {} {}\n", i & 1 ? high.x : low.x, i & 2 ? high.y : low.y,
+                        i & 4 ? high.z : low.z);
+  constexpr std::array<std::array<int, 4>, 6> kFaces = {
+      {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
+  for (const auto& f : kFaces)
+    text += fmt::format("f {} {} {} {}\n", f[0] + first, f[1] + first, f[2] + first, f[3] + first);
+  return text;
+}
+
+class MeshObjectTest : public testing::Test {
+ protected:
+  MeshObjectTest() {
+    ::setenv("GLOAM_CACHE", (folder_.path() / "cache").c_str(), 1);
+    folder_.write("box.obj", obj_box("crate", {-0.1, -0.2, 0}, {0.1, 0.2, 0.6}, 1));
+    folder_.write("two.obj", obj_box("slab", {-2, -2, -0.1}, {2, 2, 0}, 1) +
+                                 obj_box("pillar", {1, 1, 0}, {1.2, 1.2, 2}, 9));
+  }
+  ~MeshObjectTest() override {
+    finish_cache_writes();
+    ::unsetenv("GLOAM_CACHE");
+  }
+  Result<World> compile(const std::string& text) {
+    folder_.write("scene.toml", text);
+    Result<Scene> scene = load_scene(folder_.path() / "scene.toml");
+    if (!scene.ok()) return scene.error();
+    return World::compile(*scene);
+  }
+  std::string error(const std::string& text) {
+    const Result<World> world = compile(text);
+    return world.ok() ? "no error" : world.error().to_string();
+  }
+  static std::vector<std::string> notes(const World& world) {
+    std::vector<std::string> out;
+    for (const Error& e : world.compiled()->unsupported) out.push_back(e.message);
+    return out;
+  }
+  TempFolder folder_;
+};
+
+constexpr const char* kCrate = R"([[object]]
+name = "crate"
+file = "box.obj"
+position = [0, 0, 1]
+density = 500
+friction = [0.4, 0.01, 0.002]
+)";
+
+TEST_F(MeshObjectTest, IsAFreeBodyWithTheMassOfItsVolume) {
+  const Result<World> world = compile(kCrate);
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  const mjModel& m = *world->compiled()->model;
+  const int body = mj_name2id(&m, mjOBJ_BODY, "crate");
+  ASSERT_GT(body, 0);
+  const double mass = 500 * 0.2 * 0.4 * 0.6;
+  EXPECT_NEAR(m.body_mass[body], mass, 1e-4);
+  EXPECT_NEAR(m.body_ipos[3 * body + 2], 0.3, 1e-6);
+  std::vector<double> inertia(m.body_inertia + 3 * body, m.body_inertia + 3 * body + 3);
+  std::sort(inertia.begin(), inertia.end());
+  EXPECT_NEAR(inertia[0], mass / 12 * (0.04 + 0.16), 1e-4);
+  EXPECT_NEAR(inertia[2], mass / 12 * (0.16 + 0.36), 1e-4);
+  EXPECT_EQ(m.jnt_type[m.body_jntadr[body]], mjJNT_FREE);
+  const int geom = mj_name2id(&m, mjOBJ_GEOM, "crate/collider_1");
+  ASSERT_GE(geom, 0);
+  EXPECT_EQ(m.geom_type[geom], mjGEOM_BOX);
+  EXPECT_EQ(m.geom_group[geom], 3);
+  EXPECT_EQ(m.geom_friction[3 * geom], 0.4);
+  EXPECT_GE(mj_name2id(&m, mjOBJ_GEOM, "floor"), 0);  // something to stand on
+}
+
+TEST_F(MeshObjectTest, FallsAndComesToRestOnItsFace) {
+  const Result<World> world = compile(kCrate);
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  const mjModel* m = world->compiled()->model.get();
+  mjData* d = mj_makeData(m);
+  for (int i = 0; i < 1500; ++i) mj_step(m, d);
+  const int body = mj_name2id(m, mjOBJ_BODY, "crate");
+  EXPECT_NEAR(d->xpos[3 * body + 2], 0, 2e-3);
+  mj_deleteData(d);
+}
+
+TEST_F(MeshObjectTest, MotionAndMassAndColliders) {
+  const Result<World> world = compile(std::string(kCrate) + R"(mass = 2
+[[object]]
+name = "fixed"
+file = "box.obj"
+motion = "static"
+colliders = "hull"
+[[object]]
+name = "moved"
+file = "box.obj"
+motion = "mocap"
+colliders = "sphere"
+[[object]]
+name = "shown"
+file = "box.obj"
+motion = "static"
+colliders = "none"
+[override.environment.geom."fixed/collider_1"]
+margin = 0.01
+)");
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  const mjModel& m = *world->compiled()->model;
+  const auto body = [&](const char* name) { return mj_name2id(&m, mjOBJ_BODY, name); };
+  EXPECT_NEAR(m.body_mass[body("crate")], 2, 1e-12);
+  EXPECT_EQ(m.body_dofnum[body("fixed")], 0);
+  EXPECT_GE(m.body_mocapid[body("moved")], 0);
+  EXPECT_EQ(m.body_geomnum[body("shown")], 0);
+  const int hull = mj_name2id(&m, mjOBJ_GEOM, "fixed/collider_1");
+  EXPECT_EQ(m.geom_type[hull], mjGEOM_MESH);
+  EXPECT_EQ(m.geom_margin[hull], 0.01);
+  EXPECT_EQ(m.mesh_vertnum[m.geom_dataid[hull]], 8);
+  const Result<RenderDescription> shown = describe_for_rendering(*world->compiled());
+  ASSERT_TRUE(shown.ok()) << shown.error().to_string();
+  for (const char* name : {"crate", "fixed", "moved", "shown"})
+    EXPECT_THAT(shown->instances, Contains(Field(&InstanceDescription::label,
+                                                 Field(&LabelRow::instance_name, name))));
+}
+
+TEST_F(MeshObjectTest, TakesOneNodeAndNamesTheNearest) {
+  const std::string object = "[[object]]\nname = 'a'\nfile = 'two.obj'\nnode = ";
+  const Result<World> world = compile(object + "'pillar'\n");
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  const mjModel& m = *world->compiled()->model;
+  EXPECT_NEAR(m.body_mass[mj_name2id(&m, mjOBJ_BODY, "a")], 1000 * 0.2 * 0.2 * 2, 1e-2);
+  EXPECT_THAT(error(object + "'pilar'\n"),
+              AllOf(HasSubstr("no node 'pilar'"), HasSubstr("pillar")));
+}
+
+TEST_F(MeshObjectTest, ExportsAsStockMujocoLoadsIt) {
+  const Result<World> turned = compile(std::string(kCrate) + R"(colliders = "hull"
+orientation = [0.8, 0.6, 0, 0]
+)");
+  ASSERT_TRUE(turned.ok()) << turned.error().to_string();
+  const Result<ExportedModel> exported = write_mjcf(*turned->compiled(), folder_.path() / "out");
+  ASSERT_TRUE(exported.ok()) << exported.error().to_string();
+  EXPECT_THAT(exported->differing, IsEmpty());
+}
+
+TEST_F(MeshObjectTest, PlacesHaveABodyForEachNode) {
+  const Result<World> world = compile("[environment]\nfile = 'two.obj'\nunit = 0.5\n");
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  const mjModel& m = *world->compiled()->model;
+  const int slab = mj_name2id(&m, mjOBJ_GEOM, "slab/collider_1");
+  ASSERT_GE(slab, 0);
+  EXPECT_EQ(m.geom_type[slab], mjGEOM_BOX);
+  EXPECT_NEAR(m.geom_rbound[slab], 0.5 * std::sqrt(4 + 4 + 0.0025), 1e-4);
+  EXPECT_GT(mj_name2id(&m, mjOBJ_BODY, "pillar"), 0);
+  EXPECT_EQ(m.nv, 0);
+  const Result<RenderDescription> shown = describe_for_rendering(*world->compiled());
+  ASSERT_TRUE(shown.ok());
+  EXPECT_THAT(shown->instances, Contains(Field(&InstanceDescription::label,
+                                               Field(&LabelRow::semantic_name, "pillar"))));
+}
+
+TEST_F(MeshObjectTest, NodesOfAPlaceGiveWayToNamesOfTheScene) {
+  const Result<World> world =
+      compile("[environment]\nfile = 'two.obj'\n[[object]]\nname = 'pillar'\nfile = 'box.obj'\n");
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  EXPECT_GT(mj_name2id(world->compiled()->model.get(), mjOBJ_BODY, "pillar_2"), 0);
+  EXPECT_THAT(notes(*world), Contains(HasSubstr("node 'pillar' is called 'pillar_2'")));
+}
+
+TEST_F(MeshObjectTest, NamesThatClashAreErrorsThatNameBoth) {
+  EXPECT_THAT(error(std::string(kCrate) + kCrate), HasSubstr("two objects named 'crate'"));
+  EXPECT_THAT(error(std::string(kCrate) + "[[prop]]\nname = 'crate'\nkind = 'chair'\n"),
+              AllOf(HasSubstr("object 'crate'"), HasSubstr("prop")));
+  EXPECT_THAT(error(std::string(kCrate) + "[[visual]]\nname = 'crate'\nfile = 'two.obj'\n"),
+              AllOf(HasSubstr("object 'crate'"), HasSubstr("visual 'crate'")));
+}
+
+TEST_F(MeshObjectTest, OddSizesAreTold) {
+  const Result<World> world = compile(std::string(kCrate) + "unit = 1000\n");
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  EXPECT_THAT(notes(*world), Contains(HasSubstr("object 'crate' is 600 m large")));
+  EXPECT_THAT(world->compiled()->unsupported, Contains(Field(&Error::hint, HasSubstr("'unit'"))));
+}
+
+TEST_F(MeshObjectTest, BadFilesAreErrors) {
+  folder_.write("empty.obj", "v 0 0 0\n");
+  folder_.write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+  folder_.write("nan.obj", "v 0 0 0\nv 1 0 0\nv nan 1 0\nf 1 2 3\n");
+  for (const char* file : {"empty.obj", "line.obj", "nan.obj", "none.obj"})
+    for (const char* table : {"[environment]\n", "[[object]]\nname = 'a'\n"})
+      EXPECT_THAT(error(fmt::format("{}file = '{}'\n", table, file)),
+                  AllOf(HasSubstr("scene.toml:"), HasSubstr(file)));
+}
+
+TEST_F(MeshObjectTest, TheFilesContentIsInTheKey) {
+  const Result<World> before = compile(kCrate);
+  folder_.write("box.obj", obj_box("crate", {-0.1, -0.2, 0}, {0.1, 0.2, 0.7}, 1));
+  const Result<World> after = compile(kCrate);
+  ASSERT_TRUE(before.ok() && after.ok());
+  EXPECT_NE(before->compiled()->place_hash, after->compiled()->place_hash);
+}
+
+}  // namespace
+}  // namespace gloam
