@@ -2,6 +2,7 @@
 // Options of generated environments and props, as in option_fields.h.
 
 #include "gloam/scene_environment.h"
+#include "scene/environment/catalogue.h"
 #include "scene/field_rule.h"
 
 namespace gloam {
@@ -12,8 +13,6 @@ inline constexpr std::array<std::string_view, 7> kColliderKinds = {
 inline const FieldRule kUpAxis{.choices = {"auto", "y", "z"}};
 inline const FieldRule kFileUnit{.unit = "m", .min = 1e-9, .max = 1e6};
 inline const FieldRule kRoomHeight{.unit = "m", .min = 2.2, .max = 4};
-inline const FieldRule kPassage{.unit = "m", .min = 0.4, .max = 1.2};
-inline const FieldRule kDoors{.choices = {"open", "ajar", "closed"}};
 inline const FieldRule kFriction{.min = 0, .max = 100};
 
 /// How a mesh file lies in Gloam's axes and metres.
@@ -24,19 +23,29 @@ void visit_file_axes(Visitor& v, Options& o) {
   v("unit", o.unit, kFileUnit);
 }
 
+/// What furnished places have in common.
+template <class Visitor, class Options>
+void visit_furnishing(Visitor& v, Options& o) {
+  v("passage", o.passage, FieldRule{.unit = "m", .min = 0.4, .max = 1.2});
+  v("clutter", o.clutter, kShare);
+  v("loose", o.loose, kShare);
+  v("roof", o.roof, FieldRule{});
+}
+template <class Visitor, class Options>
+void visit_doors(Visitor& v, Options& o) {
+  v("doors", o.doors, FieldRule{.choices = {"open", "ajar", "closed"}});
+  v("openable", o.openable, FieldRule{});
+}
+
 template <class Visitor>
 void visit_fields(Visitor& v, HouseOptions& o) {
   v("seed", o.seed, FieldRule{});
   v("rooms", o.rooms, FieldRule{.min = 3, .max = 12});
   v("storeys", o.storeys, FieldRule{.min = 1, .max = 2});
   v("ceiling", o.ceiling, kRoomHeight);
-  v("passage", o.passage, kPassage);
-  v("clutter", o.clutter, kShare);
-  v("doors", o.doors, kDoors);
-  v("loose", o.loose, kShare);
+  visit_furnishing(v, o);
+  visit_doors(v, o);
   v("furnished", o.furnished, FieldRule{});
-  v("openable", o.openable, FieldRule{});
-  v("roof", o.roof, FieldRule{});
 }
 
 template <class Visitor>
@@ -59,13 +68,9 @@ void visit_fields(Visitor& v, OfficeOptions& o) {
   v("length", o.length, FieldRule{.unit = "m", .min = 10, .max = 60});
   v("width", o.width, FieldRule{.unit = "m", .min = 9, .max = 24});
   v("ceiling", o.ceiling, FieldRule{.unit = "m", .min = 2.4, .max = 4});
-  v("passage", o.passage, kPassage);
-  v("clutter", o.clutter, kShare);
-  v("doors", o.doors, kDoors);
-  v("loose", o.loose, kShare);
+  visit_furnishing(v, o);
+  visit_doors(v, o);
   v("furnished", o.furnished, FieldRule{});
-  v("openable", o.openable, FieldRule{});
-  v("roof", o.roof, FieldRule{});
 }
 
 template <class Visitor>
@@ -75,10 +80,7 @@ void visit_fields(Visitor& v, HallwayOptions& o) {
   v("width", o.width, FieldRule{.unit = "m", .min = 1.6, .max = 6});
   v("ceiling", o.ceiling, FieldRule{.unit = "m", .min = 2.3, .max = 5});
   v("turns", o.turns, FieldRule{.min = 0, .max = 3});
-  v("passage", o.passage, kPassage);
-  v("clutter", o.clutter, kShare);
-  v("loose", o.loose, kShare);
-  v("roof", o.roof, FieldRule{});
+  visit_furnishing(v, o);
 }
 
 template <class Visitor>
@@ -87,12 +89,8 @@ void visit_fields(Visitor& v, BedroomOptions& o) {
   v("width", o.width, FieldRule{.unit = "m", .min = 3, .max = 8});
   v("depth", o.depth, FieldRule{.unit = "m", .min = 3, .max = 8});
   v("ceiling", o.ceiling, kRoomHeight);
-  v("passage", o.passage, kPassage);
-  v("clutter", o.clutter, kShare);
-  v("doors", o.doors, kDoors);
-  v("loose", o.loose, kShare);
-  v("openable", o.openable, FieldRule{});
-  v("roof", o.roof, FieldRule{});
+  visit_furnishing(v, o);
+  visit_doors(v, o);
 }
 
 template <class Visitor>
@@ -111,7 +109,7 @@ void visit_fields(Visitor& v, TunnelOptions& o) {
 template <class Visitor>
 void visit_fields(Visitor& v, PropOptions& o) {
   v("name", o.name, FieldRule{.required = true, .identifier = true});
-  v("kind", o.kind, FieldRule{.required = true});
+  v("kind", o.kind, FieldRule{.required = true, .choices = prop_kind_names()});
   v("seed", o.seed, FieldRule{});
   v("position", o.position, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
   v("orientation", o.orientation, FieldRule{.unit = "wxyz"});

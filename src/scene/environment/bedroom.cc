@@ -1,7 +1,5 @@
 // One bedroom, and the piece of hall before its door.
 
-#include "scene/environment/furnish.h"
-#include "scene/environment/garden.h"
 #include "scene/environment/generators.h"
 #include "scene/environment/interior.h"
 
@@ -49,14 +47,7 @@ Result<Place> make_bedroom(const BedroomOptions& options) {
   shell.facade = shop.plaster({0.84, 0.82, 0.77});
   shell.doors = options.doors;
   shell.ceilings = shell.roof = options.roof;
-  shell.seed = dice.seed();
-  build_shell(plan, shell, &place);
-  add_garden(plan, options.seed, &shop, &place);
-  for (int room = 0; room < static_cast<int>(plan.rooms.size()); ++room)
-    Furnisher(plan, room, {options.passage, options.clutter, options.loose}, options.seed, &place)
-        .furnish();
-  place.sky = draw_sky(&dice, options.roof);
-  if (options.roof) place.ev100 = 8;
+  build_interior(plan, shell, interior_of(options), &dice, &shop, &place);
   return place;
 }
 

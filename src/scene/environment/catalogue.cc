@@ -54,8 +54,8 @@ constexpr PropFamily (*kFamilies[])() = {
     safety,              //
     halls,               //
     stations,            //
-    street,
-    offices,  //
+    street,              //
+    offices,             //
 };
 
 }  // namespace
@@ -70,6 +70,12 @@ const std::vector<PropKind>& prop_catalogue() {
     return list;
   }();
   return all;
+}
+
+std::vector<std::string_view> prop_kind_names() {
+  std::vector<std::string_view> names;
+  for (const PropKind& kind : prop_catalogue()) names.emplace_back(kind.name);
+  return names;
 }
 
 const PropKind* find_prop_kind(std::string_view name) {
@@ -92,12 +98,11 @@ bool uses(const Prop& prop, const std::string& material) {
 Status check_request(const PropRequest& request) {
   constexpr double kSmallest = 0.001, kLargest = 100;
   if (find_prop_kind(request.kind) == nullptr) {
-    std::vector<std::string> names;
-    for (const PropKind& k : prop_catalogue()) names.emplace_back(k.name);
+    const std::vector<std::string_view> names = prop_kind_names();
     return Error{ErrorKind::kInput,
                  fmt::format("there is no prop '{}'", request.kind),
                  {},
-                 suggest_name(request.kind, names)};
+                 suggest_name(request.kind, {names.begin(), names.end()})};
   }
   if (request.size) {
     for (const double edge : {request.size->x, request.size->y, request.size->z})

@@ -67,6 +67,7 @@ PropFamily offices();
 
 /// All kinds, family by family.
 const std::vector<PropKind>& prop_catalogue();
+std::vector<std::string_view> prop_kind_names();
 /// nullptr when there is none of that name.
 const PropKind* find_prop_kind(std::string_view name);
 

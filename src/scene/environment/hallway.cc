@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "scene/environment/furnish.h"
 #include "scene/environment/generators.h"
 #include "scene/environment/interior.h"
 
@@ -108,13 +107,10 @@ Result<Place> make_hallway(const HallwayOptions& options) {
   shell.rooms.assign(plan.rooms.size(), finish);
   shell.ceilings = options.roof;
   shell.roof = false;
-  shell.seed = dice.seed();
-  build_shell(plan, shell, &place);
-  for (int room = 0; room < static_cast<int>(plan.rooms.size()); ++room)
-    Furnisher(plan, room, {options.passage, options.clutter, options.loose}, options.seed, &place)
-        .furnish();
-  place.sky = draw_sky(&dice, options.roof);
-  if (options.roof) place.ev100 = 7;
+  InteriorOptions interior = interior_of(options);
+  interior.garden = false;
+  interior.ev100 = 7;
+  build_interior(plan, shell, interior, &dice, &shop, &place);
   return place;
 }
 

@@ -1,7 +1,5 @@
 // A furnished home: plan, shell, garden, furniture.
 
-#include "scene/environment/furnish.h"
-#include "scene/environment/garden.h"
 #include "scene/environment/generators.h"
 #include "scene/environment/interior.h"
 
@@ -22,16 +20,7 @@ Result<Place> make_house(const HouseOptions& options) {
                            {{0.86, 0.84, 0.78}, {0.80, 0.74, 0.64}, {0.72, 0.74, 0.74}}));
   shell.doors = options.doors;
   shell.ceilings = shell.roof = options.roof;
-  shell.seed = dice.seed();
-  build_shell(plan, shell, &place);
-  add_garden(plan, options.seed, &shop, &place);
-  if (options.furnished) {
-    for (int room = 0; room < static_cast<int>(plan.rooms.size()); ++room)
-      Furnisher(plan, room, {options.passage, options.clutter, options.loose}, options.seed, &place)
-          .furnish();
-  }
-  place.sky = draw_sky(&dice, options.roof);
-  if (options.roof) place.ev100 = 8;  // else it is the sun that lights the rooms
+  build_interior(plan, shell, interior_of(options), &dice, &shop, &place);
   return place;
 }
 

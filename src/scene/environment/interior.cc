@@ -1,5 +1,7 @@
 #include "scene/environment/interior.h"
 
+#include "scene/environment/garden.h"
+
 namespace gloam {
 
 Style draw_style(Dice* dice) {
@@ -67,6 +69,18 @@ SkyOptions draw_sky(Dice* dice, bool roof) {
   sky.sun_elevation = roof ? dice->uniform(22, 50) : 65;
   sky.sun_azimuth = dice->uniform(0, 360);
   return sky;
+}
+
+void build_interior(const FloorPlan& plan, ShellOptions shell, const InteriorOptions& options,
+                    Dice* dice, Workshop* shop, Place* place) {
+  shell.seed = dice->seed();
+  build_shell(plan, shell, place);
+  if (options.garden) add_garden(plan, options.seed, shop, place);
+  if (options.furnished)
+    for (int room = 0; room < static_cast<int>(plan.rooms.size()); ++room)
+      Furnisher(plan, room, options.furnish, options.seed, place).furnish();
+  place->sky = draw_sky(dice, options.roof);
+  if (options.roof) place->ev100 = options.ev100;
 }
 
 }  // namespace gloam

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <map>
 
-#include "scene/environment/furnish.h"
-#include "scene/environment/garden.h"
 #include "scene/environment/generators.h"
 #include "scene/environment/interior.h"
 
@@ -149,16 +147,7 @@ Result<Place> make_office(const OfficeOptions& options) {
   shell.doors = options.doors;
   shell.ceilings = options.roof;
   shell.roof = false;
-  shell.seed = dice.seed();
-  build_shell(plan, shell, &place);
-  add_garden(plan, options.seed, &shop, &place);
-  if (options.furnished) {
-    for (int room = 0; room < static_cast<int>(plan.rooms.size()); ++room)
-      Furnisher(plan, room, {options.passage, options.clutter, options.loose}, options.seed, &place)
-          .furnish();
-  }
-  place.sky = draw_sky(&dice, options.roof);
-  if (options.roof) place.ev100 = 8;
+  build_interior(plan, shell, interior_of(options), &dice, &shop, &place);
   return place;
 }
 

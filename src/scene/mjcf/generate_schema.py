@@ -217,7 +217,7 @@ def unit(path, attribute, units):
 
 
 def quote(text):
-    return json.dumps(text, ensure_ascii=False)
+    return json.dumps(text, ensure_ascii=False) + "sv"
 
 
 def table_rows(elements):

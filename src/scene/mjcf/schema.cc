@@ -10,12 +10,14 @@
 namespace gloam {
 namespace {
 
+using namespace std::string_view_literals;  // of the table: "text"sv
+
 constexpr MjcfType kString = MjcfType::kString, kInt = MjcfType::kInt, kReal = MjcfType::kReal,
                    kKeyword = MjcfType::kKeyword;
 
 #define GLOAM_ELEMENT(path, times, attributes)
 #define GLOAM_ATTRIBUTE(...) {__VA_ARGS__},
-const MjcfAttribute kAttributes[] = {
+constexpr MjcfAttribute kAttributes[] = {
 #include "mjcf_schema_table.inc"
 };
 #undef GLOAM_ELEMENT

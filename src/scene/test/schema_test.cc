@@ -170,6 +170,8 @@ TEST(Schema, OfScenesTellsOfEveryKey) {
   EXPECT_THAT(stereo["imager"]["description"].get<std::string>(), HasSubstr("Bayer"));
   EXPECT_EQ(tables["render"]["properties"]["tier"]["enum"], Json({"path", "fast", "direct"}));
   EXPECT_FALSE(tables["render"]["properties"]["spp"].contains("default"));
+  const Json& kinds = tables["prop"]["items"]["properties"]["kind"]["enum"];
+  EXPECT_EQ(kinds.size(), prop_kinds().size()) << "editors cannot offer every prop";
 }
 
 /// A value that the attribute takes, as a document holds it.
