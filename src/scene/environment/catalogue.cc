@@ -98,11 +98,12 @@ bool uses(const Prop& prop, const std::string& material) {
 Status check_request(const PropRequest& request) {
   constexpr double kSmallest = 0.001, kLargest = 100;
   if (find_prop_kind(request.kind) == nullptr) {
-    const std::vector<std::string_view> names = prop_kind_names();
+    const std::vector<std::string_view> kinds = prop_kind_names();
+    const std::vector<std::string> names(kinds.begin(), kinds.end());
     return Error{ErrorKind::kInput,
                  fmt::format("there is no prop '{}'", request.kind),
                  {},
-                 suggest_name(request.kind, {names.begin(), names.end()})};
+                 suggest_name(request.kind, names)};
   }
   if (request.size) {
     for (const double edge : {request.size->x, request.size->y, request.size->z})

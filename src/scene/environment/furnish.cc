@@ -141,8 +141,9 @@ void Furnisher::pictures(int count) {
     const double edge = dice_.uniform(0.5, 0.7) * (i == 0 ? 1.4 : 1);
     const bool tall = dice_.chance(0.4);
     const Vec3 size{0.024, tall ? 0.75 * edge : 1.4 * edge, tall ? 1.1 * edge : edge};
-    const std::optional<Spot> spot = layout_.hang(
-        make("picture", size, dice_.integer(0, 40)), dice_.uniform(1.5, 1.62), [&](const Spot& s) {
+    const double height = dice_.uniform(1.5, 1.62);
+    const std::optional<Spot> spot =
+        layout_.hang(make("picture", size, dice_.integer(0, 40)), height, [&](const Spot& s) {
           return -0.4 * layout_.to_middle(s) + 0.3 * layout_.to_opening(s) -
                  2.5 * hung[static_cast<int>(RoomLayout::back_of(s))];
         });

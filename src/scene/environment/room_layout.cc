@@ -295,9 +295,10 @@ void RoomLayout::scatter(int placement, const std::vector<std::string>& kinds, i
         });
         if (!free) continue;
         circles.push_back({x, y, radius});
+        const bool is_loose = dice.chance(loose);
         put_at(*made,
                {at.X_WP.p.x + c * x - s * y, at.X_WP.p.y + s * x + c * y, at.X_WP.p.z + surface.z},
-               yaw + dice.uniform(-0.6, 0.6), dice.chance(loose));
+               yaw + dice.uniform(-0.6, 0.6), is_loose);
         break;
       }
     }

@@ -387,15 +387,15 @@ class TunnelBuilder {
       if (kind == "traffic_cone") {
         for (int k = 0; k < 3; ++k) {
           const int cone = make(kind);
-          place_.put(cone, "", pose(s + 1.3 * k, lane, 0, dice_.uniform(-3, 3)),
-                     dice_.chance(o_.loose));
+          const bool loose = dice_.chance(o_.loose);
+          place_.put(cone, "", pose(s + 1.3 * k, lane, 0, dice_.uniform(-3, 3)), loose);
         }
         s += 3;
       } else {
         const int thing = make(kind);
-        place_.put(thing, "",
-                   pose(s, lane, 0, kind == "safety_barrier" ? 0 : dice_.uniform(-0.3, 0.3)),
-                   place_.prop(thing).loose && dice_.chance(o_.loose));
+        const bool loose = place_.prop(thing).loose && dice_.chance(o_.loose);
+        const double turned = kind == "safety_barrier" ? 0 : dice_.uniform(-0.3, 0.3);
+        place_.put(thing, "", pose(s, lane, 0, turned), loose);
       }
     }
   }

@@ -218,8 +218,9 @@ class WarehouseBuilder {
     const auto load = [&](int prop, double across) {
       // Across the bay is the rack's y; the fork pockets look into the aisle.
       const double a = across + dice_.uniform(-0.02, 0.02), deep = dice_.uniform(-0.03, 0.03);
+      const bool loose = dice_.chance(o_.loose);
       put(prop, zone, x + c * deep - s * a, y + s * deep + c * a, shelf.z,
-          yaw + dice_.uniform(-0.012, 0.012), dice_.chance(o_.loose));
+          yaw + dice_.uniform(-0.012, 0.012), loose);
     };
     if (shelf.z < 0.01f && room > 1.25 && dice_.chance(0.15)) {
       for (const double across : {-0.65, 0.65})

@@ -279,10 +279,13 @@ Prop nightstand(Workshop& shop) {
     b.show("decks", f.along(shop, Axis::kY),
            slab({-x, -y + kBoard, cut - kBoard}, {face, y - kBoard, cut - 0.002f}, 0.001f));
     b.collide_box({-x, -y + kBoard, cut - kBoard}, {face, y - kBoard, cut - 0.004f});
-    show_book(&b, shop, {0.15f, 0.028f, 0.21f}, {-0.01f, -0.02f, foot + kBoard + 0.0005f}, 0,
-              float(shop.dice.uniform(-12, 12)), shop.dice.integer(0, kBookTints - 1), true);
-    show_book(&b, shop, {0.13f, 0.022f, 0.19f}, {-0.01f, -0.02f, foot + kBoard + 0.029f}, 0,
-              float(shop.dice.uniform(-25, 25)), shop.dice.integer(0, kBookTints - 1), true);
+    const auto lay = [&](Vec3f book, float z_book, double turned) {
+      const int tint = shop.dice.integer(0, kBookTints - 1);
+      show_book(&b, shop, book, {-0.01f, -0.02f, foot + kBoard + z_book}, 0,
+                float(shop.dice.uniform(-turned, turned)), tint, true);
+    };
+    lay({0.15f, 0.028f, 0.21f}, 0.0005f, 12);
+    lay({0.13f, 0.022f, 0.19f}, 0.029f, 25);
   }
   b.mass = case_mass(size.x, size.y, z - foot, 3) + 1;
   p.surfaces.push_back({{-x + 0.02f, -y + 0.02f}, {face, y - 0.02f}, z});

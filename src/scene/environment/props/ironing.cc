@@ -58,9 +58,10 @@ Prop drying_rack(Workshop& shop) {
                 shift = float(shop.dice.uniform(-1, 1)) * (y - 0.05f - w / 2);
     const float drop = float(shop.dice.uniform(0.25, 0.5)),
                 behind = drop * float(shop.dice.uniform(0.6, 1));
-    b.show("cloth_" + std::to_string(i),
-           shop.fabric(i == 0 ? shop.color(shop.dice.pick(dyes)) : shop.dice.pick(dyes), 0.0012),
-           draped(w, drop, behind, 0.003f, shop.dice.seed(), 0.003f).moved(at, shift, z));
+    const Solid cloth = draped(w, drop, behind, 0.003f, shop.dice.seed(), 0.003f);
+    const Vec3 dye = shop.dice.pick(dyes);
+    b.show("cloth_" + std::to_string(i), shop.fabric(i == 0 ? shop.color(dye) : dye, 0.0012),
+           cloth.moved(at, shift, z));
   }
   b.collide_box({-x + 0.06f, -y + 0.1f, z - 0.38f}, {x - 0.04f, y - 0.1f, z - 0.008f});
   b.mass = 5.5;

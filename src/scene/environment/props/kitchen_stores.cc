@@ -133,8 +133,8 @@ Prop jar(Workshop& shop) {
   const float r = float(shop.dice.uniform(0.04, 0.06)), h = float(shop.dice.uniform(0.12, 0.24));
   Prop p;
   PropPart& b = p.body();
-  show_jar(shop, &b, {}, r, h, float(shop.dice.uniform(0.35, 0.78)),
-           shop.color(shop.dice.pick(kDry)));
+  const Vec3 content = shop.color(shop.dice.pick(kDry));
+  show_jar(shop, &b, {}, r, h, float(shop.dice.uniform(0.35, 0.78)), content);
   b.collide_cylinder(r, 0, h * 0.86f);
   b.collide_cylinder(r * 0.92f, h * 0.86f, h);
   b.mass = 900.0 * kPi * r * r * h;
@@ -162,8 +162,9 @@ Prop spice_rack(Workshop& shop) {
         slab({front - 0.007f, -y + 0.012f, z + 0.018f}, {front, y - 0.012f, z + 0.034f}, 0.002f));
     for (int i = 0; i < 6; ++i) {
       const float at = -y + 0.036f + (2 * y - 0.072f) * float(i) / 5;
+      const Vec3 content = shop.dice.pick(kDry);
       show_jar(shop, &b, {(front + back) / 2 - 0.003f, at, z}, r, 0.088f,
-               float(shop.dice.uniform(0.3, 0.75)), shop.dice.pick(kDry));
+               float(shop.dice.uniform(0.3, 0.75)), content);
       b.show("labels", shop.paper({0.90, 0.88, 0.82}),
              lathe({{r + 0.0004f, 0.022f}, {r + 0.0004f, 0.050f}}, 24)
                  .moved((front + back) / 2 - 0.003f, at, z));

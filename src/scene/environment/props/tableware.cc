@@ -245,11 +245,11 @@ Prop plate(Workshop& shop) {
                            {0.090f, 0.011f}, {0.080f, 0.0065f}, {0, 0.006f}};
   const Vec3 color = glaze(shop);
   const int count = dice.chance(0.25) ? dice.integer(2, 5) : 1;
-  for (int i = 0; i < count; ++i)
+  for (int i = 0; i < count; ++i) {
+    const float dy = float(dice.uniform(-0.001, 0.001)), dx = float(dice.uniform(-0.001, 0.001));
     b.show("plate", shop.ceramic(color),
-           vessel(outline, k, 0.004f, 56)
-               .moved(float(dice.uniform(-0.001, 0.001)), float(dice.uniform(-0.001, 0.001)),
-                      0.0072f * k * float(i)));
+           vessel(outline, k, 0.004f, 56).moved(dx, dy, 0.0072f * k * float(i)));
+  }
   const float stack = 0.0072f * k * float(count - 1);
   b.collide_cylinder(0.080f * k, 0, 0.008f * k + stack);
   b.collide_cylinder(0.130f * k, 0.008f * k + stack, 0.022f * k + stack);

@@ -45,12 +45,12 @@ Prop upholstered(Workshop& shop, Vec3f size, int seats, int pillows) {
     const float side = k % 2 == 0 ? -1.0f : 1.0f, edge = float(dice.uniform(0.40, 0.48));
     const Vec3 tints[] = {
         shop.style.accent, {0.78, 0.57, 0.24}, {0.62, 0.33, 0.24}, {0.86, 0.80, 0.70}};
+    const Solid pillow = cushion({0.14f, edge, edge}, 0.25f, 0.03f, dice.seed(), 0.12f, 0.006f)
+                             .turned(Axis::kX, float(dice.uniform(-8, 8)))
+                             .turned(Axis::kY, -22)
+                             .turned(Axis::kZ, side * -float(dice.uniform(8, 22)));
     b.show(k == 0 ? "pillow" : "pillow_2", shop.fabric(tints[dice.integer(0, 3)], 0.0013),
-           cushion({0.14f, edge, edge}, 0.25f, 0.03f, dice.seed(), 0.12f, 0.006f)
-               .turned(Axis::kX, float(dice.uniform(-8, 8)))
-               .turned(Axis::kY, -22)
-               .turned(Axis::kZ, side * -float(dice.uniform(8, 22)))
-               .moved(-x + 0.45f, side * (inner / 2 - edge * 0.46f), seat + edge / 2 + 0.005f));
+           pillow.moved(-x + 0.45f, side * (inner / 2 - edge * 0.46f), seat + edge / 2 + 0.005f));
   }
   b.show("legs", dice.chance(0.7) ? shop.wood(Axis::kZ) : shop.metal("black"),
          round_legs(x - 0.10f, y - 0.10f, foot + 0.01f, 0.014f, 0.023f));
