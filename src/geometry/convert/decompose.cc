@@ -15,6 +15,7 @@
 #include "base/cache_writer.h"
 #include "base/files.h"
 #include "base/hash.h"
+#include "geometry/convert/coarsen.h"
 
 namespace gloam {
 namespace {
@@ -145,13 +146,6 @@ bool load_entry(const fs::path& path, std::vector<TriangleMesh>* hulls) {
 
 Result<std::vector<TriangleMesh>> decompose(const TriangleMesh& welded,
                                             const DecomposeOptions& options) {
-  if (welded.triangle_count() > kMostDecomposed)
-    return Error{ErrorKind::kInput,
-                 fmt::format("{} triangles are too many to take apart: {} at most",
-                             welded.triangle_count(), kMostDecomposed),
-                 {},
-                 "give colliders = \"hull\" or \"none\", a mesh of fewer triangles, or for ground "
-                 "an [[hfield]]"};
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
   static const Result<CoacdApi> api = load_library();
@@ -164,7 +158,7 @@ Result<std::vector<TriangleMesh>> decompose(const TriangleMesh& welded,
   std::vector<TriangleMesh> hulls;
   if (load_entry(entry, &hulls)) return hulls;
   try {
-    hulls = run(*api, welded, options);
+    hulls = run(*api, coarsened(welded, kMostDecomposed), options);
   } catch (const std::exception& e) {
     return Error{ErrorKind::kInput, fmt::format("CoACD gives up on the mesh: {}", e.what())};
   } catch (...) {
