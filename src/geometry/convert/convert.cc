@@ -78,8 +78,8 @@ Result<TriangleMesh> welded(const TriangleMesh& mesh) {
     const Vec3f a = mesh.positions[mesh.indices[t]], b = mesh.positions[mesh.indices[t + 1]],
                 c = mesh.positions[mesh.indices[t + 2]];
     for (const Vec3f p : {a, b, c}) {
-      const double far = max_component({std::abs(p.x), std::abs(p.y), std::abs(p.z)});
-      if (std::isnan(p.x + p.y + p.z) || std::isnan(far))
+      const double far = max_component(Vec3f{std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+      if (std::isnan(p.x) || std::isnan(p.y) || std::isnan(p.z))
         return Error{ErrorKind::kInput, "has a vertex that is no number"};
       if (far > kFarthest)
         return Error{ErrorKind::kInput,

@@ -374,7 +374,7 @@ class PartsSlow : public testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST_F(PartsSlow, OfAnLAndATorusAndAMug) {
+TEST_F(PartsSlow, OfThinAndThickThings) {
   struct Case {
     const char* name;
     TriangleMesh mesh;
@@ -382,7 +382,7 @@ TEST_F(PartsSlow, OfAnLAndATorusAndAMug) {
   };
   for (const Case& c :
        {Case{"L", l_shape(), 0.97, 0.005}, Case{"torus", torus(1, 0.25f), 0.8, 0.02},
-        Case{"mug", mug(), 0.25, 0.02}}) {
+        Case{"mug", mug(), 0.8, 0.005}, Case{"chair", chair(), 0.9, 0.005}}) {
     const auto start = std::chrono::steady_clock::now();
     const Converted made = convert(c.mesh);
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
