@@ -65,8 +65,7 @@ void add_convert(CLI::App& app, Globals& globals, Action& action) {
   auto command = std::make_shared<ConvertCommand>();
   sub->add_option("FILE", command->file, "glTF, GLB, OBJ, STL or PLY")->required();
   sub->add_option("--node", command->object.node, "One node by its name");
-  sub->add_option("--colliders", command->object.colliders, "As in [[object]]")
-      ->check(CLI::IsMember({"auto", "box", "sphere", "capsule", "hull", "hulls", "none"}));
+  sub->add_option("--colliders", command->object.colliders, "As in [[object]]");
   sub->add_option("--unit", command->object.unit, "Metres of one unit of the file")
       ->check(positive_number());
   sub->footer("Example:\n  gloam convert assets/models/lantern/lantern.glb --colliders hull");

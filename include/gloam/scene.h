@@ -109,6 +109,9 @@ struct EnvironmentOptions {
   std::string up = "auto";         ///< of a mesh file: y | z points up; auto = y of glTF, else z
   double unit = 1;                 ///< of a mesh file: [m] of one of its units
   std::string colliders = "auto";  ///< of a mesh file, each node's: as of [[object]]
+  /// Of a mesh file, nodes whose name another node or the scene has: rename = the later is NAME_2
+  /// …, and so said; refuse = an error; prefix = all are FILE_STEM/NODE.
+  std::string clash = "rename";
   // Instead of a file, one of the generators:
   std::optional<HouseOptions> house = {};
   std::optional<WarehouseOptions> warehouse = {};
@@ -190,14 +193,13 @@ struct MaterialOptions {
 struct VisualOptions {
   std::string name = {};            ///< unique; its materials are "NAME/MATERIAL"
   std::filesystem::path file = {};  ///< relative to the scene file
+  std::string node = {};            ///< name of a node of the file; empty = all of it
   std::string body = {};            ///< full name of the body it is fixed to; empty = world
   Pose X_BV = {};                   ///< where it is in that body
   Vec3 scale = {1, 1, 1};    ///< along the visual's axes, after `up`; > 0; one number for all three
   std::string up = "auto";   ///< y | z: axis of the file that points up; auto = y of glTF, else z
   double unit = 1;           ///< [m] of one unit of the file
   bool casts_shadow = true;  ///< false: light passes through it
-  /// Of the file, counted from 0; empty = all. Not in scene files: for what is made of nodes.
-  std::vector<int> parts = {};
   SourceLoc loc = {};
 };
 

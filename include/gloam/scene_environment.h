@@ -127,9 +127,10 @@ struct PropOptions {
 struct ObjectOptions {
   std::string name = {};            ///< unique; of its body
   std::filesystem::path file = {};  ///< relative to the scene file
-  std::string node = {};            ///< name of a node of the file; empty = all of it
-  Pose X_WO = {};                   ///< where the file's origin is in the world
-  Vec3 scale = {1, 1, 1};           ///< after `up`; > 0; one number for all three
+  std::string node =
+      {};          ///< name of a node of the file, the second of a name is NAME_2; empty = all
+  Pose X_WO = {};  ///< where the file's origin is in the world
+  Vec3 scale = {1, 1, 1};   ///< after `up`; > 0; one number for all three
   std::string up = "auto";  ///< y | z: axis of the file that points up; auto = y of glTF, else z
   double unit = 1;          ///< [m] of one unit of the file
   std::string motion = "dynamic";   ///< static | dynamic | mocap

@@ -15,9 +15,12 @@ inline const FieldRule kFileUnit{.unit = "m", .min = 1e-9, .max = 1e6};
 inline const FieldRule kRoomHeight{.unit = "m", .min = 2.2, .max = 4};
 inline const FieldRule kFriction{.min = 0, .max = 100};
 
-/// How a mesh file lies in Gloam's axes and metres.
+/// A mesh file, and where and how large it is; X = `position` and `orientation` of `o`.
 template <class Visitor, class Options>
-void visit_file_axes(Visitor& v, Options& o) {
+void visit_placed_file(Visitor& v, Options& o, Pose& X) {
+  v("file", o.file, FieldRule{.required = true});
+  v("position", X.p, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
+  v("orientation", X.q, FieldRule{.unit = "wxyz"});
   v("scale", o.scale, FieldRule{.min = 1e-6, .max = 1e6, .one_for_three = true});
   v("up", o.up, kUpAxis);
   v("unit", o.unit, kFileUnit);
@@ -121,11 +124,8 @@ void visit_fields(Visitor& v, PropOptions& o) {
 template <class Visitor>
 void visit_fields(Visitor& v, ObjectOptions& o) {
   v("name", o.name, FieldRule{.required = true, .identifier = true});
-  v("file", o.file, FieldRule{.required = true});
+  visit_placed_file(v, o, o.X_WO);
   v("node", o.node, FieldRule{});
-  v("position", o.X_WO.p, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
-  v("orientation", o.X_WO.q, FieldRule{.unit = "wxyz"});
-  visit_file_axes(v, o);
   v("motion", o.motion, FieldRule{.choices = {"static", "dynamic", "mocap"}});
   v("density", o.density, FieldRule{.unit = "kg/m3", .min = 0.01, .max = 1e5});
   v("mass", o.mass, FieldRule{.unit = "kg", .min = 1e-6, .max = 1e9});
@@ -137,14 +137,11 @@ void visit_fields(Visitor& v, ObjectOptions& o) {
 
 template <class Visitor>
 void visit_fields(Visitor& v, HeightFieldOptions& o) {
-  const FieldRule place{.unit = "m", .min = -kLargestLength, .max = kLargestLength};
+  const FieldRule corner{.unit = "m", .min = -kLargestLength, .max = kLargestLength};
   v("name", o.name, FieldRule{.required = true, .identifier = true});
-  v("file", o.file, FieldRule{.required = true});
-  v("position", o.X_WF.p, place);
-  v("orientation", o.X_WF.q, FieldRule{.unit = "wxyz"});
-  visit_file_axes(v, o);
-  v("low", o.low, place);
-  v("high", o.high, place);
+  visit_placed_file(v, o, o.X_WF);
+  v("low", o.low, corner);
+  v("high", o.high, corner);
   v("resolution", o.resolution, FieldRule{.unit = "m", .min = 1e-4, .max = 1e4});
   v("layers", o.layers, FieldRule{.min = 1, .max = 8});
   v("friction", o.friction, kFriction);

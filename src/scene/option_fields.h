@@ -64,6 +64,7 @@ void visit_fields(Visitor& v, EnvironmentOptions& o) {
   v("up", o.up, kUpAxis);
   v("unit", o.unit, kFileUnit);
   v("colliders", o.colliders, FieldRule{.choices = words(kColliderKinds)});
+  v("clash", o.clash, FieldRule{.choices = {"rename", "refuse", "prefix"}});
   v("house", o.house, FieldRule{});
   v("warehouse", o.warehouse, FieldRule{});
   v("office", o.office, FieldRule{});
@@ -170,11 +171,9 @@ void visit_fields(Visitor& v, MaterialOptions& o) {
 template <class Visitor>
 void visit_fields(Visitor& v, VisualOptions& o) {
   v("name", o.name, FieldRule{.required = true, .identifier = true});
-  v("file", o.file, FieldRule{.required = true});
+  visit_placed_file(v, o, o.X_BV);
+  v("node", o.node, FieldRule{});
   v("body", o.body, FieldRule{});
-  v("position", o.X_BV.p, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
-  v("orientation", o.X_BV.q, FieldRule{.unit = "wxyz"});
-  visit_file_axes(v, o);
   v("casts_shadow", o.casts_shadow, FieldRule{});
 }
 

@@ -115,6 +115,21 @@ void report_conflicts(mjSpec* spec, int first, const RobotOptions& robot,
   }
 }
 
+// What begins with the robot's name is taken for a part of it: by labels, overrides, bindings.
+Status check_prefix(mjSpec* base, const RobotOptions& robot) {
+  for (mjsElement* e = mjs_firstElement(base, mjOBJ_BODY); e != nullptr;
+       e = mjs_nextElement(base, e)) {
+    const std::string name = mjs_getString(mjs_getName(e));
+    if (name != robot.name && !name.starts_with(robot.name + "/")) continue;
+    return Error{ErrorKind::kInput,
+                 fmt::format("robot '{}': the environment has a body '{}', which would pass for a "
+                             "part of the robot",
+                             robot.name, name),
+                 robot.loc, "rename the robot: its bodies are called ROBOT/BODY"};
+  }
+  return {};
+}
+
 Status attach_robot(mjSpec* base, const RobotOptions& robot, mjSpec* child, ModelFiles* files,
                     std::vector<Error>* unsupported) {
   const std::string prefix = robot.name + "/";
@@ -163,6 +178,7 @@ Result<Level> assemble(const Scene& scene, const std::optional<Place>& place,
   if (level.spec->compiler.conflict == mjCONFLICT_WARNING && !scene.robots.empty())
     level.spec->compiler.conflict = policy;
   for (const RobotOptions& robot : scene.robots) {
+    GLOAM_TRY_STATUS(check_prefix(level.spec.get(), robot));
     GLOAM_TRY(SpecPtr child, parse_model(robot.file, scene.access, files, &level.unsupported));
     GLOAM_TRY_STATUS(apply_overrides(scene.overrides, robot.name, child.get()));
     GLOAM_TRY_STATUS(attach_robot(level.spec.get(), robot, child.get(), files, &level.unsupported));

@@ -9,9 +9,8 @@ namespace gloam {
 
 /// What is to be a body. Its frame is the file's, in Gloam's axes and metres.
 struct MeshObject {
-  ObjectOptions options;   ///< its name is no other's
-  std::vector<int> parts;  ///< instances of the file that it is; empty = all
-  TriangleMesh mesh;       ///< of them, in the body's frame
+  ObjectOptions options;  ///< its name is no other's
+  TriangleMesh mesh;      ///< of its node or the whole file, in the body's frame
 };
 
 struct MeshObjects {
@@ -21,14 +20,15 @@ struct MeshObjects {
 };
 
 /// Reads their files, by way of the cache on disk. Errors: a file that cannot be read, no such
-/// node, nothing in it.
+/// node, nothing in it, names that clash where they must not.
 Result<MeshObjects> load_mesh_objects(const Scene& scene);
 
 /// Adds a [[visual]] for each. Errors: the scene has a visual of that name.
 Status add_object_visuals(const MeshObjects& objects, Scene* scene);
 
 /// Converts them (geometry/convert) and adds a body each, with its colliders in group 3. What is
-/// odd about the meshes is told in `unsupported`. Errors: convert_mesh's, names that the spec has.
+/// odd about the meshes is told in `unsupported`. Errors: convert_mesh's, names that the spec has,
+/// what is too light to move.
 Status add_objects(const MeshObjects& objects, mjSpec* spec, std::vector<Error>* unsupported);
 
 }  // namespace gloam

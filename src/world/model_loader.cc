@@ -37,6 +37,10 @@ Result<fs::path> root_of(const Scene& scene, const fs::path& file) {
 
 }  // namespace
 
+Error said_of(const std::string& user, const SourceLoc& loc, const Error& error) {
+  return {error.kind, fmt::format("{}: {}", user, error.message), loc, error.hint};
+}
+
 Result<ModelFile> load_model_file(const Scene& scene, const fs::path& file, const std::string& user,
                                   const SourceLoc& loc,
                                   const std::function<void(double share)>& progress) {
@@ -46,9 +50,8 @@ Result<ModelFile> load_model_file(const Scene& scene, const fs::path& file, cons
   Result<ModelFile> model = read_model_file_cached(file, cache_folder(kVisualCache), options);
   if (model.ok()) return model;
   const Error& error = model.error();
-  return Error{error.kind,
-               fmt::format("{}: {}", user, Error{error.kind, error.message, error.loc}.to_string()),
-               loc, error.hint};
+  const std::string told = Error{error.kind, error.message, error.loc}.to_string();
+  return said_of(user, loc, {error.kind, told, {}, error.hint});
 }
 
 Result<std::vector<LoadedModel>> load_model_files(const Scene& scene,

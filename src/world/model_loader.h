@@ -11,6 +11,9 @@
 
 namespace gloam {
 
+/// The error as one of `user`, "visual 'chair'", at `loc`.
+Error said_of(const std::string& user, const SourceLoc& loc, const Error& error);
+
 struct LoadedModel {
   std::filesystem::path path;  ///< as in VisualOptions::file
   std::string name;            ///< of the file, for messages

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/log.h"
+#include "scene/spec_geom.h"
 #include "world/model_loader.h"
 #include "world/visual_file.h"
 
@@ -14,7 +15,6 @@ namespace {
 
 constexpr double kFlat = 1e-6;          // [m] MuJoCo wants a height above 0, of flat fields too
 constexpr double kDoubtfulSize = 1000;  // [m] more of a file in metres is worth a question
-constexpr int kHiddenGroup = 3;         // of colliders
 
 VisualOptions visual_of(const HeightFieldOptions& o) {
   VisualOptions visual;
@@ -28,11 +28,7 @@ VisualOptions visual_of(const HeightFieldOptions& o) {
   return visual;
 }
 
-Error named(const HeightFieldOptions& o, Error error) {
-  error.message = fmt::format("hfield '{}': {}", o.name, error.message);
-  error.loc = o.loc;
-  return error;
-}
+std::string title(const HeightFieldOptions& o) { return fmt::format("hfield '{}'", o.name); }
 
 /// The file's meshes where the picture has them, too.
 std::vector<PlacedMesh> place_meshes(const HeightFieldOptions& o, const ModelFile& model) {
@@ -86,7 +82,8 @@ void report(const HeightFieldOptions& o, const Floors& floors,
 Result<std::vector<HeightField>> sample(const HeightFieldOptions& o, const ModelFile& model,
                                         std::vector<Error>* notes) {
   const auto note = [&](std::string text, std::string hint) {
-    notes->push_back(named(o, {ErrorKind::kUnsupported, std::move(text), {}, std::move(hint)}));
+    notes->push_back(
+        {ErrorKind::kUnsupported, fmt::format("{}: {}", title(o), text), o.loc, std::move(hint)});
     log_warning("{}", notes->back().to_string());
   };
   const std::vector<PlacedMesh> meshes = place_meshes(o, model);
@@ -144,11 +141,8 @@ void add_field(const std::string& name, const HeightFieldOptions& o, const Heigh
   mjs_setString(geom->hfieldname, name.c_str());
   const double middle[3] = {grid.low[0] + half_x, grid.low[1] + half_y, base};
   std::copy(middle, middle + 3, geom->pos);
-  if (o.drawn) geom->group = kHiddenGroup;
-  if (o.friction) {
-    const double friction[3] = {o.friction->x, o.friction->y, o.friction->z};
-    std::copy(friction, friction + 3, geom->friction);
-  }
+  if (o.drawn) geom->group = kColliderGroup;
+  write_friction(o.friction, geom);
 }
 
 }  // namespace
@@ -163,13 +157,12 @@ Result<std::vector<SampledGround>> sample_grounds(const Scene& scene, ModelFiles
                                                   std::vector<Error>* notes) {
   std::vector<SampledGround> grounds;
   for (const HeightFieldOptions& o : scene.hfields) {
-    GLOAM_TRY(const ModelFile model,
-              load_model_file(scene, o.file, fmt::format("hfield '{}'", o.name), o.loc));
+    GLOAM_TRY(const ModelFile model, load_model_file(scene, o.file, title(o), o.loc));
     GLOAM_TRY_STATUS(files->read(o.file));
     for (const std::string& part : model.parts)
       (void)files->read(o.file.parent_path() / part);  // what is missing is remembered as missing
     Result<std::vector<HeightField>> fields = sample(o, model, notes);
-    if (!fields.ok()) return named(o, fields.error());
+    if (!fields.ok()) return said_of(title(o), o.loc, fields.error());
     grounds.push_back({o, std::move(fields).value()});
   }
   return grounds;
@@ -182,11 +175,10 @@ Status add_grounds(const std::vector<SampledGround>& grounds, mjSpec* spec) {
       const std::string name = i == 0 ? own : fmt::format("{}_{}", own, i + 1);
       for (const mjtObj type : {mjOBJ_GEOM, mjOBJ_HFIELD}) {
         if (mjs_findElement(spec, type, name.c_str()) == nullptr) continue;
-        return named(ground.options, {ErrorKind::kInput,
-                                      fmt::format("the environment has a {} '{}' already",
-                                                  mju_type2Str(type), name),
-                                      {},
-                                      "give it another name"});
+        return Error{ErrorKind::kInput,
+                     fmt::format("{}: the environment has a {} '{}' already", title(ground.options),
+                                 mju_type2Str(type), name),
+                     ground.options.loc, "give it another name"};
       }
       add_field(name, ground.options, ground.fields[i], spec);
     }
@@ -197,15 +189,7 @@ Status add_grounds(const std::vector<SampledGround>& grounds, mjSpec* spec) {
 Status add_ground_looks(Scene* scene) {
   for (const HeightFieldOptions& o : scene->hfields) {
     if (!o.drawn) continue;
-    const auto same = std::find_if(scene->visuals.begin(), scene->visuals.end(),
-                                   [&](const VisualOptions& v) { return v.name == o.name; });
-    if (same == scene->visuals.end()) {
-      scene->visuals.push_back(visual_of(o));
-    } else if (same->file != o.file) {
-      return named(
-          o,
-          {ErrorKind::kInput, "there is a [[visual]] of this name, too", {}, "rename one of them"});
-    }
+    GLOAM_TRY_STATUS(add_visual_of(title(o), visual_of(o), scene));
   }
   return {};
 }

@@ -13,10 +13,13 @@
 #include "world/imported_surface.h"
 #include "world/level.h"
 #include "world/model_loader.h"
+#include "world/model_nodes.h"
 #include "world/visual_pose.h"
 
 namespace gloam {
 namespace {
+
+std::string title(const VisualOptions& v) { return fmt::format("visual '{}'", v.name); }
 
 constexpr float kFarthest = 1e9f;  // [m] a vertex from its mesh's origin
 
@@ -54,15 +57,15 @@ class VisualImporter {
       bodies_.push_back(body);
     }
     std::vector<FileUse> uses;
-    for (const VisualOptions& v : world_.scene.visuals)
-      uses.push_back({v.file, fmt::format("visual '{}'", v.name), v.loc});
+    for (const VisualOptions& v : world_.scene.visuals) uses.push_back({v.file, title(v), v.loc});
     GLOAM_TRY(files_, load_model_files(world_.scene, uses));
     for (LoadedModel& file : files_) {
       GLOAM_TRY(ImportedTextures textures, ImportedTextures::decode(file.model, file.name, out_));
       file.model.images.clear();
+      nodes_.push_back(nodes_of(file.model));
       textures_.push_back(std::move(textures));
     }
-    for (size_t v = 0; v < bodies_.size(); ++v) add_visual(static_cast<int>(v));
+    for (size_t v = 0; v < bodies_.size(); ++v) GLOAM_TRY_STATUS(add_visual(static_cast<int>(v)));
     for (ImportedTextures& textures : textures_) textures.finish();
     return bake_meshes();
   }
@@ -70,12 +73,12 @@ class VisualImporter {
  private:
   Error no_body(const VisualOptions& visual) const {
     const mjModel* m = world_.model.get();
-    return {ErrorKind::kInput,
-            fmt::format("visual '{}': there is no body '{}'", visual.name, visual.body), visual.loc,
+    return {ErrorKind::kInput, fmt::format("{}: there is no body '{}'", title(visual), visual.body),
+            visual.loc,
             suggest_name(visual.body, object_names(m, mjOBJ_BODY, static_cast<int>(m->nbody)))};
   }
 
-  void add_visual(int index) {
+  Status add_visual(int index) {
     const VisualOptions& visual = world_.scene.visuals[static_cast<size_t>(index)];
     const size_t file = file_of(visual);
     const ModelFile& model = files_[file].model;
@@ -88,13 +91,19 @@ class VisualImporter {
       add_surface(describe_imported(material, visual.name + "/" + own, mean_scale(visual),
                                     &textures_[file], out_));
     }
-    for (const int part : visual.parts) add_part(visual, index, file, part, X_BF);
-    if (!visual.parts.empty() && visual.parts[0] != 0) return;
-    for (size_t i = 0; i < model.instances.size() && visual.parts.empty(); ++i)
-      add_part(visual, index, file, static_cast<int>(i), X_BF);
-    // What belongs to no part comes once, with the first.
+    if (visual.node.empty()) {
+      for (size_t i = 0; i < model.instances.size(); ++i)
+        add_part(visual, index, file, static_cast<int>(i), X_BF);
+    } else {
+      const Result<ModelNode> node = find_node(nodes_[file], files_[file].name, visual.node);
+      if (!node.ok()) return said_of(title(visual), visual.loc, node.error());
+      for (const int part : node->instances) add_part(visual, index, file, part, X_BF);
+      if (visual.node != nodes_[file][0].name) return {};
+    }
+    // What belongs to no node comes once, with the first.
     for (const ImportedLight& light : model.lights) add_light(visual, index, light, X_BF);
     report(visual, model);
+    return {};
   }
 
   size_t file_of(const VisualOptions& visual) const {
@@ -176,7 +185,7 @@ class VisualImporter {
   void report(const VisualOptions& visual, const ModelFile& model) {
     const auto add = [&](const std::string& note) {
       out_->unsupported.push_back(
-          {ErrorKind::kUnsupported, fmt::format("visual '{}': {}", visual.name, note), visual.loc});
+          {ErrorKind::kUnsupported, fmt::format("{}: {}", title(visual), note), visual.loc});
     };
     for (const std::string& note : model.notes) add(note);
     if (model.dropped_triangles > 0)
@@ -240,12 +249,13 @@ class VisualImporter {
   LightLevels* levels_;
   RenderDescription* out_;
   std::vector<LoadedModel> files_;
-  std::vector<ImportedTextures> textures_;  // by file
-  std::vector<int> bodies_;                 // by visual
-  std::vector<ImportedSurface> surfaces_;   // of all visuals
-  std::vector<int> rows_;                   // of materials, by surface
-  size_t first_surface_ = 0;                // of the visual at hand
-  int plain_ = -1;                          // its surface for parts without one
+  std::vector<ImportedTextures> textures_;     // by file
+  std::vector<std::vector<ModelNode>> nodes_;  // by file
+  std::vector<int> bodies_;                    // by visual
+  std::vector<ImportedSurface> surfaces_;      // of all visuals
+  std::vector<int> rows_;                      // of materials, by surface
+  size_t first_surface_ = 0;                   // of the visual at hand
+  int plain_ = -1;                             // its surface for parts without one
   std::map<MeshKey, int> mesh_rows_;
   std::vector<BakedMesh> baked_;
   std::vector<size_t> parts_;  // rows of instances
@@ -259,6 +269,18 @@ Affine3f visual_placement(const VisualOptions& visual, bool was_y_up) {
   const mjtNum p[3] = {visual.X_BV.p.x, visual.X_BV.p.y, visual.X_BV.p.z};
   const mjtNum q[4] = {visual.X_BV.q.w, visual.X_BV.q.x, visual.X_BV.q.y, visual.X_BV.q.z};
   return rigid_pose(p, q) * file_axes(visual.scale, visual.unit, visual.up, was_y_up);
+}
+
+Status add_visual_of(const std::string& user, VisualOptions visual, Scene* scene) {
+  const auto same = std::find_if(scene->visuals.begin(), scene->visuals.end(),
+                                 [&](const VisualOptions& v) { return v.name == visual.name; });
+  if (same == scene->visuals.end()) {
+    scene->visuals.push_back(std::move(visual));
+  } else if (same->file != visual.file || same->body != visual.body) {
+    return Error{ErrorKind::kInput, fmt::format("{} and {} have the same name", user, title(*same)),
+                 visual.loc, "rename one of them"};
+  }
+  return {};
 }
 
 Status describe_visuals(const CompiledWorld& world, const std::vector<Affine3f>& poses,

@@ -18,9 +18,13 @@ using AddVisualPart = std::function<void(InstanceDescription instance, int body,
 /// The file's content F, in Gloam's axes, in the body B.
 Affine3f visual_placement(const VisualOptions& visual, bool was_y_up);
 
+/// Adds what draws `user`, "object 'crate'", unless it is there: a compiled Scene has it. Error:
+/// another visual of that name.
+Status add_visual_of(const std::string& user, VisualOptions visual, Scene* scene);
+
 /// Reads the scene's visuals, by way of the cache on disk, and adds their meshes, textures,
-/// materials, instances and lights. `poses` = X_WB at qpos0. Errors: no such body, a file that
-/// cannot be read.
+/// materials, instances and lights. `poses` = X_WB at qpos0. Errors: no such body or node, a
+/// file that cannot be read.
 Status describe_visuals(const CompiledWorld& world, const std::vector<Affine3f>& poses,
                         const AddVisualPart& add, LightLevels* levels, RenderDescription* out);
 

@@ -16,13 +16,15 @@
 namespace gloam {
 namespace {
 
-constexpr double kAlike = 0.01;     // distance of surfaces that count as one, of the size
-constexpr double kFlat = 1e-4;      // thickness of what is flat, of the longest side
-constexpr double kPlate = 1e-3;     // thickness that it gets, of the longest side
-constexpr double kExact = 1e-5;     // what the hull of the mesh leaves out, of the diagonal
-constexpr double kSmooth = 1e-3;    // what a hull may leave out, of the longest side
-constexpr double kSeam = 1e-6;      // between vertices that are one, of the diagonal
-constexpr size_t kMostNear = 4096;  // vertices of nearly one x that are compared
+constexpr double kAlike = 0.01;   // distance of surfaces that count as one, of the size
+constexpr double kFlat = 1e-4;    // thickness of what is flat, of the longest side
+constexpr double kPlate = 1e-3;   // thickness that it gets, of the longest side
+constexpr double kExact = 1e-5;   // what the hull of the mesh leaves out, of the diagonal
+constexpr double kSmooth = 1e-3;  // what a hull may leave out, of the longest side
+constexpr double kSeam = 1e-6;    // between vertices that are one, of the diagonal
+constexpr size_t kMostNear =
+    4096;                          // vertices of nearly one place along the sweep that are compared
+constexpr double kFarthest = 1e9;  // [m] a vertex from the origin
 constexpr int kHullVertices = 128;  // of a collider
 constexpr size_t kSamples = 4096;   // of a surface, to tell what shape it is
 
@@ -35,18 +37,22 @@ double diagonal(const TriangleMesh& mesh) {
   return length(high - low);
 }
 
-// Joins vertices closer than a millionth of the mesh's size. They are sorted along x: those of one
-// place are near each other in the list.
+// Joins vertices closer than a millionth of the mesh's size. They are sorted along a line: those of
+// one place are near each other in the list. It leans, lest all of a grid's row are at one place.
 TriangleMesh without_seams(TriangleMesh mesh) {
   const std::vector<Vec3f>& p = mesh.positions;
   const auto near = static_cast<float>(kSeam * diagonal(mesh));
+  constexpr Vec3f kLine{0.7309f, 0.5413f, 0.4155f};  // of length 1
+  std::vector<float> along;
+  for (const Vec3f q : p) along.push_back(dot(q - p[0], kLine));
   std::vector<uint32_t> order(p.size()), vertex(p.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return p[a].x < p[b].x; });
+  std::sort(order.begin(), order.end(),
+            [&](uint32_t a, uint32_t b) { return along[a] < along[b]; });
   std::iota(vertex.begin(), vertex.end(), 0);
   for (size_t i = 0; i < order.size(); ++i) {
     const uint32_t a = order[i];
-    for (size_t k = i; k-- > 0 && p[a].x - p[order[k]].x <= near && i - k < kMostNear;) {
+    for (size_t k = i; k-- > 0 && along[a] - along[order[k]] <= 2 * near && i - k < kMostNear;) {
       const uint32_t b = order[k];
       if (vertex[b] == b && length(p[a] - p[b]) <= near) {
         vertex[a] = b;
@@ -71,8 +77,16 @@ Result<TriangleMesh> welded(const TriangleMesh& mesh) {
   for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
     const Vec3f a = mesh.positions[mesh.indices[t]], b = mesh.positions[mesh.indices[t + 1]],
                 c = mesh.positions[mesh.indices[t + 2]];
-    const double square = length_squared(a) + length_squared(b) + length_squared(c);
-    if (!std::isfinite(square)) return Error{ErrorKind::kInput, "has a vertex that is no number"};
+    for (const Vec3f p : {a, b, c}) {
+      const double far = max_component(Vec3f{std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+      if (std::isnan(p.x) || std::isnan(p.y) || std::isnan(p.z))
+        return Error{ErrorKind::kInput, "has a vertex that is no number"};
+      if (far > kFarthest)
+        return Error{ErrorKind::kInput,
+                     fmt::format("has a vertex {:.2g} m away from its origin", far),
+                     {},
+                     "say in 'unit' how many metres one unit of the file is"};
+    }
     if (a == b || b == c || c == a) continue;
     corners.insert(corners.end(), {a, b, c});
   }
@@ -180,6 +194,10 @@ class Converter {
     if (kind == "auto") {
       if (std::optional<MeshCollider> shape = recognised()) return add(std::move(*shape));
     }
+    if (out_.mesh.triangle_count() > kMostDecomposed)
+      out_.notes.push_back(
+          fmt::format("has {} triangles: its parts are those of a coarser one of {} at most",
+                      out_.mesh.triangle_count(), kMostDecomposed));
     GLOAM_TRY(const std::vector<TriangleMesh> parts,
               decompose(out_.mesh, {options_.concavity, options_.max_hulls}));
     for (const TriangleMesh& part : parts) {

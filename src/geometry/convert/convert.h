@@ -22,7 +22,7 @@ struct Converted {
   std::vector<std::string> notes;  ///< for people: what is odd about it
 };
 
-/// Errors: no triangles, not finite, no extent, more than decompose() takes, CoACD is missing.
+/// Errors: no triangles, not finite, no extent, farther than 1e9 m, CoACD is missing.
 /// A flat mesh becomes a plate as thick as a thousandth of its longest side.
 Result<Converted> convert_mesh(const TriangleMesh& mesh, const ConvertOptions& options);
 

@@ -12,12 +12,12 @@ struct DecomposeOptions {
   int max_hulls = 32;       ///< at most
 };
 
-/// More triangles are refused: the time grows with them, to minutes.
-inline constexpr size_t kMostDecomposed = 200'000;
+/// A mesh of more triangles is made coarser first (coarsen.h): the time grows with them.
+inline constexpr size_t kMostDecomposed = 20'000;
 
 /// Hulls of the parts. CoACD does not give the same parts every time, so what it gave is kept in
 /// the cache, by the mesh, the options and the library. One call at a time; the library is told not
-/// to print. Errors: too many triangles, CoACD is not installed, it finds nothing.
+/// to print. Errors: CoACD is not installed, it finds nothing.
 Result<std::vector<TriangleMesh>> decompose(const TriangleMesh& welded,
                                             const DecomposeOptions& options);
 

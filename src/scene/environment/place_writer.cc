@@ -6,11 +6,11 @@
 #include <set>
 
 #include "base/check.h"
+#include "scene/spec_geom.h"
 
 namespace gloam {
 namespace {
 
-constexpr int kVisualGroup = 2, kColliderGroup = 3;
 constexpr double kWhiteLuminance = 100;  // of MuJoCo's emission 1 (docs/light.md) [cd/m²]
 
 double volume_of(const PropCollider& c) {
@@ -190,16 +190,13 @@ class PlaceWriter {
     for (const PropCollider& c : part.colliders) volume += volume_of(c);
     int number = 0;
     for (const PropCollider& c : part.colliders) {
-      mjsGeom* geom = mjs_addGeom(body, nullptr);
-      name(geom->element, fmt::format("{}/collider_{}", body_name, ++number));
+      mjsGeom* geom = add_collider_geom(body, fmt::format("{}/collider_{}", body_name, ++number));
       geom->type = type_of(c.shape);
       const double size[3] = {c.size.x, c.size.y, c.size.z};
       std::copy(size, size + 3, geom->size);
       write_pose(c.X_PG, geom->pos, geom->quat);
-      geom->group = kColliderGroup;
       geom->mass = part.mass * volume_of(c) / volume;
       geom->friction[0] = c.friction;
-      geom->rgba[0] = 0.3f, geom->rgba[1] = 0.6f, geom->rgba[2] = 0.9f, geom->rgba[3] = 0.3f;
     }
   }
 
@@ -216,17 +213,6 @@ class PlaceWriter {
 };
 
 }  // namespace
-
-void write_pose(const Pose& X, double* pos, double* quat) {
-  pos[0] = X.p.x, pos[1] = X.p.y, pos[2] = X.p.z;
-  quat[0] = X.q.w, quat[1] = X.q.x, quat[2] = X.q.y, quat[3] = X.q.z;
-  // MuJoCo normalises what it reads: what no longer changes by that survives export bit for bit.
-  for (int i = 0; i < 8; ++i) {
-    const double norm =
-        std::sqrt(quat[0] * quat[0] + quat[1] * quat[1] + quat[2] * quat[2] + quat[3] * quat[3]);
-    for (int k = 0; k < 4; ++k) quat[k] = quat[k] / norm + 0.0;  // no -0: MJCF leaves defaults out
-  }
-}
 
 Status add_place(const Place& place, mjSpec* spec) { return PlaceWriter(place, spec).write(); }
 

@@ -11,9 +11,6 @@ namespace gloam {
 /// joint; visuals in group 2, colliders in group 3. Errors: a name that the spec has already.
 Status add_place(const Place& place, mjSpec* spec);
 
-/// Into the fields of an element of a spec.
-void write_pose(const Pose& X, double* pos, double* quat);
-
 /// Adds what MJCF cannot say, materials, lamps and the sky, before what the scene says itself.
 void add_place_looks(const Place& place, Scene* scene);
 

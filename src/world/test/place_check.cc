@@ -9,11 +9,12 @@
 #include <memory>
 #include <set>
 
+#include "scene/spec_geom.h"
+
 namespace gloam {
 namespace {
 
 constexpr double kStepHeight = 0.2, kProbeHeight = 0.6;  // [m]
-constexpr int kColliderGroup = 3;
 
 struct DataDeleter {
   void operator()(mjData* data) const { mj_deleteData(data); }

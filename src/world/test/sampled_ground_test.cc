@@ -286,7 +286,7 @@ TEST_F(SampledGrounds, ComplainOfWhatCannotBeSampled) {
                         "'resolution' or a smaller region)"));
   EXPECT_THAT(complaint(std::string(kGround) + kGround), HasSubstr("two hfields named 'ground'"));
   EXPECT_THAT(with("[[visual]]\nname = \"ground\"\nfile = \"scene.toml\"\n"),
-              HasSubstr("there is a [[visual]] of this name, too"));
+              HasSubstr("visual 'ground' have the same name"));
   folder_.write("e.xml", "<mujoco><worldbody><geom name='ground' size='1'/></worldbody></mujoco>");
   EXPECT_THAT(with("[environment]\nfile = \"e.xml\"\n"),
               HasSubstr("the environment has a geom 'ground' already"));

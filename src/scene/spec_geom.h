@@ -1,0 +1,24 @@
+#pragma once
+// What geoms that Gloam adds to a spec have in common.
+
+#include <mujoco/mujoco.h>
+
+#include <optional>
+#include <string>
+
+#include "gloam/types.h"
+
+namespace gloam {
+
+inline constexpr int kVisualGroup = 2, kColliderGroup = 3;
+
+/// Into the fields of an element of a spec.
+void write_pose(const Pose& X, double* pos, double* quat);
+
+/// Empty = the model's default stays.
+void write_friction(const std::optional<Vec3>& friction, mjsGeom* geom);
+
+/// A geom that is felt and only drawn on request: translucent blue, in kColliderGroup.
+mjsGeom* add_collider_geom(mjsBody* body, const std::string& name);
+
+}  // namespace gloam
