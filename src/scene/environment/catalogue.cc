@@ -54,8 +54,10 @@ constexpr PropFamily (*kFamilies[])() = {
     safety,              //
     halls,               //
     stations,            //
-    street,
-    offices,  //
+    street,              //
+    offices,             //
+    trees,               //
+    rocks,               //
 };
 
 }  // namespace

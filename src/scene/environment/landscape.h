@@ -53,6 +53,7 @@ class Landscape {
   const std::vector<BuildingSite>& sites() const { return sites_; }
   Rect area() const { return area_; }
   bool has_road() const { return o_.road > 0; }
+  double road_width() const { return o_.road; }
   /// Is it free of road, water and buildings, by that much [m]?
   bool is_free(double x, double y, double margin) const;
 
