@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/vec.h"
 #include "gloam/scene_environment.h"
 #include "scene/environment/dice.h"
 #include "scene/environment/floor_plan.h"
