@@ -120,9 +120,9 @@ std::vector<Corner> corners_of(const HeightField& field, const Landscape& land) 
     for (int c = 0; c < g.columns; ++c) {
       const Vec3f n{float((z(c - 1, r) - z(c + 1, r)) / (2 * g.step[0])),
                     float((z(c, r - 1) - z(c, r + 1)) / (2 * g.step[1])), 1};
-      corners.push_back({{float(g.low[0] + c * g.step[0]), float(g.low[1] + r * g.step[1]),
-                          field.at(c, r)},
-                         normalize(n)});
+      corners.push_back(
+          {{float(g.low[0] + c * g.step[0]), float(g.low[1] + r * g.step[1]), field.at(c, r)},
+           normalize(n)});
     }
   return corners;
 }
@@ -138,8 +138,7 @@ void put(const char* label, const std::string& material, TriangleMesh mesh, Plac
 }  // namespace
 
 HeightField sample_landscape(const Landscape& land, const Rect& area, double step) {
-  const Result<HeightGrid> grid =
-      make_height_grid({area.x0, area.y0}, {area.x1, area.y1}, step, 1);
+  const Result<HeightGrid> grid = make_height_grid({area.x0, area.y0}, {area.x1, area.y1}, step, 1);
   GLOAM_CHECK(grid.ok(), "the options bound the samples");
   HeightField field;
   field.grid = *grid;
@@ -157,8 +156,7 @@ void show_ground(const Landscape& land, const HeightField& field, Workshop* shop
   std::vector<std::vector<float>> values;
   for (const Corner& c : corners) {
     std::vector<float>& v = values.emplace_back();
-    for (const Zone& zone : zones)
-      v.push_back(static_cast<float>(zone.field(c.p.x, c.p.y, c.n)));
+    for (const Zone& zone : zones) v.push_back(static_cast<float>(zone.field(c.p.x, c.p.y, c.n)));
   }
   std::vector<ZoneMesh> meshes(zones.size(), ZoneMesh(corners.size()));
   const auto add = [&](const std::array<size_t, 3>& samples) {
@@ -171,8 +169,8 @@ void show_ground(const Landscape& land, const HeightField& field, Workshop* shop
       if (inside == 3 && polygon.size() == 3 && polygon[0].first.p == corners[samples[0]].p &&
           polygon[1].first.p == corners[samples[1]].p &&
           polygon[2].first.p == corners[samples[2]].p) {
-        meshes[zone].add_triangle(samples, {corners[samples[0]], corners[samples[1]],
-                                            corners[samples[2]]});
+        meshes[zone].add_triangle(samples,
+                                  {corners[samples[0]], corners[samples[1]], corners[samples[2]]});
         return;
       }
       auto [mine, rest] = part(polygon, zone);

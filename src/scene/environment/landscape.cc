@@ -6,13 +6,13 @@
 namespace gloam {
 namespace {
 
-constexpr double kSteepest = 0.42;                 // of the hills: what robots climb
-constexpr double kFlat = 2.5, kBlend = 7;          // about the origin [m]
-constexpr double kRoadStep = 1, kRoadAway = 60;    // [m]
-constexpr double kShoulder = 0.8, kGraded = 5;     // beside the road: level, then to the hills [m]
-constexpr double kDitch = 0.16, kRut = 0.028;      // deep [m]
-constexpr double kPondDepth = 0.9, kBank = 0.9;    // [m], of the radius
-constexpr double kYard = 1.2, kSiteBlend = 5;      // around a building [m]
+constexpr double kSteepest = 0.42;               // of the hills: what robots climb
+constexpr double kFlat = 2.5, kBlend = 7;        // about the origin [m]
+constexpr double kRoadStep = 1, kRoadAway = 60;  // [m]
+constexpr double kShoulder = 0.8, kGraded = 5;   // beside the road: level, then to the hills [m]
+constexpr double kDitch = 0.16, kRut = 0.028;    // deep [m]
+constexpr double kPondDepth = 0.9, kBank = 0.9;  // [m], of the radius
+constexpr double kYard = 1.2, kSiteBlend = 5;    // around a building [m]
 
 double mix(double a, double b, double t) { return a + (b - a) * t; }
 
@@ -55,7 +55,8 @@ void Landscape::limit_slopes() {
       low = std::min(low, z), high = std::max(high, z);
       steepest = std::max(steepest, std::hypot(hills(x + 1, y) - z, hills(x, y + 1) - z));
     }
-  amplitude_ = std::min(o_.relief / std::max(high - low, 1e-6), kSteepest / std::max(steepest, 1e-6));
+  amplitude_ =
+      std::min(o_.relief / std::max(high - low, 1e-6), kSteepest / std::max(steepest, 1e-6));
   base_ = 0;
   base_ = hills(0, 0);
 }
@@ -139,11 +140,12 @@ void Landscape::place_sites(Dice* dice) {
     const double reach_out = std::hypot(s.half_x, s.half_y);
     if (std::abs(s.y) + reach_out > o_.width / 2 - 1.5) continue;
     if (std::abs(s.x) + reach_out > o_.length / 2 - 1.5) continue;
-    if (pond_ && std::hypot(s.x - pond_->x, s.y - pond_->y) <
-                     pond_->radius * (1 + kBank) + reach_out + 1)
+    if (pond_ &&
+        std::hypot(s.x - pond_->x, s.y - pond_->y) < pond_->radius * (1 + kBank) + reach_out + 1)
       continue;
     const bool is_near = std::any_of(sites_.begin(), sites_.end(), [&](const BuildingSite& other) {
-      return std::hypot(s.x - other.x, s.y - other.y) < reach_out + std::hypot(other.half_x, other.half_y) + 4;
+      return std::hypot(s.x - other.x, s.y - other.y) <
+             reach_out + std::hypot(other.half_x, other.half_y) + 4;
     });
     if (is_near || std::hypot(s.x, s.y) < reach_out + kFlat) continue;
     s.z = country(s.x, s.y);
@@ -166,8 +168,8 @@ double Landscape::country(double x, double y) const {
 
 double Landscape::height(double x, double y) const {
   const double from_origin = std::hypot(x, y);
-  const double away = std::hypot(std::max(std::abs(x) - area_.x1, 0.0),
-                                 std::max(std::abs(y) - area_.y1, 0.0));
+  const double away =
+      std::hypot(std::max(std::abs(x) - area_.x1, 0.0), std::max(std::abs(y) - area_.y1, 0.0));
   double z = country(x, y), rough = 1;
   if (has_road()) {
     const double d = from_road(x, y), half = o_.road / 2;

@@ -99,8 +99,8 @@ uint64_t Place::hash() const {
   for (const Ground& ground : grounds) {
     const HeightGrid& grid = ground.field.grid;
     out(ground.name);
-    for (const double x : {grid.low[0], grid.low[1], grid.step[0], grid.step[1], ground.field.base,
-                           ground.friction})
+    for (const double x :
+         {grid.low[0], grid.low[1], grid.step[0], grid.step[1], ground.field.base, ground.friction})
       out(x);
     out(grid.columns);
     out(hash_span<float>(ground.field.z));

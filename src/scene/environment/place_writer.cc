@@ -276,7 +276,7 @@ class PlaceWriter {
 
   const Place& place_;
   mjSpec* spec_;
-  std::vector<std::vector<std::vector<std::string>>> meshes_;  // names by prop, part, visual
+  std::vector<std::vector<std::vector<std::string>>> meshes_;     // names by prop, part, visual
   std::map<std::tuple<int, size_t, size_t>, std::string> hulls_;  // by prop, part, collider
 };
 

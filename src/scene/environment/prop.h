@@ -26,9 +26,9 @@ struct PropVisual {
 
 struct PropCollider {
   ColliderShape shape = ColliderShape::kBox;
-  Vec3f size;             ///< MuJoCo's: half extents; radius, half length; radius [m]
-  Pose X_PG = {};         ///< in the part's frame
-  double friction = 0.8;  ///< sliding
+  Vec3f size;              ///< MuJoCo's: half extents; radius, half length; radius [m]
+  Pose X_PG = {};          ///< in the part's frame
+  double friction = 0.8;   ///< sliding
   TriangleMesh hull = {};  ///< kHull: a closed mesh; MuJoCo takes its convex hull
 };
 

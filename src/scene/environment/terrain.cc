@@ -32,8 +32,8 @@ void add_regions(const Landscape& land, Place* place) {
     for (int i = 0; i < count; ++i) {
       const double x0 = a.x0 + a.width() * i / count, x1 = a.x0 + a.width() * (i + 1) / count;
       const double y = land.road_y((x0 + x1) / 2), half = land.road_width() / 2;
-      place->regions.push_back(region_of(land, "road", "road_" + std::to_string(i + 1),
-                                         {x0, y - half, x1, y + half}));
+      place->regions.push_back(
+          region_of(land, "road", "road_" + std::to_string(i + 1), {x0, y - half, x1, y + half}));
     }
   }
   place->regions.push_back(region_of(land, "meadow", "meadow_1", {a.x0, a.y0, a.x1, -2}));

@@ -22,16 +22,32 @@ int make(Place* place, const char* kind, uint64_t seed, Vec3 size) {
   return *made;
 }
 
+// How far the ground around a point rises above its plane there [m].
+double bulge(const Landscape& land, double x, double y, double radius) {
+  const Vec3f n = land.normal(x, y);
+  const double z = land.height(x, y);
+  double most = 0;
+  for (int k = 0; k < 16; ++k) {
+    const double a = 2 * M_PI * k / 16, r = radius * (k % 2 == 0 ? 1 : 0.6);
+    const double dx = r * std::cos(a), dy = r * std::sin(a);
+    const double plane = z - (double(n.x) * dx + double(n.y) * dy) / double(n.z);
+    most = std::max(most, land.height(x + dx, y + dy) - plane);
+  }
+  return most;
+}
+
 // A square of blades that bend outwards; roots a little below the ground.
 Solid blades(double high, int count, Dice* dice) {
   TriangleMesh mesh;
   for (int i = 0; i < count; ++i) {
-    const float x = float(dice->uniform(-0.55, 0.55) * kPatch), y = float(dice->uniform(-0.55, 0.55) * kPatch);
+    const float x = float(dice->uniform(-0.55, 0.55) * kPatch),
+                y = float(dice->uniform(-0.55, 0.55) * kPatch);
     const float a = float(dice->uniform(0, 2 * kPi)), h = float(high * dice->uniform(0.35, 1));
-    const float bend = h * float(dice->uniform(0.1, 0.75)), half = float(dice->uniform(0.0018, 0.0038));
+    const float bend = h * float(dice->uniform(0.1, 0.75)),
+                half = float(dice->uniform(0.0018, 0.0038));
     const Vec3f out{std::cos(a), std::sin(a), 0}, side{-std::sin(a) * half, std::cos(a) * half, 0};
     const Vec3f foot{x, y, -0.04f}, knee = foot + out * (0.3f * bend) + Vec3f{0, 0, 0.6f * h},
-                tip = foot + out * bend + Vec3f{0, 0, h};
+                                    tip = foot + out * bend + Vec3f{0, 0, h};
     const auto first = static_cast<uint32_t>(mesh.positions.size());
     for (const Vec3f p : {foot - side, foot + side, knee - side * 0.8f, knee + side * 0.8f, tip}) {
       mesh.positions.push_back(p);
@@ -78,8 +94,10 @@ void add_rocks(const Landscape& land, const TerrainOptions& o, Place* place) {
     if (!land.is_free(x, y, 0.8) || std::hypot(x, y) < 2) continue;
     if (loose && land.slope(x, y) > 0.12) continue;
     Pose pose = on_ground(land, x, y, turned);
-    pose.p.z -= loose ? -0.02 : 0.04;
-    place->put(make(place, "rock", variant, {0.36, 0.28, 0.2}), "", pose, loose);
+    const double lift = bulge(land, x, y, 0.15);
+    const bool lies = loose && lift < 0.012;
+    pose.p.z += lies ? lift + 0.001 : -0.04;
+    place->put(make(place, "rock", variant, {0.36, 0.28, 0.2}), "", pose, lies);
   }
 }
 
@@ -109,13 +127,14 @@ void add_trees(const Landscape& land, const TerrainOptions& o, Place* place) {
     const double x = std::cos(a) * (area.x1 * 1.2 + out), y = std::sin(a) * (area.y1 * 1.2 + out);
     const double turned = dice.uniform(0, 2 * M_PI);
     const int made = tree(true);
-    if (o.trees == 0 || land.from_road(x, y) < o.road / 2 + 3 || land.moisture(x / 3, y / 3) < -0.12 ||
-        area.distance_to(x, y) < 4)
+    if (o.trees == 0 || land.from_road(x, y) < o.road / 2 + 3 ||
+        land.moisture(x / 3, y / 3) < -0.12 || area.distance_to(x, y) < 4)
       continue;
     beyond[made].push_back({{x, y, land.height(x, y) - 0.05}, turn({0, 0, 1}, turned)});
   }
   for (auto& [made, poses] : beyond)
-    place->scatter(made, fmt::format("forest/tree_{}", made), std::move(poses));
+    place->scatter(made, fmt::format("forest/{}_{}", place->prop(made).label, made),
+                   std::move(poses));
 }
 
 void add_grass(const Landscape& land, const TerrainOptions& o, Workshop* shop, Place* place) {
@@ -130,9 +149,10 @@ void add_grass(const Landscape& land, const TerrainOptions& o, Workshop* shop, P
     const double high = (0.10 + 0.22 * o.grass) * (0.7 + 0.3 * static_cast<double>(i % kShapes));
     Prop p;
     p.label = "grass";
-    p.body().show("blades", looks[i / kShapes],
-                  blades(high, static_cast<int>((900 + 3600 * o.grass) * (i % kShapes == 0 ? 0.6 : 1)),
-                         &dice));
+    p.body().show(
+        "blades", looks[i / kShapes],
+        blades(high, static_cast<int>((900 + 3600 * o.grass) * (i % kShapes == 0 ? 0.6 : 1)),
+               &dice));
     props[i] = place->add(std::move(p));
   }
   std::array<std::vector<Pose>, 3 * kShapes> poses;

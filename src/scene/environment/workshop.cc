@@ -299,8 +299,8 @@ std::string Workshop::earth() {
 }
 
 std::string Workshop::gravel() {
-  Look look = patterned("gravel", noise({0.085, 0.076, 0.063}, {0.235, 0.215, 0.185}, 0.022, 0.006,
-                                        0.95, "cells"));
+  Look look = patterned(
+      "gravel", noise({0.085, 0.076, 0.063}, {0.235, 0.215, 0.185}, 0.022, 0.006, 0.95, "cells"));
   PatternOptions dirt;
   dirt.kind = "dirt";
   dirt.color_b = Vec3{0.085, 0.065, 0.045};
@@ -311,8 +311,8 @@ std::string Workshop::gravel() {
 }
 
 std::string Workshop::soil(Vec3 dry, Vec3 dark, double wet) {
-  Look look = patterned(fmt::format("soil_{}", hex(times(dry, 4))),
-                        noise(dark, dry, 0.11, 0.012, 1));
+  Look look =
+      patterned(fmt::format("soil_{}", hex(times(dry, 4))), noise(dark, dry, 0.11, 0.012, 1));
   if (wet > 0) {
     look.more.wetness = wet;
     look.more.porosity = 0.6;
@@ -328,8 +328,8 @@ std::string Workshop::turf() {
 }
 
 std::string Workshop::bedrock() {
-  Look look = patterned("bedrock", noise({0.10, 0.097, 0.090}, {0.27, 0.262, 0.245}, 0.16, 0.014,
-                                         0.9, "turbulence"));
+  Look look = patterned(
+      "bedrock", noise({0.10, 0.097, 0.090}, {0.27, 0.262, 0.245}, 0.16, 0.014, 0.9, "turbulence"));
   PatternOptions lichen;
   lichen.kind = "dirt";
   lichen.color_b = Vec3{0.16, 0.165, 0.09};

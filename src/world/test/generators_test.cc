@@ -213,7 +213,8 @@ TEST_F(GeneratorsSlow, DrawTheGroundOfTerrainsWhereItIsFelt) {
   const mjModel* m = world->compiled()->model.get();
   mjData* d = mj_makeData(m);
   mj_forward(m, d);
-  const std::set<std::string> zones = {"meadow_1", "road_1", "verge_1", "shore_1", "rock_1", "earth_1"};
+  const std::set<std::string> zones = {"meadow_1", "road_1", "verge_1",
+                                       "shore_1",  "rock_1", "earth_1"};
   int seen = 0;
   for (int i = 0; i < 400; ++i) {
     const mjtNum from[3] = {-15 + 30 * std::fmod(i * 0.754877666, 1.0),

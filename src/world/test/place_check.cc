@@ -158,7 +158,8 @@ class Checker {
       report_.reached_area += cell_ * cell_;
       for (const Region& r : world_.regions)
         if (x > r.low.x && x < r.high.x && y > r.low.y && y < r.high.y &&
-            (std::abs(ground - r.low.z) < 0.05 || (on_slopes_ && ground > r.low.z && ground < r.high.z)))
+            (std::abs(ground - r.low.z) < 0.05 ||
+             (on_slopes_ && ground > r.low.z && ground < r.high.z)))
           area[r.name] += cell_ * cell_;
     };
     visit(0, 0, 0);

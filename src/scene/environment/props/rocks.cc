@@ -35,7 +35,8 @@ Solid stone(Vec3f size, int cuts, uint64_t seed) {
   std::vector<Vec3f> sums(mesh.positions.size());
   for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
     const uint32_t* c = &mesh.indices[i];
-    const Vec3f n = cross(mesh.positions[c[1]] - mesh.positions[c[0]], mesh.positions[c[2]] - mesh.positions[c[0]]);
+    const Vec3f n = cross(mesh.positions[c[1]] - mesh.positions[c[0]],
+                          mesh.positions[c[2]] - mesh.positions[c[0]]);
     for (int k = 0; k < 3; ++k) sums[c[k]] += n;
   }
   for (size_t i = 0; i < sums.size(); ++i) {

@@ -70,7 +70,8 @@ Prop conifer(Workshop& shop) {
     for (int k = 0; k < count; ++k) {
       const float a = 2 * kPi * (float(k) + float(dice.uniform(0, 0.8))) / float(count),
                   reach = wide * (1 - 0.93f * t) * float(dice.uniform(0.75, 1.1)) + 0.12f;
-      const Vec3f out{std::cos(a), std::sin(a), -0.28f + 0.35f * t}, side{-std::sin(a), std::cos(a), 0};
+      const Vec3f out{std::cos(a), std::sin(a), -0.28f + 0.35f * t},
+          side{-std::sin(a), std::cos(a), 0};
       const int sprays = 3 + int(reach / 0.13f);
       for (int s = 0; s < sprays; ++s) {
         const float at = reach * (0.12f + 0.88f * float(s) / float(sprays)),
@@ -98,17 +99,20 @@ Prop bush(Workshop& shop) {
     const float a = 2.4f * float(i), r = 0.3f * std::sqrt(float(i) / 9);
     const Vec3f end{size.x * r * std::cos(a), size.y * r * std::sin(a),
                     size.z * (0.75f - 0.6f * r) * float(dice.uniform(0.75, 1))};
-    p.body().show("stems", shop.earth(), bar({0.1f * end.x, 0.1f * end.y, -0.1f}, end, 0.014f, 0.005f, 5));
+    p.body().show("stems", shop.earth(),
+                  bar({0.1f * end.x, 0.1f * end.y, -0.1f}, end, 0.014f, 0.005f, 5));
     for (int k = 0; k < 260; ++k) {
       const float b = float(dice.uniform(0, 2 * kPi)), u = float(dice.uniform(-1, 1)),
-                  q = std::sqrt(1 - u * u), deep = 0.25f * size.z * std::cbrt(float(dice.uniform(0.1, 1)));
+                  q = std::sqrt(1 - u * u),
+                  deep = 0.25f * size.z * std::cbrt(float(dice.uniform(0.1, 1)));
       const Vec3f out{q * std::cos(b), q * std::sin(b), u};
       const float length = float(dice.uniform(0.04, 0.085));
       const Vec3f at = end + out * deep;
       if (at.z > 0.03f) add_leaf(at, out, {-std::sin(b), std::cos(b), 0.4f}, length, &leaves);
     }
   }
-  p.body().show("leaves", shop.blades("bush_leaves", {0.062, 0.085, 0.026}, {0.032, 0.050, 0.017}), leaves);
+  p.body().show("leaves", shop.blades("bush_leaves", {0.062, 0.085, 0.026}, {0.032, 0.050, 0.017}),
+                leaves);
   p.body().collide_cylinder(0.3f * min(size.x, size.y), 0, 0.7f * size.z);
   p.body().mass = 20;
   return p;
