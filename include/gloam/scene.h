@@ -119,6 +119,7 @@ struct EnvironmentOptions {
   std::optional<HallwayOptions> hallway = {};
   std::optional<BedroomOptions> bedroom = {};
   std::optional<TunnelOptions> tunnel = {};
+  std::optional<TerrainOptions> terrain = {};
   SourceLoc loc = {};
 };
 

@@ -110,6 +110,22 @@ void visit_fields(Visitor& v, TunnelOptions& o) {
 }
 
 template <class Visitor>
+void visit_fields(Visitor& v, TerrainOptions& o) {
+  v("seed", o.seed, FieldRule{});
+  v("length", o.length, FieldRule{.unit = "m", .min = 20, .max = 200});
+  v("width", o.width, FieldRule{.unit = "m", .min = 20, .max = 200});
+  v("relief", o.relief, FieldRule{.unit = "m", .min = 0, .max = 20});
+  v("resolution", o.resolution, FieldRule{.unit = "m", .min = 0.05, .max = 1});
+  v("road", o.road, FieldRule{.unit = "m", .min = 0, .max = 8});
+  v("water", o.water, FieldRule{});
+  v("grass", o.grass, kShare);
+  v("rocks", o.rocks, kShare);
+  v("trees", o.trees, kShare);
+  v("buildings", o.buildings, FieldRule{.min = 0, .max = 3});
+  v("loose", o.loose, kShare);
+}
+
+template <class Visitor>
 void visit_fields(Visitor& v, PropOptions& o) {
   v("name", o.name, FieldRule{.required = true, .identifier = true});
   v("kind", o.kind, FieldRule{.required = true, .choices = prop_kind_names()});

@@ -71,6 +71,7 @@ void visit_fields(Visitor& v, EnvironmentOptions& o) {
   v("hallway", o.hallway, FieldRule{});
   v("bedroom", o.bedroom, FieldRule{});
   v("tunnel", o.tunnel, FieldRule{});
+  v("terrain", o.terrain, FieldRule{});
 }
 
 template <class Visitor>

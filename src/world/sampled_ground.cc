@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "base/log.h"
+#include "scene/height_field_spec.h"
 #include "scene/spec_geom.h"
 #include "world/model_loader.h"
 #include "world/visual_file.h"
@@ -13,7 +14,6 @@ namespace gloam {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kFlat = 1e-6;          // [m] MuJoCo wants a height above 0, of flat fields too
 constexpr double kDoubtfulSize = 1000;  // [m] more of a file in metres is worth a question
 
 VisualOptions visual_of(const HeightFieldOptions& o) {
@@ -118,29 +118,7 @@ Result<std::vector<HeightField>> sample(const HeightFieldOptions& o, const Model
 
 void add_field(const std::string& name, const HeightFieldOptions& o, const HeightField& field,
                mjSpec* spec) {
-  const auto [low, high] = std::minmax_element(field.z.begin(), field.z.end());
-  const double base = *low, range = double{*high} - base;
-  std::vector<float> share;  // MuJoCo's elevations: 0 the lowest … 1 the highest
-  for (const float z : field.z)
-    share.push_back(range > 0 ? static_cast<float>((z - base) / range) : 0);
-  const HeightGrid& grid = field.grid;
-  const double half_x = grid.step[0] * (grid.columns - 1) / 2;
-  const double half_y = grid.step[1] * (grid.rows - 1) / 2;
-
-  mjsHField* hfield = mjs_addHField(spec);
-  mjs_setName(hfield->element, name.c_str());
-  hfield->nrow = grid.rows;
-  hfield->ncol = grid.columns;
-  const double size[4] = {half_x, half_y, std::max(range, kFlat), field.base};
-  std::copy(size, size + 4, hfield->size);
-  mjs_setFloat(hfield->userdata, share.data(), static_cast<int>(share.size()));
-
-  mjsGeom* geom = mjs_addGeom(mjs_findBody(spec, "world"), nullptr);
-  mjs_setName(geom->element, name.c_str());
-  geom->type = mjGEOM_HFIELD;
-  mjs_setString(geom->hfieldname, name.c_str());
-  const double middle[3] = {grid.low[0] + half_x, grid.low[1] + half_y, base};
-  std::copy(middle, middle + 3, geom->pos);
+  mjsGeom* geom = add_height_field(name, field, spec);
   if (o.drawn) geom->group = kColliderGroup;
   write_friction(o.friction, geom);
 }

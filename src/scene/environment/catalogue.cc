@@ -56,6 +56,8 @@ constexpr PropFamily (*kFamilies[])() = {
     stations,            //
     street,              //
     offices,             //
+    trees,               //
+    rocks,               //
 };
 
 }  // namespace

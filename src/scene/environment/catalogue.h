@@ -64,6 +64,8 @@ PropFamily halls();
 PropFamily stations();
 PropFamily street();
 PropFamily offices();
+PropFamily trees();
+PropFamily rocks();
 
 /// All kinds, family by family.
 const std::vector<PropKind>& prop_catalogue();

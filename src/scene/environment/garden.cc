@@ -6,19 +6,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/environment/props/trees.h"
 #include "scene/environment/shell.h"
 
 namespace gloam {
 namespace {
 
 constexpr float kGround = -float(kGroundDrop), kTerrace = 1.6f;  // [m]
-
-// Two triangles, pointed at both ends, of that length along `d`.
-void add_leaf(Vec3f at, Vec3f d, Vec3f side, float length, Solid* leaves) {
-  const Vec3f points[4] = {at, at + (d + side * 0.6f) * (length / 2),
-                           at + (d - side * 0.6f) * (length / 2), at + d * length};
-  *leaves += sheet(points, 2);
-}
 
 void add_lawn(Workshop* shop, Place* place) {
   constexpr float kFar = 60;
@@ -115,39 +109,6 @@ void add_hedge(const Rect& lot, Workshop* shop, Dice* dice, Place* place) {
   p.body().show("leaves_1", shop->leaf({0.24, 0.31, 0.14}), leaves[0]);
   p.body().show("leaves_2", shop->leaf({0.17, 0.24, 0.11}), leaves[1]);
   place->put(place->add(std::move(p)), "", {});
-}
-
-// A broadleaf of that height; leaves in clouds around the ends of its boughs.
-Prop make_tree(double high, Workshop* shop, Dice* dice) {
-  const float h = float(high), fork = 0.3f * h, crown = 0.30f * h;
-  Prop p;
-  p.label = "tree";
-  const std::string bark = shop->earth();
-  p.body().show("trunk", bark, bar({0, 0, -0.1f}, {0, 0, fork}, 0.035f * h, 0.024f * h, 12));
-  Solid leaves[2];
-  constexpr int kBoughs = 13, kLeaves = 210;
-  for (int i = 0; i < kBoughs; ++i) {
-    // Spread evenly over a sphere about the crown's middle, by the golden angle.
-    const float t = (float(i) + 0.5f) / kBoughs, a = 2.39996f * float(i), z = 1 - 1.5f * t,
-                r = std::sqrt(std::max(0.0f, 1 - z * z));
-    const Vec3f end{0.62f * crown * r * std::cos(a), 0.62f * crown * r * std::sin(a),
-                    h - 1.15f * crown + 0.75f * crown * z};
-    p.body().show("boughs", bark, bar({0, 0, fork - 0.05f}, end, 0.012f * h, 0.004f * h, 6));
-    const float cloud = crown * float(dice->uniform(0.42, 0.58));
-    for (int k = 0; k < kLeaves; ++k) {
-      const float u = float(dice->uniform(-1, 1)), b = float(dice->uniform(0, 2 * kPi)),
-                  q = std::sqrt(1 - u * u);
-      const Vec3f out{q * std::cos(b), q * std::sin(b), u};
-      const float deep = cloud * std::sqrt(float(dice->uniform(0.35, 1)));
-      add_leaf(end + out * deep, out + Vec3f{0, 0, -0.35f}, {-std::sin(b), std::cos(b), 0.3f},
-               float(dice->uniform(0.14, 0.24)), &leaves[k % 2]);
-    }
-  }
-  p.body().show("leaves_1", shop->leaf({0.28, 0.35, 0.15}), leaves[0]);
-  p.body().show("leaves_2", shop->leaf({0.19, 0.27, 0.11}), leaves[1]);
-  p.body().collide_cylinder(0.035f * h, 0, fork);
-  p.body().mass = 600 * M_PI * std::pow(0.03 * high, 2) * high;  // [kg/m³] of green wood
-  return p;
 }
 
 }  // namespace

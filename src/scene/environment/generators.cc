@@ -25,6 +25,7 @@ void visit_generators(const EnvironmentOptions& e, F&& f) {
   f(e.hallway, make_hallway);
   f(e.bedroom, make_bedroom);
   f(e.tunnel, make_tunnel);
+  f(e.terrain, make_terrain);
 }
 
 int count_generators(const EnvironmentOptions& e) {

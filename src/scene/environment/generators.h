@@ -14,6 +14,7 @@ Result<Place> make_office(const OfficeOptions& options);
 Result<Place> make_hallway(const HallwayOptions& options);
 Result<Place> make_bedroom(const BedroomOptions& options);
 Result<Place> make_tunnel(const TunnelOptions& options);
+Result<Place> make_terrain(const TerrainOptions& options);
 
 /// What the scene's environment and its [[prop]]s make; empty when it has neither. Errors: with the
 /// place in the scene file.

@@ -36,6 +36,8 @@ void key(ArchiveWriter& out, const PropPart& part) {
     out(c.shape);
     out(c.size);
     out(c.X_PG);
+    out(c.friction);
+    out(hash_span<Vec3f>(c.hull.positions));
   }
 }
 
@@ -88,6 +90,20 @@ uint64_t Place::hash() const {
     out(placement.name);
     out(placement.X_WP);
     out(placement.loose);
+  }
+  for (const Scatter& scatter : scatters_) {
+    out(scatter.prop);
+    out(scatter.name);
+    out(hash_span<Pose>(scatter.poses));
+  }
+  for (const Ground& ground : grounds) {
+    const HeightGrid& grid = ground.field.grid;
+    out(ground.name);
+    for (const double x :
+         {grid.low[0], grid.low[1], grid.step[0], grid.step[1], ground.field.base, ground.friction})
+      out(x);
+    out(grid.columns);
+    out(hash_span<float>(ground.field.z));
   }
   return hash_bytes(out.bytes.data(), out.bytes.size());
 }

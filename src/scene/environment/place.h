@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/height_field_parts.h"
 #include "gloam/scene.h"
 #include "gloam/scene_environment.h"
 #include "scene/environment/catalogue.h"
@@ -20,6 +21,20 @@ struct Placement {
   bool loose = false;  ///< moves freely
 };
 
+/// Many of one prop, all of one body: what is drawn alone, without parts or colliders.
+struct Scatter {
+  int prop = 0;
+  std::string name;  ///< of the body: "grass"
+  std::vector<Pose> poses;
+};
+
+/// What is walked on where it is not level. It is felt, not drawn.
+struct Ground {
+  std::string name;  ///< of its geom
+  HeightField field;
+  double friction = 1;  ///< sliding
+};
+
 class Place {
  public:
   explicit Place(std::string name) : name(std::move(name)) {}
@@ -27,6 +42,7 @@ class Place {
   std::string name;
   Style style;
   MaterialSet materials;
+  std::vector<Ground> grounds;
   std::vector<Region> regions;         ///< floors that can be walked on
   std::optional<SkyOptions> sky = {};  ///< of a scene that has none of its own
   std::optional<double> ev100 = {};    ///< likewise: exposure by which its rooms look well
@@ -42,9 +58,15 @@ class Place {
   int put(int prop, const std::string& room, const Pose& X_WP, bool loose = false);
   void put_named(int prop, std::string name, const Pose& X_WP, bool loose);
 
+  /// Many of one, for the eye alone: grass, pebbles.
+  void scatter(int prop, std::string name, std::vector<Pose> poses) {
+    scatters_.push_back({prop, std::move(name), std::move(poses)});
+  }
+
   const Prop& prop(int index) const { return props_[static_cast<size_t>(index)]; }
   const std::vector<Prop>& props() const { return props_; }
   const std::vector<Placement>& placements() const { return placements_; }
+  const std::vector<Scatter>& scatters() const { return scatters_; }
 
   /// Of all that it is: the key of what is compiled from it.
   uint64_t hash() const;
@@ -58,6 +80,7 @@ class Place {
   };
   std::vector<Made> made_;
   std::vector<Placement> placements_;
+  std::vector<Scatter> scatters_;
   std::map<std::string, int> numbers_;  // of names given so far
 };
 

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <set>
+#include <tuple>
 
 #include "base/check.h"
+#include "scene/height_field_spec.h"
 #include "scene/spec_geom.h"
 
 namespace gloam {
@@ -13,9 +16,20 @@ namespace {
 
 constexpr double kWhiteLuminance = 100;  // of MuJoCo's emission 1 (docs/light.md) [cd/m²]
 
+// Enclosed by a closed mesh.
+double volume_of(const TriangleMesh& mesh) {
+  double sum = 0;
+  for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    sum += dot(mesh.positions[mesh.indices[i]],
+               cross(mesh.positions[mesh.indices[i + 1]], mesh.positions[mesh.indices[i + 2]]));
+  return sum / 6;
+}
+
 double volume_of(const PropCollider& c) {
   const double r = c.size.x;
   switch (c.shape) {
+    case ColliderShape::kHull:
+      return volume_of(c.hull);
     case ColliderShape::kBox:
       return 8.0 * c.size.x * c.size.y * c.size.z;
     case ColliderShape::kCylinder:
@@ -29,6 +43,8 @@ double volume_of(const PropCollider& c) {
 
 mjtGeom type_of(ColliderShape shape) {
   switch (shape) {
+    case ColliderShape::kHull:
+      return mjGEOM_MESH;
     case ColliderShape::kBox:
       return mjGEOM_BOX;
     case ColliderShape::kCylinder:
@@ -47,18 +63,31 @@ class PlaceWriter {
   Status write() {
     for (const Look& look : place_.materials.looks()) add_material(look);
     meshes_.resize(place_.props().size());
+    for (const Ground& ground : place_.grounds) {
+      mjsGeom* geom = add_height_field(ground.name, ground.field, spec_);
+      geom->group = kColliderGroup;
+      geom->friction[0] = ground.friction;
+    }
     for (const Placement& placement : place_.placements()) {
-      if (mjs_findBody(spec_, placement.name.c_str()) != nullptr)
-        return Error{ErrorKind::kInput,
-                     fmt::format("the environment has a body '{}' already", placement.name),
-                     {},
-                     "rename the prop"};
+      GLOAM_TRY_STATUS(check_name(placement.name));
       add_placement(placement);
+    }
+    for (const Scatter& scatter : place_.scatters()) {
+      GLOAM_TRY_STATUS(check_name(scatter.name));
+      add_scatter(scatter);
     }
     return {};
   }
 
  private:
+  Status check_name(const std::string& body) const {
+    if (mjs_findBody(spec_, body.c_str()) == nullptr) return {};
+    return Error{ErrorKind::kInput,
+                 fmt::format("the environment has a body '{}' already", body),
+                 {},
+                 "rename the prop"};
+  }
+
   static void name(mjsElement* element, const std::string& text) {
     mjs_setName(element, text.c_str());
   }
@@ -141,7 +170,7 @@ class PlaceWriter {
       }
       if (part.joint) add_joint(*part.joint, body_name, part.p_P, body);
       add_visuals(placement, i, body_name, body);
-      add_colliders(part, body_name, body);
+      add_colliders(placement.prop, i, body_name, body);
       if (part.joint) exclude(bodies[static_cast<size_t>(part.parent)], body);
     }
   }
@@ -175,17 +204,48 @@ class PlaceWriter {
     for (size_t v = 0; v < visuals.size(); ++v) {
       mjsGeom* geom = mjs_addGeom(body, nullptr);
       name(geom->element, body_name + "/" + visuals[v].name);
-      geom->type = mjGEOM_MESH;
-      mjs_setString(geom->meshname, mesh_of(placement.prop, part, v).c_str());
-      mjs_setString(geom->material, visuals[v].material.c_str());
-      geom->contype = geom->conaffinity = 0;
-      geom->group = kVisualGroup;
-      geom->mass = 0;
+      show(geom, mesh_of(placement.prop, part, v), visuals[v].material);
     }
   }
 
+  static void show(mjsGeom* geom, const std::string& mesh, const std::string& material) {
+    geom->type = mjGEOM_MESH;
+    mjs_setString(geom->meshname, mesh.c_str());
+    mjs_setString(geom->material, material.c_str());
+    geom->contype = geom->conaffinity = 0;
+    geom->group = kVisualGroup;
+    geom->mass = 0;
+  }
+
+  void add_scatter(const Scatter& scatter) {
+    mjsBody* body = mjs_addBody(mjs_findBody(spec_, "world"), nullptr);
+    name(body->element, scatter.name);
+    const std::vector<PropVisual>& visuals = place_.prop(scatter.prop).body().visuals;
+    for (const Pose& X_WP : scatter.poses)
+      for (size_t v = 0; v < visuals.size(); ++v) {
+        mjsGeom* geom = mjs_addGeom(body, nullptr);
+        show(geom, mesh_of(scatter.prop, 0, v), visuals[v].material);
+        write_pose(X_WP, geom->pos, geom->quat);
+      }
+  }
+
+  // The hulls of a prop are shared as its visuals are.
+  const std::string& hull_of(int prop, size_t part, size_t number, const TriangleMesh& hull) {
+    std::string& known = hulls_[{prop, part, number}];
+    if (!known.empty()) return known;
+    known = fmt::format("{}.{}/{}.hull_{}", place_.prop(prop).label, prop, part, number + 1);
+    mjsMesh* mesh = mjs_addMesh(spec_, nullptr);
+    name(mesh->element, known);
+    mesh->inertia = mjMESH_INERTIA_CONVEX;
+    mjs_setFloat(mesh->uservert, &hull.positions[0].x, 3 * static_cast<int>(hull.positions.size()));
+    const std::vector<int> faces(hull.indices.begin(), hull.indices.end());
+    mjs_setInt(mesh->userface, faces.data(), static_cast<int>(faces.size()));
+    return known;
+  }
+
   // A part's mass lies in its colliders, evenly.
-  void add_colliders(const PropPart& part, const std::string& body_name, mjsBody* body) {
+  void add_colliders(int prop, size_t index, const std::string& body_name, mjsBody* body) {
+    const PropPart& part = place_.prop(prop).parts[index];
     double volume = 0;
     for (const PropCollider& c : part.colliders) volume += volume_of(c);
     int number = 0;
@@ -193,7 +253,11 @@ class PlaceWriter {
       mjsGeom* geom = add_collider_geom(body, fmt::format("{}/collider_{}", body_name, ++number));
       geom->type = type_of(c.shape);
       const double size[3] = {c.size.x, c.size.y, c.size.z};
-      std::copy(size, size + 3, geom->size);
+      if (c.shape == ColliderShape::kHull)
+        mjs_setString(geom->meshname,
+                      hull_of(prop, index, static_cast<size_t>(number) - 1, c.hull).c_str());
+      else
+        std::copy(size, size + 3, geom->size);
       write_pose(c.X_PG, geom->pos, geom->quat);
       geom->mass = part.mass * volume_of(c) / volume;
       geom->friction[0] = c.friction;
@@ -209,7 +273,8 @@ class PlaceWriter {
 
   const Place& place_;
   mjSpec* spec_;
-  std::vector<std::vector<std::vector<std::string>>> meshes_;  // names by prop, part, visual
+  std::vector<std::vector<std::vector<std::string>>> meshes_;     // names by prop, part, visual
+  std::map<std::tuple<int, size_t, size_t>, std::string> hulls_;  // by prop, part, collider
 };
 
 }  // namespace
@@ -222,6 +287,9 @@ void add_place_looks(const Place& place, Scene* scene) {
   for (const Placement& placement : place.placements())
     for (const PropPart& part : place.prop(placement.prop).parts)
       for (const PropVisual& visual : part.visuals) shown.insert(visual.material);
+  for (const Scatter& scatter : place.scatters())
+    for (const PropVisual& visual : place.prop(scatter.prop).body().visuals)
+      shown.insert(visual.material);
   std::vector<MaterialOptions> materials;
   for (const Look& look : place.materials.looks()) {
     if (!shown.count(look.name)) continue;

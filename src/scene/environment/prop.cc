@@ -42,6 +42,7 @@ std::vector<Vec3f> hull_of(const PropCollider& c) {
     }
     return points;
   }
+  if (c.shape == ColliderShape::kHull) return c.hull.positions;
   const float r = c.size.x;
   const Vec3f half = c.shape == ColliderShape::kBox       ? c.size
                      : c.shape == ColliderShape::kCapsule ? Vec3f{r, r, c.size.y + r}
@@ -105,6 +106,12 @@ PropPart& PropPart::collide_capsule(Vec3f from, Vec3f to, float radius) {
 
 PropPart& PropPart::collide_sphere(Vec3f center, float radius) {
   colliders.push_back({ColliderShape::kSphere, {radius, 0, 0}, at(center)});
+  return *this;
+}
+
+PropPart& PropPart::collide_hull(const Solid& solid, double friction) {
+  const Vec3f half = (solid.high() - solid.low()) * 0.5f;
+  colliders.push_back({ColliderShape::kHull, half, {}, friction, solid.mesh()});
   return *this;
 }
 

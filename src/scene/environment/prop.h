@@ -16,7 +16,7 @@
 
 namespace gloam {
 
-enum class ColliderShape { kBox, kCylinder, kCapsule, kSphere };
+enum class ColliderShape { kBox, kCylinder, kCapsule, kSphere, kHull };
 
 struct PropVisual {
   std::string name;
@@ -26,9 +26,10 @@ struct PropVisual {
 
 struct PropCollider {
   ColliderShape shape = ColliderShape::kBox;
-  Vec3f size;             ///< MuJoCo's: half extents; radius, half length; radius [m]
-  Pose X_PG = {};         ///< in the part's frame
-  double friction = 0.8;  ///< sliding
+  Vec3f size;              ///< MuJoCo's: half extents; radius, half length; radius [m]
+  Pose X_PG = {};          ///< in the part's frame
+  double friction = 0.8;   ///< sliding
+  TriangleMesh hull = {};  ///< kHull: a closed mesh; MuJoCo takes its convex hull
 };
 
 /// The joint between a part and what it hangs on, through the origin of the part's frame.
@@ -60,6 +61,8 @@ struct PropPart {
   PropPart& collide_cylinder(Vec3f from, Vec3f to, float radius);
   PropPart& collide_capsule(Vec3f from, Vec3f to, float radius);
   PropPart& collide_sphere(Vec3f center, float radius);
+  /// The convex hull of a closed mesh.
+  PropPart& collide_hull(const Solid& solid, double friction = 0.8);
 };
 
 /// A level rectangle of part 0 on which smaller things may stand.

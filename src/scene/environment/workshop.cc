@@ -298,6 +298,80 @@ std::string Workshop::earth() {
       patterned("earth", noise({0.022, 0.014, 0.009}, {0.06, 0.04, 0.026}, 0.015, 0.004, 1)));
 }
 
+std::string Workshop::gravel() {
+  Look look = patterned(
+      "gravel", noise({0.085, 0.076, 0.063}, {0.235, 0.215, 0.185}, 0.022, 0.006, 0.95, "cells"));
+  PatternOptions dirt;
+  dirt.kind = "dirt";
+  dirt.color_b = Vec3{0.085, 0.065, 0.045};
+  dirt.scale = 0.8;
+  dirt.amount = 0.42;
+  look.more.wear = dirt;
+  return add(std::move(look));
+}
+
+std::string Workshop::soil(Vec3 dry, Vec3 dark, double wet) {
+  Look look =
+      patterned(fmt::format("soil_{}", hex(times(dry, 4))), noise(dark, dry, 0.11, 0.012, 1));
+  if (wet > 0) {
+    look.more.wetness = wet;
+    look.more.porosity = 0.6;
+  }
+  return add(std::move(look));
+}
+
+std::string Workshop::turf() {
+  Look look = patterned("turf", noise({0.030, 0.034, 0.012}, {0.088, 0.085, 0.034}, 0.55, 0.02, 1));
+  look.more.fuzz_weight = 0.3;
+  look.more.fuzz_color = Vec3{0.10, 0.11, 0.05};
+  return add(std::move(look));
+}
+
+std::string Workshop::bedrock() {
+  Look look = patterned(
+      "bedrock", noise({0.10, 0.097, 0.090}, {0.27, 0.262, 0.245}, 0.16, 0.014, 0.9, "turbulence"));
+  PatternOptions lichen;
+  lichen.kind = "dirt";
+  lichen.color_b = Vec3{0.16, 0.165, 0.09};
+  lichen.scale = 0.12;
+  lichen.amount = 0.36;
+  look.more.wear = lichen;
+  return add(std::move(look));
+}
+
+std::string Workshop::blades(const std::string& name, Vec3 young, Vec3 old) {
+  Look look = patterned(name, noise(old, young, 0.22, 0, 0.55));
+  look.more.subsurface_weight = 0.45;
+  look.more.subsurface_color = times(young, 1.3);
+  look.more.thin_walled = true;
+  return add(std::move(look));
+}
+
+std::string Workshop::water() {
+  Look look = plain("water", {1, 1, 1}, 0);
+  look.opacity = 0.5;  // in viewers that know no transmission
+  look.more.transmission_weight = 1;
+  look.more.ior = 1.33;
+  look.more.transmission_color = Vec3{0.34, 0.40, 0.24};
+  look.more.transmission_depth = 0.45;
+  return add(std::move(look));
+}
+
+std::string Workshop::weathered_boards(Axis grain) {
+  PatternOptions p = wood_pattern("pine", grain);
+  p.color_a = Vec3{0.25, 0.235, 0.215};
+  p.color_b = Vec3{0.135, 0.122, 0.107};
+  p.depth = 0.002;
+  p.coat = 0;
+  p.roughness = 0.9;
+  return add(patterned(fmt::format("weathered_boards_{}", letter(grain)), std::move(p)));
+}
+
+std::string Workshop::rusty_sheet() {
+  return add(patterned("rusty_sheet", noise({0.115, 0.048, 0.022}, {0.30, 0.27, 0.245}, 0.5, 0.0008,
+                                            0.75, "turbulence")));
+}
+
 std::string Workshop::glow(Vec3 color, double luminance) {
   Look look = plain(fmt::format("glow_{}_{:.0f}", hex(color), luminance), color, 0.9);
   look.luminance = luminance;

@@ -64,6 +64,15 @@ class Workshop {
   std::string paper(Vec3 color);
   std::string leaf(Vec3 color);
   std::string earth();
+  // Ground and what grows on it; colours are linear.
+  std::string gravel();                                   ///< of a worn track
+  std::string soil(Vec3 dry, Vec3 dark, double wet = 0);  ///< bare, with crumbs and stones
+  std::string turf();                                     ///< what is seen between blades of grass
+  std::string bedrock();                                  ///< grey, with lichen
+  std::string blades(const std::string& name, Vec3 young, Vec3 old);  ///< grass, thin
+  std::string water();                                                ///< of a pond, clear to murky
+  std::string weathered_boards(Axis grain);                           ///< grey, never painted
+  std::string rusty_sheet();                                          ///< zinc that is mostly gone
   std::string glow(Vec3 color, double luminance);  ///< shades and screens that shine [cd/m²]
   std::string picture(const std::string& name, std::function<Image8()> paint,
                       double roughness = 0.6);

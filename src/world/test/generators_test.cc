@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <set>
+
 #include "base/files.h"
 #include "scene/test/temp_folder.h"
 #include "world/test/place_check.h"
@@ -10,7 +13,7 @@ namespace gloam {
 namespace {
 
 // Of the grid that is walked [m]: doors leave 8 cm beside the probe, aisles half a metre.
-constexpr double kFine = 0.05, kCoarse = 0.1;
+constexpr double kFine = 0.05, kCoarse = 0.1, kWide = 0.2;
 
 class GeneratorsSlow : public ::testing::Test {
  protected:
@@ -46,6 +49,9 @@ class GeneratorsSlow : public ::testing::Test {
     return scene_of(&EnvironmentOptions::bedroom, o);
   }
   Scene scene_of(const TunnelOptions& o) const { return scene_of(&EnvironmentOptions::tunnel, o); }
+  Scene scene_of(const TerrainOptions& o) const {
+    return scene_of(&EnvironmentOptions::terrain, o);
+  }
   template <class Options>
   void expect_sound(const Options& options, double cell, const std::string& which = {}) {
     SCOPED_TRACE("seed " + std::to_string(options.seed) + which);
@@ -79,6 +85,12 @@ class GeneratorsSlow : public ::testing::Test {
     TunnelOptions tunnel;
     tunnel.length = 40;
     return tunnel;
+  }
+  static TerrainOptions small_terrain() {
+    TerrainOptions terrain;
+    terrain.length = terrain.width = 36;
+    terrain.loose = 0.3;
+    return terrain;
   }
   TempFolder folder_;
 };
@@ -171,6 +183,59 @@ TEST_F(GeneratorsSlow, MakeTunnelsThatAreReachableAndAtRest) {
 }
 TEST_F(GeneratorsSlow, DISABLED_SweepTunnelsOfTwoHundredSeeds) {
   expect_sound_seeds(1, 200, kCoarse, short_tunnel());
+}
+
+TEST_F(GeneratorsSlow, MakeTerrainsThatAreReachableAndAtRest) {
+  expect_sound_seeds(1, 10, kWide, small_terrain());
+}
+TEST_F(GeneratorsSlow, DISABLED_SweepTerrainsOfTwoHundredSeeds) {
+  expect_sound_seeds(1, 200, kWide, small_terrain());
+}
+
+TEST_F(GeneratorsSlow, MakeTerrainsAtTheExtremesOfTheirParameters) {
+  for (const bool high : {false, true}) {
+    TerrainOptions terrain;
+    terrain.length = high ? 60 : 20;
+    terrain.width = high ? 48 : 20;
+    terrain.relief = high ? 20 : 0;
+    terrain.resolution = high ? 1 : 0.05;
+    terrain.road = high ? 8 : 0;
+    terrain.water = high;
+    terrain.grass = terrain.rocks = terrain.trees = terrain.loose = high;
+    terrain.buildings = high ? 3 : 0;
+    expect_sound(terrain, kWide, high ? ", all" : ", nothing");
+  }
+}
+
+TEST_F(GeneratorsSlow, DrawTheGroundOfTerrainsWhereItIsFelt) {
+  const Result<World> world = World::compile(scene_of(small_terrain()));
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  const mjModel* m = world->compiled()->model.get();
+  mjData* d = mj_makeData(m);
+  mj_forward(m, d);
+  const std::set<std::string> zones = {"meadow_1", "road_1", "verge_1",
+                                       "shore_1",  "rock_1", "earth_1"};
+  int seen = 0;
+  for (int i = 0; i < 400; ++i) {
+    const mjtNum from[3] = {-15 + 30 * std::fmod(i * 0.754877666, 1.0),
+                            -15 + 30 * std::fmod(i * 0.569840291, 1.0), 50};
+    const mjtNum down[3] = {0, 0, -1};
+    const mjtByte felt[mjNGROUP] = {0, 0, 0, 1, 0, 0};
+    int geom = -1;
+    const mjtNum to_ground = mj_ray(m, d, from, down, felt, 1, -1, &geom, nullptr);
+    if (geom < 0 || m->geom_type[geom] != mjGEOM_HFIELD) continue;
+    mjtNum nearest = 1e9;
+    for (int g = 0; g < static_cast<int>(m->ngeom); ++g) {
+      if (m->geom_type[g] != mjGEOM_MESH || m->geom_group[g] != 2) continue;
+      if (!zones.count(mj_id2name(m, mjOBJ_BODY, m->geom_bodyid[g]))) continue;
+      const mjtNum drawn = mj_rayMesh(m, d, g, from, down, nullptr);
+      if (drawn >= 0) nearest = std::min(nearest, std::abs(drawn - to_ground));
+    }
+    EXPECT_LT(nearest, 0.001) << "at " << from[0] << ", " << from[1];
+    ++seen;
+  }
+  EXPECT_GT(seen, 200) << "most of the ground is open to the sky";
+  mj_deleteData(d);
 }
 
 TEST_F(GeneratorsSlow, MakeTheOthersAtTheExtremesOfTheirParameters) {

@@ -33,6 +33,7 @@ class Checker {
         cell_(cell),
         m_(mj_copyModel(nullptr, world.model.get())),
         d_(mj_makeData(m_.get())) {
+    on_slopes_ = m_->nhfield > 0;
     probe_ = mj_name2id(m_.get(), mjOBJ_GEOM, "probe/cylinder");
     for (int j = 0; j < static_cast<int>(m_->njnt); ++j) {
       const char* name = mj_id2name(m_.get(), mjOBJ_BODY, m_->jnt_bodyid[j]);
@@ -158,7 +159,8 @@ class Checker {
       report_.reached_area += cell_ * cell_;
       for (const Region& r : world_.regions)
         if (x > r.low.x && x < r.high.x && y > r.low.y && y < r.high.y &&
-            std::abs(ground - r.low.z) < 0.05)
+            (std::abs(ground - r.low.z) < 0.05 ||
+             (on_slopes_ && ground > r.low.z && ground < r.high.z)))
           area[r.name] += cell_ * cell_;
     };
     visit(0, 0, 0);
@@ -178,6 +180,7 @@ class Checker {
   ModelPtr m_;
   DataPtr d_;
   int probe_ = -1;
+  bool on_slopes_ = false;  // floors of regions rise and fall
   std::vector<int> doors_;
   PlaceReport report_;
 };

@@ -1,0 +1,19 @@
+#pragma once
+// What the ground of open country looks like: its triangles, exactly those that are walked on,
+// cut into zones along ragged borders, and the country around it.
+
+#include "scene/environment/landscape.h"
+#include "scene/environment/place.h"
+
+namespace gloam {
+
+/// The ground under the area, its samples `step` apart or closer.
+HeightField sample_landscape(const Landscape& land, const Rect& area, double step);
+
+/// Draws meadow, road, shore, bare earth and rock on the field's triangulation.
+void show_ground(const Landscape& land, const HeightField& field, Workshop* shop, Place* place);
+
+/// Draws what lies beyond the field, to the hills on the horizon.
+void show_country(const Landscape& land, const HeightField& field, Workshop* shop, Place* place);
+
+}  // namespace gloam

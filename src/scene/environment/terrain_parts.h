@@ -1,0 +1,23 @@
+#pragma once
+// What stands and grows on open country.
+
+#include "scene/environment/landscape.h"
+#include "scene/environment/place.h"
+
+namespace gloam {
+
+/// Posts and rails along the border, which robots cannot cross.
+void add_fence(const Landscape& land, Workshop* shop, Place* place);
+/// A barn of boards on each building site.
+void add_barns(const Landscape& land, uint64_t seed, Workshop* shop, Place* place);
+/// Boulders and rocks, some of them loose, and pebbles for the eye.
+void add_rocks(const Landscape& land, const TerrainOptions& options, Place* place);
+/// Trees and bushes, within the border and beyond it.
+void add_trees(const Landscape& land, const TerrainOptions& options, Place* place);
+/// Patches of blades, within the border and some way beyond.
+void add_grass(const Landscape& land, const TerrainOptions& options, Workshop* shop, Place* place);
+
+/// Stands on the ground as it leans there, turned about its normal [rad].
+Pose on_ground(const Landscape& land, double x, double y, double turned);
+
+}  // namespace gloam
