@@ -110,8 +110,8 @@ struct TunnelOptions {
   SourceLoc loc = {};
 };
 
-/// [environment.terrain]: open country under the sky, a rectangle about the world's origin, which is
-/// on level free ground at z = 0: on the road, which leads along x, where there is one.
+/// [environment.terrain]: open country under the sky, a rectangle about the world's origin, which
+/// is on level free ground at z = 0: on the road, which leads along x, where there is one.
 struct TerrainOptions {
   uint64_t seed = 1;        ///< which terrain
   double length = 60;       ///< along x [m], 20 … 200
@@ -123,7 +123,7 @@ struct TerrainOptions {
   double grass = 0.6;       ///< 0 mown … 1: how dense and high it stands
   double rocks = 0.5;       ///< 0 none … 1
   double trees = 0.5;       ///< trees and bushes, 0 none … 1
-  int buildings = 1;        ///< weathered barns and ruins, 0 … 3, as far as there is room
+  int buildings = 1;        ///< weathered barns, 0 … 3, as far as there is room
   double loose = 0.1;       ///< share of the smaller rocks that can be pushed, 0 … 1
   SourceLoc loc = {};
 };

@@ -190,6 +190,16 @@ void show_ground(const Landscape& land, const HeightField& field, Workshop* shop
     put(zones[zone].label, zones[zone].material, std::move(meshes[zone]).mesh(), place);
 }
 
+TriangleMesh sheet_facing_up(const Path& points, int columns) {
+  TriangleMesh mesh = sheet(points, columns).mesh();
+  mesh.uvs.clear();
+  if (mesh.normals[0].z >= 0) return mesh;
+  for (Vec3f& n : mesh.normals) n = -n;
+  for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+  return mesh;
+}
+
 // Rings around the field, each further out than the last. The first lies a little inside and below.
 void show_country(const Landscape& land, const HeightField& field, Workshop* shop, Place* place) {
   constexpr int kRings = 44, kPerSide = 160;
@@ -209,14 +219,24 @@ void show_country(const Landscape& land, const HeightField& field, Workshop* sho
       points.push_back({float(x), float(y), float(land.height(x, y)) - (ring == 0 ? kUnder : 0)});
     }
   }
-  TriangleMesh mesh = sheet(points, 4 * kPerSide + 1).mesh();
-  mesh.uvs.clear();
-  if (mesh.normals[0].z < 0) {
-    for (Vec3f& n : mesh.normals) n = -n;
-    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-      std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
+  put("meadow", shop->turf(), sheet_facing_up(points, 4 * kPerSide + 1), place);
+}
+
+void show_road_beyond(const Landscape& land, Workshop* shop, Place* place) {
+  if (!land.has_road()) return;
+  constexpr int kLong = 60;  // [m]
+  for (const double end : {-1.0, 1.0}) {
+    Path points;
+    for (int i = 0; i <= kLong; ++i) {
+      const double x = end * (land.area().x1 - 0.2 + i), y = land.road_y(x);
+      for (const double side : {-0.5, -0.2, 0.2, 0.5}) {
+        const double at = y + side * land.road_width();
+        // The country is drawn the coarser the farther it is.
+        points.push_back({float(x), float(at), float(land.height(x, at) + 0.015 + 0.004 * i)});
+      }
+    }
+    put("road", shop->gravel(), sheet_facing_up(points, 4), place);
   }
-  put("meadow", shop->turf(), std::move(mesh), place);
 }
 
 }  // namespace gloam

@@ -15,5 +15,9 @@ void show_ground(const Landscape& land, const HeightField& field, Workshop* shop
 
 /// Draws what lies beyond the field, to the hills on the horizon.
 void show_country(const Landscape& land, const HeightField& field, Workshop* shop, Place* place);
+void show_road_beyond(const Landscape& land, Workshop* shop, Place* place);
+
+/// As sheet() of geometry/solid.h, turned so that it is seen from above.
+TriangleMesh sheet_facing_up(const Path& points, int columns);
 
 }  // namespace gloam

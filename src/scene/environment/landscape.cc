@@ -173,7 +173,8 @@ double Landscape::height(double x, double y) const {
   double z = country(x, y), rough = 1;
   if (has_road()) {
     const double d = from_road(x, y), half = o_.road / 2;
-    const double on = 1 - smooth_between(half + kShoulder, half + kShoulder + kGraded, d);
+    const double on = (1 - smooth_between(half + kShoulder, half + kShoulder + kGraded, d)) *
+                      (1 - smooth_between(kRoadAway, 2 * kRoadAway, away));
     z = mix(z, road_z(x), on);
     rough = 1 - 0.8 * on;
     // Crown, wheel ruts, ditches.

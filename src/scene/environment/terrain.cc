@@ -65,15 +65,9 @@ void add_water(const Landscape& land, Workshop* shop, Place* place) {
     points.push_back({0, 0, 0});
     points.push_back({float(r * std::cos(a)), float(r * std::sin(a)), 0});
   }
-  TriangleMesh mesh = sheet(points, 2).mesh();
-  mesh.uvs.clear();
-  if (mesh.normals[1].z < 0)
-    for (size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-      std::swap(mesh.indices[i + 1], mesh.indices[i + 2]);
-  mesh.normals.assign(mesh.positions.size(), {0, 0, 1});
   Prop p;
   p.label = "water";
-  p.body().show("surface", shop->water(), Solid(std::move(mesh)));
+  p.body().show("surface", shop->water(), Solid(sheet_facing_up(points, 2)));
   place->put(place->add(std::move(p)), "", {{pond.x, pond.y, pond.z}});
 }
 
@@ -88,16 +82,18 @@ Result<Place> make_terrain(const TerrainOptions& options) {
   place.grounds.push_back({"ground", sample_landscape(land, land.area(), step), 1.0});
   show_ground(land, place.grounds[0].field, &shop, &place);
   show_country(land, place.grounds[0].field, &shop, &place);
+  show_road_beyond(land, &shop, &place);
   add_water(land, &shop, &place);
-  add_fence(land, &shop, &place);
+  add_fence(land, options.seed, &shop, &place);
   add_barns(land, options.seed, &shop, &place);
   add_rocks(land, options, &place);
   add_trees(land, options, &place);
   add_grass(land, options, &shop, &place);
+  add_litter(land, options, &shop, &place);
   add_regions(land, &place);
   Dice dice(options.seed, "light");
   place.sky = draw_sky(&dice, true);
-  place.ev100 = 13.6;
+  place.ev100 = 13.3;
   return place;
 }
 

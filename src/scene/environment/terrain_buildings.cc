@@ -100,10 +100,10 @@ Prop make_barn(const BuildingSite& site, Workshop* shop, Dice* dice) {
 
 }  // namespace
 
-void add_fence(const Landscape& land, Workshop* shop, Place* place) {
+void add_fence(const Landscape& land, uint64_t seed, Workshop* shop, Place* place) {
   const Rect r = land.area().grown(-kInside);
   const std::string wood = shop->weathered_boards(Axis::kX),
-                    post_wood = shop->weathered_boards(Axis::kZ);
+                    post_wood = shop->weathered_boards(Axis::kZ), steel = shop->metal("galvanised");
   Prop p;
   p.label = "fence";
   PropPart& b = p.body();
@@ -112,7 +112,7 @@ void add_fence(const Landscape& land, Workshop* shop, Place* place) {
                                         {float(r.x1), float(r.y1)},
                                         {float(r.x0), float(r.y1)},
                                         {float(r.x0), float(r.y0)}};
-  Dice dice(1, "fence");
+  Dice dice(seed, "fence");
   for (size_t side = 0; side < 4; ++side) {
     const Vec2f from = corners[side], to = corners[side + 1];
     const double length = std::hypot(to.x - from.x, to.y - from.y);
@@ -128,11 +128,19 @@ void add_fence(const Landscape& land, Workshop* shop, Place* place) {
                   lean_y = float(dice.uniform(-0.02, 0.02));
       b.show("posts", post_wood,
              bar(a + Vec3f{0, 0, -0.4f}, a + Vec3f{lean_x, lean_y, 1.22f}, 0.058f, 0.05f, 8));
-      for (const float z : {0.4f, 0.76f, 1.1f}) {
-        const float sag = float(dice.uniform(-0.03, 0.03));
-        b.show("rails", wood, bar(a + Vec3f{0, 0, z}, e + Vec3f{0, 0, z + sag}, 0.036f, 0.032f, 7));
-      }
       const Vec3f middle = (a + e) * 0.5f;
+      // Across the road a gate of tubes, closed.
+      const bool gate =
+          land.from_road(middle.x, middle.y) < land.road_width() / 2 + length / bays / 2;
+      if (gate)
+        for (const float z : {0.2f, 0.42f, 0.64f, 0.86f, 1.08f})
+          b.show("gate", steel, bar(a + Vec3f{0, 0, z}, e + Vec3f{0, 0, z}, 0.02f, 0.02f, 10));
+      else
+        for (const float z : {0.4f, 0.76f, 1.1f}) {
+          const float sag = float(dice.uniform(-0.03, 0.03));
+          b.show("rails", wood,
+                 bar(a + Vec3f{0, 0, z}, e + Vec3f{0, 0, z + sag}, 0.036f, 0.032f, 7));
+        }
       const float run = std::hypot(e.x - a.x, e.y - a.y), rise = std::abs(e.z - a.z);
       b.collide_box(middle + Vec3f{0, 0, 0.5f}, {run / 2 + 0.02f, 0.05f, 0.7f + rise / 2},
                     turn({0, 0, 1}, std::atan2(double(e.y - a.y), double(e.x - a.x))));

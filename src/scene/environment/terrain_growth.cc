@@ -36,15 +36,18 @@ double bulge(const Landscape& land, double x, double y, double radius) {
   return most;
 }
 
-// A square of blades that bend outwards; roots a little below the ground.
-Solid blades(double high, int count, Dice* dice) {
+}  // namespace
+
+Solid blades(const BladeOptions& o, Dice* dice) {
   TriangleMesh mesh;
-  for (int i = 0; i < count; ++i) {
-    const float x = float(dice->uniform(-0.55, 0.55) * kPatch),
-                y = float(dice->uniform(-0.55, 0.55) * kPatch);
-    const float a = float(dice->uniform(0, 2 * kPi)), h = float(high * dice->uniform(0.35, 1));
+  for (int i = 0; i < o.count; ++i) {
+    // In a disc that reaches over its neighbours, so that no edge shows.
+    const double from = dice->uniform(0, 2 * M_PI), out_by = 0.85 * std::sqrt(dice->uniform());
+    const float x = float(out_by * o.square * std::cos(from)),
+                y = float(out_by * o.square * std::sin(from));
+    const float a = float(dice->uniform(0, 2 * kPi)), h = float(o.high * dice->uniform(0.35, 1));
     const float bend = h * float(dice->uniform(0.1, 0.75)),
-                half = float(dice->uniform(0.0018, 0.0038));
+                half = float(o.half_width * dice->uniform(0.65, 1.35));
     const Vec3f out{std::cos(a), std::sin(a), 0}, side{-std::sin(a) * half, std::cos(a) * half, 0};
     const Vec3f foot{x, y, -0.04f}, knee = foot + out * (0.3f * bend) + Vec3f{0, 0, 0.6f * h},
                                     tip = foot + out * bend + Vec3f{0, 0, h};
@@ -57,8 +60,6 @@ Solid blades(double high, int count, Dice* dice) {
   }
   return Solid(std::move(mesh));
 }
-
-}  // namespace
 
 Pose on_ground(const Landscape& land, double x, double y, double turned) {
   const Vec3f n = land.normal(x, y);
@@ -149,10 +150,9 @@ void add_grass(const Landscape& land, const TerrainOptions& o, Workshop* shop, P
     const double high = (0.10 + 0.22 * o.grass) * (0.7 + 0.3 * static_cast<double>(i % kShapes));
     Prop p;
     p.label = "grass";
-    p.body().show(
-        "blades", looks[i / kShapes],
-        blades(high, static_cast<int>((900 + 3600 * o.grass) * (i % kShapes == 0 ? 0.6 : 1)),
-               &dice));
+    const int count = static_cast<int>((900 + 3600 * o.grass) * (i % kShapes == 0 ? 0.6 : 1));
+    p.body().show("blades", looks[i / kShapes],
+                  blades({.high = high, .square = kPatch, .count = count}, &dice));
     props[i] = place->add(std::move(p));
   }
   std::array<std::vector<Pose>, 3 * kShapes> poses;
@@ -165,7 +165,7 @@ void add_grass(const Landscape& land, const TerrainOptions& o, Workshop* shop, P
       const int shape = dice.integer(0, 1);
       const double road = land.from_road(px, py) - o.road / 2;
       const double wet = land.moisture(px, py);
-      bool bare = road < 0.75 || land.pond_share(px, py) < 1.12 || wet < -0.42 ||
+      bool bare = road < 0.5 || land.pond_share(px, py) < 1.12 || wet < -0.42 ||
                   land.normal(px, py).z < 0.87f;
       for (const BuildingSite& s : land.sites()) bare = bare || s.distance(px, py) < 1.1;
       if (bare) continue;

@@ -300,10 +300,10 @@ std::string Workshop::earth() {
 
 std::string Workshop::gravel() {
   Look look = patterned(
-      "gravel", noise({0.085, 0.076, 0.063}, {0.235, 0.215, 0.185}, 0.022, 0.006, 0.95, "cells"));
+      "gravel", noise({0.060, 0.053, 0.044}, {0.165, 0.148, 0.125}, 0.022, 0.006, 0.95, "cells"));
   PatternOptions dirt;
   dirt.kind = "dirt";
-  dirt.color_b = Vec3{0.085, 0.065, 0.045};
+  dirt.color_b = Vec3{0.088, 0.074, 0.057};
   dirt.scale = 0.8;
   dirt.amount = 0.42;
   look.more.wear = dirt;
@@ -321,18 +321,18 @@ std::string Workshop::soil(Vec3 dry, Vec3 dark, double wet) {
 }
 
 std::string Workshop::turf() {
-  Look look = patterned("turf", noise({0.030, 0.034, 0.012}, {0.088, 0.085, 0.034}, 0.55, 0.02, 1));
+  Look look = patterned("turf", noise({0.022, 0.028, 0.009}, {0.066, 0.070, 0.024}, 0.09, 0.02, 1));
   look.more.fuzz_weight = 0.3;
   look.more.fuzz_color = Vec3{0.10, 0.11, 0.05};
   return add(std::move(look));
 }
 
 std::string Workshop::bedrock() {
-  Look look = patterned(
-      "bedrock", noise({0.10, 0.097, 0.090}, {0.27, 0.262, 0.245}, 0.16, 0.014, 0.9, "turbulence"));
+  Look look = patterned("bedrock", noise({0.060, 0.058, 0.053}, {0.165, 0.158, 0.146}, 0.16, 0.014,
+                                         0.9, "turbulence"));
   PatternOptions lichen;
   lichen.kind = "dirt";
-  lichen.color_b = Vec3{0.16, 0.165, 0.09};
+  lichen.color_b = Vec3{0.095, 0.098, 0.055};
   lichen.scale = 0.12;
   lichen.amount = 0.36;
   look.more.wear = lichen;

@@ -23,7 +23,7 @@ Prop make_tree(double high, Workshop* shop, Dice* dice) {
   const std::string bark = shop->earth();
   p.body().show("trunk", bark, bar({0, 0, -0.1f}, {0, 0, fork}, 0.035f * h, 0.024f * h, 12));
   Solid leaves[2];
-  constexpr int kBoughs = 13, kLeaves = 210;
+  constexpr int kBoughs = 13, kLeaves = 380;
   for (int i = 0; i < kBoughs; ++i) {
     // Spread evenly over a sphere about the crown's middle, by the golden angle.
     const float t = (float(i) + 0.5f) / kBoughs, a = 2.39996f * float(i), z = 1 - 1.5f * t,
@@ -38,7 +38,7 @@ Prop make_tree(double high, Workshop* shop, Dice* dice) {
       const Vec3f out{q * std::cos(b), q * std::sin(b), u};
       const float deep = cloud * std::sqrt(float(dice->uniform(0.35, 1)));
       add_leaf(end + out * deep, out + Vec3f{0, 0, -0.35f}, {-std::sin(b), std::cos(b), 0.3f},
-               float(dice->uniform(0.14, 0.24)), &leaves[k % 2]);
+               float(dice->uniform(0.18, 0.30)), &leaves[k % 2]);
     }
   }
   p.body().show("leaves_1", shop->leaf({0.28, 0.35, 0.15}), leaves[0]);
@@ -63,7 +63,7 @@ Prop conifer(Workshop& shop) {
   const std::string bark = shop.earth();
   p.body().show("trunk", bark, bar({0, 0, -0.15f}, {0, 0, 0.98f * h}, 0.02f * h, 0.002f * h, 10));
   Solid needles;
-  const int whorls = 22;
+  const int whorls = 36;
   for (int i = 0; i < whorls; ++i) {
     const float t = float(i) / float(whorls - 1), z = h * (0.12f + 0.84f * t);
     const int count = 9 - int(4 * t);
@@ -75,7 +75,7 @@ Prop conifer(Workshop& shop) {
       const int sprays = 3 + int(reach / 0.13f);
       for (int s = 0; s < sprays; ++s) {
         const float at = reach * (0.12f + 0.88f * float(s) / float(sprays)),
-                    length = (0.30f + 0.25f * (reach - at)) * float(dice.uniform(0.7, 1.1));
+                    length = (0.34f + 0.28f * (reach - at)) * float(dice.uniform(0.7, 1.1));
         for (const float way : {-1.0f, 0.0f, 1.0f})
           add_leaf(Vec3f{0, 0, z} + out * at, normalize(out + side * (0.8f * way)),
                    normalize(side + Vec3f{0, 0, float(dice.uniform(-0.5, 0.5))}) * 0.55f, length,
