@@ -150,6 +150,19 @@ HeightField sample_landscape(const Landscape& land, const Rect& area, double ste
   return field;
 }
 
+// As MuJoCo cuts its cells: from their low corner to their high one.
+double ground_height(const HeightField& field, double x, double y) {
+  const HeightGrid& g = field.grid;
+  const double u = std::clamp((x - g.low[0]) / g.step[0], 0.0, g.columns - 1.001),
+               v = std::clamp((y - g.low[1]) / g.step[1], 0.0, g.rows - 1.001);
+  const int c = static_cast<int>(u), r = static_cast<int>(v);
+  const double a = u - c, b = v - r;
+  const double low = field.at(c, r), high = field.at(c + 1, r + 1);
+  const double corner = a > b ? field.at(c + 1, r) : field.at(c, r + 1);
+  return a > b ? low + a * (corner - low) + b * (high - corner)
+               : low + b * (corner - low) + a * (high - corner);
+}
+
 void show_ground(const Landscape& land, const HeightField& field, Workshop* shop, Place* place) {
   const std::vector<Zone> zones = zones_of(land, shop);
   const std::vector<Corner> corners = corners_of(field, land);

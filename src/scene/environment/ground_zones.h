@@ -10,6 +10,9 @@ namespace gloam {
 /// The ground under the area, its samples `step` apart or closer.
 HeightField sample_landscape(const Landscape& land, const Rect& area, double step);
 
+/// Of the field's triangles at a place within it [m].
+double ground_height(const HeightField& field, double x, double y);
+
 /// Draws meadow, road, shore, bare earth and rock on the field's triangulation.
 void show_ground(const Landscape& land, const HeightField& field, Workshop* shop, Place* place);
 

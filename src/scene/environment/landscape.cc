@@ -199,12 +199,6 @@ double Landscape::height(double x, double y) const {
   return z + range * (9 + 14 * (0.5 + 0.5 * hills_.sum(x / 90, y / 90, 3)));
 }
 
-double Landscape::slope(double x, double y) const {
-  constexpr double kD = 0.1;
-  return std::hypot(height(x + kD, y) - height(x - kD, y), height(x, y + kD) - height(x, y - kD)) /
-         (2 * kD);
-}
-
 Vec3f Landscape::normal(double x, double y) const {
   constexpr double kD = 0.1;
   const double dx = (height(x + kD, y) - height(x - kD, y)) / (2 * kD),

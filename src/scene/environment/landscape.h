@@ -35,8 +35,6 @@ class Landscape {
   double height(double x, double y) const;
   /// Unit, upwards.
   Vec3f normal(double x, double y) const;
-  /// Tangent of the angle of its steepest way.
-  double slope(double x, double y) const;
 
   /// y of the road's middle.
   double road_y(double x) const;

@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "base/check.h"
+#include "scene/environment/ground_zones.h"
 #include "scene/environment/terrain_parts.h"
 
 namespace gloam {
@@ -22,18 +24,35 @@ int make(Place* place, const char* kind, uint64_t seed, Vec3 size) {
   return *made;
 }
 
-// How far the ground around a point rises above its plane there [m].
-double bulge(const Landscape& land, double x, double y, double radius) {
-  const Vec3f n = land.normal(x, y);
-  const double z = land.height(x, y);
+// Turned about its normal n.
+Quat leaning(Vec3f n, double turned) {
+  const double angle = std::acos(std::min(1.0, double(n.z)));
+  const Quat lean = angle > 1e-4 ? turn({-n.y, n.x, 0}, angle) : Quat{};
+  const double c = std::cos(turned / 2), s = std::sin(turned / 2);
+  return {lean.w * c - lean.z * s, lean.x * c + lean.y * s, lean.y * c - lean.x * s,
+          lean.w * s + lean.z * c};
+}
+
+// How a thing of that radius lies on the ground that is felt: turned, its plane on the highest
+// samples around. Empty: it would rock on them.
+std::optional<Pose> lying(const HeightField& ground, double x, double y, double radius,
+                          double turned) {
+  constexpr double kLevel = 0.012;  // [m] of what rises above the plane
+  const double dx = (ground_height(ground, x + radius, y) - ground_height(ground, x - radius, y)) /
+                    (2 * radius),
+               dy = (ground_height(ground, x, y + radius) - ground_height(ground, x, y - radius)) /
+                    (2 * radius);
+  const double z = ground_height(ground, x, y);
   double most = 0;
-  for (int k = 0; k < 16; ++k) {
-    const double a = 2 * M_PI * k / 16, r = radius * (k % 2 == 0 ? 1 : 0.6);
-    const double dx = r * std::cos(a), dy = r * std::sin(a);
-    const double plane = z - (double(n.x) * dx + double(n.y) * dy) / double(n.z);
-    most = std::max(most, land.height(x + dx, y + dy) - plane);
+  for (int k = 0; k < 48; ++k) {
+    const double a = 2 * M_PI * k / 16, r = radius * (1 - k / 16 / 3.0);
+    const double px = r * std::cos(a), py = r * std::sin(a);
+    most = std::max(most, ground_height(ground, x + px, y + py) - z - dx * px - dy * py);
   }
-  return most;
+  if (most > kLevel || std::hypot(dx, dy) > 0.12) return {};
+  constexpr double kGap = 0.001;  // [m]
+  return Pose{{x, y, z + most + kGap},
+              leaning(normalize(Vec3f{float(-dx), float(-dy), 1}), turned)};
 }
 
 }  // namespace
@@ -62,13 +81,7 @@ Solid blades(const BladeOptions& o, Dice* dice) {
 }
 
 Pose on_ground(const Landscape& land, double x, double y, double turned) {
-  const Vec3f n = land.normal(x, y);
-  const double angle = std::acos(std::min(1.0, double(n.z)));
-  const Quat lean = angle > 1e-4 ? turn({-n.y, n.x, 0}, angle) : Quat{};
-  const double c = std::cos(turned / 2), s = std::sin(turned / 2);
-  return {{x, y, land.height(x, y)},
-          {lean.w * c - lean.z * s, lean.x * c + lean.y * s, lean.y * c - lean.x * s,
-           lean.w * s + lean.z * c}};
+  return {{x, y, land.height(x, y)}, leaning(land.normal(x, y), turned)};
 }
 
 void add_rocks(const Landscape& land, const TerrainOptions& o, Place* place) {
@@ -85,7 +98,6 @@ void add_rocks(const Landscape& land, const TerrainOptions& o, Place* place) {
     pose.p.z -= 0.16 * size;
     place->put(make(place, "boulder", variant, {1.2 * size, size, 0.85 * size}), "", pose);
   }
-  // Loose ones lie on the highest of the ground under them.
   const int rocks = static_cast<int>(std::lround(std::min(o.rocks * area.area() / 60, 120.0)));
   for (int i = 0; i < rocks; ++i) {
     const double x = dice.uniform(area.x0, area.x1), y = dice.uniform(area.y0, area.y1);
@@ -93,12 +105,14 @@ void add_rocks(const Landscape& land, const TerrainOptions& o, Place* place) {
     const uint64_t variant = static_cast<uint64_t>(dice.integer(0, 4));
     const bool loose = dice.chance(o.loose);
     if (!land.is_free(x, y, 0.8) || std::hypot(x, y) < 2) continue;
-    if (loose && land.slope(x, y) > 0.12) continue;
-    Pose pose = on_ground(land, x, y, turned);
-    const double lift = bulge(land, x, y, 0.15);
-    const bool lies = loose && lift < 0.012;
-    pose.p.z += lies ? lift + 0.001 : -0.04;
-    place->put(make(place, "rock", variant, {0.36, 0.28, 0.2}), "", pose, lies);
+    std::optional<Pose> pose;
+    if (loose) pose = lying(place->grounds[0].field, x, y, 0.18, turned);
+    const bool lies = pose.has_value();
+    if (!lies) {
+      pose = on_ground(land, x, y, turned);
+      pose->p.z -= 0.04;
+    }
+    place->put(make(place, "rock", variant, {0.36, 0.28, 0.2}), "", *pose, lies);
   }
 }
 

@@ -300,10 +300,10 @@ std::string Workshop::earth() {
 
 std::string Workshop::gravel() {
   Look look = patterned(
-      "gravel", noise({0.060, 0.053, 0.044}, {0.165, 0.148, 0.125}, 0.022, 0.006, 0.95, "cells"));
+      "gravel", noise({0.050, 0.044, 0.036}, {0.140, 0.124, 0.102}, 0.022, 0.006, 0.95, "cells"));
   PatternOptions dirt;
   dirt.kind = "dirt";
-  dirt.color_b = Vec3{0.088, 0.074, 0.057};
+  dirt.color_b = Vec3{0.092, 0.080, 0.063};
   dirt.scale = 0.8;
   dirt.amount = 0.42;
   look.more.wear = dirt;
@@ -328,7 +328,7 @@ std::string Workshop::turf() {
 }
 
 std::string Workshop::bedrock() {
-  Look look = patterned("bedrock", noise({0.060, 0.058, 0.053}, {0.165, 0.158, 0.146}, 0.16, 0.014,
+  Look look = patterned("bedrock", noise({0.042, 0.040, 0.036}, {0.125, 0.119, 0.108}, 0.16, 0.014,
                                          0.9, "turbulence"));
   PatternOptions lichen;
   lichen.kind = "dirt";

@@ -216,7 +216,7 @@ TEST_F(GeneratorsSlow, DrawTheGroundOfTerrainsWhereItIsFelt) {
   const std::set<std::string> zones = {"meadow_1", "road_1", "verge_1",
                                        "shore_1",  "rock_1", "earth_1"};
   int seen = 0;
-  for (int i = 0; i < 400; ++i) {
+  for (int i = 1; i < 400; ++i) {
     const mjtNum from[3] = {-15 + 30 * std::fmod(i * 0.754877666, 1.0),
                             -15 + 30 * std::fmod(i * 0.569840291, 1.0), 50};
     const mjtNum down[3] = {0, 0, -1};
