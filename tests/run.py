@@ -270,6 +270,7 @@ def full(tally):
         "lint of all": lambda t: check_lint(t, tracked("src/*.cc", "apps/*.cc")),
         "sweeps": lambda t: gtest(t, "release", "control", "*.DISABLED_Sweep*"),
         "sweeps of places": lambda t: gtest(t, "release", "world", "*.DISABLED_Sweep*"),
+        "sweeps of meshes": lambda t: gtest(t, "release", "geometry", "*.DISABLED_Sweep*"),
         "Mitsuba's mutations": lambda t: python_tests(t, "mitsuba_mutations.py", "tests/e2e"),
     }
     for module in modules_with("Mutations"):

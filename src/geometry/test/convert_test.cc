@@ -408,27 +408,36 @@ double seconds_of(const TriangleMesh& mesh, const std::string& colliders, Conver
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-// A scan: a lumpy closed body of 5 million triangles, with the scanner's noise.
-TEST_F(PartsSlow, OfAScanOfFiveMillionTriangles) {
-  TriangleMesh scan = torus(0.5f, 0.3f, 1600);  // 5,120,000
+// A scan: a lumpy closed body of 5,120,000 triangles, with the scanner's noise.
+TriangleMesh large_scan() {
+  TriangleMesh scan = torus(0.5f, 0.3f, 1600);
   const RandomStream random{11, stream_id("scan")};
   for (size_t i = 0; i < scan.positions.size(); ++i) {
     Vec3f& p = scan.positions[i];
     p.z *= 1.2f + 0.3f * std::sin(5 * p.x) * std::cos(4 * p.y);
     p = p * (1 + 2e-4f * (static_cast<float>(random.uniform(i, 0)) - 0.5f));
   }
-  Converted hull, parts;
-  const double hull_seconds = seconds_of(scan, "hull", &hull);
-  const double parts_seconds = seconds_of(scan, "hulls", &parts);
+  return scan;
+}
+
+TEST_F(PartsSlow, TheHullOfAScanOfFiveMillionTriangles) {
+  Converted hull;
+  const double seconds = seconds_of(large_scan(), "hull", &hull);
   EXPECT_TRUE(hull.is_closed);
   EXPECT_TRUE(is_physical(hull.mass));
   EXPECT_EQ(hull.colliders.size(), 1u);
+  EXPECT_LT(seconds, 60);
+  std::printf("hull of a scan: %.1f s\n", seconds);
+}
+
+TEST_F(PartsSlow, DISABLED_SweepPartsOfAScanOfFiveMillionTriangles) {
+  Converted parts;
+  const double seconds = seconds_of(large_scan(), "hulls", &parts);
   EXPECT_GT(parts.colliders.size(), 1u);
   EXPECT_THAT(parts.notes, testing::Contains(HasSubstr("5120000 triangles")));
   const Overlap overlap = overlap_of(parts);
   EXPECT_GT(overlap.shared, 0.8);
-  std::printf("scan of %zu triangles: hull %.1f s, hulls %.1f s (%zu), shared %.3f\n",
-              scan.triangle_count(), hull_seconds, parts_seconds, parts.colliders.size(),
+  std::printf("parts of a scan: %.1f s (%zu), shared %.3f\n", seconds, parts.colliders.size(),
               overlap.shared);
 }
 
