@@ -50,6 +50,14 @@ Prop make_tree(double high, Workshop* shop, Dice* dice) {
 
 namespace {
 
+// Of twigs and leaves in the box around a crown [kg].
+double foliage_mass(const Prop& p) {
+  constexpr double kDensity = 3;  // [kg/m³]
+  const Prop::Box box = p.bounds();
+  const Vec3f size = box.high - box.low;
+  return kDensity * double(size.x * size.y * size.z);
+}
+
 Prop tree(Workshop& shop) {
   const float high = limited(shop.size({6, 6, 7.5f}), {1, 1, 3}, {30, 30, 25}).z;
   return make_tree(high, &shop, &shop.dice);
@@ -86,7 +94,7 @@ Prop conifer(Workshop& shop) {
   p.body().show("needles", shop.blades("needles", {0.035, 0.058, 0.022}, {0.018, 0.032, 0.014}),
                 needles);
   p.body().collide_cylinder(0.02f * h, 0, 0.5f * h);
-  p.body().mass = 500 * M_PI * std::pow(0.014 * h, 2) * h;  // [kg/m³]
+  p.body().mass = 500 * M_PI * std::pow(0.014 * h, 2) * h + foliage_mass(p);  // [kg/m³] of wood
   return p;
 }
 
@@ -114,7 +122,7 @@ Prop bush(Workshop& shop) {
   p.body().show("leaves", shop.blades("bush_leaves", {0.062, 0.085, 0.026}, {0.032, 0.050, 0.017}),
                 leaves);
   p.body().collide_cylinder(0.3f * min(size.x, size.y), 0, 0.7f * size.z);
-  p.body().mass = 20;
+  p.body().mass = foliage_mass(p);
   return p;
 }
 
