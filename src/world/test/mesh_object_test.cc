@@ -345,7 +345,8 @@ TEST_F(MeshObjectTest, OddSizesAreTold) {
   const Result<World> world = compile(std::string(kCrate) + "unit = 1000\n");
   ASSERT_TRUE(world.ok()) << world.error().to_string();
   EXPECT_THAT(notes(*world), Contains(HasSubstr("object 'crate' is 600 m large")));
-  EXPECT_THAT(world->compiled()->unsupported, Contains(Field(&Error::hint, HasSubstr("unit = 0.001"))));
+  EXPECT_THAT(world->compiled()->unsupported,
+              Contains(Field(&Error::hint, HasSubstr("unit = 0.001"))));
 }
 
 TEST_F(MeshObjectTest, BadFilesAreErrors) {
