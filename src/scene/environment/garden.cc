@@ -37,7 +37,8 @@ void add_terrace(const Rect& house, Workshop* shop, Place* place) {
               rows = static_cast<int>(std::ceil((y1 - y0) / 0.85));
     const double dx = (x1 - x0) / columns, dy = (y1 - y0) / rows;
     for (int i = 0; i < columns * rows; ++i) {
-      const double x = x0 + i % columns * dx, y = y0 + i / columns * dy;
+      const int row = i / columns;
+      const double x = x0 + i % columns * dx, y = y0 + row * dy;
       p.body().show("slabs", stone,
                     slab({f(x + 0.004), f(y + 0.004), kGround - 0.03f},
                          {f(x + dx - 0.004), f(y + dy - 0.004), kGround + 0.008f}, 0.003f));

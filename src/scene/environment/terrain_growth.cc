@@ -45,7 +45,8 @@ std::optional<Pose> lying(const HeightField& ground, double x, double y, double 
   const double z = ground_height(ground, x, y);
   double most = 0;
   for (int k = 0; k < 48; ++k) {
-    const double a = 2 * M_PI * k / 16, r = radius * (1 - k / 16 / 3.0);
+    const int ring = k / 16;
+    const double a = 2 * M_PI * k / 16, r = radius * (1 - ring / 3.0);
     const double px = r * std::cos(a), py = r * std::sin(a);
     most = std::max(most, ground_height(ground, x + px, y + py) - z - dx * px - dy * py);
   }

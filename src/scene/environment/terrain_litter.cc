@@ -115,12 +115,12 @@ class Litter {
     return {float(pond.x + r * std::cos(a)), float(pond.y + r * std::sin(a))};
   }
 
-  void scatter(const std::string& label, const std::string& material, Solid mesh,
+  void scatter(const std::string& label, const std::string& material, const Solid& mesh,
                std::vector<Pose> poses) {
     if (poses.empty()) return;
     Prop p;
     p.label = label;
-    p.body().show("pieces", material, std::move(mesh));
+    p.body().show("pieces", material, mesh);
     const int made = place_->add(std::move(p));
     place_->scatter(made, label + "_" + std::to_string(++numbers_[label]), std::move(poses));
   }
