@@ -85,7 +85,7 @@ void add_hedge(const Rect& lot, Workshop* shop, Dice* dice, Place* place) {
     const bool along_x = high.x - low.x > high.y - low.y;
     const float length = along_x ? high.x - low.x : high.y - low.y;
     const float around = 2 * kHigh + 2 * kHalf;  // up one face, over the top, down the other
-    const int count = int(length * around * 60);
+    const int count = int(length * around * 32);
     for (int i = 0; i < count; ++i) {
       const float s = float(dice->uniform(0, length)), t = float(dice->uniform(0, around));
       const bool on_top = std::abs(t - around / 2) < kHalf;
@@ -98,7 +98,7 @@ void add_hedge(const Rect& lot, Workshop* shop, Dice* dice, Place* place) {
               0.7f * std::sin(a) + (along_x && !on_top ? out * 0.6f : 0), up};
       const Vec3f at = along_x ? Vec3f{low.x + s, (low.y + high.y) / 2 + across, kGround + z}
                                : Vec3f{(low.x + high.x) / 2 + across, low.y + s, kGround + z};
-      add_leaf(at, d, {-std::sin(a), std::cos(a), 0.2f}, float(dice->uniform(0.07, 0.13)),
+      add_leaf(at, d, {-std::sin(a), std::cos(a), 0.2f}, float(dice->uniform(0.10, 0.17)),
                &leaves[i % 2]);
     }
   };
