@@ -2,6 +2,13 @@ if(GLOAM_FUZZ)
   add_custom_target(fuzzers)
 endif()
 
+# Eight files are compiled as one: their headers are read, and what templates make of them is compiled, once. A third of the time.
+# Names in anonymous namespaces are therefore no two files' of a module; what a file uses it includes (lint compiles each alone).
+option(GLOAM_UNITY "Compile several files of a module as one" ON)
+function(gloam_unity target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${GLOAM_UNITY} UNITY_BUILD_BATCH_SIZE 8)
+endfunction()
+
 # gloam_module(NAME [FAST_TESTS] [DEPENDS targets…] [TEST_DEPENDS targets…] [EXCLUDE files…])
 # One folder of src/ = one static library gloam_NAME of all its .cc files (test/ and fuzz/ apart),
 # one test program gloam_NAME_test of test/*_test.cc (FAST_TESTS: its tests do the work themselves, in code that headers
@@ -17,6 +24,7 @@ function(gloam_module name)
   set(target gloam_${name})
   if(sources)
     add_library(${target} STATIC ${sources})
+    gloam_unity(${target})
     set(scope PUBLIC)
   else()
     add_library(${target} INTERFACE)  # headers only
@@ -28,6 +36,7 @@ function(gloam_module name)
   file(GLOB tests CONFIGURE_DEPENDS ${folder}/test/*.cc)
   if(tests)
     add_executable(${target}_test ${tests})
+    gloam_unity(${target}_test)
     target_link_libraries(${target}_test PRIVATE ${target} ${arg_TEST_DEPENDS} GTest::gtest GTest::gmock GTest::gtest_main)
     if(NOT arg_FAST_TESTS)
       target_compile_options(${target}_test PRIVATE ${GLOAM_TEST_OPTIMISE})

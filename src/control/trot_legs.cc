@@ -6,12 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "world/world.h"
+
 namespace gloam {
 namespace {
-
-struct DataDeleter {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
 
 Vector3d vec(const mjtNum* p) { return {p[0], p[1], p[2]}; }
 Matrix3d mat(const mjtNum* p) {
@@ -146,7 +144,7 @@ Result<Quadruped> find_quadruped(const mjModel& m, const RobotInstance& robot) {
   }
   if (out.base_body < 0) return not_a_quadruped("it has no free joint");
 
-  std::unique_ptr<mjData, DataDeleter> data(mj_makeData(&m));
+  DataPtr data(mj_makeData(&m));
   if (!data) return not_a_quadruped("out of memory");
   mj_kinematics(&m, data.get());
   mj_comPos(&m, data.get());

@@ -14,7 +14,7 @@ namespace gloam {
 namespace {
 
 using Vec3d = Vec3Of<double>;
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoHeight = std::numeric_limits<float>::quiet_NaN();
 constexpr double kSameSurface = 1e-3;  // [m] two triangles that meet in an edge under a sample
 constexpr size_t kMostSurfaces = 64;   // over one another, on average over a band of rows
 constexpr double kMostDrawn = 1024;    // the same over the grid, where the highest alone is kept
@@ -265,7 +265,7 @@ Result<Floors> sample_floors(std::span<const PlacedMesh> meshes, const HeightGri
                  fmt::format("more than {:.0f} surfaces lie over one another", kMostDrawn)};
   }
   Floors floors{grid, layers, {}};
-  floors.z.assign(grid.size() * static_cast<size_t>(layers), kNone);
+  floors.z.assign(grid.size() * static_cast<size_t>(layers), kNoHeight);
   std::atomic<bool> is_too_deep{false};
   parallel_for("sample height field", kBands, [&](int64_t index) {
     const Band band(grid, static_cast<int>(index), seed);

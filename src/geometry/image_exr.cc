@@ -14,7 +14,7 @@
 namespace gloam {
 namespace {
 
-constexpr uint32_t kMagic = 20000630;
+constexpr uint32_t kExrMagic = 20000630;
 constexpr int64_t kMaxSize = 16384;
 constexpr uint64_t kMaxDeflateRatio = 1032;  // of zlib: a file cannot hold more than this
 enum PixelType : uint32_t { kUint = 0, kHalf = 1, kFloat = 2 };
@@ -59,7 +59,7 @@ class Cursor {
   bool ok_ = true;
 };
 
-struct Header {
+struct ExrHeader {
   std::vector<std::pair<std::string, uint32_t>> channels;  // name, PixelType
   uint8_t compression = 255;
   int64_t min_y = 0, width = 0, height = 0;
@@ -67,7 +67,7 @@ struct Header {
 };
 
 /// "" or what is wrong.
-std::string read_channels(Cursor cursor, Header* header) {
+std::string read_channels(Cursor cursor, ExrHeader* header) {
   for (;;) {
     const std::string name = cursor.text();
     if (!cursor.ok()) return "its list of channels is damaged";
@@ -82,8 +82,8 @@ std::string read_channels(Cursor cursor, Header* header) {
   }
 }
 
-std::string read_header(Cursor* cursor, Header* header) {
-  if (cursor->u32() != kMagic) return "it is not an EXR file";
+std::string read_exr_header(Cursor* cursor, ExrHeader* header) {
+  if (cursor->u32() != kExrMagic) return "it is not an EXR file";
   const uint32_t version = cursor->u32();
   if ((version & 0xff) != 2) return "its version is not 2";
   if ((version & ~uint32_t{0x4ff}) != 0)
@@ -136,7 +136,7 @@ bool expand(std::span<const uint8_t> packed, size_t size, std::vector<uint8_t>* 
   return true;
 }
 
-void read_row(const Header& header, Cursor* in, size_t y, ExrImage* image) {
+void read_row(const ExrHeader& header, Cursor* in, size_t y, ExrImage* image) {
   const size_t width = static_cast<size_t>(header.width);
   for (size_t c = 0; c < header.channels.size(); ++c) {
     const uint32_t type = header.channels[c].second;
@@ -168,8 +168,9 @@ Result<ExrImage> decode_exr(std::span<const uint8_t> bytes, const std::string& n
         ErrorKind::kInput, fmt::format("not a readable EXR picture: {}", what), {name, 0, 0}};
   };
   Cursor cursor(bytes);
-  Header header;
-  if (const std::string wrong = read_header(&cursor, &header); !wrong.empty()) return bad(wrong);
+  ExrHeader header;
+  if (const std::string wrong = read_exr_header(&cursor, &header); !wrong.empty())
+    return bad(wrong);
   const size_t width = static_cast<size_t>(header.width);
   const size_t height = static_cast<size_t>(header.height);
   const uint64_t values = uint64_t{width} * height * header.channels.size();

@@ -10,16 +10,16 @@ namespace gloam {
 namespace {
 
 constexpr size_t kMaxHeader = 64 << 10;
-constexpr int64_t kMaxSide = 65536;
+constexpr int64_t kMaxHdrSide = 65536;
 
-struct Header {
+struct HdrHeader {
   int64_t width = 0, height = 0;
   bool upwards = false;  // the first row is the lowest
   float exposure = 1;
 };
 
 // "" or what is wrong. Takes the head off `bytes`.
-std::string read_header(std::span<const uint8_t>* bytes, Header* out) {
+std::string read_hdr_header(std::span<const uint8_t>* bytes, HdrHeader* out) {
   std::string_view text = as_text(bytes->first(std::min(bytes->size(), kMaxHeader)));
   const size_t all = text.size();
   if (!take_line(&text).starts_with("#?")) return "it is not an HDR file";
@@ -40,7 +40,7 @@ std::string read_header(std::span<const uint8_t>* bytes, Header* out) {
       !parse_integer(take_word(&size), &out->width) || (y != "-Y" && y != "+Y"))
     return "its size is not given as '-Y height +X width'";
   out->upwards = y == "+Y";
-  if (out->width <= 0 || out->height <= 0 || out->width > kMaxSide || out->height > kMaxSide)
+  if (out->width <= 0 || out->height <= 0 || out->width > kMaxHdrSide || out->height > kMaxHdrSide)
     return fmt::format("its size is {} x {}", out->width, out->height);
   *bytes = bytes->subspan(all - text.size());
   return {};
@@ -96,9 +96,9 @@ Result<ImageF> decode_hdr(std::span<const uint8_t> bytes, const std::string& nam
     return Error{
         ErrorKind::kInput, fmt::format("not a readable HDR picture: {}", what), {name, 0, 0}};
   };
-  Header header;
+  HdrHeader header;
   std::span<const uint8_t> in = bytes;
-  if (const std::string why = read_header(&in, &header); !why.empty()) return bad(why);
+  if (const std::string why = read_hdr_header(&in, &header); !why.empty()) return bad(why);
   const auto width = static_cast<size_t>(header.width), height = static_cast<size_t>(header.height);
   if (uint64_t{width} * height > max_pixels)
     return bad(fmt::format("it has {} x {} pixels; the limit is {}", width, height, max_pixels));

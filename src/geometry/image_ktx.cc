@@ -13,8 +13,8 @@ namespace {
 
 constexpr std::array<uint8_t, 12> kIdentifier = {0xAB, 'K',  'T',  'X',  ' ',  '1',
                                                  '1',  0xBB, '\r', '\n', 0x1A, '\n'};
-constexpr size_t kHeaderBytes = 64;
-constexpr uint32_t kMaxSide = 16384;
+constexpr size_t kKtxHeaderBytes = 64;
+constexpr uint32_t kMaxKtxSide = 16384;
 
 // The numbers of OpenGL's enumerations.
 enum : uint32_t {
@@ -38,7 +38,7 @@ class KtxReader {
       : bytes_(bytes), name_(std::move(name)), max_pixels_(max_pixels) {}
 
   Result<KtxImage> read() {
-    if (bytes_.size() < kHeaderBytes ||
+    if (bytes_.size() < kKtxHeaderBytes ||
         !std::equal(kIdentifier.begin(), kIdentifier.end(), bytes_.begin()))
       return bad("it is not a KTX 1 file");
     uint32_t order;
@@ -88,17 +88,17 @@ class KtxReader {
       return bad("it is 1-D, 3-D or an array; only 2-D pictures and cubes are read");
     if (faces != 1 && !(faces == 6 && width_ == height_))
       return bad(fmt::format("it has {} faces of {} x {}", faces, width_, height_));
-    if (width_ == 0 || width_ > kMaxSide || height_ > kMaxSide ||
+    if (width_ == 0 || width_ > kMaxKtxSide || height_ > kMaxKtxSide ||
         uint64_t{width_} * height_ * faces > max_pixels_)
       return bad(fmt::format("its size is {} x {}", width_, height_));
     const size_t row = (width_ * texel_bytes_ + 3) / 4 * 4, size = row * height_;
-    const uint64_t start = kHeaderBytes + uint64_t{metadata} + 4;  // of the largest level
+    const uint64_t start = kKtxHeaderBytes + uint64_t{metadata} + 4;  // of the largest level
     if (start > bytes_.size() || faces * uint64_t{size} > bytes_.size() - start)
       return bad(fmt::format("it ends too early: {} faces of {} bytes from byte {} do not fit",
                              faces, size, start));
     if (u32(start - 4) != size)
       return bad(fmt::format("its level has {} bytes, {} are needed", u32(start - 4), size));
-    const auto heads = bytes_.subspan(kHeaderBytes, metadata);
+    const auto heads = bytes_.subspan(kKtxHeaderBytes, metadata);
     constexpr std::string_view kUp = "T=u";
     const bool upwards =
         std::search(heads.begin(), heads.end(), kUp.begin(), kUp.end()) != heads.end();

@@ -16,11 +16,11 @@ struct Source {
 
 // What libpng's longjmp passes over must be trivial, so everything that owns memory is here and in
 // the callers.
-struct Reader {
+struct PngReader {
   png_structp png = nullptr;
   png_infop info = nullptr;
   char message[128] = "damaged";
-  ~Reader() { png_destroy_read_struct(&png, &info, nullptr); }
+  ~PngReader() { png_destroy_read_struct(&png, &info, nullptr); }
 };
 
 void read_bytes(png_structp png, png_bytep out, size_t count) {
@@ -29,14 +29,14 @@ void read_bytes(png_structp png, png_bytep out, size_t count) {
   std::memcpy(out, source->bytes.data() + source->position, count);
   source->position += count;
 }
-[[noreturn]] void on_error(png_structp png, png_const_charp text) {
-  auto* reader = static_cast<Reader*>(png_get_error_ptr(png));
+[[noreturn]] void on_png_error(png_structp png, png_const_charp text) {
+  auto* reader = static_cast<PngReader*>(png_get_error_ptr(png));
   std::strncpy(reader->message, text, sizeof(reader->message) - 1);
   png_longjmp(png, 1);
 }
 void on_warning(png_structp, png_const_charp) {}
 
-bool read_header(Reader* reader, Source* source) {
+bool read_png_header(PngReader* reader, Source* source) {
   if (setjmp(png_jmpbuf(reader->png)) != 0) return false;
   png_set_read_fn(reader->png, source, read_bytes);
   png_set_chunk_malloc_max(reader->png, 8 << 20);
@@ -46,7 +46,7 @@ bool read_header(Reader* reader, Source* source) {
   return true;
 }
 
-bool prepare(Reader* reader, bool wide) {
+bool prepare(PngReader* reader, bool wide) {
   if (setjmp(png_jmpbuf(reader->png)) != 0) return false;
   if (wide) {
     png_set_swap(reader->png);
@@ -59,7 +59,7 @@ bool prepare(Reader* reader, bool wide) {
   return true;
 }
 
-bool read_rows(Reader* reader, png_bytepp rows) {
+bool read_png_rows(PngReader* reader, png_bytepp rows) {
   if (setjmp(png_jmpbuf(reader->png)) != 0) return false;
   png_read_image(reader->png, rows);
   return true;
@@ -69,17 +69,17 @@ template <class Texel, class Image>
 Result<Image> decode(std::span<const uint8_t> bytes, const std::string& name, uint64_t max_pixels,
                      int* channels) {
   constexpr bool kWide = sizeof(Texel) == 2;
-  Reader reader;
+  PngReader reader;
   Source source{bytes};
   const auto bad = [&](const std::string& what) {
     return Error{
         ErrorKind::kInput, fmt::format("not a readable PNG picture: {}", what), {name, 0, 0}};
   };
-  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_error, on_warning);
+  reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, on_png_error, on_warning);
   if (reader.png == nullptr) return bad("out of memory");
   reader.info = png_create_info_struct(reader.png);
   if (reader.info == nullptr) return bad("out of memory");
-  if (!read_header(&reader, &source)) return bad(reader.message);
+  if (!read_png_header(&reader, &source)) return bad(reader.message);
 
   const uint64_t width = png_get_image_width(reader.png, reader.info);
   const uint64_t height = png_get_image_height(reader.png, reader.info);
@@ -102,7 +102,7 @@ Result<Image> decode(std::span<const uint8_t> bytes, const std::string& name, ui
   std::vector<png_bytep> rows(height);
   for (size_t y = 0; y < height; ++y)
     rows[y] = reinterpret_cast<png_bytep>(image.texels.data()) + y * row;
-  if (!read_rows(&reader, rows.data())) return bad(reader.message);
+  if (!read_png_rows(&reader, rows.data())) return bad(reader.message);
   return image;
 }
 

@@ -4,10 +4,11 @@
 
 #include <algorithm>
 
+#include "base/angle.h"
+
 namespace gloam {
 namespace {
 
-constexpr double kDegree = lenses::kHalfTurn<double> / 180;
 constexpr double kWidest = 89.4 * kDegree;  // of models that know no angle beyond a right one
 constexpr double kNarrowFisheye = 80;       // [deg] that a fisheye sees at least on each side
 

@@ -13,7 +13,8 @@ namespace gloam {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr uint64_t kMagic = 0x32304C444D4F4C47ull;  // "GLOMDL02": changes with what readers give
+constexpr uint64_t kModelMagic =
+    0x32304C444D4F4C47ull;  // "GLOMDL02": changes with what readers give
 constexpr uint64_t kLargestEntry = uint64_t{8} << 30;
 
 }  // namespace
@@ -57,7 +58,7 @@ namespace {
 // limits, which are errors that are not kept.
 fs::path entry_path(const fs::path& folder, const fs::path& model, uint64_t content) {
   const std::string ending = model.extension().string();
-  const uint64_t key = hash_bytes(ending.data(), ending.size(), content ^ kMagic);
+  const uint64_t key = hash_bytes(ending.data(), ending.size(), content ^ kModelMagic);
   return folder / cache_entry_name(kVisualCache, key);
 }
 
@@ -86,7 +87,7 @@ bool load_entry(const fs::path& path, uint64_t content, ModelFolder beside,
   if (!fs::exists(path, code)) return false;
   const Result<std::vector<uint8_t>> bytes = read_file(path, kLargestEntry);
   if (!bytes.ok()) return false;
-  ArchiveReader in(unseal_cache_entry(kMagic, *bytes));
+  ArchiveReader in(unseal_cache_entry(kModelMagic, *bytes));
   Entry entry;
   in(entry.content);
   in(entry.parts);
@@ -105,7 +106,7 @@ void store_entry(const fs::path& path, Entry& entry) {
   out(entry.content);
   out(entry.parts);
   visit_parts(out, entry.model);
-  keep_in_cache_later(path, kMagic, std::move(out.bytes));
+  keep_in_cache_later(path, kModelMagic, std::move(out.bytes));
 }
 
 }  // namespace

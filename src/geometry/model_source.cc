@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int64_t kGrain = 1 << 14;
-constexpr uint64_t kNone = UINT64_MAX;
+constexpr uint64_t kNoContent = UINT64_MAX;
 
 bool is_below(const fs::path& path, const fs::path& folder) {
   const auto [in_folder, in_path] =
@@ -36,7 +36,7 @@ std::string why_not_a_relative_path(std::string_view name) {
 // First element for which `is_bad` holds, found in parallel; kNone = none.
 template <class T, class F>
 uint64_t find_first(const std::vector<T>& values, const F& is_bad) {
-  std::atomic<uint64_t> first{kNone};
+  std::atomic<uint64_t> first{kNoContent};
   parallel_for_range("check mesh", static_cast<int64_t>(values.size()), kGrain,
                      [&](int64_t begin, int64_t end) {
                        for (int64_t i = begin; i < end; ++i) {
@@ -160,17 +160,17 @@ Status finish_mesh(TriangleMesh* mesh, const std::string& what, const std::strin
   const char* repair = "repair the mesh in the program that made it and export it again";
   const auto bad3 = [](Vec3f v) { return not_finite(v); };
   const auto bad2 = [](Vec2f v) { return not_finite(v); };
-  if (const uint64_t i = find_first(mesh->positions, bad3); i != kNone)
+  if (const uint64_t i = find_first(mesh->positions, bad3); i != kNoContent)
     return bad("the position of vertex", i, repair);
-  if (const uint64_t i = find_first(mesh->normals, bad3); i != kNone)
+  if (const uint64_t i = find_first(mesh->normals, bad3); i != kNoContent)
     return bad("the normal of vertex", i, repair);
-  if (const uint64_t i = find_first(mesh->uvs, bad2); i != kNone)
+  if (const uint64_t i = find_first(mesh->uvs, bad2); i != kNoContent)
     return bad("the uv of vertex", i, repair);
-  if (const uint64_t i = find_first(mesh->uvs1, bad2); i != kNone)
+  if (const uint64_t i = find_first(mesh->uvs1, bad2); i != kNoContent)
     return bad("the second uv of vertex", i, repair);
   const uint64_t count = mesh->positions.size();
   if (const uint64_t i = find_first(mesh->indices, [count](uint32_t v) { return v >= count; });
-      i != kNone) {
+      i != kNoContent) {
     return Error{ErrorKind::kInput,
                  fmt::format("{}: triangle {} uses vertex {}, but there are {}", what, i / 3,
                              mesh->indices[i], count),

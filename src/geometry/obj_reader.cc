@@ -16,12 +16,11 @@
 namespace gloam {
 namespace {
 
-constexpr size_t kPieceBytes = size_t{1} << 20;
 // An index as written: 0 and up = absolute, kAbsent = not given, else relative to the first element
 // of its piece, moved by kRelative.
 constexpr int32_t kAbsent = std::numeric_limits<int32_t>::min();
 constexpr int32_t kRelative = -(1 << 30);
-constexpr int64_t kMostElements = int64_t{1} << 28;
+constexpr int64_t kMostIndex = int64_t{1} << 28;
 
 struct Corner {
   int32_t v = kAbsent, vt = kAbsent, vn = kAbsent;
@@ -135,7 +134,7 @@ class PieceParser {
       const std::string_view part = word.substr(0, slash);
       if (!part.empty() || i == 0) {
         int64_t index = 0;
-        if (!parse_integer(part, &index) || index == 0 || std::abs(index) > kMostElements)
+        if (!parse_integer(part, &index) || index == 0 || std::abs(index) > kMostIndex)
           return false;
         *slots[i] = static_cast<int32_t>(
             index > 0 ? index - 1 : kRelative + static_cast<int64_t>(counts[i]) + index);
@@ -210,7 +209,7 @@ class ObjReader {
     uint64_t count = 0;
     for (const Piece& piece : pieces_) count += (piece.*member).size();
     const uint64_t limit =
-        std::min<uint64_t>(source_.options->limits.vertices, static_cast<uint64_t>(kMostElements));
+        std::min<uint64_t>(source_.options->limits.vertices, static_cast<uint64_t>(kMostIndex));
     if (count > limit || !budget_.take(count, sizeof(T)))
       return bad(fmt::format("has {} {}: more than the limit", count, what));
     out->reserve(count);

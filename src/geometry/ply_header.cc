@@ -9,7 +9,7 @@
 namespace gloam {
 namespace {
 
-constexpr size_t kMostElements = 64, kMostProperties = 256, kMostLines = 4096;
+constexpr size_t kMostPlyElements = 64, kMostProperties = 256, kMostLines = 4096;
 
 std::optional<PlyType> type_of(std::string_view name) {
   struct Name {
@@ -44,7 +44,7 @@ std::string read_line(std::string_view line, bool* has_format, PlyHeader* out) {
     PlyElement element;
     element.name = take_word(&line).substr(0, kMaxName);
     if (!parse_integer(take_word(&line), &element.count)) return "the element has no count";
-    if (out->elements.size() == kMostElements) return "there are too many elements";
+    if (out->elements.size() == kMostPlyElements) return "there are too many elements";
     out->elements.push_back(std::move(element));
   } else if (word == "property") {
     if (out->elements.empty()) return "a property before the first element";

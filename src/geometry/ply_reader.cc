@@ -17,8 +17,6 @@
 namespace gloam {
 namespace {
 
-constexpr size_t kPieceBytes = size_t{1} << 20;
-
 // Which number of a vertex a property is: x y z, normal, u v; -1 = none.
 int slot_of(const std::string& name) {
   constexpr std::string_view kNames[8][4] = {{"x"},
@@ -40,7 +38,7 @@ bool is_face_list(const PlyElement& element, const PlyProperty& property) {
          (property.name == "vertex_indices" || property.name == "vertex_index");
 }
 
-double load(const uint8_t* from, PlyType type, bool big) {
+double load_number(const uint8_t* from, PlyType type, bool big) {
   uint8_t b[8] = {};
   const size_t size = size_of(type);
   for (size_t i = 0; i < size; ++i) b[i] = from[big ? size - 1 - i : i];
@@ -191,7 +189,8 @@ class PlyReader {
             for (size_t p = 0; p < slots_.size(); ++p) {
               const PlyType type = element.properties[p].type;
               if (slots_[p] >= 0)
-                numbers[static_cast<size_t>(slots_[p])] = static_cast<float>(load(from, type, big));
+                numbers[static_cast<size_t>(slots_[p])] =
+                    static_cast<float>(load_number(from, type, big));
               from += size_of(type);
             }
             put_vertex(i, numbers);
@@ -205,7 +204,7 @@ class PlyReader {
         double count = 1;
         if (p.count_type) {
           if (size_of(*p.count_type) > body_.size() - *at) return ends_early(element, *at);
-          count = load(body_.data() + *at, *p.count_type, big);
+          count = load_number(body_.data() + *at, *p.count_type, big);
           *at += size_of(*p.count_type);
         }
         const size_t size = size_of(p.type);
@@ -215,7 +214,7 @@ class PlyReader {
         if (is_face_list(element, p)) {
           faces_.sizes.push_back(n);
           for (uint32_t k = 0; k < n; ++k) {
-            const double index = load(body_.data() + *at + k * size, p.type, big);
+            const double index = load_number(body_.data() + *at + k * size, p.type, big);
             if (!add_corner(index, mesh_.positions.size(), &faces_))
               return bad(fmt::format("face {} uses vertex {}, but there are {}", i, index,
                                      mesh_.positions.size()));

@@ -13,8 +13,7 @@
 namespace gloam {
 namespace {
 
-constexpr size_t kHeaderBytes = 84, kTriangleBytes = 50;
-constexpr size_t kPieceBytes = size_t{1} << 20;
+constexpr size_t kStlHeaderBytes = 84, kTriangleBytes = 50;
 
 Error bad(const ModelSource& source, std::string message, uint64_t line = 0) {
   return {ErrorKind::kInput,
@@ -45,31 +44,31 @@ Status check_size(const ModelSource& source, uint64_t triangles) {
 
 Result<ModelFile> read_binary(const ModelSource& source) {
   const std::span<const uint8_t> bytes = source.bytes;
-  if (bytes.size() < kHeaderBytes) return bad(source, "is too short for an STL file");
+  if (bytes.size() < kStlHeaderBytes) return bad(source, "is too short for an STL file");
   uint32_t count;
   std::memcpy(&count, bytes.data() + 80, sizeof(count));
-  if (uint64_t{count} * kTriangleBytes > bytes.size() - kHeaderBytes)
+  if (uint64_t{count} * kTriangleBytes > bytes.size() - kStlHeaderBytes)
     return bad(source, fmt::format("is neither STL text nor binary STL: its byte 80 names {} "
                                    "triangles, but it has room for {}",
-                                   count, (bytes.size() - kHeaderBytes) / kTriangleBytes));
+                                   count, (bytes.size() - kStlHeaderBytes) / kTriangleBytes));
   GLOAM_TRY_STATUS(check_size(source, count));
   std::vector<Vec3f> corners(size_t{3} * count);
   ProgressCount progress(source.options->progress, count);
   parallel_for_range("read STL", count, 1 << 14, [&](int64_t begin, int64_t end) {
     for (auto i = static_cast<size_t>(begin); i < static_cast<size_t>(end); ++i)
-      std::memcpy(&corners[3 * i], bytes.data() + kHeaderBytes + i * kTriangleBytes + 12, 36);
+      std::memcpy(&corners[3 * i], bytes.data() + kStlHeaderBytes + i * kTriangleBytes + 12, 36);
     progress.add(static_cast<uint64_t>(end - begin));
   });
   return finish(source, corners, {});
 }
 
-struct Piece {
+struct StlPiece {
   std::vector<Vec3f> corners;
   uint64_t lines = 0;
   std::string error;  // at line `lines`
 };
 
-void parse_piece(std::string_view text, Piece* out) {
+void parse_piece(std::string_view text, StlPiece* out) {
   size_t loop = 0;  // corners of the loop at hand
   while (!text.empty()) {
     std::string_view line = take_line(&text);
@@ -118,14 +117,14 @@ std::vector<std::string_view> split_at_facets(std::string_view text) {
 Result<ModelFile> read_ascii(const ModelSource& source) {
   const std::string_view text = as_text(source.bytes);
   const std::vector<std::string_view> texts = split_at_facets(text);
-  std::vector<Piece> pieces(texts.size());
+  std::vector<StlPiece> pieces(texts.size());
   ProgressCount progress(source.options->progress, text.size());
   parallel_for("parse STL", static_cast<int64_t>(texts.size()), [&](int64_t i) {
     parse_piece(texts[static_cast<size_t>(i)], &pieces[static_cast<size_t>(i)]);
     progress.add(texts[static_cast<size_t>(i)].size());
   });
   uint64_t lines = 0, count = 0;
-  for (const Piece& piece : pieces) {
+  for (const StlPiece& piece : pieces) {
     if (!piece.error.empty()) return bad(source, piece.error, lines + piece.lines);
     lines += piece.lines;
     count += piece.corners.size();
@@ -133,7 +132,7 @@ Result<ModelFile> read_ascii(const ModelSource& source) {
   GLOAM_TRY_STATUS(check_size(source, count / 3));
   std::vector<Vec3f> corners;
   corners.reserve(count);
-  for (const Piece& piece : pieces)
+  for (const StlPiece& piece : pieces)
     corners.insert(corners.end(), piece.corners.begin(), piece.corners.end());
   std::string_view rest = text;
   std::string_view first = take_line(&rest);
@@ -146,14 +145,14 @@ Result<ModelFile> read_ascii(const ModelSource& source) {
 Result<ModelFile> read_stl(const ModelSource& source) {
   const std::string_view text = as_text(source.bytes);
   uint64_t count = 0;
-  if (text.size() >= kHeaderBytes) {
+  if (text.size() >= kStlHeaderBytes) {
     uint32_t named;
     std::memcpy(&named, text.data() + 80, sizeof(named));
     count = named;
   }
   // Binary headers may begin with "solid" as well: there the size gives them away.
   const bool is_text = trim(text.substr(0, 80)).starts_with("solid") &&
-                       text.size() != kHeaderBytes + kTriangleBytes * count;
+                       text.size() != kStlHeaderBytes + kTriangleBytes * count;
   return is_text ? read_ascii(source) : read_binary(source);
 }
 

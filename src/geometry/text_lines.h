@@ -15,6 +15,8 @@ inline std::string_view as_text(std::span<const uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
+inline constexpr size_t kPieceBytes = size_t{1} << 20;  ///< that one thread reads
+
 /// Pieces of about `size` bytes that end behind a line; a line that ends with a backslash and the
 /// next one stay together.
 inline std::vector<std::string_view> split_at_lines(std::string_view text, size_t size) {

@@ -4,14 +4,13 @@
 
 #include <algorithm>
 
+#include "base/angle.h"
 #include "scene/lidar_names.h"
 #include "scene/pattern_names.h"
 #include "sensors/lidar_presets.h"
 
 namespace gloam {
 namespace {
-
-constexpr double kDegree = 3.14159265358979323846 / 180;
 
 template <class To, class From>
 void set(To* to, const std::optional<From>& from) {

@@ -5,7 +5,7 @@
 namespace gloam {
 namespace {
 
-constexpr float kDegree = kPi / 180;
+constexpr float kFloatDegree = kPi / 180;
 // Full width at 1/e² of a Gaussian beam over its full width at half maximum.
 constexpr float kWidthOverFwhm = 1.6986f;
 // Way of light in half the time that a pulse rises, 2 ns: with it the precision of the OS1's sheet
@@ -16,7 +16,7 @@ std::vector<float> even_rings(int count, float lowest, float highest) {
   std::vector<float> elevations;
   for (int i = 0; i < count; ++i) {
     const float share = static_cast<float>(i) / static_cast<float>(count - 1);
-    elevations.push_back((lowest + (highest - lowest) * share) * kDegree);
+    elevations.push_back((lowest + (highest - lowest) * share) * kFloatDegree);
   }
   return elevations;
 }
@@ -37,7 +37,7 @@ LidarOptics optics(float min_range, float max_range, double at_10_percent, Vec2f
   o.min_range = min_range;
   o.max_range = max_range;
   o.threshold = lidar_threshold(at_10_percent);
-  o.divergence = divergence_degrees * kDegree;
+  o.divergence = divergence_degrees * kFloatDegree;
   o.resolution = resolution;
   o.range_sigma = range_sigma;
   o.rise = kRise;
@@ -83,7 +83,7 @@ LidarModel os1_64() {
 LidarModel os1_128() {
   LidarModel m = os1_64();
   m.elevations = even_rings(128, -22.5f, 22.5f);
-  const float width = 0.18f * kWidthOverFwhm * kDegree;
+  const float width = 0.18f * kWidthOverFwhm * kFloatDegree;
   m.optics.divergence = {width, width};
   return m;
 }
@@ -91,7 +91,7 @@ LidarModel os1_128() {
 LidarModel mid_40() {
   LidarModel m;
   m.pattern = LidarPatternKind::kRosette;
-  m.width = m.height = 38.4f * kDegree;
+  m.width = m.height = 38.4f * kFloatDegree;
   m.points = 10000;  // 100 000 a second
   m.prism_hz[0] = 7294.0 / 60;
   m.prism_hz[1] = -4664.0 / 60;

@@ -3,17 +3,17 @@
 #include <array>
 #include <numbers>
 
+#include "base/angle.h"
 #include "scene/pattern_names.h"
 
 namespace gloam {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kHour = 3600;
 constexpr double kG = 9.80665, kMicroG = 1e-6 * kG, kMilliG = 1e-3 * kG;  // [m/s²]
 
 // In the order of kSignalPresets.
-constexpr std::array<SignalErrors, kSignalPresets.size()> kPresets = {{
+constexpr std::array<SignalErrors, kSignalPresets.size()> kErrorsOfPresets = {{
     {},
     {.noise_density = 0.008 * kDegree,
      .bias_instability = 8 * kDegree / kHour,
@@ -43,7 +43,7 @@ constexpr std::array<SignalErrors, kSignalPresets.size()> kPresets = {{
 }  // namespace
 
 SignalErrors signal_errors(const SensorOptions& o) {
-  const SignalErrors& preset = kPresets[place_of(o.preset, kSignalPresets)];
+  const SignalErrors& preset = kErrorsOfPresets[place_of(o.preset, kSignalPresets)];
   SignalErrors out;
   out.noise = o.noise.value_or(preset.noise);
   out.noise_density = o.noise_density.value_or(preset.noise_density);

@@ -14,7 +14,7 @@ namespace gloam {
 namespace {
 
 // In the order of kStereoPresets.
-constexpr std::array<StereoDepthModel, kStereoPresets.size()> kPresets = {{
+constexpr std::array<StereoDepthModel, kStereoPresets.size()> kModelsOfPresets = {{
     {.baseline = 0},
     {.baseline = 0.05,
      .subpixel = 1.0 / 32,
@@ -95,7 +95,7 @@ void mark_occluded(const float* disparity, int width, double side, uint8_t* hidd
 }  // namespace
 
 StereoDepthModel stereo_depth_model(const StereoDepthOptions& o) {
-  const StereoDepthModel& preset = kPresets[place_of(o.preset, kStereoPresets)];
+  const StereoDepthModel& preset = kModelsOfPresets[place_of(o.preset, kStereoPresets)];
   StereoDepthModel out;
   out.baseline = o.baseline.value_or(preset.baseline);
   out.subpixel = o.subpixel.value_or(preset.subpixel);

@@ -13,11 +13,6 @@
 
 namespace gloam {
 
-struct DataDeleter {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
-using DataPtr = std::unique_ptr<mjData, DataDeleter>;
-
 class Stepper {
  public:
   /// Stands at the initial state. The chain of hashes starts from `seed`.

@@ -16,10 +16,10 @@ constexpr double kOzoneMolecules = 300 * 2.687e20;  // 300 Dobson units [1/m²]
 /// Weinman 1976, "The delta-Eddington approximation"): even light from all sides is a bad stand-in
 /// for a forward peak. Up to g² = 0.49; half of it errs least against path tracing of this air.
 constexpr double kPeak = 0.25;
-constexpr int kRadii = 48, kCosines = 128;  // of the sunlight table
-constexpr int kHeights = 16, kAngles = 33;  // of the scattered table
-constexpr double kAngleReach = 0.2;         // [rad] on the earth, of a view from its ground
-constexpr int kZeniths = 8, kAzimuths = 6;  // directions about a point: per hemisphere; half
+constexpr int kRadii = 48, kCosines = 128;     // of the sunlight table
+constexpr int kHeights = 16, kAngles = 33;     // of the scattered table
+constexpr double kAngleReach = 0.2;            // [rad] on the earth, of a view from its ground
+constexpr int kZeniths = 8, kAirAzimuths = 6;  // directions about a point: per hemisphere; half
 constexpr int kScatterSteps = 24;
 
 /// Nodes and weights over [0, 1]: Gauss-Legendre, 8 points.
@@ -60,17 +60,17 @@ Densities columns(double r, double mu, double d) {
   return sum;
 }
 
-/// Place in a table of n entries, and the share of the next one.
-struct Place {
+/// Where in a table of n entries, and the share of the next one.
+struct AirPoint {
   int low;
   float share;
 };
-Place place(double x, int n) {
+AirPoint place(double x, int n) {
   const double at = std::clamp(x, 0.0, 1.0) * (n - 1);
   const int low = std::min(static_cast<int>(at), n - 2);
   return {low, static_cast<float>(at - low)};
 }
-Bands bilinear(const std::vector<Bands>& table, int columns, Place y, Place x) {
+Bands bilinear(const std::vector<Bands>& table, int columns, AirPoint y, AirPoint x) {
   const Bands* row0 = table.data() + y.low * columns + x.low;
   const Bands* row1 = row0 + columns;
   Bands out;
@@ -235,10 +235,11 @@ Bands Air::scattered_at(double r, double angle, const std::vector<AirRay>& rays)
         again[b] += weight * ray.transmittance[b] * static_cast<float>(albedo_);
       }
     }
-    for (int azimuth = 0; azimuth < kAzimuths; ++azimuth) {
-      const double across = sine * std::sin(angle) * std::cos(M_PI * (azimuth + 0.5) / kAzimuths);
+    for (int azimuth = 0; azimuth < kAirAzimuths; ++azimuth) {
+      const double across =
+          sine * std::sin(angle) * std::cos(M_PI * (azimuth + 0.5) / kAirAzimuths);
       const double to_sun = mu * std::cos(angle) + across;
-      const float share = weight / kAzimuths;
+      const float share = weight / kAirAzimuths;
       const float rayleigh = share * static_cast<float>(rayleigh_phase(to_sun));
       const float aerosol = share * static_cast<float>(aerosol_phase(to_sun));
       const auto sun_angle = [&](double t, double at) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "base/angle.h"
 #include "base/text.h"
 #include "world/lamp_mesh.h"
 #include "world/light_strength.h"
@@ -14,8 +15,6 @@
 
 namespace gloam {
 namespace {
-
-constexpr double kDegree = M_PI / 180;
 
 Affine3f pose_of(const LightOptions& light) {
   Quat q;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angle.h"
 #include "base/memory.h"
 #include "geometry/image_file.h"
 #include "world/atmosphere.h"
@@ -13,8 +14,6 @@
 
 namespace gloam {
 namespace {
-
-constexpr double kDegree = M_PI / 180;
 
 Error sky_error(const SkyOptions& options, std::string message, std::string hint = {}) {
   return {ErrorKind::kInput, std::move(message), options.loc, std::move(hint)};

@@ -6,13 +6,10 @@
 #include <cmath>
 #include <string_view>
 
+#include "world/model_names.h"
+
 namespace gloam {
 namespace {
-
-std::string name_of(const mjModel& m, mjtObj type, int id) {
-  const char* name = mj_id2name(&m, type, id);
-  return name != nullptr ? name : "";
-}
 
 int body_of(const mjModel& m, mjtObj type, int id) {
   switch (type) {

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angle.h"
 #include "base/files.h"
 #include "world/ies_text.h"
 
 namespace gloam {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
 constexpr double kSlack = 1e-3;  // [degrees], in comparisons of what files round
 
 bool near(double a, double b) { return std::abs(a - b) < kSlack; }

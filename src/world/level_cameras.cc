@@ -8,13 +8,10 @@
 
 #include "base/text.h"
 #include "world/look_at.h"
+#include "world/world.h"
 
 namespace gloam {
 namespace {
-
-struct DataDeleter {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
 
 Quat orientation_of(const CameraOptions& camera) {
   if (camera.orientation) return *camera.orientation;
@@ -77,7 +74,7 @@ bool turn_tracking_cameras(const Scene& scene, Level* level) {
                                [](const CameraOptions& c) { return !c.track.empty(); });
   if (!any) return false;
   const mjModel* model = level->model.get();
-  const std::unique_ptr<mjData, DataDeleter> data(mj_makeData(model));
+  const DataPtr data(mj_makeData(model));
   mj_kinematics(model, data.get());  // at qpos0, where MuJoCo measures tracking offsets
   bool changed = false;
   for (const CameraOptions& camera : scene.cameras) {

@@ -19,8 +19,6 @@ namespace {
 // Sizes that are worth a question [m]: of what moves, of what stands, of a place.
 constexpr double kTiny = 1e-3, kHuge = 10, kHugeFixed = 100, kHugePlace = 10'000;
 
-std::string title(const ObjectOptions& o) { return fmt::format("object '{}'", o.name); }
-
 bool is_place(const EnvironmentOptions& e) { return is_model_file(e.file); }
 
 void append(const ModelFile& model, int instance, const Affine3f& X_BF, TriangleMesh* out) {

@@ -1,11 +1,15 @@
 #pragma once
 // [[object]]s, and places that come from a mesh file: a static object for each node.
 
+#include <string>
 #include <vector>
 
 #include "world/level.h"
 
 namespace gloam {
+
+/// In messages.
+inline std::string title(const ObjectOptions& o) { return "object '" + o.name + "'"; }
 
 /// What is to be a body. Its frame is the file's, in Gloam's axes and metres.
 struct MeshObject {

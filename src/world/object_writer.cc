@@ -15,8 +15,6 @@
 namespace gloam {
 namespace {
 
-std::string title(const ObjectOptions& o) { return fmt::format("object '{}'", o.name); }
-
 class ObjectWriter {
  public:
   ObjectWriter(const MeshObject& object, mjSpec* spec)

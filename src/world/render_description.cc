@@ -11,6 +11,7 @@
 #include "world/authored_material.h"
 #include "world/authored_sky.h"
 #include "world/authored_volume.h"
+#include "world/model_names.h"
 #include "world/visual_camera.h"
 #include "world/visual_deformable.h"
 #include "world/visual_file.h"
@@ -23,11 +24,6 @@
 
 namespace gloam {
 namespace {
-
-std::string name_of(const mjModel& m, mjtObj type, int id) {
-  const char* name = mj_id2name(&m, type, id);
-  return name != nullptr ? name : "";
-}
 
 /// Vec3f and Vec2f are packed floats: MuJoCo's arrays are read in place.
 std::span<const Vec3f> vec3_span(const float* data, int first, int count) {

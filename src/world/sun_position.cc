@@ -4,10 +4,11 @@
 
 #include <cmath>
 
+#include "base/angle.h"
+
 namespace gloam {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
 /// Terrestrial minus universal time [s]: 64 to 70 from 2000 to 2030; the sun moves 0.001 degrees in
 /// 90 s.
 constexpr double kDeltaT = 69;
@@ -23,7 +24,7 @@ Error field_error(const char* field, double value, double low, double high, cons
           fmt::format("{} {} is outside of {}..{}{}", field, value, low, high, unit)};
 }
 
-Status check(const CivilTime& t, const Place& place) {
+Status check(const CivilTime& t, const GeoPosition& place) {
   struct Field {
     const char* name;
     double value, low, high;
@@ -71,7 +72,7 @@ double refraction(double elevation) {
 
 }  // namespace
 
-Result<SunPosition> sun_position(const CivilTime& time, const Place& place) {
+Result<SunPosition> sun_position(const CivilTime& time, const GeoPosition& place) {
   GLOAM_TRY_STATUS(check(time, place));
   const double days = days_since_2000(time);
   const double t = (days + kDeltaT / 86400) / 36525;  // Julian centuries of terrestrial time

@@ -20,7 +20,7 @@ struct CivilTime {
   double utc_offset = 0;                ///< of the clock, east positive [h], -14..14
 };
 
-struct Place {
+struct GeoPosition {
   double latitude = 0;   ///< north positive [degrees], -90..90
   double longitude = 0;  ///< east positive [degrees], -180..180
 };
@@ -34,6 +34,6 @@ struct SunPosition {
 };
 
 /// Errors: a field outside of its range; the message names it.
-Result<SunPosition> sun_position(const CivilTime& time, const Place& place);
+Result<SunPosition> sun_position(const CivilTime& time, const GeoPosition& place);
 
 }  // namespace gloam

@@ -6,14 +6,10 @@
 
 #include "scene/mujoco_guard.h"
 #include "scene/urdf_text.h"
+#include "world/world.h"
 
 namespace gloam {
 namespace {
-
-struct DataDeleter {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
-using DataPtr = std::unique_ptr<mjData, DataDeleter>;
 
 struct UrdfRobot {
   std::string file;

@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/angle.h"
 #include "scene/camera_lens.h"
 
 namespace gloam {
 namespace {
 
-constexpr double kDegree = 3.14159265358979323846 / 180;
 constexpr double kDefaultFovy = 45;  // [deg], MuJoCo's
 constexpr int kMaxSide = 16384;      // [px]
 

@@ -8,16 +8,12 @@
 
 #include "world/capsule_mesh.h"
 #include "world/deformable_layout.h"
+#include "world/model_names.h"
 #include "world/tendon_path.h"
 #include "world/visual_pose.h"
 
 namespace gloam {
 namespace {
-
-std::string name_of(const mjModel& m, mjtObj type, int id) {
-  const char* name = mj_id2name(&m, type, id);
-  return name != nullptr ? name : "";
-}
 
 void add_instance(RenderDescription* out, TriangleMesh rest, int first_vertex, int material,
                   int group, LabelRow label) {

@@ -9,15 +9,11 @@
 
 #include "base/parallel.h"
 #include "geometry/image_file.h"
+#include "world/model_names.h"
 #include "world/visual_rules.h"
 
 namespace gloam {
 namespace {
-
-std::string name_of(const mjModel& model, mjtObj type, int id) {
-  const char* name = id >= 0 ? mj_id2name(&model, type, id) : nullptr;
-  return name != nullptr ? name : "";
-}
 
 struct Texels {
   const mjtByte* data = nullptr;

@@ -20,6 +20,10 @@ struct SpecDeleter {
   void operator()(mjSpec* spec) const { mj_deleteSpec(spec); }
 };
 using ModelPtr = std::unique_ptr<mjModel, ModelDeleter>;
+struct DataDeleter {
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+using DataPtr = std::unique_ptr<mjData, DataDeleter>;
 using SpecPtr = std::unique_ptr<mjSpec, SpecDeleter>;
 
 /// One robot of the scene inside the one model.

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/convert/mass.h"
+
 namespace gloam {
 namespace {
-
-Vec3d wide(Vec3f p) { return {p.x, p.y, p.z}; }
 
 double squared_distance_to_box(Vec3d p, const BvhNode& node, size_t child) {
   const auto past = [](double x, double center, double half) {

@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "geometry/convert/closest_point.h"
+#include "geometry/convert/mass.h"
 
 namespace gloam {
 namespace {
@@ -20,8 +21,6 @@ struct Quadric {
   Vec3d b, sum;
   double count = 0;
 };
-
-Vec3d wide(Vec3f p) { return {p.x, p.y, p.z}; }
 
 // Solves (A + lean) p = b + lean mean by Cramer's rule: symmetric and, thanks to the lean, regular.
 Vec3d lowest(const Quadric& q, double half_cell) {

@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "geometry/convert/closest_point.h"
+#include "geometry/convert/mass.h"
 #include "geometry/solid.h"
 
 namespace gloam {
 namespace {
 
 constexpr int kSegments = 96;  // of round surfaces: 0.05 % of the radius inside
-
-double length_of(Vec3d v) { return std::sqrt(length_squared(v)); }
 
 Vec3d local(const AffineOf<double>& X, Vec3d p) {
   const Vec3d d = p - X.p;

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kLibrary = "lib_coacd.so";
-constexpr uint64_t kMagic =
+constexpr uint64_t kHullsMagic =
     0x32304C48'4D4F4C47ull;  // "GLOMHL02": changes with the layout and what is asked of CoACD
 
 // As the cache keeps it: an archive of whole meshes, with normals and more, is model_file_cache's.
@@ -133,12 +133,12 @@ std::vector<TriangleMesh> run(const CoacdApi& api, const TriangleMesh& mesh,
   return out;
 }
 
-bool load_entry(const fs::path& path, std::vector<TriangleMesh>* hulls) {
+bool load_hulls(const fs::path& path, std::vector<TriangleMesh>* hulls) {
   std::error_code code;
   if (!fs::exists(path, code)) return false;
   const Result<std::vector<uint8_t>> bytes = read_file(path);
   if (!bytes.ok()) return false;
-  ArchiveReader in(unseal_cache_entry(kMagic, *bytes));
+  ArchiveReader in(unseal_cache_entry(kHullsMagic, *bytes));
   std::vector<KeptHull> kept;
   in(kept);
   if (!in.is_done() || kept.empty()) return false;
@@ -156,13 +156,14 @@ Result<std::vector<TriangleMesh>> decompose(const TriangleMesh& welded,
   const std::lock_guard lock(one_at_a_time);
   static const Result<CoacdApi> api = load_library();
   if (!api.ok()) return api.error();
-  uint64_t key = hash_bytes(&options.concavity, sizeof(options.concavity), kMagic ^ api->version);
+  uint64_t key =
+      hash_bytes(&options.concavity, sizeof(options.concavity), kHullsMagic ^ api->version);
   key = hash_bytes(&options.max_hulls, sizeof(options.max_hulls), key);
   key = hash_span(std::span<const Vec3f>(welded.positions), key);
   key = hash_span(std::span<const uint32_t>(welded.indices), key);
   const fs::path entry = cache_folder(kHullCache) / cache_entry_name(kHullCache, key);
   std::vector<TriangleMesh> hulls;
-  if (load_entry(entry, &hulls)) return hulls;
+  if (load_hulls(entry, &hulls)) return hulls;
   try {
     hulls = run(*api, coarsened(welded, kMostDecomposed), options);
   } catch (const std::exception& e) {
@@ -179,7 +180,7 @@ Result<std::vector<TriangleMesh>> decompose(const TriangleMesh& welded,
   std::vector<KeptHull> kept;
   for (const TriangleMesh& hull : hulls) kept.push_back({hull.positions, hull.indices});
   out(kept);
-  seal_cache_entry(kMagic, &out.bytes);
+  seal_cache_entry(kHullsMagic, &out.bytes);
   keep_in_cache(entry, out.bytes);
   return hulls;
 }

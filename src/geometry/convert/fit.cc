@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "geometry/convert/hull.h"
+#include "geometry/convert/mass.h"
 
 namespace gloam {
 namespace {
@@ -13,7 +14,6 @@ constexpr int kMostCorners = 256;  // of the hull by which directions are search
 
 using Points = std::vector<Vec3d>;
 
-double length_of(Vec3d v) { return std::sqrt(length_squared(v)); }
 Vec3d unit(Vec3d v) { return v * (1 / length_of(v)); }
 
 Points points_of(const TriangleMesh& mesh) {

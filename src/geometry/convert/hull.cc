@@ -13,7 +13,7 @@ namespace gloam {
 namespace {
 
 constexpr int64_t kSteps = int64_t{1} << 20;
-constexpr double kFlat = 2;  // thickness of what counts as flat [steps]
+constexpr double kFlatSteps = 2;  // thickness of what counts as flat [steps]
 
 struct Int3 {
   int64_t x = 0, y = 0, z = 0;
@@ -113,16 +113,16 @@ class Quickhull {
     constexpr std::array<int, 4> kNone = {-1, -1, -1, -1};
     if (grid_.empty()) return kNone;
     const int a = largest([&](const Int3& p) { return (p - at(0)).length(); }, -1);
-    const int b = largest([&](const Int3& p) { return (p - at(a)).length(); }, kFlat);
+    const int b = largest([&](const Int3& p) { return (p - at(a)).length(); }, kFlatSteps);
     if (b < 0) return kNone;
     const Int3 ab = at(b) - at(a);
-    const int c =
-        largest([&](const Int3& p) { return cross(ab, p - at(a)).length(); }, kFlat * ab.length());
+    const int c = largest([&](const Int3& p) { return cross(ab, p - at(a)).length(); },
+                          kFlatSteps * ab.length());
     if (c < 0) return kNone;
     const Int3 normal = cross(ab, at(c) - at(a));
     const auto height = [&](const Int3& p) { return dot(normal, p - at(a)); };
     const int d = largest([&](const Int3& p) { return std::abs(static_cast<double>(height(p))); },
-                          kFlat * normal.length());
+                          kFlatSteps * normal.length());
     if (d < 0) return kNone;
     if (height(at(d)) > 0) return {a, c, b, d};
     return {a, b, c, d};

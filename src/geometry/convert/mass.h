@@ -2,12 +2,15 @@
 // Volume, centre of mass and inertia of closed surfaces.
 
 #include <array>
+#include <cmath>
 
 #include "geometry/mesh.h"
 
 namespace gloam {
 
 using Vec3d = Vec3Of<double>;
+inline Vec3d wide(Vec3f p) { return {p.x, p.y, p.z}; }
+inline double length_of(Vec3d v) { return std::sqrt(length_squared(v)); }
 
 /// Edges of a mesh whose equal corners are one vertex.
 struct EdgeCount {

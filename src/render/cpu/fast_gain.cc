@@ -5,7 +5,7 @@
 namespace gloam {
 namespace {
 
-constexpr int kPatch = 8;       // [px], in which the change is sought
+constexpr int kGainPatch = 8;   // [px], in which the change is sought
 constexpr float kLeast = 8;     // pixels that tell of a patch
 constexpr float kSureness = 1;  // standard errors that a change may be by chance: points that are
                                 // spread over patches make it less than it seems
@@ -25,7 +25,7 @@ struct Sums {
   }
   static float sum(F columns, int first) {
     float total = 0;
-    for (int i = first; i < first + kPatch; ++i) total += lane(columns, i);
+    for (int i = first; i < first + kGainPatch; ++i) total += lane(columns, i);
     return total;
   }
   /// Of the patch whose columns are the lanes from `first` on.
@@ -62,22 +62,22 @@ FastPast find_past(const FastFrame& before, const FastFrame& f, int x, int y) {
 }
 
 void LightGain::resize(int width, int height) {
-  columns_ = (width + kPatch - 1) / kPatch;
-  rows_ = (height + kPatch - 1) / kPatch;
+  columns_ = (width + kGainPatch - 1) / kGainPatch;
+  rows_ = (height + kGainPatch - 1) / kGainPatch;
   changed_ = false;
   gain_.assign(static_cast<size_t>(columns_) * static_cast<size_t>(rows_), 1.0f);
 }
 
 void measure_gains(const FastFrame& before, const FastFrame& now,
                    std::span<const LightChange> changes) {
-  static_assert(kLaneCount % kPatch == 0);
+  static_assert(kLaneCount % kGainPatch == 0);
   const int columns = changes[0].gain->columns_;
   parallel_for("fast gain", changes[0].gain->rows_, [&](int64_t row) {
-    const int y0 = static_cast<int>(row) * kPatch;
-    for (int column = 0; column < columns; column += kLaneCount / kPatch) {
-      const int x = column * kPatch;
+    const int y0 = static_cast<int>(row) * kGainPatch;
+    for (int column = 0; column < columns; column += kLaneCount / kGainPatch) {
+      const int x = column * kGainPatch;
       Sums sums[kFastSignals];
-      for (int y = y0; y < std::min(y0 + kPatch, now.height); ++y) {
+      for (int y = y0; y < std::min(y0 + kGainPatch, now.height); ++y) {
         const FastPast past = find_past(before, now, x, y);
         for (size_t i = 0; i < changes.size(); ++i) {
           sums[i].add(past.known, luminance(changes[i].now.load(x, y)),
@@ -85,9 +85,9 @@ void measure_gains(const FastFrame& before, const FastFrame& now,
         }
       }
       for (size_t i = 0; i < changes.size(); ++i) {
-        for (int k = 0; k < std::min(kLaneCount / kPatch, columns - column); ++k) {
+        for (int k = 0; k < std::min(kLaneCount / kGainPatch, columns - column); ++k) {
           changes[i].gain->gain_[static_cast<size_t>(row * columns + column + k)] =
-              sums[i].gain(k * kPatch);
+              sums[i].gain(k * kGainPatch);
         }
       }
     }
@@ -102,7 +102,7 @@ FloatLanes LightGain::from(int x, int y) const {
   if (!changed_) return 1.0f;
   F column;
   for (int i = 0; i < kLaneCount; ++i) set_lane(&column, i, static_cast<float>(x + i));
-  constexpr float kScale = 1.0f / kPatch;
+  constexpr float kScale = 1.0f / kGainPatch;
   const float right = static_cast<float>(columns_ - 1), low = static_cast<float>(rows_ - 1);
   const F fx = clamp((column + 0.5f) * kScale - 0.5f, F(0.0f), F(right));
   const float fy = clamp((static_cast<float>(y) + 0.5f) * kScale - 0.5f, 0.0f, low);

@@ -12,7 +12,7 @@ using F = FloatLanes;
 
 constexpr float kMostPictures = 8;  // in a mean: older ones fade;
 constexpr float kMostMoving = 2;    // where they lie between pixels, each blurs a little
-constexpr float kRange = 1;         // of deviations around a pixel that its past may have,
+constexpr float kPastRange = 1;     // of deviations around a pixel that its past may have,
 constexpr float kSlack = 0.015f;    // and of its mean: light that flickers is noise
 
 /// What the 3 x 3 pixels around those from (x, y) on say.
@@ -119,7 +119,7 @@ void resolve_lanes(const FastFrame& before, const LightGain& gain, const FilterW
   past = past * gain.from(x, y);
   const MaskLanes same = around.edge | (edge > 0.0f) | (part == f.part.load(x, y));
   const MaskLanes known = inside & same & (pictures > 0.0f);
-  const Vec3Of<F> reach = around.color.deviation * F(kRange) + around.color.mean * F(kSlack);
+  const Vec3Of<F> reach = around.color.deviation * F(kPastRange) + around.color.mean * F(kSlack);
   const Vec3Of<F> least = around.color.mean - reach, most = around.color.mean + reach;
   const auto keep = [](F value, F low, F high) { return max(clamp(value, low, high), F(0.0f)); };
   const Vec3Of<F> kept{keep(past.x, least.x, most.x), keep(past.y, least.y, most.y),

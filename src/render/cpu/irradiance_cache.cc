@@ -10,7 +10,7 @@ namespace gloam {
 namespace {
 
 constexpr int kRays = 32;            // of a cell and update
-constexpr int kTogether = 8;         // of them go by the cosine, as many by the guide
+constexpr int kRaysTogether = 8;     // of them go by the cosine, as many by the guide
 constexpr int kMemory = 10 * kRays;  // rays that a cell's mean is of, at most
 constexpr uint32_t kRounds = 16;     // of rays through one set of points
 constexpr float kStirred = 40;       // of a cell that sees moving things in all directions, as many
@@ -18,17 +18,17 @@ constexpr float kStirred = 40;       // of a cell that sees moving things in all
 constexpr float kSettles = 0.75f;    // of what a cell saw move, from update to update
 constexpr uint32_t kForgotten = 30;  // updates after which a cell that nobody asks for goes
 constexpr float kSurprise = 3;       // standard errors,
-constexpr float kNoChange = 0.02f;   // and this share, that a region's light may be off
-constexpr float kBrightest = 16;     // times a cell's mean: what a ray brings beyond that is the
-                                     // region's, as few rays meet it
-constexpr float kMostTold = 500;     // cells and updates that a region's excess is the mean of,
-constexpr float kAtChange = 4;       // and where the light has changed;
-constexpr float kGuessed = 20;       // it counts as that of so many more cells of a wider region
+constexpr float kNoRegionChange = 0.02f;  // and this share, that a region's light may be off
+constexpr float kBrightest = 16;  // times a cell's mean: what a ray brings beyond that is the
+                                  // region's, as few rays meet it
+constexpr float kMostTold = 500;  // cells and updates that a region's excess is the mean of,
+constexpr float kAtChange = 4;    // and where the light has changed;
+constexpr float kGuessed = 20;    // it counts as that of so many more cells of a wider region
 constexpr uint64_t kExcessRegions[] = {caches::kWideRegion | caches::kFacing,
                                        caches::kRegion | caches::kFacing};
-constexpr float kFades = 0.1f;    // share of all light that must have changed to change all
-constexpr int kMostRounds = 3;    // of an update while light changes in many cells
-constexpr float kSpread = 0.15f;  // of the rays' cones: no fine texture is sought
+constexpr float kFades = 0.1f;           // share of all light that must have changed to change all
+constexpr int kMostRounds = 3;           // of an update while light changes in many cells
+constexpr float kRayConeSpread = 0.15f;  // of the rays' cones: no fine texture is sought
 
 }  // namespace
 
@@ -128,7 +128,7 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
       const CacheRequest& start = starts_[row * kStarts + static_cast<size_t>(first + i) % starts];
       set_lane(&path.ray.o, i, start.p);
       set_lane(&normal, i, start.n);
-      set_lane(&seeks, i, (first + i) / kTogether % 2 != 0);
+      set_lane(&seeks, i, (first + i) / kRaysTogether % 2 != 0);
     }
     path.ray.d = FrameOf<F>::from_z(normal).to_world(local);
     F weight = 1.0f;
@@ -140,7 +140,7 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
       const F sought = directions::pdf(scene.guide, rows.row, path.ray.d);
       weight = select(rows.guided, 2.0f * even / max(even + sought, F(1e-9f)), F(1.0f));
     }
-    path.cone_spread = kSpread;
+    path.cone_spread = kRayConeSpread;
     path.from = path.ray.o;
     CacheRequest met[kLaneCount];
     const fasts::GatheredOf<F> light =
@@ -201,7 +201,7 @@ void IrradianceCache::find_changes() {
   each_group(caches::kRegion, [&](std::span<const Member> group) {
     const LightChange sum = change_of(group);
     const bool changed =
-        fabsf(sum.change) > kSurprise * sqrtf(sum.variance) + kNoChange * sum.light;
+        fabsf(sum.change) > kSurprise * sqrtf(sum.variance) + kNoRegionChange * sum.light;
     for (const auto& [key, k] : group) traced_[k].changed = changed && !traced_[k].is_new;
   });
   // What fades everywhere is seen here long before it is seen in each region.

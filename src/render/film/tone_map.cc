@@ -17,7 +17,7 @@ float gradient_noise(int x, int y) {
   return outer - std::floor(outer);
 }
 
-float sanitize(float x) { return x > 0 ? min(x, 1e6f) : 0.0f; }  // also for NaN
+float to_positive(float x) { return x > 0 ? min(x, 1e6f) : 0.0f; }  // also for NaN
 
 }  // namespace
 
@@ -47,7 +47,7 @@ void tone_map(const std::vector<Vec3f>& radiance, int width, int height,
       for (int x = 0; x < width; ++x) {
         const size_t i = static_cast<size_t>(y) * static_cast<size_t>(width) + x;
         const Vec3f light = radiance[i] * scale;
-        Vec3f color{sanitize(light.x), sanitize(light.y), sanitize(light.z)};
+        Vec3f color{to_positive(light.x), to_positive(light.y), to_positive(light.z)};
         if (settings.neutral) color = tone_curve_neutral(color);
         const float threshold = settings.dither ? gradient_noise(x, y) : 0.5f;
         for (int c = 0; c < 3; ++c) {

@@ -4,6 +4,7 @@
 
 #include "base/parallel.h"
 #include "geometry/bvh_cache.h"
+#include "render/scene/scan_table.h"
 
 namespace gloam {
 namespace {
@@ -11,7 +12,7 @@ namespace {
 /// Solids that every ray is tested against, at most: beyond a few that span the scene the tree is
 /// faster where no lanes share the test.
 constexpr size_t kMostScanned = 12;
-constexpr float kLeastShare = 0.125f;
+constexpr float kLeastArea = 0.125f;
 /// A tree over instances is made anew when moving them has made it so much worse.
 constexpr float kWornOut = 1.3f;
 
@@ -51,13 +52,11 @@ BvhBox moved(const BvhBox& b, const Affine3f& X_WG) {
   return out;
 }
 
-BvhBox as_box(const Bounds& b) { return {b.low, b.high}; }
-
 }  // namespace
 
 void BvhScene::build(const RenderScene& scene) {
   drawn_version_ = scene.drawn_version();
-  scanned_ = ScanTable::choose(scene, kMostScanned, kLeastShare);
+  scanned_ = ScanTable::choose(scene, kMostScanned, kLeastArea);
   instances_.clear();
   still_.clear();
   const std::vector<InstanceView>& instances = scene.instances();

@@ -5,7 +5,7 @@
 namespace gloam {
 namespace {
 
-constexpr int kBins = 12;
+constexpr int kSplitBins = 12;
 constexpr size_t kFew = 5;  // so many are halved along their longest extent
 
 struct Box {
@@ -48,22 +48,22 @@ struct Part {
 class Bins {
  public:
   Bins(float low, float high)
-      : low_(low), per_key_(high > low ? static_cast<float>(kBins) / (high - low) : 0) {}
+      : low_(low), per_key_(high > low ? static_cast<float>(kSplitBins) / (high - low) : 0) {}
   int bin_of(float key) const {
-    return std::min(kBins - 1, static_cast<int>((key - low_) * per_key_));
+    return std::min(kSplitBins - 1, static_cast<int>((key - low_) * per_key_));
   }
   void add(float key, const LightItem& item) { parts_[bin_of(key)].add(item); }
   /// The cheapest place: bins below it against the rest; 0 = none.
   int best(float* cost) const {
-    float above[kBins];
+    float above[kSplitBins];
     Part part;
-    for (int i = kBins - 1; i > 0; --i) {
+    for (int i = kSplitBins - 1; i > 0; --i) {
       if (parts_[i].count > 0) part.add(parts_[i]);
       above[i] = part.count > 0 ? part.cost() : -1;
     }
     part = {};
     int place = 0;
-    for (int i = 1; i < kBins; ++i) {
+    for (int i = 1; i < kSplitBins; ++i) {
       if (parts_[i - 1].count > 0) part.add(parts_[i - 1]);
       if (part.count == 0 || above[i] < 0) continue;
       const float sum = part.cost() + above[i];
@@ -76,7 +76,7 @@ class Bins {
 
  private:
   float low_, per_key_;
-  Part parts_[kBins];
+  Part parts_[kSplitBins];
 };
 
 size_t halve(std::span<LightItem> items, Vec3f LightItem::* key, int k) {

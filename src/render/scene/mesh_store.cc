@@ -6,12 +6,15 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
+#include "render/scene/span_of.h"
 #include "world/visual_mesh.h"
 
 namespace gloam {
 namespace {
 
-bool is_finite(Vec3f v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool is_finite_point(Vec3f v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 Status check_mesh(const TriangleMesh& mesh, const std::string& name) {
   const auto bad = [&](const char* what) {
@@ -28,7 +31,7 @@ Status check_mesh(const TriangleMesh& mesh, const std::string& name) {
                    [](Vec2f uv) { return std::isfinite(uv.x) && std::isfinite(uv.y); })) {
     return bad("has a texture coordinate that is not a finite number");
   }
-  if (!std::all_of(mesh.positions.begin(), mesh.positions.end(), is_finite)) {
+  if (!std::all_of(mesh.positions.begin(), mesh.positions.end(), is_finite_point)) {
     return bad("has a vertex that is not a finite number");
   }
   return {};
@@ -81,11 +84,6 @@ void recompute_normals(const TriangleMesh& mesh, MeshBuffers* buffers) {
     const float l = length(n);
     buffers->corner_normals[i] = l > 0 ? n / l : Vec3f{0, 0, 1};
   }
-}
-
-template <class T>
-DeviceSpan<const T> span_of(const std::vector<T>& v) {
-  return {v.data(), static_cast<uint32_t>(v.size())};
 }
 
 }  // namespace

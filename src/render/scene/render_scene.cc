@@ -9,6 +9,7 @@
 #include "render/kernel/shapes.h"
 #include "render/scene/albedo_table.h"
 #include "render/scene/pose.h"
+#include "render/scene/span_of.h"
 #include "world/visual_rules.h"
 
 namespace gloam {
@@ -111,11 +112,6 @@ Vec3f live_ambient(const RenderDescription& description, const PoseFrame& frame)
     }
   }
   return sum * kWhiteLuminance;
-}
-
-template <class T>
-DeviceSpan<const T> span_of(const std::vector<T>& v) {
-  return {v.data(), static_cast<uint32_t>(v.size())};
 }
 
 }  // namespace

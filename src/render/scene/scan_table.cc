@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "render/kernel/shapes.h"
+#include "render/scene/span_of.h"
 
 namespace gloam {
 namespace {
@@ -14,8 +15,6 @@ bool lies_along_axes(const Affine3f& X) {
   };
   return is_axis(X.x) && is_axis(X.y) && is_axis(X.z);
 }
-
-BvhBox as_box(const Bounds& b) { return {b.low, b.high}; }
 
 /// Solids that are scanned together.
 struct Cluster {
@@ -55,11 +54,6 @@ void unite(std::vector<Cluster>* clusters) {
     into->solids.insert(into->solids.end(), from->solids.begin(), from->solids.end());
     clusters->erase(clusters->begin() + (from - clusters->data()));
   }
-}
-
-template <class T>
-DeviceSpan<const T> span_of(const std::vector<T>& v) {
-  return {v.data(), static_cast<uint32_t>(v.size())};
 }
 
 }  // namespace

@@ -9,6 +9,8 @@
 
 namespace gloam {
 
+inline BvhBox as_box(const Bounds& b) { return {b.low, b.high}; }
+
 bool is_infinite_plane(const InstanceView& instance);
 /// Drawn, in one place, of finite extent.
 bool stands_still(const RenderScene& scene, size_t instance);

@@ -9,6 +9,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "render/scene/black_body.h"
+#include "render/scene/span_of.h"
 
 namespace gloam {
 namespace {
@@ -102,11 +103,6 @@ Status check_extinction(const std::string& name, const VolumeView& v,
                   name, k * high, k, high, kMaxExtinction),
       {},
       "make what is so thick a surface"};
-}
-
-template <class T>
-DeviceSpan<const T> span_of(const std::vector<T>& v) {
-  return {v.data(), static_cast<uint32_t>(v.size())};
 }
 
 VolumeView place(const VolumeDescription& in, VolumeView out) {

@@ -33,11 +33,12 @@ ProceduralSample sample_at(const ProceduralDescription& d, Vec3f p, float footpr
 double tone(const ProceduralSample& s) { return luminance(s.base_color); }
 
 /// Mean of point samples over the square of `width` about p on the wall.
-struct Mean {
+struct AreaMean {
   double tone = 0, roughness = 0;
 };
-Mean mean_over_square(const ProceduralDescription& d, Vec3f p, float width, int side, Draws* draw) {
-  Mean mean;
+AreaMean mean_over_square(const ProceduralDescription& d, Vec3f p, float width, int side,
+                          Draws* draw) {
+  AreaMean mean;
   for (int i = 0; i < side * side; ++i) {
     const float x = (static_cast<float>(i % side) + (*draw)(0, 1)) / static_cast<float>(side);
     const float z = (static_cast<float>(i / side) + (*draw)(0, 1)) / static_cast<float>(side);
@@ -60,7 +61,7 @@ TEST(Procedural, TheFootprintsValueIsTheMeanOverIt) {
       double squares = 0, bias = 0, rough = 0;
       for (int i = 0; i < kSquares; ++i) {
         const Vec3f p{draw(-4, 4), draw(-4, 4), draw(-4, 4)};
-        const Mean mean = mean_over_square(c.d, p, width, 32, &draw);
+        const AreaMean mean = mean_over_square(c.d, p, width, 32, &draw);
         const ProceduralSample s = sample_at(c.d, p, width);
         squares += sqr(static_cast<float>(tone(s) - mean.tone)) / kSquares;
         bias += (tone(s) - mean.tone) / kSquares;

@@ -10,7 +10,7 @@
 namespace gloam {
 namespace {
 
-constexpr Vec3f kUp{0, 0, 1}, kDown{0, 0, -1}, kSide{1, 0, 0};
+constexpr Vec3f kUp{0, 0, 1}, kDown{0, 0, -1}, kAside{1, 0, 0};
 
 WeatheredMaterial concrete() { return {{0.35f, 0.34f, 0.33f}, 0, 0.85f, 0, 1.5f, 0.1f, 0, 1}; }
 
@@ -44,19 +44,19 @@ TEST(Weathering, WaterDarkensWhatIsPorous) {
   EXPECT_NEAR(weathering::wet_albedo(0.5f, 1), deep * 0.526 / (1 - 0.474 * deep), 1e-5);
   double before = 1;
   for (const float amount : {0.0f, 0.1f, 0.25f, 0.4f, 0.5f}) {
-    const WeatheredMaterial wet = apply_wetness(concrete(), {amount, 0.8f, 1}, {}, kSide, 0, 0);
+    const WeatheredMaterial wet = apply_wetness(concrete(), {amount, 0.8f, 1}, {}, kAside, 0, 0);
     EXPECT_LT(luminance(wet.base_color), before);
     before = luminance(wet.base_color);
   }
   EXPECT_NEAR(before / luminance(concrete().base_color), 0.52, 0.02);
   WeatheredMaterial steel = concrete();
   steel.metallic = 1;
-  EXPECT_EQ(apply_wetness(steel, {0.8f, 0.8f, 1}, {}, kSide, 0, 0).base_color.x,
+  EXPECT_EQ(apply_wetness(steel, {0.8f, 0.8f, 1}, {}, kAside, 0, 0).base_color.x,
             steel.base_color.x);
 }
 
 TEST(Weathering, WaterCoatsAndStandsOnLevelGround) {
-  const WeatheredMaterial wall = apply_wetness(concrete(), {1, 0.8f, 1}, {}, kSide, 0, 0);
+  const WeatheredMaterial wall = apply_wetness(concrete(), {1, 0.8f, 1}, {}, kAside, 0, 0);
   EXPECT_NEAR(wall.coat_weight, 0.85, 1e-5);
   EXPECT_NEAR(wall.coat_ior, 1.33, 1e-5);
   EXPECT_LT(wall.coat_roughness, 0.1);
@@ -84,8 +84,8 @@ TEST(Weathering, DustSettlesOnWhatFacesUp) {
     return mean([&](Vec3f p) { return apply_dust(black, d, p, n, 0).base_color.y; }) / d.color.y;
   };
   EXPECT_GT(light(kUp, 1), 0.99);
-  EXPECT_GT(light(kUp, 0.5f), 2 * light(kSide, 0.5f));
-  EXPECT_GT(light(kSide, 0.5f), 0);
+  EXPECT_GT(light(kUp, 0.5f), 2 * light(kAside, 0.5f));
+  EXPECT_GT(light(kAside, 0.5f), 0);
   EXPECT_EQ(light(kDown, 0.5f), 0);
   EXPECT_GT(light(kUp, 0.5f), light(kUp, 0.2f) + 0.1);
   const WeatheredMaterial deep = apply_dust(concrete(), {1}, {}, kUp, 0);
@@ -105,7 +105,7 @@ TEST(Weathering, SnowStartsInPatchesAndLeavesSteepFaces) {
     EXPECT_NEAR(share(amount, kUp, 5), before, 0.02) << amount;
   }
   EXPECT_GT(before, 0.99);
-  EXPECT_EQ(share(1, kSide, 0), 0);
+  EXPECT_EQ(share(1, kAside, 0), 0);
   const Vec3f roof = normalize(Vec3f{0.7f, 0, 0.7f});
   EXPECT_LT(share(0.5f, roof, 0), share(0.5f, kUp, 0));
   const Vec3f steep = normalize(Vec3f{0.87f, 0, 0.5f});  // 60 degrees
@@ -118,7 +118,7 @@ TEST(Weathering, SnowStartsInPatchesAndLeavesSteepFaces) {
 TEST(Weathering, EverythingStaysInRange) {
   const RandomStream stream{9, 1};
   const float nan = std::nanf("");
-  const Vec3f normals[] = {kUp, kDown, kSide, {0, 0, 0}, {nan, nan, nan}, {1e-30f, 0, 0}};
+  const Vec3f normals[] = {kUp, kDown, kAside, {0, 0, 0}, {nan, nan, nan}, {1e-30f, 0, 0}};
   for (uint32_t i = 0; i < 4000; ++i) {
     const auto u = [&](uint32_t k) { return static_cast<float>(stream.uniform(i, k)); };
     WeatheredMaterial m{{u(0), u(1), u(2)}, u(3), u(4), u(5), 1.5f, u(6), u(7), 1};

@@ -278,11 +278,6 @@ TEST_P(SlowDrawnComplete, EveryGeomInViewIsInTheSegmentation) {
   }
 }
 
-std::string robot_name(const ::testing::TestParamInfo<const char*>& info) {
-  const std::filesystem::path file(info.param);
-  const bool named = file.stem() != "robot";
-  return (named ? file.stem() : file.parent_path().filename()).string();
-}
 INSTANTIATE_TEST_SUITE_P(
     Robots, SlowDrawnComplete,
     ::testing::Values(kGo1, kG1, kYam, kPanda,

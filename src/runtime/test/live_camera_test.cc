@@ -12,7 +12,7 @@ namespace gloam {
 namespace {
 
 /// Collects frames; waits for some of them.
-class Frames {
+class SlowFrames {
  public:
   FrameCallback callback() {
     return [this](std::shared_ptr<const CameraFrame> frame) {
@@ -49,7 +49,7 @@ CameraRequest tiny(const std::string& camera, Rational rate) {
 }
 
 std::unique_ptr<CameraStream> open(Simulation& simulation, const CameraRequest& request,
-                                   Frames& frames) {
+                                   SlowFrames& frames) {
   auto stream = simulation.open_camera(request, frames.callback());
   if (!stream.ok()) {
     ADD_FAILURE() << stream.error().to_string();
@@ -70,7 +70,7 @@ TEST(LiveCamera, FrameKIsTakenAtTheFirstStepAtOrAfterKOverRate) {
   const World world = flight(folder);
   for (const Rational rate : {Rational{30, 1}, {20, 1}, {500, 1}, {24000, 1001}}) {
     auto simulation = simulate(world);
-    Frames frames;
+    SlowFrames frames;
     auto stream = open(*simulation, tiny("a/fixed", rate), frames);
     ASSERT_TRUE(simulation->run_until(250).ok());
     stream.reset();
@@ -90,9 +90,9 @@ TEST(LiveCamera, FrameKIsTakenAtTheFirstStepAtOrAfterKOverRate) {
 TEST(LiveCamera, PoseDepthAndStampAreOfOneInstant) {
   const TempFolder folder;
   auto simulation = simulate(flight(folder));
-  Frames frames;
+  SlowFrames frames;
   auto rider = open(*simulation, tiny("a/rider", {50, 1}), frames);
-  Frames fixed_frames;
+  SlowFrames fixed_frames;
   auto fixed = open(*simulation, tiny("a/fixed", {50, 1}), fixed_frames);
   ASSERT_TRUE(simulation->run_until(500).ok());
   rider.reset();
@@ -115,7 +115,7 @@ TEST(LiveCamera, PoseDepthAndStampAreOfOneInstant) {
 TEST(LiveCamera, MotionIsFromTheFrameBefore) {
   const TempFolder folder;
   auto simulation = simulate(flight(folder));
-  Frames frames;
+  SlowFrames frames;
   CameraRequest request = tiny("a/fixed", {25, 1});
   request.outputs = {"motion", "depth"};
   auto stream = open(*simulation, request, frames);
@@ -140,7 +140,7 @@ TEST(LiveCamera, MotionIsFromTheFrameBefore) {
 TEST(LiveCamera, TheSimulationWaitsForARequiredCamera) {
   const TempFolder folder;
   auto simulation = simulate(flight(folder));
-  Frames frames;
+  SlowFrames frames;
   frames.delay = std::chrono::milliseconds(10);
   auto stream = open(*simulation, tiny("a/fixed", {100, 1}), frames);
   ASSERT_TRUE(simulation->run_until(200).ok());
@@ -157,7 +157,7 @@ TEST(LiveCamera, ASlowViewerLosesFramesAndSlowsNothing) {
   ASSERT_TRUE(alone->run_until(1000).ok());
 
   auto simulation = simulate(world);
-  Frames frames;
+  SlowFrames frames;
   frames.delay = std::chrono::milliseconds(50);
   CameraRequest request = tiny("a/fixed", {500, 1});
   request.required = false;
@@ -179,7 +179,7 @@ TEST(LiveCamera, TheFreeCameraMovesWhilePaused) {
   const TempFolder folder;
   auto simulation = simulate(flight(folder));
   ASSERT_TRUE(simulation->step(10).ok());
-  Frames frames;
+  SlowFrames frames;
   CameraRequest request = tiny("free", {20, 1});
   request.required = false;
   auto stream = open(*simulation, request, frames);
@@ -201,7 +201,7 @@ TEST(LiveCamera, TheFreeCameraMovesWhilePaused) {
 TEST(LiveCamera, AResetStartsTheFramesAgain) {
   const TempFolder folder;
   auto simulation = simulate(flight(folder));
-  Frames frames;
+  SlowFrames frames;
   auto stream = open(*simulation, tiny("a/rider", {50, 1}), frames);
   ASSERT_TRUE(simulation->run_until(100).ok());
   frames.wait_for(11);
@@ -264,7 +264,7 @@ TEST(LiveCamera, ARollingShutterSeesEachRowAtItsOwnTime) {
       folder, "[[camera]]\nname = \"a/fixed\"\nreadout_time = 0.1\nexposure_time = 0.004\n"));
   CameraRequest request = tiny("a/fixed", {10, 1});
   request.width = 64, request.height = 48;
-  Frames frames;
+  SlowFrames frames;
   auto stream = open(*simulation, request, frames);
   ASSERT_TRUE(simulation->run_until(200).ok());
   stream.reset();

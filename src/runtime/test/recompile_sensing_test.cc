@@ -76,7 +76,7 @@ CameraRequest small(const std::string& camera, Rational rate, const std::string&
 
 /// What a stream delivers, to be read once it is closed.
 template <class Item>
-class Collected {
+class CollectedUnlocked {
  public:
   auto take() {
     return [this](Item item) {
@@ -90,7 +90,7 @@ class Collected {
   std::mutex mutex_;
   std::vector<Item> items_;
 };
-using Frames = Collected<std::shared_ptr<const CameraFrame>>;
+using CollectedFrames = CollectedUnlocked<std::shared_ptr<const CameraFrame>>;
 
 // 4 stops more light in the new World: the exposure approaches them from where it was; an event
 // camera begins anew, so that the change of Worlds is no change of light to it; samples and scans
@@ -99,9 +99,9 @@ TEST(RecompileSensing, ExposureGoesOnAndEventsBeginAnew) {
   const TempFolder folder;
   auto simulation =
       simulate(*World::compile(room(folder, 2e4, 1, std::string(kAutomatic) + kOthers)));
-  Frames eye_frames, dvs_frames;
-  Collected<SensorMessage> messages;
-  Collected<std::shared_ptr<const LidarScan>> scans;
+  CollectedFrames eye_frames, dvs_frames;
+  CollectedUnlocked<SensorMessage> messages;
+  CollectedUnlocked<std::shared_ptr<const LidarScan>> scans;
   auto eye = simulation->open_camera(small("eye", {25, 1}, "rgb"), eye_frames.take());
   auto dvs = simulation->open_camera(small("dvs", {50, 1}, "events"), dvs_frames.take());
   auto where = simulation->open_sensor({"where", true}, messages.take());
@@ -156,7 +156,7 @@ TEST(RecompileSensing, ExposureIsThatOfTheNewCamera) {
   const Scene fixed =
       room(folder, 2e4, 1, "imager.exposure = { f_number = 4, shutter = 0.01, iso = 100 }\n");
   auto simulation = simulate(*World::compile(automatic(25, 0)));
-  Frames frames;
+  CollectedFrames frames;
   auto eye = simulation->open_camera(small("eye", {25, 1}, "rgb"), frames.take());
   ASSERT_TRUE(eye.ok());
   int64_t step = 245;  // five steps after every second frame

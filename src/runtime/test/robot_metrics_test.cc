@@ -1,5 +1,6 @@
 // Metrics of motions whose numbers are known in closed form.
 #include "runtime/robot_metrics.h"
+#include "base/angle.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,8 +10,6 @@
 
 namespace gloam {
 namespace {
-
-constexpr double kDegree = M_PI / 180;
 
 /// A ball in free space with start pose and velocity as given (qpos, then qvel), as robot "r" of a
 /// scene with velocity goals.

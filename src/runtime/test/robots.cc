@@ -85,4 +85,10 @@ std::vector<double> integration_state(const mjModel& m, const mjData& d) {
   return state;
 }
 
+std::string robot_name(const ::testing::TestParamInfo<const char*>& info) {
+  const std::filesystem::path file(info.param);
+  const bool named = file.stem() != "robot";
+  return (named ? file.stem() : file.parent_path().filename()).string();
+}
+
 }  // namespace gloam

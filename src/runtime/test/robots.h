@@ -62,4 +62,7 @@ std::vector<double> motion_state(const mjModel& model, const mjData& data);
 /// mjSTATE_INTEGRATION.
 std::vector<double> integration_state(const mjModel& model, const mjData& data);
 
+/// Of its file, or of the folder of files called robot.xml.
+std::string robot_name(const ::testing::TestParamInfo<const char*>& info);
+
 }  // namespace gloam

@@ -156,11 +156,6 @@ TEST_P(SlowThirdPartyRun, IsStockBitForBitWhileTwoCamerasRender) {
   }
 }
 
-std::string robot_name(const ::testing::TestParamInfo<const char*>& info) {
-  const std::filesystem::path file(info.param);
-  const bool named = file.stem() != "robot";
-  return (named ? file.stem() : file.parent_path().filename()).string();
-}
 INSTANTIATE_TEST_SUITE_P(Robots, SlowThirdPartyRun, ::testing::Values(kGo1, kG1, kYam, kPanda),
                          robot_name);
 

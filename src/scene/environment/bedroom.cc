@@ -6,8 +6,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kHall = 1.4;     // its width [m]
-constexpr double kCorner = 0.14;  // from the door's opening to the corner [m]
+constexpr double kHall = 1.4;  // its width [m]
 
 FloorPlan plan_bedroom(const BedroomOptions& o, Dice* dice) {
   FloorPlan plan;
@@ -20,7 +19,7 @@ FloorPlan plan_bedroom(const BedroomOptions& o, Dice* dice) {
   Opening door{OpeningKind::kDoor, 0, 1, Side::kNorth};
   door.width = std::max(0.86, o.passage + 0.14);
   door.hinge_low = dice->chance(0.5);
-  door.center = (door.hinge_low ? -1 : 1) * (x - kCorner - door.width / 2);
+  door.center = (door.hinge_low ? -1 : 1) * (x - kDoorToCorner - door.width / 2);
   plan.openings.push_back(door);
   const double head = std::min(2.2, o.ceiling - 0.22);
   plan.openings.push_back({OpeningKind::kWindow, 1, -1, Side::kNorth, dice->uniform(-0.2, 0.2),

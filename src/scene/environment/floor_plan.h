@@ -28,6 +28,8 @@ struct Rect {
 };
 
 enum class Side { kWest, kEast, kSouth, kNorth };
+inline constexpr Side kSides[] = {Side::kWest, Side::kEast, Side::kSouth, Side::kNorth};
+inline constexpr double kDoorToCorner = 0.14;  ///< least, from a door's opening [m]
 Side opposite(Side side);
 /// Do walls of this side run along x?
 inline bool runs_along_x(Side side) { return side == Side::kSouth || side == Side::kNorth; }

@@ -20,15 +20,14 @@ struct Wish {
 
 // What a home has, in the order in which it is first given a room.
 const Wish kLiving{"living", 5.0, 6.2}, kKitchen{"kitchen", 3.3, 4.0}, kBath{"bathroom", 2.2, 2.7},
-    kBedroom{"bedroom", 3.4, 4.2}, kStudy{"study", 2.8, 3.4}, kUtility{"utility", 2.2, 2.6};
-const std::vector<Wish> kOneStorey = {kLiving,  kBedroom, kBath, kKitchen, kBedroom, kStudy,
-                                      kBedroom, kUtility, kBath, kBedroom, kStudy};
+    kBedroom{"bedroom", 3.4, 4.2}, kStudy{"study", 2.8, 3.4}, kUtilityRoom{"utility", 2.2, 2.6};
+const std::vector<Wish> kOneStorey = {kLiving,  kBedroom,     kBath, kKitchen, kBedroom, kStudy,
+                                      kBedroom, kUtilityRoom, kBath, kBedroom, kStudy};
 // Upstairs and downstairs in turn.
-const std::vector<Wish> kDownstairs = {kLiving, kKitchen, kUtility, kStudy, kBath};
+const std::vector<Wish> kDownstairs = {kLiving, kKitchen, kUtilityRoom, kStudy, kBath};
 const std::vector<Wish> kUpstairs = {kBedroom, kBath, kBedroom, kBedroom, kStudy};
 
 constexpr double kStairWidth = 2.1, kHallLow = 1.5, kHallHigh = 1.9;
-constexpr double kCorner = 0.14;  // from a door's opening to the nearest corner [m]
 
 struct Slot {
   Wish wish;
@@ -205,7 +204,7 @@ class HousePlanner {
     }
     // The leaf comes to rest along the wall that the hinge is next to.
     o.hinge_low = dice_.chance(0.5);
-    const double edge = kCorner + o.width / 2;
+    const double edge = kDoorToCorner + o.width / 2;
     o.center = o.hinge_low ? to.clear.x0 + edge : to.clear.x1 - edge;
     plan_.openings.push_back(o);
   }

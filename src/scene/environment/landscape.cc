@@ -7,7 +7,7 @@ namespace gloam {
 namespace {
 
 constexpr double kSteepest = 0.42;               // of the hills: what robots climb
-constexpr double kFlat = 2.5, kBlend = 7;        // about the origin [m]
+constexpr double kFlatRadius = 2.5, kBlend = 7;  // about the origin [m]
 constexpr double kRoadStep = 1, kRoadAway = 60;  // [m]
 constexpr double kShoulder = 0.8, kGraded = 5;   // beside the road: level, then to the hills [m]
 constexpr double kDitch = 0.16, kRut = 0.028;    // deep [m]
@@ -87,7 +87,7 @@ void Landscape::grade_road() {
       sum += w * hills(x, road_y(x)), weight += w;
     }
     const double x = i * kRoadStep;
-    road_z_.push_back(sum / weight * smooth_between(kFlat, kFlat + 14, std::abs(x)));
+    road_z_.push_back(sum / weight * smooth_between(kFlatRadius, kFlatRadius + 14, std::abs(x)));
   }
 }
 
@@ -147,7 +147,7 @@ void Landscape::place_sites(Dice* dice) {
       return std::hypot(s.x - other.x, s.y - other.y) <
              reach_out + std::hypot(other.half_x, other.half_y) + 4;
     });
-    if (is_near || std::hypot(s.x, s.y) < reach_out + kFlat) continue;
+    if (is_near || std::hypot(s.x, s.y) < reach_out + kFlatRadius) continue;
     s.z = country(s.x, s.y);
     sites_.push_back(s);
   }
@@ -157,7 +157,7 @@ double Landscape::country(double x, double y) const {
   double z = hills(x, y);
   for (const BuildingSite& s : sites_)
     z = mix(s.z, z, smooth_between(kYard, kYard + kSiteBlend, s.distance(x, y)));
-  z *= smooth_between(kFlat, kFlat + kBlend, std::hypot(x, y));
+  z *= smooth_between(kFlatRadius, kFlatRadius + kBlend, std::hypot(x, y));
   if (pond_) {
     const double t = pond_share(x, y), rim = pond_->z + 0.25 * (t - 1);
     z = mix(rim, std::max(z, rim), smooth_between(1, 1 + kBank, t));
@@ -186,14 +186,14 @@ double Landscape::height(double x, double y) const {
     const double ditch = (d - half - kShoulder * 0.9) / 0.45;
     cut += kDitch * std::exp(-ditch * ditch) *
            smooth_between(-0.4, 0.3, ragged_(x / 11, y > road_y(x) ? 0.2 : 5.2)) * on;
-    z -= cut * smooth_between(1.2, kFlat + 1, from_origin);
+    z -= cut * smooth_between(1.2, kFlatRadius + 1, from_origin);
   }
   double yard = 1;
   for (const BuildingSite& s : sites_)
     yard = std::min(yard, smooth_between(kYard, kYard + 2, s.distance(x, y)));
   // Tussocks and molehills.
   z += 0.035 * rough * yard * rough_.sum(x / 1.9, y / 1.9, 2) *
-       smooth_between(1.2, kFlat + 2, from_origin);
+       smooth_between(1.2, kFlatRadius + 2, from_origin);
   // Higher country far off closes the view.
   const double range = smooth_between(50, 260, away);
   return z + range * (9 + 14 * (0.5 + 0.5 * hills_.sum(x / 90, y / 90, 3)));

@@ -14,7 +14,6 @@ namespace gloam {
 namespace {
 
 constexpr double kSmallRoom = 3.1;  // usual width [m]
-constexpr double kCorner = 0.14;    // from a door's opening to the corner [m]
 
 class OfficePlanner {
  public:
@@ -70,7 +69,7 @@ class OfficePlanner {
     Opening door{OpeningKind::kDoor, 0, room, side};
     door.width = std::max(0.9, o_.passage + 0.14);
     door.hinge_low = dice_.chance(0.5);
-    const double edge = kCorner + door.width / 2;
+    const double edge = kDoorToCorner + door.width / 2;
     door.center = door.hinge_low ? to.x0 + edge : to.x1 - edge;
     plan_.openings.push_back(door);
   }

@@ -8,15 +8,15 @@
 namespace gloam {
 namespace {
 
-constexpr float kLining = 0.026f, kArchitrave = 0.062f, kProud = 0.012f, kLeaf = 0.040f,
-                kGap = 0.004f;
+constexpr float kLiningWidth = 0.026f, kArchitrave = 0.062f, kProud = 0.012f, kLeaf = 0.040f,
+                kDoorGap = 0.004f;
 
 // Lining of the reveal and architraves on both faces; three boxes of the lining collide.
-void add_frame(Workshop& shop, const Opening& o, float wall, PropPart* part) {
+void add_door_frame(Workshop& shop, const Opening& o, float wall, PropPart* part) {
   const std::string paint = shop.paint(shop.style.trim, 0.4);
   const float y = float(o.width) / 2, z = float(o.head), x = wall / 2 + kProud;
   for (const float side : {-1.0f, 1.0f}) {
-    const float a = side * (y - kLining), b = side * y;
+    const float a = side * (y - kLiningWidth), b = side * y;
     const Vec3f low{-x, std::min(a, b), 0}, high{x, std::max(a, b), z};
     part->show("frame", paint, slab(low, high, 0.002f));
     part->collide_box(low, high);
@@ -28,7 +28,7 @@ void add_frame(Workshop& shop, const Opening& o, float wall, PropPart* part) {
                       {std::max(inner, outer), std::max(from, to), z + kArchitrave}, 0.003f));
     }
   }
-  const Vec3f low{-x, -y + kLining, z - kLining}, high{x, y - kLining, z};
+  const Vec3f low{-x, -y + kLiningWidth, z - kLiningWidth}, high{x, y - kLiningWidth, z};
   part->show("frame", paint, slab(low, high, 0.002f));
   part->collide_box(low, high);
   for (const float face : {-1.0f, 1.0f}) {
@@ -63,7 +63,7 @@ struct LeafSize {
 void add_panelled(Workshop& shop, const LeafSize& l, const std::string& paint, int rows,
                   int columns, bool glazed, PropPart* leaf) {
   const float stile = 0.11f, rail = 0.13f, foot = 0.2f;
-  const float y0 = -l.hinge * kGap, y1 = -l.hinge * (l.width + kGap);
+  const float y0 = -l.hinge * kDoorGap, y1 = -l.hinge * (l.width + kDoorGap);
   const float low = std::min(y0, y1), high = std::max(y0, y1);
   const auto piece = [&](float a, float b, float z0, float z1, float thick, float bevel) {
     return slab({l.face - thick / 2, a, z0}, {l.face + thick / 2, b, z1}, bevel);
@@ -99,10 +99,10 @@ void add_panelled(Workshop& shop, const LeafSize& l, const std::string& paint, i
 }  // namespace
 
 Prop make_door(Workshop& shop, const Opening& o, double wall_size, bool hinge_left, double angle) {
-  const float wall = float(wall_size), y = float(o.width) / 2 - kLining,
+  const float wall = float(wall_size), y = float(o.width) / 2 - kLiningWidth,
               s = hinge_left ? 1.0f : -1.0f;
   Prop p;
-  add_frame(shop, o, wall, &p.body());
+  add_door_frame(shop, o, wall, &p.body());
   p.body().mass = 12;
   PropJoint hinge;
   hinge.axis = {0, 0, s};
@@ -111,15 +111,17 @@ Prop make_door(Workshop& shop, const Opening& o, double wall_size, bool hinge_le
   hinge.damping = 0.6;
   hinge.friction = 0.8;
   PropPart& leaf = p.hang("leaf", {wall / 2 + kProud, s * y, 0}, hinge);
-  const LeafSize l{2 * y - 2 * kGap, 0.008f, float(o.head) - kLining - kGap, s, -kLeaf / 2};
+  const LeafSize l{2 * y - 2 * kDoorGap, 0.008f, float(o.head) - kLiningWidth - kDoorGap, s,
+                   -kLeaf / 2};
   const std::string paint = shop.paint(shop.style.trim, 0.38);
   Dice style(shop.style.door, "door");
   switch (style.integer(0, 3)) {
     case 0:
       leaf.show(
           "leaf", paint,
-          slab({l.face - kLeaf / 2, std::min(-s * kGap, -s * (l.width + kGap)), l.low},
-               {l.face + kLeaf / 2, std::max(-s * kGap, -s * (l.width + kGap)), l.high}, 0.002f));
+          slab({l.face - kLeaf / 2, std::min(-s * kDoorGap, -s * (l.width + kDoorGap)), l.low},
+               {l.face + kLeaf / 2, std::max(-s * kDoorGap, -s * (l.width + kDoorGap)), l.high},
+               0.002f));
       break;
     case 1:
       add_panelled(shop, l, paint, 2, 1, false, &leaf);
@@ -138,16 +140,16 @@ Prop make_door(Workshop& shop, const Opening& o, double wall_size, bool hinge_le
   for (const float z : {0.22f, float(o.head) - 0.25f})
     hinges += cylinder(0.007f, z, z + 0.09f, 0.001f, 10);
   leaf.show("handle", shop.metal(), hinges.moved(0.004f, 0, 0));
-  const float a = -s * kGap, b = -s * (l.width + kGap);
+  const float a = -s * kDoorGap, b = -s * (l.width + kDoorGap);
   leaf.collide_box({-kLeaf, std::min(a, b), l.low}, {0, std::max(a, b), l.high});
   leaf.mass = 22;
   return p;
 }
 
 Prop make_entrance(Workshop& shop, const Opening& o, double wall_size) {
-  const float wall = float(wall_size), y = float(o.width) / 2 - kLining;
+  const float wall = float(wall_size), y = float(o.width) / 2 - kLiningWidth;
   Prop p;
-  add_frame(shop, o, wall, &p.body());
+  add_door_frame(shop, o, wall, &p.body());
   p.body().mass = 25;
   PropJoint hinge;
   hinge.axis = {0, 0, -1};  // it opens inwards
@@ -155,7 +157,8 @@ Prop make_entrance(Workshop& shop, const Opening& o, double wall_size) {
   hinge.damping = 2;
   hinge.friction = 2;
   PropPart& leaf = p.hang("leaf", {-wall / 2 - kProud, y, 0}, hinge);
-  const LeafSize l{2 * y - 2 * kGap, 0.012f, float(o.head) - kLining - kGap, 1, 0.028f};
+  const LeafSize l{2 * y - 2 * kDoorGap, 0.012f, float(o.head) - kLiningWidth - kDoorGap, 1,
+                   0.028f};
   const Vec3 color = shop.dice.pick<Vec3>({{0.13, 0.22, 0.24},
                                            {0.42, 0.10, 0.09},
                                            {0.16, 0.17, 0.18},
@@ -167,15 +170,15 @@ Prop make_entrance(Workshop& shop, const Opening& o, double wall_size) {
   leaf.show("handle", shop.metal(),
             lever(1).moved(l.face + kLeaf / 2, handle, 1.03f) +
                 lever(1).mirrored(Axis::kX).moved(l.face - kLeaf / 2, handle, 1.03f));
-  leaf.collide_box({l.face - kLeaf / 2, -(l.width + kGap), l.low},
-                   {l.face + kLeaf / 2, -kGap, l.high});
+  leaf.collide_box({l.face - kLeaf / 2, -(l.width + kDoorGap), l.low},
+                   {l.face + kLeaf / 2, -kDoorGap, l.high});
   leaf.mass = 45;
   return p;
 }
 
 Prop make_arch(Workshop& shop, const Opening& opening, double wall) {
   Prop p;
-  add_frame(shop, opening, float(wall), &p.body());
+  add_door_frame(shop, opening, float(wall), &p.body());
   p.body().mass = 10;
   return p;
 }

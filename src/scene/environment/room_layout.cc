@@ -12,8 +12,6 @@ constexpr double kLowEnough = 0.03;  // what is lower is walked over: rugs [m]
 constexpr double kOverhead = 1.9;    // what hangs higher is walked under
 constexpr double kStep = 0.05;       // of the search
 
-constexpr Side kSides[] = {Side::kWest, Side::kEast, Side::kSouth, Side::kNorth};
-
 double along(Side side, const Spot& spot) { return runs_along_x(side) ? spot.x : spot.y; }
 
 // A rectangle before the wall of a side: from … to along it, `depth` into the room.

@@ -5,8 +5,6 @@
 namespace gloam {
 namespace {
 
-constexpr Side kSides[] = {Side::kWest, Side::kEast, Side::kSouth, Side::kNorth};
-
 // A rectangle of a wall: along it and upwards [m].
 struct WallPiece {
   double from, to, low, high;

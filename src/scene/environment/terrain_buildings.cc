@@ -9,7 +9,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kBay = 2.5, kInside = 0.6;                   // of the fence; from the border [m]
+constexpr double kFenceBay = 2.5, kInside = 0.6;              // of the fence; from the border [m]
 constexpr float kEaves = 2.5f, kRidge = 3.7f, kDoor = 0.95f;  // barn: heights, half a door [m]
 
 // One wall of boards along y at x = 0, its lower corners at y0 and y1; outside is +x.
@@ -116,7 +116,7 @@ void add_fence(const Landscape& land, uint64_t seed, Workshop* shop, Place* plac
   for (size_t side = 0; side < 4; ++side) {
     const Vec2f from = corners[side], to = corners[side + 1];
     const double length = std::hypot(to.x - from.x, to.y - from.y);
-    const int bays = std::max(1, static_cast<int>(std::lround(length / kBay)));
+    const int bays = std::max(1, static_cast<int>(std::lround(length / kFenceBay)));
     for (int i = 0; i < bays; ++i) {
       const auto point = [&](int k) {
         const float t = float(k) / float(bays);

@@ -14,8 +14,8 @@
 namespace gloam {
 namespace {
 
-constexpr double kPatch = 1.5;  // of grass, square [m]
-constexpr int kShapes = 3;
+constexpr double kGrassPatch = 1.5;  // of grass, square [m]
+constexpr int kGrassShapes = 3;
 constexpr size_t kMostPatches = 2600;
 
 int make(Place* place, const char* kind, uint64_t seed, Vec3 size) {
@@ -160,19 +160,20 @@ void add_grass(const Landscape& land, const TerrainOptions& o, Workshop* shop, P
       shop->blades("grass_dry", {0.145, 0.125, 0.052}, {0.090, 0.070, 0.032}),
       shop->blades("grass", {0.075, 0.092, 0.026}, {0.105, 0.098, 0.040}),
       shop->blades("grass_lush", {0.048, 0.076, 0.018}, {0.066, 0.080, 0.026})};
-  std::array<int, 3 * kShapes> props{};
+  std::array<int, 3 * kGrassShapes> props{};
   for (size_t i = 0; i < props.size(); ++i) {
-    const double high = (0.10 + 0.22 * o.grass) * (0.7 + 0.3 * static_cast<double>(i % kShapes));
+    const double high =
+        (0.10 + 0.22 * o.grass) * (0.7 + 0.3 * static_cast<double>(i % kGrassShapes));
     Prop p;
     p.label = "grass";
-    const int count = static_cast<int>((900 + 3600 * o.grass) * (i % kShapes == 0 ? 0.6 : 1));
-    p.body().show("blades", looks[i / kShapes],
-                  blades({.high = high, .square = kPatch, .count = count}, &dice));
+    const int count = static_cast<int>((900 + 3600 * o.grass) * (i % kGrassShapes == 0 ? 0.6 : 1));
+    p.body().show("blades", looks[i / kGrassShapes],
+                  blades({.high = high, .square = kGrassPatch, .count = count}, &dice));
     props[i] = place->add(std::move(p));
   }
-  std::array<std::vector<Pose>, 3 * kShapes> poses;
+  std::array<std::vector<Pose>, 3 * kGrassShapes> poses;
   const Rect all = land.area().grown(9);
-  const double pitch = std::max(kPatch, std::sqrt(all.area() / double(kMostPatches)));
+  const double pitch = std::max(kGrassPatch, std::sqrt(all.area() / double(kMostPatches)));
   for (double y = all.y0; y < all.y1; y += pitch)
     for (double x = all.x0; x < all.x1; x += pitch) {
       const double px = x + dice.uniform(0, 0.4), py = y + dice.uniform(0, 0.4);
@@ -186,7 +187,7 @@ void add_grass(const Landscape& land, const TerrainOptions& o, Workshop* shop, P
       if (bare) continue;
       const size_t tint = wet < -0.14 ? 0 : wet < 0.16 ? 1 : 2;
       const size_t kind = road < 2 || wet < -0.3 ? 0 : size_t(1 + shape);
-      poses[tint * kShapes + kind].push_back(on_ground(land, px, py, turned));
+      poses[tint * kGrassShapes + kind].push_back(on_ground(land, px, py, turned));
     }
   for (size_t i = 0; i < props.size(); ++i)
     if (!poses[i].empty())

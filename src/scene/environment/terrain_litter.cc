@@ -9,16 +9,16 @@
 namespace gloam {
 namespace {
 
-constexpr double kPatch = 1.2;  // of pebbles, square [m]
-constexpr int kShapes = 3;
+constexpr double kPebblePatch = 1.2;  // of pebbles, square [m]
+constexpr int kPebbleShapes = 3;
 
 // Stones of 1 to 5 cm, half in the ground: a foot, a shoulder and a top each.
 Solid pebbles(int count, Dice* dice) {
   constexpr uint32_t kAround = 7;
   TriangleMesh mesh;
   for (int i = 0; i < count; ++i) {
-    const float x = float(dice->uniform(-0.5, 0.5) * kPatch),
-                y = float(dice->uniform(-0.5, 0.5) * kPatch);
+    const float x = float(dice->uniform(-0.5, 0.5) * kPebblePatch),
+                y = float(dice->uniform(-0.5, 0.5) * kPebblePatch);
     const float r = 0.006f + 0.02f * float(std::pow(dice->uniform(), 3)),
                 high = r * float(dice->uniform(0.5, 0.9)), turned = float(dice->uniform(0, kPi));
     const float narrow = float(dice->uniform(0.6, 1));
@@ -58,10 +58,10 @@ class Litter {
 
  private:
   void add_pebbles() {
-    std::vector<Pose> poses[kShapes];
+    std::vector<Pose> poses[kPebbleShapes];
     const auto lay = [&](double x, double y) {
       const double turned = dice_.uniform(0, 2 * M_PI);
-      const int shape = dice_.integer(0, kShapes - 1);
+      const int shape = dice_.integer(0, kPebbleShapes - 1);
       poses[shape].push_back(on_ground(land_, x, y, turned));
     };
     const Rect area = land_.area().grown(-0.6);
@@ -81,7 +81,7 @@ class Litter {
       }
     }
     const std::string stone = shop_->bedrock();
-    for (int i = 0; i < kShapes; ++i)
+    for (int i = 0; i < kPebbleShapes; ++i)
       scatter("pebbles", stone, pebbles(static_cast<int>(30 + 60 * o_.rocks), &dice_),
               std::move(poses[i]));
   }
@@ -89,12 +89,12 @@ class Litter {
   // In thickets that leave bays of open water.
   void add_reeds() {
     const Pond& pond = *land_.pond();
-    std::vector<Pose> poses[kShapes];
+    std::vector<Pose> poses[kPebbleShapes];
     const int count = static_cast<int>(2 * M_PI * pond.radius / 0.35);
     for (int k = 0; k < count; ++k) {
       const double a = 2 * M_PI * k / count, share = dice_.uniform(0.82, 1.04),
                    turned = dice_.uniform(0, 2 * M_PI);
-      const int shape = dice_.integer(0, kShapes - 1);
+      const int shape = dice_.integer(0, kPebbleShapes - 1);
       const Vec2f at = shore(pond, a, share);
       if (land_.ragged(at.x / 4, at.y / 4) < 0.02) continue;
       poses[shape].push_back({{at.x, at.y, land_.height(at.x, at.y)}, turn({0, 0, 1}, turned)});

@@ -14,7 +14,7 @@ namespace gloam {
 namespace {
 
 constexpr double kWalk = 0.9, kKerb = 0.15;  // width and height of the walkways [m]
-constexpr double kStep = 1, kFacet = 4;      // along the path: of meshes, of colliders [m]
+constexpr double kMeshStep = 1, kFacet = 4;  // along the path: of meshes, of colliders [m]
 constexpr int kArch = 32, kArchFacets = 12;  // facets of the arch: of meshes, of colliders
 constexpr double kOpen = 25;                 // road outside each portal [m]
 constexpr double kStation = 40;              // between emergency stations [m]
@@ -55,17 +55,17 @@ class TunnelBuilder {
     const double bend = dice_.uniform(0.5, 1) / o_.curve * (dice_.chance(0.5) ? 1 : -1);
     const double wave = dice_.uniform(0.7, 1.4) * 2 * M_PI / std::max(o_.length, 120.0);
     const double origin = o_.length / 4;
-    const int before = static_cast<int>(std::ceil((origin + kOpen) / kStep));
-    const int after = static_cast<int>(std::ceil((o_.length - origin + kOpen) / kStep));
+    const int before = static_cast<int>(std::ceil((origin + kOpen) / kMeshStep));
+    const int after = static_cast<int>(std::ceil((o_.length - origin + kOpen) / kMeshStep));
     std::vector<Station> back;
     for (const int direction : {-1, 1}) {
       double x = 0, y = 0, heading = 0;
       for (int i = 0; i <= (direction < 0 ? before : after); ++i) {
-        const double s = direction * i * kStep;
+        const double s = direction * i * kMeshStep;
         (direction < 0 ? back : path_).push_back({origin + s, x, y, heading});
-        const double turn = bend * std::cos(wave * s) * kStep * direction;
-        x += direction * kStep * std::cos(heading + turn / 2);
-        y += direction * kStep * std::sin(heading + turn / 2);
+        const double turn = bend * std::cos(wave * s) * kMeshStep * direction;
+        x += direction * kMeshStep * std::cos(heading + turn / 2);
+        y += direction * kMeshStep * std::sin(heading + turn / 2);
         heading += turn;
       }
     }
@@ -73,8 +73,8 @@ class TunnelBuilder {
   }
 
   Station at(double s) const {
-    const double t =
-        std::clamp((s - path_.front().s) / kStep, 0.0, static_cast<double>(path_.size()) - 1.001);
+    const double t = std::clamp((s - path_.front().s) / kMeshStep, 0.0,
+                                static_cast<double>(path_.size()) - 1.001);
     const auto i = static_cast<size_t>(t);
     const double f = t - static_cast<double>(i);
     const Station &a = path_[i], &b = path_[i + 1];
@@ -93,7 +93,7 @@ class TunnelBuilder {
   }
   std::vector<Station> within(double from, double to) const {
     std::vector<Station> list;
-    const int count = std::max(1, static_cast<int>(std::ceil((to - from) / kStep)));
+    const int count = std::max(1, static_cast<int>(std::ceil((to - from) / kMeshStep)));
     for (int i = 0; i <= count; ++i) list.push_back(at(from + (to - from) * i / count));
     return list;
   }

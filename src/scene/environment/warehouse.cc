@@ -17,7 +17,7 @@ namespace {
 constexpr double kStaging = 6, kCross = 3.2;    // depth of the zone before the docks, of the aisle
 constexpr double kRackDepth = 1.1, kBay = 2.8;  // [m]
 constexpr double kBackGap = 0.25;               // between racks back to back
-constexpr double kWallGap = 0.32;               // behind racks at a wall: columns
+constexpr double kRackToWall = 0.32;            // behind racks at a wall: columns
 constexpr double kEnd = 1.6;                    // way around the far end of the racks
 constexpr double kPalletPitch = 0.9;
 constexpr double kDockWidth = 3.0, kDockHeight = 3.2;
@@ -39,18 +39,18 @@ class WarehouseBuilder {
 
   Result<Place> build() {
     const double needed = o_.aisle + 2 * kRackDepth + kBackGap;
-    const double rows = (o_.width - 2 * kWallGap + kBackGap) / needed;
+    const double rows = (o_.width - 2 * kRackToWall + kBackGap) / needed;
     if (rows < 1)
       return Error{
           ErrorKind::kInput,
           fmt::format("a warehouse {} m wide has no room for racks beside an aisle of {} m",
                       o_.width, o_.aisle),
           {},
-          fmt::format("make it at least {:.1f} m wide", needed - kBackGap + 2 * kWallGap)};
+          fmt::format("make it at least {:.1f} m wide", needed - kBackGap + 2 * kRackToWall)};
     aisles_ = static_cast<int>(rows);
     // What the rows leave over makes the aisles wider.
     const double racks = aisles_ * 2 * kRackDepth + (aisles_ - 1) * kBackGap;
-    aisle_ = (o_.width - racks - 2 * kWallGap) / aisles_;
+    aisle_ = (o_.width - racks - 2 * kRackToWall) / aisles_;
     bays_ = static_cast<int>((east_ - kEnd - kCross / 2) / kBay);
     place_.style.wood = "pine";
     Workshop shop({"warehouse", o_.seed}, place_.style, &place_.materials);
@@ -181,7 +181,7 @@ class WarehouseBuilder {
   // Rows of racks: y of their middle, and whether their front looks north.
   std::vector<std::pair<double, bool>> rack_rows() const {
     std::vector<std::pair<double, bool>> rows;
-    double y = south_ + kWallGap;
+    double y = south_ + kRackToWall;
     for (int i = 0; i < aisles_; ++i) {
       rows.emplace_back(y + kRackDepth / 2, true);
       y += kRackDepth + aisle_;
@@ -239,7 +239,8 @@ class WarehouseBuilder {
   }
 
   double aisle_y(int i) const {
-    return south_ + kWallGap + kRackDepth + aisle_ / 2 + i * (aisle_ + 2 * kRackDepth + kBackGap);
+    return south_ + kRackToWall + kRackDepth + aisle_ / 2 +
+           i * (aisle_ + 2 * kRackDepth + kBackGap);
   }
   double racks_end() const { return kCross / 2 + 0.3 + bays_ * kBay; }
 

@@ -76,14 +76,19 @@ Readings read_values(const MjcfElement& element, const MjcfAttribute& attribute,
   return readings;
 }
 
+}  // namespace
+
 // One object of the specimen as the value asked for makes it, and as other values do.
-struct Example {
+struct AttributeExample {
   SpecObject wanted;
   std::vector<SpecObject> others;
 };
 
-std::vector<Example> examples_of(const MjcfElement& element, const std::vector<OwnedSpec>& specs) {
-  std::vector<Example> examples;
+namespace {
+
+std::vector<AttributeExample> examples_of(const MjcfElement& element,
+                                          const std::vector<OwnedSpec>& specs) {
+  std::vector<AttributeExample> examples;
   for (const OwnedSpec& spec : specs) {
     const std::vector<SpecObject> objects =
         objects_of(spec.get(), specimen_of(spec.get(), element));
@@ -184,7 +189,7 @@ struct AttributeValue::Learned {
   const MjcfAttribute* attribute;
   std::string value;
   std::vector<OwnedSpec> specs;  // they own what `objects` points at
-  std::vector<Example> objects;
+  std::vector<AttributeExample> objects;
 };
 
 AttributeValue::AttributeValue(std::unique_ptr<Learned> learned) : learned_(std::move(learned)) {}
@@ -196,7 +201,7 @@ Result<AttributeValue> AttributeValue::read(const MjcfElement& element,
                                             const std::string& value) {
   Readings readings = read_values(element, attribute, &value);
   if (!readings.refused.ok()) return readings.refused.error();
-  std::vector<Example> objects = examples_of(element, readings.specs);
+  std::vector<AttributeExample> objects = examples_of(element, readings.specs);
   return AttributeValue(std::make_unique<Learned>(
       Learned{&element, &attribute, value, std::move(readings.specs), std::move(objects)}));
 }

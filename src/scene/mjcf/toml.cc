@@ -41,9 +41,9 @@ struct Below {
   const toml::table* table;
 };
 
-class Reader {
+class TomlReader {
  public:
-  explicit Reader(const std::string& file) : file_(file) {}
+  explicit TomlReader(const std::string& file) : file_(file) {}
 
   Status read(const toml::table& from, Node* to, int depth) const {
     if (depth > kDeepestXml)
@@ -152,7 +152,7 @@ void write_comment(const std::string& comment, std::string* out) {
   }
 }
 
-void write(const Node& node, const std::string& path, bool is_list, std::string* out) {
+void write_node(const Node& node, const std::string& path, bool is_list, std::string* out) {
   *out += '\n';
   write_comment(node.comment, out);
   *out += is_list ? fmt::format("[[{}]]\n", path) : fmt::format("[{}]\n", path);
@@ -165,7 +165,7 @@ void write(const Node& node, const std::string& path, bool is_list, std::string*
     // <asset>, <option> … may stand twice and hardly ever do.
     const bool is_section = node.parent == nullptr && is_alone;
     const bool may_repeat = child->element->times == '*' || child->element->times == 'R';
-    write(*child, fmt::format("{}.{}", path, child->tag()), may_repeat && !is_section, out);
+    write_node(*child, fmt::format("{}.{}", path, child->tag()), may_repeat && !is_section, out);
   }
   write_comment(node.last_comment, out);
 }
@@ -186,12 +186,12 @@ Status read_toml(std::string_view text, const std::string& file, Node* root) {
                    loc_of(node, file), "a model in TOML is all below [mujoco]"};
   }
   root->loc = loc_of(*top, file);
-  return Reader(file).read(*top, root, 1);
+  return TomlReader(file).read(*top, root, 1);
 }
 
 std::string write_toml(const Node& root) {
   std::string text;
-  write(root, "mujoco", false, &text);
+  write_node(root, "mujoco", false, &text);
   return text.substr(1);
 }
 

@@ -8,9 +8,9 @@
 namespace gloam::mjcf {
 namespace {
 
-class Reader {
+class XmlReader {
  public:
-  Reader(std::string_view text, const std::string& file) : file_(file), lines_(text) {}
+  XmlReader(std::string_view text, const std::string& file) : file_(file), lines_(text) {}
 
   SourceLoc loc(const pugi::xml_node& node) const {
     return {file_, lines_.at(node.offset_debug()), 0};
@@ -55,7 +55,7 @@ class Reader {
   XmlLines lines_;
 };
 
-void write(const Node& from, pugi::xml_node above) {
+void write_element(const Node& from, pugi::xml_node above) {
   if (!from.comment.empty()) above.append_child(pugi::node_comment).set_value(from.comment.c_str());
   pugi::xml_node to = above.append_child(std::string(from.tag()).c_str());
   for (const auto& [attribute, value] : from.values) {
@@ -63,7 +63,7 @@ void write(const Node& from, pugi::xml_node above) {
       to.append_attribute(std::string(attribute->name).c_str()) = value.c_str();
   }
   if (!from.content.empty()) to.append_child(pugi::node_cdata).set_value(from.content.c_str());
-  for (const std::shared_ptr<Node>& child : from.children) write(*child, to);
+  for (const std::shared_ptr<Node>& child : from.children) write_element(*child, to);
   if (!from.last_comment.empty())
     to.append_child(pugi::node_comment).set_value(from.last_comment.c_str());
 }
@@ -80,7 +80,7 @@ struct StringWriter : pugi::xml_writer {
 Status read_xml(std::string_view text, const std::string& file, Node* root) {
   pugi::xml_document document;
   GLOAM_TRY_STATUS(parse_xml(text, file, pugi::parse_default | pugi::parse_comments, &document));
-  const Reader reader(text, file);
+  const XmlReader reader(text, file);
   const pugi::xml_node top = document.document_element();
   if (root->element->name != top.name())
     return Error{ErrorKind::kInput,
@@ -93,7 +93,7 @@ Status read_xml(std::string_view text, const std::string& file, Node* root) {
 
 std::string write_xml(const Node& root) {
   pugi::xml_document document;
-  write(root, document);
+  write_element(root, document);
   StringWriter out;
   document.save(out, "  ", pugi::format_default | pugi::format_no_declaration, pugi::encoding_utf8);
   return out.text;

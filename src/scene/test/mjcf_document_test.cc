@@ -15,7 +15,7 @@ namespace gloam::mjcf {
 namespace {
 
 /// A value that the attribute takes.
-std::string value_for(const MjcfAttribute& attribute) {
+std::string awkward_value_for(const MjcfAttribute& attribute) {
   switch (attribute.type) {
     case MjcfType::kString:
       return "some \"text\" & <more>";
@@ -35,7 +35,7 @@ std::string value_for(const MjcfAttribute& attribute) {
 }
 
 /// An element of this path in a fresh document.
-Element place(const Document& document, const MjcfElement& element) {
+Element placed(const Document& document, const MjcfElement& element) {
   std::vector<const MjcfElement*> line;
   for (const MjcfElement* e = &element; e->parent != nullptr; e = e->parent) line.push_back(e);
   Element at = document.root();
@@ -48,9 +48,9 @@ TEST(MjcfDocument, EveryAttributeComesBackFromXmlAndFromToml) {
   int count = 0;
   for (const MjcfElement& element : MjcfSchema::get().elements()) {
     Document document = Document::make("m");
-    Element at = place(document, element);
+    Element at = placed(document, element);
     for (const MjcfAttribute& attribute : element.attributes) {
-      const Status set = at.set(attribute.name, value_for(attribute));
+      const Status set = at.set(attribute.name, awkward_value_for(attribute));
       ASSERT_TRUE(set.ok()) << set.error().to_string();
     }
     const Result<Document> xml = Document::from_xml(document.to_xml(), "written.xml");
@@ -65,7 +65,7 @@ TEST(MjcfDocument, EveryAttributeComesBackFromXmlAndFromToml) {
       ASSERT_EQ(same.path(), element.path);
       for (const MjcfAttribute& attribute : element.attributes) {
         const std::string wanted =
-            is_xml && attribute.is_spec_only() ? "nothing" : value_for(attribute);
+            is_xml && attribute.is_spec_only() ? "nothing" : awkward_value_for(attribute);
         EXPECT_EQ(same.get(attribute.name)->value_or("nothing"), wanted)
             << element.path << " " << attribute.name;
         count += attribute.is_spec_only() || is_xml ? 0 : 1;

@@ -11,9 +11,10 @@
 namespace gloam {
 namespace {
 
-class Reader {
+class OverrideReader {
  public:
-  Reader(const std::string& file, std::vector<OverrideOptions>* out) : file_(file), out_(out) {}
+  OverrideReader(const std::string& file, std::vector<OverrideOptions>* out)
+      : file_(file), out_(out) {}
 
   Status read_robot(const std::string& robot, const toml::node& node, const SourceLoc& loc) {
     const toml::table* table = node.as_table();
@@ -78,7 +79,7 @@ class Reader {
 Status read_overrides(const toml::table& table, const std::string& file,
                       std::vector<OverrideOptions>* overrides) {
   std::vector<OverrideOptions> read;
-  Reader reader(file, &read);
+  OverrideReader reader(file, &read);
   for (const auto& [robot, node] : table)
     GLOAM_TRY_STATUS(reader.read_robot(std::string(robot.str()), node, loc_of(robot, file)));
   // toml++ sorts keys.

@@ -12,13 +12,15 @@
 namespace gloam {
 namespace {
 
-constexpr int kWidth = 400, kHeight = 300;
-constexpr size_t kPixels = size_t{kWidth} * kHeight;
+constexpr int kImagerWidth = 400, kImagerHeight = 300;
+constexpr size_t kImagerPixels = size_t{kImagerWidth} * kImagerHeight;
 
-Intrinsics intrinsics() { return {kWidth, kHeight, 250, 250, kWidth / 2.0, kHeight / 2.0}; }
+Intrinsics imager_intrinsics() {
+  return {kImagerWidth, kImagerHeight, 250, 250, kImagerWidth / 2.0, kImagerHeight / 2.0};
+}
 
 std::vector<Vec3f> even(float r, float g, float b) {
-  return std::vector<Vec3f>(kPixels, {r, g, b});
+  return std::vector<Vec3f>(kImagerPixels, {r, g, b});
 }
 
 const Exposure kDay{4, 0.005, 200};
@@ -33,7 +35,7 @@ ImagerOptions plain() {
 
 std::vector<double> raw_of(const ImagerOptions& options, const std::vector<Vec3f>& light,
                            int64_t frame = 0, const Exposure& exposure = kDay, uint64_t seed = 3) {
-  Imager imager(options, intrinsics(), seed);
+  Imager imager(options, imager_intrinsics(), seed);
   std::vector<uint16_t> raw;
   imager.develop(light, exposure, frame, nullptr, &raw);
   return {raw.begin(), raw.end()};
@@ -109,8 +111,8 @@ TEST(Vignetting, IsTheFourthPowerOfTheCosineOfTheLenssRay) {
 }
 
 TEST(Vignetting, OfAPinholeIsThatOfItsTangent) {
-  const Intrinsics k = intrinsics();
-  const auto at = [](int x, int y) { return static_cast<size_t>(y * kWidth + x); };
+  const Intrinsics k = imager_intrinsics();
+  const auto at = [](int x, int y) { return static_cast<size_t>(y * kImagerWidth + x); };
   const std::vector<float> cos4 = vignetting({.cos4 = true}, k);
   for (const auto& [x, y] : {std::pair{0, 0}, {200, 150}, {399, 20}}) {
     const double a = (x + 0.5 - k.cx) / k.fx, b = (y + 0.5 - k.cy) / k.fy;
@@ -217,15 +219,16 @@ TEST(Imager, TheFixedPatternIsThePixelsOwn) {
 }
 
 TEST(Imager, WithNothingOnItsPictureIsTheToneMaps) {
-  std::vector<Vec3f> light(kPixels);
-  for (size_t i = 0; i < kPixels; ++i) {
-    const auto x = static_cast<float>(i % kWidth), y = static_cast<float>(i) / kWidth;
+  std::vector<Vec3f> light(kImagerPixels);
+  for (size_t i = 0; i < kImagerPixels; ++i) {
+    const auto x = static_cast<float>(i % kImagerWidth), y = static_cast<float>(i) / kImagerWidth;
     light[i] = {x * 9, y * 12, 700 + x};
   }
-  Imager imager({}, intrinsics(), 1);
+  Imager imager({}, imager_intrinsics(), 1);
   std::vector<uint8_t> rgb, plain_rgb;
   imager.develop(light, kDay, 0, &rgb, nullptr);
-  tone_map(light, kWidth, kHeight, {.ev100 = static_cast<float>(kDay.ev100())}, &plain_rgb);
+  tone_map(light, kImagerWidth, kImagerHeight, {.ev100 = static_cast<float>(kDay.ev100())},
+           &plain_rgb);
   ASSERT_EQ(rgb.size(), plain_rgb.size());
   int largest = 0;
   for (size_t i = 0; i < rgb.size(); ++i)
@@ -283,14 +286,14 @@ TEST(Imager, AMosaicOfAnEvenGreyStaysGreyAndWhiteBalanceIsNeutral) {
   options.mosaic = "gbrg";
   options.pixel = PixelOptions{.full_well = 1e6, .bits = 14};
   options.white_balance = {2.1, 1, 1.6};
-  Imager imager(options, intrinsics(), 1);
+  Imager imager(options, imager_intrinsics(), 1);
   std::vector<uint8_t> rgb;
   std::vector<uint16_t> raw;
   imager.develop(even(900, 900, 900), kDay, 0, &rgb, &raw);
-  EXPECT_EQ(raw.size(), kPixels);
-  EXPECT_NEAR(raw[0] / 2.1, raw[kWidth] / 1.0, 1) << "red has less than half";
+  EXPECT_EQ(raw.size(), kImagerPixels);
+  EXPECT_NEAR(raw[0] / 2.1, raw[kImagerWidth] / 1.0, 1) << "red has less than half";
   int largest = 0;
-  for (size_t i = 0; i < kPixels; ++i) {
+  for (size_t i = 0; i < kImagerPixels; ++i) {
     const auto [low, high] = std::minmax({rgb[3 * i], rgb[3 * i + 1], rgb[3 * i + 2]});
     largest = std::max(largest, high - low);
   }
@@ -298,20 +301,20 @@ TEST(Imager, AMosaicOfAnEvenGreyStaysGreyAndWhiteBalanceIsNeutral) {
   imager.develop(even(1e6f, 1e6f, 1e6f), kDay, 0, &rgb, nullptr);
   EXPECT_EQ(rgb[0], rgb[1]) << "what is full is white, not pink";
   options.pixel->full_well = 2000;  // full below the top of the scale
-  Imager shallow(options, intrinsics(), 1);
+  Imager shallow(options, imager_intrinsics(), 1);
   shallow.develop(even(1e6f, 1e6f, 1e6f), kDay, 0, &rgb, nullptr);
   EXPECT_NEAR(rgb[0], rgb[1], 1);
   EXPECT_NEAR(rgb[2], rgb[1], 1);
 }
 
 TEST(Imager, CompressesAndCuts) {
-  std::vector<Vec3f> light(kPixels);
-  for (size_t i = 0; i < kPixels; ++i) {
-    const auto x = static_cast<float>(i % kWidth);
+  std::vector<Vec3f> light(kImagerPixels);
+  for (size_t i = 0; i < kImagerPixels; ++i) {
+    const auto x = static_cast<float>(i % kImagerWidth);
     light[i] = {300 + 200 * std::sin(x / 9), 2 * x, 400 + 300 * std::cos(x / 23)};
   }
   const auto picture = [&](const ImagerOptions& options) {
-    Imager imager(options, intrinsics(), 1);
+    Imager imager(options, imager_intrinsics(), 1);
     std::vector<uint8_t> rgb;
     imager.develop(light, kDay, 0, &rgb, nullptr);
     return rgb;

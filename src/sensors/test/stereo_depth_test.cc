@@ -10,17 +10,19 @@
 namespace gloam {
 namespace {
 
-constexpr int kWidth = 500, kHeight = 240;
-constexpr size_t kPixels = size_t{kWidth} * kHeight;
+constexpr int kStereoWidth = 500, kStereoHeight = 240;
+constexpr size_t kStereoPixels = size_t{kStereoWidth} * kStereoHeight;
 
-Intrinsics intrinsics() { return {kWidth, kHeight, 400, 400, kWidth / 2.0, kHeight / 2.0}; }
+Intrinsics stereo_intrinsics() {
+  return {kStereoWidth, kStereoHeight, 400, 400, kStereoWidth / 2.0, kStereoHeight / 2.0};
+}
 
-std::vector<float> wall(float depth) { return std::vector<float>(kPixels, depth); }
+std::vector<float> wall(float depth) { return std::vector<float>(kStereoPixels, depth); }
 
 std::vector<float> measure(const StereoDepthModel& model, const std::vector<float>& depth,
                            const std::vector<float>& signal = {}, int64_t frame = 0,
                            uint64_t seed = 5) {
-  return measure_stereo_depth(model, intrinsics(), depth, signal, seed, frame);
+  return measure_stereo_depth(model, stereo_intrinsics(), depth, signal, seed, frame);
 }
 
 TEST(StereoDepth, WithNothingOnItIsTheTruth) {
@@ -69,7 +71,8 @@ TEST(StereoDepth, EndsAtItsRanges) {
 // A box 1 m away before a wall at 2 m: disparities 20 and 10 px.
 std::vector<float> box() {
   std::vector<float> depth = wall(2);
-  for (int y = 0; y < kHeight; ++y) std::fill_n(depth.begin() + y * kWidth + 200, 100, 1.0f);
+  for (int y = 0; y < kStereoHeight; ++y)
+    std::fill_n(depth.begin() + y * kStereoWidth + 200, 100, 1.0f);
   return depth;
 }
 
@@ -77,8 +80,8 @@ TEST(StereoDepth, HidesWhatTheSecondEyeDoesNotSee) {
   const auto lost_columns = [](double baseline) {
     const auto out = measure({.baseline = baseline, .occlusion = true}, box());
     std::vector<int> columns;
-    for (int x = 0; x < kWidth; ++x) {
-      if (out[static_cast<size_t>(100 * kWidth + x)] == 0) columns.push_back(x);
+    for (int x = 0; x < kStereoWidth; ++x) {
+      if (out[static_cast<size_t>(100 * kStereoWidth + x)] == 0) columns.push_back(x);
     }
     return columns;
   };
@@ -95,11 +98,11 @@ TEST(StereoDepth, HidesWhatTheSecondEyeDoesNotSee) {
 }
 
 TEST(StereoDepth, ASlantedWallHidesNothingOfItself) {
-  std::vector<float> depth(kPixels);
-  for (size_t i = 0; i < kPixels; ++i)
-    depth[i] = 1 / (0.4f + 0.001f * static_cast<float>(i % kWidth));
+  std::vector<float> depth(kStereoPixels);
+  for (size_t i = 0; i < kStereoPixels; ++i)
+    depth[i] = 1 / (0.4f + 0.001f * static_cast<float>(i % kStereoWidth));
   const auto out = measure({.baseline = 0.05, .occlusion = true}, depth);
-  for (size_t x = 20; x < kWidth; ++x) EXPECT_GT(out[100 * kWidth + x], 0) << x;
+  for (size_t x = 20; x < kStereoWidth; ++x) EXPECT_GT(out[100 * kStereoWidth + x], 0) << x;
 }
 
 TEST(StereoDepth, LosesTheEdges) {
@@ -107,7 +110,7 @@ TEST(StereoDepth, LosesTheEdges) {
     const auto out = measure({.baseline = 0.05, .edge_loss = reach}, box());
     for (int x = 150; x < 350; ++x) {
       const int edge = std::min({std::abs(2 * x + 1 - 400), std::abs(2 * x + 1 - 600)});
-      EXPECT_EQ(out[static_cast<size_t>(100 * kWidth + x)] == 0, edge < 2 * reach) << x;
+      EXPECT_EQ(out[static_cast<size_t>(100 * kStereoWidth + x)] == 0, edge < 2 * reach) << x;
     }
   }
 }
@@ -115,12 +118,12 @@ TEST(StereoDepth, LosesTheEdges) {
 TEST(StereoDepth, WeakSignalsAreLostByChance) {
   const StereoDepthModel model{.baseline = 0.05, .half_signal = 0.01};
   for (const float signal : {0.002f, 0.01f, 0.03f, 1.0f}) {
-    const auto out = measure(model, wall(1), std::vector<float>(kPixels, signal));
+    const auto out = measure(model, wall(1), std::vector<float>(kStereoPixels, signal));
     const double kept =
         static_cast<double>(std::count_if(out.begin(), out.end(), [](float z) { return z > 0; })) /
-        kPixels;
+        kStereoPixels;
     const double s = double{signal} / 0.01, p = s * s / (1 + s * s);
-    expect_within(kept, p, std::sqrt(p * (1 - p) / kPixels), "kept");
+    expect_within(kept, p, std::sqrt(p * (1 - p) / kStereoPixels), "kept");
   }
   for (const float z : measure(model, wall(1), wall(0))) EXPECT_EQ(z, 0) << "black";
 }
@@ -152,7 +155,7 @@ TEST(StereoDepth, DrawsAreKeyedAndThreadsDoNotMatter) {
   StereoDepthOptions options;
   options.preset = "d435";
   const StereoDepthModel model = stereo_depth_model(options);
-  const std::vector<float> signal(kPixels, 0.01f);
+  const std::vector<float> signal(kStereoPixels, 0.01f);
   const auto reference = measure(model, box(), signal);
   for (const int threads : {1, 3}) {
     set_thread_count(threads);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/angle.h"
 #include "base/rng.h"
 #include "world/air.h"
 #include "world/air_profile.h"
@@ -12,7 +13,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kDegree = M_PI / 180, kAlbedo = 0.2, kAsymmetry = 0.7, kAerosolAlbedo = 0.95;
+constexpr double kAlbedo = 0.2, kAsymmetry = 0.7, kAerosolAlbedo = 0.95;
 
 struct Vec {
   double x, y, z;

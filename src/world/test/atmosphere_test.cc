@@ -1,6 +1,7 @@
 // The clear sky and the sun against measured and published figures.
 
 #include "world/atmosphere.h"
+#include "base/angle.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,8 +16,6 @@
 
 namespace gloam {
 namespace {
-
-constexpr double kDegree = M_PI / 180;
 
 AtmosphereOptions sun_at(double elevation, double turbidity = 2, double azimuth = 0) {
   AtmosphereOptions options;

@@ -18,7 +18,7 @@ namespace {
 using ::testing::HasSubstr;
 using visual_test::expect_near;
 
-constexpr const char* kModel = R"(<mujoco><statistic center='0 0 0' extent='4'/><worldbody>
+constexpr const char* kLitModel = R"(<mujoco><statistic center='0 0 0' extent='4'/><worldbody>
   <body name="arm" pos="1 0 0"><joint/><geom size="1"/></body>
   <body name="wall" pos="0 2 0"><geom size="1"/></body></worldbody></mujoco>)";
 
@@ -29,7 +29,7 @@ constexpr const char* kBeam =
 
 class AuthoredLight : public ::testing::Test {
  protected:
-  AuthoredLight() : world_(visual_test::compile(kModel)) {}
+  AuthoredLight() : world_(visual_test::compile(kLitModel)) {}
 
   RenderDescription describe(std::vector<LightOptions> lights) {
     world_.scene.lights = std::move(lights);

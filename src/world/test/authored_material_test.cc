@@ -6,7 +6,7 @@
 namespace gloam {
 namespace {
 
-constexpr const char* kModel = R"(<mujoco><asset>
+constexpr const char* kPaintedModel = R"(<mujoco><asset>
   <material name="go/glass" roughness="0"/><material name="go/shell"/></asset><worldbody>
   <geom size="1" material="go/glass"/><geom size="1" material="go/shell"/></worldbody></mujoco>)";
 
@@ -26,7 +26,7 @@ MaterialOptions options(const std::string& name, double coat) {
 }
 
 TEST(AuthoredMaterial, ExactNamesBeatPatternsAndLaterTablesEarlierOnes) {
-  CompiledWorld world = visual_test::compile(kModel);
+  CompiledWorld world = visual_test::compile(kPaintedModel);
   world.scene.materials = {options("go/shell", 0.25), options("go/*", 0.5), options("*", 0.75)};
   const RenderDescription d = visual_test::describe(world);
   EXPECT_EQ(named(d, "go/shell").coat_weight, 0.25f);
@@ -34,7 +34,7 @@ TEST(AuthoredMaterial, ExactNamesBeatPatternsAndLaterTablesEarlierOnes) {
 }
 
 TEST(AuthoredMaterial, TakesGlassAndPatternsWithTheKindsOwnLook) {
-  CompiledWorld world = visual_test::compile(kModel);
+  CompiledWorld world = visual_test::compile(kPaintedModel);
   MaterialOptions glass = options("go/glass", 0);
   glass.ior = 1.33;
   glass.transmission_weight = 1;
@@ -55,7 +55,7 @@ TEST(AuthoredMaterial, TakesGlassAndPatternsWithTheKindsOwnLook) {
 }
 
 TEST(AuthoredMaterial, NamesWhatIsNotThere) {
-  CompiledWorld world = visual_test::compile(kModel);
+  CompiledWorld world = visual_test::compile(kPaintedModel);
   world.scene.materials = {options("go/glas", 1)};
   world.scene.materials[0].loc = {"scene.toml", 7, 1};
   const auto result = describe_for_rendering(world);

@@ -20,14 +20,14 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using visual_test::expect_near;
 
-constexpr const char* kModel =
+constexpr const char* kSkyModel =
     R"(<mujoco><visual><headlight ambient=".3 .3 .3" active="1"/></visual>
   <asset><texture type="skybox" builtin="gradient" width="16" height="16" rgb1="1 1 1"/></asset>
   <worldbody><geom size="1"/><light name="lamp" pos="0 0 3" ambient=".2 .2 .2"/></worldbody></mujoco>)";
 
 class AuthoredSky : public ::testing::Test {
  protected:
-  AuthoredSky() : world_(visual_test::compile(kModel)) {}
+  AuthoredSky() : world_(visual_test::compile(kSkyModel)) {}
 
   RenderDescription describe(SkyOptions sky) {
     world_.scene.sky = std::move(sky);

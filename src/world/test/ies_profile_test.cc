@@ -1,6 +1,7 @@
 // Photometric files: closed forms, symmetries, wrong and damaged files.
 
 #include "world/ies_profile.h"
+#include "base/angle.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -14,8 +15,6 @@
 
 namespace gloam {
 namespace {
-
-constexpr double kDegree = M_PI / 180;
 
 std::vector<double> range(double first, double last, double step) {
   std::vector<double> angles;

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::IsEmpty;
 
-constexpr const char* kModel =
+constexpr const char* kCachedModel =
     "<mujoco><asset><mesh name='m' file='m.obj'/></asset><worldbody><body><freejoint/>"
     "<geom type='mesh' mesh='m'/></body></worldbody></mujoco>";
 
@@ -31,7 +31,7 @@ class ModelCache : public ::testing::Test {
   ModelCache() {
     ::setenv("GLOAM_CACHE", (folder_.path() / "cache").c_str(), 1);
     folder_.write("m.obj", tetrahedron_obj());
-    folder_.write("m.xml", kModel);
+    folder_.write("m.xml", kCachedModel);
     scene_ = load_scene(folder_.path() / "m.xml").value();
   }
   // Small models are not worth caching to World::compile: store this one by hand.

@@ -10,16 +10,12 @@
 #include <set>
 
 #include "scene/spec_geom.h"
+#include "world/world.h"
 
 namespace gloam {
 namespace {
 
 constexpr double kStepHeight = 0.2, kProbeHeight = 0.6;  // [m]
-
-struct DataDeleter {
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
-using DataPtr = std::unique_ptr<mjData, DataDeleter>;
 
 std::string body_of(const mjModel& m, int geom) {
   const char* name = mj_id2name(&m, mjOBJ_BODY, m.geom_bodyid[geom]);

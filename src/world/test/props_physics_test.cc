@@ -17,8 +17,6 @@
 namespace gloam {
 namespace {
 
-using DataPtr = std::unique_ptr<mjData, void (*)(mjData*)>;
-
 class PropsPhysics : public ::testing::Test {
  protected:
   PropsPhysics() { ::setenv("GLOAM_CACHE", (folder_.path() / "cache").c_str(), 1); }
@@ -62,7 +60,7 @@ TEST_F(PropsPhysics, LooseOnesStandStillWhereTheyArePut) {
   const Result<World> world = compile([](const Prop& prop) { return prop.loose; }, true);
   ASSERT_TRUE(world.ok()) << world.error().to_string();
   const mjModel* model = world->compiled()->model.get();
-  const DataPtr data(mj_makeData(model), mj_deleteData);
+  const DataPtr data(mj_makeData(model));
   mj_forward(model, data.get());
   std::vector<double> start(data->xpos, data->xpos + 3 * model->nbody);
   std::map<std::string, double> deep;
@@ -90,7 +88,7 @@ TEST_F(PropsPhysics, LeavesMoveFreelyOverTheirWholeTravel) {
       compile([](const Prop& prop) { return prop.parts.size() > 1; }, false);
   ASSERT_TRUE(world.ok()) << world.error().to_string();
   const mjModel* model = world->compiled()->model.get();
-  const DataPtr data(mj_makeData(model), mj_deleteData);
+  const DataPtr data(mj_makeData(model));
   // All alike, then every other one, from shut to open.
   for (int pattern = 0; pattern < 3; ++pattern) {
     for (int step = 0; step <= 8; ++step) {

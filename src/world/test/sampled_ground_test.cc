@@ -21,7 +21,6 @@ namespace gloam {
 namespace {
 
 using ::testing::HasSubstr;
-using DataPtr = std::unique_ptr<mjData, void (*)(mjData*)>;
 
 double bumps(double x, double y) { return 0.4 * std::sin(1.3 * x) * std::cos(0.9 * y) + 0.1 * x; }
 
@@ -90,7 +89,7 @@ class SampledGrounds : public ::testing::Test {
     folder_.write("ball.xml", fmt::format(fmt::runtime(kBall), x, y, z, radius));
     const World& world = make("[environment]\nfile = \"ball.xml\"\n" + ground);
     const mjModel& m = *world.compiled()->model;
-    const DataPtr data(mj_makeData(&m), mj_deleteData);
+    const DataPtr data(mj_makeData(&m));
     while (data->time < 6) mj_step(&m, data.get());
     EXPECT_LT(mju_norm3(data->qvel), 0.01);
     return {data->qpos[0], data->qpos[1], data->qpos[2]};
@@ -101,7 +100,7 @@ class SampledGrounds : public ::testing::Test {
 
 /// Height that a ray straight down meets.
 double ray_down(const mjModel& m, double x, double y, double from = 50) {
-  const DataPtr data(mj_makeData(&m), mj_deleteData);
+  const DataPtr data(mj_makeData(&m));
   mj_forward(&m, data.get());
   const mjtNum start[3] = {x, y, from}, down[3] = {0, 0, -1};
   int geom = -1;
@@ -172,7 +171,7 @@ TEST_F(SampledGrounds, AreCutAsMuJoCoCutsThem) {
     const World& world = make("[environment]\nfile = \"ball.xml\"\n" + std::string(coarse));
     const mjModel& m = *world.compiled()->model;
     EXPECT_NEAR(ray_down(m, x, y, z + 0.005), z, 1e-6);
-    const DataPtr data(mj_makeData(&m), mj_deleteData);
+    const DataPtr data(mj_makeData(&m));
     mj_forward(&m, data.get());
     ASSERT_EQ(data->ncon, 1);
     // The ball's middle is 9 mm above the ground, less across a slope.

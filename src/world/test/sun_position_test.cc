@@ -1,6 +1,7 @@
 // The sun's place against an almanac.
 
 #include "world/sun_position.h"
+#include "base/angle.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,12 +12,10 @@
 namespace gloam {
 namespace {
 
-constexpr double kDegree = M_PI / 180;
-
 struct Reference {
   const char* name;
   CivilTime time;
-  Place place;
+  GeoPosition place;
   double azimuth, true_elevation, elevation;  // [degrees]
 };
 
@@ -37,7 +36,7 @@ const Reference kReferences[] = {
     {"Honolulu", {1955, 7, 16, 12, 28, 0, -10}, {21.3069, -157.8583}, 87.5811, 87.8215, 87.8221},
 };
 
-SunPosition sun_of(const CivilTime& time, const Place& place) {
+SunPosition sun_of(const CivilTime& time, const GeoPosition& place) {
   const Result<SunPosition> sun = sun_position(time, place);
   EXPECT_TRUE(sun.ok()) << sun.error().to_string();
   return sun.ok() ? *sun : SunPosition{};
@@ -115,7 +114,7 @@ TEST(SunPosition, MovesWithoutJumpsThroughSunset) {
 }
 
 TEST(SunPosition, WrongFieldsAreNamed) {
-  const auto message = [](const CivilTime& time, const Place& place) {
+  const auto message = [](const CivilTime& time, const GeoPosition& place) {
     const Result<SunPosition> sun = sun_position(time, place);
     return sun.ok() ? std::string() : sun.error().to_string();
   };

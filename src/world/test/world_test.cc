@@ -19,7 +19,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr const char* kArm = R"(<mujoco model="arm">
+constexpr const char* kWorldArm = R"(<mujoco model="arm">
   <compiler angle="degree" meshdir="meshes"/>
   <option timestep="0.001" cone="elliptic" impratio="10"/>
   <default><geom friction="0.5"/></default>
@@ -43,7 +43,7 @@ class WorldTest : public ::testing::Test {
   WorldTest() {
     ::setenv("GLOAM_CACHE", (folder_.path() / "cache").c_str(), 1);
     folder_.write("meshes/part.obj", tetrahedron_obj());
-    folder_.write("arm.xml", kArm);
+    folder_.write("arm.xml", kWorldArm);
   }
   Result<World> compile(const fs::path& file, const FileAccess& access = {}) {
     GLOAM_TRY(const Scene scene, load_scene(file, access));

@@ -8,10 +8,6 @@
 namespace gloam {
 namespace {
 
-constexpr Vec3 kBlack{0.105, 0.105, 0.107}, kSilver{0.70, 0.70, 0.71};
-
-std::string screen_glass(Workshop& shop) { return shop.plastic({0.012, 0.012, 0.014}, 0.07); }
-
 // Keys in rows on a plate that lies on z; each row: widths in units of a pitch of 19 mm.
 Solid keys(float x_front, float width, float z, float pitch, float tall) {
   static const std::vector<std::vector<float>> kRows = {
@@ -39,7 +35,7 @@ Prop keyboard(Workshop& shop) {
   constexpr float kPitch = 0.019f, kWidth = 15 * kPitch;
   Prop p;
   PropPart& b = p.body();
-  b.show("case", shop.plastic(pale ? kSilver : kBlack, 0.45),
+  b.show("case", shop.plastic(pale ? kSilver : kBlackPlastic, 0.45),
          extrude(rounded_outline({{-0.065f, 0}, {0.065f, 0}, {0.065f, 0.010f}, {-0.065f, 0.020f}},
                                  0.003f, 2),
                  -0.222f, 0.222f)
@@ -55,7 +51,7 @@ Prop keyboard(Workshop& shop) {
                         0.142f + kPitch * (float(c) + 0.5f) - 0.005f, 0.003f);
   b.show("keys", caps,
          (main.moved(0, -0.068f, 0) + pad).turned(Axis::kY, 4.4f).moved(0, 0, 0.0145f));
-  b.show("cable", shop.plastic(kBlack, 0.4),
+  b.show("cable", shop.plastic(kBlackPlastic, 0.4),
          tube(smooth_path(
                   {{-0.062f, -0.05f, 0.008f}, {-0.09f, -0.05f, 0.003f}, {-0.13f, -0.03f, 0.003f}}),
               0.0022f, 6));
@@ -94,13 +90,13 @@ Prop laptop(Workshop& shop) {
   // Closed it lies on the keys, from its hinge to +x.
   const float lid_thick = 0.005f;
   lid.show("cover", metal, slab({0, -y, 0}, {deep - 0.004f, y, lid_thick}, 0.002f, 2));
-  lid.show("bezel", shop.plastic(kBlack, 0.4),
+  lid.show("bezel", shop.plastic(kBlackPlastic, 0.4),
            slab({0.006f, -y + 0.003f, -0.0004f}, {deep - 0.007f, y - 0.003f, 0.001f}, 0));
   lid.show("screen", dice.chance(0.5) ? screen_glass(shop) : shop.glow({0.34, 0.46, 0.60}, 120),
            slab({0.016f, -y + 0.008f, -0.0007f}, {deep - 0.012f, y - 0.008f, 0.0f}, 0));
   lid.collide_box({0.004f, -y, -0.0005f}, {deep - 0.004f, y, lid_thick});
   lid.mass = 0.45;
-  b.show("hinge", shop.plastic(kBlack, 0.4),
+  b.show("hinge", shop.plastic(kBlackPlastic, 0.4),
          bar({-x + 0.004f, -0.4f * width, top + 0.002f}, {-x + 0.004f, 0.4f * width, top + 0.002f},
              0.0042f, 0.0042f, 12));
   b.collide_box({-x, -y, 0}, {x, y, top});

@@ -2,14 +2,11 @@
 
 #include <cmath>
 
+#include "scene/environment/props/hardware.h"
 #include "scene/environment/props/joinery.h"
 
 namespace gloam {
 namespace {
-
-constexpr Vec3 kBlack{0.105, 0.105, 0.107}, kSilver{0.70, 0.70, 0.71};
-
-std::string screen_glass(Workshop& shop) { return shop.plastic({0.012, 0.012, 0.014}, 0.07); }
 
 // A flat screen that faces +x: its bezel, glass and bulging back. `bottom` = of the case.
 void show_screen(PropPart* b, Workshop& shop, const std::string& material, float width,
@@ -36,7 +33,7 @@ Prop television(Workshop& shop) {
               height = 0.5625f * width + 0.012f, bottom = 0.07f;
   Prop p;
   PropPart& b = p.body();
-  const std::string black = shop.plastic(kBlack, 0.4);
+  const std::string black = shop.plastic(kBlackPlastic, 0.4);
   show_screen(&b, shop, black, width, height, bottom, 0.007f);
   const float deep = 0.11f + 0.03f * width;
   if (dice.chance(0.5)) {
@@ -76,12 +73,12 @@ Prop monitor(Workshop& shop) {
   const float height = (width > 0.7f ? 0.43f : 0.5625f) * width + 0.02f, bottom = 0.11f;
   Prop p;
   PropPart& b = p.body();
-  const std::string body = shop.plastic(dice.chance(0.75) ? kBlack : kSilver, 0.4);
+  const std::string body = shop.plastic(dice.chance(0.75) ? kBlackPlastic : kSilver, 0.4);
   show_screen(&b, shop, body, width, height, bottom, 0.008f);
   b.show("stand", body,
          slab({-0.09f, -0.12f, 0}, {0.10f, 0.12f, 0.012f}, 0.005f, 2) +
              slab({-0.068f, -0.03f, 0.01f}, {-0.050f, 0.03f, bottom + 0.6f * height}, 0.006f, 2));
-  b.show("cable", shop.plastic(kBlack, 0.4),
+  b.show("cable", shop.plastic(kBlackPlastic, 0.4),
          tube(smooth_path({{-0.055f, 0.05f, bottom + 0.15f * height},
                            {-0.085f, 0.05f, 0.08f},
                            {-0.09f, 0.03f, 0.01f},

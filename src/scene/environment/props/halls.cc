@@ -9,8 +9,6 @@
 namespace gloam {
 namespace {
 
-constexpr Vec3 kYellow{0.90, 0.62, 0.02}, kBlack{0.03, 0.03, 0.032};
-
 Prop high_bay_lamp(Workshop& shop) {
   // LED "UFO" on a chain: 18,000 lm, 150 W.
   Prop p;
@@ -131,9 +129,10 @@ Prop roller_door(Workshop& shop) {
     b.show("tracks", steel,
            part(0.0f, 0.14f, 0, 0.004f, z + 0.42f) + part(0.085f, 0.09f, 0, 0.15f, z + 0.1f) +
                part(0.02f, 0.09f, 0.145f, 0.15f, z + 0.1f));
-    b.show("guards", stripes(&shop, kYellow, {0.04, 0.04, 0.04}),
+    b.show("guards", stripes(&shop, kSafetyYellow, {0.04, 0.04, 0.04}),
            panel(1.2f, 0.13f).turned(Axis::kX, 90).moved(0.1512f, s * (y + 0.055f), 0.65f));
-    b.show("guards_back", shop.paint(kYellow, 0.4), part(-0.012f, 0.122f, 0.146f, 0.1508f, 1.25f));
+    b.show("guards_back", shop.paint(kSafetyYellow, 0.4),
+           part(-0.012f, 0.122f, 0.146f, 0.1508f, 1.25f));
     b.show("seal", shop.rubber(), part(-0.02f, 0.0f, 0.035f, 0.06f, z));
     b.collide_box({0, s > 0 ? y : -y - 0.14f, 0}, {0.151f, s > 0 ? y + 0.14f : -y, z + 0.42f});
   }
@@ -189,7 +188,7 @@ Prop roller_door(Workshop& shop) {
                   {face + 0.049f, s * (y - 0.03f) + 0.025f, z0 + 0.04f}, 0.002f));
     if (i == 2 && panels > 3)
       for (const float s : {-0.5f, 0.5f}) {
-        b.show("window_frames", shop.plastic(kBlack, 0.45),
+        b.show("window_frames", shop.plastic(kSafetyBlack, 0.45),
                slab({face - 0.002f, s * y - 0.3f, z0 + 0.1f},
                     {face + 0.047f, s * y + 0.3f, z0 + h - 0.12f}, 0.02f, 2));
         b.show("panes", shop.plastic({0.35, 0.40, 0.44}, 0.05),
@@ -200,7 +199,7 @@ Prop roller_door(Workshop& shop) {
   b.show("edge", shop.rubber(),
          slab({face + 0.004f, -y, bottom - 0.012f}, {face + 0.038f, y, bottom + 0.002f}, 0.005f));
   b.show(
-      "handle", shop.plastic(kBlack, 0.45),
+      "handle", shop.plastic(kSafetyBlack, 0.45),
       slab({face + 0.042f, -0.09f, bottom + 0.12f}, {face + 0.07f, 0.09f, bottom + 0.15f}, 0.006f));
   b.collide_box({face, -y, bottom - 0.012f}, {face + 0.046f, y, z + 0.02f});
   b.mass += 12 * 2 * y * z;
@@ -232,15 +231,15 @@ Prop dock_leveller(Workshop& shop) {
                    .moved(-x + 0.48f + 0.12f * float(i), -y + 0.18f + 0.12f * float(j), top);
   b.show("tears", steel, tears);
   for (const float s : {-1.0f, 1.0f}) {
-    b.show("frame", shop.paint(kYellow, 0.45),
+    b.show("frame", shop.paint(kSafetyYellow, 0.45),
            slab({-x, s * (y - 0.03f) - 0.03f, 0}, {x, s * (y - 0.03f) + 0.03f, top}, 0.002f));
-    b.show("bands", stripes(&shop, kYellow, {0.04, 0.04, 0.04}),
+    b.show("bands", stripes(&shop, kSafetyYellow, {0.04, 0.04, 0.04}),
            panel(2 * x - 0.5f, 0.055f)
                .turned(Axis::kY, -90)
                .turned(Axis::kZ, 90)
                .moved(0.17f, s * (y - 0.03f), top + 0.0006f));
   }
-  b.show("frame", shop.paint(kYellow, 0.45), slab({x - 0.05f, -y, 0}, {x, y, top}, 0.002f));
+  b.show("frame", shop.paint(kSafetyYellow, 0.45), slab({x - 0.05f, -y, 0}, {x, y, top}, 0.002f));
   b.collide_box({-x, -y, 0}, {x, y, top});
   b.mass = 7850 * 0.004 * 4 * x * y;  // the sheet; beams lie in the pit
   return p;
@@ -285,14 +284,14 @@ Prop column(Workshop& shop) {
   if (shop.dice.chance(0.7)) {  // protector: two shells of foamed plastic with straps
     const Profile outer = rounded_rectangle(2 * x + 0.10f, 2 * y + 0.10f, 0.05f, 4);
     const float h = min(1.1f, z - 0.3f);
-    b.show("protector", shop.plastic(kYellow, 0.45), extrude(outer, 0.04f, 0.04f + h));
+    b.show("protector", shop.plastic(kSafetyYellow, 0.45), extrude(outer, 0.04f, 0.04f + h));
     for (const float at : {0.25f, 0.75f}) {
       Path strap;
       for (const Vec2f q : rounded_rectangle(2 * x + 0.104f, 2 * y + 0.104f, 0.052f, 4))
         strap.push_back({q.x, q.y, 0.04f + h * at});
       strap.push_back(strap.front());
       for (const float dz : {-0.015f, 0.0f, 0.015f})
-        b.show("straps", shop.plastic(kBlack, 0.5), tube(strap, 0.008f, 6).moved(0, 0, dz));
+        b.show("straps", shop.plastic(kSafetyBlack, 0.5), tube(strap, 0.008f, 6).moved(0, 0, dz));
     }
     b.collide_box({-x - 0.05f, -y - 0.05f, 0.04f}, {x + 0.05f, y + 0.05f, 0.04f + h});
     b.mass += 12;

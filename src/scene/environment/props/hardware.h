@@ -6,6 +6,13 @@
 
 namespace gloam {
 
+// Reflectances, linear.
+inline constexpr Vec3 kSafetyYellow{0.90, 0.62, 0.02}, kSafetyBlack{0.03, 0.03, 0.032};
+inline constexpr Vec3 kBlackPlastic{0.105, 0.105, 0.107}, kSilver{0.70, 0.70, 0.71};
+inline std::string screen_glass(Workshop& shop) {
+  return shop.plastic({0.012, 0.012, 0.014}, 0.07);
+}
+
 /// Box between two points, `width` wide and, across both, `height` high.
 Solid beam(Vec3f from, Vec3f to, float width, float height, float radius = 0.002f);
 /// Outline (x, z), counter-clockwise, from y0 to y1.

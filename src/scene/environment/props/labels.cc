@@ -9,8 +9,8 @@
 namespace gloam {
 namespace {
 
-constexpr Vec3 kWhite{0.92, 0.92, 0.91}, kBlack{0.05, 0.05, 0.05}, kGreen{0.0, 0.52, 0.30},
-    kYellow{0.97, 0.78, 0.02}, kRed{0.72, 0.05, 0.06};
+constexpr Vec3 kWhite{0.92, 0.92, 0.91}, kSignBlack{0.05, 0.05, 0.05}, kGreen{0.0, 0.52, 0.30},
+    kSignYellow{0.97, 0.78, 0.02}, kSignRed{0.72, 0.05, 0.06};
 
 void arrow(Canvas* canvas, Vec2f tip, Vec2f d, float size, Vec3 color) {
   const Vec2f n{-d.y, d.x};
@@ -45,13 +45,13 @@ std::string shipping_label(Workshop* shop) {
       "shipping_label",
       [=] {
         Canvas c(200, 140, {0.93, 0.93, 0.92});
-        c.bars({0.08f, 0.10f}, {1.35f, 0.42f}, 5, kBlack);
+        c.bars({0.08f, 0.10f}, {1.35f, 0.42f}, 5, kSignBlack);
         for (int i = 0; i < 4; ++i)
           c.bars({0.08f, 0.52f + 0.1f * float(i)}, {i == 3 ? 1.25f : 0.8f, 0.57f + 0.1f * float(i)},
                  uint64_t(11 + i), {0.15, 0.15, 0.16}, true);
-        c.rectangle({0.98f, 0.52f}, {1.34f, 0.76f}, kBlack)
+        c.rectangle({0.98f, 0.52f}, {1.34f, 0.76f}, kSignBlack)
             .rectangle({1.0f, 0.54f}, {1.32f, 0.74f}, kWhite);
-        c.bars({1.05f, 0.58f}, {1.28f, 0.70f}, 3, kBlack, true);
+        c.bars({1.05f, 0.58f}, {1.28f, 0.70f}, 3, kSignBlack, true);
         return c.image();
       },
       0.5);
@@ -89,8 +89,8 @@ std::string place_label(Workshop* shop) {
       [=] {
         Canvas c(200, 50, {0.93, 0.93, 0.92});
         c.rectangle({0, 0}, {0.35f, 1}, {0.95, 0.75, 0.1});
-        c.bars({0.5f, 0.15f}, {2.4f, 0.85f}, 21, kBlack);
-        c.bars({2.6f, 0.3f}, {3.8f, 0.7f}, 22, kBlack, true);
+        c.bars({0.5f, 0.15f}, {2.4f, 0.85f}, 21, kSignBlack);
+        c.bars({2.6f, 0.3f}, {3.8f, 0.7f}, 22, kSignBlack, true);
         return c.image();
       },
       0.5);
@@ -101,14 +101,14 @@ std::string load_sign(Workshop* shop) {
       "load_sign",
       [=] {
         Canvas c(160, 120, {0.93, 0.93, 0.92});
-        c.rectangle({0, 0.72f}, {1.34f, 1}, kYellow);
-        c.fill({{0.08f, 0.76f}, {0.26f, 0.76f}, {0.17f, 0.95f}}, kBlack);
-        c.bars({0.36f, 0.80f}, {1.2f, 0.92f}, 31, kBlack, true);
+        c.rectangle({0, 0.72f}, {1.34f, 1}, kSignYellow);
+        c.fill({{0.08f, 0.76f}, {0.26f, 0.76f}, {0.17f, 0.95f}}, kSignBlack);
+        c.bars({0.36f, 0.80f}, {1.2f, 0.92f}, 31, kSignBlack, true);
         for (int i = 0; i < 3; ++i) {
           const float y = 0.12f + 0.2f * float(i);
-          c.rectangle({0.1f, y - 0.04f}, {0.5f, y - 0.02f}, kBlack);
+          c.rectangle({0.1f, y - 0.04f}, {0.5f, y - 0.02f}, kSignBlack);
           c.rectangle({0.18f, y - 0.02f}, {0.42f, y + 0.09f}, {0.55, 0.42, 0.25});
-          c.bars({0.62f, y}, {1.2f, y + 0.08f}, uint64_t(40 + i), kBlack, true);
+          c.bars({0.62f, y}, {1.2f, y + 0.08f}, uint64_t(40 + i), kSignBlack, true);
         }
         return c.image();
       },
@@ -136,11 +136,11 @@ std::string warning_picture(Workshop* shop, int kind) {
       [=] {
         // ISO 7010 W001, W012 (voltage), W014 (industrial trucks), W004 (laser), simplified.
         Canvas c(160, 160, {0.90, 0.90, 0.88});
-        c.fill({{0.02f, 0.07f}, {0.98f, 0.07f}, {0.5f, 0.95f}}, kBlack);
-        c.fill({{0.10f, 0.12f}, {0.90f, 0.12f}, {0.5f, 0.85f}}, kYellow);
+        c.fill({{0.02f, 0.07f}, {0.98f, 0.07f}, {0.5f, 0.95f}}, kSignBlack);
+        c.fill({{0.10f, 0.12f}, {0.90f, 0.12f}, {0.5f, 0.85f}}, kSignYellow);
         if (kind == 0) {
-          c.fill({{0.45f, 0.60f}, {0.55f, 0.60f}, {0.53f, 0.33f}, {0.47f, 0.33f}}, kBlack);
-          c.disc({0.5f, 0.235f}, 0.05f, kBlack);
+          c.fill({{0.45f, 0.60f}, {0.55f, 0.60f}, {0.53f, 0.33f}, {0.47f, 0.33f}}, kSignBlack);
+          c.disc({0.5f, 0.235f}, 0.05f, kSignBlack);
         } else if (kind == 1) {
           c.fill({{0.54f, 0.66f},
                   {0.42f, 0.40f},
@@ -148,22 +148,23 @@ std::string warning_picture(Workshop* shop, int kind) {
                   {0.46f, 0.18f},
                   {0.60f, 0.47f},
                   {0.515f, 0.46f}},
-                 kBlack);
+                 kSignBlack);
         } else if (kind == 2) {
-          c.rectangle({0.34f, 0.24f}, {0.58f, 0.38f}, kBlack)
-              .rectangle({0.60f, 0.20f}, {0.63f, 0.58f}, kBlack);
-          c.rectangle({0.63f, 0.20f}, {0.76f, 0.225f}, kBlack);
-          c.line({0.37f, 0.38f}, {0.40f, 0.54f}, 0.025f, kBlack)
-              .line({0.40f, 0.54f}, {0.54f, 0.54f}, 0.025f, kBlack);
-          c.line({0.44f, 0.40f}, {0.45f, 0.47f}, 0.05f, kBlack)
-              .disc({0.455f, 0.505f}, 0.026f, kBlack);
-          c.disc({0.40f, 0.22f}, 0.045f, kBlack).disc({0.54f, 0.22f}, 0.045f, kBlack);
+          c.rectangle({0.34f, 0.24f}, {0.58f, 0.38f}, kSignBlack)
+              .rectangle({0.60f, 0.20f}, {0.63f, 0.58f}, kSignBlack);
+          c.rectangle({0.63f, 0.20f}, {0.76f, 0.225f}, kSignBlack);
+          c.line({0.37f, 0.38f}, {0.40f, 0.54f}, 0.025f, kSignBlack)
+              .line({0.40f, 0.54f}, {0.54f, 0.54f}, 0.025f, kSignBlack);
+          c.line({0.44f, 0.40f}, {0.45f, 0.47f}, 0.05f, kSignBlack)
+              .disc({0.455f, 0.505f}, 0.026f, kSignBlack);
+          c.disc({0.40f, 0.22f}, 0.045f, kSignBlack).disc({0.54f, 0.22f}, 0.045f, kSignBlack);
         } else {
-          c.disc({0.42f, 0.34f}, 0.06f, kBlack).line({0.42f, 0.34f}, {0.72f, 0.34f}, 0.03f, kBlack);
+          c.disc({0.42f, 0.34f}, 0.06f, kSignBlack)
+              .line({0.42f, 0.34f}, {0.72f, 0.34f}, 0.03f, kSignBlack);
           for (int i = 0; i < 8; ++i) {
             const float a = kPi * float(i) / 4;
             c.line({0.42f, 0.34f}, Vec2f{0.42f, 0.34f} + Vec2f{std::cos(a), std::sin(a)} * 0.13f,
-                   0.02f, kBlack);
+                   0.02f, kSignBlack);
           }
         }
         return c.image();
@@ -176,7 +177,7 @@ std::string extinguisher_picture(Workshop* shop) {
       "extinguisher_sign",
       [=] {
         // ISO 7010 F001.
-        Canvas c(120, 120, kRed);
+        Canvas c(120, 120, kSignRed);
         c.fill({{0.30f, 0.10f},
                 {0.56f, 0.10f},
                 {0.56f, 0.56f},
@@ -234,17 +235,17 @@ std::string extinguisher_label(Workshop* shop) {
       "extinguisher_label",
       [=] {
         Canvas c(96, 144, {0.90, 0.90, 0.88});
-        c.rectangle({0, 0.80f}, {0.67f, 1}, kRed)
+        c.rectangle({0, 0.80f}, {0.67f, 1}, kSignRed)
             .bars({0.06f, 0.86f}, {0.6f, 0.94f}, 51, kWhite, true);
         for (int i = 0; i < 3; ++i) {
           const float x = 0.06f + 0.19f * float(i);
-          c.rectangle({x, 0.54f}, {x + 0.16f, 0.74f}, kBlack)
+          c.rectangle({x, 0.54f}, {x + 0.16f, 0.74f}, kSignBlack)
               .rectangle({x + 0.015f, 0.555f}, {x + 0.145f, 0.725f}, kWhite);
-          c.fill({{x + 0.04f, 0.58f}, {x + 0.12f, 0.58f}, {x + 0.08f, 0.70f}}, kRed);
+          c.fill({{x + 0.04f, 0.58f}, {x + 0.12f, 0.58f}, {x + 0.08f, 0.70f}}, kSignRed);
         }
         for (int i = 0; i < 6; ++i)
           c.bars({0.06f, 0.08f + 0.07f * float(i)}, {0.6f, 0.12f + 0.07f * float(i)},
-                 uint64_t(60 + i), kBlack, true);
+                 uint64_t(60 + i), kSignBlack, true);
         return c.image();
       },
       0.4);

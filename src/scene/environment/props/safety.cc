@@ -9,7 +9,7 @@
 namespace gloam {
 namespace {
 
-constexpr Vec3 kYellow{0.90, 0.62, 0.02}, kRed{0.68, 0.05, 0.05}, kBlack{0.03, 0.03, 0.032};
+constexpr Vec3 kRed{0.68, 0.05, 0.05};
 
 Prop traffic_cone(Workshop& shop) {
   const float height =
@@ -57,13 +57,13 @@ Prop safety_barrier(Workshop& shop) {
   const float y = std::clamp(size.y, 0.8f, 6.0f) / 2, z = std::clamp(size.z, 0.35f, 1.3f);
   Prop p;
   PropPart& b = p.body();
-  const std::string yellow = shop.paint(shop.color(kYellow), 0.36);
+  const std::string yellow = shop.paint(shop.color(kSafetyYellow), 0.36);
   const int posts = std::max(2, int(2 * y / 1.6f) + 1);
   for (int i = 0; i < posts; ++i) {
     const float at = (-y + 0.09f) + (2 * y - 0.18f) * float(i) / float(posts - 1);
     b.show("posts", yellow, slab({-0.05f, at - 0.05f, 0.01f}, {0.05f, at + 0.05f, z}, 0.008f, 2));
     b.show("posts", yellow, slab({-0.09f, at - 0.09f, 0}, {0.09f, at + 0.09f, 0.01f}, 0.002f));
-    b.show("caps", shop.plastic(kBlack, 0.5),
+    b.show("caps", shop.plastic(kSafetyBlack, 0.5),
            slab({-0.051f, at - 0.051f, z - 0.004f}, {0.051f, at + 0.051f, z + 0.012f}, 0.006f));
     for (const float sx : {-0.07f, 0.07f})
       for (const float sy : {-0.07f, 0.07f})
@@ -91,7 +91,8 @@ Prop bollard(Workshop& shop) {
   const float z = std::clamp(shop.size({0.2f, 0.2f, 1.0f}).z, 0.4f, 1.5f), r = 0.076f;
   Prop p;
   PropPart& b = p.body();
-  const std::string yellow = shop.paint(shop.color(kYellow), 0.36), black = shop.paint(kBlack, 0.4);
+  const std::string yellow = shop.paint(shop.color(kSafetyYellow), 0.36),
+                    black = shop.paint(kSafetyBlack, 0.4);
   b.show("post", yellow,
          lathe(rounded({{r, 0.01f}, {r, z - 0.02f}, {r * 0.75f, z}, {0, z}}, 0.03f, 4), 32));
   for (const float at : {0.45f, 0.72f})
@@ -122,10 +123,10 @@ void add_extinguisher(PropPart* b, Workshop* shop, Vec3f at) {
                {0, shoulder + 0.085f}};
   b->show("bottle", shop->paint(kRed, 0.25), lathe(rounded(dome, 0.015f, 3), 32).moved(at));
   b->show(
-      "foot", shop->plastic(kBlack, 0.5),
+      "foot", shop->plastic(kSafetyBlack, 0.5),
       lathe(rounded({{0.06f, 0}, {r + 0.003f, 0}, {r + 0.003f, 0.035f}, {r, 0.036f}}, 0.004f), 32)
           .moved(at));
-  const std::string brass = shop->metal("brass"), black = shop->plastic(kBlack, 0.45);
+  const std::string brass = shop->metal("brass"), black = shop->plastic(kSafetyBlack, 0.45);
   b->show("valve", brass,
           (cylinder(0.018f, shoulder + 0.08f, shoulder + 0.12f, 0.002f, 16) +
            bar({0, 0, shoulder + 0.1f}, {0, 0.035f, shoulder + 0.1f}, 0.010f, 0.010f, 12))
@@ -318,7 +319,7 @@ Prop hose_reel(Workshop& shop) {
                  {r - 0.006f, x + 0.009f},
                  {r - 0.012f, x + 0.004f},
                  {0, x + 0.004f}}));
-  b.show("hub", shop.plastic(kBlack, 0.45),
+  b.show("hub", shop.plastic(kSafetyBlack, 0.45),
          on_x({{0, x1}, {0.05f, x1}, {0.045f, x1 + 0.03f}, {0, x1 + 0.03f}}));
   Path coil;
   const float hose = 0.0155f, wound = r * 0.84f;
@@ -405,7 +406,8 @@ Prop floor_line(Workshop& shop) {
   const float x = std::clamp(size.x, 0.05f, 100.0f) / 2, y = std::clamp(size.y, 0.03f, 2.0f) / 2;
   Prop p;
   PropPart& b = p.body();
-  b.show("paint", shop.paint(shop.color(kYellow), 0.55), slab({-x, -y, 0}, {x, y, 0.0008f}, 0));
+  b.show("paint", shop.paint(shop.color(kSafetyYellow), 0.55),
+         slab({-x, -y, 0}, {x, y, 0.0008f}, 0));
   b.mass = 1600 * 0.0008 * 4 * x * y;
   return p;
 }

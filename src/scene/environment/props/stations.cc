@@ -9,7 +9,7 @@
 namespace gloam {
 namespace {
 
-constexpr Vec3 kBlue{0.06, 0.21, 0.45}, kBlack{0.03, 0.03, 0.032};
+constexpr Vec3 kBlue{0.06, 0.21, 0.45};
 
 Prop workbench(Workshop& shop) {
   const Vec3f size = shop.size({0.75f, 1.6f, 0.88f});
@@ -24,7 +24,7 @@ Prop workbench(Workshop& shop) {
       b.show("frame", blue,
              slab({e * (x - 0.09f) - 0.025f, s * (y - 0.07f) - 0.025f, 0.01f},
                   {e * (x - 0.09f) + 0.025f, s * (y - 0.07f) + 0.025f, z - top}, 0.004f))
-          .show("feet", shop.plastic(kBlack, 0.5),
+          .show("feet", shop.plastic(kSafetyBlack, 0.5),
                 slab({e * (x - 0.09f) - 0.03f, s * (y - 0.07f) - 0.03f, 0},
                      {e * (x - 0.09f) + 0.03f, s * (y - 0.07f) + 0.03f, 0.012f}, 0.003f));
     for (const float h : {0.12f, z - top - 0.05f})
@@ -181,7 +181,7 @@ Prop packing_table(Workshop& shop) {
   const std::string grey = shop.paint({0.60, 0.62, 0.63}, 0.4), steel = shop.metal("steel");
   b.show("top", shop.plastic(shop.color({0.70, 0.71, 0.70}), 0.45),
          slab({-x, -y, z - 0.03f}, {x, y, z}, 0.004f, 2));
-  b.show("top_edge", shop.plastic(kBlack, 0.5),
+  b.show("top_edge", shop.plastic(kSafetyBlack, 0.5),
          slab({x - 0.001f, -y, z - 0.031f}, {x + 0.002f, y, z + 0.0005f}, 0.0008f));
   for (const float s : {-1.0f, 1.0f}) {
     const float ly = s * (y - 0.05f);
@@ -192,7 +192,7 @@ Prop packing_table(Workshop& shop) {
             slab({-x + 0.05f, ly - 0.02f, z - 0.09f}, {x - 0.07f, ly + 0.02f, z - 0.03f}, 0.003f) +
             slab({-x + 0.05f, ly - 0.02f, 0.12f}, {x - 0.07f, ly + 0.02f, 0.16f}, 0.003f));
     for (const float lx : {x - 0.08f, -x + 0.04f})
-      b.show("feet", shop.plastic(kBlack, 0.5),
+      b.show("feet", shop.plastic(kSafetyBlack, 0.5),
              cylinder(0.025f, 0, 0.025f, 0.004f, 16).moved(lx, ly, 0));
     b.show("frame", grey,
            beam({-x + 0.05f, ly, high - 0.32f}, {-x + 0.33f, ly, high - 0.27f}, 0.006f, 0.04f));
@@ -233,13 +233,13 @@ Prop packing_table(Workshop& shop) {
                  .turned(Axis::kX, 90)
                  .moved(x - 0.2f, y - 0.3f, z + 0.053f) +
              slab({x - 0.15f, y - 0.325f, z + 0.02f}, {x - 0.08f, y - 0.275f, z + 0.04f}, 0.004f));
-  b.show("screen", shop.plastic(kBlack, 0.25),
+  b.show("screen", shop.plastic(kSafetyBlack, 0.25),
          rounded_box({0.025f, 0.40f, 0.26f}, 0.006f)
              .turned(Axis::kZ, -18)
              .moved(-x + 0.30f, y - 0.38f, z + 0.30f));
   b.show("screen_glow", shop.glow({0.35, 0.55, 0.75}, 90),
          panel(0.375f, 0.235f).turned(Axis::kZ, -18).moved(-x + 0.3125f, y - 0.384f, z + 0.30f));
-  b.show("screen_foot", shop.plastic(kBlack, 0.4),
+  b.show("screen_foot", shop.plastic(kSafetyBlack, 0.4),
          bar({-x + 0.28f, y - 0.375f, z + 0.005f}, {-x + 0.28f, y - 0.375f, z + 0.25f}, 0.02f,
              0.016f, 12) +
              cylinder(0.1f, z, z + 0.012f, 0.003f, 28).moved(-x + 0.28f, y - 0.375f, 0));
@@ -300,7 +300,7 @@ Prop fan(Workshop& shop) {
     b.show("stand", frame,
            bar({s * 0.22f, -r - 0.02f, 0.0125f}, {s * 0.22f, r + 0.02f, 0.0125f}, 0.0125f, 0.0125f,
                10));
-    b.show("knobs", shop.plastic(kBlack, 0.45),
+    b.show("knobs", shop.plastic(kSafetyBlack, 0.45),
            bar({0, s * (r + 0.005f), axis}, {0, s * (r + 0.06f), axis}, 0.025f, 0.022f, 14));
     b.collide_box({-0.232f, s * (r + 0.02f) - 0.0125f, 0},
                   {0.232f, s * (r + 0.02f) + 0.0125f, 0.025f});

@@ -10,8 +10,6 @@
 namespace gloam {
 namespace {
 
-constexpr Vec3 kBlack{0.03, 0.03, 0.032};
-
 Prop wheelie_bin(Workshop& shop) {
   // 240 l of EN 840: 0.74 x 0.58 x 1.07 m, 13 kg; its lid is hinged at the back.
   const float y = 0.28f, rim = 0.985f, wheel = 0.1f;
@@ -282,7 +280,7 @@ Prop mailbox(Workshop& shop) {
   for (const float s : {-1.0f, 1.0f})
     b.show("box", paint,
            plate_y(brim, s > 0 ? y - 0.02f : -y - 0.006f, s > 0 ? y + 0.006f : -y + 0.02f));
-  b.show("slot", shop.paint(kBlack, 0.7),
+  b.show("slot", shop.paint(kSafetyBlack, 0.7),
          slab({x - 0.004f, -0.15f, 1.08f}, {x + 0.0015f, 0.15f, 1.115f}, 0.001f));
   b.show("flap", paint,
          slab({-0.003f, -0.16f, -0.05f}, {0.003f, 0.16f, 0}, 0.002f)
@@ -379,7 +377,7 @@ Prop bicycle(Workshop& shop) {
         const float a = from + (to - from) * float(k) / 14, q = r + 0.014f - 0.010f * s * s;
         guard.push_back({wx + q * std::cos(a), s * 0.026f, r + q * std::sin(a)});
       }
-    b.show("guards", shop.plastic(kBlack, 0.3), lift(sheet(guard, 3, 0.0015f)));
+    b.show("guards", shop.plastic(kSafetyBlack, 0.3), lift(sheet(guard, 3, 0.0015f)));
   }
   b.show(
       "post", chrome,
@@ -394,7 +392,7 @@ Prop bicycle(Workshop& shop) {
          lift(ring(0.075f, 0.088f, -0.002f, 0.002f, 32)
                   .turned(Axis::kX, 90)
                   .moved(bracket + Vec3f{0, -0.06f, 0})));
-  b.show("guard_chain", shop.plastic(kBlack, 0.3),
+  b.show("guard_chain", shop.plastic(kSafetyBlack, 0.3),
          lift(beam(bracket + Vec3f{0.02f, -0.062f, 0.03f}, rear + Vec3f{-0.02f, -0.062f, 0.0f},
                    0.022f, 0.11f, 0.01f)));
   b.show("lamp", chrome, lift(bar({0.39f, 0, 0.93f}, {0.44f, 0, 0.93f}, 0.02f, 0.035f, 18)));

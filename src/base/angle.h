@@ -1,0 +1,7 @@
+#pragma once
+
+namespace gloam {
+
+inline constexpr double kDegree = 3.14159265358979323846 / 180;  ///< [rad]
+
+}  // namespace gloam
