@@ -9,12 +9,13 @@ function(gloam_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${GLOAM_UNITY} UNITY_BUILD_BATCH_SIZE 8)
 endfunction()
 
-# gloam_module(NAME [FAST_TESTS] [DEPENDS targets…] [TEST_DEPENDS targets…] [EXCLUDE files…])
+# gloam_module(NAME [FAST_TESTS] [COLD] [DEPENDS targets…] [TEST_DEPENDS targets…] [EXCLUDE files…])
 # One folder of src/ = one static library gloam_NAME of all its .cc files (test/ and fuzz/ apart),
 # one test program gloam_NAME_test of test/*_test.cc (FAST_TESTS: its tests do the work themselves, in code that headers
 # bring, so they are optimised like the library; the others are compiled in less time), one fuzz program per fuzz/*_fuzz.cc.
+# COLD: little of its time is its own code: sanitized builds, which take long to optimise, leave it as it is.
 function(gloam_module name)
-  cmake_parse_arguments(arg "FAST_TESTS" "" "DEPENDS;TEST_DEPENDS;EXCLUDE" ${ARGN})
+  cmake_parse_arguments(arg "FAST_TESTS;COLD" "" "DEPENDS;TEST_DEPENDS;EXCLUDE" ${ARGN})
   set(folder ${CMAKE_SOURCE_DIR}/src/${name})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/*.cc)
   list(FILTER sources EXCLUDE REGEX "/(test|fuzz)/")
@@ -25,6 +26,9 @@ function(gloam_module name)
   if(sources)
     add_library(${target} STATIC ${sources})
     gloam_unity(${target})
+    if(arg_COLD AND GLOAM_SANITIZE)
+      target_compile_options(${target} PRIVATE -O0)
+    endif()
     set(scope PUBLIC)
   else()
     add_library(${target} INTERFACE)  # headers only
