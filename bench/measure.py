@@ -329,7 +329,7 @@ def environments(quick):
     """generated places: until they are ready to render, and how fast they step"""
     go1 = '[[robot]]\nname = "go1"\nfile = "go1/go1.xml"\n'
     house = "[environment.house]\nseed = 3\nrooms = 6\n"
-    warehouse = "[environment.warehouse]\nseed = 2\nlength = 46\nwidth = 31\n"
+    warehouse = "[environment.warehouse]\nseed = 2\nlength = 38\nwidth = 30\n"
     with tempfile.TemporaryDirectory(prefix="gloam_bench_") as folder:
         scene, warm = Path(folder) / "scene.toml", Path(folder) / "warm"
         shutil.copytree(robot("go1").parent, Path(folder) / "go1")  # a scene reads nothing outside its folder

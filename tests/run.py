@@ -172,13 +172,25 @@ def check_lint_of_changes(tally):
     check_lint(tally, [name for name in dict.fromkeys(logged) if (ROOT / name).exists()], at_most=16)
 
 
+def commands_of_each_file():
+    """The folder of a compile_commands.json with an entry for every source, also for those that are compiled several as one."""
+    entries = json.loads((BUILD / "release" / "compile_commands.json").read_text())
+    for entry in [entry for entry in entries if "/Unity/" in entry["file"]]:
+        for source in re.findall(r'#include "(.*)"', Path(entry["file"]).read_text()):
+            entries.append(entry | {"file": source, "command": entry["command"].replace(entry["file"], source)})
+    folder = BUILD / "release" / "lint"
+    folder.mkdir(exist_ok=True)
+    (folder / "compile_commands.json").write_text(json.dumps(entries))
+    return folder
+
+
 def check_lint(tally, files, at_most=None):
     start = time.time()
     files = [name for name in files if not re.search("/(fuzz|test|cuda)/", name)][:at_most]
     if not files:
         tally.add("lint", 1, 0, 0, time.time() - start)
         return
-    result = run(["xargs", "-P2", "-n4", f"clang-tidy{CLANG}", "-p", str(BUILD / "release"), "--quiet",
+    result = run(["xargs", "-P2", "-n4", f"clang-tidy{CLANG}", "-p", str(commands_of_each_file()), "--quiet",
                   # The compile commands are GCC's: what only Clang warns of, or does not know, is not looked for.
                   *("--extra-arg=-Wno-" + name for name in ("unknown-warning-option", "unused-command-line-argument",
                                                             "deprecated-declarations", "bitwise-instead-of-logical"))],

@@ -46,6 +46,10 @@ class EmbreeBuild final : public EmbreeScene {
   void build_fixed(const RenderScene& scene);
   void build_moving(const RenderScene& scene);
   void build_shapes(const RenderScene& scene);
+  /// The BVH of its shape in its own frame; one that is new is to be committed.
+  RTCScene shape_of(const RenderScene& scene, const InstanceView& in,
+                    std::vector<RTCScene>* to_commit);
+  RtcOwner<RTCGeometry> instance_of(RTCScene shape);
   void rebuild_mesh(const RenderScene& scene, uint32_t mesh);
   RtcOwner<RTCGeometry> mesh_geometry(const MeshView& mesh);
   RtcOwner<RTCGeometry> shape_geometry(ShapeType shape, Vec3f size, const Affine3f& X_SG);
@@ -54,8 +58,9 @@ class EmbreeBuild final : public EmbreeScene {
 
   RtcOwner<RTCDevice> device_;
   RtcOwner<RTCScene> fixed_;  ///< geometry that never moves, in world coordinates; null = none
-  std::map<ShapeKey, RtcOwner<RTCScene>> shapes_;  ///< one BVH per distinct moving shape
-  RtcOwner<RTCScene> moving_;                      ///< instances, deformables; null = none
+  std::map<ShapeKey, RtcOwner<RTCScene>>
+      shapes_;                 ///< one BVH per shape that moves, or that many share
+  RtcOwner<RTCScene> moving_;  ///< instances, deformables; null = none
   std::vector<RtcOwner<RTCGeometry>> moving_geometries_;
   /// Embree id -> instance: those of moving_, then the scanned solids, then
   /// those of fixed_.

@@ -16,6 +16,15 @@ namespace {
 /// take in a BVH, and the time grows with their number.
 constexpr size_t kMaxScanned = 64;
 
+/// Copies of one mesh that stand still are triangles of the world, which rays pass fastest, until
+/// all but the first have so many: then they are instances, and memory holds the mesh once.
+constexpr uint64_t kMaxCopied = 1 << 18;
+
+void commit(const std::vector<RTCScene>& shapes) {
+  parallel_for("shape BVHs", static_cast<int64_t>(shapes.size()),
+               [&](int64_t i) { rtcCommitScene(shapes[static_cast<size_t>(i)]); });
+}
+
 /// Over the whole time of the shutter.
 Bounds bounds_of(RTCScene scene) {
   RTCLinearBounds b;
@@ -146,15 +155,46 @@ RtcOwner<RTCGeometry> EmbreeBuild::shape_geometry(ShapeType shape, Vec3f size,
   return geometry;
 }
 
+RTCScene EmbreeBuild::shape_of(const RenderScene& scene, const InstanceView& in,
+                               std::vector<RTCScene>* to_commit) {
+  const ShapeKey key = is_mesh(in.shape) ? ShapeKey{in.shape, in.mesh, 0, 0, 0}
+                                         : ShapeKey{in.shape, 0, in.size.x, in.size.y, in.size.z};
+  RtcOwner<RTCScene>& shape = shapes_[key];
+  if (shape == nullptr) {
+    shape = new_scene();
+    const RtcOwner<RTCGeometry> geometry = is_mesh(in.shape)
+                                               ? mesh_geometry(scene.meshes()[in.mesh])
+                                               : shape_geometry(in.shape, in.size, {});
+    rtcCommitGeometry(geometry.get());
+    rtcAttachGeometryByID(shape.get(), geometry.get(), 0);
+    to_commit->push_back(shape.get());
+  }
+  return shape.get();
+}
+
+RtcOwner<RTCGeometry> EmbreeBuild::instance_of(RTCScene shape) {
+  RtcOwner<RTCGeometry> instance(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
+  rtcSetGeometryInstancedScene(instance.get(), shape);
+  return instance;
+}
+
 void EmbreeBuild::build_fixed(const RenderScene& scene) {
   fixed_ = new_scene();
   bool empty = true;
   const std::vector<InstanceView>& instances = scene.instances();
+  std::vector<uint64_t> copies(scene.meshes().size());
+  for (size_t i = 0; i < instances.size(); ++i)
+    if (is_mesh(instances[i].shape) && stands_still(scene, i)) ++copies[instances[i].mesh];
+  std::vector<RTCScene> to_commit;
   for (size_t i = 0; i < instances.size(); ++i) {
     const InstanceView& in = instances[i];
     if (!stands_still(scene, i) || scanned_.holds(i)) continue;
     RtcOwner<RTCGeometry> geometry;
-    if (is_mesh(in.shape)) {
+    if (is_mesh(in.shape) &&
+        (copies[in.mesh] - 1) * (scene.meshes()[in.mesh].indices.size / 3) > kMaxCopied) {
+      geometry = instance_of(shape_of(scene, in, &to_commit));
+      set_transform(geometry.get(), 0, in.X_WG);
+    } else if (is_mesh(in.shape)) {
       const MeshView& mesh = scene.meshes()[in.mesh];
       std::vector<Vec3f> world(mesh.positions.size);
       for (uint32_t v = 0; v < mesh.positions.size; ++v) {
@@ -171,6 +211,7 @@ void EmbreeBuild::build_fixed(const RenderScene& scene) {
     rows_.push_back(static_cast<uint32_t>(i));
     empty = false;
   }
+  commit(to_commit);
   if (empty) {
     fixed_.reset();
   } else {
@@ -187,25 +228,12 @@ void EmbreeBuild::build_shapes(const RenderScene& scene) {
         !scene.is_drawn(i)) {
       continue;
     }
-    const ShapeKey key = is_mesh(in.shape) ? ShapeKey{in.shape, in.mesh, 0, 0, 0}
-                                           : ShapeKey{in.shape, 0, in.size.x, in.size.y, in.size.z};
-    RtcOwner<RTCScene>& shape = shapes_[key];
-    if (shape == nullptr) {
-      shape = new_scene();
-      RtcOwner<RTCGeometry> geometry = is_mesh(in.shape) ? mesh_geometry(scene.meshes()[in.mesh])
-                                                         : shape_geometry(in.shape, in.size, {});
-      rtcCommitGeometry(geometry.get());
-      rtcAttachGeometryByID(shape.get(), geometry.get(), 0);
-      to_commit.push_back(shape.get());
-    }
-    RtcOwner<RTCGeometry> instance(rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_INSTANCE));
-    rtcSetGeometryInstancedScene(instance.get(), shape.get());
+    RtcOwner<RTCGeometry> instance = instance_of(shape_of(scene, in, &to_commit));
     rtcAttachGeometryByID(moving_.get(), instance.get(), static_cast<unsigned>(rows_.size()));
     rows_.push_back(static_cast<uint32_t>(i));
     moving_geometries_.push_back(std::move(instance));
   }
-  parallel_for("shape BVHs", static_cast<int64_t>(to_commit.size()),
-               [&](int64_t i) { rtcCommitScene(to_commit[i]); });
+  commit(to_commit);
 }
 
 void EmbreeBuild::rebuild_mesh(const RenderScene& scene, uint32_t mesh) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,18 +14,20 @@
 
 namespace gloam {
 
-/// A picture that is painted when it is first looked at: makers mix many materials, a place keeps
-/// few. Copies share it.
+/// A picture that is painted when it is first looked at, by any thread: makers mix many materials,
+/// a place keeps few. Copies share it.
 class Picture {
  public:
   Picture() = default;
-  explicit Picture(std::function<Image8()> paint)
-      : state_(std::make_shared<State>(State{std::move(paint), {}})) {}
+  explicit Picture(std::function<Image8()> paint) : state_(std::make_shared<State>()) {
+    state_->paint = std::move(paint);
+  }
   bool empty() const { return state_ == nullptr; }
   const Image8& image() const;  ///< not of an empty one
 
  private:
   struct State {
+    std::once_flag once;
     std::function<Image8()> paint;  ///< until it is done
     Image8 image;
   };

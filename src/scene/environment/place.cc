@@ -6,6 +6,7 @@
 
 #include "base/archive.h"
 #include "base/hash.h"
+#include "base/parallel.h"
 
 namespace gloam {
 namespace {
@@ -72,14 +73,20 @@ void Place::put_named(int index, std::string given, const Pose& X_WP, bool loose
 
 // What a material looks like in Gloam is not compiled, but what MuJoCo knows of it is.
 uint64_t Place::hash() const {
+  const std::span<const Look> looks = materials.looks();
+  std::vector<uint64_t> pictures(looks.size());
+  parallel_for("pictures of a place", static_cast<int64_t>(looks.size()), [&](int64_t i) {
+    const Picture& picture = looks[static_cast<size_t>(i)].picture;
+    pictures[static_cast<size_t>(i)] =
+        hash_span<uint8_t>(picture.empty() ? std::span<const uint8_t>() : picture.image().texels);
+  });
   ArchiveWriter out;
   out(name);
-  for (const Look& look : materials.looks()) {
+  out(pictures);
+  for (const Look& look : looks) {
     out(look.name);
     out(look.color);
     for (const double x : {look.roughness, look.metallic, look.opacity, look.luminance}) out(x);
-    const bool plain = look.picture.empty();
-    out(hash_span<uint8_t>(plain ? std::span<const uint8_t>() : look.picture.image().texels));
   }
   for (const Prop& prop : props_) {
     out(prop.label);

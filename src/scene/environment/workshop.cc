@@ -87,7 +87,7 @@ Look patterned(std::string name, PatternOptions pattern) {
 }  // namespace
 
 const Image8& Picture::image() const {
-  if (state_->paint) state_->image = std::exchange(state_->paint, nullptr)();
+  std::call_once(state_->once, [this] { state_->image = std::exchange(state_->paint, nullptr)(); });
   return state_->image;
 }
 

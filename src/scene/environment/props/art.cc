@@ -17,7 +17,7 @@ double smooth(double low, double high, double x) {
   return t * t * (3 - 2 * t);
 }
 
-// Calls color(u, v), u and v from 0 to 1 from the lower left corner.
+// Calls color(u, v), u and v from 0 to 1 from the lower left corner, row by row from the top.
 template <class Color>
 Image8 painted(int width, int height, const Color& color) {
   Image8 image{width, height, 3};
@@ -27,6 +27,24 @@ Image8 painted(int width, int height, const Color& color) {
       const Vec3 c = color((column + 0.5) / width, 1 - (row + 0.5) / height);
       for (const double x : {c.x, c.y, c.z})
         image.texels.push_back(uint8_t(std::lround(std::clamp(x, 0.0, 1.0) * 255)));
+    }
+  }
+  return image;
+}
+
+// column(u) gives color(v). What depends on u alone, ridges above all, is thus worked out once per
+// column.
+template <class Column>
+Image8 painted_by_columns(int width, int height, const Column& column) {
+  Image8 image{width, height, 3};
+  image.texels.resize(size_t(width) * size_t(height) * 3);
+  for (int x = 0; x < width; ++x) {
+    const auto color = column((x + 0.5) / width);
+    for (int row = 0; row < height; ++row) {
+      const Vec3 c = color(1 - (row + 0.5) / height);
+      uint8_t* texel = &image.texels[3 * (size_t(row) * size_t(width) + size_t(x))];
+      for (const double part : {c.x, c.y, c.z})
+        *texel++ = uint8_t(std::lround(std::clamp(part, 0.0, 1.0) * 255));
     }
   }
   return image;
@@ -78,16 +96,21 @@ Image8 hills(Dice& dice, const Vec3* palette, int width, int height) {
   for (int k = 0; k < 5; ++k) ridges.emplace_back(dice, 0.34 + 0.04 * k);
   const double sun_u = dice.uniform(0.25, 0.75), sun_v = dice.uniform(0.66, 0.8),
                aspect = double(width) / height;
-  return painted(width, height, [&](double u, double v) {
-    Vec3 c = mix(palette[3], palette[0], smooth(0.3, 1.0, v));
-    const double d = std::hypot((u - sun_u) * aspect, v - sun_v);
-    c = mix(palette[1], c, smooth(0.105, 0.112, d));
-    for (int k = 0; k < 5; ++k) {
-      const double crest = 0.60 - 0.12 * k + 0.045 * ridges[size_t(k)](u * aspect);
-      c = mix(c, mix(palette[0], palette[4], 0.25 + 0.17 * k),
-              smooth(crest + 0.004, crest - 0.004, v));
-    }
-    return c;
+  return painted_by_columns(width, height, [&](double u) {
+    std::array<double, 5> crests;
+    for (int k = 0; k < 5; ++k)
+      crests[size_t(k)] = 0.60 - 0.12 * k + 0.045 * ridges[size_t(k)](u * aspect);
+    return [=](double v) {
+      Vec3 c = mix(palette[3], palette[0], smooth(0.3, 1.0, v));
+      const double d = std::hypot((u - sun_u) * aspect, v - sun_v);
+      c = mix(palette[1], c, smooth(0.105, 0.112, d));
+      for (int k = 0; k < 5; ++k) {
+        const double crest = crests[size_t(k)];
+        c = mix(c, mix(palette[0], palette[4], 0.25 + 0.17 * k),
+                smooth(crest + 0.004, crest - 0.004, v));
+      }
+      return c;
+    };
   });
 }
 
@@ -101,16 +124,18 @@ Image8 discs(Dice& dice, const Vec3* palette, int width, int height) {
   for (int k = 0; k < 9; ++k)
     all.push_back({dice.uniform(0.1, 0.9), dice.uniform(0.1, 0.9), dice.uniform(0.07, 0.28),
                    dice.integer(1, 4)});
-  return painted(width, height, [&](double u, double v) {
-    Vec3 c = palette[0];
-    for (const Disc& disc : all) {
-      const double d = std::hypot((u - disc.u) * aspect, v - disc.v);
-      // Half a disc, cut by an upright line.
-      const double inside =
-          smooth(disc.r + 0.004, disc.r - 0.004, d) * (disc.tint % 2 && u < disc.u ? 0.25 : 0.92);
-      c = mix(c, palette[disc.tint], inside);
-    }
-    return c;
+  return painted_by_columns(width, height, [&](double u) {
+    return [&, u](double v) {
+      Vec3 c = palette[0];
+      for (const Disc& disc : all) {
+        const double d = std::hypot((u - disc.u) * aspect, v - disc.v);
+        // Half a disc, cut by an upright line.
+        const double inside =
+            smooth(disc.r + 0.004, disc.r - 0.004, d) * (disc.tint % 2 && u < disc.u ? 0.25 : 0.92);
+        c = mix(c, palette[disc.tint], inside);
+      }
+      return c;
+    };
   });
 }
 
@@ -121,14 +146,18 @@ Image8 bands(Dice& dice, const Vec3* palette, int width, int height) {
   for (double& cut : cuts) cut = v0 += dice.uniform(0.08, 0.2);
   std::array<int, 8> tints;
   for (int& t : tints) t = dice.integer(0, 4);
-  return painted(width, height, [&](double u, double v) {
-    Vec3 c = palette[tints[0]];
-    for (size_t k = 0; k < cuts.size(); ++k) {
-      const double at = cuts[k] / v0 + 0.012 * edge(u + 0.37 * double(k));
-      c = mix(c, palette[tints[k + 1]], smooth(at - 0.012, at + 0.012, v));
-    }
-    const double brush = 0.025 * std::sin(220 * v + 9 * edge(1.7 * u)) * std::sin(17 * u + 40 * v);
-    return Vec3{c.x + brush, c.y + brush, c.z + brush};
+  return painted_by_columns(width, height, [&](double u) {
+    std::array<double, 7> edges;
+    for (size_t k = 0; k < cuts.size(); ++k)
+      edges[k] = cuts[k] / v0 + 0.012 * edge(u + 0.37 * double(k));
+    const double turn = 9 * edge(1.7 * u);
+    return [=, &tints](double v) {
+      Vec3 c = palette[tints[0]];
+      for (size_t k = 0; k < edges.size(); ++k)
+        c = mix(c, palette[tints[k + 1]], smooth(edges[k] - 0.012, edges[k] + 0.012, v));
+      const double brush = 0.025 * std::sin(220 * v + turn) * std::sin(17 * u + 40 * v);
+      return Vec3{c.x + brush, c.y + brush, c.z + brush};
+    };
   });
 }
 
@@ -136,16 +165,22 @@ Image8 night(Dice& dice, int width, int height) {
   std::vector<Ridge> ridges;
   for (int k = 0; k < 3; ++k) ridges.emplace_back(dice, 0.4);
   const double aspect = double(width) / height, moon_u = dice.uniform(0.3, 0.7);
-  return painted(width, height, [&](double u, double v) {
-    Vec3 c = mix({0.20, 0.28, 0.40}, {0.05, 0.08, 0.17}, smooth(0.2, 1, v));
-    const double d = std::hypot((u - moon_u) * aspect, v - 0.72);
-    c = mix(c, {0.55, 0.58, 0.62}, 0.5 * smooth(0.32, 0.08, d));
-    c = mix(c, {0.94, 0.92, 0.84}, smooth(0.088, 0.082, d));
+  return painted_by_columns(width, height, [&](double u) {
+    std::array<double, 3> crests;
     for (int k = 0; k < 3; ++k)
-      c = mix(c, mix({0.12, 0.18, 0.26}, {0.02, 0.03, 0.06}, 0.4 * k),
-              smooth(0.35 - 0.11 * k + 0.04 * ridges[size_t(k)](u * aspect) + 0.003,
-                     0.35 - 0.11 * k + 0.04 * ridges[size_t(k)](u * aspect) - 0.003, v));
-    return c;
+      crests[size_t(k)] = 0.35 - 0.11 * k + 0.04 * ridges[size_t(k)](u * aspect);
+    return [=](double v) {
+      Vec3 c = mix({0.20, 0.28, 0.40}, {0.05, 0.08, 0.17}, smooth(0.2, 1, v));
+      const double d = std::hypot((u - moon_u) * aspect, v - 0.72);
+      c = mix(c, {0.55, 0.58, 0.62}, 0.5 * smooth(0.32, 0.08, d));
+      c = mix(c, {0.94, 0.92, 0.84}, smooth(0.088, 0.082, d));
+      for (int k = 0; k < 3; ++k) {
+        const double crest = crests[size_t(k)];
+        c = mix(c, mix({0.12, 0.18, 0.26}, {0.02, 0.03, 0.06}, 0.4 * k),
+                smooth(crest + 0.003, crest - 0.003, v));
+      }
+      return c;
+    };
   });
 }
 
