@@ -48,8 +48,10 @@ endif()
 if(GLOAM_DCHECKS)
   add_compile_definitions(GLOAM_DCHECKS=1)
 endif()
+set(GLOAM_COLD_OPTIMISE -O1)  # of modules in which little time is spent
 set(GLOAM_TEST_OPTIMISE -O1)  # for tests that leave the work to the library: two thirds of the time that -O3 takes
 if(GLOAM_SANITIZE)
+  set(GLOAM_COLD_OPTIMISE -O0)
   set(GLOAM_TEST_OPTIMISE -O0)
   set(CMAKE_CXX_FLAGS_RELWITHDEBINFO "-O1 -g1")  # half the build time of -O2, and readable stacks
   add_compile_definitions(GLOAM_SANITIZED=1)  # malloc is the sanitizer's, and times say nothing

@@ -11,7 +11,7 @@ set(modules base geometry scene world sim render sensors control record runtime 
 list(TRANSFORM modules PREPEND gloam_)
 add_library(gloam_library SHARED)
 foreach(module IN LISTS modules)
-  target_sources(gloam_library PRIVATE $<TARGET_OBJECTS:${module}>)
+  target_sources(gloam_library PRIVATE $<TARGET_OBJECTS:${module}> $<$<TARGET_EXISTS:${module}_part>:$<TARGET_OBJECTS:${module}_part>>)
 endforeach()
 target_link_libraries(gloam_library PRIVATE ${modules})  # for what they link in turn
 target_include_directories(gloam_library INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)

@@ -112,7 +112,11 @@ def gtest(tally, preset, module, only=None, shard_filter=None, shard=None):
 TOO_SLOW_SANITIZED = ("-*Slow*:*Allocat*:Adaptive.HasTheMeanOfEvenSampling:Adaptive.ReachesWhatIsAskedFor:"
                       "Fast.LampsInMirrorsLightTheRoom:Fast.IndirectLightIsThatOfThePathTier:Fast.ARareBrightRayMakesNoSpot:"
                       "Fast.CellsLookForLightWhereTheGuideHasFoundIt:Path.WhiteFurnaceReturnsAllLight:"
-                      "ManyLights.ThePictureIsTheSumOfThoseOfEachLight:Adaptive.EndsWhenItsUserSaysSo")
+                      "ManyLights.ThePictureIsTheSumOfThoseOfEachLight:Adaptive.EndsWhenItsUserSaysSo:"
+                      "TrotWalk.NoFallsInTwentySeedsOfPushes:PropsPhysics.*:AtmosphereReference.*:Glow.BringsTheLight*:"
+                      "GeneratedEnvironment.OfOneSeedIsOneHash*:Sky.SamplingAMap*:Fast.ARoomIsDarkSoon*:Guide.IsTheSameWhatever*:"
+                      "Fast.PicturesAreTheSameForAnyNumberOfThreads:Glow.FillsAClosedWhiteRoom*:Bvh.AMillionRays*:Fog.White*:"
+                      "*CameraLensTest.KnownPoints*:HeightErrorOf.APlane*")
 MUTATIONS = 10_000  # damaged files per reader; without GLOAM_MUTATIONS the tests take 200
 
 

@@ -110,8 +110,8 @@ struct ModelCheck {
 };
 /// Loads a scene or model, exports it into `folder`, has stock MuJoCo load the model file and the
 /// export, and compares all bits. A file that Gloam refuses is given to stock MuJoCo in a process
-/// of its own, for a minute at most; that one reads whatever the file names.
+/// of its own, for `longest_stock_load` seconds at most; that one reads whatever the file names.
 ModelCheck check_model(const std::filesystem::path& file, const FileAccess& access,
-                       const std::filesystem::path& folder);
+                       const std::filesystem::path& folder, unsigned longest_stock_load = 60);
 
 }  // namespace gloam

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,8 +15,6 @@ namespace gloam {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr unsigned kLongestStockLoad = 60;  // [s]
-
 std::string one_line(const std::string& text) {
   std::string line;
   for (const char c : text) {
@@ -29,13 +28,13 @@ std::string one_line(const std::string& text) {
 
 // "" or why stock MuJoCo does not load the file. In a process of its own: what Gloam refuses is
 // what may bring MuJoCo down or never ends.
-std::string stock_refusal(const fs::path& file) {
+std::string stock_refusal(const fs::path& file, unsigned longest) {
   int ends[2];
   if (::pipe(ends) != 0) return "there is no room to ask it";
   const pid_t child = ::fork();
   if (child == 0) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // it ends with us
-    ::alarm(kLongestStockLoad);
+    ::alarm(longest);
     load_mujoco_plugins();
     const Result<ModelPtr> model = load_stock_model(file);
     const std::string refusal = model.ok() ? "" : one_line(model.error().message);
@@ -51,7 +50,7 @@ std::string stock_refusal(const fs::path& file) {
   int state = 0;
   if (child < 0 || ::waitpid(child, &state, 0) != child) return "there is no room to ask it";
   if (WIFSIGNALED(state)) {
-    return WTERMSIG(state) == SIGALRM ? "it takes more than a minute"
+    return WTERMSIG(state) == SIGALRM ? fmt::format("it takes more than {} s", longest)
                                       : std::string("it ends by ") + ::strsignal(WTERMSIG(state));
   }
   return text;
@@ -71,7 +70,8 @@ bool is_read_by_stock(const fs::path& file) { return file.extension() != ".toml"
 
 }  // namespace
 
-ModelCheck check_model(const fs::path& file, const FileAccess& access, const fs::path& folder) {
+ModelCheck check_model(const fs::path& file, const FileAccess& access, const fs::path& folder,
+                       unsigned longest_stock_load) {
   install_mujoco_handler();
   ModelCheck check;
   Result<World> world = World();
@@ -82,7 +82,8 @@ ModelCheck check_model(const fs::path& file, const FileAccess& access, const fs:
   if (!world.ok()) {
     check.status = world.error();
     std::error_code code;
-    if (is_read_by_stock(file) && fs::exists(file, code)) check.stock_refusal = stock_refusal(file);
+    if (is_read_by_stock(file) && fs::exists(file, code)) 
+      check.stock_refusal = stock_refusal(file, longest_stock_load);
     return check;
   }
   const CompiledWorld& compiled = *world->compiled();

@@ -3,13 +3,14 @@
 
   ./gloam gallery                all pictures, scenes and the page (some ten minutes on two cores)
   ./gloam gallery --only glass   pictures with "glass" in chapter/name; the page is made of what is there
-  ./gloam gallery --quick        small and noisy, into build/gallery: does every scene still render?
+  ./gloam gallery --quick        small and noisy, into build/gallery: does every scene still render? (of generated places one seed)
 
 Chapters are tools/gallery/chapters/*.toml, each picture a few lines that are added to a set of tools/gallery/sets.
 """
 import argparse
 import array
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -123,6 +124,17 @@ def render_all(pictures, folder, quick):
     return broken
 
 
+def one_of_each_place(pictures):
+    """All but the places that differ from one before only by their seed, or by where they are seen from."""
+    places, chosen = set(), []
+    for picture in pictures:
+        place = re.sub(r"_.*", "", picture.key) if picture.chapter == "environments" else picture.name
+        if place not in places:
+            chosen.append(picture)
+        places.add(place)
+    return chosen
+
+
 def main():
     parser = argparse.ArgumentParser(prog="./gloam gallery", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", metavar="TEXT", default="", help="pictures with TEXT in chapter/name")
@@ -134,6 +146,8 @@ def main():
         parser.error(f"{folder} is not inside {ROOT}, where the scenes find their sets")
     chapters = read_chapters(HERE)
     pictures = [picture for chapter in chapters for picture in chapter.pictures if args.only in picture.name]
+    if args.quick:
+        pictures = one_of_each_place(pictures)
     if not pictures:
         parser.error(f"no picture has '{args.only}' in its name")
     broken = render_all(pictures, folder, args.quick)
