@@ -82,7 +82,7 @@ ModelCheck check_model(const fs::path& file, const FileAccess& access, const fs:
   if (!world.ok()) {
     check.status = world.error();
     std::error_code code;
-    if (is_read_by_stock(file) && fs::exists(file, code)) 
+    if (is_read_by_stock(file) && fs::exists(file, code))
       check.stock_refusal = stock_refusal(file, longest_stock_load);
     return check;
   }
