@@ -303,7 +303,7 @@ std::string Workshop::gravel() {
       "gravel", noise({0.050, 0.044, 0.036}, {0.140, 0.124, 0.102}, 0.022, 0.006, 0.95, "cells"));
   PatternOptions dirt;
   dirt.kind = "dirt";
-  dirt.color_b = Vec3{0.092, 0.080, 0.063};
+  dirt.color_b = Vec3{0.116, 0.102, 0.082};
   dirt.scale = 0.8;
   dirt.amount = 0.42;
   look.more.wear = dirt;

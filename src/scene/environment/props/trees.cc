@@ -63,7 +63,7 @@ Prop tree(Workshop& shop) {
   return make_tree(high, &shop, &shop.dice);
 }
 
-// Whorls of boughs that hang, each a flat spray of needles.
+// Boughs that hang, thick with sprays of needles, each at a height of its own.
 Prop conifer(Workshop& shop) {
   Dice& dice = shop.dice;
   const float h = limited(shop.size({4, 4, 9}), {1, 1, 2}, {20, 20, 30}).z, wide = 0.2f * h;
@@ -73,12 +73,14 @@ Prop conifer(Workshop& shop) {
   Solid needles;
   const int whorls = 36;
   for (int i = 0; i < whorls; ++i) {
-    const float t = float(i) / float(whorls - 1), z = h * (0.12f + 0.84f * t);
+    const float t = float(i) / float(whorls - 1);
     const int count = 9 - int(4 * t);
     for (int k = 0; k < count; ++k) {
-      const float a = 2 * kPi * (float(k) + float(dice.uniform(0, 0.8))) / float(count),
-                  reach = wide * (1 - 0.93f * t) * float(dice.uniform(0.75, 1.1)) + 0.12f;
-      const Vec3f out{std::cos(a), std::sin(a), -0.28f + 0.35f * t},
+      const float z = h * (0.12f + 0.84f * t + 0.024f * (1 - t) * float(dice.uniform(-1, 1))),
+                  a = 2 * kPi * (float(k) + float(dice.uniform(0, 0.8))) / float(count) + float(i),
+                  reach = wide * (1 - 0.93f * t) * float(dice.uniform(0.6, 1.15)) + 0.12f;
+      const Vec3f out{std::cos(a), std::sin(a),
+                      -0.28f + 0.35f * t + float(dice.uniform(-0.15, 0.1))},
           side{-std::sin(a), std::cos(a), 0};
       const int sprays = 3 + int(reach / 0.13f);
       for (int s = 0; s < sprays; ++s) {
