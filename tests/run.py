@@ -179,7 +179,7 @@ def check_lint_of_changes(tally):
 
 def changed(*patterns):
     """Files that changed last, also those that have gone. In a clone without history, all."""
-    return list(dict.fromkeys(run(["git", "log", "--since=12 hours ago", "--name-only", "--pretty=", "--", *patterns]).stdout.split()))
+    return list(dict.fromkeys(run(["git", "log", "--since=8 hours ago", "--name-only", "--pretty=", "--", *patterns]).stdout.split()))
 
 
 def commands_of_each_file():
