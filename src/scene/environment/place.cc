@@ -48,8 +48,11 @@ Result<int> Place::make(const PropRequest& request) {
   for (const Made& known : made_)
     if (known.request == request && known.openable == openable) return known.index;
   GLOAM_TRY(Prop made, make_prop(request, style, &materials));
-  for (PropPart& part : made.parts)  // what stands ajar from the start stays a joint
+  for (PropPart& part : made.parts) {
+    part.join_visuals();
+    // What stands ajar from the start stays a joint.
     if (!openable && part.joint && part.joint->initial == 0) part.joint.reset();
+  }
   const int index = add(std::move(made));
   made_.push_back({request, openable, index});
   return index;

@@ -1,5 +1,6 @@
 #include "scene/environment/prop.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -72,6 +73,23 @@ PropPart& PropPart::show(const std::string& name, const std::string& material, c
   }
   visuals.push_back({name, material, solid.mesh()});
   return *this;
+}
+
+void PropPart::join_visuals() {
+  std::vector<PropVisual> joined;
+  for (PropVisual& visual : visuals) {
+    const auto like = std::find_if(joined.begin(), joined.end(), [&](const PropVisual& other) {
+      return other.material == visual.material && other.mesh.uvs.empty() == visual.mesh.uvs.empty();
+    });
+    if (like == joined.end()) {
+      joined.push_back(std::move(visual));
+      continue;
+    }
+    Solid whole(std::move(like->mesh));
+    whole += Solid(std::move(visual.mesh));
+    like->mesh = std::move(whole).mesh();
+  }
+  visuals = std::move(joined);
 }
 
 PropPart& PropPart::collide_box(Vec3f low, Vec3f high) {

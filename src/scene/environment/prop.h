@@ -54,6 +54,9 @@ struct PropPart {
 
   /// Adds to the visual of that name; all of one name are of one material.
   PropPart& show(const std::string& name, const std::string& material, const Solid& solid);
+  /// Visuals of one material become one, named after the first: each is a geom that MuJoCo moves at
+  /// every step, wherever the part stands.
+  void join_visuals();
   PropPart& collide_box(Vec3f low, Vec3f high);
   /// About its own centre; `half` = half extents.
   PropPart& collide_box(Vec3f center, Vec3f half, const Quat& q);

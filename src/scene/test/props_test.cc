@@ -166,6 +166,30 @@ TEST(Props, AreTheSameForTheSameRequest) {
       EXPECT_EQ(hash({kind.name, seed}), hash({kind.name, seed})) << kind.name;
 }
 
+// A geom costs time at every step: a place's thing has no more of them than it has to.
+TEST(Props, InAPlaceHaveOneVisualForEachMaterialAndLoseNothing) {
+  for (const PropKind& kind : prop_catalogue()) {
+    SCOPED_TRACE(kind.name);
+    MaterialSet materials;
+    const Prop alone = make_prop({kind.name, 3}, {}, &materials).value();
+    Place place("p");
+    const Prop& placed = place.prop(place.make({kind.name, 3}).value());
+    ASSERT_EQ(placed.parts.size(), alone.parts.size());
+    for (size_t i = 0; i < placed.parts.size(); ++i) {
+      size_t corners = 0;
+      std::set<std::pair<std::string, bool>> kinds;
+      for (const PropVisual& visual : placed.parts[i].visuals) {
+        check_mesh(visual.mesh);
+        corners += visual.mesh.indices.size();
+        EXPECT_TRUE(kinds.insert({visual.material, visual.mesh.uvs.empty()}).second)
+            << visual.name << " is of a material that another visual has";
+      }
+      for (const PropVisual& visual : alone.parts[i].visuals) corners -= visual.mesh.indices.size();
+      EXPECT_EQ(corners, 0u) << "corners more or less than those of all visuals together";
+    }
+  }
+}
+
 TEST(Props, HaveNamesOfTheirOwnAndATextEach) {
   std::set<std::string> names;
   for (const PropKind& kind : prop_catalogue()) {
