@@ -125,10 +125,10 @@ def render_all(pictures, folder, quick):
 
 
 def one_of_each_place(pictures):
-    """All but the places that differ from one before only by their seed, or by where they are seen from."""
+    """All but the places that differ from one before by their seed alone: house_3_above from house_1_above."""
     places, chosen = set(), []
     for picture in pictures:
-        place = re.sub(r"_.*", "", picture.key) if picture.chapter == "environments" else picture.name
+        place = re.sub(r"_\d+", "", picture.key) if picture.chapter == "environments" else picture.name
         if place not in places:
             chosen.append(picture)
         places.add(place)

@@ -26,6 +26,12 @@ Vec3f rotate(const Quat& q, Vec3f v) {
   return v + t * float(q.w) + cross(u, t);
 }
 
+void append(const Solid& solid, PropVisual* visual) {
+  Solid whole(std::move(visual->mesh));
+  whole += solid;
+  visual->mesh = std::move(whole).mesh();
+}
+
 void include(Vec3f p, Prop::Box* box) {
   box->low = {min(box->low.x, p.x), min(box->low.y, p.y), min(box->low.z, p.z)};
   box->high = {max(box->high.x, p.x), max(box->high.y, p.y), max(box->high.z, p.z)};
@@ -66,9 +72,7 @@ PropPart& PropPart::show(const std::string& name, const std::string& material, c
   for (PropVisual& visual : visuals) {
     if (visual.name != name) continue;
     GLOAM_CHECK(visual.material == material, "one visual of two materials");
-    Solid whole(std::move(visual.mesh));
-    whole += solid;
-    visual.mesh = std::move(whole).mesh();
+    append(solid, &visual);
     return *this;
   }
   visuals.push_back({name, material, solid.mesh()});
@@ -81,13 +85,10 @@ void PropPart::join_visuals() {
     const auto like = std::find_if(joined.begin(), joined.end(), [&](const PropVisual& other) {
       return other.material == visual.material && other.mesh.uvs.empty() == visual.mesh.uvs.empty();
     });
-    if (like == joined.end()) {
+    if (like == joined.end())
       joined.push_back(std::move(visual));
-      continue;
-    }
-    Solid whole(std::move(like->mesh));
-    whole += Solid(std::move(visual.mesh));
-    like->mesh = std::move(whole).mesh();
+    else
+      append(Solid(std::move(visual.mesh)), &*like);
   }
   visuals = std::move(joined);
 }
