@@ -44,7 +44,7 @@ struct WorldInfo {
   double timestep = 0;             ///< [s]
   double mass = 0;                 ///< of all bodies [kg]
   int64_t model_bytes = 0;         ///< mjModel
-  int64_t triangles = 0;           ///< of visual meshes, instances counted once each
+  int64_t triangles = 0;           ///< that are drawn: of meshes, height fields, model files
   std::vector<Region> regions;     ///< floors of a generated environment
   std::vector<DrawnOption> drawn;  ///< what came of [[randomize]]
   std::vector<Error> unsupported;  ///< what is in the file and is not simulated or drawn, and where

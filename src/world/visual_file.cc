@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "base/parallel.h"
 #include "base/text.h"
@@ -287,6 +288,28 @@ Status describe_visuals(const CompiledWorld& world, const std::vector<Affine3f>&
                         const AddVisualPart& add, LightLevels* levels, RenderDescription* out) {
   if (world.scene.visuals.empty()) return {};
   return VisualImporter(world, poses, add, levels, out).run();
+}
+
+int64_t count_visual_triangles(const CompiledWorld& world) {
+  std::map<std::filesystem::path, std::optional<ModelFile>> files;
+  int64_t triangles = 0;
+  for (const VisualOptions& v : world.scene.visuals) {
+    const auto [file, is_new] = files.try_emplace(v.file);
+    if (is_new) {
+      Result<ModelFile> read = load_model_file(world.scene, v.file, title(v), v.loc);
+      if (read.ok()) file->second = std::move(read).value();
+    }
+    if (!file->second) continue;
+    const ModelFile& model = *file->second;
+    for (const ModelNode& node : nodes_of(model)) {
+      if (!v.node.empty() && node.name != v.node) continue;
+      for (const int i : node.instances) {
+        const int mesh = model.instances[static_cast<size_t>(i)].mesh;
+        triangles += static_cast<int64_t>(model.meshes[static_cast<size_t>(mesh)].triangle_count());
+      }
+    }
+  }
+  return triangles;
 }
 
 }  // namespace gloam

@@ -28,4 +28,7 @@ Status add_visual_of(const std::string& user, VisualOptions visual, Scene* scene
 Status describe_visuals(const CompiledWorld& world, const std::vector<Affine3f>& poses,
                         const AddVisualPart& add, LightLevels* levels, RenderDescription* out);
 
+/// Triangles of the scene's visuals, of all instances; files that cannot be read have none.
+int64_t count_visual_triangles(const CompiledWorld& world);
+
 }  // namespace gloam

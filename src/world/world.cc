@@ -8,6 +8,7 @@
 #include "world/level.h"
 #include "world/visual_camera.h"
 #include "world/world.h"
+#include "world/visual_file.h"
 
 namespace gloam {
 namespace {
@@ -97,9 +98,11 @@ int64_t count_triangles(const mjModel* m, bool hidden_groups) {
   int64_t triangles = 0;
   for (int geom = 0; geom < m->ngeom; ++geom) {
     const int mesh = m->geom_dataid[geom];
-    const bool is_mesh = m->geom_type[geom] == mjGEOM_MESH || m->geom_type[geom] == mjGEOM_SDF;
-    if (!is_mesh || mesh < 0 || (!hidden_groups && m->geom_group[geom] > 2)) continue;
-    triangles += m->mesh_facenum[mesh];
+    if (mesh < 0 || (!hidden_groups && m->geom_group[geom] > 2)) continue;
+    if (m->geom_type[geom] == mjGEOM_MESH || m->geom_type[geom] == mjGEOM_SDF)
+      triangles += m->mesh_facenum[mesh];
+    if (m->geom_type[geom] == mjGEOM_HFIELD)
+      triangles += int64_t{2} * (m->hfield_nrow[mesh] - 1) * (m->hfield_ncol[mesh] - 1);
   }
   return triangles;
 }
@@ -176,6 +179,7 @@ WorldInfo World::info() const {
   if (compiled_->visual_model != nullptr)
     info.triangles += count_triangles(compiled_->visual_model.get(), true);
   info.regions = compiled_->regions;
+  info.triangles += count_visual_triangles(*compiled_);
   info.drawn = compiled_->drawn;
   info.unsupported = compiled_->unsupported;
   return info;

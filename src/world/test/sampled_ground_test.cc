@@ -216,10 +216,12 @@ TEST_F(SampledGrounds, AreDrawnAsTheFileOrAsTheyAre) {
     return names;
   };
   EXPECT_THAT(shown(kGround), ::testing::ElementsAre("ground"));
+  EXPECT_EQ(world_->info().triangles, 200);
   const World again =
       World::compile(world_->compiled()->scene).value();  // a compiled scene has the visual
   EXPECT_EQ(again.compiled()->scene.visuals.size(), 1u);
   shown(std::string(kGround) + "drawn = false\n");
+  EXPECT_EQ(world_->info().triangles, 2 * 100 * 100);
   const mjModel& m = *world_->compiled()->model;
   EXPECT_EQ(m.geom_group[mj_name2id(&m, mjOBJ_GEOM, "ground")], 0);
   EXPECT_TRUE(world_->compiled()->scene.visuals.empty());
