@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <charconv>
 #include <chrono>
 #include <cmath>
@@ -21,7 +23,7 @@ std::string as_time(double seconds) {
                     : fmt::format("{} min {:02} s", whole / 60, whole % 60);
 }
 
-bool progress_line_open = false;
+std::atomic<bool> progress_line_open{false};  // jobs show progress from their own threads
 
 }  // namespace
 
@@ -41,10 +43,9 @@ ProgressCallback progress_display(const Globals& globals) {
     if (!quiet && progress.seconds > 1.0 && progress.seconds - last_print >= interval) {
       last_print = progress.seconds;
       const double fraction = std::min(std::max(progress.done, 0.0), 1.0);
-      const std::string eta =
-          fraction > 0.01 ? fmt::format(", about {} left",
-                                        as_time(progress.seconds * (1 - fraction) / fraction))
-                          : "";
+      double left = progress.left;
+      if (left == 0 && fraction > 0.01) left = progress.seconds * (1 - fraction) / fraction;
+      const std::string eta = left > 0 ? fmt::format(", about {} left", as_time(left)) : "";
       if (terminal) {
         constexpr int kWidth = 30;
         const int filled = static_cast<int>(fraction * kWidth);

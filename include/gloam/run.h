@@ -15,15 +15,6 @@
 
 namespace gloam {
 
-struct Progress {
-  std::string what;    ///< "simulating", "rendering" …
-  double done = 0;     ///< 0..1
-  double seconds = 0;  ///< wall time so far [s]
-};
-/// Called about ten times a second, first before any file is written; returns false to stop the job
-/// (it still finishes its files).
-using ProgressCallback = std::function<bool(const Progress&)>;
-
 struct RunRequest {
   std::filesystem::path out = {};  ///< results folder; empty = nothing is recorded
   bool overwrite = false;          ///< an existing results folder is replaced
@@ -48,8 +39,9 @@ struct RunReport {
   Status status;  ///< why it ended early, if it did; what was recorded is readable
 };
 
-/// Runs a World for its duration and records what its Scene asks for. An Error means that nothing
-/// could be started.
+/// Runs a World for its duration and records what its Scene asks for. `progress` is called first
+/// before any file is written; when it returns false the files are finished all the same. An Error
+/// means that nothing could be started.
 Result<RunReport> run_and_record(const World& world, const RunRequest& request,
                                  const ProgressCallback& progress);
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -51,12 +52,25 @@ struct WorldInfo {
 };
 
 class World {
+/// How far a job is.
+struct Progress {
+  std::string what;    ///< "simulating", "rendering", "making 'chair' physical" …
+  double done = 0;     ///< 0..1, never less than before
+  double seconds = 0;  ///< wall time so far [s]
+  double left = 0;     ///< about, of `what` [s]; 0 = as `done` grows, < 0 = cannot be told
+};
+/// Called about ten times a second, one call at a time, on a thread of the job's; returns false to
+/// stop the job.
+using ProgressCallback = std::function<bool(const Progress&)>;
+
  public:
   World() = default;
   explicit World(std::shared_ptr<const CompiledWorld> compiled) : compiled_(std::move(compiled)) {}
 
-  /// Compiles a Scene. On failure nothing is left behind.
-  static Result<World> compile(const Scene& scene);
+  /// Compiles a Scene, on any thread. On failure nothing is left behind. Without `progress` the log
+  /// tells of what takes long. Stopped by it, the Error is kInterrupted: within 0.2 s, but while
+  /// MuJoCo reads or compiles the model.
+  static Result<World> compile(const Scene& scene, const ProgressCallback& progress = {});
 
   Result<Joint> find_joint(const std::string& name) const;
   Result<Body> find_body(const std::string& name) const;
@@ -91,8 +105,9 @@ struct ObjectReport {
   double seconds = 0;                          ///< that the colliders took
   std::vector<std::string> notes = {};         ///< what is odd about the mesh
 };
-/// Converts one object without a scene. Errors: as of World::compile.
-Result<ObjectReport> convert_object(const ObjectOptions& object, const FileAccess& access = {});
+/// Converts one object without a scene. Progress and Errors: as of World::compile.
+Result<ObjectReport> convert_object(const ObjectOptions& object, const FileAccess& access = {},
+                                    const ProgressCallback& progress = {});
 
 /// How a model fares against stock MuJoCo, and on its way out into MJCF and back.
 struct ModelCheck {

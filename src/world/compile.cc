@@ -1,11 +1,13 @@
 #include <chrono>
 
+#include "geometry/model_file.h"
 #include "scene/environment/generators.h"
 #include "scene/environment/place_writer.h"
 #include "scene/mujoco_guard.h"
 #include "scene/randomize.h"
 #include "scene/validate.h"
 #include "world/authored_lidar.h"
+#include "world/compile_progress.h"
 #include "world/level.h"
 #include "world/mesh_object.h"
 #include "world/model_cache.h"
@@ -55,18 +57,31 @@ void describe_place(const Place& place, CompiledWorld* world) {
   world->ev100 = place.ev100;
 }
 
+bool has_meshes(const Scene& scene) {
+  return !scene.objects.empty() || is_model_file(scene.environment.file);
+}
+
+double weights_of(const Scene& scene) {
+  return kModelWeight + (has_meshes(scene) ? kReadWeight + kConvertWeight : 0) +
+         (scene.hfields.empty() ? 0 : kSampleWeight);
+}
+
 }  // namespace
 
-Result<World> World::compile(const Scene& written) {
+Result<World> World::compile(const Scene& written, const ProgressCallback& callback) {
   install_mujoco_handler();
   GLOAM_TRY_STATUS(validate_scene(written));
   Scene scene = written;
+  CompileProgress progress(callback, weights_of(scene));
   std::vector<DrawnOption> drawn;
   GLOAM_TRY_STATUS(draw_options(DrawStage::kPlace, &scene, &drawn));
+  if (has_generator(scene.environment)) progress.begin("making the place", 0);
   GLOAM_TRY(const std::optional<Place> place, make_place(scene));
+  GLOAM_TRY_STATUS(progress.check());
   if (place) add_place_looks(*place, &scene);
   GLOAM_TRY_STATUS(add_ground_looks(&scene));
-  GLOAM_TRY(const MeshObjects objects, load_mesh_objects(scene));
+  if (has_meshes(scene)) progress.begin("reading model files", kReadWeight);
+  GLOAM_TRY(const MeshObjects objects, load_mesh_objects(scene, &progress));
   GLOAM_TRY_STATUS(add_object_visuals(objects, &scene));
   GLOAM_TRY_STATUS(draw_options(DrawStage::kRest, &scene, &drawn));
   scene.randomize.clear();
@@ -78,12 +93,13 @@ Result<World> World::compile(const Scene& written) {
     if (!scene.bare_model.empty()) cached->robots = {bare_robot(scene, cached->model.get())};
     GLOAM_TRY_STATUS(check_sensors(*cached));
     GLOAM_TRY_STATUS(describe_lidars(*cached));
+    progress.finish();
     return World(std::move(cached));
   }
   const auto start = std::chrono::steady_clock::now();
   ModelFiles files;
   GLOAM_TRY_STATUS(add_scene_files(scene, &files));
-  GLOAM_TRY(Level level, build_level(scene, place, objects, &files));
+  GLOAM_TRY(Level level, build_level(scene, place, objects, &files, &progress));
   auto world = std::make_shared<CompiledWorld>();
   world->scene = scene;
   world->place_hash = place_hash;
@@ -99,6 +115,7 @@ Result<World> World::compile(const Scene& written) {
   add_urdf_visuals(scene, &files, world.get());
   if (std::chrono::steady_clock::now() - start > kWorthCaching)
     store_cached_world(world, files.dependencies());
+  progress.finish();
   return World(std::move(world));
 }
 

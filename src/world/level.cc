@@ -13,6 +13,7 @@
 #include "scene/mujoco_plugins.h"
 #include "scene/overrides.h"
 #include "scene/urdf_text.h"
+#include "world/compile_progress.h"
 #include "world/endless_compile.h"
 #include "world/finite_model.h"
 #include "world/level_cameras.h"
@@ -45,8 +46,21 @@ void report_warnings(const MujocoWarningCapture& warnings, const mjSpec* spec, i
   }
 }
 
+// Tells that MuJoCo is at work, to the log if nobody watches otherwise. It cannot be stopped.
+class ModelWatch {
+ public:
+  ModelWatch(std::string what, double weight, double expected, CompileProgress* progress) {
+    if (progress != nullptr) progress->begin(what, weight, expected);
+    if (progress == nullptr || !progress->is_watched()) wait_.emplace(std::move(what), expected);
+  }
+
+ private:
+  std::optional<LongWait> wait_;
+};
+
 Result<SpecPtr> parse_model(const fs::path& file, const FileAccess& access, ModelFiles* files,
-                            std::vector<Error>* unsupported) {
+                            std::vector<Error>* unsupported, CompileProgress* progress) {
+  if (progress != nullptr) GLOAM_TRY_STATUS(progress->check());
   const std::string path = absolute_path(file, "").string();
   if (files->root_element(path) == "robot") {
     GLOAM_TRY(const UrdfText urdf,
@@ -58,8 +72,8 @@ Result<SpecPtr> parse_model(const fs::path& file, const FileAccess& access, Mode
   mjSpec* spec = nullptr;
   files->forget_failures();
   const MujocoWarningCapture warnings;
-  const LongWait wait(fmt::format("MuJoCo reads {}", file.filename().string()),
-                      files->slowest_replicate());
+  const ModelWatch watch(fmt::format("MuJoCo reads {}", file.filename().string()), 0,
+                         files->slowest_replicate(), progress);
   const Status status =
       guarded([&] { spec = mj_parseXML(path.c_str(), files->vfs(), message, sizeof(message)); });
   if (!status.ok()) return files->explain(status.error().message, path);
@@ -155,14 +169,16 @@ Status attach_robot(mjSpec* base, const RobotOptions& robot, mjSpec* child, Mode
 }
 
 Result<Level> assemble(const Scene& scene, const std::optional<Place>& place,
-                       const MeshObjects& objects, ModelFiles* files,
-                       const std::vector<SampledGround>& grounds, mjtConflict policy) {
+                       const MeshObjects& objects, const std::vector<Converted>& converted,
+                       ModelFiles* files, const std::vector<SampledGround>& grounds,
+                       mjtConflict policy, CompileProgress* progress) {
   Level level;
   if (!scene.bare_model.empty()) {
-    GLOAM_TRY(level.spec, parse_model(scene.bare_model, scene.access, files, &level.unsupported));
-  } else if (names_mjcf(scene.environment)) {
     GLOAM_TRY(level.spec,
-              parse_model(scene.environment.file, scene.access, files, &level.unsupported));
+              parse_model(scene.bare_model, scene.access, files, &level.unsupported, progress));
+  } else if (names_mjcf(scene.environment)) {
+    GLOAM_TRY(level.spec, parse_model(scene.environment.file, scene.access, files,
+                                      &level.unsupported, progress));
   } else {
     level.spec.reset(mj_makeSpec());
     mjs_setString(level.spec->modelname, scene.name.c_str());
@@ -173,13 +189,14 @@ Result<Level> assemble(const Scene& scene, const std::optional<Place>& place,
   }
   if (place) GLOAM_TRY_STATUS(add_place(*place, level.spec.get()));
   GLOAM_TRY_STATUS(add_grounds(grounds, level.spec.get()));
-  GLOAM_TRY_STATUS(add_objects(objects, level.spec.get(), &level.unsupported));
+  GLOAM_TRY_STATUS(add_objects(objects, converted, level.spec.get(), &level.notes));
   GLOAM_TRY_STATUS(apply_overrides(scene.overrides, kEnvironmentName, level.spec.get()));
   if (level.spec->compiler.conflict == mjCONFLICT_WARNING && !scene.robots.empty())
     level.spec->compiler.conflict = policy;
   for (const RobotOptions& robot : scene.robots) {
     GLOAM_TRY_STATUS(check_prefix(level.spec.get(), robot));
-    GLOAM_TRY(SpecPtr child, parse_model(robot.file, scene.access, files, &level.unsupported));
+    GLOAM_TRY(SpecPtr child,
+              parse_model(robot.file, scene.access, files, &level.unsupported, progress));
     GLOAM_TRY_STATUS(apply_overrides(scene.overrides, robot.name, child.get()));
     GLOAM_TRY_STATUS(attach_robot(level.spec.get(), robot, child.get(), files, &level.unsupported));
     level.robots.push_back({robot, std::move(child)});
@@ -226,7 +243,9 @@ Status check_finite(const Scene& scene, const Level& level, const ModelFiles& fi
   return error;
 }
 
-Status compile(const Scene& scene, ModelFiles* files, Level* level) {
+Status compile(const Scene& scene, ModelFiles* files, Level* level, double weight,
+               CompileProgress* progress) {
+  if (progress != nullptr) GLOAM_TRY_STATUS(progress->check());
   files->forget_failures();
   mjModel* model = nullptr;
   mjSpec* spec = level->spec.get();
@@ -238,7 +257,7 @@ Status compile(const Scene& scene, ModelFiles* files, Level* level) {
   const mjVFS* vfs = files->vfs();
   const int warnings_before = mjs_numWarnings(spec);
   const MujocoWarningCapture warnings;
-  const LongWait wait("MuJoCo compiles the model", 0);
+  const ModelWatch watch("MuJoCo compiles the model", weight, 0, progress);
   const Status status = guarded([&] { model = mj_compile(spec, vfs); });
   level->model.reset(model);
   const fs::path file = file_of(scene, "");
@@ -273,21 +292,28 @@ Status add_scene_files(const Scene& scene, ModelFiles* files) {
 }
 
 Result<Level> build_level(const Scene& scene, const std::optional<Place>& place,
-                          const MeshObjects& objects, ModelFiles* files) {
+                          const MeshObjects& objects, ModelFiles* files,
+                          CompileProgress* progress) {
   std::vector<Error> notes;
-  GLOAM_TRY(const std::vector<SampledGround> grounds, sample_grounds(scene, files, &notes));
+  GLOAM_TRY(const std::vector<SampledGround> grounds,
+            sample_grounds(scene, files, &notes, progress));
+  GLOAM_TRY(const std::vector<Converted> converted, convert_objects(objects, progress));
   // MuJoCo's "merge" rules let a robot bring its solver settings along; where two files cannot both
   // be right ("merge" refuses), the earlier file wins and the rest is reported.
-  Result<Level> assembled = assemble(scene, place, objects, files, grounds, mjCONFLICT_MERGE);
+  const auto assembled_by = [&](mjtConflict policy) {
+    return assemble(scene, place, objects, converted, files, grounds, policy, progress);
+  };
+  Result<Level> assembled = assembled_by(mjCONFLICT_MERGE);
   if (!assembled.ok() && assembled.error().message.find("onflict") != std::string::npos)
-    assembled = assemble(scene, place, objects, files, grounds, mjCONFLICT_WARNING);
+    assembled = assembled_by(mjCONFLICT_WARNING);
   if (!assembled.ok()) return assembled;
   Level level = std::move(assembled).value();
-  level.unsupported.insert(level.unsupported.begin(), notes.begin(), notes.end());
+  level.notes.insert(level.notes.begin(), notes.begin(), notes.end());
   GLOAM_TRY_STATUS(add_cameras(scene, &level));
   add_initial_keyframe(scene, &level);
-  GLOAM_TRY_STATUS(compile(scene, files, &level));
-  if (turn_tracking_cameras(scene, &level)) GLOAM_TRY_STATUS(compile(scene, files, &level));
+  GLOAM_TRY_STATUS(compile(scene, files, &level, kModelWeight, progress));
+  if (turn_tracking_cameras(scene, &level))
+    GLOAM_TRY_STATUS(compile(scene, files, &level, 0, progress));
   GLOAM_TRY_STATUS(fill_initial_keyframe(&level));
   return level;
 }

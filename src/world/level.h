@@ -18,12 +18,14 @@ struct LevelRobot {
 };
 
 struct MeshObjects;
+class CompileProgress;
 
 struct Level {
   SpecPtr spec;
   std::vector<LevelRobot> robots;  ///< empty for a bare model
   ModelPtr model;
   int initial_key = -1;            ///< as in CompiledWorld
+  std::vector<Error> notes;        ///< as in CompiledWorld
   std::vector<Error> unsupported;  ///< settings that lost against another file's
 };
 
@@ -33,9 +35,10 @@ Status add_scene_files(const Scene& scene, ModelFiles* files);
 /// Parses, attaches and compiles. `place` is what make_place() makes of the scene, `objects` what
 /// load_mesh_objects() does. `files` must
 /// hold the scene's files already and outlive the Level. After it, level.spec holds everything that
-/// the model does (for export).
+/// the model does (for export). Errors: also, it was cancelled.
 Result<Level> build_level(const Scene& scene, const std::optional<Place>& place,
-                          const MeshObjects& objects, ModelFiles* files);
+                          const MeshObjects& objects, ModelFiles* files,
+                          CompileProgress* progress = nullptr);
 
 /// Names that MuJoCo gives its objects of one kind, "" where unnamed.
 std::vector<std::string> object_names(const mjModel* model, mjtObj type, int count);

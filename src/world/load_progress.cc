@@ -25,4 +25,11 @@ std::string LoadProgress::report(size_t file, double share, double seconds) {
                      left > 0 ? fmt::format(", about {:.0f} s left", left) : "");
 }
 
+double LoadProgress::share() const {
+  const std::lock_guard lock(mutex_);
+  double all = 0, read = 0;
+  for (const File& f : files_) all += f.bytes, read += f.bytes * f.share;
+  return all > 0 ? read / all : 1;
+}
+
 }  // namespace gloam

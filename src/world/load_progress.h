@@ -17,12 +17,14 @@ class LoadProgress {
   /// before 2 s nor within 2 s of the last: "reading model files: 1 of 4, 120 of 410 MB, about 5 s
   /// left". From any thread.
   std::string report(size_t file, double share, double seconds);
+  /// Of all bytes, 0 … 1, that are read. From any thread.
+  double share() const;
 
  private:
   struct File {
     double bytes, share;
   };
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::vector<File> files_;
   double told_ = 0;  // when, last [s]
 };

@@ -35,7 +35,8 @@ void append(const ModelFile& model, int instance, const Affine3f& X_BF, Triangle
 
 class ObjectLoader {
  public:
-  explicit ObjectLoader(const Scene& scene) : scene_(scene) {}
+  ObjectLoader(const Scene& scene, CompileProgress* progress)
+      : scene_(scene), progress_(progress) {}
 
   Result<MeshObjects> load() {
     if (scene_.objects.empty() && !is_place(scene_.environment)) return MeshObjects{};
@@ -43,7 +44,7 @@ class ObjectLoader {
     for (const ObjectOptions& o : scene_.objects) uses.push_back({o.file, title(o), o.loc});
     const EnvironmentOptions& place = scene_.environment;
     if (is_place(place)) uses.push_back({place.file, "environment", place.loc});
-    GLOAM_TRY(files_, load_model_files(scene_, uses));
+    GLOAM_TRY(files_, load_model_files(scene_, uses, progress_));
     for (const ObjectOptions& o : scene_.objects) GLOAM_TRY_STATUS(add_object(o));
     if (is_place(place)) GLOAM_TRY_STATUS(add_place(place));
     out_.hash = hash();
@@ -184,11 +185,14 @@ class ObjectLoader {
   const Scene& scene_;
   std::vector<LoadedModel> files_;
   MeshObjects out_;
+  CompileProgress* progress_;
 };
 
 }  // namespace
 
-Result<MeshObjects> load_mesh_objects(const Scene& scene) { return ObjectLoader(scene).load(); }
+Result<MeshObjects> load_mesh_objects(const Scene& scene, CompileProgress* progress) {
+  return ObjectLoader(scene, progress).load();
+}
 
 Status add_object_visuals(const MeshObjects& objects, Scene* scene) {
   for (const MeshObject& object : objects.objects) {

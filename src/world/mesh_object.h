@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/convert/convert.h"
 #include "world/level.h"
 
 namespace gloam {
@@ -24,15 +25,20 @@ struct MeshObjects {
 };
 
 /// Reads their files, by way of the cache on disk. Errors: a file that cannot be read, no such
-/// node, nothing in it, names that clash where they must not.
-Result<MeshObjects> load_mesh_objects(const Scene& scene);
+/// node, nothing in it, names that clash where they must not; it was cancelled.
+Result<MeshObjects> load_mesh_objects(const Scene& scene, CompileProgress* progress = nullptr);
 
 /// Adds a [[visual]] for each. Errors: the scene has a visual of that name.
 Status add_object_visuals(const MeshObjects& objects, Scene* scene);
 
-/// Converts them (geometry/convert) and adds a body each, with its colliders in group 3. What is
-/// odd about the meshes is told in `unsupported`. Errors: convert_mesh's, names that the spec has,
-/// what is too light to move.
-Status add_objects(const MeshObjects& objects, mjSpec* spec, std::vector<Error>* unsupported);
+/// Converts them (geometry/convert), several at a time. Their meshes are not kept. Errors:
+/// convert_mesh's, of the first that fails.
+Result<std::vector<Converted>> convert_objects(const MeshObjects& objects,
+                                               CompileProgress* progress = nullptr);
+
+/// Adds a body for each, with its colliders in group 3. What is odd about the meshes is told in
+/// `notes`. Errors: names that the spec has, what is too light to move.
+Status add_objects(const MeshObjects& objects, const std::vector<Converted>& converted,
+                   mjSpec* spec, std::vector<Error>* notes);
 
 }  // namespace gloam

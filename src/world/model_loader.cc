@@ -12,6 +12,7 @@
 #include "base/parallel.h"
 #include "geometry/model_file_cache.h"
 #include "scene/model_path.h"
+#include "world/compile_progress.h"
 #include "world/load_progress.h"
 
 namespace gloam {
@@ -55,7 +56,8 @@ Result<ModelFile> load_model_file(const Scene& scene, const fs::path& file, cons
 }
 
 Result<std::vector<LoadedModel>> load_model_files(const Scene& scene,
-                                                  const std::vector<FileUse>& uses) {
+                                                  const std::vector<FileUse>& uses,
+                                                  CompileProgress* progress) {
   std::vector<const FileUse*> first;  // of each file
   std::set<fs::path> known;
   for (const FileUse& use : uses)
@@ -66,20 +68,26 @@ Result<std::vector<LoadedModel>> load_model_files(const Scene& scene,
     const uintmax_t size = fs::file_size(use->path, code);
     sizes.push_back(code ? 0 : size);
   }
-  LoadProgress progress(sizes);
+  LoadProgress load(sizes);
   const auto start = std::chrono::steady_clock::now();
   const auto report = [&](size_t file, double share) {
     const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
-    const std::string text = progress.report(file, share, passed.count());
-    if (!text.empty()) log_info("{}", text);
+    const std::string text = load.report(file, share, passed.count());
+    if (progress != nullptr && progress->is_watched()) {
+      progress->report(load.share());
+    } else if (!text.empty()) {
+      log_info("{}", text);
+    }
   };
   std::vector<std::optional<Result<ModelFile>>> read(first.size());
   parallel_for("model files", static_cast<int64_t>(first.size()), [&](int64_t i) {
     const auto k = static_cast<size_t>(i);
+    if (progress != nullptr && progress->is_cancelled()) return;
     read[k] = load_model_file(scene, first[k]->path, first[k]->user, first[k]->loc,
                               [&](double share) { report(k, share); });
     report(k, 1);
   });
+  if (progress != nullptr) GLOAM_TRY_STATUS(progress->check());
   std::vector<LoadedModel> out;
   for (size_t i = 0; i < first.size(); ++i) {
     GLOAM_TRY(ModelFile model, std::move(*read[i]));

@@ -32,9 +32,12 @@ struct FileUse {
   SourceLoc loc;
 };
 
-/// Reads each file, once; says on stderr how far it is when that takes more
-/// than two seconds. Errors: as load_model_file.
+class CompileProgress;
+
+/// Reads each file, once; says how far it is to whoever watches `progress`, else on stderr when it
+/// takes more than two seconds. Errors: as load_model_file; it was cancelled.
 Result<std::vector<LoadedModel>> load_model_files(const Scene& scene,
-                                                  const std::vector<FileUse>& uses);
+                                                  const std::vector<FileUse>& uses,
+                                                  CompileProgress* progress = nullptr);
 
 }  // namespace gloam

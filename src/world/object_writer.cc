@@ -2,11 +2,16 @@
 
 #include <algorithm>
 #include <chrono>
+#include <mutex>
+#include <numeric>
+#include <optional>
 
+#include "base/parallel.h"
 #include "geometry/convert/convert.h"
 #include "gloam/world.h"
 #include "scene/spec_geom.h"
 #include "scene/validate.h"
+#include "world/compile_progress.h"
 #include "world/imported_mesh.h"
 #include "world/long_wait.h"
 #include "world/mesh_object.h"
@@ -99,20 +104,59 @@ class ObjectWriter {
   mjSpec* spec_;
 };
 
+// Tells the log of the conversion, if nobody watches it otherwise.
+class ConvertWatch {
+ public:
+  ConvertWatch(const MeshObjects& objects, CompileProgress* progress) {
+    const std::vector<MeshObject>& all = objects.objects;
+    const std::string what = all.size() == 1
+                                 ? fmt::format("making '{}' physical", all[0].options.name)
+                                 : fmt::format("making {} meshes physical", all.size());
+    if (progress != nullptr) progress->begin(what, kConvertWeight);
+    if (progress == nullptr || !progress->is_watched()) wait_.emplace(what, 0);
+  }
+
+ private:
+  std::optional<LongWait> wait_;
+};
+
+// About, in no unit. CoACD's time grows with the triangles that it is given.
+double cost_of(const MeshObject& object) {
+  constexpr double kLeast = 200, kMost = 20'000;
+  return kLeast + std::min(static_cast<double>(object.mesh.triangle_count()), kMost);
+}
+
+Result<Converted> convert_one(const MeshObject& object, CompileProgress* progress) {
+  const ObjectOptions& o = object.options;
+  Result<Converted> converted = convert_mesh(
+      object.mesh, {.colliders = o.colliders,
+                    .concavity = o.concavity,
+                    .max_hulls = o.max_hulls,
+                    .may_be_room = false,
+                    .is_cancelled = progress == nullptr ? nullptr : &progress->is_cancelled()});
+  if (converted.ok() || converted.error().kind == ErrorKind::kInterrupted) return converted;
+  return said_of(title(o), o.loc, converted.error());
+}
+
 }  // namespace
 
-Result<ObjectReport> convert_object(const ObjectOptions& options, const FileAccess& access) {
+Result<ObjectReport> convert_object(const ObjectOptions& options, const FileAccess& access,
+                                    const ProgressCallback& callback) {
   Scene scene;
   scene.access = access;
   scene.objects = {options};
   GLOAM_TRY_STATUS(validate_scene(scene));
-  GLOAM_TRY(const MeshObjects loaded, load_mesh_objects(scene));
+  CompileProgress progress(callback, kReadWeight + kConvertWeight);
+  progress.begin("reading model files", kReadWeight);
+  GLOAM_TRY(const MeshObjects loaded, load_mesh_objects(scene, &progress));
   const TriangleMesh& mesh = loaded.objects[0].mesh;
   const auto start = std::chrono::steady_clock::now();
-  const LongWait wait(fmt::format("making '{}' physical", options.name), 0);
-  const Result<Converted> converted =
-      convert_mesh(mesh, {options.colliders, options.concavity, options.max_hulls});
-  if (!converted.ok()) return said_of(title(options), options.loc, converted.error());
+  Result<Converted> converted = Error{};
+  {
+    const ConvertWatch watch(loaded, &progress);
+    converted = convert_one(loaded.objects[0], &progress);
+  }
+  if (!converted.ok()) return converted.error();
   const std::chrono::duration<double> passed = std::chrono::steady_clock::now() - start;
   const Overlap overlap = overlap_of(*converted);
   const Vec3f half = half_extents(mesh);
@@ -129,21 +173,53 @@ Result<ObjectReport> convert_object(const ObjectOptions& options, const FileAcce
   out.seconds = passed.count();
   for (const Error& note : loaded.notes) out.notes.push_back(note.message + ": " + note.hint);
   for (const std::string& note : converted->notes) out.notes.push_back("the mesh " + note);
+  progress.finish();
   return out;
 }
 
-Status add_objects(const MeshObjects& objects, mjSpec* spec, std::vector<Error>* unsupported) {
-  unsupported->insert(unsupported->end(), objects.notes.begin(), objects.notes.end());
-  for (const MeshObject& object : objects.objects) {
-    const ObjectOptions& o = object.options;
-    const LongWait wait(fmt::format("making '{}' physical", o.name), 0);
-    const Result<Converted> converted =
-        convert_mesh(object.mesh, {o.colliders, o.concavity, o.max_hulls});
-    if (!converted.ok()) return said_of(title(o), o.loc, converted.error());
-    for (const std::string& note : converted->notes)
+Result<std::vector<Converted>> convert_objects(const MeshObjects& objects,
+                                               CompileProgress* progress) {
+  const std::vector<MeshObject>& all = objects.objects;
+  if (all.empty()) return std::vector<Converted>();
+  const ConvertWatch watch(objects, progress);
+  // Where the large ones come first, none of them is left for the end. Shares by what they cost.
+  std::vector<size_t> order(all.size());
+  std::iota(order.begin(), order.end(), size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return cost_of(all[a]) > cost_of(all[b]); });
+  double cost = 0;
+  for (const MeshObject& object : all) cost += cost_of(object);
+  std::mutex mutex;
+  double done = 0;
+  std::vector<std::optional<Result<Converted>>> made(all.size());
+  parallel_for("convert meshes", static_cast<int64_t>(all.size()), [&](int64_t i) {
+    const size_t k = order[static_cast<size_t>(i)];
+    if (progress != nullptr && progress->is_cancelled()) return;
+    made[k] = convert_one(all[k], progress);
+    if (made[k]->ok()) made[k]->value().mesh = {};
+    const std::lock_guard lock(mutex);
+    done += cost_of(all[k]) / cost;
+    if (progress != nullptr) progress->report(done);
+  });
+  if (progress != nullptr) GLOAM_TRY_STATUS(progress->check());
+  std::vector<Converted> out;
+  for (std::optional<Result<Converted>>& one : made) {
+    if (!one->ok()) return one->error();
+    out.push_back(std::move(*one).value());
+  }
+  return out;
+}
+
+Status add_objects(const MeshObjects& objects, const std::vector<Converted>& converted,
+                   mjSpec* spec, std::vector<Error>* notes) {
+  notes->insert(notes->end(), objects.notes.begin(), objects.notes.end());
+  for (size_t i = 0; i < objects.objects.size(); ++i) {
+    const ObjectOptions& o = objects.objects[i].options;
+    for (const std::string& note : converted[i].notes)
       if (o.motion == "dynamic" || !note.starts_with("is open"))
-        unsupported->push_back({ErrorKind::kInput, fmt::format("{} {}", title(o), note), o.loc});
-    GLOAM_TRY_STATUS(ObjectWriter(object, spec).write(*converted));
+        notes->push_back(
+            {ErrorKind::kInput, fmt::format("{} {}", title(o), note), o.loc});
+    GLOAM_TRY_STATUS(ObjectWriter(objects.objects[i], spec).write(converted[i]));
   }
   return {};
 }

@@ -7,6 +7,7 @@
 #include "base/log.h"
 #include "scene/height_field_spec.h"
 #include "scene/spec_geom.h"
+#include "world/compile_progress.h"
 #include "world/model_loader.h"
 #include "world/visual_file.h"
 
@@ -132,7 +133,8 @@ Status admit_ground_files(const Scene& scene, ModelFiles* files) {
 }
 
 Result<std::vector<SampledGround>> sample_grounds(const Scene& scene, ModelFiles* files,
-                                                  std::vector<Error>* notes) {
+                                                  std::vector<Error>* notes,
+                                                  CompileProgress* progress) {
   std::vector<SampledGround> grounds;
   for (const HeightFieldOptions& o : scene.hfields) {
     GLOAM_TRY(const ModelFile model, load_model_file(scene, o.file, title(o), o.loc));
@@ -140,6 +142,11 @@ Result<std::vector<SampledGround>> sample_grounds(const Scene& scene, ModelFiles
     for (const std::string& part : model.parts)
       (void)files->read(o.file.parent_path() / part);  // what is missing is remembered as missing
     Result<std::vector<HeightField>> fields = sample(o, model, notes);
+    if (progress != nullptr) {
+      GLOAM_TRY_STATUS(progress->check());
+      progress->begin(fmt::format("sampling '{}'", o.name),
+                      kSampleWeight / static_cast<double>(scene.hfields.size()));
+    }
     if (!fields.ok()) return said_of(title(o), o.loc, fields.error());
     grounds.push_back({o, std::move(fields).value()});
   }

@@ -8,6 +8,8 @@
 
 namespace gloam {
 
+class CompileProgress;
+
 /// One [[hfield]], sampled: its ground, then its slabs.
 struct SampledGround {
   HeightFieldOptions options;
@@ -21,7 +23,8 @@ Status admit_ground_files(const Scene& scene, ModelFiles* files);
 /// dependencies of `files`; what the user ought to know goes to `notes`. Errors: a file that cannot
 /// be read, a region that is empty, too large or has no surface, too many slabs.
 Result<std::vector<SampledGround>> sample_grounds(const Scene& scene, ModelFiles* files,
-                                                  std::vector<Error>* notes);
+                                                  std::vector<Error>* notes,
+                                                  CompileProgress* progress = nullptr);
 
 /// Adds the fields with their geoms, NAME and then NAME_2 …, to the world body; in group 3 where
 /// the file itself is drawn. Error: a name that the spec has already.

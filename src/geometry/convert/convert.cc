@@ -137,14 +137,23 @@ class Converter {
   Result<Converted> convert(const TriangleMesh& mesh) {
     GLOAM_TRY(out_.mesh, welded(mesh));
     GLOAM_TRY_STATUS(find_hull());
+    GLOAM_TRY_STATUS(go_on());
     find_mass();
+    GLOAM_TRY_STATUS(go_on());
     GLOAM_TRY_STATUS(add_colliders());
+    GLOAM_TRY_STATUS(go_on());
     return std::move(out_);
+    GLOAM_TRY_STATUS(go_on());
   }
 
  private:
   Status find_hull() {
     hull_ = convex_hull(out_.mesh.positions, {.tolerance = kExact * diagonal(out_.mesh)});
+  Status go_on() const {
+    if (options_.is_cancelled == nullptr || !*options_.is_cancelled) return {};
+    return Error{ErrorKind::kInterrupted, "the conversion was stopped"};
+  }
+
     if (!hull_.indices.empty()) box_ = box_around(hull_);
     if (!hull_.indices.empty() && shortest_side(box_) >= kFlat * longest_side(box_)) return {};
     const double thickness = kPlate * diagonal(out_.mesh);
@@ -198,8 +207,9 @@ class Converter {
       out_.notes.push_back(
           fmt::format("has {} triangles: its parts are those of a coarser one of {} at most",
                       out_.mesh.triangle_count(), kMostDecomposed));
-    GLOAM_TRY(const std::vector<TriangleMesh> parts,
-              decompose(out_.mesh, {options_.concavity, options_.max_hulls}));
+    GLOAM_TRY(
+        const std::vector<TriangleMesh> parts,
+        decompose(out_.mesh, {options_.concavity, options_.max_hulls, options_.is_cancelled}));
     for (const TriangleMesh& part : parts) {
       MeshCollider collider = hull_of(part.positions);
       // A part that is thin beside the whole would have no volume for MuJoCo.

@@ -1,6 +1,7 @@
 #pragma once
 // QuickConvert: what a mesh is in physics. Colliders, volume, mass.
 
+#include <atomic>
 #include <string>
 
 #include "geometry/convert/collider.h"
@@ -12,6 +13,10 @@ struct ConvertOptions {
   std::string colliders = "auto";  ///< as ObjectOptions::colliders
   double concavity = 0.05;         ///< as ObjectOptions
   int max_hulls = 32;
+  /// A shell that looks inwards and that one can stand in is a room: its faces collide, what they
+  /// enclose is free. Otherwise it is turned round.
+  bool may_be_room = false;
+  const std::atomic<bool>* is_cancelled = nullptr;  ///< looked at now and then
 };
 
 struct Converted {
@@ -22,7 +27,8 @@ struct Converted {
   std::vector<std::string> notes;  ///< for people: what is odd about it
 };
 
-/// Errors: no triangles, not finite, no extent, farther than 1e9 m, CoACD is missing.
+/// Errors: no triangles, not finite, no extent, farther than 1e9 m, CoACD is missing, it was
+/// cancelled.
 /// A flat mesh becomes a plate as thick as a thousandth of its longest side.
 Result<Converted> convert_mesh(const TriangleMesh& mesh, const ConvertOptions& options);
 

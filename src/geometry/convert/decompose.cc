@@ -6,9 +6,15 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
 #include <cstdlib>
 #include <filesystem>
+#include <memory>
 #include <mutex>
+#include <optional>
+#include <thread>
 
 #include "base/archive.h"
 #include "base/cache.h"
@@ -24,7 +30,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kLibrary = "lib_coacd.so";
 constexpr uint64_t kHullsMagic =
-    0x32304C48'4D4F4C47ull;  // "GLOMHL02": changes with the layout and what is asked of CoACD
+    0x33304C48'4D4F4C47ull;  // "GLOMHL03": changes with the layout and what is asked of CoACD
 
 // As the cache keeps it: an archive of whole meshes, with normals and more, is model_file_cache's.
 struct KeptHull {
@@ -148,24 +154,39 @@ bool load_hulls(const fs::path& path, std::vector<TriangleMesh>* hulls) {
   return true;
 }
 
-}  // namespace
+Error cancelled() { return {ErrorKind::kInterrupted, "the conversion was stopped"}; }
 
-Result<std::vector<TriangleMesh>> decompose(const TriangleMesh& welded,
-                                            const DecomposeOptions& options) {
+void store_hulls(const fs::path& entry, const std::vector<TriangleMesh>& hulls) {
+  ArchiveWriter out;
+  begin_cache_entry(&out.bytes);
+  std::vector<KeptHull> kept;
+  for (const TriangleMesh& hull : hulls) kept.push_back({hull.positions, hull.indices});
+  out(kept);
+  seal_cache_entry(kHullsMagic, &out.bytes);
+  keep_in_cache(entry, out.bytes);
+}
+
+/// One decomposition. It shares nothing with whoever waits for it but this.
+struct Job {
+  CoacdApi api;
+  TriangleMesh mesh;
+  DecomposeOptions options;
+  fs::path entry;
+  std::atomic<bool> is_unwanted{false};
+
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::optional<Result<std::vector<TriangleMesh>>> result;  // guarded by mutex
+};
+
+Result<std::vector<TriangleMesh>> work(const Job& job) {
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
-  static const Result<CoacdApi> api = load_library();
-  if (!api.ok()) return api.error();
-  uint64_t key =
-      hash_bytes(&options.concavity, sizeof(options.concavity), kHullsMagic ^ api->version);
-  key = hash_bytes(&options.max_hulls, sizeof(options.max_hulls), key);
-  key = hash_span(std::span<const Vec3f>(welded.positions), key);
-  key = hash_span(std::span<const uint32_t>(welded.indices), key);
-  const fs::path entry = cache_folder(kHullCache) / cache_entry_name(kHullCache, key);
   std::vector<TriangleMesh> hulls;
-  if (load_hulls(entry, &hulls)) return hulls;
+  if (job.is_unwanted) return cancelled();
+  if (load_hulls(job.entry, &hulls)) return hulls;  // of a twin
   try {
-    hulls = run(*api, coarsened(welded, kMostDecomposed), options);
+    hulls = run(job.api, job.mesh, job.options);
   } catch (const std::exception& e) {
     return Error{ErrorKind::kInput, fmt::format("CoACD gives up on the mesh: {}", e.what())};
   } catch (...) {
@@ -174,15 +195,69 @@ Result<std::vector<TriangleMesh>> decompose(const TriangleMesh& welded,
   if (hulls.empty())
     return Error{
         ErrorKind::kInput, "CoACD finds no parts in the mesh", {}, "give colliders = \"hull\""};
-  // At once: a run that starts now has the same parts.
-  ArchiveWriter out;
-  begin_cache_entry(&out.bytes);
-  std::vector<KeptHull> kept;
-  for (const TriangleMesh& hull : hulls) kept.push_back({hull.positions, hull.indices});
-  out(kept);
-  seal_cache_entry(kHullsMagic, &out.bytes);
-  keep_in_cache(entry, out.bytes);
+  store_hulls(job.entry, hulls);  // at once: a run that starts now has the same parts
   return hulls;
+}
+
+/// Threads that nobody waits for any more, but the end of the program: CoACD's statics go then.
+class LeftBehind {
+ public:
+  ~LeftBehind() {
+    for (std::thread& thread : threads_) thread.join();
+  }
+  void add(std::thread thread) {
+    const std::lock_guard lock(mutex_);
+    threads_.push_back(std::move(thread));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::thread> threads_;
+};
+
+Result<std::vector<TriangleMesh>> work_unless_cancelled(const std::shared_ptr<Job>& job,
+                                                        const std::atomic<bool>& is_cancelled) {
+  static LeftBehind left_behind;
+  std::thread thread([job] {
+    Result<std::vector<TriangleMesh>> result = work(*job);
+    const std::lock_guard lock(job->mutex);
+    job->result = std::move(result);
+    job->changed.notify_all();
+  });
+  constexpr std::chrono::milliseconds kPoll{20};
+  std::unique_lock lock(job->mutex);
+  while (!job->changed.wait_for(lock, kPoll, [&] { return job->result.has_value(); })) {
+    if (!is_cancelled) continue;
+    job->is_unwanted = true;
+    left_behind.add(std::move(thread));
+    return cancelled();
+  }
+  lock.unlock();
+  thread.join();
+  return std::move(*job->result);
+}
+
+}  // namespace
+
+Result<std::vector<TriangleMesh>> decompose(const TriangleMesh& welded,
+                                            const DecomposeOptions& options) {
+  static const Result<CoacdApi> api = load_library();
+  if (!api.ok()) return api.error();
+  uint64_t key =
+      hash_bytes(&options.concavity, sizeof(options.concavity), kHullsMagic ^ api->version);
+  key = hash_bytes(&options.max_hulls, sizeof(options.max_hulls), key);
+  key = hash_span(std::span<const Vec3f>(welded.positions), key);
+  key = hash_span(std::span<const uint32_t>(welded.indices), key);
+  auto job = std::make_shared<Job>();
+  job->entry = cache_folder(kHullCache) / cache_entry_name(kHullCache, key);
+  std::vector<TriangleMesh> hulls;
+  if (load_hulls(job->entry, &hulls)) return hulls;
+  job->api = *api;
+  job->mesh = coarsened(welded, kMostDecomposed);
+  job->options = options;
+  job->options.is_cancelled = nullptr;  // it may be gone before the job
+  if (options.is_cancelled == nullptr) return work(*job);
+  return work_unless_cancelled(job, *options.is_cancelled);
 }
 
 }  // namespace gloam
