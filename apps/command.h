@@ -44,8 +44,9 @@ CLI::Validator non_negative_number();
 void add_access_options(CLI::App& command, FileAccess& access, std::vector<std::string>& packages);
 /// Parses `packages` (NAME=FOLDER) into `access`.
 Status apply_packages(FileAccess& access, const std::vector<std::string>& packages);
-/// World::compile; Ctrl-C ends the process meanwhile.
-Result<World> compile(const Scene& scene);
+/// World::compile; Ctrl-C ends the process meanwhile, stderr shows how far it is. Tells on stderr
+/// what is odd about the scene, and what of it is not supported.
+Result<World> compile(const Scene& scene, const Globals& globals);
 /// "640x480" -> width, height.
 Status parse_resolution(const std::string& text, int& width, int& height);
 

@@ -109,9 +109,31 @@ Status apply_packages(FileAccess& access, const std::vector<std::string>& packag
   return {};
 }
 
-Result<World> compile(const Scene& scene) {
+namespace {
+
+void tell(const char* heading, const std::vector<Error>& errors) {
+  constexpr size_t kMost = 20;
+  for (size_t i = 0; i < std::min(errors.size(), kMost); ++i)
+    std::fprintf(stderr, "gloam: %s: %s\n", heading, errors[i].to_string().c_str());
+  if (errors.size() > kMost)
+    std::fprintf(stderr, "gloam: %s: %zu more, which gloam info lists\n", heading,
+                 errors.size() - kMost);
+}
+
+}  // namespace
+
+Result<World> compile(const Scene& scene, const Globals& globals) {
   const EndOnInterrupt watched;
-  return World::compile(scene);
+  const ProgressCallback show = progress_display(globals);
+  Result<World> world = World::compile(scene, [&](const Progress& progress) {
+    show(progress);
+    return true;  // an interrupt does not wait for the end of it
+  });
+  finish_progress();
+  if (!world.ok()) return world;
+  tell("note", world->notes());
+  tell("warning: not supported", world->unsupported());
+  return world;
 }
 
 Status parse_resolution(const std::string& text, int& width, int& height) {

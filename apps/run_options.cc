@@ -64,9 +64,9 @@ Result<Scene> SceneOptions::load(const std::string& file) {
   return scene;
 }
 
-Result<World> SceneOptions::compile(const std::string& file) {
+Result<World> SceneOptions::compile(const std::string& file, const Globals& globals) {
   GLOAM_TRY(const Scene scene, load(file));
-  return cli::compile(scene);
+  return cli::compile(scene, globals);
 }
 
 Result<Scene> RunOptions::load(const std::string& file) {

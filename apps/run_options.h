@@ -18,7 +18,7 @@ struct SceneOptions {
   void add_to(CLI::App& command);
   /// Loads the scene and applies every option to it.
   Result<Scene> load(const std::string& file);
-  Result<World> compile(const std::string& file);
+  Result<World> compile(const std::string& file, const Globals& globals);
 };
 
 /// Of commands that run or draw it.

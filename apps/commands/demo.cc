@@ -19,7 +19,7 @@ int demo(bool quick, const std::string& out, const Globals& globals) {
     scene->sim.duration = 4;
     request.rate = {5, 1};
   }
-  auto world = compile(*scene);
+  auto world = compile(*scene, globals);
   if (!world.ok()) return fail(world.error());
   request.simulation.seed = scene->sim.seed;
   return run_and_report(*world, request, globals);

@@ -12,8 +12,8 @@ struct ExportCommand {
   SceneOptions scene;
 };
 
-int export_scene(ExportCommand& command) {
-  auto world = command.scene.compile(command.file);
+int export_scene(ExportCommand& command, const Globals& globals) {
+  auto world = command.scene.compile(command.file, globals);
   if (!world.ok()) return fail(world.error());
   if (const Status status = world->export_mjcf(command.out); !status.ok())
     return fail(status.error());
@@ -23,7 +23,7 @@ int export_scene(ExportCommand& command) {
 
 }  // namespace
 
-void add_export(CLI::App& app, Globals& /*globals*/, Action& action) {
+void add_export(CLI::App& app, Globals& globals, Action& action) {
   CLI::App* sub = app.add_subcommand("export", "Write a scene as one MJCF with its assets");
   auto command = std::make_shared<ExportCommand>();
   sub->add_option("FILE", command->file, "Scene or model")->required();
@@ -31,7 +31,9 @@ void add_export(CLI::App& app, Globals& /*globals*/, Action& action) {
       ->required();
   command->scene.add_to(*sub);
   sub->footer("Example:\n  gloam export examples/demo.toml --out exported");
-  sub->callback([&action, command] { action = [command] { return export_scene(*command); }; });
+  sub->callback([&globals, &action, command] {
+    action = [&globals, command] { return export_scene(*command, globals); };
+  });
 }
 
 }  // namespace gloam::cli

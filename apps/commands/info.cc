@@ -42,9 +42,15 @@ void print_json(const WorldInfo& info, const std::vector<Section>& sections) {
     for (const NamedElement& element : *elements)
       list.push_back({{"name", element.name}, {"detail", element.detail}});
   }
-  auto& list = json["unsupported"] = nlohmann::ordered_json::array();
-  for (const Error& error : info.unsupported) {
-    list.push_back({{"file", error.loc.file}, {"line", error.loc.line}, {"what", error.message}});
+  for (const auto& [title, errors] :
+       {std::pair("notes", &info.notes), std::pair("unsupported", &info.unsupported)}) {
+    auto& list = json[title] = nlohmann::ordered_json::array();
+    for (const Error& error : *errors) {
+      list.push_back({{"file", error.loc.file},
+                      {"line", error.loc.line},
+                      {"what", error.message},
+                      {"hint", error.hint}});
+    }
   }
   std::printf("%s\n", json.dump(2).c_str());
 }
@@ -70,17 +76,17 @@ void print_text(const WorldInfo& info, const std::vector<Section>& sections) {
                  element.detail);
     }
   }
-  if (info.unsupported.empty()) {
-    fmt::print("\neverything in the file is simulated and drawn\n");
-    return;
+  for (const auto& [title, errors] :
+       {std::pair("notes", &info.notes), std::pair("not supported", &info.unsupported)}) {
+    if (!errors->empty()) fmt::print("\n{} ({})\n", title, errors->size());
+    for (const Error& error : *errors) fmt::print("  {}\n", error.to_string());
   }
-  fmt::print("\nnot supported ({})\n", info.unsupported.size());
-  for (const Error& error : info.unsupported) fmt::print("  {}\n", error.to_string());
+  if (info.unsupported.empty()) fmt::print("\neverything in the file is simulated and drawn\n");
 }
 
 int info(InfoCommand& command, const Globals& globals) {
   if (command.schema) return report_schema(globals);
-  auto world = command.scene.compile(command.file);
+  auto world = command.scene.compile(command.file, globals);
   if (!world.ok()) return fail(world.error());
   const WorldInfo info = world->info();
   const std::vector<Section> sections = {{"bodies", &info.bodies},       {"joints", &info.joints},

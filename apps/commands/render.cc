@@ -23,7 +23,7 @@ int render(const RenderCommand& command_line, const Globals& globals) {
   auto scene = command.options.load(command.file);
   if (!scene.ok()) return fail(scene.error());
   if (!command.options.spp && !scene->render.error) scene->render.spp = kStillSamples;
-  auto world = compile(*scene);
+  auto world = compile(*scene, globals);
   if (!world.ok()) return fail(world.error());
 
   std::vector<std::string> cameras = command.options.cameras;

@@ -63,7 +63,7 @@ int run(const RunCommand& command_line, const Globals& globals) {
     for (CameraOptions& camera : scene->cameras) camera.outputs.reset();
     for (LidarOptions& lidar : scene->lidars) lidar.outputs.reset();
   }
-  auto world = compile(*scene);
+  auto world = compile(*scene, globals);
   if (!world.ok()) return fail(world.error());
 
   RunRequest request;

@@ -48,10 +48,10 @@ struct WorldInfo {
   int64_t triangles = 0;           ///< that are drawn: of meshes, height fields, model files
   std::vector<Region> regions;     ///< floors of a generated environment
   std::vector<DrawnOption> drawn;  ///< what came of [[randomize]]
-  std::vector<Error> unsupported;  ///< what is in the file and is not simulated or drawn, and where
+  std::vector<Error> notes;        ///< as World::notes()
+  std::vector<Error> unsupported;  ///< as World::unsupported()
 };
 
-class World {
 /// How far a job is.
 struct Progress {
   std::string what;    ///< "simulating", "rendering", "making 'chair' physical" …
@@ -63,6 +63,7 @@ struct Progress {
 /// stop the job.
 using ProgressCallback = std::function<bool(const Progress&)>;
 
+class World {
  public:
   World() = default;
   explicit World(std::shared_ptr<const CompiledWorld> compiled) : compiled_(std::move(compiled)) {}
@@ -81,6 +82,11 @@ using ProgressCallback = std::function<bool(const Progress&)>;
   Result<Tendon> find_tendon(const std::string& name) const;
 
   WorldInfo info() const;
+  /// What is odd about the scene and taken all the same, and where: open meshes, sizes that look
+  /// like another unit, nodes that got another name.
+  std::vector<Error> notes() const;
+  /// What is in the files and is not simulated or drawn, and where.
+  const std::vector<Error>& unsupported() const;
 
   /// Writes the whole level as one MJCF with its assets into `folder`/scene.xml; stock MuJoCo loads
   /// it to the same model, equal in every array.

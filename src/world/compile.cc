@@ -109,6 +109,7 @@ Result<World> World::compile(const Scene& written, const ProgressCallback& callb
   if (!scene.bare_model.empty()) world->robots = {bare_robot(scene, level.model.get())};
   world->model = std::move(level.model);
   world->initial_key = level.initial_key;
+  world->notes = std::move(level.notes);
   world->unsupported = std::move(level.unsupported);
   GLOAM_TRY_STATUS(check_sensors(*world));
   GLOAM_TRY_STATUS(describe_lidars(*world));

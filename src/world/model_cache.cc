@@ -26,7 +26,7 @@ struct CacheEntry {
   int initial_key = -1;
   std::vector<RobotInstance> robots;  // without their options
   std::vector<VisualOnlyGeom> visual_only;
-  std::vector<Error> unsupported;
+  std::vector<Error> notes, unsupported;
   bool has_plugins = false;
 };
 
@@ -52,11 +52,11 @@ namespace {
 
 template <class F>
 void visit_entry(F& f, CacheEntry& e) {
-  f(e.dependencies), f(e.initial_key), f(e.robots), f(e.visual_only), f(e.unsupported);
-  f(e.has_plugins);
+  f(e.dependencies), f(e.initial_key), f(e.robots), f(e.visual_only), f(e.notes);
+  f(e.unsupported), f(e.has_plugins);
 }
 
-constexpr uint64_t kMagic = 0x33444C574D4F4C47ull;  // "GLOMWLD3": changes with the layout below
+constexpr uint64_t kMagic = 0x34444C574D4F4C47ull;  // "GLOMWLD4": changes with the layout below
 constexpr uint64_t kLargestEntry = uint64_t{2} << 30;
 
 fs::path entry_of(const Scene& scene, uint64_t place_hash) {
@@ -83,8 +83,9 @@ ModelPtr get_model(ArchiveReader* in) {
 
 std::vector<uint8_t> serialise(const CompiledWorld& world,
                                const std::vector<Dependency>& dependencies) {
-  CacheEntry entry{dependencies,      world.initial_key, world.robots,
-                   world.visual_only, world.unsupported, world.model->nplugin > 0};
+  CacheEntry entry{
+      dependencies,      world.initial_key,       world.robots, world.visual_only, world.notes,
+      world.unsupported, world.model->nplugin > 0};
   ArchiveWriter out;
   begin_cache_entry(&out.bytes);
   visit_entry(out, entry);
@@ -190,6 +191,7 @@ std::shared_ptr<CompiledWorld> load_cached_world(const Scene& scene, uint64_t pl
   for (size_t i = 0; i < world->robots.size() && i < scene.robots.size(); ++i)
     world->robots[i].options = scene.robots[i];
   world->visual_only = std::move(entry.visual_only);
+  world->notes = std::move(entry.notes);
   world->unsupported = std::move(entry.unsupported);
   if (entry.has_plugins) load_mujoco_plugins();  // it loads only where they are
   world->model = get_model(&in);

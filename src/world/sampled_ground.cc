@@ -84,8 +84,7 @@ Result<std::vector<HeightField>> sample(const HeightFieldOptions& o, const Model
                                         std::vector<Error>* notes) {
   const auto note = [&](std::string text, std::string hint) {
     notes->push_back(
-        {ErrorKind::kUnsupported, fmt::format("{}: {}", title(o), text), o.loc, std::move(hint)});
-    log_warning("{}", notes->back().to_string());
+        {ErrorKind::kInput, fmt::format("{}: {}", title(o), text), o.loc, std::move(hint)});
   };
   const std::vector<PlacedMesh> meshes = place_meshes(o, model);
   GLOAM_TRY(const Region region, region_of(o, meshes));

@@ -7,8 +7,8 @@
 #include "base/text.h"
 #include "world/level.h"
 #include "world/visual_camera.h"
-#include "world/world.h"
 #include "world/visual_file.h"
+#include "world/world.h"
 
 namespace gloam {
 namespace {
@@ -178,11 +178,15 @@ WorldInfo World::info() const {
   info.triangles = count_triangles(m, false);
   if (compiled_->visual_model != nullptr)
     info.triangles += count_triangles(compiled_->visual_model.get(), true);
-  info.regions = compiled_->regions;
   info.triangles += count_visual_triangles(*compiled_);
+  info.regions = compiled_->regions;
   info.drawn = compiled_->drawn;
-  info.unsupported = compiled_->unsupported;
+  info.notes = notes();
+  info.unsupported = unsupported();
   return info;
 }
+
+std::vector<Error> World::notes() const { return compiled_->notes; }
+const std::vector<Error>& World::unsupported() const { return compiled_->unsupported; }
 
 }  // namespace gloam

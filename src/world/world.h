@@ -58,6 +58,7 @@ struct CompiledWorld {
   std::vector<RobotInstance> robots;
   ModelPtr visual_model;  ///< source of visual_only meshes and materials; null when there are none
   std::vector<VisualOnlyGeom> visual_only;
+  std::vector<Error> notes;        ///< what is odd, and taken as it is
   std::vector<Error> unsupported;
 };
 

@@ -73,7 +73,7 @@ class MeshObjectTest : public testing::Test {
   }
   static std::vector<std::string> notes(const World& world) {
     std::vector<std::string> out;
-    for (const Error& e : world.compiled()->unsupported) out.push_back(e.message);
+    for (const Error& e : world.notes()) out.push_back(e.message);
     return out;
   }
   TempFolder folder_;
@@ -329,8 +329,7 @@ TEST_F(MeshObjectTest, MillimetresAreAsked) {
   folder_.write("mug.obj", obj_box("mug", {-40, -40, 0}, {40, 40, 96}, 1));
   const Result<World> world = compile("[[object]]\nname = 'mug'\nfile = 'mug.obj'\n");
   ASSERT_TRUE(world.ok()) << world.error().to_string();
-  EXPECT_THAT(world->compiled()->unsupported,
-              Contains(Field(&Error::hint, HasSubstr("unit = 0.001"))));
+  EXPECT_THAT(world->notes(), Contains(Field(&Error::hint, HasSubstr("unit = 0.001"))));
 }
 
 TEST_F(MeshObjectTest, NamesThatClashAreErrorsThatNameBoth) {
@@ -345,8 +344,7 @@ TEST_F(MeshObjectTest, OddSizesAreTold) {
   const Result<World> world = compile(std::string(kCrate) + "unit = 1000\n");
   ASSERT_TRUE(world.ok()) << world.error().to_string();
   EXPECT_THAT(notes(*world), Contains(HasSubstr("object 'crate' is 600 m large")));
-  EXPECT_THAT(world->compiled()->unsupported,
-              Contains(Field(&Error::hint, HasSubstr("unit = 0.001"))));
+  EXPECT_THAT(world->notes(), Contains(Field(&Error::hint, HasSubstr("unit = 0.001"))));
 }
 
 TEST_F(MeshObjectTest, BadFilesAreErrors) {

@@ -295,9 +295,9 @@ TEST_F(SampledGrounds, ComplainOfWhatCannotBeSampled) {
   folder_.write("g.obj", bumps_obj(5, 10, 0.001));  // forgot the unit
   EXPECT_THAT(with(""), HasSubstr("unit = 0.001"));
   const World& large = make("[[hfield]]\nname = \"g\"\nfile = \"g.obj\"\nresolution = 50\n");
-  ASSERT_EQ(large.info().unsupported.size(), 1u);
+  ASSERT_EQ(large.info().notes.size(), 1u);
   EXPECT_THAT(
-      large.info().unsupported[0].to_string(),
+      large.info().notes[0].to_string(),
       HasSubstr("the mesh is 10000 m wide (if the file is in millimetres, give unit = 0.001)"));
 
   folder_.write("g.obj", "v 1.05 0 0\nv 1.05 3 0\nv 1.05 3 2\nv 3 1.05 0\nf 1 2 3\n");

@@ -1,0 +1,63 @@
+"""Scenes of mesh files, things of the catalogue, generated places and height fields, as a user meets them on the command line."""
+import json
+import unittest
+
+from e2e.support import ProgramTest
+
+BALL = "<mujoco><worldbody><body name='ball'><freejoint/><geom size='0.1'/></body></worldbody></mujoco>"
+FACES = [(1, 3, 4, 2), (5, 6, 8, 7), (1, 2, 6, 5), (3, 7, 8, 4), (1, 5, 7, 3), (2, 4, 8, 6)]
+
+
+def box(low, high, faces=FACES, group="box"):
+    """A closed box as OBJ."""
+    corners = [[(high if i >> k & 1 else low)[k] for k in range(3)] for i in range(8)]
+    return "\n".join([f"g {group}", *(f"v {x} {y} {z}" for x, y, z in corners), *(f"f {a} {b} {c} {d}" for a, b, c, d in faces)]) + "\n"
+
+
+class Notes(ProgramTest):
+    """What is odd is told once, on stderr, by every command."""
+    SMALL = ["--spp", "1", "--resolution", "32x24"]
+
+    def commands(self, scene):
+        yield self.gloam("info", scene)
+        yield self.gloam("run", scene, "--duration", "0.01", "--output", "metrics", "--out", "run", "--overwrite")
+        yield self.gloam("render", scene, *self.SMALL, "--out", "stills")
+        yield self.gloam("export", scene, "--out", "exported")
+
+    def assert_told(self, scene, text):
+        for result in self.commands(scene):
+            self.assertEqual(result.stderr.count(text), 1, f"{result.args[1]} says\n{result.stderr}")
+            self.assertIn("note: ", next(line for line in result.stderr.splitlines() if text in line))
+            self.assertNotIn("not supported", result.stderr)
+
+    def test_of_objects(self):
+        self.write("open.obj", box((0, 0, 0), (0.2, 0.2, 0.2), FACES[:5]))
+        scene = self.write("s.toml", "[[object]]\nname = 'lid'\nfile = 'open.obj'\ncolliders = 'hull'\nposition = [0, 0, 1]\n")
+        self.assert_told(scene, "object 'lid' is open")
+        listing = self.gloam("info", scene).stdout
+        self.assertIn("notes (1)", listing)
+        self.assertIn("everything in the file is simulated and drawn", listing)
+        self.assertIn("10 triangles drawn", listing)
+
+    def test_of_places(self):
+        self.write("mm.obj", box((0, 0, 0), (20000, 20000, 100)))
+        scene = self.write("s.toml", "[environment]\nfile = 'mm.obj'\n[[robot]]\nname = 'box'\nfile = 'ball.xml'\nposition = [1, 1, 200]\n")
+        self.write("ball.xml", BALL)
+        self.assert_told(scene, "the environment is 2e+04 m large")
+        self.assert_told(scene, "node 'box' is called 'box_2' here")
+        notes = json.loads(self.gloam("info", scene, "--json").stdout)["notes"]
+        self.assertTrue(any("unit = 0.001" in note["hint"] for note in notes), notes)
+        self.assertTrue(all(note["line"] == 1 for note in notes), notes)
+
+    def test_what_is_not_supported_is_told_too(self):
+        self.write("a.xml", BALL.replace("<worldbody>", "<option integrator='Euler'/><worldbody>"))
+        self.write("b.xml", BALL.replace("<worldbody>", "<option integrator='RK4'/><worldbody>"))
+        scene = self.write("s.toml", "[environment]\nfile = 'a.xml'\n[[robot]]\nname = 'r'\nfile = 'b.xml'\nposition = [0, 0, 1]\n")
+        for result in self.commands(scene):
+            self.assertEqual(result.stderr.count("not supported: "), 1, result.stderr)
+            self.assertIn("integrator", result.stderr)
+        self.assertIn("hint", json.loads(self.gloam("info", scene, "--json").stdout)["unsupported"][0])
+
+
+if __name__ == "__main__":
+    unittest.main()
