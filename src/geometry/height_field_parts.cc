@@ -235,11 +235,21 @@ Result<HeightError> height_error(std::span<const PlacedMesh> meshes, const Floor
   HeightGrid cells = floors.grid;
   --cells.columns, --cells.rows;
   GLOAM_TRY(const Floors source, sample_floors(meshes, cells, floors.layers, kErrorSeed));
+  // Of cells all of whose corners met something: the others' heights are made up.
+  const auto is_met = [&](int column, int row) {
+    const auto corner = static_cast<size_t>(row) * static_cast<size_t>(floors.grid.columns) +
+                        static_cast<size_t>(column);
+    const auto next_row = static_cast<size_t>(floors.grid.columns);
+    return !std::isnan(floors.at(0, corner)) && !std::isnan(floors.at(0, corner + 1)) &&
+           !std::isnan(floors.at(0, corner + next_row)) &&
+           !std::isnan(floors.at(0, corner + next_row + 1));
+  };
   std::vector<double> nearest(source.z.size(), INFINITY);
   for (const HeightField& field : fields) {
     for (int r = 0; r + 1 < field.grid.rows; ++r) {
       for (int c = 0; c + 1 < field.grid.columns; ++c) {
         const int column = field.column + c, row = field.row + r;
+        if (!is_met(column, row)) continue;
         const std::array<double, 2> at = place_in_cell(kErrorSeed, column, row);
         const double height = field.height(c, r, at[0], at[1]);
         for (int layer = 0; layer < floors.layers; ++layer) {

@@ -40,7 +40,8 @@ struct HeightError {
   double mean = 0, p95 = 0, most = 0;
   int64_t points = 0;
 };
-/// At a random point of every cell, floor by floor, to the nearest of the fields there.
+/// At a random point of every cell whose corners all met something, floor by floor, to the nearest
+/// of the fields there.
 Result<HeightError> height_error(std::span<const PlacedMesh> meshes, const Floors& floors,
                                  std::span<const HeightField> fields);
 

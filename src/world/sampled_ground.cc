@@ -72,12 +72,13 @@ void report(const HeightFieldOptions& o, const Floors& floors,
   if (fields.size() > 1) more += fmt::format(", {} fields of floors above", fields.size() - 1);
   if (fields[0].filled > 0)
     more += fmt::format(", {} samples met nothing and were filled", fields[0].filled);
-  log_info(
-      "hfield '{}': {} x {} samples, {:.4g} x {:.4g} m apart{}; distance to the mesh: mean {:.2g} "
-      "m, "
-      "95 % below {:.2g} m, at most {:.2g} m",
-      o.name, grid.columns, grid.rows, grid.step[0], grid.step[1], more, error.mean, error.p95,
-      error.most);
+  std::string distance = "; no cell met the mesh at all its corners";
+  if (error.points > 0)
+    distance =
+        fmt::format("; distance to the mesh: mean {:.2g} m, 95 % below {:.2g} m, at most {:.2g} m",
+                    error.mean, error.p95, error.most);
+  log_info("hfield '{}': {} x {} samples, {:.4g} x {:.4g} m apart{}{}", o.name, grid.columns,
+           grid.rows, grid.step[0], grid.step[1], more, distance);
 }
 
 Result<std::vector<HeightField>> sample(const HeightFieldOptions& o, const ModelFile& model,
@@ -112,6 +113,11 @@ Result<std::vector<HeightField>> sample(const HeightFieldOptions& o, const Model
          "lower floors must face up: are the mesh's triangles turned inside out?");
   fields.insert(fields.begin(), std::move(ground).value());
   GLOAM_TRY(const HeightError error, height_error(meshes, floors, fields));
+  const auto samples = static_cast<int64_t>(fields[0].grid.size());
+  if (fields[0].filled > samples / 2)
+    note(fmt::format("{} of {} samples met nothing: most of this ground is made up",
+                     fields[0].filled, samples),
+         region.text());
   report(o, floors, fields, error);
   return fields;
 }
@@ -136,16 +142,16 @@ Result<std::vector<SampledGround>> sample_grounds(const Scene& scene, ModelFiles
                                                   CompileProgress* progress) {
   std::vector<SampledGround> grounds;
   for (const HeightFieldOptions& o : scene.hfields) {
-    GLOAM_TRY(const ModelFile model, load_model_file(scene, o.file, title(o), o.loc));
-    GLOAM_TRY_STATUS(files->read(o.file));
-    for (const std::string& part : model.parts)
-      (void)files->read(o.file.parent_path() / part);  // what is missing is remembered as missing
-    Result<std::vector<HeightField>> fields = sample(o, model, notes);
     if (progress != nullptr) {
       GLOAM_TRY_STATUS(progress->check());
       progress->begin(fmt::format("sampling '{}'", o.name),
                       kSampleWeight / static_cast<double>(scene.hfields.size()));
     }
+    GLOAM_TRY(const ModelFile model, load_model_file(scene, o.file, title(o), o.loc));
+    GLOAM_TRY_STATUS(files->read(o.file));
+    for (const std::string& part : model.parts)
+      (void)files->read(o.file.parent_path() / part);  // what is missing is remembered as missing
+    Result<std::vector<HeightField>> fields = sample(o, model, notes);
     if (!fields.ok()) return said_of(title(o), o.loc, fields.error());
     grounds.push_back({o, std::move(fields).value()});
   }

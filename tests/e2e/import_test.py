@@ -49,6 +49,12 @@ class Notes(ProgramTest):
         self.assertTrue(any("unit = 0.001" in note["hint"] for note in notes), notes)
         self.assertTrue(all(note["line"] == 1 for note in notes), notes)
 
+    def test_of_height_fields(self):
+        self.write("g.obj", box((0, 0, 0), (1, 1, 0.2)))
+        scene = self.write("s.toml", "[[hfield]]\nname = 'g'\nfile = 'g.obj'\nlow = [-5, -5]\nhigh = [5, 5]\n")
+        self.assert_told(scene, "samples met nothing: most of this ground is made up")
+        self.assertIn("12 triangles drawn", self.gloam("info", scene).stdout)
+
     def test_what_is_not_supported_is_told_too(self):
         self.write("a.xml", BALL.replace("<worldbody>", "<option integrator='Euler'/><worldbody>"))
         self.write("b.xml", BALL.replace("<worldbody>", "<option integrator='RK4'/><worldbody>"))

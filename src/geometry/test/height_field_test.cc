@@ -266,5 +266,18 @@ TEST(HeightErrorOf, APlaneIsNothingAndOfASteepStepIsSeen) {
   EXPECT_LE(bent.p95, bent.most);
 }
 
+TEST(HeightErrorOf, WhatMetNothingIsNotInIt) {
+  // A plane that climbs, under a tenth of the region: what is filled in beside it is level.
+  const TriangleMesh plane = terrain(30, 3, [](double x, double) { return 2 * x; });
+  const PlacedMesh placed{&plane, {}};
+  const Floors floors = sample(placed, grid_over(0.05, 9.95, 0.1));
+  const HeightField ground = ground_of(floors).value();
+  EXPECT_GT(ground.filled, static_cast<int64_t>(ground.grid.size()) / 2);
+  const HeightError error = height_error({&placed, 1}, floors, {&ground, 1}).value();
+  EXPECT_GT(error.points, 700);
+  EXPECT_LT(error.points, 900);
+  EXPECT_LT(error.most, 1e-5);
+}
+
 }  // namespace
 }  // namespace gloam
