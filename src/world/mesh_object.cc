@@ -146,6 +146,7 @@ class ObjectLoader {
       options.motion = "static";
       options.loc = place.loc;
       add(std::move(options), node.instances, model);
+      out_.objects.back().is_place = true;
       const TriangleMesh& mesh = out_.objects.back().mesh;
       corners.positions.insert(corners.positions.end(), mesh.positions.begin(),
                                mesh.positions.end());
@@ -174,6 +175,7 @@ class ObjectLoader {
       key(o.name), key(o.X_WO), key(o.motion), key(o.density), key(o.mass.value_or(0));
       key(o.colliders), key(o.concavity), key(o.max_hulls);
       key(o.friction.has_value()), key(o.friction.value_or(Vec3{}));
+      key(object.is_place);
       key(o.loc.line);  // stands in cached messages
       hash = hash_bytes(key.bytes.data(), key.bytes.size(), hash);
       hash = hash_span(std::span<const Vec3f>(object.mesh.positions), hash);
@@ -183,9 +185,9 @@ class ObjectLoader {
   }
 
   const Scene& scene_;
+  CompileProgress* progress_;
   std::vector<LoadedModel> files_;
   MeshObjects out_;
-  CompileProgress* progress_;
 };
 
 }  // namespace

@@ -16,6 +16,7 @@ inline std::string title(const ObjectOptions& o) { return "object '" + o.name + 
 struct MeshObject {
   ObjectOptions options;  ///< its name is no other's
   TriangleMesh mesh;      ///< of its node or the whole file, in the body's frame
+  bool is_place = false;  ///< a node of [environment], which may be a room
 };
 
 struct MeshObjects {

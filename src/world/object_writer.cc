@@ -120,6 +120,11 @@ class ConvertWatch {
   std::optional<LongWait> wait_;
 };
 
+std::string title_of(const MeshObject& object) {
+  if (!object.is_place) return title(object.options);
+  return fmt::format("environment: node '{}'", object.options.name);
+}
+
 // About, in no unit. CoACD's time grows with the triangles that it is given.
 double cost_of(const MeshObject& object) {
   constexpr double kLeast = 200, kMost = 20'000;
@@ -132,10 +137,10 @@ Result<Converted> convert_one(const MeshObject& object, CompileProgress* progres
       object.mesh, {.colliders = o.colliders,
                     .concavity = o.concavity,
                     .max_hulls = o.max_hulls,
-                    .may_be_room = false,
+                    .may_be_room = object.is_place,
                     .is_cancelled = progress == nullptr ? nullptr : &progress->is_cancelled()});
   if (converted.ok() || converted.error().kind == ErrorKind::kInterrupted) return converted;
-  return said_of(title(o), o.loc, converted.error());
+  return said_of(title_of(object), o.loc, converted.error());
 }
 
 }  // namespace
@@ -216,9 +221,9 @@ Status add_objects(const MeshObjects& objects, const std::vector<Converted>& con
   for (size_t i = 0; i < objects.objects.size(); ++i) {
     const ObjectOptions& o = objects.objects[i].options;
     for (const std::string& note : converted[i].notes)
-      if (o.motion == "dynamic" || !note.starts_with("is open"))
+      if (o.motion == "dynamic" || !note.ends_with("its hull's"))  // what stands weighs nothing
         notes->push_back(
-            {ErrorKind::kInput, fmt::format("{} {}", title(o), note), o.loc});
+            {ErrorKind::kInput, fmt::format("{} {}", title_of(objects.objects[i]), note), o.loc});
     GLOAM_TRY_STATUS(ObjectWriter(objects.objects[i], spec).write(converted[i]));
   }
   return {};

@@ -65,5 +65,15 @@ class Notes(ProgramTest):
         self.assertIn("hint", json.loads(self.gloam("info", scene, "--json").stdout)["unsupported"][0])
 
 
+class Rooms(ProgramTest):
+    def test_a_robot_stands_in_a_scanned_room(self):
+        self.write("room.obj", box((0, 0, 0), (5, 4, 2.5), [face[::-1] for face in FACES], "room"))
+        self.write("ball.xml", BALL)
+        scene = self.write("s.toml", "[environment]\nfile = 'room.obj'\n[[robot]]\nname = 'go'\nfile = 'ball.xml'\nposition = [2, 2, 0.1]\n")
+        result = self.gloam("run", scene, "--duration", "1", "--output", "metrics", "--out", "run")
+        self.assertIn("'room' looks inwards: it is a room", result.stderr)
+        self.assertNotIn("begins", result.stderr)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -12,6 +12,7 @@ namespace gloam {
 namespace {
 
 constexpr double kFinest = 256;  // cells along the longest side that are tried first
+constexpr double kOneWay = 0.5;  // least cosine between vertices that face one way
 constexpr double kLean = 1e-3;   // weight of the cell's mean beside the planes, of their own
 
 // Of the squared distance to planes, about a point nearby: p^T A p - 2 b p, and the mean of the
@@ -85,18 +86,31 @@ class Clustering {
 
  private:
   void assign() {
-    std::unordered_map<uint64_t, uint32_t> known;  // looked up only, never walked
+    // Of a cell the clusters begun so far, each with the way its first vertex faces. Not by octants
+    // of the direction: a wall along the axes that is a little rough has four of them everywhere.
+    struct Begun {
+      Vec3d facing;
+      uint32_t cluster;
+    };
+    std::unordered_map<uint64_t, std::vector<Begun>> known;  // looked up only, never walked
     cluster_.assign(mesh_.positions.size(), UINT32_MAX);
+    count_ = 0;
     for (const uint32_t v : mesh_.indices) {
       if (cluster_[v] != UINT32_MAX) continue;
       const Vec3d at = (wide(mesh_.positions[v]) - wide(low_)) * (1 / cell_);
       const auto step = [](double x) { return static_cast<uint64_t>(std::max(x, 0.0)) & 0xFFFFF; };
-      const Vec3d& n = facing_[v];
-      const uint64_t octant = (n.x > 0 ? 1u : 0u) | (n.y > 0 ? 2u : 0u) | (n.z > 0 ? 4u : 0u);
-      const uint64_t key = octant << 60 | step(at.x) << 40 | step(at.y) << 20 | step(at.z);
-      cluster_[v] = known.try_emplace(key, static_cast<uint32_t>(known.size())).first->second;
+      const double size = length_of(facing_[v]);
+      const Vec3d n = size > 0 ? facing_[v] * (1 / size) : Vec3d{};
+      std::vector<Begun>& begun = known[step(at.x) << 40 | step(at.y) << 20 | step(at.z)];
+      const auto alike = std::find_if(begun.begin(), begun.end(),
+                                      [&](const Begun& b) { return dot(b.facing, n) > kOneWay; });
+      if (alike != begun.end()) {
+        cluster_[v] = alike->cluster;
+      } else {
+        cluster_[v] = static_cast<uint32_t>(count_++);
+        begun.push_back({n, cluster_[v]});
+      }
     }
-    count_ = known.size();
   }
 
   std::array<uint32_t, 3> corners(size_t first_index) const {

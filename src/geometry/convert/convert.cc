@@ -11,6 +11,7 @@
 #include "geometry/convert/decompose.h"
 #include "geometry/convert/fit.h"
 #include "geometry/convert/hull.h"
+#include "geometry/convert/room.h"
 #include "geometry/weld.h"
 
 namespace gloam {
@@ -22,6 +23,7 @@ constexpr double kPlate = 1e-3;   // thickness that it gets, of the longest side
 constexpr double kExact = 1e-5;   // what the hull of the mesh leaves out, of the diagonal
 constexpr double kSmooth = 1e-3;  // what a hull may leave out, of the longest side
 constexpr double kSeam = 1e-6;    // between vertices that are one, of the diagonal
+constexpr double kRoom = 0.25;    // what an open room encloses at least, of its hull
 constexpr size_t kMostNear =
     4096;                          // vertices of nearly one place along the sweep that are compared
 constexpr double kFarthest = 1e9;  // [m] a vertex from the origin
@@ -135,25 +137,25 @@ class Converter {
   explicit Converter(const ConvertOptions& options) : options_(options) {}
 
   Result<Converted> convert(const TriangleMesh& mesh) {
+    GLOAM_TRY_STATUS(go_on());
     GLOAM_TRY(out_.mesh, welded(mesh));
+    GLOAM_TRY_STATUS(go_on());
     GLOAM_TRY_STATUS(find_hull());
     GLOAM_TRY_STATUS(go_on());
     find_mass();
     GLOAM_TRY_STATUS(go_on());
     GLOAM_TRY_STATUS(add_colliders());
-    GLOAM_TRY_STATUS(go_on());
     return std::move(out_);
-    GLOAM_TRY_STATUS(go_on());
   }
 
  private:
-  Status find_hull() {
-    hull_ = convex_hull(out_.mesh.positions, {.tolerance = kExact * diagonal(out_.mesh)});
   Status go_on() const {
     if (options_.is_cancelled == nullptr || !*options_.is_cancelled) return {};
     return Error{ErrorKind::kInterrupted, "the conversion was stopped"};
   }
 
+  Status find_hull() {
+    hull_ = convex_hull(out_.mesh.positions, {.tolerance = kExact * diagonal(out_.mesh)});
     if (!hull_.indices.empty()) box_ = box_around(hull_);
     if (!hull_.indices.empty() && shortest_side(box_) >= kFlat * longest_side(box_)) return {};
     const double thickness = kPlate * diagonal(out_.mesh);
@@ -172,6 +174,17 @@ class Converter {
   void find_mass() {
     const EdgeCount edges = count_edges(out_.mesh);
     MassProperties mass = mass_properties(out_.mesh);
+    out_.is_room =
+        options_.may_be_room && is_room_sized(out_.mesh) &&
+        (edges.is_closed() ? mass.volume < 0
+                           : enclosed_volume(out_.mesh) < -kRoom * mass_properties(hull_).volume);
+    if (out_.is_room) {
+      out_.is_closed = edges.is_closed();
+      out_.mass = mass_properties(hull_);
+      out_.notes.push_back(fmt::format("looks inwards{}: it is a room, whose faces collide",
+                                       out_.is_closed ? "" : " and is not closed"));
+      return;
+    }
     if (edges.is_closed() && mass.volume < 0) {
       out_.notes.emplace_back("looks inwards: its triangles are turned round");
       for (size_t i = 0; i + 2 < out_.mesh.indices.size(); i += 3)
@@ -196,6 +209,10 @@ class Converter {
   Status add_colliders() {
     const std::string& kind = options_.colliders;
     if (kind == "none") return {};
+    if (out_.is_room) {
+      out_.colliders = slabs_behind(out_.mesh, out_.is_closed);
+      return {};
+    }
     if (kind == "box") return add(box_);
     if (kind == "sphere") return add(sphere_around(hull_));
     if (kind == "capsule") return add(capsule_around(hull_));

@@ -24,6 +24,7 @@ struct Converted {
   MassProperties mass;  ///< of the mesh where it is closed, else of its hull
   TriangleMesh mesh;    ///< the mesh, welded, looking outwards
   bool is_closed = false;
+  bool is_room = false;
   std::vector<std::string> notes;  ///< for people: what is odd about it
 };
 

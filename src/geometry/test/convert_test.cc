@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 
@@ -242,6 +244,143 @@ TEST(Convert, TurnsMeshesThatLookInwards) {
   EXPECT_TRUE(made.is_closed);
   EXPECT_NEAR(made.mass.volume, 0.072, 1e-6);
   EXPECT_THAT(made.notes, ElementsAre(HasSubstr("inwards")));
+}
+
+// Seen from inside.
+TriangleMesh room_of(const Profile& outline, float height) {
+  TriangleMesh room = extrude(outline, 0, height).mesh();
+  for (size_t i = 0; i + 2 < room.indices.size(); i += 3)
+    std::swap(room.indices[i + 1], room.indices[i + 2]);
+  return room;
+}
+
+Converted converted_room(const TriangleMesh& shell) {
+  Result<Converted> made = convert_mesh(shell, {.may_be_room = true});
+  EXPECT_TRUE(made.ok()) << made.error().to_string();
+  return made.ok() ? *made : Converted{};
+}
+
+// To the nearest of the colliders, below 0 within.
+double clearance(const Converted& room, Vec3d p) {
+  double least = 1e300;
+  for (const MeshCollider& c : room.colliders) least = std::min(least, ColliderDistance(c)(p));
+  return least;
+}
+
+TEST(ConvertRoom, HasWallsFloorAndCeilingAndAirWithin) {
+  const Converted room = converted_room(room_of({{0, 0}, {5, 0}, {5, 4}, {0, 4}}, 2.5f));
+  EXPECT_TRUE(room.is_room);
+  EXPECT_THAT(room.notes, ElementsAre(HasSubstr("it is a room")));
+  EXPECT_EQ(room.colliders.size(), 6u);
+  EXPECT_NEAR(clearance(room, {2.5, 2, 1.25}), 1.25, 1e-4);
+  EXPECT_NEAR(clearance(room, {0.1, 2, 1}), 0.1, 1e-4);
+  EXPECT_NEAR(clearance(room, {-0.05, 2, 1}), -0.05, 1e-4);
+  EXPECT_NEAR(clearance(room, {2.5, 2, 2.55}), -0.05, 1e-4);
+  EXPECT_NEAR(clearance(room, {2.5, 2, -0.05}), -0.05, 1e-4);
+}
+
+TEST(ConvertRoom, KeepsNichesAndBothSidesOfThinPartitions) {
+  // 6 x 4 m with a wall of 6 cm that leaves a way of 1.2 m, and a niche of 0.5 x 0.5 m.
+  const Converted room = converted_room(room_of({{0, 0},
+                                                 {2.97f, 0},
+                                                 {2.97f, 2.8f},
+                                                 {3.03f, 2.8f},
+                                                 {3.03f, 0},
+                                                 {6, 0},
+                                                 {6, 1},
+                                                 {6.5f, 1},
+                                                 {6.5f, 1.5f},
+                                                 {6, 1.5f},
+                                                 {6, 4},
+                                                 {0, 4}},
+                                                2.5f));
+  EXPECT_LT(room.colliders.size(), 40u);
+  for (const Vec3d p : {Vec3d{1.5, 2, 1}, Vec3d{4.5, 2, 1}, Vec3d{3, 3.4, 1}, Vec3d{6.25, 1.25, 1},
+                        Vec3d{2.9, 1, 1}, Vec3d{3.1, 1, 1}})
+    EXPECT_GT(clearance(room, p), 0.04) << p.x << ' ' << p.y;
+  EXPECT_LT(clearance(room, {2.98, 1, 1}), 0);
+  EXPECT_LT(clearance(room, {3.02, 1, 1}), 0);
+}
+
+TEST(ConvertRoom, OfAScanIsFewSlabs) {
+  // Walls of 24,000 triangles, 3 mm rough.
+  TriangleMesh shell;
+  const RandomStream random{3, stream_id("room")};
+  constexpr int kSteps = 45;
+  const Vec3f side{5, 4, 2.5f};
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int end = 0; end < 2; ++end) {
+      const auto first = static_cast<uint32_t>(shell.positions.size());
+      for (int i = 0; i <= kSteps; ++i) {
+        for (int j = 0; j <= kSteps; ++j) {
+          float at[3];
+          const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+          at[axis] = static_cast<float>(end);
+          at[u] = static_cast<float>(i) / kSteps, at[v] = static_cast<float>(j) / kSteps;
+          Vec3f p{at[0] * side.x, at[1] * side.y, at[2] * side.z};
+          // The same at the same place, so that the walls meet.
+          const auto key = static_cast<uint64_t>(std::lround(p.x * 1000)) * 100'000'000 +
+                           static_cast<uint64_t>(std::lround(p.y * 1000)) * 10'000 +
+                           static_cast<uint64_t>(std::lround(p.z * 1000));
+          const auto rough = [&](uint32_t k) {
+            return 0.003f * (2 * static_cast<float>(random.uniform(key, k)) - 1);
+          };
+          shell.positions.push_back(p + Vec3f{rough(0), rough(1), rough(2)});
+        }
+      }
+      for (uint32_t i = 0; i < kSteps; ++i) {
+        for (uint32_t j = 0; j < kSteps; ++j) {
+          const auto at = [&](uint32_t a, uint32_t b) {
+            return first + (i + a) * (kSteps + 1) + j + b;
+          };
+          std::array<uint32_t, 6> quad = {at(0, 0), at(1, 1), at(1, 0),
+                                          at(0, 0), at(0, 1), at(1, 1)};
+          if (end == 0) std::swap(quad[1], quad[2]), std::swap(quad[4], quad[5]);
+          shell.indices.insert(shell.indices.end(), quad.begin(), quad.end());
+        }
+      }
+    }
+  }
+  const Converted room = converted_room(shell);
+  EXPECT_TRUE(room.is_room);
+  EXPECT_LE(room.colliders.size(), 256u);
+  for (uint64_t i = 0; i < 2000; ++i) {
+    const Vec3d p{0.03 + 4.94 * random.uniform(i, 10), 0.03 + 3.94 * random.uniform(i, 11),
+                  0.03 + 2.44 * random.uniform(i, 12)};
+    ASSERT_GT(clearance(room, p), 0) << p.x << ' ' << p.y << ' ' << p.z;
+    // Just behind each wall is something.
+    ASSERT_LT(clearance(room, {p.x, p.y, -0.02}), 0);
+    ASSERT_LT(clearance(room, {p.x, p.y, 2.52}), 0);
+    ASSERT_LT(clearance(room, {-0.02, p.y, p.z}), 0);
+    ASSERT_LT(clearance(room, {p.x, 4.02, p.z}), 0);
+  }
+}
+
+TEST(ConvertRoom, IsNoneWhereNobodyStands) {
+  const TriangleMesh crate = room_of({{0, 0}, {0.6f, 0}, {0.6f, 0.6f}, {0, 0.6f}}, 2);
+  EXPECT_FALSE(converted_room(crate).is_room);
+  EXPECT_EQ(converted_room(crate).colliders.size(), 1u);
+  // What looks outwards is solid, and so is what is not of a place.
+  const Profile large = {{0, 0}, {5, 0}, {5, 4}, {0, 4}};
+  EXPECT_FALSE(converted_room(extrude(large, 0, 2.5f).mesh()).is_room);
+  EXPECT_FALSE(convert(room_of(large, 2.5f)).is_room);
+}
+
+TEST(ConvertRoom, MayLackItsCeiling) {
+  TriangleMesh shell = room_of({{0, 0}, {5, 0}, {5, 4}, {0, 4}}, 2.5f);
+  std::vector<uint32_t> open;
+  for (size_t i = 0; i + 2 < shell.indices.size(); i += 3) {
+    const auto high = [&](size_t k) { return shell.positions[shell.indices[i + k]].z > 2.4f; };
+    if (!(high(0) && high(1) && high(2)))
+      open.insert(open.end(), shell.indices.begin() + static_cast<std::ptrdiff_t>(i),
+                  shell.indices.begin() + static_cast<std::ptrdiff_t>(i) + 3);
+  }
+  shell.indices = open;
+  const Converted room = converted_room(shell);
+  EXPECT_TRUE(room.is_room);
+  EXPECT_FALSE(room.is_closed);
+  EXPECT_EQ(room.colliders.size(), 5u);
+  EXPECT_NEAR(clearance(room, {2.5, 2, 1}), 1, 1e-4);
 }
 
 TEST(Convert, FlatMeshesBecomePlates) {

@@ -357,6 +357,71 @@ TEST_F(MeshObjectTest, BadFilesAreErrors) {
                   AllOf(HasSubstr("scene.toml:"), HasSubstr(file)));
 }
 
+TEST_F(MeshObjectTest, APlaceThatLooksInwardsIsARoomOneStandsIn) {
+  // Of obj_box() the other way round: high and low exchanged along one axis.
+  folder_.write("room.obj", obj_box("room", {5, 0, 0}, {0, 4, 2.5}, 1));
+  folder_.write("ball.xml",
+                "<mujoco><worldbody><body name='ball'><freejoint/><geom size='0.1' condim='6' "
+                "friction='1 0.1 0.1'/></body></worldbody></mujoco>");
+  const auto world = compile(
+      "[environment]\nfile = 'room.obj'\n[[robot]]\nname = 'a'\nfile = 'ball.xml'\n"
+      "position = [1, 1, 1.5]\n");
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  EXPECT_THAT(notes(*world), testing::ElementsAre(HasSubstr("'room' looks inwards: it is a room")));
+  const mjModel& m = *world->compiled()->model;
+  const DataPtr data(mj_makeData(&m));
+  while (data->time < 3) mj_step(&m, data.get());
+  EXPECT_NEAR(data->qpos[2], 0.1, 2e-3);
+  EXPECT_NEAR(data->qpos[0], 1, 0.05);
+  // Thrown at each wall and the ceiling it stays within.
+  for (const Vec3 v :
+       {Vec3{4, 0, 1}, Vec3{-4, 0, 1}, Vec3{0, 4, 1}, Vec3{0, -4, 1}, Vec3{1, 1, 6}}) {
+    mj_resetData(&m, data.get());
+    data->qvel[0] = v.x, data->qvel[1] = v.y, data->qvel[2] = v.z;
+    while (data->time < 2) {
+      mj_step(&m, data.get());
+      const mjtNum* p = data->qpos;
+      ASSERT_TRUE(p[0] > 0.02 && p[0] < 4.98 && p[1] > 0.02 && p[1] < 3.98 && p[2] > 0.02 &&
+                  p[2] < 2.48)
+          << p[0] << ' ' << p[1] << ' ' << p[2];
+    }
+  }
+  // A thing is no place: it is turned round.
+  const Result<World> thing = compile("[[object]]\nname = 'a'\nfile = 'room.obj'\n");
+  ASSERT_TRUE(thing.ok()) << thing.error().to_string();
+  EXPECT_THAT(notes(*thing), testing::ElementsAre(HasSubstr("turned round")));
+}
+
+TEST_F(MeshObjectTest, SeveralAreMadeAsOneByOne) {
+  std::string text;
+  for (int i = 0; i < 8; ++i) {
+    folder_.write(fmt::format("b{}.obj", i), obj_box("b", {0, 0, 0}, {0.1 * (i + 1), 0.2, 0.3}, 1));
+    text +=
+        fmt::format("[[object]]\nname = 'b{0}'\nfile = 'b{0}.obj'\nposition = [{0}, 0, 1]\n", i);
+  }
+  const Result<World> world = compile(text);
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  const mjModel& m = *world->compiled()->model;
+  for (int i = 0; i < 8; ++i) {
+    EXPECT_EQ(mj_name2id(&m, mjOBJ_BODY, fmt::format("b{}", i).c_str()), i + 1);
+    EXPECT_NEAR(m.body_mass[i + 1], 6.0 * (i + 1), 1e-3);
+  }
+  folder_.write("b3.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+  folder_.write("b6.obj", "v 0 0 0\n");
+  EXPECT_THAT(error(text), AnyOf(HasSubstr("b3"), HasSubstr("b6")));
+}
+
+TEST_F(MeshObjectTest, WhatIsDrawnOfThemIsCounted) {
+  const Result<World> world = compile(std::string(kCrate) +
+                                      "[[object]]\nname = 'a'\nfile = 'two.obj'\nnode = "
+                                      "'pillar'\n[[visual]]\nname = 'v'\nfile = 'two.obj'\n");
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  EXPECT_EQ(world->info().triangles, 12 + 12 + 24);
+  const Result<World> place = compile("[environment]\nfile = 'two.obj'\n");
+  ASSERT_TRUE(place.ok());
+  EXPECT_EQ(place->info().triangles, 24);
+}
+
 TEST_F(MeshObjectTest, TheFilesContentIsInTheKey) {
   const Result<World> before = compile(kCrate);
   folder_.write("box.obj", obj_box("crate", {-0.1, -0.2, 0}, {0.1, 0.2, 0.7}, 1));
