@@ -83,7 +83,8 @@ class World {
 
   WorldInfo info() const;
   /// What is odd about the scene and taken all the same, and where: open meshes, sizes that look
-  /// like another unit, nodes that got another name.
+  /// like another unit, nodes that got another name, robots and loose things that begin inside
+  /// others. The last takes one pass of MuJoCo's collision.
   std::vector<Error> notes() const;
   /// What is in the files and is not simulated or drawn, and where.
   const std::vector<Error>& unsupported() const;

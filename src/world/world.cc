@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "base/text.h"
+#include "world/initial_overlaps.h"
 #include "world/level.h"
 #include "world/visual_camera.h"
 #include "world/visual_file.h"
@@ -186,7 +187,12 @@ WorldInfo World::info() const {
   return info;
 }
 
-std::vector<Error> World::notes() const { return compiled_->notes; }
+std::vector<Error> World::notes() const {
+  std::vector<Error> notes = compiled_->notes;
+  const std::vector<Error> starts = find_initial_overlaps(*compiled_);
+  notes.insert(notes.end(), starts.begin(), starts.end());
+  return notes;
+}
 const std::vector<Error>& World::unsupported() const { return compiled_->unsupported; }
 
 }  // namespace gloam

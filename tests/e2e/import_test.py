@@ -55,6 +55,12 @@ class Notes(ProgramTest):
         self.assert_told(scene, "samples met nothing: most of this ground is made up")
         self.assertIn("12 triangles drawn", self.gloam("info", scene).stdout)
 
+    def test_of_robots_in_generated_places(self):
+        self.write("ball.xml", BALL)
+        text = "[environment.bedroom]\nseed = 1\n[[robot]]\nname = 'go'\nfile = 'ball.xml'\nposition = [0, 0, {}]\n"
+        self.assertEqual(self.gloam("info", self.write("good.toml", text.format(0.2))).stderr, "")
+        self.assert_told(self.write("s.toml", text.format(0.02)), "robot 'go' begins 0.08 m deep in ")
+
     def test_what_is_not_supported_is_told_too(self):
         self.write("a.xml", BALL.replace("<worldbody>", "<option integrator='Euler'/><worldbody>"))
         self.write("b.xml", BALL.replace("<worldbody>", "<option integrator='RK4'/><worldbody>"))
