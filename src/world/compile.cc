@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <chrono>
+#include <cmath>
 
 #include "geometry/model_file.h"
 #include "scene/environment/generators.h"
@@ -57,6 +60,35 @@ void describe_place(const Place& place, CompiledWorld* world) {
   world->ev100 = place.ev100;
 }
 
+// A kind of the catalogue has limits of its own, to which what is asked for gives way.
+void note_sizes(const Scene& scene, const Place& place, std::vector<Error>* notes) {
+  constexpr double kNear = 0.05, kShare = 0.1;  // [m], of the edge
+  for (const PropOptions& prop : scene.props) {
+    if (!prop.size) continue;
+    for (const Placement& placement : place.placements()) {
+      if (placement.name != prop.name) continue;
+      const Prop::Box box = place.prop(placement.prop).bounds();
+      const Vec3f made = box.high - box.low;
+      const double edges[3][2] = {
+          {prop.size->x, made.x}, {prop.size->y, made.y}, {prop.size->z, made.z}};
+      std::string told;
+      for (size_t i = 0; i < 3; ++i) {
+        const auto [asked, is] = std::pair(edges[i][0], edges[i][1]);
+        if (std::abs(asked - is) <= kNear + kShare * asked) continue;
+        constexpr const char* kEdges[] = {"deep", "wide", "high"};
+        told += fmt::format("{}{:.2f} m {}, not {:.4g} m", told.empty() ? "" : ", ", is, kEdges[i],
+                            asked);
+      }
+      if (told.empty()) continue;
+      notes->push_back({ErrorKind::kInput, fmt::format("prop '{}': it is {}", prop.name, told),
+                        prop.loc,
+                        fmt::format("the nearest that a {} can be; `gloam props` tells what is "
+                                    "usual",
+                                    prop.kind)});
+    }
+  }
+}
+
 bool has_meshes(const Scene& scene) {
   return !scene.objects.empty() || is_model_file(scene.environment.file);
 }
@@ -87,9 +119,12 @@ Result<World> World::compile(const Scene& written, const ProgressCallback& callb
   scene.randomize.clear();
   GLOAM_TRY(scene, with_rig_cameras(scene));
   const uint64_t place_hash = (place ? place->hash() : 0) ^ objects.hash;
+  std::vector<Error> sizes;
+  if (place) note_sizes(scene, *place, &sizes);
   if (std::shared_ptr<CompiledWorld> cached = load_cached_world(scene, place_hash)) {
     if (place) describe_place(*place, cached.get());
     cached->drawn = drawn;
+    cached->place_notes = std::move(sizes);
     if (!scene.bare_model.empty()) cached->robots = {bare_robot(scene, cached->model.get())};
     GLOAM_TRY_STATUS(check_sensors(*cached));
     GLOAM_TRY_STATUS(describe_lidars(*cached));
@@ -110,6 +145,7 @@ Result<World> World::compile(const Scene& written, const ProgressCallback& callb
   world->model = std::move(level.model);
   world->initial_key = level.initial_key;
   world->notes = std::move(level.notes);
+  world->place_notes = std::move(sizes);
   world->unsupported = std::move(level.unsupported);
   GLOAM_TRY_STATUS(check_sensors(*world));
   GLOAM_TRY_STATUS(describe_lidars(*world));

@@ -189,6 +189,7 @@ WorldInfo World::info() const {
 
 std::vector<Error> World::notes() const {
   std::vector<Error> notes = compiled_->notes;
+  notes.insert(notes.end(), compiled_->place_notes.begin(), compiled_->place_notes.end());
   const std::vector<Error> starts = find_initial_overlaps(*compiled_);
   notes.insert(notes.end(), starts.begin(), starts.end());
   return notes;

@@ -59,6 +59,7 @@ struct CompiledWorld {
   ModelPtr visual_model;  ///< source of visual_only meshes and materials; null when there are none
   std::vector<VisualOnlyGeom> visual_only;
   std::vector<Error> notes;        ///< what is odd, and taken as it is
+  std::vector<Error> place_notes;  ///< likewise, of what is generated; not in the cache, as that is
   std::vector<Error> unsupported;
 };
 

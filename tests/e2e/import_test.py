@@ -49,6 +49,10 @@ class Notes(ProgramTest):
         self.assertTrue(any("unit = 0.001" in note["hint"] for note in notes), notes)
         self.assertTrue(all(note["line"] == 1 for note in notes), notes)
 
+    def test_of_props(self):
+        scene = self.write("s.toml", "[[prop]]\nname = 'c'\nkind = 'chair'\nsize = [50, 50, 50]\n")
+        self.assert_told(scene, "prop 'c': it is")
+
     def test_of_height_fields(self):
         self.write("g.obj", box((0, 0, 0), (1, 1, 0.2)))
         scene = self.write("s.toml", "[[hfield]]\nname = 'g'\nfile = 'g.obj'\nlow = [-5, -5]\nhigh = [5, 5]\n")

@@ -89,5 +89,12 @@ TEST_F(InitialOverlaps, OfABareModelAreItsOwnBusiness) {
   EXPECT_THAT(World::compile(*scene)->notes(), IsEmpty());
 }
 
+TEST_F(InitialOverlaps, SizesThatAKindCannotHaveAreTold) {
+  EXPECT_THAT(told("[[prop]]\nname = 'c'\nkind = 'chair'\nsize = [50, 50, 50]\n"),
+              ElementsAre(AllOf(HasSubstr("scene.toml:1"), HasSubstr("prop 'c': it is"),
+                                HasSubstr("not 50 m"), HasSubstr("a chair can be"))));
+  EXPECT_THAT(told("[[prop]]\nname = 'd'\nkind = 'desk'\nsize = [0.7, 1.6, 0.74]\n"), IsEmpty());
+}
+
 }  // namespace
 }  // namespace gloam
