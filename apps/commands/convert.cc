@@ -2,19 +2,45 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
+#include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 
 #include "command.h"
 #include "gloam/world.h"
+#include "interrupt.h"
 
 namespace gloam::cli {
 namespace {
 
 struct ConvertCommand {
   ObjectOptions object;
-  std::string file;
+  std::string file, scale = "1";
 };
+
+// "2" or "1,1,2".
+Status parse_scale(const std::string& text, Vec3* scale) {
+  std::vector<double> numbers;
+  const char *at = text.data(), *end = at + text.size();
+  while (numbers.size() < 4) {
+    double value = 0;
+    const auto [after, error] = std::from_chars(at, end, value);
+    if (error != std::errc() || !(value > 0) || !std::isfinite(value)) break;
+    numbers.push_back(value);
+    at = after;
+    if (at == end) break;
+    if (*at++ != ',') break;
+  }
+  if (at != end || (numbers.size() != 1 && numbers.size() != 3))
+    return Error{ErrorKind::kUsage,
+                 fmt::format("--scale {}: expected one positive number, or three", text),
+                 {},
+                 "for example 0.5 or 1,1,2"};
+  numbers.resize(3, numbers[0]);
+  *scale = {numbers[0], numbers[1], numbers[2]};
+  return {};
+}
 
 std::string count_kinds(const std::vector<std::string>& colliders) {
   std::map<std::string, int> counts;
@@ -25,13 +51,22 @@ std::string count_kinds(const std::vector<std::string>& colliders) {
   return out.empty() ? "none" : out;
 }
 
-int convert(ConvertCommand command, bool as_json) {
+int convert(ConvertCommand command, const Globals& globals) {
   command.object.file = command.file;
   command.object.name = command.object.file.stem().string();
-  const Result<ObjectReport> made = convert_object(command.object);
+  if (const Status status = parse_scale(command.scale, &command.object.scale); !status.ok())
+    return fail(status.error());
+  const EndOnInterrupt watched;
+  const ProgressCallback show = progress_display(globals);
+  const Result<ObjectReport> made =
+      convert_object(command.object, {}, [&](const Progress& progress) {
+        show(progress);
+        return true;
+      });
+  finish_progress();
   if (!made.ok()) return fail(made.error());
   const ObjectReport& r = *made;
-  if (as_json) {
+  if (globals.json) {
     const nlohmann::ordered_json json = {{"triangles", r.triangles},
                                          {"closed", r.is_closed},
                                          {"size", {r.size.x, r.size.y, r.size.z}},
@@ -66,11 +101,23 @@ void add_convert(CLI::App& app, Globals& globals, Action& action) {
   sub->add_option("FILE", command->file, "glTF, GLB, OBJ, STL or PLY")->required();
   sub->add_option("--node", command->object.node, "One node by its name");
   sub->add_option("--colliders", command->object.colliders, "As in [[object]]");
-  sub->add_option("--unit", command->object.unit, "Metres of one unit of the file")
+  ObjectOptions& o = command->object;
+  sub->add_option("--scale", command->scale, "One number, or three along its axes, as 2 or 1,1,2");
+  sub->add_option("--up", o.up, "Axis of the file that points up; auto: y of glTF, z of the others")
+      ->check(CLI::IsMember({"auto", "y", "z"}));
+  sub->add_option("--unit", o.unit, "Metres of one unit of the file: 0.001 for millimetres")
       ->check(positive_number());
-  sub->footer("Example:\n  gloam convert assets/models/lantern/lantern.glb --colliders hull");
+  sub->add_option("--density", o.density, "kg/m³ of its volume")->check(positive_number());
+  sub->add_option("--mass", o.mass, "kg, whatever its volume")->check(positive_number());
+  sub->add_option("--concavity", o.concavity,
+                  "hulls: how far a part may be from its hull, of the size: 0.01 … 1");
+  sub->add_option("--max-hulls", o.max_hulls, "hulls: at most, 1 … 256");
+  sub->footer(
+      "Examples:\n  gloam convert assets/models/lantern/lantern.glb --colliders hull\n"
+      "  gloam convert part.stl --unit 0.001 --up y --density 2700\n"
+      "  gloam convert chair.obj --colliders hulls --concavity 0.02 --max-hulls 64");
   sub->callback([&globals, &action, command] {
-    action = [&globals, command] { return convert(*command, globals.json); };
+    action = [&globals, command] { return convert(*command, globals); };
   });
 }
 

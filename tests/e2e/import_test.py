@@ -85,5 +85,27 @@ class Rooms(ProgramTest):
         self.assertNotIn("begins", result.stderr)
 
 
+class Convert(ProgramTest):
+    def report(self, *arguments):
+        return json.loads(self.gloam("convert", self.folder / "box.obj", "--json", *arguments).stdout)
+
+    def test_takes_what_an_object_takes(self):
+        self.write("box.obj", box((0, 0, 0), (1, 2, 3)))
+        self.assertEqual(self.report()["size"], [1, 2, 3])
+        self.assertEqual(self.report("--scale", "2")["size"], [2, 4, 6])
+        self.assertEqual(self.report("--scale", "1,1,2")["size"], [1, 2, 6])
+        self.assertEqual(self.report("--up", "y")["size"], [1, 3, 2])
+        self.assertAlmostEqual(self.report("--unit", "0.5", "--density", "100")["mass"], 75, places=3)
+        self.assertAlmostEqual(self.report("--mass", "4")["mass"], 4)
+        self.assertEqual(self.report("--concavity", "0.5", "--max-hulls", "3", "--colliders", "hull")["colliders"], ["hull"])
+
+    def test_refuses_what_an_object_refuses(self):
+        self.write("box.obj", box((0, 0, 0), (1, 2, 3)))
+        for bad in (["--scale", "0"], ["--scale", "1,2"], ["--up", "x"], ["--density", "-1"]):
+            self.gloam("convert", self.folder / "box.obj", *bad, expect=2)
+        for bad in (["--concavity", "7"], ["--max-hulls", "0"]):
+            self.assertIn(bad[0][2:].replace("-", "_"), self.gloam("convert", self.folder / "box.obj", *bad, expect=1).stderr)
+
+
 if __name__ == "__main__":
     unittest.main()
