@@ -14,12 +14,16 @@ namespace {
 
 constexpr double kMostCells = double{1 << 28};  // 4 GiB of walls
 
-Status check_grid(const GasGrid& g) {
+Status check_grid(const GasGrid& g, double sealed_gap) {
   const bool sized = g.voxel > 0 && std::isfinite(g.voxel) && std::isfinite(g.low.x) &&
                      std::isfinite(g.low.y) && std::isfinite(g.low.z);
   if (g.nx < 1 || g.ny < 1 || g.nz < 1 || !sized) {
     return Error{ErrorKind::kUsage, fmt::format("a gas needs cells: {} x {} x {} of {} m are none",
                                                 g.nx, g.ny, g.nz, g.voxel)};
+  }
+  if (!(sealed_gap >= 0 && std::isfinite(sealed_gap))) {
+    return Error{ErrorKind::kUsage,
+                 fmt::format("gaps narrower than {} m cannot be sealed", sealed_gap)};
   }
   if (double(g.nx) * g.ny * g.nz > kMostCells) {
     return Error{ErrorKind::kUsage,
@@ -63,15 +67,16 @@ std::vector<bool> colliders(const mjModel& m) {
 
 }  // namespace
 
-GasObstacles::GasObstacles(std::shared_ptr<const CompiledWorld> world, const GasGrid& grid)
-    : world_(std::move(world)), model_(*world_->model), grid_(grid), lines_(grid) {
+GasObstacles::GasObstacles(std::shared_ptr<const CompiledWorld> world, const GasGrid& grid,
+                           double sealed_gap)
+    : world_(std::move(world)), model_(*world_->model), grid_(grid), lines_(grid, sealed_gap) {
   model_.opt.enableflags &= ~mjENBL_SLEEP;  // kinematics skips what sleeps
 }
 
 Result<std::unique_ptr<GasObstacles>> GasObstacles::create(
-    std::shared_ptr<const CompiledWorld> world, const GasGrid& grid) {
-  GLOAM_TRY_STATUS(check_grid(grid));
-  std::unique_ptr<GasObstacles> made(new GasObstacles(std::move(world), grid));
+    std::shared_ptr<const CompiledWorld> world, const GasGrid& grid, double sealed_gap) {
+  GLOAM_TRY_STATUS(check_grid(grid, sealed_gap));
+  std::unique_ptr<GasObstacles> made(new GasObstacles(std::move(world), grid, sealed_gap));
   mjData* data = nullptr;
   GLOAM_TRY_STATUS(guarded([&] {
     data = mj_makeData(&made->model_);

@@ -18,10 +18,15 @@ namespace gloam {
 /// Used by one thread at a time; the same bits for any number of threads.
 class GasObstacles {
  public:
-  /// Geoms that count: those that can collide, by contype, conaffinity or a `<pair>`. Errors: a
-  /// grid without cells, or of too many; MuJoCo's.
+  /// Of a door that is shut, 4 to 8 mm: a line through one would make a gap of a whole voxel of it.
+  static constexpr double kSealedGap = 0.01;
+
+  /// Geoms that count: those that can collide, by contype, conaffinity or a `<pair>`. `sealed_gap`
+  /// [m]: narrower gaps between two are closed, as all surfaces are moved out by half of it, for
+  /// faces, not for cells. Errors: a grid without cells, or of too many; MuJoCo's.
   static Result<std::unique_ptr<GasObstacles>> create(std::shared_ptr<const CompiledWorld> world,
-                                                      const GasGrid& grid);
+                                                      const GasGrid& grid,
+                                                      double sealed_gap = kSealedGap);
 
   /// Fills `walls` as of the Snapshot's own instant; where it is the object of the last call, as
   /// the last call left it, only what moved is written. Of several things that close a face, one
@@ -46,7 +51,7 @@ class GasObstacles {
     bool operator==(const Mover&) const = default;
   };
 
-  GasObstacles(std::shared_ptr<const CompiledWorld> world, const GasGrid& grid);
+  GasObstacles(std::shared_ptr<const CompiledWorld> world, const GasGrid& grid, double sealed_gap);
   void sort_geoms();
   void voxelise_still();
   void voxelise_height_fields(const float* data);

@@ -135,13 +135,14 @@ bool GridSolid::make_primitive(int type, const double* size) {
 }
 
 // Row by row and plane by plane, so that the inner loop is one of vectors.
-void GridSolid::inside_planes(int axis, int b0, int c, int n, double* lo, double* hi) const {
+void GridSolid::inside_planes(int axis, int b0, int c, int n, double grow, double* lo,
+                              double* hi) const {
   const int axis_b = axis == 0 ? 1 : 0, axis_c = axis == 2 ? 1 : 2;
-  std::fill(lo, lo + n, low_[axis]);
-  std::fill(hi, hi + n, high_[axis]);
+  std::fill(lo, lo + n, low(axis, grow));
+  std::fill(hi, hi + n, high(axis, grow));
   for (const SolidPlane& plane : planes_) {
     const double along = plane.n[axis], across = plane.n[axis_b];
-    const double left = plane.offset - plane.n[axis_c] * (c + 0.5) - across * (b0 + 0.5);
+    const double left = plane.offset + grow - plane.n[axis_c] * (c + 0.5) - across * (b0 + 0.5);
     if (std::abs(along) < kParallel) {
       for (int i = 0; i < n; ++i) lo[i] = left - across * i < 0 ? kEndless : lo[i];
       continue;
@@ -155,8 +156,9 @@ void GridSolid::inside_planes(int axis, int b0, int c, int n, double* lo, double
   }
 }
 
-void GridSolid::inside(int axis, int b0, int c, int n, double* lo, double* hi) const {
-  if (kind_ == Kind::kPlanes) return inside_planes(axis, b0, c, n, lo, hi);
+void GridSolid::inside(int axis, int b0, int c, int n, double grow, double* lo, double* hi) const {
+  if (kind_ == Kind::kPlanes) return inside_planes(axis, b0, c, n, grow, lo, hi);
+  const double size[3] = {size_[0] + grow, size_[1] + grow, size_[2] + grow};
   const double* u = R_ + 3 * axis;  // the line's direction in the solid's frame
   double d[3] = {};
   d[axis == 2 ? 1 : 2] = c + 0.5 - p_[axis == 2 ? 1 : 2];
@@ -165,9 +167,9 @@ void GridSolid::inside(int axis, int b0, int c, int n, double* lo, double* hi) c
     double q[3];
     for (int j = 0; j < 3; ++j) q[j] = R_[j] * d[0] + R_[3 + j] * d[1] + R_[6 + j] * d[2];
     Interval in;
-    if (kind_ == Kind::kEllipsoid) in = in_ellipsoid(q, u, size_);
-    if (kind_ == Kind::kCylinder) in = in_cylinder(q, u, size_[0], size_[1]);
-    if (kind_ == Kind::kCapsule) in = in_capsule(q, u, size_[0], size_[1]);
+    if (kind_ == Kind::kEllipsoid) in = in_ellipsoid(q, u, size);
+    if (kind_ == Kind::kCylinder) in = in_cylinder(q, u, size[0], size[1]);
+    if (kind_ == Kind::kCapsule) in = in_capsule(q, u, size[0], size_[1]);
     lo[i] = in.lo + p_[axis];
     hi[i] = in.hi + p_[axis];
   }

@@ -30,18 +30,20 @@ class GridSolid {
   void make_polyhedron(std::span<const SolidPlane> planes, const double* centre,
                        const double* half);
 
-  double low(int axis) const { return low_[axis]; }  ///< bounds
-  double high(int axis) const { return high_[axis]; }
+  /// Bounds, where all surfaces are moved out by `grow`.
+  double low(int axis, double grow) const { return low_[axis] - kDiagonal * grow; }
+  double high(int axis, double grow) const { return high_[axis] + kDiagonal * grow; }
 
   /// The lines along `axis` through the cells (b0 + i, c) of the other two axes, in order of axes,
-  /// for i < n: inside where lo[i] <= x <= hi[i].
-  void inside(int axis, int b0, int c, int n, double* lo, double* hi) const;
+  /// for i < n: inside where lo[i] <= x <= hi[i]. All surfaces are moved out by `grow`.
+  void inside(int axis, int b0, int c, int n, double grow, double* lo, double* hi) const;
 
  private:
+  static constexpr double kDiagonal = 1.7320508;  // of a cube, by which a box may reach further
   enum class Kind : uint8_t { kPlanes, kEllipsoid, kCylinder, kCapsule };
   void add_plane(const SolidPlane& plane);
   void bound(const double* centre, const double* half);
-  void inside_planes(int axis, int b0, int c, int n, double* lo, double* hi) const;
+  void inside_planes(int axis, int b0, int c, int n, double grow, double* lo, double* hi) const;
 
   Kind kind_ = Kind::kPlanes;
   double voxel_ = 1;  // [m]

@@ -12,7 +12,10 @@ int to_index(double x, int low, int high) {
 
 }  // namespace
 
-WallRuns::WallRuns(const GasGrid& grid) : grid_(grid), n_{grid.nx, grid.ny, grid.nz} {
+WallRuns::WallRuns(const GasGrid& grid, double sealed_gap)
+    : grid_(grid),
+      n_{grid.nx, grid.ny, grid.nz},
+      grow_(std::max(sealed_gap, 0.0) / 2 / double{grid.voxel}) {
   const auto most = static_cast<size_t>(std::max({grid.nx, grid.ny, grid.nz}));
   lo_.resize(most);
   hi_.resize(most);
@@ -21,7 +24,7 @@ WallRuns::WallRuns(const GasGrid& grid) : grid_(grid), n_{grid.nx, grid.ny, grid
 void WallRuns::append(const GridSolid& solid, std::vector<WallRun>* runs) {
   int first[3], last[3];  // cells whose centres are within the bounds
   for (int axis = 0; axis < 3; ++axis) {
-    const double low = solid.low(axis), high = solid.high(axis);
+    const double low = solid.low(axis, grow_), high = solid.high(axis, grow_);
     // Half a voxel more on either side: a face at the border has a centre beyond it.
     if (!(high >= -0.5) || !(low <= n_[axis] + 0.5)) return;
     first[axis] = to_index(std::ceil(low - 0.5), 0, n_[axis]);
@@ -32,16 +35,21 @@ void WallRuns::append(const GridSolid& solid, std::vector<WallRun>* runs) {
     const int b0 = first[axis_b], count = last[axis_b] - b0 + 1;
     if (count <= 0) continue;
     for (int c = first[axis_c]; c <= last[axis_c]; ++c) {
-      solid.inside(axis, b0, c, count, lo_.data(), hi_.data());
+      const size_t row = runs->size();
+      solid.inside(axis, b0, c, count, grow_, lo_.data(), hi_.data());
       for (int i = 0; i < count; ++i) {
         const double lo = lo_[static_cast<size_t>(i)], hi = hi_[static_cast<size_t>(i)];
         if (!(lo <= hi) || lo > n + 0.5 || hi < -0.5) continue;
-        WallRun run{axis, b0 + i, c, 0, 0, 0, 0};
-        run.first_face = to_index(std::ceil(lo - 0.5), 0, n);
-        run.last_face = to_index(std::floor(hi + 0.5), 0, n);
-        run.first_cell = to_index(std::ceil(lo - 0.5), 0, n);
-        run.last_cell = to_index(std::floor(hi - 0.5), -1, n - 1);
-        runs->push_back(run);
+        const int first_face = to_index(std::ceil(lo - 0.5), 0, n);
+        runs->push_back({axis, b0 + i, c, first_face, to_index(std::floor(hi + 0.5), 0, n), 0, -1});
+      }
+      if (axis != 0 || runs->size() == row) continue;
+      solid.inside(axis, b0, c, count, 0, lo_.data(), hi_.data());
+      for (WallRun& run : std::span(*runs).subspan(row)) {
+        const auto i = static_cast<size_t>(run.b - b0);
+        if (!(lo_[i] <= hi_[i])) continue;
+        run.first_cell = to_index(std::ceil(lo_[i] - 0.5), 0, n);
+        run.last_cell = to_index(std::floor(hi_[i] - 0.5), -1, n - 1);
       }
     }
   }
@@ -51,8 +59,8 @@ size_t WallRuns::most_runs(double radius) const {
   size_t most = 0;
   double across[3];
   for (int axis = 0; axis < 3; ++axis)
-    across[axis] =
-        std::min(double(n_[axis]), 2 * (radius + 2 * kWallTolerance) / double{grid_.voxel} + 2);
+    across[axis] = std::min(
+        double(n_[axis]), 2 * (radius + 2 * kWallTolerance) / double{grid_.voxel} + 4 * grow_ + 2);
   for (int axis = 0; axis < 3; ++axis)
     most +=
         static_cast<size_t>(across[(axis + 1) % 3]) * static_cast<size_t>(across[(axis + 2) % 3]);

@@ -28,7 +28,8 @@ struct RigidMotion {
 
 class WallRuns {
  public:
-  explicit WallRuns(const GasGrid& grid);
+  /// Gaps narrower than `sealed_gap` [m] between two solids are closed.
+  WallRuns(const GasGrid& grid, double sealed_gap);
 
   /// Appends what of the solid is in the grid.
   void append(const GridSolid& solid, std::vector<WallRun>* runs);
@@ -49,6 +50,7 @@ class WallRuns {
 
   GasGrid grid_;
   int n_[3];
+  double grow_;                  // of all surfaces, for faces [voxels]
   std::vector<double> lo_, hi_;  // of a row of lines
 };
 

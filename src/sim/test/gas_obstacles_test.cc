@@ -207,6 +207,31 @@ TEST(GasObstacles, ABoxOfBoardsThatTouchIsTight) {
   }
 }
 
+// A wall of two boards, wherever the gap between them lies: lines of the grid would find it.
+TEST(GasObstacles, GapsThatAreNarrowAreSealed) {
+  int open_unsealed = 0;
+  for (int i = 0; i < 20; ++i) {
+    const double at = .2 + .005 * i;
+    for (const double sealed : {0., .01}) {
+      for (const double gap : {.008, .15}) {
+        GasRig rig(fmt::format("<geom type='box' size='2 .02 2' pos='{} .01 0'/>"
+                               "<geom type='box' size='2 .02 2' pos='{} .01 0'/>",
+                               at - 2 - gap / 2, at + 2 + gap / 2),
+                   cube_grid(10, .1f), sealed);
+        rig.solve();
+        std::vector<uint8_t> reached(rig.walls.solid.size());
+        reached[0] = 1;
+        flood(rig.walls, &reached);
+        const bool open = reached.back() != 0;
+        const bool expected = gap > .1 || (sealed == 0 && open);
+        EXPECT_EQ(open, expected) << at;
+        open_unsealed += gap < .1 && sealed == 0 && open;
+      }
+    }
+  }
+  EXPECT_GT(open_unsealed, 0);
+}
+
 TEST(GasObstacles, GridsAndGeomsOfAbsurdSizes) {
   const std::string ball = "<geom type='sphere' size='.3'/>";
   GasRig one(ball, cube_grid(1, .1f));
@@ -246,6 +271,8 @@ TEST(GasObstacles, GridsAndGeomsOfAbsurdSizes) {
                       cube_grid(1 << 30, .1f)}) {
     EXPECT_FALSE(GasObstacles::create(world, bad).ok());
   }
+  for (const double gap : {-1., double{NAN}, double{INFINITY}})
+    EXPECT_FALSE(GasObstacles::create(world, cube_grid(4, .1f), gap).ok());
 }
 
 }  // namespace

@@ -83,9 +83,9 @@ int count(const std::vector<uint8_t>& flags) {
   return static_cast<int>(std::count(flags.begin(), flags.end(), uint8_t{1}));
 }
 
-GasRig::GasRig(std::shared_ptr<CompiledWorld> made, const GasGrid& grid)
-    : world(std::move(made)), d(mj_makeData(world->model.get())) {
-  auto result = GasObstacles::create(world, grid);
+GasRig::GasRig(std::shared_ptr<CompiledWorld> made, const GasGrid& grid, double sealed_gap)
+    : world(std::move(made)), d(mj_makeData(world->model.get())), gap(sealed_gap) {
+  auto result = GasObstacles::create(world, grid, gap);
   if (!result.ok()) {
     ADD_FAILURE() << result.error().to_string();
     abort();
@@ -93,8 +93,9 @@ GasRig::GasRig(std::shared_ptr<CompiledWorld> made, const GasGrid& grid)
   obstacles = std::move(*result);
 }
 
-GasRig::GasRig(const std::string& bodies, const GasGrid& grid)
-    : GasRig(world_from_mjcf("<mujoco><worldbody>" + bodies + "</worldbody></mujoco>"), grid) {}
+GasRig::GasRig(const std::string& bodies, const GasGrid& grid, double sealed_gap)
+    : GasRig(world_from_mjcf("<mujoco><worldbody>" + bodies + "</worldbody></mujoco>"), grid,
+             sealed_gap) {}
 
 Snapshot GasRig::snapshot() const {
   auto data = std::make_shared<SnapshotData>();
@@ -113,7 +114,7 @@ void GasRig::solve() {
 
 GasWalls GasRig::fresh() const {
   GasWalls made;
-  auto other = *GasObstacles::create(world, walls.grid);
+  auto other = *GasObstacles::create(world, walls.grid, gap);
   EXPECT_TRUE(other->solve(snapshot(), &made).ok());
   return made;
 }

@@ -50,9 +50,10 @@ struct GasRig {
   DataPtr d;  // the state that solve() is asked about
   std::unique_ptr<GasObstacles> obstacles;
   GasWalls walls;
+  double gap;
 
-  GasRig(std::shared_ptr<CompiledWorld> world, const GasGrid& grid);
-  GasRig(const std::string& bodies, const GasGrid& grid);
+  GasRig(std::shared_ptr<CompiledWorld> world, const GasGrid& grid, double sealed_gap = 0);
+  GasRig(const std::string& bodies, const GasGrid& grid, double sealed_gap = 0);
   Snapshot snapshot() const;
   void solve();
   /// The walls of obstacles that have seen nothing before.

@@ -82,7 +82,7 @@ TEST(GasObstacles, AllocateNothingAfterTheFirstCall) {
       "<geom type='plane' size='1 1 1' pos='0 0 -.4'/><body pos='9 0 0'><freejoint/>"
       "<geom type='box' size='.5 .3 .01' pos='.2 0 0'/><geom type='sphere' size='.4'/></body>"
       "<body mocap='true' pos='5 0 0'><geom type='capsule' size='.1 .3'/></body>",
-      cube_grid(20, .1f));
+      cube_grid(20, .1f), .01);
   rig.solve();  // everything is out of the grid
   allocations = frees = 0;
   for (int step = 0; step < 20; ++step) {
