@@ -31,10 +31,11 @@ class GasObstacles {
   /// Fills `walls` as of the Snapshot's own instant; where it is the object of the last call, as
   /// the last call left it, only what moved is written. Of several things that close a face, one
   /// that stands still wins, then the last geom by id. Mocap bodies have no velocity: MuJoCo knows
-  /// none. Allocates at the first call with an object only. Error: MuJoCo's.
+  /// none. Allocates at the first call with an object, and when the ground changes. Error:
+  /// MuJoCo's.
   Status solve(const Snapshot& snapshot, GasWalls* walls);
 
-  /// Does anything differ from what the call before the last made? True after the first.
+  /// Did the last call find anything else than the one before? True after the first.
   bool changed() const { return changed_; }
   /// The same of what is closed or solid, whatever its velocity.
   bool shape_changed() const { return shape_changed_; }
