@@ -1,0 +1,30 @@
+#pragma once
+// What MuJoCo collides meshes and height fields as: hulls and prisms, as planes.
+
+#include <vector>
+
+#include "sim/effects/grid_solid.h"
+
+namespace gloam {
+
+/// The planes of the convex hull that a mesh collides as, in the mesh's frame [m].
+std::vector<SolidPlane> hull_planes(const mjModel& model, int mesh);
+
+/// One height field: two prisms a cell, from its base to its surface. Refers to the model.
+class HeightField {
+ public:
+  /// `data`: of all height fields of the model, 0 … 1, as hfield_data.
+  HeightField(const mjModel& model, int id, const float* data);
+  int rows() const { return rows_; }
+  int columns() const { return columns_; }
+  /// Of the cell from (column, row) to the next: one of its two prisms, where the solid's pose is.
+  void make_prism(int column, int row, bool second, GridSolid* solid) const;
+
+ private:
+  void point(int column, int row, double* p) const;
+  int rows_, columns_;
+  const mjtNum* size_;  // x, y, above, below [m]
+  const float* data_;
+};
+
+}  // namespace gloam
