@@ -1,0 +1,37 @@
+#pragma once
+// Velocity between two projections: carried by itself, then driven by heat and wind.
+
+#include "sim/effects/gas/openings.h"
+
+namespace gloam::gas {
+
+class Momentum {
+ public:
+  static uint64_t bytes(uint64_t cells) { return cells * (13 * 4); }
+
+  explicit Momentum(const Shape& shape);
+
+  /// Carries `velocity` along itself for `dt`; closed faces stay as they are. `wind` [m/s]: of the
+  /// air outside, which comes in over kInflow voxels.
+  void advect(const Openings& openings, const Faces<const float>& open,
+              const Faces<float>& velocity, float voxel, float dt, Vec3f wind);
+  /// heat, smoke: of cells, ghosts 0.
+  void lift(const Faces<const float>& open, const Faces<float>& velocity, const float* heat,
+            const float* smoke, float ambient_density, float dt);
+  void confine(const Faces<const float>& open, const Faces<float>& velocity, float strength,
+               float dt);
+
+ private:
+  /// Times `scale`, each component at most `limit`.
+  void find_centres(const Faces<const float>& velocity, float scale, float limit);
+  void find_paths(const Openings& openings, const Faces<const float>& open);
+  void carry(int axis, const float* open, float* velocity, Vec3f wind, float reach);
+
+  Shape shape_;
+  Field centre_[3];  ///< velocities of cells' centres [voxels per step]
+  Field moved_[3];   ///< by how much their air moved in the step [voxels]
+  Field trusted_;    ///< 0 where something was in the way: no correction there
+  Field carried_, least_, most_, old_;
+};
+
+}  // namespace gloam::gas
