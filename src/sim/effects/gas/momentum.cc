@@ -1,12 +1,10 @@
 #include "sim/effects/gas/momentum.h"
 
+#include "sim/effects/gas/kernel/carry.h"
 #include "sim/effects/gas/kernel/forces.h"
 
 namespace gloam::gas {
 namespace {
-
-/// Over this many voxels of its way from outside, air takes on what it meets at the border [voxels].
-constexpr float kInflow = 4;
 
 Faces<const float> view(const Field (&f)[3]) { return {f[0].data(), f[1].data(), f[2].data()}; }
 
@@ -39,7 +37,7 @@ Momentum::Momentum(const Shape& shape) : shape_(shape) {
     centre_[a].assign(n, 0.0f);
     moved_[a].assign(n, 0.0f);
   }
-  for (Field* f : {&trusted_, &carried_, &least_, &most_, &old_}) f->assign(n, 0.0f);
+  for (Field* f : {&trusted_, &carried_, &least_, &most_, &corrected_}) f->assign(n, 0.0f);
 }
 
 void Momentum::find_centres(const Faces<const float>& u, float scale, float limit) {
@@ -62,11 +60,15 @@ void Momentum::find_paths(const Openings& openings, const Faces<const float>& op
   const Carrier carrier{s, view(centre_)};
   float *x = moved_[0].data(), *y = moved_[1].data(), *z = moved_[2].data();
   for_rows(s, [&, x, y, z](int j, int k) {
-    const int begin = s.at(0, j, k);
+    const int begin = s.at(0, j, k), nx = s.nx;
+    {
+      const Carrier v = carrier;
+      float *const to_x = x + begin, *const to_y = y + begin, *const to_z = z + begin;
 #pragma GCC ivdep
-    for (int i = 0; i < s.nx; ++i) {
-      const Vec3f d = displacement(carrier, i, j, k);
-      x[begin + i] = d.x, y[begin + i] = d.y, z[begin + i] = d.z;
+      for (int i = 0; i < nx; ++i) {
+        const Vec3f d = displacement(v, i, j, k);
+        to_x[i] = d.x, to_y[i] = d.y, to_z[i] = d.z;
+      }
     }
     for (int i = 0; i < s.nx; ++i) {
       const int c = begin + i;
@@ -94,50 +96,32 @@ void Momentum::find_paths(const Openings& openings, const Faces<const float>& op
 void Momentum::carry(int axis, const float* open, float* velocity, Vec3f wind, float drift) {
   const Shape& s = shape_;
   const Shape faces = faces_of(s, axis);
-  const int stride = s.stride(axis);
   const float outside = wind[axis];
-  const float *mx = moved_[0].data(), *my = moved_[1].data(), *mz = moved_[2].data();
-  const float *vx = centre_[0].data(), *vy = centre_[1].data(), *vz = centre_[2].data();
-  const float* trusted = trusted_.data();
-  float *carried = carried_.data(), *least = least_.data(), *most = most_.data();
-  const float* old = velocity;
-  for_rows(faces, [&, old](int j, int k) {
-    const int begin = s.at(0, j, k);
+  const CarryView view{s,
+                       axis,
+                       s.stride(axis),
+                       outside,
+                       gas::view(moved_),
+                       gas::view(centre_),
+                       trusted_.data(),
+                       open,
+                       velocity,
+                       carried_.data(),
+                       least_.data(),
+                       most_.data(),
+                       corrected_.data()};
+  for_rows(faces, [&view, nx = faces.nx](int j, int k) {
+    const CarryView v = view;  // its own copy: the compiler need not look at it again for each face
 #pragma GCC ivdep
-    for (int i = 0; i < faces.nx; ++i) {
-      const int c = begin + i, b = c - stride;
-      const Between at = place(s, axis, float(i) - 0.5f * (mx[c] + mx[b]),
-                               float(j) - 0.5f * (my[c] + my[b]), float(k) - 0.5f * (mz[c] + mz[b]));
-      const float value = interpolate(s, old, at, &least[c], &most[c]);
-      carried[c] = value + (outside - value) * min(at.outside * (1.0f / kInflow), 1.0f);
-    }
+    for (int i = 0; i < nx; ++i) carry_face(v, i, j, k);
   });
-  float* to = old_.data();
-  for_rows(faces, [&, old, to](int j, int k) {
-    const int begin = s.at(0, j, k);
+  for_rows(faces, [&view, nx = faces.nx](int j, int k) {
+    const CarryView v = view;
 #pragma GCC ivdep
-    for (int i = 0; i < faces.nx; ++i) {
-      const int c = begin + i, b = c - stride;
-      // Forward by what the centres' paths would be there: twice the velocity less the way back.
-      const float dx = (vx[c] + vx[b]) - 0.5f * (mx[c] + mx[b]);
-      const float dy = (vy[c] + vy[b]) - 0.5f * (my[c] + my[b]);
-      const float dz = (vz[c] + vz[b]) - 0.5f * (mz[c] + mz[b]);
-      const Between at = place(s, axis, float(i) + dx, float(j) + dy, float(k) + dz);
-      const float back = interpolate(s, carried, at);
-      const float corrected = clamp(carried[c] + 0.5f * (old[c] - back), least[c], most[c]);
-      // What came or goes past the border, or past a wall, has no way back to compare.
-      const float px = float(i) - 0.5f * (mx[c] + mx[b]), py = float(j) - 0.5f * (my[c] + my[b]),
-                  pz = float(k) - 0.5f * (mz[c] + mz[b]);
-      const bool inside = (px >= 0.0f) & (py >= 0.0f) & (pz >= 0.0f) &
-                          (px <= float(faces.nx - 1)) & (py <= float(faces.ny - 1)) &
-                          (pz <= float(faces.nz - 1)) & (at.outside == 0.0f);
-      const float value =
-          inside & (trusted[c] * trusted[b] > 0.0f) ? corrected : carried[c];
-      to[c] = open[c] > 0.0f ? value : old[c];
-    }
+    for (int i = 0; i < nx; ++i) correct_face(v, i, j, k);
   });
-  for_rows(faces, [&, to](int j, int k) {
-    std::copy_n(to + s.at(0, j, k), faces.nx, velocity + s.at(0, j, k));
+  for_rows(faces, [&](int j, int k) {
+    std::copy_n(corrected_.data() + s.at(0, j, k), faces.nx, velocity + s.at(0, j, k));
   });
   // Wind comes in even where the air stands still.
   for (int side = 0; side < 2; ++side) {

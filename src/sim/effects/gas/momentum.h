@@ -31,7 +31,7 @@ class Momentum {
   Field centre_[3];  ///< velocities of cells' centres [voxels per step]
   Field moved_[3];   ///< by how much their air moved in the step [voxels]
   Field trusted_;    ///< 0 where something was in the way: no correction there
-  Field carried_, least_, most_, old_;
+  Field carried_, least_, most_, corrected_;
 };
 
 }  // namespace gloam::gas

@@ -31,30 +31,27 @@ GLOAM_HD Between place(const Shape& s, int growing, float px, float py, float pz
   return out;
 }
 
-GLOAM_HD float interpolate(const Shape& s, const float* f, const Between& b) {
-  const float* p = f + b.c;
-  const int sy = s.sy, sz = s.sz;
-  const float a00 = p[0] + b.x * (p[1] - p[0]);
-  const float a10 = p[sy] + b.x * (p[sy + 1] - p[sy]);
-  const float a01 = p[sz] + b.x * (p[sz + 1] - p[sz]);
-  const float a11 = p[sy + sz] + b.x * (p[sy + sz + 1] - p[sy + sz]);
+/// The eight values around a place: x runs fastest. Each is read at one index from a pointer of its
+/// own: so compilers see that lanes may gather them.
+struct Corners {
+  float v0, v1, v2, v3, v4, v5, v6, v7;
+};
+
+GLOAM_HD Corners corners(const Shape& s, const float* f, int c) {
+  const float *f1 = f + 1, *f2 = f + s.sy, *f3 = f2 + 1;
+  const float *f4 = f + s.sz, *f5 = f4 + 1, *f6 = f4 + s.sy, *f7 = f6 + 1;
+  return {f[c], f1[c], f2[c], f3[c], f4[c], f5[c], f6[c], f7[c]};
+}
+
+GLOAM_HD float interpolate(const Corners& v, const Between& b) {
+  const float a00 = v.v0 + b.x * (v.v1 - v.v0), a10 = v.v2 + b.x * (v.v3 - v.v2);
+  const float a01 = v.v4 + b.x * (v.v5 - v.v4), a11 = v.v6 + b.x * (v.v7 - v.v6);
   const float a0 = a00 + b.y * (a10 - a00), a1 = a01 + b.y * (a11 - a01);
   return a0 + b.z * (a1 - a0);
 }
 
-/// Also the least and the greatest of the eight values around.
-GLOAM_HD float interpolate(const Shape& s, const float* f, const Between& b, float* least,
-                           float* most) {
-  const float* p = f + b.c;
-  const int sy = s.sy, sz = s.sz;
-  const float v0 = p[0], v1 = p[1], v2 = p[sy], v3 = p[sy + 1];
-  const float v4 = p[sz], v5 = p[sz + 1], v6 = p[sy + sz], v7 = p[sy + sz + 1];
-  *least = min(min(min(v0, v1), min(v2, v3)), min(min(v4, v5), min(v6, v7)));
-  *most = max(max(max(v0, v1), max(v2, v3)), max(max(v4, v5), max(v6, v7)));
-  const float a00 = v0 + b.x * (v1 - v0), a10 = v2 + b.x * (v3 - v2);
-  const float a01 = v4 + b.x * (v5 - v4), a11 = v6 + b.x * (v7 - v6);
-  const float a0 = a00 + b.y * (a10 - a00), a1 = a01 + b.y * (a11 - a01);
-  return a0 + b.z * (a1 - a0);
+GLOAM_HD float interpolate(const Shape& s, const float* f, const Between& b) {
+  return interpolate(corners(s, f, b.c), b);
 }
 
 /// Along one axis of a walk. o: from the cell's centre; the air slides along what is closed, half a
