@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/check.h"
 #include "base/memory.h"
 #include "sim/effects/gas/gas_state.h"
 #include "sim/effects/gas/kernel/trace.h"
@@ -119,6 +120,20 @@ Result<std::unique_ptr<GasSolver>> GasSolver::create(const GasGrid& grid,
 }
 
 void GasSolver::set_walls(const GasWalls& walls) { state_->take_walls(walls); }
+
+void GasSolver::set_velocity(int axis, std::span<const float> faces) {
+  State& state = *state_;
+  GLOAM_CHECK(axis >= 0 && axis < 3 && faces.size() == state.grid.faces(axis),
+              "velocities of another grid");
+  const gas::Shape& s = state.shape;
+  for (int k = 0; k < s.nz + (axis == 2); ++k) {
+    for (int j = 0; j < s.ny + (axis == 1); ++j) {
+      std::copy_n(faces.data() + state.walls.face(axis, 0, j, k), s.nx + (axis == 0),
+                  state.velocity[axis].data() + s.at(0, j, k));
+    }
+  }
+  state.use_walls();  // closed faces move as their walls
+}
 
 void GasSolver::read(std::vector<float>* density, std::vector<float>* temperature) const {
   const State& state = *state_;

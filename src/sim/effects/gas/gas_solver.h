@@ -83,6 +83,8 @@ class GasSolver {
   /// Called before each step in which something moved. `walls.grid` is create()'s.
   void set_walls(const GasWalls& walls);
   /// `wind`: of the air outside of open sides [m/s], world.
+  /// Sets what the air does along `axis` at each face [m/s], in GasWalls' order: where it begins.
+  void set_velocity(int axis, std::span<const float> faces);
   GasStep step(float dt, std::span<const GasSource> sources, Vec3f wind);
 
   /// Soot concentration [kg/m³] and temperature [K], (nz, ny, nx). Where it burns, the temperature

@@ -63,15 +63,21 @@ void GasSolver::State::substep(float dt, std::span<const GasSource> sources, Vec
   const gas::Faces<const float> open = pressure.open();
   feed(dt, sources, step);
   burn(dt);
-  momentum.advect(openings, open, faces(), grid.voxel, dt, wind);
-  momentum.lift(open, faces(), scalars[gas::kHeat].data(), scalars[gas::kSmoke].data(),
-                ambient_density(), dt);
-  if (properties.vorticity > 0) momentum.confine(open, faces(), properties.vorticity, dt);
-  blow(sources);
   if (last_dt > 0 && last_dt != dt) {  // pressure times dt is what the solution holds
     for (float& x : pressure.solution()) x *= dt / last_dt;
   }
   last_dt = dt;
+  const auto lift_half = [&] {
+    momentum.lift(open, faces(), scalars[gas::kHeat].data(), scalars[gas::kSmoke].data(),
+                  ambient_density(), 0.5f * dt);
+  };
+  momentum.trace(openings, open, faces().read(), grid.voxel, dt);
+  pressure.push_half(faces());
+  lift_half();
+  momentum.carry(openings, open, faces(), grid.voxel, dt, wind);
+  lift_half();
+  if (properties.vorticity > 0) momentum.confine(open, faces(), properties.vorticity, dt);
+  blow(sources);
   const gas::Projection projection =
       pressure.project(openings, faces(), heated.data(), grid.voxel, dt);
   step->pressure_iterations += projection.iterations;

@@ -82,7 +82,7 @@ void Momentum::find_paths(const Openings& openings, const Faces<const float>& op
       Vec3f moved;
       if (openings.solid[size_t(c)]) {
         trusted_[size_t(c)] = 0.0f;
-      } else if (displacement_near_walls(carrier, open, i, j, k, &moved)) {
+      } else if (!displacement_near_walls(carrier, open, i, j, k, &moved)) {
         trusted_[size_t(c)] = 0.0f;
       }
       x[c] = moved.x, y[c] = moved.y, z[c] = moved.z;
@@ -93,14 +93,17 @@ void Momentum::find_paths(const Openings& openings, const Faces<const float>& op
   for (Field& f : centre_) fill_ghosts(s, f.data());
 }
 
-void Momentum::carry(int axis, const float* open, float* velocity, Vec3f wind, float drift) {
+void Momentum::carry_axis(const Openings& openings, int axis, const float* open,
+                          float* velocity, Vec3f wind, float drift) {
   const Shape& s = shape_;
   const Shape faces = faces_of(s, axis);
   const float outside = wind[axis];
+  const auto side = [&openings](int n) { return openings.side_open[n] ? 1.0f : 0.0f; };
   const CarryView view{s,
                        axis,
                        s.stride(axis),
                        outside,
+                       {side(0), side(1), side(2), side(3), side(4), side(5)},
                        gas::view(moved_),
                        gas::view(centre_),
                        trusted_.data(),
@@ -138,11 +141,17 @@ void Momentum::carry(int axis, const float* open, float* velocity, Vec3f wind, f
   }
 }
 
-void Momentum::advect(const Openings& openings, const Faces<const float>& open,
-                      const Faces<float>& velocity, float voxel, float dt, Vec3f wind) {
-  find_centres(velocity.read(), dt / voxel, float(kReach));
+void Momentum::trace(const Openings& openings, const Faces<const float>& open,
+                     const Faces<const float>& velocity, float voxel, float dt) {
+  find_centres(velocity, dt / voxel, float(kReach));
   find_paths(openings, open);
-  for (int a = 0; a < 3; ++a) carry(a, open[a], velocity[a], wind, dt / (voxel * kInflow));
+}
+
+void Momentum::carry(const Openings& openings, const Faces<const float>& open,
+                     const Faces<float>& velocity, float voxel, float dt, Vec3f wind) {
+  for (int a = 0; a < 3; ++a) {
+    carry_axis(openings, a, open[a], velocity[a], wind, dt / (voxel * kInflow));
+  }
 }
 
 void Momentum::lift(const Faces<const float>& open, const Faces<float>& velocity,

@@ -11,10 +11,12 @@ class Momentum {
 
   explicit Momentum(const Shape& shape);
 
-  /// Carries `velocity` along itself for `dt`; closed faces stay as they are. `wind` [m/s]: of the
-  /// air outside, which comes in over kInflow voxels.
-  void advect(const Openings& openings, const Faces<const float>& open,
-              const Faces<float>& velocity, float voxel, float dt, Vec3f wind);
+  /// Finds the ways that air takes in `dt`.
+  void trace(const Openings& openings, const Faces<const float>& open,
+             const Faces<const float>& velocity, float voxel, float dt);
+  /// Carries `velocity` along them; closed faces stay as they are. `wind` [m/s]: of the air outside.
+  void carry(const Openings& openings, const Faces<const float>& open,
+             const Faces<float>& velocity, float voxel, float dt, Vec3f wind);
   /// heat, smoke: of cells, ghosts 0.
   void lift(const Faces<const float>& open, const Faces<float>& velocity, const float* heat,
             const float* smoke, float ambient_density, float dt);
@@ -25,7 +27,8 @@ class Momentum {
   /// Times `scale`, each component at most `limit`.
   void find_centres(const Faces<const float>& velocity, float scale, float limit);
   void find_paths(const Openings& openings, const Faces<const float>& open);
-  void carry(int axis, const float* open, float* velocity, Vec3f wind, float reach);
+  void carry_axis(const Openings& openings, int axis, const float* open, float* velocity, Vec3f wind,
+                  float drift);
 
   Shape shape_;
   Field centre_[3];  ///< velocities of cells' centres [voxels per step]

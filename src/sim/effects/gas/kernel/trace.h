@@ -12,12 +12,12 @@ inline constexpr int kReach = 4;
 
 /// A place between the points of a lattice.
 struct Between {
-  int c;           ///< the lowest corner
-  float x, y, z;   ///< shares of the higher ones
-  float outside;   ///< how far the place was outside of the lattice, in voxels
+  int c;          ///< the lowest corner
+  float x, y, z;  ///< shares of the higher ones
 };
 
-/// p: in steps of the lattice; it has nx + grow.x … points. Places outside go to its border.
+/// p: in steps of the lattice, which has one point more along `growing` (-1 = none). Places outside
+/// go to its border.
 GLOAM_HD Between place(const Shape& s, int growing, float px, float py, float pz) {
   const float hx = float(s.nx - 1 + (growing == 0)), hy = float(s.ny - 1 + (growing == 1)),
               hz = float(s.nz - 1 + (growing == 2));
@@ -26,8 +26,6 @@ GLOAM_HD Between place(const Shape& s, int growing, float px, float py, float pz
   Between out;
   out.c = s.at(i, j, k);
   out.x = x - float(i), out.y = y - float(j), out.z = z - float(k);
-  const float ox = px - x, oy = py - y, oz = pz - z;
-  out.outside = max(max(max(ox, -ox), max(oy, -oy)), max(oz, -oz));
   return out;
 }
 
@@ -56,42 +54,44 @@ GLOAM_HD float interpolate(const Shape& s, const float* f, const Between& b) {
 
 /// Along one axis of a walk. o: from the cell's centre; the air slides along what is closed, half a
 /// voxel before it, where nothing from beyond is mixed in.
-GLOAM_HD bool walk_axis(const float* open, int stride, int n, float step, int* i, int* c,
-                        float* o) {
+/// Returns by how much that shortened the way [voxels].
+GLOAM_HD float walk_axis(const float* open, int stride, int n, float step, int* i, int* c,
+                         float* o) {
   *o += step;
-  bool blocked = false;
+  float lost = 0;
   const int face = *c + (*o > 0.0f ? stride : 0);
-  if (*o != 0.0f && open[face] == 0.0f) {
+  if (open[face] == 0.0f) {
+    lost = max(*o, -*o);
     *o = 0.0f;
-    blocked = true;
   }
   if (*o > 0.5f && *i < n) *i += 1, *c += stride, *o -= 1.0f;
   if (*o < -0.5f && *i >= 0) *i -= 1, *c -= stride, *o += 1.0f;
-  return blocked;
+  return lost;
 }
 
-/// From the centre of cell (i, j, k) by d voxels, past what is closed; true if that changed it.
-GLOAM_HD bool walk(const Shape& s, const Faces<const float>& open, int i, int j, int k, Vec3f* d) {
+/// From the centre of cell (i, j, k) by d voxels, past what is closed. Returns by how much the
+/// way was shortened, axes added up [voxels].
+GLOAM_HD float walk(const Shape& s, const Faces<const float>& open, int i, int j, int k, Vec3f* d) {
   const float far = max(max(max(d->x, -d->x), max(d->y, -d->y)), max(d->z, -d->z));
   const int steps = int(far * 2.0f) + 1;
   const Vec3f step = *d * (1.0f / float(steps));
   int a = i, b = j, e = k, c = s.at(i, j, k);
   Vec3f o;
-  bool blocked = false;
+  float lost = 0;
   for (int n = 0; n < steps; ++n) {
     // Outside of the box there are no faces, and nothing in the way.
     if (a < 0 || a >= s.nx || b < 0 || b >= s.ny || e < 0 || e >= s.nz) {
       o += step * float(steps - n);
       break;
     }
-    blocked |= walk_axis(open.x, 1, s.nx, step.x, &a, &c, &o.x);
+    lost += walk_axis(open.x, 1, s.nx, step.x, &a, &c, &o.x);
     if (a < 0 || a >= s.nx) continue;
-    blocked |= walk_axis(open.y, s.sy, s.ny, step.y, &b, &c, &o.y);
+    lost += walk_axis(open.y, s.sy, s.ny, step.y, &b, &c, &o.y);
     if (b < 0 || b >= s.ny) continue;
-    blocked |= walk_axis(open.z, s.sz, s.nz, step.z, &e, &c, &o.z);
+    lost += walk_axis(open.z, s.sz, s.nz, step.z, &e, &c, &o.z);
   }
   *d = {float(a - i) + o.x, float(b - j) + o.y, float(e - k) + o.z};
-  return blocked;
+  return lost;
 }
 
 /// Velocities of cells' centres, in voxels per step.
@@ -110,19 +110,24 @@ GLOAM_HD Vec3f displacement(const Carrier& v, int i, int j, int k) {
           interpolate(v.shape, v.velocity.z, b)};
 }
 
-/// The same near walls. True if something was in the way.
+/// Where walls shorten ways by more, velocity is carried in first order only [voxels].
+inline constexpr float kTrustedLoss = 0.25f;
+
+/// The same near walls. False if what was in the way matters.
 GLOAM_HD bool displacement_near_walls(const Carrier& v, const Faces<const float>& open, int i,
                                       int j, int k, Vec3f* moved) {
   const int c = v.shape.at(i, j, k);
-  Vec3f half = Vec3f{v.velocity.x[c], v.velocity.y[c], v.velocity.z[c]} * -0.5f;
-  bool blocked = walk(v.shape, open, i, j, k, &half);
+  const Vec3f here{v.velocity.x[c], v.velocity.y[c], v.velocity.z[c]};
+  Vec3f half = here * -0.5f;
+  walk(v.shape, open, i, j, k, &half);
   const Between b =
       place(v.shape, -1, float(i) + half.x, float(j) + half.y, float(k) + half.z);
   Vec3f whole = -Vec3f{interpolate(v.shape, v.velocity.x, b), interpolate(v.shape, v.velocity.y, b),
                        interpolate(v.shape, v.velocity.z, b)};
-  blocked |= walk(v.shape, open, i, j, k, &whole);
+  Vec3f forward = here * 2.0f + whole;
+  const float lost = walk(v.shape, open, i, j, k, &whole);
   *moved = -whole;
-  return blocked;
+  return max(lost, walk(v.shape, open, i, j, k, &forward)) <= kTrustedLoss;
 }
 
 }  // namespace gloam::gas
