@@ -30,7 +30,7 @@ std::pair<double, double> taylor_green_losses(int n) {
   }
   gas->set_velocity(0, u);
   gas->set_velocity(1, v);
-  const float dt = 1.0f * grid.voxel / speed;
+  const float dt = 0.5f * grid.voxel / speed;
   const int steps = int(0.5f * size / speed / dt);
   for (int s = 0; s < steps; ++s) gas->step(dt, {}, {});
   double energy = 0, initial = 0, error = 0;

@@ -72,7 +72,7 @@ void GasSolver::State::substep(float dt, std::span<const GasSource> sources, Vec
                   ambient_density(), 0.5f * dt);
   };
   momentum.trace(openings, open, faces().read(), grid.voxel, dt);
-  pressure.push_half(faces());
+  pressure.push(faces(), momentum.smoothness());
   lift_half();
   momentum.carry(openings, open, faces(), grid.voxel, dt, wind);
   lift_half();

@@ -37,7 +37,7 @@ Momentum::Momentum(const Shape& shape) : shape_(shape) {
     centre_[a].assign(n, 0.0f);
     moved_[a].assign(n, 0.0f);
   }
-  for (Field* f : {&trusted_, &carried_, &least_, &most_, &corrected_}) f->assign(n, 0.0f);
+  for (Field* f : {&trusted_, &smooth_, &carried_, &least_, &most_, &corrected_}) f->assign(n, 0.0f);
 }
 
 void Momentum::find_centres(const Faces<const float>& u, float scale, float limit) {
@@ -93,6 +93,18 @@ void Momentum::find_paths(const Openings& openings, const Faces<const float>& op
   for (Field& f : centre_) fill_ghosts(s, f.data());
 }
 
+void Momentum::find_smoothness() {
+  const Shape& s = shape_;
+  const Faces<const float> v = view(centre_);
+  float* smooth = smooth_.data();
+  for_rows(s, [&, v, smooth](int j, int k) {
+    const int begin = s.at(0, j, k);
+#pragma GCC ivdep
+    for (int c = begin; c < begin + s.nx; ++c) smooth[c] = smoothness_at(s, v, c);
+  });
+  fill_ghosts(s, smooth);
+}
+
 void Momentum::carry_axis(const Openings& openings, int axis, const float* open,
                           float* velocity, Vec3f wind, float drift) {
   const Shape& s = shape_;
@@ -145,6 +157,7 @@ void Momentum::trace(const Openings& openings, const Faces<const float>& open,
                      const Faces<const float>& velocity, float voxel, float dt) {
   find_centres(velocity, dt / voxel, float(kReach));
   find_paths(openings, open);
+  find_smoothness();
 }
 
 void Momentum::carry(const Openings& openings, const Faces<const float>& open,

@@ -7,13 +7,16 @@ namespace gloam::gas {
 
 class Momentum {
  public:
-  static uint64_t bytes(uint64_t cells) { return cells * (13 * 4); }
+  static uint64_t bytes(uint64_t cells) { return cells * (12 * 4); }
 
   explicit Momentum(const Shape& shape);
 
   /// Finds the ways that air takes in `dt`.
   void trace(const Openings& openings, const Faces<const float>& open,
              const Faces<const float>& velocity, float voxel, float dt);
+  /// Of cells and ghosts: 1 where flow changes little over a voxel, 0 where the grid does not resolve
+  /// it; there, pressure that is carried along would feed eddies.
+  const Field& smoothness() const { return smooth_; }
   /// Carries `velocity` along them; closed faces stay as they are. `wind` [m/s]: of the air outside.
   void carry(const Openings& openings, const Faces<const float>& open,
              const Faces<float>& velocity, float voxel, float dt, Vec3f wind);
@@ -26,6 +29,7 @@ class Momentum {
  private:
   /// Times `scale`, each component at most `limit`.
   void find_centres(const Faces<const float>& velocity, float scale, float limit);
+  void find_smoothness();
   void find_paths(const Openings& openings, const Faces<const float>& open);
   void carry_axis(const Openings& openings, int axis, const float* open, float* velocity, Vec3f wind,
                   float drift);
@@ -33,6 +37,7 @@ class Momentum {
   Shape shape_;
   Field centre_[3];  ///< velocities of cells' centres [voxels per step]
   Field moved_[3];   ///< by how much their air moved in the step [voxels]
+  Field smooth_;
   Field trusted_;    ///< 0 where something was in the way: no correction there
   Field carried_, least_, most_, corrected_;
 };

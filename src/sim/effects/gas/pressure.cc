@@ -19,9 +19,10 @@ int moving_faces(const Openings& o, int c) {
 }  // namespace
 
 Pressure::Pressure(const Shape& shape) : shape_(shape), multigrid_(shape) {
-  for (Field* f : {&x_, &half_, &target_, &residual_, &z_, &p_, &ap_}) {
+  for (Field* f : {&x_, &target_, &residual_, &z_, &p_, &ap_}) {
     f->assign(size_t(shape.size()), 0.0f);
   }
+  ones_.assign(size_t(shape.size()), 1.0f);
   partial_.resize(size_t(shape.nz));
 }
 
@@ -83,28 +84,27 @@ void Pressure::set_target(const Openings& openings, const Faces<const float>& ve
   }
 }
 
-/// Less the gradient of x, where open.
-void Pressure::push(const Faces<float>& velocity) {
+void Pressure::push(const Faces<float>& velocity, const Field& share) {
+  subtract_gradient(velocity, share.data());
+}
+
+void Pressure::subtract_gradient(const Faces<float>& velocity, const float* share) {
   const Shape& s = shape_;
-  const PoissonView a = multigrid_.finest();
+  const Faces<const float> open = this->open();
   const float* x = x_.data();
   for (int axis = 0; axis < 3; ++axis) {
     const Shape faces{s.nx + (axis == 0), s.ny + (axis == 1), s.nz + (axis == 2), s.sy, s.sz};
     const int stride = s.stride(axis);
-    const float* w = a.weight[axis];
+    const float* w = open[axis];
     float* v = velocity[axis];
-    for_rows(faces, [&, v, w, x, stride](int j, int k) {
+    for_rows(faces, [&, v, w, x, stride, share](int j, int k) {
       const int begin = s.at(0, j, k), end = begin + faces.nx;
 #pragma GCC ivdep
-      for (int c = begin; c < end; ++c) v[c] -= w[c] * (x[c] - x[c - stride]);
+      for (int c = begin; c < end; ++c) {
+        v[c] -= w[c] * 0.5f * (share[c] + share[c - stride]) * (x[c] - x[c - stride]);
+      }
     });
   }
-}
-
-void Pressure::push_half(const Faces<float>& velocity) {
-  for (float& x : x_) x *= 0.5f;
-  std::copy(x_.begin(), x_.end(), half_.begin());
-  push(velocity);
 }
 
 Projection Pressure::project(const Openings& openings, const Faces<float>& velocity,
@@ -183,12 +183,7 @@ Projection Pressure::project(const Openings& openings, const Faces<float>& veloc
     norm = std::sqrt(square);
   }
 
-  push(velocity);
-  const float* half = half_.data();
-  rows([&](int begin, int end) {
-#pragma GCC ivdep
-    for (int c = begin; c < end; ++c) x[c] += half[c];
-  });
+  subtract_gradient(velocity, ones_.data());
   // Of the velocities themselves: what conjugate gradients believe drifts from it.
   out.after = std::sqrt(grid_sum(s, partial_, [&](int j, int k) {
                 return row_sum(s.at(0, j, k), s.nx,

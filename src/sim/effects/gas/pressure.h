@@ -14,7 +14,7 @@ struct Projection {
 
 class Pressure {
  public:
-  static uint64_t bytes(uint64_t cells) { return Multigrid::bytes(cells) + cells * 4 * 7; }
+  static uint64_t bytes(uint64_t cells) { return Multigrid::bytes(cells) + cells * 4 * 6; }
 
   explicit Pressure(const Shape& shape);
   /// Of the finest level; written before update().
@@ -22,11 +22,12 @@ class Pressure {
   /// Open or closed; ghosts' faces that are no sides of the box: closed.
   Faces<const float> open() const { return multigrid_.finest().weight; }
 
-  /// Applies half of what the last solution does to velocity. Done before velocity is carried along,
-  /// it makes a step of second order in time where pressure changes slowly: air then keeps its energy
-  /// on its way around a bend (compare Zehnder, Narain and Thomaszewski 2018).
-  void push_half(const Faces<float>& velocity);
-  /// Changes `velocity` at open faces, by the other half and what is wrong with it. `wanted`: divergence times `dt`, as kHeat grew; spaces
+  /// Changes `velocity` by `share` (of cells and ghosts, at most 1) of what the last solution did to
+  /// it. Done before velocity is carried along, half of the pressure acts at the beginning of a way
+  /// and half at its end: of second order in time, so that air keeps its energy on its way around a
+  /// bend (compare Zehnder, Narain and Thomaszewski 2018).
+  void push(const Faces<float>& velocity, const Field& share);
+  /// Changes `velocity` at open faces, by the other half. `wanted`: divergence times `dt`, as kHeat grew; spaces
   /// without an opening get what their walls' motion leaves room for.
   Projection project(const Openings& openings, const Faces<float>& velocity, const float* wanted,
                      float voxel, float dt);
@@ -36,15 +37,14 @@ class Pressure {
   const Field& solution() const { return x_; }
 
  private:
+  void subtract_gradient(const Faces<float>& velocity, const float* share);
   double dot(const Field& a, const Field& b);
   void set_target(const Openings& openings, const Faces<const float>& velocity,
                   const float* wanted, float scale);
 
-  void push(const Faces<float>& velocity);
-
   Shape shape_;
   Multigrid multigrid_;
-  Field x_, half_, target_, residual_, z_, p_, ap_;
+  Field x_, target_, residual_, z_, p_, ap_, ones_;
   std::vector<double> partial_, space_sum_, space_count_, space_faces_;
 };
 

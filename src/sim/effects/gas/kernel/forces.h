@@ -11,6 +11,19 @@ GLOAM_HD float buoyancy(float heat, float smoke, float ambient_density) {
   return kGravity * (heat - smoke / ambient_density);
 }
 
+/// 1 where velocities of cells' centres [voxels per step] change by little from cell to cell, 0
+/// from kRough on.
+GLOAM_HD float smoothness_at(const Shape& s, const Faces<const float>& v, int c) {
+  constexpr float kRough = 0.4f;
+  float sum = 0;
+  for (int a = 0; a < 3; ++a) {
+    const float* f = v[a];
+    const float x = f[c + 1] - f[c - 1], y = f[c + s.sy] - f[c - s.sy], z = f[c + s.sz] - f[c - s.sz];
+    sum += x * x + y * y + z * z;
+  }
+  return clamp(1.5f - sqrtf(sum) * (0.75f / kRough), 0.0f, 1.0f);
+}
+
 /// Curl at c of velocities of cells' centres, times two voxels.
 GLOAM_HD Vec3f curl(const Shape& s, const Faces<const float>& v, int c) {
   const int x = 1, y = s.sy, z = s.sz;
