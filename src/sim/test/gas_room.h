@@ -1,6 +1,7 @@
 #pragma once
 // Boxes of gas with walls in them, for tests.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "gas_room.h"
 #include "test_world.h"
 
 namespace {
@@ -71,6 +72,28 @@ TEST(StepLoop, AllocatesNothingOnceWarm) {
   EXPECT_GE(allocations.load(), 1);
   sim->stop();
   reader.join();
+}
+
+TEST(GasStep, AllocatesNothingOnceWarm) {
+#ifdef GLOAM_SANITIZED
+  GTEST_SKIP() << "the sanitizer owns malloc";
+#endif
+  const GasGrid grid{32, 28, 24, 0.1f, {}};
+  auto gas = make_gas(grid, closed_box());
+  GasSource source = ball({1, 1, 0.5f}, 0.3f);
+  source.fuel = 0.01f;
+  for (int n = 0; n < 12; ++n) {
+    GasWalls walls(grid);
+    add_sheet(&walls, 20, [](int, int k) { return k < 5; });
+    add_solid(&walls, {4 + n, 4, 4}, {9 + n, 12, 12}, {1, 0, 0});
+    if (n == 4) allocations = frees = 0;
+    counting = n >= 4;
+    gas->set_walls(walls);
+    gas->step(0.1f, std::span(&source, 1), {});
+    counting = false;
+  }
+  EXPECT_EQ(allocations.load(), 0);
+  EXPECT_EQ(frees.load(), 0);
 }
 
 }  // namespace

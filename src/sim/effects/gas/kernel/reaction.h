@@ -14,6 +14,9 @@ inline constexpr float kHottest = 2300.0f;
 /// per kg of oxygen, whatever burns; 25 MJ/kg / 13.1 / 0.232).
 inline constexpr float kHeatPerAir = 13.1e6f * 0.232f;  ///< [J/kg]
 
+/// Concentrations below this are none: what decays for ever would slow processors down [kg/m³].
+inline constexpr float kNothing = 1e-12f;
+
 /// GasProperties as a step needs them.
 struct ReactionRates {
   float density = 0;           ///< of ambient air [kg/m³]
@@ -48,7 +51,10 @@ GLOAM_HD Reaction react(const ReactionRates& r, float* heat, float* smoke, float
   const float kept = min(sum - *heat * r.cool, r.hottest);
   out.heat_lost = sum - kept;
   *heated = kept - *heat;
-  *heat = kept;
+  *heat = kept < kNothing ? 0.0f : kept;
+  *smoke = *smoke < kNothing ? 0.0f : *smoke;
+  *fuel = *fuel < kNothing ? 0.0f : *fuel;
+  *spent = *spent < kNothing ? 0.0f : *spent;
   return out;
 }
 
