@@ -45,13 +45,20 @@ void add(GasWalls* walls, const Box& b, float vx = 0) {
 GasWalls house(const GasGrid& grid) {
   GasWalls walls(grid);
   const Box boxes[] = {
-      {{0.3f, 0.3f, 0}, {6.3f, 0.5f, 2.8f}},       {{0.3f, 9.1f, 0}, {6.3f, 9.3f, 2.8f}},
-      {{0.3f, 0.3f, 0}, {0.5f, 9.3f, 2.8f}},       {{0.3f, 0.3f, 2.6f}, {6.3f, 9.3f, 2.8f}},
-      {{6.1f, 0.3f, 0}, {6.3f, 4.3f, 2.8f}},       {{6.1f, 5.3f, 0}, {6.3f, 9.3f, 2.8f}},
-      {{6.1f, 4.3f, 2.1f}, {6.3f, 5.3f, 2.8f}},    {{1, 1, 0}, {3, 1.9f, 0.5f}},
-      {{1, 1, 0.5f}, {3, 1.2f, 0.9f}},             {{4, 6, 0.7f}, {5.2f, 7.6f, 0.8f}},
-      {{4, 6, 0}, {4.1f, 6.1f, 0.7f}},             {{5.1f, 7.5f, 0}, {5.2f, 7.6f, 0.7f}},
-      {{0.5f, 4, 0}, {1, 5.5f, 2}},                {{3, 8.5f, 0}, {5, 9.1f, 1.8f}},
+      {{0.3f, 0.3f, 0}, {6.3f, 0.5f, 2.8f}},
+      {{0.3f, 9.1f, 0}, {6.3f, 9.3f, 2.8f}},
+      {{0.3f, 0.3f, 0}, {0.5f, 9.3f, 2.8f}},
+      {{0.3f, 0.3f, 2.6f}, {6.3f, 9.3f, 2.8f}},
+      {{6.1f, 0.3f, 0}, {6.3f, 4.3f, 2.8f}},
+      {{6.1f, 5.3f, 0}, {6.3f, 9.3f, 2.8f}},
+      {{6.1f, 4.3f, 2.1f}, {6.3f, 5.3f, 2.8f}},
+      {{1, 1, 0}, {3, 1.9f, 0.5f}},
+      {{1, 1, 0.5f}, {3, 1.2f, 0.9f}},
+      {{4, 6, 0.7f}, {5.2f, 7.6f, 0.8f}},
+      {{4, 6, 0}, {4.1f, 6.1f, 0.7f}},
+      {{5.1f, 7.5f, 0}, {5.2f, 7.6f, 0.7f}},
+      {{0.5f, 4, 0}, {1, 5.5f, 2}},
+      {{3, 8.5f, 0}, {5, 9.1f, 1.8f}},
       {{7.5f, 2, 0}, {8.5f, 3, 1}},
   };
   for (const Box& b : boxes) add(&walls, b);
@@ -96,7 +103,8 @@ void run(int steps, int threads, bool json) {
   const double inside = solver->smoke_mass() + solver->budget().smoke_escaped;
   const std::string text =
       json ? "{{\"name\": \"gas_rate\", \"steps_per_s\": {:.2f}, \"threads\": {}, \"walls_ms\": "
-             "{:.2f}, \"step_ms\": {:.2f}, \"iterations_per_substep\": {:.2f}, \"substeps_per_step\": "
+             "{:.2f}, \"step_ms\": {:.2f}, \"iterations_per_substep\": {:.2f}, "
+             "\"substeps_per_step\": "
              "{:.2f}, \"transport_substeps_per_step\": {:.2f}, \"worst_divergence_ratio\": {:.2e}, "
              "\"smoke_error\": {:.2e}}}\n"
            : "{:.2f} steps/s on {} threads: walls {:.2f} ms, step {:.2f} ms; {:.2f} iterations per "

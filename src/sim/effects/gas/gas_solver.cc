@@ -59,9 +59,9 @@ Status check(const GasProperties& p) {
   };
   for (const auto& r : ranges) {
     if (!(r.value >= r.low && r.value <= r.high)) {
-      return bad(fmt::format("{} = {} of a gas: it must lie in [{}, {}]", r.name, r.value, r.low,
-                             r.high),
-                 "");
+      return bad(
+          fmt::format("{} = {} of a gas: it must lie in [{}, {}]", r.name, r.value, r.low, r.high),
+          "");
     }
   }
   return {};
@@ -171,9 +171,8 @@ Vec3f GasSolver::velocity_at(Vec3f p_W) const {
   const State& state = *state_;
   const Vec3f p = (p_W - state.grid.low) / state.grid.voxel;
   const auto along = [&](int a) {
-    const gas::Between at =
-        gas::place(state.shape, a, p.x - (a == 0 ? 0.0f : 0.5f), p.y - (a == 1 ? 0.0f : 0.5f),
-                   p.z - (a == 2 ? 0.0f : 0.5f));
+    const gas::Between at = gas::place(state.shape, a, p.x - (a == 0 ? 0.0f : 0.5f),
+                                       p.y - (a == 1 ? 0.0f : 0.5f), p.z - (a == 2 ? 0.0f : 0.5f));
     return gas::interpolate(state.shape, state.velocity[a].data(), at);
   };
   return {along(0), along(1), along(2)};

@@ -29,11 +29,11 @@ struct GasSolver::State {
   GasBudget budget;
   GasWalls walls;
 
-  gas::Field heated;              ///< what kHeat gains in a substep
-  std::vector<double> row_sums;   ///< of reactions: four for each row
-  std::vector<float> row_most;    ///< of speeds
+  gas::Field heated;                      ///< what kHeat gains in a substep
+  std::vector<double> row_sums;           ///< of reactions: four for each row
+  std::vector<float> row_most;            ///< of speeds
   std::vector<int> filled, freed, order;  ///< cells that walls took or left
-  std::vector<int> depth;         ///< of filled cells, 0 elsewhere
+  std::vector<int> depth;                 ///< of filled cells, 0 elsewhere
 
   gas::Faces<float> faces() { return {velocity[0].data(), velocity[1].data(), velocity[2].data()}; }
   float ambient_density() const {  ///< [kg/m³]

@@ -42,7 +42,8 @@ GasStep GasSolver::step(float dt, std::span<const GasSource> sources, Vec3f wind
   GLOAM_CHECK(dt > 0 && std::isfinite(dt), "a step takes time");
   float speed = std::max(state.max_speed(), length(wind));
   for (const GasSource& source : sources) {
-    if (source.blows) speed = std::max(speed, std::min(length(source.velocity), gas::kFastestSource));
+    if (source.blows)
+      speed = std::max(speed, std::min(length(source.velocity), gas::kFastestSource));
   }
   GasStep step;
   const float by_time = std::ceil(dt / kLongestSubstep - 1e-3f);
@@ -69,7 +70,7 @@ void GasSolver::State::substep(float dt, std::span<const GasSource> sources, Vec
   last_dt = dt;
   const auto lift_half = [&] {
     momentum.lift(open, faces(), scalars[gas::kHeat].data(), scalars[gas::kSmoke].data(),
-                  ambient_density(), 0.5f * dt);
+                  ambient_density(), 0.5f * dt, uint32_t(parity));
   };
   momentum.trace(openings, open, faces().read(), grid.voxel, dt);
   pressure.push(faces(), momentum.smoothness());
@@ -103,12 +104,12 @@ void GasSolver::State::feed(float dt, std::span<const GasSource> sources, GasSte
     const float heat = float(double(source.heat) * time / (volume * double(heat_unit())));
     const float smoke = float(double(source.smoke) * time / volume);
     const float fuel = float(double(source.fuel) * time / volume);
-    const bool given = gas::for_cells_of(
-        source, grid, openings, &step->source_cells_blocked, [&](int c, float share) {
-          heated[size_t(c)] += heat * share;
-          scalars[gas::kSmoke][size_t(c)] += smoke * share;
-          scalars[gas::kFuel][size_t(c)] += fuel * share;
-        });
+    const bool given = gas::for_cells_of(source, grid, openings, &step->source_cells_blocked,
+                                         [&](int c, float share) {
+                                           heated[size_t(c)] += heat * share;
+                                           scalars[gas::kSmoke][size_t(c)] += smoke * share;
+                                           scalars[gas::kFuel][size_t(c)] += fuel * share;
+                                         });
     if (!given) {
       ++step->sources_blocked;
       continue;
@@ -136,9 +137,11 @@ void GasSolver::State::burn(float dt) {
     const int begin = shape.at(0, j, k);
     double* sums = &row_sums[size_t(k * shape.ny + j) * 4];
     float lanes[4][16] = {};
-    float *heat = &scalars[gas::kHeat][size_t(begin)], *smoke = &scalars[gas::kSmoke][size_t(begin)],
-          *fuel = &scalars[gas::kFuel][size_t(begin)], *spent = &scalars[gas::kSpent][size_t(begin)],
-          *more = &heated[size_t(begin)], *watts = &burning[size_t(begin)];
+    float *heat = &scalars[gas::kHeat][size_t(begin)],
+          *smoke = &scalars[gas::kSmoke][size_t(begin)],
+          *fuel = &scalars[gas::kFuel][size_t(begin)],
+          *spent = &scalars[gas::kSpent][size_t(begin)], *more = &heated[size_t(begin)],
+          *watts = &burning[size_t(begin)];
     for (int i = 0; i < shape.nx; i += 16) {
       const int width = std::min(16, shape.nx - i);
 #pragma GCC ivdep

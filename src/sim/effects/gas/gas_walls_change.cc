@@ -118,7 +118,8 @@ void GasSolver::State::push_out(const GasWalls& next) {
   }
   for (const int c : filled) {
     if (depth[size_t(c)] == -1) {
-      budget.heat_buried += double(scalars[gas::kHeat][size_t(c)]) * cell_volume() * double(heat_unit());
+      budget.heat_buried +=
+          double(scalars[gas::kHeat][size_t(c)]) * cell_volume() * double(heat_unit());
       budget.smoke_buried += double(scalars[gas::kSmoke][size_t(c)]) * cell_volume();
       budget.fuel_buried += double(scalars[gas::kFuel][size_t(c)]) * cell_volume();
       for (gas::Field& f : scalars) f[size_t(c)] = 0;

@@ -37,7 +37,8 @@ Momentum::Momentum(const Shape& shape) : shape_(shape) {
     centre_[a].assign(n, 0.0f);
     moved_[a].assign(n, 0.0f);
   }
-  for (Field* f : {&trusted_, &smooth_, &carried_, &least_, &most_, &corrected_}) f->assign(n, 0.0f);
+  for (Field* f : {&trusted_, &smooth_, &carried_, &least_, &most_, &corrected_})
+    f->assign(n, 0.0f);
 }
 
 void Momentum::find_centres(const Faces<const float>& u, float scale, float limit) {
@@ -105,8 +106,8 @@ void Momentum::find_smoothness() {
   fill_ghosts(s, smooth);
 }
 
-void Momentum::carry_axis(const Openings& openings, int axis, const float* open,
-                          float* velocity, Vec3f wind, float drift) {
+void Momentum::carry_axis(const Openings& openings, int axis, const float* open, float* velocity,
+                          Vec3f wind, float drift) {
   const Shape& s = shape_;
   const Shape faces = faces_of(s, axis);
   const float outside = wind[axis];
@@ -167,23 +168,27 @@ void Momentum::carry(const Openings& openings, const Faces<const float>& open,
   }
 }
 
-void Momentum::lift(const Faces<const float>& open, const Faces<float>& velocity,
-                    const float* heat, const float* smoke, float ambient_density, float dt) {
+void Momentum::lift(const Faces<const float>& open, const Faces<float>& velocity, const float* heat,
+                    const float* smoke, float ambient_density, float dt, uint32_t count) {
   const Shape& s = shape_;
-  for_rows(faces_of(s, 2), [&](int j, int k) {
+  const float *w = open.z, *smooth = smooth_.data();
+  float* u = velocity.z;
+  for_rows(faces_of(s, 2), [&, w, u, smooth, heat, smoke](int j, int k) {
     const int begin = s.at(0, j, k);
 #pragma GCC ivdep
     for (int c = begin; c < begin + s.nx; ++c) {
       const int b = c - s.sz;
-      velocity.z[c] += open.z[c] * dt *
-                       buoyancy(0.5f * (heat[c] + heat[b]), 0.5f * (smoke[c] + smoke[b]),
-                                ambient_density);
+      const float rough = 1.0f - 0.5f * (smooth[c] + smooth[b]);
+      const float share = 1.0f + kFluctuation * rough * fluctuation(c, count);
+      u[c] += w[c] * dt *
+              buoyancy(share * 0.5f * (heat[c] + heat[b]), 0.5f * (smoke[c] + smoke[b]),
+                       ambient_density);
     }
   });
 }
 
-void Momentum::confine(const Faces<const float>& open, const Faces<float>& velocity,
-                       float strength, float dt) {
+void Momentum::confine(const Faces<const float>& open, const Faces<float>& velocity, float strength,
+                       float dt) {
   const Shape& s = shape_;
   find_centres(velocity.read(), 1.0f, 1e6f);
   for (Field& f : centre_) fill_ghosts(s, f.data());

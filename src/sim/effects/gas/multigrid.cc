@@ -38,9 +38,7 @@ Faces<float> Multigrid::weights() {
 
 PoissonView Multigrid::view(size_t level) const {
   const Level& l = levels_[level];
-  return {l.shape,
-          {l.weight[0].data(), l.weight[1].data(), l.weight[2].data()},
-          l.inverse.data()};
+  return {l.shape, {l.weight[0].data(), l.weight[1].data(), l.weight[2].data()}, l.inverse.data()};
 }
 
 void Multigrid::update() {
@@ -146,8 +144,7 @@ void Multigrid::coarsen(const Level& fine, Level& coarse) {
 
 void Multigrid::invert(Level& level) {
   const Shape& s = level.shape;
-  const float *x = level.weight[0].data(), *y = level.weight[1].data(),
-              *z = level.weight[2].data();
+  const float *x = level.weight[0].data(), *y = level.weight[1].data(), *z = level.weight[2].data();
   float* inverse = level.inverse.data();
   for_rows(s, [&](int j, int k) {
     const int begin = s.at(0, j, k);

@@ -12,8 +12,8 @@ namespace gloam::gas {
 
 struct Openings {
   Shape shape;
-  bool side_open[6] = {};        ///< -x +x -y +y -z +z
-  std::vector<uint8_t> solid;    ///< ghosts: 0
+  bool side_open[6] = {};          ///< -x +x -y +y -z +z
+  std::vector<uint8_t> solid;      ///< ghosts: 0
   std::vector<uint8_t> moving[3];  ///< faces closed by something that moves along their axis
   /// Cells in every direction, diagonals too, to which all faces are open; at most kReach.
   std::vector<uint8_t> clearance;
@@ -31,7 +31,7 @@ struct Openings {
   int root(int run);
   void join(int a, int b);
 
-  std::vector<uint8_t> near_, spread_;  ///< scratch of find_clearance()
+  std::vector<uint8_t> near_, spread_;        ///< scratch of find_clearance()
   std::vector<int> parent_, number_, count_;  ///< of runs, of find_spaces()
 };
 

@@ -75,8 +75,8 @@ void Pressure::set_target(const Openings& openings, const Faces<const float>& ve
         const size_t space = size_t(openings.space[size_t(c)]);
         if (space == 0) continue;
         const bool leaks = pass == 1 && space_faces_[space] > 0;
-        const double share = leaks ? moving_faces(openings, c) / space_faces_[space]
-                                   : 1.0 / space_count_[space];
+        const double share =
+            leaks ? moving_faces(openings, c) / space_faces_[space] : 1.0 / space_count_[space];
         target_[size_t(c)] -= float(space_sum_[space] * share);
       }
     });
@@ -185,10 +185,12 @@ Projection Pressure::project(const Openings& openings, const Faces<float>& veloc
 
   subtract_gradient(velocity, ones_.data());
   // Of the velocities themselves: what conjugate gradients believe drifts from it.
-  out.after = std::sqrt(grid_sum(s, partial_, [&](int j, int k) {
-                return row_sum(s.at(0, j, k), s.nx,
-                               [&](int c) { return sqr(target[c] - outflow(s, u, c)); });
-              })) /
+  out.after = std::sqrt(grid_sum(s, partial_,
+                                 [&](int j, int k) {
+                                   return row_sum(s.at(0, j, k), s.nx, [&](int c) {
+                                     return sqr(target[c] - outflow(s, u, c));
+                                   });
+                                 })) /
               double(voxel);
   return out;
 }

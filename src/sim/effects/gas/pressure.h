@@ -22,13 +22,13 @@ class Pressure {
   /// Open or closed; ghosts' faces that are no sides of the box: closed.
   Faces<const float> open() const { return multigrid_.finest().weight; }
 
-  /// Changes `velocity` by `share` (of cells and ghosts, at most 1) of what the last solution did to
-  /// it. Done before velocity is carried along, half of the pressure acts at the beginning of a way
-  /// and half at its end: of second order in time, so that air keeps its energy on its way around a
-  /// bend (compare Zehnder, Narain and Thomaszewski 2018).
+  /// Changes `velocity` by `share` (of cells and ghosts, at most 1) of what the last solution did
+  /// to it. Done before velocity is carried along, half of the pressure acts at the beginning of a
+  /// way and half at its end: of second order in time, so that air keeps its energy on its way
+  /// around a bend (compare Zehnder, Narain and Thomaszewski 2018).
   void push(const Faces<float>& velocity, const Field& share);
-  /// Changes `velocity` at open faces, by the other half. `wanted`: divergence times `dt`, as kHeat grew; spaces
-  /// without an opening get what their walls' motion leaves room for.
+  /// Changes `velocity` at open faces, by the other half. `wanted`: divergence times `dt`, as kHeat
+  /// grew; spaces without an opening get what their walls' motion leaves room for.
   Projection project(const Openings& openings, const Faces<float>& velocity, const float* wanted,
                      float voxel, float dt);
 
@@ -39,8 +39,8 @@ class Pressure {
  private:
   void subtract_gradient(const Faces<float>& velocity, const float* share);
   double dot(const Field& a, const Field& b);
-  void set_target(const Openings& openings, const Faces<const float>& velocity,
-                  const float* wanted, float scale);
+  void set_target(const Openings& openings, const Faces<const float>& velocity, const float* wanted,
+                  float scale);
 
   Shape shape_;
   Multigrid multigrid_;

@@ -25,10 +25,9 @@ bool for_cells_of(const GasSource& source, const GasGrid& grid, const Openings& 
   };
   // Half the size of the box around it, along the world's axes.
   const Affine3f& X = source.X_WS;
-  const Vec3f half{
-      std::abs(X.x.x) * h.x + std::abs(X.y.x) * h.y + std::abs(X.z.x) * h.z,
-      std::abs(X.x.y) * h.x + std::abs(X.y.y) * h.y + std::abs(X.z.y) * h.z,
-      std::abs(X.x.z) * h.x + std::abs(X.y.z) * h.y + std::abs(X.z.z) * h.z};
+  const Vec3f half{std::abs(X.x.x) * h.x + std::abs(X.y.x) * h.y + std::abs(X.z.x) * h.z,
+                   std::abs(X.x.y) * h.x + std::abs(X.y.y) * h.y + std::abs(X.z.y) * h.z,
+                   std::abs(X.x.z) * h.x + std::abs(X.y.z) * h.y + std::abs(X.z.z) * h.z};
   const auto cell = [&](float p, float low) { return std::floor((p - low) / grid.voxel); };
   int from[3], to[3];
   for (int a = 0; a < 3; ++a) {

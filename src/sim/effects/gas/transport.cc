@@ -9,7 +9,7 @@ namespace {
 constexpr float kMostOutflow = 0.95f;
 constexpr int kLongest = 1024;  ///< cells along an axis
 
-constexpr int kBlock = 128;     ///< cells side by side in a sweep along y or z: what L1 holds
+constexpr int kBlock = 128;  ///< cells side by side in a sweep along y or z: what L1 holds
 
 /// What such a row needs while a sweep passes over it: ratios, and differences to the row before,
 /// for each scalar; its air.
@@ -58,8 +58,7 @@ float Transport::set_courant(const Faces<const float>& open, const Faces<const f
     const int begin = s.at(0, j, k), end = begin + s.nx;
     float lanes[16] = {};
     const auto out = [&](int c) {
-      return (max(x[c + 1], 0.0f) - min(x[c], 0.0f)) +
-             (max(y[c + s.sy], 0.0f) - min(y[c], 0.0f)) +
+      return (max(x[c + 1], 0.0f) - min(x[c], 0.0f)) + (max(y[c + s.sy], 0.0f) - min(y[c], 0.0f)) +
              (max(z[c + s.sz], 0.0f) - min(z[c], 0.0f));
     };
     int c = begin;
@@ -132,8 +131,8 @@ void Transport::sweep_x(const Sweep& sweep) {
   });
 }
 
-/// Along y or z: rows of x in lanes, one after the other, with what the next ones need of those that
-/// have been changed already.
+/// Along y or z: rows of x in lanes, one after the other, with what the next ones need of those
+/// that have been changed already.
 void Transport::sweep_across(const Sweep& sweep) {
   const Shape& s = shape_;
   for_slabs(sweep.axis == 1 ? s.nz : s.ny, [&](int slab) {

@@ -12,9 +12,9 @@ inline constexpr float kInflow = 4;
 struct CarryView {
   Shape shape;
   int axis;
-  int stride;      ///< from the cell before a face to that beyond
-  float wind;      ///< of the air outside of the box
-  float side[6];   ///< -x +x -y +y -z +z; 1 = open, 0 = closed
+  int stride;                 ///< from the cell before a face to that beyond
+  float wind;                 ///< of the air outside of the box
+  float side[6];              ///< -x +x -y +y -z +z; 1 = open, 0 = closed
   Faces<const float> moved;   ///< of cells: by how much their air moved [voxels]
   Faces<const float> centre;  ///< of cells: velocity [voxels per step]
   const float* trusted;       ///< of cells: 0 where something was in the way

@@ -11,6 +11,24 @@ GLOAM_HD float buoyancy(float heat, float smoke, float ambient_density) {
   return kGravity * (heat - smoke / ambient_density);
 }
 
+/// Temperatures in flames and plumes fluctuate by about this share of their mean's rise (McCaffrey
+/// 1979; George, Alpert and Tamanini 1977): what a grid does not resolve, and without which narrow
+/// plumes stay laminar and do not mix with air.
+inline constexpr float kFluctuation = 0.4f;
+
+/// MurmurHash3's finaliser: lanes compute it too.
+GLOAM_HD uint32_t mix_bits(uint32_t x) {
+  x = (x ^ (x >> 16)) * 0x85EBCA6Bu;
+  x = (x ^ (x >> 13)) * 0xC2B2AE35u;
+  return x ^ (x >> 16);
+}
+
+/// Uniform, of mean 0 and variance 1, by cell and count.
+GLOAM_HD float fluctuation(int c, uint32_t count) {
+  const uint32_t bits = mix_bits(uint32_t(c) ^ mix_bits(count));
+  return (float(int(bits >> 8)) * 0x1p-23f - 1.0f) * 1.7320508f;
+}
+
 /// 1 where velocities of cells' centres [voxels per step] change by little from cell to cell, 0
 /// from kRough on.
 GLOAM_HD float smoothness_at(const Shape& s, const Faces<const float>& v, int c) {
@@ -18,7 +36,8 @@ GLOAM_HD float smoothness_at(const Shape& s, const Faces<const float>& v, int c)
   float sum = 0;
   for (int a = 0; a < 3; ++a) {
     const float* f = v[a];
-    const float x = f[c + 1] - f[c - 1], y = f[c + s.sy] - f[c - s.sy], z = f[c + s.sz] - f[c - s.sz];
+    const float x = f[c + 1] - f[c - 1], y = f[c + s.sy] - f[c - s.sy],
+                z = f[c + s.sz] - f[c - s.sz];
     sum += x * x + y * y + z * z;
   }
   return clamp(1.5f - sqrtf(sum) * (0.75f / kRough), 0.0f, 1.0f);

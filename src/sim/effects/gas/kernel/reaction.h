@@ -39,8 +39,8 @@ GLOAM_HD Reaction react(const ReactionRates& r, float* heat, float* smoke, float
                         float* spent, float* heated) {
   Reaction out;
   // What is not fuel nor what came of burning is air, as thin as it is hot.
-  const float air = max(
-      r.density * (1.0f - *heat) - *fuel - *spent * (1.0f + 1.0f / r.air_per_fuel), 0.0f);
+  const float air =
+      max(r.density * (1.0f - *heat) - *fuel - *spent * (1.0f + 1.0f / r.air_per_fuel), 0.0f);
   out.burnt = r.burn * min(*fuel, air / r.air_per_fuel);
   *fuel -= out.burnt;
   *spent += out.burnt * r.air_per_fuel;

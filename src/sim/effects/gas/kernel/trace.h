@@ -120,8 +120,7 @@ GLOAM_HD bool displacement_near_walls(const Carrier& v, const Faces<const float>
   const Vec3f here{v.velocity.x[c], v.velocity.y[c], v.velocity.z[c]};
   Vec3f half = here * -0.5f;
   walk(v.shape, open, i, j, k, &half);
-  const Between b =
-      place(v.shape, -1, float(i) + half.x, float(j) + half.y, float(k) + half.z);
+  const Between b = place(v.shape, -1, float(i) + half.x, float(j) + half.y, float(k) + half.z);
   Vec3f whole = -Vec3f{interpolate(v.shape, v.velocity.x, b), interpolate(v.shape, v.velocity.y, b),
                        interpolate(v.shape, v.velocity.z, b)};
   Vec3f forward = here * 2.0f + whole;

@@ -19,8 +19,8 @@ GLOAM_HD float limited_slope(float before, float after) {
   return product > 0.0f ? 2.0f * product / sum : 0.0f;
 }
 
-/// Through a face, per cell's volume: `courant` = speed dt / voxel, 0 where closed. q: ratios in the
-/// two cells before and the two beyond; d01: 0 where the face between q0 and q1 is closed, else
+/// Through a face, per cell's volume: `courant` = speed dt / voxel, 0 where closed. q: ratios in
+/// the two cells before and the two beyond; d01: 0 where the face between q0 and q1 is closed, else
 /// q1 - q0. air0, air1: in the cells before and beyond. None leaves that is not there as long as
 /// what leaves a cell is no more than its air.
 GLOAM_HD float face_flux(float courant, float q1, float q2, float d01, float d12, float d23,
