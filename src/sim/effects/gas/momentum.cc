@@ -207,7 +207,7 @@ void Momentum::confine(const Faces<const float>& open, const Faces<float>& veloc
     const int begin = s.at(0, j, k);
 #pragma GCC ivdep
     for (int c = begin; c < begin + s.nx; ++c) {
-      const Vec3f f = confinement(s, v, length, c);
+      const Vec3f f = confinement(s, v, length, c) * (1.0f - smooth_[size_t(c)]);
       moved_[0][size_t(c)] = f.x, moved_[1][size_t(c)] = f.y, moved_[2][size_t(c)] = f.z;
     }
   });

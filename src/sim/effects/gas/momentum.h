@@ -24,6 +24,8 @@ class Momentum {
   /// heat, smoke: of cells, ghosts 0. Where flow is not smooth, heat fluctuates, by `count`.
   void lift(const Faces<const float>& open, const Faces<float>& velocity, const float* heat,
             const float* smoke, float ambient_density, float dt, uint32_t count);
+  /// Vorticity confinement where flow is not smooth: what the grid resolves keeps its eddies
+  /// itself.
   void confine(const Faces<const float>& open, const Faces<float>& velocity, float strength,
                float dt);
 
