@@ -150,19 +150,22 @@ Projection Pressure::project(const Openings& openings, const Faces<float>& veloc
     norm = before;
   }
   double rz = 0;
-  for (; norm > goal && out.iterations < kMaxIterations; ++out.iterations) {
+  bool fresh = true;  // no direction to go on from
+  while (norm > goal && out.iterations < kMaxIterations) {
+    ++out.iterations;
     multigrid_.precondition(r, z);
     const double next_rz = dot(residual_, z_);
-    const float beta = out.iterations == 0 ? 0.0f : float(next_rz / rz);
+    const float beta = fresh ? 0.0f : float(next_rz / rz);
     rz = next_rz;
     rows([&, beta](int begin, int end) {
-      if (out.iterations == 0) {
+      if (fresh) {
         std::copy(z + begin, z + end, p + begin);
         return;
       }
 #pragma GCC ivdep
       for (int c = begin; c < end; ++c) p[c] = z[c] + beta * p[c];
     });
+    fresh = false;
     const double curvature = grid_sum(s, partial_, [&](int j, int k) {
       const int begin = s.at(0, j, k);
 #pragma GCC ivdep
@@ -181,6 +184,15 @@ Projection Pressure::project(const Openings& openings, const Faces<float>& veloc
       return row_sum(begin, s.nx, [r](int c) { return r[c] * r[c]; });
     });
     norm = std::sqrt(square);
+    if (norm > goal) continue;
+    // What conjugate gradients believe is left drifts from what is: look, and go on if need be.
+    rows([&](int begin, int end) {
+#pragma GCC ivdep
+      for (int c = begin; c < end; ++c)
+        r[c] = target[c] - outflow(s, u, c) - apply_poisson(a, x, c);
+    });
+    norm = std::sqrt(dot(residual_, residual_));
+    fresh = true;
   }
 
   subtract_gradient(velocity, ones_.data());
