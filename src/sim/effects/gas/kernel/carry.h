@@ -64,11 +64,12 @@ GLOAM_HD void correct_face(const CarryView& v, int i, int j, int k) {
   const float first = v.carried[c], old = v.old[c];
   const float back = interpolate(v.shape, v.carried, at);
   const float second = clamp(first + 0.5f * (old - back), v.least[c], v.most[c]);
-  const bool inside = (outside(v, x, y, z) == 0.0f) &
-                      (outside(v, float(i) - mx, float(j) - my, float(k) - mz) == 0.0f) &
-                      (v.trusted[c] * v.trusted[b] > 0.0f);
-  const float value = inside ? second : first;
-  v.corrected[c] = v.open[c] > 0.0f ? value : old;
+  const float past = outside(v, x, y, z) + outside(v, float(i) - mx, float(j) - my, float(k) - mz);
+  // Products, not conditions: those would keep compilers from lanes.
+  const float trusted = v.trusted[c] * v.trusted[b];
+  const float share = past > 0.0f ? 0.0f : trusted;
+  const float value = first + share * (second - first);
+  v.corrected[c] = old + v.open[c] * (value - old);
 }
 
 }  // namespace gloam::gas
