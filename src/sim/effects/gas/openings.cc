@@ -45,41 +45,46 @@ void Openings::set(const GasWalls& walls, const Faces<float>& open) {
 }
 
 void Openings::find_clearance(const Faces<const float>& open) {
-  const Shape& s = shape;
-  for_rows(s, [&](int j, int k) {
-    const int begin = s.at(0, j, k);
+  // Bytes may alias anything: what loops need lies in locals.
+  const Shape s = shape;
+  uint8_t* const clear = clearance.data();
+  for_rows(s, [open, s, clear, near = near_.data()](int j, int k) {
+    const Faces<const float> w = open;
+    const int begin = s.at(0, j, k), end = begin + s.nx, sy = s.sy, sz = s.sz;
+    uint8_t *const to_near = near, *const to_clear = clear;
 #pragma GCC ivdep
-    for (int c = begin; c < begin + s.nx; ++c) {
-      const bool free = (open.x[c] * open.x[c + 1]) * (open.y[c] * open.y[c + s.sy]) *
-                            (open.z[c] * open.z[c + s.sz]) >
-                        0.0f;
-      near_[size_t(c)] = !free;
-      clearance[size_t(c)] = free ? kReach : 0;
+    for (int c = begin; c < end; ++c) {
+      const float free = (w.x[c] * w.x[c + 1]) * (w.y[c] * w.y[c + sy]) * (w.z[c] * w.z[c + sz]);
+      to_near[c] = uint8_t(free == 0.0f);
+      to_clear[c] = uint8_t(kReach);
     }
   });
   // Spreads by one cell at a time, along one axis after the other.
   uint8_t *from = near_.data(), *to = spread_.data();
-  for (int distance = 1; distance <= kReach; ++distance) {
-    for (int a = 0; a < 3; ++a) {
-      const int stride = s.stride(a);
-      for_rows(s, [&, from, to](int j, int k) {
-        const int begin = s.at(0, j, k);
+  for (int distance = 1; distance <= kReach + 1; ++distance) {
+    // What is near a wall by less than `distance` is clear by one less.
+    for_rows(s, [s, from, clear, distance](int j, int k) {
+      const int begin = s.at(0, j, k), end = begin + s.nx;
+      const uint8_t *const near = from, most = uint8_t(distance > 1 ? distance - 2 : 0);
+      uint8_t* const to_clear = clear;
 #pragma GCC ivdep
-        for (int c = begin; c < begin + s.nx; ++c) {
-          to[c] = uint8_t(from[c] | from[c - stride] | from[c + stride]);
+      for (int c = begin; c < end; ++c) {
+        const uint8_t bound = near[c] ? most : uint8_t(kReach);
+        to_clear[c] = to_clear[c] < bound ? to_clear[c] : bound;
+      }
+    });
+    for (int a = 0; a < 3 && distance <= kReach; ++a) {
+      for_rows(s, [s, from, to, stride = s.stride(a)](int j, int k) {
+        const int begin = s.at(0, j, k), end = begin + s.nx, step = stride;
+        const uint8_t* const near = from;
+        uint8_t* const spread = to;
+#pragma GCC ivdep
+        for (int c = begin; c < end; ++c) {
+          spread[c] = uint8_t(near[c] | near[c - step] | near[c + step]);
         }
       });
       std::swap(from, to);
     }
-    for_rows(s, [&, from](int j, int k) {
-      const int begin = s.at(0, j, k);
-      uint8_t* clear = clearance.data();
-#pragma GCC ivdep
-      for (int c = begin; c < begin + s.nx; ++c) {
-        const uint8_t most = from[c] ? uint8_t(distance - 1) : uint8_t(kReach);
-        clear[c] = std::min(clear[c], most);
-      }
-    });
   }
 }
 
