@@ -1,6 +1,6 @@
 // Steps per second of the gas solver: a fire in a furnished room with a doorway, through which
 // something as large as a robot walks.
-//   gas_rate [--steps N] [--threads N] [--cells NX NY NZ…] [--json]
+//   gas_rate [--steps N] [--threads N] [--json]
 
 #include <fmt/format.h>
 
