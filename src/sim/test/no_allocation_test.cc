@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "gas_rig.h"
+#include "gas_room.h"
 #include "test_world.h"
 
 namespace {
@@ -93,6 +94,28 @@ TEST(GasObstacles, AllocateNothingAfterTheFirstCall) {
     const bool ok = rig.obstacles->solve(s, &rig.walls).ok();
     counting = false;
     ASSERT_TRUE(ok && rig.obstacles->shape_changed());
+  }
+  EXPECT_EQ(allocations.load(), 0);
+  EXPECT_EQ(frees.load(), 0);
+}
+
+TEST(GasStep, AllocatesNothingOnceWarm) {
+#ifdef GLOAM_SANITIZED
+  GTEST_SKIP() << "the sanitizer owns malloc";
+#endif
+  const GasGrid grid{32, 28, 24, 0.1f, {}};
+  auto gas = make_gas(grid, closed_box());
+  GasSource source = ball({1, 1, 0.5f}, 0.3f);
+  source.fuel = 0.01f;
+  for (int n = 0; n < 12; ++n) {
+    GasWalls walls(grid);
+    add_sheet(&walls, 20, [](int, int k) { return k < 5; });
+    add_solid(&walls, {4 + n, 4, 4}, {9 + n, 12, 12}, {1, 0, 0});
+    if (n == 4) allocations = frees = 0;
+    counting = n >= 4;
+    gas->set_walls(walls);
+    gas->step(0.1f, std::span(&source, 1), {});
+    counting = false;
   }
   EXPECT_EQ(allocations.load(), 0);
   EXPECT_EQ(frees.load(), 0);

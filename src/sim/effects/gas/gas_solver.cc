@@ -1,0 +1,181 @@
+#include "sim/effects/gas/gas_solver.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "base/check.h"
+#include "base/memory.h"
+#include "sim/effects/gas/gas_state.h"
+#include "sim/effects/gas/kernel/trace.h"
+
+namespace gloam {
+namespace {
+
+/// Heat release of turbulent diffusion flames per volume [W/m³] (Orloff and de Ris 1982): a voxel
+/// that makes so much is full of flame.
+constexpr float kFullOfFlame = 1.2e6f;
+constexpr int kLeastCells = 4, kMostCells = 1024;  ///< along an axis
+
+Error bad(std::string message, std::string hint) {
+  return {ErrorKind::kInput, std::move(message), {}, std::move(hint)};
+}
+
+Status check(const GasGrid& g) {
+  for (const int n : {g.nx, g.ny, g.nz}) {
+    if (n < kLeastCells || n > kMostCells) {
+      return bad(fmt::format("a gas grid of {} x {} x {} cells: each must lie in [{}, {}]", g.nx,
+                             g.ny, g.nz, kLeastCells, kMostCells),
+                 "change its size or its voxels");
+    }
+  }
+  if (!(g.voxel >= 1e-3f && g.voxel <= 100.0f)) {
+    return bad(fmt::format("voxels of {} m: they must lie in [0.001, 100] m", g.voxel), "");
+  }
+  if (!std::isfinite(g.low.x) || !std::isfinite(g.low.y) || !std::isfinite(g.low.z)) {
+    return bad("the corner of a gas grid is not finite", "");
+  }
+  if (g.cells() > (size_t(1) << 27)) {
+    return bad(fmt::format("a gas grid of {} cells: at most 134217728", g.cells()),
+               "take larger voxels");
+  }
+  return {};
+}
+
+Status check(const GasProperties& p) {
+  const struct {
+    const char* name;
+    float value, low, high;
+  } ranges[] = {
+      {"ambient_temperature", p.ambient_temperature, 200, 400},
+      {"vorticity", p.vorticity, 0, 10},
+      {"cooling", p.cooling, 0, 1e3f},
+      {"dissipation", p.dissipation, 0, 1e3f},
+      {"heat_of_combustion", p.heat_of_combustion, 1e6f, 2e8f},
+      {"soot_yield", p.soot_yield, 0, 1},
+      {"radiated", p.radiated, 0, 1},
+      {"mixing_time", p.mixing_time, 1e-3f, 1e3f},
+      {"flame_temperature", p.flame_temperature, 500, 3000},
+  };
+  for (const auto& r : ranges) {
+    if (!(r.value >= r.low && r.value <= r.high)) {
+      return bad(
+          fmt::format("{} = {} of a gas: it must lie in [{}, {}]", r.name, r.value, r.low, r.high),
+          "");
+    }
+  }
+  return {};
+}
+
+uint64_t bytes_of(const GasGrid& g) {
+  const uint64_t cells = uint64_t(g.nx + 2) * uint64_t(g.ny + 2) * uint64_t(g.nz + 2);
+  return gas::Pressure::bytes(cells) + gas::Momentum::bytes(cells) + gas::Transport::bytes(cells) +
+         cells * (9 * 4 + 16 + 7 + 4 + 4 + 12);
+}
+
+}  // namespace
+
+GasSolver::State::State(const GasGrid& g, const GasProperties& p)
+    : grid(g),
+      properties(p),
+      shape(gas::Shape::of(g.nx, g.ny, g.nz)),
+      openings(shape, p.open),
+      pressure(shape),
+      momentum(shape),
+      transport(shape),
+      walls(g) {
+  const size_t n = size_t(shape.size());
+  for (gas::Field& f : velocity) f.assign(n, 0.0f);
+  for (gas::Field& f : scalars) f.assign(n, 0.0f);
+  burning.assign(n, 0.0f);
+  heated.assign(n, 0.0f);
+  depth.assign(n, 0);
+  row_sums.resize(size_t(g.ny) * size_t(g.nz) * 4);
+  row_most.resize(size_t(g.ny) * size_t(g.nz));
+  use_walls();
+}
+
+double GasSolver::State::total(gas::Scalar scalar) const {
+  const float* f = scalars[scalar].data();
+  double sum = 0;
+  for (int k = 0; k < shape.nz; ++k) {
+    for (int j = 0; j < shape.ny; ++j) {
+      sum += gas::row_sum(shape.at(0, j, k), shape.nx, [f](int c) { return f[c]; });
+    }
+  }
+  return sum;
+}
+
+GasSolver::GasSolver(std::unique_ptr<State> state) : state_(std::move(state)) {}
+GasSolver::~GasSolver() = default;
+
+Result<std::unique_ptr<GasSolver>> GasSolver::create(const GasGrid& grid,
+                                                     const GasProperties& properties) {
+  GLOAM_TRY_STATUS(check(grid));
+  GLOAM_TRY_STATUS(check(properties));
+  GLOAM_TRY_STATUS(check_memory(
+      bytes_of(grid), fmt::format("a gas grid of {} x {} x {} cells", grid.nx, grid.ny, grid.nz),
+      "take larger voxels or a smaller box"));
+  return std::unique_ptr<GasSolver>(new GasSolver(std::make_unique<State>(grid, properties)));
+}
+
+void GasSolver::set_walls(const GasWalls& walls) { state_->take_walls(walls); }
+
+void GasSolver::set_velocity(int axis, std::span<const float> faces) {
+  State& state = *state_;
+  GLOAM_CHECK(axis >= 0 && axis < 3 && faces.size() == state.grid.faces(axis),
+              "velocities of another grid");
+  const gas::Shape& s = state.shape;
+  for (int k = 0; k < s.nz + (axis == 2); ++k) {
+    for (int j = 0; j < s.ny + (axis == 1); ++j) {
+      std::copy_n(faces.data() + state.walls.face(axis, 0, j, k), s.nx + (axis == 0),
+                  state.velocity[axis].data() + s.at(0, j, k));
+    }
+  }
+  state.use_walls();  // closed faces move as their walls
+}
+
+void GasSolver::read(std::vector<float>* density, std::vector<float>* temperature) const {
+  const State& state = *state_;
+  const gas::Shape& s = state.shape;
+  density->resize(state.grid.cells());
+  temperature->resize(state.grid.cells());
+  const float ambient = state.properties.ambient_temperature;
+  const float flame = state.properties.flame_temperature;
+  gas::for_rows(s, [&](int j, int k) {
+    const size_t from = size_t(s.at(0, j, k)), to = state.walls.cell(0, j, k);
+    std::copy_n(&state.scalars[gas::kSmoke][from], s.nx, density->data() + to);
+    const float* heat = &state.scalars[gas::kHeat][from];
+    const float* burning = &state.burning[from];
+    float* kelvin = temperature->data() + to;
+    for (int i = 0; i < s.nx; ++i) {
+      const float mean = ambient / (1.0f - min(heat[i], 0.9f));
+      // What glows in a voxel is soot in sheets of flame much thinner than it; as many of them as
+      // it burns fast. Elsewhere soot is as hot as the gas.
+      const float share = min(burning[i] * (1.0f / kFullOfFlame), 1.0f);
+      kelvin[i] = mean + share * max(flame - mean, 0.0f);
+    }
+  });
+}
+
+double GasSolver::smoke_mass() const { return state_->total(gas::kSmoke) * state_->cell_volume(); }
+double GasSolver::fuel_mass() const { return state_->total(gas::kFuel) * state_->cell_volume(); }
+double GasSolver::heat() const {
+  return state_->total(gas::kHeat) * state_->cell_volume() * double(state_->heat_unit());
+}
+const GasBudget& GasSolver::budget() const { return state_->budget; }
+const GasGrid& GasSolver::grid() const { return state_->grid; }
+const GasProperties& GasSolver::properties() const { return state_->properties; }
+
+Vec3f GasSolver::velocity_at(Vec3f p_W) const {
+  const State& state = *state_;
+  const Vec3f p = (p_W - state.grid.low) / state.grid.voxel;
+  const auto along = [&](int a) {
+    const gas::Between at = gas::place(state.shape, a, p.x - (a == 0 ? 0.0f : 0.5f),
+                                       p.y - (a == 1 ? 0.0f : 0.5f), p.z - (a == 2 ? 0.0f : 0.5f));
+    return gas::interpolate(state.shape, state.velocity[a].data(), at);
+  };
+  return {along(0), along(1), along(2)};
+}
+
+}  // namespace gloam

@@ -1,0 +1,62 @@
+#pragma once
+// What a GasSolver is made of.
+
+#include "sim/effects/gas/gas_solver.h"
+#include "sim/effects/gas/kernel/reaction.h"
+#include "sim/effects/gas/momentum.h"
+#include "sim/effects/gas/pressure.h"
+#include "sim/effects/gas/transport.h"
+
+namespace gloam {
+
+struct GasSolver::State {
+  State(const GasGrid& g, const GasProperties& p);
+
+  GasGrid grid;
+  GasProperties properties;
+  gas::Shape shape;
+  gas::Openings openings;
+  gas::Pressure pressure;
+  gas::Momentum momentum;
+  gas::Transport transport;
+
+  // With the pressure's solution, all that decides what comes next.
+  gas::Field velocity[3];             ///< of faces [m/s]
+  gas::Field scalars[gas::kScalars];  ///< of cells; ghosts hold ambient air: 0
+  gas::Field burning;                 ///< heat release in the last substep [W/m³]
+  uint64_t parity = 0;                ///< substeps of transport so far
+  float last_dt = 0;                  ///< of the last substep [s]
+  GasBudget budget;
+  GasWalls walls;
+
+  gas::Field heated;                      ///< what kHeat gains in a substep
+  std::vector<double> row_sums;           ///< of reactions: four for each row
+  std::vector<float> row_most;            ///< of speeds
+  std::vector<int> filled, freed, order;  ///< cells that walls took or left
+  std::vector<int> depth;                 ///< of filled cells, 0 elsewhere
+
+  gas::Faces<float> faces() { return {velocity[0].data(), velocity[1].data(), velocity[2].data()}; }
+  float ambient_density() const {  ///< [kg/m³]
+    return gas::kAirDensity * 293.0f / properties.ambient_temperature;
+  }
+  float heat_unit() const {  ///< excess heat at which kHeat would be 1 [J/m³]
+    return ambient_density() * gas::kHeatCapacity * properties.ambient_temperature;
+  }
+  double cell_volume() const {  ///< [m³]
+    return double(grid.voxel) * double(grid.voxel) * double(grid.voxel);
+  }
+  double total(gas::Scalar scalar) const;  ///< sum over cells
+
+  void take_walls(const GasWalls& next);
+  void use_walls();
+  void push_out(const GasWalls& next);
+  void fill_in();
+
+  void substep(float dt, std::span<const GasSource> sources, Vec3f wind, GasStep* step);
+  void feed(float dt, std::span<const GasSource> sources, GasStep* step);
+  void burn(float dt);
+  void blow(std::span<const GasSource> sources);
+  float max_speed();
+};
+
+}  // namespace gloam

@@ -1,0 +1,188 @@
+// One step of the gas: sources, burning, velocity, pressure, transport.
+
+#include <cmath>
+
+#include "base/check.h"
+#include "sim/effects/gas/gas_state.h"
+#include "sim/effects/gas/sources.h"
+
+namespace gloam {
+namespace {
+
+constexpr float kLongestSubstep = 0.1f;  ///< buoyancy is explicit: well below its period [s]
+constexpr float kVoxelsPerSubstep = 3;   ///< that air may move
+constexpr int kMostSubsteps = 1000;
+
+float fraction_in(float rate, float dt) { return 1.0f - std::exp(-rate * dt); }
+
+}  // namespace
+
+float GasSolver::State::max_speed() {
+  const gas::Faces<const float> u = faces().read();
+  gas::for_rows(shape, [&](int j, int k) {
+    const int begin = shape.at(0, j, k), end = begin + shape.nx;
+    float lanes[16] = {};
+    const auto at = [&](int c) {
+      const float x = 0.5f * (u.x[c] + u.x[c + 1]), y = 0.5f * (u.y[c] + u.y[c + shape.sy]),
+                  z = 0.5f * (u.z[c] + u.z[c + shape.sz]);
+      return x * x + y * y + z * z;
+    };
+    int c = begin;
+    for (; c + 16 <= end; c += 16) {
+      for (int l = 0; l < 16; ++l) lanes[l] = max(lanes[l], at(c + l));
+    }
+    for (; c < end; ++c) lanes[0] = max(lanes[0], at(c));
+    row_most[size_t(k * shape.ny + j)] = *std::max_element(lanes, lanes + 16);
+  });
+  return std::sqrt(*std::max_element(row_most.begin(), row_most.end()));
+}
+
+GasStep GasSolver::step(float dt, std::span<const GasSource> sources, Vec3f wind) {
+  State& state = *state_;
+  GLOAM_CHECK(dt > 0 && std::isfinite(dt), "a step takes time");
+  float speed = std::max(state.max_speed(), length(wind));
+  for (const GasSource& source : sources) {
+    if (source.blows)
+      speed = std::max(speed, std::min(length(source.velocity), gas::kFastestSource));
+  }
+  GasStep step;
+  const float by_time = std::ceil(dt / kLongestSubstep - 1e-3f);
+  const float by_speed = std::ceil(dt * speed / (kVoxelsPerSubstep * state.grid.voxel));
+  step.substeps = int(std::clamp(std::max(by_time, by_speed), 1.0f, float(kMostSubsteps)));
+  for (int n = 0; n < step.substeps; ++n) {
+    state.substep(dt / float(step.substeps), sources, wind, &step);
+  }
+  step.max_speed = state.max_speed();
+  // Cells were counted in each substep.
+  step.source_cells_blocked /= step.substeps;
+  step.sources_blocked /= step.substeps;
+  return step;
+}
+
+void GasSolver::State::substep(float dt, std::span<const GasSource> sources, Vec3f wind,
+                               GasStep* step) {
+  const gas::Faces<const float> open = pressure.open();
+  feed(dt, sources, step);
+  burn(dt);
+  if (last_dt > 0 && last_dt != dt) {  // pressure times dt is what the solution holds
+    for (float& x : pressure.solution()) x *= dt / last_dt;
+  }
+  last_dt = dt;
+  const auto lift_half = [&] {
+    momentum.lift(open, faces(), scalars[gas::kHeat].data(), scalars[gas::kSmoke].data(),
+                  ambient_density(), 0.5f * dt, uint32_t(parity));
+  };
+  momentum.trace(openings, open, faces().read(), grid.voxel, dt);
+  pressure.push(faces(), momentum.smoothness());
+  lift_half();
+  momentum.carry(openings, open, faces(), grid.voxel, dt, wind);
+  lift_half();
+  if (properties.vorticity > 0) momentum.confine(open, faces(), properties.vorticity, dt);
+  blow(sources);
+  const gas::Projection projection =
+      pressure.project(openings, faces(), heated.data(), grid.voxel, dt);
+  step->pressure_iterations += projection.iterations;
+  const auto ratio = [](double after, double before) { return before > 0 ? after / before : 0; };
+  if (ratio(projection.after, projection.before) >=
+      ratio(step->divergence_after, step->divergence_before)) {
+    step->divergence_before = projection.before;
+    step->divergence_after = projection.after;
+  }
+  double escaped[gas::kScalars] = {};
+  step->transport_substeps +=
+      transport.carry(open, faces().read(), scalars, grid.voxel, dt, &parity, escaped);
+  budget.heat_escaped += escaped[gas::kHeat] * cell_volume() * double(heat_unit());
+  budget.smoke_escaped += escaped[gas::kSmoke] * cell_volume();
+  budget.fuel_escaped += escaped[gas::kFuel] * cell_volume();
+}
+
+void GasSolver::State::feed(float dt, std::span<const GasSource> sources, GasStep* step) {
+  std::fill(heated.begin(), heated.end(), 0.0f);
+  const double volume = cell_volume();
+  for (const GasSource& source : sources) {
+    const double time = double(dt);
+    const float heat = float(double(source.heat) * time / (volume * double(heat_unit())));
+    const float smoke = float(double(source.smoke) * time / volume);
+    const float fuel = float(double(source.fuel) * time / volume);
+    const bool given = gas::for_cells_of(source, grid, openings, &step->source_cells_blocked,
+                                         [&](int c, float share) {
+                                           heated[size_t(c)] += heat * share;
+                                           scalars[gas::kSmoke][size_t(c)] += smoke * share;
+                                           scalars[gas::kFuel][size_t(c)] += fuel * share;
+                                         });
+    if (!given) {
+      ++step->sources_blocked;
+      continue;
+    }
+    budget.heat_added += double(source.heat) * time;
+    budget.smoke_added += double(source.smoke) * time;
+    budget.fuel_added += double(source.fuel) * time;
+  }
+}
+
+void GasSolver::State::burn(float dt) {
+  const GasProperties& p = properties;
+  gas::ReactionRates r;
+  r.density = ambient_density();
+  r.heat_unit = heat_unit();
+  r.hottest = 1.0f - p.ambient_temperature / gas::kHottest;
+  r.burn = fraction_in(1.0f / p.mixing_time, dt);
+  r.heat_per_fuel = p.heat_of_combustion * (1.0f - p.radiated) / r.heat_unit;
+  r.air_per_fuel = p.heat_of_combustion / gas::kHeatPerAir;
+  r.soot_yield = p.soot_yield;
+  r.cool = fraction_in(p.cooling, dt);
+  r.settle = fraction_in(p.dissipation, dt);
+  const float power = p.heat_of_combustion / dt;
+  gas::for_rows(shape, [&](int j, int k) {
+    const int begin = shape.at(0, j, k);
+    double* sums = &row_sums[size_t(k * shape.ny + j) * 4];
+    float lanes[4][16] = {};
+    float *heat = &scalars[gas::kHeat][size_t(begin)],
+          *smoke = &scalars[gas::kSmoke][size_t(begin)],
+          *fuel = &scalars[gas::kFuel][size_t(begin)],
+          *spent = &scalars[gas::kSpent][size_t(begin)], *more = &heated[size_t(begin)],
+          *watts = &burning[size_t(begin)];
+    for (int i = 0; i < shape.nx; i += 16) {
+      const int width = std::min(16, shape.nx - i);
+#pragma GCC ivdep
+      for (int l = 0; l < width; ++l) {
+        const gas::Reaction out =
+            gas::react(r, heat + i + l, smoke + i + l, fuel + i + l, spent + i + l, more + i + l);
+        watts[i + l] = out.burnt * power;
+        lanes[0][l] += out.heat_made, lanes[1][l] += out.heat_lost;
+        lanes[2][l] += out.burnt, lanes[3][l] += out.settled;
+      }
+    }
+    for (int n = 0; n < 4; ++n) {
+      sums[n] = 0;
+      for (const float lane : lanes[n]) sums[n] += double(lane);
+    }
+  });
+  double sums[4] = {};
+  for (size_t i = 0; i < row_sums.size(); ++i) sums[i % 4] += row_sums[i];
+  const double volume = cell_volume();
+  budget.heat_added += sums[0] * volume * double(r.heat_unit);
+  budget.heat_lost += sums[1] * volume * double(r.heat_unit);
+  budget.fuel_burnt += sums[2] * volume;
+  budget.smoke_added += sums[2] * volume * double(r.soot_yield);
+  budget.smoke_deposited += sums[3] * volume;
+}
+
+void GasSolver::State::blow(std::span<const GasSource> sources) {
+  const gas::Faces<const float> open = pressure.open();
+  for (const GasSource& source : sources) {
+    if (!source.blows) continue;
+    const float fast = length(source.velocity);
+    const Vec3f v = source.velocity * (fast > gas::kFastestSource ? gas::kFastestSource / fast : 1);
+    int blocked = 0;
+    gas::for_cells_of(source, grid, openings, &blocked, [&](int c, float) {
+      for (int a = 0; a < 3; ++a) {
+        for (const int face : {c, c + shape.stride(a)}) {
+          if (open[a][face] > 0.0f) velocity[a][size_t(face)] = v[a];
+        }
+      }
+    });
+  }
+}
+
+}  // namespace gloam

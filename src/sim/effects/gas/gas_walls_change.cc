@@ -1,0 +1,160 @@
+// Walls that move: what they cover is pushed aside, what they leave is filled from around it.
+
+#include "base/check.h"
+#include "sim/effects/gas/gas_state.h"
+
+namespace gloam {
+namespace {
+
+using gas::Shape;
+
+/// Calls f(neighbour, face between) for the six neighbours of the cell at c.
+template <class F>
+void for_neighbours(const Shape& s, int c, F&& f) {
+  for (int a = 0; a < 3; ++a) {
+    const int stride = s.stride(a);
+    f(c - stride, a, c);
+    f(c + stride, a, c + stride);
+  }
+}
+
+/// Calls f(i, j, k, c) for all cells, row by row.
+template <class F>
+void for_cells(const Shape& s, F&& f) {
+  for (int k = 0; k < s.nz; ++k) {
+    for (int j = 0; j < s.ny; ++j) {
+      for (int i = 0; i < s.nx; ++i) f(i, j, k, s.at(i, j, k));
+    }
+  }
+}
+
+}  // namespace
+
+void GasSolver::State::take_walls(const GasWalls& next) {
+  GLOAM_CHECK(next.grid == grid && next.solid.size() == grid.cells(), "walls of another grid");
+  for (int a = 0; a < 3; ++a) {
+    GLOAM_CHECK(next.closed[a].size() == grid.faces(a) && next.velocity[a].size() == grid.faces(a),
+                "walls of another grid");
+  }
+  filled.clear();
+  freed.clear();
+  for_cells(shape, [&](int i, int j, int k, int c) {
+    const bool now = next.solid[next.cell(i, j, k)] != 0, was = openings.solid[size_t(c)] != 0;
+    if (now && !was) filled.push_back(c);
+    if (was && !now) freed.push_back(c);
+  });
+  push_out(next);
+  walls = next;
+  use_walls();
+  fill_in();
+}
+
+/// The solver's own layout of `walls`.
+void GasSolver::State::use_walls() {
+  openings.set(walls, pressure.multigrid().weights());
+  pressure.multigrid().update();
+  const gas::Faces<const float> open = pressure.open();
+  for (int a = 0; a < 3; ++a) {
+    const Shape& s = shape;
+    const Shape faces{s.nx + (a == 0), s.ny + (a == 1), s.nz + (a == 2), s.sy, s.sz};
+    gas::for_rows(faces, [&](int j, int k) {
+      const size_t from = walls.face(a, 0, j, k);
+      const int begin = s.at(0, j, k);
+      for (int i = 0; i < faces.nx; ++i) {
+        if (open[a][begin + i] > 0.0f) continue;
+        velocity[a][size_t(begin + i)] =
+            walls.closed[a][from + size_t(i)] ? walls.velocity[a][from + size_t(i)] : 0.0f;
+      }
+    });
+  }
+}
+
+/// What filled cells hold goes, from the innermost outwards, to neighbours nearer to open ones, in
+/// even parts. What no open cell can be reached from stays behind as buried.
+void GasSolver::State::push_out(const GasWalls& next) {
+  const gas::Faces<const float> open = pressure.open();
+  // Steps to the nearest open cell through faces that were open; 0 = open, -1 = not known.
+  const auto is_in_box = [&](int c) {
+    const int k = c / shape.sz - 1, j = c % shape.sz / shape.sy - 1, i = c % shape.sy - 1;
+    return i >= 0 && i < shape.nx && j >= 0 && j < shape.ny && k >= 0 && k < shape.nz;
+  };
+  const auto in_next = [&](int c) {
+    const int k = c / shape.sz - 1, j = c % shape.sz / shape.sy - 1, i = c % shape.sy - 1;
+    return next.solid[next.cell(i, j, k)] != 0;
+  };
+  for (const int c : filled) depth[size_t(c)] = -1;
+  order.clear();
+  for (const int c : filled) {
+    bool at_edge = false;
+    for_neighbours(shape, c, [&](int n, int a, int face) {
+      at_edge |= open[a][face] > 0.0f && is_in_box(n) && !in_next(n);
+    });
+    if (at_edge) depth[size_t(c)] = 1, order.push_back(c);
+  }
+  for (size_t head = 0; head < order.size(); ++head) {
+    const int c = order[head];
+    for_neighbours(shape, c, [&](int n, int a, int face) {
+      if (open[a][face] == 0.0f || !is_in_box(n) || depth[size_t(n)] != -1) return;
+      depth[size_t(n)] = depth[size_t(c)] + 1;
+      order.push_back(n);
+    });
+  }
+  for (size_t m = order.size(); m-- > 0;) {
+    const int c = order[m], here = depth[size_t(c)];
+    int count = 0;
+    const auto for_nearer = [&](auto&& f) {
+      for_neighbours(shape, c, [&](int n, int a, int face) {
+        if (open[a][face] == 0.0f || !is_in_box(n) || depth[size_t(n)] != here - 1) return;
+        if (here == 1 && in_next(n)) return;
+        f(n);
+      });
+    };
+    for_nearer([&](int) { ++count; });
+    for (gas::Field& f : scalars) {
+      const float part = f[size_t(c)] / float(count);
+      for_nearer([&](int n) { f[size_t(n)] += part; });
+      f[size_t(c)] = 0;
+    }
+  }
+  for (const int c : filled) {
+    if (depth[size_t(c)] == -1) {
+      budget.heat_buried +=
+          double(scalars[gas::kHeat][size_t(c)]) * cell_volume() * double(heat_unit());
+      budget.smoke_buried += double(scalars[gas::kSmoke][size_t(c)]) * cell_volume();
+      budget.fuel_buried += double(scalars[gas::kFuel][size_t(c)]) * cell_volume();
+      for (gas::Field& f : scalars) f[size_t(c)] = 0;
+    }
+    burning[size_t(c)] = 0;
+    depth[size_t(c)] = 0;
+  }
+}
+
+/// A freed cell takes an even part of what its open neighbours hold.
+void GasSolver::State::fill_in() {
+  const gas::Faces<const float> open = pressure.open();
+  for (const int c : freed) depth[size_t(c)] = 1;
+  for (const int c : freed) {
+    depth[size_t(c)] = 0;
+    int count = 0;
+    const auto for_open = [&](auto&& f) {
+      for_neighbours(shape, c, [&](int n, int a, int face) {
+        const int i = n % shape.sy - 1, j = n % shape.sz / shape.sy - 1, k = n / shape.sz - 1;
+        const bool in_box =
+            i >= 0 && i < shape.nx && j >= 0 && j < shape.ny && k >= 0 && k < shape.nz;
+        if (in_box && open[a][face] > 0.0f && depth[size_t(n)] == 0) f(n);
+      });
+    };
+    for_open([&](int) { ++count; });
+    for (gas::Field& f : scalars) {
+      float sum = 0;
+      for_open([&](int n) {
+        const float part = f[size_t(n)] / float(count + 1);
+        f[size_t(n)] -= part;
+        sum += part;
+      });
+      f[size_t(c)] = sum;
+    }
+  }
+}
+
+}  // namespace gloam

@@ -1,0 +1,75 @@
+#pragma once
+// Velocity carried along itself, a face at a time. Device-safe.
+
+#include "sim/effects/gas/kernel/trace.h"
+
+namespace gloam::gas {
+
+/// Over this many voxels of its way from outside, air takes on what it meets at the border.
+inline constexpr float kInflow = 4;
+
+/// One component of velocity, on the lattice of faces across `axis`.
+struct CarryView {
+  Shape shape;
+  int axis;
+  int stride;                 ///< from the cell before a face to that beyond
+  float wind;                 ///< of the air outside of the box
+  float side[6];              ///< -x +x -y +y -z +z; 1 = open, 0 = closed
+  Faces<const float> moved;   ///< of cells: by how much their air moved [voxels]
+  Faces<const float> centre;  ///< of cells: velocity [voxels per step]
+  const float* trusted;       ///< of cells: 0 where something was in the way
+  const float* open;
+  const float* old;  ///< the component
+  float* carried;    ///< of first order
+  float* least;      ///< among the values that it was interpolated from
+  float* most;
+  float* corrected;  ///< the result
+};
+
+/// How far a place lies beyond an open side [voxels].
+GLOAM_HD float outside(const CarryView& v, float x, float y, float z) {
+  const float hx = float(v.shape.nx - (v.axis != 0)), hy = float(v.shape.ny - (v.axis != 1)),
+              hz = float(v.shape.nz - (v.axis != 2));
+  const float ox = max(v.side[0] * -x, v.side[1] * (x - hx));
+  const float oy = max(v.side[2] * -y, v.side[3] * (y - hy));
+  const float oz = max(v.side[4] * -z, v.side[5] * (z - hz));
+  return max(max(max(ox, oy), oz), 0.0f);
+}
+
+/// Sets carried, least and most of a face.
+GLOAM_HD void carry_face(const CarryView& v, int i, int j, int k) {
+  const int c = v.shape.at(i, j, k), b = c - v.stride;
+  const float x = float(i) - 0.5f * (v.moved.x[c] + v.moved.x[b]),
+              y = float(j) - 0.5f * (v.moved.y[c] + v.moved.y[b]),
+              z = float(k) - 0.5f * (v.moved.z[c] + v.moved.z[b]);
+  const Between at = place(v.shape, v.axis, x, y, z);
+  const Corners a = corners(v.shape, v.old, at.c);
+  const float value = interpolate(a, at);
+  v.least[c] = min(min(min(a.v0, a.v1), min(a.v2, a.v3)), min(min(a.v4, a.v5), min(a.v6, a.v7)));
+  v.most[c] = max(max(max(a.v0, a.v1), max(a.v2, a.v3)), max(max(a.v4, a.v5), max(a.v6, a.v7)));
+  v.carried[c] = value + (v.wind - value) * min(outside(v, x, y, z) * (1.0f / kInflow), 1.0f);
+}
+
+/// Sets the result: half of what is lost on the way there and back is given back, within the bounds
+/// of what was there. What came or went past the border or a wall has no way back to compare.
+GLOAM_HD void correct_face(const CarryView& v, int i, int j, int k) {
+  const int c = v.shape.at(i, j, k), b = c - v.stride;
+  const float mx = 0.5f * (v.moved.x[c] + v.moved.x[b]), my = 0.5f * (v.moved.y[c] + v.moved.y[b]),
+              mz = 0.5f * (v.moved.z[c] + v.moved.z[b]);
+  // Forward by what the centres' paths would be there: twice the velocity less the way back.
+  const float x = float(i) + (v.centre.x[c] + v.centre.x[b]) - mx,
+              y = float(j) + (v.centre.y[c] + v.centre.y[b]) - my,
+              z = float(k) + (v.centre.z[c] + v.centre.z[b]) - mz;
+  const Between at = place(v.shape, v.axis, x, y, z);
+  const float first = v.carried[c], old = v.old[c];
+  const float back = interpolate(v.shape, v.carried, at);
+  const float second = clamp(first + 0.5f * (old - back), v.least[c], v.most[c]);
+  const float past = outside(v, x, y, z) + outside(v, float(i) - mx, float(j) - my, float(k) - mz);
+  // Products, not conditions: those would keep compilers from lanes.
+  const float trusted = v.trusted[c] * v.trusted[b];
+  const float share = past > 0.0f ? 0.0f : trusted;
+  const float value = first + share * (second - first);
+  v.corrected[c] = old + v.open[c] * (value - old);
+}
+
+}  // namespace gloam::gas

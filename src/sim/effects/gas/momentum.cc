@@ -1,0 +1,232 @@
+#include "sim/effects/gas/momentum.h"
+
+#include "sim/effects/gas/kernel/carry.h"
+#include "sim/effects/gas/kernel/forces.h"
+
+namespace gloam::gas {
+namespace {
+
+Faces<const float> view(const Field (&f)[3]) { return {f[0].data(), f[1].data(), f[2].data()}; }
+
+/// Row (j, k) of faces across `axis`.
+Shape faces_of(const Shape& s, int axis) {
+  return {s.nx + (axis == 0), s.ny + (axis == 1), s.nz + (axis == 2), s.sy, s.sz};
+}
+
+/// The ghosts next to the box as the cells before them.
+void fill_ghosts(const Shape& s, float* f) {
+  for_slabs(s.nz, [&s, f](int k) {
+    for (int j = 0; j < s.ny; ++j) {
+      f[s.at(-1, j, k)] = f[s.at(0, j, k)];
+      f[s.at(s.nx, j, k)] = f[s.at(s.nx - 1, j, k)];
+    }
+    std::copy_n(f + s.at(0, 0, k), s.nx, f + s.at(0, -1, k));
+    std::copy_n(f + s.at(0, s.ny - 1, k), s.nx, f + s.at(0, s.ny, k));
+  });
+  for (int j = 0; j < s.ny; ++j) {
+    std::copy_n(f + s.at(0, j, 0), s.nx, f + s.at(0, j, -1));
+    std::copy_n(f + s.at(0, j, s.nz - 1), s.nx, f + s.at(0, j, s.nz));
+  }
+}
+
+}  // namespace
+
+Momentum::Momentum(const Shape& shape) : shape_(shape) {
+  const size_t n = size_t(shape.size());
+  for (int a = 0; a < 3; ++a) {
+    centre_[a].assign(n, 0.0f);
+    moved_[a].assign(n, 0.0f);
+  }
+  for (Field* f : {&trusted_, &smooth_, &carried_, &least_, &most_, &corrected_})
+    f->assign(n, 0.0f);
+}
+
+void Momentum::find_centres(const Faces<const float>& u, float scale, float limit) {
+  const Shape& s = shape_;
+  float *x = centre_[0].data(), *y = centre_[1].data(), *z = centre_[2].data();
+  const float half = 0.5f * scale;
+  for_rows(s, [&, x, y, z](int j, int k) {
+    const int begin = s.at(0, j, k);
+#pragma GCC ivdep
+    for (int c = begin; c < begin + s.nx; ++c) {
+      x[c] = clamp(half * (u.x[c] + u.x[c + 1]), -limit, limit);
+      y[c] = clamp(half * (u.y[c] + u.y[c + s.sy]), -limit, limit);
+      z[c] = clamp(half * (u.z[c] + u.z[c + s.sz]), -limit, limit);
+    }
+  });
+}
+
+void Momentum::find_paths(const Openings& openings, const Faces<const float>& open) {
+  const Shape& s = shape_;
+  const Carrier carrier{s, view(centre_)};
+  float *x = moved_[0].data(), *y = moved_[1].data(), *z = moved_[2].data();
+  for_rows(s, [&, x, y, z](int j, int k) {
+    const int begin = s.at(0, j, k), nx = s.nx;
+    {
+      const Carrier v = carrier;
+      float *const to_x = x + begin, *const to_y = y + begin, *const to_z = z + begin;
+#pragma GCC ivdep
+      for (int i = 0; i < nx; ++i) {
+        const Vec3f d = displacement(v, i, j, k);
+        to_x[i] = d.x, to_y[i] = d.y, to_z[i] = d.z;
+      }
+    }
+    for (int i = 0; i < s.nx; ++i) {
+      const int c = begin + i;
+      trusted_[size_t(c)] = 1.0f;
+      const float clear = float(openings.clearance[size_t(c)]);
+      const Vec3f v{carrier.velocity.x[c], carrier.velocity.y[c], carrier.velocity.z[c]};
+      const Vec3f d{x[c], y[c], z[c]};
+      const float far = max(max(max(d.x, -d.x), max(d.y, -d.y)), max(d.z, -d.z));
+      const float half = 0.5f * max(max(max(v.x, -v.x), max(v.y, -v.y)), max(v.z, -v.z));
+      if (max(far, half) <= clear) continue;
+      Vec3f moved;
+      if (openings.solid[size_t(c)]) {
+        trusted_[size_t(c)] = 0.0f;
+      } else if (!displacement_near_walls(carrier, open, i, j, k, &moved)) {
+        trusted_[size_t(c)] = 0.0f;
+      }
+      x[c] = moved.x, y[c] = moved.y, z[c] = moved.z;
+    }
+  });
+  for (Field& f : moved_) fill_ghosts(s, f.data());
+  fill_ghosts(s, trusted_.data());
+  for (Field& f : centre_) fill_ghosts(s, f.data());
+}
+
+void Momentum::find_smoothness() {
+  const Shape& s = shape_;
+  const Faces<const float> v = view(centre_);
+  float* smooth = smooth_.data();
+  for_rows(s, [&, v, smooth](int j, int k) {
+    const int begin = s.at(0, j, k);
+#pragma GCC ivdep
+    for (int c = begin; c < begin + s.nx; ++c) smooth[c] = smoothness_at(s, v, c);
+  });
+  fill_ghosts(s, smooth);
+}
+
+void Momentum::carry_axis(const Openings& openings, int axis, const float* open, float* velocity,
+                          Vec3f wind, float drift) {
+  const Shape& s = shape_;
+  const Shape faces = faces_of(s, axis);
+  const float outside = wind[axis];
+  const auto side = [&openings](int n) { return openings.side_open[n] ? 1.0f : 0.0f; };
+  const CarryView view{s,
+                       axis,
+                       s.stride(axis),
+                       outside,
+                       {side(0), side(1), side(2), side(3), side(4), side(5)},
+                       gas::view(moved_),
+                       gas::view(centre_),
+                       trusted_.data(),
+                       open,
+                       velocity,
+                       carried_.data(),
+                       least_.data(),
+                       most_.data(),
+                       corrected_.data()};
+  for_rows(faces, [&view, nx = faces.nx](int j, int k) {
+    const CarryView v = view;  // its own copy: the compiler need not look at it again for each face
+#pragma GCC ivdep
+    for (int i = 0; i < nx; ++i) carry_face(v, i, j, k);
+  });
+  for_rows(faces, [&view, nx = faces.nx](int j, int k) {
+    const CarryView v = view;
+#pragma GCC ivdep
+    for (int i = 0; i < nx; ++i) correct_face(v, i, j, k);
+  });
+  for_rows(faces, [&](int j, int k) {
+    std::copy_n(corrected_.data() + s.at(0, j, k), faces.nx, velocity + s.at(0, j, k));
+  });
+  // Wind comes in even where the air stands still.
+  for (int side = 0; side < 2; ++side) {
+    const float inward = side == 0 ? outside : -outside;
+    if (!(inward > 0.0f)) continue;
+    const float share = min(inward * drift, 1.0f);
+    for (int e = 0; e < (axis == 2 ? s.ny : s.nz); ++e) {
+      for (int d = 0; d < (axis == 0 ? s.ny : s.nx); ++d) {
+        const int far = side == 0 ? 0 : s.n(axis);
+        const int c = axis == 0 ? s.at(far, d, e) : (axis == 1 ? s.at(d, far, e) : s.at(d, e, far));
+        if (open[c] > 0.0f) velocity[c] += (outside - velocity[c]) * share;
+      }
+    }
+  }
+}
+
+void Momentum::trace(const Openings& openings, const Faces<const float>& open,
+                     const Faces<const float>& velocity, float voxel, float dt) {
+  find_centres(velocity, dt / voxel, float(kReach));
+  find_paths(openings, open);
+  find_smoothness();
+}
+
+void Momentum::carry(const Openings& openings, const Faces<const float>& open,
+                     const Faces<float>& velocity, float voxel, float dt, Vec3f wind) {
+  for (int a = 0; a < 3; ++a) {
+    carry_axis(openings, a, open[a], velocity[a], wind, dt / (voxel * kInflow));
+  }
+}
+
+void Momentum::lift(const Faces<const float>& open, const Faces<float>& velocity, const float* heat,
+                    const float* smoke, float ambient_density, float dt, uint32_t count) {
+  const Shape& s = shape_;
+  const float *w = open.z, *smooth = smooth_.data();
+  float* u = velocity.z;
+  for_rows(faces_of(s, 2), [&, w, u, smooth, heat, smoke](int j, int k) {
+    const int begin = s.at(0, j, k);
+#pragma GCC ivdep
+    for (int c = begin; c < begin + s.nx; ++c) {
+      const int b = c - s.sz;
+      const float rough = 1.0f - 0.5f * (smooth[c] + smooth[b]);
+      const float share = 1.0f + kFluctuation * rough * fluctuation(c, count);
+      u[c] += w[c] * dt *
+              buoyancy(share * 0.5f * (heat[c] + heat[b]), 0.5f * (smoke[c] + smoke[b]),
+                       ambient_density);
+    }
+  });
+}
+
+void Momentum::confine(const Faces<const float>& open, const Faces<float>& velocity, float strength,
+                       float dt) {
+  const Shape& s = shape_;
+  find_centres(velocity.read(), 1.0f, 1e6f);
+  for (Field& f : centre_) fill_ghosts(s, f.data());
+  const Faces<const float> v = view(centre_);
+  float* length = trusted_.data();
+  for_rows(s, [&, length](int j, int k) {
+    const int begin = s.at(0, j, k);
+#pragma GCC ivdep
+    for (int c = begin; c < begin + s.nx; ++c) {
+      const Vec3f w = curl(s, v, c);
+      length[c] = sqrtf(dot(w, w));
+    }
+  });
+  fill_ghosts(s, length);
+  for_rows(s, [&, length](int j, int k) {
+    const int begin = s.at(0, j, k);
+#pragma GCC ivdep
+    for (int c = begin; c < begin + s.nx; ++c) {
+      const Vec3f f = confinement(s, v, length, c) * (1.0f - smooth_[size_t(c)]);
+      moved_[0][size_t(c)] = f.x, moved_[1][size_t(c)] = f.y, moved_[2][size_t(c)] = f.z;
+    }
+  });
+  for (int a = 0; a < 3; ++a) {
+    fill_ghosts(s, moved_[a].data());
+    const float* f = moved_[a].data();
+    const float* w = open[a];
+    float* u = velocity[a];
+    const int stride = s.stride(a);
+    // curl() holds two voxels of length and so does its gradient: one voxel of each is left.
+    const float scale = 0.25f * strength * dt;
+    for_rows(faces_of(s, a), [&, f, w, u](int j, int k) {
+      const int begin = s.at(0, j, k);
+#pragma GCC ivdep
+      for (int c = begin; c < begin + faces_of(s, a).nx; ++c) {
+        u[c] += w[c] * scale * (f[c] + f[c - stride]);
+      }
+    });
+  }
+}
+
+}  // namespace gloam::gas

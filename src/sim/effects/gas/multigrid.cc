@@ -1,0 +1,244 @@
+#include "sim/effects/gas/multigrid.h"
+
+namespace gloam::gas {
+namespace {
+
+constexpr int kCoarsest = 3;       ///< cells along an axis of a level that is not coarsened further
+constexpr int kCoarsestSteps = 8;  ///< pairs of smoothing steps there
+
+/// Distance of the centres of two cells between which face i lies.
+float distance(const std::vector<float>& width, int i) {
+  return 0.5f * (width[size_t(i)] + width[size_t(i) + 1]);
+}
+
+}  // namespace
+
+Multigrid::Multigrid(const Shape& shape) {
+  for (Shape s = shape;;) {
+    Level& level = levels_.emplace_back();
+    // Where walls ask for it, half of the cells along an axis are not joined: room for that.
+    level.shape = s;
+    const size_t n = size_t(s.size());
+    for (Field& w : level.weight) w.assign(n, 0.0f);
+    for (Field* f : {&level.inverse, &level.x, &level.b, &level.scratch}) f->assign(n, 0.0f);
+    for (int a = 0; a < 3; ++a) level.width[a].assign(size_t(s.n(a)) + 2, 1.0f);
+    if (std::max({s.nx, s.ny, s.nz}) <= kCoarsest) break;
+    s = Shape::of((s.nx + 1) / 2, (s.ny + 1) / 2, (s.nz + 1) / 2);
+  }
+  const size_t longest = size_t(std::max({shape.nx, shape.ny, shape.nz})) + 1;
+  lost_.resize(longest);
+  cost_.resize(longest * (longest + 1));
+  choice_.resize(longest * (longest + 1));
+}
+
+Faces<float> Multigrid::weights() {
+  Level& l = levels_[0];
+  return {l.weight[0].data(), l.weight[1].data(), l.weight[2].data()};
+}
+
+PoissonView Multigrid::view(size_t level) const {
+  const Level& l = levels_[level];
+  return {l.shape, {l.weight[0].data(), l.weight[1].data(), l.weight[2].data()}, l.inverse.data()};
+}
+
+void Multigrid::update() {
+  invert(levels_[0]);
+  for (size_t l = 1; l < levels_.size(); ++l) {
+    for (int a = 0; a < 3; ++a) choose_cells(levels_[l - 1], a, &levels_[l].start[a]);
+    coarsen(levels_[l - 1], levels_[l]);
+    invert(levels_[l]);
+  }
+}
+
+/// The number of cells is fixed; which ones are joined is chosen so that little of what is closed
+/// comes to lie inside (dynamic programming over the faces along the axis).
+void Multigrid::choose_cells(const Level& fine, int axis, std::vector<int>* start) {
+  const Shape& s = fine.shape;
+  const int n = s.n(axis), coarse_n = (n + 1) / 2;
+  // What is closed on the face before cell i, of all of that plane.
+  const float* w = fine.weight[axis].data();
+  const float* inverse = fine.inverse.data();
+  const int stride = s.stride(axis);
+  const int ny = axis == 1 ? 1 : s.ny, nz = axis == 2 ? 1 : s.nz, nx = axis == 0 ? 1 : s.nx;
+  for_slabs(n - 1, [&](int before) {
+    const int i = before + 1;
+    double open_sum = 0;
+    float closed = 0, most = 0;
+    for (int e = 0; e < nz; ++e) {
+      for (int d = 0; d < ny; ++d) {
+        const int c0 = s.at(axis == 0 ? i : 0, axis == 1 ? i : d, axis == 2 ? i : e);
+        for (int f = 0; f < nx; ++f) {
+          const int c = c0 + f;
+          if (inverse[c] == 0.0f || inverse[c - stride] == 0.0f) continue;
+          most = std::max(most, w[c]);
+          open_sum += double(w[c]);
+          closed += 1;
+        }
+      }
+    }
+    lost_[size_t(i)] = most > 0 ? closed - float(open_sum / double(most)) : closed;
+  });
+  const float plane = float(nx) * float(ny) * float(nz);
+  const float uneven = 0.01f * plane;  // what a cell that is not of two costs
+  // cost_[m][i]: of the first i cells joined to m.
+  const auto at = [&](int m, int i) { return size_t(m) * size_t(n + 1) + size_t(i); };
+  constexpr float kNever = 1e30f;
+  for (int i = 0; i <= n; ++i) cost_[at(0, i)] = i == 0 ? 0 : kNever;
+  for (int m = 1; m <= coarse_n; ++m) {
+    for (int i = 0; i <= n; ++i) {
+      float best = kNever;
+      int size = 0;
+      float inside = 0;
+      for (int k = 1; k <= 3 && k <= i; ++k) {
+        if (k > 1) inside += lost_[size_t(i - k + 1)];
+        const float c = cost_[at(m - 1, i - k)] + inside + (k == 2 ? 0 : uneven);
+        if (c < best) best = c, size = k;
+      }
+      cost_[at(m, i)] = best;
+      choice_[at(m, i)] = size;
+    }
+  }
+  start->resize(size_t(coarse_n) + 1);
+  for (int m = coarse_n, i = n; m >= 0; --m) {
+    (*start)[size_t(m)] = i;
+    if (m > 0) i -= choice_[at(m, i)];
+  }
+}
+
+void Multigrid::coarsen(const Level& fine, Level& coarse) {
+  const Shape &s = coarse.shape, &t = fine.shape;
+  for (int a = 0; a < 3; ++a) {
+    for (int i = 0; i < s.n(a); ++i) {
+      float sum = 0;
+      for (int f = coarse.start[a][size_t(i)]; f < coarse.start[a][size_t(i) + 1]; ++f) {
+        sum += fine.width[a][size_t(f) + 1];
+      }
+      coarse.width[a][size_t(i) + 1] = sum;
+    }
+  }
+  for (int a = 0; a < 3; ++a) {
+    const float* from = fine.weight[a].data();
+    float* to = coarse.weight[a].data();
+    const Shape faces{s.nx + (a == 0), s.ny + (a == 1), s.nz + (a == 2), s.sy, s.sz};
+    const auto first = [&](int axis, int i) { return coarse.start[axis][size_t(i)]; };
+    const auto end = [&](int axis, int i) {
+      return axis == a ? first(axis, i) + 1 : coarse.start[axis][size_t(i) + 1];
+    };
+    for_rows(faces, [&](int j, int k) {
+      for (int i = 0; i < faces.nx; ++i) {
+        const int at[3] = {i, j, k};
+        const int face = at[a];
+        const float share =
+            distance(fine.width[a], first(a, face)) / distance(coarse.width[a], face);
+        float sum = 0;
+        for (int z = first(2, k); z < end(2, k); ++z) {
+          for (int y = first(1, j); y < end(1, j); ++y) {
+            for (int x = first(0, i); x < end(0, i); ++x) sum += from[t.at(x, y, z)];
+          }
+        }
+        to[s.at(i, j, k)] = sum * share;
+      }
+    });
+  }
+}
+
+void Multigrid::invert(Level& level) {
+  const Shape& s = level.shape;
+  const float *x = level.weight[0].data(), *y = level.weight[1].data(), *z = level.weight[2].data();
+  float* inverse = level.inverse.data();
+  for_rows(s, [&](int j, int k) {
+    const int begin = s.at(0, j, k);
+    for (int c = begin; c < begin + s.nx; ++c) {
+      const float sum = (x[c] + x[c + 1]) + (y[c] + y[c + s.sy]) + (z[c] + z[c + s.sz]);
+      inverse[c] = sum > 0.0f ? 1.0f / sum : 0.0f;
+    }
+  });
+}
+
+void Multigrid::precondition(const float* b, float* x) { cycle(0, b, x, true); }
+
+void Multigrid::cycle(size_t level, const float* b, float* x, bool from_zero) {
+  const PoissonView v = view(level);
+  float* t = levels_[level].scratch.data();
+  const auto smooth = [&v, b](const float* from, float* to, float damping) {
+    for_rows(v.shape, [&, b](int j, int k) {
+      const int begin = v.shape.at(0, j, k), end = begin + v.shape.nx;
+#pragma GCC ivdep
+      for (int c = begin; c < end; ++c) to[c] = relax(v, from, b, damping, c);
+    });
+  };
+  if (from_zero) {
+    for_rows(v.shape, [&, b](int j, int k) {
+      const int begin = v.shape.at(0, j, k), end = begin + v.shape.nx;
+#pragma GCC ivdep
+      for (int c = begin; c < end; ++c) t[c] = kSmooth[0] * v.inverse[c] * b[c];
+    });
+  } else {
+    smooth(x, t, kSmooth[0]);
+  }
+  smooth(t, x, kSmooth[1]);
+  if (level + 1 == levels_.size()) {
+    for (int n = 1; n < kCoarsestSteps; ++n) {
+      smooth(x, t, kSmooth[0]);
+      smooth(t, x, kSmooth[1]);
+    }
+    return;
+  }
+  restrict_residual(level, b, x);
+  Level& coarse = levels_[level + 1];
+  cycle(level + 1, coarse.b.data(), coarse.x.data(), true);
+  // Once more where it is cheap: joining without interpolation needs the better solution there.
+  if (level + 2 < levels_.size()) cycle(level + 1, coarse.b.data(), coarse.x.data(), false);
+  prolong(level, x);
+  smooth(x, t, kSmooth[1]);
+  smooth(t, x, kSmooth[0]);
+}
+
+void Multigrid::restrict_residual(size_t level, const float* b, const float* x) {
+  const PoissonView v = view(level);
+  Level& coarse = levels_[level + 1];
+  const Shape &s = v.shape, &t = coarse.shape;
+  for_rows(t, [&](int j, int k) {
+    float row[1024];  // residuals of the finer rows, added up
+    for (int i = 0; i < s.nx; ++i) row[i] = 0;
+    for (int z = coarse.start[2][size_t(k)]; z < coarse.start[2][size_t(k) + 1]; ++z) {
+      for (int y = coarse.start[1][size_t(j)]; y < coarse.start[1][size_t(j) + 1]; ++y) {
+        const int begin = s.at(0, y, z);
+#pragma GCC ivdep
+        for (int i = 0; i < s.nx; ++i) row[i] += b[begin + i] - apply_poisson(v, x, begin + i);
+      }
+    }
+    float* to = coarse.b.data() + t.at(0, j, k);
+    const int* start = coarse.start[0].data();
+    for (int i = 0; i < t.nx; ++i) {
+      float sum = 0;
+      for (int f = start[i]; f < start[i + 1]; ++f) sum += row[f];
+      to[i] = sum;
+    }
+  });
+}
+
+void Multigrid::prolong(size_t level, float* x) {
+  Level& coarse = levels_[level + 1];
+  const float* inverse = levels_[level].inverse.data();
+  const Shape &s = levels_[level].shape, &t = coarse.shape;
+  for_rows(t, [&](int j, int k) {
+    float row[1024];
+    const float* from = coarse.x.data() + t.at(0, j, k);
+    const int* start = coarse.start[0].data();
+    for (int i = 0; i < t.nx; ++i) {
+      for (int f = start[i]; f < start[i + 1]; ++f) row[f] = from[i];
+    }
+    for (int z = coarse.start[2][size_t(k)]; z < coarse.start[2][size_t(k) + 1]; ++z) {
+      for (int y = coarse.start[1][size_t(j)]; y < coarse.start[1][size_t(j) + 1]; ++y) {
+        const int begin = s.at(0, y, z);
+#pragma GCC ivdep
+        for (int i = 0; i < s.nx; ++i) {
+          x[begin + i] += inverse[begin + i] > 0.0f ? row[i] : 0.0f;
+        }
+      }
+    }
+  });
+}
+
+}  // namespace gloam::gas

@@ -1,0 +1,210 @@
+#include "sim/effects/gas/pressure.h"
+
+#include <cmath>
+
+namespace gloam::gas {
+namespace {
+
+/// Share of the divergence's error that may stay.
+constexpr double kTolerance = 6e-5;
+constexpr int kMaxIterations = 60;
+
+/// Faces of the cell at c that move.
+int moving_faces(const Openings& o, int c) {
+  const Shape& s = o.shape;
+  return o.moving[0][size_t(c)] + o.moving[0][size_t(c) + 1] + o.moving[1][size_t(c)] +
+         o.moving[1][size_t(c + s.sy)] + o.moving[2][size_t(c)] + o.moving[2][size_t(c + s.sz)];
+}
+
+}  // namespace
+
+Pressure::Pressure(const Shape& shape) : shape_(shape), multigrid_(shape) {
+  for (Field* f : {&x_, &target_, &residual_, &z_, &p_, &ap_}) {
+    f->assign(size_t(shape.size()), 0.0f);
+  }
+  ones_.assign(size_t(shape.size()), 1.0f);
+  partial_.resize(size_t(shape.nz));
+}
+
+double Pressure::dot(const Field& a, const Field& b) {
+  const float *x = a.data(), *y = b.data();
+  return grid_sum(shape_, partial_, [&, x, y](int j, int k) {
+    return row_sum(shape_.at(0, j, k), shape_.nx, [x, y](int c) { return x[c] * y[c]; });
+  });
+}
+
+/// Outflow that each cell should have.
+void Pressure::set_target(const Openings& openings, const Faces<const float>& velocity,
+                          const float* wanted, float scale) {
+  const Shape& s = shape_;
+  const float* inverse = multigrid_.finest().inverse;
+  for_rows(s, [&](int j, int k) {
+    const int begin = s.at(0, j, k);
+    // A cell without open faces has what its walls leave it.
+#pragma GCC ivdep
+    for (int c = begin; c < begin + s.nx; ++c) {
+      target_[size_t(c)] = inverse[c] > 0.0f ? wanted[c] * scale : outflow(s, velocity, c);
+    }
+  });
+  if (openings.enclosed == 0) return;
+  space_sum_.assign(size_t(openings.enclosed) + 1, 0.0);
+  space_count_.assign(space_sum_.size(), 0.0);
+  space_faces_.assign(space_sum_.size(), 0.0);
+  // First the mean of the wanted divergence goes; then the walls' flux, as if air leaked past what
+  // moves, evenly; without such walls what rounding left goes from all cells.
+  for (int pass = 0; pass < 2; ++pass) {
+    for (int k = 0; k < s.nz; ++k) {
+      for (int j = 0; j < s.ny; ++j) {
+        const int begin = s.at(0, j, k);
+        for (int c = begin; c < begin + s.nx; ++c) {
+          const size_t space = size_t(openings.space[size_t(c)]);
+          if (space == 0) continue;
+          if (pass == 0) {
+            space_sum_[space] += double(target_[size_t(c)]);
+            space_count_[space] += 1;
+            space_faces_[space] += moving_faces(openings, c);
+          } else {
+            space_sum_[space] += double(target_[size_t(c)] - outflow(s, velocity, c));
+          }
+        }
+      }
+    }
+    for_rows(s, [&](int j, int k) {
+      const int begin = s.at(0, j, k);
+      for (int c = begin; c < begin + s.nx; ++c) {
+        const size_t space = size_t(openings.space[size_t(c)]);
+        if (space == 0) continue;
+        const bool leaks = pass == 1 && space_faces_[space] > 0;
+        const double share =
+            leaks ? moving_faces(openings, c) / space_faces_[space] : 1.0 / space_count_[space];
+        target_[size_t(c)] -= float(space_sum_[space] * share);
+      }
+    });
+    std::fill(space_sum_.begin(), space_sum_.end(), 0.0);
+  }
+}
+
+void Pressure::push(const Faces<float>& velocity, const Field& share) {
+  subtract_gradient(velocity, share.data());
+}
+
+void Pressure::subtract_gradient(const Faces<float>& velocity, const float* share) {
+  const Shape& s = shape_;
+  const Faces<const float> open = this->open();
+  const float* x = x_.data();
+  for (int axis = 0; axis < 3; ++axis) {
+    const Shape faces{s.nx + (axis == 0), s.ny + (axis == 1), s.nz + (axis == 2), s.sy, s.sz};
+    const int stride = s.stride(axis);
+    const float* w = open[axis];
+    float* v = velocity[axis];
+    for_rows(faces, [&, v, w, x, stride, share](int j, int k) {
+      const int begin = s.at(0, j, k), end = begin + faces.nx;
+#pragma GCC ivdep
+      for (int c = begin; c < end; ++c) {
+        v[c] -= w[c] * 0.5f * (share[c] + share[c - stride]) * (x[c] - x[c - stride]);
+      }
+    });
+  }
+}
+
+Projection Pressure::project(const Openings& openings, const Faces<float>& velocity,
+                             const float* wanted, float voxel, float dt) {
+  const Shape& s = shape_;
+  const PoissonView a = multigrid_.finest();
+  const Faces<const float> u = velocity.read();
+  const auto rows = [&s](auto&& f) {
+    for_rows(s, [&s, &f](int j, int k) {
+      const int begin = s.at(0, j, k), end = begin + s.nx;
+      f(begin, end);
+    });
+  };
+  set_target(openings, u, wanted, voxel / dt);
+
+  float *x = x_.data(), *r = residual_.data(), *z = z_.data(), *p = p_.data(), *ap = ap_.data();
+  const float* target = target_.data();
+  rows([&](int begin, int end) {
+#pragma GCC ivdep
+    for (int c = begin; c < end; ++c) r[c] = target[c] - outflow(s, u, c);
+  });
+  Projection out;
+  const double before = std::sqrt(dot(residual_, residual_));
+  out.before = before / double(voxel);
+  const double goal = kTolerance * before;
+  rows([&](int begin, int end) {
+#pragma GCC ivdep
+    for (int c = begin; c < end; ++c) {
+      x[c] = a.inverse[c] > 0.0f ? x[c] : 0.0f;
+    }
+  });
+  rows([&](int begin, int end) {
+#pragma GCC ivdep
+    for (int c = begin; c < end; ++c) r[c] -= apply_poisson(a, x, c);
+  });
+  double norm = std::sqrt(dot(residual_, residual_));
+  if (norm > before) {  // the last solution is no help
+    std::fill(x_.begin(), x_.end(), 0.0f);
+    rows([&](int begin, int end) {
+#pragma GCC ivdep
+      for (int c = begin; c < end; ++c) r[c] = target[c] - outflow(s, u, c);
+    });
+    norm = before;
+  }
+  double rz = 0;
+  bool fresh = true;  // no direction to go on from
+  while (norm > goal && out.iterations < kMaxIterations) {
+    ++out.iterations;
+    multigrid_.precondition(r, z);
+    const double next_rz = dot(residual_, z_);
+    const float beta = fresh ? 0.0f : float(next_rz / rz);
+    rz = next_rz;
+    rows([&, beta](int begin, int end) {
+      if (fresh) {
+        std::copy(z + begin, z + end, p + begin);
+        return;
+      }
+#pragma GCC ivdep
+      for (int c = begin; c < end; ++c) p[c] = z[c] + beta * p[c];
+    });
+    fresh = false;
+    const double curvature = grid_sum(s, partial_, [&](int j, int k) {
+      const int begin = s.at(0, j, k);
+#pragma GCC ivdep
+      for (int c = begin; c < begin + s.nx; ++c) ap[c] = apply_poisson(a, p, c);
+      return row_sum(begin, s.nx, [ap, p](int c) { return ap[c] * p[c]; });
+    });
+    if (!(curvature > 0)) break;  // nothing is left but rounding
+    const float alpha = float(rz / curvature);
+    const double square = grid_sum(s, partial_, [&, alpha](int j, int k) {
+      const int begin = s.at(0, j, k);
+#pragma GCC ivdep
+      for (int c = begin; c < begin + s.nx; ++c) {
+        x[c] += alpha * p[c];
+        r[c] -= alpha * ap[c];
+      }
+      return row_sum(begin, s.nx, [r](int c) { return r[c] * r[c]; });
+    });
+    norm = std::sqrt(square);
+    if (norm > goal) continue;
+    // What conjugate gradients believe is left drifts from what is: look, and go on if need be.
+    rows([&](int begin, int end) {
+#pragma GCC ivdep
+      for (int c = begin; c < end; ++c)
+        r[c] = target[c] - outflow(s, u, c) - apply_poisson(a, x, c);
+    });
+    norm = std::sqrt(dot(residual_, residual_));
+    fresh = true;
+  }
+
+  subtract_gradient(velocity, ones_.data());
+  // Of the velocities themselves: what conjugate gradients believe drifts from it.
+  out.after = std::sqrt(grid_sum(s, partial_,
+                                 [&](int j, int k) {
+                                   return row_sum(s.at(0, j, k), s.nx, [&](int c) {
+                                     return sqr(target[c] - outflow(s, u, c));
+                                   });
+                                 })) /
+              double(voxel);
+  return out;
+}
+
+}  // namespace gloam::gas

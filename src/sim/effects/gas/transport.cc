@@ -1,0 +1,218 @@
+#include "sim/effects/gas/transport.h"
+
+#include <cmath>
+
+namespace gloam::gas {
+namespace {
+
+/// Share of its air that may leave a cell in a substep.
+constexpr float kMostOutflow = 0.95f;
+constexpr int kLongest = 1024;  ///< cells along an axis
+
+constexpr int kBlock = 128;  ///< cells side by side in a sweep along y or z: what L1 holds
+
+/// What such a row needs while a sweep passes over it: ratios, and differences to the row before,
+/// for each scalar; its air.
+struct Row {
+  float q[kScalars][kBlock], d[kScalars][kBlock], air[kBlock];
+};
+
+}  // namespace
+
+struct Transport::Sweep {
+  int axis;
+  int before[2];  ///< axes swept before in this substep, -1 = none
+  const float* open;
+  Field* scalars;
+  /// Air that is left in a cell by the sweeps before: of 1, what they moved is gone.
+  float air(const Shape& s, const Field (&courant)[3], int c) const {
+    float air = 1.0f;
+    for (const int a : before) {
+      if (a >= 0) air -= courant[a][size_t(c + s.stride(a))] - courant[a][size_t(c)];
+    }
+    return air;
+  }
+};
+
+Transport::Transport(const Shape& shape) : shape_(shape) {
+  for (Field& f : courant_) f.assign(size_t(shape.size()), 0.0f);
+  row_most_.resize(size_t(shape.ny) * size_t(shape.nz));
+  row_escaped_.resize(size_t(std::max(shape.ny, shape.nz)) * size_t(shape.nz) * kScalars);
+}
+
+float Transport::set_courant(const Faces<const float>& open, const Faces<const float>& velocity,
+                             float scale) {
+  const Shape& s = shape_;
+  for (int a = 0; a < 3; ++a) {
+    const Shape faces{s.nx + (a == 0), s.ny + (a == 1), s.nz + (a == 2), s.sy, s.sz};
+    const float *w = open[a], *u = velocity[a];
+    float* to = courant_[a].data();
+    for_rows(faces, [&, w, u, to](int j, int k) {
+      const int begin = s.at(0, j, k), end = begin + faces.nx;
+#pragma GCC ivdep
+      for (int c = begin; c < end; ++c) to[c] = w[c] * u[c] * scale;
+    });
+  }
+  const float *x = courant_[0].data(), *y = courant_[1].data(), *z = courant_[2].data();
+  for_rows(s, [&](int j, int k) {
+    const int begin = s.at(0, j, k), end = begin + s.nx;
+    float lanes[16] = {};
+    const auto out = [&](int c) {
+      return (max(x[c + 1], 0.0f) - min(x[c], 0.0f)) + (max(y[c + s.sy], 0.0f) - min(y[c], 0.0f)) +
+             (max(z[c + s.sz], 0.0f) - min(z[c], 0.0f));
+    };
+    int c = begin;
+    for (; c + 16 <= end; c += 16) {
+      for (int l = 0; l < 16; ++l) lanes[l] = max(lanes[l], out(c + l));
+    }
+    for (; c < end; ++c) lanes[0] = max(lanes[0], out(c));
+    row_most_[size_t(k * s.ny + j)] = *std::max_element(lanes, lanes + 16);
+  });
+  return *std::max_element(row_most_.begin(), row_most_.end());
+}
+
+int Transport::carry(const Faces<const float>& open, const Faces<const float>& velocity,
+                     Field* scalars, float voxel, float dt, uint64_t* parity,
+                     double (&escaped)[kScalars]) {
+  const float most = set_courant(open, velocity, dt / voxel);
+  const int substeps = std::max(1, int(std::ceil(most / kMostOutflow)));
+  if (substeps > 1) set_courant(open, velocity, dt / (voxel * float(substeps)));
+  constexpr int kOrders[6][3] = {{0, 1, 2}, {2, 1, 0}, {1, 2, 0}, {0, 2, 1}, {2, 0, 1}, {1, 0, 2}};
+  for (int n = 0; n < substeps; ++n) {
+    const int* order = kOrders[(*parity)++ % 6];
+    for (int m = 0; m < 3; ++m) {
+      std::fill(row_escaped_.begin(), row_escaped_.end(), 0.0);
+      const Sweep sweep{
+          order[m], {m > 0 ? order[0] : -1, m > 1 ? order[1] : -1}, open[order[m]], scalars};
+      if (sweep.axis == 0) {
+        sweep_x(sweep);
+      } else {
+        sweep_across(sweep);
+      }
+      for (size_t i = 0; i < row_escaped_.size(); i += kScalars) {
+        for (size_t f = 0; f < kScalars; ++f) escaped[f] += row_escaped_[i + f];
+      }
+    }
+  }
+  return substeps;
+}
+
+void Transport::sweep_x(const Sweep& sweep) {
+  const Shape& s = shape_;
+  for_rows(s, [&](int j, int k) {
+    const int begin = s.at(0, j, k), n = s.nx;
+    const float* courant = courant_[0].data() + begin;
+    const float* open = sweep.open + begin;
+    // Cell i lies at i + 2, with two ghosts of ambient air at both ends.
+    float air[kLongest + 4], q[kLongest + 4], d[kLongest + 5], flux[kLongest + 1];
+    air[0] = air[1] = air[n + 2] = air[n + 3] = 1.0f;
+    for (int i = 0; i < n; ++i) air[i + 2] = sweep.air(s, courant_, begin + i);
+    for (size_t f = 0; f < kScalars; ++f) {
+      float* field = sweep.scalars[f].data() + begin;
+      q[0] = q[1] = q[n + 2] = q[n + 3] = 0.0f;
+      float any = 0;
+#pragma GCC ivdep
+      for (int i = 0; i < n; ++i) q[i + 2] = field[i] / air[i + 2];
+      for (int i = 0; i < n; ++i) any = max(any, field[i]);
+      if (any == 0.0f) continue;
+      // d[i]: over the face before the cell at i.
+      d[0] = d[1] = d[n + 3] = d[n + 4] = 0.0f;
+#pragma GCC ivdep
+      for (int i = 0; i <= n; ++i) d[i + 2] = open[i] * (q[i + 2] - q[i + 1]);
+#pragma GCC ivdep
+      for (int i = 0; i <= n; ++i) {
+        flux[i] = face_flux(courant[i], q[i + 1], q[i + 2], d[i + 1], d[i + 2], d[i + 3],
+                            air[i + 1], air[i + 2]);
+      }
+#pragma GCC ivdep
+      for (int i = 0; i < n; ++i) field[i] = max(field[i] - (flux[i + 1] - flux[i]), 0.0f);
+      row_escaped_[size_t(k * s.ny + j) * kScalars + f] = double(flux[n]) - double(flux[0]);
+    }
+  });
+}
+
+/// Along y or z: rows of x in lanes, one after the other, with what the next ones need of those
+/// that have been changed already.
+void Transport::sweep_across(const Sweep& sweep) {
+  const Shape& s = shape_;
+  for_slabs(sweep.axis == 1 ? s.nz : s.ny, [&](int slab) {
+    const int first = sweep.axis == 1 ? s.at(0, 0, slab) : s.at(0, slab, 0);
+    for (int i = 0; i < s.nx; i += kBlock) {
+      sweep_block(sweep, first + i, std::min(kBlock, s.nx - i),
+                  &row_escaped_[size_t(slab) * kScalars]);
+    }
+  });
+}
+
+void Transport::sweep_block(const Sweep& sweep, int first, int width, double* escaped) {
+  const Shape& s = shape_;
+  const int n = s.n(sweep.axis), stride = s.stride(sweep.axis);
+  bool any[kScalars] = {};
+  for (size_t f = 0; f < kScalars; ++f) {
+    const float* field = sweep.scalars[f].data() + first;
+    for (int m = 0; m < n && !any[f]; ++m) {
+      float most = 0;
+      for (int i = 0; i < width; ++i) most = max(most, field[m * stride + i]);
+      any[f] = most > 0.0f;
+    }
+  }
+  if (!any[kHeat] && !any[kSmoke] && !any[kFuel] && !any[kSpent]) return;
+
+  Row rows[4];
+  float flux[2][kScalars][kBlock];
+  const auto load = [&](int m) {  // row m of cells, and its face to the row before it
+    Row& row = rows[(m + 4) % 4];
+    const Row& before = rows[(m + 3) % 4];
+    const int begin = first + m * stride;
+    const bool ghost = m < 0 || m >= n;
+    for (int i = 0; i < width; ++i) {
+      row.air[i] = ghost ? 1.0f : sweep.air(s, courant_, begin + i);
+    }
+    for (size_t f = 0; f < kScalars; ++f) {
+      if (!any[f]) continue;
+      const float* field = sweep.scalars[f].data() + begin;
+      if (ghost) {
+        std::fill_n(row.q[f], width, 0.0f);
+      } else {
+#pragma GCC ivdep
+        for (int i = 0; i < width; ++i) row.q[f][i] = field[i] / row.air[i];
+      }
+      if (m < 0 || m > n) {
+        std::fill_n(row.d[f], width, 0.0f);
+      } else {
+        const float* open = sweep.open + begin;
+#pragma GCC ivdep
+        for (int i = 0; i < width; ++i) row.d[f][i] = open[i] * (row.q[f][i] - before.q[f][i]);
+      }
+    }
+  };
+  load(-1), load(0), load(1);
+  for (int m = 0; m <= n; ++m) {
+    // Face m, between the rows of cells m - 1 and m; row m + 1 is there for its slope.
+    const Row &b = rows[(m + 3) % 4], &c = rows[m % 4], &d = rows[(m + 1) % 4];
+    const int begin = first + m * stride;
+    const float* courant = courant_[sweep.axis].data() + begin;
+    for (size_t f = 0; f < kScalars; ++f) {
+      if (!any[f]) continue;
+      float* now = flux[m % 2][f];
+      const float* last = flux[(m + 1) % 2][f];
+#pragma GCC ivdep
+      for (int i = 0; i < width; ++i) {
+        now[i] = face_flux(courant[i], b.q[f][i], c.q[f][i], b.d[f][i], c.d[f][i], d.d[f][i],
+                           b.air[i], c.air[i]);
+      }
+      if (m == 0 || m == n) {
+        double sum = 0;
+        for (int i = 0; i < width; ++i) sum += double(now[i]);
+        escaped[f] += m == 0 ? -sum : sum;
+      }
+      if (m == 0) continue;
+      float* field = sweep.scalars[f].data() + begin - stride;
+#pragma GCC ivdep
+      for (int i = 0; i < width; ++i) field[i] = max(field[i] - (now[i] - last[i]), 0.0f);
+    }
+    load(m + 2);
+  }
+}
+
+}  // namespace gloam::gas
