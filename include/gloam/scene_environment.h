@@ -68,7 +68,7 @@ struct OfficeOptions {
 /// locked. The world's origin is at its western end.
 struct HallwayOptions {
   uint64_t seed = 1;     ///< which hallway
-  double length = 30;    ///< of all its legs together [m], 8 … 200
+  double length = 30;    ///< of all its legs [m], 8 … 200; more if corners need it: docs
   double width = 2.4;    ///< [m], 1.6 … 6
   double ceiling = 2.7;  ///< clear height [m], 2.3 … 5
   int turns = 1;         ///< right angles, 0 … 3

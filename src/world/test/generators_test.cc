@@ -248,6 +248,30 @@ TEST_F(GeneratorsSlow, DISABLED_SweepLooseThingsAndLids) {
   }
 }
 
+// Their corners once had walls of no width at all.
+TEST_F(GeneratorsSlow, MakeHallwaysOfAsManyTurnsAsAskedForAndOfTheirLength) {
+  for (const double width : {1.6, 2.4, 2.8, 3.2, 6.0})
+    for (const double length : {8.0, 20.0, 30.0, 40.0, 80.0})
+      for (const int turns : {1, 2, 3}) {
+        HallwayOptions hallway;
+        hallway.width = width;
+        hallway.length = length;
+        hallway.turns = turns;
+        hallway.seed = static_cast<uint64_t>(10 * length + turns);
+        SCOPED_TRACE(fmt::format("{} m, {} m wide, {} turns", length, width, turns));
+        const Result<World> world = World::compile(scene_of(hallway));
+        ASSERT_TRUE(world.ok()) << world.error().to_string();
+        ASSERT_EQ(world->compiled()->regions.size(), static_cast<size_t>(turns + 1));
+        double sum = 0;
+        for (const Region& r : world->compiled()->regions) {
+          const double leg = std::max(r.high.x - r.low.x, r.high.y - r.low.y);
+          EXPECT_GE(leg, width + 2.999);
+          sum += leg;
+        }
+        EXPECT_NEAR(sum, std::max(length, (turns + 1) * (width + 3)), 1e-6);
+      }
+}
+
 TEST_F(GeneratorsSlow, MakeTheSameOfOneSeedAndAnotherOfTheNext) {
   HouseOptions house;
   const Result<World> one = World::compile(scene_of(house)),
