@@ -54,6 +54,21 @@ TEST_F(GeneratedEnvironment, RefusesWhatItCannotMake) {
             std::string::npos);
 }
 
+TEST_F(GeneratedEnvironment, TellsThatTwoStoreysHaveFourRoomsAtLeast) {
+  const auto said = [&](int rooms, int storeys) {
+    HouseOptions house;
+    house.rooms = rooms;
+    house.storeys = storeys;
+    house.furnished = false;
+    ::testing::internal::CaptureStderr();
+    EXPECT_TRUE(make_house(house).ok());
+    return ::testing::internal::GetCapturedStderr();
+  };
+  EXPECT_NE(said(3, 2).find("4 rooms"), std::string::npos);
+  EXPECT_EQ(said(4, 2), "");
+  EXPECT_EQ(said(3, 1), "");
+}
+
 TEST_F(GeneratedEnvironment, IsNamedLabelledAndOfOneModel) {
   const Result<World> world =
       compile(std::string(kBareHouse) +
