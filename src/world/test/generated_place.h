@@ -39,6 +39,8 @@ class GeneratedPlace : public ::testing::Test {
                  const Options& options) const {
     EnvironmentOptions environment;
     environment.*generator = options;
+    if constexpr (requires { options.passage; })
+      return with_probe(environment, options.passage / 2);
     return with_probe(environment);
   }
   Scene scene_of(const HouseOptions& o) const { return scene_of(&EnvironmentOptions::house, o); }

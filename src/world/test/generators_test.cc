@@ -45,6 +45,20 @@ class GeneratorsSlow : public GeneratedPlace {
     options.openable = true;
     return options;
   }
+  void expect_ways(uint64_t first, uint64_t last) {
+    for (const double passage : {0.4, 1.2}) {
+      const auto check = [&](auto options, const std::string& which) {
+        options.passage = passage;
+        options.clutter = 1;
+        for (options.seed = first; options.seed <= last; ++options.seed)
+          expect_sound(options, kFine / 2, fmt::format(", {}, passage {}", which, passage));
+      };
+      check(HouseOptions{}, "house");
+      check(small_office(), "office");
+      check(HallwayOptions{}, "hallway");
+      check(BedroomOptions{}, "bedroom");
+    }
+  }
   static TunnelOptions short_tunnel() {
     TunnelOptions tunnel;
     tunnel.length = 40;
@@ -247,6 +261,10 @@ TEST_F(GeneratorsSlow, DISABLED_SweepLooseThingsAndLids) {
     expect_sound(warehouse, kCoarse, ", warehouse");
   }
 }
+
+// To each room, for a robot of that width.
+TEST_F(GeneratorsSlow, LeaveTheWayFreeThatIsAskedFor) { expect_ways(1, 1); }
+TEST_F(GeneratorsSlow, DISABLED_SweepWaysThatAreAskedFor) { expect_ways(2, 21); }
 
 // Their corners once had walls of no width at all.
 TEST_F(GeneratorsSlow, MakeHallwaysOfAsManyTurnsAsAskedForAndOfTheirLength) {
