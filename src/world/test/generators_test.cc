@@ -247,6 +247,20 @@ TEST_F(GeneratorsSlow, MakeTheOthersAtTheExtremesOfTheirParameters) {
   }
 }
 
+// Of the sizes that scenes have by default.
+TEST_F(GeneratorsSlow, DISABLED_SweepWarehousesOfDefaultSize) {
+  expect_sound_seeds<WarehouseOptions>(1, 20, kCoarse);
+}
+TEST_F(GeneratorsSlow, DISABLED_SweepOfficesOfDefaultSize) {
+  expect_sound_seeds<OfficeOptions>(1, 20, kFine);
+}
+TEST_F(GeneratorsSlow, DISABLED_SweepTunnelsOfDefaultSize) {
+  expect_sound_seeds<TunnelOptions>(1, 20, kCoarse);
+}
+TEST_F(GeneratorsSlow, DISABLED_SweepTerrainsOfDefaultSize) {
+  expect_sound_seeds<TerrainOptions>(1, 20, kWide);
+}
+
 TEST_F(GeneratorsSlow, MakeLooseThingsAndLidsThatStayWhereTheyAre) {
   expect_sound(all_loose(OfficeOptions(), 11), kFine);
   expect_sound(all_loose(BedroomOptions(), 2), kCoarse);
