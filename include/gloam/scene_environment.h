@@ -18,7 +18,7 @@ namespace gloam {
 /// disc of `passage` / 2 can reach every room from there when all doors are open.
 struct HouseOptions {
   uint64_t seed = 1;           ///< which house
-  int rooms = 6;               ///< hall included, 3 … 12
+  int rooms = 6;               ///< hall included, 3 … 12; on two storeys 4 at least
   int storeys = 1;             ///< 1 or 2
   double ceiling = 2.5;        ///< clear height of a storey [m], 2.2 … 4
   double passage = 0.7;        ///< what stays free between things [m], 0.4 … 1.2
@@ -68,7 +68,7 @@ struct OfficeOptions {
 /// locked. The world's origin is at its western end.
 struct HallwayOptions {
   uint64_t seed = 1;     ///< which hallway
-  double length = 30;    ///< of all its legs together [m], 8 … 200
+  double length = 30;    ///< of all its legs [m], 8 … 200; more if corners need it: docs
   double width = 2.4;    ///< [m], 1.6 … 6
   double ceiling = 2.7;  ///< clear height [m], 2.3 … 5
   int turns = 1;         ///< right angles, 0 … 3

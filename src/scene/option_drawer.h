@@ -27,6 +27,8 @@ size_t choose(const RandomizeOptions& options, Dice* dice);
 double gaussian(Dice* dice);
 
 /// Draws an option and assigns it; a draw depends on seed, path and how often the path was drawn.
+/// What a distribution could give is checked as a whole before, so that no seed fails where another
+/// does not.
 class Drawer {
  public:
   static constexpr bool kNeedsOne = false;  // a generated house has now these materials, now those
@@ -34,14 +36,29 @@ class Drawer {
   Drawer(const RandomizeOptions& options, uint64_t seed, const FileFinder* files,
          std::map<std::string, int>* times, std::vector<DrawnOption>* drawn, Status* status)
       : o_(options), seed_(seed), files_(files), times_(times), drawn_(drawn), status_(status) {}
+  /// One that draws nothing and only checks, before there are files and generated things.
+  Drawer(const RandomizeOptions& options, Status* status)
+      : o_(options), checks_only_(true), status_(status) {}
 
   template <class T>
   void operator()(const std::string& path, std::string_view key, T& member, const FieldRule& rule) {
-    if (!status_->ok()) return;
+    if (!status_->ok() || !check_all(path, key, member, rule) || only_checks()) return;
+    ++fitting_;
     const std::optional<std::string> value = draw(path, member, rule);
     if (!value) return;
     assign(path, key, *value, member, rule);
   }
+
+  /// From OptionWalker, where nothing has the name: true if what such a thing could be given shall
+  /// be checked all the same.
+  bool begin_example(bool is_pattern) {
+    if (!is_pattern && !checks_only_) return false;
+    ++examples_;
+    return true;
+  }
+  void end_example() { --examples_; }
+
+  int fitting() const { return fitting_; }  ///< how many options have been drawn
 
   // Of an [override], whose types are the model's.
   std::optional<std::string> draw_override() {
@@ -52,6 +69,7 @@ class Drawer {
     if (!o_.choice.empty()) return o_.choice[choose(o_, &dice)].text;
     std::optional<Numbers> low = parse<double>(0), high = parse<double>(1);
     if (!low || !high) return std::nullopt;
+    if (!check_override_shape(*low, *high)) return std::nullopt;
     const size_t n = std::max(low->size(), high->size());
     Numbers v;
     for (size_t i = 0; i < n; ++i) v.push_back(one(*low, *high, i, &dice));
@@ -59,6 +77,8 @@ class Drawer {
   }
 
  private:
+  bool only_checks() const { return checks_only_ || examples_ > 0; }
+
   std::nullopt_t fail(std::string message, std::string hint = {}) {
     if (status_->ok())
       *status_ =
@@ -118,9 +138,6 @@ class Drawer {
   template <class T>
   std::optional<std::string> draw(const std::string& path, const std::optional<T>& member,
                                   const FieldRule& rule) {
-    if (!member && o_.operation != "set")
-      return fail(fmt::format("'{}' has no value that could be changed", path),
-                  "give it one, or operation = \"set\"");
     return draw(path, member.value_or(T{}), rule);
   }
 
@@ -131,13 +148,112 @@ class Drawer {
     const bool choice = distribution.kind == Distribution::kChoice;
     if (choice && o_.operation == "set") return o_.choice[choose(o_, &dice)].text;
     if constexpr (!kIsNumbers<T>) {
-      return fail(fmt::format("'{}' is no number", path), "give the values to choose from: choice");
+      return std::nullopt;  // check_all has told
     } else {
       const size_t first = choice ? choose(o_, &dice) : 0;
       const std::optional<Numbers> a = parse<T>(first), b = choice ? a : parse_second<T>();
       if (!a || !b) return std::nullopt;
-      return draw_numbers(path, member, rule, *a, *b, &dice);
+      return draw_numbers(member, rule, *a, *b, &dice);
     }
+  }
+
+  // Whether each value that the distribution can give is one that the option can have. What is
+  // added or scaled, and the normal distribution, are kept within the range.
+  template <class T>
+  bool check_all(const std::string& path, std::string_view key, const std::optional<T>& member,
+                 const FieldRule& rule) {
+    if (!member && o_.operation != "set" && !only_checks()) {
+      fail(fmt::format("'{}' has no value that could be changed", path),
+           "give it one, or operation = \"set\"");
+      return false;
+    }
+    return check_all(path, key, member.value_or(T{}), rule);
+  }
+
+  template <class T>
+  bool check_all(const std::string& path, std::string_view key, const T& member,
+                 const FieldRule& rule) {
+    const Distribution distribution = distribution_of(o_);
+    if (distribution.kind == Distribution::kChoice && o_.operation == "set") {
+      for (const TomlText& value : distribution.values)
+        if (T copy = member; !read(key, value.text, copy, rule)) return false;
+    } else if constexpr (!kIsNumbers<T>) {
+      fail(fmt::format("'{}' is no number", path), "give the values to choose from: choice");
+    } else if (distribution.kind == Distribution::kChoice) {
+      for (size_t i = 0; i < o_.choice.size() && status_->ok(); ++i)
+        if (const std::optional<Numbers> value = parse<T>(i))
+          check_shape(path, member, *value, *value);
+    } else {
+      const std::optional<Numbers> a = parse<T>(0), b = parse_second<T>();
+      if (a && b && check_shape(path, member, *a, *b) && o_.operation == "set" &&
+          distribution.kind != Distribution::kNormal)
+        check_ends(key, member, rule, *a, *b);
+    }
+    return status_->ok();
+  }
+
+  // Both ends of a range.
+  template <class T>
+  void check_ends(std::string_view key, const T& member, const FieldRule& rule, const Numbers& a,
+                  const Numbers& b) {
+    if constexpr (std::is_same_v<T, Quat>) return;  // any angle will do
+    const bool whole = kIsInteger<T> && distribution_of(o_).kind == Distribution::kUniform;
+    for (const bool low : {true, false}) {
+      const Numbers& end = low ? a : b;
+      Numbers v = end.size() > 1 ? end : Numbers(written_of(member).size(), end[0]);
+      for (double& x : v)
+        if (whole) x = low ? std::ceil(x) : std::floor(x);
+      T copy = member;
+      if (!read(key, value_text(v, member), copy, rule)) return;
+    }
+    if (whole && std::ceil(a[0]) > std::floor(b[0])) fail("there is no integer between");
+  }
+
+  template <class T>
+  bool check_shape(const std::string& path, const T& member, const Numbers& a, const Numbers& b) {
+    const size_t n = written_of(member).size();
+    for (const Numbers& given : {a, b})
+      if (given.size() != 1 && given.size() != n)
+        fail(fmt::format("'{}' is {} numbers, not {}", path, n, given.size()));
+    if (status_->ok()) check_order(a, b, std::is_same_v<T, ClockTime>);
+    if ((kIsTime<T> || std::is_same_v<T, Quat>) && o_.operation != "set")
+      fail(fmt::format("'{}' can only be set", path));
+    return status_->ok();
+  }
+
+  // Of a pair whose sizes fit. `round` = the second may come before the first: over midnight.
+  void check_order(const Numbers& a, const Numbers& b, bool round) {
+    const Distribution::Kind kind = distribution_of(o_).kind;
+    const bool is_range = kind == Distribution::kUniform || kind == Distribution::kLogUniform;
+    for (size_t i = 0; i < std::max(a.size(), b.size()); ++i) {
+      const double x = a[a.size() == 1 ? 0 : i], y = b[b.size() == 1 ? 0 : i];
+      if (kind == Distribution::kLogUniform && std::min(x, y) <= 0)
+        fail("log_uniform is for numbers above 0");
+      if (is_range && x > y && !round) fail("the first value is above the second");
+      if (kind == Distribution::kNormal && y < 0) fail("the standard deviation is negative");
+    }
+  }
+  bool check_override_shape(const Numbers& a, const Numbers& b) {
+    if (a.size() != b.size() && a.size() != 1 && b.size() != 1)
+      fail(fmt::format("one value is {} numbers, the other {}", a.size(), b.size()));
+    else
+      check_order(a, b, false);
+    return status_->ok();
+  }
+
+  template <class T>
+  static Numbers written_of(const T& member) {
+    if constexpr (kIsInteger<T>)
+      return numbers_of(static_cast<double>(member));
+    else
+      return numbers_of(member);
+  }
+  template <class T>
+  static std::string value_text(const Numbers& v, const T& member) {
+    if constexpr (kIsInteger<T>)
+      return fmt::format("{:.0f}", std::round(v[0]));
+    else
+      return text_of(v, member);
   }
 
   // The standard deviation of a time is a number of seconds, of a date of days.
@@ -147,31 +263,13 @@ class Drawer {
   }
 
   template <class T>
-  std::optional<std::string> draw_numbers(const std::string& path, const T& member,
-                                          const FieldRule& rule, const Numbers& a, Numbers b,
-                                          Dice* dice) {
+  std::string draw_numbers(const T& member, const FieldRule& rule, const Numbers& a, Numbers b,
+                           Dice* dice) {
     const Distribution::Kind kind = distribution_of(o_).kind;
-    const Numbers written = [&] {
-      if constexpr (kIsInteger<T>)
-        return numbers_of(static_cast<double>(member));
-      else
-        return numbers_of(member);
-    }();
+    const Numbers written = written_of(member);
     const size_t n = written.size();
-    for (const Numbers& given : {a, b}) {
-      if (given.size() != 1 && given.size() != n)
-        return fail(fmt::format("'{}' is {} numbers, not {}", path, n, given.size()));
-      for (const double x : given)
-        if (kind == Distribution::kLogUniform && x <= 0)
-          return fail("log_uniform is for numbers above 0");
-    }
     if (std::is_same_v<T, ClockTime> && kind == Distribution::kUniform && b[0] < a[0])
       b[0] += 86400;
-    for (size_t i = 0; i < n && kind == Distribution::kUniform; ++i)
-      if (a[a.size() == 1 ? 0 : i] > b[b.size() == 1 ? 0 : i])
-        return fail("the first value is above the second");
-    if ((kIsTime<T> || std::is_same_v<T, Quat>) && o_.operation != "set")
-      return fail(fmt::format("'{}' can only be set", path));
     // Draws that fall out of the option's range are thrown again; at last the nearest is taken.
     const bool kept_inside = kind == Distribution::kNormal || o_.operation != "set";
     constexpr int kMostThrows = 100;
@@ -184,10 +282,7 @@ class Drawer {
       if (i + 1 == kMostThrows)
         for (double& x : v) x = kept(x, rule);
     }
-    if constexpr (kIsInteger<T>)
-      return fmt::format("{:.0f}", std::round(v[0]));
-    else
-      return text_of(v, member);
+    return value_text(v, member);
   }
 
   // One number for all components is one draw for all of them.
@@ -225,24 +320,35 @@ class Drawer {
     return std::clamp(x, low, high);
   }
 
+  // Reads a value as a scene file's reader would.
+  template <class T>
+  bool read(std::string_view key, const std::string& value, T& member, const FieldRule& rule) {
+    const Result<toml::table> parsed = parse_toml(fmt::format("{} = {}", key, value), o_.loc.file);
+    if (!parsed.ok()) {
+      fail(fmt::format("'{}' is no value", value));
+      return false;
+    }
+    Status read;
+    TableReader(*parsed, o_.loc.file, "a draw", &read)(key, member, rule);
+    if (!read.ok()) fail(read.error().message, read.error().hint);
+    if constexpr (std::is_same_v<T, std::filesystem::path>)
+      if (read.ok() && files_ != nullptr) *status_ = files_->find(&member, o_.loc);
+    return status_->ok();
+  }
+
   template <class T>
   void assign(const std::string& path, std::string_view key, const std::string& value, T& member,
               const FieldRule& rule) {
-    const Result<toml::table> parsed = parse_toml(fmt::format("{} = {}", key, value), o_.loc.file);
-    if (!parsed.ok()) return (void)fail(fmt::format("'{}' is no value", value));
-    Status read;
-    TableReader(*parsed, o_.loc.file, "a draw", &read)(key, member, rule);
-    if (!read.ok()) return (void)fail(read.error().message, read.error().hint);
-    if constexpr (std::is_same_v<T, std::filesystem::path>)
-      if (files_ != nullptr) *status_ = files_->find(&member, o_.loc);
-    drawn_->push_back({path, value});
+    if (read(key, value, member, rule)) drawn_->push_back({path, value});
   }
 
   const RandomizeOptions& o_;
-  const uint64_t seed_;
-  const FileFinder* files_;
-  std::map<std::string, int>* times_;
-  std::vector<DrawnOption>* drawn_;
+  const bool checks_only_ = false;
+  int examples_ = 0, fitting_ = 0;
+  const uint64_t seed_ = 0;
+  const FileFinder* files_ = nullptr;
+  std::map<std::string, int>* times_ = nullptr;
+  std::vector<DrawnOption>* drawn_ = nullptr;
   Status* status_;
 };
 

@@ -8,7 +8,8 @@
 
 namespace gloam {
 
-/// What does not need the options' types: that each has one distribution, of so many values.
+/// That each has one distribution, whose every draw is one that the option can have, as far as that
+/// can be told before generators have added theirs; that none brings in a second environment.
 Status validate_randomize(const Scene& scene);
 
 /// Which of them: those that decide what is generated come first, so that the rest can mean what a

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "scene/environment/generators.h"
 #include "scene/environment/interior.h"
@@ -20,14 +21,12 @@ class HallwayPlanner {
 
   FloorPlan plan() {
     plan_.ceiling = o_.ceiling;
-    const int legs = o_.turns + 1;
-    // Each has room for a corner and two doors.
-    const double usual = std::max(o_.length / legs, o_.width + 3);
+    const std::vector<double> lengths = share_out();
+    const int legs = static_cast<int>(lengths.size());
     double x = -kBehind, y = 0;  // where the next leg begins, in its middle
     for (int i = 0; i < legs; ++i) {
       const bool east = i % 2 == 0;
-      const double length = legs == 1 ? o_.length : usual * dice_.uniform(0.85, 1.15),
-                   w = o_.width / 2;
+      const double length = lengths[static_cast<size_t>(i)], w = o_.width / 2;
       const Rect clear =
           east ? Rect{x, y - w, x + length, y + w} : Rect{x - w, y, x + w, y + length};
       plan_.rooms.push_back(
@@ -56,6 +55,18 @@ class HallwayPlanner {
   }
 
  private:
+  // The lengths of the legs. Each has room for a corner and two doors, so that many legs may be
+  // longer than asked for.
+  std::vector<double> share_out() {
+    if (o_.turns == 0) return {o_.length};
+    std::vector<double> shares;
+    for (int i = 0; i <= o_.turns; ++i) shares.push_back(dice_.uniform(0.85, 1.15));
+    const double sum = std::accumulate(shares.begin(), shares.end(), 0.0), least = o_.width + 3;
+    const double spare = std::max(0.0, o_.length - least * static_cast<double>(shares.size()));
+    for (double& share : shares) share = least + spare * share / sum;
+    return shares;
+  }
+
   void add_door(int leg, Side side, double center) {
     for (const Opening& there : plan_.openings_of(leg, side))
       if (std::abs(there.center - center) < (there.width + kDoorWidth) / 2 + 0.5) return;

@@ -1,11 +1,16 @@
 // A furnished home: plan, shell, garden, furniture.
 
+#include "base/log.h"
 #include "scene/environment/generators.h"
 #include "scene/environment/interior.h"
 
 namespace gloam {
 
 Result<Place> make_house(const HouseOptions& options) {
+  // Each storey has a hall and a room at least: refusing would make of [[randomize]] a matter of
+  // luck.
+  if (options.storeys == 2 && options.rooms < 4)
+    log_warning("a house of two storeys has 4 rooms at least, not {}", options.rooms);
   Place place("house");
   place.openable = options.openable;
   Dice dice(options.seed, "house");

@@ -83,7 +83,9 @@ uint64_t Place::hash() const {
     pictures[static_cast<size_t>(i)] =
         hash_span<uint8_t>(picture.empty() ? std::span<const uint8_t>() : picture.image().texels);
   });
+  constexpr int kWriter = 2;  // counts changes of what place_writer makes of the same place
   ArchiveWriter out;
+  out(kWriter);
   out(name);
   out(pictures);
   for (const Look& look : looks) {

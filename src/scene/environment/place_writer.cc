@@ -190,6 +190,9 @@ class PlaceWriter {
     joint->ref = from.initial * unit;
     joint->damping[0] = from.damping;
     joint->frictionloss = from.friction;
+    // Dry friction holds what its limit can hold: as soft as MuJoCo has it, a lid would creep down.
+    joint->solimp_friction[0] = 0.999;
+    joint->solimp_friction[1] = 0.9999;
     if (from.slides) {
       const double p[3] = {p_P.x, p_P.y, p_P.z};
       for (int i = 0; i < 3; ++i) body->pos[i] = p[i] + from.initial * axis[i];

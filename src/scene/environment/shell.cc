@@ -10,6 +10,8 @@ struct WallPiece {
   double from, to, low, high;
 };
 
+constexpr double kSliver = 0.001;  // what is narrower is rounding [m]
+
 // What is left of a wall between `from` and `to`, `low` and `high`, around its openings.
 std::vector<WallPiece> cut(double from, double to, double low, double high,
                            std::vector<Opening> openings) {
@@ -18,13 +20,13 @@ std::vector<WallPiece> cut(double from, double to, double low, double high,
   std::vector<WallPiece> pieces;
   double at = from;
   for (const Opening& o : openings) {
-    if (o.low() > at) pieces.push_back({at, o.low(), low, high});
-    if (o.sill > low && o.kind == OpeningKind::kWindow)
+    if (o.low() - at > kSliver) pieces.push_back({at, o.low(), low, high});
+    if (o.sill - low > kSliver && o.kind == OpeningKind::kWindow)
       pieces.push_back({o.low(), o.high(), low, o.sill});
-    if (o.head < high) pieces.push_back({o.low(), o.high(), o.head, high});
-    at = o.high();
+    if (high - o.head > kSliver) pieces.push_back({o.low(), o.high(), o.head, high});
+    at = std::max(at, o.high());
   }
-  if (at < to) pieces.push_back({at, to, low, high});
+  if (to - at > kSliver) pieces.push_back({at, to, low, high});
   return pieces;
 }
 

@@ -32,7 +32,8 @@ TEST_P(Manual, ShowsValidScenes) {
 
 INSTANTIATE_TEST_SUITE_P(Pages, Manual,
                          ::testing::Values("scenes.md", "materials.md", "light.md", "media.md",
-                                           "import.md", "cameras.md", "lidar.md", "sensors.md"));
+                                           "import.md", "cameras.md", "lidar.md", "sensors.md",
+                                           "environments.md"));
 
 }  // namespace
 }  // namespace gloam

@@ -241,6 +241,69 @@ TEST(Randomize, SaysWhatIsWrong) {
   EXPECT_EQ(complaint(entry("nothing.here", "uniform = [1, 2]")).substr(0, 10), "scene.toml");
 }
 
+// The same complaint for every seed, at the line of the [[randomize]], already when it is read.
+TEST(Randomize, NoSeedFailsWhereAnotherDoesNot) {
+  const auto expect = [](const std::string& draws, const std::string& part) {
+    for (uint64_t seed = 1; seed <= 12; ++seed) {
+      Scene scene = read(draws, seed);
+      const Status status = validate_randomize(scene);
+      ASSERT_FALSE(status.ok()) << draws;
+      const std::string text = status.error().to_string();
+      EXPECT_NE(text.find(part), std::string::npos) << text;
+      EXPECT_NE(text.find("[[randomize]] of"), std::string::npos) << text;
+      EXPECT_GE(status.error().loc.line, 27) << text;
+    }
+  };
+  const std::string prop = "[[prop]]\nname = 'thing'\nkind = 'desk'\n";
+  expect(entry("environment.house.rooms", "uniform = [2, 6]"), "'rooms' is 2; it must be");
+  expect(entry("environment.house.rooms", "uniform = [6, 13]"), "'rooms' is 13; it must be");
+  expect(entry("environment.house.rooms", "choice = [4, 5, 40]"), "'rooms' is 40");
+  expect(entry("environment.house.rooms", "choice = [4, 'five']"), "must be an integer");
+  expect(entry("environment.house.rooms", "uniform = [3.2, 3.8]"), "no integer between");
+  expect(entry("environment.house.clutter", "log_uniform = [0.5, 2]"), "'clutter' is 2");
+  expect(entry("environment.house.doors", "choice = ['open', 'ajarr']"), "did you mean 'ajar'");
+  expect(entry("environment.house.clutter", "normal = [0.5, -1]"), "deviation is negative");
+  expect(prop + entry("prop.thing.kind", "choice = ['sofaa', 'desk']"), "did you mean 'sofa'");
+  expect(entry("light.lamp_1.color", "uniform = [[0, 0, 0], [1, 1, 1.5]]"), "'color[2]' is 1.5");
+  expect(entry("light.lamp_1.flux", "operation = 'add'\nchoice = [1, 'x']"), "neither a number");
+  // Of a name that nothing has the rest is checked all the same.
+  expect(entry("material.plaster*.roughness", "uniform = [0, 2]"), "'roughness' is 2");
+  expect(entry("material.plaster*.colour", "choice = [[1, 1, 1]]"), "unknown option 'colour'");
+  expect(entry("environment.warehouse.length", "uniform = [20, 30]"),
+         "an environment is one thing");
+  expect(entry("override.a.joint", "choice = [1, 2]"), "override");
+  // What is kept within the range, and dice that end on it.
+  EXPECT_EQ(complaint(entry("environment.house.rooms", "normal = [3, 9]")), "fine");
+  EXPECT_EQ(complaint(entry("environment.house.rooms", "uniform = [2.5, 12.9]")), "fine");
+  EXPECT_EQ(complaint(entry("environment.house.clutter", "operation = 'add'\nuniform = [-9, 9]")),
+            "fine");
+}
+
+TEST(Randomize, WhatMakesTheSceneInvalidIsNamed) {
+  Scene scene = read(entry("camera.front.position", "choice = [[0, 0, 0]]") +
+                     entry("camera.front.look_at", "choice = [[0, 0, 0]]"));
+  std::vector<DrawnOption> drawn;
+  const Status status = draw(&scene, &drawn);
+  ASSERT_FALSE(status.ok());
+  EXPECT_NE(status.error().message.find("[[randomize]] of 'camera.front.look_at': camera 'front' "
+                                        "looks at the point it stands in"),
+            std::string::npos)
+      << status.error().to_string();
+  EXPECT_EQ(status.error().loc.line, scene.randomize[1].loc.line);
+}
+
+TEST(Randomize, TellsOfAPatternThatNothingFits) {
+  const auto said = [](const std::string& option) {
+    ::testing::internal::CaptureStderr();
+    EXPECT_EQ(complaint(entry(option, "uniform = [0.2, 0.4]")), "fine");
+    return ::testing::internal::GetCapturedStderr();
+  };
+  const std::string text = said("material.plastr*.roughness");
+  EXPECT_NE(text.find("scene.toml:"), std::string::npos) << text;
+  EXPECT_NE(text.find("'material.plastr*.roughness' fits nothing"), std::string::npos) << text;
+  EXPECT_EQ(said("material.w*.roughness"), "");
+}
+
 TEST(Randomize, AFileThatIsDrawnMayNotLieOutsideTheScene) {
   const TempFolder folder;
   const auto write = [&](const std::string& name, const std::string& text) {

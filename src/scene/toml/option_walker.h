@@ -21,7 +21,8 @@ std::vector<std::string> split_option_path(std::string_view path);
 /// A visitor of fields. Calls `leaf(path, key, member, rule)` for each option that the names mean:
 /// one of a list by its name or number, or all whose names fit where a name has a *. A table that
 /// may be left out comes into being with its first option.
-/// Where no name fits a *, that is an error if Leaf::kNeedsOne.
+/// Where nothing has the name, that is an error if Leaf::kNeedsOne; else the leaf may ask for an
+/// example: its begin_example(is the name a pattern?) returns true and end_example() follows.
 template <class Leaf>
 class OptionWalker {
  public:
@@ -79,7 +80,14 @@ class OptionWalker {
                   fmt::format("as in {}.0.{}", key, "name"));
     std::vector<std::string> present;
     const std::vector<size_t> meant = which(members, &present);
-    if (meant.empty() && !Leaf::kNeedsOne && names_[1].find('*') != std::string::npos) return;
+    if constexpr (!Leaf::kNeedsOne) {
+      const bool is_pattern = names_[1].find('*') != std::string::npos;
+      if (meant.empty() && leaf_->begin_example(is_pattern)) {
+        T example{};
+        descend(example, fmt::format("{}{}.{}.", path_, key, names_[1]), 2);
+        return leaf_->end_example();
+      }
+    }
     if (meant.empty())
       return fail(fmt::format("there is no {} '{}'", key, names_[1]),
                   suggest_name(names_[1], present));

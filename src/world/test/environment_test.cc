@@ -22,7 +22,7 @@ class GeneratedEnvironment : public ::testing::Test {
   Result<World> compile(const std::string& text) {
     const auto file = folder_.path() / "scene.toml";
     EXPECT_TRUE(write_text_file_atomic(file, text).ok());
-    GLOAM_TRY(const Scene scene, load_scene(file));
+    GLOAM_TRY(const Scene scene, load_scene(file, {.root = "/"}));
     return World::compile(scene);
   }
   std::string complaint(const std::string& text) {
@@ -52,6 +52,38 @@ TEST_F(GeneratedEnvironment, RefusesWhatItCannotMake) {
                       "= \"steel_frame_1\"\nkind = \"chair\"\n")
                 .find("has a body 'steel_frame_1' already"),
             std::string::npos);
+}
+
+TEST_F(GeneratedEnvironment, SlowIsMadeAsTheManualShowsIt) {
+  const std::filesystem::path source = GLOAM_SOURCE_DIR;
+  std::string manual = read_text_file(source / "docs/environments.md").value();
+  const std::string here = "\"../assets/";
+  for (size_t at = manual.find(here); at != std::string::npos; at = manual.find(here))
+    manual.replace(at, here.size(), "\"" + (source / "assets").string() + "/");
+  const std::string fence = "```toml\n";
+  int blocks = 0;
+  for (size_t at = manual.find(fence); at != std::string::npos; at = manual.find(fence, at)) {
+    at += fence.size();
+    const std::string text = manual.substr(at, manual.find("```", at) - at);
+    EXPECT_EQ(complaint(text), "fine") << text;
+    ++blocks;
+  }
+  EXPECT_GE(blocks, 9);
+}
+
+TEST_F(GeneratedEnvironment, TellsThatTwoStoreysHaveFourRoomsAtLeast) {
+  const auto said = [&](int rooms, int storeys) {
+    HouseOptions house;
+    house.rooms = rooms;
+    house.storeys = storeys;
+    house.furnished = false;
+    ::testing::internal::CaptureStderr();
+    EXPECT_TRUE(make_house(house).ok());
+    return ::testing::internal::GetCapturedStderr();
+  };
+  EXPECT_NE(said(3, 2).find("4 rooms"), std::string::npos);
+  EXPECT_EQ(said(4, 2), "");
+  EXPECT_EQ(said(3, 1), "");
 }
 
 TEST_F(GeneratedEnvironment, IsNamedLabelledAndOfOneModel) {

@@ -6,69 +6,13 @@
 #include <set>
 #include <vector>
 
-#include "base/files.h"
-#include "scene/test/temp_folder.h"
-#include "world/test/place_check.h"
+#include "world/test/generated_place.h"
 
 namespace gloam {
 namespace {
 
-// Of the grid that is walked [m]: doors leave 8 cm beside the probe, aisles half a metre.
-constexpr double kFine = 0.05, kCoarse = 0.1, kWide = 0.2;
-
-class GeneratorsSlow : public ::testing::Test {
+class GeneratorsSlow : public GeneratedPlace {
  protected:
-  void SetUp() override {
-    ::setenv("GLOAM_CACHE", (folder_.path() / "cache").c_str(), 1);
-    ASSERT_TRUE(write_text_file_atomic(folder_.path() / "probe.xml", probe_model(0.3)).ok());
-  }
-  Scene with_probe(const EnvironmentOptions& environment) const {
-    Scene scene;
-    scene.environment = environment;
-    RobotOptions probe;
-    probe.name = "probe";
-    probe.file = folder_.path() / "probe.xml";
-    scene.robots = {probe};
-    return scene;
-  }
-  template <class Options>
-  Scene scene_of(std::optional<Options> EnvironmentOptions::* generator,
-                 const Options& options) const {
-    EnvironmentOptions environment;
-    environment.*generator = options;
-    return with_probe(environment);
-  }
-  Scene scene_of(const HouseOptions& o) const { return scene_of(&EnvironmentOptions::house, o); }
-  Scene scene_of(const WarehouseOptions& o) const {
-    return scene_of(&EnvironmentOptions::warehouse, o);
-  }
-  Scene scene_of(const OfficeOptions& o) const { return scene_of(&EnvironmentOptions::office, o); }
-  Scene scene_of(const HallwayOptions& o) const {
-    return scene_of(&EnvironmentOptions::hallway, o);
-  }
-  Scene scene_of(const BedroomOptions& o) const {
-    return scene_of(&EnvironmentOptions::bedroom, o);
-  }
-  Scene scene_of(const TunnelOptions& o) const { return scene_of(&EnvironmentOptions::tunnel, o); }
-  Scene scene_of(const TerrainOptions& o) const {
-    return scene_of(&EnvironmentOptions::terrain, o);
-  }
-  template <class Options>
-  void expect_sound(const Options& options, double cell, const std::string& which = {}) {
-    SCOPED_TRACE("seed " + std::to_string(options.seed) + which);
-    const Result<World> world = World::compile(scene_of(options));
-    ASSERT_TRUE(world.ok()) << world.error().to_string();
-    const PlaceReport report = check_place(*world->compiled(), cell);
-    EXPECT_LE(report.deepest_contact, 0.002) << report.deepest << " overlap";
-    EXPECT_LE(report.furthest, 0.02) << report.furthest_body << " moves of itself";
-    EXPECT_TRUE(report.unreached.empty())
-        << "no way to " << report.unreached[0] << " of " << report.unreached.size();
-    EXPECT_TRUE(report.blocked_doors.empty()) << report.blocked_doors[0];
-  }
-  template <class Options>
-  void expect_sound_seeds(uint64_t first, uint64_t last, double cell, Options options = {}) {
-    for (options.seed = first; options.seed <= last; ++options.seed) expect_sound(options, cell);
-  }
   static std::vector<HouseOptions> houses_of_all_sizes() {
     std::vector<HouseOptions> houses;
     for (const int storeys : {1, 2}) {
@@ -94,6 +38,27 @@ class GeneratorsSlow : public ::testing::Test {
     office.width = 10;
     return office;
   }
+  template <class Options>
+  static Options all_loose(Options options, uint64_t seed) {
+    options.seed = seed;
+    options.loose = options.clutter = 1;
+    options.openable = true;
+    return options;
+  }
+  void expect_ways(uint64_t first, uint64_t last) {
+    for (const double passage : {0.4, 1.2}) {
+      const auto check = [&](auto options, const std::string& which) {
+        options.passage = passage;
+        options.clutter = 1;
+        for (options.seed = first; options.seed <= last; ++options.seed)
+          expect_sound(options, kFine / 2, fmt::format(", {}, passage {}", which, passage));
+      };
+      check(HouseOptions{}, "house");
+      check(small_office(), "office");
+      check(HallwayOptions{}, "hallway");
+      check(BedroomOptions{}, "bedroom");
+    }
+  }
   static TunnelOptions short_tunnel() {
     TunnelOptions tunnel;
     tunnel.length = 40;
@@ -105,7 +70,6 @@ class GeneratorsSlow : public ::testing::Test {
     terrain.loose = 0.3;
     return terrain;
   }
-  TempFolder folder_;
 };
 
 TEST_F(GeneratorsSlow, MakeHousesThatAreReachableAndAtRest) {
@@ -281,6 +245,63 @@ TEST_F(GeneratorsSlow, MakeTheOthersAtTheExtremesOfTheirParameters) {
     tunnel.clutter = tunnel.loose = tunnel.failed = high;
     expect_sound(tunnel, kCoarse, ", tunnel");
   }
+}
+
+// Of the sizes that scenes have by default.
+TEST_F(GeneratorsSlow, DISABLED_SweepWarehousesOfDefaultSize) {
+  expect_sound_seeds<WarehouseOptions>(1, 20, kCoarse);
+}
+TEST_F(GeneratorsSlow, DISABLED_SweepOfficesOfDefaultSize) {
+  expect_sound_seeds<OfficeOptions>(1, 20, kFine);
+}
+TEST_F(GeneratorsSlow, DISABLED_SweepTunnelsOfDefaultSize) {
+  expect_sound_seeds<TunnelOptions>(1, 20, kCoarse);
+}
+TEST_F(GeneratorsSlow, DISABLED_SweepTerrainsOfDefaultSize) {
+  expect_sound_seeds<TerrainOptions>(1, 20, kWide);
+}
+
+TEST_F(GeneratorsSlow, MakeLooseThingsAndLidsThatStayWhereTheyAre) {
+  expect_sound(all_loose(OfficeOptions(), 11), kFine);
+  expect_sound(all_loose(BedroomOptions(), 2), kCoarse);
+}
+TEST_F(GeneratorsSlow, DISABLED_SweepLooseThingsAndLids) {
+  for (uint64_t seed = 1; seed <= 20; ++seed) {
+    expect_sound(all_loose(OfficeOptions(), seed), kFine, ", office");
+    expect_sound(all_loose(HouseOptions(), seed), kFine, ", house");
+    WarehouseOptions warehouse = small_warehouse();
+    warehouse.seed = seed;
+    warehouse.loose = warehouse.clutter = 1;
+    expect_sound(warehouse, kCoarse, ", warehouse");
+  }
+}
+
+// To each room, for a robot of that width.
+TEST_F(GeneratorsSlow, LeaveTheWayFreeThatIsAskedFor) { expect_ways(1, 1); }
+TEST_F(GeneratorsSlow, DISABLED_SweepWaysThatAreAskedFor) { expect_ways(2, 21); }
+
+// Their corners once had walls of no width at all.
+TEST_F(GeneratorsSlow, MakeHallwaysOfAsManyTurnsAsAskedForAndOfTheirLength) {
+  for (const double width : {1.6, 2.4, 2.8, 3.2, 6.0})
+    for (const double length : {8.0, 20.0, 30.0, 40.0, 80.0})
+      for (const int turns : {1, 2, 3}) {
+        HallwayOptions hallway;
+        hallway.width = width;
+        hallway.length = length;
+        hallway.turns = turns;
+        hallway.seed = static_cast<uint64_t>(10 * length + turns);
+        SCOPED_TRACE(fmt::format("{} m, {} m wide, {} turns", length, width, turns));
+        const Result<World> world = World::compile(scene_of(hallway));
+        ASSERT_TRUE(world.ok()) << world.error().to_string();
+        ASSERT_EQ(world->compiled()->regions.size(), static_cast<size_t>(turns + 1));
+        double sum = 0;
+        for (const Region& r : world->compiled()->regions) {
+          const double leg = std::max(r.high.x - r.low.x, r.high.y - r.low.y);
+          EXPECT_GE(leg, width + 2.999);
+          sum += leg;
+        }
+        EXPECT_NEAR(sum, std::max(length, (turns + 1) * (width + 3)), 1e-6);
+      }
 }
 
 TEST_F(GeneratorsSlow, MakeTheSameOfOneSeedAndAnotherOfTheNext) {

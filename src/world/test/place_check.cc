@@ -16,6 +16,7 @@ namespace gloam {
 namespace {
 
 constexpr double kStepHeight = 0.2, kProbeHeight = 0.6;  // [m]
+constexpr double kFlight = 1;  // stairs are reached on the last steps below their floor [m]
 
 std::string body_of(const mjModel& m, int geom) {
   const char* name = mj_id2name(&m, mjOBJ_BODY, m.geom_bodyid[geom]);
@@ -68,6 +69,7 @@ class Checker {
 
   void let_settle(double seconds) {
     const std::vector<mjtNum> before(d_->xpos, d_->xpos + 3 * m_->nbody);
+    const std::vector<mjtNum> facing(d_->xquat, d_->xquat + 4 * m_->nbody);
     const int steps = static_cast<int>(seconds / m_->opt.timestep);
     for (int i = 0; i < steps; ++i) mj_step(m_.get(), d_.get());
     mj_forward(m_.get(), d_.get());
@@ -75,9 +77,18 @@ class Checker {
       const mjtNum* p = &before[3 * static_cast<size_t>(b)];
       const mjtNum* q = d_->xpos + 3 * b;
       const double moved = std::hypot(p[0] - q[0], p[1] - q[1], p[2] - q[2]);
-      if (!(moved > report_.furthest)) continue;
-      report_.furthest = moved;
-      report_.furthest_body = mj_id2name(m_.get(), mjOBJ_BODY, b);
+      if (!std::isfinite(moved)) report_.furthest = 1e9;
+      if (moved > report_.furthest) {
+        report_.furthest = moved;
+        report_.furthest_body = mj_id2name(m_.get(), mjOBJ_BODY, b);
+      }
+      mjtNum turn[3];
+      mju_subQuat(turn, d_->xquat + 4 * b, &facing[4 * static_cast<size_t>(b)]);
+      const double turned = mju_norm3(turn);
+      if (turned > report_.most_turned) {
+        report_.most_turned = turned;
+        report_.most_turned_body = mj_id2name(m_.get(), mjOBJ_BODY, b);
+      }
     }
   }
 
@@ -155,7 +166,8 @@ class Checker {
       report_.reached_area += cell_ * cell_;
       for (const Region& r : world_.regions)
         if (x > r.low.x && x < r.high.x && y > r.low.y && y < r.high.y &&
-            (std::abs(ground - r.low.z) < 0.05 ||
+            ((ground < r.low.z + 0.05 &&
+              ground > r.low.z - (r.label == "stairs" ? kFlight : 0.05)) ||
              (on_slopes_ && ground > r.low.z && ground < r.high.z)))
           area[r.name] += cell_ * cell_;
     };

@@ -17,6 +17,8 @@ struct PlaceReport {
   std::string deepest;         ///< between what
   double furthest = 0;         ///< that anything moves in 2 s [m]
   std::string furthest_body;
+  double most_turned = 0;  ///< angle about any axis by which anything turns in 2 s [rad]
+  std::string most_turned_body;
   std::vector<std::string> blocked_doors;  ///< that cannot swing through their range
   std::vector<std::string> unreached;      ///< regions
   double reached_area = 0;                 ///< by the probe's axis [m²]

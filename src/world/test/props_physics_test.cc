@@ -62,7 +62,8 @@ TEST_F(PropsPhysics, LooseOnesStandStillWhereTheyArePut) {
   const mjModel* model = world->compiled()->model.get();
   const DataPtr data(mj_makeData(model));
   mj_forward(model, data.get());
-  std::vector<double> start(data->xpos, data->xpos + 3 * model->nbody);
+  const std::vector<double> start(data->xpos, data->xpos + 3 * model->nbody);
+  const std::vector<double> facing(data->xquat, data->xquat + 4 * model->nbody);
   std::map<std::string, double> deep;
   while (data->time < 2) {
     mj_step(model, data.get());
@@ -80,6 +81,11 @@ TEST_F(PropsPhysics, LooseOnesStandStillWhereTheyArePut) {
     for (int k = 0; k < 3; ++k)
       moved = std::hypot(moved, data->xpos[3 * body + k] - start[size_t(3 * body + k)]);
     EXPECT_LT(moved, 0.005) << name;
+  }
+  for (int body = 1; body < model->nbody; ++body) {  // lids and drawers, too
+    double turn[3];
+    mju_subQuat(turn, data->xquat + 4 * body, &facing[size_t(4 * body)]);
+    EXPECT_LT(mju_norm3(turn) * 180 / M_PI, 1.5) << mj_id2name(model, mjOBJ_BODY, body);
   }
 }
 

@@ -86,7 +86,7 @@ Prop laptop(Workshop& shop) {
                           .high = 2.3,
                           .initial = open,
                           .damping = 0.02,
-                          .friction = 0.25});
+                          .friction = 0.45});
   // Closed it lies on the keys, from its hinge to +x.
   const float lid_thick = 0.005f;
   lid.show("cover", metal, slab({0, -y, 0}, {deep - 0.004f, y, lid_thick}, 0.002f, 2));

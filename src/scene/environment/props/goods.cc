@@ -73,7 +73,10 @@ Prop goods_pallet(Workshop& shop) {
       }
     b.show("film", shop.film(), sheet(points, columns));
   }
-  b.collide_box(low, high);
+  // One box for the pallet's deck and what lies on it.
+  const PropCollider deck = b.colliders.back();
+  b.colliders.pop_back();
+  b.collide_box({low.x, low.y, float(deck.X_PG.p.z) - deck.size.z}, high);
   const Vec3f box = high - low;
   b.mass = pallet_mass(base) + density * box.x * box.y * box.z;
   p.loose = false;

@@ -49,8 +49,10 @@ Prop chair(Workshop& shop) {
   b.collide_box({-x + 0.02f, -y + 0.02f, seat - 0.05f}, {x - 0.03f, y - 0.02f, seat + 0.02f});
   b.collide_box({-x, -y + 0.03f, seat + 0.02f}, {-x + 0.06f, y - 0.03f, size.z});
   for (const float side : {-1.0f, 1.0f}) {
-    b.collide_cylinder(0.018f, 0, seat - 0.05f, x - 0.055f, side * (y - 0.04f));
-    b.collide_cylinder(0.018f, 0, seat - 0.05f, -x + 0.03f, side * (y - 0.04f));
+    // With round ends, which touch the floor once each, not four times.
+    const float r = 0.018f, left = side * (y - 0.04f), top = seat - 0.05f - r;
+    for (const float at : {x - 0.055f, -x + 0.03f})
+      b.collide_capsule({at, left, r}, {at, left, top}, r);
   }
   p.loose = true;
   return p;

@@ -31,7 +31,8 @@ Prop stool(Workshop& shop) {
     b.show("legs", shop.wood(Axis::kZ), standing(leg));
     b.collide_cylinder({(0.93f * out + 0.07f * in) * c, (0.93f * out + 0.07f * in) * s, 0.06f},
                        {in * c, in * s, z - top}, 0.015f);
-    b.collide_cylinder(0.013f, 0, 0.07f, 0.96f * out * c, 0.96f * out * s);
+    const float fx = 0.96f * out * c, fy = 0.96f * out * s;
+    b.collide_capsule({fx, fy, 0.013f}, {fx, fy, 0.057f}, 0.013f);
     // Rungs, two by two at different heights.
     const float h = z * (k % 2 ? 0.34f : 0.40f), q = out + (in - out) * h / (z - top),
                 c2 = std::cos(a + kPi / 2), s2 = std::sin(a + kPi / 2);
@@ -126,7 +127,7 @@ Prop office_chair(Workshop& shop) {
                    .moved(r * c, r * s, 0));
     b.collide_box({0.16f * c, 0.16f * s, 0.084f}, {0.145f, 0.022f, 0.016f},
                   turn({0, 0, 1}, double(a)));
-    b.collide_cylinder(0.027f, 0, 0.068f, r * c, r * s);
+    b.collide_capsule({r * c, r * s, 0.027f}, {r * c, r * s, 0.041f}, 0.027f);
     b.colliders.back().friction = 0.15;  // castors roll
   }
   b.show("base_hub", pale ? shop.metal("aluminium") : shell,
