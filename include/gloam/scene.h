@@ -12,6 +12,7 @@
 
 #include "gloam/result.h"
 #include "gloam/scene_camera.h"
+#include "gloam/scene_effect.h"
 #include "gloam/scene_environment.h"
 #include "gloam/scene_lidar.h"
 #include "gloam/scene_light.h"
@@ -271,6 +272,9 @@ struct Scene {
   std::vector<LightOptions> lights = {};
   std::optional<SkyOptions> sky = {};
   std::vector<VolumeOptions> volumes = {};
+  std::vector<GasOptions> gases = {};
+  std::vector<FireOptions> fires = {};
+  std::vector<SmokeOptions> smokes = {};
   std::vector<VisualOptions> visuals = {};
   std::vector<PushOptions> pushes = {};
   std::vector<StereoOptions> stereo = {};  ///< a compiled Scene has their cameras in `cameras`

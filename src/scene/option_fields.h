@@ -9,6 +9,7 @@
 #include <string>
 
 #include "gloam/scene.h"
+#include "scene/effect_fields.h"
 #include "scene/environment_fields.h"
 #include "scene/field_rule.h"
 #include "scene/imager_fields.h"
@@ -234,6 +235,9 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("light", scene.lights, FieldRule{});
   v("sky", scene.sky, FieldRule{});
   v("volume", scene.volumes, FieldRule{});
+  v("gas", scene.gases, FieldRule{});
+  v("fire", scene.fires, FieldRule{});
+  v("smoke", scene.smokes, FieldRule{});
   v("visual", scene.visuals, FieldRule{});
   v("push", scene.pushes, FieldRule{});
   v("stereo", scene.stereo, FieldRule{});

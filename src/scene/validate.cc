@@ -13,6 +13,7 @@
 #include "scene/option_fields.h"
 #include "scene/overrides.h"
 #include "scene/randomize.h"
+#include "scene/validate_effect.h"
 #include "scene/validate_imager.h"
 #include "scene/validate_lidar.h"
 #include "scene/validate_light.h"
@@ -206,6 +207,10 @@ Status validate_scene(const Scene& scene) {
   if (scene.sky) GLOAM_TRY_STATUS(validate_sky(*scene.sky));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.volumes, "volume"));
   for (const VolumeOptions& volume : scene.volumes) GLOAM_TRY_STATUS(validate_volume(volume));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.gases, "gas"));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.fires, "fire"));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.smokes, "smoke"));
+  GLOAM_TRY_STATUS(validate_effects(scene));
   for (const RobotOptions& robot : scene.robots) {
     for (size_t i = 1; i < robot.controller.goals.size(); ++i) {
       const VelocityGoal& goal = robot.controller.goals[i];

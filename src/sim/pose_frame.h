@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "world/medium_description.h"
+
 namespace gloam {
 
 struct PoseFrame {
@@ -33,6 +35,12 @@ struct PoseFrame {
   std::vector<float> material_metallic, material_roughness;  ///< -1 = not given
   uint64_t height_field_serial = 0;  ///< of their last change, 0 = as in the World's model
   std::vector<float> height_field;   ///< (n_world x nhfielddata) 0..1; empty while that is 0
+
+  /// Grids of what is solved for, by VolumeDescription::field.
+  struct Field {
+    VolumeGrid density, temperature;  ///< null = clear
+  };
+  std::vector<Field> fields;  ///< (n_world x ngas)
 };
 
 }  // namespace gloam

@@ -79,6 +79,9 @@ Status PoseSolver::solve(const Snapshot& snapshot, PoseFrame& frame) {
   fill_poses(frame);
   fill_vertices(in.live.get(), frame);
   fill_live(in.live.get(), frame);
+  frame.fields.resize(in.fields.size());
+  for (size_t i = 0; i < in.fields.size(); ++i)
+    in.fields[i].read(&frame.fields[i].density, &frame.fields[i].temperature);
   return {};
 }
 

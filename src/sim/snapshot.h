@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gloam/snapshot.h"
+#include "sim/effects/medium_field.h"
 
 namespace gloam {
 
@@ -29,6 +30,7 @@ struct SnapshotData {
   std::vector<double> sensordata;          ///< (nsensordata), of the state before the last step
   double sensor_stamp = 0;                 ///< [s]
   std::shared_ptr<const LiveFields> live;  ///< null = nothing changed
+  std::vector<FieldWindow> fields;         ///< by row of CompiledWorld::gases
 };
 
 /// Whoever can hand out Snapshots in order: the live simulation, or a replay.

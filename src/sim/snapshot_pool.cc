@@ -62,6 +62,7 @@ SnapshotPool::Slot* SnapshotPool::add_slot() {
   data.world = world_;
   data.state.resize(static_cast<size_t>(state_size(*world_->model)));
   data.sensordata.resize(static_cast<size_t>(world_->model->nsensordata));
+  data.fields.resize(world_->gases.gases.size());
   slots_.fetch_add(1, std::memory_order_relaxed);
   return all_.back().get();
 }
@@ -87,7 +88,11 @@ SnapshotData& SnapshotPool::data_of(Slot& slot) { return slot.data; }
 
 Snapshot SnapshotPool::finish(Slot* slot) {
   return Snapshot(std::shared_ptr<const SnapshotData>(
-      &slot->data, [](SnapshotData* data) { data->live.reset(); },
+      &slot->data,
+      [](SnapshotData* data) {
+        data->live.reset();
+        for (FieldWindow& field : data->fields) field = {};
+      },
       SlotAllocator<SnapshotData>(shared_from_this(), slot)));
 }
 

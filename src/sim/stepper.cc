@@ -9,6 +9,7 @@
 #include "sim/live_fields.h"
 #include "sim/state_layout.h"
 #include "sim/state_transfer.h"
+#include "sim/step_schedule.h"
 
 namespace gloam {
 namespace {
@@ -32,6 +33,7 @@ Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledW
   stepper->next_state_.resize(stepper->state_.size());
   stepper->sensors_.resize(static_cast<size_t>(model->nsensordata));
   stepper->pool_ = SnapshotPool::create(world, kFirstSlots);
+  GLOAM_TRY(stepper->effects_, Effects::create(world, exact_rational(model->opt.timestep)));
   if (!stepper->reset()) return stepper->error();
   return stepper;
 }
@@ -96,8 +98,19 @@ bool Stepper::reset() {
   sensor_stamp_ = state_[0];
   warnings_seen_.fill(0);
   hash_ = hash_span<double>(state_, hash_bytes(&seed_, sizeof(seed_)));
+  if (effects_ != nullptr) {
+    effects_->reset();
+    tick_effects();
+  }
   if (!ok) return fail({ErrorKind::kInput, mujoco_error_message()});
   return true;
+}
+
+// Snapshots of this step on hold the fields of this instant and those that are begun here.
+void Stepper::tick_effects() {
+  hash_ = effects_->tick(step_, hash_);
+  snapshot_ = {};
+  effects_->start(snapshot());
 }
 
 bool Stepper::take_over(const Stepper& before, const Correspondence& same) {
@@ -117,6 +130,7 @@ bool Stepper::take_over(const Stepper& before, const Correspondence& same) {
   transfer_state(same, *before.data_, *data_);
   mj_getState(&model_, data_.get(), state_.data(), mjSTATE_INTEGRATION);
   hash_ = hash_span<double>(state_, hash_);
+  if (effects_ != nullptr) effects_->take_over(step_, before.effects_.get());
   return stand_at_state() || fail({ErrorKind::kInput, mujoco_error_message()});
 }
 
@@ -181,6 +195,7 @@ bool Stepper::step() {
   ++step_;
   hash_ = hash_span<double>(state_, hash_);
   snapshot_ = {};
+  if (effects_ != nullptr && step_ == effects_->next_tick()) tick_effects();
   return true;
 }
 
@@ -239,6 +254,7 @@ const Snapshot& Stepper::snapshot() {
       out.timestep = model_.opt.timestep;
       out.hash = hash_;
       out.live = live_;
+      if (effects_ != nullptr) effects_->fill(step_, &out.fields);
       out.sensor_stamp = sensor_stamp_;
       std::copy(state_.begin(), state_.end(), out.state.begin());
       const double* sensors = own_sensors_ ? sensors_.data() : data_->sensordata;

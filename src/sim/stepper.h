@@ -7,6 +7,7 @@
 
 #include "gloam/command.h"
 #include "sim/applied_inputs.h"
+#include "sim/effects/effects.h"
 #include "sim/snapshot_pool.h"
 #include "sim/state_layout.h"
 #include "world/world.h"
@@ -63,6 +64,7 @@ class Stepper {
   bool own_the_field(LiveFieldId field);
   void take_model(const mjModel& model);
   void count_diagnostics();
+  void tick_effects();
 
   std::shared_ptr<const CompiledWorld> world_;
   std::optional<double> timestep_;
@@ -75,6 +77,7 @@ class Stepper {
   StateReader reader_;  // of data_
   DataPtr scratch_;     // for mj_setConst; made on first use
   std::unique_ptr<AppliedInputs> inputs_;
+  std::unique_ptr<Effects> effects_;  // null = none
   std::shared_ptr<const LiveFields> live_;
   uint64_t live_changes_ = 0;  // since creation
   std::shared_ptr<SnapshotPool> pool_;

@@ -146,4 +146,20 @@ Status author_volumes(const std::vector<VolumeOptions>& options, RenderDescripti
   return {};
 }
 
+void author_gases(const std::vector<GasDescription>& gases, RenderDescription* out) {
+  for (size_t i = 0; i < gases.size(); ++i) {
+    const GasDescription& gas = gases[i];
+    VolumeDescription volume;
+    volume.name = gas.name;
+    volume.medium = static_cast<int>(out->media.size());
+    volume.size = gas.size();
+    volume.X_WV.p = gas.low + gas.size() * 0.5f;
+    volume.nx = gas.nx, volume.ny = gas.ny, volume.nz = gas.nz;
+    volume.even_temperature = gas.temperature;
+    volume.field = static_cast<int>(i);
+    out->media.push_back(gas.medium);
+    out->volumes.push_back(std::move(volume));
+  }
+}
+
 }  // namespace gloam

@@ -11,6 +11,7 @@
 #include "scene/validate.h"
 #include "world/authored_lidar.h"
 #include "world/compile_progress.h"
+#include "world/gas_description.h"
 #include "world/level.h"
 #include "world/mesh_object.h"
 #include "world/model_cache.h"
@@ -98,6 +99,14 @@ double weights_of(const Scene& scene) {
          (scene.hfields.empty() ? 0 : kSampleWeight);
 }
 
+/// What refers to the compiled model.
+Status describe_rest(CompiledWorld* world) {
+  GLOAM_TRY_STATUS(check_sensors(*world));
+  GLOAM_TRY_STATUS(describe_lidars(*world));
+  GLOAM_TRY(world->gases, describe_gases(*world));
+  return {};
+}
+
 }  // namespace
 
 Result<World> World::compile(const Scene& written, const ProgressCallback& callback) {
@@ -126,8 +135,7 @@ Result<World> World::compile(const Scene& written, const ProgressCallback& callb
     cached->drawn = drawn;
     cached->place_notes = std::move(sizes);
     if (!scene.bare_model.empty()) cached->robots = {bare_robot(scene, cached->model.get())};
-    GLOAM_TRY_STATUS(check_sensors(*cached));
-    GLOAM_TRY_STATUS(describe_lidars(*cached));
+    GLOAM_TRY_STATUS(describe_rest(cached.get()));
     progress.finish();
     return World(std::move(cached));
   }
@@ -147,8 +155,7 @@ Result<World> World::compile(const Scene& written, const ProgressCallback& callb
   world->notes = std::move(level.notes);
   world->place_notes = std::move(sizes);
   world->unsupported = std::move(level.unsupported);
-  GLOAM_TRY_STATUS(check_sensors(*world));
-  GLOAM_TRY_STATUS(describe_lidars(*world));
+  GLOAM_TRY_STATUS(describe_rest(world.get()));
   add_urdf_visuals(scene, &files, world.get());
   if (std::chrono::steady_clock::now() - start > kWorthCaching)
     store_cached_world(world, files.dependencies());

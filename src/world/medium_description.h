@@ -50,6 +50,7 @@ struct VolumeDescription {
   float even_density = 0;        ///< [kg/m³]
   float even_temperature = 293;  ///< [K]
   float fade = 0;  ///< the density falls smoothly to zero over this distance from the walls [m]
+  int field = -1;  ///< row of PoseFrame::fields, whose grids it shows instead; -1 = none
 };
 
 /// Errors: values that are not finite or outside their range.

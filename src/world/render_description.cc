@@ -320,6 +320,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
   GLOAM_TRY_STATUS(author_lights(world, poses, is_static, &labels, &levels, &out));
   if (world.scene.sky) GLOAM_TRY_STATUS(author_sky(*world.scene.sky, &levels, &out));
   GLOAM_TRY_STATUS(author_volumes(world.scene.volumes, &out));
+  author_gases(world.gases.gases, &out);
   out.ev100 = world.ev100 ? static_cast<float>(*world.ev100) : exposure(levels, out);
   return out;
 }

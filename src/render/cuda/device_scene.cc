@@ -76,9 +76,10 @@ void DeviceScene::fill(const SceneView& scene, const CameraView32& camera, const
   std::vector<VolumeView> volumes;
   for (uint32_t i = 0; i < scene.media.volumes.size; ++i) {
     VolumeView volume = scene.media.volumes[i];
-    volume.density = keep(volume.density);
-    volume.temperature = keep(volume.temperature);
-    volume.cells = keep(volume.cells);
+    const auto bring = [&](auto span) { return volume.changes ? parcel->put(span) : keep(span); };
+    volume.density = bring(volume.density);
+    volume.temperature = bring(volume.temperature);
+    volume.cells = bring(volume.cells);
     volumes.push_back(volume);
   }
   out.instances = parcel->put(instances);

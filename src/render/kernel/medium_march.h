@@ -93,8 +93,8 @@ GLOAM_HD float glow_step(const MediumWalk& walk, Bands bands) {
 /// Marches through the media in steps of at most `step` [m], or longer ones where that would take
 /// more than about `max_steps`. Empty cells are skipped. Along a step all is as in its middle and
 /// Beer-Lambert's law is integrated, so even media are exact with any step.
-/// `source(const MediumPoint&, Vec3f p_W)`, once a step: light that media scatter towards the ray's
-/// origin [cd/m² per m].
+/// `source(const MediumPoint&, Vec3f p_W, float ds)`, once a step of ds [m]: light that media
+/// scatter towards the ray's origin [cd/m² per m].
 template <class Source>
 GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, float step,
                            int max_steps, Bands bands, const Source& source) {
@@ -111,9 +111,10 @@ GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, f
     for (int i = 0; i < walk.count(); ++i) is_empty = is_empty && walk[i].high() <= 0;
     const float length = walk.to() - t;
     if (is_empty || !(length > 0)) continue;
-    const float steps = ceilf(length / step);
+    // Quotients that round to nothing are one step, too.
+    const float steps = max(ceilf(length / step), 1.0f);
     const float ds = length / steps;
-    const float parts = ceilf(ds / media::glow_step(walk, bands)), part = ds / parts;
+    const float parts = max(ceilf(ds / media::glow_step(walk, bands)), 1.0f), part = ds / parts;
     for (float i = 0; i < steps; ++i) {
       const float begin = t + i * ds;
       const Vec3f before = result.transmittance;
@@ -131,7 +132,7 @@ GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, f
         media::add(point, 1 / parts, &mean);
       }
       result.radiance += before * media::mean_transmittance(mean.extinction * ds) *
-                         source(mean, ray.o + ray.d * (begin + 0.5f * ds)) * ds;
+                         source(mean, ray.o + ray.d * (begin + 0.5f * ds), ds) * ds;
       if (max_component(result.transmittance) < kDark) return result;
     }
   }

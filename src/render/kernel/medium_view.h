@@ -42,7 +42,8 @@ struct VolumeView {
   float albedo[kMediumBands] = {};
   float g[kMediumBands] = {};
   float emission = 0;
-  int glow = -1;  ///< row of MediaView::glows
+  int glow = -1;         ///< row of MediaView::glows
+  bool changes = false;  ///< its grids are others in every picture
 };
 
 /// Where a volume gives off light, to draw points of it: a cell of the grid of bounds, then one of

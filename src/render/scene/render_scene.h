@@ -63,6 +63,7 @@ class RenderScene {
   explicit RenderScene(const RenderDescription& description) : description_(description) {}
   void follow_live_fields(const PoseFrame& frame);
   void follow_materials();
+  void follow_fields(const PoseFrame& frame);
   bool add_keys(std::span<const PoseFrame* const> keys, const InstanceDescription& in,
                 const Affine3f& X_WG);
 

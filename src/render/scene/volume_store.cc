@@ -122,6 +122,7 @@ VolumeView place(const VolumeDescription& in, VolumeView out) {
   out.even_density = in.even_density;
   out.even_temperature = in.even_temperature;
   out.fade = in.fade;
+  out.changes = in.field >= 0;
   return out;
 }
 

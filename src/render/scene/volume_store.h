@@ -21,6 +21,11 @@ class VolumeStore {
   /// then all is as it was.
   Status replace(size_t volume, const VolumeDescription& with);
 
+  /// These very grids are what the volume shows.
+  bool shows(size_t volume, const VolumeGrid& density, const VolumeGrid& temperature) const {
+    return fields_[volume].density == density && fields_[volume].temperature == temperature;
+  }
+
   /// Valid until the next replace(), or until the store is moved or gone.
   MediaView view() const;
 

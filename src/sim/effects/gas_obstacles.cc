@@ -235,4 +235,14 @@ Status GasObstacles::solve(const Snapshot& snapshot, GasWalls* walls) {
   return {};
 }
 
+Affine3f GasObstacles::X_WB(int body) const {
+  const mjtNum *p = data_->xpos + 3 * body, *R = data_->xmat + 9 * body;
+  const auto column = [R](int i) {
+    return Vec3f{static_cast<float>(R[i]), static_cast<float>(R[3 + i]),
+                 static_cast<float>(R[6 + i])};
+  };
+  return {column(0), column(1), column(2),
+          {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])}};
+}
+
 }  // namespace gloam

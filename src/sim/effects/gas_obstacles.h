@@ -40,6 +40,9 @@ class GasObstacles {
   /// The same of what is closed or solid, whatever its velocity.
   bool shape_changed() const { return shape_changed_; }
 
+  /// Where a body was at the instant of the last call.
+  Affine3f X_WB(int body) const;
+
   /// Colliders that are not seen: geoms of type sdf, flexes.
   int left_out() const { return left_out_; }
 

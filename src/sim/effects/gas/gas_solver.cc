@@ -14,6 +14,9 @@ namespace {
 
 /// Heat release of turbulent diffusion flames per volume [W/m³] (Orloff and de Ris 1982): a voxel
 /// that makes so much is full of flame.
+/// Smoke of which 10 km take a tenth of the light: transport leaves traces everywhere, and what is
+/// empty costs renderers nothing [kg/m³].
+constexpr float kUnseen = 1e-9f;
 constexpr float kFullOfFlame = 1.2e6f;
 constexpr int kLeastCells = 4, kMostCells = 1024;  ///< along an axis
 
@@ -144,7 +147,9 @@ void GasSolver::read(std::vector<float>* density, std::vector<float>* temperatur
   const float flame = state.properties.flame_temperature;
   gas::for_rows(s, [&](int j, int k) {
     const size_t from = size_t(s.at(0, j, k)), to = state.walls.cell(0, j, k);
-    std::copy_n(&state.scalars[gas::kSmoke][from], s.nx, density->data() + to);
+    const float* smoke = &state.scalars[gas::kSmoke][from];
+    float* shown = density->data() + to;
+    for (int i = 0; i < s.nx; ++i) shown[i] = smoke[i] > kUnseen ? smoke[i] : 0.0f;
     const float* heat = &state.scalars[gas::kHeat][from];
     const float* burning = &state.burning[from];
     float* kelvin = temperature->data() + to;

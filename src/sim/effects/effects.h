@@ -1,0 +1,47 @@
+#pragma once
+// What happens to the air of a World, solved for on threads of its own at rates of its own.
+//
+// At its tick k, at the step of t_k, an effect hands out the field of t_k, reads the poses of t_k
+// and begins to solve for the field of t_{k+1}: Snapshots in between hold both, and whoever looks
+// at one waits for the second if it is not there yet. The simulation itself waits at t_{k+1} alone.
+
+#include <memory>
+#include <vector>
+
+#include "sim/snapshot.h"
+#include "sim/step_schedule.h"
+
+namespace gloam {
+
+class GasEffect;
+
+class Effects {
+ public:
+  /// Null where the World has none. Errors: of memory, MuJoCo's, rates above the step rate.
+  static Result<std::unique_ptr<Effects>> create(std::shared_ptr<const CompiledWorld> world,
+                                                 Rational timestep);
+  ~Effects();
+
+  /// Back to the beginning: the air is clear and at rest.
+  void reset();
+  /// At a step in the middle of a run: goes on with the air that gases of the same name and grid
+  /// had in `before`, null = none; the others begin.
+  void take_over(int64_t step, Effects* before);
+
+  /// Step of the earliest tick to come.
+  int64_t next_tick() const;
+  /// The simulation stands at `step` = next_tick(). Waits for the fields of this instant; the hash
+  /// of the simulation's state goes in and comes out with theirs.
+  uint64_t tick(int64_t step, uint64_t hash);
+  /// After each tick(): solves for the next fields, with the poses of this instant.
+  void start(const Snapshot& now);
+
+  void fill(int64_t step, std::vector<FieldWindow>* fields) const;
+
+ private:
+  Effects() = default;
+  std::vector<std::unique_ptr<GasEffect>> gases_;
+  std::vector<GasEffect*> ticked_;  // not yet started
+};
+
+}  // namespace gloam

@@ -1,0 +1,202 @@
+#include "sim/effects/gas_effect.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "base/log.h"
+
+namespace gloam {
+namespace {
+
+GasGrid grid_of(const GasDescription& gas) {
+  return {gas.nx, gas.ny, gas.nz, gas.voxel, gas.low};
+}
+
+GasProperties properties_of(const GasDescription& gas) {
+  GasProperties properties;
+  properties.ambient_temperature = gas.temperature;
+  properties.vorticity = gas.vorticity;
+  properties.cooling = gas.cooling;
+  properties.dissipation = gas.settling;
+  properties.heat_of_combustion = gas.fuel.heat_of_combustion;
+  properties.soot_yield = gas.fuel.soot_yield;
+  properties.radiated = gas.fuel.radiated;
+  std::copy(std::begin(gas.open), std::end(gas.open), properties.open);
+  return properties;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<GasEffect>> GasEffect::create(std::shared_ptr<const CompiledWorld> world,
+                                                     size_t row, Rational timestep) {
+  const GasDescription& gas = world->gases.gases[row];
+  const auto placed = [&](Error error) {
+    if (error.loc.line == 0) error.loc = gas.loc;
+    return error;
+  };
+  Result<StepSchedule> schedule = StepSchedule::make(gas.rate, {0, 1}, timestep);
+  if (!schedule.ok()) return placed(schedule.error());
+  std::unique_ptr<GasEffect> effect(
+      new GasEffect(std::move(world), row, *schedule, timestep.value()));
+  const Status made = effect->make_solver();
+  if (!made.ok()) return placed(made.error());
+  Result<std::unique_ptr<GasObstacles>> obstacles =
+      GasObstacles::create(effect->world_, grid_of(gas));
+  if (!obstacles.ok()) return placed(obstacles.error());
+  effect->obstacles_ = std::move(*obstacles);
+  effect->make_clear();
+  effect->thread_ = std::thread([raw = effect.get()] { raw->run_thread(); });
+  return effect;
+}
+
+GasEffect::GasEffect(std::shared_ptr<const CompiledWorld> world, size_t row, StepSchedule schedule,
+                     double timestep)
+    : world_(std::move(world)), row_(row), schedule_(schedule), timestep_(timestep) {}
+
+GasEffect::~GasEffect() {
+  {
+    const std::lock_guard lock(mutex_);
+    quit_ = true;
+  }
+  wanted_.notify_one();
+  if (thread_.joinable()) thread_.join();
+}
+
+Status GasEffect::make_solver() {
+  GLOAM_TRY(solver_, GasSolver::create(grid_of(gas()), properties_of(gas())));
+  return {};
+}
+
+/// The field of a solver that has not yet begun.
+void GasEffect::make_clear() {
+  std::vector<float> density, temperature;
+  solver_->read(&density, &temperature);
+  const auto clear = std::make_shared<MediumField>();
+  clear->finish(std::make_shared<const std::vector<float>>(std::move(density)),
+                std::make_shared<const std::vector<float>>(std::move(temperature)),
+                solver_->hash());
+  now_ = coming_ = clear;
+}
+
+void GasEffect::reset() {
+  coming_->wait();
+  // There was memory for one before.
+  const Status made = make_solver();
+  GLOAM_CHECK(made.ok(), "a gas cannot be made anew");
+  walls_ = {};
+  make_clear();
+  tick_ = -1;
+}
+
+void GasEffect::begin_at(int64_t step) {
+  reset();
+  tick_ = schedule_.first_at_or_after(step + 1) - 1;
+}
+
+bool GasEffect::continues(const GasEffect& before) const {
+  const GasGrid a = grid_of(gas()), b = grid_of(before.gas());
+  return gas().name == before.gas().name && schedule_ == before.schedule_ && a.nx == b.nx &&
+         a.ny == b.ny && a.nz == b.nz && a.voxel == b.voxel && (a.low == b.low);
+}
+
+void GasEffect::take_over(GasEffect& before) {
+  before.coming_->wait();
+  coming_->wait();
+  std::vector<std::byte> state;
+  before.solver_->save(&state);
+  const Status restored = solver_->restore(state);
+  GLOAM_CHECK(restored.ok(), "a solver of the same grid takes the state of another");
+  walls_ = {};
+  tick_ = before.tick_;
+  now_ = before.now_;
+  coming_ = before.coming_;
+}
+
+uint64_t GasEffect::tick() {
+  coming_->wait();
+  now_ = coming_;
+  ++tick_;
+  return now_->digest();
+}
+
+void GasEffect::start(const Snapshot& now) {
+  auto result = std::make_shared<MediumField>();
+  coming_ = result;
+  {
+    const std::lock_guard lock(mutex_);
+    work_ = now;
+    result_ = std::move(result);
+  }
+  wanted_.notify_one();
+}
+
+FieldWindow GasEffect::window(int64_t step) const {
+  if (tick_ < 0) return {now_, coming_, 0};
+  const int64_t from = schedule_.step_of(tick_), to = schedule_.step_of(tick_ + 1);
+  return {now_, coming_, static_cast<float>(step - from) / static_cast<float>(to - from)};
+}
+
+// ---- its own thread ----
+
+void GasEffect::run_thread() {
+  while (true) {
+    Snapshot now;
+    std::shared_ptr<MediumField> result;
+    {
+      std::unique_lock lock(mutex_);
+      wanted_.wait(lock, [this] { return quit_ || work_; });
+      if (!work_) return;  // what was begun is finished: Snapshots may outlive the simulation
+      now = std::move(work_);
+      work_ = {};
+      result = std::move(result_);
+    }
+    solve(now);
+    now = {};
+    std::vector<float> density, temperature;
+    solver_->read(&density, &temperature);
+    result->finish(std::make_shared<const std::vector<float>>(std::move(density)),
+                   std::make_shared<const std::vector<float>>(std::move(temperature)),
+                   solver_->hash());
+  }
+}
+
+void GasEffect::solve(const Snapshot& now) {
+  const bool first = walls_.solid.empty();
+  // MuJoCo took this state when it stepped to it; where it does not now, walls stay as they were.
+  if (obstacles_->solve(now, &walls_).ok() && (first || obstacles_->changed()))
+    solver_->set_walls(walls_);
+  find_sources(now.time());
+  const int64_t steps = schedule_.step_of(tick_ + 1) - schedule_.step_of(tick_);
+  const GasStep step =
+      solver_->step(static_cast<float>(static_cast<double>(steps) * timestep_), sources_,
+                    gas().wind);
+  warn_of_blocked(step);
+}
+
+void GasEffect::find_sources(double time) {
+  sources_.clear();
+  for (const GasSourceDescription& in : world_->gases.sources) {
+    if (!in.is_on(time)) continue;
+    GasSource out;
+    const Affine3f X_WB = obstacles_->X_WB(in.body);
+    out.X_WS = X_WB * in.X_BS;
+    out.box = true;
+    out.half_size = in.half_size;
+    out.fuel = in.power_at(time) / gas().fuel.heat_of_combustion;
+    out.smoke = in.smoke;
+    out.heat = in.heat;
+    out.blows = in.jet.has_value();
+    if (in.jet) out.velocity = transform_vector(X_WB, *in.jet);
+    sources_.push_back(out);
+  }
+}
+
+void GasEffect::warn_of_blocked(const GasStep& step) {
+  if (step.sources_blocked == 0 || warned_ || world_->gases.gases.size() > 1) return;
+  warned_ = true;
+  log_warning("gas '{}': {} of its fires and smokes lie in something solid or outside of it and "
+              "give nothing",
+              gas().name, step.sources_blocked);
+}
+
+}  // namespace gloam

@@ -1,0 +1,70 @@
+#pragma once
+// The air of one [[gas]]: a solver, what it meets, what feeds it, and the thread that it runs on.
+
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "sim/effects/gas/gas_solver.h"
+#include "sim/effects/gas_obstacles.h"
+#include "sim/step_schedule.h"
+
+namespace gloam {
+
+class GasEffect {
+ public:
+  /// `row`: of CompiledWorld::gases. Errors: of memory, MuJoCo's, a rate above the step rate.
+  static Result<std::unique_ptr<GasEffect>> create(std::shared_ptr<const CompiledWorld> world,
+                                                   size_t row, Rational timestep);
+  ~GasEffect();
+
+  /// Back to clear air at rest, before the tick at step 0.
+  void reset();
+  /// Begins with clear air at rest at a step in the middle of a run.
+  void begin_at(int64_t step);
+  /// Goes on where `before`, of the same name, grid and rate, stands; its own air stays as it is.
+  void take_over(GasEffect& before);
+  bool continues(const GasEffect& before) const;
+
+  int64_t next_tick() const { return schedule_.step_of(tick_ + 1); }
+  /// At next_tick(): waits for its field and returns the digest of what the solver stands at.
+  uint64_t tick();
+  /// Solves for the next field on its own thread.
+  void start(const Snapshot& now);
+  FieldWindow window(int64_t step) const;
+
+ private:
+  GasEffect(std::shared_ptr<const CompiledWorld> world, size_t row, StepSchedule schedule,
+            double timestep);
+  const GasDescription& gas() const { return world_->gases.gases[row_]; }
+  Status make_solver();
+  void make_clear();
+  void run_thread();
+  void solve(const Snapshot& now);
+  void find_sources(double time);
+  void warn_of_blocked(const GasStep& step);
+
+  const std::shared_ptr<const CompiledWorld> world_;
+  const size_t row_;
+  const StepSchedule schedule_;
+  const double timestep_;  // [s]
+  std::unique_ptr<GasSolver> solver_;
+  std::unique_ptr<GasObstacles> obstacles_;
+  GasWalls walls_;
+  std::vector<GasSource> sources_;
+  bool warned_ = false;
+
+  int64_t tick_ = -1;                                // the last one
+  std::shared_ptr<const MediumField> now_, coming_;  // fields of it and of the next
+
+  std::mutex mutex_;  // guards what follows
+  std::condition_variable wanted_;
+  Snapshot work_;  // to be solved from
+  std::shared_ptr<MediumField> result_;
+  bool quit_ = false;
+  std::thread thread_;
+};
+
+}  // namespace gloam
