@@ -7,8 +7,8 @@
 
 namespace gloam {
 
-inline constexpr std::array<std::string_view, 6> kFuels = {"propane", "heptane", "wood",
-                                                           "pmma", "polyurethane", "polystyrene"};
+inline constexpr std::array<std::string_view, 6> kFuels = {
+    "propane", "heptane", "wood", "pmma", "polyurethane", "polystyrene"};
 inline constexpr std::array<std::string_view, 5> kFireGrowths = {"instant", "slow", "medium",
                                                                  "fast", "ultrafast"};
 inline constexpr std::array<std::string_view, 6> kBoxSides = {"-x", "+x", "-y", "+y", "-z", "+z"};

@@ -19,20 +19,20 @@ namespace {
 // Chemical heat of combustion, soot yield and radiative share in well-ventilated fires: SFPE
 // Handbook of Fire Protection Engineering, 5th ed., table A.39 (Tewarson). Polyurethane is the
 // flexible foam GM23, wood red oak. Order of kFuels.
-constexpr FuelDescription kFuelTable[] = {
-    {43.7e6f, 0.024f, 0.29f}, {41.2e6f, 0.037f, 0.33f}, {12.4e6f, 0.015f, 0.37f},
-    {24.2e6f, 0.022f, 0.31f}, {19.0e6f, 0.227f, 0.46f}, {27.0e6f, 0.164f, 0.59f}};
+constexpr FuelDescription kFuelTable[] = {{43.7e6f, 0.024f, 0.29f}, {41.2e6f, 0.037f, 0.33f},
+                                          {12.4e6f, 0.015f, 0.37f}, {24.2e6f, 0.022f, 0.31f},
+                                          {19.0e6f, 0.227f, 0.46f}, {27.0e6f, 0.164f, 0.59f}};
 static_assert(std::size(kFuelTable) == kFuels.size());
 
 // NFPA 72, annex B, and NFPA 92: alpha of t² fires [W/s²]. Order of kFireGrowths.
 constexpr float kGrowthTable[] = {0, 2.93f, 11.72f, 46.9f, 187.6f};
 static_assert(std::size(kGrowthTable) == kFireGrowths.size());
 
-constexpr double kUsualVoxel = 0.1;         // [m]
-constexpr double kUsualVoxels = 250e3;      // of a box whose voxels are left to us: 30 ms a step
-constexpr double kMostVoxels = 1 << 27;     // 16 GB
-constexpr Vec3 kUsualSize = {8, 8, 4};      // [m]
-constexpr double kWall = 0.3;               // beyond the rooms of a generated place [m]
+constexpr double kUsualVoxel = 0.1;      // [m]
+constexpr double kUsualVoxels = 250e3;   // of a box whose voxels are left to us: 30 ms a step
+constexpr double kMostVoxels = 1 << 27;  // 16 GB
+constexpr Vec3 kUsualSize = {8, 8, 4};   // [m]
+constexpr double kWall = 0.3;            // beyond the rooms of a generated place [m]
 
 template <size_t N>
 size_t row_of(const std::array<std::string_view, N>& words, const std::string& word) {
@@ -52,9 +52,7 @@ struct Extent {
     low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
     high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
   }
-  Vec3 middle() const {
-    return {(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2};
-  }
+  Vec3 middle() const { return {(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2}; }
 };
 
 /// Where the scene's gas is if it does not say: the rooms of a generated place, else around what
@@ -74,8 +72,8 @@ Extent usual_extent(const CompiledWorld& world, const std::vector<GasSourceDescr
   }
   if (sources.empty()) at.add({0, 0, 0.5});
   const Vec3 c = at.middle();
-  extent.add({std::min(at.low.x, c.x - kUsualSize.x / 2), std::min(at.low.y, c.y - kUsualSize.y / 2),
-              at.low.z - 0.5});
+  extent.add({std::min(at.low.x, c.x - kUsualSize.x / 2),
+              std::min(at.low.y, c.y - kUsualSize.y / 2), at.low.z - 0.5});
   extent.add({std::max(at.high.x, c.x + kUsualSize.x / 2),
               std::max(at.high.y, c.y + kUsualSize.y / 2),
               std::max(at.high.z, at.low.z - 0.5 + kUsualSize.z)});
@@ -95,11 +93,12 @@ Status set_grid(const GasOptions& options, const Extent& extent, GasDescription*
   const auto along = [&](double edge) { return std::max(std::ceil(edge / voxel - 1e-6), 4.0); };
   const double nx = along(edges.x), ny = along(edges.y), nz = along(edges.z);
   if (!(nx * ny * nz <= kMostVoxels) || std::max({nx, ny, nz}) > 1024) {
-    return gas_error(options,
-                     fmt::format("{:.0f} x {:.0f} x {:.0f} voxels of {:g} m are too many; the limit "
-                                 "is 1024 along an edge and 134 million in all",
-                                 nx, ny, nz, voxel),
-                     "give it a larger 'voxel' or a smaller 'size'");
+    return gas_error(
+        options,
+        fmt::format("{:.0f} x {:.0f} x {:.0f} voxels of {:g} m are too many; the limit "
+                    "is 1024 along an edge and 134 million in all",
+                    nx, ny, nz, voxel),
+        "give it a larger 'voxel' or a smaller 'size'");
   }
   gas->voxel = static_cast<float>(voxel);
   gas->nx = static_cast<int>(nx), gas->ny = static_cast<int>(ny), gas->nz = static_cast<int>(nz);
@@ -145,11 +144,11 @@ Result<GasSourceDescription> describe_source(const Options& options, const char*
   source.name = options.name;
   source.body = options.body.empty() ? 0 : mj_name2id(m, mjOBJ_BODY, options.body.c_str());
   if (source.body < 0) {
-    return Error{ErrorKind::kInput,
-                 fmt::format("{} '{}': there is no body '{}'", kind, options.name, options.body),
-                 options.loc,
-                 suggest_name(options.body,
-                              object_names(m, mjOBJ_BODY, static_cast<int>(m->nbody)))};
+    return Error{
+        ErrorKind::kInput,
+        fmt::format("{} '{}': there is no body '{}'", kind, options.name, options.body),
+        options.loc,
+        suggest_name(options.body, object_names(m, mjOBJ_BODY, static_cast<int>(m->nbody)))};
   }
   source.X_BS.p = to_float(options.position);
   source.half_size = to_float(options.size) * 0.5f;
@@ -244,8 +243,8 @@ Result<GasesDescription> describe_gases(const CompiledWorld& world) {
   for (size_t i = 0; i < scene.fires.size(); ++i)
     GLOAM_TRY_STATUS(check_inside(scene.fires[i], "fire", out.sources[i], out.gases));
   for (size_t i = 0; i < scene.smokes.size(); ++i) {
-    GLOAM_TRY_STATUS(check_inside(scene.smokes[i], "smoke",
-                                  out.sources[scene.fires.size() + i], out.gases));
+    GLOAM_TRY_STATUS(
+        check_inside(scene.smokes[i], "smoke", out.sources[scene.fires.size() + i], out.gases));
   }
   return out;
 }

@@ -27,12 +27,12 @@ struct GasSourceDescription {
   std::string name;
   int body = 0;  ///< that it moves with
   Affine3f X_BS;
-  Vec3f half_size;           ///< of its box [m]
-  float power = 0;           ///< of a fire that has grown [W]
-  float growth = 0;          ///< of a fire: power = growth t² [W/s²]; 0 = at once
-  float smoke = 0;           ///< [kg/s]
-  float heat = 0;            ///< [W]
-  std::optional<Vec3f> jet;  ///< velocity of the air in it, in the body [m/s]
+  Vec3f half_size;             ///< of its box [m]
+  float power = 0;             ///< of a fire that has grown [W]
+  float growth = 0;            ///< of a fire: power = growth t² [W/s²]; 0 = at once
+  float smoke = 0;             ///< [kg/s]
+  float heat = 0;              ///< [W]
+  std::optional<Vec3f> jet;    ///< velocity of the air in it, in the body [m/s]
   double start = 0, stop = 0;  ///< [s]
 
   /// Heat released by a fire at a time [W].
@@ -42,10 +42,10 @@ struct GasSourceDescription {
 
 struct GasDescription {
   std::string name;
-  Vec3f low;                  ///< corner of the box [m], axes along the world's
+  Vec3f low;                   ///< corner of the box [m], axes along the world's
   int nx = 0, ny = 0, nz = 0;  ///< voxels
-  float voxel = 0;            ///< [m]
-  Rational rate;              ///< [Hz]
+  float voxel = 0;             ///< [m]
+  Rational rate;               ///< [Hz]
   MediumDescription medium;
   FuelDescription fuel;
   float temperature = 0;  ///< of the air around [K]

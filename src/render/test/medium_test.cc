@@ -237,8 +237,9 @@ TEST(Medium, MarchingConvergesToTheQuadrature) {
   const VolumeStore store = three_volumes().build();
   for (const RayCase& c : rays_through()) {
     const RaySums expected = integrate_ray(store.view(), c.ray, min(c.tmax, 5));
-    const MarchResult m = march(store.view(), c.ray, c.tmax, 0.05f, 1000, {},
-                                [](const MediumPoint& p, Vec3f, float) { return p.scattering * 100.0f; });
+    const MarchResult m =
+        march(store.view(), c.ray, c.tmax, 0.05f, 1000, {},
+              [](const MediumPoint& p, Vec3f, float) { return p.scattering * 100.0f; });
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(m.transmittance[k], expected.transmittance[k],
                   0.02 * expected.transmittance[k] + 1e-3)

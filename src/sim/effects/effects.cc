@@ -28,9 +28,8 @@ void Effects::take_over(int64_t step, Effects* before) {
   for (const auto& gas : gases_) {
     const std::unique_ptr<GasEffect>* same = nullptr;
     if (before != nullptr) {
-      const auto found =
-          std::find_if(before->gases_.begin(), before->gases_.end(),
-                       [&](const auto& other) { return gas->continues(*other); });
+      const auto found = std::find_if(before->gases_.begin(), before->gases_.end(),
+                                      [&](const auto& other) { return gas->continues(*other); });
       if (found != before->gases_.end()) same = &*found;
     }
     if (same != nullptr) {

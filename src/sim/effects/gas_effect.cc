@@ -8,9 +8,7 @@
 namespace gloam {
 namespace {
 
-GasGrid grid_of(const GasDescription& gas) {
-  return {gas.nx, gas.ny, gas.nz, gas.voxel, gas.low};
-}
+GasGrid grid_of(const GasDescription& gas) { return {gas.nx, gas.ny, gas.nz, gas.voxel, gas.low}; }
 
 GasProperties properties_of(const GasDescription& gas) {
   GasProperties properties;
@@ -167,9 +165,8 @@ void GasEffect::solve(const Snapshot& now) {
     solver_->set_walls(walls_);
   find_sources(now.time());
   const int64_t steps = schedule_.step_of(tick_ + 1) - schedule_.step_of(tick_);
-  const GasStep step =
-      solver_->step(static_cast<float>(static_cast<double>(steps) * timestep_), sources_,
-                    gas().wind);
+  const GasStep step = solver_->step(static_cast<float>(static_cast<double>(steps) * timestep_),
+                                     sources_, gas().wind);
   warn_of_blocked(step);
 }
 
@@ -194,9 +191,10 @@ void GasEffect::find_sources(double time) {
 void GasEffect::warn_of_blocked(const GasStep& step) {
   if (step.sources_blocked == 0 || warned_ || world_->gases.gases.size() > 1) return;
   warned_ = true;
-  log_warning("gas '{}': {} of its fires and smokes lie in something solid or outside of it and "
-              "give nothing",
-              gas().name, step.sources_blocked);
+  log_warning(
+      "gas '{}': {} of its fires and smokes lie in something solid or outside of it and "
+      "give nothing",
+      gas().name, step.sources_blocked);
 }
 
 }  // namespace gloam

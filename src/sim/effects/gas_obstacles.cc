@@ -241,7 +241,9 @@ Affine3f GasObstacles::X_WB(int body) const {
     return Vec3f{static_cast<float>(R[i]), static_cast<float>(R[3 + i]),
                  static_cast<float>(R[6 + i])};
   };
-  return {column(0), column(1), column(2),
+  return {column(0),
+          column(1),
+          column(2),
           {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])}};
 }
 

@@ -9,8 +9,7 @@ namespace {
 
 VolumeGrid between(const VolumeGrid& before, const VolumeGrid& after, float share) {
   auto out = std::make_shared<std::vector<float>>(before->size());
-  for (size_t i = 0; i < out->size(); ++i)
-    (*out)[i] = lerp((*before)[i], (*after)[i], share);
+  for (size_t i = 0; i < out->size(); ++i) (*out)[i] = lerp((*before)[i], (*after)[i], share);
   return out;
 }
 

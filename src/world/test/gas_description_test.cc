@@ -77,7 +77,8 @@ TEST_F(Gas, IsMadeAroundWhatSmokesWhereThereIsNone) {
 
 TEST_F(Gas, FollowsTheRoomsOfAGeneratedPlace) {
   const Result<Scene> scene = load_scene(folder_.write(
-      "h.toml", "[environment.bedroom]\nseed = 2\n[[smoke]]\nname = \"s\"\nposition = [0, 0, 1]\n"));
+      "h.toml",
+      "[environment.bedroom]\nseed = 2\n[[smoke]]\nname = \"s\"\nposition = [0, 0, 1]\n"));
   ASSERT_TRUE(scene.ok());
   const Result<World> world = World::compile(*scene);
   ASSERT_TRUE(world.ok()) << world.error().to_string();
