@@ -1,5 +1,6 @@
 #pragma once
-// What sensors without pictures put out: MuJoCo's, with the models of the scene's [[sensor]]s.
+// What sensors without pictures put out: LiDARs, and MuJoCo's with the models of the scene's
+// [[sensor]]s.
 
 #include <cstdint>
 #include <functional>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "gloam/result.h"
+#include "gloam/types.h"
 
 namespace gloam {
 
@@ -44,5 +46,52 @@ struct Event {
   bool brighter = false;
   double time = 0;  ///< [s]
 };
+
+/// One scan: returns in the order in which the beams were fired. Names and meanings of x, y, z,
+/// intensity, ring and time are those of ROS drivers' PointCloud2 messages.
+struct LidarScan {
+  std::string lidar;  ///< name
+  int64_t index = 0;  ///< number of the scan since reset
+  int64_t step = 0;   ///< physics step at its end
+  double start = 0;   ///< simulation time at which it began [s]; `time` counts from there
+  double end = 0;     ///< [s]
+  int rings = 0;      ///< rows of the range image
+  int columns = 0;    ///< columns of the range image; 0 = the pattern has none
+  int beams = 0;      ///< fired, with and without a return
+  bool deskewed = false;
+  Pose X_WL_start, X_WL_end;  ///< of the sensor at both ends; x ahead, y to the left, z up
+
+  /// In the sensor's frame as it stood when the beam was fired, or, deskewed, as it stands at the
+  /// end [m], (n)
+  std::vector<float> x, y, z;
+  /// Calibrated reflectivity: 100 = white Lambertian across the beam; above, logarithmically, up to
+  /// 255 = a thousand times that (retroreflectors). Or the signal (docs/lidar.md). (n)
+  std::vector<float> intensity;
+  std::vector<float> range;            ///< along the beam [m], (n)
+  std::vector<float> time;             ///< of the firing, since `start` [s], (n)
+  std::vector<uint16_t> ring;          ///< counted from below, (n)
+  std::vector<uint16_t> column;        ///< (n)
+  std::vector<uint8_t> return_number;  ///< 0 = the first that the sensor reports of this beam, (n)
+  // Truth, empty unless asked for.
+  std::vector<uint32_t> part;                ///< row of the label table, 0 = a medium, (n)
+  std::vector<uint32_t> instance, semantic;  ///< ids of the label table, 0 = a medium, (n)
+
+  size_t size() const { return x.size(); }
+};
+
+struct LidarRequest {
+  std::string lidar;      ///< name of a [[lidar]]
+  bool required = false;  ///< the simulation waits for it; else scans are dropped, oldest first
+};
+
+/// An open stream. Closing (destroying) it waits for its last callback.
+class LidarStream {
+ public:
+  virtual ~LidarStream() = default;
+  virtual int64_t dropped() const = 0;
+  /// Why it delivers no more, if so: memory ran out, or a recompile took its LiDAR away.
+  virtual Status status() const { return {}; }
+};
+using ScanCallback = std::function<void(std::shared_ptr<const LidarScan>)>;
 
 }  // namespace gloam

@@ -11,7 +11,6 @@
 
 #include "gloam/camera.h"
 #include "gloam/command.h"
-#include "gloam/lidar.h"
 #include "gloam/result.h"
 #include "gloam/scene.h"
 #include "gloam/sensor.h"

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gloam/lidar.h"
+#include "gloam/sensor.h"
 #include "record/csv.h"
 #include "record/file_store.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "gloam/lidar.h"
+#include "gloam/sensor.h"
 
 namespace gloam {
 

@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-#include "gloam/lidar.h"
+#include "gloam/sensor.h"
 #include "runtime/shared_renderer.h"
 #include "sensors/lidar_sensor.h"
 #include "sim/pose_solver.h"

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <span>
 
-#include "gloam/lidar.h"
+#include "gloam/sensor.h"
 #include "render/lidar_view.h"
 #include "render/renderer.h"
 #include "sensors/lidar_pattern.h"
