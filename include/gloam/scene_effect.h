@@ -25,7 +25,7 @@ struct GasOptions {
   double temperature = 293;           ///< of the air around [K]
   Vec3 wind = {};                     ///< of the air around, blows in at open sides [m/s]
   std::vector<std::string> closed = {};  ///< sides nothing passes: -x +x -y +y -z +z
-  double vorticity = 0.1;                ///< confinement of eddies, 0 … 1
+  double vorticity = 0.4;                ///< confinement of eddies, 0 … 1
   double cooling = 0.02;                 ///< share of the heat that is lost each second [1/s]
   double settling = 0;                   ///< share of the smoke that is lost each second [1/s]
   SourceLoc loc = {};
