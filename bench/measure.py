@@ -364,6 +364,14 @@ def hfield(quick):
                        f"{two['samples'] / 1e6:.0f} M samples in {two['seconds']:.2f} s wall, from the mesh to the heights; one thread {one['rate'] / 1e6:.1f} M/s")
 
 
+def gas(quick):
+    """smoke and fire: steps of the solver"""
+    data = run_json(BIN / "bench_gas_rate", "--steps", "10" if quick else "60", "--threads", "2", "--json")
+    yield at_least("gas of 96 x 96 x 64 voxels, a fire among furniture: steps/s on 2 cores", data["steps_per_s"], 10,
+                   f"steps of 0.1 s, {data['substeps_per_step']:.1f} substeps, {data['iterations_per_substep']:.1f} iterations of the pressure in each")
+    yield at_most("the same: L2 norm of the divergence after / before, worst step", data["worst_divergence_ratio"], 1e-4, "something moves")
+
+
 # With the seconds that each takes on two cores: the first estimate of the time left.
 ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, fast_tier: 400, truth: 40, load_time: 120, import_time: 60,
-       first_picture: 15, adaptive_sampling: 120, lidar: 25, environments: 60, hfield: 25}
+       first_picture: 15, adaptive_sampling: 120, lidar: 25, environments: 60, hfield: 25, gas: 20}
