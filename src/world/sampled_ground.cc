@@ -45,7 +45,7 @@ std::vector<PlacedMesh> place_meshes(const HeightFieldOptions& o, const ModelFil
 }
 
 /// The meshes' bounds over the ground, and what of them is to be sampled.
-struct Region {
+struct SampledRegion {
   std::array<double, 2> mesh_low{}, mesh_high{}, low{}, high{};
 
   double extent() const { return std::max(mesh_high[0] - mesh_low[0], mesh_high[1] - mesh_low[1]); }
@@ -55,11 +55,12 @@ struct Region {
   }
 };
 
-Result<Region> region_of(const HeightFieldOptions& o, const std::vector<PlacedMesh>& meshes) {
+Result<SampledRegion> region_of(const HeightFieldOptions& o,
+                                const std::vector<PlacedMesh>& meshes) {
   Vec3Of<double> low, high;
   if (!bounds_of(meshes, &low, &high))
     return Error{ErrorKind::kInput, "there are no triangles in the file"};
-  Region region{{low.x, low.y}, {high.x, high.y}, {}, {}};
+  SampledRegion region{{low.x, low.y}, {high.x, high.y}, {}, {}};
   region.low = o.low.value_or(region.mesh_low);
   region.high = o.high.value_or(region.mesh_high);
   return region;
@@ -88,7 +89,7 @@ Result<std::vector<HeightField>> sample(const HeightFieldOptions& o, const Model
         {ErrorKind::kInput, fmt::format("{}: {}", title(o), text), o.loc, std::move(hint)});
   };
   const std::vector<PlacedMesh> meshes = place_meshes(o, model);
-  GLOAM_TRY(const Region region, region_of(o, meshes));
+  GLOAM_TRY(const SampledRegion region, region_of(o, meshes));
   const bool is_doubtful = o.unit == 1 && region.extent() > kDoubtfulSize;
   const std::string unit_hint = "if the file is in millimetres, give unit = 0.001";
   if (is_doubtful) note(fmt::format("the mesh is {:.0f} m wide", region.extent()), unit_hint);
