@@ -28,7 +28,8 @@ GLOAM_HD float log2_of(float x) {
   return static_cast<float>(static_cast<int>(bits >> 23) - 127) + f * (1.3465f - 0.3465f * f);
 }
 
-/// Coordinates in texels of level `level`; `row` grows downwards.
+/// Coordinates in texels of level `level`; `row` grows downwards. Never above 1, which the weights'
+/// rounding would make of white: what is opaque would let less than no light through.
 GLOAM_HD Rgba bilinear(const SceneView& scene, const TextureLevel& level, float x, float row,
                        bool repeat_x, bool repeat_y) {
   const float fx = x * static_cast<float>(level.width) - 0.5f;
@@ -62,7 +63,7 @@ GLOAM_HD Rgba bilinear(const SceneView& scene, const TextureLevel& level, float 
     sum = _mm_add_ps(sum, _mm_mul_ps(texel, _mm_set1_ps(weight[i])));
   }
   alignas(16) float out[4];
-  _mm_store_ps(out, _mm_mul_ps(sum, _mm_set1_ps(kScale)));
+  _mm_store_ps(out, _mm_min_ps(_mm_mul_ps(sum, _mm_set1_ps(kScale)), _mm_set1_ps(1.0f)));
   return {{out[0], out[1], out[2]}, out[3]};
 #else
   Rgba sum{{0, 0, 0}, 0};
@@ -72,7 +73,8 @@ GLOAM_HD Rgba bilinear(const SceneView& scene, const TextureLevel& level, float 
                weight[i];
     sum.a += static_cast<float>(t[i]->a) * weight[i];
   }
-  return {sum.rgb * kScale, sum.a * kScale};
+  const auto scaled = [](float value) { return min(value * kScale, 1.0f); };
+  return {{scaled(sum.rgb.x), scaled(sum.rgb.y), scaled(sum.rgb.z)}, scaled(sum.a)};
 #endif
 }
 

@@ -236,5 +236,24 @@ TEST(Texture, RoughnessAndMetallicComeFromTheirMaps) {
   EXPECT_GT(luminance(first.radiance[100]), 0);
 }
 
+TEST(Texture, WhiteIsNeverWhiterThanWhite) {
+  // A hair more of opacity, and what is opaque would let light below zero through.
+  const std::vector<Texel> white(9, Texel{65535, 65535, 65535, 65535});
+  const TextureLevel level{0, 3, 3};
+  TextureView texture;
+  texture.level_count = 1;
+  SceneView scene;
+  scene.texels = {white.data(), static_cast<uint32_t>(white.size())};
+  scene.texture_levels = {&level, 1};
+  scene.textures = {&texture, 1};
+  Sampler sampler = Sampler::make(0, 0, 0, 0, 0, 0);
+  for (int i = 0; i < 10000; ++i) {
+    const Rgba texel = lookup_2d(scene, 0, sampler.next_2d(), 0.0f);
+    ASSERT_LE(max_component(texel.rgb), 1);
+    ASSERT_LE(texel.a, 1);
+    ASSERT_GT(texel.a, 0.99999f);
+  }
+}
+
 }  // namespace
 }  // namespace gloam
