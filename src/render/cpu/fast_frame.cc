@@ -97,7 +97,8 @@ class Accumulation {
       F l = luminance(now), share = max(1.0f / age, least_share_[s]);
       if (s == kSpecularSignal) {
         // Of rays that a rough surface scatters, few meet a lamp: no brighter than the others.
-        const F most = kSpike * luminance_about(f_, s, x, y);
+        // A rounding error below zero must not become 0 / 0 where all is dark.
+        const F most = max(kSpike * luminance_about(f_, s, x, y), F(0.0f));
         now = select<F>(l > most, now * (most / l), now);
         l = min(l, most);
         // What mirrors show does not go along with them.

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/parallel.h"
+#include "render/cpu/fast_filter.h"
 #include "render/test/media_probe.h"
 #include "render/test/panel.h"
 #include "render/test/room_with_window.h"
@@ -270,6 +271,33 @@ TEST(Fast, CellsLookForLightWhereTheGuideHasFoundIt) {
     EXPECT_NEAR(mean_luminance(one), mean_luminance(exact), 0.05 * mean_luminance(exact));
   }
   EXPECT_LT(noise[1], 0.5 * noise[0]) << "as if twice as many rays went";
+}
+
+TEST(Fast, AHairBelowBlackDoesNotSpread) {
+  // Light below zero by a rounding error, where all is dark: of its neighbours' light a share of
+  // nothing must not be taken.
+  constexpr int kSize = 32, kMiddle = kSize / 2;
+  FastFrame before, frame;
+  FastFilter filter;
+  before.resize(kSize, kSize);
+  frame.resize(kSize, kSize);
+  filter.resize(kSize, kSize);
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      *frame.part.at(x, y) = 1;
+      *frame.roughness.at(x, y) = 1;
+      frame.n.set(x, y, {0, 0, 1});
+    }
+  }
+  frame.signal[kSpecularSignal].set(kMiddle, kMiddle, {-1e-8f, -1e-8f, -1e-8f});
+  filter.accumulate(before, &frame);
+  filter.smooth(frame);
+  for (int y = 0; y < kSize; ++y) {
+    for (int x = 0; x < kSize; ++x) {
+      const float light = luminance(filter.smoothed(kSpecularSignal).get(x, y));
+      ASSERT_LE(std::abs(light), 1e-8f) << x << " " << y;  // no NaN either
+    }
+  }
 }
 
 TEST(Fast, ManyPanelsAreCountedOnce) {
