@@ -144,7 +144,7 @@ void GasSolver::State::burn(float dt) {
           *watts = &burning[size_t(begin)];
     for (int i = 0; i < shape.nx; i += 16) {
       const int width = std::min(16, shape.nx - i);
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int l = 0; l < width; ++l) {
         const gas::Reaction out =
             gas::react(r, heat + i + l, smoke + i + l, fuel + i + l, spent + i + l, more + i + l);

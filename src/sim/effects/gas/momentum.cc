@@ -47,7 +47,7 @@ void Momentum::find_centres(const Faces<const float>& u, float scale, float limi
   const float half = 0.5f * scale;
   for_rows(s, [&, x, y, z](int j, int k) {
     const int begin = s.at(0, j, k);
-#pragma GCC ivdep
+    GLOAM_IVDEP
     for (int c = begin; c < begin + s.nx; ++c) {
       x[c] = clamp(half * (u.x[c] + u.x[c + 1]), -limit, limit);
       y[c] = clamp(half * (u.y[c] + u.y[c + s.sy]), -limit, limit);
@@ -65,7 +65,7 @@ void Momentum::find_paths(const Openings& openings, const Faces<const float>& op
     {
       const Carrier v = carrier;
       float *const to_x = x + begin, *const to_y = y + begin, *const to_z = z + begin;
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int i = 0; i < nx; ++i) {
         const Vec3f d = displacement(v, i, j, k);
         to_x[i] = d.x, to_y[i] = d.y, to_z[i] = d.z;
@@ -100,7 +100,7 @@ void Momentum::find_smoothness() {
   float* smooth = smooth_.data();
   for_rows(s, [&, v, smooth](int j, int k) {
     const int begin = s.at(0, j, k);
-#pragma GCC ivdep
+    GLOAM_IVDEP
     for (int c = begin; c < begin + s.nx; ++c) smooth[c] = smoothness_at(s, v, c);
   });
   fill_ghosts(s, smooth);
@@ -128,12 +128,12 @@ void Momentum::carry_axis(const Openings& openings, int axis, const float* open,
                        corrected_.data()};
   for_rows(faces, [&view, nx = faces.nx](int j, int k) {
     const CarryView v = view;  // its own copy: the compiler need not look at it again for each face
-#pragma GCC ivdep
+    GLOAM_IVDEP
     for (int i = 0; i < nx; ++i) carry_face(v, i, j, k);
   });
   for_rows(faces, [&view, nx = faces.nx](int j, int k) {
     const CarryView v = view;
-#pragma GCC ivdep
+    GLOAM_IVDEP
     for (int i = 0; i < nx; ++i) correct_face(v, i, j, k);
   });
   for_rows(faces, [&](int j, int k) {
@@ -175,7 +175,7 @@ void Momentum::lift(const Faces<const float>& open, const Faces<float>& velocity
   float* u = velocity.z;
   for_rows(faces_of(s, 2), [&, w, u, smooth, heat, smoke](int j, int k) {
     const int begin = s.at(0, j, k);
-#pragma GCC ivdep
+    GLOAM_IVDEP
     for (int c = begin; c < begin + s.nx; ++c) {
       const int b = c - s.sz;
       const float rough = 1.0f - 0.5f * (smooth[c] + smooth[b]);
@@ -196,7 +196,7 @@ void Momentum::confine(const Faces<const float>& open, const Faces<float>& veloc
   float* length = trusted_.data();
   for_rows(s, [&, length](int j, int k) {
     const int begin = s.at(0, j, k);
-#pragma GCC ivdep
+    GLOAM_IVDEP
     for (int c = begin; c < begin + s.nx; ++c) {
       const Vec3f w = curl(s, v, c);
       length[c] = sqrtf(dot(w, w));
@@ -205,7 +205,7 @@ void Momentum::confine(const Faces<const float>& open, const Faces<float>& veloc
   fill_ghosts(s, length);
   for_rows(s, [&, length](int j, int k) {
     const int begin = s.at(0, j, k);
-#pragma GCC ivdep
+    GLOAM_IVDEP
     for (int c = begin; c < begin + s.nx; ++c) {
       const Vec3f f = confinement(s, v, length, c) * (1.0f - smooth_[size_t(c)]);
       moved_[0][size_t(c)] = f.x, moved_[1][size_t(c)] = f.y, moved_[2][size_t(c)] = f.z;
@@ -221,7 +221,7 @@ void Momentum::confine(const Faces<const float>& open, const Faces<float>& veloc
     const float scale = 0.25f * strength * dt;
     for_rows(faces_of(s, a), [&, f, w, u](int j, int k) {
       const int begin = s.at(0, j, k);
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int c = begin; c < begin + faces_of(s, a).nx; ++c) {
         u[c] += w[c] * scale * (f[c] + f[c - stride]);
       }

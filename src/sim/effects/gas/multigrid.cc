@@ -163,14 +163,14 @@ void Multigrid::cycle(size_t level, const float* b, float* x, bool from_zero) {
   const auto smooth = [&v, b](const float* from, float* to, float damping) {
     for_rows(v.shape, [&, b](int j, int k) {
       const int begin = v.shape.at(0, j, k), end = begin + v.shape.nx;
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int c = begin; c < end; ++c) to[c] = relax(v, from, b, damping, c);
     });
   };
   if (from_zero) {
     for_rows(v.shape, [&, b](int j, int k) {
       const int begin = v.shape.at(0, j, k), end = begin + v.shape.nx;
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int c = begin; c < end; ++c) t[c] = kSmooth[0] * v.inverse[c] * b[c];
     });
   } else {
@@ -204,7 +204,7 @@ void Multigrid::restrict_residual(size_t level, const float* b, const float* x) 
     for (int z = coarse.start[2][size_t(k)]; z < coarse.start[2][size_t(k) + 1]; ++z) {
       for (int y = coarse.start[1][size_t(j)]; y < coarse.start[1][size_t(j) + 1]; ++y) {
         const int begin = s.at(0, y, z);
-#pragma GCC ivdep
+        GLOAM_IVDEP
         for (int i = 0; i < s.nx; ++i) row[i] += b[begin + i] - apply_poisson(v, x, begin + i);
       }
     }
@@ -232,7 +232,7 @@ void Multigrid::prolong(size_t level, float* x) {
     for (int z = coarse.start[2][size_t(k)]; z < coarse.start[2][size_t(k) + 1]; ++z) {
       for (int y = coarse.start[1][size_t(j)]; y < coarse.start[1][size_t(j) + 1]; ++y) {
         const int begin = s.at(0, y, z);
-#pragma GCC ivdep
+        GLOAM_IVDEP
         for (int i = 0; i < s.nx; ++i) {
           x[begin + i] += inverse[begin + i] > 0.0f ? row[i] : 0.0f;
         }

@@ -52,7 +52,7 @@ void Openings::find_clearance(const Faces<const float>& open) {
     const Faces<const float> w = open;
     const int begin = s.at(0, j, k), end = begin + s.nx, sy = s.sy, sz = s.sz;
     uint8_t *const to_near = near, *const to_clear = clear;
-#pragma GCC ivdep
+    GLOAM_IVDEP
     for (int c = begin; c < end; ++c) {
       const float free = (w.x[c] * w.x[c + 1]) * (w.y[c] * w.y[c + sy]) * (w.z[c] * w.z[c + sz]);
       to_near[c] = uint8_t(free == 0.0f);
@@ -67,7 +67,7 @@ void Openings::find_clearance(const Faces<const float>& open) {
       const int begin = s.at(0, j, k), end = begin + s.nx;
       const uint8_t *const near = from, most = uint8_t(distance > 1 ? distance - 2 : 0);
       uint8_t* const to_clear = clear;
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int c = begin; c < end; ++c) {
         const uint8_t bound = near[c] ? most : uint8_t(kReach);
         to_clear[c] = to_clear[c] < bound ? to_clear[c] : bound;
@@ -78,7 +78,7 @@ void Openings::find_clearance(const Faces<const float>& open) {
         const int begin = s.at(0, j, k), end = begin + s.nx, step = stride;
         const uint8_t* const near = from;
         uint8_t* const spread = to;
-#pragma GCC ivdep
+        GLOAM_IVDEP
         for (int c = begin; c < end; ++c) {
           spread[c] = uint8_t(near[c] | near[c - step] | near[c + step]);
         }

@@ -41,7 +41,7 @@ void Pressure::set_target(const Openings& openings, const Faces<const float>& ve
   for_rows(s, [&](int j, int k) {
     const int begin = s.at(0, j, k);
     // A cell without open faces has what its walls leave it.
-#pragma GCC ivdep
+    GLOAM_IVDEP
     for (int c = begin; c < begin + s.nx; ++c) {
       target_[size_t(c)] = inverse[c] > 0.0f ? wanted[c] * scale : outflow(s, velocity, c);
     }
@@ -99,7 +99,7 @@ void Pressure::subtract_gradient(const Faces<float>& velocity, const float* shar
     float* v = velocity[axis];
     for_rows(faces, [&, v, w, x, stride, share](int j, int k) {
       const int begin = s.at(0, j, k), end = begin + faces.nx;
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int c = begin; c < end; ++c) {
         v[c] -= w[c] * 0.5f * (share[c] + share[c - stride]) * (x[c] - x[c - stride]);
       }
@@ -123,7 +123,7 @@ Projection Pressure::project(const Openings& openings, const Faces<float>& veloc
   float *x = x_.data(), *r = residual_.data(), *z = z_.data(), *p = p_.data(), *ap = ap_.data();
   const float* target = target_.data();
   rows([&](int begin, int end) {
-#pragma GCC ivdep
+    GLOAM_IVDEP
     for (int c = begin; c < end; ++c) r[c] = target[c] - outflow(s, u, c);
   });
   Projection out;
@@ -131,20 +131,20 @@ Projection Pressure::project(const Openings& openings, const Faces<float>& veloc
   out.before = before / double(voxel);
   const double goal = kTolerance * before;
   rows([&](int begin, int end) {
-#pragma GCC ivdep
+    GLOAM_IVDEP
     for (int c = begin; c < end; ++c) {
       x[c] = a.inverse[c] > 0.0f ? x[c] : 0.0f;
     }
   });
   rows([&](int begin, int end) {
-#pragma GCC ivdep
+    GLOAM_IVDEP
     for (int c = begin; c < end; ++c) r[c] -= apply_poisson(a, x, c);
   });
   double norm = std::sqrt(dot(residual_, residual_));
   if (norm > before) {  // the last solution is no help
     std::fill(x_.begin(), x_.end(), 0.0f);
     rows([&](int begin, int end) {
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int c = begin; c < end; ++c) r[c] = target[c] - outflow(s, u, c);
     });
     norm = before;
@@ -162,13 +162,13 @@ Projection Pressure::project(const Openings& openings, const Faces<float>& veloc
         std::copy(z + begin, z + end, p + begin);
         return;
       }
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int c = begin; c < end; ++c) p[c] = z[c] + beta * p[c];
     });
     fresh = false;
     const double curvature = grid_sum(s, partial_, [&](int j, int k) {
       const int begin = s.at(0, j, k);
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int c = begin; c < begin + s.nx; ++c) ap[c] = apply_poisson(a, p, c);
       return row_sum(begin, s.nx, [ap, p](int c) { return ap[c] * p[c]; });
     });
@@ -176,7 +176,7 @@ Projection Pressure::project(const Openings& openings, const Faces<float>& veloc
     const float alpha = float(rz / curvature);
     const double square = grid_sum(s, partial_, [&, alpha](int j, int k) {
       const int begin = s.at(0, j, k);
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int c = begin; c < begin + s.nx; ++c) {
         x[c] += alpha * p[c];
         r[c] -= alpha * ap[c];
@@ -187,7 +187,7 @@ Projection Pressure::project(const Openings& openings, const Faces<float>& veloc
     if (norm > goal) continue;
     // What conjugate gradients believe is left drifts from what is: look, and go on if need be.
     rows([&](int begin, int end) {
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int c = begin; c < end; ++c)
         r[c] = target[c] - outflow(s, u, c) - apply_poisson(a, x, c);
     });

@@ -36,7 +36,7 @@ double row_sum(int begin, int n, F&& f) {
   float lanes[16] = {};
   int i = 0;
   for (; i + 16 <= n; i += 16) {
-#pragma GCC ivdep
+    GLOAM_IVDEP
     for (int l = 0; l < 16; ++l) lanes[l] += f(begin + i + l);
   }
   for (int l = 0; i < n; ++i, ++l) lanes[l] += f(begin + i);

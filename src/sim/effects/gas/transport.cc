@@ -49,7 +49,7 @@ float Transport::set_courant(const Faces<const float>& open, const Faces<const f
     float* to = courant_[a].data();
     for_rows(faces, [&, w, u, to](int j, int k) {
       const int begin = s.at(0, j, k), end = begin + faces.nx;
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int c = begin; c < end; ++c) to[c] = w[c] * u[c] * scale;
     });
   }
@@ -111,20 +111,20 @@ void Transport::sweep_x(const Sweep& sweep) {
       float* field = sweep.scalars[f].data() + begin;
       q[0] = q[1] = q[n + 2] = q[n + 3] = 0.0f;
       float any = 0;
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int i = 0; i < n; ++i) q[i + 2] = field[i] / air[i + 2];
       for (int i = 0; i < n; ++i) any = max(any, field[i]);
       if (any == 0.0f) continue;
       // d[i]: over the face before the cell at i.
       d[0] = d[1] = d[n + 3] = d[n + 4] = 0.0f;
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int i = 0; i <= n; ++i) d[i + 2] = open[i] * (q[i + 2] - q[i + 1]);
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int i = 0; i <= n; ++i) {
         flux[i] = face_flux(courant[i], q[i + 1], q[i + 2], d[i + 1], d[i + 2], d[i + 3],
                             air[i + 1], air[i + 2]);
       }
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int i = 0; i < n; ++i) field[i] = max(field[i] - (flux[i + 1] - flux[i]), 0.0f);
       row_escaped_[size_t(k * s.ny + j) * kScalars + f] = double(flux[n]) - double(flux[0]);
     }
@@ -174,14 +174,14 @@ void Transport::sweep_block(const Sweep& sweep, int first, int width, double* es
       if (ghost) {
         std::fill_n(row.q[f], width, 0.0f);
       } else {
-#pragma GCC ivdep
+        GLOAM_IVDEP
         for (int i = 0; i < width; ++i) row.q[f][i] = field[i] / row.air[i];
       }
       if (m < 0 || m > n) {
         std::fill_n(row.d[f], width, 0.0f);
       } else {
         const float* open = sweep.open + begin;
-#pragma GCC ivdep
+        GLOAM_IVDEP
         for (int i = 0; i < width; ++i) row.d[f][i] = open[i] * (row.q[f][i] - before.q[f][i]);
       }
     }
@@ -196,7 +196,7 @@ void Transport::sweep_block(const Sweep& sweep, int first, int width, double* es
       if (!any[f]) continue;
       float* now = flux[m % 2][f];
       const float* last = flux[(m + 1) % 2][f];
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int i = 0; i < width; ++i) {
         now[i] = face_flux(courant[i], b.q[f][i], c.q[f][i], b.d[f][i], c.d[f][i], d.d[f][i],
                            b.air[i], c.air[i]);
@@ -208,7 +208,7 @@ void Transport::sweep_block(const Sweep& sweep, int first, int width, double* es
       }
       if (m == 0) continue;
       float* field = sweep.scalars[f].data() + begin - stride;
-#pragma GCC ivdep
+      GLOAM_IVDEP
       for (int i = 0; i < width; ++i) field[i] = max(field[i] - (now[i] - last[i]), 0.0f);
     }
     load(m + 2);

@@ -4,6 +4,13 @@
 
 #include "base/vec.h"
 
+/// Before a loop whose iterations do not depend on each other, which GCC cannot know.
+#if defined(__GNUC__) && !defined(__clang__) && !defined(__CUDACC__)
+#define GLOAM_IVDEP _Pragma("GCC ivdep")
+#else
+#define GLOAM_IVDEP
+#endif
+
 namespace gloam::gas {
 
 /// Cell (i, j, k) of [0, nx) x [0, ny) x [0, nz) lies at at(i, j, k); ghosts at -1 and n. The face
