@@ -118,7 +118,7 @@ TOO_SLOW_SANITIZED = ("-*Slow*:*Allocat*:Adaptive.HasTheMeanOfEvenSampling:Adapt
                       "TrotWalk.NoFallsInTwentySeedsOfPushes:PropsPhysics.*:AtmosphereReference.*:Glow.BringsTheLight*:"
                       "GeneratedEnvironment.OfOneSeedIsOneHash*:Sky.SamplingAMap*:Fast.ARoomIsDarkSoon*:Guide.IsTheSameWhatever*:"
                       "Fast.PicturesAreTheSameForAnyNumberOfThreads:Glow.FillsAClosedWhiteRoom*:Bvh.AMillionRays*:Fog.White*:"
-                      "*CameraLensTest.KnownPoints*:HeightErrorOf.APlane*")
+                      "*CameraLensTest.KnownPoints*:HeightErrorOf.APlane*:GasBudget.*:GasFire.*:GasFlow.*:GasWalls.*")
 MUTATIONS = 10_000  # damaged files per reader; without GLOAM_MUTATIONS the tests take 200
 
 
