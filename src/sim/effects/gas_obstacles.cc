@@ -219,6 +219,7 @@ void GasObstacles::write(bool anew, GasWalls* walls) {
 Status GasObstacles::solve(const Snapshot& snapshot, GasWalls* walls) {
   const SnapshotData& in = snapshot.data();
   GLOAM_CHECK(in.world == world_, "a Snapshot of another World");
+  GLOAM_CHECK(walls != nullptr, "walls are asked for and not given");
   GLOAM_TRY_STATUS(guarded([&] {
     mj_setState(&model_, data_.get(), in.state.data(), mjSTATE_INTEGRATION);
     mj_kinematics(&model_, data_.get());
