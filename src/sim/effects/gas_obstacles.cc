@@ -8,6 +8,7 @@
 #include "base/check.h"
 #include "gloam/command.h"
 #include "scene/mujoco_guard.h"
+#include "world/visual_pose.h"
 
 namespace gloam {
 namespace {
@@ -237,15 +238,7 @@ Status GasObstacles::solve(const Snapshot& snapshot, GasWalls* walls) {
 }
 
 Affine3f GasObstacles::X_WB(int body) const {
-  const mjtNum *p = data_->xpos + 3 * body, *R = data_->xmat + 9 * body;
-  const auto column = [R](int i) {
-    return Vec3f{static_cast<float>(R[i]), static_cast<float>(R[3 + i]),
-                 static_cast<float>(R[6 + i])};
-  };
-  return {column(0),
-          column(1),
-          column(2),
-          {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])}};
+  return rigid_pose(data_->xpos + 3 * body, data_->xquat + 4 * body);
 }
 
 }  // namespace gloam
