@@ -84,6 +84,9 @@ Result<CoacdApi> load_library() {
                       {},
                       "run ./gloam setup, or set GLOAM_COACD to its lib_coacd.so; colliders = "
                       "\"hull\" does without"};
+#ifdef GLOAM_SANITIZED
+  return missing;  // sanitizers end a program that loads a library with its own symbols first
+#endif
   for (const fs::path& path : candidates()) {
     // Never unloaded: its threads may outlive the call. Its own symbols first: it has an spdlog
     // within that is not ours.

@@ -1,11 +1,11 @@
-// Rocks, trees and grass of open country.
+// Trees and grass of open country.
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
-#include <optional>
 
 #include "base/check.h"
 #include "scene/environment/ground_zones.h"
@@ -18,13 +18,22 @@ constexpr double kGrassPatch = 1.5;  // of grass, square [m]
 constexpr int kGrassShapes = 3;
 constexpr size_t kMostPatches = 2600;
 
+// Would a trunk there touch a stone that can move?
+bool has_loose(const Place& place, double x, double y) {
+  constexpr double kClear = 0.8;  // [m]
+  return std::any_of(place.placements().begin(), place.placements().end(), [&](const Placement& p) {
+    return p.loose && std::hypot(p.X_WP.p.x - x, p.X_WP.p.y - y) < kClear;
+  });
+}
+
+}  // namespace
+
 int make(Place* place, const char* kind, uint64_t seed, Vec3 size) {
   const Result<int> made = place->make({kind, seed, size});
   GLOAM_CHECK(made.ok(), made.error().message.c_str());
   return *made;
 }
 
-// Turned about its normal n.
 Quat leaning(Vec3f n, double turned) {
   const double angle = std::acos(std::min(1.0, double(n.z)));
   const Quat lean = angle > 1e-4 ? turn({-n.y, n.x, 0}, angle) : Quat{};
@@ -32,31 +41,6 @@ Quat leaning(Vec3f n, double turned) {
   return {lean.w * c - lean.z * s, lean.x * c + lean.y * s, lean.y * c - lean.x * s,
           lean.w * s + lean.z * c};
 }
-
-// How a thing of that radius lies on the ground that is felt: turned, its plane on the highest
-// samples around. Empty: it would rock on them.
-std::optional<Pose> lying(const HeightField& ground, double x, double y, double radius,
-                          double turned) {
-  constexpr double kLevel = 0.012;  // [m] of what rises above the plane
-  const double dx = (ground_height(ground, x + radius, y) - ground_height(ground, x - radius, y)) /
-                    (2 * radius),
-               dy = (ground_height(ground, x, y + radius) - ground_height(ground, x, y - radius)) /
-                    (2 * radius);
-  const double z = ground_height(ground, x, y);
-  double most = 0;
-  for (int k = 0; k < 48; ++k) {
-    const int ring = k / 16;
-    const double a = 2 * M_PI * k / 16, r = radius * (1 - ring / 3.0);
-    const double px = r * std::cos(a), py = r * std::sin(a);
-    most = std::max(most, ground_height(ground, x + px, y + py) - z - dx * px - dy * py);
-  }
-  if (most > kLevel || std::hypot(dx, dy) > 0.12) return {};
-  constexpr double kGap = 0.001;  // [m]
-  return Pose{{x, y, z + most + kGap},
-              leaning(normalize(Vec3f{float(-dx), float(-dy), 1}), turned)};
-}
-
-}  // namespace
 
 Solid blades(const BladeOptions& o, Dice* dice) {
   TriangleMesh mesh;
@@ -85,38 +69,6 @@ Pose on_ground(const Landscape& land, double x, double y, double turned) {
   return {{x, y, land.height(x, y)}, leaning(land.normal(x, y), turned)};
 }
 
-void add_rocks(const Landscape& land, const TerrainOptions& o, Place* place) {
-  Dice dice(o.seed, "rocks");
-  const Rect area = land.area();
-  const int boulders = static_cast<int>(std::lround(std::min(o.rocks * area.area() / 110, 120.0)));
-  for (int i = 0; i < boulders; ++i) {
-    const double x = dice.uniform(area.x0, area.x1), y = dice.uniform(area.y0, area.y1);
-    const double big = 0.35 + 1.1 * std::pow(dice.uniform(), 3), turned = dice.uniform(0, 2 * M_PI);
-    const uint64_t variant = static_cast<uint64_t>(dice.integer(0, 3));
-    if (!land.is_free(x, y, 0.9 + big) || std::hypot(x, y) < 3) continue;
-    const double size = std::ceil(big * 4) / 4;
-    Pose pose = on_ground(land, x, y, turned);
-    pose.p.z -= 0.16 * size;
-    place->put(make(place, "boulder", variant, {1.2 * size, size, 0.85 * size}), "", pose);
-  }
-  const int rocks = static_cast<int>(std::lround(std::min(o.rocks * area.area() / 60, 120.0)));
-  for (int i = 0; i < rocks; ++i) {
-    const double x = dice.uniform(area.x0, area.x1), y = dice.uniform(area.y0, area.y1);
-    const double turned = dice.uniform(0, 2 * M_PI);
-    const uint64_t variant = static_cast<uint64_t>(dice.integer(0, 4));
-    const bool loose = dice.chance(o.loose);
-    if (!land.is_free(x, y, 0.8) || std::hypot(x, y) < 2) continue;
-    std::optional<Pose> pose;
-    if (loose) pose = lying(place->grounds[0].field, x, y, 0.18, turned);
-    const bool lies = pose.has_value();
-    if (!lies) {
-      pose = on_ground(land, x, y, turned);
-      pose->p.z -= 0.04;
-    }
-    place->put(make(place, "rock", variant, {0.36, 0.28, 0.2}), "", *pose, lies);
-  }
-}
-
 void add_trees(const Landscape& land, const TerrainOptions& o, Place* place) {
   Dice dice(o.seed, "trees");
   const Rect area = land.area();
@@ -133,7 +85,7 @@ void add_trees(const Landscape& land, const TerrainOptions& o, Place* place) {
     const double x = dice.uniform(area.x0, area.x1), y = dice.uniform(area.y0, area.y1);
     const double turned = dice.uniform(0, 2 * M_PI);
     const int made = tree(false);
-    if (!land.is_free(x, y, 2.2) || std::hypot(x, y) < 5) continue;
+    if (!land.is_free(x, y, 2.2) || std::hypot(x, y) < 5 || has_loose(*place, x, y)) continue;
     place->put(made, "", {{x, y, land.height(x, y)}, turn({0, 0, 1}, turned)});
   }
   // Beyond the border they are drawn alone.

@@ -28,6 +28,11 @@ struct BladeOptions {
 /// Blades that bend outwards, their roots a little below z = 0.
 Solid blades(const BladeOptions& options, Dice* dice);
 
+/// A thing of the catalogue.
+int make(Place* place, const char* kind, uint64_t seed, Vec3 size);
+
+/// Upright along the unit normal, turned about it [rad].
+Quat leaning(Vec3f n, double turned);
 /// Stands on the ground as it leans there, turned about its normal [rad].
 Pose on_ground(const Landscape& land, double x, double y, double turned);
 

@@ -66,10 +66,7 @@ class GeneratedPlace : public ::testing::Test {
     const PlaceReport report = check_place(*world->compiled(), cell);
     EXPECT_LE(report.deepest_contact, 0.002) << report.deepest << " overlap";
     EXPECT_LE(report.furthest, 0.02) << report.furthest_body << " moves of itself";
-    // A stone that lies on uneven ground settles.
-    const double settles = std::is_same_v<Options, TerrainOptions> ? 6 : 3;  // [deg]
-    EXPECT_LE(report.most_turned, settles * M_PI / 180)
-        << report.most_turned_body << " turns of itself";
+    EXPECT_LE(report.most_turned, 3 * M_PI / 180) << report.most_turned_body << " turns of itself";
     EXPECT_TRUE(report.unreached.empty())
         << "no way to " << report.unreached[0] << " of " << report.unreached.size();
     EXPECT_TRUE(report.blocked_doors.empty()) << report.blocked_doors[0];

@@ -48,23 +48,34 @@ Solid stone(Vec3f size, int cuts, uint64_t seed) {
   return Solid(std::move(mesh));
 }
 
-Prop rock_of(Workshop& shop, Vec3f usual, int cuts) {
-  const Vec3f size = limited(shop.size(usual), {0.05f, 0.05f, 0.04f}, {8, 8, 6});
+Prop rock_of(Workshop& shop, Vec3f size, int cuts, float above = 0) {
   const uint64_t seed = shop.dice.seed();
   const float lift = 0.22f * size.z;
   Prop p;
   p.body().show("stone", shop.bedrock(), stone(size, cuts, seed).moved(0, 0, lift));
-  p.body().collide_hull(stone(size, 3, seed).moved(0, 0, lift), 0.9);
+  p.body().collide_hull(stone(size, 3, seed).moved(0, 0, lift + above), 0.9);
   p.body().mass = 2600 * 0.3 * double(size.x * size.y * size.z);  // granite [kg/m³]
   return p;
 }
 
+Vec3f size_of(Workshop& shop, Vec3f usual) {
+  return limited(shop.size(usual), {0.05f, 0.05f, 0.04f}, {8, 8, 6});
+}
+
+// On three feet: a hull that lies flat on a height field touches it in one point, another one at
+// every step, and creeps.
 Prop rock(Workshop& shop) {
-  Prop p = rock_of(shop, {0.34f, 0.28f, 0.22f}, 9);
+  const Vec3f size = size_of(shop, {0.34f, 0.28f, 0.22f});
+  const float radius = 0.09f * min(size.x, size.y), above = 0.04f * size.z;
+  Prop p = rock_of(shop, size, 9, above);
+  for (const float a : {0.0f, 2 * kPi / 3, -2 * kPi / 3})
+    p.body().collide_sphere({0.28f * size.x * std::cos(a), 0.28f * size.y * std::sin(a), radius},
+                            radius);
   p.loose = true;
   return p;
 }
-Prop boulder(Workshop& shop) { return rock_of(shop, {1.3f, 1.1f, 1.0f}, 17); }
+
+Prop boulder(Workshop& shop) { return rock_of(shop, size_of(shop, {1.3f, 1.1f, 1.0f}), 17); }
 
 constexpr PropKind kRocks[] = {{"rock", rock, "loose stone, flat below"},
                                {"boulder", boulder, "large weathered stone, flat below"}};
