@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "scene/mjcf/spec_kinds.h"
@@ -45,6 +46,60 @@ TEST(MjcfSpec, EveryElementHasASpecimenThatMuJoCoReads) {
     EXPECT_TRUE(spec.ok()) << element.path << ": " << spec.error().to_string() << "\n"
                            << specimen.document.to_xml();
   }
+}
+
+// "1 0 ... 0" as the numbers that are written out.
+std::string written_out(std::string_view otherwise) {
+  return std::string(otherwise.substr(0, otherwise.find(" ...")));
+}
+
+// Attributes that the parser takes for more than their value when they are given.
+bool says_more_when_given(std::string_view name) {
+  return name == "input" ||      // which inputs an actuator has: all that it can, or these
+         name == "timeconst" ||  // of a servo without a filter
+         name == "relpose";      // all of it, or what the compiler finds
+}
+
+// -0 is 0.
+std::string unsigned_zeros(std::string text) {
+  for (size_t at = 0; (at = text.find("-0 ", at)) != std::string::npos;) text.erase(at, 1);
+  return text;
+}
+
+// Given or left out, MuJoCo parses the same.
+TEST(MjcfSpec, DefaultsOfTheTableAreMuJoCos) {
+  int held = 0;
+  for (const MjcfElement& element : MjcfSchema::get().elements()) {
+    for (const MjcfAttribute& attribute : element.attributes) {
+      if (attribute.otherwise.empty() || attribute.is_required ||
+          attribute.most == MjcfAttribute::kAnyLength ||  // as many as the model asks for
+          says_more_when_given(attribute.name))
+        continue;
+      mjcf::Specimen specimen = mjcf::make_specimen(element, attribute.name);
+      ASSERT_TRUE(specimen.element.clear(attribute.name).ok());
+      const Result<mjcf::OwnedSpec> without = mjcf::parse_document(specimen.document);
+      if (!specimen.element.set(attribute.name, written_out(attribute.otherwise)).ok()) continue;
+      const Result<mjcf::OwnedSpec> with = mjcf::parse_document(specimen.document);
+      if (!without.ok() || !with.ok()) continue;  // its default fits another size of the element
+      ++held;
+      std::map<std::string, SpecObject> before, after;
+      for (const SpecObject& object : spec_objects(without->get()))
+        before.emplace(object.label, object);
+      for (const SpecObject& object : spec_objects(with->get()))
+        after.emplace(object.label, object);
+      ASSERT_EQ(before.size(), after.size()) << path_of(element, attribute);
+      for (const auto& [label, object] : after) {
+        for (const SpecField& field : spec_fields_of(object.owner)) {
+          if (field.name == "info" || field.name == "authored") continue;
+          EXPECT_EQ(unsigned_zeros(spec_text(before.at(label), field)),
+                    unsigned_zeros(spec_text(object, field)))
+              << path_of(element, attribute) << " is " << attribute.otherwise << " by the manual; "
+              << label << " " << field.name << " is not what MuJoCo has without it";
+        }
+      }
+    }
+  }
+  EXPECT_GE(held, 1200);
 }
 
 // Attributes that are read and leave nothing in a spec's fields.
