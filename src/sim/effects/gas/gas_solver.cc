@@ -18,7 +18,7 @@ namespace {
 /// empty costs renderers nothing [kg/m³].
 constexpr float kUnseen = 1e-9f;
 constexpr float kFullOfFlame = 1.2e6f;
-constexpr int kLeastCells = 4, kMostCells = 1024;  ///< along an axis
+constexpr int kLeastCells = 4, kMostCells = gas::kLongestRow;  ///< along an axis
 
 Error bad(std::string message, std::string hint) {
   return {ErrorKind::kInput, std::move(message), {}, std::move(hint)};

@@ -75,7 +75,7 @@ void GasSolver::State::substep(float dt, std::span<const GasSource> sources, Vec
   momentum.trace(openings, open, faces().read(), grid.voxel, dt);
   pressure.push(faces(), momentum.smoothness());
   lift_half();
-  momentum.carry(openings, open, faces(), grid.voxel, dt, wind);
+  momentum.carry(openings, open, velocity, grid.voxel, dt, wind);
   lift_half();
   if (properties.vorticity > 0) momentum.confine(open, faces(), properties.vorticity, dt);
   blow(sources);

@@ -1,5 +1,7 @@
 // Walls that move: what they cover is pushed aside, what they leave is filled from around it.
 
+#include <algorithm>
+
 #include "base/check.h"
 #include "sim/effects/gas/gas_state.h"
 
@@ -18,16 +20,6 @@ void for_neighbours(const Shape& s, int c, F&& f) {
   }
 }
 
-/// Calls f(i, j, k, c) for all cells, row by row.
-template <class F>
-void for_cells(const Shape& s, F&& f) {
-  for (int k = 0; k < s.nz; ++k) {
-    for (int j = 0; j < s.ny; ++j) {
-      for (int i = 0; i < s.nx; ++i) f(i, j, k, s.at(i, j, k));
-    }
-  }
-}
-
 }  // namespace
 
 void GasSolver::State::take_walls(const GasWalls& next) {
@@ -38,11 +30,16 @@ void GasSolver::State::take_walls(const GasWalls& next) {
   }
   filled.clear();
   freed.clear();
-  for_cells(shape, [&](int i, int j, int k, int c) {
-    const bool now = next.solid[next.cell(i, j, k)] != 0, was = openings.solid[size_t(c)] != 0;
-    if (now && !was) filled.push_back(c);
-    if (was && !now) freed.push_back(c);
-  });
+  for (int k = 0; k < shape.nz; ++k) {
+    for (int j = 0; j < shape.ny; ++j) {
+      const uint8_t *now = &next.solid[next.cell(0, j, k)], *was = &walls.solid[next.cell(0, j, k)];
+      if (std::equal(now, now + shape.nx, was)) continue;
+      for (int i = 0; i < shape.nx; ++i) {
+        if (now[i] && !was[i]) filled.push_back(shape.at(i, j, k));
+        if (was[i] && !now[i]) freed.push_back(shape.at(i, j, k));
+      }
+    }
+  }
   push_out(next);
   walls = next;
   use_walls();
@@ -58,13 +55,11 @@ void GasSolver::State::use_walls() {
     const Shape& s = shape;
     const Shape faces{s.nx + (a == 0), s.ny + (a == 1), s.nz + (a == 2), s.sy, s.sz};
     gas::for_rows(faces, [&](int j, int k) {
-      const size_t from = walls.face(a, 0, j, k);
-      const int begin = s.at(0, j, k);
-      for (int i = 0; i < faces.nx; ++i) {
-        if (open[a][begin + i] > 0.0f) continue;
-        velocity[a][size_t(begin + i)] =
-            walls.closed[a][from + size_t(i)] ? walls.velocity[a][from + size_t(i)] : 0.0f;
-      }
+      const float *own = walls.velocity[a].data() + walls.face(a, 0, j, k),
+                  *w = open[a] + s.at(0, j, k);
+      float* v = velocity[a].data() + s.at(0, j, k);
+      GLOAM_IVDEP
+      for (int i = 0; i < faces.nx; ++i) v[i] = w[i] > 0.0f ? v[i] : own[i];
     });
   }
 }

@@ -71,21 +71,31 @@ void Momentum::find_paths(const Openings& openings, const Faces<const float>& op
         to_x[i] = d.x, to_y[i] = d.y, to_z[i] = d.z;
       }
     }
-    for (int i = 0; i < s.nx; ++i) {
-      const int c = begin + i;
-      trusted_[size_t(c)] = 1.0f;
-      const float clear = float(openings.clearance[size_t(c)]);
-      const Vec3f v{carrier.velocity.x[c], carrier.velocity.y[c], carrier.velocity.z[c]};
-      const Vec3f d{x[c], y[c], z[c]};
-      const float far = max(max(max(d.x, -d.x), max(d.y, -d.y)), max(d.z, -d.z));
-      const float half = 0.5f * max(max(max(v.x, -v.x), max(v.y, -v.y)), max(v.z, -v.z));
-      if (max(far, half) <= clear) continue;
-      Vec3f moved;
-      if (openings.solid[size_t(c)]) {
-        trusted_[size_t(c)] = 0.0f;
-      } else if (!displacement_near_walls(carrier, open, i, j, k, &moved)) {
-        trusted_[size_t(c)] = 0.0f;
+    // Walls may be in the way where it is longer than what is clear around the cell.
+    uint8_t near[kLongestRow];
+    {
+      const auto size = [](float a, float b, float c) {
+        return max(max(max(a, -a), max(b, -b)), max(c, -c));
+      };
+      const Faces<const float> v = carrier.velocity;
+      const float *const dx = x + begin, *const dy = y + begin, *const dz = z + begin;
+      const float *const vx = v.x + begin, *const vy = v.y + begin, *const vz = v.z + begin;
+      const uint8_t* const clear = openings.clearance.data() + begin;
+      float* const trusted = trusted_.data() + begin;
+      GLOAM_IVDEP
+      for (int i = 0; i < nx; ++i) {
+        const float far = max(size(dx[i], dy[i], dz[i]), 0.5f * size(vx[i], vy[i], vz[i]));
+        near[i] = far > float(clear[i]) ? 1 : 0;
+        trusted[i] = 1.0f;
       }
+    }
+    for (int i = 0; i < nx; ++i) {
+      if (!near[i]) continue;
+      const int c = begin + i;
+      Vec3f moved;
+      const bool trusted =
+          !openings.solid[size_t(c)] && displacement_near_walls(carrier, open, i, j, k, &moved);
+      trusted_[size_t(c)] = trusted ? 1.0f : 0.0f;
       x[c] = moved.x, y[c] = moved.y, z[c] = moved.z;
     }
   });
@@ -106,9 +116,10 @@ void Momentum::find_smoothness() {
   fill_ghosts(s, smooth);
 }
 
-void Momentum::carry_axis(const Openings& openings, int axis, const float* open, float* velocity,
+void Momentum::carry_axis(const Openings& openings, int axis, const float* open, Field* field,
                           Vec3f wind, float drift) {
   const Shape& s = shape_;
+  float* velocity = field->data();
   const Shape faces = faces_of(s, axis);
   const float outside = wind[axis];
   const auto side = [&openings](int n) { return openings.side_open[n] ? 1.0f : 0.0f; };
@@ -136,9 +147,8 @@ void Momentum::carry_axis(const Openings& openings, int axis, const float* open,
     GLOAM_IVDEP
     for (int i = 0; i < nx; ++i) correct_face(v, i, j, k);
   });
-  for_rows(faces, [&](int j, int k) {
-    std::copy_n(corrected_.data() + s.at(0, j, k), faces.nx, velocity + s.at(0, j, k));
-  });
+  field->swap(corrected_);
+  velocity = field->data();
   // Wind comes in even where the air stands still.
   for (int side = 0; side < 2; ++side) {
     const float inward = side == 0 ? outside : -outside;
@@ -161,10 +171,10 @@ void Momentum::trace(const Openings& openings, const Faces<const float>& open,
   find_smoothness();
 }
 
-void Momentum::carry(const Openings& openings, const Faces<const float>& open,
-                     const Faces<float>& velocity, float voxel, float dt, Vec3f wind) {
+void Momentum::carry(const Openings& openings, const Faces<const float>& open, Field (&velocity)[3],
+                     float voxel, float dt, Vec3f wind) {
   for (int a = 0; a < 3; ++a) {
-    carry_axis(openings, a, open[a], velocity[a], wind, dt / (voxel * kInflow));
+    carry_axis(openings, a, open[a], &velocity[a], wind, dt / (voxel * kInflow));
   }
 }
 

@@ -19,7 +19,7 @@ class Momentum {
   const Field& smoothness() const { return smooth_; }
   /// Carries `velocity` along them; closed faces stay as they are. `wind` [m/s]: of the air
   /// outside.
-  void carry(const Openings& openings, const Faces<const float>& open, const Faces<float>& velocity,
+  void carry(const Openings& openings, const Faces<const float>& open, Field (&velocity)[3],
              float voxel, float dt, Vec3f wind);
   /// heat, smoke: of cells, ghosts 0. Where flow is not smooth, heat fluctuates, by `count`.
   void lift(const Faces<const float>& open, const Faces<float>& velocity, const float* heat,
@@ -34,7 +34,7 @@ class Momentum {
   void find_centres(const Faces<const float>& velocity, float scale, float limit);
   void find_smoothness();
   void find_paths(const Openings& openings, const Faces<const float>& open);
-  void carry_axis(const Openings& openings, int axis, const float* open, float* velocity,
+  void carry_axis(const Openings& openings, int axis, const float* open, Field* velocity,
                   Vec3f wind, float drift);
 
   Shape shape_;

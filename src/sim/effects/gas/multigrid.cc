@@ -13,7 +13,7 @@ float distance(const std::vector<float>& width, int i) {
 
 }  // namespace
 
-Multigrid::Multigrid(const Shape& shape) {
+Multigrid::Multigrid(const Shape& shape) : open_(size_t(shape.size()), 0) {
   for (Shape s = shape;;) {
     Level& level = levels_.emplace_back();
     // Where walls ask for it, half of the cells along an axis are not joined: room for that.
@@ -42,6 +42,7 @@ PoissonView Multigrid::view(size_t level) const {
 }
 
 void Multigrid::update() {
+  find_open_faces();
   invert(levels_[0]);
   for (size_t l = 1; l < levels_.size(); ++l) {
     for (int a = 0; a < 3; ++a) choose_cells(levels_[l - 1], a, &levels_[l].start[a]);
@@ -50,35 +51,56 @@ void Multigrid::update() {
   }
 }
 
+/// What is closed on each plane of faces along the axis, of those between cells that have an open
+/// face: their number less their weights' share of the largest.
+void Multigrid::find_lost(const Level& fine, int axis) {
+  const Shape& s = fine.shape;
+  const int n = s.n(axis), stride = s.stride(axis);
+  const float *weight = fine.weight[axis].data(), *inverse = fine.inverse.data();
+  planes_.assign(size_t(s.nz) * size_t(n), {});
+  for_slabs(s.nz, [&](int k) {
+    Plane* planes = &planes_[size_t(k) * size_t(n)];
+    float count[kLongestRow] = {}, sum[kLongestRow] = {},
+          most[kLongestRow] = {};  // side by side, along x
+    const auto add_up = [&](int plane) {
+      for (int i = 0; i < s.nx; ++i) {
+        Plane& to = planes[axis == 0 ? i : plane];
+        to.count += count[i], to.sum += sum[i], to.most = max(to.most, most[i]);
+        count[i] = sum[i] = most[i] = 0;
+      }
+    };
+    for (int j = 0; j < s.ny; ++j) {
+      const int begin = s.at(0, j, k), nx = s.nx;
+      const float *w = weight + begin, *here = inverse + begin, *before = here - stride;
+      GLOAM_IVDEP
+      for (int i = 0; i < nx; ++i) {
+        const float counts = (here[i] > 0.0f ? 1.0f : 0.0f) * (before[i] > 0.0f ? 1.0f : 0.0f);
+        count[i] += counts;
+        sum[i] += counts * w[i];
+        most[i] = max(most[i], counts * w[i]);
+      }
+      if (axis == 1) add_up(j);
+    }
+    if (axis != 1) add_up(k);
+  });
+  for (int i = 1; i < n; ++i) {
+    Plane all;
+    double sum = 0;
+    for (int k = 0; k < s.nz; ++k) {
+      const Plane& p = planes_[size_t(k) * size_t(n) + size_t(i)];
+      all.count += p.count, sum += double(p.sum), all.most = max(all.most, p.most);
+    }
+    lost_[size_t(i)] = all.most > 0 ? all.count - float(sum / double(all.most)) : all.count;
+  }
+}
+
 /// The number of cells is fixed; which ones are joined is chosen so that little of what is closed
 /// comes to lie inside (dynamic programming over the faces along the axis).
 void Multigrid::choose_cells(const Level& fine, int axis, std::vector<int>* start) {
   const Shape& s = fine.shape;
   const int n = s.n(axis), coarse_n = (n + 1) / 2;
-  // What is closed on the face before cell i, of all of that plane.
-  const float* w = fine.weight[axis].data();
-  const float* inverse = fine.inverse.data();
-  const int stride = s.stride(axis);
-  const int ny = axis == 1 ? 1 : s.ny, nz = axis == 2 ? 1 : s.nz, nx = axis == 0 ? 1 : s.nx;
-  for_slabs(n - 1, [&](int before) {
-    const int i = before + 1;
-    double open_sum = 0;
-    float closed = 0, most = 0;
-    for (int e = 0; e < nz; ++e) {
-      for (int d = 0; d < ny; ++d) {
-        const int c0 = s.at(axis == 0 ? i : 0, axis == 1 ? i : d, axis == 2 ? i : e);
-        for (int f = 0; f < nx; ++f) {
-          const int c = c0 + f;
-          if (inverse[c] == 0.0f || inverse[c - stride] == 0.0f) continue;
-          most = std::max(most, w[c]);
-          open_sum += double(w[c]);
-          closed += 1;
-        }
-      }
-    }
-    lost_[size_t(i)] = most > 0 ? closed - float(open_sum / double(most)) : closed;
-  });
-  const float plane = float(nx) * float(ny) * float(nz);
+  find_lost(fine, axis);
+  const float plane = float(s.nx) * float(s.ny) * float(s.nz) / float(n);
   const float uneven = 0.01f * plane;  // what a cell that is not of two costs
   // cost_[m][i]: of the first i cells joined to m.
   const auto at = [&](int m, int i) { return size_t(m) * size_t(n + 1) + size_t(i); };
@@ -142,6 +164,20 @@ void Multigrid::coarsen(const Level& fine, Level& coarse) {
   }
 }
 
+void Multigrid::find_open_faces() {
+  const Level& level = levels_[0];
+  const Faces<const float> weight = view(0).weight;
+  uint8_t* open = open_.data();
+  for_rows(level.shape, [&level, weight, open](int j, int k) {
+    const Shape s = level.shape;
+    const Faces<const float> w = weight;
+    uint8_t* const to = open;
+    const int begin = s.at(0, j, k), end = begin + s.nx;
+    GLOAM_IVDEP
+    for (int c = begin; c < end; ++c) to[c] = gas::open_faces(w, s, c);
+  });
+}
+
 void Multigrid::invert(Level& level) {
   const Shape& s = level.shape;
   const float *x = level.weight[0].data(), *y = level.weight[1].data(), *z = level.weight[2].data();
@@ -157,16 +193,27 @@ void Multigrid::invert(Level& level) {
 
 void Multigrid::precondition(const float* b, float* x) { cycle(0, b, x, true); }
 
+void Multigrid::smooth(size_t level, const float* b, const float* from, float* to,
+                       float damping) const {
+  const PoissonView v = view(level);
+  const uint8_t* open = open_.data();
+  for_rows(v.shape, [&v, b, from, to, damping, open, level](int j, int k) {
+    const PoissonView w = v;  // its own copy: the compiler need not look at it again for each cell
+    const int begin = w.shape.at(0, j, k), end = begin + w.shape.nx;
+    if (level == 0) {
+      GLOAM_IVDEP
+      for (int c = begin; c < end; ++c)
+        to[c] = relax(w, from, b, damping, apply_poisson(w.shape, open[c], from, c), c);
+    } else {
+      GLOAM_IVDEP
+      for (int c = begin; c < end; ++c) to[c] = relax(w, from, b, damping, c);
+    }
+  });
+}
+
 void Multigrid::cycle(size_t level, const float* b, float* x, bool from_zero) {
   const PoissonView v = view(level);
   float* t = levels_[level].scratch.data();
-  const auto smooth = [&v, b](const float* from, float* to, float damping) {
-    for_rows(v.shape, [&, b](int j, int k) {
-      const int begin = v.shape.at(0, j, k), end = begin + v.shape.nx;
-      GLOAM_IVDEP
-      for (int c = begin; c < end; ++c) to[c] = relax(v, from, b, damping, c);
-    });
-  };
   if (from_zero) {
     for_rows(v.shape, [&, b](int j, int k) {
       const int begin = v.shape.at(0, j, k), end = begin + v.shape.nx;
@@ -174,13 +221,13 @@ void Multigrid::cycle(size_t level, const float* b, float* x, bool from_zero) {
       for (int c = begin; c < end; ++c) t[c] = kSmooth[0] * v.inverse[c] * b[c];
     });
   } else {
-    smooth(x, t, kSmooth[0]);
+    smooth(level, b, x, t, kSmooth[0]);
   }
-  smooth(t, x, kSmooth[1]);
+  smooth(level, b, t, x, kSmooth[1]);
   if (level + 1 == levels_.size()) {
     for (int n = 1; n < kCoarsestSteps; ++n) {
-      smooth(x, t, kSmooth[0]);
-      smooth(t, x, kSmooth[1]);
+      smooth(level, b, x, t, kSmooth[0]);
+      smooth(level, b, t, x, kSmooth[1]);
     }
     return;
   }
@@ -190,22 +237,29 @@ void Multigrid::cycle(size_t level, const float* b, float* x, bool from_zero) {
   // Once more where it is cheap: joining without interpolation needs the better solution there.
   if (level + 2 < levels_.size()) cycle(level + 1, coarse.b.data(), coarse.x.data(), false);
   prolong(level, x);
-  smooth(x, t, kSmooth[1]);
-  smooth(t, x, kSmooth[0]);
+  smooth(level, b, x, t, kSmooth[1]);
+  smooth(level, b, t, x, kSmooth[0]);
 }
 
 void Multigrid::restrict_residual(size_t level, const float* b, const float* x) {
   const PoissonView v = view(level);
   Level& coarse = levels_[level + 1];
   const Shape &s = v.shape, &t = coarse.shape;
-  for_rows(t, [&](int j, int k) {
-    float row[1024];  // residuals of the finer rows, added up
+  const uint8_t* open = open_.data();
+  for_rows(t, [&, open](int j, int k) {
+    float row[kLongestRow];  // residuals of the finer rows, added up
     for (int i = 0; i < s.nx; ++i) row[i] = 0;
     for (int z = coarse.start[2][size_t(k)]; z < coarse.start[2][size_t(k) + 1]; ++z) {
       for (int y = coarse.start[1][size_t(j)]; y < coarse.start[1][size_t(j) + 1]; ++y) {
         const int begin = s.at(0, y, z);
-        GLOAM_IVDEP
-        for (int i = 0; i < s.nx; ++i) row[i] += b[begin + i] - apply_poisson(v, x, begin + i);
+        if (level == 0) {
+          GLOAM_IVDEP
+          for (int i = 0; i < s.nx; ++i)
+            row[i] += b[begin + i] - apply_poisson(s, open[begin + i], x, begin + i);
+        } else {
+          GLOAM_IVDEP
+          for (int i = 0; i < s.nx; ++i) row[i] += b[begin + i] - apply_poisson(v, x, begin + i);
+        }
       }
     }
     float* to = coarse.b.data() + t.at(0, j, k);
@@ -223,7 +277,7 @@ void Multigrid::prolong(size_t level, float* x) {
   const float* inverse = levels_[level].inverse.data();
   const Shape &s = levels_[level].shape, &t = coarse.shape;
   for_rows(t, [&](int j, int k) {
-    float row[1024];
+    float row[kLongestRow];
     const float* from = coarse.x.data() + t.at(0, j, k);
     const int* start = coarse.start[0].data();
     for (int i = 0; i < t.nx; ++i) {

@@ -12,7 +12,7 @@ namespace gloam::gas {
 class Multigrid {
  public:
   /// Bytes for a grid of `cells`, about.
-  static uint64_t bytes(uint64_t cells) { return cells * 4 * 8; }
+  static uint64_t bytes(uint64_t cells) { return cells * (4 * 8 + 1); }
 
   /// For a grid of this shape; all open until the next update().
   explicit Multigrid(const Shape& shape);
@@ -21,6 +21,8 @@ class Multigrid {
   /// To be filled before update(): 1 = open, 0 = closed, sides of the box too.
   Faces<float> weights();
   PoissonView finest() const { return view(0); }
+  /// Of the finest level's cells: open_faces(), after update().
+  const uint8_t* open_faces() const { return open_.data(); }
   /// x = about A⁻¹ b, by a symmetric linear map. `x`, `b`: with ghosts of 0.
   void precondition(const float* b, float* x);
 
@@ -35,14 +37,23 @@ class Multigrid {
     std::vector<int> start[3];
   };
   PoissonView view(size_t level) const;
+  struct Plane {
+    float count = 0, sum = 0, most = 0;
+  };
+  void find_lost(const Level& fine, int axis);
   void choose_cells(const Level& fine, int axis, std::vector<int>* start);
   void coarsen(const Level& fine, Level& coarse);
+  void find_open_faces();
   void invert(Level& level);
+  /// to = a damped Jacobi step from `from`.
+  void smooth(size_t level, const float* b, const float* from, float* to, float damping) const;
   void cycle(size_t level, const float* b, float* x, bool from_zero);
   void restrict_residual(size_t level, const float* b, const float* x);
   void prolong(size_t level, float* x);
 
   std::vector<Level> levels_;
+  std::vector<uint8_t> open_;
+  std::vector<Plane> planes_;       ///< scratch of find_lost()
   std::vector<float> lost_, cost_;  ///< scratch of choose_cells()
   std::vector<int> choice_;
 };

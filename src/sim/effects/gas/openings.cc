@@ -25,11 +25,13 @@ void Openings::set(const GasWalls& walls, const Faces<float>& open) {
       const uint8_t* closed = &walls.closed[a][walls.face(a, 0, j, k)];
       const float* velocity = &walls.velocity[a][walls.face(a, 0, j, k)];
       const int begin = s.at(0, j, k);
-      float* to = open[a] + begin;
-      for (int i = 0; i < faces.nx; ++i) {
-        to[i] = closed[i] ? 0.0f : 1.0f;
-        moving[a][size_t(begin + i)] = closed[i] && velocity[i] != 0.0f;
-      }
+      float* const to = open[a] + begin;
+      uint8_t* const moves = &moving[a][size_t(begin)];
+      const int nx = faces.nx;
+      GLOAM_IVDEP
+      for (int i = 0; i < nx; ++i) to[i] = closed[i] ? 0.0f : 1.0f;
+      GLOAM_IVDEP
+      for (int i = 0; i < nx; ++i) moves[i] = uint8_t((closed[i] != 0) & (velocity[i] != 0.0f));
       if (a == 0) {
         if (!side_open[0]) to[0] = 0;
         if (!side_open[1]) to[s.nx] = 0;

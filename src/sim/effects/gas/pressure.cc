@@ -110,7 +110,7 @@ void Pressure::subtract_gradient(const Faces<float>& velocity, const float* shar
 Projection Pressure::project(const Openings& openings, const Faces<float>& velocity,
                              const float* wanted, float voxel, float dt) {
   const Shape& s = shape_;
-  const PoissonView a = multigrid_.finest();
+  const uint8_t* open = multigrid_.open_faces();
   const Faces<const float> u = velocity.read();
   const auto rows = [&s](auto&& f) {
     for_rows(s, [&s, &f](int j, int k) {
@@ -133,12 +133,12 @@ Projection Pressure::project(const Openings& openings, const Faces<float>& veloc
   rows([&](int begin, int end) {
     GLOAM_IVDEP
     for (int c = begin; c < end; ++c) {
-      x[c] = a.inverse[c] > 0.0f ? x[c] : 0.0f;
+      x[c] = open[c] != 0 ? x[c] : 0.0f;
     }
   });
   rows([&](int begin, int end) {
     GLOAM_IVDEP
-    for (int c = begin; c < end; ++c) r[c] -= apply_poisson(a, x, c);
+    for (int c = begin; c < end; ++c) r[c] -= apply_poisson(s, open[c], x, c);
   });
   double norm = std::sqrt(dot(residual_, residual_));
   if (norm > before) {  // the last solution is no help
@@ -169,7 +169,7 @@ Projection Pressure::project(const Openings& openings, const Faces<float>& veloc
     const double curvature = grid_sum(s, partial_, [&](int j, int k) {
       const int begin = s.at(0, j, k);
       GLOAM_IVDEP
-      for (int c = begin; c < begin + s.nx; ++c) ap[c] = apply_poisson(a, p, c);
+      for (int c = begin; c < begin + s.nx; ++c) ap[c] = apply_poisson(s, open[c], p, c);
       return row_sum(begin, s.nx, [ap, p](int c) { return ap[c] * p[c]; });
     });
     if (!(curvature > 0)) break;  // nothing is left but rounding
@@ -189,7 +189,7 @@ Projection Pressure::project(const Openings& openings, const Faces<float>& veloc
     rows([&](int begin, int end) {
       GLOAM_IVDEP
       for (int c = begin; c < end; ++c)
-        r[c] = target[c] - outflow(s, u, c) - apply_poisson(a, x, c);
+        r[c] = target[c] - outflow(s, u, c) - apply_poisson(s, open[c], x, c);
     });
     norm = std::sqrt(dot(residual_, residual_));
     fresh = true;

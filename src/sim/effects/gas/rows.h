@@ -9,6 +9,8 @@
 
 namespace gloam::gas {
 
+inline constexpr int kLongestRow = 1024;  ///< cells along an axis
+
 using Field = std::vector<float>;
 
 /// Calls f(j, k) for each row of x.

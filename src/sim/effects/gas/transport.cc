@@ -5,9 +5,8 @@
 namespace gloam::gas {
 namespace {
 
-/// Share of its air that may leave a cell in a substep.
+/// Share of its air that may leave a cell in a sweep.
 constexpr float kMostOutflow = 0.95f;
-constexpr int kLongest = 1024;  ///< cells along an axis
 
 constexpr int kBlock = 128;  ///< cells side by side in a sweep along y or z: what L1 holds
 
@@ -57,10 +56,7 @@ float Transport::set_courant(const Faces<const float>& open, const Faces<const f
   for_rows(s, [&](int j, int k) {
     const int begin = s.at(0, j, k), end = begin + s.nx;
     float lanes[16] = {};
-    const auto out = [&](int c) {
-      return (max(x[c + 1], 0.0f) - min(x[c], 0.0f)) + (max(y[c + s.sy], 0.0f) - min(y[c], 0.0f)) +
-             (max(z[c + s.sz], 0.0f) - min(z[c], 0.0f));
-    };
+    const auto out = [&](int c) { return most_outflow(s, {x, y, z}, c); };
     int c = begin;
     for (; c + 16 <= end; c += 16) {
       for (int l = 0; l < 16; ++l) lanes[l] = max(lanes[l], out(c + l));
@@ -104,7 +100,7 @@ void Transport::sweep_x(const Sweep& sweep) {
     const float* courant = courant_[0].data() + begin;
     const float* open = sweep.open + begin;
     // Cell i lies at i + 2, with two ghosts of ambient air at both ends.
-    float air[kLongest + 4], q[kLongest + 4], d[kLongest + 5], flux[kLongest + 1];
+    float air[kLongestRow + 4], q[kLongestRow + 4], d[kLongestRow + 5], flux[kLongestRow + 1];
     air[0] = air[1] = air[n + 2] = air[n + 3] = 1.0f;
     for (int i = 0; i < n; ++i) air[i + 2] = sweep.air(s, courant_, begin + i);
     for (size_t f = 0; f < kScalars; ++f) {

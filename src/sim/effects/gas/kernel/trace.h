@@ -3,6 +3,9 @@
 // by them (Stam 1999; second-order: MacCormack's correction, Selle et al. 2008), which no speed
 // makes unstable. Device-safe.
 
+#include <bit>
+#include <cstdint>
+
 #include "sim/effects/gas/kernel/shape.h"
 
 namespace gloam::gas {
@@ -29,16 +32,29 @@ GLOAM_HD Between place(const Shape& s, int growing, float px, float py, float pz
   return out;
 }
 
-/// The eight values around a place: x runs fastest. Each is read at one index from a pointer of its
-/// own: so compilers see that lanes may gather them.
+/// The eight values around a place: x runs fastest.
 struct Corners {
   float v0, v1, v2, v3, v4, v5, v6, v7;
 };
 
+/// Two values side by side, read at once: lanes that gather wait for each read.
+struct Pair {
+  float low, high;
+};
+GLOAM_HD Pair pair_at(const float* f, int c) {
+#ifdef __CUDACC__
+  return {f[c], f[c + 1]};
+#else
+  using Bits [[gnu::may_alias, gnu::aligned(4)]] = uint64_t;
+  const uint64_t bits = *reinterpret_cast<const Bits*>(f + c);
+  return {std::bit_cast<float>(uint32_t(bits)), std::bit_cast<float>(uint32_t(bits >> 32))};
+#endif
+}
+
 GLOAM_HD Corners corners(const Shape& s, const float* f, int c) {
-  const float *f1 = f + 1, *f2 = f + s.sy, *f3 = f2 + 1;
-  const float *f4 = f + s.sz, *f5 = f4 + 1, *f6 = f4 + s.sy, *f7 = f6 + 1;
-  return {f[c], f1[c], f2[c], f3[c], f4[c], f5[c], f6[c], f7[c]};
+  const float *f2 = f + s.sy, *f4 = f + s.sz, *f6 = f4 + s.sy;
+  const Pair a = pair_at(f, c), b = pair_at(f2, c), d = pair_at(f4, c), e = pair_at(f6, c);
+  return {a.low, a.high, b.low, b.high, d.low, d.high, e.low, e.high};
 }
 
 GLOAM_HD float interpolate(const Corners& v, const Between& b) {

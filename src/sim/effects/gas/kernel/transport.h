@@ -34,4 +34,15 @@ GLOAM_HD float face_flux(float courant, float q1, float q2, float d01, float d12
   return courant * (on ? q + rest * slope : q - rest * slope);
 }
 
+/// The most that leaves the cell at c in a sweep along one axis, and in net in those along the
+/// others, which may come before it: of its air, in whichever order. `courant`: of faces.
+GLOAM_HD float most_outflow(const Shape& s, const Faces<const float>& courant, int c) {
+  const float xl = courant.x[c], xh = courant.x[c + 1], yl = courant.y[c], yh = courant.y[c + s.sy],
+              zl = courant.z[c], zh = courant.z[c + s.sz];
+  const float x = max(xh - xl, 0.0f), y = max(yh - yl, 0.0f), z = max(zh - zl, 0.0f);
+  const float out_x = max(xh, 0.0f) - min(xl, 0.0f), out_y = max(yh, 0.0f) - min(yl, 0.0f),
+              out_z = max(zh, 0.0f) - min(zl, 0.0f);
+  return max(max(out_x + (y + z), out_y + (x + z)), out_z + (x + y));
+}
+
 }  // namespace gloam::gas
