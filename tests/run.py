@@ -306,6 +306,7 @@ def full(tally):
         "sweeps": lambda t: gtest(t, "release", "control", "*.DISABLED_Sweep*"),
         "sweeps of places": lambda t: gtest(t, "release", "world", "*.DISABLED_Sweep*"),
         "sweeps of meshes": lambda t: gtest(t, "release", "geometry", "*.DISABLED_Sweep*"),
+        "sweeps of running scenes": lambda t: gtest(t, "release", "runtime", "*.DISABLED_Sweep*"),
         "Mitsuba's mutations": lambda t: python_tests(t, "tests/e2e/mitsuba_mutations.py"),
     }
     for module in modules_with("Mutations"):
