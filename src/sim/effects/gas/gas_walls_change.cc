@@ -40,20 +40,43 @@ void GasSolver::State::take_walls(const GasWalls& next) {
       }
     }
   }
+  if (card) {
+    find_touched();
+    card->download_cells(touched);
+  }
   push_out(next);
   walls = next;
   use_walls();
   fill_in();
+  if (card) card->upload_cells(touched);
+}
+
+/// Cells that walls took or left, and those beside them, each once.
+void GasSolver::State::find_touched() {
+  touched.clear();
+  for (const auto* cells : {&filled, &freed}) {
+    for (const int c : *cells) {
+      touched.push_back(c);
+      for_neighbours(shape, c, [&](int n, int, int) { touched.push_back(n); });
+    }
+  }
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
 }
 
 /// The solver's own layout of `walls`.
 void GasSolver::State::use_walls() {
   openings.set(walls, pressure.multigrid().weights());
   pressure.multigrid().update();
+  if (card) {
+    card->take_walls(walls);
+    stale |= gas::kVelocityFields;
+    return;
+  }
   const gas::Faces<const float> open = pressure.open();
   for (int a = 0; a < 3; ++a) {
     const Shape& s = shape;
-    const Shape faces{s.nx + (a == 0), s.ny + (a == 1), s.nz + (a == 2), s.sy, s.sz};
+    const Shape faces = s.faces(a);
     gas::for_rows(faces, [&](int j, int k) {
       const float *own = walls.velocity[a].data() + walls.face(a, 0, j, k),
                   *w = open[a] + s.at(0, j, k);

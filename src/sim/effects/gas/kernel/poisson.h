@@ -42,6 +42,11 @@ GLOAM_HD float apply_poisson(const Shape& s, uint8_t open, const float* x, int c
          (flow(x[c - s.sz], 4) + flow(x[c + s.sz], 5));
 }
 
+/// By how much pressure slows the face at c: half of `share` [of cells] of its gradient's work.
+GLOAM_HD float pressed(const float* open, const float* share, const float* x, int c, int stride) {
+  return open[c] * 0.5f * (share[c] + share[c - stride]) * (x[c] - x[c - stride]);
+}
+
 /// One damped Jacobi step at c, from what the operator makes of x.
 GLOAM_HD float relax(const PoissonView& v, const float* x, const float* b, float damping, float ax,
                      int c) {
