@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "base/parallel.h"
 #include "sim/effects/gas/gas_state.h"
 
 namespace gloam {
@@ -18,6 +19,19 @@ void for_neighbours(const Shape& s, int c, F&& f) {
     f(c - stride, a, c);
     f(c + stride, a, c + stride);
   }
+}
+
+/// Of one grid, on several threads.
+void copy_walls(const GasWalls& from, GasWalls* to) {
+  parallel_for("gas", 7, [&from, to](int64_t n) {
+    if (n < 3) {
+      to->velocity[n] = from.velocity[n];
+    } else if (n < 6) {
+      to->closed[n - 3] = from.closed[n - 3];
+    } else {
+      to->solid = from.solid;
+    }
+  });
 }
 
 }  // namespace
@@ -45,7 +59,7 @@ void GasSolver::State::take_walls(const GasWalls& next) {
     card->download_cells(touched);
   }
   push_out(next);
-  walls = next;
+  copy_walls(next, &walls);
   use_walls();
   fill_in();
   if (card) card->upload_cells(touched);
@@ -67,7 +81,14 @@ void GasSolver::State::find_touched() {
 /// The solver's own layout of `walls`.
 void GasSolver::State::use_walls() {
   openings.set(walls, pressure.multigrid().weights());
-  pressure.multigrid().update();
+  // Side by side: spaces are found by one thread.
+  parallel_for("gas", 2, [this](int64_t n) {
+    if (n == 0) {
+      openings.measure(pressure.open());
+    } else {
+      pressure.multigrid().update();
+    }
+  });
   if (card) {
     card->take_walls(walls);
     stale |= gas::kVelocityFields;

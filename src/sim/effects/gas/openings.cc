@@ -42,8 +42,11 @@ void Openings::set(const GasWalls& walls, const Faces<float>& open) {
       }
     });
   }
-  find_clearance(open.read());
-  find_spaces(open.read());
+}
+
+void Openings::measure(const Faces<const float>& open) {
+  find_clearance(open);
+  find_spaces(open);
 }
 
 void Openings::find_clearance(const Faces<const float>& open) {

@@ -64,10 +64,13 @@ class Card final : public CudaGas {
       const uint8_t* moves = openings_.moving[a].data();
       for (int k = 0; k < faces.nz; ++k) {
         for (int j = 0; j < faces.ny; ++j) {
+          const int begin = faces.at(0, j, k);
+          uint8_t any = 0;
+          for (int c = begin; c < begin + faces.nx; ++c) any |= moves[c];
+          if (any == 0) continue;
           const float* own = walls.velocity[a].data() + walls.face(a, 0, j, k);
           for (int i = 0; i < faces.nx; ++i) {
-            const int c = faces.at(i, j, k);
-            if (moves[c]) moving_at_.push_back(c), moving_.push_back(own[i]);
+            if (moves[begin + i]) moving_at_.push_back(begin + i), moving_.push_back(own[i]);
           }
         }
       }

@@ -5,13 +5,12 @@
 namespace gloam::gas {
 namespace {
 
-constexpr int kSmallCells = 4096;     ///< of a level that is left to one block, at most
 constexpr int kSmallValues = 50'000;  ///< floats of its memory: of 227 KiB
 
 /// Writes down what a cycle does.
 struct Recorder {
   std::vector<CycleWork>* works;
-  void add(CycleStep step, int level) { works->push_back({step, uint8_t(level)}); }
+  void add(CycleStep step, int level) { works->push_back({step, uint8_t(level), 0}); }
   void begin(int level) { add(CycleStep::kBegin, level); }
   void forth(int level, int n) { add(n == 0 ? CycleStep::kForth0 : CycleStep::kForth1, level); }
   void back(int level, int n) { add(n == 0 ? CycleStep::kBack0 : CycleStep::kBack1, level); }
@@ -35,11 +34,17 @@ CudaMultigrid::CudaMultigrid(const Multigrid& multigrid) : levels_(size_t(multig
     for (auto* f : {&level.x, &level.b}) f->reserve(size);
     for (int a = 0; a < 3; ++a) {
       level.start[a].reserve(size_t(level.shape.n(a)) + 1);
-      level.parent[a].reserve(size_t(levels_[l - 1].shape.n(a)));
+      level.parent[a].reserve(size_t(levels_[l - 1].shape.n(a)) + 2);
     }
   }
   Recorder recorder{&works_};
   run_cycle(recorder, 0, multigrid.levels(), true);
+  for (size_t n = works_.size(); n-- > 0;) {
+    CycleWork& work = works_[n];
+    if (work.step == CycleStep::kRestrict || work.step == CycleStep::kProlong) continue;
+    const bool goes_on = n + 1 < works_.size() && works_[n + 1].level == work.level;
+    work.run = uint8_t(1 + (goes_on ? works_[n + 1].run : 0));
+  }
   works_on_card_.assign(works_, nullptr);
 
   // The small levels: as many of the last as one block has memory for.
@@ -47,7 +52,7 @@ CudaMultigrid::CudaMultigrid(const Multigrid& multigrid) : levels_(size_t(multig
   for (int l = int(levels_.size()) - 1; l > 0; --l) {
     const Shape& s = levels_[size_t(l)].shape;
     const int values = small_.values + SmallLevels::kArrays * s.size();
-    if (s.nx * s.ny * s.nz > kSmallCells || values > kSmallValues) break;
+    if (s.nx * s.ny * s.nz > SmallLevels::kMostCells || values > kSmallValues) break;
     if (int(levels_.size()) - l > SmallLevels::kMost) break;
     small_.first = l, small_.values = values;
   }
@@ -88,10 +93,10 @@ void CudaMultigrid::take(const Multigrid& multigrid, cudaStream_t stream) {
       level.weight[a].assign({v.weight[a], size}, stream);
       const std::vector<int>& start = multigrid.start(l, a);
       level.start[a].assign(start, stream);
-      parent.clear();
-      for (int i = 0; i + 1 < int(start.size()); ++i) {
-        parent.resize(size_t(start[size_t(i) + 1]), i);
-      }
+      const int cells = int(start.size()) - 1;
+      parent.assign(1, -1);
+      for (int i = 0; i < cells; ++i) parent.resize(size_t(start[size_t(i) + 1]) + 1, i);
+      parent.push_back(cells);
       level.parent[a].assign(parent, stream);
     }
     level.inverse.assign({v.inverse, size}, stream);
@@ -107,7 +112,10 @@ void CudaMultigrid::precondition(const float* r, float* z, cudaStream_t stream) 
       n = end;
       continue;
     }
-    launch_step(works_[n++], r, z, stream);
+    // What begins or comes back from a coarser level is smoothed at once.
+    const CycleStep step = works_[n].step;
+    launch_step(works_[n], r, z, stream);
+    n += step == CycleStep::kBegin || step == CycleStep::kProlong ? 2 : 1;
   }
 }
 
@@ -121,7 +129,7 @@ void CudaMultigrid::launch_step(CycleWork work, const float* r, float* z,
   float *x = l == 0 ? z : level.x.get(), *t = level.scratch.get();
   switch (work.step) {
     case CycleStep::kBegin:
-      begin_level(v, b, t, kSmooth[0], stream);
+      smooth_from_nothing(v, open, b, x, {{kSmooth[0], kSmooth[1]}}, stream);
       break;
     case CycleStep::kForth0:
       smooth(v, open, b, x, t, kSmooth[0], stream);
@@ -144,7 +152,7 @@ void CudaMultigrid::launch_step(CycleWork work, const float* r, float* z,
     case CycleStep::kProlong: {
       const CudaLevel& next = levels_[l + 1];
       const Axes parent{{next.parent[0].get(), next.parent[1].get(), next.parent[2].get()}};
-      prolong_from(v, next.shape, parent, next.x.get(), x, stream);
+      prolong_and_smooth(v, open, b, x, next.shape, parent, next.x.get(), t, kSmooth[1], stream);
       break;
     }
   }

@@ -33,7 +33,8 @@ class DeviceArray {
     if (size <= size_) return;
     must(cudaFree(data_), "memory of the card cannot be freed");
     data_ = nullptr;
-    must(cudaMalloc(reinterpret_cast<void**>(&data_), size * sizeof(T)), "the card's memory is full");
+    must(cudaMalloc(reinterpret_cast<void**>(&data_), size * sizeof(T)),
+         "the card's memory is full");
     must(cudaMemset(data_, 0, size * sizeof(T)), "the card's memory cannot be set");
     must(cudaDeviceSynchronize(), "the card's memory cannot be set");  // whatever stream comes next
     size_ = size;
@@ -69,7 +70,8 @@ class PinnedArray {
     if (size > size_) {
       must(cudaFreeHost(data_), "pinned memory cannot be freed");
       data_ = nullptr;
-      must(cudaMallocHost(reinterpret_cast<void**>(&data_), size * sizeof(T)), "no pinned memory is left");
+      must(cudaMallocHost(reinterpret_cast<void**>(&data_), size * sizeof(T)),
+           "no pinned memory is left");
       size_ = size;
     }
     return data_;

@@ -5,6 +5,7 @@ namespace gloam::gas {
 namespace {
 
 constexpr int kSmallThreads = 512;
+constexpr int kCellsOfThread = SmallLevels::kMostCells / kSmallThreads;
 
 __device__ float residual(const PoissonView& v, const float* x, const float* b, int c) {
   return b[c] - apply_poisson(v, x, c);
@@ -24,6 +25,53 @@ __device__ float gather(const Shape& fine, const int* const (&start)[3], int i, 
   return sum;
 }
 
+/// Smoothing steps [n, n + run) on a level whose cells stay with their threads: what does not
+/// change lies in registers. One warp needs no others.
+__device__ void smooth_in_place(const SmallLevels& s, const SmallLevels::Level& level, float* own,
+                                int n, int run, const Dampings& damping) {
+  const Shape shape = level.shape;
+  const int size = shape.size(), cells = shape.nx * shape.ny * shape.nz;
+  const PoissonView v{shape, {own, own + size, own + 2 * size}, own + 3 * size};
+  float *const x = own + 4 * size, *const b = own + 5 * size, *const t = own + 6 * size;
+  const bool alone = cells <= 32;
+  if (!alone || threadIdx.x < 32) {
+    int at[kCellsOfThread];
+    FaceWeights weights[kCellsOfThread];
+    float inverse[kCellsOfThread], wanted[kCellsOfThread];
+    for (int q = 0; q < kCellsOfThread; ++q) {
+      const int m = int(threadIdx.x) + q * kSmallThreads;
+      at[q] = -1;
+      if (m >= cells) continue;
+      const int i = m % shape.nx, row = m / shape.nx;
+      const int c = shape.at(i, row % shape.ny, row / shape.ny);
+      at[q] = c, weights[q] = face_weights(v, c), inverse[q] = v.inverse[c], wanted[q] = b[c];
+    }
+    for (int end = n + run; n < end; ++n) {
+      const CycleStep step = s.works[n].step;
+      const bool forth = step == CycleStep::kForth0 || step == CycleStep::kForth1;
+      const bool second = step == CycleStep::kForth1 || step == CycleStep::kBack1;
+      const float *const from = forth ? x : t, factor = second ? damping.of[1] : damping.of[0];
+      float* const to = forth || step == CycleStep::kBegin ? t : x;
+      for (int q = 0; q < kCellsOfThread; ++q) {
+        const int c = at[q];
+        if (c < 0) continue;
+        if (step == CycleStep::kBegin) {
+          to[c] = factor * inverse[q] * wanted[q];
+        } else {
+          const float ax = apply_poisson(shape, weights[q], from, c);
+          to[c] = from[c] + factor * inverse[q] * (wanted[q] - ax);
+        }
+      }
+      if (alone) {
+        __syncwarp();
+      } else {
+        __syncthreads();
+      }
+    }
+  }
+  if (alone) __syncthreads();
+}
+
 __global__ void __launch_bounds__(kSmallThreads)
     small_kernel(const __grid_constant__ SmallLevels s, int from, int to, Dampings damping) {
   extern __shared__ float values[];
@@ -39,57 +87,99 @@ __global__ void __launch_bounds__(kSmallThreads)
     }
   }
   __syncthreads();
-  for (int n = from; n < to; ++n) {
+  for (int n = from; n < to;) {
     const CycleWork work = s.works[n];
     const int l = work.level - s.first;
     const SmallLevels::Level& level = s.levels[l];
     const Shape fine = level.shape;
-    const int size = fine.size();
     float* own = values + level.place;
+    if (work.run > 0) {
+      smooth_in_place(s, level, own, n, work.run, damping);
+      n += work.run;
+      continue;
+    }
+    const int size = fine.size();
     const PoissonView v{fine, {own, own + size, own + 2 * size}, own + 3 * size};
-    float *x = own + 4 * size, *b = own + 5 * size, *t = own + 6 * size;
-    const bool coarse = work.step == CycleStep::kRestrict;
-    const SmallLevels::Level& next =
-        s.levels[coarse || work.step == CycleStep::kProlong ? l + 1 : l];
-    const Shape over = coarse ? next.shape : fine;
+    float *x = own + 4 * size, *b = own + 5 * size;
+    const SmallLevels::Level& next = s.levels[l + 1];
     float* beyond = values + next.place;
+    const bool coarser = work.step == CycleStep::kRestrict;
+    const Shape over = coarser ? next.shape : fine;
     const int cells = over.nx * over.ny * over.nz;
     for (int m = int(threadIdx.x); m < cells; m += kSmallThreads) {
       const int i = m % over.nx, row = m / over.nx, j = row % over.ny, k = row / over.ny;
       const int c = over.at(i, j, k);
-      switch (work.step) {
-        case CycleStep::kBegin:
-          t[c] = damping.of[0] * v.inverse[c] * b[c];
-          break;
-        case CycleStep::kForth0:
-          t[c] = relax(v, x, b, damping.of[0], c);
-          break;
-        case CycleStep::kForth1:
-          t[c] = relax(v, x, b, damping.of[1], c);
-          break;
-        case CycleStep::kBack0:
-          x[c] = relax(v, t, b, damping.of[0], c);
-          break;
-        case CycleStep::kBack1:
-          x[c] = relax(v, t, b, damping.of[1], c);
-          break;
-        case CycleStep::kRestrict:
-          beyond[5 * next.shape.size() + c] =
-              gather(fine, next.start, i, j, k, [&](int f) { return residual(v, x, b, f); });
-          break;
-        case CycleStep::kProlong: {
-          const int p = next.shape.at(next.parent[0][i], next.parent[1][j], next.parent[2][k]);
-          x[c] += v.inverse[c] > 0.0f ? beyond[4 * next.shape.size() + p] : 0.0f;
-          break;
-        }
+      if (coarser) {
+        beyond[5 * next.shape.size() + c] =
+            gather(fine, next.start, i, j, k, [&](int f) { return residual(v, x, b, f); });
+      } else {
+        const int p =
+            next.shape.at(next.parent[0][i + 1], next.parent[1][j + 1], next.parent[2][k + 1]);
+        x[c] += v.inverse[c] > 0.0f ? beyond[4 * next.shape.size() + p] : 0.0f;
       }
     }
     __syncthreads();
+    ++n;
   }
   const int size = s.levels[0].shape.size();
   for (int n = int(threadIdx.x); n < size; n += kSmallThreads) {
     s.x[n] = values[s.levels[0].place + 4 * size + n];
   }
+}
+
+/// What the first step from 0 makes.
+struct FirstStep {
+  const float* inverse;
+  const float* b;
+  float damping;
+  __device__ float operator[](int c) const { return damping * inverse[c] * b[c]; }
+};
+
+/// Values around the cell at c.
+struct Star {
+  int c, sy, sz;
+  float here, xl, xh, yl, yh, zl, zh;
+  __device__ float operator[](int at) const {
+    const int d = at - c;
+    if (d == 0) return here;
+    if (d == 1 || d == -1) return d > 0 ? xh : xl;
+    if (d == sy || d == -sy) return d > 0 ? yh : yl;
+    return d > 0 ? zh : zl;
+  }
+};
+
+/// x and what the coarse level adds to it.
+struct Prolonged {
+  const float* inverse;
+  const float* x;
+  const float* from;
+  Shape coarse;
+  Axes parent;
+  __device__ float at(int c, int i, int j, int k) const {
+    const int p = coarse.at(parent.of[0][i + 1], parent.of[1][j + 1], parent.of[2][k + 1]);
+    return x[c] + (inverse[c] > 0.0f ? from[p] : 0.0f);
+  }
+  __device__ Star around(const Shape& s, int i, int j, int k) const {
+    const int c = s.at(i, j, k);
+    return {c,
+            s.sy,
+            s.sz,
+            at(c, i, j, k),
+            at(c - 1, i - 1, j, k),
+            at(c + 1, i + 1, j, k),
+            at(c - s.sy, i, j - 1, k),
+            at(c + s.sy, i, j + 1, k),
+            at(c - s.sz, i, j, k - 1),
+            at(c + s.sz, i, j, k + 1)};
+  }
+};
+
+/// `open`: of the finest level, else null.
+template <class X>
+__device__ float relax(const PoissonView& v, const uint8_t* open, X x, const float* b,
+                       float damping, int c) {
+  return open != nullptr ? relax(v, x, b, damping, apply_poisson(v.shape, open[c], x, c), c)
+                         : relax(v, x, b, damping, c);
 }
 
 }  // namespace
@@ -108,45 +198,52 @@ void spread_open_faces(const Shape& s, const uint8_t* open, const Faces<float>& 
   });
 }
 
-/// to = a damped step from `from`.
+void smooth_from_nothing(const PoissonView& v, const uint8_t* open, const float* b, float* x,
+                         Dampings damping, cudaStream_t stream) {
+  for_cells(v.shape, stream, [v, open, b, x, damping] __device__(int i, int j, int k) {
+    const int c = v.shape.at(i, j, k);
+    x[c] = relax(v, open, FirstStep{v.inverse, b, damping.of[0]}, b, damping.of[1], c);
+  });
+}
+
 void smooth(const PoissonView& v, const uint8_t* open, const float* b, const float* from, float* to,
             float damping, cudaStream_t stream) {
-  if (open != nullptr) {
-    for_cells(v.shape, stream, [v, open, b, from, to, damping] __device__(int i, int j, int k) {
-      const int c = v.shape.at(i, j, k);
-      to[c] = relax(v, from, b, damping, apply_poisson(v.shape, open[c], from, c), c);
-    });
-  } else {
-    for_cells(v.shape, stream, [v, b, from, to, damping] __device__(int i, int j, int k) {
-      const int c = v.shape.at(i, j, k);
-      to[c] = relax(v, from, b, damping, c);
-    });
-  }
+  for_cells(v.shape, stream, [v, open, b, from, to, damping] __device__(int i, int j, int k) {
+    const int c = v.shape.at(i, j, k);
+    to[c] = relax(v, open, from, b, damping, c);
+  });
 }
 
 void restrict_to(const PoissonView& v, const uint8_t* open, const float* x, const float* b,
                  const Shape& coarse, const Axes& start, float* to, cudaStream_t stream) {
-  for_cells(coarse, stream, [v, open, x, b, coarse, start, to] __device__(int i, int j, int k) {
-    to[coarse.at(i, j, k)] = gather(v.shape, start.of, i, j, k, [&](int c) {
-      return open != nullptr ? b[c] - apply_poisson(v.shape, open[c], x, c) : residual(v, x, b, c);
-    });
+  // A warp for each coarse cell, a lane for each of the at most 27 finer ones: one thread would
+  // wait for the memory once for each.
+  const Shape lanes{coarse.nx * 32, coarse.ny, coarse.nz, coarse.sy, coarse.sz};
+  for_cells(lanes, stream, [v, open, x, b, coarse, start, to] __device__(int at, int j, int k) {
+    const int i = at / 32, lane = at % 32;
+    const int cell[3] = {start.of[0][i] + lane / 9, start.of[1][j] + lane % 3,
+                         start.of[2][k] + lane / 3 % 3};
+    float here = 0;
+    if (cell[0] < start.of[0][i + 1] && cell[1] < start.of[1][j + 1] &&
+        cell[2] < start.of[2][k + 1]) {
+      const int c = v.shape.at(cell[0], cell[1], cell[2]);
+      here = open != nullptr ? b[c] - apply_poisson(v.shape, open[c], x, c) : residual(v, x, b, c);
+    }
+    // In the order of the CPU's rows: first what has the same place along x.
+    float column = 0, sum = 0;
+    for (int n = 0; n < 9; ++n) column += __shfl_sync(~0u, here, lane % 3 * 9 + n);
+    for (int n = 0; n < 3; ++n) sum += __shfl_sync(~0u, column, n);
+    if (lane == 0) to[coarse.at(i, j, k)] = sum;
   });
 }
 
-void prolong_from(const PoissonView& v, const Shape& coarse, const Axes& parent, const float* from,
-                  float* x, cudaStream_t stream) {
-  for_cells(v.shape, stream, [v, coarse, parent, from, x] __device__(int i, int j, int k) {
+void prolong_and_smooth(const PoissonView& v, const uint8_t* open, const float* b, const float* x,
+                        const Shape& coarse, const Axes& parent, const float* from, float* to,
+                        float damping, cudaStream_t stream) {
+  const Prolonged sum{v.inverse, x, from, coarse, parent};
+  for_cells(v.shape, stream, [v, open, b, sum, to, damping] __device__(int i, int j, int k) {
     const int c = v.shape.at(i, j, k);
-    const int p = coarse.at(parent.of[0][i], parent.of[1][j], parent.of[2][k]);
-    x[c] += v.inverse[c] > 0.0f ? from[p] : 0.0f;
-  });
-}
-
-void begin_level(const PoissonView& v, const float* b, float* t, float damping,
-                 cudaStream_t stream) {
-  for_cells(v.shape, stream, [v, b, t, damping] __device__(int i, int j, int k) {
-    const int c = v.shape.at(i, j, k);
-    t[c] = damping * v.inverse[c] * b[c];
+    to[c] = relax(v, open, sum.around(v.shape, i, j, k), b, damping, c);
   });
 }
 
