@@ -36,8 +36,7 @@ class CudaGas {
     float power = 0;  ///< [W/m³] per fuel burnt
   };
   struct Outcome {
-    double reaction[4] =
-        {};  ///< sums over cells of what Reaction holds, in its order but fuel third
+    double reaction[4] = {};  ///< sums over cells: heat made, heat lost, fuel burnt, smoke settled
     Projection projection;
     int transport_substeps = 0;
     double escaped[kScalars] = {};  ///< in cells' volumes

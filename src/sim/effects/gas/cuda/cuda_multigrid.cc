@@ -5,7 +5,7 @@
 namespace gloam::gas {
 namespace {
 
-constexpr int kSmallValues = 50'000;  ///< floats of its memory: of 227 KiB
+constexpr int kSmallValues = 50'000;  ///< floats that a block has room for: 200 of 227 KiB
 
 /// Writes down what a cycle does.
 struct Recorder {
