@@ -11,34 +11,35 @@ __device__ float residual(const PoissonView& v, const float* x, const float* b, 
   return b[c] - apply_poisson(v, x, c);
 }
 
-/// What the finer cells of coarse cell (i, j, k) leave, in the order of the CPU's rows.
+/// What the finer cells of coarse cell (i, j, k) leave: a lane of the warp for each of the at most
+/// 27, as one thread would wait for the memory once for each. In the order of the CPU's rows.
 template <class F>
 __device__ float gather(const Shape& fine, const int* const (&start)[3], int i, int j, int k, F f) {
-  float sum = 0;
-  for (int x = start[0][i]; x < start[0][i + 1]; ++x) {
-    float column = 0;
-    for (int z = start[2][k]; z < start[2][k + 1]; ++z) {
-      for (int y = start[1][j]; y < start[1][j + 1]; ++y) column += f(fine.at(x, y, z));
-    }
-    sum += column;
-  }
+  const int lane = int(threadIdx.x % 32);
+  const int x = start[0][i] + lane / 9, y = start[1][j] + lane % 3, z = start[2][k] + lane / 3 % 3;
+  const bool inside = x < start[0][i + 1] && y < start[1][j + 1] && z < start[2][k + 1];
+  const float here = inside ? f(fine.at(x, y, z)) : 0.0f;
+  float column = 0, sum = 0;  // first what has the same place along x
+  for (int n = 0; n < 9; ++n) column += __shfl_sync(~0u, here, lane % 3 * 9 + n);
+  for (int n = 0; n < 3; ++n) sum += __shfl_sync(~0u, column, n);
   return sum;
 }
 
-/// Smoothing steps [n, n + run) on a level whose cells stay with their threads: what does not
-/// change lies in registers. One warp needs no others.
-__device__ void smooth_in_place(const SmallLevels& s, const SmallLevels::Level& level, float* own,
-                                int n, int run, const Dampings& damping) {
-  const Shape shape = level.shape;
+/// Smoothing steps [n, n + run) on a level of which `kCells` cells stay with each thread: what does
+/// not change lies in registers. One warp needs no others.
+template <int kCells>
+__device__ void smooth_in_place(const SmallLevels& s, const Shape shape, float* own, int n, int run,
+                                const Dampings& damping) {
   const int size = shape.size(), cells = shape.nx * shape.ny * shape.nz;
   const PoissonView v{shape, {own, own + size, own + 2 * size}, own + 3 * size};
   float *const x = own + 4 * size, *const b = own + 5 * size, *const t = own + 6 * size;
   const bool alone = cells <= 32;
   if (!alone || threadIdx.x < 32) {
-    int at[kCellsOfThread];
-    FaceWeights weights[kCellsOfThread];
-    float inverse[kCellsOfThread], wanted[kCellsOfThread];
-    for (int q = 0; q < kCellsOfThread; ++q) {
+    int at[kCells];
+    FaceWeights weights[kCells];
+    float inverse[kCells], wanted[kCells];
+#pragma unroll
+    for (int q = 0; q < kCells; ++q) {
       const int m = int(threadIdx.x) + q * kSmallThreads;
       at[q] = -1;
       if (m >= cells) continue;
@@ -46,13 +47,16 @@ __device__ void smooth_in_place(const SmallLevels& s, const SmallLevels::Level& 
       const int c = shape.at(i, row % shape.ny, row / shape.ny);
       at[q] = c, weights[q] = face_weights(v, c), inverse[q] = v.inverse[c], wanted[q] = b[c];
     }
+    CycleStep next = s.works[n].step;
     for (int end = n + run; n < end; ++n) {
-      const CycleStep step = s.works[n].step;
+      const CycleStep step = next;
+      if (n + 1 < end) next = s.works[n + 1].step;  // on its way while this one works
       const bool forth = step == CycleStep::kForth0 || step == CycleStep::kForth1;
       const bool second = step == CycleStep::kForth1 || step == CycleStep::kBack1;
       const float *const from = forth ? x : t, factor = second ? damping.of[1] : damping.of[0];
       float* const to = forth || step == CycleStep::kBegin ? t : x;
-      for (int q = 0; q < kCellsOfThread; ++q) {
+#pragma unroll
+      for (int q = 0; q < kCells; ++q) {
         const int c = at[q];
         if (c < 0) continue;
         if (step == CycleStep::kBegin) {
@@ -94,7 +98,11 @@ __global__ void __launch_bounds__(kSmallThreads)
     const Shape fine = level.shape;
     float* own = values + level.place;
     if (work.run > 0) {
-      smooth_in_place(s, level, own, n, work.run, damping);
+      if (fine.nx * fine.ny * fine.nz <= kSmallThreads) {
+        smooth_in_place<1>(s, fine, own, n, work.run, damping);
+      } else {
+        smooth_in_place<kCellsOfThread>(s, fine, own, n, work.run, damping);
+      }
       n += work.run;
       continue;
     }
@@ -105,13 +113,14 @@ __global__ void __launch_bounds__(kSmallThreads)
     float* beyond = values + next.place;
     const bool coarser = work.step == CycleStep::kRestrict;
     const Shape over = coarser ? next.shape : fine;
-    const int cells = over.nx * over.ny * over.nz;
-    for (int m = int(threadIdx.x); m < cells; m += kSmallThreads) {
+    const int cells = over.nx * over.ny * over.nz, lanes = coarser ? 32 : 1;
+    for (int m = int(threadIdx.x) / lanes; m < cells; m += kSmallThreads / lanes) {
       const int i = m % over.nx, row = m / over.nx, j = row % over.ny, k = row / over.ny;
       const int c = over.at(i, j, k);
       if (coarser) {
-        beyond[5 * next.shape.size() + c] =
+        const float sum =
             gather(fine, next.start, i, j, k, [&](int f) { return residual(v, x, b, f); });
+        if (threadIdx.x % 32 == 0) beyond[5 * next.shape.size() + c] = sum;
       } else {
         const int p =
             next.shape.at(next.parent[0][i + 1], next.parent[1][j + 1], next.parent[2][k + 1]);
@@ -216,24 +225,13 @@ void smooth(const PoissonView& v, const uint8_t* open, const float* b, const flo
 
 void restrict_to(const PoissonView& v, const uint8_t* open, const float* x, const float* b,
                  const Shape& coarse, const Axes& start, float* to, cudaStream_t stream) {
-  // A warp for each coarse cell, a lane for each of the at most 27 finer ones: one thread would
-  // wait for the memory once for each.
   const Shape lanes{coarse.nx * 32, coarse.ny, coarse.nz, coarse.sy, coarse.sz};
-  for_cells(lanes, stream, [v, open, x, b, coarse, start, to] __device__(int at, int j, int k) {
-    const int i = at / 32, lane = at % 32;
-    const int cell[3] = {start.of[0][i] + lane / 9, start.of[1][j] + lane % 3,
-                         start.of[2][k] + lane / 3 % 3};
-    float here = 0;
-    if (cell[0] < start.of[0][i + 1] && cell[1] < start.of[1][j + 1] &&
-        cell[2] < start.of[2][k + 1]) {
-      const int c = v.shape.at(cell[0], cell[1], cell[2]);
-      here = open != nullptr ? b[c] - apply_poisson(v.shape, open[c], x, c) : residual(v, x, b, c);
-    }
-    // In the order of the CPU's rows: first what has the same place along x.
-    float column = 0, sum = 0;
-    for (int n = 0; n < 9; ++n) column += __shfl_sync(~0u, here, lane % 3 * 9 + n);
-    for (int n = 0; n < 3; ++n) sum += __shfl_sync(~0u, column, n);
-    if (lane == 0) to[coarse.at(i, j, k)] = sum;
+  for_cells(lanes, stream, [v, open, x, b, coarse, start, to] __device__(int lane, int j, int k) {
+    const int i = lane / 32;
+    const float sum = gather(v.shape, start.of, i, j, k, [&](int c) {
+      return open != nullptr ? b[c] - apply_poisson(v.shape, open[c], x, c) : residual(v, x, b, c);
+    });
+    if (lane % 32 == 0) to[coarse.at(i, j, k)] = sum;
   });
 }
 
