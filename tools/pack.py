@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes a bundle that runs on a bare machine: `./gloam pack [FILE]`, default build/gloam.tar.gz.
 
-    gloam/bin/            the program, its tests and its measurements of the card
+    gloam/bin/            the program, its test and its measurement of the card
     gloam/lib/gloam/      every library they need but the C library's own
     gloam/share/gloam/    assets and examples
 
@@ -17,7 +17,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-PROGRAMS = ["gloam", "gloam_cuda_test", "gloam_gas_cuda_test", "bench_cuda_rate", "bench_gas_rate"]
+PROGRAMS = ["gloam", "gloam_cuda_test", "bench_cuda_rate"]
 MOST_BYTES = 40 << 20
 # Parts of the C library: those of the machine that runs the bundle.
 OF_THE_SYSTEM = re.compile(r"^(linux-vdso|ld-linux|lib(c|m|dl|rt|pthread|resolv|util)\.so)")
