@@ -372,6 +372,17 @@ def gas(quick):
     yield at_most("the same: L2 norm of the divergence after / before, worst step", data["worst_divergence_ratio"], 1e-4, "something moves")
 
 
+def effects(quick):
+    """what the fire of examples/house_fire.toml costs, against the same scene without"""
+    data = run_json(BIN / "bench_effects_cost", ROOT / "examples" / "house_fire.toml", "living", "--json", "--at", 10 if quick else 20,
+                    "--blocks", 6 if quick else 20, "--pictures", 3 if quick else 8)
+    yield at_most("CPU time of the stepping thread with a fire / without", data["step_ratio"], 1.1, f"medians; {data['step_us']:.0f} µs a step")
+    yield at_least("house fire: simulated time / real time, gas at 10 Hz", data["real_time"], 1, "on 2 cores, without pictures")
+    yield at_most("fast tier 640 x 480 with a room full of smoke / without", data["picture_ratio"], 2,
+                  f"wall, medians: {data['picture_ms']:.0f} ms, {data['clear_ms']:.0f} ms without")
+
+
 # With the seconds that each takes on two cores: the first estimate of the time left.
 ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, fast_tier: 400, truth: 40, load_time: 120, import_time: 60,
-       first_picture: 15, adaptive_sampling: 120, lidar: 25, environments: 60, hfield: 25, gas: 20}
+       first_picture: 15, adaptive_sampling: 120, lidar: 25, environments: 60, hfield: 25, gas: 20,
+       effects: 90}

@@ -174,7 +174,8 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   GLOAM_TRY(const int64_t steps, step_of_time(duration, rate, "a duration"));
 
   RunReport report;
-  RobotMetrics metrics(*world.compiled());
+  GLOAM_TRY(VisibilityProbe probe, VisibilityProbe::make(*world.compiled()));
+  RobotMetrics metrics(*world.compiled(), std::move(probe));
   std::unique_ptr<Recorder> recorder;
   std::vector<std::unique_ptr<LiveCamera>> cameras;
   std::unique_ptr<LiveSensors> sensors;

@@ -1,5 +1,6 @@
 #include "runtime/robot_metrics.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "gloam/scene.h"
@@ -20,10 +21,26 @@ VelocityGoal goal_at(const RobotOptions& robot, double time) {
   return current;
 }
 
+// Of what the robot collides with, sideways from its base [m].
+double reach_of(const mjModel& m, const mjData& d, int root) {
+  double reach = 0;
+  for (int g = 0; g < m.ngeom; ++g) {
+    if (m.body_rootid[m.geom_bodyid[g]] != root || !(m.geom_contype[g] | m.geom_conaffinity[g]))
+      continue;
+    const mjtNum *p = d.geom_xpos + 3 * g, *base = d.xpos + 3 * root;
+    reach = std::max(reach, std::hypot(p[0] - base[0], p[1] - base[1]) + m.geom_rbound[g]);
+  }
+  return reach;
+}
+
 }  // namespace
 
-RobotMetrics::RobotMetrics(const CompiledWorld& world) {
+RobotMetrics::RobotMetrics(const CompiledWorld& world, VisibilityProbe probe)
+    : probe_(std::move(probe)) {
   columns_.push_back("time_s");
+  const mjModel& model = *world.model;
+  const DataPtr data(probe_.has_media() ? mj_makeData(&model) : nullptr);
+  if (data) mj_kinematics(&model, data.get());
   for (const RobotInstance& robot : world.robots) {
     const int joint = floating_joint(*world.model, robot.root_body);
     if (joint < 0) continue;
@@ -31,6 +48,7 @@ RobotMetrics::RobotMetrics(const CompiledWorld& world) {
     tracked.name = robot.name;
     tracked.options = &robot.options;
     tracked.base = {joint};
+    if (data) tracked.reach = reach_of(model, *data, robot.root_body);
     robots_.push_back(tracked);
     const std::string prefix = robot.name.empty() ? "" : robot.name + ".";
     for (const char* column : {"x_m", "y_m", "z_m", "roll_rad", "pitch_rad", "yaw_rad"}) {
@@ -41,6 +59,7 @@ RobotMetrics::RobotMetrics(const CompiledWorld& world) {
     for (int axis = 0; axis < 3; ++axis)
       columns_.push_back(prefix + kAxes[axis] + "_goal_" + kUnits[axis]);
     columns_.push_back(prefix + "fallen");
+    if (probe_.has_media()) columns_.push_back(prefix + "visibility_m");
   }
 }
 
@@ -104,6 +123,25 @@ void RobotMetrics::measure(Tracked& robot, const Snapshot& snapshot) {
   row_.insert(row_.end(), measured, measured + 3);
   row_.insert(row_.end(), wanted, wanted + 3);
   row_.push_back(fallen ? 1 : 0);
+  if (probe_.has_media()) {
+    const double visibility = this->visibility(robot, snapshot, x, y, z);
+    robot.least_visibility = std::min(robot.least_visibility, visibility);
+    robot.extinction += 3.912 / visibility;
+    row_.push_back(visibility);
+  }
+}
+
+double RobotMetrics::visibility(const Tracked& robot, const Snapshot& snapshot, double x, double y,
+                                double z) const {
+  constexpr int kPoints = 8;
+  constexpr double kClear = 0.15;  // of voxels that it fills in part [m]
+  double least = VisibilityProbe::kClear;
+  for (int i = 0; i < kPoints; ++i) {
+    const double a = 2 * M_PI * i / kPoints, r = robot.reach + kClear;
+    const Vec3f p{float(x + r * std::cos(a)), float(y + r * std::sin(a)), float(z)};
+    least = std::min(least, probe_.visibility(snapshot.data(), p));
+  }
+  return least;
 }
 
 std::vector<NamedNumber> RobotMetrics::summary() const {
@@ -117,6 +155,11 @@ std::vector<NamedNumber> RobotMetrics::summary() const {
     }
     numbers.emplace_back(prefix + "falls", static_cast<double>(robot.falls));
     numbers.emplace_back(prefix + "path_length_m", robot.path_length);
+    if (probe_.has_media() && samples_ > 0) {
+      numbers.emplace_back(prefix + "visibility_min_m", robot.least_visibility);
+      numbers.emplace_back(prefix + "visibility_mean_m",
+                           3.912 * static_cast<double>(samples_) / robot.extinction);
+    }
   }
   return numbers;
 }

@@ -1,6 +1,6 @@
 #pragma once
-// How well each robot follows its velocity goals: one row of metrics.csv per sample, and the
-// numbers of the summary.
+// How well each robot follows its velocity goals, and how far it sees: one row of metrics.csv per
+// sample, and the numbers of the summary.
 
 #include <string>
 #include <utility>
@@ -8,21 +8,24 @@
 
 #include "gloam/snapshot.h"
 #include "record/recorder.h"
+#include "runtime/visibility_probe.h"
 #include "world/world.h"
 
 namespace gloam {
 
 class RobotMetrics {
  public:
-  /// Robots with a floating base are measured; others give no columns.
-  explicit RobotMetrics(const CompiledWorld& world);
+  /// Robots with a floating base are measured; others give no columns. Visibility is measured where
+  /// the scene has media: the least at eight points around the robot at the height of its base.
+  explicit RobotMetrics(const CompiledWorld& world, VisibilityProbe probe = {});
 
   const std::vector<std::string>& columns() const { return columns_; }
   /// Plots for the contact sheet: measured and commanded velocity of the first robot with goals.
   std::vector<MetricPlot> plots() const;
   /// The row of one instant; also feeds the summary.
   const std::vector<double>& sample(const Snapshot& snapshot);
-  /// "NAME.vx_error_rms_percent" … over all samples so far, and "NAME.falls".
+  /// "NAME.vx_error_rms_percent" … over all samples so far, "NAME.falls", and in media
+  /// "NAME.visibility_min_m", "NAME.visibility_mean_m": of the mean extinction.
   std::vector<NamedNumber> summary() const;
 
  private:
@@ -31,13 +34,19 @@ class RobotMetrics {
     const RobotOptions* options = nullptr;
     Joint base;               // its free joint
     double start_height = 0;  // [m]
+    double reach = 0;         // of what it collides with, sideways from its base, at qpos0 [m]
     bool has_start = false, fallen = false;
     int64_t falls = 0;
     double error_squared[3] = {}, goal_squared[3] = {};
-    double path_length = 0, last_x = 0, last_y = 0;  // [m]
+    double path_length = 0, last_x = 0, last_y = 0;                     // [m]
+    double least_visibility = VisibilityProbe::kClear, extinction = 0;  // [m]; sum of samples [1/m]
   };
   void measure(Tracked& robot, const Snapshot& snapshot);
+  // Around it, since its own body keeps smoke out.
+  double visibility(const Tracked& robot, const Snapshot& snapshot, double x, double y,
+                    double z) const;
 
+  VisibilityProbe probe_;
   std::vector<Tracked> robots_;
   std::vector<std::string> columns_;
   std::vector<double> row_;

@@ -235,10 +235,10 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
     uint32_t rays = 0;
     const MarchResult m = march(
         scene.media, ray, lane(tmax, i), 0.0f, steps, {},
-        [&](const MediumPoint& point, Vec3f p_W, float ds) {
-          // Of what is thin, few steps ask for light and count for many.
-          constexpr float kThin = 0.1f;
-          const float chance = min(max_component(point.extinction) * ds * (1 / kThin), 1.0f);
+        [&](const MediumPoint& point, Vec3f p_W, Vec3f share) {
+          // Of what is thin, dark or behind the rest, few steps ask for light and count for many.
+          constexpr float kLittle = 0.1f;
+          const float chance = min(max_component(point.scattering * share) * (1 / kLittle), 1.0f);
           if (!(random.next() < chance)) return Vec3f{};
           return scattered_light(scene, tracer, ray, point, p_W, &random, &rays) * (1 / chance);
         });

@@ -93,8 +93,8 @@ GLOAM_HD float glow_step(const MediumWalk& walk, Bands bands) {
 /// Marches through the media in steps of at most `step` [m], or longer ones where that would take
 /// more than about `max_steps`. Empty cells are skipped. Along a step all is as in its middle and
 /// Beer-Lambert's law is integrated, so even media are exact with any step.
-/// `source(const MediumPoint&, Vec3f p_W, float ds)`, once a step of ds [m]: light that media
-/// scatter towards the ray's origin [cd/m² per m].
+/// `source(const MediumPoint&, Vec3f p_W, Vec3f share)`, once a step: light that media scatter
+/// towards the ray's origin [cd/m² per m], of which `share` gets there [m].
 template <class Source>
 GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, float step,
                            int max_steps, Bands bands, const Source& source) {
@@ -131,8 +131,8 @@ GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, f
         result.transmittance *= media::exp_of(-depth);
         media::add(point, 1 / parts, &mean);
       }
-      result.radiance += before * media::mean_transmittance(mean.extinction * ds) *
-                         source(mean, ray.o + ray.d * (begin + 0.5f * ds), ds) * ds;
+      const Vec3f share = before * media::mean_transmittance(mean.extinction * ds) * ds;
+      result.radiance += share * source(mean, ray.o + ray.d * (begin + 0.5f * ds), share);
       if (max_component(result.transmittance) < kDark) return result;
     }
   }

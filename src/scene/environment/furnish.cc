@@ -60,8 +60,8 @@ std::optional<int> Furnisher::dining_set(const Vec3& table_size, const std::stri
   const int table = make(table_kind, table_size);
   const int chair = make(chair_kind);
   const Prop::Box t = prop(table).bounds(), c = prop(chair).bounds();
-  const double tuck = 0.18;  // how far a seat goes under the table
-  const float out = float(t.high.x + (c.high.x - c.low.x) - tuck);
+  const double tuck = 0.18, drawn = 0.12;  // how far a seat goes under the table, at most less
+  const float out = float(t.high.x + (c.high.x - c.low.x) - tuck + drawn);
   // Free on all sides, or else with one side at the wall.
   Prop all, half;
   all.body().collide_box({-out, t.low.y, 0}, {out, t.high.y, t.high.z});
@@ -81,7 +81,7 @@ std::optional<int> Furnisher::dining_set(const Vec3& table_size, const std::stri
     if (side < 0 && !is_free) break;
     for (int i = 0; i < each; ++i) {
       const double y = (i + 0.5) * wide / each - wide / 2 + dice_.uniform(-0.02, 0.02);
-      const double x = side * (t.high.x - tuck + c.high.x + dice_.uniform(0, 0.12));
+      const double x = side * (t.high.x - tuck + c.high.x + dice_.uniform(0, drawn));
       const Spot s = beside(*spot, x, y, side > 0 ? 2 : 0);
       layout_.put(chair, s, is_loose(chair));
     }

@@ -5,7 +5,8 @@
 namespace gloam {
 namespace {
 
-/// Mean height of flames above a burner [m]: up to where some voxel is as hot as flames look.
+/// Mean height of flames above a burner [m]: up to where some voxel shines a quarter as bright as
+/// luminous flame of 1500 K: there it is flame a quarter of the time.
 double flame_height(double kilowatts, float diameter, float voxel, float height) {
   const auto cells = [voxel](float size) { return int(std::round(size / voxel)); };
   const float width = std::max(3 * diameter, 2.0f);
@@ -17,6 +18,7 @@ double flame_height(double kilowatts, float diameter, float voxel, float height)
   burner.X_WS.p = {0, 0, 0.5f * voxel};
   burner.half_size = {diameter / 2, diameter / 2, 0.6f * voxel};
   burner.fuel = float(kilowatts * 1e3) / p.heat_of_combustion;
+  constexpr float kQuarter = 1380;  // [K], by Wien's law at 600 nm
   std::vector<float> soot, kelvin;
   double sum = 0;
   const int settle = 40, steps = 60;
@@ -26,7 +28,7 @@ double flame_height(double kilowatts, float diameter, float voxel, float height)
     gas->read(&soot, &kelvin);
     size_t top = 0;
     for (size_t c = 0; c < kelvin.size(); ++c) {
-      if (kelvin[c] > 800) top = c / (size_t(grid.nx) * size_t(grid.ny)) + 1;
+      if (kelvin[c] > kQuarter) top = c / (size_t(grid.nx) * size_t(grid.ny)) + 1;
     }
     sum += double(top) * double(voxel) / steps;
   }
@@ -39,7 +41,7 @@ void check_flame(double kilowatts, float diameter, float voxel, float height) {
   const double is = flame_height(kilowatts, diameter, voxel, height);
   printf("%.0f kW on %.1f m, voxels of %.2f m: flames of %.2f m, law %.2f m\n", kilowatts, diameter,
          voxel, is, law);
-  EXPECT_NEAR(is, law, 0.65 * law) << "m";
+  EXPECT_NEAR(is, law, 0.3 * law) << "m";
 }
 
 TEST(GasFire, FlamesAreAsHighAsMeasured) { check_flame(100, 0.5f, 0.1f, 3); }

@@ -76,6 +76,15 @@ uint64_t bytes_of(const GasGrid& g) {
          cells * (9 * 4 + 16 + 7 + 4 + 4 + 12);
 }
 
+/// What glows in a voxel is soot in sheets of flame much thinner than it, as many of them as it
+/// burns fast: the temperature [K] at which all of the voxel's soot would send as much light as
+/// these do, by Wien's law at 600 nm. Thermal cameras see it too hot: to them a sheet of a tenth is
+/// less.
+float glowing_temperature(float share, float flame) {
+  constexpr float kBand = 600e-9f / 1.4387769e-2f;  // wavelength over hc/k [1/K]
+  return 1.0f / (1.0f / flame - kBand * std::log(min(share, 1.0f)));
+}
+
 }  // namespace
 
 GasSolver::State::State(const GasGrid& g, const GasProperties& p)
@@ -164,12 +173,10 @@ void GasSolver::read(std::vector<float>* density, std::vector<float>* temperatur
     const float* heat = &state.scalars[gas::kHeat][from];
     const float* burning = &state.burning[from];
     float* kelvin = temperature->data() + to;
+    for (int i = 0; i < s.nx; ++i) kelvin[i] = ambient / (1.0f - min(heat[i], 0.9f));
     for (int i = 0; i < s.nx; ++i) {
-      const float mean = ambient / (1.0f - min(heat[i], 0.9f));
-      // What glows in a voxel is soot in sheets of flame much thinner than it; as many of them as
-      // it burns fast. Elsewhere soot is as hot as the gas.
-      const float share = min(burning[i] * (1.0f / kFullOfFlame), 1.0f);
-      kelvin[i] = mean + share * max(flame - mean, 0.0f);
+      if (burning[i] > 0.0f)
+        kelvin[i] = max(kelvin[i], glowing_temperature(burning[i] * (1.0f / kFullOfFlame), flame));
     }
   });
 }

@@ -95,8 +95,8 @@ class GasSolver {
   void set_velocity(int axis, std::span<const float> faces);
   GasStep step(float dt, std::span<const GasSource> sources, Vec3f wind);
 
-  /// Soot concentration [kg/m³] and temperature [K], (nz, ny, nx). Where it burns, the temperature
-  /// is nearer to that of the luminous soot: flames are thinner than voxels.
+  /// Soot concentration [kg/m³] and temperature [K], (nz, ny, nx). Where it burns, it is that at
+  /// which the soot gives the light of its luminous share: flames are thinner than voxels.
   void read(std::vector<float>* density, std::vector<float>* temperature) const;
 
   double smoke_mass() const;  ///< [kg]

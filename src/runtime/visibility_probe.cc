@@ -1,0 +1,55 @@
+#include "runtime/visibility_probe.h"
+
+#include <algorithm>
+
+#include "world/authored_volume.h"
+
+namespace gloam {
+
+Result<VisibilityProbe> VisibilityProbe::make(const CompiledWorld& world) {
+  RenderDescription description;
+  GLOAM_TRY_STATUS(author_volumes(world.scene.volumes, &description));
+  author_gases(world.gases.gases, &description);
+  VisibilityProbe probe;
+  for (VolumeDescription& volume : description.volumes) {
+    probe.fields_.push_back(volume.field);
+    if (volume.field < 0) continue;
+    // A grid, for the store to keep its voxels.
+    const size_t voxels = size_t(volume.nx) * size_t(volume.ny) * size_t(volume.nz);
+    volume.density = std::make_shared<const std::vector<float>>(voxels, 0.0f);
+  }
+  GLOAM_TRY(probe.store_, VolumeStore::make(description.media, description.volumes));
+  return probe;
+}
+
+double VisibilityProbe::visibility(const SnapshotData& snapshot, Vec3f p_W) const {
+  const MediaView media = store_.view();
+  double extinction = 0;  // [1/m]
+  for (uint32_t i = 0; i < media.volumes.size; ++i) {
+    VolumeView volume = media.volumes[i];
+    const Vec3f p_G = transform_point(volume.X_GW, p_W);
+    if (!media::is_inside(volume, p_G)) continue;
+    const auto density_in = [&](const VolumeGrid& grid) {
+      if (grid == nullptr) return 0.0f;
+      volume.density = {grid->data(), static_cast<uint32_t>(grid->size())};
+      return media::density_at(volume, p_G);
+    };
+    float density = 0;
+    if (fields_[i] < 0) {
+      density = media::density_at(volume, p_G);
+    } else if (const FieldWindow& window = snapshot.fields[static_cast<size_t>(fields_[i])];
+               window.before != nullptr) {
+      window.before->wait();
+      density = density_in(window.before->density());
+      if (window.share > 0 && window.after != nullptr) {
+        window.after->wait();
+        density = lerp(density, density_in(window.after->density()), window.share);
+      }
+    }
+    extinction +=
+        double(density) * double(volume.mass_extinction[static_cast<int>(MediumBand::kGreen)]);
+  }
+  return extinction > 0 ? std::min(3.912 / extinction, kClear) : kClear;
+}
+
+}  // namespace gloam

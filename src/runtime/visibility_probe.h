@@ -1,0 +1,30 @@
+#pragma once
+// How far one sees in the media at a point, without a camera there.
+
+#include "base/vec.h"
+#include "render/scene/volume_store.h"
+#include "sim/snapshot.h"
+#include "world/world.h"
+
+namespace gloam {
+
+class VisibilityProbe {
+ public:
+  /// No further than that [m]: clean air's own, about.
+  static constexpr double kClear = 1e5;
+
+  /// Errors: those of the scene's [[volume]]s.
+  static Result<VisibilityProbe> make(const CompiledWorld& world);
+
+  /// Is there anything that could be in the way?
+  bool has_media() const { return !store_.view().volumes.empty(); }
+  /// At p_W [m]: Koschmieder's 3.912 / extinction at 550 nm, as if all were as it is here. Waits
+  /// for what of the snapshot's media is not solved for yet.
+  double visibility(const SnapshotData& snapshot, Vec3f p_W) const;
+
+ private:
+  VolumeStore store_;
+  std::vector<int> fields_;  ///< of each volume: row of SnapshotData::fields, -1 = it stays
+};
+
+}  // namespace gloam
