@@ -1,8 +1,9 @@
 """What is measured on an NVIDIA card: `./gloam bench --device cuda`."""
 import json
+import os
 
 import go1_room
-from measure import BIN, CACHE, at_most, robot, run
+from measure import BIN, CACHE, at_least, at_most, robot, run, run_json
 
 # 1280x720 in the same room, per work: the bar, and what the fastest peer on an H200 took by camera [ms].
 BARS = {"direct": ("1280x720 primary + shadows", 0.5, {"far": 0.79, "close": 1.31}),
@@ -23,4 +24,15 @@ def card_rate(quick):
                       f"picture's way back {figures['wall_ms']:.1f} ms; best peer {peers[camera]} ms")
 
 
-ALL = {card_rate: 60}
+def gas_on_card(quick):
+    """smoke and fire on the card, beside all cores of its machine"""
+    steps = ("--steps", 10 if quick else 60, "--threads", os.cpu_count(), "--json")
+    card, cpu = (run_json(BIN / "bench_gas_rate", *steps, "--device", device) for device in ("cuda", "cpu"))
+    rates = (f"{card['steps_per_s']:.0f} steps of 0.1 s a second against {cpu['steps_per_s']:.1f} on {cpu['threads']} threads; walls "
+             f"{card['walls_ms']:.1f} ms and step {card['step_ms']:.2f} ms against {cpu['walls_ms']:.1f} ms and {cpu['step_ms']:.1f} ms")
+    yield at_least("gas of 96 x 96 x 64 voxels, a step: the CPU's time / the card's", cpu["step_ms"] / card["step_ms"], 5, rates)
+    yield at_least("the same with walls that move", card["steps_per_s"] / cpu["steps_per_s"], 3, f"on {card['device']}")
+    yield at_most("the same: L2 norm of the divergence after / before, worst step", card["worst_divergence_ratio"], 1e-4, "something moves")
+
+
+ALL = {card_rate: 60, gas_on_card: 40}

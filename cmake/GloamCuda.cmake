@@ -39,8 +39,11 @@ function(gloam_cuda_sources target)
       set(flags -DGLOAM_INLINE=__forceinline__)
     endif()
     # Where only a test asks for them, the card's driver is left to make machine code of the large kernels: minutes less.
-    if(name MATCHES "^plain" OR GLOAM_CUDA)
+    if(name MATCHES "^(plain|gas)" OR GLOAM_CUDA)
       set(code sm_${GLOAM_CUDA_ARCH},${code})
+    endif()
+    if(name MATCHES "^gas")  # a gas has the CPU's bits, so nothing is contracted; its loops are lambdas
+      list(APPEND flags -fmad=false --extended-lambda)
     endif()
     if(name MATCHES "path$")  # light is judged by its mean; what must be exact is in other files
       list(APPEND flags -use_fast_math)

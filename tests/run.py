@@ -288,8 +288,9 @@ def ci(tally):
         for module in ("base", "sim"):
             gtest(tally, "tsan", module, shard_filter=TOO_SLOW_SANITIZED)
     run(["cmake", "--preset", "release"])  # it may have been set up before nvcc was there
-    if build(tally, "release", ["gloam_cuda_test"]):  # without a card this shows that the card's source compiles
+    if build(tally, "release", ["gloam_cuda_test", "gloam_gas_cuda_test"]):  # without a card this shows that the card's source compiles
         gtest(tally, "release", "cuda")
+        gtest(tally, "release", "gas_cuda")
     fuzz(tally, 15, ["scene_toml_fuzz", "model_path_fuzz", "model_xml_fuzz"])
 
 

@@ -40,6 +40,7 @@ size_t saved_size(const State& state) {
 }  // namespace
 
 void GasSolver::save(std::vector<std::byte>* out) const {
+  state_->fetch(gas::kAllFields);
   const GasGrid grid = state_->grid;
   out->resize(saved_size(*state_));
   std::byte* to = out->data();
@@ -67,11 +68,14 @@ Status GasSolver::restore(std::span<const std::byte> bytes) {
     std::memcpy(to, from, n);
     from += n;
   });
+  state_->stale = 0;
+  if (state_->card) state_->card->upload(gas::kAllFields);
   state_->use_walls();
   return {};
 }
 
 uint64_t GasSolver::hash() const {
+  state_->fetch(gas::kAllFields);
   uint64_t hash = 0;
   for_blocks(std::as_const(*state_),
              [&hash](const void* data, size_t n) { hash = hash_bytes(data, n, hash); });

@@ -12,11 +12,11 @@
 namespace gloam {
 namespace {
 
-/// Heat release of turbulent diffusion flames per volume [W/m³] (Orloff and de Ris 1982): a voxel
-/// that makes so much is full of flame.
 /// Smoke of which 10 km take a tenth of the light: transport leaves traces everywhere, and what is
 /// empty costs renderers nothing [kg/m³].
 constexpr float kUnseen = 1e-9f;
+/// Heat release of turbulent diffusion flames per volume [W/m³] (Orloff and de Ris 1982): a voxel
+/// that makes so much is full of flame.
 constexpr float kFullOfFlame = 1.2e6f;
 constexpr int kLeastCells = 4, kMostCells = gas::kLongestRow;  ///< along an axis
 
@@ -107,7 +107,8 @@ GasSolver::State::State(const GasGrid& g, const GasProperties& p)
   use_walls();
 }
 
-double GasSolver::State::total(gas::Scalar scalar) const {
+double GasSolver::State::total(gas::Scalar scalar) {
+  fetch(gas::field_of(scalar));
   const float* f = scalars[scalar].data();
   double sum = 0;
   for (int k = 0; k < shape.nz; ++k) {
@@ -122,19 +123,27 @@ GasSolver::GasSolver(std::unique_ptr<State> state) : state_(std::move(state)) {}
 GasSolver::~GasSolver() = default;
 
 Result<std::unique_ptr<GasSolver>> GasSolver::create(const GasGrid& grid,
-                                                     const GasProperties& properties) {
+                                                     const GasProperties& properties,
+                                                     GasDevice device) {
   GLOAM_TRY_STATUS(check(grid));
   GLOAM_TRY_STATUS(check(properties));
   GLOAM_TRY_STATUS(check_memory(
       bytes_of(grid), fmt::format("a gas grid of {} x {} x {} cells", grid.nx, grid.ny, grid.nz),
       "take larger voxels or a smaller box"));
-  return std::unique_ptr<GasSolver>(new GasSolver(std::make_unique<State>(grid, properties)));
+  auto state = std::make_unique<State>(grid, properties);
+  if (device == GasDevice::kCuda) {
+    GLOAM_TRY(state->card, gas::CudaGas::make(grid, state->openings, state->pressure.multigrid(),
+                                              state->fields()));
+    state->use_walls();
+  }
+  return std::unique_ptr<GasSolver>(new GasSolver(std::move(state)));
 }
 
 void GasSolver::set_walls(const GasWalls& walls) { state_->take_walls(walls); }
 
 void GasSolver::set_velocity(int axis, std::span<const float> faces) {
   State& state = *state_;
+  state.fetch(gas::kVelocityFields);
   GLOAM_CHECK(axis >= 0 && axis < 3 && faces.size() == state.grid.faces(axis),
               "velocities of another grid");
   const gas::Shape& s = state.shape;
@@ -144,10 +153,12 @@ void GasSolver::set_velocity(int axis, std::span<const float> faces) {
                   state.velocity[axis].data() + s.at(0, j, k));
     }
   }
+  if (state.card) state.card->upload(gas::kVelocityFields);
   state.use_walls();  // closed faces move as their walls
 }
 
 void GasSolver::read(std::vector<float>* density, std::vector<float>* temperature) const {
+  state_->fetch(gas::field_of(gas::kHeat) | gas::field_of(gas::kSmoke) | gas::kBurningField);
   const State& state = *state_;
   const gas::Shape& s = state.shape;
   density->resize(state.grid.cells());
@@ -179,7 +190,12 @@ const GasBudget& GasSolver::budget() const { return state_->budget; }
 const GasGrid& GasSolver::grid() const { return state_->grid; }
 const GasProperties& GasSolver::properties() const { return state_->properties; }
 
+std::string GasSolver::device_name() const {
+  return state_->card ? state_->card->device_name() : "CPU";
+}
+
 Vec3f GasSolver::velocity_at(Vec3f p_W) const {
+  state_->fetch(gas::kVelocityFields);
   const State& state = *state_;
   const Vec3f p = (p_W - state.grid.low) / state.grid.voxel;
   const auto along = [&](int a) {

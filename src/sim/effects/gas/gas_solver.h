@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "gloam/result.h"
@@ -74,12 +75,17 @@ struct GasBudget {
   double smoke_buried = 0, fuel_buried = 0, heat_buried = 0;  ///< in pockets that walls filled
 };
 
+/// What steps a gas. A card does what the CPU does, in the same order of sums, but for the budget
+/// and for the mean divergence of enclosed spaces, which round in the sixteenth digit.
+enum class GasDevice { kCpu, kCuda };
+
 class GasSolver {
  public:
   /// Errors: fewer than 4 or more than 1024 cells along an axis, more than 2^27 cells, what does
-  /// not fit into memory, properties out of range.
+  /// not fit into memory, properties out of range; kUnsupported: no card, or a build without CUDA.
   static Result<std::unique_ptr<GasSolver>> create(const GasGrid& grid,
-                                                   const GasProperties& properties);
+                                                   const GasProperties& properties,
+                                                   GasDevice device = GasDevice::kCpu);
   ~GasSolver();
 
   /// Called before each step in which something moved. `walls.grid` is create()'s.
@@ -101,6 +107,7 @@ class GasSolver {
   Vec3f velocity_at(Vec3f p_W) const;
   const GasGrid& grid() const;
   const GasProperties& properties() const;
+  std::string device_name() const;  ///< the card's; "CPU"
 
   /// All that decides what comes next; restore() continues bit for bit. Walls are part of it.
   void save(std::vector<std::byte>* out) const;

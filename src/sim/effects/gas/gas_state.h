@@ -1,6 +1,9 @@
 #pragma once
 // What a GasSolver is made of.
 
+#include <string>
+
+#include "sim/effects/gas/cuda/cuda_gas.h"
 #include "sim/effects/gas/gas_solver.h"
 #include "sim/effects/gas/kernel/reaction.h"
 #include "sim/effects/gas/momentum.h"
@@ -35,6 +38,12 @@ struct GasSolver::State {
   std::vector<int> filled, freed, order;  ///< cells that walls took or left
   std::vector<int> depth;                 ///< of filled cells, 0 elsewhere
 
+  /// If there is one, it steps the gas; fields here are then what was last fetched of it.
+  std::unique_ptr<gas::CudaGas> card;
+  uint32_t stale = 0;                    ///< a bit for each field that is newer on the card
+  std::vector<gas::Gift> gifts;          ///< of sources in a substep on the card
+  std::vector<int> gift_cells, touched;  ///< touched: cells that walls' motion reads or changes
+
   gas::Faces<float> faces() { return {velocity[0].data(), velocity[1].data(), velocity[2].data()}; }
   float ambient_density() const {  ///< [kg/m³]
     return gas::kAirDensity * 293.0f / properties.ambient_temperature;
@@ -45,16 +54,31 @@ struct GasSolver::State {
   double cell_volume() const {  ///< [m³]
     return double(grid.voxel) * double(grid.voxel) * double(grid.voxel);
   }
-  double total(gas::Scalar scalar) const;  ///< sum over cells
+  double total(gas::Scalar scalar);  ///< sum over cells
+
+  gas::HostFields fields() {
+    return {&velocity[0], &velocity[1], &velocity[2], &scalars[0],         &scalars[1],
+            &scalars[2],  &scalars[3],  &burning,     &pressure.solution()};
+  }
+  void fetch(uint32_t wanted) {
+    if (const uint32_t late = wanted & stale; late != 0) card->download(late), stale &= ~late;
+  }
 
   void take_walls(const GasWalls& next);
   void use_walls();
   void push_out(const GasWalls& next);
   void fill_in();
+  void find_touched();
 
   void substep(float dt, std::span<const GasSource> sources, Vec3f wind, GasStep* step);
-  void feed(float dt, std::span<const GasSource> sources, GasStep* step);
+  void substep_on_card(float dt, std::span<const GasSource> sources, Vec3f wind, GasStep* step);
+  template <class F>
+  void feed(float dt, std::span<const GasSource> sources, GasStep* step, F&& give);
+  gas::ReactionRates rates(float dt) const;
   void burn(float dt);
+  void account_reaction(const double (&sums)[4]);
+  void account_motion(const gas::Projection& projection, int transport_substeps,
+                      const double (&escaped)[gas::kScalars], GasStep* step);
   void blow(std::span<const GasSource> sources);
   float max_speed();
 };

@@ -13,20 +13,28 @@ constexpr float kLongestSubstep = 0.1f;  ///< buoyancy is explicit: well below i
 constexpr float kVoxelsPerSubstep = 3;   ///< that air may move
 constexpr int kMostSubsteps = 1000;
 
+/// By a source in a substep: of kHeat, kSmoke, kFuel, times cells.
+struct Given {
+  float heat, smoke, fuel;
+};
+
+/// Velocity at which a source drives air [m/s].
+Vec3f driven_at(const GasSource& source) {
+  const float fast = length(source.velocity);
+  return source.velocity * (fast > gas::kFastestSource ? gas::kFastestSource / fast : 1);
+}
+
 float fraction_in(float rate, float dt) { return 1.0f - std::exp(-rate * dt); }
 
 }  // namespace
 
 float GasSolver::State::max_speed() {
+  if (card) return card->max_speed();
   const gas::Faces<const float> u = faces().read();
   gas::for_rows(shape, [&](int j, int k) {
     const int begin = shape.at(0, j, k), end = begin + shape.nx;
     float lanes[16] = {};
-    const auto at = [&](int c) {
-      const float x = 0.5f * (u.x[c] + u.x[c + 1]), y = 0.5f * (u.y[c] + u.y[c + shape.sy]),
-                  z = 0.5f * (u.z[c] + u.z[c + shape.sz]);
-      return x * x + y * y + z * z;
-    };
+    const auto at = [&](int c) { return gas::speed_squared(shape, u, c); };
     int c = begin;
     for (; c + 16 <= end; c += 16) {
       for (int l = 0; l < 16; ++l) lanes[l] = max(lanes[l], at(c + l));
@@ -50,7 +58,12 @@ GasStep GasSolver::step(float dt, std::span<const GasSource> sources, Vec3f wind
   const float by_speed = std::ceil(dt * speed / (kVoxelsPerSubstep * state.grid.voxel));
   step.substeps = int(std::clamp(std::max(by_time, by_speed), 1.0f, float(kMostSubsteps)));
   for (int n = 0; n < step.substeps; ++n) {
-    state.substep(dt / float(step.substeps), sources, wind, &step);
+    const float part = dt / float(step.substeps);
+    if (state.card) {
+      state.substep_on_card(part, sources, wind, &step);
+    } else {
+      state.substep(part, sources, wind, &step);
+    }
   }
   step.max_speed = state.max_speed();
   // Cells were counted in each substep.
@@ -62,7 +75,12 @@ GasStep GasSolver::step(float dt, std::span<const GasSource> sources, Vec3f wind
 void GasSolver::State::substep(float dt, std::span<const GasSource> sources, Vec3f wind,
                                GasStep* step) {
   const gas::Faces<const float> open = pressure.open();
-  feed(dt, sources, step);
+  std::fill(heated.begin(), heated.end(), 0.0f);
+  feed(dt, sources, step, [&](const GasSource&, const Given& all, int c, float share) {
+    heated[size_t(c)] += all.heat * share;
+    scalars[gas::kSmoke][size_t(c)] += all.smoke * share;
+    scalars[gas::kFuel][size_t(c)] += all.fuel * share;
+  });
   burn(dt);
   if (last_dt > 0 && last_dt != dt) {  // pressure times dt is what the solution holds
     for (float& x : pressure.solution()) x *= dt / last_dt;
@@ -81,35 +99,63 @@ void GasSolver::State::substep(float dt, std::span<const GasSource> sources, Vec
   blow(sources);
   const gas::Projection projection =
       pressure.project(openings, faces(), heated.data(), grid.voxel, dt);
+  double escaped[gas::kScalars] = {};
+  const int transport_substeps =
+      transport.carry(open, faces().read(), scalars, grid.voxel, dt, &parity, escaped);
+  account_motion(projection, transport_substeps, escaped, step);
+}
+
+void GasSolver::State::substep_on_card(float dt, std::span<const GasSource> sources, Vec3f wind,
+                                       GasStep* step) {
+  gifts.clear();
+  gift_cells.clear();
+  const GasSource* last = nullptr;
+  feed(dt, sources, step, [&](const GasSource& source, const Given& all, int c, float share) {
+    if (&source != last) {
+      gifts.push_back({0, all.heat * share, all.smoke * share, all.fuel * share, source.blows,
+                       driven_at(source)});
+      last = &source;
+    }
+    ++gifts.back().cells;
+    gift_cells.push_back(c);
+  });
+  const float rescale = last_dt > 0 ? dt / last_dt : 1.0f;
+  last_dt = dt;
+  const gas::CudaGas::Outcome out =
+      card->substep({dt, rescale, wind, ambient_density(), properties.vorticity, rates(dt),
+                     properties.heat_of_combustion / dt},
+                    gifts, gift_cells, &parity);
+  stale = gas::kAllFields;
+  account_reaction(out.reaction);
+  account_motion(out.projection, out.transport_substeps, out.escaped, step);
+}
+
+void GasSolver::State::account_motion(const gas::Projection& projection, int transport_substeps,
+                                      const double (&escaped)[gas::kScalars], GasStep* step) {
   step->pressure_iterations += projection.iterations;
+  step->transport_substeps += transport_substeps;
   const auto ratio = [](double after, double before) { return before > 0 ? after / before : 0; };
   if (ratio(projection.after, projection.before) >=
       ratio(step->divergence_after, step->divergence_before)) {
     step->divergence_before = projection.before;
     step->divergence_after = projection.after;
   }
-  double escaped[gas::kScalars] = {};
-  step->transport_substeps +=
-      transport.carry(open, faces().read(), scalars, grid.voxel, dt, &parity, escaped);
   budget.heat_escaped += escaped[gas::kHeat] * cell_volume() * double(heat_unit());
   budget.smoke_escaped += escaped[gas::kSmoke] * cell_volume();
   budget.fuel_escaped += escaped[gas::kFuel] * cell_volume();
 }
 
-void GasSolver::State::feed(float dt, std::span<const GasSource> sources, GasStep* step) {
-  std::fill(heated.begin(), heated.end(), 0.0f);
+/// Calls give(source, what it gives in all, cell, the cell's share).
+template <class F>
+void GasSolver::State::feed(float dt, std::span<const GasSource> sources, GasStep* step, F&& give) {
   const double volume = cell_volume();
   for (const GasSource& source : sources) {
     const double time = double(dt);
-    const float heat = float(double(source.heat) * time / (volume * double(heat_unit())));
-    const float smoke = float(double(source.smoke) * time / volume);
-    const float fuel = float(double(source.fuel) * time / volume);
+    const Given all{float(double(source.heat) * time / (volume * double(heat_unit()))),
+                    float(double(source.smoke) * time / volume),
+                    float(double(source.fuel) * time / volume)};
     const bool given = gas::for_cells_of(source, grid, openings, &step->source_cells_blocked,
-                                         [&](int c, float share) {
-                                           heated[size_t(c)] += heat * share;
-                                           scalars[gas::kSmoke][size_t(c)] += smoke * share;
-                                           scalars[gas::kFuel][size_t(c)] += fuel * share;
-                                         });
+                                         [&](int c, float share) { give(source, all, c, share); });
     if (!given) {
       ++step->sources_blocked;
       continue;
@@ -120,7 +166,7 @@ void GasSolver::State::feed(float dt, std::span<const GasSource> sources, GasSte
   }
 }
 
-void GasSolver::State::burn(float dt) {
+gas::ReactionRates GasSolver::State::rates(float dt) const {
   const GasProperties& p = properties;
   gas::ReactionRates r;
   r.density = ambient_density();
@@ -132,7 +178,12 @@ void GasSolver::State::burn(float dt) {
   r.soot_yield = p.soot_yield;
   r.cool = fraction_in(p.cooling, dt);
   r.settle = fraction_in(p.dissipation, dt);
-  const float power = p.heat_of_combustion / dt;
+  return r;
+}
+
+void GasSolver::State::burn(float dt) {
+  const gas::ReactionRates r = rates(dt);
+  const float power = properties.heat_of_combustion / dt;
   gas::for_rows(shape, [&](int j, int k) {
     const int begin = shape.at(0, j, k);
     double* sums = &row_sums[size_t(k * shape.ny + j) * 4];
@@ -160,11 +211,16 @@ void GasSolver::State::burn(float dt) {
   });
   double sums[4] = {};
   for (size_t i = 0; i < row_sums.size(); ++i) sums[i % 4] += row_sums[i];
+  account_reaction(sums);
+}
+
+/// Sums over cells of heat made, heat lost, fuel burnt and smoke settled.
+void GasSolver::State::account_reaction(const double (&sums)[4]) {
   const double volume = cell_volume();
-  budget.heat_added += sums[0] * volume * double(r.heat_unit);
-  budget.heat_lost += sums[1] * volume * double(r.heat_unit);
+  budget.heat_added += sums[0] * volume * double(heat_unit());
+  budget.heat_lost += sums[1] * volume * double(heat_unit());
   budget.fuel_burnt += sums[2] * volume;
-  budget.smoke_added += sums[2] * volume * double(r.soot_yield);
+  budget.smoke_added += sums[2] * volume * double(properties.soot_yield);
   budget.smoke_deposited += sums[3] * volume;
 }
 
@@ -172,8 +228,7 @@ void GasSolver::State::blow(std::span<const GasSource> sources) {
   const gas::Faces<const float> open = pressure.open();
   for (const GasSource& source : sources) {
     if (!source.blows) continue;
-    const float fast = length(source.velocity);
-    const Vec3f v = source.velocity * (fast > gas::kFastestSource ? gas::kFastestSource / fast : 1);
+    const Vec3f v = driven_at(source);
     int blocked = 0;
     gas::for_cells_of(source, grid, openings, &blocked, [&](int c, float) {
       for (int a = 0; a < 3; ++a) {

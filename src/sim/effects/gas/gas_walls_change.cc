@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/check.h"
+#include "base/parallel.h"
 #include "sim/effects/gas/gas_state.h"
 
 namespace gloam {
@@ -18,6 +19,19 @@ void for_neighbours(const Shape& s, int c, F&& f) {
     f(c - stride, a, c);
     f(c + stride, a, c + stride);
   }
+}
+
+/// Of one grid, on several threads.
+void copy_walls(const GasWalls& from, GasWalls* to) {
+  parallel_for("gas", 7, [&from, to](int64_t n) {
+    if (n < 3) {
+      to->velocity[n] = from.velocity[n];
+    } else if (n < 6) {
+      to->closed[n - 3] = from.closed[n - 3];
+    } else {
+      to->solid = from.solid;
+    }
+  });
 }
 
 }  // namespace
@@ -40,20 +54,50 @@ void GasSolver::State::take_walls(const GasWalls& next) {
       }
     }
   }
+  if (card) {
+    find_touched();
+    card->download_cells(touched);
+  }
   push_out(next);
-  walls = next;
+  copy_walls(next, &walls);
   use_walls();
   fill_in();
+  if (card) card->upload_cells(touched);
+}
+
+/// Cells that walls took or left, and those beside them, each once.
+void GasSolver::State::find_touched() {
+  touched.clear();
+  for (const auto* cells : {&filled, &freed}) {
+    for (const int c : *cells) {
+      touched.push_back(c);
+      for_neighbours(shape, c, [&](int n, int, int) { touched.push_back(n); });
+    }
+  }
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
 }
 
 /// The solver's own layout of `walls`.
 void GasSolver::State::use_walls() {
   openings.set(walls, pressure.multigrid().weights());
-  pressure.multigrid().update();
+  // Side by side: spaces are found by one thread.
+  parallel_for("gas", 2, [this](int64_t n) {
+    if (n == 0) {
+      openings.measure(pressure.open());
+    } else {
+      pressure.multigrid().update();
+    }
+  });
+  if (card) {
+    card->take_walls(walls);
+    stale |= gas::kVelocityFields;
+    return;
+  }
   const gas::Faces<const float> open = pressure.open();
   for (int a = 0; a < 3; ++a) {
     const Shape& s = shape;
-    const Shape faces{s.nx + (a == 0), s.ny + (a == 1), s.nz + (a == 2), s.sy, s.sz};
+    const Shape faces = s.faces(a);
     gas::for_rows(faces, [&](int j, int k) {
       const float *own = walls.velocity[a].data() + walls.face(a, 0, j, k),
                   *w = open[a] + s.at(0, j, k);

@@ -8,11 +8,6 @@ namespace {
 
 Faces<const float> view(const Field (&f)[3]) { return {f[0].data(), f[1].data(), f[2].data()}; }
 
-/// Row (j, k) of faces across `axis`.
-Shape faces_of(const Shape& s, int axis) {
-  return {s.nx + (axis == 0), s.ny + (axis == 1), s.nz + (axis == 2), s.sy, s.sz};
-}
-
 /// The ghosts next to the box as the cells before them.
 void fill_ghosts(const Shape& s, float* f) {
   for_slabs(s.nz, [&s, f](int k) {
@@ -49,9 +44,8 @@ void Momentum::find_centres(const Faces<const float>& u, float scale, float limi
     const int begin = s.at(0, j, k);
     GLOAM_IVDEP
     for (int c = begin; c < begin + s.nx; ++c) {
-      x[c] = clamp(half * (u.x[c] + u.x[c + 1]), -limit, limit);
-      y[c] = clamp(half * (u.y[c] + u.y[c + s.sy]), -limit, limit);
-      z[c] = clamp(half * (u.z[c] + u.z[c + s.sz]), -limit, limit);
+      const Vec3f v = carrier_velocity(s, u, c, half, limit);
+      x[c] = v.x, y[c] = v.y, z[c] = v.z;
     }
   });
 }
@@ -74,9 +68,6 @@ void Momentum::find_paths(const Openings& openings, const Faces<const float>& op
     // Walls may be in the way where it is longer than what is clear around the cell.
     uint8_t near[kLongestRow];
     {
-      const auto size = [](float a, float b, float c) {
-        return max(max(max(a, -a), max(b, -b)), max(c, -c));
-      };
       const Faces<const float> v = carrier.velocity;
       const float *const dx = x + begin, *const dy = y + begin, *const dz = z + begin;
       const float *const vx = v.x + begin, *const vy = v.y + begin, *const vz = v.z + begin;
@@ -84,8 +75,8 @@ void Momentum::find_paths(const Openings& openings, const Faces<const float>& op
       float* const trusted = trusted_.data() + begin;
       GLOAM_IVDEP
       for (int i = 0; i < nx; ++i) {
-        const float far = max(size(dx[i], dy[i], dz[i]), 0.5f * size(vx[i], vy[i], vz[i]));
-        near[i] = far > float(clear[i]) ? 1 : 0;
+        const Vec3f d{dx[i], dy[i], dz[i]}, u{vx[i], vy[i], vz[i]};
+        near[i] = comes_near_walls(d, u, clear[i]) ? 1 : 0;
         trusted[i] = 1.0f;
       }
     }
@@ -119,8 +110,7 @@ void Momentum::find_smoothness() {
 void Momentum::carry_axis(const Openings& openings, int axis, const float* open, Field* field,
                           Vec3f wind, float drift) {
   const Shape& s = shape_;
-  float* velocity = field->data();
-  const Shape faces = faces_of(s, axis);
+  const Shape faces = s.faces(axis);
   const float outside = wind[axis];
   const auto side = [&openings](int n) { return openings.side_open[n] ? 1.0f : 0.0f; };
   const CarryView view{s,
@@ -132,7 +122,7 @@ void Momentum::carry_axis(const Openings& openings, int axis, const float* open,
                        gas::view(centre_),
                        trusted_.data(),
                        open,
-                       velocity,
+                       field->data(),
                        carried_.data(),
                        least_.data(),
                        most_.data(),
@@ -147,9 +137,6 @@ void Momentum::carry_axis(const Openings& openings, int axis, const float* open,
     GLOAM_IVDEP
     for (int i = 0; i < nx; ++i) correct_face(v, i, j, k);
   });
-  field->swap(corrected_);
-  velocity = field->data();
-  // Wind comes in even where the air stands still.
   for (int side = 0; side < 2; ++side) {
     const float inward = side == 0 ? outside : -outside;
     if (!(inward > 0.0f)) continue;
@@ -158,10 +145,11 @@ void Momentum::carry_axis(const Openings& openings, int axis, const float* open,
       for (int d = 0; d < (axis == 0 ? s.ny : s.nx); ++d) {
         const int far = side == 0 ? 0 : s.n(axis);
         const int c = axis == 0 ? s.at(far, d, e) : (axis == 1 ? s.at(d, far, e) : s.at(d, e, far));
-        if (open[c] > 0.0f) velocity[c] += (outside - velocity[c]) * share;
+        corrected_[size_t(c)] = let_in(view, c, share);
       }
     }
   }
+  field->swap(corrected_);
 }
 
 void Momentum::trace(const Openings& openings, const Faces<const float>& open,
@@ -181,19 +169,13 @@ void Momentum::carry(const Openings& openings, const Faces<const float>& open, F
 void Momentum::lift(const Faces<const float>& open, const Faces<float>& velocity, const float* heat,
                     const float* smoke, float ambient_density, float dt, uint32_t count) {
   const Shape& s = shape_;
-  const float *w = open.z, *smooth = smooth_.data();
+  const LiftView view{s, open.z, smooth_.data(), heat, smoke, ambient_density, dt, count};
   float* u = velocity.z;
-  for_rows(faces_of(s, 2), [&, w, u, smooth, heat, smoke](int j, int k) {
-    const int begin = s.at(0, j, k);
+  for_rows(s.faces(2), [&view, u](int j, int k) {
+    const LiftView v = view;
+    const int begin = v.shape.at(0, j, k), end = begin + v.shape.nx;
     GLOAM_IVDEP
-    for (int c = begin; c < begin + s.nx; ++c) {
-      const int b = c - s.sz;
-      const float rough = 1.0f - 0.5f * (smooth[c] + smooth[b]);
-      const float share = 1.0f + kFluctuation * rough * fluctuation(c, count);
-      u[c] += w[c] * dt *
-              buoyancy(share * 0.5f * (heat[c] + heat[b]), 0.5f * (smoke[c] + smoke[b]),
-                       ambient_density);
-    }
+    for (int c = begin; c < end; ++c) u[c] += gas::lift(v, c);
   });
 }
 
@@ -229,10 +211,10 @@ void Momentum::confine(const Faces<const float>& open, const Faces<float>& veloc
     const int stride = s.stride(a);
     // curl() holds two voxels of length and so does its gradient: one voxel of each is left.
     const float scale = 0.25f * strength * dt;
-    for_rows(faces_of(s, a), [&, f, w, u](int j, int k) {
+    for_rows(s.faces(a), [&, f, w, u](int j, int k) {
       const int begin = s.at(0, j, k);
       GLOAM_IVDEP
-      for (int c = begin; c < begin + faces_of(s, a).nx; ++c) {
+      for (int c = begin; c < begin + s.faces(a).nx; ++c) {
         u[c] += w[c] * scale * (f[c] + f[c - stride]);
       }
     });

@@ -1,10 +1,11 @@
 #include "sim/effects/gas/multigrid.h"
 
+#include "sim/effects/gas/kernel/cycle.h"
+
 namespace gloam::gas {
 namespace {
 
-constexpr int kCoarsest = 3;       ///< cells along an axis of a level that is not coarsened further
-constexpr int kCoarsestSteps = 8;  ///< pairs of smoothing steps there
+constexpr int kCoarsest = 3;  ///< cells along an axis of a level that is not coarsened further
 
 /// Distance of the centres of two cells between which face i lies.
 float distance(const std::vector<float>& width, int i) {
@@ -141,7 +142,7 @@ void Multigrid::coarsen(const Level& fine, Level& coarse) {
   for (int a = 0; a < 3; ++a) {
     const float* from = fine.weight[a].data();
     float* to = coarse.weight[a].data();
-    const Shape faces{s.nx + (a == 0), s.ny + (a == 1), s.nz + (a == 2), s.sy, s.sz};
+    const Shape faces = s.faces(a);
     const auto first = [&](int axis, int i) { return coarse.start[axis][size_t(i)]; };
     const auto end = [&](int axis, int i) {
       return axis == a ? first(axis, i) + 1 : coarse.start[axis][size_t(i) + 1];
@@ -191,7 +192,46 @@ void Multigrid::invert(Level& level) {
   });
 }
 
-void Multigrid::precondition(const float* b, float* x) { cycle(0, b, x, true); }
+/// The rows of a cycle on the processor.
+struct Multigrid::Cycle {
+  Multigrid& grid;
+  const float* finest_b;
+  float* finest_x;
+
+  const float* b(size_t level) const {
+    return level == 0 ? finest_b : grid.levels_[level].b.data();
+  }
+  float* x(size_t level) const { return level == 0 ? finest_x : grid.levels_[level].x.data(); }
+  float* scratch(size_t level) const { return grid.levels_[level].scratch.data(); }
+
+  void begin(int n) {
+    const size_t level = size_t(n);
+    const PoissonView v = grid.view(level);
+    for_rows(v.shape, [&v, t = scratch(level), b = b(level)](int j, int k) {
+      const int begin = v.shape.at(0, j, k), end = begin + v.shape.nx;
+      GLOAM_IVDEP
+      for (int c = begin; c < end; ++c) t[c] = kSmooth[0] * v.inverse[c] * b[c];
+    });
+  }
+  void forth(int n, int step) {
+    const size_t level = size_t(n);
+    grid.smooth(level, b(level), x(level), scratch(level), kSmooth[step]);
+  }
+  void back(int n, int step) {
+    const size_t level = size_t(n);
+    grid.smooth(level, b(level), scratch(level), x(level), kSmooth[step]);
+  }
+  void restrict_residual(int n) {
+    const size_t level = size_t(n);
+    grid.restrict_residual(level, b(level), x(level));
+  }
+  void prolong(int n) { grid.prolong(size_t(n), x(size_t(n))); }
+};
+
+void Multigrid::precondition(const float* b, float* x) {
+  Cycle cycle{*this, b, x};
+  run_cycle(cycle, 0, levels(), true);
+}
 
 void Multigrid::smooth(size_t level, const float* b, const float* from, float* to,
                        float damping) const {
@@ -209,36 +249,6 @@ void Multigrid::smooth(size_t level, const float* b, const float* from, float* t
       for (int c = begin; c < end; ++c) to[c] = relax(w, from, b, damping, c);
     }
   });
-}
-
-void Multigrid::cycle(size_t level, const float* b, float* x, bool from_zero) {
-  const PoissonView v = view(level);
-  float* t = levels_[level].scratch.data();
-  if (from_zero) {
-    for_rows(v.shape, [&, b](int j, int k) {
-      const int begin = v.shape.at(0, j, k), end = begin + v.shape.nx;
-      GLOAM_IVDEP
-      for (int c = begin; c < end; ++c) t[c] = kSmooth[0] * v.inverse[c] * b[c];
-    });
-  } else {
-    smooth(level, b, x, t, kSmooth[0]);
-  }
-  smooth(level, b, t, x, kSmooth[1]);
-  if (level + 1 == levels_.size()) {
-    for (int n = 1; n < kCoarsestSteps; ++n) {
-      smooth(level, b, x, t, kSmooth[0]);
-      smooth(level, b, t, x, kSmooth[1]);
-    }
-    return;
-  }
-  restrict_residual(level, b, x);
-  Level& coarse = levels_[level + 1];
-  cycle(level + 1, coarse.b.data(), coarse.x.data(), true);
-  // Once more where it is cheap: joining without interpolation needs the better solution there.
-  if (level + 2 < levels_.size()) cycle(level + 1, coarse.b.data(), coarse.x.data(), false);
-  prolong(level, x);
-  smooth(level, b, x, t, kSmooth[1]);
-  smooth(level, b, t, x, kSmooth[0]);
 }
 
 void Multigrid::restrict_residual(size_t level, const float* b, const float* x) {

@@ -26,17 +26,21 @@ class Multigrid {
   /// x = about A⁻¹ b, by a symmetric linear map. `x`, `b`: with ghosts of 0.
   void precondition(const float* b, float* x);
 
+  int levels() const { return int(levels_.size()); }
+  PoissonView view(size_t level) const;
+  /// Along an axis: the finer level's first cell of each of this level's, one more than cells.
+  const std::vector<int>& start(size_t level, int axis) const { return levels_[level].start[axis]; }
+
  private:
+  struct Cycle;
   struct Level {
     Shape shape;
     Field weight[3], inverse;
     Field x, b, scratch;
-    /// Along each axis: widths of cells with a ghost at both ends, and the finer level's first cell
-    /// of each (one more than cells).
+    /// Along each axis: widths of cells with a ghost at both ends, and start().
     std::vector<float> width[3];
     std::vector<int> start[3];
   };
-  PoissonView view(size_t level) const;
   struct Plane {
     float count = 0, sum = 0, most = 0;
   };
@@ -47,7 +51,6 @@ class Multigrid {
   void invert(Level& level);
   /// to = a damped Jacobi step from `from`.
   void smooth(size_t level, const float* b, const float* from, float* to, float damping) const;
-  void cycle(size_t level, const float* b, float* x, bool from_zero);
   void restrict_residual(size_t level, const float* b, const float* x);
   void prolong(size_t level, float* x);
 

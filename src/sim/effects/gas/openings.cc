@@ -20,7 +20,7 @@ void Openings::set(const GasWalls& walls, const Faces<float>& open) {
     std::copy_n(&walls.solid[walls.cell(0, j, k)], s.nx, &solid[size_t(s.at(0, j, k))]);
   });
   for (int a = 0; a < 3; ++a) {
-    const Shape faces{s.nx + (a == 0), s.ny + (a == 1), s.nz + (a == 2), s.sy, s.sz};
+    const Shape faces = s.faces(a);
     for_rows(faces, [&](int j, int k) {
       const uint8_t* closed = &walls.closed[a][walls.face(a, 0, j, k)];
       const float* velocity = &walls.velocity[a][walls.face(a, 0, j, k)];
@@ -42,8 +42,11 @@ void Openings::set(const GasWalls& walls, const Faces<float>& open) {
       }
     });
   }
-  find_clearance(open.read());
-  find_spaces(open.read());
+}
+
+void Openings::measure(const Faces<const float>& open) {
+  find_clearance(open);
+  find_spaces(open);
 }
 
 void Openings::find_clearance(const Faces<const float>& open) {

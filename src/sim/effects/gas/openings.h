@@ -22,8 +22,15 @@ struct Openings {
   int enclosed = 0;  ///< number of enclosed spaces of two cells or more
 
   Openings(const Shape& s, const bool (&open)[6]);
-  /// open: 1 or 0 per face, with the sides of the box. Sets all but `shape` and `side_open`.
+  /// Sets `open`, 1 or 0 per face, with the sides of the box; what is solid and what moves.
   void set(const GasWalls& walls, const Faces<float>& open);
+  /// Sets the rest by what is open.
+  void measure(const Faces<const float>& open);
+  /// Faces of the cell at c that move.
+  int moving_faces(int c) const {
+    return moving[0][size_t(c)] + moving[0][size_t(c) + 1] + moving[1][size_t(c)] +
+           moving[1][size_t(c + shape.sy)] + moving[2][size_t(c)] + moving[2][size_t(c + shape.sz)];
+  }
 
  private:
   void find_clearance(const Faces<const float>& open);

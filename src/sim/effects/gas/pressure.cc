@@ -3,20 +3,6 @@
 #include <cmath>
 
 namespace gloam::gas {
-namespace {
-
-/// Share of the divergence's error that may stay.
-constexpr double kTolerance = 6e-5;
-constexpr int kMaxIterations = 60;
-
-/// Faces of the cell at c that move.
-int moving_faces(const Openings& o, int c) {
-  const Shape& s = o.shape;
-  return o.moving[0][size_t(c)] + o.moving[0][size_t(c) + 1] + o.moving[1][size_t(c)] +
-         o.moving[1][size_t(c + s.sy)] + o.moving[2][size_t(c)] + o.moving[2][size_t(c + s.sz)];
-}
-
-}  // namespace
 
 Pressure::Pressure(const Shape& shape) : shape_(shape), multigrid_(shape) {
   for (Field* f : {&x_, &target_, &residual_, &z_, &p_, &ap_}) {
@@ -62,7 +48,7 @@ void Pressure::set_target(const Openings& openings, const Faces<const float>& ve
           if (pass == 0) {
             space_sum_[space] += double(target_[size_t(c)]);
             space_count_[space] += 1;
-            space_faces_[space] += moving_faces(openings, c);
+            space_faces_[space] += openings.moving_faces(c);
           } else {
             space_sum_[space] += double(target_[size_t(c)] - outflow(s, velocity, c));
           }
@@ -76,7 +62,7 @@ void Pressure::set_target(const Openings& openings, const Faces<const float>& ve
         if (space == 0) continue;
         const bool leaks = pass == 1 && space_faces_[space] > 0;
         const double share =
-            leaks ? moving_faces(openings, c) / space_faces_[space] : 1.0 / space_count_[space];
+            leaks ? openings.moving_faces(c) / space_faces_[space] : 1.0 / space_count_[space];
         target_[size_t(c)] -= float(space_sum_[space] * share);
       }
     });
@@ -93,7 +79,7 @@ void Pressure::subtract_gradient(const Faces<float>& velocity, const float* shar
   const Faces<const float> open = this->open();
   const float* x = x_.data();
   for (int axis = 0; axis < 3; ++axis) {
-    const Shape faces{s.nx + (axis == 0), s.ny + (axis == 1), s.nz + (axis == 2), s.sy, s.sz};
+    const Shape faces = s.faces(axis);
     const int stride = s.stride(axis);
     const float* w = open[axis];
     float* v = velocity[axis];
@@ -101,7 +87,7 @@ void Pressure::subtract_gradient(const Faces<float>& velocity, const float* shar
       const int begin = s.at(0, j, k), end = begin + faces.nx;
       GLOAM_IVDEP
       for (int c = begin; c < end; ++c) {
-        v[c] -= w[c] * 0.5f * (share[c] + share[c - stride]) * (x[c] - x[c - stride]);
+        v[c] -= pressed(w, share, x, c, stride);
       }
     });
   }
@@ -151,7 +137,7 @@ Projection Pressure::project(const Openings& openings, const Faces<float>& veloc
   }
   double rz = 0;
   bool fresh = true;  // no direction to go on from
-  while (norm > goal && out.iterations < kMaxIterations) {
+  while (norm > goal && out.iterations < kMostIterations) {
     ++out.iterations;
     multigrid_.precondition(r, z);
     const double next_rz = dot(residual_, z_);

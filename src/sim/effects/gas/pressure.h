@@ -7,6 +7,10 @@
 
 namespace gloam::gas {
 
+/// Share of the divergence's error that may stay.
+inline constexpr double kTolerance = 6e-5;
+inline constexpr int kMostIterations = 60;
+
 struct Projection {
   int iterations = 0;
   double before = 0, after = 0;  ///< L2 norms over cells of the divergence's error [1/s]

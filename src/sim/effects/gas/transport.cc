@@ -5,9 +5,6 @@
 namespace gloam::gas {
 namespace {
 
-/// Share of its air that may leave a cell in a sweep.
-constexpr float kMostOutflow = 0.95f;
-
 constexpr int kBlock = 128;  ///< cells side by side in a sweep along y or z: what L1 holds
 
 /// What such a row needs while a sweep passes over it: ratios, and differences to the row before,
@@ -23,14 +20,7 @@ struct Transport::Sweep {
   int before[2];  ///< axes swept before in this substep, -1 = none
   const float* open;
   Field* scalars;
-  /// Air that is left in a cell by the sweeps before: of 1, what they moved is gone.
-  float air(const Shape& s, const Field (&courant)[3], int c) const {
-    float air = 1.0f;
-    for (const int a : before) {
-      if (a >= 0) air -= courant[a][size_t(c + s.stride(a))] - courant[a][size_t(c)];
-    }
-    return air;
-  }
+  Faces<const float> courant;
 };
 
 Transport::Transport(const Shape& shape) : shape_(shape) {
@@ -43,7 +33,7 @@ float Transport::set_courant(const Faces<const float>& open, const Faces<const f
                              float scale) {
   const Shape& s = shape_;
   for (int a = 0; a < 3; ++a) {
-    const Shape faces{s.nx + (a == 0), s.ny + (a == 1), s.nz + (a == 2), s.sy, s.sz};
+    const Shape faces = s.faces(a);
     const float *w = open[a], *u = velocity[a];
     float* to = courant_[a].data();
     for_rows(faces, [&, w, u, to](int j, int k) {
@@ -73,13 +63,15 @@ int Transport::carry(const Faces<const float>& open, const Faces<const float>& v
   const float most = set_courant(open, velocity, dt / voxel);
   const int substeps = std::max(1, int(std::ceil(most / kMostOutflow)));
   if (substeps > 1) set_courant(open, velocity, dt / (voxel * float(substeps)));
-  constexpr int kOrders[6][3] = {{0, 1, 2}, {2, 1, 0}, {1, 2, 0}, {0, 2, 1}, {2, 0, 1}, {1, 0, 2}};
   for (int n = 0; n < substeps; ++n) {
     const int* order = kOrders[(*parity)++ % 6];
     for (int m = 0; m < 3; ++m) {
       std::fill(row_escaped_.begin(), row_escaped_.end(), 0.0);
-      const Sweep sweep{
-          order[m], {m > 0 ? order[0] : -1, m > 1 ? order[1] : -1}, open[order[m]], scalars};
+      const Sweep sweep{order[m],
+                        {m > 0 ? order[0] : -1, m > 1 ? order[1] : -1},
+                        open[order[m]],
+                        scalars,
+                        {courant_[0].data(), courant_[1].data(), courant_[2].data()}};
       if (sweep.axis == 0) {
         sweep_x(sweep);
       } else {
@@ -102,7 +94,7 @@ void Transport::sweep_x(const Sweep& sweep) {
     // Cell i lies at i + 2, with two ghosts of ambient air at both ends.
     float air[kLongestRow + 4], q[kLongestRow + 4], d[kLongestRow + 5], flux[kLongestRow + 1];
     air[0] = air[1] = air[n + 2] = air[n + 3] = 1.0f;
-    for (int i = 0; i < n; ++i) air[i + 2] = sweep.air(s, courant_, begin + i);
+    for (int i = 0; i < n; ++i) air[i + 2] = air_left(s, sweep.courant, sweep.before, begin + i);
     for (size_t f = 0; f < kScalars; ++f) {
       float* field = sweep.scalars[f].data() + begin;
       q[0] = q[1] = q[n + 2] = q[n + 3] = 0.0f;
@@ -164,7 +156,7 @@ void Transport::sweep_block(const Sweep& sweep, int first, int width, double* es
     const int begin = first + m * stride;
     const bool ghost = m < 0 || m >= n;
     for (int i = 0; i < width; ++i) {
-      row.air[i] = ghost ? 1.0f : sweep.air(s, courant_, begin + i);
+      row.air[i] = ghost ? 1.0f : air_left(s, sweep.courant, sweep.before, begin + i);
     }
     for (size_t f = 0; f < kScalars; ++f) {
       if (!any[f]) continue;

@@ -72,4 +72,11 @@ GLOAM_HD void correct_face(const CarryView& v, int i, int j, int k) {
   v.corrected[c] = old + v.open[c] * (value - old);
 }
 
+/// What the component becomes at an open side of the box through which wind comes in, even where
+/// the air stands still; `share`: of the way over which it takes on what is there, in the step.
+GLOAM_HD float let_in(const CarryView& v, int c, float share) {
+  const float here = v.corrected[c];
+  return v.open[c] > 0.0f ? here + (v.wind - here) * share : here;
+}
+
 }  // namespace gloam::gas

@@ -29,6 +29,28 @@ GLOAM_HD float fluctuation(int c, uint32_t count) {
   return (float(int(bits >> 8)) * 0x1p-23f - 1.0f) * 1.7320508f;
 }
 
+/// What lifts the faces across z.
+struct LiftView {
+  Shape shape;
+  const float* open;
+  const float* smooth;  ///< of cells: smoothness_at()
+  const float* heat;
+  const float* smoke;
+  float ambient_density;  ///< [kg/m³]
+  float dt;               ///< [s]
+  uint32_t count;         ///< of fluctuation()
+};
+
+/// What the face at c gains [m/s]. Where flow is not smooth, heat fluctuates.
+GLOAM_HD float lift(const LiftView& v, int c) {
+  const int b = c - v.shape.sz;
+  const float rough = 1.0f - 0.5f * (v.smooth[c] + v.smooth[b]);
+  const float share = 1.0f + kFluctuation * rough * fluctuation(c, v.count);
+  return v.open[c] * v.dt *
+         buoyancy(share * 0.5f * (v.heat[c] + v.heat[b]), 0.5f * (v.smoke[c] + v.smoke[b]),
+                  v.ambient_density);
+}
+
 /// 1 where velocities of cells' centres [voxels per step] change by little from cell to cell, 0
 /// from kRough on.
 GLOAM_HD float smoothness_at(const Shape& s, const Faces<const float>& v, int c) {

@@ -15,12 +15,28 @@ struct PoissonView {
   const float* inverse;  ///< of the diagonal; 0 where a cell has no open face
 };
 
-GLOAM_HD float apply_poisson(const PoissonView& v, const float* x, int c) {
-  const int sy = v.shape.sy, sz = v.shape.sz;
+/// Weights of a cell's faces.
+struct FaceWeights {
+  float xl, xh, yl, yh, zl, zh;
+};
+
+GLOAM_HD FaceWeights face_weights(const PoissonView& v, int c) {
+  return {v.weight.x[c], v.weight.x[c + 1],         v.weight.y[c], v.weight.y[c + v.shape.sy],
+          v.weight.z[c], v.weight.z[c + v.shape.sz]};
+}
+
+/// X: const float*, or what has values by index as that.
+template <class X>
+GLOAM_HD float apply_poisson(const Shape& s, const FaceWeights& w, X x, int c) {
   const float here = x[c];
-  return (v.weight.x[c] * (here - x[c - 1]) + v.weight.x[c + 1] * (here - x[c + 1])) +
-         (v.weight.y[c] * (here - x[c - sy]) + v.weight.y[c + sy] * (here - x[c + sy])) +
-         (v.weight.z[c] * (here - x[c - sz]) + v.weight.z[c + sz] * (here - x[c + sz]));
+  return (w.xl * (here - x[c - 1]) + w.xh * (here - x[c + 1])) +
+         (w.yl * (here - x[c - s.sy]) + w.yh * (here - x[c + s.sy])) +
+         (w.zl * (here - x[c - s.sz]) + w.zh * (here - x[c + s.sz]));
+}
+
+template <class X>
+GLOAM_HD float apply_poisson(const PoissonView& v, X x, int c) {
+  return apply_poisson(v.shape, face_weights(v, c), x, c);
 }
 
 /// Which faces of a cell are open, a bit each: -x +x -y +y -z +z. On the finest level it says all
@@ -32,7 +48,8 @@ GLOAM_HD uint8_t open_faces(const Faces<const float>& weight, const Shape& s, in
 }
 
 /// As apply_poisson() where weights are 1 or 0; `open`: of the cell.
-GLOAM_HD float apply_poisson(const Shape& s, uint8_t open, const float* x, int c) {
+template <class X>
+GLOAM_HD float apply_poisson(const Shape& s, uint8_t open, X x, int c) {
   const float here = x[c];
   const auto flow = [here, open](float beyond, int n) {
     const float difference = here - beyond;
@@ -42,14 +59,20 @@ GLOAM_HD float apply_poisson(const Shape& s, uint8_t open, const float* x, int c
          (flow(x[c - s.sz], 4) + flow(x[c + s.sz], 5));
 }
 
+/// By how much pressure slows the face at c: half of `share` [of cells] of its gradient's work.
+GLOAM_HD float pressed(const float* open, const float* share, const float* x, int c, int stride) {
+  return open[c] * 0.5f * (share[c] + share[c - stride]) * (x[c] - x[c - stride]);
+}
+
 /// One damped Jacobi step at c, from what the operator makes of x.
-GLOAM_HD float relax(const PoissonView& v, const float* x, const float* b, float damping, float ax,
-                     int c) {
+template <class X>
+GLOAM_HD float relax(const PoissonView& v, X x, const float* b, float damping, float ax, int c) {
   return x[c] + damping * v.inverse[c] * (b[c] - ax);
 }
 
 /// One damped Jacobi step at c.
-GLOAM_HD float relax(const PoissonView& v, const float* x, const float* b, float damping, int c) {
+template <class X>
+GLOAM_HD float relax(const PoissonView& v, X x, const float* b, float damping, int c) {
   return relax(v, x, b, damping, apply_poisson(v, x, c), c);
 }
 

@@ -26,6 +26,10 @@ struct Shape {
   GLOAM_HD int size() const { return sz * (nz + 2); }  ///< with ghosts
   GLOAM_HD int n(int axis) const { return axis == 0 ? nx : (axis == 1 ? ny : nz); }
   GLOAM_HD int stride(int axis) const { return axis == 0 ? 1 : (axis == 1 ? sy : sz); }
+  /// Of the faces across `axis`: one more than cells along it, in the same memory.
+  GLOAM_HD Shape faces(int axis) const {
+    return {nx + (axis == 0), ny + (axis == 1), nz + (axis == 2), sy, sz};
+  }
 };
 
 /// One value per face, of each axis.
@@ -37,6 +41,17 @@ struct Faces {
   GLOAM_HD T* operator[](int axis) const { return axis == 0 ? x : (axis == 1 ? y : z); }
   GLOAM_HD Faces<const T> read() const { return {x, y, z}; }
 };
+
+/// Velocity of the centre of the cell at c, twice.
+GLOAM_HD Vec3f centre_twice(const Shape& s, const Faces<const float>& u, int c) {
+  return {u.x[c] + u.x[c + 1], u.y[c] + u.y[c + s.sy], u.z[c] + u.z[c + s.sz]};
+}
+
+/// Square of the speed at the centre of the cell at c.
+GLOAM_HD float speed_squared(const Shape& s, const Faces<const float>& u, int c) {
+  const Vec3f v = centre_twice(s, u, c) * 0.5f;
+  return v.x * v.x + v.y * v.y + v.z * v.z;
+}
 
 /// What flows out of the cell at c through all faces less what flows in, per area.
 GLOAM_HD float outflow(const Shape& s, const Faces<const float>& u, int c) {

@@ -85,11 +85,12 @@ GLOAM_HD float walk_axis(const float* open, int stride, int n, float step, int* 
   return lost;
 }
 
+GLOAM_HD float largest(Vec3f v) { return max(max(max(v.x, -v.x), max(v.y, -v.y)), max(v.z, -v.z)); }
+
 /// From the centre of cell (i, j, k) by d voxels, past what is closed. Returns by how much the
 /// way was shortened, axes added up [voxels].
 GLOAM_HD float walk(const Shape& s, const Faces<const float>& open, int i, int j, int k, Vec3f* d) {
-  const float far = max(max(max(d->x, -d->x), max(d->y, -d->y)), max(d->z, -d->z));
-  const int steps = int(far * 2.0f) + 1;
+  const int steps = int(largest(*d) * 2.0f) + 1;
   const Vec3f step = *d * (1.0f / float(steps));
   int a = i, b = j, e = k, c = s.at(i, j, k);
   Vec3f o;
@@ -116,6 +117,14 @@ struct Carrier {
   Faces<const float> velocity;
 };
 
+/// Velocity of the centre of the cell at c times 2 `half`, each component at most `limit`.
+GLOAM_HD Vec3f carrier_velocity(const Shape& s, const Faces<const float>& u, int c, float half,
+                                float limit) {
+  const Vec3f v = centre_twice(s, u, c);
+  return {clamp(half * v.x, -limit, limit), clamp(half * v.y, -limit, limit),
+          clamp(half * v.z, -limit, limit)};
+}
+
 /// By how much the air of the centre of cell (i, j, k) moved in a step (Runge and Kutta, order 2),
 /// where nothing is in the way.
 GLOAM_HD Vec3f displacement(const Carrier& v, int i, int j, int k) {
@@ -124,6 +133,12 @@ GLOAM_HD Vec3f displacement(const Carrier& v, int i, int j, int k) {
                           float(j) - 0.5f * v.velocity.y[c], float(k) - 0.5f * v.velocity.z[c]);
   return {interpolate(v.shape, v.velocity.x, b), interpolate(v.shape, v.velocity.y, b),
           interpolate(v.shape, v.velocity.z, b)};
+}
+
+/// Whether walls may be in the way of air of this velocity that moved so: where it is longer than
+/// what is `clear` around the cell.
+GLOAM_HD bool comes_near_walls(Vec3f moved, Vec3f velocity, uint8_t clear) {
+  return max(largest(moved), 0.5f * largest(velocity)) > float(clear);
 }
 
 /// Where walls shorten ways by more, velocity is carried in first order only [voxels].

@@ -34,6 +34,17 @@ GLOAM_HD float face_flux(float courant, float q1, float q2, float d01, float d12
   return courant * (on ? q + rest * slope : q - rest * slope);
 }
 
+/// Air that is left in the cell at c by the sweeps along the axes `before` (-1 = none): of 1, what
+/// they moved is gone.
+GLOAM_HD float air_left(const Shape& s, const Faces<const float>& courant, const int (&before)[2],
+                        int c) {
+  float air = 1.0f;
+  for (const int a : before) {
+    if (a >= 0) air -= courant[a][c + s.stride(a)] - courant[a][c];
+  }
+  return air;
+}
+
 /// The most that leaves the cell at c in a sweep along one axis, and in net in those along the
 /// others, which may come before it: of its air, in whichever order. `courant`: of faces.
 GLOAM_HD float most_outflow(const Shape& s, const Faces<const float>& courant, int c) {

@@ -1,0 +1,86 @@
+#pragma once
+// Arrays in the card's memory, and in host memory that it copies from and to at full speed.
+
+#include <cuda_runtime_api.h>
+
+#include <cstddef>
+#include <span>
+#include <utility>
+
+#include "base/check.h"
+
+namespace gloam::gas {
+
+/// What fails here is a bug, a broken driver or a full card: nothing of the user's to mend.
+inline void must(cudaError_t error, const char* what) {
+  if (error != cudaSuccess) check_failed("CUDA", 0, cudaGetErrorString(error), what);
+}
+
+template <class T>
+class DeviceArray {
+ public:
+  DeviceArray() = default;
+  explicit DeviceArray(size_t size) { reserve(size); }
+  DeviceArray(DeviceArray&& other) noexcept { swap(other); }
+  DeviceArray& operator=(DeviceArray&& other) noexcept {
+    swap(other);
+    return *this;
+  }
+  ~DeviceArray() { cudaFree(data_); }
+
+  /// Grows, never shrinks; growing sets all to 0.
+  void reserve(size_t size) {
+    if (size <= size_) return;
+    must(cudaFree(data_), "memory of the card cannot be freed");
+    data_ = nullptr;
+    must(cudaMalloc(reinterpret_cast<void**>(&data_), size * sizeof(T)),
+         "the card's memory is full");
+    must(cudaMemset(data_, 0, size * sizeof(T)), "the card's memory cannot be set");
+    must(cudaDeviceSynchronize(), "the card's memory cannot be set");  // whatever stream comes next
+    size_ = size;
+  }
+  /// A copy of host memory; the stream is waited for where that is not pinned.
+  void assign(std::span<const T> from, cudaStream_t stream) {
+    if (from.empty()) return;
+    reserve(from.size());
+    must(cudaMemcpyAsync(data_, from.data(), from.size_bytes(), cudaMemcpyHostToDevice, stream),
+         "nothing can be copied to the card");
+  }
+  void swap(DeviceArray& other) {
+    std::swap(data_, other.data_);
+    std::swap(size_, other.size_);
+  }
+  T* get() const { return data_; }
+
+ private:
+  T* data_ = nullptr;
+  size_t size_ = 0;
+};
+
+template <class T>
+class PinnedArray {
+ public:
+  PinnedArray() = default;
+  PinnedArray(const PinnedArray&) = delete;
+  PinnedArray& operator=(const PinnedArray&) = delete;
+  ~PinnedArray() { cudaFreeHost(data_); }
+
+  /// Grows, never shrinks; growing loses what it held.
+  T* reserve(size_t size) {
+    if (size > size_) {
+      must(cudaFreeHost(data_), "pinned memory cannot be freed");
+      data_ = nullptr;
+      must(cudaMallocHost(reinterpret_cast<void**>(&data_), size * sizeof(T)),
+           "no pinned memory is left");
+      size_ = size;
+    }
+    return data_;
+  }
+  T* get() const { return data_; }
+
+ private:
+  T* data_ = nullptr;
+  size_t size_ = 0;
+};
+
+}  // namespace gloam::gas
