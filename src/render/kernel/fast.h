@@ -199,6 +199,7 @@ GLOAM_HD Vec3f scattered_light(const SceneView& scene, const Tracer& tracer, con
                                uint32_t* rays) {
   LightPicker picker;
   picker.prepare(scene, p_W, Vec3f{});
+  picker.leave_out_sky(scene);  // that is the cache's
   const Vec2f u{random->next(), random->next()};
   const LightSample light = picker.sample(scene, p_W, u, ray.time);
   if (!(light.pdf > 0) || !(max_component(point.scattering) > 0)) return {};
@@ -218,15 +219,18 @@ GLOAM_HD Vec3f scattered_light(const SceneView& scene, const Tracer& tracer, con
          light.pdf;
 }
 
-/// What media along path->ray up to `tmax` do to light: scatter once and give off, and let through.
+/// What media along path->ray up to `tmax` do to light: scatter that of lamps once and give off,
+/// scatter that of all around, and let through.
 template <class F>
 struct MediaLightOf {
-  Vec3Of<F> radiance, through;
+  Vec3Of<F> radiance;   ///< [cd/m²]
+  Vec3Of<F> scattered;  ///< share of what arrives from all around
+  Vec3Of<F> through;
 };
 template <class F, class Tracer>
 GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& tracer, F tmax,
                                      MaskOf<F> active, int steps, paths::State<F>* path) {
-  MediaLightOf<F> out{{}, in_all_lanes<F>({1, 1, 1})};
+  MediaLightOf<F> out{{}, {}, in_all_lanes<F>({1, 1, 1})};
   if (scene.media.volumes.empty()) return out;
   const Vec2Of<F> u = path->sampler.next_2d(active);
   each_lane(active, [&](int i) {
@@ -244,6 +248,7 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
         });
     set_lane(&path->result.rays, i, lane(path->result.rays, i) + rays);
     set_lane(&out.radiance, i, m.radiance);
+    set_lane(&out.scattered, i, m.scattered);
     set_lane(&out.through, i, m.transmittance);
   });
   return out;
@@ -300,6 +305,7 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
   MaskOf<F> first = true;
   for (int event = 0; event < kMaxEvents && any(active); ++event) {
     RayHitOf<F> hit;
+    Vec3Of<F> scattered;  // share of the light around the surface that media send along the ray
     path->result.rays += select(active, UintOf<F>(1u), UintOf<F>(0u));
     const MaskOf<F> found = tracer.closest(path->ray, active, false, &hit);
     if (event == 0) {
@@ -311,6 +317,7 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
       const F tmax = select(found, hit.t, F(1e30f));
       const MediaLightOf<F> media = cross_media(scene, tracer, tmax, active, kSteps, path);
       sum += select<F>(active, throughput * media.radiance, Vec3Of<F>{});
+      scattered = select<F>(active, throughput * media.scattered, Vec3Of<F>{});
       throughput = select<F>(active, throughput * media.through, throughput);
     }
     if (count_lamps && scene.has_visible_lights) {
@@ -320,7 +327,8 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
     if (const MaskOf<F> missed = active & !found; any(missed)) {
       const Vec3Of<F> sky = sky_radiance_of(scene, path->ray.d, path->cone_spread, missed) +
                             in_all_lanes<F>(scene.sky_ambient);
-      sum += select<F>(missed, throughput * sky, Vec3Of<F>{});
+      sum += select<F>(missed, throughput * sky + scattered * in_all_lanes<F>(cache.mean),
+                       Vec3Of<F>{});
     }
     active = found;
     if (!any(active)) break;
@@ -375,7 +383,7 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
       const Vec3Of<F> gloss = bsdf.base.f0 * a + bsdf.base.f90 * b;
       const Vec3Of<F> leaving =
           diffuse_albedo(bsdf) * (diffuse + cached) + gloss * cached + specular;
-      sum += select<F>(matt, throughput * leaving, Vec3Of<F>{});
+      sum += select<F>(matt, throughput * leaving + scattered * cached, Vec3Of<F>{});
     }
     if (any(glass)) {
       const Vec2Of<F> u = path->sampler.next_2d(glass);
@@ -454,6 +462,7 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
   F way = 0.0f;
   for (uint32_t passed = 0; passed < kMaxPassed && any(active); ++passed) {
     RayHitOf<F> hit;
+    Vec3Of<F> scattered;  // share of the light around the surface that media send along the ray
     path.result.rays += select(active, UintOf<F>(1u), UintOf<F>(0u));
     const Mask found = tracer.closest(path.ray, active, passed == 0, &hit);
     if (!scene.media.volumes.empty()) {
@@ -461,6 +470,7 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
       const F tmax = select(found, hit.t, F(1e30f));
       const auto media = fasts::cross_media(scene, tracer, tmax, active, kSteps, &path);
       out.base += select<F>(active, out.through * media.radiance, Vec3Of<F>{});
+      scattered = select<F>(active, out.through * media.scattered, Vec3Of<F>{});
       out.through = select<F>(active, out.through * media.through, out.through);
     }
     if (const Mask missed = active & !found; any(missed)) {
@@ -468,6 +478,7 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
         const Vec3f sky = sky_radiance(scene, lane(path.ray.d, i), lane(path.cone_spread, i));
         set_lane(&out.base, i, lane(out.base, i) + lane(out.through, i) * sky);
       });
+      out.base += select<F>(missed, scattered * in_all_lanes<F>(cache.mean), Vec3Of<F>{});
     }
     active = found;
     if (!any(active)) break;
@@ -495,7 +506,10 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
     CacheRequest asked[Lanes<F>::kCount];
     const CacheCellOf<F> cells = fasts::ask_cells(cache, v, active, jitter, 0, asked);
     // What the first solid surface has of the cache is looked up when its cells have been traced.
-    const Vec3Of<F> cached = fasts::cached_light(cache, v, cells, pane, 0);
+    constexpr float kUnseen = 0.002f;
+    const Mask hazy = active & (max_component(scattered) > kUnseen);
+    const Vec3Of<F> cached = fasts::cached_light(cache, v, cells, pane | hazy, 0);
+    out.base += select<F>(hazy, scattered * cached, Vec3Of<F>{});
     if (any(solid)) {
       const Vec3Of<F> out_W =
           FrameOf<F>::from_z(v.normal).to_world(sample_cosine_hemisphere(near_u));

@@ -71,7 +71,8 @@ GLOAM_HD Vec3f scattering_at(const MediaView& media, Vec3f p_W, Bands bands, flo
 
 struct MarchResult {
   Vec3f transmittance;
-  Vec3f radiance;  ///< of emission and source [cd/m²]
+  Vec3f radiance;   ///< of emission and source [cd/m²]
+  Vec3f scattered;  ///< share that was scattered on its way, of light that is even all around
 };
 
 namespace media {
@@ -132,6 +133,7 @@ GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, f
         media::add(point, 1 / parts, &mean);
       }
       const Vec3f share = before * media::mean_transmittance(mean.extinction * ds) * ds;
+      result.scattered += share * mean.scattering;
       result.radiance += share * source(mean, ray.o + ray.d * (begin + 0.5f * ds), share);
       if (max_component(result.transmittance) < kDark) return result;
     }
