@@ -171,6 +171,35 @@ bool GasObstacles::follow_height_fields(const LiveFields* live) {
   return true;
 }
 
+// What a mocap body did since the last instant: MuJoCo knows no velocity of it.
+void GasObstacles::follow_mocap(const SnapshotData& in) {
+  const double dt = in.time - mocap_time_;
+  const bool goes_on = in.run == mocap_run_ && dt > 0;
+  if (in.run == mocap_run_ && dt == 0) return;
+  mocaps_.resize(static_cast<size_t>(model_.nmocap));
+  for (int body = 1; body < static_cast<int>(model_.nbody); ++body) {
+    if (model_.body_mocapid[body] < 0) continue;
+    Mocap& mocap = mocaps_[static_cast<size_t>(model_.body_mocapid[body])];
+    const mjtNum *p = data_->xpos + 3 * body, *q = data_->xquat + 4 * body;
+    mocap.motion = {};
+    if (goes_on) {
+      mjtNum turned[3], moved[3];
+      mju_subQuat(turned, q, mocap.q);  // in the axes of before
+      mju_rotVecQuat(mocap.motion.w, turned, mocap.q);
+      mju_scl3(mocap.motion.w, mocap.motion.w, 1 / dt);
+      mju_sub3(moved, p, mocap.p);
+      mju_scl3(moved, moved, 1 / dt);
+      const double to_low[3] = {grid_.low.x - p[0], grid_.low.y - p[1], grid_.low.z - p[2]};
+      mju_cross(mocap.motion.v, mocap.motion.w, to_low);
+      mju_addTo3(mocap.motion.v, moved);
+      if (mju_norm3(moved) > kTeleport) mocap.motion = {};
+    }
+    mju_copy3(mocap.p, p);
+    mju_copy4(mocap.q, q);
+  }
+  mocap_run_ = in.run, mocap_time_ = in.time;
+}
+
 // Velocities do not depend on masses, so no live field matters here but height fields.
 RigidMotion GasObstacles::motion_of(int body) const {
   mjtNum velocity[6];  // angular, linear at xpos
@@ -181,6 +210,11 @@ RigidMotion GasObstacles::motion_of(int body) const {
   mju_copy3(motion.w, velocity);
   mju_cross(motion.v, motion.w, to_low);
   mju_addTo3(motion.v, velocity + 3);
+  if (const int mocap = model_.body_mocapid[model_.body_rootid[body]]; mocap >= 0) {
+    const RigidMotion& base = mocaps_[static_cast<size_t>(mocap)].motion;
+    mju_addTo3(motion.v, base.v);
+    mju_addTo3(motion.w, base.w);
+  }
   return motion;
 }
 
@@ -228,6 +262,7 @@ Status GasObstacles::solve(const Snapshot& snapshot, GasWalls* walls) {
     mj_comVel(&model_, data_.get());
   }));
   const bool new_ground = follow_height_fields(in.live.get());
+  follow_mocap(in);
   voxelise_movers();
   const bool first = filled_ == nullptr;
   shape_changed_ = first || new_ground || runs_ != runs_before_;

@@ -20,6 +20,7 @@ class GasObstacles {
  public:
   /// Of a door that is shut, 4 to 8 mm: a line through one would make a gap of a whole voxel of it.
   static constexpr double kSealedGap = 0.01;
+  static constexpr double kTeleport = 20;  ///< [m/s]
 
   /// Geoms that count: those that can collide, by contype, conaffinity or a `<pair>`. `sealed_gap`
   /// [m]: narrower gaps between two are closed, as all surfaces are moved out by half of it, for
@@ -30,8 +31,9 @@ class GasObstacles {
 
   /// Fills `walls` as of the Snapshot's own instant; where it is the object of the last call, as
   /// the last call left it, only what moved is written. Of several things that close a face, one
-  /// that stands still wins, then the last geom by id. Mocap bodies have no velocity: MuJoCo knows
-  /// none. Allocates at the first call with an object, and when the ground changes. Error:
+  /// that stands still wins, then the last geom by id. Mocap bodies move as they did since the call
+  /// before, of an earlier instant of the same run; what moves faster than kTeleport has been put
+  /// there. Allocates at the first call with an object, and when the ground changes. Error:
   /// MuJoCo's.
   Status solve(const Snapshot& snapshot, GasWalls* walls);
 
@@ -61,6 +63,7 @@ class GasObstacles {
   void voxelise_height_fields(const float* data);
   bool follow_height_fields(const LiveFields* live);
   void add_runs(int geom);
+  void follow_mocap(const SnapshotData& in);
   RigidMotion motion_of(int body) const;
   void voxelise_movers();
   void write(bool anew, GasWalls* walls);
@@ -78,6 +81,13 @@ class GasObstacles {
   GasWalls still_;              // of what stands still; no velocities
   GasWalls fixed_;              // without height fields; empty where there are none
   uint64_t height_serial_ = 0;  // LiveFields'
+  struct Mocap {
+    mjtNum p[3], q[4];
+    RigidMotion motion;
+  };
+  std::vector<Mocap> mocaps_;  // by mocap id, at the last instant
+  int64_t mocap_run_ = -1;     // of that
+  double mocap_time_ = 0;      // [s]
   std::vector<Mover> movers_, movers_before_;
   std::vector<WallRun> runs_, runs_before_;
   const GasWalls* filled_ = nullptr;  // by the last call

@@ -48,6 +48,54 @@ TEST(GasObstacles, FacesMoveWithTheBody) {
   }
 }
 
+// A plate that is led by hand, and what hangs on it, half a second on its way; then put elsewhere.
+TEST(GasObstacles, FacesMoveWithAMocapBody) {
+  GasRig rig(
+      "<body name='hand' mocap='true'><geom type='box' size='.05 .4 .4'/>"
+      "<body pos='.2 0 0'><joint type='slide' axis='0 1 0'/><geom size='.1' "
+      "mass='1'/></body></body>",
+      cube_grid(16, .1f));
+  const auto fastest = [&] {
+    double least = 0, most = 0;
+    for (const float v : rig.walls.velocity[0])
+      least = std::min(least, double(v)), most = std::max(most, double(v));
+    return std::pair(least, most);
+  };
+  rig.solve();
+  EXPECT_EQ(fastest(), std::pair(0.0, 0.0)) << "nothing was before";
+  rig.d->time = 0.5;
+  rig.d->mocap_pos[0] = 0.1;
+  rig.d->mocap_quat[0] = std::cos(0.05), rig.d->mocap_quat[3] = std::sin(0.05);  // 0.1 rad about z
+  rig.d->qvel[0] = 0.3;
+  rig.solve();
+  expect_consistent(rig.walls);
+  int plate = 0;
+  double worst = 0;
+  for_faces(rig.walls.grid, [&](int axis, int i, int j, int k, size_t at) {
+    if (!rig.walls.closed[axis][at] || axis == 1) return;
+    const auto p = gas_centre(rig.walls.grid, axis, i, j, k);
+    // 0.2 m/s along x, 0.2 rad/s about z, around the body's origin at (0.1, 0, 0).
+    const double expected = axis == 0 ? 0.2 - 0.2 * p[1] : 0;
+    const double slide = axis == 0 ? -0.3 * std::sin(0.1) : 0;  // of the ball, along the turned y
+    const double v = rig.walls.velocity[axis][at];
+    worst = std::max(worst, std::min(std::abs(v - expected), std::abs(v - expected - slide)));
+    plate += axis == 0;
+  });
+  EXPECT_GT(plate, 50);
+  EXPECT_LT(worst, 1e-6);
+  rig.solve();  // of the same instant: the same
+  EXPECT_FALSE(rig.obstacles->changed());
+  EXPECT_GT(fastest().second, 0.1);
+  rig.d->time = 0.6;
+  rig.d->mocap_pos[0] = -5;
+  rig.solve();
+  rig.d->time = 0.7;
+  rig.d->mocap_pos[0] = 0;
+  rig.d->qvel[0] = 0;
+  rig.solve();
+  EXPECT_EQ(fastest(), std::pair(0.0, 0.0)) << "50 m/s is no motion";
+}
+
 // A rigid body takes no more room for its moving: what its faces push out they draw in.
 TEST(GasObstacles, NoNetFluxThroughTheSurfaceOfABody) {
   for (const char* shape : {"sphere' size='.4", "box' size='.4 .3 .2", "cylinder' size='.3 .4"}) {

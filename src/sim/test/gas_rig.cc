@@ -100,6 +100,7 @@ GasRig::GasRig(const std::string& bodies, const GasGrid& grid, double sealed_gap
 Snapshot GasRig::snapshot() const {
   auto data = std::make_shared<SnapshotData>();
   data->world = world;
+  data->time = d->time;
   const mjModel* m = world->model.get();
   data->state.resize(static_cast<size_t>(mj_stateSize(m, mjSTATE_INTEGRATION)));
   mj_getState(m, d.get(), data->state.data(), mjSTATE_INTEGRATION);
