@@ -48,12 +48,15 @@ Solid stone(Vec3f size, int cuts, uint64_t seed) {
   return Solid(std::move(mesh));
 }
 
+/// What of it lies below `above` is flat there, to its collider.
 Prop rock_of(Workshop& shop, Vec3f size, int cuts, float above = 0) {
   const uint64_t seed = shop.dice.seed();
   const float lift = 0.22f * size.z;
   Prop p;
   p.body().show("stone", shop.bedrock(), stone(size, cuts, seed).moved(0, 0, lift));
-  p.body().collide_hull(stone(size, 3, seed).moved(0, 0, lift + above), 0.9);
+  TriangleMesh hull = stone(size, 3, seed).moved(0, 0, lift).mesh();
+  for (Vec3f& v : hull.positions) v.z = max(v.z, above);
+  p.body().collide_hull(Solid(std::move(hull)), 0.9);
   p.body().mass = 2600 * 0.3 * double(size.x * size.y * size.z);  // granite [kg/m³]
   return p;
 }
