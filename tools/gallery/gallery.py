@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Makes docs/gallery: a picture of every material, pattern, lamp, sky, medium, lens and sensor that Gloam has, with the scene that makes it.
 
-  ./gloam gallery                all pictures, scenes and the page (some ten minutes on two cores)
+  ./gloam gallery                all pictures, scenes and the page (some half an hour on two cores)
   ./gloam gallery --only glass   pictures with "glass" in chapter/name; the page is made of what is there
   ./gloam gallery --quick        small and noisy, into build/gallery: does every scene still render? (of generated places one seed)
 

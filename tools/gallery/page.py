@@ -3,6 +3,7 @@ import html
 import os
 
 COLUMNS = 3
+WIDEST = 480    # [px] on the page; the file has all of a picture
 HEAD = """# Gallery
 <!-- Made by ./gloam gallery from tools/gallery/chapters: edit those. -->
 
@@ -15,7 +16,8 @@ What the path tier can show, each with the lines that make it. Every caption lea
 
 def cell(picture):
     lines = "\n\n".join(text.strip() for text in (picture.mjcf, picture.toml) if text.strip())
-    return (f'<td valign="top" width="33%"><img src="{picture.file_name}.jpg" width="{picture.size[0]}" alt="{html.escape(picture.title)}"><br>'
+    width = min(picture.size[0], WIDEST)
+    return (f'<td valign="top" width="33%"><img src="{picture.file_name}.jpg" width="{width}" alt="{html.escape(picture.title)}"><br>'
             f'<a href="scenes/{picture.file_name}.toml">{html.escape(picture.title)}</a>'
             + (f"<pre>{html.escape(lines)}</pre>" if lines else "") + "</td>")
 
