@@ -9,7 +9,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kPebblePatch = 1.2;  // of pebbles, square [m]
+constexpr double kPebblePatch = 0.5;  // of pebbles, square and flat: small where ground bends [m]
 constexpr int kPebbleShapes = 3;
 
 // Stones of 1 to 5 cm, half in the ground: a foot, a shoulder and a top each.
@@ -66,13 +66,13 @@ class Litter {
     };
     const Rect area = land_.area().grown(-0.6);
     if (land_.has_road())
-      for (double x = area.x0; x < area.x1; x += 1.1)
+      for (double x = area.x0; x < area.x1; x += 0.9 * kPebblePatch)
         for (const double side : {-1.0, 1.0}) {
           const double away = land_.road_width() / 2 + dice_.uniform(-0.3, 0.6);
           lay(x, land_.road_y(x) + side * away);
         }
     if (const auto& pond = land_.pond()) {
-      const int count = static_cast<int>(2 * M_PI * pond->radius / 0.9);
+      const int count = static_cast<int>(2 * M_PI * pond->radius / (0.75 * kPebblePatch));
       for (int k = 0; k < count; ++k) {
         const double a = 2 * M_PI * (k + dice_.uniform(0, 0.6)) / count,
                      share = dice_.uniform(0.98, 1.14);
@@ -82,7 +82,7 @@ class Litter {
     }
     const std::string stone = shop_->bedrock();
     for (int i = 0; i < kPebbleShapes; ++i)
-      scatter("pebbles", stone, pebbles(static_cast<int>(30 + 60 * o_.rocks), &dice_),
+      scatter("pebbles", stone, pebbles(static_cast<int>(6 + 11 * o_.rocks), &dice_),
               std::move(poses[i]));
   }
 
