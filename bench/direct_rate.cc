@@ -17,6 +17,7 @@
 
 #include "base/files.h"
 #include "bench/command_line.h"
+#include "bench/median.h"
 #include "gloam/scene.h"
 #include "render/film/png.h"
 #include "runtime/live_simulation.h"
@@ -34,11 +35,6 @@ double seconds(clockid_t clock) {
   timespec t{};
   clock_gettime(clock, &t);
   return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return 0.5 * (values[values.size() / 2] + values[(values.size() - 1) / 2]);
 }
 
 Status run(const Options& options) {

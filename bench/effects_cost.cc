@@ -9,11 +9,11 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <thread>
 
 #include "bench/command_line.h"
+#include "bench/median.h"
 #include "gloam/scene.h"
 #include "runtime/live_simulation.h"
 #include "sim/simulator.h"
@@ -29,12 +29,6 @@ struct Options {
 };
 
 constexpr int kWarmUp = 4;  ///< pictures until the fast tier's caches are full
-
-double median(std::vector<double> list) {
-  std::sort(list.begin(), list.end());
-  const size_t n = list.size();
-  return n == 0 ? 0 : 0.5 * (list[(n - 1) / 2] + list[n / 2]);
-}
 
 double seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();

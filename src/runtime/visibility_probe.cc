@@ -49,7 +49,7 @@ double VisibilityProbe::visibility(const SnapshotData& snapshot, Vec3f p_W) cons
     extinction +=
         double(density) * double(volume.mass_extinction[static_cast<int>(MediumBand::kGreen)]);
   }
-  return extinction > 0 ? std::min(3.912 / extinction, kClear) : kClear;
+  return extinction > 0 ? std::min(kPaths / extinction, kClear) : kClear;
 }
 
 }  // namespace gloam
