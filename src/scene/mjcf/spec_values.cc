@@ -62,8 +62,9 @@ std::string strings(const mjStringVec* values) {
 
 std::string spec_text(const SpecObject& object, const SpecField& field) {
   const void* value = at(object, field);
+  const bool is_pointer = field.type >= SpecType::kString && field.type < SpecType::kStruct;
   // Defaults lack some of their texts.
-  if (field.type >= SpecType::kString && *static_cast<void* const*>(value) == nullptr) return "";
+  if (is_pointer && *static_cast<void* const*>(value) == nullptr) return "";
   switch (field.type) {
     case SpecType::kBool:
       return numbers<mjtBool>(value, field.count);
