@@ -11,12 +11,15 @@
 #include <vector>
 
 #include "gloam/result.h"
+#include "gloam/scene_agent.h"
 #include "gloam/scene_camera.h"
 #include "gloam/scene_effect.h"
 #include "gloam/scene_environment.h"
 #include "gloam/scene_lidar.h"
 #include "gloam/scene_light.h"
 #include "gloam/scene_sensor.h"
+#include "gloam/scene_water.h"
+#include "gloam/scene_weather.h"
 #include "gloam/types.h"
 
 namespace gloam {
@@ -275,6 +278,12 @@ struct Scene {
   std::vector<GasOptions> gases = {};
   std::vector<FireOptions> fires = {};
   std::vector<SmokeOptions> smokes = {};
+  std::optional<WeatherOptions> weather = {};
+  std::optional<AdversityOptions> adversity = {};
+  std::vector<WaterOptions> waters = {};
+  NavigationOptions navigation = {};
+  std::vector<AgentOptions> agents = {};
+  std::vector<CrowdOptions> crowds = {};
   std::vector<VisualOptions> visuals = {};
   std::vector<PushOptions> pushes = {};
   std::vector<StereoOptions> stereo = {};  ///< a compiled Scene has their cameras in `cameras`

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "gloam/scene.h"
+#include "scene/agent_fields.h"
 #include "scene/effect_fields.h"
 #include "scene/environment_fields.h"
 #include "scene/field_rule.h"
@@ -16,6 +17,7 @@
 #include "scene/lidar_fields.h"
 #include "scene/light_fields.h"
 #include "scene/pattern_names.h"
+#include "scene/weather_fields.h"
 
 namespace gloam {
 
@@ -238,6 +240,12 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("gas", scene.gases, FieldRule{});
   v("fire", scene.fires, FieldRule{});
   v("smoke", scene.smokes, FieldRule{});
+  v("weather", scene.weather, FieldRule{});
+  v("adversity", scene.adversity, FieldRule{});
+  v("water", scene.waters, FieldRule{});
+  v("navigation", scene.navigation, FieldRule{});
+  v("agent", scene.agents, FieldRule{});
+  v("crowd", scene.crowds, FieldRule{});
   v("visual", scene.visuals, FieldRule{});
   v("push", scene.pushes, FieldRule{});
   v("stereo", scene.stereo, FieldRule{});

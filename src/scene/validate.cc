@@ -209,6 +209,9 @@ Status validate_scene(const Scene& scene) {
   for (const VolumeOptions& volume : scene.volumes) GLOAM_TRY_STATUS(validate_volume(volume));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.gases, "gas"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.fires, "fire"));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.waters, "water"));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.agents, "agent"));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.crowds, "crowd"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.smokes, "smoke"));
   GLOAM_TRY_STATUS(validate_effects(scene));
   for (const RobotOptions& robot : scene.robots) {

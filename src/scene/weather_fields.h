@@ -1,0 +1,56 @@
+#pragma once
+// The fields of [weather], [adversity] and [[water]]: a part of scene/option_fields.h.
+
+#include <array>
+
+#include "scene/field_rule.h"
+
+namespace gloam {
+
+inline constexpr std::array<std::string_view, 3> kAdversityLevels = {"none", "minor", "major"};
+
+template <class Visitor>
+void visit_fields(Visitor& v, WeatherOptions& o) {
+  v("rain", o.rain, FieldRule{.unit = "mm/h", .min = 0, .max = 300});
+  v("snow", o.snow, FieldRule{.unit = "mm/h", .min = 0, .max = 50});
+  v("visibility", o.visibility, FieldRule{.unit = "m", .min = 0, .max = 1e6, .open = true});
+  v("medium", o.medium, FieldRule{});
+  v("scale_height", o.scale_height, FieldRule{.unit = "m", .min = 0, .max = 1e4});
+  v("turbulence", o.turbulence, kShare);
+  v("wind", o.wind, FieldRule{.unit = "m/s", .min = 0, .max = 60});
+  v("wind_from", o.wind_from, FieldRule{.unit = "deg", .min = -360, .max = 360});
+  v("gusts", o.gusts, kShare);
+  v("wetness", o.wetness, kShare);
+  v("snow_cover", o.snow_cover, FieldRule{.unit = "m", .min = 0, .max = 2});
+  v("lens_drops", o.lens_drops, kShare);
+}
+
+template <class Visitor>
+void visit_fields(Visitor& v, AdversityOptions& o) {
+  v("level", o.level, FieldRule{.choices = words(kAdversityLevels)});
+  v("light", o.light, kShare);
+  v("failing", o.failing, kShare);
+  v("clutter", o.clutter, kShare);
+  v("people", o.people, FieldRule{.min = 0, .max = 200});
+  v("people_speed", o.people_speed, FieldRule{.unit = "m/s", .min = 0, .max = 3, .open = true});
+}
+
+template <class Visitor>
+void visit_fields(Visitor& v, WaterOptions& o) {
+  const FieldRule angle{.unit = "deg", .min = -360, .max = 360};
+  v("name", o.name, FieldRule{.required = true});
+  v("position", o.position, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
+  v("size", o.size, FieldRule{.unit = "m", .min = 0.05, .max = 1000});
+  v("depth", o.depth, FieldRule{.unit = "m", .min = 0.01, .max = 1000});
+  v("wave_height", o.wave_height, FieldRule{.unit = "m", .min = 0, .max = 10});
+  v("wave_period", o.wave_period, FieldRule{.unit = "s", .min = 0.2, .max = 20});
+  v("wave_to", o.wave_to, angle);
+  v("spread", o.spread, FieldRule{.unit = "deg", .min = 0, .max = 90});
+  v("density", o.density, FieldRule{.unit = "kg/m3", .min = 1, .max = 2e4});
+  v("viscosity", o.viscosity, FieldRule{.unit = "Pa s", .min = 1e-6, .max = 1e3});
+  v("current", o.current, FieldRule{.unit = "m/s", .min = -10, .max = 10});
+  v("clarity", o.clarity, FieldRule{.unit = "m", .min = 0.01, .max = 100});
+  v("ripples", o.ripples, FieldRule{});
+}
+
+}  // namespace gloam
