@@ -99,6 +99,10 @@ class Renderer {
   /// Fills `film` (resized to the view's resolution).
   virtual RenderStats render(const CameraView& view, const RenderSettings& settings,
                              Film* film) = 0;
+  /// Draws what is strewn through the air over a finished picture of the view [cd/m²], whose film
+  /// has the exact channel `distance`.
+  virtual void draw_particles(const CameraView& view, const Film& film,
+                              std::vector<Vec3f>* radiance) = 0;
   /// Sends out the beams of a LiDAR; `returns`: view.optics.most_returns of each, in their order.
   virtual void scan(const LidarView& view, std::span<LidarReturn> returns) = 0;
   /// For RenderSettings::history; of this renderer alone.

@@ -126,7 +126,7 @@ void RobotMetrics::measure(Tracked& robot, const Snapshot& snapshot) {
   if (probe_.has_media()) {
     const double visibility = this->visibility(robot, snapshot, x, y, z);
     robot.least_visibility = std::min(robot.least_visibility, visibility);
-    robot.extinction += VisibilityProbe::kPaths / visibility;
+    robot.extinction += kKoschmieder / visibility;
     row_.push_back(visibility);
   }
 }
@@ -159,7 +159,7 @@ std::vector<NamedNumber> RobotMetrics::summary() const {
       numbers.emplace_back(prefix + "visibility_min_m", robot.least_visibility);
       numbers.emplace_back(
           prefix + "visibility_mean_m",
-          VisibilityProbe::kPaths * static_cast<double>(samples_) / robot.extinction);
+          kKoschmieder * static_cast<double>(samples_) / robot.extinction);
     }
   }
   return numbers;

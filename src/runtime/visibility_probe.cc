@@ -8,8 +8,12 @@ namespace gloam {
 
 Result<VisibilityProbe> VisibilityProbe::make(const CompiledWorld& world) {
   RenderDescription description;
-  GLOAM_TRY_STATUS(author_volumes(world.scene.volumes, &description));
-  author_gases(world.gases.gases, &description);
+  if (world.scene.weather) {  // roofs keep rain off
+    GLOAM_TRY(description, describe_for_rendering(world));
+  } else {
+    GLOAM_TRY_STATUS(author_volumes(world.scene.volumes, &description));
+    author_gases(world.gases.gases, &description);
+  }
   VisibilityProbe probe;
   for (VolumeDescription& volume : description.volumes) {
     probe.fields_.push_back(volume.field);
@@ -49,7 +53,7 @@ double VisibilityProbe::visibility(const SnapshotData& snapshot, Vec3f p_W) cons
     extinction +=
         double(density) * double(volume.mass_extinction[static_cast<int>(MediumBand::kGreen)]);
   }
-  return extinction > 0 ? std::min(kPaths / extinction, kClear) : kClear;
+  return extinction > 0 ? std::min(kKoschmieder / extinction, kClear) : kClear;
 }
 
 }  // namespace gloam

@@ -12,15 +12,13 @@ class VisibilityProbe {
  public:
   /// No further than that [m]: clean air's own, about.
   static constexpr double kClear = 1e5;
-  /// Koschmieder 1924: over so many mean free paths contrast falls to 2 %.
-  static constexpr double kPaths = 3.912;
 
-  /// Errors: those of the scene's [[volume]]s.
+  /// Errors: those of the scene's media.
   static Result<VisibilityProbe> make(const CompiledWorld& world);
 
   /// Is there anything that could be in the way?
   bool has_media() const { return !store_.view().volumes.empty(); }
-  /// At p_W [m]: Koschmieder's kPaths / extinction at 550 nm, as if all were as it is here. Waits
+  /// At p_W [m]: Koschmieder's 3.912 / extinction at 550 nm, as if all were as it is here. Waits
   /// for what of the snapshot's media is not solved for yet.
   double visibility(const SnapshotData& snapshot, Vec3f p_W) const;
 

@@ -153,6 +153,11 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
   sensor->free_pose_ = sensor->previous_free_pose_ =
       request.X_WC ? to_affine(*request.X_WC) : described.X_WC;
 
+  const WeatherDescription& weather = description.weather;
+  if (weather.lens_drops > 0 && described.camera >= 0) {
+    sensor->drops_.emplace(sensor->intrinsics_, weather.lens_drops, weather.drops_fall_on_lenses,
+                           described.aperture_radius, sensor_seed(seed, request.camera));
+  }
   RenderSettings& settings = sensor->settings_;
   if (request.render.tier == "path") {
     settings.tier = RenderTier::kPath;
@@ -182,7 +187,8 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
     settings.guide_samples = 4;
   }
   settings.cover = channels.boxes;
-  settings.exact_channels = channels.geometry() || sensor->denoiser_ != nullptr;
+  const bool particles = channels.light() && !weather.particles.empty();
+  settings.exact_channels = channels.geometry() || sensor->denoiser_ != nullptr || particles;
   settings.exact_details = channels.details() || sensor->denoiser_ != nullptr;
   return sensor;
 }
@@ -249,11 +255,27 @@ std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
       settings_.history = history_.get();
     }
     stats_ = renderer.render(view, settings_, &film_);
+    if (!stats_.finished) return nullptr;
+    if (channels_.light() && !description_.weather.particles.empty()) {
+      light_ = denoise();
+      renderer.draw_particles(view, film_, light_);
+    }
   }
-  if (!stats_.finished) return nullptr;
   auto frame = std::make_shared<CameraFrame>();
   convert(now, frame_index, view, frame.get());
+  light_ = nullptr;
   return frame;
+}
+
+std::vector<Vec3f>* CameraSensor::denoise() {
+  // Where the light is blurred, albedo and normal are, too: means over the same samples. Depth is
+  // sharp and no guide.
+  const bool blurred = camera().aperture_radius > 0 || camera().exposure_time > 0;
+  std::vector<float> sharp;
+  if (blurred) sharp.swap(film_.depth);
+  const bool clean = denoiser_ != nullptr && denoiser_->denoise(film_, &clean_).ok();
+  if (blurred) sharp.swap(film_.depth);
+  return clean ? &clean_ : &film_.radiance;
 }
 
 Rational CameraSensor::window() const {
@@ -281,16 +303,10 @@ void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const Came
   frame->readout_time = camera().readout_time;
 
   if (channels_.light()) {
-    const std::vector<Vec3f>* radiance = &film_.radiance;
-    // Where the light is blurred, albedo and normal are, too: means over the same samples. Depth
-    // is sharp and no guide.
-    const bool blurred = camera().aperture_radius > 0 || camera().exposure_time > 0;
-    std::vector<float> sharp;
-    if (blurred) sharp.swap(film_.depth);
-    if (denoiser_ != nullptr && denoiser_->denoise(film_, &clean_).ok()) radiance = &clean_;
-    if (blurred) sharp.swap(film_.depth);
-    models_->develop(*radiance, now.run, frame);
-    if (channels_.radiance) frame->radiance = flatten(*radiance);
+    if (light_ == nullptr) light_ = denoise();
+    if (drops_) drops_->draw(now.time, light_);
+    models_->develop(*light_, now.run, frame);
+    if (channels_.radiance) frame->radiance = flatten(*light_);
     if (channels_.samples) {
       frame->samples = film_.sample_count;
       frame->samples.resize(film_.pixel_count(), static_cast<uint32_t>(settings_.spp));

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -16,6 +17,7 @@
 #include "render/film/denoise.h"
 #include "render/renderer.h"
 #include "sensors/camera_models.h"
+#include "sensors/lens_drops.h"
 #include "sim/pose_frame.h"
 #include "world/render_description.h"
 
@@ -97,6 +99,8 @@ class CameraSensor {
 
  private:
   CameraSensor(const RenderDescription& description, int camera, const CameraChannels& channels);
+  /// The film's light, denoised where it is to be.
+  std::vector<Vec3f>* denoise();
   Shutter shutter(std::span<const PoseFrame* const> keys) const;
   void convert(const PoseFrame& now, int64_t frame_index, const CameraView& view,
                CameraFrame* frame);
@@ -113,9 +117,11 @@ class CameraSensor {
   Rational rate_;
   std::unique_ptr<CameraModels> models_;  // what happens after the light
   std::unique_ptr<ViewHistory> history_;  // of the fast tier
+  std::optional<LensDrops> drops_;
   std::unique_ptr<Denoiser> denoiser_;    // null: the samples as they are
   Film film_;
   std::vector<Vec3f> clean_;
+  std::vector<Vec3f>* light_ = nullptr;  // of the picture that is made
   mutable std::mutex pose_mutex_;
   Affine3f free_pose_, previous_free_pose_;
 };

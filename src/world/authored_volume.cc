@@ -60,12 +60,11 @@ Result<MediumDescription> medium_of(const VolumeOptions& options) {
 /// [kg/m³], of a value of one.
 Result<float> density_of(const VolumeOptions& options, const MediumDescription& medium) {
   if (options.density) return static_cast<float>(*options.density);
-  // Koschmieder 1924: contrast falls to 2 % over 3.912 / extinction, at 550 nm.
   const float extinction = medium.mass_extinction[static_cast<size_t>(MediumBand::kGreen)];
   if (!(extinction > 0)) {
     return volume_error(options, "its medium does not dim green light", "give 'density' instead");
   }
-  return static_cast<float>(3.912 / *options.visibility) / extinction;
+  return static_cast<float>(kKoschmieder / *options.visibility) / extinction;
 }
 
 Result<VolumeFile> read_grid(const VolumeOptions& options, const std::filesystem::path& path) {

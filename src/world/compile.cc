@@ -2,8 +2,10 @@
 
 #include <chrono>
 #include <cmath>
+#include <span>
 
 #include "geometry/model_file.h"
+#include "scene/adversity.h"
 #include "scene/environment/generators.h"
 #include "scene/environment/place_writer.h"
 #include "scene/mujoco_guard.h"
@@ -116,10 +118,15 @@ Result<World> World::compile(const Scene& written, const ProgressCallback& callb
   CompileProgress progress(callback, weights_of(scene));
   std::vector<DrawnOption> drawn;
   GLOAM_TRY_STATUS(draw_options(DrawStage::kPlace, &scene, &drawn));
+  apply_adversity(&scene);
   if (has_generator(scene.environment)) progress.begin("making the place", 0);
   GLOAM_TRY(const std::optional<Place> place, make_place(scene));
   GLOAM_TRY_STATUS(progress.check());
-  if (place) add_place_looks(*place, &scene);
+  if (place) {
+    const size_t own = scene.lights.size();
+    add_place_looks(*place, &scene);
+    apply_adversity_to_lamps(scene, std::span(scene.lights).first(scene.lights.size() - own));
+  }
   GLOAM_TRY_STATUS(add_ground_looks(&scene));
   if (has_meshes(scene)) progress.begin("reading model files", kReadWeight);
   GLOAM_TRY(const MeshObjects objects, load_mesh_objects(scene, &progress));

@@ -34,6 +34,10 @@ using VolumeGrid = std::shared_ptr<const std::vector<float>>;
 /// Volumes of more voxels than this are refused (1 GiB of floats).
 inline constexpr uint64_t kMaxVolumeVoxels = uint64_t{1} << 28;
 
+/// Over so many mean free paths contrast falls to 2 % (Koschmieder 1924): visibility times
+/// extinction, at 550 nm.
+inline constexpr double kKoschmieder = 3.912;
+
 /// Thicker media are refused [1/m]: they are surfaces.
 inline constexpr float kMaxExtinction = 1e5f;
 

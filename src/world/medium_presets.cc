@@ -48,6 +48,7 @@ float lidar_ratio(std::string_view name) {
   // cloud lidar". Others at 1064 nm, as polluted continental air and dust: Omar et al. 2009, "The
   // CALIPSO automated aerosol classification and lidar ratio selection algorithm".
   if (name == "fog" || name == "mist") return 18.8f;
+  if (name == "rain" || name == "snowfall") return 18.8f;  // spheres of water; ice is taken as they
   if (name == "haze") return 30;
   if (name == "dust") return 55;
   return 0;

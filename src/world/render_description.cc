@@ -321,6 +321,8 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
   if (world.scene.sky) GLOAM_TRY_STATUS(author_sky(*world.scene.sky, &levels, &out));
   GLOAM_TRY_STATUS(author_volumes(world.scene.volumes, &out));
   author_gases(world.gases.gases, &out);
+  if (world.scene.weather)
+    GLOAM_TRY_STATUS(author_weather(*world.scene.weather, world.scene.sim.seed, poses, &out));
   out.ev100 = world.ev100 ? static_cast<float>(*world.ev100) : exposure(levels, out);
   return out;
 }

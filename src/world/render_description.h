@@ -19,6 +19,7 @@
 #include "world/medium_description.h"
 #include "world/procedural_description.h"
 #include "world/shape_type.h"
+#include "world/weather_description.h"
 
 namespace gloam {
 
@@ -194,6 +195,7 @@ struct RenderDescription {
   uint64_t schedule_seed = 1;
   std::vector<MediumDescription> media;
   std::vector<VolumeDescription> volumes;
+  WeatherDescription weather;
   std::vector<CameraDescription>
       cameras;  ///< all of the model's, then one free camera that frames the model, "free"
   SkyDescription sky;

@@ -93,4 +93,45 @@ VolumeFile make_pattern(const VolumePatternOptions& options, Vec3f size) {
   return out;
 }
 
+std::vector<float> haze_layer(const GridShape& shape, Vec3f size, float low, double scale_height,
+                              double turbulence, float density, uint64_t seed) {
+  constexpr double kAcross = 40, kUp = 15;  // of the largest billows [m]
+  const auto nx = static_cast<size_t>(shape.nx), ny = static_cast<size_t>(shape.ny);
+  const auto nz = static_cast<size_t>(shape.nz);
+  std::vector<float> out(nx * ny * nz);
+  const RandomStream random{seed, stream_id("haze.billows")};
+  const auto middle = [](size_t i, float edge, size_t n) {
+    return (static_cast<double>(i) + 0.5) * static_cast<double>(edge) / static_cast<double>(n);
+  };
+  if (turbulence > 0) {
+    parallel_for("haze", shape.nz, [&](int64_t k) {
+      const double z = middle(static_cast<size_t>(k), size.z, nz) / kUp;
+      float* row = &out[static_cast<size_t>(k) * ny * nx];
+      for (size_t j = 0; j < ny; ++j, row += nx) {
+        for (size_t i = 0; i < nx; ++i)
+          row[i] = static_cast<float>(
+              billows(random, middle(i, size.x, nx) / kAcross, middle(j, size.y, ny) / kAcross, z));
+      }
+    });
+  }
+  double mean = 0, square = 0;
+  for (const float value : out)
+    mean += static_cast<double>(value) / static_cast<double>(out.size());
+  for (const float value : out)
+    square += (static_cast<double>(value) - mean) * (static_cast<double>(value) - mean) /
+              static_cast<double>(out.size());
+  // Log-normal: never below nothing.
+  const double sigma = std::sqrt(std::log1p(turbulence * turbulence));
+  const double scale = square > 0 ? sigma / std::sqrt(square) : 0;
+  for (size_t k = 0; k < nz; ++k) {
+    const double height = std::max(middle(k, size.z, nz) + static_cast<double>(low), 0.0);
+    const double level =
+        static_cast<double>(density) * (scale_height > 0 ? std::exp(-height / scale_height) : 1.0);
+    for (size_t i = k * nx * ny; i < (k + 1) * nx * ny; ++i)
+      out[i] = static_cast<float>(
+          level * std::exp(scale * (static_cast<double>(out[i]) - mean) - sigma * sigma / 2));
+  }
+  return out;
+}
+
 }  // namespace gloam

@@ -19,6 +19,7 @@
 #include "render/cpu/lidar_scan.h"
 #include "render/cpu/light_guide.h"
 #include "render/cpu/object_cover.h"
+#include "render/cpu/particle_streaks.h"
 #include "render/cpu/tile.h"
 #include "render/cpu/traced_scene.h"
 #include "render/cpu/watch.h"
@@ -99,6 +100,8 @@ class CpuRenderer final : public Renderer {
   using Renderer::update;
   void update(std::span<const PoseFrame* const> keys, const PoseFrame& previous) override {
     traced_.update(keys, previous);
+    opens_ = keys.front()->time;
+    seconds_ = keys.back()->time - opens_;
     if (cuda_ != nullptr) cuda_->update(scene());
     if (!updated_) described_ = scene().described_look(*keys.front());
     updated_ = true;
@@ -184,6 +187,15 @@ class CpuRenderer final : public Renderer {
     total.trace_seconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     return total;
+  }
+
+  void draw_particles(const CameraView& view, const Film& film,
+                      std::vector<Vec3f>* radiance) override {
+    const CameraView32 camera = make_camera(view, &camera_keys_);
+    const SceneView seen = scene().view_from(view.X_WC_open);
+    const CpuTracer tracer = traced_.tracer();
+    gloam::draw_particles(
+        {seen, tracer, camera, scene().description().weather, opens_, seconds_}, film, radiance);
   }
 
   void scan(const LidarView& view, std::span<LidarReturn> returns) override {
@@ -283,6 +295,7 @@ class CpuRenderer final : public Renderer {
   int columns_ = 0;                ///< of tiles
   DescribedLook described_;        ///< until the guide is built
   LightGuideStore guide_;
+  double opens_ = 0, seconds_ = 0;  ///< of the keys: the first, and to the last [s]
   bool updated_ = false, has_guide_ = false;
 };
 

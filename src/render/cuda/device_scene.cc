@@ -103,6 +103,7 @@ void DeviceScene::fill(const SceneView& scene, const CameraView32& camera, const
   if (scene.glass != nullptr) {
     out.glass = static_cast<const GlassTable*>(keep(scene.glass, sizeof(GlassTable)));
   }
+  out.fallen.shelter.height = keep(scene.fallen.shelter.height);
   out.guide.surface_row = keep(scene.guide.surface_row);
   out.guide.gain = keep(scene.guide.gain);
   out.guide.sky_visible = keep(scene.guide.sky_visible);

@@ -9,6 +9,7 @@
 #include "render/kernel/ray.h"
 #include "world/procedural_description.h"
 #include "world/render_description.h"
+#include "world/shelter_map.h"
 
 namespace gloam {
 
@@ -252,6 +253,12 @@ inline constexpr bool kOnCard = true;
 inline constexpr bool kOnCard = false;
 #endif
 
+/// What the weather has left on surfaces that the sky reaches, as of kernel/weathering.h.
+struct FallenView {
+  float wetness = 0, snow = 0;
+  ShelterView shelter;
+};
+
 /// Scenes with more lights select by a tree.
 inline constexpr uint32_t kMaxWeighedLights = 16;
 
@@ -278,6 +285,7 @@ struct SceneView {
   const GlassTable* glass = nullptr;  ///< where some material is glass
   LightGuide guide;
   MediaView media;
+  FallenView fallen;
   EnvironmentView environment;  ///< instead of sky_texture
   int sky_texture = -1;
   float sky_scale = 0;
@@ -289,6 +297,7 @@ struct SceneView {
 
   GLOAM_HD bool has_textures() const { return !kPlainScenes && textures.size > 0; }
   GLOAM_HD bool has_layers() const { return !kPlainScenes && layers.size > 0; }
+  GLOAM_HD bool has_fallen() const { return !kPlainScenes && fallen.wetness + fallen.snow > 0; }
   GLOAM_HD bool has_media() const { return !kPlainScenes && media.volumes.size > 0; }
   /// Some medium's light is drawn. Not on a card, where rays find it by chance alone: kernels for
   /// all scenes are too long as they are.
@@ -307,7 +316,7 @@ struct SceneView {
       lamps = light.kind != LightKind::kInstance && light.profile < 0;
     }
     return lamps && textures.empty() && layers.empty() && media.volumes.empty() &&
-           environment.levels.empty() && sky_texture < 0 && light_levels.empty() &&
+           environment.levels.empty() && sky_texture < 0 && light_levels.empty() && !has_fallen() &&
            !has_transparent;
   }
 };

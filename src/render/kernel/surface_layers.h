@@ -52,10 +52,27 @@ GLOAM_HD Field apply_patterns(const SceneView& scene, const MaterialLayers& m, V
   return relief;
 }
 
+/// A material's own wetness, dust and snow at a place, and what has fallen there.
+struct Weathered {
+  float wetness = 0, porosity = 0, dust = 0, snow = 0;
+  GLOAM_HD bool any() const { return wetness + dust + snow > 0; }
+};
+GLOAM_HD Weathered weathered_at(const SceneView& scene, const MaterialLayers& m, Vec3f p,
+                                Vec3f n_W) {
+  Weathered out{m.wetness, m.porosity, m.dust, m.snow};
+  if (!scene.has_fallen()) return out;
+  const FallenView& fallen = scene.fallen;
+  // Walls lie in the cells of what is above them: those next to them tell.
+  const float cell = fallen.shelter.per_metre > 0 ? 1 / fallen.shelter.per_metre : 0.1f;
+  const float open = fallen.shelter.open_above(p + n_W * (1.5f * cell), cell);
+  out.wetness = max(out.wetness, fallen.wetness * open);
+  out.snow = max(out.snow, fallen.snow * open);
+  return out;
+}
+
 /// Rain, dust and snow by where the surface lies and faces in the world. Returns the snow's relief,
 /// and in *bump what is left of the relief beneath.
-GLOAM_HD Field apply_weather(const MaterialLayers& m, Vec3f n_W, float width, float* bump,
-                             Surface* s) {
+GLOAM_HD Field apply_weather(const Weathered& m, Vec3f n_W, float width, float* bump, Surface* s) {
   WeatheredMaterial w;
   w.base_color = s->base_color;
   w.metallic = s->metallic;
@@ -117,14 +134,15 @@ GLOAM_HD void apply_layers(const SceneView& scene, const RayHit& hit, const Affi
   const Vec3f geometric_W = s->geometric * side;  // outwards
   const Vec3f n_G = to_frame(X_WG, geometric_W);
   apply_layer_textures(scene, instance, hit, p_G, n_G, width, s);
-  if (m.pattern >= 0 || m.wear >= 0 || m.wetness + m.dust + m.snow > 0) {
+  const Weathered weather = weathered_at(scene, m, s->p, geometric_W);
+  if (m.pattern >= 0 || m.wear >= 0 || weather.any()) {
     Field relief = apply_patterns(scene, m, p_G, n_G, width, s);
     relief.gradient = transform_vector(X_WG, relief.gradient);
-    if (m.wetness + m.dust + m.snow > 0) {
+    if (weather.any()) {
       // Water darkens by what it does to the albedo beneath (wet_albedo).
       const float dry = s->coat_weight * s->coat_darkening;
       float bump;
-      const Field snow = apply_weather(m, geometric_W, width, &bump, s);
+      const Field snow = apply_weather(weather, geometric_W, width, &bump, s);
       relief = relief * bump + snow;
       s->coat_darkening = s->coat_weight > 0 ? min(dry / s->coat_weight, 1.0f) : 0.0f;
     }

@@ -118,9 +118,11 @@ MaterialView live_view(const MaterialDescription& described, const std::array<fl
 }  // namespace
 
 MaterialStore::MaterialStore(const RenderDescription& description, const TextureStore& textures) {
+  const bool outdoors = description.weather.covers_surfaces();
   for (const MaterialDescription& material : description.materials) {
-    layer_rows_.push_back(has_layers(material) ? static_cast<int>(layers_.size()) : -1);
-    if (has_layers(material)) layers_.push_back(layers_of(material));
+    const bool layered = outdoors || has_layers(material);
+    layer_rows_.push_back(layered ? static_cast<int>(layers_.size()) : -1);
+    if (layered) layers_.push_back(layers_of(material));
     views_.push_back(view_of(material, textures));
     views_.back().layers = layer_rows_.back();
     emission_.push_back(views_.back().emission);

@@ -224,6 +224,7 @@ void RenderScene::update(std::span<const PoseFrame* const> keys, const PoseFrame
   const PoseFrame& open = *keys.front();
   follow_live_fields(open);
   follow_fields(open);
+  time_ = open.time;
   levels_.update(description_, open.time, keys.back()->time);
   if (!description_.schedules.empty()) materials_.dim(description_, levels_.materials());
   if (!description_.deformables.empty()) {
@@ -300,6 +301,8 @@ SceneView RenderScene::view_from(const Affine3f& X_WC, std::span<const Affine3f>
   view.profiles = span_of(profiles_.profiles);
   view.profile_values = span_of(profiles_.values);
   view.media = volumes_.view();
+  if (const WeatherDescription& weather = description_.weather; weather.shelter != nullptr)
+    view.fallen = {weather.wetness_at(time_), weather.snow_at(time_), weather.shelter->view()};
   view.light_tree = lights_.tree();
   view.procedurals = span_of(description_.procedurals);
   view.layers = span_of(materials_.layers());

@@ -84,6 +84,7 @@ class RenderScene {
   std::vector<MeshView> mesh_views_;
   std::vector<bool> drawn_;            ///< by instance
   std::vector<bool> is_height_field_;  ///< by mesh
+  double time_ = 0;                    ///< of the first key [s]
   uint64_t drawn_version_ = 0, height_field_serial_ = 0;
   std::vector<uint32_t> rebuilt_meshes_;
 };

@@ -1,0 +1,191 @@
+// [weather] and [adversity] on the compiled model: what falls, where it cannot, and what it leaves.
+
+#include <gmock/gmock.h>
+
+#include "scene/test/temp_folder.h"
+#include "world/medium_presets.h"
+#include "world/render_description.h"
+#include "world/world.h"
+
+namespace gloam {
+namespace {
+
+using ::testing::HasSubstr;
+
+double water_flux(const ParticleSet& set, double solid) {
+  double flux = 0;  // [m/s] of what lies as water, by volume of spheres of the class's diameter
+  for (const ParticleClass& c : set.classes)
+    flux += static_cast<double>(c.number) * M_PI / 6 * std::pow(c.diameter, 3) * solid *
+            static_cast<double>(c.fall_speed);
+  return flux;
+}
+
+TEST(Particles, RainHasTheWaterOfMarshallAndPalmerAndFallsAtItsRate) {
+  for (const double rate : {1.0, 5.0, 25.0, 100.0}) {
+    const ParticleSet rain = rain_particles(rate);
+    // Pi rho N0 / Lambda⁴ of the whole distribution.
+    const double water = M_PI * 8000e-6 / std::pow(4.1 * std::pow(rate, -0.21), 4);  // [kg/m³]
+    EXPECT_NEAR(static_cast<double>(rain.water) / water, 1, 0.06) << rate << " mm/h";
+    // Sizes and speeds are of two sources: their product is the rate but for a fifth.
+    EXPECT_NEAR(water_flux(rain, 1) / (rate * 1e-3 / 3600), 1, 0.2) << rate << " mm/h";
+  }
+}
+
+TEST(Particles, OneSeesAsFarThroughThemAsIsMeasured) {
+  const auto visibility = [](const ParticleSet& set) {
+    return kKoschmieder / static_cast<double>(set.extinction());
+  };
+  // Atlas 1953, "Optical extinction by rainfall": 0.2 to 0.3 R^0.63 per km.
+  EXPECT_THAT(visibility(rain_particles(10)),
+              ::testing::AllOf(::testing::Ge(2000), ::testing::Le(5000)));
+  // Rasmussen et al. 1999, "The estimation of snowfall rate using visibility": half a kilometre to
+  // two at 1 mm/h of water.
+  EXPECT_THAT(visibility(snow_particles(1)),
+              ::testing::AllOf(::testing::Ge(500), ::testing::Le(2000)));
+}
+
+class Weather : public ::testing::Test {
+ protected:
+  Weather() {
+    folder_.write("yard.xml", R"(<mujoco><worldbody><geom type="plane" size="0 0 1"/>
+      <geom type="box" size="2 2 0.1" pos="5 0 3"/>
+      <body pos="5 0 1.5"><geom type="box" size="0.1 0.1 1.4"/></body>
+      <body name="cart" pos="-3 0 1"><freejoint/><geom type="box" size=".5 .5 .1"/></body>
+      </worldbody></mujoco>)");
+  }
+  Result<RenderDescription> describe(const std::string& text) {
+    GLOAM_TRY(const Scene scene,
+              load_scene(folder_.write("s.toml", "environment.file = \"yard.xml\"\n" + text)));
+    GLOAM_TRY(const World world, World::compile(scene));
+    return describe_for_rendering(*world.compiled());
+  }
+  RenderDescription described(const std::string& text) {
+    Result<RenderDescription> result = describe(text);
+    EXPECT_TRUE(result.ok()) << result.error().to_string();
+    return result.ok() ? std::move(*result) : RenderDescription{};
+  }
+  std::string error_of(const std::string& text) {
+    const Result<RenderDescription> result = describe(text);
+    return result.ok() ? "" : result.error().to_string();
+  }
+  TempFolder folder_;
+};
+
+TEST_F(Weather, FallsWhereTheSkyIsOpen) {
+  const RenderDescription d = described("[weather]\nrain = 10\n");
+  ASSERT_NE(d.weather.shelter, nullptr);
+  const ShelterView sky = d.weather.shelter->view();
+  EXPECT_EQ(sky.open_above({0, 0, 0.5f}, 0), 1) << "on open ground";
+  EXPECT_EQ(sky.open_above({5, 1, 1}, 0), 0) << "under the roof";
+  EXPECT_EQ(sky.open_above({5, 1, 3.5f}, 0), 1) << "over the roof";
+  EXPECT_EQ(sky.open_above({-3, 0, 0.5f}, 0), 1) << "what moves is no roof";
+  EXPECT_EQ(sky.open_above({500, 0, -3}, 0), 1) << "beyond all that stands there";
+  ASSERT_EQ(d.volumes.size(), 1u);
+  ASSERT_NE(d.volumes[0].density, nullptr) << "a roof keeps rain off what is under it";
+}
+
+TEST_F(Weather, OfFogOneSeesAsFarAsIsAskedFor) {
+  const RenderDescription d = described("[weather]\nvisibility = 50\n");
+  ASSERT_EQ(d.volumes.size(), 1u);
+  const auto green = static_cast<size_t>(MediumBand::kGreen);
+  EXPECT_NEAR(kKoschmieder / static_cast<double>(d.volumes[0].even_density *
+                                                 d.media[0].mass_extinction[green]),
+              50, 1e-3);
+  EXPECT_TRUE(d.weather.particles.empty());
+  EXPECT_FALSE(d.weather.covers_surfaces());
+}
+
+TEST_F(Weather, FogInBillowsHasTheMeanAndTheSpreadAskedFor) {
+  const RenderDescription d =
+      described("[weather]\nvisibility = 50\nturbulence = 0.5\nscale_height = 10\n");
+  const VolumeDescription& fog = d.volumes[0];
+  ASSERT_NE(fog.density, nullptr);
+  const auto layer = static_cast<size_t>(fog.nx * fog.ny);
+  double mean = 0, square = 0;
+  const auto at = [&](size_t i) {  // over the ground, of the layer from one metre up
+    const size_t k = 2;
+    return static_cast<double>((*fog.density)[k * layer + i]);
+  };
+  for (size_t i = 0; i < layer; ++i) mean += at(i) / static_cast<double>(layer);
+  for (size_t i = 0; i < layer; ++i)
+    square += (at(i) - mean) * (at(i) - mean) / static_cast<double>(layer);
+  const double step = static_cast<double>(fog.size.z) / fog.nz;
+  const double ground = static_cast<double>(fog.even_density);
+  EXPECT_NEAR(mean / (ground * std::exp(-(2.5 * step - 1) / 10)), 1, 0.1);
+  EXPECT_NEAR(std::sqrt(square) / mean, 0.5, 0.1);
+}
+
+TEST_F(Weather, WetsAndDriesInTime) {
+  const WeatherDescription wet = described("[weather]\nrain = 10\nwetness = 0\n").weather;
+  EXPECT_EQ(wet.wetness_at(0), 0);
+  EXPECT_NEAR(wet.wetness_at(360), 0.75 * (1 - std::exp(-1)), 1e-3) << "a millimetre takes 360 s";
+  EXPECT_NEAR(wet.wetness_at(1e5), 0.75, 1e-3);
+  const WeatherDescription dry = described("[weather]\nwetness = 0.8\n").weather;
+  EXPECT_NEAR(dry.wetness_at(0), 0.8, 1e-6);
+  EXPECT_LT(dry.wetness_at(7200), 0.4);
+  EXPECT_EQ(described("[weather]\nrain = 10\n").weather.wetness_at(0), 0.75f)
+      << "it has rained before";
+}
+
+TEST_F(Weather, SnowGrowsAtTenTimesItsWater) {
+  const WeatherDescription snow = described("[weather]\nsnow = 3.6\nsnow_cover = 0.01\n").weather;
+  EXPECT_NEAR(snow.snow_rate, 1e-5, 1e-9) << "[m/s]";
+  EXPECT_NEAR(snow.snow_at(2000), 1 - std::exp(-0.03 / 0.015), 1e-5);
+}
+
+TEST_F(Weather, RefusesWhatThereIsNot) {
+  EXPECT_THAT(error_of("[weather]\nvisibility = 0\n"), HasSubstr("visibility"));
+  EXPECT_THAT(error_of("[weather]\nrain = -1\n"), HasSubstr("rain"));
+  EXPECT_THAT(error_of("[weather]\nvisibility = 10\nmedium = \"fogg\"\n"),
+              ::testing::AllOf(HasSubstr("s.toml:"), HasSubstr("fogg"), HasSubstr("fog")));
+  EXPECT_THAT(error_of("[adversity]\nlevel = \"huge\"\n"), HasSubstr("minor"));
+}
+
+TEST_F(Weather, ALevelOfAdversityFillsWhatIsLeftOpen) {
+  const RenderDescription minor = described("[adversity]\nlevel = \"minor\"\npeople = 0\n");
+  const RenderDescription major =
+      described("[weather]\nrain = 3\n[adversity]\nlevel = \"major\"\npeople = 0\n");
+  ASSERT_EQ(minor.weather.particles.size(), 1u);
+  ASSERT_EQ(major.weather.particles.size(), 1u);
+  EXPECT_EQ(major.weather.particles[0].water, rain_particles(3).water) << "given beats the level";
+  EXPECT_GT(major.weather.lens_drops, minor.weather.lens_drops);
+  EXPECT_TRUE(described("[adversity]\n").weather.particles.empty()) << "level none is fair";
+}
+
+TEST_F(Weather, ALevelDimsAndBreaksThePlacesLampsAlone) {
+  const auto lamps = [&](const std::string& text) {
+    const std::string scene = R"(
+[environment.house]
+seed = 1
+[[light]]
+name = "mine"
+type = "point"
+flux = 100
+position = [0, 0, 2]
+)";
+    const Result<Scene> loaded = load_scene(folder_.write("h.toml", scene + text));
+    EXPECT_TRUE(loaded.ok());
+    const Result<World> world = World::compile(*loaded);
+    EXPECT_TRUE(world.ok()) << world.error().to_string();
+    return world->compiled()->scene.lights;
+  };
+  const std::vector<LightOptions> fair = lamps("");
+  const std::vector<LightOptions> dark = lamps("[adversity]\nlight = 0.25\nfailing = 0.5\n");
+  ASSERT_EQ(fair.size(), dark.size());
+  ASSERT_GT(fair.size(), 3u);
+  size_t failing = 0;
+  for (size_t i = 0; i < fair.size(); ++i) {
+    const bool mine = fair[i].name == "mine";
+    const auto strength = [](const LightOptions& l) {
+      return l.flux.value_or(0) + l.luminance.value_or(0) + l.intensity.value_or(0);
+    };
+    EXPECT_NEAR(strength(dark[i]), (mine ? 1 : 0.25) * strength(fair[i]), 1e-9) << fair[i].name;
+    failing += dark[i].schedule.has_value() && !fair[i].schedule.has_value() ? 1 : 0;
+    EXPECT_FALSE(mine && dark[i].schedule.has_value());
+  }
+  EXPECT_GT(failing, 0u);
+  EXPECT_LT(failing, fair.size() - 1);
+}
+
+}  // namespace
+}  // namespace gloam

@@ -1,0 +1,43 @@
+#pragma once
+// The weather of a World as sensors see it: what falls, what hangs in the air, what it leaves on
+// surfaces and lenses. Pure functions of time. docs/weather.md has the models.
+
+#include <memory>
+#include <vector>
+
+#include "gloam/scene_weather.h"
+#include "world/particle_set.h"
+#include "world/shelter_map.h"
+
+namespace gloam {
+
+struct WeatherDescription {
+  std::vector<ParticleSet> particles;
+  /// Nothing that falls gets under it; null = nothing falls or lies.
+  std::shared_ptr<const ShelterMap> shelter;
+  float wetness_start = 0, wetness_end = 0;  ///< of what the sky reaches, 0 … 1
+  float wetting_time = 1;                    ///< time constant from one to the other [s]
+  float snow_start = 0, snow_rate = 0;       ///< depth of snow on level ground [m], [m/s]
+  float lens_drops = 0;                      ///< share of the picture, 0 … 1
+  bool drops_fall_on_lenses = false;         ///< they come and go
+  uint64_t seed = 0;
+
+  float wetness_at(double time) const;
+  /// Depth as the amount of kernel/weathering.h, 0 … 1.
+  float snow_at(double time) const;
+  bool covers_surfaces() const {
+    return wetness_start > 0 || wetness_end > 0 || snow_start > 0 || snow_rate > 0;
+  }
+};
+
+/// Mean wind 10 m above the ground [m/s].
+Vec3f wind_velocity(const WeatherOptions& options);
+
+struct RenderDescription;
+
+/// Fills `weather` of the description, whose instances are all there, and appends the media and
+/// volumes of fog, rain and snow. `X_WB`: of all bodies. Errors: no such medium.
+Status author_weather(const WeatherOptions& options, uint64_t seed,
+                      const std::vector<Affine3f>& X_WB, RenderDescription* out);
+
+}  // namespace gloam
