@@ -99,7 +99,9 @@ class Tops {
         case ShapeType::kCylinder:
           all(cylinder_, {s.x, s.x, s.y});
           break;
-        case ShapeType::kPlane:  // ground, or endless
+        case ShapeType::kPlane:  // ground
+          visit(X_WG.p, X_WG.p, X_WG.p);
+          break;
         case ShapeType::kDeformable:
           break;
       }
@@ -150,13 +152,16 @@ std::shared_ptr<const ShelterMap> make_shelter_map(const RenderDescription& desc
   const auto is_of_a_place = [](Vec3f p) {
     return std::fabs(p.x) < kLargest && std::fabs(p.y) < kLargest && std::isfinite(p.z);
   };
+  map->lowest = kFar;
   tops.each_triangle([&](Vec3f a, Vec3f b, Vec3f c) {
     for (const Vec3f& p : {a, b, c}) {
       if (!is_of_a_place(p)) continue;
+      map->lowest = std::min(map->lowest, p.z);
       low = {std::min(low.x, p.x), std::min(low.y, p.y)};
       high = {std::max(high.x, p.x), std::max(high.y, p.y)};
     }
   });
+  if (!std::isfinite(map->lowest)) map->lowest = 0;
   if (!(high.x > low.x) || !(high.y > low.y)) return map;
   const float edge = std::max(high.x - low.x, high.y - low.y);
   map->cell = std::max(kCell, edge / kMostCells);

@@ -33,12 +33,11 @@ Bounds bounds_of(const RenderDescription& description) {
   bounds.low = description.center - Vec3f{1, 1, 1} * (0.5f * description.extent);
   bounds.high = description.center + Vec3f{1, 1, 1} * (0.5f * description.extent);
   if (map.nx == 0) return bounds;
-  bounds.low = {map.low.x, map.low.y, 1e30f};
+  bounds.low = {map.low.x, map.low.y, map.lowest};
   bounds.high = {map.low.x + map.cell * static_cast<float>(map.nx),
                  map.low.y + map.cell * static_cast<float>(map.ny), -1e30f};
   for (const float top : map.height) {
     if (!std::isfinite(top)) continue;
-    bounds.low.z = std::min(bounds.low.z, top);
     bounds.high.z = std::max(bounds.high.z, top);
   }
   return bounds;
@@ -170,8 +169,8 @@ Status author_weather(const WeatherOptions& options, uint64_t seed,
   };
   if (rain > 0) add(rain_particles(rain));
   if (snow > 0) add(snow_particles(snow));
-  // From soaked without a film to half under water where level at 10 mm/h.
-  weather.wetness_end = rain > 0 ? static_cast<float>(0.5 + 0.5 * rain / (rain + 10)) : 0;
+  // From soaked without a film to half of what is level under water in a cloudburst.
+  weather.wetness_end = rain > 0 ? static_cast<float>(0.5 + 0.25 * rain / (rain + 10)) : 0;
   weather.wetness_start =
       static_cast<float>(options.wetness.value_or(static_cast<double>(weather.wetness_end)));
   // Without rain it dries, at half a millimetre an hour.

@@ -27,6 +27,7 @@ struct Streak {
   float share = 1;     ///< of the exposure for which it covers a point of its way
   float distance = 0;  ///< [m]
   Vec3f light;         ///< that it sends to the camera [cd/m²]
+  bool soft = false;   ///< thinner towards its edge
 };
 
 /// Light that arrives at the camera from all around, save that of lamps.
@@ -283,6 +284,7 @@ class StreakFinder {
     // A disc of the radius r covers its way of length l and width 2 r for as long as makes pi r².
     s.share = kPi * s.radius * s.radius / (2 * wide * way + kPi * wide * wide);
     s.radius = wide;
+    s.soft = lattice.set.kind == ParticleKind::kFlake;
     s.light = light_of(lattice.set.kind, p, uv, bits);
     out->push_back(s);
   }
@@ -350,7 +352,9 @@ void draw_rows(const std::vector<Streak>& streaks, const Film& film, int first, 
       for (int x = x0; x < x1; ++x) {
         const Vec2f at = Vec2f{static_cast<float>(x) + 0.5f, py} - s.from;
         const float t = way2 > 0 ? clamp((at.x * way.x + at.y * way.y) / way2, 0.0f, 1.0f) : 0.0f;
-        const float alpha = s.share * clamp(0.5f + s.radius - way_length(at - way * t), 0.0f, most);
+        const float off = way_length(at - way * t);
+        float alpha = s.share * clamp(0.5f + s.radius - off, 0.0f, most);
+        if (s.soft && s.radius > 1) alpha *= max(1.5f * (1 - sqr(off / reach)), 0.0f);
         const size_t i =
             static_cast<size_t>(y) * static_cast<size_t>(film.width) + static_cast<size_t>(x);
         if (!(alpha > 0) || film.distance[i] < s.distance) continue;

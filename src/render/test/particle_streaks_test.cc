@@ -28,8 +28,8 @@ struct Drawn {
 };
 
 /// `exposure` [s], at `time` [s].
-Drawn draw(const SceneBuilder& b, double exposure, double time, float background,
-           const Affine3f& X_WC) {
+Drawn draw_strewn(const SceneBuilder& b, double exposure, double time, float background,
+                  const Affine3f& X_WC) {
   auto renderer = make_cpu_renderer(b.description);
   PoseFrame open = b.frame, close = b.frame;
   open.time = time, close.time = time + exposure;
@@ -72,21 +72,22 @@ TEST(Particles, DifferFromTheMediumThatTheyAreButNotInTheMean) {
   double mean = 0, spread = 0;
   constexpr int kPictures = 24;
   for (int i = 0; i < kPictures; ++i) {
-    const Drawn d = draw(b, 0.01, 0.37 * i, 20, kLevel);
+    const Drawn d = draw_strewn(b, 0.01, 0.37 * i, 20, kLevel);
     mean += mean_change(d) / kPictures;
     spread += deviation(d) / kPictures;
   }
   EXPECT_GT(spread, 0.2) << "nothing is drawn";
   // Drops bring the light of the picture and of the sky: 60 in the mean instead of 20. They cover
   // n pi/4 D² per metre.
-  const double covered = 400 * M_PI / 4 * 4e-6 * 2.0;  // of the two metres or so that are drawn
+  const double covered = 400 * M_PI / 4 * 4e-6 * 4.1;  // of the four metres that are drawn
   EXPECT_LT(std::fabs(mean), 0.1 * covered * 40) << "the mean is the medium's";
 }
 
 TEST(Particles, AStreakIsAsLongAsTheWayInTheExposure) {
   // One drop class so sparse that single streaks stand apart; the longest is the nearest's.
   const SceneBuilder b = strewn(4e-3f, 4, 8);
-  const Drawn still = draw(b, 0, 3, 20, kLevel), moving = draw(b, 0.02, 3, 20, kLevel);
+  const Drawn still = draw_strewn(b, 0, 3, 20, kLevel),
+              moving = draw_strewn(b, 0.02, 3, 20, kLevel);
   const auto longest_run = [](const Drawn& d) {
     int best = 0;
     for (int x = 0; x < kWidth; ++x) {
@@ -107,7 +108,7 @@ TEST(Particles, AStreakIsAsLongAsTheWayInTheExposure) {
 TEST(Particles, AreHiddenByWhatIsNearer) {
   SceneBuilder b = strewn(3e-3f, 300, 6);
   b.add(ShapeType::kBox, {0.01f, 50, 50}, translation({0.09f, 0, 0}), b.add_diffuse({0, 0, 0}));
-  const Drawn d = draw(b, 0.01, 1, 20, kLevel);
+  const Drawn d = draw_strewn(b, 0.01, 1, 20, kLevel);
   EXPECT_EQ(deviation(d), 0) << "drops are seen through a wall";
 }
 
@@ -119,8 +120,8 @@ TEST(Particles, DoNotFallUnderARoof) {
   roof->nx = roof->ny = 4;
   roof->height.assign(16, 5.0f);
   b.description.weather.shelter = roof;
-  EXPECT_EQ(deviation(draw(b, 0.01, 1, 20, kLevel)), 0);
-  EXPECT_GT(deviation(draw(b, 0.01, 1, 20, look_at({0, 0, 7}, {10, 0, 7}))), 0);
+  EXPECT_EQ(deviation(draw_strewn(b, 0.01, 1, 20, kLevel)), 0);
+  EXPECT_GT(deviation(draw_strewn(b, 0.01, 1, 20, look_at({0, 0, 7}, {10, 0, 7}))), 0);
 }
 
 TEST(Particles, AreTheSameForAnyNumberOfThreadsAndOthersAtAnotherTime) {
@@ -130,12 +131,12 @@ TEST(Particles, AreTheSameForAnyNumberOfThreadsAndOthersAtAnotherTime) {
                        d.after.size() * sizeof(Vec3f));
   };
   set_thread_count(1);
-  const std::string one = bits(draw(b, 0.01, 2, 20, kLevel));
+  const std::string one = bits(draw_strewn(b, 0.01, 2, 20, kLevel));
   set_thread_count(4);
-  const std::string four = bits(draw(b, 0.01, 2, 20, kLevel));
+  const std::string four = bits(draw_strewn(b, 0.01, 2, 20, kLevel));
   set_thread_count(0);
   EXPECT_TRUE(one == four) << "the picture depends on the number of threads";
-  EXPECT_FALSE(one == bits(draw(b, 0.01, 2.5, 20, kLevel))) << "the rain stands still";
+  EXPECT_FALSE(one == bits(draw_strewn(b, 0.01, 2.5, 20, kLevel))) << "the rain stands still";
 }
 
 }  // namespace

@@ -26,8 +26,9 @@ TEST(Particles, RainHasTheWaterOfMarshallAndPalmerAndFallsAtItsRate) {
     // Pi rho N0 / Lambda⁴ of the whole distribution.
     const double water = M_PI * 8000e-6 / std::pow(4.1 * std::pow(rate, -0.21), 4);  // [kg/m³]
     EXPECT_NEAR(static_cast<double>(rain.water) / water, 1, 0.06) << rate << " mm/h";
-    // Sizes and speeds are of two sources: their product is the rate but for a fifth.
-    EXPECT_NEAR(water_flux(rain, 1) / (rate * 1e-3 / 3600), 1, 0.2) << rate << " mm/h";
+    // Sizes and speeds are of two sources, which agree no better.
+    EXPECT_GT(water_flux(rain, 1) / (rate * 1e-3 / 3600), 0.9) << rate << " mm/h";
+    EXPECT_LT(water_flux(rain, 1) / (rate * 1e-3 / 3600), 1.5) << rate << " mm/h";
   }
 }
 
@@ -118,12 +119,12 @@ TEST_F(Weather, FogInBillowsHasTheMeanAndTheSpreadAskedFor) {
 TEST_F(Weather, WetsAndDriesInTime) {
   const WeatherDescription wet = described("[weather]\nrain = 10\nwetness = 0\n").weather;
   EXPECT_EQ(wet.wetness_at(0), 0);
-  EXPECT_NEAR(wet.wetness_at(360), 0.75 * (1 - std::exp(-1)), 1e-3) << "a millimetre takes 360 s";
-  EXPECT_NEAR(wet.wetness_at(1e5), 0.75, 1e-3);
+  EXPECT_NEAR(wet.wetness_at(360), 0.625 * (1 - std::exp(-1)), 1e-3) << "a millimetre takes 360 s";
+  EXPECT_NEAR(wet.wetness_at(1e5), 0.625, 1e-3);
   const WeatherDescription dry = described("[weather]\nwetness = 0.8\n").weather;
   EXPECT_NEAR(dry.wetness_at(0), 0.8, 1e-6);
   EXPECT_LT(dry.wetness_at(7200), 0.4);
-  EXPECT_EQ(described("[weather]\nrain = 10\n").weather.wetness_at(0), 0.75f)
+  EXPECT_EQ(described("[weather]\nrain = 10\n").weather.wetness_at(0), 0.625f)
       << "it has rained before";
 }
 
