@@ -103,6 +103,8 @@ class Renderer {
   /// has the exact channel `distance`.
   virtual void draw_particles(const CameraView& view, const Film& film,
                               std::vector<Vec3f>* radiance) = 0;
+  /// Illuminance [lx] of a surface at p_W that faces n_W, a unit vector.
+  virtual float illuminance(Vec3f p_W, Vec3f n_W) = 0;
   /// Sends out the beams of a LiDAR; `returns`: view.optics.most_returns of each, in their order.
   virtual void scan(const LidarView& view, std::span<LidarReturn> returns) = 0;
   /// For RenderSettings::history; of this renderer alone.

@@ -175,7 +175,12 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
 
   RunReport report;
   GLOAM_TRY(VisibilityProbe probe, VisibilityProbe::make(*world.compiled()));
-  RobotMetrics metrics(*world.compiled(), std::move(probe));
+  std::unique_ptr<LightProbe> light;
+  if (!request.out.empty() && wants(scene.record.outputs, "metrics")) {
+    GLOAM_TRY(auto shared, simulation->renderer());
+    GLOAM_TRY(light, LightProbe::make(std::move(shared)));
+  }
+  RobotMetrics metrics(*world.compiled(), std::move(probe), std::move(light));
   std::unique_ptr<Recorder> recorder;
   std::vector<std::unique_ptr<LiveCamera>> cameras;
   std::unique_ptr<LiveSensors> sensors;

@@ -35,11 +35,13 @@ double reach_of(const mjModel& m, const mjData& d, int root) {
 
 }  // namespace
 
-RobotMetrics::RobotMetrics(const CompiledWorld& world, VisibilityProbe probe)
-    : probe_(std::move(probe)) {
+RobotMetrics::RobotMetrics(const CompiledWorld& world, VisibilityProbe probe,
+                           std::unique_ptr<LightProbe> light)
+    : probe_(std::move(probe)), light_(std::move(light)) {
   columns_.push_back("time_s");
   const mjModel& model = *world.model;
-  const DataPtr data(probe_.has_media() ? mj_makeData(&model) : nullptr);
+  const bool measures_around = probe_.has_media() || light_ != nullptr;
+  const DataPtr data(measures_around ? mj_makeData(&model) : nullptr);
   if (data) mj_kinematics(&model, data.get());
   for (const RobotInstance& robot : world.robots) {
     const int joint = floating_joint(*world.model, robot.root_body);
@@ -60,6 +62,7 @@ RobotMetrics::RobotMetrics(const CompiledWorld& world, VisibilityProbe probe)
       columns_.push_back(prefix + kAxes[axis] + "_goal_" + kUnits[axis]);
     columns_.push_back(prefix + "fallen");
     if (probe_.has_media()) columns_.push_back(prefix + "visibility_m");
+    if (light_ != nullptr) columns_.push_back(prefix + "illuminance_lx");
   }
 }
 
@@ -79,7 +82,12 @@ std::vector<MetricPlot> RobotMetrics::plots() const {
 
 const std::vector<double>& RobotMetrics::sample(const Snapshot& snapshot) {
   row_.assign(1, snapshot.time());
-  for (Tracked& robot : robots_) measure(robot, snapshot);
+  const bool looks = light_ != nullptr && snapshot.time() >= next_light_ - 1e-9;
+  for (Tracked& robot : robots_) {
+    if (looks) measure_light(robot, snapshot);
+    measure(robot, snapshot);
+  }
+  if (looks) ++lights_, next_light_ = snapshot.time() + 1;
   ++samples_;
   return row_;
 }
@@ -129,6 +137,17 @@ void RobotMetrics::measure(Tracked& robot, const Snapshot& snapshot) {
     robot.extinction += kKoschmieder / visibility;
     row_.push_back(visibility);
   }
+  if (light_ != nullptr) row_.push_back(robot.illuminance);
+}
+
+void RobotMetrics::measure_light(Tracked& robot, const Snapshot& snapshot) {
+  const JointState base = snapshot[robot.base];
+  // Over all of it: it casts no shadow there.
+  const Vec3f p{float(base.qpos[0]), float(base.qpos[1]), float(base.qpos[2] + robot.reach)};
+  robot.illuminance = light_->illuminance(snapshot, p);
+  robot.illuminances += robot.illuminance;
+  robot.least_illuminance =
+      lights_ == 0 ? robot.illuminance : std::min(robot.least_illuminance, robot.illuminance);
 }
 
 double RobotMetrics::visibility(const Tracked& robot, const Snapshot& snapshot, double x, double y,
@@ -157,9 +176,13 @@ std::vector<NamedNumber> RobotMetrics::summary() const {
     numbers.emplace_back(prefix + "path_length_m", robot.path_length);
     if (probe_.has_media() && samples_ > 0) {
       numbers.emplace_back(prefix + "visibility_min_m", robot.least_visibility);
-      numbers.emplace_back(
-          prefix + "visibility_mean_m",
-          kKoschmieder * static_cast<double>(samples_) / robot.extinction);
+      numbers.emplace_back(prefix + "visibility_mean_m",
+                           kKoschmieder * static_cast<double>(samples_) / robot.extinction);
+    }
+    if (lights_ > 0) {
+      numbers.emplace_back(prefix + "illuminance_min_lx", robot.least_illuminance);
+      numbers.emplace_back(prefix + "illuminance_mean_lx",
+                           robot.illuminances / static_cast<double>(lights_));
     }
   }
   return numbers;

@@ -2,12 +2,14 @@
 // How well each robot follows its velocity goals, and how far it sees: one row of metrics.csv per
 // sample, and the numbers of the summary.
 
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "gloam/snapshot.h"
 #include "record/recorder.h"
+#include "runtime/light_probe.h"
 #include "runtime/visibility_probe.h"
 #include "world/world.h"
 
@@ -17,7 +19,9 @@ class RobotMetrics {
  public:
   /// Robots with a floating base are measured; others give no columns. Visibility is measured where
   /// the scene has media: the least at eight points around the robot at the height of its base.
-  explicit RobotMetrics(const CompiledWorld& world, VisibilityProbe probe = {});
+  /// With a light probe the illuminance over the robot, of a level surface, once a second.
+  explicit RobotMetrics(const CompiledWorld& world, VisibilityProbe probe = {},
+                        std::unique_ptr<LightProbe> light = nullptr);
 
   const std::vector<std::string>& columns() const { return columns_; }
   /// Plots for the contact sheet: measured and commanded velocity of the first robot with goals.
@@ -25,7 +29,8 @@ class RobotMetrics {
   /// The row of one instant; also feeds the summary.
   const std::vector<double>& sample(const Snapshot& snapshot);
   /// "NAME.vx_error_rms_percent" … over all samples so far, "NAME.falls", and in media
-  /// "NAME.visibility_min_m", "NAME.visibility_mean_m": of the mean extinction.
+  /// "NAME.visibility_min_m", "NAME.visibility_mean_m": of the mean extinction; with a light probe
+  /// "NAME.illuminance_min_lx", "NAME.illuminance_mean_lx".
   std::vector<NamedNumber> summary() const;
 
  private:
@@ -40,13 +45,18 @@ class RobotMetrics {
     double error_squared[3] = {}, goal_squared[3] = {};
     double path_length = 0, last_x = 0, last_y = 0;                     // [m]
     double least_visibility = VisibilityProbe::kClear, extinction = 0;  // [m]; sum of samples [1/m]
+    double illuminance = 0, least_illuminance = 0, illuminances = 0;    // [lx]; the last, …, sum
   };
   void measure(Tracked& robot, const Snapshot& snapshot);
+  void measure_light(Tracked& robot, const Snapshot& snapshot);
   // Around it, since its own body keeps smoke out.
   double visibility(const Tracked& robot, const Snapshot& snapshot, double x, double y,
                     double z) const;
 
   VisibilityProbe probe_;
+  std::unique_ptr<LightProbe> light_;
+  double next_light_ = 0;  // [s]
+  int64_t lights_ = 0;     // samples of it
   std::vector<Tracked> robots_;
   std::vector<std::string> columns_;
   std::vector<double> row_;

@@ -9,6 +9,7 @@
 #include "scene/environment/generators.h"
 #include "scene/environment/place_writer.h"
 #include "scene/mujoco_guard.h"
+#include "scene/overcast.h"
 #include "scene/randomize.h"
 #include "scene/validate.h"
 #include "world/authored_lidar.h"
@@ -120,8 +121,12 @@ Result<World> World::compile(const Scene& written, const ProgressCallback& callb
   GLOAM_TRY_STATUS(draw_options(DrawStage::kPlace, &scene, &drawn));
   apply_adversity(&scene);
   if (has_generator(scene.environment)) progress.begin("making the place", 0);
-  GLOAM_TRY(const std::optional<Place> place, make_place(scene));
+  GLOAM_TRY(std::optional<Place> place, make_place(scene));
   GLOAM_TRY_STATUS(progress.check());
+  if (scene.weather && !scene.sky) {
+    scene.sky = overcast_sky(*scene.weather);
+    if (scene.sky && place && scene.environment.terrain) place->ev100 = overcast_ev100(*scene.sky);
+  }
   if (place) {
     const size_t own = scene.lights.size();
     add_place_looks(*place, &scene);

@@ -167,7 +167,11 @@ Status author_weather(const WeatherOptions& options, uint64_t seed,
     add_falling(particles, bounds, out);
     weather.particles.push_back(std::move(particles));
   };
-  if (rain > 0) add(rain_particles(rain));
+  if (rain > 0) {
+    add(rain_particles(rain));
+    for (const ParticleClass& drop : weather.particles.back().classes)
+      if (drop.diameter >= 1e-3f) weather.impacts += drop.number * drop.fall_speed;
+  }
   if (snow > 0) add(snow_particles(snow));
   // From soaked without a film to half of what is level under water in a cloudburst.
   weather.wetness_end = rain > 0 ? static_cast<float>(0.5 + 0.25 * rain / (rain + 10)) : 0;

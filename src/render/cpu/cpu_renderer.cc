@@ -16,6 +16,7 @@
 #include "render/cpu/edge_samples.h"
 #include "render/cpu/exact_channels.h"
 #include "render/cpu/fast_tier.h"
+#include "render/cpu/illuminance.h"
 #include "render/cpu/lidar_scan.h"
 #include "render/cpu/light_guide.h"
 #include "render/cpu/object_cover.h"
@@ -196,6 +197,14 @@ class CpuRenderer final : public Renderer {
     const CpuTracer tracer = traced_.tracer();
     gloam::draw_particles(
         {seen, tracer, camera, scene().description().weather, opens_, seconds_}, film, radiance);
+  }
+
+  float illuminance(Vec3f p_W, Vec3f n_W) override {
+    GLOAM_CHECK(updated_, "update must come before illuminance");
+    constexpr int kDepth = 5;
+    Affine3f X_WC;
+    X_WC.p = p_W;
+    return measure_illuminance(scene().view_from(X_WC), traced_.tracer(), p_W, n_W, kDepth);
   }
 
   void scan(const LidarView& view, std::span<LidarReturn> returns) override {

@@ -256,6 +256,8 @@ inline constexpr bool kOnCard = false;
 /// What the weather has left on surfaces that the sky reaches, as of kernel/weathering.h.
 struct FallenView {
   float wetness = 0, snow = 0;
+  float time = 0;     ///< [s]
+  float impacts = 0;  ///< of drops that make rings on puddles [1/(m² s)]
   ShelterView shelter;
 };
 

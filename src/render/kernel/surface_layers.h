@@ -55,6 +55,7 @@ GLOAM_HD Field apply_patterns(const SceneView& scene, const MaterialLayers& m, V
 /// A material's own wetness, dust and snow at a place, and what has fallen there.
 struct Weathered {
   float wetness = 0, porosity = 0, dust = 0, snow = 0;
+  float time = 0, impacts = 0;  ///< of drops, as in FallenView
   GLOAM_HD bool any() const { return wetness + dust + snow > 0; }
 };
 GLOAM_HD Weathered weathered_at(const SceneView& scene, const MaterialLayers& m, Vec3f p,
@@ -67,6 +68,8 @@ GLOAM_HD Weathered weathered_at(const SceneView& scene, const MaterialLayers& m,
   const float open = fallen.shelter.open_above(p + n_W * (1.5f * cell), cell);
   out.wetness = max(out.wetness, fallen.wetness * open);
   out.snow = max(out.snow, fallen.snow * open);
+  out.time = fallen.time;
+  out.impacts = fallen.impacts * open;
   return out;
 }
 
@@ -100,7 +103,8 @@ GLOAM_HD Field apply_weather(const Weathered& m, Vec3f n_W, float width, float* 
   s->coat_roughness = w.coat_roughness;
   s->fuzz_weight = w.fuzz;
   *bump = w.bump;
-  return cover.relief;
+  if (!(w.water > 0)) return cover.relief;
+  return cover.relief + rain_rings(s->p, m.time, m.impacts, width) * w.water;
 }
 
 /// Shares of the layers by their textures. `n_G` = unit geometric normal, outwards.

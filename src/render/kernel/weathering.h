@@ -12,7 +12,8 @@ struct WeatheredMaterial {
   float metallic = 0, roughness = 0.5f;
   float coat_weight = 0, coat_ior = 1.5f, coat_roughness = 0.1f;
   float fuzz = 0;
-  float bump = 1;  ///< scale of the height gradients beneath, 0..1: water and snow level them
+  float bump = 1;   ///< scale of the height gradients beneath, 0..1: water and snow level them
+  float water = 0;  ///< share that lies under a puddle
 };
 
 namespace weathering {
@@ -30,7 +31,8 @@ GLOAM_HD WeatheredMaterial cover(const WeatheredMaterial& m, const WeatheredMate
           lerp(m.coat_ior, layer.coat_ior, t),
           lerp(m.coat_roughness, layer.coat_roughness, t),
           lerp(m.fuzz, layer.fuzz, share),
-          lerp(m.bump, layer.bump, share)};
+          lerp(m.bump, layer.bump, share),
+          lerp(m.water, layer.water, share)};
 }
 
 /// Cosine of the unit normal with +z; degenerate normals count as level.
@@ -87,11 +89,45 @@ GLOAM_HD WeatheredMaterial apply_wetness(WeatheredMaterial m, const Wetness& w, 
     const float puddle =
         level * soft_step(rise - ground.field.value - 0.8f * clamp(relief, -1.0f, 1.0f),
                           sqrtf(0.01f + ground.lost));
-    const WeatheredMaterial water{m.base_color, m.metallic, m.roughness, 1.0f,
-                                  1.33f,        0.02f,      0.0f,        0.0f};
+    const WeatheredMaterial water{m.base_color, m.metallic, m.roughness, 1.0f, 1.33f,
+                                  0.02f,        0.0f,       0.0f,        1.0f};
     m = weathering::cover(m, water, puddle);
   }
   return m;
+}
+
+/// Height [m] of the rings that drops make on level water at `time` [s]: from where each falls a
+/// crest runs out at 0.23 m/s, the slowest that gravity and surface tension allow, and is gone
+/// after 0.25 s; at most one in every 8 cm. `impacts`: drops that make one, per m² and s.
+GLOAM_HD Field rain_rings(Vec3f p, float time, float impacts, float footprint) {
+  constexpr float kCell = 0.082f, kSpeed = 0.23f, kLife = 0.25f;  // [m], [m/s], [s]
+  constexpr float kWidth = 0.006f, kHeight = 4e-4f;               // of a crest [m]
+  Field rings;
+  if (!(impacts > 0) || footprint > 4 * kWidth) return rings;
+  const float chance = min(impacts * kCell * kCell * kLife, 1.0f);
+  const float fade = 1 / (1 + sqr(footprint / kWidth));
+  const float u = p.x / kCell, v = p.y / kCell, turns = time / kLife;
+  const int cx = static_cast<int>(floorf(u)), cy = static_cast<int>(floorf(v));
+  for (int j = -1; j <= 1; ++j) {
+    for (int i = -1; i <= 1; ++i) {
+      const uint32_t own = hash_cell(cx + i, cy + j, 0, 77u);
+      const float turn = turns + hash_unit(own, 0);
+      const float count = floorf(turn), age = turn - count;  // share of its life
+      const uint32_t h = hash_cell(cx + i, cy + j, static_cast<int>(count) + 1, 78u);
+      if (!(hash_unit(hash_cell(cx + i, cy + j, static_cast<int>(count) + 1, 79u), 0) < chance))
+        continue;
+      const float dx = (u - static_cast<float>(cx + i) - hash_unit(h, 0)) * kCell;
+      const float dy = (v - static_cast<float>(cy + j) - hash_unit(h, 1)) * kCell;
+      const float r = sqrtf(dx * dx + dy * dy) + 1e-6f;
+      const float x = (r - kSpeed * kLife * age) / kWidth;
+      if (fabsf(x) > 4) continue;
+      const float bell = expf(-0.5f * x * x), height = kHeight * (1 - age) * fade;
+      // A crest between two troughs.
+      const float slope = height * bell * x * (x * x - 3) / kWidth;
+      rings = rings + Field{height * bell * (1 - x * x), {slope * dx / r, slope * dy / r, 0}};
+    }
+  }
+  return rings;
 }
 
 struct Dust {

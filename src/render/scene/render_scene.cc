@@ -302,7 +302,8 @@ SceneView RenderScene::view_from(const Affine3f& X_WC, std::span<const Affine3f>
   view.profile_values = span_of(profiles_.values);
   view.media = volumes_.view();
   if (const WeatherDescription& weather = description_.weather; weather.shelter != nullptr)
-    view.fallen = {weather.wetness_at(time_), weather.snow_at(time_), weather.shelter->view()};
+    view.fallen = {weather.wetness_at(time_), weather.snow_at(time_), static_cast<float>(time_),
+                   weather.impacts, weather.shelter->view()};
   view.light_tree = lights_.tree();
   view.procedurals = span_of(description_.procedurals);
   view.layers = span_of(materials_.layers());

@@ -36,6 +36,29 @@ TEST(Weathering, NoneLeavesTheMaterialAsItIs) {
   }
 }
 
+TEST(Weathering, RingsOfRainHaveTheSlopeOfTheirHeightsAndNoMean) {
+  double sum = 0, most = 0;
+  const RandomStream stream{9, 2};
+  for (uint32_t i = 0; i < 4000; ++i) {
+    const Vec3f p{static_cast<float>(stream.uniform(i, 0)),
+                  static_cast<float>(stream.uniform(i, 1)), 0};
+    const auto height = [&](Vec3f at) { return rain_rings(at, 3.1f, 2000, 0).value; };
+    const Field at = rain_rings(p, 3.1f, 2000, 0);
+    constexpr float kStep = 2e-4f;
+    const float dx =
+        (height(p + Vec3f{kStep, 0, 0}) - height(p - Vec3f{kStep, 0, 0})) / (2 * kStep);
+    const float dy =
+        (height(p + Vec3f{0, kStep, 0}) - height(p - Vec3f{0, kStep, 0})) / (2 * kStep);
+    EXPECT_NEAR(at.gradient.x, dx, 0.02f);
+    EXPECT_NEAR(at.gradient.y, dy, 0.02f);
+    sum += static_cast<double>(at.value);
+    most = std::max(most, static_cast<double>(std::fabs(at.value)));
+  }
+  EXPECT_GT(most, 1e-4);
+  EXPECT_LT(std::fabs(sum / 4000), 0.1 * most);
+  EXPECT_EQ(rain_rings({0.3f, 0.2f, 0}, 3.1f, 0, 0).value, 0) << "no drops, no rings";
+}
+
 TEST(Weathering, WaterDarkensWhatIsPorous) {
   // Black stays black, white stays white, in between it darkens most.
   EXPECT_EQ(weathering::wet_albedo(0, 1), 0);
