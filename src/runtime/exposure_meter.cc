@@ -12,7 +12,7 @@ constexpr int kProbeWidth = 32;  // [px]
 constexpr int kProbeSamples = 4;
 constexpr size_t kRemembered = 256;
 
-CameraRequest probe_request(const CameraOptions& camera, int max_depth) {
+CameraRequest probe_request(const CameraOptions& camera, std::optional<int> max_depth) {
   CameraRequest request;
   request.camera = camera.name;
   request.rate = camera.rate;

@@ -19,7 +19,7 @@ std::string pictures_of(const CameraRequest& request, const Intrinsics& k) {
   const RenderOptions& render = request.render;
   return fmt::format("{} {} {}x{} {} {} {} {} {} {}", request.camera, request.rate.value(), k.width,
                      k.height, render.tier, render.samples(), render.error.value_or(0),
-                     render.max_depth, render.denoise, render.ev100.value_or(NAN));
+                     render.max_depth.value_or(0), render.denoise, render.ev100.value_or(NAN));
 }
 
 }  // namespace

@@ -130,10 +130,11 @@ RunInfo run_info(const World& world, const RunRequest& request, double timestep,
   info.seed = request.simulation.seed;
   info.timestep = timestep;
   info.duration = duration;
-  info.settings = {{"tier", scene.render.tier},
-                   {"spp", std::to_string(scene.render.samples())},
-                   {"max_depth", std::to_string(scene.render.max_depth)},
-                   {"denoise", scene.render.denoise ? "true" : "false"}};
+  info.settings = {
+      {"tier", scene.render.tier},
+      {"spp", std::to_string(scene.render.samples())},
+      {"max_depth", scene.render.max_depth ? std::to_string(*scene.render.max_depth) : "usual"},
+      {"denoise", scene.render.denoise ? "true" : "false"}};
   for (const DrawnOption& d : world.compiled()->drawn) info.drawn.push_back({d.option, d.value});
   if (scene.render.error)
     info.settings.push_back({"error", fmt::format("{}", *scene.render.error)});

@@ -64,8 +64,8 @@ Status check_numbers(const CameraRequest& request) {
     return refuse(fmt::format("error = {} is not in 0.0001 … 1", *render.error));
   if (render.error && render.tier != "path")
     return refuse("an error to reach is for the path tier alone");
-  if (request.render.max_depth < 1 || request.render.max_depth > 64)
-    return refuse(fmt::format("max_depth = {} is not in 1 … 64", request.render.max_depth));
+  if (const int depth = request.render.max_depth.value_or(1); depth < 1 || depth > 64)
+    return refuse(fmt::format("max_depth = {} is not in 1 … 64", depth));
   return {};
 }
 
@@ -178,7 +178,9 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
     settings.error = static_cast<float>(*request.render.error);
     settings.error_floor = kFloor * max_luminance(static_cast<float>(sensor->models_->ev100()));
   }
-  settings.max_depth = request.render.max_depth;
+  constexpr int kUsualDepth = 5, kDepthInFog = 24;
+  settings.max_depth =
+      request.render.max_depth.value_or(weather.shelter != nullptr ? kDepthInFog : kUsualDepth);
   settings.roulette_depth = 2;  // unbiased, and spares the rays of dim paths
   settings.seed = hash_bytes(request.camera.data(), request.camera.size(), seed);
   if (settings.tier == RenderTier::kFast && !channels.light()) settings.tier = RenderTier::kDirect;

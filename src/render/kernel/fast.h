@@ -283,6 +283,21 @@ GLOAM_HD Vec3Of<F> lamps_met(const SceneView& scene, const paths::State<F>& path
   return sum;
 }
 
+/// Light around rays that meet no surface, for media to scatter: they do it forwards, so that of
+/// the sky about their direction; where that is dark, the mean of what surfaces receive.
+template <class F>
+GLOAM_HD Vec3Of<F> light_around_missed(const SceneView& scene, const IrradianceCacheView& cache,
+                                       Vec3Of<F> d, MaskOf<F> missed) {
+  constexpr float kSpread = 0.7f;  // of the sky that counts
+  Vec3Of<F> light = in_all_lanes<F>(cache.mean);
+  each_lane(missed, [&](int i) {
+    const Vec3f sky = sky_radiance(scene, lane(d, i), kSpread) + scene.sky_ambient;
+    set_lane(&light, i,
+             {max(sky.x, cache.mean.x), max(sky.y, cache.mean.y), max(sky.z, cache.mean.z)});
+  });
+  return light;
+}
+
 /// What a ray brings.
 template <class F>
 struct GatheredOf {
@@ -327,8 +342,10 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
     if (const MaskOf<F> missed = active & !found; any(missed)) {
       const Vec3Of<F> sky = sky_radiance_of(scene, path->ray.d, path->cone_spread, missed) +
                             in_all_lanes<F>(scene.sky_ambient);
-      sum += select<F>(missed, throughput * sky + scattered * in_all_lanes<F>(cache.mean),
-                       Vec3Of<F>{});
+      sum += select<F>(missed, throughput * sky, Vec3Of<F>{});
+      if (!scene.media.volumes.empty())
+        sum += select<F>(missed, scattered * light_around_missed(scene, cache, path->ray.d, missed),
+                         Vec3Of<F>{});
     }
     active = found;
     if (!any(active)) break;
@@ -478,7 +495,9 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
         const Vec3f sky = sky_radiance(scene, lane(path.ray.d, i), lane(path.cone_spread, i));
         set_lane(&out.base, i, lane(out.base, i) + lane(out.through, i) * sky);
       });
-      out.base += select<F>(missed, scattered * in_all_lanes<F>(cache.mean), Vec3Of<F>{});
+      if (!scene.media.volumes.empty())
+        out.base += select<F>(
+            missed, scattered * light_around_missed(scene, cache, path.ray.d, missed), Vec3Of<F>{});
     }
     active = found;
     if (!any(active)) break;
