@@ -20,6 +20,15 @@ bool plane_through(const double* a, const double* b, const double* c, SolidPlane
 
 }  // namespace
 
+std::vector<bool> colliders(const mjModel& m) {
+  std::vector<bool> collide(static_cast<size_t>(m.ngeom));
+  for (size_t g = 0; g < collide.size(); ++g)
+    collide[g] = m.geom_contype[g] != 0 || m.geom_conaffinity[g] != 0;
+  for (size_t p = 0; p < static_cast<size_t>(m.npair); ++p)
+    for (const int g : {m.pair_geom1[p], m.pair_geom2[p]}) collide[static_cast<size_t>(g)] = true;
+  return collide;
+}
+
 // A face's plane is moved out to the outermost point of all, so that slivers, whose normals are
 // noise, cut nothing off.
 std::vector<SolidPlane> hull_planes(const mjModel& m, int mesh) {

@@ -7,6 +7,9 @@
 
 namespace gloam {
 
+/// Which geoms can be touched.
+std::vector<bool> colliders(const mjModel& model);
+
 /// The planes of the convex hull that a mesh collides as, in the mesh's frame [m].
 std::vector<SolidPlane> hull_planes(const mjModel& model, int mesh);
 

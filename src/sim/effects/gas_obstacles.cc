@@ -57,15 +57,6 @@ bool same_shape(const GasWalls& a, const GasWalls& b) {
   return same;
 }
 
-std::vector<bool> colliders(const mjModel& m) {
-  std::vector<bool> collide(static_cast<size_t>(m.ngeom));
-  for (size_t g = 0; g < collide.size(); ++g)
-    collide[g] = m.geom_contype[g] != 0 || m.geom_conaffinity[g] != 0;
-  for (size_t p = 0; p < static_cast<size_t>(m.npair); ++p)
-    for (const int g : {m.pair_geom1[p], m.pair_geom2[p]}) collide[static_cast<size_t>(g)] = true;
-  return collide;
-}
-
 }  // namespace
 
 GasObstacles::GasObstacles(std::shared_ptr<const CompiledWorld> world, const GasGrid& grid,
