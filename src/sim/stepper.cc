@@ -35,6 +35,7 @@ Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledW
   stepper->pool_ = SnapshotPool::create(world, kFirstSlots);
   const Rational step_time = exact_rational(model->opt.timestep);
   GLOAM_TRY(stepper->effects_, Effects::create(world, step_time));
+  if (!world->waters.empty()) stepper->water_ = WaterEffect::create(world, step_time);
   if (world->wind.blows()) stepper->wind_ = std::make_unique<WindOnBodies>(*world, step_time);
   if (!stepper->reset()) return stepper->error();
   return stepper;
@@ -109,6 +110,7 @@ bool Stepper::reset() {
   sensor_stamp_ = state_[0];
   warnings_seen_.fill(0);
   hash_ = hash_span<double>(state_, hash_bytes(&seed_, sizeof(seed_)));
+  if (water_ != nullptr) water_->reset();
   if (effects_ != nullptr) {
     effects_->reset();
     tick_effects();
@@ -141,6 +143,7 @@ bool Stepper::take_over(const Stepper& before, const Correspondence& same) {
   transfer_state(same, *before.data_, *data_);
   mj_getState(&model_, data_.get(), state_.data(), mjSTATE_INTEGRATION);
   hash_ = hash_span<double>(state_, hash_);
+  if (water_ != nullptr) water_->take_over(step_, before.water_.get());
   if (effects_ != nullptr) effects_->take_over(step_, before.effects_.get());
   return stand_at_state() || fail({ErrorKind::kInput, mujoco_error_message()});
 }
@@ -186,10 +189,12 @@ bool Stepper::step() {
   mjData* data = data_.get();
   blow(data->qpos);
   AppliedInputs* inputs = inputs_.get();
-  const bool ok = try_mujoco([=] {
+  const bool ok = try_mujoco([=, this] {
     inputs->before_step(*model, *data);
+    if (water_ != nullptr) hash_ = water_->begin_step(step_, model_, *data, hash_);
     mj_step(model, data);
   });
+  if (water_ != nullptr) water_->end_step(model_, *data);
   if (!ok) {
     Error error{ErrorKind::kDiverged, mujoco_error_message()};
     error.message +=
@@ -268,6 +273,7 @@ const Snapshot& Stepper::snapshot() {
       out.hash = hash_;
       out.live = live_;
       if (effects_ != nullptr) effects_->fill(step_, &out.fields);
+      if (water_ != nullptr) water_->fill(step_, &out.heights);
       out.sensor_stamp = sensor_stamp_;
       std::copy(state_.begin(), state_.end(), out.state.begin());
       const double* sensors = own_sensors_ ? sensors_.data() : data_->sensordata;

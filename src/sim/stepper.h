@@ -8,6 +8,7 @@
 #include "gloam/command.h"
 #include "sim/applied_inputs.h"
 #include "sim/effects/effects.h"
+#include "sim/effects/water_effect.h"
 #include "sim/effects/wind.h"
 #include "sim/snapshot_pool.h"
 #include "sim/state_layout.h"
@@ -80,6 +81,7 @@ class Stepper {
   DataPtr scratch_;     // for mj_setConst; made on first use
   std::unique_ptr<AppliedInputs> inputs_;
   std::unique_ptr<Effects> effects_;    // null = none
+  std::unique_ptr<WaterEffect> water_;  // null = none
   std::unique_ptr<WindOnBodies> wind_;  // null = the air is still
   std::shared_ptr<const LiveFields> live_;
   uint64_t live_changes_ = 0;  // since creation
