@@ -8,6 +8,9 @@ namespace {
 
 // Absorption of pure water at 620, 550 and 460 nm [1/m]: Pope and Fry 1997, table 3.
 constexpr Vec3f kPureWater{0.2755f, 0.0565f, 0.0098f};
+// And at 905 and 1550 nm [1/m], from imaginary indices of about 5e-7 and 1.2e-4, between the rows
+// of Hale and Querry 1973.
+constexpr std::array<float, 2> kInfrared{7, 1000};
 constexpr float kIndex = 1.333f;  // at 589 nm and 20 °C (Hale and Querry 1973)
 
 // A Secchi disk is lost at 1.7 over the diffuse attenuation (Poole and Atkins 1929). What that is
@@ -27,6 +30,7 @@ MaterialDescription material_of(const WaterDescription& water) {
   material.transmission_depth = 1;
   const Vec3f k = absorption_of(water.clarity);
   material.transmission_color = {std::exp(-k.x), std::exp(-k.y), std::exp(-k.z)};
+  material.infrared_absorption = kInfrared;
   return material;
 }
 
