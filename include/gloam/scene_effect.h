@@ -23,7 +23,8 @@ struct GasOptions {
   std::string fuel = "polyurethane";  ///< of its fires: propane heptane wood pmma
                                       ///< polyurethane polystyrene
   double temperature = 293;           ///< of the air around [K]
-  Vec3 wind = {};                     ///< of the air around, blows in at open sides [m/s]
+  std::optional<Vec3> wind = {};      ///< of the air around, blows in at open sides [m/s]; empty =
+                                      ///< that of [weather]
   std::vector<std::string> closed = {};  ///< sides nothing passes: -x +x -y +y -z +z
   double vorticity = 0.4;                ///< confinement of eddies, 0 … 1
   double cooling = 0.02;                 ///< share of the heat that is lost each second [1/s]

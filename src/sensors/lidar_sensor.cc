@@ -48,12 +48,17 @@ LidarSensor::LidarSensor(const RenderDescription& rendered, const LidarDescripti
 
 Status LidarSensor::find_surfaces() {
   const std::vector<LidarSurfaceOptions>& wanted = lidar_.options.surfaces;
-  if (wanted.empty()) return {};
+  const size_t band = model_.optics.band == MediumBand::k1550nm ? 1 : 0;
+  const bool knows_insides =
+      std::any_of(rendered_.materials.begin(), rendered_.materials.end(),
+                  [&](const auto& m) { return m.infrared_absorption[band] >= 0; });
+  if (wanted.empty() && !knows_insides) return {};
   surfaces_.resize(rendered_.instances.size());
   std::vector<bool> found(wanted.size());
   for (size_t i = 0; i < surfaces_.size(); ++i) {
     const auto row = static_cast<size_t>(rendered_.instances[i].material);
     const MaterialDescription& material = rendered_.materials[row];
+    surfaces_[i].absorption = material.infrared_absorption[band];
     for (size_t k = 0; k < wanted.size(); ++k) {
       if (material.name.empty() || !fits(wanted[k].material, material.name)) continue;
       found[k] = true;

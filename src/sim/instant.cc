@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include "scene/mujoco_guard.h"
+#include "sim/effects/wind.h"
 #include "sim/live_fields.h"
 #include "sim/model_fields.h"
 #include "sim/snapshot.h"
+#include "sim/step_schedule.h"
 #include "sim/stepper.h"
 
 namespace gloam {
@@ -25,6 +27,7 @@ struct Instant::Solved {
 
   Status begin(const SnapshotData& in);
   Status follow_live_fields(const SnapshotData& in);
+  void blow(const SnapshotData& in);
 
   template <class Kind>
   Status check(Handle<Kind> handle, mjtSize count) const {
@@ -77,6 +80,15 @@ Status Instant::Solved::follow_live_fields(const SnapshotData& in) {
   return {};
 }
 
+// As Stepper::blow().
+void Instant::Solved::blow(const SnapshotData& in) {
+  const auto field = static_cast<size_t>(LiveFieldId::kWind);
+  if (!world->wind.blows()) return;
+  give_air(&model.opt);
+  if (in.live != nullptr && !in.live->values[field].empty()) return;
+  WindOnBodies(*world, exact_rational(in.timestep)).blow(in.step, data->qpos, &model.opt);
+}
+
 Instant::Instant() : solved_(std::make_unique<Solved>()) {}
 Instant::~Instant() = default;
 Instant::Instant(Instant&&) noexcept = default;
@@ -94,6 +106,7 @@ Status Instant::solve(const Snapshot& snapshot) {
   mjData* data = s.data.get();
   GLOAM_TRY_STATUS(guarded([&] {
     mj_setState(model, data, in.state.data(), mjSTATE_INTEGRATION);
+    s.blow(in);
     mj_forward(model, data);
     // What a forward pass computes only where a sensor asks for it.
     mj_energyPos(model, data);

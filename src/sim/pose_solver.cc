@@ -4,9 +4,11 @@
 
 #include "base/check.h"
 #include "scene/mujoco_guard.h"
+#include "sim/effects/water_surface.h"
 #include "sim/live_fields.h"
 #include "sim/skinning.h"
 #include "sim/state_layout.h"
+#include "world/visual_water.h"
 
 namespace gloam {
 namespace {
@@ -78,6 +80,7 @@ Status PoseSolver::solve(const Snapshot& snapshot, PoseFrame& frame) {
   frame.time = in.time;
   fill_poses(frame);
   fill_vertices(in.live.get(), frame);
+  fill_waters(in, frame);
   fill_live(in.live.get(), frame);
   frame.fields.resize(in.fields.size());
   for (size_t i = 0; i < in.fields.size(); ++i)
@@ -110,6 +113,22 @@ void PoseSolver::fill_vertices(const LiveFields* live, PoseFrame& frame) {
   live_field_at(m, live, LiveFieldId::kGravity, &gravity_);
   const double gravity[3] = {gravity_[0], gravity_[1], gravity_[2]};
   place_capsules(m, d, gravity, layout_, frame.vertices.data());
+}
+
+void PoseSolver::fill_waters(const SnapshotData& in, PoseFrame& frame) {
+  for (size_t i = 0; i < world_->waters.size(); ++i) {
+    const WaterDescription& water = world_->waters[i];
+    heights_.resize(static_cast<size_t>(water_vertices(water)));
+    surface_heights(water, in.heights[i], in.time, heights_);
+    size_t n = 0;
+    for (int row = 0; row <= water.mesh.ny; ++row) {
+      for (int column = 0; column <= water.mesh.nx; ++column, ++n) {
+        frame.vertices.push_back(static_cast<float>(water.low_x() + water.mesh.dx * column));
+        frame.vertices.push_back(static_cast<float>(water.low_y() + water.mesh.dy * row));
+        frame.vertices.push_back(static_cast<float>(water.level) + heights_[n]);
+      }
+    }
+  }
 }
 
 void PoseSolver::fill_live(const LiveFields* live, PoseFrame& frame) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gloam/snapshot.h"
+#include "sim/effects/height_change.h"
 #include "sim/effects/medium_field.h"
 
 namespace gloam {
@@ -31,6 +32,7 @@ struct SnapshotData {
   double sensor_stamp = 0;                 ///< [s]
   std::shared_ptr<const LiveFields> live;  ///< null = nothing changed
   std::vector<FieldWindow> fields;         ///< by row of CompiledWorld::gases
+  std::vector<HeightChange> heights;       ///< by row of CompiledWorld::waters
 };
 
 /// Whoever can hand out Snapshots in order: the live simulation, or a replay.

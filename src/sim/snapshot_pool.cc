@@ -63,6 +63,7 @@ SnapshotPool::Slot* SnapshotPool::add_slot() {
   data.state.resize(static_cast<size_t>(state_size(*world_->model)));
   data.sensordata.resize(static_cast<size_t>(world_->model->nsensordata));
   data.fields.resize(world_->gases.gases.size());
+  data.heights.resize(world_->waters.size());
   slots_.fetch_add(1, std::memory_order_relaxed);
   return all_.back().get();
 }
@@ -92,6 +93,7 @@ Snapshot SnapshotPool::finish(Slot* slot) {
       [](SnapshotData* data) {
         data->live.reset();
         for (FieldWindow& field : data->fields) field = {};
+        for (HeightChange& height : data->heights) height = {};
       },
       SlotAllocator<SnapshotData>(shared_from_this(), slot)));
 }

@@ -33,7 +33,10 @@ Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledW
   stepper->next_state_.resize(stepper->state_.size());
   stepper->sensors_.resize(static_cast<size_t>(model->nsensordata));
   stepper->pool_ = SnapshotPool::create(world, kFirstSlots);
-  GLOAM_TRY(stepper->effects_, Effects::create(world, exact_rational(model->opt.timestep)));
+  const Rational step_time = exact_rational(model->opt.timestep);
+  GLOAM_TRY(stepper->effects_, Effects::create(world, step_time));
+  if (!world->waters.empty()) stepper->water_ = WaterEffect::create(world, step_time);
+  if (world->wind.blows()) stepper->wind_ = std::make_unique<WindOnBodies>(*world, step_time);
   if (!stepper->reset()) return stepper->error();
   return stepper;
 }
@@ -44,6 +47,7 @@ void Stepper::take_model(const mjModel& model) {
   owns_all_ = false;
   model_.opt.disableflags |= mjDSBL_AUTORESET;
   if (timestep_) model_.opt.timestep = *timestep_;
+  if (world_->wind.blows()) give_air(&model_.opt);
 }
 
 // Live fields are written into the arrays: not into those that all simulations of the World share.
@@ -71,12 +75,20 @@ bool Stepper::own_the_field(LiveFieldId field) {
   return true;
 }
 
+// A Command that sets the wind takes the weather's place until the next reset.
+void Stepper::blow(const double* qpos) {
+  const auto field = static_cast<size_t>(LiveFieldId::kWind);
+  if (wind_ == nullptr || (live_ != nullptr && !live_->values[field].empty())) return;
+  wind_->blow(step_, qpos, &model_.opt);
+}
+
 bool Stepper::reset() {
   failed_ = false;
   if (live_ != nullptr) {
     live_.reset();
     take_model(*world_->model);
   }
+  step_ = 0;
   inputs_->reset();
   // Sensors and the warm start of the solver are computed by a forward pass. The sensors are
   // wanted, but a bare mj_step loop starts cold, so the state is made anew after it.
@@ -84,6 +96,7 @@ bool Stepper::reset() {
   mjData* data = data_.get();
   const bool ok = try_mujoco([&] {
     reset_to_initial_state(*world_, *model, *data);
+    blow(data->qpos);
     mj_forward(model, data);
     mju_copy(sensors_.data(), data->sensordata, static_cast<int>(model->nsensordata));
     reset_to_initial_state(*world_, *model, *data);
@@ -92,12 +105,12 @@ bool Stepper::reset() {
     mj_getState(model, data, state_.data(), mjSTATE_INTEGRATION);
   });
   ++run_;
-  step_ = 0;
   snapshot_ = {};
   own_sensors_ = true;
   sensor_stamp_ = state_[0];
   warnings_seen_.fill(0);
   hash_ = hash_span<double>(state_, hash_bytes(&seed_, sizeof(seed_)));
+  if (water_ != nullptr) water_->reset();
   if (effects_ != nullptr) {
     effects_->reset();
     tick_effects();
@@ -130,6 +143,7 @@ bool Stepper::take_over(const Stepper& before, const Correspondence& same) {
   transfer_state(same, *before.data_, *data_);
   mj_getState(&model_, data_.get(), state_.data(), mjSTATE_INTEGRATION);
   hash_ = hash_span<double>(state_, hash_);
+  if (water_ != nullptr) water_->take_over(step_, before.water_.get());
   if (effects_ != nullptr) effects_->take_over(step_, before.effects_.get());
   return stand_at_state() || fail({ErrorKind::kInput, mujoco_error_message()});
 }
@@ -173,11 +187,14 @@ bool Stepper::step() {
   if (failed_) return false;
   const mjModel* model = &model_;
   mjData* data = data_.get();
+  blow(data->qpos);
   AppliedInputs* inputs = inputs_.get();
-  const bool ok = try_mujoco([=] {
+  const bool ok = try_mujoco([=, this] {
     inputs->before_step(*model, *data);
+    if (water_ != nullptr) hash_ = water_->begin_step(step_, model_, *data, hash_);
     mj_step(model, data);
   });
+  if (water_ != nullptr) water_->end_step(model_, *data);
   if (!ok) {
     Error error{ErrorKind::kDiverged, mujoco_error_message()};
     error.message +=
@@ -228,6 +245,7 @@ bool Stepper::stand_at_state() {
   mjData* data = data_.get();
   return try_mujoco([&] {
     mj_setState(model, data, state_.data(), mjSTATE_INTEGRATION);
+    blow(data->qpos);
     mj_forward(model, data);
     mju_copy(sensors_.data(), data->sensordata, static_cast<int>(model->nsensordata));
     mj_setState(model, data, state_.data(), mjSTATE_INTEGRATION);
@@ -255,6 +273,7 @@ const Snapshot& Stepper::snapshot() {
       out.hash = hash_;
       out.live = live_;
       if (effects_ != nullptr) effects_->fill(step_, &out.fields);
+      if (water_ != nullptr) water_->fill(step_, &out.heights);
       out.sensor_stamp = sensor_stamp_;
       std::copy(state_.begin(), state_.end(), out.state.begin());
       const double* sensors = own_sensors_ ? sensors_.data() : data_->sensordata;

@@ -8,6 +8,8 @@
 #include "gloam/command.h"
 #include "sim/applied_inputs.h"
 #include "sim/effects/effects.h"
+#include "sim/effects/water_effect.h"
+#include "sim/effects/wind.h"
 #include "sim/snapshot_pool.h"
 #include "sim/state_layout.h"
 #include "world/world.h"
@@ -65,6 +67,7 @@ class Stepper {
   void take_model(const mjModel& model);
   void count_diagnostics();
   void tick_effects();
+  void blow(const double* qpos);
 
   std::shared_ptr<const CompiledWorld> world_;
   std::optional<double> timestep_;
@@ -77,7 +80,9 @@ class Stepper {
   StateReader reader_;  // of data_
   DataPtr scratch_;     // for mj_setConst; made on first use
   std::unique_ptr<AppliedInputs> inputs_;
-  std::unique_ptr<Effects> effects_;  // null = none
+  std::unique_ptr<Effects> effects_;    // null = none
+  std::unique_ptr<WaterEffect> water_;  // null = none
+  std::unique_ptr<WindOnBodies> wind_;  // null = the air is still
   std::shared_ptr<const LiveFields> live_;
   uint64_t live_changes_ = 0;  // since creation
   std::shared_ptr<SnapshotPool> pool_;

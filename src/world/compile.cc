@@ -107,6 +107,8 @@ Status describe_rest(CompiledWorld* world) {
   GLOAM_TRY_STATUS(check_sensors(*world));
   GLOAM_TRY_STATUS(describe_lidars(*world));
   GLOAM_TRY(world->gases, describe_gases(*world));
+  world->wind = describe_wind(world->scene, world->scene.weather.value_or(WeatherOptions{}));
+  GLOAM_TRY(world->waters, describe_waters(world->scene));
   return {};
 }
 

@@ -123,7 +123,7 @@ Result<GasDescription> describe_gas(const GasOptions& options, const Extent& ext
   gas.medium.emission = 1;  // Kirchhoff's law: only what is above 800 K is seen to glow
   gas.fuel = kFuelTable[row_of(kFuels, options.fuel)];
   gas.temperature = static_cast<float>(options.temperature);
-  gas.wind = to_float(options.wind);
+  if (options.wind) gas.wind = to_float(*options.wind);
   for (size_t i = 0; i < kBoxSides.size(); ++i) {
     gas.open[i] = std::find(options.closed.begin(), options.closed.end(), kBoxSides[i]) ==
                   options.closed.end();

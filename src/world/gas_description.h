@@ -48,9 +48,9 @@ struct GasDescription {
   Rational rate;               ///< [Hz]
   MediumDescription medium;
   FuelDescription fuel;
-  float temperature = 0;  ///< of the air around [K]
-  Vec3f wind;             ///< [m/s]
-  bool open[6] = {};      ///< sides of the box: -x +x -y +y -z +z
+  float temperature = 0;      ///< of the air around [K]
+  std::optional<Vec3f> wind;  ///< [m/s]; empty = the scene's
+  bool open[6] = {};          ///< sides of the box: -x +x -y +y -z +z
   float vorticity = 0, cooling = 0, settling = 0;
   SourceLoc loc;
 

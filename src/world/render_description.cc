@@ -11,6 +11,7 @@
 #include "world/authored_material.h"
 #include "world/authored_sky.h"
 #include "world/authored_volume.h"
+#include "world/deformable_layout.h"
 #include "world/model_names.h"
 #include "world/visual_camera.h"
 #include "world/visual_deformable.h"
@@ -20,6 +21,7 @@
 #include "world/visual_material.h"
 #include "world/visual_mesh.h"
 #include "world/visual_pose.h"
+#include "world/visual_water.h"
 #include "world/world.h"
 
 namespace gloam {
@@ -318,6 +320,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
   GLOAM_TRY_STATUS(author_materials(world.scene.materials, &out));
   restore_authored_frames(m, &out);
   GLOAM_TRY_STATUS(author_lights(world, poses, is_static, &labels, &levels, &out));
+  author_waters(world.waters, deformable_layout(m).nvertex, &labels, &out);
   if (world.scene.sky) GLOAM_TRY_STATUS(author_sky(*world.scene.sky, &levels, &out));
   GLOAM_TRY_STATUS(author_volumes(world.scene.volumes, &out));
   author_gases(world.gases.gases, &out);

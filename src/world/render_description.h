@@ -60,8 +60,10 @@ struct MaterialDescription {
   /// once.
   Vec3f transmission_color{1, 1, 1};
   float transmission_depth = 0;  ///< [m]
-  bool thin_walled = false;      ///< a sheet: nothing is inside, nothing is bent
-  float subsurface_weight = 0;   ///< 0..1
+  /// Absorption inside for LiDARs of 905 and 1550 nm [1/m]; -1 = as of red light.
+  std::array<float, 2> infrared_absorption{-1, -1};
+  bool thin_walled = false;     ///< a sheet: nothing is inside, nothing is bent
+  float subsurface_weight = 0;  ///< 0..1
   Vec3f subsurface_color{0.8f, 0.8f, 0.8f};
   float coat_weight = 0, coat_roughness = 0, coat_ior = 1.6f;
   float coat_darkening = 1;   ///< 0..1, of the base by light that the coat throws back down

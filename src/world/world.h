@@ -11,6 +11,8 @@
 #include "gloam/scene.h"
 #include "gloam/world.h"
 #include "world/gas_description.h"
+#include "world/water_description.h"
+#include "world/wind_description.h"
 
 namespace gloam {
 
@@ -58,6 +60,8 @@ struct CompiledWorld {
   std::vector<DrawnOption> drawn;
   std::vector<RobotInstance> robots;
   GasesDescription gases;
+  WindDescription wind;
+  std::vector<WaterDescription> waters;
   ModelPtr visual_model;  ///< source of visual_only meshes and materials; null when there are none
   std::vector<VisualOnlyGeom> visual_only;
   std::vector<Error> notes;        ///< what is odd, and taken as it is

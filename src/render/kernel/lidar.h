@@ -70,6 +70,19 @@ GLOAM_HD F reflectivity(const SceneView& scene, const LidarOptics& optics, Vec3O
   return (eval_bsdf(*bsdf, w, w, &pdf).x + retro * w.z) * kPi * s->opacity;
 }
 
+/// What the light's colours say of the inside of glass gives way to what is known at the sensor's
+/// wavelength, in the lanes that have crossed the surfaces `s`.
+template <class F>
+GLOAM_HD Vec3Of<F> own_absorption(const LidarOptics& optics, const SurfaceOf<F>& s,
+                                  MaskOf<F> crossing, Vec3Of<F> beyond) {
+  if (optics.surfaces.empty()) return beyond;
+  each_lane(crossing & s.outside, [&](int i) {
+    const float own = optics.surfaces[lane(s.instance, i)].absorption;
+    if (own >= 0) set_lane(&beyond, i, {own, own, own});
+  });
+  return beyond;
+}
+
 /// What pass_glass() reads of a BSDF.
 template <class F>
 GLOAM_HD LayeredBsdf glass_of(const LayeredBsdfOf<F>& b, int i) {
@@ -164,8 +177,9 @@ GLOAM_HD void trace_echoes(const SceneView& scene, const Tracer& tracer, const L
     share *= passed;
     active = active & (share * share > lidar::kFaint);
     if (!any(active)) return;
-    absorption =
-        paths::absorption_beyond(scene, s, active & (dot(d, s.geometric) < 0.0f), absorption);
+    const MaskOf<F> crossing = active & (dot(d, s.geometric) < 0.0f);
+    absorption = paths::absorption_beyond(scene, s, crossing, absorption);
+    absorption = lidar::own_absorption(optics, s, crossing, absorption);
     ray.o = select<F>(active, leave_surface(s.p, s.geometric, d, hit.t), ray.o);
     ray.d = select<F>(active, d, ray.d);
     ray.tmax = F(optics.max_range) - way;

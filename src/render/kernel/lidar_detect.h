@@ -21,8 +21,9 @@ inline constexpr int kMostFootprintRays = 32;
 
 /// What a surface is at a LiDAR's wavelength.
 struct LidarSurface {
-  float diffuse = 1;  ///< factor on its red
-  float retro = 0;    ///< coefficient of retroreflection [1/sr]
+  float diffuse = 1;      ///< factor on its red
+  float retro = 0;        ///< coefficient of retroreflection [1/sr]
+  float absorption = -1;  ///< inside glass [1/m]; -1 = as of red light
 };
 
 /// Of a LiDAR. Signals: see kernel/lidar.h.

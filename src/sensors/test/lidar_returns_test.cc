@@ -175,6 +175,24 @@ TEST(LidarReturnsOf, AGlassBlockMakesTheWayLonger) {
   EXPECT_NEAR(scan->intensity[last], 50 * std::pow(0.96, 4), 0.1);
 }
 
+// Water is clear to the eye and dark to these.
+TEST(LidarReturnsOf, WhatABlockAbsorbsInTheInfraredIsNotWhatItsColourSays) {
+  MaterialDescription water = pane_material(false);
+  water.infrared_absorption = {0.5f, 1000};
+  const auto behind = [&](double wavelength) {
+    SceneBuilder b;
+    add_wall(&b, {0.2f, 2, 2}, {3, 0, 0}, b.add_material(water));
+    add_wall(&b, {0.5f, 50, 50}, {6.5f, 0, 0}, b.add_diffuse({0.5f, 0.5f, 0.5f}));
+    LidarOptions options = pencil();
+    options.wavelength = wavelength;
+    const auto scan = scan_scene(b, options);
+    const auto last = scan->size() - 1;
+    return scan->part[last] == 2 ? scan->intensity[last] : 0.0f;
+  };
+  EXPECT_NEAR(behind(905), 50 * std::pow(0.96, 4) * std::exp(-2 * 0.5 * 0.4), 0.1);
+  EXPECT_EQ(behind(1550), 0) << "nothing comes back through 0.4 m";
+}
+
 TEST(LidarReturnsOf, ModesPickFirstStrongestAndLast) {
   SceneBuilder b;
   MaterialDescription net;  // lets half of the light through

@@ -20,6 +20,15 @@ bool plane_through(const double* a, const double* b, const double* c, SolidPlane
 
 }  // namespace
 
+std::vector<bool> colliders(const mjModel& m) {
+  std::vector<bool> collide(static_cast<size_t>(m.ngeom));
+  for (size_t g = 0; g < collide.size(); ++g)
+    collide[g] = m.geom_contype[g] != 0 || m.geom_conaffinity[g] != 0;
+  for (size_t p = 0; p < static_cast<size_t>(m.npair); ++p)
+    for (const int g : {m.pair_geom1[p], m.pair_geom2[p]}) collide[static_cast<size_t>(g)] = true;
+  return collide;
+}
+
 // A face's plane is moved out to the outermost point of all, so that slivers, whose normals are
 // noise, cut nothing off.
 std::vector<SolidPlane> hull_planes(const mjModel& m, int mesh) {
@@ -62,13 +71,13 @@ std::vector<SolidPlane> hull_planes(const mjModel& m, int mesh) {
   return planes;
 }
 
-HeightField::HeightField(const mjModel& m, int id, const float* data)
+HeightFieldPrisms::HeightFieldPrisms(const mjModel& m, int id, const float* data)
     : rows_(m.hfield_nrow[id]),
       columns_(m.hfield_ncol[id]),
       size_(m.hfield_size + 4 * id),
       data_(data + m.hfield_adr[id]) {}
 
-void HeightField::point(int column, int row, double* p) const {
+void HeightFieldPrisms::point(int column, int row, double* p) const {
   p[0] = size_[0] * (2.0 * column / (columns_ - 1) - 1);
   p[1] = size_[1] * (2.0 * row / (rows_ - 1) - 1);
   p[2] = size_[2] * double{data_[static_cast<size_t>(row) * static_cast<size_t>(columns_) +
@@ -76,7 +85,7 @@ void HeightField::point(int column, int row, double* p) const {
 }
 
 // MuJoCo's prisms: a cell's square is cut from its lowest to its highest corner.
-void HeightField::make_prism(int column, int row, bool second, GridSolid* solid) const {
+void HeightFieldPrisms::make_prism(int column, int row, bool second, GridSolid* solid) const {
   double p[3][3];
   point(column, row, p[0]);
   point(column + 1, row + (second ? 1 : 0), p[1]);

@@ -49,7 +49,11 @@ Result<std::unique_ptr<GasEffect>> GasEffect::create(std::shared_ptr<const Compi
 
 GasEffect::GasEffect(std::shared_ptr<const CompiledWorld> world, size_t row, StepSchedule schedule,
                      double timestep)
-    : world_(std::move(world)), row_(row), schedule_(schedule), timestep_(timestep) {}
+    : world_(std::move(world)),
+      row_(row),
+      schedule_(schedule),
+      timestep_(timestep),
+      wind_(world_->wind) {}
 
 GasEffect::~GasEffect() {
   {
@@ -166,7 +170,7 @@ void GasEffect::solve(const Snapshot& now) {
   find_sources(now.time());
   const int64_t steps = schedule_.step_of(tick_ + 1) - schedule_.step_of(tick_);
   const GasStep step = solver_->step(static_cast<float>(static_cast<double>(steps) * timestep_),
-                                     sources_, gas().wind);
+                                     sources_, wind(now.time()));
   warn_of_blocked(step);
 }
 
@@ -186,6 +190,13 @@ void GasEffect::find_sources(double time) {
     if (in.jet) out.velocity = transform_vector(X_WB, *in.jet);
     sources_.push_back(out);
   }
+}
+
+/// Of the air around: what the gas says, else the weather's at the height of its middle.
+Vec3f GasEffect::wind(double time) const {
+  if (gas().wind) return *gas().wind;
+  const Vec3 v = wind_.at(time, double{gas().low.z} + 0.5 * double{gas().size().z});
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
 void GasEffect::warn_of_blocked(const GasStep& step) {

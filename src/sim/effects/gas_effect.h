@@ -9,6 +9,7 @@
 
 #include "sim/effects/gas/gas_solver.h"
 #include "sim/effects/gas_obstacles.h"
+#include "sim/effects/wind.h"
 #include "sim/step_schedule.h"
 
 namespace gloam {
@@ -44,6 +45,7 @@ class GasEffect {
   void run_thread();
   void solve(const Snapshot& now);
   void find_sources(double time);
+  Vec3f wind(double time) const;
   void warn_of_blocked(const GasStep& step);
 
   const std::shared_ptr<const CompiledWorld> world_;
@@ -54,6 +56,7 @@ class GasEffect {
   std::unique_ptr<GasObstacles> obstacles_;
   GasWalls walls_;
   std::vector<GasSource> sources_;
+  const Wind wind_;
   bool warned_ = false;
 
   int64_t tick_ = -1;                                // the last one

@@ -57,15 +57,6 @@ bool same_shape(const GasWalls& a, const GasWalls& b) {
   return same;
 }
 
-std::vector<bool> colliders(const mjModel& m) {
-  std::vector<bool> collide(static_cast<size_t>(m.ngeom));
-  for (size_t g = 0; g < collide.size(); ++g)
-    collide[g] = m.geom_contype[g] != 0 || m.geom_conaffinity[g] != 0;
-  for (size_t p = 0; p < static_cast<size_t>(m.npair); ++p)
-    for (const int g : {m.pair_geom1[p], m.pair_geom2[p]}) collide[static_cast<size_t>(g)] = true;
-  return collide;
-}
-
 }  // namespace
 
 GasObstacles::GasObstacles(std::shared_ptr<const CompiledWorld> world, const GasGrid& grid,
@@ -146,7 +137,7 @@ void GasObstacles::voxelise_height_fields(const float* data) {
   still_ = fixed_;
   for (const int g : height_geoms_) {
     solid_.set_pose(grid_, data_->geom_xpos + 3 * g, data_->geom_xmat + 9 * g);
-    const HeightField field(model_, model_.geom_dataid[g], data);
+    const HeightFieldPrisms field(model_, model_.geom_dataid[g], data);
     for (int row = 0; row + 1 < field.rows(); ++row) {
       runs_.clear();
       for (int column = 0; column + 1 < field.columns(); ++column) {

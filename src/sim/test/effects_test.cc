@@ -174,6 +174,32 @@ TEST(Effects, ASimulationMayEndAtAnyStep) {
   }
 }
 
+// Where its smoke is along x [m].
+double middle_of_smoke(const PoseFrame& frame) {
+  double sum = 0, moment = 0;
+  for (size_t i = 0; i < frame.fields[0].density->size(); ++i) {
+    const double d = (*frame.fields[0].density)[i];
+    sum += d;
+    moment += d * (-0.95 + 0.1 * static_cast<double>(i % 20));
+  }
+  return moment / sum;
+}
+
+TEST(Effects, WindOfTheWeatherBlowsSmokeAwayUnlessTheGasHasItsOwn) {
+  const auto after = [](double speed, std::optional<Vec3f> own) {
+    auto world = world_with({});
+    world->wind.speed = speed;
+    world->gases.gases[0].wind = own;
+    auto sim = make_simulator(world, lockstep());
+    sim->start();
+    EXPECT_TRUE(sim->step(600).ok());
+    return middle_of_smoke(frame_of(sim->latest()));
+  };
+  const double still = after(0, {}), windy = after(4, {}), sheltered = after(4, Vec3f{});
+  EXPECT_NEAR(still, sheltered, 0.01) << "but for the burner, which the wind pushes";
+  EXPECT_GT(windy, still + 0.2) << "smoke drifts with the wind";
+}
+
 TEST(Effects, ARateAboveTheStepRateIsRefused) {
   const auto made = Simulator::create(world_with({.rate = {300, 1}}), {});
   ASSERT_FALSE(made.ok());

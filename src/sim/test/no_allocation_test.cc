@@ -75,6 +75,39 @@ TEST(StepLoop, AllocatesNothingOnceWarm) {
   reader.join();
 }
 
+TEST(WaterLoop, AllocatesNothingOnceWarm) {
+#ifdef GLOAM_SANITIZED
+  GTEST_SKIP() << "the sanitizer owns malloc";
+#endif
+  auto world = world_from_mjcf(R"(<mujoco><option timestep="0.002"/><worldbody>
+    <body pos="0 0 0.3"><freejoint/><geom type="box" size=".2 .2 .1" density="400"/></body>
+    <body pos="1 0 0.3"><freejoint/><geom type="capsule" size=".1 .2" density="400"/></body>
+    </worldbody></mujoco>)");
+  Scene scene;
+  WaterOptions& water = scene.waters.emplace_back();
+  water.name = "pool";
+  water.wave_height = 0.05;
+  water.wave_period = 1;
+  world->waters = *describe_waters(scene);
+  world->wind.speed = 5;
+  world->wind.gusts = 1;
+  auto sim = make_simulator(world);
+  sim->set_step_hook([](const mjModel*, mjData* d) { counting = d->time > 0.5; });
+  auto queue = *sim->subscribe({.rate = {250, 1}, .required = true, .capacity = 4});
+  std::thread reader([queue] {
+    while (queue->next()) {
+    }
+  });
+  allocations = frees = 0;
+  sim->start(2000);
+  ASSERT_TRUE(sim->wait().ok());
+  EXPECT_EQ(allocations.load(), 0);
+  EXPECT_EQ(frees.load(), 0);
+  sim->set_step_hook([](const mjModel*, mjData*) { counting = false; });
+  sim->stop();
+  reader.join();
+}
+
 TEST(GasObstacles, AllocateNothingAfterTheFirstCall) {
 #ifdef GLOAM_SANITIZED
   GTEST_SKIP() << "the sanitizer owns malloc";

@@ -61,7 +61,7 @@ wind = [2, 0, 0]
   EXPECT_TRUE(gas.open[0]);
   EXPECT_FALSE(gas.open[4]);
   EXPECT_FALSE(gas.open[5]);
-  EXPECT_FLOAT_EQ(gas.wind.x, 2);
+  EXPECT_FLOAT_EQ(gas.wind->x, 2);
 }
 
 TEST_F(Gas, IsMadeAroundWhatSmokesWhereThereIsNone) {

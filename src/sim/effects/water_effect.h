@@ -1,0 +1,51 @@
+#pragma once
+// All waters of a World, on the sim thread: forces on bodies at every step, ripples at a rate of
+// their own. Waves need no state: they are a function of time.
+
+#include <memory>
+#include <vector>
+
+#include "sim/effects/water_forces.h"
+#include "sim/effects/water_ripples.h"
+#include "sim/step_schedule.h"
+#include "world/world.h"
+
+namespace gloam {
+
+class WaterEffect {
+ public:
+  /// The World has waters.
+  static std::unique_ptr<WaterEffect> create(std::shared_ptr<const CompiledWorld> world,
+                                             Rational timestep);
+
+  void reset();
+  /// Goes on at `step` with the ripples of waters of the same name and grid in `before`, null =
+  /// none.
+  void take_over(int64_t step, const WaterEffect* before);
+
+  /// Before the physics of step `step`; `data` is of its state. Ripples advance at their ticks,
+  /// and the hash goes in and comes out with theirs. MuJoCo errors possible: call it guarded.
+  uint64_t begin_step(int64_t step, mjModel& model, mjData& data, uint64_t hash);
+  /// After it, whether it went well or not.
+  void end_step(mjModel& model, mjData& data) { forces_.end(model, data); }
+
+  /// Ripples at a step that begin_step() has not yet been called for.
+  void fill(int64_t step, std::vector<HeightChange>* heights) const;
+
+ private:
+  WaterEffect(std::shared_ptr<const CompiledWorld> world, Rational timestep, StepSchedule schedule);
+  const std::vector<WaterDescription>& waters() const { return world_->waters; }
+  void tick(const mjData* data);
+  void look(int64_t step, std::span<HeightChange> changes) const;
+
+  const std::shared_ptr<const CompiledWorld> world_;
+  const StepSchedule schedule_;
+  const double timestep_;  // [s]
+  const std::vector<WaterShape> shapes_;
+  WaterForces forces_;
+  std::vector<std::unique_ptr<WaterRipples>> ripples_;  // of each water, null = none
+  std::vector<HeightChange> changes_;                   // room, of each water
+  int64_t tick_ = -1;                                   // the last one
+};
+
+}  // namespace gloam

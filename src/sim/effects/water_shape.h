@@ -1,0 +1,39 @@
+#pragma once
+// What a collider displaces: small elements of its volume, and the coefficients of what water does
+// to a shape of its kind. Of boxes, ellipsoids, spheres, cylinders, capsules, and the convex hulls
+// of meshes.
+
+#include <mujoco/mujoco.h>
+
+#include <optional>
+#include <vector>
+
+namespace gloam {
+
+/// In the geom's frame.
+struct WaterElement {
+  double p[3];    ///< middle of its volume [m]
+  double volume;  ///< [m³]
+};
+
+struct WaterShape {
+  int geom = 0, body = 0;
+  std::vector<WaterElement> elements;
+  double volume = 0;             ///< of all [m³]
+  double centre[3] = {};         ///< of the bounding box, in the geom's frame [m]
+  double half[3] = {};           ///< its half edges [m]
+  double cell[3] = {};           ///< edges of an element [m]
+  double area[3] = {};           ///< seen along each axis [m²]
+  double drag[3] = {};           ///< coefficients of drag along each axis
+  double added[3] = {};          ///< of added mass, over that of the water displaced
+  double added_inertia[3] = {};  ///< over the water's density [m⁵]
+  double radius = 0;             ///< of the sphere of the same volume [m]
+};
+
+/// Nothing for planes, height fields and SDFs. `elements`: about how many are wanted.
+std::optional<WaterShape> water_shape(const mjModel& model, int geom, int elements = 216);
+
+/// Of every collider of a body that is not fixed to the world.
+std::vector<WaterShape> water_shapes(const mjModel& model);
+
+}  // namespace gloam

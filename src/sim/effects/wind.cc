@@ -1,0 +1,115 @@
+#include "sim/effects/wind.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "base/rng.h"
+#include "world/visual_pose.h"
+
+namespace gloam {
+namespace {
+
+constexpr double kRoughness = 0.03;           // length [m]
+constexpr double kLowest = 0.1;               // [m]; nearer to the ground the law says nothing
+constexpr double kReference = 10;             // height that winds are told for [m]
+constexpr double kShares[3] = {1, 0.8, 0.5};  // of the standard deviation: along, across, up
+// Integral scales are 8.1, 2.7 and 0.66 of 0.7 times the height, here that of reference.
+constexpr double kScales[3] = {8.1 * 7, 2.7 * 7, 0.66 * 7};  // [m]
+constexpr double kSlowest = 1.0 / 600, kFastest = 5;         // [Hz]
+constexpr Rational kGustRate{100, 1};
+
+// ICAO's standard atmosphere at sea level, rounded: [kg/m³] and [Pa s].
+constexpr double kAirDensity = 1.2, kAirViscosity = 1.8e-5;
+
+// Share of Kaimal's variance below a frequency.
+double below(double frequency, double turnover) {
+  return 1 - std::pow(1 + 6 * frequency * turnover, -2.0 / 3);
+}
+
+StepSchedule gust_schedule(Rational timestep) {
+  const Result<StepSchedule> schedule = StepSchedule::make(kGustRate, {0, 1}, timestep);
+  return schedule.ok() ? *schedule : StepSchedule();  // longer steps: at each
+}
+
+}  // namespace
+
+Wind::Wind(const WindDescription& wind) : wind_(wind), tones_{} {
+  if (!blows()) return;
+  const RandomStream random{wind.seed, stream_id("wind.gusts")};
+  const double ratio = std::pow(kFastest / kSlowest, 1.0 / kTones);
+  for (uint32_t axis = 0; axis < 3; ++axis) {
+    const double turnover = kScales[axis] / wind.speed;  // [s]
+    const double all = below(kFastest, turnover) - below(kSlowest, turnover);
+    double low = kSlowest;
+    for (uint32_t i = 0; i < kTones; ++i, low *= ratio) {
+      const double share = (below(low * ratio, turnover) - below(low, turnover)) / all;
+      Tone& tone = tones_[axis][i];
+      tone.amplitude = kShares[axis] * wind.gusts * std::sqrt(2 * share);
+      const double frequency = low * std::pow(ratio, random.uniform(i, 2 * axis));
+      tone.omega = 2 * std::numbers::pi * frequency;
+      tone.phase = 2 * std::numbers::pi * random.uniform(i, 2 * axis + 1);
+    }
+  }
+}
+
+double Wind::mean_speed(double height) const {
+  return wind_.speed * std::log(std::max(height, kLowest) / kRoughness) /
+         std::log(kReference / kRoughness);
+}
+
+Vec3 Wind::gust(double time) const {
+  double sum[3] = {};
+  for (size_t axis = 0; axis < 3; ++axis) {
+    for (const Tone& tone : tones_[axis])
+      sum[axis] += tone.amplitude * std::cos(tone.omega * time + tone.phase);
+  }
+  const double x = wind_.along_x, y = wind_.along_y;
+  return {sum[0] * x - sum[1] * y, sum[0] * y + sum[1] * x, sum[2]};
+}
+
+Vec3 Wind::at(double time, double height) const {
+  if (!blows()) return {};
+  const double mean = mean_speed(height);
+  const Vec3 more = gust(time);
+  return {mean * wind_.along_x + more.x, mean * wind_.along_y + more.y, more.z};
+}
+
+void give_air(mjOption* option) {
+  if (option->density > 0 || option->viscosity > 0) return;
+  option->density = kAirDensity;
+  option->viscosity = kAirViscosity;
+}
+
+WindOnBodies::WindOnBodies(const CompiledWorld& world, Rational timestep)
+    : wind_(world.wind), schedule_(gust_schedule(timestep)), timestep_(timestep.value()) {
+  const mjModel& m = *world.model;
+  const std::vector<Affine3f> X_WB = body_poses_at_qpos0(m);
+  double mass = 0;
+  const auto add = [&](int body) {
+    const int joint = m.body_jntadr[body];
+    const bool floats = joint >= 0 && m.jnt_type[joint] == mjJNT_FREE;
+    roots_.push_back({floats ? m.jnt_qposadr[joint] + 2 : -1,
+                      double{X_WB[static_cast<size_t>(body)].p.z}, m.body_subtreemass[body]});
+    mass += m.body_subtreemass[body];
+  };
+  for (const RobotInstance& robot : world.robots) {
+    if (robot.root_body > 0) add(robot.root_body);
+  }
+  for (int body = 1; roots_.empty() && body < m.nbody; ++body) {
+    if (m.body_parentid[body] == 0 && m.body_dofnum[body] > 0) add(body);
+  }
+  for (Root& root : roots_) root.weight = mass > 0 ? root.weight / mass : 0;
+}
+
+void WindOnBodies::blow(int64_t step, const double* qpos, mjOption* option) const {
+  double height = 0;
+  for (const Root& root : roots_)
+    height += root.weight * (root.qpos >= 0 ? qpos[root.qpos] : root.z);
+  const int64_t next = schedule_.first_at_or_after(step + 1);
+  const double time = static_cast<double>(schedule_.step_of(next - 1)) * timestep_;
+  const Vec3 v = wind_.at(time, height);
+  option->wind[0] = v.x, option->wind[1] = v.y, option->wind[2] = v.z;
+}
+
+}  // namespace gloam

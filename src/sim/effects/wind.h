@@ -1,0 +1,62 @@
+#pragma once
+// Wind with gusts: a pure function of time and height.
+//
+// The mean grows with height by the logarithmic law over open country (Stull 1988, "An Introduction
+// to Boundary Layer Meteorology"; roughness length 3 cm, class 3 of Davenport's, WMO-No. 8). Gusts
+// are stationary Gaussian turbulence with Kaimal's spectra, as IEC 61400-1 (annex B) has them,
+// f S(f) / s² = 4 f L/U / (1 + 6 f L/U)^(5/3), across and upright with 0.8 and 0.5 of the standard
+// deviation along the wind, as sums of sinusoids with random frequencies and phases (Shinozuka and
+// Deodatis 1991). From 1/600 Hz, so that they have the mean of zero over the ten minutes that winds
+// are measured in, to 5 Hz; the same at all heights and places.
+
+#include <array>
+
+#include "sim/step_schedule.h"
+#include "world/world.h"
+
+namespace gloam {
+
+class Wind {
+ public:
+  explicit Wind(const WindDescription& wind);
+
+  bool blows() const { return wind_.blows(); }
+  /// Along the wind [m/s]; `height` above z = 0 [m], below 0.1 m as there.
+  double mean_speed(double height) const;
+  /// What comes to the mean [m/s], world.
+  Vec3 gust(double time) const;
+  Vec3 at(double time, double height) const;
+
+ private:
+  static constexpr int kTones = 64;
+  struct Tone {
+    double amplitude, omega, phase;
+  };
+  WindDescription wind_;
+  std::array<std::array<Tone, kTones>, 3> tones_;  // along, across, up
+};
+
+/// Gives a model that has no fluid of its own air to move in.
+void give_air(mjOption* option);
+
+/// Blows on bodies, by MuJoCo's own model of a fluid, which knows one wind for all of them: that at
+/// the mean height of the robots' root bodies, weighted by mass; without robots of all that floats.
+class WindOnBodies {
+ public:
+  WindOnBodies(const CompiledWorld& world, Rational timestep);
+
+  /// Sets the wind of step `step`, from `qpos`. Gusts change at 100 Hz.
+  void blow(int64_t step, const double* qpos, mjOption* option) const;
+
+ private:
+  struct Root {
+    int qpos;          // where its height stands, -1 = it stays
+    double z, weight;  // [m], share
+  };
+  Wind wind_;
+  StepSchedule schedule_;
+  double timestep_;  // [s]
+  std::vector<Root> roots_;
+};
+
+}  // namespace gloam

@@ -1,0 +1,210 @@
+// Wind: its mean, gusts and spectrum as asked for, and what it does to bodies.
+
+#include "sim/effects/wind.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "base/parallel.h"
+#include "gloam/command.h"
+#include "test_world.h"
+
+namespace gloam {
+namespace {
+
+WindDescription windy(double speed, double intensity, uint64_t seed = 1) {
+  WindDescription wind;
+  wind.speed = speed;
+  wind.gusts = intensity * speed;
+  wind.seed = seed;
+  return wind;
+}
+
+struct WindMoments {
+  double mean[3] = {}, deviation[3] = {};
+};
+
+WindMoments over_ten_minutes(const Wind& wind) {
+  constexpr int kCount = 12000;
+  double sum[3] = {}, squares[3] = {};
+  for (int i = 0; i < kCount; ++i) {
+    const Vec3 v = wind.at(0.05 * i, 10);
+    const double parts[3] = {v.x, v.y, v.z};
+    for (int a = 0; a < 3; ++a) sum[a] += parts[a], squares[a] += parts[a] * parts[a];
+  }
+  WindMoments out;
+  for (int a = 0; a < 3; ++a) {
+    out.mean[a] = sum[a] / kCount;
+    out.deviation[a] = std::sqrt(squares[a] / kCount - out.mean[a] * out.mean[a]);
+  }
+  return out;
+}
+
+TEST(Wind, HasTheMeanAndTheDeviationThatAreAskedFor) {
+  WindMoments all;
+  constexpr int kSeeds = 20;
+  for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const WindMoments one = over_ten_minutes(Wind(windy(8, 0.15, seed)));
+    EXPECT_NEAR(one.mean[0], 8, 0.2) << "mean of ten minutes, seed " << seed;
+    EXPECT_NEAR(one.deviation[0], 1.2, 0.15) << "deviation along the wind, seed " << seed;
+    for (int a = 0; a < 3; ++a) {
+      all.mean[a] += one.mean[a] / kSeeds;
+      all.deviation[a] += one.deviation[a] / kSeeds;
+    }
+  }
+  EXPECT_NEAR(all.mean[0], 8, 0.03);
+  EXPECT_NEAR(all.mean[1], 0, 0.03);
+  EXPECT_NEAR(all.mean[2], 0, 0.03);
+  EXPECT_NEAR(all.deviation[0], 1.2, 0.03 * 1.2) << "along the wind";
+  EXPECT_NEAR(all.deviation[1], 0.8 * 1.2, 0.03 * 1.2) << "across";
+  EXPECT_NEAR(all.deviation[2], 0.5 * 1.2, 0.03 * 1.2) << "up and down";
+}
+
+// Power of the gusts along the wind at a frequency, by a Fourier transform over a Hann window, mean
+// of seeds and of neighbouring frequencies.
+double power_at(double frequency) {
+  constexpr int kCount = 12000, kSeeds = 12, kNear = 12;
+  constexpr double kStep = 0.05;
+  double power = 0;
+  for (uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const Wind wind(windy(8, 0.15, seed));
+    std::vector<double> gust(kCount);
+    for (int i = 0; i < kCount; ++i)
+      gust[static_cast<size_t>(i)] =
+          wind.gust(kStep * i).x * (1 - std::cos(2 * std::numbers::pi * i / kCount));
+    for (int n = 0; n < kNear; ++n) {
+      // A band about the frequency as wide as a few of the tones.
+      const double f = frequency * (0.85 + 0.3 * n / (kNear - 1)), w = 2 * std::numbers::pi * f;
+      double re = 0, im = 0;
+      for (int i = 0; i < kCount; ++i) {
+        re += gust[static_cast<size_t>(i)] * std::cos(w * kStep * i);
+        im += gust[static_cast<size_t>(i)] * std::sin(w * kStep * i);
+      }
+      power += (re * re + im * im) * 2 * kStep / (1.5 * kCount) / (kSeeds * kNear);
+    }
+  }
+  return power;
+}
+
+TEST(Wind, SpectrumFallsByFiveThirdsInTheInertialRange) {
+  // The tones are lines, so what a window of ten minutes sees between two is nothing: the band
+  // averages are compared with the slope, not with the level.
+  const double low = power_at(0.25), high = power_at(2.5);
+  const double slope = std::log(high / low) / std::log(10.0);
+  EXPECT_NEAR(slope, -5.0 / 3, 0.25) << "from 0.25 to 2.5 Hz";
+}
+
+TEST(Wind, GrowsWithHeightByTheLogarithmicLaw) {
+  const Wind wind(windy(10, 0));
+  EXPECT_DOUBLE_EQ(wind.mean_speed(10), 10);
+  EXPECT_NEAR(wind.mean_speed(1), 10 * std::log(1 / 0.03) / std::log(10 / 0.03), 1e-12);
+  EXPECT_EQ(wind.mean_speed(-5), wind.mean_speed(0.1)) << "below the ground as just above it";
+  const Vec3 v = wind.at(3, 10);
+  EXPECT_DOUBLE_EQ(v.x, 10);
+  EXPECT_EQ(v.z, 0);
+}
+
+const char* const kLightBall = R"(<mujoco><option timestep="0.002" gravity="0 0 0"/><worldbody>
+  <body pos="0 0 10"><freejoint/><geom type="sphere" size=".1" mass=".05"/></body>
+  </worldbody></mujoco>)";
+
+std::shared_ptr<CompiledWorld> windy_world(const WindDescription& wind,
+                                           const char* xml = kLightBall) {
+  auto world = world_from_mjcf(xml);
+  world->wind = wind;
+  return world;
+}
+
+TEST(WindOnBodies, DriftEndsAtTheWindsSpeed) {
+  auto sim = make_simulator(windy_world(windy(5, 0)), lockstep());
+  sim->start();
+  ASSERT_TRUE(sim->step(500).ok());
+  const double early = sim->latest()[Joint{0}].qvel[0];
+  ASSERT_TRUE(sim->step(60000).ok());
+  const double late = sim->latest()[Joint{0}].qvel[0];
+  EXPECT_GT(early, 0.01);
+  EXPECT_LT(early, 4);
+  EXPECT_NEAR(late, 5, 0.1);
+}
+
+TEST(WindOnBodies, PushesByMujocosOwnFluid) {
+  // The first step from rest has the acceleration that stock MuJoCo gives in such a fluid.
+  for (const char* fluid : {"", " fluidshape=\"ellipsoid\""}) {
+    std::string xml = R"(<mujoco><option timestep="0.002" gravity="0 0 0"/><worldbody>
+      <body pos="0 0 10"><freejoint/><geom type="box" size=".1 .2 .05" mass=".5"FLUID/></body>
+      </worldbody></mujoco>)";
+    xml.replace(xml.find("FLUID"), 5, fluid);
+    auto world = windy_world(windy(7, 0), xml.c_str());
+    auto sim = make_simulator(world, lockstep());
+    sim->start();
+    ASSERT_TRUE(sim->step(100).ok());
+    ModelPtr stock(mj_copyModel(nullptr, world->model.get()));
+    stock->opt.density = 1.2;
+    stock->opt.viscosity = 1.8e-5;
+    DataPtr data(mj_makeData(stock.get()));
+    const Wind wind(world->wind);
+    for (int i = 0; i < 100; ++i) {
+      stock->opt.wind[0] = wind.mean_speed(data->qpos[2]);
+      mj_step(stock.get(), data.get());
+    }
+    const Snapshot s = sim->latest();
+    for (int i = 0; i < 6; ++i)
+      EXPECT_EQ(s[Joint{0}].qvel[size_t(i)], data->qvel[i]) << "velocity " << i << fluid;
+    EXPECT_GT(s[Joint{0}].qvel[0], 0.01);
+  }
+}
+
+// MuJoCo's model by the box of the same inertia: a force of rho/2 times its face times v², and of
+// 3 pi mu d v for its mean edge d.
+TEST(WindOnBodies, ForceOnABoxIsThatOfMujocosFormula) {
+  auto sim = make_simulator(windy_world(windy(7, 0), R"(<mujoco>
+    <option timestep="0.002" gravity="0 0 0"/><worldbody><body pos="0 0 10"><freejoint/>
+    <geom type="box" size=".1 .2 .05" mass=".5"/></body></worldbody></mujoco>)"),
+                            lockstep());
+  sim->start();
+  ASSERT_TRUE(sim->step(1).ok());
+  const double force = sim->latest()[Joint{0}].qvel[0] / 0.002 * 0.5;
+  const double face = 0.4 * 0.1, mean_edge = (0.2 + 0.4 + 0.1) / 3;
+  EXPECT_NEAR(force, 0.5 * 1.2 * face * 49 + 3 * std::numbers::pi * 1.8e-5 * mean_edge * 7, 1e-9);
+}
+
+TEST(WindOnBodies, AFluidOfTheModelsOwnStays) {
+  auto world = windy_world(windy(5, 0.2), R"(<mujoco><option timestep="0.002" density="998"
+    viscosity="0.001"/><worldbody><body><freejoint/><geom size=".1"/></body></worldbody></mujoco>)");
+  mjOption option = world->model->opt;
+  give_air(&option);
+  EXPECT_EQ(option.density, 998);
+  EXPECT_EQ(option.viscosity, 0.001);
+}
+
+uint64_t windy_hash(const WindDescription& wind, SimulatorOptions options) {
+  auto sim = make_simulator(windy_world(wind), std::move(options));
+  sim->start(1000);
+  sim->run_until(1000);
+  EXPECT_TRUE(sim->wait().ok());
+  return sim->latest().hash();
+}
+
+TEST(WindOnBodies, HashIsTheSameAtAnySpeedAndDiffersBySeed) {
+  const uint64_t reference = windy_hash(windy(8, 0.2), {});
+  EXPECT_EQ(windy_hash(windy(8, 0.2), {.pace = Pace::kRealTime, .speed = 10}), reference);
+  EXPECT_NE(windy_hash(windy(8, 0.2, 2), {}), reference);
+  EXPECT_NE(windy_hash(windy(8, 0.21), {}), reference);
+}
+
+TEST(WindOnBodies, ResetRepeatsTheRunAndACommandTakesItsPlace) {
+  auto sim = make_simulator(windy_world(windy(8, 0.2)), lockstep());
+  sim->start();
+  ASSERT_TRUE(sim->step(300).ok());
+  const uint64_t first = sim->latest().hash();
+  ASSERT_TRUE(sim->reset().ok());
+  ASSERT_TRUE(sim->step(300).ok());
+  EXPECT_EQ(sim->latest().hash(), first);
+  ASSERT_TRUE(sim->post({.what = SetLiveField{LiveFieldId::kWind, 0, {0, -8, 0}}}).ok());
+  const double before = sim->latest()[Joint{0}].qvel[1];
+  ASSERT_TRUE(sim->step(2000).ok());
+  EXPECT_LT(sim->latest()[Joint{0}].qvel[1], before - 0.5) << "the wind of a Command blows";
+}
+
+}  // namespace
+}  // namespace gloam
