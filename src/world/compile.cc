@@ -104,6 +104,7 @@ Status describe_rest(CompiledWorld* world) {
   GLOAM_TRY_STATUS(check_sensors(*world));
   GLOAM_TRY_STATUS(describe_lidars(*world));
   GLOAM_TRY(world->gases, describe_gases(*world));
+  GLOAM_TRY(world->agents, describe_agents(*world));
   return {};
 }
 
