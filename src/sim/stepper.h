@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "gloam/command.h"
+#include "sim/agents/agents.h"
 #include "sim/applied_inputs.h"
 #include "sim/effects/effects.h"
 #include "sim/snapshot_pool.h"
@@ -54,6 +55,8 @@ class Stepper {
   const std::array<int64_t, mjNWARNING>& warnings() const { return warnings_; }
   /// Most contacts seen in a step since creation.
   int most_contacts() const { return most_contacts_; }
+  /// Null where there are none.
+  const Agents* agents() const { return agents_.get(); }
 
  private:
   Stepper() = default;
@@ -65,6 +68,7 @@ class Stepper {
   void take_model(const mjModel& model);
   void count_diagnostics();
   void tick_effects();
+  Status make_agents();
 
   std::shared_ptr<const CompiledWorld> world_;
   std::optional<double> timestep_;
@@ -78,6 +82,7 @@ class Stepper {
   DataPtr scratch_;     // for mj_setConst; made on first use
   std::unique_ptr<AppliedInputs> inputs_;
   std::unique_ptr<Effects> effects_;  // null = none
+  std::unique_ptr<Agents> agents_;    // null = none
   std::shared_ptr<const LiveFields> live_;
   uint64_t live_changes_ = 0;  // since creation
   std::shared_ptr<SnapshotPool> pool_;

@@ -77,6 +77,7 @@ class NavMesh {
 class NavPath {
  public:
   NavPath();
+  NavPath(NavPath&&) noexcept;
   ~NavPath();
 
   /// Stands at a point, and goes nowhere.

@@ -36,6 +36,7 @@ NavPath::NavPath() : impl_(std::make_unique<Impl>()) {
   const bool made = impl_->corridor.init(kMostPolys);
   GLOAM_CHECK(made, "no memory for a way");
 }
+NavPath::NavPath(NavPath&&) noexcept = default;
 NavPath::~NavPath() = default;
 
 void NavPath::reset(const NavPoint& at) {

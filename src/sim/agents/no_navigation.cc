@@ -27,6 +27,7 @@ bool NavMesh::is_on_main_part(const NavPoint&) const { return false; }
 
 struct NavPath::Impl {};
 NavPath::NavPath() = default;
+NavPath::NavPath(NavPath&&) noexcept = default;
 NavPath::~NavPath() = default;
 void NavPath::reset(const NavPoint&) {}
 bool NavPath::find(const NavMesh&, const NavPoint&) { return false; }

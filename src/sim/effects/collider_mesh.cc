@@ -62,13 +62,13 @@ std::vector<SolidPlane> hull_planes(const mjModel& m, int mesh) {
   return planes;
 }
 
-HeightField::HeightField(const mjModel& m, int id, const float* data)
+ColliderField::ColliderField(const mjModel& m, int id, const float* data)
     : rows_(m.hfield_nrow[id]),
       columns_(m.hfield_ncol[id]),
       size_(m.hfield_size + 4 * id),
       data_(data + m.hfield_adr[id]) {}
 
-void HeightField::point(int column, int row, double* p) const {
+void ColliderField::point(int column, int row, double* p) const {
   p[0] = size_[0] * (2.0 * column / (columns_ - 1) - 1);
   p[1] = size_[1] * (2.0 * row / (rows_ - 1) - 1);
   p[2] = size_[2] * double{data_[static_cast<size_t>(row) * static_cast<size_t>(columns_) +
@@ -76,7 +76,7 @@ void HeightField::point(int column, int row, double* p) const {
 }
 
 // MuJoCo's prisms: a cell's square is cut from its lowest to its highest corner.
-void HeightField::make_prism(int column, int row, bool second, GridSolid* solid) const {
+void ColliderField::make_prism(int column, int row, bool second, GridSolid* solid) const {
   double p[3][3];
   point(column, row, p[0]);
   point(column + 1, row + (second ? 1 : 0), p[1]);

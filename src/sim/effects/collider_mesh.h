@@ -11,10 +11,10 @@ namespace gloam {
 std::vector<SolidPlane> hull_planes(const mjModel& model, int mesh);
 
 /// One height field: two prisms a cell, from its base to its surface. Refers to the model.
-class HeightField {
+class ColliderField {
  public:
   /// `data`: of all height fields of the model, 0 … 1, as hfield_data.
-  HeightField(const mjModel& model, int id, const float* data);
+  ColliderField(const mjModel& model, int id, const float* data);
   int rows() const { return rows_; }
   int columns() const { return columns_; }
   /// Of the cell from (column, row) to the next: one of its two prisms, where the solid's pose is.

@@ -146,7 +146,7 @@ void GasObstacles::voxelise_height_fields(const float* data) {
   still_ = fixed_;
   for (const int g : height_geoms_) {
     solid_.set_pose(grid_, data_->geom_xpos + 3 * g, data_->geom_xmat + 9 * g);
-    const HeightField field(model_, model_.geom_dataid[g], data);
+    const ColliderField field(model_, model_.geom_dataid[g], data);
     for (int row = 0; row + 1 < field.rows(); ++row) {
       runs_.clear();
       for (int column = 0; column + 1 < field.columns(); ++column) {
