@@ -123,11 +123,13 @@ void move_body(double dt, double time, const NavMesh& mesh, const NavWorld& worl
   if (norm(m.push) < 1e-3) m.push = {};
 
   d.kind == AgentKind::kPerson ? move_person(dt, agent) : move_vehicle(dt, agent);
-  Vec3d to = m.p + (m.velocity + m.push) * dt;
-  if (agent->intent.mode != AgentIntent::Mode::kSpline && agent->path.at().ref != 0) {
+  const Vec3d by = (m.velocity + m.push) * dt;
+  Vec3d to = m.p + by;
+  if (norm(by) > 0 && agent->intent.mode != AgentIntent::Mode::kSpline &&
+      agent->path.at().ref != 0) {
     const Vec3d on = agent->path.move(mesh, to);
     // What was built into the mesh under it is left at walking pace, not by a jump.
-    to = m.p + shortened(flat(on - m.p), std::max(norm(m.velocity + m.push), 0.8) * dt);
+    to = m.p + shortened(flat(on - m.p), std::max(norm(by), 0.8 * dt));
     to.z = on.z;
   }
   const double z = world.ground_below({to.x, to.y, to.z}, 0.5, 0.8);

@@ -132,8 +132,9 @@ bool Agents::draw_place(size_t row, NavPoint* at) const {
     return true;
   };
   for (uint64_t i = 0; i < kPlaceTries; ++i) {
-    *at = nav_->mesh_of(row).random_point(stream.uniform(i, 0), stream.uniform(i, 1),
+    *at = nav_->mesh_of(row).random_point({}, stream.uniform(i, 0), stream.uniform(i, 1),
                                           stream.uniform(i, 2));
+    if (!nav_->is_in_rooms(at->p)) continue;
     // Where it is crowded it may be closer.
     if (at->ref != 0 && is_free(at->p, i < kPlaceTries / 2 ? kApart : kApart / 2)) return true;
   }
@@ -159,8 +160,8 @@ Status Agents::place(bool tell) {
       heading = std::atan2(direction.y, direction.x);
     } else {
       const Vec3d p = to_vec3d(d.position);
-      at = nav_->mesh_of(row).nearest(p, 0.3, 1.5);
-      if (at.ref == 0) at = nav_->mesh_of(row).nearest(p, kMostShift, 2.5);
+      at = nav_->mesh_of(row).nearest(p, 0.3, 1);
+      if (at.ref == 0) at = nav_->mesh_of(row).nearest(p, kMostShift, 1);
       if (at.ref == 0) {
         return Error{ErrorKind::kInput,
                      fmt::format("agent '{}' begins at ({:g}, {:g}, {:g}), where there is no room "
@@ -254,6 +255,7 @@ void Agents::decide(int64_t step, const mjModel& m, const mjData& data) {
       agent.path.reset(nav_->mesh_of(row).nearest(agent.motion.p, 1.5, 1));
       agent.motion.has_goal = 0;
     }
+    if (changed && agent.motion.is_whole == 0) agent.motion.has_goal = 0;  // it may be free now
     decide_intent(around, row, &agent);
   }
   doors_->decide(data, agents_);

@@ -13,7 +13,7 @@ constexpr double kThere = 0.3;                 // from the end of a way [m]
 constexpr double kLeastWander = 4;             // [m]
 constexpr double kStuck = 6, kProgress = 0.4;  // [s], [m]
 constexpr double kTouch = 1;                   // that a touch is remembered for [s]
-constexpr int kTries = 6;
+constexpr int kTries = 12;
 
 bool has_arrived(const AgentBody& agent) {
   return agent.motion.has_goal != 0 && flat_norm(agent.path.end() - agent.motion.p) < kThere;
@@ -149,10 +149,12 @@ class Brain final : public TreeHost {
     const NavMesh& mesh = around_.nav.mesh_of(row_);
     for (int i = 0; i < kTries; ++i) {
       ++motion_.draws;
-      const NavPoint to =
-          mesh.random_point(draw("agent.goal", 0), draw("agent.goal", 1), draw("agent.goal", 2));
+      const NavPoint to = mesh.random_point(agent_.path.at(), draw("agent.goal", 0),
+                                            draw("agent.goal", 1), draw("agent.goal", 2));
       if (to.ref == 0) return false;
-      if (flat_norm(to.p - motion_.p) < kLeastWander && i + 1 < kTries) continue;
+      const bool is_good =
+          flat_norm(to.p - motion_.p) >= kLeastWander && around_.nav.is_in_rooms(to.p);
+      if (!is_good && i + 1 < kTries) continue;
       motion_.goal = to.p;
       motion_.has_goal = 0;
       return true;
@@ -181,7 +183,9 @@ class Brain final : public TreeHost {
     const AgentDescription& d = *agent_.description;
     const auto count = static_cast<int64_t>(d.route.size());
     if (motion_.waypoint >= count || around_.time < motion_.pause_end) return;
-    if (has_arrived(agent_)) {
+    // Where no way leads to the point it waits, for a while if there are others to go to.
+    if (has_arrived(agent_) && (motion_.is_whole != 0 || (count > 1 && is_stuck()))) {
+      motion_.progress = around_.time;
       const double pause = d.route[static_cast<size_t>(motion_.waypoint)].pause;
       motion_.has_goal = 0;
       if (++motion_.waypoint == count && d.loop) motion_.waypoint = 0;

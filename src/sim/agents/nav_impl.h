@@ -23,9 +23,15 @@ struct NavMesh::Impl {
   std::unique_ptr<dtNavMesh> mesh;
   dtNavMeshQuery query;
   dtQueryFilter filter;
-  // Polygons of the largest part, in order, and the area up to each [m²].
-  std::vector<dtPolyRef> main_polys;
-  std::vector<double> main_areas;
+  // Parts that hang together: the polygons of each, in order, and the area up to each [m²].
+  struct Part {
+    std::vector<dtPolyRef> polys;
+    std::vector<double> areas;
+    double area() const { return areas.empty() ? 0 : areas.back(); }
+  };
+  std::vector<Part> parts;
+  size_t largest = 0;
+  std::vector<std::pair<dtPolyRef, int>> part_of_poly;  // sorted
 };
 
 inline constexpr int kNavTileCells = 48;

@@ -71,8 +71,8 @@ bool NavMesh::clear() {
   p.maxTiles = static_cast<int>(dtNextPow2(static_cast<unsigned>(mesh.columns * mesh.rows)));
   p.maxPolys = 1 << (22 - static_cast<int>(dtIlog2(static_cast<unsigned>(p.maxTiles))));
   mesh.mesh = std::make_unique<dtNavMesh>();
-  mesh.main_polys.clear();
-  mesh.main_areas.clear();
+  mesh.parts.clear();
+  mesh.part_of_poly.clear();
   return dtStatusSucceed(mesh.mesh->init(&p)) &&
          dtStatusSucceed(mesh.query.init(mesh.mesh.get(), kSearchNodes));
 }
@@ -93,19 +93,18 @@ void NavMesh::set_tile(int column, int row, const NavTile& tile) {
   GLOAM_CHECK(dtStatusSucceed(status), "Detour takes the tile that it has made");
 }
 
-void NavMesh::find_main_part() {
+void NavMesh::find_parts() {
   const dtNavMesh& mesh = *impl_->mesh;
   std::map<dtPolyRef, int> part;
-  std::vector<double> areas;
   std::vector<dtPolyRef> open;
+  int count = 0;
   for (int t = 0; t < mesh.getMaxTiles(); ++t) {
     const dtMeshTile* tile = mesh.getTile(t);
     if (tile == nullptr || tile->header == nullptr) continue;
     const dtPolyRef base = mesh.getPolyRefBase(tile);
     for (int i = 0; i < tile->header->polyCount; ++i) {
       const dtPolyRef first = base | static_cast<dtPolyRef>(i);
-      if (!part.emplace(first, static_cast<int>(areas.size())).second) continue;
-      areas.push_back(0);
+      if (!part.emplace(first, count).second) continue;
       open.push_back(first);
       while (!open.empty()) {
         const dtPolyRef ref = open.back();
@@ -113,32 +112,33 @@ void NavMesh::find_main_part() {
         const dtMeshTile* at = nullptr;
         const dtPoly* poly = nullptr;
         mesh.getTileAndPolyByRefUnsafe(ref, &at, &poly);
-        areas.back() += area_of(*at, *poly);
         for (unsigned k = poly->firstLink; k != DT_NULL_LINK; k = at->links[k].next) {
           const dtPolyRef next = at->links[k].ref;
-          if (next != 0 && part.emplace(next, static_cast<int>(areas.size()) - 1).second)
-            open.push_back(next);
+          if (next != 0 && part.emplace(next, count).second) open.push_back(next);
         }
       }
+      ++count;
     }
   }
-  impl_->main_polys.clear();
-  impl_->main_areas.clear();
-  if (areas.empty()) return;
-  const int largest =
-      static_cast<int>(std::max_element(areas.begin(), areas.end()) - areas.begin());
-  double sum = 0;
+  impl_->part_of_poly.assign(part.begin(), part.end());
+  impl_->parts.assign(static_cast<size_t>(count), {});
+  impl_->largest = 0;
   for (const auto& [ref, number] : part) {
-    if (number != largest) continue;
     const dtMeshTile* at = nullptr;
     const dtPoly* poly = nullptr;
     mesh.getTileAndPolyByRefUnsafe(ref, &at, &poly);
-    impl_->main_polys.push_back(ref);
-    impl_->main_areas.push_back(sum += area_of(*at, *poly));
+    Impl::Part& own = impl_->parts[static_cast<size_t>(number)];
+    const double sum = own.area() + area_of(*at, *poly);
+    own.polys.push_back(ref);
+    own.areas.push_back(sum);
   }
+  for (size_t i = 1; i < impl_->parts.size(); ++i)
+    if (impl_->parts[i].area() > impl_->parts[impl_->largest].area()) impl_->largest = i;
 }
 
-double NavMesh::area() const { return impl_->main_areas.empty() ? 0 : impl_->main_areas.back(); }
+double NavMesh::area() const {
+  return impl_->parts.empty() ? 0 : impl_->parts[impl_->largest].area();
+}
 
 NavPoint NavMesh::nearest(Vec3d p, double reach, double up) const {
   float at[3], on[3];
@@ -148,15 +148,24 @@ NavPoint NavMesh::nearest(Vec3d p, double reach, double up) const {
   dtPolyRef ref = 0;
   impl_->query.findNearestPoly(at, half, &impl_->filter, &ref, on);
   if (ref == 0) return {};
-  return {from_recast(on), ref};
+  const NavPoint found{from_recast(on), ref};
+  // Detour takes what is near in its own measure, which is larger above and below.
+  if (std::abs(found.p.z - p.z) > up || flat_norm(found.p - p) > 1.42 * reach) return {};
+  return found;
 }
 
-NavPoint NavMesh::random_point(double u, double v, double w) const {
-  const std::vector<double>& areas = impl_->main_areas;
-  if (areas.empty()) return {};
+NavPoint NavMesh::random_point(const NavPoint& from, double u, double v, double w) const {
+  if (impl_->parts.empty()) return {};
+  size_t number = impl_->largest;
+  const auto found = std::lower_bound(impl_->part_of_poly.begin(), impl_->part_of_poly.end(),
+                                      std::pair<dtPolyRef, int>(from.ref, 0));
+  if (from.ref != 0 && found != impl_->part_of_poly.end() && found->first == from.ref)
+    number = static_cast<size_t>(found->second);
+  const Impl::Part& part = impl_->parts[number];
   const auto row = static_cast<size_t>(
-      std::upper_bound(areas.begin(), areas.end() - 1, u * areas.back()) - areas.begin());
-  const dtPolyRef ref = impl_->main_polys[row];
+      std::upper_bound(part.areas.begin(), part.areas.end() - 1, u * part.area()) -
+      part.areas.begin());
+  const dtPolyRef ref = part.polys[row];
   const dtMeshTile* tile = nullptr;
   const dtPoly* poly = nullptr;
   impl_->mesh->getTileAndPolyByRefUnsafe(ref, &tile, &poly);
@@ -168,10 +177,6 @@ NavPoint NavMesh::random_point(double u, double v, double w) const {
   float height = p[1];
   if (dtStatusSucceed(impl_->query.getPolyHeight(ref, p, &height))) p[1] = height;
   return {from_recast(p), ref};
-}
-
-bool NavMesh::is_on_main_part(const NavPoint& point) const {
-  return std::binary_search(impl_->main_polys.begin(), impl_->main_polys.end(), point.ref);
 }
 
 }  // namespace gloam

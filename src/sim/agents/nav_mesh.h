@@ -53,17 +53,16 @@ class NavMesh {
   /// Of the surfaces that meet its tile_reach.
   NavTile build_tile(int column, int row, std::span<const ColliderSurface* const> near) const;
   void set_tile(int column, int row, const NavTile& tile);
-  /// To be called when tiles have been set: finds the largest part that hangs together.
-  void find_main_part();
+  /// To be called when tiles have been set: finds the parts that hang together.
+  void find_parts();
 
   /// Area of the largest part [m²].
   double area() const;
   /// Nearest point of the mesh within `reach` in the plane and `up` above or below [m].
   NavPoint nearest(Vec3d p, double reach, double up) const;
-  /// Uniform over the largest part, of three numbers in [0, 1).
-  NavPoint random_point(double u, double v, double w) const;
-  /// On the largest part?
-  bool is_on_main_part(const NavPoint& point) const;
+  /// Uniform over the part that `from` is on, if it is on none over the largest, of three numbers
+  /// in [0, 1).
+  NavPoint random_point(const NavPoint& from, double u, double v, double w) const;
 
   struct Impl;
   const Impl& impl() const { return *impl_; }

@@ -96,6 +96,7 @@ bool is_door_leaf(const mjModel& m, const mjData& d, int body) {
 Result<std::unique_ptr<NavWorld>> NavWorld::create(const CompiledWorld& world, const mjModel& m,
                                                    const mjData& d) {
   std::unique_ptr<NavWorld> made(new NavWorld);
+  made->rooms_ = world.regions;
   made->find_bounds(world, m, d);
   made->sort_geoms(world, m, d);
   GLOAM_TRY_STATUS(made->make_meshes(world));
@@ -253,7 +254,7 @@ void NavWorld::reset(const mjModel& m, const mjData& d) {
       mesh.mesh->set_tile(static_cast<int>(i) % columns, static_cast<int>(i) / columns,
                           mesh.initial[i]);
     }
-    mesh.mesh->find_main_part();
+    mesh.mesh->find_parts();
     mesh.is_initial = true;
   }
   follow(m, d, 0);
@@ -329,7 +330,7 @@ bool NavWorld::rebuild_marked() {
     rebuild(&mesh, tile);
     mesh.dirty[tile] = false;
     mesh.is_initial = false;
-    if (--mesh.dirty_count == 0) mesh.mesh->find_main_part();
+    if (--mesh.dirty_count == 0) mesh.mesh->find_parts();
     any = true;
   }
   return any;
@@ -375,6 +376,15 @@ double NavWorld::ground_below(Vec3d p, double up, double down) const {
     for (const ColliderSurface& surface : movable.surfaces)
       look_for_ground(surface, p, most, &best);
   return best > least ? best : p.z;
+}
+
+bool NavWorld::is_in_rooms(Vec3d p) const {
+  if (rooms_.empty()) return true;
+  for (const Region& room : rooms_)
+    if (p.x > room.low.x && p.x < room.high.x && p.y > room.low.y && p.y < room.high.y &&
+        p.z > room.low.z - 0.5 && p.z < room.high.z)
+      return true;
+  return false;
 }
 
 uint64_t NavWorld::hash(uint64_t seed) const {

@@ -33,6 +33,9 @@ class NavWorld {
   /// there is none [m].
   double ground_below(Vec3d p, double up, double down) const;
 
+  /// In a room of a generated place; true where there are none.
+  bool is_in_rooms(Vec3d p) const;
+
   /// Follows what moves, `dt` after the last time [s]; at most one tile of each mesh is built anew.
   /// True: some was, and ways have to be looked at. Allocates when something comes to rest or
   /// leaves where it lay.
@@ -80,6 +83,7 @@ class NavWorld {
   void bound(const mjModel& m, const mjData& d, const Movable& movable, NavBounds* box) const;
 
   NavBounds bounds_;
+  std::vector<Region> rooms_;
   std::vector<ColliderSurface> still_;
   std::vector<Movable> movables_;
   std::vector<NavObstacle> obstacles_;  // by movable

@@ -19,11 +19,10 @@ int NavMesh::rows() const { return 0; }
 NavBounds NavMesh::tile_reach(int, int) const { return {}; }
 NavTile NavMesh::build_tile(int, int, std::span<const ColliderSurface* const>) const { return {}; }
 void NavMesh::set_tile(int, int, const NavTile&) {}
-void NavMesh::find_main_part() {}
+void NavMesh::find_parts() {}
 double NavMesh::area() const { return 0; }
 NavPoint NavMesh::nearest(Vec3d, double, double) const { return {}; }
-NavPoint NavMesh::random_point(double, double, double) const { return {}; }
-bool NavMesh::is_on_main_part(const NavPoint&) const { return false; }
+NavPoint NavMesh::random_point(const NavPoint&, double, double, double) const { return {}; }
 
 struct NavPath::Impl {};
 NavPath::NavPath() = default;

@@ -13,14 +13,17 @@ constexpr double kSlowestCadence = 1.2;  // [1/s]
 constexpr double kStrikePitch = 17 * kDegree, kPushPitch = 36 * kDegree;
 constexpr double kToe = 0.7, kHeel = 0.22;        // pivots from the ankle, shares of the foot
 constexpr double kStands = 0.06, kStarts = 0.09;  // [m/s]
+constexpr double kAhead = 0.42;   // of the way in stance that a foot comes down ahead of the hips
+constexpr double kKnee = 0.025;   // that knees bent in mid-stance lower the hips at 1.3 m/s [m]
 constexpr double kReach = 0.997;  // of a leg's length: a knee is never quite straight
 
 double follow(double value, double target, double dt, double time) {
   return value + (target - value) * (1 - std::exp(-dt / time));
 }
 
-// Rises from 0 to 1 with no velocity and no acceleration at the ends.
-double swing_profile(double u) { return u * u * u * (10 + u * (6 * u - 15)); }
+// Of the way that a foot swings: it is pushed off, is never faster than 1.4 times its mean speed
+// and comes down without any.
+double swing_profile(double u) { return u * (0.6 + u * (1.8 - 1.4 * u)); }
 
 }  // namespace
 
@@ -93,7 +96,7 @@ void Walker::aim(const WalkInput& in, int foot, double rate, const GroundHeight&
   const Vec3d ahead{c * v.x - s * v.y, s * v.x + c * v.y, 0};
   WalkInput then = in;
   then.heading = in.heading + turn + 0.5 * std::clamp(in.yaw_rate * stand, -0.6, 0.6);
-  then.p = in.p + ahead * (left + (speed > kStands ? 0.5 * stand : 0));
+  then.p = in.p + ahead * (left + (speed > kStands ? kAhead * stand : 0));
   f.to = neutral(then, foot);
   f.to.z = ground.at(f.to);
   f.to_yaw = f.from_yaw + wrapped(then.heading - f.from_yaw);
@@ -147,7 +150,9 @@ void Walker::step(double dt, const WalkInput& in, const GroundHeight& ground) {
   const double step_length = state_.speed / cadence(state_.speed), leg = shape_.hip_height;
   const double bob = state_.activity * 0.6 * step_length * step_length / (8 * leg);
   const double mid = state_.phase - state_.stance / 2;
-  const double down = 0.012 * shape_.hip_height + 0.5 * bob * (1 - std::cos(4 * M_PI * mid));
+  const double knees = kKnee * state_.activity * std::min(state_.speed / kUsualSpeed, 1.4);
+  const double down =
+      0.012 * shape_.hip_height + knees + 0.5 * bob * (1 - std::cos(4 * M_PI * mid));
   state_.bob = follow(state_.bob, down, dt, 0.03);
   const Vec3d ahead = heading_vector(in.heading), left{-ahead.y, ahead.x, 0};
   const Vec3d tilt = in.acceleration * 0.045 + in.push * 0.25;
