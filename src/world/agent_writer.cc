@@ -97,25 +97,21 @@ class AgentWriter {
     std::copy(p, p + 3, geom->pos);
   }
 
-  // Thicknesses: shares of the height, from breadths and depths in Pheasant and Haslegrave 2006.
+  // Trunk, head, legs; head and feet belong to the parts next to them, and arms touch nothing: each
+  // body that can collide costs every step of physics. Thicknesses: shares of the height, from
+  // breadths and depths in Pheasant and Haslegrave 2006.
   void write_person() {
     const PersonShape& s = agent_.person;
     const double g = s.height * s.girth;
-    const double trunk = 0.068 * g;
+    const double trunk = 0.068 * g, head = s.trunk + s.neck;
     add_capsule(kPelvis, trunk, {0, -0.035 * g, 0.02 * g}, {0, 0.035 * g, 0.02 * g});
     add_capsule(kChest, trunk, {0, 0, 0}, {0, 0, s.trunk - 0.03 * s.height});
-    add_capsule(kHead, 0.05 * s.height, {0.01, 0, 0.045 * s.height}, {0.01, 0, 0.085 * s.height});
+    add_capsule(kChest, 0.05 * s.height, {0.01, 0, head + 0.045 * s.height},
+                {0.01, 0, head + 0.085 * s.height});
     for (const int side : {0, 3}) {
+      const double shank = 0.031 * g;
       add_capsule(kThighL + side, 0.043 * g, {0, 0, 0}, {0, 0, -s.thigh});
-      add_capsule(kShankL + side, 0.031 * g, {0, 0, 0}, {0, 0, -s.shank});
-      // From heel to toe, on the sole; the ankle is a quarter of the foot before the heel.
-      const double r = s.ankle / 2;
-      add_capsule(kFootL + side, r, {-0.25 * s.foot + r, 0, -s.ankle + r},
-                  {0.75 * s.foot - r, 0, -s.ankle + r});
-    }
-    for (const int side : {0, 2}) {
-      add_capsule(kUpperArmL + side, 0.027 * g, {0, 0, 0}, {0, 0, -s.upper_arm});
-      add_capsule(kForearmL + side, 0.023 * g, {0, 0, 0}, {0, 0, -s.forearm});
+      add_capsule(kShankL + side, shank, {0, 0, 0}, {0, 0, -s.shank - s.ankle + shank});
     }
   }
 
