@@ -9,6 +9,7 @@
 
 #include "scene/spec_geom.h"
 #include "world/agent_description.h"
+#include "world/person_skin.h"
 
 namespace gloam {
 namespace {
@@ -64,10 +65,12 @@ class AgentWriter {
         mjs_setString(exclude->bodyname2, name.c_str());
       }
     }
-    if (agent_.kind == AgentKind::kPerson)
+    if (agent_.kind == AgentKind::kPerson) {
       write_person();
-    else
+      add_person_skins(agent_, spec_);
+    } else {
       write_vehicle();
+    }
     return {};
   }
 
