@@ -20,6 +20,17 @@ pkg_check_modules(RE2 REQUIRED IMPORTED_TARGET re2)
 pkg_check_modules(ZSTD IMPORTED_TARGET libzstd)
 pkg_check_modules(OPENH264 IMPORTED_TARGET openh264)
 
+# Recast and Detour, where agents can go: Debian's package has neither CMake nor pkg-config files. Without them a stub says so.
+find_path(RECAST_INCLUDE recastnavigation/Recast.h)
+foreach(part Recast Detour DetourCrowd)
+  find_library(RECAST_${part} ${part})
+endforeach()
+if(RECAST_INCLUDE AND RECAST_Recast AND RECAST_Detour AND RECAST_DetourCrowd)
+  add_library(gloam_recast INTERFACE)
+  target_include_directories(gloam_recast SYSTEM INTERFACE ${RECAST_INCLUDE})
+  target_link_libraries(gloam_recast INTERFACE ${RECAST_DetourCrowd} ${RECAST_Detour} ${RECAST_Recast})
+endif()
+
 # MuJoCo: a user's own package is honoured; otherwise the pinned wheel holds the library, all headers and the manual.
 find_package(mujoco 4.0.1 QUIET)
 if(NOT TARGET mujoco::mujoco)

@@ -34,6 +34,8 @@ Status find_files(const FileFinder& finder, Scene* scene) {
     GLOAM_TRY_STATUS(finder.find(&light.file, light.loc));
     GLOAM_TRY_STATUS(finder.find(&light.ies, light.loc));
   }
+  for (AgentOptions& agent : scene->agents)
+    GLOAM_TRY_STATUS(finder.find(&agent.tree, agent.loc));
   if (scene->sky) GLOAM_TRY_STATUS(finder.find(&scene->sky->file, scene->sky->loc));
   for (VolumeOptions& volume : scene->volumes) {
     GLOAM_TRY_STATUS(finder.find(&volume.grid, volume.loc));
@@ -75,7 +77,7 @@ Result<Scene> load_scene(const fs::path& path, const FileAccess& access) {
   GLOAM_TRY_STATUS(validate_scene(scene));
   if (scene.robots.empty() && scene.environment.file.empty() && !has_generator(scene.environment) &&
       scene.props.empty() && scene.visuals.empty() && scene.objects.empty() &&
-      scene.hfields.empty()) {
+      scene.hfields.empty() && scene.agents.empty() && scene.crowds.empty()) {
     return Error{ErrorKind::kInput,
                  "the scene has nothing in it",
                  {path.string(), 0, 0},

@@ -13,6 +13,7 @@
 #include "scene/option_fields.h"
 #include "scene/overrides.h"
 #include "scene/randomize.h"
+#include "scene/validate_agent.h"
 #include "scene/validate_effect.h"
 #include "scene/validate_imager.h"
 #include "scene/validate_lidar.h"
@@ -214,6 +215,7 @@ Status validate_scene(const Scene& scene) {
   GLOAM_TRY_STATUS(refuse_duplicates(scene.crowds, "crowd"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.smokes, "smoke"));
   GLOAM_TRY_STATUS(validate_effects(scene));
+  GLOAM_TRY_STATUS(validate_agents(scene));
   for (const RobotOptions& robot : scene.robots) {
     for (size_t i = 1; i < robot.controller.goals.size(); ++i) {
       const VelocityGoal& goal = robot.controller.goals[i];

@@ -37,8 +37,23 @@ Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledW
   GLOAM_TRY(stepper->effects_, Effects::create(world, step_time));
   if (!world->waters.empty()) stepper->water_ = WaterEffect::create(world, step_time);
   if (world->wind.blows()) stepper->wind_ = std::make_unique<WindOnBodies>(*world, step_time);
+  GLOAM_TRY_STATUS(stepper->make_agents());
   if (!stepper->reset()) return stepper->error();
   return stepper;
+}
+
+Status Stepper::make_agents() {
+  if (world_->agents.empty()) return {};
+  const mjModel* model = &model_;
+  mjData* data = data_.get();
+  GLOAM_TRY_STATUS(guarded([&] {
+    reset_to_initial_state(*world_, *model, *data);
+    mj_kinematics(model, data);
+    mj_comPos(model, data);
+  }));
+  GLOAM_TRY(agents_,
+            Agents::create(world_, seed_, exact_rational(model_.opt.timestep), model_, *data_));
+  return {};
 }
 
 // Refers to the arrays of `model`, meshes of 70 MB among them; the options are copied and changed.
@@ -94,16 +109,29 @@ bool Stepper::reset() {
   // wanted, but a bare mj_step loop starts cold, so the state is made anew after it.
   const mjModel* model = &model_;
   mjData* data = data_.get();
-  const bool ok = try_mujoco([&] {
-    reset_to_initial_state(*world_, *model, *data);
-    blow(data->qpos);
-    mj_forward(model, data);
-    mju_copy(sensors_.data(), data->sensordata, static_cast<int>(model->nsensordata));
-    reset_to_initial_state(*world_, *model, *data);
-    mj_kinematics(model, data);  // so that controllers and hooks see poses before the first step
-    mj_comPos(model, data);
-    mj_getState(model, data, state_.data(), mjSTATE_INTEGRATION);
-  });
+  bool ok = true;
+  if (agents_ != nullptr) {
+    ok = try_mujoco([&] {
+      reset_to_initial_state(*world_, *model, *data);
+      mj_kinematics(model, data);
+      mj_comPos(model, data);
+    });
+    agents_->reset(*model, *data);
+  }
+  const Agents* agents = agents_.get();
+  ok = ok && try_mujoco([&] {
+         reset_to_initial_state(*world_, *model, *data);
+         if (agents != nullptr) agents->write(0, data);
+         blow(data->qpos);
+         mj_forward(model, data);
+         mju_copy(sensors_.data(), data->sensordata, static_cast<int>(model->nsensordata));
+         reset_to_initial_state(*world_, *model, *data);
+         if (agents != nullptr) agents->write(0, data);
+         mj_kinematics(model,
+                       data);  // so that controllers and hooks see poses before the first step
+         mj_comPos(model, data);
+         mj_getState(model, data, state_.data(), mjSTATE_INTEGRATION);
+       });
   ++run_;
   snapshot_ = {};
   own_sensors_ = true;
@@ -111,6 +139,7 @@ bool Stepper::reset() {
   warnings_seen_.fill(0);
   hash_ = hash_span<double>(state_, hash_bytes(&seed_, sizeof(seed_)));
   if (water_ != nullptr) water_->reset();
+  if (agents_ != nullptr) hash_ = agents_->advance(0, *model, data, hash_);
   if (effects_ != nullptr) {
     effects_->reset();
     tick_effects();
@@ -141,6 +170,10 @@ bool Stepper::take_over(const Stepper& before, const Correspondence& same) {
     }
   }
   transfer_state(same, *before.data_, *data_);
+  if (agents_ != nullptr) {
+    agents_->take_over(step_, before.agents_.get(), model_, *data_);
+    agents_->write(step_, data_.get());
+  }
   mj_getState(&model_, data_.get(), state_.data(), mjSTATE_INTEGRATION);
   hash_ = hash_span<double>(state_, hash_);
   if (water_ != nullptr) water_->take_over(step_, before.water_.get());
@@ -202,6 +235,8 @@ bool Stepper::step() {
     return fail(std::move(error));
   }
   count_diagnostics();
+  uint64_t hash = hash_;
+  if (agents_ != nullptr) hash = agents_->advance(step_ + 1, *model, data, hash);
   reader_.read(next_state_.data());
   if (!is_sound(*model, *data, next_state_)) {
     return fail(describe_divergence(*model, *data, next_state_, step_, time()));
@@ -210,7 +245,7 @@ bool Stepper::step() {
   own_sensors_ = false;
   state_.swap(next_state_);
   ++step_;
-  hash_ = hash_span<double>(state_, hash_);
+  hash_ = hash_span<double>(state_, hash);
   snapshot_ = {};
   if (effects_ != nullptr && step_ == effects_->next_tick()) tick_effects();
   return true;

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "gloam/command.h"
+#include "sim/agents/agents.h"
 #include "sim/applied_inputs.h"
 #include "sim/effects/effects.h"
 #include "sim/effects/water_effect.h"
@@ -56,6 +57,8 @@ class Stepper {
   const std::array<int64_t, mjNWARNING>& warnings() const { return warnings_; }
   /// Most contacts seen in a step since creation.
   int most_contacts() const { return most_contacts_; }
+  /// Null where there are none.
+  const Agents* agents() const { return agents_.get(); }
 
  private:
   Stepper() = default;
@@ -68,6 +71,7 @@ class Stepper {
   void count_diagnostics();
   void tick_effects();
   void blow(const double* qpos);
+  Status make_agents();
 
   std::shared_ptr<const CompiledWorld> world_;
   std::optional<double> timestep_;
@@ -83,6 +87,7 @@ class Stepper {
   std::unique_ptr<Effects> effects_;    // null = none
   std::unique_ptr<WaterEffect> water_;  // null = none
   std::unique_ptr<WindOnBodies> wind_;  // null = the air is still
+  std::unique_ptr<Agents> agents_;      // null = none
   std::shared_ptr<const LiveFields> live_;
   uint64_t live_changes_ = 0;  // since creation
   std::shared_ptr<SnapshotPool> pool_;

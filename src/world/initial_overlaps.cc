@@ -55,6 +55,13 @@ class Overlaps {
     return -1;
   }
 
+  bool is_agent(int body) const {
+    for (const AgentDescription& agent : world_.agents)
+      for (int part = 0; part < agent.parts(); ++part)
+        if (agent.body[static_cast<size_t>(part)] == body) return true;
+    return false;
+  }
+
   std::string what_is(int geom) const {
     const int body = m_.geom_bodyid[geom];
     std::string name = body > 0 ? name_of(m_, mjOBJ_BODY, body) : "";
@@ -65,6 +72,8 @@ class Overlaps {
   void add(const mjContact& contact) {
     if (!(contact.dist < -kDeep) || contact.geom[0] < 0 || contact.geom[1] < 0) return;
     int geoms[2] = {contact.geom[0], contact.geom[1]};
+    for (const int geom : geoms)  // agents are put where there is room (sim/agents)
+      if (is_agent(m_.geom_bodyid[geom])) return;
     const auto moves = [&](int geom) { return m_.body_weldid[m_.geom_bodyid[geom]] != 0; };
     int robots[2] = {robot_of(m_.geom_bodyid[geoms[0]]), robot_of(m_.geom_bodyid[geoms[1]])};
     if (robots[0] >= 0 && robots[0] == robots[1]) return;

@@ -13,6 +13,7 @@
 #include "scene/mujoco_plugins.h"
 #include "scene/overrides.h"
 #include "scene/urdf_text.h"
+#include "world/agent_writer.h"
 #include "world/compile_progress.h"
 #include "world/endless_compile.h"
 #include "world/finite_model.h"
@@ -182,7 +183,8 @@ Result<Level> assemble(const Scene& scene, const std::optional<Place>& place,
   } else {
     level.spec.reset(mj_makeSpec());
     mjs_setString(level.spec->modelname, scene.name.c_str());
-    const bool has_things = !scene.robots.empty() || !scene.objects.empty() || place;
+    const bool has_things = !scene.robots.empty() || !scene.objects.empty() || place ||
+                            !scene.agents.empty() || !scene.crowds.empty();
     if (!has_generator(scene.environment) && scene.environment.file.empty() && grounds.empty() &&
         has_things)
       add_default_floor(level.spec.get());
@@ -190,6 +192,7 @@ Result<Level> assemble(const Scene& scene, const std::optional<Place>& place,
   if (place) GLOAM_TRY_STATUS(add_place(*place, level.spec.get()));
   GLOAM_TRY_STATUS(add_grounds(grounds, level.spec.get()));
   GLOAM_TRY_STATUS(add_objects(objects, converted, level.spec.get(), &level.notes));
+  GLOAM_TRY_STATUS(add_agents(scene, level.spec.get()));
   GLOAM_TRY_STATUS(apply_overrides(scene.overrides, kEnvironmentName, level.spec.get()));
   if (level.spec->compiler.conflict == mjCONFLICT_WARNING && !scene.robots.empty())
     level.spec->compiler.conflict = policy;

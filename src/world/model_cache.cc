@@ -56,7 +56,7 @@ void visit_entry(F& f, CacheEntry& e) {
   f(e.unsupported), f(e.has_plugins);
 }
 
-constexpr uint64_t kMagic = 0x34444C574D4F4C47ull;  // "GLOMWLD4": changes with the layout below
+constexpr uint64_t kMagic = 0x37444C574D4F4C47ull;  // "GLOMWLD7": changes with the layout below
 constexpr uint64_t kLargestEntry = uint64_t{2} << 30;
 
 fs::path entry_of(const Scene& scene, uint64_t place_hash) {
@@ -138,6 +138,10 @@ uint64_t world_cache_key(const Scene& scene, uint64_t place_hash) {
     key(o.drawn);
     key(o.loc.line);
   }
+  for (const AgentOptions& o : scene.agents) {
+    key(o.name), key(o.kind), key(o.seed), key(o.height.value_or(0)), key(o.position);
+  }
+  for (const CrowdOptions& o : scene.crowds) key(o.name), key(o.count), key(o.seed);
   for (const OverrideOptions& override : scene.overrides) {
     for (const std::string* part :
          {&override.robot, &override.tag, &override.pattern, &override.attribute, &override.value})

@@ -147,22 +147,17 @@ float WeatherDescription::snow_at(double time) const {
   return static_cast<float>(1 - std::exp(-(snow_start + snow_rate * time) / kHides));
 }
 
-Vec3f wind_velocity(const WeatherOptions& options) {
-  const double from = options.wind_from * M_PI / 180, speed = options.wind.value_or(0);
-  return {static_cast<float>(-speed * std::sin(from)), static_cast<float>(-speed * std::cos(from)),
-          0};
-}
-
-Status author_weather(const WeatherOptions& options, uint64_t seed,
+Status author_weather(const WeatherOptions& options, const WindDescription& wind,
                       const std::vector<Affine3f>& X_WB, RenderDescription* out) {
   WeatherDescription& weather = out->weather;
   const double rain = options.rain.value_or(0), snow = options.snow.value_or(0);
-  weather.seed = seed;
+  const uint64_t seed = weather.seed = wind.seed;
   weather.shelter = make_shelter_map(*out, X_WB);
   const Bounds bounds = bounds_of(*out);
   if (options.visibility) GLOAM_TRY_STATUS(add_fog(options, bounds, seed, out));
   const auto add = [&](ParticleSet particles) {
-    particles.wind = wind_velocity(options);
+    particles.wind = {static_cast<float>(wind.speed * wind.along_x),
+                      static_cast<float>(wind.speed * wind.along_y), 0};
     particles.seed = seed + weather.particles.size();
     add_falling(particles, bounds, out);
     weather.particles.push_back(std::move(particles));

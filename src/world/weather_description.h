@@ -8,6 +8,7 @@
 #include "gloam/scene_weather.h"
 #include "world/particle_set.h"
 #include "world/shelter_map.h"
+#include "world/wind_description.h"
 
 namespace gloam {
 
@@ -31,14 +32,11 @@ struct WeatherDescription {
   }
 };
 
-/// Mean wind 10 m above the ground [m/s].
-Vec3f wind_velocity(const WeatherOptions& options);
-
 struct RenderDescription;
 
 /// Fills `weather` of the description, whose instances are all there, and appends the media and
 /// volumes of fog, rain and snow. `X_WB`: of all bodies. Errors: no such medium.
-Status author_weather(const WeatherOptions& options, uint64_t seed,
+Status author_weather(const WeatherOptions& options, const WindDescription& wind,
                       const std::vector<Affine3f>& X_WB, RenderDescription* out);
 
 }  // namespace gloam

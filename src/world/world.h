@@ -10,6 +10,7 @@
 
 #include "gloam/scene.h"
 #include "gloam/world.h"
+#include "world/agent_description.h"
 #include "world/gas_description.h"
 #include "world/water_description.h"
 #include "world/wind_description.h"
@@ -62,6 +63,7 @@ struct CompiledWorld {
   GasesDescription gases;
   WindDescription wind;
   std::vector<WaterDescription> waters;
+  std::vector<AgentDescription> agents;
   ModelPtr visual_model;  ///< source of visual_only meshes and materials; null when there are none
   std::vector<VisualOnlyGeom> visual_only;
   std::vector<Error> notes;        ///< what is odd, and taken as it is

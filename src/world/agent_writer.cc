@@ -1,0 +1,170 @@
+#include "world/agent_writer.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "scene/spec_geom.h"
+#include "world/agent_description.h"
+#include "world/person_skin.h"
+
+namespace gloam {
+namespace {
+
+constexpr double kLeastLeaf = 0.7;  // half the height of a door leaf at least [m]
+
+void name_element(mjsElement* element, const std::string& name) {
+  mjs_setName(element, name.c_str());
+}
+
+// Environments' bodies that turn about the vertical and are as high as a door.
+std::vector<std::string> find_leaves(mjSpec* spec) {
+  std::vector<std::string> leaves;
+  for (mjsElement* e = mjs_firstElement(spec, mjOBJ_JOINT); e != nullptr;
+       e = mjs_nextElement(spec, e)) {
+    const mjsJoint* joint = mjs_asJoint(e);
+    if (joint->type != mjJNT_HINGE || std::abs(joint->axis[2]) < 0.99) continue;
+    mjsBody* body = mjs_getParent(e);
+    bool is_high = false;
+    for (mjsElement* g = mjs_firstChild(body, mjOBJ_GEOM, 0); g != nullptr;
+         g = mjs_nextChild(body, g, 0)) {
+      const mjsGeom* geom = mjs_asGeom(g);
+      is_high |= geom->type == mjGEOM_BOX && geom->size[2] >= kLeastLeaf;
+    }
+    const std::string name = mjs_getString(mjs_getName(body->element));
+    if (is_high && !name.empty()) leaves.push_back(name);
+  }
+  return leaves;
+}
+
+class AgentWriter {
+ public:
+  AgentWriter(const AgentDescription& agent, mjSpec* spec) : agent_(agent), spec_(spec) {}
+
+  Status write(const std::vector<std::string>& leaves) {
+    for (int part = 0; part < agent_.parts(); ++part) {
+      const std::string name = agent_.body_name(part);
+      if (mjs_findBody(spec_, name.c_str()) != nullptr) {
+        return Error{
+            ErrorKind::kInput,
+            fmt::format("agent '{}': the environment has a body '{}' already", agent_.name, name),
+            agent_.loc, "rename the agent"};
+      }
+      mjsBody* body = mjs_addBody(mjs_findBody(spec_, "world"), nullptr);
+      name_element(body->element, name);
+      body->mocap = 1;
+      const double p[3] = {agent_.position.x, agent_.position.y, agent_.position.z};
+      std::copy(p, p + 3, body->pos);
+      bodies_.push_back(body);
+      for (const std::string& leaf : leaves) {
+        mjsExclude* exclude = mjs_addExclude(spec_);
+        mjs_setString(exclude->bodyname1, leaf.c_str());
+        mjs_setString(exclude->bodyname2, name.c_str());
+      }
+    }
+    if (agent_.kind == AgentKind::kPerson) {
+      write_person();
+      add_person_skins(agent_, spec_);
+    } else {
+      write_vehicle();
+    }
+    return {};
+  }
+
+ private:
+  mjsGeom* add_geom(int part, mjtGeom type) {
+    mjsGeom* geom = add_collider_geom(
+        bodies_[static_cast<size_t>(part)],
+        fmt::format("{}/{}_{}", agent_.name, part_name(agent_.kind, part), ++geoms_));
+    geom->type = type;
+    geom->contype = geom->conaffinity = 1;  // whatever the environment's defaults are
+    return geom;
+  }
+
+  // From a to b, in the frame of the part.
+  void add_capsule(int part, double radius, const Vec3& a, const Vec3& b) {
+    mjsGeom* geom = add_geom(part, mjGEOM_CAPSULE);
+    geom->size[0] = radius;
+    const double fromto[6] = {a.x, a.y, a.z, b.x, b.y, b.z};
+    std::copy(fromto, fromto + 6, geom->fromto);
+  }
+
+  void add_box(int part, const Vec3& centre, const Vec3& edges) {
+    mjsGeom* geom = add_geom(part, mjGEOM_BOX);
+    const double size[3] = {edges.x / 2, edges.y / 2, edges.z / 2};
+    const double p[3] = {centre.x, centre.y, centre.z};
+    std::copy(size, size + 3, geom->size);
+    std::copy(p, p + 3, geom->pos);
+  }
+
+  // Trunk, head, legs; head and feet belong to the parts next to them, and arms touch nothing: each
+  // body that can collide costs every step of physics. Thicknesses: shares of the height, from
+  // breadths and depths in Pheasant and Haslegrave 2006.
+  void write_person() {
+    const PersonShape& s = agent_.person;
+    const double g = s.height * s.girth;
+    const double trunk = 0.068 * g, head = s.trunk + s.neck;
+    add_capsule(kPelvis, trunk, {0, -0.035 * g, 0.02 * g}, {0, 0.035 * g, 0.02 * g});
+    add_capsule(kChest, trunk, {0, 0, 0}, {0, 0, s.trunk - 0.03 * s.height});
+    add_capsule(kChest, 0.05 * s.height, {0.01, 0, head + 0.045 * s.height},
+                {0.01, 0, head + 0.085 * s.height});
+    for (const int side : {0, 3}) {
+      const double shank = 0.031 * g;
+      add_capsule(kThighL + side, 0.043 * g, {0, 0, 0}, {0, 0, -s.thigh});
+      add_capsule(kShankL + side, shank, {0, 0, 0}, {0, 0, -s.shank - s.ankle + shank});
+    }
+  }
+
+  void add_wheel(int part) {
+    mjsGeom* geom = add_geom(part, mjGEOM_CYLINDER);
+    geom->size[0] = agent_.vehicle.wheel_radius;
+    geom->size[1] = agent_.vehicle.wheel_width / 2;
+    const double lying[4] = {M_SQRT1_2, M_SQRT1_2, 0, 0};  // the axle is along y
+    std::copy(lying, lying + 4, geom->quat);
+  }
+
+  void write_vehicle() {
+    const VehicleShape& s = agent_.vehicle;
+    const double clearance = s.wheel_radius;
+    for (int part = kWheelFL; part <= kWheelRR; ++part) add_wheel(part);
+    switch (agent_.kind) {
+      case AgentKind::kForklift:
+        add_box(kChassis, {-0.25, 0, clearance + 0.4}, {s.length - 0.5, s.width, 0.8});
+        add_box(kChassis, {0.65, 0, s.height / 2 + 0.05}, {0.2, 0.7, s.height - 0.1});  // mast
+        add_box(kChassis, {-0.25, 0, s.height - 0.05}, {1.1, s.width - 0.1, 0.1});      // roof
+        for (const double side : {-0.25, 0.25})
+          add_box(kFork, {1.25, side, 0.02}, {1.0, 0.12, 0.04});
+        break;
+      case AgentKind::kCar:
+        add_box(kChassis, {0, 0, 0.2 + 0.35}, {s.length, s.width, 0.7});
+        add_box(kChassis, {-0.25, 0, 0.9 + (s.height - 0.9) / 2},
+                {0.55 * s.length, 0.85 * s.width, s.height - 0.9});
+        break;
+      default:
+        add_box(kChassis, {0, 0, clearance + 0.09}, {s.length, s.width, 0.14});
+        add_box(kChassis, {-s.length / 2 + 0.03, 0, s.height / 2 + 0.1},
+                {0.05, s.width, s.height - 0.2});  // its push bar
+    }
+  }
+
+  const AgentDescription& agent_;
+  mjSpec* spec_;
+  std::vector<mjsBody*> bodies_;
+  int geoms_ = 0;
+};
+
+}  // namespace
+
+Status add_agents(const Scene& scene, mjSpec* spec) {
+  GLOAM_TRY(const std::vector<AgentDescription> agents, list_agents(scene));
+  if (agents.empty()) return {};
+  const std::vector<std::string> leaves = find_leaves(spec);
+  for (const AgentDescription& agent : agents)
+    GLOAM_TRY_STATUS(AgentWriter(agent, spec).write(leaves));
+  return {};
+}
+
+}  // namespace gloam
