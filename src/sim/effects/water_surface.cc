@@ -7,8 +7,6 @@
 namespace gloam {
 namespace {
 
-constexpr double kDeep = 18;  // k h beyond which tanh(k h) is 1 to the last digit
-
 // A point of a grid of cells, between the middles of four.
 struct GridPoint {
   size_t cell[4];
@@ -46,18 +44,13 @@ WaveMotion wave_motion(const WaterDescription& water, double x, double y, double
   const double depth = water.depth;
   const double below = std::clamp(z, -depth, 0.0);
   for (const WaveDescription& wave : water.waves) {
-    const double k = std::sqrt(wave.kx * wave.kx + wave.ky * wave.ky);
+    const double k = wave.k();
     const double angle = wave.kx * x + wave.ky * y - wave.omega * time + wave.phase;
     const double c = std::cos(angle), s = std::sin(angle);
-    // cosh k(z + h) / sinh kh and sinh k(z + h) / sinh kh, without overflow: what comes back from
-    // the bottom of deep water is too little to count.
-    const double down = std::exp(k * below);
-    double level = down, upright = down;
-    if (k * depth < kDeep) {
-      const double up = std::exp(-k * (below + 2 * depth)), bottom = 1 - std::exp(-2 * k * depth);
-      level = (down + up) / bottom;
-      upright = (down - up) / bottom;
-    }
+    // cosh k(z + h) / sinh kh and sinh k(z + h) / sinh kh, without overflow.
+    const double down = std::exp(k * below), up = std::exp(-k * (below + 2 * depth));
+    const double bottom = 1 - std::exp(-2 * k * depth);
+    const double level = (down + up) / bottom, upright = (down - up) / bottom;
     const double speed = wave.amplitude * wave.omega, rate = speed * wave.omega;
     const double ex = wave.kx / k, ey = wave.ky / k;
     out.velocity.x += speed * level * c * ex;
