@@ -33,7 +33,7 @@ TEST_P(Manual, ShowsValidScenes) {
 INSTANTIATE_TEST_SUITE_P(Pages, Manual,
                          ::testing::Values("scenes.md", "materials.md", "light.md", "media.md",
                                            "import.md", "cameras.md", "lidar.md", "sensors.md",
-                                           "environments.md"));
+                                           "environments.md", "agents.md"));
 
 }  // namespace
 }  // namespace gloam
