@@ -132,9 +132,8 @@ bool Agents::draw_place(size_t row, NavPoint* at) const {
     return true;
   };
   for (uint64_t i = 0; i < kPlaceTries; ++i) {
-    *at = nav_->mesh_of(row).random_point({}, stream.uniform(i, 0), stream.uniform(i, 1),
-                                          stream.uniform(i, 2));
-    if (!nav_->is_in_rooms(at->p)) continue;
+    *at = nav_->random_place(row, {}, stream.uniform(i, 0), stream.uniform(i, 1),
+                             stream.uniform(i, 2));
     // Where it is crowded it may be closer.
     if (at->ref != 0 && is_free(at->p, i < kPlaceTries / 2 ? kApart : kApart / 2)) return true;
   }
