@@ -51,11 +51,8 @@ Result<std::unique_ptr<Agents>> Agents::create(std::shared_ptr<const CompiledWor
         made->agent_of_geom_[static_cast<size_t>(g)] = static_cast<int>(made->agents_.size());
     }
     made->agents_.emplace_back(d);
-    made->splines_.emplace_back(
-        d.behavior == AgentBehavior::kSpline
-            ? d.route
-            : std::vector<WaypointOptions>(2, WaypointOptions{d.position, 0, {}}),
-        d.loop);
+    made->splines_.push_back(d.behavior == AgentBehavior::kSpline ? AgentSpline(d.route, d.loop)
+                                                                  : AgentSpline());
   }
   for (const RobotInstance& robot : world->robots)
     for (int g = 0; robot.root_body > 0 && g < static_cast<int>(m.ngeom); ++g)

@@ -253,6 +253,17 @@ TEST(Agents, ARecompileKeepsThem) {
   EXPECT_LT(norm(pelvis() - before), 0.25) << "and goes on from there";
 }
 
+TEST(Agents, CommandsDoNotMoveThem) {
+  AgentRig rig(agent_place(""));
+  rig.add("ann", {0, 0, 0}, "stand");
+  auto sim = make_simulator(rig.compile(), lockstep());
+  const Status refused =
+      sim->post({.what = SetMocapPose{Body{sim->world()->agents[0].body[0]}, {}}});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find("agent 'ann'"), std::string::npos)
+      << refused.error().to_string();
+}
+
 TEST(Agents, TreesAreFollowed) {
   AgentRig rig(agent_place(""));
   AgentOptions& agent = rig.add("ann", {-3, 0, 0}, "tree");
