@@ -101,15 +101,14 @@ class AgentWriter {
     std::copy(p, p + 3, geom->pos);
   }
 
-  // Trunk, head, legs; head and feet belong to the parts next to them, and arms touch nothing: each
-  // body that can collide costs every step of physics. Thicknesses: shares of the height, from
-  // breadths and depths in Pheasant and Haslegrave 2006.
+  // Trunk, head, legs; hips, head and feet belong to the parts next to them, and arms touch
+  // nothing: each body that can collide costs every step of physics. Thicknesses: shares of the
+  // height, from breadths and depths in Pheasant and Haslegrave 2006.
   void write_person() {
     const PersonShape& s = agent_.person;
     const double g = s.height * s.girth;
     const double trunk = 0.068 * g, head = s.trunk + s.neck;
-    add_capsule(kPelvis, trunk, {0, -0.035 * g, 0.02 * g}, {0, 0.035 * g, 0.02 * g});
-    add_capsule(kChest, trunk, {0, 0, 0}, {0, 0, s.trunk - 0.03 * s.height});
+    add_capsule(kChest, trunk, {0, 0, -s.waist}, {0, 0, s.trunk - 0.03 * s.height});
     add_capsule(kChest, 0.05 * s.height, {0.01, 0, head + 0.045 * s.height},
                 {0.01, 0, head + 0.085 * s.height});
     for (const int side : {0, 3}) {
