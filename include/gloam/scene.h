@@ -11,15 +11,12 @@
 #include <vector>
 
 #include "gloam/result.h"
-#include "gloam/scene_agent.h"
 #include "gloam/scene_camera.h"
 #include "gloam/scene_effect.h"
 #include "gloam/scene_environment.h"
 #include "gloam/scene_lidar.h"
 #include "gloam/scene_light.h"
 #include "gloam/scene_sensor.h"
-#include "gloam/scene_water.h"
-#include "gloam/scene_weather.h"
 #include "gloam/types.h"
 
 namespace gloam {

@@ -1,7 +1,11 @@
 #pragma once
-// Smoke and fire of a scene file: [[gas]], [[fire]] and [[smoke]]. Part of gloam/scene.h;
-// docs/effects.md has the models and their sources.
+// What happens in a scene beside its robots: smoke and fire ([[gas]], [[fire]], [[smoke]]:
+// docs/effects.md), [weather] and [adversity] (docs/weather.md), [[water]] (docs/water.md), people
+// and vehicles ([[agent]], [[crowd]], [navigation]: docs/agents.md). Part of gloam/scene.h; longer
+// than other headers so that those a user meets are few.
 
+#include <array>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -56,6 +60,103 @@ struct SmokeOptions {
   std::optional<Vec3> velocity = {};  ///< of the air in the box, in that body [m/s]
   double start = 0;                   ///< [s]
   std::optional<double> stop = {};    ///< [s]; empty = it goes on
+  SourceLoc loc = {};
+};
+
+/// [weather]: in numbers. What is not given is what the level of [adversity] says, and without one
+/// fair. Rain and snow fall where the sky is open above.
+struct WeatherOptions {
+  std::optional<double> rain = {};        ///< [mm/h], default 0
+  std::optional<double> snow = {};        ///< of water [mm/h], default 0
+  std::optional<double> visibility = {};  ///< through what hangs in the air, by Koschmieder [m];
+                                          ///< without rain and snow; default: clear
+  std::string medium = "fog";  ///< what hangs, as of [[volume]]: fog mist haze dust smoke
+  double scale_height = 0;     ///< over which it thins to 1/e above the lowest ground [m]; 0 = even
+  double turbulence = 0;       ///< of its density: standard deviation over mean, 0 … 1
+  std::optional<double> wind = {};  ///< mean speed 10 m above the ground [m/s], default 0
+  double wind_from = 270;           ///< where it comes from, as of [sky]'s azimuth [deg]
+  std::optional<double> gusts =
+      {};  ///< standard deviation of its speed over the mean, default 0.15
+  std::optional<double> wetness = {};  ///< of what the sky reaches, at the start, 0 … 1; default:
+                                       ///< what the rain keeps it at
+  std::optional<double> snow_cover = {};  ///< likewise: depth of snow at the start [m], default 0
+  std::optional<double> lens_drops = {};  ///< share of cameras' front glass under drops, default 0
+  SourceLoc loc = {};
+};
+
+/// [adversity]: a level, for which docs/weather.md has the numbers, and its numbers that stand
+/// nowhere else.
+struct AdversityOptions {
+  std::string level = "none";          ///< none | minor | major
+  std::optional<double> light = {};    ///< share of its light that each lamp of the place keeps
+  std::optional<double> failing = {};  ///< share of those lamps that flicker
+  std::optional<double> clutter = {};  ///< of the generated place, 0 bare … 1
+  std::optional<int> people = {};      ///< who walk about
+  std::optional<double> people_speed = {};  ///< [m/s]
+  SourceLoc loc = {};
+};
+
+/// [[water]]: a box of water with a surface that waves move. It carries and drags bodies.
+struct WaterOptions {
+  std::string name = {};                ///< unique
+  Vec3 position = {};                   ///< of the middle of its surface at rest [m]
+  std::array<double, 2> size = {4, 4};  ///< along x and y [m]
+  double depth = 1;                     ///< [m]
+  double wave_height = 0;   ///< significant height of waves: mean of the highest third [m]
+  double wave_period = 2;   ///< of the strongest waves [s]
+  double wave_to = 0;       ///< direction they run to, from +x to +y [deg]
+  double spread = 30;       ///< standard deviation of their directions [deg]
+  double density = 998;     ///< [kg/m³]
+  double viscosity = 1e-3;  ///< dynamic [Pa s]
+  Vec3 current = {};        ///< [m/s]
+  double clarity = 8;       ///< depth at which a white disk is lost from sight (Secchi) [m]
+  bool ripples = true;      ///< bodies that cross the surface make waves
+  SourceLoc loc = {};
+};
+
+/// [navigation]: where agents can go, as Recast finds it from the colliders.
+struct NavigationOptions {
+  double cell = 0.1;        ///< edge of its voxels in the plane [m]
+  double headroom = 1.9;    ///< [m]
+  double radius = 0.3;      ///< that people keep from walls [m]
+  double climb = 0.22;      ///< step that is taken without stairs [m]
+  double slope = 40;        ///< [deg]
+  Rational rate = {10, 1};  ///< decisions per second of simulation time
+  SourceLoc loc = {};
+};
+
+/// One place on the way of an agent.
+struct WaypointOptions {
+  Vec3 position = {};  ///< on the ground below [m]
+  double pause = 0;    ///< there [s]
+  SourceLoc loc = {};
+};
+
+/// [[agent]]: someone or something that moves by itself and is no robot.
+struct AgentOptions {
+  std::string name = {};                    ///< unique
+  std::string kind = "person";              ///< person | cart | forklift | car
+  Vec3 position = {};                       ///< on the ground below, at the start [m]
+  double heading = 0;                       ///< at the start, from +x to +y [deg]
+  uint64_t seed = 0;                        ///< of body, clothes, paint and what it decides
+  std::optional<double> height = {};        ///< of a person [m]; default: drawn
+  std::optional<double> speed = {};         ///< that it likes to go [m/s]; default: of its kind
+  std::string behavior = "wander";          ///< stand | wander | route | spline | tree
+  std::vector<WaypointOptions> route = {};  ///< where it goes in turn, or a spline's points
+  bool loop = true;                         ///< from the last of them to the first
+  std::filesystem::path tree = {};          ///< behaviour tree, BehaviorTree.CPP's XML
+  double start = 0;                         ///< of its first step [s]
+  bool yields = true;  ///< it is pushed aside, and stops for what stands in its way; false: goes on
+  SourceLoc loc = {};
+};
+
+/// [[crowd]]: people at places drawn from where one can go.
+struct CrowdOptions {
+  std::string name = {};             ///< unique; they are NAME0, NAME1 …
+  int count = 4;                     ///< of them
+  uint64_t seed = 0;                 ///< of all of them
+  std::optional<double> speed = {};  ///< that they like to go [m/s]; default: drawn
+  bool yields = true;                ///< as of [[agent]]
   SourceLoc loc = {};
 };
 

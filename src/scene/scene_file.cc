@@ -34,8 +34,7 @@ Status find_files(const FileFinder& finder, Scene* scene) {
     GLOAM_TRY_STATUS(finder.find(&light.file, light.loc));
     GLOAM_TRY_STATUS(finder.find(&light.ies, light.loc));
   }
-  for (AgentOptions& agent : scene->agents)
-    GLOAM_TRY_STATUS(finder.find(&agent.tree, agent.loc));
+  for (AgentOptions& agent : scene->agents) GLOAM_TRY_STATUS(finder.find(&agent.tree, agent.loc));
   if (scene->sky) GLOAM_TRY_STATUS(finder.find(&scene->sky->file, scene->sky->loc));
   for (VolumeOptions& volume : scene->volumes) {
     GLOAM_TRY_STATUS(finder.find(&volume.grid, volume.loc));

@@ -42,6 +42,7 @@ class Check {
   explicit Check(const CompiledWorld& world)
       : serial_(world.serial),
         model_(*world.model),
+        agents_(world.agents),
         robot_count_(static_cast<int>(world.robots.size())) {}
 
   Status operator()(const SetControl& c) const {
@@ -82,6 +83,12 @@ class Check {
     if (model_.body_mocapid[c.body.id] < 0) {
       return refuse(fmt::format("{} is not a mocap body", body_label(model_, c.body.id)),
                     "give it mocap=\"true\" in the model");
+    }
+    for (const AgentDescription& agent : agents_) {
+      const auto end = agent.body.begin() + agent.parts();
+      if (std::find(agent.body.begin(), end, c.body.id) != end)
+        return refuse(fmt::format("{} is agent '{}', which moves by itself",
+                                  body_label(model_, c.body.id), agent.name));
     }
     const Quat& q = c.X_WB.q;
     if (!finite(c.X_WB.p) || !finite({q.w, q.x, q.y, q.z}) ||
@@ -132,6 +139,7 @@ class Check {
 
   uint64_t serial_;
   const mjModel& model_;
+  const std::vector<AgentDescription>& agents_;
   int robot_count_;
 };
 

@@ -103,11 +103,11 @@ PersonShape draw_person(uint64_t seed, std::optional<double> height) {
   p.hip = 0.05 * h;
   p.foot = 0.152 * h;
   p.waist = 0.1 * h;
-  p.trunk = 0.818 * h - p.hip_height - p.waist;
-  p.shoulder = 0.112 * h * (0.94 + 0.06 * p.girth);
+  p.trunk = 0.795 * h - p.hip_height - p.waist;
+  p.shoulder = 0.106 * h * (0.94 + 0.06 * p.girth);
   p.upper_arm = 0.172 * h;
   p.forearm = 0.25 * h;
-  p.neck = 0.035 * h;
+  p.neck = 0.058 * h;
   p.mass = 24 * h * h * p.girth;  // a body mass index of 24 kg/m²
   return p;
 }

@@ -56,7 +56,7 @@ void visit_entry(F& f, CacheEntry& e) {
   f(e.unsupported), f(e.has_plugins);
 }
 
-constexpr uint64_t kMagic = 0x37444C574D4F4C47ull;  // "GLOMWLD7": changes with the layout below
+constexpr uint64_t kMagic = 0x41444C574D4F4C47ull;  // "GLOMWLDA": changes with the layout below
 constexpr uint64_t kLargestEntry = uint64_t{2} << 30;
 
 fs::path entry_of(const Scene& scene, uint64_t place_hash) {

@@ -164,15 +164,15 @@ class Tailor {
     auto& out = shape.solids;
     const float hips = pose_.joint[kPelvis].z, waist = pose_.joint[kChest].z,
                 top = pose_.tip[kChest].z;
-    out.push_back({{0, 0, hips - 0.01f * h_}, {0, 0, waist}, 0.094f * g_, 0.083f * g_, 1.3f});
+    out.push_back({{0, 0, hips - 0.01f * h_}, {0, 0, waist}, 0.101f * g_, 0.086f * g_, 1.25f});
     out.push_back(
         {{0, 0, waist}, {0.004f * h_, 0, top - 0.08f * h_}, 0.083f * g_, 0.097f * g_, 1.4f});
     for (const float side : {1.0f, -1.0f}) {
       const float y = side * static_cast<float>(s_.shoulder);
-      out.push_back({{-0.004f * h_, 0, top - 0.028f * h_},
-                     {-0.004f * h_, 0.82f * y, top - 0.012f * h_},
-                     0.044f * g_,
-                     0.034f * g_});
+      out.push_back({{-0.004f * h_, 0, top - 0.012f * h_},
+                     {-0.004f * h_, 0.8f * y, top - 0.006f * h_},
+                     0.04f * g_,
+                     0.031f * g_});
     }
     if (s_.girth > 1.02)
       out.push_back(ball({0.02f * h_ * static_cast<float>(s_.girth), 0, waist - 0.02f * h_},
@@ -195,16 +195,16 @@ class Tailor {
     auto& out = shape.solids;
     const Vec3f hips = pose_.joint[kPelvis];
     for (const float side : {1.0f, -1.0f})
-      out.push_back({hips + Vec3f{-0.006f * h_, side * 0.03f * g_, 0.0f},
-                     hips + Vec3f{0, side * 0.022f * g_, 0.05f * h_}, 0.066f * g_, 0.058f * g_,
+      out.push_back({hips + Vec3f{-0.006f * h_, side * 0.026f * g_, 0.0f},
+                     hips + Vec3f{0, side * 0.022f * g_, 0.05f * h_}, 0.064f * g_, 0.054f * g_,
                      1.08f});
     for (const int leg : {kThighL, kThighR}) {
       const Vec3f hip = pose_.joint[leg], knee = pose_.joint[leg + 1], ankle = pose_.tip[leg + 1];
-      out.push_back({hip + Vec3f{-0.004f * h_, 0, -0.02f * h_}, knee, 0.053f * g_, 0.039f * g_});
+      out.push_back({hip + Vec3f{-0.004f * h_, 0, -0.02f * h_}, knee, 0.055f * g_, 0.041f * g_});
       out.push_back(
           {knee, lerp(knee, ankle, 0.35f) + Vec3f{-0.008f * h_, 0, 0}, 0.039f * g_, 0.037f * g_});
       out.push_back({lerp(knee, ankle, 0.35f) + Vec3f{-0.008f * h_, 0, 0}, lerp(knee, ankle, 0.96f),
-                     0.037f * g_, 0.031f * g_});
+                     0.039f * g_, 0.033f * g_});
     }
     return shape;
   }

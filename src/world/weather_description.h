@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "gloam/scene_weather.h"
+#include "gloam/scene_effect.h"
 #include "world/particle_set.h"
 #include "world/shelter_map.h"
 #include "world/wind_description.h"

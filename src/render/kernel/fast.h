@@ -344,7 +344,8 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
                             in_all_lanes<F>(scene.sky_ambient);
       sum += select<F>(missed, throughput * sky, Vec3Of<F>{});
       if (!scene.media.volumes.empty())
-        sum += select<F>(missed, scattered * light_around_missed(scene, cache, path->ray.d, missed),
+        sum += select<F>(missed,
+                         scattered * fasts::light_around_missed(scene, cache, path->ray.d, missed),
                          Vec3Of<F>{});
     }
     active = found;
@@ -497,7 +498,8 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
       });
       if (!scene.media.volumes.empty())
         out.base += select<F>(
-            missed, scattered * light_around_missed(scene, cache, path.ray.d, missed), Vec3Of<F>{});
+            missed, scattered * fasts::light_around_missed(scene, cache, path.ray.d, missed),
+            Vec3Of<F>{});
     }
     active = found;
     if (!any(active)) break;

@@ -78,6 +78,7 @@ void move_body(double dt, double time, const NavMesh& mesh, const NavWorld& worl
 
 /// A smooth curve through the points of a route (Catmull and Rom 1974).
 struct AgentSpline {
+  AgentSpline() = default;  ///< of those who follow none
   AgentSpline(const std::vector<WaypointOptions>& route, bool loop);
   double length() const { return lengths.back(); }
   /// At a way along it [m]; the direction there too.
@@ -85,7 +86,7 @@ struct AgentSpline {
 
   std::vector<Vec3d> points;    ///< close to each other
   std::vector<double> lengths;  ///< up to each [m]
-  bool loop;
+  bool loop = false;
 };
 
 }  // namespace gloam

@@ -51,11 +51,8 @@ Result<std::unique_ptr<Agents>> Agents::create(std::shared_ptr<const CompiledWor
         made->agent_of_geom_[static_cast<size_t>(g)] = static_cast<int>(made->agents_.size());
     }
     made->agents_.emplace_back(d);
-    made->splines_.emplace_back(
-        d.behavior == AgentBehavior::kSpline
-            ? d.route
-            : std::vector<WaypointOptions>(2, WaypointOptions{d.position, 0, {}}),
-        d.loop);
+    made->splines_.push_back(d.behavior == AgentBehavior::kSpline ? AgentSpline(d.route, d.loop)
+                                                                  : AgentSpline());
   }
   for (const RobotInstance& robot : world->robots)
     for (int g = 0; robot.root_body > 0 && g < static_cast<int>(m.ngeom); ++g)
@@ -132,9 +129,8 @@ bool Agents::draw_place(size_t row, NavPoint* at) const {
     return true;
   };
   for (uint64_t i = 0; i < kPlaceTries; ++i) {
-    *at = nav_->mesh_of(row).random_point({}, stream.uniform(i, 0), stream.uniform(i, 1),
-                                          stream.uniform(i, 2));
-    if (!nav_->is_in_rooms(at->p)) continue;
+    *at = nav_->random_place(row, {}, stream.uniform(i, 0), stream.uniform(i, 1),
+                             stream.uniform(i, 2));
     // Where it is crowded it may be closer.
     if (at->ref != 0 && is_free(at->p, i < kPlaceTries / 2 ? kApart : kApart / 2)) return true;
   }

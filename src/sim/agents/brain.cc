@@ -146,15 +146,12 @@ class Brain final : public TreeHost {
 
   // A place that a way leads to, not right here.
   bool draw_goal() {
-    const NavMesh& mesh = around_.nav.mesh_of(row_);
     for (int i = 0; i < kTries; ++i) {
       ++motion_.draws;
-      const NavPoint to = mesh.random_point(agent_.path.at(), draw("agent.goal", 0),
-                                            draw("agent.goal", 1), draw("agent.goal", 2));
-      if (to.ref == 0) return false;
-      const bool is_good =
-          flat_norm(to.p - motion_.p) >= kLeastWander && around_.nav.is_in_rooms(to.p);
-      if (!is_good && i + 1 < kTries) continue;
+      const NavPoint to = around_.nav.random_place(row_, agent_.path.at(), draw("agent.goal", 0),
+                                                   draw("agent.goal", 1), draw("agent.goal", 2));
+      if (to.ref == 0) continue;
+      if (flat_norm(to.p - motion_.p) < kLeastWander && i + 2 < kTries) continue;
       motion_.goal = to.p;
       motion_.has_goal = 0;
       return true;

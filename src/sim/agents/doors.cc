@@ -48,7 +48,6 @@ void AgentDoors::reset() {
 }
 
 void AgentDoors::decide(const mjData& data, const std::vector<AgentBody>& agents) {
-  static_cast<void>(data);
   for (Door& door : doors_) {
     door.was_wanted |= door.is_wanted;
     door.is_wanted = false;

@@ -154,14 +154,27 @@ NavPoint NavMesh::nearest(Vec3d p, double reach, double up) const {
   return found;
 }
 
+// -1 = of none.
+int NavMesh::part_of(const NavPoint& point) const {
+  const auto found = std::lower_bound(impl_->part_of_poly.begin(), impl_->part_of_poly.end(),
+                                      std::pair<dtPolyRef, int>(point.ref, 0));
+  const bool is_there = point.ref != 0 && found != impl_->part_of_poly.end();
+  return is_there && found->first == point.ref ? found->second : -1;
+}
+
+double NavMesh::area_around(const NavPoint& point) const {
+  const int part = part_of(point);
+  return part >= 0 ? impl_->parts[static_cast<size_t>(part)].area() : 0;
+}
+
+bool NavMesh::are_connected(const NavPoint& a, const NavPoint& b) const {
+  return part_of(a) >= 0 && part_of(a) == part_of(b);
+}
+
 NavPoint NavMesh::random_point(const NavPoint& from, double u, double v, double w) const {
   if (impl_->parts.empty()) return {};
-  size_t number = impl_->largest;
-  const auto found = std::lower_bound(impl_->part_of_poly.begin(), impl_->part_of_poly.end(),
-                                      std::pair<dtPolyRef, int>(from.ref, 0));
-  if (from.ref != 0 && found != impl_->part_of_poly.end() && found->first == from.ref)
-    number = static_cast<size_t>(found->second);
-  const Impl::Part& part = impl_->parts[number];
+  const int number = part_of(from);
+  const Impl::Part& part = impl_->parts[number >= 0 ? static_cast<size_t>(number) : impl_->largest];
   const auto row = static_cast<size_t>(
       std::upper_bound(part.areas.begin(), part.areas.end() - 1, u * part.area()) -
       part.areas.begin());

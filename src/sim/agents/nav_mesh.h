@@ -64,10 +64,15 @@ class NavMesh {
   /// in [0, 1).
   NavPoint random_point(const NavPoint& from, double u, double v, double w) const;
 
+  /// Area of the part that a point is on [m²].
+  double area_around(const NavPoint& point) const;
+  bool are_connected(const NavPoint& a, const NavPoint& b) const;
+
   struct Impl;
   const Impl& impl() const { return *impl_; }
 
  private:
+  int part_of(const NavPoint& point) const;
   NavMesh();
   std::unique_ptr<Impl> impl_;
 };

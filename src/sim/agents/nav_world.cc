@@ -22,6 +22,7 @@ constexpr double kLeft = 0.15;      // further from where it lay is away [m]
 constexpr double kRest = 0.5;       // until a thing is at rest [s]
 constexpr double kRobotRest = 3;    // a robot pauses [s]
 constexpr float kSmall = 0.12f;     // what has no larger edge is in nobody's way [m]
+constexpr double kLeastPart = 4;    // of a mesh that somebody is put on [m²]
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
 bool can_collide(const mjModel& m, int geom) {
@@ -96,7 +97,11 @@ bool is_door_leaf(const mjModel& m, const mjData& d, int body) {
 Result<std::unique_ptr<NavWorld>> NavWorld::create(const CompiledWorld& world, const mjModel& m,
                                                    const mjData& d) {
   std::unique_ptr<NavWorld> made(new NavWorld);
-  made->rooms_ = world.regions;
+  for (const Region& room : world.regions) {
+    const double area = (room.high.x - room.low.x) * (room.high.y - room.low.y);
+    made->rooms_.push_back(room);
+    made->room_areas_.push_back(area + (made->room_areas_.empty() ? 0 : made->room_areas_.back()));
+  }
   made->find_bounds(world, m, d);
   made->sort_geoms(world, m, d);
   GLOAM_TRY_STATUS(made->make_meshes(world));
@@ -378,13 +383,19 @@ double NavWorld::ground_below(Vec3d p, double up, double down) const {
   return best > least ? best : p.z;
 }
 
-bool NavWorld::is_in_rooms(Vec3d p) const {
-  if (rooms_.empty()) return true;
-  for (const Region& room : rooms_)
-    if (p.x > room.low.x && p.x < room.high.x && p.y > room.low.y && p.y < room.high.y &&
-        p.z > room.low.z - 0.5 && p.z < room.high.z)
-      return true;
-  return false;
+NavPoint NavWorld::random_place(size_t agent, const NavPoint& from, double u, double v,
+                                double w) const {
+  const NavMesh& mesh = mesh_of(agent);
+  if (rooms_.empty()) return mesh.random_point(from, u, v, w);
+  const auto row =
+      std::upper_bound(room_areas_.begin(), room_areas_.end() - 1, u * room_areas_.back()) -
+      room_areas_.begin();
+  const Region& room = rooms_[static_cast<size_t>(row)];
+  const NavPoint at = mesh.nearest({room.low.x + v * (room.high.x - room.low.x),
+                                    room.low.y + w * (room.high.y - room.low.y), room.low.z},
+                                   0.3, 0.3);
+  if (at.ref == 0 || mesh.area_around(at) < kLeastPart) return {};
+  return from.ref == 0 || mesh.are_connected(from, at) ? at : NavPoint{};
 }
 
 uint64_t NavWorld::hash(uint64_t seed) const {

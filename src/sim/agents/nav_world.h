@@ -33,8 +33,10 @@ class NavWorld {
   /// there is none [m].
   double ground_below(Vec3d p, double up, double down) const;
 
-  /// In a room of a generated place; true where there are none.
-  bool is_in_rooms(Vec3d p) const;
+  /// A place for an agent, of three numbers in [0, 1): in a room of a generated place, else
+  /// anywhere on its mesh; where `from` is on the mesh, one that a way leads to from there. May be
+  /// none.
+  NavPoint random_place(size_t agent, const NavPoint& from, double u, double v, double w) const;
 
   /// Follows what moves, `dt` after the last time [s]; at most one tile of each mesh is built anew.
   /// True: some was, and ways have to be looked at. Allocates when something comes to rest or
@@ -84,6 +86,7 @@ class NavWorld {
 
   NavBounds bounds_;
   std::vector<Region> rooms_;
+  std::vector<double> room_areas_;  // up to each [m²]
   std::vector<ColliderSurface> still_;
   std::vector<Movable> movables_;
   std::vector<NavObstacle> obstacles_;  // by movable

@@ -63,14 +63,12 @@ void Agents::avoid(size_t row, Vec3d* wanted) {
     other.away = norm(to) - other.radius;
     if (other.away > kLook || std::abs(other.p.z - m.p.z) > 1.5) return;
     if (dot(to, *wanted) < 0) other.away += 2;
-    int at = count < NavAvoidance::kMostCircles ? count++ : count - 1;
-    if (at == count - 1 && count == NavAvoidance::kMostCircles && near[at].away <= other.away &&
-        near[at].radius > 0)
-      return;
+    const bool is_full = count == NavAvoidance::kMostCircles;
+    if (is_full && near[count - 1].away <= other.away) return;
+    int at = is_full ? count - 1 : count++;
     for (; at > 0 && near[at - 1].away > other.away; --at) near[at] = near[at - 1];
     near[at] = other;
   };
-  for (auto& n : near) n.radius = 0;
   for (size_t i = 0; i < agents_.size(); ++i) {
     if (i == row) continue;
     const AgentMotion& o = agents_[i].motion;

@@ -253,6 +253,17 @@ TEST(Agents, ARecompileKeepsThem) {
   EXPECT_LT(norm(pelvis() - before), 0.25) << "and goes on from there";
 }
 
+TEST(Agents, CommandsDoNotMoveThem) {
+  AgentRig rig(agent_place(""));
+  rig.add("ann", {0, 0, 0}, "stand");
+  auto sim = make_simulator(rig.compile(), lockstep());
+  const Status refused =
+      sim->post({.what = SetMocapPose{Body{sim->world()->agents[0].body[0]}, {}}});
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message.find("agent 'ann'"), std::string::npos)
+      << refused.error().to_string();
+}
+
 TEST(Agents, TreesAreFollowed) {
   AgentRig rig(agent_place(""));
   AgentOptions& agent = rig.add("ann", {-3, 0, 0}, "tree");
@@ -307,6 +318,37 @@ TEST(Agents, WhatIsMovedIsWalkedAround) {
   stepper->data().qpos[0] = 0;  // as a Command would put it
   run(stepper.get(), 14.5);
   EXPECT_GT(motion_of(*stepper, 0).p.x, 3.4) << "the way by the other gap was not found";
+}
+
+TEST(Agents, WalkThroughTheDoorsOfAHouse) {
+  AgentRig rig("");
+  rig.scene.environment.file.clear();
+  rig.scene.environment.house = HouseOptions{.seed = 3};
+  CrowdOptions& crowd = rig.scene.crowds.emplace_back();
+  crowd.name = "p";
+  crowd.count = 4;
+  auto stepper = rig.stepper();
+  const mjModel& m = stepper->model();
+  std::vector<double> doors(stepper->data().qpos, stepper->data().qpos + m.nq);
+  double way = 0;
+  std::vector<Vec3d> last(4);
+  for (size_t i = 0; i < 4; ++i) last[i] = motion_of(*stepper, i).p;
+  for (int second = 0; second < 40; ++second) {
+    run(stepper.get(), 1);
+    for (size_t i = 0; i < 4; ++i) {
+      way += flat_norm(motion_of(*stepper, i).p - last[i]);
+      last[i] = motion_of(*stepper, i).p;
+    }
+  }
+  int moved = 0;
+  for (int j = 0; j < static_cast<int>(m.njnt); ++j) {
+    if (!is_door_leaf(m, stepper->data(), m.jnt_bodyid[j])) continue;
+    const auto q = static_cast<size_t>(m.jnt_qposadr[j]);
+    moved += std::abs(stepper->data().qpos[q] - doors[q]) > 0.3;
+  }
+  printf("4 people walked %.1f m in 40 s, and %d doors moved\n", way, moved);
+  EXPECT_GT(way, 40) << "they stand about";
+  EXPECT_GT(moved, 0) << "no door was opened";
 }
 
 // The bar of issue 6: 8 people and their navigation take 0.03 ms of a physics step on average.

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <thread>
 
+#include "agent_rig.h"
 #include "gas_rig.h"
 #include "gas_room.h"
 #include "test_world.h"
@@ -106,6 +107,21 @@ TEST(WaterLoop, AllocatesNothingOnceWarm) {
   sim->set_step_hook([](const mjModel*, mjData*) { counting = false; });
   sim->stop();
   reader.join();
+}
+
+TEST(Agents, DecideAndWalkWithoutAllocating) {
+#ifdef GLOAM_SANITIZED
+  GTEST_SKIP() << "the sanitizer owns malloc";
+#endif
+  AgentRig rig(agent_place("<geom type='box' size='0.1 3 1.2' pos='0 -3 1.2'/>"));
+  for (int i = 0; i < 3; ++i) rig.add("a" + std::to_string(i), {-3.0 + 2 * i, 3, 0}, "wander");
+  auto sim = make_simulator(rig.compile());
+  allocations = frees = 0;
+  sim->set_step_hook([](const mjModel*, mjData* d) { counting = d->time > 1; });
+  sim->start(5000);
+  ASSERT_TRUE(sim->wait().ok());
+  EXPECT_EQ(allocations.load(), 0);
+  EXPECT_EQ(frees.load(), 0);
 }
 
 TEST(GasObstacles, AllocateNothingAfterTheFirstCall) {

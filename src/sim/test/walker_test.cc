@@ -178,7 +178,8 @@ TEST(Walker, IsShapedAsPeopleAre) {
     sum += p.height;
     EXPECT_GE(p.height, 1.45);
     EXPECT_LE(p.height, 1.98);
-    EXPECT_NEAR(p.hip_height + p.waist + p.trunk, 0.818 * p.height, 1e-9) << "of the shoulders";
+    EXPECT_NEAR(p.hip_height + p.waist + p.trunk, 0.795 * p.height, 1e-9)
+        << "of the shoulder joints";
   }
   EXPECT_NEAR(sum / 200, 1.69, 0.03);
   EXPECT_EQ(draw_person(7, {}).height, draw_person(7, {}).height);
