@@ -237,7 +237,7 @@ TEST(BehaviorTree, MutationsDoNoHarm) {
       const auto at = static_cast<size_t>(stream.uniform(i, 3 * c) * double(text.size()));
       const double what = stream.uniform(i, 3 * c + 1), how = stream.uniform(i, 3 * c + 2);
       if (what < 0.3)
-        text[at] = static_cast<char>(256 * how);
+        text[at] = static_cast<char>(static_cast<uint8_t>(256 * how));
       else if (what < 0.6)
         text.erase(at, 1 + static_cast<size_t>(12 * how));
       else
