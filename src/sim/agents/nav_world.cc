@@ -184,10 +184,13 @@ void NavWorld::sort_geoms(const CompiledWorld& world, const mjModel& m, const mj
   }
   obstacles_.resize(movables_.size());
 
-  columns_ = std::max(1, static_cast<int>(std::ceil((bounds_.high.x - bounds_.low.x) / kSquare)));
-  rows_ = std::max(1, static_cast<int>(std::ceil((bounds_.high.y - bounds_.low.y) / kSquare)));
-  if (!(bounds_.high.x > bounds_.low.x) || double{static_cast<float>(columns_)} * rows_ > 1e8)
+  // Nothing to stand on has bounds that are none.
+  const double across = std::ceil((bounds_.high.x - bounds_.low.x) / kSquare);
+  const double along = std::ceil((bounds_.high.y - bounds_.low.y) / kSquare);
+  if (!(bounds_.high.x > bounds_.low.x) || !(std::max(across, 1.0) * std::max(along, 1.0) <= 1e8))
     return;
+  columns_ = std::max(1, static_cast<int>(across));
+  rows_ = std::max(1, static_cast<int>(along));
   squares_.resize(static_cast<size_t>(columns_) * static_cast<size_t>(rows_));
   for (size_t i = 0; i < still_.size(); ++i) {
     const auto square = [&](float p, float low, int count) {
