@@ -118,7 +118,7 @@ class CameraSensor {
   std::unique_ptr<CameraModels> models_;  // what happens after the light
   std::unique_ptr<ViewHistory> history_;  // of the fast tier
   std::optional<LensDrops> drops_;
-  std::unique_ptr<Denoiser> denoiser_;    // null: the samples as they are
+  std::unique_ptr<Denoiser> denoiser_;  // null: the samples as they are
   Film film_;
   std::vector<Vec3f> clean_;
   std::vector<Vec3f>* light_ = nullptr;  // of the picture that is made

@@ -195,8 +195,8 @@ class CpuRenderer final : public Renderer {
     const CameraView32 camera = make_camera(view, &camera_keys_);
     const SceneView seen = scene().view_from(view.X_WC_open);
     const CpuTracer tracer = traced_.tracer();
-    gloam::draw_particles(
-        {seen, tracer, camera, scene().description().weather, opens_, seconds_}, film, radiance);
+    gloam::draw_particles({seen, tracer, camera, scene().description().weather, opens_, seconds_},
+                          film, radiance);
   }
 
   float illuminance(Vec3f p_W, Vec3f n_W) override {
