@@ -102,7 +102,7 @@ Status render_blocks(const Arguments& a) {
   const std::string header = fmt::format(
       "{{\"width\": {}, \"height\": {}, \"block\": {}, \"batches\": {}, \"spp\": {}, "
       "\"max_depth\": {}, \"cpu_seconds\": {:.3f}, \"cpu_of_batch\": {:.5f}}}\n",
-      size.width, size.height, a.block, a.batches, a.spp, request.render.max_depth.value_or(5),
+      size.width, size.height, a.block, a.batches, a.spp, path_depth(request.render, false),
       cpu_seconds(), median(seconds));
   std::vector<uint8_t> bytes(header.begin(), header.end());
   for (const std::vector<float>* values : {&blocks, &picture}) {

@@ -8,11 +8,15 @@ Result<std::unique_ptr<LightProbe>> LightProbe::make(std::shared_ptr<SharedRende
   return probe;
 }
 
-double LightProbe::illuminance(const Snapshot& snapshot, Vec3f p_W) {
-  if (!solver_->solve(snapshot, poses_).ok()) return 0;
+std::vector<double> LightProbe::illuminance(const Snapshot& snapshot,
+                                            const std::vector<Vec3f>& places) {
+  std::vector<double> out(places.size());
+  if (!solver_->solve(snapshot, poses_).ok()) return out;
   const std::lock_guard lock(shared_->mutex);
   shared_->renderer->update(poses_, poses_, poses_);
-  return static_cast<double>(shared_->renderer->illuminance(p_W, {0, 0, 1}));
+  for (size_t i = 0; i < out.size(); ++i)
+    out[i] = static_cast<double>(shared_->renderer->illuminance(places[i], {0, 0, 1}));
+  return out;
 }
 
 }  // namespace gloam

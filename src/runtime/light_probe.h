@@ -2,6 +2,7 @@
 // How bright it is at a place, without a camera there.
 
 #include <memory>
+#include <vector>
 
 #include "runtime/shared_renderer.h"
 #include "sim/pose_solver.h"
@@ -12,9 +13,9 @@ class LightProbe {
  public:
   static Result<std::unique_ptr<LightProbe>> make(std::shared_ptr<SharedRenderer> shared);
 
-  /// Illuminance [lx] of a level surface at p_W at the snapshot's instant; nothing where MuJoCo
+  /// Illuminance [lx] of level surfaces at places at the snapshot's instant; none where MuJoCo
   /// refuses its poses.
-  double illuminance(const Snapshot& snapshot, Vec3f p_W);
+  std::vector<double> illuminance(const Snapshot& snapshot, const std::vector<Vec3f>& places);
 
  private:
   explicit LightProbe(std::shared_ptr<SharedRenderer> shared) : shared_(std::move(shared)) {}

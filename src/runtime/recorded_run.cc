@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <set>
 #include <thread>
 
@@ -133,7 +134,7 @@ RunInfo run_info(const World& world, const RunRequest& request, double timestep,
   info.settings = {
       {"tier", scene.render.tier},
       {"spp", std::to_string(scene.render.samples())},
-      {"max_depth", scene.render.max_depth ? std::to_string(*scene.render.max_depth) : "usual"},
+      {"max_depth", std::to_string(path_depth(scene.render, scene.weather.has_value()))},
       {"denoise", scene.render.denoise ? "true" : "false"}};
   for (const DrawnOption& d : world.compiled()->drawn) info.drawn.push_back({d.option, d.value});
   if (scene.render.error)
@@ -175,13 +176,21 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   GLOAM_TRY(const int64_t steps, step_of_time(duration, rate, "a duration"));
 
   RunReport report;
-  GLOAM_TRY(VisibilityProbe probe, VisibilityProbe::make(*world.compiled()));
+  // Metrics at 100 Hz, or every step of slower models; illuminance once a second.
+  const Rational metric_rate = rate.value() >= 100 ? Rational{100, 1} : rate;
+  const auto light_every = std::max<int64_t>(1, std::llround(metric_rate.value()));
+  VisibilityProbe probe;
   std::unique_ptr<LightProbe> light;
-  if (!request.out.empty() && wants(scene.record.outputs, "metrics")) {
+  if (request.out.empty()) {
+    GLOAM_TRY(probe, VisibilityProbe::make(*world.compiled()));
+  } else {
     GLOAM_TRY(auto shared, simulation->renderer());
-    GLOAM_TRY(light, LightProbe::make(std::move(shared)));
+    GLOAM_TRY(probe, VisibilityProbe::make(shared->description));
+    if (wants(scene.record.outputs, "metrics")) {
+      GLOAM_TRY(light, LightProbe::make(std::move(shared)));
+    }
   }
-  RobotMetrics metrics(*world.compiled(), std::move(probe), std::move(light));
+  RobotMetrics metrics(*world.compiled(), std::move(probe), std::move(light), light_every);
   std::unique_ptr<Recorder> recorder;
   std::vector<std::unique_ptr<LiveCamera>> cameras;
   std::unique_ptr<LiveSensors> sensors;
@@ -244,8 +253,6 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
     }
     prepared = seconds_since(start);
   }
-  // Metrics at 100 Hz, or every step of slower models.
-  const Rational metric_rate = rate.value() >= 100 ? Rational{100, 1} : rate;
   GLOAM_TRY(auto metric_queue,
             simulator.subscribe({.rate = metric_rate, .required = true, .capacity = 256}));
   MetricsThread metrics_thread(metric_queue, metrics, recorder.get());

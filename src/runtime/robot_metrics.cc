@@ -36,8 +36,8 @@ double reach_of(const mjModel& m, const mjData& d, int root) {
 }  // namespace
 
 RobotMetrics::RobotMetrics(const CompiledWorld& world, VisibilityProbe probe,
-                           std::unique_ptr<LightProbe> light)
-    : probe_(std::move(probe)), light_(std::move(light)) {
+                           std::unique_ptr<LightProbe> light, int64_t light_every)
+    : probe_(std::move(probe)), light_(std::move(light)), light_every_(light_every) {
   columns_.push_back("time_s");
   const mjModel& model = *world.model;
   const bool measures_around = probe_.has_media() || light_ != nullptr;
@@ -82,12 +82,8 @@ std::vector<MetricPlot> RobotMetrics::plots() const {
 
 const std::vector<double>& RobotMetrics::sample(const Snapshot& snapshot) {
   row_.assign(1, snapshot.time());
-  const bool looks = light_ != nullptr && snapshot.time() >= next_light_ - 1e-9;
-  for (Tracked& robot : robots_) {
-    if (looks) measure_light(robot, snapshot);
-    measure(robot, snapshot);
-  }
-  if (looks) ++lights_, next_light_ = snapshot.time() + 1;
+  if (light_ != nullptr && samples_ % light_every_ == 0) measure_light(snapshot);
+  for (Tracked& robot : robots_) measure(robot, snapshot);
   ++samples_;
   return row_;
 }
@@ -140,14 +136,21 @@ void RobotMetrics::measure(Tracked& robot, const Snapshot& snapshot) {
   if (light_ != nullptr) row_.push_back(robot.illuminance);
 }
 
-void RobotMetrics::measure_light(Tracked& robot, const Snapshot& snapshot) {
-  const JointState base = snapshot[robot.base];
-  // Over all of it: it casts no shadow there.
-  const Vec3f p{float(base.qpos[0]), float(base.qpos[1]), float(base.qpos[2] + robot.reach)};
-  robot.illuminance = light_->illuminance(snapshot, p);
-  robot.illuminances += robot.illuminance;
-  robot.least_illuminance =
-      lights_ == 0 ? robot.illuminance : std::min(robot.least_illuminance, robot.illuminance);
+void RobotMetrics::measure_light(const Snapshot& snapshot) {
+  std::vector<Vec3f> places;
+  for (const Tracked& robot : robots_) {
+    const JointState base = snapshot[robot.base];
+    // Over all of it: it casts no shadow there.
+    places.push_back({float(base.qpos[0]), float(base.qpos[1]), float(base.qpos[2] + robot.reach)});
+  }
+  const std::vector<double> light = light_->illuminance(snapshot, places);
+  for (size_t i = 0; i < robots_.size(); ++i) {
+    Tracked& robot = robots_[i];
+    robot.illuminance = light[i];
+    robot.illuminances += light[i];
+    robot.least_illuminance = lights_ == 0 ? light[i] : std::min(robot.least_illuminance, light[i]);
+  }
+  ++lights_;
 }
 
 double RobotMetrics::visibility(const Tracked& robot, const Snapshot& snapshot, double x, double y,

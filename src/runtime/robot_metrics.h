@@ -19,9 +19,10 @@ class RobotMetrics {
  public:
   /// Robots with a floating base are measured; others give no columns. Visibility is measured where
   /// the scene has media: the least at eight points around the robot at the height of its base.
-  /// With a light probe the illuminance over the robot, of a level surface, once a second.
+  /// With a light probe the illuminance over the robot, of a level surface, once in `light_every`
+  /// samples.
   explicit RobotMetrics(const CompiledWorld& world, VisibilityProbe probe = {},
-                        std::unique_ptr<LightProbe> light = nullptr);
+                        std::unique_ptr<LightProbe> light = nullptr, int64_t light_every = 1);
 
   const std::vector<std::string>& columns() const { return columns_; }
   /// Plots for the contact sheet: measured and commanded velocity of the first robot with goals.
@@ -48,15 +49,15 @@ class RobotMetrics {
     double illuminance = 0, least_illuminance = 0, illuminances = 0;    // [lx]; the last, …, sum
   };
   void measure(Tracked& robot, const Snapshot& snapshot);
-  void measure_light(Tracked& robot, const Snapshot& snapshot);
+  void measure_light(const Snapshot& snapshot);
   // Around it, since its own body keeps smoke out.
   double visibility(const Tracked& robot, const Snapshot& snapshot, double x, double y,
                     double z) const;
 
   VisibilityProbe probe_;
   std::unique_ptr<LightProbe> light_;
-  double next_light_ = 0;  // [s]
-  int64_t lights_ = 0;     // samples of it
+  int64_t light_every_;
+  int64_t lights_ = 0;  // samples of it
   std::vector<Tracked> robots_;
   std::vector<std::string> columns_;
   std::vector<double> row_;

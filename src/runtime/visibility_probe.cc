@@ -14,15 +14,20 @@ Result<VisibilityProbe> VisibilityProbe::make(const CompiledWorld& world) {
     GLOAM_TRY_STATUS(author_volumes(world.scene.volumes, &description));
     author_gases(world.gases.gases, &description);
   }
+  return make(description);
+}
+
+Result<VisibilityProbe> VisibilityProbe::make(const RenderDescription& description) {
   VisibilityProbe probe;
-  for (VolumeDescription& volume : description.volumes) {
+  std::vector<VolumeDescription> volumes = description.volumes;
+  for (VolumeDescription& volume : volumes) {
     probe.fields_.push_back(volume.field);
     if (volume.field < 0) continue;
     // A grid, for the store to keep its voxels.
     const size_t voxels = size_t(volume.nx) * size_t(volume.ny) * size_t(volume.nz);
     volume.density = std::make_shared<const std::vector<float>>(voxels, 0.0f);
   }
-  GLOAM_TRY(probe.store_, VolumeStore::make(description.media, description.volumes));
+  GLOAM_TRY(probe.store_, VolumeStore::make(description.media, volumes));
   return probe;
 }
 

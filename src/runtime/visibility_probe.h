@@ -4,6 +4,7 @@
 #include "base/vec.h"
 #include "render/scene/volume_store.h"
 #include "sim/snapshot.h"
+#include "world/render_description.h"
 #include "world/world.h"
 
 namespace gloam {
@@ -15,6 +16,8 @@ class VisibilityProbe {
 
   /// Errors: those of the scene's media.
   static Result<VisibilityProbe> make(const CompiledWorld& world);
+  /// Of a World that is described already.
+  static Result<VisibilityProbe> make(const RenderDescription& description);
 
   /// Is there anything that could be in the way?
   bool has_media() const { return !store_.view().volumes.empty(); }

@@ -83,6 +83,11 @@ Result<int> find_camera(const RenderDescription& description, const std::string&
 
 }  // namespace
 
+int path_depth(const RenderOptions& render, bool has_weather) {
+  constexpr int kUsual = 5, kInFog = 24;
+  return render.max_depth.value_or(has_weather ? kInFog : kUsual);
+}
+
 Pose to_pose(const Affine3f& X) { return {{X.p.x, X.p.y, X.p.z}, quaternion_of(X)}; }
 
 Affine3f to_affine(const Pose& X) {
@@ -178,9 +183,7 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
     settings.error = static_cast<float>(*request.render.error);
     settings.error_floor = kFloor * max_luminance(static_cast<float>(sensor->models_->ev100()));
   }
-  constexpr int kUsualDepth = 5, kDepthInFog = 24;
-  settings.max_depth =
-      request.render.max_depth.value_or(weather.shelter != nullptr ? kDepthInFog : kUsualDepth);
+  settings.max_depth = path_depth(request.render, weather.shelter != nullptr);
   settings.roulette_depth = 2;  // unbiased, and spares the rays of dim paths
   settings.seed = hash_bytes(request.camera.data(), request.camera.size(), seed);
   if (settings.tier == RenderTier::kFast && !channels.light()) settings.tier = RenderTier::kDirect;
@@ -249,6 +252,7 @@ std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
   }
   // An event camera sees changes: with the same draws in every picture, what stands still has none.
   settings_.frame = sensing().events ? 0 : static_cast<uint32_t>(frame_index);
+  std::vector<Vec3f>* light = nullptr;
   {
     const std::lock_guard lock(renderer_mutex);
     renderer.update(keys, previous);
@@ -259,13 +263,12 @@ std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
     stats_ = renderer.render(view, settings_, &film_);
     if (!stats_.finished) return nullptr;
     if (channels_.light() && !description_.weather.particles.empty()) {
-      light_ = denoise();
-      renderer.draw_particles(view, film_, light_);
+      light = denoise();
+      renderer.draw_particles(view, film_, light);
     }
   }
   auto frame = std::make_shared<CameraFrame>();
-  convert(now, frame_index, view, frame.get());
-  light_ = nullptr;
+  convert(now, frame_index, view, light, frame.get());
   return frame;
 }
 
@@ -293,7 +296,7 @@ Shutter CameraSensor::shutter(std::span<const PoseFrame* const> keys) const {
 }
 
 void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const CameraView& view,
-                           CameraFrame* frame) {
+                           std::vector<Vec3f>* light, CameraFrame* frame) {
   frame->camera = camera().name;
   frame->index = frame_index;
   frame->step = now.step;
@@ -305,10 +308,10 @@ void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const Came
   frame->readout_time = camera().readout_time;
 
   if (channels_.light()) {
-    if (light_ == nullptr) light_ = denoise();
-    if (drops_) drops_->draw(now.time, light_);
-    models_->develop(*light_, now.run, frame);
-    if (channels_.radiance) frame->radiance = flatten(*light_);
+    if (light == nullptr) light = denoise();
+    if (drops_) drops_->draw(now.time, light);
+    models_->develop(*light, now.run, frame);
+    if (channels_.radiance) frame->radiance = flatten(*light);
     if (channels_.samples) {
       frame->samples = film_.sample_count;
       frame->samples.resize(film_.pixel_count(), static_cast<uint32_t>(settings_.spp));

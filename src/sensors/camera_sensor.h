@@ -44,6 +44,10 @@ struct PictureMemory {
   uint64_t frame = 0;    ///< of each CameraFrame
 };
 
+/// Longest path of a picture, in vertices: RenderOptions::max_depth, or what is usual in a scene
+/// with a [weather] or without.
+int path_depth(const RenderOptions& render, bool has_weather);
+
 class CameraSensor {
  public:
   /// `description` must outlive the sensor. Errors: unknown camera (with the nearest name), channel
@@ -102,8 +106,9 @@ class CameraSensor {
   /// The film's light, denoised where it is to be.
   std::vector<Vec3f>* denoise();
   Shutter shutter(std::span<const PoseFrame* const> keys) const;
+  /// `light`: that of the finished picture; null = as denoise() gives it.
   void convert(const PoseFrame& now, int64_t frame_index, const CameraView& view,
-               CameraFrame* frame);
+               std::vector<Vec3f>* light, CameraFrame* frame);
   const CameraDescription& camera() const {
     return description_.cameras[static_cast<size_t>(camera_)];
   }
@@ -121,7 +126,6 @@ class CameraSensor {
   std::unique_ptr<Denoiser> denoiser_;  // null: the samples as they are
   Film film_;
   std::vector<Vec3f> clean_;
-  std::vector<Vec3f>* light_ = nullptr;  // of the picture that is made
   mutable std::mutex pose_mutex_;
   Affine3f free_pose_, previous_free_pose_;
 };

@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/rng.h"
+#include "render/kernel/field.h"
 
 namespace gloam {
 namespace {
@@ -133,9 +134,8 @@ void LensDrops::draw(double time, std::vector<Vec3f>* picture) const {
         const float dx = static_cast<float>(x) + 0.5f - drop.center.x;
         const float d = std::sqrt(dx * dx + dy * dy);
         // Share of the pupil that looks through the drop.
-        const float t = clamp((reach - d) / (2 * soft), 0.0f, 1.0f);
-        if (!(t > 0)) continue;
-        const float share = t * t * (3 - 2 * t);
+        const float share = smooth_step(0, 2 * soft, reach - d);
+        if (!(share > 0)) continue;
         const Vec2f from{static_cast<float>(x) + 0.5f - dx * bend, py - dy * bend};
         // At its rim light is turned away from the lens.
         const float rim = min(d / radius, 1.0f), passes = 1 - 0.55f * rim * rim * rim * rim;

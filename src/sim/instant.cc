@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
 #include "scene/mujoco_guard.h"
 #include "sim/effects/wind.h"
 #include "sim/live_fields.h"
@@ -23,6 +25,8 @@ struct Instant::Solved {
   ModelPtr own_model;  // once live fields have changed
   uint64_t live_serial = 0;
   DataPtr data, scratch;
+  std::optional<WindOnBodies> wind;  // where it blows, of steps as long as wind_timestep
+  double wind_timestep = 0;
   bool good = false;  // the last forward pass was
 
   Status begin(const SnapshotData& in);
@@ -51,6 +55,7 @@ Status Instant::Solved::begin(const SnapshotData& in) {
   own_model.reset();
   scratch.reset();
   live_serial = 0;
+  wind.reset();
   model = *world->model;
   mjData* made = nullptr;
   GLOAM_TRY_STATUS(guarded([&] { made = mj_makeData(world->model.get()); }));
@@ -86,7 +91,11 @@ void Instant::Solved::blow(const SnapshotData& in) {
   if (!world->wind.blows()) return;
   give_air(&model.opt);
   if (in.live != nullptr && !in.live->values[field].empty()) return;
-  WindOnBodies(*world, exact_rational(in.timestep)).blow(in.step, data->qpos, &model.opt);
+  if (!wind || wind_timestep != in.timestep) {
+    wind.emplace(*world, exact_rational(in.timestep));
+    wind_timestep = in.timestep;
+  }
+  wind->blow(in.step, data->qpos, &model.opt);
 }
 
 Instant::Instant() : solved_(std::make_unique<Solved>()) {}

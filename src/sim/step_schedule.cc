@@ -90,6 +90,11 @@ Result<StepSchedule> StepSchedule::make(Rational rate, Rational phase, Rational 
   return schedule;
 }
 
+StepSchedule StepSchedule::at_most(Rational rate, Rational timestep) {
+  const Result<StepSchedule> schedule = make(rate, {0, 1}, timestep);
+  return schedule.ok() ? *schedule : StepSchedule();
+}
+
 int64_t StepSchedule::step_of(int64_t k) const {
   if (unit_ == 1) return static_cast<int64_t>(offset_ + k * stride_);  // no slow 128-bit division
   return static_cast<int64_t>(ceil_div(offset_ + k * stride_, unit_));

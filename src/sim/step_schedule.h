@@ -38,6 +38,8 @@ class StepSchedule {
   StepSchedule() = default;
   /// `rate` > 0 [Hz], `phase` >= 0 [s], `timestep` > 0 [s]; numbers up to 2^31.
   static Result<StepSchedule> make(Rational rate, Rational phase, Rational timestep);
+  /// Of `rate` from step 0, or where steps are longer than that of every step.
+  static StepSchedule at_most(Rational rate, Rational timestep);
 
   /// The step of event k >= 0.
   int64_t step_of(int64_t k) const;

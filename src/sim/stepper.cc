@@ -14,7 +14,15 @@
 namespace gloam {
 namespace {
 constexpr int kFirstSlots = 8;
+
+// With the poses of bodies and nothing that follows from them.
+void place_at_beginning(const CompiledWorld& world, const mjModel& model, mjData* data) {
+  reset_to_initial_state(world, model, *data);
+  mj_kinematics(&model, data);
+  mj_comPos(&model, data);
 }
+
+}  // namespace
 
 Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledWorld> world,
                                                  uint64_t seed, std::optional<double> timestep) {
@@ -46,11 +54,7 @@ Status Stepper::make_agents() {
   if (world_->agents.empty()) return {};
   const mjModel* model = &model_;
   mjData* data = data_.get();
-  GLOAM_TRY_STATUS(guarded([&] {
-    reset_to_initial_state(*world_, *model, *data);
-    mj_kinematics(model, data);
-    mj_comPos(model, data);
-  }));
+  GLOAM_TRY_STATUS(guarded([&] { place_at_beginning(*world_, *model, data); }));
   GLOAM_TRY(agents_,
             Agents::create(world_, seed_, exact_rational(model_.opt.timestep), model_, *data_));
   return {};
@@ -111,11 +115,7 @@ bool Stepper::reset() {
   mjData* data = data_.get();
   bool ok = true;
   if (agents_ != nullptr) {
-    ok = try_mujoco([&] {
-      reset_to_initial_state(*world_, *model, *data);
-      mj_kinematics(model, data);
-      mj_comPos(model, data);
-    });
+    ok = try_mujoco([&] { place_at_beginning(*world_, *model, data); });
     agents_->reset(*model, *data);
   }
   const Agents* agents = agents_.get();

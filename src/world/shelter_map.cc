@@ -1,10 +1,10 @@
 #include "world/shelter_map.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
+#include "geometry/shape_corners.h"
 #include "world/render_description.h"
 
 namespace gloam {
@@ -14,105 +14,49 @@ constexpr float kCell = 0.1f;     // [m], at least
 constexpr int kMostCells = 1024;  // along an edge
 constexpr float kLargest = 1000;  // [m] of what belongs to a place
 
-/// A unit sphere, cylinder or box about its centre as triangles.
-using Corners = std::vector<std::array<Vec3f, 3>>;
-
-Corners round_body(bool capped) {
-  constexpr int kAround = 16, kAlong = 8;
-  constexpr float kTurn = 6.2831853f;
-  Corners out;
-  const auto at = [&](int i, int j) -> Vec3f {
-    const float a = kTurn * static_cast<float>(i) / kAround;
-    if (capped) {  // rings 0 and 3 are the middles of the ends
-      const float r = j == 0 || j == 3 ? 0.0f : 1.0f;
-      return {r * std::cos(a), r * std::sin(a), j < 2 ? -1.0f : 1.0f};
-    }
-    const float b = kTurn / 2 * (static_cast<float>(j) / kAlong - 0.5f);
-    return {std::cos(b) * std::cos(a), std::cos(b) * std::sin(a), std::sin(b)};
-  };
-  for (int j = 0; j < (capped ? 3 : kAlong); ++j) {
-    for (int i = 0; i < kAround; ++i) {
-      out.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-      out.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-    }
-  }
-  return out;
-}
-
-/// The two faces of a box that can be its top lie among these.
-Corners box_body() {
-  Corners out;
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const float side : {-1.0f, 1.0f}) {
-      const auto corner = [&](float u, float v) -> Vec3f {
-        if (axis == 0) return {side, u, v};
-        if (axis == 1) return {v, side, u};
-        return {u, v, side};
-      };
-      out.push_back({corner(-1, -1), corner(1, -1), corner(1, 1)});
-      out.push_back({corner(-1, -1), corner(1, 1), corner(-1, 1)});
-    }
-  }
-  return out;
-}
-
-class Tops {
- public:
-  Tops(const RenderDescription& description, const std::vector<Affine3f>& X_WB)
-      : description_(description), X_WB_(X_WB) {}
-
-  /// visit(three corners in the world) for all that stands still and is shown.
-  template <class Visit>
-  void each_triangle(const Visit& visit) const {
-    for (const InstanceDescription& in : description_.instances) {
-      if (!in.is_static || !in.shown || !in.casts_shadow) continue;
-      const Affine3f X_WG = X_WB_[static_cast<size_t>(in.body)] * in.X_BG;
-      const auto place = [&](Vec3f p) { return transform_point(X_WG, p); };
-      const auto all = [&](const Corners& corners, Vec3f scale, Vec3f shift = {}) {
-        for (const auto& c : corners)
-          visit(place(c[0] * scale + shift), place(c[1] * scale + shift),
-                place(c[2] * scale + shift));
-      };
-      const Vec3f s = in.size;
-      switch (in.shape) {
-        case ShapeType::kMesh: {
-          const TriangleMesh& mesh = description_.meshes[static_cast<size_t>(in.mesh)];
-          for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3)
-            visit(place(mesh.positions[mesh.indices[t]]),
-                  place(mesh.positions[mesh.indices[t + 1]]),
-                  place(mesh.positions[mesh.indices[t + 2]]));
-          break;
-        }
-        case ShapeType::kBox:
-          all(box_, s);
-          break;
-        case ShapeType::kSphere:
-          all(sphere_, {s.x, s.x, s.x});
-          break;
-        case ShapeType::kEllipsoid:
-          all(sphere_, s);
-          break;
-        case ShapeType::kCapsule:
-          all(cylinder_, {s.x, s.x, s.y});
-          for (const float end : {-s.y, s.y}) all(sphere_, {s.x, s.x, s.x}, {0, 0, end});
-          break;
-        case ShapeType::kCylinder:
-          all(cylinder_, {s.x, s.x, s.y});
-          break;
-        case ShapeType::kPlane:  // ground
-          visit(X_WG.p, X_WG.p, X_WG.p);
-          break;
-        case ShapeType::kDeformable:
-          break;
+/// visit(three corners in the world) for all that stands still and is shown.
+template <class Visit>
+void each_triangle(const RenderDescription& description, const std::vector<Affine3f>& X_WB,
+                   const Visit& visit) {
+  for (const InstanceDescription& in : description.instances) {
+    if (!in.is_static || !in.shown || !in.casts_shadow) continue;
+    const Affine3f X_WG = X_WB[static_cast<size_t>(in.body)] * in.X_BG;
+    const auto place = [&](Vec3f p) { return transform_point(X_WG, p); };
+    const Vec3f s = in.size;
+    ShapeCorners corners;
+    switch (in.shape) {
+      case ShapeType::kMesh: {
+        const TriangleMesh& mesh = description.meshes[static_cast<size_t>(in.mesh)];
+        for (size_t t = 0; t + 2 < mesh.indices.size(); t += 3)
+          visit(place(mesh.positions[mesh.indices[t]]), place(mesh.positions[mesh.indices[t + 1]]),
+                place(mesh.positions[mesh.indices[t + 2]]));
+        break;
       }
+      case ShapeType::kBox:
+        add_box_corners(s, &corners);
+        break;
+      case ShapeType::kSphere:
+        add_ball_corners({s.x, s.x, s.x}, 0, &corners);
+        break;
+      case ShapeType::kEllipsoid:
+        add_ball_corners(s, 0, &corners);
+        break;
+      case ShapeType::kCapsule:
+        add_ball_corners({s.x, s.x, s.x}, s.y, &corners);
+        break;
+      case ShapeType::kCylinder:
+        add_lathe_corners({{s.x, s.x, -s.y}, {s.x, s.x, s.y}}, &corners);
+        break;
+      case ShapeType::kPlane:  // ground
+        visit(X_WG.p, X_WG.p, X_WG.p);
+        break;
+      case ShapeType::kDeformable:
+        break;
     }
+    for (size_t i = 0; i < corners.size(); i += 3)
+      visit(place(corners[i]), place(corners[i + 1]), place(corners[i + 2]));
   }
-
- private:
-  const RenderDescription& description_;
-  const std::vector<Affine3f>& X_WB_;
-  const Corners box_ = box_body(), sphere_ = round_body(false), cylinder_ = round_body(true);
-};
+}
 
 /// Raises the cells whose middles lie under the triangle.
 void raise(Vec3f a, Vec3f b, Vec3f c, ShelterMap* map) {
@@ -146,14 +90,13 @@ void raise(Vec3f a, Vec3f b, Vec3f c, ShelterMap* map) {
 std::shared_ptr<const ShelterMap> make_shelter_map(const RenderDescription& description,
                                                    const std::vector<Affine3f>& X_WB) {
   auto map = std::make_shared<ShelterMap>();
-  const Tops tops(description, X_WB);
   constexpr float kFar = std::numeric_limits<float>::infinity();
   Vec2f low{kFar, kFar}, high{-kFar, -kFar};
   const auto is_of_a_place = [](Vec3f p) {
     return std::fabs(p.x) < kLargest && std::fabs(p.y) < kLargest && std::isfinite(p.z);
   };
   map->lowest = kFar;
-  tops.each_triangle([&](Vec3f a, Vec3f b, Vec3f c) {
+  each_triangle(description, X_WB, [&](Vec3f a, Vec3f b, Vec3f c) {
     for (const Vec3f& p : {a, b, c}) {
       if (!is_of_a_place(p)) continue;
       map->lowest = std::min(map->lowest, p.z);
@@ -169,7 +112,7 @@ std::shared_ptr<const ShelterMap> make_shelter_map(const RenderDescription& desc
   map->nx = std::min(static_cast<int>((high.x - low.x) / map->cell) + 1, kMostCells);
   map->ny = std::min(static_cast<int>((high.y - low.y) / map->cell) + 1, kMostCells);
   map->height.assign(static_cast<size_t>(map->nx) * static_cast<size_t>(map->ny), -kFar);
-  tops.each_triangle([&](Vec3f a, Vec3f b, Vec3f c) {
+  each_triangle(description, X_WB, [&](Vec3f a, Vec3f b, Vec3f c) {
     if (is_of_a_place(a) && is_of_a_place(b) && is_of_a_place(c)) raise(a, b, c, map.get());
   });
   return map;

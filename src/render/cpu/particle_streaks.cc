@@ -5,7 +5,7 @@
 
 #include "base/parallel.h"
 #include "base/rng.h"
-#include "render/kernel/ambient.h"
+#include "render/cpu/particle_light.h"
 #include "render/kernel/fast.h"
 
 namespace gloam {
@@ -28,93 +28,6 @@ struct Streak {
   float distance = 0;  ///< [m]
   Vec3f light;         ///< that it sends to the camera [cd/m²]
   bool soft = false;   ///< thinner towards its edge
-};
-
-/// Light that arrives at the camera from all around, save that of lamps.
-AmbientCube light_around(const ParticleView& view, Vec3f p) {
-  constexpr int kLog2Paths = 9;
-  constexpr int64_t kPaths = int64_t{1} << kLog2Paths;
-  std::vector<Vec3f> light(kPaths), toward(kPaths);
-  parallel_for_range("light around particles", kPaths, 32, [&](int64_t begin, int64_t end) {
-    for (int64_t i = begin; i < end; ++i) {
-      Sampler sampler = Sampler::make(0, 0, 0, 0, static_cast<uint32_t>(i), kLog2Paths);
-      const Vec2f u = sampler.next_2d();
-      const float z = 2 * u.x - 1, r = safe_sqrt(1 - z * z);
-      Ray ray;
-      ray.o = p;
-      ray.d = {r * std::cos(2 * kPi * u.y), r * std::sin(2 * kPi * u.y), z};
-      constexpr int kDepth = 3;
-      light[static_cast<size_t>(i)] =
-          ambient::incoming(view.scene, view.tracer, ray, kDepth, sampler);
-      toward[static_cast<size_t>(i)] = ray.d;
-    }
-  });
-  AmbientCube cube;
-  for (int facing = 0; facing < LightGuide::kFacings; ++facing) {
-    const float side = facing % 2 == 0 ? 1.0f : -1.0f;
-    Vec3f sum;
-    float weight = 0;
-    for (size_t i = 0; i < light.size(); ++i) {
-      const float cosine = side * toward[i][facing / 2];
-      if (cosine <= 0) continue;
-      sum += light[i] * cosine;
-      weight += cosine;
-    }
-    cube.light[facing] = sum * (1 / weight);
-  }
-  return cube;
-}
-
-/// The picture as drops show it: a blur of some twenty degrees, on a coarse grid.
-class BlurredPicture {
- public:
-  BlurredPicture(const Film& film, const std::vector<Vec3f>& picture, float focal)
-      : cell_(std::max(4, film.width / 32)),
-        nx_((film.width + cell_ - 1) / cell_),
-        ny_((film.height + cell_ - 1) / cell_),
-        light_(static_cast<size_t>(nx_ * ny_)) {
-    std::vector<Vec3f> mean(light_.size());
-    for (int j = 0; j < ny_; ++j) {
-      for (int i = 0; i < nx_; ++i) {
-        Vec3f sum;
-        int count = 0;
-        for (int y = j * cell_; y < std::min((j + 1) * cell_, film.height); ++y) {
-          for (int x = i * cell_; x < std::min((i + 1) * cell_, film.width); ++x, ++count)
-            sum += picture[static_cast<size_t>(y) * static_cast<size_t>(film.width) +
-                           static_cast<size_t>(x)];
-        }
-        mean[static_cast<size_t>(j * nx_ + i)] = sum * (1 / static_cast<float>(count));
-      }
-    }
-    constexpr float kAngle = 0.35f;  // [rad]
-    const int reach = std::max(1, static_cast<int>(kAngle * focal / static_cast<float>(cell_)));
-    for (int j = 0; j < ny_; ++j) {
-      for (int i = 0; i < nx_; ++i) {
-        Vec3f sum;
-        float weight = 0;
-        for (int y = std::max(j - reach, 0); y <= std::min(j + reach, ny_ - 1); ++y) {
-          for (int x = std::max(i - reach, 0); x <= std::min(i + reach, nx_ - 1); ++x) {
-            const auto far2 = static_cast<float>((x - i) * (x - i) + (y - j) * (y - j));
-            const float w =
-                std::max(0.0f, 1 - far2 / static_cast<float>((reach + 1) * (reach + 1)));
-            sum += mean[static_cast<size_t>(y * nx_ + x)] * w;
-            weight += w;
-          }
-        }
-        light_[static_cast<size_t>(j * nx_ + i)] = sum * (1 / weight);
-      }
-    }
-  }
-  Vec3f at(Vec2f uv) const {
-    const auto cell = [&](float x, int n) {
-      return std::clamp(static_cast<int>(x / static_cast<float>(cell_)), 0, n - 1);
-    };
-    return light_[static_cast<size_t>(cell(uv.y, ny_) * nx_ + cell(uv.x, nx_))];
-  }
-
- private:
-  int cell_, nx_, ny_;
-  std::vector<Vec3f> light_;
 };
 
 /// Projects points at times of the shutter.
@@ -389,8 +302,8 @@ float mean_cover(const ParticleView& view, const ParticleSet& set, const StreakF
 
 void draw_particles(const ParticleView& view, const Film& film, std::vector<Vec3f>* radiance) {
   const Vec3f eye = view.camera.pose.X_WC_open.p;
-  const AmbientCube around = light_around(view, eye);
-  const BlurredPicture blurred(film, *radiance, view.camera.fx);
+  const AmbientCube around = light_around(view.scene, view.tracer, eye);
+  const BlurredPicture blurred(*radiance, film.width, film.height, view.camera.fx);
   const StreakFinder finder(view, film, around, blurred);
   uint32_t row = 0;
   for (const ParticleSet& set : view.weather.particles) {

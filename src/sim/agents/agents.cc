@@ -35,8 +35,7 @@ Result<std::unique_ptr<Agents>> Agents::create(std::shared_ptr<const CompiledWor
     return error;
   }
   made->decisions_ = *decisions;
-  const Result<StepSchedule> motions = StepSchedule::make(kMotionRate, {0, 1}, timestep);
-  if (motions.ok()) made->motions_ = *motions;  // else every step
+  made->motions_ = StepSchedule::at_most(kMotionRate, timestep);
   made->timestep_ = timestep.value();
   made->decision_time_ = 1 / o.rate.value();
   GLOAM_TRY(made->nav_, NavWorld::create(*world, m, data));

@@ -4,87 +4,23 @@
 #include <cmath>
 #include <limits>
 
+#include "geometry/shape_corners.h"
+#include "sim/effects/collider_mesh.h"
+
 namespace gloam {
 namespace {
 
-constexpr int kSides = 16;
 constexpr float kInfinite = std::numeric_limits<float>::infinity();
 
-using Corners = std::vector<Vec3f>;
-
-void add_triangle(Vec3f a, Vec3f b, Vec3f c, Corners* out) {
-  out->push_back(a), out->push_back(b), out->push_back(c);
-}
-
-void add_box_faces(Vec3f half, Corners* out) {
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const float sign : {-1.0f, 1.0f}) {
-      const auto at = [&](float u, float v) {
-        float p[3];
-        p[axis] = sign * half[axis];
-        p[(axis + 1) % 3] = u * half[(axis + 1) % 3];
-        p[(axis + 2) % 3] = v * half[(axis + 2) % 3];
-        return Vec3f{p[0], p[1], p[2]};
-      };
-      add_triangle(at(-1, -1), at(1, -1), at(1, 1), out);
-      add_triangle(at(-1, -1), at(1, 1), at(-1, 1), out);
-    }
-  }
-}
-
-// A surface about z through rings of (radius in x, in y, z), closed at both ends.
-void add_lathe(const std::vector<Vec3f>& rings, Corners* out) {
-  const auto at = [&](size_t ring, int side) {
-    const float angle = 2 * kPi * static_cast<float>(side) / kSides;
-    const Vec3f r = rings[ring];
-    return Vec3f{r.x * std::cos(angle), r.y * std::sin(angle), r.z};
-  };
-  for (int side = 0; side < kSides; ++side) {
-    for (size_t ring = 0; ring + 1 < rings.size(); ++ring) {
-      add_triangle(at(ring, side), at(ring, side + 1), at(ring + 1, side + 1), out);
-      add_triangle(at(ring, side), at(ring + 1, side + 1), at(ring + 1, side), out);
-    }
-    add_triangle({0, 0, rings.front().z}, at(0, side), at(0, side + 1), out);
-    add_triangle({0, 0, rings.back().z}, at(rings.size() - 1, side), at(rings.size() - 1, side + 1),
-                 out);
-  }
-}
-
-// Half axes; a cylinder of that half length stands between the halves.
-void add_ball(Vec3f radii, float half_length, Corners* out) {
-  std::vector<Vec3f> rings;
-  constexpr int kRings = 4;  // of a half
-  for (const float side : {-1.0f, 1.0f}) {
-    for (int i = 0; i < kRings; ++i) {
-      const int k = side < 0 ? kRings - 1 - i : i;
-      const float angle = 0.5f * kPi * static_cast<float>(k) / kRings;
-      rings.push_back({radii.x * std::cos(angle), radii.y * std::cos(angle),
-                       side * (half_length + radii.z * std::sin(angle))});
-    }
-  }
-  rings.insert(rings.begin(), {0, 0, -half_length - radii.z});
-  rings.push_back({0, 0, half_length + radii.z});
-  add_lathe(rings, out);
-}
-
-void add_hull(const mjModel& m, int mesh, Corners* out) {
+void add_hull(const mjModel& m, int mesh, ShapeCorners* out) {
   const float* vertices = m.mesh_vert + 3 * m.mesh_vertadr[mesh];
-  const int *faces, *end;
-  if (m.mesh_graphadr[mesh] >= 0) {  // numvert, numface, …: mjModel::mesh_graph
-    const int* graph = m.mesh_graph + m.mesh_graphadr[mesh];
-    faces = graph + 2 + 2 * graph[0] + graph[0] + 3 * graph[1];
-    end = faces + 3 * graph[1];
-  } else {
-    faces = m.mesh_face + 3 * m.mesh_faceadr[mesh];
-    end = faces + 3 * m.mesh_facenum[mesh];
-  }
-  for (; faces < end; ++faces) {
-    const float* v = vertices + 3 * *faces;
+  for (const int i : hull_faces(m, mesh)) {
+    const float* v = vertices + 3 * i;
     out->push_back({v[0], v[1], v[2]});
   }
 }
 
-void add_ground(const mjModel& m, int hfield, Corners* out) {
+void add_ground(const mjModel& m, int hfield, ShapeCorners* out) {
   const int rows = m.hfield_nrow[hfield], columns = m.hfield_ncol[hfield];
   const mjtNum* size = m.hfield_size + 4 * hfield;
   const float* data = m.hfield_data + m.hfield_adr[hfield];
@@ -104,7 +40,7 @@ void add_ground(const mjModel& m, int hfield, Corners* out) {
 }
 
 // Anticlockwise from outside of a shape that holds `inside`.
-void wind_outwards(Vec3f inside, Corners* corners) {
+void wind_outwards(Vec3f inside, ShapeCorners* corners) {
   for (size_t i = 0; i + 2 < corners->size(); i += 3) {
     Vec3f* t = corners->data() + i;
     const Vec3f normal = cross(t[1] - t[0], t[2] - t[0]);
@@ -114,7 +50,7 @@ void wind_outwards(Vec3f inside, Corners* corners) {
 
 // A plane within bounds, about the point of it that is nearest to their middle.
 void add_plane_square(const mjtNum* size, const mjtNum* p, const mjtNum* R, const NavBounds& b,
-                      Corners* out) {
+                      ShapeCorners* out) {
   const Vec3f middle = (b.low + b.high) * 0.5f;
   const double away[3] = {double{middle.x} - p[0], double{middle.y} - p[1],
                           double{middle.z} - p[2]};
@@ -142,24 +78,24 @@ ColliderSurface collider_surface(const mjModel& m, int geom, const mjtNum* p, co
   const mjtNum* size = m.geom_size + 3 * geom;
   const float a = static_cast<float>(size[0]), b = static_cast<float>(size[1]),
               c = static_cast<float>(size[2]);
-  Corners* out = &surface.corners;
+  ShapeCorners* out = &surface.corners;
   surface.is_solid = true;
   Vec3f inside;
   switch (m.geom_type[geom]) {
     case mjGEOM_BOX:
-      add_box_faces({a, b, c}, out);
+      add_box_corners({a, b, c}, out);
       break;
     case mjGEOM_SPHERE:
-      add_ball({a, a, a}, 0, out);
+      add_ball_corners({a, a, a}, 0, out);
       break;
     case mjGEOM_ELLIPSOID:
-      add_ball({a, b, c}, 0, out);
+      add_ball_corners({a, b, c}, 0, out);
       break;
     case mjGEOM_CAPSULE:
-      add_ball({a, a, a}, b, out);
+      add_ball_corners({a, a, a}, b, out);
       break;
     case mjGEOM_CYLINDER:
-      add_lathe({{a, a, -b}, {a, a, b}}, out);
+      add_lathe_corners({{a, a, -b}, {a, a, b}}, out);
       break;
     case mjGEOM_MESH: {
       add_hull(m, m.geom_dataid[geom], out);

@@ -29,22 +29,27 @@ std::vector<bool> colliders(const mjModel& m) {
   return collide;
 }
 
+std::span<const int> hull_faces(const mjModel& m, int mesh) {
+  if (m.mesh_graphadr[mesh] < 0) {  // too small for a hull: it is one
+    return {m.mesh_face + 3 * m.mesh_faceadr[mesh], static_cast<size_t>(3 * m.mesh_facenum[mesh])};
+  }
+  // numvert, numface, edge addresses, vertex numbers, edge lists, faces: mjModel::mesh_graph.
+  const int* graph = m.mesh_graph + m.mesh_graphadr[mesh];
+  const int n = graph[0], n_faces = graph[1];
+  return {graph + 2 + 2 * n + n + 3 * n_faces, static_cast<size_t>(3 * n_faces)};
+}
+
 // A face's plane is moved out to the outermost point of all, so that slivers, whose normals are
 // noise, cut nothing off.
 std::vector<SolidPlane> hull_planes(const mjModel& m, int mesh) {
   const float* vertices = m.mesh_vert + 3 * m.mesh_vertadr[mesh];
-  std::vector<int> points, faces;  // numbers of vertices
+  const std::span<const int> faces = hull_faces(m, mesh);
+  std::vector<int> points;  // numbers of vertices
   if (m.mesh_graphadr[mesh] >= 0) {
-    // numvert, numface, edge addresses, vertex numbers, edge lists, faces: mjModel::mesh_graph.
     const int* graph = m.mesh_graph + m.mesh_graphadr[mesh];
-    const int n = graph[0], n_faces = graph[1];
-    points.assign(graph + 2 + n, graph + 2 + 2 * n);
-    const int* first = graph + 2 + 2 * n + n + 3 * n_faces;
-    faces.assign(first, first + 3 * n_faces);
-  } else {  // of a mesh too small for a hull: it is one
+    points.assign(graph + 2 + graph[0], graph + 2 + 2 * graph[0]);
+  } else {
     for (int i = 0; i < m.mesh_vertnum[mesh]; ++i) points.push_back(i);
-    const int* first = m.mesh_face + 3 * m.mesh_faceadr[mesh];
-    faces.assign(first, first + 3 * m.mesh_facenum[mesh]);
   }
   const auto at = [&](int i, double* p) {
     for (int axis = 0; axis < 3; ++axis) p[axis] = double{vertices[3 * i + axis]};

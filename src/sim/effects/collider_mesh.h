@@ -1,6 +1,7 @@
 #pragma once
 // What MuJoCo collides meshes and height fields as: hulls and prisms, as planes.
 
+#include <span>
 #include <vector>
 
 #include "sim/effects/grid_solid.h"
@@ -9,6 +10,9 @@ namespace gloam {
 
 /// Which geoms can be touched.
 std::vector<bool> colliders(const mjModel& model);
+
+/// Numbers of vertices, three for each face of the convex hull that a mesh collides as.
+std::span<const int> hull_faces(const mjModel& model, int mesh);
 
 /// The planes of the convex hull that a mesh collides as, in the mesh's frame [m].
 std::vector<SolidPlane> hull_planes(const mjModel& model, int mesh);

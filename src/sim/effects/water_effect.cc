@@ -4,19 +4,11 @@
 #include "sim/effects/water_surface.h"
 
 namespace gloam {
-namespace {
-
-// All waters have one rate. Where steps are longer than that, ripples go on at each.
-StepSchedule ripple_schedule(const WaterDescription& water, Rational timestep) {
-  const Result<StepSchedule> schedule = StepSchedule::make(water.ripple_rate, {0, 1}, timestep);
-  return schedule.ok() ? *schedule : StepSchedule();
-}
-
-}  // namespace
 
 std::unique_ptr<WaterEffect> WaterEffect::create(std::shared_ptr<const CompiledWorld> world,
                                                  Rational timestep) {
-  const StepSchedule schedule = ripple_schedule(world->waters.front(), timestep);
+  // All waters have one rate.
+  const auto schedule = StepSchedule::at_most(world->waters.front().ripple_rate, timestep);
   return std::unique_ptr<WaterEffect>(new WaterEffect(std::move(world), timestep, schedule));
 }
 

@@ -27,11 +27,6 @@ double below(double frequency, double turnover) {
   return 1 - std::pow(1 + 6 * frequency * turnover, -2.0 / 3);
 }
 
-StepSchedule gust_schedule(Rational timestep) {
-  const Result<StepSchedule> schedule = StepSchedule::make(kGustRate, {0, 1}, timestep);
-  return schedule.ok() ? *schedule : StepSchedule();  // longer steps: at each
-}
-
 }  // namespace
 
 Wind::Wind(const WindDescription& wind) : wind_(wind), tones_{} {
@@ -82,7 +77,9 @@ void give_air(mjOption* option) {
 }
 
 WindOnBodies::WindOnBodies(const CompiledWorld& world, Rational timestep)
-    : wind_(world.wind), schedule_(gust_schedule(timestep)), timestep_(timestep.value()) {
+    : wind_(world.wind),
+      schedule_(StepSchedule::at_most(kGustRate, timestep)),
+      timestep_(timestep.value()) {
   const mjModel& m = *world.model;
   const std::vector<Affine3f> X_WB = body_poses_at_qpos0(m);
   double mass = 0;

@@ -6,7 +6,7 @@
 #include <chrono>
 
 #include "agent_rig.h"
-#include "base/parallel.h"
+#include "same_hash.h"
 #include "sim/pose_solver.h"
 
 namespace gloam {
@@ -193,32 +193,18 @@ std::unique_ptr<AgentRig> crowd_rig() {
 uint64_t hash_of_run(SimulatorOptions options, bool watched = false) {
   static const std::shared_ptr<const CompiledWorld> world = crowd_rig()->compile();
   auto sim = make_simulator(world, std::move(options));
-  std::thread watcher;
+  std::function<void(const Snapshot&)> look;
   if (watched) {
-    auto queue = *sim->subscribe({.rate = {60, 1}, .capacity = 2});
-    watcher = std::thread([queue, sim = sim.get()] {
-      auto solver = *PoseSolver::create(sim->world());
-      PoseFrame frame;
-      while (Snapshot s = queue->next()) EXPECT_TRUE(solver->solve(s, frame).ok());
-    });
+    std::shared_ptr<PoseSolver> solver = *PoseSolver::create(sim->world());
+    look = [solver, frame = PoseFrame()](const Snapshot& snapshot) mutable {
+      EXPECT_TRUE(solver->solve(snapshot, frame).ok());
+    };
   }
-  sim->start(2500);
-  EXPECT_TRUE(sim->wait().ok());
-  const uint64_t hash = sim->latest().hash();
-  sim->stop();
-  if (watcher.joinable()) watcher.join();
-  return hash;
+  return hash_after_steps(std::move(sim), 2500, look);
 }
 
 TEST(Agents, HashDoesNotDependOnThreadsPaceOrWatchers) {
-  const uint64_t reference = hash_of_run({});
-  for (const int threads : {1, 2, 4}) {
-    set_thread_count(threads);
-    EXPECT_EQ(hash_of_run({}), reference) << threads << " threads";
-  }
-  set_thread_count(0);
-  EXPECT_EQ(hash_of_run({.pace = Pace::kRealTime, .speed = 10}), reference);
-  EXPECT_EQ(hash_of_run({}, true), reference) << "with a watcher";
+  const uint64_t reference = expect_one_hash(hash_of_run);
   EXPECT_NE(hash_of_run({.seed = 2}), reference) << "the seed decides where they go";
 }
 

@@ -2,9 +2,8 @@
 
 #include <numeric>
 
-#include "base/parallel.h"
+#include "same_hash.h"
 #include "sim/pose_solver.h"
-#include "test_world.h"
 
 namespace gloam {
 namespace {
@@ -62,32 +61,14 @@ double smoke_in(const Snapshot& snapshot) {
 }
 
 uint64_t hash_after(const Air& air, int64_t steps, SimulatorOptions options, bool watched = false) {
-  auto sim = make_simulator(world_with(air), std::move(options));
-  std::thread watcher;
-  if (watched) {
-    auto queue = *sim->subscribe({.rate = {60, 1}, .capacity = 2});
-    watcher = std::thread([queue] {
-      while (Snapshot s = queue->next()) frame_of(s);
-    });
-  }
-  sim->start(steps);
-  sim->run_until(steps);
-  EXPECT_TRUE(sim->wait().ok());
-  const uint64_t hash = sim->latest().hash();
-  sim->stop();
-  if (watcher.joinable()) watcher.join();
-  return hash;
+  std::function<void(const Snapshot&)> look;
+  if (watched) look = [](const Snapshot& snapshot) { frame_of(snapshot); };
+  return hash_after_steps(make_simulator(world_with(air), std::move(options)), steps, look);
 }
 
 TEST(Effects, HashDoesNotDependOnThreadsPaceOrWatchers) {
-  const uint64_t reference = hash_after({}, 200, {});
-  for (const int threads : {1, 2, 4}) {
-    set_thread_count(threads);
-    EXPECT_EQ(hash_after({}, 200, {}), reference) << threads << " threads";
-  }
-  set_thread_count(0);
-  EXPECT_EQ(hash_after({}, 200, {.pace = Pace::kRealTime, .speed = 10}), reference);
-  EXPECT_EQ(hash_after({}, 200, {}, true), reference) << "with a watcher";
+  expect_one_hash(
+      [](SimulatorOptions options, bool watched) { return hash_after({}, 200, options, watched); });
 }
 
 TEST(Effects, TheAirIsInTheHash) {

@@ -5,10 +5,9 @@
 #include <cmath>
 #include <numbers>
 
-#include "base/parallel.h"
+#include "same_hash.h"
 #include "sim/effects/water_ripples.h"
 #include "sim/effects/water_surface.h"
-#include "test_world.h"
 
 namespace gloam {
 namespace {
@@ -243,33 +242,14 @@ std::shared_ptr<CompiledWorld> rough_pool(double height = 0.1) {
 }
 
 uint64_t rough_hash(SimulatorOptions options, bool watched = false, double height = 0.1) {
-  auto sim = make_simulator(rough_pool(height), std::move(options));
-  std::thread watcher;
-  if (watched) {
-    auto queue = *sim->subscribe({.rate = {60, 1}, .capacity = 2});
-    watcher = std::thread([queue] {
-      while (queue->next()) {
-      }
-    });
-  }
-  sim->start(1000);
-  sim->run_until(1000);
-  EXPECT_TRUE(sim->wait().ok());
-  const uint64_t hash = sim->latest().hash();
-  sim->stop();
-  if (watcher.joinable()) watcher.join();
-  return hash;
+  std::function<void(const Snapshot&)> look;
+  if (watched) look = [](const Snapshot&) {};
+  return hash_after_steps(make_simulator(rough_pool(height), std::move(options)), 1000, look);
 }
 
 TEST(WaterEffectRun, HashDoesNotDependOnThreadsPaceOrWatchers) {
-  const uint64_t reference = rough_hash({});
-  for (const int threads : {1, 2, 4}) {
-    set_thread_count(threads);
-    EXPECT_EQ(rough_hash({}), reference) << threads << " threads";
-  }
-  set_thread_count(0);
-  EXPECT_EQ(rough_hash({.pace = Pace::kRealTime, .speed = 10}), reference);
-  EXPECT_EQ(rough_hash({}, true), reference) << "with a watcher";
+  const uint64_t reference = expect_one_hash(
+      [](SimulatorOptions options, bool watched) { return rough_hash(options, watched); });
   EXPECT_NE(rough_hash({}, false, 0.101), reference);
 }
 
