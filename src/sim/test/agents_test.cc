@@ -345,7 +345,7 @@ TEST(Agents, StepCost) {
   AgentRig rig("");
   rig.scene.environment.file.clear();
   rig.scene.environment.warehouse = WarehouseOptions{};
-  const auto time_of = [&](int people) {
+  const auto stepper_with = [&](int people) {
     rig.scene.crowds.clear();
     if (people > 0) {
       CrowdOptions& crowd = rig.scene.crowds.emplace_back();
@@ -354,22 +354,26 @@ TEST(Agents, StepCost) {
     }
     auto stepper = rig.stepper();
     run(stepper.get(), 1);
-    double best = 1e9;
-    for (int round = 0; round < 5; ++round) {
-      timespec begin{}, end{};
-      clock_gettime(CLOCK_THREAD_CPUTIME_ID, &begin);
-      run(stepper.get(), 2);
-      clock_gettime(CLOCK_THREAD_CPUTIME_ID, &end);
-      best = std::min(
-          best, double(end.tv_sec - begin.tv_sec) + 1e-9 * double(end.tv_nsec - begin.tv_nsec));
-    }
-    return best / 1000;
+    return stepper;
   };
-  const double with = time_of(8), without = time_of(0);
+  const auto seconds_per_step = [](Stepper* stepper) {
+    timespec begin{}, end{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &begin);
+    run(stepper, 2);
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &end);
+    return (double(end.tv_sec - begin.tv_sec) + 1e-9 * double(end.tv_nsec - begin.tv_nsec)) / 1000;
+  };
+  auto crowded = stepper_with(8), empty = stepper_with(0);
+  double with = 1e9, without = 1e9;
+  for (int round = 0; round < 5; ++round) {  // in turn: what else the machine does slows both
+    with = std::min(with, seconds_per_step(crowded.get()));
+    without = std::min(without, seconds_per_step(empty.get()));
+  }
   RecordProperty("agents_ms_per_step", std::to_string(1e3 * (with - without)));
   printf("8 people: %.4f ms a step (%.4f with, %.4f without)\n", 1e3 * (with - without), 1e3 * with,
          1e3 * without);
-  EXPECT_LT(with - without, 60e-6) << "twice the bar, for machines that are busy";
+  // The bar is 8 % of the warehouse's 0.37 ms; a share, since busy machines are slow at both.
+  EXPECT_LT(with / without, 1.16) << "8 people take more than twice the bar of 0.03 ms";
 }
 
 }  // namespace
