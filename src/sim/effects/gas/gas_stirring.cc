@@ -23,12 +23,12 @@ float far_wake_speed(const GasRotor& rotor, float voxel, float ambient_density) 
 namespace {
 
 /// Share of the thrust per volume that air at `away` [voxels] from the hub gets, before it is made
-/// to sum up to 1: even over the disc, with edges of a voxel; a hat function across it.
+/// to sum up to 1: even over the disc, less towards its edge; a hat function across it.
 float disc_weight(Vec3f away, Vec3f axis, float radius) {
   const float across = dot(away, axis);
   const float out = length(away - axis * across);
   return max(1.0f - std::abs(across) * (1 / gas::kDiscReach), 0.0f) *
-         clamp(radius - out + 0.5f, 0.0f, 1.0f);
+         clamp((radius - out) * (1 / gas::kDiscEdge) + 0.5f, 0.0f, 1.0f);
 }
 
 }  // namespace
@@ -50,7 +50,8 @@ void GasSolver::State::push_by(const GasRotor& rotor, Vec3f hub, float dt) {
     int from[3], to[3];
     for (int b = 0; b < 3; ++b) {
       const float tilt = std::sqrt(max(1.0f - rotor.axis[b] * rotor.axis[b], 0.0f));
-      const float reach = (radius + 0.5f) * tilt + gas::kDiscReach * std::abs(rotor.axis[b]);
+      const float reach =
+          (radius + 0.5f * gas::kDiscEdge) * tilt + gas::kDiscReach * std::abs(rotor.axis[b]);
       const float n = float(faces.n(b));
       from[b] = int(clamp(std::ceil(p[b] - first[b] - reach), 0.0f, n));
       to[b] = int(clamp(std::floor(p[b] - first[b] + reach) + 1, 0.0f, n));
