@@ -33,11 +33,11 @@ Status check_rotor(const RotorOptions& rotor) {
         rotor.loc, "give one of them"};
   }
   if (rotor.thrust.has_value() == rotor.site.empty()) {
-    return Error{ErrorKind::kInput,
-                 fmt::format(rotor.thrust ? "rotor '{}' has a thrust beside its actuator's force"
-                                          : "rotor '{}' stands at a site and has no thrust",
-                             rotor.name),
-                 rotor.loc, "'thrust' goes with 'site'"};
+    return Error{
+        ErrorKind::kInput,
+        fmt::format("rotor '{}' has {}", rotor.name,
+                    rotor.thrust ? "a thrust beside its actuator's force" : "a site and no thrust"),
+        rotor.loc, "'thrust' goes with 'site'"};
   }
   return {};
 }

@@ -66,7 +66,7 @@ void Stepper::take_model(const mjModel& model) {
   owns_all_ = false;
   model_.opt.disableflags |= mjDSBL_AUTORESET;
   if (timestep_) model_.opt.timestep = *timestep_;
-  if (world_->wind.blows()) give_air(&model_.opt);
+  if (has_air(*world_)) give_air(&model_.opt);
 }
 
 // Live fields are written into the arrays: not into those that all simulations of the World share.
@@ -224,10 +224,12 @@ bool Stepper::step() {
   AppliedInputs* inputs = inputs_.get();
   const bool ok = try_mujoco([=, this] {
     inputs->before_step(*model, *data);
+    if (effects_ != nullptr) effects_->begin_step(step_, model_, *data);
     if (water_ != nullptr) hash_ = water_->begin_step(step_, model_, *data, hash_);
     mj_step(model, data);
   });
   if (water_ != nullptr) water_->end_step(model_, *data);
+  if (effects_ != nullptr) effects_->end_step(*data);
   if (!ok) {
     Error error{ErrorKind::kDiverged, mujoco_error_message()};
     error.message +=
@@ -237,6 +239,7 @@ bool Stepper::step() {
   count_diagnostics();
   uint64_t hash = hash_;
   if (agents_ != nullptr) hash = agents_->advance(step_ + 1, *model, data, hash);
+  if (effects_ != nullptr) effects_->gather(*model, *data, agents_.get());
   reader_.read(next_state_.data());
   if (!is_sound(*model, *data, next_state_)) {
     return fail(describe_divergence(*model, *data, next_state_, step_, time()));

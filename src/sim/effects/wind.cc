@@ -70,6 +70,10 @@ Vec3 Wind::at(double time, double height) const {
   return {mean * wind_.along_x + more.x, mean * wind_.along_y + more.y, more.z};
 }
 
+bool has_air(const CompiledWorld& world) {
+  return world.wind.blows() || !world.gases.gases.empty();
+}
+
 void give_air(mjOption* option) {
   if (option->density > 0 || option->viscosity > 0) return;
   option->density = kAirDensity;

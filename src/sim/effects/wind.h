@@ -36,6 +36,8 @@ class Wind {
   std::array<std::array<Tone, kTones>, 3> tones_;  // along, across, up
 };
 
+/// Do bodies move in air: has the scene wind, or a gas?
+bool has_air(const CompiledWorld& world);
 /// Gives a model that has no fluid of its own air to move in.
 void give_air(mjOption* option);
 
