@@ -48,8 +48,9 @@ Result<std::unique_ptr<GasEffect>> GasEffect::create(std::shared_ptr<const Compi
   }
   if (!all.dusts.empty() && gas.medium.name == "dust") {
     effect->ground_dust_ = std::make_unique<GroundDust>(all.dusts, grid_of(gas));
-    effect->contact_dust_ =
-        std::make_unique<ContactDust>(*effect->world_, gas.low, gas.low + gas.size());
+    // Contacts lie a little below the ground.
+    effect->contact_dust_ = std::make_unique<ContactDust>(
+        *effect->world_, gas.low - Vec3f{0, 0, gas.voxel}, gas.low + gas.size());
   }
   effect->make_clear();
   effect->thread_ = std::thread([raw = effect.get()] { raw->run_thread(); });
@@ -200,7 +201,8 @@ void GasEffect::solve(const Snapshot& now, std::span<const DustDeposit> deposits
   if (rotor_thrust_ != nullptr && !rotor_thrust_->solve(now, &rotors_).ok()) rotors_.clear();
   std::span<const GasEmission> dust;
   if (ground_dust_ != nullptr)
-    dust = ground_dust_->find(*solver_, obstacles_->still(), !gas().open[4], deposits, interval);
+    dust = ground_dust_->find(*solver_, obstacles_->still(), walls_, !gas().open[4], deposits,
+                              interval);
   const GasStep step =
       solver_->step(static_cast<float>(interval), sources_, wind(now.time()), rotors_, dust);
   warn_of_blocked(step);

@@ -9,6 +9,7 @@ namespace gloam {
 namespace {
 
 constexpr double kDustyAirDensity = 1.2;  // [kg/m³]
+constexpr int kMostRings = 10;            // of cells around a deposit that are looked at for air
 
 }  // namespace
 
@@ -54,27 +55,37 @@ void GroundDust::blow(const GasSolver& air, const GasWalls& still) {
   }
 }
 
-// Into the air right above, or the cell over it where that is in the ground.
-void GroundDust::put(const GasWalls& still, std::span<const DustDeposit> deposits,
+// Into the nearest air around what raised it, in the layer of cells above the ground.
+void GroundDust::put(const GasWalls& walls, std::span<const DustDeposit> deposits,
                      double interval) {
-  const auto along = [&](float x, int n) { return std::clamp(static_cast<int>(x), 0, n - 1); };
+  const auto along = [](float x, int n) { return std::clamp(static_cast<int>(x), 0, n - 1); };
   for (const DustDeposit& deposit : deposits) {
     const Vec3f p = (deposit.p - grid_.low) / grid_.voxel;
-    const int i = along(p.x, grid_.nx), j = along(p.y, grid_.ny);
-    int k = along(p.z + 0.25f, grid_.nz);
-    if (still.solid[still.cell(i, j, k)] != 0 && k + 1 < grid_.nz) ++k;
-    emissions_.push_back(
-        {still.cell(i, j, k), static_cast<float>(double{deposit.mass} / interval)});
+    const int i = along(p.x, grid_.nx), j = along(p.y, grid_.ny), k = along(p.z + 0.25f, grid_.nz);
+    const size_t first = emissions_.size();
+    for (int ring = 0; ring <= kMostRings && emissions_.size() == first; ++ring) {
+      for (int y = std::max(j - ring, 0); y <= std::min(j + ring, grid_.ny - 1); ++y) {
+        for (int x = std::max(i - ring, 0); x <= std::min(i + ring, grid_.nx - 1); ++x) {
+          const bool on_ring = std::max(std::abs(x - i), std::abs(y - j)) == ring;
+          const size_t cell = walls.cell(x, y, k);
+          if (on_ring && walls.solid[cell] == 0) emissions_.push_back({cell, 0});
+        }
+      }
+    }
+    const double cells = static_cast<double>(emissions_.size() - first);
+    for (size_t n = first; n < emissions_.size(); ++n)
+      emissions_[n].rate = static_cast<float>(double{deposit.mass} / (interval * cells));
   }
 }
 
 std::span<const GasEmission> GroundDust::find(const GasSolver& air, const GasWalls& still,
-                                              bool floor, std::span<const DustDeposit> deposits,
+                                              const GasWalls& walls, bool floor,
+                                              std::span<const DustDeposit> deposits,
                                               double interval) {
   find_ground(still, floor);
   emissions_.clear();
   blow(air, still);
-  put(still, deposits, interval);
+  put(walls, deposits, interval);
   std::stable_sort(emissions_.begin(), emissions_.end(),
                    [](const GasEmission& a, const GasEmission& b) { return a.cell < b.cell; });
   size_t n = 0;

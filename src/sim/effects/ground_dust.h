@@ -14,16 +14,17 @@ class GroundDust {
  public:
   GroundDust(const std::vector<DustDescription>& dusts, const GasGrid& grid);
 
-  /// `still`: walls of what stands still; ground is the lowest of them in each column of cells that
-  /// air lies on. `floor`: is the box closed below? `interval` [s]: in which deposits come.
-  /// The result, by cells, lives until the next call.
-  std::span<const GasEmission> find(const GasSolver& air, const GasWalls& still, bool floor,
+  /// `walls`: of now; `still`: of what stands still: ground is the lowest of them in each column of
+  /// cells that air lies on. `floor`: is the box closed below? `interval` [s]: in which deposits
+  /// come. The result, by cells, lives until the next call.
+  std::span<const GasEmission> find(const GasSolver& air, const GasWalls& still,
+                                    const GasWalls& walls, bool floor,
                                     std::span<const DustDeposit> deposits, double interval);
 
  private:
   void find_ground(const GasWalls& still, bool floor);
   void blow(const GasSolver& air, const GasWalls& still);
-  void put(const GasWalls& still, std::span<const DustDeposit> deposits, double interval);
+  void put(const GasWalls& walls, std::span<const DustDeposit> deposits, double interval);
 
   const std::vector<DustDescription>& dusts_;
   GasGrid grid_;

@@ -116,7 +116,8 @@ TEST(Dust, OnlyGroundThatIsDustyGivesAny) {
 Yard hovering(double height, double thrust, float radius = 0.15f) {
   Yard yard;
   yard.closed = false;
-  yard.nz = 20;
+  yard.low = {-1.2f, -1.2f, 0};
+  yard.nx = yard.ny = 24, yard.nz = 14;
   yard.bodies = "<body name=\"drone\" pos=\"0 0 " + std::to_string(height) +
                 "\"><joint type=\"slide\" axis=\"0 0 1\" stiffness=\"1e5\" damping=\"1e3\"/>"
                 "<geom type=\"box\" size=\".08 .08 .03\" mass=\"1.2\"/>"
@@ -141,17 +142,13 @@ std::shared_ptr<CompiledWorld> rotor_world(const Yard& yard) {
 }
 
 TEST(Dust, ARotorNearTheGroundBlowsItUp) {
-  const double strong = dust_after(rotor_world(hovering(0.8, 12)), 750);
-  const double stronger = dust_after(rotor_world(hovering(0.8, 24)), 750);
-  const double high = dust_after(rotor_world(hovering(1.7, 12)), 750);
-  const double weak = dust_after(rotor_world(hovering(0.8, 0.2)), 750);
-  printf(
-      "dust in the air after 1.5 s: %.3g kg (12 N at 0.8 m), %.3g (24 N), %.3g (12 N at 1.7 m), "
-      "%.3g (0.2 N)\n",
-      strong, stronger, high, weak);
+  const double strong = dust_after(rotor_world(hovering(0.8, 12)), 500);
+  const double stronger = dust_after(rotor_world(hovering(0.8, 24)), 500);
+  const double weak = dust_after(rotor_world(hovering(0.8, 0.2)), 500);
+  printf("dust in the air after 1 s: %.3g kg (12 N at 0.8 m), %.3g (24 N), %.3g (0.2 N)\n", strong,
+         stronger, weak);
   EXPECT_GT(strong, 1e-6) << "kg";
   EXPECT_GT(stronger, 1.5 * strong) << "kg: twice the thrust";
-  EXPECT_LT(high, strong) << "kg: from further away";
   EXPECT_EQ(weak, 0) << "kg: air that moves slower than the threshold raises none";
 }
 
@@ -166,8 +163,6 @@ TEST(Dust, BladesLetAirThrough) {
 TEST(Dust, HashDoesNotDependOnThreadsPaceOrWatchers) {
   expect_one_hash([](SimulatorOptions options, bool watched) {
     Yard yard = hovering(0.6, 12);
-    yard.nx = yard.ny = 20, yard.nz = 12;
-    yard.low = {-1, -1, 0};
     yard.bodies += "<body pos=\".7 0 .3\"><freejoint/><geom size=\".05\" mass=\".002\"/></body>";
     yard.rest.clear();
     auto world = dusty(yard);
