@@ -2,6 +2,7 @@
 
 #include "sim/effects/gas_forces.h"
 
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -134,6 +135,55 @@ TEST(GasForces, OutsideOfItsBoxAGasDoesNothing) {
   mj_forward(&stream.model, stream.data.get());
   stream.run(20);
   EXPECT_EQ(stream.data->qvel[0], 0) << "m/s";
+}
+
+/// Hovers on four constant thrusts, which is all that holds it.
+std::shared_ptr<CompiledWorld> drone_world(bool in_gas, float wind) {
+  auto world =
+      world_from_mjcf(R"(<mujoco><option timestep="0.002" density="1.2" viscosity="1.8e-5"/>
+    <worldbody><body name="drone" pos="0 0 1.5"><freejoint/>
+      <geom type="box" size=".12 .12 .04" mass="1.2"/>
+      <site name="a" pos=".2 .2 .05"/><site name="b" pos="-.2 .2 .05"/>
+      <site name="c" pos=".2 -.2 .05"/><site name="d" pos="-.2 -.2 .05"/></body></worldbody>
+    <actuator><motor site="a" gear="0 0 1 0 0 0"/><motor site="b" gear="0 0 1 0 0 0"/>
+      <motor site="c" gear="0 0 1 0 0 0"/><motor site="d" gear="0 0 1 0 0 0"/></actuator>
+    <keyframe><key qpos="0 0 1.5 1 0 0 0" ctrl="2.943 2.943 2.943 2.943"/></keyframe></mujoco>)");
+  world->initial_key = 0;
+  if (!in_gas) return world;
+  GasDescription gas = tall_gas();
+  gas.low = {-1.5f, -1.5f, 0};
+  gas.nx = gas.ny = 30, gas.nz = 24;
+  gas.voxel = 0.1f;
+  gas.wind = Vec3f{wind, 0, 0};
+  world->gases.gases.push_back(gas);
+  for (int i = 0; i < 4; ++i) {
+    RotorDescription rotor;
+    rotor.body = 1, rotor.actuator = i, rotor.radius = 0.12f, rotor.thrust = 1;
+    rotor.p_B = {i % 2 == 0 ? 0.2f : -0.2f, i < 2 ? 0.2f : -0.2f, 0.05f};
+    rotor.axis_B = {0, 0, 1};
+    world->gases.rotors.push_back(rotor);
+  }
+  return world;
+}
+
+TEST(GasForcesSlow, ADroneIsNotBlownDownByItsOwnRotorsButAsideByWind) {
+  const auto after = [](std::shared_ptr<CompiledWorld> world) {
+    auto sim = make_simulator(std::move(world), lockstep());
+    sim->start();
+    EXPECT_TRUE(sim->step(1000).ok());
+    const std::vector<double>& state = sim->latest().data().state;  // time, then qpos
+    return std::array<double, 3>{state[1], state[2], state[3]};
+  };
+  const auto alone = after(drone_world(false, 0)), still = after(drone_world(true, 0)),
+             windy = after(drone_world(true, 6));
+  printf(
+      "after 2 s of hovering: %.4f m high without gas, (%.4f, %.4f, %.4f) in it, (%.3f, %.3f, "
+      "%.3f) "
+      "in a wind of 6 m/s\n",
+      alone[2], still[0], still[1], still[2], windy[0], windy[1], windy[2]);
+  EXPECT_NEAR(still[2], alone[2], 0.03) << "m high";
+  EXPECT_NEAR(still[0], 0, 0.01) << "m aside";
+  EXPECT_GT(windy[0], 0.02) << "m along the wind";
 }
 
 TEST(GasForces, CostOfARobotPerStep) {
