@@ -1,9 +1,11 @@
 // Dust that ground gives: the laws, and what rolls, falls, walks and blows over it.
 
+#include <chrono>
 #include <numeric>
 
 #include "agent_rig.h"
 #include "same_hash.h"
+#include "sim/effects/contact_dust.h"
 #include "sim/effects/dust_law.h"
 #include "sim/pose_solver.h"
 
@@ -158,6 +160,28 @@ TEST(Dust, BladesLetAirThrough) {
   auto walled = rotor_world(hovering(0.8, 12, 0.3f));
   walled->gases.rotors[0].blades.clear();
   EXPECT_GT(through, 2 * dust_after(walled, 500)) << "kg: a solid disc lets no air through";
+}
+
+TEST(Dust, CostOfContactsPerStep) {
+  Yard yard;
+  for (int i = 0; i < 5; ++i) {
+    yard.bodies += "<body pos=\"0 " + std::to_string(0.3 * i) +
+                   " .0999\"><freejoint/><geom type=\"box\" size=\".1 .1 .1\"/></body>";
+  }
+  const auto world = dusty(yard);
+  const DataPtr data(mj_makeData(world->model.get()));
+  mj_forward(world->model.get(), data.get());
+  ASSERT_EQ(data->ncon, 20);
+  ContactDust dust(*world, {-9, -9, -1}, {9, 9, 9});
+  double best = 1e9;
+  for (int round = 0; round < 5; ++round) {
+    const auto start = std::chrono::steady_clock::now();
+    for (int n = 0; n < 2000; ++n) dust.gather(*world->model, *data, nullptr);
+    const std::chrono::duration<double, std::micro> took = std::chrono::steady_clock::now() - start;
+    best = std::min(best, took.count() / 2000);
+  }
+  printf("dust of 20 contacts: %.2f us a step\n", best);
+  EXPECT_LT(best, 60) << "us a step";
 }
 
 TEST(Dust, HashDoesNotDependOnThreadsPaceOrWatchers) {

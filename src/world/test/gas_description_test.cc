@@ -209,7 +209,7 @@ TEST_F(Rotors, RefusesWhatCannotBe) {
   EXPECT_THAT(refused("actuator = \"lift\"\nthrust = 2\n"),
               HasSubstr("a thrust beside its actuator's force"));
   EXPECT_THAT(refused("site = \"left\"\n"), HasSubstr("a site and no thrust"));
-  EXPECT_THAT(refused("site = \"left\"\nthrust = 1e9\n"), HasSubstr("'thrust' is 1e+09"));
+  EXPECT_THAT(refused("site = \"left\"\nthrust = 1e9\n"), HasSubstr("'thrust' is 1000000000"));
   EXPECT_THAT(error_of(gas_ + "[[rotor]]\nname = \"r\"\nactuator = \"lift\"\nradius = 0\n"),
               HasSubstr("'radius' is 0"));
   EXPECT_THAT(error_of(gas_ + "[[rotor]]\nname = \"r\"\nactuator = \"lift\"\n"),
