@@ -22,12 +22,22 @@ void point_velocity(const mjModel& m, const mjData& d, int body, const double* p
 }  // namespace
 
 ContactDust::ContactDust(const CompiledWorld& world, Vec3f low, Vec3f high)
-    : dusts_(world.gases.dusts),
-      low_(low),
+    : low_(low),
       high_(high),
       of_geoms_(static_cast<size_t>(world.model->ngeom)),
       of_agents_(world.agents.size()),
-      planted_(world.agents.size(), {true, true}) {}
+      planted_(world.agents.size(), {true, true}) {
+  const mjModel& m = *world.model;
+  for (const DustDescription& dust : world.gases.dusts) {
+    Ground& ground = grounds_.emplace_back();
+    ground.box = &dust;
+    ground.per_energy = dust_per_energy(double{dust.silt});
+    for (int body = 0; body < static_cast<int>(m.nbody); ++body) {
+      const double tree = m.body_subtreemass[m.body_rootid[body]];
+      ground.per_way.push_back(rolling_dust(double{dust.silt}, tree));
+    }
+  }
+}
 
 void ContactDust::reset() {
   std::fill(of_geoms_.begin(), of_geoms_.end(), Heap{});
@@ -35,12 +45,12 @@ void ContactDust::reset() {
   std::fill(planted_.begin(), planted_.end(), std::array<bool, 2>{true, true});
 }
 
-const DustDescription* ContactDust::dust_at(const double* p) const {
+const ContactDust::Ground* ContactDust::ground_at(const double* p) const {
   const Vec3f at{static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
   for (int a = 0; a < 3; ++a)
     if (!(at[a] >= low_[a] && at[a] <= high_[a])) return nullptr;
-  for (const DustDescription& dust : dusts_)
-    if (dust.holds(at)) return &dust;
+  for (const Ground& ground : grounds_)
+    if (ground.box->holds(at)) return &ground;
   return nullptr;
 }
 
@@ -61,8 +71,8 @@ void ContactDust::gather_contact(const mjModel& m, const mjData& d, int i) {
   const bool first_stands = m.body_weldid[m.geom_bodyid[contact.geom[0]]] == 0;
   const bool second_stands = m.body_weldid[m.geom_bodyid[contact.geom[1]]] == 0;
   if (first_stands == second_stands) return;
-  const DustDescription* dust = dust_at(contact.pos);
-  if (dust == nullptr) return;
+  const Ground* ground = ground_at(contact.pos);
+  if (ground == nullptr) return;
   const int geom = contact.geom[first_stands ? 1 : 0], body = m.geom_bodyid[geom];
   double force[6], v_W[3], v[3];  // normal first
   mj_contactForce(&m, &d, i, force);
@@ -97,10 +107,10 @@ void ContactDust::gather_steps(const Agents& agents, const mjData& data) {
       was = is;
       if (!lands) continue;
       const double* p = data.mocap_pos + 3 * d.mocap[foot == 0 ? kFootL : kFootR];
-      const DustDescription* dust = dust_at(p);
-      if (dust == nullptr) continue;
+      const Ground* ground = ground_at(p);
+      if (ground == nullptr) continue;
       const double speed = std::hypot(agent.motion.velocity.x, agent.motion.velocity.y);
-      put(dust_per_energy(dust->silt) * step_energy(d.person.mass, speed), p, &of_agents_[i]);
+      put(ground->per_energy * step_energy(d.person.mass, speed), p, &of_agents_[i]);
     }
   }
 }

@@ -37,12 +37,17 @@ class ContactDust {
     double mass = 0;        // [kg]
     double moment[3] = {};  // times position [kg m]
   };
-  const DustDescription* dust_at(const double* p) const;
+  struct Ground {
+    const DustDescription* box = nullptr;
+    double per_energy = 0;        // dust [kg/J]
+    std::vector<double> per_way;  // by body, of what its tree weighs in the model [kg/m]
+  };
+  const Ground* ground_at(const double* p) const;
   void gather_contact(const mjModel& model, const mjData& data, int contact);
   void gather_steps(const Agents& agents, const mjData& data);
   static void put(double mass, const double* p, Heap* heap);
 
-  const std::vector<DustDescription>& dusts_;
+  std::vector<Ground> grounds_;
   Vec3f low_, high_;
   std::vector<Heap> of_geoms_, of_agents_;
   std::vector<std::array<bool, 2>> planted_;  // feet of agents, before
