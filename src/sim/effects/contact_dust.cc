@@ -89,9 +89,9 @@ void ContactDust::gather_contact(const mjModel& m, const mjData& d, int i) {
   mju_addToScl3(rim, contact.frame, -along);
   const double tree = m.body_subtreemass[m.body_rootid[body]];
   const double weight = tree * std::max(mju_norm3(m.opt.gravity), 1e-3);
-  const double rolled =
-      rolling_dust(dust->silt, tree) * mju_norm3(rim) * std::min(force[0] / weight, 1.0);  // [kg/s]
-  put((dust_per_energy(dust->silt) * work + rolled) * m.opt.timestep, contact.pos,
+  const double rolled = ground->per_way[static_cast<size_t>(body)] * mju_norm3(rim) *
+                        std::min(force[0] / weight, 1.0);  // [kg/s]
+  put((ground->per_energy * work + rolled) * m.opt.timestep, contact.pos,
       &of_geoms_[static_cast<size_t>(geom)]);
 }
 

@@ -86,8 +86,9 @@ std::span<const GasEmission> GroundDust::find(const GasSolver& air, const GasWal
   emissions_.clear();
   blow(air, still);
   put(walls, deposits, interval);
-  std::stable_sort(emissions_.begin(), emissions_.end(),
-                   [](const GasEmission& a, const GasEmission& b) { return a.cell < b.cell; });
+  std::sort(emissions_.begin(), emissions_.end(), [](const GasEmission& a, const GasEmission& b) {
+    return a.cell != b.cell ? a.cell < b.cell : a.rate < b.rate;
+  });
   size_t n = 0;
   for (size_t i = 0; i < emissions_.size(); ++i) {
     if (n > 0 && emissions_[n - 1].cell == emissions_[i].cell) {
