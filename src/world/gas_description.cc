@@ -204,24 +204,6 @@ SourceLoc first_loc(const Scene& scene) {
   return scene.smokes.empty() ? scene.dusts.front().loc : scene.smokes.front().loc;
 }
 
-/// Rotors need air, and dust needs air that carries dust.
-Status check_stirrers(const Scene& scene, const std::vector<GasOptions>& gases) {
-  if (gases.empty() && !scene.rotors.empty()) {
-    const RotorOptions& rotor = scene.rotors.front();
-    return Error{ErrorKind::kInput,
-                 fmt::format("rotor '{}' has no air to drive: there is no gas", rotor.name),
-                 rotor.loc, "add a [[gas]], or a [[dust]], [[smoke]] or [[fire]], which make one"};
-  }
-  const bool carries =
-      std::any_of(gases.begin(), gases.end(), [](const auto& gas) { return gas.medium == "dust"; });
-  if (scene.dusts.empty() || carries) return {};
-  const DustOptions& dust = scene.dusts.front();
-  return Error{ErrorKind::kInput,
-               fmt::format("dust '{}' has no gas that carries dust: '{}' carries {}", dust.name,
-                           gases.front().name, gases.front().medium),
-               dust.loc, "a gas carries one medium: say medium = \"dust\" in its [[gas]]"};
-}
-
 }  // namespace
 
 float GasSourceDescription::power_at(double time) const {

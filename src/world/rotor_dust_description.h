@@ -11,4 +11,8 @@ Result<std::vector<RotorDescription>> describe_rotors(const CompiledWorld& world
 /// In source order.
 std::vector<DustDescription> describe_dusts(const Scene& scene);
 
+/// Errors: rotors without a gas, dust without one that carries dust. `gases`: with the one that is
+/// made where the scene has none.
+Status check_stirrers(const Scene& scene, const std::vector<GasOptions>& gases);
+
 }  // namespace gloam
