@@ -88,8 +88,8 @@ Status Instant::Solved::follow_live_fields(const SnapshotData& in) {
 // As Stepper::blow().
 void Instant::Solved::blow(const SnapshotData& in) {
   const auto field = static_cast<size_t>(LiveFieldId::kWind);
-  if (has_air(*world)) give_air(&model.opt);
   if (!world->wind.blows()) return;
+  give_air(&model.opt);
   if (in.live != nullptr && !in.live->values[field].empty()) return;
   if (!wind || wind_timestep != in.timestep) {
     wind.emplace(*world, exact_rational(in.timestep));

@@ -66,7 +66,7 @@ void Stepper::take_model(const mjModel& model) {
   owns_all_ = false;
   model_.opt.disableflags |= mjDSBL_AUTORESET;
   if (timestep_) model_.opt.timestep = *timestep_;
-  if (has_air(*world_)) give_air(&model_.opt);
+  if (world_->wind.blows()) give_air(&model_.opt);
 }
 
 // Live fields are written into the arrays: not into those that all simulations of the World share.

@@ -5,12 +5,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/effects/wind.h"
 #include "world/visual_pose.h"
 
 namespace gloam {
 namespace {
 
-constexpr Rational kLookRate{100, 1};  // [Hz]
+constexpr Rational kLookRate{50, 1};  // [Hz]
 // Share of its velocity through the air that drag may take from a body in a step: velocities are a
 // step old, and with more what is very light would swing.
 constexpr double kMostPerStep = 0.25;
@@ -57,14 +58,23 @@ void add_velocity(const GasDescription& gas, const std::vector<float>& velocity,
   }
 }
 
+struct Fluid {
+  double density, viscosity;  // [kg/m³], [Pa s]
+};
+
+// What the air of a gas is when it is as warm as that around it.
+Fluid air_of(const mjOption& option) {
+  if (option.density > 0 || option.viscosity > 0) return {option.density, option.viscosity};
+  return {kAirDensity, kAirViscosity};
+}
+
 // MuJoCo's drag on a box of half edges `half` that moves at `v` [m/s] through a fluid, in its axes.
-void add_drag(const double* half, const double* v, double density, double viscosity, double scale,
-              double* force) {
+void add_drag(const double* half, const double* v, Fluid fluid, double scale, double* force) {
   const double diameter = 2 * (half[0] + half[1] + half[2]) / 3;
   for (int a = 0; a < 3; ++a) {
     const double area = 4 * half[(a + 1) % 3] * half[(a + 2) % 3];
-    force[a] -= scale * (3 * std::numbers::pi * diameter * viscosity * v[a] +
-                         density / 2 * area * std::abs(v[a]) * v[a]);
+    force[a] -= scale * (3 * std::numbers::pi * diameter * fluid.viscosity * v[a] +
+                         fluid.density / 2 * area * std::abs(v[a]) * v[a]);
   }
 }
 
@@ -90,6 +100,8 @@ GasForces::GasForces(const CompiledWorld& world, Rational timestep)
       const double square = inertia[(a + 1) % 3] + inertia[(a + 2) % 3] - inertia[a];
       felt.half[a] = std::sqrt(std::max(square, 1e-15) / m.body_mass[b] * 6) / 2;
     }
+    for (int a = 0; a < 3; ++a)
+      felt.area = std::max(felt.area, 4 * felt.half[a] * felt.half[(a + 1) % 3]);
     const int root = m.body_rootid[b];
     for (const RotorDescription& rotor : world.gases.rotors) {
       if (m.body_rootid[rotor.body] != root) continue;
@@ -104,7 +116,7 @@ GasForces::GasForces(const CompiledWorld& world, Rational timestep)
 // The air that would be where a body is: the mean of what it is a voxel beside each side of its
 // box, since in it and close to it the gas moves as the body does. A tree with rotors feels what is
 // beside all of its discs, in the plane: not the air that they drive.
-void GasForces::look(int row, const mjData& d, const MediumField& field) {
+void GasForces::look(int row, const mjModel& m, const mjData& d, const MediumField& field) {
   const GasDescription& gas = gases_[static_cast<size_t>(row)];
   if (field.velocity() == nullptr) return;
   const std::vector<float>& velocity = *field.velocity();
@@ -128,33 +140,50 @@ void GasForces::look(int row, const mjData& d, const MediumField& field) {
     }
     felt.thinness =
         double{gas.temperature} / double{(*field.temperature())[nearest_cell(gas, centre)]};
+    if (most_push(m, d, felt) < kLeastPush) felt.gas = -1;
   }
+}
+
+// What air can do to a body that moves as it does now, at most [m/s²].
+double GasForces::most_push(const mjModel& m, const mjData& d, const Felt& felt) {
+  const mjOption& option = m.opt;
+  const Fluid air = air_of(option);
+  double twist[6];
+  mj_objectVelocity(&m, &d, mjOBJ_BODY, felt.body, twist, 0);
+  double fast = mju_dist3(twist + 3, felt.wind), square = fast * fast;
+  if (option.density > 0 || option.viscosity > 0) {
+    const double own = mju_dist3(twist + 3, option.wind);
+    fast = mju_dist3(felt.wind, option.wind);
+    square = fast * (fast + 2 * own) + std::abs(1 - felt.thinness) * own * own;
+  }
+  const double edges = 2 * (felt.half[0] + felt.half[1] + felt.half[2]);
+  return (air.density / 2 * felt.area * square + std::numbers::pi * edges * air.viscosity * fast) /
+         m.body_mass[felt.body];
 }
 
 void GasForces::push(const mjModel& m, mjData& d) {
   const mjOption& option = m.opt;
+  const Fluid own{option.density, option.viscosity}, air = air_of(option);
   for (Felt& felt : felt_) {
-    felt.pushed = false;
-    const bool same = felt.thinness == 1 && mju_dist3(felt.wind, option.wind) == 0;
-    if (felt.gas < 0 || same) continue;
+    felt.pushed = felt.gas >= 0;
+    if (!felt.pushed) continue;
     const double* R = d.ximat + 9 * felt.body;
     double twist[6], past[3], past_own[3], force[3] = {}, force_W[3];
     mj_objectVelocity(&m, &d, mjOBJ_BODY, felt.body, twist, 0);
     mju_sub3(past, twist + 3, felt.wind);
     const double speed = mju_norm3(past);
     mju_mulMatTVec3(past_own, R, past);
-    add_drag(felt.half, past_own, option.density * felt.thinness, option.viscosity, 1, force);
+    add_drag(felt.half, past_own, {air.density * felt.thinness, air.viscosity}, 1, force);
     const double most = kMostPerStep * m.body_mass[felt.body] * speed / option.timestep;
     const double drag = mju_norm3(force);
     if (drag > most) mju_scl3(force, force, most / drag);
     mju_sub3(past, twist + 3, option.wind);
     mju_mulMatTVec3(past_own, R, past);
-    add_drag(felt.half, past_own, option.density, option.viscosity, -1, force);
+    add_drag(felt.half, past_own, own, -1, force);
     mju_mulMatVec3(force_W, R, force);
     double* applied = d.xfrc_applied + 6 * felt.body;
     mju_copy3(felt.before, applied);
     mju_addTo3(applied, force_W);
-    felt.pushed = true;
   }
 }
 

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "sim/effects/dust_law.h"
+#include "sim/effects/wind.h"
 
 namespace gloam {
 namespace {
 
-constexpr double kDustyAirDensity = 1.2;  // [kg/m³]
-constexpr int kMostRings = 10;            // of cells around a deposit that are looked at for air
+constexpr int kMostRings = 10;  // of cells around a deposit that are looked at for air
 
 }  // namespace
 
@@ -49,7 +49,7 @@ void GroundDust::blow(const GasSolver& air, const GasWalls& still) {
       const Vec3f v = air.velocity_at({at.x, at.y, at.z + height});
       const double shear = friction_velocity(double{std::hypot(v.x, v.y)}, double{height});
       const double flux =
-          saltation_dust(shear, double{dust->threshold}, double{dust->clay}, kDustyAirDensity);
+          saltation_dust(shear, double{dust->threshold}, double{dust->clay}, kAirDensity);
       if (flux > 0) emissions_.push_back({still.cell(i, j, k), static_cast<float>(flux * area)});
     }
   }

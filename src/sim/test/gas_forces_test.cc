@@ -12,8 +12,6 @@
 namespace gloam {
 namespace {
 
-constexpr double kAir = 1.2, kViscosity = 1.8e-5;  // what give_air() gives
-
 std::string ball_model(double mass, double radius, const char* gravity = "0 0 -9.81",
                        const char* more = "") {
   return "<mujoco><option timestep=\"0.002\" gravity=\"" + std::string(gravity) +
@@ -37,11 +35,11 @@ GasDescription tall_gas() {
 
 /// A model in air that moves at `wind` and is of `kelvin` everywhere.
 struct Stream {
-  explicit Stream(const std::string& xml, Vec3f wind, float kelvin = 293) {
+  explicit Stream(const std::string& xml, Vec3f wind, float kelvin = 293, bool fluid = true) {
     world = world_from_mjcf(xml);
     world->gases.gases.push_back(tall_gas());
     model = *world->model;
-    give_air(&model.opt);
+    if (fluid) give_air(&model.opt);
     data.reset(mj_makeData(&model));
     forces = std::make_unique<GasForces>(*world, Rational{1, 500});
     const size_t cells = 8 * 8 * 40;
@@ -73,7 +71,7 @@ struct Stream {
 /// Speed at which MuJoCo's drag on a ball's box of inertia carries its weight [m/s].
 double terminal_speed(double mass, double radius, double density) {
   const double edge = std::sqrt(2.4) * radius;
-  const double a = density / 2 * edge * edge, b = 3 * M_PI * edge * kViscosity;
+  const double a = density / 2 * edge * edge, b = 3 * M_PI * edge * kAirViscosity;
   return (-b + std::sqrt(b * b + 4 * a * mass * 9.81)) / (2 * a);
 }
 
@@ -81,17 +79,37 @@ TEST(GasForces, ALightBallFallsAtItsTerminalSpeedThroughARisingStream) {
   for (const float wind : {0.0f, 3.0f, 5.0f, 8.0f}) {
     Stream stream(ball_model(1.5e-3, 0.02), {0, 0, wind});
     stream.run(1000);  // 2 s: four of its time constants
-    const double v = stream.data->qvel[2], law = double(wind) - terminal_speed(1.5e-3, 0.02, kAir);
+    const double v = stream.data->qvel[2],
+                 law = double(wind) - terminal_speed(1.5e-3, 0.02, kAirDensity);
     printf("ball of 1.5 g in a stream of %.0f m/s: %.3f m/s (%.3f by the balance of forces)\n",
            double(wind), v, law);
     EXPECT_NEAR(v, law, 0.05) << "m/s in a stream of " << wind << " m/s";
   }
 }
 
+TEST(GasForces, AModelWithoutAFluidFeelsTheSameAir) {
+  for (const float wind : {0.0f, 5.0f, 8.0f}) {
+    Stream stream(ball_model(1.5e-3, 0.02), {0, 0, wind}, 293, false);
+    stream.run(1000);
+    const double law = double(wind) - terminal_speed(1.5e-3, 0.02, kAirDensity);
+    EXPECT_NEAR(stream.data->qvel[2], law, 0.05) << "m/s in a stream of " << wind << " m/s";
+  }
+}
+
+TEST(GasForces, WhatAirCannotMoveIsLeftAlone) {
+  Stream heavy(ball_model(20, 0.1, "0 0 0"), {0, 1, 0}, 293, false);
+  heavy.run(50);
+  EXPECT_EQ(heavy.data->qvel[1], 0) << "m/s: 20 kg in a breeze of 1 m/s";
+  Stream light(ball_model(0.2, 0.1, "0 0 0"), {0, 1, 0}, 293, false);
+  light.run(50);
+  EXPECT_GT(light.data->qvel[1], 1e-3) << "m/s";
+}
+
 TEST(GasForces, HotAirIsThinner) {
   Stream stream(ball_model(1.5e-3, 0.02), {0, 0, 5}, 586);
   stream.run(800);
-  EXPECT_NEAR(stream.data->qvel[2], 5 - terminal_speed(1.5e-3, 0.02, kAir / 2), 0.1) << "m/s";
+  EXPECT_NEAR(stream.data->qvel[2], 5 - terminal_speed(1.5e-3, 0.02, kAirDensity / 2), 0.1)
+      << "m/s";
 }
 
 TEST(GasForces, StillAirChangesNothingAtAll) {
