@@ -207,8 +207,9 @@ TEST(GasForcesSlow, ADroneIsNotBlownDownByItsOwnRotorsButAsideByWind) {
 TEST(GasForces, CostOfARobotPerStep) {
   std::string limbs;
   for (int i = 0; i < 20; ++i) {
-    limbs += "<body pos=\"0 " + std::to_string(0.05 * i) +
-             " 1\"><freejoint/><geom size=\".05\" contype=\"0\" conaffinity=\"0\"/></body>";
+    limbs +=
+        "<body pos=\"0 " + std::to_string(0.05 * i) +
+        " 1\"><freejoint/><geom size=\".05\" mass=\".05\" contype=\"0\" conaffinity=\"0\"/></body>";
   }
   Stream stream(ball_model(1.5e-3, 0.02, "0 0 0", limbs.c_str()), {0, 0, 1});
   const auto air = [&](size_t) -> const MediumField& { return stream.field; };
