@@ -277,6 +277,8 @@ struct Scene {
   std::vector<GasOptions> gases = {};
   std::vector<FireOptions> fires = {};
   std::vector<SmokeOptions> smokes = {};
+  std::vector<RotorOptions> rotors = {};
+  std::vector<DustOptions> dusts = {};
   std::optional<WeatherOptions> weather = {};
   std::optional<AdversityOptions> adversity = {};
   std::vector<WaterOptions> waters = {};

@@ -1,8 +1,9 @@
 #pragma once
-// What happens in a scene beside its robots: smoke and fire ([[gas]], [[fire]], [[smoke]]:
-// docs/effects.md), [weather] and [adversity] (docs/weather.md), [[water]] (docs/water.md), people
-// and vehicles ([[agent]], [[crowd]], [navigation]: docs/agents.md). Part of gloam/scene.h; longer
-// than other headers so that those a user meets are few.
+// What happens in a scene beside its robots: smoke, fire, rotors and dust ([[gas]], [[fire]],
+// [[smoke]], [[rotor]], [[dust]]: docs/effects.md), [weather] and [adversity] (docs/weather.md),
+// [[water]] (docs/water.md), people and vehicles ([[agent]], [[crowd]], [navigation]:
+// docs/agents.md). Part of gloam/scene.h; longer than other headers so that those a user meets are
+// few.
 
 #include <array>
 #include <filesystem>
@@ -60,6 +61,28 @@ struct SmokeOptions {
   std::optional<Vec3> velocity = {};  ///< of the air in the box, in that body [m/s]
   double start = 0;                   ///< [s]
   std::optional<double> stop = {};    ///< [s]; empty = it goes on
+  SourceLoc loc = {};
+};
+
+/// [[rotor]]: a propeller or a fan: the air of a [[gas]] in its disc is driven against its thrust.
+struct RotorOptions {
+  std::string name = {};      ///< unique
+  std::string actuator = {};  ///< full name; its transmission is a site, its force the thrust [N]
+  std::string site = {};      ///< instead of an actuator: full name; thrust points along its z
+  std::optional<double> thrust = {};  ///< of a site's rotor [N]
+  double radius = 0;                  ///< of the disc [m]
+  SourceLoc loc = {};
+};
+
+/// [[dust]]: ground that gives dust to the air of a [[gas]] whose medium is dust: to air that blows
+/// over it fast enough, and to what rolls, slips and treads on it.
+struct DustOptions {
+  std::string name = {};              ///< unique
+  std::optional<Vec3> position = {};  ///< of the centre of a box in which ground is dusty [m]
+  std::optional<Vec3> size = {};      ///< its edges [m]; with neither: all ground in the gas
+  double silt = 0.085;                ///< share of the loose surface below 75 µm, 0 … 1
+  double clay = 0.05;                 ///< share of the soil below 2 µm, 0 … 0.2
+  double threshold = 0.25;  ///< friction velocity of air at which grains begin to jump [m/s]
   SourceLoc loc = {};
 };
 

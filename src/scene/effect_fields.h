@@ -1,5 +1,6 @@
 #pragma once
-// The fields of [[gas]], [[fire]] and [[smoke]]: a part of scene/option_fields.h.
+// The fields of [[gas]], [[fire]], [[smoke]], [[rotor]] and [[dust]]: a part of
+// scene/option_fields.h.
 
 #include <array>
 
@@ -54,6 +55,25 @@ void visit_fields(Visitor& v, SmokeOptions& o) {
   v("rate", o.rate, FieldRule{.unit = "kg/s", .min = 0, .max = 1000});
   v("heat", o.heat, FieldRule{.unit = "W", .min = 0, .max = 1e9});
   v("velocity", o.velocity, FieldRule{.unit = "m/s", .min = -100, .max = 100});
+}
+
+template <class Visitor>
+void visit_fields(Visitor& v, RotorOptions& o) {
+  v("name", o.name, FieldRule{.required = true});
+  v("actuator", o.actuator, FieldRule{});
+  v("site", o.site, FieldRule{});
+  v("thrust", o.thrust, FieldRule{.unit = "N", .min = -1e5, .max = 1e5});
+  v("radius", o.radius, FieldRule{.unit = "m", .min = 1e-3, .max = 50, .required = true});
+}
+
+template <class Visitor>
+void visit_fields(Visitor& v, DustOptions& o) {
+  v("name", o.name, FieldRule{.required = true});
+  v("position", o.position, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
+  v("size", o.size, FieldRule{.unit = "m", .min = 1e-3, .max = 1e4});
+  v("silt", o.silt, kShare);
+  v("clay", o.clay, FieldRule{.min = 0, .max = 0.2});
+  v("threshold", o.threshold, FieldRule{.unit = "m/s", .min = 0.05, .max = 10});
 }
 
 }  // namespace gloam

@@ -240,6 +240,8 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("gas", scene.gases, FieldRule{});
   v("fire", scene.fires, FieldRule{});
   v("smoke", scene.smokes, FieldRule{});
+  v("rotor", scene.rotors, FieldRule{});
+  v("dust", scene.dusts, FieldRule{});
   v("weather", scene.weather, FieldRule{});
   v("adversity", scene.adversity, FieldRule{});
   v("water", scene.waters, FieldRule{});

@@ -214,6 +214,8 @@ Status validate_scene(const Scene& scene) {
   GLOAM_TRY_STATUS(refuse_duplicates(scene.agents, "agent"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.crowds, "crowd"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.smokes, "smoke"));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.rotors, "rotor"));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.dusts, "dust"));
   GLOAM_TRY_STATUS(validate_effects(scene));
   GLOAM_TRY_STATUS(validate_agents(scene));
   for (const RobotOptions& robot : scene.robots) {

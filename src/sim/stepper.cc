@@ -224,10 +224,12 @@ bool Stepper::step() {
   AppliedInputs* inputs = inputs_.get();
   const bool ok = try_mujoco([=, this] {
     inputs->before_step(*model, *data);
+    if (effects_ != nullptr) effects_->begin_step(step_, model_, *data);
     if (water_ != nullptr) hash_ = water_->begin_step(step_, model_, *data, hash_);
     mj_step(model, data);
   });
   if (water_ != nullptr) water_->end_step(model_, *data);
+  if (effects_ != nullptr) effects_->end_step(*data);
   if (!ok) {
     Error error{ErrorKind::kDiverged, mujoco_error_message()};
     error.message +=
@@ -237,6 +239,7 @@ bool Stepper::step() {
   count_diagnostics();
   uint64_t hash = hash_;
   if (agents_ != nullptr) hash = agents_->advance(step_ + 1, *model, data, hash);
+  if (effects_ != nullptr) effects_->gather(*model, *data, agents_.get());
   reader_.read(next_state_.data());
   if (!is_sound(*model, *data, next_state_)) {
     return fail(describe_divergence(*model, *data, next_state_, step_, time()));

@@ -10,6 +10,7 @@
 #include "scene/effect_fields.h"
 #include "world/level.h"
 #include "world/medium_presets.h"
+#include "world/rotor_dust_description.h"
 #include "world/visual_pose.h"
 #include "world/world.h"
 
@@ -56,9 +57,9 @@ struct Extent {
 };
 
 /// Where the scene's gas is if it does not say: the rooms of a generated place, else around what
-/// gives smoke, from half a metre below the lowest source up.
+/// gives smoke or dust, from half a metre below the lowest source, or dusty ground, up.
 Extent usual_extent(const CompiledWorld& world, const std::vector<GasSourceDescription>& sources,
-                    const std::vector<Affine3f>& X_WB) {
+                    const std::vector<DustDescription>& dusts, const std::vector<Affine3f>& X_WB) {
   Extent extent;
   for (const Region& region : world.regions) {
     extent.add({region.low.x - kWall, region.low.y - kWall, region.low.z - kWall});
@@ -70,7 +71,12 @@ Extent usual_extent(const CompiledWorld& world, const std::vector<GasSourceDescr
     const Vec3f p = transform_point(X_WB[static_cast<size_t>(source.body)], source.X_BS.p);
     at.add({p.x, p.y, p.z});
   }
-  if (sources.empty()) at.add({0, 0, 0.5});
+  for (const DustDescription& dust : dusts) {
+    if (!std::isfinite(dust.low.x)) continue;
+    const Vec3f p = (dust.low + dust.high) * 0.5f;
+    at.add({p.x, p.y, p.z + 0.5});
+  }
+  if (!std::isfinite(at.low.x)) at.add({0, 0, 0.5});
   const Vec3 c = at.middle();
   extent.add({std::min(at.low.x, c.x - kUsualSize.x / 2),
               std::min(at.low.y, c.y - kUsualSize.y / 2), at.low.z - 0.5});
@@ -176,20 +182,26 @@ bool holds(const GasDescription& gas, Vec3f p) {
 
 /// What stands still must be in some box; what moves may enter one later.
 template <class Options>
-Status check_inside(const Options& options, const char* kind, const GasSourceDescription& source,
+Status check_inside(const Options& options, const char* kind, int body, Vec3f p_B,
                     const std::vector<GasDescription>& gases) {
-  if (source.body != 0) return {};
+  if (body != 0) return {};
   for (const GasDescription& gas : gases) {
-    if (holds(gas, source.X_BS.p)) return {};
+    if (holds(gas, p_B)) return {};
   }
   const GasDescription& gas = gases.front();
   const Vec3f high = gas.low + gas.size();
   return Error{ErrorKind::kInput,
-               fmt::format("{} '{}' is at ({:g}, {:g}, {:g}), in no gas", kind, options.name,
-                           source.X_BS.p.x, source.X_BS.p.y, source.X_BS.p.z),
+               fmt::format("{} '{}' is at ({:g}, {:g}, {:g}), in no gas", kind, options.name, p_B.x,
+                           p_B.y, p_B.z),
                options.loc,
                fmt::format("gas '{}' reaches from ({:g}, {:g}, {:g}) to ({:g}, {:g}, {:g})",
                            gas.name, gas.low.x, gas.low.y, gas.low.z, high.x, high.y, high.z)};
+}
+
+/// Of what makes a gas where the scene has none.
+SourceLoc first_loc(const Scene& scene) {
+  if (!scene.fires.empty()) return scene.fires.front().loc;
+  return scene.smokes.empty() ? scene.dusts.front().loc : scene.smokes.front().loc;
 }
 
 }  // namespace
@@ -216,11 +228,15 @@ Result<GasesDescription> describe_gases(const CompiledWorld& world) {
     if (options.velocity) source.jet = to_float(*options.velocity);
     out.sources.push_back(source);
   }
+  GLOAM_TRY(out.rotors, describe_rotors(world));
+  out.dusts = describe_dusts(scene);
   std::vector<GasOptions> options = scene.gases;
-  if (options.empty() && !out.sources.empty()) {
+  if (options.empty() && !(out.sources.empty() && out.dusts.empty())) {
     options.emplace_back().name = "air";
-    options.back().loc = scene.fires.empty() ? scene.smokes.front().loc : scene.fires.front().loc;
+    if (!out.dusts.empty()) options.back().medium = "dust";
+    options.back().loc = first_loc(scene);
   }
+  GLOAM_TRY_STATUS(check_stirrers(scene, options));
   if (options.empty()) return out;
   const std::vector<Affine3f> X_WB = body_poses_at_qpos0(*world.model);
   for (const GasOptions& o : options) {
@@ -230,7 +246,7 @@ Result<GasesDescription> describe_gases(const CompiledWorld& world) {
       extent.add({c.x - s.x / 2, c.y - s.y / 2, c.z - s.z / 2});
       extent.add({c.x + s.x / 2, c.y + s.y / 2, c.z + s.z / 2});
     } else {
-      extent = usual_extent(world, out.sources, X_WB);
+      extent = usual_extent(world, out.sources, out.dusts, X_WB);
     }
     GLOAM_TRY(GasDescription gas, describe_gas(o, extent));
     for (const GasDescription& other : out.gases) {
@@ -240,11 +256,17 @@ Result<GasesDescription> describe_gases(const CompiledWorld& world) {
     }
     out.gases.push_back(std::move(gas));
   }
+  const auto check = [&](const auto& options, const char* kind, size_t row) {
+    const GasSourceDescription& source = out.sources[row];
+    return check_inside(options, kind, source.body, source.X_BS.p, out.gases);
+  };
   for (size_t i = 0; i < scene.fires.size(); ++i)
-    GLOAM_TRY_STATUS(check_inside(scene.fires[i], "fire", out.sources[i], out.gases));
-  for (size_t i = 0; i < scene.smokes.size(); ++i) {
+    GLOAM_TRY_STATUS(check(scene.fires[i], "fire", i));
+  for (size_t i = 0; i < scene.smokes.size(); ++i)
+    GLOAM_TRY_STATUS(check(scene.smokes[i], "smoke", scene.fires.size() + i));
+  for (size_t i = 0; i < scene.rotors.size(); ++i) {
     GLOAM_TRY_STATUS(
-        check_inside(scene.smokes[i], "smoke", out.sources[scene.fires.size() + i], out.gases));
+        check_inside(scene.rotors[i], "rotor", out.rotors[i].body, out.rotors[i].p_B, out.gases));
   }
   return out;
 }

@@ -1,6 +1,6 @@
 #pragma once
-// The scene file's [[gas]], [[fire]] and [[smoke]] tables on the compiled model, without MuJoCo
-// types: boxes of air, and what gives smoke and heat to them.
+// The scene file's [[gas]], [[fire]], [[smoke]], [[rotor]] and [[dust]] tables on the compiled
+// model, without MuJoCo types: boxes of air, what gives smoke and heat to them, what stirs them.
 
 #include <optional>
 #include <string>
@@ -40,6 +40,30 @@ struct GasSourceDescription {
   bool is_on(double time) const { return time >= start && time < stop; }
 };
 
+/// A disc that drives air against its thrust.
+struct RotorDescription {
+  std::string name;
+  int body = 0;             ///< that it moves with
+  int actuator = -1;        ///< whose force is the thrust; -1 = none
+  Vec3f p_B;                ///< of its hub [m]
+  Vec3f axis_B;             ///< unit, along which positive thrust points
+  float thrust = 0;         ///< [N]; per unit of the actuator's force, if there is one
+  float radius = 0;         ///< [m]
+  std::vector<int> blades;  ///< colliders that lie in the disc: air goes through them
+};
+
+/// Ground in a box that gives dust.
+struct DustDescription {
+  std::string name;
+  Vec3f low, high;           ///< corners [m]
+  float silt = 0, clay = 0;  ///< shares, as of DustOptions
+  float threshold = 0;       ///< friction velocity [m/s]
+  bool holds(Vec3f p) const {
+    return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y &&
+           p.z <= high.z;
+  }
+};
+
 struct GasDescription {
   std::string name;
   Vec3f low;                   ///< corner of the box [m], axes along the world's
@@ -63,6 +87,8 @@ struct GasDescription {
 struct GasesDescription {
   std::vector<GasDescription> gases;
   std::vector<GasSourceDescription> sources;  ///< each gives to whichever gas it is in
+  std::vector<RotorDescription> rotors;       ///< likewise
+  std::vector<DustDescription> dusts;         ///< of those that overlap the first counts
 };
 
 /// Errors: no such body or medium, a source in no box, boxes that overlap or have too many voxels.

@@ -11,17 +11,19 @@ Result<std::unique_ptr<Effects>> Effects::create(std::shared_ptr<const CompiledW
                                                  Rational timestep) {
   std::unique_ptr<Effects> effects;
   for (size_t row = 0; row < world->gases.gases.size(); ++row) {
-    if (effects == nullptr) effects.reset(new Effects);
+    if (effects == nullptr) effects.reset(new Effects(*world, timestep));
     GLOAM_TRY(std::unique_ptr<GasEffect> gas, GasEffect::create(world, row, timestep));
     effects->gases_.push_back(std::move(gas));
   }
   return effects;
 }
 
+Effects::Effects(const CompiledWorld& world, Rational timestep) : forces_(world, timestep) {}
 Effects::~Effects() = default;
 
 void Effects::reset() {
   for (const auto& gas : gases_) gas->reset();
+  forces_.reset();
 }
 
 void Effects::take_over(int64_t step, Effects* before) {
@@ -59,6 +61,17 @@ uint64_t Effects::tick(int64_t step, uint64_t hash) {
 void Effects::start(const Snapshot& now) {
   for (GasEffect* gas : ticked_) gas->start(now);
   ticked_.clear();
+}
+
+void Effects::begin_step(int64_t step, const mjModel& model, mjData& data) {
+  forces_.begin_step(step, model, data,
+                     [this](size_t row) -> const MediumField& { return gases_[row]->air(); });
+}
+
+void Effects::end_step(mjData& data) { forces_.end_step(data); }
+
+void Effects::gather(const mjModel& model, const mjData& data, const Agents* agents) {
+  for (const auto& gas : gases_) gas->gather(model, data, agents);
 }
 
 void Effects::fill(int64_t step, std::vector<FieldWindow>* fields) const {

@@ -8,11 +8,13 @@
 #include <memory>
 #include <vector>
 
+#include "sim/effects/gas_forces.h"
 #include "sim/snapshot.h"
 #include "sim/step_schedule.h"
 
 namespace gloam {
 
+class Agents;
 class GasEffect;
 
 class Effects {
@@ -36,12 +38,20 @@ class Effects {
   /// After each tick(): solves for the next fields, with the poses of this instant.
   void start(const Snapshot& now);
 
+  /// Before mj_step of step `step`: what the air does to bodies.
+  void begin_step(int64_t step, const mjModel& model, mjData& data);
+  /// After it, whether it went well or not.
+  void end_step(mjData& data);
+  /// Before tick() of the step it has led to, while `data` has its contacts. `agents`: null = none.
+  void gather(const mjModel& model, const mjData& data, const Agents* agents);
+
   void fill(int64_t step, std::vector<FieldWindow>* fields) const;
 
  private:
-  Effects() = default;
+  Effects(const CompiledWorld& world, Rational timestep);
   std::vector<std::unique_ptr<GasEffect>> gases_;
   std::vector<GasEffect*> ticked_;  // not yet started
+  GasForces forces_;
 };
 
 }  // namespace gloam

@@ -42,6 +42,16 @@ Result<std::unique_ptr<GasEffect>> GasEffect::create(std::shared_ptr<const Compi
       GasObstacles::create(effect->world_, grid_of(gas));
   if (!obstacles.ok()) return placed(obstacles.error());
   effect->obstacles_ = std::move(*obstacles);
+  const GasesDescription& all = effect->world_->gases;
+  if (!all.rotors.empty()) {
+    GLOAM_TRY(effect->rotor_thrust_, RotorThrust::create(effect->world_));
+  }
+  if (!all.dusts.empty() && gas.medium.name == "dust") {
+    effect->ground_dust_ = std::make_unique<GroundDust>(all.dusts, grid_of(gas));
+    // Contacts lie a little below the ground.
+    effect->contact_dust_ = std::make_unique<ContactDust>(
+        *effect->world_, gas.low - Vec3f{0, 0, gas.voxel}, gas.low + gas.size());
+  }
   effect->make_clear();
   effect->thread_ = std::thread([raw = effect.get()] { raw->run_thread(); });
   return effect;
@@ -71,12 +81,8 @@ Status GasEffect::make_solver() {
 
 /// The field of a solver that has not yet begun.
 void GasEffect::make_clear() {
-  std::vector<float> density, temperature;
-  solver_->read(&density, &temperature);
   const auto clear = std::make_shared<MediumField>();
-  clear->finish(std::make_shared<const std::vector<float>>(std::move(density)),
-                std::make_shared<const std::vector<float>>(std::move(temperature)),
-                solver_->hash());
+  read_field(clear.get());
   now_ = coming_ = clear;
 }
 
@@ -88,6 +94,7 @@ void GasEffect::reset() {
   walls_ = {};
   make_clear();
   tick_ = -1;
+  if (contact_dust_ != nullptr) contact_dust_->reset();
 }
 
 void GasEffect::begin_at(int64_t step) {
@@ -124,9 +131,12 @@ uint64_t GasEffect::tick() {
 void GasEffect::start(const Snapshot& now) {
   auto result = std::make_shared<MediumField>();
   coming_ = result;
+  std::vector<DustDeposit> deposits;
+  if (contact_dust_ != nullptr) deposits = contact_dust_->take();
   {
     const std::lock_guard lock(mutex_);
     work_ = now;
+    deposits_ = std::move(deposits);
     result_ = std::move(result);
   }
   wanted_.notify_one();
@@ -138,11 +148,16 @@ FieldWindow GasEffect::window(int64_t step) const {
   return {now_, coming_, static_cast<float>(step - from) / static_cast<float>(to - from)};
 }
 
+void GasEffect::gather(const mjModel& model, const mjData& data, const Agents* agents) {
+  if (contact_dust_ != nullptr) contact_dust_->gather(model, data, agents);
+}
+
 // ---- its own thread ----
 
 void GasEffect::run_thread() {
   while (true) {
     Snapshot now;
+    std::vector<DustDeposit> deposits;
     std::shared_ptr<MediumField> result;
     {
       std::unique_lock lock(mutex_);
@@ -150,27 +165,46 @@ void GasEffect::run_thread() {
       if (!work_) return;  // what was begun is finished: Snapshots may outlive the simulation
       now = std::move(work_);
       work_ = {};
+      deposits.swap(deposits_);
       result = std::move(result_);
     }
-    solve(now);
+    solve(now, deposits);
     now = {};
-    std::vector<float> density, temperature;
-    solver_->read(&density, &temperature);
-    result->finish(std::make_shared<const std::vector<float>>(std::move(density)),
-                   std::make_shared<const std::vector<float>>(std::move(temperature)),
-                   solver_->hash());
+    read_field(result.get());
   }
 }
 
-void GasEffect::solve(const Snapshot& now) {
+/// Finishes it with what the solver stands at.
+void GasEffect::read_field(MediumField* to) const {
+  std::vector<float> density, temperature, velocity;
+  solver_->read(&density, &temperature);
+  const auto shared = [](std::vector<float>&& values) {
+    return std::make_shared<const std::vector<float>>(std::move(values));
+  };
+  VolumeGrid moves;
+  if (world_->model->nv > 0) {
+    solver_->read_velocity(&velocity);
+    moves = shared(std::move(velocity));
+  }
+  to->finish(shared(std::move(density)), shared(std::move(temperature)), std::move(moves),
+             solver_->hash());
+}
+
+void GasEffect::solve(const Snapshot& now, std::span<const DustDeposit> deposits) {
   const bool first = walls_.solid.empty();
   // MuJoCo took this state when it stepped to it; where it does not now, walls stay as they were.
   if (obstacles_->solve(now, &walls_).ok() && (first || obstacles_->changed()))
     solver_->set_walls(walls_);
   find_sources(now.time());
   const int64_t steps = schedule_.step_of(tick_ + 1) - schedule_.step_of(tick_);
-  const GasStep step = solver_->step(static_cast<float>(static_cast<double>(steps) * timestep_),
-                                     sources_, wind(now.time()));
+  const double interval = static_cast<double>(steps) * timestep_;
+  if (rotor_thrust_ != nullptr && !rotor_thrust_->solve(now, &rotors_).ok()) rotors_.clear();
+  std::span<const GasEmission> dust;
+  if (ground_dust_ != nullptr)
+    dust = ground_dust_->find(*solver_, obstacles_->still(), walls_, !gas().open[4], deposits,
+                              interval);
+  const GasStep step =
+      solver_->step(static_cast<float>(interval), sources_, wind(now.time()), rotors_, dust);
   warn_of_blocked(step);
 }
 

@@ -9,6 +9,8 @@
 
 #include "sim/effects/gas/gas_solver.h"
 #include "sim/effects/gas_obstacles.h"
+#include "sim/effects/ground_dust.h"
+#include "sim/effects/rotor_thrust.h"
 #include "sim/effects/wind.h"
 #include "sim/step_schedule.h"
 
@@ -36,6 +38,11 @@ class GasEffect {
   void start(const Snapshot& now);
   FieldWindow window(int64_t step) const;
 
+  /// After each mj_step, while `data` has its contacts: what raises dust. `agents`: null = none.
+  void gather(const mjModel& model, const mjData& data, const Agents* agents);
+  /// The air since the last tick, as it was at it.
+  const MediumField& air() const { return *now_; }
+
  private:
   GasEffect(std::shared_ptr<const CompiledWorld> world, size_t row, StepSchedule schedule,
             double timestep);
@@ -43,7 +50,8 @@ class GasEffect {
   Status make_solver();
   void make_clear();
   void run_thread();
-  void solve(const Snapshot& now);
+  void solve(const Snapshot& now, std::span<const DustDeposit> deposits);
+  void read_field(MediumField* to) const;
   void find_sources(double time);
   Vec3f wind(double time) const;
   void warn_of_blocked(const GasStep& step);
@@ -56,15 +64,20 @@ class GasEffect {
   std::unique_ptr<GasObstacles> obstacles_;
   GasWalls walls_;
   std::vector<GasSource> sources_;
+  std::unique_ptr<RotorThrust> rotor_thrust_;  // null = there are none
+  std::vector<GasRotor> rotors_;
+  std::unique_ptr<GroundDust> ground_dust_;  // null = this gas carries none
   const Wind wind_;
   bool warned_ = false;
 
   int64_t tick_ = -1;                                // the last one
   std::shared_ptr<const MediumField> now_, coming_;  // fields of it and of the next
+  std::unique_ptr<ContactDust> contact_dust_;        // null as ground_dust_
 
   std::mutex mutex_;  // guards what follows
   std::condition_variable wanted_;
-  Snapshot work_;  // to be solved from
+  Snapshot work_;                      // to be solved from
+  std::vector<DustDeposit> deposits_;  // since the tick before it
   std::shared_ptr<MediumField> result_;
   bool quit_ = false;
   std::thread thread_;

@@ -82,7 +82,9 @@ Result<std::unique_ptr<GasObstacles>> GasObstacles::create(
 
 void GasObstacles::sort_geoms() {
   const mjModel& m = model_;
-  const std::vector<bool> collide = colliders(m);
+  std::vector<bool> collide = colliders(m);
+  for (const RotorDescription& rotor : world_->gases.rotors)
+    for (const int blade : rotor.blades) collide[static_cast<size_t>(blade)] = false;
   hulls_.resize(static_cast<size_t>(m.nmesh));
   size_t most_runs = 0;
   for (int g = 0; g < static_cast<int>(m.ngeom); ++g) {

@@ -22,7 +22,8 @@ class GasObstacles {
   static constexpr double kSealedGap = 0.01;
   static constexpr double kTeleport = 20;  ///< [m/s]
 
-  /// Geoms that count: those that can collide, by contype, conaffinity or a `<pair>`. `sealed_gap`
+  /// Geoms that count: those that can collide, by contype, conaffinity or a `<pair>`, but for
+  /// blades of rotors. `sealed_gap`
   /// [m]: narrower gaps between two are closed, as all surfaces are moved out by half of it, for
   /// faces, not for cells. Errors: a grid without cells, or of too many; MuJoCo's.
   static Result<std::unique_ptr<GasObstacles>> create(std::shared_ptr<const CompiledWorld> world,
@@ -41,6 +42,9 @@ class GasObstacles {
   bool changed() const { return changed_; }
   /// The same of what is closed or solid, whatever its velocity.
   bool shape_changed() const { return shape_changed_; }
+
+  /// Of what stands still, as of the last call; no velocities.
+  const GasWalls& still() const { return still_; }
 
   /// Where a body was at the instant of the last call.
   Affine3f X_WB(int body) const;

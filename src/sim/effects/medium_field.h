@@ -14,9 +14,10 @@ namespace gloam {
 class MediumField {
  public:
   /// `digest`: of all that decides what the solver does next.
-  void finish(VolumeGrid density, VolumeGrid temperature, uint64_t digest) {
+  void finish(VolumeGrid density, VolumeGrid temperature, VolumeGrid velocity, uint64_t digest) {
     density_ = std::move(density);
     temperature_ = std::move(temperature);
+    velocity_ = std::move(velocity);
     digest_ = digest;
     done_.store(true, std::memory_order_release);
     done_.notify_all();
@@ -26,10 +27,12 @@ class MediumField {
 
   const VolumeGrid& density() const { return density_; }          ///< [kg/m³]; null = clear
   const VolumeGrid& temperature() const { return temperature_; }  ///< [K]
+  /// Of cells' centres [m/s], world, (nz, ny, nx, 3); null = nothing that moves could feel it.
+  const VolumeGrid& velocity() const { return velocity_; }
   uint64_t digest() const { return digest_; }
 
  private:
-  VolumeGrid density_, temperature_;
+  VolumeGrid density_, temperature_, velocity_;
   uint64_t digest_ = 0;
   std::atomic<bool> done_{false};
 };

@@ -19,9 +19,6 @@ constexpr double kScales[3] = {8.1 * 7, 2.7 * 7, 0.66 * 7};  // [m]
 constexpr double kSlowest = 1.0 / 600, kFastest = 5;         // [Hz]
 constexpr Rational kGustRate{100, 1};
 
-// ICAO's standard atmosphere at sea level, rounded: [kg/m³] and [Pa s].
-constexpr double kAirDensity = 1.2, kAirViscosity = 1.8e-5;
-
 // Share of Kaimal's variance below a frequency.
 double below(double frequency, double turnover) {
   return 1 - std::pow(1 + 6 * frequency * turnover, -2.0 / 3);

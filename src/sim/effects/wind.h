@@ -36,6 +36,10 @@ class Wind {
   std::array<std::array<Tone, kTones>, 3> tones_;  // along, across, up
 };
 
+// ICAO's standard atmosphere at sea level, rounded.
+inline constexpr double kAirDensity = 1.2;       ///< [kg/m³]
+inline constexpr double kAirViscosity = 1.8e-5;  ///< [Pa s]
+
 /// Gives a model that has no fluid of its own air to move in.
 void give_air(mjOption* option);
 

@@ -139,5 +139,126 @@ TEST_F(Gas, RefusesWhatCannotBe) {
   EXPECT_THAT(error_of("[[gas]]\nname = \"g\"\nrate = 0\n"), HasSubstr("rate"));
 }
 
+// A drone of two rotors, one of which leans, and what does not push.
+class Rotors : public Gas {
+ protected:
+  Rotors() {
+    folder_.write("room.xml", R"(<mujoco><worldbody><geom type="plane" size="9 9 .1"/>
+      <site name="fan" pos="1 2 1" euler="0 90 0"/>
+      <body name="drone" pos="0 0 1"><freejoint/><geom size=".1"/>
+        <site name="left" pos="0 .2 0"/>
+        <site name="right" pos="0 -.2 .1" euler="90 0 0"/>
+        <geom name="blade" type="cylinder" size=".1 .01" pos="0 .2 0"/>
+        <geom name="arm" type="capsule" fromto="0 0 0 0 .2 0" size=".01"/>
+        <body name="hub" pos="0 -.2 .1"><joint name="blade_joint" axis="0 1 0"/>
+          <geom name="spinning" type="box" size=".1 .01 .02"/></body></body></worldbody>
+      <actuator><motor name="lift" site="left" gear="0 0 2 0 0 .1"/>
+        <motor name="lean" site="right" gear="0 0 -1 0 0 0"/>
+        <motor name="twist" site="left" gear="0 0 0 0 0 1"/>
+        <motor name="hinge" joint="blade_joint"/></actuator></mujoco>)");
+  }
+  static std::string rotor(const std::string& keys) {
+    return "[[rotor]]\nname = \"r\"\nradius = 0.1\n" + keys;
+  }
+  const std::string gas_ = "[[gas]]\nname = \"g\"\nposition = [0, 0, 1]\nsize = [4, 4, 2]\n";
+};
+
+TEST_F(Rotors, AreWhereTheirThrustActs) {
+  const GasesDescription d = gases(gas_ + rotor("actuator = \"lift\"\n") +
+                                   "[[rotor]]\nname = \"s\"\nradius = 0.1\nactuator = \"lean\"\n"
+                                   "[[rotor]]\nname = \"t\"\nradius = 0.3\nsite = \"fan\"\n"
+                                   "thrust = 4\n");
+  ASSERT_EQ(d.rotors.size(), 3u);
+  const RotorDescription &left = d.rotors[0], &right = d.rotors[1], &fan = d.rotors[2];
+  EXPECT_EQ(left.body, 1);
+  EXPECT_FLOAT_EQ(left.p_B.y, 0.2f);
+  EXPECT_FLOAT_EQ(left.axis_B.z, 1);
+  EXPECT_FLOAT_EQ(left.thrust, 2) << "N for each unit of force: the gear";
+  EXPECT_NEAR(right.axis_B.y, 1, 1e-6) << "against the site's z axis, which points to -y";
+  EXPECT_FLOAT_EQ(right.thrust, 1);
+  EXPECT_EQ(fan.body, 0);
+  EXPECT_EQ(fan.actuator, -1);
+  EXPECT_NEAR(fan.axis_B.x, 1, 1e-6);
+  EXPECT_FLOAT_EQ(fan.thrust, 4);
+}
+
+TEST_F(Rotors, KnowTheirBladesFromWhatCarriesThem) {
+  const Result<World> world = compile(gas_ + rotor("actuator = \"lift\"\n") +
+                                      "[[rotor]]\nname = \"s\"\nradius = 0.1\n"
+                                      "actuator = \"lean\"\n");
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  const auto& compiled = *world->compiled();
+  const auto id = [&](const char* name) {
+    return mj_name2id(compiled.model.get(), mjOBJ_GEOM, name);
+  };
+  EXPECT_EQ(compiled.gases.rotors[0].blades, std::vector<int>{id("blade")});
+  EXPECT_EQ(compiled.gases.rotors[1].blades, std::vector<int>{id("spinning")});
+}
+
+TEST_F(Rotors, RefusesWhatCannotBe) {
+  const auto refused = [&](const std::string& keys) { return error_of(gas_ + rotor(keys)); };
+  EXPECT_THAT(refused("actuator = \"lft\"\n"),
+              testing::AllOf(HasSubstr("s.toml:6"), HasSubstr("there is no actuator 'lft'"),
+                             HasSubstr("'lift'")));
+  EXPECT_THAT(refused("site = \"lef\"\nthrust = 1\n"), HasSubstr("there is no site 'lef'"));
+  EXPECT_THAT(refused("actuator = \"twist\"\n"), HasSubstr("does not push a site"));
+  EXPECT_THAT(refused("actuator = \"hinge\"\n"), HasSubstr("does not push a site"));
+  EXPECT_THAT(refused(""), HasSubstr("neither an actuator nor a site"));
+  EXPECT_THAT(refused("actuator = \"lift\"\nsite = \"left\"\n"),
+              HasSubstr("both an actuator and a site"));
+  EXPECT_THAT(refused("actuator = \"lift\"\nthrust = 2\n"),
+              HasSubstr("a thrust beside its actuator's force"));
+  EXPECT_THAT(refused("site = \"left\"\n"), HasSubstr("a site and no thrust"));
+  EXPECT_THAT(refused("site = \"left\"\nthrust = 1e9\n"), HasSubstr("'thrust' is 1000000000"));
+  EXPECT_THAT(error_of(gas_ + "[[rotor]]\nname = \"r\"\nactuator = \"lift\"\nradius = 0\n"),
+              HasSubstr("'radius' is 0"));
+  EXPECT_THAT(error_of(gas_ + "[[rotor]]\nname = \"r\"\nactuator = \"lift\"\n"),
+              HasSubstr("radius"));
+  EXPECT_THAT(refused("actuator = \"lift\"\n" + rotor("actuator = \"lift\"\n")),
+              HasSubstr("rotor"));
+  EXPECT_THAT(error_of(rotor("actuator = \"lift\"\n")), HasSubstr("there is no gas"));
+  EXPECT_THAT(error_of("[[gas]]\nname = \"g\"\nposition = [9, 9, 1]\nsize = [2, 2, 2]\n" +
+                       rotor("site = \"fan\"\nthrust = 1\n")),
+              HasSubstr("in no gas"));
+}
+
+TEST_F(Gas, OfDustIsMadeWhereGroundIsDusty) {
+  const GasesDescription d = gases(R"(
+[[dust]]
+name = "yard"
+position = [3, 1, 0]
+size = [4, 4, 1]
+silt = 0.2
+clay = 0.1
+threshold = 0.4
+)");
+  ASSERT_EQ(d.gases.size(), 1u);
+  EXPECT_EQ(d.gases[0].medium.name, "dust");
+  EXPECT_NEAR((d.gases[0].low + d.gases[0].size() * 0.5f).x, 3, 0.1);
+  EXPECT_NEAR(d.gases[0].low.z, 0, 0.01);
+  ASSERT_EQ(d.dusts.size(), 1u);
+  EXPECT_TRUE(d.dusts[0].holds({1.5f, 1, 0.4f}));
+  EXPECT_FALSE(d.dusts[0].holds({5.5f, 1, 0}));
+  EXPECT_FLOAT_EQ(d.dusts[0].silt, 0.2f);
+  EXPECT_FLOAT_EQ(d.dusts[0].clay, 0.1f);
+  EXPECT_FLOAT_EQ(d.dusts[0].threshold, 0.4f);
+  EXPECT_TRUE(gases("[[dust]]\nname = \"all\"\n").dusts[0].holds({500, 1, -3}));
+}
+
+TEST_F(Gas, RefusesDustThatCannotBe) {
+  const std::string dust = "[[dust]]\nname = \"d\"\n";
+  EXPECT_THAT(error_of("[[gas]]\nname = \"g\"\n" + dust),
+              testing::AllOf(HasSubstr("s.toml:4"), HasSubstr("no gas that carries dust"),
+                             HasSubstr("medium = \"dust\"")));
+  EXPECT_EQ(error_of("[[gas]]\nname = \"g\"\nmedium = \"dust\"\n" + dust), "");
+  EXPECT_THAT(error_of(dust + "size = [1, 1, 1]\n"), HasSubstr("no position"));
+  EXPECT_THAT(error_of(dust + "position = [1, 1, 1]\n"), HasSubstr("no size"));
+  EXPECT_THAT(error_of(dust + "position = [0, 0, 0]\nsize = [1, 0, 1]\n"), HasSubstr("size"));
+  EXPECT_THAT(error_of(dust + "silt = 1.5\n"), HasSubstr("'silt' is 1.5"));
+  EXPECT_THAT(error_of(dust + "clay = 0.3\n"), HasSubstr("'clay' is 0.3"));
+  EXPECT_THAT(error_of(dust + "threshold = 0\n"), HasSubstr("'threshold' is 0"));
+  EXPECT_THAT(error_of(dust + dust), HasSubstr("dust"));
+}
+
 }  // namespace
 }  // namespace gloam

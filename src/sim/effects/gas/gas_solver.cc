@@ -181,6 +181,22 @@ void GasSolver::read(std::vector<float>* density, std::vector<float>* temperatur
   });
 }
 
+void GasSolver::read_velocity(std::vector<float>* velocity) const {
+  state_->fetch(gas::kVelocityFields);
+  State& state = *state_;
+  const gas::Shape& s = state.shape;
+  const gas::Faces<const float> u = state.faces().read();
+  velocity->resize(3 * state.grid.cells());
+  gas::for_rows(s, [&](int j, int k) {
+    const int begin = s.at(0, j, k);
+    float* to = velocity->data() + 3 * state.walls.cell(0, j, k);
+    for (int i = 0; i < s.nx; ++i, to += 3) {
+      const Vec3f v = gas::centre_twice(s, u, begin + i) * 0.5f;
+      to[0] = v.x, to[1] = v.y, to[2] = v.z;
+    }
+  });
+}
+
 double GasSolver::smoke_mass() const { return state_->total(gas::kSmoke) * state_->cell_volume(); }
 double GasSolver::fuel_mass() const { return state_->total(gas::kFuel) * state_->cell_volume(); }
 double GasSolver::heat() const {

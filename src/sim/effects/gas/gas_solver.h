@@ -55,6 +55,25 @@ struct GasSource {
   Vec3f velocity;  ///< where it blows: what its cells' air is driven at [m/s], world; at most 50
 };
 
+/// A disc that drives air, of which it takes its thrust: the actuator disc of momentum theory
+/// (Rankine 1865, Froude 1889; Leishman, "Principles of Helicopter Aerodynamics", chapter 2). What
+/// air gains through it each second is the thrust, so that far behind a hovering one it moves
+/// at twice sqrt(thrust / (2 density area)). It makes no swirl and no tip vortices. A disc narrower
+/// than a voxel is spread over one.
+struct GasRotor {
+  Vec3f hub;         ///< [m], world, at the beginning of the step; elsewhere it does nothing
+  Vec3f velocity;    ///< of the hub during the step [m/s], world
+  Vec3f axis;        ///< unit, along which thrust points
+  float radius = 0;  ///< [m]
+  float thrust = 0;  ///< [N]
+};
+
+/// What a cell is given of smoke; nothing where it is solid.
+struct GasEmission {
+  size_t cell = 0;  ///< as GasWalls::cell() counts
+  float rate = 0;   ///< [kg/s]
+};
+
 struct GasStep {
   int substeps = 0;             ///< of the whole step
   int transport_substeps = 0;   ///< of smoke, heat and fuel, in all
@@ -93,11 +112,16 @@ class GasSolver {
   /// `wind`: of the air outside of open sides [m/s], world.
   /// Sets what the air does along `axis` at each face [m/s], in GasWalls' order: where it begins.
   void set_velocity(int axis, std::span<const float> faces);
-  GasStep step(float dt, std::span<const GasSource> sources, Vec3f wind);
+  /// `emissions`: of each cell at most one.
+  GasStep step(float dt, std::span<const GasSource> sources, Vec3f wind,
+               std::span<const GasRotor> rotors = {}, std::span<const GasEmission> emissions = {});
 
   /// Soot concentration [kg/m³] and temperature [K], (nz, ny, nx). Where it burns, it is that at
   /// which the soot gives the light of its luminous share: flames are thinner than voxels.
   void read(std::vector<float>* density, std::vector<float>* temperature) const;
+
+  /// Of cells' centres [m/s], world, (nz, ny, nx, 3).
+  void read_velocity(std::vector<float>* velocity) const;
 
   double smoke_mass() const;  ///< [kg]
   double heat() const;        ///< above that of ambient air [J]

@@ -43,6 +43,7 @@ struct GasSolver::State {
   uint32_t stale = 0;                    ///< a bit for each field that is newer on the card
   std::vector<gas::Gift> gifts;          ///< of sources in a substep on the card
   std::vector<int> gift_cells, touched;  ///< touched: cells that walls' motion reads or changes
+  gas::Additions additions;              ///< of rotors and emissions in a substep
 
   gas::Faces<float> faces() { return {velocity[0].data(), velocity[1].data(), velocity[2].data()}; }
   float ambient_density() const {  ///< [kg/m³]
@@ -80,6 +81,11 @@ struct GasSolver::State {
   void account_motion(const gas::Projection& projection, int transport_substeps,
                       const double (&escaped)[gas::kScalars], GasStep* step);
   void blow(std::span<const GasSource> sources);
+  /// Fills `additions`; `since`: the middle of the substep, of the step [s].
+  void find_additions(float dt, float since, std::span<const GasRotor> rotors,
+                      std::span<const GasEmission> emissions);
+  void push_by(const GasRotor& rotor, Vec3f hub, float dt);
+  void add(int from_field, int to_field);  ///< `additions` of [from, to) to the fields here
   float max_speed();
 };
 

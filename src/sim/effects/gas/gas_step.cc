@@ -5,6 +5,7 @@
 #include "base/check.h"
 #include "sim/effects/gas/gas_state.h"
 #include "sim/effects/gas/sources.h"
+#include "sim/effects/gas/stirring.h"
 
 namespace gloam {
 namespace {
@@ -45,7 +46,8 @@ float GasSolver::State::max_speed() {
   return std::sqrt(*std::max_element(row_most.begin(), row_most.end()));
 }
 
-GasStep GasSolver::step(float dt, std::span<const GasSource> sources, Vec3f wind) {
+GasStep GasSolver::step(float dt, std::span<const GasSource> sources, Vec3f wind,
+                        std::span<const GasRotor> rotors, std::span<const GasEmission> emissions) {
   State& state = *state_;
   GLOAM_CHECK(dt > 0 && std::isfinite(dt), "a step takes time");
   float speed = std::max(state.max_speed(), length(wind));
@@ -53,12 +55,17 @@ GasStep GasSolver::step(float dt, std::span<const GasSource> sources, Vec3f wind
     if (source.blows)
       speed = std::max(speed, std::min(length(source.velocity), gas::kFastestSource));
   }
+  for (const GasRotor& rotor : rotors) {
+    const float far = gas::far_wake_speed(rotor, state.grid.voxel, state.ambient_density());
+    speed = std::max(speed, std::min(far, gas::kFastestSource));
+  }
   GasStep step;
   const float by_time = std::ceil(dt / kLongestSubstep - 1e-3f);
   const float by_speed = std::ceil(dt * speed / (kVoxelsPerSubstep * state.grid.voxel));
   step.substeps = int(std::clamp(std::max(by_time, by_speed), 1.0f, float(kMostSubsteps)));
   for (int n = 0; n < step.substeps; ++n) {
     const float part = dt / float(step.substeps);
+    state.find_additions(part, (float(n) + 0.5f) * part, rotors, emissions);
     if (state.card) {
       state.substep_on_card(part, sources, wind, &step);
     } else {
@@ -81,6 +88,7 @@ void GasSolver::State::substep(float dt, std::span<const GasSource> sources, Vec
     scalars[gas::kSmoke][size_t(c)] += all.smoke * share;
     scalars[gas::kFuel][size_t(c)] += all.fuel * share;
   });
+  add(3, 3 + gas::kScalars);
   burn(dt);
   if (last_dt > 0 && last_dt != dt) {  // pressure times dt is what the solution holds
     for (float& x : pressure.solution()) x *= dt / last_dt;
@@ -97,6 +105,7 @@ void GasSolver::State::substep(float dt, std::span<const GasSource> sources, Vec
   lift_half();
   if (properties.vorticity > 0) momentum.confine(open, faces(), properties.vorticity, dt);
   blow(sources);
+  add(0, 3);
   const gas::Projection projection =
       pressure.project(openings, faces(), heated.data(), grid.voxel, dt);
   double escaped[gas::kScalars] = {};
@@ -124,7 +133,7 @@ void GasSolver::State::substep_on_card(float dt, std::span<const GasSource> sour
   const gas::CudaGas::Outcome out =
       card->substep({dt, rescale, wind, ambient_density(), properties.vorticity, rates(dt),
                      properties.heat_of_combustion / dt},
-                    gifts, gift_cells, &parity);
+                    gifts, gift_cells, additions, &parity);
   stale = gas::kAllFields;
   account_reaction(out.reaction);
   account_motion(out.projection, out.transport_substeps, out.escaped, step);

@@ -122,12 +122,24 @@ class Card final : public CudaGas {
   }
 
   Outcome substep(const Substep& step, std::span<const Gift> gifts, std::span<const int> cells,
-                  uint64_t* parity) override {
+                  const Additions& additions, uint64_t* parity) override {
     const Faces<float> u = faces();
     const Faces<const float> open = pressure_.open();
     const ScalarFields scalars = scalar_fields();
     const float voxel = grid_.voxel, dt = step.dt;
     gift_cells_.assign(cells, stream_);
+    indices_.assign(additions.at, stream_);
+    values_.assign(additions.values, stream_);
+    // Of fields [from, to). One after the other: two may add to the same face.
+    const auto add = [&](int from, int to) {
+      const int* at = indices_.get();
+      const float* values = values_.get();
+      for (const Addition& a : additions.list) {
+        if (a.field >= from && a.field < to)
+          add_values(field(a.field), at, values, a.count, stream_);
+        at += a.count, values += a.count;
+      }
+    };
     const auto for_gifts = [&](auto&& f) {
       const int* at = gift_cells_.get();
       for (const Gift& gift : gifts) {
@@ -139,6 +151,7 @@ class Card final : public CudaGas {
          "memory cannot be set");
     must(cudaMemsetAsync(numbers_.get(), 0, sizeof(CardNumbers), stream_), "memory cannot be set");
     for_gifts([&](const Gift& g, const int* at) { give(g, at, scalars, heated_.get(), stream_); });
+    add(3, 3 + kScalars);
     react_all(shape_, step.rates, step.power, scalars, heated_.get(), burning_.get(), summing_);
     if (step.rescale != 1.0f) pressure_.rescale(step.rescale);
 
@@ -156,6 +169,7 @@ class Card final : public CudaGas {
     for_gifts([&](const Gift& g, const int* at) {
       if (g.blows) blow(g, at, shape_, open, carried, stream_);
     });
+    add(0, 3);
     Outcome out;
     out.projection = pressure_.project(carried, heated_.get(), voxel, dt);
 

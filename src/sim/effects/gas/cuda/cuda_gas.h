@@ -60,9 +60,12 @@ class CudaGas {
   virtual void upload_cells(std::span<const int> cells) = 0;
 
   virtual float max_speed() = 0;  ///< [m/s]
-  /// `cells`: of the gifts, one after the other. Advances `parity` as Transport::carry() does.
+  /// `cells`: of the gifts, one after the other. `additions`: of velocities, which come before the
+  /// projection, and of scalars, which come with the gifts. Advances `parity` as
+  /// Transport::carry() does.
   virtual Outcome substep(const Substep& substep, std::span<const Gift> gifts,
-                          std::span<const int> cells, uint64_t* parity) = 0;
+                          std::span<const int> cells, const Additions& additions,
+                          uint64_t* parity) = 0;
 };
 
 }  // namespace gloam::gas

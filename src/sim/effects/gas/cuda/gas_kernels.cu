@@ -53,6 +53,10 @@ void set_values(float* to, const int* at, const float* values, int count, cudaSt
   for_range(count, stream, [to, at, values] __device__(int n) { to[at[n]] = values[n]; });
 }
 
+void add_values(float* to, const int* at, const float* values, int count, cudaStream_t stream) {
+  for_range(count, stream, [to, at, values] __device__(int n) { to[at[n]] += values[n]; });
+}
+
 void copy_cells(const CellValues& fields, const int* cells, int count, float* values, bool to_field,
                 cudaStream_t stream) {
   for_range(count, stream, [fields, cells, count, values, to_field] __device__(int n) {

@@ -24,6 +24,8 @@ void stop_closed_faces(const Shape& s, const Faces<const float>& open, const Fac
                        cudaStream_t stream);
 /// to[at[n]] = values[n].
 void set_values(float* to, const int* at, const float* values, int count, cudaStream_t stream);
+/// to[at[n]] += values[n].
+void add_values(float* to, const int* at, const float* values, int count, cudaStream_t stream);
 /// Between fields and a list of these cells' values: those of each field one after the other.
 void copy_cells(const CellValues& fields, const int* cells, int count, float* values, bool to_field,
                 cudaStream_t stream);

@@ -1,6 +1,8 @@
 #pragma once
 // What sources give, as the card is told.
 
+#include <vector>
+
 #include "base/vec.h"
 
 namespace gloam::gas {
@@ -11,6 +13,19 @@ struct Gift {
   float heat = 0, smoke = 0, fuel = 0;  ///< of kHeat, kSmoke, kFuel
   bool blows = false;
   Vec3f velocity;  ///< [m/s]
+};
+
+/// What cells or faces of a field gain in a substep; none of them twice.
+struct Addition {
+  int field = 0;  ///< as HostFields counts
+  int count = 0;  ///< how many
+};
+
+/// Additions, with the indices and values of all of them one after the other.
+struct Additions {
+  std::vector<Addition> list;
+  std::vector<int> at;
+  std::vector<float> values;
 };
 
 }  // namespace gloam::gas

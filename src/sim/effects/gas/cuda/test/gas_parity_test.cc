@@ -10,8 +10,9 @@ namespace {
 const GasGrid kGrid{47, 36, 30, 0.1f, {-1, 2, 0}};
 constexpr float kStep = 0.1f;  // [s]
 
-/// A fire, a fan and a block that moves behind a wall with a door, in wind; `sealed`: and a chamber
-/// without an opening, with a block that moves in it and a fire that goes out.
+/// A fire, a fan, two rotors whose discs overlap over ground that gives dust, and a block that
+/// moves behind a wall with a door, in wind; `sealed`: and a chamber without an opening, with a
+/// block that moves in it and a fire that goes out.
 GasWalls walls_at(int n, bool sealed) {
   GasWalls walls(kGrid);
   add_sheet(&walls, 26, [](int j, int k) { return j > 10 && j < 20 && k < 18; });
@@ -55,10 +56,18 @@ struct Room {
     sources[1].velocity = {-1, 0.5f, 0.2f};
     sources[2].smoke = 0.001f;
     sources[2].heat = 2e3f;
+    GasRotor rotors[2];
+    rotors[0].hub = {2.5f, 3.5f, 1.2f}, rotors[0].axis = {0, 0, 1};
+    rotors[0].radius = 0.3f, rotors[0].thrust = 4;
+    rotors[1] = rotors[0];
+    rotors[1].hub = {2.7f, 3.6f, 1.25f}, rotors[1].axis = {0.6f, 0, 0.8f};
+    rotors[1].velocity = {0.2f, 0, 0};
+    std::vector<GasEmission> dust;
+    for (size_t cell = 300; cell < 500; cell += 3) dust.push_back({cell, 1e-6f});
     for (int end = done + steps; done < end; ++done) {
       gas->set_walls(walls_at(done, sealed));
       const float dt = done % 5 == 4 ? 0.7f * kStep : kStep;
-      const GasStep step = gas->step(dt, sources, {0.5f, 0, 0});
+      const GasStep step = gas->step(dt, sources, {0.5f, 0, 0}, rotors, dust);
       worst_divergence = std::max(worst_divergence, step.divergence_after / step.divergence_before);
     }
   }
