@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kUsualCell = 0.02;  // [m]
 constexpr double kUsualCells = 6e4;  // at most, unless a cell is asked for
-constexpr double kMostCells = 5e5;
+constexpr double kMostSoilCells = 5e5;
 constexpr double kGroundCell = 0.1;   // between looks for the ground [m]
 constexpr double kThinEdge = 0.3;     // over which a bed over ground thins out [m]
 constexpr double kLeastDepth = 0.01;  // of it there, over its depth
@@ -151,10 +151,10 @@ Result<SoilDescription> describe_soil(const SoilOptions& o, const mjModel& m) {
   const double cell = o.cell.value_or(usual);
   const auto along = [cell](double edge) { return std::max(std::lround(edge / cell), 2L); };
   const long nx = along(o.size[0]), ny = along(o.size[1]);
-  if (static_cast<double>(nx) * static_cast<double>(ny) > kMostCells) {
-    return soil_error(o, fmt::format("{} x {} cells are more than {:g}", nx, ny, kMostCells),
+  if (static_cast<double>(nx) * static_cast<double>(ny) > kMostSoilCells) {
+    return soil_error(o, fmt::format("{} x {} cells are more than {:g}", nx, ny, kMostSoilCells),
                       fmt::format("a 'cell' of {:.3g} m will do",
-                                  std::sqrt(o.size[0] * o.size[1] / kMostCells) * 1.01));
+                                  std::sqrt(o.size[0] * o.size[1] / kMostSoilCells) * 1.01));
   }
   soil.nx = static_cast<int>(nx), soil.ny = static_cast<int>(ny);
   soil.dx = soil.size_x / soil.nx, soil.dy = soil.size_y / soil.ny;

@@ -4,6 +4,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include <span>
 #include <vector>
 
 namespace gloam {
@@ -26,15 +27,25 @@ struct BodyResponse {
   double inverse[36] = {};      ///< of its inertia, as all its joints share it: row by row
 };
 
-/// Room for body_response().
+/// One body at a time. data.qLD is of the present.
 class ResponseSolver {
  public:
-  explicit ResponseSolver(const mjModel& model) : columns_(static_cast<size_t>(model.nv) * 6) {}
-  /// J M^-1 J' along the chain of joints that move the body. data.qLD is of the present.
-  BodyResponse solve(const mjModel& model, const mjData& data, int body, const double* point);
+  explicit ResponseSolver(const mjModel& model);
+  /// J M^-1 J' along the chain of joints that move the body. `less`: taken off the last step's
+  /// acceleration of those joints, from the last of them to the root; empty = nothing.
+  BodyResponse solve(const mjModel& model, const mjData& data, int body, const double* point,
+                     std::span<const double> less);
+  /// What a wrench at that point does to the acceleration of those joints, in that order.
+  void accelerations(const mjModel& model, const mjData& data, int body, const double* wrench,
+                     std::span<double> out);
 
  private:
-  std::vector<double> columns_;  // (nv x 6)
+  std::vector<double> columns_;  // L^-T J', (nv x 6)
+  std::vector<double> by_dof_;   // room, (nv)
+  std::vector<int> chain_;       // room
 };
+
+/// Joints' degrees of freedom that move a body.
+int chain_length(const mjModel& model, int body);
 
 }  // namespace gloam

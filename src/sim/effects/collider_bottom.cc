@@ -8,9 +8,9 @@
 namespace gloam {
 namespace {
 
-constexpr double kUpright = 1e-9;   // of a normal: the facet is a wall
-constexpr double kNowhere = 1e30;   // [m]
-constexpr double kSteepest = 1e-3;  // of a normal's z: the surface is as good as a wall
+constexpr double kUpright = 1e-9;        // of a normal: the facet is a wall
+constexpr double kNowhere = 1e30;        // [m]
+constexpr double kAsGoodAsAWall = 1e-3;  // of a normal's z: the surface is as good as a wall
 
 }  // namespace
 
@@ -131,7 +131,7 @@ bool ColliderBottom::quadric_at(double x, double y, BottomPoint* out) const {
   double n[3];
   mju_mulMatVec3(n, R_, normal);
   mju_normalize3(n);
-  const double down = std::min(n[2], -kSteepest);
+  const double down = std::min(n[2], -kAsGoodAsAWall);
   *out = {t, {-n[0] / down, -n[1] / down}};
   return true;
 }

@@ -7,7 +7,8 @@ namespace {
 
 constexpr int kMostIterations = 8;
 constexpr double kConverged = 1e-4;  // of the change of velocity
-constexpr double kRest = 1e-9;       // [m]
+constexpr double kNoWay = 1e-9;      // [m]
+constexpr double kRestored = 0.1;    // of the energy of an impact, at most
 constexpr double kMovesOn = 0.05;    // [m/s]
 constexpr double kHeapWidth = 1.5;   // of a heap, over the sinkage beside it
 constexpr int kFarthest = 64;        // cells to it
@@ -55,12 +56,21 @@ SoilBed::SoilBed(const SoilDescription& soil, const mjModel& model, std::span<co
     : soil_(soil),
       contacts_(soil, model, geoms),
       cells_(soil.cells()),
-      wrenches_(static_cast<size_t>(model.nbody)),
-      tracks_(soil) {}
+      answers_of_(static_cast<size_t>(model.nbody)),
+      tracks_(soil) {
+  for (const int geom : geoms) {
+    const int body = model.geom_bodyid[geom];
+    Answer& answer = answers_of_[static_cast<size_t>(body)];
+    if (answer.count > 0) continue;
+    answer.first = answers_.size();
+    answer.count = static_cast<size_t>(chain_length(model, body));
+    answers_.resize(answers_.size() + answer.count);
+  }
+}
 
 void SoilBed::reset() {
   std::fill(cells_.begin(), cells_.end(), SoilCell{});
-  std::fill(wrenches_.begin(), wrenches_.end(), BodyWrench{});
+  for (Answer& answer : answers_of_) answer.step = 0;
   contacts_.clear();
   tracks_.reset();
 }
@@ -138,7 +148,7 @@ void SoilBed::press_cell(uint32_t step, double dt, const SoilTouch& touch, const
   mju_copy3(v, velocity);
   project(touch.slope, v);
   const double speed = mju_norm3(v), way = speed * dt;
-  if (way < kRest) return;
+  if (way < kNoWay) return;
   const double share = -std::expm1(-way / soil_.strength.shear);
   for (int a = 0; a < 3; ++a) {
     const double shear = double{cell.shear[a]};
@@ -159,7 +169,7 @@ void SoilBed::push_aside(const SoilTouch& touch, const double* velocity, double 
     way[0] = side * across[0], way[1] = side * across[1];
   }
   const double length = std::hypot(way[0], way[1]);
-  if (length < kRest) return;
+  if (length < kNoWay) return;
   // From cell to cell, out of what is touched, then over as many as the heap is wide.
   const double step = std::min(soil_.dx, soil_.dy);
   const int wide = std::clamp(static_cast<int>(std::ceil(kHeapWidth * touch.depth / step)), 2, 8);
@@ -196,18 +206,16 @@ void SoilBed::push_body(const mjModel& m, mjData& d, std::span<const SoilTouch> 
     area += touch.area;
   }
   mju_scl3(point, point, 1 / area);
-  const BodyResponse body_now = solver->solve(m, d, body, point);
+  // As it would move without this bed: with all else as in the last step.
+  Answer& answer = answers_of_[static_cast<size_t>(body)];
+  const std::span<double> joints = std::span(answers_).subspan(answer.first, answer.count);
+  const BodyResponse body_now =
+      solver->solve(m, d, body, point, answer.step == step ? joints : std::span<double>{});
   const double dt = m.opt.timestep;
-  // As it would move without this soil: with all else as in the last step.
-  BodyWrench& last = wrenches_[static_cast<size_t>(body)];
   double free[6], motion[6], change[6];
   mju_copy(free, body_now.velocity, 6);
   mju_addToScl(free, body_now.acceleration, dt, 6);
-  mju_copy(motion, free, 6);
-  if (last.step == step) {
-    mju_mulMatVec(change, body_now.inverse, last.wrench, 6, 6);
-    mju_addToScl(free, change, -dt, 6);
-  }
+  mju_copy(motion, body_now.velocity, 6);
   double wrench[6] = {};
   for (int i = 0; i < kMostIterations; ++i) {
     // wrench = force - matrix * motion, with motion = free + dt inverse * wrench.
@@ -220,7 +228,7 @@ void SoilBed::push_body(const mjModel& m, mjData& d, std::span<const SoilTouch> 
     mju_sub(wrench, force, wrench, 6);
     solve6(system, wrench);
     mju_mulMatVec(change, body_now.inverse, wrench, 6, 6);
-    double moved = 0, size = kRest;
+    double moved = 0, size = kNoWay;
     for (int k = 0; k < 6; ++k) {
       const double now = free[k] + dt * change[k];
       moved = std::max(moved, std::abs(now - motion[k]));
@@ -231,9 +239,33 @@ void SoilBed::push_body(const mjModel& m, mjData& d, std::span<const SoilTouch> 
   }
   for (const double x : wrench)
     if (!std::isfinite(x)) return;
+  limit_work(touches, free, change, dt, wrench);
   add_wrench(m, d, body, wrench, wrench + 3, point);
-  last.step = step + 1;
-  mju_copy(last.wrench, wrench, 6);
+  answer.step = step + 1;
+  solver->accelerations(m, d, body, wrench, joints);
+}
+
+// A body so light that a step takes it far through the ground must not be thrown out of it: the bed
+// gives no more energy than it can have stored, nor than a share of what the body brings along.
+// `change`: inverse * wrench.
+void SoilBed::limit_work(std::span<const SoilTouch> touches, const double* free,
+                         const double* change, double dt, double* wrench) const {
+  double stored = 0;
+  for (const SoilTouch& touch : touches) {
+    const SoilCell& cell = cells_[static_cast<size_t>(touch.cell)];
+    if (cell.sinkage <= 0) continue;
+    const double p = double{cell.pressure};
+    stored += touch.area * p * p / (2 * cell.unloading(soil_.strength));
+  }
+  const double by_motion = dt * mju_dot(wrench, free, 6);
+  const double by_change = dt * dt / 2 * mju_dot(wrench, change, 6);
+  if (by_change <= 0) return;
+  const double brought = by_motion * by_motion / (4 * by_change);
+  stored = std::min(stored, kRestored * brought);
+  if (by_motion + by_change <= stored) return;
+  const double share =
+      (std::sqrt(by_motion * by_motion + 4 * by_change * stored) - by_motion) / (2 * by_change);
+  mju_scl(wrench, wrench, std::min(share, 1.0), 6);
 }
 
 // Adds a touch's force on its body, linear about `motion`, the body's at the step's end.
@@ -264,7 +296,7 @@ void SoilBed::add_touch(const SoilTouch& touch, const double* point, const doubl
   const double steep = mju_dot3(d, d), speed = mju_norm3(across);
   const double most = touch.area * std::sqrt(steep) * (s.cohesion + now.p * s.tan_friction);
   const double share = -std::expm1(-speed * dt / s.shear);
-  const double drag = most * (speed * dt > kRest ? share / speed : dt / s.shear);
+  const double drag = most * (speed * dt > kNoWay ? share / speed : dt / s.shear);
   mju_addToScl3(f, shear, most * (1 - share));
   for (int a = 0; a < 3; ++a)
     for (int b = 0; b < 3; ++b) K[3 * a + b] += drag * ((a == b) - d[a] * d[b] / steep);

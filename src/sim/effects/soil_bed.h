@@ -38,22 +38,26 @@ class SoilBed {
   const std::vector<SoilCell>& cells() const { return cells_; }
 
  private:
-  /// On a body, at the middle of what it touches.
-  struct BodyWrench {
-    uint32_t step = 0;      // after the one it was for
-    double wrench[6] = {};  // [N], [N m]
+  /// What the bed does to a body in a step: accelerations of the joints that move it, which stand
+  /// in answers_.
+  struct Answer {
+    uint32_t step = 0;  // after the one it was for
+    size_t first = 0, count = 0;
   };
   void press_cell(uint32_t step, double dt, const SoilTouch& touch, const double* velocity);
   void push_aside(const SoilTouch& touch, const double* velocity, double volume);
   void push_body(const mjModel& model, mjData& data, std::span<const SoilTouch> touches,
                  uint32_t step, ResponseSolver* solver);
+  void limit_work(std::span<const SoilTouch> touches, const double* free, const double* change,
+                  double dt, double* wrench) const;
   void add_touch(const SoilTouch& touch, const double* point, const double* motion, double dt,
                  double* force, double* matrix) const;
 
   const SoilDescription& soil_;
   SoilContacts contacts_;
   std::vector<SoilCell> cells_;
-  std::vector<BodyWrench> wrenches_;  // of the last step, (nbody)
+  std::vector<Answer> answers_of_;  // of the last step, (nbody)
+  std::vector<double> answers_;
   SoilTracks tracks_;
 };
 

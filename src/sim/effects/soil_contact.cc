@@ -6,15 +6,15 @@
 namespace gloam {
 namespace {
 
-constexpr int kLines = 16;      // over a collider, at least
-constexpr int kMostLines = 16;  // to a row of cells
+constexpr int kContactLines = 16;      // over a collider, at least
+constexpr int kMostContactLines = 16;  // to a row of cells
 constexpr int kBisections = 8;
 constexpr double kGauss = 0.28867513459481287;  // from the middle, over the length
-constexpr double kSteepest = 4;                 // slope of an underside that is counted with
+constexpr double kSteepestUnderside = 4;        // slope of an underside that is counted with
 
 // Lines to a row of cells of edge `d` under a collider of the extent `e`.
 int lines_of(double d, double e) {
-  return std::clamp(static_cast<int>(std::ceil(kLines * d / e)), 2, kMostLines);
+  return std::clamp(static_cast<int>(std::ceil(kContactLines * d / e)), 2, kMostContactLines);
 }
 
 }  // namespace
@@ -34,7 +34,7 @@ SoilContacts::SoilContacts(const SoilDescription& soil, const mjModel& m,
     };
     const size_t rows = along(soil.dy, soil.ny);
     touches += along(soil.dx, soil.nx) * rows;
-    points += 2 * (std::max<size_t>(2 * rows, kLines * 2 + kMostLines * 2) + 2);
+    points += 2 * (std::max<size_t>(2 * rows, kContactLines * 2 + kMostContactLines * 2) + 2);
   }
   touches_.reserve(touches);
   points_.reserve(points), sorted_.reserve(points), hull_.reserve(points + 1);
@@ -69,7 +69,7 @@ void SoilContacts::add(const ColliderBottom& collider) {
   const double extent_y = collider.high(1) - collider.low(1);
   const double extent_x = collider.high(0) - collider.low(0);
   const int lines = lines_of(soil_.dy, extent_y);
-  const double width = soil_.dy / lines, step = std::min(soil_.dx, extent_x / kLines);
+  const double width = soil_.dy / lines, step = std::min(soil_.dx, extent_x / kContactLines);
   const int first = std::max(static_cast<int>((collider.low(1) - low_y) / width) - 1, 0);
   const int last =
       std::min(static_cast<int>((collider.high(1) - low_y) / width) + 1, lines * soil_.ny - 1);
@@ -153,7 +153,7 @@ void SoilContacts::add_line(const ColliderBottom& collider, double y, double wid
       sum.area += area;
       sum.p[0] += area * x, sum.p[1] += area * y, sum.p[2] += area * point.z;
       for (int a = 0; a < 2; ++a)
-        sum.slope[a] += area * std::clamp(point.slope[a], -kSteepest, kSteepest);
+        sum.slope[a] += area * std::clamp(point.slope[a], -kSteepestUnderside, kSteepestUnderside);
     }
   }
 }

@@ -24,7 +24,8 @@ inline std::shared_ptr<CompiledWorld> world_with_soil(const std::string& bodies,
                                                       const SoilOptions& o,
                                                       const std::string& rest = {}) {
   auto world = world_from_mjcf(fmt::format(
-      R"(<mujoco><option timestep="0.002"/><worldbody>{}</worldbody>{}</mujoco>)", bodies, rest));
+      R"(<mujoco><option timestep="0.002" integrator="implicitfast"/><worldbody>{}</worldbody>{}</mujoco>)",
+      bodies, rest));
   Scene scene;
   scene.soils = {o};
   auto soils = describe_soils(scene, *world->model);

@@ -69,7 +69,17 @@ TEST(ResponseSolver, IsTheInverseInertiaOfTheWholeTree) {
     const double* p = d->xipos + 3 * body;
     mj_jac(&m, d.get(), jacobian.data(), jacobian.data() + 3 * m.nv, p, body);
     mj_solveM(&m, d.get(), answer.data(), jacobian.data(), 6);
-    const BodyResponse is = solver.solve(m, *d, body, p);
+    const BodyResponse is = solver.solve(m, *d, body, p, {});
+    const double wrench[6] = {1, -2, 3, 0.1, 0.2, -0.3};
+    std::vector<double> joints(static_cast<size_t>(chain_length(m, body)));
+    solver.accelerations(m, *d, body, wrench, joints);
+    int dof = last_dof(m, body);
+    for (const double acceleration : joints) {
+      double sum = 0;
+      for (int a = 0; a < 6; ++a) sum += wrench[a] * answer[static_cast<size_t>(a * m.nv + dof)];
+      EXPECT_NEAR(acceleration, sum, 1e-9 * (1 + std::abs(sum))) << "body " << body;
+      dof = m.dof_parentid[dof];
+    }
     for (int a = 0; a < 6; ++a) {
       double velocity = 0;
       for (int k = 0; k < m.nv; ++k)
