@@ -78,7 +78,6 @@ void SoilContacts::add(const ColliderBottom& collider) {
   double ends[2];
   int row = first / lines;
   bool began = false;
-  double last_ends[2] = {}, last_y = 0;
   for (int line = first; line <= last; ++line) {
     if (line / lines != row) {
       flush(row, collider.body(), outline.parent);
@@ -90,22 +89,31 @@ void SoilContacts::add(const ColliderBottom& collider) {
       continue;
     }
     add_line(collider, y, width, ends);
-    // The first and the last line stand for what is half a line further, too.
-    const double edge = began ? y : y - width / 2;
-    points_.push_back({ends[0], edge});
-    points_.push_back({ends[1], edge});
+    points_.push_back({ends[0], y});
+    points_.push_back({ends[1], y});
     began = true;
-    std::copy_n(ends, 2, last_ends);
-    last_y = y;
   }
   flush(row, collider.body(), outline.parent);
   if (!began) {
     outlines_.pop_back();
     return;
   }
-  points_.push_back({last_ends[0], last_y + width / 2});
-  points_.push_back({last_ends[1], last_y + width / 2});
+  // The first and the last line stand for what is half a line further, too.
+  const size_t end = points_.size() - 2;
+  const size_t next = end > outline.first ? 2 : 0;
+  add_edge(outline.first, outline.first + next, -width / 2);
+  add_edge(end, end - next, width / 2);
   outlines_.back().count = points_.size() - outline.first;
+}
+
+// Goes on from the ends of the line at points_[line], as from those of its neighbour to there.
+void SoilContacts::add_edge(size_t line, size_t neighbour, double dy) {
+  const double left = points_[line].x + (points_[line].x - points_[neighbour].x) / 2;
+  const double right = points_[line + 1].x + (points_[line + 1].x - points_[neighbour + 1].x) / 2;
+  if (right < left) return;
+  const double y = points_[line].y + dy;
+  points_.push_back({left, y});
+  points_.push_back({right, y});
 }
 
 // What of the line along x at `y` is below the surface is one piece, since colliders are convex.

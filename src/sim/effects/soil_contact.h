@@ -48,7 +48,7 @@ class SoilContacts {
 
  private:
   struct Point {
-    double x, y;
+    double x = 0, y = 0;
     bool operator<(const Point& o) const { return x != o.x ? x < o.x : y < o.y; }
   };
   struct Outline {
@@ -63,6 +63,7 @@ class SoilContacts {
   bool is_below(const ColliderBottom& collider, double x, double y, BottomPoint* out) const;
   bool find_ends(const ColliderBottom& collider, double y, double step, double* ends) const;
   void add_line(const ColliderBottom& collider, double y, double width, const double* ends);
+  void add_edge(size_t line, size_t neighbour, double dy);
   void flush(int row, int body, int outline);
   int root(int outline);
   double width_of(int patch);

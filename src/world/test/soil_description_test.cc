@@ -140,8 +140,8 @@ TEST_F(Soil, RefusesWhatCannotBe) {
   EXPECT_THAT(error_of("[[soil]]\nname = \"a\"\n[[soil]]\nname = \"a\"\nposition = [9, 0, 0]\n"),
               HasSubstr("two soils named 'a'"));
   EXPECT_THAT(with("position = [0, 0]"), HasSubstr("position"));
-  EXPECT_THAT(with("size = [4, 0.01]"), HasSubstr("'size'"));
-  EXPECT_THAT(with("size = [400, 1]"), HasSubstr("'size'"));
+  EXPECT_THAT(with("size = [4, 0.01]"), HasSubstr("'size["));
+  EXPECT_THAT(with("size = [400, 1]"), HasSubstr("'size["));
   EXPECT_THAT(with("depth = 0"), AllOf(HasSubstr("s.toml:4"), HasSubstr("'depth' is 0")));
   EXPECT_THAT(with("depth = 6"), HasSubstr("'depth'"));
   EXPECT_THAT(with("over_ground = 1"), HasSubstr("over_ground"));
