@@ -33,7 +33,7 @@ TEST_P(Manual, ShowsValidScenes) {
 INSTANTIATE_TEST_SUITE_P(Pages, Manual,
                          ::testing::Values("scenes.md", "materials.md", "light.md", "media.md",
                                            "import.md", "cameras.md", "lidar.md", "sensors.md",
-                                           "environments.md", "water.md", "wind.md", "agents.md",
+                                           "environments.md", "water.md", "soil.md", "wind.md", "agents.md",
                                            "weather.md"));
 
 }  // namespace
