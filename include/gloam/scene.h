@@ -282,6 +282,7 @@ struct Scene {
   std::optional<WeatherOptions> weather = {};
   std::optional<AdversityOptions> adversity = {};
   std::vector<WaterOptions> waters = {};
+  std::vector<SoilOptions> soils = {};
   NavigationOptions navigation = {};
   std::vector<AgentOptions> agents = {};
   std::vector<CrowdOptions> crowds = {};

@@ -1,9 +1,9 @@
 #pragma once
 // What happens in a scene beside its robots: smoke, fire, rotors and dust ([[gas]], [[fire]],
 // [[smoke]], [[rotor]], [[dust]]: docs/effects.md), [weather] and [adversity] (docs/weather.md),
-// [[water]] (docs/water.md), people and vehicles ([[agent]], [[crowd]], [navigation]:
-// docs/agents.md). Part of gloam/scene.h; longer than other headers so that those a user meets are
-// few.
+// [[water]] (docs/water.md), [[soil]] (docs/soil.md), people and vehicles ([[agent]], [[crowd]],
+// [navigation]: docs/agents.md). Part of gloam/scene.h; longer than other headers so that those a
+// user meets are few.
 
 #include <array>
 #include <filesystem>
@@ -134,6 +134,28 @@ struct WaterOptions {
   Vec3 current = {};        ///< [m/s]
   double clarity = 8;       ///< depth at which a white disk is lost from sight (Secchi) [m]
   bool ripples = true;      ///< bodies that cross the surface make waves
+  SourceLoc loc = {};
+};
+
+/// [[soil]]: a bed of soft ground that feet and wheels sink into and leave tracks in. What is not
+/// given is as measured of its kind: docs/soil.md.
+struct SoilOptions {
+  std::string name = {};                ///< unique
+  Vec3 position = {};                   ///< of the middle of its surface at rest [m]
+  std::array<double, 2> size = {4, 4};  ///< along x and y [m]
+  double depth = 0.15;                  ///< of soft ground over what is rigid below [m]
+  bool over_ground = false;             ///< lies `depth` above what stands still below `position`
+                                        ///< and thins out at its edges, instead of level
+  std::optional<double> cell = {};      ///< edge of a cell [m]; empty = 0.02, or more in large beds
+  std::string kind = "dry_sand";     ///< dry_sand sandy_loam clayey_soil lean_clay snow mud lunar
+  std::optional<double> n = {};      ///< Bekker's exponent of sinkage
+  std::optional<double> k_c = {};    ///< Bekker's cohesive modulus [N/m^(n+1)]
+  std::optional<double> k_phi = {};  ///< Bekker's frictional modulus [N/m^(n+2)]
+  std::optional<double> cohesion = {};  ///< Mohr and Coulomb's [Pa]
+  std::optional<double> friction = {};  ///< their angle [deg]
+  std::optional<double> shear = {};     ///< Janosi and Hanamoto's displacement modulus K [m]
+  std::optional<double> k_0 = {};       ///< Wong's stiffness of unloading at no sinkage [N/m³]
+  std::optional<double> a_u = {};       ///< and its growth with sinkage [N/m⁴]
   SourceLoc loc = {};
 };
 

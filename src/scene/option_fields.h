@@ -245,6 +245,7 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("weather", scene.weather, FieldRule{});
   v("adversity", scene.adversity, FieldRule{});
   v("water", scene.waters, FieldRule{});
+  v("soil", scene.soils, FieldRule{});
   v("navigation", scene.navigation, FieldRule{});
   v("agent", scene.agents, FieldRule{});
   v("crowd", scene.crowds, FieldRule{});

@@ -211,6 +211,7 @@ Status validate_scene(const Scene& scene) {
   GLOAM_TRY_STATUS(refuse_duplicates(scene.gases, "gas"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.fires, "fire"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.waters, "water"));
+  GLOAM_TRY_STATUS(refuse_duplicates(scene.soils, "soil"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.agents, "agent"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.crowds, "crowd"));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.smokes, "smoke"));

@@ -1,5 +1,5 @@
 #pragma once
-// The fields of [weather], [adversity] and [[water]]: a part of scene/option_fields.h.
+// The fields of [weather], [adversity], [[water]] and [[soil]]: a part of scene/option_fields.h.
 
 #include <array>
 
@@ -8,6 +8,8 @@
 namespace gloam {
 
 inline constexpr std::array<std::string_view, 3> kAdversityLevels = {"none", "minor", "major"};
+inline constexpr std::array<std::string_view, 7> kSoilKinds = {
+    "dry_sand", "sandy_loam", "clayey_soil", "lean_clay", "snow", "mud", "lunar"};
 
 template <class Visitor>
 void visit_fields(Visitor& v, WeatherOptions& o) {
@@ -51,6 +53,25 @@ void visit_fields(Visitor& v, WaterOptions& o) {
   v("current", o.current, FieldRule{.unit = "m/s", .min = -10, .max = 10});
   v("clarity", o.clarity, FieldRule{.unit = "m", .min = 0.01, .max = 100});
   v("ripples", o.ripples, FieldRule{});
+}
+
+template <class Visitor>
+void visit_fields(Visitor& v, SoilOptions& o) {
+  v("name", o.name, FieldRule{.required = true});
+  v("position", o.position, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
+  v("size", o.size, FieldRule{.unit = "m", .min = 0.1, .max = 200});
+  v("depth", o.depth, FieldRule{.unit = "m", .min = 0.005, .max = 5});
+  v("over_ground", o.over_ground, FieldRule{});
+  v("cell", o.cell, FieldRule{.unit = "m", .min = 0.002, .max = 0.5});
+  v("kind", o.kind, FieldRule{.choices = words(kSoilKinds)});
+  v("n", o.n, FieldRule{.min = 0.1, .max = 3});
+  v("k_c", o.k_c, FieldRule{.unit = "N/m^(n+1)", .min = 0, .max = 1e9});
+  v("k_phi", o.k_phi, FieldRule{.unit = "N/m^(n+2)", .min = 0, .max = 1e10});
+  v("cohesion", o.cohesion, FieldRule{.unit = "Pa", .min = 0, .max = 1e7});
+  v("friction", o.friction, FieldRule{.unit = "deg", .min = 0, .max = 60});
+  v("shear", o.shear, FieldRule{.unit = "m", .min = 1e-4, .max = 1});
+  v("k_0", o.k_0, FieldRule{.unit = "N/m3", .min = 0, .max = 1e11});
+  v("a_u", o.a_u, FieldRule{.unit = "N/m4", .min = 0, .max = 1e12});
 }
 
 }  // namespace gloam

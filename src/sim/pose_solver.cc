@@ -8,6 +8,7 @@
 #include "sim/live_fields.h"
 #include "sim/skinning.h"
 #include "sim/state_layout.h"
+#include "world/visual_soil.h"
 #include "world/visual_water.h"
 
 namespace gloam {
@@ -81,6 +82,7 @@ Status PoseSolver::solve(const Snapshot& snapshot, PoseFrame& frame) {
   fill_poses(frame);
   fill_vertices(in.live.get(), frame);
   fill_waters(in, frame);
+  fill_soils(in, frame);
   fill_live(in.live.get(), frame);
   frame.fields.resize(in.fields.size());
   for (size_t i = 0; i < in.fields.size(); ++i)
@@ -128,6 +130,16 @@ void PoseSolver::fill_waters(const SnapshotData& in, PoseFrame& frame) {
         frame.vertices.push_back(static_cast<float>(water.level) + heights_[n]);
       }
     }
+  }
+}
+
+void PoseSolver::fill_soils(const SnapshotData& in, PoseFrame& frame) const {
+  for (size_t i = 0; i < world_->soils.size(); ++i) {
+    const auto& field = in.tracks[i].field;
+    append_soil_vertices(
+        world_->soils[i],
+        field != nullptr ? std::span<const float>(field->height) : std::span<const float>{},
+        &frame.vertices);
   }
 }
 

@@ -27,6 +27,7 @@ class PoseSolver {
   void fill_poses(PoseFrame& frame) const;
   void fill_vertices(const LiveFields* live, PoseFrame& frame);
   void fill_waters(const SnapshotData& in, PoseFrame& frame);
+  void fill_soils(const SnapshotData& in, PoseFrame& frame) const;
   void fill_live(const LiveFields* live, PoseFrame& frame);
 
   std::shared_ptr<const CompiledWorld> world_;

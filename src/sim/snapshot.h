@@ -33,6 +33,7 @@ struct SnapshotData {
   std::shared_ptr<const LiveFields> live;  ///< null = nothing changed
   std::vector<FieldWindow> fields;         ///< by row of CompiledWorld::gases
   std::vector<HeightChange> heights;       ///< by row of CompiledWorld::waters
+  std::vector<HeightChange> tracks;        ///< by row of CompiledWorld::soils
 };
 
 /// Whoever can hand out Snapshots in order: the live simulation, or a replay.

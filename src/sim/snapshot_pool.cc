@@ -64,6 +64,7 @@ SnapshotPool::Slot* SnapshotPool::add_slot() {
   data.sensordata.resize(static_cast<size_t>(world_->model->nsensordata));
   data.fields.resize(world_->gases.gases.size());
   data.heights.resize(world_->waters.size());
+  data.tracks.resize(world_->soils.size());
   slots_.fetch_add(1, std::memory_order_relaxed);
   return all_.back().get();
 }
@@ -94,6 +95,7 @@ Snapshot SnapshotPool::finish(Slot* slot) {
         data->live.reset();
         for (FieldWindow& field : data->fields) field = {};
         for (HeightChange& height : data->heights) height = {};
+        for (HeightChange& track : data->tracks) track = {};
       },
       SlotAllocator<SnapshotData>(shared_from_this(), slot)));
 }

@@ -44,6 +44,7 @@ Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledW
   const Rational step_time = exact_rational(model->opt.timestep);
   GLOAM_TRY(stepper->effects_, Effects::create(world, step_time));
   if (!world->waters.empty()) stepper->water_ = WaterEffect::create(world, step_time);
+  if (!world->soils.empty()) stepper->soil_ = SoilEffect::create(world, *model);
   if (world->wind.blows()) stepper->wind_ = std::make_unique<WindOnBodies>(*world, step_time);
   GLOAM_TRY_STATUS(stepper->make_agents());
   if (!stepper->reset()) return stepper->error();
@@ -139,6 +140,7 @@ bool Stepper::reset() {
   warnings_seen_.fill(0);
   hash_ = hash_span<double>(state_, hash_bytes(&seed_, sizeof(seed_)));
   if (water_ != nullptr) water_->reset();
+  if (soil_ != nullptr) soil_->reset();
   if (agents_ != nullptr) hash_ = agents_->advance(0, *model, data, hash_);
   if (effects_ != nullptr) {
     effects_->reset();
@@ -177,6 +179,7 @@ bool Stepper::take_over(const Stepper& before, const Correspondence& same) {
   mj_getState(&model_, data_.get(), state_.data(), mjSTATE_INTEGRATION);
   hash_ = hash_span<double>(state_, hash_);
   if (water_ != nullptr) water_->take_over(step_, before.water_.get());
+  if (soil_ != nullptr) soil_->take_over(before.soil_.get());
   if (effects_ != nullptr) effects_->take_over(step_, before.effects_.get());
   return stand_at_state() || fail({ErrorKind::kInput, mujoco_error_message()});
 }
@@ -226,8 +229,10 @@ bool Stepper::step() {
     inputs->before_step(*model, *data);
     if (effects_ != nullptr) effects_->begin_step(step_, model_, *data);
     if (water_ != nullptr) hash_ = water_->begin_step(step_, model_, *data, hash_);
+    if (soil_ != nullptr) hash_ = soil_->begin_step(step_, model_, *data, hash_);
     mj_step(model, data);
   });
+  if (soil_ != nullptr) soil_->end_step(*data);
   if (water_ != nullptr) water_->end_step(model_, *data);
   if (effects_ != nullptr) effects_->end_step(*data);
   if (!ok) {
@@ -312,6 +317,7 @@ const Snapshot& Stepper::snapshot() {
       out.live = live_;
       if (effects_ != nullptr) effects_->fill(step_, &out.fields);
       if (water_ != nullptr) water_->fill(step_, &out.heights);
+      if (soil_ != nullptr) soil_->fill(&out.tracks);
       out.sensor_stamp = sensor_stamp_;
       std::copy(state_.begin(), state_.end(), out.state.begin());
       const double* sensors = own_sensors_ ? sensors_.data() : data_->sensordata;

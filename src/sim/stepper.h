@@ -9,6 +9,7 @@
 #include "sim/agents/agents.h"
 #include "sim/applied_inputs.h"
 #include "sim/effects/effects.h"
+#include "sim/effects/soil_effect.h"
 #include "sim/effects/water_effect.h"
 #include "sim/effects/wind.h"
 #include "sim/snapshot_pool.h"
@@ -86,6 +87,7 @@ class Stepper {
   std::unique_ptr<AppliedInputs> inputs_;
   std::unique_ptr<Effects> effects_;    // null = none
   std::unique_ptr<WaterEffect> water_;  // null = none
+  std::unique_ptr<SoilEffect> soil_;    // null = none
   std::unique_ptr<WindOnBodies> wind_;  // null = the air is still
   std::unique_ptr<Agents> agents_;      // null = none
   std::shared_ptr<const LiveFields> live_;

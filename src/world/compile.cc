@@ -109,6 +109,7 @@ Status describe_rest(CompiledWorld* world) {
   GLOAM_TRY(world->gases, describe_gases(*world));
   world->wind = describe_wind(world->scene, world->scene.weather.value_or(WeatherOptions{}));
   GLOAM_TRY(world->waters, describe_waters(world->scene));
+  GLOAM_TRY(world->soils, describe_soils(world->scene, *world->model));
   GLOAM_TRY(world->agents, describe_agents(*world));
   return {};
 }

@@ -21,6 +21,7 @@
 #include "world/visual_material.h"
 #include "world/visual_mesh.h"
 #include "world/visual_pose.h"
+#include "world/visual_soil.h"
 #include "world/visual_water.h"
 #include "world/world.h"
 
@@ -317,6 +318,10 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     visual->convert_meshes();
     visual->materials().load_textures();
   }
+  // Their vertices come after the waters', their materials may be the scene's.
+  int first_vertex = deformable_layout(m).nvertex;
+  for (const WaterDescription& water : world.waters) first_vertex += water_vertices(water);
+  author_soils(world.soils, first_vertex, &labels, &out);
   GLOAM_TRY_STATUS(author_materials(world.scene.materials, &out));
   restore_authored_frames(m, &out);
   GLOAM_TRY_STATUS(author_lights(world, poses, is_static, &labels, &levels, &out));

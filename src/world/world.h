@@ -12,6 +12,7 @@
 #include "gloam/world.h"
 #include "world/agent_description.h"
 #include "world/gas_description.h"
+#include "world/soil_description.h"
 #include "world/water_description.h"
 #include "world/wind_description.h"
 
@@ -63,6 +64,7 @@ struct CompiledWorld {
   GasesDescription gases;
   WindDescription wind;
   std::vector<WaterDescription> waters;
+  std::vector<SoilDescription> soils;
   std::vector<AgentDescription> agents;
   ModelPtr visual_model;  ///< source of visual_only meshes and materials; null when there are none
   std::vector<VisualOnlyGeom> visual_only;

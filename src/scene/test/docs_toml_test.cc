@@ -33,8 +33,8 @@ TEST_P(Manual, ShowsValidScenes) {
 INSTANTIATE_TEST_SUITE_P(Pages, Manual,
                          ::testing::Values("scenes.md", "materials.md", "light.md", "media.md",
                                            "import.md", "cameras.md", "lidar.md", "sensors.md",
-                                           "environments.md", "effects.md", "water.md", "wind.md",
-                                           "agents.md", "weather.md"));
+                                           "environments.md", "effects.md", "water.md", "soil.md",
+                                           "wind.md", "agents.md", "weather.md"));
 
 }  // namespace
 }  // namespace gloam

@@ -4,38 +4,13 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/effects/body_forces.h"
+
 namespace gloam {
 namespace {
 
 constexpr double kFarAway = 0.5;      // in a step nothing moves further [m]
 constexpr double kRippleCrest = 0.3;  // [m]
-
-// Edges along the world's axes of the box around a box.
-void around(const double* R, const double* half, double* out) {
-  for (int a = 0; a < 3; ++a) {
-    out[a] = std::abs(R[3 * a]) * half[0] + std::abs(R[3 * a + 1]) * half[1] +
-             std::abs(R[3 * a + 2]) * half[2];
-  }
-}
-
-// Of those that move a body the last; -1 = none does.
-int last_dof(const mjModel& m, int body) {
-  while (body > 0 && m.body_dofnum[body] == 0) body = m.body_parentid[body];
-  return body > 0 ? m.body_dofadr[body] + m.body_dofnum[body] - 1 : -1;
-}
-
-// Adds a force [N] at a point and a torque [N m] to the generalised forces of a body's joints.
-void add_wrench(const mjModel& m, mjData& d, int body, const double* force, const double* torque,
-                const double* point) {
-  double arm[3], moment[3];
-  mju_sub3(arm, point, d.subtree_com + 3 * m.body_rootid[body]);
-  mju_cross(moment, arm, force);
-  mju_addTo3(moment, torque);
-  for (int dof = last_dof(m, body); dof >= 0; dof = m.dof_parentid[dof]) {
-    const double* axis = d.cdof + 6 * dof;  // turn, then shift, about the tree's centre of mass
-    d.qfrc_applied[dof] += mju_dot3(axis, moment) + mju_dot3(axis + 3, force);
-  }
-}
 
 // Velocity of a body where a point is [m/s].
 void velocity_at(const mjModel& m, const mjData& d, int body, const double* point, double* v) {
@@ -84,7 +59,7 @@ bool WaterForces::is_near(size_t water, const WaterShape& shape, const mjData& d
   double centre[3], half[3];
   mju_mulMatVec3(centre, R, shape.centre);
   mju_addTo3(centre, p);
-  around(R, shape.half, half);
+  edges_around(R, shape.half, half);
   return std::abs(centre[0] - w.x) < half[0] + w.size_x / 2 + margin &&
          std::abs(centre[1] - w.y) < half[1] + w.size_y / 2 + margin &&
          centre[2] - half[2] < w.level + crests_[water] + margin &&
@@ -131,7 +106,7 @@ void WaterForces::push(const mjModel& model, mjData& data, const WaterShape& sha
   double centre[3], half[3];
   mju_mulMatVec3(centre, wet.R, shape.centre);
   mju_addTo3(centre, wet.p);
-  around(wet.R, shape.half, half);
+  edges_around(wet.R, shape.half, half);
   const SurfacePatch surface(water, ripples, centre[0], centre[1], half[0], half[1], data.time);
   const WaveMotion waves =
       wave_motion(water, centre[0], centre[1], centre[2] - water.level, data.time);

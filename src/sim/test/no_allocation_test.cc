@@ -109,6 +109,35 @@ TEST(WaterLoop, AllocatesNothingOnceWarm) {
   reader.join();
 }
 
+TEST(SoilLoop, AllocatesNothingOnceWarm) {
+#ifdef GLOAM_SANITIZED
+  GTEST_SKIP() << "the sanitizer owns malloc";
+#endif
+  auto world = world_from_mjcf(R"(<mujoco><option timestep="0.002"/><worldbody>
+    <body pos="0 0 0.3"><freejoint/><geom type="box" size=".2 .2 .1" density="900"/></body>
+    <body pos="-1 0 0.1"><freejoint/><geom type="cylinder" size=".1 .05" euler="90 0 0"/></body>
+    <body pos="1 0 0.3"><freejoint/><geom type="capsule" size=".1 .2" density="900"/></body>
+    </worldbody></mujoco>)");
+  Scene scene;
+  scene.soils.emplace_back().name = "bed";
+  world->soils = *describe_soils(scene, *world->model);
+  auto sim = make_simulator(world);
+  sim->set_step_hook([](const mjModel*, mjData* d) { counting = d->time > 0.1; });
+  auto queue = *sim->subscribe({.rate = {250, 1}, .required = true, .capacity = 1});
+  std::thread reader([queue] {
+    while (queue->next()) {
+    }
+  });
+  allocations = frees = 0;
+  sim->start(1000);
+  ASSERT_TRUE(sim->wait().ok());
+  EXPECT_EQ(allocations.load(), 0);
+  EXPECT_EQ(frees.load(), 0);
+  sim->set_step_hook([](const mjModel*, mjData*) { counting = false; });
+  sim->stop();
+  reader.join();
+}
+
 TEST(Agents, DecideAndWalkWithoutAllocating) {
 #ifdef GLOAM_SANITIZED
   GTEST_SKIP() << "the sanitizer owns malloc";

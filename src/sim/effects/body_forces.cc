@@ -1,0 +1,86 @@
+#include "sim/effects/body_forces.h"
+
+#include <cmath>
+
+namespace gloam {
+
+void edges_around(const double* R, const double* half, double* out) {
+  for (int a = 0; a < 3; ++a) {
+    out[a] = std::abs(R[3 * a]) * half[0] + std::abs(R[3 * a + 1]) * half[1] +
+             std::abs(R[3 * a + 2]) * half[2];
+  }
+}
+
+int last_dof(const mjModel& m, int body) {
+  while (body > 0 && m.body_dofnum[body] == 0) body = m.body_parentid[body];
+  return body > 0 ? m.body_dofadr[body] + m.body_dofnum[body] - 1 : -1;
+}
+
+void add_wrench(const mjModel& m, mjData& d, int body, const double* force, const double* torque,
+                const double* point) {
+  double arm[3], moment[3];
+  mju_sub3(arm, point, d.subtree_com + 3 * m.body_rootid[body]);
+  mju_cross(moment, arm, force);
+  mju_addTo3(moment, torque);
+  for (int dof = last_dof(m, body); dof >= 0; dof = m.dof_parentid[dof]) {
+    const double* axis = d.cdof + 6 * dof;  // turn, then shift, about the tree's centre of mass
+    d.qfrc_applied[dof] += mju_dot3(axis, moment) + mju_dot3(axis + 3, force);
+  }
+}
+
+ResponseSolver::ResponseSolver(const mjModel& m)
+    : columns_(static_cast<size_t>(m.nv) * 6), by_dof_(static_cast<size_t>(m.nv)) {
+  chain_.reserve(static_cast<size_t>(m.nv));
+}
+
+// With M = L' D L (Featherstone 2008, "Rigid Body Dynamics Algorithms", chapter 6) only the rows of
+// L of the chain itself matter: J M^-1 J' = (L^-T J')' D^-1 (L^-T J').
+BodyResponse ResponseSolver::solve(const mjModel& m, const mjData& d, int body, const double* point,
+                                   std::span<const double> less) {
+  BodyResponse out;
+  const int last = last_dof(m, body);
+  double arm[3];
+  mju_sub3(arm, point, d.subtree_com + 3 * m.body_rootid[body]);
+  size_t n = 0;
+  for (int dof = last; dof >= 0; dof = m.dof_parentid[dof], ++n) {
+    const double* axis = d.cdof + 6 * dof;
+    double* column = columns_.data() + 6 * dof;
+    mju_cross(column, axis, arm);
+    mju_addTo3(column, axis + 3);
+    mju_copy3(column + 3, axis);
+    mju_addToScl(out.velocity, column, d.qvel[dof], 6);
+    const double acceleration = d.qacc_warmstart[dof] - (n < less.size() ? less[n] : 0);
+    mju_addToScl(out.acceleration, column, acceleration, 6);
+  }
+  for (int dof = last; dof >= 0; dof = m.dof_parentid[dof]) {
+    const double* column = columns_.data() + 6 * dof;
+    const int row = m.M_rowadr[dof];
+    for (int k = 0; k + 1 < m.M_rownnz[dof]; ++k)
+      mju_addToScl(columns_.data() + 6 * m.M_colind[row + k], column, -d.qLD[row + k], 6);
+    for (int i = 0; i < 6; ++i)
+      mju_addToScl(out.inverse + 6 * i, column, d.qLDiagInv[dof] * column[i], 6);
+  }
+  return out;
+}
+
+// L^-1 D^-1 of what solve() has made of the chain: from the root on, each less those before it.
+void ResponseSolver::accelerations(const mjModel& m, const mjData& d, int body,
+                                   const double* wrench, std::span<double> out) {
+  chain_.clear();
+  for (int dof = last_dof(m, body); dof >= 0; dof = m.dof_parentid[dof]) chain_.push_back(dof);
+  for (size_t n = chain_.size(); n-- > 0;) {
+    const int dof = chain_[n], row = m.M_rowadr[dof];
+    double a = d.qLDiagInv[dof] * mju_dot(columns_.data() + 6 * dof, wrench, 6);
+    for (int k = 0; k + 1 < m.M_rownnz[dof]; ++k)
+      a -= d.qLD[row + k] * by_dof_[static_cast<size_t>(m.M_colind[row + k])];
+    by_dof_[static_cast<size_t>(dof)] = out[n] = a;
+  }
+}
+
+int chain_length(const mjModel& m, int body) {
+  int n = 0;
+  for (int dof = last_dof(m, body); dof >= 0; dof = m.dof_parentid[dof]) ++n;
+  return n;
+}
+
+}  // namespace gloam

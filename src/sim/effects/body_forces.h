@@ -1,0 +1,51 @@
+#pragma once
+// Forces on bodies from outside of MuJoCo's pipeline, and how bodies answer to them, in the
+// generalised coordinates of their joints. data's poses and centres of mass are of the present.
+
+#include <mujoco/mujoco.h>
+
+#include <span>
+#include <vector>
+
+namespace gloam {
+
+/// Edges along the world's axes of the box around a box with half edges `half`, turned by `R`.
+void edges_around(const double* R, const double* half, double* out);
+
+/// Of the degrees of freedom that move a body the last; -1 = none does. dof_parentid has the rest.
+int last_dof(const mjModel& model, int body);
+
+/// Adds a force [N] at a point and a torque [N m], in the world, to data.qfrc_applied.
+void add_wrench(const mjModel& model, mjData& data, int body, const double* force,
+                const double* torque, const double* point);
+
+/// Motion of the point of a body and how it answers to forces there. Vectors are linear, then
+/// angular, in the world.
+struct BodyResponse {
+  double velocity[6] = {};      ///< [m/s], [rad/s]
+  double acceleration[6] = {};  ///< of the last step, without what turning adds
+  double inverse[36] = {};      ///< of its inertia, as all its joints share it: row by row
+};
+
+/// One body at a time. data.qLD is of the present.
+class ResponseSolver {
+ public:
+  explicit ResponseSolver(const mjModel& model);
+  /// J M^-1 J' along the chain of joints that move the body. `less`: taken off the last step's
+  /// acceleration of those joints, from the last of them to the root; empty = nothing.
+  BodyResponse solve(const mjModel& model, const mjData& data, int body, const double* point,
+                     std::span<const double> less);
+  /// What a wrench at that point does to the acceleration of those joints, in that order.
+  void accelerations(const mjModel& model, const mjData& data, int body, const double* wrench,
+                     std::span<double> out);
+
+ private:
+  std::vector<double> columns_;  // L^-T J', (nv x 6)
+  std::vector<double> by_dof_;   // room, (nv)
+  std::vector<int> chain_;       // room
+};
+
+/// Joints' degrees of freedom that move a body.
+int chain_length(const mjModel& model, int body);
+
+}  // namespace gloam

@@ -1,0 +1,180 @@
+#include "sim/effects/collider_bottom.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/effects/collider_mesh.h"
+
+namespace gloam {
+namespace {
+
+constexpr double kUpright = 1e-9;        // of a normal: the facet is a wall
+constexpr double kNowhere = 1e30;        // [m]
+constexpr double kAsGoodAsAWall = 1e-3;  // of a normal's z: the surface is as good as a wall
+
+}  // namespace
+
+bool ColliderBottom::can_be(const mjModel& m, int geom) {
+  switch (m.geom_type[geom]) {
+    case mjGEOM_SPHERE:
+    case mjGEOM_ELLIPSOID:
+    case mjGEOM_CAPSULE:
+    case mjGEOM_CYLINDER:
+    case mjGEOM_BOX:
+    case mjGEOM_MESH:
+      return true;
+    default:
+      return false;
+  }
+}
+
+ColliderBottom::ColliderBottom(const mjModel& m, int geom)
+    : geom_(geom), body_(m.geom_bodyid[geom]), type_(m.geom_type[geom]) {
+  std::copy_n(m.geom_size + 3 * geom, 3, size_);
+  std::copy_n(m.geom_aabb + 6 * geom, 3, box_centre_);
+  std::copy_n(m.geom_aabb + 6 * geom + 3, 3, box_half_);
+  if (type_ == mjGEOM_MESH) planes_ = hull_planes(m, m.geom_dataid[geom]);
+  if (type_ == mjGEOM_BOX) {
+    for (int a = 0; a < 3; ++a) {
+      for (const double side : {-1.0, 1.0}) {
+        SolidPlane plane{{0, 0, 0}, size_[a]};
+        plane.n[a] = side;
+        planes_.push_back(plane);
+      }
+    }
+  }
+  lower_.reserve(planes_.size());
+  upper_.reserve(planes_.size());
+  upright_.reserve(planes_.size());
+}
+
+void ColliderBottom::set_pose(const mjData& d) {
+  std::copy_n(d.geom_xpos + 3 * geom_, 3, p_);
+  std::copy_n(d.geom_xmat + 9 * geom_, 9, R_);
+  mju_mulMatVec3(centre_, R_, box_centre_);
+  mju_addTo3(centre_, p_);
+  for (int a = 0; a < 3; ++a) {
+    half_[a] = 0;
+    for (int b = 0; b < 3; ++b) half_[a] += std::abs(R_[3 * a + b]) * box_half_[b];
+  }
+  lower_.clear(), upper_.clear(), upright_.clear();
+  for (const SolidPlane& plane : planes_) {
+    SolidPlane world;
+    mju_mulMatVec3(world.n, R_, plane.n);
+    world.offset = plane.offset + mju_dot3(world.n, p_);
+    if (std::abs(world.n[2]) < kUpright) {
+      upright_.push_back(world);
+      continue;
+    }
+    const Facet facet{-world.n[0] / world.n[2], -world.n[1] / world.n[2],
+                      world.offset / world.n[2]};
+    (world.n[2] < 0 ? lower_ : upper_).push_back(facet);
+  }
+}
+
+bool ColliderBottom::at(double x, double y, BottomPoint* out) const {
+  if (std::abs(x - centre_[0]) > half_[0] || std::abs(y - centre_[1]) > half_[1]) return false;
+  return planes_.empty() ? quadric_at(x, y, out) : facets_at(x, y, out);
+}
+
+bool ColliderBottom::facets_at(double x, double y, BottomPoint* out) const {
+  for (const SolidPlane& wall : upright_)
+    if (wall.n[0] * x + wall.n[1] * y > wall.offset) return false;
+  double low = -kNowhere, high = kNowhere;
+  const Facet* lowest = nullptr;
+  for (const Facet& f : lower_) {
+    const double z = f.a * x + f.b * y + f.c;
+    if (z > low) low = z, lowest = &f;
+  }
+  for (const Facet& f : upper_) high = std::min(high, f.a * x + f.b * y + f.c);
+  if (lowest == nullptr || low > high) return false;
+  *out = {low, {lowest->a, lowest->b}};
+  return true;
+}
+
+// The upright line through (x, y), in the geom's frame: o + t d, where t is the world's z.
+bool ColliderBottom::quadric_at(double x, double y, BottomPoint* out) const {
+  const double shift[3] = {x - p_[0], y - p_[1], -p_[2]};
+  double o[3], normal[3] = {}, t = kNowhere;
+  mju_mulMatTVec3(o, R_, shift);
+  const double* d = R_ + 6;
+  switch (type_) {
+    case mjGEOM_SPHERE:
+      add_ball(o, d, 0, &t, normal);
+      break;
+    case mjGEOM_CAPSULE: {
+      add_ball(o, d, -size_[1], &t, normal);
+      add_ball(o, d, size_[1], &t, normal);
+      double side = kNowhere, side_normal[3];
+      if (cylinder_at(o, d, &side, side_normal) && side < t && side_normal[2] == 0) {
+        t = side;
+        mju_copy3(normal, side_normal);
+      }
+      break;
+    }
+    case mjGEOM_CYLINDER:
+      if (!cylinder_at(o, d, &t, normal)) return false;
+      break;
+    default: {  // ellipsoid: a ball of radius 1 in a frame that is stretched
+      double a = 0, b = 0, c = -1;
+      for (int i = 0; i < 3; ++i) {
+        const double q = o[i] / size_[i], e = d[i] / size_[i];
+        a += e * e, b += q * e, c += q * q;
+      }
+      const double root = b * b - a * c;
+      if (root < 0) return false;
+      t = (-b - std::sqrt(root)) / a;
+      for (int i = 0; i < 3; ++i) normal[i] = (o[i] + t * d[i]) / (size_[i] * size_[i]);
+    }
+  }
+  if (t >= kNowhere) return false;
+  double n[3];
+  mju_mulMatVec3(n, R_, normal);
+  mju_normalize3(n);
+  const double down = std::min(n[2], -kAsGoodAsAWall);
+  *out = {t, {-n[0] / down, -n[1] / down}};
+  return true;
+}
+
+void ColliderBottom::add_ball(const double* o, const double* d, double z, double* t,
+                              double* normal) const {
+  const double q[3] = {o[0], o[1], o[2] - z};
+  const double b = mju_dot3(q, d), root = b * b - mju_dot3(q, q) + size_[0] * size_[0];
+  if (root < 0) return;
+  const double low = -b - std::sqrt(root);
+  if (low >= *t) return;
+  *t = low;
+  mju_addScl3(normal, q, d, low);
+}
+
+// Where the line enters: through the round side, then normal[2] = 0, or through an end.
+bool ColliderBottom::cylinder_at(const double* o, const double* d, double* t,
+                                 double* normal) const {
+  double low = -kNowhere, high = kNowhere;
+  const double a = d[0] * d[0] + d[1] * d[1], b = o[0] * d[0] + o[1] * d[1];
+  const double c = o[0] * o[0] + o[1] * o[1] - size_[0] * size_[0];
+  if (a > kUpright * kUpright) {
+    const double root = b * b - a * c;
+    if (root < 0) return false;
+    low = (-b - std::sqrt(root)) / a, high = (-b + std::sqrt(root)) / a;
+  } else if (c > 0) {
+    return false;
+  }
+  bool end = false;
+  if (std::abs(d[2]) > kUpright) {
+    const double from = (-std::copysign(size_[1], d[2]) - o[2]) / d[2];
+    const double to = (std::copysign(size_[1], d[2]) - o[2]) / d[2];
+    if (from > low) low = from, end = true;
+    high = std::min(high, to);
+  } else if (std::abs(o[2]) > size_[1]) {
+    return false;
+  }
+  if (low > high) return false;
+  *t = low;
+  normal[0] = end ? 0 : o[0] + low * d[0];
+  normal[1] = end ? 0 : o[1] + low * d[1];
+  normal[2] = end ? -std::copysign(1.0, d[2]) : 0;
+  return true;
+}
+
+}  // namespace gloam

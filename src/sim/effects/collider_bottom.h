@@ -1,0 +1,53 @@
+#pragma once
+// The underside of a convex collider, as seen from straight below: spheres, ellipsoids, capsules,
+// cylinders, boxes, and the convex hulls of meshes. Closed forms.
+
+#include <mujoco/mujoco.h>
+
+#include <vector>
+
+#include "sim/effects/grid_solid.h"
+
+namespace gloam {
+
+/// The lowest point of a collider over a point of the plane, in the world.
+struct BottomPoint {
+  double z = 0;          ///< [m]
+  double slope[2] = {};  ///< dz/dx, dz/dy of the surface there
+};
+
+class ColliderBottom {
+ public:
+  /// Whether it can be one: planes, height fields and SDFs cannot.
+  static bool can_be(const mjModel& model, int geom);
+  ColliderBottom(const mjModel& model, int geom);
+
+  int geom() const { return geom_; }
+  int body() const { return body_; }
+  /// Where it stands: of data's poses. Before what follows.
+  void set_pose(const mjData& data);
+  /// Of the box around it in the world [m].
+  double low(int axis) const { return centre_[axis] - half_[axis]; }
+  double high(int axis) const { return centre_[axis] + half_[axis]; }
+  /// False: it is not above (x, y).
+  bool at(double x, double y, BottomPoint* out) const;
+
+ private:
+  struct Facet {
+    double a, b, c;  ///< z = a x + b y + c
+  };
+  bool facets_at(double x, double y, BottomPoint* out) const;
+  bool quadric_at(double x, double y, BottomPoint* out) const;
+  bool cylinder_at(const double* o, const double* d, double* t, double* normal) const;
+  void add_ball(const double* o, const double* d, double z, double* t, double* normal) const;
+
+  int geom_, body_, type_;
+  double size_[3], box_centre_[3], box_half_[3];
+  std::vector<SolidPlane> planes_;  // of boxes and hulls, in the geom's frame
+  double p_[3] = {}, R_[9] = {};
+  double centre_[3] = {}, half_[3] = {};
+  std::vector<Facet> lower_, upper_;
+  std::vector<SolidPlane> upright_;  // in the world; n[2] = 0
+};
+
+}  // namespace gloam

@@ -1,0 +1,64 @@
+#pragma once
+// One bed of soil on the sim thread: what colliders do to its cells, and what it does to them.
+//
+// The pressure under a body depends on where the step will take it, along lines far too steep for
+// an explicit step. So the wrench on each body is that of the step's end (implicit Euler): Newton's
+// method with the inverse inertia of the body among its joints. After the idea of Chrono's soil
+// contact model (Tasora et al. 2019).
+
+#include "sim/effects/body_forces.h"
+#include "sim/effects/soil_contact.h"
+#include "sim/effects/soil_law.h"
+#include "sim/effects/soil_tracks.h"
+
+namespace gloam {
+
+class SoilBed {
+ public:
+  /// `geoms`: all that may touch it.
+  SoilBed(const SoilDescription& soil, const mjModel& model, std::span<const int> geoms);
+
+  void reset();
+  /// Goes on with the cells of another bed, if that is one of the same name, place and grid.
+  bool take_over(const SoilBed& before);
+
+  /// Does a collider's box reach into the bed, or nearer to it than `margin` [m]?
+  bool is_near(const mjModel& model, const mjData& data, int geom, double margin) const;
+
+  /// Finds what `colliders` touch at the beginning of step `step`, in order of geoms, and what that
+  /// does to the ground; their poses are set. The hash goes in and comes out with it.
+  uint64_t press(uint32_t step, const mjModel& model, const mjData& data,
+                 std::span<const ColliderBottom* const> colliders, uint64_t hash);
+  bool touches() { return !contacts_.touches().empty(); }
+  /// Adds the forces of the coming step to data.qfrc_applied. data.qLD is of the present.
+  void push(uint32_t step, const mjModel& model, mjData& data, ResponseSolver* solver);
+
+  SoilTracks& tracks() { return tracks_; }
+  const SoilDescription& description() const { return soil_; }
+  const std::vector<SoilCell>& cells() const { return cells_; }
+
+ private:
+  /// What the bed does to a body in a step: accelerations of the joints that move it, which stand
+  /// in answers_.
+  struct Answer {
+    uint32_t step = 0;  // after the one it was for
+    size_t first = 0, count = 0;
+  };
+  void press_cell(uint32_t step, double dt, const SoilTouch& touch, const double* velocity);
+  void push_aside(const SoilTouch& touch, const double* velocity, double volume);
+  void push_body(const mjModel& model, mjData& data, std::span<const SoilTouch> touches,
+                 uint32_t step, ResponseSolver* solver);
+  void limit_work(std::span<const SoilTouch> touches, const double* free, const double* change,
+                  double dt, double* wrench) const;
+  void add_touch(const SoilTouch& touch, const double* point, const double* motion, double dt,
+                 double* force, double* matrix) const;
+
+  const SoilDescription& soil_;
+  SoilContacts contacts_;
+  std::vector<SoilCell> cells_;
+  std::vector<Answer> answers_of_;  // of the last step, (nbody)
+  std::vector<double> answers_;
+  SoilTracks tracks_;
+};
+
+}  // namespace gloam

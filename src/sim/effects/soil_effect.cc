@@ -1,0 +1,93 @@
+#include "sim/effects/soil_effect.h"
+
+#include <algorithm>
+
+#include "sim/effects/collider_mesh.h"
+
+namespace gloam {
+namespace {
+constexpr double kInAStep = 0.5;  // nothing moves further [m]
+}
+
+std::unique_ptr<SoilEffect> SoilEffect::create(std::shared_ptr<const CompiledWorld> world,
+                                               const mjModel& model) {
+  return std::unique_ptr<SoilEffect>(new SoilEffect(std::move(world), model));
+}
+
+SoilEffect::SoilEffect(std::shared_ptr<const CompiledWorld> world, const mjModel& m)
+    : world_(std::move(world)), solver_(m), applied_(static_cast<size_t>(m.nv)) {
+  const std::vector<bool> collide = colliders(m);
+  std::vector<int> geoms;
+  for (int geom = 0; geom < m.ngeom; ++geom) {
+    const bool moves = m.body_weldid[m.geom_bodyid[geom]] != 0;
+    if (!moves || !collide[static_cast<size_t>(geom)] || !ColliderBottom::can_be(m, geom)) continue;
+    colliders_.emplace_back(m, geom);
+    geoms.push_back(geom);
+  }
+  near_.reserve(colliders_.size());
+  for (const SoilDescription& soil : world_->soils)
+    beds_.push_back(std::make_unique<SoilBed>(soil, m, geoms));
+}
+
+void SoilEffect::reset() {
+  for (const auto& bed : beds_) bed->reset();
+}
+
+void SoilEffect::take_over(const SoilEffect* before) {
+  reset();
+  for (size_t i = 0; before != nullptr && i < beds_.size(); ++i) {
+    for (const auto& other : before->beds_)
+      if (beds_[i]->take_over(*other)) break;
+  }
+}
+
+bool SoilEffect::may_touch(const mjModel& m, const mjData& d) const {
+  for (const auto& bed : beds_) {
+    for (const ColliderBottom& collider : colliders_)
+      if (bed->is_near(m, d, collider.geom(), kInAStep)) return true;
+  }
+  return false;
+}
+
+uint64_t SoilEffect::begin_step(int64_t step, const mjModel& m, mjData& d, uint64_t hash) {
+  // Poses are those before the last step, or of now.
+  if (!may_touch(m, d)) return hash;
+  mj_kinematics(&m, &d);
+  mj_comPos(&m, &d);
+  mj_comVel(&m, &d);
+  near_.clear();
+  for (ColliderBottom& collider : colliders_) {
+    const bool near = std::any_of(beds_.begin(), beds_.end(), [&](const auto& bed) {
+      return bed->is_near(m, d, collider.geom(), 0);
+    });
+    if (!near) continue;
+    collider.set_pose(d);
+    near_.push_back(&collider);
+  }
+  // Cells count from 1, so that one that nothing has touched is none of the last step's.
+  const uint32_t now = static_cast<uint32_t>(step) + 1;
+  bool touched = false;
+  for (const auto& bed : beds_) {
+    hash = bed->press(now, m, d, near_, hash);
+    touched = touched || bed->touches();
+  }
+  if (!touched) return hash;
+  mj_makeM(&m, &d);
+  mj_factorM(&m, &d);
+  std::copy_n(d.qfrc_applied, applied_.size(), applied_.begin());
+  began_ = true;
+  for (const auto& bed : beds_) bed->push(now, m, d, &solver_);
+  return hash;
+}
+
+void SoilEffect::end_step(mjData& d) {
+  if (!began_) return;
+  began_ = false;
+  std::copy(applied_.begin(), applied_.end(), d.qfrc_applied);
+}
+
+void SoilEffect::fill(std::vector<HeightChange>* tracks) {
+  for (size_t i = 0; i < beds_.size(); ++i) (*tracks)[i] = {beds_[i]->tracks().field(), 0};
+}
+
+}  // namespace gloam

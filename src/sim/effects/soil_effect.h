@@ -1,0 +1,46 @@
+#pragma once
+// All beds of soil of a World, on the sim thread: what sinks in, at every step.
+
+#include <memory>
+#include <vector>
+
+#include "sim/effects/soil_bed.h"
+#include "world/world.h"
+
+namespace gloam {
+
+class SoilEffect {
+ public:
+  /// The World has soils.
+  static std::unique_ptr<SoilEffect> create(std::shared_ptr<const CompiledWorld> world,
+                                            const mjModel& model);
+
+  void reset();
+  /// Goes on with the tracks of soils of the same name and grid in `before`, null = none.
+  void take_over(const SoilEffect* before);
+
+  /// Before the physics of step `step`; `data` is of its state. The hash goes in and comes out with
+  /// what the ground has been through. MuJoCo errors possible: call it guarded.
+  uint64_t begin_step(int64_t step, const mjModel& model, mjData& data, uint64_t hash);
+  /// After it, whether it went well or not: takes back the forces.
+  void end_step(mjData& data);
+
+  /// Tracks as they are now.
+  void fill(std::vector<HeightChange>* tracks);
+
+  const SoilBed& bed(size_t row) const { return *beds_[row]; }
+
+ private:
+  SoilEffect(std::shared_ptr<const CompiledWorld> world, const mjModel& model);
+  bool may_touch(const mjModel& model, const mjData& data) const;
+
+  const std::shared_ptr<const CompiledWorld> world_;
+  std::vector<ColliderBottom> colliders_;
+  std::vector<const ColliderBottom*> near_;  // room
+  std::vector<std::unique_ptr<SoilBed>> beds_;
+  ResponseSolver solver_;
+  std::vector<double> applied_;  // by others (nv)
+  bool began_ = false;
+};
+
+}  // namespace gloam
