@@ -5,11 +5,10 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "bench/command_line.h"
 #include "gloam/scene.h"
 #include "runtime/live_simulation.h"
+#include "runtime/picture_contrast.h"
 #include "runtime/visibility_probe.h"
 #include "sensors/lidar_sensor.h"
 #include "sim/pose_solver.h"
@@ -47,31 +46,6 @@ struct Row {
   double visibility = 0, illuminance = 0, contrast = 0;
   double returns = 0, false_returns = 0;  ///< of all beams: of surfaces, of media
 };
-
-/// Root mean square of how the logarithm of luminance differs between pixels four apart, which is
-/// what features are found by; noise and what is darker than a hundredth of the mean count little.
-double contrast_of(const std::vector<float>& radiance, int width) {
-  const size_t n = radiance.size() / 3, across = static_cast<size_t>(width);
-  std::vector<double> y(n);
-  double mean = 0;
-  for (size_t i = 0; i < n; ++i) {
-    y[i] = 0.2126 * static_cast<double>(radiance[3 * i]) +
-           0.7152 * static_cast<double>(radiance[3 * i + 1]) +
-           0.0722 * static_cast<double>(radiance[3 * i + 2]);
-    mean += y[i] / static_cast<double>(n);
-  }
-  for (double& value : y) value = std::log(value + 0.01 * mean);
-  constexpr size_t kApart = 4;
-  double square = 0;
-  size_t count = 0;
-  for (size_t i = 0; i + kApart * across < n; ++i) {
-    if (i % across + kApart >= across) continue;
-    square += (y[i + kApart] - y[i]) * (y[i + kApart] - y[i]);
-    square += (y[i + kApart * across] - y[i]) * (y[i + kApart * across] - y[i]);
-    count += 2;
-  }
-  return std::sqrt(square / static_cast<double>(count));
-}
 
 Result<Row> measure(const Scene& scene, Vec3 eye, const Options& options) {
   Row row;

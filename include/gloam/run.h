@@ -51,6 +51,35 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
                                                const std::vector<CameraRequest>& requests,
                                                const ProgressCallback& progress);
 
+/// Scenes that differ in something, seen by the same sensors side by side.
+struct ComparisonRequest {
+  struct Row {
+    std::string name;
+    Scene scene;  ///< runs for its duration
+  };
+  std::vector<Row> rows;
+  /// A [[camera]] of all scenes with [camera.stereo_depth] and [camera.thermal], and a [[lidar]]
+  /// with `truth`.
+  std::string camera, lidar;
+  Rational rate = {5, 1};          ///< of both [Hz]
+  std::filesystem::path out = {};  ///< existing folder
+  std::string name;                ///< of the files in it: NAME.mp4, NAME.png of its middle
+};
+/// Of one row, over all its instants; means but for the least visibility.
+struct ComparisonResult {
+  std::string name;
+  double visibility = 0;   ///< the least at the camera, by Koschmieder [m]; 1e5 = clear
+  double illuminance = 0;  ///< of a level surface at the camera [lx]
+  double contrast = 0;     ///< RMS difference of log luminance over four pixels, 1 = a factor of e
+  double lidar_returns = 0;  ///< first returns of surfaces over beams
+  double media_returns = 0;  ///< and of media
+};
+/// Runs the scenes one after the other. A row of the video is a scene: picture, measured depth,
+/// thermal picture, LiDAR from above. Errors: a scene that does not compile or diverges, no such
+/// camera or LiDAR, files that cannot be written or are there already; stopped by `progress`.
+Result<std::vector<ComparisonResult>> compare_scenes(const ComparisonRequest& request,
+                                                     const ProgressCallback& progress);
+
 /// Writes the channels of one frame as files beside each other: NAME.png, NAME_depth.png … Returns
 /// their paths.
 Result<std::vector<std::filesystem::path>> write_frame(const CameraFrame& frame,

@@ -8,7 +8,8 @@
 namespace gloam {
 namespace {
 
-constexpr double kUpright = 0.7;  // least part of a contact's normal along z: ground, not a wall
+constexpr double kGroundNormal =
+    0.7;  // least part of a contact's normal along z: ground, not a wall
 
 // Velocity of a body where a point is [m/s], by its twist about its tree's centre of mass.
 void point_velocity(const mjModel& m, const mjData& d, int body, const double* point, double* v) {
@@ -67,7 +68,7 @@ void ContactDust::gather(const mjModel& model, const mjData& data, const Agents*
 void ContactDust::gather_contact(const mjModel& m, const mjData& d, int i) {
   const mjContact& contact = d.contact[i];
   if (contact.efc_address < 0 || contact.geom[0] < 0 || contact.geom[1] < 0) return;
-  if (std::abs(contact.frame[2]) < kUpright) return;
+  if (std::abs(contact.frame[2]) < kGroundNormal) return;
   const bool first_stands = m.body_weldid[m.geom_bodyid[contact.geom[0]]] == 0;
   const bool second_stands = m.body_weldid[m.geom_bodyid[contact.geom[1]]] == 0;
   if (first_stands == second_stands) return;

@@ -1,0 +1,31 @@
+#include "runtime/picture_contrast.h"
+
+#include <cmath>
+#include <cstddef>
+
+namespace gloam {
+
+double contrast_of(const std::vector<float>& radiance, int width) {
+  const size_t n = radiance.size() / 3, across = static_cast<size_t>(width);
+  std::vector<double> y(n);
+  double mean = 0;
+  for (size_t i = 0; i < n; ++i) {
+    y[i] = 0.2126 * static_cast<double>(radiance[3 * i]) +
+           0.7152 * static_cast<double>(radiance[3 * i + 1]) +
+           0.0722 * static_cast<double>(radiance[3 * i + 2]);
+    mean += y[i] / static_cast<double>(n);
+  }
+  for (double& value : y) value = std::log(value + 0.01 * mean);
+  constexpr size_t kApart = 4;
+  double square = 0;
+  size_t count = 0;
+  for (size_t i = 0; i + kApart * across < n; ++i) {
+    if (i % across + kApart >= across) continue;
+    square += (y[i + kApart] - y[i]) * (y[i + kApart] - y[i]);
+    square += (y[i + kApart * across] - y[i]) * (y[i + kApart * across] - y[i]);
+    count += 2;
+  }
+  return std::sqrt(square / static_cast<double>(count));
+}
+
+}  // namespace gloam

@@ -1,0 +1,13 @@
+#pragma once
+// How much there is to see in a picture.
+
+#include <vector>
+
+namespace gloam {
+
+/// Root mean square of how the logarithm of luminance differs between pixels four apart, along rows
+/// and columns: what features are found by. What is darker than a hundredth of the mean counts
+/// little. `radiance`: linear Rec. 709, (height x width x 3).
+double contrast_of(const std::vector<float>& radiance, int width);
+
+}  // namespace gloam
