@@ -51,7 +51,7 @@ std::vector<ComparisonRequest::Row> by_level(const Scene& scene, bool quick) {
         return of.body.starts_with("people");  // nobody is there
       });
     }
-    if (quick) row.sim.duration = 4;
+    if (quick) row.sim.duration = 3;
   }
   return rows;
 }
@@ -62,7 +62,7 @@ int demo_adversity(const DemoCommand& command, const Globals& globals) {
   ComparisonRequest request;
   request.camera = "eye";
   request.lidar = "top";
-  if (command.quick) request.rate = {1, 1};
+  request.rate = {command.quick ? 1 : 4, 1};
   request.out = !command.out.empty() ? command.out : "results/adversity";
   std::error_code error;
   std::filesystem::create_directories(request.out, error);
@@ -118,7 +118,7 @@ void add_demo(CLI::App& app, Globals& globals, Action& action) {
   sub->add_option("WHICH", command->which,
                   "adversity: through a house on fire and a dusty warehouse, by level")
       ->check(CLI::IsMember({"adversity"}));
-  sub->add_flag("--quick", command->quick, "4 s, few pictures a second: under a minute");
+  sub->add_flag("--quick", command->quick, "A few seconds, few pictures a second: one or two minutes");
   sub->add_option("--out", command->out,
                   "Results folder; default results/demo or results/adversity");
   sub->footer("Examples:\n  gloam demo --quick\n  gloam demo adversity");

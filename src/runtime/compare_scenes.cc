@@ -24,8 +24,8 @@ namespace {
 
 constexpr int kColumns = 4;
 constexpr const char* kHeadings[kColumns] = {
-    "camera", "depth camera, to 8 m", "thermal, 15 to 80 C", "LiDAR from above, rings of 2 m"};
-constexpr float kFarDepth = 8, kCold = 288, kHot = 353, kReach = 8;  // [m], [K], [K], [m]
+    "camera", "depth camera, to 8 m", "thermal, 15 to 40 C", "LiDAR from above, rings of 2 m"};
+constexpr float kFarDepth = 8, kCold = 288, kHot = 313, kReach = 8;  // [m], [K], [K], [m]
 constexpr int kMargin = 26, kGap = 4;                                // [px]
 
 /// Panels of one scene, by instant: (kColumns) each.
@@ -58,6 +58,7 @@ class ComparedScene {
     camera.render = scene.render;
     GLOAM_TRY(out.camera_, CameraSensor::create(out.shared_->description, camera, options.seed));
     GLOAM_TRY_STATUS(out.camera_->set_temperatures(scene.temperatures));
+    out.meter_ = out.simulation_->meters().of(request.camera, *world.compiled());
     GLOAM_TRY(const auto lidars, describe_lidars(*world.compiled()));
     const auto found = std::ranges::find_if(
         lidars, [&](const LidarDescription& lidar) { return lidar.options.name == request.lidar; });
@@ -76,6 +77,7 @@ class ComparedScene {
     const Snapshot now = simulation_->latest();
     if (index == 0) GLOAM_TRY_STATUS(solver_->solve(now, before_));
     GLOAM_TRY_STATUS(solver_->solve(now, poses_));
+    if (meter_ != nullptr) camera_->set_ev100(meter_->ev100_at(step));
     const auto frame = camera_->capture(*shared_->renderer, shared_->mutex, poses_, before_, index);
     if (frame == nullptr) return Error{ErrorKind::kInterrupted, "interrupted"};
     const std::vector<PoseFrame> keys{poses_, poses_};
@@ -103,6 +105,7 @@ class ComparedScene {
   std::unique_ptr<PoseSolver> solver_;
   VisibilityProbe probe_;
   std::unique_ptr<CameraSensor> camera_;
+  std::shared_ptr<ExposureMeter> meter_;  // null: the exposure is the camera's own
   std::unique_ptr<LidarSensor> lidar_;
   PoseFrame poses_, before_;
 };
