@@ -118,7 +118,8 @@ void add_demo(CLI::App& app, Globals& globals, Action& action) {
   sub->add_option("WHICH", command->which,
                   "adversity: through a house on fire and a dusty warehouse, by level")
       ->check(CLI::IsMember({"adversity"}));
-  sub->add_flag("--quick", command->quick, "A few seconds, few pictures a second: one or two minutes");
+  sub->add_flag("--quick", command->quick,
+                "A few seconds, few pictures a second: one or two minutes");
   sub->add_option("--out", command->out,
                   "Results folder; default results/demo or results/adversity");
   sub->footer("Examples:\n  gloam demo --quick\n  gloam demo adversity");
