@@ -8,7 +8,7 @@
 #include "bench/command_line.h"
 #include "gloam/scene.h"
 #include "runtime/live_simulation.h"
-#include "runtime/picture_contrast.h"
+#include "runtime/sensing_quality.h"
 #include "runtime/visibility_probe.h"
 #include "sensors/lidar_sensor.h"
 #include "sim/pose_solver.h"
@@ -75,9 +75,8 @@ Result<Row> measure(const Scene& scene, Vec3 eye, const Options& options) {
   GLOAM_TRY(auto lidar, LidarSensor::create(shared->description, lidars.front(), 1));
   const std::vector<PoseFrame> keys{now, now};
   const auto scan = lidar->scan(*shared->renderer, shared->mutex, keys, 0);
-  double surfaces = 0, media = 0;
-  for (const uint32_t part : scan->part) (part == 0 ? media : surfaces) += 1;
-  row.returns = surfaces / scan->beams, row.false_returns = media / scan->beams;
+  const ReturnShares returns = returns_of(*scan);
+  row.returns = returns.surfaces, row.false_returns = returns.media;
   return row;
 }
 

@@ -119,7 +119,7 @@ void add_demo(CLI::App& app, Globals& globals, Action& action) {
                   "adversity: through a house on fire and a dusty warehouse, by level")
       ->check(CLI::IsMember({"adversity"}));
   sub->add_flag("--quick", command->quick,
-                "A few seconds, few pictures a second: one or two minutes");
+                "4 s at 5 pictures a second, under a minute; of adversity 3 s at one: two minutes");
   sub->add_option("--out", command->out,
                   "Results folder; default results/demo or results/adversity");
   sub->footer("Examples:\n  gloam demo --quick\n  gloam demo adversity");

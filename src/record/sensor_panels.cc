@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-#include "render/film/color_map.h"
+#include "record/canvas.h"
 
 namespace gloam {
 namespace {
@@ -51,33 +51,30 @@ Panel thermal_panel(const std::vector<float>& kelvin, float cold, float hot) {
 Panel lidar_panel(const LidarScan& scan, int width, int height, float reach) {
   constexpr Rgb8 kBack{16, 18, 22}, kRing{44, 48, 56}, kSurface{235, 240, 245},
       kMedium{255, 150, 40};
-  Panel out;
-  for (int i = 0; i < width * height; ++i) out.insert(out.end(), kBack.begin(), kBack.end());
-  const float per_metre = 0.5f * static_cast<float>(std::min(width, height)) / reach;
-  const auto dot = [&](float ahead, float left, Rgb8 color) {
-    const int x =
-        static_cast<int>(std::lround(0.5f * static_cast<float>(width) - left * per_metre));
-    const int y =
-        static_cast<int>(std::lround(0.5f * static_cast<float>(height) - ahead * per_metre));
-    if (x < 0 || y < 0 || x >= width || y >= height) return;
-    std::copy(color.begin(), color.end(), &out[3 * static_cast<size_t>(y * width + x)]);
-  };
-  constexpr int kSteps = 2000;
+  Canvas canvas(width, height, kBack);
+  const Vec2f middle{0.5f * static_cast<float>(width), 0.5f * static_cast<float>(height)};
+  const float per_metre = std::min(middle.x, middle.y) / reach;
+  std::vector<Polyline> rings;
   for (float radius = 2; radius < 2 * reach; radius += 2) {
-    for (int i = 0; i < kSteps; ++i) {
-      const float angle = 6.2831853f * static_cast<float>(i) / kSteps;
-      dot(radius * std::cos(angle), radius * std::sin(angle), kRing);
+    constexpr int kCorners = 180;
+    Polyline& ring = rings.emplace_back();
+    for (int i = 0; i <= kCorners; ++i) {
+      const float angle = 6.2831853f * static_cast<float>(i) / kCorners;
+      ring.push_back(middle + Vec2f{std::cos(angle), std::sin(angle)} * (radius * per_metre));
     }
   }
+  canvas.stroke(rings, 1, kRing);
   // Media over surfaces: there are fewer, and they are what is looked for.
   for (const bool media : {false, true}) {
     for (size_t i = 0; i < scan.size(); ++i) {
       const bool is_medium = !scan.part.empty() && scan.part[i] == 0;
-      if (is_medium == media && scan.return_number[i] == 0)
-        dot(scan.x[i], scan.y[i], media ? kMedium : kSurface);
+      if (is_medium != media || scan.return_number[i] != 0) continue;
+      canvas.fill(static_cast<int>(std::lround(middle.x - scan.y[i] * per_metre)),
+                  static_cast<int>(std::lround(middle.y - scan.x[i] * per_metre)), 1, 1,
+                  media ? kMedium : kSurface);
     }
   }
-  return out;
+  return canvas.pixels();
 }
 
 }  // namespace gloam

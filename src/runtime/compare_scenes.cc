@@ -14,8 +14,8 @@
 #include "render/film/png.h"
 #include "render/film/video.h"
 #include "runtime/live_simulation.h"
-#include "runtime/picture_contrast.h"
 #include "runtime/run_to_step.h"
+#include "runtime/sensing_quality.h"
 #include "runtime/visibility_probe.h"
 #include "sensors/lidar_sensor.h"
 
@@ -83,16 +83,13 @@ class ComparedScene {
     const std::vector<PoseFrame> keys{poses_, poses_};
     const auto scan = lidar_->scan(*shared_->renderer, shared_->mutex, keys, index);
     std::swap(poses_, before_);
-    const Vec3f eye{static_cast<float>(frame->X_WC.p.x), static_cast<float>(frame->X_WC.p.y),
-                    static_cast<float>(frame->X_WC.p.z)};
+    const Vec3f eye = to_affine(frame->X_WC).p;
     ComparisonResult& sum = seen->result;
     sum.visibility = std::min(sum.visibility, probe_.visibility(now.data(), eye));
     sum.illuminance += static_cast<double>(shared_->renderer->illuminance(eye, {0, 0, 1}));
     sum.contrast += contrast_of(frame->radiance, width());
-    for (size_t i = 0; i < scan->part.size(); ++i) {
-      if (scan->return_number[i] != 0) continue;
-      (scan->part[i] == 0 ? sum.media_returns : sum.lidar_returns) += 1.0 / scan->beams;
-    }
+    const ReturnShares returns = returns_of(*scan);
+    sum.lidar_returns += returns.surfaces, sum.media_returns += returns.media;
     seen->strip.push_back({frame->rgb, depth_panel(frame->sensor_depth, kFarDepth),
                            thermal_panel(frame->thermal, kCold, kHot),
                            lidar_panel(*scan, width(), height(), kReach)});

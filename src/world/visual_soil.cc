@@ -4,6 +4,7 @@
 #include <array>
 
 #include "scene/weather_fields.h"
+#include "world/visual_surface.h"
 
 namespace gloam {
 namespace {
@@ -85,13 +86,7 @@ TriangleMesh surface_of(const SoilDescription& soil) {
   const SoilMesh grid(soil);
   TriangleMesh mesh;
   grid.each_vertex({}, [&](float x, float y, float z) { mesh.positions.push_back({x, y, z}); });
-  const auto row = static_cast<uint32_t>(grid.nx);
-  for (uint32_t j = 0; j + 1 < static_cast<uint32_t>(grid.ny); ++j) {
-    for (uint32_t i = 0; i + 1 < row; ++i) {
-      const uint32_t a = j * row + i, b = a + 1, c = a + row, d = c + 1;
-      mesh.indices.insert(mesh.indices.end(), {a, b, d, a, d, c});
-    }
-  }
+  add_grid_triangles(grid.nx, &mesh);
   return mesh;
 }
 
@@ -110,18 +105,8 @@ void author_soils(const std::vector<SoilDescription>& soils, int first_vertex, L
   constexpr int kSoil = -5;  // a kind of thing that is no object of MuJoCo's
   for (size_t i = 0; i < soils.size(); ++i) {
     const SoilDescription& soil = soils[i];
-    InstanceDescription instance;
-    instance.shape = ShapeType::kDeformable;
-    instance.mesh = static_cast<int>(out->deformables.size());
-    instance.size = {1, 1, 1};
-    instance.material = static_cast<int>(out->materials.size());
-    instance.label = labels->label(0, soil.name, kSoil, static_cast<int>(i));
-    instance.label.geom = soil.name;
-    instance.label.material = soil.name;
-    instance.label.part = static_cast<uint32_t>(out->instances.size()) + 1;
-    out->materials.push_back(material_of(soil, out));
-    out->deformables.push_back({surface_of(soil), first_vertex});
-    out->instances.push_back(std::move(instance));
+    author_surface({soil.name, kSoil, static_cast<int>(i)}, material_of(soil, out),
+                   surface_of(soil), first_vertex, labels, out);
     first_vertex += soil_vertices(soil);
   }
 }

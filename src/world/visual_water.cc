@@ -1,5 +1,7 @@
 #include "world/visual_water.h"
 
+#include "world/visual_surface.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -44,13 +46,7 @@ TriangleMesh surface_of(const WaterDescription& water) {
                                 static_cast<float>(water.level)});
     }
   }
-  const auto row = static_cast<uint32_t>(grid.nx + 1);
-  for (uint32_t j = 0; j < static_cast<uint32_t>(grid.ny); ++j) {
-    for (uint32_t i = 0; i + 1 < row; ++i) {
-      const uint32_t a = j * row + i, b = a + 1, c = a + row, d = c + 1;
-      mesh.indices.insert(mesh.indices.end(), {a, b, d, a, d, c});
-    }
-  }
+  add_grid_triangles(grid.nx + 1, &mesh);
   return mesh;
 }
 
@@ -65,18 +61,8 @@ void author_waters(const std::vector<WaterDescription>& waters, int first_vertex
   constexpr int kWater = -4;  // a kind of thing that is no object of MuJoCo's
   for (size_t i = 0; i < waters.size(); ++i) {
     const WaterDescription& water = waters[i];
-    InstanceDescription instance;
-    instance.shape = ShapeType::kDeformable;
-    instance.mesh = static_cast<int>(out->deformables.size());
-    instance.size = {1, 1, 1};
-    instance.material = static_cast<int>(out->materials.size());
-    instance.label = labels->label(0, water.name, kWater, static_cast<int>(i));
-    instance.label.geom = water.name;
-    instance.label.material = water.name;
-    instance.label.part = static_cast<uint32_t>(out->instances.size()) + 1;
-    out->materials.push_back(material_of(water));
-    out->deformables.push_back({surface_of(water), first_vertex});
-    out->instances.push_back(std::move(instance));
+    author_surface({water.name, kWater, static_cast<int>(i)}, material_of(water), surface_of(water),
+                   first_vertex, labels, out);
     first_vertex += water_vertices(water);
   }
 }

@@ -16,6 +16,14 @@ int last_dof(const mjModel& m, int body) {
   return body > 0 ? m.body_dofadr[body] + m.body_dofnum[body] - 1 : -1;
 }
 
+void velocity_at(const mjModel& m, const mjData& d, int body, const double* point, double* v) {
+  const double* twist = d.cvel + 6 * body;
+  double arm[3];
+  mju_sub3(arm, point, d.subtree_com + 3 * m.body_rootid[body]);
+  mju_cross(v, twist, arm);
+  mju_addTo3(v, twist + 3);
+}
+
 void add_wrench(const mjModel& m, mjData& d, int body, const double* force, const double* torque,
                 const double* point) {
   double arm[3], moment[3];

@@ -1,6 +1,6 @@
 #pragma once
-// Forces on bodies from outside of MuJoCo's pipeline, and how bodies answer to them, in the
-// generalised coordinates of their joints. data's poses and centres of mass are of the present.
+// Forces on bodies from outside of MuJoCo's pipeline, and how bodies move and answer to them, in
+// the generalised coordinates of their joints. data's poses and centres of mass are of the present.
 
 #include <mujoco/mujoco.h>
 
@@ -14,6 +14,10 @@ void edges_around(const double* R, const double* half, double* out);
 
 /// Of the degrees of freedom that move a body the last; -1 = none does. dof_parentid has the rest.
 int last_dof(const mjModel& model, int body);
+
+/// Velocity of a body where a point is [m/s], by its twist in data.cvel.
+void velocity_at(const mjModel& model, const mjData& data, int body, const double* point,
+                 double* velocity);
 
 /// Adds a force [N] at a point and a torque [N m], in the world, to data.qfrc_applied.
 void add_wrench(const mjModel& model, mjData& data, int body, const double* force,

@@ -3,22 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/effects/body_forces.h"
 #include "sim/effects/dust_law.h"
 
 namespace gloam {
 namespace {
 
-constexpr double kGroundNormal =
-    0.7;  // least part of a contact's normal along z: ground, not a wall
-
-// Velocity of a body where a point is [m/s], by its twist about its tree's centre of mass.
-void point_velocity(const mjModel& m, const mjData& d, int body, const double* point, double* v) {
-  const double* twist = d.cvel + 6 * body;
-  double arm[3];
-  mju_sub3(arm, point, d.subtree_com + 3 * m.body_rootid[body]);
-  mju_cross(v, twist, arm);
-  mju_addTo3(v, twist + 3);
-}
+// Least part of a contact's normal along z: ground, not a wall.
+constexpr double kGroundNormal = 0.7;
 
 }  // namespace
 
@@ -77,7 +69,7 @@ void ContactDust::gather_contact(const mjModel& m, const mjData& d, int i) {
   const int geom = contact.geom[first_stands ? 1 : 0], body = m.geom_bodyid[geom];
   double force[6], v_W[3], v[3];  // normal first
   mj_contactForce(&m, &d, i, force);
-  point_velocity(m, d, body, contact.pos, v_W);
+  velocity_at(m, d, body, contact.pos, v_W);
   mju_mulMatVec3(v, contact.frame, v_W);
   // The normal points to the second geom; forces of friction are against slip.
   const double nearing = first_stands ? -v[0] : v[0];

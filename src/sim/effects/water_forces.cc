@@ -12,15 +12,6 @@ namespace {
 constexpr double kFarAway = 0.5;      // in a step nothing moves further [m]
 constexpr double kRippleCrest = 0.3;  // [m]
 
-// Velocity of a body where a point is [m/s].
-void velocity_at(const mjModel& m, const mjData& d, int body, const double* point, double* v) {
-  const double* twist = d.cvel + 6 * body;
-  double arm[3];
-  mju_sub3(arm, point, d.subtree_com + 3 * m.body_rootid[body]);
-  mju_cross(v, twist, arm);
-  mju_addTo3(v, twist + 3);
-}
-
 }  // namespace
 
 // One collider in a water. All in the geom's frame about its origin, but for what has a W.

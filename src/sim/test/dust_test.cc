@@ -88,21 +88,25 @@ TEST(Dust, ARollingWheelRaisesWhatItsWayAsksFor) {
   EXPECT_NEAR(dust, law, 0.15 * law) << "kg";
 }
 
-TEST(Dust, WhatFallsRaisesDustByItsEnergy) {
+// A box of 2 kg and 0.2 m with its middle at a height [m].
+Yard yard_with_box(double height) {
   Yard yard;
-  yard.bodies =
-      "<body pos=\"0 0 .5\"><freejoint/><geom type=\"box\" size=\".1 .1 .1\" mass=\"2\"/></body>";
-  const double dust = dust_after(dusty(yard), 600);
+  yard.bodies = "<body pos=\"0 0 " + std::to_string(height) +
+                "\"><freejoint/><geom type=\"box\" size=\".1 .1 .1\" mass=\"2\"/></body>";
+  return yard;
+}
+
+TEST(Dust, WhatFallsRaisesDustByItsEnergy) {
+  const double dust = dust_after(dusty(yard_with_box(0.5)), 600);
   const double law = dust_per_energy(0.1) * 2 * 9.81 * 0.4;
   printf("a fall of 0.4 m with 2 kg raised %.3g kg, law %.3g\n", dust, law);
   EXPECT_NEAR(dust, law, 0.5 * law) << "kg";
 }
 
 TEST(Dust, WhatStandsRaisesNone) {
-  Yard yard;
-  yard.bodies =
-      "<body pos=\"0 0 .1\"><freejoint/><geom type=\"box\" size=\".1 .1 .1\" mass=\"2\"/></body>";
-  EXPECT_LT(dust_after(dusty(yard), 600), 0.005 * dust_per_energy(0.1) * 2 * 9.81 * 0.4) << "kg";
+  EXPECT_LT(dust_after(dusty(yard_with_box(0.1)), 600),
+            0.005 * dust_per_energy(0.1) * 2 * 9.81 * 0.4)
+      << "kg";
 }
 
 TEST(Dust, OnlyGroundThatIsDustyGivesAny) {

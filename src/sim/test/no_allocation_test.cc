@@ -76,6 +76,26 @@ TEST(StepLoop, AllocatesNothingOnceWarm) {
   reader.join();
 }
 
+// Nothing is allocated after `warm` [s] while a reader takes Snapshots of a queue of `capacity`.
+void expect_no_allocation(std::shared_ptr<const CompiledWorld> world, double warm, int64_t steps,
+                          int capacity) {
+  auto sim = make_simulator(std::move(world));
+  sim->set_step_hook([warm](const mjModel*, mjData* d) { counting = d->time > warm; });
+  auto queue = *sim->subscribe({.rate = {250, 1}, .required = true, .capacity = capacity});
+  std::thread reader([queue] {
+    while (queue->next()) {
+    }
+  });
+  allocations = frees = 0;
+  sim->start(steps);
+  EXPECT_TRUE(sim->wait().ok());
+  EXPECT_EQ(allocations.load(), 0);
+  EXPECT_EQ(frees.load(), 0);
+  sim->set_step_hook([](const mjModel*, mjData*) { counting = false; });
+  sim->stop();
+  reader.join();
+}
+
 TEST(WaterLoop, AllocatesNothingOnceWarm) {
 #ifdef GLOAM_SANITIZED
   GTEST_SKIP() << "the sanitizer owns malloc";
@@ -92,21 +112,7 @@ TEST(WaterLoop, AllocatesNothingOnceWarm) {
   world->waters = *describe_waters(scene);
   world->wind.speed = 5;
   world->wind.gusts = 1;
-  auto sim = make_simulator(world);
-  sim->set_step_hook([](const mjModel*, mjData* d) { counting = d->time > 0.5; });
-  auto queue = *sim->subscribe({.rate = {250, 1}, .required = true, .capacity = 4});
-  std::thread reader([queue] {
-    while (queue->next()) {
-    }
-  });
-  allocations = frees = 0;
-  sim->start(2000);
-  ASSERT_TRUE(sim->wait().ok());
-  EXPECT_EQ(allocations.load(), 0);
-  EXPECT_EQ(frees.load(), 0);
-  sim->set_step_hook([](const mjModel*, mjData*) { counting = false; });
-  sim->stop();
-  reader.join();
+  expect_no_allocation(world, 0.5, 2000, 4);
 }
 
 TEST(SoilLoop, AllocatesNothingOnceWarm) {
@@ -121,21 +127,7 @@ TEST(SoilLoop, AllocatesNothingOnceWarm) {
   Scene scene;
   scene.soils.emplace_back().name = "bed";
   world->soils = *describe_soils(scene, *world->model);
-  auto sim = make_simulator(world);
-  sim->set_step_hook([](const mjModel*, mjData* d) { counting = d->time > 0.1; });
-  auto queue = *sim->subscribe({.rate = {250, 1}, .required = true, .capacity = 1});
-  std::thread reader([queue] {
-    while (queue->next()) {
-    }
-  });
-  allocations = frees = 0;
-  sim->start(1000);
-  ASSERT_TRUE(sim->wait().ok());
-  EXPECT_EQ(allocations.load(), 0);
-  EXPECT_EQ(frees.load(), 0);
-  sim->set_step_hook([](const mjModel*, mjData*) { counting = false; });
-  sim->stop();
-  reader.join();
+  expect_no_allocation(world, 0.1, 1000, 1);
 }
 
 TEST(Agents, DecideAndWalkWithoutAllocating) {

@@ -1,4 +1,4 @@
-#include "runtime/picture_contrast.h"
+#include "runtime/sensing_quality.h"
 
 #include <cmath>
 #include <cstddef>
@@ -26,6 +26,14 @@ double contrast_of(const std::vector<float>& radiance, int width) {
     count += 2;
   }
   return std::sqrt(square / static_cast<double>(count));
+}
+
+ReturnShares returns_of(const LidarScan& scan) {
+  ReturnShares out;
+  for (size_t i = 0; i < scan.part.size(); ++i) {
+    if (scan.return_number[i] == 0) (scan.part[i] == 0 ? out.media : out.surfaces) += 1;
+  }
+  return {out.surfaces / scan.beams, out.media / scan.beams};
 }
 
 }  // namespace gloam

@@ -1,7 +1,9 @@
 #pragma once
-// How much there is to see in a picture.
+// How much there is to see in a picture and in a scan.
 
 #include <vector>
+
+#include "gloam/sensor.h"
 
 namespace gloam {
 
@@ -9,5 +11,11 @@ namespace gloam {
 /// and columns: what features are found by. What is darker than a hundredth of the mean counts
 /// little. `radiance`: linear Rec. 709, (height x width x 3).
 double contrast_of(const std::vector<float>& radiance, int width);
+
+/// First returns of a scan with truth, as shares of its beams.
+struct ReturnShares {
+  double surfaces = 0, media = 0;
+};
+ReturnShares returns_of(const LidarScan& scan);
 
 }  // namespace gloam
