@@ -53,17 +53,17 @@ void FastHistory::compose() {
 
 void FastHistory::add_picture(const SceneView& scene, const CpuTracer& tracer,
                               const CameraView32& camera, const RenderSettings& settings,
-                              uint32_t pass) {
+                              uint32_t pass, RenderWatch* watch) {
   SceneView plain = scene;  // rays of pixels go where they must
   plain.guide = {};
   const Vec3f eye = camera.pose.X_WC_open.p;
   const float edge = cell_edge(camera);
-  for (bool again = true; again;) {
+  for (bool again = true; again && !watch->stopped();) {
     again = cache_.size() == 0;  // a first picture is traced twice: its rays saw no cache
     trace({plain, tracer, camera, cache_.view(eye, edge), settings.seed}, pass);
     cache_.ask(requests_);
     rays_ += cache_.update(scene, tracer, eye, edge, settings.seed, again ? kWarmUp : 1,
-                           pictures_ < kFirstPictures ? cache_.size() : kMostCells);
+                           pictures_ < kFirstPictures ? cache_.size() : kMostCells, watch);
     if (requests_.empty()) break;
   }
   look_up(cache_.view(eye, edge));
@@ -85,9 +85,11 @@ RenderStats FastHistory::render(const SceneView& scene, const CpuTracer& tracer,
     filter_.resize(film->width, film->height);
     pictures_ = 0;
   }
-  const uint32_t passes = pictures_ == 0 ? kFirstPictures : 1;
-  for (uint32_t pass = 0; pass < passes; ++pass) {
-    add_picture(scene, tracer, camera, settings, pass);
+  const bool first = pictures_ == 0;
+  const uint32_t passes = first ? kFirstPictures : 1;
+  RenderWatch watch(settings.progress, first ? kWarmUp + kFirstPictures : 1);
+  for (uint32_t pass = 0; pass < passes && !watch.stopped(); ++pass) {
+    add_picture(scene, tracer, camera, settings, pass, &watch);
   }
   parallel_for("fast film", film->height, [&](int64_t y) {
     for (int x = 0; x < film->width; ++x) {
@@ -98,6 +100,8 @@ RenderStats FastHistory::render(const SceneView& scene, const CpuTracer& tracer,
   RenderStats stats;
   stats.paths = film->pixel_count();
   stats.rays = rays_;
+  stats.finished = !watch.stopped();
+  if (!stats.finished) *this = {};  // what it remembers is unfinished, too
   return stats;
 }
 

@@ -30,7 +30,7 @@ class FastHistory final : public ViewHistory {
  private:
   /// One picture of the sequence; `pass` tells those of one instant apart.
   void add_picture(const SceneView& scene, const CpuTracer& tracer, const CameraView32& camera,
-                   const RenderSettings& settings, uint32_t pass);
+                   const RenderSettings& settings, uint32_t pass, RenderWatch* watch);
   void trace(const FastView& view, uint32_t pass);
   /// From the pixel (x0, y0) on. Returns the number of rays.
   uint64_t trace_tile(const FastView& view, uint32_t pass, int x0, int y0, AskedOfTile* asked);

@@ -44,7 +44,7 @@ class TileRequests {
 /// By chance, below TileRequests::kDice: for one of the requests of a pixel in a picture.
 uint32_t dice_of(int x, int y, int kind, uint32_t picture) {
   const auto place = static_cast<uint32_t>(y) << 16 | static_cast<uint32_t>(x);
-  return mix_bits(place ^ (picture * 4u + static_cast<uint32_t>(kind)) * 0x9E3779B9u) >> 8;
+  return mix_bits(place ^ (picture * 8u + static_cast<uint32_t>(kind)) * 0x9E3779B9u) >> 8;
 }
 
 /// Four by four pixels, or half of them, and the rays through them.
@@ -164,7 +164,7 @@ class ReflectedRays {
     for (int k = 0; k < count_; ++k) {
       const auto [block, i] = of_[k];
       set_lane(&block->seen, i, lane(seen, k));
-      requests_.add(asked[k], dice_of(block->x + i % 4, block->y + i / 4, 3, picture_));
+      requests_.add(asked[k], dice_of(block->x + i % 4, block->y + i / 4, kFastRequests, picture_));
       traced_ += lane(traced, k);
     }
     count_ = 0;
@@ -199,7 +199,7 @@ uint64_t FastHistory::trace_tile(const FastView& view, uint32_t pass, int x0, in
     if (x0 + x >= now_.width || y0 + y >= now_.height) continue;
     const PixelBlock pixels = make_block(view.camera, now_, x0 + x, y0 + y);
     const auto sampler = SamplerOf<F>::of_turn(view.seed, pixels.px, pixels.py, pictures_);
-    CacheRequest requests[3 * kLaneCount];
+    CacheRequest requests[kFastRequests * kLaneCount];
     const FastSampleOf<F> sample = trace_fast(
         view.scene, view.tracer, view.cache, pixels.ray, pixels.cone.width, pixels.cone.spread,
         sampler, stratified(first, turn_), turns_of(pixels, pictures_), pixels.active, requests);
@@ -209,7 +209,7 @@ uint64_t FastHistory::trace_tile(const FastView& view, uint32_t pass, int x0, in
     store(pixels, sample, motion, requests, &now_);
     // Pixel by pixel, so that it is the same for any number of lanes.
     for (int i = 0; i < kLaneCount; ++i) {
-      for (int kind = 0; kind < 3; ++kind) {
+      for (int kind = 0; kind < kFastRequests; ++kind) {
         seen.add(requests[kind * kLaneCount + i],
                  dice_of(pixels.x + i % 4, pixels.y + i / 4, kind, pictures_));
       }

@@ -26,8 +26,10 @@ constexpr float kAtChange = 4;    // and where the light has changed;
 constexpr float kGuessed = 20;    // it counts as that of so many more cells of a wider region
 constexpr uint64_t kExcessRegions[] = {caches::kWideRegion | caches::kFacing,
                                        caches::kRegion | caches::kFacing};
-constexpr float kFades = 0.1f;           // share of all light that must have changed to change all
-constexpr int kMostRounds = 3;           // of an update while light changes in many cells
+constexpr float kFades = 0.1f;  // share of all light that must have changed to change all
+constexpr int kMostRounds = 3;  // of an update while light changes in many cells
+constexpr size_t kFurtherCells = 2, kFurtherRoom = 4000;  // cells, for each that pixels ask for,
+                                                          // and so many more
 constexpr float kRayConeSpread = 0.15f;  // of the rays' cones: no fine texture is sought
 
 }  // namespace
@@ -49,12 +51,13 @@ void IrradianceCache::rebuild(size_t slots) {
   }
 }
 
-void IrradianceCache::ask(const std::vector<CacheRequest>& requests) {
+void IrradianceCache::ask(const std::vector<CacheRequest>& requests, size_t most) {
   if (keys_.empty()) rebuild(1u << 12);
   for (const CacheRequest& request : requests) {
     if (request.key == 0) continue;
     uint32_t slot = slot_of(request.key);
     if (keys_[slot] == 0) {
+      if (cells_.size() >= most) continue;
       if (2 * (cells_.size() + 1) > keys_.size()) {
         rebuild(2 * keys_.size());
         slot = slot_of(request.key);
@@ -250,12 +253,13 @@ void IrradianceCache::forget_excess(uint64_t key) {
 }
 
 uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
-                                const IrradianceCacheView& cache, uint64_t seed, bool remembers) {
+                                const IrradianceCacheView& cache, uint64_t seed, bool remembers,
+                                RenderWatch* watch) {
   traced_.resize(asked_.size());
   further_.assign(asked_.size() * kFurther, {});
   parallel_for_range("irradiance cache", static_cast<int64_t>(asked_.size()), 4,
                      [&](int64_t begin, int64_t end) {
-                       for (int64_t k = begin; k < end; ++k)
+                       for (int64_t k = begin; k < end && watch->goes_on(); ++k)
                          trace_cell(scene, tracer, cache, seed, static_cast<size_t>(k));
                      });
   spread_excess();
@@ -315,15 +319,20 @@ void IrradianceCache::extrapolate(int round, bool remembers) {
 }
 
 uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer, Vec3f eye,
-                                 float edge_per_metre, uint64_t seed, int settle,
-                                 size_t most_cells) {
+                                 float edge_per_metre, uint64_t seed, int settle, size_t most_cells,
+                                 RenderWatch* watch) {
   uint64_t rays = 0;
   const bool settling = settle > 1;
   int rounds = settle;
-  for (int i = 0; i < rounds; ++i) {
+  // Where each ray meets a leaf of its own, what lies further on is known by larger cells' light.
+  const size_t most =
+      kFurtherRoom + kFurtherCells * static_cast<size_t>(std::count_if(
+                                         cells_.begin(), cells_.end(),
+                                         [](const Cell& cell) { return cell.starts > 0; }));
+  for (int i = 0; i < rounds && !watch->stopped(); ++i) {
     // The last quarter of many rounds is a mean: by then most of the light has come round.
     const bool remembers = !settling || 4 * i >= 3 * settle;
-    ask(std::vector<CacheRequest>(std::move(further_)));
+    ask(std::vector<CacheRequest>(std::move(further_)), most);
     asked_.clear();
     for (uint32_t row = 0; row < cells_.size(); ++row) {
       if (cells_[row].starts > 0) asked_.push_back(row);
@@ -338,7 +347,8 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
     std::stable_sort(asked_.begin(), asked_.end(),
                      [&](uint32_t a, uint32_t b) { return waits(a) > waits(b); });
     if (!settling && i == 0 && asked_.size() > most_cells) asked_.resize(most_cells);
-    rays += trace(scene, tracer, view(eye, edge_per_metre), seed, remembers);
+    rays += trace(scene, tracer, view(eye, edge_per_metre), seed, remembers, watch);
+    watch->tile_done();
     // A lamp went on or off: what it sends comes round by one reflection each time.
     const auto changed = std::count_if(traced_.begin(), traced_.end(),
                                        [](const Traced& traced) { return traced.changed; });

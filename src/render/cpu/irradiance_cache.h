@@ -7,20 +7,22 @@
 #include <vector>
 
 #include "render/cpu/cpu_tracer.h"
+#include "render/cpu/watch.h"
 #include "render/kernel/fast.h"
 
 namespace gloam {
 
 class IrradianceCache {
  public:
-  /// Makes the requested cells, in order, where there are none yet, and forgets those that nobody
-  /// has asked for in a while.
-  void ask(const std::vector<CacheRequest>& requests);
-  /// Traces rays from all cells that were asked for since the last update. `settle`: how many
-  /// times; light is reflected once more each time; if once, only those `most_cells` that have
-  /// waited longest. Returns the number of rays.
+  /// Makes the requested cells, in order, where there are none yet, but not more than `most` cells
+  /// in all.
+  void ask(const std::vector<CacheRequest>& requests, size_t most = SIZE_MAX);
+  /// Traces rays from all cells that were asked for since the last update, and forgets those that
+  /// nobody has asked for in a while. `settle`: how many times; light is reflected once more each
+  /// time; if once, only those `most_cells` that have waited longest. Returns the number of rays.
+  /// Of no use any more once `watch` has stopped it.
   uint64_t update(const SceneView& scene, const CpuTracer& tracer, Vec3f eye, float edge_per_metre,
-                  uint64_t seed, int settle, size_t most_cells);
+                  uint64_t seed, int settle, size_t most_cells, RenderWatch* watch);
 
   IrradianceCacheView view(Vec3f eye, float edge_per_metre) const;
   size_t size() const { return cells_.size(); }
@@ -79,7 +81,7 @@ class IrradianceCache {
   void spread_excess();
   void forget_excess(uint64_t key);
   uint64_t trace(const SceneView& scene, const CpuTracer& tracer, const IrradianceCacheView& cache,
-                 uint64_t seed, bool remembers);
+                 uint64_t seed, bool remembers, RenderWatch* watch);
   /// After each round: to where the light would come in many more.
   void extrapolate(int round, bool remembers);
   void forget();

@@ -15,17 +15,25 @@ class RenderWatch {
 
   bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
   /// One more tile is finished.
-  void tile_done() {
-    const int64_t done = done_.fetch_add(1, std::memory_order_relaxed) + 1;
+  void tile_done() { ask(1); }
+  /// In the middle of one: may it go on?
+  bool goes_on() {
+    ask(0);
+    return !stopped();
+  }
+
+ private:
+  void ask(int64_t more) {
+    const int64_t done = done_.fetch_add(more, std::memory_order_relaxed) + more;
+    if (!progress_) return;
     const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (!progress_ || !lock.owns_lock() || stopped()) return;
+    if (!lock.owns_lock() || stopped()) return;
     const auto now = std::chrono::steady_clock::now();
     if (now < next_) return;
     next_ = now + std::chrono::milliseconds(100);
     if (!progress_(static_cast<double>(done) / static_cast<double>(tiles_))) stopped_ = true;
   }
 
- private:
   const std::function<bool(double)> progress_;
   const int64_t tiles_;
   std::atomic<int64_t> done_{0};

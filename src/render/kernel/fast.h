@@ -100,32 +100,42 @@ GLOAM_HD Vec3Of<F> diffuse_albedo(const LayeredBsdfOf<F>& b) {
   return select<F>(b.layered, b.base.diffuse * b.under, b.base.diffuse);
 }
 
-/// The cells of surfaces; asks for them if `requests` is there.
+/// Where the cache is asked: at surfaces, or in the air that a ray crosses.
 template <class F>
-GLOAM_HD CacheCellOf<F> ask_cells(const IrradianceCacheView& cache, const SurfaceOf<F>& v,
+struct CachePlaceOf {
+  Vec3Of<F> p, n;
+  UintOf<F> side;
+  Vec3Of<F> start;  ///< of rays
+};
+template <class F>
+GLOAM_HD CachePlaceOf<F> place_of(const SurfaceOf<F>& v) {
+  return {v.p, v.normal, select(v.outside, UintOf<F>(kOutsideCell), UintOf<F>(kInsideCell)),
+          leave_surface(v.p, v.geometric, v.geometric, v.t)};
+}
+
+/// The cells of places; asks for them.
+template <class F>
+GLOAM_HD CacheCellOf<F> ask_cells(const IrradianceCacheView& cache, const CachePlaceOf<F>& at,
                                   MaskOf<F> active, Vec3Of<F> jitter, uint32_t coarser,
                                   CacheRequest* requests) {
-  const CacheCellOf<F> cells = cache_cell<F>(cache, v.p, v.normal, v.outside, jitter, coarser);
-  if (requests == nullptr) return cells;
-  const Vec3Of<F> start = leave_surface(v.p, v.geometric, v.geometric, v.t);
+  const CacheCellOf<F> cells = cache_cell<F>(cache, at.p, at.n, at.side, jitter, coarser);
   each_lane(active,
-            [&](int i) { requests[i] = {cache_key(cells, i), lane(start, i), lane(v.normal, i)}; });
+            [&](int i) { requests[i] = {cache_key(cells, i), lane(at.start, i), lane(at.n, i)}; });
   return cells;
 }
 
 /// What the cache holds for them. Until a cell is there, the one about the point itself or a larger
-/// one stands for it,
-/// or the mean of all.
+/// one stands for it, or the mean of all.
 template <class F>
-GLOAM_HD Vec3Of<F> cached_light(const IrradianceCacheView& cache, const SurfaceOf<F>& v,
+GLOAM_HD Vec3Of<F> cached_light(const IrradianceCacheView& cache, const CachePlaceOf<F>& at,
                                 const CacheCellOf<F>& cells, MaskOf<F> active, uint32_t coarser) {
   Vec3Of<F> light;
   int cell[Lanes<F>::kCount];  // all before the first is read: the memory is waited for once
   each_lane(active, [&](int i) { cell[i] = find_cell(cache, cache_key(cells, i)); });
   each_lane(active, [&](int i) {
     for (uint32_t more = 0; cell[i] < 0 && more < 3; ++more) {
-      cell[i] = find_cell(cache, cache_key(cache, lane(v.p, i), lane(v.normal, i),
-                                           lane(v.outside, i), {0.5f, 0.5f, 0.0f}, coarser + more));
+      cell[i] = find_cell(cache, cache_key(cache, lane(at.p, i), lane(at.n, i), lane(at.side, i),
+                                           {0.5f, 0.5f, 0.0f}, coarser + more));
     }
     const bool known = cell[i] >= 0;
     set_lane(&light, i, known ? cache.light[static_cast<uint32_t>(cell[i])].all : cache.mean);
@@ -224,31 +234,38 @@ GLOAM_HD Vec3f scattered_light(const SceneView& scene, const Tracer& tracer, con
 template <class F>
 struct MediaLightOf {
   Vec3Of<F> radiance;   ///< [cd/m²]
-  Vec3Of<F> scattered;  ///< share of what arrives from all around
+  Vec3Of<F> scattered;  ///< share of what arrives from all around,
+  Vec3Of<F> at;         ///< at one of the places that scatter it, by chance; world
   Vec3Of<F> through;
 };
 template <class F, class Tracer>
 GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& tracer, F tmax,
                                      MaskOf<F> active, int steps, paths::State<F>* path) {
-  MediaLightOf<F> out{{}, {}, in_all_lanes<F>({1, 1, 1})};
+  MediaLightOf<F> out{{}, {}, {}, in_all_lanes<F>({1, 1, 1})};
   if (scene.media.volumes.empty()) return out;
   const Vec2Of<F> u = path->sampler.next_2d(active);
   each_lane(active, [&](int i) {
     WalkRandom random(lane(u, i));
     const Ray ray = lane(path->ray, i);
     uint32_t rays = 0;
+    Vec3f at;
+    float weighed = 0;
     const MarchResult m = march(
         scene.media, ray, lane(tmax, i), 0.0f, steps, {},
         [&](const MediumPoint& point, Vec3f p_W, Vec3f share) {
+          const float scatters = max_component(point.scattering * share);
+          weighed += scatters;
+          if (random.next() * weighed < scatters) at = p_W;
           // Of what is thin, dark or behind the rest, few steps ask for light and count for many.
           constexpr float kLittle = 0.1f;
-          const float chance = min(max_component(point.scattering * share) * (1 / kLittle), 1.0f);
+          const float chance = min(scatters * (1 / kLittle), 1.0f);
           if (!(random.next() < chance)) return Vec3f{};
           return scattered_light(scene, tracer, ray, point, p_W, &random, &rays) * (1 / chance);
         });
     set_lane(&path->result.rays, i, lane(path->result.rays, i) + rays);
     set_lane(&out.radiance, i, m.radiance);
     set_lane(&out.scattered, i, m.scattered);
+    set_lane(&out.at, i, at);
     set_lane(&out.through, i, m.transmittance);
   });
   return out;
@@ -283,19 +300,20 @@ GLOAM_HD Vec3Of<F> lamps_met(const SceneView& scene, const paths::State<F>& path
   return sum;
 }
 
-/// Light around rays that meet no surface, for media to scatter: they do it forwards, so that of
-/// the sky about their direction; where that is dark, the mean of what surfaces receive.
+/// Light from all around that media scatter along path->ray; asks for the cells of their air.
 template <class F>
-GLOAM_HD Vec3Of<F> light_around_missed(const SceneView& scene, const IrradianceCacheView& cache,
-                                       Vec3Of<F> d, MaskOf<F> missed) {
-  constexpr float kSpread = 0.7f;  // of the sky that counts
-  Vec3Of<F> light = in_all_lanes<F>(cache.mean);
-  each_lane(missed, [&](int i) {
-    const Vec3f sky = sky_radiance(scene, lane(d, i), kSpread) + scene.sky_ambient;
-    set_lane(&light, i,
-             {max(sky.x, cache.mean.x), max(sky.y, cache.mean.y), max(sky.z, cache.mean.z)});
-  });
-  return light;
+GLOAM_HD Vec3Of<F> air_light(const IrradianceCacheView& cache, const MediaLightOf<F>& media,
+                             MaskOf<F> active, paths::State<F>* path, CacheRequest* requests) {
+  constexpr float kUnseen = 0.002f;
+  constexpr uint32_t kCoarser = 1;  // light in the air has no edges
+  const MaskOf<F> hazy = active & (max_component(media.scattered) > kUnseen);
+  if (!any(hazy)) return {};
+  const Vec2Of<F> u = path->sampler.next_2d(hazy);
+  const Vec3Of<F> jitter{u.x, u.y, path->sampler.next_1d(hazy)};
+  const CachePlaceOf<F> at{media.at, path->ray.d, UintOf<F>(kAirCell), media.at};
+  const CacheCellOf<F> cells = ask_cells(cache, at, hazy, jitter, kCoarser, requests);
+  return select<F>(hazy, media.scattered * cached_light(cache, at, cells, hazy, kCoarser),
+                   Vec3Of<F>{});
 }
 
 /// What a ray brings.
@@ -317,10 +335,9 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
   GatheredOf<F> out;
   Vec3Of<F>&sum = out.light, throughput = in_all_lanes<F>({1, 1, 1});
   const bool every = scene.lights.size <= kMaxFastLights;
-  MaskOf<F> first = true;
+  MaskOf<F> first = true, asked = false;
   for (int event = 0; event < kMaxEvents && any(active); ++event) {
     RayHitOf<F> hit;
-    Vec3Of<F> scattered;  // share of the light around the surface that media send along the ray
     path->result.rays += select(active, UintOf<F>(1u), UintOf<F>(0u));
     const MaskOf<F> found = tracer.closest(path->ray, active, false, &hit);
     if (event == 0) {
@@ -331,8 +348,14 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
       constexpr int kSteps = 4;
       const F tmax = select(found, hit.t, F(1e30f));
       const MediaLightOf<F> media = cross_media(scene, tracer, tmax, active, kSteps, path);
-      sum += select<F>(active, throughput * media.radiance, Vec3Of<F>{});
-      scattered = select<F>(active, throughput * media.scattered, Vec3Of<F>{});
+      // What brings more light is asked for: the air on the way, or the surface.
+      const MaskOf<F> airy =
+          active & ((!found) | (max_component(media.scattered) > max_component(media.through)));
+      CacheRequest air[Lanes<F>::kCount];
+      sum += throughput * (select<F>(active, media.radiance, Vec3Of<F>{}) +
+                           air_light(cache, media, active, path, air));
+      each_lane(airy & !asked, [&](int i) { requests[i] = air[i]; });
+      asked = asked | airy;
       throughput = select<F>(active, throughput * media.through, throughput);
     }
     if (count_lamps && scene.has_visible_lights) {
@@ -343,10 +366,6 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
       const Vec3Of<F> sky = sky_radiance_of(scene, path->ray.d, path->cone_spread, missed) +
                             in_all_lanes<F>(scene.sky_ambient);
       sum += select<F>(missed, throughput * sky, Vec3Of<F>{});
-      if (!scene.media.volumes.empty())
-        sum += select<F>(missed,
-                         scattered * fasts::light_around_missed(scene, cache, path->ray.d, missed),
-                         Vec3Of<F>{});
     }
     active = found;
     if (!any(active)) break;
@@ -394,14 +413,15 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
         jitter = {u.x, u.y, path->sampler.next_1d(matt)};
         coarser = 0;
       }
-      const CacheCellOf<F> cells = ask_cells(cache, v, matt, jitter, coarser, requests);
-      const Vec3Of<F> cached = cached_light(cache, v, cells, matt, coarser);
+      const CachePlaceOf<F> at = place_of(v);
+      const CacheCellOf<F> cells = ask_cells(cache, at, matt & !asked, jitter, coarser, requests);
+      const Vec3Of<F> cached = cached_light(cache, at, cells, matt, coarser);
       F a, b;
       layer_albedo(*scene.albedo, v.roughness, wo.z, &a, &b);
       const Vec3Of<F> gloss = bsdf.base.f0 * a + bsdf.base.f90 * b;
       const Vec3Of<F> leaving =
           diffuse_albedo(bsdf) * (diffuse + cached) + gloss * cached + specular;
-      sum += select<F>(matt, throughput * leaving + scattered * cached, Vec3Of<F>{});
+      sum += select<F>(matt, throughput * leaving, Vec3Of<F>{});
     }
     if (any(glass)) {
       const Vec2Of<F> u = path->sampler.next_2d(glass);
@@ -460,8 +480,9 @@ GLOAM_HD Vec3Of<F> reflected_light(const ReflectionUseOf<F>& r, const Vec3Of<F>&
 }
 
 /// The camera ray's picture, but for what FastSampleOf::reflection will bring. `near_u` in [0, 1)²:
-/// the direction of FastSampleOf::near. `requests`: one per lane for the first solid surface, one
-/// for what panes in front reflect, one for such a pane. Lanes come in quads.
+/// the direction of FastSampleOf::near. `requests`: kFastRequests per lane, for the first solid
+/// surface, what panes in front reflect, such a pane, the air. Lanes come in quads.
+inline constexpr int kFastRequests = 4;
 template <class F, class Tracer>
 GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer,
                                     const IrradianceCacheView& cache, const RayOf<F>& ray,
@@ -480,15 +501,15 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
   F way = 0.0f;
   for (uint32_t passed = 0; passed < kMaxPassed && any(active); ++passed) {
     RayHitOf<F> hit;
-    Vec3Of<F> scattered;  // share of the light around the surface that media send along the ray
     path.result.rays += select(active, UintOf<F>(1u), UintOf<F>(0u));
     const Mask found = tracer.closest(path.ray, active, passed == 0, &hit);
     if (!scene.media.volumes.empty()) {
       constexpr int kSteps = 8;
       const F tmax = select(found, hit.t, F(1e30f));
       const auto media = fasts::cross_media(scene, tracer, tmax, active, kSteps, &path);
-      out.base += select<F>(active, out.through * media.radiance, Vec3Of<F>{});
-      scattered = select<F>(active, out.through * media.scattered, Vec3Of<F>{});
+      out.base += out.through *
+                  (select<F>(active, media.radiance, Vec3Of<F>{}) +
+                   fasts::air_light(cache, media, active, &path, requests + 3 * Lanes<F>::kCount));
       out.through = select<F>(active, out.through * media.through, out.through);
     }
     if (const Mask missed = active & !found; any(missed)) {
@@ -496,10 +517,6 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
         const Vec3f sky = sky_radiance(scene, lane(path.ray.d, i), lane(path.cone_spread, i));
         set_lane(&out.base, i, lane(out.base, i) + lane(out.through, i) * sky);
       });
-      if (!scene.media.volumes.empty())
-        out.base += select<F>(
-            missed, scattered * fasts::light_around_missed(scene, cache, path.ray.d, missed),
-            Vec3Of<F>{});
     }
     active = found;
     if (!any(active)) break;
@@ -525,12 +542,10 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
     const Vec3Of<F> jitter{u.x, u.y, path.sampler.next_1d(active)};
     const Mask pane = active & !solid;
     CacheRequest asked[Lanes<F>::kCount];
-    const CacheCellOf<F> cells = fasts::ask_cells(cache, v, active, jitter, 0, asked);
+    const fasts::CachePlaceOf<F> at = fasts::place_of(v);
+    const CacheCellOf<F> cells = fasts::ask_cells(cache, at, active, jitter, 0, asked);
     // What the first solid surface has of the cache is looked up when its cells have been traced.
-    constexpr float kUnseen = 0.002f;
-    const Mask hazy = active & (max_component(scattered) > kUnseen);
-    const Vec3Of<F> cached = fasts::cached_light(cache, v, cells, pane | hazy, 0);
-    out.base += select<F>(hazy, scattered * cached, Vec3Of<F>{});
+    const Vec3Of<F> cached = fasts::cached_light(cache, at, cells, pane, 0);
     if (any(solid)) {
       const Vec3Of<F> out_W =
           FrameOf<F>::from_z(v.normal).to_world(sample_cosine_hemisphere(near_u));

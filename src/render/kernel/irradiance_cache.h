@@ -1,7 +1,7 @@
 #pragma once
 // Indirect light kept in the world, for one camera: cells of a hash grid, each a cube of space and
-// a facing, hold the light that surfaces there get from other surfaces and from the sky. Cells grow
-// with the distance from the camera. Device-safe.
+// a facing, hold the light that surfaces there get from other surfaces and from the sky, or that
+// media there scatter. Cells grow with the distance from the camera. Device-safe.
 
 #include "render/kernel/ray.h"
 
@@ -60,7 +60,7 @@ struct PlaceBits {
 };
 GLOAM_HD PlaceBits place_bits(int axis) {
   const int shift = 9 + 18 * axis;
-  return {shift, uint64_t{axis < 2 ? 0x3FFFFu : 0x1FFFFu} << shift};
+  return {shift, uint64_t{axis < 2 ? 0x3FFFFu : 0xFFFFu} << shift};
 }
 
 /// Key of the cell next along an axis, of the same facing.
@@ -79,20 +79,24 @@ GLOAM_HD float edge_of(uint64_t key) {
 
 }  // namespace caches
 
+/// What a cell's light falls on: inner sides of panes lie where their outer sides do, and air where
+/// both do. Media scatter forwards, so light that air sends along a ray is that of a surface which
+/// the ray leaves: a lobe by the cosine, of the mean cosine 2/3.
+inline constexpr uint32_t kOutsideCell = 0, kInsideCell = 1, kAirCell = 2;
+
 /// A cell before its numbers are packed.
 template <class F>
 struct CacheCellOf {
   Vec3Of<F> place;  ///< whole numbers of edges
-  UintOf<F> exponent, facing, inside;
+  UintOf<F> exponent, facing, side;
   F edge;  ///< [m]
 };
 
-/// The cells for surfaces at p with the normals n, seen from the `outside`: inner sides of panes
-/// lie where their outer sides do. `jitter` in [0, 1)³ blurs the borders of cells, facings and
-/// sizes; `coarser`: doublings of the edge.
+/// The cells for surfaces at p with the normals n. `jitter` in [0, 1)³ blurs the borders of cells,
+/// facings and sizes; `coarser`: doublings of the edge.
 template <class F>
 GLOAM_HD CacheCellOf<F> cache_cell(const IrradianceCacheView& cache, Vec3Of<F> p, Vec3Of<F> n,
-                                   MaskOf<F> outside, Vec3Of<F> jitter, uint32_t coarser) {
+                                   UintOf<F> side, Vec3Of<F> jitter, uint32_t coarser) {
   const Vec3Of<F> from_eye = p - in_all_lanes<F>(cache.eye);
   // The greatest power of two up to edge (1 + jitter), so that sizes blend.
   const F wanted = max(square_root(dot(from_eye, from_eye)) * cache.edge_per_metre, F(0.01f)) *
@@ -110,7 +114,7 @@ GLOAM_HD CacheCellOf<F> cache_cell(const IrradianceCacheView& cache, Vec3Of<F> p
     return select(m, UintOf<F>(yes), UintOf<F>(0u));
   };
   cell.facing = two(up, 4) + two(along_y, 2) + two(most < 0.0f, 1);
-  cell.inside = two(!outside, 1);
+  cell.side = side;
   const FrameOf<F> frame = FrameOf<F>::from_z(n);
   // Off the surface, as faces of rooms and boxes like to lie on the borders of cells.
   const Vec3Of<F> at =
@@ -123,7 +127,7 @@ GLOAM_HD CacheCellOf<F> cache_cell(const IrradianceCacheView& cache, Vec3Of<F> p
 template <class F>
 GLOAM_HD uint64_t cache_key(const CacheCellOf<F>& cell, int i) {
   uint64_t key = lane(cell.facing, i) | uint64_t{lane(cell.exponent, i) & 63u} << 3 |
-                 uint64_t{lane(cell.inside, i)} << 62 | uint64_t{1} << 63;
+                 uint64_t{lane(cell.side, i)} << 61 | uint64_t{1} << 63;
   const Vec3f place = lane(cell.place, i);
   for (int k = 0; k < 3; ++k) {
     if (!(fabsf(place[k]) < 1e6f)) return 0;
@@ -132,9 +136,9 @@ GLOAM_HD uint64_t cache_key(const CacheCellOf<F>& cell, int i) {
   }
   return key;
 }
-GLOAM_HD uint64_t cache_key(const IrradianceCacheView& cache, Vec3f p, Vec3f n, bool outside,
+GLOAM_HD uint64_t cache_key(const IrradianceCacheView& cache, Vec3f p, Vec3f n, uint32_t side,
                             Vec3f jitter, uint32_t coarser) {
-  return cache_key(cache_cell<float>(cache, p, n, outside, jitter, coarser), 0);
+  return cache_key(cache_cell<float>(cache, p, n, side, jitter, coarser), 0);
 }
 
 /// Row of the key's cell, or -1.
