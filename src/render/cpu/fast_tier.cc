@@ -12,9 +12,9 @@ using F = FloatLanes;
 
 constexpr float kCellPixels = 32;       // edge of a cache's cell in the picture,
 constexpr float kWidestCell = 0.05f;    // or over its distance if that is less
-constexpr int kWarmUp = 12;             // updates of the cache before the first picture
 constexpr uint32_t kFirstPictures = 8;  // of the first instant, one upon the other
-constexpr size_t kMostCells = 2500;     // of the cache that a later picture traces again
+constexpr size_t kFirstCells = 10000;   // of the cache that one of them traces again,
+constexpr size_t kMostCells = 2500;     // and a later picture
 
 float cell_edge(const CameraView32& camera) { return min(kCellPixels / camera.fx, kWidestCell); }
 
@@ -62,8 +62,8 @@ void FastHistory::add_picture(const SceneView& scene, const CpuTracer& tracer,
     again = cache_.size() == 0;  // a first picture is traced twice: its rays saw no cache
     trace({plain, tracer, camera, cache_.view(eye, edge), settings.seed}, pass);
     cache_.ask(requests_);
-    rays_ += cache_.update(scene, tracer, eye, edge, settings.seed, again ? kWarmUp : 1,
-                           pictures_ < kFirstPictures ? cache_.size() : kMostCells, watch);
+    rays_ += cache_.update(scene, tracer, eye, edge, settings.seed, again,
+                           pictures_ < kFirstPictures ? kFirstCells : kMostCells, watch);
     if (requests_.empty()) break;
   }
   look_up(cache_.view(eye, edge));
@@ -87,7 +87,7 @@ RenderStats FastHistory::render(const SceneView& scene, const CpuTracer& tracer,
   }
   const bool first = pictures_ == 0;
   const uint32_t passes = first ? kFirstPictures : 1;
-  RenderWatch watch(settings.progress, first ? kWarmUp + kFirstPictures : 1);
+  RenderWatch watch(settings.progress, first ? IrradianceCache::kFirstRounds + kFirstPictures : 1);
   for (uint32_t pass = 0; pass < passes && !watch.stopped(); ++pass) {
     add_picture(scene, tracer, camera, settings, pass, &watch);
   }

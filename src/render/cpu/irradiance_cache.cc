@@ -9,7 +9,8 @@
 namespace gloam {
 namespace {
 
-constexpr int kRays = 32;            // of a cell and update
+constexpr int kRays = 32;            // of a cell and update,
+constexpr int kFirstRays = 16;       // and as long as light comes round for the first time
 constexpr int kRaysTogether = 8;     // of them go by the cosine, as many by the guide
 constexpr int kMemory = 10 * kRays;  // rays that a cell's mean is of, at most
 constexpr uint32_t kRounds = 16;     // of rays through one set of points
@@ -26,8 +27,10 @@ constexpr float kAtChange = 4;    // and where the light has changed;
 constexpr float kGuessed = 20;    // it counts as that of so many more cells of a wider region
 constexpr uint64_t kExcessRegions[] = {caches::kWideRegion | caches::kFacing,
                                        caches::kRegion | caches::kFacing};
-constexpr float kFades = 0.1f;  // share of all light that must have changed to change all
-constexpr int kMostRounds = 3;  // of an update while light changes in many cells
+constexpr float kFades = 0.1f;     // share of all light that must have changed to change all
+constexpr int kMostRounds = 3;     // of an update while light changes in many cells
+constexpr int kMeanRounds = 3;     // of the first update, the last ones
+constexpr double kSettled = 0.01;  // share that the last round changed of all light
 constexpr size_t kFurtherCells = 2, kFurtherRoom = 4000;  // cells, for each that pixels ask for,
                                                           // and so many more
 constexpr float kRayConeSpread = 0.15f;  // of the rays' cones: no fine texture is sought
@@ -98,7 +101,8 @@ float IrradianceCache::luminance_beside(uint64_t key) const {
 }
 
 void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer,
-                                 const IrradianceCacheView& cache, uint64_t seed, size_t k) {
+                                 const IrradianceCacheView& cache, uint64_t seed, int rays,
+                                 size_t k) {
   using F = FloatLanes;
   const uint32_t row = asked_[k];
   const Cell& cell = cells_[row];
@@ -106,11 +110,12 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
   const float before = cell.samples == 0 ? luminance_beside(cell.key) : luminance(light_[row].all);
   const auto starts = static_cast<size_t>(std::min(cell.starts, kStarts));
   const float brightest = before > 0 ? kBrightest * before : 1e30f;
+  const float per_ray = 1 / static_cast<float>(rays);
   Traced& out = traced_[k];
   out = {};
   out.is_new = cell.samples == 0;
   out.before = before;
-  for (int first = 0; first < kRays; first += kLaneCount) {
+  for (int first = 0; first < rays; first += kLaneCount) {
     paths::State<F> path;
     UintLanes index;
     const uint32_t begin = cell.rounds % kRounds * kRays + static_cast<uint32_t>(first);
@@ -159,17 +164,16 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
       if (near) out.light.near += one;
       out.light.share += near ? w : 0.0f;
       if (lane(light.way, i) < 1e30f && scene.instances[lane(light.first, i)].has_moved)
-        out.stir += w / kRays;
+        out.stir += w * per_ray;
       out.variance += sqr(luminance(one));
       out.rays += lane(path.result.rays, i);
     }
     if (first == 0) std::copy_n(met, kFurther, &further_[k * kFurther]);
   }
-  constexpr float kPer = 1.0f / kRays;
   CellLight& light = out.light;
-  light = {light.all * kPer, light.near * kPer, light.share * kPer};
-  out.excess = out.excess * kPer;
-  out.variance = max(out.variance * kPer - sqr(luminance(light.all)), 0.0f) * kPer;
+  light = {light.all * per_ray, light.near * per_ray, light.share * per_ray};
+  out.excess = out.excess * per_ray;
+  out.variance = max(out.variance * per_ray - sqr(luminance(light.all)), 0.0f) * per_ray;
 }
 
 template <class Visit>
@@ -260,7 +264,8 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
   parallel_for_range("irradiance cache", static_cast<int64_t>(asked_.size()), 4,
                      [&](int64_t begin, int64_t end) {
                        for (int64_t k = begin; k < end && watch->goes_on(); ++k)
-                         trace_cell(scene, tracer, cache, seed, static_cast<size_t>(k));
+                         trace_cell(scene, tracer, cache, seed, remembers ? kRays : kFirstRays,
+                                    static_cast<size_t>(k));
                      });
   spread_excess();
   find_changes();
@@ -290,7 +295,7 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
   return rays;
 }
 
-void IrradianceCache::extrapolate(int round, bool remembers) {
+double IrradianceCache::extrapolate(int round, bool remembers) {
   // Light that comes round once more in each of them dies away as a geometric series: its sum is
   // known from two terms (Aitken 1926).
   constexpr double kMostRatio = 0.97, kWorthIt = 0.004;
@@ -305,9 +310,10 @@ void IrradianceCache::extrapolate(int round, bool remembers) {
   }
   const double last = std::exchange(last_change_, change);
   terms_ = round == 0 ? 1 : terms_ + 1;
-  if (terms_ < 3 || !(std::abs(change) > kWorthIt * light) || last == 0) return;
+  const double share = light > 0 ? std::abs(change) / light : 1;
+  if (terms_ < 3 || share <= kWorthIt || last == 0) return share;
   const double ratio = change / last;
-  if (!(ratio > 0 && ratio < kMostRatio)) return;
+  if (!(ratio > 0 && ratio < kMostRatio)) return share;
   const auto factor = static_cast<float>(std::max(0.0, 1 + change * ratio / ((1 - ratio) * light)));
   for (size_t k = 0; k < asked_.size(); ++k) {
     if (!counts(k)) continue;
@@ -316,22 +322,21 @@ void IrradianceCache::extrapolate(int round, bool remembers) {
     cell.near = cell.near * factor;
   }
   terms_ = 0;
+  return share;
 }
 
 uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer, Vec3f eye,
-                                 float edge_per_metre, uint64_t seed, int settle, size_t most_cells,
-                                 RenderWatch* watch) {
+                                 float edge_per_metre, uint64_t seed, bool settles,
+                                 size_t most_cells, RenderWatch* watch) {
   uint64_t rays = 0;
-  const bool settling = settle > 1;
-  int rounds = settle;
+  bool remembers = !settles;
+  int rounds = settles ? kFirstRounds : 1;
   // Where each ray meets a leaf of its own, what lies further on is known by larger cells' light.
   const size_t most =
       kFurtherRoom + kFurtherCells * static_cast<size_t>(std::count_if(
                                          cells_.begin(), cells_.end(),
                                          [](const Cell& cell) { return cell.starts > 0; }));
   for (int i = 0; i < rounds && !watch->stopped(); ++i) {
-    // The last quarter of many rounds is a mean: by then most of the light has come round.
-    const bool remembers = !settling || 4 * i >= 3 * settle;
     ask(std::vector<CacheRequest>(std::move(further_)), most);
     asked_.clear();
     for (uint32_t row = 0; row < cells_.size(); ++row) {
@@ -346,15 +351,20 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
     };
     std::stable_sort(asked_.begin(), asked_.end(),
                      [&](uint32_t a, uint32_t b) { return waits(a) > waits(b); });
-    if (!settling && i == 0 && asked_.size() > most_cells) asked_.resize(most_cells);
+    if (!settles && i == 0 && asked_.size() > most_cells) asked_.resize(most_cells);
     rays += trace(scene, tracer, view(eye, edge_per_metre), seed, remembers, watch);
     watch->tile_done();
     // A lamp went on or off: what it sends comes round by one reflection each time.
     const auto changed = std::count_if(traced_.begin(), traced_.end(),
                                        [](const Traced& traced) { return traced.changed; });
-    const bool many = 8 * changed > static_cast<int64_t>(asked_.size());
-    if (!remembers || (!settling && many)) extrapolate(i, remembers);
-    if (!settling && many && rounds < kMostRounds) ++rounds;
+    const bool many = !settles && 8 * changed > static_cast<int64_t>(asked_.size());
+    if (remembers && !many) continue;
+    const double share = extrapolate(i, remembers);
+    if (many && rounds < kMostRounds) ++rounds;
+    if (settles && ((i > 1 && share < kSettled) || i + 1 + kMeanRounds == kFirstRounds)) {
+      remembers = true;
+      rounds = i + 1 + kMeanRounds;
+    }
   }
   forget();
   return rays;

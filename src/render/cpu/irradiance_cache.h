@@ -18,11 +18,12 @@ class IrradianceCache {
   /// in all.
   void ask(const std::vector<CacheRequest>& requests, size_t most = SIZE_MAX);
   /// Traces rays from all cells that were asked for since the last update, and forgets those that
-  /// nobody has asked for in a while. `settle`: how many times; light is reflected once more each
-  /// time; if once, only those `most_cells` that have waited longest. Returns the number of rays.
-  /// Of no use any more once `watch` has stopped it.
+  /// nobody has asked for in a while. `settles`: again and again, at most kFirstRounds times, until
+  /// light has come round; if not, once, and only those `most_cells` that have waited longest.
+  /// Returns the number of rays. Of no use any more once `watch` has stopped it.
   uint64_t update(const SceneView& scene, const CpuTracer& tracer, Vec3f eye, float edge_per_metre,
-                  uint64_t seed, int settle, size_t most_cells, RenderWatch* watch);
+                  uint64_t seed, bool settles, size_t most_cells, RenderWatch* watch);
+  static constexpr int kFirstRounds = 12;
 
   IrradianceCacheView view(Vec3f eye, float edge_per_metre) const;
   size_t size() const { return cells_.size(); }
@@ -70,7 +71,7 @@ class IrradianceCache {
   float luminance_beside(uint64_t key) const;
   /// Cell k of asked_ into traced_.
   void trace_cell(const SceneView& scene, const CpuTracer& tracer, const IrradianceCacheView& cache,
-                  uint64_t seed, size_t k);
+                  uint64_t seed, int rays, size_t k);
   /// visit(group): of the cells of traced_ those whose keys are alike under the mask.
   using Member = std::pair<uint64_t, size_t>;  // masked key, row of traced_
   template <class Visit>
@@ -82,8 +83,8 @@ class IrradianceCache {
   void forget_excess(uint64_t key);
   uint64_t trace(const SceneView& scene, const CpuTracer& tracer, const IrradianceCacheView& cache,
                  uint64_t seed, bool remembers, RenderWatch* watch);
-  /// After each round: to where the light would come in many more.
-  void extrapolate(int round, bool remembers);
+  /// After each round: to where the light would come in many more. The share that it has changed.
+  double extrapolate(int round, bool remembers);
   void forget();
 
   std::vector<uint64_t> keys_;
