@@ -12,8 +12,10 @@ using F = FloatLanes;
 
 constexpr float kCellPixels = 32;       // edge of a cache's cell in the picture,
 constexpr float kWidestCell = 0.05f;    // or over its distance if that is less
+constexpr size_t kManyCells = 8000;     // are asked for where each pixel shows a leaf of its own:
+constexpr float kCoarsest = 4;          // then cells are up to so many times as wide
 constexpr uint32_t kFirstPictures = 8;  // of the first instant, one upon the other
-constexpr size_t kFirstCells = 10000;   // of the cache that one of them traces again,
+constexpr size_t kFirstCells = 5000;    // of the cache that one of them traces again,
 constexpr size_t kMostCells = 2500;     // and a later picture
 
 float cell_edge(const CameraView32& camera) { return min(kCellPixels / camera.fx, kWidestCell); }
@@ -57,16 +59,22 @@ void FastHistory::add_picture(const SceneView& scene, const CpuTracer& tracer,
   SceneView plain = scene;  // rays of pixels go where they must
   plain.guide = {};
   const Vec3f eye = camera.pose.X_WC_open.p;
-  const float edge = cell_edge(camera);
   for (bool again = true; again && !watch->stopped();) {
-    again = cache_.size() == 0;  // a first picture is traced twice: its rays saw no cache
+    const bool first = cache_.size() == 0;
+    const float edge = cell_edge(camera) * coarse_;
     trace({plain, tracer, camera, cache_.view(eye, edge), settings.seed}, pass);
     cache_.ask(requests_);
-    rays_ += cache_.update(scene, tracer, eye, edge, settings.seed, again,
+    if (first && cache_.size() > kManyCells && coarse_ < kCoarsest) {
+      coarse_ *= 2;
+      cache_ = {};
+      continue;
+    }
+    again = first;  // a first picture is traced twice: its rays saw no cache
+    rays_ += cache_.update(scene, tracer, eye, edge, settings.seed, first,
                            pictures_ < kFirstPictures ? kFirstCells : kMostCells, watch);
     if (requests_.empty()) break;
   }
-  look_up(cache_.view(eye, edge));
+  look_up(cache_.view(eye, cell_edge(camera) * coarse_));
   filter_.accumulate(before_, &now_);
   filter_.smooth(now_);
   compose();
@@ -84,6 +92,7 @@ RenderStats FastHistory::render(const SceneView& scene, const CpuTracer& tracer,
     before_.resize(film->width, film->height);
     filter_.resize(film->width, film->height);
     pictures_ = 0;
+    coarse_ = 1;
   }
   const bool first = pictures_ == 0;
   const uint32_t passes = first ? kFirstPictures : 1;
