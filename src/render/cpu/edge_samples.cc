@@ -72,7 +72,7 @@ class Row {
                                static_cast<float>(y_) + 0.5f, 0.0f, &cone);
     const size_t i = pixel(x);
     const MarchResult m =
-        march(job_.scene.media, ray, min(film_->distance[i], 1e30f), 0.0f, kSteps, {},
+        march(job_.scene.media, ray, min(film_->distance[i], 1e30f), 0.0f, kSteps, {}, true,
               [](const MediumPoint& at, Vec3f, Vec3f) { return at.scattering; });
     const Vec3f albedo = film_->albedo[i] * m.transmittance + m.radiance;
     // What glows is brighter than any albedo.

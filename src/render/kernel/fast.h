@@ -125,10 +125,11 @@ GLOAM_HD CacheCellOf<F> ask_cells(const IrradianceCacheView& cache, const CacheP
 }
 
 /// What the cache holds for them. Until a cell is there, the one about the point itself or a larger
-/// one stands for it, or the mean of all.
+/// one stands for it, or `otherwise`.
 template <class F>
 GLOAM_HD Vec3Of<F> cached_light(const IrradianceCacheView& cache, const CachePlaceOf<F>& at,
-                                const CacheCellOf<F>& cells, MaskOf<F> active, uint32_t coarser) {
+                                const CacheCellOf<F>& cells, MaskOf<F> active, uint32_t coarser,
+                                Vec3f otherwise) {
   Vec3Of<F> light;
   int cell[Lanes<F>::kCount];  // all before the first is read: the memory is waited for once
   each_lane(active, [&](int i) { cell[i] = find_cell(cache, cache_key(cells, i)); });
@@ -138,7 +139,7 @@ GLOAM_HD Vec3Of<F> cached_light(const IrradianceCacheView& cache, const CachePla
                                            {0.5f, 0.5f, 0.0f}, coarser + more));
     }
     const bool known = cell[i] >= 0;
-    set_lane(&light, i, known ? cache.light[static_cast<uint32_t>(cell[i])].all : cache.mean);
+    set_lane(&light, i, known ? cache.light[static_cast<uint32_t>(cell[i])].all : otherwise);
   });
   return light;
 }
@@ -165,14 +166,38 @@ GLOAM_HD void add_light(const SceneView& scene, const Tracer& tracer, paths::Sta
   *specular += select<F>(lit, arriving * f * weight, Vec3Of<F>{});
 }
 
-/// Direct light at the vertices of the `active` lanes: of every light where there are few, or of
-/// `drawn` of them.
+/// Light that is sampled closer by than this counts as from there [m]: points of a flame are drawn
+/// without a look at their distance.
+inline constexpr float kNearGlow = 0.1f;
+
+/// A point of what glows as a light for p.
+template <class F>
+GLOAM_HD LightSampleOf<F> glow_light(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n,
+                                     paths::State<F>* path, MaskOf<F> active) {
+  LightSampleOf<F> light;
+  const Vec2Of<F> u = path->sampler.next_2d(active);
+  each_lane(active, [&](int i) {
+    LightSample one = glow::sample(scene.media, lane(p, i), lane(n, i), lane(u, i));
+    one.pdf *= sqr(max(kNearGlow / max(one.distance, 1e-3f), 1.0f));
+    set_lane(&light, i, one);
+  });
+  return light;
+}
+
+/// Direct light at the vertices of the `active` lanes: of what glows, and of every light where
+/// there are few, or of `drawn` of them.
 template <class F, class Tracer>
 GLOAM_HD void direct_light(const SceneView& scene, const Tracer& tracer, paths::State<F>* path,
                            const SurfaceOf<F>& v, const LayeredBsdfOf<F>& shiny,
                            const FrameOf<F>& frame, Vec3Of<F> wo, MaskOf<F> traced,
                            MaskOf<F> active, bool every, uint32_t drawn, Vec3Of<F>* diffuse,
                            Vec3Of<F>* specular) {
+  if (scene.has_glow()) {
+    Vec3Of<F> gloss;
+    const LightSampleOf<F> light = glow_light(scene, v.p, v.geometric, path, active);
+    add_light(scene, tracer, path, v, shiny, frame, wo, false, active, light, diffuse, &gloss);
+    *specular += select<F>(traced, Vec3Of<F>{}, gloss);  // that of a flame is what the ray shows
+  }
   if (scene.lights.size == 0) return;
   path->picker.prepare(scene, v.p, v.geometric, active);
   path->picker.leave_out_sky(scene);  // that is the cache's
@@ -210,8 +235,10 @@ GLOAM_HD Vec3f scattered_light(const SceneView& scene, const Tracer& tracer, con
   LightPicker picker;
   picker.prepare(scene, p_W, Vec3f{});
   picker.leave_out_sky(scene);  // that is the cache's
+  if (scene.has_glow()) picker.add_glow(scene, true);
   const Vec2f u{random->next(), random->next()};
-  const LightSample light = picker.sample(scene, p_W, u, ray.time);
+  LightSample light = picker.sample(scene, p_W, u, ray.time);
+  light.pdf *= sqr(max(kNearGlow / max(light.distance, 1e-3f), 1.0f));
   if (!(light.pdf > 0) || !(max_component(point.scattering) > 0)) return {};
   Ray shadow = ray;
   aim_shadow_ray(p_W, Vec3f{}, 0.0f, light, &shadow);
@@ -229,43 +256,62 @@ GLOAM_HD Vec3f scattered_light(const SceneView& scene, const Tracer& tracer, con
          light.pdf;
 }
 
-/// What media along path->ray up to `tmax` do to light: scatter that of lamps once and give off,
-/// scatter that of all around, and let through.
+/// Light from all around that the cache has for the air at p_W, along d, or `otherwise`.
+GLOAM_HD Vec3f air_light(const IrradianceCacheView& cache, Vec3f p_W, Vec3f d, Vec3f otherwise,
+                         WalkRandom* random, CacheRequest* request) {
+  constexpr uint32_t kCoarser = 2;  // light in the air has no edges
+  const CachePlaceOf<float> at{p_W, d, kAirCell, p_W};
+  const Vec3f jitter{random->next(), random->next(), random->next()};
+  const CacheCellOf<float> cell = ask_cells<float>(cache, at, true, jitter, kCoarser, request);
+  return cached_light<float>(cache, at, cell, true, kCoarser, otherwise);
+}
+
+/// What media along path->ray up to `tmax` do to light: scatter that of lamps once and that of all
+/// around, give off, and let through.
 template <class F>
 struct MediaLightOf {
   Vec3Of<F> radiance;   ///< [cd/m²]
-  Vec3Of<F> scattered;  ///< share of what arrives from all around,
-  Vec3Of<F> at;         ///< at one of the places that scatter it, by chance; world
+  Vec3Of<F> scattered;  ///< share of what arrives from all around
   Vec3Of<F> through;
 };
+/// `glows`: what glows on the way counts. `little`: share of light that a step must scatter to look
+/// up the air's for sure. `requests`: one per lane, for one of the places that scatter light.
 template <class F, class Tracer>
-GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& tracer, F tmax,
-                                     MaskOf<F> active, int steps, paths::State<F>* path) {
-  MediaLightOf<F> out{{}, {}, {}, in_all_lanes<F>({1, 1, 1})};
+GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& tracer,
+                                     const IrradianceCacheView& cache, F tmax, MaskOf<F> active,
+                                     int steps, float little, bool glows, paths::State<F>* path,
+                                     CacheRequest* requests) {
+  MediaLightOf<F> out{{}, {}, in_all_lanes<F>({1, 1, 1})};
   if (scene.media.volumes.empty()) return out;
   const Vec2Of<F> u = path->sampler.next_2d(active);
   each_lane(active, [&](int i) {
     WalkRandom random(lane(u, i));
     const Ray ray = lane(path->ray, i);
     uint32_t rays = 0;
-    Vec3f at;
     float weighed = 0;
+    Vec3f air = cache.mean;  // of the last step that the cache knew
+    // Of what is thin, dark or behind the rest, few steps ask for light and count for many.
+    constexpr float kOfLamps = 3;  // rays to them cost more
+    const auto chance_of = [](float scatters, float much) { return min(scatters / much, 1.0f); };
     const MarchResult m = march(
-        scene.media, ray, lane(tmax, i), 0.0f, steps, {},
+        scene.media, ray, lane(tmax, i), 0.0f, steps, {}, glows,
         [&](const MediumPoint& point, Vec3f p_W, Vec3f share) {
           const float scatters = max_component(point.scattering * share);
-          weighed += scatters;
-          if (random.next() * weighed < scatters) at = p_W;
-          // Of what is thin, dark or behind the rest, few steps ask for light and count for many.
-          constexpr float kLittle = 0.1f;
-          const float chance = min(scatters * (1 / kLittle), 1.0f);
-          if (!(random.next() < chance)) return Vec3f{};
-          return scattered_light(scene, tracer, ray, point, p_W, &random, &rays) * (1 / chance);
+          Vec3f light;
+          if (const float chance = chance_of(scatters, kOfLamps * little); random.next() < chance)
+            light = scattered_light(scene, tracer, ray, point, p_W, &random, &rays) * (1 / chance);
+          if (const float chance = chance_of(scatters, little); random.next() < chance) {
+            CacheRequest request;
+            air = air_light(cache, p_W, ray.d, air, &random, &request);
+            light += point.scattering * air * (1 / chance);
+            weighed += scatters / chance;
+            if (random.next() * weighed < scatters / chance) requests[i] = request;
+          }
+          return light;
         });
     set_lane(&path->result.rays, i, lane(path->result.rays, i) + rays);
     set_lane(&out.radiance, i, m.radiance);
     set_lane(&out.scattered, i, m.scattered);
-    set_lane(&out.at, i, at);
     set_lane(&out.through, i, m.transmittance);
   });
   return out;
@@ -300,22 +346,6 @@ GLOAM_HD Vec3Of<F> lamps_met(const SceneView& scene, const paths::State<F>& path
   return sum;
 }
 
-/// Light from all around that media scatter along path->ray; asks for the cells of their air.
-template <class F>
-GLOAM_HD Vec3Of<F> air_light(const IrradianceCacheView& cache, const MediaLightOf<F>& media,
-                             MaskOf<F> active, paths::State<F>* path, CacheRequest* requests) {
-  constexpr float kUnseen = 0.002f;
-  constexpr uint32_t kCoarser = 1;  // light in the air has no edges
-  const MaskOf<F> hazy = active & (max_component(media.scattered) > kUnseen);
-  if (!any(hazy)) return {};
-  const Vec2Of<F> u = path->sampler.next_2d(hazy);
-  const Vec3Of<F> jitter{u.x, u.y, path->sampler.next_1d(hazy)};
-  const CachePlaceOf<F> at{media.at, path->ray.d, UintOf<F>(kAirCell), media.at};
-  const CacheCellOf<F> cells = ask_cells(cache, at, hazy, jitter, kCoarser, requests);
-  return select<F>(hazy, media.scattered * cached_light(cache, at, cells, hazy, kCoarser),
-                   Vec3Of<F>{});
-}
-
 /// What a ray brings.
 template <class F>
 struct GatheredOf {
@@ -346,14 +376,15 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
     }
     if (!scene.media.volumes.empty()) {
       constexpr int kSteps = 4;
+      constexpr float kLittle = 0.03f;
       const F tmax = select(found, hit.t, F(1e30f));
-      const MediaLightOf<F> media = cross_media(scene, tracer, tmax, active, kSteps, path);
+      CacheRequest air[Lanes<F>::kCount] = {};
+      const MediaLightOf<F> media =
+          cross_media(scene, tracer, cache, tmax, active, kSteps, kLittle, count_lamps, path, air);
+      sum += select<F>(active, throughput * media.radiance, Vec3Of<F>{});
       // What brings more light is asked for: the air on the way, or the surface.
       const MaskOf<F> airy =
           active & ((!found) | (max_component(media.scattered) > max_component(media.through)));
-      CacheRequest air[Lanes<F>::kCount];
-      sum += throughput * (select<F>(active, media.radiance, Vec3Of<F>{}) +
-                           air_light(cache, media, active, path, air));
       each_lane(airy & !asked, [&](int i) { requests[i] = air[i]; });
       asked = asked | airy;
       throughput = select<F>(active, throughput * media.through, throughput);
@@ -415,7 +446,7 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
       }
       const CachePlaceOf<F> at = place_of(v);
       const CacheCellOf<F> cells = ask_cells(cache, at, matt & !asked, jitter, coarser, requests);
-      const Vec3Of<F> cached = cached_light(cache, at, cells, matt, coarser);
+      const Vec3Of<F> cached = cached_light(cache, at, cells, matt, coarser, cache.mean);
       F a, b;
       layer_albedo(*scene.albedo, v.roughness, wo.z, &a, &b);
       const Vec3Of<F> gloss = bsdf.base.f0 * a + bsdf.base.f90 * b;
@@ -505,11 +536,11 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
     const Mask found = tracer.closest(path.ray, active, passed == 0, &hit);
     if (!scene.media.volumes.empty()) {
       constexpr int kSteps = 8;
+      constexpr float kLittle = 0.01f;  // no filter takes away noise of media
       const F tmax = select(found, hit.t, F(1e30f));
-      const auto media = fasts::cross_media(scene, tracer, tmax, active, kSteps, &path);
-      out.base += out.through *
-                  (select<F>(active, media.radiance, Vec3Of<F>{}) +
-                   fasts::air_light(cache, media, active, &path, requests + 3 * Lanes<F>::kCount));
+      const auto media = fasts::cross_media(scene, tracer, cache, tmax, active, kSteps, kLittle,
+                                            true, &path, requests + 3 * Lanes<F>::kCount);
+      out.base += select<F>(active, out.through * media.radiance, Vec3Of<F>{});
       out.through = select<F>(active, out.through * media.through, out.through);
     }
     if (const Mask missed = active & !found; any(missed)) {
@@ -545,7 +576,7 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
     const fasts::CachePlaceOf<F> at = fasts::place_of(v);
     const CacheCellOf<F> cells = fasts::ask_cells(cache, at, active, jitter, 0, asked);
     // What the first solid surface has of the cache is looked up when its cells have been traced.
-    const Vec3Of<F> cached = fasts::cached_light(cache, at, cells, pane, 0);
+    const Vec3Of<F> cached = fasts::cached_light(cache, at, cells, pane, 0, cache.mean);
     if (any(solid)) {
       const Vec3Of<F> out_W =
           FrameOf<F>::from_z(v.normal).to_world(sample_cosine_hemisphere(near_u));

@@ -109,4 +109,23 @@ GLOAM_HD LightSample sample(const MediaView& media, const GlowView& glow, Vec3f 
   return s;
 }
 
+/// A point of one of them, by weight().
+GLOAM_HD LightSample sample(const MediaView& media, Vec3f p, Vec3f n, Vec2f u) {
+  const DeviceSpan<const GlowView>& glows = media.glows;
+  const float total = weight(glows, p, n), wanted = u.x * total;
+  float before = 0, taken = 0;
+  uint32_t row = 0;
+  for (uint32_t k = 0; k < glows.size && before + taken <= wanted; ++k) {
+    const float each = weight(glows[k], p, n);
+    if (!(each > 0)) continue;
+    before += taken;
+    taken = each;
+    row = k;
+  }
+  if (!(taken > 0)) return {};
+  LightSample s = sample(media, glows[row], p, {rest_of(wanted, before, taken), u.y});
+  s.pdf *= taken / total;
+  return s;
+}
+
 }  // namespace gloam::glow

@@ -274,21 +274,8 @@ class LightPickerOf {
     return balls;
   }
   GLOAM_HD LightSample sample_glow(const SceneView& scene, int at, Vec2f u) const {
-    const Vec3f p = lane(p_, at), n = lane(n_, at);
-    const DeviceSpan<const GlowView>& glows = scene.media.glows;
-    const float total = glow::weight(glows, p, n);
-    float before = 0, taken = 0;
-    const float wanted = u.x * total;
-    uint32_t row = 0;
-    for (uint32_t k = 0; k < glows.size && before + taken <= wanted; ++k) {
-      const float weight = glow::weight(glows[k], p, n);
-      if (!(weight > 0)) continue;
-      before += taken;
-      taken = weight;
-      row = k;
-    }
-    LightSample s = glow::sample(scene.media, glows[row], p, {rest_of(wanted, before, taken), u.y});
-    s.pdf *= lane(glow_share_, at) * taken / total;
+    LightSample s = glow::sample(scene.media, lane(p_, at), lane(n_, at), u);
+    s.pdf *= lane(glow_share_, at);
     return s;
   }
   GLOAM_HD LightSample sample_sky(const SceneView& scene, Vec2f u, int at) const {

@@ -94,11 +94,12 @@ GLOAM_HD float glow_step(const MediumWalk& walk, Bands bands) {
 /// Marches through the media in steps of at most `step` [m], or longer ones where that would take
 /// more than about `max_steps`. Empty cells are skipped. Along a step all is as in its middle and
 /// Beer-Lambert's law is integrated, so even media are exact with any step.
+/// What glows along the ray counts if `glows`.
 /// `source(const MediumPoint&, Vec3f p_W, Vec3f share)`, once a step: light that media scatter
 /// towards the ray's origin [cd/m² per m], of which `share` gets there [m].
 template <class Source>
 GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, float step,
-                           int max_steps, Bands bands, const Source& source) {
+                           int max_steps, Bands bands, bool glows, const Source& source) {
   // What is behind so much is not seen.
   constexpr float kDark = 1e-3f;
   MarchResult result;
@@ -115,7 +116,8 @@ GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, f
     // Quotients that round to nothing are one step, too.
     const float steps = max(ceilf(length / step), 1.0f);
     const float ds = length / steps;
-    const float parts = max(ceilf(ds / media::glow_step(walk, bands)), 1.0f), part = ds / parts;
+    const float parts = glows ? max(ceilf(ds / media::glow_step(walk, bands)), 1.0f) : 1.0f;
+    const float part = ds / parts;
     for (float i = 0; i < steps; ++i) {
       const float begin = t + i * ds;
       const Vec3f before = result.transmittance;
@@ -127,8 +129,9 @@ GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, f
           if (walk[v].high() > 0) media::add_volume(media, walk[v].volume(), p_W, bands, &point);
         }
         const Vec3f depth = point.extinction * part;
-        result.radiance +=
-            result.transmittance * media::mean_transmittance(depth) * point.emission * part;
+        if (glows)
+          result.radiance +=
+              result.transmittance * media::mean_transmittance(depth) * point.emission * part;
         result.transmittance *= media::exp_of(-depth);
         media::add(point, 1 / parts, &mean);
       }

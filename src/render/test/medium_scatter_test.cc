@@ -206,7 +206,7 @@ TEST(Medium, SlabsGlowByTheirOpticalDepth) {
         const MediumEvent e = sample_distance(store.view(), ray, 1e30f, {}, {1, 1, 1}, &s);
         for (int k = 0; k < 3; ++k) mean[k].add(e.emission[k]);
       }
-      const MarchResult marched = march(store.view(), ray, 1e30f, 10.0f, 1, {},
+      const MarchResult marched = march(store.view(), ray, 1e30f, 10.0f, 1, {}, true,
                                         [](const MediumPoint&, Vec3f, Vec3f) { return Vec3f{}; });
       for (int k = 0; k < 3; ++k) {
         const double share = -std::expm1(-depth * b.media[0].mass_extinction[k]);

@@ -59,7 +59,7 @@ TEST(Medium, EvenMediaFollowBeerLambertExactly) {
       const double length = length_in_box(box, c.ray, c.tmax);
       Sampler sampler = draw(3);
       const Vec3f T = transmittance(store.view(), c.ray, c.tmax, {}, &sampler);
-      const MarchResult m = march(store.view(), c.ray, c.tmax, 10.0f, 1, {}, no_source);
+      const MarchResult m = march(store.view(), c.ray, c.tmax, 10.0f, 1, {}, true, no_source);
       for (int i = 0; i < 3; ++i) {
         const double expected = std::exp(-double(k[i]) * 0.9 * length);
         EXPECT_NEAR(T[i], expected, 2e-6) << c.name << ", band " << i;
@@ -238,7 +238,7 @@ TEST(Medium, MarchingConvergesToTheQuadrature) {
   for (const RayCase& c : rays_through()) {
     const RaySums expected = integrate_ray(store.view(), c.ray, min(c.tmax, 5));
     const MarchResult m =
-        march(store.view(), c.ray, c.tmax, 0.05f, 1000, {},
+        march(store.view(), c.ray, c.tmax, 0.05f, 1000, {}, true,
               [](const MediumPoint& p, Vec3f, Vec3f) { return p.scattering * 100.0f; });
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(m.transmittance[k], expected.transmittance[k],
@@ -254,7 +254,7 @@ TEST(Medium, MarchTakesAboutTheStepsItIsAllowed) {
   const VolumeStore store = three_volumes().build();
   for (const int max_steps : {1, 8, 100}) {
     int steps = 0;
-    march(store.view(), rays_through()[0].ray, 4, 1e-4f, max_steps, {},
+    march(store.view(), rays_through()[0].ray, 4, 1e-4f, max_steps, {}, true,
           [&](const MediumPoint&, Vec3f, Vec3f) {
             ++steps;
             return Vec3f{};
