@@ -274,12 +274,12 @@ struct MediaLightOf {
   Vec3Of<F> scattered;  ///< share of what arrives from all around
   Vec3Of<F> through;
 };
-/// `glows`: what glows on the way counts. `little`: share of light that a step must scatter to look
-/// up the air's for sure. `requests`: one per lane, for one of the places that scatter light.
+/// `glows`: what glows on the way counts. `requests`: one per lane, for one of the places that
+/// scatter light.
 template <class F, class Tracer>
 GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& tracer,
                                      const IrradianceCacheView& cache, F tmax, MaskOf<F> active,
-                                     int steps, float little, bool glows, paths::State<F>* path,
+                                     int steps, bool glows, paths::State<F>* path,
                                      CacheRequest* requests) {
   MediaLightOf<F> out{{}, {}, in_all_lanes<F>({1, 1, 1})};
   if (scene.media.volumes.empty()) return out;
@@ -291,16 +291,16 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
     float weighed = 0;
     Vec3f air = cache.mean;  // of the last step that the cache knew
     // Of what is thin, dark or behind the rest, few steps ask for light and count for many.
-    constexpr float kOfLamps = 3;  // rays to them cost more
+    constexpr float kLittle = 0.03f, kLittleForLamps = 0.1f;  // scattered: then it is by chance
     const auto chance_of = [](float scatters, float much) { return min(scatters / much, 1.0f); };
     const MarchResult m = march(
         scene.media, ray, lane(tmax, i), 0.0f, steps, {}, glows,
         [&](const MediumPoint& point, Vec3f p_W, Vec3f share) {
           const float scatters = max_component(point.scattering * share);
           Vec3f light;
-          if (const float chance = chance_of(scatters, kOfLamps * little); random.next() < chance)
+          if (const float chance = chance_of(scatters, kLittleForLamps); random.next() < chance)
             light = scattered_light(scene, tracer, ray, point, p_W, &random, &rays) * (1 / chance);
-          if (const float chance = chance_of(scatters, little); random.next() < chance) {
+          if (const float chance = chance_of(scatters, kLittle); random.next() < chance) {
             CacheRequest request;
             air = air_light(cache, p_W, ray.d, air, &random, &request);
             light += point.scattering * air * (1 / chance);
@@ -376,11 +376,10 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
     }
     if (!scene.media.volumes.empty()) {
       constexpr int kSteps = 4;
-      constexpr float kLittle = 0.03f;
       const F tmax = select(found, hit.t, F(1e30f));
       CacheRequest air[Lanes<F>::kCount] = {};
       const MediaLightOf<F> media =
-          cross_media(scene, tracer, cache, tmax, active, kSteps, kLittle, count_lamps, path, air);
+          cross_media(scene, tracer, cache, tmax, active, kSteps, count_lamps, path, air);
       sum += select<F>(active, throughput * media.radiance, Vec3Of<F>{});
       // What brings more light is asked for: the air on the way, or the surface.
       const MaskOf<F> airy =
@@ -536,10 +535,9 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
     const Mask found = tracer.closest(path.ray, active, passed == 0, &hit);
     if (!scene.media.volumes.empty()) {
       constexpr int kSteps = 8;
-      constexpr float kLittle = 0.01f;  // no filter takes away noise of media
       const F tmax = select(found, hit.t, F(1e30f));
-      const auto media = fasts::cross_media(scene, tracer, cache, tmax, active, kSteps, kLittle,
-                                            true, &path, requests + 3 * Lanes<F>::kCount);
+      const auto media = fasts::cross_media(scene, tracer, cache, tmax, active, kSteps, true, &path,
+                                            requests + 3 * Lanes<F>::kCount);
       out.base += select<F>(active, out.through * media.radiance, Vec3Of<F>{});
       out.through = select<F>(active, out.through * media.through, out.through);
     }
