@@ -33,7 +33,7 @@ LightOptions beacon(LightMotionOptions motion) {
 
 TEST(LampMotion, ABeaconSweepsAboutTheVerticalAtItsRate) {
   const RenderDescription d = with_lamp(beacon({.spin = 60}));
-  const LightDescription& light = d.lights.front();
+  const LightDescription& light = d.lights.back();
   ASSERT_EQ(light.motion, 0);
   EXPECT_FALSE(light.is_static);
   const auto beam = [&](double time) { return -moved(d.motions[0], time, light.X_BL).z; };
@@ -47,7 +47,7 @@ TEST(LampMotion, ABeaconSweepsAboutTheVerticalAtItsRate) {
 TEST(LampMotion, SpinsTheOtherWayAboutAnyAxisFromAnyPhase) {
   const RenderDescription d =
       with_lamp(beacon({.spin = -60, .axis = Vec3{0, 5, 0}, .phase = 0.25}));
-  const Affine3f& X_BL = d.lights.front().X_BL;
+  const Affine3f& X_BL = d.lights.back().X_BL;
   // A quarter about +Y takes +X to -Z; then back the other way.
   expect_near(-moved(d.motions[0], 0, X_BL).z, {0, 0, -1}, 1e-6f);
   expect_near(-moved(d.motions[0], 0.25, X_BL).z, {1, 0, 0}, 1e-6f);
