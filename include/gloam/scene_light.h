@@ -57,9 +57,9 @@ struct LightMotionOptions {
   std::optional<double> sway = {};  ///< greatest angle of a hanging lamp's swing [deg]
   std::optional<double> cord = {};  ///< sway: from the lamp up to where it hangs [m], which sets
                                     ///< its period; 1
-  std::optional<Vec3> axis = {};  ///< that it turns about, in the frame of `body`; 0, 0, 1; of a
-                                  ///< sway 1, 0, 0
-  double phase = 0;               ///< share of a turn or swing that is over at time 0, 0 … 1
+  std::optional<Vec3> axis = {};    ///< that it turns about, in the frame of `body`; 0, 0, 1; of a
+                                    ///< sway 1, 0, 0
+  double phase = 0;                 ///< share of a turn or swing that is over at time 0, 0 … 1
   SourceLoc loc = {};
 };
 

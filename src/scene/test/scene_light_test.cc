@@ -294,9 +294,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadLight{"starter_of_nothing",
                  "[blackout]\nat = 5\nstarter = true\n",
                  {"no lamp comes back", "give 'until'"}},
-        BadLight{"one_name",
-                 "[blackout]\nat = 5\nexcept = \"lamp\"\n",
-                 {"'except' must be an array"}},
+        BadLight{
+            "one_name", "[blackout]\nat = 5\nexcept = \"lamp\"\n", {"'except' must be an array"}},
         BadLight{"one_emergency",
                  "[blackout]\nat = 5\nemergency = 3\n",
                  {"'emergency' must be an array"}},
