@@ -273,6 +273,7 @@ struct Scene {
   std::vector<MaterialOptions> materials = {};
   std::vector<LightOptions> lights = {};
   std::optional<SkyOptions> sky = {};
+  std::optional<BlackoutOptions> blackout = {};
   std::vector<VolumeOptions> volumes = {};
   std::vector<GasOptions> gases = {};
   std::vector<FireOptions> fires = {};

@@ -50,6 +50,30 @@ struct LightScheduleOptions {
   SourceLoc loc = {};
 };
 
+/// [light.motion]: how a lamp turns or swings on simulation time. It has `spin` or `sway`.
+struct LightMotionOptions {
+  std::optional<double> spin = {};  ///< turns about `axis` [rev/min], counter-clockwise seen
+                                    ///< against it; less than 0 = clockwise
+  std::optional<double> sway = {};  ///< greatest angle of a hanging lamp's swing [deg]
+  std::optional<double> cord = {};  ///< sway: from the lamp up to where it hangs [m], which sets
+                                    ///< its period; 1
+  std::optional<Vec3> axis = {};    ///< that it turns about, in the frame of `body`; 0, 0, 1; of a
+                                    ///< sway 1, 0, 0
+  double phase = 0;                 ///< share of a turn or swing that is over at time 0, 0 … 1
+  SourceLoc loc = {};
+};
+
+/// [blackout]: all lamps go out: those of the place, of models and of the scene, and what glows.
+struct BlackoutOptions {
+  double at = 0;                     ///< when [s]
+  std::optional<double> until = {};  ///< when they come back [s], > at; empty = never
+  bool starter = false;  ///< they come back as fluorescent tubes do, each in its own time
+  std::vector<std::string> except = {};     ///< names of lamps, or materials that glow, that stay
+                                            ///< as they are; * stands for any text
+  std::vector<std::string> emergency = {};  ///< likewise: of those that shine only while it lasts
+  SourceLoc loc = {};
+};
+
 /// [[light]]: a lamp added to the scene. It shines along its own -Z. Its strength is exactly one of
 /// intensity, flux, luminance and illuminance; with `ies` it may be left to the file.
 struct LightOptions {
@@ -74,6 +98,7 @@ struct LightOptions {
   std::filesystem::path file = {};      ///< mesh: OBJ, STL, PLY, glTF in the light's frame
   std::filesystem::path ies = {};       ///< point, spot: photometric file (LM-63)
   bool casts_shadow = true;             ///< areas always do
+  std::optional<LightMotionOptions> motion = {};
   std::optional<LightScheduleOptions> schedule = {};
   SourceLoc loc = {};
 };
@@ -105,6 +130,8 @@ struct SkyOptions {
   std::optional<CalendarDate> date = {};     ///< 2026-06-21
   std::optional<ClockTime> time = {};        ///< of day, by the clock there: 14:30:00
   std::optional<double> utc_offset = {};     ///< of the clock, east positive [h]; 0
+  std::optional<double> speed = {};          ///< of the clock, in seconds of it per second of the
+                                             ///< simulation; 0 = it stands still
   std::optional<double> latitude = {};       ///< north positive [deg]
   std::optional<double> longitude = {};      ///< east positive [deg]
   std::optional<double> sun_elevation = {};  ///< instead of date and place [deg]

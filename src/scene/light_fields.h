@@ -50,6 +50,24 @@ void visit_fields(Visitor& v, LightScheduleOptions& o) {
 }
 
 template <class Visitor>
+void visit_fields(Visitor& v, LightMotionOptions& o) {
+  v("spin", o.spin, FieldRule{.unit = "rev/min", .min = -1e5, .max = 1e5});
+  v("sway", o.sway, FieldRule{.unit = "deg", .min = 0, .max = 60});
+  v("cord", o.cord, FieldRule{.unit = "m", .min = 0.01, .max = 100});
+  v("axis", o.axis, FieldRule{.min = -1e6, .max = 1e6});
+  v("phase", o.phase, kShare);
+}
+
+template <class Visitor>
+void visit_fields(Visitor& v, BlackoutOptions& o) {
+  v("at", o.at, FieldRule{.unit = "s", .min = 0, .max = kLongestTime, .required = true});
+  v("until", o.until, FieldRule{.unit = "s", .min = 0, .max = kLongestTime});
+  v("starter", o.starter, FieldRule{});
+  v("except", o.except, FieldRule{});
+  v("emergency", o.emergency, FieldRule{});
+}
+
+template <class Visitor>
 void visit_fields(Visitor& v, LightOptions& o) {
   const FieldRule place{.unit = "m", .min = -kLargestLength, .max = kLargestLength};
   const FieldRule length{.unit = "m", .min = kSmallestLength, .max = kLargestLength};
@@ -74,6 +92,7 @@ void visit_fields(Visitor& v, LightOptions& o) {
   v("file", o.file, FieldRule{});
   v("ies", o.ies, FieldRule{});
   v("casts_shadow", o.casts_shadow, FieldRule{});
+  v("motion", o.motion, FieldRule{});
   v("schedule", o.schedule, FieldRule{});
 }
 
@@ -89,6 +108,7 @@ void visit_fields(Visitor& v, SkyOptions& o) {
   v("date", o.date, FieldRule{});
   v("time", o.time, FieldRule{});
   v("utc_offset", o.utc_offset, FieldRule{.unit = "h", .min = -14, .max = 14});
+  v("speed", o.speed, FieldRule{.unit = "s/s", .min = 0, .max = 1e6});
   v("latitude", o.latitude, FieldRule{.unit = "deg", .min = -90, .max = 90});
   v("longitude", o.longitude, FieldRule{.unit = "deg", .min = -180, .max = 180});
   v("sun_elevation", o.sun_elevation, FieldRule{.unit = "deg", .min = -90, .max = 90});

@@ -236,6 +236,7 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("material", scene.materials, FieldRule{});
   v("light", scene.lights, FieldRule{});
   v("sky", scene.sky, FieldRule{});
+  v("blackout", scene.blackout, FieldRule{});
   v("volume", scene.volumes, FieldRule{});
   v("gas", scene.gases, FieldRule{});
   v("fire", scene.fires, FieldRule{});

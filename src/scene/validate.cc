@@ -206,6 +206,7 @@ Status validate_scene(const Scene& scene) {
   GLOAM_TRY_STATUS(refuse_duplicates(scene.lights, "light"));
   for (const LightOptions& light : scene.lights) GLOAM_TRY_STATUS(validate_light(light));
   if (scene.sky) GLOAM_TRY_STATUS(validate_sky(*scene.sky));
+  if (scene.blackout) GLOAM_TRY_STATUS(validate_blackout(*scene.blackout));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.volumes, "volume"));
   for (const VolumeOptions& volume : scene.volumes) GLOAM_TRY_STATUS(validate_volume(volume));
   GLOAM_TRY_STATUS(refuse_duplicates(scene.gases, "gas"));

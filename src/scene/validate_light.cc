@@ -64,8 +64,8 @@ Status check_kind(const Kind& kind, const Keys& all, const Keys& given, const st
   return {};
 }
 
-const Keys kEveryLight = {"name",        "type",  "body",        "look_at",
-                          "orientation", "color", "temperature", "schedule"};
+const Keys kEveryLight = {"name",  "type",        "body",   "look_at", "orientation",
+                          "color", "temperature", "motion", "schedule"};
 const Keys kStrengths = {"intensity", "flux", "luminance", "illuminance"};
 
 const std::vector<Kind>& light_kinds() {
@@ -126,6 +126,21 @@ Status check_pose(const LightOptions& light, const std::string& what) {
   return {};
 }
 
+Status check_motion(const LightMotionOptions& motion, const std::string& what,
+                    const SourceLoc& loc) {
+  const auto error = [&](std::string_view problem, std::string hint) {
+    return Error{ErrorKind::kInput, fmt::format("the motion of {} {}", what, problem), loc,
+                 std::move(hint)};
+  };
+  if (motion.spin.has_value() == motion.sway.has_value()) {
+    return error(motion.spin ? "has both 'spin' and 'sway'" : "has neither 'spin' nor 'sway'",
+                 "give one of them");
+  }
+  if (motion.cord && motion.spin) return error("has 'spin' and 'cord'", "'cord' goes with 'sway'");
+  if (motion.axis == Vec3{}) return error("has an axis without a direction", "up is [0, 0, 1]");
+  return {};
+}
+
 bool is_black(const std::optional<Vec3>& color) { return color && *color == Vec3{}; }
 
 bool is_day(const CalendarDate& d) {
@@ -154,6 +169,10 @@ Status validate_light(const LightOptions& light) {
   }
   GLOAM_TRY_STATUS(check_strength(light, given, what));
   GLOAM_TRY_STATUS(check_pose(light, what));
+  if (light.motion) {
+    const SourceLoc& own = light.motion->loc;
+    GLOAM_TRY_STATUS(check_motion(*light.motion, what, own.file.empty() ? light.loc : own));
+  }
   if (light.color && light.temperature)
     return error(fmt::format("{} has both 'color' and 'temperature'", what), "give one of them");
   if (is_black(light.color)) {
@@ -198,8 +217,9 @@ Status validate_sky(const SkyOptions& sky) {
     return check_kind({"sun", {"sun_azimuth"}, {"sun_elevation"}}, air, given,
                       "a [sky] by the sun's position", sky.loc);
   }
-  GLOAM_TRY_STATUS(check_kind({"place", {"utc_offset"}, {"date", "time", "latitude", "longitude"}},
-                              air, given, "a [sky] by date and place", sky.loc));
+  GLOAM_TRY_STATUS(
+      check_kind({"place", {"utc_offset", "speed"}, {"date", "time", "latitude", "longitude"}}, air,
+                 given, "a [sky] by date and place", sky.loc));
   if (!is_day(*sky.date)) {
     return error(fmt::format("there is no {:04}-{:02}-{:02} from 1900 to 2100", sky.date->year,
                              sky.date->month, sky.date->day));
@@ -208,6 +228,20 @@ Status validate_sky(const SkyOptions& sky) {
     return error(fmt::format("'time' of [sky] is {:02}:{:02}:{:02}", sky.time->hour,
                              sky.time->minute, sky.time->second),
                  "from 00:00 to 23:59");
+  }
+  return {};
+}
+
+Status validate_blackout(const BlackoutOptions& blackout) {
+  if (!blackout.until && blackout.starter) {
+    return Error{ErrorKind::kInput, "[blackout] has 'starter', and no lamp comes back",
+                 blackout.loc, "give 'until', or leave 'starter' out"};
+  }
+  if (blackout.until && *blackout.until <= blackout.at) {
+    return Error{
+        ErrorKind::kInput,
+        fmt::format("[blackout] ends at {} s, and begins at {} s", *blackout.until, blackout.at),
+        blackout.loc, "'until' is a time, not a duration"};
   }
   return {};
 }

@@ -57,7 +57,7 @@ void add_instance(const RenderDescription& description, const PoseFrame& frame,
       box->add(transform_point(X_OW, {v[3 * i], v[3 * i + 1], v[3 * i + 2]}));
     return;
   }
-  const Affine3f X_OG = X_OW * pose_in_world(frame, in.body, in.X_BG);
+  const Affine3f X_OG = X_OW * pose_in_world(description, frame, in);
   if (in.shape == ShapeType::kMesh) {
     for (const Vec3f& p : description.meshes[static_cast<size_t>(in.mesh)].positions)
       box->add(transform_point(X_OG, p));

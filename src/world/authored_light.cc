@@ -52,11 +52,36 @@ LightSchedule schedule_of(const LightScheduleOptions& in) {
   return out;
 }
 
+LampMotion motion_of(const LightOptions& light) {
+  const LightMotionOptions& in = *light.motion;
+  const Vec3 axis = in.axis.value_or(in.spin ? Vec3{0, 0, 1} : Vec3{1, 0, 0});
+  const double cord = in.sway ? in.cord.value_or(1) : 0;  // [m]
+  LampMotion out;
+  const double length = std::hypot(axis.x, axis.y, axis.z);
+  out.axis = {static_cast<float>(axis.x / length), static_cast<float>(axis.y / length),
+              static_cast<float>(axis.z / length)};
+  out.pivot = pose_of(light).p + Vec3f{0, 0, static_cast<float>(cord)};
+  out.phase = in.phase;
+  out.turns = in.spin.value_or(0) / 60;
+  if (in.sway) {
+    out.swing = *in.sway * kDegree;
+    out.swing_rate = pendulum_rate(cord);
+  }
+  return out;
+}
+
 /// What it sends to a point `distance` away, not more than it would from right in front [lx].
 float area_illuminance(double luminance, double area, bool is_flat, float distance) {
   const double shown = is_flat ? area : area / 4;  // of convex shapes from all sides (Cauchy)
   return static_cast<float>(luminance * std::min(M_PI, shown / sqr(distance)));
 }
+
+/// Where a lamp is, and how it changes.
+struct LampPlace {
+  int body = 0, schedule = -1, motion = -1;  ///< the latter two: rows, -1 = none
+  bool is_static = true;
+  float distance = 1;  ///< to what it is meant for [m]
+};
 
 class LightAuthor {
  public:
@@ -73,8 +98,8 @@ class LightAuthor {
   Status add(const LightOptions& options);
 
  private:
-  Status add_lamp(const LightOptions& options, int body, int schedule, float distance);
-  Status add_area(const LightOptions& options, int body, int schedule, float distance);
+  Status add_lamp(const LightOptions& options, const LampPlace& place);
+  Status add_area(const LightOptions& options, const LampPlace& place);
   Result<int> profile_row(const LightOptions& options);
   Result<int> mesh_row(const LightOptions& options);
 
@@ -134,14 +159,15 @@ Result<int> LightAuthor::mesh_row(const LightOptions& options) {
   return row;
 }
 
-Status LightAuthor::add_lamp(const LightOptions& options, int body, int schedule, float distance) {
+Status LightAuthor::add_lamp(const LightOptions& options, const LampPlace& place) {
   LightDescription light;
   light.name = options.name;
-  light.body = body;
+  light.body = place.body;
   light.X_BL = pose_of(options);
-  light.is_static = is_static_[static_cast<size_t>(body)];
+  light.is_static = place.is_static;
   light.casts_shadow = options.casts_shadow;
-  light.schedule = schedule;
+  light.schedule = place.schedule;
+  light.motion = place.motion;
   const Vec3f color = light_color(options);
   if (options.type == "directional") {
     light.type = LightType::kDirectional;
@@ -161,13 +187,13 @@ Status LightAuthor::add_lamp(const LightOptions& options, int body, int schedule
     const IesProfile* profile =
         light.profile >= 0 ? &out_->ies_profiles[static_cast<size_t>(light.profile)] : nullptr;
     light.intensity = color * static_cast<float>(candela(options, light, profile));
-    levels_->illuminance.push_back(luminance(light.intensity) / sqr(distance));
+    levels_->illuminance.push_back(luminance(light.intensity) / sqr(place.distance));
   }
   out_->lights.push_back(std::move(light));
   return {};
 }
 
-Status LightAuthor::add_area(const LightOptions& options, int body, int schedule, float distance) {
+Status LightAuthor::add_area(const LightOptions& options, const LampPlace& place) {
   const bool is_sphere = options.type == "sphere";
   InstanceDescription instance;
   double area = 0;
@@ -191,15 +217,16 @@ Status LightAuthor::add_area(const LightOptions& options, int body, int schedule
   const double shown = area_luminance(options, area);
   material.emission = light_color(options) * static_cast<float>(shown);
   material.emits_outwards = !is_sphere;
-  material.schedule = schedule;
-  levels_->illuminance.push_back(
-      area_illuminance(shown, area, options.type == "rect" || options.type == "disk", distance));
+  material.schedule = place.schedule;
+  levels_->illuminance.push_back(area_illuminance(
+      shown, area, options.type == "rect" || options.type == "disk", place.distance));
 
-  instance.body = body;
+  instance.body = place.body;
   instance.X_BG = pose_of(options);
-  instance.is_static = is_static_[static_cast<size_t>(body)];
+  instance.motion = place.motion;
+  instance.is_static = place.is_static;
   instance.material = static_cast<int>(out_->materials.size());
-  instance.label = labels_->label(body, options.name, mjOBJ_LIGHT, count_);
+  instance.label = labels_->label(place.body, options.name, mjOBJ_LIGHT, count_);
   instance.label.geom = options.name;
   instance.label.material = options.name;
   instance.label.part = static_cast<uint32_t>(out_->instances.size()) + 1;
@@ -209,25 +236,30 @@ Status LightAuthor::add_area(const LightOptions& options, int body, int schedule
 }
 
 Status LightAuthor::add(const LightOptions& options) {
-  GLOAM_TRY(const int body, body_of(*world_.model, options));
-  int schedule = -1;
+  LampPlace place;
+  GLOAM_TRY(place.body, body_of(*world_.model, options));
+  const auto body = static_cast<size_t>(place.body);
   if (options.schedule) {
     LightSchedule parts = schedule_of(*options.schedule);
     SourceLoc loc = options.schedule->loc;
     if (loc.file.empty()) loc = options.loc;
     GLOAM_TRY_STATUS(check_schedule(parts, loc));
-    schedule = static_cast<int>(out_->schedules.size());
+    place.schedule = static_cast<int>(out_->schedules.size());
     out_->schedules.push_back(std::move(parts));
   }
-  const Vec3f p_W = transform_point(poses_[static_cast<size_t>(body)], pose_of(options).p);
+  if (options.motion) {
+    place.motion = static_cast<int>(out_->motions.size());
+    out_->motions.push_back(motion_of(options));
+  }
+  place.is_static = is_static_[body] && !options.motion;
+  const Vec3f p_W = transform_point(poses_[body], pose_of(options).p);
   // A lamp that is carried about shines ahead, not at the middle of who carries it.
   constexpr float kCarried = 2;  // [m]
-  float distance = light_distance(p_W, *out_);
-  if (!is_static_[static_cast<size_t>(body)]) distance = max(distance, kCarried);
+  place.distance = light_distance(p_W, *out_);
+  if (!is_static_[body]) place.distance = max(place.distance, kCarried);
   const bool is_lamp =
       options.type == "point" || options.type == "spot" || options.type == "directional";
-  GLOAM_TRY_STATUS(is_lamp ? add_lamp(options, body, schedule, distance)
-                           : add_area(options, body, schedule, distance));
+  GLOAM_TRY_STATUS(is_lamp ? add_lamp(options, place) : add_area(options, place));
   ++count_;
   return {};
 }

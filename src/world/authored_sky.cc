@@ -8,9 +8,7 @@
 #include "base/angle.h"
 #include "base/memory.h"
 #include "geometry/image_file.h"
-#include "world/atmosphere.h"
 #include "world/environment.h"
-#include "world/sun_position.h"
 
 namespace gloam {
 namespace {
@@ -78,6 +76,11 @@ void make_even(const SkyOptions& options, EnvironmentDescription* out) {
   out->scale = static_cast<float>(*options.luminance);
 }
 
+CivilTime clock_of(const SkyOptions& o) {
+  return {o.date->year,   o.date->month,           o.date->day, o.time->hour, o.time->minute,
+          o.time->second, o.utc_offset.value_or(0)};
+}
+
 /// Unit, X east, Y north, Z up.
 Result<Vec3f> direction_of_sun(const SkyOptions& o) {
   if (o.sun_elevation) {
@@ -88,10 +91,7 @@ Result<Vec3f> direction_of_sun(const SkyOptions& o) {
                  static_cast<float>(std::cos(elevation) * std::cos(azimuth)),
                  static_cast<float>(std::sin(elevation))};
   }
-  const CivilTime time{
-      o.date->year,   o.date->month,           o.date->day, o.time->hour, o.time->minute,
-      o.time->second, o.utc_offset.value_or(0)};
-  const Result<SunPosition> sun = sun_position(time, {*o.latitude, *o.longitude});
+  const Result<SunPosition> sun = sun_position(clock_of(o), {*o.latitude, *o.longitude});
   if (!sun.ok()) return in_sky(o, sun.error());
   return sun->to_sun;
 }
@@ -99,9 +99,8 @@ Result<Vec3f> direction_of_sun(const SkyOptions& o) {
 Status make_clear(const SkyOptions& options, LightLevels* levels, RenderDescription* out) {
   GLOAM_TRY(const Vec3f sun, direction_of_sun(options));
   const double north = options.north.value_or(0) * kDegree;
-  const auto c = static_cast<float>(std::cos(north)), s = static_cast<float>(std::sin(north));
   AtmosphereOptions air;
-  air.to_sun = normalize(Vec3f{c * sun.x - s * sun.y, s * sun.x + c * sun.y, sun.z});
+  air.to_sun = turned_north(sun, north);
   air.turbidity = options.turbidity.value_or(air.turbidity);
   air.ground_albedo = options.ground_albedo.value_or(air.ground_albedo);
   air.altitude = options.altitude.value_or(air.altitude);
@@ -111,14 +110,20 @@ Status make_clear(const SkyOptions& options, LightLevels* levels, RenderDescript
   environment.width = sky.width;
   environment.height = sky.height;
   environment.texels = std::move(sky.texels);
-  if (!(luminance(sky.sun_illuminance) > 0)) return {};  // it has set
+  const bool moves = options.speed.value_or(0) > 0;
+  if (moves) {
+    out->sky.day = DayCycle{
+        clock_of(options), {*options.latitude, *options.longitude}, *options.speed, north, air};
+  }
+  if (!moves && !(luminance(sky.sun_illuminance) > 0)) return {};  // it has set
 
   LightDescription light;
   light.name = "sun";
   light.type = LightType::kDirectional;
   light.intensity = sky.sun_illuminance;
   light.radius = static_cast<float>(std::sin(sky.sun_angular_radius));
-  light.is_static = true;
+  light.is_static = !moves;
+  light.of_sky = true;
   light.body = 0;
   const Frame frame = Frame::from_z(air.to_sun);
   light.X_BL = {frame.x, frame.y, frame.z, {}};

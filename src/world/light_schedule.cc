@@ -85,6 +85,14 @@ double level(const Flame& p, double time, const Draws& draw) {
   return 1 + p.depth * noise;
 }
 
+double level(const PowerCut& p, double time, const Draws& draw) {
+  const auto is_past = [time](double edge) { return time >= edge - kEdge * std::abs(edge); };
+  const bool over = std::isfinite(p.until) && is_past(p.until), dark = is_past(p.at) && !over;
+  if (p.emergency) return dark ? 1 : 0;
+  if (dark) return 0;
+  return over && p.starter ? level(FluorescentStart{.at = p.until}, time, draw) : 1;
+}
+
 /// Ranges of the parts' values: the first that is wrong.
 class Checker {
  public:
@@ -144,7 +152,10 @@ Status check_schedule(const LightSchedule& schedule, const SourceLoc& loc) {
             [&](const FluorescentStart& p) {
               c.finite("start", p.at).positive("warm-up", p.warm_up);
             },
-            [&](const Flame& p) { c.positive("bandwidth", p.bandwidth).share("depth", p.depth); }},
+            [&](const Flame& p) { c.positive("bandwidth", p.bandwidth).share("depth", p.depth); },
+            [&](const PowerCut& p) {
+              c.finite("begin", p.at).need(p.until > p.at, "end", p.until, "later than its begin");
+            }},
         schedule.parts[i]);
     GLOAM_TRY_STATUS(c.status());
   }
@@ -158,6 +169,7 @@ double light_level(const LightSchedule& schedule, double time, uint64_t seed, ui
     product *=
         std::visit(Overloaded{[&](const FluorescentStart& p) { return level(p, time, draw); },
                               [&](const Flame& p) { return level(p, time, draw); },
+                              [&](const PowerCut& p) { return level(p, time, draw); },
                               [&](const auto& p) { return level(p, time); }},
                    part);
   }

@@ -51,9 +51,17 @@ struct Flame {
   double depth = 0.4;    ///< 0..1
 };
 
+/// Mains that fail from `at` to `until`. A lamp on them is dark in between; one for emergencies
+/// shines then alone.
+struct PowerCut {
+  double at = 0, until = 1;  ///< [s]; until may be infinite
+  bool starter = false;      ///< it comes back as a FluorescentStart
+  bool emergency = false;
+};
+
 /// The product of its parts; 1 without any.
 struct LightSchedule {
-  using Part = std::variant<OnOff, Keyframes, MainsRipple, FluorescentStart, Flame>;
+  using Part = std::variant<OnOff, Keyframes, MainsRipple, FluorescentStart, Flame, PowerCut>;
   std::vector<Part> parts;
 };
 

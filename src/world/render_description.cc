@@ -11,6 +11,7 @@
 #include "world/authored_material.h"
 #include "world/authored_sky.h"
 #include "world/authored_volume.h"
+#include "world/blackout.h"
 #include "world/deformable_layout.h"
 #include "world/model_names.h"
 #include "world/visual_camera.h"
@@ -327,6 +328,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
   GLOAM_TRY_STATUS(author_lights(world, poses, is_static, &labels, &levels, &out));
   author_waters(world.waters, deformable_layout(m).nvertex, &labels, &out);
   if (world.scene.sky) GLOAM_TRY_STATUS(author_sky(*world.scene.sky, &levels, &out));
+  if (world.scene.blackout) GLOAM_TRY_STATUS(author_blackout(*world.scene.blackout, &out));
   GLOAM_TRY_STATUS(author_volumes(world.scene.volumes, &out));
   author_gases(world.gases.gases, &out);
   if (world.scene.weather)

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,9 @@
 #include "gloam/camera.h"
 #include "gloam/result.h"
 #include "gloam/scene_sensor.h"
+#include "world/day_cycle.h"
 #include "world/ies_profile.h"
+#include "world/lamp_motion.h"
 #include "world/light_schedule.h"
 #include "world/medium_description.h"
 #include "world/procedural_description.h"
@@ -98,10 +101,11 @@ struct TextureDescription {
 /// One drawn thing. Its row index + 1 is its `part` in pictures.
 struct InstanceDescription {
   ShapeType shape = ShapeType::kBox;
-  int mesh = -1;  ///< kMesh: index into meshes; kDeformable: index into deformables
-  Vec3f size;     ///< analytic shapes [m]; meshes: half extents that scale texture coordinates
-  int body = 0;   ///< body it moves with, 0 = world
-  Affine3f X_BG;  ///< rigid pose of the shape in the body
+  int mesh = -1;    ///< kMesh: index into meshes; kDeformable: index into deformables
+  Vec3f size;       ///< analytic shapes [m]; meshes: half extents that scale texture coordinates
+  int body = 0;     ///< body it moves with, 0 = world
+  Affine3f X_BG;    ///< rigid pose of the shape in the body
+  int motion = -1;  ///< row of RenderDescription::motions, of X_BG
   int material = 0;
   bool is_static = false;  ///< never moves: its body is welded to the world
   bool casts_shadow = true;
@@ -153,6 +157,8 @@ struct LightDescription {
   int light = -1;
   int body = -1;
   Affine3f X_BL;
+  int motion = -1;      ///< row of motions, of X_BL
+  bool of_sky = false;  ///< the sun of the scene's sky; of SkyDescription::day it is as at time 0
 };
 
 /// Light from far away, laid out as SkyLight::texels (world/atmosphere.h).
@@ -170,7 +176,9 @@ struct SkyDescription {
   float scale = 0;         ///< [cd/m²] of a white texel
   Vec3f ambient{0, 0, 0};  ///< constant luminance per channel [cd/m²], added for indirect rays only
                            ///< (MuJoCo's ambient lights)
-  EnvironmentDescription environment;  ///< instead of the texture
+  int schedule = -1;       ///< row of RenderDescription::schedules, of `ambient`
+  EnvironmentDescription environment;  ///< instead of the texture; of `day` at time 0
+  std::optional<DayCycle> day;
 };
 
 struct CameraDescription {
@@ -194,6 +202,7 @@ struct RenderDescription {
   std::vector<LightDescription> lights;
   std::vector<IesProfile> ies_profiles;
   std::vector<LightSchedule> schedules;
+  std::vector<LampMotion> motions;
   uint64_t schedule_seed = 1;
   std::vector<MediumDescription> media;
   std::vector<VolumeDescription> volumes;

@@ -72,9 +72,9 @@ double refraction(double elevation) {
 
 }  // namespace
 
-Result<SunPosition> sun_position(const CivilTime& time, const GeoPosition& place) {
+Result<SunPosition> sun_position(const CivilTime& time, const GeoPosition& place, double later) {
   GLOAM_TRY_STATUS(check(time, place));
-  const double days = days_since_2000(time);
+  const double days = days_since_2000(time) + later / 86400;
   const double t = (days + kDeltaT / 86400) / 36525;  // Julian centuries of terrestrial time
 
   const double mean_longitude = 280.46646 + t * (36000.76983 + t * 0.0003032);

@@ -33,7 +33,7 @@ struct SunPosition {
   Vec3f to_sun;               ///< unit, towards the seen sun: X east, Y north, Z up
 };
 
-/// Errors: a field outside of its range; the message names it.
-Result<SunPosition> sun_position(const CivilTime& time, const GeoPosition& place);
+/// `later` [s] than `time`. Errors: a field outside of its range; the message names it.
+Result<SunPosition> sun_position(const CivilTime& time, const GeoPosition& place, double later = 0);
 
 }  // namespace gloam

@@ -113,6 +113,8 @@ void LightGuideStore::conclude(int row) {
 
 void LightGuideStore::build(SceneView scene, const CpuTracer& statics, const DescribedLook& look) {
   grid_ = {};
+  scene.environment = look.environment;
+  scene.sky_ambient = look.sky_ambient;
   const bool has_sky = scene.environment.illuminance > 0 || scene.sky_texture >= 0 ||
                        luminance(scene.sky_ambient) > 0;
   const bool has_sun =

@@ -108,10 +108,13 @@ void DeviceScene::fill(const SceneView& scene, const CameraView32& camera, const
   out.guide.gain = keep(scene.guide.gain);
   out.guide.sky_visible = keep(scene.guide.sky_visible);
   out.guide.arriving = keep(scene.guide.arriving);
-  out.environment.texels = keep(scene.environment.texels);
-  out.environment.levels = keep(scene.environment.levels);
-  out.environment.row_cdf = keep(scene.environment.row_cdf);
-  out.environment.column_cdf = keep(scene.environment.column_cdf);
+  const auto bring = [&](auto span) {
+    return scene.environment.changes ? parcel->put(span) : keep(span);
+  };
+  out.environment.texels = bring(scene.environment.texels);
+  out.environment.levels = bring(scene.environment.levels);
+  out.environment.row_cdf = bring(scene.environment.row_cdf);
+  out.environment.column_cdf = bring(scene.environment.column_cdf);
 
   BvhTracer& device = picture->tracer;
   device.bvh.instances = parcel->put(bvh.instances()).data;

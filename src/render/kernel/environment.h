@@ -30,6 +30,7 @@ struct EnvironmentView {
   Frame R_WE;                          ///< E's axes in W
   float scale = 1;                     ///< [cd/m²] of a texel of one
   float illuminance = 0;  ///< luminance over the whole sphere, scale included [cd sr/m² = lx]
+  bool changes = false;   ///< it may be another one in every picture
 };
 
 struct EnvironmentSample {

@@ -186,13 +186,14 @@ Vec3f row(const std::vector<double>& values, int i) {
 }
 
 /// Puts a lamp where the frame has it; the headlight stays where it is.
-void place(const LightDescription& in, const PoseFrame& frame, LightView* light) {
+void place(const RenderDescription& description, const LightDescription& in, const PoseFrame& frame,
+           LightView* light) {
   if (in.light >= 0) {
     light->p = row(frame.light_p, in.light);
     light->direction = normalize(row(frame.light_dir, in.light));
     light->x = Frame::from_z(-light->direction).x;
   } else if (in.body >= 0) {
-    const Affine3f X_WL = pose_in_world(frame, in.body, in.X_BL);
+    const Affine3f X_WL = pose_in_world(description, frame, in);
     light->p = X_WL.p;
     light->direction = -normalize(X_WL.z);
     light->x = normalize(X_WL.x);
@@ -220,7 +221,7 @@ void LightTable::set_keys(std::span<const LightKey> keys, LightView* light) {
 
 void LightTable::update(const RenderDescription& description,
                         std::span<const PoseFrame* const> keys,
-                        const std::vector<LightLevel>& levels,
+                        const std::vector<LightLevel>& levels, const MovingSun* sun,
                         const std::vector<MaterialView>& materials,
                         const std::vector<MeshView>& meshes, std::vector<InstanceView>* instances) {
   const PoseFrame& frame = *keys.front();
@@ -239,22 +240,28 @@ void LightTable::update(const RenderDescription& description,
     if (follows ? frame.light_active[i] == 0 : !in.active) continue;
     LightView light = describe_light(in);
     light.guide = row_of_guide;
-    place(in, frame, &light);
+    place(description, in, frame, &light);
     if (follows) {
       const float* diffuse = &frame.light_diffuse[3 * i];
       light.intensity = light_intensity({diffuse[0], diffuse[1], diffuse[2]},
                                         frame.light_intensity[i], in.legacy_scale);
     }
+    const bool is_moving_sun = in.of_sky && sun != nullptr;
+    if (is_moving_sun) {  // hardly while the shutter is open: it has no keys
+      light.direction = -sun->to_sun;
+      light.x = Frame::from_z(sun->to_sun).x;
+      light.intensity = sun->illuminance;
+    }
     light.intensity *= level.mean;
     light.levels = level.row;
     if (!(luminance(light.intensity) > 0)) continue;
     set_strength(&light);
-    if (keys.size() > 1 && !in.is_static && !is_headlight(in)) {
+    if (keys.size() > 1 && !in.is_static && !is_moving_sun && !is_headlight(in)) {
       std::vector<LightKey> way;
       LightView at = light;
       bool moving = false;
       for (const PoseFrame* key : keys) {
-        place(in, *key, &at);
+        place(description, in, *key, &at);
         way.push_back({at.p, at.direction, at.x});
         moving |= !(at.p == light.p && at.direction == light.direction && at.x == light.x);
       }
@@ -310,7 +317,7 @@ std::vector<LightView> LightTable::guided(const RenderDescription& description,
     if (lights.size() > kMaxWeighedLights) return lights;  // too many for a guide
     if (!is_guided(in)) continue;
     lights.push_back(describe_light(in));
-    place(in, frame, &lights.back());
+    place(description, in, frame, &lights.back());
     set_strength(&lights.back());
   }
   for (size_t i = 0; i < instances->size(); ++i) {

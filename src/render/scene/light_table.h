@@ -6,6 +6,7 @@
 
 #include "render/scene/level_table.h"
 #include "render/scene/light_tree.h"
+#include "render/scene/moving_sky.h"
 #include "sim/pose_frame.h"
 
 namespace gloam {
@@ -13,10 +14,12 @@ namespace gloam {
 class LightTable {
  public:
   /// Poses of the keys and live fields of the first; then the emitters among `instances`, whose
-  /// `light` is set. `levels`: of the description's lights, by their schedules.
+  /// `light` is set. `levels`: of the description's lights, by their schedules; `sun`: of a sky
+  /// that moves.
   void update(const RenderDescription& description, std::span<const PoseFrame* const> keys,
-              const std::vector<LightLevel>& levels, const std::vector<MaterialView>& materials,
-              const std::vector<MeshView>& meshes, std::vector<InstanceView>* instances);
+              const std::vector<LightLevel>& levels, const MovingSun* sun,
+              const std::vector<MaterialView>& materials, const std::vector<MeshView>& meshes,
+              std::vector<InstanceView>* instances);
   /// Headlights sit at the camera. `keys`: where it is at the keys; empty = it stands still.
   void place_headlights(const Affine3f& X_WC, std::span<const Affine3f> keys);
 

@@ -7,6 +7,7 @@
 #include "base/vec.h"
 #include "gloam/types.h"
 #include "sim/pose_frame.h"
+#include "world/render_description.h"
 
 namespace gloam {
 
@@ -27,6 +28,22 @@ inline Affine3f pose_in_world(const PoseFrame& frame, int body, const Affine3f& 
   };
   return {rotate(X_BG.x, nullptr), rotate(X_BG.y, nullptr), rotate(X_BG.z, nullptr),
           rotate(X_BG.p, p)};
+}
+
+/// X_WG of a drawn thing, X_WL of a lamp that is fixed to a body.
+inline Affine3f pose_in_world(const RenderDescription& description, const PoseFrame& frame,
+                              const InstanceDescription& in) {
+  const auto row = static_cast<size_t>(in.motion);
+  return pose_in_world(
+      frame, in.body,
+      in.motion < 0 ? in.X_BG : moved(description.motions[row], frame.time, in.X_BG));
+}
+inline Affine3f pose_in_world(const RenderDescription& description, const PoseFrame& frame,
+                              const LightDescription& in) {
+  const auto row = static_cast<size_t>(in.motion);
+  return pose_in_world(
+      frame, in.body,
+      in.motion < 0 ? in.X_BL : moved(description.motions[row], frame.time, in.X_BL));
 }
 
 inline bool is_same(const Affine3f& a, const Affine3f& b) {

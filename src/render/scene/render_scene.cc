@@ -57,15 +57,19 @@ Status check_references(const RenderDescription& d) {
   }
   for (const LightDescription& light : d.lights) {
     if (light.schedule >= static_cast<int>(d.schedules.size()) ||
+        light.motion >= static_cast<int>(d.motions.size()) ||
         light.profile >= static_cast<int>(d.ies_profiles.size())) {
-      return bad(fmt::format("light '{}' refers to schedule {} or profile {}, which does not exist",
-                             light.name, light.schedule, light.profile));
+      return bad(fmt::format(
+          "light '{}' refers to schedule {}, motion {} or profile {}, which does not exist",
+          light.name, light.schedule, light.motion, light.profile));
     }
   }
   for (const LightSchedule& schedule : d.schedules) {
     GLOAM_TRY_STATUS(check_schedule(schedule, {}));
   }
   if (!is_texture(d.sky.texture)) return bad("the sky refers to a texture that does not exist");
+  if (d.sky.schedule >= static_cast<int>(d.schedules.size()))
+    return bad("the sky refers to a schedule that does not exist");
   for (size_t i = 0; i < d.instances.size(); ++i) {
     const InstanceDescription& in = d.instances[i];
     const bool rigid = in.shape == ShapeType::kMesh, soft = in.shape == ShapeType::kDeformable;
@@ -73,6 +77,9 @@ Status check_references(const RenderDescription& d) {
     if ((rigid || soft) && (in.mesh < 0 || static_cast<size_t>(in.mesh) >= meshes)) {
       return bad(fmt::format("drawn geom {} refers to mesh {}, which does not exist", i, in.mesh));
     }
+    if (in.motion >= static_cast<int>(d.motions.size()))
+      return bad(
+          fmt::format("drawn geom {} refers to motion {}, which does not exist", i, in.motion));
     if (in.material < 0 || static_cast<size_t>(in.material) >= d.materials.size()) {
       return bad(
           fmt::format("drawn geom {} refers to material {}, which does not exist", i, in.material));
@@ -102,7 +109,7 @@ Status check_references(const RenderDescription& d) {
   return {};
 }
 
-/// MuJoCo's ambient light of all lamps that are on, and of the headlight.
+/// MuJoCo's ambient light of all lamps that are on, and of the headlight; schedules left out.
 Vec3f live_ambient(const RenderDescription& description, const PoseFrame& frame) {
   if (frame.live_serial == 0) return description.sky.ambient;
   Vec3f sum;
@@ -112,6 +119,14 @@ Vec3f live_ambient(const RenderDescription& description, const PoseFrame& frame)
     }
   }
   return sum * kWhiteLuminance;
+}
+
+float ambient_level(const RenderDescription& description, double time) {
+  constexpr uint32_t kAmbient = ~0u;  // no lamp's row
+  const int row = description.sky.schedule;
+  if (row < 0) return 1;
+  return static_cast<float>(light_level(description.schedules[static_cast<size_t>(row)], time,
+                                        description.schedule_seed, kAmbient));
 }
 
 }  // namespace
@@ -160,7 +175,7 @@ Result<std::unique_ptr<RenderScene>> RenderScene::make(const RenderDescription& 
     }
     scene->is_height_field_[static_cast<size_t>(field.mesh)] = true;
   }
-  scene->sky_ambient_ = description.sky.ambient;
+  if (description.sky.day) scene->moving_sky_.emplace(*description.sky.day);
   scene->drawn_.resize(description.instances.size());
   scene->follow_materials();
   scene->mesh_views_ = scene->meshes_.views(description);
@@ -187,7 +202,6 @@ void RenderScene::follow_live_fields(const PoseFrame& frame) {
   if (materials_.update(description_, textures_, frame, &instances_)) {
     follow_materials();
     mesh_views_ = meshes_.views(description_);
-    sky_ambient_ = live_ambient(description_, frame);
   }
   rebuilt_meshes_.clear();
   if (frame.height_field_serial == height_field_serial_) return;
@@ -227,6 +241,8 @@ void RenderScene::update(std::span<const PoseFrame* const> keys, const PoseFrame
   time_ = open.time;
   levels_.update(description_, open.time, keys.back()->time);
   if (!description_.schedules.empty()) materials_.dim(description_, levels_.materials());
+  sky_ambient_ = live_ambient(description_, open) * ambient_level(description_, time_);
+  if (moving_sky_) moving_sky_->update(time_);
   if (!description_.deformables.empty()) {
     meshes_.update(description_, keys, previous);
     mesh_views_ = meshes_.views(description_);
@@ -236,9 +252,9 @@ void RenderScene::update(std::span<const PoseFrame* const> keys, const PoseFrame
     InstanceView& out = instances_[i];
     if (out.shape == ShapeType::kDeformable) continue;
     const InstanceDescription& in = description_.instances[i];
-    out.X_WG = pose_in_world(open, in.body, in.X_BG);
+    out.X_WG = pose_in_world(description_, open, in);
     out.X_WG_previous =
-        &open == &previous || in.is_static ? out.X_WG : pose_in_world(previous, in.body, in.X_BG);
+        &open == &previous || in.is_static ? out.X_WG : pose_in_world(description_, previous, in);
     out.has_moved = !is_same(out.X_WG, out.X_WG_previous);
     out.moving = !in.is_static && add_keys(keys, in, out.X_WG);
   }
@@ -250,8 +266,8 @@ void RenderScene::update(std::span<const PoseFrame* const> keys, const PoseFrame
     out.keys = {pose_keys_.data() + row, static_cast<uint32_t>(count)};
     row += count;
   }
-  lights_.update(description_, keys, levels_.lights(), materials_.views(), mesh_views_,
-                 &instances_);
+  lights_.update(description_, keys, levels_.lights(), moving_sky_ ? &moving_sky_->sun() : nullptr,
+                 materials_.views(), mesh_views_, &instances_);
 }
 
 /// Adds the instance's poses at all keys, if they are not all the same.
@@ -260,11 +276,17 @@ bool RenderScene::add_keys(std::span<const PoseFrame* const> keys, const Instanc
   const size_t first = pose_keys_.size();
   bool moving = false;
   for (const PoseFrame* key : keys) {
-    pose_keys_.push_back(key == keys.front() ? X_WG : pose_in_world(*key, in.body, in.X_BG));
+    pose_keys_.push_back(key == keys.front() ? X_WG : pose_in_world(description_, *key, in));
     moving |= !is_same(pose_keys_.back(), X_WG);
   }
   if (!moving) pose_keys_.resize(first);
   return moving;
+}
+
+EnvironmentView RenderScene::described_environment() const {
+  if (!environment_) return {};
+  const EnvironmentDescription& map = description_.sky.environment;
+  return environment_->view(turned_about_z(map.turn), map.scale);
 }
 
 DescribedLook RenderScene::described_look(const PoseFrame& frame) const {
@@ -273,6 +295,8 @@ DescribedLook RenderScene::described_look(const PoseFrame& frame) const {
   look.instances = instances_;
   look.lights =
       LightTable::guided(description_, frame, look.materials, mesh_views_, &look.instances);
+  look.environment = described_environment();
+  look.sky_ambient = description_.sky.ambient;
   return look;
 }
 
@@ -310,10 +334,7 @@ SceneView RenderScene::view_from(const Affine3f& X_WC, std::span<const Affine3f>
   view.albedo = &albedo_;
   view.glass = glass_.get();
   const SkyDescription& sky = description_.sky;
-  if (environment_) {
-    view.environment =
-        environment_->view(turned_about_z(sky.environment.turn), sky.environment.scale);
-  }
+  view.environment = moving_sky_ ? moving_sky_->view() : described_environment();
   view.sky_texture = sky.scale > 0 ? sky.texture : -1;
   view.sky_scale = sky.scale;
   view.sky_ambient = sky_ambient_;

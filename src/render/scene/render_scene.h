@@ -11,6 +11,7 @@
 #include "render/scene/light_table.h"
 #include "render/scene/material_store.h"
 #include "render/scene/mesh_store.h"
+#include "render/scene/moving_sky.h"
 #include "render/scene/profile_store.h"
 #include "render/scene/texture_store.h"
 #include "render/scene/volume_store.h"
@@ -22,6 +23,8 @@ struct DescribedLook {
   std::vector<MaterialView> materials;
   std::vector<InstanceView> instances;  ///< static ones stand where they are
   std::vector<LightView> lights;        ///< those with a row of LightGuide::visible
+  EnvironmentView environment;
+  Vec3f sky_ambient;  ///< [cd/m²]
 };
 
 class RenderScene {
@@ -64,6 +67,7 @@ class RenderScene {
   void follow_live_fields(const PoseFrame& frame);
   void follow_materials();
   void follow_fields(const PoseFrame& frame);
+  EnvironmentView described_environment() const;
   bool add_keys(std::span<const PoseFrame* const> keys, const InstanceDescription& in,
                 const Affine3f& X_WG);
 
@@ -73,6 +77,7 @@ class RenderScene {
   LightTable lights_;
   ProfileStore profiles_;
   std::optional<EnvironmentTable> environment_;
+  std::optional<MovingSky> moving_sky_;
   VolumeStore volumes_;
   AlbedoTable albedo_;
   std::unique_ptr<GlassTable> glass_;  ///< where some material is glass

@@ -96,6 +96,47 @@ TEST_F(SceneLight, ReadsDatesOfTomlAndDatesAsText) {
   EXPECT_EQ(scene->sky->time, (ClockTime{6, 5, 0}));
 }
 
+TEST_F(SceneLight, ReadsMotionsClocksAndBlackouts) {
+  const Result<Scene> scene = load(R"(
+[[light]]
+name = "siren"
+type = "spot"
+flux = 800
+motion = { spin = -120, axis = [0, 1, 0], phase = 0.5 }
+[[light]]
+name = "bulb"
+type = "point"
+flux = 800
+motion = { sway = 12, cord = 0.6 }
+[sky]
+date = 2026-06-21
+time = 21:00:00
+latitude = 48.1
+longitude = 11.6
+speed = 60
+[blackout]
+at = 5
+until = 12.5
+starter = true
+except = ["siren", "go/*"]
+emergency = ["exit*"]
+)");
+  ASSERT_TRUE(scene.ok()) << scene.error().to_string();
+  const LightMotionOptions& spin = *scene->lights.at(0).motion;
+  EXPECT_EQ(spin.spin, -120);
+  EXPECT_EQ(spin.axis, (Vec3{0, 1, 0}));
+  EXPECT_EQ(spin.phase, 0.5);
+  EXPECT_EQ(scene->lights.at(1).motion->sway, 12);
+  EXPECT_EQ(scene->lights.at(1).motion->cord, 0.6);
+  EXPECT_EQ(scene->sky->speed, 60);
+  ASSERT_TRUE(scene->blackout.has_value());
+  EXPECT_EQ(scene->blackout->at, 5);
+  EXPECT_EQ(scene->blackout->until, 12.5);
+  EXPECT_TRUE(scene->blackout->starter);
+  EXPECT_EQ(scene->blackout->except, (std::vector<std::string>{"siren", "go/*"}));
+  EXPECT_EQ(scene->blackout->emergency, (std::vector<std::string>{"exit*"}));
+}
+
 TEST_F(SceneLight, ReadsVolumes) {
   const Result<Scene> scene = load(R"(
 [[volume]]
@@ -222,6 +263,49 @@ INSTANTIATE_TEST_SUITE_P(
                  LAMP("point") "flux = 1\nschedule = { keys = [{ time = 1 }] }\n",
                  {"'level' is missing"}},
 
+        BadLight{"still_motion",
+                 LAMP("spot") "flux = 1\nmotion = { phase = 0.5 }\n",
+                 {"scene.toml:6", "has neither 'spin' nor 'sway'"}},
+        BadLight{"two_motions",
+                 LAMP("spot") "flux = 1\nmotion = { spin = 1, sway = 1 }\n",
+                 {"the motion of light 'a' of type spot has both 'spin' and 'sway'"}},
+        BadLight{"cord_of_a_spin",
+                 LAMP("spot") "flux = 1\nmotion = { spin = 1, cord = 1 }\n",
+                 {"'cord' goes with 'sway'"}},
+        BadLight{"no_axis",
+                 LAMP("spot") "flux = 1\nmotion = { spin = 1, axis = [0, 0, 0] }\n",
+                 {"an axis without a direction"}},
+        BadLight{"wide_sway",
+                 LAMP("spot") "flux = 1\nmotion = { sway = 90 }\n",
+                 {"'sway' is 90", "from 0 to 60 deg"}},
+        BadLight{"short_cord",
+                 LAMP("spot") "flux = 1\nmotion = { sway = 9, cord = 0 }\n",
+                 {"'cord' is 0"}},
+        BadLight{"bad_phase",
+                 LAMP("spot") "flux = 1\nmotion = { spin = 9, phase = 2 }\n",
+                 {"'phase' is 2"}},
+        BadLight{"fast_spin", LAMP("spot") "flux = 1\nmotion = { spin = 1e9 }\n", {"'spin' is"}},
+
+        BadLight{"no_begin", "[blackout]\n", {"scene.toml:2", "'at' is missing"}},
+        BadLight{"early", "[blackout]\nat = -1\n", {"'at' is -1"}},
+        BadLight{"backwards",
+                 "[blackout]\nat = 5\nuntil = 5\n",
+                 {"scene.toml:2", "ends at 5 s", "not a duration"}},
+        BadLight{"starter_of_nothing",
+                 "[blackout]\nat = 5\nstarter = true\n",
+                 {"no lamp comes back", "give 'until'"}},
+        BadLight{
+            "one_name", "[blackout]\nat = 5\nexcept = \"lamp\"\n", {"'except' must be an array"}},
+        BadLight{"one_emergency",
+                 "[blackout]\nat = 5\nemergency = 3\n",
+                 {"'emergency' must be an array"}},
+
+        BadLight{"speed_of_a_sun",
+                 "[sky]\nsun_elevation = 30\nspeed = 60\n",
+                 {"a [sky] by the sun's position has no 'speed'"}},
+        BadLight{"backward_clock",
+                 PLACE "date = 2026-06-21\ntime = \"12:00\"\nspeed = -1\n",
+                 {"'speed' is -1"}},
         BadLight{"empty_sky", "[sky]\n", {"scene.toml:2", "[sky] is empty", "sun_elevation"}},
         BadLight{"no_time", PLACE "date = 2026-06-21\n", {"needs 'time'"}},
         BadLight{"no_place", "[sky]\ndate = 2026-06-21\ntime = 12:00:00\n", {"needs 'latitude'"}},

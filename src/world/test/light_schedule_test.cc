@@ -137,6 +137,20 @@ TEST(LightSchedule, FlamesWanderAboutOneBelowTheirBand) {
   EXPECT_GT(low, middle);
 }
 
+TEST(LightSchedule, MainsFailAtWholeStepsAndMayComeBackByStarters) {
+  const double forever = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < 100; ++step) {  // out from step 35 to 70
+    const double time = step * 0.002;
+    const bool dark = step >= 35 && step < 70;
+    EXPECT_EQ(level(PowerCut{0.07, 0.14}, time), dark ? 0 : 1) << step;
+    EXPECT_EQ(level(PowerCut{0.07, 0.14, false, true}, time), dark ? 1 : 0) << step;
+    EXPECT_EQ(level(PowerCut{0.07, forever}, time), step >= 35 ? 0 : 1) << step;
+    EXPECT_EQ(level(PowerCut{0.07, 0.14, true}, time), step >= 35 ? 0 : 1) << step;
+  }
+  for (const double t : {1.0, 3.0, 100.0})
+    EXPECT_EQ(level(PowerCut{0.07, 0.14, true}, t), level(FluorescentStart{.at = 0.14}, t));
+}
+
 TEST(LightSchedule, LevelsDependOnTimeSeedAndLampAlone) {
   const LightSchedule schedule{{Flame{}, MainsRipple{}, Keyframes{{{0, 0.5}}, true}}};
   const double forward = light_level(schedule, 1.25, 7, 2);

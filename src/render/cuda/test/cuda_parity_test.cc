@@ -303,6 +303,53 @@ TEST_F(CudaParity, EveryRunGivesTheSameBits) {
   }
 }
 
+// A beacon under the sky of a summer day, an hour a second: the card gets each instant's light,
+// whatever it had before.
+TEST_F(CudaParity, LightThatMovesIsThatOfTheInstant) {
+  Case c = cases().front();
+  RenderDescription& d = c.scene.description;
+  DayCycle day{{2026, 6, 21, 15, 0, 0, 2}, {48.14, 11.58}, 3600};
+  day.air.width = 64, day.air.height = 32;
+  AtmosphereOptions air = day.air;
+  air.to_sun = to_sun_at(day, 0);
+  SkyLight sky = make_sky(air).value();
+  d.sky.environment = {"start", sky.width, sky.height, std::move(sky.texels)};
+  d.sky.day = day;
+  LightDescription sun;
+  sun.type = LightType::kDirectional;
+  sun.radius = 0.005f;
+  sun.body = 0;
+  sun.of_sky = true;
+  LightDescription beacon = lamp({4e5f, 1e5f, 1e5f}, 0.05f);
+  beacon.type = LightType::kSpot;
+  beacon.cos_cutoff = 0.9f;
+  beacon.body = 0;
+  beacon.motion = 0;
+  beacon.X_BL = rigid({0, 1, 0}, -1, {0, 0, 2.5f});
+  d.motions = {{.turns = 0.1}};
+  d.lights = {sun, beacon};
+  const auto card = on_card(c);
+  for (const double hour : {0.0, 4.0, 9.0, 4.0}) {
+    PoseFrame frame = c.scene.frame;
+    frame.time = hour;
+    const auto cpu = on_cpu(c);
+    RenderSettings settings;
+    settings.spp = 128;
+    settings.variance = true;
+    Film by_card, by_cpu;
+    for (const auto& [renderer, film] :
+         {std::pair{card.get(), &by_card}, std::pair{cpu.get(), &by_cpu}}) {
+      renderer->update(frame, frame, frame);
+      renderer->render(c.view, settings, film);
+      ++settings.seed;
+    }
+    double z2 = 0;
+    std::string where;
+    EXPECT_LE(unlike_blocks(by_card, by_cpu, 0, &z2, &where), 0.05) << hour << ": " << where;
+    EXPECT_LE(z2, 1.5) << hour << ", worst " << where;
+  }
+}
+
 TEST_F(CudaParity, AnEndedRenderSaysSo) {
   const Case c = cases().front();
   RenderSettings settings;
