@@ -53,6 +53,9 @@ Result<std::unique_ptr<CameraModels>> CameraModels::create(const RenderDescripti
   if (outputs.events)
     models->events_ = std::make_shared<EventTrack>(
         EventCamera(*sensing.events, intrinsics.width, intrinsics.height, seed));
+  if (outputs.sensor_depth || outputs.thermal) {
+    GLOAM_TRY(models->air_, SensorAir::make(description));
+  }
   GLOAM_TRY_STATUS(models->set_temperatures({}));
   return models;
 }
@@ -98,15 +101,18 @@ void CameraModels::develop(const std::vector<Vec3f>& radiance, int64_t run, Came
   }
 }
 
-void CameraModels::measure(const Film& film, const CameraView& view, CameraFrame* frame) {
+void CameraModels::measure(const PoseFrame& now, const Film& film, const CameraView& view,
+                           CameraFrame* frame) {
+  if (!stereo_ && !thermal_) return;
+  air_.follow(description_, now);
   if (stereo_) {
     const std::vector<float> signal = stereo_->half_signal > 0
-                                          ? projector_signal(description_, film, view)
+                                          ? projector_signal(description_, air_.view(), film, view)
                                           : std::vector<float>();
     frame->sensor_depth = measure_stereo_depth(*stereo_, intrinsics_, film.depth, signal,
                                                seed_ ^ sensing_.stereo_depth->seed, frame->index);
   }
-  if (thermal_) frame->thermal = thermal_->see(film, view, frame->index);
+  if (thermal_) frame->thermal = thermal_->see(film, view, frame->index, air_.view());
 }
 
 }  // namespace gloam

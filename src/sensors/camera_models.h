@@ -12,6 +12,7 @@
 #include "render/renderer.h"
 #include "sensors/event_track.h"
 #include "sensors/imager/imager.h"
+#include "sensors/sensor_air.h"
 #include "sensors/stereo_depth.h"
 #include "sensors/thermal_camera.h"
 #include "world/render_description.h"
@@ -49,8 +50,8 @@ class CameraModels {
   /// Fills rgb, raw and events from light [cd/m²], (height x width). The frame's index and time are
   /// set; `run` counts the resets before it.
   void develop(const std::vector<Vec3f>& radiance, int64_t run, CameraFrame* frame);
-  /// Fills sensor_depth and thermal from the exact channels.
-  void measure(const Film& film, const CameraView& view, CameraFrame* frame);
+  /// Fills sensor_depth and thermal from the exact channels, and the air at `now`.
+  void measure(const PoseFrame& now, const Film& film, const CameraView& view, CameraFrame* frame);
 
  private:
   CameraModels(const RenderDescription& description, int camera, const Intrinsics& intrinsics,
@@ -72,6 +73,7 @@ class CameraModels {
   std::shared_ptr<EventTrack> events_;
   bool leads_events_ = true;
   std::optional<ThermalCamera> thermal_;
+  SensorAir air_;  // of these two
 };
 
 }  // namespace gloam

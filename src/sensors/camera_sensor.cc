@@ -324,7 +324,7 @@ void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const Came
   if (channels_.normal) frame->normal = flatten(film_.center_normal);
   if (channels_.albedo) frame->albedo = flatten(film_.center_albedo);
   if (channels_.motion) frame->motion = flatten(film_.motion);
-  models_->measure(film_, view, frame);
+  models_->measure(now, film_, view, frame);
   if (channels_.segmentation) {
     frame->part = film_.part;
     frame->part_count = static_cast<uint32_t>(description_.instances.size());

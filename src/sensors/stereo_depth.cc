@@ -7,6 +7,7 @@
 
 #include "base/parallel.h"
 #include "geometry/lens.h"
+#include "render/kernel/medium_march.h"
 #include "scene/pattern_names.h"
 #include "sensors/draw.h"
 
@@ -35,6 +36,8 @@ constexpr std::array<StereoDepthModel, kStereoPresets.size()> kModelsOfPresets =
 }};
 
 constexpr double kJump = 1;            // [px] of disparity between neighbours: two surfaces
+constexpr double kBeamsMeet = 0.1;     // [m] before it, with eyes 5 cm apart
+constexpr int kMarchSteps = 64;        // along a ray through all volumes
 constexpr float kSmoothMetal = 0.35f;  // roughness from which on metal scatters enough
 
 /// Share of the light that a material sends back in all directions.
@@ -42,6 +45,26 @@ float scattered_share(const MaterialDescription& m) {
   const float rough = std::clamp(m.roughness / kSmoothMetal, 0.0f, 1.0f);
   const float through = m.thin_walled || m.transmission_weight > 0 ? m.transmission_weight : 0;
   return m.opacity * (1 - through) * (1 - m.metallic * (1 - rough * rough));
+}
+
+/// What media on the way leave of a signal.
+float signal_through(const MediaView& media, Vec3f origin, Vec3f direction, float distance,
+                     float signal) {
+  const Bands bands = Bands::only(MediumBand::k905nm);
+  double passed = 1, back = 0;  // on both ways
+  each_step(media, origin, direction, double{distance}, kMarchSteps,
+            [&](Vec3f p, double from, double to) {
+              const MediumPoint at = medium_at(media, p, bands);
+              if (!(at.extinction.x > 0)) return;
+              const double lost = 1 - std::exp(-2 * double{at.extinction.x} * (to - from));
+              const float g = at.g_scattering.x / std::max(at.scattering.x, 1e-9f);
+              const double beta = double{at.scattering.x * henyey_greenstein(g, -1.0f)};
+              const double near = std::max(from, kBeamsMeet), far = std::max(to, kBeamsMeet);
+              back += double{kPi} * beta * passed * (1 - 0.5 * lost) * (1 / near - 1 / far);
+              passed *= 1 - lost;
+            });
+  const double left = double{signal} * passed;
+  return left > 0 ? static_cast<float>(left * left / (left + back)) : 0.0f;
 }
 
 /// Pixels within `reach` [px] of a jump in disparity, in the direction of rows and columns.
@@ -109,25 +132,30 @@ StereoDepthModel stereo_depth_model(const StereoDepthOptions& o) {
   return out;
 }
 
-std::vector<float> projector_signal(const RenderDescription& description, const Film& film,
-                                    const CameraView& view) {
+std::vector<float> projector_signal(const RenderDescription& description, const MediaView& media,
+                                    const Film& film, const CameraView& view) {
   std::vector<float> signal(film.depth.size(), 0);
   const PixelRays rays(view.intrinsics);
-  for (int y = 0; y < film.height; ++y) {
-    for (int x = 0; x < film.width; ++x) {
-      const size_t i =
-          static_cast<size_t>(y) * static_cast<size_t>(film.width) + static_cast<size_t>(x);
-      if (film.part[i] == 0) continue;
-      const std::optional<PixelRay> ray_C = rays.at(x + 0.5, y + 0.5);
-      if (!ray_C) continue;
-      const Vec3f ray = transform_vector(view.X_WC_open, to_vec3f(ray_C->d_C));
-      const float cosine = std::abs(dot(ray, film.center_normal[i]));
-      const auto material = static_cast<size_t>(description.instances[film.part[i] - 1].material);
-      signal[i] = luminance(film.center_albedo[i]) * cosine *
-                  scattered_share(description.materials[material]) /
-                  (film.depth[i] * film.depth[i]);
+  parallel_for_range("projector", film.height, 4, [&](int64_t begin, int64_t end) {
+    for (int y = static_cast<int>(begin); y < end; ++y) {
+      for (int x = 0; x < film.width; ++x) {
+        const size_t i =
+            static_cast<size_t>(y) * static_cast<size_t>(film.width) + static_cast<size_t>(x);
+        if (film.part[i] == 0) continue;
+        const std::optional<PixelRay> ray_C = rays.at(x + 0.5, y + 0.5);
+        if (!ray_C) continue;
+        const Vec3f ray = transform_vector(view.X_WC_open, to_vec3f(ray_C->d_C));
+        const float cosine = std::abs(dot(ray, film.center_normal[i]));
+        const auto material = static_cast<size_t>(description.instances[film.part[i] - 1].material);
+        signal[i] = luminance(film.center_albedo[i]) * cosine *
+                    scattered_share(description.materials[material]) /
+                    (film.depth[i] * film.depth[i]);
+        if (media.volumes.empty()) continue;
+        const Vec3f origin = transform_point(view.X_WC_open, to_vec3f(ray_C->p_C));
+        signal[i] = signal_through(media, origin, ray, film.distance[i], signal[i]);
+      }
     }
-  }
+  });
   return signal;
 }
 

@@ -12,6 +12,12 @@
 // send little of the projector's light back. The signal is 1 for a white wall that faces the camera
 // at 1 m: diffuse albedo, times the cosine, over Z²; what glass lets through and smooth metal
 // mirrors away is lost. A share s² / (s² + half_signal²) of pixels of signal s has a depth.
+//
+// Media take their share of the projector's light on both ways, T², and send some back, which veils
+// the pattern: with the signal b = pi Int beta T² / r² dr of what they scatter back (as a LiDAR's,
+// render/kernel/lidar_media.h), from where the second eye's view meets the projector's beam on, the
+// pattern's contrast is s T² / (s T² + b), and the signal that is left s T² times that. The band is
+// the one nearest to projectors' 850 nm, of 905 nm.
 
 #include <cstdint>
 #include <vector>
@@ -20,6 +26,7 @@
 #include "gloam/scene_sensor.h"
 #include "render/film/film.h"
 #include "render/renderer.h"
+#include "sensors/sensor_air.h"
 #include "world/render_description.h"
 
 namespace gloam {
@@ -43,8 +50,8 @@ struct StereoDepthModel {
 StereoDepthModel stereo_depth_model(const StereoDepthOptions& options);
 
 /// Signal per pixel, (height x width), of exact channels: see above.
-std::vector<float> projector_signal(const RenderDescription& description, const Film& film,
-                                    const CameraView& view);
+std::vector<float> projector_signal(const RenderDescription& description, const MediaView& media,
+                                    const Film& film, const CameraView& view);
 
 /// Depths [m] from true ones along the optical axis (+inf = nothing), (height x width); 0 =
 /// nothing. A function of (seed, frame, depth, signal). `signal` may be empty where half_signal is

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "base/parallel.h"
 #include "base/text.h"
@@ -29,24 +28,30 @@ double sent_by(const TemperatureOptions& o) {
          (1 - o.emissivity) * thermal_radiance(o.ambient);
 }
 
-// Where the ray is inside the volume's box, [near, far] along it; false = nowhere.
-bool crosses(const VolumeView& v, Vec3f origin_G, Vec3f direction_G, double* near, double* far) {
-  double t0 = 0, t1 = std::numeric_limits<double>::infinity();
-  const float ends[3] = {static_cast<float>(v.nx), static_cast<float>(v.ny),
-                         static_cast<float>(v.nz)};
-  for (int axis = 0; axis < 3; ++axis) {
-    const double o = double{origin_G[axis]}, d = double{direction_G[axis]};
-    if (std::abs(d) < 1e-12) {
-      if (o < 0 || o > double{ends[axis]}) return false;
-      continue;
+/// What of `radiance` [W/(m² sr)] gets through the media, and what they add.
+double through_media(const MediaView& media, Vec3f origin, Vec3f direction, double distance,
+                     double radiance) {
+  static const double room = thermal_radiance(kRoom);
+  double passed = 1, sent = 0;
+  each_step(media, origin, direction, distance, kMarchSteps, [&](Vec3f p, double from, double to) {
+    double extinction = 0, source = 0;  // [1/m], [W/(m² sr m)]
+    for (uint32_t i = 0; i < media.volumes.size; ++i) {
+      const VolumeView& v = media.volumes[i];
+      const Vec3f p_G = transform_point(v.X_GW, p);
+      if (!media::is_inside(v, p_G)) continue;
+      const double k = double{v.mass_extinction[kBand]} * double{media::density_at(v, p_G)};
+      const double albedo = double{v.albedo[kBand]};
+      extinction += k;
+      // Scattering brings in the light of the surroundings.
+      source += k * (1 - albedo) * thermal_radiance(double{media::temperature_at(v, p_G)}) +
+                k * albedo * room;
     }
-    const double a = -o / d, b = (double{ends[axis]} - o) / d;
-    t0 = std::max(t0, std::min(a, b));
-    t1 = std::min(t1, std::max(a, b));
-  }
-  *near = t0;
-  *far = t1;
-  return t0 < t1;
+    if (extinction <= 0) return;
+    const double kept = std::exp(-extinction * (to - from));
+    sent += passed * source / extinction * (1 - kept);
+    passed *= kept;
+  });
+  return radiance * passed + sent;
 }
 
 }  // namespace
@@ -76,50 +81,11 @@ Result<ThermalCamera> ThermalCamera::make(const ThermalOptions& options,
                                o.material),
                    o.loc, "names are full names; * stands for any text"};
   }
-  GLOAM_TRY(camera.volumes_, VolumeStore::make(description.media, description.volumes));
-  camera.has_media_ = !description.volumes.empty();
   return camera;
 }
 
-double ThermalCamera::through_media(double radiance, Vec3f origin, Vec3f direction,
-                                    double distance) const {
-  const MediaView media = volumes_.view();
-  double from = std::numeric_limits<double>::infinity(), to = 0;
-  for (uint32_t i = 0; i < media.volumes.size; ++i) {
-    const VolumeView& v = media.volumes[i];
-    double near = 0, far = 0;
-    if (!crosses(v, transform_point(v.X_GW, origin), transform_vector(v.X_GW, direction), &near,
-                 &far))
-      continue;
-    from = std::min(from, near);
-    to = std::max(to, std::min(far, distance));
-  }
-  if (!(from < to)) return radiance;
-  const double step = (to - from) / kMarchSteps;
-  // From the back to the front; scattering brings in the light of the surroundings.
-  static const double room = thermal_radiance(kRoom);
-  for (int j = kMarchSteps - 1; j >= 0; --j) {
-    const Vec3f p = origin + direction * static_cast<float>(from + (j + 0.5) * step);
-    double extinction = 0, source = 0;  // [1/m], [W/(m² sr m)]
-    for (uint32_t i = 0; i < media.volumes.size; ++i) {
-      const VolumeView& v = media.volumes[i];
-      const Vec3f p_G = transform_point(v.X_GW, p);
-      if (!media::is_inside(v, p_G)) continue;
-      const double k = double{v.mass_extinction[kBand]} * double{media::density_at(v, p_G)};
-      const double albedo = double{v.albedo[kBand]};
-      extinction += k;
-      source += k * (1 - albedo) * thermal_radiance(double{media::temperature_at(v, p_G)}) +
-                k * albedo * room;
-    }
-    if (extinction <= 0) continue;
-    const double kept = std::exp(-extinction * step);
-    radiance = radiance * kept + source / extinction * (1 - kept);
-  }
-  return radiance;
-}
-
-std::vector<float> ThermalCamera::see(const Film& film, const CameraView& view,
-                                      int64_t frame) const {
+std::vector<float> ThermalCamera::see(const Film& film, const CameraView& view, int64_t frame,
+                                      const MediaView& media) const {
   const PixelRays rays(view.intrinsics);
   const double per_kelvin = thermal_radiance(kReference + 0.5) - thermal_radiance(kReference - 0.5);
   const RandomStream noise{seed_, stream_id("thermal.noise")},
@@ -131,10 +97,10 @@ std::vector<float> ThermalCamera::see(const Film& film, const CameraView& view,
         const size_t i =
             static_cast<size_t>(y) * static_cast<size_t>(film.width) + static_cast<size_t>(x);
         double radiance = radiance_[film.part[i]];
-        if (const auto ray_C = has_media_ ? rays.at(x + 0.5, y + 0.5) : std::nullopt) {
-          radiance = through_media(radiance, transform_point(view.X_WC_open, to_vec3f(ray_C->p_C)),
+        if (const auto ray_C = !media.volumes.empty() ? rays.at(x + 0.5, y + 0.5) : std::nullopt) {
+          radiance = through_media(media, transform_point(view.X_WC_open, to_vec3f(ray_C->p_C)),
                                    transform_vector(view.X_WC_open, to_vec3f(ray_C->d_C)),
-                                   double{film.distance[i]});
+                                   double{film.distance[i]}, radiance);
         }
         const auto key = static_cast<uint32_t>(i);
         if (options_.netd > 0)

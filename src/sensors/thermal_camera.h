@@ -9,7 +9,7 @@
 #include "gloam/scene_sensor.h"
 #include "render/film/film.h"
 #include "render/renderer.h"
-#include "render/scene/volume_store.h"
+#include "sensors/sensor_air.h"
 #include "world/render_description.h"
 
 namespace gloam {
@@ -17,7 +17,7 @@ namespace gloam {
 class ThermalCamera {
  public:
   /// Of what no [[temperature]] fits, and of what rays that hit nothing see (a body named "sky"):
-  /// 293.15 K, emissivity 0.95. Errors: a [[temperature]] that fits nothing, or a damaged volume.
+  /// 293.15 K, emissivity 0.95. Error: a [[temperature]] that fits nothing.
   static Result<ThermalCamera> make(const ThermalOptions& options,
                                     const std::vector<TemperatureOptions>& temperatures,
                                     const RenderDescription& description, uint64_t seed);
@@ -25,17 +25,15 @@ class ThermalCamera {
   /// Apparent temperatures [K], (height x width), from exact channels: those of black bodies that
   /// would send as much. Noise is normal in radiance (NETD: standard deviation as a difference of
   /// temperature at 300 K), keyed (seed, frame, pixel); the fixed pattern is each pixel's own.
-  std::vector<float> see(const Film& film, const CameraView& view, int64_t frame) const;
+  std::vector<float> see(const Film& film, const CameraView& view, int64_t frame,
+                         const MediaView& media) const;
 
  private:
   ThermalCamera(const ThermalOptions& options, uint64_t seed) : options_(options), seed_(seed) {}
-  double through_media(double radiance, Vec3f origin, Vec3f direction, double distance) const;
 
   ThermalOptions options_;
   uint64_t seed_;
   std::vector<double> radiance_;  // by part; 0 = the sky [W/(m² sr)]
-  VolumeStore volumes_;
-  bool has_media_ = false;
 };
 
 }  // namespace gloam

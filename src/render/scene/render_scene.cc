@@ -219,25 +219,11 @@ void RenderScene::follow_live_fields(const PoseFrame& frame) {
   mesh_views_ = meshes_.views(description_);
 }
 
-void RenderScene::follow_fields(const PoseFrame& frame) {
-  for (size_t i = 0; i < description_.volumes.size(); ++i) {
-    const int field = description_.volumes[i].field;
-    if (field < 0 || static_cast<size_t>(field) >= frame.fields.size()) continue;
-    const PoseFrame::Field& grids = frame.fields[static_cast<size_t>(field)];
-    if (volumes_.shows(i, grids.density, grids.temperature)) continue;
-    VolumeDescription now = description_.volumes[i];
-    now.density = grids.density;
-    now.temperature = grids.temperature;
-    const Status replaced = volumes_.replace(i, now);
-    GLOAM_CHECK(replaced.ok(), "an effect made a field that cannot be drawn");
-  }
-}
-
 void RenderScene::update(std::span<const PoseFrame* const> keys, const PoseFrame& previous) {
   GLOAM_CHECK(!keys.empty(), "there is no key");
   const PoseFrame& open = *keys.front();
   follow_live_fields(open);
-  follow_fields(open);
+  volumes_.follow(description_.volumes, open);
   time_ = open.time;
   levels_.update(description_, open.time, keys.back()->time);
   if (!description_.schedules.empty()) materials_.dim(description_, levels_.materials());

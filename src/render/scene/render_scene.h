@@ -66,7 +66,6 @@ class RenderScene {
   explicit RenderScene(const RenderDescription& description) : description_(description) {}
   void follow_live_fields(const PoseFrame& frame);
   void follow_materials();
-  void follow_fields(const PoseFrame& frame);
   EnvironmentView described_environment() const;
   bool add_keys(std::span<const PoseFrame* const> keys, const InstanceDescription& in,
                 const Affine3f& X_WG);

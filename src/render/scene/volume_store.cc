@@ -186,6 +186,20 @@ Status VolumeStore::replace(size_t volume, const VolumeDescription& with) {
   return {};
 }
 
+void VolumeStore::follow(const std::vector<VolumeDescription>& volumes, const PoseFrame& frame) {
+  for (size_t i = 0; i < volumes.size(); ++i) {
+    const int field = volumes[i].field;
+    if (field < 0 || static_cast<size_t>(field) >= frame.fields.size()) continue;
+    const PoseFrame::Field& grids = frame.fields[static_cast<size_t>(field)];
+    if (fields_[i].density == grids.density && fields_[i].temperature == grids.temperature)
+      continue;
+    VolumeDescription now = volumes[i];
+    now.density = grids.density;
+    now.temperature = grids.temperature;
+    GLOAM_CHECK(replace(i, now).ok(), "an effect made a field that cannot be drawn");
+  }
+}
+
 void VolumeStore::find_glow(size_t changed) {
   glow_tables_[changed].build(view(), static_cast<uint32_t>(changed));
   glows_.clear();

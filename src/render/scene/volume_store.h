@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "render/scene/glow_table.h"
+#include "sim/pose_frame.h"
 
 namespace gloam {
 
@@ -21,10 +22,8 @@ class VolumeStore {
   /// then all is as it was.
   Status replace(size_t volume, const VolumeDescription& with);
 
-  /// These very grids are what the volume shows.
-  bool shows(size_t volume, const VolumeGrid& density, const VolumeGrid& temperature) const {
-    return fields_[volume].density == density && fields_[volume].temperature == temperature;
-  }
+  /// The grids that the frame has for `volumes`, those of make(); others stay.
+  void follow(const std::vector<VolumeDescription>& volumes, const PoseFrame& frame);
 
   /// Valid until the next replace(), or until the store is moved or gone.
   MediaView view() const;

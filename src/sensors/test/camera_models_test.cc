@@ -204,5 +204,33 @@ TEST_F(CameraModelsTest, AnOutputWithoutItsModelIsAnError) {
   EXPECT_NE(world.error().to_string().find("eyes/left"), std::string::npos);
 }
 
+// Effects are fields that change, unlike volumes: these cameras take them from the same instant.
+TEST_F(CameraModelsTest, ThermalAndStereoCamerasSeeTheFireAndItsSmoke) {
+  load(camera("eye", "thermal = {}\nstereo_depth = { preset = \"d435\" }\n") +
+       "[[gas]]\nname = \"air\"\nposition = [0, 1, 0]\nsize = [1.6, 1.6, 2]\nvoxel = 0.1\n"
+       "closed = [\"-z\"]\n"
+       "[[fire]]\nname = \"pan\"\nposition = [0, 1, -0.7]\nsize = [0.4, 0.4, 0.2]\n"
+       "power = 60e3\ngrowth = \"instant\"\n");
+  const auto hottest = [](const CameraFrame& f) {
+    return *std::max_element(f.thermal.begin(), f.thermal.end());
+  };
+  const auto seen = [](const CameraFrame& f) {
+    return std::count_if(f.sensor_depth.begin(), f.sensor_depth.end(),
+                         [](float z) { return z > 0; });
+  };
+  const std::vector<std::string> outputs = {"thermal", "sensor_depth"};
+  const auto before = capture("eye", outputs);
+  EXPECT_LT(hottest(*before), 300);
+  auto simulator =
+      std::move(Simulator::create(world_.compiled(), {.pace = Pace::kLockstep})).value();
+  simulator->start();
+  ASSERT_TRUE(simulator->step(1500).ok());  // 3 s
+  auto solver = std::move(PoseSolver::create(world_.compiled())).value();
+  ASSERT_TRUE(solver->solve(simulator->latest(), poses_).ok());
+  const auto burning = capture("eye", outputs);
+  EXPECT_GT(hottest(*burning), 600) << "flames";
+  EXPECT_LT(seen(*burning), 0.96 * static_cast<double>(seen(*before))) << "behind its smoke";
+}
+
 }  // namespace
 }  // namespace gloam

@@ -148,7 +148,52 @@ TEST(StereoDepth, TheProjectorsLightComesBackAlongTheLenssRays) {
   film.center_albedo = {{0.5f, 0.5f, 0.5f}};
   film.center_normal = {
       normalize(Vec3f{static_cast<float>(-a), static_cast<float>(b), 1})};  // back along the ray
-  EXPECT_NEAR(projector_signal(description, film, view)[0], 0.5 / 4, 1e-6);
+  EXPECT_NEAR(projector_signal(description, {}, film, view)[0], 0.5 / 4, 1e-6);
+}
+
+/// The signal of a matt wall 3 m off with an albedo of a half, 2 m of air before it.
+double signal_through(float extinction, float albedo, float g) {
+  RenderDescription description;
+  description.instances.resize(1);
+  description.materials.resize(1);
+  description.materials[0].roughness = 1;
+  if (extinction > 0) {
+    MediumDescription medium;
+    medium.mass_extinction.fill(extinction);
+    medium.albedo.fill(albedo);
+    medium.g.fill(g);
+    description.media.push_back(medium);
+    VolumeDescription slab;
+    slab.X_WV.p = {0, 0, -2};
+    slab.size = {4, 4, 2};
+    slab.even_density = 1;
+    description.volumes.push_back(slab);
+  }
+  const SensorAir air = std::move(SensorAir::make(description)).value();
+  CameraView view;
+  view.intrinsics = {.width = 1, .height = 1, .fx = 100, .fy = 100, .cx = 0.5, .cy = 0.5};
+  Film film;
+  film.width = film.height = 1;
+  film.part = {1};
+  film.depth = film.distance = {3};
+  film.center_albedo = {{0.5f, 0.5f, 0.5f}};
+  film.center_normal = {{0, 0, 1}};
+  return double{projector_signal(description, air.view(), film, view)[0]};
+}
+
+// The slab is from 1 m to 3 m: its centre 2 m away, half of its 2 m on both sides.
+TEST(StereoDepth, MediaTakeOfTheProjectorsLightAndVeilIt) {
+  const double clear = 0.5 / 9;
+  EXPECT_NEAR(signal_through(0, 0, 0), clear, 1e-6);
+  // What absorbs dims on both ways, by Beer and Lambert's law.
+  EXPECT_NEAR(signal_through(0.2f, 0, 0), clear * std::exp(-2 * 0.2 * 2), 1e-5);
+  // What scatters sends back pi Int beta e^(-2 k (r - 1)) / r² dr besides.
+  const double k = 0.2, beta = k / (4 * M_PI), left = clear * std::exp(-2 * k * 2);
+  double back = 0;
+  for (double r = 1.0005; r < 3; r += 0.001)
+    back += M_PI * beta * std::exp(-2 * k * (r - 1)) / (r * r) * 0.001;
+  EXPECT_NEAR(signal_through(0.2f, 1, 0), left * left / (left + back), 1e-3 * left);
+  EXPECT_GT(signal_through(0.2f, 1, 0.8f), signal_through(0.2f, 1, 0)) << "drops send little back";
 }
 
 TEST(StereoDepth, DrawsAreKeyedAndThreadsDoNotMatter) {

@@ -75,13 +75,13 @@ TEST(Thermal, ThingsHaveTheirTemperatureAndEmissivity) {
       {.material = "steel", .temperature = 400, .emissivity = 0.2, .ambient = 290},
       {.body = "sky", .temperature = 250, .emissivity = 1}};
   const ThermalCamera camera = make({}, two_things(), temperatures);
-  EXPECT_NEAR(camera.see(film_of(1), view(), 0)[5], 330, 1e-3);
+  EXPECT_NEAR(camera.see(film_of(1), view(), 0, {})[5], 330, 1e-3);
   const double steel = 0.2 * planck(400) + 0.8 * planck(290);
-  EXPECT_NEAR(camera.see(film_of(2), view(), 0)[5], apparent_temperature(steel), 0.01);
-  EXPECT_NEAR(camera.see(film_of(0), view(), 0)[5], 250, 1e-3);
-  EXPECT_NEAR(make({}, two_things()).see(film_of(1), view(), 0)[5], 293.15, 1e-3);
-  EXPECT_NEAR(make({.step = 0.5}, two_things()).see(film_of(1), view(), 0)[5], 293, 1e-3);
-  EXPECT_EQ(make({.max = 280}, two_things()).see(film_of(1), view(), 0)[5], 280);
+  EXPECT_NEAR(camera.see(film_of(2), view(), 0, {})[5], apparent_temperature(steel), 0.01);
+  EXPECT_NEAR(camera.see(film_of(0), view(), 0, {})[5], 250, 1e-3);
+  EXPECT_NEAR(make({}, two_things()).see(film_of(1), view(), 0, {})[5], 293.15, 1e-3);
+  EXPECT_NEAR(make({.step = 0.5}, two_things()).see(film_of(1), view(), 0, {})[5], 293, 1e-3);
+  EXPECT_EQ(make({.max = 280}, two_things()).see(film_of(1), view(), 0, {})[5], 280);
   const auto wrong = ThermalCamera::make({}, {{.body = "robot/moter"}}, two_things(), 1);
   ASSERT_FALSE(wrong.ok());
   EXPECT_NE(wrong.error().to_string().find("moter"), std::string::npos);
@@ -90,20 +90,20 @@ TEST(Thermal, ThingsHaveTheirTemperatureAndEmissivity) {
 TEST(Thermal, NoiseHasItsTemperatureDifference) {
   const ThermalCamera camera =
       make({.netd = 0.05}, two_things(), {{.temperature = 300, .emissivity = 1}});
-  const auto a = camera.see(film_of(1), view(), 0), b = camera.see(film_of(1), view(), 1);
+  const auto a = camera.see(film_of(1), view(), 0, {}), b = camera.see(film_of(1), view(), 1, {});
   std::vector<double> t(a.begin(), a.end());
   // Floats of 300 are 3e-5 apart.
   expect_moments(t, 300, 0.0025, "NETD");
   EXPECT_NE(a, b);
   const ThermalCamera fixed =
       make({.fixed_pattern = 0.2}, two_things(), {{.temperature = 300, .emissivity = 1}});
-  const auto pattern = fixed.see(film_of(1), view(), 0);
+  const auto pattern = fixed.see(film_of(1), view(), 0, {});
   t.assign(pattern.begin(), pattern.end());
   const Moments m = moments(t);
   expect_within(m.variance, 0.04, m.variance_error, "fixed pattern");
-  EXPECT_EQ(fixed.see(film_of(1), view(), 7), pattern);
+  EXPECT_EQ(fixed.see(film_of(1), view(), 7, {}), pattern);
   set_thread_count(1);
-  EXPECT_EQ(camera.see(film_of(1), view(), 0), a) << "threads";
+  EXPECT_EQ(camera.see(film_of(1), view(), 0, {}), a) << "threads";
   set_thread_count(0);
 }
 
@@ -127,12 +127,14 @@ RenderDescription behind_a_slab(float width) {
 // A slab before a warm thing: Beer and Lambert's law, and what the slab itself gives off.
 TEST(Thermal, MediaDimInTheirOwnBandAndGlow) {
   const RenderDescription description = behind_a_slab(4);
+  const SensorAir air = std::move(SensorAir::make(description)).value();
   const ThermalCamera camera = make({}, description, {{.temperature = 350, .emissivity = 1}});
   const double kept = std::exp(-2 * 0.8 * 0.5);
   const double expected = kept * planck(350) + (1 - kept) * planck(280);
-  EXPECT_NEAR(camera.see(film_of(1), view(), 0)[5], apparent_temperature(expected), 0.02);
+  EXPECT_NEAR(camera.see(film_of(1), view(), 0, air.view())[5], apparent_temperature(expected),
+              0.02);
   const double before = std::exp(-2 * 0.8 * 0.25);  // a thing inside, half way
-  EXPECT_NEAR(camera.see(film_of(1, 1), view(), 0)[5],
+  EXPECT_NEAR(camera.see(film_of(1, 1), view(), 0, air.view())[5],
               apparent_temperature(before * planck(350) + (1 - before) * planck(280)), 0.02);
 }
 
@@ -144,16 +146,17 @@ TEST(Thermal, MediaDimAlongTheLenssRays) {
   fisheye.intrinsics.fx = fisheye.intrinsics.fy = 100;
   fisheye.intrinsics.cx = 0.5 - 100 * M_PI / 3;  // of the first pixel
   fisheye.intrinsics.cy = 0.5;
+  const SensorAir air = std::move(SensorAir::make(description)).value();
   const ThermalCamera camera = make({}, description, {{.temperature = 350, .emissivity = 1}});
   const double kept = std::exp(-2 * 0.8 * 0.5 * 2);
-  EXPECT_NEAR(camera.see(film_of(1, 9), fisheye, 0)[0],
+  EXPECT_NEAR(camera.see(film_of(1, 9), fisheye, 0, air.view())[0],
               apparent_temperature(kept * planck(350) + (1 - kept) * planck(280)), 0.02);
   // Parallel rays all cross it straight.
   CameraView parallel = view();
   parallel.intrinsics.orthographic = true;
   parallel.intrinsics.fx = parallel.intrinsics.fy = 100;
   const double straight = std::exp(-2 * 0.8 * 0.5);
-  EXPECT_NEAR(camera.see(film_of(1, 9), parallel, 0)[0],
+  EXPECT_NEAR(camera.see(film_of(1, 9), parallel, 0, air.view())[0],
               apparent_temperature(straight * planck(350) + (1 - straight) * planck(280)), 0.02);
 }
 
