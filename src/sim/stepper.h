@@ -60,6 +60,10 @@ class Stepper {
   int most_contacts() const { return most_contacts_; }
   /// Null where there are none.
   const Agents* agents() const { return agents_.get(); }
+  /// Of the last step.
+  std::span<const SoilReaction> soil_reactions() const {
+    return soil_ != nullptr ? soil_->reactions() : std::span<const SoilReaction>{};
+  }
 
  private:
   Stepper() = default;

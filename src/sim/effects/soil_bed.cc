@@ -58,6 +58,8 @@ SoilBed::SoilBed(const SoilDescription& soil, const mjModel& model, std::span<co
       cells_(soil.cells()),
       answers_of_(static_cast<size_t>(model.nbody)),
       tracks_(soil) {
+  pushes_.reserve(contacts_.most_touches());
+  reactions_.reserve(geoms.size());
   for (const int geom : geoms) {
     const int body = model.geom_bodyid[geom];
     Answer& answer = answers_of_[static_cast<size_t>(body)];
@@ -72,6 +74,7 @@ void SoilBed::reset() {
   std::fill(cells_.begin(), cells_.end(), SoilCell{});
   for (Answer& answer : answers_of_) answer.step = 0;
   contacts_.clear();
+  reactions_.clear();
   tracks_.reset();
 }
 
@@ -189,6 +192,7 @@ void SoilBed::push_aside(const SoilTouch& touch, const double* velocity, double 
 }
 
 void SoilBed::push(uint32_t step, const mjModel& m, mjData& d, ResponseSolver* solver) {
+  reactions_.clear();
   const std::span<const SoilTouch> all = contacts_.touches();
   for (size_t from = 0, to = 0; from < all.size(); from = to) {
     while (to < all.size() && all[to].body == all[from].body) ++to;
@@ -217,10 +221,16 @@ void SoilBed::push_body(const mjModel& m, mjData& d, std::span<const SoilTouch> 
   mju_addToScl(free, body_now.acceleration, dt, 6);
   mju_copy(motion, body_now.velocity, 6);
   double wrench[6] = {};
+  pushes_.resize(touches.size());
   for (int i = 0; i < kMostIterations; ++i) {
     // wrench = force - matrix * motion, with motion = free + dt inverse * wrench.
     double force[6] = {}, matrix[36] = {}, system[36];
-    for (const SoilTouch& touch : touches) add_touch(touch, point, motion, dt, force, matrix);
+    for (size_t n = 0; n < touches.size(); ++n) {
+      double arm[3];
+      mju_sub3(arm, touches[n].p, point);
+      pushes_[n] = push_of(touches[n], arm, motion, dt);
+      add_push(pushes_[n], arm, force, matrix);
+    }
     mju_mulMatMat(system, matrix, body_now.inverse, 6, 6, 6);
     mju_scl(system, system, dt, 36);
     for (int k = 0; k < 6; ++k) system[7 * k] += 1;
@@ -239,17 +249,50 @@ void SoilBed::push_body(const mjModel& m, mjData& d, std::span<const SoilTouch> 
   }
   for (const double x : wrench)
     if (!std::isfinite(x)) return;
-  limit_work(touches, free, change, dt, wrench);
+  const double share = limit_work(touches, free, change, dt, wrench);
+  mju_scl(wrench, wrench, share, 6);
   add_wrench(m, d, body, wrench, wrench + 3, point);
   answer.step = step + 1;
   solver->accelerations(m, d, body, wrench, joints);
+  react(touches, point, motion, share);
+}
+
+// What of the wrench is on which geom.
+void SoilBed::react(std::span<const SoilTouch> touches, const double* point, const double* motion,
+                    double share) {
+  double load = 0;
+  SoilReaction* now = nullptr;
+  const auto finish = [&] {
+    if (now != nullptr && load > 0) mju_scl3(now->p, now->p, 1 / load), mju_normalize3(now->normal);
+    if (now != nullptr && load <= 0) reactions_.pop_back();
+  };
+  for (size_t n = 0; n < touches.size(); ++n) {
+    const SoilTouch& touch = touches[n];
+    const Push& push = pushes_[n];
+    if (now == nullptr || now->geom != touch.geom) {
+      finish();
+      now = &reactions_.emplace_back();
+      now->geom = touch.geom, now->body = touch.body;
+      load = 0;
+    }
+    double v[3];
+    velocity_at(motion, point, touch.p, v);
+    const double along = mju_dot3(push.d, v);
+    const double pressing = push.load - push.stiffness * along;
+    load += pressing;
+    mju_addToScl3(now->p, touch.p, pressing);
+    mju_addToScl3(now->normal, push.d, pressing);
+    for (int a = 0; a < 3; ++a)
+      now->force[a] += share * (push.f[a] - push.across * v[a] - push.along * along * push.d[a]);
+  }
+  finish();
 }
 
 // A body so light that a step takes it far through the ground must not be thrown out of it: the bed
 // gives no more energy than it can have stored, nor than a share of what the body brings along.
-// `change`: inverse * wrench.
-void SoilBed::limit_work(std::span<const SoilTouch> touches, const double* free,
-                         const double* change, double dt, double* wrench) const {
+// Returns the share of the wrench that it gives. `change`: inverse * wrench.
+double SoilBed::limit_work(std::span<const SoilTouch> touches, const double* free,
+                           const double* change, double dt, const double* wrench) const {
   double stored = 0;
   for (const SoilTouch& touch : touches) {
     const SoilCell& cell = cells_[static_cast<size_t>(touch.cell)];
@@ -259,34 +302,33 @@ void SoilBed::limit_work(std::span<const SoilTouch> touches, const double* free,
   }
   const double by_motion = dt * mju_dot(wrench, free, 6);
   const double by_change = dt * dt / 2 * mju_dot(wrench, change, 6);
-  if (by_change <= 0) return;
+  if (by_change <= 0) return 1;
   const double brought = by_motion * by_motion / (4 * by_change);
   stored = std::min(stored, kRestored * brought);
-  if (by_motion + by_change <= stored) return;
+  if (by_motion + by_change <= stored) return 1;
   const double share =
       (std::sqrt(by_motion * by_motion + 4 * by_change * stored) - by_motion) / (2 * by_change);
-  mju_scl(wrench, wrench, std::min(share, 1.0), 6);
+  return std::min(share, 1.0);
 }
 
-// Adds a touch's force on its body, linear about `motion`, the body's at the step's end.
-void SoilBed::add_touch(const SoilTouch& touch, const double* point, const double* motion,
-                        double dt, double* force, double* matrix) const {
+// Of a touch on its body, linear about `motion`, the body's at the step's end.
+SoilBed::Push SoilBed::push_of(const SoilTouch& touch, const double* arm, const double* motion,
+                               double dt) const {
   const SoilStrength& s = soil_.strength;
   const SoilCell& cell = cells_[static_cast<size_t>(touch.cell)];
-  double v[3], arm[3];
-  velocity_at(motion, point, touch.p, v);
-  mju_sub3(arm, touch.p, point);
+  double v[3];
+  mju_cross(v, motion + 3, arm);
+  mju_addTo3(v, motion);
   // The pressure's direction, over an area seen from above, and so the sinkage's.
-  const double d[3] = {-touch.slope[0], -touch.slope[1], 1};
+  Push out{.d = {-touch.slope[0], -touch.slope[1], 1}};
+  const double* d = out.d;
   const double sinking = mju_dot3(d, v);
   const double modulus = s.k_c / contacts_.widths()[static_cast<size_t>(touch.patch)] + s.k_phi;
   const SoilPressure now = soil_pressure(s, cell, modulus, soil_.depth, touch.depth - dt * sinking);
-  if (now.p <= 0) return;
-  const double stiffness = touch.area * now.slope * dt;  // against velocity [N s/m]
-  double f[3], K[9];
-  mju_scl3(f, d, touch.area * now.p + stiffness * sinking);
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b) K[3 * a + b] = stiffness * d[a] * d[b];
+  if (now.p <= 0) return out;
+  out.stiffness = touch.area * now.slope * dt;
+  out.load = touch.area * now.p + out.stiffness * sinking;
+  mju_scl3(out.f, d, out.load);
   // Shear, over the true area.
   double across[3],
       shear[3] = {double{cell.shear[0]}, double{cell.shear[1]}, double{cell.shear[2]}};
@@ -296,21 +338,33 @@ void SoilBed::add_touch(const SoilTouch& touch, const double* point, const doubl
   const double steep = mju_dot3(d, d), speed = mju_norm3(across);
   const double most = touch.area * std::sqrt(steep) * (s.cohesion + now.p * s.tan_friction);
   const double share = -std::expm1(-speed * dt / s.shear);
-  const double drag = most * (speed * dt > kNoWay ? share / speed : dt / s.shear);
-  mju_addToScl3(f, shear, most * (1 - share));
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b) K[3 * a + b] += drag * ((a == b) - d[a] * d[b] / steep);
-  double moment[3];
-  mju_cross(moment, arm, f);
-  mju_addTo(force, f, 3);
-  mju_addTo(force + 3, moment, 3);
-  // matrix += X' K X, where X takes the body's motion to the touch's: (I, -[arm]).
-  const double X[18] = {1,       0, 0,      0, arm[2], -arm[1], 0,      1,       0,
-                        -arm[2], 0, arm[0], 0, 0,      1,       arm[1], -arm[0], 0};
-  double KX[18], XKX[36];
-  mju_mulMatMat(KX, K, X, 3, 3, 6);
-  mju_mulMatTMat(XKX, X, KX, 3, 6, 6);
-  mju_addTo(matrix, XKX, 36);
+  out.across = most * (speed * dt > kNoWay ? share / speed : dt / s.shear);
+  out.along = out.stiffness - out.across / steep;
+  mju_addToScl3(out.f, shear, most * (1 - share));
+  return out;
+}
+
+// X' f and X' K X come to force and matrix, where X = (I, -[arm]) takes the body's motion to the
+// touch's, and K = across I + along d d'.
+void SoilBed::add_push(const Push& push, const double* arm, double* force, double* matrix) {
+  double moment[3], w[6], square = mju_dot3(arm, arm);
+  mju_cross(moment, arm, push.f);
+  mju_addTo3(force, push.f);
+  mju_addTo3(force + 3, moment);
+  mju_copy3(w, push.d);
+  mju_cross(w + 3, arm, push.d);
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) matrix[6 * i + j] += push.along * w[i] * w[j];
+  for (int i = 0; i < 3; ++i) {
+    const int j = (i + 1) % 3, k = (i + 2) % 3;
+    matrix[7 * i] += push.across;
+    for (int n = 0; n < 3; ++n)
+      matrix[6 * (i + 3) + n + 3] += push.across * ((i == n ? square : 0) - arm[i] * arm[n]);
+    // -[arm] at the right, [arm] below.
+    matrix[6 * j + k + 3] += push.across * arm[i], matrix[6 * k + j + 3] -= push.across * arm[i];
+    matrix[6 * (j + 3) + k] -= push.across * arm[i],
+        matrix[6 * (k + 3) + j] += push.across * arm[i];
+  }
 }
 
 }  // namespace gloam

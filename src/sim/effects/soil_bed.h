@@ -10,6 +10,7 @@
 #include "sim/effects/soil_contact.h"
 #include "sim/effects/soil_law.h"
 #include "sim/effects/soil_tracks.h"
+#include "sim/soil_reaction.h"
 
 namespace gloam {
 
@@ -33,6 +34,9 @@ class SoilBed {
   /// Adds the forces of the coming step to data.qfrc_applied. data.qLD is of the present.
   void push(uint32_t step, const mjModel& model, mjData& data, ResponseSolver* solver);
 
+  /// Of the last push(), by geoms.
+  std::span<const SoilReaction> reactions() const { return reactions_; }
+
   SoilTracks& tracks() { return tracks_; }
   const SoilDescription& description() const { return soil_; }
   const std::vector<SoilCell>& cells() const { return cells_; }
@@ -44,20 +48,30 @@ class SoilBed {
     uint32_t step = 0;  // after the one it was for
     size_t first = 0, count = 0;
   };
+  /// Force of a touch at velocities u of its point: f - across u - along d (d u).
+  struct Push {
+    double d[3] = {}, f[3] = {};     // where the ground presses to; [N]
+    double across = 0, along = 0;    // [N s/m]
+    double load = 0, stiffness = 0;  // pressing at no velocity [N], less by it [N s/m]
+  };
   void press_cell(uint32_t step, double dt, const SoilTouch& touch, const double* velocity);
   void push_aside(const SoilTouch& touch, const double* velocity, double volume);
   void push_body(const mjModel& model, mjData& data, std::span<const SoilTouch> touches,
                  uint32_t step, ResponseSolver* solver);
-  void limit_work(std::span<const SoilTouch> touches, const double* free, const double* change,
-                  double dt, double* wrench) const;
-  void add_touch(const SoilTouch& touch, const double* point, const double* motion, double dt,
-                 double* force, double* matrix) const;
+  double limit_work(std::span<const SoilTouch> touches, const double* free, const double* change,
+                    double dt, const double* wrench) const;
+  Push push_of(const SoilTouch& touch, const double* arm, const double* motion, double dt) const;
+  static void add_push(const Push& push, const double* arm, double* force, double* matrix);
+  void react(std::span<const SoilTouch> touches, const double* point, const double* motion,
+             double share);
 
   const SoilDescription& soil_;
   SoilContacts contacts_;
   std::vector<SoilCell> cells_;
   std::vector<Answer> answers_of_;  // of the last step, (nbody)
   std::vector<double> answers_;
+  std::vector<Push> pushes_;  // room, of the touches of a body
+  std::vector<SoilReaction> reactions_;
   SoilTracks tracks_;
 };
 

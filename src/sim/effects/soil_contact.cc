@@ -80,7 +80,7 @@ void SoilContacts::add(const ColliderBottom& collider) {
   bool began = false;
   for (int line = first; line <= last; ++line) {
     if (line / lines != row) {
-      flush(row, collider.body(), outline.parent);
+      flush(row, collider, outline.parent);
       row = line / lines;
     }
     const double y = low_y + (line + 0.5) * width;
@@ -93,7 +93,7 @@ void SoilContacts::add(const ColliderBottom& collider) {
     points_.push_back({ends[1], y});
     began = true;
   }
-  flush(row, collider.body(), outline.parent);
+  flush(row, collider, outline.parent);
   if (!began) {
     outlines_.pop_back();
     return;
@@ -167,13 +167,13 @@ void SoilContacts::add_line(const ColliderBottom& collider, double y, double wid
 }
 
 // A row of cells is complete.
-void SoilContacts::flush(int row, int body, int outline) {
+void SoilContacts::flush(int row, const ColliderBottom& collider, int outline) {
   for (int i = row_low_; i <= row_high_; ++i) {
     SoilTouch& sum = row_[static_cast<size_t>(i)];
     if (sum.area > 0) {
       SoilTouch touch = sum;
       touch.cell = row * soil_.nx + i;
-      touch.body = body;
+      touch.geom = collider.geom(), touch.body = collider.body();
       touch.patch = outline;
       for (double& x : touch.p) x /= touch.area;
       for (double& x : touch.slope) x /= touch.area;

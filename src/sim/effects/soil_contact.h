@@ -18,7 +18,7 @@ namespace gloam {
 /// A collider in a cell. Means over what it covers of it.
 struct SoilTouch {
   int cell = 0;
-  int body = 0;
+  int geom = 0, body = 0;
   int patch = 0;         ///< row of SoilContacts::widths()
   double area = 0;       ///< seen from above [m²]
   double p[3] = {};      ///< on the collider's underside, world [m]
@@ -30,6 +30,9 @@ class SoilContacts {
  public:
   /// Has room for all that `colliders`, so many and so large, can touch.
   SoilContacts(const SoilDescription& soil, const mjModel& model, std::span<const int> geoms);
+
+  /// That there can be.
+  size_t most_touches() const { return touches_.capacity(); }
 
   void clear();
   /// Adds what a collider touches. Its pose is set.
@@ -64,7 +67,7 @@ class SoilContacts {
   bool find_ends(const ColliderBottom& collider, double y, double step, double* ends) const;
   void add_line(const ColliderBottom& collider, double y, double width, const double* ends);
   void add_edge(size_t line, size_t neighbour, double dy);
-  void flush(int row, int body, int outline);
+  void flush(int row, const ColliderBottom& collider, int outline);
   int root(int outline);
   double width_of(int patch);
 

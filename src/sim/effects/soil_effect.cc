@@ -25,11 +25,13 @@ SoilEffect::SoilEffect(std::shared_ptr<const CompiledWorld> world, const mjModel
     geoms.push_back(geom);
   }
   near_.reserve(colliders_.size());
+  reactions_.reserve(geoms.size() * world_->soils.size());
   for (const SoilDescription& soil : world_->soils)
     beds_.push_back(std::make_unique<SoilBed>(soil, m, geoms));
 }
 
 void SoilEffect::reset() {
+  reactions_.clear();
   for (const auto& bed : beds_) bed->reset();
 }
 
@@ -50,6 +52,7 @@ bool SoilEffect::may_touch(const mjModel& m, const mjData& d) const {
 }
 
 uint64_t SoilEffect::begin_step(int64_t step, const mjModel& m, mjData& d, uint64_t hash) {
+  reactions_.clear();
   // Poses are those before the last step, or of now.
   if (!may_touch(m, d)) return hash;
   mj_kinematics(&m, &d);
@@ -76,7 +79,10 @@ uint64_t SoilEffect::begin_step(int64_t step, const mjModel& m, mjData& d, uint6
   mj_factorM(&m, &d);
   std::copy_n(d.qfrc_applied, applied_.size(), applied_.begin());
   began_ = true;
-  for (const auto& bed : beds_) bed->push(now, m, d, &solver_);
+  for (const auto& bed : beds_) {
+    bed->push(now, m, d, &solver_);
+    reactions_.insert(reactions_.end(), bed->reactions().begin(), bed->reactions().end());
+  }
   return hash;
 }
 

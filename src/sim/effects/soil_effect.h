@@ -25,6 +25,9 @@ class SoilEffect {
   /// After it, whether it went well or not: takes back the forces.
   void end_step(mjData& data);
 
+  /// Of the last step, by beds and geoms.
+  std::span<const SoilReaction> reactions() const { return reactions_; }
+
   /// Tracks as they are now.
   void fill(std::vector<HeightChange>* tracks);
 
@@ -39,6 +42,7 @@ class SoilEffect {
   std::vector<const ColliderBottom*> near_;  // room
   std::vector<std::unique_ptr<SoilBed>> beds_;
   ResponseSolver solver_;
+  std::vector<SoilReaction> reactions_;
   std::vector<double> applied_;  // by others (nv)
   bool began_ = false;
 };
