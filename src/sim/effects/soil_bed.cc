@@ -89,7 +89,7 @@ bool SoilBed::take_over(const SoilBed& before) {
   return true;
 }
 
-bool SoilBed::is_near(const mjModel& m, const mjData& d, int geom, double margin) const {
+bool SoilBed::is_near(const mjModel& m, const mjData& d, int geom) const {
   const double *R = d.geom_xmat + 9 * geom, *box = m.geom_aabb + 6 * geom;
   double centre[3], half[3];
   mju_mulMatVec3(centre, R, box);
@@ -97,16 +97,16 @@ bool SoilBed::is_near(const mjModel& m, const mjData& d, int geom, double margin
   edges_around(R, box + 3, half);
   double bottom = soil_.level - soil_.depth;
   if (!soil_.rest.empty()) bottom = -1e10;  // nobody is below uneven ground
-  return std::abs(centre[0] - soil_.x) < half[0] + soil_.size_x / 2 + margin &&
-         std::abs(centre[1] - soil_.y) < half[1] + soil_.size_y / 2 + margin &&
-         centre[2] - half[2] < soil_.level + margin && centre[2] + half[2] > bottom - margin;
+  return std::abs(centre[0] - soil_.x) < half[0] + soil_.size_x / 2 &&
+         std::abs(centre[1] - soil_.y) < half[1] + soil_.size_y / 2 &&
+         centre[2] - half[2] < soil_.level && centre[2] + half[2] > bottom;
 }
 
 uint64_t SoilBed::press(uint32_t step, const mjModel& m, const mjData& d,
                         std::span<const ColliderBottom* const> colliders, uint64_t hash) {
   contacts_.clear();
   for (const ColliderBottom* collider : colliders) {
-    if (is_near(m, d, collider->geom(), 0)) contacts_.add(*collider);
+    if (is_near(m, d, collider->geom())) contacts_.add(*collider);
   }
   contacts_.finish();
   int body = -1;

@@ -23,14 +23,13 @@ class SoilBed {
   /// Goes on with the cells of another bed, if that is one of the same name, place and grid.
   bool take_over(const SoilBed& before);
 
-  /// Does a collider's box reach into the bed, or nearer to it than `margin` [m]?
-  bool is_near(const mjModel& model, const mjData& data, int geom, double margin) const;
+  /// Does a collider's box reach into the bed?
+  bool is_near(const mjModel& model, const mjData& data, int geom) const;
 
   /// Finds what `colliders` touch at the beginning of step `step`, in order of geoms, and what that
   /// does to the ground; their poses are set. The hash goes in and comes out with it.
   uint64_t press(uint32_t step, const mjModel& model, const mjData& data,
                  std::span<const ColliderBottom* const> colliders, uint64_t hash);
-  bool touches() { return !contacts_.touches().empty(); }
   /// Adds the forces of the coming step to data.qfrc_applied. data.qLD is of the present.
   void push(uint32_t step, const mjModel& model, mjData& data, ResponseSolver* solver);
 

@@ -5,9 +5,6 @@
 #include "sim/effects/collider_mesh.h"
 
 namespace gloam {
-namespace {
-constexpr double kInAStep = 0.5;  // nothing moves further [m]
-}
 
 std::unique_ptr<SoilEffect> SoilEffect::create(std::shared_ptr<const CompiledWorld> world,
                                                const mjModel& model) {
@@ -15,7 +12,7 @@ std::unique_ptr<SoilEffect> SoilEffect::create(std::shared_ptr<const CompiledWor
 }
 
 SoilEffect::SoilEffect(std::shared_ptr<const CompiledWorld> world, const mjModel& m)
-    : world_(std::move(world)), solver_(m), applied_(static_cast<size_t>(m.nv)) {
+    : world_(std::move(world)), solver_(m) {
   const std::vector<bool> collide = colliders(m);
   std::vector<int> geoms;
   for (int geom = 0; geom < m.ngeom; ++geom) {
@@ -43,25 +40,12 @@ void SoilEffect::take_over(const SoilEffect* before) {
   }
 }
 
-bool SoilEffect::may_touch(const mjModel& m, const mjData& d) const {
-  for (const auto& bed : beds_) {
-    for (const ColliderBottom& collider : colliders_)
-      if (bed->is_near(m, d, collider.geom(), kInAStep)) return true;
-  }
-  return false;
-}
-
 uint64_t SoilEffect::begin_step(int64_t step, const mjModel& m, mjData& d, uint64_t hash) {
   reactions_.clear();
-  // Poses are those before the last step, or of now.
-  if (!may_touch(m, d)) return hash;
-  mj_kinematics(&m, &d);
-  mj_comPos(&m, &d);
-  mj_comVel(&m, &d);
   near_.clear();
   for (ColliderBottom& collider : colliders_) {
     const bool near = std::any_of(beds_.begin(), beds_.end(), [&](const auto& bed) {
-      return bed->is_near(m, d, collider.geom(), 0);
+      return bed->is_near(m, d, collider.geom());
     });
     if (!near) continue;
     collider.set_pose(d);
@@ -69,27 +53,12 @@ uint64_t SoilEffect::begin_step(int64_t step, const mjModel& m, mjData& d, uint6
   }
   // Cells count from 1, so that one that nothing has touched is none of the last step's.
   const uint32_t now = static_cast<uint32_t>(step) + 1;
-  bool touched = false;
   for (const auto& bed : beds_) {
     hash = bed->press(now, m, d, near_, hash);
-    touched = touched || bed->touches();
-  }
-  if (!touched) return hash;
-  mj_makeM(&m, &d);
-  mj_factorM(&m, &d);
-  std::copy_n(d.qfrc_applied, applied_.size(), applied_.begin());
-  began_ = true;
-  for (const auto& bed : beds_) {
     bed->push(now, m, d, &solver_);
     reactions_.insert(reactions_.end(), bed->reactions().begin(), bed->reactions().end());
   }
   return hash;
-}
-
-void SoilEffect::end_step(mjData& d) {
-  if (!began_) return;
-  began_ = false;
-  std::copy(applied_.begin(), applied_.end(), d.qfrc_applied);
 }
 
 void SoilEffect::fill(std::vector<HeightChange>* tracks) {

@@ -19,11 +19,9 @@ class SoilEffect {
   /// Goes on with the tracks of soils of the same name and grid in `before`, null = none.
   void take_over(const SoilEffect* before);
 
-  /// Before the physics of step `step`; `data` is of its state. The hash goes in and comes out with
-  /// what the ground has been through. MuJoCo errors possible: call it guarded.
+  /// Adds the forces of step `step` to data.qfrc_applied; poses, velocities and qLD in `data` are
+  /// of its state. The hash goes in and comes out with what the ground has been through.
   uint64_t begin_step(int64_t step, const mjModel& model, mjData& data, uint64_t hash);
-  /// After it, whether it went well or not: takes back the forces.
-  void end_step(mjData& data);
 
   /// Of the last step, by beds and geoms.
   std::span<const SoilReaction> reactions() const { return reactions_; }
@@ -35,7 +33,6 @@ class SoilEffect {
 
  private:
   SoilEffect(std::shared_ptr<const CompiledWorld> world, const mjModel& model);
-  bool may_touch(const mjModel& model, const mjData& data) const;
 
   const std::shared_ptr<const CompiledWorld> world_;
   std::vector<ColliderBottom> colliders_;
@@ -43,8 +40,6 @@ class SoilEffect {
   std::vector<std::unique_ptr<SoilBed>> beds_;
   ResponseSolver solver_;
   std::vector<SoilReaction> reactions_;
-  std::vector<double> applied_;  // by others (nv)
-  bool began_ = false;
 };
 
 }  // namespace gloam

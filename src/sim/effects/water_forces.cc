@@ -9,7 +9,6 @@
 namespace gloam {
 namespace {
 
-constexpr double kFarAway = 0.5;      // in a step nothing moves further [m]
 constexpr double kRippleCrest = 0.3;  // [m]
 
 }  // namespace
@@ -34,8 +33,7 @@ WaterForces::WaterForces(const mjModel& model, const std::vector<WaterDescriptio
     : waters_(waters),
       shapes_(shapes),
       armature_(static_cast<size_t>(model.nv)),
-      inertia_(armature_.size()),
-      applied_(armature_.size()) {
+      inertia_(armature_.size()) {
   for (const WaterDescription& water : waters) {
     double crest = water.ripples.nx > 0 ? kRippleCrest : 0;
     for (const WaveDescription& wave : water.waves) crest += wave.amplitude;
@@ -43,50 +41,43 @@ WaterForces::WaterForces(const mjModel& model, const std::vector<WaterDescriptio
   }
 }
 
-bool WaterForces::is_near(size_t water, const WaterShape& shape, const mjData& data,
-                          double margin) const {
+bool WaterForces::is_near(size_t water, const WaterShape& shape, const mjData& data) const {
   const WaterDescription& w = waters_[water];
   const double *p = data.geom_xpos + 3 * shape.geom, *R = data.geom_xmat + 9 * shape.geom;
   double centre[3], half[3];
   mju_mulMatVec3(centre, R, shape.centre);
   mju_addTo3(centre, p);
   edges_around(R, shape.half, half);
-  return std::abs(centre[0] - w.x) < half[0] + w.size_x / 2 + margin &&
-         std::abs(centre[1] - w.y) < half[1] + w.size_y / 2 + margin &&
-         centre[2] - half[2] < w.level + crests_[water] + margin &&
-         centre[2] + half[2] > w.level - w.depth - margin;
+  return std::abs(centre[0] - w.x) < half[0] + w.size_x / 2 &&
+         std::abs(centre[1] - w.y) < half[1] + w.size_y / 2 &&
+         centre[2] - half[2] < w.level + crests_[water] && centre[2] + half[2] > w.level - w.depth;
 }
 
-bool WaterForces::may_touch(const mjData& data) const {
-  for (size_t water = 0; water < waters_.size(); ++water) {
-    for (const WaterShape& shape : shapes_)
-      if (is_near(water, shape, data, kFarAway)) return true;
-  }
-  return false;
-}
-
-void WaterForces::begin(mjModel& model, mjData& data, std::span<const HeightChange> ripples) {
-  const auto nv = static_cast<size_t>(model.nv);
-  std::copy_n(data.qfrc_applied, nv, applied_.begin());
-  std::copy_n(model.dof_armature, nv, armature_.begin());
-  std::copy_n(model.dof_M0, nv, inertia_.begin());
+bool WaterForces::begin(mjModel& model, mjData& data, std::span<const HeightChange> ripples) {
   for (size_t water = 0; water < waters_.size(); ++water) {
     for (const WaterShape& shape : shapes_) {
-      if (is_near(water, shape, data, 0)) push(model, data, shape, waters_[water], ripples[water]);
+      if (!is_near(water, shape, data)) continue;
+      if (model_armature_ == nullptr) carry_nothing(model);
+      push(model, data, shape, waters_[water], ripples[water]);
     }
   }
+  return model_armature_ != nullptr;
+}
+
+void WaterForces::carry_nothing(mjModel& model) {
+  std::copy_n(model.dof_armature, armature_.size(), armature_.begin());
+  std::copy_n(model.dof_M0, inertia_.size(), inertia_.begin());
   model_armature_ = model.dof_armature;
   model_inertia_ = model.dof_M0;
   model.dof_armature = armature_.data();
   model.dof_M0 = inertia_.data();
 }
 
-void WaterForces::end(mjModel& model, mjData& data) {
+void WaterForces::end(mjModel& model) {
   if (model_armature_ == nullptr) return;
   model.dof_armature = model_armature_;
   model.dof_M0 = model_inertia_;
   model_armature_ = model_inertia_ = nullptr;
-  std::copy(applied_.begin(), applied_.end(), data.qfrc_applied);
 }
 
 void WaterForces::push(const mjModel& model, mjData& data, const WaterShape& shape,
