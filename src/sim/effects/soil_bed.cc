@@ -14,17 +14,16 @@ constexpr double kHeapWidth = 1.5;   // of a heap, over the sinkage beside it
 constexpr int kFarthest = 64;        // cells to it
 
 // Across a surface z = s0 x + s1 y: takes off what is along its normal.
-void project(const double* slope, double* v) {
-  const double n[3] = {-slope[0], -slope[1], 1};
-  mju_addToScl3(v, n, -mju_dot3(n, v) / mju_dot3(n, n));
+inline void project(const double* slope, double* v) {
+  const double n[3] = {-slope[0], -slope[1], 1}, along = dot3(n, v) / dot3(n, n);
+  for (int a = 0; a < 3; ++a) v[a] -= along * n[a];
 }
 
 // Of a point of a body [m/s]; `motion`: of `point`, linear, then angular.
-void velocity_at(const double* motion, const double* point, const double* p, double* v) {
-  double arm[3];
-  mju_sub3(arm, p, point);
-  mju_cross(v, motion + 3, arm);
-  mju_addTo3(v, motion);
+inline void velocity_at(const double* motion, const double* point, const double* p, double* v) {
+  const double arm[3] = {p[0] - point[0], p[1] - point[1], p[2] - point[2]};
+  cross3(motion + 3, arm, v);
+  for (int a = 0; a < 3; ++a) v[a] += motion[a];
 }
 
 // A x = b, (6 x 6), row by row; x in b's place. Gauss with pivots of rows.
@@ -73,7 +72,7 @@ SoilBed::SoilBed(const SoilDescription& soil, const mjModel& model, std::span<co
 void SoilBed::reset() {
   std::fill(cells_.begin(), cells_.end(), SoilCell{});
   for (Answer& answer : answers_of_) answer.step = 0;
-  contacts_.clear();
+  contacts_.reset();
   reactions_.clear();
   tracks_.reset();
 }
@@ -227,9 +226,9 @@ void SoilBed::push_body(const mjModel& m, mjData& d, std::span<const SoilTouch> 
     double force[6] = {}, matrix[36] = {}, system[36];
     for (size_t n = 0; n < touches.size(); ++n) {
       double arm[3];
-      mju_sub3(arm, touches[n].p, point);
+      for (int a = 0; a < 3; ++a) arm[a] = touches[n].p[a] - point[a];
       pushes_[n] = push_of(touches[n], arm, motion, dt);
-      add_push(pushes_[n], arm, force, matrix);
+      if (pushes_[n].across > 0) add_push(pushes_[n], arm, force, matrix);
     }
     mju_mulMatMat(system, matrix, body_now.inverse, 6, 6, 6);
     mju_scl(system, system, dt, 36);
@@ -317,42 +316,39 @@ SoilBed::Push SoilBed::push_of(const SoilTouch& touch, const double* arm, const 
   const SoilStrength& s = soil_.strength;
   const SoilCell& cell = cells_[static_cast<size_t>(touch.cell)];
   double v[3];
-  mju_cross(v, motion + 3, arm);
-  mju_addTo3(v, motion);
+  cross3(motion + 3, arm, v);
+  for (int a = 0; a < 3; ++a) v[a] += motion[a];
   // The pressure's direction, over an area seen from above, and so the sinkage's.
   Push out{.d = {-touch.slope[0], -touch.slope[1], 1}};
   const double* d = out.d;
-  const double sinking = mju_dot3(d, v);
+  const double sinking = dot3(d, v);
   const double modulus = s.k_c / contacts_.widths()[static_cast<size_t>(touch.patch)] + s.k_phi;
   const SoilPressure now = soil_pressure(s, cell, modulus, soil_.depth, touch.depth - dt * sinking);
   if (now.p <= 0) return out;
   out.stiffness = touch.area * now.slope * dt;
   out.load = touch.area * now.p + out.stiffness * sinking;
-  mju_scl3(out.f, d, out.load);
   // Shear, over the true area.
   double across[3],
       shear[3] = {double{cell.shear[0]}, double{cell.shear[1]}, double{cell.shear[2]}};
-  mju_copy3(across, v);
+  std::copy_n(v, 3, across);
   project(touch.slope, across);
   project(touch.slope, shear);
-  const double steep = mju_dot3(d, d), speed = mju_norm3(across);
+  const double steep = dot3(d, d), speed = std::sqrt(dot3(across, across));
   const double most = touch.area * std::sqrt(steep) * (s.cohesion + now.p * s.tan_friction);
   const double share = -std::expm1(-speed * dt / s.shear);
   out.across = most * (speed * dt > kNoWay ? share / speed : dt / s.shear);
   out.along = out.stiffness - out.across / steep;
-  mju_addToScl3(out.f, shear, most * (1 - share));
+  for (int a = 0; a < 3; ++a) out.f[a] = out.load * d[a] + most * (1 - share) * shear[a];
   return out;
 }
 
 // X' f and X' K X come to force and matrix, where X = (I, -[arm]) takes the body's motion to the
 // touch's, and K = across I + along d d'.
 void SoilBed::add_push(const Push& push, const double* arm, double* force, double* matrix) {
-  double moment[3], w[6], square = mju_dot3(arm, arm);
-  mju_cross(moment, arm, push.f);
-  mju_addTo3(force, push.f);
-  mju_addTo3(force + 3, moment);
-  mju_copy3(w, push.d);
-  mju_cross(w + 3, arm, push.d);
+  double moment[3], w[6], square = dot3(arm, arm);
+  cross3(arm, push.f, moment);
+  for (int a = 0; a < 3; ++a) force[a] += push.f[a], force[3 + a] += moment[a], w[a] = push.d[a];
+  cross3(arm, push.d, w + 3);
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j) matrix[6 * i + j] += push.along * w[i] * w[j];
   for (int i = 0; i < 3; ++i) {
