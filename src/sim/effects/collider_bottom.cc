@@ -56,6 +56,9 @@ void ColliderBottom::set_pose(const mjData& d) {
   mju_mulMatVec3(centre_, R_, box_centre_);
   mju_addTo3(centre_, p_);
   for (int a = 0; a < 3; ++a) half_[a] = reach(R_ + 3 * a);
+  const double a = R_[6] * R_[6] + R_[7] * R_[7];
+  per_round_ = a > kUpright * kUpright ? 1 / a : 0;
+  per_upright_ = std::abs(R_[8]) > kUpright ? 1 / R_[8] : 0;
   lower_.clear(), upper_.clear(), upright_.clear();
   for (const SolidPlane& plane : planes_) {
     SolidPlane world;
@@ -222,19 +225,20 @@ void ColliderBottom::add_ball(const double* o, const double* d, double z, double
 bool ColliderBottom::cylinder_at(const double* o, const double* d, double* t,
                                  double* normal) const {
   double low = -kNowhere, high = kNowhere;
-  const double a = d[0] * d[0] + d[1] * d[1], b = o[0] * d[0] + o[1] * d[1];
+  const double b = o[0] * d[0] + o[1] * d[1];
   const double c = o[0] * o[0] + o[1] * o[1] - size_[0] * size_[0];
-  if (a > kUpright * kUpright) {
-    const double root = b * b - a * c;
-    if (root < 0) return false;
-    low = (-b - std::sqrt(root)) / a, high = (-b + std::sqrt(root)) / a;
+  if (per_round_ > 0) {
+    const double middle = -b * per_round_, square = middle * middle - c * per_round_;
+    if (square < 0) return false;
+    const double half = std::sqrt(square);
+    low = middle - half, high = middle + half;
   } else if (c > 0) {
     return false;
   }
   bool end = false;
-  if (std::abs(d[2]) > kUpright) {
-    const double from = (-std::copysign(size_[1], d[2]) - o[2]) / d[2];
-    const double to = (std::copysign(size_[1], d[2]) - o[2]) / d[2];
+  if (per_upright_ != 0) {
+    const double from = (-std::copysign(size_[1], d[2]) - o[2]) * per_upright_;
+    const double to = (std::copysign(size_[1], d[2]) - o[2]) * per_upright_;
     if (from > low) low = from, end = true;
     high = std::min(high, to);
   } else if (std::abs(o[2]) > size_[1]) {

@@ -60,7 +60,8 @@ class ColliderBottom {
   double size_[3], box_centre_[3], box_half_[3];
   std::vector<SolidPlane> planes_;  // of boxes and hulls, in the geom's frame
   double p_[3] = {}, R_[9] = {};
-  double p_G_[3] = {};  // the world's origin in the geom's frame
+  double p_G_[3] = {};                      // the world's origin in the geom's frame
+  double per_round_ = 0, per_upright_ = 0;  // of cylinders: 1 / (x² + y²), 1 / z of upright lines
   double centre_[3] = {}, half_[3] = {};
   std::vector<Facet> lower_, upper_;
   std::vector<SolidPlane> upright_;  // in the world; n[2] = 0

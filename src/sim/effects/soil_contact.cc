@@ -75,7 +75,7 @@ void SoilContacts::add(const ColliderBottom& collider) {
 }
 
 // Finds how the underside has risen over each touch since it was looked at: by the motion of its
-// points along its normal.
+// points along its normal. Where it is steep, rising moves its edge the less.
 bool SoilContacts::has_stayed(const ColliderBottom& collider, Footprint* print) const {
   if (!print->known || print->touches.empty()) return false;
   const double *p = collider.position(), *R = collider.rotation(), *q = print->anchor;
@@ -100,7 +100,8 @@ bool SoilContacts::has_stayed(const ColliderBottom& collider, Footprint* print) 
     for (int a = 0; a < 3; ++a)
       move[a] = shift[a] + T[3 * a] * c[0] + T[3 * a + 1] * c[1] + T[3 * a + 2] * c[2];
     const double rise = move[2] - touch.slope[0] * move[0] - touch.slope[1] * move[1];
-    if (std::abs(rise) > kMovedDown * print->deepest) return false;
+    const double steep = 1 + std::abs(touch.slope[0]) + std::abs(touch.slope[1]);
+    if (std::abs(rise) > kMovedDown * print->deepest * steep) return false;
     print->rise.push_back(rise);
   }
   return true;
