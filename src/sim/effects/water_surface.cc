@@ -27,11 +27,6 @@ GridPoint locate(const WaterDescription& water, double x, double y) {
   return {{first, first + 1, next, next + 1}, {(1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b}};
 }
 
-// Through f(-1), f(0), f(1).
-double parabola(double a, double b, double c, double u) {
-  return b + u * ((c - a) / 2 + u * ((a + c) / 2 - b));
-}
-
 // Waves side by side, as many as make vector code; what is missing of the last is still.
 constexpr size_t kLanes = 8;
 struct Lanes {
@@ -151,14 +146,6 @@ SurfacePatch::SurfacePatch(const WaterDescription& water, const HeightChange& ri
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) value_[j][i] = water.level + sum_of(sums[j][i]);
   fit_ripples(water, ripples);
-}
-
-double SurfacePatch::waves(double x, double y) const {
-  const double u = std::clamp((x - x_) / half_x_, -1.0, 1.0);
-  const double v = std::clamp((y - y_) / half_y_, -1.0, 1.0);
-  double row[3];
-  for (int j = 0; j < 3; ++j) row[j] = parabola(value_[j][0], value_[j][1], value_[j][2], u);
-  return parabola(row[0], row[1], row[2], v);
 }
 
 void SurfacePatch::fit_ripples(const WaterDescription& water, const HeightChange& ripples) {
