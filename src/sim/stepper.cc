@@ -249,6 +249,7 @@ void Stepper::step_with_effects() {
   }
   if (soil_ != nullptr) hash_ = soil_->begin_step(step_, *m, *d, hash_);
   halved ? mj_step2(m, d) : mj_step(m, d);
+  if (soil_ != nullptr) soil_->feel(*m, *d);
   std::copy(applied_.begin(), applied_.end(), d->qfrc_applied);
 }
 

@@ -14,6 +14,20 @@
 
 namespace gloam {
 
+/// Across a surface z = s0 x + s1 y: takes off what is along its normal.
+inline void project_along(const double* slope, double* v) {
+  const double n[3] = {-slope[0], -slope[1], 1}, along = dot3(n, v) / dot3(n, n);
+  for (int a = 0; a < 3; ++a) v[a] -= along * n[a];
+}
+
+/// Of a point of a body [m/s]; `motion`: of `point`, linear, then angular.
+inline void soil_velocity_at(const double* motion, const double* point, const double* p,
+                             double* v) {
+  const double arm[3] = {p[0] - point[0], p[1] - point[1], p[2] - point[2]};
+  cross3(motion + 3, arm, v);
+  for (int a = 0; a < 3; ++a) v[a] += motion[a];
+}
+
 class SoilBed {
  public:
   /// `geoms`: all that may touch it.

@@ -73,6 +73,9 @@ class SoilContacts {
     int row = 0;     // of here_
     float area = 0;  // covered [m²]
   };
+  static constexpr int kContactLines = 12;      // over a collider, at least
+  static constexpr int kMostContactLines = 16;  // to a row of cells
+  static int lines_of(double cell, double extent);
   bool is_below(const ColliderBottom& collider, double x, double y) const;
   bool has_stayed(const ColliderBottom& collider, Footprint* print) const;
   void look(const ColliderBottom& collider, Footprint* print);

@@ -21,6 +21,10 @@ SoilEffect::SoilEffect(std::shared_ptr<const CompiledWorld> world, const mjModel
     colliders_.emplace_back(m, geom);
     geoms.push_back(geom);
   }
+  for (int sensor = 0; sensor < m.nsensor; ++sensor) {
+    if (m.sensor_type[sensor] == mjSENS_TOUCH && m.sensor_historyadr[sensor] < 0)
+      touch_sensors_.push_back(sensor);
+  }
   near_.reserve(colliders_.size());
   reactions_.reserve(geoms.size() * world_->soils.size());
   for (const SoilDescription& soil : world_->soils)
@@ -59,6 +63,24 @@ uint64_t SoilEffect::begin_step(int64_t step, const mjModel& m, mjData& d, uint6
     reactions_.insert(reactions_.end(), bed->reactions().begin(), bed->reactions().end());
   }
   return hash;
+}
+
+void SoilEffect::feel(const mjModel& m, mjData& d) const {
+  if (m.opt.disableflags & mjDSBL_SENSOR) return;
+  for (const SoilReaction& reaction : reactions_) {
+    const double load = dot3(reaction.force, reaction.normal);
+    const double outwards[3] = {-reaction.normal[0], -reaction.normal[1], -reaction.normal[2]};
+    for (const int sensor : touch_sensors_) {
+      const int site = m.sensor_objid[sensor];
+      if (load <= 0 || m.site_bodyid[site] != reaction.body ||
+          mju_rayGeom(d.site_xpos + 3 * site, d.site_xmat + 9 * site, m.site_size + 3 * site,
+                      reaction.p, outwards, m.site_type[site], nullptr) < 0)
+        continue;
+      double& reading = d.sensordata[m.sensor_adr[sensor]];
+      reading += load;
+      if (m.sensor_cutoff[sensor] > 0) reading = std::min(reading, m.sensor_cutoff[sensor]);
+    }
+  }
 }
 
 void SoilEffect::fill(std::vector<HeightChange>* tracks) {

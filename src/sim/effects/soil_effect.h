@@ -23,6 +23,10 @@ class SoilEffect {
   /// of its state. The hash goes in and comes out with what the ground has been through.
   uint64_t begin_step(int64_t step, const mjModel& model, mjData& data, uint64_t hash);
 
+  /// After the physics of that step: touch sensors sum the loads whose middle lies in their site,
+  /// as MuJoCo sums contacts. Not those with a delay, an interval or a history.
+  void feel(const mjModel& model, mjData& data) const;
+
   /// Of the last step, by beds and geoms.
   std::span<const SoilReaction> reactions() const { return reactions_; }
 
@@ -40,6 +44,7 @@ class SoilEffect {
   std::vector<std::unique_ptr<SoilBed>> beds_;
   ResponseSolver solver_;
   std::vector<SoilReaction> reactions_;
+  std::vector<int> touch_sensors_;
 };
 
 }  // namespace gloam

@@ -186,6 +186,34 @@ TEST(SoilReactions, CarryWhatRestsThereAndAreNoneInTheAirOrOnRock) {
   EXPECT_GT(ball.p[2], -0.05);
 }
 
+// As MuJoCo's own sensor on rigid ground: what weighs on the site's volume, up to the cutoff.
+TEST(SoilReactions, TouchSensorsFeelThem) {
+  auto world = world_with_soil(
+      R"(<geom type='box' size='.2 .2 .1' pos='2 0 -.1'/>
+      <body pos='0 0 .1'><freejoint/><geom size='.05' mass='2'/>
+        <site name='sole' size='.055'/><site name='top' size='.02' pos='0 0 .04'/></body>
+      <body pos='.3 0 .1'><freejoint/><geom size='.05' mass='2'/><site name='other' size='.055'/></body>
+      <body pos='2 0 .1'><freejoint/><geom size='.05' mass='2'/><site name='rock' size='.055'/></body>)",
+      bed_of("dry_sand"),
+      R"(<sensor><touch name='sole' site='sole'/><touch name='top' site='top'/>
+      <touch name='other' site='other' cutoff='5'/><touch name='rock' site='rock'/></sensor>)");
+  OnSoil rig(world);
+  const auto read = [&](const char* name) {
+    const int sensor = mj_name2id(world->model.get(), mjOBJ_SENSOR, name);
+    return rig.sim->latest()
+        .data()
+        .sensordata[static_cast<size_t>(world->model->sensor_adr[sensor])];
+  };
+  rig.run(0.06);
+  EXPECT_EQ(read("sole"), 0) << "in the air";
+  rig.run(1.5);
+  const double weight = 2 * 9.81;
+  EXPECT_NEAR(read("rock"), weight, 0.02 * weight);
+  EXPECT_NEAR(read("sole"), weight, 0.02 * weight);
+  EXPECT_EQ(read("top"), 0);
+  EXPECT_EQ(read("other"), 5);
+}
+
 // A Snapshot keeps the tracks of its instant, whatever comes later.
 TEST(SoilEffectRun, SnapshotsKeepTheirTracks) {
   auto sim = make_simulator(busy_bed(), lockstep());
