@@ -1,6 +1,7 @@
 #include "sim/effects/soil_bed.h"
 
 #include "base/hash.h"
+#include "base/wave_math.h"
 
 namespace gloam {
 namespace {
@@ -51,6 +52,7 @@ bool SoilBed::take_over(const SoilBed& before) {
 
 bool SoilBed::is_near(const mjModel& m, const mjData& d, int geom) const {
   const double *R = d.geom_xmat + 9 * geom, *box = m.geom_aabb + 6 * geom;
+  if (d.geom_xpos[3 * geom + 2] - m.geom_rbound[geom] > soil_.level) return false;
   double centre[3], half[3];
   mju_mulMatVec3(centre, R, box);
   mju_addTo3(centre, d.geom_xpos + 3 * geom);
@@ -112,7 +114,7 @@ void SoilBed::press_cell(uint32_t step, double dt, const SoilTouch& touch, const
   project_along(touch.slope, v);
   const double speed = mju_norm3(v), way = speed * dt;
   if (way < kNoWay) return;
-  const double share = -std::expm1(-way / soil_.strength.shear);
+  const double share = 1 - exponential(-way / soil_.strength.shear);
   for (int a = 0; a < 3; ++a) {
     const double shear = double{cell.shear[a]};
     cell.shear[a] = static_cast<float>(shear - (v[a] / speed + shear) * share);

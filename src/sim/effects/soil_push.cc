@@ -2,11 +2,13 @@
 
 #include "sim/effects/soil_bed.h"
 
+#include "base/wave_math.h"
+
 namespace gloam {
 namespace {
 
 constexpr int kMostIterations = 8;
-constexpr double kConverged = 1e-4;  // of the change of velocity
+constexpr double kConverged = 1e-3;  // of the change of velocity
 constexpr double kStill = 1e-9;      // [m] or [m/s]
 constexpr double kRestored = 0.1;    // of the energy of an impact, at most
 
@@ -180,7 +182,7 @@ SoilBed::Push SoilBed::push_of(const SoilTouch& touch, const double* arm, const 
   project_along(touch.slope, shear);
   const double steep = dot3(d, d), speed = std::sqrt(dot3(across, across));
   const double most = touch.area * std::sqrt(steep) * (s.cohesion + now.p * s.tan_friction);
-  const double share = -std::expm1(-speed * dt / s.shear);
+  const double share = 1 - exponential(-speed * dt / s.shear);
   out.across = most * (speed * dt > kStill ? share / speed : dt / s.shear);
   out.along = out.stiffness - out.across / steep;
   for (int a = 0; a < 3; ++a) out.f[a] = out.load * d[a] + most * (1 - share) * shear[a];
