@@ -9,6 +9,7 @@ namespace {
 constexpr double kNoWay = 1e-9;     // [m]
 constexpr double kMovesOn = 0.05;   // [m/s]
 constexpr double kHeapWidth = 1.5;  // of a heap, over the sinkage beside it
+constexpr double kNoSlide = 1e-5;   // [m]
 constexpr int kFarthest = 64;       // cells to it
 
 }  // namespace
@@ -149,7 +150,33 @@ void SoilBed::push_aside(const SoilTouch& touch, const double* velocity, double 
     const double share = 2.0 * left / (wide * (wide + 1));
     tracks_.set_height(
         cell, tracks_.height(cell) + static_cast<float>(share * volume / soil_.dx / soil_.dy));
+    slide(cell);
     --left;
+  }
+}
+
+// What lies loose slides down from a cell to the lowest beside it, and from there, until it is no
+// steeper than its friction holds; not into what is in the ground.
+void SoilBed::slide(int cell) {
+  for (int way = 0; way < kFarthest; ++way) {
+    const int i = cell % soil_.nx, j = cell / soil_.nx;
+    int lowest = -1;
+    double excess = 0;  // [m]
+    const auto look = [&](bool is_inside, int beside, double distance) {
+      if (!is_inside || contacts_.is_touched(beside)) return;
+      const double over = double{tracks_.height(cell)} - double{tracks_.height(beside)} -
+                          distance * soil_.strength.tan_friction;
+      if (over > excess) excess = over, lowest = beside;
+    };
+    look(i > 0, cell - 1, soil_.dx);
+    look(i + 1 < soil_.nx, cell + 1, soil_.dx);
+    look(j > 0, cell - soil_.nx, soil_.dy);
+    look(j + 1 < soil_.ny, cell + soil_.nx, soil_.dy);
+    if (excess < kNoSlide) return;
+    const auto part = static_cast<float>(excess / 2);
+    tracks_.set_height(cell, tracks_.height(cell) - part);
+    tracks_.set_height(lowest, tracks_.height(lowest) + part);
+    cell = lowest;
   }
 }
 

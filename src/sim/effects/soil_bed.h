@@ -69,6 +69,7 @@ class SoilBed {
   };
   void press_cell(uint32_t step, double dt, const SoilTouch& touch, const double* velocity);
   void push_aside(const SoilTouch& touch, const double* velocity, double volume);
+  void slide(int cell);
   void push_body(const mjModel& model, mjData& data, std::span<const SoilTouch> touches,
                  uint32_t step, ResponseSolver* solver);
   double limit_work(std::span<const SoilTouch> touches, const double* free, const double* change,
