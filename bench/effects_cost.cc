@@ -158,24 +158,23 @@ Status run(const Options& options) {
       picture_ratios.push_back(a / b);
     }
   }
+  const double per_block = double(steps_in(0.5, stepping[0].simulation->step_rate()));
+  std::string each;
+  for (size_t i = 2; i < stepping.size(); ++i) {
+    each += fmt::format("{}\"{}\": {:.2f}", i > 2 ? ", " : "", kEach[i - 2].name,
+                        1e6 * median(steps[i]) / per_block);
+  }
   const char* text =
       options.json
           ? "{{\"name\": \"effects_cost\", \"step_ratio\": {:.3f}, \"step_us\": {:.2f}, "
-            "\"bare_us\": {:.2f}, "
-            "\"picture_ratio\": {:.3f}, \"picture_ms\": {:.1f}, \"clear_ms\": {:.1f}, "
-            "\"real_time\": {:.2f}}}\n"
+            "\"bare_us\": {:.2f}, \"picture_ratio\": {:.3f}, \"picture_ms\": {:.1f}, "
+            "\"clear_ms\": {:.1f}, \"real_time\": {:.2f}, \"each_us\": {{{}}}}}\n"
           : "stepping: {:.3f} times the CPU time without effects ({:.2f} us a step, {:.2f} "
             "without); pictures of the fast tier: {:.3f} times the time ({:.1f} ms, {:.1f} ms "
-            "without); {:.2f} times "
-            "real time in all\n";
-  const double per_block = double(steps_in(0.5, stepping[0].simulation->step_rate()));
+            "without); {:.2f} times real time in all; one kind alone, us a step: {}\n";
   fmt::print(fmt::runtime(text), median(step_ratios), 1e6 * median(steps[0]) / per_block,
              1e6 * median(steps[1]) / per_block, median(picture_ratios), 1e3 * median(pictures[0]),
-             1e3 * median(pictures[1]), real_time);
-  for (size_t i = 2; i < stepping.size(); ++i) {
-    fmt::print(stderr, "{:8} alone: {:.2f} us a step\n", kEach[i - 2].name,
-               1e6 * median(steps[i]) / per_block);
-  }
+             1e3 * median(pictures[1]), real_time, each);
   return {};
 }
 
