@@ -2,7 +2,7 @@
 // Which cells of a bed of soil colliders reach into, how far, and over what share of them; and the
 // patches that these make, with Bekker's width b of each.
 //
-// A collider is looked at along lines in x, two or more to a row of cells and at least twelve over
+// A collider is looked at along lines in x, two or more to a row of cells and at least sixteen over
 // the collider. The ends of what is below the undisturbed surface are found by bisection, so that
 // areas and edges do not depend on how a collider lies over cells. What is found is kept until the
 // collider has moved by a tenth of a cell or a twentieth of its sinkage: until then the
@@ -73,7 +73,7 @@ class SoilContacts {
     int row = 0;     // of here_
     float area = 0;  // covered [m²]
   };
-  static constexpr int kContactLines = 12;      // over a collider, at least
+  static constexpr int kContactLines = 16;      // over a collider, at least
   static constexpr int kMostContactLines = 16;  // to a row of cells
   static int lines_of(double cell, double extent);
   bool is_below(const ColliderBottom& collider, double x, double y) const;
@@ -81,7 +81,7 @@ class SoilContacts {
   void look(const ColliderBottom& collider, Footprint* print);
   bool find_ends(const ColliderBottom& collider, double y, double low, double high, double step,
                  double* ends) const;
-  void add_line(const ColliderBottom& collider, double y, double width, const double* ends);
+  void add_line(const ColliderBottom& collider, int line, double width, const double* ends);
   void flush(int row, const ColliderBottom& collider, Footprint* print);
   void make_hull(std::vector<Point>* hull);
   void join(int row);

@@ -58,7 +58,7 @@ void SoilContacts::look(const ColliderBottom& collider, Footprint* print) {
       if (!points_.empty()) break;
       continue;
     }
-    add_line(collider, y, width, ends);
+    add_line(collider, line, width, ends);
     if (points_.empty()) points_.resize(2);  // room for what comes before
     points_.push_back({ends[0], y});
     points_.push_back({ends[1], y});
@@ -135,9 +135,11 @@ bool SoilContacts::find_ends(const ColliderBottom& collider, double y, double lo
   return ends[1] > ends[0];
 }
 
-void SoilContacts::add_line(const ColliderBottom& collider, double y, double width,
+// Each cell at one of the two places of Gauss, lines by turns at the one and the other.
+void SoilContacts::add_line(const ColliderBottom& collider, int line, double width,
                             const double* ends) {
-  const double low_x = soil_.low_x();
+  const double low_x = soil_.low_x(), y = soil_.low_y() + (line + 0.5) * width;
+  const double side = line % 2 == 0 ? -kGauss : kGauss;
   const auto cell_of = [&](double x) {
     return std::clamp(static_cast<int>((x - low_x) / soil_.dx), 0, soil_.nx - 1);
   };
@@ -148,15 +150,13 @@ void SoilContacts::add_line(const ColliderBottom& collider, double y, double wid
     const double to = std::min(ends[1], low_x + (i + 1) * soil_.dx);
     if (to <= from) continue;
     SoilTouch& sum = row_[static_cast<size_t>(i)];
-    for (const double side : {-kGauss, kGauss}) {
-      const double x = (from + to) / 2 + side * (to - from), area = (to - from) * width / 2;
-      BottomPoint point;
-      if (!collider.at(x, y, &point)) continue;  // by a rounding
-      sum.area += area;
-      sum.p[0] += area * x, sum.p[1] += area * y, sum.p[2] += area * point.z;
-      for (int a = 0; a < 2; ++a)
-        sum.slope[a] += area * std::clamp(point.slope[a], -kSteepestUnderside, kSteepestUnderside);
-    }
+    const double x = (from + to) / 2 + side * (to - from), area = (to - from) * width;
+    BottomPoint point;
+    if (!collider.at(x, y, &point)) continue;  // by a rounding
+    sum.area += area;
+    sum.p[0] += area * x, sum.p[1] += area * y, sum.p[2] += area * point.z;
+    for (int a = 0; a < 2; ++a)
+      sum.slope[a] += area * std::clamp(point.slope[a], -kSteepestUnderside, kSteepestUnderside);
   }
 }
 
