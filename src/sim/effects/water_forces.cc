@@ -175,9 +175,8 @@ bool WaterForces::sum_elements(const SurfacePatch& surface, Wet* wet) {
   for (size_t n = 0; n < kSide; ++n) {
     wet->mass += mass[n], wet->entering += entering[n];
     for (int a = 0; a < 3; ++a) {
-      wet->centre[a] += centre[a][n], wet->force[a] += force[a][n];
-      wet->damping[a] += damping[a][n];
-      wet->torque[a] += torque[a][n], wet->spin[a] += spin[a][n];
+      wet->centre[a] += centre[a][n], wet->damping[a] += damping[a][n];
+      wet->force[a] += force[a][n], wet->torque[a] += torque[a][n], wet->spin[a] += spin[a][n];
     }
   }
   if (wet->mass <= 0) return false;

@@ -66,7 +66,8 @@ TEST(EffectsStep, ForcesOfOthersStayAsTheyAreAndBodiesComeToRestWhateverTheSolve
     EXPECT_EQ(d.qfrc_applied[2], -0.125) << option;
     EXPECT_EQ(d.qfrc_applied[8], 0) << option;
     EXPECT_EQ(d.xfrc_applied[8], -0.25) << option;
-    for (int dof = 0; dof < 12; ++dof) EXPECT_NEAR(d.qvel[dof], 0, dof < 6 ? 0.02 : 0.15) << option << " " << dof;
+    for (int dof = 0; dof < 12; ++dof)
+      EXPECT_NEAR(d.qvel[dof], 0, dof < 6 ? 0.02 : 0.15) << option << " " << dof;
     EXPECT_LT(d.qpos[2], 0.05) << option << ": it sinks into sand";
     EXPECT_GT(d.qpos[2], 0) << option;
     EXPECT_NEAR(d.qpos[9], 0.0134, 0.005) << option << ": it floats";  // of a ball of 0.4
