@@ -1,11 +1,12 @@
 // What effects cost: CPU time of the thread that steps, and pictures of the fast tier, of a scene
-// with its smoke and fire against the same scene without.
+// with its gases, fires, smokes, rotors, dust, weather, waters and soils against the same scene
+// without any. People stay in both: they are no effect, and have a bar of their own.
 //
-//   effects_cost SCENE CAMERA [--at S] [--blocks N] [--pictures N] [--size WxH] [--json]
+//   effects_cost SCENE CAMERA [--at S] [--blocks N] [--pictures N] [--size WxH] [--each] [--json]
 //
 // Steps both to the time S [s], in turn through N blocks of half a second from there, and then
 // takes N pictures of each, a tenth of a second of the scene apart. Prints the median of the
-// ratios.
+// ratios. --each: steps the scene with one kind of effect at a time, too.
 
 #include <fmt/format.h>
 
@@ -25,8 +26,26 @@ struct Options {
   std::string scene, camera;
   int at = 20;  ///< [s]
   int blocks = 10, pictures = 8, width = 640, height = 480;
-  bool json = false;
+  bool each = false, json = false;
 };
+
+/// Kinds of effects that a scene can keep, as bits.
+enum Kept : unsigned { kNothing = 0, kGas = 1, kWeather = 2, kWater = 4, kSoil = 8, kAll = 15 };
+constexpr struct {
+  const char* name;
+  Kept kept;
+} kEach[] = {{"gas", kGas}, {"weather", kWeather}, {"water", kWater}, {"soil", kSoil}};
+
+Scene with_only(Scene scene, Kept kept) {
+  if (!(kept & kGas)) {
+    scene.gases.clear(), scene.fires.clear(), scene.smokes.clear();
+    scene.rotors.clear(), scene.dusts.clear();
+  }
+  if (!(kept & kWeather)) scene.weather.reset(), scene.adversity.reset();
+  if (!(kept & kWater)) scene.waters.clear();
+  if (!(kept & kSoil)) scene.soils.clear();
+  return scene;
+}
 
 constexpr int kWarmUp = 4;  ///< pictures until the fast tier's caches are full
 
@@ -42,6 +61,13 @@ int64_t steps_in(double time, Rational rate) {
 struct Stepping {
   std::unique_ptr<LiveSimulation> simulation;
   double wall = 0;
+
+  static Result<Stepping> create(const World& world, double at) {
+    Stepping out;
+    GLOAM_TRY(out.simulation, LiveSimulation::create(world, {.pace = Pace::kLockstep}));
+    GLOAM_TRY([[maybe_unused]] const double warm_up, out.advance(at));
+    return out;
+  }
 
   Result<double> advance(double time) {
     const double before = simulation->simulator().cpu_time(), begin = seconds();
@@ -93,23 +119,27 @@ struct Filming {
 
 Status run(const Options& options) {
   GLOAM_TRY(const Scene with, load_scene(options.scene));
-  Scene without = with;
-  without.gases.clear();
-  without.fires.clear();
-  without.smokes.clear();
+  const Scene without = with_only(with, kNothing);
   World worlds[2];
   GLOAM_TRY(worlds[0], World::compile(with));
   GLOAM_TRY(worlds[1], World::compile(without));
 
-  Stepping stepping[2];
-  for (int i = 0; i < 2; ++i) {
-    GLOAM_TRY(stepping[i].simulation, LiveSimulation::create(worlds[i], {.pace = Pace::kLockstep}));
-    GLOAM_TRY([[maybe_unused]] const double warm_up, stepping[i].advance(options.at));
+  std::vector<Stepping> stepping(2);
+  for (size_t i = 0; i < 2; ++i) {
+    GLOAM_TRY(stepping[i], Stepping::create(worlds[i], options.at));
+  }
+  if (options.each) {
+    for (const auto& [name, kept] : kEach) {
+      GLOAM_TRY(const World world, World::compile(with_only(with, kept)));
+      GLOAM_TRY(Stepping one, Stepping::create(world, options.at));
+      stepping.push_back(std::move(one));
+    }
   }
   const double real_time = options.at / stepping[0].wall;
-  std::vector<double> steps[2], step_ratios;
+  std::vector<std::vector<double>> steps(stepping.size());
+  std::vector<double> step_ratios;
   for (int n = 0; n < options.blocks; ++n) {
-    for (int i = 0; i < 2; ++i) {
+    for (size_t i = 0; i < stepping.size(); ++i) {
       GLOAM_TRY(const double took, stepping[i].advance(0.5));
       steps[i].push_back(took);
     }
@@ -128,18 +158,23 @@ Status run(const Options& options) {
       picture_ratios.push_back(a / b);
     }
   }
+  const double per_block = double(steps_in(0.5, stepping[0].simulation->step_rate()));
+  std::string each;
+  for (size_t i = 2; i < stepping.size(); ++i) {
+    each += fmt::format("{}\"{}\": {:.2f}", i > 2 ? ", " : "", kEach[i - 2].name,
+                        1e6 * median(steps[i]) / per_block);
+  }
   const char* text =
       options.json
           ? "{{\"name\": \"effects_cost\", \"step_ratio\": {:.3f}, \"step_us\": {:.2f}, "
-            "\"picture_ratio\": {:.3f}, \"picture_ms\": {:.1f}, \"clear_ms\": {:.1f}, "
-            "\"real_time\": {:.2f}}}\n"
-          : "stepping: {:.3f} times the CPU time without effects ({:.2f} us a step); pictures of "
-            "the fast tier: {:.3f} times the time ({:.1f} ms, {:.1f} ms without); {:.2f} times "
-            "real time in all\n";
-  const double per_block = double(steps_in(0.5, stepping[0].simulation->step_rate()));
+            "\"bare_us\": {:.2f}, \"picture_ratio\": {:.3f}, \"picture_ms\": {:.1f}, "
+            "\"clear_ms\": {:.1f}, \"real_time\": {:.2f}, \"each_us\": {{{}}}}}\n"
+          : "stepping: {:.3f} times the CPU time without effects ({:.2f} us a step, {:.2f} "
+            "without); pictures of the fast tier: {:.3f} times the time ({:.1f} ms, {:.1f} ms "
+            "without); {:.2f} times real time in all; one kind alone, us a step: {}\n";
   fmt::print(fmt::runtime(text), median(step_ratios), 1e6 * median(steps[0]) / per_block,
-             median(picture_ratios), 1e3 * median(pictures[0]), 1e3 * median(pictures[1]),
-             real_time);
+             1e6 * median(steps[1]) / per_block, median(picture_ratios), 1e3 * median(pictures[0]),
+             1e3 * median(pictures[1]), real_time, each);
   return {};
 }
 
@@ -150,6 +185,7 @@ int main(int argc, char** argv) {
   gloam::Options options;
   gloam::CommandLine line(argc, argv);
   options.json = line.flag("--json");
+  options.each = line.flag("--each");
   line.size(&options.width, &options.height);
   line.value("--at", &options.at);
   line.value("--blocks", &options.blocks);
@@ -157,7 +193,7 @@ int main(int argc, char** argv) {
   if (line.words().size() != 2) {
     fmt::print(stderr,
                "usage: effects_cost SCENE CAMERA [--at S] [--blocks N] [--pictures N] [--size WxH] "
-               "[--json]\n");
+               "[--each] [--json]\n");
     return 2;
   }
   options.scene = line.words()[0], options.camera = line.words()[1];

@@ -39,7 +39,8 @@ class JointPositionController final : public Controller {
     }
   }
 
-  void control(const mjModel*, mjData* data, int64_t, double, const VelocityTarget&) override {
+  void control(const mjModel*, mjData* data, std::span<const SoilReaction>, int64_t, double,
+               const VelocityTarget&) override {
     for (size_t i = 0; i < joints_.size(); ++i) {
       const DrivenJoint& joint = joints_[i];
       data->ctrl[joint.ctrl] = std::clamp(

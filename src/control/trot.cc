@@ -49,8 +49,8 @@ class Trot final : public TrotController {
         forces_(options_) {}
 
   void reset(const mjModel* model, const mjData* data) override;
-  void control(const mjModel* model, mjData* data, int64_t step, double period,
-               const VelocityTarget& goal) override;
+  void control(const mjModel* model, mjData* data, std::span<const SoilReaction> soil, int64_t step,
+               double period, const VelocityTarget& goal) override;
   void take_over(const mjModel* model, const mjData* data, const Controller& before) override;
   const TrotStatus& status() const override { return status_; }
 
@@ -90,7 +90,7 @@ class Trot final : public TrotController {
 };
 
 void Trot::reset(const mjModel*, const mjData* data) {
-  measure(robot_, *data, s_);
+  measure(robot_, *data, {}, s_);
   const Vector3d com_B = s_.R_WB.transpose() * (s_.com_W - s_.p_WB);
   Vector3d center = Vector3d::Zero();
   for (int k = 0; k < 4; ++k) {
@@ -258,10 +258,10 @@ void Trot::write_torque(int k, const Vector3d& torque, mjData* data) {
   }
 }
 
-void Trot::control(const mjModel*, mjData* data, int64_t, double period,
-                   const VelocityTarget& goal) {
+void Trot::control(const mjModel*, mjData* data, std::span<const SoilReaction> soil, int64_t,
+                   double period, const VelocityTarget& goal) {
   ++status_.calls;
-  measure(robot_, *data, s_);
+  measure(robot_, *data, soil, s_);
   watch_for_fall(period);
   if (status_.fallen) {
     for (int k = 0; k < 4; ++k) write_torque(k, -kFallenDamping * s_.qd[k], data);

@@ -5,9 +5,9 @@
 // acceleration over friction-limited ground forces (as in Focchi et al. 2017, "High-slope terrain
 // locomotion for torque-controlled quadruped robots").
 //
-// The robot's own base pose and velocity, joints and foot contacts are read from mjData: state
-// estimation is taken as perfect. Nothing about the world is read. Only motor torques are written,
-// within the actuators' limits.
+// The robot's own base pose and velocity, joints and foot contacts, with rigid ground or soil, are
+// read as they are: state estimation is taken as perfect. Nothing about the world is read. Only
+// motor torques are written, within the actuators' limits.
 
 #include <memory>
 

@@ -4,7 +4,8 @@
 
 namespace gloam {
 
-void measure(const Quadruped& robot, const mjData& d, TrotState& out) {
+void measure(const Quadruped& robot, const mjData& d, std::span<const SoilReaction> soil,
+             TrotState& out) {
   const mjtNum* qpos = d.qpos + robot.base_qpos;
   const mjtNum* qvel = d.qvel + robot.base_dof;
   out.p_WB = {qpos[0], qpos[1], qpos[2]};
@@ -38,6 +39,10 @@ void measure(const Quadruped& robot, const mjData& d, TrotState& out) {
       if (d.contact[c].geom[0] == robot.legs[k].foot_geom ||
           d.contact[c].geom[1] == robot.legs[k].foot_geom)
         out.touching[k] = true;
+  }
+  for (const SoilReaction& reaction : soil) {
+    for (int k = 0; k < 4; ++k)
+      if (reaction.geom == robot.legs[k].foot_geom) out.touching[k] = true;
   }
 }
 

@@ -3,8 +3,10 @@
 
 #include <Eigen/Dense>
 #include <array>
+#include <span>
 
 #include "control/trot_legs.h"
+#include "sim/soil_reaction.h"
 
 namespace gloam {
 
@@ -23,7 +25,8 @@ struct TrotState {
 };
 
 /// Reads the state; contacts are those of the last step. No allocation.
-void measure(const Quadruped& robot, const mjData& data, TrotState& out);
+void measure(const Quadruped& robot, const mjData& data, std::span<const SoilReaction> soil,
+             TrotState& out);
 
 /// Inertia of the whole robot about its centre of mass as it stands now, in B [kg m²].
 Matrix3d composite_inertia(const Quadruped& robot, const TrotState& state);

@@ -3,8 +3,11 @@
 
 #include <mujoco/mujoco.h>
 
+#include <span>
+
 #include "gloam/result.h"
 #include "gloam/types.h"
+#include "sim/soil_reaction.h"
 #include "world/world.h"
 
 namespace gloam {
@@ -26,10 +29,11 @@ class Controller {
     static_cast<void>(before);
     reset(model, data);
   }
-  /// Called before step `step`; writes d->ctrl of its own actuators only. `period` = time between
+  /// Called before step `step`; writes d->ctrl of its own actuators only. `soil`: what carries or
+  /// holds things in soft ground, of the last step as data's contacts are. `period` = time between
   /// calls [s].
-  virtual void control(const mjModel* model, mjData* data, int64_t step, double period,
-                       const VelocityTarget& goal) = 0;
+  virtual void control(const mjModel* model, mjData* data, std::span<const SoilReaction> soil,
+                       int64_t step, double period, const VelocityTarget& goal) = 0;
 };
 
 }  // namespace gloam

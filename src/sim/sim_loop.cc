@@ -152,8 +152,8 @@ void SimLoop::run_controllers() {
   const int64_t step = stepper_->step_count();
   for (ControllerSlot& slot : controllers_) {
     if (slot.due > step) continue;
-    slot.controller->control(&stepper_->model(), &stepper_->data(), step, slot.period,
-                             goal_of(slot.robot));
+    slot.controller->control(&stepper_->model(), &stepper_->data(), stepper_->soil_reactions(),
+                             step, slot.period, goal_of(slot.robot));
     slot.due = slot.schedule.step_of(++slot.k);
   }
 }

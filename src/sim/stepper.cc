@@ -22,6 +22,13 @@ void place_at_beginning(const CompiledWorld& world, const mjModel& model, mjData
   mj_comPos(&model, data);
 }
 
+// Whether mj_step1 and mj_step2 are mj_step, also when inertia grows in between: no solver has made
+// a matrix of it yet, and nobody sleeps whom a force has to wake.
+bool has_halves(const mjModel& m) {
+  return m.opt.integrator != mjINT_RK4 && m.opt.solver != mjSOL_PGS &&
+         m.opt.noslip_iterations == 0 && m.nflex == 0 && (m.opt.enableflags & mjENBL_SLEEP) == 0;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledWorld> world,
@@ -39,6 +46,7 @@ Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledW
   stepper->inputs_ = std::make_unique<AppliedInputs>(*model);
   stepper->state_.resize(static_cast<size_t>(state_size(*model)));
   stepper->next_state_.resize(stepper->state_.size());
+  stepper->applied_.resize(static_cast<size_t>(model->nv));
   stepper->sensors_.resize(static_cast<size_t>(model->nsensordata));
   stepper->pool_ = SnapshotPool::create(world, kFirstSlots);
   const Rational step_time = exact_rational(model->opt.timestep);
@@ -219,6 +227,32 @@ void Stepper::change_live(const SetLiveField& change) {
   if (!written) fail(written.error());
 }
 
+// What acts on bodies needs poses, velocities and inertias of the present. They are what the first
+// half of a step computes; where a step has no halves they are computed for this alone.
+void Stepper::step_with_effects() {
+  mjModel* m = &model_;
+  mjData* d = data_.get();
+  const bool halved = has_halves(*m);
+  if (halved) {
+    mj_step1(m, d);
+  } else {
+    mj_kinematics(m, d);
+    mj_comPos(m, d);
+    mj_comVel(m, d);
+  }
+  std::copy_n(d->qfrc_applied, m->nv, applied_.begin());  // what others apply stays as it is
+  if (effects_ != nullptr) effects_->begin_step(step_, *m, *d);
+  const bool wet = water_ != nullptr && water_->begin_step(step_, *m, *d, &hash_);
+  if (wet || !halved) {
+    mj_makeM(m, d);  // with the water that bodies carry along
+    mj_factorM(m, d);
+  }
+  if (soil_ != nullptr) hash_ = soil_->begin_step(step_, *m, *d, hash_);
+  halved ? mj_step2(m, d) : mj_step(m, d);
+  if (soil_ != nullptr) soil_->feel(*m, *d);
+  std::copy(applied_.begin(), applied_.end(), d->qfrc_applied);
+}
+
 bool Stepper::step() {
   if (failed_) return false;
   const mjModel* model = &model_;
@@ -227,14 +261,13 @@ bool Stepper::step() {
   AppliedInputs* inputs = inputs_.get();
   const bool ok = try_mujoco([=, this] {
     inputs->before_step(*model, *data);
-    if (effects_ != nullptr) effects_->begin_step(step_, model_, *data);
-    if (water_ != nullptr) hash_ = water_->begin_step(step_, model_, *data, hash_);
-    if (soil_ != nullptr) hash_ = soil_->begin_step(step_, model_, *data, hash_);
-    mj_step(model, data);
+    if (effects_ == nullptr && water_ == nullptr && soil_ == nullptr) {
+      mj_step(model, data);
+    } else {
+      step_with_effects();
+    }
   });
-  if (soil_ != nullptr) soil_->end_step(*data);
-  if (water_ != nullptr) water_->end_step(model_, *data);
-  if (effects_ != nullptr) effects_->end_step(*data);
+  if (water_ != nullptr) water_->end_step(model_);
   if (!ok) {
     Error error{ErrorKind::kDiverged, mujoco_error_message()};
     error.message +=

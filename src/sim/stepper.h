@@ -60,6 +60,10 @@ class Stepper {
   int most_contacts() const { return most_contacts_; }
   /// Null where there are none.
   const Agents* agents() const { return agents_.get(); }
+  /// Of the last step.
+  std::span<const SoilReaction> soil_reactions() const {
+    return soil_ != nullptr ? soil_->reactions() : std::span<const SoilReaction>{};
+  }
 
  private:
   Stepper() = default;
@@ -70,6 +74,7 @@ class Stepper {
   bool own_the_field(LiveFieldId field);
   void take_model(const mjModel& model);
   void count_diagnostics();
+  void step_with_effects();
   void tick_effects();
   void blow(const double* qpos);
   Status make_agents();
@@ -99,6 +104,7 @@ class Stepper {
   uint64_t hash_ = 0;
   std::vector<double> state_;       // of the last good step
   std::vector<double> next_state_;  // being checked
+  std::vector<double> applied_;     // room for qfrc_applied (nv)
   std::vector<double> sensors_;     // where mjData's are not those of a step: at start and failure
   bool own_sensors_ = false;
   double sensor_stamp_ = 0;  // [s]

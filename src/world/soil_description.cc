@@ -171,7 +171,7 @@ SoilStrength soil_strength(const std::string& kind) {
   const auto row = std::find(kSoilKinds.begin(), kSoilKinds.end(), kind) - kSoilKinds.begin();
   const KindRow& k = kKinds[static_cast<size_t>(row)];
   return {k.n,     k.k_c, k.k_phi, k.cohesion, std::tan(k.friction * std::numbers::pi / 180),
-          k.shear, 0,     k.a_u};
+          k.shear, 0,     k.a_u,   k.aside};
 }
 
 Result<std::vector<SoilDescription>> describe_soils(const Scene& scene, const mjModel& model) {

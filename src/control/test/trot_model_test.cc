@@ -31,7 +31,7 @@ struct Shaken {
     mju_normalize4(data->qpos + robot.base_qpos + 3);
     for (int i = 0; i < model->nv; ++i) data->qvel[i] = 2 * random.uniform(1, i) - 1;
     mj_forward(model.get(), data.get());
-    measure(robot, *data, state);
+    measure(robot, *data, {}, state);
   }
 };
 

@@ -9,6 +9,16 @@
 
 namespace gloam {
 
+// In line: what a step does hundreds of times must not call a library for nine products.
+inline double dot3(const double* a, const double* b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+inline void cross3(const double* a, const double* b, double* out) {
+  out[0] = a[1] * b[2] - a[2] * b[1];
+  out[1] = a[2] * b[0] - a[0] * b[2];
+  out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
 /// Edges along the world's axes of the box around a box with half edges `half`, turned by `R`.
 void edges_around(const double* R, const double* half, double* out);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/effects/body_forces.h"
 #include "sim/effects/collider_mesh.h"
 
 namespace gloam {
@@ -51,12 +52,13 @@ ColliderBottom::ColliderBottom(const mjModel& m, int geom)
 void ColliderBottom::set_pose(const mjData& d) {
   std::copy_n(d.geom_xpos + 3 * geom_, 3, p_);
   std::copy_n(d.geom_xmat + 9 * geom_, 9, R_);
+  for (int a = 0; a < 3; ++a) p_G_[a] = -(R_[a] * p_[0] + R_[3 + a] * p_[1] + R_[6 + a] * p_[2]);
   mju_mulMatVec3(centre_, R_, box_centre_);
   mju_addTo3(centre_, p_);
-  for (int a = 0; a < 3; ++a) {
-    half_[a] = 0;
-    for (int b = 0; b < 3; ++b) half_[a] += std::abs(R_[3 * a + b]) * box_half_[b];
-  }
+  for (int a = 0; a < 3; ++a) half_[a] = reach(R_ + 3 * a);
+  const double a = R_[6] * R_[6] + R_[7] * R_[7];
+  per_round_ = a > kUpright * kUpright ? 1 / a : 0;
+  per_upright_ = std::abs(R_[8]) > kUpright ? 1 / R_[8] : 0;
   lower_.clear(), upper_.clear(), upright_.clear();
   for (const SolidPlane& plane : planes_) {
     SolidPlane world;
@@ -74,29 +76,56 @@ void ColliderBottom::set_pose(const mjData& d) {
 
 bool ColliderBottom::at(double x, double y, BottomPoint* out) const {
   if (std::abs(x - centre_[0]) > half_[0] || std::abs(y - centre_[1]) > half_[1]) return false;
-  return planes_.empty() ? quadric_at(x, y, out) : facets_at(x, y, out);
-}
-
-bool ColliderBottom::facets_at(double x, double y, BottomPoint* out) const {
-  for (const SolidPlane& wall : upright_)
-    if (wall.n[0] * x + wall.n[1] * y > wall.offset) return false;
-  double low = -kNowhere, high = kNowhere;
-  const Facet* lowest = nullptr;
-  for (const Facet& f : lower_) {
-    const double z = f.a * x + f.b * y + f.c;
-    if (z > low) low = z, lowest = &f;
+  if (!planes_.empty()) {
+    const Facet* facet = facet_at(x, y, &out->z);
+    if (facet == nullptr) return false;
+    out->slope[0] = facet->a, out->slope[1] = facet->b;
+    return true;
   }
-  for (const Facet& f : upper_) high = std::min(high, f.a * x + f.b * y + f.c);
-  if (lowest == nullptr || low > high) return false;
-  *out = {low, {lowest->a, lowest->b}};
+  double normal[3] = {}, n[3];
+  if (!quadric_at(x, y, &out->z, normal)) return false;
+  for (int a = 0; a < 3; ++a) n[a] = dot3(R_ + 3 * a, normal);
+  // Of unit length before it is judged.
+  const double down = std::min(n[2], -kAsGoodAsAWall * std::sqrt(dot3(n, n)));
+  out->slope[0] = -n[0] / down, out->slope[1] = -n[1] / down;
   return true;
 }
 
+bool ColliderBottom::height_at(double x, double y, double* z) const {
+  if (std::abs(x - centre_[0]) > half_[0] || std::abs(y - centre_[1]) > half_[1]) return false;
+  if (!planes_.empty()) return facet_at(x, y, z) != nullptr;
+  double normal[3];
+  return quadric_at(x, y, z, normal);
+}
+
+bool ColliderBottom::ball_ends(double y, double level, double* ends) const {
+  const double dy = y - p_[1], dz = std::max(p_[2] - level, 0.0);
+  const double square = size_[0] * size_[0] - dy * dy - dz * dz;
+  if (square <= 0) return false;
+  const double half = std::sqrt(square);
+  ends[0] = p_[0] - half, ends[1] = p_[0] + half;
+  return true;
+}
+
+// Null: it is not above (x, y).
+const ColliderBottom::Facet* ColliderBottom::facet_at(double x, double y, double* z) const {
+  for (const SolidPlane& wall : upright_)
+    if (wall.n[0] * x + wall.n[1] * y > wall.offset) return nullptr;
+  double low = -kNowhere, high = kNowhere;
+  const Facet* lowest = nullptr;
+  for (const Facet& f : lower_) {
+    const double at = f.a * x + f.b * y + f.c;
+    if (at > low) low = at, lowest = &f;
+  }
+  for (const Facet& f : upper_) high = std::min(high, f.a * x + f.b * y + f.c);
+  *z = low;
+  return low > high ? nullptr : lowest;
+}
+
 // The upright line through (x, y), in the geom's frame: o + t d, where t is the world's z.
-bool ColliderBottom::quadric_at(double x, double y, BottomPoint* out) const {
-  const double shift[3] = {x - p_[0], y - p_[1], -p_[2]};
-  double o[3], normal[3] = {}, t = kNowhere;
-  mju_mulMatTVec3(o, R_, shift);
+bool ColliderBottom::quadric_at(double x, double y, double* out, double* normal) const {
+  double o[3], t = kNowhere;
+  for (int a = 0; a < 3; ++a) o[a] = p_G_[a] + x * R_[a] + y * R_[3 + a];
   const double* d = R_ + 6;
   switch (type_) {
     case mjGEOM_SPHERE:
@@ -108,7 +137,7 @@ bool ColliderBottom::quadric_at(double x, double y, BottomPoint* out) const {
       double side = kNowhere, side_normal[3];
       if (cylinder_at(o, d, &side, side_normal) && side < t && side_normal[2] == 0) {
         t = side;
-        mju_copy3(normal, side_normal);
+        std::copy_n(side_normal, 3, normal);
       }
       break;
     }
@@ -127,43 +156,39 @@ bool ColliderBottom::quadric_at(double x, double y, BottomPoint* out) const {
       for (int i = 0; i < 3; ++i) normal[i] = (o[i] + t * d[i]) / (size_[i] * size_[i]);
     }
   }
-  if (t >= kNowhere) return false;
-  double n[3];
-  mju_mulMatVec3(n, R_, normal);
-  mju_normalize3(n);
-  const double down = std::min(n[2], -kAsGoodAsAWall);
-  *out = {t, {-n[0] / down, -n[1] / down}};
-  return true;
+  *out = t;
+  return t < kNowhere;
 }
 
 void ColliderBottom::add_ball(const double* o, const double* d, double z, double* t,
                               double* normal) const {
   const double q[3] = {o[0], o[1], o[2] - z};
-  const double b = mju_dot3(q, d), root = b * b - mju_dot3(q, q) + size_[0] * size_[0];
+  const double b = dot3(q, d), root = b * b - dot3(q, q) + size_[0] * size_[0];
   if (root < 0) return;
   const double low = -b - std::sqrt(root);
   if (low >= *t) return;
   *t = low;
-  mju_addScl3(normal, q, d, low);
+  for (int a = 0; a < 3; ++a) normal[a] = q[a] + low * d[a];
 }
 
 // Where the line enters: through the round side, then normal[2] = 0, or through an end.
 bool ColliderBottom::cylinder_at(const double* o, const double* d, double* t,
                                  double* normal) const {
   double low = -kNowhere, high = kNowhere;
-  const double a = d[0] * d[0] + d[1] * d[1], b = o[0] * d[0] + o[1] * d[1];
+  const double b = o[0] * d[0] + o[1] * d[1];
   const double c = o[0] * o[0] + o[1] * o[1] - size_[0] * size_[0];
-  if (a > kUpright * kUpright) {
-    const double root = b * b - a * c;
-    if (root < 0) return false;
-    low = (-b - std::sqrt(root)) / a, high = (-b + std::sqrt(root)) / a;
+  if (per_round_ > 0) {
+    const double middle = -b * per_round_, square = middle * middle - c * per_round_;
+    if (square < 0) return false;
+    const double half = std::sqrt(square);
+    low = middle - half, high = middle + half;
   } else if (c > 0) {
     return false;
   }
   bool end = false;
-  if (std::abs(d[2]) > kUpright) {
-    const double from = (-std::copysign(size_[1], d[2]) - o[2]) / d[2];
-    const double to = (std::copysign(size_[1], d[2]) - o[2]) / d[2];
+  if (per_upright_ != 0) {
+    const double from = (-std::copysign(size_[1], d[2]) - o[2]) * per_upright_;
+    const double to = (std::copysign(size_[1], d[2]) - o[2]) * per_upright_;
     if (from > low) low = from, end = true;
     high = std::min(high, to);
   } else if (std::abs(o[2]) > size_[1]) {

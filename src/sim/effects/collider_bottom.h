@@ -29,15 +29,30 @@ class ColliderBottom {
   /// Of the box around it in the world [m].
   double low(int axis) const { return centre_[axis] - half_[axis]; }
   double high(int axis) const { return centre_[axis] + half_[axis]; }
+  /// Of one around what of it is lower than `level`, which something is: (x, y) each [m].
+  void box_below(double level, double* low, double* high) const;
+  /// A point of the geom's frame whose motion tells how that part of its surface moves which is at
+  /// `point` in the world: spinning about an axis of revolution does not move it.
+  void anchor_of(const double* point, double* p_G) const;
+  /// How far it has turned from an orientation `R`, as far as its shape shows that [rad], at least.
+  double turned(const double* R) const;
+  const double* position() const { return p_; }
+  const double* rotation() const { return R_; }
   /// False: it is not above (x, y).
   bool at(double x, double y, BottomPoint* out) const;
+  bool is_ball() const { return type_ == mjGEOM_SPHERE; }
+  /// Of a ball: from where to where along x, at `y`, it is lower than `level`. False: nowhere.
+  bool ball_ends(double y, double level, double* ends) const;
+  /// Only how high [m].
+  bool height_at(double x, double y, double* z) const;
 
  private:
   struct Facet {
-    double a, b, c;  ///< z = a x + b y + c
+    double a, b, c;  // z = a x + b y + c
   };
-  bool facets_at(double x, double y, BottomPoint* out) const;
-  bool quadric_at(double x, double y, BottomPoint* out) const;
+  double reach(const double* n) const;
+  const Facet* facet_at(double x, double y, double* z) const;
+  bool quadric_at(double x, double y, double* t, double* normal) const;
   bool cylinder_at(const double* o, const double* d, double* t, double* normal) const;
   void add_ball(const double* o, const double* d, double z, double* t, double* normal) const;
 
@@ -45,6 +60,8 @@ class ColliderBottom {
   double size_[3], box_centre_[3], box_half_[3];
   std::vector<SolidPlane> planes_;  // of boxes and hulls, in the geom's frame
   double p_[3] = {}, R_[9] = {};
+  double p_G_[3] = {};                      // the world's origin in the geom's frame
+  double per_round_ = 0, per_upright_ = 0;  // of cylinders: 1 / (x² + y²), 1 / z of upright lines
   double centre_[3] = {}, half_[3] = {};
   std::vector<Facet> lower_, upper_;
   std::vector<SolidPlane> upright_;  // in the world; n[2] = 0

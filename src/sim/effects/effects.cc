@@ -68,8 +68,6 @@ void Effects::begin_step(int64_t step, const mjModel& model, mjData& data) {
                      [this](size_t row) -> const MediumField& { return gases_[row]->air(); });
 }
 
-void Effects::end_step(mjData& data) { forces_.end_step(data); }
-
 void Effects::gather(const mjModel& model, const mjData& data, const Agents* agents) {
   for (const auto& gas : gases_) gas->gather(model, data, agents);
 }

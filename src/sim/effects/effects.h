@@ -38,10 +38,8 @@ class Effects {
   /// After each tick(): solves for the next fields, with the poses of this instant.
   void start(const Snapshot& now);
 
-  /// Before mj_step of step `step`: what the air does to bodies.
+  /// Adds what the air does to bodies in step `step` to data.qfrc_applied.
   void begin_step(int64_t step, const mjModel& model, mjData& data);
-  /// After it, whether it went well or not.
-  void end_step(mjData& data);
   /// Before tick() of the step it has led to, while `data` has its contacts. `agents`: null = none.
   void gather(const mjModel& model, const mjData& data, const Agents* agents);
 

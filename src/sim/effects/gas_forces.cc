@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/effects/body_forces.h"
 #include "sim/effects/wind.h"
 #include "world/visual_pose.h"
 
@@ -12,8 +13,8 @@ namespace gloam {
 namespace {
 
 constexpr Rational kLookRate{50, 1};  // [Hz]
-// Share of its velocity through the air that drag may take from a body in a step: velocities are a
-// step old, and with more what is very light would swing.
+// Share of its velocity through the air that drag may take from a body in a step: with more what is
+// very light would swing.
 constexpr double kMostPerStep = 0.25;
 constexpr double kLeastMass = 1e-9;  // [kg]: MuJoCo's model leaves out what has none, too
 
@@ -164,9 +165,8 @@ double GasForces::most_push(const mjModel& m, const mjData& d, const Felt& felt)
 void GasForces::push(const mjModel& m, mjData& d) {
   const mjOption& option = m.opt;
   const Fluid own{option.density, option.viscosity}, air = air_of(option);
-  for (Felt& felt : felt_) {
-    felt.pushed = felt.gas >= 0;
-    if (!felt.pushed) continue;
+  for (const Felt& felt : felt_) {
+    if (felt.gas < 0) continue;
     const double* R = d.ximat + 9 * felt.body;
     double twist[6], past[3], past_own[3], force[3] = {}, force_W[3];
     mj_objectVelocity(&m, &d, mjOBJ_BODY, felt.body, twist, 0);
@@ -181,16 +181,8 @@ void GasForces::push(const mjModel& m, mjData& d) {
     mju_mulMatTVec3(past_own, R, past);
     add_drag(felt.half, past_own, own, -1, force);
     mju_mulMatVec3(force_W, R, force);
-    double* applied = d.xfrc_applied + 6 * felt.body;
-    mju_copy3(felt.before, applied);
-    mju_addTo3(applied, force_W);
-  }
-}
-
-void GasForces::end_step(mjData& data) {
-  for (Felt& felt : felt_) {
-    if (felt.pushed) mju_copy3(data.xfrc_applied + 6 * felt.body, felt.before);
-    felt.pushed = false;
+    constexpr double kNoTorque[3] = {};
+    add_wrench(m, d, felt.body, force_W, kNoTorque, d.xipos + 3 * felt.body);
   }
 }
 

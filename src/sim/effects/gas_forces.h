@@ -26,9 +26,8 @@ class GasForces {
 
   /// Forgets the air: the next step looks at it.
   void reset() { next_look_ = 0; }
-  /// Before mj_step of step `step`: adds forces to data.xfrc_applied. `air(row)`: the field of a
-  /// gas. Velocities in `data` are a step old. The air around a body is looked at 50 times a
-  /// second.
+  /// Adds the forces of step `step` to data.qfrc_applied; poses and velocities in `data` are of its
+  /// state. `air(row)`: the field of a gas. The air around a body is looked at 50 times a second.
   template <class Air>
   void begin_step(int64_t step, const mjModel& model, mjData& data, Air&& air) {
     if (step >= next_look_) {
@@ -39,8 +38,6 @@ class GasForces {
     }
     push(model, data);
   }
-  /// After it: takes them back.
-  void end_step(mjData& data);
 
  private:
   // A body that moves, and the air around it.
@@ -52,8 +49,6 @@ class GasForces {
     int gas = -1;         // that pushes it; -1 = none
     double wind[3] = {};  // [m/s]
     double thinness = 1;  // T0 / T
-    double before[3] = {};  // force by others [N]
-    bool pushed = false;
   };
   void look(int row, const mjModel& model, const mjData& data, const MediumField& field);
   static double most_push(const mjModel& model, const mjData& data, const Felt& felt);

@@ -1,54 +1,16 @@
 #include "sim/effects/soil_bed.h"
 
 #include "base/hash.h"
+#include "base/wave_math.h"
 
 namespace gloam {
 namespace {
 
-constexpr int kMostIterations = 8;
-constexpr double kConverged = 1e-4;  // of the change of velocity
-constexpr double kNoWay = 1e-9;      // [m]
-constexpr double kRestored = 0.1;    // of the energy of an impact, at most
-constexpr double kMovesOn = 0.05;    // [m/s]
-constexpr double kHeapWidth = 1.5;   // of a heap, over the sinkage beside it
-constexpr int kFarthest = 64;        // cells to it
-
-// Across a surface z = s0 x + s1 y: takes off what is along its normal.
-void project(const double* slope, double* v) {
-  const double n[3] = {-slope[0], -slope[1], 1};
-  mju_addToScl3(v, n, -mju_dot3(n, v) / mju_dot3(n, n));
-}
-
-// Of a point of a body [m/s]; `motion`: of `point`, linear, then angular.
-void velocity_at(const double* motion, const double* point, const double* p, double* v) {
-  double arm[3];
-  mju_sub3(arm, p, point);
-  mju_cross(v, motion + 3, arm);
-  mju_addTo3(v, motion);
-}
-
-// A x = b, (6 x 6), row by row; x in b's place. Gauss with pivots of rows.
-void solve6(double* A, double* b) {
-  for (int i = 0; i < 6; ++i) {
-    int pivot = i;
-    for (int r = i + 1; r < 6; ++r)
-      if (std::abs(A[6 * r + i]) > std::abs(A[6 * pivot + i])) pivot = r;
-    if (A[6 * pivot + i] == 0) return;
-    if (pivot != i) {
-      std::swap_ranges(A + 6 * i, A + 6 * i + 6, A + 6 * pivot);
-      std::swap(b[i], b[pivot]);
-    }
-    for (int r = i + 1; r < 6; ++r) {
-      const double f = A[6 * r + i] / A[6 * i + i];
-      for (int c = i; c < 6; ++c) A[6 * r + c] -= f * A[6 * i + c];
-      b[r] -= f * b[i];
-    }
-  }
-  for (int i = 5; i >= 0; --i) {
-    for (int c = i + 1; c < 6; ++c) b[i] -= A[6 * i + c] * b[c];
-    b[i] /= A[6 * i + i];
-  }
-}
+constexpr double kNoWay = 1e-9;     // [m]
+constexpr double kMovesOn = 0.05;   // [m/s]
+constexpr double kHeapWidth = 1.5;  // of a heap, over the sinkage beside it
+constexpr double kNoSlide = 1e-5;   // [m]
+constexpr int kFarthest = 64;       // cells to it
 
 }  // namespace
 
@@ -58,6 +20,8 @@ SoilBed::SoilBed(const SoilDescription& soil, const mjModel& model, std::span<co
       cells_(soil.cells()),
       answers_of_(static_cast<size_t>(model.nbody)),
       tracks_(soil) {
+  pushes_.reserve(contacts_.most_touches());
+  reactions_.reserve(geoms.size());
   for (const int geom : geoms) {
     const int body = model.geom_bodyid[geom];
     Answer& answer = answers_of_[static_cast<size_t>(body)];
@@ -71,7 +35,8 @@ SoilBed::SoilBed(const SoilDescription& soil, const mjModel& model, std::span<co
 void SoilBed::reset() {
   std::fill(cells_.begin(), cells_.end(), SoilCell{});
   for (Answer& answer : answers_of_) answer.step = 0;
-  contacts_.clear();
+  contacts_.reset();
+  reactions_.clear();
   tracks_.reset();
 }
 
@@ -86,24 +51,25 @@ bool SoilBed::take_over(const SoilBed& before) {
   return true;
 }
 
-bool SoilBed::is_near(const mjModel& m, const mjData& d, int geom, double margin) const {
+bool SoilBed::is_near(const mjModel& m, const mjData& d, int geom) const {
   const double *R = d.geom_xmat + 9 * geom, *box = m.geom_aabb + 6 * geom;
+  if (d.geom_xpos[3 * geom + 2] - m.geom_rbound[geom] > soil_.level) return false;
   double centre[3], half[3];
   mju_mulMatVec3(centre, R, box);
   mju_addTo3(centre, d.geom_xpos + 3 * geom);
   edges_around(R, box + 3, half);
   double bottom = soil_.level - soil_.depth;
   if (!soil_.rest.empty()) bottom = -1e10;  // nobody is below uneven ground
-  return std::abs(centre[0] - soil_.x) < half[0] + soil_.size_x / 2 + margin &&
-         std::abs(centre[1] - soil_.y) < half[1] + soil_.size_y / 2 + margin &&
-         centre[2] - half[2] < soil_.level + margin && centre[2] + half[2] > bottom - margin;
+  return std::abs(centre[0] - soil_.x) < half[0] + soil_.size_x / 2 &&
+         std::abs(centre[1] - soil_.y) < half[1] + soil_.size_y / 2 &&
+         centre[2] - half[2] < soil_.level && centre[2] + half[2] > bottom;
 }
 
 uint64_t SoilBed::press(uint32_t step, const mjModel& m, const mjData& d,
                         std::span<const ColliderBottom* const> colliders, uint64_t hash) {
   contacts_.clear();
   for (const ColliderBottom* collider : colliders) {
-    if (is_near(m, d, collider->geom(), 0)) contacts_.add(*collider);
+    if (is_near(m, d, collider->geom())) contacts_.add(*collider);
   }
   contacts_.finish();
   int body = -1;
@@ -115,7 +81,7 @@ uint64_t SoilBed::press(uint32_t step, const mjModel& m, const mjData& d,
     }
     const double twist[6] = {motion[3], motion[4], motion[5], motion[0], motion[1], motion[2]};
     double v[3];
-    velocity_at(twist, d.xpos + 3 * body, touch.p, v);
+    soil_velocity_at(twist, d.xpos + 3 * body, touch.p, v);
     press_cell(step, m.opt.timestep, touch, v);
     const SoilCell& cell = cells_[static_cast<size_t>(touch.cell)];
     hash = hash_bytes(&cell, sizeof(cell), hash_bytes(&touch.cell, sizeof(touch.cell), hash));
@@ -146,10 +112,10 @@ void SoilBed::press_cell(uint32_t step, double dt, const SoilTouch& touch, const
   if (now.p <= 0) return;
   double v[3];
   mju_copy3(v, velocity);
-  project(touch.slope, v);
+  project_along(touch.slope, v);
   const double speed = mju_norm3(v), way = speed * dt;
   if (way < kNoWay) return;
-  const double share = -std::expm1(-way / soil_.strength.shear);
+  const double share = 1 - exponential(-way / soil_.strength.shear);
   for (int a = 0; a < 3; ++a) {
     const double shear = double{cell.shear[a]};
     cell.shear[a] = static_cast<float>(shear - (v[a] / speed + shear) * share);
@@ -184,133 +150,34 @@ void SoilBed::push_aside(const SoilTouch& touch, const double* velocity, double 
     const double share = 2.0 * left / (wide * (wide + 1));
     tracks_.set_height(
         cell, tracks_.height(cell) + static_cast<float>(share * volume / soil_.dx / soil_.dy));
+    slide(cell);
     --left;
   }
 }
 
-void SoilBed::push(uint32_t step, const mjModel& m, mjData& d, ResponseSolver* solver) {
-  const std::span<const SoilTouch> all = contacts_.touches();
-  for (size_t from = 0, to = 0; from < all.size(); from = to) {
-    while (to < all.size() && all[to].body == all[from].body) ++to;
-    push_body(m, d, all.subspan(from, to - from), step, solver);
+// What lies loose slides down from a cell to the lowest beside it, and from there, until it is no
+// steeper than its friction holds; not into what is in the ground.
+void SoilBed::slide(int cell) {
+  for (int way = 0; way < kFarthest; ++way) {
+    const int i = cell % soil_.nx, j = cell / soil_.nx;
+    int lowest = -1;
+    double excess = 0;  // [m]
+    const auto look = [&](bool is_inside, int beside, double distance) {
+      if (!is_inside || contacts_.is_touched(beside)) return;
+      const double over = double{tracks_.height(cell)} - double{tracks_.height(beside)} -
+                          distance * soil_.strength.tan_friction;
+      if (over > excess) excess = over, lowest = beside;
+    };
+    look(i > 0, cell - 1, soil_.dx);
+    look(i + 1 < soil_.nx, cell + 1, soil_.dx);
+    look(j > 0, cell - soil_.nx, soil_.dy);
+    look(j + 1 < soil_.ny, cell + soil_.nx, soil_.dy);
+    if (excess < kNoSlide) return;
+    const auto part = static_cast<float>(excess / 2);
+    tracks_.set_height(cell, tracks_.height(cell) - part);
+    tracks_.set_height(lowest, tracks_.height(lowest) + part);
+    cell = lowest;
   }
-}
-
-void SoilBed::push_body(const mjModel& m, mjData& d, std::span<const SoilTouch> touches,
-                        uint32_t step, ResponseSolver* solver) {
-  const int body = touches.front().body;
-  if (last_dof(m, body) < 0) return;
-  double point[3] = {}, area = 0;
-  for (const SoilTouch& touch : touches) {
-    mju_addToScl3(point, touch.p, touch.area);
-    area += touch.area;
-  }
-  mju_scl3(point, point, 1 / area);
-  // As it would move without this bed: with all else as in the last step.
-  Answer& answer = answers_of_[static_cast<size_t>(body)];
-  const std::span<double> joints = std::span(answers_).subspan(answer.first, answer.count);
-  const BodyResponse body_now =
-      solver->solve(m, d, body, point, answer.step == step ? joints : std::span<double>{});
-  const double dt = m.opt.timestep;
-  double free[6], motion[6], change[6];
-  mju_copy(free, body_now.velocity, 6);
-  mju_addToScl(free, body_now.acceleration, dt, 6);
-  mju_copy(motion, body_now.velocity, 6);
-  double wrench[6] = {};
-  for (int i = 0; i < kMostIterations; ++i) {
-    // wrench = force - matrix * motion, with motion = free + dt inverse * wrench.
-    double force[6] = {}, matrix[36] = {}, system[36];
-    for (const SoilTouch& touch : touches) add_touch(touch, point, motion, dt, force, matrix);
-    mju_mulMatMat(system, matrix, body_now.inverse, 6, 6, 6);
-    mju_scl(system, system, dt, 36);
-    for (int k = 0; k < 6; ++k) system[7 * k] += 1;
-    mju_mulMatVec(wrench, matrix, free, 6, 6);
-    mju_sub(wrench, force, wrench, 6);
-    solve6(system, wrench);
-    mju_mulMatVec(change, body_now.inverse, wrench, 6, 6);
-    double moved = 0, size = kNoWay;
-    for (int k = 0; k < 6; ++k) {
-      const double now = free[k] + dt * change[k];
-      moved = std::max(moved, std::abs(now - motion[k]));
-      size = std::max(size, std::abs(now - body_now.velocity[k]));
-      motion[k] = now;
-    }
-    if (moved < kConverged * size) break;
-  }
-  for (const double x : wrench)
-    if (!std::isfinite(x)) return;
-  limit_work(touches, free, change, dt, wrench);
-  add_wrench(m, d, body, wrench, wrench + 3, point);
-  answer.step = step + 1;
-  solver->accelerations(m, d, body, wrench, joints);
-}
-
-// A body so light that a step takes it far through the ground must not be thrown out of it: the bed
-// gives no more energy than it can have stored, nor than a share of what the body brings along.
-// `change`: inverse * wrench.
-void SoilBed::limit_work(std::span<const SoilTouch> touches, const double* free,
-                         const double* change, double dt, double* wrench) const {
-  double stored = 0;
-  for (const SoilTouch& touch : touches) {
-    const SoilCell& cell = cells_[static_cast<size_t>(touch.cell)];
-    if (cell.sinkage <= 0) continue;
-    const double p = double{cell.pressure};
-    stored += touch.area * p * p / (2 * cell.unloading(soil_.strength));
-  }
-  const double by_motion = dt * mju_dot(wrench, free, 6);
-  const double by_change = dt * dt / 2 * mju_dot(wrench, change, 6);
-  if (by_change <= 0) return;
-  const double brought = by_motion * by_motion / (4 * by_change);
-  stored = std::min(stored, kRestored * brought);
-  if (by_motion + by_change <= stored) return;
-  const double share =
-      (std::sqrt(by_motion * by_motion + 4 * by_change * stored) - by_motion) / (2 * by_change);
-  mju_scl(wrench, wrench, std::min(share, 1.0), 6);
-}
-
-// Adds a touch's force on its body, linear about `motion`, the body's at the step's end.
-void SoilBed::add_touch(const SoilTouch& touch, const double* point, const double* motion,
-                        double dt, double* force, double* matrix) const {
-  const SoilStrength& s = soil_.strength;
-  const SoilCell& cell = cells_[static_cast<size_t>(touch.cell)];
-  double v[3], arm[3];
-  velocity_at(motion, point, touch.p, v);
-  mju_sub3(arm, touch.p, point);
-  // The pressure's direction, over an area seen from above, and so the sinkage's.
-  const double d[3] = {-touch.slope[0], -touch.slope[1], 1};
-  const double sinking = mju_dot3(d, v);
-  const double modulus = s.k_c / contacts_.widths()[static_cast<size_t>(touch.patch)] + s.k_phi;
-  const SoilPressure now = soil_pressure(s, cell, modulus, soil_.depth, touch.depth - dt * sinking);
-  if (now.p <= 0) return;
-  const double stiffness = touch.area * now.slope * dt;  // against velocity [N s/m]
-  double f[3], K[9];
-  mju_scl3(f, d, touch.area * now.p + stiffness * sinking);
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b) K[3 * a + b] = stiffness * d[a] * d[b];
-  // Shear, over the true area.
-  double across[3],
-      shear[3] = {double{cell.shear[0]}, double{cell.shear[1]}, double{cell.shear[2]}};
-  mju_copy3(across, v);
-  project(touch.slope, across);
-  project(touch.slope, shear);
-  const double steep = mju_dot3(d, d), speed = mju_norm3(across);
-  const double most = touch.area * std::sqrt(steep) * (s.cohesion + now.p * s.tan_friction);
-  const double share = -std::expm1(-speed * dt / s.shear);
-  const double drag = most * (speed * dt > kNoWay ? share / speed : dt / s.shear);
-  mju_addToScl3(f, shear, most * (1 - share));
-  for (int a = 0; a < 3; ++a)
-    for (int b = 0; b < 3; ++b) K[3 * a + b] += drag * ((a == b) - d[a] * d[b] / steep);
-  double moment[3];
-  mju_cross(moment, arm, f);
-  mju_addTo(force, f, 3);
-  mju_addTo(force + 3, moment, 3);
-  // matrix += X' K X, where X takes the body's motion to the touch's: (I, -[arm]).
-  const double X[18] = {1,       0, 0,      0, arm[2], -arm[1], 0,      1,       0,
-                        -arm[2], 0, arm[0], 0, 0,      1,       arm[1], -arm[0], 0};
-  double KX[18], XKX[36];
-  mju_mulMatMat(KX, K, X, 3, 3, 6);
-  mju_mulMatTMat(XKX, X, KX, 3, 6, 6);
-  mju_addTo(matrix, XKX, 36);
 }
 
 }  // namespace gloam

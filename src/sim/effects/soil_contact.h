@@ -4,7 +4,9 @@
 //
 // A collider is looked at along lines in x, two or more to a row of cells and at least sixteen over
 // the collider. The ends of what is below the undisturbed surface are found by bisection, so that
-// areas and edges do not depend on how a collider lies over cells.
+// areas and edges do not depend on how a collider lies over cells. What is found is kept until the
+// collider has moved by a tenth of a cell or a twentieth of its sinkage: until then the
+// underside rises and falls over the same cells.
 
 #include <cstdint>
 #include <span>
@@ -18,7 +20,7 @@ namespace gloam {
 /// A collider in a cell. Means over what it covers of it.
 struct SoilTouch {
   int cell = 0;
-  int body = 0;
+  int geom = 0, body = 0;
   int patch = 0;         ///< row of SoilContacts::widths()
   double area = 0;       ///< seen from above [m²]
   double p[3] = {};      ///< on the collider's underside, world [m]
@@ -31,12 +33,17 @@ class SoilContacts {
   /// Has room for all that `colliders`, so many and so large, can touch.
   SoilContacts(const SoilDescription& soil, const mjModel& model, std::span<const int> geoms);
 
+  /// Forgets what it has seen.
+  void reset();
+  /// Begins an instant.
   void clear();
   /// Adds what a collider touches. Its pose is set.
   void add(const ColliderBottom& collider);
   /// After the last add(): colliders in the same or neighbouring cells make one patch.
   void finish();
 
+  /// That there can be.
+  size_t most_touches() const { return touches_.capacity(); }
   /// In the order of add(); of each collider by rows of cells.
   std::span<SoilTouch> touches() { return touches_; }
   /// Bekker's b of each patch: twice the area over the edge of the hull of what is covered, which
@@ -49,34 +56,49 @@ class SoilContacts {
  private:
   struct Point {
     double x = 0, y = 0;
-    bool operator<(const Point& o) const { return x != o.x ? x < o.x : y < o.y; }
   };
-  struct Outline {
-    size_t first, count;  // of points_
-    int parent;           // another outline of the same patch, or itself
+  // What a collider covered when it was looked at last: good until it has moved by a part of that.
+  struct Footprint {
+    bool known = false;
+    double p[3] = {}, R[9] = {};   // of the collider then
+    double anchor[3] = {};         // in its frame
+    double deepest = 0, size = 0;  // [m]
+    std::vector<SoilTouch> touches;
+    std::vector<Point> hull;
+    std::vector<double> rise;  // of the underside over each touch since then [m]
+    int parent = 0;            // another of the same patch among here_, or itself
   };
   struct Mark {
     uint32_t round = 0;
-    int outline = 0;
+    int row = 0;     // of here_
     float area = 0;  // covered [m²]
   };
-  bool is_below(const ColliderBottom& collider, double x, double y, BottomPoint* out) const;
-  bool find_ends(const ColliderBottom& collider, double y, double step, double* ends) const;
-  void add_line(const ColliderBottom& collider, double y, double width, const double* ends);
-  void add_edge(size_t line, size_t neighbour, double dy);
-  void flush(int row, int body, int outline);
-  int root(int outline);
-  double width_of(int patch);
+  static constexpr int kContactLines = 16;      // over a collider, at least
+  static constexpr int kMostContactLines = 16;  // to a row of cells
+  static int lines_of(double cell, double extent);
+  bool is_below(const ColliderBottom& collider, double x, double y) const;
+  bool has_stayed(const ColliderBottom& collider, Footprint* print) const;
+  void look(const ColliderBottom& collider, Footprint* print);
+  bool find_ends(const ColliderBottom& collider, double y, double low, double high, double step,
+                 double* ends) const;
+  void add_line(const ColliderBottom& collider, int line, double width, const double* ends);
+  void flush(int row, const ColliderBottom& collider, Footprint* print);
+  void make_hull(std::vector<Point>* hull);
+  void join(int row);
+  int root(int row) const;
+  void add_patch(int row);
 
   const SoilDescription& soil_;
+  std::vector<int> print_of_;  // geom, row of prints_
+  std::vector<Footprint> prints_;
+  std::vector<int> here_, before_;  // rows of prints_: of this instant and of the last
+  bool changed_ = true;
   std::vector<SoilTouch> row_;  // of cells along x, sums
   int row_low_, row_high_;      // in use
   std::vector<SoilTouch> touches_;
-  std::vector<Outline> outlines_;
-  std::vector<Point> points_, sorted_, hull_;
+  std::vector<Point> points_, hull_;  // room
   std::vector<double> widths_, centres_;
-  std::vector<int> patch_of_;  // outline
-  std::vector<Mark> marks_;    // of each cell
+  std::vector<Mark> marks_;  // of each cell
   uint32_t round_ = 0;
 };
 

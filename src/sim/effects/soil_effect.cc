@@ -5,9 +5,6 @@
 #include "sim/effects/collider_mesh.h"
 
 namespace gloam {
-namespace {
-constexpr double kInAStep = 0.5;  // nothing moves further [m]
-}
 
 std::unique_ptr<SoilEffect> SoilEffect::create(std::shared_ptr<const CompiledWorld> world,
                                                const mjModel& model) {
@@ -15,7 +12,7 @@ std::unique_ptr<SoilEffect> SoilEffect::create(std::shared_ptr<const CompiledWor
 }
 
 SoilEffect::SoilEffect(std::shared_ptr<const CompiledWorld> world, const mjModel& m)
-    : world_(std::move(world)), solver_(m), applied_(static_cast<size_t>(m.nv)) {
+    : world_(std::move(world)), solver_(m) {
   const std::vector<bool> collide = colliders(m);
   std::vector<int> geoms;
   for (int geom = 0; geom < m.ngeom; ++geom) {
@@ -24,12 +21,18 @@ SoilEffect::SoilEffect(std::shared_ptr<const CompiledWorld> world, const mjModel
     colliders_.emplace_back(m, geom);
     geoms.push_back(geom);
   }
+  for (int sensor = 0; sensor < m.nsensor; ++sensor) {
+    if (m.sensor_type[sensor] == mjSENS_TOUCH && m.sensor_historyadr[sensor] < 0)
+      touch_sensors_.push_back(sensor);
+  }
   near_.reserve(colliders_.size());
+  reactions_.reserve(geoms.size() * world_->soils.size());
   for (const SoilDescription& soil : world_->soils)
     beds_.push_back(std::make_unique<SoilBed>(soil, m, geoms));
 }
 
 void SoilEffect::reset() {
+  reactions_.clear();
   for (const auto& bed : beds_) bed->reset();
 }
 
@@ -41,24 +44,12 @@ void SoilEffect::take_over(const SoilEffect* before) {
   }
 }
 
-bool SoilEffect::may_touch(const mjModel& m, const mjData& d) const {
-  for (const auto& bed : beds_) {
-    for (const ColliderBottom& collider : colliders_)
-      if (bed->is_near(m, d, collider.geom(), kInAStep)) return true;
-  }
-  return false;
-}
-
 uint64_t SoilEffect::begin_step(int64_t step, const mjModel& m, mjData& d, uint64_t hash) {
-  // Poses are those before the last step, or of now.
-  if (!may_touch(m, d)) return hash;
-  mj_kinematics(&m, &d);
-  mj_comPos(&m, &d);
-  mj_comVel(&m, &d);
+  reactions_.clear();
   near_.clear();
   for (ColliderBottom& collider : colliders_) {
     const bool near = std::any_of(beds_.begin(), beds_.end(), [&](const auto& bed) {
-      return bed->is_near(m, d, collider.geom(), 0);
+      return bed->is_near(m, d, collider.geom());
     });
     if (!near) continue;
     collider.set_pose(d);
@@ -66,24 +57,30 @@ uint64_t SoilEffect::begin_step(int64_t step, const mjModel& m, mjData& d, uint6
   }
   // Cells count from 1, so that one that nothing has touched is none of the last step's.
   const uint32_t now = static_cast<uint32_t>(step) + 1;
-  bool touched = false;
   for (const auto& bed : beds_) {
     hash = bed->press(now, m, d, near_, hash);
-    touched = touched || bed->touches();
+    bed->push(now, m, d, &solver_);
+    reactions_.insert(reactions_.end(), bed->reactions().begin(), bed->reactions().end());
   }
-  if (!touched) return hash;
-  mj_makeM(&m, &d);
-  mj_factorM(&m, &d);
-  std::copy_n(d.qfrc_applied, applied_.size(), applied_.begin());
-  began_ = true;
-  for (const auto& bed : beds_) bed->push(now, m, d, &solver_);
   return hash;
 }
 
-void SoilEffect::end_step(mjData& d) {
-  if (!began_) return;
-  began_ = false;
-  std::copy(applied_.begin(), applied_.end(), d.qfrc_applied);
+void SoilEffect::feel(const mjModel& m, mjData& d) const {
+  if (m.opt.disableflags & mjDSBL_SENSOR) return;
+  for (const SoilReaction& reaction : reactions_) {
+    const double load = dot3(reaction.force, reaction.normal);
+    const double outwards[3] = {-reaction.normal[0], -reaction.normal[1], -reaction.normal[2]};
+    for (const int sensor : touch_sensors_) {
+      const int site = m.sensor_objid[sensor];
+      if (load <= 0 || m.site_bodyid[site] != reaction.body ||
+          mju_rayGeom(d.site_xpos + 3 * site, d.site_xmat + 9 * site, m.site_size + 3 * site,
+                      reaction.p, outwards, m.site_type[site], nullptr) < 0)
+        continue;
+      double& reading = d.sensordata[m.sensor_adr[sensor]];
+      reading += load;
+      if (m.sensor_cutoff[sensor] > 0) reading = std::min(reading, m.sensor_cutoff[sensor]);
+    }
+  }
 }
 
 void SoilEffect::fill(std::vector<HeightChange>* tracks) {

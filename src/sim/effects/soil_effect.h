@@ -19,11 +19,16 @@ class SoilEffect {
   /// Goes on with the tracks of soils of the same name and grid in `before`, null = none.
   void take_over(const SoilEffect* before);
 
-  /// Before the physics of step `step`; `data` is of its state. The hash goes in and comes out with
-  /// what the ground has been through. MuJoCo errors possible: call it guarded.
+  /// Adds the forces of step `step` to data.qfrc_applied; poses, velocities and qLD in `data` are
+  /// of its state. The hash goes in and comes out with what the ground has been through.
   uint64_t begin_step(int64_t step, const mjModel& model, mjData& data, uint64_t hash);
-  /// After it, whether it went well or not: takes back the forces.
-  void end_step(mjData& data);
+
+  /// After the physics of that step: touch sensors sum the loads whose middle lies in their site,
+  /// as MuJoCo sums contacts. Not those with a delay, an interval or a history.
+  void feel(const mjModel& model, mjData& data) const;
+
+  /// Of the last step, by beds and geoms.
+  std::span<const SoilReaction> reactions() const { return reactions_; }
 
   /// Tracks as they are now.
   void fill(std::vector<HeightChange>* tracks);
@@ -32,15 +37,14 @@ class SoilEffect {
 
  private:
   SoilEffect(std::shared_ptr<const CompiledWorld> world, const mjModel& model);
-  bool may_touch(const mjModel& model, const mjData& data) const;
 
   const std::shared_ptr<const CompiledWorld> world_;
   std::vector<ColliderBottom> colliders_;
   std::vector<const ColliderBottom*> near_;  // room
   std::vector<std::unique_ptr<SoilBed>> beds_;
   ResponseSolver solver_;
-  std::vector<double> applied_;  // by others (nv)
-  bool began_ = false;
+  std::vector<SoilReaction> reactions_;
+  std::vector<int> touch_sensors_;
 };
 
 }  // namespace gloam

@@ -47,40 +47,29 @@ void WaterEffect::take_over(int64_t step, const WaterEffect* before) {
   }
 }
 
-uint64_t WaterEffect::begin_step(int64_t step, mjModel& model, mjData& data, uint64_t hash) {
-  // Poses are those before the last step, or of now.
-  const bool wet = forces_.may_touch(data);
-  if (wet) {
-    mj_kinematics(&model, &data);
-    mj_comPos(&model, &data);
-    mj_comVel(&model, &data);
-  }
+bool WaterEffect::begin_step(int64_t step, mjModel& model, mjData& data, uint64_t* hash) {
   if (step == schedule_.step_of(tick_ + 1)) {
-    tick(wet ? &data : nullptr);
+    tick(data);
     for (const auto& ripples : ripples_) {
       const uint64_t digest = ripples != nullptr ? ripples->digest() : 0;
-      if (digest != 0) hash = hash_bytes(&digest, sizeof(digest), hash);
+      if (digest != 0) *hash = hash_bytes(&digest, sizeof(digest), *hash);
     }
   }
-  if (wet) {
-    look(step, changes_);
-    forces_.begin(model, data, changes_);
-  }
-  return hash;
+  look(step, changes_);
+  return forces_.begin(model, data, changes_);
 }
 
-// `data`: null = nothing is in a water.
-void WaterEffect::tick(const mjData* data) {
+void WaterEffect::tick(const mjData& data) {
   const int64_t from = tick_ >= 0 ? schedule_.step_of(tick_) : 0;
   const double interval = static_cast<double>(schedule_.step_of(++tick_) - from) * timestep_;
   for (size_t i = 0; i < ripples_.size(); ++i) {
     if (ripples_[i] == nullptr) continue;
     const WaterDescription& water = waters()[i];
     for (const WaterShape& shape : shapes_) {
-      if (data == nullptr || !forces_.is_near(i, shape, *data, 0)) continue;
-      const double* p = data->geom_xpos + 3 * shape.geom;
-      const double surface = water.level + wave_height(water, p[0], p[1], data->time);
-      ripples_[i]->displace(shape, p, data->geom_xmat + 9 * shape.geom, surface);
+      if (!forces_.is_near(i, shape, data)) continue;
+      const double* p = data.geom_xpos + 3 * shape.geom;
+      const double surface = water.level + wave_height(water, p[0], p[1], data.time);
+      ripples_[i]->displace(shape, p, data.geom_xmat + 9 * shape.geom, surface);
     }
     ripples_[i]->advance(interval);
   }

@@ -23,11 +23,12 @@ class WaterEffect {
   /// none.
   void take_over(int64_t step, const WaterEffect* before);
 
-  /// Before the physics of step `step`; `data` is of its state. Ripples advance at their ticks,
-  /// and the hash goes in and comes out with theirs. MuJoCo errors possible: call it guarded.
-  uint64_t begin_step(int64_t step, mjModel& model, mjData& data, uint64_t hash);
+  /// Adds the forces of step `step` to data.qfrc_applied, and added masses to `model` until
+  /// end_step(): true = there are some. Poses and velocities in `data` are of its state. Ripples
+  /// advance at their ticks, and the hash comes out with theirs.
+  bool begin_step(int64_t step, mjModel& model, mjData& data, uint64_t* hash);
   /// After it, whether it went well or not.
-  void end_step(mjModel& model, mjData& data) { forces_.end(model, data); }
+  void end_step(mjModel& model) { forces_.end(model); }
 
   /// Ripples at a step that begin_step() has not yet been called for.
   void fill(int64_t step, std::vector<HeightChange>* heights) const;
@@ -35,7 +36,7 @@ class WaterEffect {
  private:
   WaterEffect(std::shared_ptr<const CompiledWorld> world, Rational timestep, StepSchedule schedule);
   const std::vector<WaterDescription>& waters() const { return world_->waters; }
-  void tick(const mjData* data);
+  void tick(const mjData& data);
   void look(int64_t step, std::span<HeightChange> changes) const;
 
   const std::shared_ptr<const CompiledWorld> world_;

@@ -9,7 +9,6 @@
 namespace gloam {
 namespace {
 
-constexpr double kFarAway = 0.5;      // in a step nothing moves further [m]
 constexpr double kRippleCrest = 0.3;  // [m]
 
 }  // namespace
@@ -34,8 +33,7 @@ WaterForces::WaterForces(const mjModel& model, const std::vector<WaterDescriptio
     : waters_(waters),
       shapes_(shapes),
       armature_(static_cast<size_t>(model.nv)),
-      inertia_(armature_.size()),
-      applied_(armature_.size()) {
+      inertia_(armature_.size()) {
   for (const WaterDescription& water : waters) {
     double crest = water.ripples.nx > 0 ? kRippleCrest : 0;
     for (const WaveDescription& wave : water.waves) crest += wave.amplitude;
@@ -43,50 +41,43 @@ WaterForces::WaterForces(const mjModel& model, const std::vector<WaterDescriptio
   }
 }
 
-bool WaterForces::is_near(size_t water, const WaterShape& shape, const mjData& data,
-                          double margin) const {
+bool WaterForces::is_near(size_t water, const WaterShape& shape, const mjData& data) const {
   const WaterDescription& w = waters_[water];
   const double *p = data.geom_xpos + 3 * shape.geom, *R = data.geom_xmat + 9 * shape.geom;
   double centre[3], half[3];
   mju_mulMatVec3(centre, R, shape.centre);
   mju_addTo3(centre, p);
   edges_around(R, shape.half, half);
-  return std::abs(centre[0] - w.x) < half[0] + w.size_x / 2 + margin &&
-         std::abs(centre[1] - w.y) < half[1] + w.size_y / 2 + margin &&
-         centre[2] - half[2] < w.level + crests_[water] + margin &&
-         centre[2] + half[2] > w.level - w.depth - margin;
+  return std::abs(centre[0] - w.x) < half[0] + w.size_x / 2 &&
+         std::abs(centre[1] - w.y) < half[1] + w.size_y / 2 &&
+         centre[2] - half[2] < w.level + crests_[water] && centre[2] + half[2] > w.level - w.depth;
 }
 
-bool WaterForces::may_touch(const mjData& data) const {
-  for (size_t water = 0; water < waters_.size(); ++water) {
-    for (const WaterShape& shape : shapes_)
-      if (is_near(water, shape, data, kFarAway)) return true;
-  }
-  return false;
-}
-
-void WaterForces::begin(mjModel& model, mjData& data, std::span<const HeightChange> ripples) {
-  const auto nv = static_cast<size_t>(model.nv);
-  std::copy_n(data.qfrc_applied, nv, applied_.begin());
-  std::copy_n(model.dof_armature, nv, armature_.begin());
-  std::copy_n(model.dof_M0, nv, inertia_.begin());
+bool WaterForces::begin(mjModel& model, mjData& data, std::span<const HeightChange> ripples) {
   for (size_t water = 0; water < waters_.size(); ++water) {
     for (const WaterShape& shape : shapes_) {
-      if (is_near(water, shape, data, 0)) push(model, data, shape, waters_[water], ripples[water]);
+      if (!is_near(water, shape, data)) continue;
+      if (model_armature_ == nullptr) carry_nothing(model);
+      push(model, data, shape, waters_[water], ripples[water]);
     }
   }
+  return model_armature_ != nullptr;
+}
+
+void WaterForces::carry_nothing(mjModel& model) {
+  std::copy_n(model.dof_armature, armature_.size(), armature_.begin());
+  std::copy_n(model.dof_M0, inertia_.size(), inertia_.begin());
   model_armature_ = model.dof_armature;
   model_inertia_ = model.dof_M0;
   model.dof_armature = armature_.data();
   model.dof_M0 = inertia_.data();
 }
 
-void WaterForces::end(mjModel& model, mjData& data) {
+void WaterForces::end(mjModel& model) {
   if (model_armature_ == nullptr) return;
   model.dof_armature = model_armature_;
   model.dof_M0 = model_inertia_;
   model_armature_ = model_inertia_ = nullptr;
-  std::copy(applied_.begin(), applied_.end(), data.qfrc_applied);
 }
 
 void WaterForces::push(const mjModel& model, mjData& data, const WaterShape& shape,
@@ -135,32 +126,57 @@ bool WaterForces::sum_elements(const SurfacePatch& surface, Wet* wet) {
     k[a] = water.density / 2 * shape.drag[a] * shape.area[a] / shape.volume;
   }
   high = std::sqrt(high);
-  for (const WaterElement& e : shape.elements) {
-    const double x = p[0] + R[0] * e.p[0] + R[1] * e.p[1] + R[2] * e.p[2];
-    const double y = p[1] + R[3] * e.p[0] + R[4] * e.p[1] + R[5] * e.p[2];
-    const double z = p[2] + R[6] * e.p[0] + R[7] * e.p[1] + R[8] * e.p[2];
-    if (x < low_x || x > high_x || y < low_y || y > high_y || z < bottom) continue;
-    const double share = std::min((surface.height(x, y) - z) / high + 0.5, 1.0);
-    if (share <= 0) continue;
-    const double volume = share * e.volume;
-    const double u[3] = {v[0] + turn[1] * e.p[2] - turn[2] * e.p[1],
-                         v[1] + turn[2] * e.p[0] - turn[0] * e.p[2],
-                         v[2] + turn[0] * e.p[1] - turn[1] * e.p[0]};
-    const double lower = (1 - share) * high / 2;  // what is wet of it lies
-    if (share < 1) wet->entering -= e.volume / high * (R[6] * u[0] + R[7] * u[1] + R[8] * u[2]);
-    wet->mass += volume;
-    double c[3], f[3];
-    for (int a = 0; a < 3; ++a) {
-      wet->centre[a] += volume * (e.p[a] - R[6 + a] * lower);
-      c[a] = k[a] * std::abs(u[a]) * volume;
-      f[a] = -c[a] * u[a];
-      wet->force[a] += f[a];
-      wet->damping[a] += c[a];
+  const double per_high = 1 / high;
+  // Side by side, as many as make vector code; what is missing of the last has no volume.
+  constexpr size_t kSide = 8;
+  double mass[kSide] = {}, entering[kSide] = {}, centre[3][kSide] = {}, force[3][kSide] = {};
+  double damping[3][kSide] = {}, torque[3][kSide] = {}, spin[3][kSide] = {};
+  for (size_t from = 0; from < shape.elements.size(); from += kSide) {
+    double ex[kSide] = {}, ey[kSide] = {}, ez[kSide] = {}, volumes[kSide] = {};
+    for (size_t n = 0; n < kSide && from + n < shape.elements.size(); ++n) {
+      const WaterElement& e = shape.elements[from + n];
+      ex[n] = e.p[0], ey[n] = e.p[1], ez[n] = e.p[2], volumes[n] = e.volume;
     }
+    for (size_t n = 0; n < kSide; ++n) {
+      const double e[3] = {ex[n], ey[n], ez[n]};
+      const double x = p[0] + R[0] * e[0] + R[1] * e[1] + R[2] * e[2];
+      const double y = p[1] + R[3] * e[0] + R[4] * e[1] + R[5] * e[2];
+      const double z = p[2] + R[6] * e[0] + R[7] * e[1] + R[8] * e[2];
+      // Masks instead of branches.
+      const double inside = (x >= low_x && x <= high_x ? 1.0 : 0.0) *
+                            (y >= low_y && y <= high_y ? 1.0 : 0.0) * (z >= bottom ? 1.0 : 0.0);
+      const double over = (surface.height(x, y) - z) * per_high + 0.5;
+      const double share = inside * (over > 0 ? (over < 1 ? over : 1.0) : 0.0);
+      const double volume = share * volumes[n];
+      const double u[3] = {v[0] + turn[1] * e[2] - turn[2] * e[1],
+                           v[1] + turn[2] * e[0] - turn[0] * e[2],
+                           v[2] + turn[0] * e[1] - turn[1] * e[0]};
+      const double lower = (1 - share) * high / 2;  // what is wet of it lies
+      const double crossing =
+          inside * per_high * volumes[n] * (over > 0 ? 1.0 : 0.0) * (over < 1 ? 1.0 : 0.0);
+      entering[n] -= crossing * (R[6] * u[0] + R[7] * u[1] + R[8] * u[2]);
+      mass[n] += volume;
+      double c[3], f[3];
+      for (int a = 0; a < 3; ++a) {
+        centre[a][n] += volume * (e[a] - R[6 + a] * lower);
+        c[a] = k[a] * std::abs(u[a]) * volume;
+        f[a] = -c[a] * u[a];
+        force[a][n] += f[a];
+        damping[a][n] += c[a];
+      }
+      torque[0][n] += e[1] * f[2] - e[2] * f[1];
+      torque[1][n] += e[2] * f[0] - e[0] * f[2];
+      torque[2][n] += e[0] * f[1] - e[1] * f[0];
+      spin[0][n] += c[2] * e[1] * e[1] + c[1] * e[2] * e[2];
+      spin[1][n] += c[0] * e[2] * e[2] + c[2] * e[0] * e[0];
+      spin[2][n] += c[1] * e[0] * e[0] + c[0] * e[1] * e[1];
+    }
+  }
+  for (size_t n = 0; n < kSide; ++n) {
+    wet->mass += mass[n], wet->entering += entering[n];
     for (int a = 0; a < 3; ++a) {
-      const int i = (a + 1) % 3, j = (a + 2) % 3;
-      wet->torque[a] += e.p[i] * f[j] - e.p[j] * f[i];
-      wet->spin[a] += c[j] * e.p[i] * e.p[i] + c[i] * e.p[j] * e.p[j];
+      wet->centre[a] += centre[a][n], wet->damping[a] += damping[a][n];
+      wet->force[a] += force[a][n], wet->torque[a] += torque[a][n], wet->spin[a] += spin[a][n];
     }
   }
   if (wet->mass <= 0) return false;

@@ -28,22 +28,19 @@ class WaterForces {
   WaterForces(const mjModel& model, const std::vector<WaterDescription>& waters,
               const std::vector<WaterShape>& shapes);
 
-  /// May a collider touch a water, by the poses in `data`, which may be a step old?
-  bool may_touch(const mjData& data) const;
-
   /// Adds forces to data.qfrc_applied and gives `model` added masses, for one step. Poses,
   /// subtree centres of mass and body velocities in `data` are of the present state. `ripples`: of
-  /// each water.
-  void begin(mjModel& model, mjData& data, std::span<const HeightChange> ripples);
-  /// Takes back what begin() added. Does nothing without a begin().
-  void end(mjModel& model, mjData& data);
+  /// each water. False: nothing is in a water.
+  bool begin(mjModel& model, mjData& data, std::span<const HeightChange> ripples);
+  /// Takes back the added masses. Does nothing without a begin().
+  void end(mjModel& model);
 
-  /// Does the box around a collider reach into a water, or nearer to it than `margin` [m], by the
-  /// poses in `data`?
-  bool is_near(size_t water, const WaterShape& shape, const mjData& data, double margin) const;
+  /// Does the box around a collider reach into a water?
+  bool is_near(size_t water, const WaterShape& shape, const mjData& data) const;
 
  private:
   struct Wet;
+  void carry_nothing(mjModel& model);
   void push(const mjModel& model, mjData& data, const WaterShape& shape,
             const WaterDescription& water, const HeightChange& ripples);
   static bool sum_elements(const SurfacePatch& surface, Wet* wet);
@@ -54,7 +51,6 @@ class WaterForces {
   const std::vector<WaterShape>& shapes_;
   std::vector<double> crests_;              // of each water: what its waves reach above rest [m]
   std::vector<double> armature_, inertia_;  // the model's dof_armature and dof_M0, for a step (nv)
-  std::vector<double> applied_;             // by others (nv)
   mjtNum *model_armature_ = nullptr, *model_inertia_ = nullptr;  // null: no step has begun
 };
 

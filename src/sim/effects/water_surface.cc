@@ -4,6 +4,8 @@
 #include <cmath>
 #include <complex>
 
+#include "base/wave_math.h"
+
 namespace gloam {
 namespace {
 
@@ -25,42 +27,62 @@ GridPoint locate(const WaterDescription& water, double x, double y) {
   return {{first, first + 1, next, next + 1}, {(1 - a) * (1 - b), a * (1 - b), (1 - a) * b, a * b}};
 }
 
-// Through f(-1), f(0), f(1).
-double parabola(double a, double b, double c, double u) {
-  return b + u * ((c - a) / 2 + u * ((a + c) / 2 - b));
+// Waves side by side, as many as make vector code; what is missing of the last is still.
+constexpr size_t kLanes = 8;
+struct Lanes {
+  double amplitude[kLanes] = {}, kx[kLanes] = {}, ky[kLanes] = {}, omega[kLanes] = {};
+  double angle[kLanes] = {};
+
+  Lanes(const std::vector<WaveDescription>& waves, size_t from, double x, double y, double time) {
+    for (size_t i = 0; i < kLanes && from + i < waves.size(); ++i) {
+      const WaveDescription& wave = waves[from + i];
+      amplitude[i] = wave.amplitude, omega[i] = wave.omega;
+      kx[i] = wave.kx, ky[i] = wave.ky;
+      angle[i] = wave.kx * x + wave.ky * y - wave.omega * time + wave.phase;
+    }
+  }
+};
+
+double sum_of(const double* lanes) {
+  double sum = 0;
+  for (size_t i = 0; i < kLanes; ++i) sum += lanes[i];
+  return sum;
 }
 
 }  // namespace
 
 double wave_height(const WaterDescription& water, double x, double y, double time) {
-  double height = 0;
-  for (const WaveDescription& wave : water.waves)
-    height += wave.amplitude * std::cos(wave.kx * x + wave.ky * y - wave.omega * time + wave.phase);
-  return height;
+  double height[kLanes] = {};
+  for (size_t from = 0; from < water.waves.size(); from += kLanes) {
+    const Lanes wave(water.waves, from, x, y, time);
+    for (size_t i = 0; i < kLanes; ++i) height[i] += wave.amplitude[i] * sin_cos(wave.angle[i]).cos;
+  }
+  return sum_of(height);
 }
 
 WaveMotion wave_motion(const WaterDescription& water, double x, double y, double z, double time) {
-  WaveMotion out;
   const double depth = water.depth;
   const double below = std::clamp(z, -depth, 0.0);
-  for (const WaveDescription& wave : water.waves) {
-    const double k = wave.k();
-    const double angle = wave.kx * x + wave.ky * y - wave.omega * time + wave.phase;
-    const double c = std::cos(angle), s = std::sin(angle);
-    // cosh k(z + h) / sinh kh and sinh k(z + h) / sinh kh, without overflow.
-    const double down = std::exp(k * below), up = std::exp(-k * (below + 2 * depth));
-    const double bottom = 1 - std::exp(-2 * k * depth);
-    const double level = (down + up) / bottom, upright = (down - up) / bottom;
-    const double speed = wave.amplitude * wave.omega, rate = speed * wave.omega;
-    const double ex = wave.kx / k, ey = wave.ky / k;
-    out.velocity.x += speed * level * c * ex;
-    out.velocity.y += speed * level * c * ey;
-    out.velocity.z += speed * upright * s;
-    out.acceleration.x += rate * level * s * ex;
-    out.acceleration.y += rate * level * s * ey;
-    out.acceleration.z -= rate * upright * c;
+  double v[3][kLanes] = {}, a[3][kLanes] = {};
+  for (size_t from = 0; from < water.waves.size(); from += kLanes) {
+    const Lanes wave(water.waves, from, x, y, time);
+    for (size_t i = 0; i < kLanes; ++i) {
+      const double k = std::sqrt(wave.kx[i] * wave.kx[i] + wave.ky[i] * wave.ky[i]) + 1e-300;
+      const SinCos turn = sin_cos(wave.angle[i]);
+      // cosh k(z + h) / sinh kh and sinh k(z + h) / sinh kh, without overflow.
+      const double down = exponential(k * below), up = exponential(-k * (below + 2 * depth));
+      const double bottom = 1 - exponential(-2 * k * depth) + 1e-300;
+      const double speed = wave.amplitude[i] * wave.omega[i] / bottom, rate = speed * wave.omega[i];
+      const double level = (down + up) / k, upright = down - up;
+      v[0][i] += speed * level * turn.cos * wave.kx[i];
+      v[1][i] += speed * level * turn.cos * wave.ky[i];
+      v[2][i] += speed * upright * turn.sin;
+      a[0][i] += rate * level * turn.sin * wave.kx[i];
+      a[1][i] += rate * level * turn.sin * wave.ky[i];
+      a[2][i] -= rate * upright * turn.cos;
+    }
   }
-  return out;
+  return {{sum_of(v[0]), sum_of(v[1]), sum_of(v[2])}, {sum_of(a[0]), sum_of(a[1]), sum_of(a[2])}};
 }
 
 double ripple_height(const WaterDescription& water, const HeightChange& ripples, double x,
@@ -105,30 +127,25 @@ void surface_heights(const WaterDescription& water, const HeightChange& ripples,
 SurfacePatch::SurfacePatch(const WaterDescription& water, const HeightChange& ripples, double x,
                            double y, double half_x, double half_y, double time)
     : x_(x), y_(y), half_x_(half_x), half_y_(half_y) {
-  for (auto& row : value_) std::fill(row, row + 3, water.level);
-  for (const WaveDescription& wave : water.waves) {
-    const std::complex<double> middle =
-        std::polar(wave.amplitude, wave.kx * x + wave.ky * y - wave.omega * time + wave.phase);
-    const double ax = wave.kx * half_x, ay = wave.ky * half_y;
-    const double cx = std::cos(ax), sx = std::sin(ax), cy = std::cos(ay), sy = std::sin(ay);
-    for (int j = 0; j < 3; ++j) {
-      const double row_c = j == 1 ? 1 : cy, row_s = (j - 1) * sy;
-      for (int i = 0; i < 3; ++i) {
-        const double col_c = i == 1 ? 1 : cx, col_s = (i - 1) * sx;
-        const double c = col_c * row_c - col_s * row_s, s = col_s * row_c + col_c * row_s;
-        value_[j][i] += middle.real() * c - middle.imag() * s;
+  double sums[3][3][kLanes] = {};
+  for (size_t from = 0; from < water.waves.size(); from += kLanes) {
+    const Lanes wave(water.waves, from, x, y, time);
+    for (size_t n = 0; n < kLanes; ++n) {
+      const SinCos middle = sin_cos(wave.angle[n]);
+      const SinCos along = sin_cos(wave.kx[n] * half_x), across = sin_cos(wave.ky[n] * half_y);
+      for (int j = 0; j < 3; ++j) {
+        const double row_c = j == 1 ? 1 : across.cos, row_s = (j - 1) * across.sin;
+        for (int i = 0; i < 3; ++i) {
+          const double col_c = i == 1 ? 1 : along.cos, col_s = (i - 1) * along.sin;
+          const double c = col_c * row_c - col_s * row_s, s = col_s * row_c + col_c * row_s;
+          sums[j][i][n] += wave.amplitude[n] * (middle.cos * c - middle.sin * s);
+        }
       }
     }
   }
+  for (int j = 0; j < 3; ++j)
+    for (int i = 0; i < 3; ++i) value_[j][i] = water.level + sum_of(sums[j][i]);
   fit_ripples(water, ripples);
-}
-
-double SurfacePatch::waves(double x, double y) const {
-  const double u = std::clamp((x - x_) / half_x_, -1.0, 1.0);
-  const double v = std::clamp((y - y_) / half_y_, -1.0, 1.0);
-  double row[3];
-  for (int j = 0; j < 3; ++j) row[j] = parabola(value_[j][0], value_[j][1], value_[j][2], u);
-  return parabola(row[0], row[1], row[2], v);
 }
 
 void SurfacePatch::fit_ripples(const WaterDescription& water, const HeightChange& ripples) {

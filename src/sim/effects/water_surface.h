@@ -39,9 +39,21 @@ class SurfacePatch {
   /// z of the surface in the world [m].
   double height(double x, double y) const { return waves(x, y) + ripples(x, y); }
   /// Without ripples.
-  double waves(double x, double y) const;
+  double waves(double x, double y) const {
+    const double u = within((x - x_) / half_x_), v = within((y - y_) / half_y_);
+    return parabola(parabola(value_[0], u), parabola(value_[1], u), parabola(value_[2], u), v);
+  }
 
  private:
+  static double within(double u) {
+    u = u < 1 ? u : 1;
+    return u > -1 ? u : -1;
+  }
+  // Through f(-1), f(0), f(1).
+  static double parabola(double a, double b, double c, double u) {
+    return b + u * ((c - a) / 2 + u * ((a + c) / 2 - b));
+  }
+  static double parabola(const double* f, double u) { return parabola(f[0], f[1], f[2], u); }
   double ripples(double x, double y) const {
     return ripple_[0] + ripple_[1] * (x - x_) + ripple_[2] * (y - y_);
   }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/rng.h"
+#include "base/wave_math.h"
 #include "world/visual_pose.h"
 
 namespace gloam {
@@ -53,8 +54,12 @@ double Wind::mean_speed(double height) const {
 Vec3 Wind::gust(double time) const {
   double sum[3] = {};
   for (size_t axis = 0; axis < 3; ++axis) {
-    for (const Tone& tone : tones_[axis])
-      sum[axis] += tone.amplitude * std::cos(tone.omega * time + tone.phase);
+    double part[kTones];
+    for (size_t i = 0; i < kTones; ++i) {
+      const Tone& tone = tones_[axis][i];
+      part[i] = tone.amplitude * sin_cos(tone.omega * time + tone.phase).cos;
+    }
+    for (const double tone : part) sum[axis] += tone;
   }
   const double x = wind_.along_x, y = wind_.along_y;
   return {sum[0] * x - sum[1] * y, sum[0] * y + sum[1] * x, sum[2]};

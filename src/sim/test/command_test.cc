@@ -312,7 +312,7 @@ class GoalRecorder final : public Controller {
  public:
   explicit GoalRecorder(std::vector<std::pair<int64_t, double>>& goals) : goals_(goals) {}
   void reset(const mjModel*, const mjData*) override { goals_.clear(); }
-  void control(const mjModel*, mjData*, int64_t step, double period,
+  void control(const mjModel*, mjData*, std::span<const SoilReaction>, int64_t step, double period,
                const VelocityTarget& goal) override {
     EXPECT_EQ(period, 0.02);
     goals_.emplace_back(step, goal.vx);

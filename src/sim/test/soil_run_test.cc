@@ -147,6 +147,73 @@ TEST(SoilEffectRun, ARecompileKeepsTheTracks) {
   ASSERT_TRUE(sim->step(100).ok());
 }
 
+/// Keeps what soil did, of every call.
+class ReactionRecorder final : public Controller {
+ public:
+  explicit ReactionRecorder(std::vector<std::vector<SoilReaction>>& calls) : calls_(calls) {}
+  void reset(const mjModel*, const mjData*) override { calls_.clear(); }
+  void control(const mjModel*, mjData*, std::span<const SoilReaction> soil, int64_t, double,
+               const VelocityTarget&) override {
+    calls_.emplace_back(soil.begin(), soil.end());
+  }
+  std::vector<std::vector<SoilReaction>>& calls_;
+};
+
+TEST(SoilReactions, CarryWhatRestsThereAndAreNoneInTheAirOrOnRock) {
+  auto world = world_with_soil(
+      "<geom type='box' size='.2 .2 .1' pos='2 0 -.1'/>"
+      "<body pos='.1 .2 .3'><freejoint/><geom name='shell' contype='0' conaffinity='0' size='.05' "
+      "mass='1'/><geom name='ball' size='.05' mass='2'/></body>"
+      "<body pos='2 0 .1'><freejoint/><geom name='on rock' size='.05'/></body>",
+      bed_of("dry_sand"));
+  OnSoil rig(world);
+  std::vector<std::vector<SoilReaction>> calls;
+  ASSERT_TRUE(rig.sim->add_controller(0, std::make_unique<ReactionRecorder>(calls), {500, 1}).ok());
+  rig.run(1.5);
+  EXPECT_TRUE(calls[60].empty()) << "in the air";
+  ASSERT_EQ(calls.back().size(), 1u);
+  const SoilReaction& ball = calls.back().front();
+  EXPECT_EQ(ball.geom, mj_name2id(world->model.get(), mjOBJ_GEOM, "ball"));
+  EXPECT_EQ(ball.body, world->model->geom_bodyid[ball.geom]);
+  const double weight[3] = {0, 0, 3 * 9.81};
+  for (int a = 0; a < 3; ++a) {
+    EXPECT_NEAR(ball.force[a], weight[a], 0.01 * weight[2]) << a;
+    EXPECT_NEAR(ball.normal[a], a == 2, 0.01) << a;
+  }
+  EXPECT_NEAR(ball.p[0], 0.1, 0.002);
+  EXPECT_NEAR(ball.p[1], 0.2, 0.002);
+  EXPECT_LT(ball.p[2], 0);
+  EXPECT_GT(ball.p[2], -0.05);
+}
+
+// As MuJoCo's own sensor on rigid ground: what weighs on the site's volume, up to the cutoff.
+TEST(SoilReactions, TouchSensorsFeelThem) {
+  auto world = world_with_soil(
+      R"(<geom type='box' size='.2 .2 .1' pos='2 0 -.1'/>
+      <body pos='0 0 .1'><freejoint/><geom size='.05' mass='2'/>
+        <site name='sole' size='.055'/><site name='top' size='.02' pos='0 0 .04'/></body>
+      <body pos='.3 0 .1'><freejoint/><geom size='.05' mass='2'/><site name='other' size='.055'/></body>
+      <body pos='2 0 .1'><freejoint/><geom size='.05' mass='2'/><site name='rock' size='.055'/></body>)",
+      bed_of("dry_sand"),
+      R"(<sensor><touch name='sole' site='sole'/><touch name='top' site='top'/>
+      <touch name='other' site='other' cutoff='5'/><touch name='rock' site='rock'/></sensor>)");
+  OnSoil rig(world);
+  const auto read = [&](const char* name) {
+    const int sensor = mj_name2id(world->model.get(), mjOBJ_SENSOR, name);
+    return rig.sim->latest()
+        .data()
+        .sensordata[static_cast<size_t>(world->model->sensor_adr[sensor])];
+  };
+  rig.run(0.06);
+  EXPECT_EQ(read("sole"), 0) << "in the air";
+  rig.run(1.5);
+  const double weight = 2 * 9.81;
+  EXPECT_NEAR(read("rock"), weight, 0.02 * weight);
+  EXPECT_NEAR(read("sole"), weight, 0.02 * weight);
+  EXPECT_EQ(read("top"), 0);
+  EXPECT_EQ(read("other"), 5);
+}
+
 // A Snapshot keeps the tracks of its instant, whatever comes later.
 TEST(SoilEffectRun, SnapshotsKeepTheirTracks) {
   auto sim = make_simulator(busy_bed(), lockstep());

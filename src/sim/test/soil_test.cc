@@ -231,6 +231,29 @@ TEST(SoilBedRun, StandsWhatIsAbsurd) {
   }
 }
 
+// What a ball has pushed aside lies no steeper than its friction holds, and none of it is lost.
+TEST(SoilBedRun, HeapsLieAtTheirAngleOfRepose) {
+  SoilOptions o = bed_of("dry_sand", 1, 0.3);
+  o.cell = 0.01;
+  OnSoil rig(world_with_soil(
+      "<body pos='0 0 .4'><freejoint/><geom size='.05' density='9000'/></body>", o));
+  rig.run(1);
+  double hole = 0, heap = 0, highest = 0;
+  for (int i = -48; i < 48; ++i) {
+    for (int j = -48; j < 48; ++j) {
+      const double x = 0.01 * i + 0.005, y = 0.01 * j + 0.005, here = rig.track(x, y);
+      (here < 0 ? hole : heap) += here;
+      highest = std::max(highest, here);
+      if (here <= 0 || std::hypot(x, y) < 0.07) continue;
+      for (const double beside : {rig.track(x + 0.01, y), rig.track(x, y + 0.01)})
+        EXPECT_LT(std::abs(here - beside), 0.01 * std::tan(28 * M_PI / 180) * 1.2) << x << " " << y;
+    }
+  }
+  EXPECT_NEAR(heap, -0.5 * hole, 0.05 * heap);
+  EXPECT_GT(highest, 0.003);
+  EXPECT_LT(highest, 0.03);
+}
+
 TEST(SoilBedRun, ABallThatFallsStaysWhereItFell) {
   OnSoil ball(world_with_soil(
       "<body pos='0 0 1'><freejoint/><geom type='sphere' size='.1' density='3000'/></body>",

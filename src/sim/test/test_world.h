@@ -29,8 +29,8 @@ double random_control(int64_t step, int i);
 class RandomController final : public Controller {
  public:
   void reset(const mjModel*, const mjData*) override { ++resets; }
-  void control(const mjModel* model, mjData* data, int64_t step, double,
-               const VelocityTarget&) override {
+  void control(const mjModel* model, mjData* data, std::span<const SoilReaction>, int64_t step,
+               double, const VelocityTarget&) override {
     for (int i = 0; i < model->nu; ++i) data->ctrl[i] = random_control(step, i);
     ++calls;
   }

@@ -1,0 +1,76 @@
+#pragma once
+// Sines, cosines and exponentials without branches or tables, so that compilers make vector code of
+// loops over them; the same bits from every machine.
+
+#include <bit>
+#include <cstdint>
+
+namespace gloam {
+
+struct SinCos {
+  double sin = 0, cos = 0;
+};
+
+namespace wave_math {
+// Added and taken off again it rounds to a whole number, ties to even.
+inline constexpr double kRound = 0x1.8p52;
+inline double whole(double x) { return (x + kRound) - kRound; }
+}  // namespace wave_math
+
+/// Of |x| < 1e6, within 1e-9 of the exact ones; near 0 within 1e-13.
+inline SinCos sin_cos(double x) {
+  using wave_math::whole;
+  // pi in two parts, of which the first has zeros enough for exact products.
+  constexpr double kPi = 0x1.921fb544p+1, kPiRest = 0x1.0b4611a626331p-33;
+  const double n = whole(x * 0.31830988618379067), half = 0.5 * n;
+  const double r = (x - n * kPi) - n * kPiRest, u = r * r;
+  const double sign = whole(half) == half ? 1.0 : -1.0;
+  // Taylor's series on (-pi/2, pi/2).
+  double s = 1.0 / 355687428096000, c = -1.0 / 6402373705728000;
+  s = s * u - 1.0 / 1307674368000;
+  s = s * u + 1.0 / 6227020800;
+  s = s * u - 1.0 / 39916800;
+  s = s * u + 1.0 / 362880;
+  s = s * u - 1.0 / 5040;
+  s = s * u + 1.0 / 120;
+  s = s * u - 1.0 / 6;
+  s = s * u + 1;
+  c = c * u + 1.0 / 20922789888000;
+  c = c * u - 1.0 / 87178291200;
+  c = c * u + 1.0 / 479001600;
+  c = c * u - 1.0 / 3628800;
+  c = c * u + 1.0 / 40320;
+  c = c * u - 1.0 / 720;
+  c = c * u + 1.0 / 24;
+  c = c * u - 0.5;
+  c = c * u + 1;
+  return {sign * s * r, sign * c};
+}
+
+/// Of x from -700 to 700, within 1e-13 of the exact one; beyond as there.
+inline double exponential(double x) {
+  constexpr double kLn2 = 0x1.62e42feep-1, kLn2Rest = 0x1.a39ef35793c76p-33;
+  x = x < -700 ? -700 : x;
+  x = x > 700 ? 700 : x;
+  const double shifted = x * 1.4426950408889634 + wave_math::kRound;
+  const double n = shifted - wave_math::kRound;
+  const double r = (x - n * kLn2) - n * kLn2Rest;
+  double p = 1.0 / 479001600;
+  p = p * r + 1.0 / 39916800;
+  p = p * r + 1.0 / 3628800;
+  p = p * r + 1.0 / 362880;
+  p = p * r + 1.0 / 40320;
+  p = p * r + 1.0 / 5040;
+  p = p * r + 1.0 / 720;
+  p = p * r + 1.0 / 120;
+  p = p * r + 1.0 / 24;
+  p = p * r + 1.0 / 6;
+  p = p * r + 0.5;
+  p = p * r + 1;
+  p = p * r + 1;
+  // The lowest bits of `shifted` are n: they become the exponent of a power of two.
+  const auto bits = std::bit_cast<uint64_t>(shifted);
+  return p * std::bit_cast<double>((bits + 1023) << 52);
+}
+
+}  // namespace gloam
