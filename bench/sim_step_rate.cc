@@ -24,7 +24,8 @@ class TableController final : public Controller {
  public:
   explicit TableController(const ControlTable& table) : table_(table) {}
   void reset(const mjModel*, const mjData*) override {}
-  void control(const mjModel*, mjData* data, int64_t step, double, const VelocityTarget&) override {
+  void control(const mjModel*, mjData* data, std::span<const SoilReaction>, int64_t step, double,
+               const VelocityTarget&) override {
     table_.apply(step, data);
   }
 
