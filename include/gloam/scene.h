@@ -228,8 +228,8 @@ struct RenderOptions {
   /// Of the path tier: each pixel is sampled until its standard error is this share of its value,
   /// 0.0001 … 1 (docs/light.md); empty = as many samples in every pixel.
   std::optional<double> error = {};
-  /// Path vertices after the camera, 1 … 64; empty = 5, in a scene with [weather] 24: fog is white
-  /// by light that it scatters many times.
+  /// Path vertices after the camera, 1 … 64; empty = 5, where there are media 24: fog is white by
+  /// light that it scatters many times.
   std::optional<int> max_depth = {};
   /// cpu | cuda | auto (an NVIDIA card where this build and this machine have one, else the CPU).
   std::string device = "auto";

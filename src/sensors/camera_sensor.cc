@@ -83,9 +83,9 @@ Result<int> find_camera(const RenderDescription& description, const std::string&
 
 }  // namespace
 
-int path_depth(const RenderOptions& render, bool has_weather) {
-  constexpr int kUsual = 5, kInFog = 24;
-  return render.max_depth.value_or(has_weather ? kInFog : kUsual);
+int path_depth(const RenderOptions& render, bool has_media) {
+  constexpr int kUsual = 5, kInMedia = 24;
+  return render.max_depth.value_or(has_media ? kInMedia : kUsual);
 }
 
 Pose to_pose(const Affine3f& X) { return {{X.p.x, X.p.y, X.p.z}, quaternion_of(X)}; }
@@ -183,7 +183,7 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
     settings.error = static_cast<float>(*request.render.error);
     settings.error_floor = kFloor * max_luminance(static_cast<float>(sensor->models_->ev100()));
   }
-  settings.max_depth = path_depth(request.render, weather.shelter != nullptr);
+  settings.max_depth = path_depth(request.render, !description.volumes.empty());
   settings.roulette_depth = 2;  // unbiased, and spares the rays of dim paths
   settings.seed = hash_bytes(request.camera.data(), request.camera.size(), seed);
   if (settings.tier == RenderTier::kFast && !channels.light()) settings.tier = RenderTier::kDirect;

@@ -45,8 +45,8 @@ struct PictureMemory {
 };
 
 /// Longest path of a picture, in vertices: RenderOptions::max_depth, or what is usual in a scene
-/// with a [weather] or without.
-int path_depth(const RenderOptions& render, bool has_weather);
+/// with media or without.
+int path_depth(const RenderOptions& render, bool has_media);
 
 class CameraSensor {
  public:

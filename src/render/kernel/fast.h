@@ -291,6 +291,7 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
     float weighed = 0;
     Vec3f air = cache.mean;  // of the last step that the cache knew
     // Of what is thin, dark or behind the rest, few steps ask for light and count for many.
+    constexpr float kBrightest = 8;  // times the air's light: what one of many lamps may bring
     constexpr float kLittle = 0.03f, kLittleForLamps = 0.1f;  // scattered: then it is by chance
     const auto chance_of = [](float scatters, float much) { return min(scatters / much, 1.0f); };
     const MarchResult m = march(
@@ -298,14 +299,18 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
         [&](const MediumPoint& point, Vec3f p_W, Vec3f share) {
           const float scatters = max_component(point.scattering * share);
           Vec3f light;
-          if (const float chance = chance_of(scatters, kLittleForLamps); random.next() < chance)
-            light = scattered_light(scene, tracer, ray, point, p_W, &random, &rays) * (1 / chance);
           if (const float chance = chance_of(scatters, kLittle); random.next() < chance) {
             CacheRequest request;
             air = air_light(cache, p_W, ray.d, air, &random, &request);
-            light += point.scattering * air * (1 / chance);
+            light = point.scattering * air * (1 / chance);
             weighed += scatters / chance;
             if (random.next() * weighed < scatters / chance) requests[i] = request;
+          }
+          if (const float chance = chance_of(scatters, kLittleForLamps); random.next() < chance) {
+            Vec3f lamps = scattered_light(scene, tracer, ray, point, p_W, &random, &rays);
+            const float most = kBrightest * luminance(point.scattering * air);
+            if (most > 0) lamps *= min(most / max(luminance(lamps), 1e-9f), 1.0f);
+            light += lamps * (1 / chance);
           }
           return light;
         });
