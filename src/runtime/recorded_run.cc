@@ -120,7 +120,8 @@ std::string scene_hash(const Scene& scene) {
   return text.ok() ? hash_to_hex(hash_bytes(text->data(), text->size())) : std::string();
 }
 
-RunInfo run_info(const World& world, const RunRequest& request, double timestep, double duration) {
+RunInfo run_info(const World& world, const RunRequest& request, bool has_media, double timestep,
+                 double duration) {
   const Scene& scene = world.compiled()->scene;
   RunInfo info;
   info.title = scene.name;
@@ -131,11 +132,10 @@ RunInfo run_info(const World& world, const RunRequest& request, double timestep,
   info.seed = request.simulation.seed;
   info.timestep = timestep;
   info.duration = duration;
-  info.settings = {
-      {"tier", scene.render.tier},
-      {"spp", std::to_string(scene.render.samples())},
-      {"max_depth", std::to_string(path_depth(scene.render, scene.weather.has_value()))},
-      {"denoise", scene.render.denoise ? "true" : "false"}};
+  info.settings = {{"tier", scene.render.tier},
+                   {"spp", std::to_string(scene.render.samples())},
+                   {"max_depth", std::to_string(path_depth(scene.render, has_media))},
+                   {"denoise", scene.render.denoise ? "true" : "false"}};
   for (const DrawnOption& d : world.compiled()->drawn) info.drawn.push_back({d.option, d.value});
   if (scene.render.error)
     info.settings.push_back({"error", fmt::format("{}", *scene.render.error)});
@@ -199,7 +199,8 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   if (!request.out.empty()) {
     GLOAM_TRY(auto shared, simulation->renderer());
     GLOAM_TRY(const auto requests, camera_requests(world, request, shared->description, rate));
-    RunInfo info = run_info(world, request, 1 / rate.value(), duration);
+    RunInfo info =
+        run_info(world, request, !shared->description.volumes.empty(), 1 / rate.value(), duration);
     GLOAM_TRY(info.lidars, recorded_lidars(world, simulator.timestep()));
     uint64_t memory = 0;
     for (const CameraRequest& camera : requests) {
