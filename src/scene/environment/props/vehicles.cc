@@ -18,7 +18,7 @@ void add_fittings(PropPart* b, Workshop* shop, const std::string& black) {
         name, look,
         slab({-0.02f, y0, z0}, {0.01f, y1, z1}, 0.006f, 2).turned(Axis::kY, lean).moved(x, 0, 0));
   };
-  at_nose("grille", black, -0.42f, 0.42f, 0.30f, 0.44f, 1.985f, 0);
+  at_nose("grille", black, -0.42f, 0.42f, 0.30f, 0.44f, 1.97f, 0);
   b->show("grille", black, slab({1.90f, -0.40f, 0.60f}, {1.945f, 0.40f, 0.655f}, 0.008f, 2));
   b->show("badge", chrome, bar({1.93f, 0, 0.63f}, {1.955f, 0, 0.63f}, 0.045f, 0.042f, 20));
   const std::string white = shop->ceramic({0.86, 0.86, 0.85});
@@ -50,7 +50,6 @@ void add_fittings(PropPart* b, Workshop* shop, const std::string& black) {
     };
     seam({0.70f, 0.32f}, {0.72f, 0.80f});
     seam({-0.40f, 0.32f}, {-0.40f, 0.80f});
-    seam({-0.80f, 0.60f}, {-1.06f, 0.80f});
     for (const float x : {-0.26f, -1.0f})
       b->show(
           "handles", black,
