@@ -20,10 +20,6 @@ constexpr std::array<std::string_view, kPersonParts> kPersonPartNames = {
     "pelvis",       "chest",           "head",         "left_thigh", "left_shank",
     "left_foot",    "right_thigh",     "right_shank",  "right_foot", "left_upper_arm",
     "left_forearm", "right_upper_arm", "right_forearm"};
-constexpr std::array<std::string_view, kVehicleParts> kVehiclePartNames = {
-    "chassis",         "fork", "front_left_wheel", "front_right_wheel", "rear_left_wheel",
-    "rear_right_wheel"};
-
 template <size_t N>
 size_t row_of_word(const std::array<std::string_view, N>& words, const std::string& word) {
   return static_cast<size_t>(std::find(words.begin(), words.end(), word) - words.begin());
@@ -69,9 +65,9 @@ Status finish(const Scene& scene, std::optional<double> speed, AgentDescription*
     }
     return {};
   }
-  agent->vehicle = vehicle_shape(agent->kind);
-  agent->radius = agent->vehicle.width / 2 + 0.1;
-  agent->height = agent->vehicle.height + 0.1;
+  agent->vehicle = vehicle_size(agent->kind);
+  agent->radius = static_cast<double>(agent->vehicle.width) / 2 + 0.1;
+  agent->height = static_cast<double>(agent->vehicle.height) + 0.1;
   agent->speed = speed.value_or(usual_speed(agent->kind));
   return {};
 }
@@ -81,12 +77,12 @@ Status finish(const Scene& scene, std::optional<double> speed, AgentDescription*
 std::string_view part_name(AgentKind kind, int part) {
   const auto row = static_cast<size_t>(part);
   if (kind == AgentKind::kPerson) return kPersonPartNames[row];
-  return kVehiclePartNames[row];
+  return part == kChassis ? "chassis" : part == kFork ? "fork" : kWheelNames[row - kWheelFL];
 }
 
 int part_count(AgentKind kind) {
-  return kind == AgentKind::kPerson ? static_cast<int>(kPersonParts)
-                                    : static_cast<int>(kVehicleParts);
+  if (kind == AgentKind::kPerson) return kPersonParts;
+  return kind == AgentKind::kForklift ? kVehicleParts : kVehicleParts - 1;
 }
 
 PersonShape draw_person(uint64_t seed, std::optional<double> height) {
@@ -112,15 +108,10 @@ PersonShape draw_person(uint64_t seed, std::optional<double> height) {
   return p;
 }
 
-VehicleShape vehicle_shape(AgentKind kind) {
-  switch (kind) {
-    case AgentKind::kForklift:  // counterbalanced, 1.6 t
-      return {2.1, 1.1, 2.1, 1.4, 0.9, 0.22, 0.18, 2900, 0.6};
-    case AgentKind::kCar:  // a small one
-      return {3.9, 1.7, 1.48, 2.5, 1.5, 0.31, 0.2, 1100, 4.2};
-    default:  // a cart that drives itself
-      return {1.1, 0.7, 0.95, 0.7, 0.56, 0.08, 0.05, 120, 0.3};
-  }
+const VehicleSize& vehicle_size(AgentKind kind) {
+  return kind == AgentKind::kCar        ? kCarSize
+         : kind == AgentKind::kForklift ? kForkliftSize
+                                        : kCartSize;
 }
 
 std::string AgentDescription::body_name(int part) const {

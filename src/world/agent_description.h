@@ -9,6 +9,7 @@
 
 #include "gloam/result.h"
 #include "gloam/scene.h"
+#include "scene/environment/vehicles.h"
 
 namespace gloam {
 
@@ -37,8 +38,8 @@ enum PersonPart {
   kForearmR,
   kPersonParts
 };
-/// Of a vehicle: what moves as one, the fork of a forklift, and wheels, front ones first.
-enum VehiclePart { kChassis, kFork, kWheelFL, kWheelFR, kWheelRL, kWheelRR, kVehicleParts };
+/// Of a vehicle: what moves as one, wheels in the order of kWheelNames, the fork of a forklift.
+enum VehiclePart { kChassis, kWheelFL, kWheelFR, kWheelRL, kWheelRR, kFork, kVehicleParts };
 
 /// "pelvis", "chassis" …; empty for a part that the kind does not have.
 std::string_view part_name(AgentKind kind, int part);
@@ -65,15 +66,7 @@ struct PersonShape {
 /// 2016's means of both sexes in Europe), `height` [m] fixes it.
 PersonShape draw_person(uint64_t seed, std::optional<double> height);
 
-/// Of a vehicle [m]. The chassis's frame is on the ground in the middle between the wheels.
-struct VehicleShape {
-  double length = 0, width = 0, height = 0;
-  double wheelbase = 0, track = 0;  ///< between axles, between the wheels of one
-  double wheel_radius = 0, wheel_width = 0;
-  double mass = 0;            ///< [kg]
-  double turning_radius = 0;  ///< the least, of the middle of its unsteered axle
-};
-VehicleShape vehicle_shape(AgentKind kind);
+const VehicleSize& vehicle_size(AgentKind kind);
 
 struct AgentDescription {
   std::string name;
@@ -92,8 +85,8 @@ struct AgentDescription {
   double start = 0;  ///< [s]
   bool yields = true;
   SourceLoc loc;
-  PersonShape person;    ///< where it is one
-  VehicleShape vehicle;  ///< else
+  PersonShape person;   ///< where it is one
+  VehicleSize vehicle;  ///< else
 
   int parts() const { return part_count(kind); }
   /// Of the body of a part: NAME for the first, else NAME/PART.

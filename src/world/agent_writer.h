@@ -9,8 +9,9 @@
 
 namespace gloam {
 
-/// Adds the bodies of all agents of the scene to what is in `spec` already. Doors there, which open
-/// for agents, do not collide with them. Errors: list_agents'; the spec has a body of that name.
+/// Adds the bodies of all people of the scene to what is in `spec` already; vehicles, things of the
+/// catalogue, are there. Doors, which open for agents, do not collide with them. Errors:
+/// list_agents'; the spec has a body of that name.
 Status add_agents(const Scene& scene, mjSpec* spec);
 
 }  // namespace gloam

@@ -44,6 +44,7 @@ constexpr PropFamily (*kFamilies[])() = {
     containers,          //
     racks,               //
     trucks,              //
+    vehicles,            //
     tableware,           //
     bags,                //
     baskets,             //

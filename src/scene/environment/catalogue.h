@@ -52,6 +52,7 @@ PropFamily goods();
 PropFamily containers();
 PropFamily racks();
 PropFamily trucks();
+PropFamily vehicles();
 PropFamily tableware();
 PropFamily bags();
 PropFamily baskets();

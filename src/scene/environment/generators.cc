@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "base/hash.h"
 #include "base/srgb.h"
 
 namespace gloam {
@@ -41,6 +44,8 @@ Error located(Error error, const SourceLoc& loc) {
 
 }  // namespace
 
+bool is_vehicle(const AgentOptions& agent) { return agent.kind != "person"; }
+
 bool has_generator(const EnvironmentOptions& e) { return count_generators(e) > 0; }
 
 Status validate_environment(const Scene& scene) {
@@ -55,7 +60,9 @@ Status validate_environment(const Scene& scene) {
 }
 
 Result<std::optional<Place>> make_place(const Scene& scene) {
-  if (!has_generator(scene.environment) && scene.props.empty()) return std::optional<Place>();
+  if (!has_generator(scene.environment) && scene.props.empty() &&
+      std::none_of(scene.agents.begin(), scene.agents.end(), is_vehicle))
+    return std::optional<Place>();
   Place place("props");
   Status status;
   visit_generators(scene.environment, [&](const auto& options, auto generate) {
@@ -71,8 +78,19 @@ Result<std::optional<Place>> make_place(const Scene& scene) {
   for (const PropOptions& prop : scene.props) {
     const Result<int> made = place.make(request_of(prop));
     if (!made.ok()) return located(made.error(), prop.loc);
-    place.put_named(*made, prop.name, {prop.position, prop.orientation.value_or(Quat{})},
-                    prop.loose.value_or(place.prop(*made).loose));
+    place.put_named({*made,
+                     prop.name,
+                     {prop.position, prop.orientation.value_or(Quat{})},
+                     prop.loose.value_or(place.prop(*made).loose),
+                     false,
+                     prop.loc});
+  }
+  for (const AgentOptions& agent : scene.agents) {
+    if (!is_vehicle(agent)) continue;
+    PropRequest request{agent.kind, hash_bytes(agent.name.data(), agent.name.size(), agent.seed)};
+    const Result<int> made = place.make(request);
+    if (!made.ok()) return located(made.error(), agent.loc);
+    place.put_named({*made, agent.name, {agent.position, {}}, false, true, agent.loc});
   }
   return std::optional<Place>(std::move(place));
 }

@@ -16,9 +16,12 @@ Result<Place> make_bedroom(const BedroomOptions& options);
 Result<Place> make_tunnel(const TunnelOptions& options);
 Result<Place> make_terrain(const TerrainOptions& options);
 
-/// What the scene's environment and its [[prop]]s make; empty when it has neither. Errors: with the
-/// place in the scene file.
+/// What the scene's environment, its [[prop]]s and its vehicles make; empty when it has none.
+/// Errors: with the place in the scene file.
 Result<std::optional<Place>> make_place(const Scene& scene);
+
+/// An [[agent]] that is a thing of the catalogue.
+bool is_vehicle(const AgentOptions& agent);
 
 /// Is the ground of the scene a generator's?
 bool has_generator(const EnvironmentOptions& environment);

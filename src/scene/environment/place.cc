@@ -70,10 +70,6 @@ int Place::put(int index, const std::string& room, const Pose& X_WP, bool loose)
   return static_cast<int>(placements_.size()) - 1;
 }
 
-void Place::put_named(int index, std::string given, const Pose& X_WP, bool loose) {
-  placements_.push_back({index, std::move(given), X_WP, loose});
-}
-
 // What a material looks like in Gloam is not compiled, but what MuJoCo knows of it is.
 uint64_t Place::hash() const {
   const std::span<const Look> looks = materials.looks();
@@ -83,7 +79,7 @@ uint64_t Place::hash() const {
     pictures[static_cast<size_t>(i)] =
         hash_span<uint8_t>(picture.empty() ? std::span<const uint8_t>() : picture.image().texels);
   });
-  constexpr int kWriter = 2;  // counts changes of what place_writer makes of the same place
+  constexpr int kWriter = 3;  // counts changes of what place_writer makes of the same place
   ArchiveWriter out;
   out(kWriter);
   out(name);
@@ -102,6 +98,7 @@ uint64_t Place::hash() const {
     out(placement.name);
     out(placement.X_WP);
     out(placement.loose);
+    out(placement.driven);
   }
   for (const Scatter& scatter : scatters_) {
     out(scatter.prop);

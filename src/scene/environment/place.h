@@ -18,7 +18,9 @@ struct Placement {
   int prop = 0;
   std::string name;  ///< unique: "kitchen/chair_2"
   Pose X_WP = {};
-  bool loose = false;  ///< moves freely
+  bool loose = false;   ///< moves freely
+  bool driven = false;  ///< each part is a mocap body
+  SourceLoc loc = {};
 };
 
 /// Many of one prop, all of one body: what is drawn alone, without parts or colliders.
@@ -56,7 +58,7 @@ class Place {
   int add(Prop prop);
   /// Puts it there under `room`/LABEL_N. Returns its index in placements().
   int put(int prop, const std::string& room, const Pose& X_WP, bool loose = false);
-  void put_named(int prop, std::string name, const Pose& X_WP, bool loose);
+  void put_named(Placement placement) { placements_.push_back(std::move(placement)); }
 
   /// Many of one, for the eye alone: grass, pebbles.
   void scatter(int prop, std::string name, std::vector<Pose> poses) {

@@ -69,23 +69,21 @@ class PlaceWriter {
       geom->friction[0] = ground.friction;
     }
     for (const Placement& placement : place_.placements()) {
-      GLOAM_TRY_STATUS(check_name(placement.name));
+      GLOAM_TRY_STATUS(check_name(placement.name, placement.loc));
       add_placement(placement);
     }
     for (const Scatter& scatter : place_.scatters()) {
-      GLOAM_TRY_STATUS(check_name(scatter.name));
+      GLOAM_TRY_STATUS(check_name(scatter.name, {}));
       add_scatter(scatter);
     }
     return {};
   }
 
  private:
-  Status check_name(const std::string& body) const {
+  Status check_name(const std::string& body, const SourceLoc& loc) const {
     if (mjs_findBody(spec_, body.c_str()) == nullptr) return {};
-    return Error{ErrorKind::kInput,
-                 fmt::format("the environment has a body '{}' already", body),
-                 {},
-                 "rename the prop"};
+    return Error{ErrorKind::kInput, fmt::format("the environment has a body '{}' already", body),
+                 loc, "rename what the scene adds"};
   }
 
   static void name(mjsElement* element, const std::string& text) {
@@ -155,14 +153,16 @@ class PlaceWriter {
     std::vector<mjsBody*> bodies;
     for (size_t i = 0; i < prop.parts.size(); ++i) {
       const PropPart& part = prop.parts[i];
-      mjsBody* parent =
-          part.parent < 0 ? mjs_findBody(spec_, "world") : bodies[static_cast<size_t>(part.parent)];
+      mjsBody* parent = part.parent < 0 || placement.driven
+                            ? mjs_findBody(spec_, "world")
+                            : bodies[static_cast<size_t>(part.parent)];
       mjsBody* body = mjs_addBody(parent, nullptr);
       bodies.push_back(body);
       const std::string body_name =
           part.parent < 0 ? placement.name : placement.name + "/" + part.name;
       name(body->element, body_name);
-      if (part.parent < 0) {
+      body->mocap = placement.driven ? 1 : 0;
+      if (part.parent < 0 || placement.driven) {
         write_pose(placement.X_WP, body->pos, body->quat);
         if (placement.loose) name(mjs_addFreeJoint(body)->element, body_name);
       } else {

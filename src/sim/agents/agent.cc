@@ -6,7 +6,7 @@ namespace gloam {
 namespace {
 
 // Comfortable ones: people start with 0.7 to 1.2 m/s² and turn at up to 120 degrees a second
-// (Kouchaki et al. 2022); electric lift trucks and cars are driven at up to 1.5 m/s².
+// (Kouchaki et al. 2022).
 constexpr double kAcceleration = 1.2, kBraking = 2.2;  // [m/s²]
 constexpr double kTurnRate = 2.1;                      // [rad/s]
 constexpr double kPushTime = 0.35;                     // in which a push is walked off [s]
@@ -24,31 +24,6 @@ class WalkGround final : public GroundHeight {
   const NavWorld& world_;
   double height_;  // of where the body is [m]
 };
-
-void move_vehicle(double dt, AgentBody* agent) {
-  AgentMotion& m = agent->motion;
-  const VehicleShape& shape = agent->description->vehicle;
-  const Vec3d ahead = heading_vector(m.heading);
-  const double wanted = norm(m.wanted), speed = dot(m.velocity, ahead);
-  double turn = 0, target = 0;
-  if (wanted > 0.02) {
-    const double error = wrapped(std::atan2(m.wanted.y, m.wanted.x) - m.heading);
-    target = wanted * std::max(std::cos(error), 0.25);
-    turn = 2.5 * error;
-  }
-  const double change = target > speed ? kAcceleration : kBraking;
-  const double now = speed + std::clamp(target - speed, -change * dt, change * dt);
-  // A cart turns on the spot; the others on circles.
-  const double most =
-      agent->description->kind == AgentKind::kCart ? 1.2 : std::abs(now) / shape.turning_radius;
-  const double rate = std::clamp(turn, -most, most);
-  m.yaw_rate += std::clamp(rate - m.yaw_rate, -4 * dt, 4 * dt);
-  m.heading = wrapped(m.heading + m.yaw_rate * dt);
-  m.velocity = heading_vector(m.heading) * now;
-  agent->vehicle.roll = wrapped(agent->vehicle.roll + now * dt / shape.wheel_radius);
-  const double steer = std::atan2(m.yaw_rate * shape.wheelbase, std::max(std::abs(now), 0.3));
-  agent->vehicle.steer += std::clamp(steer - agent->vehicle.steer, -2 * dt, 2 * dt);
-}
 
 void move_person(double dt, AgentBody* agent) {
   AgentMotion& m = agent->motion;
@@ -92,8 +67,7 @@ void AgentBody::find_pose(double time) {
     after = walker.pose(walk_input(time));
     return;
   }
-  const auto pose =
-      vehicle_pose(description->vehicle, description->kind, motion.p, motion.heading, vehicle);
+  const auto pose = vehicle_pose(description->vehicle, motion.p, motion.heading, vehicle);
   std::copy(pose.begin(), pose.end(), after.begin());
 }
 
@@ -122,7 +96,11 @@ void move_body(double dt, double time, const NavMesh& mesh, const NavWorld& worl
   m.push = m.push * std::exp(-dt / kPushTime);
   if (norm(m.push) < 1e-3) m.push = {};
 
-  d.kind == AgentKind::kPerson ? move_person(dt, agent) : move_vehicle(dt, agent);
+  const bool drives = d.kind != AgentKind::kPerson;
+  if (drives)
+    drive(d.vehicle, dt, m.wanted, &m.velocity, &m.heading, &m.yaw_rate, &agent->vehicle);
+  else
+    move_person(dt, agent);
   const Vec3d by = (m.velocity + m.push) * dt;
   Vec3d to = m.p + by;
   if (norm(by) > 0 && agent->intent.mode != AgentIntent::Mode::kSpline &&
@@ -133,8 +111,12 @@ void move_body(double dt, double time, const NavMesh& mesh, const NavWorld& worl
     to.z = on.z;
   }
   const double z = world.ground_below({to.x, to.y, to.z}, 0.5, 0.8);
+  const Vec3d moved = flat(to - m.p);
   m.p = {to.x, to.y, z};
-  if (d.kind == AgentKind::kPerson)
+  if (drives)
+    roll_wheels(d.vehicle, dt, dot(moved, heading_vector(m.heading)) / dt, m.yaw_rate,
+                &agent->vehicle);
+  else
     agent->walker.step(dt, agent->walk_input(time), WalkGround(world, z));
 }
 

@@ -253,7 +253,7 @@ void Agents::decide(int64_t step, const mjModel& m, const mjData& data) {
     if (changed && agent.motion.is_whole == 0) agent.motion.has_goal = 0;  // it may be free now
     decide_intent(around, row, &agent);
   }
-  doors_->decide(data, agents_);
+  doors_->decide(data, agents_, nav_->obstacles(), decision_time_);
   for (size_t row = 0; row < agents_.size(); ++row) agents_[row].motion.wanted = steer(row, data);
 }
 

@@ -48,6 +48,7 @@ class Agents {
   Vec3d steer(size_t row, const mjData& data);
   void avoid(size_t row, Vec3d* wanted);
   bool has_room(size_t row, Vec3d wanted) const;
+  double free_speed(size_t row) const;
   double time_of(int64_t step) const { return static_cast<double>(step) * timestep_; }
 
   const std::shared_ptr<const CompiledWorld> world_;

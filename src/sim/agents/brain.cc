@@ -16,7 +16,13 @@ constexpr double kTouch = 1;                   // that a touch is remembered for
 constexpr int kTries = 12;
 
 bool has_arrived(const AgentBody& agent) {
-  return agent.motion.has_goal != 0 && flat_norm(agent.path.end() - agent.motion.p) < kThere;
+  if (agent.motion.has_goal == 0) return false;
+  const Vec3d to = flat(agent.path.end() - agent.motion.p);
+  // What turns in circles has passed what lies behind it and cannot be turned to.
+  const double radius =
+      agent.description->kind == AgentKind::kPerson ? 0 : agent.description->vehicle.turning_radius;
+  return norm(to) < kThere ||
+         (norm(to) < radius && dot(to, heading_vector(agent.motion.heading)) < 0);
 }
 
 class Brain final : public TreeHost {

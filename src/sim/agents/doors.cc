@@ -10,6 +10,9 @@ constexpr double kWide = 0.75;     // share of the way that a leaf has to be ope
 constexpr double kPush = 30;       // a hand's, at a metre (ISO 21542: doors open at 25 N) [N m]
 constexpr double kStiffness = 40;  // [N m/rad]
 constexpr double kDamping = 14;    // [N m s/rad]
+// Back: the moment of a door closer of size 2 (EN 1154), 27 degrees a second, after two seconds.
+constexpr double kCloser = 13, kClosing = 90, kHush = 28, kWait = 2;
+constexpr double kShut = 0.03;  // [rad]
 
 }  // namespace
 
@@ -26,6 +29,7 @@ AgentDoors::AgentDoors(const CompiledWorld& world, const mjModel& m, const mjDat
     const mjtNum* range = m.jnt_range + 2 * joint;
     const bool is_limited = m.jnt_limited[joint] != 0;
     const double low = is_limited ? range[0] : -1.5, high = is_limited ? range[1] : 1.5;
+    door.rest = d.qpos[door.qpos];
     door.open = 0.95 * (high > -low ? high : low);
     // The middle of the leaf when it is shut, its joint at zero.
     const mjtNum *anchor = d.xanchor + 3 * joint, *axis = d.xaxis + 3 * joint;
@@ -44,13 +48,14 @@ AgentDoors::AgentDoors(const CompiledWorld& world, const mjModel& m, const mjDat
 }
 
 void AgentDoors::reset() {
-  for (Door& door : doors_) door.is_wanted = door.was_wanted = false;
+  for (Door& door : doors_) door.state = {};
 }
 
-void AgentDoors::decide(const mjData& data, const std::vector<AgentBody>& agents) {
+void AgentDoors::decide(const mjData& data, const std::vector<AgentBody>& agents,
+                        std::span<const NavObstacle> obstacles, double dt) {
   for (Door& door : doors_) {
-    door.was_wanted |= door.is_wanted;
-    door.is_wanted = false;
+    Door::State& state = door.state;
+    bool is_wanted = false, is_near = false;
     for (const AgentBody& agent : agents) {
       const Vec3d to = door.middle - agent.motion.p;
       if (std::abs(to.z) > 1.5) continue;
@@ -59,8 +64,18 @@ void AgentDoors::decide(const mjData& data, const std::vector<AgentBody>& agents
           agent.intent.mode != AgentIntent::Mode::kStand &&
           dot(flat(to), agent.motion.wanted) > 0.2 * away * norm(agent.motion.wanted);
       const bool waits = is_blocked(data, agent.motion);
-      door.is_wanted |= away < kInDoor || (away < kNear && (comes || waits));
+      is_wanted |= away < kInDoor || (away < kNear && (comes || waits));
+      is_near |= away < kNear;
     }
+    for (const NavObstacle& o : obstacles)
+      is_near |= o.is_robot && flat_norm(door.middle - o.p) < kNear + o.radius;
+    state.is_wanted = is_wanted;
+    state.was_opened |= is_wanted;
+    state.idle = is_near ? 0 : state.idle + dt;
+    const bool is_shut = std::abs(data.qpos[door.qpos] - door.rest) < kShut;
+    if (is_shut && !is_wanted && state.idle > kWait) state.was_opened = 0;
+    state.is_closing = state.was_opened != 0 && !is_wanted && state.idle > kWait;
+    state.is_driven |= state.was_opened;
   }
 }
 
@@ -77,21 +92,19 @@ bool AgentDoors::is_blocked(const mjData& data, const AgentMotion& motion) const
 
 void AgentDoors::drive(mjData* data) const {
   for (const Door& door : doors_) {
-    if (door.is_wanted) {
-      const double torque =
-          kStiffness * (door.open - data->qpos[door.qpos]) - kDamping * data->qvel[door.dof];
-      data->qfrc_applied[door.dof] = std::clamp(torque, -kPush, kPush);
-    } else if (door.was_wanted) {
-      data->qfrc_applied[door.dof] = 0;
-    }
+    if (door.state.is_driven == 0) continue;
+    const double q = data->qpos[door.qpos], speed = data->qvel[door.dof];
+    double torque = 0;
+    if (door.state.is_wanted != 0)
+      torque = std::clamp(kStiffness * (door.open - q) - kDamping * speed, -kPush, kPush);
+    else if (door.state.is_closing != 0)
+      torque = std::clamp(kClosing * (door.rest - q), -kCloser, kCloser) - kHush * speed;
+    data->qfrc_applied[door.dof] = torque;
   }
 }
 
 uint64_t AgentDoors::hash(uint64_t seed) const {
-  for (const Door& door : doors_) {
-    const uint8_t wanted[2] = {door.is_wanted, door.was_wanted};
-    seed = hash_bytes(wanted, sizeof(wanted), seed);
-  }
+  for (const Door& door : doors_) seed = hash_bytes(&door.state, sizeof(door.state), seed);
   return seed;
 }
 

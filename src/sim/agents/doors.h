@@ -1,6 +1,8 @@
 #pragma once
-// Doors that open for agents: leaves on hinges, swung by a torque while somebody wants through.
+// Doors that open for agents: leaves on hinges, swung by a torque while somebody wants through, and
+// back to where they stood when nobody is near any more.
 
+#include <span>
 #include <vector>
 
 #include "sim/agents/agent.h"
@@ -12,8 +14,10 @@ class AgentDoors {
   AgentDoors(const CompiledWorld& world, const mjModel& model, const mjData& data);
   void reset();
 
-  /// Which doors are to open, for those who are near and go towards them.
-  void decide(const mjData& data, const std::vector<AgentBody>& agents);
+  /// Which doors are to open, for those who are near and go towards them, and which to close; `dt`
+  /// since the decision before [s].
+  void decide(const mjData& data, const std::vector<AgentBody>& agents,
+              std::span<const NavObstacle> obstacles, double dt);
   /// Is a door that is not yet open in the way of one who goes?
   bool is_blocked(const mjData& data, const AgentMotion& motion) const;
   /// The torques of the next step.
@@ -24,9 +28,13 @@ class AgentDoors {
  private:
   struct Door {
     int qpos = 0, dof = 0;
-    double open = 0;  // angle [rad]
-    Vec3d middle;     // of the opening [m]
-    bool is_wanted = false, was_wanted = false;
+    double open = 0, rest = 0;  // angles [rad]
+    Vec3d middle;               // of the opening [m]
+    // Plain, without holes: it is hashed.
+    struct State {
+      double idle = 0;  // that nobody has been near since it was opened [s]
+      int32_t is_wanted = 0, was_opened = 0, is_closing = 0, is_driven = 0;
+    } state;
   };
   std::vector<Door> doors_;
 };

@@ -9,11 +9,38 @@ namespace {
 constexpr double kLook = 6;         // [m]
 constexpr double kPersonal = 0.05;  // beyond radii [m]
 constexpr double kHorizon = 0.7;    // within which a collision makes it stop [s]
+constexpr double kGap = 0.6;        // that a vehicle leaves before it [m]
+constexpr double kBeside = 0.15;    // and to its sides [m]
+constexpr double kSlowing = 1.2;    // of vehicles that see something coming [m/s²]
 
 struct Nearby {
   Vec3d p, velocity, wanted;
   double radius, away;
 };
+
+// What an agent takes up: f(centre, radius), for a vehicle from its rear to its front.
+template <class F>
+void for_circles(const AgentBody& agent, const F& f) {
+  const AgentDescription& d = *agent.description;
+  if (d.kind == AgentKind::kPerson) return f(agent.motion.p, d.radius);
+  const double half = static_cast<double>(d.vehicle.width) / 2;
+  const double from = half - length_behind(d.vehicle), to = length_ahead(d.vehicle) - half;
+  const int gaps = std::max(1, static_cast<int>(std::ceil((to - from) / (1.5 * half))));
+  const Vec3d ahead = heading_vector(agent.motion.heading);
+  for (int k = 0; k <= gaps; ++k)
+    f(agent.motion.p + ahead * (from + (to - from) * k / gaps), half + 0.1);
+}
+
+// At which a vehicle may go so that it takes the next corner of its way as slowly as its circle is
+// tight.
+double corner_speed(const AgentBody& agent, Vec3d corner, Vec3d next) {
+  const Vec3d to = flat(corner - agent.motion.p), on = flat(next - corner);
+  const double turn = std::acos(
+      std::clamp(dot(unit_or(to, {1, 0, 0}), unit_or(on, unit_or(to, {1, 0, 0}))), -1.0, 1.0));
+  const double radius = std::max(agent.description->vehicle.turning_radius, 0.5);
+  const double slow = bend_speed(std::min(turn, 1.0) / radius);
+  return std::sqrt(slow * slow + 2 * kSlowing * norm(to));
+}
 
 }  // namespace
 
@@ -25,6 +52,8 @@ Vec3d Agents::steer(size_t row, const mjData& data) {
   const NavMesh& mesh = nav_->mesh_of(row);
   m.is_facing = intent.faces ? 1 : 0;
   m.facing = intent.facing;
+  const AgentDescription& d = *agent.description;
+  const bool drives = d.kind != AgentKind::kPerson;
   Vec3d wanted;
   if (intent.mode == AgentIntent::Mode::kStand) return {};
   if (intent.mode == AgentIntent::Mode::kSpline) {
@@ -41,13 +70,15 @@ Vec3d Agents::steer(size_t row, const mjData& data) {
     const double speed = std::min(intent.speed, std::sqrt(2 * 0.9 * std::max(left - 0.1, 0.0)));
     wanted = unit_or(to, heading_vector(m.heading)) * speed;
     if (left < 0.12) return {};
+    if (drives && count > 1)
+      wanted = shortened(wanted, corner_speed(agent, corners[0], corners[1]));
   }
-  const AgentDescription& d = *agent.description;
   if (!d.yields) return wanted;
   if (doors_->is_blocked(data, m)) return {};
   // Whoever is touched stops for a second.
   if (time_of(decisions_.step_of(decision_)) - m.touched < 1) return {};
   if (intent.mode != AgentIntent::Mode::kSpline) avoid(row, &wanted);
+  if (drives) return shortened(wanted, free_speed(row));
   return has_room(row, wanted) ? wanted : Vec3d{};
 }
 
@@ -72,7 +103,8 @@ void Agents::avoid(size_t row, Vec3d* wanted) {
   for (size_t i = 0; i < agents_.size(); ++i) {
     if (i == row) continue;
     const AgentMotion& o = agents_[i].motion;
-    add({o.p, o.velocity, o.wanted, agents_[i].description->radius + kPersonal, 0});
+    for_circles(agents_[i],
+                [&](Vec3d p, double size) { add({p, o.velocity, o.wanted, size + kPersonal, 0}); });
   }
   for (const NavObstacle& o : nav_->obstacles())
     if (!o.is_in_mesh) add({o.p, flat(o.velocity), flat(o.velocity), o.radius + kPersonal, 0});
@@ -100,12 +132,41 @@ bool Agents::has_room(size_t row, Vec3d wanted) const {
   };
   for (size_t i = 0; i < agents_.size(); ++i) {
     const AgentBody& other = agents_[i];
-    if (i != row && collides(other.motion.p, other.motion.velocity, other.description->radius))
-      return false;
+    bool is_hit = false;
+    for_circles(other, [&](Vec3d q, double size) {
+      is_hit |= i != row && collides(q, other.motion.velocity, size);
+    });
+    if (is_hit) return false;
   }
   for (const NavObstacle& o : nav_->obstacles())
     if ((!o.is_in_mesh || o.is_robot) && collides(o.p, flat(o.velocity), o.radius)) return false;
   return true;
+}
+
+// At which a vehicle can still stop before what is, or in a second will be, in the lane that its
+// wheels are set to.
+double Agents::free_speed(size_t row) const {
+  const AgentBody& agent = agents_[row];
+  const AgentMotion& m = agent.motion;
+  const VehicleSize& size = agent.description->vehicle;
+  const Vec3d ahead = heading_vector(m.heading), left{-ahead.y, ahead.x, 0};
+  const double lane = static_cast<double>(size.width) / 2 + kBeside;
+  double free = kLook;
+  const auto look = [&](Vec3d q, Vec3d velocity, double radius) {
+    for (const double later : {0.0, 0.5, 1.0}) {
+      const Vec3d to = flat(q + velocity * later - m.p);
+      const double x = dot(to, ahead), y = dot(to, left) - 0.5 * agent.vehicle.curvature * x * x;
+      if (std::abs(q.z - m.p.z) > 1.5 || x < 0 || std::abs(y) > lane + radius) continue;
+      free = std::min(free, x - radius - length_ahead(size));
+    }
+  };
+  for (size_t i = 0; i < agents_.size(); ++i)
+    if (i != row)
+      for_circles(agents_[i],
+                  [&](Vec3d q, double radius) { look(q, agents_[i].motion.velocity, radius); });
+  for (const NavObstacle& o : nav_->obstacles())
+    if (!o.is_in_mesh || o.is_robot) look(o.p, flat(o.velocity), o.radius);
+  return std::sqrt(2 * kSlowing * std::max(free - kGap, 0.0));
 }
 
 }  // namespace gloam

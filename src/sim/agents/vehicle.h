@@ -1,5 +1,7 @@
 #pragma once
-// How a vehicle stands on the ground: wheels that turn and steer, a fork at rest.
+// How a vehicle drives: a bicycle model (Rajamani 2012, Vehicle Dynamics and Control, 2.2) without
+// slip, whose reference point is on the ground in the middle between its axles. What turns on the
+// spot, a cart, has fixed driven wheels behind and castors in front.
 
 #include <array>
 
@@ -9,12 +11,36 @@
 namespace gloam {
 
 struct VehicleState {
-  double roll = 0;   ///< angle that the wheels have turned by [rad]
-  double steer = 0;  ///< of the steered axle, to the left [rad]
+  double curvature = 0;              ///< that its wheels are set to, to the left [1/m]
+  std::array<double, 4> roll = {};   ///< by which the wheels have turned [rad]
+  std::array<double, 4> angle = {};  ///< that they are set to, to the left [rad]
 };
 
-/// Of all parts; `p` on the ground in the middle between the wheels [m].
-std::array<PartPose, kVehicleParts> vehicle_pose(const VehicleShape& shape, AgentKind kind, Vec3d p,
-                                                 double heading, const VehicleState& state);
+/// x of the middle between the axles, in the frame of the prop [m].
+inline double axle_middle(const VehicleSize& size) {
+  return 0.5 * (static_cast<double>(size.front_axle.x) + static_cast<double>(size.rear_axle.x));
+}
+/// From the bumper to the reference point, and from there to the end [m].
+inline double length_ahead(const VehicleSize& size) {
+  return static_cast<double>(size.front) - axle_middle(size);
+}
+inline double length_behind(const VehicleSize& size) {
+  return axle_middle(size) - static_cast<double>(size.rear);
+}
+
+/// Speed at which a bend of that curvature is taken [m/s].
+double bend_speed(double curvature);
+
+/// Speed and heading follow the velocity that is wanted, for `dt` [s].
+void drive(const VehicleSize& size, double dt, Vec3d wanted, Vec3d* velocity, double* heading,
+           double* yaw_rate, VehicleState* state);
+
+/// Its wheels follow what it did in `dt`: `speed` ahead [m/s].
+void roll_wheels(const VehicleSize& size, double dt, double speed, double yaw_rate,
+                 VehicleState* state);
+
+/// Of all parts; `p` on the ground in the middle between the axles [m].
+std::array<PartPose, kVehicleParts> vehicle_pose(const VehicleSize& size, Vec3d p, double heading,
+                                                 const VehicleState& state);
 
 }  // namespace gloam

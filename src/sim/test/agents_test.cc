@@ -181,6 +181,31 @@ TEST(Agents, DoorsOpenForThem) {
   EXPECT_GT(widest, 1.0) << "the door was not open [rad]";
 }
 
+TEST(Agents, DoorsCloseBehindThemAndNotInAFace) {
+  for (const bool somebody_stands_there : {false, true}) {
+    AgentRig rig(agent_place(kDoor));
+    AgentOptions& agent = rig.add("ann", {-4, 1, 0}, "route");
+    agent.route = {{{4, 1, 0}, 0, {}}};
+    agent.loop = false;
+    if (somebody_stands_there) rig.add("bob", {0.8, -1.4, 0}, "stand");
+    auto stepper = rig.stepper();
+    double widest = 0, fastest = 0;
+    for (int i = 0; i < 10000; ++i) {
+      ASSERT_TRUE(stepper->step());
+      widest = std::max(widest, stepper->data().qpos[0]);
+      if (i > 6000) fastest = std::max(fastest, -stepper->data().qvel[0]);
+    }
+    EXPECT_GT(widest, 1.0);
+    if (somebody_stands_there) {
+      EXPECT_GT(stepper->data().qpos[0], 1.0) << "it waits for him to go";
+    } else {
+      EXPECT_NEAR(stepper->data().qpos[0], 0, 0.06) << "it stands open [rad]";
+      EXPECT_LT(fastest, 0.6) << "it slams [rad/s]";
+      EXPECT_EQ(stepper->data().qfrc_applied[0], 0) << "and is left alone";
+    }
+  }
+}
+
 std::unique_ptr<AgentRig> crowd_rig() {
   auto rig = std::make_unique<AgentRig>(agent_place(kWall + std::string(kPusher), 14));
   CrowdOptions& crowd = rig->scene.crowds.emplace_back();

@@ -5,6 +5,7 @@
 #include "scene/environment/catalogue.h"
 #include "scene/environment/props/hardware.h"
 #include "scene/environment/props/labels.h"
+#include "scene/environment/vehicles.h"
 
 namespace gloam {
 namespace {
@@ -14,7 +15,7 @@ constexpr float kForkEnd = kFace + 1.15f;  // tips
 constexpr float kTail = -1.83f;            // end of the counterweight
 constexpr float kHalf = 0.57f;             // half width over the front wheels
 constexpr float kMastTop = 2.12f, kGuard = 2.14f;
-constexpr float kFront = 0.22f, kRear = -1.28f;  // axles
+constexpr float kFront = kForkliftSize.front_axle.x;
 
 struct Paints {
   std::string body, grey, black, steel;
@@ -183,7 +184,7 @@ void add_place_of_driver(PropPart* b, Workshop* shop, const Paints& paint) {
           cylinder(0.042f, kGuard - 0.015f, kGuard + 0.075f, 0.012f, 20).moved(-1.05f, 0, 0));
 }
 
-void add_mast(PropPart* b, Workshop* shop, const Paints& paint) {
+void add_mast(PropPart* b, PropPart* fork, Workshop* shop, const Paints& paint) {
   // Two pairs of channels one within the other, cylinders, chains, crossheads.
   const auto channel = [&](float x, float y, float deep, float side, float z0, float z1) {
     const float w = 0.06f * side, t = 0.016f * side;
@@ -224,36 +225,36 @@ void add_mast(PropPart* b, Workshop* shop, const Paints& paint) {
   // Carriage of class 2: two hook bars, the load's back rest, forks of 45 x 110 mm.
   const float back = kFace - 0.045f;
   for (const float z : {0.14f, 0.48f})
-    b->show("carriage", paint.black,
-            slab({back - 0.035f, -0.50f, z}, {back, 0.50f, z + 0.075f}, 0.006f));
+    fork->show("carriage", paint.black,
+               slab({back - 0.035f, -0.50f, z}, {back, 0.50f, z + 0.075f}, 0.006f));
   for (const float side : {-1.0f, 1.0f}) {
-    b->show("carriage", paint.black,
-            slab({back - 0.085f, side * 0.26f - 0.02f, 0.10f},
-                 {back - 0.03f, side * 0.26f + 0.02f, 0.66f}, 0.005f));
-    b->show("rest", paint.black,
-            slab({back - 0.03f, side * 0.485f - 0.015f, 0.55f},
-                 {back, side * 0.485f + 0.015f, 1.22f}, 0.004f));
+    fork->show("carriage", paint.black,
+               slab({back - 0.085f, side * 0.26f - 0.02f, 0.10f},
+                    {back - 0.03f, side * 0.26f + 0.02f, 0.66f}, 0.005f));
+    fork->show("rest", paint.black,
+               slab({back - 0.03f, side * 0.485f - 0.015f, 0.55f},
+                    {back, side * 0.485f + 0.015f, 1.22f}, 0.004f));
     const float y = side * 0.23f;
     // The blade thins to its tip; the shank hooks over the bars.
-    b->show("forks", shop->paint({0.04, 0.04, 0.042}, 0.38),
-            plate_y(rounded_outline({{back, 0.035f},
-                                     {kFace, 0.028f},
-                                     {kForkEnd, 0.05f},
-                                     {kForkEnd, 0.062f},
-                                     {kFace + 0.03f, 0.075f},
-                                     {kFace, 0.10f},
-                                     {kFace, 0.60f},
-                                     {back, 0.60f}},
-                                    0.01f, 2),
-                    y - 0.055f, y + 0.055f));
-    b->show("forks", shop->paint({0.04, 0.04, 0.042}, 0.38),
-            slab({back - 0.02f, y - 0.05f, 0.553f}, {back + 0.01f, y + 0.05f, 0.60f}, 0.005f));
+    fork->show("forks", shop->paint({0.04, 0.04, 0.042}, 0.38),
+               plate_y(rounded_outline({{back, 0.035f},
+                                        {kFace, 0.028f},
+                                        {kForkEnd, 0.05f},
+                                        {kForkEnd, 0.062f},
+                                        {kFace + 0.03f, 0.075f},
+                                        {kFace, 0.10f},
+                                        {kFace, 0.60f},
+                                        {back, 0.60f}},
+                                       0.01f, 2),
+                       y - 0.055f, y + 0.055f));
+    fork->show("forks", shop->paint({0.04, 0.04, 0.042}, 0.38),
+               slab({back - 0.02f, y - 0.05f, 0.553f}, {back + 0.01f, y + 0.05f, 0.60f}, 0.005f));
   }
   for (int i = 0; i < 5; ++i)
-    b->show("rest", paint.black,
-            slab({back - 0.025f, -0.33f + 0.165f * float(i) - 0.008f, 0.55f},
-                 {back - 0.005f, -0.33f + 0.165f * float(i) + 0.008f, 1.2f}, 0.003f));
-  b->show("rest", paint.black, slab({back - 0.03f, -0.5f, 1.19f}, {back, 0.5f, 1.22f}, 0.005f));
+    fork->show("rest", paint.black,
+               slab({back - 0.025f, -0.33f + 0.165f * float(i) - 0.008f, 0.55f},
+                    {back - 0.005f, -0.33f + 0.165f * float(i) + 0.008f, 1.2f}, 0.003f));
+  fork->show("rest", paint.black, slab({back - 0.03f, -0.5f, 1.19f}, {back, 0.5f, 1.22f}, 0.005f));
 }
 
 Prop forklift(Workshop& shop) {
@@ -263,20 +264,30 @@ Prop forklift(Workshop& shop) {
                      shop.paint({0.028, 0.028, 0.03}, 0.45), shop.metal("steel")};
   Prop p;
   PropPart& b = p.body();
+  PropPart& fork = p.parts.emplace_back();
+  fork.name = "fork";
+  fork.parent = 0;
   add_chassis(&b, &shop, paint);
   add_place_of_driver(&b, &shop, paint);
-  add_mast(&b, &shop, paint);
+  add_mast(&b, &fork, &shop, paint);
   const Vec3 tyre = shop.dice.chance(0.3) ? Vec3{0.55, 0.54, 0.51}
                                           : Vec3{0.04, 0.04, 0.042};  // pale ones leave no marks
+  add_wheels(
+      kForkliftSize, 40,
+      [&](PropPart* wheel, const VehicleAxle& axle, float) {
+        add_wheel(wheel, &shop, {}, axle.radius, axle.width, tyre, {0.80, 0.80, 0.78});
+        // Nuts, by which one sees it turn.
+        for (int k = 0; k < 6; ++k)
+          wheel->show("nuts", paint.black,
+                      cylinder(0.014f, -axle.width * 0.28f, axle.width * 0.28f, 0.002f, 6)
+                          .turned(Axis::kX, 90)
+                          .moved(0.36f * axle.radius * std::cos(kPi * float(k) / 3), 0,
+                                 0.36f * axle.radius * std::sin(kPi * float(k) / 3)));
+      },
+      &p);
   for (const float side : {-1.0f, 1.0f}) {
-    add_wheel(&b, &shop, {kFront, side * 0.46f, 0.325f}, 0.325f, 0.21f, tyre, {0.80, 0.80, 0.78});
-    add_wheel(&b, &shop, {kRear, side * 0.45f, 0.26f}, 0.26f, 0.17f, tyre, {0.80, 0.80, 0.78});
-    b.collide_cylinder(Vec3f{kFront, side * 0.355f, 0.325f}, Vec3f{kFront, side * kHalf, 0.325f},
-                       0.325f);
-    b.collide_cylinder(Vec3f{kRear, side * 0.365f, 0.26f}, Vec3f{kRear, side * 0.535f, 0.26f},
-                       0.26f);
-    b.collide_box({kFace - 0.05f, side * 0.23f - 0.055f, 0.03f},
-                  {kForkEnd, side * 0.23f + 0.055f, 0.075f});
+    fork.collide_box({kFace - 0.05f, side * 0.23f - 0.055f, 0.03f},
+                     {kForkEnd, side * 0.23f + 0.055f, 0.075f});
     b.collide_capsule({0.35f, side * 0.47f, 0.9f}, {0.09f, side * 0.44f, kGuard - 0.08f}, 0.028f);
     b.collide_capsule({-1.12f, side * 0.44f, kGuard - 0.12f}, {-1.30f, side * 0.47f, 1.06f},
                       0.028f);
@@ -292,11 +303,12 @@ Prop forklift(Workshop& shop) {
   b.collide_box({-1.76f, -0.35f, 0.14f}, {0.42f, 0.35f, 0.5f});
   b.collide_box({0.10f, -0.45f, 0.5f}, {0.42f, 0.45f, 1.12f});
   b.collide_box({0.42f, -0.39f, 0.1f}, {0.60f, 0.39f, kMastTop});
-  b.collide_box({0.60f, -0.5f, 0.1f}, {kFace, 0.5f, 1.22f});
+  fork.collide_box({0.60f, -0.5f, 0.1f}, {kFace, 0.5f, 1.22f});
   b.collide_box({-1.12f, -0.46f, kGuard - 0.08f}, {0.09f, 0.46f, kGuard - 0.02f});
   b.collide_box({-1.05f, -0.24f, 1.05f}, {-0.50f, 0.24f, 1.20f})
       .collide_box({-1.08f, -0.24f, 1.2f}, {-0.90f, 0.24f, 1.66f});
-  b.mass = 3500;
+  fork.mass = 160;
+  b.mass = kForkliftSize.mass - 4 * 40 - fork.mass;
   p.front = 1.5f;
   return p;
 }
