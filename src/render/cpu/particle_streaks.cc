@@ -7,14 +7,16 @@
 #include "base/rng.h"
 #include "render/cpu/particle_light.h"
 #include "render/kernel/fast.h"
+#include "world/rain_splash.h"
 
 namespace gloam {
 namespace {
 
-constexpr float kNearest = 0.1f;      // [m] a lens has a hood
-constexpr float kFarthest = 30.0f;    // [m]
-constexpr float kLeastWidth = 0.12f;  // [px] of a particle that is drawn
-constexpr float kPerCell = 6;         // particles, in the mean
+constexpr float kNearest = 0.1f;         // [m] a lens has a hood
+constexpr float kFarthest = 30.0f;       // [m]
+constexpr float kFarthestSplash = 6.0f;  // [m]
+constexpr float kLeastWidth = 0.12f;     // [px] of a particle that is drawn
+constexpr float kPerCell = 6;            // particles, in the mean
 // Mean cosines of what is scattered without diffraction: of water by Mie theory for large spheres.
 constexpr float kDropG = 0.885f, kFlakeG = 0.3f;
 
@@ -85,6 +87,12 @@ struct Lattice {
   Vec3f velocity() const { return set.wind - Vec3f{0, 0, kind.fall_speed}; }
 };
 
+struct Particle {
+  ParticleKind kind;
+  float diameter;  ///< [m]
+  Vec3f velocity;  ///< [m/s]
+};
+
 class StreakFinder {
  public:
   StreakFinder(const ParticleView& view, const Film& film, const AmbientCube& around,
@@ -103,6 +111,26 @@ class StreakFinder {
   /// Beyond it a particle is too small to be drawn [m].
   float reach(const ParticleClass& kind) const {
     return min(kind.diameter * view_.camera.fx / kLeastWidth, kFarthest);
+  }
+
+  /// Droplets that fly up where drops of class `row` have landed.
+  void find_splashes(const ParticleSet& set, uint32_t row, std::vector<Streak>* out) const {
+    const ParticleClass& kind = set.classes[row];
+    const float far = min(kDropletSize * reach(kind), kFarthestSplash);
+    if (set.kind != ParticleKind::kDrop || far <= 2 * kNearest || !splashes(kind)) return;
+    const double exposure = view_.seconds * static_cast<double>(view_.camera.shutter.length);
+    const double now = view_.opens + exposure / 2;
+    const auto cell_of = [](float x) { return static_cast<int64_t>(std::floor(x / kSplashCell)); };
+    const int64_t low = cell_of(eye_.y - far), rows = cell_of(eye_.y + far) - low + 1;
+    std::vector<std::vector<Streak>> found(static_cast<size_t>(rows));
+    parallel_for("splashes", rows, [&](int64_t line) {
+      std::vector<Splash> landed;
+      for (int64_t i = cell_of(eye_.x - far); i <= cell_of(eye_.x + far); ++i)
+        gloam::find_splashes(set, row, i, low + line, now - splash_life(kind), now, &landed);
+      for (const Splash& splash : landed)
+        add_splash(kind, splash, now, far, &found[static_cast<size_t>(line)]);
+    });
+    for (const auto& part : found) out->insert(out->end(), part.begin(), part.end());
   }
 
   void find(const Lattice& lattice, std::vector<Streak>* out) const {
@@ -161,12 +189,33 @@ class StreakFinder {
       const Vec3f p = to_world(static_cast<double>(uniform_float(place.v[0])),
                                static_cast<double>(uniform_float(place.v[1])),
                                static_cast<double>(uniform_float(place.v[2])));
-      add(lattice, p, far, place, out);
+      add({lattice.set.kind, lattice.kind.diameter, lattice.velocity()}, p, far, place, out);
+    }
+  }
+
+  void add_splash(const ParticleClass& kind, const Splash& splash, double now, float far,
+                  std::vector<Streak>* out) const {
+    Ray down;  // onto what lies highest there
+    down.o = {splash.at.x, splash.at.y, eye_.z + kFarthest};
+    down.d = {0, 0, -1};
+    const Vec3f to{splash.at.x - eye_.x, splash.at.y - eye_.y, 0};
+    RayHit hit;
+    if (dot(to, to) > far * far || !view_.tracer.trace(down, false, &hit)) return;
+    const Vec3f ground = down.o + down.d * hit.t;
+    if (!(view_.weather.shelter->view().open_above(ground, 0.05f) > 0.5f)) return;
+    constexpr float kGravity = 9.81f;
+    const auto t = static_cast<float>(now - splash.time);
+    for (int n = 0; n < kSplashDroplets; ++n) {
+      const SplashDroplet d = splash_droplet(kind, splash, n);
+      const Vec3f p = d.from + d.velocity * t - Vec3f{0, 0, 0.5f * kGravity * t * t};
+      if (p.z > 0)
+        add({ParticleKind::kDrop, d.diameter, d.velocity - Vec3f{0, 0, kGravity * t}}, ground + p,
+            far, splash.bits, out);
     }
   }
 
   /// `p`: where the particle is in the middle of the exposure.
-  void add(const Lattice& lattice, Vec3f p, float far, const Philox4& bits,
+  void add(const Particle& particle, Vec3f p, float far, const Philox4& bits,
            std::vector<Streak>* out) const {
     const CameraView32& camera = view_.camera;
     Streak s;
@@ -178,11 +227,11 @@ class StreakFinder {
     const float row = clamp(uv.y, 0.0f, static_cast<float>(film_.height)) * camera.shutter.row;
     const auto seconds = static_cast<float>(view_.seconds);
     const float half = 0.5f * camera.shutter.length;
-    const Vec3f v = lattice.velocity() * seconds;
+    const Vec3f v = particle.velocity * seconds;
     const Vec3f a = p + v * (row - half), b = p + v * (row + half);
     if (!projector_.project(a, row, &s.from) || !projector_.project(b, row + 2 * half, &s.to))
       return;
-    s.radius = 0.5f * lattice.kind.diameter * camera.fx / s.distance;
+    s.radius = 0.5f * particle.diameter * camera.fx / s.distance;
     float blur = 0;
     if (camera.has_aperture())
       blur = camera.aperture.radius * camera.fx *
@@ -197,8 +246,8 @@ class StreakFinder {
     // A disc of the radius r covers its way of length l and width 2 r for as long as makes pi r².
     s.share = kPi * s.radius * s.radius / (2 * wide * way + kPi * wide * wide);
     s.radius = wide;
-    s.soft = lattice.set.kind == ParticleKind::kFlake;
-    s.light = light_of(lattice.set.kind, p, uv, bits);
+    s.soft = particle.kind == ParticleKind::kFlake;
+    s.light = light_of(particle.kind, p, uv, bits);
     out->push_back(s);
   }
 
@@ -313,6 +362,8 @@ void draw_particles(const ParticleView& view, const Film& film, std::vector<Vec3
       finder.find({set, kind, row++, cell}, &streaks);
     }
     if (streaks.empty()) continue;
+    std::vector<Streak> splashes;
+    for (uint32_t k = 0; k < set.classes.size(); ++k) finder.find_splashes(set, k, &splashes);
     Vec3f mean_light;
     float weight = 0;
     for (const Streak& s : streaks) {
@@ -327,6 +378,7 @@ void draw_particles(const ParticleView& view, const Film& film, std::vector<Vec3
       const int first = static_cast<int>(band) * kBand;
       const int last = std::min(first + kBand, film.height);
       draw_rows(streaks, film, first, last, &layer);
+      draw_rows(splashes, film, first, last, &layer);
       for (int y = first; y < last; ++y) {
         for (int x = 0; x < film.width; ++x) {
           const size_t i =

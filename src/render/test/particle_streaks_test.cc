@@ -139,5 +139,38 @@ TEST(Particles, AreTheSameForAnyNumberOfThreadsAndOthersAtAnotherTime) {
   EXPECT_FALSE(one == bits(draw_strewn(b, 0.01, 2.5, 20, kLevel))) << "the rain stands still";
 }
 
+// The ground before a camera that looks down at it, where no drop in the air is near enough.
+SceneBuilder splashing() {
+  SceneBuilder b = strewn(3e-3f, 300, 8);
+  b.add(ShapeType::kBox, {50, 50, 0.01f}, translation({0, 0, -0.01f}), b.add_diffuse({0, 0, 0}));
+  return b;
+}
+
+TEST(Particles, SplashOnTheGroundButNotUnderARoof) {
+  const Affine3f X_WC = look_at({0, 0, 0.4f}, {0.6f, 0, 0});
+  SceneBuilder b = splashing();
+  const Drawn open = draw_strewn(b, 0.01, 2, 0, X_WC);
+  set_thread_count(1);
+  const Drawn again = draw_strewn(b, 0.01, 2, 0, X_WC);
+  set_thread_count(0);
+  EXPECT_TRUE(open.after == again.after) << "by the number of threads";
+  b.description.weather.particles[0].classes[0].fall_speed = 1;  // too slow to splash
+  const auto lit = [](const Drawn& d) {
+    int count = 0;
+    for (const Vec3f light : d.after) count += light.y > 0.5f;
+    return count;
+  };
+  const int slow = lit(draw_strewn(b, 0.01, 2, 0, X_WC));
+  EXPECT_GT(lit(open), slow + 200) << "no splashes are seen";
+  b = splashing();
+  auto roof = std::make_shared<ShelterMap>();
+  roof->low = {-100, -100};
+  roof->cell = 50;
+  roof->nx = roof->ny = 4;
+  roof->height.assign(16, 3);
+  b.description.weather.shelter = roof;
+  EXPECT_EQ(lit(draw_strewn(b, 0.01, 2, 0, X_WC)), 0);
+}
+
 }  // namespace
 }  // namespace gloam

@@ -4,6 +4,7 @@
 
 #include "scene/test/temp_folder.h"
 #include "world/medium_presets.h"
+#include "world/rain_splash.h"
 #include "world/render_description.h"
 #include "world/world.h"
 
@@ -186,6 +187,34 @@ position = [0, 0, 2]
   }
   EXPECT_GT(failing, 0u);
   EXPECT_LT(failing, fair.size() - 1);
+}
+
+TEST(RainSplash, AsManyAsFallAndTheSameWheneverTheyAreLookedAt) {
+  ParticleSet set = rain_particles(30);
+  set.seed = 5;
+  for (uint32_t row = 0; row < set.classes.size(); ++row) {
+    const ParticleClass& kind = set.classes[row];
+    std::vector<Splash> all, parts;
+    constexpr int kEdge = 20;  // 25 m²
+    for (int i = -kEdge / 2; i < kEdge / 2; ++i) {
+      for (int j = 0; j < kEdge; ++j) {
+        find_splashes(set, row, i, j, 3.0, 4.0, &all);
+        find_splashes(set, row, i, j, 3.31, 4.0, &parts);
+        find_splashes(set, row, i, j, 3.0, 3.31, &parts);
+      }
+    }
+    const double mean = static_cast<double>(kind.number * kind.fall_speed) * 25;
+    EXPECT_NEAR(static_cast<double>(all.size()), mean, 4 * std::sqrt(mean) + 1) << "class " << row;
+    EXPECT_EQ(all.size(), parts.size());
+    for (const Splash& s : all) EXPECT_TRUE(s.time >= 3 && s.time < 4);
+    for (int n = 0; n < kSplashDroplets && !all.empty(); ++n) {
+      const float up = splash_droplet(kind, all[0], n).velocity.z;
+      EXPECT_LE(static_cast<double>(2 * up) / 9.81, splash_life(kind));
+    }
+  }
+  // Drizzle lies down quietly, drops of a shower do not (Mundo et al. 1995).
+  EXPECT_FALSE(splashes({0.2e-3f, 1, 0.8f}));
+  EXPECT_TRUE(splashes({2e-3f, 1, 6.5f}));
 }
 
 }  // namespace
