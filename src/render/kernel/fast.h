@@ -66,11 +66,12 @@ GLOAM_HD void copy_lane(const ReflectionOf<F>& from, int i, ReflectionOf<F>* to,
   to->sampler.take_lane(k, from.sampler, i);
 }
 
-/// What one camera ray saw: base + through (albedo (direct + cached) + cached gloss + specular +
-/// what its reflection shows).
+/// What one camera ray saw: base + air + through (albedo (direct + cached) + cached gloss +
+/// specular + what its reflection shows).
 template <class F>
 struct FastSampleOf {
-  Vec3Of<F> base;     ///< [cd/m²], without noise
+  Vec3Of<F> base;     ///< [cd/m²], with its edges
+  Vec3Of<F> air;      ///< light that media scatter [cd/m²]: noise of few samples
   Vec3Of<F> through;  ///< share of the first solid surface's light that gets to the camera
   MaskOf<F> solid = false;
   RayHitOf<F> hit;      ///< of that surface; t: distance from the camera
@@ -144,79 +145,113 @@ GLOAM_HD Vec3Of<F> cached_light(const IrradianceCacheView& cache, const CachePla
   return light;
 }
 
-/// Direct light of one lamp sample at the vertices: diffuse over albedo, and the rest. `traced`:
-/// lanes whose specular ray may find the lamp too, if it has an extent.
+/// Light of lamps at vertices, before media on its way.
+template <class F>
+struct ArrivingOf {
+  Vec3Of<F> diffuse, specular;  ///< over the diffuse albedo, and the rest [cd/m²]
+  RayOf<F> way;                 ///< of one sample, by what it brings
+  F total = 0.0f;               ///< that all bring
+};
+
+/// Adds one lamp sample. `traced`: lanes whose specular ray may find the lamp too, if it has an
+/// extent; of what `glows`, that ray alone shows the reflection.
 template <class F, class Tracer>
 GLOAM_HD void add_light(const SceneView& scene, const Tracer& tracer, paths::State<F>* path,
                         const SurfaceOf<F>& v, const LayeredBsdfOf<F>& shiny,
-                        const FrameOf<F>& frame, Vec3Of<F> wo, MaskOf<F> traced, MaskOf<F> active,
-                        const LightSampleOf<F>& light, Vec3Of<F>* diffuse, Vec3Of<F>* specular) {
+                        const FrameOf<F>& frame, Vec3Of<F> wo, MaskOf<F> traced, MaskOf<F> glows,
+                        MaskOf<F> active, const LightSampleOf<F>& light, ArrivingOf<F>* sum) {
   MaskOf<F> lit = active & (light.pdf > 0.0f) & (dot(light.wi, v.geometric) > 0.0f);
   if (!any(lit)) return;
   const Vec3Of<F> wi = frame.to_local(light.wi);
   lit = lit & (wi.z > 0.0f);
   F pdf;
   const Vec3Of<F> f = eval_bsdf(shiny, wo, wi, &pdf);
-  const F weight = select(traced & !light.is_delta, mis_weight(light.pdf, pdf), F(1.0f));
+  const F weight = select(traced & glows, F(0.0f),
+                          select(traced & !light.is_delta, mis_weight(light.pdf, pdf), F(1.0f)));
   RayOf<F> shadow = path->ray;
   aim_shadow_ray(v.p, v.geometric, v.t, light, &shadow);
-  const Vec3Of<F> arriving = paths::bring_light(scene, tracer, shadow, light.casts_shadow, lit,
-                                                light.radiance * (1.0f / light.pdf), path);
-  *diffuse += select<F>(lit, arriving * (wi.z * kInvPi), Vec3Of<F>{});
-  *specular += select<F>(lit, arriving * f * weight, Vec3Of<F>{});
+  Vec3Of<F> arriving = light.radiance * (1.0f / light.pdf);
+  if (const MaskOf<F> shadowed = lit & light.casts_shadow; any(shadowed)) {
+    const Vec3Of<F> share = paths::transmit(scene, tracer, shadow, shadowed, &path->result.rays);
+    arriving = select<F>(shadowed, arriving * share, arriving);
+  }
+  sum->diffuse += select<F>(lit, arriving * (wi.z * kInvPi), Vec3Of<F>{});
+  sum->specular += select<F>(lit, arriving * f * weight, Vec3Of<F>{});
+  if (!scene.has_media()) return;
+  const F brings = select(lit, luminance(arriving) * wi.z, F(0.0f));
+  sum->total += brings;
+  const MaskOf<F> taken = path->sampler.next_1d(lit) * sum->total < brings;
+  sum->way.o = select<F>(taken, shadow.o, sum->way.o);
+  sum->way.d = select<F>(taken, shadow.d, sum->way.d);
+  sum->way.tmax = select(taken, shadow.tmax, sum->way.tmax);
 }
 
 /// Light that is sampled closer by than this counts as from there [m]: points of a flame are drawn
 /// without a look at their distance.
 inline constexpr float kNearGlow = 0.1f;
 
-/// A point of what glows as a light for p.
+/// For lamps and, if `glow`, what glows: the sky is the cache's.
 template <class F>
-GLOAM_HD LightSampleOf<F> glow_light(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n,
-                                     paths::State<F>* path, MaskOf<F> active) {
-  LightSampleOf<F> light;
-  const Vec2Of<F> u = path->sampler.next_2d(active);
-  each_lane(active, [&](int i) {
-    LightSample one = glow::sample(scene.media, lane(p, i), lane(n, i), lane(u, i));
-    one.pdf *= sqr(max(kNearGlow / max(one.distance, 1e-3f), 1.0f));
-    set_lane(&light, i, one);
-  });
-  return light;
+GLOAM_HD void prepare_picker(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, MaskOf<F> active,
+                             bool glow, LightPickerOf<F>* picker) {
+  picker->prepare(scene, p, n, active);
+  picker->leave_out_sky(scene);
+  if (glow && scene.has_glow()) picker->add_glow(scene, active);
 }
 
-/// Direct light at the vertices of the `active` lanes: of what glows, and of every light where
-/// there are few, or of `drawn` of them.
+/// Density of a sample as if it were not so close by.
+template <class F>
+GLOAM_HD F pdf_from_afar(const LightSampleOf<F>& light) {
+  return light.pdf * sqr(max(kNearGlow / max(light.distance, F(1e-3f)), F(1.0f)));
+}
+
+/// Direct light at the vertices of the `active` lanes: of every light and of what glows where there
+/// are few lights, or of `drawn` of them all. Media take from all what they take from one, in the
+/// `borrows` lanes from one of the lane beside.
 template <class F, class Tracer>
 GLOAM_HD void direct_light(const SceneView& scene, const Tracer& tracer, paths::State<F>* path,
                            const SurfaceOf<F>& v, const LayeredBsdfOf<F>& shiny,
                            const FrameOf<F>& frame, Vec3Of<F> wo, MaskOf<F> traced,
-                           MaskOf<F> active, bool every, uint32_t drawn, Vec3Of<F>* diffuse,
-                           Vec3Of<F>* specular) {
-  if (scene.has_glow()) {
-    Vec3Of<F> gloss;
-    const LightSampleOf<F> light = glow_light(scene, v.p, v.geometric, path, active);
-    add_light(scene, tracer, path, v, shiny, frame, wo, false, active, light, diffuse, &gloss);
-    *specular += select<F>(traced, Vec3Of<F>{}, gloss);  // that of a flame is what the ray shows
-  }
-  if (scene.lights.size == 0) return;
-  path->picker.prepare(scene, v.p, v.geometric, active);
-  path->picker.leave_out_sky(scene);  // that is the cache's
-  if (every) drawn = scene.lights.size;
-  for (uint32_t k = 0; k < drawn; ++k) {
+                           MaskOf<F> active, MaskOf<F> borrows, bool every, uint32_t drawn,
+                           Vec3Of<F>* diffuse, Vec3Of<F>* specular) {
+  ArrivingOf<F> sum;
+  const auto add = [&](const LightSampleOf<F>& light, MaskOf<F> glows) {
+    add_light(scene, tracer, path, v, shiny, frame, wo, traced, glows, active, light, &sum);
+  };
+  if (scene.has_glow() && (every || scene.lights.size == 0)) {
     LightSampleOf<F> light;
+    const Vec2Of<F> u = path->sampler.next_2d(active);
+    each_lane(active, [&](int i) {
+      set_lane(&light, i,
+               glow::sample(scene.media, lane(v.p, i), lane(v.geometric, i), lane(u, i)));
+    });
+    light.pdf = pdf_from_afar(light);
+    add(light, true);
+  }
+  if (scene.lights.size > 0) prepare_picker(scene, v.p, v.geometric, active, !every, &path->picker);
+  if (every || scene.lights.size == 0) drawn = scene.lights.size;
+  for (uint32_t k = 0; k < drawn; ++k) {
     Vec2Of<F> u = path->sampler.next_2d(active);
     if (every) {
       const MaskOf<F> near = active & (path->picker.shares(k) > 0.0f);
       if (!any(near)) continue;
-      light = sample_one_light(scene, k, v.p, u, path->ray.time, near);
+      LightSampleOf<F> light = sample_one_light(scene, k, v.p, u, path->ray.time, near);
       light.pdf = select(near, light.pdf, F(0.0f));
+      add(light, false);
     } else {
       u.x = (u.x + static_cast<float>(k)) * (1.0f / static_cast<float>(drawn));
-      light = path->picker.sample(scene, v.p, u, path->ray.time, active);
-      light.pdf *= static_cast<float>(drawn);
+      LightSampleOf<F> light = path->picker.sample(scene, v.p, u, path->ray.time, active);
+      const MaskOf<F> glows = scene.has_glow() ? path->picker.takes_glow(u.x) : MaskOf<F>(false);
+      light.pdf = static_cast<float>(drawn) * select(glows, pdf_from_afar(light), light.pdf);
+      add(light, glows);
     }
-    add_light(scene, tracer, path, v, shiny, frame, wo, traced, active, light, diffuse, specular);
   }
+  const MaskOf<F> lit = active & (sum.total > 0.0f);
+  borrows = borrows & (flip<1>(sum.total) > 0.0f);
+  Vec3Of<F> share = paths::through_media(scene, sum.way, lit & !borrows, &path->sampler);
+  share = select<F>(borrows, flip<1>(share), share);
+  *diffuse = sum.diffuse * share;
+  *specular = sum.specular * share;
 }
 
 /// Probability with which direct_light() takes the light of a row.
@@ -233,12 +268,10 @@ GLOAM_HD Vec3f scattered_light(const SceneView& scene, const Tracer& tracer, con
                                const MediumPoint& point, Vec3f p_W, WalkRandom* random,
                                uint32_t* rays) {
   LightPicker picker;
-  picker.prepare(scene, p_W, Vec3f{});
-  picker.leave_out_sky(scene);  // that is the cache's
-  if (scene.has_glow()) picker.add_glow(scene, true);
+  prepare_picker<float>(scene, p_W, Vec3f{}, true, true, &picker);
   const Vec2f u{random->next(), random->next()};
   LightSample light = picker.sample(scene, p_W, u, ray.time);
-  light.pdf *= sqr(max(kNearGlow / max(light.distance, 1e-3f), 1.0f));
+  light.pdf = pdf_from_afar<float>(light);
   if (!(light.pdf > 0) || !(max_component(point.scattering) > 0)) return {};
   Ray shadow = ray;
   aim_shadow_ray(p_W, Vec3f{}, 0.0f, light, &shadow);
@@ -270,52 +303,66 @@ GLOAM_HD Vec3f air_light(const IrradianceCacheView& cache, Vec3f p_W, Vec3f d, V
 /// around, give off, and let through.
 template <class F>
 struct MediaLightOf {
-  Vec3Of<F> radiance;   ///< [cd/m²]
+  Vec3Of<F> radiance;   ///< that they give off [cd/m²]
+  Vec3Of<F> around;     ///< scattered from all around [cd/m²]
+  Vec3Of<F> lamps;      ///< scattered from lamps: one sample of one place [cd/m²]
   Vec3Of<F> scattered;  ///< share of what arrives from all around
   Vec3Of<F> through;
 };
-/// `glows`: what glows on the way counts. `requests`: one per lane, for one of the places that
-/// scatter light.
+/// `samples`: lanes that take a sample of lamps. `glows`: what glows on the way counts. `requests`:
+/// one per lane, for one of the places that scatter light.
 template <class F, class Tracer>
 GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& tracer,
                                      const IrradianceCacheView& cache, F tmax, MaskOf<F> active,
-                                     int steps, bool glows, paths::State<F>* path,
-                                     CacheRequest* requests) {
-  MediaLightOf<F> out{{}, {}, in_all_lanes<F>({1, 1, 1})};
+                                     MaskOf<F> samples, int steps, bool glows,
+                                     paths::State<F>* path, CacheRequest* requests) {
+  MediaLightOf<F> out{{}, {}, {}, {}, in_all_lanes<F>({1, 1, 1})};
   if (scene.media.volumes.empty()) return out;
   const Vec2Of<F> u = path->sampler.next_2d(active);
   each_lane(active, [&](int i) {
     WalkRandom random(lane(u, i));
     const Ray ray = lane(path->ray, i);
-    uint32_t rays = 0;
-    float weighed = 0;
-    Vec3f air = cache.mean;  // of the last step that the cache knew
     // Of what is thin, dark or behind the rest, few steps ask for light and count for many.
-    constexpr float kBrightest = 8;  // times the air's light: what one of many lamps may bring
-    constexpr float kLittle = 0.03f, kLittleForLamps = 0.1f;  // scattered: then it is by chance
-    const auto chance_of = [](float scatters, float much) { return min(scatters / much, 1.0f); };
-    const MarchResult m = march(
-        scene.media, ray, lane(tmax, i), 0.0f, steps, {}, glows,
-        [&](const MediumPoint& point, Vec3f p_W, Vec3f share) {
-          const float scatters = max_component(point.scattering * share);
-          Vec3f light;
-          if (const float chance = chance_of(scatters, kLittle); random.next() < chance) {
-            CacheRequest request;
-            air = air_light(cache, p_W, ray.d, air, &random, &request);
-            light = point.scattering * air * (1 / chance);
-            weighed += scatters / chance;
-            if (random.next() * weighed < scatters / chance) requests[i] = request;
-          }
-          if (const float chance = chance_of(scatters, kLittleForLamps); random.next() < chance) {
-            Vec3f lamps = scattered_light(scene, tracer, ray, point, p_W, &random, &rays);
-            const float most = kBrightest * luminance(point.scattering * air);
-            if (most > 0) lamps *= min(most / max(luminance(lamps), 1e-9f), 1.0f);
-            light += lamps * (1 / chance);
-          }
-          return light;
-        });
-    set_lane(&path->result.rays, i, lane(path->result.rays, i) + rays);
+    constexpr float kLittle = 0.03f;
+    float weighed = 0;       // what has been asked for
+    float in_all = 0;        // what lamps may bring
+    Vec3f air = cache.mean;  // of the last step that the cache knew
+    Vec3f around;
+    // One step stands for all in the light of lamps, by what they may bring there.
+    struct {
+      MediumPoint point;
+      Vec3f p_W, share, air;
+      float brings;
+    } lit;
+    const MarchResult m =
+        march(scene.media, ray, lane(tmax, i), 0.0f, steps, {}, glows,
+              [&](const MediumPoint& point, Vec3f p_W, Vec3f share) {
+                const Vec3f scattered = point.scattering * share;
+                const float scatters = max_component(scattered);
+                if (const float chance = min(scatters / kLittle, 1.0f); random.next() < chance) {
+                  CacheRequest request;
+                  air = air_light(cache, p_W, ray.d, air, &random, &request);
+                  around += scattered * air * (1 / chance);
+                  weighed += scatters / chance;
+                  if (random.next() * weighed < scatters / chance) requests[i] = request;
+                }
+                const float flames = glow::weight(scene.media.glows, p_W, Vec3f{});
+                const float brings = scatters * (luminance(air) + flames / (4 * kPi));
+                in_all += brings;
+                if (random.next() * in_all < brings) lit = {point, p_W, share, air, brings};
+                return Vec3f{};
+              });
+    if (lane(samples, i) && in_all > 0) {
+      constexpr float kBrightest = 8;  // times the air's light: what one of many lamps may bring
+      uint32_t rays = 0;
+      Vec3f lamps = scattered_light(scene, tracer, ray, lit.point, lit.p_W, &random, &rays);
+      const float most = kBrightest * luminance(lit.point.scattering * lit.air);
+      if (most > 0) lamps *= min(most / max(luminance(lamps), 1e-9f), 1.0f);
+      set_lane(&out.lamps, i, lamps * lit.share * (in_all / lit.brings));
+      set_lane(&path->result.rays, i, lane(path->result.rays, i) + rays);
+    }
     set_lane(&out.radiance, i, m.radiance);
+    set_lane(&out.around, i, around);
     set_lane(&out.scattered, i, m.scattered);
     set_lane(&out.through, i, m.transmittance);
   });
@@ -384,8 +431,9 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
       const F tmax = select(found, hit.t, F(1e30f));
       CacheRequest air[Lanes<F>::kCount] = {};
       const MediaLightOf<F> media =
-          cross_media(scene, tracer, cache, tmax, active, kSteps, count_lamps, path, air);
-      sum += select<F>(active, throughput * media.radiance, Vec3Of<F>{});
+          cross_media(scene, tracer, cache, tmax, active, active, kSteps, count_lamps, path, air);
+      const Vec3Of<F> light = media.radiance + media.around + media.lamps;
+      sum += select<F>(active, throughput * light, Vec3Of<F>{});
       // What brings more light is asked for: the air on the way, or the surface.
       const MaskOf<F> airy =
           active & ((!found) | (max_component(media.scattered) > max_component(media.through)));
@@ -438,8 +486,8 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
     if (any(matt)) {
       const LayeredBsdfOf<F> shiny = specular_part(bsdf);
       Vec3Of<F> diffuse, specular;
-      direct_light(scene, tracer, path, v, shiny, frame, wo, MaskOf<F>(false), matt, false, 1,
-                   &diffuse, &specular);
+      direct_light<F>(scene, tracer, path, v, shiny, frame, wo, false, matt, false, false, 1,
+                      &diffuse, &specular);
       // Light that goes on is a mean over many lookups anyway: there, blurring would only leak.
       Vec3Of<F> jitter = in_all_lanes<F>({0.5f, 0.5f, 0.0f});
       uint32_t coarser = 1;
@@ -495,8 +543,7 @@ GLOAM_HD Vec3Of<F> look_along(const SceneView& scene, const Tracer& tracer,
   path.pdf_bsdf = r.pdf;
   path.sampler = r.sampler;
   if (scene.lights.size > kMaxFastLights) {  // for the chances of lamps that are met
-    path.picker.prepare(scene, r.from, r.normal, active);
-    path.picker.leave_out_sky(scene);
+    fasts::prepare_picker(scene, r.from, r.normal, active, true, &path.picker);
   }
   const Vec3Of<F> light = fasts::gather(scene, tracer, cache, true, active, &path, requests).light;
   *rays += path.result.rays;
@@ -541,9 +588,14 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
     if (!scene.media.volumes.empty()) {
       constexpr int kSteps = 8;
       const F tmax = select(found, hit.t, F(1e30f));
-      const auto media = fasts::cross_media(scene, tracer, cache, tmax, active, kSteps, true, &path,
-                                            requests + 3 * Lanes<F>::kCount);
+      const Mask borrows =
+          even_quads<F>(active, select(found, hit.instance + 1u, UintOf<F>(0u)), path.ray.d) &
+          !turns.of_two;
+      const auto media = fasts::cross_media(scene, tracer, cache, tmax, active, active & !borrows,
+                                            kSteps, true, &path, requests + 3 * Lanes<F>::kCount);
+      const Vec3Of<F> lamps = select<F>(borrows, flip<1>(media.lamps), media.lamps);
       out.base += select<F>(active, out.through * media.radiance, Vec3Of<F>{});
+      out.air += select<F>(active, out.through * (media.around + lamps), Vec3Of<F>{});
       out.through = select<F>(active, out.through * media.through, out.through);
     }
     if (const Mask missed = active & !found; any(missed)) {
@@ -570,7 +622,8 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
         active & (glass | ((v.roughness < kMaxTracedRoughness) & (bsdf.base.p_layer > 0.0f)) |
                   (bsdf.layered & (bsdf.p_coat > 0.0f)));
     Vec3Of<F> diffuse, specular;
-    fasts::direct_light(scene, tracer, &path, v, shiny, frame, wo, traced, active, every,
+    const Mask borrows = even_quads<F>(solid, hit.instance, v.normal) & !turns.of_two;
+    fasts::direct_light(scene, tracer, &path, v, shiny, frame, wo, traced, active, borrows, every,
                         kDrawnLights, &diffuse, &specular);
     const Vec2Of<F> u = path.sampler.next_2d(active);
     const Vec3Of<F> jitter{u.x, u.y, path.sampler.next_1d(active)};
@@ -587,7 +640,6 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
       near.o = leave_surface(v.p, v.geometric, v.geometric, v.t);
       near.d = out_W;
       near.tmax = cells.edge;
-      const Mask borrows = even_quads<F>(solid, hit.instance, v.normal) & !turns.of_two;
       const Mask goes = solid & !borrows;
       path.result.rays += select(goes, UintOf<F>(1u), UintOf<F>(0u));
       const F met = select(tracer.occluded(near, goes), F(1.0f), F(0.0f));

@@ -134,6 +134,9 @@ class LightPickerOf {
     if (scene.has_environment()) sky_share_ *= rest;
   }
 
+  /// After leave_out_sky() and add_glow(): whether sample() takes what glows by u.x.
+  GLOAM_HD Mask takes_glow(F x) const { return x < glow_share_; }
+
   /// Density per solid angle, as in glow::pdf, with which sample() finds the point p_W, p_G in the
   /// volume of scene.media.glows[row], in the lane `at`.
   GLOAM_HD float glow_pdf(const SceneView& scene, int row, int at, Vec3f p_W, Vec3f p_G) const {
