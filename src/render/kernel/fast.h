@@ -47,8 +47,9 @@ struct ReflectionOf {
   ReflectionUseOf<F> use;
   RayOf<F> ray;
   F cone_width = 0.0f, cone_spread = 0.0f;
-  F pdf = 0.0f;            ///< of the ray's direction
-  Vec3Of<F> from, normal;  ///< the surface, and its geometric normal
+  F pdf = 0.0f;             ///< of the ray's direction
+  MaskOf<F> flames = true;  ///< the ray shows what glows
+  Vec3Of<F> from, normal;   ///< the surface, and its geometric normal
   SamplerOf<F> sampler;
 };
 
@@ -61,6 +62,7 @@ GLOAM_HD void copy_lane(const ReflectionOf<F>& from, int i, ReflectionOf<F>* to,
   set_lane(&to->cone_width, k, lane(from.cone_width, i));
   set_lane(&to->cone_spread, k, lane(from.cone_spread, i));
   set_lane(&to->pdf, k, lane(from.pdf, i));
+  set_lane(&to->flames, k, lane(from.flames, i));
   set_lane(&to->from, k, lane(from.from, i));
   set_lane(&to->normal, k, lane(from.normal, i));
   to->sampler.take_lane(k, from.sampler, i);
@@ -99,6 +101,14 @@ GLOAM_HD LayeredBsdfOf<F> specular_part(LayeredBsdfOf<F> b) {
 template <class F>
 GLOAM_HD Vec3Of<F> diffuse_albedo(const LayeredBsdfOf<F>& b) {
   return select<F>(b.layered, b.base.diffuse * b.under, b.base.diffuse);
+}
+
+/// Surfaces so rough that samples of what glows make less noise of its reflection than rays do.
+template <class F>
+GLOAM_HD MaskOf<F> blurs_flames(const SurfaceOf<F>& v, const LayeredBsdfOf<F>& b) {
+  const MaskOf<F> sharp =
+      (b.p_glass > 0.0f) | ((b.p_coat > 0.0f) & (v.coat_roughness < kLeastSharedRoughness));
+  return (v.roughness >= kLeastSharedRoughness) & !(b.layered & sharp);
 }
 
 /// Where the cache is asked: at surfaces, or in the air that a ray crosses.
@@ -154,7 +164,7 @@ struct ArrivingOf {
 };
 
 /// Adds one lamp sample. `traced`: lanes whose specular ray may find the lamp too, if it has an
-/// extent; of what `glows`, that ray alone shows the reflection.
+/// extent; of what `glows`, either that ray or this sample shows the reflection.
 template <class F, class Tracer>
 GLOAM_HD void add_light(const SceneView& scene, const Tracer& tracer, paths::State<F>* path,
                         const SurfaceOf<F>& v, const LayeredBsdfOf<F>& shiny,
@@ -166,8 +176,9 @@ GLOAM_HD void add_light(const SceneView& scene, const Tracer& tracer, paths::Sta
   lit = lit & (wi.z > 0.0f);
   F pdf;
   const Vec3Of<F> f = eval_bsdf(shiny, wo, wi, &pdf);
-  const F weight = select(traced & glows, F(0.0f),
-                          select(traced & !light.is_delta, mis_weight(light.pdf, pdf), F(1.0f)));
+  const F seen = select(blurs_flames(v, shiny), F(1.0f), F(0.0f));
+  const F weight =
+      select(traced & !light.is_delta, select(glows, seen, mis_weight(light.pdf, pdf)), F(1.0f));
   RayOf<F> shadow = path->ray;
   aim_shadow_ray(v.p, v.geometric, v.t, light, &shadow);
   Vec3Of<F> arriving = light.radiance * (1.0f / light.pdf);
@@ -292,7 +303,7 @@ GLOAM_HD Vec3f scattered_light(const SceneView& scene, const Tracer& tracer, con
 /// Light from all around that the cache has for the air at p_W, along d, or `otherwise`.
 GLOAM_HD Vec3f air_light(const IrradianceCacheView& cache, Vec3f p_W, Vec3f d, Vec3f otherwise,
                          WalkRandom* random, CacheRequest* request) {
-  constexpr uint32_t kCoarser = 2;  // light in the air has no edges
+  constexpr uint32_t kCoarser = 0;  // light in the air has no edges
   const CachePlaceOf<float> at{p_W, d, kAirCell, p_W};
   const Vec3f jitter{random->next(), random->next(), random->next()};
   const CacheCellOf<float> cell = ask_cells<float>(cache, at, true, jitter, kCoarser, request);
@@ -314,7 +325,7 @@ struct MediaLightOf {
 template <class F, class Tracer>
 GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& tracer,
                                      const IrradianceCacheView& cache, F tmax, MaskOf<F> active,
-                                     MaskOf<F> samples, int steps, bool glows,
+                                     MaskOf<F> samples, int steps, MaskOf<F> glows,
                                      paths::State<F>* path, CacheRequest* requests) {
   MediaLightOf<F> out{{}, {}, {}, {}, in_all_lanes<F>({1, 1, 1})};
   if (scene.media.volumes.empty()) return out;
@@ -335,7 +346,7 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
       float brings;
     } lit;
     const MarchResult m =
-        march(scene.media, ray, lane(tmax, i), 0.0f, steps, {}, glows,
+        march(scene.media, ray, lane(tmax, i), 0.0f, steps, {}, lane(glows, i),
               [&](const MediumPoint& point, Vec3f p_W, Vec3f share) {
                 const Vec3f scattered = point.scattering * share;
                 const float scatters = max_component(scattered);
@@ -408,11 +419,11 @@ struct GatheredOf {
 
 /// Light along path->ray in the `active` lanes, from its first surface that is no glass or mirror.
 /// What lamps themselves send is weighed against direct_light() by path->pdf_bsdf if `count_lamps`;
-/// if not, it is none of the path's business.
+/// if not, it is none of the path's business. `flames`: lanes in which what glows counts.
 template <class F, class Tracer>
 GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
-                              const IrradianceCacheView& cache, bool count_lamps, MaskOf<F> active,
-                              paths::State<F>* path, CacheRequest* requests) {
+                              const IrradianceCacheView& cache, bool count_lamps, MaskOf<F> flames,
+                              MaskOf<F> active, paths::State<F>* path, CacheRequest* requests) {
   constexpr int kMaxEvents = 5;  // in and out of two glasses
   GatheredOf<F> out;
   Vec3Of<F>&sum = out.light, throughput = in_all_lanes<F>({1, 1, 1});
@@ -431,7 +442,7 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
       const F tmax = select(found, hit.t, F(1e30f));
       CacheRequest air[Lanes<F>::kCount] = {};
       const MediaLightOf<F> media =
-          cross_media(scene, tracer, cache, tmax, active, active, kSteps, count_lamps, path, air);
+          cross_media(scene, tracer, cache, tmax, active, active, kSteps, flames, path, air);
       const Vec3Of<F> light = media.radiance + media.around + media.lamps;
       sum += select<F>(active, throughput * light, Vec3Of<F>{});
       // What brings more light is asked for: the air on the way, or the surface.
@@ -515,6 +526,7 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
       path->ray.o = select<F>(goes, leave_surface(v.p, v.geometric, wi, v.t), path->ray.o);
       path->ray.d = select<F>(goes, wi, path->ray.d);
       first = first & !goes;
+      if (count_lamps) flames = flames | goes;
       // No light was drawn for this bounce: what it meets counts in full.
       path->pdf_bsdf = select(goes, F(1e12f), path->pdf_bsdf);
       path->from = select<F>(goes, v.p, path->from);
@@ -545,7 +557,8 @@ GLOAM_HD Vec3Of<F> look_along(const SceneView& scene, const Tracer& tracer,
   if (scene.lights.size > kMaxFastLights) {  // for the chances of lamps that are met
     fasts::prepare_picker(scene, r.from, r.normal, active, true, &path.picker);
   }
-  const Vec3Of<F> light = fasts::gather(scene, tracer, cache, true, active, &path, requests).light;
+  const Vec3Of<F> light =
+      fasts::gather(scene, tracer, cache, true, r.flames, active, &path, requests).light;
   *rays += path.result.rays;
   return light;
 }
@@ -673,6 +686,7 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
       r.cone_width = path.cone_width;
       r.cone_spread = path.cone_spread + 0.2f * square_root(min(1.0f / (kPi * s.pdf), F(1.0f)));
       r.pdf = s.pdf;
+      r.flames = !fasts::blurs_flames(v, shiny);
       r.from = v.p;
       r.normal = v.geometric;
       r.sampler = path.sampler;
