@@ -2,6 +2,7 @@
 // The fast stage: first surfaces with direct light of every lamp, one specular bounce, and indirect
 // light from the irradiance cache. What is noisy comes out apart, for the filter. Device-safe.
 
+#include "render/kernel/glow_line.h"
 #include "render/kernel/irradiance_cache.h"
 #include "render/kernel/medium_march.h"
 #include "render/kernel/path.h"
@@ -155,6 +156,59 @@ GLOAM_HD Vec3Of<F> cached_light(const IrradianceCacheView& cache, const CachePla
   return light;
 }
 
+/// For lamps, and for what glows with the probability `glow` where lights are too many to be
+/// weighed against it; 0: not at all. The sky is the cache's.
+template <class F>
+GLOAM_HD void prepare_picker(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, MaskOf<F> active,
+                             float glow, LightPickerOf<F>* picker) {
+  picker->prepare(scene, p, n, active);
+  picker->leave_out_sky(scene);
+  if (glow > 0 && scene.has_glow()) picker->add_glow(scene, active, glow);
+}
+/// Where one sample is taken, and of the samples at a surface.
+inline constexpr float kOneGlow = 0.5f, kGlowAmongLamps = 1.0f / kDrawnLights;
+
+/// A sample of a lamp, or of what glows.
+template <class F>
+struct LampSampleOf {
+  LightSampleOf<F> light;
+  F clear = 1e30f;  ///< what is farther away than this does not dim it [m]
+  MaskOf<F> glows = false;
+};
+
+/// What glows, from p on a surface with the normal n, or in the air (n = 0), in the `active` lanes.
+template <class F>
+GLOAM_HD void sample_glow(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, Vec2Of<F> u,
+                          MaskOf<F> active, LampSampleOf<F>* out) {
+  constexpr float kNear = 0.1f;  // light that is sampled closer by counts as from there [m]: points
+                                 // of a flame are drawn without a look at their distance
+  each_lane(active, [&](int i) {
+    glow::LineSample line = glow::sample_line(scene.media, lane(p, i), lane(n, i), lane(u, i));
+    line.light.pdf *= sqr(max(kNear / max(line.light.distance, 1e-3f), 1.0f));
+    set_lane(&out->light, i, line.light);
+    set_lane(&out->clear, i, line.clear);
+  });
+  out->glows = out->glows | active;
+}
+
+/// One of all, as `picker` takes them.
+template <class F>
+GLOAM_HD LampSampleOf<F> sample_lamp(const SceneView& scene, const LightPickerOf<F>& picker,
+                                     Vec3Of<F> p, Vec3Of<F> n, Vec2Of<F> u, F time,
+                                     MaskOf<F> active) {
+  LampSampleOf<F> out;
+  if (!scene.has_glow()) {
+    out.light = picker.sample(scene, p, u, time, active);
+    return out;
+  }
+  const F share = picker.glow_share();
+  const MaskOf<F> glows = active & (u.x < share);
+  out.light = picker.sample(scene, p, u, time, active & !glows);
+  sample_glow(scene, p, n, Vec2Of<F>{rest_of(u.x, F(0.0f), share), u.y}, glows, &out);
+  out.light.pdf = select(glows, out.light.pdf * share, out.light.pdf);
+  return out;
+}
+
 /// Light of lamps at vertices, before media on its way.
 template <class F>
 struct ArrivingOf {
@@ -168,8 +222,9 @@ struct ArrivingOf {
 template <class F, class Tracer>
 GLOAM_HD void add_light(const SceneView& scene, const Tracer& tracer, paths::State<F>* path,
                         const SurfaceOf<F>& v, const LayeredBsdfOf<F>& shiny,
-                        const FrameOf<F>& frame, Vec3Of<F> wo, MaskOf<F> traced, MaskOf<F> glows,
-                        MaskOf<F> active, const LightSampleOf<F>& light, ArrivingOf<F>* sum) {
+                        const FrameOf<F>& frame, Vec3Of<F> wo, MaskOf<F> traced, MaskOf<F> active,
+                        const LampSampleOf<F>& lamp, ArrivingOf<F>* sum) {
+  const LightSampleOf<F>& light = lamp.light;
   MaskOf<F> lit = active & (light.pdf > 0.0f) & (dot(light.wi, v.geometric) > 0.0f);
   if (!any(lit)) return;
   const Vec3Of<F> wi = frame.to_local(light.wi);
@@ -177,8 +232,8 @@ GLOAM_HD void add_light(const SceneView& scene, const Tracer& tracer, paths::Sta
   F pdf;
   const Vec3Of<F> f = eval_bsdf(shiny, wo, wi, &pdf);
   const F seen = select(blurs_flames(v, shiny), F(1.0f), F(0.0f));
-  const F weight =
-      select(traced & !light.is_delta, select(glows, seen, mis_weight(light.pdf, pdf)), F(1.0f));
+  const F weight = select(traced & !light.is_delta,
+                          select(lamp.glows, seen, mis_weight(light.pdf, pdf)), F(1.0f));
   RayOf<F> shadow = path->ray;
   aim_shadow_ray(v.p, v.geometric, v.t, light, &shadow);
   Vec3Of<F> arriving = light.radiance * (1.0f / light.pdf);
@@ -194,26 +249,7 @@ GLOAM_HD void add_light(const SceneView& scene, const Tracer& tracer, paths::Sta
   const MaskOf<F> taken = path->sampler.next_1d(lit) * sum->total < brings;
   sum->way.o = select<F>(taken, shadow.o, sum->way.o);
   sum->way.d = select<F>(taken, shadow.d, sum->way.d);
-  sum->way.tmax = select(taken, shadow.tmax, sum->way.tmax);
-}
-
-/// Light that is sampled closer by than this counts as from there [m]: points of a flame are drawn
-/// without a look at their distance.
-inline constexpr float kNearGlow = 0.1f;
-
-/// For lamps and, if `glow`, what glows: the sky is the cache's.
-template <class F>
-GLOAM_HD void prepare_picker(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, MaskOf<F> active,
-                             bool glow, LightPickerOf<F>* picker) {
-  picker->prepare(scene, p, n, active);
-  picker->leave_out_sky(scene);
-  if (glow && scene.has_glow()) picker->add_glow(scene, active);
-}
-
-/// Density of a sample as if it were not so close by.
-template <class F>
-GLOAM_HD F pdf_from_afar(const LightSampleOf<F>& light) {
-  return light.pdf * sqr(max(kNearGlow / max(light.distance, F(1e-3f)), F(1.0f)));
+  sum->way.tmax = select(taken, min(shadow.tmax, lamp.clear), sum->way.tmax);
 }
 
 /// Direct light at the vertices of the `active` lanes: of every light and of what glows where there
@@ -226,36 +262,33 @@ GLOAM_HD void direct_light(const SceneView& scene, const Tracer& tracer, paths::
                            MaskOf<F> active, MaskOf<F> borrows, bool every, uint32_t drawn,
                            Vec3Of<F>* diffuse, Vec3Of<F>* specular) {
   ArrivingOf<F> sum;
-  const auto add = [&](const LightSampleOf<F>& light, MaskOf<F> glows) {
-    add_light(scene, tracer, path, v, shiny, frame, wo, traced, glows, active, light, &sum);
+  const auto add = [&](const LampSampleOf<F>& lamp) {
+    add_light(scene, tracer, path, v, shiny, frame, wo, traced, active, lamp, &sum);
   };
   if (scene.has_glow() && (every || scene.lights.size == 0)) {
-    LightSampleOf<F> light;
-    const Vec2Of<F> u = path->sampler.next_2d(active);
-    each_lane(active, [&](int i) {
-      set_lane(&light, i,
-               glow::sample(scene.media, lane(v.p, i), lane(v.geometric, i), lane(u, i)));
-    });
-    light.pdf = pdf_from_afar(light);
-    add(light, true);
+    LampSampleOf<F> lamp;
+    sample_glow(scene, v.p, v.geometric, path->sampler.next_2d(active), active, &lamp);
+    add(lamp);
   }
-  if (scene.lights.size > 0) prepare_picker(scene, v.p, v.geometric, active, !every, &path->picker);
+  if (scene.lights.size > 0) {
+    const float glow = every ? 0.0f : (drawn > 1 ? kGlowAmongLamps : kOneGlow);
+    prepare_picker(scene, v.p, v.geometric, active, glow, &path->picker);
+  }
   if (every || scene.lights.size == 0) drawn = scene.lights.size;
   for (uint32_t k = 0; k < drawn; ++k) {
     Vec2Of<F> u = path->sampler.next_2d(active);
+    LampSampleOf<F> lamp;
     if (every) {
       const MaskOf<F> near = active & (path->picker.shares(k) > 0.0f);
       if (!any(near)) continue;
-      LightSampleOf<F> light = sample_one_light(scene, k, v.p, u, path->ray.time, near);
-      light.pdf = select(near, light.pdf, F(0.0f));
-      add(light, false);
+      lamp.light = sample_one_light(scene, k, v.p, u, path->ray.time, near);
+      lamp.light.pdf = select(near, lamp.light.pdf, F(0.0f));
     } else {
       u.x = (u.x + static_cast<float>(k)) * (1.0f / static_cast<float>(drawn));
-      LightSampleOf<F> light = path->picker.sample(scene, v.p, u, path->ray.time, active);
-      const MaskOf<F> glows = scene.has_glow() ? path->picker.takes_glow(u.x) : MaskOf<F>(false);
-      light.pdf = static_cast<float>(drawn) * select(glows, pdf_from_afar(light), light.pdf);
-      add(light, glows);
+      lamp = sample_lamp(scene, path->picker, v.p, v.geometric, u, path->ray.time, active);
+      lamp.light.pdf *= static_cast<float>(drawn);
     }
+    add(lamp);
   }
   const MaskOf<F> lit = active & (sum.total > 0.0f);
   borrows = borrows & (flip<1>(sum.total) > 0.0f);
@@ -279,17 +312,18 @@ GLOAM_HD Vec3f scattered_light(const SceneView& scene, const Tracer& tracer, con
                                const MediumPoint& point, Vec3f p_W, WalkRandom* random,
                                uint32_t* rays) {
   LightPicker picker;
-  prepare_picker<float>(scene, p_W, Vec3f{}, true, true, &picker);
+  prepare_picker<float>(scene, p_W, Vec3f{}, true, kOneGlow, &picker);
   const Vec2f u{random->next(), random->next()};
-  LightSample light = picker.sample(scene, p_W, u, ray.time);
-  light.pdf = pdf_from_afar<float>(light);
+  const LampSampleOf<float> lamp =
+      sample_lamp<float>(scene, picker, p_W, Vec3f{}, u, ray.time, true);
+  const LightSample& light = lamp.light;
   if (!(light.pdf > 0) || !(max_component(point.scattering) > 0)) return {};
   Ray shadow = ray;
   aim_shadow_ray(p_W, Vec3f{}, 0.0f, light, &shadow);
   Vec3f share{1, 1, 1};
   if (light.casts_shadow) share = paths::transmit(scene, tracer, shadow, true, rays);
   if (!(max_component(share) > 0)) return {};
-  share *= transmittance(scene.media, shadow, shadow.tmax, {}, *random);
+  share *= transmittance(scene.media, shadow, min(shadow.tmax, lamp.clear), {}, *random);
   const float cosine = dot(ray.d, light.wi);
   const auto phase = [&](float scattering, float g_scattering) {
     const float g = scattering > 0 ? g_scattering / scattering : 0.0f;
@@ -555,7 +589,7 @@ GLOAM_HD Vec3Of<F> look_along(const SceneView& scene, const Tracer& tracer,
   path.pdf_bsdf = r.pdf;
   path.sampler = r.sampler;
   if (scene.lights.size > kMaxFastLights) {  // for the chances of lamps that are met
-    fasts::prepare_picker(scene, r.from, r.normal, active, true, &path.picker);
+    fasts::prepare_picker(scene, r.from, r.normal, active, fasts::kGlowAmongLamps, &path.picker);
   }
   const Vec3Of<F> light =
       fasts::gather(scene, tracer, cache, true, r.flames, active, &path, requests).light;

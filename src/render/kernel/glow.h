@@ -56,25 +56,38 @@ GLOAM_HD uint32_t cell_along(float x, int cells) {
   return static_cast<uint32_t>(clamp(static_cast<int>(x * (1.0f / kBoundsVoxels)), 0, cells - 1));
 }
 
+GLOAM_HD uint32_t cell_at(const VolumeView& v, Vec3f p_G) {
+  const uint32_t i = cell_along(p_G.x, v.cells_x), j = cell_along(p_G.y, v.cells_y),
+                 k = cell_along(p_G.z, v.cells_z);
+  return (k * static_cast<uint32_t>(v.cells_y) + j) * static_cast<uint32_t>(v.cells_x) + i;
+}
+
+/// Density of points that sample() draws, at p_G in the volume [1/m³].
+GLOAM_HD float point_density(const MediaView& media, const GlowView& glow, Vec3f p_G) {
+  const VolumeView& v = media.volumes[glow.volume];
+  const uint32_t cell = cell_at(v, p_G);
+  const int row = glow.rows[cell];
+  if (row < 0) return 0;
+  const auto within = [](float at, int cells) {
+    const int voxel =
+        static_cast<int>(at) - static_cast<int>(cell_along(at, cells)) * kBoundsVoxels;
+    return static_cast<uint32_t>(clamp(voxel, 0, kBoundsVoxels - 1));
+  };
+  const uint32_t voxel =
+      (within(p_G.z, v.cells_z) * kBoundsVoxels + within(p_G.y, v.cells_y)) * kBoundsVoxels +
+      within(p_G.x, v.cells_x);
+  const float* sums = glow.voxel_sums.data + static_cast<size_t>(row) * GlowView::kSums + voxel;
+  const float share = (glow.cell_sums[cell + 1] - glow.cell_sums[cell]) * (sums[1] - sums[0]);
+  return share * glow.voxels_per_volume;
+}
+
 /// Density with which sample() finds the point x, p_G in the volume, from p: per solid angle, for
 /// the share of it that rays find there.
 GLOAM_HD float pdf(const MediaView& media, const GlowView& glow, Vec3f p, Vec3f x, Vec3f p_G) {
   const VolumeView& v = media.volumes[glow.volume];
-  const uint32_t i = cell_along(p_G.x, v.cells_x), j = cell_along(p_G.y, v.cells_y),
-                 k = cell_along(p_G.z, v.cells_z);
-  const uint32_t cell =
-      (k * static_cast<uint32_t>(v.cells_y) + j) * static_cast<uint32_t>(v.cells_x) + i;
-  const int row = glow.rows[cell];
-  if (row < 0) return 0;
-  const auto within = [](float at, uint32_t along) {
-    const int voxel = static_cast<int>(at) - static_cast<int>(along * kBoundsVoxels);
-    return static_cast<uint32_t>(clamp(voxel, 0, kBoundsVoxels - 1));
-  };
-  const uint32_t voxel =
-      (within(p_G.z, k) * kBoundsVoxels + within(p_G.y, j)) * kBoundsVoxels + within(p_G.x, i);
-  const float* sums = glow.voxel_sums.data + static_cast<size_t>(row) * GlowView::kSums + voxel;
-  const float share = (glow.cell_sums[cell + 1] - glow.cell_sums[cell]) * (sums[1] - sums[0]);
-  return share * glow.voxels_per_volume * length_squared(x - p) / collision_rate(v, cell);
+  const float density = point_density(media, glow, p_G);
+  if (!(density > 0)) return 0;
+  return density * length_squared(x - p) / collision_rate(v, cell_at(v, p_G));
 }
 
 /// A point of the medium as a light for p: its voxel by u.x.
@@ -109,10 +122,14 @@ GLOAM_HD LightSample sample(const MediaView& media, const GlowView& glow, Vec3f 
   return s;
 }
 
-/// A point of one of them, by weight().
-GLOAM_HD LightSample sample(const MediaView& media, Vec3f p, Vec3f n, Vec2f u) {
+/// One of them by weight(), by u.x; u.x becomes what is left of it.
+struct Choice {
+  const GlowView* glow = nullptr;
+  float probability = 0;  ///< 0 = none
+};
+GLOAM_HD Choice choose(const MediaView& media, Vec3f p, Vec3f n, Vec2f* u) {
   const DeviceSpan<const GlowView>& glows = media.glows;
-  const float total = weight(glows, p, n), wanted = u.x * total;
+  const float total = weight(glows, p, n), wanted = u->x * total;
   float before = 0, taken = 0;
   uint32_t row = 0;
   for (uint32_t k = 0; k < glows.size && before + taken <= wanted; ++k) {
@@ -123,8 +140,16 @@ GLOAM_HD LightSample sample(const MediaView& media, Vec3f p, Vec3f n, Vec2f u) {
     row = k;
   }
   if (!(taken > 0)) return {};
-  LightSample s = sample(media, glows[row], p, {rest_of(wanted, before, taken), u.y});
-  s.pdf *= taken / total;
+  u->x = rest_of(wanted, before, taken);
+  return {&glows[row], taken / total};
+}
+
+/// A point of one of them, by weight().
+GLOAM_HD LightSample sample(const MediaView& media, Vec3f p, Vec3f n, Vec2f u) {
+  const Choice choice = choose(media, p, n, &u);
+  if (!(choice.probability > 0)) return {};
+  LightSample s = sample(media, *choice.glow, p, u);
+  s.pdf *= choice.probability;
   return s;
 }
 
