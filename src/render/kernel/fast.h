@@ -368,7 +368,7 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
     WalkRandom random(lane(u, i));
     const Ray ray = lane(path->ray, i);
     // Of what is thin, dark or behind the rest, few steps ask for light and count for many.
-    constexpr float kLittle = 0.03f;
+    constexpr float kLittle = 0.1f;
     float weighed = 0;       // what has been asked for
     float in_all = 0;        // what lamps may bring
     Vec3f air = cache.mean;  // of the last step that the cache knew

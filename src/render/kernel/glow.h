@@ -90,34 +90,46 @@ GLOAM_HD float pdf(const MediaView& media, const GlowView& glow, Vec3f p, Vec3f 
   return density * length_squared(x - p) / collision_rate(v, cell_at(v, p_G));
 }
 
-/// A point of the medium as a light for p: its voxel by u.x.
-GLOAM_HD LightSample sample(const MediaView& media, const GlowView& glow, Vec3f p, Vec2f u) {
-  LightSample s;
-  const VolumeView& v = media.volumes[glow.volume];
+/// A point of the medium, by what it gives off: its voxel by u.x.
+struct PointSample {
+  Vec3f p_G;
+  uint32_t cell = 0;
+  float density = 0;  ///< [1/m³]; 0 = none
+};
+GLOAM_HD PointSample sample_point(const VolumeView& v, const GlowView& glow, Vec2f u) {
+  PointSample s;
   const float* cells = glow.cell_sums.data;
-  const uint32_t cell = find(cells, glow.cell_sums.size - 1, u.x);
-  const int row = glow.rows[cell];
+  s.cell = find(cells, glow.cell_sums.size - 1, u.x);
+  const int row = glow.rows[s.cell];
   if (row < 0) return s;
-  const float of_cell = cells[cell + 1] - cells[cell];
+  const float of_cell = cells[s.cell + 1] - cells[s.cell];
   const float* sums = glow.voxel_sums.data + static_cast<size_t>(row) * GlowView::kSums;
-  const uint32_t voxel = find(sums, GlowView::kSums - 1, rest_of(u.x, cells[cell], of_cell));
+  const uint32_t voxel = find(sums, GlowView::kSums - 1, rest_of(u.x, cells[s.cell], of_cell));
   const uint32_t nx = static_cast<uint32_t>(v.cells_x), ny = static_cast<uint32_t>(v.cells_y);
   const auto at = [](uint32_t of_cells, uint32_t of_voxels, float inside) {
     return static_cast<float>(of_cells * kBoundsVoxels + of_voxels % kBoundsVoxels) + inside;
   };
   WalkRandom random(u);  // the choice of a voxel leaves too little of u.x
-  const Vec3f p_G{at(cell % nx, voxel, random.next()),
-                  at(cell / nx % ny, voxel / kBoundsVoxels, u.y),
-                  at(cell / (nx * ny), voxel / (kBoundsVoxels * kBoundsVoxels), random.next())};
-  const Vec3f to = transform_point(glow.X_WG, p_G) - p;
+  s.p_G = {at(s.cell % nx, voxel, random.next()), at(s.cell / nx % ny, voxel / kBoundsVoxels, u.y),
+           at(s.cell / (nx * ny), voxel / (kBoundsVoxels * kBoundsVoxels), random.next())};
+  s.density = of_cell * (sums[voxel + 1] - sums[voxel]) * glow.voxels_per_volume;
+  return s;
+}
+
+/// That as a light for p.
+GLOAM_HD LightSample sample(const MediaView& media, const GlowView& glow, Vec3f p, Vec2f u) {
+  LightSample s;
+  const VolumeView& v = media.volumes[glow.volume];
+  const PointSample point = sample_point(v, glow, u);
+  const Vec3f to = transform_point(glow.X_WG, point.p_G) - p;
   s.distance = length(to);
-  if (!(s.distance > 1e-6f)) return s;
+  if (!(point.density > 0 && s.distance > 1e-6f)) return s;
   s.wi = to / s.distance;
-  const float rate = collision_rate(v, cell);
+  const float rate = collision_rate(v, point.cell);
   const Vec3f absorption = Bands{}.of(v.mass_extinction) * (Vec3f{1, 1, 1} - Bands{}.of(v.albedo));
-  s.radiance = absorption * media::glow_at(media, v, p_G, {}) * (media::density_at(v, p_G) / rate);
-  s.pdf =
-      of_cell * (sums[voxel + 1] - sums[voxel]) * glow.voxels_per_volume * sqr(s.distance) / rate;
+  s.radiance = absorption * media::glow_at(media, v, point.p_G, {}) *
+               (media::density_at(v, point.p_G) / rate);
+  s.pdf = point.density * sqr(s.distance) / rate;
   if (!(max_component(s.radiance) > 0)) s.pdf = 0;
   return s;
 }

@@ -13,20 +13,24 @@ struct LineSample {
   float clear = 0;    ///< distance at which the piece begins [m]: what is before it dims
 };
 
-/// A point is drawn as by sample(); it is any of the piece's kParts, which lie a voxel apart. Of
+/// A point is drawn as by sample(); it is any of the piece's kParts. Of
 /// all pieces that hold a point, each draws its light over the sum of their densities (the balance
 /// heuristic).
 GLOAM_HD LineSample sample_line(const MediaView& media, Vec3f p, Vec3f n, Vec2f u) {
-  constexpr int kParts = 8;
+  constexpr int kParts = 4;
+  constexpr float kVoxels = 1.5f;  // of a part: small flames are but few voxels wide
   LineSample out;
   const Choice choice = choose(media, p, n, &u);
   if (!(choice.probability > 0)) return out;
   const GlowView& glow = *choice.glow;
   const VolumeView& v = media.volumes[glow.volume];
   LightSample& light = out.light;
-  light = sample(media, glow, p, u);
-  if (!(light.pdf > 0)) return out;
-  const float step = min(v.voxel.x, min(v.voxel.y, v.voxel.z));
+  const PointSample point = sample_point(v, glow, u);
+  const Vec3f to = transform_point(glow.X_WG, point.p_G) - p;
+  light.distance = length(to);
+  if (!(point.density > 0 && light.distance > 1e-6f)) return out;
+  light.wi = to / light.distance;
+  const float step = kVoxels * min(v.voxel.x, min(v.voxel.y, v.voxel.z));
   WalkRandom random({u.y, u.x});
   const float before = floorf(random.next() * kParts);  // parts before the point
   const Vec3f k = Bands{}.of(v.mass_extinction), absorbed = Vec3f{1, 1, 1} - Bands{}.of(v.albedo);
