@@ -253,9 +253,11 @@ void Stepper::step_with_effects() {
   if (drag_ != nullptr) drag_->push(*m, *d);
   if (effects_ != nullptr) effects_->begin_step(step_, *m, *d);
   const bool wet = water_ != nullptr && water_->begin_step(step_, *m, *d, &hash_);
-  if (wet || !halved) {
-    mj_makeM(m, d);  // with the water that bodies carry along
+  if (!halved) {  // with the water that bodies carry along
+    mj_makeM(m, d);
     mj_factorM(m, d);
+  } else if (wet) {
+    water_->add_masses(*m, *d);
   }
   if (soil_ != nullptr) hash_ = soil_->begin_step(step_, *m, *d, hash_);
   halved ? mj_step2(m, d) : mj_step(m, d);

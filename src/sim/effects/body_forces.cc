@@ -1,5 +1,6 @@
 #include "sim/effects/body_forces.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace gloam {
@@ -40,6 +41,25 @@ void add_wrench(const mjModel& m, mjData& d, int body, const double* force, cons
   for (int dof = last_dof(m, body); dof >= 0; dof = m.dof_parentid[dof]) {
     const double* axis = d.cdof + 6 * dof;  // turn, then shift, about the tree's centre of mass
     d.qfrc_applied[dof] += dot3(axis, moment) + dot3(axis + 3, force);
+  }
+}
+
+// Featherstone 2008, "Rigid Body Dynamics Algorithms", table 6.3; rows are those of dofs above.
+void factor_tree(const mjModel& m, mjData& d, int tree) {
+  const int first = m.tree_dofadr[tree], last = first + m.tree_dofnum[tree] - 1;
+  const int begin = m.M_rowadr[first], end = m.M_rowadr[last] + m.M_rownnz[last];
+  std::copy(d.M + begin, d.M + end, d.qLD + begin);
+  for (int dof = last; dof >= first; --dof) {
+    double* row = d.qLD + m.M_rowadr[dof];
+    const int above = m.M_rownnz[dof] - 1;
+    const double inverse = 1 / row[above];
+    d.qLDiagInv[dof] = inverse;
+    for (int k = above - 1; k >= 0; --k) {
+      double* to = d.qLD + m.M_rowadr[m.M_colind[m.M_rowadr[dof] + k]];
+      const double share = row[k] * inverse;
+      for (int i = 0; i <= k; ++i) to[i] -= share * row[i];
+      row[k] = share;
+    }
   }
 }
 

@@ -96,6 +96,23 @@ TEST(ResponseSolver, IsTheInverseInertiaOfTheWholeTree) {
   }
 }
 
+TEST(BodyForces, FactorsATreeAsMujocoDoes) {
+  auto world = world_from_mjcf(kRichModel);
+  ModelPtr heavier(mj_copyModel(nullptr, world->model.get()));
+  const mjModel& m = *world->model;
+  DataPtr is(mj_makeData(&m)), exact(mj_makeData(&m));
+  mj_forward(&m, is.get());
+  for (int dof = 0; dof < m.nv; ++dof) {
+    heavier->dof_armature[dof] += 0.1 * (dof + 1), heavier->dof_M0[dof] += 0.1 * (dof + 1);
+    is->M[m.M_rowadr[dof] + m.M_rownnz[dof] - 1] += 0.1 * (dof + 1);
+  }
+  for (int tree = 0; tree < m.ntree; ++tree) factor_tree(m, *is, tree);
+  mj_forward(heavier.get(), exact.get());
+  for (int i = 0; i < m.nC; ++i) EXPECT_NEAR(is->qLD[i], exact->qLD[i], 1e-12) << i;
+  for (int dof = 0; dof < m.nv; ++dof)
+    EXPECT_NEAR(is->qLDiagInv[dof], exact->qLDiagInv[dof], 1e-12 * exact->qLDiagInv[dof]) << dof;
+}
+
 /// Balls, boxes and a wheel that fall and roll over a bed.
 std::shared_ptr<CompiledWorld> busy_bed(const std::string& kind = "dry_sand") {
   std::string bodies = "<geom type='plane' size='9 9 .1' pos='0 0 -.2'/>";
