@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/hash.h"
+
 namespace gloam {
 namespace {
 
@@ -180,22 +182,20 @@ int SoilContacts::root(int here) const {
 void SoilContacts::add_patch(int here) {
   if (root(here) != here) return;
   const int patch = static_cast<int>(patches_.size());
-  lines_.clear();
   size_t first = 0;
-  int members = 0;
-  for (size_t i = 0; i < here_.size(); ++i) {
-    const Footprint& print = print_at(static_cast<int>(i));
-    if (root(static_cast<int>(i)) == here) {
-      ++members;
-      merged_.resize(lines_.size() + print.outline.size());
-      std::merge(lines_.begin(), lines_.end(), print.outline.begin(), print.outline.end(),
-                 merged_.begin(), [](const Line& a, const Line& b) { return a.y < b.y; });
-      lines_.swap(merged_);
+  uint64_t number = 0;
+  for (int i = 0; i < static_cast<int>(here_.size()); ++i) {
+    const Footprint& print = print_at(i);
+    if (root(i) == here) {
+      number = hash_bytes(&print.number, sizeof(print.number), number);
       for (size_t n = 0; n < print.touches.size(); ++n) touches_[first + n].patch = patch;
     }
     first += print.touches.size();
   }
-  patches_.push_back(members > 1 ? patch_of(lines_) : print_at(here).alone);
+  Footprint& begin = print_at(here);
+  if (begin.patch_number != number) begin.patch = patch_of(here);
+  begin.patch_number = number;
+  patches_.push_back(begin.patch);
 }
 
 // The side of the convex hull of lines at which they end so (Andrew 1979), after what is in hull_.
@@ -216,11 +216,21 @@ void SoilContacts::add_chain(std::span<const Line> lines, double Line::* end, do
   }
 }
 
-SoilContacts::Patch SoilContacts::patch_of(std::span<const Line> lines) {
+// Of all that are joined to it.
+SoilContacts::Patch SoilContacts::patch_of(int here) {
+  lines_.clear();
+  for (int i = here; i < static_cast<int>(here_.size()); ++i) {
+    if (root(i) != here) continue;
+    const std::vector<Line>& more = print_at(i).outline;
+    merged_.resize(lines_.size() + more.size());
+    std::merge(lines_.begin(), lines_.end(), more.begin(), more.end(), merged_.begin(),
+               [](const Line& a, const Line& b) { return a.y < b.y; });
+    lines_.swap(merged_);
+  }
   hull_.clear();
-  add_chain(lines, &Line::right, 1);
+  add_chain(lines_, &Line::right, 1);
   const auto right = static_cast<std::ptrdiff_t>(hull_.size());
-  add_chain(lines, &Line::left, -1);
+  add_chain(lines_, &Line::left, -1);
   std::reverse(hull_.begin() + right, hull_.end());  // against the clock
   double area = 0, edge = 0;
   Patch out;

@@ -76,7 +76,9 @@ class SoilContacts {
     int low[2] = {}, high[2] = {};  // cells along x and y, inclusive
     std::vector<SoilTouch> touches;
     std::vector<Line> outline;  // from low y to high
-    Patch alone;                // what it makes by itself
+    uint64_t number = 0;        // of the look
+    uint64_t patch_number = 0;  // of the looks of all of
+    Patch patch;                // that begins with it
     std::vector<double> rise;   // of the underside over each touch since then [m]
     int parent = 0;             // another of the same patch among here_, or itself
   };
@@ -105,7 +107,7 @@ class SoilContacts {
   void flush(int row, const ColliderBottom& collider, Footprint* print);
   void outline(double width, Footprint* print) const;
   void add_chain(std::span<const Line> lines, double Line::* end, double side);
-  Patch patch_of(std::span<const Line> lines);
+  Patch patch_of(int row);
   void join(int row);
   bool may_join(int row) const;
   Footprint& print_at(int row) {
@@ -132,6 +134,7 @@ class SoilContacts {
   std::vector<Point> hull_;                // room
   std::vector<Mark> marks_;                // of each cell
   uint32_t round_ = 0;
+  uint64_t looks_ = 0;
 };
 
 }  // namespace gloam

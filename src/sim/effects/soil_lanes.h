@@ -13,7 +13,7 @@ namespace gloam {
 
 /// Motion of a point of a body, and others from there: linear [m/s], then angular [rad/s]; world.
 struct SoilLanes {
-  static constexpr size_t kSide = 4;
+  static constexpr size_t kSide = 8;
 
   double area[kSide] = {}, depth[kSide] = {};       // [m²], [m]
   double arm[3][kSide] = {}, slope[2][kSide] = {};  // from the point [m]; of the underside

@@ -31,6 +31,7 @@ bool SoilContacts::is_below(const ColliderBottom& collider, double x, double y) 
 
 void SoilContacts::look(const ColliderBottom& collider, Footprint* print) {
   print->known = true;
+  print->number = ++looks_;
   std::copy_n(collider.position(), 3, print->p);
   std::copy_n(collider.rotation(), 9, print->R);
   print->touches.clear(), print->rise.clear(), print->outline.clear();
@@ -44,7 +45,6 @@ void SoilContacts::look(const ColliderBottom& collider, Footprint* print) {
   sum_cells(collider, print);
   if (print->touches.empty()) return;
   outline(soil_.dy / lines, print);
-  print->alone = patch_of(print->outline);
   const SoilTouch& middle = print->touches[print->touches.size() / 2];
   collider.anchor_of(middle.p, print->anchor);
   double square = 0;

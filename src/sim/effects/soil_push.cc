@@ -6,7 +6,7 @@ namespace gloam {
 namespace {
 
 constexpr int kMostIterations = 8;
-constexpr double kConverged = 1e-2;   // of the change of velocity
+constexpr double kConverged = 2e-2;   // of the change of velocity
 constexpr double kLeastSpeed = 1e-9;  // [m/s], [rad/s]
 constexpr double kRestored = 0.1;     // of the energy of an impact, at most
 
@@ -77,8 +77,10 @@ struct Sums {
   // force - matrix * motion.
   void finish(double* force, double (&matrix)[6][6]) const {
     double sum[kCount];
-    for (int n = 0; n < kCount; ++n)
-      sum[n] = (lanes[n][0] + lanes[n][1]) + (lanes[n][2] + lanes[n][3]);
+    for (int n = 0; n < kCount; ++n) {
+      const double* l = lanes[n];
+      sum[n] = ((l[0] + l[1]) + (l[2] + l[3])) + ((l[4] + l[5]) + (l[6] + l[7]));
+    }
     std::copy_n(sum + kForce, 6, force);
     const double *upper = sum + kAlong, *a = sum + kFirst, *aa = sum + kSecond, c = sum[kAcross];
     for (int n = 0; n < 6; ++n)
