@@ -18,9 +18,11 @@ struct SoilLanes {
   double area[kSide] = {}, depth[kSide] = {};       // [m²], [m]
   double arm[3][kSide] = {}, slope[2][kSide] = {};  // from the point [m]; of the underside
   double modulus[kSide] = {};                       // k_c / b + k_phi [N/m^(n+2)]
-  double loading[kSide] = {};                       // on the loading curve, as it is now [Pa]
-  double shearing[3][kSide] = {};                   // what cell.shear goes to since the last step
-  double share[kSide] = {};                         // and how far
+  double per_steep[kSide] = {},
+         stretch[kSide] = {};      // 1 / (d d), and the area over that from above
+  double loading[kSide] = {};      // on the loading curve, as it is now [Pa]
+  double shearing[3][kSide] = {};  // what cell.shear goes to since the last step
+  double share[kSide] = {};        // and how far
   // What cells have been through:
   double sinkage[kSide] = {}, pressure[kSide] = {}, unloading[kSide] = {}, shear[3][kSide] = {};
   // Force at a velocity u of its place: f - across u - along d (d u), where d is where the ground
@@ -50,7 +52,6 @@ struct SoilLanes {
   struct Slip {
     double v[3];     // along the surface [m/s]
     double sinking;  // d v
-    double steep;    // d d
     double speed;    // [m/s]
   };
   Slip slip_at(size_t i, const double* motion) const {
@@ -59,8 +60,7 @@ struct SoilLanes {
     Slip out{{motion[0] + w[1] * a[2] - w[2] * a[1], motion[1] + w[2] * a[0] - w[0] * a[2],
               motion[2] + w[0] * a[1] - w[1] * a[0]}};
     out.sinking = out.v[2] - s[0] * out.v[0] - s[1] * out.v[1];
-    out.steep = 1 + s[0] * s[0] + s[1] * s[1];
-    const double part = out.sinking / out.steep;
+    const double part = out.sinking * per_steep[i];
     out.v[0] += part * s[0], out.v[1] += part * s[1], out.v[2] -= part;
     out.speed = std::sqrt(dot3(out.v, out.v));
     return out;
@@ -76,6 +76,8 @@ inline void SoilLanes::find_loading(const SoilDescription& soil, const double* m
   constexpr double kNoWay = 1e-9;  // [m]
   const double per_way = 1 / soil.strength.shear;
   for (size_t i = 0; i < kSide; ++i) {
+    const double steep = 1 + slope[0][i] * slope[0][i] + slope[1][i] * slope[1][i];
+    per_steep[i] = 1 / steep, stretch[i] = std::sqrt(steep);
     loading[i] = loading_of(soil, modulus[i], depth[i]);
     const Slip slip = slip_at(i, motion);
     const double way = slip.speed * dt, moves = way > kNoWay ? 1.0 : 0.0;
@@ -112,10 +114,10 @@ inline void SoilLanes::find_forces(const SoilDescription& soil, const double* mo
     stiffness[i] = on * stiff * dt;
     load[i] = on * p + stiffness[i] * slip.sinking;
     // Shear, over the true area.
-    const double most = on * std::sqrt(slip.steep) * (s.cohesion + p * s.tan_friction);
+    const double most = on * stretch[i] * (s.cohesion + p * s.tan_friction);
     const double way = slip.speed * dt, gone = 1 - exponential(-way * per_way);
     across[i] = most * (way > kStill ? gone / slip.speed : dt * per_way);
-    along[i] = stiffness[i] - across[i] / slip.steep;
+    along[i] = stiffness[i] - across[i] * per_steep[i];
     const double held = most * (1 - gone);
     f[0][i] = held * shear[0][i] - load[i] * slope[0][i];
     f[1][i] = held * shear[1][i] - load[i] * slope[1][i];
