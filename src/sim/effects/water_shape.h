@@ -39,6 +39,9 @@ struct WaterShape {
   double radius = 0;                   ///< of the sphere of the same volume [m]
 };
 
+/// Sorts elements and makes clusters of them; `low`: corner of the bounding box.
+void make_clusters(const double* low, WaterShape* shape);
+
 /// Nothing for planes, height fields and SDFs. `elements`: about how many are wanted.
 std::optional<WaterShape> water_shape(const mjModel& model, int geom, int elements = 216);
 

@@ -148,17 +148,22 @@ void Multigrid::coarsen(const Level& fine, Level& coarse) {
       return axis == a ? first(axis, i) + 1 : coarse.start[axis][size_t(i) + 1];
     };
     for_rows(faces, [&](int j, int k) {
+      float row[kLongestRow + 1];  // of the finer faces, added up along y and z
+      const int n = t.faces(a).nx;
+      std::fill_n(row, n, 0.0f);
+      for (int z = first(2, k); z < end(2, k); ++z) {
+        for (int y = first(1, j); y < end(1, j); ++y) {
+          const float* more = from + t.at(0, y, z);
+          GLOAM_IVDEP
+          for (int x = 0; x < n; ++x) row[x] += more[x];
+        }
+      }
       for (int i = 0; i < faces.nx; ++i) {
-        const int at[3] = {i, j, k};
-        const int face = at[a];
+        const int face = a == 0 ? i : (a == 1 ? j : k);
         const float share =
             distance(fine.width[a], first(a, face)) / distance(coarse.width[a], face);
         float sum = 0;
-        for (int z = first(2, k); z < end(2, k); ++z) {
-          for (int y = first(1, j); y < end(1, j); ++y) {
-            for (int x = first(0, i); x < end(0, i); ++x) sum += from[t.at(x, y, z)];
-          }
-        }
+        for (int x = first(0, i); x < end(0, i); ++x) sum += row[x];
         to[s.at(i, j, k)] = sum * share;
       }
     });

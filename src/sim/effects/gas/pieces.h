@@ -42,4 +42,27 @@ class Ways {
   float x_[kPiece], y_[kPiece], z_[kPiece], past_[kPiece];
 };
 
+/// Calls set(c, values of `field` around the way, way) for the ways way_of(i) of a row of n faces.
+template <class WayOf, class Set>
+void for_ways(const CarryView& view, const float* field, int j, int k, int n, const WayOf& way_of,
+              const Set& set) {
+  const Shape s = view.shape;
+  for_pieces(n, [&](int from, int width) {
+    const int begin = s.at(from, j, k);
+    Ways ways;
+    GLOAM_IVDEP
+    for (int l = 0; l < width; ++l) ways.set(l, way_of(from + l));
+    if (ways.are_even(width)) {
+      GLOAM_IVDEP
+      for (int l = 0; l < width; ++l) set(begin + l, ways.even_corners(s, field, l), ways.get(l));
+    } else {
+      GLOAM_IVDEP
+      for (int l = 0; l < width; ++l) {
+        const Way way = ways.get(l);
+        set(begin + l, corners(s, field, way.at.c), way);
+      }
+    }
+  });
+}
+
 }  // namespace gloam::gas
