@@ -110,7 +110,7 @@ inline void SoilLanes::find_forces(const SoilDescription& soil, const double* mo
     const bool unloads = (sinkage[i] > 0) & (line < curve);
     const double p = unloads ? line : curve;
     const double stiff = unloads ? unloading[i] : (z < soil.depth ? s.n * curve / z : 0.0);
-    const double on = (z > 0) & (p > 0) ? area[i] : 0.0;
+    const double on = ((z > 0) & (p > 0)) ? area[i] : 0.0;
     stiffness[i] = on * stiff * dt;
     load[i] = on * p + stiffness[i] * slip.sinking;
     // Shear, over the true area.

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <tuple>
 
 #include "sim/effects/water_shape.h"
 
@@ -12,8 +13,11 @@ void make_clusters(const double* low, WaterShape* shape) {
       out = out << 16 | static_cast<uint64_t>((e.p[a] - low[a]) / (2 * shape->cell[a]));
     return out;
   };
-  std::stable_sort(shape->elements.begin(), shape->elements.end(),
-                   [&](const auto& a, const auto& b) { return place(a) < place(b); });
+  const auto key = [&](const WaterElement& e) {
+    return std::tuple(place(e), e.p[0], e.p[1], e.p[2]);
+  };
+  std::sort(shape->elements.begin(), shape->elements.end(),
+            [&](const auto& a, const auto& b) { return key(a) < key(b); });
   for (size_t from = 0; from < shape->elements.size(); from += WaterCluster::kSide) {
     WaterCluster& cluster = shape->clusters.emplace_back();
     const size_t count = std::min(WaterCluster::kSide, shape->elements.size() - from);
