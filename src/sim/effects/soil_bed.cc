@@ -1,7 +1,6 @@
 #include "sim/effects/soil_bed.h"
 
 #include "base/hash.h"
-#include "base/wave_math.h"
 
 namespace gloam {
 namespace {
@@ -20,7 +19,9 @@ SoilBed::SoilBed(const SoilDescription& soil, const mjModel& model, std::span<co
       cells_(soil.cells()),
       answers_of_(static_cast<size_t>(model.nbody)),
       tracks_(soil) {
-  pushes_.reserve(contacts_.most_touches());
+  const size_t most = contacts_.most_touches();
+  bodies_.reserve(geoms.size()), moduli_.reserve(geoms.size());
+  lanes_.reserve(most / SoilLanes::kSide + geoms.size()), changes_.reserve(most);
   reactions_.reserve(geoms.size());
   for (const int geom : geoms) {
     const int body = model.geom_bodyid[geom];
@@ -72,53 +73,87 @@ uint64_t SoilBed::press(uint32_t step, const mjModel& m, const mjData& d,
     if (is_near(m, d, collider->geom())) contacts_.add(*collider);
   }
   contacts_.finish();
-  int body = -1;
-  double motion[6] = {};
-  for (const SoilTouch& touch : contacts_.touches()) {
-    if (touch.body != body) {
-      body = touch.body;
-      mj_objectVelocity(&m, &d, mjOBJ_XBODY, body, motion, 0);  // angular, then linear
+  find_bodies();
+  changes_.clear();
+  const std::span<const SoilTouch> touches = contacts_.touches();
+  for (const Body& body : bodies_) {
+    double motion[6];
+    velocity_at(m, d, body.id, body.point, motion);
+    std::copy_n(d.cvel + 6 * body.id, 3, motion + 3);
+    const std::span<SoilLanes> lanes = lanes_of(body);
+    for (SoilLanes& four : lanes) four.find_loading(soil_, motion, m.opt.timestep);
+    for (size_t n = 0; n < body.count; ++n) {
+      const SoilTouch& touch = touches[body.first + n];
+      press_cell(step, touch, lanes[n / SoilLanes::kSide], n % SoilLanes::kSide, motion);
+      changes_.push_back({touch.cell, cells_[static_cast<size_t>(touch.cell)]});
     }
-    const double twist[6] = {motion[3], motion[4], motion[5], motion[0], motion[1], motion[2]};
-    double v[3];
-    soil_velocity_at(twist, d.xpos + 3 * body, touch.p, v);
-    press_cell(step, m.opt.timestep, touch, v);
-    const SoilCell& cell = cells_[static_cast<size_t>(touch.cell)];
-    hash = hash_bytes(&cell, sizeof(cell), hash_bytes(&touch.cell, sizeof(touch.cell), hash));
   }
-  return hash;
+  if (changes_.empty()) return hash;
+  return hash_span<Change>(changes_, hash);
 }
 
-// What has happened since the last step.
-void SoilBed::press_cell(uint32_t step, double dt, const SoilTouch& touch, const double* velocity) {
+void SoilBed::find_bodies() {
+  const SoilStrength& s = soil_.strength;
+  moduli_.clear();
+  for (int patch = 0; patch < contacts_.patches(); ++patch)
+    moduli_.push_back(s.k_c / contacts_.width(patch) + s.k_phi);
+  bodies_.clear(), lanes_.clear();
+  const std::span<const SoilTouch> all = contacts_.touches();
+  for (size_t from = 0, to = 0; from < all.size(); from = to) {
+    Body body{.id = all[from].body, .first = from, .lanes = lanes_.size()};
+    double area = 0;
+    for (; to < all.size() && all[to].body == body.id; ++to) {
+      area += all[to].area;
+      for (int a = 0; a < 3; ++a) body.point[a] += all[to].area * all[to].p[a];
+    }
+    for (double& x : body.point) x /= area;
+    body.count = to - from;
+    for (size_t n = 0; n < body.count; ++n) {
+      if (n % SoilLanes::kSide == 0) lanes_.emplace_back();
+      const SoilTouch& touch = all[from + n];
+      lanes_.back().set(n % SoilLanes::kSide, touch, body.point,
+                        moduli_[static_cast<size_t>(touch.patch)]);
+    }
+    bodies_.push_back(body);
+  }
+}
+
+std::span<SoilLanes> SoilBed::lanes_of(const Body& body) {
+  constexpr size_t kSide = SoilLanes::kSide;
+  return std::span(lanes_).subspan(body.lanes, (body.count + kSide - 1) / kSide);
+}
+
+// What has happened since the last step; `lanes`: with its i-th the touch's. `motion`: the body's.
+void SoilBed::press_cell(uint32_t step, const SoilTouch& touch, const SoilLanes& lanes, size_t i,
+                         const double* motion) {
   SoilCell& cell = cells_[static_cast<size_t>(touch.cell)];
-  const double modulus = soil_.strength.k_c / contacts_.widths()[static_cast<size_t>(touch.patch)] +
-                         soil_.strength.k_phi;
-  const SoilPressure now = soil_pressure(soil_.strength, cell, modulus, soil_.depth, touch.depth);
-  if (now.yields) {
+  const bool is_fresh = cell.touched != step;
+  cell.touched = step + 1;
+  const double line =
+      double{cell.pressure} - cell.unloading(soil_.strength) * (double{cell.sinkage} - touch.depth);
+  const double loading = lanes.loading[i];
+  const bool was_pressed = cell.sinkage > 0,
+             presses = touch.depth > 0 && (!was_pressed || line > 0);
+  if (is_fresh || !presses) std::fill_n(cell.shear, 3, 0.0f);
+  if (!presses) return;
+  if (!was_pressed || line >= loading) {
     cell.sinkage = static_cast<float>(touch.depth);
-    cell.pressure = static_cast<float>(now.p);
+    cell.pressure = static_cast<float>(loading);
     const double share = std::min(touch.area / (soil_.dx * soil_.dy), 1.0);
-    const double left = touch.depth - now.p / cell.unloading(soil_.strength);
+    const double left = touch.depth - loading / cell.unloading(soil_.strength);
     const auto height = static_cast<float>(-left * share);
     const float lower = tracks_.height(touch.cell) - height;
     if (lower > 0) {
       tracks_.set_height(touch.cell, height);
+      const double arm[2] = {lanes.arm[0][i], lanes.arm[1][i]};
+      const double velocity[2] = {motion[0] - motion[5] * arm[1] + motion[4] * lanes.arm[2][i],
+                                  motion[1] + motion[5] * arm[0] - motion[3] * lanes.arm[2][i]};
       push_aside(touch, velocity, double{lower} * soil_.dx * soil_.dy * soil_.strength.aside);
     }
   }
-  if (cell.touched != step || now.p <= 0) std::fill_n(cell.shear, 3, 0.0f);
-  cell.touched = step + 1;
-  if (now.p <= 0) return;
-  double v[3];
-  mju_copy3(v, velocity);
-  project_along(touch.slope, v);
-  const double speed = mju_norm3(v), way = speed * dt;
-  if (way < kNoWay) return;
-  const double share = 1 - exponential(-way / soil_.strength.shear);
-  for (int a = 0; a < 3; ++a) {
+  for (size_t a = 0; a < 3; ++a) {
     const double shear = double{cell.shear[a]};
-    cell.shear[a] = static_cast<float>(shear - (v[a] / speed + shear) * share);
+    cell.shear[a] = static_cast<float>(shear + (lanes.shearing[a][i] - shear) * lanes.share[i]);
   }
 }
 

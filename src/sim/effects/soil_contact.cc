@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/hash.h"
+
 namespace gloam {
 namespace {
 
@@ -19,23 +21,30 @@ SoilContacts::SoilContacts(const SoilDescription& soil, const mjModel& m,
       row_low_(soil.nx),
       row_high_(-1),
       marks_(soil.cells()) {
-  size_t touches = 0, points = 0;
+  size_t touches = 0, all_lines = 0, most_lines = 0, most_samples = 0;
   for (const int geom : geoms) {
     const double across = 2 * m.geom_rbound[geom];
     const auto along = [across](double d, int n) {
       return static_cast<size_t>(std::min(across / d + 2, static_cast<double>(n)));
     };
-    const size_t rows = along(soil.dy, soil.ny), cells = along(soil.dx, soil.nx) * rows;
-    const size_t lines = std::max<size_t>(2 * rows, kContactLines * 2 + kMostContactLines * 2) + 2;
+    const size_t rows = along(soil.dy, soil.ny), columns = along(soil.dx, soil.nx);
+    const size_t lines = std::max<size_t>(2 * rows, kContactLines * 2 + kMostContactLines * 2) + 4;
     Footprint& print = prints_.emplace_back();
-    print.touches.reserve(cells), print.rise.reserve(cells), print.hull.reserve(2 * lines + 1);
+    print.touches.reserve(rows * columns), print.rise.reserve(rows * columns);
+    print.outline.reserve(lines);
     print_of_[static_cast<size_t>(geom)] = static_cast<int>(prints_.size()) - 1;
-    touches += cells, points += 2 * lines;
+    touches += rows * columns, all_lines += lines;
+    most_lines = std::max(most_lines, lines);
+    most_samples = std::max(most_samples, lines * columns);
   }
   touches_.reserve(touches);
-  points_.reserve(points), hull_.reserve(points + 1);
-  here_.reserve(geoms.size()), before_.reserve(geoms.size());
-  widths_.reserve(geoms.size()), centres_.reserve(2 * geoms.size());
+  lines_.reserve(all_lines), merged_.reserve(all_lines), hull_.reserve(2 * all_lines);
+  for (auto* room : {&ys_, &left_, &right_}) room->reserve(most_lines);
+  Samples& s = samples_;
+  for (auto* room : {&s.x, &s.y, &s.area, &s.z, &s.slope_x, &s.slope_y})
+    room->reserve(most_samples);
+  s.cell.reserve(most_samples);
+  here_.reserve(geoms.size()), before_.reserve(geoms.size()), patches_.reserve(geoms.size());
 }
 
 void SoilContacts::reset() {
@@ -100,7 +109,7 @@ bool SoilContacts::has_stayed(const ColliderBottom& collider, Footprint* print) 
 void SoilContacts::finish() {
   if (changed_ || here_ != before_) {
     touches_.clear();
-    widths_.clear(), centres_.clear();
+    patches_.clear();
     ++round_;
     for (size_t i = 0; i < here_.size(); ++i) join(static_cast<int>(i));
     for (size_t i = 0; i < here_.size(); ++i) add_patch(static_cast<int>(i));
@@ -124,18 +133,19 @@ void SoilContacts::finish() {
 
 // Finds those before it that it shares cells with, or whose cells are beside its own.
 void SoilContacts::join(int here) {
-  Footprint& print = prints_[static_cast<size_t>(here_[static_cast<size_t>(here)])];
+  Footprint& print = print_at(here);
   print.parent = here;
-  const auto nx = static_cast<size_t>(soil_.nx);
-  for (const SoilTouch& touch : print.touches) {
-    const int row = touch.cell / soil_.nx, i = touch.cell % soil_.nx;
+  bool alone = !may_join(here);
+  for (size_t n = 0; n < print.touches.size() && !alone; ++n) {
+    const int row = print.touches[n].cell / soil_.nx, i = print.touches[n].cell % soil_.nx;
     for (int v = std::max(row - 1, 0); v <= std::min(row + 1, soil_.ny - 1); ++v) {
       for (int u = std::max(i - 1, 0); u <= std::min(i + 1, soil_.nx - 1); ++u) {
-        const Mark& mark = marks_[static_cast<size_t>(v) * nx + static_cast<size_t>(u)];
-        if (mark.round != round_ || mark.row == here) continue;
+        const Mark& mark = marks_[static_cast<size_t>(v * soil_.nx + u)];
+        if (mark.round != round_) continue;
         const int a = root(here), b = root(mark.row);
-        prints_[static_cast<size_t>(here_[static_cast<size_t>(std::max(a, b))])].parent =
-            std::min(a, b);
+        if (a == b) continue;
+        print_at(std::max(a, b)).parent = std::min(a, b);
+        alone = !may_join(here);
       }
     }
   }
@@ -147,9 +157,22 @@ void SoilContacts::join(int here) {
   touches_.insert(touches_.end(), print.touches.begin(), print.touches.end());
 }
 
+// Whether there is one before it, of another patch, around which its cells may be.
+bool SoilContacts::may_join(int here) const {
+  const Footprint& a = print_at(here);
+  for (int other = 0; other < here; ++other) {
+    const Footprint& b = print_at(other);
+    bool near = true;
+    for (int axis = 0; axis < 2; ++axis)
+      near &= a.low[axis] <= b.high[axis] + 1 && b.low[axis] <= a.high[axis] + 1;
+    if (near && root(other) != root(here)) return true;
+  }
+  return false;
+}
+
 int SoilContacts::root(int here) const {
   while (true) {
-    const int parent = prints_[static_cast<size_t>(here_[static_cast<size_t>(here)])].parent;
+    const int parent = print_at(here).parent;
     if (parent == here) return here;
     here = parent;
   }
@@ -158,56 +181,69 @@ int SoilContacts::root(int here) const {
 // The patch that begins with it, if one does, and all touches of that.
 void SoilContacts::add_patch(int here) {
   if (root(here) != here) return;
-  const Footprint* only = &prints_[static_cast<size_t>(here_[static_cast<size_t>(here)])];
-  const int patch = static_cast<int>(widths_.size());
-  points_.clear();
+  const int patch = static_cast<int>(patches_.size());
   size_t first = 0;
-  int members = 0;
-  for (size_t i = 0; i < here_.size(); ++i) {
-    const Footprint& print = prints_[static_cast<size_t>(here_[i])];
-    if (root(static_cast<int>(i)) == here) {
-      ++members;
-      points_.insert(points_.end(), print.hull.begin(), print.hull.end());
+  uint64_t number = 0;
+  for (int i = 0; i < static_cast<int>(here_.size()); ++i) {
+    const Footprint& print = print_at(i);
+    if (root(i) == here) {
+      number = hash_bytes(&print.number, sizeof(print.number), number);
       for (size_t n = 0; n < print.touches.size(); ++n) touches_[first + n].patch = patch;
     }
     first += print.touches.size();
   }
-  std::span<const Point> hull = only->hull;
-  if (members > 1) {
-    std::sort(points_.begin(), points_.end(),
-              [](Point a, Point b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
-    make_hull(&hull_);
-    hull = hull_;
-  }
-  double area = 0, edge = 0, middle[2] = {};
-  for (size_t i = 0; i < hull.size(); ++i) {
-    const Point a = hull[i], b = hull[i + 1 < hull.size() ? i + 1 : 0];
-    area += (a.x * b.y - a.y * b.x) / 2;
-    edge += std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
-    middle[0] += a.x / static_cast<double>(hull.size());
-    middle[1] += a.y / static_cast<double>(hull.size());
-  }
-  widths_.push_back(edge > 0 ? std::max(2 * std::abs(area) / edge, 1e-4) : 1e-4);
-  centres_.insert(centres_.end(), {middle[0], middle[1]});
+  Footprint& begin = print_at(here);
+  if (begin.patch_number != number) begin.patch = patch_of(here);
+  begin.patch_number = number;
+  patches_.push_back(begin.patch);
 }
 
-// The convex hull of points_, which are in order of y, then x (Andrew 1979).
-void SoilContacts::make_hull(std::vector<Point>* hull) {
-  const auto turn = [](Point a, Point b, Point c) {
-    return (b.y - a.y) * (c.x - a.x) - (b.x - a.x) * (c.y - a.y);
-  };
-  hull->clear();
-  const auto walk = [&](auto begin, auto end) {
-    const size_t base = hull->size();
-    for (auto p = begin; p != end; ++p) {
-      while (hull->size() >= base + 2 && turn((*hull)[hull->size() - 2], hull->back(), *p) <= 0)
-        hull->pop_back();
-      hull->push_back(*p);
+// The side of the convex hull of lines at which they end so (Andrew 1979), after what is in hull_.
+void SoilContacts::add_chain(std::span<const Line> lines, double Line::* end, double side) {
+  const size_t base = hull_.size();
+  for (const Line& line : lines) {
+    const Point c{line.*end, line.y};
+    while (hull_.size() >= base + 2) {
+      const Point a = hull_[hull_.size() - 2], b = hull_.back();
+      if (side * ((b.y - a.y) * (c.x - a.x) - (b.x - a.x) * (c.y - a.y)) < 0) break;
+      hull_.pop_back();
     }
-    hull->pop_back();  // begins the other half
-  };
-  walk(points_.begin(), points_.end());
-  walk(points_.rbegin(), points_.rend());
+    if (hull_.size() == base + 1 && hull_.back().y == c.y) {  // of two lowest the farther one
+      if (side * (c.x - hull_.back().x) > 0) hull_.back() = c;
+      continue;
+    }
+    hull_.push_back(c);
+  }
+}
+
+// Of all that are joined to it.
+SoilContacts::Patch SoilContacts::patch_of(int here) {
+  lines_.clear();
+  for (int i = here; i < static_cast<int>(here_.size()); ++i) {
+    if (root(i) != here) continue;
+    const std::vector<Line>& more = print_at(i).outline;
+    merged_.resize(lines_.size() + more.size());
+    std::merge(lines_.begin(), lines_.end(), more.begin(), more.end(), merged_.begin(),
+               [](const Line& a, const Line& b) { return a.y < b.y; });
+    lines_.swap(merged_);
+  }
+  hull_.clear();
+  add_chain(lines_, &Line::right, 1);
+  const auto right = static_cast<std::ptrdiff_t>(hull_.size());
+  add_chain(lines_, &Line::left, -1);
+  std::reverse(hull_.begin() + right, hull_.end());  // against the clock
+  double area = 0, edge = 0;
+  Patch out;
+  Point a = hull_.back();
+  for (const Point b : hull_) {
+    area += (a.x * b.y - a.y * b.x) / 2;
+    edge += std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
+    out.centre[0] += b.x, out.centre[1] += b.y;
+    a = b;
+  }
+  for (double& x : out.centre) x /= static_cast<double>(hull_.size());
+  out.width = edge > 0 ? std::max(2 * std::abs(area) / edge, 1e-4) : 1e-4;
+  return out;
 }
 
 }  // namespace gloam

@@ -14,6 +14,14 @@
 
 namespace gloam {
 
+/// k_u at the sinkage z_u [N/m³]. Wong's line was fitted to deep sinkages: at shallow ones, where
+/// it would be flatter than loading, it is three times as steep as that.
+inline double unloading_of(const SoilStrength& s, double z_u, double p_u) {
+  constexpr double kLeast = 3;
+  const double wong = s.k_0 + s.a_u * z_u, least = kLeast * p_u / (z_u > 0 ? z_u : 1.0);
+  return wong > least ? wong : least;
+}
+
 /// What a cell has been through.
 struct SoilCell {
   float sinkage = 0;     ///< z_u: from which it unloads [m]; 0 = nothing has pressed it
@@ -21,36 +29,10 @@ struct SoilCell {
   float shear[3] = {};   ///< stress over tau_max on what is in it, world, 0 … 1
   uint32_t touched = 0;  ///< step after the one that something was last in it
 
-  /// k_u [N/m³]. Wong's line was fitted to deep sinkages: at shallow ones, where it would be
-  /// flatter than loading, it is three times as steep as that.
+  /// k_u [N/m³].
   double unloading(const SoilStrength& s) const {
-    constexpr double kLeast = 3;
-    return std::max(s.k_0 + s.a_u * double{sinkage}, kLeast * double{pressure} / double{sinkage});
+    return unloading_of(s, double{sinkage}, double{pressure});
   }
 };
-
-/// Pressure at a sinkage, and what it grows by with it.
-struct SoilPressure {
-  double p = 0;         ///< [Pa]
-  double slope = 0;     ///< dp/dz [N/m³]
-  bool yields = false;  ///< it is on the loading curve
-};
-
-/// `modulus`: k_c / b + k_phi [N/m^(n+2)], `z`: sinkage [m], `depth`: of the bed; beyond it the
-/// pressure stays as it is [m].
-inline SoilPressure soil_pressure(const SoilStrength& s, const SoilCell& cell, double modulus,
-                                  double depth, double z) {
-  if (z <= 0) return {};
-  SoilPressure out;
-  if (cell.sinkage > 0) {
-    const double k_u = cell.unloading(s);
-    out.p = double{cell.pressure} - k_u * (double{cell.sinkage} - z);
-    out.slope = k_u;
-    if (out.p <= 0) return {};
-  }
-  const double loading = modulus * std::pow(std::min(z, depth), s.n);
-  if (cell.sinkage > 0 && out.p < loading) return out;
-  return {loading, z < depth ? s.n * loading / z : 0, true};
-}
 
 }  // namespace gloam
