@@ -6,21 +6,12 @@
 
 #include "base/parallel.h"
 #include "render/cpu/fast_filter.h"
-#include "render/test/media_probe.h"
+#include "render/test/fast_picture.h"
 #include "render/test/panel.h"
 #include "render/test/room_with_window.h"
 
 namespace gloam {
 namespace {
-
-RenderSettings fast_settings(ViewHistory* history, uint32_t frame) {
-  RenderSettings s;
-  s.tier = RenderTier::kFast;
-  s.history = history;
-  s.frame = frame;
-  s.max_depth = 8;
-  return s;
-}
 
 /// A closed room with a lamp behind a wall: half of it has indirect light alone.
 SceneBuilder divided_room() {
@@ -40,34 +31,6 @@ SceneBuilder divided_room() {
 }
 CameraView room_view() {
   return SceneBuilder::camera(look_at({-1.6f, -1.6f, 1.2f}, {0.3f, 0.8f, 0.8f}), 96, 72, 60);
-}
-
-double mean_luminance(const Film& film) {
-  double sum = 0;
-  for (const Vec3f& c : film.radiance) sum += luminance(c);
-  return sum / static_cast<double>(film.radiance.size());
-}
-
-Film path_picture(const SceneBuilder& b, const CameraView& view, int spp, int max_depth) {
-  RenderSettings path;
-  path.spp = spp;
-  path.max_depth = max_depth;
-  return b.render(view, path);
-}
-constexpr int kEndless = 40;  // light comes round in the cache without end
-
-/// The last of `count` pictures of what stands still.
-Film fast_picture(const SceneBuilder& b, const CameraView& view, uint32_t count,
-                  uint64_t seed = 1) {
-  const auto renderer = b.make();
-  const auto history = renderer->make_history();
-  Film film;
-  for (uint32_t i = 0; i < count; ++i) {
-    RenderSettings settings = fast_settings(history.get(), i);
-    settings.seed = seed;
-    renderer->render(view, settings, &film);
-  }
-  return film;
 }
 
 /// Light of `film` over that of `exact` in block (bx, by) of 12 x 12 pixels; both are 96 wide.
@@ -389,22 +352,6 @@ TEST(Fast, NothingTrailsBehindWhatMoves) {
   EXPECT_NEAR(floor_at(-1), clear, 0.05f * clear);
   EXPECT_NEAR(floor_at(0), clear, 0.05f * clear) << "left a second before";
   EXPECT_NEAR(floor_at(0.2f), clear, 0.08f * clear) << "left two pictures before";
-}
-
-TEST(Fast, MediaDimByBeerLambert) {
-  for (const float k : {0.2f, 1.0f}) {
-    MediaBuilder fog;
-    fog.add_box({2, 2, 2}, {0, 0, 0}, 1, fog.add_medium({k, k, k}, {}));
-    SceneBuilder b;
-    b.description.media = fog.media;
-    b.description.volumes = fog.volumes;
-    b.add(ShapeType::kBox, {1, 0.1f, 1}, translation({0, 3, 0}), b.add_emitter({100, 100, 100}));
-    const CameraView view = SceneBuilder::camera(look_at({0, -4, 0}, {0, 0, 0}), 8, 8, 1);
-    Film film;
-    b.make()->render(view, fast_settings(nullptr, 0), &film);
-    const double expected = 100 * std::exp(-2 * k);
-    EXPECT_NEAR(mean_luminance(film), expected, 0.02 * expected) << "extinction " << k;
-  }
 }
 
 }  // namespace

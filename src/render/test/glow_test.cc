@@ -3,50 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include "render/kernel/glow_line.h"
 #include "render/kernel/path_machine.h"
-#include "render/test/media_probe.h"
+#include "render/test/flame.h"
 #include "world/black_body.h"
 
 namespace gloam {
 namespace {
-
-constexpr float kHot = 1900;  // [K]
-
-/// An egg of soot in a box of 20 x 20 x 40 voxels, hottest in the middle and gone at its rim.
-VolumeDescription make_flame(Vec3f size, Vec3f foot) {
-  VolumeDescription flame;
-  flame.name = "flame";
-  flame.nx = flame.ny = 20;
-  flame.nz = 40;
-  flame.size = size;
-  flame.X_WV = rigid({0, 0, 1}, 0.5f, foot + Vec3f{0, 0, 0.5f * size.z});
-  std::vector<float> densities, temperatures;
-  for (int i = 0; i < flame.nx * flame.ny * flame.nz; ++i) {
-    const int x = i % 20, y = i / 20 % 20, z = i / 400;
-    const Vec3f q = Vec3f{static_cast<float>(x) - 9.5f, static_cast<float>(y) - 9.5f,
-                          0.5f * (static_cast<float>(z) - 19.5f)} *
-                    0.1f;
-    const float inside = max(1 - dot(q, q), 0.0f);
-    densities.push_back(inside);
-    temperatures.push_back(kHot * (0.8f + 0.2f * inside));
-  }
-  flame.density = grid_of(std::move(densities));
-  flame.temperature = grid_of(std::move(temperatures));
-  return flame;
-}
-
-/// Adds a flame 0.8 m high to the scene, in fog if that has an extinction.
-void add_flame(SceneBuilder* b, Vec3f foot, float extinction, Vec3f fog = {}) {
-  MediaBuilder media;
-  media.add(make_flame({0.4f, 0.4f, 0.8f}, foot),
-            media.add_medium(Vec3f{1, 1.3f, 1.7f} * extinction, {0.3f, 0.3f, 0.3f},
-                             {0.5f, 0.5f, 0.5f}, 1e-3f));
-  if (max_component(fog) > 0) {
-    media.add_box({4, 4, 2}, {0, 0, 1}, 1, media.add_medium(fog, {0.9f, 0.9f, 0.9f}));
-  }
-  b->description.media = media.media;
-  b->description.volumes = media.volumes;
-}
 
 /// A room with a mirror, a half transparent board and a shelf that stands in the flame.
 SceneBuilder room(float extinction, Vec3f fog, int lamps) {
@@ -118,6 +81,33 @@ TEST(Glow, PointsAreDrawnByTheirDensity) {
   EXPECT_NEAR(drawn.mean, expected, 4 * drawn.standard_error() + 2e-3 * expected);
   // What is left is that a voxel is not even, and that some are farther away.
   EXPECT_LT(drawn.standard_error(), 1.0 / std::sqrt(100000.0) * expected);
+}
+
+TEST(Glow, LinesBringTheLightOfPoints) {
+  for (const float extinction : {2.0f, 60.0f}) {
+    SceneBuilder b;
+    add_flame(&b, {}, extinction);
+    const Probe probe(b);
+    const MediaView& media = probe.view.media;
+    const Vec3f p{1.2f, -0.7f, 0.3f};
+    const auto arrives = [&](const LightSample& s, float clear, Vec2f u) {
+      if (!(s.pdf > 0)) return 0.0f;
+      const Ray ray = make_ray(p, s.wi);
+      return s.radiance.x / s.pdf * transmittance(media, ray, clear, {}, WalkRandom(u)).x;
+    };
+    Mean points, lines;
+    for (uint32_t i = 0; i < 100000; ++i) {
+      Sampler sampler = independent(i, 5);
+      const Vec2f u = sampler.next_2d(), walk = sampler.next_2d();
+      const LightSample point = glow::sample(media, p, {}, u);
+      points.add(arrives(point, point.distance, walk));
+      const glow::LineSample line = glow::sample_line(media, p, {}, u);
+      lines.add(arrives(line.light, line.clear, walk));
+    }
+    EXPECT_NEAR(lines.mean, points.mean,
+                4 * (points.standard_error() + lines.standard_error()) + 0.03 * points.mean)
+        << "extinction " << extinction;
+  }
 }
 
 TEST(Glow, ThinAndFarAwayItIsAPointLamp) {

@@ -1,0 +1,110 @@
+// Media in the fast tier: closed forms, and the light of the path tier.
+
+#include <gtest/gtest.h>
+
+#include "render/test/fast_picture.h"
+#include "render/test/flame.h"
+
+namespace gloam {
+namespace {
+
+TEST(Fast, MediaDimByBeerLambert) {
+  for (const float k : {0.2f, 1.0f}) {
+    MediaBuilder fog;
+    fog.add_box({2, 2, 2}, {0, 0, 0}, 1, fog.add_medium({k, k, k}, {}));
+    SceneBuilder b;
+    b.description.media = fog.media;
+    b.description.volumes = fog.volumes;
+    b.add(ShapeType::kBox, {1, 0.1f, 1}, translation({0, 3, 0}), b.add_emitter({100, 100, 100}));
+    const CameraView view = SceneBuilder::camera(look_at({0, -4, 0}, {0, 0, 0}), 8, 8, 1);
+    Film film;
+    b.make()->render(view, fast_settings(nullptr, 0), &film);
+    const double expected = 100 * std::exp(-2 * k);
+    EXPECT_NEAR(mean_luminance(film), expected, 0.02 * expected) << "extinction " << k;
+  }
+}
+
+/// A closed room of 4 x 4 x 2 m with a lamp under its ceiling, and a camera in a corner.
+SceneBuilder closed_room(float lamp) {
+  SceneBuilder b;
+  const int grey = b.add_diffuse({0.5f, 0.45f, 0.4f});
+  for (const float side : {-1.0f, 1.0f}) {
+    b.add(ShapeType::kBox, {2, 2, 0.1f}, translation({0, 0, 1 + 1.1f * side}), grey);
+    b.add(ShapeType::kBox, {0.1f, 2, 1}, translation({2.1f * side, 0, 1}), grey);
+    b.add(ShapeType::kBox, {2, 0.1f, 1}, translation({0, 2.1f * side, 1}), grey);
+  }
+  if (lamp > 0) {
+    b.add(ShapeType::kBox, {0.4f, 0.4f, 0.01f}, translation({0.8f, 0.8f, 1.95f}),
+          b.add_emitter({lamp, lamp, lamp}));
+  }
+  b.description.extent = 5;
+  return b;
+}
+CameraView corner_view() {
+  return SceneBuilder::camera(look_at({-1.8f, -1.8f, 1.3f}, {0.4f, 0.5f, 0.9f}), 96, 72, 70);
+}
+
+/// Quotients of the light of two pictures in 3 x 2 parts, and in all.
+void expect_same_light(const Film& film, const Film& exact, double all, double parts) {
+  EXPECT_NEAR(mean_luminance(film) / mean_luminance(exact), 1, all);
+  for (int part = 0; part < 6; ++part) {
+    double a = 0, c = 0;
+    for (int y = part / 3 * 36; y < part / 3 * 36 + 36; ++y) {
+      for (int x = part % 3 * 32; x < part % 3 * 32 + 32; ++x) {
+        a += luminance(film.radiance[static_cast<size_t>(y * 96 + x)]);
+        c += luminance(exact.radiance[static_cast<size_t>(y * 96 + x)]);
+      }
+    }
+    EXPECT_NEAR(a / c, 1, parts) << "column " << part % 3 << " of row " << part / 3;
+  }
+}
+
+// Falls short: 0.94 of the light where smoke is thin, 0.43 where its optical depth is some six; the
+// bound on single samples of lamps takes the most (0.75 without it).
+TEST(FastMedia, DISABLED_SmokeIsLitAsByThePathTier) {
+  for (const float k : {0.3f, 1.5f}) {
+    SceneBuilder b = closed_room(100);
+    MediaBuilder smoke;  // a layer under the ceiling, thinner below
+    const int medium = smoke.add_medium({k, k, k}, {0.8f, 0.8f, 0.8f}, {0.5f, 0.5f, 0.5f});
+    smoke.add_box({4, 4, 1}, {0, 0, 1.5f}, 1, medium);
+    smoke.add_box({4, 4, 1}, {0, 0, 0.5f}, 0.3f, medium);
+    b.description.media = smoke.media;
+    b.description.volumes = smoke.volumes;
+    SCOPED_TRACE(k);
+    expect_same_light(fast_picture(b, corner_view(), 8),
+                      path_picture(b, corner_view(), 128, kEndless), 0.05, 0.1);
+  }
+}
+
+TEST(FastMedia, DISABLED_FlamesLightTheRoomAsInThePathTier) {
+  for (const float k : {2.0f, 40.0f}) {
+    SceneBuilder b = closed_room(0);
+    add_flame(&b, {0.5f, 0.5f, 0.05f}, k);
+    SCOPED_TRACE(k);
+    expect_same_light(fast_picture(b, corner_view(), 8),
+                      path_picture(b, corner_view(), 128, kEndless), 0.05, 0.1);
+  }
+}
+
+/// Mean difference of the luminance of neighbours over that of all, in the lower half.
+double grain(const Film& film) {
+  double sum = 0, all = 0;
+  for (int y = 40; y < 72; ++y) {
+    for (int x = 1; x < 96; ++x) {
+      const size_t at = static_cast<size_t>(y * 96 + x);
+      const float here = luminance(film.radiance[at]);
+      sum += static_cast<double>(std::abs(here - luminance(film.radiance[at - 1])));
+      all += static_cast<double>(here);
+    }
+  }
+  return sum / all;
+}
+
+TEST(FastMedia, TheLightOfAThickFlameHasNoSpecks) {
+  SceneBuilder b = closed_room(0);
+  add_flame(&b, {0.5f, 0.5f, 0.05f}, 40);
+  EXPECT_LT(grain(fast_picture(b, corner_view(), 1)), 0.04) << "the first picture";
+}
+
+}  // namespace
+}  // namespace gloam
