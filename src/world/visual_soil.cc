@@ -49,6 +49,13 @@ MaterialDescription material_of(const SoilDescription& soil, RenderDescription* 
   return material;
 }
 
+/// Snow that is too thin to be seen as a bed lies under the ground, which the weather whitens: its
+/// border is no step and no change of colour. `depth`: of snow [m].
+double hidden_by(double depth) {
+  constexpr double kSeen = 0.01;  // [m]
+  return kSeen * std::max(1 - std::max(depth, 0.0) / (4 * kSeen), 0.0);
+}
+
 /// Vertices at the middles of cells, those of the outer cells moved out to the edges, and one more
 /// all around that the sides go down to.
 struct SoilMesh {
@@ -61,7 +68,8 @@ struct SoilMesh {
     return i <= 1 ? low : i >= n ? low + d * n : low + d * (i - 0.5);
   }
   template <class Visit>  // (x, y, z)
-  void each_vertex(std::span<const float> change, const Visit& visit) const {
+  void each_vertex(std::span<const float> tracks, double time, const Visit& visit) const {
+    const double fallen = soil.growth * time;
     for (int j = 0; j < ny; ++j) {
       const double y = place_along(j, soil.ny, soil.low_y(), soil.dy);
       for (int i = 0; i < nx; ++i) {
@@ -69,12 +77,16 @@ struct SoilMesh {
             static_cast<size_t>(cell_along(j, soil.ny)) * static_cast<size_t>(soil.nx) +
             static_cast<size_t>(cell_along(i, soil.nx));
         const bool below = i == 0 || j == 0 || i == nx - 1 || j == ny - 1;
-        double z = soil.rest_of(cell);
+        const double depth = soil.depth_of(cell, fallen);
+        double change = 0;
         if (below) {
-          z -= soil.depth;
-        } else if (!change.empty()) {
-          z += double{change[cell]};
+          change = -depth;
+        } else if (!tracks.empty()) {
+          const auto here = static_cast<float>(soil.share_of(cell) * fallen);
+          change = double{track_height(tracks[cell], here)};
         }
+        double z = soil.rest_of(cell) + soil.share_of(cell) * fallen + change;
+        if (soil.fallen) z -= hidden_by(depth + change);
         visit(static_cast<float>(place_along(i, soil.nx, soil.low_x(), soil.dx)),
               static_cast<float>(y), static_cast<float>(z));
       }
@@ -85,7 +97,7 @@ struct SoilMesh {
 TriangleMesh surface_of(const SoilDescription& soil) {
   const SoilMesh grid(soil);
   TriangleMesh mesh;
-  grid.each_vertex({}, [&](float x, float y, float z) { mesh.positions.push_back({x, y, z}); });
+  grid.each_vertex({}, 0, [&](float x, float y, float z) { mesh.positions.push_back({x, y, z}); });
   add_grid_triangles(grid.nx, &mesh);
   return mesh;
 }
@@ -94,10 +106,10 @@ TriangleMesh surface_of(const SoilDescription& soil) {
 
 int soil_vertices(const SoilDescription& soil) { return (soil.nx + 2) * (soil.ny + 2); }
 
-void append_soil_vertices(const SoilDescription& soil, std::span<const float> change,
+void append_soil_vertices(const SoilDescription& soil, std::span<const float> tracks, double time,
                           std::vector<float>* out) {
   SoilMesh(soil).each_vertex(
-      change, [out](float x, float y, float z) { out->insert(out->end(), {x, y, z}); });
+      tracks, time, [out](float x, float y, float z) { out->insert(out->end(), {x, y, z}); });
 }
 
 void author_soils(const std::vector<SoilDescription>& soils, int first_vertex, LabelTable* labels,

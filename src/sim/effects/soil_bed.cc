@@ -44,7 +44,8 @@ bool SoilBed::take_over(const SoilBed& before) {
   const SoilDescription &a = soil_, &b = before.soil_;
   const bool same = a.name == b.name && a.nx == b.nx && a.ny == b.ny && a.x == b.x && a.y == b.y &&
                     a.size_x == b.size_x && a.size_y == b.size_y && a.level == b.level &&
-                    a.rest == b.rest;
+                    a.rest == b.rest && a.share == b.share && a.depth == b.depth &&
+                    a.growth == b.growth;
   if (!same) return false;
   cells_ = before.cells_;
   tracks_.take_over(before.tracks_);
@@ -53,7 +54,8 @@ bool SoilBed::take_over(const SoilBed& before) {
 
 bool SoilBed::is_near(const mjModel& m, const mjData& d, int geom) const {
   const double *R = d.geom_xmat + 9 * geom, *box = m.geom_aabb + 6 * geom;
-  if (d.geom_xpos[3 * geom + 2] - m.geom_rbound[geom] > soil_.level) return false;
+  const double level = soil_.level + soil_.growth * d.time;
+  if (d.geom_xpos[3 * geom + 2] - m.geom_rbound[geom] > level) return false;
   double centre[3], half[3];
   mju_mulMatVec3(centre, R, box);
   mju_addTo3(centre, d.geom_xpos + 3 * geom);
@@ -62,12 +64,13 @@ bool SoilBed::is_near(const mjModel& m, const mjData& d, int geom) const {
   if (!soil_.rest.empty()) bottom = -1e10;  // nobody is below uneven ground
   return std::abs(centre[0] - soil_.x) < half[0] + soil_.size_x / 2 &&
          std::abs(centre[1] - soil_.y) < half[1] + soil_.size_y / 2 &&
-         centre[2] - half[2] < soil_.level && centre[2] + half[2] > bottom;
+         centre[2] - half[2] < level && centre[2] + half[2] > bottom;
 }
 
 uint64_t SoilBed::press(uint32_t step, const mjModel& m, const mjData& d,
                         std::span<const ColliderBottom* const> colliders, uint64_t hash) {
-  contacts_.clear();
+  contacts_.clear(soil_.growth * d.time);
+  tracks_.let_fall(soil_.growth * d.time);
   for (const ColliderBottom* collider : colliders) {
     if (is_near(m, d, collider->geom())) contacts_.add(*collider);
   }
@@ -94,19 +97,18 @@ void SoilBed::press_cell(uint32_t step, double dt, const SoilTouch& touch, const
   SoilCell& cell = cells_[static_cast<size_t>(touch.cell)];
   const double modulus = soil_.strength.k_c / contacts_.widths()[static_cast<size_t>(touch.patch)] +
                          soil_.strength.k_phi;
-  const SoilPressure now = soil_pressure(soil_.strength, cell, modulus, soil_.depth, touch.depth);
+  fill_in(step, dt, touch, &cell);
+  const SoilPressure now =
+      soil_pressure(soil_.strength, cell, modulus, depth_at(touch), touch.depth);
   if (now.yields) {
-    cell.sinkage = static_cast<float>(touch.depth);
+    cell.sinkage = static_cast<float>(touch.depth - touch.fallen);
     cell.pressure = static_cast<float>(now.p);
-    const double share = std::min(touch.area / (soil_.dx * soil_.dy), 1.0);
-    const double left = touch.depth - now.p / cell.unloading(soil_.strength);
-    const auto height = static_cast<float>(-left * share);
-    const float lower = tracks_.height(touch.cell) - height;
-    if (lower > 0) {
-      tracks_.set_height(touch.cell, height);
-      push_aside(touch, velocity, double{lower} * soil_.dx * soil_.dy * soil_.strength.aside);
-    }
   }
+  // What stands in its print keeps that from what falls.
+  const bool sheltered = soil_.growth > 0 && cell.pressure > 0;
+  const float lower = now.yields || sheltered ? lower_track(touch) : 0;
+  if (now.yields)
+    push_aside(touch, velocity, double{lower} * soil_.dx * soil_.dy * soil_.strength.aside);
   if (cell.touched != step || now.p <= 0) std::fill_n(cell.shear, 3, 0.0f);
   cell.touched = step + 1;
   if (now.p <= 0) return;
@@ -119,6 +121,34 @@ void SoilBed::press_cell(uint32_t step, double dt, const SoilTouch& touch, const
   for (int a = 0; a < 3; ++a) {
     const double shear = double{cell.shear[a]};
     cell.shear[a] = static_cast<float>(shear - (v[a] / speed + shear) * share);
+  }
+}
+
+// Returns by how much [m].
+float SoilBed::lower_track(const SoilTouch& touch) {
+  const SoilCell& cell = cells_[static_cast<size_t>(touch.cell)];
+  const double share = std::min(touch.area / (soil_.dx * soil_.dy), 1.0);
+  const double deepest = cell.sinkage_under(touch.fallen);
+  const double left = deepest - double{cell.pressure} / cell.unloading(soil_.strength, deepest);
+  const auto height = static_cast<float>(-left * share);
+  const float lower = tracks_.height(touch.cell) - height;
+  if (lower <= 0) return 0;
+  tracks_.set_height(touch.cell, height);
+  return lower;
+}
+
+// A print that nothing stands in has become as much shallower as snow has fallen since then, as in
+// SoilTracks, and is felt as one that was never deeper.
+void SoilBed::fill_in(uint32_t step, double dt, const SoilTouch& touch, SoilCell* cell) const {
+  if (soil_.growth <= 0 || cell->pressure <= 0 || cell->touched >= step) return;
+  const double share = soil_.share_of(static_cast<size_t>(touch.cell));
+  const double fell = share * soil_.growth * dt * (step - cell->touched);
+  const double now = cell->sinkage_under(touch.fallen) - 2 * fell, before = now + fell;
+  if (now <= 0) {
+    cell->sinkage = cell->pressure = 0;
+  } else {
+    cell->sinkage = static_cast<float>(now - touch.fallen);
+    cell->pressure *= static_cast<float>(std::pow(now / before, soil_.strength.n));
   }
 }
 

@@ -37,7 +37,7 @@ class SoilBed {
   /// Goes on with the cells of another bed, if that is one of the same name, place and grid.
   bool take_over(const SoilBed& before);
 
-  /// Does a collider's box reach into the bed?
+  /// Does a collider's box reach into the bed at data.time?
   bool is_near(const mjModel& model, const mjData& data, int geom) const;
 
   /// Finds what `colliders` touch at the beginning of step `step`, in order of geoms, and what that
@@ -68,6 +68,8 @@ class SoilBed {
     double load = 0, stiffness = 0;  // pressing at no velocity [N], less by it [N s/m]
   };
   void press_cell(uint32_t step, double dt, const SoilTouch& touch, const double* velocity);
+  void fill_in(uint32_t step, double dt, const SoilTouch& touch, SoilCell* cell) const;
+  float lower_track(const SoilTouch& touch);
   void push_aside(const SoilTouch& touch, const double* velocity, double volume);
   void slide(int cell);
   void push_body(const mjModel& model, mjData& data, std::span<const SoilTouch> touches,
@@ -78,6 +80,11 @@ class SoilBed {
   static void add_push(const Push& push, const double* arm, double* force, double* matrix);
   void react(std::span<const SoilTouch> touches, const double* point, const double* motion,
              double share);
+
+  SoilDepth depth_at(const SoilTouch& touch) const {
+    const auto cell = static_cast<size_t>(touch.cell);
+    return {soil_.share_of(cell) * soil_.depth + touch.fallen, touch.fallen};
+  }
 
   const SoilDescription& soil_;
   SoilContacts contacts_;

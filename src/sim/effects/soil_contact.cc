@@ -41,19 +41,21 @@ SoilContacts::SoilContacts(const SoilDescription& soil, const mjModel& m,
 void SoilContacts::reset() {
   for (Footprint& print : prints_) print.known = false;
   before_.clear(), touches_.clear();
-  clear();
+  clear(0);
   ++round_;
 }
 
-void SoilContacts::clear() {
+void SoilContacts::clear(double fallen) {
+  fallen_ = fallen;
   here_.clear();
   changed_ = false;
 }
 
 void SoilContacts::add(const ColliderBottom& collider) {
   const double low_x = soil_.low_x(), low_y = soil_.low_y();
-  if (collider.low(2) >= soil_.level || collider.high(0) <= low_x || collider.high(1) <= low_y ||
-      collider.low(0) >= low_x + soil_.size_x || collider.low(1) >= low_y + soil_.size_y)
+  if (collider.low(2) >= soil_.level + fallen_ || collider.high(0) <= low_x ||
+      collider.high(1) <= low_y || collider.low(0) >= low_x + soil_.size_x ||
+      collider.low(1) >= low_y + soil_.size_y)
     return;
   const int row = print_of_[static_cast<size_t>(collider.geom())];
   Footprint& print = prints_[static_cast<size_t>(row)];
@@ -68,6 +70,7 @@ void SoilContacts::add(const ColliderBottom& collider) {
 // points along its normal. Where it is steep, rising moves its edge the less.
 bool SoilContacts::has_stayed(const ColliderBottom& collider, Footprint* print) const {
   if (!print->known || print->touches.empty()) return false;
+  if (fallen_ - print->fallen > kMovedDown * print->deepest) return false;
   const double *p = collider.position(), *R = collider.rotation(), *q = print->anchor;
   double aside[2];
   for (int a = 0; a < 2; ++a) {
@@ -117,7 +120,8 @@ void SoilContacts::finish() {
     const Footprint& print = prints_[static_cast<size_t>(row)];
     for (size_t n = 0; n < print.touches.size(); ++n, ++touch) {
       touch->p[2] = print.touches[n].p[2] + print.rise[n];
-      touch->depth = std::max(print.touches[n].depth - print.rise[n], 0.0);
+      touch->fallen = soil_.share_of(static_cast<size_t>(touch->cell)) * fallen_;
+      touch->depth = std::max(print.touches[n].depth - print.rise[n] + touch->fallen, 0.0);
     }
   }
 }

@@ -16,16 +16,21 @@ namespace gloam {
 
 /// What a cell has been through.
 struct SoilCell {
-  float sinkage = 0;     ///< z_u: from which it unloads [m]; 0 = nothing has pressed it
-  float pressure = 0;    ///< p_u: at that sinkage [Pa]
+  static constexpr double kSteeper = 3;  ///< lines of unloading than those to the origin, at least
+
+  float sinkage = 0;     ///< z_u: from which it unloads, below the surface of time 0 [m]
+  float pressure = 0;    ///< p_u: at that sinkage [Pa]; 0 = nothing has pressed it
   float shear[3] = {};   ///< stress over tau_max on what is in it, world, 0 … 1
   uint32_t touched = 0;  ///< step after the one that something was last in it
 
-  /// k_u [N/m³]. Wong's line was fitted to deep sinkages: at shallow ones, where it would be
-  /// flatter than loading, it is three times as steep as that.
-  double unloading(const SoilStrength& s) const {
-    constexpr double kLeast = 3;
-    return std::max(s.k_0 + s.a_u * double{sinkage}, kLeast * double{pressure} / double{sinkage});
+  /// Below the surface after `fallen` [m] of snow have come to the cell.
+  double sinkage_under(double fallen) const { return double{sinkage} + fallen; }
+
+  /// k_u [N/m³] at a sinkage `z` below the present surface [m]. Wong's line was fitted to deep
+  /// sinkages: at shallow ones, where it would be flatter than loading, it is three times as steep
+  /// as that.
+  double unloading(const SoilStrength& s, double z) const {
+    return std::max(s.k_0 + s.a_u * z, kSteeper * double{pressure} / z);
   }
 };
 
@@ -36,21 +41,28 @@ struct SoilPressure {
   bool yields = false;  ///< it is on the loading curve
 };
 
-/// `modulus`: k_c / b + k_phi [N/m^(n+2)], `z`: sinkage [m], `depth`: of the bed; beyond it the
-/// pressure stays as it is [m].
+/// Of a cell, where a bed is so deep and so much of that has fallen since time 0.
+struct SoilDepth {
+  double depth = 0, fallen = 0;  ///< [m]
+};
+
+/// `modulus`: k_c / b + k_phi [N/m^(n+2)], `z`: sinkage [m]; beyond the depth the pressure stays as
+/// it is.
 inline SoilPressure soil_pressure(const SoilStrength& s, const SoilCell& cell, double modulus,
-                                  double depth, double z) {
-  if (z <= 0) return {};
-  SoilPressure out;
-  if (cell.sinkage > 0) {
-    const double k_u = cell.unloading(s);
-    out.p = double{cell.pressure} - k_u * (double{cell.sinkage} - z);
-    out.slope = k_u;
-    if (out.p <= 0) return {};
+                                  SoilDepth here, double z) {
+  if (z <= 0 || here.depth <= 0) return {};
+  const double loading = modulus * std::pow(std::min(z, here.depth), s.n);
+  if (cell.pressure > 0) {
+    const double deepest = cell.sinkage_under(here.fallen);
+    // Further in than before the line is as steep as one from there: after a touch by a hair it
+    // would stay below the curve where that is convex.
+    double k_u = cell.unloading(s, deepest);
+    if (z > deepest) k_u = std::max(k_u, SoilCell::kSteeper * loading / z);
+    const double p = double{cell.pressure} - k_u * (deepest - z);
+    if (p <= 0) return {};
+    if (p < loading) return {p, k_u, false};
   }
-  const double loading = modulus * std::pow(std::min(z, depth), s.n);
-  if (cell.sinkage > 0 && out.p < loading) return out;
-  return {loading, z < depth ? s.n * loading / z : 0, true};
+  return {loading, z < here.depth ? s.n * loading / z : 0, true};
 }
 
 }  // namespace gloam

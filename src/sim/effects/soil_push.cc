@@ -142,9 +142,9 @@ double SoilBed::limit_work(std::span<const SoilTouch> touches, const double* fre
   double stored = 0;
   for (const SoilTouch& touch : touches) {
     const SoilCell& cell = cells_[static_cast<size_t>(touch.cell)];
-    if (cell.sinkage <= 0) continue;
-    const double p = double{cell.pressure};
-    stored += touch.area * p * p / (2 * cell.unloading(soil_.strength));
+    const double p = double{cell.pressure}, deepest = cell.sinkage_under(touch.fallen);
+    if (p <= 0) continue;
+    stored += touch.area * p * p / (2 * cell.unloading(soil_.strength, deepest));
   }
   const double by_motion = dt * mju_dot(wrench, free, 6);
   const double by_change = dt * dt / 2 * mju_dot(wrench, change, 6);
@@ -170,7 +170,8 @@ SoilBed::Push SoilBed::push_of(const SoilTouch& touch, const double* arm, const 
   const double* d = out.d;
   const double sinking = dot3(d, v);
   const double modulus = s.k_c / contacts_.widths()[static_cast<size_t>(touch.patch)] + s.k_phi;
-  const SoilPressure now = soil_pressure(s, cell, modulus, soil_.depth, touch.depth - dt * sinking);
+  const SoilPressure now =
+      soil_pressure(s, cell, modulus, depth_at(touch), touch.depth - dt * sinking);
   if (now.p <= 0) return out;
   out.stiffness = touch.area * now.slope * dt;
   out.load = touch.area * now.p + out.stiffness * sinking;

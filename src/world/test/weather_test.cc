@@ -189,6 +189,20 @@ position = [0, 0, 2]
   EXPECT_LT(failing, fair.size() - 1);
 }
 
+TEST(RainSplash, CrownsWidenByTheRootOfTimeAndGo) {
+  const ParticleClass kind{3e-3f, 300, 8};
+  const Crown early = crown_at(kind, 2e-3f), late = crown_at(kind, 8e-3f);
+  EXPECT_NEAR(late.radius / early.radius, 2, 1e-4);
+  // (2/3)^(1/4) sqrt(D V t).
+  EXPECT_NEAR(late.radius, 0.9036f * std::sqrt(3e-3f * 8 * 8e-3f), 1e-5f);
+  EXPECT_GT(late.height, early.height);
+  EXPECT_LT(late.height, 5 * kind.diameter);
+  EXPECT_GT(early.cover, late.cover);
+  EXPECT_EQ(crown_at(kind, 0.03f).cover, 0);
+  EXPECT_EQ(crown_at(kind, -1e-3f).cover, 0);
+  EXPECT_LT(0.03, splash_life(kind)) << "it is looked for as long as it stands";
+}
+
 TEST(RainSplash, AsManyAsFallAndTheSameWheneverTheyAreLookedAt) {
   ParticleSet set = rain_particles(30);
   set.seed = 5;
