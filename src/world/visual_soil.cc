@@ -49,6 +49,9 @@ MaterialDescription material_of(const SoilDescription& soil, RenderDescription* 
   return material;
 }
 
+// Of trodden snow over the ground that carries who trod it [m].
+constexpr double kCrust = 0.012;
+
 /// Snow that is too thin to be seen as a bed lies under the ground, which the weather whitens: its
 /// border is no step and no change of colour. `depth`: of snow [m].
 double hidden_by(double depth) {
@@ -85,6 +88,7 @@ struct SoilMesh {
           const auto here = static_cast<float>(soil.share_of(cell) * fallen);
           change = double{track_height(tracks[cell], here)};
         }
+        if (soil.fallen && !below) change = std::max(change, std::min(kCrust - depth, 0.0));
         double z = soil.rest_of(cell) + soil.share_of(cell) * fallen + change;
         if (soil.fallen) z -= hidden_by(depth + change);
         visit(static_cast<float>(place_along(i, soil.nx, soil.low_x(), soil.dx)),
