@@ -11,7 +11,7 @@ namespace gloam {
 /// Where it is looked for [m].
 struct GroundArea {
   double low_x = 0, low_y = 0, size_x = 0, size_y = 0;
-  double from = 0;  ///< z; downwards from here
+  double from = 0;  ///< z; downwards from here [m]
 };
 
 class GroundBelow {

@@ -132,8 +132,11 @@ TEST_F(Soil, LiesOverGround) {
   EXPECT_NEAR(slope.level, 1.15, 0.03) << "of its highest cell";
 }
 
+// A road that is seen lies on the very ground that is felt.
 TEST_F(Soil, SnowOverGroundIsWhatTheWeatherHasLetFall) {
-  folder_.write("street.xml", R"(<mujoco><worldbody><geom type="plane" size="30 30 .1"/>
+  folder_.write("street.xml", R"(<mujoco><worldbody>
+      <geom type="box" size="9 3 .1" pos="0 0 -.1" contype="0" conaffinity="0"/>
+      <geom type="plane" size="30 30 .1"/>
       <geom type="box" size="1 1 .02" pos="0 0 2"/>
       <geom type="box" size=".2 .2 .2" pos="2 0 .2"/>
       <geom type="box" size=".2 .2 .1" pos="2 0 3" contype="0" conaffinity="0"/>
