@@ -138,13 +138,17 @@ bool StreakFinder::find_tip(const DripEdge& edge, float along, Vec3f* tip) const
 }
 
 void StreakFinder::add_drips(const DripEdge& edge, uint64_t seed, std::vector<Streak>* out) const {
-  constexpr double kLongestFall = 4;  // [s]
   const Vec3f to{edge.from.x - eye_.x, edge.from.y - eye_.y, 0};
   const float far = reach(kLargestDrip);
   if (dot(to, to) > far * far) return;
   const double now = middle();
+  // They land on the lowest ground at the latest.
+  const auto deepest = static_cast<double>(edge.from.z - view_.weather.shelter->lowest);
+  const DripFall last(kSmallestDrip);
+  const double seen = last.time(std::max(deepest, 0.0)) +
+                      splash_life({kLargestDrip, 0, static_cast<float>(last.last_speed)});
   std::vector<Drip> drips;
-  gloam::find_drips(edge, seed, now - kLongestFall, now, &drips);
+  gloam::find_drips(edge, seed, now - seen, now, &drips);
   for (const Drip& drip : drips) {
     const DripFall fall(drip.diameter);
     const double age = now - drip.time;
