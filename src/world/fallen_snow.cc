@@ -11,7 +11,7 @@ namespace {
 // Fresh snow is a tenth as dense as water (the meteorologists' 10 to 1).
 constexpr double kFreshSnow = 10;
 constexpr double kPerSecond = 1e-3 / 3600;  // mm/h as m/s
-constexpr double kSnowEdge = 1.0;   // over which a bed thins out to its surroundings, at most [m]
+constexpr double kSnowEdge = 2.5;   // over which a bed thins out to its surroundings, at most [m]
 constexpr double kBareEdge = 0.12;  // to what lies bare within it [m]
 // Cosines of slopes: of 72 degrees, which holds none, and of 53, which holds all: as
 // render/kernel/weathering.h has it of thick snow.

@@ -49,15 +49,15 @@ MaterialDescription material_of(const SoilDescription& soil, RenderDescription* 
   return material;
 }
 
-// Of trodden snow over the ground that carries who trod it [m].
-constexpr double kCrust = 0.012;
-
-/// Snow that is too thin to be seen as a bed lies under the ground, which the weather whitens: its
-/// border is no step and no change of colour. `depth`: of snow [m].
-double hidden_by(double depth) {
-  constexpr double kSeen = 0.01;  // [m]
-  return kSeen * std::max(1 - std::max(depth, 0.0) / (4 * kSeen), 0.0);
+/// Height over the ground at which fallen snow is drawn: what is too thin to hide it lies under it
+/// and is the whiteness that the weather gives the ground, so that a bed's border is no change of
+/// colour. `depth`: of snow [m].
+double seen_height(double depth) {
+  constexpr double kThin = 0.025;  // [m]
+  return depth - kThin * std::max(1 - depth / (4 * kThin), 0.0);
 }
+// Of what is left in a print that goes down to the ground [m].
+constexpr double kCrust = 0.003;
 
 /// Vertices at the middles of cells, those of the outer cells moved out to the edges, and one more
 /// all around that the sides go down to.
@@ -81,16 +81,14 @@ struct SoilMesh {
             static_cast<size_t>(cell_along(i, soil.nx));
         const bool below = i == 0 || j == 0 || i == nx - 1 || j == ny - 1;
         const double depth = soil.depth_of(cell, fallen);
-        double change = 0;
-        if (below) {
-          change = -depth;
-        } else if (!tracks.empty()) {
+        const double ground = soil.rest_of(cell) + soil.share_of(cell) * fallen - depth;
+        double height = soil.fallen ? seen_height(below ? 0 : depth) : below ? 0 : depth;
+        if (!below && !tracks.empty()) {
           const auto here = static_cast<float>(soil.share_of(cell) * fallen);
-          change = double{track_height(tracks[cell], here)};
+          const double track = height + double{track_height(tracks[cell], here)};
+          height = soil.fallen ? std::max(track, std::min(height, kCrust)) : track;
         }
-        if (soil.fallen && !below) change = std::max(change, std::min(kCrust - depth, 0.0));
-        double z = soil.rest_of(cell) + soil.share_of(cell) * fallen + change;
-        if (soil.fallen) z -= hidden_by(depth + change);
+        const double z = ground + height;
         visit(static_cast<float>(place_along(i, soil.nx, soil.low_x(), soil.dx)),
               static_cast<float>(y), static_cast<float>(z));
       }
