@@ -73,6 +73,18 @@ class Weather : public ::testing::Test {
   TempFolder folder_;
 };
 
+TEST_F(Weather, DripsFromTheEdgesOfARoofAsMuchAsFallsOnIt) {
+  const auto flow_of = [this](const std::string& text) {
+    double flow = 0;
+    for (const DripEdge& edge : described(text).weather.drips)
+      if (edge.from.z > 3) flow += static_cast<double>(edge.flow);
+    return flow;
+  };
+  const double rain = 36e-3 / 3600 * 16;  // on four by four metres
+  EXPECT_NEAR(flow_of("[weather]\nrain = 36\n"), rain, 0.05 * rain);
+  EXPECT_EQ(flow_of("[weather]\nsnow = 3\n"), 0) << "snow does not";
+}
+
 TEST_F(Weather, FallsWhereTheSkyIsOpen) {
   const RenderDescription d = described("[weather]\nrain = 10\n");
   ASSERT_NE(d.weather.shelter, nullptr);
