@@ -53,7 +53,12 @@ Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledW
   GLOAM_TRY(stepper->effects_, Effects::create(world, step_time));
   if (!world->waters.empty()) stepper->water_ = WaterEffect::create(world, step_time);
   if (!world->soils.empty()) stepper->soil_ = SoilEffect::create(world, *model);
-  if (world->wind.blows()) stepper->wind_ = std::make_unique<WindOnBodies>(*world, step_time);
+  if (world->wind.blows()) {
+    stepper->wind_ = std::make_unique<WindOnBodies>(*world, step_time);
+    const mjOption& own = world->model->opt;
+    if (own.density == 0 && own.viscosity == 0 && has_halves(*model) && AirDrag::can_be(*model))
+      stepper->drag_ = std::make_unique<AirDrag>(*model);
+  }
   GLOAM_TRY_STATUS(stepper->make_agents());
   if (!stepper->reset()) return stepper->error();
   return stepper;
@@ -76,6 +81,7 @@ void Stepper::take_model(const mjModel& model) {
   model_.opt.disableflags |= mjDSBL_AUTORESET;
   if (timestep_) model_.opt.timestep = *timestep_;
   if (world_->wind.blows()) give_air(&model_.opt);
+  if (drag_ != nullptr) drag_->measure(model_);
 }
 
 // Live fields are written into the arrays: not into those that all simulations of the World share.
@@ -225,6 +231,7 @@ void Stepper::change_live(const SetLiveField& change) {
       write_live_field(*world_->model, change.field,
                        live_->values[static_cast<size_t>(change.field)], model_, scratch_.get());
   if (!written) fail(written.error());
+  if (drag_ != nullptr) drag_->measure(model_);
 }
 
 // What acts on bodies needs poses, velocities and inertias of the present. They are what the first
@@ -234,18 +241,23 @@ void Stepper::step_with_effects() {
   mjData* d = data_.get();
   const bool halved = has_halves(*m);
   if (halved) {
+    if (drag_ != nullptr) m->opt.density = m->opt.viscosity = 0;  // MuJoCo leaves drag to it
     mj_step1(m, d);
+    if (drag_ != nullptr) give_air(&m->opt);
   } else {
     mj_kinematics(m, d);
     mj_comPos(m, d);
     mj_comVel(m, d);
   }
   std::copy_n(d->qfrc_applied, m->nv, applied_.begin());  // what others apply stays as it is
+  if (drag_ != nullptr) drag_->push(*m, *d);
   if (effects_ != nullptr) effects_->begin_step(step_, *m, *d);
   const bool wet = water_ != nullptr && water_->begin_step(step_, *m, *d, &hash_);
-  if (wet || !halved) {
-    mj_makeM(m, d);  // with the water that bodies carry along
+  if (!halved) {  // with the water that bodies carry along
+    mj_makeM(m, d);
     mj_factorM(m, d);
+  } else if (wet) {
+    water_->add_masses(*m, *d);
   }
   if (soil_ != nullptr) hash_ = soil_->begin_step(step_, *m, *d, hash_);
   halved ? mj_step2(m, d) : mj_step(m, d);
@@ -261,13 +273,14 @@ bool Stepper::step() {
   AppliedInputs* inputs = inputs_.get();
   const bool ok = try_mujoco([=, this] {
     inputs->before_step(*model, *data);
-    if (effects_ == nullptr && water_ == nullptr && soil_ == nullptr) {
+    if (effects_ == nullptr && water_ == nullptr && soil_ == nullptr && drag_ == nullptr) {
       mj_step(model, data);
     } else {
       step_with_effects();
     }
   });
   if (water_ != nullptr) water_->end_step(model_);
+  if (drag_ != nullptr) give_air(&model_.opt);
   if (!ok) {
     Error error{ErrorKind::kDiverged, mujoco_error_message()};
     error.message +=

@@ -8,6 +8,7 @@
 #include "gloam/command.h"
 #include "sim/agents/agents.h"
 #include "sim/applied_inputs.h"
+#include "sim/effects/air_drag.h"
 #include "sim/effects/effects.h"
 #include "sim/effects/soil_effect.h"
 #include "sim/effects/water_effect.h"
@@ -94,6 +95,7 @@ class Stepper {
   std::unique_ptr<WaterEffect> water_;  // null = none
   std::unique_ptr<SoilEffect> soil_;    // null = none
   std::unique_ptr<WindOnBodies> wind_;  // null = the air is still
+  std::unique_ptr<AirDrag> drag_;       // of the wind's air; null = MuJoCo's own does it
   std::unique_ptr<Agents> agents_;      // null = none
   std::shared_ptr<const LiveFields> live_;
   uint64_t live_changes_ = 0;  // since creation

@@ -33,5 +33,20 @@ TEST(WaveMath, ExponentialsAreThoseOfTheLibrary) {
   EXPECT_EQ(exponential(1e9), exponential(700));
 }
 
+TEST(WaveMath, LogarithmsAndPowersAreThoseOfTheLibrary) {
+  for (int i = -69000; i <= 69000; ++i) {
+    const double x = std::exp(0.01 * i), exact = std::log(x);
+    ASSERT_NEAR(logarithm(x), exact, 1e-14 * std::max(std::abs(exact), 1.0)) << x;
+  }
+  for (int i = -4000; i <= 4000; ++i) {
+    const double x = 1 + 1e-4 * i;
+    ASSERT_NEAR(logarithm(x), std::log(x), 2e-15) << x;
+    for (const double n : {0.2, 0.5, 1.0, 1.1, 1.6})
+      ASSERT_NEAR(power(x, n), std::pow(x, n), 1e-13) << x << "^" << n;
+  }
+  EXPECT_EQ(logarithm(1), 0);
+  EXPECT_EQ(power(1, 1.1), 1);
+}
+
 }  // namespace
 }  // namespace gloam

@@ -15,7 +15,7 @@ struct FastFilter {
   void resize(int width, int height);
   /// Takes over from `before` what is the same place, as far as it agrees with what is new.
   void accumulate(const FastFrame& before, FastFrame* frame);
-  /// Smooths the signals over surfaces.
+  /// Smooths the signals over surfaces, that of the air over what is as far away.
   void smooth(const FastFrame& frame);
   const FastPlane3& smoothed(FastSignal signal) const {
     return signal == kCachedSignal ? a[signal] : b[signal];
@@ -23,9 +23,10 @@ struct FastFilter {
 
  private:
   PlaneMemory memory_;
-  /// One round for the signals from kFirst on, over pixels 2^round apart.
+  /// One round for the signals of surfaces from kFirst on, over pixels 2^round apart.
   template <int kFirst>
   void smooth_signals(const FastFrame& f, int round, const FastPlane3* from, FastPlane3* to);
+  void smooth_air(const FastFrame& f, int round, const FastPlane3& from, FastPlane3* to);
 };
 
 /// Means of frame->color and the pictures before: rays through other points of the pixels each time

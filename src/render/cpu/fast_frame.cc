@@ -17,6 +17,7 @@ constexpr int kPatch = 16;           // [px], in which a change of the light is 
 constexpr float kNoChange = 0.01f;   // a share that may be noise,
 constexpr float kHaste = 8;          // and what of the rest is taken over at once
 constexpr float kTolerance = 0.01f;  // of places on one plane, over their distance
+constexpr float kSameDepth = 0.2f;   // share by which the ways through air differ that are alike
 constexpr float kFarthest = 1e8f;    // deviations squared, so that products stay finite
 
 using F = FloatLanes;
@@ -62,7 +63,7 @@ class Accumulation {
         const int x = x0_ + part * kLaneCount;
         FastPast& place = places_[y - y0_][part];
         place = find_past(before_, f_, x, y);
-        for (int s = 0; s < kFastSignals; ++s) {
+        for (int s = 0; s < f_.signals; ++s) {
           const F new_light = luminance(f_.signal[s].load(x, y));
           const F old_light = luminance(place.of(before_.signal[s], x, y));
           now[s][part] += select(place.known, new_light, F(0.0f));
@@ -71,7 +72,7 @@ class Accumulation {
       }
     }
     // Where the light of a whole tile is another, old pictures say little.
-    for (int s = 0; s < kFastSignals; ++s) {
+    for (int s = 0; s < f_.signals; ++s) {
       const float a = sum_of(now[s]), b = sum_of(past[s]);
       const float change = fabsf(a - b) / max(max(a, b), 1e-6f);
       least_share_[s] = clamp((change - kNoChange) * kHaste, 0.0f, 1.0f);
@@ -89,7 +90,7 @@ class Accumulation {
     const F longer = min(place.of(before_.age, x, y) + 1.0f, kLongest);
     const F age = select(place.known, longer, F(1.0f));
     f_.age.store(x, y, age);
-    for (int s = 0; s < kFastSignals; ++s) {
+    for (int s = 0; s < f_.signals; ++s) {
       const auto [mean, deviation] = neighbour_moments(f_.signal[s], x, y, [&](int dx, int dy) {
         return f_.part.load(x + dx, y + dy) == own_part;
       });
@@ -195,7 +196,7 @@ void FastFilter::resize(int width, int height) {
 
 void FastFilter::accumulate(const FastFrame& before, FastFrame* frame) {
   std::vector<LightChange> changes;
-  for (int s = 0; s < kFastSignals; ++s)
+  for (int s = 0; s < frame->signals; ++s)
     changes.push_back({before.signal[s], frame->signal[s], &gain[s]});
   measure_gains(before, *frame, changes);
   const int columns = (frame->width + kPatch - 1) / kPatch;
@@ -204,7 +205,7 @@ void FastFilter::accumulate(const FastFrame& before, FastFrame* frame) {
     const int x = static_cast<int>(i % columns), y = static_cast<int>(i / columns);
     Accumulation(before, gain, x * kPatch, y * kPatch, frame, a).run();
   });
-  for (int s = 0; s < kFastSignals; ++s) std::swap(frame->signal[s], a[s]);
+  for (int s = 0; s < frame->signals; ++s) std::swap(frame->signal[s], a[s]);
 }
 
 namespace {
@@ -225,6 +226,14 @@ F deviation_at(const FastFrame& f, int signal, int x, int y) {
   return square_root(variance / (n * f.age.load(x, y)));
 }
 
+/// For likeness(): over how much light may differ by chance.
+F sharpness(F deviation, F light) { return 1.0f / (2.0f * deviation + 0.005f * light + 1e-4f); }
+F likeness(F light, F own, F sharp) {
+  const F d = (light - own) * sharp;
+  return 1.0f / (1.0f + sqr(min(d * d, kFarthest)));
+}
+F corner_share(int dx, int dy) { return dx != 0 && dy != 0 ? 0.5f : 0.75f; }
+
 }  // namespace
 
 template <int kFirst>
@@ -240,14 +249,14 @@ void FastFilter::smooth_signals(const FastFrame& f, int round, const FastPlane3*
           1.0f / (kTolerance * static_cast<float>(step) * f.distance.load(x, y) + 1e-4f);
       const F rough = f.roughness.load(x, y);
       const F mirror = min(rough * rough * 8.0f, 1.0f);
-      Vec3Of<F> sum[kFastSignals];
-      F total[kFastSignals], sharp[kFastSignals], own[kFastSignals];
-      for (int s = kFirst; s < kFastSignals; ++s) {
+      Vec3Of<F> sum[kAirSignal];
+      F total[kAirSignal], sharp[kAirSignal], own[kAirSignal];
+      for (int s = kFirst; s < kAirSignal; ++s) {
         sum[s] = from[s].load(x, y);
         total[s] = 1.0f;
         if (round == 0) deviation[s].store(x, y, deviation_at(f, s, x, y));
         own[s] = luminance(sum[s]);
-        sharp[s] = 1.0f / (2.0f * deviation[s].load(x, y) + 0.005f * own[s] + 1e-4f);
+        sharp[s] = sharpness(deviation[s].load(x, y), own[s]);
       }
       for (int dy = -1; dy <= 1; ++dy) {
         for (int dx = -1; dx <= 1; ++dx) {
@@ -257,24 +266,50 @@ void FastFilter::smooth_signals(const FastFrame& f, int round, const FastPlane3*
           const F facing = max(dot(n, f.n.load(qx, qy)), 0.0f);
           const F f4 = sqr(sqr(facing)), f16 = sqr(sqr(f4));
           const F off = dot(n, f.p.load(qx, qy) - p) * scale;
-          const F tap =
-              same * f16 * max(1.0f - off * off, 0.0f) * (dx != 0 && dy != 0 ? 0.5f : 0.75f);
-          Vec3Of<F> v[kFastSignals];
-          F weight[kFastSignals];
-          for (int s = kFirst; s < kFastSignals; ++s) {
+          const F tap = same * f16 * max(1.0f - off * off, 0.0f) * corner_share(dx, dy);
+          Vec3Of<F> v[kAirSignal];
+          F weight[kAirSignal];
+          for (int s = kFirst; s < kAirSignal; ++s) {
             v[s] = from[s].load(qx, qy);
-            const F d = (luminance(v[s]) - own[s]) * sharp[s];
-            weight[s] = tap / (1.0f + sqr(min(d * d, kFarthest)));
+            weight[s] = tap * likeness(luminance(v[s]), own[s], sharp[s]);
           }
           // Sharp mirrors show what is far behind them.
           if constexpr (kFirst <= kSpecularSignal) weight[kSpecularSignal] *= mirror;
-          for (int s = kFirst; s < kFastSignals; ++s) {
+          for (int s = kFirst; s < kAirSignal; ++s) {
             sum[s] += v[s] * weight[s];
             total[s] += weight[s];
           }
         }
       }
-      for (int s = kFirst; s < kFastSignals; ++s) to[s].store(x, y, sum[s] / total[s]);
+      for (int s = kFirst; s < kAirSignal; ++s) to[s].store(x, y, sum[s] / total[s]);
+    }
+  });
+}
+
+void FastFilter::smooth_air(const FastFrame& f, int round, const FastPlane3& from, FastPlane3* to) {
+  const int step = 1 << round;
+  parallel_for("fast air", f.height, [&](int64_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < f.width; x += kLaneCount) {
+      if (round == 0) deviation[kAirSignal].store(x, y, deviation_at(f, kAirSignal, x, y));
+      Vec3Of<F> sum = from.load(x, y);
+      const F own = luminance(sum), sharp = sharpness(deviation[kAirSignal].load(x, y), own);
+      const F distance = f.distance.load(x, y), scale = 1.0f / (kSameDepth * distance);
+      F total = 1.0f;
+      for (int dy = -1; dy <= 1; ++dy) {
+        for (int dx = -1; dx <= 1; ++dx) {
+          if (dx == 0 && dy == 0) continue;
+          const int qx = x + dx * step, qy = y + dy * step;
+          const F off = (f.distance.load(qx, qy) - distance) * scale;
+          const F near = max(1.0f - off * off, 0.0f) * corner_share(dx, dy);
+          const Vec3Of<F> v = from.load(qx, qy);
+          const F weight = select(f.part.load(qx, qy) >= 0.0f,
+                                  near * likeness(luminance(v), own, sharp), F(0.0f));
+          sum += v * weight;
+          total += weight;
+        }
+      }
+      to->store(x, y, sum / total);
     }
   });
 }
@@ -284,6 +319,14 @@ void FastFilter::smooth(const FastFrame& f) {
   smooth_signals<0>(f, 1, a, b);
   // Light of lamps has edges; that of the cache has few.
   smooth_signals<kCachedSignal>(f, 2, b, a);
+  if (f.signals > kAirSignal) {
+    const FastPlane3* from = &f.signal[kAirSignal];
+    for (int round = 0; round < 4; ++round) {
+      FastPlane3* to = round % 2 == 0 ? &a[kAirSignal] : &b[kAirSignal];
+      smooth_air(f, round, *from, to);
+      from = to;
+    }
+  }
 }
 
 }  // namespace gloam

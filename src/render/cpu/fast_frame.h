@@ -86,14 +86,16 @@ class PlaneMemory {
   std::unique_ptr<float, Free> floats_;
 };
 
-/// The noisy parts: light of lamps, of mirrors, of the cache.
-enum FastSignal { kDirectSignal, kSpecularSignal, kCachedSignal, kFastSignals };
+/// The noisy parts: light of lamps, of mirrors, of the cache and, where there are media, of the
+/// air in front.
+enum FastSignal { kDirectSignal, kSpecularSignal, kCachedSignal, kAirSignal, kFastSignals };
 /// Smoother surfaces show sharp pictures of other things.
 inline constexpr float kMirror = 0.25f;
 
 struct FastFrame {
   int width = 0, height = 0;
-  Vec2f offset;  ///< of the rays from the pixels' centres [px]
+  Vec2f offset;                ///< of the rays from the pixels' centres [px]
+  int signals = kFastSignals;  ///< so many of the first ones are there
   FastPlane3 signal[kFastSignals];
   /// Mean and mean square of the luminance of signals over earlier pictures.
   FastPlane mean[kFastSignals], square[kFastSignals];

@@ -56,8 +56,8 @@ FastPast find_past(const FastFrame& before, const FastFrame& f, int x, int y) {
   out.x = select(inside, from_x, F(0.0f));
   out.y = select(inside, from_y, F(0.0f));
   const F part = f.part.load(x, y);
-  out.known = inside & (part > 0.0f) & (out.of(before.part, x, y) == part) &
-              (dot(f.n.load(x, y), out.of(before.n, x, y)) > 0.8f);
+  const MaskLanes alike = (part == F(0.0f)) | (dot(f.n.load(x, y), out.of(before.n, x, y)) > 0.8f);
+  out.known = inside & (part >= 0.0f) & (out.of(before.part, x, y) == part) & alike;
   return out;
 }
 

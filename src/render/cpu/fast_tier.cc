@@ -42,8 +42,9 @@ void FastHistory::compose() {
       const Vec3Of<F> cached = filter_.smoothed(kCachedSignal).load(x, y);
       const Vec3Of<F> diffuse = filter_.smoothed(kDirectSignal).load(x, y) + cached;
       const Vec3Of<F> specular = filter_.smoothed(kSpecularSignal).load(x, y);
-      const Vec3Of<F> color = now_.base.load(x, y) + now_.albedo.load(x, y) * diffuse +
-                              now_.gloss.load(x, y) * cached + specular;
+      Vec3Of<F> color = now_.base.load(x, y) + now_.albedo.load(x, y) * diffuse +
+                        now_.gloss.load(x, y) * cached + specular;
+      if (now_.signals > kAirSignal) color += filter_.smoothed(kAirSignal).load(x, y);
       now_.color.store(x, y, color);
       const MaskLanes moves =
           !((now_.motion_x.load(x, y) == F(0.0f)) & (now_.motion_y.load(x, y) == F(0.0f)));
@@ -75,6 +76,7 @@ void FastHistory::add_picture(const SceneView& scene, const CpuTracer& tracer,
     if (requests_.empty()) break;
   }
   look_up(cache_.view(eye, cell_edge(camera) * coarse_));
+  now_.signals = scene.media.volumes.empty() ? kAirSignal : kFastSignals;
   filter_.accumulate(before_, &now_);
   filter_.smooth(now_);
   compose();

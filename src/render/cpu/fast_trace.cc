@@ -110,6 +110,7 @@ void store(const PixelBlock& block, const FastSampleOf<F>& sample, Vec2Of<F> mot
   frame->albedo.store_block(x, y, solid(sample.albedo * sample.through));
   frame->gloss.store_block(x, y, solid(sample.gloss * sample.through));
   frame->signal[kDirectSignal].store_block(x, y, sample.direct);
+  frame->signal[kAirSignal].store_block(x, y, sample.air);
   frame->p.store_block(x, y, sample.p);
   frame->n.store_block(x, y, sample.normal);
   const F part = select(sample.solid, to_float(sample.hit.instance) + 1.0f, F(0.0f));

@@ -152,7 +152,7 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
     path.from = path.ray.o;
     CacheRequest met[kLaneCount];
     const fasts::GatheredOf<F> light =
-        fasts::gather(scene, tracer, cache, false, weight > 0.0f, &path, met);
+        fasts::gather<F>(scene, tracer, cache, false, false, weight > 0.0f, &path, met);
     for (int i = 0; i < kLaneCount; ++i) {
       const float w = lane(weight, i);
       if (!(w > 0)) continue;

@@ -2,6 +2,7 @@
 // The fast stage: first surfaces with direct light of every lamp, one specular bounce, and indirect
 // light from the irradiance cache. What is noisy comes out apart, for the filter. Device-safe.
 
+#include "render/kernel/glow_line.h"
 #include "render/kernel/irradiance_cache.h"
 #include "render/kernel/medium_march.h"
 #include "render/kernel/path.h"
@@ -47,8 +48,9 @@ struct ReflectionOf {
   ReflectionUseOf<F> use;
   RayOf<F> ray;
   F cone_width = 0.0f, cone_spread = 0.0f;
-  F pdf = 0.0f;            ///< of the ray's direction
-  Vec3Of<F> from, normal;  ///< the surface, and its geometric normal
+  F pdf = 0.0f;             ///< of the ray's direction
+  MaskOf<F> flames = true;  ///< the ray shows what glows
+  Vec3Of<F> from, normal;   ///< the surface, and its geometric normal
   SamplerOf<F> sampler;
 };
 
@@ -61,16 +63,18 @@ GLOAM_HD void copy_lane(const ReflectionOf<F>& from, int i, ReflectionOf<F>* to,
   set_lane(&to->cone_width, k, lane(from.cone_width, i));
   set_lane(&to->cone_spread, k, lane(from.cone_spread, i));
   set_lane(&to->pdf, k, lane(from.pdf, i));
+  set_lane(&to->flames, k, lane(from.flames, i));
   set_lane(&to->from, k, lane(from.from, i));
   set_lane(&to->normal, k, lane(from.normal, i));
   to->sampler.take_lane(k, from.sampler, i);
 }
 
-/// What one camera ray saw: base + through (albedo (direct + cached) + cached gloss + specular +
-/// what its reflection shows).
+/// What one camera ray saw: base + air + through (albedo (direct + cached) + cached gloss +
+/// specular + what its reflection shows).
 template <class F>
 struct FastSampleOf {
-  Vec3Of<F> base;     ///< [cd/m²], without noise
+  Vec3Of<F> base;     ///< [cd/m²], with its edges
+  Vec3Of<F> air;      ///< light that media scatter [cd/m²]: noise of few samples
   Vec3Of<F> through;  ///< share of the first solid surface's light that gets to the camera
   MaskOf<F> solid = false;
   RayHitOf<F> hit;      ///< of that surface; t: distance from the camera
@@ -98,6 +102,14 @@ GLOAM_HD LayeredBsdfOf<F> specular_part(LayeredBsdfOf<F> b) {
 template <class F>
 GLOAM_HD Vec3Of<F> diffuse_albedo(const LayeredBsdfOf<F>& b) {
   return select<F>(b.layered, b.base.diffuse * b.under, b.base.diffuse);
+}
+
+/// Surfaces so rough that samples of what glows make less noise of its reflection than rays do.
+template <class F>
+GLOAM_HD MaskOf<F> blurs_flames(const SurfaceOf<F>& v, const LayeredBsdfOf<F>& b) {
+  const MaskOf<F> sharp =
+      (b.p_glass > 0.0f) | ((b.p_coat > 0.0f) & (v.coat_roughness < kLeastSharedRoughness));
+  return (v.roughness >= kLeastSharedRoughness) & !(b.layered & sharp);
 }
 
 /// Where the cache is asked: at surfaces, or in the air that a ray crosses.
@@ -144,79 +156,146 @@ GLOAM_HD Vec3Of<F> cached_light(const IrradianceCacheView& cache, const CachePla
   return light;
 }
 
-/// Direct light of one lamp sample at the vertices: diffuse over albedo, and the rest. `traced`:
-/// lanes whose specular ray may find the lamp too, if it has an extent.
+/// For lamps, and for what glows with the probability `glow` where lights are too many to be
+/// weighed against it; 0: not at all. The sky is the cache's.
+template <class F>
+GLOAM_HD void prepare_picker(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, MaskOf<F> active,
+                             float glow, LightPickerOf<F>* picker) {
+  picker->prepare(scene, p, n, active);
+  picker->leave_out_sky(scene);
+  if (glow > 0 && scene.has_glow()) picker->add_glow(scene, active, glow);
+}
+/// Where one sample is taken, and of the samples at a surface.
+inline constexpr float kOneGlow = 0.5f, kGlowAmongLamps = 1.0f / kDrawnLights;
+
+/// A sample of a lamp, or of what glows.
+template <class F>
+struct LampSampleOf {
+  LightSampleOf<F> light;
+  F clear = 1e30f;  ///< what is farther away than this does not dim it [m]
+  MaskOf<F> glows = false;
+};
+
+/// What glows, from p on a surface with the normal n, or in the air (n = 0), in the `active` lanes.
+template <class F>
+GLOAM_HD void sample_glow(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, Vec2Of<F> u,
+                          MaskOf<F> active, LampSampleOf<F>* out) {
+  constexpr float kNear = 0.1f;  // light that is sampled closer by counts as from there [m]: points
+                                 // of a flame are drawn without a look at their distance
+  each_lane(active, [&](int i) {
+    glow::LineSample line = glow::sample_line(scene.media, lane(p, i), lane(n, i), lane(u, i));
+    line.light.pdf *= sqr(max(kNear / max(line.light.distance, 1e-3f), 1.0f));
+    set_lane(&out->light, i, line.light);
+    set_lane(&out->clear, i, line.clear);
+  });
+  out->glows = out->glows | active;
+}
+
+/// One of all, as `picker` takes them.
+template <class F>
+GLOAM_HD LampSampleOf<F> sample_lamp(const SceneView& scene, const LightPickerOf<F>& picker,
+                                     Vec3Of<F> p, Vec3Of<F> n, Vec2Of<F> u, F time,
+                                     MaskOf<F> active) {
+  LampSampleOf<F> out;
+  if (!scene.has_glow()) {
+    out.light = picker.sample(scene, p, u, time, active);
+    return out;
+  }
+  const F share = picker.glow_share();
+  const MaskOf<F> glows = active & (u.x < share);
+  out.light = picker.sample(scene, p, u, time, active & !glows);
+  sample_glow(scene, p, n, Vec2Of<F>{rest_of(u.x, F(0.0f), share), u.y}, glows, &out);
+  out.light.pdf = select(glows, out.light.pdf * share, out.light.pdf);
+  return out;
+}
+
+/// Light of lamps at vertices, before media on its way.
+template <class F>
+struct ArrivingOf {
+  Vec3Of<F> diffuse, specular;  ///< over the diffuse albedo, and the rest [cd/m²]
+  RayOf<F> way;                 ///< of one sample, by what it brings
+  F total = 0.0f;               ///< that all bring
+};
+
+/// Adds one lamp sample. `traced`: lanes whose specular ray may find the lamp too, if it has an
+/// extent; of what `glows`, either that ray or this sample shows the reflection.
 template <class F, class Tracer>
 GLOAM_HD void add_light(const SceneView& scene, const Tracer& tracer, paths::State<F>* path,
                         const SurfaceOf<F>& v, const LayeredBsdfOf<F>& shiny,
                         const FrameOf<F>& frame, Vec3Of<F> wo, MaskOf<F> traced, MaskOf<F> active,
-                        const LightSampleOf<F>& light, Vec3Of<F>* diffuse, Vec3Of<F>* specular) {
+                        const LampSampleOf<F>& lamp, ArrivingOf<F>* sum) {
+  const LightSampleOf<F>& light = lamp.light;
   MaskOf<F> lit = active & (light.pdf > 0.0f) & (dot(light.wi, v.geometric) > 0.0f);
   if (!any(lit)) return;
   const Vec3Of<F> wi = frame.to_local(light.wi);
   lit = lit & (wi.z > 0.0f);
   F pdf;
   const Vec3Of<F> f = eval_bsdf(shiny, wo, wi, &pdf);
-  const F weight = select(traced & !light.is_delta, mis_weight(light.pdf, pdf), F(1.0f));
+  const F seen = select(blurs_flames(v, shiny), F(1.0f), F(0.0f));
+  const F weight = select(traced & !light.is_delta,
+                          select(lamp.glows, seen, mis_weight(light.pdf, pdf)), F(1.0f));
   RayOf<F> shadow = path->ray;
   aim_shadow_ray(v.p, v.geometric, v.t, light, &shadow);
-  const Vec3Of<F> arriving = paths::bring_light(scene, tracer, shadow, light.casts_shadow, lit,
-                                                light.radiance * (1.0f / light.pdf), path);
-  *diffuse += select<F>(lit, arriving * (wi.z * kInvPi), Vec3Of<F>{});
-  *specular += select<F>(lit, arriving * f * weight, Vec3Of<F>{});
+  Vec3Of<F> arriving = light.radiance * (1.0f / light.pdf);
+  if (const MaskOf<F> shadowed = lit & light.casts_shadow; any(shadowed)) {
+    const Vec3Of<F> share = paths::transmit(scene, tracer, shadow, shadowed, &path->result.rays);
+    arriving = select<F>(shadowed, arriving * share, arriving);
+  }
+  sum->diffuse += select<F>(lit, arriving * (wi.z * kInvPi), Vec3Of<F>{});
+  sum->specular += select<F>(lit, arriving * f * weight, Vec3Of<F>{});
+  if (!scene.has_media()) return;
+  const F brings = select(lit, luminance(arriving) * wi.z, F(0.0f));
+  sum->total += brings;
+  const MaskOf<F> taken = path->sampler.next_1d(lit) * sum->total < brings;
+  sum->way.o = select<F>(taken, shadow.o, sum->way.o);
+  sum->way.d = select<F>(taken, shadow.d, sum->way.d);
+  sum->way.tmax = select(taken, min(shadow.tmax, lamp.clear), sum->way.tmax);
 }
 
-/// Light that is sampled closer by than this counts as from there [m]: points of a flame are drawn
-/// without a look at their distance.
-inline constexpr float kNearGlow = 0.1f;
-
-/// A point of what glows as a light for p.
-template <class F>
-GLOAM_HD LightSampleOf<F> glow_light(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n,
-                                     paths::State<F>* path, MaskOf<F> active) {
-  LightSampleOf<F> light;
-  const Vec2Of<F> u = path->sampler.next_2d(active);
-  each_lane(active, [&](int i) {
-    LightSample one = glow::sample(scene.media, lane(p, i), lane(n, i), lane(u, i));
-    one.pdf *= sqr(max(kNearGlow / max(one.distance, 1e-3f), 1.0f));
-    set_lane(&light, i, one);
-  });
-  return light;
-}
-
-/// Direct light at the vertices of the `active` lanes: of what glows, and of every light where
-/// there are few, or of `drawn` of them.
+/// Direct light at the vertices of the `active` lanes: of every light and of what glows where there
+/// are few lights, or of `drawn` of them all. Media take from all what they take from one, in the
+/// `borrows` lanes from one of the lane beside.
 template <class F, class Tracer>
 GLOAM_HD void direct_light(const SceneView& scene, const Tracer& tracer, paths::State<F>* path,
                            const SurfaceOf<F>& v, const LayeredBsdfOf<F>& shiny,
                            const FrameOf<F>& frame, Vec3Of<F> wo, MaskOf<F> traced,
-                           MaskOf<F> active, bool every, uint32_t drawn, Vec3Of<F>* diffuse,
-                           Vec3Of<F>* specular) {
-  if (scene.has_glow()) {
-    Vec3Of<F> gloss;
-    const LightSampleOf<F> light = glow_light(scene, v.p, v.geometric, path, active);
-    add_light(scene, tracer, path, v, shiny, frame, wo, false, active, light, diffuse, &gloss);
-    *specular += select<F>(traced, Vec3Of<F>{}, gloss);  // that of a flame is what the ray shows
+                           MaskOf<F> active, MaskOf<F> borrows, bool every, uint32_t drawn,
+                           Vec3Of<F>* diffuse, Vec3Of<F>* specular) {
+  ArrivingOf<F> sum;
+  const auto add = [&](const LampSampleOf<F>& lamp) {
+    add_light(scene, tracer, path, v, shiny, frame, wo, traced, active, lamp, &sum);
+  };
+  if (scene.has_glow() && (every || scene.lights.size == 0)) {
+    LampSampleOf<F> lamp;
+    sample_glow(scene, v.p, v.geometric, path->sampler.next_2d(active), active, &lamp);
+    add(lamp);
   }
-  if (scene.lights.size == 0) return;
-  path->picker.prepare(scene, v.p, v.geometric, active);
-  path->picker.leave_out_sky(scene);  // that is the cache's
-  if (every) drawn = scene.lights.size;
+  if (scene.lights.size > 0) {
+    const float glow = every ? 0.0f : (drawn > 1 ? kGlowAmongLamps : kOneGlow);
+    prepare_picker(scene, v.p, v.geometric, active, glow, &path->picker);
+  }
+  if (every || scene.lights.size == 0) drawn = scene.lights.size;
   for (uint32_t k = 0; k < drawn; ++k) {
-    LightSampleOf<F> light;
     Vec2Of<F> u = path->sampler.next_2d(active);
+    LampSampleOf<F> lamp;
     if (every) {
       const MaskOf<F> near = active & (path->picker.shares(k) > 0.0f);
       if (!any(near)) continue;
-      light = sample_one_light(scene, k, v.p, u, path->ray.time, near);
-      light.pdf = select(near, light.pdf, F(0.0f));
+      lamp.light = sample_one_light(scene, k, v.p, u, path->ray.time, near);
+      lamp.light.pdf = select(near, lamp.light.pdf, F(0.0f));
     } else {
       u.x = (u.x + static_cast<float>(k)) * (1.0f / static_cast<float>(drawn));
-      light = path->picker.sample(scene, v.p, u, path->ray.time, active);
-      light.pdf *= static_cast<float>(drawn);
+      lamp = sample_lamp(scene, path->picker, v.p, v.geometric, u, path->ray.time, active);
+      lamp.light.pdf *= static_cast<float>(drawn);
     }
-    add_light(scene, tracer, path, v, shiny, frame, wo, traced, active, light, diffuse, specular);
+    add(lamp);
   }
+  const MaskOf<F> lit = active & (sum.total > 0.0f);
+  borrows = borrows & (flip<1>(sum.total) > 0.0f);
+  Vec3Of<F> share = paths::through_media(scene, sum.way, lit & !borrows, &path->sampler);
+  share = select<F>(borrows, flip<1>(share), share);
+  *diffuse = sum.diffuse * share;
+  *specular = sum.specular * share;
 }
 
 /// Probability with which direct_light() takes the light of a row.
@@ -233,19 +312,18 @@ GLOAM_HD Vec3f scattered_light(const SceneView& scene, const Tracer& tracer, con
                                const MediumPoint& point, Vec3f p_W, WalkRandom* random,
                                uint32_t* rays) {
   LightPicker picker;
-  picker.prepare(scene, p_W, Vec3f{});
-  picker.leave_out_sky(scene);  // that is the cache's
-  if (scene.has_glow()) picker.add_glow(scene, true);
+  prepare_picker<float>(scene, p_W, Vec3f{}, true, kOneGlow, &picker);
   const Vec2f u{random->next(), random->next()};
-  LightSample light = picker.sample(scene, p_W, u, ray.time);
-  light.pdf *= sqr(max(kNearGlow / max(light.distance, 1e-3f), 1.0f));
+  const LampSampleOf<float> lamp =
+      sample_lamp<float>(scene, picker, p_W, Vec3f{}, u, ray.time, true);
+  const LightSample& light = lamp.light;
   if (!(light.pdf > 0) || !(max_component(point.scattering) > 0)) return {};
   Ray shadow = ray;
   aim_shadow_ray(p_W, Vec3f{}, 0.0f, light, &shadow);
   Vec3f share{1, 1, 1};
   if (light.casts_shadow) share = paths::transmit(scene, tracer, shadow, true, rays);
   if (!(max_component(share) > 0)) return {};
-  share *= transmittance(scene.media, shadow, shadow.tmax, {}, *random);
+  share *= transmittance(scene.media, shadow, min(shadow.tmax, lamp.clear), {}, *random);
   const float cosine = dot(ray.d, light.wi);
   const auto phase = [&](float scattering, float g_scattering) {
     const float g = scattering > 0 ? g_scattering / scattering : 0.0f;
@@ -259,7 +337,7 @@ GLOAM_HD Vec3f scattered_light(const SceneView& scene, const Tracer& tracer, con
 /// Light from all around that the cache has for the air at p_W, along d, or `otherwise`.
 GLOAM_HD Vec3f air_light(const IrradianceCacheView& cache, Vec3f p_W, Vec3f d, Vec3f otherwise,
                          WalkRandom* random, CacheRequest* request) {
-  constexpr uint32_t kCoarser = 2;  // light in the air has no edges
+  constexpr uint32_t kCoarser = 0;  // light in the air has no edges
   const CachePlaceOf<float> at{p_W, d, kAirCell, p_W};
   const Vec3f jitter{random->next(), random->next(), random->next()};
   const CacheCellOf<float> cell = ask_cells<float>(cache, at, true, jitter, kCoarser, request);
@@ -270,52 +348,66 @@ GLOAM_HD Vec3f air_light(const IrradianceCacheView& cache, Vec3f p_W, Vec3f d, V
 /// around, give off, and let through.
 template <class F>
 struct MediaLightOf {
-  Vec3Of<F> radiance;   ///< [cd/m²]
+  Vec3Of<F> radiance;   ///< that they give off [cd/m²]
+  Vec3Of<F> around;     ///< scattered from all around [cd/m²]
+  Vec3Of<F> lamps;      ///< scattered from lamps: one sample of one place [cd/m²]
   Vec3Of<F> scattered;  ///< share of what arrives from all around
   Vec3Of<F> through;
 };
-/// `glows`: what glows on the way counts. `requests`: one per lane, for one of the places that
-/// scatter light.
+/// `samples`: lanes that take a sample of lamps. `glows`: what glows on the way counts. `requests`:
+/// one per lane, for one of the places that scatter light.
 template <class F, class Tracer>
 GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& tracer,
                                      const IrradianceCacheView& cache, F tmax, MaskOf<F> active,
-                                     int steps, bool glows, paths::State<F>* path,
-                                     CacheRequest* requests) {
-  MediaLightOf<F> out{{}, {}, in_all_lanes<F>({1, 1, 1})};
+                                     MaskOf<F> samples, int steps, MaskOf<F> glows,
+                                     paths::State<F>* path, CacheRequest* requests) {
+  MediaLightOf<F> out{{}, {}, {}, {}, in_all_lanes<F>({1, 1, 1})};
   if (scene.media.volumes.empty()) return out;
   const Vec2Of<F> u = path->sampler.next_2d(active);
   each_lane(active, [&](int i) {
     WalkRandom random(lane(u, i));
     const Ray ray = lane(path->ray, i);
-    uint32_t rays = 0;
-    float weighed = 0;
-    Vec3f air = cache.mean;  // of the last step that the cache knew
     // Of what is thin, dark or behind the rest, few steps ask for light and count for many.
-    constexpr float kBrightest = 8;  // times the air's light: what one of many lamps may bring
-    constexpr float kLittle = 0.03f, kLittleForLamps = 0.1f;  // scattered: then it is by chance
-    const auto chance_of = [](float scatters, float much) { return min(scatters / much, 1.0f); };
-    const MarchResult m = march(
-        scene.media, ray, lane(tmax, i), 0.0f, steps, {}, glows,
-        [&](const MediumPoint& point, Vec3f p_W, Vec3f share) {
-          const float scatters = max_component(point.scattering * share);
-          Vec3f light;
-          if (const float chance = chance_of(scatters, kLittle); random.next() < chance) {
-            CacheRequest request;
-            air = air_light(cache, p_W, ray.d, air, &random, &request);
-            light = point.scattering * air * (1 / chance);
-            weighed += scatters / chance;
-            if (random.next() * weighed < scatters / chance) requests[i] = request;
-          }
-          if (const float chance = chance_of(scatters, kLittleForLamps); random.next() < chance) {
-            Vec3f lamps = scattered_light(scene, tracer, ray, point, p_W, &random, &rays);
-            const float most = kBrightest * luminance(point.scattering * air);
-            if (most > 0) lamps *= min(most / max(luminance(lamps), 1e-9f), 1.0f);
-            light += lamps * (1 / chance);
-          }
-          return light;
-        });
-    set_lane(&path->result.rays, i, lane(path->result.rays, i) + rays);
+    constexpr float kLittle = 0.1f;
+    float weighed = 0;       // what has been asked for
+    float in_all = 0;        // what lamps may bring
+    Vec3f air = cache.mean;  // of the last step that the cache knew
+    Vec3f around;
+    // One step stands for all in the light of lamps, by what they may bring there.
+    struct {
+      MediumPoint point;
+      Vec3f p_W, share, air;
+      float brings;
+    } lit;
+    const MarchResult m =
+        march(scene.media, ray, lane(tmax, i), 0.0f, steps, {}, lane(glows, i),
+              [&](const MediumPoint& point, Vec3f p_W, Vec3f share) {
+                const Vec3f scattered = point.scattering * share;
+                const float scatters = max_component(scattered);
+                if (const float chance = min(scatters / kLittle, 1.0f); random.next() < chance) {
+                  CacheRequest request;
+                  air = air_light(cache, p_W, ray.d, air, &random, &request);
+                  around += scattered * air * (1 / chance);
+                  weighed += scatters / chance;
+                  if (random.next() * weighed < scatters / chance) requests[i] = request;
+                }
+                const float flames = glow::weight(scene.media.glows, p_W, Vec3f{});
+                const float brings = scatters * (luminance(air) + flames / (4 * kPi));
+                in_all += brings;
+                if (random.next() * in_all < brings) lit = {point, p_W, share, air, brings};
+                return Vec3f{};
+              });
+    if (lane(samples, i) && in_all > 0) {
+      constexpr float kBrightest = 8;  // times the air's light: what one of many lamps may bring
+      uint32_t rays = 0;
+      Vec3f lamps = scattered_light(scene, tracer, ray, lit.point, lit.p_W, &random, &rays);
+      const float most = kBrightest * luminance(lit.point.scattering * lit.air);
+      if (most > 0) lamps *= min(most / max(luminance(lamps), 1e-9f), 1.0f);
+      set_lane(&out.lamps, i, lamps * lit.share * (in_all / lit.brings));
+      set_lane(&path->result.rays, i, lane(path->result.rays, i) + rays);
+    }
     set_lane(&out.radiance, i, m.radiance);
+    set_lane(&out.around, i, around);
     set_lane(&out.scattered, i, m.scattered);
     set_lane(&out.through, i, m.transmittance);
   });
@@ -361,11 +453,11 @@ struct GatheredOf {
 
 /// Light along path->ray in the `active` lanes, from its first surface that is no glass or mirror.
 /// What lamps themselves send is weighed against direct_light() by path->pdf_bsdf if `count_lamps`;
-/// if not, it is none of the path's business.
+/// if not, it is none of the path's business. `flames`: lanes in which what glows counts.
 template <class F, class Tracer>
 GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
-                              const IrradianceCacheView& cache, bool count_lamps, MaskOf<F> active,
-                              paths::State<F>* path, CacheRequest* requests) {
+                              const IrradianceCacheView& cache, bool count_lamps, MaskOf<F> flames,
+                              MaskOf<F> active, paths::State<F>* path, CacheRequest* requests) {
   constexpr int kMaxEvents = 5;  // in and out of two glasses
   GatheredOf<F> out;
   Vec3Of<F>&sum = out.light, throughput = in_all_lanes<F>({1, 1, 1});
@@ -384,8 +476,9 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
       const F tmax = select(found, hit.t, F(1e30f));
       CacheRequest air[Lanes<F>::kCount] = {};
       const MediaLightOf<F> media =
-          cross_media(scene, tracer, cache, tmax, active, kSteps, count_lamps, path, air);
-      sum += select<F>(active, throughput * media.radiance, Vec3Of<F>{});
+          cross_media(scene, tracer, cache, tmax, active, active, kSteps, flames, path, air);
+      const Vec3Of<F> light = media.radiance + media.around + media.lamps;
+      sum += select<F>(active, throughput * light, Vec3Of<F>{});
       // What brings more light is asked for: the air on the way, or the surface.
       const MaskOf<F> airy =
           active & ((!found) | (max_component(media.scattered) > max_component(media.through)));
@@ -438,8 +531,8 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
     if (any(matt)) {
       const LayeredBsdfOf<F> shiny = specular_part(bsdf);
       Vec3Of<F> diffuse, specular;
-      direct_light(scene, tracer, path, v, shiny, frame, wo, MaskOf<F>(false), matt, false, 1,
-                   &diffuse, &specular);
+      direct_light<F>(scene, tracer, path, v, shiny, frame, wo, false, matt, false, false, 1,
+                      &diffuse, &specular);
       // Light that goes on is a mean over many lookups anyway: there, blurring would only leak.
       Vec3Of<F> jitter = in_all_lanes<F>({0.5f, 0.5f, 0.0f});
       uint32_t coarser = 1;
@@ -467,6 +560,7 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
       path->ray.o = select<F>(goes, leave_surface(v.p, v.geometric, wi, v.t), path->ray.o);
       path->ray.d = select<F>(goes, wi, path->ray.d);
       first = first & !goes;
+      if (count_lamps) flames = flames | goes;
       // No light was drawn for this bounce: what it meets counts in full.
       path->pdf_bsdf = select(goes, F(1e12f), path->pdf_bsdf);
       path->from = select<F>(goes, v.p, path->from);
@@ -495,10 +589,10 @@ GLOAM_HD Vec3Of<F> look_along(const SceneView& scene, const Tracer& tracer,
   path.pdf_bsdf = r.pdf;
   path.sampler = r.sampler;
   if (scene.lights.size > kMaxFastLights) {  // for the chances of lamps that are met
-    path.picker.prepare(scene, r.from, r.normal, active);
-    path.picker.leave_out_sky(scene);
+    fasts::prepare_picker(scene, r.from, r.normal, active, fasts::kGlowAmongLamps, &path.picker);
   }
-  const Vec3Of<F> light = fasts::gather(scene, tracer, cache, true, active, &path, requests).light;
+  const Vec3Of<F> light =
+      fasts::gather(scene, tracer, cache, true, r.flames, active, &path, requests).light;
   *rays += path.result.rays;
   return light;
 }
@@ -541,9 +635,14 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
     if (!scene.media.volumes.empty()) {
       constexpr int kSteps = 8;
       const F tmax = select(found, hit.t, F(1e30f));
-      const auto media = fasts::cross_media(scene, tracer, cache, tmax, active, kSteps, true, &path,
-                                            requests + 3 * Lanes<F>::kCount);
+      const Mask borrows =
+          even_quads<F>(active, select(found, hit.instance + 1u, UintOf<F>(0u)), path.ray.d) &
+          !turns.of_two;
+      const auto media = fasts::cross_media(scene, tracer, cache, tmax, active, active & !borrows,
+                                            kSteps, true, &path, requests + 3 * Lanes<F>::kCount);
+      const Vec3Of<F> lamps = select<F>(borrows, flip<1>(media.lamps), media.lamps);
       out.base += select<F>(active, out.through * media.radiance, Vec3Of<F>{});
+      out.air += select<F>(active, out.through * (media.around + lamps), Vec3Of<F>{});
       out.through = select<F>(active, out.through * media.through, out.through);
     }
     if (const Mask missed = active & !found; any(missed)) {
@@ -570,7 +669,8 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
         active & (glass | ((v.roughness < kMaxTracedRoughness) & (bsdf.base.p_layer > 0.0f)) |
                   (bsdf.layered & (bsdf.p_coat > 0.0f)));
     Vec3Of<F> diffuse, specular;
-    fasts::direct_light(scene, tracer, &path, v, shiny, frame, wo, traced, active, every,
+    const Mask borrows = even_quads<F>(solid, hit.instance, v.normal) & !turns.of_two;
+    fasts::direct_light(scene, tracer, &path, v, shiny, frame, wo, traced, active, borrows, every,
                         kDrawnLights, &diffuse, &specular);
     const Vec2Of<F> u = path.sampler.next_2d(active);
     const Vec3Of<F> jitter{u.x, u.y, path.sampler.next_1d(active)};
@@ -587,7 +687,6 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
       near.o = leave_surface(v.p, v.geometric, v.geometric, v.t);
       near.d = out_W;
       near.tmax = cells.edge;
-      const Mask borrows = even_quads<F>(solid, hit.instance, v.normal) & !turns.of_two;
       const Mask goes = solid & !borrows;
       path.result.rays += select(goes, UintOf<F>(1u), UintOf<F>(0u));
       const F met = select(tracer.occluded(near, goes), F(1.0f), F(0.0f));
@@ -621,6 +720,7 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
       r.cone_width = path.cone_width;
       r.cone_spread = path.cone_spread + 0.2f * square_root(min(1.0f / (kPi * s.pdf), F(1.0f)));
       r.pdf = s.pdf;
+      r.flames = !fasts::blurs_flames(v, shiny);
       r.from = v.p;
       r.normal = v.geometric;
       r.sampler = path.sampler;

@@ -121,18 +121,22 @@ class LightPickerOf {
     return rows;
   }
 
-  /// After prepare(): media that glow get their share of choices, too.
-  GLOAM_HD void add_glow(const SceneView& scene, Mask active) {
+  /// After prepare(): media that glow get their share of choices, too; `beside_many`: that where
+  /// lights are not weighed.
+  GLOAM_HD void add_glow(const SceneView& scene, Mask active, float beside_many = 0.5f) {
     each_lane(active, [&](int i) {
       const float glow = glow::weight(scene.media.glows, lane(p_, i), lane(n_, i));
       const float total = lane(total_, i);
-      const float share = total < 0 ? 0.5f : glow / (glow + total);  // lights that are not weighed
+      const float share = total < 0 ? beside_many : glow / (glow + total);
       set_lane(&glow_share_, i, glow > 0 ? share : 0.0f);
     });
     const F rest = select(active, 1.0f - glow_share_, F(1.0f));
     for (uint32_t i = 0; !scene.has_many_lights() && i < count_; ++i) share_[i] *= rest;
     if (scene.has_environment()) sky_share_ *= rest;
   }
+
+  /// After leave_out_sky() and add_glow(): sample() takes what glows by u.x below this.
+  GLOAM_HD F glow_share() const { return glow_share_; }
 
   /// Density per solid angle, as in glow::pdf, with which sample() finds the point p_W, p_G in the
   /// volume of scene.media.glows[row], in the lane `at`.

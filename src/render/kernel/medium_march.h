@@ -14,14 +14,15 @@ struct MediumPoint {
 
 namespace media {
 
+/// `glows`: it may give off light there.
 GLOAM_HD void add_volume(const MediaView& media, const VolumeView& volume, Vec3f p_W, Bands bands,
-                         MediumPoint* point) {
+                         MediumPoint* point, bool glows = true) {
   const Vec3f p_G = transform_point(volume.X_GW, p_W);
   const Vec3f extinction = bands.of(volume.mass_extinction) * density_at(volume, p_G);
   const Vec3f scattering = extinction * bands.of(volume.albedo);
   point->extinction += extinction;
   point->scattering += scattering;
-  point->emission += (extinction - scattering) * glow_at(media, volume, p_G, bands);
+  if (glows) point->emission += (extinction - scattering) * glow_at(media, volume, p_G, bands);
   point->g_scattering += scattering * bands.of(volume.g);
 }
 
@@ -126,7 +127,10 @@ GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, f
         const Vec3f p_W = ray.o + ray.d * (begin + (k + 0.5f) * part);
         MediumPoint point;
         for (int v = 0; v < walk.count(); ++v) {
-          if (walk[v].high() > 0) media::add_volume(media, walk[v].volume(), p_W, bands, &point);
+          const VolumeView& volume = walk[v].volume();
+          if (!(walk[v].high() > 0)) continue;
+          media::add_volume(media, volume, p_W, bands, &point,
+                            glows && media::glows(volume, walk[v].hottest(), bands));
         }
         const Vec3f depth = point.extinction * part;
         if (glows)

@@ -33,6 +33,9 @@ void velocity_at(const mjModel& model, const mjData& data, int body, const doubl
 void add_wrench(const mjModel& model, mjData& data, int body, const double* force,
                 const double* torque, const double* point);
 
+/// Factors the inertia of one tree anew, L' D L, after data.M was changed.
+void factor_tree(const mjModel& model, mjData& data, int tree);
+
 /// Motion of the point of a body and how it answers to forces there. Vectors are linear, then
 /// angular, in the world.
 struct BodyResponse {

@@ -10,7 +10,6 @@ namespace gloam {
 namespace {
 
 constexpr double kUpright = 1e-9;        // of a normal: the facet is a wall
-constexpr double kNowhere = 1e30;        // [m]
 constexpr double kAsGoodAsAWall = 1e-3;  // of a normal's z: the surface is as good as a wall
 
 }  // namespace
@@ -76,6 +75,10 @@ void ColliderBottom::set_pose(const mjData& d) {
 
 bool ColliderBottom::at(double x, double y, BottomPoint* out) const {
   if (std::abs(x - centre_[0]) > half_[0] || std::abs(y - centre_[1]) > half_[1]) return false;
+  if (is_round()) {
+    round_at({&x, 1}, &y, &out->z, &out->slope[0], &out->slope[1]);
+    return out->z < kNowhere;
+  }
   if (!planes_.empty()) {
     const Facet* facet = facet_at(x, y, &out->z);
     if (facet == nullptr) return false;
@@ -91,20 +94,23 @@ bool ColliderBottom::at(double x, double y, BottomPoint* out) const {
   return true;
 }
 
+void ColliderBottom::at_each(std::span<const double> xs, const double* ys, double* z,
+                             double* slope_x, double* slope_y) const {
+  if (is_round()) return round_at(xs, ys, z, slope_x, slope_y);
+  for (size_t i = 0; i < xs.size(); ++i) {
+    BottomPoint point;
+    z[i] = at(xs[i], ys[i], &point) ? point.z : kNowhere;
+    slope_x[i] = point.slope[0], slope_y[i] = point.slope[1];
+  }
+}
+
 bool ColliderBottom::height_at(double x, double y, double* z) const {
   if (std::abs(x - centre_[0]) > half_[0] || std::abs(y - centre_[1]) > half_[1]) return false;
   if (!planes_.empty()) return facet_at(x, y, z) != nullptr;
-  double normal[3];
-  return quadric_at(x, y, z, normal);
-}
-
-bool ColliderBottom::ball_ends(double y, double level, double* ends) const {
-  const double dy = y - p_[1], dz = std::max(p_[2] - level, 0.0);
-  const double square = size_[0] * size_[0] - dy * dy - dz * dz;
-  if (square <= 0) return false;
-  const double half = std::sqrt(square);
-  ends[0] = p_[0] - half, ends[1] = p_[0] + half;
-  return true;
+  double out[3];
+  if (!is_round()) return quadric_at(x, y, z, out);
+  round_at({&x, 1}, &y, z, out, out + 1);
+  return *z < kNowhere;
 }
 
 // Null: it is not above (x, y).
@@ -124,51 +130,21 @@ const ColliderBottom::Facet* ColliderBottom::facet_at(double x, double y, double
 
 // The upright line through (x, y), in the geom's frame: o + t d, where t is the world's z.
 bool ColliderBottom::quadric_at(double x, double y, double* out, double* normal) const {
-  double o[3], t = kNowhere;
+  double o[3];
   for (int a = 0; a < 3; ++a) o[a] = p_G_[a] + x * R_[a] + y * R_[3 + a];
   const double* d = R_ + 6;
-  switch (type_) {
-    case mjGEOM_SPHERE:
-      add_ball(o, d, 0, &t, normal);
-      break;
-    case mjGEOM_CAPSULE: {
-      add_ball(o, d, -size_[1], &t, normal);
-      add_ball(o, d, size_[1], &t, normal);
-      double side = kNowhere, side_normal[3];
-      if (cylinder_at(o, d, &side, side_normal) && side < t && side_normal[2] == 0) {
-        t = side;
-        std::copy_n(side_normal, 3, normal);
-      }
-      break;
-    }
-    case mjGEOM_CYLINDER:
-      if (!cylinder_at(o, d, &t, normal)) return false;
-      break;
-    default: {  // ellipsoid: a ball of radius 1 in a frame that is stretched
-      double a = 0, b = 0, c = -1;
-      for (int i = 0; i < 3; ++i) {
-        const double q = o[i] / size_[i], e = d[i] / size_[i];
-        a += e * e, b += q * e, c += q * q;
-      }
-      const double root = b * b - a * c;
-      if (root < 0) return false;
-      t = (-b - std::sqrt(root)) / a;
-      for (int i = 0; i < 3; ++i) normal[i] = (o[i] + t * d[i]) / (size_[i] * size_[i]);
-    }
+  if (type_ == mjGEOM_CYLINDER) return cylinder_at(o, d, out, normal);
+  // An ellipsoid: a ball of radius 1 in a frame that is stretched.
+  double a = 0, b = 0, c = -1;
+  for (int i = 0; i < 3; ++i) {
+    const double q = o[i] / size_[i], e = d[i] / size_[i];
+    a += e * e, b += q * e, c += q * q;
   }
-  *out = t;
-  return t < kNowhere;
-}
-
-void ColliderBottom::add_ball(const double* o, const double* d, double z, double* t,
-                              double* normal) const {
-  const double q[3] = {o[0], o[1], o[2] - z};
-  const double b = dot3(q, d), root = b * b - dot3(q, q) + size_[0] * size_[0];
-  if (root < 0) return;
-  const double low = -b - std::sqrt(root);
-  if (low >= *t) return;
-  *t = low;
-  for (int a = 0; a < 3; ++a) normal[a] = q[a] + low * d[a];
+  const double root = b * b - a * c;
+  if (root < 0) return false;
+  *out = (-b - std::sqrt(root)) / a;
+  for (int i = 0; i < 3; ++i) normal[i] = (o[i] + *out * d[i]) / (size_[i] * size_[i]);
+  return true;
 }
 
 // Where the line enters: through the round side, then normal[2] = 0, or through an end.

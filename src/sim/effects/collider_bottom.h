@@ -4,6 +4,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include <span>
 #include <vector>
 
 #include "sim/effects/grid_solid.h"
@@ -40,11 +41,17 @@ class ColliderBottom {
   const double* rotation() const { return R_; }
   /// False: it is not above (x, y).
   bool at(double x, double y, BottomPoint* out) const;
-  bool is_ball() const { return type_ == mjGEOM_SPHERE; }
-  /// Of a ball: from where to where along x, at `y`, it is lower than `level`. False: nowhere.
-  bool ball_ends(double y, double level, double* ends) const;
+  /// At many places; z = kNowhere: it is not above that one.
+  void at_each(std::span<const double> xs, const double* ys, double* z, double* slope_x,
+               double* slope_y) const;
   /// Only how high [m].
   bool height_at(double x, double y, double* z) const;
+  bool is_round() const { return type_ == mjGEOM_SPHERE || type_ == mjGEOM_CAPSULE; }
+  /// Of round ones: from where to where along x, at each of `ys`, it is lower than `level`, which
+  /// may be from more to less: nowhere.
+  void round_ends(double level, std::span<const double> ys, double* left, double* right) const;
+
+  static constexpr double kNowhere = 1e30;  ///< [m]
 
  private:
   struct Facet {
@@ -54,7 +61,8 @@ class ColliderBottom {
   const Facet* facet_at(double x, double y, double* z) const;
   bool quadric_at(double x, double y, double* t, double* normal) const;
   bool cylinder_at(const double* o, const double* d, double* t, double* normal) const;
-  void add_ball(const double* o, const double* d, double z, double* t, double* normal) const;
+  void round_at(std::span<const double> xs, const double* ys, double* z, double* slope_x,
+                double* slope_y) const;
 
   int geom_, body_, type_;
   double size_[3], box_centre_[3], box_half_[3];

@@ -7,26 +7,11 @@
 // contact model (Tasora et al. 2019).
 
 #include "sim/effects/body_forces.h"
-#include "sim/effects/soil_contact.h"
-#include "sim/effects/soil_law.h"
+#include "sim/effects/soil_lanes.h"
 #include "sim/effects/soil_tracks.h"
 #include "sim/soil_reaction.h"
 
 namespace gloam {
-
-/// Across a surface z = s0 x + s1 y: takes off what is along its normal.
-inline void project_along(const double* slope, double* v) {
-  const double n[3] = {-slope[0], -slope[1], 1}, along = dot3(n, v) / dot3(n, n);
-  for (int a = 0; a < 3; ++a) v[a] -= along * n[a];
-}
-
-/// Of a point of a body [m/s]; `motion`: of `point`, linear, then angular.
-inline void soil_velocity_at(const double* motion, const double* point, const double* p,
-                             double* v) {
-  const double arm[3] = {p[0] - point[0], p[1] - point[1], p[2] - point[2]};
-  cross3(motion + 3, arm, v);
-  for (int a = 0; a < 3; ++a) v[a] += motion[a];
-}
 
 class SoilBed {
  public:
@@ -61,37 +46,40 @@ class SoilBed {
     uint32_t step = 0;  // after the one it was for
     size_t first = 0, count = 0;
   };
-  /// Force of a touch at velocities u of its point: f - across u - along d (d u).
-  struct Push {
-    double d[3] = {}, f[3] = {};     // where the ground presses to; [N]
-    double across = 0, along = 0;    // [N s/m]
-    double load = 0, stiffness = 0;  // pressing at no velocity [N], less by it [N s/m]
+  /// What a body touches.
+  struct Body {
+    int id = 0;
+    double point[3] = {};         // where its motion is told of [m]
+    size_t first = 0, count = 0;  // touches
+    size_t lanes = 0;             // the first of them; kSide touches each
   };
-  void press_cell(uint32_t step, double dt, const SoilTouch& touch, const double* velocity);
+  struct Change {
+    int cell = 0;
+    SoilCell is;
+  };
+  void find_bodies();
+  std::span<SoilLanes> lanes_of(const Body& body);
+  void press_cell(uint32_t step, double dt, const SoilTouch& touch, const SoilLanes& lanes,
+                  size_t i, const double* motion);
   void fill_in(uint32_t step, double dt, const SoilTouch& touch, SoilCell* cell) const;
   float lower_track(const SoilTouch& touch);
   void push_aside(const SoilTouch& touch, const double* velocity, double volume);
   void slide(int cell);
-  void push_body(const mjModel& model, mjData& data, std::span<const SoilTouch> touches,
-                 uint32_t step, ResponseSolver* solver);
-  double limit_work(std::span<const SoilTouch> touches, const double* free, const double* change,
-                    double dt, const double* wrench) const;
-  Push push_of(const SoilTouch& touch, const double* arm, const double* motion, double dt) const;
-  static void add_push(const Push& push, const double* arm, double* force, double* matrix);
-  void react(std::span<const SoilTouch> touches, const double* point, const double* motion,
-             double share);
-
-  SoilDepth depth_at(const SoilTouch& touch) const {
-    const auto cell = static_cast<size_t>(touch.cell);
-    return {soil_.share_of(cell) * soil_.depth + touch.fallen, touch.fallen};
-  }
+  void push_body(const mjModel& model, mjData& data, const Body& body, uint32_t step,
+                 ResponseSolver* solver);
+  double limit_work(const Body& body, const double* free, const double* change, double dt,
+                    const double* wrench);
+  void react(const Body& body, const double* motion, double share);
 
   const SoilDescription& soil_;
   SoilContacts contacts_;
   std::vector<SoilCell> cells_;
   std::vector<Answer> answers_of_;  // of the last step, (nbody)
   std::vector<double> answers_;
-  std::vector<Push> pushes_;  // room, of the touches of a body
+  std::vector<double> moduli_;    // of patches: k_c / b + k_phi [N/m^(n+2)]
+  std::vector<Body> bodies_;      // of this step
+  std::vector<SoilLanes> lanes_;  // of their touches
+  std::vector<Change> changes_;   // of touched cells, room
   std::vector<SoilReaction> reactions_;
   SoilTracks tracks_;
 };

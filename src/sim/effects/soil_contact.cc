@@ -19,23 +19,30 @@ SoilContacts::SoilContacts(const SoilDescription& soil, const mjModel& m,
       row_low_(soil.nx),
       row_high_(-1),
       marks_(soil.cells()) {
-  size_t touches = 0, points = 0;
+  size_t touches = 0, all_lines = 0, most_lines = 0, most_samples = 0;
   for (const int geom : geoms) {
     const double across = 2 * m.geom_rbound[geom];
     const auto along = [across](double d, int n) {
       return static_cast<size_t>(std::min(across / d + 2, static_cast<double>(n)));
     };
-    const size_t rows = along(soil.dy, soil.ny), cells = along(soil.dx, soil.nx) * rows;
-    const size_t lines = std::max<size_t>(2 * rows, kContactLines * 2 + kMostContactLines * 2) + 2;
+    const size_t rows = along(soil.dy, soil.ny), columns = along(soil.dx, soil.nx);
+    const size_t lines = std::max<size_t>(2 * rows, kContactLines * 2 + kMostContactLines * 2) + 4;
     Footprint& print = prints_.emplace_back();
-    print.touches.reserve(cells), print.rise.reserve(cells), print.hull.reserve(2 * lines + 1);
+    print.touches.reserve(rows * columns), print.rise.reserve(rows * columns);
+    print.outline.reserve(lines);
     print_of_[static_cast<size_t>(geom)] = static_cast<int>(prints_.size()) - 1;
-    touches += cells, points += 2 * lines;
+    touches += rows * columns, all_lines += lines;
+    most_lines = std::max(most_lines, lines);
+    most_samples = std::max(most_samples, lines * columns);
   }
   touches_.reserve(touches);
-  points_.reserve(points), hull_.reserve(points + 1);
-  here_.reserve(geoms.size()), before_.reserve(geoms.size());
-  widths_.reserve(geoms.size()), centres_.reserve(2 * geoms.size());
+  lines_.reserve(all_lines), merged_.reserve(all_lines), hull_.reserve(2 * all_lines);
+  for (auto* room : {&ys_, &left_, &right_}) room->reserve(most_lines);
+  Samples& s = samples_;
+  for (auto* room : {&s.x, &s.y, &s.area, &s.z, &s.slope_x, &s.slope_y})
+    room->reserve(most_samples);
+  s.cell.reserve(most_samples);
+  here_.reserve(geoms.size()), before_.reserve(geoms.size()), patches_.reserve(geoms.size());
 }
 
 void SoilContacts::reset() {
@@ -103,7 +110,7 @@ bool SoilContacts::has_stayed(const ColliderBottom& collider, Footprint* print) 
 void SoilContacts::finish() {
   if (changed_ || here_ != before_) {
     touches_.clear();
-    widths_.clear(), centres_.clear();
+    patches_.clear();
     ++round_;
     for (size_t i = 0; i < here_.size(); ++i) join(static_cast<int>(i));
     for (size_t i = 0; i < here_.size(); ++i) add_patch(static_cast<int>(i));
@@ -124,94 +131,6 @@ void SoilContacts::finish() {
       touch->depth = std::max(print.touches[n].depth - print.rise[n] + touch->fallen, 0.0);
     }
   }
-}
-
-// Finds those before it that it shares cells with, or whose cells are beside its own.
-void SoilContacts::join(int here) {
-  Footprint& print = prints_[static_cast<size_t>(here_[static_cast<size_t>(here)])];
-  print.parent = here;
-  const auto nx = static_cast<size_t>(soil_.nx);
-  for (const SoilTouch& touch : print.touches) {
-    const int row = touch.cell / soil_.nx, i = touch.cell % soil_.nx;
-    for (int v = std::max(row - 1, 0); v <= std::min(row + 1, soil_.ny - 1); ++v) {
-      for (int u = std::max(i - 1, 0); u <= std::min(i + 1, soil_.nx - 1); ++u) {
-        const Mark& mark = marks_[static_cast<size_t>(v) * nx + static_cast<size_t>(u)];
-        if (mark.round != round_ || mark.row == here) continue;
-        const int a = root(here), b = root(mark.row);
-        prints_[static_cast<size_t>(here_[static_cast<size_t>(std::max(a, b))])].parent =
-            std::min(a, b);
-      }
-    }
-  }
-  for (const SoilTouch& touch : print.touches) {
-    Mark& mark = marks_[static_cast<size_t>(touch.cell)];
-    if (mark.round != round_) mark = {round_, here, 0};
-    mark.area += static_cast<float>(touch.area);
-  }
-  touches_.insert(touches_.end(), print.touches.begin(), print.touches.end());
-}
-
-int SoilContacts::root(int here) const {
-  while (true) {
-    const int parent = prints_[static_cast<size_t>(here_[static_cast<size_t>(here)])].parent;
-    if (parent == here) return here;
-    here = parent;
-  }
-}
-
-// The patch that begins with it, if one does, and all touches of that.
-void SoilContacts::add_patch(int here) {
-  if (root(here) != here) return;
-  const Footprint* only = &prints_[static_cast<size_t>(here_[static_cast<size_t>(here)])];
-  const int patch = static_cast<int>(widths_.size());
-  points_.clear();
-  size_t first = 0;
-  int members = 0;
-  for (size_t i = 0; i < here_.size(); ++i) {
-    const Footprint& print = prints_[static_cast<size_t>(here_[i])];
-    if (root(static_cast<int>(i)) == here) {
-      ++members;
-      points_.insert(points_.end(), print.hull.begin(), print.hull.end());
-      for (size_t n = 0; n < print.touches.size(); ++n) touches_[first + n].patch = patch;
-    }
-    first += print.touches.size();
-  }
-  std::span<const Point> hull = only->hull;
-  if (members > 1) {
-    std::sort(points_.begin(), points_.end(),
-              [](Point a, Point b) { return a.y != b.y ? a.y < b.y : a.x < b.x; });
-    make_hull(&hull_);
-    hull = hull_;
-  }
-  double area = 0, edge = 0, middle[2] = {};
-  for (size_t i = 0; i < hull.size(); ++i) {
-    const Point a = hull[i], b = hull[i + 1 < hull.size() ? i + 1 : 0];
-    area += (a.x * b.y - a.y * b.x) / 2;
-    edge += std::sqrt((b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y));
-    middle[0] += a.x / static_cast<double>(hull.size());
-    middle[1] += a.y / static_cast<double>(hull.size());
-  }
-  widths_.push_back(edge > 0 ? std::max(2 * std::abs(area) / edge, 1e-4) : 1e-4);
-  centres_.insert(centres_.end(), {middle[0], middle[1]});
-}
-
-// The convex hull of points_, which are in order of y, then x (Andrew 1979).
-void SoilContacts::make_hull(std::vector<Point>* hull) {
-  const auto turn = [](Point a, Point b, Point c) {
-    return (b.y - a.y) * (c.x - a.x) - (b.x - a.x) * (c.y - a.y);
-  };
-  hull->clear();
-  const auto walk = [&](auto begin, auto end) {
-    const size_t base = hull->size();
-    for (auto p = begin; p != end; ++p) {
-      while (hull->size() >= base + 2 && turn((*hull)[hull->size() - 2], hull->back(), *p) <= 0)
-        hull->pop_back();
-      hull->push_back(*p);
-    }
-    hull->pop_back();  // begins the other half
-  };
-  walk(points_.begin(), points_.end());
-  walk(points_.rbegin(), points_.rend());
 }
 
 }  // namespace gloam

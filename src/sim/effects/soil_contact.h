@@ -3,9 +3,9 @@
 // patches that these make, with Bekker's width b of each.
 //
 // A collider is looked at along lines in x, two or more to a row of cells and at least sixteen over
-// the collider. The ends of what is below the undisturbed surface are found by bisection, so that
-// areas and edges do not depend on how a collider lies over cells. What is found is kept until the
-// collider has moved by a tenth of a cell or a twentieth of its sinkage: until then the
+// the collider. The ends of what is below the undisturbed surface are exact, or found by bisection,
+// so that areas and edges do not depend on how a collider lies over cells. What is found is kept
+// until the collider has moved by a tenth of a cell or a twentieth of its sinkage: until then the
 // underside rises and falls over the same cells.
 
 #include <cstdint>
@@ -21,7 +21,7 @@ namespace gloam {
 struct SoilTouch {
   int cell = 0;
   int geom = 0, body = 0;
-  int patch = 0;         ///< row of SoilContacts::widths()
+  int patch = 0;         ///< number of SoilContacts::width()
   double area = 0;       ///< seen from above [m²]
   double p[3] = {};      ///< on the collider's underside, world [m]
   double slope[2] = {};  ///< dz/dx, dz/dy of it
@@ -47,16 +47,26 @@ class SoilContacts {
   size_t most_touches() const { return touches_.capacity(); }
   /// In the order of add(); of each collider by rows of cells.
   std::span<SoilTouch> touches() { return touches_; }
-  /// Bekker's b of each patch: twice the area over the edge of the hull of what is covered, which
-  /// is the radius of a round plate and the width of a long one [m].
-  std::span<const double> widths() const { return widths_; }
-  /// Middle of each patch, x and y [m].
-  const double* centre(int patch) const { return centres_.data() + 2 * patch; }
+  int patches() const { return static_cast<int>(patches_.size()); }
+  /// Bekker's b of a patch: twice the area over the edge of the hull of what is covered, which is
+  /// the radius of a round plate and the width of a long one [m].
+  double width(int patch) const { return patches_[static_cast<size_t>(patch)].width; }
+  /// Middle of a patch, x and y [m].
+  const double* centre(int patch) const { return patches_[static_cast<size_t>(patch)].centre; }
   bool is_touched(int cell) const { return marks_[static_cast<size_t>(cell)].round == round_; }
 
  private:
   struct Point {
     double x = 0, y = 0;
+  };
+  // Of a line along x: what is below the surface [m].
+  struct Line {
+    double y = 0, left = 0, right = 0;
+    int number = 0;  // of all that the bed may have
+  };
+  struct Patch {
+    double width = 0;  // Bekker's b [m]
+    double centre[2] = {};
   };
   // What a collider covered when it was looked at last: good until it has moved by a part of that.
   struct Footprint {
@@ -64,11 +74,20 @@ class SoilContacts {
     double p[3] = {}, R[9] = {};     // of the collider then
     double anchor[3] = {};           // in its frame
     double deepest = 0, size = 0;    // [m]
-    double fallen = 0;               // [m]
+    double fallen = 0;               // until then [m]
+    int low[2] = {}, high[2] = {};   // cells along x and y, inclusive
     std::vector<SoilTouch> touches;  // depths below the surface of time 0
-    std::vector<Point> hull;
-    std::vector<double> rise;  // of the underside over each touch since then [m]
-    int parent = 0;            // another of the same patch among here_, or itself
+    std::vector<Line> outline;       // from low y to high
+    uint64_t number = 0;             // of the look
+    uint64_t patch_number = 0;       // of the looks of all of
+    Patch patch;                     // that begins with it
+    std::vector<double> rise;        // of the underside over each touch since then [m]
+    int parent = 0;                  // another of the same patch among here_, or itself
+  };
+  // Of many places under a collider.
+  struct Samples {
+    std::vector<double> x, y, area, z, slope_x, slope_y;
+    std::vector<int> cell;
   };
   struct Mark {
     uint32_t round = 0;
@@ -81,12 +100,24 @@ class SoilContacts {
   bool is_below(const ColliderBottom& collider, double x, double y) const;
   bool has_stayed(const ColliderBottom& collider, Footprint* print) const;
   void look(const ColliderBottom& collider, Footprint* print);
+  void find_lines(const ColliderBottom& collider, int per_row, const double* low,
+                  const double* high);
   bool find_ends(const ColliderBottom& collider, double y, double low, double high, double step,
                  double* ends) const;
-  void add_line(const ColliderBottom& collider, int line, double width, const double* ends);
+  void cut_lines(int per_row);
+  void sum_cells(const ColliderBottom& collider, Footprint* print);
   void flush(int row, const ColliderBottom& collider, Footprint* print);
-  void make_hull(std::vector<Point>* hull);
+  void outline(double width, Footprint* print) const;
+  void add_chain(std::span<const Line> lines, double Line::* end, double side);
+  Patch patch_of(int row);
   void join(int row);
+  bool may_join(int row) const;
+  Footprint& print_at(int row) {
+    return prints_[static_cast<size_t>(here_[static_cast<size_t>(row)])];
+  }
+  const Footprint& print_at(int row) const {
+    return prints_[static_cast<size_t>(here_[static_cast<size_t>(row)])];
+  }
   int root(int row) const;
   void add_patch(int row);
 
@@ -99,10 +130,14 @@ class SoilContacts {
   std::vector<SoilTouch> row_;  // of cells along x, sums
   int row_low_, row_high_;      // in use
   std::vector<SoilTouch> touches_;
-  std::vector<Point> points_, hull_;  // room
-  std::vector<double> widths_, centres_;
-  std::vector<Mark> marks_;  // of each cell
+  std::vector<Patch> patches_;
+  std::vector<Line> lines_, merged_;       // room
+  std::vector<double> ys_, left_, right_;  // room, of lines
+  Samples samples_;                        // room
+  std::vector<Point> hull_;                // room
+  std::vector<Mark> marks_;                // of each cell
   uint32_t round_ = 0;
+  uint64_t looks_ = 0;
 };
 
 }  // namespace gloam

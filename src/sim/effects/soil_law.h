@@ -14,10 +14,32 @@
 
 namespace gloam {
 
+/// Lines of unloading are so many times as steep as those to the origin, at least: at shallow
+/// sinkages Wong's, which was fitted to deep ones, would be flatter than loading.
+constexpr double kSteeper = 3;
+
+/// k_u [N/m³] at the sinkage z_u [m], where the pressure is p_u [Pa].
+inline double unloading_of(const SoilStrength& s, double z_u, double p_u) {
+  const double wong = s.k_0 + s.a_u * z_u, least = kSteeper * p_u / (z_u > 0 ? z_u : 1.0);
+  return wong > least ? wong : least;
+}
+
+/// The line of unloading at a sinkage `z` [m].
+struct SoilLine {
+  double p, slope;  ///< [Pa], [N/m³]
+};
+
+/// `per_z`: of the loading curve at z, its pressure over z [N/m³]. Further in than before the line
+/// is as steep as one from there: after a touch by a hair it would stay below the curve where that
+/// is convex.
+inline SoilLine unloading_line(double z_u, double p_u, double k_u, double per_z, double z) {
+  const double steeper = kSteeper * per_z;
+  const double slope = ((z > z_u) & (steeper > k_u)) ? steeper : k_u;
+  return {p_u - slope * (z_u - z), slope};
+}
+
 /// What a cell has been through.
 struct SoilCell {
-  static constexpr double kSteeper = 3;  ///< lines of unloading than those to the origin, at least
-
   float sinkage = 0;     ///< z_u: from which it unloads, below the surface of time 0 [m]
   float pressure = 0;    ///< p_u: at that sinkage [Pa]; 0 = nothing has pressed it
   float shear[3] = {};   ///< stress over tau_max on what is in it, world, 0 … 1
@@ -25,44 +47,10 @@ struct SoilCell {
 
   /// Below the surface after `fallen` [m] of snow have come to the cell.
   double sinkage_under(double fallen) const { return double{sinkage} + fallen; }
-
-  /// k_u [N/m³] at a sinkage `z` below the present surface [m]. Wong's line was fitted to deep
-  /// sinkages: at shallow ones, where it would be flatter than loading, it is three times as steep
-  /// as that.
-  double unloading(const SoilStrength& s, double z) const {
-    return std::max(s.k_0 + s.a_u * z, kSteeper * double{pressure} / z);
+  /// k_u [N/m³] after that.
+  double unloading(const SoilStrength& s, double fallen) const {
+    return unloading_of(s, sinkage_under(fallen), double{pressure});
   }
 };
-
-/// Pressure at a sinkage, and what it grows by with it.
-struct SoilPressure {
-  double p = 0;         ///< [Pa]
-  double slope = 0;     ///< dp/dz [N/m³]
-  bool yields = false;  ///< it is on the loading curve
-};
-
-/// Of a cell, where a bed is so deep and so much of that has fallen since time 0.
-struct SoilDepth {
-  double depth = 0, fallen = 0;  ///< [m]
-};
-
-/// `modulus`: k_c / b + k_phi [N/m^(n+2)], `z`: sinkage [m]; beyond the depth the pressure stays as
-/// it is.
-inline SoilPressure soil_pressure(const SoilStrength& s, const SoilCell& cell, double modulus,
-                                  SoilDepth here, double z) {
-  if (z <= 0 || here.depth <= 0) return {};
-  const double loading = modulus * std::pow(std::min(z, here.depth), s.n);
-  if (cell.pressure > 0) {
-    const double deepest = cell.sinkage_under(here.fallen);
-    // Further in than before the line is as steep as one from there: after a touch by a hair it
-    // would stay below the curve where that is convex.
-    double k_u = cell.unloading(s, deepest);
-    if (z > deepest) k_u = std::max(k_u, SoilCell::kSteeper * loading / z);
-    const double p = double{cell.pressure} - k_u * (deepest - z);
-    if (p <= 0) return {};
-    if (p < loading) return {p, k_u, false};
-  }
-  return {loading, z < here.depth ? s.n * loading / z : 0, true};
-}
 
 }  // namespace gloam

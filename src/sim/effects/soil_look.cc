@@ -32,72 +32,70 @@ bool SoilContacts::is_below(const ColliderBottom& collider, double x, double y) 
 
 void SoilContacts::look(const ColliderBottom& collider, Footprint* print) {
   print->known = true;
+  print->number = ++looks_;
   std::copy_n(collider.position(), 3, print->p);
   std::copy_n(collider.rotation(), 9, print->R);
-  print->touches.clear(), print->rise.clear();
+  print->touches.clear(), print->rise.clear(), print->outline.clear();
   print->deepest = 0;
   print->fallen = fallen_;
-  points_.clear();
-  const double low_y = soil_.low_y();
   double low[2], high[2];
   collider.box_below(soil_.level + fallen_, low, high);
-  const double extent_y = high[1] - low[1], extent_x = high[0] - low[0];
-  const double low_x = std::max(low[0], soil_.low_x());
-  const double high_x = std::min(high[0], soil_.low_x() + soil_.size_x);
-  const int lines = lines_of(soil_.dy, extent_y);
-  const double width = soil_.dy / lines, step = std::min(soil_.dx, extent_x / kContactLines);
-  const int first = std::max(static_cast<int>((low[1] - low_y) / width) - 1, 0);
-  const int last = std::min(static_cast<int>((high[1] - low_y) / width) + 1, lines * soil_.ny - 1);
-  double ends[2] = {1, 0};  // none yet
-  int row = first / lines;
-  for (int line = first; line <= last; ++line) {
-    if (line / lines != row) {
-      flush(row, collider, print);
-      row = line / lines;
-    }
-    const double y = low_y + (line + 0.5) * width;
-    if (!find_ends(collider, y, low_x, high_x, step, ends)) {
-      if (!points_.empty()) break;
-      continue;
-    }
-    add_line(collider, line, width, ends);
-    if (points_.empty()) points_.resize(2);  // room for what comes before
-    points_.push_back({ends[0], y});
-    points_.push_back({ends[1], y});
-  }
-  flush(row, collider, print);
-  print->hull.clear();
-  if (points_.empty()) return;
-  // The first and the last line stand for what is half a line further, too.
-  const size_t n = points_.size();
-  const auto edge = [&](size_t at, size_t neighbour, double dy, size_t to) {
-    const Point a = points_[at], b = points_[at + 1];
-    const double left = a.x + (a.x - points_[neighbour].x) / 2;
-    const double right = b.x + (b.x - points_[neighbour + 1].x) / 2;
-    const double middle = (left + right) / 2;
-    points_[to] = {std::min(left, middle), a.y + dy};
-    points_[to + 1] = {std::max(right, middle), a.y + dy};
-  };
-  points_.resize(n + 2);
-  edge(2, n > 4 ? 4 : 2, -width / 2, 0);
-  edge(n - 2, n > 4 ? n - 4 : n - 2, width / 2, n);
-  make_hull(&print->hull);
+  const int lines = lines_of(soil_.dy, high[1] - low[1]);
+  find_lines(collider, lines, low, high);
+  if (lines_.empty()) return;
+  cut_lines(lines);
+  sum_cells(collider, print);
+  if (print->touches.empty()) return;
+  outline(soil_.dy / lines, print);
   const SoilTouch& middle = print->touches[print->touches.size() / 2];
   collider.anchor_of(middle.p, print->anchor);
-  print->size = 0;
-  for (const Point& at : print->hull)
-    print->size = std::max(print->size, std::hypot(at.x - middle.p[0], at.y - middle.p[1]));
+  double square = 0;
+  for (const Line& line : print->outline) {
+    const double y = line.y - middle.p[1];
+    for (const double x : {line.left - middle.p[0], line.right - middle.p[0]})
+      square = std::max(square, x * x + y * y);
+  }
+  print->size = std::sqrt(square);
+}
+
+// Those under the collider, `per_row` to a row of cells, of which something is below the surface.
+void SoilContacts::find_lines(const ColliderBottom& collider, int per_row, const double* low,
+                              const double* high) {
+  lines_.clear();
+  const double low_y = soil_.low_y(), width = soil_.dy / per_row;
+  const double low_x = std::max(low[0], soil_.low_x());
+  const double high_x = std::min(high[0], soil_.low_x() + soil_.size_x);
+  const int first = std::max(static_cast<int>((low[1] - low_y) / width) - 1, 0);
+  const int last =
+      std::min(static_cast<int>((high[1] - low_y) / width) + 1, per_row * soil_.ny - 1);
+  const auto y_of = [=](int line) { return low_y + (line + 0.5) * width; };
+  if (soil_.rest.empty() && collider.is_round()) {
+    ys_.clear();
+    for (int line = first; line <= last; ++line) ys_.push_back(y_of(line));
+    left_.resize(ys_.size()), right_.resize(ys_.size());
+    collider.round_ends(soil_.level, ys_, left_.data(), right_.data());
+    for (int line = first; line <= last; ++line) {
+      const auto n = static_cast<size_t>(line - first);
+      const double left = std::max(left_[n], low_x), right = std::min(right_[n], high_x);
+      if (left < right) lines_.push_back({ys_[n], left, right, line});
+    }
+    return;
+  }
+  const double step = std::min(soil_.dx, (high[0] - low[0]) / kContactLines);
+  double ends[2] = {1, 0};  // none yet
+  for (int line = first; line <= last; ++line) {
+    if (find_ends(collider, y_of(line), low_x, high_x, step, ends)) {
+      lines_.push_back({y_of(line), ends[0], ends[1], line});
+    } else if (!lines_.empty()) {
+      return;
+    }
+  }
 }
 
 // What of the line along x at `y` is below the surface is one piece, since colliders are convex.
 // `ends`: comes in as that of the line before, or empty.
 bool SoilContacts::find_ends(const ColliderBottom& collider, double y, double low, double high,
                              double step, double* ends) const {
-  if (soil_.rest.empty() && collider.is_ball()) {
-    if (!collider.ball_ends(y, soil_.level, ends)) return false;
-    ends[0] = std::max(ends[0], low), ends[1] = std::min(ends[1], high);
-    return ends[1] > ends[0];
-  }
   double inside = std::clamp((ends[0] + ends[1]) / 2, low, high);
   const bool follows = ends[1] > ends[0] && is_below(collider, inside, y);
   if (!follows) {
@@ -137,41 +135,74 @@ bool SoilContacts::find_ends(const ColliderBottom& collider, double y, double lo
   return ends[1] > ends[0];
 }
 
-// Each cell at one of the two places of Gauss, lines by turns at the one and the other.
-void SoilContacts::add_line(const ColliderBottom& collider, int line, double width,
-                            const double* ends) {
-  const double low_x = soil_.low_x(), y = soil_.low_y() + (line + 0.5) * width;
-  const double side = line % 2 == 0 ? -kGauss : kGauss;
-  const auto cell_of = [&](double x) {
-    return std::clamp(static_cast<int>((x - low_x) / soil_.dx), 0, soil_.nx - 1);
-  };
-  const int i0 = cell_of(ends[0]), i1 = cell_of(ends[1]);
-  row_low_ = std::min(row_low_, i0), row_high_ = std::max(row_high_, i1);
-  for (int i = i0; i <= i1; ++i) {
-    const double from = std::max(ends[0], low_x + i * soil_.dx);
-    const double to = std::min(ends[1], low_x + (i + 1) * soil_.dx);
-    if (to <= from) continue;
-    SoilTouch& sum = row_[static_cast<size_t>(i)];
-    const double x = (from + to) / 2 + side * (to - from), area = (to - from) * width;
-    BottomPoint point;
-    if (!collider.at(x, y, &point)) continue;  // by a rounding
-    sum.area += area;
-    sum.p[0] += area * x, sum.p[1] += area * y, sum.p[2] += area * point.z;
-    for (int a = 0; a < 2; ++a)
-      sum.slope[a] += area * std::clamp(point.slope[a], -kSteepestUnderside, kSteepestUnderside);
+// Each line at the edges of cells; what is in a cell is looked at in one of the two places of
+// Gauss, lines by turns at the one and the other.
+void SoilContacts::cut_lines(int per_row) {
+  Samples& s = samples_;
+  for (auto* room : {&s.x, &s.y, &s.area}) room->clear();
+  s.cell.clear();
+  const double low_x = soil_.low_x(), width = soil_.dy / per_row, per_dx = 1 / soil_.dx;
+  for (const Line& line : lines_) {
+    const double side = line.number % 2 == 0 ? -kGauss : kGauss;
+    const int row = line.number / per_row * soil_.nx;
+    const auto cell_of = [&](double x) {
+      return std::clamp(static_cast<int>((x - low_x) * per_dx), 0, soil_.nx - 1);
+    };
+    const int last = cell_of(line.right);
+    for (int i = cell_of(line.left); i <= last; ++i) {
+      const double from = std::max(line.left, low_x + i * soil_.dx);
+      const double to = std::min(line.right, low_x + (i + 1) * soil_.dx);
+      if (to <= from) continue;
+      s.x.push_back((from + to) / 2 + side * (to - from)), s.y.push_back(line.y);
+      s.area.push_back((to - from) * width), s.cell.push_back(row + i);
+    }
   }
 }
 
-// A row of cells is complete.
+// Means over what is covered of each cell.
+void SoilContacts::sum_cells(const ColliderBottom& collider, Footprint* print) {
+  Samples& s = samples_;
+  const size_t count = s.x.size();
+  for (auto* room : {&s.z, &s.slope_x, &s.slope_y}) room->resize(count);
+  collider.at_each(s.x, s.y.data(), s.z.data(), s.slope_x.data(), s.slope_y.data());
+  int row = -1;
+  for (size_t n = 0; n < count; ++n) {
+    if (s.z[n] >= ColliderBottom::kNowhere) continue;  // by a rounding
+    if (s.cell[n] < row || s.cell[n] >= row + soil_.nx) {
+      flush(row, collider, print);
+      row = s.cell[n] / soil_.nx * soil_.nx;
+    }
+    const int i = s.cell[n] - row;
+    row_low_ = std::min(row_low_, i), row_high_ = std::max(row_high_, i);
+    SoilTouch& sum = row_[static_cast<size_t>(i)];
+    const double area = s.area[n];
+    const auto bounded = [](double slope) {
+      return std::clamp(slope, -kSteepestUnderside, kSteepestUnderside);
+    };
+    sum.area += area;
+    sum.p[0] += area * s.x[n], sum.p[1] += area * s.y[n], sum.p[2] += area * s.z[n];
+    sum.slope[0] += area * bounded(s.slope_x[n]), sum.slope[1] += area * bounded(s.slope_y[n]);
+  }
+  flush(row, collider, print);
+}
+
+// A row of cells is complete; `row`: the first of it.
 void SoilContacts::flush(int row, const ColliderBottom& collider, Footprint* print) {
+  if (row_low_ > row_high_) return;
+  const int y = row / soil_.nx;
+  const bool first = print->touches.empty();
+  print->low[0] = first ? row_low_ : std::min(print->low[0], row_low_);
+  print->high[0] = first ? row_high_ : std::max(print->high[0], row_high_);
+  print->low[1] = first ? y : print->low[1], print->high[1] = y;
   for (int i = row_low_; i <= row_high_; ++i) {
     SoilTouch& sum = row_[static_cast<size_t>(i)];
     if (sum.area > 0) {
       SoilTouch& touch = print->touches.emplace_back(sum);
-      touch.cell = row * soil_.nx + i;
+      touch.cell = row + i;
       touch.geom = collider.geom(), touch.body = collider.body();
-      for (double& x : touch.p) x /= touch.area;
-      for (double& x : touch.slope) x /= touch.area;
+      const double per_area = 1 / touch.area;
+      for (double& x : touch.p) x *= per_area;
+      for (double& x : touch.slope) x *= per_area;
       const auto cell = static_cast<size_t>(touch.cell);
       touch.depth = soil_.rest_of(cell) - touch.p[2];
       print->deepest = std::max(print->deepest, touch.depth + soil_.share_of(cell) * fallen_);
@@ -180,6 +211,20 @@ void SoilContacts::flush(int row, const ColliderBottom& collider, Footprint* pri
     sum = {};
   }
   row_low_ = soil_.nx, row_high_ = -1;
+}
+
+// The first and the last line stand for what is half a line further, too.
+void SoilContacts::outline(double width, Footprint* print) const {
+  const auto beyond = [](const Line& end, const Line& neighbour, double dy) {
+    const double left = end.left + (end.left - neighbour.left) / 2;
+    const double right = end.right + (end.right - neighbour.right) / 2;
+    const double middle = (left + right) / 2;
+    return Line{end.y + dy, std::min(left, middle), std::max(right, middle)};
+  };
+  const size_t n = lines_.size();
+  print->outline.push_back(beyond(lines_[0], lines_[n > 1 ? 1 : 0], -width / 2));
+  print->outline.insert(print->outline.end(), lines_.begin(), lines_.end());
+  print->outline.push_back(beyond(lines_[n - 1], lines_[n > 1 ? n - 2 : 0], width / 2));
 }
 
 }  // namespace gloam

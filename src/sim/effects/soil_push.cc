@@ -2,15 +2,13 @@
 
 #include "sim/effects/soil_bed.h"
 
-#include "base/wave_math.h"
-
 namespace gloam {
 namespace {
 
 constexpr int kMostIterations = 8;
-constexpr double kConverged = 1e-3;  // of the change of velocity
-constexpr double kStill = 1e-9;      // [m] or [m/s]
-constexpr double kRestored = 0.1;    // of the energy of an impact, at most
+constexpr double kConverged = 2e-2;   // of the change of velocity
+constexpr double kLeastSpeed = 1e-9;  // [m/s], [rad/s]
+constexpr double kRestored = 0.1;     // of the energy of an impact, at most
 
 // A x = b, (6 x 6), row by row; x in b's place. Gauss with pivots of rows.
 void solve6(double* A, double* b) {
@@ -23,8 +21,9 @@ void solve6(double* A, double* b) {
       std::swap_ranges(A + 6 * i, A + 6 * i + 6, A + 6 * pivot);
       std::swap(b[i], b[pivot]);
     }
+    const double per = 1 / A[7 * i];
     for (int r = i + 1; r < 6; ++r) {
-      const double f = A[6 * r + i] / A[6 * i + i];
+      const double f = A[6 * r + i] * per;
       for (int c = i; c < 6; ++c) A[6 * r + c] -= f * A[6 * i + c];
       b[r] -= f * b[i];
     }
@@ -35,77 +34,142 @@ void solve6(double* A, double* b) {
   }
 }
 
+// What touches sum to: X' f and X' K X, where X = (I, -[arm]) takes the body's motion to the
+// touch's, and K = across I + along d d'. Of symmetric matrices the upper triangle, row by row.
+struct Sums {
+  static constexpr size_t kSide = SoilLanes::kSide;
+  enum { kForce = 0, kAcross = 6, kFirst = 7, kSecond = 10, kAlong = 16, kCount = 37 };
+  using Lanes = double[kSide];
+  Lanes lanes[kCount] = {};
+
+  void add(const SoilLanes& l) {
+    Lanes w[6], ca[3], moment[3];  // w: d and arm x d
+    for (size_t i = 0; i < kSide; ++i) {
+      const double a[3] = {l.arm[0][i], l.arm[1][i], l.arm[2][i]};
+      const double f[3] = {l.f[0][i], l.f[1][i], l.f[2][i]};
+      const double x = l.slope[0][i], y = l.slope[1][i];
+      w[0][i] = -x, w[1][i] = -y, w[2][i] = 1;
+      w[3][i] = a[1] + a[2] * y, w[4][i] = -a[2] * x - a[0], w[5][i] = a[1] * x - a[0] * y;
+      for (int n = 0; n < 3; ++n) ca[n][i] = l.across[i] * a[n];
+      moment[0][i] = a[1] * f[2] - a[2] * f[1];
+      moment[1][i] = a[2] * f[0] - a[0] * f[2];
+      moment[2][i] = a[0] * f[1] - a[1] * f[0];
+    }
+    // The loop over lanes inside: what has a number of its own then stands in a register.
+    int to = kSecond;
+    for (int n = 0; n < 3; ++n) {
+      for (size_t i = 0; i < kSide; ++i) {
+        lanes[kForce + n][i] += l.f[n][i], lanes[kForce + 3 + n][i] += moment[n][i];
+        lanes[kFirst + n][i] += ca[n][i];
+      }
+      for (int k = n; k < 3; ++k, ++to)
+        for (size_t i = 0; i < kSide; ++i) lanes[to][i] += ca[n][i] * l.arm[k][i];
+    }
+    for (size_t i = 0; i < kSide; ++i) lanes[kAcross][i] += l.across[i];
+    for (int n = 0; n < 6; ++n) {
+      Lanes part;
+      for (size_t i = 0; i < kSide; ++i) part[i] = l.along[i] * w[n][i];
+      for (int k = n; k < 6; ++k, ++to)
+        for (size_t i = 0; i < kSide; ++i) lanes[to][i] += part[i] * w[k][i];
+    }
+  }
+
+  // force - matrix * motion.
+  void finish(double* force, double (&matrix)[6][6]) const {
+    double sum[kCount];
+    for (int n = 0; n < kCount; ++n) {
+      const double* l = lanes[n];
+      sum[n] = ((l[0] + l[1]) + (l[2] + l[3])) + ((l[4] + l[5]) + (l[6] + l[7]));
+    }
+    std::copy_n(sum + kForce, 6, force);
+    const double *upper = sum + kAlong, *a = sum + kFirst, *aa = sum + kSecond, c = sum[kAcross];
+    for (int n = 0; n < 6; ++n)
+      for (int k = n; k < 6; ++k) matrix[n][k] = *upper++;
+    for (int n = 0; n < 3; ++n) matrix[n][n] += c;
+    matrix[1][5] += a[0], matrix[2][4] -= a[0];
+    matrix[2][3] += a[1], matrix[0][5] -= a[1];
+    matrix[0][4] += a[2], matrix[1][3] -= a[2];
+    // aa: xx xy xz yy yz zz.
+    matrix[3][3] += aa[3] + aa[5], matrix[4][4] += aa[0] + aa[5], matrix[5][5] += aa[0] + aa[3];
+    matrix[3][4] -= aa[1], matrix[3][5] -= aa[2], matrix[4][5] -= aa[4];
+    for (int n = 0; n < 6; ++n)
+      for (int k = 0; k < n; ++k) matrix[n][k] = matrix[k][n];
+  }
+};
+
 }  // namespace
 
 void SoilBed::push(uint32_t step, const mjModel& m, mjData& d, ResponseSolver* solver) {
   reactions_.clear();
-  const std::span<const SoilTouch> all = contacts_.touches();
-  for (size_t from = 0, to = 0; from < all.size(); from = to) {
-    while (to < all.size() && all[to].body == all[from].body) ++to;
-    push_body(m, d, all.subspan(from, to - from), step, solver);
+  for (const Body& body : bodies_) {
+    if (last_dof(m, body.id) >= 0) push_body(m, d, body, step, solver);
   }
 }
 
-void SoilBed::push_body(const mjModel& m, mjData& d, std::span<const SoilTouch> touches,
-                        uint32_t step, ResponseSolver* solver) {
-  const int body = touches.front().body;
-  if (last_dof(m, body) < 0) return;
-  double point[3] = {}, area = 0;
-  for (const SoilTouch& touch : touches) {
-    mju_addToScl3(point, touch.p, touch.area);
-    area += touch.area;
+void SoilBed::push_body(const mjModel& m, mjData& d, const Body& body, uint32_t step,
+                        ResponseSolver* solver) {
+  const std::span<SoilLanes> lanes = lanes_of(body);
+  for (size_t n = 0; n < body.count; ++n) {
+    const SoilTouch& touch = contacts_.touches()[body.first + n];
+    lanes[n / SoilLanes::kSide].set(n % SoilLanes::kSide, cells_[static_cast<size_t>(touch.cell)],
+                                    touch.fallen);
   }
-  mju_scl3(point, point, 1 / area);
+  for (SoilLanes& four : lanes) four.find_unloading(soil_.strength);
   // As it would move without this bed: with all else as in the last step.
-  Answer& answer = answers_of_[static_cast<size_t>(body)];
+  Answer& answer = answers_of_[static_cast<size_t>(body.id)];
   const std::span<double> joints = std::span(answers_).subspan(answer.first, answer.count);
-  const BodyResponse body_now =
-      solver->solve(m, d, body, point, answer.step == step ? joints : std::span<double>{});
+  const BodyResponse now =
+      solver->solve(m, d, body.id, body.point, answer.step == step ? joints : std::span<double>{});
   const double dt = m.opt.timestep;
-  double free[6], motion[6], change[6];
-  mju_copy(free, body_now.velocity, 6);
-  mju_addToScl(free, body_now.acceleration, dt, 6);
-  mju_copy(motion, body_now.velocity, 6);
-  double wrench[6] = {};
-  pushes_.resize(touches.size());
+  double free[6], motion[6], change[6], wrench[6];
+  for (int k = 0; k < 6; ++k) {
+    free[k] = now.velocity[k] + dt * now.acceleration[k];
+    motion[k] = now.velocity[k];
+  }
   for (int i = 0; i < kMostIterations; ++i) {
-    // wrench = force - matrix * motion, with motion = free + dt inverse * wrench.
-    double force[6] = {}, matrix[36] = {}, system[36];
-    for (size_t n = 0; n < touches.size(); ++n) {
-      double arm[3];
-      for (int a = 0; a < 3; ++a) arm[a] = touches[n].p[a] - point[a];
-      pushes_[n] = push_of(touches[n], arm, motion, dt);
-      if (pushes_[n].across > 0) add_push(pushes_[n], arm, force, matrix);
+    Sums sums;
+    for (SoilLanes& four : lanes) {
+      four.find_forces(soil_.strength, motion, dt);
+      sums.add(four);
     }
-    mju_mulMatMat(system, matrix, body_now.inverse, 6, 6, 6);
-    mju_scl(system, system, dt, 36);
-    for (int k = 0; k < 6; ++k) system[7 * k] += 1;
-    mju_mulMatVec(wrench, matrix, free, 6, 6);
-    mju_sub(wrench, force, wrench, 6);
+    // motion = free + dt inverse * wrench.
+    double matrix[6][6], system[36] = {};
+    sums.finish(wrench, matrix);
+    for (int r = 0; r < 6; ++r) {
+      double* row = system + 6 * r;
+      for (int k = 0; k < 6; ++k) {
+        wrench[r] -= matrix[r][k] * free[k];
+        const double part = dt * matrix[r][k];
+        for (int c = 0; c < 6; ++c) row[c] += part * now.inverse[6 * k + c];
+      }
+      row[r] += 1;
+    }
     solve6(system, wrench);
-    mju_mulMatVec(change, body_now.inverse, wrench, 6, 6);
-    double moved = 0, size = kStill;
+    double moved = 0, size = kLeastSpeed;
     for (int k = 0; k < 6; ++k) {
-      const double now = free[k] + dt * change[k];
-      moved = std::max(moved, std::abs(now - motion[k]));
-      size = std::max(size, std::abs(now - body_now.velocity[k]));
-      motion[k] = now;
+      change[k] = 0;
+      for (int c = 0; c < 6; ++c) change[k] += now.inverse[6 * k + c] * wrench[c];
+      const double is = free[k] + dt * change[k];
+      moved = std::max(moved, std::abs(is - motion[k]));
+      size = std::max(size, std::abs(is - now.velocity[k]));
+      motion[k] = is;
     }
     if (moved < kConverged * size) break;
   }
   for (const double x : wrench)
     if (!std::isfinite(x)) return;
-  const double share = limit_work(touches, free, change, dt, wrench);
-  mju_scl(wrench, wrench, share, 6);
-  add_wrench(m, d, body, wrench, wrench + 3, point);
+  const double share = limit_work(body, free, change, dt, wrench);
+  for (double& x : wrench) x *= share;
+  add_wrench(m, d, body.id, wrench, wrench + 3, body.point);
   answer.step = step + 1;
-  solver->accelerations(m, d, body, wrench, joints);
-  react(touches, point, motion, share);
+  solver->accelerations(m, d, body.id, wrench, joints);
+  react(body, motion, share);
 }
 
 // What of the wrench is on which geom.
-void SoilBed::react(std::span<const SoilTouch> touches, const double* point, const double* motion,
-                    double share) {
+void SoilBed::react(const Body& body, const double* motion, double share) {
+  const std::span<const SoilTouch> touches = contacts_.touches().subspan(body.first, body.count);
+  const std::span<const SoilLanes> lanes = lanes_of(body);
   double load = 0;
   SoilReaction* now = nullptr;
   const auto finish = [&] {
@@ -114,22 +178,26 @@ void SoilBed::react(std::span<const SoilTouch> touches, const double* point, con
   };
   for (size_t n = 0; n < touches.size(); ++n) {
     const SoilTouch& touch = touches[n];
-    const Push& push = pushes_[n];
+    const SoilLanes& l = lanes[n / SoilLanes::kSide];
+    const size_t i = n % SoilLanes::kSide;
     if (now == nullptr || now->geom != touch.geom) {
       finish();
       now = &reactions_.emplace_back();
       now->geom = touch.geom, now->body = touch.body;
       load = 0;
     }
+    const double arm[3] = {l.arm[0][i], l.arm[1][i], l.arm[2][i]};
+    const double d[3] = {-touch.slope[0], -touch.slope[1], 1};
     double v[3];
-    soil_velocity_at(motion, point, touch.p, v);
-    const double along = mju_dot3(push.d, v);
-    const double pressing = push.load - push.stiffness * along;
+    cross3(motion + 3, arm, v);
+    for (int a = 0; a < 3; ++a) v[a] += motion[a];
+    const double along = dot3(d, v), pressing = l.load[i] - l.stiffness[i] * along;
     load += pressing;
-    mju_addToScl3(now->p, touch.p, pressing);
-    mju_addToScl3(now->normal, push.d, pressing);
-    for (int a = 0; a < 3; ++a)
-      now->force[a] += share * (push.f[a] - push.across * v[a] - push.along * along * push.d[a]);
+    for (size_t a = 0; a < 3; ++a) {
+      now->p[a] += pressing * touch.p[a];
+      now->normal[a] += pressing * d[a];
+      now->force[a] += share * (l.f[a][i] - l.across[i] * v[a] - l.along[i] * along * d[a]);
+    }
   }
   finish();
 }
@@ -137,78 +205,28 @@ void SoilBed::react(std::span<const SoilTouch> touches, const double* point, con
 // A body so light that a step takes it far through the ground must not be thrown out of it: the bed
 // gives no more energy than it can have stored, nor than a share of what the body brings along.
 // Returns the share of the wrench that it gives. `change`: inverse * wrench.
-double SoilBed::limit_work(std::span<const SoilTouch> touches, const double* free,
-                           const double* change, double dt, const double* wrench) const {
-  double stored = 0;
-  for (const SoilTouch& touch : touches) {
-    const SoilCell& cell = cells_[static_cast<size_t>(touch.cell)];
-    const double p = double{cell.pressure}, deepest = cell.sinkage_under(touch.fallen);
-    if (p <= 0) continue;
-    stored += touch.area * p * p / (2 * cell.unloading(soil_.strength, deepest));
+double SoilBed::limit_work(const Body& body, const double* free, const double* change, double dt,
+                           const double* wrench) {
+  double by_motion = 0, by_change = 0;
+  for (int k = 0; k < 6; ++k) {
+    by_motion += dt * wrench[k] * free[k];
+    by_change += dt * dt / 2 * wrench[k] * change[k];
   }
-  const double by_motion = dt * mju_dot(wrench, free, 6);
-  const double by_change = dt * dt / 2 * mju_dot(wrench, change, 6);
-  if (by_change <= 0) return 1;
+  // Of what takes energy nothing need be known.
+  if (by_change <= 0 || by_motion + by_change <= 0) return 1;
+  double stored = 0;
+  for (const SoilLanes& l : lanes_of(body)) {
+    for (size_t i = 0; i < SoilLanes::kSide; ++i) {
+      if (l.pressure[i] > 0)
+        stored += l.area[i] * l.pressure[i] * l.pressure[i] / (2 * l.unloading[i]);
+    }
+  }
   const double brought = by_motion * by_motion / (4 * by_change);
   stored = std::min(stored, kRestored * brought);
   if (by_motion + by_change <= stored) return 1;
   const double share =
       (std::sqrt(by_motion * by_motion + 4 * by_change * stored) - by_motion) / (2 * by_change);
   return std::min(share, 1.0);
-}
-
-// Of a touch on its body, linear about `motion`, the body's at the step's end.
-SoilBed::Push SoilBed::push_of(const SoilTouch& touch, const double* arm, const double* motion,
-                               double dt) const {
-  const SoilStrength& s = soil_.strength;
-  const SoilCell& cell = cells_[static_cast<size_t>(touch.cell)];
-  double v[3];
-  cross3(motion + 3, arm, v);
-  for (int a = 0; a < 3; ++a) v[a] += motion[a];
-  // The pressure's direction, over an area seen from above, and so the sinkage's.
-  Push out{.d = {-touch.slope[0], -touch.slope[1], 1}};
-  const double* d = out.d;
-  const double sinking = dot3(d, v);
-  const double modulus = s.k_c / contacts_.widths()[static_cast<size_t>(touch.patch)] + s.k_phi;
-  const SoilPressure now =
-      soil_pressure(s, cell, modulus, depth_at(touch), touch.depth - dt * sinking);
-  if (now.p <= 0) return out;
-  out.stiffness = touch.area * now.slope * dt;
-  out.load = touch.area * now.p + out.stiffness * sinking;
-  // Shear, over the true area.
-  double across[3],
-      shear[3] = {double{cell.shear[0]}, double{cell.shear[1]}, double{cell.shear[2]}};
-  std::copy_n(v, 3, across);
-  project_along(touch.slope, across);
-  project_along(touch.slope, shear);
-  const double steep = dot3(d, d), speed = std::sqrt(dot3(across, across));
-  const double most = touch.area * std::sqrt(steep) * (s.cohesion + now.p * s.tan_friction);
-  const double share = 1 - exponential(-speed * dt / s.shear);
-  out.across = most * (speed * dt > kStill ? share / speed : dt / s.shear);
-  out.along = out.stiffness - out.across / steep;
-  for (int a = 0; a < 3; ++a) out.f[a] = out.load * d[a] + most * (1 - share) * shear[a];
-  return out;
-}
-
-// X' f and X' K X come to force and matrix, where X = (I, -[arm]) takes the body's motion to the
-// touch's, and K = across I + along d d'.
-void SoilBed::add_push(const Push& push, const double* arm, double* force, double* matrix) {
-  double moment[3], w[6], square = dot3(arm, arm);
-  cross3(arm, push.f, moment);
-  for (int a = 0; a < 3; ++a) force[a] += push.f[a], force[3 + a] += moment[a], w[a] = push.d[a];
-  cross3(arm, push.d, w + 3);
-  for (int i = 0; i < 6; ++i)
-    for (int j = 0; j < 6; ++j) matrix[6 * i + j] += push.along * w[i] * w[j];
-  for (int i = 0; i < 3; ++i) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-    matrix[7 * i] += push.across;
-    for (int n = 0; n < 3; ++n)
-      matrix[6 * (i + 3) + n + 3] += push.across * ((i == n ? square : 0) - arm[i] * arm[n]);
-    // -[arm] at the right, [arm] below.
-    matrix[6 * j + k + 3] += push.across * arm[i], matrix[6 * k + j + 3] -= push.across * arm[i];
-    matrix[6 * (j + 3) + k] -= push.across * arm[i],
-        matrix[6 * (k + 3) + j] += push.across * arm[i];
-  }
 }
 
 }  // namespace gloam

@@ -27,6 +27,8 @@ class WaterEffect {
   /// end_step(): true = there are some. Poses and velocities in `data` are of its state. Ripples
   /// advance at their ticks, and the hash comes out with theirs.
   bool begin_step(int64_t step, mjModel& model, mjData& data, uint64_t* hash);
+  /// Where a step that has been begun has its inertias already: adds those masses to them.
+  void add_masses(const mjModel& model, mjData& data) const { forces_.add_masses(model, data); }
   /// After it, whether it went well or not.
   void end_step(mjModel& model) { forces_.end(model); }
 

@@ -64,22 +64,6 @@ bool WaterForces::begin(mjModel& model, mjData& data, std::span<const HeightChan
   return model_armature_ != nullptr;
 }
 
-void WaterForces::carry_nothing(mjModel& model) {
-  std::copy_n(model.dof_armature, armature_.size(), armature_.begin());
-  std::copy_n(model.dof_M0, inertia_.size(), inertia_.begin());
-  model_armature_ = model.dof_armature;
-  model_inertia_ = model.dof_M0;
-  model.dof_armature = armature_.data();
-  model.dof_M0 = inertia_.data();
-}
-
-void WaterForces::end(mjModel& model) {
-  if (model_armature_ == nullptr) return;
-  model.dof_armature = model_armature_;
-  model.dof_M0 = model_inertia_;
-  model_armature_ = model_inertia_ = nullptr;
-}
-
 void WaterForces::push(const mjModel& model, mjData& data, const WaterShape& shape,
                        const WaterDescription& water, const HeightChange& ripples) {
   Wet wet{
@@ -127,18 +111,16 @@ bool WaterForces::sum_elements(const SurfacePatch& surface, Wet* wet) {
   }
   high = std::sqrt(high);
   const double per_high = 1 / high;
-  // Side by side, as many as make vector code; what is missing of the last has no volume.
-  constexpr size_t kSide = 8;
+  constexpr size_t kSide = WaterCluster::kSide;
   double mass[kSide] = {}, entering[kSide] = {}, centre[3][kSide] = {}, force[3][kSide] = {};
   double damping[3][kSide] = {}, torque[3][kSide] = {}, spin[3][kSide] = {};
-  for (size_t from = 0; from < shape.elements.size(); from += kSide) {
-    double ex[kSide] = {}, ey[kSide] = {}, ez[kSide] = {}, volumes[kSide] = {};
-    for (size_t n = 0; n < kSide && from + n < shape.elements.size(); ++n) {
-      const WaterElement& e = shape.elements[from + n];
-      ex[n] = e.p[0], ey[n] = e.p[1], ez[n] = e.p[2], volumes[n] = e.volume;
-    }
+  for (const WaterCluster& cluster : shape.clusters) {
+    const double *c = cluster.centre, *h = cluster.half;
+    const double lowest = p[2] + R[6] * c[0] + R[7] * c[1] + R[8] * c[2] - std::abs(R[6]) * h[0] -
+                          std::abs(R[7]) * h[1] - std::abs(R[8]) * h[2];
+    if (lowest - high / 2 >= surface.most()) continue;  // dry
     for (size_t n = 0; n < kSide; ++n) {
-      const double e[3] = {ex[n], ey[n], ez[n]};
+      const double e[3] = {cluster.x[n], cluster.y[n], cluster.z[n]};
       const double x = p[0] + R[0] * e[0] + R[1] * e[1] + R[2] * e[2];
       const double y = p[1] + R[3] * e[0] + R[4] * e[1] + R[5] * e[2];
       const double z = p[2] + R[6] * e[0] + R[7] * e[1] + R[8] * e[2];
@@ -147,13 +129,13 @@ bool WaterForces::sum_elements(const SurfacePatch& surface, Wet* wet) {
                             (y >= low_y && y <= high_y ? 1.0 : 0.0) * (z >= bottom ? 1.0 : 0.0);
       const double over = (surface.height(x, y) - z) * per_high + 0.5;
       const double share = inside * (over > 0 ? (over < 1 ? over : 1.0) : 0.0);
-      const double volume = share * volumes[n];
+      const double volume = share * cluster.volume[n];
       const double u[3] = {v[0] + turn[1] * e[2] - turn[2] * e[1],
                            v[1] + turn[2] * e[0] - turn[0] * e[2],
                            v[2] + turn[0] * e[1] - turn[1] * e[0]};
       const double lower = (1 - share) * high / 2;  // what is wet of it lies
       const double crossing =
-          inside * per_high * volumes[n] * (over > 0 ? 1.0 : 0.0) * (over < 1 ? 1.0 : 0.0);
+          inside * per_high * cluster.volume[n] * (over > 0 ? 1.0 : 0.0) * (over < 1 ? 1.0 : 0.0);
       entering[n] -= crossing * (R[6] * u[0] + R[7] * u[1] + R[8] * u[2]);
       mass[n] += volume;
       double c[3], f[3];

@@ -32,6 +32,9 @@ class WaterForces {
   /// subtree centres of mass and body velocities in `data` are of the present state. `ripples`: of
   /// each water. False: nothing is in a water.
   bool begin(mjModel& model, mjData& data, std::span<const HeightChange> ripples);
+  /// Instead of having MuJoCo make all inertias of `model` anew: adds those masses to data.M and
+  /// factors what has changed.
+  void add_masses(const mjModel& model, mjData& data) const;
   /// Takes back the added masses. Does nothing without a begin().
   void end(mjModel& model);
 

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "base/hash.h"
+#include "base/wave_math.h"
 
 namespace gloam {
 namespace {
@@ -28,6 +29,7 @@ WaterRipples::WaterRipples(const WaterDescription& water, double interval)
     : water_(water), grid_(water.ripples), substeps_(substeps_of(water, interval)) {
   const size_t n = static_cast<size_t>(grid_.nx) * static_cast<size_t>(grid_.ny);
   for (auto* values : {&height_, &rate_, &column_, &before_, &next_}) values->resize(n);
+  tent_.resize(static_cast<size_t>(grid_.nx));
   for (int i = 0; i < kFirstFields; ++i) {
     pool_.push_back(std::make_shared<SurfaceHeights>());
     pool_.back()->height.resize(n);
@@ -59,27 +61,28 @@ void WaterRipples::displace(const WaterShape& shape, const double* p, const doub
                 std::abs(R[3 * a + 2]) * shape.cell[2];
   }
   const double wx = std::max(extent[0], 2 * grid_.dx), wy = std::max(extent[1], 2 * grid_.dy);
-  const double per_area = 1 / (wx * wy);
+  const double per_area = 1 / (wx * wy), deepest = water_.level - water_.depth;
   for (const WaterElement& e : shape.elements) {
     const double x = p[0] + R[0] * e.p[0] + R[1] * e.p[1] + R[2] * e.p[2] - water_.low_x();
     const double y = p[1] + R[3] * e.p[0] + R[4] * e.p[1] + R[5] * e.p[2] - water_.low_y();
     const double z = p[2] + R[6] * e.p[0] + R[7] * e.p[1] + R[8] * e.p[2];
     const double share = std::clamp((surface - z) / extent[2] + 0.5, 0.0, 1.0);
-    if (share == 0 || z < water_.level - water_.depth) continue;
+    if (share == 0 || z < deepest) continue;
     const double column =
-        e.volume * share * std::exp(-kDecay * std::max(surface - z, 0.0)) * per_area;
+        e.volume * share * exponential(-kDecay * std::max(surface - z, 0.0)) * per_area;
     const int i0 = std::max(static_cast<int>(std::ceil((x - wx) / grid_.dx - 0.5)), 0);
     const int i1 = std::min(static_cast<int>(std::floor((x + wx) / grid_.dx - 0.5)), grid_.nx - 1);
     const int j0 = std::max(static_cast<int>(std::ceil((y - wy) / grid_.dy - 0.5)), 0);
     const int j1 = std::min(static_cast<int>(std::floor((y + wy) / grid_.dy - 0.5)), grid_.ny - 1);
+    if (i1 < i0 || j1 < j0) continue;
+    displaced_ = true;
+    for (int i = i0; i <= i1; ++i)
+      tent_[static_cast<size_t>(i - i0)] =
+          static_cast<float>(column * (1 - std::abs((i + 0.5) * grid_.dx - x) / wx));
     for (int j = j0; j <= j1; ++j) {
-      const double ty = 1 - std::abs((j + 0.5) * grid_.dy - y) / wy;
-      float* row = column_.data() + static_cast<size_t>(j) * static_cast<size_t>(grid_.nx);
-      for (int i = i0; i <= i1; ++i) {
-        const double tx = 1 - std::abs((i + 0.5) * grid_.dx - x) / wx;
-        row[i] += static_cast<float>(column * tx * ty);
-        displaced_ = true;
-      }
+      const auto ty = static_cast<float>(1 - std::abs((j + 0.5) * grid_.dy - y) / wy);
+      float* row = column_.data() + j * grid_.nx + i0;
+      for (int i = 0; i <= i1 - i0; ++i) row[i] += tent_[static_cast<size_t>(i)] * ty;
     }
   }
 }
@@ -113,16 +116,18 @@ void WaterRipples::substep(float dt) {
     const size_t row = static_cast<size_t>(j) * static_cast<size_t>(nx);
     const size_t south = j > 0 ? row - static_cast<size_t>(nx) : row;
     const size_t north = j + 1 < ny ? row + static_cast<size_t>(nx) : row;
-    const float *h = height_.data(), *w = rate_.data();
-    for (int i = 0; i < nx; ++i) {
-      const auto n = static_cast<size_t>(i);
-      const size_t west = i > 0 ? n - 1 : n, east = i + 1 < nx ? n + 1 : n;
-      const float bend = ax * (h[row + west] - 2 * h[row + n] + h[row + east]) +
-                         ay * (h[south + n] - 2 * h[row + n] + h[north + n]);
-      const float spread =
-          w[row + west] + w[row + east] + w[south + n] + w[north + n] - 4 * w[row + n];
-      next_[row + n] = keep * (w[row + n] + kSmoothing * spread) + bend;
-    }
+    const float *h = height_.data() + row, *w = rate_.data() + row;
+    const float *hs = height_.data() + south, *ws = rate_.data() + south;
+    const float *hn = height_.data() + north, *wn = rate_.data() + north;
+    float* to = next_.data() + row;
+    const auto step = [=](int i, int west, int east) {
+      const float bend = ax * (h[west] - 2 * h[i] + h[east]) + ay * (hs[i] - 2 * h[i] + hn[i]);
+      const float spread = w[west] + w[east] + ws[i] + wn[i] - 4 * w[i];
+      to[i] = keep * (w[i] + kSmoothing * spread) + bend;
+    };
+    step(0, 0, 1);
+    for (int i = 1; i + 1 < nx; ++i) step(i, i - 1, i + 1);
+    step(nx - 1, nx - 2, nx - 1);
   }
   rate_.swap(next_);
   for (size_t i = 0; i < height_.size(); ++i) height_[i] += dt * rate_[i];

@@ -50,6 +50,7 @@ class WaterRipples {
   std::vector<float> height_, rate_;    // [m], [m/s]
   std::vector<float> column_, before_;  // displaced, of this tick and of the last [m]
   std::vector<float> next_;             // room
+  std::vector<float> tent_;             // room, along x
   std::vector<std::shared_ptr<SurfaceHeights>> pool_;
   std::shared_ptr<const SurfaceHeights> shown_;
 };

@@ -212,6 +212,7 @@ std::optional<WaterShape> water_shape(const mjModel& m, int geom, int elements) 
     const double r = half[0], length = 2 * (half[2] - r);
     shape.area[0] = shape.area[1] = 2 * r * length + kRound * r * r;
   }
+  make_clusters(low, &shape);
   set_drag(m, geom, &shape);
   set_added_mass(&shape);
   return shape;

@@ -126,7 +126,12 @@ void surface_heights(const WaterDescription& water, const HeightChange& ripples,
 
 SurfacePatch::SurfacePatch(const WaterDescription& water, const HeightChange& ripples, double x,
                            double y, double half_x, double half_y, double time)
-    : x_(x), y_(y), half_x_(half_x), half_y_(half_y) {
+    : x_(x),
+      y_(y),
+      half_x_(half_x),
+      half_y_(half_y),
+      per_half_x_(1 / half_x),
+      per_half_y_(1 / half_y) {
   double sums[3][3][kLanes] = {};
   for (size_t from = 0; from < water.waves.size(); from += kLanes) {
     const Lanes wave(water.waves, from, x, y, time);
@@ -146,6 +151,13 @@ SurfacePatch::SurfacePatch(const WaterDescription& water, const HeightChange& ri
   for (int j = 0; j < 3; ++j)
     for (int i = 0; i < 3; ++i) value_[j][i] = water.level + sum_of(sums[j][i]);
   fit_ripples(water, ripples);
+  // Between three points a parabola is at most an eighth of its bend higher than they are.
+  double low = value_[0][0], high = low;
+  for (const auto& row : value_) {
+    for (const double z : row) low = std::min(low, z), high = std::max(high, z);
+  }
+  most_ = high + (high - low) + ripple_[0] + std::abs(ripple_[1]) * half_x_ +
+          std::abs(ripple_[2]) * half_y_;
 }
 
 void SurfacePatch::fit_ripples(const WaterDescription& water, const HeightChange& ripples) {

@@ -36,11 +36,13 @@ class SurfacePatch {
   SurfacePatch(const WaterDescription& water, const HeightChange& ripples, double x, double y,
                double half_x, double half_y, double time);
 
+  /// Nowhere in the rectangle is it higher [m].
+  double most() const { return most_; }
   /// z of the surface in the world [m].
   double height(double x, double y) const { return waves(x, y) + ripples(x, y); }
   /// Without ripples.
   double waves(double x, double y) const {
-    const double u = within((x - x_) / half_x_), v = within((y - y_) / half_y_);
+    const double u = within((x - x_) * per_half_x_), v = within((y - y_) * per_half_y_);
     return parabola(parabola(value_[0], u), parabola(value_[1], u), parabola(value_[2], u), v);
   }
 
@@ -59,9 +61,10 @@ class SurfacePatch {
   }
   void fit_ripples(const WaterDescription& water, const HeightChange& ripples);
 
-  double x_, y_, half_x_, half_y_;
+  double x_, y_, half_x_, half_y_, per_half_x_, per_half_y_;
   double value_[3][3];  // by y, by x [m]
   double ripple_[3] = {};
+  double most_;  // [m]
 };
 
 }  // namespace gloam

@@ -26,11 +26,9 @@ double Wind::mean_speed(double height) const {
 
 Vec3 Wind::gust(double time) const { return blows() ? gusts_->at(time) : Vec3{}; }
 
-Vec3 Wind::at(double time, double height) const {
-  if (!blows()) return {};
+Vec3 Wind::with_mean(Vec3 gust, double height) const {
   const double mean = mean_speed(height);
-  const Vec3 more = gust(time);
-  return {mean * wind_.along_x + more.x, mean * wind_.along_y + more.y, more.z};
+  return {mean * wind_.along_x + gust.x, mean * wind_.along_y + gust.y, gust.z};
 }
 
 void give_air(mjOption* option) {
@@ -62,13 +60,15 @@ WindOnBodies::WindOnBodies(const CompiledWorld& world, Rational timestep)
   for (Root& root : roots_) root.weight = mass > 0 ? root.weight / mass : 0;
 }
 
-void WindOnBodies::blow(int64_t step, const double* qpos, mjOption* option) const {
+void WindOnBodies::blow(int64_t step, const double* qpos, mjOption* option) {
   double height = 0;
   for (const Root& root : roots_)
     height += root.weight * (root.qpos >= 0 ? qpos[root.qpos] : root.z);
   const int64_t next = schedule_.first_at_or_after(step + 1);
-  const double time = static_cast<double>(schedule_.step_of(next - 1)) * timestep_;
-  const Vec3 v = wind_.at(time, height);
+  const int64_t since = schedule_.step_of(next - 1);
+  if (since != gust_step_) gust_ = wind_.gust(static_cast<double>(since) * timestep_);
+  gust_step_ = since;
+  const Vec3 v = wind_.with_mean(gust_, height);
   option->wind[0] = v.x, option->wind[1] = v.y, option->wind[2] = v.z;
 }
 

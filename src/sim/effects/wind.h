@@ -22,7 +22,11 @@ class Wind {
   double mean_speed(double height) const;
   /// What comes to the mean [m/s], world.
   Vec3 gust(double time) const;
-  Vec3 at(double time, double height) const;
+  Vec3 at(double time, double height) const {
+    return blows() ? with_mean(gust(time), height) : Vec3{};
+  }
+  /// What gusts come to there.
+  Vec3 with_mean(Vec3 gust, double height) const;
 
  private:
   WindDescription wind_;
@@ -43,7 +47,7 @@ class WindOnBodies {
   WindOnBodies(const CompiledWorld& world, Rational timestep);
 
   /// Sets the wind of step `step`, from `qpos`. Gusts change at 100 Hz.
-  void blow(int64_t step, const double* qpos, mjOption* option) const;
+  void blow(int64_t step, const double* qpos, mjOption* option);
 
  private:
   struct Root {
@@ -53,6 +57,8 @@ class WindOnBodies {
   Wind wind_;
   StepSchedule schedule_;
   double timestep_;  // [s]
+  int64_t gust_step_ = -1;
+  Vec3 gust_;  // of that step [m/s]
   std::vector<Root> roots_;
 };
 

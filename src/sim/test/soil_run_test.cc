@@ -56,6 +56,47 @@ TEST(ColliderBottom, IsWhereARayFromBelowMeetsIt) {
   }
 }
 
+TEST(ColliderBottom, RoundOnesEndWhereTheyComeOutOfALevel) {
+  auto world = world_from_mjcf(R"(<mujoco><worldbody>
+    <body quat=".5 .3 .7 .25"><freejoint/><geom type="sphere" size=".2"/></body>
+    <body quat=".9 .5 .1 .25"><freejoint/><geom type="capsule" size=".1 .2"/></body>
+    <body quat="1 0 0 0"><freejoint/><geom type="capsule" size=".1 .2"/></body>
+    <body quat=".70710678 .70710678 0 0"><freejoint/><geom type="capsule" size=".1 .2"/></body>
+    <body quat=".70710678 0 .70710678 0"><freejoint/><geom type="capsule" size=".1 .2"/></body>
+    </worldbody></mujoco>)");
+  const mjModel& m = *world->model;
+  DataPtr d(mj_makeData(&m));
+  mj_kinematics(&m, d.get());
+  constexpr int kCount = 4000;
+  for (int geom = 0; geom < m.ngeom; ++geom) {
+    ColliderBottom bottom(m, geom);
+    bottom.set_pose(*d);
+    int hits = 0;
+    for (int i = 0; i < 60; ++i) {
+      const double y = 0.3 * random_control(i, 0), level = 0.3 * random_control(i, 1);
+      double left = 0, right = 0;
+      bottom.round_ends(level, {&y, 1}, &left, &right);
+      double low = 1, high = 0;
+      for (int n = 0; n < kCount; ++n) {
+        const double x = -0.4 + 0.8 * n / kCount;
+        double z = 0;
+        if (!bottom.height_at(x, y, &z) || z >= level) continue;
+        if (low > high) low = x;
+        high = x;
+      }
+      if (high - low < 1e-3) continue;  // a point of it, or nothing
+      ++hits;
+      EXPECT_NEAR(left, low, 3e-4) << "geom " << geom << " at " << y << ", " << level;
+      EXPECT_NEAR(right, high, 3e-4) << "geom " << geom << " at " << y << ", " << level;
+    }
+    EXPECT_GT(hits, 5) << "geom " << geom;
+    const double beside = 0.5;
+    double left = 0, right = 0;
+    bottom.round_ends(0, {&beside, 1}, &left, &right);
+    EXPECT_GT(left, right) << "nothing is there";
+  }
+}
+
 TEST(ResponseSolver, IsTheInverseInertiaOfTheWholeTree) {
   auto world = world_from_mjcf(kRichModel);
   const mjModel& m = *world->model;
@@ -94,6 +135,23 @@ TEST(ResponseSolver, IsTheInverseInertiaOfTheWholeTree) {
       }
     }
   }
+}
+
+TEST(BodyForces, FactorsATreeAsMujocoDoes) {
+  auto world = world_from_mjcf(kRichModel);
+  ModelPtr heavier(mj_copyModel(nullptr, world->model.get()));
+  const mjModel& m = *world->model;
+  DataPtr is(mj_makeData(&m)), exact(mj_makeData(&m));
+  mj_forward(&m, is.get());
+  for (int dof = 0; dof < m.nv; ++dof) {
+    heavier->dof_armature[dof] += 0.1 * (dof + 1), heavier->dof_M0[dof] += 0.1 * (dof + 1);
+    is->M[m.M_rowadr[dof] + m.M_rownnz[dof] - 1] += 0.1 * (dof + 1);
+  }
+  for (int tree = 0; tree < m.ntree; ++tree) factor_tree(m, *is, tree);
+  mj_forward(heavier.get(), exact.get());
+  for (int i = 0; i < m.nC; ++i) EXPECT_NEAR(is->qLD[i], exact->qLD[i], 1e-12) << i;
+  for (int dof = 0; dof < m.nv; ++dof)
+    EXPECT_NEAR(is->qLDiagInv[dof], exact->qLDiagInv[dof], 1e-12 * exact->qLDiagInv[dof]) << dof;
 }
 
 /// Balls, boxes and a wheel that fall and roll over a bed.

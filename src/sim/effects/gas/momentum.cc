@@ -2,6 +2,7 @@
 
 #include "sim/effects/gas/kernel/carry.h"
 #include "sim/effects/gas/kernel/forces.h"
+#include "sim/effects/gas/pieces.h"
 
 namespace gloam::gas {
 namespace {
@@ -59,11 +60,26 @@ void Momentum::find_paths(const Openings& openings, const Faces<const float>& op
     {
       const Carrier v = carrier;
       float *const to_x = x + begin, *const to_y = y + begin, *const to_z = z + begin;
-      GLOAM_IVDEP
-      for (int i = 0; i < nx; ++i) {
-        const Vec3f d = displacement(v, i, j, k);
-        to_x[i] = d.x, to_y[i] = d.y, to_z[i] = d.z;
-      }
+      for_pieces(nx, [&](int from, int width) {
+        Ways ways;
+        GLOAM_IVDEP
+        for (int l = 0; l < width; ++l) ways.set(l, {half_way(v, from + l, j, k), 0.0f});
+        const bool even = ways.are_even(width);
+        const float* const fields[3] = {v.velocity.x, v.velocity.y, v.velocity.z};
+        float* const to[3] = {to_x + from, to_y + from, to_z + from};
+        for (int a = 0; a < 3; ++a) {
+          const float* const field = fields[a];
+          float* const d = to[a];
+          if (even) {
+            GLOAM_IVDEP
+            for (int l = 0; l < width; ++l)
+              d[l] = interpolate(ways.even_corners(v.shape, field, l), ways.get(l).at);
+          } else {
+            GLOAM_IVDEP
+            for (int l = 0; l < width; ++l) d[l] = interpolate(v.shape, field, ways.get(l).at);
+          }
+        }
+      });
     }
     // Walls may be in the way where it is longer than what is clear around the cell.
     uint8_t near[kLongestRow];
@@ -129,13 +145,15 @@ void Momentum::carry_axis(const Openings& openings, int axis, const float* open,
                        corrected_.data()};
   for_rows(faces, [&view, nx = faces.nx](int j, int k) {
     const CarryView v = view;  // its own copy: the compiler need not look at it again for each face
-    GLOAM_IVDEP
-    for (int i = 0; i < nx; ++i) carry_face(v, i, j, k);
+    for_ways(
+        v, v.old, j, k, nx, [&v, j, k](int i) { return way_back(v, i, j, k); },
+        [&v](int c, const Corners& a, const Way& way) { set_carried(v, c, a, way); });
   });
   for_rows(faces, [&view, nx = faces.nx](int j, int k) {
     const CarryView v = view;
-    GLOAM_IVDEP
-    for (int i = 0; i < nx; ++i) correct_face(v, i, j, k);
+    for_ways(
+        v, v.carried, j, k, nx, [&v, j, k](int i) { return way_forth(v, i, j, k); },
+        [&v](int c, const Corners& a, const Way& way) { set_corrected(v, c, a, way); });
   });
   for (int side = 0; side < 2; ++side) {
     const float inward = side == 0 ? outside : -outside;

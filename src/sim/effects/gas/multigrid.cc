@@ -148,17 +148,22 @@ void Multigrid::coarsen(const Level& fine, Level& coarse) {
       return axis == a ? first(axis, i) + 1 : coarse.start[axis][size_t(i) + 1];
     };
     for_rows(faces, [&](int j, int k) {
+      float row[kLongestRow + 1];  // of the finer faces, added up along y and z
+      const int n = t.faces(a).nx;
+      std::fill_n(row, n, 0.0f);
+      for (int z = first(2, k); z < end(2, k); ++z) {
+        for (int y = first(1, j); y < end(1, j); ++y) {
+          const float* more = from + t.at(0, y, z);
+          GLOAM_IVDEP
+          for (int x = 0; x < n; ++x) row[x] += more[x];
+        }
+      }
       for (int i = 0; i < faces.nx; ++i) {
-        const int at[3] = {i, j, k};
-        const int face = at[a];
+        const int face = a == 0 ? i : (a == 1 ? j : k);
         const float share =
             distance(fine.width[a], first(a, face)) / distance(coarse.width[a], face);
         float sum = 0;
-        for (int z = first(2, k); z < end(2, k); ++z) {
-          for (int y = first(1, j); y < end(1, j); ++y) {
-            for (int x = first(0, i); x < end(0, i); ++x) sum += from[t.at(x, y, z)];
-          }
-        }
+        for (int x = first(0, i); x < end(0, i); ++x) sum += row[x];
         to[s.at(i, j, k)] = sum * share;
       }
     });
@@ -192,11 +197,18 @@ void Multigrid::invert(Level& level) {
   });
 }
 
+/// What the step with kSmooth[0] makes of x = 0.
+struct Multigrid::FirstStep {
+  const float *inverse, *b;
+  float operator[](int c) const { return kSmooth[0] * inverse[c] * b[c]; }
+};
+
 /// The rows of a cycle on the processor.
 struct Multigrid::Cycle {
   Multigrid& grid;
   const float* finest_b;
   float* finest_x;
+  int begun = -1;  // level that is still at begin()
 
   const float* b(size_t level) const {
     return level == 0 ? finest_b : grid.levels_[level].b.data();
@@ -204,22 +216,23 @@ struct Multigrid::Cycle {
   float* x(size_t level) const { return level == 0 ? finest_x : grid.levels_[level].x.data(); }
   float* scratch(size_t level) const { return grid.levels_[level].scratch.data(); }
 
-  void begin(int n) {
-    const size_t level = size_t(n);
-    const PoissonView v = grid.view(level);
-    for_rows(v.shape, [&v, t = scratch(level), b = b(level)](int j, int k) {
-      const int begin = v.shape.at(0, j, k), end = begin + v.shape.nx;
-      GLOAM_IVDEP
-      for (int c = begin; c < end; ++c) t[c] = kSmooth[0] * v.inverse[c] * b[c];
-    });
-  }
+  // The first two steps are one pass: what the first makes, the second makes anew where it looks.
+  void begin(int n) { begun = n; }
   void forth(int n, int step) {
     const size_t level = size_t(n);
-    grid.smooth(level, b(level), x(level), scratch(level), kSmooth[step]);
+    grid.smooth(level, b(level), static_cast<const float*>(x(level)), scratch(level),
+                kSmooth[step]);
   }
   void back(int n, int step) {
     const size_t level = size_t(n);
-    grid.smooth(level, b(level), scratch(level), x(level), kSmooth[step]);
+    if (begun == n) {
+      const FirstStep first{grid.levels_[level].inverse.data(), b(level)};
+      grid.smooth(level, b(level), first, x(level), kSmooth[step]);
+    } else {
+      grid.smooth(level, b(level), static_cast<const float*>(scratch(level)), x(level),
+                  kSmooth[step]);
+    }
+    begun = -1;
   }
   void restrict_residual(int n) {
     const size_t level = size_t(n);
@@ -233,8 +246,8 @@ void Multigrid::precondition(const float* b, float* x) {
   run_cycle(cycle, 0, levels(), true);
 }
 
-void Multigrid::smooth(size_t level, const float* b, const float* from, float* to,
-                       float damping) const {
+template <class From>
+void Multigrid::smooth(size_t level, const float* b, From from, float* to, float damping) const {
   const PoissonView v = view(level);
   const uint8_t* open = open_.data();
   for_rows(v.shape, [&v, b, from, to, damping, open, level](int j, int k) {

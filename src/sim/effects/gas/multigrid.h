@@ -33,6 +33,7 @@ class Multigrid {
 
  private:
   struct Cycle;
+  struct FirstStep;
   struct Level {
     Shape shape;
     Field weight[3], inverse;
@@ -50,7 +51,8 @@ class Multigrid {
   void find_open_faces();
   void invert(Level& level);
   /// to = a damped Jacobi step from `from`.
-  void smooth(size_t level, const float* b, const float* from, float* to, float damping) const;
+  template <class From>
+  void smooth(size_t level, const float* b, From from, float* to, float damping) const;
   void restrict_residual(size_t level, const float* b, const float* x);
   void prolong(size_t level, float* x);
 

@@ -8,7 +8,6 @@ Pressure::Pressure(const Shape& shape) : shape_(shape), multigrid_(shape) {
   for (Field* f : {&x_, &target_, &residual_, &z_, &p_, &ap_}) {
     f->assign(size_t(shape.size()), 0.0f);
   }
-  ones_.assign(size_t(shape.size()), 1.0f);
   partial_.resize(size_t(shape.nz));
 }
 
@@ -71,26 +70,29 @@ void Pressure::set_target(const Openings& openings, const Faces<const float>& ve
 }
 
 void Pressure::push(const Faces<float>& velocity, const Field& share) {
-  subtract_gradient(velocity, share.data());
+  const float *x = x_.data(), *part = share.data();
+  subtract(velocity, [x, part](const float* open, int c, int stride) {
+    return pressed(open, part, x, c, stride);
+  });
 }
 
-void Pressure::subtract_gradient(const Faces<float>& velocity, const float* share) {
+/// Calls change(weights, c, stride) for each face: what its velocity loses.
+template <class Change>
+void Pressure::subtract(const Faces<float>& velocity, const Change& change) {
   const Shape& s = shape_;
   const Faces<const float> open = this->open();
-  const float* x = x_.data();
-  for (int axis = 0; axis < 3; ++axis) {
-    const Shape faces = s.faces(axis);
-    const int stride = s.stride(axis);
-    const float* w = open[axis];
-    float* v = velocity[axis];
-    for_rows(faces, [&, v, w, x, stride, share](int j, int k) {
-      const int begin = s.at(0, j, k), end = begin + faces.nx;
+  // A row of cells with the faces before it, so that all three axes read pressures once.
+  for_rows(Shape{s.nx, s.ny + 1, s.nz + 1, s.sy, s.sz}, [&](int j, int k) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const Shape faces = s.faces(axis);
+      if (j >= faces.ny || k >= faces.nz) continue;
+      const int begin = s.at(0, j, k), end = begin + faces.nx, stride = s.stride(axis);
+      const float* w = open[axis];
+      float* v = velocity[axis];
       GLOAM_IVDEP
-      for (int c = begin; c < end; ++c) {
-        v[c] -= pressed(w, share, x, c, stride);
-      }
-    });
-  }
+      for (int c = begin; c < end; ++c) v[c] -= change(w, c, stride);
+    }
+  });
 }
 
 Projection Pressure::project(const Openings& openings, const Faces<float>& velocity,
@@ -108,25 +110,27 @@ Projection Pressure::project(const Openings& openings, const Faces<float>& veloc
 
   float *x = x_.data(), *r = residual_.data(), *z = z_.data(), *p = p_.data(), *ap = ap_.data();
   const float* target = target_.data();
-  rows([&](int begin, int end) {
-    GLOAM_IVDEP
-    for (int c = begin; c < end; ++c) r[c] = target[c] - outflow(s, u, c);
-  });
+  const auto square_of_row = [&s, r](int begin) {
+    return row_sum(begin, s.nx, [r](int c) { return r[c] * r[c]; });
+  };
   Projection out;
-  const double before = std::sqrt(dot(residual_, residual_));
-  out.before = before / double(voxel);
-  const double goal = kTolerance * before;
-  rows([&](int begin, int end) {
+  const double before = std::sqrt(grid_sum(s, partial_, [&](int j, int k) {
+    const int begin = s.at(0, j, k), end = begin + s.nx;
     GLOAM_IVDEP
     for (int c = begin; c < end; ++c) {
+      r[c] = target[c] - outflow(s, u, c);
       x[c] = open[c] != 0 ? x[c] : 0.0f;
     }
-  });
-  rows([&](int begin, int end) {
+    return square_of_row(begin);
+  }));
+  out.before = before / double(voxel);
+  const double goal = kTolerance * before;
+  double norm = std::sqrt(grid_sum(s, partial_, [&](int j, int k) {
+    const int begin = s.at(0, j, k), end = begin + s.nx;
     GLOAM_IVDEP
     for (int c = begin; c < end; ++c) r[c] -= apply_poisson(s, open[c], x, c);
-  });
-  double norm = std::sqrt(dot(residual_, residual_));
+    return square_of_row(begin);
+  }));
   if (norm > before) {  // the last solution is no help
     std::fill(x_.begin(), x_.end(), 0.0f);
     rows([&](int begin, int end) {
@@ -167,21 +171,24 @@ Projection Pressure::project(const Openings& openings, const Faces<float>& veloc
         x[c] += alpha * p[c];
         r[c] -= alpha * ap[c];
       }
-      return row_sum(begin, s.nx, [r](int c) { return r[c] * r[c]; });
+      return square_of_row(begin);
     });
     norm = std::sqrt(square);
     if (norm > goal) continue;
     // What conjugate gradients believe is left drifts from what is: look, and go on if need be.
-    rows([&](int begin, int end) {
+    norm = std::sqrt(grid_sum(s, partial_, [&](int j, int k) {
+      const int begin = s.at(0, j, k), end = begin + s.nx;
       GLOAM_IVDEP
       for (int c = begin; c < end; ++c)
         r[c] = target[c] - outflow(s, u, c) - apply_poisson(s, open[c], x, c);
-    });
-    norm = std::sqrt(dot(residual_, residual_));
+      return square_of_row(begin);
+    }));
     fresh = true;
   }
 
-  subtract_gradient(velocity, ones_.data());
+  subtract(velocity, [x](const float* weight, int c, int stride) {
+    return weight[c] * (x[c] - x[c - stride]);
+  });
   // Of the velocities themselves: what conjugate gradients believe drifts from it.
   out.after = std::sqrt(grid_sum(s, partial_,
                                  [&](int j, int k) {

@@ -41,14 +41,15 @@ class Pressure {
   const Field& solution() const { return x_; }
 
  private:
-  void subtract_gradient(const Faces<float>& velocity, const float* share);
+  template <class Change>
+  void subtract(const Faces<float>& velocity, const Change& change);
   double dot(const Field& a, const Field& b);
   void set_target(const Openings& openings, const Faces<const float>& velocity, const float* wanted,
                   float scale);
 
   Shape shape_;
   Multigrid multigrid_;
-  Field x_, target_, residual_, z_, p_, ap_, ones_;
+  Field x_, target_, residual_, z_, p_, ap_;
   std::vector<double> partial_, space_sum_, space_count_, space_faces_;
 };
 

@@ -1,17 +1,38 @@
 #include "sim/effects/gas/transport.h"
 
+#include <bit>
 #include <cmath>
 
 namespace gloam::gas {
 namespace {
 
-constexpr int kBlock = 128;  ///< cells side by side in a sweep along y or z: what L1 holds
+constexpr int kBlock = 32;  ///< cells side by side in a sweep along y or z
 
 /// What such a row needs while a sweep passes over it: ratios, and differences to the row before,
 /// for each scalar; its air.
 struct Row {
   float q[kScalars][kBlock], d[kScalars][kBlock], air[kBlock];
 };
+
+/// Whether anything is in n cells, which hold nothing below 0: of bits, which lanes compare.
+bool holds_any(const float* field, int n) {
+  uint32_t bits = 0;
+  GLOAM_IVDEP
+  for (int i = 0; i < n; ++i) bits |= std::bit_cast<uint32_t>(field[i]);
+  return bits != 0;
+}
+
+/// air_left() of n cells from `begin`: the loop over axes outside of that over cells.
+void find_air(const Shape& s, const Faces<const float>& courant, const int (&before)[2], int begin,
+              int n, float* air) {
+  std::fill_n(air, n, 1.0f);
+  for (const int a : before) {
+    if (a < 0) continue;
+    const float *low = courant[a] + begin, *high = low + s.stride(a);
+    GLOAM_IVDEP
+    for (int i = 0; i < n; ++i) air[i] -= high[i] - low[i];
+  }
+}
 
 }  // namespace
 
@@ -94,15 +115,15 @@ void Transport::sweep_x(const Sweep& sweep) {
     // Cell i lies at i + 2, with two ghosts of ambient air at both ends.
     float air[kLongestRow + 4], q[kLongestRow + 4], d[kLongestRow + 5], flux[kLongestRow + 1];
     air[0] = air[1] = air[n + 2] = air[n + 3] = 1.0f;
-    for (int i = 0; i < n; ++i) air[i + 2] = air_left(s, sweep.courant, sweep.before, begin + i);
+    bool is_known = false;
     for (size_t f = 0; f < kScalars; ++f) {
       float* field = sweep.scalars[f].data() + begin;
+      if (!holds_any(field, n)) continue;
+      if (!is_known) find_air(s, sweep.courant, sweep.before, begin, n, air + 2);
+      is_known = true;
       q[0] = q[1] = q[n + 2] = q[n + 3] = 0.0f;
-      float any = 0;
       GLOAM_IVDEP
       for (int i = 0; i < n; ++i) q[i + 2] = field[i] / air[i + 2];
-      for (int i = 0; i < n; ++i) any = max(any, field[i]);
-      if (any == 0.0f) continue;
       // d[i]: over the face before the cell at i.
       d[0] = d[1] = d[n + 3] = d[n + 4] = 0.0f;
       GLOAM_IVDEP
@@ -137,16 +158,20 @@ void Transport::sweep_across(const Sweep& sweep) {
 void Transport::sweep_block(const Sweep& sweep, int first, int width, double* escaped) {
   const Shape& s = shape_;
   const int n = s.n(sweep.axis), stride = s.stride(sweep.axis);
+  // Rows beyond those that hold something stay as they are, but for one to each side.
   bool any[kScalars] = {};
+  int low = n, high = -1;
   for (size_t f = 0; f < kScalars; ++f) {
     const float* field = sweep.scalars[f].data() + first;
-    for (int m = 0; m < n && !any[f]; ++m) {
-      float most = 0;
-      for (int i = 0; i < width; ++i) most = max(most, field[m * stride + i]);
-      any[f] = most > 0.0f;
-    }
+    int m = 0, last = n - 1;
+    while (m < n && !holds_any(field + m * stride, width)) ++m;
+    if (m == n) continue;
+    while (!holds_any(field + last * stride, width)) --last;
+    any[f] = true;
+    low = std::min(low, m), high = std::max(high, last);
   }
-  if (!any[kHeat] && !any[kSmoke] && !any[kFuel] && !any[kSpent]) return;
+  if (high < 0) return;
+  const int begin_face = std::max(low - 1, 0), end_face = std::min(high + 2, n);
 
   Row rows[4];
   float flux[2][kScalars][kBlock];
@@ -155,8 +180,10 @@ void Transport::sweep_block(const Sweep& sweep, int first, int width, double* es
     const Row& before = rows[(m + 3) % 4];
     const int begin = first + m * stride;
     const bool ghost = m < 0 || m >= n;
-    for (int i = 0; i < width; ++i) {
-      row.air[i] = ghost ? 1.0f : air_left(s, sweep.courant, sweep.before, begin + i);
+    if (ghost) {
+      std::fill_n(row.air, width, 1.0f);
+    } else {
+      find_air(s, sweep.courant, sweep.before, begin, width, row.air);
     }
     for (size_t f = 0; f < kScalars; ++f) {
       if (!any[f]) continue;
@@ -167,7 +194,7 @@ void Transport::sweep_block(const Sweep& sweep, int first, int width, double* es
         GLOAM_IVDEP
         for (int i = 0; i < width; ++i) row.q[f][i] = field[i] / row.air[i];
       }
-      if (m < 0 || m > n) {
+      if (m < begin_face || m > n) {  // of nothing and nothing
         std::fill_n(row.d[f], width, 0.0f);
       } else {
         const float* open = sweep.open + begin;
@@ -176,8 +203,8 @@ void Transport::sweep_block(const Sweep& sweep, int first, int width, double* es
       }
     }
   };
-  load(-1), load(0), load(1);
-  for (int m = 0; m <= n; ++m) {
+  for (int m = begin_face - 1; m <= begin_face + 1; ++m) load(m);
+  for (int m = begin_face; m <= end_face; ++m) {
     // Face m, between the rows of cells m - 1 and m; row m + 1 is there for its slope.
     const Row &b = rows[(m + 3) % 4], &c = rows[m % 4], &d = rows[(m + 1) % 4];
     const int begin = first + m * stride;
@@ -196,7 +223,7 @@ void Transport::sweep_block(const Sweep& sweep, int first, int width, double* es
         for (int i = 0; i < width; ++i) sum += double(now[i]);
         escaped[f] += m == 0 ? -sum : sum;
       }
-      if (m == 0) continue;
+      if (m == begin_face) continue;
       float* field = sweep.scalars[f].data() + begin - stride;
       GLOAM_IVDEP
       for (int i = 0; i < width; ++i) field[i] = max(field[i] - (now[i] - last[i]), 0.0f);

@@ -125,12 +125,16 @@ GLOAM_HD Vec3f carrier_velocity(const Shape& s, const Faces<const float>& u, int
           clamp(half * v.z, -limit, limit)};
 }
 
-/// By how much the air of the centre of cell (i, j, k) moved in a step (Runge and Kutta, order 2),
-/// where nothing is in the way.
-GLOAM_HD Vec3f displacement(const Carrier& v, int i, int j, int k) {
+/// Where the air of the centre of cell (i, j, k) was half a step ago, where nothing is in the way.
+GLOAM_HD Between half_way(const Carrier& v, int i, int j, int k) {
   const int c = v.shape.at(i, j, k);
-  const Between b = place(v.shape, -1, float(i) - 0.5f * v.velocity.x[c],
-                          float(j) - 0.5f * v.velocity.y[c], float(k) - 0.5f * v.velocity.z[c]);
+  return place(v.shape, -1, float(i) - 0.5f * v.velocity.x[c], float(j) - 0.5f * v.velocity.y[c],
+               float(k) - 0.5f * v.velocity.z[c]);
+}
+
+/// By how much that air moved in a step (Runge and Kutta, order 2).
+GLOAM_HD Vec3f displacement(const Carrier& v, int i, int j, int k) {
+  const Between b = half_way(v, i, j, k);
   return {interpolate(v.shape, v.velocity.x, b), interpolate(v.shape, v.velocity.y, b),
           interpolate(v.shape, v.velocity.z, b)};
 }
