@@ -143,10 +143,12 @@ struct SoilOptions {
   std::string name = {};                ///< unique
   Vec3 position = {};                   ///< of the middle of its surface at rest [m]
   std::array<double, 2> size = {4, 4};  ///< along x and y [m]
-  double depth = 0.15;                  ///< of soft ground over what is rigid below [m]
-  bool over_ground = false;             ///< lies `depth` above what stands still below `position`
-                                        ///< and thins out at its edges, instead of level
-  std::optional<double> cell = {};      ///< edge of a cell [m]; empty = 0.02, or more in large beds
+  /// Of soft ground over what is rigid below [m]; empty = 0.15, of snow `over_ground` what
+  /// [weather] has let fall, where it says how much.
+  std::optional<double> depth = {};
+  bool over_ground = false;          ///< lies `depth` above what stands still below `position`
+                                     ///< and thins out at its edges, instead of level
+  std::optional<double> cell = {};   ///< edge of a cell [m]; empty = 0.02, or more in large beds
   std::string kind = "dry_sand";     ///< dry_sand sandy_loam clayey_soil lean_clay snow mud lunar
   std::optional<double> n = {};      ///< Bekker's exponent of sinkage
   std::optional<double> k_c = {};    ///< Bekker's cohesive modulus [N/m^(n+1)]

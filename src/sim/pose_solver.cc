@@ -139,7 +139,7 @@ void PoseSolver::fill_soils(const SnapshotData& in, PoseFrame& frame) const {
     append_soil_vertices(
         world_->soils[i],
         field != nullptr ? std::span<const float>(field->height) : std::span<const float>{},
-        &frame.vertices);
+        in.time, &frame.vertices);
   }
 }
 

@@ -3,9 +3,11 @@
 // set is a pure function of (seed, time): nothing is kept from one instant to the next.
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "base/vec.h"
+#include "world/gusts.h"
 #include "world/medium_description.h"
 
 namespace gloam {
@@ -15,6 +17,9 @@ struct ParticleClass {
   float diameter = 0;    ///< [m]
   float number = 0;      ///< mean, of Poisson's law [1/m³]
   float fall_speed = 0;  ///< in still air [m/s]
+
+  /// With which they follow the air's velocity, of what falls by its drag [s].
+  double lag() const { return static_cast<double>(fall_speed) / 9.81; }
 };
 
 enum class ParticleKind : uint8_t {
@@ -26,6 +31,7 @@ struct ParticleSet {
   ParticleKind kind = ParticleKind::kDrop;
   std::vector<ParticleClass> classes;  ///< from small to large
   Vec3f wind;                          ///< mean, that carries them all [m/s]
+  std::shared_ptr<const Gusts> gusts;  ///< that come to it; null = none
   uint64_t seed = 0;
 
   /// Mean share of a view that they cover, per metre [1/m].

@@ -32,6 +32,19 @@ struct SplashDroplet {
 };
 SplashDroplet splash_droplet(const ParticleClass& kind, const Splash& splash, int number);
 
+/// The thin wall that stands around the impact for some hundredths of a second, and its rim.
+struct Crown {
+  float radius = 0, rim_radius = 0, height = 0;  ///< at its foot; of the rim [m]
+  float rim = 0;                                 ///< thickness [m]
+  float cover = 0;                               ///< of what is behind the rim; 0 = it is gone
+};
+inline constexpr float kWallCover = 0.25f;  ///< of the wall's, over the rim's
+
+/// `t`: after the impact [s]. On a film as deep as the drop is wide its radius is that of Yarin and
+/// Weiss 1995, "Impact of drops on solid surfaces: self-similar capillary waves, and splashing as a
+/// new type of kinematic discontinuity". How high it rises and when it is gone is chosen.
+Crown crown_at(const ParticleClass& kind, float t);
+
 /// After which the last droplet has fallen back to level ground [s].
 double splash_life(const ParticleClass& kind);
 

@@ -5,16 +5,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory>
 #include <numbers>
 
 #include "scene/weather_fields.h"
+#include "world/fallen_snow.h"
+#include "world/ground_below.h"
 
 namespace gloam {
 namespace {
 
-constexpr double kUsualCell = 0.02;  // [m]
-constexpr double kUsualCells = 6e4;  // at most, unless a cell is asked for
+constexpr double kUsualCell = 0.02;   // [m]
+constexpr double kUsualDepth = 0.15;  // [m]
+constexpr double kUsualCells = 6e4;   // at most, unless a cell is asked for
 constexpr double kMostSoilCells = 5e5;
 constexpr double kGroundCell = 0.1;   // between looks for the ground [m]
 constexpr double kThinEdge = 0.3;     // over which a bed over ground thins out [m]
@@ -65,66 +67,31 @@ bool overlap(const SoilDescription& a, const SoilDescription& b) {
          std::abs(a.level - b.level) < std::max(a.depth, b.depth);
 }
 
-/// Heights of what stands still and can be touched, below `from`: by rays a tenth of a metre or
-/// more apart, linear in between.
-class GroundBelow {
- public:
-  GroundBelow(const mjModel& m, const SoilDescription& soil, double from) {
-    nx_ = std::max(static_cast<int>(soil.size_x / std::max(kGroundCell, soil.dx)), 1);
-    ny_ = std::max(static_cast<int>(soil.size_y / std::max(kGroundCell, soil.dy)), 1);
-    const std::unique_ptr<mjData, void (*)(mjData*)> data{mj_makeData(&m), mj_deleteData};
-    mj_kinematics(&m, data.get());
-    for (int j = 0; j <= ny_; ++j)
-      for (int i = 0; i <= nx_; ++i)
-        heights_.push_back(look(m, *data, soil.low_x() + soil.size_x * i / nx_,
-                                soil.low_y() + soil.size_y * j / ny_, from));
-  }
+Error no_ground(const SoilOptions& o) {
+  return soil_error(o, "there is no ground below all of it",
+                    "'position' is where the ground is looked for, downwards: raise it, or make "
+                    "'size' smaller");
+}
 
-  bool everywhere() const {
-    return std::all_of(heights_.begin(), heights_.end(), [](double z) { return z > -1e9; });
+Status lay_fallen(const SoilOptions& o, const WeatherOptions& weather, const mjModel& m,
+                  SoilDescription* soil) {
+  if (!lay_fallen_snow(weather, m, o.position.z, soil)) return no_ground(o);
+  if (std::all_of(soil->share.begin(), soil->share.end(), [](float s) { return s <= 0; })) {
+    return soil_error(o, "no snow falls on any of it",
+                      "something is above it: move it, or raise 'position', from which the ground "
+                      "is looked for, downwards");
   }
-  /// `u`, `v`: over the bed, 0 … 1.
-  double at(double u, double v) const {
-    const double x = std::clamp(u * nx_, 0.0, nx_ - 1e-9), y = std::clamp(v * ny_, 0.0, ny_ - 1e-9);
-    const int i = static_cast<int>(x), j = static_cast<int>(y);
-    const double fx = x - i, fy = y - j;
-    const auto h = [&](int a, int b) {
-      return heights_[static_cast<size_t>(b) * static_cast<size_t>(nx_ + 1) +
-                      static_cast<size_t>(a)];
-    };
-    return (h(i, j) * (1 - fx) + h(i + 1, j) * fx) * (1 - fy) +
-           (h(i, j + 1) * (1 - fx) + h(i + 1, j + 1) * fx) * fy;
-  }
-
- private:
-  static double look(const mjModel& m, const mjData& d, double x, double y, double from) {
-    constexpr double down[3] = {0, 0, -1};
-    constexpr int kMostLayers = 32;  // of what a ray passes through
-    for (int i = 0; i < kMostLayers; ++i) {
-      const double p[3] = {x, y, from};
-      int geom = -1;
-      const double distance = mj_ray(&m, &d, p, down, nullptr, 1, -1, &geom, nullptr);
-      if (geom < 0) return -1e10;
-      from -= distance;
-      const bool still = m.body_weldid[m.geom_bodyid[geom]] == 0;
-      const bool felt = m.geom_contype[geom] != 0 || m.geom_conaffinity[geom] != 0;
-      if (still && felt) return from;
-      from -= 1e-6;
-    }
-    return -1e10;
-  }
-
-  int nx_ = 1, ny_ = 1;
-  std::vector<double> heights_;
-};
+  return {};
+}
 
 Status lay_over_ground(const SoilOptions& o, const mjModel& m, SoilDescription* soil) {
-  const GroundBelow ground(m, *soil, o.position.z);
-  if (!ground.everywhere()) {
-    return soil_error(o, "there is no ground below all of it",
-                      "'position' is where the ground is looked for, downwards: raise it, or make "
-                      "'size' smaller");
-  }
+  const auto along = [](double size, double cell) {
+    return std::max(static_cast<int>(size / std::max(kGroundCell, cell)), 1);
+  };
+  const GroundBelow ground(m,
+                           {soil->low_x(), soil->low_y(), soil->size_x, soil->size_y, o.position.z},
+                           along(soil->size_x, soil->dx), along(soil->size_y, soil->dy), false);
+  if (!ground.everywhere()) return no_ground(o);
   soil->level = -1e10;
   for (int j = 0; j < soil->ny; ++j) {
     for (int i = 0; i < soil->nx; ++i) {
@@ -133,6 +100,7 @@ Status lay_over_ground(const SoilOptions& o, const mjModel& m, SoilDescription* 
           std::min(std::min(u, 1 - u) * soil->size_x, std::min(v, 1 - v) * soil->size_y);
       const double full = std::clamp(to_edge / kThinEdge, kLeastDepth, 1.0);
       const double z = ground.at(u, v) + soil->depth * full;
+      soil->share.push_back(static_cast<float>(full));
       soil->rest.push_back(static_cast<float>(z));
       soil->level = std::max(soil->level, z);
     }
@@ -140,12 +108,14 @@ Status lay_over_ground(const SoilOptions& o, const mjModel& m, SoilDescription* 
   return {};
 }
 
-Result<SoilDescription> describe_soil(const SoilOptions& o, const mjModel& m) {
+Result<SoilDescription> describe_soil(const SoilOptions& o,
+                                      const std::optional<WeatherOptions>& weather,
+                                      const mjModel& m) {
   SoilDescription soil;
   soil.name = o.name;
   soil.kind = o.kind;
   soil.x = o.position.x, soil.y = o.position.y, soil.level = o.position.z;
-  soil.size_x = o.size[0], soil.size_y = o.size[1], soil.depth = o.depth;
+  soil.size_x = o.size[0], soil.size_y = o.size[1], soil.depth = o.depth.value_or(kUsualDepth);
   soil.loc = o.loc;
   const double usual = std::max(kUsualCell, std::sqrt(o.size[0] * o.size[1] / kUsualCells));
   const double cell = o.cell.value_or(usual);
@@ -161,7 +131,11 @@ Result<SoilDescription> describe_soil(const SoilOptions& o, const mjModel& m) {
   soil.strength = strength_of(o);
   if (soil.strength.k_c == 0 && soil.strength.k_phi == 0)
     return soil_error(o, "k_c and k_phi are both 0", "one of them carries what stands on it");
-  if (o.over_ground) GLOAM_TRY_STATUS(lay_over_ground(o, m, &soil));
+  if (is_fallen_snow(o, weather)) {
+    GLOAM_TRY_STATUS(lay_fallen(o, *weather, m, &soil));
+  } else if (o.over_ground) {
+    GLOAM_TRY_STATUS(lay_over_ground(o, m, &soil));
+  }
   return soil;
 }
 
@@ -177,7 +151,7 @@ SoilStrength soil_strength(const std::string& kind) {
 Result<std::vector<SoilDescription>> describe_soils(const Scene& scene, const mjModel& model) {
   std::vector<SoilDescription> soils;
   for (const SoilOptions& o : scene.soils) {
-    GLOAM_TRY(SoilDescription soil, describe_soil(o, model));
+    GLOAM_TRY(SoilDescription soil, describe_soil(o, scene.weather, model));
     for (const SoilDescription& other : soils) {
       if (!overlap(soil, other)) continue;
       return soil_error(o, fmt::format("it overlaps soil '{}'", other.name),

@@ -4,6 +4,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -30,24 +31,40 @@ struct SoilDescription {
   std::string name, kind;
   double x = 0, y = 0;            ///< middle [m]
   double size_x = 0, size_y = 0;  ///< [m]
-  double depth = 0;               ///< [m]
+  double depth = 0;               ///< where all of it lies [m]
+  double growth = 0;              ///< of `depth`, where snow falls [m/s]
+  bool fallen = false;            ///< it is what [weather] has let fall
   int nx = 0, ny = 0;             ///< cells, rows along y
   double dx = 0, dy = 0;          ///< of a cell [m]
   double level = 0;               ///< z of a level surface, or of the highest cell's [m]
   std::vector<float> rest;        ///< z of each cell's surface at rest [m]; empty = `level`
+  std::vector<float> share;       ///< of `depth` that lies in each cell, 0 … 1; empty = 1
   SoilStrength strength;
   SourceLoc loc;
 
   double low_x() const { return x - size_x / 2; }
   double low_y() const { return y - size_y / 2; }
   size_t cells() const { return static_cast<size_t>(nx) * static_cast<size_t>(ny); }
+  /// At time 0; `level`, `rest` and `depth` are of then.
   double rest_of(size_t cell) const { return rest.empty() ? level : double{rest[cell]}; }
+  double share_of(size_t cell) const { return share.empty() ? 1 : double{share[cell]}; }
+  /// What has come to rest_of() by a time at which `fallen_depth` = growth * time [m].
+  double depth_of(size_t cell, double fallen_depth) const {
+    return share_of(cell) * (depth + fallen_depth);
+  }
 };
+
+/// Height of a track against the undisturbed surface [m], of which what falls evens out: `kept` is
+/// it with what had fallen when it was made added away from 0, `fallen` what has by now [m].
+inline float track_height(float kept, float fallen) {
+  return kept < 0 ? std::min(kept + fallen, 0.0f) : std::max(kept - fallen, 0.0f);
+}
 
 /// What was measured of a kind of ground, as docs/soil.md has it. `kind`: of kSoilKinds.
 SoilStrength soil_strength(const std::string& kind);
 
-/// Errors: beds that overlap, of too many cells, over ground where there is none.
+/// Errors: beds that overlap, of too many cells, over ground where there is none, snow that falls
+/// where no sky is open.
 Result<std::vector<SoilDescription>> describe_soils(const Scene& scene, const mjModel& model);
 
 }  // namespace gloam

@@ -49,6 +49,16 @@ MaterialDescription material_of(const SoilDescription& soil, RenderDescription* 
   return material;
 }
 
+/// Height over the ground at which fallen snow is drawn: what is too thin to hide it lies under it
+/// and is the whiteness that the weather gives the ground, so that a bed's border is no change of
+/// colour. `depth`: of snow [m].
+double seen_height(double depth) {
+  constexpr double kThin = 0.025;  // [m]
+  return depth - kThin * std::max(1 - depth / (4 * kThin), 0.0);
+}
+// Of what is left in a print that goes down to the ground [m].
+constexpr double kCrust = 0.003;
+
 /// Vertices at the middles of cells, those of the outer cells moved out to the edges, and one more
 /// all around that the sides go down to.
 struct SoilMesh {
@@ -61,7 +71,8 @@ struct SoilMesh {
     return i <= 1 ? low : i >= n ? low + d * n : low + d * (i - 0.5);
   }
   template <class Visit>  // (x, y, z)
-  void each_vertex(std::span<const float> change, const Visit& visit) const {
+  void each_vertex(std::span<const float> tracks, double time, const Visit& visit) const {
+    const double fallen = soil.growth * time;
     for (int j = 0; j < ny; ++j) {
       const double y = place_along(j, soil.ny, soil.low_y(), soil.dy);
       for (int i = 0; i < nx; ++i) {
@@ -69,12 +80,15 @@ struct SoilMesh {
             static_cast<size_t>(cell_along(j, soil.ny)) * static_cast<size_t>(soil.nx) +
             static_cast<size_t>(cell_along(i, soil.nx));
         const bool below = i == 0 || j == 0 || i == nx - 1 || j == ny - 1;
-        double z = soil.rest_of(cell);
-        if (below) {
-          z -= soil.depth;
-        } else if (!change.empty()) {
-          z += double{change[cell]};
+        const double depth = soil.depth_of(cell, fallen);
+        const double ground = soil.rest_of(cell) + soil.share_of(cell) * fallen - depth;
+        double height = soil.fallen ? seen_height(below ? 0 : depth) : below ? 0 : depth;
+        if (!below && !tracks.empty()) {
+          const auto here = static_cast<float>(soil.share_of(cell) * fallen);
+          const double track = height + double{track_height(tracks[cell], here)};
+          height = soil.fallen ? std::max(track, std::min(height, kCrust)) : track;
         }
+        const double z = ground + height;
         visit(static_cast<float>(place_along(i, soil.nx, soil.low_x(), soil.dx)),
               static_cast<float>(y), static_cast<float>(z));
       }
@@ -85,7 +99,7 @@ struct SoilMesh {
 TriangleMesh surface_of(const SoilDescription& soil) {
   const SoilMesh grid(soil);
   TriangleMesh mesh;
-  grid.each_vertex({}, [&](float x, float y, float z) { mesh.positions.push_back({x, y, z}); });
+  grid.each_vertex({}, 0, [&](float x, float y, float z) { mesh.positions.push_back({x, y, z}); });
   add_grid_triangles(grid.nx, &mesh);
   return mesh;
 }
@@ -94,10 +108,10 @@ TriangleMesh surface_of(const SoilDescription& soil) {
 
 int soil_vertices(const SoilDescription& soil) { return (soil.nx + 2) * (soil.ny + 2); }
 
-void append_soil_vertices(const SoilDescription& soil, std::span<const float> change,
+void append_soil_vertices(const SoilDescription& soil, std::span<const float> tracks, double time,
                           std::vector<float>* out) {
   SoilMesh(soil).each_vertex(
-      change, [out](float x, float y, float z) { out->insert(out->end(), {x, y, z}); });
+      tracks, time, [out](float x, float y, float z) { out->insert(out->end(), {x, y, z}); });
 }
 
 void author_soils(const std::vector<SoilDescription>& soils, int first_vertex, LabelTable* labels,

@@ -14,8 +14,8 @@ namespace gloam {
 /// Vertices of a bed in PoseFrame::vertices; those of beds follow, in their order, all waters'.
 int soil_vertices(const SoilDescription& soil);
 
-/// Appends x, y, z of each. `change`: of the height of each cell [m], empty = none.
-void append_soil_vertices(const SoilDescription& soil, std::span<const float> change,
+/// Appends x, y, z of each at a time [s]. `tracks`: of each cell, for track_height(), empty = none.
+void append_soil_vertices(const SoilDescription& soil, std::span<const float> tracks, double time,
                           std::vector<float>* out);
 
 /// Appends a material and a deformable for each bed. `first_vertex`: of the first.

@@ -7,6 +7,7 @@
 
 #include "base/rng.h"
 #include "base/text.h"
+#include "world/fallen_snow.h"
 #include "world/medium_presets.h"
 #include "world/render_description.h"
 #include "world/volume_pattern.h"
@@ -16,8 +17,6 @@ namespace {
 
 // Water that a surface holds before it runs off, as rain: a porous millimetre [m].
 constexpr double kHeldWater = 1e-3;
-// Fresh snow is a tenth as dense as water (the meteorologists' 10 to 1).
-constexpr double kFreshSnow = 10;
 constexpr float kMargin = 400;            // [m] of air around the place
 constexpr float kAbove = 15;              // [m] of air over its lowest point, at least
 constexpr double kPerHour = 1e-3 / 3600;  // mm/h as m/s
@@ -158,6 +157,7 @@ Status author_weather(const WeatherOptions& options, const WindDescription& wind
   const auto add = [&](ParticleSet particles) {
     particles.wind = {static_cast<float>(wind.speed * wind.along_x),
                       static_cast<float>(wind.speed * wind.along_y), 0};
+    if (wind.gusts > 0) particles.gusts = std::make_shared<const Gusts>(wind);
     particles.seed = seed + weather.particles.size();
     add_falling(particles, bounds, out);
     weather.particles.push_back(std::move(particles));
@@ -166,6 +166,7 @@ Status author_weather(const WeatherOptions& options, const WindDescription& wind
     add(rain_particles(rain));
     for (const ParticleClass& drop : weather.particles.back().classes)
       if (drop.diameter >= 1e-3f) weather.impacts += drop.number * drop.fall_speed;
+    weather.drips = find_drip_edges(*weather.shelter, rain * kPerHour);
   }
   if (snow > 0) add(snow_particles(snow));
   // From soaked without a film to half of what is level under water in a cloudburst.
@@ -175,7 +176,7 @@ Status author_weather(const WeatherOptions& options, const WindDescription& wind
   // Without rain it dries, at half a millimetre an hour.
   weather.wetting_time = static_cast<float>(kHeldWater / (std::max(rain, 0.5) * kPerHour));
   weather.snow_start = static_cast<float>(options.snow_cover.value_or(0));
-  weather.snow_rate = static_cast<float>(kFreshSnow * snow * kPerHour);
+  weather.snow_rate = static_cast<float>(snow_growth(options));
   weather.lens_drops = static_cast<float>(options.lens_drops.value_or(0));
   weather.drops_fall_on_lenses = rain > 0;
   return {};

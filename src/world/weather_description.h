@@ -7,6 +7,7 @@
 
 #include "gloam/scene_effect.h"
 #include "world/particle_set.h"
+#include "world/roof_drips.h"
 #include "world/shelter_map.h"
 #include "world/wind_description.h"
 
@@ -16,6 +17,7 @@ struct WeatherDescription {
   std::vector<ParticleSet> particles;
   /// Nothing that falls gets under it; null = nothing falls or lies.
   std::shared_ptr<const ShelterMap> shelter;
+  std::vector<DripEdge> drips;               ///< where rain falls from edges
   float wetness_start = 0, wetness_end = 0;  ///< of what the sky reaches, 0 … 1
   float wetting_time = 1;                    ///< time constant from one to the other [s]
   float impacts = 0;  ///< of drops of a millimetre and more on level ground [1/(m² s)]

@@ -23,6 +23,16 @@ SceneBuilder strewn(float diameter, float number, float fall_speed, float sky = 
   return b;
 }
 
+/// Over all that is seen.
+std::shared_ptr<const ShelterMap> roof_at(float height) {
+  auto roof = std::make_shared<ShelterMap>();
+  roof->low = {-100, -100};
+  roof->cell = 50;
+  roof->nx = roof->ny = 4;
+  roof->height.assign(16, height);
+  return roof;
+}
+
 struct Drawn {
   std::vector<Vec3f> before, after;
 };
@@ -114,12 +124,7 @@ TEST(Particles, AreHiddenByWhatIsNearer) {
 
 TEST(Particles, DoNotFallUnderARoof) {
   SceneBuilder b = strewn(3e-3f, 300, 6);
-  auto roof = std::make_shared<ShelterMap>();
-  roof->low = {-100, -100};
-  roof->cell = 50;
-  roof->nx = roof->ny = 4;
-  roof->height.assign(16, 5.0f);
-  b.description.weather.shelter = roof;
+  b.description.weather.shelter = roof_at(5);
   EXPECT_EQ(deviation(draw_strewn(b, 0.01, 1, 20, kLevel)), 0);
   EXPECT_GT(deviation(draw_strewn(b, 0.01, 1, 20, look_at({0, 0, 7}, {10, 0, 7}))), 0);
 }
@@ -163,13 +168,35 @@ TEST(Particles, SplashOnTheGroundButNotUnderARoof) {
   const int slow = lit(draw_strewn(b, 0.01, 2, 0, X_WC));
   EXPECT_GT(lit(open), slow + 200) << "no splashes are seen";
   b = splashing();
-  auto roof = std::make_shared<ShelterMap>();
-  roof->low = {-100, -100};
-  roof->cell = 50;
-  roof->nx = roof->ny = 4;
-  roof->height.assign(16, 3);
-  b.description.weather.shelter = roof;
+  b.description.weather.shelter = roof_at(3);
   EXPECT_EQ(lit(draw_strewn(b, 0.01, 2, 0, X_WC)), 0);
+}
+
+// A roof's edge at x = 3 m, 2.5 m up, seen from beside it. No rain is near enough to be drawn.
+TEST(Particles, DripFromEdges) {
+  SceneBuilder b = strewn(3e-4f, 1e-3f, 1);
+  b.add(ShapeType::kBox, {50, 50, 0.01f}, translation({0, 0, -0.01f}), b.add_diffuse({0, 0, 0}));
+  b.add(ShapeType::kBox, {1, 1, 0.05f}, translation({4, 0, 2.45f}), b.add_diffuse({0, 0, 0}));
+  const Affine3f X_WC = look_at({2.9f, -3, 1.5f}, {2.9f, 0, 1.5f});
+  const auto lit = [](const Drawn& d, int from, int to) {
+    int count = 0;
+    for (int y = 0; y < kHeight; ++y)
+      for (int x = from; x < to; ++x)
+        count += d.after[static_cast<size_t>(y * kWidth + x)].y > 0.5f;
+    return count;
+  };
+  EXPECT_EQ(lit(draw_strewn(b, 0.005, 2, 0, X_WC), 0, kWidth), 0);
+  for (int i = -8; i < 8; ++i)
+    b.description.weather.drips.push_back(
+        {{3.03f, 0.1f * static_cast<float>(i) + 0.05f, 2.5f}, {-1, 0}, 0.1f, 1e-6f});
+  const Drawn drips = draw_strewn(b, 0.005, 2, 0, X_WC);
+  // The edge is ten centimetres to the right of the middle, 5 to 10 px.
+  EXPECT_GT(lit(drips, kWidth / 2 + 3, kWidth / 2 + 14), 100);
+  EXPECT_LT(lit(drips, 0, kWidth / 2 - 10), 40) << "splashes alone";
+  set_thread_count(1);
+  EXPECT_TRUE(drips.after == draw_strewn(b, 0.005, 2, 0, X_WC).after) << "by the number of threads";
+  set_thread_count(0);
+  EXPECT_FALSE(drips.after == draw_strewn(b, 0.005, 2.1, 0, X_WC).after) << "they hang in the air";
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ class SoilBed {
   /// Goes on with the cells of another bed, if that is one of the same name, place and grid.
   bool take_over(const SoilBed& before);
 
-  /// Does a collider's box reach into the bed?
+  /// Does a collider's box reach into the bed at data.time?
   bool is_near(const mjModel& model, const mjData& data, int geom) const;
 
   /// Finds what `colliders` touch at the beginning of step `step`, in order of geoms, and what that
@@ -59,8 +59,10 @@ class SoilBed {
   };
   void find_bodies();
   std::span<SoilLanes> lanes_of(const Body& body);
-  void press_cell(uint32_t step, const SoilTouch& touch, const SoilLanes& lanes, size_t i,
-                  const double* motion);
+  void press_cell(uint32_t step, double dt, const SoilTouch& touch, const SoilLanes& lanes,
+                  size_t i, const double* motion);
+  void fill_in(uint32_t step, double dt, const SoilTouch& touch, SoilCell* cell) const;
+  float lower_track(const SoilTouch& touch);
   void push_aside(const SoilTouch& touch, const double* velocity, double volume);
   void slide(int cell);
   void push_body(const mjModel& model, mjData& data, const Body& body, uint32_t step,

@@ -26,6 +26,7 @@ struct SoilTouch {
   double p[3] = {};      ///< on the collider's underside, world [m]
   double slope[2] = {};  ///< dz/dx, dz/dy of it
   double depth = 0;      ///< below the undisturbed surface [m]
+  double fallen = 0;     ///< that surface's height over that of time 0 [m]
 };
 
 class SoilContacts {
@@ -35,8 +36,8 @@ class SoilContacts {
 
   /// Forgets what it has seen.
   void reset();
-  /// Begins an instant.
-  void clear();
+  /// Begins an instant, before which so much has fallen where all of it lies [m].
+  void clear(double fallen);
   /// Adds what a collider touches. Its pose is set.
   void add(const ColliderBottom& collider);
   /// After the last add(): colliders in the same or neighbouring cells make one patch.
@@ -70,17 +71,18 @@ class SoilContacts {
   // What a collider covered when it was looked at last: good until it has moved by a part of that.
   struct Footprint {
     bool known = false;
-    double p[3] = {}, R[9] = {};    // of the collider then
-    double anchor[3] = {};          // in its frame
-    double deepest = 0, size = 0;   // [m]
-    int low[2] = {}, high[2] = {};  // cells along x and y, inclusive
-    std::vector<SoilTouch> touches;
-    std::vector<Line> outline;  // from low y to high
-    uint64_t number = 0;        // of the look
-    uint64_t patch_number = 0;  // of the looks of all of
-    Patch patch;                // that begins with it
-    std::vector<double> rise;   // of the underside over each touch since then [m]
-    int parent = 0;             // another of the same patch among here_, or itself
+    double p[3] = {}, R[9] = {};     // of the collider then
+    double anchor[3] = {};           // in its frame
+    double deepest = 0, size = 0;    // [m]
+    double fallen = 0;               // until then [m]
+    int low[2] = {}, high[2] = {};   // cells along x and y, inclusive
+    std::vector<SoilTouch> touches;  // depths below the surface of time 0
+    std::vector<Line> outline;       // from low y to high
+    uint64_t number = 0;             // of the look
+    uint64_t patch_number = 0;       // of the looks of all of
+    Patch patch;                     // that begins with it
+    std::vector<double> rise;        // of the underside over each touch since then [m]
+    int parent = 0;                  // another of the same patch among here_, or itself
   };
   // Of many places under a collider.
   struct Samples {
@@ -122,6 +124,7 @@ class SoilContacts {
   const SoilDescription& soil_;
   std::vector<int> print_of_;  // geom, row of prints_
   std::vector<Footprint> prints_;
+  double fallen_ = 0;               // [m]
   std::vector<int> here_, before_;  // rows of prints_: of this instant and of the last
   bool changed_ = true;
   std::vector<SoilTouch> row_;  // of cells along x, sums

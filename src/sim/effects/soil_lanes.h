@@ -18,6 +18,7 @@ struct SoilLanes {
   double area[kSide] = {}, depth[kSide] = {};       // [m²], [m]
   double arm[3][kSide] = {}, slope[2][kSide] = {};  // from the point [m]; of the underside
   double modulus[kSide] = {};                       // k_c / b + k_phi [N/m^(n+2)]
+  double bottom[kSide] = {};                        // depth of the bed [m]
   double per_steep[kSide] = {},
          stretch[kSide] = {};      // 1 / (d d), and the area over that from above
   double loading[kSide] = {};      // on the loading curve, as it is now [Pa]
@@ -30,23 +31,26 @@ struct SoilLanes {
   double f[3][kSide] = {}, across[kSide] = {}, along[kSide] = {};  // [N], [N s/m]
   double load[kSide] = {}, stiffness[kSide] = {};                  // [N], [N s/m]
 
-  void set(size_t i, const SoilTouch& touch, const double* point, double modulus_of_patch) {
-    area[i] = touch.area, depth[i] = touch.depth, modulus[i] = modulus_of_patch;
+  /// `depth_of_bed`: where it is 0, nothing presses.
+  void set(size_t i, const SoilTouch& touch, const double* point, double modulus_of_patch,
+           double depth_of_bed) {
+    area[i] = depth_of_bed > 0 ? touch.area : 0.0;
+    depth[i] = touch.depth, modulus[i] = modulus_of_patch, bottom[i] = depth_of_bed;
     for (int a = 0; a < 3; ++a) arm[a][i] = touch.p[a] - point[a];
     for (int a = 0; a < 2; ++a) slope[a][i] = touch.slope[a];
   }
 
-  void set(size_t i, const SoilCell& cell) {
-    sinkage[i] = double{cell.sinkage}, pressure[i] = double{cell.pressure};
+  void set(size_t i, const SoilCell& cell, double fallen) {
+    sinkage[i] = cell.sinkage_under(fallen), pressure[i] = double{cell.pressure};
     for (int a = 0; a < 3; ++a) shear[a][i] = double{cell.shear[a]};
   }
 
   /// What the present does to cells: loading, shearing, share.
-  void find_loading(const SoilDescription& soil, const double* motion, double dt);
+  void find_loading(const SoilStrength& s, const double* motion, double dt);
   /// After set() of the cells.
   void find_unloading(const SoilStrength& s);
   /// Forces at the end of a step, linear about `motion`, the body's there.
-  void find_forces(const SoilDescription& soil, const double* motion, double dt);
+  void find_forces(const SoilStrength& s, const double* motion, double dt);
 
  private:
   struct Slip {
@@ -65,20 +69,20 @@ struct SoilLanes {
     out.speed = std::sqrt(dot3(out.v, out.v));
     return out;
   }
-  static double loading_of(const SoilDescription& soil, double modulus, double z) {
+  double loading_at(size_t i, double n, double z) const {
     constexpr double kLeast = 1e-12;  // [m]
-    z = z < soil.depth ? z : soil.depth;
-    return modulus * power(z > kLeast ? z : kLeast, soil.strength.n);
+    z = z < bottom[i] ? z : bottom[i];
+    return modulus[i] * power(z > kLeast ? z : kLeast, n);
   }
 };
 
-inline void SoilLanes::find_loading(const SoilDescription& soil, const double* motion, double dt) {
+inline void SoilLanes::find_loading(const SoilStrength& s, const double* motion, double dt) {
   constexpr double kNoWay = 1e-9;  // [m]
-  const double per_way = 1 / soil.strength.shear;
+  const double per_way = 1 / s.shear;
   for (size_t i = 0; i < kSide; ++i) {
     const double steep = 1 + slope[0][i] * slope[0][i] + slope[1][i] * slope[1][i];
     per_steep[i] = 1 / steep, stretch[i] = std::sqrt(steep);
-    loading[i] = loading_of(soil, modulus[i], depth[i]);
+    loading[i] = loading_at(i, s.n, depth[i]);
     const Slip slip = slip_at(i, motion);
     const double way = slip.speed * dt, moves = way > kNoWay ? 1.0 : 0.0;
     share[i] = moves * (1 - exponential(-way * per_way));
@@ -98,18 +102,17 @@ inline void SoilLanes::find_unloading(const SoilStrength& s) {
   }
 }
 
-inline void SoilLanes::find_forces(const SoilDescription& soil, const double* motion, double dt) {
+inline void SoilLanes::find_forces(const SoilStrength& s, const double* motion, double dt) {
   constexpr double kStill = 1e-9;  // [m]
-  const SoilStrength& s = soil.strength;
   const double per_way = 1 / s.shear;
   for (size_t i = 0; i < kSide; ++i) {
     const Slip slip = slip_at(i, motion);
     const double z = depth[i] - dt * slip.sinking;
-    const double curve = loading_of(soil, modulus[i], z);
-    const double line = pressure[i] - unloading[i] * (sinkage[i] - z);
-    const bool unloads = (sinkage[i] > 0) & (line < curve);
-    const double p = unloads ? line : curve;
-    const double stiff = unloads ? unloading[i] : (z < soil.depth ? s.n * curve / z : 0.0);
+    const double curve = loading_at(i, s.n, z), per_z = curve / (z > 0 ? z : 1.0);
+    const SoilLine line = unloading_line(sinkage[i], pressure[i], unloading[i], per_z, z);
+    const bool unloads = (pressure[i] > 0) & (line.p < curve);
+    const double p = unloads ? line.p : curve;
+    const double stiff = unloads ? line.slope : (z < bottom[i] ? s.n * per_z : 0.0);
     const double on = ((z > 0) & (p > 0)) ? area[i] : 0.0;
     stiffness[i] = on * stiff * dt;
     load[i] = on * p + stiffness[i] * slip.sinking;

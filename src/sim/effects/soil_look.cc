@@ -25,8 +25,9 @@ bool SoilContacts::is_below(const ColliderBottom& collider, double x, double y) 
   if (soil_.rest.empty()) return z < soil_.level;
   const int i = std::clamp(static_cast<int>((x - soil_.low_x()) / soil_.dx), 0, soil_.nx - 1);
   const int j = std::clamp(static_cast<int>((y - soil_.low_y()) / soil_.dy), 0, soil_.ny - 1);
-  return z < double{soil_.rest[static_cast<size_t>(j) * static_cast<size_t>(soil_.nx) +
-                               static_cast<size_t>(i)]};
+  const size_t cell =
+      static_cast<size_t>(j) * static_cast<size_t>(soil_.nx) + static_cast<size_t>(i);
+  return z < soil_.rest_of(cell) + soil_.share_of(cell) * fallen_;
 }
 
 void SoilContacts::look(const ColliderBottom& collider, Footprint* print) {
@@ -36,8 +37,9 @@ void SoilContacts::look(const ColliderBottom& collider, Footprint* print) {
   std::copy_n(collider.rotation(), 9, print->R);
   print->touches.clear(), print->rise.clear(), print->outline.clear();
   print->deepest = 0;
+  print->fallen = fallen_;
   double low[2], high[2];
-  collider.box_below(soil_.level, low, high);
+  collider.box_below(soil_.level + fallen_, low, high);
   const int lines = lines_of(soil_.dy, high[1] - low[1]);
   find_lines(collider, lines, low, high);
   if (lines_.empty()) return;
@@ -201,8 +203,9 @@ void SoilContacts::flush(int row, const ColliderBottom& collider, Footprint* pri
       const double per_area = 1 / touch.area;
       for (double& x : touch.p) x *= per_area;
       for (double& x : touch.slope) x *= per_area;
-      touch.depth = soil_.rest_of(static_cast<size_t>(touch.cell)) - touch.p[2];
-      print->deepest = std::max(print->deepest, touch.depth);
+      const auto cell = static_cast<size_t>(touch.cell);
+      touch.depth = soil_.rest_of(cell) - touch.p[2];
+      print->deepest = std::max(print->deepest, touch.depth + soil_.share_of(cell) * fallen_);
       print->rise.push_back(0);
     }
     sum = {};

@@ -110,8 +110,9 @@ void SoilBed::push_body(const mjModel& m, mjData& d, const Body& body, uint32_t 
                         ResponseSolver* solver) {
   const std::span<SoilLanes> lanes = lanes_of(body);
   for (size_t n = 0; n < body.count; ++n) {
-    const int cell = contacts_.touches()[body.first + n].cell;
-    lanes[n / SoilLanes::kSide].set(n % SoilLanes::kSide, cells_[static_cast<size_t>(cell)]);
+    const SoilTouch& touch = contacts_.touches()[body.first + n];
+    lanes[n / SoilLanes::kSide].set(n % SoilLanes::kSide, cells_[static_cast<size_t>(touch.cell)],
+                                    touch.fallen);
   }
   for (SoilLanes& four : lanes) four.find_unloading(soil_.strength);
   // As it would move without this bed: with all else as in the last step.
@@ -128,7 +129,7 @@ void SoilBed::push_body(const mjModel& m, mjData& d, const Body& body, uint32_t 
   for (int i = 0; i < kMostIterations; ++i) {
     Sums sums;
     for (SoilLanes& four : lanes) {
-      four.find_forces(soil_, motion, dt);
+      four.find_forces(soil_.strength, motion, dt);
       sums.add(four);
     }
     // motion = free + dt inverse * wrench.
@@ -216,7 +217,7 @@ double SoilBed::limit_work(const Body& body, const double* free, const double* c
   double stored = 0;
   for (const SoilLanes& l : lanes_of(body)) {
     for (size_t i = 0; i < SoilLanes::kSide; ++i) {
-      if (l.sinkage[i] > 0)
+      if (l.pressure[i] > 0)
         stored += l.area[i] * l.pressure[i] * l.pressure[i] / (2 * l.unloading[i]);
     }
   }

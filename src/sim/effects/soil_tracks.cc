@@ -13,7 +13,7 @@ void SoilTracks::Box::add(const Box& other) {
 }
 
 SoilTracks::SoilTracks(const SoilDescription& soil)
-    : nx_(soil.nx), ny_(soil.ny), height_(soil.cells()), changed_(nothing()) {
+    : soil_(soil), nx_(soil.nx), ny_(soil.ny), height_(soil.cells()), changed_(nothing()) {
   for (int i = 0; i < kFirstVersions; ++i) {
     versions_.push_back({std::make_shared<SurfaceHeights>(), nothing()});
     versions_.back().heights->height.resize(height_.size());
@@ -36,7 +36,10 @@ void SoilTracks::take_over(const SoilTracks& before) {
 
 void SoilTracks::set_height(int cell, float height) {
   const int x = cell % nx_, y = cell / nx_;
-  height_[static_cast<size_t>(cell)] = height;
+  const float fallen = fallen_on(cell);
+  height_[static_cast<size_t>(cell)] = height < 0   ? height - fallen
+                                       : height > 0 ? height + fallen
+                                                    : 0;
   changed_.add({x, y, x, y});
 }
 

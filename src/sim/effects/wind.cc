@@ -2,48 +2,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
-#include "base/rng.h"
-#include "base/wave_math.h"
 #include "world/visual_pose.h"
 
 namespace gloam {
 namespace {
 
-constexpr double kRoughness = 0.03;           // length [m]
-constexpr double kLowest = 0.1;               // [m]; nearer to the ground the law says nothing
-constexpr double kReference = 10;             // height that winds are told for [m]
-constexpr double kShares[3] = {1, 0.8, 0.5};  // of the standard deviation: along, across, up
-// Integral scales are 8.1, 2.7 and 0.66 of 0.7 times the height, here that of reference.
-constexpr double kScales[3] = {8.1 * 7, 2.7 * 7, 0.66 * 7};  // [m]
-constexpr double kSlowest = 1.0 / 600, kFastest = 5;         // [Hz]
+constexpr double kRoughness = 0.03;  // length [m]
+constexpr double kLowest = 0.1;      // [m]; nearer to the ground the law says nothing
+constexpr double kReference = 10;    // height that winds are told for [m]
 constexpr Rational kGustRate{100, 1};
-
-// Share of Kaimal's variance below a frequency.
-double below(double frequency, double turnover) {
-  return 1 - std::pow(1 + 6 * frequency * turnover, -2.0 / 3);
-}
 
 }  // namespace
 
-Wind::Wind(const WindDescription& wind) : wind_(wind), tones_{} {
-  if (!blows()) return;
-  const RandomStream random{wind.seed, stream_id("wind.gusts")};
-  const double ratio = std::pow(kFastest / kSlowest, 1.0 / kTones);
-  for (uint32_t axis = 0; axis < 3; ++axis) {
-    const double turnover = kScales[axis] / wind.speed;  // [s]
-    const double all = below(kFastest, turnover) - below(kSlowest, turnover);
-    double low = kSlowest;
-    for (uint32_t i = 0; i < kTones; ++i, low *= ratio) {
-      const double share = (below(low * ratio, turnover) - below(low, turnover)) / all;
-      Tone& tone = tones_[axis][i];
-      tone.amplitude = kShares[axis] * wind.gusts * std::sqrt(2 * share);
-      const double frequency = low * std::pow(ratio, random.uniform(i, 2 * axis));
-      tone.omega = 2 * std::numbers::pi * frequency;
-      tone.phase = 2 * std::numbers::pi * random.uniform(i, 2 * axis + 1);
-    }
-  }
+Wind::Wind(const WindDescription& wind) : wind_(wind) {
+  if (blows()) gusts_.emplace(wind);
 }
 
 double Wind::mean_speed(double height) const {
@@ -51,19 +24,7 @@ double Wind::mean_speed(double height) const {
          std::log(kReference / kRoughness);
 }
 
-Vec3 Wind::gust(double time) const {
-  double sum[3] = {};
-  for (size_t axis = 0; axis < 3; ++axis) {
-    double part[kTones];
-    for (size_t i = 0; i < kTones; ++i) {
-      const Tone& tone = tones_[axis][i];
-      part[i] = tone.amplitude * sin_cos(tone.omega * time + tone.phase).cos;
-    }
-    for (const double tone : part) sum[axis] += tone;
-  }
-  const double x = wind_.along_x, y = wind_.along_y;
-  return {sum[0] * x - sum[1] * y, sum[0] * y + sum[1] * x, sum[2]};
-}
+Vec3 Wind::gust(double time) const { return blows() ? gusts_->at(time) : Vec3{}; }
 
 Vec3 Wind::with_mean(Vec3 gust, double height) const {
   const double mean = mean_speed(height);

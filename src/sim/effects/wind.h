@@ -2,16 +2,13 @@
 // Wind with gusts: a pure function of time and height.
 //
 // The mean grows with height by the logarithmic law over open country (Stull 1988, "An Introduction
-// to Boundary Layer Meteorology"; roughness length 3 cm, class 3 of Davenport's, WMO-No. 8). Gusts
-// are stationary Gaussian turbulence with Kaimal's spectra, as IEC 61400-1 (annex B) has them,
-// f S(f) / s² = 4 f L/U / (1 + 6 f L/U)^(5/3), across and upright with 0.8 and 0.5 of the standard
-// deviation along the wind, as sums of sinusoids with random frequencies and phases (Shinozuka and
-// Deodatis 1991). From 1/600 Hz, so that they have the mean of zero over the ten minutes that winds
-// are measured in, to 5 Hz; the same at all heights and places.
+// to Boundary Layer Meteorology"; roughness length 3 cm, class 3 of Davenport's, WMO-No. 8); to
+// that come world/gusts.h.
 
-#include <array>
+#include <optional>
 
 #include "sim/step_schedule.h"
+#include "world/gusts.h"
 #include "world/world.h"
 
 namespace gloam {
@@ -32,12 +29,8 @@ class Wind {
   Vec3 with_mean(Vec3 gust, double height) const;
 
  private:
-  static constexpr int kTones = 64;
-  struct Tone {
-    double amplitude, omega, phase;
-  };
   WindDescription wind_;
-  std::array<std::array<Tone, kTones>, 3> tones_;  // along, across, up
+  std::optional<Gusts> gusts_;  // where it blows
 };
 
 // ICAO's standard atmosphere at sea level, rounded.

@@ -61,7 +61,9 @@ struct OnSoil {
     const SoilDescription& soil = now.data().world->soils[0];
     const auto i = static_cast<size_t>((x - soil.low_x()) / soil.dx);
     const auto j = static_cast<size_t>((y - soil.low_y()) / soil.dy);
-    return double{field->height[j * static_cast<size_t>(soil.nx) + i]};
+    const size_t cell = j * static_cast<size_t>(soil.nx) + i;
+    const double fallen = soil.share_of(cell) * soil.growth * now.time();
+    return double{track_height(field->height[cell], static_cast<float>(fallen))};
   }
 };
 

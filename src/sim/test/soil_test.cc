@@ -7,7 +7,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kG = 9.81;
+constexpr double kEarthG = 9.81;
 
 /// Lowered onto a bed by its weight, against a damper that lets it sink without overshoot.
 struct Lowered {
@@ -15,8 +15,8 @@ struct Lowered {
 };
 Lowered lower(const std::string& kind, const std::string& geom, double half_height, double area,
               double pressure, double expected) {
-  const double mass = pressure * area / kG;
-  const double damping = 3 * mass * std::sqrt(Law(kind).s.n * kG / expected);
+  const double mass = pressure * area / kEarthG;
+  const double damping = 3 * mass * std::sqrt(Law(kind).s.n * kEarthG / expected);
   OnSoil plate(world_with_soil(
       fmt::format("<body pos='.013 .007 {}'><joint type='slide' axis='0 0 1' damping='{}'/>"
                   "<geom {} mass='{}'/></body>",
@@ -30,7 +30,7 @@ Lowered lower(const std::string& kind, const std::string& geom, double half_heig
     before = v;
   }
   const double z = -plate.q(0);
-  return {z, mass * kG * z - lost - mass * before * before / 2};
+  return {z, mass * kEarthG * z - lost - mass * before * before / 2};
 }
 
 std::string round_plate(double radius) {
@@ -54,6 +54,26 @@ TEST(SoilPlates, SlowSinkAsBekkerSaysAndTakeTheEnergyOfIt) {
   }
 }
 
+// Where pressure grows faster than sinkage, the line of a touch by a hair never meets its curve.
+TEST(SoilLaw, IsNotWeakenedByALightTouch) {
+  for (const char* kind : {"snow", "dry_sand", "clayey_soil"}) {
+    const Law law(kind);
+    for (const double before : {1e-9, 1e-6, 1e-3}) {
+      const SoilCell cell{static_cast<float>(before),
+                          static_cast<float>(law.pressure(before, 0.1))};
+      SoilLanes lanes;
+      const double still[6] = {}, place[3] = {};
+      lanes.set(0, SoilTouch{.area = 2, .depth = 0.05}, place, law.modulus(0.1), 0.5);
+      lanes.set(0, cell, 0);
+      lanes.find_loading(law.s, still, 0.001);
+      lanes.find_unloading(law.s);
+      lanes.find_forces(law.s, still, 0.001);
+      EXPECT_NEAR(lanes.load[0], 2 * law.pressure(0.05, 0.1), 2) << kind << " after " << before;
+      EXPECT_EQ(lanes.stiffness[1], 0) << "nothing is there";
+    }
+  }
+}
+
 // Bekker's b of a long plate is its width.
 TEST(SoilPlates, LongOnesSinkByTheirWidth) {
   const Law law("clayey_soil");
@@ -70,7 +90,7 @@ TEST(SoilPlates, LongOnesSinkByTheirWidth) {
 TEST(SoilPlates, CollidersSideBySideAreOnePatch) {
   const Law law("clayey_soil");
   const double pressure = 100e3, b = 0.2 * 0.1 / 0.3, z = law.sinkage(pressure, b);
-  const double mass = pressure * 0.02 / kG;
+  const double mass = pressure * 0.02 / kEarthG;
   OnSoil plate(world_with_soil(
       fmt::format("<body pos='0 0 .02'><joint type='slide' axis='0 0 1' damping='{}'/>"
                   "<geom type='box' size='.05 .05 .02' pos='-.05 0 0' mass='{}'/>"
@@ -84,7 +104,7 @@ TEST(SoilPlates, CollidersSideBySideAreOnePatch) {
 TEST(SoilPlates, UnloadedTheRutRemainsButForWhatIsElastic) {
   const Law law("dry_sand");
   const double radius = 0.1, area = std::numbers::pi * radius * radius;
-  const double mass = 2, load = 80e3 * area - mass * kG;
+  const double mass = 2, load = 80e3 * area - mass * kEarthG;
   auto world = world_with_soil(
       fmt::format("<body pos='0 0 .02'><joint name='z' type='slide' axis='0 0 1' damping='3000'/>"
                   "<geom {} mass='{}'/></body>",
@@ -98,7 +118,7 @@ TEST(SoilPlates, UnloadedTheRutRemainsButForWhatIsElastic) {
   press(-load);
   const double deep = -plate.q(0);
   EXPECT_NEAR(deep, law.sinkage(80e3, radius), 0.05 * deep);
-  press(-(20e3 * area - mass * kG));
+  press(-(20e3 * area - mass * kEarthG));
   const double back = deep + plate.q(0), k_u = law.s.a_u * deep;
   EXPECT_NEAR(back, 60e3 / k_u, 0.05 * 60e3 / k_u) << "the elastic part of 60 kPa";
   press(-load);
@@ -119,8 +139,8 @@ struct Drawn {
             fmt::format("<body pos='-.2 0 .02'><joint name='x' type='slide' axis='1 0 0'/>"
                         "<joint type='slide' axis='0 0 1' damping='{}'/>"
                         "<geom type='box' size='{} {} .02' mass='{}'/></body>",
-                        60 * pressure * kLength * kWidth / kG, kLength / 2, kWidth / 2,
-                        pressure * kLength * kWidth / kG),
+                        60 * pressure * kLength * kWidth / kEarthG, kLength / 2, kWidth / 2,
+                        pressure * kLength * kWidth / kEarthG),
             bed_of(kind, 2),
             fmt::format("<actuator><velocity joint='x' kv='{}'/></actuator>", kServo))),
         load(pressure * kLength * kWidth) {
@@ -149,7 +169,7 @@ TEST(SoilShear, SlowADrawnPlateMeetsMohrAndCoulombsLimit) {
 
 TEST(SoilShear, WhatIsPushedLessThanTheLimitStays) {
   const SoilStrength s = soil_strength("dry_sand");
-  const double load = 20e3 * 0.04, mass = load / kG;
+  const double load = 20e3 * 0.04, mass = load / kEarthG;
   const double most = s.cohesion * 0.04 + load * s.tan_friction;
   OnSoil block(world_with_soil(
       fmt::format("<body pos='0 0 .02'><joint name='x' type='slide' axis='1 0 0' damping='{}'/>"
@@ -182,7 +202,7 @@ TEST(SoilWheel, SlowSinksAsBekkersRigidWheel) {
                     "mass='{2}' diaginertia='1 1 1'/>"
                     "<body><joint type='hinge' axis='0 1 0'/><geom type='cylinder' size='{0} {3}' "
                     "euler='90 0 0' mass='{2}'/></body></body>",
-                    radius, 20 * load / kG, load / kG / 2, width / 2),
+                    radius, 20 * load / kEarthG, load / kEarthG / 2, width / 2),
         bed_of("dry_sand", 4), "<actuator><velocity joint='x' kv='1e5'/></actuator>");
     OnSoil wheel(world);
     wheel.run(1);

@@ -92,7 +92,7 @@ TEST_F(Soil, SinksWhereItsCellsDo) {
   std::vector<float> change(soil.cells());
   change[5] = -0.07f;  // the second of the second row
   std::vector<float> out;
-  append_soil_vertices(soil, change, &out);
+  append_soil_vertices(soil, change, 0, &out);
   ASSERT_EQ(out.size(), static_cast<size_t>(3 * soil_vertices(soil)));
   const float* p = out.data() + 3 * (2 * 6 + 2);  // one more all around
   EXPECT_NEAR(p[0], -0.05, 1e-6);

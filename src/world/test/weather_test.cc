@@ -73,6 +73,18 @@ class Weather : public ::testing::Test {
   TempFolder folder_;
 };
 
+TEST_F(Weather, DripsFromTheEdgesOfARoofAsMuchAsFallsOnIt) {
+  const auto flow_of = [this](const std::string& text) {
+    double flow = 0;
+    for (const DripEdge& edge : described(text).weather.drips)
+      if (edge.from.z > 3) flow += static_cast<double>(edge.flow);
+    return flow;
+  };
+  const double rain = 36e-3 / 3600 * 16;  // on four by four metres
+  EXPECT_NEAR(flow_of("[weather]\nrain = 36\n"), rain, 0.05 * rain);
+  EXPECT_EQ(flow_of("[weather]\nsnow = 3\n"), 0) << "snow does not";
+}
+
 TEST_F(Weather, FallsWhereTheSkyIsOpen) {
   const RenderDescription d = described("[weather]\nrain = 10\n");
   ASSERT_NE(d.weather.shelter, nullptr);
@@ -187,6 +199,20 @@ position = [0, 0, 2]
   }
   EXPECT_GT(failing, 0u);
   EXPECT_LT(failing, fair.size() - 1);
+}
+
+TEST(RainSplash, CrownsWidenByTheRootOfTimeAndGo) {
+  const ParticleClass kind{3e-3f, 300, 8};
+  const Crown early = crown_at(kind, 2e-3f), late = crown_at(kind, 8e-3f);
+  EXPECT_NEAR(late.radius / early.radius, 2, 1e-4);
+  // (2/3)^(1/4) sqrt(D V t).
+  EXPECT_NEAR(late.radius, 0.9036f * std::sqrt(3e-3f * 8 * 8e-3f), 1e-5f);
+  EXPECT_GT(late.height, early.height);
+  EXPECT_LT(late.height, 5 * kind.diameter);
+  EXPECT_GT(early.cover, late.cover);
+  EXPECT_EQ(crown_at(kind, 0.03f).cover, 0);
+  EXPECT_EQ(crown_at(kind, -1e-3f).cover, 0);
+  EXPECT_LT(0.03, splash_life(kind)) << "it is looked for as long as it stands";
 }
 
 TEST(RainSplash, AsManyAsFallAndTheSameWheneverTheyAreLookedAt) {
