@@ -112,8 +112,9 @@ void add_column(const SolidLines& solid, const double* low, const int* n, int i,
   std::vector<double> sums(static_cast<size_t>(4 * n[2]));  // volume and its first moments
   const double dx = shape->cell[0] / kLines, dy = shape->cell[1] / kLines, dz = shape->cell[2];
   for (int line = 0; line < kLines * kLines; ++line) {
-    const double x = low[0] + shape->cell[0] * i + dx * (line % kLines + 0.5);
-    const double y = low[1] + shape->cell[1] * j + dy * (line / kLines + 0.5);
+    const int along_x = line % kLines, along_y = line / kLines;
+    const double x = low[0] + shape->cell[0] * i + dx * (along_x + 0.5);
+    const double y = low[1] + shape->cell[1] * j + dy * (along_y + 0.5);
     const Inside in = solid.at(x, y);
     if (in.high <= in.low) continue;
     *seen += dx * dy;
