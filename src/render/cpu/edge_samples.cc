@@ -73,7 +73,7 @@ class Row {
     const size_t i = pixel(x);
     const MarchResult m =
         march(job_.scene.media, ray, min(film_->distance[i], 1e30f), 0.0f, kSteps, {}, true,
-              [](const MediumPoint& at, Vec3f, Vec3f) { return at.scattering; });
+              [](const MarchStep& step) { return step.medium.scattering; });
     const Vec3f albedo = film_->albedo[i] * m.transmittance + m.radiance;
     // What glows is brighter than any albedo.
     film_->albedo[i] = {min(albedo.x, 1.0f), min(albedo.y, 1.0f), min(albedo.z, 1.0f)};

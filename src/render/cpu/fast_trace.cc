@@ -126,6 +126,28 @@ void store(const PixelBlock& block, const FastSampleOf<F>& sample, Vec2Of<F> mot
   });
 }
 
+/// Gives what single pixels of a tile have too much of to all that its media scatter: filters pass
+/// over what stands out, and the light of lamps nearby comes to few pixels.
+void spread_air(int x0, int y0, FastFrame* frame) {
+  constexpr float kBrightest = 4;  // times the tile's mean
+  FastPlane3& air = frame->signal[kAirSignal];
+  const int x1 = std::min(x0 + kTile, frame->width), y1 = std::min(y0 + kTile, frame->height);
+  const auto each = [&](const auto& visit) {
+    for (int y = y0; y < y1; ++y) {
+      for (int x = x0; x < x1; ++x) visit(x, y, air.get(x, y));
+    }
+  };
+  float all = 0, kept = 0;
+  each([&](int, int, Vec3f v) { all += luminance(v); });
+  const float most = kBrightest * all / static_cast<float>((x1 - x0) * (y1 - y0));
+  each([&](int, int, Vec3f v) { kept += min(luminance(v), most); });
+  if (!(kept < all)) return;
+  const float gain = all / kept;
+  each([&](int x, int y, Vec3f v) {
+    air.set(x, y, v * (gain * min(most / max(luminance(v), 1e-9f), 1.0f)));
+  });
+}
+
 /// What one block's pixels wait for.
 struct PendingBlock {
   int x = 0, y = 0;
@@ -220,6 +242,7 @@ uint64_t FastHistory::trace_tile(const FastView& view, uint32_t pass, int x0, in
     reflected.add(sample.reflection, &block);
     each_lane(pixels.active, [&](int i) { rays += lane(sample.rays, i); });
   }
+  if (now_.signals > kAirSignal) spread_air(x0, y0, &now_);
   rays += reflected.finish();
   for (int b = 0; b < count; ++b) {
     const PendingBlock& block = blocks[b];

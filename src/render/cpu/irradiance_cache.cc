@@ -20,11 +20,12 @@ constexpr float kSettles = 0.75f;    // of what a cell saw move, from update to 
 constexpr uint32_t kForgotten = 30;  // updates after which a cell that nobody asks for goes
 constexpr float kSurprise = 3;       // standard errors,
 constexpr float kNoRegionChange = 0.02f;  // and this share, that a region's light may be off
-constexpr float kBrightest = 16;  // times a cell's mean: what a ray brings beyond that is the
-                                  // region's, as few rays meet it
-constexpr float kMostTold = 500;  // cells and updates that a region's excess is the mean of,
-constexpr float kAtChange = 4;    // and where the light has changed;
-constexpr float kGuessed = 20;    // it counts as that of so many more cells of a wider region
+constexpr float kBrightest = 16;        // times a cell's mean: what a ray brings beyond that is the
+                                        // region's, as few rays meet it
+constexpr float kBrightestInAir = 128;  // there, a filter passes over what cells have too much
+constexpr float kMostTold = 500;        // cells and updates that a region's excess is the mean of,
+constexpr float kAtChange = 4;          // and where the light has changed;
+constexpr float kGuessed = 20;          // it counts as that of so many more cells of a wider region
 constexpr uint64_t kExcessRegions[] = {caches::kWideRegion | caches::kFacing,
                                        caches::kRegion | caches::kFacing};
 constexpr float kFades = 0.1f;     // share of all light that must have changed to change all
@@ -100,16 +101,41 @@ float IrradianceCache::luminance_beside(uint64_t key) const {
   return rays > 0 ? sum / rays : luminance(mean_);
 }
 
+namespace {
+
+/// Directions about z by Henyey and Greenstein's phase function, of the mean cosines g, and their
+/// densities per solid angle.
+Vec3Of<FloatLanes> phase_direction(FloatLanes g, Vec2Of<FloatLanes> u) {
+  FloatLanes cosine, s, c;
+  for (int i = 0; i < kLaneCount; ++i) {
+    set_lane(&cosine, i, sample_henyey_greenstein(lane(g, i), 1 - lane(u.x, i)));
+  }
+  sincos_turn(u.y, &s, &c);
+  const FloatLanes r = safe_sqrt(1.0f - cosine * cosine);
+  return {r * c, r * s, cosine};
+}
+FloatLanes phase_density(FloatLanes g, FloatLanes cosine) {
+  FloatLanes pdf;
+  for (int i = 0; i < kLaneCount; ++i) {
+    set_lane(&pdf, i, henyey_greenstein(lane(g, i), lane(cosine, i)));
+  }
+  return pdf;
+}
+
+}  // namespace
+
 void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer,
-                                 const IrradianceCacheView& cache, uint64_t seed, int rays,
-                                 size_t k) {
+                                 IrradianceCacheView cache, uint64_t seed, int rays, size_t k) {
   using F = FloatLanes;
   const uint32_t row = asked_[k];
   const Cell& cell = cells_[row];
+  // The best guess at what is not known around a dark place.
+  if (cell.samples > 0) cache.mean = light_[row].all;
   const float edge = caches::edge_of(cell.key);
+  const bool in_air = caches::side_of(cell.key) == kAirCell;
   const float before = cell.samples == 0 ? luminance_beside(cell.key) : luminance(light_[row].all);
   const auto starts = static_cast<size_t>(std::min(cell.starts, kStarts));
-  const float brightest = before > 0 ? kBrightest * before : 1e30f;
+  const float brightest = before > 0 ? (in_air ? kBrightestInAir : kBrightest) * before : 1e30f;
   const float per_ray = 1 / static_cast<float>(rays);
   Traced& out = traced_[k];
   out = {};
@@ -129,22 +155,25 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
     // Each stratum is a part of a ring: over compact patches of directions a rare bright lamp left
     // spots.
     const Vec2Of<F> u = path.sampler.next_2d();
-    const Vec3Of<F> local = cosine_direction(u);
     Vec3Of<F> normal;
+    F g;
     MaskLanes seeks = false;
     for (int i = 0; i < kLaneCount; ++i) {
       const CacheRequest& start = starts_[row * kStarts + static_cast<size_t>(first + i) % starts];
       set_lane(&path.ray.o, i, start.p);
       set_lane(&normal, i, start.n);
+      set_lane(&g, i, start.g);
       set_lane(&seeks, i, (first + i) / kRaysTogether % 2 != 0);
     }
+    const Vec3Of<F> local = in_air ? phase_direction(g, u) : cosine_direction(u);
     path.ray.d = FrameOf<F>::from_z(normal).to_world(local);
     F weight = 1.0f;
     if (scene.guides_directions()) {
       const GuideRowsOf<F> rows = find_rows<F>(scene.guide, path.ray.o, normal, true);
       path.ray.d =
           select<F>(seeks & rows.guided, directions::sample(scene.guide, rows.row, u), path.ray.d);
-      const F even = max(dot(path.ray.d, normal), 0.0f) * kInvPi;
+      const F cosine = dot(path.ray.d, normal);
+      const F even = in_air ? phase_density(g, cosine) : max(cosine, 0.0f) * kInvPi;
       const F sought = directions::pdf(scene.guide, rows.row, path.ray.d);
       weight = select(rows.guided, 2.0f * even / max(even + sought, F(1e-9f)), F(1.0f));
     }
@@ -152,7 +181,7 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
     path.from = path.ray.o;
     CacheRequest met[kLaneCount];
     const fasts::GatheredOf<F> light =
-        fasts::gather<F>(scene, tracer, cache, false, false, weight > 0.0f, &path, met);
+        fasts::gather<F>(scene, tracer, cache, false, false, !in_air, weight > 0.0f, &path, met);
     for (int i = 0; i < kLaneCount; ++i) {
       const float w = lane(weight, i);
       if (!(w > 0)) continue;

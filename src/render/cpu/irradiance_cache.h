@@ -70,7 +70,7 @@ class IrradianceCache {
   /// Of the cells beside that of a key, or of all if there are none.
   float luminance_beside(uint64_t key) const;
   /// Cell k of asked_ into traced_.
-  void trace_cell(const SceneView& scene, const CpuTracer& tracer, const IrradianceCacheView& cache,
+  void trace_cell(const SceneView& scene, const CpuTracer& tracer, IrradianceCacheView cache,
                   uint64_t seed, int rays, size_t k);
   /// visit(group): of the cells of traced_ those whose keys are alike under the mask.
   using Member = std::pair<uint64_t, size_t>;  // masked key, row of traced_

@@ -149,15 +149,16 @@ Vec3f StreakFinder::light_of(ParticleKind kind, Vec3f p, Vec2f uv, const Philox4
   }
   if (view_.scene.lights.size == 0) return light;
   const float g = drop ? kDropG : kFlakeG;
-  MediumPoint point;
-  point.scattering = {1, 1, 1};
-  point.g_scattering = {g, g, g};
+  const MediumPoint point{.scattering = {1, 1, 1}, .g_scattering = {g, g, g}};
   Ray ray;
   ray.o = eye_;
   ray.d = d;
   WalkRandom random({uniform_float(bits.v[3]), uniform_float(bits.v[3] * 0x9E3779B9u)});
   uint32_t rays = 0;
-  return light + fasts::scattered_light(view_.scene, view_.tracer, ray, point, p, &random, &rays);
+  const fasts::AirLamp lit = fasts::sample_air(view_.scene, ray, point, {1, 1, 1}, p, &random);
+  if (!(max_component(lit.light) > 0)) return light;
+  return light +
+         lit.light * fasts::arriving_share(view_.scene, view_.tracer, ray, lit, &random, &rays);
 }
 
 }  // namespace gloam

@@ -23,6 +23,7 @@ inline constexpr float kLeastSharedRoughness = 0.2f;
 struct CacheRequest {
   uint64_t key = 0;  ///< 0 = none
   Vec3f p, n;        ///< where rays for it may start
+  float g = 0;       ///< of their lobe about n, in the air
 };
 
 /// Lanes that send out rays for others of their quad too, where that will do.
@@ -118,6 +119,7 @@ struct CachePlaceOf {
   Vec3Of<F> p, n;
   UintOf<F> side;
   Vec3Of<F> start;  ///< of rays
+  F g = 0.0f;       ///< mean cosine of what media there scatter
 };
 template <class F>
 GLOAM_HD CachePlaceOf<F> place_of(const SurfaceOf<F>& v) {
@@ -131,8 +133,9 @@ GLOAM_HD CacheCellOf<F> ask_cells(const IrradianceCacheView& cache, const CacheP
                                   MaskOf<F> active, Vec3Of<F> jitter, uint32_t coarser,
                                   CacheRequest* requests) {
   const CacheCellOf<F> cells = cache_cell<F>(cache, at.p, at.n, at.side, jitter, coarser);
-  each_lane(active,
-            [&](int i) { requests[i] = {cache_key(cells, i), lane(at.start, i), lane(at.n, i)}; });
+  each_lane(active, [&](int i) {
+    requests[i] = {cache_key(cells, i), lane(at.start, i), lane(at.n, i), lane(at.g, i)};
+  });
   return cells;
 }
 
@@ -180,11 +183,9 @@ struct LampSampleOf {
 template <class F>
 GLOAM_HD void sample_glow(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, Vec2Of<F> u,
                           MaskOf<F> active, LampSampleOf<F>* out) {
-  constexpr float kNear = 0.1f;  // light that is sampled closer by counts as from there [m]: points
-                                 // of a flame are drawn without a look at their distance
   each_lane(active, [&](int i) {
-    glow::LineSample line = glow::sample_line(scene.media, lane(p, i), lane(n, i), lane(u, i));
-    line.light.pdf *= sqr(max(kNear / max(line.light.distance, 1e-3f), 1.0f));
+    const glow::LineSample line =
+        glow::sample_line(scene.media, lane(p, i), lane(n, i), lane(u, i));
     set_lane(&out->light, i, line.light);
     set_lane(&out->clear, i, line.clear);
   });
@@ -305,44 +306,95 @@ GLOAM_HD float chance_of(const SceneView& scene, const paths::State<F>& path, ui
   return every ? 1.0f : static_cast<float>(drawn) * path.picker.probability(scene, row, i);
 }
 
-/// Light of one lamp sample that media at p_W scatter against the direction of the ray
-/// [cd/m² per m].
-template <class Tracer>
-GLOAM_HD Vec3f scattered_light(const SceneView& scene, const Tracer& tracer, const Ray& ray,
-                               const MediumPoint& point, Vec3f p_W, WalkRandom* random,
-                               uint32_t* rays) {
+/// A sample of lamps for a step of a ray through media.
+struct AirLamp {
+  LampSampleOf<float> lamp;
+  Vec3f p_W;    ///< in the step
+  Vec3f light;  ///< that it brings to the ray's origin if nothing is in between [cd/m²]
+};
+
+/// At p_W on the ray. `share`: MarchStep::share.
+GLOAM_HD AirLamp sample_air(const SceneView& scene, const Ray& ray, const MediumPoint& medium,
+                            Vec3f share, Vec3f p_W, WalkRandom* random) {
+  AirLamp out{{}, p_W, {}};
   LightPicker picker;
   prepare_picker<float>(scene, p_W, Vec3f{}, true, kOneGlow, &picker);
   const Vec2f u{random->next(), random->next()};
-  const LampSampleOf<float> lamp =
-      sample_lamp<float>(scene, picker, p_W, Vec3f{}, u, ray.time, true);
-  const LightSample& light = lamp.light;
-  if (!(light.pdf > 0) || !(max_component(point.scattering) > 0)) return {};
-  Ray shadow = ray;
-  aim_shadow_ray(p_W, Vec3f{}, 0.0f, light, &shadow);
-  Vec3f share{1, 1, 1};
-  if (light.casts_shadow) share = paths::transmit(scene, tracer, shadow, true, rays);
-  if (!(max_component(share) > 0)) return {};
-  share *= transmittance(scene.media, shadow, min(shadow.tmax, lamp.clear), {}, *random);
+  out.lamp = sample_lamp<float>(scene, picker, p_W, Vec3f{}, u, ray.time, true);
+  const LightSample& light = out.lamp.light;
+  if (!(light.pdf > 0)) return out;
   const float cosine = dot(ray.d, light.wi);
   const auto phase = [&](float scattering, float g_scattering) {
     const float g = scattering > 0 ? g_scattering / scattering : 0.0f;
     return scattering * henyey_greenstein(g, cosine);
   };
-  const Vec3f s = point.scattering, g = point.g_scattering;
-  return Vec3f{phase(s.x, g.x), phase(s.y, g.y), phase(s.z, g.z)} * share * light.radiance /
-         light.pdf;
+  const Vec3f s = medium.scattering, g = medium.g_scattering;
+  out.light =
+      Vec3f{phase(s.x, g.x), phase(s.y, g.y), phase(s.z, g.z)} * share * light.radiance / light.pdf;
+  return out;
 }
 
-/// Light from all around that the cache has for the air at p_W, along d, or `otherwise`.
-GLOAM_HD Vec3f air_light(const IrradianceCacheView& cache, Vec3f p_W, Vec3f d, Vec3f otherwise,
-                         WalkRandom* random, CacheRequest* request) {
-  constexpr uint32_t kCoarser = 0;  // light in the air has no edges
-  const CachePlaceOf<float> at{p_W, d, kAirCell, p_W};
-  const Vec3f jitter{random->next(), random->next(), random->next()};
-  const CacheCellOf<float> cell = ask_cells<float>(cache, at, true, jitter, kCoarser, request);
-  return cached_light<float>(cache, at, cell, true, kCoarser, otherwise);
+/// Share of its light that what lies between lets through.
+template <class Tracer>
+GLOAM_HD Vec3f arriving_share(const SceneView& scene, const Tracer& tracer, const Ray& ray,
+                              const AirLamp& air, WalkRandom* random, uint32_t* rays) {
+  Ray shadow = ray;
+  aim_shadow_ray(air.p_W, Vec3f{}, 0.0f, air.lamp.light, &shadow);
+  Vec3f share{1, 1, 1};
+  if (air.lamp.light.casts_shadow) share = paths::transmit(scene, tracer, shadow, true, rays);
+  if (!(max_component(share) > 0)) return {};
+  return share * transmittance(scene.media, shadow, min(shadow.tmax, air.lamp.clear), {}, *random);
 }
+
+/// Light from all around that media of the mean cosine g at p_W scatter against a ray along d, by
+/// what the cache has for the air there, or `otherwise`.
+GLOAM_HD Vec3f air_light(const IrradianceCacheView& cache, Vec3f p_W, Vec3f d, float g,
+                         uint32_t coarser, Vec3f otherwise, WalkRandom* random,
+                         CacheRequest* request) {
+  // Larger cells are asked for, too, to stand for those that are not there yet.
+  constexpr float kLarger = 0.125f;
+  constexpr uint32_t kLevels = 2;
+  const CachePlaceOf<float> at{p_W, d, kAirCell, p_W, g};
+  const Vec3f jitter{random->next(), random->next(), random->next()};
+  const CacheCellOf<float> cell = ask_cells<float>(cache, at, true, jitter, coarser, request);
+  if (random->next() < kLarger) {
+    ask_cells<float>(cache, at, true, {0.5f, 0.5f, 0.0f}, coarser + kLevels, request);
+  }
+  return cached_light<float>(cache, at, cell, true, coarser, otherwise);
+}
+
+/// Light of what glows where samples of lamps leave it out: right before the ray [cd/m²].
+GLOAM_HD Vec3f near_glow(const MediaView& media, const Ray& ray) {
+  constexpr int kSteps = 4;
+  return march(media, ray, min(ray.tmax, glow::kNearGlow), 0.0f, kSteps, {}, true,
+               [](const MarchStep&) { return Vec3f{}; })
+      .radiance;
+}
+
+/// Of that, what a medium of the mean cosine g at p_W scatters against a ray along d, by one
+/// sample.
+GLOAM_HD Vec3f near_glow_in_air(const MediaView& media, Vec3f p_W, Vec3f d, float g,
+                                WalkRandom* random) {
+  const float z = sample_henyey_greenstein(g, random->next());
+  const float r = safe_sqrt(1 - z * z);
+  float s, c;
+  sincos_turn(random->next(), &s, &c);
+  Ray ray;
+  ray.o = p_W;
+  ray.d = Frame::from_z(d).to_world({r * c, r * s, z});
+  return near_glow(media, ray);
+}
+
+/// Takes of many as many as their chances add up to, evenly spread.
+struct Turn {
+  float owed;  ///< at first by chance, in [0, 1)
+  GLOAM_HD bool comes(float chance) {
+    owed += chance;
+    if (owed < 1) return false;
+    owed -= 1;
+    return true;
+  }
+};
 
 /// What media along path->ray up to `tmax` do to light: scatter that of lamps once and that of all
 /// around, give off, and let through.
@@ -359,51 +411,58 @@ struct MediaLightOf {
 template <class F, class Tracer>
 GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& tracer,
                                      const IrradianceCacheView& cache, F tmax, MaskOf<F> active,
-                                     MaskOf<F> samples, int steps, MaskOf<F> glows,
-                                     paths::State<F>* path, CacheRequest* requests) {
+                                     MaskOf<F> samples, int steps, uint32_t coarser,
+                                     MaskOf<F> glows, paths::State<F>* path,
+                                     CacheRequest* requests) {
   MediaLightOf<F> out{{}, {}, {}, {}, in_all_lanes<F>({1, 1, 1})};
   if (scene.media.volumes.empty()) return out;
   const Vec2Of<F> u = path->sampler.next_2d(active);
   each_lane(active, [&](int i) {
     WalkRandom random(lane(u, i));
     const Ray ray = lane(path->ray, i);
-    // Of what is thin, dark or behind the rest, few steps ask for light and count for many.
-    constexpr float kLittle = 0.1f;
+    // Steps ask by turns, the more seldom the less they scatter, and count for as many more.
+    constexpr float kOfAir = 0.1f, kOfLamps = 0.4f;
+    Turn of_air{random.next()}, of_lamps{random.next()};
     float weighed = 0;       // what has been asked for
     float in_all = 0;        // what lamps may bring
     Vec3f air = cache.mean;  // of the last step that the cache knew
     Vec3f around;
-    // One step stands for all in the light of lamps, by what they may bring there.
-    struct {
-      MediumPoint point;
-      Vec3f p_W, share, air;
-      float brings;
-    } lit;
+    AirLamp lit;  // of one step, which stands for all
+    float brings = 0;
     const MarchResult m =
         march(scene.media, ray, lane(tmax, i), 0.0f, steps, {}, lane(glows, i),
-              [&](const MediumPoint& point, Vec3f p_W, Vec3f share) {
-                const Vec3f scattered = point.scattering * share;
+              [&](const MarchStep& step) {
+                const MediumPoint& point = step.medium;
+                const Vec3f p_W = ray.o + ray.d * place_in(step, random.next());
+                const Vec3f scattered = point.scattering * step.share;
                 const float scatters = max_component(scattered);
-                if (const float chance = min(scatters / kLittle, 1.0f); random.next() < chance) {
+                if (const float chance = min(scatters / kOfAir, 1.0f); of_air.comes(chance)) {
                   CacheRequest request;
-                  air = air_light(cache, p_W, ray.d, air, &random, &request);
-                  around += scattered * air * (1 / chance);
+                  const float g = luminance(point.g_scattering) / luminance(point.scattering);
+                  air = air_light(cache, p_W, ray.d, g, coarser, air, &random, &request);
+                  Vec3f from_all = air;
+                  if (step.is_hot)
+                    from_all += near_glow_in_air(scene.media, p_W, ray.d, g, &random);
+                  around += scattered * from_all * (1 / chance);
                   weighed += scatters / chance;
                   if (random.next() * weighed < scatters / chance) requests[i] = request;
                 }
-                const float flames = glow::weight(scene.media.glows, p_W, Vec3f{});
-                const float brings = scatters * (luminance(air) + flames / (4 * kPi));
-                in_all += brings;
-                if (random.next() * in_all < brings) lit = {point, p_W, share, air, brings};
+                if (const float chance = min(scatters / kOfLamps, 1.0f);
+                    lane(samples, i) && of_lamps.comes(chance)) {
+                  const AirLamp one = sample_air(scene, ray, point, step.share, p_W, &random);
+                  const float light = luminance(one.light);
+                  in_all += light / chance;
+                  if (random.next() * in_all < light / chance) {
+                    lit = one;
+                    brings = light;
+                  }
+                }
                 return Vec3f{};
               });
     if (lane(samples, i) && in_all > 0) {
-      constexpr float kBrightest = 8;  // times the air's light: what one of many lamps may bring
       uint32_t rays = 0;
-      Vec3f lamps = scattered_light(scene, tracer, ray, lit.point, lit.p_W, &random, &rays);
-      const float most = kBrightest * luminance(lit.point.scattering * lit.air);
-      if (most > 0) lamps *= min(most / max(luminance(lamps), 1e-9f), 1.0f);
-      set_lane(&out.lamps, i, lamps * lit.share * (in_all / lit.brings));
+      const Vec3f share = arriving_share(scene, tracer, ray, lit, &random, &rays);
+      set_lane(&out.lamps, i, lit.light * share * (in_all / brings));
       set_lane(&path->result.rays, i, lane(path->result.rays, i) + rays);
     }
     set_lane(&out.radiance, i, m.radiance);
@@ -453,11 +512,13 @@ struct GatheredOf {
 
 /// Light along path->ray in the `active` lanes, from its first surface that is no glass or mirror.
 /// What lamps themselves send is weighed against direct_light() by path->pdf_bsdf if `count_lamps`;
-/// if not, it is none of the path's business. `flames`: lanes in which what glows counts.
+/// if not, it is none of the path's business. `flames`: lanes in which what glows counts, `near`:
+/// or does within glow::kNearGlow.
 template <class F, class Tracer>
 GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
                               const IrradianceCacheView& cache, bool count_lamps, MaskOf<F> flames,
-                              MaskOf<F> active, paths::State<F>* path, CacheRequest* requests) {
+                              MaskOf<F> near, MaskOf<F> active, paths::State<F>* path,
+                              CacheRequest* requests) {
   constexpr int kMaxEvents = 5;  // in and out of two glasses
   GatheredOf<F> out;
   Vec3Of<F>&sum = out.light, throughput = in_all_lanes<F>({1, 1, 1});
@@ -474,10 +535,23 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
     if (!scene.media.volumes.empty()) {
       constexpr int kSteps = 4;
       const F tmax = select(found, hit.t, F(1e30f));
+      if (event == 0 && scene.has_glow()) {
+        each_lane(active & near, [&](int i) {
+          Ray ray = lane(path->ray, i);
+          ray.tmax = lane(tmax, i);
+          set_lane(&sum, i, near_glow(scene.media, ray));
+        });
+      }
       CacheRequest air[Lanes<F>::kCount] = {};
-      const MediaLightOf<F> media =
-          cross_media(scene, tracer, cache, tmax, active, active, kSteps, flames, path, air);
-      const Vec3Of<F> light = media.radiance + media.around + media.lamps;
+      const MediaLightOf<F> media = cross_media(scene, tracer, cache, tmax, active, active, kSteps,
+                                                count_lamps ? 0 : 2, flames, path, air);
+      F limit = 1.0f;
+      if (count_lamps) {  // no filter passes over what stands out of reflections
+        constexpr float kBrightest = 4;
+        limit = min(kBrightest * luminance(media.around) / max(luminance(media.lamps), F(1e-9f)),
+                    F(1.0f));
+      }
+      const Vec3Of<F> light = media.radiance + media.around + media.lamps * limit;
       sum += select<F>(active, throughput * light, Vec3Of<F>{});
       // What brings more light is asked for: the air on the way, or the surface.
       const MaskOf<F> airy =
@@ -592,7 +666,7 @@ GLOAM_HD Vec3Of<F> look_along(const SceneView& scene, const Tracer& tracer,
     fasts::prepare_picker(scene, r.from, r.normal, active, fasts::kGlowAmongLamps, &path.picker);
   }
   const Vec3Of<F> light =
-      fasts::gather(scene, tracer, cache, true, r.flames, active, &path, requests).light;
+      fasts::gather(scene, tracer, cache, true, r.flames, !r.flames, active, &path, requests).light;
   *rays += path.result.rays;
   return light;
 }
@@ -638,8 +712,9 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
       const Mask borrows =
           even_quads<F>(active, select(found, hit.instance + 1u, UintOf<F>(0u)), path.ray.d) &
           !turns.of_two;
-      const auto media = fasts::cross_media(scene, tracer, cache, tmax, active, active & !borrows,
-                                            kSteps, true, &path, requests + 3 * Lanes<F>::kCount);
+      const auto media =
+          fasts::cross_media(scene, tracer, cache, tmax, active, active & !borrows, kSteps, 0, true,
+                             &path, requests + 3 * Lanes<F>::kCount);
       const Vec3Of<F> lamps = select<F>(borrows, flip<1>(media.lamps), media.lamps);
       out.base += select<F>(active, out.through * media.radiance, Vec3Of<F>{});
       out.air += select<F>(active, out.through * (media.around + lamps), Vec3Of<F>{});

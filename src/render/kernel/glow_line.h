@@ -7,15 +7,19 @@
 
 namespace gloam::glow {
 
+/// What glows closer by is no lamp [m]: its points are drawn without a look at their distance, so
+/// that few of them would bring nearly all light.
+inline constexpr float kNearGlow = 0.1f;
+
 /// A piece of a line from p through a medium that glows.
 struct LineSample {
   LightSample light;  ///< radiance over pdf: of the piece, as it leaves it towards p
   float clear = 0;    ///< distance at which the piece begins [m]: what is before it dims
 };
 
-/// A point is drawn as by sample(); it is any of the piece's kParts. Of
-/// all pieces that hold a point, each draws its light over the sum of their densities (the balance
-/// heuristic).
+/// A point is drawn as by sample(); it is any of the piece's kParts. Of all pieces that hold a
+/// point, each draws its light over the sum of their densities (the balance heuristic). Beyond
+/// kNearGlow.
 GLOAM_HD LineSample sample_line(const MediaView& media, Vec3f p, Vec3f n, Vec2f u) {
   constexpr int kParts = 4;
   constexpr float kVoxels = 1.5f;  // of a part: small flames are but few voxels wide
@@ -45,7 +49,9 @@ GLOAM_HD LineSample sample_line(const MediaView& media, Vec3f p, Vec3f n, Vec2f 
     const Vec3f extinction = k * media::density_at(v, p_G);
     const Vec3f depth = extinction * step;
     const Vec3f half = media::exp_of(depth * -0.5f);
-    radiance += through * half * extinction * absorbed * media::glow_at(media, v, p_G, {});
+    if (t > kNearGlow) {
+      radiance += through * half * extinction * absorbed * media::glow_at(media, v, p_G, {});
+    }
     through *= half * half;
     pdf += point_density(media, glow, p_G) * sqr(t);
   }

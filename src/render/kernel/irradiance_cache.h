@@ -70,6 +70,9 @@ GLOAM_HD uint64_t beside(uint64_t key, int axis, bool up) {
   return (key & ~mask) | ((up ? key + one : key - one) & mask);
 }
 
+/// Which of kOutsideCell, kInsideCell and kAirCell the cell of a key is.
+GLOAM_HD uint32_t side_of(uint64_t key) { return static_cast<uint32_t>(key >> 61 & 3u); }
+
 /// Edge of the cell of a key [m].
 GLOAM_HD float edge_of(uint64_t key) {
   // Exponents from 2^-32 on are told by their last six bits.
@@ -80,8 +83,7 @@ GLOAM_HD float edge_of(uint64_t key) {
 }  // namespace caches
 
 /// What a cell's light falls on: inner sides of panes lie where their outer sides do, and air where
-/// both do. Media scatter forwards, so light that air sends along a ray is that of a surface which
-/// the ray leaves: a lobe by the cosine, of the mean cosine 2/3.
+/// both do. A cell of air faces the way that a ray goes, against which it scatters light.
 inline constexpr uint32_t kOutsideCell = 0, kInsideCell = 1, kAirCell = 2;
 
 /// A cell before its numbers are packed.

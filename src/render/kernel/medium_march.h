@@ -76,6 +76,22 @@ struct MarchResult {
   Vec3f scattered;  ///< share that was scattered on its way, of light that is even all around
 };
 
+/// A step through media.
+struct MarchStep {
+  MediumPoint medium;   ///< its mean
+  float begin, length;  ///< along the ray [m]
+  Vec3f share;          ///< of light [cd/m² per m] from all over it, what gets to the origin [m]
+  bool is_hot;          ///< something around it may glow
+};
+
+/// Distance [m] of a place in a step, as likely as light from there gets to the ray's origin: what
+/// is scattered in a long step through thick smoke comes from its near end. `u` in [0, 1).
+GLOAM_HD float place_in(const MarchStep& step, float u) {
+  const float k = step.medium.extinction.y;
+  if (k * step.length < 1e-3f) return step.begin + u * step.length;
+  return min(step.begin - logf(1 - u * (1 - expf(-k * step.length))) / k, step.begin + step.length);
+}
+
 namespace media {
 
 /// Edge of the parts [m] that a step is cut into where something glows: light grows so steeply with
@@ -96,8 +112,7 @@ GLOAM_HD float glow_step(const MediumWalk& walk, Bands bands) {
 /// more than about `max_steps`. Empty cells are skipped. Along a step all is as in its middle and
 /// Beer-Lambert's law is integrated, so even media are exact with any step.
 /// What glows along the ray counts if `glows`.
-/// `source(const MediumPoint&, Vec3f p_W, Vec3f share)`, once a step: light that media scatter
-/// towards the ray's origin [cd/m² per m], of which `share` gets there [m].
+/// `source(const MarchStep&)`: light that media scatter towards the ray's origin [cd/m² per m].
 template <class Source>
 GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, float step,
                            int max_steps, Bands bands, bool glows, const Source& source) {
@@ -111,7 +126,12 @@ GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, f
   if (!walk.is_over()) step = max(step, (far - walk.to()) / static_cast<float>(max_steps));
   for (float t = 0; !walk.is_over(); t = walk.to(), walk.advance()) {
     bool is_empty = true;
-    for (int i = 0; i < walk.count(); ++i) is_empty = is_empty && walk[i].high() <= 0;
+    bool is_hot = false;
+    for (int i = 0; i < walk.count(); ++i) {
+      if (!(walk[i].high() > 0)) continue;
+      is_empty = false;
+      is_hot = is_hot || media::glows(walk[i].volume(), walk[i].hottest(), bands);
+    }
     const float length = walk.to() - t;
     if (is_empty || !(length > 0)) continue;
     // Quotients that round to nothing are one step, too.
@@ -141,7 +161,7 @@ GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, f
       }
       const Vec3f share = before * media::mean_transmittance(mean.extinction * ds) * ds;
       result.scattered += share * mean.scattering;
-      result.radiance += share * source(mean, ray.o + ray.d * (begin + 0.5f * ds), share);
+      result.radiance += share * source(MarchStep{mean, begin, ds, share, is_hot});
       if (max_component(result.transmittance) < kDark) return result;
     }
   }

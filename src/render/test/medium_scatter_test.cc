@@ -207,7 +207,7 @@ TEST(Medium, SlabsGlowByTheirOpticalDepth) {
         for (int k = 0; k < 3; ++k) mean[k].add(e.emission[k]);
       }
       const MarchResult marched = march(store.view(), ray, 1e30f, 10.0f, 1, {}, true,
-                                        [](const MediumPoint&, Vec3f, Vec3f) { return Vec3f{}; });
+                                        [](const MarchStep&) { return Vec3f{}; });
       for (int k = 0; k < 3; ++k) {
         const double share = -std::expm1(-depth * b.media[0].mass_extinction[k]);
         const double expected = 0.8 * share * light[k];

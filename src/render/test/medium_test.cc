@@ -27,7 +27,7 @@ double length_in_box(const VolumeDescription& v, const Ray& ray, double tmax) {
 }
 
 const Vec3f kNothing{};
-Vec3f no_source(const MediumPoint&, Vec3f, Vec3f) { return kNothing; }
+Vec3f no_source(const MarchStep&) { return kNothing; }
 
 struct RayCase {
   const char* name;
@@ -239,7 +239,7 @@ TEST(Medium, MarchingConvergesToTheQuadrature) {
     const RaySums expected = integrate_ray(store.view(), c.ray, min(c.tmax, 5));
     const MarchResult m =
         march(store.view(), c.ray, c.tmax, 0.05f, 1000, {}, true,
-              [](const MediumPoint& p, Vec3f, Vec3f) { return p.scattering * 100.0f; });
+              [](const MarchStep& step) { return step.medium.scattering * 100.0f; });
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(m.transmittance[k], expected.transmittance[k],
                   0.02 * expected.transmittance[k] + 1e-3)
@@ -255,7 +255,7 @@ TEST(Medium, MarchTakesAboutTheStepsItIsAllowed) {
   for (const int max_steps : {1, 8, 100}) {
     int steps = 0;
     march(store.view(), rays_through()[0].ray, 4, 1e-4f, max_steps, {}, true,
-          [&](const MediumPoint&, Vec3f, Vec3f) {
+          [&](const MarchStep&) {
             ++steps;
             return Vec3f{};
           });
