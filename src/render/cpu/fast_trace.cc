@@ -6,6 +6,7 @@
 #include "base/parallel.h"
 #include "render/cpu/fast_tier.h"
 #include "render/cpu/tile.h"
+#include "render/kernel/fast.h"
 
 namespace gloam {
 namespace {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "render/kernel/fast_gather.h"
 #include "render/kernel/light_directions.h"
 
 namespace gloam {

@@ -8,7 +8,7 @@
 
 #include "render/cpu/cpu_tracer.h"
 #include "render/cpu/watch.h"
-#include "render/kernel/fast.h"
+#include "render/kernel/fast_cache.h"
 
 namespace gloam {
 

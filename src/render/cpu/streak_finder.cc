@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "render/kernel/fast.h"
+#include "render/kernel/fast_air.h"
 
 namespace gloam {
 namespace {
