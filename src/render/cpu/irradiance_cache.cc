@@ -21,12 +21,12 @@ constexpr float kSettles = 0.75f;    // of what a cell saw move, from update to 
 constexpr uint32_t kForgotten = 30;  // updates after which a cell that nobody asks for goes
 constexpr float kSurprise = 3;       // standard errors,
 constexpr float kNoRegionChange = 0.02f;  // and this share, that a region's light may be off
-constexpr float kBrightest = 16;        // times a cell's mean: what a ray brings beyond that is the
-                                        // region's, as few rays meet it
-constexpr float kBrightestInAir = 128;  // there, a filter passes over what cells have too much
-constexpr float kMostTold = 500;        // cells and updates that a region's excess is the mean of,
-constexpr float kAtChange = 4;          // and where the light has changed;
-constexpr float kGuessed = 20;          // it counts as that of so many more cells of a wider region
+constexpr float kBrightest = 16;       // times a cell's mean: what a ray brings beyond that is the
+                                       // region's, as few rays meet it
+constexpr float kBrightestInAir = 32;  // there, a filter passes over what cells have too much
+constexpr float kMostTold = 500;       // cells and updates that a region's excess is the mean of,
+constexpr float kAtChange = 4;         // and where the light has changed;
+constexpr float kGuessed = 20;         // it counts as that of so many more cells of a wider region
 constexpr uint64_t kExcessRegions[] = {caches::kWideRegion | caches::kFacing,
                                        caches::kRegion | caches::kFacing};
 constexpr float kFades = 0.1f;     // share of all light that must have changed to change all
@@ -71,6 +71,7 @@ void IrradianceCache::ask(const std::vector<CacheRequest>& requests, size_t most
       rows_[slot] = static_cast<uint32_t>(cells_.size());
       cells_.push_back({request.key});
       light_.push_back({mean_});
+      homes_.emplace_back();
       starts_.resize(cells_.size() * kStarts);
     }
     const uint32_t row = rows_[slot];
@@ -125,6 +126,26 @@ FloatLanes phase_density(FloatLanes g, FloatLanes cosine) {
 
 }  // namespace
 
+void IrradianceCache::find_home(const CpuTracer& tracer, uint32_t row) {
+  const Cell& cell = cells_[row];
+  if (!caches::is_air(cell.key) || cell.rounds > 0) return;
+  CacheRequest* starts = starts_.data() + row * kStarts;
+  AirHome& home = homes_[row];
+  home = {starts->p};
+  // Places ask a cell from up to as far around it.
+  const Vec3f middle = caches::middle_of(cell.key);
+  const float reach = caches::edge_of(cell.key);
+  for (int corner = 0; corner < 8 && home.sees_all; ++corner) {
+    const Vec3f to{corner & 1 ? reach : -reach, corner & 2 ? reach : -reach,
+                   corner & 4 ? reach : -reach};
+    home.sees_all = caches::is_clear(tracer, home.p, middle + to);
+  }
+  if (home.sees_all) return;
+  for (CacheRequest& start : std::span(starts, std::min(cell.starts, kStarts))) {
+    if (!caches::is_clear(tracer, home.p, start.p)) start = *starts;
+  }
+}
+
 void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer,
                                  IrradianceCacheView cache, uint64_t seed, int rays, size_t k) {
   using F = FloatLanes;
@@ -133,7 +154,7 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
   // The best guess at what is not known around a dark place.
   if (cell.samples > 0) cache.mean = light_[row].all;
   const float edge = caches::edge_of(cell.key);
-  const bool in_air = caches::side_of(cell.key) == kAirCell;
+  const bool in_air = caches::is_air(cell.key);
   const float before = cell.samples == 0 ? luminance_beside(cell.key) : luminance(light_[row].all);
   const auto starts = static_cast<size_t>(std::min(cell.starts, kStarts));
   const float brightest = before > 0 ? (in_air ? kBrightestInAir : kBrightest) * before : 1e30f;
@@ -182,7 +203,8 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
     path.from = path.ray.o;
     CacheRequest met[kLaneCount];
     const fasts::GatheredOf<F> light =
-        fasts::gather<F>(scene, tracer, cache, false, false, !in_air, weight > 0.0f, &path, met);
+        fasts::gather<F>(scene, tracer, cache, false, in_air ? fasts::kNearLamp : 0.0f, false,
+                         !in_air, weight > 0.0f, &path, met);
     for (int i = 0; i < kLaneCount; ++i) {
       const float w = lane(weight, i);
       if (!(w > 0)) continue;
@@ -250,39 +272,48 @@ void IrradianceCache::find_changes() {
   });
 }
 
-void IrradianceCache::Excess::add(Vec3f more, size_t count, float most) {
-  const float all = max(cells + static_cast<float>(count), 1.0f), kept = min(1.0f, most / all);
-  sum = (sum + more) * kept;
-  cells = all * kept;
+void IrradianceCache::Excess::add(const Excess& more) {
+  sum += more.sum;
+  light += more.light;
+  cells += more.cells;
+}
+
+void IrradianceCache::Excess::fade(float most) {
+  const float kept = min(1.0f, most / max(cells, 1.0f));
+  sum = sum * kept;
+  light *= kept;
+  cells *= kept;
 }
 
 void IrradianceCache::spread_excess() {
-  Vec3f all;
-  for (const Traced& traced : traced_) all += traced.excess;
-  excess_.add(all, traced_.size(), kMostTold);
-  excess_.each = excess_.sum / excess_.cells;
+  Excess all;
+  for (const Traced& traced : traced_) all.add({traced.excess, {}, traced.before, 1});
+  excess_.add(all);
+  excess_.fade(kMostTold);
+  excess_.share = excess_.sum / max(excess_.light, 1e-20f);
   // From wide to narrow: what little a region has seen is completed by the wider one's.
   for (size_t level = 0; level < kLevels; ++level) {
     each_group(kExcessRegions[level], [&](std::span<const Member> group) {
       const uint64_t key = group.front().first;
       const Excess& wider =
           level == 0 ? excess_ : regions_[level - 1][key & kExcessRegions[level - 1]];
-      Vec3f sum;
-      for (const auto& [_, k] : group) sum += traced_[k].excess;
       Excess& region = regions_[level][key];
-      region.add(sum, group.size(), kMostTold);
+      for (const auto& [_, k] : group) region.add({traced_[k].excess, {}, traced_[k].before, 1});
+      region.fade(kMostTold);
       region.last_traced = update_;
-      region.each = (region.sum + wider.each * kGuessed) / (region.cells + kGuessed);
+      const float guessed = region.light / region.cells * kGuessed;
+      region.share = (region.sum + wider.share * guessed) / max(region.light + guessed, 1e-20f);
       if (level + 1 < kLevels) return;
-      for (const auto& [_, k] : group) traced_[k].light.all += region.each;
+      // To each as it has light: dark corners of a region see little of what is bright, too.
+      for (const auto& [_, k] : group) traced_[k].light.all += region.share * traced_[k].before;
     });
   }
 }
 
 void IrradianceCache::forget_excess(uint64_t key) {
-  excess_.add({}, 0, kAtChange);
+  excess_.fade(kAtChange);
   for (size_t level = 0; level < kLevels; ++level) {
-    regions_[level][key & kExcessRegions[level]].add({}, 0, kAtChange);
+    regions_[level][key & kExcessRegions[level]].fade(kAtChange);
   }
 }
 
@@ -291,6 +322,11 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
                                 RenderWatch* watch) {
   traced_.resize(asked_.size());
   further_.assign(asked_.size() * kFurther, {});
+  parallel_for_range("homes of cells", static_cast<int64_t>(asked_.size()), 64,
+                     [&](int64_t begin, int64_t end) {
+                       for (int64_t k = begin; k < end; ++k)
+                         find_home(tracer, asked_[static_cast<size_t>(k)]);
+                     });
   parallel_for_range("irradiance cache", static_cast<int64_t>(asked_.size()), 4,
                      [&](int64_t begin, int64_t end) {
                        for (int64_t k = begin; k < end && watch->goes_on(); ++k)
@@ -332,18 +368,24 @@ double IrradianceCache::extrapolate(int round, bool remembers) {
   const auto counts = [&](size_t k) {
     return !traced_[k].is_new && (!remembers || traced_[k].changed);
   };
-  double change = 0, light = 0;
+  double change = 0, light = 0, cells = 0;
   for (size_t k = 0; k < asked_.size(); ++k) {
     if (!counts(k)) continue;
+    ++cells;
     light += luminance(light_[asked_[k]].all);
     change += luminance(light_[asked_[k]].all) - traced_[k].before;
   }
-  const double last = std::exchange(last_change_, change);
+  change /= max(cells, 1.0);  // of each, as cells come to be known from round to round
+  light /= max(cells, 1.0);
+  const double quotient = change / std::exchange(last_change_, change);
+  const double last_quotient = std::exchange(last_quotient_, quotient);
   terms_ = round == 0 ? 1 : terms_ + 1;
   const double share = light > 0 ? std::abs(change) / light : 1;
-  if (terms_ < 3 || share <= kWorthIt || last == 0) return share;
-  const double ratio = change / last;
-  if (!(ratio > 0 && ratio < kMostRatio)) return share;
+  // Two quotients that agree tell it from noise. While a picture waits there is time for one.
+  const double ratio = remembers ? quotient : std::min(quotient, last_quotient);
+  const auto dies = [](double r) { return r > 0 && r < kMostRatio; };
+  if (terms_ < (remembers ? 3 : 4) || share <= kWorthIt) return share;
+  if (!dies(quotient) || !(remembers || dies(last_quotient))) return share;
   const auto factor = static_cast<float>(std::max(0.0, 1 + change * ratio / ((1 - ratio) * light)));
   for (size_t k = 0; k < asked_.size(); ++k) {
     if (!counts(k)) continue;
@@ -361,6 +403,7 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
   uint64_t rays = 0;
   bool remembers = !settles;
   int rounds = settles ? kFirstRounds : 1;
+  double last_share = 1;
   // Where each ray meets a leaf of its own, what lies further on is known by larger cells' light.
   const size_t most =
       kFurtherRoom + kFurtherCells * static_cast<size_t>(std::count_if(
@@ -391,7 +434,9 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
     if (remembers && !many) continue;
     const double share = extrapolate(i, remembers);
     if (many && rounds < kMostRounds) ++rounds;
-    if (settles && ((i > 1 && share < kSettled) || i + 1 + kMeanRounds == kFirstRounds)) {
+    const bool rests = share < kSettled && last_share < kSettled;
+    last_share = share;
+    if (settles && ((i > 1 && rests) || i + 1 + kMeanRounds == kFirstRounds)) {
       remembers = true;
       rounds = i + 1 + kMeanRounds;
     }
@@ -413,11 +458,13 @@ void IrradianceCache::forget() {
     if (cells_[row].last_asked + kForgotten < update_) continue;
     cells_[kept] = cells_[row];
     light_[kept] = light_[row];
+    homes_[kept] = homes_[row];
     ++kept;
   }
   if (kept == cells_.size()) return;
   cells_.resize(kept);
   light_.resize(kept);
+  homes_.resize(kept);
   starts_.resize(kept * kStarts);
   rebuild(keys_.size());
 }
@@ -427,6 +474,7 @@ IrradianceCacheView IrradianceCache::view(Vec3f eye, float edge_per_metre) const
   view.keys = {keys_.data(), static_cast<uint32_t>(keys_.size())};
   view.cells = {rows_.data(), static_cast<uint32_t>(rows_.size())};
   view.light = {light_.data(), static_cast<uint32_t>(light_.size())};
+  view.homes = {homes_.data(), static_cast<uint32_t>(homes_.size())};
   view.mean = mean_;
   view.eye = eye;
   view.edge_per_metre = edge_per_metre;

@@ -23,7 +23,7 @@ class IrradianceCache {
   /// Returns the number of rays. Of no use any more once `watch` has stopped it.
   uint64_t update(const SceneView& scene, const CpuTracer& tracer, Vec3f eye, float edge_per_metre,
                   uint64_t seed, bool settles, size_t most_cells, RenderWatch* watch);
-  static constexpr int kFirstRounds = 12;
+  static constexpr int kFirstRounds = 16;
 
   IrradianceCacheView view(Vec3f eye, float edge_per_metre) const;
   size_t size() const { return cells_.size(); }
@@ -51,14 +51,15 @@ class IrradianceCache {
   struct LightChange {
     float light = 0, change = 0, variance = 0;
   };
-  /// Of Traced::excess in a region: a sum over cells and updates, where old ones fade.
+  /// Of Traced::excess in a region: sums over cells and updates, where old ones fade.
   struct Excess {
-    Vec3f sum, each;  ///< each: share of a cell
-    float cells = 0;
+    Vec3f sum, share;            ///< share: of a cell's light
+    float light = 0, cells = 0;  ///< what they had before
     uint32_t last_traced = 0;
 
-    /// Of `count` cells more; from then on as that of `most` cells.
-    void add(Vec3f more, size_t count, float most);
+    void add(const Excess& more);
+    /// From then on as that of `most` cells.
+    void fade(float most);
   };
   static constexpr size_t kLevels = 2;  ///< wide regions, and narrow ones in them
   static constexpr int kStarts = 4, kFurther = 8;
@@ -69,6 +70,8 @@ class IrradianceCache {
   void rebuild(size_t slots);
   /// Of the cells beside that of a key, or of all if there are none.
   float luminance_beside(uint64_t key) const;
+  /// Of new cells of air; places that are hidden from there start no rays.
+  void find_home(const CpuTracer& tracer, uint32_t row);
   /// Cell k of asked_ into traced_.
   void trace_cell(const SceneView& scene, const CpuTracer& tracer, IrradianceCacheView cache,
                   uint64_t seed, int rays, size_t k);
@@ -92,7 +95,9 @@ class IrradianceCache {
   std::vector<Cell> cells_;
   std::vector<CacheRequest> starts_;  ///< (cells x kStarts)
   std::vector<CellLight> light_;
-  double last_change_ = 0;             ///< of the light in a round [cd/m²]
+  std::vector<AirHome> homes_;
+  double last_change_ = 0;             ///< of a cell's light in a round [cd/m²]
+  double last_quotient_ = 0;           ///< of that and the round's before
   int terms_ = 0;                      ///< rounds since the last extrapolation
   std::vector<uint32_t> asked_;        ///< rows
   std::vector<Traced> traced_;         ///< of asked_

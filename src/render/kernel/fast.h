@@ -86,7 +86,8 @@ GLOAM_HD Vec3Of<F> look_along(const SceneView& scene, const Tracer& tracer,
     fasts::prepare_picker(scene, r.from, r.normal, active, fasts::kGlowAmongLamps, &path.picker);
   }
   const Vec3Of<F> light =
-      fasts::gather(scene, tracer, cache, true, r.flames, !r.flames, active, &path, requests).light;
+      fasts::gather(scene, tracer, cache, true, 0.0f, r.flames, !r.flames, active, &path, requests)
+          .light;
   *rays += path.result.rays;
   return light;
 }

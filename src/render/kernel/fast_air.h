@@ -14,6 +14,10 @@ struct AirLamp {
   Vec3f light;  ///< that it brings to the ray's origin if nothing is in between [cd/m²]
 };
 
+/// What shines less than this far from air [m] lights it by the rays of its cells alone: samples of
+/// a large lamp's points bring without bound more the nearer they are.
+inline constexpr float kNearLamp = 0.25f;
+
 /// At p_W on the ray. `share`: MarchStep::share.
 GLOAM_HD AirLamp sample_air(const SceneView& scene, const Ray& ray, const MediumPoint& medium,
                             Vec3f share, Vec3f p_W, WalkRandom* random) {
@@ -23,7 +27,8 @@ GLOAM_HD AirLamp sample_air(const SceneView& scene, const Ray& ray, const Medium
   const Vec2f u{random->next(), random->next()};
   out.lamp = sample_lamp<float>(scene, picker, p_W, Vec3f{}, u, ray.time, true);
   const LightSample& light = out.lamp.light;
-  if (!(light.pdf > 0)) return out;
+  const bool has_surface = length_squared(light.lift) > 0;
+  if (!(light.pdf > 0) || (has_surface && light.distance < kNearLamp)) return out;
   const float cosine = dot(ray.d, light.wi);
   const auto phase = [&](float scattering, float g_scattering) {
     const float g = scattering > 0 ? g_scattering / scattering : 0.0f;
@@ -47,21 +52,43 @@ GLOAM_HD Vec3f arriving_share(const SceneView& scene, const Tracer& tracer, cons
   return share * transmittance(scene.media, shadow, min(shadow.tmax, air.lamp.clear), {}, *random);
 }
 
+/// The cell of a key, or the one behind the walls that hide p_W from that.
+struct AirCell {
+  uint64_t key;
+  int row;  ///< -1: not there yet
+};
+template <class Tracer>
+GLOAM_HD AirCell find_air(const Tracer& tracer, const IrradianceCacheView& cache, uint64_t key,
+                          Vec3f p_W) {
+  for (uint32_t walls = 0; walls < 2; ++walls, key = caches::hidden(key)) {
+    const int row = find_cell(cache, key);
+    if (row < 0 || caches::is_seen(tracer, cache.homes[static_cast<uint32_t>(row)], p_W)) {
+      return {key, row};
+    }
+  }
+  return {0, -1};
+}
+
 /// Light from all around that media of the mean cosine g at p_W scatter against a ray along d, by
 /// what the cache has for the air there, or `otherwise`.
-GLOAM_HD Vec3f air_light(const IrradianceCacheView& cache, Vec3f p_W, Vec3f d, float g,
-                         uint32_t coarser, Vec3f otherwise, WalkRandom* random,
+template <class Tracer>
+GLOAM_HD Vec3f air_light(const Tracer& tracer, const IrradianceCacheView& cache, Vec3f p_W, Vec3f d,
+                         float g, uint32_t coarser, Vec3f otherwise, WalkRandom* random,
                          CacheRequest* request) {
   // Larger cells are asked for, too, to stand for those that are not there yet.
   constexpr float kLarger = 0.125f;
   constexpr uint32_t kLevels = 2;
-  const CachePlaceOf<float> at{p_W, d, kAirCell, p_W, g};
-  const Vec3f jitter{random->next(), random->next(), random->next()};
-  const CacheCellOf<float> cell = ask_cells<float>(cache, at, true, jitter, coarser, request);
-  if (random->next() < kLarger) {
-    ask_cells<float>(cache, at, true, {0.5f, 0.5f, 0.0f}, coarser + kLevels, request);
+  const auto cell_for = [&](Vec3f jitter, uint32_t level) {
+    return find_air(tracer, cache, cache_key(cache, p_W, d, kAirCell, jitter, level), p_W);
+  };
+  const Vec3f jitter{random->next(), random->next(), random->next()}, middle{0.5f, 0.5f, 0.0f};
+  AirCell cell = cell_for(jitter, coarser);
+  *request = {cell.key, p_W, d, g};
+  if (random->next() < kLarger) request->key = cell_for(middle, coarser + kLevels).key;
+  for (uint32_t more = 0; cell.row < 0 && more <= kLevels; ++more) {
+    cell = cell_for(middle, coarser + more);
   }
-  return cached_light<float>(cache, at, cell, true, coarser, otherwise);
+  return cell.row < 0 ? otherwise : cache.light[static_cast<uint32_t>(cell.row)].all;
 }
 
 /// Light of what glows where samples of lamps leave it out: right before the ray [cd/m²].
@@ -122,14 +149,19 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
     WalkRandom random(lane(u, i));
     const Ray ray = lane(path->ray, i);
     // Steps ask by turns, the more seldom the less they scatter, and count for as many more.
-    constexpr float kOfAir = 0.1f, kOfLamps = 0.4f;
-    Turn of_air{random.next()}, of_lamps{random.next()};
+    constexpr float kOfAir = 0.1f;
+    Turn of_air{random.next()};
     float weighed = 0;       // what has been asked for
     float in_all = 0;        // what lamps may bring
     Vec3f air = cache.mean;  // of the last step that the cache knew
     Vec3f around;
-    AirLamp lit;  // of one step, which stands for all
-    float brings = 0;
+    // Two steps, by what they scatter, take a sample of lamps, and one of these stands for all.
+    constexpr int kDrawn = 2;
+    struct {
+      MediumPoint point;
+      Vec3f p_W, share;
+      float brings = 0;
+    } drawn[kDrawn];
     const MarchResult m =
         march(scene.media, ray, lane(tmax, i), 0.0f, steps, {}, lane(glows, i),
               [&](const MarchStep& step) {
@@ -140,7 +172,7 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
                 if (const float chance = min(scatters / kOfAir, 1.0f); of_air.comes(chance)) {
                   CacheRequest request;
                   const float g = luminance(point.g_scattering) / luminance(point.scattering);
-                  air = air_light(cache, p_W, ray.d, g, coarser, air, &random, &request);
+                  air = air_light(tracer, cache, p_W, ray.d, g, coarser, air, &random, &request);
                   Vec3f from_all = air;
                   if (step.is_hot)
                     from_all += near_glow_in_air(scene.media, p_W, ray.d, g, &random);
@@ -148,23 +180,31 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
                   weighed += scatters / chance;
                   if (random.next() * weighed < scatters / chance) requests[i] = request;
                 }
-                if (const float chance = min(scatters / kOfLamps, 1.0f);
-                    lane(samples, i) && of_lamps.comes(chance)) {
-                  const AirLamp one = sample_air(scene, ray, point, step.share, p_W, &random);
-                  const float light = luminance(one.light);
-                  in_all += light / chance;
-                  if (random.next() * in_all < light / chance) {
-                    lit = one;
-                    brings = light;
-                  }
+                const float brings = scatters * luminance(air);
+                in_all += brings;
+                for (auto& one : drawn) {
+                  if (random.next() * in_all < brings) one = {point, p_W, step.share, brings};
                 }
                 return Vec3f{};
               });
     if (lane(samples, i) && in_all > 0) {
-      uint32_t rays = 0;
-      const Vec3f share = arriving_share(scene, tracer, ray, lit, &random, &rays);
-      set_lane(&out.lamps, i, lit.light * share * (in_all / brings));
-      set_lane(&path->result.rays, i, lane(path->result.rays, i) + rays);
+      AirLamp lit;
+      float brings = 0, of_drawn = 0;
+      for (const auto& one : drawn) {
+        const Vec3f share = one.share * (in_all / (one.brings * kDrawn));
+        const AirLamp lamp = sample_air(scene, ray, one.point, share, one.p_W, &random);
+        const float light = luminance(lamp.light);
+        of_drawn += light;
+        if (!(random.next() * of_drawn < light)) continue;
+        lit = lamp;
+        brings = light;
+      }
+      if (brings > 0) {
+        uint32_t rays = 0;
+        const Vec3f share = arriving_share(scene, tracer, ray, lit, &random, &rays);
+        set_lane(&out.lamps, i, lit.light * share * (of_drawn / brings));
+        set_lane(&path->result.rays, i, lane(path->result.rays, i) + rays);
+      }
     }
     set_lane(&out.radiance, i, m.radiance);
     set_lane(&out.around, i, around);

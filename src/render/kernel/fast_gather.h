@@ -16,12 +16,12 @@ struct GatheredOf {
 /// Light along path->ray in the `active` lanes, from its first surface that is no glass or mirror.
 /// What lamps themselves send is weighed against direct_light() by path->pdf_bsdf if `count_lamps`;
 /// if not, it is none of the path's business. `flames`: lanes in which what glows counts, `near`:
-/// or does within glow::kNearGlow.
+/// or does within glow::kNearGlow. `near_lamp`: how far lamps count that are none of its business.
 template <class F, class Tracer>
 GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
-                              const IrradianceCacheView& cache, bool count_lamps, MaskOf<F> flames,
-                              MaskOf<F> near, MaskOf<F> active, paths::State<F>* path,
-                              CacheRequest* requests) {
+                              const IrradianceCacheView& cache, bool count_lamps, float near_lamp,
+                              MaskOf<F> flames, MaskOf<F> near, MaskOf<F> active,
+                              paths::State<F>* path, CacheRequest* requests) {
   constexpr int kMaxEvents = 5;  // in and out of two glasses
   GatheredOf<F> out;
   Vec3Of<F>&sum = out.light, throughput = in_all_lanes<F>({1, 1, 1});
@@ -83,7 +83,9 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
         return count_lamps ? chance_of(scene, *path, row, every, kDrawnLights, i) : 1.0f;
       });
       const F weight = select(first & (pdf > 0.0f),
-                              count_lamps ? mis_weight(path->pdf_bsdf, pdf) : F(0.0f), F(1.0f));
+                              count_lamps ? mis_weight(path->pdf_bsdf, pdf)
+                                          : select(hit.t < near_lamp, F(1.0f), F(0.0f)),
+                              F(1.0f));
       sum += select<F>(shines, throughput * v.emission * (v.opacity * weight), Vec3Of<F>{});
     }
     MaskOf<F> through = false;

@@ -29,11 +29,18 @@ GLOAM_HD Vec3f light_at(const CellLight& cell, float near) {
   return lerp(far, close, near);
 }
 
+/// Where in the air the first ray of a cell starts.
+struct AirHome {
+  Vec3f p;
+  bool sees_all = true;  ///< that may ask the cell; else light differs on both sides of a wall
+};
+
 struct IrradianceCacheView {
   DeviceSpan<const uint64_t> keys;   ///< open addressing, size a power of two; 0 = free
   DeviceSpan<const uint32_t> cells;  ///< row of `light` of each key
   DeviceSpan<const CellLight> light;
-  Vec3f mean;  ///< of all cells, for those that are not there yet
+  DeviceSpan<const AirHome> homes;  ///< of cells of air, in the rows of `light`
+  Vec3f mean;                       ///< of all cells, for those that are not there yet
   Vec3f eye;
   float edge_per_metre = 0.03f;  ///< edge of a cell over its distance from the eye
 };
@@ -70,8 +77,12 @@ GLOAM_HD uint64_t beside(uint64_t key, int axis, bool up) {
   return (key & ~mask) | ((up ? key + one : key - one) & mask);
 }
 
-/// Which of kOutsideCell, kInsideCell and kAirCell the cell of a key is.
+/// Which of kOutsideCell, kInsideCell, kAirCell and kHiddenAirCell the cell of a key is.
 GLOAM_HD uint32_t side_of(uint64_t key) { return static_cast<uint32_t>(key >> 61 & 3u); }
+GLOAM_HD bool is_air(uint64_t key) { return key >> 62 & 1u; }
+
+/// Key of the cell for air that something hides from the home of the cell of air `key`.
+GLOAM_HD uint64_t hidden(uint64_t key) { return key | uint64_t{1} << 61; }
 
 /// Edge of the cell of a key [m].
 GLOAM_HD float edge_of(uint64_t key) {
@@ -80,11 +91,22 @@ GLOAM_HD float edge_of(uint64_t key) {
   return from_bits(((low >= 32u ? 64u : 128u) + low) << 23);
 }
 
+/// Middle of the cell of a key [m].
+GLOAM_HD Vec3f middle_of(uint64_t key) {
+  const auto along = [&](int axis) {
+    const auto [shift, mask] = place_bits(axis);
+    const int above = axis < 2 ? 46 : 48;  // its highest bit is that of its sign
+    return static_cast<float>(static_cast<int64_t>((key & mask) >> shift << above) >> above) + 0.5f;
+  };
+  return Vec3f{along(0), along(1), along(2)} * edge_of(key);
+}
+
 }  // namespace caches
 
 /// What a cell's light falls on: inner sides of panes lie where their outer sides do, and air where
-/// both do. A cell of air faces the way that a ray goes, against which it scatters light.
-inline constexpr uint32_t kOutsideCell = 0, kInsideCell = 1, kAirCell = 2;
+/// both do. A cell of air faces the way that a ray goes, against which it scatters light; where a
+/// wall passes through it, air behind that has a cell of its own.
+inline constexpr uint32_t kOutsideCell = 0, kInsideCell = 1, kAirCell = 2, kHiddenAirCell = 3;
 
 /// A cell before its numbers are packed.
 template <class F>
@@ -142,6 +164,27 @@ GLOAM_HD uint64_t cache_key(const IrradianceCacheView& cache, Vec3f p, Vec3f n, 
                             Vec3f jitter, uint32_t coarser) {
   return cache_key(cache_cell<float>(cache, p, n, side, jitter, coarser), 0);
 }
+
+namespace caches {
+
+/// Nothing is between a and b.
+template <class Tracer>
+GLOAM_HD bool is_clear(const Tracer& tracer, Vec3f a, Vec3f b) {
+  Ray ray;
+  ray.o = a;
+  const Vec3f to = b - a;
+  ray.tmax = length(to);
+  if (!(ray.tmax > 0)) return true;
+  ray.d = to / ray.tmax;
+  return !tracer.occluded(ray, true);
+}
+/// p_W may ask the cell.
+template <class Tracer>
+GLOAM_HD bool is_seen(const Tracer& tracer, const AirHome& home, Vec3f p_W) {
+  return home.sees_all || is_clear(tracer, home.p, p_W);
+}
+
+}  // namespace caches
 
 /// Row of the key's cell, or -1.
 GLOAM_HD int find_cell(const IrradianceCacheView& cache, uint64_t key) {
