@@ -22,6 +22,28 @@ float cell_edge(const CameraView32& camera) { return min(kCellPixels / camera.fx
 
 }  // namespace
 
+bool FastHistory::find_moving_lamps(const SceneView& scene) {
+  // What goes less far from picture to picture, or gives so small a share of the strongest lamp's
+  // light, the cache follows.
+  constexpr float kFar = 0.005f, kTurn = 0.005f;  // [m], [rad]
+  constexpr float kWeak = 0.01f;
+  std::vector<LampPlace> now;
+  float strongest = 0;
+  for (uint32_t i = 0; i < scene.lights.size; ++i) {
+    const LightView& light = scene.lights[i];
+    now.push_back({light.p, light.direction});
+    if (light.kind != LightKind::kDirectional) strongest = max(strongest, light.strength);
+  }
+  bool moves = now.size() != lamps_.size();
+  for (uint32_t i = 0; !moves && i < scene.lights.size; ++i) {
+    moves = scene.lights[i].strength > kWeak * strongest &&
+            (length(now[i].p_W - lamps_[i].p_W) > kFar ||
+             length(now[i].direction - lamps_[i].direction) > kTurn);
+  }
+  lamps_ = std::move(now);
+  return moves;
+}
+
 void FastHistory::look_up(const IrradianceCacheView& cache) {
   parallel_for("fast light", now_.height, [&](int64_t row) {
     const int y = static_cast<int>(row);
@@ -58,12 +80,14 @@ void FastHistory::add_picture(const SceneView& scene, const CpuTracer& tracer,
                               const CameraView32& camera, const RenderSettings& settings,
                               uint32_t pass, RenderWatch* watch) {
   SceneView plain = scene;  // rays of pixels go where they must
-  plain.guide = {};
+  plain.guide.share = 0;
   const Vec3f eye = camera.pose.X_WC_open.p;
   for (bool again = true; again && !watch->stopped();) {
     const bool first = cache_.size() == 0;
     const float edge = cell_edge(camera) * coarse_;
-    trace({plain, tracer, camera, cache_.view(eye, edge), settings.seed}, pass);
+    IrradianceCacheView cache = cache_.view(eye, edge);
+    cache.lamps_move = lamps_move_;
+    trace({plain, tracer, camera, cache, settings.seed}, pass);
     cache_.ask(requests_);
     if (first && cache_.size() > kManyCells && coarse_ < kCoarsest) {
       coarse_ *= 2;
@@ -97,6 +121,7 @@ RenderStats FastHistory::render(const SceneView& scene, const CpuTracer& tracer,
     coarse_ = 1;
   }
   const bool first = pictures_ == 0;
+  lamps_move_ = find_moving_lamps(scene) && !first;
   const uint32_t passes = first ? kFirstPictures : 1;
   RenderWatch watch(settings.progress, first ? IrradianceCache::kFirstRounds + kFirstPictures : 1);
   for (uint32_t pass = 0; pass < passes && !watch.stopped(); ++pass) {

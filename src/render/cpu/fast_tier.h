@@ -21,6 +21,11 @@ struct AskedOfTile {
   std::vector<CacheRequest> seen, mirrored;
 };
 
+/// Where a lamp is, and the way it shines.
+struct LampPlace {
+  Vec3f p_W, direction;
+};
+
 class FastHistory final : public ViewHistory {
  public:
   /// Renders into film->radiance.
@@ -34,12 +39,16 @@ class FastHistory final : public ViewHistory {
   void trace(const FastView& view, uint32_t pass);
   /// From the pixel (x0, y0) on. Returns the number of rays.
   uint64_t trace_tile(const FastView& view, uint32_t pass, int x0, int y0, AskedOfTile* asked);
+  /// Whether lamps are not where they were in the last picture; keeps where they are.
+  bool find_moving_lamps(const SceneView& scene);
   void look_up(const IrradianceCacheView& cache);
   void compose();
 
   IrradianceCache cache_;
   FastFrame now_, before_;
   FastFilter filter_;
+  std::vector<LampPlace> lamps_;  ///< in the last picture
+  bool lamps_move_ = false;
   std::vector<AskedOfTile> asked_;  ///< by tile
   std::vector<CacheRequest> requests_;
   Vec2f turn_;  ///< in [0, 1)², of the directions of FastSampleOf::near

@@ -243,7 +243,7 @@ uint64_t FastHistory::trace_tile(const FastView& view, uint32_t pass, int x0, in
     reflected.add(sample.reflection, &block);
     each_lane(pixels.active, [&](int i) { rays += lane(sample.rays, i); });
   }
-  if (now_.signals > kAirSignal) spread_air(x0, y0, &now_);
+  if (view.cache.lamps_move && now_.signals > kAirSignal) spread_air(x0, y0, &now_);
   rays += reflected.finish();
   for (int b = 0; b < count; ++b) {
     const PendingBlock& block = blocks[b];

@@ -23,7 +23,7 @@ constexpr float kSurprise = 3;       // standard errors,
 constexpr float kNoRegionChange = 0.02f;  // and this share, that a region's light may be off
 constexpr float kBrightest = 16;       // times a cell's mean: what a ray brings beyond that is the
                                        // region's, as few rays meet it
-constexpr float kBrightestInAir = 32;  // there, a filter passes over what cells have too much
+constexpr float kBrightestInAir = 8;  // there, a filter passes over what cells have too much
 constexpr float kMostTold = 500;       // cells and updates that a region's excess is the mean of,
 constexpr float kAtChange = 4;         // and where the light has changed;
 constexpr float kGuessed = 20;         // it counts as that of so many more cells of a wider region
@@ -177,6 +177,7 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
     // Each stratum is a part of a ring: over compact patches of directions a rare bright lamp left
     // spots.
     const Vec2Of<F> u = path.sampler.next_2d();
+    const Vec2Of<F> u_lamp = path.sampler.next_2d(), u_walk = path.sampler.next_2d();
     Vec3Of<F> normal;
     F g;
     MaskLanes seeks = false;
@@ -200,20 +201,32 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
       weight = select(rows.guided, 2.0f * even / max(even + sought, F(1e-9f)), F(1.0f));
     }
     path.cone_spread = kRayConeSpread;
-    path.from = path.ray.o;
+    const Vec3Of<F> origin = path.from = path.ray.o;
     CacheRequest met[kLaneCount];
     const fasts::GatheredOf<F> light =
         fasts::gather<F>(scene, tracer, cache, false, in_air ? fasts::kNearLamp : 0.0f, false,
                          !in_air, weight > 0.0f, &path, met);
     for (int i = 0; i < kLaneCount; ++i) {
       const float w = lane(weight, i);
-      if (!(w > 0)) continue;
-      const Vec3f all = lane(light.light, i) * w;
-      const Vec3f one = all * (brightest / max(luminance(all), brightest));
+      Vec3f all = w > 0 ? lane(light.light, i) * w : Vec3f{}, lamps;
+      if (in_air) {
+        Ray ray = lane(path.ray, i);
+        ray.o = lane(origin, i);
+        ray.d = lane(normal, i);
+        WalkRandom random(lane(u_walk, i));
+        uint32_t shadow = 0;
+        lamps =
+            fasts::lamps_in_air(scene, tracer, ray, lane(g, i), lane(u_lamp, i), &random, &shadow);
+        out.rays += shadow;
+        all += lamps;
+      }
+      const float kept = brightest / max(luminance(all), brightest);
+      const Vec3f one = all * kept;
       out.excess += all - one;
-      const bool near = lane(light.way, i) < edge;
+      const bool near = !in_air && lane(light.way, i) < edge;
       out.light.all += one;
       if (near) out.light.near += one;
+      out.light.near += lamps * kept;
       out.light.share += near ? w : 0.0f;
       if (lane(light.way, i) < 1e30f && scene.instances[lane(light.first, i)].has_moved)
         out.stir += w * per_ray;
@@ -285,11 +298,13 @@ void IrradianceCache::Excess::fade(float most) {
   cells *= kept;
 }
 
-void IrradianceCache::spread_excess() {
+void IrradianceCache::spread_excess(bool remembers) {
+  // As long as light comes round, what was before is a share of less.
+  const float past = remembers ? kMostTold : kAtChange;
   Excess all;
   for (const Traced& traced : traced_) all.add({traced.excess, {}, traced.before, 1});
+  excess_.fade(past);
   excess_.add(all);
-  excess_.fade(kMostTold);
   excess_.share = excess_.sum / max(excess_.light, 1e-20f);
   // From wide to narrow: what little a region has seen is completed by the wider one's.
   for (size_t level = 0; level < kLevels; ++level) {
@@ -298,8 +313,8 @@ void IrradianceCache::spread_excess() {
       const Excess& wider =
           level == 0 ? excess_ : regions_[level - 1][key & kExcessRegions[level - 1]];
       Excess& region = regions_[level][key];
+      region.fade(past);
       for (const auto& [_, k] : group) region.add({traced_[k].excess, {}, traced_[k].before, 1});
-      region.fade(kMostTold);
       region.last_traced = update_;
       const float guessed = region.light / region.cells * kGuessed;
       region.share = (region.sum + wider.share * guessed) / max(region.light + guessed, 1e-20f);
@@ -333,7 +348,7 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
                          trace_cell(scene, tracer, cache, seed, remembers ? kRays : kFirstRays,
                                     static_cast<size_t>(k));
                      });
-  spread_excess();
+  spread_excess(remembers);
   find_changes();
   uint64_t rays = 0;
   for (size_t k = 0; k < asked_.size(); ++k) {

@@ -82,7 +82,7 @@ class IrradianceCache {
   LightChange change_of(std::span<const Member> group) const;
   void find_changes();
   /// Gives what is above the limit to all cells of a region that face the same way.
-  void spread_excess();
+  void spread_excess(bool remembers);
   void forget_excess(uint64_t key);
   uint64_t trace(const SceneView& scene, const CpuTracer& tracer, const IrradianceCacheView& cache,
                  uint64_t seed, bool remembers, RenderWatch* watch);

@@ -148,17 +148,14 @@ Vec3f StreakFinder::light_of(ParticleKind kind, Vec3f p, Vec2f uv, const Philox4
     light = around_.on(d) * 0.6f + around_.on(-d) * 0.4f;
   }
   if (view_.scene.lights.size == 0) return light;
-  const float g = drop ? kDropG : kFlakeG;
-  const MediumPoint point{.scattering = {1, 1, 1}, .g_scattering = {g, g, g}};
   Ray ray;
-  ray.o = eye_;
+  ray.o = p;
   ray.d = d;
-  WalkRandom random({uniform_float(bits.v[3]), uniform_float(bits.v[3] * 0x9E3779B9u)});
+  const Vec2f u{uniform_float(bits.v[3]), uniform_float(bits.v[3] * 0x9E3779B9u)};
+  WalkRandom random(u);
   uint32_t rays = 0;
-  const fasts::AirLamp lit = fasts::sample_air(view_.scene, ray, point, {1, 1, 1}, p, &random);
-  if (!(max_component(lit.light) > 0)) return light;
-  return light +
-         lit.light * fasts::arriving_share(view_.scene, view_.tracer, ray, lit, &random, &rays);
+  return light + fasts::lamps_in_air(view_.scene, view_.tracer, ray, drop ? kDropG : kFlakeG, u,
+                                     &random, &rays);
 }
 
 }  // namespace gloam

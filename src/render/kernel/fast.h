@@ -133,8 +133,9 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
       const Mask borrows =
           even_quads<F>(active, select(found, hit.instance + 1u, UintOf<F>(0u)), path.ray.d) &
           !turns.of_two;
+      const Mask samples = active & !borrows & Mask(cache.lamps_move);
       const auto media =
-          fasts::cross_media(scene, tracer, cache, tmax, active, active & !borrows, kSteps, 0, true,
+          fasts::cross_media(scene, tracer, cache, tmax, active, samples, kSteps, 0, true,
                              &path, requests + 3 * Lanes<F>::kCount);
       const Vec3Of<F> lamps = select<F>(borrows, flip<1>(media.lamps), media.lamps);
       out.base += select<F>(active, out.through * media.radiance, Vec3Of<F>{});

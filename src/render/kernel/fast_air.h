@@ -20,11 +20,10 @@ inline constexpr float kNearLamp = 0.25f;
 
 /// At p_W on the ray. `share`: MarchStep::share.
 GLOAM_HD AirLamp sample_air(const SceneView& scene, const Ray& ray, const MediumPoint& medium,
-                            Vec3f share, Vec3f p_W, WalkRandom* random) {
+                            Vec3f share, Vec3f p_W, Vec2f u) {
   AirLamp out{{}, p_W, {}};
   LightPicker picker;
   prepare_picker<float>(scene, p_W, Vec3f{}, true, kOneGlow, &picker);
-  const Vec2f u{random->next(), random->next()};
   out.lamp = sample_lamp<float>(scene, picker, p_W, Vec3f{}, u, ray.time, true);
   const LightSample& light = out.lamp.light;
   const bool has_surface = length_squared(light.lift) > 0;
@@ -52,6 +51,19 @@ GLOAM_HD Vec3f arriving_share(const SceneView& scene, const Tracer& tracer, cons
   return share * transmittance(scene.media, shadow, min(shadow.tmax, air.lamp.clear), {}, *random);
 }
 
+/// Light of lamps that media of the mean cosine g at ray.o would scatter against the ray: of even
+/// surroundings as bright [cd/m²].
+template <class Tracer>
+GLOAM_HD Vec3f lamps_in_air(const SceneView& scene, const Tracer& tracer, const Ray& ray, float g,
+                            Vec2f u, WalkRandom* random, uint32_t* rays) {
+  MediumPoint one;
+  one.scattering = {1, 1, 1};
+  one.g_scattering = {g, g, g};
+  const AirLamp lamp = sample_air(scene, ray, one, {1, 1, 1}, ray.o, u);
+  if (!(max_component(lamp.light) > 0)) return {};
+  return lamp.light * arriving_share(scene, tracer, ray, lamp, random, rays);
+}
+
 /// The cell of a key, or the one behind the walls that hide p_W from that.
 struct AirCell {
   uint64_t key;
@@ -69,12 +81,16 @@ GLOAM_HD AirCell find_air(const Tracer& tracer, const IrradianceCacheView& cache
   return {0, -1};
 }
 
-/// Light from all around that media of the mean cosine g at p_W scatter against a ray along d, by
-/// what the cache has for the air there, or `otherwise`.
+/// Light that media at a place scatter against a ray: of even surroundings as bright [cd/m²].
+struct AirLight {
+  Vec3f all, lamps;  ///< lamps: of that
+};
+/// For media of the mean cosine g at p_W and a ray along d: what the cache has for the air there,
+/// or `otherwise`.
 template <class Tracer>
-GLOAM_HD Vec3f air_light(const Tracer& tracer, const IrradianceCacheView& cache, Vec3f p_W, Vec3f d,
-                         float g, uint32_t coarser, Vec3f otherwise, WalkRandom* random,
-                         CacheRequest* request) {
+GLOAM_HD AirLight air_light(const Tracer& tracer, const IrradianceCacheView& cache, Vec3f p_W,
+                            Vec3f d, float g, uint32_t coarser, const AirLight& otherwise,
+                            WalkRandom* random, CacheRequest* request) {
   // Larger cells are asked for, too, to stand for those that are not there yet.
   constexpr float kLarger = 0.125f;
   constexpr uint32_t kLevels = 2;
@@ -88,7 +104,9 @@ GLOAM_HD Vec3f air_light(const Tracer& tracer, const IrradianceCacheView& cache,
   for (uint32_t more = 0; cell.row < 0 && more <= kLevels; ++more) {
     cell = cell_for(middle, coarser + more);
   }
-  return cell.row < 0 ? otherwise : cache.light[static_cast<uint32_t>(cell.row)].all;
+  if (cell.row < 0) return otherwise;
+  const CellLight& light = cache.light[static_cast<uint32_t>(cell.row)];
+  return {light.all, light.near};
 }
 
 /// Light of what glows where samples of lamps leave it out: right before the ray [cd/m²].
@@ -134,7 +152,8 @@ struct MediaLightOf {
   Vec3Of<F> scattered;  ///< share of what arrives from all around
   Vec3Of<F> through;
 };
-/// `samples`: lanes that take a sample of lamps. `glows`: what glows on the way counts. `requests`:
+/// `samples`: lanes that take a sample of lamps; in others the cache's light of lamps counts.
+/// `glows`: what glows on the way counts. `requests`:
 /// one per lane, for one of the places that scatter light.
 template <class F, class Tracer>
 GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& tracer,
@@ -151,12 +170,13 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
     // Steps ask by turns, the more seldom the less they scatter, and count for as many more.
     constexpr float kOfAir = 0.1f;
     Turn of_air{random.next()};
-    float weighed = 0;       // what has been asked for
-    float in_all = 0;        // what lamps may bring
-    Vec3f air = cache.mean;  // of the last step that the cache knew
+    float weighed = 0;             // what has been asked for
+    float in_all = 0;              // what lamps may bring
+    AirLight air{cache.mean, {}};  // of the last step that the cache knew
     Vec3f around;
     // Two steps, by what they scatter, take a sample of lamps, and one of these stands for all.
     constexpr int kDrawn = 2;
+    constexpr float kEven = 0.1f;  // of what all light brings counts, as lamps may move
     struct {
       MediumPoint point;
       Vec3f p_W, share;
@@ -173,14 +193,14 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
                   CacheRequest request;
                   const float g = luminance(point.g_scattering) / luminance(point.scattering);
                   air = air_light(tracer, cache, p_W, ray.d, g, coarser, air, &random, &request);
-                  Vec3f from_all = air;
+                  Vec3f from_all = lane(samples, i) ? air.all - air.lamps : air.all;
                   if (step.is_hot)
                     from_all += near_glow_in_air(scene.media, p_W, ray.d, g, &random);
                   around += scattered * from_all * (1 / chance);
                   weighed += scatters / chance;
                   if (random.next() * weighed < scatters / chance) requests[i] = request;
                 }
-                const float brings = scatters * luminance(air);
+                const float brings = scatters * luminance(air.all * kEven + air.lamps);
                 in_all += brings;
                 for (auto& one : drawn) {
                   if (random.next() * in_all < brings) one = {point, p_W, step.share, brings};
@@ -188,21 +208,23 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
                 return Vec3f{};
               });
     if (lane(samples, i) && in_all > 0) {
-      AirLamp lit;
-      float brings = 0, of_drawn = 0;
-      for (const auto& one : drawn) {
-        const Vec3f share = one.share * (in_all / (one.brings * kDrawn));
-        const AirLamp lamp = sample_air(scene, ray, one.point, share, one.p_W, &random);
-        const float light = luminance(lamp.light);
-        of_drawn += light;
-        if (!(random.next() * of_drawn < light)) continue;
-        lit = lamp;
-        brings = light;
+      // By half even, as what would bring most may be hidden.
+      AirLamp lamps[kDrawn];
+      float light[kDrawn], all = 0;
+      for (int k = 0; k < kDrawn; ++k) {
+        const Vec3f share = drawn[k].share * (in_all / drawn[k].brings);
+        lamps[k] = sample_air(scene, ray, drawn[k].point, share, drawn[k].p_W,
+                              {random.next(), random.next()});
+        light[k] = luminance(lamps[k].light);
+        all += light[k];
       }
-      if (brings > 0) {
+      if (all > 0) {
+        const float first = 0.25f + 0.5f * light[0] / all;
+        const int k = random.next() < first ? 0 : 1;
         uint32_t rays = 0;
-        const Vec3f share = arriving_share(scene, tracer, ray, lit, &random, &rays);
-        set_lane(&out.lamps, i, lit.light * share * (of_drawn / brings));
+        const Vec3f share = arriving_share(scene, tracer, ray, lamps[k], &random, &rays);
+        const float chance = k == 0 ? first : 1 - first;
+        set_lane(&out.lamps, i, lamps[k].light * share * (0.5f / chance));
         set_lane(&path->result.rays, i, lane(path->result.rays, i) + rays);
       }
     }

@@ -46,16 +46,9 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
         });
       }
       CacheRequest air[Lanes<F>::kCount] = {};
-      const MediaLightOf<F> media = cross_media(scene, tracer, cache, tmax, active, active, kSteps,
+      const MediaLightOf<F> media = cross_media(scene, tracer, cache, tmax, active, false, kSteps,
                                                 count_lamps ? 0 : 2, flames, path, air);
-      F limit = 1.0f;
-      if (count_lamps) {  // no filter passes over what stands out of reflections
-        constexpr float kBrightest = 4;
-        limit = min(kBrightest * luminance(media.around) / max(luminance(media.lamps), F(1e-9f)),
-                    F(1.0f));
-      }
-      const Vec3Of<F> light = media.radiance + media.around + media.lamps * limit;
-      sum += select<F>(active, throughput * light, Vec3Of<F>{});
+      sum += select<F>(active, throughput * (media.radiance + media.around), Vec3Of<F>{});
       // What brings more light is asked for: the air on the way, or the surface.
       const MaskOf<F> airy =
           active & ((!found) | (max_component(media.scattered) > max_component(media.through)));

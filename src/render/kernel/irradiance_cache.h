@@ -10,7 +10,7 @@ namespace gloam {
 /// Light on the surfaces of a cell, as the luminance of even surroundings [cd/m²].
 struct CellLight {
   Vec3f all;        ///< from everywhere
-  Vec3f near;       ///< of that, from surfaces less than the cell's edge away
+  Vec3f near;       ///< of that, from surfaces less than the cell's edge away; in air, from lamps
   float share = 0;  ///< of directions that meet such surfaces
 };
 
@@ -42,6 +42,7 @@ struct IrradianceCacheView {
   DeviceSpan<const AirHome> homes;  ///< of cells of air, in the rows of `light`
   Vec3f mean;                       ///< of all cells, for those that are not there yet
   Vec3f eye;
+  bool lamps_move = false;       ///< then what they give the air is not what it was
   float edge_per_metre = 0.03f;  ///< edge of a cell over its distance from the eye
 };
 

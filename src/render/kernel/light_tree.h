@@ -98,9 +98,9 @@ GLOAM_HD float bound(const LightNode& node, Vec3f p, Vec3f n) {
 }
 
 /// Shares of the three roots. What is in between is not known, so each that may bring light gets
-/// its part of a quarter: a sun outdoors must not leave a room's lamps without rays.
+/// its part of three quarters: a sun outdoors must not leave a room's lamps without rays.
 GLOAM_HD void root_shares(const LightTreeView& tree, Vec3f p, Vec3f n, double* share) {
-  constexpr double kEven = 0.25;
+  constexpr double kEven = 0.75;
   double total = 0;
   int some = 0;
   for (uint32_t i = 0; i < LightTreeView::kRoots; ++i) {
