@@ -21,12 +21,13 @@ constexpr float kSettles = 0.75f;    // of what a cell saw move, from update to 
 constexpr uint32_t kForgotten = 30;  // updates after which a cell that nobody asks for goes
 constexpr float kSurprise = 3;       // standard errors,
 constexpr float kNoRegionChange = 0.02f;  // and this share, that a region's light may be off
-constexpr float kBrightest = 16;       // times a cell's mean: what a ray brings beyond that is the
-                                       // region's, as few rays meet it
+constexpr float kBrightest = 16;      // times a cell's mean: what a ray brings beyond that is the
+                                      // region's, as few rays meet it
 constexpr float kBrightestInAir = 8;  // there, a filter passes over what cells have too much
-constexpr float kMostTold = 500;       // cells and updates that a region's excess is the mean of,
-constexpr float kAtChange = 4;         // and where the light has changed;
-constexpr float kGuessed = 20;         // it counts as that of so many more cells of a wider region
+constexpr float kMostTold = 500;      // cells and updates that a region's excess is the mean of,
+constexpr float kAtFirst = 50;        // as long as light comes round for the first time,
+constexpr float kAtChange = 4;        // and where the light has changed;
+constexpr float kGuessed = 4;         // it counts as that of so many more cells of a wider region
 constexpr uint64_t kExcessRegions[] = {caches::kWideRegion | caches::kFacing,
                                        caches::kRegion | caches::kFacing};
 constexpr float kFades = 0.1f;     // share of all light that must have changed to change all
@@ -300,7 +301,7 @@ void IrradianceCache::Excess::fade(float most) {
 
 void IrradianceCache::spread_excess(bool remembers) {
   // As long as light comes round, what was before is a share of less.
-  const float past = remembers ? kMostTold : kAtChange;
+  const float past = remembers ? kMostTold : kAtFirst;
   Excess all;
   for (const Traced& traced : traced_) all.add({traced.excess, {}, traced.before, 1});
   excess_.fade(past);

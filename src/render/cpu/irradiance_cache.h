@@ -62,7 +62,7 @@ class IrradianceCache {
     void fade(float most);
   };
   static constexpr size_t kLevels = 2;  ///< wide regions, and narrow ones in them
-  static constexpr int kStarts = 4, kFurther = 8;
+  static constexpr int kStarts = 8, kFurther = 8;
 
   /// The same sequence each time.
   uint32_t dice();
