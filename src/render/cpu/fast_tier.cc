@@ -34,8 +34,9 @@ bool FastHistory::find_moving_lamps(const SceneView& scene) {
     now.push_back({light.p, light.direction});
     if (light.kind != LightKind::kDirectional) strongest = max(strongest, light.strength);
   }
-  bool moves = now.size() != lamps_.size();
-  for (uint32_t i = 0; !moves && i < scene.lights.size; ++i) {
+  // Where lamps go on or out, which are the same is not known; cells notice such changes.
+  bool moves = false;
+  for (uint32_t i = 0; !moves && now.size() == lamps_.size() && i < scene.lights.size; ++i) {
     moves = scene.lights[i].strength > kWeak * strongest &&
             (length(now[i].p_W - lamps_[i].p_W) > kFar ||
              length(now[i].direction - lamps_[i].direction) > kTurn);
@@ -121,7 +122,7 @@ RenderStats FastHistory::render(const SceneView& scene, const CpuTracer& tracer,
     coarse_ = 1;
   }
   const bool first = pictures_ == 0;
-  lamps_move_ = find_moving_lamps(scene) && !first;
+  lamps_move_ = find_moving_lamps(scene);
   const uint32_t passes = first ? kFirstPictures : 1;
   RenderWatch watch(settings.progress, first ? IrradianceCache::kFirstRounds + kFirstPictures : 1);
   for (uint32_t pass = 0; pass < passes && !watch.stopped(); ++pass) {

@@ -71,7 +71,7 @@ void IrradianceCache::ask(const std::vector<CacheRequest>& requests, size_t most
       keys_[slot] = request.key;
       rows_[slot] = static_cast<uint32_t>(cells_.size());
       cells_.push_back({request.key});
-      light_.push_back({mean_});
+      light_.push_back(CellLight::unknown(mean_));
       homes_.emplace_back();
       starts_.resize(cells_.size() * kStarts);
     }
@@ -365,15 +365,23 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
     const auto memory = static_cast<int>(kMemory / (1 + kStirred * cell.stir));
     cell.samples = std::min(cell.samples, std::max(memory - kRays, 0));
     const float share = static_cast<float>(kRays) / static_cast<float>(cell.samples + kRays);
-    light = lerp(light, traced.light, share);
+    light = light.is_known() ? lerp(light, traced.light, share) : traced.light;
     cell.variance = lerp(cell.variance, traced.variance, share);
     cell.samples = std::min(cell.samples + kRays, kMemory);
     cell.last_traced = update_;
     rays += traced.rays;
   }
+  // In the geometric mean, as few cells out of doors are as bright as all in a room.
   Vec3f sum;
-  for (const CellLight& light : light_) sum += light.all;
-  mean_ = light_.empty() ? Vec3f{} : sum / static_cast<float>(light_.size());
+  float logs = 0, known = 0;
+  for (const CellLight& light : light_) {
+    const float l = luminance(light.all);
+    if (!light.is_known() || !(l > 0)) continue;
+    sum += light.all;
+    logs += logf(l);
+    ++known;
+  }
+  mean_ = known > 0 ? sum * (expf(logs / known) / luminance(sum)) : Vec3f{};
   return rays;
 }
 

@@ -67,13 +67,13 @@ GLOAM_HD Vec3f lamps_in_air(const SceneView& scene, const Tracer& tracer, const 
 /// The cell of a key, or the one behind the walls that hide p_W from that.
 struct AirCell {
   uint64_t key;
-  int row;  ///< -1: not there yet
+  int row;  ///< -1: its light is not known yet
 };
 template <class Tracer>
 GLOAM_HD AirCell find_air(const Tracer& tracer, const IrradianceCacheView& cache, uint64_t key,
                           Vec3f p_W) {
   for (uint32_t walls = 0; walls < 2; ++walls, key = caches::hidden(key)) {
-    const int row = find_cell(cache, key);
+    const int row = find_known_cell(cache, key);
     if (row < 0 || caches::is_seen(tracer, cache.homes[static_cast<uint32_t>(row)], p_W)) {
       return {key, row};
     }

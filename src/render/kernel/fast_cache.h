@@ -49,10 +49,11 @@ GLOAM_HD Vec3Of<F> cached_light(const IrradianceCacheView& cache, const CachePla
                                 Vec3f otherwise) {
   Vec3Of<F> light;
   int cell[Lanes<F>::kCount];  // all before the first is read: the memory is waited for once
-  each_lane(active, [&](int i) { cell[i] = find_cell(cache, cache_key(cells, i)); });
+  each_lane(active, [&](int i) { cell[i] = find_known_cell(cache, cache_key(cells, i)); });
   each_lane(active, [&](int i) {
     for (uint32_t more = 0; cell[i] < 0 && more < 3; ++more) {
-      cell[i] = find_cell(cache, cache_key(cache, lane(at.p, i), lane(at.n, i), lane(at.side, i),
+      cell[i] =
+          find_known_cell(cache, cache_key(cache, lane(at.p, i), lane(at.n, i), lane(at.side, i),
                                            {0.5f, 0.5f, 0.0f}, coarser + more));
     }
     const bool known = cell[i] >= 0;

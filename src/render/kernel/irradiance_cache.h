@@ -12,6 +12,10 @@ struct CellLight {
   Vec3f all;        ///< from everywhere
   Vec3f near;       ///< of that, from surfaces less than the cell's edge away; in air, from lamps
   float share = 0;  ///< of directions that meet such surfaces
+
+  /// Until its first rays, `all` is a guess: larger cells know better.
+  static CellLight unknown(Vec3f guess) { return {guess, {}, -1}; }
+  GLOAM_HD bool is_known() const { return share >= 0; }
 };
 
 GLOAM_HD CellLight lerp(const CellLight& a, const CellLight& b, float t) {
@@ -24,6 +28,7 @@ GLOAM_HD Vec3f light_at(const CellLight& cell, float near) {
   // Where the cell knows little of what is near, that is taken for a good deal darker than the
   // rest.
   constexpr float kDoubt = 0.01f, kDarker = 0.35f;
+  if (!cell.is_known()) return cell.all;
   const Vec3f far = (cell.all - cell.near) / max(1.0f - cell.share, 0.05f);
   const Vec3f close = (cell.near + far * (kDoubt * kDarker)) / (cell.share + kDoubt);
   return lerp(far, close, near);
@@ -187,7 +192,7 @@ GLOAM_HD bool is_seen(const Tracer& tracer, const AirHome& home, Vec3f p_W) {
 
 }  // namespace caches
 
-/// Row of the key's cell, or -1.
+/// Row of the key's cell, or -1; of one that is not known, too.
 GLOAM_HD int find_cell(const IrradianceCacheView& cache, uint64_t key) {
   if (key == 0 || cache.keys.empty()) return -1;
   for (uint32_t slot = caches::slot_of(key, cache.keys.size);;
@@ -195,6 +200,12 @@ GLOAM_HD int find_cell(const IrradianceCacheView& cache, uint64_t key) {
     if (cache.keys[slot] == key) return static_cast<int>(cache.cells[slot]);
     if (cache.keys[slot] == 0) return -1;
   }
+}
+
+/// Row of the key's cell if its light is known, or -1.
+GLOAM_HD int find_known_cell(const IrradianceCacheView& cache, uint64_t key) {
+  const int row = find_cell(cache, key);
+  return row >= 0 && cache.light[static_cast<uint32_t>(row)].is_known() ? row : -1;
 }
 
 }  // namespace gloam
