@@ -4,6 +4,7 @@
 
 #include "render/test/fast_picture.h"
 #include "render/test/flame.h"
+#include "render/test/room_with_window.h"
 
 namespace gloam {
 namespace {
@@ -84,6 +85,22 @@ TEST(FastMedia, SmokeIsLitAsByThePathTier) {
     SCOPED_TRACE(k);
     expect_same_light(b, 0.1, 0.2);
   }
+}
+
+TEST(FastMedia, WallsKeepTheLightOfFogOutside) {
+  // Fog inside and out, where the sun lights it a hundred times as brightly.
+  SceneBuilder b = room_with_window({"sun", 0, 50000, 0}, true);
+  MediaBuilder fog;
+  fog.add_box({14, 14, 8}, {0, 0, 1.5f}, 1,
+              fog.add_medium({0.2f, 0.2f, 0.2f}, {0.7f, 0.7f, 0.7f}, {0.5f, 0.5f, 0.5f}));
+  b.description.media = fog.media;
+  b.description.volumes = fog.volumes;
+  // Away from the window.
+  const CameraView view =
+      SceneBuilder::camera(look_at({1.5f, -1.5f, 1.5f}, {-2, 0.5f, 1.2f}), 96, 72, 60);
+  const double exact = mean_luminance(path_picture(b, view, 256, kEndless));
+  EXPECT_NEAR(mean_luminance(fast_picture(b, view, 8)) / exact, 1, 0.3)
+      << "light of the fog outside came through the walls";
 }
 
 TEST(FastMedia, FlamesLightTheRoomAsInThePathTier) {
