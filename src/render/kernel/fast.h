@@ -134,9 +134,8 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
           even_quads<F>(active, select(found, hit.instance + 1u, UintOf<F>(0u)), path.ray.d) &
           !turns.of_two;
       const Mask samples = active & !borrows & Mask(cache.lamps_move);
-      const auto media =
-          fasts::cross_media(scene, tracer, cache, tmax, active, samples, kSteps, 0, true,
-                             &path, requests + 3 * Lanes<F>::kCount);
+      const auto media = fasts::cross_media(scene, tracer, cache, tmax, active, samples, kSteps, 0,
+                                            true, &path, requests + 3 * Lanes<F>::kCount);
       const Vec3Of<F> lamps = select<F>(borrows, flip<1>(media.lamps), media.lamps);
       out.base += select<F>(active, out.through * media.radiance, Vec3Of<F>{});
       out.air += select<F>(active, out.through * (media.around + lamps), Vec3Of<F>{});
