@@ -117,7 +117,7 @@ TOO_SLOW_SANITIZED = ("-*Slow*:*Allocat*:Adaptive.HasTheMeanOfEvenSampling:Adapt
                       "ManyLights.ThePictureIsTheSumOfThoseOfEachLight:Adaptive.EndsWhenItsUserSaysSo:"
                       "TrotWalk.NoFallsInTwentySeedsOfPushes:PropsPhysics.*:AtmosphereReference.*:Glow.BringsTheLight*:"
                       "GeneratedEnvironment.OfOneSeedIsOneHash*:Sky.SamplingAMap*:Fast.ARoomIsDarkSoon*:Guide.IsTheSameWhatever*:"
-                      "MovingSky.TheFastTier*:FastMedia.*IsLit*:FastMedia.Flames*:MovingSky.TheGround*:Fast.PicturesAreTheSameForAnyNumberOfThreads:Glow.FillsAClosedWhiteRoom*:Bvh.AMillionRays*:Fog.White*:"
+                      "MovingSky.TheFastTier*:FastMedia.*:MovingSky.TheGround*:Fast.PicturesAreTheSameForAnyNumberOfThreads:Glow.FillsAClosedWhiteRoom*:Bvh.AMillionRays*:Fog.White*:"
                       "*CameraLensTest.KnownPoints*:HeightErrorOf.APlane*:GasBudget.*:GasFire.*:GasFlow.*:GasWalls.*")
 MUTATIONS = 10_000  # damaged files per reader; without GLOAM_MUTATIONS the tests take 200
 

@@ -103,6 +103,50 @@ TEST(FastMedia, WallsKeepTheLightOfFogOutside) {
       << "light of the fog outside came through the walls";
 }
 
+/// A beam through fog before a wall, and where it goes, by the light of the left half of a picture
+/// over that of the right.
+struct FoggyBeam {
+  SceneBuilder b;
+  const CameraView view = SceneBuilder::camera(look_at({0, -4, 1}, {0, 0, 1}), 96, 72, 50);
+
+  explicit FoggyBeam(float cd) {
+    b.add(ShapeType::kBox, {3, 0.1f, 3}, translation({0, 2, 1}), b.add_diffuse({0.3f, 0.3f, 0.3f}));
+    LightDescription spot;
+    spot.type = LightType::kSpot;
+    spot.cos_cutoff = std::cos(0.2f);
+    spot.intensity = {cd, cd, cd};
+    b.add_light(spot, {0, 0, -0.5f});
+    MediaBuilder fog;
+    fog.add_box({6, 6, 4}, {0, 0, 1}, 1,
+                fog.add_medium({0.1f, 0.1f, 0.1f}, {0.9f, 0.9f, 0.9f}, {0.3f, 0.3f, 0.3f}));
+    b.description.media = fog.media;
+    b.description.volumes = fog.volumes;
+    aim(0);
+  }
+  void aim(float angle) { b.frame.light_dir = {std::sin(angle), 0, std::cos(angle)}; }
+  static double lean(const Film& film) {
+    double sum[2] = {};
+    for (size_t i = 0; i < film.radiance.size(); ++i)
+      sum[i % 96 / 48] += luminance(film.radiance[i]);
+    return sum[0] / sum[1];
+  }
+};
+
+TEST(FastMedia, BeamsInFogAreWhereTheirLampsPoint) {
+  FoggyBeam beam(1000);
+  const auto renderer = beam.b.make();
+  const auto history = renderer->make_history();
+  Film film;
+  for (uint32_t i = 0; i < 9; ++i) {  // from the left to the right
+    beam.aim(0.1f * (static_cast<float>(i) - 4));
+    renderer->update(beam.b.frame, beam.b.frame, beam.b.frame);
+    renderer->render(beam.view, fast_settings(history.get(), i), &film);
+  }
+  const double exact = FoggyBeam::lean(path_picture(beam.b, beam.view, 64, kEndless));
+  EXPECT_LT(exact, 0.5);
+  EXPECT_NEAR(FoggyBeam::lean(film), exact, 0.15) << "the beam trails behind";
+}
+
 TEST(FastMedia, FlamesLightTheRoomAsInThePathTier) {
   for (const float k : {2.0f, 40.0f}) {
     SceneBuilder b = closed_room(0);
