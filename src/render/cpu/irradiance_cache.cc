@@ -24,16 +24,10 @@ constexpr float kNoRegionChange = 0.02f;  // and this share, that a region's lig
 constexpr float kBrightest = 16;      // times a cell's mean: what a ray brings beyond that is the
                                       // region's, as few rays meet it
 constexpr float kBrightestInAir = 8;  // there, a filter passes over what cells have too much
-constexpr float kMostTold = 500;      // cells and updates that a region's excess is the mean of,
-constexpr float kAtFirst = 50;        // as long as light comes round for the first time,
-constexpr float kAtChange = 4;        // and where the light has changed;
-constexpr float kGuessed = 4;         // it counts as that of so many more cells of a wider region
-constexpr uint64_t kExcessRegions[] = {caches::kWideRegion | caches::kFacing,
-                                       caches::kRegion | caches::kFacing};
-constexpr float kFades = 0.1f;     // share of all light that must have changed to change all
-constexpr int kMostRounds = 3;     // of an update while light changes in many cells
-constexpr int kMeanRounds = 3;     // of the first update, the last ones
-constexpr double kSettled = 0.01;  // share that the last round changed of all light
+constexpr float kFades = 0.1f;        // share of all light that must have changed to change all
+constexpr int kMostRounds = 3;        // of an update while light changes in many cells
+constexpr int kMeanRounds = 3;        // of the first update, the last ones
+constexpr double kSettled = 0.01;     // share that the last round changed of all light
 constexpr size_t kFurtherCells = 2, kFurtherRoom = 4000;  // cells, for each that pixels ask for,
                                                           // and so many more
 constexpr float kRayConeSpread = 0.15f;  // of the rays' cones: no fine texture is sought
@@ -242,20 +236,8 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
   out.variance = max(out.variance * per_ray - sqr(luminance(light.all)), 0.0f) * per_ray;
 }
 
-template <class Visit>
-void IrradianceCache::each_group(uint64_t mask, const Visit& visit) {
-  order_.clear();
-  for (size_t k = 0; k < traced_.size(); ++k) {
-    order_.emplace_back(cells_[asked_[k]].key & mask, k);
-  }
-  std::sort(order_.begin(), order_.end());
-  for (size_t first = 0, next = 0; first < order_.size(); first = next) {
-    while (next < order_.size() && order_[next].first == order_[first].first) ++next;
-    visit(std::span(order_).subspan(first, next - first));
-  }
-}
-
-IrradianceCache::LightChange IrradianceCache::change_of(std::span<const Member> group) const {
+IrradianceCache::LightChange IrradianceCache::change_of(
+    std::span<const KeyGroups::Member> group) const {
   LightChange sum;
   for (const auto& [key, k] : group) {
     if (traced_[k].is_new) continue;
@@ -271,66 +253,20 @@ IrradianceCache::LightChange IrradianceCache::change_of(std::span<const Member> 
 
 void IrradianceCache::find_changes() {
   // A cell's few rays say little; those of a region together tell a change of the light from noise.
-  each_group(caches::kRegion, [&](std::span<const Member> group) {
+  const auto key_of = [&](size_t k) { return cells_[asked_[k]].key; };
+  groups_.each(traced_.size(), caches::kRegion, key_of, [&](auto group) {
     const LightChange sum = change_of(group);
     const bool changed =
         fabsf(sum.change) > kSurprise * sqrtf(sum.variance) + kNoRegionChange * sum.light;
     for (const auto& [key, k] : group) traced_[k].changed = changed && !traced_[k].is_new;
   });
   // What fades everywhere is seen here long before it is seen in each region.
-  each_group(0, [&](std::span<const Member> group) {
+  groups_.each(traced_.size(), 0, key_of, [&](auto group) {
     const LightChange sum = change_of(group);
     if (fabsf(sum.change) > kSurprise * sqrtf(sum.variance) + kFades * sum.light) {
       for (Traced& traced : traced_) traced.changed = true;
     }
   });
-}
-
-void IrradianceCache::Excess::add(const Excess& more) {
-  sum += more.sum;
-  light += more.light;
-  cells += more.cells;
-}
-
-void IrradianceCache::Excess::fade(float most) {
-  const float kept = min(1.0f, most / max(cells, 1.0f));
-  sum = sum * kept;
-  light *= kept;
-  cells *= kept;
-}
-
-void IrradianceCache::spread_excess(bool remembers) {
-  // As long as light comes round, what was before is a share of less.
-  const float past = remembers ? kMostTold : kAtFirst;
-  Excess all;
-  for (const Traced& traced : traced_) all.add({traced.excess, {}, traced.before, 1});
-  excess_.fade(past);
-  excess_.add(all);
-  excess_.share = excess_.sum / max(excess_.light, 1e-20f);
-  // From wide to narrow: what little a region has seen is completed by the wider one's.
-  for (size_t level = 0; level < kLevels; ++level) {
-    each_group(kExcessRegions[level], [&](std::span<const Member> group) {
-      const uint64_t key = group.front().first;
-      const Excess& wider =
-          level == 0 ? excess_ : regions_[level - 1][key & kExcessRegions[level - 1]];
-      Excess& region = regions_[level][key];
-      region.fade(past);
-      for (const auto& [_, k] : group) region.add({traced_[k].excess, {}, traced_[k].before, 1});
-      region.last_traced = update_;
-      const float guessed = region.light / region.cells * kGuessed;
-      region.share = (region.sum + wider.share * guessed) / max(region.light + guessed, 1e-20f);
-      if (level + 1 < kLevels) return;
-      // To each as it has light: dark corners of a region see little of what is bright, too.
-      for (const auto& [_, k] : group) traced_[k].light.all += region.share * traced_[k].before;
-    });
-  }
-}
-
-void IrradianceCache::forget_excess(uint64_t key) {
-  excess_.fade(kAtChange);
-  for (size_t level = 0; level < kLevels; ++level) {
-    regions_[level][key & kExcessRegions[level]].fade(kAtChange);
-  }
 }
 
 uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
@@ -349,7 +285,13 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
                          trace_cell(scene, tracer, cache, seed, remembers ? kRays : kFirstRays,
                                     static_cast<size_t>(k));
                      });
-  spread_excess(remembers);
+  of_cells_.clear();
+  for (size_t k = 0; k < traced_.size(); ++k) {
+    of_cells_.push_back({cells_[asked_[k]].key, traced_[k].excess, traced_[k].before});
+  }
+  spread_.resize(traced_.size());
+  excess_.spread(of_cells_, remembers, spread_);
+  for (size_t k = 0; k < traced_.size(); ++k) traced_[k].light.all += spread_[k];
   find_changes();
   uint64_t rays = 0;
   for (size_t k = 0; k < asked_.size(); ++k) {
@@ -359,7 +301,7 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
     // As long as little of the light has come round, what there was before is no part of the mean.
     if (!remembers || traced.changed) cell.samples = std::min(cell.samples, kRays / 8);
     if (!remembers) cell.samples = 0;
-    if (traced.changed) forget_excess(cell.key);
+    if (traced.changed) excess_.forget(cell.key);
     ++cell.rounds;
     cell.stir = max(traced.stir, kSettles * cell.stir);
     const auto memory = static_cast<int>(kMemory / (1 + kStirred * cell.stir));
@@ -471,11 +413,7 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
 
 void IrradianceCache::forget() {
   ++update_;
-  for (auto& regions : regions_) {
-    std::erase_if(regions, [&](const auto& region) {
-      return region.second.last_traced + kForgotten < update_;
-    });
-  }
+  excess_.end_update(kForgotten);
   size_t kept = 0;
   for (size_t row = 0; row < cells_.size(); ++row) {
     cells_[row].starts = 0;

@@ -2,11 +2,11 @@
 // The cells behind an IrradianceCacheView: which there are, and what light they hold.
 
 #include <span>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "render/cpu/cpu_tracer.h"
+#include "render/cpu/excess_regions.h"
 #include "render/cpu/watch.h"
 #include "render/kernel/fast_cache.h"
 
@@ -51,17 +51,6 @@ class IrradianceCache {
   struct LightChange {
     float light = 0, change = 0, variance = 0;
   };
-  /// Of Traced::excess in a region: sums over cells and updates, where old ones fade.
-  struct Excess {
-    Vec3f sum, share;            ///< share: of a cell's light
-    float light = 0, cells = 0;  ///< what they had before
-    uint32_t last_traced = 0;
-
-    void add(const Excess& more);
-    /// From then on as that of `most` cells.
-    void fade(float most);
-  };
-  static constexpr size_t kLevels = 2;  ///< wide regions, and narrow ones in them
   static constexpr int kStarts = 8, kFurther = 8;
 
   /// The same sequence each time.
@@ -75,15 +64,8 @@ class IrradianceCache {
   /// Cell k of asked_ into traced_.
   void trace_cell(const SceneView& scene, const CpuTracer& tracer, IrradianceCacheView cache,
                   uint64_t seed, int rays, size_t k);
-  /// visit(group): of the cells of traced_ those whose keys are alike under the mask.
-  using Member = std::pair<uint64_t, size_t>;  // masked key, row of traced_
-  template <class Visit>
-  void each_group(uint64_t mask, const Visit& visit);
-  LightChange change_of(std::span<const Member> group) const;
+  LightChange change_of(std::span<const KeyGroups::Member> group) const;
   void find_changes();
-  /// Gives what is above the limit to all cells of a region that face the same way.
-  void spread_excess(bool remembers);
-  void forget_excess(uint64_t key);
   uint64_t trace(const SceneView& scene, const CpuTracer& tracer, const IrradianceCacheView& cache,
                  uint64_t seed, bool remembers, RenderWatch* watch);
   /// After each round: to where the light would come in many more. The share that it has changed.
@@ -96,16 +78,17 @@ class IrradianceCache {
   std::vector<CacheRequest> starts_;  ///< (cells x kStarts)
   std::vector<CellLight> light_;
   std::vector<AirHome> homes_;
-  double last_change_ = 0;             ///< of a cell's light in a round [cd/m²]
-  double last_quotient_ = 0;           ///< of that and the round's before
-  int terms_ = 0;                      ///< rounds since the last extrapolation
-  std::vector<uint32_t> asked_;        ///< rows
-  std::vector<Traced> traced_;         ///< of asked_
-  std::vector<Member> order_;          ///< by group
+  double last_change_ = 0;       ///< of a cell's light in a round [cd/m²]
+  double last_quotient_ = 0;     ///< of that and the round's before
+  int terms_ = 0;                ///< rounds since the last extrapolation
+  std::vector<uint32_t> asked_;  ///< rows
+  std::vector<Traced> traced_;   ///< of asked_
+  KeyGroups groups_;
   std::vector<CacheRequest> further_;  ///< of places that the last rays met: (asked x kFurther)
   Vec3f mean_;
-  Excess excess_;                                          ///< of all
-  std::unordered_map<uint64_t, Excess> regions_[kLevels];  ///< by masked key
+  ExcessRegions excess_;
+  std::vector<ExcessRegions::OfCell> of_cells_;  ///< of traced_
+  std::vector<Vec3f> spread_;                    ///< what they get
   uint32_t update_ = 0;
   uint64_t dice_ = 1;
 };
