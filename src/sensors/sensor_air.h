@@ -33,10 +33,11 @@ bool crosses(const VolumeView& volume, Vec3f origin_G, Vec3f direction_G, double
              double* far);
 
 /// visit(p_W, from, to): steps along the ray from the camera on up to `distance` [m], where there
-/// are volumes: all of them together in `count` even ones.
+/// are volumes: all of them together in even ones.
 template <class Visit>
-void each_step(const MediaView& media, Vec3f origin, Vec3f direction, double distance, int count,
+void each_step(const MediaView& media, Vec3f origin, Vec3f direction, double distance,
                const Visit& visit) {
+  constexpr int kSteps = 64;
   double from = std::numeric_limits<double>::infinity(), to = 0;
   for (uint32_t i = 0; i < media.volumes.size; ++i) {
     const VolumeView& v = media.volumes[i];
@@ -48,8 +49,8 @@ void each_step(const MediaView& media, Vec3f origin, Vec3f direction, double dis
     to = std::max(to, std::min(far, distance));
   }
   if (!(from < to)) return;
-  const double step = (to - from) / count;
-  for (int j = 0; j < count; ++j) {
+  const double step = (to - from) / kSteps;
+  for (int j = 0; j < kSteps; ++j) {
     visit(origin + direction * static_cast<float>(from + (j + 0.5) * step), from + j * step,
           from + (j + 1) * step);
   }

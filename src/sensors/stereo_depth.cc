@@ -37,7 +37,6 @@ constexpr std::array<StereoDepthModel, kStereoPresets.size()> kModelsOfPresets =
 
 constexpr double kJump = 1;            // [px] of disparity between neighbours: two surfaces
 constexpr double kBeamsMeet = 0.1;     // [m] before it, with eyes 5 cm apart
-constexpr int kMarchSteps = 64;        // along a ray through all volumes
 constexpr float kSmoothMetal = 0.35f;  // roughness from which on metal scatters enough
 
 /// Share of the light that a material sends back in all directions.
@@ -52,17 +51,16 @@ float signal_through(const MediaView& media, Vec3f origin, Vec3f direction, floa
                      float signal) {
   const Bands bands = Bands::only(MediumBand::k905nm);
   double passed = 1, back = 0;  // on both ways
-  each_step(media, origin, direction, double{distance}, kMarchSteps,
-            [&](Vec3f p, double from, double to) {
-              const MediumPoint at = medium_at(media, p, bands);
-              if (!(at.extinction.x > 0)) return;
-              const double lost = 1 - std::exp(-2 * double{at.extinction.x} * (to - from));
-              const float g = at.g_scattering.x / std::max(at.scattering.x, 1e-9f);
-              const double beta = double{at.scattering.x * henyey_greenstein(g, -1.0f)};
-              const double near = std::max(from, kBeamsMeet), far = std::max(to, kBeamsMeet);
-              back += double{kPi} * beta * passed * (1 - 0.5 * lost) * (1 / near - 1 / far);
-              passed *= 1 - lost;
-            });
+  each_step(media, origin, direction, double{distance}, [&](Vec3f p, double from, double to) {
+    const MediumPoint at = medium_at(media, p, bands);
+    if (!(at.extinction.x > 0)) return;
+    const double lost = 1 - std::exp(-2 * double{at.extinction.x} * (to - from));
+    const float g = at.g_scattering.x / std::max(at.scattering.x, 1e-9f);
+    const double beta = double{at.scattering.x * henyey_greenstein(g, -1.0f)};
+    const double near = std::max(from, kBeamsMeet), far = std::max(to, kBeamsMeet);
+    back += double{kPi} * beta * passed * (1 - 0.5 * lost) * (1 / near - 1 / far);
+    passed *= 1 - lost;
+  });
   const double left = double{signal} * passed;
   return left > 0 ? static_cast<float>(left * left / (left + back)) : 0.0f;
 }

@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kRoom = 293.15;    // [K]
 constexpr double kReference = 300;  // of NETD [K]
-constexpr int kMarchSteps = 64;     // along a ray through all volumes
 constexpr int kBand = static_cast<int>(MediumBand::k8to14um);
 
 bool fits(const TemperatureOptions& o, const LabelRow& label) {
@@ -33,7 +32,7 @@ double through_media(const MediaView& media, Vec3f origin, Vec3f direction, doub
                      double radiance) {
   static const double room = thermal_radiance(kRoom);
   double passed = 1, sent = 0;
-  each_step(media, origin, direction, distance, kMarchSteps, [&](Vec3f p, double from, double to) {
+  each_step(media, origin, direction, distance, [&](Vec3f p, double from, double to) {
     double extinction = 0, source = 0;  // [1/m], [W/(m² sr m)]
     for (uint32_t i = 0; i < media.volumes.size; ++i) {
       const VolumeView& v = media.volumes[i];
