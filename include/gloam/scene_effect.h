@@ -93,9 +93,12 @@ struct WeatherOptions {
   std::optional<double> snow = {};        ///< of water [mm/h], default 0
   std::optional<double> visibility = {};  ///< through what hangs in the air, by Koschmieder [m];
                                           ///< without rain and snow; default: clear
-  std::string medium = "fog";  ///< what hangs, as of [[volume]]: fog mist haze dust smoke
-  double scale_height = 0;     ///< over which it thins to 1/e above the lowest ground [m]; 0 = even
-  double turbulence = 0;       ///< of its density: standard deviation over mean, 0 … 1
+  std::optional<std::string> medium =
+      {};  ///< what hangs, as of [[volume]]: fog (default) mist haze dust smoke
+  std::optional<std::string> where = {};  ///< it hangs: everywhere (default) | rooms, those of a
+                                          ///< generated building alone
+  double scale_height = 0;  ///< over which it thins to 1/e above the lowest ground [m]; 0 = even
+  double turbulence = 0;    ///< of its density: standard deviation over mean, 0 … 1
   std::optional<double> wind = {};  ///< mean speed 10 m above the ground [m/s], default 0
   double wind_from = 270;           ///< where it comes from, as of [sky]'s azimuth [deg]
   std::optional<double> gusts =

@@ -1,6 +1,7 @@
 #include "scene/adversity.h"
 
 #include "base/rng.h"
+#include "scene/environment/generators.h"
 
 namespace gloam {
 namespace {
@@ -71,8 +72,8 @@ void with_clutter(EnvironmentOptions* place, const F& f) {
 
 AdversityNumbers adversity_numbers(const EnvironmentOptions& place, std::string_view level) {
   const size_t row = level == "major" ? 2 : (level == "minor" ? 1 : 0);
-  if (place.house || place.office || place.hallway || place.bedroom) return kRooms[row];
-  return place.warehouse || place.tunnel ? kHalls[row] : kOpenCountry[row];
+  if (place.warehouse || place.tunnel) return kHalls[row];
+  return has_rooms(place) ? kRooms[row] : kOpenCountry[row];
 }
 
 void apply_adversity(Scene* scene) {
@@ -83,14 +84,17 @@ void apply_adversity(Scene* scene) {
     if (!scene->weather) {
       scene->weather.emplace();
       scene->weather->loc = in.loc;
-      scene->weather->medium = level.medium;
     }
     WeatherOptions& weather = *scene->weather;
     fill(&weather.rain, level.rain);
     fill(&weather.wind, level.wind);
     fill(&weather.gusts, level.gusts);
     fill(&weather.lens_drops, level.lens_drops);
-    if (level.visibility) fill(&weather.visibility, *level.visibility);
+    if (level.visibility && !weather.visibility) {
+      weather.visibility = level.visibility;
+      fill(&weather.medium, level.medium);
+      fill(&weather.where, has_rooms(scene->environment) ? "rooms" : "everywhere");
+    }
   }
   if (in.clutter || in.level != "none") {
     with_clutter(&scene->environment,

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "scene/environment/generators.h"
+
 namespace gloam {
 namespace {
 
@@ -53,6 +55,11 @@ Status validate_effects(const Scene& scene) {
   for (const RotorOptions& rotor : scene.rotors) GLOAM_TRY_STATUS(check_rotor(rotor));
   for (const DustOptions& dust : scene.dusts)
     GLOAM_TRY_STATUS(check_box(dust, "dust", "all ground in the gas"));
+  if (scene.weather && scene.weather->where == "rooms" && !has_rooms(scene.environment)) {
+    return Error{ErrorKind::kInput,
+                 "weather hangs in rooms, and the scene is no generated building",
+                 scene.weather->loc, "a [[volume]] is a box of a medium anywhere"};
+  }
   return {};
 }
 

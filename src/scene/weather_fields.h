@@ -8,6 +8,7 @@
 namespace gloam {
 
 inline constexpr std::array<std::string_view, 3> kAdversityLevels = {"none", "minor", "major"};
+inline constexpr std::array<std::string_view, 2> kWeatherPlaces = {"everywhere", "rooms"};
 inline constexpr std::array<std::string_view, 7> kSoilKinds = {
     "dry_sand", "sandy_loam", "clayey_soil", "lean_clay", "snow", "mud", "lunar"};
 
@@ -17,6 +18,7 @@ void visit_fields(Visitor& v, WeatherOptions& o) {
   v("snow", o.snow, FieldRule{.unit = "mm/h", .min = 0, .max = 50});
   v("visibility", o.visibility, FieldRule{.unit = "m", .min = 0, .max = 1e6, .open = true});
   v("medium", o.medium, FieldRule{});
+  v("where", o.where, FieldRule{.choices = words(kWeatherPlaces)});
   v("scale_height", o.scale_height, FieldRule{.unit = "m", .min = 0, .max = 1e4});
   v("turbulence", o.turbulence, kShare);
   v("wind", o.wind, FieldRule{.unit = "m/s", .min = 0, .max = 60});

@@ -8,6 +8,7 @@
 
 #include "base/text.h"
 #include "scene/effect_fields.h"
+#include "world/extent.h"
 #include "world/level.h"
 #include "world/medium_presets.h"
 #include "world/rotor_dust_description.h"
@@ -44,28 +45,11 @@ Vec3f to_float(const Vec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
-/// An axis-aligned box that grows.
-struct Extent {
-  static constexpr double kInf = std::numeric_limits<double>::infinity();
-  Vec3 low{kInf, kInf, kInf}, high{-kInf, -kInf, -kInf};
-
-  void add(const Vec3& p) {
-    low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-    high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-  }
-  Vec3 middle() const { return {(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2}; }
-};
-
 /// Where the scene's gas is if it does not say: the rooms of a generated place, else around what
 /// gives smoke or dust, from half a metre below the lowest source, or dusty ground, up.
 Extent usual_extent(const CompiledWorld& world, const std::vector<GasSourceDescription>& sources,
                     const std::vector<DustDescription>& dusts, const std::vector<Affine3f>& X_WB) {
-  Extent extent;
-  for (const Region& region : world.regions) {
-    extent.add({region.low.x - kWall, region.low.y - kWall, region.low.z - kWall});
-    extent.add({region.high.x + kWall, region.high.y + kWall, region.high.z + kWall});
-  }
-  if (!world.regions.empty()) return extent;
+  if (!world.regions.empty()) return extent_of(world.regions, kWall);
   Extent at;
   for (const GasSourceDescription& source : sources) {
     const Vec3f p = transform_point(X_WB[static_cast<size_t>(source.body)], source.X_BS.p);
@@ -78,6 +62,7 @@ Extent usual_extent(const CompiledWorld& world, const std::vector<GasSourceDescr
   }
   if (!std::isfinite(at.low.x)) at.add({0, 0, 0.5});
   const Vec3 c = at.middle();
+  Extent extent;
   extent.add({std::min(at.low.x, c.x - kUsualSize.x / 2),
               std::min(at.low.y, c.y - kUsualSize.y / 2), at.low.z - 0.5});
   extent.add({std::max(at.high.x, c.x + kUsualSize.x / 2),

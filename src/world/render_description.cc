@@ -332,7 +332,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
   GLOAM_TRY_STATUS(author_volumes(world.scene.volumes, &out));
   author_gases(world.gases.gases, &out);
   if (world.scene.weather)
-    GLOAM_TRY_STATUS(author_weather(*world.scene.weather, world.wind, poses, &out));
+    GLOAM_TRY_STATUS(author_weather(*world.scene.weather, world.wind, world.regions, poses, &out));
   out.ev100 = world.ev100 ? static_cast<float>(*world.ev100) : exposure(levels, out);
   return out;
 }

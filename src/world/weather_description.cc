@@ -7,6 +7,7 @@
 
 #include "base/rng.h"
 #include "base/text.h"
+#include "world/extent.h"
 #include "world/fallen_snow.h"
 #include "world/medium_presets.h"
 #include "world/render_description.h"
@@ -19,6 +20,7 @@ namespace {
 constexpr double kHeldWater = 1e-3;
 constexpr float kMargin = 400;            // [m] of air around the place
 constexpr float kAbove = 15;              // [m] of air over its lowest point, at least
+constexpr double kInWalls = 0.1;          // [m] of what hangs in rooms beyond their faces
 constexpr double kPerHour = 1e-3 / 3600;  // mm/h as m/s
 
 /// Box of what stands still, or two metres about the origin.
@@ -42,16 +44,28 @@ Bounds bounds_of(const RenderDescription& description) {
   return bounds;
 }
 
-/// Air from below the ground to well above what stands there, and to all sides.
-VolumeDescription air_around(const Bounds& bounds, std::string name, float height) {
+VolumeDescription box_of(const Bounds& bounds, std::string name) {
   VolumeDescription volume;
   volume.name = std::move(name);
-  const Vec3f low{bounds.low.x - kMargin, bounds.low.y - kMargin, bounds.low.z - 1};
-  const Vec3f high{bounds.high.x + kMargin, bounds.high.y + kMargin,
-                   std::max(bounds.low.z + height, bounds.high.z + 2)};
-  volume.size = high - low;
-  volume.X_WV.p = (low + high) * 0.5f;
+  volume.size = bounds.high - bounds.low;
+  volume.X_WV.p = (bounds.low + bounds.high) * 0.5f;
   return volume;
+}
+
+/// From below the ground to well above what stands there, and to all sides.
+Bounds air_around(const Bounds& bounds, float height) {
+  return {{bounds.low.x - kMargin, bounds.low.y - kMargin, bounds.low.z - 1},
+          {bounds.high.x + kMargin, bounds.high.y + kMargin,
+           std::max(bounds.low.z + height, bounds.high.z + 2)}};
+}
+
+/// All rooms, and halfway into their walls.
+Bounds air_in(std::span<const Region> rooms) {
+  const Extent extent = extent_of(rooms, kInWalls);
+  const auto to_float = [](const Vec3& v) {
+    return Vec3f{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+  };
+  return {to_float(extent.low), to_float(extent.high)};
 }
 
 /// Thinner with height and in billows, whose mean is one.
@@ -63,23 +77,26 @@ void set_profile(const WeatherOptions& options, uint64_t seed, float ground, flo
     return std::max(2, static_cast<int>(std::lround(edge / step)));
   };
   volume->nx = count(volume->size.x, voxel), volume->ny = count(volume->size.y, voxel);
-  volume->nz = count(volume->size.z, 1.0f);
+  volume->nz = count(volume->size.z, std::min(1.0f, volume->size.z / 12));
   volume->density = std::make_shared<const std::vector<float>>(
       haze_layer({volume->nx, volume->ny, volume->nz}, volume->size,
                  volume->X_WV.p.z - 0.5f * volume->size.z - ground, options.scale_height,
                  options.turbulence, density, seed));
 }
 
-Status add_fog(const WeatherOptions& options, const Bounds& bounds, uint64_t seed,
-               RenderDescription* out) {
-  const MediumDescription* medium = find_medium(options.medium);
+Status add_fog(const WeatherOptions& options, std::span<const Region> rooms, const Bounds& bounds,
+               uint64_t seed, RenderDescription* out) {
+  const std::string name = options.medium.value_or("fog");
+  const MediumDescription* medium = find_medium(name);
   if (medium == nullptr) {
-    return Error{ErrorKind::kInput, fmt::format("weather: there is no medium '{}'", options.medium),
-                 options.loc, suggest_name(options.medium, medium_names())};
+    return Error{ErrorKind::kInput, fmt::format("weather: there is no medium '{}'", name),
+                 options.loc, suggest_name(name, medium_names())};
   }
   const auto scale = static_cast<float>(options.scale_height);
+  const bool in_rooms = options.where == "rooms";
   VolumeDescription volume =
-      air_around(bounds, "weather/" + options.medium, std::max(kAbove, 5 * scale));
+      box_of(in_rooms ? air_in(rooms) : air_around(bounds, std::max(kAbove, 5 * scale)),
+             "weather/" + name);
   volume.even_density = static_cast<float>(kKoschmieder / *options.visibility) /
                         medium->mass_extinction[static_cast<size_t>(MediumBand::kGreen)];
   if (scale > 0 || options.turbulence > 0)
@@ -94,7 +111,7 @@ Status add_fog(const WeatherOptions& options, const Bounds& bounds, uint64_t see
 void add_falling(const ParticleSet& particles, const Bounds& bounds, RenderDescription* out) {
   const ShelterMap& map = *out->weather.shelter;
   MediumDescription medium = medium_of(particles);
-  VolumeDescription volume = air_around(bounds, "weather/" + medium.name, 50);
+  VolumeDescription volume = box_of(air_around(bounds, 50), "weather/" + medium.name);
   volume.medium = static_cast<int>(out->media.size());
   volume.even_density = particles.water;
   // A roof keeps off what falls: where there is one, the box is of voxels that are under it or not.
@@ -147,13 +164,14 @@ float WeatherDescription::snow_at(double time) const {
 }
 
 Status author_weather(const WeatherOptions& options, const WindDescription& wind,
-                      const std::vector<Affine3f>& X_WB, RenderDescription* out) {
+                      std::span<const Region> rooms, const std::vector<Affine3f>& X_WB,
+                      RenderDescription* out) {
   WeatherDescription& weather = out->weather;
   const double rain = options.rain.value_or(0), snow = options.snow.value_or(0);
   const uint64_t seed = weather.seed = wind.seed;
   weather.shelter = make_shelter_map(*out, X_WB);
   const Bounds bounds = bounds_of(*out);
-  if (options.visibility) GLOAM_TRY_STATUS(add_fog(options, bounds, seed, out));
+  if (options.visibility) GLOAM_TRY_STATUS(add_fog(options, rooms, bounds, seed, out));
   const auto add = [&](ParticleSet particles) {
     particles.wind = {static_cast<float>(wind.speed * wind.along_x),
                       static_cast<float>(wind.speed * wind.along_y), 0};

@@ -3,9 +3,11 @@
 // surfaces and lenses. Pure functions of time. docs/weather.md has the models.
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "gloam/scene_effect.h"
+#include "gloam/scene_environment.h"
 #include "world/particle_set.h"
 #include "world/roof_drips.h"
 #include "world/shelter_map.h"
@@ -37,8 +39,10 @@ struct WeatherDescription {
 struct RenderDescription;
 
 /// Fills `weather` of the description, whose instances are all there, and appends the media and
-/// volumes of fog, rain and snow. `X_WB`: of all bodies. Errors: no such medium.
+/// volumes of fog, rain and snow. `rooms`: of the generated building; `X_WB`: of all bodies. Errors: no
+/// such medium.
 Status author_weather(const WeatherOptions& options, const WindDescription& wind,
-                      const std::vector<Affine3f>& X_WB, RenderDescription* out);
+                      std::span<const Region> rooms, const std::vector<Affine3f>& X_WB,
+                      RenderDescription* out);
 
 }  // namespace gloam

@@ -48,6 +48,8 @@ bool is_vehicle(const AgentOptions& agent) { return agent.kind != "person"; }
 
 bool has_generator(const EnvironmentOptions& e) { return count_generators(e) > 0; }
 
+bool has_rooms(const EnvironmentOptions& e) { return has_generator(e) && !e.terrain; }
+
 Status validate_environment(const Scene& scene) {
   const EnvironmentOptions& e = scene.environment;
   if (!e.file.empty() + count_generators(e) > 1)

@@ -25,6 +25,8 @@ bool is_vehicle(const AgentOptions& agent);
 
 /// Is the ground of the scene a generator's?
 bool has_generator(const EnvironmentOptions& environment);
+/// Is it a generated building?
+bool has_rooms(const EnvironmentOptions& environment);
 
 /// One generator at most, and not beside a file; props of known kinds.
 Status validate_environment(const Scene& scene);

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "scene/test/temp_folder.h"
+#include "world/extent.h"
 #include "world/medium_presets.h"
 #include "world/rain_splash.h"
 #include "world/render_description.h"
@@ -109,6 +110,37 @@ TEST_F(Weather, OfFogOneSeesAsFarAsIsAskedFor) {
   EXPECT_FALSE(d.weather.covers_surfaces());
 }
 
+TEST_F(Weather, SmokeOfAdversityIsInTheRoomsAlone) {
+  const auto volumes = [&](const std::string& text) {
+    const Result<Scene> loaded =
+        load_scene(folder_.write("b.toml", "[environment.bedroom]\nseed = 1\n" + text));
+    EXPECT_TRUE(loaded.ok());
+    const Result<World> world = World::compile(*loaded);
+    EXPECT_TRUE(world.ok()) << world.error().to_string();
+    const Extent rooms = extent_of(world->compiled()->regions, 0);
+    const auto d = describe_for_rendering(*world->compiled());
+    EXPECT_TRUE(d.ok());
+    EXPECT_EQ(d->volumes.size(), 1u);
+    return std::pair(rooms, d->volumes.at(0));
+  };
+  const auto expect_in_room = [&](const std::string& text) {
+    const auto [rooms, smoke] = volumes(text);
+    for (int a = 0; a < 3; ++a) {
+      const double low = a == 0 ? rooms.low.x : (a == 1 ? rooms.low.y : rooms.low.z);
+      const double high = a == 0 ? rooms.high.x : (a == 1 ? rooms.high.y : rooms.high.z);
+      const double middle = static_cast<double>(smoke.X_WV.p[a]);
+      const double half = static_cast<double>(smoke.size[a]) / 2;
+      EXPECT_NEAR(middle - half, low, 0.15) << "axis " << a << " of\n" << text;
+      EXPECT_NEAR(middle + half, high, 0.15) << "axis " << a << " of\n" << text;
+    }
+  };
+  expect_in_room("[adversity]\nlevel = \"minor\"\npeople = 0\n");
+  expect_in_room("[weather]\nwind = 3\n[adversity]\nlevel = \"major\"\npeople = 0\n");
+  expect_in_room("[weather]\nvisibility = 10\nwhere = \"rooms\"\nscale_height = 1\n");
+  const auto [rooms, fog] = volumes("[weather]\nvisibility = 10\n");
+  EXPECT_GT(fog.size.x, 100) << "what nobody confines is everywhere";
+}
+
 TEST_F(Weather, FogInBillowsHasTheMeanAndTheSpreadAskedFor) {
   const RenderDescription d =
       described("[weather]\nvisibility = 50\nturbulence = 0.5\nscale_height = 10\n");
@@ -152,6 +184,8 @@ TEST_F(Weather, RefusesWhatThereIsNot) {
   EXPECT_THAT(error_of("[weather]\nrain = -1\n"), HasSubstr("rain"));
   EXPECT_THAT(error_of("[weather]\nvisibility = 10\nmedium = \"fogg\"\n"),
               ::testing::AllOf(HasSubstr("s.toml:"), HasSubstr("fogg"), HasSubstr("fog")));
+  EXPECT_THAT(error_of("[weather]\nvisibility = 10\nwhere = \"rooms\"\n"),
+              ::testing::AllOf(HasSubstr("s.toml:"), HasSubstr("no generated building")));
   EXPECT_THAT(error_of("[adversity]\nlevel = \"huge\"\n"), HasSubstr("minor"));
 }
 
