@@ -18,6 +18,27 @@ constexpr uint32_t kFirstPictures = 8;  // of the first instant, one upon the ot
 constexpr size_t kFirstCells = 5000;    // of the cache that one of them traces again,
 constexpr size_t kMostCells = 2500;     // and a later picture
 
+/// Share of directions that meet what is near, by the four by four pixels about one, whose
+/// directions are spread evenly: one alone has all or nothing.
+F near_about(const FastFrame& f, int x, int y) {
+  constexpr float kTolerance = 0.02f;  // of places on one plane, over their distance
+  const F part = f.part.load(x, y);
+  const Vec3Of<F> p = f.p.load(x, y), n = f.n.load(x, y);
+  const F scale = 1.0f / (kTolerance * f.distance.load(x, y) + 1e-4f);
+  F sum, total;
+  for (int dy = -1; dy <= 2; ++dy) {
+    for (int dx = -1; dx <= 2; ++dx) {
+      const F same = select(f.part.load(x + dx, y + dy) == part, F(1.0f), F(0.0f));
+      const F facing = sqr(max(dot(n, f.n.load(x + dx, y + dy)), 0.0f));
+      const F off = dot(n, f.p.load(x + dx, y + dy) - p) * scale;
+      const F weight = same * sqr(sqr(facing)) * max(1.0f - off * off, 0.0f);
+      sum += f.near.load(x + dx, y + dy) * weight;
+      total += weight;
+    }
+  }
+  return sum / max(total, F(1e-6f));
+}
+
 float cell_edge(const CameraView32& camera) { return min(kCellPixels / camera.fx, kWidestCell); }
 
 }  // namespace
@@ -48,12 +69,15 @@ bool FastHistory::find_moving_lamps(const SceneView& scene) {
 void FastHistory::look_up(const IrradianceCacheView& cache) {
   parallel_for("fast light", now_.height, [&](int64_t row) {
     const int y = static_cast<int>(row);
-    for (int x = 0; x < now_.width; ++x) {
-      const int cell = find_cell(cache, now_.key[static_cast<size_t>(y) * now_.width + x]);
-      now_.signal[kCachedSignal].set(
-          x, y,
-          cell >= 0 ? light_at(cache.light[static_cast<uint32_t>(cell)], *now_.near.at(x, y))
-                    : Vec3f{});
+    for (int x = 0; x < now_.width; x += kLaneCount) {
+      const F near = near_about(now_, x, y);
+      for (int i = 0; i < kLaneCount && x + i < now_.width; ++i) {
+        const int cell = find_cell(cache, now_.key[static_cast<size_t>(y) * now_.width + x + i]);
+        now_.signal[kCachedSignal].set(
+            x + i, y,
+            cell >= 0 ? light_at(cache.light[static_cast<uint32_t>(cell)], lane(near, i))
+                      : Vec3f{});
+      }
     }
   });
 }
