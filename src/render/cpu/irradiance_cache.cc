@@ -21,7 +21,7 @@ constexpr float kSettles = 0.75f;    // of what a cell saw move, from update to 
 constexpr uint32_t kForgotten = 30;  // updates after which a cell that nobody asks for goes
 constexpr float kSurprise = 3;       // standard errors,
 constexpr float kNoRegionChange = 0.02f;  // and this share, that a region's light may be off
-constexpr float kBrightest = 16;      // times a cell's mean: what a ray brings beyond that is the
+constexpr float kBrightest = 16;      // times what is usual: what a ray brings beyond that is the
                                       // region's, as few rays meet it
 constexpr float kBrightestInAir = 8;  // there, a filter passes over what cells have too much
 constexpr float kFades = 0.1f;        // share of all light that must have changed to change all
@@ -150,14 +150,18 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
   if (cell.samples > 0) cache.mean = light_[row].all;
   const float edge = caches::edge_of(cell.key);
   const bool in_air = caches::is_air(cell.key);
-  const float before = cell.samples == 0 ? luminance_beside(cell.key) : luminance(light_[row].all);
+  // At least as bright as what is beside it: a cell that has met too little would cut off what it
+  // lacks, for good.
+  const float beside = luminance_beside(cell.key);
+  const float own = cell.samples == 0 ? beside : luminance(light_[row].all);
+  const float usual = max(own, beside);
   const auto starts = static_cast<size_t>(std::min(cell.starts, kStarts));
-  const float brightest = before > 0 ? (in_air ? kBrightestInAir : kBrightest) * before : 1e30f;
+  const float brightest = usual > 0 ? (in_air ? kBrightestInAir : kBrightest) * usual : 1e30f;
   const float per_ray = 1 / static_cast<float>(rays);
   Traced& out = traced_[k];
   out = {};
   out.is_new = cell.samples == 0;
-  out.before = before;
+  out.before = own, out.usual = usual;
   for (int first = 0; first < rays; first += kLaneCount) {
     paths::State<F> path;
     UintLanes index;
@@ -287,7 +291,7 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
                      });
   of_cells_.clear();
   for (size_t k = 0; k < traced_.size(); ++k) {
-    of_cells_.push_back({cells_[asked_[k]].key, traced_[k].excess, traced_[k].before});
+    of_cells_.push_back({cells_[asked_[k]].key, traced_[k].excess, traced_[k].usual});
   }
   spread_.resize(traced_.size());
   excess_.spread(of_cells_, remembers, spread_);

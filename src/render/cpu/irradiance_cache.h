@@ -43,6 +43,7 @@ class IrradianceCache {
     CellLight light;
     Vec3f excess;                    ///< of rays that bring more than is likely: what is above that
     float variance = 0, before = 0;  ///< of its luminance; luminance before the round
+    float usual = 0;                 ///< luminance that rays are judged by
     float stir = 0;                  ///< share of the rays that met what has moved
     bool is_new = false, changed = false;  ///< it had no light yet; it is not what it was
     uint64_t rays = 0;
