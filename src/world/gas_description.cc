@@ -112,6 +112,7 @@ Result<GasDescription> describe_gas(const GasOptions& options, const Extent& ext
   }
   gas.medium = *preset;
   gas.medium.emission = 1;  // Kirchhoff's law: only what is above 800 K is seen to glow
+  gas.medium.hue_temperature = kFlameTemperature;
   gas.fuel = kFuelTable[row_of(kFuels, options.fuel)];
   gas.temperature = static_cast<float>(options.temperature);
   if (options.wind) gas.wind = to_float(*options.wind);

@@ -64,6 +64,9 @@ struct DustDescription {
   }
 };
 
+/// Of luminous soot in flames [K]: sooty ones have 1200 to 1700 K.
+inline constexpr float kFlameTemperature = 1500;
+
 struct GasDescription {
   std::string name;
   Vec3f low;                   ///< corner of the box [m], axes along the world's

@@ -25,6 +25,9 @@ struct MediumDescription {
   /// What it gives off per metre, relative to a black body of its absorption coefficient and
   /// temperature: 1 by Kirchhoff's law, 0 = dark. Red, green and blue alone.
   float emission = 0;
+  /// Whose hue all has that glows [K]; 0 = each its own. Where a voxel's temperature tells how much
+  /// of it is flame, that is as bright as it says, and no redder for being thin.
+  float hue_temperature = 0;
 };
 
 /// Values at the centres of voxels, x fastest, (nz x ny x nx). Shared: whoever solves for the field

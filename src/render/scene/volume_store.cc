@@ -10,6 +10,7 @@
 #include "base/parallel.h"
 #include "render/scene/black_body.h"
 #include "render/scene/span_of.h"
+#include "world/black_body.h"
 
 namespace gloam {
 namespace {
@@ -152,6 +153,10 @@ Result<VolumeStore> VolumeStore::make(const std::vector<MediumDescription>& medi
     std::copy(medium.albedo.begin(), medium.albedo.end(), view.albedo);
     std::copy(medium.g.begin(), medium.g.end(), view.g);
     view.emission = medium.emission;
+    if (medium.hue_temperature > 0) {
+      const Vec3f hue = black_body_luminance(double{medium.hue_temperature});
+      view.hue = hue / luminance(hue);
+    }
     GLOAM_TRY_STATUS(store.replace(i, volumes[i]));
   }
   return store;

@@ -13,6 +13,7 @@ GasGrid grid_of(const GasDescription& gas) { return {gas.nx, gas.ny, gas.nz, gas
 GasProperties properties_of(const GasDescription& gas) {
   GasProperties properties;
   properties.ambient_temperature = gas.temperature;
+  properties.flame_temperature = kFlameTemperature;
   properties.vorticity = gas.vorticity;
   properties.cooling = gas.cooling;
   properties.dissipation = gas.settling;

@@ -36,7 +36,7 @@ struct GasProperties {
   /// Time in which fuel and air of one voxel mix [s]: "mixed is burnt" (eddy break-up, Magnussen
   /// and Hjertager 1977; of FDS's order at voxels of this size).
   float mixing_time = 0.1f;
-  /// Of the luminous soot inside burning voxels, for rendering [K]. Sooty flames: 1200 to 1700 K.
+  /// Of the luminous soot inside burning voxels, for rendering [K].
   float flame_temperature = 1500;
   /// Sides of the box, -x +x -y +y -z +z: open air at rest pressure, or closed.
   bool open[6] = {true, true, true, true, true, true};
