@@ -27,7 +27,7 @@ GLOAM_HD CellLight lerp(const CellLight& a, const CellLight& b, float t) {
 GLOAM_HD Vec3f light_at(const CellLight& cell, float near) {
   // Where the cell knows little of what is near, that is taken for a good deal darker than the
   // rest.
-  constexpr float kDoubt = 0.01f, kDarker = 0.35f;
+  constexpr float kDoubt = 0.05f, kDarker = 0.45f;
   if (!cell.is_known()) return cell.all;
   const Vec3f far = (cell.all - cell.near) / max(1.0f - cell.share, 0.05f);
   const Vec3f close = (cell.near + far * (kDoubt * kDarker)) / (cell.share + kDoubt);
