@@ -47,7 +47,8 @@ Error explain(const CLI::App& root, const std::string& word, const CLI::ParseErr
             suggest_name(word, names)};
   std::vector<std::string> options = option_names(root);
   for (const CLI::App* sub : root.get_subcommands())
-    for (const std::string& name : option_names(*sub)) options.push_back(name);
+    for (const std::string& name : option_names(*sub))
+      if (std::ranges::find(options, name) == options.end()) options.push_back(name);
   for (const std::string& extra : root.remaining(true)) {
     const std::string name = extra.substr(0, extra.find('='));
     if (!name.starts_with('-') || std::ranges::find(options, name) != options.end()) continue;
