@@ -18,7 +18,7 @@ constexpr float kNoChange = 0.01f;   // a share that may be noise,
 constexpr float kHaste = 8;          // and what of the rest is taken over at once
 constexpr float kTolerance = 0.01f;  // of places on one plane, over their distance
 constexpr float kSameDepth = 0.2f;   // share by which the ways through air differ that are alike
-constexpr int kSpikeRounds = 2;      // of the air's filter, that take what stands out along
+constexpr int kSpikeRounds = 2;      // of filters, that take what stands out along
 constexpr float kFarthest = 1e8f;    // deviations squared, so that products stay finite
 
 using F = FloatLanes;
@@ -227,14 +227,15 @@ F deviation_at(const FastFrame& f, int signal, int x, int y) {
   return square_root(variance / (n * f.age.load(x, y)));
 }
 
-/// Deviation of the air's luminance among the pixels that a round takes together: each of them
-/// finds about the same, so that none gives what the others do not take.
-F spread_around(const FastFrame& f, const FastPlane3& air, int step, int x, int y) {
+/// Deviation of a signal's luminance among the pixels that a round takes together and that count:
+/// each of them finds about the same, so that none gives what the others do not take.
+template <class Counts>
+F spread_around(const FastPlane3& signal, int step, int x, int y, const Counts& counts) {
   F sum, squares, n;
   for (int dy = -step; dy <= step; dy += step) {
     for (int dx = -step; dx <= step; dx += step) {
-      const F one = select(f.part.load(x + dx, y + dy) >= 0.0f, F(1.0f), F(0.0f));
-      const F l = one * luminance(air.load(x + dx, y + dy));
+      const F one = select(counts(x + dx, y + dy), F(1.0f), F(0.0f));
+      const F l = one * luminance(signal.load(x + dx, y + dy));
       sum += l, squares += l * l, n += one;
     }
   }
@@ -270,19 +271,15 @@ void FastFilter::smooth_signals(const FastFrame& f, int round, const FastPlane3*
       for (int s = kFirst; s < kAirSignal; ++s) {
         sum[s] = from[s].load(x, y);
         total[s] = 1.0f;
-        if (round == 0) {
-          F spread = deviation_at(f, s, x, y);
-          if (s != kDirectSignal) {  // light of lamps has edges
-            const auto own_part = [&](int dx, int dy) {
-              return f.part.load(x + dx, y + dy) == part;
-            };
-            const auto moments = neighbour_moments(from[s], x, y, own_part);
-            spread = max(spread, 0.5f * luminance(moments.deviation));
-          }
-          deviation[s].store(x, y, spread);
+        if (round == 0) deviation[s].store(x, y, deviation_at(f, s, x, y));
+        F spread = deviation[s].load(x, y);
+        if (s != kDirectSignal && round < kSpikeRounds) {  // light of lamps has edges
+          spread = max(spread, spread_around(from[s], step, x, y, [&](int qx, int qy) {
+                         return f.part.load(qx, qy) == part;
+                       }));
         }
         own[s] = luminance(sum[s]);
-        sharp[s] = sharpness(deviation[s].load(x, y), own[s]);
+        sharp[s] = sharpness(spread, own[s]);
       }
       for (int dy = -1; dy <= 1; ++dy) {
         for (int dx = -1; dx <= 1; ++dx) {
@@ -319,7 +316,11 @@ void FastFilter::smooth_air(const FastFrame& f, int round, const FastPlane3& fro
     for (int x = 0; x < f.width; x += kLaneCount) {
       if (round == 0) deviation[kAirSignal].store(x, y, deviation_at(f, kAirSignal, x, y));
       F spread = deviation[kAirSignal].load(x, y);
-      if (round < kSpikeRounds) spread = max(spread, spread_around(f, from, step, x, y));
+      if (round < kSpikeRounds) {
+        spread = max(spread, spread_around(from, step, x, y, [&](int qx, int qy) {
+                       return f.part.load(qx, qy) >= 0.0f;
+                     }));
+      }
       Vec3Of<F> sum = from.load(x, y);
       const F own = luminance(sum), sharp = sharpness(spread, own);
       const F distance = f.distance.load(x, y), scale = 1.0f / (kSameDepth * distance);
