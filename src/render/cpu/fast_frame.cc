@@ -18,7 +18,7 @@ constexpr float kNoChange = 0.01f;   // a share that may be noise,
 constexpr float kHaste = 8;          // and what of the rest is taken over at once
 constexpr float kTolerance = 0.01f;  // of places on one plane, over their distance
 constexpr float kSameDepth = 0.2f;   // share by which the ways through air differ that are alike
-constexpr int kSpikeRounds = 2;      // of filters, that take what stands out along
+constexpr int kSpikeRounds = 2;      // of a surface's filter, that take what stands out along
 constexpr float kFarthest = 1e8f;    // deviations squared, so that products stay finite
 
 using F = FloatLanes;
@@ -316,11 +316,9 @@ void FastFilter::smooth_air(const FastFrame& f, int round, const FastPlane3& fro
     for (int x = 0; x < f.width; x += kLaneCount) {
       if (round == 0) deviation[kAirSignal].store(x, y, deviation_at(f, kAirSignal, x, y));
       F spread = deviation[kAirSignal].load(x, y);
-      if (round < kSpikeRounds) {
-        spread = max(spread, spread_around(from, step, x, y, [&](int qx, int qy) {
-                       return f.part.load(qx, qy) >= 0.0f;
-                     }));
-      }
+      spread = max(spread, spread_around(from, step, x, y, [&](int qx, int qy) {
+                     return f.part.load(qx, qy) >= 0.0f;
+                   }));
       Vec3Of<F> sum = from.load(x, y);
       const F own = luminance(sum), sharp = sharpness(spread, own);
       const F distance = f.distance.load(x, y), scale = 1.0f / (kSameDepth * distance);
