@@ -39,8 +39,8 @@ struct WeatherDescription {
 struct RenderDescription;
 
 /// Fills `weather` of the description, whose instances are all there, and appends the media and
-/// volumes of fog, rain and snow. `rooms`: of the generated building; `X_WB`: of all bodies. Errors: no
-/// such medium.
+/// volumes of fog, rain and snow. `rooms`: of the generated building; `X_WB`: of all bodies.
+/// Errors: no such medium.
 Status author_weather(const WeatherOptions& options, const WindDescription& wind,
                       std::span<const Region> rooms, const std::vector<Affine3f>& X_WB,
                       RenderDescription* out);
