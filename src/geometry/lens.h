@@ -13,6 +13,7 @@
 
 #include "base/device.h"
 #include "base/vec.h"
+#include "geometry/single.h"
 #include "gloam/camera.h"
 
 namespace gloam {
@@ -217,11 +218,6 @@ LensOf<T> make_lens(const Intrinsics& intrinsics) {
   for (int i = 0; i < 8; ++i) out.d[i] = static_cast<T>(lens.d[i]);
   out.reach = static_cast<T>(lens.reach);
   return out;
-}
-
-/// In single precision, as the renderer's poses are.
-inline Vec3f to_vec3f(const Vec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
 /// Rays of a camera's pixels: the lens's, whatever it is. For many pixels of one camera;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/text.h"
+#include "geometry/single.h"
 #include "scene/effect_fields.h"
 #include "world/extent.h"
 #include "world/level.h"
@@ -39,10 +40,6 @@ constexpr double kWall = 0.3;            // beyond the rooms of a generated plac
 template <size_t N>
 size_t row_of(const std::array<std::string_view, N>& words, const std::string& word) {
   return static_cast<size_t>(std::find(words.begin(), words.end(), word) - words.begin());
-}
-
-Vec3f to_float(const Vec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
 /// Where the scene's gas is if it does not say: the rooms of a generated place, else around what
@@ -115,7 +112,7 @@ Result<GasDescription> describe_gas(const GasOptions& options, const Extent& ext
   gas.medium.hue_temperature = kFlameTemperature;
   gas.fuel = kFuelTable[row_of(kFuels, options.fuel)];
   gas.temperature = static_cast<float>(options.temperature);
-  if (options.wind) gas.wind = to_float(*options.wind);
+  if (options.wind) gas.wind = to_vec3f(*options.wind);
   for (size_t i = 0; i < kBoxSides.size(); ++i) {
     gas.open[i] = std::find(options.closed.begin(), options.closed.end(), kBoxSides[i]) ==
                   options.closed.end();
@@ -142,8 +139,8 @@ Result<GasSourceDescription> describe_source(const Options& options, const char*
         options.loc,
         suggest_name(options.body, object_names(m, mjOBJ_BODY, static_cast<int>(m->nbody)))};
   }
-  source.X_BS.p = to_float(options.position);
-  source.half_size = to_float(options.size) * 0.5f;
+  source.X_BS.p = to_vec3f(options.position);
+  source.half_size = to_vec3f(options.size) * 0.5f;
   source.start = options.start;
   source.stop = options.stop.value_or(std::numeric_limits<double>::infinity());
   return source;
@@ -211,7 +208,7 @@ Result<GasesDescription> describe_gases(const CompiledWorld& world) {
     GLOAM_TRY(GasSourceDescription source, describe_source(options, "smoke", world));
     source.smoke = static_cast<float>(options.rate);
     source.heat = static_cast<float>(options.heat);
-    if (options.velocity) source.jet = to_float(*options.velocity);
+    if (options.velocity) source.jet = to_vec3f(*options.velocity);
     out.sources.push_back(source);
   }
   GLOAM_TRY(out.rotors, describe_rotors(world));

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "base/text.h"
+#include "geometry/single.h"
 #include "world/level.h"
 #include "world/visual_pose.h"
 #include "world/world.h"
@@ -20,10 +21,6 @@ constexpr float kBladeThickness = 0.35f;  // of the radius, from the plane
 
 Vec3f float3(const mjtNum* v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};
-}
-
-Vec3f to_vec3f(const Vec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
 }
 
 Error rotor_error(const RotorOptions& rotor, const std::string& message, std::string hint = {}) {

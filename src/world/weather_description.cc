@@ -7,6 +7,7 @@
 
 #include "base/rng.h"
 #include "base/text.h"
+#include "geometry/single.h"
 #include "world/extent.h"
 #include "world/fallen_snow.h"
 #include "world/medium_presets.h"
@@ -59,13 +60,10 @@ Bounds air_around(const Bounds& bounds, float height) {
            std::max(bounds.low.z + height, bounds.high.z + 2)}};
 }
 
-/// All rooms, and halfway into their walls.
+/// All rooms, and kInWalls into their walls.
 Bounds air_in(std::span<const Region> rooms) {
   const Extent extent = extent_of(rooms, kInWalls);
-  const auto to_float = [](const Vec3& v) {
-    return Vec3f{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-  };
-  return {to_float(extent.low), to_float(extent.high)};
+  return {to_vec3f(extent.low), to_vec3f(extent.high)};
 }
 
 /// Thinner with height and in billows, whose mean is one.

@@ -4,6 +4,7 @@
 
 #include "base/check.h"
 #include "base/log.h"
+#include "geometry/single.h"
 
 namespace gloam {
 namespace {
@@ -231,7 +232,7 @@ void GasEffect::find_sources(double time) {
 Vec3f GasEffect::wind(double time) const {
   if (gas().wind) return *gas().wind;
   const Vec3 v = wind_.at(time, double{gas().low.z} + 0.5 * double{gas().size().z});
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+  return to_vec3f(v);
 }
 
 void GasEffect::warn_of_blocked(const GasStep& step) {
