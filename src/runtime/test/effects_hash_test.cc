@@ -6,15 +6,21 @@
 namespace gloam {
 namespace {
 
+/// ball.xml with a keyframe "go" of `state`.
+void write_ball(const TempFolder& folder, const std::string& state) {
+  folder.write("ball.xml", R"(<mujoco><worldbody><body><freejoint/>
+    <geom type="sphere" size=".15" mass="1"/></body></worldbody>
+    <keyframe><key name="go" )" +
+                               state + "/></keyframe></mujoco>");
+}
+
 World burning_room(const TempFolder& folder) {
   folder.write("room.xml", R"(<mujoco><option timestep="0.005"/><worldbody>
     <geom type="plane" size="3 3 .1"/>
     <geom type="box" size=".1 1.5 1" pos="1.5 0 1"/>
     <geom type="box" size="1.5 .1 1" pos="0 1.5 1"/>
     <light pos="0 0 3"/></worldbody></mujoco>)");
-  folder.write("ball.xml", R"(<mujoco><worldbody><body><freejoint/>
-    <geom type="sphere" size=".15" mass="1"/></body></worldbody>
-    <keyframe><key name="go" qpos="-.8 0 .3 1 0 0 0" qvel=".3 .1 0 0 0 0"/></keyframe></mujoco>)");
+  write_ball(folder, R"(qpos="-.8 0 .3 1 0 0 0" qvel=".3 .1 0 0 0 0")");
   return compile_text(folder, "room.toml", R"(
 [environment]
 file = "room.xml"
@@ -52,9 +58,7 @@ World garden(const TempFolder& folder) {
     <geom type="box" size="2 2 .1" pos="-2 0 -.1"/>
     <body pos="0 3.2 .1"><freejoint/><geom type="sphere" size=".15" density="400"/></body>
     <light pos="0 0 3"/></worldbody></mujoco>)");
-  folder.write("ball.xml", R"(<mujoco><worldbody><body><freejoint/>
-    <geom type="sphere" size=".15" mass="1"/></body></worldbody>
-    <keyframe><key name="go" qpos="0 0 .06 1 0 0 0" qvel="1.2 .05 0 0 8 0"/></keyframe></mujoco>)");
+  write_ball(folder, R"(qpos="0 0 .06 1 0 0 0" qvel="1.2 .05 0 0 8 0")");
   return compile_text(folder, "garden.toml", R"(
 [environment]
 file = "garden.xml"
