@@ -17,6 +17,13 @@ float gradient_noise(int x, int y) {
   return outer - std::floor(outer);
 }
 
+// Of what falls on a channel, what it holds: straight up to the top of the scale, and full at kFull.
+constexpr float kFull = 1.5f;
+float held(float x) {
+  constexpr float kAbove = kFull - 1;
+  return x < 1 ? x : kFull - kAbove * std::exp((1 - x) / kAbove);
+}
+
 float to_positive(float x) { return x > 0 ? min(x, 1e6f) : 0.0f; }  // also for NaN
 
 }  // namespace
@@ -36,6 +43,16 @@ Vec3f tone_curve_neutral(Vec3f color) {
   return lerp(Vec3f{new_peak, new_peak, new_peak}, color * (new_peak / peak), keep);
 }
 
+Vec3f tone_curve_of_sensor(Vec3f color) {
+  color = tone_curve_neutral({held(color.x), held(color.y), held(color.z)});
+  // From where the curve bends, so that it ends at white.
+  static const float kFrom = 0.76f, kTo = tone_curve_neutral({kFull, kFull, kFull}).x;
+  const float peak = max_component(color);
+  if (peak <= kFrom) return color;
+  const float way = (peak - kFrom) / (kTo - kFrom);
+  return color * (1 + (1 - kTo) * way * way / peak);
+}
+
 void tone_map(const std::vector<Vec3f>& radiance, int width, int height,
               const ToneMapSettings& settings, std::vector<uint8_t>* rgb) {
   const size_t n = static_cast<size_t>(width) * static_cast<size_t>(height);
@@ -48,7 +65,7 @@ void tone_map(const std::vector<Vec3f>& radiance, int width, int height,
         const size_t i = static_cast<size_t>(y) * static_cast<size_t>(width) + x;
         const Vec3f light = radiance[i] * scale;
         Vec3f color{to_positive(light.x), to_positive(light.y), to_positive(light.z)};
-        if (settings.neutral) color = tone_curve_neutral(color);
+        if (settings.neutral) color = tone_curve_of_sensor(color);
         const float threshold = settings.dither ? gradient_noise(x, y) : 0.5f;
         for (int c = 0; c < 3; ++c) {
           const float level = 255 * srgb_encode(clamp(color[c], 0, 1)) + threshold;

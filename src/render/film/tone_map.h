@@ -17,6 +17,11 @@ float max_luminance(float ev100);
 /// in >= 0, out 0..1.
 Vec3f tone_curve_neutral(Vec3f color);
 
+/// That curve on what a sensor holds, whose channels fill up one by one, half the scale above its
+/// top: a flame's orange turns to yellow where it is overexposed, as cameras show it, and not to
+/// the pink that the curve makes of it. What fills all three is white, 1.
+Vec3f tone_curve_of_sensor(Vec3f color);
+
 struct ToneMapSettings {
   float ev100 = 0;
   bool neutral = true;  ///< false: no tone curve, what is above the top of the scale is cut

@@ -73,6 +73,27 @@ TEST(ToneMap, CurveIsContinuousMonotoneAndBounded) {
   EXPECT_GT(hot.y, 0.9f);
 }
 
+TEST(ToneMap, ChannelsFillUpOneByOne) {
+  // Black body of 1500 K, overexposed more and more: orange, then yellow, never pink.
+  float green = 0;
+  for (float light = 1; light < 100; light *= 1.3f) {
+    const Vec3f out = tone_curve_of_sensor(Vec3f{1, 0.133f, 0} * light);
+    EXPECT_GT(out.x, 0.79f);
+    EXPECT_LT(out.z, 0.15f) << "pink at " << light;
+    EXPECT_GE(out.y, green);
+    green = out.y;
+  }
+  EXPECT_GT(green, 0.95f);
+  float before = -1;
+  for (int i = 0; i <= 20000; ++i) {
+    const float x = static_cast<float>(i) * 0.001f, y = tone_curve_of_sensor({x, x, x}).y;
+    EXPECT_GE(y, before - 1e-6f);
+    EXPECT_LT(y - before, before < 0 ? 2.0f : 0.0011f) << "a jump at " << x;
+    before = y;
+  }
+  EXPECT_NEAR(before, 1, 1e-4) << "white is the end";
+}
+
 TEST(ToneMap, ExposureFollowsEv100) {
   EXPECT_FLOAT_EQ(max_luminance(0), 1.2f);
   EXPECT_FLOAT_EQ(max_luminance(10), 1228.8f);
