@@ -17,7 +17,8 @@ float gradient_noise(int x, int y) {
   return outer - std::floor(outer);
 }
 
-// Of what falls on a channel, what it holds: straight up to the top of the scale, and full at kFull.
+// Of what falls on a channel, what it holds: straight up to the top of the scale, and full at
+// kFull.
 constexpr float kFull = 1.5f;
 float held(float x) {
   constexpr float kAbove = kFull - 1;

@@ -1,5 +1,5 @@
 #pragma once
-// What glows, as light for a point, by pieces of lines: Simon et al. 2017, "Line integration for
+// What glows, as light for a point, by lines through it: Simon et al. 2017, "Line integration for
 // rendering heterogeneous emissive volumes". The inside of a thick flame gives no light, and a
 // sample of one point there would be noise. Device-safe.
 
@@ -11,52 +11,108 @@ namespace gloam::glow {
 /// that few of them would bring nearly all light.
 inline constexpr float kNearGlow = 0.1f;
 
-/// A piece of a line from p through a medium that glows.
+/// From within so many times the reach of what glows, the nearest of it is the brightest: a point
+/// is chosen among kDraws then (Talbot et al. 2005, "Importance resampling for global
+/// illumination").
+inline constexpr float kBeside = 2;
+inline constexpr int kDraws = 2;
+
+/// What a point in the direction `to` brings for what it gives off.
+GLOAM_HD float pull(Vec3f to, Vec3f n) {
+  const float d2 = max(length_squared(to), sqr(kNearGlow));
+  if (!(length_squared(n) > 0)) return 1 / d2;
+  const float height = dot(to, n);
+  return height > 0 ? (min(height / sqrtf(d2), 1.0f) + 0.05f) / d2 : 0.0f;
+}
+
+/// From where on to where the line is in the box around t.
+GLOAM_HD void clip(Vec3f o, Vec3f d, Vec3f low, Vec3f high, float t, float* from, float* to) {
+  float near = 0, far = 1e30f;
+  for (int a = 0; a < 3; ++a) {
+    if (abs(d[a]) < 1e-12f) continue;
+    const float inverse = 1 / d[a], x = (low[a] - o[a]) * inverse, y = (high[a] - o[a]) * inverse;
+    near = max(near, min(x, y)), far = min(far, max(x, y));
+  }
+  *from = min(near, t), *to = max(far, t);  // for rounding
+}
+
+/// u in the i-th of `count` equal parts after its own.
+GLOAM_HD float turned(float u, int i, int count) {
+  const float x = u + static_cast<float>(i) / static_cast<float>(count);
+  return x < 1 ? x : x - 1;
+}
+
+/// A line from p through a medium that glows.
 struct LineSample {
-  LightSample light;  ///< radiance over pdf: of the piece, as it leaves it towards p
-  float clear = 0;    ///< distance at which the piece begins [m]: what is before it dims
+  LightSample light;  ///< radiance over pdf: as it leaves what glows towards p
+  float clear = 0;    ///< distance at which that begins [m]: what is before it dims
 };
 
-/// A point is drawn as by sample(); it is any of the piece's kParts. Of all pieces that hold a
-/// point, each draws its light over the sum of their densities (the balance heuristic). Beyond
-/// kNearGlow.
+/// Extinction by all volumes but one [1/m].
+GLOAM_HD Vec3f beside_at(const MediaView& media, uint32_t but, Vec3f p) {
+  Vec3f sum;
+  for (uint32_t i = 0; i < media.volumes.size; ++i) {
+    const VolumeView& v = media.volumes[i];
+    const Vec3f p_G = transform_point(v.X_GW, p);
+    if (i == but || !media::is_inside(v, p_G)) continue;
+    sum += Bands{}.of(v.mass_extinction) * media::density_at(v, p_G);
+  }
+  return sum;
+}
+
+/// A line is drawn with a point of it, as by sample(), and so are the places on it at which light
+/// is summed up, a step apart: of these any might have been the point, and the line's density is
+/// that of all. Beyond kNearGlow.
 GLOAM_HD LineSample sample_line(const MediaView& media, Vec3f p, Vec3f n, Vec2f u) {
-  constexpr int kParts = 4;
-  constexpr float kVoxels = 1.5f;  // of a part: small flames are but few voxels wide
+  constexpr float kVoxels = 1.5f;  // a step: small flames are but few voxels wide
+  constexpr float kMostSteps = 16;
   LineSample out;
   const Choice choice = choose(media, p, n, &u);
   if (!(choice.probability > 0)) return out;
   const GlowView& glow = *choice.glow;
   const VolumeView& v = media.volumes[glow.volume];
   LightSample& light = out.light;
-  const PointSample point = sample_point(v, glow, u);
-  const Vec3f to = transform_point(glow.X_WG, point.p_G) - p;
-  light.distance = length(to);
-  if (!(point.density > 0 && light.distance > 1e-6f)) return out;
-  light.wi = to / light.distance;
-  const float step = kVoxels * min(v.voxel.x, min(v.voxel.y, v.voxel.z));
+  const bool beside = length_squared(glow.center - p) < sqr(kBeside * glow.reach);
+  const auto pulls = [&](Vec3f to) { return beside ? pull(to, n) : 1.0f; };
+  const int draws = beside ? kDraws : 1;
   WalkRandom random({u.y, u.x});
-  const float before = floorf(random.next() * kParts);  // parts before the point
+  Vec3f to;
+  float pulled = 0;
+  for (int i = 0; i < draws; ++i) {
+    const Vec2f at = i == 0 ? u : Vec2f{turned(u.x, i, draws), random.next()};
+    const PointSample point = sample_point(v, glow, at);
+    if (!(point.density > 0)) continue;
+    const Vec3f there = transform_point(glow.X_WG, point.p_G) - p;
+    const float pull = pulls(there);
+    pulled += pull;
+    if (i == 0 || random.next() * pulled < pull) to = there;
+  }
+  light.distance = length(to);
+  if (!(pulled > 0 && light.distance > 1e-6f)) return out;
+  light.wi = to / light.distance;
+  const Vec3f o_G = transform_point(v.X_GW, p), d_G = transform_vector(v.X_GW, light.wi);
+  float from = 0, end = light.distance;
+  clip(o_G, d_G, glow.low_G, glow.high_G, light.distance, &from, &end);
+  const float voxel = min(v.voxel.x, min(v.voxel.y, v.voxel.z));
+  const float step = max(kVoxels * voxel, (end - from) * (1 / kMostSteps));
   const Vec3f k = Bands{}.of(v.mass_extinction), absorbed = Vec3f{1, 1, 1} - Bands{}.of(v.albedo);
-  out.clear = max(light.distance - (before + 0.5f) * step, 0.0f);
   Vec3f through{1, 1, 1}, radiance;
-  float pdf = 0;
-  for (int i = 0; i < kParts; ++i) {
-    const float t = light.distance + (static_cast<float>(i) - before) * step;
-    if (!(t > 0)) continue;
-    const Vec3f p_G = transform_point(v.X_GW, p + light.wi * t);
+  float pdf = 0, t = light.distance - floorf((light.distance - from) / step) * step;
+  out.clear = max(t - 0.5f * step, 0.0f);
+  for (; t <= end; t += step) {
+    const Vec3f p_G = o_G + d_G * t;
     if (!media::is_inside(v, p_G)) continue;
     const Vec3f extinction = k * media::density_at(v, p_G);
-    const Vec3f depth = extinction * step;
-    const Vec3f half = media::exp_of(depth * -0.5f);
+    const Vec3f dims = extinction + beside_at(media, glow.volume, p + light.wi * t);
+    const Vec3f half = media::exp_of(dims * (-0.5f * step));
     if (t > kNearGlow) {
       radiance += through * half * extinction * absorbed * media::glow_at(media, v, p_G, {});
     }
     through *= half * half;
-    pdf += point_density(media, glow, p_G) * sqr(t);
+    pdf += point_density(media, glow, p_G) * sqr(t) * pulls(light.wi * t);
   }
   light.radiance = radiance;
-  light.pdf = pdf * choice.probability;
+  light.pdf = pdf * choice.probability * (static_cast<float>(draws) / pulled);
   if (!(max_component(radiance) > 0)) light.pdf = 0;
   return out;
 }

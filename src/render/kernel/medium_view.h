@@ -53,7 +53,8 @@ struct GlowView {
   static constexpr uint32_t kSums = kBoundsVoxels * kBoundsVoxels * kBoundsVoxels + 1;
   uint32_t volume = 0;
   Affine3f X_WG;                       ///< voxels to world
-  Vec3f center;                        ///< of a box that holds all that glows [m]
+  Vec3f low_G, high_G;                 ///< corners of a box that holds all that glows [voxels]
+  Vec3f center;                        ///< of that [m]
   float reach = 0;                     ///< half its diagonal [m]
   float strength = 0;                  ///< mean luminous intensity, at most [cd]
   float voxels_per_volume = 0;         ///< [1/m³]

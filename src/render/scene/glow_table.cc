@@ -104,6 +104,7 @@ void GlowTable::build(const MediaView& media, uint32_t row) {
   const float voxel = v.voxel.x * v.voxel.y * v.voxel.z;
   const Vec3f size = (high - low) * v.voxel;
   view_.volume = row;
+  view_.low_G = low, view_.high_G = high;
   view_.X_WG = inverse(v.X_GW);
   view_.center = transform_point(view_.X_WG, (low + high) * 0.5f);
   view_.reach = 0.5f * length(size);

@@ -126,6 +126,35 @@ TEST(Glow, LinesBringTheLightOfPoints) {
   }
 }
 
+// There a few of its points are near and bring most of the light, and most are behind others.
+TEST(Glow, AtTheFootOfAFlameLinesAreSmooth) {
+  SceneBuilder b;
+  add_flame(&b, {}, 10, {0.5f, 0.5f, 0.5f});
+  const Probe probe(b);
+  const MediaView& media = probe.view.media;
+  const Vec3f p{0.35f, 0.05f, 0.02f}, n{0, 0, 1};
+  constexpr int kCount = 100000;
+  Mean points, lines;
+  for (uint32_t i = 0; i < kCount; ++i) {
+    Sampler sampler = independent(i, 5);
+    const Vec2f u = sampler.next_2d(), walk = sampler.next_2d();
+    const auto falls = [&](const LightSample& s, float clear) {
+      if (!(s.pdf > 0 && s.wi.z > 0)) return 0.0f;
+      const Ray ray = make_ray(p, s.wi);
+      return s.radiance.x / s.pdf * s.wi.z *
+             transmittance(media, ray, clear, {}, WalkRandom(walk)).x;
+    };
+    const LightSample point = glow::sample(media, p, n, u);
+    points.add(point.distance > glow::kNearGlow ? falls(point, point.distance) : 0);
+    const glow::LineSample line = glow::sample_line(media, p, n, u);
+    lines.add(falls(line.light, line.clear));
+  }
+  EXPECT_NEAR(lines.mean, points.mean,
+              4 * (points.standard_error() + lines.standard_error()) + 0.02 * points.mean);
+  EXPECT_LT(lines.standard_error() * std::sqrt(kCount), 0.5 * lines.mean)
+      << "pieces of lines had 0.85 to 1.1";
+}
+
 TEST(Glow, ThinAndFarAwayItIsAPointLamp) {
   const float k = 0.02f, size = 0.1f, height = 2;
   SceneBuilder b;
