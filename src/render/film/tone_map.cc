@@ -25,6 +25,13 @@ float held(float x) {
   return x < 1 ? x : kFull - kAbove * std::exp((1 - x) / kAbove);
 }
 
+// Of the neutral curve: what Fresnel adds to base colours, where it begins to bend, and what
+// becomes of the brightest channel.
+constexpr float kF90 = 0.04f, kStart = 0.8f - kF90, kRoom = 1 - kStart;
+constexpr float compressed(float peak) {
+  return peak < kStart ? peak : 1 - kRoom * kRoom / (peak + kRoom - kStart);
+}
+
 float to_positive(float x) { return x > 0 ? min(x, 1e6f) : 0.0f; }  // also for NaN
 
 }  // namespace
@@ -32,14 +39,13 @@ float to_positive(float x) { return x > 0 ? min(x, 1e6f) : 0.0f; }  // also for 
 float max_luminance(float ev100) { return 1.2f * std::exp2(ev100); }
 
 Vec3f tone_curve_neutral(Vec3f color) {
-  constexpr float kF90 = 0.04f, kStart = 0.8f - kF90, kDesaturation = 0.15f;
+  constexpr float kDesaturation = 0.15f;
   const float lowest = min(color.x, min(color.y, color.z));
   const float offset = lowest < 2 * kF90 ? lowest - lowest * lowest / (4 * kF90) : kF90;
   color = color - Vec3f{offset, offset, offset};
   const float peak = max_component(color);
   if (peak < kStart) return color;
-  constexpr float kRoom = 1 - kStart;
-  const float new_peak = 1 - kRoom * kRoom / (peak + kRoom - kStart);
+  const float new_peak = compressed(peak);
   const float keep = 1 / (kDesaturation * (peak - new_peak) + 1);
   return lerp(Vec3f{new_peak, new_peak, new_peak}, color * (new_peak / peak), keep);
 }
@@ -47,11 +53,11 @@ Vec3f tone_curve_neutral(Vec3f color) {
 Vec3f tone_curve_of_sensor(Vec3f color) {
   color = tone_curve_neutral({held(color.x), held(color.y), held(color.z)});
   // From where the curve bends, so that it ends at white.
-  static const float kFrom = 0.76f, kTo = tone_curve_neutral({kFull, kFull, kFull}).x;
+  constexpr float kEnd = compressed(kFull - kF90);
   const float peak = max_component(color);
-  if (peak <= kFrom) return color;
-  const float way = (peak - kFrom) / (kTo - kFrom);
-  return color * (1 + (1 - kTo) * way * way / peak);
+  if (peak <= kStart) return color;
+  const float way = (peak - kStart) / (kEnd - kStart);
+  return color * (1 + (1 - kEnd) * way * way / peak);
 }
 
 void tone_map(const std::vector<Vec3f>& radiance, int width, int height,

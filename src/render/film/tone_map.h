@@ -19,7 +19,8 @@ Vec3f tone_curve_neutral(Vec3f color);
 
 /// That curve on what a sensor holds, whose channels fill up one by one, half the scale above its
 /// top: a flame's orange turns to yellow where it is overexposed, as cameras show it, and not to
-/// the pink that the curve makes of it. What fills all three is white, 1.
+/// the pink that the curve makes of it. What fills all three is white, 1; what fills two
+/// is up to a hundredth more.
 Vec3f tone_curve_of_sensor(Vec3f color);
 
 struct ToneMapSettings {

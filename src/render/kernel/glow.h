@@ -9,18 +9,23 @@
 
 namespace gloam::glow {
 
-/// A bound, up to a factor, of what the medium brings to a surface at p with the normal n, or a
-/// point that takes light from all sides (n = 0); as light_weight().
-GLOAM_HD float weight(const GlowView& glow, Vec3f p, Vec3f n) {
-  const Vec3f to = glow.center - p;
-  const float d2 = max(dot(to, to), max(sqr(glow.reach), 1e-8f));
+/// A bound, up to a factor, of what something that gives off light within `reach` of `to` brings to
+/// a surface with the normal n, or to a point that takes light from all sides (n = 0), for its
+/// intensity [1/m²]; as light_weight(). Nearer than `least` [m] it brings no more.
+GLOAM_HD float share_of(Vec3f to, float reach, float least, Vec3f n) {
+  const float d2 = max(dot(to, to), sqr(least));
   float cosine = 1;
   if (length_squared(n) > 0) {
-    const float height = dot(to, n) + glow.reach;
+    const float height = dot(to, n) + reach;
     if (!(height > 0)) return 0;
     cosine = min(height / sqrtf(d2), 1.0f);
   }
-  return glow.strength / d2 * (cosine + 0.05f);
+  return (cosine + 0.05f) / d2;
+}
+
+/// That of a medium, at p.
+GLOAM_HD float weight(const GlowView& glow, Vec3f p, Vec3f n) {
+  return glow.strength * share_of(glow.center - p, glow.reach, max(glow.reach, 1e-4f), n);
 }
 
 /// That of all of them.

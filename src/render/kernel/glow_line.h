@@ -4,11 +4,11 @@
 // sample of one point there would be noise. Device-safe.
 
 #include "render/kernel/glow.h"
+#include "render/kernel/medium_walk.h"
 
 namespace gloam::glow {
 
-/// What glows closer by is no lamp [m]: its points are drawn without a look at their distance, so
-/// that few of them would bring nearly all light.
+/// What glows closer by is no lamp [m]: few of its points would bring nearly all light.
 inline constexpr float kNearGlow = 0.1f;
 
 /// From within so many times the reach of what glows, the nearest of it is the brightest: a point
@@ -17,31 +17,6 @@ inline constexpr float kNearGlow = 0.1f;
 inline constexpr float kBeside = 2;
 inline constexpr int kDraws = 2;
 
-/// What a point in the direction `to` brings for what it gives off.
-GLOAM_HD float pull(Vec3f to, Vec3f n) {
-  const float d2 = max(length_squared(to), sqr(kNearGlow));
-  if (!(length_squared(n) > 0)) return 1 / d2;
-  const float height = dot(to, n);
-  return height > 0 ? (min(height / sqrtf(d2), 1.0f) + 0.05f) / d2 : 0.0f;
-}
-
-/// From where on to where the line is in the box around t.
-GLOAM_HD void clip(Vec3f o, Vec3f d, Vec3f low, Vec3f high, float t, float* from, float* to) {
-  float near = 0, far = 1e30f;
-  for (int a = 0; a < 3; ++a) {
-    if (abs(d[a]) < 1e-12f) continue;
-    const float inverse = 1 / d[a], x = (low[a] - o[a]) * inverse, y = (high[a] - o[a]) * inverse;
-    near = max(near, min(x, y)), far = min(far, max(x, y));
-  }
-  *from = min(near, t), *to = max(far, t);  // for rounding
-}
-
-/// u in the i-th of `count` equal parts after its own.
-GLOAM_HD float turned(float u, int i, int count) {
-  const float x = u + static_cast<float>(i) / static_cast<float>(count);
-  return x < 1 ? x : x - 1;
-}
-
 /// A line from p through a medium that glows.
 struct LineSample {
   LightSample light;  ///< radiance over pdf: as it leaves what glows towards p
@@ -49,7 +24,7 @@ struct LineSample {
 };
 
 /// Extinction by all volumes but one [1/m].
-GLOAM_HD Vec3f beside_at(const MediaView& media, uint32_t but, Vec3f p) {
+GLOAM_HD Vec3f extinction_beside(const MediaView& media, uint32_t but, Vec3f p) {
   Vec3f sum;
   for (uint32_t i = 0; i < media.volumes.size; ++i) {
     const VolumeView& v = media.volumes[i];
@@ -73,26 +48,28 @@ GLOAM_HD LineSample sample_line(const MediaView& media, Vec3f p, Vec3f n, Vec2f 
   const VolumeView& v = media.volumes[glow.volume];
   LightSample& light = out.light;
   const bool beside = length_squared(glow.center - p) < sqr(kBeside * glow.reach);
-  const auto pulls = [&](Vec3f to) { return beside ? pull(to, n) : 1.0f; };
+  const auto share = [&](Vec3f to) { return beside ? share_of(to, 0, kNearGlow, n) : 1.0f; };
   const int draws = beside ? kDraws : 1;
   WalkRandom random({u.y, u.x});
   Vec3f to;
-  float pulled = 0;
+  float shares = 0;
   for (int i = 0; i < draws; ++i) {
-    const Vec2f at = i == 0 ? u : Vec2f{turned(u.x, i, draws), random.next()};
-    const PointSample point = sample_point(v, glow, at);
+    const PointSample point = sample_point(v, glow, u);
+    u = {u.x + 1.0f / kDraws, random.next()};
+    if (u.x >= 1) u.x -= 1;
     if (!(point.density > 0)) continue;
     const Vec3f there = transform_point(glow.X_WG, point.p_G) - p;
-    const float pull = pulls(there);
-    pulled += pull;
-    if (i == 0 || random.next() * pulled < pull) to = there;
+    const float its = share(there);
+    shares += its;
+    if (i == 0 || random.next() * shares < its) to = there;
   }
   light.distance = length(to);
-  if (!(pulled > 0 && light.distance > 1e-6f)) return out;
+  if (!(shares > 0 && light.distance > 1e-6f)) return out;
   light.wi = to / light.distance;
   const Vec3f o_G = transform_point(v.X_GW, p), d_G = transform_vector(v.X_GW, light.wi);
-  float from = 0, end = light.distance;
-  clip(o_G, d_G, glow.low_G, glow.high_G, light.distance, &from, &end);
+  float from = 0, end = 1e30f;
+  clip_to_box(o_G, d_G, glow.low_G, glow.high_G, &from, &end);
+  from = min(from, light.distance), end = max(end, light.distance);  // for rounding
   const float voxel = min(v.voxel.x, min(v.voxel.y, v.voxel.z));
   const float step = max(kVoxels * voxel, (end - from) * (1 / kMostSteps));
   const Vec3f k = Bands{}.of(v.mass_extinction), absorbed = Vec3f{1, 1, 1} - Bands{}.of(v.albedo);
@@ -103,16 +80,16 @@ GLOAM_HD LineSample sample_line(const MediaView& media, Vec3f p, Vec3f n, Vec2f 
     const Vec3f p_G = o_G + d_G * t;
     if (!media::is_inside(v, p_G)) continue;
     const Vec3f extinction = k * media::density_at(v, p_G);
-    const Vec3f dims = extinction + beside_at(media, glow.volume, p + light.wi * t);
+    const Vec3f dims = extinction + extinction_beside(media, glow.volume, p + light.wi * t);
     const Vec3f half = media::exp_of(dims * (-0.5f * step));
     if (t > kNearGlow) {
       radiance += through * half * extinction * absorbed * media::glow_at(media, v, p_G, {});
     }
     through *= half * half;
-    pdf += point_density(media, glow, p_G) * sqr(t) * pulls(light.wi * t);
+    pdf += point_density(media, glow, p_G) * sqr(t) * share(light.wi * t);
   }
   light.radiance = radiance;
-  light.pdf = pdf * choice.probability * (static_cast<float>(draws) / pulled);
+  light.pdf = pdf * choice.probability * (static_cast<float>(draws) / shares);
   if (!(max_component(radiance) > 0)) light.pdf = 0;
   return out;
 }

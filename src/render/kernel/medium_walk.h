@@ -5,6 +5,21 @@
 
 namespace gloam {
 
+/// Narrows [*begin, *end] of a line to what is in a box; false: the line runs beside it.
+GLOAM_HD bool clip_to_box(Vec3f o, Vec3f d, Vec3f low, Vec3f high, float* begin, float* end) {
+  bool is_beside = false;
+  for (int a = 0; a < 3; ++a) {
+    if (d[a] == 0) {
+      is_beside = is_beside || !(o[a] >= low[a] && o[a] <= high[a]);
+      continue;
+    }
+    const float at_low = (low[a] - o[a]) / d[a], at_high = (high[a] - o[a]) / d[a];
+    *begin = max(*begin, min(at_low, at_high));
+    *end = min(*end, max(at_low, at_high));
+  }
+  return !is_beside;
+}
+
 /// The cells of one volume along a ray, front to back (Amanatides and Woo 1987, "A fast voxel
 /// traversal algorithm for ray tracing"). First comes the way to the box, with bounds of zero.
 class CellWalk {
@@ -12,22 +27,13 @@ class CellWalk {
   /// False when no part of the segment [0, tmax] lies in the box.
   GLOAM_HD bool start(const VolumeView& volume, const Ray& ray, float tmax) {
     const Vec3f o = transform_point(volume.X_GW, ray.o), d = transform_vector(volume.X_GW, ray.d);
-    const int n[3] = {volume.nx, volume.ny, volume.nz};
+    const Vec3f high{static_cast<float>(volume.nx), static_cast<float>(volume.ny),
+                     static_cast<float>(volume.nz)};
     const int cells[3] = {volume.cells_x, volume.cells_y, volume.cells_z};
     const int stride[3] = {1, volume.cells_x, volume.cells_x * volume.cells_y};
     float begin = 0;
     end_ = tmax;
-    for (int a = 0; a < 3; ++a) {
-      const float high = static_cast<float>(n[a]);
-      if (d[a] == 0) {
-        if (!(o[a] >= 0 && o[a] <= high)) return false;
-        continue;
-      }
-      const float at_low = -o[a] / d[a], at_high = (high - o[a]) / d[a];
-      begin = max(begin, min(at_low, at_high));
-      end_ = min(end_, max(at_low, at_high));
-    }
-    if (!(begin < end_)) return false;
+    if (!clip_to_box(o, d, {}, high, &begin, &end_) || !(begin < end_)) return false;
     index_ = 0;
     for (int a = 0; a < 3; ++a) {
       const float at = (o[a] + d[a] * begin) / kBoundsVoxels;
