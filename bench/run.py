@@ -90,10 +90,14 @@ def change(row, before):
     return f"{100 * (row['value'] / old - 1):+.0f} % since {before['date'][:10]}" if old else ""
 
 
+def number(value):
+    return f"{value:.3f}" if value >= 0.01 else f"{value:.2g}"
+
+
 def print_row(row, before):
     sign = ">=" if row["better"] == "higher" else "<="
     mark = "ok  " if row["met"] else "MISS"
-    print(f"{mark} {row['name']:<58} {row['value']:7.3f}  (bar {sign} {row['bar']:g})  {change(row, before)}", flush=True)
+    print(f"{mark} {row['name']:<58} {number(row['value']):>7}  (bar {sign} {row['bar']:g})  {change(row, before)}", flush=True)
     print(f"     {row['note']}", flush=True)
 
 

@@ -9,6 +9,7 @@
 // underside rises and falls over the same cells.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -98,10 +99,14 @@ class SoilContacts {
   static constexpr int kMostContactLines = 16;  // to a row of cells
   static int lines_of(double cell, double extent);
   bool is_below(const ColliderBottom& collider, double x, double y) const;
+  int column_at(double x) const;
+  int row_at(double y) const;
+  double surface_at(int column, int row) const;
+  std::optional<double> level_in(const double* low, const double* high) const;
   bool has_stayed(const ColliderBottom& collider, Footprint* print) const;
   void look(const ColliderBottom& collider, Footprint* print);
-  void find_lines(const ColliderBottom& collider, int per_row, const double* low,
-                  const double* high);
+  void find_lines(const ColliderBottom& collider, std::optional<double> level, int per_row,
+                  const double* low, const double* high);
   bool find_ends(const ColliderBottom& collider, double y, double low, double high, double step,
                  double* ends) const;
   void cut_lines(int per_row);

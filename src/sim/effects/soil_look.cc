@@ -11,6 +11,7 @@ namespace {
 constexpr int kBisections = 5;
 constexpr double kGauss = 0.28867513459481287;  // from the middle, over the length
 constexpr double kSteepestUnderside = 4;        // slope of an underside that is counted with
+constexpr double kLevel = 1e-6;                 // cells no farther apart are [m]
 
 }  // namespace
 
@@ -23,11 +24,35 @@ bool SoilContacts::is_below(const ColliderBottom& collider, double x, double y) 
   double z;
   if (!collider.height_at(x, y, &z)) return false;
   if (soil_.rest.empty()) return z < soil_.level;
-  const int i = std::clamp(static_cast<int>((x - soil_.low_x()) / soil_.dx), 0, soil_.nx - 1);
-  const int j = std::clamp(static_cast<int>((y - soil_.low_y()) / soil_.dy), 0, soil_.ny - 1);
+  return z < surface_at(column_at(x), row_at(y));
+}
+
+int SoilContacts::column_at(double x) const {
+  return std::clamp(static_cast<int>((x - soil_.low_x()) / soil_.dx), 0, soil_.nx - 1);
+}
+
+int SoilContacts::row_at(double y) const {
+  return std::clamp(static_cast<int>((y - soil_.low_y()) / soil_.dy), 0, soil_.ny - 1);
+}
+
+double SoilContacts::surface_at(int column, int row) const {
   const size_t cell =
-      static_cast<size_t>(j) * static_cast<size_t>(soil_.nx) + static_cast<size_t>(i);
-  return z < soil_.rest_of(cell) + soil_.share_of(cell) * fallen_;
+      static_cast<size_t>(row) * static_cast<size_t>(soil_.nx) + static_cast<size_t>(column);
+  return soil_.rest_of(cell) + soil_.share_of(cell) * fallen_;
+}
+
+// Height of the surface [m], where that is the same in all cells of a box.
+std::optional<double> SoilContacts::level_in(const double* low, const double* high) const {
+  if (soil_.rest.empty()) return soil_.level;
+  const int columns[2] = {column_at(low[0]), column_at(high[0])};
+  const int rows[2] = {row_at(low[1]), row_at(high[1])};
+  const double level = surface_at(columns[0], rows[0]);
+  for (int j = rows[0]; j <= rows[1]; ++j) {
+    for (int i = columns[0]; i <= columns[1]; ++i) {
+      if (std::abs(surface_at(i, j) - level) > kLevel) return {};
+    }
+  }
+  return level;
 }
 
 void SoilContacts::look(const ColliderBottom& collider, Footprint* print) {
@@ -40,8 +65,9 @@ void SoilContacts::look(const ColliderBottom& collider, Footprint* print) {
   print->fallen = fallen_;
   double low[2], high[2];
   collider.box_below(soil_.level + fallen_, low, high);
+  const std::optional<double> level = collider.is_round() ? level_in(low, high) : std::nullopt;
   const int lines = lines_of(soil_.dy, high[1] - low[1]);
-  find_lines(collider, lines, low, high);
+  find_lines(collider, level, lines, low, high);
   if (lines_.empty()) return;
   cut_lines(lines);
   sum_cells(collider, print);
@@ -59,8 +85,8 @@ void SoilContacts::look(const ColliderBottom& collider, Footprint* print) {
 }
 
 // Those under the collider, `per_row` to a row of cells, of which something is below the surface.
-void SoilContacts::find_lines(const ColliderBottom& collider, int per_row, const double* low,
-                              const double* high) {
+void SoilContacts::find_lines(const ColliderBottom& collider, std::optional<double> level,
+                              int per_row, const double* low, const double* high) {
   lines_.clear();
   const double low_y = soil_.low_y(), width = soil_.dy / per_row;
   const double low_x = std::max(low[0], soil_.low_x());
@@ -69,11 +95,11 @@ void SoilContacts::find_lines(const ColliderBottom& collider, int per_row, const
   const int last =
       std::min(static_cast<int>((high[1] - low_y) / width) + 1, per_row * soil_.ny - 1);
   const auto y_of = [=](int line) { return low_y + (line + 0.5) * width; };
-  if (soil_.rest.empty() && collider.is_round()) {
+  if (level) {
     ys_.clear();
     for (int line = first; line <= last; ++line) ys_.push_back(y_of(line));
     left_.resize(ys_.size()), right_.resize(ys_.size());
-    collider.round_ends(soil_.level, ys_, left_.data(), right_.data());
+    collider.round_ends(*level, ys_, left_.data(), right_.data());
     for (int line = first; line <= last; ++line) {
       const auto n = static_cast<size_t>(line - first);
       const double left = std::max(left_[n], low_x), right = std::min(right_[n], high_x);

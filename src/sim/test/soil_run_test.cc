@@ -8,6 +8,30 @@
 namespace gloam {
 namespace {
 
+// A bed whose cells have heights of their own, all the same where the ball rolls.
+TEST(SoilBedRun, LevelGroundUnderneathIsAsALevelBed) {
+  const auto roll = [](bool over_ground) {
+    auto world = world_with_soil("<body pos='-.3 .007 .04'><freejoint/><geom size='.05'/></body>",
+                                 bed_of("dry_sand"));
+    SoilDescription& soil = world->soils[0];
+    if (over_ground) {
+      soil.rest.assign(soil.cells(), 0);
+      soil.rest.back() = -0.1f;
+    }
+    OnSoil ball(world);
+    EXPECT_TRUE(
+        ball.sim
+            ->post(
+                {.what = SetJointState{Joint{0}, {-.3, .007, .04, 1, 0, 0, 0}, {1, 0, 0, 0, 0, 0}}})
+            .ok());
+    ball.run(0.5);
+    return std::array{ball.q(0, 0), ball.q(0, 2)};
+  };
+  const auto level = roll(false), over_ground = roll(true);
+  EXPECT_GT(level[0], -0.25) << "it rolls";
+  EXPECT_EQ(level, over_ground) << "its ends were not found as those in a level bed";
+}
+
 TEST(ColliderBottom, IsWhereARayFromBelowMeetsIt) {
   auto world = world_from_mjcf(R"(<mujoco><asset>
     <mesh name="wedge" vertex="-.2 -.2 -.1  .3 -.2 -.1  -.2 .2 -.1  .3 .2 -.1  -.2 -.2 .3  -.2 .2 .3"/>
