@@ -290,7 +290,7 @@ bool Stepper::step() {
   count_diagnostics();
   uint64_t hash = hash_;
   if (agents_ != nullptr) hash = agents_->advance(step_ + 1, *model, data, hash);
-  if (effects_ != nullptr) effects_->gather(*model, *data, agents_.get());
+  if (effects_ != nullptr) effects_->gather(*model, *data, soil_reactions(), agents_.get());
   reader_.read(next_state_.data());
   if (!is_sound(*model, *data, next_state_)) {
     return fail(describe_divergence(*model, *data, next_state_, step_, time()));

@@ -12,6 +12,20 @@ namespace {
 // Least part of a contact's normal along z: ground, not a wall.
 constexpr double kGroundNormal = 0.7;
 
+// How fast the rim of a geom turns past `p`, across `normal`, by the share of its tree's weight
+// that is `load` [m/s].
+double rolled_way(const mjModel& m, const mjData& d, int geom, const double* p,
+                  const double* normal, double load) {
+  const int body = m.geom_bodyid[geom];
+  double arm[3], rim[3];
+  mju_sub3(arm, p, d.geom_xpos + 3 * geom);
+  mju_cross(rim, d.cvel + 6 * body, arm);
+  mju_addToScl3(rim, normal, -mju_dot3(rim, normal));
+  const double tree = m.body_subtreemass[m.body_rootid[body]];
+  const double weight = tree * std::max(mju_norm3(m.opt.gravity), 1e-3);
+  return mju_norm3(rim) * std::min(load / weight, 1.0);
+}
+
 }  // namespace
 
 ContactDust::ContactDust(const CompiledWorld& world, Vec3f low, Vec3f high)
@@ -52,8 +66,10 @@ void ContactDust::put(double mass, const double* p, Heap* heap) {
   mju_addToScl3(heap->moment, p, mass);
 }
 
-void ContactDust::gather(const mjModel& model, const mjData& data, const Agents* agents) {
+void ContactDust::gather(const mjModel& model, const mjData& data,
+                         std::span<const SoilReaction> soil, const Agents* agents) {
   for (int i = 0; i < data.ncon; ++i) gather_contact(model, data, i);
+  for (const SoilReaction& reaction : soil) gather_soil(model, data, reaction);
   if (agents != nullptr) gather_steps(*agents, data);
 }
 
@@ -75,17 +91,23 @@ void ContactDust::gather_contact(const mjModel& m, const mjData& d, int i) {
   const double nearing = first_stands ? -v[0] : v[0];
   const double work = force[0] * std::max(nearing, 0.0) +
                       std::hypot(force[1], force[2]) * std::hypot(v[1], v[2]);  // [W]
-  double arm[3], rim[3];
-  mju_sub3(arm, contact.pos, d.geom_xpos + 3 * geom);
-  mju_cross(rim, d.cvel + 6 * body, arm);
-  const double along = mju_dot3(rim, contact.frame);
-  mju_addToScl3(rim, contact.frame, -along);
-  const double tree = m.body_subtreemass[m.body_rootid[body]];
-  const double weight = tree * std::max(mju_norm3(m.opt.gravity), 1e-3);
-  const double rolled = ground->per_way[static_cast<size_t>(body)] * mju_norm3(rim) *
-                        std::min(force[0] / weight, 1.0);  // [kg/s]
+  const double rolled = ground->per_way[static_cast<size_t>(body)] *
+                        rolled_way(m, d, geom, contact.pos, contact.frame, force[0]);
   put((ground->per_energy * work + rolled) * m.opt.timestep, contact.pos,
       &of_geoms_[static_cast<size_t>(geom)]);
+}
+
+void ContactDust::gather_soil(const mjModel& m, const mjData& d, const SoilReaction& soil) {
+  const Ground* ground = ground_at(soil.p);
+  if (ground == nullptr) return;
+  double v[3];
+  velocity_at(m, d, soil.body, soil.p, v);
+  const double work = std::max(-mju_dot3(soil.force, v), 0.0);  // [W]
+  const double load = std::max(mju_dot3(soil.force, soil.normal), 0.0);
+  const double rolled = ground->per_way[static_cast<size_t>(soil.body)] *
+                        rolled_way(m, d, soil.geom, soil.p, soil.normal, load);
+  put(std::max(ground->per_energy * work, rolled) * m.opt.timestep, soil.p,
+      &of_geoms_[static_cast<size_t>(soil.geom)]);
 }
 
 void ContactDust::gather_steps(const Agents& agents, const mjData& data) {

@@ -4,14 +4,17 @@
 //
 // Of each contact of a body with what stands still: AP-42's law for the way it rolls, by the share
 // of its tree's weight that it carries; dust per energy for friction's work and for what it comes
-// down with. Of people, whose feet are in no contact with the ground, a step's worth at each step.
+// down with. In a bed of soil the greater of both: what rolls there sinks in at each turn. Of
+// people, whose feet are in no contact with the ground, a step's worth at each step.
 
 #include <mujoco/mujoco.h>
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "sim/agents/agents.h"
+#include "sim/soil_reaction.h"
 #include "world/world.h"
 
 namespace gloam {
@@ -27,8 +30,10 @@ class ContactDust {
   ContactDust(const CompiledWorld& world, Vec3f low, Vec3f high);
 
   void reset();
-  /// After mj_step, while `data` has its contacts, forces and velocities. `agents`: null = none.
-  void gather(const mjModel& model, const mjData& data, const Agents* agents);
+  /// After mj_step, while `data` has its contacts, forces and velocities. `soil`: of that step.
+  /// `agents`: null = none.
+  void gather(const mjModel& model, const mjData& data, std::span<const SoilReaction> soil,
+              const Agents* agents);
   /// What was gathered since the last call, by what raised it.
   std::vector<DustDeposit> take();
 
@@ -44,6 +49,7 @@ class ContactDust {
   };
   const Ground* ground_at(const double* p) const;
   void gather_contact(const mjModel& model, const mjData& data, int contact);
+  void gather_soil(const mjModel& model, const mjData& data, const SoilReaction& reaction);
   void gather_steps(const Agents& agents, const mjData& data);
   static void put(double mass, const double* p, Heap* heap);
 

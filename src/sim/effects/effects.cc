@@ -68,8 +68,9 @@ void Effects::begin_step(int64_t step, const mjModel& model, mjData& data) {
                      [this](size_t row) -> const MediumField& { return gases_[row]->air(); });
 }
 
-void Effects::gather(const mjModel& model, const mjData& data, const Agents* agents) {
-  for (const auto& gas : gases_) gas->gather(model, data, agents);
+void Effects::gather(const mjModel& model, const mjData& data, std::span<const SoilReaction> soil,
+                     const Agents* agents) {
+  for (const auto& gas : gases_) gas->gather(model, data, soil, agents);
 }
 
 void Effects::fill(int64_t step, std::vector<FieldWindow>* fields) const {

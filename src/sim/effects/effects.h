@@ -6,10 +6,12 @@
 // at one waits for the second if it is not there yet. The simulation itself waits at t_{k+1} alone.
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "sim/effects/gas_forces.h"
 #include "sim/snapshot.h"
+#include "sim/soil_reaction.h"
 #include "sim/step_schedule.h"
 
 namespace gloam {
@@ -40,8 +42,10 @@ class Effects {
 
   /// Adds what the air does to bodies in step `step` to data.qfrc_applied.
   void begin_step(int64_t step, const mjModel& model, mjData& data);
-  /// Before tick() of the step it has led to, while `data` has its contacts. `agents`: null = none.
-  void gather(const mjModel& model, const mjData& data, const Agents* agents);
+  /// Before tick() of the step it has led to, while `data` has its contacts. `soil`: of that step.
+  /// `agents`: null = none.
+  void gather(const mjModel& model, const mjData& data, std::span<const SoilReaction> soil,
+              const Agents* agents);
 
   void fill(int64_t step, std::vector<FieldWindow>* fields) const;
 

@@ -150,8 +150,9 @@ FieldWindow GasEffect::window(int64_t step) const {
   return {now_, coming_, static_cast<float>(step - from) / static_cast<float>(to - from)};
 }
 
-void GasEffect::gather(const mjModel& model, const mjData& data, const Agents* agents) {
-  if (contact_dust_ != nullptr) contact_dust_->gather(model, data, agents);
+void GasEffect::gather(const mjModel& model, const mjData& data, std::span<const SoilReaction> soil,
+                       const Agents* agents) {
+  if (contact_dust_ != nullptr) contact_dust_->gather(model, data, soil, agents);
 }
 
 // ---- its own thread ----

@@ -122,11 +122,37 @@ void GasObstacles::add_runs(int g) {
   lines_.append(solid_, &runs_);
 }
 
+// A bed is as deep in each column of voxels as in its middle, as it lies at time 0.
+void GasObstacles::add_soil(const SoilDescription& soil) {
+  const mjtNum upright[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  for (int j = 0; j < grid_.ny; ++j) {
+    for (int i = 0; i < grid_.nx; ++i) {
+      const double x = grid_.low.x + (i + 0.5) * grid_.voxel;
+      const double y = grid_.low.y + (j + 0.5) * grid_.voxel;
+      const double column = std::floor((x - soil.low_x()) / soil.dx);
+      const double row = std::floor((y - soil.low_y()) / soil.dy);
+      if (!(column >= 0 && column < soil.nx && row >= 0 && row < soil.ny)) continue;
+      const auto cell = static_cast<size_t>(row * soil.nx + column);
+      const double depth = soil.depth_of(cell, 0);
+      if (!(depth > 0)) continue;
+      const mjtNum p[3] = {x, y, soil.rest_of(cell) - depth / 2};
+      const mjtNum half[3] = {grid_.voxel / 2, grid_.voxel / 2, depth / 2};
+      solid_.set_pose(grid_, p, upright);
+      if (solid_.make_primitive(mjGEOM_BOX, half)) lines_.append(solid_, &runs_);
+    }
+  }
+}
+
 void GasObstacles::voxelise_still() {
   open_masks(grid_, &still_);
   for (const int g : still_geoms_) {
     runs_.clear();
     add_runs(g);
+    lines_.close(runs_, &still_);
+  }
+  for (const SoilDescription& soil : world_->soils) {
+    runs_.clear();
+    add_soil(soil);
     lines_.close(runs_, &still_);
   }
   runs_.clear();

@@ -23,7 +23,7 @@ class GasObstacles {
   static constexpr double kTeleport = 20;  ///< [m/s]
 
   /// Geoms that count: those that can collide, by contype, conaffinity or a `<pair>`, but for
-  /// blades of rotors. `sealed_gap`
+  /// blades of rotors; and beds of soil. `sealed_gap`
   /// [m]: narrower gaps between two are closed, as all surfaces are moved out by half of it, for
   /// faces, not for cells. Errors: a grid without cells, or of too many; MuJoCo's.
   static Result<std::unique_ptr<GasObstacles>> create(std::shared_ptr<const CompiledWorld> world,
@@ -67,6 +67,7 @@ class GasObstacles {
   void voxelise_height_fields(const float* data);
   bool follow_height_fields(const LiveFields* live);
   void add_runs(int geom);
+  void add_soil(const SoilDescription& soil);
   void follow_mocap(const SnapshotData& in);
   RigidMotion motion_of(int body) const;
   void voxelise_movers();

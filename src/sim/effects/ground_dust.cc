@@ -56,12 +56,14 @@ void GroundDust::blow(const GasSolver& air, const GasWalls& still) {
 }
 
 // Into the nearest air around what raised it, in the layer of cells above the ground.
-void GroundDust::put(const GasWalls& walls, std::span<const DustDeposit> deposits,
-                     double interval) {
+void GroundDust::put(const GasWalls& still, const GasWalls& walls,
+                     std::span<const DustDeposit> deposits, double interval) {
   const auto along = [](float x, int n) { return std::clamp(static_cast<int>(x), 0, n - 1); };
   for (const DustDeposit& deposit : deposits) {
     const Vec3f p = (deposit.p - grid_.low) / grid_.voxel;
-    const int i = along(p.x, grid_.nx), j = along(p.y, grid_.ny), k = along(p.z + 0.25f, grid_.nz);
+    const int i = along(p.x, grid_.nx), j = along(p.y, grid_.ny);
+    int k = along(p.z + 0.25f, grid_.nz);
+    while (k + 1 < grid_.nz && still.solid[still.cell(i, j, k)] != 0) ++k;  // from soil
     const size_t first = emissions_.size();
     for (int ring = 0; ring <= kMostRings && emissions_.size() == first; ++ring) {
       for (int y = std::max(j - ring, 0); y <= std::min(j + ring, grid_.ny - 1); ++y) {
@@ -85,7 +87,7 @@ std::span<const GasEmission> GroundDust::find(const GasSolver& air, const GasWal
   find_ground(still, floor);
   emissions_.clear();
   blow(air, still);
-  put(walls, deposits, interval);
+  put(still, walls, deposits, interval);
   std::sort(emissions_.begin(), emissions_.end(), [](const GasEmission& a, const GasEmission& b) {
     return a.cell != b.cell ? a.cell < b.cell : a.rate < b.rate;
   });

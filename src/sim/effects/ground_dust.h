@@ -24,7 +24,8 @@ class GroundDust {
  private:
   void find_ground(const GasWalls& still, bool floor);
   void blow(const GasSolver& air, const GasWalls& still);
-  void put(const GasWalls& walls, std::span<const DustDeposit> deposits, double interval);
+  void put(const GasWalls& still, const GasWalls& walls, std::span<const DustDeposit> deposits,
+           double interval);
 
   const std::vector<DustDescription>& dusts_;
   GasGrid grid_;

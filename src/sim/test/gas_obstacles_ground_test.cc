@@ -9,6 +9,34 @@
 namespace gloam {
 namespace {
 
+// As a box of its size is.
+TEST(GasObstacles, BedsOfSoilAreSolid) {
+  const GasGrid grid = cube_grid(16, .1f);
+  auto world = world_from_mjcf("<mujoco/>");
+  SoilDescription& soil = world->soils.emplace_back();
+  soil.x = 0.1, soil.y = -0.2, soil.size_x = 0.8, soil.size_y = 0.6, soil.nx = 40, soil.ny = 30;
+  soil.dx = soil.dy = 0.02, soil.level = 0.12, soil.depth = 0.3;
+  GasRig bed(world, grid), box("<geom type='box' pos='.1 -.2 -.03' size='.4 .3 .15'/>", grid);
+  bed.solve(), box.solve();
+  expect_consistent(bed.walls);
+  EXPECT_GT(count(bed.walls.solid), 100);
+  expect_equal(bed.walls, box.walls);
+  // Rises along x, and is bare at y > -0.2.
+  for (int cell = 0; cell < 40 * 30; ++cell) {
+    soil.rest.push_back(0.12f + 0.01f * static_cast<float>(cell % 40));
+    soil.share.push_back(cell < 40 * 15 ? 1 : 0);
+  }
+  GasRig slope(world, grid);
+  slope.solve();
+  for_cells(grid, [&](int i, int j, int k, size_t at) {
+    const auto p = gas_centre(grid, 3, i, j, k);
+    const double x = p[0] + 0.3, y = p[1] + 0.5;  // in the bed
+    const double top = 0.12 + 0.01 * std::floor(x / 0.02);
+    const bool in = x > 0 && x < 0.8 && y > 0 && y < 0.3 && p[2] < top && p[2] > top - 0.3;
+    EXPECT_EQ(in, slope.walls.solid[at] != 0) << p[0] << " " << p[1] << " " << p[2];
+  });
+}
+
 TEST(GasObstacles, HeightFieldsAreSolidUnderTheSurfaceThatMuJoCoHas) {
   std::string elevation;
   for (int i = 0; i < 7 * 9; ++i) elevation += fmt::format("{} ", .5 + .5 * random_control(7, i));
