@@ -247,8 +247,7 @@ bool find_way(const NavMesh& mesh, Vec3d goal, AgentBody* agent) {
   if (m.has_goal != 0 && m.goal == goal) return true;
   NavPoint to = mesh.nearest(goal, 0.3, 1.5);
   const bool is_on_mesh = to.ref != 0 && flat_norm(to.p - goal) < 0.15;
-  for (const double reach : {1.0, 4.0, 16.0, 64.0})
-    if (to.ref == 0) to = mesh.nearest(goal, reach, 3);
+  if (to.ref == 0) to = mesh.nearest(goal);
   if (to.ref == 0) to = agent->path.at();
   m.is_whole = agent->path.find(mesh, to) && is_on_mesh ? 1 : 0;
   m.goal = goal;

@@ -154,6 +154,18 @@ NavPoint NavMesh::nearest(Vec3d p, double reach, double up) const {
   return found;
 }
 
+NavPoint NavMesh::nearest(Vec3d p) const {
+  const NavBounds& b = impl_->settings.bounds;
+  const Vec3d in{std::clamp(p.x, double{b.low.x}, double{b.high.x}),
+                 std::clamp(p.y, double{b.low.y}, double{b.high.y}),
+                 std::clamp(p.z, double{b.low.z}, double{b.high.z})};
+  const double all = std::max(b.high.x - b.low.x, b.high.y - b.low.y) + 1;
+  // Rather some way off on the same floor than near on another.
+  for (const double reach : {1.0, 4.0, 16.0, 64.0, 256.0})
+    if (const NavPoint found = nearest(in, reach, 3); found.ref != 0) return found;
+  return nearest(in, all, std::max(all, double{b.high.z - b.low.z} + 1));
+}
+
 // -1 = of none.
 int NavMesh::part_of(const NavPoint& point) const {
   const auto found = std::lower_bound(impl_->part_of_poly.begin(), impl_->part_of_poly.end(),

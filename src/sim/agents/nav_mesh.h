@@ -60,6 +60,8 @@ class NavMesh {
   double area() const;
   /// Nearest point of the mesh within `reach` in the plane and `up` above or below [m].
   NavPoint nearest(Vec3d p, double reach, double up) const;
+  /// Nearest point wherever `p` is, about; what is outside of the bounds is first moved into them.
+  NavPoint nearest(Vec3d p) const;
   /// Uniform over the part that `from` is on, if it is on none over the largest, of three numbers
   /// in [0, 1).
   NavPoint random_point(const NavPoint& from, double u, double v, double w) const;

@@ -22,6 +22,7 @@ void NavMesh::set_tile(int, int, const NavTile&) {}
 void NavMesh::find_parts() {}
 double NavMesh::area() const { return 0; }
 NavPoint NavMesh::nearest(Vec3d, double, double) const { return {}; }
+NavPoint NavMesh::nearest(Vec3d) const { return {}; }
 NavPoint NavMesh::random_point(const NavPoint&, double, double, double) const { return {}; }
 int NavMesh::part_of(const NavPoint&) const { return -1; }
 double NavMesh::area_around(const NavPoint&) const { return 0; }

@@ -55,6 +55,19 @@ TEST(Agents, AGoalInAWallIsSaidAndTheNearestPointTaken) {
   EXPECT_LT(norm(flat(p - Vec3d{2, 0.3, 0})), 2.2) << "it went near";
 }
 
+TEST(Agents, TowardsAGoalFarOutsideItGoesAsFarAsItCan) {
+  AgentRig rig(agent_place(""));
+  AgentOptions& agent = rig.add("ann", {-3, 0, 0}, "route");
+  agent.route = {{{4000, 1, 90}, 0, {}}};
+  agent.loop = false;
+  ::testing::internal::CaptureStderr();
+  auto stepper = rig.stepper();
+  run(stepper.get(), 8);
+  const std::string said = ::testing::internal::GetCapturedStderr();
+  EXPECT_NE(said.find("'ann' cannot reach (4000.00, 1.00, 90.00)"), std::string::npos) << said;
+  EXPECT_GT(motion_of(*stepper, 0).p.x, 4) << "m: it stayed where it was";
+}
+
 TEST(Agents, ABeginningInARackIsMovedOrRefused) {
   AgentRig rig(agent_place("<geom type='box' size='0.5 1.2 1' pos='2 0 1'/>"));
   rig.add("ann", {2.2, 0, 0}, "stand");
