@@ -41,11 +41,11 @@ def run_json(*command, **env):
 
 
 def at_least(name, value, bar, note):
-    return {"name": name, "value": float(f"{value:.4g}"), "bar": bar, "better": "higher", "met": value >= bar, "note": note}
+    return {"name": name, "value": float(f"{value:.6g}"), "bar": bar, "better": "higher", "met": value >= bar, "note": note}
 
 
 def at_most(name, value, bar, note):
-    return {"name": name, "value": float(f"{value:.4g}"), "bar": bar, "better": "lower", "met": value <= bar, "note": note}
+    return {"name": name, "value": float(f"{value:.6g}"), "bar": bar, "better": "lower", "met": value <= bar, "note": note}
 
 
 def robot(name):

@@ -91,7 +91,7 @@ def change(row, before):
 
 
 def number(value):
-    return f"{value:.3f}" if value >= 0.01 else f"{value:.2g}"
+    return f"{value:.3f}" if value == 0 or abs(value) >= 0.01 else f"{value:.2g}"
 
 
 def print_row(row, before):

@@ -123,9 +123,10 @@ void GasObstacles::add_runs(int g) {
 }
 
 // A bed is as deep in each column of voxels as in its middle, as it lies at time 0.
-void GasObstacles::add_soil(const SoilDescription& soil) {
+void GasObstacles::voxelise_soil(const SoilDescription& soil) {
   const mjtNum upright[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   for (int j = 0; j < grid_.ny; ++j) {
+    runs_.clear();
     for (int i = 0; i < grid_.nx; ++i) {
       const double x = grid_.low.x + (i + 0.5) * grid_.voxel;
       const double y = grid_.low.y + (j + 0.5) * grid_.voxel;
@@ -140,6 +141,7 @@ void GasObstacles::add_soil(const SoilDescription& soil) {
       solid_.set_pose(grid_, p, upright);
       if (solid_.make_primitive(mjGEOM_BOX, half)) lines_.append(solid_, &runs_);
     }
+    lines_.close(runs_, &still_);
   }
 }
 
@@ -150,11 +152,7 @@ void GasObstacles::voxelise_still() {
     add_runs(g);
     lines_.close(runs_, &still_);
   }
-  for (const SoilDescription& soil : world_->soils) {
-    runs_.clear();
-    add_soil(soil);
-    lines_.close(runs_, &still_);
-  }
+  for (const SoilDescription& soil : world_->soils) voxelise_soil(soil);
   runs_.clear();
   if (height_geoms_.empty()) return;
   fixed_ = still_;

@@ -64,10 +64,10 @@ class GasObstacles {
   GasObstacles(std::shared_ptr<const CompiledWorld> world, const GasGrid& grid, double sealed_gap);
   void sort_geoms();
   void voxelise_still();
+  void voxelise_soil(const SoilDescription& soil);
   void voxelise_height_fields(const float* data);
   bool follow_height_fields(const LiveFields* live);
   void add_runs(int geom);
-  void add_soil(const SoilDescription& soil);
   void follow_mocap(const SnapshotData& in);
   RigidMotion motion_of(int body) const;
   void voxelise_movers();

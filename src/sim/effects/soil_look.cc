@@ -85,6 +85,7 @@ void SoilContacts::look(const ColliderBottom& collider, Footprint* print) {
 }
 
 // Those under the collider, `per_row` to a row of cells, of which something is below the surface.
+// `level`: of that, where it is level and the collider round.
 void SoilContacts::find_lines(const ColliderBottom& collider, std::optional<double> level,
                               int per_row, const double* low, const double* high) {
   lines_.clear();

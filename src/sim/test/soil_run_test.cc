@@ -19,11 +19,8 @@ TEST(SoilBedRun, LevelGroundUnderneathIsAsALevelBed) {
       soil.rest.back() = -0.1f;
     }
     OnSoil ball(world);
-    EXPECT_TRUE(
-        ball.sim
-            ->post(
-                {.what = SetJointState{Joint{0}, {-.3, .007, .04, 1, 0, 0, 0}, {1, 0, 0, 0, 0, 0}}})
-            .ok());
+    const SetJointState start{Joint{0}, {-.3, .007, .04, 1, 0, 0, 0}, {1, 0, 0, 0, 0, 0}};
+    EXPECT_TRUE(ball.sim->post({.what = start}).ok());
     ball.run(0.5);
     return std::array{ball.q(0, 0), ball.q(0, 2)};
   };
