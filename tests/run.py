@@ -8,6 +8,8 @@ full  the same plus lint of every file, every sanitizer over everything, 10 000 
       fuzzing per target and sweeps over 200 seeds: an hour or more, but resumable: parts that passed are kept in build/full_state.json until the source changes
 """
 import argparse
+import contextlib
+import fcntl
 import hashlib
 import json
 import os
@@ -65,7 +67,20 @@ def tail(text, lines=40):
     return "\n".join("    " + line for line in text.splitlines()[-lines:])
 
 
+@contextlib.contextmanager
+def build_folder(preset):
+    """Alone in a preset's build folder: ./gloam builds there, too, under the same lock."""
+    with open(BUILD / f".lock-{preset}", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield
+
+
 def build(tally, preset, targets=()):
+    with build_folder(preset):
+        return build_alone(tally, preset, targets)
+
+
+def build_alone(tally, preset, targets):
     start = time.time()
     folder, presets = BUILD / preset, ROOT / "CMakePresets.json"
     rules, result = folder / "build.ninja", None
@@ -294,6 +309,14 @@ def ci(tally):
     fuzz(tally, 15, ["scene_toml_fuzz", "model_path_fuzz", "model_xml_fuzz"])
 
 
+def pack(tally):
+    """The bundle is made, is small enough, and denoises (tools/pack.py looks)."""
+    start = time.time()
+    result = run(["./gloam", "pack"])
+    ok = result.returncode == 0
+    tally.add("pack", int(ok), int(not ok), 0, time.time() - start, "" if ok else tail(result.stdout))
+
+
 def full(tally):
     """Everything; parts that passed on this very source are not run again. The record of what passed goes to bench/history."""
     version = source_version()
@@ -308,6 +331,7 @@ def full(tally):
         "sweeps of places": lambda t: gtest(t, "release", "world", "*.DISABLED_Sweep*"),
         "sweeps of meshes": lambda t: gtest(t, "release", "geometry", "*.DISABLED_Sweep*"),
         "sweeps of running scenes": lambda t: gtest(t, "release", "runtime", "*.DISABLED_Sweep*"),
+        "pack": pack,
         "Mitsuba's mutations": lambda t: python_tests(t, "tests/e2e/mitsuba_mutations.py"),
     }
     for module in modules_with("Mutations"):

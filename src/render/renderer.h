@@ -129,6 +129,8 @@ Result<std::unique_ptr<Renderer>> make_cuda_renderer(const RenderDescription& de
 /// On "cpu", "cuda", or with "auto" on a card where this build and this machine have one.
 Result<std::unique_ptr<Renderer>> make_renderer(const RenderDescription& description,
                                                 const std::string& device);
+/// Whether make_renderer takes a card for `device`.
+bool renders_on_card(const std::string& device);
 /// "NVIDIA H200", or why make_cuda_renderer would fail.
 Result<std::string> cuda_device_name();
 

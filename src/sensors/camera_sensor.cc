@@ -188,7 +188,9 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
   settings.seed = hash_bytes(request.camera.data(), request.camera.size(), seed);
   if (settings.tier == RenderTier::kFast && !channels.light()) settings.tier = RenderTier::kDirect;
   if (request.render.denoise && channels.light() && settings.tier != RenderTier::kFast) {
-    sensor->denoiser_ = make_denoiser({});
+    const bool on_card = renders_on_card(request.render.device);
+    sensor->denoiser_ =
+        make_denoiser({.device = on_card ? DenoiseDevice::kCuda : DenoiseDevice::kCpu});
     settings.guide_samples = 4;
   }
   settings.cover = channels.boxes;

@@ -344,15 +344,13 @@ Result<std::unique_ptr<Renderer>> make_cuda_renderer(const RenderDescription& de
 
 Result<std::unique_ptr<Renderer>> make_renderer(const RenderDescription& description,
                                                 const std::string& device) {
-  if (device == "cuda") return make_cuda_renderer(description);
-  if (device == "auto") {
-    const auto card = cuda_device_name();
-    if (card.ok()) {
-      log_info("rendering on {}", *card);
-      return make_cuda_renderer(description);
-    }
-  }
-  return make_cpu_renderer(description);
+  if (!renders_on_card(device)) return make_cpu_renderer(description);
+  if (const auto card = cuda_device_name(); card.ok()) log_info("rendering on {}", *card);
+  return make_cuda_renderer(description);
+}
+
+bool renders_on_card(const std::string& device) {
+  return device == "cuda" || (device == "auto" && cuda_device_name().ok());
 }
 
 Result<std::string> cuda_device_name() {

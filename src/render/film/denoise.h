@@ -15,8 +15,11 @@ namespace gloam {
 /// keeps the finest texture and costs about seven times as much: for stills.
 enum class DenoiseQuality : uint8_t { kFast, kBalanced, kHigh };
 
+enum class DenoiseDevice : uint8_t { kCpu, kCuda };
+
 struct DenoiseOptions {
   bool use_oidn = true;  ///< false: our own filter even where Open Image Denoise is installed
+  DenoiseDevice device = DenoiseDevice::kCpu;  ///< of Open Image Denoise; our own is the CPU's
   DenoiseQuality quality = DenoiseQuality::kBalanced;
 };
 
@@ -33,15 +36,15 @@ class Denoiser {
 };
 
 /// Open Image Denoise 2.x, loaded at run time from $GLOAM_OIDN (its library or folder), Gloam's
-/// .venv, or the system. Results are equal for any number of threads on one machine. Errors: not
-/// found, too old, refuses this machine.
-Result<std::unique_ptr<Denoiser>> make_oidn_denoiser(DenoiseQuality quality);
+/// .venv, an installation or bundle, or the system. Results are equal for any number of threads on
+/// one machine. Errors: not found, too old, refuses this machine or this card.
+Result<std::unique_ptr<Denoiser>> make_oidn_denoiser(const DenoiseOptions& options);
 
 /// Edge-avoiding à-trous wavelet filter (Dammertz et al. 2010) over radiance divided by albedo,
 /// guided by normal, depth and variance (as in Schied et al. 2017, without the temporal part).
 std::unique_ptr<Denoiser> make_edge_denoiser();
 
-/// Open Image Denoise if wanted and present, else our own.
+/// Open Image Denoise if wanted and present, on the CPU where the card refuses, else our own.
 std::unique_ptr<Denoiser> make_denoiser(const DenoiseOptions& options);
 
 /// What both do first: not-a-number to black, and pixels brighter than four times the third

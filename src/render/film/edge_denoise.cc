@@ -13,6 +13,10 @@ constexpr float kMinAlbedo = 0.02f;
 constexpr float kSigmaLight = 3;           // in standard deviations of the noise
 constexpr float kSigmaAlbedo = 0.3f;       // difference of colour that separates materials
 constexpr float kDepthTolerance = 0.002f;  // relative: rounding, curvature
+// Mixed pixels: see mend_edges().
+constexpr float kLeastSupport = 0.4f;
+constexpr float kSigmaMixedAlbedo = 0.15f, kSigmaMixedNormal = 0.5f;
+constexpr int kMixedReach = 3;  // [px]
 
 /// What says whether two pixels belong together.
 struct Guide {
@@ -39,6 +43,8 @@ class EdgeDenoiser : public Denoiser {
     const size_t n = film.pixel_count();
     filtered_.resize(n);
     filtered_variance_.resize(n);
+    support_.resize(n);
+    normal_ = film.normal.size() == n ? film.normal : std::vector<Vec3f>(n);
     for (int i = 0; i < kIterations; ++i) {
       filter_once(1 << i);
       std::swap(color_, filtered_);
@@ -46,6 +52,7 @@ class EdgeDenoiser : public Denoiser {
     }
     out->resize(n);
     for (size_t i = 0; i < n; ++i) (*out)[i] = color_[i] * albedo_[i];
+    mend_edges(out);
     return {};
   }
 
@@ -129,6 +136,29 @@ class EdgeDenoiser : public Denoiser {
     });
   }
 
+  // A pixel across which an edge runs is a mixture of surfaces: its depth is that of one of them,
+  // so the passes above find few neighbours of its kind. Those are along the edge: pixels whose
+  // mean albedo and normal are the same mixture.
+  void mend_edges(std::vector<Vec3f>* radiance) const {
+    const std::vector<Vec3f> plain = *radiance;
+    each_row("denoise.edges", [&](int x, int y) {
+      const size_t i = index(x, y);
+      if (support_[i] >= kLeastSupport) return;
+      float weights = 0;
+      Vec3f sum;
+      each_neighbour(x, y, kMixedReach, 1, [&](size_t j, int dx, int dy) {
+        const float unlike = length_squared(albedo_[j] - albedo_[i]) / sqr(kSigmaMixedAlbedo) +
+                             length_squared(normal_[j] - normal_[i]) / sqr(kSigmaMixedNormal) +
+                             static_cast<float>(dx * dx + dy * dy) / sqr(kMixedReach);
+        const float w = std::exp(-unlike);
+        weights += w;
+        sum += plain[j] * w;
+      });
+      const float own = support_[i] / kLeastSupport;
+      (*radiance)[i] = plain[i] * own + sum * ((1 - own) / weights);
+    });
+  }
+
   // What a pixel's light is compared by: a raw noisy pixel would choose neighbours like itself, so
   // rare bright ones would stand out and the rest would lose their light.
   void smooth_light() {
@@ -172,6 +202,10 @@ class EdgeDenoiser : public Denoiser {
         weights += w;
         variance += w * w * variance_[j];
       });
+      if (step == 1) {  // 1 = all neighbours are of this surface
+        constexpr float kOwn = kKernel[0] * kKernel[0];
+        support_[i] = (weights - kOwn) / (1 - kOwn);
+      }
       filtered_[i] = sum * (1 / weights);
       filtered_variance_[i] = variance / sqr(weights);
     });
@@ -222,7 +256,8 @@ class EdgeDenoiser : public Denoiser {
 
   int width_ = 0, height_ = 0;
   std::vector<Vec3f> color_, albedo_, filtered_;
-  std::vector<float> variance_, filtered_variance_, light_, light_variance_;
+  std::vector<float> variance_, filtered_variance_, light_, light_variance_, support_;
+  std::vector<Vec3f> normal_;  // means over pixels, not of unit length; 0 where unknown
   std::vector<Guide> guides_;
 };
 

@@ -1,12 +1,16 @@
 // Open Image Denoise through its C API, declared here from its public documentation
 // (https://www.openimagedenoise.org/documentation.html, version 2): no headers are needed to build.
+// On the CPU it reads and writes the film's own planes. A card has memory of its own: planes are
+// copied there and the picture comes back.
 
 #include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <string>
 
 #include "base/check.h"
 #include "base/files.h"
@@ -18,11 +22,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kLibrary = "libOpenImageDenoise.so.2";
-constexpr int kDeviceCpu = 1, kFormatFloat3 = 3, kErrorNone = 0;
+constexpr int kDeviceCpu = 1, kDeviceCuda = 3, kFormatFloat3 = 3, kErrorNone = 0;
 constexpr int kQuality[] = {4, 5, 6};  // fast, balanced, high
 
 using OidnDevice = void*;
 using OidnFilter = void*;
+using OidnBuffer = void*;
 
 struct OidnApi {
   OidnDevice (*new_device)(int type) = nullptr;
@@ -34,7 +39,14 @@ struct OidnApi {
   OidnFilter (*new_filter)(OidnDevice, const char* type) = nullptr;
   void (*set_image)(OidnFilter, const char* name, void* data, int format, size_t width,
                     size_t height, size_t offset, size_t pixel_stride, size_t row_stride) = nullptr;
+  void (*set_buffer_image)(OidnFilter, const char* name, OidnBuffer, int format, size_t width,
+                           size_t height, size_t offset, size_t pixel_stride,
+                           size_t row_stride) = nullptr;
   void (*unset_image)(OidnFilter, const char* name) = nullptr;
+  OidnBuffer (*new_buffer)(OidnDevice, size_t bytes) = nullptr;
+  void (*write_buffer)(OidnBuffer, size_t offset, size_t bytes, const void* from) = nullptr;
+  void (*read_buffer)(OidnBuffer, size_t offset, size_t bytes, void* to) = nullptr;
+  void (*release_buffer)(OidnBuffer) = nullptr;
   void (*set_bool)(OidnFilter, const char* name, bool value) = nullptr;
   void (*set_int)(OidnFilter, const char* name, int value) = nullptr;
   void (*commit_filter)(OidnFilter) = nullptr;
@@ -57,7 +69,12 @@ bool load_functions(void* library, OidnApi* api) {
   load(api->get_device_error, "oidnGetDeviceError");
   load(api->new_filter, "oidnNewFilter");
   load(api->set_image, "oidnSetSharedFilterImage");
+  load(api->set_buffer_image, "oidnSetFilterImage");
   load(api->unset_image, "oidnUnsetFilterImage");
+  load(api->new_buffer, "oidnNewBuffer");
+  load(api->write_buffer, "oidnWriteBuffer");
+  load(api->read_buffer, "oidnReadBuffer");
+  load(api->release_buffer, "oidnReleaseBuffer");
   load(api->set_bool, "oidnSetFilterBool");
   load(api->set_int, "oidnSetFilterInt");
   load(api->commit_filter, "oidnCommitFilter");
@@ -82,40 +99,87 @@ std::vector<fs::path> candidates() {
   return paths;
 }
 
-/// One filter of the library. Pictures stay the caller's.
+/// Where the library computes.
+struct Device {
+  OidnDevice handle = nullptr;
+  DenoiseDevice kind = DenoiseDevice::kCpu;
+};
+
+/// One plane of pixels in the card's memory.
+class CardPlane {
+ public:
+  CardPlane(const OidnApi& api, const Device& device, size_t bytes)
+      : api_(api), bytes_(bytes), buffer_(api.new_buffer(device.handle, bytes)) {}
+  ~CardPlane() { api_.release_buffer(buffer_); }
+  CardPlane(const CardPlane&) = delete;
+  CardPlane& operator=(const CardPlane&) = delete;
+
+  size_t bytes() const { return bytes_; }
+  OidnBuffer buffer() const { return buffer_; }
+  void write(const void* from) { api_.write_buffer(buffer_, 0, bytes_, from); }
+  void read(void* to) const { api_.read_buffer(buffer_, 0, bytes_, to); }
+
+ private:
+  OidnApi api_;
+  size_t bytes_;
+  OidnBuffer buffer_;
+};
+
+/// One filter of the library. On the CPU planes stay the caller's until run() has returned.
 class Filter {
  public:
-  Filter(const OidnApi& api, OidnDevice device, DenoiseQuality quality)
-      : api_(api), filter_(api.new_filter(device, "RT")) {
+  Filter(const OidnApi& api, const Device& device, DenoiseQuality quality)
+      : api_(api), device_(device), filter_(api.new_filter(device.handle, "RT")) {
     api_.set_int(filter_, "quality", kQuality[static_cast<int>(quality)]);
   }
-  ~Filter() { api_.release_filter(filter_); }
+  ~Filter() {
+    api_.release_filter(filter_);  // before the planes that it refers to
+    planes_.clear();
+  }
   Filter(const Filter&) = delete;
   Filter& operator=(const Filter&) = delete;
 
   void set(const char* name, bool value) { api_.set_bool(filter_, name, value); }
   /// A plane that does not have the film's size is left out.
-  void set(const char* name, const std::vector<Vec3f>& plane, const Film& film) {
+  void set_input(const char* name, const std::vector<Vec3f>& plane, const Film& film) {
     if (plane.size() != film.pixel_count()) {
       api_.unset_image(filter_, name);
       return;
     }
-    api_.set_image(filter_, name, const_cast<Vec3f*>(plane.data()), kFormatFloat3,
-                   static_cast<size_t>(film.width), static_cast<size_t>(film.height), 0, 0, 0);
+    bind(name, const_cast<Vec3f*>(plane.data()), film);
+    if (device_.kind == DenoiseDevice::kCuda) planes_.at(name)->write(plane.data());
   }
-  void run() {
+  /// Filters the inputs into `out`, which has the film's size.
+  void run(const Film& film, std::vector<Vec3f>* out) {
+    bind("output", out->data(), film);
     api_.commit_filter(filter_);
     api_.execute_filter(filter_);
+    if (device_.kind == DenoiseDevice::kCuda) planes_.at("output")->read(out->data());
   }
 
  private:
+  void bind(const char* name, Vec3f* pixels, const Film& film) {
+    const auto width = static_cast<size_t>(film.width), height = static_cast<size_t>(film.height);
+    if (device_.kind == DenoiseDevice::kCpu) {
+      api_.set_image(filter_, name, pixels, kFormatFloat3, width, height, 0, 0, 0);
+      return;
+    }
+    std::unique_ptr<CardPlane>& plane = planes_[name];
+    const size_t bytes = film.pixel_count() * sizeof(Vec3f);
+    if (plane == nullptr || plane->bytes() != bytes)
+      plane = std::make_unique<CardPlane>(api_, device_, bytes);
+    api_.set_buffer_image(filter_, name, plane->buffer(), kFormatFloat3, width, height, 0, 0, 0);
+  }
+
   OidnApi api_;
+  Device device_;
   OidnFilter filter_;
+  std::map<std::string, std::unique_ptr<CardPlane>> planes_;  // by the image's name; card only
 };
 
 class OidnDenoiser : public Denoiser {
  public:
-  OidnDenoiser(const OidnApi& api, OidnDevice device, DenoiseQuality quality)
+  OidnDenoiser(const OidnApi& api, const Device& device, DenoiseQuality quality)
       : api_(api), device_(device), color_filter_(std::in_place, api, device, quality) {
     color_filter_->set("hdr", true);
     if (quality != DenoiseQuality::kHigh) return;
@@ -126,7 +190,7 @@ class OidnDenoiser : public Denoiser {
     color_filter_.reset();  // filters before their device
     albedo_filter_.reset();
     normal_filter_.reset();
-    api_.release_device(device_);
+    api_.release_device(device_.handle);
   }
   OidnDenoiser(const OidnDenoiser&) = delete;
   OidnDenoiser& operator=(const OidnDenoiser&) = delete;
@@ -146,37 +210,58 @@ class OidnDenoiser : public Denoiser {
     GLOAM_CHECK(color_filter_.has_value(), "the denoiser has been made without its filter");
     Filter& filter = *color_filter_;
     filter.set("cleanAux", clean);
-    filter.set("color", color_, film);
-    filter.set("albedo", clean ? albedo_ : has_albedo ? film.albedo : none, film);
-    filter.set("normal", clean ? normal_ : has_normal ? film.normal : none, film);
-    filter.set("output", *out, film);
-    filter.run();
+    filter.set_input("color", color_, film);
+    filter.set_input("albedo", clean ? albedo_ : has_albedo ? film.albedo : none, film);
+    filter.set_input("normal", clean ? normal_ : has_normal ? film.normal : none, film);
+    filter.run(film, out);
     const char* message = nullptr;
-    if (api_.get_device_error(device_, &message) != kErrorNone)
+    if (api_.get_device_error(device_.handle, &message) != kErrorNone)
       return Error{ErrorKind::kIo, fmt::format("Open Image Denoise failed: {}", message)};
     return {};
   }
 
-  const char* name() const override { return "Open Image Denoise"; }
+  const char* name() const override {
+    return device_.kind == DenoiseDevice::kCuda ? "Open Image Denoise, on the card"
+                                                : "Open Image Denoise";
+  }
 
  private:
   static void clean_up(const char* name, const std::vector<Vec3f>& noisy, const Film& film,
                        Filter* filter, std::vector<Vec3f>* out) {
     out->resize(noisy.size());
-    filter->set(name, noisy, film);
-    filter->set("output", *out, film);
-    filter->run();
+    filter->set_input(name, noisy, film);
+    filter->run(film, out);
   }
 
   OidnApi api_;
-  OidnDevice device_;
+  Device device_;
   std::optional<Filter> color_filter_, albedo_filter_, normal_filter_;
   std::vector<Vec3f> color_, albedo_, normal_;
 };
 
+Result<Device> make_device(const OidnApi& api, DenoiseDevice kind) {
+  const Device device{api.new_device(kind == DenoiseDevice::kCuda ? kDeviceCuda : kDeviceCpu),
+                      kind};
+  if (device.handle != nullptr) {
+    if (kind == DenoiseDevice::kCpu) {
+      api.set_device_int(device.handle, "numThreads", thread_count());
+      api.set_device_bool(device.handle, "setAffinity", false);  // threads are shared
+    }
+    api.commit_device(device.handle);
+  }
+  const char* message = "";
+  if (api.get_device_error(device.handle, &message) == kErrorNone && device.handle != nullptr)
+    return device;
+  Error error{ErrorKind::kUnsupported,
+              fmt::format("Open Image Denoise does not run on this {}: {}",
+                          kind == DenoiseDevice::kCuda ? "card" : "machine", message)};
+  if (device.handle != nullptr) api.release_device(device.handle);
+  return error;
+}
+
 }  // namespace
 
-Result<std::unique_ptr<Denoiser>> make_oidn_denoiser(DenoiseQuality quality) {
+Result<std::unique_ptr<Denoiser>> make_oidn_denoiser(const DenoiseOptions& options) {
   void* library = nullptr;
   std::string cause;
   for (const fs::path& path : candidates()) {
@@ -197,20 +282,8 @@ Result<std::unique_ptr<Denoiser>> make_oidn_denoiser(DenoiseQuality quality) {
                  "this Open Image Denoise is older than version 2",
                  {},
                  "install version 2.3 or later"};
-  OidnDevice device = api.new_device(kDeviceCpu);
-  if (device != nullptr) {
-    api.set_device_int(device, "numThreads", thread_count());
-    api.set_device_bool(device, "setAffinity", false);  // its threads are shared with everyone
-    api.commit_device(device);
-  }
-  const char* message = "";
-  if (api.get_device_error(device, &message) != kErrorNone || device == nullptr) {
-    Error error{ErrorKind::kUnsupported,
-                fmt::format("Open Image Denoise does not run on this machine: {}", message)};
-    if (device != nullptr) api.release_device(device);
-    return error;
-  }
-  return std::unique_ptr<Denoiser>(new OidnDenoiser(api, device, quality));
+  GLOAM_TRY(const Device device, make_device(api, options.device));
+  return std::unique_ptr<Denoiser>(new OidnDenoiser(api, device, options.quality));
 }
 
 }  // namespace gloam

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <functional>
 
+#include "render/film/denoise.h"
 #include "render/test/media_probe.h"
 
 namespace gloam {
@@ -348,6 +349,28 @@ TEST_F(CudaParity, LightThatMovesIsThatOfTheInstant) {
     EXPECT_LE(unlike_blocks(by_card, by_cpu, 0, &z2, &where), 0.05) << hour << ": " << where;
     EXPECT_LE(z2, 1.5) << hour << ", worst " << where;
   }
+}
+
+/// The denoiser's picture on the card is the CPU's within half precision, and the same every time.
+TEST_F(CudaParity, TheDenoisersPictureIsTheCpus) {
+  constexpr DenoiseOptions kOnCard{.device = DenoiseDevice::kCuda};
+  const auto cpu = make_oidn_denoiser({});
+  if (!cpu.ok()) GTEST_SKIP() << cpu.error().to_string();
+  const auto card = make_oidn_denoiser(kOnCard);
+  ASSERT_TRUE(card.ok()) << card.error().to_string();
+  const Film film = all_shapes(plain_material).render(usual_view(), {.spp = 4, .guide_samples = 4});
+  std::vector<Vec3f> on_cpu, on_card, again;
+  ASSERT_TRUE((*cpu)->denoise(film, &on_cpu).ok());
+  ASSERT_TRUE((*card)->denoise(film, &on_card).ok());
+  ASSERT_TRUE((*card)->denoise(film, &again).ok());
+  EXPECT_TRUE(on_card == again);
+  double difference = 0, light = 0;
+  for (size_t i = 0; i < on_cpu.size(); ++i) {
+    difference += length(on_card[i] - on_cpu[i]);
+    light += length(on_cpu[i]);
+  }
+  EXPECT_GT(light, 0);
+  EXPECT_LT(difference / light, 0.01);
 }
 
 TEST_F(CudaParity, AnEndedRenderSaysSo) {

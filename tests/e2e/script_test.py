@@ -1,0 +1,44 @@
+"""The script ./gloam: what it waits for, and what it does not."""
+import fcntl
+import os
+import subprocess
+import unittest
+
+from e2e.support import ROOT
+
+
+def start(*arguments):
+    return subprocess.run([str(ROOT / "gloam"), *arguments], cwd=ROOT, text=True, capture_output=True, stdin=subprocess.DEVNULL,
+                          timeout=60, env={**os.environ, "GLOAM_PRESET": "release"})
+
+
+class Locks(unittest.TestCase):
+    def test_a_built_program_waits_for_no_set_up(self):
+        """Somebody installs packages or builds, in this preset or another: what is built runs at once."""
+        self.assertEqual(start("--version").returncode, 0)  # builds if anything is newer than the program
+        held = [open(ROOT / "build" / f".lock-{name}", "w") for name in ("packages", "release", "cuda")]
+        try:
+            for lock in held:
+                fcntl.flock(lock, fcntl.LOCK_EX)
+            result = start("--version")
+        finally:
+            for lock in held:
+                lock.close()
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("MuJoCo", result.stdout)
+        self.assertNotIn("waiting", result.stderr)
+
+    def test_a_source_newer_than_the_program_is_built_under_the_lock(self):
+        self.assertEqual(start("--version").returncode, 0)
+        new = ROOT / "src" / "base" / ".newer"
+        new.touch()
+        self.addCleanup(new.unlink)
+        with open(ROOT / "build" / ".lock-release", "w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            waiting = subprocess.Popen([str(ROOT / "gloam"), "--version"], cwd=ROOT, text=True, stdout=subprocess.PIPE,
+                                       stderr=subprocess.PIPE, env={**os.environ, "GLOAM_PRESET": "release"})
+            self.addCleanup(waiting.kill)
+            self.assertIn("waiting for another set-up (release)", waiting.stderr.readline())
+        out, _ = waiting.communicate(timeout=300)
+        self.assertEqual(waiting.returncode, 0)
+        self.assertIn("MuJoCo", out)
