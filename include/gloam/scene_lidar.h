@@ -49,10 +49,17 @@ struct LidarOptions {
   /// detected [m]
   std::optional<double> range_at_10_percent = {};
   std::optional<std::array<double, 2>> divergence = {};  ///< full angle at 1/e², across, up [deg]
-  std::optional<double> pulse_length = {};               ///< echoes closer together are one [m]
-  int footprint_rays = 1;                                ///< over the beam's cross-section, 1 … 32
-  std::optional<std::string> returns = {};               ///< first strongest last dual all
-  int most_returns = 3;                                  ///< of `all`, 1 … 5
+  /// Full width of the beam at 1/e² where it leaves, across, up [m].
+  std::optional<std::array<double, 2>> beam_size = {};
+  /// Of the receiver's lens [m]; 0 = it sees all that the beam lights, however near.
+  std::optional<double> receiver_diameter = {};
+  /// Of the receiver's axis from the beam's [m]; empty = half of the lens.
+  std::optional<double> receiver_offset = {};
+  std::optional<double> receiver_view = {};  ///< full field of view of a detector [deg]
+  std::optional<double> pulse_length = {};   ///< echoes closer together are one [m]
+  int footprint_rays = 1;                    ///< over the beam's cross-section, 1 … 32
+  std::optional<std::string> returns = {};   ///< first strongest last dual all
+  int most_returns = 3;                      ///< of `all`, 1 … 5
 
   std::vector<LidarSurfaceOptions> surfaces = {};
 

@@ -36,6 +36,10 @@ void visit_fields(Visitor& v, LidarOptions& o) {
   v("max_range", o.max_range, range);
   v("range_at_10_percent", o.range_at_10_percent, range);
   v("divergence", o.divergence, FieldRule{.unit = "deg", .min = 0, .max = 60});
+  v("beam_size", o.beam_size, FieldRule{.unit = "m", .min = 0, .max = 1});
+  v("receiver_diameter", o.receiver_diameter, FieldRule{.unit = "m", .min = 0, .max = 1});
+  v("receiver_offset", o.receiver_offset, FieldRule{.unit = "m", .min = 0, .max = 1});
+  v("receiver_view", o.receiver_view, FieldRule{.unit = "deg", .min = 1e-3, .max = 180});
   v("pulse_length", o.pulse_length, FieldRule{.unit = "m", .min = 1e-3, .max = 100});
   v("footprint_rays", o.footprint_rays, FieldRule{.min = 1, .max = 32});
   v("returns", o.returns, FieldRule{.choices = words(kLidarReturns)});

@@ -39,6 +39,14 @@ void set_optics(const LidarOptions& options, LidarOptics* optics) {
     const auto& [across, up] = *options.divergence;
     optics->divergence = {radians(across), radians(up)};
   }
+  if (options.beam_size) {
+    optics->beam_size = {static_cast<float>((*options.beam_size)[0]),
+                         static_cast<float>((*options.beam_size)[1])};
+  }
+  set(&optics->receiver_diameter, options.receiver_diameter);
+  if (options.receiver_diameter) optics->receiver_offset = 0.5f * optics->receiver_diameter;
+  set(&optics->receiver_offset, options.receiver_offset);
+  if (options.receiver_view) optics->receiver_view = radians(*options.receiver_view);
   set(&optics->resolution, options.pulse_length);
   set(&optics->range_sigma, options.range_noise);
   optics->footprint_rays = options.footprint_rays;

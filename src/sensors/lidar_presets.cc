@@ -44,12 +44,21 @@ LidarOptics optics(float min_range, float max_range, double at_10_percent, Vec2f
   return o;
 }
 
+/// Beam [mm] and receiver of a sensor whose two lenses stand side by side. `view` [rad].
+void set_apertures(Vec2f beam_mm, float lens_mm, float view, LidarOptics* o) {
+  o->beam_size = beam_mm * 1e-3f;
+  o->receiver_diameter = 1e-3f * lens_mm;
+  o->receiver_offset = 0.5f * o->receiver_diameter;
+  o->receiver_view = view;
+}
+
 LidarModel vlp_16() {
   LidarModel m;
   m.elevations = even_rings(16, -15, 15);
   m.delays = interleaved_delays(16, 2.304e-6f);
   m.columns = 1808;  // a firing sequence takes 55.296 us
   m.optics = optics(0.5f, 100, 35, {0.18f, 0.09f}, 1.0f, 0.03f);
+  set_apertures({12.7f, 9.5f}, 30, 6e-3f, &m.optics);
   return m;
 }
 
@@ -59,6 +68,7 @@ LidarModel hdl_32e() {
   m.delays = interleaved_delays(32, 1.152e-6f);
   m.columns = 2170;  // a firing sequence takes 46.08 us
   m.optics = optics(0.05f, 100, 35, {0.18f, 0.09f}, 1.0f, 0.02f);
+  set_apertures({12.7f, 9.5f}, 30, 6e-3f, &m.optics);
   return m;
 }
 
@@ -69,6 +79,7 @@ LidarModel hdl_64e() {
   m.elevations.insert(m.elevations.end(), upper.begin(), upper.end());
   m.columns = 2083;
   m.optics = optics(0.9f, 120, 50, {0.115f, 0.115f}, 0.75f, 0.02f);
+  set_apertures({10, 10}, 60, 4e-3f, &m.optics);
   return m;
 }
 
@@ -77,6 +88,7 @@ LidarModel os1_64() {
   m.elevations = even_rings(64, -16.6f, 16.6f);
   const float width = 0.13f * kWidthOverFwhm;
   m.optics = optics(0.8f, 120, 40, {width, width}, 0.5f, 0.005f);
+  set_apertures({9.5f, 9.5f}, 20, 8e-3f, &m.optics);
   return m;
 }
 
@@ -96,6 +108,7 @@ LidarModel mid_40() {
   m.prism_hz[0] = 7294.0 / 60;
   m.prism_hz[1] = -4664.0 / 60;
   m.optics = optics(1.0f, 260, 90, {0.03f, 0.28f}, 0.5f, 0.02f);
+  set_apertures({10, 10}, 25, 6e-3f, &m.optics);
   return m;
 }
 

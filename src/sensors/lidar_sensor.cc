@@ -8,6 +8,7 @@
 #include "base/check.h"
 #include "base/hash.h"
 #include "base/text.h"
+#include "render/kernel/lidar_particles.h"
 #include "render/scene/pose.h"
 #include "sensors/camera_sensor.h"
 #include "world/authored_material.h"
@@ -44,6 +45,8 @@ LidarSensor::LidarSensor(const RenderDescription& rendered, const LidarDescripti
   for (const VolumeDescription& volume : rendered.volumes) {
     lidar_ratios_.push_back(lidar_ratio(rendered.media[static_cast<size_t>(volume.medium)].name));
   }
+  particle_tables_ = tabulate_particles(rendered, model_.optics);
+  for (const LidarParticleTable& table : particle_tables_) particles_.push_back(table.view());
 }
 
 Status LidarSensor::find_surfaces() {
@@ -138,6 +141,7 @@ std::shared_ptr<const LidarScan> LidarSensor::scan(Renderer& renderer, std::mute
   view.motions = motions_;
   view.optics = model_.optics;
   view.optics.lidar_ratios = {lidar_ratios_.data(), static_cast<uint32_t>(lidar_ratios_.size())};
+  view.optics.particles = {particles_.data(), static_cast<uint32_t>(particles_.size())};
   view.optics.surfaces = {surfaces_.data(), static_cast<uint32_t>(surfaces_.size())};
   view.seed = seed_;
   view.scan = static_cast<uint64_t>(index);
@@ -195,7 +199,9 @@ void LidarSensor::write_points(std::span<const Affine3f> X_WL, LidarScan* scan) 
       scan->x.push_back(p.x);
       scan->y.push_back(p.y);
       scan->z.push_back(p.z);
-      const float plain = found.signal * found.range * found.range;
+      // Sensors are calibrated for their overlap as for the range.
+      const float overlap = std::max(lidar::overlap(model_.optics, found.range), 1e-6f);
+      const float plain = found.signal * found.range * found.range / overlap;
       scan->intensity.push_back(reflectivity ? calibrated_reflectivity(plain) : found.signal);
       scan->range.push_back(found.range);
       scan->time.push_back(static_cast<float>(firing.time * length));

@@ -10,6 +10,7 @@
 #include "gloam/sensor.h"
 #include "render/lidar_view.h"
 #include "render/renderer.h"
+#include "sensors/lidar_particle_table.h"
 #include "sensors/lidar_pattern.h"
 #include "world/authored_lidar.h"
 
@@ -42,8 +43,10 @@ class LidarSensor {
   const LidarDescription lidar_;
   const LidarModel model_;
   const uint64_t seed_;
-  std::vector<float> lidar_ratios_;     ///< by volume [sr]
-  std::vector<LidarSurface> surfaces_;  ///< by instance; empty = as their colours say
+  std::vector<float> lidar_ratios_;                  ///< by volume [sr]
+  std::vector<LidarParticleTable> particle_tables_;  ///< by volume; empty = none has any
+  std::vector<LidarParticles> particles_;            ///< views of these
+  std::vector<LidarSurface> surfaces_;               ///< by instance; empty = as their colours say
   std::vector<LidarFiring> firings_;
   std::vector<float> cuts_;  ///< of the keys, 0 … 1
   /// In the order in which they are traced. Their times count every stretch as equally long.

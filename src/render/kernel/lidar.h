@@ -1,10 +1,10 @@
 #pragma once
 // What comes back of a LiDAR's pulse from the surfaces that it meets. Signals are relative to what
 // a white Lambertian plate across the beam, 1 m away, sends back: of a surface at range R that is
-//   G T² / R²,  G = pi f(w, w) cos
-// with the BSDF f back along the beam and the two-way transmittance T² of what lies before it (the
-// LiDAR equation, e.g. Wehr and Lohr 1999, "Airborne laser scanning - an introduction and
-// overview"). Device-safe.
+//   G T² O(R) / R²,  G = pi f(w, w) cos
+// with the BSDF f back along the beam, the two-way transmittance T² of what lies before it and the
+// overlap O of beam and receiver (kernel/lidar_particles.h; the LiDAR equation, e.g. Wehr and Lohr
+// 1999, "Airborne laser scanning - an introduction and overview"). Device-safe.
 
 #include "render/kernel/lidar_detect.h"
 #include "render/kernel/lidar_media.h"
@@ -156,7 +156,8 @@ GLOAM_HD void trace_echoes(const SceneView& scene, const Tracer& tracer, const L
     way += hit.t * index;
     const F signal = g * share * share * pulse / (way * way);
     each_lane(active & (signal > 0.0f), [&](int i) {
-      echoes[i].add({lane(way, i), lane(signal, i), lane(s.instance, i) + 1});
+      const float range = lane(way, i), seen = lane(signal, i) * lidar::overlap(optics, range);
+      if (seen > 0) echoes[i].add({range, seen, lane(s.instance, i) + 1});
     });
 
     if (!scene.has_transparent && scene.layers.empty()) return;

@@ -26,12 +26,36 @@ struct LidarSurface {
   float absorption = -1;  ///< inside glass [1/m]; -1 = as of red light
 };
 
+/// Particles of one size in a volume, as a LiDAR sees them.
+struct LidarParticle {
+  float number = 0;       ///< mean, where the volume is as dense as LidarParticles::density [1/m³]
+  float backscatter = 0;  ///< differential cross-section straight back [m²/sr]
+};
+
+/// How the particles in one cell of range (lidar::kCell) come back.
+struct LidarCell {
+  float mean = 0;      ///< number of those in the beam that are seen one by one
+  uint32_t first = 0;  ///< their first class
+  float even = 0;      ///< volume backscattering coefficient of all others [1/(m sr)]
+};
+
+/// A volume of particles that are few enough to be met one by one.
+struct LidarParticles {
+  DeviceSpan<const LidarParticle> classes;  ///< from small to large; empty = a medium
+  DeviceSpan<const LidarCell> cells;        ///< from the sensor to its range
+  float density = 1;                        ///< at which their numbers count [kg/m³]
+};
+
 /// Of a LiDAR. Signals: see kernel/lidar.h.
 struct LidarOptics {
   MediumBand band = MediumBand::k905nm;
   float min_range = 0.1f, max_range = 100;  ///< [m]
   Vec2f divergence;                         ///< full angles at 1/e², across and up [rad]
+  Vec2f beam_size;                          ///< full widths at 1/e² where it leaves [m]
   int footprint_rays = 1;                   ///< 1 … kMostFootprintRays
+  float receiver_diameter = 0;  ///< of its lens [m]; 0 = it sees all that the beam lights
+  float receiver_offset = 0;    ///< of its axis from the beam's [m]
+  float receiver_view = 0;      ///< full field of view of a detector [rad]
   /// Echoes closer together than this are one [m]: half the length of the pulse.
   float resolution = 0.3f;
   float threshold = 0;  ///< least signal that is reported [1/m²]
@@ -40,7 +64,8 @@ struct LidarOptics {
   /// Of each of the scene's volumes: extinction over backscattering coefficient [sr]; 0 = by its
   /// phase function. Empty = all of them.
   DeviceSpan<const float> lidar_ratios;
-  DeviceSpan<const LidarSurface> surfaces;  ///< of each instance; empty = as their colours say
+  DeviceSpan<const LidarParticles> particles;  ///< of each volume; empty = all are media
+  DeviceSpan<const LidarSurface> surfaces;     ///< of each instance; empty = as their colours say
   // Noise: none without `noisy`.
   bool noisy = false;
   float range_sigma = 0;  ///< standard deviation of ranges at a signal without noise [m]

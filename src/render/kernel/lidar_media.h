@@ -4,14 +4,14 @@
 // phenomena on automotive laser radar systems"; Hahner et al. 2021, "Fog simulation on real LiDAR
 // point clouds for 3D object detection in adverse weather"). Device-safe.
 
-#include "render/kernel/lidar_detect.h"
+#include "render/kernel/lidar_particles.h"
 #include "render/kernel/medium_march.h"
 
 namespace gloam {
 
 /// Gathers what media send back along one beam, in bins of range as deep as the receiver resolves,
 /// and finds false returns in it. A bin's signal is
-///   pi Int beta T² / r² dr
+///   pi Int beta T² O(r) / r² dr
 /// with the volume backscattering coefficient beta [1/(m sr)]. With noise it is speckle: drawn from
 /// the exponential distribution with that mean (Goodman 1985, "Statistical optics", 2.9), which
 /// neglects that wide receivers average some of it away, and comes from anywhere in the bin. A run
@@ -40,6 +40,12 @@ class Backscatter {
     sum_ += signal;
     moment_ += signal * middle;
   }
+  /// One particle's echo; signals that noise does not lift over the threshold are left out.
+  GLOAM_HD void add_single(float range, float signal) {
+    if (signal > 0 && signal * lidar::kLeastRatio >= optics_->threshold)
+      echoes_->add({range, signal, 0});
+  }
+  GLOAM_HD const LidarKey& key() const { return key_; }
   /// Call behind the last.
   GLOAM_HD void finish() {
     close();
@@ -87,6 +93,25 @@ GLOAM_HD float media_step(const MediumWalk& walk, float resolution, float length
   return max(step, length / kMostSteps);
 }
 
+/// Those of a volume's particles that lie in [from, to] of the ray, one by one. `share`: of the
+/// pulse at `from`; `way`: the range at the ray's origin.
+GLOAM_HD void add_particles(const LidarOptics& optics, uint32_t row, float from, float to,
+                            float way, float density, float extinction, float share,
+                            Backscatter* soft) {
+  const LidarParticles& set = optics.particles[row];
+  const uint32_t last = min(cell_of(way + to), set.cells.size - 1);
+  for (uint32_t cell = cell_of(way + from); cell <= last; ++cell) {
+    const CellParticles particles(optics, soft->key(), row, cell);
+    for (int i = 0; i < particles.count(); ++i) {
+      const ParticleHit hit = particles[i];
+      const float t = hit.range - way;
+      if (t < from || t >= to || hit.rank * set.density >= density) continue;
+      const float one_way = share * expf(-extinction * (t - from));
+      soft->add_single(hit.range, hit.signal * sqr(one_way));
+    }
+  }
+}
+
 }  // namespace lidar
 
 /// Share of a pulse that media let through along [0, length] of the ray. `way` and `share`: the
@@ -115,6 +140,16 @@ GLOAM_HD float cross_media(const MediaView& media, const LidarOptics& optics, co
         const MediumPoint before = point;
         media::add_volume(media, volume, p_W, bands, &point);
         const auto row = static_cast<uint32_t>(&volume - media.volumes.data);
+        if (row < optics.particles.size && !optics.particles[row].classes.empty()) {
+          const LidarParticles& set = optics.particles[row];
+          if (soft == nullptr || set.cells.empty()) continue;
+          const float density = media::density_at(volume, transform_point(volume.X_GW, p_W));
+          const uint32_t cell = lidar::cell_of(way + 0.5f * (from + to));
+          backscatter += set.cells[min(cell, set.cells.size - 1)].even * density / set.density;
+          lidar::add_particles(optics, row, from, to, way, density, before.extinction.x,
+                               share * passed, soft);
+          continue;
+        }
         const float ratio = row < optics.lidar_ratios.size ? optics.lidar_ratios[row] : 0;
         backscatter += ratio > 0 ? (point.extinction.x - before.extinction.x) / ratio
                                  : (point.scattering.x - before.scattering.x) *
@@ -124,7 +159,8 @@ GLOAM_HD float cross_media(const MediaView& media, const LidarOptics& optics, co
       if (soft != nullptr && backscatter > 0) {
         const float two_way = sqr(share * passed) * media::mean_transmittance(2 * depth);
         soft->add(way + from, way + to,
-                  kPi * backscatter * two_way * (to - from) / ((way + from) * (way + to)));
+                  kPi * backscatter * two_way * lidar::overlap(optics, way + 0.5f * (from + to)) *
+                      (to - from) / ((way + from) * (way + to)));
       }
       passed *= expf(-depth);
       if (passed * share < 1e-4f) return 0;  // of 1e-8 of the pulse, nothing is detected

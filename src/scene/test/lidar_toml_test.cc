@@ -107,6 +107,10 @@ TEST_F(LidarToml, SaysWhatIsWrongAndWhere) {
   EXPECT_THAT(error_of("columns = 0"), HasSubstr("columns"));
   EXPECT_THAT(error_of("pulse_length = 0"), HasSubstr("pulse_length"));
   EXPECT_THAT(error_of("divergence = [0.1]"), HasSubstr("2 numbers"));
+  EXPECT_THAT(error_of("beam_size = [0.1]"), HasSubstr("2 numbers"));
+  EXPECT_THAT(error_of("receiver_diameter = -1"), HasSubstr("receiver_diameter"));
+  EXPECT_THAT(error_of("receiver_offset = 2"), HasSubstr("receiver_offset"));
+  EXPECT_THAT(error_of("receiver_view = 0"), HasSubstr("receiver_view"));
   EXPECT_THAT(error_of("outputs = [\"las\"]"), HasSubstr("las"));
   EXPECT_THAT(error_of("[[lidar.surface]]\nretro = 3"), HasSubstr("'material' is missing"));
   EXPECT_THAT(error_of("[[lidar.surface]]\nmaterial = \"a\"\ndiffuse = 2"), HasSubstr("0 to 1"));

@@ -12,13 +12,14 @@
 
 namespace gloam {
 
-/// Without detection threshold, noise and divergence: an ideal range finder.
+/// Without detection threshold, noise and overlap: an ideal range finder.
 inline LidarOptions ideal_lidar(const std::string& preset = "OS1-64") {
   LidarOptions options;
   options.name = "lidar";
   options.preset = preset;
   options.range_at_10_percent = 0;
   options.min_range = 0.01;
+  options.receiver_diameter = 0;
   options.truth = true;
   return options;
 }
