@@ -78,6 +78,10 @@ struct CameraOptions {
   /// Those of kCameraOutputs that are recorded, instead of what [record] says; [] = its poses
   /// alone.
   std::optional<std::vector<std::string>> outputs = {};
+  double near = 0;  ///< nothing nearer than this plane is seen [m], >= 0
+  /// Bodies that it does not see, each with all that hangs on it: full names, * stands for any
+  /// text. Their shadows and reflections are seen.
+  std::vector<std::string> hide = {};
   CameraSensing sensing = {};  ///< imager, timing …: what happens between light and message
   SourceLoc loc = {};
 };

@@ -28,6 +28,10 @@ struct CameraView {
   std::vector<Affine3f> X_WC_keys{};  ///< one per key of the scene; empty = it stands still
   Shutter shutter{};                  ///< of the exact channels its opening counts
   Aperture aperture{};                ///< path tier; the exact channels are of its middle
+  // What its own rays pass, in all channels; shadows and reflections are of all.
+  float near = 0;                                        ///< [m]
+  bool culls_backs = false;                              ///< surfaces seen from behind
+  std::shared_ptr<const std::vector<uint8_t>> hidden{};  ///< by instance; null = none
 };
 
 enum class RenderTier : uint8_t {

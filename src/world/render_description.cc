@@ -302,6 +302,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     }
   }
   GLOAM_TRY_STATUS(set_optics(world.scene, &out.cameras));
+  GLOAM_TRY_STATUS(set_clips(world, &out));
   levels = describe_light(m, world.scene, poses, std::move(levels), &simulated.materials(), &out);
   out.center = {static_cast<float>(framing.center.x), static_cast<float>(framing.center.y),
                 static_cast<float>(framing.center.z)};

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -186,9 +187,12 @@ struct CameraDescription {
   Intrinsics intrinsics;
   int camera = -1;  ///< row of PoseFrame's camera poses; -1 = free camera at X_WC
   Affine3f X_WC;
-  CameraSensing sensing;                          ///< of the scene's [[camera]] of this name
-  float aperture_radius = 0, focus_distance = 1;  ///< [m]; radius 0 = everything is sharp
-  double exposure_time = 0, readout_time = 0;     ///< as in CameraOptions [s]
+  CameraSensing sensing;                               ///< of the scene's [[camera]] of this name
+  float aperture_radius = 0, focus_distance = 1;       ///< [m]; radius 0 = everything is sharp
+  double exposure_time = 0, readout_time = 0;          ///< as in CameraOptions [s]
+  float near = 0;                                      ///< nothing nearer is seen [m]
+  bool culls_backs = false;                            ///< nor surfaces from behind
+  std::shared_ptr<const std::vector<uint8_t>> hidden;  ///< by instance: not seen; null = none
 };
 
 struct RenderDescription {

@@ -6,7 +6,10 @@
 #include <cmath>
 
 #include "base/angle.h"
+#include "base/text.h"
 #include "scene/camera_lens.h"
+#include "world/level.h"
+#include "world/world.h"
 
 namespace gloam {
 namespace {
@@ -64,6 +67,32 @@ CameraDescription model_camera(const mjModel& m, int i, std::vector<Error>* unsu
   return camera;
 }
 
+/// By instance: whether its body or one above it fits a pattern of `hide`.
+Result<std::shared_ptr<const std::vector<uint8_t>>> hidden_instances(
+    const mjModel& m, const CameraOptions& options, const std::vector<InstanceDescription>& drawn) {
+  std::vector<uint8_t> bodies(static_cast<size_t>(m.nbody));
+  for (const std::string& pattern : options.hide) {
+    bool found = false;
+    for (int b = 1; b < static_cast<int>(m.nbody); ++b) {
+      const char* name = mj_id2name(&m, mjOBJ_BODY, b);
+      if (name == nullptr || !fits_pattern(pattern, name)) continue;
+      bodies[static_cast<size_t>(b)] = found = true;
+    }
+    if (!found)
+      return Error{
+          ErrorKind::kInput,
+          fmt::format("camera '{}' hides '{}', but there is no such body", options.name, pattern),
+          options.loc,
+          suggest_name(pattern, object_names(&m, mjOBJ_BODY, static_cast<int>(m.nbody)))};
+  }
+  for (int b = 1; b < static_cast<int>(m.nbody); ++b)  // parents come first
+    bodies[static_cast<size_t>(b)] |= bodies[static_cast<size_t>(m.body_parentid[b])];
+  std::vector<uint8_t> hidden;
+  for (const InstanceDescription& in : drawn)
+    hidden.push_back(bodies[static_cast<size_t>(in.body)]);
+  return std::make_shared<const std::vector<uint8_t>>(std::move(hidden));
+}
+
 CameraDescription free_camera(const mjModel& m, const Framing& framing) {
   CameraDescription camera;
   camera.name = "free";
@@ -116,6 +145,23 @@ Status set_optics(const Scene& scene, std::vector<CameraDescription>* cameras) {
     camera->aperture_radius =
         static_cast<float>(0.5 * *options.lens->focal_length / *options.lens->f_number);
     camera->focus_distance = static_cast<float>(*options.lens->focus_distance);
+  }
+  return {};
+}
+
+Status set_clips(const CompiledWorld& world, RenderDescription* out) {
+  const mjModel& m = *world.model;
+  for (CameraDescription& camera : out->cameras) {
+    if (!world.scene.bare_model.empty()) {
+      camera.near = static_cast<float>(static_cast<double>(m.vis.map.znear) * m.stat.extent);
+      camera.culls_backs = true;
+    }
+    for (const CameraOptions& options : world.scene.cameras) {
+      if (options.name != camera.name) continue;
+      camera.near = static_cast<float>(options.near);
+      if (options.hide.empty()) continue;
+      GLOAM_TRY(camera.hidden, hidden_instances(m, options, out->instances));
+    }
   }
   return {};
 }

@@ -20,6 +20,10 @@ std::string camera_name(const mjModel& model, int id);
 /// Lenses and shutters that the scene gives to cameras. Errors: a lens that cannot be right.
 Status set_optics(const Scene& scene, std::vector<CameraDescription>* cameras);
 
+/// Near planes, back faces and hidden bodies. Those of bare models see as MuJoCo's renderer shows
+/// them. Instances and cameras are all there. Errors: no such body.
+Status set_clips(const CompiledWorld& world, RenderDescription* out);
+
 /// All cameras of the model, then the free camera "free" as MuJoCo's viewer first shows it.
 void describe_cameras(const mjModel& model, const Framing& framing, RenderDescription* out);
 

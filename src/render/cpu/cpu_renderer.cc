@@ -23,6 +23,7 @@
 #include "render/cpu/particle_streaks.h"
 #include "render/cpu/tile.h"
 #include "render/cpu/traced_scene.h"
+#include "render/cpu/view_clip.h"
 #include "render/cpu/watch.h"
 #include "render/cuda/cuda_stages.h"
 #include "render/scene/pose.h"
@@ -120,6 +121,10 @@ class CpuRenderer final : public Renderer {
     // What is measured before the picture, and the fast tier, know no times: mean lamps.
     const DeviceSpan<const float> levels = std::exchange(job.scene.light_levels, {});
     job.tracer = traced_.tracer();
+    ViewClip clip{job.scene, job.camera, view.near, view.culls_backs, {}};
+    if (view.hidden != nullptr)
+      clip.hidden = {view.hidden->data(), static_cast<uint32_t>(view.hidden->size())};
+    if (!clip.is_idle()) job.tracer.clip = &clip;
     if (settings.tier != RenderTier::kDirect) {
       if (!has_guide_) guide_.build(job.scene, traced_.static_tracer(), described_);
       has_guide_ = true;
@@ -362,6 +367,9 @@ CameraView view_at(const RenderDescription& description, int camera,
                    std::span<const PoseFrame* const> keys, const PoseFrame& previous) {
   const CameraDescription& in = description.cameras[static_cast<size_t>(camera)];
   CameraView view{in.intrinsics, camera_pose(in, *keys.front()), camera_pose(in, previous)};
+  view.near = in.near;
+  view.culls_backs = in.culls_backs;
+  view.hidden = in.hidden;
   if (keys.size() > 1) {
     for (const PoseFrame* key : keys) view.X_WC_keys.push_back(camera_pose(in, *key));
   }

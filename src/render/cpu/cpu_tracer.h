@@ -10,6 +10,8 @@ struct RTCSceneTy;  // Embree's RTCScene points to it
 
 namespace gloam {
 
+struct ViewClip;  // render/cpu/view_clip.h
+
 /// A scene of Embree's and what it lies in.
 struct EmbreePart {
   RTCSceneTy* scene = nullptr;  ///< null = nothing
@@ -41,8 +43,14 @@ class CpuTracer {
   ScanList scanned;
   /// Of our own BVH, which then answers for all that is above.
   std::optional<BvhTracer> own;
+  /// Of the camera whose picture is traced: its rays pass what it does not see. Null = none.
+  const ViewClip* clip = nullptr;
 
  private:
+  MaskLanes closest_of_all(const RayOf<FloatLanes>& ray, MaskLanes active, bool coherent,
+                           RayHitOf<FloatLanes>* hit) const;
+  MaskLanes closest_in_view(const RayOf<FloatLanes>& ray, MaskLanes active, MaskLanes first,
+                            bool coherent, RayHitOf<FloatLanes>* hit) const;
   bool by_embree(const Ray& ray, bool any, RayHit* hit) const;
   MaskLanes closest_by_embree(const RayOf<FloatLanes>& ray, MaskLanes active, bool coherent,
                               RayHitOf<FloatLanes>* hit) const;

@@ -1,6 +1,7 @@
 // Embree or our own BVH, ray by ray or in lanes.
 
 #include "render/cpu/cpu_tracer.h"
+#include "render/cpu/view_clip.h"
 
 namespace gloam {
 
@@ -9,7 +10,19 @@ bool CpuTracer::trace(const Ray& ray, bool any, RayHit* hit) const {
 }
 
 bool CpuTracer::closest(const Ray& ray, bool active, bool, RayHit* hit) const {
-  return active && trace(ray, false, hit);
+  if (!active) return false;
+  if (clip == nullptr) return trace(ray, false, hit);
+  RayOf<FloatLanes> rays;
+  MaskLanes first = false;
+  set_lane(&rays.o, 0, ray.o);
+  set_lane(&rays.d, 0, ray.d);
+  set_lane(&rays.tmax, 0, ray.tmax);
+  set_lane(&rays.time, 0, ray.time);
+  set_lane(&first, 0, true);
+  RayHitOf<FloatLanes> hits;
+  if (!any(closest(rays, first, false, &hits))) return false;
+  *hit = lane(hits, 0);
+  return true;
 }
 bool CpuTracer::occluded(const Ray& ray, bool active) const {
   RayHit hit;
@@ -18,6 +31,49 @@ bool CpuTracer::occluded(const Ray& ray, bool active) const {
 
 MaskLanes CpuTracer::closest(const RayOf<FloatLanes>& ray, MaskLanes active, bool coherent,
                              RayHitOf<FloatLanes>* hit) const {
+  if (clip != nullptr) {
+    const MaskLanes first = clip->from_camera(ray, active);
+    if (any(first)) return closest_in_view(ray, active, first, coherent, hit);
+  }
+  return closest_of_all(ray, active, coherent, hit);
+}
+
+/// `first`: the rays that come from the camera.
+MaskLanes CpuTracer::closest_in_view(const RayOf<FloatLanes>& ray, MaskLanes active,
+                                     MaskLanes first, bool coherent,
+                                     RayHitOf<FloatLanes>* hit) const {
+  constexpr int kMostPassed = 64;  // surfaces, one behind the other
+  RayOf<FloatLanes> rest = ray;
+  FloatLanes begun = 0.0f;  // [m] from the camera
+  const auto go_on = [&](int i, float way) {
+    set_lane(&begun, i, lane(begun, i) + way);
+    set_lane(&rest.o, i, lane(rest.o, i) + lane(ray.d, i) * way);
+    set_lane(&rest.tmax, i, lane(rest.tmax, i) - way);
+  };
+  each_lane(first, [&](int i) { go_on(i, clip->start(lane(ray, i))); });
+  MaskLanes open = active & (rest.tmax > 0.0f), found = false;
+  *hit = {};
+  for (int n = 0; n < kMostPassed && any(open); ++n) {
+    RayHitOf<FloatLanes> one;
+    const MaskLanes met = closest_of_all(rest, open, coherent && n == 0, &one);
+    const MaskLanes passed = clip->passes(rest, one, met & first);
+    each_lane(met & !passed, [&](int i) {
+      set_lane(hit, i, lane(one, i));
+      set_lane(&hit->t, i, lane(one.t, i) + lane(begun, i));
+      set_lane(&found, i, true);
+    });
+    each_lane(passed, [&](int i) {
+      const Vec3f o = lane(rest.o, i);
+      const float size = max(max(fabsf(o.x), fabsf(o.y)), max(fabsf(o.z), lane(one.t, i)));
+      go_on(i, lane(one.t, i) + 1e-5f + 2e-6f * size);
+    });
+    open = passed & (rest.tmax > 0.0f);
+  }
+  return found;
+}
+
+MaskLanes CpuTracer::closest_of_all(const RayOf<FloatLanes>& ray, MaskLanes active, bool coherent,
+                                    RayHitOf<FloatLanes>* hit) const {
   if (!own) return closest_by_embree(ray, active, coherent, hit);
   *hit = {};
   MaskLanes met = false;
