@@ -37,6 +37,11 @@ void RunOptions::add_to(CLI::App& command) {
   command.add_option("--device", device, "What renders; auto: an NVIDIA card where there is one")
       ->check(CLI::IsMember({"auto", "cpu", "cuda"}));
   command.add_option("--ev", ev100, "Exposure value at ISO 100; default: by the scene's light");
+  command
+      .add_option("--look", look,
+                  "Light of a model that brings none; studio: soft light and a floor; model: as "
+                  "MuJoCo shows it; default: the scene's, else studio where nothing gives light")
+      ->check(CLI::IsMember({"auto", "studio", "model"}));
   command.add_flag("--no-denoise", no_denoise, "Show the samples as they are");
   command.add_option("--threads", threads, "Threads for rendering; 0 = all")
       ->check(CLI::Range(0, 1024));
@@ -81,6 +86,7 @@ Result<Scene> RunOptions::load(const std::string& file) {
   if (max_depth) scene.render.max_depth = *max_depth;
   if (!tier.empty()) scene.render.tier = tier;
   if (!device.empty()) scene.render.device = device;
+  if (!look.empty()) scene.render.look = look;
   if (ev100) scene.render.ev100 = *ev100;
   if (no_denoise) scene.render.denoise = false;
   set_thread_count(threads);

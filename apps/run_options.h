@@ -25,7 +25,7 @@ struct SceneOptions {
 struct RunOptions : SceneOptions {
   std::optional<double> duration, timestep, ev100, error;
   std::optional<int> spp, max_depth;
-  std::string tier, device, resolution;
+  std::string tier, device, look, resolution;
   std::vector<std::string> cameras, outputs;
   bool no_denoise = false;
   int threads = 0;

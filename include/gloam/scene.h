@@ -234,6 +234,10 @@ struct RenderOptions {
   /// cpu | cuda | auto (an NVIDIA card where this build and this machine have one, else the CPU).
   std::string device = "auto";
   bool denoise = true;  ///< but of the fast tier, which has a filter of its own
+  /// auto | studio | model: the light of models that bring none. studio: a soft sky, a key light
+  /// and a floor, in colour pictures alone; model: what MuJoCo shows; auto: the studio for models
+  /// without lamps and sky (docs/light.md).
+  std::string look = "auto";
   std::optional<double> ev100 =
       {};  ///< exposure value at ISO 100; empty = the scene's rule (docs/light.md)
   SourceLoc loc = {};

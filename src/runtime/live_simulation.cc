@@ -190,7 +190,7 @@ Result<std::vector<LabelRow>> LiveSimulation::labels() {
   GLOAM_TRY(auto shared, renderer());
   std::vector<LabelRow> rows;
   for (const InstanceDescription& instance : shared->description.instances)
-    rows.push_back(instance.label);
+    if (!instance.color_only) rows.push_back(instance.label);
   return rows;
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/parallel.h"
+#include "scene/environment/generators.h"
 #include "world/authored_frame.h"
 #include "world/authored_light.h"
 #include "world/authored_material.h"
@@ -13,7 +14,10 @@
 #include "world/authored_volume.h"
 #include "world/blackout.h"
 #include "world/deformable_layout.h"
+#include "world/drawn_points.h"
+#include "world/free_view.h"
 #include "world/model_names.h"
+#include "world/studio.h"
 #include "world/visual_camera.h"
 #include "world/visual_deformable.h"
 #include "world/visual_file.h"
@@ -238,6 +242,25 @@ Framing framing_of(const mjModel& m, const std::vector<Affine3f>& poses, size_t 
   return {{middle.x, middle.y, middle.z}, max(length(high - low), 1e-3f)};
 }
 
+/// A model without a place around it: the free camera frames it, and the studio lights it where it
+/// brings no light.
+void present_model(const CompiledWorld& world, RenderDescription* out) {
+  const Scene& scene = world.scene;
+  const EnvironmentOptions& place = scene.environment;
+  if (scene.render.look == "model" || !place.file.empty() || has_generator(place)) return;
+  const mjModel& m = *world.model;
+  const std::vector<DrawnPart> all = drawn_parts(*out, body_poses_at_start(world));
+  const std::vector<DrawnPart> subject =
+      subject_of(all, *out, {m.body_rootid, static_cast<size_t>(m.nbody)});
+  CameraDescription& free = out->cameras.back();
+  frame_subject(subject, free_direction(m), steepest_elevation(m), &free);
+  free.near = 0;  // it stands where nothing is in its way
+  free.culls_backs = false;
+  if (needs_studio(scene, *out)) return add_studio(subject, all, free.X_WC, out);
+  const bool own_light = !scene.lights.empty() || scene.sky;  // of the scene, in real units
+  if (scene.render.look == "auto" && !own_light) open_exposure(subject, free.X_WC, out);
+}
+
 }  // namespace
 
 Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
@@ -335,6 +358,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
   if (world.scene.weather)
     GLOAM_TRY_STATUS(author_weather(*world.scene.weather, world.wind, world.regions, poses, &out));
   out.ev100 = world.ev100 ? static_cast<float>(*world.ev100) : exposure(levels, out);
+  present_model(world, &out);
   return out;
 }
 

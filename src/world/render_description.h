@@ -110,9 +110,10 @@ struct InstanceDescription {
   int material = 0;
   bool is_static = false;  ///< never moves: its body is welded to the world
   bool casts_shadow = true;
-  int group = 0;      ///< MuJoCo's
-  bool shown = true;  ///< false: a collision shape that something else is drawn for
-  int geom = -1;      ///< row of PoseFrame::geom_rgba, -1 = its colour never changes
+  bool color_only = false;  ///< colour pictures alone show it: not exact channels, not LiDARs
+  int group = 0;            ///< MuJoCo's
+  bool shown = true;        ///< false: a collision shape that something else is drawn for
+  int geom = -1;            ///< row of PoseFrame::geom_rgba, -1 = its colour never changes
   LabelRow label;
 };
 

@@ -123,6 +123,13 @@ CameraDescription free_camera(const mjModel& m, const Framing& framing) {
   return camera;
 }
 
+/// Whether <visual><global> says from where to look.
+bool gives_direction(const mjModel& model) {
+  constexpr float kMujocoAzimuth = 90, kMujocoElevation = -45;  // where it does not
+  const auto& global = model.vis.global;
+  return global.azimuth != kMujocoAzimuth || global.elevation != kMujocoElevation;
+}
+
 }  // namespace
 
 std::string camera_name(const mjModel& m, int id) {
@@ -164,6 +171,19 @@ Status set_clips(const CompiledWorld& world, RenderDescription* out) {
     }
   }
   return {};
+}
+
+ViewDirection free_direction(const mjModel& model) {
+  constexpr float kAzimuth = 140, kElevation = -22;
+  constexpr auto kRadian = static_cast<float>(kDegree);
+  if (!gives_direction(model)) return {kAzimuth * kRadian, kElevation * kRadian};
+  return {model.vis.global.azimuth * kRadian, model.vis.global.elevation * kRadian};
+}
+
+float steepest_elevation(const mjModel& model) {
+  constexpr auto kRadian = static_cast<float>(kDegree);
+  constexpr float kSteepest = -50;
+  return (gives_direction(model) ? model.vis.global.elevation : kSteepest) * kRadian;
 }
 
 void describe_cameras(const mjModel& model, const Framing& framing, RenderDescription* out) {

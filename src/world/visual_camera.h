@@ -4,6 +4,7 @@
 #include <mujoco/mujoco.h>
 
 #include "gloam/scene.h"
+#include "world/free_view.h"
 #include "world/render_description.h"
 
 namespace gloam {
@@ -23,6 +24,12 @@ Status set_optics(const Scene& scene, std::vector<CameraDescription>* cameras);
 /// Near planes, back faces and hidden bodies. Those of bare models see as MuJoCo's renderer shows
 /// them. Instances and cameras are all there. Errors: no such body.
 Status set_clips(const CompiledWorld& world, RenderDescription* out);
+/// The direction in which the free camera shows a model: a three-quarter view from above, or the
+/// azimuth and elevation that the model gives in <visual><global>.
+ViewDirection free_direction(const mjModel& model);
+
+/// Elevation to which a view may be steepened [rad]: its own where the model gives one.
+float steepest_elevation(const mjModel& model);
 
 /// All cameras of the model, then the free camera "free" as MuJoCo's viewer first shows it.
 void describe_cameras(const mjModel& model, const Framing& framing, RenderDescription* out);

@@ -20,4 +20,17 @@ std::vector<Affine3f> body_poses_at_qpos0(const mjModel& model) {
   return poses;
 }
 
+std::vector<Affine3f> body_poses_at_start(const CompiledWorld& world) {
+  const mjModel& m = *world.model;
+  if (world.initial_key < 0) return body_poses_at_qpos0(m);
+  const DataPtr data(mj_makeData(&m));
+  if (data == nullptr) return body_poses_at_qpos0(m);
+  mj_resetDataKeyframe(&m, data.get(), world.initial_key);
+  mj_kinematics(&m, data.get());
+  std::vector<Affine3f> poses;
+  for (int b = 0; b < static_cast<int>(m.nbody); ++b)
+    poses.push_back(rigid_pose(data->xpos + 3 * b, data->xquat + 4 * b));
+  return poses;
+}
+
 }  // namespace gloam

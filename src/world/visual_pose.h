@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/vec.h"
+#include "world/world.h"
 
 namespace gloam {
 
@@ -14,5 +15,8 @@ Affine3f rigid_pose(const mjtNum* position, const mjtNum* quaternion);
 
 /// X_WB of every body at qpos0: the chain of body_pos and body_quat.
 std::vector<Affine3f> body_poses_at_qpos0(const mjModel& model);
+
+/// X_WB of every body where the simulation starts: at its keyframe, else at qpos0.
+std::vector<Affine3f> body_poses_at_start(const CompiledWorld& world);
 
 }  // namespace gloam

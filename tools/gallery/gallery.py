@@ -3,6 +3,7 @@
 
   ./gloam gallery                all pictures, scenes and the page (some half an hour on two cores)
   ./gloam gallery --only glass   pictures with "glass" in chapter/name; the page is made of what is there
+  ./gloam gallery --models DIR   a contact sheet of somebody's robots, and which are dark or specks
   ./gloam gallery --quick        small and noisy, into build/gallery: does every scene still render? (of generated places one seed)
 
 Chapters are tools/gallery/chapters/*.toml, each picture a few lines that are added to a set of tools/gallery/sets.
@@ -21,6 +22,7 @@ from pathlib import Path
 HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 import clouds  # noqa: E402
+import models  # noqa: E402
 import page  # noqa: E402
 import show  # noqa: E402
 from chapters import read_chapters  # noqa: E402
@@ -139,8 +141,12 @@ def main():
     parser = argparse.ArgumentParser(prog="./gloam gallery", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", metavar="TEXT", default="", help="pictures with TEXT in chapter/name")
     parser.add_argument("--quick", action="store_true", help="small and noisy pictures")
+    parser.add_argument("--models", type=Path, metavar="FOLDER",
+                        help="instead, a contact sheet of all MJCF and URDF models in FOLDER, as a newcomer first sees each; into --out or build/models")
     parser.add_argument("--out", type=Path, help="another folder than docs/gallery or build/gallery, inside the repository")
     args = parser.parse_args()
+    if args.models:
+        return models.run(PROGRAM, args.models.resolve(), (args.out or ROOT / "build" / "models").resolve(), say)
     folder = (args.out or (DRAFT if args.quick else BOOK)).resolve()
     if not folder.is_relative_to(ROOT):
         parser.error(f"{folder} is not inside {ROOT}, where the scenes find their sets")

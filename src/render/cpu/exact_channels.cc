@@ -40,7 +40,8 @@ class ChannelLanes {
     }
     const auto c = describe_surface(job_.scene, job_.camera, ray, s, hit, found, details);
     each_lane(inside_, [&](int i) { store(i, lane(c, i), details); });
-    each_lane(found & (s.opacity < 0.5f), [&](int i) {
+    const MaskLanes hidden = color_only_lanes<F>(job_.scene, hit.instance, found);
+    each_lane(found & ((s.opacity < 0.5f) | hidden), [&](int i) {
       if (shows(job_.scene, lane(s, i))) return;
       const RayCone one{lane(cone.width, i), lane(cone.spread, i)};
       store(i, look_through(lane(ray, i), one), details);

@@ -23,8 +23,9 @@ GLOAM_HD ExactChannels lane(const ExactChannelsOf<F>& c, int i) {
 }
 
 /// Whether the exact channels stop at a surface: what is evenly transparent is a thing, as MuJoCo
-/// draws it; holes in an opacity texture are not.
+/// draws it; holes in an opacity texture are not, nor what colour pictures alone show.
 GLOAM_HD bool shows(const SceneView& scene, const Surface& s) {
+  if (scene.instances[s.instance].color_only) return false;
   return s.opacity >= 0.5f || scene.materials[scene.instances[s.instance].material].opacity < 1.0f;
 }
 

@@ -154,14 +154,15 @@ GLOAM_HD void trace_echoes(const SceneView& scene, const Tracer& tracer, const L
     FrameOf<F> frame;
     const F g = lidar::reflectivity(scene, optics, -ray.d, blur, active, &s, &bsdf, &frame);
     way += hit.t * index;
-    const F signal = g * share * share * pulse / (way * way);
+    const MaskOf<F> unseen = color_only_lanes<F>(scene, s.instance, active);
+    const F signal = select(unseen, F(0.0f), g * share * share * pulse / (way * way));
     each_lane(active & (signal > 0.0f), [&](int i) {
       const float range = lane(way, i), seen = lane(signal, i) * lidar::overlap(optics, range);
       if (seen > 0) echoes[i].add({range, seen, lane(s.instance, i) + 1});
     });
 
     if (!scene.has_transparent && scene.layers.empty()) return;
-    F passed = passing_light(s).x;
+    F passed = select(unseen, F(1.0f), passing_light(s).x);
     Vec3Of<F> d = ray.d;
     each_lane(active & bsdf.layered & (bsdf.p_glass > 0.0f) & !bsdf.straight, [&](int i) {
       Vec3f bent = lane(d, i);

@@ -35,8 +35,9 @@ struct MeshView {
 
 struct InstanceView {
   ShapeType shape = ShapeType::kBox;
-  bool moving = false;     ///< while the shutter is open: `keys` holds poses that differ
-  bool has_moved = false;  ///< X_WG_previous differs from X_WG
+  bool moving = false;      ///< while the shutter is open: `keys` holds poses that differ
+  bool has_moved = false;   ///< X_WG_previous differs from X_WG
+  bool color_only = false;  ///< as in InstanceDescription
   uint32_t material = 0;
   uint32_t mesh = 0;
   int light = -1;   ///< row of lights when it emits and can be sampled
@@ -294,6 +295,7 @@ struct SceneView {
   Vec3f sky_ambient;             ///< for indirect rays
   AmbientCube ambient;           ///< for the direct stage
   bool has_transparent = false;  ///< some material lets light straight through
+  bool has_color_only = false;   ///< some instance is color_only; then has_transparent holds, too
   bool has_emitters = false;  ///< something that a ray can hit gives light: sky, sphere, instance
   bool has_visible_lights = false;  ///< some sphere or sun can be hit
 
@@ -322,6 +324,17 @@ struct SceneView {
            !has_transparent;
   }
 };
+
+/// The `active` lanes whose instance colour pictures alone show.
+template <class F>
+GLOAM_HD MaskOf<F> color_only_lanes(const SceneView& scene, UintOf<F> instance, MaskOf<F> active) {
+  MaskOf<F> out = false;
+  if (!scene.has_color_only) return out;
+  each_lane(active, [&](int i) {
+    if (scene.instances[lane(instance, i)].color_only) set_lane(&out, i, true);
+  });
+  return out;
+}
 
 /// Light of a row of SceneView::light_levels at a time in the shutter, as a share of its mean.
 GLOAM_HD float level_at(const SceneView& scene, int row, float time) {

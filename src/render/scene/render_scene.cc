@@ -158,6 +158,7 @@ Result<std::unique_ptr<RenderScene>> RenderScene::make(const RenderDescription& 
     out.shape = in.shape;
     out.material = static_cast<uint32_t>(in.material);
     out.size = in.size;
+    out.color_only = in.color_only;
     out.half_size = shape_half_size(in.shape, in.size);
     if (in.shape == ShapeType::kMesh || in.shape == ShapeType::kDeformable) {
       out.mesh = static_cast<uint32_t>(in.mesh);
@@ -327,7 +328,8 @@ SceneView RenderScene::view_from(const Affine3f& X_WC, std::span<const Affine3f>
   for (size_t i = 0; i < instances_.size(); ++i) {
     const MaterialView& material = materials_.views()[instances_[i].material];
     if (!is_drawn(i)) continue;
-    view.has_transparent |= material.transparent;
+    view.has_transparent |= material.transparent || instances_[i].color_only;
+    view.has_color_only |= instances_[i].color_only;
     view.has_emitters |= max_component(material.emission) > 0;
   }
   view.has_visible_lights = lights_.has_visible();

@@ -32,6 +32,18 @@ SceneBuilder box_room(Vec3f h) {
   return b;
 }
 
+TEST(LidarGeometry, WhatColourPicturesAloneShowIsNotMet) {
+  SceneBuilder b;
+  const int white = b.add_diffuse({0.5f, 0.5f, 0.5f});
+  add_wall(&b, {0.1f, 5, 5}, {10.1f, 0, 0}, white);
+  add_wall(&b, {0.1f, 5, 5}, {4.1f, 0, 0}, white);
+  b.description.instances.back().color_only = true;
+  const auto scan = scan_scene(b, pencil());
+  ASSERT_EQ(scan->x.size(), 1u);
+  EXPECT_NEAR(scan->range[0], 10, 1e-3);
+  EXPECT_NEAR(scan->intensity[0], 50, 1) << "nothing is lost on the way";
+}
+
 TEST(LidarGeometry, EveryBeamOfEveryPresetMeasuresABoxRoom) {
   const Vec3f h{6, 4, 3};
   const SceneBuilder room = box_room(h);
