@@ -325,7 +325,6 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     }
   }
   GLOAM_TRY_STATUS(set_optics(world.scene, &out.cameras));
-  GLOAM_TRY_STATUS(set_clips(world, &out));
   levels = describe_light(m, world.scene, poses, std::move(levels), &simulated.materials(), &out);
   out.center = {static_cast<float>(framing.center.x), static_cast<float>(framing.center.y),
                 static_cast<float>(framing.center.z)};
@@ -358,6 +357,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
   if (world.scene.weather)
     GLOAM_TRY_STATUS(author_weather(*world.scene.weather, world.wind, world.regions, poses, &out));
   out.ev100 = world.ev100 ? static_cast<float>(*world.ev100) : exposure(levels, out);
+  GLOAM_TRY_STATUS(set_clips(world, &out));
   present_model(world, &out);
   return out;
 }
