@@ -43,7 +43,8 @@ MaskLanes ViewClip::passes(const RayOf<FloatLanes>& ray, const RayHitOf<FloatLan
   }
   if (hidden.empty()) return passed;
   each_lane(found, [&](int i) {
-    if (hidden[lane(hit.instance, i)] != 0) set_lane(&passed, i, true);
+    const uint32_t row = lane(hit.instance, i);  // what joins a scene later is never hidden
+    if (row < hidden.size && hidden[row] != 0) set_lane(&passed, i, true);
   });
   return passed;
 }
