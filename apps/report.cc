@@ -29,8 +29,9 @@ int run_and_report(const World& world, const RunRequest& request, const Globals&
                 report->sim_time, report->wall_time, factor, static_cast<long long>(report->steps),
                 static_cast<unsigned long long>(report->hash));
     if (!report->out.empty()) {
-      std::printf("results in %s (%lld pictures):\n", report->out.string().c_str(),
-                  static_cast<long long>(report->frames));
+      const std::string pictures =
+          report->frames > 0 ? fmt::format(" ({} pictures)", report->frames) : std::string();
+      std::printf("results in %s%s:\n", report->out.string().c_str(), pictures.c_str());
       for (const std::string& file : report->written) std::printf("  %s\n", file.c_str());
     }
   }

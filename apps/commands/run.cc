@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -9,6 +10,7 @@
 
 #include "gloam/view.h"
 #include "interrupt.h"
+#include "outputs.h"
 #include "report.h"
 #include "run_options.h"
 
@@ -61,10 +63,17 @@ int run(const RunCommand& command_line, const Globals& globals) {
   if (!command.options.outputs.empty()) {
     scene->record.outputs = command.options.outputs;
     for (CameraOptions& camera : scene->cameras) camera.outputs.reset();
-    for (LidarOptions& lidar : scene->lidars) lidar.outputs.reset();
+    const bool has_lidar = std::ranges::count(scene->record.outputs, "lidar") > 0;
+    for (LidarOptions& lidar : scene->lidars) {
+      // Formats of its own are kept; [] asks for none, "lidar" for the usual one.
+      if (!has_lidar || (lidar.outputs && lidar.outputs->empty())) lidar.outputs.reset();
+    }
   }
+  if (const Status status = check_outputs(command.options.outputs); !status.ok())
+    return fail(status.error());
   auto world = compile(*scene, globals);
   if (!world.ok()) return fail(world.error());
+  tell_void_outputs(command.options.outputs, *scene, *world);
 
   RunRequest request;
   request.out = command.out;

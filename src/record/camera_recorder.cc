@@ -56,6 +56,12 @@ CameraRecorder::CameraRecorder(RecordedCamera camera, std::filesystem::path fold
       store_(std::move(store)),
       thumbnails_(kThumbnails) {}
 
+bool CameraRecorder::writes_pictures() const {
+  return writes("video") || std::ranges::any_of(frame_files(), [this](const FrameFile& file) {
+           return writes(file.output);
+         });
+}
+
 Status CameraRecorder::start() {
   GLOAM_TRY_STATUS(store_->make_folder(folder_ / file_name_));
   GLOAM_TRY(std::unique_ptr<ByteSink> sink, store_->create(folder_ / file_name_ / "poses.csv"));

@@ -198,7 +198,8 @@ class FolderRecorder : public Recorder {
 
   int64_t frames() const override {
     int64_t sum = 0;
-    for (const auto& [name, lane] : lanes_) sum += lane->recorder.frames();
+    for (const auto& [name, lane] : lanes_)
+      if (lane->recorder.writes_pictures()) sum += lane->recorder.frames();
     return sum;
   }
 

@@ -14,6 +14,7 @@
 #include "base/text.h"
 #include "scene/mjcf/spec_only.h"
 #include "scene/mujoco_guard.h"
+#include "scene/mujoco_hints.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
@@ -23,6 +24,18 @@ constexpr uint64_t kLargestAsset = uint64_t{1} << 30;
 constexpr uint64_t kLargestTotal = uint64_t{8} << 30;
 constexpr size_t kMostXmlFiles = 2000;
 constexpr size_t kDeepestInclude = 64;
+
+constexpr std::string_view kLfsPointer = "is a Git LFS pointer, not the file itself";
+
+// What is drawn or collides, and is no model: by its name.
+bool is_mesh_file(const fs::path& path) {
+  const std::string extension = lower_extension(path);
+  constexpr std::string_view kMeshes[] = {".obj",  ".stl", ".ply", ".dae", ".glb",
+                                          ".gltf", ".msh", ".fbx", ".usd"};
+  return std::ranges::find(kMeshes, extension) != std::end(kMeshes);
+}
+
+bool is_jpeg(std::string_view bytes) { return bytes.starts_with("\xFF\xD8\xFF"); }
 
 bool leads_to_xml(const FileReference& reference) {
   return reference.element == "include" || reference.element == "model";
@@ -119,6 +132,8 @@ Result<ModelFiles::Content> ModelFiles::open(const fs::path& path, std::string* 
   }
   Result<std::string> bytes = read_text_file(path, kLargestAsset);
   if (!bytes.ok()) return fail(bytes.error().kind, bytes.error().message);
+  if (bytes->starts_with("version https://git-lfs.github.com/spec/"))
+    return fail(ErrorKind::kInput, std::string(kLfsPointer));
   total_size_ += bytes->size();
   if (total_size_ > kLargestTotal)
     return fail(ErrorKind::kInput, "is one file too many: the model's files exceed 8 GiB");
@@ -168,7 +183,8 @@ Status ModelFiles::scan(const fs::path& file, const fs::path& model, const Sourc
     error.message =
         fmt::format("'{}' {}", is_named ? file.filename().string() : file.string(), error.message);
     error.loc = named_at;
-    error.hint = why_not_readable(file, roots_).empty()
+    error.hint = content.error().message == kLfsPointer ? "fetch it: git lfs pull"
+                 : why_not_readable(file, roots_).empty()
                      ? "check the path"
                      : "--root FOLDER widens what the model may read";
     return error;
@@ -190,7 +206,9 @@ Status ModelFiles::scan(const fs::path& file, const fs::path& model, const Sourc
   stack.push_back(file);
   for (const FileReference& reference : kept.references) {
     const SourceLoc loc = written_at({file.string(), reference.line, 0});
-    if (kept.root == "robot" && reference.element == "mesh") continue;  // see urdf_text.h
+    // Those are looked for by urdf_text.h, which knows packages.
+    if (kept.root == "robot" && (reference.element == "mesh" || reference.element == "texture"))
+      continue;
     if (reference.element == "compiler" && reference.value.empty()) continue;
     const std::string refusal = why_not_a_path(reference.value);
     if (!refusal.empty()) {
@@ -234,6 +252,12 @@ Status ModelFiles::add_model(const fs::path& file, const FileAccess& access, con
         fmt::format("'{}' is an archive or binary model, which is not read", file.string()), loc,
         "give the MJCF (.xml) or URDF file"};
   }
+  if (is_mesh_file(path)) {
+    return Error{
+        ErrorKind::kInput, fmt::format("'{}' is a mesh, not a model", file.string()), loc,
+        "draw it by a [[visual]], let it fall as an [[object]], stand in it as [environment] "
+        "file, or look at it by gloam convert (docs/import.md)"};
+  }
   GLOAM_TRY_STATUS(admit(path, access));
   std::vector<fs::path> stack;
   GLOAM_TRY_STATUS(scan(path, path, loc, stack));
@@ -242,7 +266,7 @@ Status ModelFiles::add_model(const fs::path& file, const FileAccess& access, con
   return Error{ErrorKind::kInput,
                fmt::format("the top element is <{:.40}>, so this is neither MJCF nor URDF", top),
                {path.string(), 1, 0},
-               "MJCF starts with <mujoco>, URDF with <robot>"};
+               "MJCF starts with <mujoco>, URDF with <robot>; <html> is a web page about the file"};
 }
 
 const std::string& ModelFiles::root_element(const fs::path& file) const {
@@ -343,6 +367,28 @@ void ModelFiles::find_place(const std::string& element, Error* error, const fs::
   }
 }
 
+// MuJoCo says "unsupported content type" or that no PNG can be read, and names the texture alone.
+void ModelFiles::explain_picture(Error* error) const {
+  const auto scan = scans_.find(error->loc.file);
+  if (scan == scans_.end()) return;
+  const bool is_unknown = error->message.find("content type") != std::string::npos;
+  for (const FileReference& reference : scan->second.references) {
+    if (reference.line != error->loc.line || reference.element != "texture") continue;
+    const fs::path name = fs::path(reference.value).filename();
+    const bool has_jpeg = std::ranges::any_of(contents_, [&](const auto& file) {
+      return file.first.filename() == name && is_jpeg(*file.second);
+    });
+    const std::string extension = lower_extension(name);
+    if (!has_jpeg && !is_unknown && extension != ".jpg" && extension != ".jpeg") continue;
+    error->message = fmt::format(
+        "the picture '{:.200}' of a <texture> is {}, which MuJoCo does not read", reference.value,
+        has_jpeg || extension == ".jpg" || extension == ".jpeg" ? "a JPEG" : "no PNG or KTX file");
+    error->hint = fmt::format("convert it: magick {0}{1} {0}.png, and name that",
+                              name.stem().string(), name.extension().string());
+    return;
+  }
+}
+
 Error ModelFiles::explain(const std::string& message, const fs::path& model) const {
   const std::lock_guard lock(mutex_);
   for (const Failure& failure : failures_) {
@@ -350,7 +396,9 @@ Error ModelFiles::explain(const std::string& message, const fs::path& model) con
     Error error{failure.kind, fmt::format("'{}' {}", failure.path.string(), failure.reason),
                 find_reference(failure.path)};
     if (error.loc.file.empty()) error.loc.file = model.string();
-    if (failure.reason == "does not exist") {
+    if (failure.reason == kLfsPointer) {
+      error.hint = "fetch it: git lfs pull";
+    } else if (failure.reason == "does not exist") {
       error.hint = "check the path, meshdir and texturedir";
     } else if (!why_not_readable(failure.path, roots_).empty()) {
       error.hint = "--root FOLDER widens what the model may read";
@@ -377,6 +425,8 @@ Error ModelFiles::explain(const std::string& message, const fs::path& model) con
                     std::string(match.suffix());
   }
   find_place(element, &error, absolute_path(model, ""));
+  explain_picture(&error);
+  if (error.hint.empty()) error.hint = mujoco_hint(error.message, element);
   if (error.message.empty()) error.message = "MuJoCo refused the model without a reason";
   return error;
 }

@@ -92,6 +92,7 @@ class ModelFiles {
   // `is_scanned`: the caller bounds XML itself.
   Result<Content> open(const std::filesystem::path& path, std::string* hash_text,
                        bool is_scanned = false);
+  void explain_picture(Error* error) const;
   void find_place(const std::string& element, Error* error,
                   const std::filesystem::path& model) const;
   SourceLoc find_reference(const std::filesystem::path& path) const;

@@ -138,6 +138,19 @@ Status check_fatal(const pugi::xml_node& node, const std::function<SourceLoc()>&
   return what == nullptr ? Status() : Error{ErrorKind::kInput, what, loc()};
 }
 
+// A xacro file is a program that writes a URDF; read as one it would be an empty robot.
+Status check_expanded(const pugi::xml_node& node, const std::function<SourceLoc()>& loc) {
+  bool is_macro = std::string_view(node.name()).starts_with("xacro:");
+  for (const pugi::xml_attribute& attribute : node.attributes()) {
+    const std::string_view value = attribute.value();
+    is_macro = is_macro || value.find("${") != std::string_view::npos ||
+               value.find("$(") != std::string_view::npos;
+  }
+  if (!is_macro) return {};
+  return Error{ErrorKind::kInput, fmt::format("<{:.60}>: xacro is not expanded", node.name()),
+               loc(), "run xacro first: xacro FILE.urdf.xacro > FILE.urdf"};
+}
+
 // The elements that `node` becomes. MuJoCo attaches copies one by one and goes through all elements
 // of the copies so far at each: measured for 10⁴ to 5·10⁴ lights with 3.12 on a server's core.
 double weigh(const pugi::xml_node& node, const XmlLines& lines, Replicate* slowest) {
@@ -174,6 +187,7 @@ Result<XmlScan> scan_model_xml(std::string_view text, const std::string& file) {
     } else {
       status = check_sizes(node, loc);
       if (status.ok()) status = check_fatal(node, loc);
+      if (status.ok() && scan.root == "robot") status = check_expanded(node, loc);
     }
     if (!status.ok()) return false;
     const std::string_view element = node.name();

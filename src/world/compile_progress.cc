@@ -1,6 +1,7 @@
 #include "world/compile_progress.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace gloam {
@@ -8,6 +9,15 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 constexpr Seconds kInterval{0.1};
+// How far a stage is that was expected to take `expected`, by the clock: as expected at first, then
+// ever slower, so that it never stands still and never ends by itself.
+double expected_share(double passed, double expected) {
+  constexpr double kAsExpected = 0.8;
+  const double x = passed / expected;
+  if (x <= kAsExpected) return x;
+  return 1 - (1 - kAsExpected) * std::exp((kAsExpected - x) / (1 - kAsExpected));
+}
+
 constexpr double kTelling = 0.02;  // share that must be done to tell how long the rest takes
 
 double passed_since(std::chrono::steady_clock::time_point start) {
@@ -55,9 +65,13 @@ Progress CompileProgress::state(bool is_all) const {
   const double passed = passed_since(begun_);
   double share = share_;
   if (share > kTelling) out.left = passed * (1 - share) / share;
-  if (expected_ > passed) {
-    share = std::max(share, passed / expected_);
-    out.left = expected_ - passed;
+  if (expected_ > 0) {
+    const double by_clock = expected_share(passed, expected_);
+    if (by_clock > share) {
+      share = by_clock;
+      constexpr double kLate = 0.25;  // what is late stays late, in proportion
+      out.left = std::max(expected_ - passed, kLate * passed);
+    }
   }
   out.done = std::min((before_ + weight_ * share) / weights_, 1.0);
   if (is_all) out.done = 1, out.left = 0;

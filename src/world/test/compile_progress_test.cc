@@ -85,6 +85,28 @@ TEST_F(CompileProgressTest, GrowsToOneAndSaysWhatIsMade) {
   EXPECT_EQ(told.back().done, 1);
 }
 
+TEST_F(CompileProgressTest, MovesOnWhenAStageTakesLongerThanExpected) {
+  std::vector<Progress> told;
+  const ProgressCallback keep = [&](const Progress& progress) {
+    told.push_back(progress);
+    return true;
+  };
+  {
+    CompileProgress progress(keep, 1);
+    progress.begin("long", 1, 0.2);
+    std::this_thread::sleep_for(std::chrono::milliseconds(700));
+    progress.finish();
+  }
+  ASSERT_GE(told.size(), 6u);
+  for (size_t i = 1; i < told.size(); ++i) {
+    EXPECT_GT(told[i].done, told[i - 1].done) << i;
+    if (i + 1 < told.size()) {
+      EXPECT_LT(told[i].done, 1) << i;
+      EXPECT_GT(told[i].left, 0) << "an estimate, at " << i;
+    }
+  }
+}
+
 TEST_F(CompileProgressTest, OfStagesIsTheirWeightsAndNeverLess) {
   std::vector<Progress> told;
   const ProgressCallback keep = [&](const Progress& progress) {

@@ -1,0 +1,19 @@
+#pragma once
+// What --output asks for, and whether the scene has it.
+
+#include <string>
+#include <vector>
+
+#include "gloam/scene.h"
+#include "gloam/world.h"
+
+namespace gloam::cli {
+
+/// Error: a word that is none of kRecordOutputs, with the nearest one.
+Status check_outputs(const std::vector<std::string>& outputs);
+
+/// Tells on stderr which of them nothing in the scene delivers.
+void tell_void_outputs(const std::vector<std::string>& outputs, const Scene& scene,
+                       const World& world);
+
+}  // namespace gloam::cli

@@ -1,0 +1,14 @@
+#pragma once
+// What to do about what MuJoCo's parser and compiler refuse.
+
+#include <string>
+#include <string_view>
+
+namespace gloam {
+
+/// A sentence for an error that MuJoCo told as `message`, of the element `element` ("" = not
+/// known);
+/// "" where Gloam knows nothing that MuJoCo does not say.
+std::string mujoco_hint(std::string_view message, std::string_view element);
+
+}  // namespace gloam
