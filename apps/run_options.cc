@@ -42,6 +42,11 @@ void RunOptions::add_to(CLI::App& command) {
                   "Light of a model that brings none; studio: soft light and a floor; model: as "
                   "MuJoCo shows it; default: the scene's, else studio where nothing gives light")
       ->check(CLI::IsMember({"auto", "studio", "model"}));
+      .add_option("--groups", groups,
+                  "Groups of geoms, tendons and sites to draw, as 0,1,2,3; default: 0,1,2")
+      ->delimiter(',')
+      ->check(CLI::Range(0, 5));
+  command.add_flag("--sites", sites, "Draw sites, too");
   command.add_flag("--no-denoise", no_denoise, "Show the samples as they are");
   command.add_option("--threads", threads, "Threads for rendering; 0 = all")
       ->check(CLI::Range(0, 1024));
@@ -88,6 +93,8 @@ Result<Scene> RunOptions::load(const std::string& file) {
   if (!device.empty()) scene.render.device = device;
   if (!look.empty()) scene.render.look = look;
   if (ev100) scene.render.ev100 = *ev100;
+  if (!groups.empty()) scene.render.groups = groups;
+  if (sites) scene.render.sites = true;
   if (no_denoise) scene.render.denoise = false;
   set_thread_count(threads);
   return scene;

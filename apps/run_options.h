@@ -27,7 +27,8 @@ struct RunOptions : SceneOptions {
   std::optional<int> spp, max_depth;
   std::string tier, device, look, resolution;
   std::vector<std::string> cameras, outputs;
-  bool no_denoise = false;
+  std::vector<int> groups;
+  bool no_denoise = false, sites = false;
   int threads = 0;
 
   void add_to(CLI::App& command);

@@ -15,8 +15,11 @@ struct ExportCommand {
 int export_scene(ExportCommand& command, const Globals& globals) {
   auto world = command.scene.compile(command.file, globals);
   if (!world.ok()) return fail(world.error());
-  if (const Status status = world->export_mjcf(command.out); !status.ok())
+  std::vector<Error> left_out;
+  if (const Status status = world->export_mjcf(command.out, &left_out); !status.ok())
     return fail(status.error());
+  for (const Error& error : left_out)
+    std::fprintf(stderr, "gloam: note: %s\n", error.to_string().c_str());
   std::printf("%s\n", (std::filesystem::path(command.out) / "scene.xml").string().c_str());
   return 0;
 }

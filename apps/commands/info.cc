@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -19,7 +20,8 @@ struct InfoCommand {
 
 using Section = std::pair<const char*, const std::vector<NamedElement>*>;
 
-void print_json(const WorldInfo& info, const std::vector<Section>& sections) {
+void print_json(const WorldInfo& info, const NotDrawn& not_drawn,
+                const std::vector<Section>& sections) {
   nlohmann::ordered_json json = {{"nq", info.nq},
                                  {"nv", info.nv},
                                  {"nu", info.nu},
@@ -43,7 +45,8 @@ void print_json(const WorldInfo& info, const std::vector<Section>& sections) {
       list.push_back({{"name", element.name}, {"detail", element.detail}});
   }
   for (const auto& [title, errors] :
-       {std::pair("notes", &info.notes), std::pair("unsupported", &info.unsupported)}) {
+       {std::pair("notes", &info.notes), std::pair("unsupported", &info.unsupported),
+        std::pair("hidden", &not_drawn.hidden)}) {
     auto& list = json[title] = nlohmann::ordered_json::array();
     for (const Error& error : *errors) {
       list.push_back({{"file", error.loc.file},
@@ -55,7 +58,8 @@ void print_json(const WorldInfo& info, const std::vector<Section>& sections) {
   std::printf("%s\n", json.dump(2).c_str());
 }
 
-void print_text(const WorldInfo& info, const std::vector<Section>& sections) {
+void print_text(const WorldInfo& info, const NotDrawn& not_drawn,
+                const std::vector<Section>& sections) {
   fmt::print("{} positions, {} velocities, {} controls; time step {} s; mass {:.3f} kg\n", info.nq,
              info.nv, info.nu, info.timestep, info.mass);
   fmt::print("{:.2f} MiB of model, {} triangles drawn\n",
@@ -77,23 +81,35 @@ void print_text(const WorldInfo& info, const std::vector<Section>& sections) {
     }
   }
   for (const auto& [title, errors] :
-       {std::pair("notes", &info.notes), std::pair("not supported", &info.unsupported)}) {
+       {std::pair("notes", &info.notes), std::pair("not supported", &info.unsupported),
+        std::pair("not drawn unless asked for", &not_drawn.hidden)}) {
     if (!errors->empty()) fmt::print("\n{} ({})\n", title, errors->size());
     for (const Error& error : *errors) fmt::print("  {}\n", error.to_string());
   }
-  if (info.unsupported.empty()) fmt::print("\neverything in the file is simulated and drawn\n");
+  // MuJoCo's own remarks tell of what it leaves out.
+  const bool is_ignored = std::ranges::any_of(
+      info.notes, [](const Error& note) { return note.message.starts_with("MuJoCo: "); });
+  if (info.unsupported.empty() && not_drawn.hidden.empty() && !is_ignored)
+    fmt::print("\neverything in the file is simulated and drawn\n");
 }
 
 int info(InfoCommand& command, const Globals& globals) {
   if (command.schema) return report_schema(globals);
   auto world = command.scene.compile(command.file, globals);
   if (!world.ok()) return fail(world.error());
-  const WorldInfo info = world->info();
-  const std::vector<Section> sections = {{"bodies", &info.bodies},       {"joints", &info.joints},
-                                         {"actuators", &info.actuators}, {"sensors", &info.sensors},
-                                         {"cameras", &info.cameras},     {"lights", &info.lights},
-                                         {"materials", &info.materials}, {"geoms", &info.geoms}};
-  globals.json ? print_json(info, sections) : print_text(info, sections);
+  WorldInfo info = world->info();
+  const NotDrawn not_drawn = world->not_drawn();
+  info.unsupported.insert(info.unsupported.end(), not_drawn.lacking.begin(),
+                          not_drawn.lacking.end());
+  const std::vector<Section> sections = {
+      {"bodies", &info.bodies},         {"joints", &info.joints},
+      {"actuators", &info.actuators},   {"sensors", &info.sensors},
+      {"cameras", &info.cameras},       {"lights", &info.lights},
+      {"materials", &info.materials},   {"geoms", &info.geoms},
+      {"sites", &info.sites},           {"tendons", &info.tendons},
+      {"equalities", &info.equalities}, {"keyframes", &info.keyframes},
+      {"textures", &info.textures}};
+  globals.json ? print_json(info, not_drawn, sections) : print_text(info, not_drawn, sections);
   return 0;
 }
 

@@ -59,6 +59,8 @@ struct RobotOptions {
       {};          ///< MJCF (.xml, .mjz, .mjb not) or URDF (.urdf), relative to the scene file
   Pose X_WR = {};  ///< where its root frame stands in the world
   std::string keyframe = {};  ///< initial pose by name; empty = the model's default
+  /// model = as in its file (a URDF's root link is fixed); free = on a free joint "floating_base"
+  std::string base = "model";
   ControllerOptions controller = {};
   SourceLoc loc = {};
 };
@@ -240,6 +242,10 @@ struct RenderOptions {
   std::string look = "auto";
   std::optional<double> ev100 =
       {};  ///< exposure value at ISO 100; empty = the scene's rule (docs/light.md)
+  /// Groups of geoms, skins, flexes, tendons and sites that are drawn, 0 … 5; empty = 0 to 2, and
+  /// collision shapes of what has nothing else to show
+  std::vector<int> groups = {};
+  bool sites = false;  ///< sites are drawn: seen by cameras alone
   SourceLoc loc = {};
 
   /// spp, or where it is empty 4, with `error` 4096.

@@ -41,6 +41,7 @@ struct NamedElement {
 struct WorldInfo {
   /// Cameras without a name are called "camera_ID", so that they can be asked for.
   std::vector<NamedElement> bodies, joints, actuators, sensors, cameras, geoms, lights, materials;
+  std::vector<NamedElement> sites, tendons, equalities, keyframes, textures;
   int nq = 0, nv = 0, nu = 0;
   double timestep = 0;             ///< [s]
   double mass = 0;                 ///< of all bodies [kg]
@@ -50,6 +51,12 @@ struct WorldInfo {
   std::vector<DrawnOption> drawn;  ///< what came of [[randomize]]
   std::vector<Error> notes;        ///< as World::notes()
   std::vector<Error> unsupported;  ///< as World::unsupported()
+};
+
+/// What is in the files and not in pictures.
+struct NotDrawn {
+  std::vector<Error> hidden;   ///< groups and sites that pictures show when asked to
+  std::vector<Error> lacking;  ///< cannot be drawn
 };
 
 /// How far a job is.
@@ -89,9 +96,14 @@ class World {
   /// What is in the files and is not simulated or drawn, and where.
   const std::vector<Error>& unsupported() const;
 
+  /// Reads all that pictures show to tell, which takes as long as a renderer's start.
+  NotDrawn not_drawn() const;
+
   /// Writes the whole level as one MJCF with its assets into `folder`/scene.xml; stock MuJoCo loads
-  /// it to the same model, equal in every array.
-  Status export_mjcf(const std::filesystem::path& folder) const;
+  /// it to the same model, equal in every array. With `left_out`, what is only drawn joins it as
+  /// visual geoms, and what MJCF cannot hold is listed there.
+  Status export_mjcf(const std::filesystem::path& folder,
+                     std::vector<Error>* left_out = nullptr) const;
 
   const std::shared_ptr<const CompiledWorld>& compiled() const { return compiled_; }
 

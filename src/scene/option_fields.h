@@ -47,6 +47,7 @@ void visit_fields(Visitor& v, RobotOptions& o) {
   v("position", o.X_WR.p, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
   v("orientation", o.X_WR.q, FieldRule{.unit = "wxyz"});
   v("keyframe", o.keyframe, FieldRule{});
+  v("base", o.base, FieldRule{.choices = {"model", "free"}});
   v("controller", o.controller, FieldRule{});
 }
 
@@ -207,6 +208,8 @@ void visit_fields(Visitor& v, RenderOptions& o) {
   v("device", o.device, FieldRule{.choices = {"auto", "cpu", "cuda"}});
   v("denoise", o.denoise, FieldRule{});
   v("ev100", o.ev100, FieldRule{.unit = "EV", .min = -30, .max = 30});
+  v("groups", o.groups, FieldRule{.min = 0, .max = 5});
+  v("sites", o.sites, FieldRule{});
 }
 
 template <class Visitor>

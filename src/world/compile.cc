@@ -171,6 +171,7 @@ Result<World> World::compile(const Scene& written, const ProgressCallback& callb
   world->notes = std::move(level.notes);
   world->place_notes = std::move(sizes);
   world->unsupported = std::move(level.unsupported);
+  world->lines = std::move(level.lines);
   GLOAM_TRY_STATUS(describe_rest(world.get()));
   add_urdf_visuals(scene, &files, world.get());
   if (std::chrono::steady_clock::now() - start > kWorthCaching)

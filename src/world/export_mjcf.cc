@@ -14,6 +14,7 @@
 #include "geometry/png_writer.h"
 #include "scene/environment/generators.h"
 #include "scene/mujoco_guard.h"
+#include "world/export_visuals.h"
 #include "world/level.h"
 #include "world/mesh_object.h"
 #include "world/model_compare.h"
@@ -222,6 +223,44 @@ Result<ExportedModel> save_and_compare(mjSpec* spec, const mjModel* wanted, cons
   return exported;
 }
 
+// Whether visual geoms have left the physics as it was.
+bool is_same_physics(const mjModel& a, const mjModel& b) {
+  const auto same = [](const mjtNum* x, const mjtNum* y, mjtSize count) {
+    return std::equal(x, x + count, y);
+  };
+  return a.nq == b.nq && a.nv == b.nv && a.nu == b.nu && a.nbody == b.nbody &&
+         a.nsensor == b.nsensor && same(a.body_mass, b.body_mass, a.nbody) &&
+         same(a.body_inertia, b.body_inertia, 3 * a.nbody) &&
+         same(a.body_ipos, b.body_ipos, 3 * a.nbody) && same(a.body_pos, b.body_pos, 3 * a.nbody) &&
+         same(a.qpos0, b.qpos0, a.nq);
+}
+
+// Adds what is only drawn to the exact export in `path`. Where stock MuJoCo does not take it, or
+// would move differently, the file stays as it is.
+Status add_visuals(const CompiledWorld& world, const fs::path& path, mjSpec* spec,
+                   AssetWriter* assets, std::vector<Error>* left_out) {
+  const std::vector<Error> words = list_left_out(world.scene);
+  left_out->insert(left_out->end(), words.begin(), words.end());
+  spec->compiler.discardvisual = 0;
+  GLOAM_TRY(const int count, add_visual_geoms(world, path.parent_path(), spec, left_out));
+  if (count == 0) return {};
+  GLOAM_TRY(const std::string exact, read_text_file(path, uint64_t{1} << 30));
+  std::string why = "the robot would move differently";
+  const Status ready = assets->compile_again(spec);
+  const Result<ExportedModel> saved =
+      ready.ok() ? save_and_compare(spec, world.model.get(), path) : ready.error();
+  if (saved.ok()) {
+    const Result<ModelPtr> model = load_stock_model(path);
+    if (model.ok() && is_same_physics(*world.model, **model)) return {};
+  } else {
+    why = saved.error().message;
+  }
+  left_out->push_back({ErrorKind::kUnsupported,
+                       fmt::format("{} visuals are not in the export: {}", count, why),
+                       {path.string(), 0, 0}});
+  return write_file_atomic(path, {reinterpret_cast<const uint8_t*>(exact.data()), exact.size()});
+}
+
 }  // namespace
 
 Result<ModelPtr> load_stock_model(const fs::path& file) {
@@ -238,7 +277,8 @@ Result<ModelPtr> load_stock_model(const fs::path& file) {
   return model;
 }
 
-Result<ExportedModel> write_mjcf(const CompiledWorld& world, const fs::path& folder) {
+Result<ExportedModel> write_mjcf(const CompiledWorld& world, const fs::path& folder,
+                                 std::vector<Error>* left_out) {
   // The spec is made anew: a World keeps what simulation needs, and a cached one never had it.
   ModelFiles files;
   GLOAM_TRY_STATUS(add_scene_files(world.scene, &files));
@@ -265,7 +305,10 @@ Result<ExportedModel> write_mjcf(const CompiledWorld& world, const fs::path& fol
     const Status ready = compiled_values ? assets.compile_again(spec) : Status();
     Result<ExportedModel> exported =
         ready.ok() ? save_and_compare(spec, world.model.get(), path) : ready.error();
-    if (exported.ok() && exported->differing.empty()) return exported;
+    if (exported.ok() && exported->differing.empty()) {
+      if (left_out != nullptr) GLOAM_TRY_STATUS(add_visuals(world, path, spec, &assets, left_out));
+      return exported;
+    }
     const std::string reason =
         exported.ok() ? fmt::format("differs in {}", fmt::join(exported->differing, ", "))
                       : exported.error().message;
@@ -278,8 +321,8 @@ Result<ExportedModel> write_mjcf(const CompiledWorld& world, const fs::path& fol
   return last;
 }
 
-Status World::export_mjcf(const fs::path& folder) const {
-  GLOAM_TRY(const ExportedModel exported, write_mjcf(*compiled_, folder));
+Status World::export_mjcf(const fs::path& folder, std::vector<Error>* left_out) const {
+  GLOAM_TRY(const ExportedModel exported, write_mjcf(*compiled_, folder, left_out));
   if (exported.why.empty()) return {};
   return Error{ErrorKind::kUnsupported,
                "MJCF cannot say this level exactly: " + exported.why,

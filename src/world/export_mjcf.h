@@ -18,7 +18,9 @@ struct ExportedModel {
 
 /// Writes `folder`/scene.xml with its assets, and loads it again. Errors: the files have changed
 /// since the World was made, or cannot be read or written.
-Result<ExportedModel> write_mjcf(const CompiledWorld& world, const std::filesystem::path& folder);
+/// With `left_out`, as World::export_mjcf: visual geoms join what has been compared.
+Result<ExportedModel> write_mjcf(const CompiledWorld& world, const std::filesystem::path& folder,
+                                 std::vector<Error>* left_out = nullptr);
 
 /// A model file as any user of MuJoCo loads it: without Gloam's limits of what may be read.
 Result<ModelPtr> load_stock_model(const std::filesystem::path& file);

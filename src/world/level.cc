@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 
 #include "base/check.h"
 #include "base/text.h"
@@ -34,16 +35,15 @@ void set_name(mjsElement* element, const std::string& name) { mjs_setName(elemen
 // What MuJoCo's parser and compiler grumble about but take ("<mimic> on joint 'x' ignored"): from
 // its log, and those after the first `known` of the spec.
 void report_warnings(const MujocoWarningCapture& warnings, const mjSpec* spec, int known,
-                     const fs::path& file, std::vector<Error>* unsupported) {
+                     const fs::path& file, std::vector<Error>* notes) {
   std::vector<std::string> messages = warnings.messages();
   for (int i = known; i < mjs_numWarnings(spec); ++i)
     messages.emplace_back(mjs_getWarning(spec, i));
   for (const std::string& message : messages) {
-    std::string line = message.substr(0, message.find('\n'));
-    const bool is_known = std::any_of(unsupported->begin(), unsupported->end(),
+    std::string line = "MuJoCo: " + message.substr(0, message.find('\n'));
+    const bool is_known = std::any_of(notes->begin(), notes->end(),
                                       [&](const Error& e) { return e.message == line; });
-    if (!is_known)
-      unsupported->push_back({ErrorKind::kUnsupported, std::move(line), {file.string(), 0, 0}});
+    if (!is_known) notes->push_back({ErrorKind::kInput, std::move(line), {file.string(), 0, 0}});
   }
 }
 
@@ -60,7 +60,7 @@ class ModelWatch {
 };
 
 Result<SpecPtr> parse_model(const fs::path& file, const FileAccess& access, ModelFiles* files,
-                            std::vector<Error>* unsupported, CompileProgress* progress) {
+                            std::vector<Error>* notes, CompileProgress* progress) {
   if (progress != nullptr) GLOAM_TRY_STATUS(progress->check());
   const std::string path = absolute_path(file, "").string();
   if (files->root_element(path) == "robot") {
@@ -81,7 +81,7 @@ Result<SpecPtr> parse_model(const fs::path& file, const FileAccess& access, Mode
   if (spec == nullptr) return files->explain(message, path);
   SpecPtr owned(spec);
   GLOAM_TRY_STATUS(files->set_spec_only(path, spec));
-  report_warnings(warnings, spec, 0, path, unsupported);
+  report_warnings(warnings, spec, 0, path, notes);
   return owned;
 }
 
@@ -110,24 +110,57 @@ void add_default_floor(mjSpec* spec) {
   mjs_setString(floor->material, "floor");
 }
 
-// MuJoCo tells the settings of an attached model that clash with the level's, one a line, as
-// "timestep: parent has 0.002, child has 0.001, keeping parent value". Those that are kept out are
-// the user's business.
-void report_conflicts(mjSpec* spec, int first, const RobotOptions& robot,
-                      std::vector<Error>* unsupported) {
+// Settings that MuJoCo says an attached model lost, one a line, as "timestep: parent has 0.002,
+// child has 0.001, keeping parent value": also those that the file gives and that are MuJoCo's
+// default.
+std::set<std::string> settings_told(mjSpec* spec, int first) {
+  std::set<std::string> names;
   for (int i = first; i < mjs_numWarnings(spec); ++i) {
     const std::string text = mjs_getWarning(spec, i);
     for (size_t begin = 0; begin < text.size();) {
       const size_t end = std::min(text.find('\n', begin), text.size());
       const std::string line = text.substr(begin, end - begin);
       begin = end + 1;
-      if (line.find("keeping parent value") == std::string::npos) continue;
-      unsupported->push_back(
-          {ErrorKind::kUnsupported, fmt::format("robot '{}': {}", robot.name, line),
-           robot.loc.file.empty() ? SourceLoc{robot.file.string(), 0, 0} : robot.loc,
-           "the level has one value for all robots; set it in the environment"});
+      if (line.find("keeping parent value") != std::string::npos)
+        names.insert(line.substr(0, line.find(':')));
     }
   }
+  return names;
+}
+
+void report_dropped(const LevelRobot& robot, const mjSpec& level, std::vector<Error>* unsupported) {
+  const RobotOptions& o = robot.options;
+  const SourceLoc loc = o.loc.file.empty() ? SourceLoc{o.file.string(), 0, 0} : o.loc;
+  for (const std::string& setting :
+       dropped_settings(robot.settings, ModelSettings::of(level), robot.settings_told)) {
+    unsupported->push_back({ErrorKind::kUnsupported,
+                            fmt::format("robot '{}' gives {}", o.name, setting), loc,
+                            "the level has one value for all robots; set it in the environment"});
+  }
+}
+
+// A free joint at the root of the robot, where it has none.
+Status free_base(const RobotOptions& robot, mjSpec* spec) {
+  if (robot.base != "free") return {};
+  std::vector<mjsBody*> roots;
+  mjsBody* world = mjs_findBody(spec, "world");
+  for (mjsElement* e = mjs_firstChild(world, mjOBJ_BODY, 0); e != nullptr;
+       e = mjs_nextChild(world, e, 0))
+    roots.push_back(mjs_asBody(e));
+  const auto fault = [&](std::string what, std::string hint) {
+    return Error{ErrorKind::kInput, fmt::format("robot '{}' cannot float: {}", robot.name, what),
+                 robot.loc, std::move(hint)};
+  };
+  if (roots.size() != 1)
+    return fault(fmt::format("its model has {} bodies below the world", roots.size()),
+                 "base = \"free\" takes a model with one root; a URDF's root link must not be "
+                 "called 'world'");
+  if (mjs_firstChild(roots[0], mjOBJ_JOINT, 0) != nullptr)
+    return fault("its root has a joint already", "leave out base");
+  mjsJoint* joint = mjs_addFreeJoint(roots[0]);
+  if (joint == nullptr) return fault("MuJoCo refuses the joint", "");
+  set_name(joint->element, "floating_base");
+  return {};
 }
 
 // What begins with the robot's name is taken for a part of it: by labels, overrides, bindings.
@@ -145,8 +178,10 @@ Status check_prefix(mjSpec* base, const RobotOptions& robot) {
   return {};
 }
 
-Status attach_robot(mjSpec* base, const RobotOptions& robot, mjSpec* child, ModelFiles* files,
-                    std::vector<Error>* unsupported) {
+Status attach_robot(mjSpec* base, LevelRobot* level_robot, ModelFiles* files) {
+  const RobotOptions& robot = level_robot->options;
+  mjSpec* child = level_robot->spec.get();
+  level_robot->settings = ModelSettings::of(*child);
   const std::string prefix = robot.name + "/";
   const int warnings_before = mjs_numWarnings(base);
   const MujocoWarningCapture warnings;
@@ -165,7 +200,7 @@ Status attach_robot(mjSpec* base, const RobotOptions& robot, mjSpec* child, Mode
     error.message = fmt::format("robot '{}' cannot join the scene: {}", robot.name, error.message);
     return error;
   }
-  report_conflicts(base, warnings_before, robot, unsupported);
+  level_robot->settings_told = settings_told(base, warnings_before);
   return {};
 }
 
@@ -176,10 +211,10 @@ Result<Level> assemble(const Scene& scene, const std::optional<Place>& place,
   Level level;
   if (!scene.bare_model.empty()) {
     GLOAM_TRY(level.spec,
-              parse_model(scene.bare_model, scene.access, files, &level.unsupported, progress));
+              parse_model(scene.bare_model, scene.access, files, &level.notes, progress));
   } else if (names_mjcf(scene.environment)) {
-    GLOAM_TRY(level.spec, parse_model(scene.environment.file, scene.access, files,
-                                      &level.unsupported, progress));
+    GLOAM_TRY(level.spec,
+              parse_model(scene.environment.file, scene.access, files, &level.notes, progress));
   } else {
     level.spec.reset(mj_makeSpec());
     mjs_setString(level.spec->modelname, scene.name.c_str());
@@ -198,12 +233,14 @@ Result<Level> assemble(const Scene& scene, const std::optional<Place>& place,
     level.spec->compiler.conflict = policy;
   for (const RobotOptions& robot : scene.robots) {
     GLOAM_TRY_STATUS(check_prefix(level.spec.get(), robot));
-    GLOAM_TRY(SpecPtr child,
-              parse_model(robot.file, scene.access, files, &level.unsupported, progress));
+    GLOAM_TRY(SpecPtr child, parse_model(robot.file, scene.access, files, &level.notes, progress));
     GLOAM_TRY_STATUS(apply_overrides(scene.overrides, robot.name, child.get()));
-    GLOAM_TRY_STATUS(attach_robot(level.spec.get(), robot, child.get(), files, &level.unsupported));
-    level.robots.push_back({robot, std::move(child)});
+    GLOAM_TRY_STATUS(free_base(robot, child.get()));
+    level.robots.push_back({robot, std::move(child), {}, {}});
+    GLOAM_TRY_STATUS(attach_robot(level.spec.get(), &level.robots.back(), files));
   }
+  for (const LevelRobot& robot : level.robots)
+    report_dropped(robot, *level.spec, &level.unsupported);
   if (scene.sim.timestep) level.spec->option.timestep = *scene.sim.timestep;
   return level;
 }
@@ -219,21 +256,35 @@ fs::path file_of(const Scene& scene, const std::string& name) {
                                            : scene.robots[0].file;
 }
 
-// As "line 3".
+// As "line 3"; empty when it was made in code.
+const char* info_of(mjsElement* e) {
+  const mjString* info = nullptr;
+  if (const auto* body = mjs_asBody(e)) info = body->info;
+  if (const auto* joint = mjs_asJoint(e)) info = joint->info;
+  if (const auto* geom = mjs_asGeom(e)) info = geom->info;
+  if (const auto* site = mjs_asSite(e)) info = site->info;
+  if (const auto* camera = mjs_asCamera(e)) info = camera->info;
+  if (const auto* light = mjs_asLight(e)) info = light->info;
+  if (const auto* tendon = mjs_asTendon(e)) info = tendon->info;
+  if (const auto* material = mjs_asMaterial(e)) info = material->info;
+  return info == nullptr ? "" : mjs_getString(info);
+}
+
 std::string written_at(const mjSpec* spec, mjtObj type, int id) {
-  for (mjsElement* e = mjs_firstElement(spec, type); e != nullptr; e = mjs_nextElement(spec, e)) {
-    if (mjs_getId(e) != id) continue;
-    const mjString* info = nullptr;
-    if (const auto* body = mjs_asBody(e)) info = body->info;
-    if (const auto* joint = mjs_asJoint(e)) info = joint->info;
-    if (const auto* geom = mjs_asGeom(e)) info = geom->info;
-    if (const auto* site = mjs_asSite(e)) info = site->info;
-    if (const auto* camera = mjs_asCamera(e)) info = camera->info;
-    if (const auto* light = mjs_asLight(e)) info = light->info;
-    if (const auto* material = mjs_asMaterial(e)) info = material->info;
-    if (info != nullptr) return mjs_getString(info);
-  }
+  for (mjsElement* e = mjs_firstElement(spec, type); e != nullptr; e = mjs_nextElement(spec, e))
+    if (mjs_getId(e) == id) return info_of(e);
   return {};
+}
+
+std::vector<int> lines_of(const mjSpec* spec, mjtObj type, mjtSize count) {
+  std::vector<int> lines(static_cast<size_t>(count), 0);
+  for (mjsElement* e = mjs_firstElement(spec, type); e != nullptr; e = mjs_nextElement(spec, e)) {
+    const int id = mjs_getId(e);
+    int line = 0;
+    if (id >= 0 && id < count && std::sscanf(info_of(e), "line %d", &line) == 1)
+      lines[static_cast<size_t>(id)] = line;
+  }
+  return lines;
 }
 
 Status check_finite(const Scene& scene, const Level& level, const ModelFiles& files) {
@@ -266,7 +317,7 @@ Status compile(const Scene& scene, ModelFiles* files, Level* level, double weigh
   const fs::path file = file_of(scene, "");
   if (!status.ok() || model == nullptr)
     return files->explain(status.ok() ? mjs_getError(spec) : status.error().message, file);
-  report_warnings(warnings, spec, warnings_before, file, &level->unsupported);
+  report_warnings(warnings, spec, warnings_before, file, &level->notes);
   return check_finite(scene, *level, *files);
 }
 
@@ -318,6 +369,10 @@ Result<Level> build_level(const Scene& scene, const std::optional<Place>& place,
   if (turn_tracking_cameras(scene, &level))
     GLOAM_TRY_STATUS(compile(scene, files, &level, 0, progress));
   GLOAM_TRY_STATUS(fill_initial_keyframe(&level));
+  const mjSpec* spec = level.spec.get();
+  level.lines = {lines_of(spec, mjOBJ_GEOM, level.model->ngeom),
+                 lines_of(spec, mjOBJ_SITE, level.model->nsite),
+                 lines_of(spec, mjOBJ_TENDON, level.model->ntendon)};
   return level;
 }
 

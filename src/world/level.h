@@ -2,11 +2,13 @@
 // A scene on its way to a model: parsed, put together in one mjSpec, compiled.
 
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "scene/environment/place.h"
 #include "scene/model_files.h"
+#include "world/dropped_options.h"
 #include "world/world.h"
 
 namespace gloam {
@@ -15,6 +17,8 @@ namespace gloam {
 struct LevelRobot {
   RobotOptions options;
   SpecPtr spec;
+  ModelSettings settings;               ///< as its file and the scene's overrides give them
+  std::set<std::string> settings_told;  ///< names that MuJoCo says it lost
 };
 
 struct MeshObjects;
@@ -27,6 +31,7 @@ struct Level {
   int initial_key = -1;            ///< as in CompiledWorld
   std::vector<Error> notes;        ///< as in CompiledWorld
   std::vector<Error> unsupported;  ///< settings that lost against another file's
+  ElementLines lines;
 };
 
 /// Admits every model file of the scene: roots, scans. Errors as ModelFiles::add_model.

@@ -27,6 +27,7 @@ struct CacheEntry {
   std::vector<RobotInstance> robots;  // without their options
   std::vector<VisualOnlyGeom> visual_only;
   std::vector<Error> notes, unsupported;
+  ElementLines lines;
   bool has_plugins = false;
 };
 
@@ -53,10 +54,10 @@ namespace {
 template <class F>
 void visit_entry(F& f, CacheEntry& e) {
   f(e.dependencies), f(e.initial_key), f(e.robots), f(e.visual_only), f(e.notes);
-  f(e.unsupported), f(e.has_plugins);
+  f(e.unsupported), f(e.has_plugins), f(e.lines.geoms), f(e.lines.sites), f(e.lines.tendons);
 }
 
-constexpr uint64_t kMagic = 0x41444C574D4F4C47ull;  // "GLOMWLDA": changes with the layout below
+constexpr uint64_t kMagic = 0x42444C574D4F4C47ull;  // "GLOMWLDB": changes with the layout below
 constexpr uint64_t kLargestEntry = uint64_t{2} << 30;
 
 fs::path entry_of(const Scene& scene, uint64_t place_hash) {
@@ -83,9 +84,8 @@ ModelPtr get_model(ArchiveReader* in) {
 
 std::vector<uint8_t> serialise(const CompiledWorld& world,
                                const std::vector<Dependency>& dependencies) {
-  CacheEntry entry{
-      dependencies,      world.initial_key,       world.robots, world.visual_only, world.notes,
-      world.unsupported, world.model->nplugin > 0};
+  CacheEntry entry{dependencies, world.initial_key, world.robots, world.visual_only,
+                   world.notes,  world.unsupported, world.lines,  world.model->nplugin > 0};
   ArchiveWriter out;
   begin_cache_entry(&out.bytes);
   visit_entry(out, entry);
@@ -119,6 +119,7 @@ uint64_t world_cache_key(const Scene& scene, uint64_t place_hash) {
     key(absolute_path(robot.file, "").string());
     key(robot.X_WR);
     key(robot.keyframe);
+    key(robot.base);
     key(robot.loc.line);  // stands in cached messages
   }
   for (const HeightFieldOptions& o : scene.hfields) {
@@ -197,6 +198,7 @@ std::shared_ptr<CompiledWorld> load_cached_world(const Scene& scene, uint64_t pl
   world->visual_only = std::move(entry.visual_only);
   world->notes = std::move(entry.notes);
   world->unsupported = std::move(entry.unsupported);
+  world->lines = std::move(entry.lines);
   if (entry.has_plugins) load_mujoco_plugins();  // it loads only where they are
   world->model = get_model(&in);
   world->visual_model = get_model(&in);

@@ -26,6 +26,7 @@
 #include "world/visual_material.h"
 #include "world/visual_mesh.h"
 #include "world/visual_pose.h"
+#include "world/visual_site.h"
 #include "world/visual_soil.h"
 #include "world/visual_water.h"
 #include "world/world.h"
@@ -207,7 +208,12 @@ void choose_what_is_shown(const mjModel& m, const CompiledWorld& world, size_t f
       has_visuals[body_of(i)] = true;
     root_shows[root_of(i)] = true;
   }
-  constexpr int kFirstHiddenGroup = 3;
+  const RenderOptions& render = world.scene.render;
+  if (!render.groups.empty()) {
+    for (size_t i = 0; i < first_file; ++i)
+      (*instances)[i].shown = draws_group(render, (*instances)[i].group);
+    return;
+  }
   for (size_t i = 0; i < first_visual; ++i) {
     InstanceDescription& instance = (*instances)[i];
     instance.shown = instance.group < kFirstHiddenGroup && !has_visuals[body_of(i)];
@@ -317,7 +323,11 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
   GLOAM_TRY_STATUS(describe_visuals(world, poses, add_part, &levels, &out));
   const Framing framing = framing_of(m, poses, first_file, out);
   choose_what_is_shown(m, world, first_visual, first_file, &out.instances);
+  const size_t first_deformable = out.instances.size();
   describe_deformables(m, poses, &simulated.materials(), &labels, &out);
+  for (size_t i = first_deformable; i < out.instances.size(); ++i)
+    out.instances[i].shown = draws_group(world.scene.render, out.instances[i].group);
+  describe_sites(world, &simulated.materials(), &labels, &out);
   describe_cameras(m, framing, &out);
   for (CameraDescription& camera : out.cameras) {
     for (const CameraOptions& options : world.scene.cameras) {

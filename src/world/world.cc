@@ -26,6 +26,12 @@ Result<H> find(const CompiledWorld& world, mjtObj type, mjtSize mjModel::* count
                suggest_name(name, object_names(m, type, static_cast<int>(m->*count)))};
 }
 
+const char* shape_name(int type) {
+  static constexpr const char* kTypes[] = {
+      "plane", "height field", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"};
+  return type >= 0 && type < 9 ? kTypes[type] : "other";
+}
+
 std::string numbers(const mjtNum* values, int n) {
   std::string text;
   for (int i = 0; i < n; ++i) text += fmt::format("{}{:.4g}", i == 0 ? "" : " ", values[i]);
@@ -72,11 +78,58 @@ std::string actuator_detail(const mjModel* m, int actuator) {
   return text;
 }
 
+// As MJCF spells it, where the camera has a resolution of its own: MuJoCo's default is 1x1.
+std::string camera_detail(const mjModel* m, int i) {
+  const char* body = mj_id2name(m, mjOBJ_BODY, m->cam_bodyid[i]);
+  const int* size = m->cam_resolution + 2 * i;
+  std::string text = size[0] > 1 || size[1] > 1 ? fmt::format("{}x{}, ", size[0], size[1]) : "";
+  text += m->cam_projection[i] == mjPROJ_ORTHOGRAPHIC
+              ? fmt::format("orthographic, {:.4g} m high", m->cam_fovy[i])
+              : fmt::format("{:.4g} deg", m->cam_fovy[i]);
+  return text + fmt::format(", on '{}'", body == nullptr ? "" : body);
+}
+
+std::string site_detail(const mjModel* m, int i) {
+  const char* body = mj_id2name(m, mjOBJ_BODY, m->site_bodyid[i]);
+  return fmt::format("{}, group {}, on '{}'", shape_name(m->site_type[i]), m->site_group[i],
+                     body == nullptr ? "" : body);
+}
+
+std::string tendon_detail(const mjModel* m, int i) {
+  const int first = m->tendon_adr[i];
+  const bool is_fixed = m->tendon_num[i] > 0 && m->wrap_type[first] == mjWRAP_JOINT;
+  std::string text = is_fixed ? fmt::format("fixed, of {} joint{}", m->tendon_num[i],
+                                            m->tendon_num[i] == 1 ? "" : "s")
+                              : fmt::format("spatial, {:.4g} m wide", 2 * m->tendon_width[i]);
+  if (m->tendon_limited[i])
+    text += fmt::format(", range {}{}", numbers(m->tendon_range + 2 * i, 2), is_fixed ? "" : " m");
+  return text + fmt::format(", group {}", m->tendon_group[i]);
+}
+
+std::string equality_detail(const mjModel* m, int i) {
+  static constexpr const char* kTypes[] = {"connect", "weld", "joint", "tendon", "flex"};
+  const int type = m->eq_type[i];
+  std::string text =
+      type >= 0 && type < static_cast<int>(std::size(kTypes)) ? kTypes[type] : "other";
+  const auto kind = static_cast<mjtObj>(m->eq_objtype[i]);
+  const mjtObj of = type == mjEQ_JOINT ? mjOBJ_JOINT : type == mjEQ_TENDON ? mjOBJ_TENDON : kind;
+  for (const int id : {m->eq_obj1id[i], m->eq_obj2id[i]}) {
+    const char* name = id >= 0 ? mj_id2name(m, of, id) : nullptr;
+    if (name != nullptr) text += fmt::format(" '{}'", name);
+  }
+  return text + (m->eq_active0[i] ? "" : ", off at the start");
+}
+
+std::string texture_detail(const mjModel* m, int i) {
+  static constexpr const char* kTypes[] = {"2d", "cube", "skybox"};
+  const int type = m->tex_type[i];
+  return fmt::format("{}, {}x{}", type >= 0 && type < 3 ? kTypes[type] : "other", m->tex_width[i],
+                     m->tex_height[i]);
+}
+
 std::string geom_detail(const mjModel* m, int geom) {
-  static constexpr const char* kTypes[] = {
-      "plane", "height field", "sphere", "capsule", "ellipsoid", "cylinder", "box", "mesh", "sdf"};
   const int type = m->geom_type[geom];
-  std::string text = type >= 0 && type < 9 ? kTypes[type] : "other";
+  std::string text = shape_name(type);
   if (type == mjGEOM_MESH && m->geom_dataid[geom] >= 0) {
     if (const char* mesh = mj_id2name(m, mjOBJ_MESH, m->geom_dataid[geom]))
       text += fmt::format(" '{}'", mesh);
@@ -153,11 +206,7 @@ WorldInfo World::info() const {
     const int dim = m->sensor_dim[i];
     return fmt::format("{} number{}", dim, dim == 1 ? "" : "s");
   });
-  info.cameras = list(m, mjOBJ_CAMERA, m->ncam, [](const mjModel* m, int i) {
-    const char* body = mj_id2name(m, mjOBJ_BODY, m->cam_bodyid[i]);
-    return fmt::format("{}x{}, {:.4g} deg, on '{}'", m->cam_resolution[2 * i],
-                       m->cam_resolution[2 * i + 1], m->cam_fovy[i], body == nullptr ? "" : body);
-  });
+  info.cameras = list(m, mjOBJ_CAMERA, m->ncam, camera_detail);
   for (size_t i = 0; i < info.cameras.size(); ++i)
     info.cameras[i].name = camera_name(*m, static_cast<int>(i));
   info.geoms = list(m, mjOBJ_GEOM, m->ngeom, geom_detail);
@@ -170,6 +219,13 @@ WorldInfo World::info() const {
     const float* c = m->mat_rgba + 4 * i;
     return fmt::format("rgba {:.3g} {:.3g} {:.3g} {:.3g}", c[0], c[1], c[2], c[3]);
   });
+  info.sites = list(m, mjOBJ_SITE, m->nsite, site_detail);
+  info.tendons = list(m, mjOBJ_TENDON, m->ntendon, tendon_detail);
+  info.equalities = list(m, mjOBJ_EQUALITY, m->neq, equality_detail);
+  info.keyframes = list(m, mjOBJ_KEY, m->nkey, [](const mjModel* m, int i) {
+    return fmt::format("at {:.4g} s", m->key_time[i]);
+  });
+  info.textures = list(m, mjOBJ_TEXTURE, m->ntex, texture_detail);
   info.nq = static_cast<int>(m->nq);
   info.nv = static_cast<int>(m->nv);
   info.nu = static_cast<int>(m->nu);

@@ -49,6 +49,11 @@ struct VisualOnlyGeom {
 /// A number that no other World of this process has.
 uint64_t next_world_serial();
 
+/// Lines in the model files where elements stand; 0 = not known.
+struct ElementLines {
+  std::vector<int> geoms, sites, tendons;  ///< by id in `model`
+};
+
 struct CompiledWorld {
   uint64_t serial = next_world_serial();  ///< what handles remember
   Scene scene;
@@ -71,6 +76,7 @@ struct CompiledWorld {
   std::vector<Error> notes;        ///< what is odd, and taken as it is
   std::vector<Error> place_notes;  ///< likewise, of what is generated; not in the cache, as that is
   std::vector<Error> unsupported;
+  ElementLines lines;
 };
 
 }  // namespace gloam
