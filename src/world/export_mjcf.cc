@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cstring>
 #include <map>
 #include <mutex>
@@ -18,6 +19,7 @@
 #include "world/level.h"
 #include "world/mesh_object.h"
 #include "world/model_compare.h"
+#include "world/xml_zeros.h"
 
 // Exported by MuJoCo 4.0.1 but declared in none of its headers: digits of the numbers in saved XML.
 extern "C" {
@@ -48,6 +50,13 @@ class ExactNumbers {
   std::lock_guard<std::mutex> lock_;
   int before_;
 };
+
+// File systems of Windows and macOS take "A" and "a" for one name.
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
 
 // Copies the files of the level's assets and lets the spec name the copies.
 class AssetWriter {
@@ -190,7 +199,7 @@ class AssetWriter {
     const uint64_t hash = hash_bytes(bytes.data(), bytes.size());
     std::string name = stem + extension;
     for (int number = 2;; ++number) {
-      const auto [taken, is_new] = written_.emplace(name, hash);
+      const auto [taken, is_new] = written_.emplace(lower_case(name), hash);
       if (is_new) break;
       if (taken->second == hash) return fmt::format("{}/{}", kAssetFolder, name);
       name = fmt::format("{}_{}{}", stem, number, extension);
@@ -205,8 +214,7 @@ class AssetWriter {
   std::map<std::string, uint64_t> written_;
 };
 
-// Writes the XML and loads it as any user of MuJoCo would.
-Result<ExportedModel> save_and_compare(mjSpec* spec, const mjModel* wanted, const fs::path& path) {
+Status save_exact(mjSpec* spec, const fs::path& path) {
   const std::string name = path.string();
   char message[2048] = "";
   int code = 0;
@@ -217,10 +225,26 @@ Result<ExportedModel> save_and_compare(mjSpec* spec, const mjModel* wanted, cons
     if (!saved.ok()) return saved.error();
   }
   if (code != 0) return Error{ErrorKind::kUnsupported, message, {name, 0, 0}};
+  return {};
+}
+
+// Loads the XML as any user of MuJoCo would.
+Result<ExportedModel> load_and_compare(const mjModel* wanted, const fs::path& path) {
   GLOAM_TRY(const ModelPtr model, load_stock_model(path));
   ExportedModel exported;
   exported.differing = compare_models(wanted, model.get(), &exported.compared);
   return exported;
+}
+
+Result<ExportedModel> save_and_compare(mjSpec* spec, const mjModel* wanted, const fs::path& path) {
+  GLOAM_TRY_STATUS(save_exact(spec, path));
+  GLOAM_TRY(ExportedModel plain, load_and_compare(wanted, path));
+  if (plain.differing.empty()) return plain;
+  const NegativeZeros zeros(spec);
+  if (!zeros.any()) return plain;
+  GLOAM_TRY_STATUS(save_exact(spec, path));
+  GLOAM_TRY_STATUS(NegativeZeros::write_signs(path));
+  return load_and_compare(wanted, path);
 }
 
 // Whether visual geoms have left the physics as it was.
