@@ -178,10 +178,32 @@ Status check_prefix(mjSpec* base, const RobotOptions& robot) {
   return {};
 }
 
+bool has_nested_keyframes(mjSpec* spec) {
+  if (mjs_firstElement(spec, mjOBJ_KEY) == nullptr) return false;
+  for (mjsElement* e = mjs_firstElement(spec, mjOBJ_BODY); e != nullptr;
+       e = mjs_nextElement(spec, e)) {
+    if (mjs_getOriginSpec(e) != nullptr && mjs_getOriginSpec(e) != spec) return true;
+  }
+  return false;
+}
+
+// Keyframes of models that the robot's own file attaches wait for a compilation: without one they
+// would join the level under names without the robot's prefix, cut to the nested model's size.
+Status settle_nested_keyframes(const RobotOptions& robot, mjSpec* child, const ModelFiles& files) {
+  if (!has_nested_keyframes(child)) return {};
+  mjModel* model = nullptr;
+  const MujocoWarningCapture warnings;
+  const Status status = guarded([&] { model = mj_compile(child, files.vfs()); });
+  const ModelPtr compiled(model);
+  if (status.ok() && compiled != nullptr) return {};
+  return files.explain(status.ok() ? mjs_getError(child) : status.error().message, robot.file);
+}
+
 Status attach_robot(mjSpec* base, LevelRobot* level_robot, ModelFiles* files) {
   const RobotOptions& robot = level_robot->options;
   mjSpec* child = level_robot->spec.get();
   level_robot->settings = ModelSettings::of(*child);
+  GLOAM_TRY_STATUS(settle_nested_keyframes(robot, child, *files));
   const std::string prefix = robot.name + "/";
   const int warnings_before = mjs_numWarnings(base);
   const MujocoWarningCapture warnings;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string_view>
 
 #include "base/check.h"
 #include "base/text.h"
@@ -10,11 +11,21 @@
 namespace gloam {
 namespace {
 
-// The element's robot brought it into the level.
+// Elements that came with the robot: of its own file, or of a model attached there, whose
+// elements remember that model's spec instead and are known by their names or their bodies'.
 template <class F>
-void each_element_of(const mjSpec* level, const mjSpec* origin, mjtObj type, F&& f) {
+void each_element_of(const mjSpec* level, const LevelRobot& robot, mjtObj type, F&& f) {
+  const std::string prefix = robot.options.name + "/";
+  const auto is_own = [&](mjsElement* e) {
+    return mjs_getOriginSpec(e) == robot.spec.get() ||
+           std::string_view(mjs_getString(mjs_getName(e))).starts_with(prefix);
+  };
   for (mjsElement* e = mjs_firstElement(level, type); e != nullptr; e = mjs_nextElement(level, e)) {
-    if (mjs_getOriginSpec(e) == origin) f(mjs_getId(e));
+    bool belongs = is_own(e);
+    for (mjsBody* body = mjs_getParent(e); body != nullptr && !belongs;
+         body = mjs_getParent(body->element))
+      belongs = is_own(body->element);
+    if (belongs) f(mjs_getId(e));
   }
 }
 
@@ -55,7 +66,7 @@ struct KeyVectors {
 void copy_robot(const mjSpec* level, const LevelRobot& robot, mjModel* m, const KeyVectors& from,
                 const KeyVectors& to) {
   const Pose& X_WR = robot.options.X_WR;
-  each_element_of(level, robot.spec.get(), mjOBJ_JOINT, [&](int joint) {
+  each_element_of(level, robot, mjOBJ_JOINT, [&](int joint) {
     const int type = m->jnt_type[joint], q = m->jnt_qposadr[joint], v = m->jnt_dofadr[joint];
     std::copy_n(from.qpos + q, joint_nq(type), to.qpos + q);
     std::copy_n(from.qvel + v, joint_nv(type), to.qvel + v);
@@ -64,12 +75,12 @@ void copy_robot(const mjSpec* level, const LevelRobot& robot, mjModel* m, const 
       rotate(X_WR.q, to.qvel + v);  // linear part: world axes; the angular part is in the body's
     }
   });
-  each_element_of(level, robot.spec.get(), mjOBJ_ACTUATOR, [&](int actuator) {
+  each_element_of(level, robot, mjOBJ_ACTUATOR, [&](int actuator) {
     const int ctrl = m->actuator_ctrladr[actuator], act = m->actuator_actadr[actuator];
     if (ctrl >= 0) std::copy_n(from.ctrl + ctrl, m->actuator_ctrlnum[actuator], to.ctrl + ctrl);
     if (act >= 0) std::copy_n(from.act + act, m->actuator_actnum[actuator], to.act + act);
   });
-  each_element_of(level, robot.spec.get(), mjOBJ_BODY, [&](int body) {
+  each_element_of(level, robot, mjOBJ_BODY, [&](int body) {
     const int mocap = m->body_mocapid[body];
     if (mocap < 0) return;
     std::copy_n(from.mpos + 3 * mocap, 3, to.mpos + 3 * mocap);
