@@ -22,6 +22,7 @@
 #include "world/sampled_ground.h"
 #include "world/sensor_description.h"
 #include "world/urdf_visuals.h"
+#include "world/world_robots.h"
 
 namespace gloam {
 namespace {
@@ -52,7 +53,8 @@ std::vector<RobotInstance> list_robots(const Level& level) {
 RobotInstance bare_robot(const Scene& scene, const mjModel* model) {
   RobotInstance robot;
   robot.name = scene.name;
-  robot.root_body = model->nbody > 1 ? 1 : -1;
+  const std::vector<int> roots = robot_roots(*model);
+  robot.root_body = !roots.empty() ? roots.front() : model->nbody > 1 ? 1 : -1;
   robot.options.name = scene.name;
   robot.options.file = scene.bare_model;
   return robot;

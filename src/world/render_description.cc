@@ -283,7 +283,7 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
     instance.body = body;
     instance.is_static = is_static[static_cast<size_t>(body)];
     instance.label = labels.label(body, name, kind, id);
-    instance.label.geom = std::move(name);
+    instance.label.geom = name.empty() && kind == mjOBJ_GEOM ? geom_label(m, id) : std::move(name);
     instance.label.material = out.materials[static_cast<size_t>(instance.material)].name;
     instance.label.part = static_cast<uint32_t>(out.instances.size()) + 1;
     out.instances.push_back(std::move(instance));

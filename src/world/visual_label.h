@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "gloam/camera.h"
 #include "world/world.h"
@@ -16,11 +17,17 @@ namespace gloam {
 /// left.
 std::string semantic_class(std::string_view name);
 
+/// What a body is called in tables: its name, or "body 3", which no other body has.
+std::string body_label(const mjModel& model, int body);
+/// What a geom is called in tables: its name, or "body 3 geom 7 (box)", which no other geom has.
+std::string geom_label(const mjModel& model, int geom);
+
 /// Hands out instance and semantic ids, from 1, in order of first use. An object is a robot, or a
-/// body directly under the world with all below it, or one geom of the world body.
+/// body directly under the world with all below it, or one geom of the world body. Robots are those
+/// of the scene; of a bare model, the trees that robot_roots() finds.
 class LabelTable {
  public:
-  explicit LabelTable(const CompiledWorld& world) : world_(world) {}
+  explicit LabelTable(const CompiledWorld& world);
 
   /// Label without part and geom of something fixed to body `body`; `own_name` = its own name,
   /// which names the object if the body is the world. `kind`, `id` make world geoms distinct.
@@ -29,8 +36,10 @@ class LabelTable {
 
  private:
   int robot_of(int body) const;
+  std::string robot_name(int robot) const;
 
   const CompiledWorld& world_;
+  std::vector<int> bare_roots_;  // of a bare model's robots
   std::map<std::pair<int, int>, uint32_t> instances_;
   std::map<std::string, uint32_t> classes_;
 };

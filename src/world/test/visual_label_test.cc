@@ -42,11 +42,12 @@ TEST(VisualLabel, ObjectsAreRobotsBodiesAndWorldGeoms) {
     const char* semantic;
     bool is_static;
   };
-  const Row rows[12] = {
-      {"floor", "floor", true},    {"wall_1", "wall", true},    {"wall_2", "wall", true},
-      {"", "object", true},        {"chair_3", "chair", true},  {"chair_3", "chair", false},
-      {"chair_4", "chair", false}, {"go1", "robot", false},     {"go1", "robot", false},
-      {"go1", "robot", true},      {"target", "target", false}, {"target", "target", false}};
+  const Row rows[12] = {{"floor", "floor", true},    {"wall_1", "wall", true},
+                        {"wall_2", "wall", true},    {"body 0 geom 3 (sphere)", "object", true},
+                        {"chair_3", "chair", true},  {"chair_3", "chair", false},
+                        {"chair_4", "chair", false}, {"go1", "robot", false},
+                        {"go1", "robot", false},     {"go1", "robot", true},
+                        {"target", "target", false}, {"target", "target", false}};
   for (size_t i = 0; i < 12; ++i) {
     const InstanceDescription& instance = out.instances[i];
     EXPECT_EQ(instance.label.part, i + 1);
@@ -65,6 +66,44 @@ TEST(VisualLabel, ObjectsAreRobotsBodiesAndWorldGeoms) {
   EXPECT_EQ(out.instances[8].label.body, "go1/foot");
   EXPECT_EQ(out.instances[8].group, 3);
   EXPECT_EQ(out.instances[0].label.instance, 1);
+}
+
+// Where a bare model's table comes first, the arm is the robot all the same.
+TEST(VisualLabel, ABareModelsRobotsAreWhatIsDriven) {
+  const char* kBodies = R"(<mujoco model="kitchen"><worldbody>
+      <body name="table"><geom size="1"/></body>
+      <body name="apple"><freejoint/><geom size="1"/></body>
+      <body name="cupboard"><geom size="1"/><body><joint name="door"/><geom size="1"/></body></body>
+      <body name="arm"><joint name="j"/><geom size="1"/></body>
+      <body><geom size="1"/></body></worldbody>
+      <actuator><motor joint="j"/></actuator></mujoco>)";
+  CompiledWorld world = compile(kBodies);
+  world.scene.name = "kitchen";
+  world.scene.bare_model = "kitchen.xml";
+  const RenderDescription out = describe(world);
+  ASSERT_EQ(out.instances.size(), 6u);
+  const std::pair<const char*, const char*> rows[] = {
+      {"table", "table"},       {"apple", "apple"}, {"cupboard", "cupboard"},
+      {"cupboard", "cupboard"}, {"arm", "robot"},   {"body 6", "object"}};
+  for (size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(out.instances[i].label.instance_name, rows[i].first);
+    EXPECT_EQ(out.instances[i].label.semantic_name, rows[i].second);
+  }
+  EXPECT_EQ(out.instances[3].label.body, "body 4");
+  EXPECT_EQ(out.instances[3].label.geom, "body 4 geom 3 (sphere)");
+}
+
+// Of a model that is one robot, the robot has the model's name.
+TEST(VisualLabel, ABareRobotHasTheModelsName) {
+  CompiledWorld world = compile(R"(<mujoco><worldbody><geom name="floor" size="1"/>
+      <body name="base"><freejoint/><geom size="1"/><body><joint name="j"/><geom size="1"/></body>
+      </body></worldbody></mujoco>)");
+  world.scene.name = "go1";
+  world.scene.bare_model = "go1.xml";
+  const RenderDescription out = describe(world);
+  EXPECT_EQ(out.instances[0].label.semantic_name, "floor");
+  EXPECT_EQ(out.instances[1].label.instance_name, "go1");
+  EXPECT_EQ(out.instances[2].label.semantic_name, "robot");
 }
 
 TEST(VisualLabel, EveryShapeWithItsPose) {

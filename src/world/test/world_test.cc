@@ -77,6 +77,68 @@ TEST_F(WorldTest, ABareModelIsBitEqualToStock) {
   EXPECT_EQ(world->compiled()->initial_key, -1);
 }
 
+// A robot whose file attaches another: the nested model's keyframe is the robot's.
+TEST_F(WorldTest, KeyframesOfNestedModelsAreTheRobots) {
+  folder_.write("hand.xml",
+                "<mujoco model='hand'><worldbody><body name='palm'><joint axis='0 0 1'/>"
+                "<geom size='.03'/><body mocap='false' name='tip' pos='.1 0 0'><joint name='t'/>"
+                "<geom size='.01'/></body></body></worldbody>"
+                "<actuator><motor joint='t'/></actuator>"
+                "<keyframe><key name='home' qpos='0.2 0.3' ctrl='0.4'/></keyframe></mujoco>");
+  folder_.write(
+      "reach.xml",
+      "<mujoco><asset><model name='hand' file='hand.xml'/></asset><worldbody>"
+      "<body name='base'><joint name='b'/><geom size='.1'/><frame pos='0 0 .3'>"
+      "<attach model='hand' body='palm' prefix='L_'/></frame></body></worldbody></mujoco>");
+  const std::string two =
+      "[[robot]]\nname = \"a\"\nfile = \"reach.xml\"\nkeyframe = \"L_home\"\n"
+      "[[robot]]\nname = \"b\"\nfile = \"reach.xml\"\nposition = [1, 0, 0]\n";
+  const Result<World> world = compile_text("two.toml", two);
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  const mjModel* m = world->compiled()->model.get();
+  EXPECT_GE(mj_name2id(m, mjOBJ_KEY, "a/L_home"), 0);
+  EXPECT_GE(mj_name2id(m, mjOBJ_KEY, "b/L_home"), 0);
+  ASSERT_EQ(m->nq, 6);
+  const int key = world->compiled()->initial_key;
+  ASSERT_GE(key, 0);
+  const std::vector<double> q(m->key_qpos + 6 * key, m->key_qpos + 6 * key + 6);
+  EXPECT_THAT(q, ElementsAre(0, 0.2, 0.3, 0, 0, 0));
+  EXPECT_EQ(m->key_ctrl[2 * key], 0.4);
+  EXPECT_EQ(m->key_ctrl[2 * key + 1], 0);
+  EXPECT_TRUE(world->export_mjcf(folder_.path() / "out").ok());
+  const std::string wrong =
+      error_of("w.toml", "[[robot]]\nname = \"a\"\nfile = \"reach.xml\"\nkeyframe = \"home\"\n");
+  EXPECT_THAT(wrong, HasSubstr("'L_home'"));
+}
+
+// The sign of zero in attributes of many kinds survives an export.
+TEST_F(WorldTest, AnExportKeepsNegativeZeros) {
+  folder_.write("zeros.xml",
+                "<mujoco><option gravity='-0.0 0 -9.81' wind='-0 -0 0'/>"
+                "<default><geom solmix='1' friction='1 -0.0 0'/><joint ref='-0.0'/></default>"
+                "<asset><material name='m' emission='-0.0' rgba='-0.0 0 1 1'/></asset>"
+                "<worldbody><light pos='-0.0 0 1' diffuse='-0.0 0 1'/>"
+                "<geom pos='-0.0 -0.0 0' size='.1 -0.0 -0.0' material='m'/>"
+                "<geom pos='0 -0.0 1' size='.1'/><site name='s' pos='-0.0 0 -0.0'/>"
+                "<body name='a' pos='-0.0 0 -0.0' quat='1 -0.0 0 -0.0'>"
+                "<joint name='j' pos='-0.0 0 0' axis='-0.0 0 1' range='-0.0 90' damping='-0.0'/>"
+                "<geom size='.1' margin='-0.0' surfacevel='-0.0 0 0 0 0 -0.0'/>"
+                "<camera pos='0 -0.0 0'/><body pos='0 0 1' euler='-0.0 0 0'>"
+                "<joint type='slide' name='k' axis='0 -0.0 1'/><geom size='.1'/></body></body>"
+                "</worldbody><tendon><spatial name='t' range='-0.0 1'><site site='s'/>"
+                "<site site='s'/></spatial></tendon>"
+                "<actuator><motor joint='j' gear='1 -0.0' ctrlrange='-0.0 1'/></actuator>"
+                "<keyframe><key name='h' qpos='-0.0 0' qvel='-0.0 0' ctrl='-0.0'/></keyframe>"
+                "</mujoco>");
+  const Result<World> world = compile(folder_.path() / "zeros.xml");
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  EXPECT_TRUE(std::signbit(world->compiled()->model->geom_pos[0]));
+  const Status status = world->export_mjcf(folder_.path() / "out");
+  EXPECT_TRUE(status.ok()) << status.error().to_string();
+  const ModelPtr again = load_stock(folder_.path() / "out" / "scene.xml");
+  EXPECT_THAT(compare_models(world->compiled()->model.get(), again.get()), IsEmpty());
+}
+
 TEST_F(WorldTest, CompareModelsFindsOneBit) {
   const ModelPtr a = load_stock(folder_.path() / "arm.xml");
   const ModelPtr b = load_stock(folder_.path() / "arm.xml");
