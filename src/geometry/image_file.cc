@@ -1,6 +1,7 @@
 #include "geometry/image_file.h"
 
 #include "base/files.h"
+#include "base/plain_text.h"
 #include "geometry/image_exr.h"
 
 namespace gloam {
@@ -12,6 +13,8 @@ Result<Image8> read_image(const std::filesystem::path& path) {
     return decode_png(bytes, path.string());
   if (bytes.size() >= 3 && bytes[0] == 0xff && bytes[1] == 0xd8 && bytes[2] == 0xff)
     return decode_jpeg(bytes, path.string());
+  if (is_lfs_pointer({reinterpret_cast<const char*>(bytes.data()), bytes.size()}))
+    return lfs_pointer_error(path.string());
   return Error{ErrorKind::kInput,
                "is neither a PNG nor a JPEG picture",
                {path.string(), 0, 0},
@@ -42,6 +45,8 @@ Result<ImageF> decode_float_image(std::span<const uint8_t> bytes, const std::str
 
 Result<ImageF> read_float_image(const std::filesystem::path& path, uint64_t max_pixels) {
   GLOAM_TRY(const std::vector<uint8_t> bytes, read_file(path, uint64_t{2} << 30));
+  if (is_lfs_pointer({reinterpret_cast<const char*>(bytes.data()), bytes.size()}))
+    return lfs_pointer_error(path.string());
   return decode_float_image(bytes, path.string(), max_pixels);
 }
 

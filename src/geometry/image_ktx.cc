@@ -19,8 +19,8 @@ constexpr uint32_t kMaxKtxSide = 16384;
 // The numbers of OpenGL's enumerations.
 enum : uint32_t {
   kUnsignedByte = 0x1401,
-  kFloat = 0x1406,
-  kHalf = 0x140B,
+  kGlFloat = 0x1406,
+  kGlHalf = 0x140B,
   kPacked11f = 0x8C3B,  // UNSIGNED_INT_10F_11F_11F_REV
   kRed = 0x1903,
   kRg = 0x8227,
@@ -61,8 +61,8 @@ class KtxReader {
                                   : 0;
     if (channels_ == 0) return bad(fmt::format("its format 0x{:04x} is not supported", format));
     texel_bytes_ = type_ == kUnsignedByte                  ? channels_
-                   : type_ == kHalf                        ? 2 * channels_
-                   : type_ == kFloat                       ? 4 * channels_
+                   : type_ == kGlHalf                        ? 2 * channels_
+                   : type_ == kGlFloat                       ? 4 * channels_
                    : type_ == kPacked11f && channels_ == 3 ? 4
                                                            : 0;
     if (texel_bytes_ == 0) return bad(fmt::format("its type 0x{:04x} is not supported", type_));
@@ -127,7 +127,7 @@ class KtxReader {
 
   void add_floats(std::span<const uint8_t> texels, std::vector<float>* out) const {
     const size_t base = static_cast<size_t>(texels.data() - bytes_.data());
-    if (type_ == kHalf) {
+    if (type_ == kGlHalf) {
       for (size_t i = 0; i < texels.size(); i += 2)
         out->push_back(half_to_float(static_cast<uint16_t>(
             is_swapped_ ? texels[i] << 8 | texels[i + 1] : texels[i + 1] << 8 | texels[i])));
@@ -135,7 +135,7 @@ class KtxReader {
     }
     for (size_t i = 0; i < texels.size(); i += 4) {
       const uint32_t bits = u32(base + i);
-      if (type_ == kFloat)
+      if (type_ == kGlFloat)
         out->push_back(std::bit_cast<float>(bits));
       else
         out->insert(out->end(), {small_float(bits & 0x7ff, 6), small_float(bits >> 11 & 0x7ff, 6),

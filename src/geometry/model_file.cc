@@ -8,7 +8,9 @@
 
 #include "base/files.h"
 #include "base/memory.h"
+#include "base/plain_text.h"
 #include "geometry/model_source.h"
+#include "geometry/text_lines.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
@@ -32,9 +34,20 @@ bool is_binary_stl(std::span<const uint8_t> bytes) {
   return bytes.size() == 84 + uint64_t{50} * count;
 }
 
-}  // namespace
+// Formats of text, whose marks and line ends are made plain first.
+bool is_text_model(const ModelSource& source) {
+  const std::string_view text = as_text(source.bytes);
+  if (starts_with(source.bytes, "glTF") || is_binary_stl(source.bytes)) return false;
+  const std::string_view head = text.substr(0, 200);
+  const bool is_ply = head.find("ply") < 6;
+  return !is_ply || head.find("format ascii") != std::string_view::npos;
+}
 
-Result<ModelFile> read_model_bytes(const ModelSource& source) {
+bool looks_like_collada(std::span<const uint8_t> bytes) {
+  return as_text(bytes).substr(0, 4096).find("<COLLADA") != std::string_view::npos;
+}
+
+Result<ModelFile> read_by_format(const ModelSource& source) {
   const std::span<const uint8_t> bytes = source.bytes;
   constexpr uint64_t kGrowth = 3;  // of what is unpacked over the file, nearly at most
   GLOAM_TRY_STATUS(check_memory(kGrowth * bytes.size(), fmt::format("unpacking '{}'", source.name),
@@ -42,18 +55,33 @@ Result<ModelFile> read_model_bytes(const ModelSource& source) {
   if (starts_with(bytes, "glTF")) return read_glb(source);
   if (starts_with(bytes, "ply\n") || starts_with(bytes, "ply\r")) return read_ply(source);
   const std::string ending = lower_extension(source.name);
+  if (ending == ".dae" || (ending != ".obj" && looks_like_collada(bytes)))
+    return read_collada(source);
   if (ending == ".obj") return read_obj(source);
   if (ending == ".stl" || is_binary_stl(bytes)) return read_stl(source);
   if (ending == ".gltf" || looks_like_json(bytes)) return read_gltf(source);
   if (starts_with(bytes, "solid")) return read_stl(source);
   return Error{ErrorKind::kInput,
-               "is none of glTF, GLB, OBJ, STL and PLY",
+               "is none of glTF, GLB, COLLADA, OBJ, STL and PLY",
                {source.name, 0, 0},
                "convert it to GLB"};
 }
 
+}  // namespace
+
+Result<ModelFile> read_model_bytes(const ModelSource& source) {
+  if (is_lfs_pointer(as_text(source.bytes))) return lfs_pointer_error(source.name);
+  if (!is_text_model(source)) return read_by_format(source);
+  GLOAM_TRY(const std::optional<std::string> plain, plain_text(as_text(source.bytes), source.name));
+  if (!plain) return read_by_format(source);
+  ModelSource copy = source;
+  copy.bytes = {reinterpret_cast<const uint8_t*>(plain->data()), plain->size()};
+  return read_by_format(copy);
+}
+
 bool is_model_file(const fs::path& path) {
-  constexpr std::array<std::string_view, 5> kEndings = {".gltf", ".glb", ".obj", ".stl", ".ply"};
+  constexpr std::array<std::string_view, 6> kEndings = {".gltf", ".glb", ".dae",
+                                                        ".obj",  ".stl", ".ply"};
   return std::find(kEndings.begin(), kEndings.end(), lower_extension(path)) != kEndings.end();
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 // What a file with a 3-D model holds, whatever its format, and the one way to read it.
 // Frames: F is the file's content in Gloam's axes (right-handed, Z up, metres). glTF is Y up by its
-// standard: its x, y, z become x, z, -y of F's x, z, y: p_F = (x, -z, y). OBJ, STL and PLY have no
+// standard: its x, y, z become x, z, -y of F's x, z, y: p_F = (x, -z, y). COLLADA says its axes and
+// its unit, which both are undone here. OBJ, STL and PLY have no
 // axes of their own and are taken as they are.
 
 #include <cstdint>
@@ -53,7 +54,7 @@ struct ModelFile {
   std::vector<ImportedInstance> instances;
   std::vector<ImportedLight> lights;
   uint64_t dropped_triangles = 0;  ///< of no area
-  bool was_y_up = false;           ///< glTF: turned into Gloam's axes
+  bool was_y_up = false;           ///< glTF, most COLLADA: turned into Gloam's axes
   /// What the file has and Gloam leaves out (skins, missing pictures …), one sentence each.
   std::vector<std::string> notes;
   /// Other files that it was made of, or that it names and that are not there; relative to its
@@ -70,13 +71,13 @@ struct ModelFileOptions {
   std::function<void(double share)> progress = {};
 };
 
-/// Reads glTF 2.0, GLB, OBJ (with MTL), STL and PLY, told apart by their content, then by the name.
-/// Errors: no such file, damaged, not finite, an index out of range, over a limit, what the file
-/// requires and Gloam lacks.
+/// Reads glTF 2.0, GLB, COLLADA, OBJ (with MTL), STL and PLY, told apart by their content, then by
+/// the name. Errors: no such file, damaged, not finite, an index out of range, over a limit, what
+/// the file requires and Gloam lacks.
 Result<ModelFile> read_model_file(const std::filesystem::path& path,
                                   const ModelFileOptions& options = {});
 
-/// By its name: .gltf .glb .obj .stl .ply, in any case.
+/// By its name: .gltf .glb .dae .obj .stl .ply, in any case.
 bool is_model_file(const std::filesystem::path& path);
 
 }  // namespace gloam

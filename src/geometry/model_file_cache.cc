@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr uint64_t kModelMagic =
-    0x32304C444D4F4C47ull;  // "GLOMDL02": changes with what readers give
+    0x33304C444D4F4C47ull;  // "GLOMDL03": changes with what readers give
 constexpr uint64_t kLargestEntry = uint64_t{8} << 30;
 
 }  // namespace

@@ -83,6 +83,7 @@ Result<ModelFile> read_glb(const ModelSource& source);
 Result<ModelFile> read_obj(const ModelSource& source);
 Result<ModelFile> read_stl(const ModelSource& source);
 Result<ModelFile> read_ply(const ModelSource& source);
+Result<ModelFile> read_collada(const ModelSource& source);
 
 /// By content, then by the ending of the name.
 Result<ModelFile> read_model_bytes(const ModelSource& source);

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <optional>
 
+#include "base/plain_text.h"
 #include "geometry/text_lines.h"
 
 namespace gloam {
@@ -273,7 +274,10 @@ Status read_mtl_library(const ModelSource& source, const std::string& name, cons
                         MemoryBudget* budget, ModelFile* model) {
   if (source.folder == nullptr) return {};
   Result<std::vector<uint8_t>> text = source.folder->read(name, loc, source.options->limits);
-  if (text.ok()) return parse_mtl(source, as_text(*text), name, budget, model);
+  if (text.ok()) {
+    GLOAM_TRY(const std::optional<std::string> plain, plain_text(as_text(*text), name));
+    return parse_mtl(source, plain ? *plain : as_text(*text), name, budget, model);
+  }
   if (text.error().kind != ErrorKind::kIo) return std::move(text).error();
   add_note(model, fmt::format("the material library '{}' is missing", name.substr(0, kMaxName)));
   return {};

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -12,6 +13,7 @@
 #include "geometry/mtl_reader.h"
 #include "geometry/text_lines.h"
 #include "geometry/triangulate.h"
+#include "geometry/vertex_colors.h"
 
 namespace gloam {
 namespace {
@@ -40,6 +42,7 @@ struct Library {
 
 struct Piece {
   std::vector<Vec3f> positions, normals;
+  std::vector<Vec3f> colors;  // as written, one per position, or none at all
   std::vector<Vec2f> uvs;
   std::vector<Corner> corners;
   std::vector<uint32_t> sizes;       // corners of each face
@@ -82,7 +85,9 @@ class PieceParser {
     if (word.empty() || word[0] == '#') return;
     if (word == "v") {
       Vec3f p;
-      if (numbers(line, {&p.x, &p.y, &p.z})) out_.positions.push_back(p);
+      if (!numbers(line, {&p.x, &p.y, &p.z})) return;
+      out_.positions.push_back(p);
+      add_color(line);
     } else if (word == "vn") {
       Vec3f n;
       if (numbers(line, {&n.x, &n.y, &n.z})) out_.normals.push_back(n);
@@ -98,8 +103,20 @@ class PieceParser {
       out_.switches.push_back(
           {out_.sizes.size(), word == "usemtl", std::string(trim(line).substr(0, kMaxName))});
     } else if (word == "mtllib") {
-      out_.libraries.push_back({std::string(trim(line)), out_.lines});
+      std::string name(trim(line));
+      std::replace(name.begin(), name.end(), '\\', '/');  // of Windows
+      out_.libraries.push_back({std::move(name), out_.lines});
     }  // s, l, p, curves and what programs add of their own carry no triangles
+  }
+
+  // "v x y z r g b", as many programs write it; x y z w has one number more than three.
+  void add_color(std::string_view line) {
+    for (int i = 0; i < 3; ++i) (void)take_word(&line);
+    Vec3f color;
+    for (float* value : {&color.x, &color.y, &color.z})
+      if (!parse_number(take_word(&line), value) || !std::isfinite(*value)) return;
+    out_.colors.resize(out_.positions.size() - 1, {1, 1, 1});
+    out_.colors.push_back(color);
   }
 
   bool numbers(std::string_view line, std::initializer_list<float*> out) {
@@ -220,6 +237,20 @@ class ObjReader {
     return {};
   }
 
+  // Channels are 0 … 1, of a few programs 0 … 255.
+  Status join_colors() {
+    const bool has_colors = std::any_of(pieces_.begin(), pieces_.end(),
+                                        [](const Piece& piece) { return !piece.colors.empty(); });
+    if (!has_colors) return {};
+    for (Piece& piece : pieces_) piece.colors.resize(piece.positions.size(), {1, 1, 1});
+    GLOAM_TRY_STATUS(join(&Piece::colors, &colors_, "colours"));
+    float top = 1;
+    for (const Vec3f& color : colors_) top = std::max(top, max_component(color));
+    const float full = top > 2 ? 255.0f : 1;
+    for (Vec3f& color : colors_) color = color_from_display(color / full);
+    return {};
+  }
+
   Status join_elements() {
     // What relative indices count from: the number of elements before each piece.
     bases_.resize(pieces_.size());
@@ -230,6 +261,7 @@ class ObjReader {
       bases_[i][1] += static_cast<int64_t>(before.uvs.size());
       bases_[i][2] += static_cast<int64_t>(before.normals.size());
     }
+    GLOAM_TRY_STATUS(join_colors());
     GLOAM_TRY_STATUS(join(&Piece::positions, &positions_, "vertices"));
     GLOAM_TRY_STATUS(join(&Piece::uvs, &uvs_, "texture coordinates"));
     return join(&Piece::normals, &normals_, "normals");
@@ -348,9 +380,15 @@ class ObjReader {
       return bad(fmt::format("group '{}': its face {} {}", plan.group, face, why), first_face);
     const std::string name = plan.group.empty() ? "the mesh" : "group '" + plan.group + "'";
     GLOAM_TRY_STATUS(finish_mesh(&mesh, name, source_.name, &model_));
-    const int index = static_cast<int>(model_.meshes.size());
-    model_.instances.push_back({plan.group, index, material_index(plan.material), {}});
+    int index = static_cast<int>(model_.meshes.size()), material = material_index(plan.material);
     model_.meshes.push_back(std::move(mesh));
+    if (!colors_.empty()) {
+      std::vector<Vec3f> colors;
+      for (const Vertex& vertex : vertices_)
+        colors.push_back(colors_[static_cast<size_t>(vertex.corner.v)]);
+      material = paint_vertices(colors, material, &index, &painted_, &model_);
+    }
+    model_.instances.push_back({plan.group, index, material, {}});
     return {};
   }
 
@@ -401,6 +439,8 @@ class ObjReader {
   std::vector<Piece> pieces_;
   std::vector<std::array<int64_t, 3>> bases_;
   std::vector<Vec3f> positions_, normals_;
+  std::vector<Vec3f> colors_;  // linear, by position; empty = none
+  PaintedMeshes painted_;
   std::vector<Vec2f> uvs_;
   std::vector<int32_t> first_use_;
   std::vector<Vertex> vertices_;

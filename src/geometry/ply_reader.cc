@@ -1,5 +1,5 @@
-// PLY, text and binary of both byte orders: positions, normals, texture coordinates and polygons.
-// Colours and what programs add of their own are left out.
+// PLY, text and binary of both byte orders: positions, normals, texture coordinates, colours and
+// polygons. What programs add of their own is left out.
 
 #include <fmt/format.h>
 
@@ -13,24 +13,36 @@
 #include "geometry/ply_header.h"
 #include "geometry/text_lines.h"
 #include "geometry/triangulate.h"
+#include "geometry/vertex_colors.h"
 
 namespace gloam {
 namespace {
 
-// Which number of a vertex a property is: x y z, normal, u v; -1 = none.
+constexpr size_t kSlots = 11;
+
+// Which number of a vertex a property is: x y z, normal, u v, red green blue; -1 = none.
 int slot_of(const std::string& name) {
-  constexpr std::string_view kNames[8][4] = {{"x"},
-                                             {"y"},
-                                             {"z"},
-                                             {"nx"},
-                                             {"ny"},
-                                             {"nz"},
-                                             {"u", "s", "texture_u", "s0"},
-                                             {"v", "t", "texture_v", "t0"}};
-  for (int slot = 0; slot < 8; ++slot)
+  constexpr std::string_view kNames[kSlots][4] = {{"x"},
+                                                  {"y"},
+                                                  {"z"},
+                                                  {"nx"},
+                                                  {"ny"},
+                                                  {"nz"},
+                                                  {"u", "s", "texture_u", "s0"},
+                                                  {"v", "t", "texture_v", "t0"},
+                                                  {"red", "r", "diffuse_red"},
+                                                  {"green", "g", "diffuse_green"},
+                                                  {"blue", "b", "diffuse_blue"}};
+  for (int slot = 0; slot < static_cast<int>(kSlots); ++slot)
     for (const std::string_view known : kNames[slot])
       if (!known.empty() && known == name) return slot;
   return -1;
+}
+
+// What a whole channel of a colour is.
+float full_scale(PlyType type) {
+  if (type == PlyType::kUint8) return 255;
+  return type == PlyType::kUint16 ? 65535.0f : 1;
 }
 
 bool is_face_list(const PlyElement& element, const PlyProperty& property) {
@@ -94,7 +106,12 @@ class PlyReader {
       return bad(fmt::format("face {} {}", face, why));
     GLOAM_TRY_STATUS(finish_mesh(&mesh_, "the mesh", source_.name, &model));
     model.meshes.push_back(std::move(mesh_));
-    model.instances.push_back({{}, 0, -1, {}});
+    int mesh = 0, material = -1;
+    if (!colors_.empty()) {
+      PaintedMeshes painted;
+      material = paint_vertices(colors_, -1, &mesh, &painted, &model);
+    }
+    model.instances.push_back({{}, mesh, material, {}});
     return model;
   }
 
@@ -131,26 +148,29 @@ class PlyReader {
     vertex_element_ = e;
     const ModelLimits& limits = source_.options->limits;
     MemoryBudget budget(limits.decoded_bytes);
-    if (element.count > limits.vertices || !budget.take(element.count, 8 * sizeof(float)) ||
+    if (element.count > limits.vertices || !budget.take(element.count, kSlots * sizeof(float)) ||
         !budget.take(body_.size(), 8))
       return bad(fmt::format("has {} vertices: more than the limit", element.count));
     if (element.has_lists()) return bad("its vertices hold lists");
-    std::array<bool, 8> has{};
+    std::array<bool, kSlots> has{};
     for (const PlyProperty& p : element.properties) {
       slots_.push_back(slot_of(p.name));
+      if (slots_.back() >= 8) full_scale_ = full_scale(p.type);
       if (slots_.back() >= 0) has[static_cast<size_t>(slots_.back())] = true;
     }
     if (!has[0] || !has[1] || !has[2]) return bad("its vertices have no x, y and z");
     mesh_.positions.resize(element.count);
     if (has[3] && has[4] && has[5]) mesh_.normals.resize(element.count);
     if (has[6] && has[7]) mesh_.uvs.resize(element.count);
+    if (has[8] && has[9] && has[10]) colors_.resize(element.count);
     return {};
   }
 
-  void put_vertex(uint64_t row, const std::array<float, 8>& n) {
+  void put_vertex(uint64_t row, const std::array<float, kSlots>& n) {
     mesh_.positions[row] = {n[0], n[1], n[2]};
     if (!mesh_.normals.empty()) mesh_.normals[row] = {n[3], n[4], n[5]};
     if (!mesh_.uvs.empty()) mesh_.uvs[row] = {n[6], n[7]};
+    if (!colors_.empty()) colors_[row] = color_from_display(Vec3f{n[8], n[9], n[10]} / full_scale_);
   }
 
   // --- binary ---
@@ -184,7 +204,7 @@ class PlyReader {
     parallel_for_range(
         "read PLY", static_cast<int64_t>(element.count), 1 << 14, [&](int64_t begin, int64_t end) {
           for (auto i = static_cast<uint64_t>(begin); i < static_cast<uint64_t>(end); ++i) {
-            std::array<float, 8> numbers{};
+            std::array<float, kSlots> numbers{};
             const uint8_t* from = body_.data() + at + i * stride;
             for (size_t p = 0; p < slots_.size(); ++p) {
               const PlyType type = element.properties[p].type;
@@ -284,7 +304,7 @@ class PlyReader {
 
   bool parse_row(size_t e, uint64_t row, std::string_view line, Piece* piece) {
     const PlyElement& element = header_.elements[e];
-    std::array<float, 8> numbers{};
+    std::array<float, kSlots> numbers{};
     for (size_t p = 0; p < element.properties.size(); ++p) {
       const PlyProperty& property = element.properties[p];
       if (property.count_type) {
@@ -338,6 +358,8 @@ class PlyReader {
   size_t vertex_element_ = SIZE_MAX;
   std::vector<int> slots_;  // of the vertices' properties
   TriangleMesh mesh_;
+  std::vector<Vec3f> colors_;  // linear, by vertex; empty = none
+  float full_scale_ = 1;       // of a channel
   PolygonList faces_;
 };
 

@@ -21,7 +21,9 @@ void visit_placed_file(Visitor& v, Options& o, Pose& X) {
   v("file", o.file, FieldRule{.required = true});
   v("position", X.p, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
   v("orientation", X.q, FieldRule{.unit = "wxyz"});
-  v("scale", o.scale, FieldRule{.min = 1e-6, .max = 1e6, .one_for_three = true});
+  // Below zero: mirrored. Ground is not. validate_scene refuses what is too small.
+  constexpr bool is_ground = std::is_same_v<Options, HeightFieldOptions>;
+  v("scale", o.scale, FieldRule{.min = is_ground ? 1e-6 : -1e6, .max = 1e6, .one_for_three = true});
   v("up", o.up, kUpAxis);
   v("unit", o.unit, kFileUnit);
 }

@@ -5,7 +5,9 @@
 #include <algorithm>
 
 #include "base/files.h"
+#include "base/plain_text.h"
 #include "base/text.h"
+#include "geometry/model_file.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
@@ -43,11 +45,20 @@ Status check_model_file(const fs::path& path, const std::string& as_written, con
   GLOAM_TRY_STATUS(check_file(path, as_written, loc));
   const std::string name = as_written.substr(0, 200);
   if (lower_extension(path) == ".toml") {
-    GLOAM_TRY(const std::string text, read_text_file(path, kLargestModelText));
+    GLOAM_TRY(const std::string text, read_plain_text(path, kLargestModelText));
     GLOAM_TRY(const toml::table table, parse_toml(text, path.string()));
     if (is_model_toml(table)) return {};
     return Error{ErrorKind::kInput, fmt::format("'{}' is a scene; a model is wanted here", name),
                  loc, "give an MJCF (.xml) or URDF file, or a model in TOML (docs/models.md)"};
+  }
+  constexpr uint64_t kLargestPointer = 1024;
+  if (const Result<std::string> text = read_text_file(path, kLargestPointer);
+      text.ok() && is_lfs_pointer(*text))
+    return lfs_pointer_error(path.string());
+  if (is_model_file(path)) {
+    return Error{
+        ErrorKind::kInput, fmt::format("'{}' is a mesh; a model is wanted here", name), loc,
+        "draw it by a [[visual]], make a body of it by an [[object]], or see gloam convert"};
   }
   if (is_container(path)) {
     return Error{ErrorKind::kUnsupported,

@@ -11,6 +11,7 @@
 #include "base/files.h"
 #include "base/hash.h"
 #include "base/log.h"
+#include "base/plain_text.h"
 #include "base/text.h"
 #include "scene/mjcf/spec_only.h"
 #include "scene/mujoco_guard.h"
@@ -140,6 +141,15 @@ Result<ModelFiles::Content> ModelFiles::open(const fs::path& path, std::string* 
   // XML that MuJoCo finds by a way the scan did not follow is scanned now, before its parser sees
   // it.
   const std::string extension = lower_extension(path);
+  if (is_lfs_pointer(*bytes)) {
+    const Error pointer = lfs_pointer_error(path.string());
+    return fail(pointer.kind, fmt::format("{}: {}", pointer.message, pointer.hint));
+  }
+  if (extension == ".xml" || extension == ".urdf" || extension == ".toml" || extension == ".obj") {
+    Result<std::optional<std::string>> plain = plain_text(*bytes, path.string());
+    if (!plain.ok()) return fail(plain.error().kind, plain.error().message);
+    if (*plain) *bytes = std::move(**plain);
+  }
   if (!is_scanned && (extension == ".xml" || extension == ".urdf")) {
     if (const Result<XmlScan> scan = scan_model_xml(*bytes, path.string()); !scan.ok())
       return fail(scan.error().kind, scan.error().message);
@@ -216,6 +226,14 @@ Status ModelFiles::scan(const fs::path& file, const fs::path& model, const Sourc
           ErrorKind::kInput,
           fmt::format("the file '{:.80}' of <{}> {}", reference.value, reference.element, refusal),
           loc};
+    }
+    const std::string extension = lower_extension(reference.value);
+    if (reference.element == "mesh" &&
+        (extension == ".glb" || extension == ".gltf" || extension == ".dae")) {
+      return Error{ErrorKind::kUnsupported,
+                   fmt::format("the mesh '{:.80}' is in a format that MuJoCo does not read",
+                               reference.value),
+                   loc, "convert it to OBJ, or draw it by a [[visual]] on the body"};
     }
     if (!leads_to_xml(reference)) continue;
     // MuJoCo looks beside the main file; beside the including one is where people expect it.

@@ -9,6 +9,7 @@
 #include <pugixml.hpp>
 
 #include "base/files.h"
+#include "base/plain_text.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
@@ -147,7 +148,7 @@ fs::path find_package(const std::string& name, const fs::path& file, const FileA
   for (const fs::path& folder : folders) {
     if (folder.filename() == name) return folder;
     if (!has_package_xml(folder)) continue;
-    const Result<std::string> text = read_text_file(folder / "package.xml", kLargestPackageXml);
+    const Result<std::string> text = read_plain_text(folder / "package.xml", kLargestPackageXml);
     pugi::xml_document document;
     if (text.ok() && document.load_buffer(text->data(), text->size()) &&
         name == document.child("package").child_value("name"))

@@ -1,4 +1,5 @@
 #include "base/files.h"
+#include "base/plain_text.h"
 #include "geometry/model_file.h"
 #include "gloam/scene.h"
 #include "scene/environment/generators.h"
@@ -57,7 +58,7 @@ Result<Scene> load_scene(const fs::path& path, const FileAccess& access) {
     GLOAM_TRY_STATUS(check_model_file(absolute_path(path, ""), path.string(), {}));
     return as_bare_model();
   }
-  Result<std::string> text = read_text_file(path, kLargestModelText);
+  Result<std::string> text = read_plain_text(path, kLargestModelText);
   if (!text.ok()) {
     Error error = std::move(text).error();
     std::error_code code;

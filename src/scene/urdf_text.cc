@@ -3,21 +3,43 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cstring>
+#include <fstream>
 #include <map>
 #include <pugixml.hpp>
 #include <sstream>
 
 #include "base/files.h"
+#include "geometry/model_file.h"
 #include "scene/model_path.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
 namespace {
 
-bool is_drawable_mesh(const fs::path& path) {
+// MuJoCo's own format, which only its compiler reads.
+bool is_msh(const fs::path& path) { return lower_extension(path) == ".msh"; }
+
+// STL as text begins with "solid", and is not as long as its byte 80 says of a binary one.
+bool is_stl_text(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  std::array<char, 84> head{};
+  in.read(head.data(), head.size());
+  if (in.gcount() < static_cast<std::streamsize>(head.size())) return true;
+  if (!std::string_view(head.data(), 80).starts_with("solid")) return false;
+  uint32_t triangles;
+  std::memcpy(&triangles, head.data() + 80, sizeof(triangles));
+  std::error_code code;
+  return fs::file_size(path, code) != 84 + uint64_t{50} * triangles;
+}
+
+// OBJ, STL in its binary form, MSH: all that MuJoCo takes as a mesh.
+bool mujoco_reads(const fs::path& path) {
   const std::string extension = lower_extension(path);
-  return extension == ".stl" || extension == ".obj" || extension == ".msh" || extension == ".ply";
+  if (extension == ".stl") return !is_stl_text(path);
+  return !is_model_file(path) || extension == ".obj";
 }
 
 int line_at(const std::string& text, ptrdiff_t offset) {
@@ -67,6 +89,8 @@ class Preparer {
                            {"fusestatic", "false"}});
       if (robot.select_node("link/visual")) out.visual = to_text(document);
     }
+    out.visual_meshes = std::move(visual_meshes_);
+    out.copies = std::move(copies_);
     return out;
   }
 
@@ -152,7 +176,8 @@ class Preparer {
       if (kind[0] == 'v' && !stock_keeps_visuals_) continue;
       each_mesh(robot, kind,
                 [&](const pugi::xml_node&, const pugi::xml_node&, const pugi::xml_node& mesh) {
-                  all = all && exists_(stock_path(mesh.attribute("filename").value()));
+                  const fs::path path = stock_path(mesh.attribute("filename").value());
+                  all = all && exists_(path) && mujoco_reads(path);
                 });
     }
     return all;
@@ -208,12 +233,16 @@ class Preparer {
             if (!path.ok()) {
               status = path.error();
             } else {
-              mesh.attribute("filename").set_value(path->c_str());
+              mesh.attribute("filename").set_value(readable_copy(*path, mesh).c_str());
             }
             return;
           }
-          if (path.ok() && exists_(*path) && is_drawable_mesh(*path)) {
+          if (path.ok() && exists_(*path) && is_msh(*path)) {
             mesh.attribute("filename").set_value(path->c_str());
+            return;
+          }
+          if (path.ok() && exists_(*path) && is_model_file(*path)) {
+            put_stand_in(link, part, mesh, *path);
             return;
           }
           Error error = path.ok() ? Error{ErrorKind::kUnsupported,
@@ -221,12 +250,42 @@ class Preparer {
                                                       mesh.attribute("filename").value(),
                                                       exists_(*path) ? "its format is not supported"
                                                                      : "there is no such file"),
-                                          loc_of(mesh), "convert it to OBJ or STL"}
+                                          loc_of(mesh), "convert it to GLB, COLLADA, OBJ or STL"}
                                   : path.error();
           unsupported->push_back(std::move(error));
           link.remove_child(part);
         });
     return status;
+  }
+
+  // The path under which MuJoCo finds a mesh of physics.
+  fs::path readable_copy(const fs::path& path, const pugi::xml_node& mesh) {
+    if (!exists_(path) || mujoco_reads(path)) return path;
+    fs::path copy = path;
+    copy += ".obj";
+    const auto same = [&](const UrdfMeshCopy& known) { return known.copy == copy; };
+    if (std::ranges::none_of(copies_, same)) copies_.push_back({path, copy, loc_of(mesh)});
+    return copy;
+  }
+
+  void put_stand_in(const pugi::xml_node& link, pugi::xml_node part, pugi::xml_node mesh,
+                    const fs::path& path) {
+    UrdfVisualMesh out;
+    out.stand_in = fmt::format("visual mesh {}", visual_meshes_.size());
+    out.link = link.attribute("name").value();
+    out.name = part.attribute("name").value();
+    out.file = path;
+    out.loc = loc_of(mesh);
+    std::istringstream scale(mesh.attribute("scale").as_string("1 1 1"));
+    scale.imbue(std::locale::classic());
+    Vec3 s;
+    if (scale >> s.x >> s.y >> s.z) out.scale = s;
+    part.remove_attribute("name");
+    part.prepend_attribute("name").set_value(out.stand_in.c_str());
+    pugi::xml_node geometry = mesh.parent();
+    geometry.remove_child(mesh);
+    geometry.append_child("sphere").append_attribute("radius").set_value("0.001");
+    visual_meshes_.push_back(std::move(out));
   }
 
   // Visuals keep their place in the tree and lose everything that physics would ask of them.
@@ -267,6 +326,8 @@ class Preparer {
   const fs::path& file_;
   const FileAccess& access_;
   const std::function<bool(const fs::path&)>& exists_;
+  std::vector<UrdfVisualMesh> visual_meshes_;
+  std::vector<UrdfMeshCopy> copies_;
   std::string meshdir_;
   bool strippath_ = true;  // MuJoCo's default for URDF
   bool stock_keeps_visuals_ = false;

@@ -10,9 +10,28 @@
 
 namespace gloam {
 
+/// A visual's mesh, which Gloam's own readers read: what is only drawn never goes through MuJoCo's
+/// mesh compiler. In the visual text a small sphere of that name stands in its place.
+struct UrdfVisualMesh {
+  std::string stand_in;    ///< name of the sphere
+  std::string link, name;  ///< of the link, and the visual's own, which may be empty
+  std::filesystem::path file;
+  Vec3 scale = {1, 1, 1};
+  SourceLoc loc;
+};
+
+/// A mesh of physics in a format that MuJoCo does not read. The text names `copy`, an OBJ file that
+/// whoever parses it has to provide.
+struct UrdfMeshCopy {
+  std::filesystem::path file, copy;
+  SourceLoc loc;
+};
+
 struct UrdfText {
   std::string physics;  ///< empty = load the file as it is: stock MuJoCo finds all it needs
   std::string visual;   ///< visuals only, every joint fixed, nothing fused; empty = no visuals
+  std::vector<UrdfVisualMesh> visual_meshes;
+  std::vector<UrdfMeshCopy> copies;
   std::vector<Error> unsupported;  ///< visuals that cannot be drawn, and where
 };
 

@@ -55,7 +55,12 @@ class FieldChecker {
     number(key, value.value(), rule);
   }
   void check(std::string_view key, const Vec3& v, const FieldRule& rule) {
-    for (const double x : {v.x, v.y, v.z}) number(key, x, rule);
+    for (const double x : {v.x, v.y, v.z}) {
+      number(key, x, rule);
+      // A mesh's size: what is below zero mirrors it.
+      if (status_->ok() && rule.one_for_three && !(std::abs(x) >= 1e-6))
+        fail(key, "has a number that is zero or nearly so");
+    }
   }
   void check(std::string_view key, const std::array<double, 2>& v, const FieldRule& rule) {
     for (const double x : v) number(key, x, rule);

@@ -7,6 +7,7 @@
 
 #include "base/angle.h"
 #include "base/files.h"
+#include "base/plain_text.h"
 #include "world/ies_text.h"
 
 namespace gloam {
@@ -191,7 +192,7 @@ Result<IesProfile> parse_ies(std::string_view text, const std::string& name) {
 }
 
 Result<IesProfile> read_ies(const std::filesystem::path& path) {
-  GLOAM_TRY(const std::string text, read_text_file(path, uint64_t{16} << 20));
+  GLOAM_TRY(const std::string text, read_plain_text(path, uint64_t{16} << 20));
   return parse_ies(text, path.string());
 }
 

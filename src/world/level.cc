@@ -21,6 +21,7 @@
 #include "world/level_cameras.h"
 #include "world/level_keyframe.h"
 #include "world/long_wait.h"
+#include "world/mesh_copy.h"
 #include "world/mesh_object.h"
 #include "world/sampled_ground.h"
 
@@ -68,6 +69,7 @@ Result<SpecPtr> parse_model(const fs::path& file, const FileAccess& access, Mode
               prepare_urdf(files->text(path), path, access,
                            [&](const fs::path& mesh) { return files->readable(mesh); }));
     if (!urdf.physics.empty()) files->set_overlay(path, urdf.physics);
+    GLOAM_TRY_STATUS(add_mesh_copies(urdf.copies, files));
   }
   char message[2048] = "";
   mjSpec* spec = nullptr;

@@ -26,6 +26,7 @@ struct CacheEntry {
   int initial_key = -1;
   std::vector<RobotInstance> robots;  // without their options
   std::vector<VisualOnlyGeom> visual_only;
+  std::vector<VisualOnlyMesh> visual_meshes;
   std::vector<Error> notes, unsupported;
   ElementLines lines;
   bool has_plugins = false;
@@ -45,6 +46,12 @@ void visit_parts(F& f, RobotInstance& r) {
   f(r.name), f(r.prefix), f(r.root_body);
 }
 template <class F>
+void visit_parts(F& f, VisualOnlyMesh& m) {
+  std::string path = m.file.string();
+  f(m.name), f(m.label), f(path), f(m.scale), f(m.loc.file), f(m.loc.line);
+  m.file = path;
+}
+template <class F>
 void visit_parts(F& f, Error& e) {
   f(e.kind), f(e.message), f(e.loc.file), f(e.loc.line), f(e.loc.column), f(e.hint);
 }
@@ -53,11 +60,12 @@ namespace {
 
 template <class F>
 void visit_entry(F& f, CacheEntry& e) {
-  f(e.dependencies), f(e.initial_key), f(e.robots), f(e.visual_only), f(e.notes);
-  f(e.unsupported), f(e.has_plugins), f(e.lines.geoms), f(e.lines.sites), f(e.lines.tendons);
+  f(e.dependencies), f(e.initial_key), f(e.robots), f(e.visual_only), f(e.visual_meshes);
+  f(e.notes), f(e.unsupported), f(e.has_plugins);
+  f(e.lines.geoms), f(e.lines.sites), f(e.lines.tendons);
 }
 
-constexpr uint64_t kMagic = 0x42444C574D4F4C47ull;  // "GLOMWLDB": changes with the layout below
+constexpr uint64_t kMagic = 0x43444C574D4F4C47ull;  // "GLOMWLDC": changes with the layout below
 constexpr uint64_t kLargestEntry = uint64_t{2} << 30;
 
 fs::path entry_of(const Scene& scene, uint64_t place_hash) {
@@ -84,8 +92,9 @@ ModelPtr get_model(ArchiveReader* in) {
 
 std::vector<uint8_t> serialise(const CompiledWorld& world,
                                const std::vector<Dependency>& dependencies) {
-  CacheEntry entry{dependencies, world.initial_key, world.robots, world.visual_only,
-                   world.notes,  world.unsupported, world.lines,  world.model->nplugin > 0};
+  CacheEntry entry{dependencies,        world.initial_key, world.robots,      world.visual_only,
+                   world.visual_meshes, world.notes,       world.unsupported, world.lines,
+                   world.model->nplugin > 0};
   ArchiveWriter out;
   begin_cache_entry(&out.bytes);
   visit_entry(out, entry);
@@ -196,6 +205,7 @@ std::shared_ptr<CompiledWorld> load_cached_world(const Scene& scene, uint64_t pl
   for (size_t i = 0; i < world->robots.size() && i < scene.robots.size(); ++i)
     world->robots[i].options = scene.robots[i];
   world->visual_only = std::move(entry.visual_only);
+  world->visual_meshes = std::move(entry.visual_meshes);
   world->notes = std::move(entry.notes);
   world->unsupported = std::move(entry.unsupported);
   world->lines = std::move(entry.lines);

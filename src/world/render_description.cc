@@ -70,6 +70,10 @@ class GeomImporter {
 
   /// The geom's shape, material and flags; nothing when it cannot be seen.
   std::optional<InstanceDescription> instance(int geom);
+  /// Row of the material that a mesh in the geom's place has.
+  int mesh_material(int geom) {
+    return materials_.row(model_.geom_matid[geom], model_.geom_rgba + 4 * geom, ShapeType::kMesh);
+  }
   void convert_meshes();
   MaterialTable& materials() { return materials_; }
 
@@ -297,20 +301,32 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
 
   const size_t first_visual = out.instances.size();
   std::optional<GeomImporter> visual;
+  constexpr int kVisualOnly = mjOBJ_UNKNOWN;
+  std::vector<DrawnMesh> meshes;
   if (world.visual_model != nullptr) {
     visual.emplace(*world.visual_model, false, &out);
     for (size_t i = 0; i < world.visual_only.size(); ++i) {
       const VisualOnlyGeom& geom = world.visual_only[i];
       auto instance = visual->instance(geom.geom);
       if (!instance) continue;
+      if (geom.mesh >= 0) {
+        meshes.push_back({static_cast<int>(i), visual->mesh_material(geom.geom)});
+        continue;
+      }
       const mjtNum p[3] = {geom.X_BG.p.x, geom.X_BG.p.y, geom.X_BG.p.z};
       const mjtNum q[4] = {geom.X_BG.q.w, geom.X_BG.q.x, geom.X_BG.q.y, geom.X_BG.q.z};
       instance->X_BG = rigid_pose(p, q);
-      constexpr int kVisualOnly = mjOBJ_UNKNOWN;
       add(std::move(*instance), geom.body, name_of(*world.visual_model, mjOBJ_GEOM, geom.geom),
           kVisualOnly, static_cast<int>(i));
     }
   }
+
+  const auto add_mesh = [&](InstanceDescription instance, int body, int index) {
+    const int mesh = world.visual_only[static_cast<size_t>(index)].mesh;
+    add(std::move(instance), body, world.visual_meshes[static_cast<size_t>(mesh)].label,
+        kVisualOnly, index);
+  };
+  GLOAM_TRY_STATUS(describe_model_meshes(world, meshes, poses, add_mesh, &out));
 
   const size_t first_file = out.instances.size();
   LightLevels levels;

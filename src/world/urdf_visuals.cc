@@ -3,9 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <optional>
+#include <set>
 
+#include "base/parallel.h"
 #include "scene/mujoco_guard.h"
 #include "scene/urdf_text.h"
+#include "world/model_loader.h"
+#include "world/model_names.h"
 #include "world/world.h"
 
 namespace gloam {
@@ -15,7 +21,7 @@ struct UrdfRobot {
   std::string file;
   std::string prefix;
   Pose X_WR;
-  std::string visual_text;
+  UrdfText text;
 };
 
 // The level's URDF robots that have visuals of their own.
@@ -31,7 +37,7 @@ std::vector<UrdfRobot> find_robots(const Scene& scene, ModelFiles* files,
                      [&](const std::filesystem::path& mesh) { return files->readable(mesh); });
     if (!urdf.ok()) return;  // the physics model has met this error already
     unsupported->insert(unsupported->end(), urdf->unsupported.begin(), urdf->unsupported.end());
-    if (!urdf->visual.empty()) robots.push_back({path, prefix, X_WR, urdf->visual});
+    if (!urdf->visual.empty()) robots.push_back({path, prefix, X_WR, *urdf});
   };
   if (!scene.bare_model.empty()) add(scene.bare_model, "", {});
   for (const RobotOptions& robot : scene.robots) add(robot.file, robot.name + "/", robot.X_WR);
@@ -43,7 +49,7 @@ Result<ModelPtr> compile_visuals(const std::vector<UrdfRobot>& robots, ModelFile
   const MujocoWarningCapture warnings;
   for (const UrdfRobot& robot : robots) {
     files->forget_failures();
-    files->set_overlay(robot.file, robot.visual_text);
+    files->set_overlay(robot.file, robot.text.visual);
     char message[2048] = "";
     mjSpec* spec = nullptr;
     const Status parsed = guarded(
@@ -100,6 +106,65 @@ std::vector<VisualOnlyGeom> place_geoms(const mjModel* visual, const mjModel* ph
   return geoms;
 }
 
+bool draws_something(const ModelFile& model) {
+  return std::any_of(model.instances.begin(), model.instances.end(),
+                     [&](const ImportedInstance& in) {
+                       return !model.meshes[static_cast<size_t>(in.mesh)].indices.empty();
+                     });
+}
+
+// By the name of the sphere that stands in for it. Files that cannot be read are told.
+std::map<std::string, VisualOnlyMesh> find_meshes(const Scene& scene,
+                                                  const std::vector<UrdfRobot>& robots,
+                                                  std::vector<Error>* unsupported) {
+  std::map<std::string, VisualOnlyMesh> meshes;
+  std::map<std::filesystem::path, std::pair<const UrdfVisualMesh*, std::optional<Error>>> files;
+  for (const UrdfRobot& robot : robots)
+    for (const UrdfVisualMesh& mesh : robot.text.visual_meshes)
+      files.try_emplace(mesh.file, &mesh, std::nullopt);
+  std::vector<decltype(files)::value_type*> list;
+  for (auto& file : files) list.push_back(&file);
+  parallel_for("visual meshes", static_cast<int64_t>(list.size()), [&](int64_t i) {
+    auto& [path, use] = *list[static_cast<size_t>(i)];
+    const Result<ModelFile> model = load_model_file(
+        scene, path, fmt::format("the visual mesh '{:.200}' is not drawn", path.string()),
+        use.first->loc);
+    if (!model.ok()) {
+      use.second = model.error();
+    } else if (!draws_something(*model)) {
+      use.second =
+          Error{ErrorKind::kUnsupported,
+                fmt::format("the visual mesh '{:.200}' has no triangles to draw", path.string()),
+                use.first->loc};
+    }
+  });
+  for (const auto* file : list)
+    if (file->second.second) unsupported->push_back(*file->second.second);
+  for (const UrdfRobot& robot : robots)
+    for (const UrdfVisualMesh& m : robot.text.visual_meshes)
+      if (!files.at(m.file).second.has_value())
+        meshes.emplace(robot.prefix + m.stand_in,
+                       VisualOnlyMesh{robot.prefix + m.link, m.name, m.file, m.scale, m.loc});
+  return meshes;
+}
+
+// Stand-ins of meshes get their row, those of meshes that cannot be read are taken out.
+void bind_meshes(const std::map<std::string, VisualOnlyMesh>& meshes,
+                 const std::set<std::string>& stand_ins, CompiledWorld* world) {
+  std::vector<VisualOnlyGeom> kept;
+  for (VisualOnlyGeom geom : world->visual_only) {
+    const std::string name = name_of(*world->visual_model, mjOBJ_GEOM, geom.geom);
+    if (const auto mesh = meshes.find(name); mesh != meshes.end()) {
+      geom.mesh = static_cast<int>(world->visual_meshes.size());
+      world->visual_meshes.push_back(mesh->second);
+    } else if (stand_ins.contains(name)) {
+      continue;
+    }
+    kept.push_back(geom);
+  }
+  world->visual_only = std::move(kept);
+}
+
 }  // namespace
 
 void add_urdf_visuals(const Scene& scene, ModelFiles* files, CompiledWorld* world) {
@@ -115,6 +180,11 @@ void add_urdf_visuals(const Scene& scene, ModelFiles* files, CompiledWorld* worl
   }
   world->visual_model = std::move(visual).value();
   world->visual_only = place_geoms(world->visual_model.get(), world->model.get());
+  std::set<std::string> stand_ins;
+  for (const UrdfRobot& robot : robots)
+    for (const UrdfVisualMesh& mesh : robot.text.visual_meshes)
+      stand_ins.insert(robot.prefix + mesh.stand_in);
+  bind_meshes(find_meshes(scene, robots, &world->unsupported), stand_ins, world);
 }
 
 }  // namespace gloam

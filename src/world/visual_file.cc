@@ -26,7 +26,7 @@ constexpr float kFarthest = 1e9f;  // [m] a vertex from its mesh's origin
 
 /// Metres of one unit of the file, the mean of the three axes.
 float mean_scale(const VisualOptions& v) {
-  return static_cast<float>(std::cbrt(v.scale.x * v.scale.y * v.scale.z) * v.unit);
+  return static_cast<float>(std::cbrt(std::abs(v.scale.x * v.scale.y * v.scale.z)) * v.unit);
 }
 
 /// Metres that one texture length spans on a mesh, 0 = it has no uvs.
@@ -50,7 +50,8 @@ class VisualImporter {
       : world_(world), poses_(poses), add_(add), levels_(levels), out_(out) {}
 
   Status run() {
-    for (const VisualOptions& visual : world_.scene.visuals) {
+    visuals_ = world_.scene.visuals;
+    for (const VisualOptions& visual : visuals_) {
       int body = 0;
       if (!visual.body.empty())
         body = mj_name2id(world_.model.get(), mjOBJ_BODY, visual.body.c_str());
@@ -58,8 +59,47 @@ class VisualImporter {
       bodies_.push_back(body);
     }
     std::vector<FileUse> uses;
-    for (const VisualOptions& v : world_.scene.visuals) uses.push_back({v.file, title(v), v.loc});
+    for (const VisualOptions& v : visuals_) uses.push_back({v.file, title(v), v.loc});
     GLOAM_TRY(files_, load_model_files(world_.scene, uses));
+    return import();
+  }
+
+  /// Meshes of URDFs instead.
+  Status run(const std::vector<DrawnMesh>& meshes, std::vector<int>* indices) {
+    is_model_ = true;
+    for (const DrawnMesh& drawn : meshes) {
+      const VisualOnlyGeom& geom = world_.visual_only[static_cast<size_t>(drawn.index)];
+      const VisualOnlyMesh& mesh = world_.visual_meshes[static_cast<size_t>(geom.mesh)];
+      if (!has_file(mesh.file)) {
+        const std::string user = fmt::format("the visual mesh of '{}' is not drawn", mesh.name);
+        Result<ModelFile> model = load_model_file(world_.scene, mesh.file, user, mesh.loc);
+        if (!model.ok()) {
+          out_->unsupported.push_back(model.error());
+          continue;
+        }
+        files_.push_back({mesh.file, mesh.file.filename().string(), std::move(model).value()});
+      }
+      VisualOptions visual;
+      visual.name = mesh.name;
+      visual.file = mesh.file;
+      visual.X_BV = geom.X_BG;
+      visual.scale = mesh.scale;
+      visual.loc = mesh.loc;
+      visuals_.push_back(std::move(visual));
+      bodies_.push_back(geom.body);
+      plain_rows_.push_back(drawn.material);
+      indices->push_back(drawn.index);
+    }
+    return import();
+  }
+
+ private:
+  bool has_file(const std::filesystem::path& path) const {
+    return std::any_of(files_.begin(), files_.end(),
+                       [&](const LoadedModel& file) { return file.path == path; });
+  }
+
+  Status import() {
     for (LoadedModel& file : files_) {
       GLOAM_TRY(ImportedTextures textures, ImportedTextures::decode(file.model, file.name, out_));
       file.model.images.clear();
@@ -71,7 +111,6 @@ class VisualImporter {
     return bake_meshes();
   }
 
- private:
   Error no_body(const VisualOptions& visual) const {
     const mjModel* m = world_.model.get();
     return {ErrorKind::kInput, fmt::format("{}: there is no body '{}'", title(visual), visual.body),
@@ -80,7 +119,7 @@ class VisualImporter {
   }
 
   Status add_visual(int index) {
-    const VisualOptions& visual = world_.scene.visuals[static_cast<size_t>(index)];
+    const VisualOptions& visual = visuals_[static_cast<size_t>(index)];
     const size_t file = file_of(visual);
     const ModelFile& model = files_[file].model;
     const Affine3f X_BF = visual_placement(visual, model.was_y_up);
@@ -101,7 +140,11 @@ class VisualImporter {
       for (const int part : node->instances) add_part(visual, index, file, part, X_BF);
       if (visual.node != nodes_[file][0].name) return {};
     }
-    // What belongs to no node comes once, with the first.
+    // What belongs to no node comes once, with the first. A robot's meshes bring no lamps along.
+    if (is_model_) {
+      report(visual, model);
+      return {};
+    }
     for (const ImportedLight& light : model.lights) add_light(visual, index, light, X_BF);
     report(visual, model);
     return {};
@@ -114,6 +157,14 @@ class VisualImporter {
     return static_cast<size_t>(found - files_.begin());
   }
 
+  /// Without a material of its own, a part of a URDF's mesh has the visual's.
+  void add_plain(const VisualOptions& visual, int index) {
+    plain_ = static_cast<int>(surfaces_.size());
+    if (!is_model_) return add_surface(plain_surface(visual.name));
+    rows_.push_back(plain_rows_[static_cast<size_t>(index)]);
+    surfaces_.push_back({});
+  }
+
   void add_surface(ImportedSurface surface) {
     rows_.push_back(static_cast<int>(out_->materials.size()));
     out_->materials.push_back(surface.material);
@@ -124,10 +175,7 @@ class VisualImporter {
                 const Affine3f& X_BF) {
     const ImportedInstance& in = files_[file].model.instances[static_cast<size_t>(part)];
     if (files_[file].model.meshes[static_cast<size_t>(in.mesh)].indices.empty()) return;
-    if (in.material < 0 && plain_ < 0) {
-      plain_ = static_cast<int>(surfaces_.size());
-      add_surface(plain_surface(visual.name));
-    }
+    if (in.material < 0 && plain_ < 0) add_plain(visual, index);
     const size_t surface = in.material < 0 ? static_cast<size_t>(plain_)
                                            : first_surface_ + static_cast<size_t>(in.material);
     const RigidAndStretch X = split_stretch(X_BF * in.X_FI);
@@ -245,6 +293,9 @@ class VisualImporter {
     std::string name;
   };
   const CompiledWorld& world_;
+  std::vector<VisualOptions> visuals_;
+  bool is_model_ = false;        // meshes of URDFs
+  std::vector<int> plain_rows_;  // of materials, by visual; of those
   const std::vector<Affine3f>& poses_;
   const AddVisualPart& add_;
   LightLevels* levels_;
@@ -290,10 +341,31 @@ Status describe_visuals(const CompiledWorld& world, const std::vector<Affine3f>&
   return VisualImporter(world, poses, add, levels, out).run();
 }
 
+Status describe_model_meshes(const CompiledWorld& world, const std::vector<DrawnMesh>& meshes,
+                             const std::vector<Affine3f>& poses, const AddMeshPart& add,
+                             RenderDescription* out) {
+  if (meshes.empty()) return {};
+  std::vector<int> indices;  // the importer counts those that it could read
+  const AddVisualPart add_part = [&](InstanceDescription instance, int body, std::string,
+                                     int visual, const std::string&) {
+    add(std::move(instance), body, indices[static_cast<size_t>(visual)]);
+  };
+  LightLevels none;
+  VisualImporter importer(world, poses, add_part, &none, out);
+  return importer.run(meshes, &indices);
+}
+
 int64_t count_visual_triangles(const CompiledWorld& world) {
   std::map<std::filesystem::path, std::optional<ModelFile>> files;
   int64_t triangles = 0;
-  for (const VisualOptions& v : world.scene.visuals) {
+  std::vector<VisualOptions> visuals = world.scene.visuals;
+  for (const VisualOnlyMesh& mesh : world.visual_meshes) {
+    VisualOptions& v = visuals.emplace_back();
+    v.name = mesh.name;
+    v.file = mesh.file;
+    v.loc = mesh.loc;
+  }
+  for (const VisualOptions& v : visuals) {
     const auto [file, is_new] = files.try_emplace(v.file);
     if (is_new) {
       Result<ModelFile> read = load_model_file(world.scene, v.file, title(v), v.loc);

@@ -28,6 +28,21 @@ Status add_visual_of(const std::string& user, VisualOptions visual, Scene* scene
 Status describe_visuals(const CompiledWorld& world, const std::vector<Affine3f>& poses,
                         const AddVisualPart& add, LightLevels* levels, RenderDescription* out);
 
+/// Puts an instance of a mesh of CompiledWorld::visual_meshes on a body; `index` = its row in
+/// visual_only.
+using AddMeshPart = std::function<void(InstanceDescription instance, int body, int index)>;
+
+/// A mesh of a URDF, and the material of those of its parts that have none of their own.
+struct DrawnMesh {
+  int index = 0;  ///< row of visual_only
+  int material = 0;
+};
+
+/// Likewise the meshes of URDF visuals. A file that has gone since is told, it is never an error.
+Status describe_model_meshes(const CompiledWorld& world, const std::vector<DrawnMesh>& meshes,
+                             const std::vector<Affine3f>& poses, const AddMeshPart& add,
+                             RenderDescription* out);
+
 /// Triangles of the scene's visuals, of all instances; files that cannot be read have none.
 int64_t count_visual_triangles(const CompiledWorld& world);
 

@@ -4,6 +4,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -44,6 +45,17 @@ struct VisualOnlyGeom {
   int body = 0;   ///< body id in `model`
   int geom = -1;  ///< geom id in `visual_model`
   Pose X_BG;
+  int mesh =
+      -1;  ///< row of `visual_meshes`, for which the geom only stands in; -1 = the geom itself
+};
+
+/// A mesh file that a URDF draws. It is read anew, by way of the cache, where it is drawn.
+struct VisualOnlyMesh {
+  std::string name;   ///< "go1/base": robot and link; its materials are "NAME/MATERIAL"
+  std::string label;  ///< the visual's own name; may be empty
+  std::filesystem::path file;
+  Vec3 scale = {1, 1, 1};  ///< of the file's content, in Gloam's axes and metres
+  SourceLoc loc;
 };
 
 /// A number that no other World of this process has.
@@ -73,6 +85,7 @@ struct CompiledWorld {
   std::vector<AgentDescription> agents;
   ModelPtr visual_model;  ///< source of visual_only meshes and materials; null when there are none
   std::vector<VisualOnlyGeom> visual_only;
+  std::vector<VisualOnlyMesh> visual_meshes;
   std::vector<Error> notes;        ///< what is odd, and taken as it is
   std::vector<Error> place_notes;  ///< likewise, of what is generated; not in the cache, as that is
   std::vector<Error> unsupported;

@@ -2,16 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 namespace gloam {
 namespace {
 
-constexpr std::array<std::string_view, 12> kExtensions = {
+constexpr std::array<std::string_view, 13> kExtensions = {
     "KHR_lights_punctual",        "KHR_texture_transform", "KHR_materials_clearcoat",
     "KHR_materials_transmission", "KHR_materials_ior",     "KHR_materials_specular",
     "KHR_materials_sheen",        "KHR_materials_volume",  "KHR_materials_anisotropy",
-    "KHR_materials_unlit",        "KHR_mesh_quantization", "KHR_materials_emissive_strength"};
+    "KHR_materials_unlit",        "KHR_mesh_quantization", "KHR_materials_emissive_strength",
+    "EXT_mesh_gpu_instancing"};
 
 int hex_digit(char c) {
   if (c >= '0' && c <= '9') return c - '0';
@@ -45,6 +47,10 @@ bool decode_base64(std::string_view text, std::vector<uint8_t>* out) {
   return true;
 }
 
+bool is_known(const std::string& extension) {
+  return std::find(kExtensions.begin(), kExtensions.end(), extension) != kExtensions.end();
+}
+
 void check_asset(GltfDocument* document) {
   const JsonNode version = document->root()["asset"]["version"];
   if (!version.exists()) return version.fail("is missing; this is not glTF 2.0");
@@ -54,7 +60,7 @@ void check_asset(GltfDocument* document) {
   const JsonNode required = document->root()["extensionsRequired"];
   for (size_t i = 0; i < required.size(); ++i) {
     const std::string name = required.at(i).text();
-    if (std::find(kExtensions.begin(), kExtensions.end(), name) == kExtensions.end())
+    if (!is_known(name))
       required.at(i).fail(
           fmt::format("the file requires '{}', which Gloam does not read", name.substr(0, 100)),
           "export the model without it");
@@ -62,6 +68,16 @@ void check_asset(GltfDocument* document) {
 }
 
 }  // namespace
+
+void note_unknown_extensions(GltfDocument* document, ModelFile* model) {
+  const JsonNode used = document->root()["extensionsUsed"];
+  for (size_t i = 0; i < used.size() && document->errors().ok(); ++i) {
+    const std::string name = used.at(i).text();
+    if (!is_known(name))
+      add_note(model,
+               fmt::format("the extension '{}' of the file is left out", name.substr(0, 100)));
+  }
+}
 
 std::string decode_uri(std::string_view uri) {
   std::string out;

@@ -51,6 +51,9 @@ class GltfDocument {
   std::vector<std::span<const uint8_t>> buffers_;
 };
 
+/// Extensions that the file uses and Gloam lacks, as notes.
+void note_unknown_extensions(GltfDocument* document, ModelFile* model);
+
 /// Text after the percent signs of a URI are undone.
 std::string decode_uri(std::string_view uri);
 

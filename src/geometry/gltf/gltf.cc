@@ -24,6 +24,7 @@ Result<ModelFile> read_document(const ModelSource& source, std::span<const uint8
   model.was_y_up = true;
   const JsonErrors& errors = document->errors();
   if (document->root()["animations"].exists()) add_note(&model, "animations are left out");
+  note_unknown_extensions(document.get(), &model);
   read_gltf_images(document.get(), &model);
   if (errors.ok()) read_gltf_materials(document.get(), &model);
   GltfMeshTable meshes;

@@ -2,7 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "geometry/gltf/document.h"
+#include "geometry/vertex_colors.h"
 
 namespace gloam {
 namespace {
@@ -44,6 +47,37 @@ class PrimitiveReader {
  public:
   PrimitiveReader(GltfDocument* document, ModelFile* model) : document_(document), model_(model) {}
 
+  // The new mesh with its material, painted where its vertices have colours; mesh -1 = nothing to
+  // draw or an error.
+  GltfMeshTable::Part read_part(const JsonNode& node, int material) {
+    GltfMeshTable::Part out{read(node), material};
+    const JsonNode color = node["attributes"]["COLOR_0"];
+    if (out.mesh < 0 || !color.exists()) return out;
+    const JsonNode accessors = document_->root()["accessors"];
+    const int accessor = color.index(accessors.size(), "accessor");
+    if (accessor < 0) return {-1, material};
+    const size_t width =
+        accessors.at(static_cast<size_t>(accessor))["type"].text() == "VEC4" ? 4 : 3;
+    const size_t count = model_->meshes[static_cast<size_t>(out.mesh)].positions.size();
+    std::vector<float> numbers;
+    if (!read_vertices(color, width, count, &numbers)) return {-1, material};
+    std::vector<Vec3f> colors(count);
+    bool is_clear = false;
+    for (size_t i = 0; i < count; ++i) {
+      const float* n = &numbers[i * width];
+      if (!std::isfinite(n[0] + n[1] + n[2])) {
+        color.fail(fmt::format("the colour of vertex {} is not finite", i));
+        return {-1, material};
+      }
+      colors[i] = {n[0], n[1], n[2]};
+      is_clear = is_clear || (width == 4 && n[3] < 1);
+    }
+    if (is_clear) add_note(model_, "the transparency of vertex colours is left out");
+    out.material = paint_vertices(colors, material, &out.mesh, &painted_, model_);
+    return out;
+  }
+
+ private:
   // Index of the new mesh; -1 = nothing to draw or an error.
   int read(const JsonNode& node) const {
     const uint64_t mode = node["mode"].integer(kTriangles, kFan);
@@ -81,10 +115,8 @@ class PrimitiveReader {
     return static_cast<int>(model_->meshes.size()) - 1;
   }
 
- private:
   void note_what_is_left_out(const JsonNode& node) const {
     if (node["targets"].exists()) add_note(model_, "morph targets are left out");
-    if (node["attributes"]["COLOR_0"].exists()) add_note(model_, "vertex colours are left out");
   }
 
   bool read_attribute(const JsonNode& node, size_t components, std::vector<float>* out) const {
@@ -122,6 +154,7 @@ class PrimitiveReader {
 
   GltfDocument* document_;
   ModelFile* model_;
+  PaintedMeshes painted_;
 };
 
 }  // namespace
@@ -129,7 +162,8 @@ class PrimitiveReader {
 GltfMeshTable read_gltf_meshes(GltfDocument* document, ModelFile* model) {
   GltfMeshTable out;
   const JsonNode meshes = document->root()["meshes"];
-  const PrimitiveReader reader(document, model);
+  PrimitiveReader reader(document, model);
+  const size_t materials = model->materials.size();  // painting adds more
   uint64_t total = 0;
   for (size_t i = 0; i < meshes.size(); ++i) total += meshes.at(i)["primitives"].size();
   if (total > document->source().options->limits.meshes)
@@ -140,9 +174,9 @@ GltfMeshTable read_gltf_meshes(GltfDocument* document, ModelFile* model) {
     out.parts.emplace_back();
     for (size_t k = 0; k < primitives.size() && document->errors().ok(); ++k) {
       const JsonNode primitive = primitives.at(k);
-      const int material = primitive["material"].index(model->materials.size(), "material");
-      const int mesh = reader.read(primitive);
-      if (mesh >= 0) out.parts.back().push_back({mesh, material});
+      const int material = primitive["material"].index(materials, "material");
+      const GltfMeshTable::Part part = reader.read_part(primitive, material);
+      if (part.mesh >= 0) out.parts.back().push_back(part);
       progress.add(1);
     }
   }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "geometry/gltf/document.h"
@@ -20,22 +22,31 @@ Affine3f from_matrix(const JsonNode& node) {
   return {{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}, {m[12], m[13], m[14]}};
 }
 
-Affine3f from_parts(const JsonNode& node) {
-  float q[4] = {0, 0, 0, 1};  // x y z w
-  if (node["rotation"].numbers(q, 4)) {
-    const float norm = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-    if (!(norm > 1e-6f && std::isfinite(norm))) {
-      node["rotation"].fail("is no rotation: the quaternion is zero or too large");
-      return {};
-    }
-    for (float& v : q) v /= norm;
-  }
+// x y z w to length one; false where it has none.
+bool normalize_rotation(std::array<float, 4>* q) {
+  const auto [x, y, z, w] = *q;
+  const float norm = std::sqrt(x * x + y * y + z * z + w * w);
+  if (!(norm > 1e-6f && std::isfinite(norm))) return false;
+  for (float& v : *q) v /= norm;
+  return true;
+}
+
+Affine3f from_rotation(const std::array<float, 4>& q, Vec3f scale) {
   const auto [x, y, z, w] = q;
-  const Vec3f scale = node["scale"].vec3({1, 1, 1});
   Affine3f out;
   out.x = Vec3f{1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)} * scale.x;
   out.y = Vec3f{2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)} * scale.y;
   out.z = Vec3f{2 * (x * z + w * y), 2 * (y * z - w * x), 1 - 2 * (x * x + y * y)} * scale.z;
+  return out;
+}
+
+Affine3f from_parts(const JsonNode& node) {
+  std::array<float, 4> q = {0, 0, 0, 1};
+  if (node["rotation"].numbers(q.data(), 4) && !normalize_rotation(&q)) {
+    node["rotation"].fail("is no rotation: the quaternion is zero or too large");
+    return {};
+  }
+  Affine3f out = from_rotation(q, node["scale"].vec3({1, 1, 1}));
   out.p = node["translation"].vec3({0, 0, 0});
   return out;
 }
@@ -165,16 +176,62 @@ class NodeReader {
     return out;
   }
 
+  // EXT_mesh_gpu_instancing: shift, rotation and scale of each copy, any of them left out.
+  bool read_copies(const JsonNode& attributes, std::vector<Affine3f>* out) {
+    std::vector<float> shift, turn, scale;
+    size_t count = SIZE_MAX;
+    const auto read = [&](const char* name, size_t width, std::vector<float>* to) {
+      const JsonNode attribute = attributes[name];
+      if (!attribute.exists()) return true;
+      const int accessor = attribute.index(document_->root()["accessors"].size(), "accessor");
+      if (accessor < 0 || !document_->read_floats(accessor, width, to)) return false;
+      if (count != SIZE_MAX && count != to->size() / width)
+        attribute.fail(
+            fmt::format("has {} instances, another attribute {}", to->size() / width, count));
+      count = to->size() / width;
+      return ok();
+    };
+    if (!read("TRANSLATION", 3, &shift) || !read("ROTATION", 4, &turn) || !read("SCALE", 3, &scale))
+      return false;
+    if (count == SIZE_MAX) return true;  // nothing is said: the mesh itself
+    if (count > document_->source().options->limits.instances) {
+      attributes.fail(fmt::format("has {} instances: more than the limit", count));
+      return false;
+    }
+    out->clear();
+    for (size_t i = 0; i < count; ++i) {
+      std::array<float, 4> q = {0, 0, 0, 1};
+      if (!turn.empty()) std::copy_n(&turn[4 * i], 4, q.begin());
+      if (!normalize_rotation(&q)) {
+        attributes["ROTATION"].fail(fmt::format("instance {} has no rotation", i));
+        return false;
+      }
+      const Vec3f s =
+          scale.empty() ? Vec3f{1, 1, 1} : Vec3f{scale[3 * i], scale[3 * i + 1], scale[3 * i + 2]};
+      Affine3f X = from_rotation(q, s);
+      if (!shift.empty()) X.p = {shift[3 * i], shift[3 * i + 1], shift[3 * i + 2]};
+      out->push_back(X);
+    }
+    return true;
+  }
+
   void add_content(const JsonNode& node, const Affine3f& X_FN) {
     if (node["skin"].exists()) add_note(model_, "skins are left out: the mesh is not bent");
     if (node["camera"].exists()) add_note(model_, "cameras are left out");
     const ModelLimits& limits = document_->source().options->limits;
     const std::string name = node["name"].text().substr(0, kMaxName);
     if (const int mesh = node["mesh"].index(meshes_.parts.size(), "mesh"); mesh >= 0) {
-      for (const GltfMeshTable::Part& part : meshes_.parts[static_cast<size_t>(mesh)]) {
-        if (model_->instances.size() >= limits.instances)
-          return node.fail(fmt::format("there are more than {} instances", limits.instances));
-        model_->instances.push_back({name, part.mesh, part.material, X_FN});
+      std::vector<Affine3f> places = {Affine3f{}};
+      const JsonNode copies = node["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
+      if (copies.exists() && !read_copies(copies, &places)) return;
+      for (const Affine3f& X_NC : places) {
+        const Affine3f X_FC = copies.exists() ? X_FN * X_NC : X_FN;
+        if (!is_finite(X_FC)) return copies.fail("puts an instance at no finite place");
+        for (const GltfMeshTable::Part& part : meshes_.parts[static_cast<size_t>(mesh)]) {
+          if (model_->instances.size() >= limits.instances)
+            return node.fail(fmt::format("there are more than {} instances", limits.instances));
+          model_->instances.push_back({name, part.mesh, part.material, X_FC});
+        }
       }
     }
     const int light =

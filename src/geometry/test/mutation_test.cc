@@ -77,6 +77,23 @@ std::string stl_seed(bool binary) {
   return out;
 }
 
+std::string dae_seed() {
+  return R"(<COLLADA version='1.4.1'><asset><unit meter='0.5'/><up_axis>X_UP</up_axis></asset>
+<library_effects><effect id='e'><profile_COMMON><technique><phong><diffuse><color>1 0 0 1</color>
+</diffuse><shininess><float>20</float></shininess></phong></technique></profile_COMMON></effect>
+</library_effects><library_materials><material id='m'><instance_effect url='#e'/></material>
+</library_materials><library_geometries><geometry id='g'><mesh><source id='p'>
+<float_array id='a' count='12'>0 0 0 1 0 0 1 1 0 0 1 0</float_array><technique_common>
+<accessor source='#a' count='4' stride='3'/></technique_common></source><vertices id='v'>
+<input semantic='POSITION' source='#p'/></vertices><polylist material='m'>
+<input semantic='VERTEX' source='#v' offset='0'/><input semantic='COLOR' source='#p' offset='1'/>
+<vcount>4</vcount><p>0 0 1 1 2 2 3 3</p></polylist></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id='s'><node id='n'><matrix>1 0 0 0 0 1 0 0 0 0 1 3 0 0 0 1
+</matrix><rotate>0 0 1 90</rotate><instance_geometry url='#g'/><node><instance_node url='#n2'/>
+</node></node><node id='n2'/></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url='#s'/></scene></COLLADA>)";
+}
+
 std::string ply_seed(bool binary) {
   std::string out = fmt::format(
       "ply\nformat {} 1.0\nelement vertex 5\nproperty float x\nproperty float y\n"
@@ -173,6 +190,7 @@ std::vector<Reader> all_readers() {
          return parse_mtl({"mutated", {}, nullptr, &options}, text, "mutated", &budget, &out).ok();
        }},
       {"STL", {stl_seed(false), stl_seed(true)}, model(read_stl)},
+      {"COLLADA", {dae_seed()}, model(read_collada)},
       {"PLY", {ply_seed(false), ply_seed(true)}, model(read_ply)},
       {"HDR",
        {hdr_file(20, 2, texels, HdrPacking::kNone), hdr_file(20, 2, texels, HdrPacking::kOld),

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "base/files.h"
+#include "base/plain_text.h"
 #include "base/text.h"
 #include "scene/mjcf/node.h"
 #include "scene/mjcf/spec_only.h"
@@ -50,7 +51,7 @@ Document Document::make(std::string_view model_name) {
 }
 
 Result<Document> Document::load(const fs::path& file) {
-  GLOAM_TRY(const std::string text, read_text_file(file, kLargestModelText));
+  GLOAM_TRY(const std::string text, read_plain_text(file, kLargestModelText));
   return is_toml(file) ? from_toml(text, file.string()) : from_xml(text, file.string());
 }
 

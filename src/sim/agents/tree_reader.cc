@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/files.h"
+#include "base/plain_text.h"
 #include "base/text.h"
 #include "scene/xml_text.h"
 #include "sim/agents/behavior_tree.h"
@@ -341,7 +342,7 @@ Result<std::shared_ptr<const BehaviorTree>> read_behavior_tree(const std::string
 
 Result<std::shared_ptr<const BehaviorTree>> read_behavior_tree_file(
     const std::filesystem::path& file) {
-  GLOAM_TRY(const std::string text, read_text_file(file, kLargestTree));
+  GLOAM_TRY(const std::string text, read_plain_text(file, kLargestTree));
   return read_behavior_tree(text, file.string());
 }
 

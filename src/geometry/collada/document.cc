@@ -1,0 +1,120 @@
+#include "geometry/collada/document.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "geometry/text_lines.h"
+
+namespace gloam {
+namespace {
+
+constexpr size_t kMostElements = size_t{4} << 20;
+constexpr int kDeepestElement = 256;
+
+bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
+// The next word of an element's text, which may run over lines.
+std::string_view next_word(std::string_view* text) {
+  size_t begin = 0;
+  while (begin < text->size() && is_space((*text)[begin])) ++begin;
+  size_t end = begin;
+  while (end < text->size() && !is_space((*text)[end])) ++end;
+  const std::string_view word = text->substr(begin, end - begin);
+  text->remove_prefix(end);
+  return word;
+}
+
+// Exporters of languages with a decimal comma and of Windows write such numbers.
+bool parse_float(std::string_view word, float* out) {
+  if (parse_number(word, out)) return true;
+  std::string lower(word);
+  std::replace(lower.begin(), lower.end(), ',', '.');
+  return parse_number(lower, out);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ColladaDocument>> ColladaDocument::open(const ModelSource& source) {
+  std::unique_ptr<ColladaDocument> out(new ColladaDocument(source));
+  const auto refuse = [&](std::string message, ptrdiff_t offset) {
+    const std::string_view text = as_text(source.bytes);
+    const auto end = static_cast<size_t>(std::clamp<ptrdiff_t>(offset, 0, std::ssize(text)));
+    const auto line =
+        1 + std::count(text.begin(), text.begin() + static_cast<ptrdiff_t>(end), '\n');
+    return Error{ErrorKind::kInput,
+                 std::move(message),
+                 {source.name, static_cast<int>(line), 0},
+                 "the file may be cut off: export the model again"};
+  };
+  // A document type and the entities that it declares are skipped, so nothing else is opened.
+  const pugi::xml_parse_result parsed = out->document_.load_buffer(
+      source.bytes.data(), source.bytes.size(), pugi::parse_default, pugi::encoding_utf8);
+  if (!parsed)
+    return refuse(fmt::format("is not well-formed XML: {}", parsed.description()), parsed.offset);
+  if (!out->root()) return refuse("is no COLLADA file: its top element is not <COLLADA>", 0);
+  size_t count = 0;
+  int depth = 0;
+  for (pugi::xml_node node = out->root(); node;) {
+    if (++count > kMostElements) return refuse("has more elements than the limit", 0);
+    if (const char* id = node.attribute("id").value(); *id != 0) out->ids_.emplace(id, node);
+    if (node.first_child()) {
+      if (++depth > kDeepestElement) return refuse("is nested too deep", node.offset_debug());
+      node = node.first_child();
+      continue;
+    }
+    while (node && !node.next_sibling() && node != out->root()) node = node.parent(), --depth;
+    node = node == out->root() ? pugi::xml_node() : node.next_sibling();
+  }
+  return out;
+}
+
+pugi::xml_node ColladaDocument::find(std::string_view url) const {
+  if (url.starts_with('#')) url.remove_prefix(1);
+  const auto found = ids_.find(url);
+  return found == ids_.end() ? pugi::xml_node() : found->second;
+}
+
+SourceLoc ColladaDocument::loc_of(const pugi::xml_node& node) const {
+  const std::string_view text = as_text(source_.bytes);
+  const auto end = std::clamp<ptrdiff_t>(node.offset_debug(), 0, std::ssize(text));
+  return {source_.name, static_cast<int>(1 + std::count(text.begin(), text.begin() + end, '\n')),
+          0};
+}
+
+Error ColladaDocument::bad(const pugi::xml_node& node, std::string_view message) const {
+  const std::string id = node.attribute("id").value();
+  const std::string named = id.empty() ? "" : fmt::format(" '{:.80}'", id);
+  return {ErrorKind::kInput, fmt::format("<{:.40}>{} {}", node.name(), named, message),
+          loc_of(node), "repair the file or export it again"};
+}
+
+Status ColladaDocument::read_floats(const pugi::xml_node& node, std::vector<float>* out) {
+  std::string_view text = node.text().get();
+  if (!budget_.take(text.size() / 2 + 1, sizeof(float)))
+    return bad(node, "unpacks to more than the limit");
+  out->clear();
+  for (std::string_view word; !(word = next_word(&text)).empty();) {
+    float value;
+    if (!parse_float(word, &value))
+      return bad(node, fmt::format("holds '{}', which is no number", word.substr(0, 40)));
+    out->push_back(value);
+  }
+  return {};
+}
+
+Status ColladaDocument::read_indices(const pugi::xml_node& node, std::vector<uint32_t>* out) {
+  std::string_view text = node.text().get();
+  if (!budget_.take(text.size() / 2 + 1, sizeof(uint32_t)))
+    return bad(node, "unpacks to more than the limit");
+  out->clear();
+  for (std::string_view word; !(word = next_word(&text)).empty();) {
+    uint32_t value = 0;
+    if (!parse_integer(word, &value))
+      return bad(node, fmt::format("holds '{}', which is no index", word.substr(0, 40)));
+    out->push_back(value);
+  }
+  return {};
+}
+
+}  // namespace gloam
