@@ -42,6 +42,7 @@ void RunOptions::add_to(CLI::App& command) {
                   "Light of a model that brings none; studio: soft light and a floor; model: as "
                   "MuJoCo shows it; default: the scene's, else studio where nothing gives light")
       ->check(CLI::IsMember({"auto", "studio", "model"}));
+  command
       .add_option("--groups", groups,
                   "Groups of geoms, tendons and sites to draw, as 0,1,2,3; default: 0,1,2")
       ->delimiter(',')

@@ -61,8 +61,8 @@ class KtxReader {
                                   : 0;
     if (channels_ == 0) return bad(fmt::format("its format 0x{:04x} is not supported", format));
     texel_bytes_ = type_ == kUnsignedByte                  ? channels_
-                   : type_ == kGlHalf                        ? 2 * channels_
-                   : type_ == kGlFloat                       ? 4 * channels_
+                   : type_ == kGlHalf                      ? 2 * channels_
+                   : type_ == kGlFloat                     ? 4 * channels_
                    : type_ == kPacked11f && channels_ == 3 ? 4
                                                            : 0;
     if (texel_bytes_ == 0) return bad(fmt::format("its type 0x{:04x} is not supported", type_));

@@ -39,6 +39,8 @@ bool is_text_model(const ModelSource& source) {
   const std::string_view text = as_text(source.bytes);
   if (starts_with(source.bytes, "glTF") || is_binary_stl(source.bytes)) return false;
   const std::string_view head = text.substr(0, 200);
+  const bool is_utf16 = text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
+  if (!is_utf16 && head.find('\0') != std::string_view::npos) return false;
   const bool is_ply = head.find("ply") < 6;
   return !is_ply || head.find("format ascii") != std::string_view::npos;
 }

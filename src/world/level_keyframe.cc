@@ -66,7 +66,9 @@ struct KeyVectors {
 void copy_robot(const mjSpec* level, const LevelRobot& robot, mjModel* m, const KeyVectors& from,
                 const KeyVectors& to) {
   const Pose& X_WR = robot.options.X_WR;
+  std::vector<bool> owns_joint(static_cast<size_t>(m->njnt));
   each_element_of(level, robot, mjOBJ_JOINT, [&](int joint) {
+    owns_joint[static_cast<size_t>(joint)] = true;
     const int type = m->jnt_type[joint], q = m->jnt_qposadr[joint], v = m->jnt_dofadr[joint];
     std::copy_n(from.qpos + q, joint_nq(type), to.qpos + q);
     std::copy_n(from.qvel + v, joint_nv(type), to.qvel + v);
@@ -75,11 +77,19 @@ void copy_robot(const mjSpec* level, const LevelRobot& robot, mjModel* m, const 
       rotate(X_WR.q, to.qvel + v);  // linear part: world axes; the angular part is in the body's
     }
   });
-  each_element_of(level, robot, mjOBJ_ACTUATOR, [&](int actuator) {
+  std::vector<bool> owns_actuator(static_cast<size_t>(m->nu));
+  each_element_of(level, robot, mjOBJ_ACTUATOR,
+                  [&](int actuator) { owns_actuator[static_cast<size_t>(actuator)] = true; });
+  for (int actuator = 0; actuator < static_cast<int>(m->nu); ++actuator) {
+    // Those of attached models that have no name are known by the joint that they drive.
+    const int type = m->actuator_trntype[actuator], target = m->actuator_trnid[2 * actuator];
+    const bool drives = (type == mjTRN_JOINT || type == mjTRN_JOINTINPARENT) && target >= 0 &&
+                        owns_joint[static_cast<size_t>(target)];
+    if (!owns_actuator[static_cast<size_t>(actuator)] && !drives) continue;
     const int ctrl = m->actuator_ctrladr[actuator], act = m->actuator_actadr[actuator];
     if (ctrl >= 0) std::copy_n(from.ctrl + ctrl, m->actuator_ctrlnum[actuator], to.ctrl + ctrl);
     if (act >= 0) std::copy_n(from.act + act, m->actuator_actnum[actuator], to.act + act);
-  });
+  }
   each_element_of(level, robot, mjOBJ_BODY, [&](int body) {
     const int mocap = m->body_mocapid[body];
     if (mocap < 0) return;

@@ -92,9 +92,9 @@ ModelPtr get_model(ArchiveReader* in) {
 
 std::vector<uint8_t> serialise(const CompiledWorld& world,
                                const std::vector<Dependency>& dependencies) {
-  CacheEntry entry{dependencies,        world.initial_key, world.robots,      world.visual_only,
-                   world.visual_meshes, world.notes,       world.unsupported, world.lines,
-                   world.model->nplugin > 0};
+  CacheEntry entry{dependencies,      world.initial_key,   world.robots,
+                   world.visual_only, world.visual_meshes, world.notes,
+                   world.unsupported, world.lines,         world.model->nplugin > 0};
   ArchiveWriter out;
   begin_cache_entry(&out.bytes);
   visit_entry(out, entry);

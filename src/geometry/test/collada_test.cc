@@ -33,7 +33,7 @@ std::string dae(const std::string& asset, const std::string& primitive, const st
          "<scene><instance_visual_scene url='#s'/></scene></COLLADA>";
 }
 
-const char* const kSquare =
+const char* const kSquareDae =
     "<polylist count='1' material='m'><input semantic='VERTEX' source='#v' offset='0'/>"
     "<input semantic='NORMAL' source='#n' offset='1'/>"
     "<input semantic='TEXCOORD' source='#t' offset='2' set='0'/>"
@@ -58,7 +58,7 @@ Vec3f place(const ModelFile& model, Vec3f p, size_t instance = 0) {
 void expect_near(Vec3f a, Vec3f b) { EXPECT_LT(length(a - b), 1e-5f) << testing::PrintToString(a); }
 
 TEST(Collada, PolygonsOfSeveralInputsBecomeTriangles) {
-  const ModelFile model = read_ok(dae("<up_axis>Z_UP</up_axis>", kSquare, kNode));
+  const ModelFile model = read_ok(dae("<up_axis>Z_UP</up_axis>", kSquareDae, kNode));
   ASSERT_EQ(model.meshes.size(), 1u);
   const TriangleMesh& mesh = model.meshes[0];
   EXPECT_EQ(mesh.triangle_count(), 2u);
@@ -98,7 +98,7 @@ TEST(Collada, NodesAreFlattened) {
 TEST(Collada, EffectsBecomeMaterials) {
   const auto file = [&](const std::string& phong) {
     return read_ok(dae(
-        "", kSquare,
+        "", kSquareDae,
         "<node><instance_geometry url='#g'><bind_material><technique_common>"
         "<instance_material symbol='m' target='#red'/></technique_common></bind_material>"
         "</instance_geometry></node>",
@@ -131,7 +131,7 @@ TEST(Collada, PicturesAreFoundBesideTheFileAndNowhereElse) {
   const auto read = [&](const std::string& name) {
     const auto file = folder.write(
         "m/a.dae",
-        dae("", kSquare,
+        dae("", kSquareDae,
             "<node><instance_geometry url='#g'><bind_material><technique_common>"
             "<instance_material symbol='m' target='#red'/></technique_common></bind_material>"
             "</instance_geometry></node>",
@@ -157,7 +157,7 @@ TEST(Collada, PicturesAreFoundBesideTheFileAndNowhereElse) {
 }
 
 TEST(Collada, DamageIsToldWithItsLine) {
-  const std::string whole = dae("", kSquare, kNode);
+  const std::string whole = dae("", kSquareDae, kNode);
   for (size_t n = 0; n < whole.size(); n += 7)
     EXPECT_FALSE(read_text(whole.substr(0, n), "a.dae").ok());
   EXPECT_THAT(error_for(dae("", kTriangle, "<node><instance_geometry url='#h'/></node>")),

@@ -376,7 +376,8 @@ TEST(Ply, DamageIsNamed) {
 
 TEST(ModelFile, TheFormatIsToldByContent) {
   EXPECT_EQ(read_ok(ascii_ply(), "wrong.obj").meshes.size(), 1u);
-  EXPECT_THAT(error_for("hello", "a.txt"), HasSubstr("is none of glTF, GLB, OBJ, STL and PLY"));
+  EXPECT_THAT(error_for("hello", "a.txt"),
+              HasSubstr("is none of glTF, GLB, COLLADA, OBJ, STL and PLY"));
   EXPECT_THAT(error_of(read_model_file("/no/such/file.glb")), HasSubstr("no such file"));
 }
 

@@ -96,7 +96,7 @@ TEST(Schema, OfScenesRefusesWhatTheReaderRefuses) {
                           "[record]\noutputs = \"png\"",
                           "[sky]\ndate = 2026",
                           "[[visual]]\nname = \"a/b\"\nfile = \"v.obj\"",
-                          "[[visual]]\nname = \"v\"\nfile = \"v.obj\"\nscale = 0"})
+                          "[[visual]]\nname = \"v\"\nfile = \"v.obj\"\nscale = 1e9"})
     EXPECT_NE(with(bad), "") << bad;
   EXPECT_NE(scenes().check_toml("[[robot]]\nname = \"a\"\n"), "");
 }

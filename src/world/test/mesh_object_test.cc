@@ -287,7 +287,8 @@ TEST_F(MeshObjectTest, VisualsMayBeOneNode) {
   ASSERT_TRUE(world.ok()) << world.error().to_string();
   const Result<RenderDescription> shown = describe_for_rendering(*world->compiled());
   ASSERT_TRUE(shown.ok()) << shown.error().to_string();
-  EXPECT_EQ(shown->instances.size(), 1u);
+  ASSERT_EQ(shown->instances.size(), 2u) << "the pillar and the studio's floor";
+  EXPECT_TRUE(shown->instances[1].color_only);
   const Result<World> wrong = compile(visual + "'pilar'\n");
   ASSERT_TRUE(wrong.ok());
   const Result<RenderDescription> none = describe_for_rendering(*wrong->compiled());

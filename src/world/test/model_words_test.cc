@@ -61,7 +61,8 @@ TEST_F(ModelWordsTest, OfXacro) {
 }
 
 TEST_F(ModelWordsTest, OfMeshesGivenAsModels) {
-  EXPECT_THAT(error_of("part.obj", tetrahedron_obj()), HasSubstr("is a mesh, not a model"));
+  EXPECT_THAT(error_of("part.obj", tetrahedron_obj()),
+              HasSubstr("is a mesh; a model is wanted here"));
 }
 
 TEST_F(ModelWordsTest, OfFilesThatAreGitLfsPointers) {

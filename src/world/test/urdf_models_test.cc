@@ -162,7 +162,7 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"Collada",
               "<link name='a'>\n<collision><geometry><mesh filename='part.dae'/></geometry>"
               "</collision></link>",
-              "no decoder found for mesh file"}),
+              "has no triangles"}),
     [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
