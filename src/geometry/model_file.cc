@@ -38,9 +38,12 @@ bool is_binary_stl(std::span<const uint8_t> bytes) {
 bool is_text_model(const ModelSource& source) {
   const std::string_view text = as_text(source.bytes);
   if (starts_with(source.bytes, "glTF") || is_binary_stl(source.bytes)) return false;
-  const std::string_view head = text.substr(0, 200);
+  // Some tools end text by a zero; one before other bytes is none of a text's.
+  const std::string_view head = text.substr(0, text.find_last_not_of('\0') + 1).substr(0, 200);
   const bool is_utf16 = text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF");
-  if (!is_utf16 && head.find('\0') != std::string_view::npos) return false;
+  constexpr uint8_t kLastControl = 8;  // the ends of lines and of files come after it
+  const auto is_control = [](char c) { return static_cast<uint8_t>(c) <= kLastControl; };
+  if (!is_utf16 && std::any_of(head.begin(), head.end(), is_control)) return false;
   const bool is_ply = head.find("ply") < 6;
   return !is_ply || head.find("format ascii") != std::string_view::npos;
 }

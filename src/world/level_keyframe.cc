@@ -77,10 +77,10 @@ void copy_robot(const mjSpec* level, const LevelRobot& robot, mjModel* m, const 
       rotate(X_WR.q, to.qvel + v);  // linear part: world axes; the angular part is in the body's
     }
   });
-  std::vector<bool> owns_actuator(static_cast<size_t>(m->nu));
+  std::vector<bool> owns_actuator(static_cast<size_t>(m->nactuator));
   each_element_of(level, robot, mjOBJ_ACTUATOR,
                   [&](int actuator) { owns_actuator[static_cast<size_t>(actuator)] = true; });
-  for (int actuator = 0; actuator < static_cast<int>(m->nu); ++actuator) {
+  for (int actuator = 0; actuator < static_cast<int>(m->nactuator); ++actuator) {
     // Those of attached models that have no name are known by the joint that they drive.
     const int type = m->actuator_trntype[actuator], target = m->actuator_trnid[2 * actuator];
     const bool drives = (type == mjTRN_JOINT || type == mjTRN_JOINTINPARENT) && target >= 0 &&

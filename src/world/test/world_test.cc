@@ -124,7 +124,7 @@ TEST_F(WorldTest, AnExportKeepsNegativeZeros) {
                 "<body name='a' pos='-0.0 0 -0.0' quat='1 -0.0 0 -0.0'>"
                 "<joint name='j' pos='-0.0 0 0' axis='-0.0 0 1' range='-0.0 90' damping='-0.0'/>"
                 "<geom size='.1' margin='-0.0' surfacevel='-0.0 0 0 0 0 -0.0'/>"
-                "<camera pos='0 -0.0 0'/><body pos='0 0 1' euler='-0.0 0 0'>"
+                "<camera pos='0 -0.0 0'/><body pos='0 0 1'>"
                 "<joint type='slide' name='k' axis='0 -0.0 1'/><geom size='.1'/></body></body>"
                 "</worldbody><tendon><spatial name='t' range='-0.0 1'><site site='s'/>"
                 "<site site='s2'/></spatial></tendon>"
