@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <string>
@@ -22,6 +23,13 @@ std::string source_of(const Scene& scene, const std::string& name) {
     if (name.starts_with(robot.name + "/")) return robot.file.string();
   if (!scene.bare_model.empty()) return scene.bare_model.string();
   return (scene.environment.file.empty() ? scene.file : scene.environment.file).string();
+}
+
+// Colliders that an [[object]] is given: its mesh is drawn for them.
+bool stands_for_an_object(const Scene& scene, const std::string& geom) {
+  return std::any_of(scene.objects.begin(), scene.objects.end(), [&](const ObjectOptions& object) {
+    return geom.starts_with(object.name + "/collider_");
+  });
 }
 
 int line_in(const std::vector<int>& lines, int id) {
@@ -104,6 +112,7 @@ NotDrawn World::not_drawn() const {
   for (const InstanceDescription& instance : described->instances) {
     const int g = instance.geom;
     if (instance.shown || g < 0) continue;
+    if (stands_for_an_object(world.scene, name_of(m, mjOBJ_GEOM, g))) continue;
     const bool stands_back = draws_group(world.scene.render, instance.group);
     hidden.add("geom", stands_back ? ": visuals are, in their place" : "",
                name_of(m, mjOBJ_BODY, m.geom_bodyid[g]), line_in(world.lines.geoms, g),

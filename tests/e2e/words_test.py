@@ -2,7 +2,7 @@
 import json
 import unittest
 
-from support import PENDULUM, ProgramTest
+from e2e.support import PENDULUM, ProgramTest
 
 LIDAR = """[environment]
 file = "pendulum.xml"
