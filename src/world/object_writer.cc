@@ -106,8 +106,8 @@ class ObjectWriter {
   mjSpec* spec_;
 };
 
-// About how long CoACD takes on one core of a server [s]: a search for every cut, of which a finer
-// concavity asks more; measured on a cup of 576 triangles.
+// About how long CoACD takes [s], for the display alone: a search for every cut, of which a finer
+// concavity asks more. A rough guess: 37 s for a cup that was seen to take 53 s.
 double expected_seconds(const MeshObject& object) {
   if (object.options.colliders != "hulls" && object.options.colliders != "auto") return 0;
   constexpr double kLeast = 8, kPerTriangle = 1e-3, kUsual = 0.05, kPower = 0.9;
