@@ -121,7 +121,7 @@ TEST(Studio, ADarkRobotIsExposedLonger) {
 TEST(FreeView, TheModelFillsThePicture) {
   const Vec2f share = filled(look(kStudioRobot), 1);
   EXPECT_NEAR(max(share.x, share.y), 0.94, 0.02);
-  const CameraDescription& camera = look(kStudioRobot).cameras.back();
+  const CameraDescription camera = look(kStudioRobot).cameras.back();
   EXPECT_GT(camera.X_WC.z.z, 0.2f) << "from above";
   EXPECT_GT(std::fabs(camera.X_WC.z.x), 0.2f) << "from a corner";
   EXPECT_GT(std::fabs(camera.X_WC.z.y), 0.2f);
@@ -151,7 +151,7 @@ TEST(FreeView, FloorsPropsAndPlatesDoNotSpoilIt) {
 TEST(FreeView, TakesTheDirectionThatAModelGives) {
   std::string xml = kStudioRobot;
   xml.insert(xml.find("<worldbody"), "<visual><global azimuth='0' elevation='-10'/></visual>");
-  const CameraDescription& camera = look(xml).cameras.back();
+  const CameraDescription camera = look(xml).cameras.back();
   EXPECT_NEAR(camera.X_WC.z.x, -std::cos(10 * M_PI / 180), 1e-5);
   EXPECT_NEAR(camera.X_WC.z.y, 0, 1e-5);
   EXPECT_NEAR(camera.X_WC.z.z, std::sin(10 * M_PI / 180), 1e-5);
@@ -175,7 +175,7 @@ TEST(FreeView, TheModelsLookHasMuJoCosView) {
 TEST(FreeView, AnOrthographicOneShowsItAll) {
   std::string xml = kStudioRobot;
   xml.insert(xml.find("<worldbody"), "<visual><global orthographic='true' fovy='45'/></visual>");
-  const Intrinsics& k = look(xml).cameras.back().intrinsics;
+  const Intrinsics k = look(xml).cameras.back().intrinsics;
   EXPECT_GT(k.height / k.fy, 0.4);
   EXPECT_LT(k.height / k.fy, 1.0) << "metres, not the 45 of a perspective";
 }
