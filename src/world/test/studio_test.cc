@@ -36,7 +36,7 @@ int studio_floors(const RenderDescription& d) {
 /// 1 = all of it.
 Vec2f filled(const RenderDescription& d, int body) {
   const CameraDescription& camera = d.cameras.back();
-  std::vector<Affine3f> poses(static_cast<size_t>(body) + 1);
+  std::vector<Affine3f> poses(8);  // of more bodies than any model here has
   poses[static_cast<size_t>(body)].p = {0, 0, 0.5f};
   float x = 0, y = 0;
   for (const DrawnPart& part : drawn_parts(d, poses)) {
