@@ -77,7 +77,7 @@ TEST_F(ModelWordsTest, OfFilesThatAreGitLfsPointers) {
 }
 
 TEST_F(ModelWordsTest, OfPicturesThatMuJoCoDoesNotRead) {
-  const std::string jpeg("\xFF\xD8\xFF\xE0 no more of it", 20);
+  const std::string jpeg = "\xFF\xD8\xFF\xE0 no more of it";
   const auto model = [](const std::string& file) {
     return "<mujoco><asset>\n<texture name='t' type='2d' file='" + file +
            "'/><material name='m' texture='t'/></asset><worldbody><geom size='1' material='m'/>"
