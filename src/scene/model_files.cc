@@ -133,18 +133,13 @@ Result<ModelFiles::Content> ModelFiles::open(const fs::path& path, std::string* 
   }
   Result<std::string> bytes = read_text_file(path, kLargestAsset);
   if (!bytes.ok()) return fail(bytes.error().kind, bytes.error().message);
-  if (bytes->starts_with("version https://git-lfs.github.com/spec/"))
-    return fail(ErrorKind::kInput, std::string(kLfsPointer));
+  if (is_lfs_pointer(*bytes)) return fail(ErrorKind::kInput, std::string(kLfsPointer));
   total_size_ += bytes->size();
   if (total_size_ > kLargestTotal)
     return fail(ErrorKind::kInput, "is one file too many: the model's files exceed 8 GiB");
   // XML that MuJoCo finds by a way the scan did not follow is scanned now, before its parser sees
   // it.
   const std::string extension = lower_extension(path);
-  if (is_lfs_pointer(*bytes)) {
-    const Error pointer = lfs_pointer_error(path.string());
-    return fail(pointer.kind, fmt::format("{}: {}", pointer.message, pointer.hint));
-  }
   if (extension == ".xml" || extension == ".urdf" || extension == ".toml" || extension == ".obj") {
     Result<std::optional<std::string>> plain = plain_text(*bytes, path.string());
     if (!plain.ok()) return fail(plain.error().kind, plain.error().message);
