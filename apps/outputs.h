@@ -1,5 +1,5 @@
 #pragma once
-// What --output asks for, and whether the scene has it.
+// Checks of --output: known words, and whether the scene delivers them.
 
 #include <string>
 #include <vector>

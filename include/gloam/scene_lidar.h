@@ -51,9 +51,9 @@ struct LidarOptions {
   std::optional<std::array<double, 2>> divergence = {};  ///< full angle at 1/e², across, up [deg]
   /// Full width of the beam at 1/e² where it leaves, across, up [m].
   std::optional<std::array<double, 2>> beam_size = {};
-  /// Of the receiver's lens [m]; 0 = it sees all that the beam lights, however near.
+  /// Diameter of the receiver's lens [m]; 0 = it sees all that the beam lights, however near.
   std::optional<double> receiver_diameter = {};
-  /// Of the receiver's axis from the beam's [m]; empty = half of the lens.
+  /// Distance of the receiver's axis from the beam's [m]; empty = half of the lens.
   std::optional<double> receiver_offset = {};
   std::optional<double> receiver_view = {};  ///< full field of view of a detector [deg]
   std::optional<double> pulse_length = {};   ///< echoes closer together are one [m]

@@ -53,7 +53,7 @@ struct WorldInfo {
   std::vector<Error> unsupported;  ///< as World::unsupported()
 };
 
-/// What is in the files and not in pictures.
+/// Elements of the files that pictures do not show.
 struct NotDrawn {
   std::vector<Error> hidden;   ///< groups and sites that pictures show when asked to
   std::vector<Error> lacking;  ///< cannot be drawn

@@ -22,7 +22,7 @@ Result<std::optional<std::string>> plain_text(std::string_view bytes, const std:
 Result<std::string> read_plain_text(const std::filesystem::path& path,
                                     uint64_t max_size = uint64_t{64} << 20);
 
-/// What Git LFS leaves in the place of a file that was not fetched.
+/// Pointer that Git LFS leaves in the place of a file that was not fetched.
 bool is_lfs_pointer(std::string_view bytes);
 /// The error that such a file is.
 Error lfs_pointer_error(const std::string& file);

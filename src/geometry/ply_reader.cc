@@ -39,7 +39,7 @@ int slot_of(const std::string& name) {
   return -1;
 }
 
-// What a whole channel of a colour is.
+// Largest value of a colour channel.
 float full_scale(PlyType type) {
   if (type == PlyType::kUint8) return 255;
   return type == PlyType::kUint16 ? 65535.0f : 1;

@@ -10,7 +10,7 @@
 
 namespace gloam {
 
-/// What paint_vertices has made of one model's meshes.
+/// Pictures that paint_vertices has made of one model's meshes.
 struct PaintedMeshes {
   struct Picture {
     int mesh = 0, image = -1;  ///< image -1: one colour everywhere
