@@ -69,7 +69,8 @@ class VisualExport {
 
   Status add_all() {
     for (const InstanceDescription& instance : description_.instances) {
-      if (instance.geom >= 0 || !instance.shown || instance.motion >= 0 || is_site(instance))
+      if (instance.geom >= 0 || !instance.shown || instance.color_only || instance.motion >= 0 ||
+          is_site(instance))
         continue;
       if (geom_type(instance.shape) != mjGEOM_NONE) {
         GLOAM_TRY_STATUS(add(instance));

@@ -185,5 +185,17 @@ TEST_F(NotDrawnTest, ExportsHaveVisualsAsGeomsThatTouchNothing) {
   EXPECT_EQ(meshes, 1);
 }
 
+TEST_F(NotDrawnTest, ExportsKnowNothingOfTheStudio) {
+  const World world = compile(folder_.write("r.urdf", kUrdf));
+  const RenderDescription shown = visual_test::describe(*world.compiled());
+  ASSERT_TRUE(shown.instances.back().color_only) << "the studio's floor is in pictures";
+  std::vector<Error> left_out;
+  ASSERT_TRUE(world.export_mjcf(folder_.path() / "out", &left_out).ok());
+  const Result<ModelPtr> loaded = load_stock_model(folder_.path() / "out" / "scene.xml");
+  ASSERT_TRUE(loaded.ok()) << loaded.error().to_string();
+  EXPECT_EQ((*loaded)->nmesh, 0);
+  EXPECT_EQ((*loaded)->ngeom, 2) << "the collision sphere and the visual box";
+}
+
 }  // namespace
 }  // namespace gloam
