@@ -7,7 +7,6 @@
 #include "base/files.h"
 #include "base/plain_text.h"
 #include "base/text.h"
-#include "geometry/model_file.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
@@ -55,11 +54,7 @@ Status check_model_file(const fs::path& path, const std::string& as_written, con
   if (const Result<std::string> text = read_text_file(path, kLargestPointer);
       text.ok() && is_lfs_pointer(*text))
     return lfs_pointer_error(path.string());
-  if (is_model_file(path)) {
-    return Error{
-        ErrorKind::kInput, fmt::format("'{}' is a mesh; a model is wanted here", name), loc,
-        "draw it by a [[visual]], make a body of it by an [[object]], or see gloam convert"};
-  }
+  GLOAM_TRY_STATUS(refuse_mesh(path, name, loc));
   if (is_container(path)) {
     return Error{ErrorKind::kUnsupported,
                  fmt::format("'{}' is an archive or binary model, which is not read", name), loc,

@@ -28,14 +28,6 @@ constexpr size_t kDeepestInclude = 64;
 
 constexpr std::string_view kLfsPointer = "is a Git LFS pointer, not the file itself";
 
-// What is drawn or collides, and is no model: by its name.
-bool is_mesh_file(const fs::path& path) {
-  const std::string extension = lower_extension(path);
-  constexpr std::string_view kMeshes[] = {".obj",  ".stl", ".ply", ".dae", ".glb",
-                                          ".gltf", ".msh", ".fbx", ".usd"};
-  return std::ranges::find(kMeshes, extension) != std::end(kMeshes);
-}
-
 bool is_jpeg(std::string_view bytes) { return bytes.starts_with("\xFF\xD8\xFF"); }
 
 bool leads_to_xml(const FileReference& reference) {
@@ -265,12 +257,7 @@ Status ModelFiles::add_model(const fs::path& file, const FileAccess& access, con
         fmt::format("'{}' is an archive or binary model, which is not read", file.string()), loc,
         "give the MJCF (.xml) or URDF file"};
   }
-  if (is_mesh_file(path)) {
-    return Error{
-        ErrorKind::kInput, fmt::format("'{}' is a mesh, not a model", file.string()), loc,
-        "draw it by a [[visual]], let it fall as an [[object]], stand in it as [environment] "
-        "file, or look at it by gloam convert (docs/import.md)"};
-  }
+  GLOAM_TRY_STATUS(refuse_mesh(path, file.string(), loc));
   GLOAM_TRY_STATUS(admit(path, access));
   std::vector<fs::path> stack;
   GLOAM_TRY_STATUS(scan(path, path, loc, stack));

@@ -10,6 +10,7 @@
 
 #include "base/files.h"
 #include "base/plain_text.h"
+#include "geometry/model_file.h"
 
 namespace gloam {
 namespace fs = std::filesystem;
@@ -73,6 +74,17 @@ std::vector<fs::path> candidate_roots(const fs::path& file) {
 bool is_container(const fs::path& path) {
   const std::string extension = lower_extension(path);
   return extension == ".mjz" || extension == ".zip" || extension == ".mjb";
+}
+
+Status refuse_mesh(const fs::path& path, const std::string& as_written, const SourceLoc& loc) {
+  constexpr std::string_view kUnread[] = {".msh", ".fbx", ".usd"};
+  if (!is_model_file(path) &&
+      std::ranges::find(kUnread, lower_extension(path)) == std::end(kUnread))
+    return {};
+  return Error{ErrorKind::kInput,
+               fmt::format("'{:.200}' is a mesh; a model is wanted here", as_written), loc,
+               "draw it by a [[visual]], make a body of it by an [[object]], stand in it as "
+               "[environment] file, or look at it by gloam convert (docs/import.md)"};
 }
 
 fs::path absolute_path(const fs::path& path, const fs::path& base) {

@@ -16,6 +16,11 @@ inline constexpr uint64_t kLargestModelText = uint64_t{64} << 20;
 /// By its name an archive or a binary model, which is not read.
 bool is_container(const std::filesystem::path& path);
 
+/// Refuses what is by its name a mesh, where a model is wanted at `loc`; `as_written`: its name
+/// there.
+Status refuse_mesh(const std::filesystem::path& path, const std::string& as_written,
+                   const SourceLoc& loc);
+
 /// The folders one model may read from. All canonical.
 struct ModelRoot {
   std::filesystem::path folder;  ///< as MuJoCo spells paths below it: absolute, not canonical
