@@ -46,7 +46,8 @@ void add_access_options(CLI::App& command, FileAccess& access, std::vector<std::
 Status apply_packages(FileAccess& access, const std::vector<std::string>& packages);
 /// World::compile; Ctrl-C ends the process meanwhile, stderr shows how far it is. Tells on stderr
 /// what is odd about the scene, and what of it is not supported.
-Result<World> compile(const Scene& scene, const Globals& globals);
+/// `keyframe`: as of World::compile_at, "" = none.
+Result<World> compile(const Scene& scene, const Globals& globals, const std::string& keyframe = "");
 /// "640x480" -> width, height.
 Status parse_resolution(const std::string& text, int& width, int& height);
 

@@ -122,13 +122,15 @@ void tell(const char* heading, const std::vector<Error>& errors) {
 
 }  // namespace
 
-Result<World> compile(const Scene& scene, const Globals& globals) {
+Result<World> compile(const Scene& scene, const Globals& globals, const std::string& keyframe) {
   const EndOnInterrupt watched;
   const ProgressCallback show = progress_display(globals);
-  Result<World> world = World::compile(scene, [&](const Progress& progress) {
+  const ProgressCallback tell_progress = [&](const Progress& progress) {
     show(progress);
     return true;  // an interrupt does not wait for the end of it
-  });
+  };
+  Result<World> world = keyframe.empty() ? World::compile(scene, tell_progress)
+                                         : World::compile_at(scene, keyframe, tell_progress);
   finish_progress();
   if (!world.ok()) return world;
   tell("note", world->notes());

@@ -13,6 +13,12 @@ void SceneOptions::add_to(CLI::App& command) {
   add_access_options(command, access, packages);
 }
 
+void SceneOptions::add_keyframe_to(CLI::App& command) {
+  command.add_option("--keyframe", keyframe,
+                     "Keyframe of a model to start from, by name or number; scenes name those of "
+                     "their robots");
+}
+
 void RunOptions::add_to(CLI::App& command) {
   command.add_option("--timestep", timestep, "Physics time step in seconds; default: the model's")
       ->check(positive_number());
@@ -55,6 +61,7 @@ void RunOptions::add_to(CLI::App& command) {
       .add_option("--output", outputs,
                   fmt::format("What to record: {}", fmt::join(kRecordOutputs, " ")))
       ->delimiter(',');
+  add_keyframe_to(command);
   SceneOptions::add_to(command);
 }
 
@@ -77,7 +84,7 @@ Result<Scene> SceneOptions::load(const std::string& file) {
 
 Result<World> SceneOptions::compile(const std::string& file, const Globals& globals) {
   GLOAM_TRY(const Scene scene, load(file));
-  return cli::compile(scene, globals);
+  return cli::compile(scene, globals, keyframe);
 }
 
 Result<Scene> RunOptions::load(const std::string& file) {

@@ -13,9 +13,11 @@ namespace gloam::cli {
 struct SceneOptions {
   std::optional<uint64_t> seed;
   std::vector<std::string> settings, packages;
+  std::string keyframe;  ///< of a bare model; "" = as without one
   FileAccess access;
 
   void add_to(CLI::App& command);
+  void add_keyframe_to(CLI::App& command);
   /// Loads the scene and applies every option to it.
   Result<Scene> load(const std::string& file);
   Result<World> compile(const std::string& file, const Globals& globals);

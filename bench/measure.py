@@ -176,6 +176,25 @@ def direct_tier(quick):
         yield at_least(f"direct tier: {label} / ours", wall, 3.0, f"{theirs:.0f} ms against {own:.0f} ms; in CPU time {cpu:.1f}")
 
 
+def direct_places(quick):
+    """the direct tier at 640x360 where there are many lamps, one sample, against the path tier's"""
+    scenes = CACHE / "bench_places"
+    scenes.mkdir(parents=True, exist_ok=True)
+    camera = '[[camera]]\nname = "bench"\nposition = [0, 0, 1.6]\nlook_at = [2, 1, 1.2]\n'
+    places = {"demo": (ROOT / "examples" / "demo.toml", "chase")}
+    for place in ("house", "warehouse"):
+        scene = scenes / f"{place}.toml"
+        scene.write_text(f"[environment.{place}]\nseed = 4\n{camera}")
+        places[place] = (scene, "bench")
+    for place, (scene, name) in places.items():
+        wall = {}
+        for tier in ("direct", "path"):
+            wall[tier] = milliseconds(BIN / "bench_direct_rate", scene, name, "--size", "640x360", "--tier", tier,
+                                      "--frames", 3 if quick else 9)[0] / 1e3
+        yield at_most(f"direct tier in {place}: seconds a sample at 640x360", wall["direct"], 0.25,
+                      f"wall; path tier {wall['path']:.2f} s, ratio {wall['direct'] / wall['path']:.2f}")
+
+
 def truth(quick):
     """exact depth and segmentation 640x480 against MuJoCo's depth pass plus its segmentation pass"""
     scene = boxes_scene()
@@ -393,6 +412,6 @@ def all_effects(quick):
 
 
 # With the seconds that each takes on two cores: the first estimate of the time left.
-ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, fast_tier: 400, truth: 40, load_time: 120, import_time: 60,
+ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, direct_places: 60, fast_tier: 400, truth: 40, load_time: 120, import_time: 60,
        first_picture: 15, adaptive_sampling: 120, lidar: 25, environments: 60, hfield: 25, gas: 20,
        effects: 90, all_effects: 75}

@@ -124,6 +124,7 @@ void add_info(CLI::App& app, Globals& globals, Action& action) {
       sub->add_flag("--schema", command->schema,
                     "How much of MuJoCo's own schema is mirrored, and what sets what");
   file->excludes(schema);
+  command->scene.add_keyframe_to(*sub);
   command->scene.add_to(*sub);
   sub->footer("Examples:\n  gloam info robot.urdf --json\n  gloam info --schema");
   sub->callback([&globals, &action, command] {

@@ -23,7 +23,7 @@ int render(const RenderCommand& command_line, const Globals& globals) {
   auto scene = command.options.load(command.file);
   if (!scene.ok()) return fail(scene.error());
   if (!command.options.spp && !scene->render.error) scene->render.spp = kStillSamples;
-  auto world = compile(*scene, globals);
+  auto world = compile(*scene, globals, command.options.keyframe);
   if (!world.ok()) return fail(world.error());
 
   std::vector<std::string> cameras = command.options.cameras;
@@ -54,14 +54,12 @@ int render(const RenderCommand& command_line, const Globals& globals) {
   if (!frames.ok()) return fail(frames.error());
 
   auto json = nlohmann::ordered_json::array();
-  for (const CameraFrame& frame : *frames) {
-    std::string name = frame.camera;
-    std::replace(name.begin(), name.end(), '/', '_');
-    auto files = write_frame(frame, command.out, name);
-    if (!files.ok()) return fail(files.error());
-    for (const auto& file : *files) {
+  auto stills = write_stills(*world, *frames, command.out);
+  if (!stills.ok()) return fail(stills.error());
+  for (const StillFiles& still : *stills) {
+    for (const auto& file : still.files) {
       if (globals.json)
-        json.push_back({{"camera", frame.camera}, {"file", file.string()}});
+        json.push_back({{"camera", still.camera}, {"file", file.string()}});
       else
         std::printf("%s\n", file.string().c_str());
     }

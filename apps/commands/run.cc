@@ -71,7 +71,7 @@ int run(const RunCommand& command_line, const Globals& globals) {
   }
   if (const Status status = check_outputs(command.options.outputs); !status.ok())
     return fail(status.error());
-  auto world = compile(*scene, globals);
+  auto world = compile(*scene, globals, command.options.keyframe);
   if (!world.ok()) return fail(world.error());
   tell_void_outputs(command.options.outputs, *scene, *world);
 

@@ -80,6 +80,18 @@ struct ComparisonResult {
 Result<std::vector<ComparisonResult>> compare_scenes(const ComparisonRequest& request,
                                                      const ProgressCallback& progress);
 
+/// A still's files, as written.
+struct StillFiles {
+  std::string camera;
+  std::vector<std::filesystem::path> files;
+};
+/// Writes stills of one World into a folder: each camera's pictures under a name of its own
+/// (write_frame), cameras.json, which tells whose they are, and, where a picture holds ids,
+/// labels.json; both as a recorded run has them.
+Result<std::vector<StillFiles>> write_stills(const World& world,
+                                             const std::vector<CameraFrame>& frames,
+                                             const std::filesystem::path& folder);
+
 /// Writes the channels of one frame as files beside each other: NAME.png, NAME_depth.png … Returns
 /// their paths.
 Result<std::vector<std::filesystem::path>> write_frame(const CameraFrame& frame,

@@ -254,8 +254,8 @@ struct RenderOptions {
 
 /// What can be recorded of a run: of all cameras, and of the rest.
 inline constexpr auto kRecordOutputs = [] {
-  constexpr std::array<std::string_view, 4> kRest = {"lidar", "metrics", "contact_sheet",
-                                                     "sensors"};
+  constexpr std::array<std::string_view, 5> kRest = {"lidar", "metrics", "contact_sheet", "sensors",
+                                                     "state"};
   std::array<std::string_view, kCameraOutputs.size() + kRest.size()> all;
   std::copy(kRest.begin(), kRest.end(),
             std::copy(kCameraOutputs.begin(), kCameraOutputs.end(), all.begin()));

@@ -61,6 +61,8 @@ struct LidarOptions {
   std::optional<std::string> returns = {};   ///< first strongest last dual all
   int most_returns = 3;                      ///< of `all`, 1 … 5
 
+  /// Bodies that its beams pass, each with all that hangs on it: full names, * stands for any text.
+  std::vector<std::string> hide = {};
   std::vector<LidarSurfaceOptions> surfaces = {};
 
   /// Errors of range and amplitude, drop-outs at the threshold, speckle of what media send back.

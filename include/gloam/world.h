@@ -79,6 +79,10 @@ class World {
   /// tells of what takes long. Stopped by it, the Error is kInterrupted: within 0.2 s, but while
   /// MuJoCo reads or compiles the model.
   static Result<World> compile(const Scene& scene, const ProgressCallback& progress = {});
+  /// The same of a bare model, which starts from one of its keyframes: by its name, else by its
+  /// number from 0. Errors: also, there is none of that name; the Scene is no bare model.
+  static Result<World> compile_at(const Scene& scene, const std::string& keyframe,
+                                  const ProgressCallback& progress = {});
 
   Result<Joint> find_joint(const std::string& name) const;
   Result<Body> find_body(const std::string& name) const;

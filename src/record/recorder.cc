@@ -90,6 +90,7 @@ class FolderRecorder : public Recorder {
     // First the file that says whose folder this is, then everything else.
     entries_ = {"cameras.json", "labels.json"};
     if (outputs_.contains("metrics")) entries_.push_back("metrics.csv");
+    if (outputs_.contains("state")) entries_.push_back("state.csv");
     if (outputs_.contains("contact_sheet")) entries_.push_back("contact_sheet.png");
     for (size_t i = 0; i < file_names_.size(); ++i) {
       entries_.push_back(file_names_[i]);
@@ -101,7 +102,7 @@ class FolderRecorder : public Recorder {
     entries_.push_back(kSummaryName);
     GLOAM_TRY_STATUS(write_summary(nullptr));
     GLOAM_TRY_STATUS(write_text("cameras.json", cameras_json(info_.cameras, file_names_)));
-    GLOAM_TRY_STATUS(write_text("labels.json", labels_json(info_.labels)));
+    GLOAM_TRY_STATUS(write_text("labels.json", labels_json(info_.labels, info_.label_ids)));
     for (size_t i = 0; i < info_.cameras.size(); ++i) {
       CameraRecorder recorder(info_.cameras[i], options_.folder, file_names_[i],
                               outputs_of(info_.cameras[i]), options_.store);
@@ -116,12 +117,8 @@ class FolderRecorder : public Recorder {
       lidar_lanes_[info_.lidars[i].name] = std::make_unique<LidarLane>(
           std::move(recorder), static_cast<size_t>(options_.queue_frames), options_.wait);
     }
-    if (outputs_.contains("metrics")) {
-      GLOAM_TRY(std::unique_ptr<ByteSink> sink,
-                options_.store->create(options_.folder / "metrics.csv"));
-      GLOAM_TRY(CsvWriter metrics, CsvWriter::start(std::move(sink), info_.metric_columns));
-      metrics_ = std::move(metrics);
-    }
+    GLOAM_TRY_STATUS(open_table("metrics", info_.metric_columns, &metrics_));
+    GLOAM_TRY_STATUS(open_table("state", info_.state_columns, &state_));
     GLOAM_TRY_STATUS(open_sensors());
     metrics_worker_ = std::make_unique<Worker>(kQueuedRows, options_.wait);
     return {};
@@ -162,6 +159,14 @@ class FolderRecorder : public Recorder {
     });
   }
 
+  void add_state(std::span<const double> row) override {
+    GLOAM_CHECK(row.size() == info_.state_columns.size(), "a row has one value per column");
+    if (failure_.failed() || !state_) return;
+    metrics_worker_->post([this, values = std::vector<double>(row.begin(), row.end())] {
+      if (!failure_.failed()) failure_.report(state_->add(values));
+    });
+  }
+
   void add_sensor(const SensorMessage& message) override {
     const auto file = sensors_.find(message.sensor);
     if (failure_.failed() || file == sensors_.end()) return;
@@ -183,6 +188,7 @@ class FolderRecorder : public Recorder {
     for (auto& [name, lane] : lanes_) failure_.report(lane->recorder.finish());
     for (auto& [name, lane] : lidar_lanes_) failure_.report(lane->recorder.finish());
     if (metrics_) failure_.report(metrics_->finish());
+    if (state_) failure_.report(state_->finish());
     for (auto& [name, csv] : sensors_) failure_.report(csv.finish());
     if (outputs_.contains("contact_sheet") && !failure_.failed()) {
       std::vector<const CameraRecorder*> cameras;
@@ -214,18 +220,25 @@ class FolderRecorder : public Recorder {
     return outputs;
   }
 
+  Status open_table(const std::string& output, const std::vector<std::string>& columns,
+                    std::optional<CsvWriter>* table) {
+    if (!outputs_.contains(output)) return {};
+    GLOAM_TRY(std::unique_ptr<ByteSink> sink,
+              options_.store->create(options_.folder / (output + ".csv")));
+    GLOAM_TRY(CsvWriter csv, CsvWriter::start(std::move(sink), columns));
+    *table = std::move(csv);
+    return {};
+  }
+
   Status open_sensors() {
     if (!outputs_.contains("sensors") || info_.sensors.empty()) return {};
     GLOAM_TRY_STATUS(options_.store->make_folder(options_.folder / kSensorsName));
-    std::set<std::string> taken;
-    for (const RecordedSensor& sensor : info_.sensors) {
-      std::string file_name = safe_file_name(sensor.name);
-      for (int i = 2; !taken.insert(file_name).second; ++i)
-        file_name = fmt::format("{}_{}", safe_file_name(sensor.name), i);
+    for (size_t k = 0; k < info_.sensors.size(); ++k) {
+      const RecordedSensor& sensor = info_.sensors[k];
       std::vector<std::string> columns = {"sample", "step", "time_s", "delivery_s"};
       for (int i = 0; i < sensor.values; ++i) columns.push_back(fmt::format("value_{}", i));
       GLOAM_TRY(std::unique_ptr<ByteSink> sink,
-                options_.store->create(options_.folder / kSensorsName / (file_name + ".csv")));
+                options_.store->create(options_.folder / kSensorsName / sensor_file_names_[k]));
       GLOAM_TRY(CsvWriter csv, CsvWriter::start(std::move(sink), columns));
       sensors_.emplace(sensor.name, std::move(csv));
     }
@@ -247,8 +260,9 @@ class FolderRecorder : public Recorder {
   Status check() {
     GLOAM_TRY_STATUS(check_outputs(outputs_));
     GLOAM_CHECK(options_.queue_frames > 0, "a queue holds at least one frame");
-    std::set<std::string> names, taken = {kSensorsName,  "cameras.json",      "labels.json",
-                                          "metrics.csv", "contact_sheet.png", kSummaryName};
+    std::set<std::string> names;
+    FileNames files{kSensorsName, "cameras.json",      "labels.json", "metrics.csv",
+                    "state.csv",  "contact_sheet.png", kSummaryName};
     for (const RecordedCamera& camera : info_.cameras) {
       GLOAM_TRY_STATUS(check_outputs(outputs_of(camera)));
       if (!names.insert(camera.name).second)
@@ -266,11 +280,7 @@ class FolderRecorder : public Recorder {
                         camera.name, camera.intrinsics.width, camera.intrinsics.height),
             {},
             "change its resolution, or record 'png' instead of 'video'"};
-      std::string file_name = safe_file_name(camera.name);
-      for (int i = 2; !taken.insert(file_name).second || !taken.insert(file_name + ".mp4").second;
-           ++i)
-        file_name = fmt::format("{}_{}", safe_file_name(camera.name), i);
-      file_names_.push_back(file_name);
+      file_names_.push_back(files.take(camera.name, {"", ".mp4"}));
     }
     names.clear();
     for (const RecordedLidar& lidar : info_.lidars) {
@@ -279,11 +289,11 @@ class FolderRecorder : public Recorder {
                      fmt::format("two lidars are named '{}'", lidar.name),
                      {},
                      "rename one of them"};
-      std::string file_name = safe_file_name(lidar.name);
-      for (int i = 2; !taken.insert(file_name).second; ++i)
-        file_name = fmt::format("{}_{}", safe_file_name(lidar.name), i);
-      lidar_file_names_.push_back(file_name);
+      lidar_file_names_.push_back(files.take(lidar.name));
     }
+    FileNames sensor_files;
+    for (const RecordedSensor& sensor : info_.sensors)
+      sensor_file_names_.push_back(sensor_files.take(sensor.name) + ".csv");
     return {};
   }
 
@@ -311,7 +321,7 @@ class FolderRecorder : public Recorder {
     }
     const Status status = failure_.status();
     return write_text(kSummaryName,
-                      summary_json(info_, outcome, counts, scans, metric_rows_,
+                      summary_json(info_, outcome, counts, scans, sensor_file_names_, metric_rows_,
                                    metrics_worker_ ? metrics_worker_->dropped() : 0, entries_,
                                    status.ok() ? "" : status.error().to_string()));
   }
@@ -320,10 +330,10 @@ class FolderRecorder : public Recorder {
   const RunInfo info_;
   const std::set<std::string> outputs_;
   std::vector<std::string> file_names_;  // of the cameras
-  std::vector<std::string> lidar_file_names_;
+  std::vector<std::string> lidar_file_names_, sensor_file_names_;
   std::vector<std::string> entries_;  // of the folder, as listed in the summary
   FirstFailure failure_;
-  std::optional<CsvWriter> metrics_;
+  std::optional<CsvWriter> metrics_, state_;
   std::map<std::string, CsvWriter> sensors_;  // by name
   int64_t metric_rows_ = 0;
   Timeline<std::vector<double>> rows_;

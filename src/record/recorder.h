@@ -5,6 +5,7 @@
 //   cameras.json        intrinsics, frames and file patterns of every camera
 //   labels.json         what the numbers in instance and semantic pictures mean
 //   metrics.csv         one row per add_metrics(); units in the column names
+//   state.csv           one row per add_state(): joints, controls, poses of robots' bodies
 //   sensors/NAME.csv    one row per add_sensor(): number, step, times, values
 //   contact_sheet.png   the run at a glance
 //   CAMERA.mp4          H.264
@@ -75,6 +76,11 @@ struct RecordedSensor {
   int values = 1;
 };
 
+/// MuJoCo's ids of what a row of the label table is; -1 = it is no geom, or no body moves it.
+struct LabelIds {
+  int geom = -1, body = -1;
+};
+
 using NamedText = std::pair<std::string, std::string>;
 using NamedNumber = std::pair<std::string, double>;
 
@@ -92,7 +98,9 @@ struct RunInfo {
   std::vector<RecordedCamera> cameras;
   std::vector<RecordedLidar> lidars;
   std::vector<LabelRow> labels;
+  std::vector<LabelIds> label_ids;          ///< of `labels`, in order
   std::vector<std::string> metric_columns;  ///< the first is the time [s]
+  std::vector<std::string> state_columns;   ///< likewise
   std::vector<MetricPlot> plots;
   std::vector<RecordedSensor> sensors;  ///< in the order that add_sensor() may be called for
 };
@@ -121,6 +129,9 @@ class Recorder {
   virtual void add_scan(std::shared_ptr<const LidarScan> scan) = 0;
   /// One value per column. One thread.
   virtual void add_metrics(std::span<const double> row) = 0;
+
+  /// One value per state column. The thread of add_metrics().
+  virtual void add_state(std::span<const double> row) = 0;
 
   /// A sample of one of RunInfo::sensors. One thread.
   virtual void add_sensor(const SensorMessage& message) = 0;

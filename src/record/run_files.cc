@@ -24,7 +24,8 @@ Json object(const Pairs& pairs) {
 
 std::string summary_json(const RunInfo& info, const RunOutcome* outcome,
                          const std::vector<CameraCounts>& cameras,
-                         const std::vector<CameraCounts>& lidars, int64_t metric_rows,
+                         const std::vector<CameraCounts>& lidars,
+                         const std::vector<std::string>& sensor_files, int64_t metric_rows,
                          uint64_t dropped_metric_rows, const std::vector<std::string>& entries,
                          const std::string& error) {
   Json out;
@@ -63,6 +64,12 @@ std::string summary_json(const RunInfo& info, const RunOutcome* outcome,
                       {"scans", lidars[i].frames},
                       {"dropped_scans", lidars[i].dropped}});
     out["lidars"] = list;
+  }
+  if (!info.sensors.empty()) {
+    list = Json::array();
+    for (size_t i = 0; i < info.sensors.size(); ++i)
+      list.push_back({{"name", info.sensors[i].name}, {"file", "sensors/" + sensor_files[i]}});
+    out["sensors"] = list;
   }
   out["metrics"] = {{"rows", metric_rows}, {"dropped_rows", dropped_metric_rows}};
   out["entries"] = entries;
@@ -138,17 +145,22 @@ std::string objects_json(const std::vector<ObjectView>& objects) {
   return dump({{"objects", list}});
 }
 
-std::string labels_json(const std::vector<LabelRow>& labels) {
+std::string labels_json(const std::vector<LabelRow>& labels, const std::vector<LabelIds>& ids) {
   std::map<uint32_t, std::string> categories;
   std::map<uint32_t, std::pair<std::string, uint32_t>> instances;
   Json parts = Json::array();
-  for (const LabelRow& row : labels) {
+  const auto id_or_null = [](int id) { return id >= 0 ? Json(id) : Json(); };
+  for (size_t i = 0; i < labels.size(); ++i) {
+    const LabelRow& row = labels[i];
+    const LabelIds own = i < ids.size() ? ids[i] : LabelIds();
     if (row.semantic != 0) categories.try_emplace(row.semantic, row.semantic_name);
     if (row.instance != 0)
       instances.try_emplace(row.instance, std::pair(row.instance_name, row.semantic));
     parts.push_back({{"id", row.part},
                      {"geom", row.geom},
+                     {"geom_id", id_or_null(own.geom)},  // MuJoCo's
                      {"body", row.body},
+                     {"body_id", id_or_null(own.body)},
                      {"material", row.material},
                      {"instance_id", row.instance},
                      {"category_id", row.semantic}});

@@ -16,10 +16,12 @@ struct CameraCounts {
   uint64_t dropped = 0;
 };
 
-/// `outcome` null: the run is still going on. `entries` = names in the folder that belong to it.
+/// `outcome` null: the run is still going on. `sensor_files`: of RunInfo::sensors, in order.
+/// `entries` = names in the folder that belong to it.
 std::string summary_json(const RunInfo& info, const RunOutcome* outcome,
                          const std::vector<CameraCounts>& cameras,
-                         const std::vector<CameraCounts>& lidars, int64_t metric_rows,
+                         const std::vector<CameraCounts>& lidars,
+                         const std::vector<std::string>& sensor_files, int64_t metric_rows,
                          uint64_t dropped_metric_rows, const std::vector<std::string>& entries,
                          const std::string& error);
 
@@ -29,6 +31,7 @@ std::string cameras_json(const std::vector<RecordedCamera>& cameras,
 
 /// Objects of one picture, as in CameraFrame::objects.
 std::string objects_json(const std::vector<ObjectView>& objects);
-std::string labels_json(const std::vector<LabelRow>& labels);
+/// `ids`: of the labels, in order.
+std::string labels_json(const std::vector<LabelRow>& labels, const std::vector<LabelIds>& ids);
 
 }  // namespace gloam

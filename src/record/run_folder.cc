@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cctype>
 #include <nlohmann/json.hpp>
 
 #include "base/files.h"
@@ -12,6 +14,12 @@ namespace {
 
 Error folder_error(const fs::path& folder, ErrorKind kind, std::string message, std::string hint) {
   return {kind, std::move(message), {folder.string(), 0, 0}, std::move(hint)};
+}
+
+std::string in_lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
 }
 
 /// Removes what an earlier recording says it wrote. Its summary is a file like any other: names
@@ -78,6 +86,22 @@ std::string safe_file_name(const std::string& text) {
   if (out.empty()) return "unnamed";
   if (out[0] == '.') out[0] = '_';
   return out;
+}
+
+FileNames::FileNames(std::initializer_list<const char*> taken) {
+  for (const char* name : taken) taken_.insert(in_lower_case(name));
+}
+
+std::string FileNames::take(const std::string& text, const std::vector<std::string>& suffixes) {
+  const std::string safe = safe_file_name(text);
+  std::string name = safe;
+  const auto is_taken = [&](const std::string& suffix) {
+    return taken_.contains(in_lower_case(name + suffix));
+  };
+  for (int i = 2; std::any_of(suffixes.begin(), suffixes.end(), is_taken); ++i)
+    name = fmt::format("{}_{}", safe, i);
+  for (const std::string& suffix : suffixes) taken_.insert(in_lower_case(name + suffix));
+  return name;
 }
 
 }  // namespace gloam

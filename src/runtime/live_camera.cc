@@ -194,6 +194,10 @@ void LiveCamera::capture(const SnapshotWindow& window) {
   if (meter_ != nullptr) sensor_->set_ev100(meter_->ev100_at(step));
   PoseFrame& now = keys_.front();
   const bool continuous = has_previous_ && previous_.step <= now.step;
+  const bool still = keys.size() == 1;
+  sensor_->set_same_instant(!request_.required && still && previous_is_still_ && has_previous_ &&
+                            previous_.step == now.step && previous_.run == now.run);
+  previous_is_still_ = still;
   auto frame = sensor_->capture(*shared_->renderer, shared_->mutex, keys,
                                 continuous ? previous_ : now, index);
   on_frame_(std::move(frame));

@@ -60,6 +60,7 @@ class LiveCamera final : public CameraStream {
   std::vector<PoseFrame> keys_;  ///< of the window that is exposed
   PoseFrame previous_;           ///< the first of the window before
   bool has_previous_ = false;
+  bool previous_is_still_ = false;  ///< it was an instant by itself, not a window
   mutable std::mutex mutex_;
   std::condition_variable changed_;
   Status status_;

@@ -38,9 +38,10 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const World& world,
 }
 
 Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& world,
-                                                               const SimulationOptions& options) {
+                                                               const SimulationOptions& options,
+                                                               Metering metering) {
   std::unique_ptr<LiveSimulation> live(
-      new LiveSimulation(options.seed, options.pace != Pace::kRealTime));
+      new LiveSimulation(options.seed, options.pace != Pace::kRealTime, metering));
   SimulatorOptions core;
   core.seed = options.seed;
   if (options.timestep != 0) core.timestep = options.timestep;
@@ -51,7 +52,8 @@ Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& worl
   for (RobotController& c : controllers)
     GLOAM_TRY_STATUS(live->simulator_->add_controller(c.robot, std::move(c.controller), c.rate));
   // Exposure goes on from step 0, whether or not anyone opens the camera.
-  GLOAM_TRY_STATUS(live->meters_.open(*live->simulator_, live->renderers_));
+  if (metering == Metering::kAlways)
+    GLOAM_TRY_STATUS(live->meters_.open(*live->simulator_, live->renderers_));
   // The thread starts with the first call that moves time: hooks, controllers and cameras come
   // before.
   live->simulator_->start(0);
@@ -67,7 +69,7 @@ Status LiveSimulation::recompile(const World& world) {
   const Status status = simulator_->recompile(world.compiled(), std::move(controllers));
   renderers_.keep_only(simulator_->world());
   GLOAM_TRY_STATUS(status);
-  return meters_.open(*simulator_, renderers_);
+  return metering_ == Metering::kAlways ? meters_.open(*simulator_, renderers_) : Status();
 }
 
 void LiveSimulation::restart_speed_clock() {
@@ -186,12 +188,24 @@ std::vector<std::string> LiveSimulation::camera_names() const {
   return names;
 }
 
+std::vector<LabelIds> ids_of_labels(const RenderDescription& description) {
+  std::vector<LabelIds> ids;
+  for (const InstanceDescription& instance : description.instances)
+    ids.push_back({instance.geom, instance.body});
+  return ids;
+}
+
 Result<std::vector<LabelRow>> LiveSimulation::labels() {
   GLOAM_TRY(auto shared, renderer());
   std::vector<LabelRow> rows;
   for (const InstanceDescription& instance : shared->description.instances)
     if (!instance.color_only) rows.push_back(instance.label);
   return rows;
+}
+
+Result<std::vector<LabelIds>> LiveSimulation::label_ids() {
+  GLOAM_TRY(auto shared, renderer());
+  return ids_of_labels(shared->description);
 }
 
 // Returns the World of the instant.

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "gloam/simulation.h"
+#include "record/recorder.h"
 #include "runtime/exposure_meter.h"
 #include "runtime/live_camera.h"
 #include "runtime/live_lidar.h"
@@ -14,10 +15,17 @@
 
 namespace gloam {
 
+/// MuJoCo's ids of the rows of a label table.
+std::vector<LabelIds> ids_of_labels(const RenderDescription& description);
+
+/// Whether automatic exposures go on while nobody opens their cameras, which takes rendering.
+enum class Metering : uint8_t { kAlways, kNever };
+
 class LiveSimulation final : public Simulation {
  public:
   static Result<std::unique_ptr<LiveSimulation>> create(const World& world,
-                                                        const SimulationOptions& options);
+                                                        const SimulationOptions& options,
+                                                        Metering metering = Metering::kAlways);
   World world() const override { return World(simulator_->world()); }
   Status recompile(const World& world) override;
   using Simulation::recompile;
@@ -53,16 +61,19 @@ class LiveSimulation final : public Simulation {
   /// All sensors of the model in one stream.
   Result<std::unique_ptr<LiveSensors>> open_all_sensors(bool required, SensorCallback on_message);
   const ExposureMeters& meters() const { return meters_; }
+  /// MuJoCo's ids of the rows of labels().
+  Result<std::vector<LabelIds>> label_ids();
   Result<std::unique_ptr<LiveLidar>> open_live_lidar(const LidarRequest& request,
                                                      ScanCallback on_scan);
 
  private:
-  LiveSimulation(uint64_t seed, bool required_meters)
-      : seed_(seed), meters_(seed, required_meters) {}
+  LiveSimulation(uint64_t seed, bool required_meters, Metering metering)
+      : seed_(seed), metering_(metering), meters_(seed, required_meters) {}
   void restart_speed_clock();
   Result<std::shared_ptr<const CompiledWorld>> solve_latest(PoseFrame& poses);
 
   const uint64_t seed_;
+  const Metering metering_;
   std::unique_ptr<Simulator> simulator_;
   SharedRenderers renderers_;
   std::mutex recompile_mutex_;  // one at a time

@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <thread>
 
 #include "base/files.h"
 #include "base/hash.h"
+#include "base/log.h"
 #include "base/memory.h"
 #include "gloam/program.h"
 #include "gloam/run.h"
@@ -19,6 +21,7 @@
 #include "runtime/live_simulation.h"
 #include "runtime/robot_metrics.h"
 #include "runtime/run_to_step.h"
+#include "runtime/state_table.h"
 #include "sim/step_schedule.h"
 #include "world/version.h"
 
@@ -50,6 +53,19 @@ std::vector<std::string> channels_for(const std::vector<std::string>& outputs,
   if (!sensing.thermal) channels.erase("thermal");
   if (!sensing.events) channels.erase("events");
   return {channels.begin(), channels.end()};
+}
+
+bool is_picture(const std::string& output) {
+  if (output == "video" || output == "events" || output == "contact_sheet") return true;
+  return std::ranges::any_of(frame_files(), [&](const FrameFile& f) { return output == f.output; });
+}
+
+/// Whether any camera has anything to record.
+bool wants_pictures(const Scene& scene) {
+  if (std::ranges::any_of(scene.record.outputs, is_picture)) return true;
+  return std::ranges::any_of(scene.cameras, [](const CameraOptions& camera) {
+    return camera.outputs && std::ranges::any_of(*camera.outputs, is_picture);
+  });
 }
 
 const CameraOptions* find_options(const Scene& scene, const std::string& camera) {
@@ -89,6 +105,7 @@ Result<std::vector<CameraRequest>> camera_requests(const World& world, const Run
       camera.rate = request.rate;
     else if (options == nullptr && step_rate.value() < camera.rate.value())
       camera.rate = step_rate;
+    if (std::ranges::none_of(outputs, is_picture)) continue;
     camera.outputs = channels_for(outputs, options != nullptr ? options->sensing : CameraSensing{});
     camera.render = scene.render;
     camera.required = request.simulation.pace == Pace::kFast;
@@ -145,11 +162,20 @@ RunInfo run_info(const World& world, const RunRequest& request, bool has_media, 
 // The metrics' own consumer of Snapshots.
 class MetricsThread {
  public:
-  MetricsThread(std::shared_ptr<SnapshotQueue> queue, RobotMetrics& metrics, Recorder* recorder)
-      : queue_(std::move(queue)), thread_([this, &metrics, recorder] {
+  /// `recorder` and `state` may be null.
+  MetricsThread(std::shared_ptr<SnapshotQueue> queue, RobotMetrics& metrics, StateTable* state,
+                Recorder* recorder)
+      : queue_(std::move(queue)), thread_([this, &metrics, state, recorder] {
           while (const Snapshot snapshot = queue_->next()) {
             const std::vector<double>& row = metrics.sample(snapshot);
-            if (recorder != nullptr) recorder->add_metrics(row);
+            if (recorder == nullptr) continue;
+            recorder->add_metrics(row);
+            if (state == nullptr) continue;
+            if (const auto values = state->row(snapshot); values.ok())
+              recorder->add_state(*values);
+            else
+              log_warning("state.csv lacks t = {} s: {}", snapshot.time(),
+                          values.error().to_string());
           }
         }) {}
   ~MetricsThread() { join(); }
@@ -169,7 +195,10 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
                                  const ProgressCallback& progress) {
   const auto start = Clock::now();
   const Scene& scene = world.compiled()->scene;
-  GLOAM_TRY(auto simulation, LiveSimulation::create(world, request.simulation));
+  const bool pictures = !request.out.empty() && wants_pictures(scene);
+  GLOAM_TRY(auto simulation,
+            LiveSimulation::create(world, request.simulation,
+                                   pictures ? Metering::kAlways : Metering::kNever));
   Simulator& simulator = simulation->simulator();
   const double duration = request.duration > 0 ? request.duration : scene.sim.duration;
   const Rational rate = simulation->step_rate();
@@ -181,26 +210,37 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   const auto light_every = std::max<int64_t>(1, std::llround(metric_rate.value()));
   VisibilityProbe probe;
   std::unique_ptr<LightProbe> light;
-  if (request.out.empty()) {
-    GLOAM_TRY(probe, VisibilityProbe::make(*world.compiled()));
-  } else {
+  // A renderer is made for pictures, and for the light at robots that move about.
+  const bool metered = !request.out.empty() && wants(scene.record.outputs, "metrics") &&
+                       RobotMetrics(*world.compiled()).columns().size() > 1;
+  if (pictures || metered) {
     GLOAM_TRY(auto shared, simulation->renderer());
     GLOAM_TRY(probe, VisibilityProbe::make(shared->description));
-    if (wants(scene.record.outputs, "metrics")) {
+    if (metered) {
       GLOAM_TRY(light, LightProbe::make(std::move(shared)));
     }
+  } else {
+    GLOAM_TRY(probe, VisibilityProbe::make(*world.compiled()));
   }
   RobotMetrics metrics(*world.compiled(), std::move(probe), std::move(light), light_every);
+  std::optional<StateTable> state;
+  if (!request.out.empty() && wants(scene.record.outputs, "state"))
+    state.emplace(*world.compiled(), world.compiled()->serial);
   std::unique_ptr<Recorder> recorder;
   std::vector<std::unique_ptr<LiveCamera>> cameras;
   std::unique_ptr<LiveSensors> sensors;
   std::vector<std::unique_ptr<LiveLidar>> lidars;
   double prepared = 0;
   if (!request.out.empty()) {
-    GLOAM_TRY(auto shared, simulation->renderer());
-    GLOAM_TRY(const auto requests, camera_requests(world, request, shared->description, rate));
-    RunInfo info =
-        run_info(world, request, !shared->description.volumes.empty(), 1 / rate.value(), duration);
+    std::shared_ptr<SharedRenderer> shared;
+    std::vector<CameraRequest> requests;
+    if (pictures) {
+      GLOAM_TRY(shared, simulation->renderer());
+      GLOAM_TRY(requests, camera_requests(world, request, shared->description, rate));
+    }
+    const bool has_media = shared != nullptr ? !shared->description.volumes.empty()
+                                             : !scene.volumes.empty() || !scene.gases.empty();
+    RunInfo info = run_info(world, request, has_media, 1 / rate.value(), duration);
     GLOAM_TRY(info.lidars, recorded_lidars(world, simulator.timestep()));
     uint64_t memory = 0;
     for (const CameraRequest& camera : requests) {
@@ -218,8 +258,12 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
     }
     GLOAM_TRY_STATUS(check_memory(memory, fmt::format("recording {} camera(s)", requests.size()),
                                   "lower the resolution or record fewer cameras"));
-    GLOAM_TRY(info.labels, simulation->labels());
+    if (pictures) {
+      GLOAM_TRY(info.labels, simulation->labels());
+      GLOAM_TRY(info.label_ids, simulation->label_ids());
+    }
     info.metric_columns = metrics.columns();
+    if (state) info.state_columns = state->columns();
     info.plots = metrics.plots();
     if (wants(scene.record.outputs, "sensors")) {
       for (const SensorDescription& sensor : describe_sensors(*world.compiled()))
@@ -256,7 +300,7 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   }
   GLOAM_TRY(auto metric_queue,
             simulator.subscribe({.rate = metric_rate, .required = true, .capacity = 256}));
-  MetricsThread metrics_thread(metric_queue, metrics, recorder.get());
+  MetricsThread metrics_thread(metric_queue, metrics, state ? &*state : nullptr, recorder.get());
 
   const auto recording = [&]() -> Status {
     for (const auto& camera : cameras) GLOAM_TRY_STATUS(camera->status());
@@ -299,7 +343,8 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
     const Status finished = recorder->finish(outcome);
     if (report.status.ok()) report.status = finished;
     report.frames = recorder->frames();
-    for (const char* name : {"contact_sheet.png", "metrics.csv", "summary.json", "labels.json"}) {
+    for (const char* name :
+         {"contact_sheet.png", "metrics.csv", "state.csv", "summary.json", "labels.json"}) {
       if (std::filesystem::exists(request.out / name))
         report.written.push_back((request.out / name).string());
     }

@@ -13,6 +13,8 @@
 #include "base/memory.h"
 #include "gloam/run.h"
 #include "record/frame_files.h"
+#include "record/run_files.h"
+#include "record/run_folder.h"
 #include "runtime/live_simulation.h"
 #include "runtime/run_to_step.h"
 
@@ -122,6 +124,33 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
     frames.push_back(*frame);
   }
   return frames;
+}
+
+Result<std::vector<StillFiles>> write_stills(const World& world,
+                                             const std::vector<CameraFrame>& frames,
+                                             const std::filesystem::path& folder) {
+  FileNames names{"cameras.json", "labels.json"};
+  std::vector<std::string> suffixes, taken;
+  for (const FrameFile& file : frame_files()) suffixes.emplace_back(file.suffix);
+  std::vector<StillFiles> written;
+  std::vector<RecordedCamera> cameras;
+  bool has_ids = false;
+  for (const CameraFrame& frame : frames) {
+    taken.push_back(names.take(frame.camera, suffixes));
+    GLOAM_TRY(auto files, write_frame(frame, folder, taken.back()));
+    written.push_back({frame.camera, std::move(files)});
+    cameras.push_back({.name = frame.camera, .intrinsics = frame.intrinsics});
+    has_ids = has_ids || !frame.part.empty() || !frame.objects.empty();
+  }
+  GLOAM_TRY_STATUS(write_text_file_atomic(folder / "cameras.json", cameras_json(cameras, taken)));
+  if (!has_ids) return written;
+  GLOAM_TRY(const RenderDescription description, describe_for_rendering(*world.compiled()));
+  std::vector<LabelRow> labels;
+  for (const InstanceDescription& instance : description.instances)
+    labels.push_back(instance.label);
+  GLOAM_TRY_STATUS(write_text_file_atomic(folder / "labels.json",
+                                          labels_json(labels, ids_of_labels(description))));
+  return written;
 }
 
 Result<std::vector<std::filesystem::path>> write_frame(const CameraFrame& frame,

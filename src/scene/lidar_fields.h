@@ -44,6 +44,7 @@ void visit_fields(Visitor& v, LidarOptions& o) {
   v("footprint_rays", o.footprint_rays, FieldRule{.min = 1, .max = 32});
   v("returns", o.returns, FieldRule{.choices = words(kLidarReturns)});
   v("most_returns", o.most_returns, FieldRule{.min = 1, .max = 5});
+  v("hide", o.hide, FieldRule{});
   v("surface", o.surfaces, FieldRule{});
   v("noise", o.noise, FieldRule{});
   v("range_noise", o.range_noise, FieldRule{.unit = "m", .min = 0, .max = 10});

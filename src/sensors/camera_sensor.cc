@@ -254,6 +254,7 @@ std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
   }
   // An event camera sees changes: with the same draws in every picture, what stands still has none.
   settings_.frame = sensing().events ? 0 : static_cast<uint32_t>(frame_index);
+  begin_samples(view);
   std::vector<Vec3f>* light = nullptr;
   {
     const std::lock_guard lock(renderer_mutex);
@@ -264,6 +265,7 @@ std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
     }
     stats_ = renderer.render(view, settings_, &film_);
     if (!stats_.finished) return nullptr;
+    accumulate();
     if (channels_.light() && !description_.weather.particles.empty()) {
       light = denoise();
       renderer.draw_particles(view, film_, light);
@@ -272,6 +274,35 @@ std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
   auto frame = std::make_shared<CameraFrame>();
   convert(now, frame_index, view, light, frame.get());
   return frame;
+}
+
+void CameraSensor::begin_samples(const CameraView& view) {
+  const bool may = channels_.light() && settings_.tier != RenderTier::kFast &&
+                   settings_.error <= 0 && sensing().events == std::nullopt;
+  constexpr int kMost = 1 << 20;  // samples, far from the end of an int
+  const bool goes_on = may && same_instant_ && pictures_ > 0 &&
+                       is_same(view.X_WC_open, accumulated_from_) && settings_.first_sample < kMost;
+  settings_.first_sample = goes_on ? settings_.first_sample + settings_.spp : 0;
+  pictures_ = goes_on ? pictures_ + 1 : 1;
+  accumulated_from_ = view.X_WC_open;
+}
+
+void CameraSensor::accumulate() {
+  if (pictures_ < 2) return;
+  std::vector<Vec3f>* const planes[] = {&film_.radiance, &film_.albedo, &film_.normal};
+  const float share = 1.0f / static_cast<float>(pictures_ - 1);
+  for (size_t k = 0; k < std::size(planes); ++k) {
+    std::vector<Vec3f>& plane = *planes[k];
+    std::vector<Vec3f>& sum = sums_[k];
+    if (pictures_ == 2) {
+      sum = plane;
+      continue;
+    }
+    for (size_t i = 0; i < plane.size(); ++i) {
+      sum[i] += plane[i];
+      plane[i] = sum[i] * share;
+    }
+  }
 }
 
 std::vector<Vec3f>* CameraSensor::denoise() {

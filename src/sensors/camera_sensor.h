@@ -68,6 +68,11 @@ class CameraSensor {
     const PoseFrame* const key = &now;
     return capture(renderer, renderer_mutex, {&key, 1}, previous, frame_index);
   }
+  /// Whether the next capture is of the same instant as the last one. If its pose is the same too,
+  /// it adds samples to the picture: the light is the mean over the captures since the first, which
+  /// it replaces (that one's samples may lie at pixel centres). Not of the fast tier, which has a
+  /// history of its own, of adaptive samples or of events.
+  void set_same_instant(bool same) { same_instant_ = same; }
   /// From the first row's exposure to the end of the last one's [s]; 0 = an instant.
   Rational window() const;
 
@@ -106,6 +111,8 @@ class CameraSensor {
   /// The film's light, denoised where it is to be.
   std::vector<Vec3f>* denoise();
   Shutter shutter(std::span<const PoseFrame* const> keys) const;
+  void begin_samples(const CameraView& view);
+  void accumulate();
   /// `light`: that of the finished picture; null = as denoise() gives it.
   void convert(const PoseFrame& now, int64_t frame_index, const CameraView& view,
                std::vector<Vec3f>* light, CameraFrame* frame);
@@ -126,6 +133,10 @@ class CameraSensor {
   std::unique_ptr<Denoiser> denoiser_;  // null: the samples as they are
   Film film_;
   std::vector<Vec3f> clean_;
+  bool same_instant_ = false;
+  Affine3f accumulated_from_;   // pose of the camera
+  int pictures_ = 0;            // in a row of one instant from one pose
+  std::vector<Vec3f> sums_[3];  // of radiance, albedo and normal over them
   mutable std::mutex pose_mutex_;
   Affine3f free_pose_, previous_free_pose_;
 };

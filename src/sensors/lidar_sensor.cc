@@ -45,6 +45,10 @@ LidarSensor::LidarSensor(const RenderDescription& rendered, const LidarDescripti
   for (const VolumeDescription& volume : rendered.volumes) {
     lidar_ratios_.push_back(lidar_ratio(rendered.media[static_cast<size_t>(volume.medium)].name));
   }
+  if (!lidar.hidden.empty()) {
+    for (const InstanceDescription& in : rendered.instances)
+      hidden_.push_back(lidar.hidden[static_cast<size_t>(in.body)]);
+  }
   particle_tables_ = tabulate_particles(rendered, model_.optics);
   for (const LidarParticleTable& table : particle_tables_) particles_.push_back(table.view());
 }
@@ -142,6 +146,7 @@ std::shared_ptr<const LidarScan> LidarSensor::scan(Renderer& renderer, std::mute
   view.optics = model_.optics;
   view.optics.lidar_ratios = {lidar_ratios_.data(), static_cast<uint32_t>(lidar_ratios_.size())};
   view.optics.particles = {particles_.data(), static_cast<uint32_t>(particles_.size())};
+  view.optics.hidden = {hidden_.data(), static_cast<uint32_t>(hidden_.size())};
   view.optics.surfaces = {surfaces_.data(), static_cast<uint32_t>(surfaces_.size())};
   view.seed = seed_;
   view.scan = static_cast<uint64_t>(index);

@@ -46,6 +46,7 @@ class LidarSensor {
   std::vector<float> lidar_ratios_;                  ///< by volume [sr]
   std::vector<LidarParticleTable> particle_tables_;  ///< by volume; empty = none has any
   std::vector<LidarParticles> particles_;            ///< views of these
+  std::vector<uint8_t> hidden_;                      ///< by instance; empty = none
   std::vector<LidarSurface> surfaces_;               ///< by instance; empty = as their colours say
   std::vector<LidarFiring> firings_;
   std::vector<float> cuts_;  ///< of the keys, 0 … 1

@@ -13,6 +13,9 @@ constexpr size_t kMaxWishes = 256;
 constexpr milliseconds kBeat{20};
 constexpr milliseconds kCameraLinger{3000};  // longer than the reload of a page takes
 constexpr milliseconds kRetry{1000};
+constexpr milliseconds kSettle{400};  // without a movement, before a picture counts as still
+constexpr int kStillPictures = 64;    // that a still picture is the mean of
+constexpr int kMeasuredPictures = 3;
 constexpr const char* kFreeCamera = "free";
 
 /// Adds `next` to the message that waits, if both are moves of one kind. False: it must queue up.
@@ -129,6 +132,7 @@ void Driver::run() {
     lock.unlock();
     keep_camera();
     follow_pictures();
+    adapt_resolution();
     refresh_when_due();
     lock.lock();
   }
@@ -164,6 +168,7 @@ void Driver::do_message(int64_t client, const StepMessage& message) {
       return tell_failure(client, status);
   }
   picture_is_old_ = true;
+  last_moved_ = Clock::now();
 }
 
 void Driver::do_message(int64_t, const SpeedMessage& message) {
@@ -268,12 +273,27 @@ void Driver::follow_drag() {
   pull(true);
 }
 
-Status Driver::open_camera(const std::string& name) {
+Status Driver::open_camera(const std::string& wanted) {
+  const std::string name = wanted;  // it may be camera_ itself
+  if (name != camera_) full_width_ = full_height_ = 0;
+  const std::string before = std::exchange(camera_, name);
+  const Status status = open_stream(full_width_ > 0 ? scale_.scale() : 1);
+  if (!status.ok()) camera_ = before;
+  return status;
+}
+
+Status Driver::open_stream(double scale) {
+  const std::string& name = camera_;
+  const auto scaled = [scale](int full) {
+    return std::max(static_cast<int>(std::lround(full * scale)), 1);
+  };
+  const bool coarse = scale < 1 && full_width_ > 0;
   CameraRequest request{.camera = name,
                         .rate = {std::llround(options_.rate * 1000), 1000},
-                        .width = options_.width,
-                        .height = options_.height,
+                        .width = coarse ? scaled(full_width_) : options_.width,
+                        .height = coarse ? scaled(full_height_) : options_.height,
                         .render = options_.render};
+  opened_scale_ = coarse ? scale : 1;
   // From the first picture on where its user left it.
   if (name == kFreeCamera) request.X_WC = orbit_ ? orbit_->pose() : free_start_;
   last_attempt_ = Clock::now();
@@ -286,10 +306,62 @@ Status Driver::open_camera(const std::string& name) {
   }
   if (!opened.ok()) return std::move(opened).error();
   stream_ = std::move(opened).value();
-  camera_ = name;
   picture_is_old_ = true;
-  last_frame_ = Clock::now();
+  last_frame_ = measured_from_ = Clock::now();
+  measured_ = 0;
+  dropped_before_ = 0;
+  added_ = 0;
   return {};
+}
+
+bool Driver::is_still() const {
+  return simulation_.paused() && !drag_ && Clock::now() - last_moved_ > kSettle;
+}
+
+/// Coarser pictures while something moves, if the renderer is slow; all pixels when nothing does.
+void Driver::adapt_resolution() {
+  if (!stream_) return;
+  if (simulation_.paused()) {  // the time until it resumes is none that pictures took
+    measured_ = 0;
+    measured_from_ = Clock::now();
+    dropped_before_ = stream_->dropped();
+  }
+  if (full_width_ == 0) {
+    const auto frame = publisher_.newest();
+    if (!frame || frame->camera != camera_) return;
+    full_width_ = frame->intrinsics.width;
+    full_height_ = frame->intrinsics.height;
+  }
+  const double wanted = is_still() ? 1 : scale_.scale();
+  if (std::abs(wanted - opened_scale_) < 1e-9) return;
+  if (camera_ == kFreeCamera && !orbit_) free_start_ = stream_->pose();
+  const double ratio = wanted / opened_scale_;
+  stream_.reset();
+  refreshed_at_.reset();
+  // A failure is in the report, and keep_camera() tries again.
+  if (open_stream(wanted).ok() && drag_) {
+    drag_->u *= ratio;
+    drag_->v *= ratio;
+  }
+}
+
+/// Tells scale_ how long pictures take: between them while the simulation runs, and from the wish
+/// for one to its arrival while it is paused and the camera moves.
+void Driver::measure_pictures(uint64_t pictures) {
+  const auto now = Clock::now();
+  if (simulation_.paused()) {
+    if (is_still() || !refreshed_at_ || full_width_ == 0) return;
+    const double seconds = std::chrono::duration<double>(now - last_refresh_).count();
+    return scale_.add(seconds, seconds <= PictureScale::kTarget);
+  }
+  measured_ += static_cast<int>(pictures);
+  if (measured_ < kMeasuredPictures) return;
+  const double seconds = std::chrono::duration<double>(now - measured_from_).count() / measured_;
+  const int64_t dropped = stream_ ? stream_->dropped() : 0;
+  scale_.add(seconds, dropped == dropped_before_);
+  measured_ = 0;
+  measured_from_ = now;
+  dropped_before_ = dropped;
 }
 
 void Driver::close_camera() {
@@ -316,6 +388,7 @@ void Driver::keep_camera() {
 void Driver::follow_pictures() {
   const uint64_t sequence = publisher_.sequence();
   if (sequence == seen_sequence_) return;
+  measure_pictures(sequence - seen_sequence_);
   seen_sequence_ = sequence;
   last_frame_ = Clock::now();
   if (!drag_) return;
@@ -334,7 +407,11 @@ void Driver::refresh_when_due() {
   const bool paused = simulation_.paused();
   const bool slow_motion = speed_ < 1 && !paused;
   const bool late = now - last_frame_ > std::chrono::duration<double>(1.5 / options_.rate);
-  if (!(picture_is_old_ || slow_motion) || !(paused || late)) return;
+  if (picture_is_old_) added_ = 0;
+  // Each refresh of an instant adds samples to its picture.
+  const bool more = is_still() && added_ < kStillPictures;
+  if (!(picture_is_old_ || slow_motion || more) || !(paused || late)) return;
+  if (!picture_is_old_) ++added_;
   picture_is_old_ = false;
   refreshed_at_ = sequence;
   last_refresh_ = now;
@@ -359,6 +436,7 @@ OrbitCamera* Driver::free_camera() {
 void Driver::move_free_camera() {
   stream_->set_pose(orbit_->pose());
   picture_is_old_ = true;
+  last_moved_ = Clock::now();
 }
 
 void Driver::tell_failure(int64_t client, const Status& status) {

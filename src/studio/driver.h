@@ -18,6 +18,7 @@
 #include "gloam/view.h"
 #include "studio/free_camera.h"
 #include "studio/messages.h"
+#include "studio/picture_scale.h"
 #include "studio/publisher.h"
 
 namespace gloam::studio {
@@ -88,6 +89,10 @@ class Driver {
   void keep_camera();
   void follow_pictures();
   void refresh_when_due();
+  Status open_stream(double scale);
+  void measure_pictures(uint64_t pictures);
+  void adapt_resolution();
+  bool is_still() const;
   OrbitCamera* free_camera();
   void move_free_camera();
   void pull(bool active);
@@ -119,6 +124,13 @@ class Driver {
   bool picture_is_old_ = false;
   std::optional<uint64_t> refreshed_at_;  // sequence of the newest frame when a refresh was asked
   uint64_t seen_sequence_ = 0;
+  PictureScale scale_;                    // of pictures while something moves
+  double opened_scale_ = 1;               // of the open stream
+  int full_width_ = 0, full_height_ = 0;  // [px]; 0 = not known before the first picture
+  int added_ = 0;               // refreshes since anything changed: samples of a still picture
+  int measured_ = 0;            // pictures since measured_from_
+  int64_t dropped_before_ = 0;  // at measured_from_
+  Clock::time_point measured_from_, last_moved_;
   Clock::time_point last_frame_, last_refresh_, last_attempt_;
 
   std::thread thread_;

@@ -15,6 +15,7 @@ struct LidarDescription {
   LidarOptions options;
   int body = 0;  ///< that it moves with
   Pose X_BL;
+  std::vector<uint8_t> hidden = {};  ///< by body: its beams pass it; empty = none
 };
 
 /// Error: no such body, with the nearest name.

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <span>
 
+#include "base/text.h"
 #include "geometry/model_file.h"
 #include "scene/adversity.h"
 #include "scene/environment/generators.h"
@@ -15,6 +17,7 @@
 #include "world/authored_lidar.h"
 #include "world/compile_progress.h"
 #include "world/gas_description.h"
+#include "world/hidden_bodies.h"
 #include "world/level.h"
 #include "world/mesh_object.h"
 #include "world/model_cache.h"
@@ -108,6 +111,9 @@ double weights_of(const Scene& scene) {
 Status describe_rest(CompiledWorld* world) {
   GLOAM_TRY_STATUS(check_sensors(*world));
   GLOAM_TRY_STATUS(describe_lidars(*world));
+  for (const CameraOptions& camera : world->scene.cameras)
+    GLOAM_TRY_STATUS(hidden_bodies(*world->model, camera.hide,
+                                   fmt::format("camera '{}'", camera.name), camera.loc));
   GLOAM_TRY(world->gases, describe_gases(*world));
   world->wind = describe_wind(world->scene, world->scene.weather.value_or(WeatherOptions{}));
   GLOAM_TRY(world->waters, describe_waters(world->scene));
@@ -116,9 +122,38 @@ Status describe_rest(CompiledWorld* world) {
   return {};
 }
 
-}  // namespace
+// Where the simulation of a bare model starts; of a scene, as its robots say. Cached models may
+// have been stored with another keyframe.
+Status choose_keyframe(const std::string& keyframe, CompiledWorld* world) {
+  if (world->scene.bare_model.empty()) return {};
+  world->initial_key = -1;
+  if (keyframe.empty()) return {};
+  const mjModel* m = world->model.get();
+  const int count = static_cast<int>(m->nkey);
+  world->initial_key = mj_name2id(m, mjOBJ_KEY, keyframe.c_str());
+  if (world->initial_key >= 0) return {};
+  int number = -1;
+  const char* end = keyframe.data() + keyframe.size();
+  const auto [after, code] = std::from_chars(keyframe.data(), end, number);
+  if (code == std::errc() && after == end && number >= 0 && number < count) {
+    world->initial_key = number;
+    return {};
+  }
+  std::vector<std::string> names;
+  for (const std::string& name : object_names(m, mjOBJ_KEY, count))
+    if (!name.empty()) names.push_back(name);
+  return Error{ErrorKind::kInput,
+               fmt::format("the model has no keyframe '{}'", keyframe),
+               {world->scene.bare_model.string(), 0, 0},
+               !names.empty() ? suggest_name(keyframe, names)
+               : count == 0
+                   ? "it has no keyframes"
+                   : fmt::format("its keyframes have no names: give a number, 0 to {}", count - 1)};
+}
 
-Result<World> World::compile(const Scene& written, const ProgressCallback& callback) {
+Result<std::shared_ptr<CompiledWorld>> compile_scene(const Scene& written,
+                                                     const std::string& keyframe,
+                                                     const ProgressCallback& callback) {
   install_mujoco_handler();
   GLOAM_TRY_STATUS(validate_scene(written));
   Scene scene = written;
@@ -153,9 +188,10 @@ Result<World> World::compile(const Scene& written, const ProgressCallback& callb
     cached->drawn = drawn;
     cached->place_notes = std::move(sizes);
     if (!scene.bare_model.empty()) cached->robots = {bare_robot(scene, cached->model.get())};
+    GLOAM_TRY_STATUS(choose_keyframe(keyframe, cached.get()));
     GLOAM_TRY_STATUS(describe_rest(cached.get()));
     progress.finish();
-    return World(std::move(cached));
+    return cached;
   }
   const auto start = std::chrono::steady_clock::now();
   ModelFiles files;
@@ -170,6 +206,7 @@ Result<World> World::compile(const Scene& written, const ProgressCallback& callb
   if (!scene.bare_model.empty()) world->robots = {bare_robot(scene, level.model.get())};
   world->model = std::move(level.model);
   world->initial_key = level.initial_key;
+  GLOAM_TRY_STATUS(choose_keyframe(keyframe, world.get()));
   world->notes = std::move(level.notes);
   world->place_notes = std::move(sizes);
   world->unsupported = std::move(level.unsupported);
@@ -179,6 +216,24 @@ Result<World> World::compile(const Scene& written, const ProgressCallback& callb
   if (std::chrono::steady_clock::now() - start > kWorthCaching)
     store_cached_world(world, files.dependencies());
   progress.finish();
+  return world;
+}
+
+}  // namespace
+
+Result<World> World::compile(const Scene& scene, const ProgressCallback& progress) {
+  GLOAM_TRY(std::shared_ptr<CompiledWorld> world, compile_scene(scene, "", progress));
+  return World(std::move(world));
+}
+
+Result<World> World::compile_at(const Scene& scene, const std::string& keyframe,
+                                const ProgressCallback& progress) {
+  if (scene.bare_model.empty())
+    return Error{ErrorKind::kUsage,
+                 fmt::format("keyframe '{}': this is a scene, not a model", keyframe),
+                 {scene.file.string(), 0, 0},
+                 "name it at its robot: [[robot]] keyframe = \"NAME\""};
+  GLOAM_TRY(std::shared_ptr<CompiledWorld> world, compile_scene(scene, keyframe, progress));
   return World(std::move(world));
 }
 

@@ -6,9 +6,8 @@
 #include <cmath>
 
 #include "base/angle.h"
-#include "base/text.h"
 #include "scene/camera_lens.h"
-#include "world/level.h"
+#include "world/hidden_bodies.h"
 #include "world/world.h"
 
 namespace gloam {
@@ -67,26 +66,10 @@ CameraDescription model_camera(const mjModel& m, int i, std::vector<Error>* unsu
   return camera;
 }
 
-/// By instance: whether its body or one above it fits a pattern of `hide`.
 Result<std::shared_ptr<const std::vector<uint8_t>>> hidden_instances(
     const mjModel& m, const CameraOptions& options, const std::vector<InstanceDescription>& drawn) {
-  std::vector<uint8_t> bodies(static_cast<size_t>(m.nbody));
-  for (const std::string& pattern : options.hide) {
-    bool found = false;
-    for (int b = 1; b < static_cast<int>(m.nbody); ++b) {
-      const char* name = mj_id2name(&m, mjOBJ_BODY, b);
-      if (name == nullptr || !fits_pattern(pattern, name)) continue;
-      bodies[static_cast<size_t>(b)] = found = true;
-    }
-    if (!found)
-      return Error{
-          ErrorKind::kInput,
-          fmt::format("camera '{}' hides '{}', but there is no such body", options.name, pattern),
-          options.loc,
-          suggest_name(pattern, object_names(&m, mjOBJ_BODY, static_cast<int>(m.nbody)))};
-  }
-  for (int b = 1; b < static_cast<int>(m.nbody); ++b)  // parents come first
-    bodies[static_cast<size_t>(b)] |= bodies[static_cast<size_t>(m.body_parentid[b])];
+  GLOAM_TRY(const std::vector<uint8_t> bodies,
+            hidden_bodies(m, options.hide, fmt::format("camera '{}'", options.name), options.loc));
   std::vector<uint8_t> hidden;
   for (const InstanceDescription& in : drawn)
     hidden.push_back(bodies[static_cast<size_t>(in.body)]);

@@ -62,6 +62,7 @@ void describe_sites(const CompiledWorld& world, MaterialTable* materials, LabelT
     site.material = materials->row(m.site_matid[i], rgba, *shape);
     site.is_static = never_moves(m, site.body);
     site.casts_shadow = false;
+    site.color_only = true;
     site.group = m.site_group[i];
     const std::string name = name_of(m, mjOBJ_SITE, i);
     site.label = labels->label(site.body, name, mjOBJ_SITE, i);

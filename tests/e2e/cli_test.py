@@ -327,6 +327,22 @@ class Work(ProgramTest):
             self.assertGreater((self.folder / line).stat().st_size, 50, line)
         self.assertIn("side.png", result.stdout)
 
+    def test_stills_have_labels_and_files_of_their_own(self):
+        model = self.write("m.xml", """<mujoco><worldbody><geom name="floor" type="plane" size="1 1 .1"/>
+            <camera name="a/b" pos="0 0 2"/><camera name="a_b" pos="0 0 2"/><camera name="A_B" pos="0 0 2"/>
+            <body><joint/><geom size=".1"/></body></worldbody><keyframe><key qpos="1"/><key name="home" qpos="2"/></keyframe></mujoco>""")
+        small = ("--spp", "1", "--resolution", "16x16", "--output", "segmentation", "--out", "stills")
+        files = self.gloam("render", model, "--keyframe", "home", *small).stdout.lower().split()
+        self.assertEqual(len(files), 9)
+        self.assertEqual(len(set(files)), 9)
+        labels = json.loads((self.folder / "stills" / "labels.json").read_text())
+        self.assertEqual([(p["geom"], p["geom_id"], p["body_id"]) for p in labels["parts"]],
+                         [("floor", 0, 0), ("body 1 geom 1 (sphere)", 1, 1)])
+        cameras = json.loads((self.folder / "stills" / "cameras.json").read_text())["cameras"]
+        self.assertEqual([c["name"] for c in cameras], ["a/b", "a_b", "A_B"])
+        self.gloam("info", model, "--keyframe", "0")
+        self.gloam("run", model, "--keyframe", "home", "--duration", "0.01")
+
     def test_export_loads_again(self):
         model = self.write("m.xml", PENDULUM)
         self.gloam("export", model, "--out", "exported")

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <thread>
 
@@ -373,6 +374,48 @@ TEST_F(RecorderTest, NextFolderCountsUp) {
   EXPECT_EQ(safe_file_name("go1/front cam"), "go1_front_cam");
   EXPECT_EQ(safe_file_name(".."), "_.");
   EXPECT_EQ(safe_file_name(""), "unnamed");
+}
+
+// Names that differ in what file names cannot say, or in case alone, are files of their own, and
+// the summary tells whose they are.
+TEST_F(RecorderTest, NoTwoThingsWriteOneFile) {
+  RecorderOptions o = options();
+  o.outputs = {"png", "sensors"};
+  RunInfo info = run_info();
+  info.cameras = {{"a/b", intrinsics()}, {"a_b", intrinsics()}, {"A_B", intrinsics()}};
+  info.sensors = {{"s/1", 1}, {"s_1", 1}, {"S_1", 1}};
+  auto recorder = Recorder::start(o, info);
+  ASSERT_TRUE(recorder.ok());
+  for (const char* sensor : {"s/1", "s_1", "S_1"}) {
+    SensorMessage message;
+    message.sensor = sensor;
+    message.values = {static_cast<double>(sensor[0])};
+    (*recorder)->add_sensor(message);
+  }
+  ASSERT_TRUE((*recorder)->finish({}).ok());
+  const auto summary = read_json(run() / "summary.json");
+  std::set<std::string> names;
+  for (const auto& camera : summary["cameras"]) names.insert(camera["folder"].get<std::string>());
+  EXPECT_EQ(names, (std::set<std::string>{"a_b", "a_b_2", "A_B_3"}));
+  ASSERT_EQ(summary["sensors"].size(), 3u);
+  EXPECT_EQ(summary["sensors"][1]["name"], "s_1");
+  for (const auto& sensor : summary["sensors"])
+    EXPECT_EQ(read_csv(run() / sensor["file"].get<std::string>()).size(), 2u);
+  FileNames stills;
+  EXPECT_EQ(stills.take("a", {".png", "_depth.png"}), "a");
+  EXPECT_EQ(stills.take("a_depth", {".png", "_depth.png"}), "a_depth_2");
+}
+
+TEST_F(RecorderTest, LabelsHaveMuJoCosIds) {
+  RunInfo info = run_info();
+  info.label_ids = {{4, 0}, {7, 2}, {-1, -1}};
+  auto recorder = Recorder::start(options(), info);
+  ASSERT_TRUE(recorder.ok());
+  ASSERT_TRUE((*recorder)->finish({}).ok());
+  const auto parts = read_json(run() / "labels.json")["parts"];
+  EXPECT_EQ(parts[1]["geom_id"], 7);
+  EXPECT_EQ(parts[1]["body_id"], 2);
+  EXPECT_TRUE(parts[2]["geom_id"].is_null());
 }
 
 TEST_F(RecorderTest, BadOptionsAreErrorsBeforeAnythingIsWritten) {

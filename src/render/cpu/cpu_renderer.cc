@@ -172,7 +172,8 @@ class CpuRenderer final : public Renderer {
     }
     if (flickers) job.scene.light_levels = levels;
     job.film = film;
-    job.centered = settings.tier == RenderTier::kDirect && settings.spp == 1 && !job.has_motion &&
+    job.centered = settings.tier == RenderTier::kDirect && settings.spp == 1 &&
+                   settings.first_sample == 0 && !job.has_motion &&
                    !(job.camera.aperture.radius > 0);
     GLOAM_CHECK(!adaptive || (settings.tier == RenderTier::kPath && settings.first_sample == 0 &&
                               settings.spp >= kLeastAdaptiveSpp),

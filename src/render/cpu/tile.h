@@ -34,7 +34,8 @@ struct Job {
   PathOptions path;
   uint32_t log2_samples = 0;
   bool has_motion = false;  ///< something moves while the shutter is open
-  /// A single direct sample goes through the pixel's centre, and serves the exact channels too.
+  /// A single direct sample, the first of its pixel, goes through the pixel's centre and serves the
+  /// exact channels too.
   bool centered = false;
   Film* film = nullptr;
 };

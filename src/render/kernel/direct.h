@@ -7,8 +7,9 @@
 
 namespace gloam {
 
-/// Scenes with more lights than this draw so many of them by the tree.
-inline constexpr uint32_t kMaxDirectLights = kMaxWeighedLights;
+/// Shadow rays of a sample in scenes with a light tree, which takes as many lights. Their draws are
+/// stratified; each ray beyond the second costs more than a whole sample's surface and gains less.
+inline constexpr uint32_t kTreeShadows = 2;
 
 struct DirectState {
   Ray ray;           ///< to be traced now
@@ -80,16 +81,17 @@ GLOAM_HD void meet_surface(const SceneView& scene, DirectState* d, const RayHit&
 /// Sets the shadow ray of the next light that can reach the surface; false when none is left.
 GLOAM_HD bool next_shadow(const SceneView& scene, DirectState* d) {
   const bool all = !scene.has_many_lights();
-  const uint32_t count = all ? scene.lights.size : kMaxDirectLights;
+  const uint32_t count = all ? scene.lights.size : kTreeShadows;
   const Surface& s = d->s;
   while (d->next_light < count) {
     const uint32_t index = d->next_light++;
-    const Vec2f u = d->sampler.next_2d();
+    Vec2f u = d->sampler.next_2d();
+    if (!all) u.x = (static_cast<float>(index) + u.x) * (1.0f / static_cast<float>(kTreeShadows));
     const LightSample light = all ? sample_one_light(scene, index, s.p, u, d->ray.time)
                                   : d->picker.sample(scene, s.p, u, d->ray.time);
     if (!(light.pdf > 0) || dot(light.wi, s.geometric) <= 0) continue;
     float pdf;
-    const float share = all ? 1.0f : 1.0f / static_cast<float>(kMaxDirectLights);
+    const float share = all ? 1.0f : 1.0f / static_cast<float>(kTreeShadows);
     d->light_radiance = eval_bsdf(d->bsdf, d->wo, d->frame.to_local(light.wi), &pdf) *
                         light.radiance * d->transmittance * (s.opacity * share / light.pdf);
     if (max_component(d->light_radiance) <= 0) continue;

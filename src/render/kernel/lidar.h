@@ -154,17 +154,22 @@ GLOAM_HD void trace_echoes(const SceneView& scene, const Tracer& tracer, const L
     FrameOf<F> frame;
     const F g = lidar::reflectivity(scene, optics, -ray.d, blur, active, &s, &bsdf, &frame);
     way += hit.t * index;
-    const MaskOf<F> unseen = color_only_lanes<F>(scene, s.instance, active);
+    MaskOf<F> unseen = color_only_lanes<F>(scene, s.instance, active);
+    if (!optics.hidden.empty()) {
+      each_lane(active, [&](int i) {
+        if (optics.hidden[lane(s.instance, i)] != 0) set_lane(&unseen, i, true);
+      });
+    }
     const F signal = select(unseen, F(0.0f), g * share * share * pulse / (way * way));
     each_lane(active & (signal > 0.0f), [&](int i) {
       const float range = lane(way, i), seen = lane(signal, i) * lidar::overlap(optics, range);
       if (seen > 0) echoes[i].add({range, seen, lane(s.instance, i) + 1});
     });
 
-    if (!scene.has_transparent && scene.layers.empty()) return;
+    if (!scene.has_transparent && scene.layers.empty() && !any(unseen)) return;
     F passed = select(unseen, F(1.0f), passing_light(s).x);
     Vec3Of<F> d = ray.d;
-    each_lane(active & bsdf.layered & (bsdf.p_glass > 0.0f) & !bsdf.straight, [&](int i) {
+    each_lane(active & bsdf.layered & (bsdf.p_glass > 0.0f) & !bsdf.straight & !unseen, [&](int i) {
       Vec3f bent = lane(d, i);
       const Frame axes{lane(frame.x, i), lane(frame.y, i), lane(frame.z, i)};
       const float through =
@@ -179,7 +184,7 @@ GLOAM_HD void trace_echoes(const SceneView& scene, const Tracer& tracer, const L
     share *= passed;
     active = active & (share * share > lidar::kFaint);
     if (!any(active)) return;
-    const MaskOf<F> crossing = active & (dot(d, s.geometric) < 0.0f);
+    const MaskOf<F> crossing = active & !unseen & (dot(d, s.geometric) < 0.0f);
     absorption = paths::absorption_beyond(scene, s, crossing, absorption);
     absorption = lidar::own_absorption(optics, s, crossing, absorption);
     ray.o = select<F>(active, leave_surface(s.p, s.geometric, d, hit.t), ray.o);

@@ -65,6 +65,7 @@ struct LidarOptics {
   /// phase function. Empty = all of them.
   DeviceSpan<const float> lidar_ratios;
   DeviceSpan<const LidarParticles> particles;  ///< of each volume; empty = all are media
+  DeviceSpan<const uint8_t> hidden;            ///< by instance: beams pass it; empty = none
   DeviceSpan<const LidarSurface> surfaces;     ///< of each instance; empty = as their colours say
   // Noise: none without `noisy`.
   bool noisy = false;

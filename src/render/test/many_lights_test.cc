@@ -90,13 +90,11 @@ std::vector<Block> blocks_of(const Film& film) {
   return blocks;
 }
 
-TEST(ManyLights, ThePictureIsTheSumOfThoseOfEachLight) {
+void expect_sum_of_each(RenderSettings settings, int spp) {
   const CameraView view =
       SceneBuilder::camera(look_at({5, -6, 4.5f}, {0, 0, 0.5f}), kSize, kSize, 50);
-  RenderSettings settings;
   settings.variance = true;
-  settings.max_depth = 4;
-  settings.spp = 1024;
+  settings.spp = spp;
   const std::vector<Block> all = blocks_of(hall(kAll).render(view, settings));
   std::vector<Block> sum(all.size());
   settings.spp = 128;
@@ -122,6 +120,32 @@ TEST(ManyLights, ThePictureIsTheSumOfThoseOfEachLight) {
   EXPECT_LT(chi2, n + 5 * std::sqrt(2 * n));
   EXPECT_NEAR(a, b, 4 * std::sqrt(error2));
   EXPECT_LT(std::sqrt(error2), 0.01 * b) << "too noisy to compare";
+}
+
+TEST(ManyLights, ThePictureIsTheSumOfThoseOfEachLight) {
+  RenderSettings settings;
+  settings.max_depth = 4;
+  expect_sum_of_each(settings, 1024);
+}
+
+// The direct tier takes few of many lights, all of one: the mean must not know.
+TEST(ManyLights, TheDirectPictureIsTheSumOfThoseOfEachLight) {
+  RenderSettings settings;
+  settings.tier = RenderTier::kDirect;
+  settings.max_depth = 1;  // no ambient light
+  expect_sum_of_each(settings, 2048);
+}
+
+// A sample is two shadow rays on each surface, however many lights there are.
+TEST(ManyLights, ADirectSampleCastsFewShadowRays) {
+  RenderSettings settings;
+  settings.tier = RenderTier::kDirect;
+  settings.spp = 4;
+  Film film;
+  const CameraView view = SceneBuilder::camera(look_at({5, -6, 4.5f}, {0, 0, 0.5f}), 32, 32, 50);
+  const SceneBuilder scene = hall(kAll);
+  const RenderStats stats = scene.make()->render(view, settings, &film);
+  EXPECT_LE(stats.rays, stats.paths * 4);
 }
 
 TEST(ManyLights, AFrameLikeTheLastKeepsThePicture) {

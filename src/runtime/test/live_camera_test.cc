@@ -198,6 +198,61 @@ TEST(LiveCamera, TheFreeCameraMovesWhilePaused) {
   }
 }
 
+double noise_of(const CameraFrame& a, const CameraFrame& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.radiance.size(); ++i) {
+    const double gap = a.radiance[i] - b.radiance[i];
+    sum += gap * gap;
+  }
+  return sum;
+}
+
+TEST(LiveCamera, RefreshesOfAnInstantAddSamplesUntilItMoves) {
+  const TempFolder folder;
+  auto simulation = simulate(flight(folder));
+  const auto request = [](int spp, bool required) {
+    CameraRequest r{.camera = "free", .rate = {10, 1}, .width = 24, .height = 18};
+    r.outputs = {"rgb", "radiance"};
+    r.render = {.tier = "path", .spp = spp, .denoise = false};
+    r.X_WC = Pose{{0.5, -1, 0.5}, {0.70710678, 0.70710678, 0, 0}};
+    r.required = required;
+    return r;
+  };
+  SlowFrames many;
+  auto reference = open(*simulation, request(2048, false), many);
+  reference->refresh();
+  const auto truth = many.wait_for(1);
+  ASSERT_NE(truth, nullptr);
+  reference.reset();
+
+  SlowFrames frames;
+  auto stream = open(*simulation, request(1, false), frames);
+  stream->refresh();
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the open's own frame, if any
+  size_t count = frames.all().size();
+  ASSERT_GT(count, 0u);
+  for (int i = 0; i < 33; ++i) {
+    stream->refresh();
+    ASSERT_NE(frames.wait_for(++count), nullptr);
+  }
+  const double one = noise_of(*frames.all()[0], *truth);
+  const double mean = noise_of(*frames.all().back(), *truth);
+  ASSERT_GT(one, 0);
+  EXPECT_LT(mean, one / 8) << "32 samples should have a thirty-second of the variance";
+  EXPECT_EQ(frames.all().back()->step, 0);
+
+  Pose moved = *request(1, false).X_WC;
+  moved.p.x += 0.5;
+  stream->set_pose(moved);
+  stream->refresh();
+  const auto first = frames.wait_for(++count);
+  stream->set_pose(*request(1, false).X_WC);
+  stream->refresh();
+  const auto back = frames.wait_for(++count);
+  ASSERT_NE(first, nullptr);
+  EXPECT_EQ(back->radiance, frames.all()[0]->radiance) << "it begins anew, with the same draws";
+}
+
 TEST(LiveCamera, AResetStartsTheFramesAgain) {
   const TempFolder folder;
   auto simulation = simulate(flight(folder));

@@ -80,6 +80,40 @@ size_t count_lines(const fs::path& path) {
   return static_cast<size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
+// Without pictures to record there is no camera, no label table, and nothing rendered.
+TEST_F(RecordedRun, StateNeedsNoPictures) {
+  const World world = flight(folder_, R"([sim]
+duration = 0.1
+[record]
+outputs = ["state"]
+)");
+  RunRequest only = request("out");
+  only.cameras.clear();
+  const RunReport report = run(world, only);
+  EXPECT_TRUE(report.status.ok());
+  EXPECT_EQ(report.frames, 0);
+  EXPECT_TRUE(summary(report)["cameras"].empty());
+  std::istringstream table(read_text_file(report.out / "state.csv").value());
+  std::string head, row;
+  std::getline(table, head);
+  EXPECT_EQ(head,
+            "time_s,a/ball.x_m,a/ball.y_m,a/ball.z_m,a/ball.qw,a/ball.qx,a/ball.qy,a/ball.qz,"
+            "a/ball.vx_mps,a/ball.vy_mps,a/ball.vz_mps,a/ball.wx_radps,a/ball.wy_radps,"
+            "a/ball.wz_radps,a/ball.body.x_m,a/ball.body.y_m,a/ball.body.z_m,a/ball.body.qw,"
+            "a/ball.body.qx,a/ball.body.qy,a/ball.body.qz");
+  std::vector<double> last;
+  while (std::getline(table, row)) {
+    last.clear();
+    std::istringstream fields(row);
+    for (std::string field; std::getline(fields, field, ',');) last.push_back(std::stod(field));
+  }
+  ASSERT_EQ(last.size(), 21u);
+  EXPECT_NEAR(last[0], 0.1, 1e-12);
+  EXPECT_NEAR(last[1], 0.1, 1e-9) << "1 m/s along X";
+  EXPECT_NEAR(last[8], 1, 1e-12);
+  EXPECT_NEAR(last[14], 0.1, 1e-9) << "the pose of that instant, not of the step before";
+}
+
 TEST_F(RecordedRun, HoldsWhatTheSceneAsksFor) {
   const World world = flight(folder_, kCameras);
   std::vector<double> done;

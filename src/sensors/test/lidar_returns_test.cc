@@ -218,5 +218,30 @@ TEST(LidarReturnsOf, ModesPickFirstStrongestAndLast) {
   EXPECT_EQ(ranges("all"), (std::vector<int>{3, 5, 8}));
 }
 
+TEST(LidarHides, BeamsPassTheHousingTheyComeFromAndWhatHangsOnIt) {
+  SceneBuilder b;
+  const int gray = b.add_diffuse({0.5f, 0.5f, 0.5f});
+  add_wall(&b, {0.5f, 50, 50}, {10.5f, 0, 0}, gray);
+  const int head = b.add_body({});
+  b.add(ShapeType::kSphere, {0.1f, 0, 0}, {}, gray, head);
+  MaterialDescription glass;
+  glass.transmission_weight = 1;
+  b.add(ShapeType::kBox, {0.1f, 1, 1}, translation({1, 0, 0}), b.add_material(glass), head);
+  EXPECT_NEAR(scan_scene(b, pencil())->range[0], 0.1f, 1e-4f)
+      << "without it the shell is in the way";
+  auto renderer = make_cpu_renderer(b.description);
+  ASSERT_TRUE(renderer.ok());
+  std::vector<uint8_t> hidden(static_cast<size_t>(head) + 1);
+  hidden.back() = 1;
+  auto sensor = LidarSensor::create(b.description, {pencil(), 0, {}, hidden}, 1);
+  ASSERT_TRUE(sensor.ok());
+  std::mutex mutex;
+  const PoseFrame keys[] = {b.frame, b.frame};
+  const auto scan = (*sensor)->scan(**renderer, mutex, keys, 0);
+  ASSERT_EQ(scan->size(), 1u);
+  EXPECT_NEAR(scan->range[0], 10, 1e-4f);
+  EXPECT_NEAR(scan->intensity[0], 50, 0.1);
+}
+
 }  // namespace
 }  // namespace gloam

@@ -1,5 +1,6 @@
 #include "gloam/world.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -109,6 +110,24 @@ TEST_F(WorldTest, KeyframesOfNestedModelsAreTheRobots) {
   const std::string wrong =
       error_of("w.toml", "[[robot]]\nname = \"a\"\nfile = \"reach.xml\"\nkeyframe = \"home\"\n");
   EXPECT_THAT(wrong, HasSubstr("'L_home'"));
+}
+
+TEST_F(WorldTest, ABareModelStartsFromANamedOrNumberedKeyframe) {
+  folder_.write("keys.xml",
+                "<mujoco><worldbody><body><joint/><geom size='.1'/></body></worldbody><keyframe>"
+                "<key qpos='1'/><key name='home' qpos='2'/></keyframe></mujoco>");
+  const Result<Scene> scene = load_scene(folder_.path() / "keys.xml");
+  ASSERT_TRUE(scene.ok());
+  const auto key_of = [&](const std::string& keyframe) {
+    const Result<World> world = World::compile_at(*scene, keyframe);
+    return world.ok() ? fmt::format("{}", world->compiled()->initial_key)
+                      : world.error().to_string();
+  };
+  EXPECT_EQ(key_of("home"), "1");
+  EXPECT_EQ(key_of("0"), "0");
+  EXPECT_THAT(key_of("hom"), HasSubstr("'home'"));
+  EXPECT_THAT(key_of("2"), HasSubstr("no keyframe '2'"));
+  EXPECT_EQ(World::compile(*scene)->compiled()->initial_key, -1);
 }
 
 // The sign of zero in attributes of many kinds survives an export.
