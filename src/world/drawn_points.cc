@@ -110,6 +110,14 @@ struct PartBox {
   }
 };
 
+/// Whether a geom of the world is the base that the tree of bodies at `tree` hangs on, as the first
+/// link of a URDF robot: a mesh that touches it and is no place around it.
+bool is_base(const InstanceDescription& in, const PartBox& own, const PartBox& tree) {
+  constexpr float kLargest = 4;  // in diagonals of the tree
+  return in.shape == ShapeType::kMesh && own.diagonal() <= kLargest * tree.diagonal() &&
+         own.distance(tree) <= 0;
+}
+
 }  // namespace
 
 std::vector<DrawnPart> drawn_parts(const RenderDescription& scene, std::span<const Affine3f> X_WB) {
@@ -175,8 +183,8 @@ std::vector<DrawnPart> subject_of(std::vector<DrawnPart> parts, const RenderDesc
     PartBox own;
     own.add(part.low, part.high);
     const PartBox& tree = root(part) == 0 ? own : trees[root(part)].box;
-    return root(part) != 0 && tree.diagonal() <= kMuchLarger * size &&
-           tree.distance(main->box) <= kFar * size;
+    if (root(part) == 0) return is_base(scene.instances[part.instance], own, main->box);
+    return tree.diagonal() <= kMuchLarger * size && tree.distance(main->box) <= kFar * size;
   };
   std::vector<DrawnPart> out;
   for (DrawnPart& part : parts)

@@ -8,7 +8,7 @@ namespace gloam {
 namespace {
 
 constexpr float kFill = 0.94f;  // share of the picture's half width or height that is filled
-constexpr float kLeastCover = 0.14f, kMostCover = 0.5f;  // of the picture's area
+constexpr float kLeastCover = 0.17f, kMostCover = 0.42f;  // of the picture's area
 
 struct Spread {
   float low = INFINITY, high = -INFINITY;

@@ -10,29 +10,29 @@ namespace gloam {
 namespace {
 
 constexpr float kKeyIlluminance = 900;      // [lx], on a surface that faces the key light
-constexpr float kZenithLuminance = 260;     // [cd/m²]
+constexpr float kZenithLuminance = 520;     // [cd/m²]
 constexpr float kKeyRadius = 0.1f;          // sine of the half angle: soft shadows
 constexpr float kKeyElevation = 0.9f;       // [rad]
 constexpr float kKeyLeftOfCamera = 0.8f;    // [rad]
-constexpr float kSubjectOnDisplay = 0.26f;  // of the median of the subject, linear, 1 = white
-constexpr float kDarkOnDisplay = 0.18f;     // of a dark median beside something bright
-constexpr float kDarkest = 0.05f, kBrightest = 0.7f;  // reflectances that an exposure is fitted to
+constexpr float kSubjectOnDisplay = 0.31f;  // of the median of the subject, linear, 1 = white
+constexpr float kDarkest = 0.01f, kBrightest = 0.7f;  // reflectances that an exposure is fitted to
 constexpr float kFloorOnDisplay = 0.46f;
 constexpr float kFloorReach = 7;  // half width in diagonals of the subject
 
 bool is_headlight(const LightDescription& light) { return light.light < 0 && light.body < 0; }
 
-/// Mean luminance of a material's colour, its texture included.
+/// Mean luminance of a material's colour, its texture included, and what its gloss adds: of black
+/// plastic that is all there is.
 float reflectance_of(const MaterialDescription& material, const RenderDescription& scene) {
   float albedo = luminance(material.base_color);
   if (material.textures.base_color >= 0)
     albedo *= mean_luminance(scene.textures[static_cast<size_t>(material.textures.base_color)]);
-  return albedo;
+  constexpr float kGloss = 0.01f;  // Fresnel's 0.04, of a sky that is darker than what is lit
+  return albedo + kGloss * material.specular_weight;
 }
 
 /// The reflectance that is shown as white, by what a camera at X_WC sees of the points (a small
-/// depth buffer): the median lands at kSubjectOnDisplay, or lower where much of the subject is far
-/// brighter, but never below kDarkOnDisplay.
+/// depth buffer): the median lands at kSubjectOnDisplay.
 float white_reflectance(std::span<const DrawnPart> subject, const Affine3f& X_WC,
                         const RenderDescription& scene) {
   constexpr int kSide = 48;
@@ -60,16 +60,13 @@ float white_reflectance(std::span<const DrawnPart> subject, const Affine3f& X_WC
   for (const Cell& cell : cells)
     if (std::isfinite(cell.depth)) seen.push_back(cell.reflectance);
   if (seen.empty()) return 1;
-  std::sort(seen.begin(), seen.end());
-  const auto quantile = [&](float share) {
-    const float at = share * static_cast<float>(seen.size() - 1);
-    return clamp(seen[static_cast<size_t>(at)], kDarkest, kBrightest);
-  };
-  return max(quantile(0.5f) / kSubjectOnDisplay,
-             min(quantile(0.9f), quantile(0.5f) / kDarkOnDisplay));
+  const auto middle = seen.begin() + static_cast<std::ptrdiff_t>(seen.size() / 2);
+  std::nth_element(seen.begin(), middle, seen.end());
+  return clamp(*middle, kDarkest, kBrightest) / kSubjectOnDisplay;
 }
 
-/// Even below the horizon, as bright as the floor; brighter towards the zenith.
+/// As bright as the floor up to where level views end, so that they have an even backdrop; brighter
+/// towards the zenith.
 EnvironmentDescription soft_sky(float floor_luminance) {
   EnvironmentDescription sky;
   sky.name = "studio";
@@ -78,7 +75,7 @@ EnvironmentDescription soft_sky(float floor_luminance) {
   for (int y = 0; y < sky.height; ++y) {
     const float elevation =
         0.5f * kPi - (static_cast<float>(y) + 0.5f) * kPi / static_cast<float>(sky.height);
-    const float up = clamp(elevation / (0.35f * kPi), 0, 1);
+    const float up = clamp((elevation - 0.5f) / (0.25f * kPi), 0, 1);
     const float share = up * up * (3 - 2 * up);
     const Vec3f color = Vec3f{1, 1, 1} * (floor_luminance * (1 - share)) +
                         Vec3f{0.97f, 0.99f, 1.05f} * (kZenithLuminance * share);
@@ -195,7 +192,7 @@ void add_studio(std::span<const DrawnPart> subject, std::span<const DrawnPart> a
   }
   out->sky = {};
 
-  constexpr float kFacing = 0.6f * kKeyIlluminance + 0.7f * kPi * kZenithLuminance;  // [lx]
+  constexpr float kFacing = 0.6f * kKeyIlluminance + 0.3f * kPi * kZenithLuminance;  // [lx]
   const float white = white_reflectance(subject, X_WC, *out) * kFacing * kInvPi;     // [cd/m²]
   out->ev100 = ev100_for(white, 1);
   const float floor_luminance = kFloorOnDisplay * white;
