@@ -83,7 +83,7 @@ class ComparedScene {
     const std::vector<PoseFrame> keys{poses_, poses_};
     const auto scan = lidar_->scan(*shared_->renderer, shared_->mutex, keys, index);
     std::swap(poses_, before_);
-    const Vec3f eye = to_affine(frame->X_WC).p;
+    const Vec3f eye = to_affine(from_origin(frame->X_WC, shared_->description.origin)).p;
     ComparisonResult& sum = seen->result;
     sum.visibility = std::min(sum.visibility, probe_.visibility(now.data(), eye));
     sum.illuminance += static_cast<double>(shared_->renderer->illuminance(eye, {0, 0, 1}));

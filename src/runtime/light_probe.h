@@ -15,7 +15,7 @@ class LightProbe {
 
   /// Illuminance [lx] of level surfaces at places at the snapshot's instant; none where MuJoCo
   /// refuses its poses.
-  std::vector<double> illuminance(const Snapshot& snapshot, const std::vector<Vec3f>& places);
+  std::vector<double> illuminance(const Snapshot& snapshot, const std::vector<Vec3>& places);
 
  private:
   explicit LightProbe(std::shared_ptr<SharedRenderer> shared) : shared_(std::move(shared)) {}

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "control/controllers.h"
+#include "geometry/single.h"
 #include "runtime/pick.h"
 
 namespace gloam {
@@ -240,7 +241,7 @@ Result<Pose> LiveSimulation::body_pose(Body body) {
                  static_cast<float>(R[6 + i])};
   };
   Pose X_WB = to_pose({column(0), column(1), column(2), {}});
-  X_WB.p = {p[0], p[1], p[2]};
+  X_WB.p = in_world(Vec3{p[0], p[1], p[2]}, world->render_origin);
   return X_WB;
 }
 

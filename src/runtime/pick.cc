@@ -3,6 +3,7 @@
 #include <mutex>
 
 #include "geometry/lens.h"
+#include "geometry/single.h"
 #include "sensors/camera_sensor.h"
 
 namespace gloam {
@@ -12,7 +13,8 @@ Result<PickResult> pick_at(SharedRenderer& shared, const PoseFrame& poses, const
   const std::lock_guard lock(shared.mutex);
   // A picture of one pixel whose centre is (u, v).
   CameraView view;
-  view.X_WC_open = view.X_WC_previous = to_affine(frame.X_WC);
+  view.X_WC_open = view.X_WC_previous =
+      to_affine(from_origin(frame.X_WC, shared.description.origin));
   view.intrinsics = frame.intrinsics;
   view.intrinsics.width = view.intrinsics.height = 1;
   view.intrinsics.cx = frame.intrinsics.cx - u + 0.5;
@@ -35,7 +37,7 @@ Result<PickResult> pick_at(SharedRenderer& shared, const PoseFrame& poses, const
   PickResult result;
   result.body = {instance.body, shared.world->serial};
   result.name = instance.label.body.empty() ? instance.label.instance_name : instance.label.body;
-  result.point_W = {p_W.x, p_W.y, p_W.z};
+  result.point_W = in_world(Vec3{p_W.x, p_W.y, p_W.z}, shared.description.origin);
   result.point_B = {R[0] * d[0] + R[3] * d[1] + R[6] * d[2],
                     R[1] * d[0] + R[4] * d[1] + R[7] * d[2],
                     R[2] * d[0] + R[5] * d[1] + R[8] * d[2]};

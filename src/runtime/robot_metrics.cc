@@ -137,11 +137,11 @@ void RobotMetrics::measure(Tracked& robot, const Snapshot& snapshot) {
 }
 
 void RobotMetrics::measure_light(const Snapshot& snapshot) {
-  std::vector<Vec3f> places;
+  std::vector<Vec3> places;
   for (const Tracked& robot : robots_) {
     const JointState base = snapshot[robot.base];
     // Over all of it: it casts no shadow there.
-    places.push_back({float(base.qpos[0]), float(base.qpos[1]), float(base.qpos[2] + robot.reach)});
+    places.push_back({base.qpos[0], base.qpos[1], base.qpos[2] + robot.reach});
   }
   const std::vector<double> light = light_->illuminance(snapshot, places);
   for (size_t i = 0; i < robots_.size(); ++i) {

@@ -29,7 +29,7 @@ inline std::vector<std::string_view> words(std::span<const std::string_view> lis
 inline const FieldRule kShare{.min = 0, .max = 1};
 
 inline constexpr double kLongestTime = 1e9;    // [s] 30 years
-inline constexpr double kLargestLength = 1e6;  // [m]
+inline constexpr double kLargestLength = 1e7;  // [m], northings of maps
 inline constexpr double kLargestSpeed = 1e4;   // [m/s], [rad/s]
 inline constexpr double kFastestRate = 1e6;    // [Hz]
 

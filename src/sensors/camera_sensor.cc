@@ -7,6 +7,7 @@
 
 #include "base/hash.h"
 #include "base/text.h"
+#include "geometry/single.h"
 #include "render/film/tone_map.h"
 #include "render/scene/pose.h"
 #include "sensors/object_boxes.h"
@@ -90,6 +91,16 @@ int path_depth(const RenderOptions& render, bool has_media) {
 
 Pose to_pose(const Affine3f& X) { return {{X.p.x, X.p.y, X.p.z}, quaternion_of(X)}; }
 
+Pose in_world(const Affine3f& X, const Vec3& origin) {
+  Pose out = to_pose(X);
+  out.p = in_world(out.p, origin);
+  return out;
+}
+
+Pose from_origin(const Pose& X_W, const Vec3& origin) {
+  return {from_origin(X_W.p, origin), X_W.q};
+}
+
 Affine3f to_affine(const Pose& X) {
   const auto& [w, x, y, z] = X.q;
   const auto f = [](double a, double b, double c) {
@@ -156,7 +167,7 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
                                   channels.events, channels.thermal},
                                  ev100, sensor_seed(seed, request.camera)));
   sensor->free_pose_ = sensor->previous_free_pose_ =
-      request.X_WC ? to_affine(*request.X_WC) : described.X_WC;
+      request.X_WC ? to_affine(from_origin(*request.X_WC, description.origin)) : described.X_WC;
 
   const WeatherDescription& weather = description.weather;
   if (weather.lens_drops > 0 && described.camera >= 0) {
@@ -227,12 +238,12 @@ PictureMemory CameraSensor::memory() const {
 
 void CameraSensor::set_free_pose(const Pose& X_WC) {
   const std::lock_guard lock(pose_mutex_);
-  free_pose_ = to_affine(X_WC);
+  free_pose_ = to_affine(from_origin(X_WC, description_.origin));
 }
 
 Pose CameraSensor::free_pose() const {
   const std::lock_guard lock(pose_mutex_);
-  return to_pose(free_pose_);
+  return in_world(free_pose_, description_.origin);
 }
 
 std::shared_ptr<const CameraFrame> CameraSensor::capture(Renderer& renderer,
@@ -336,7 +347,7 @@ void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const Came
   frame->time = now.time;
   frame->delivery = models_->delivery_of(frame_index, now.time);
   frame->intrinsics = intrinsics_;
-  frame->X_WC = to_pose(view.X_WC_open);
+  frame->X_WC = in_world(view.X_WC_open, description_.origin);
   frame->exposure_time = camera().exposure_time;
   frame->readout_time = camera().readout_time;
 

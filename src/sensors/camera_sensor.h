@@ -144,5 +144,8 @@ class CameraSensor {
 /// Rigid pose <-> affine map.
 Pose to_pose(const Affine3f& X);
 Affine3f to_affine(const Pose& X);
+/// Between the world and a render scene whose origin is there (RenderDescription::origin).
+Pose in_world(const Affine3f& X, const Vec3& origin);
+Pose from_origin(const Pose& X_W, const Vec3& origin);
 
 }  // namespace gloam

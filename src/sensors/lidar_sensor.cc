@@ -45,6 +45,7 @@ LidarSensor::LidarSensor(const RenderDescription& rendered, const LidarDescripti
   for (const VolumeDescription& volume : rendered.volumes) {
     lidar_ratios_.push_back(lidar_ratio(rendered.media[static_cast<size_t>(volume.medium)].name));
   }
+  origin_ = rendered.origin;
   if (!lidar.hidden.empty()) {
     for (const InstanceDescription& in : rendered.instances)
       hidden_.push_back(lidar.hidden[static_cast<size_t>(in.body)]);
@@ -132,10 +133,12 @@ std::shared_ptr<const LidarScan> LidarSensor::scan(Renderer& renderer, std::mute
                                                    std::span<const PoseFrame> keys, int64_t index) {
   GLOAM_CHECK(keys.size() >= 2, "a scan has a beginning and an end");
   plan(keys, index);
+  const Affine3f X_BL =
+      to_affine(lidar_.body == 0 ? from_origin(lidar_.X_BL, origin_) : lidar_.X_BL);
   std::vector<Affine3f> X_WL;
   std::vector<const PoseFrame*> frames;
   for (const PoseFrame& key : keys) {
-    X_WL.push_back(pose_in_world(key, lidar_.body, to_affine(lidar_.X_BL)));
+    X_WL.push_back(pose_in_world(key, lidar_.body, X_BL));
     frames.push_back(&key);
   }
   motions_.clear();
@@ -170,8 +173,8 @@ std::shared_ptr<const LidarScan> LidarSensor::scan(Renderer& renderer, std::mute
   scan->columns = pattern.grid ? model_.columns : 0;
   scan->beams = static_cast<int>(beams_.size());
   scan->deskewed = lidar_.options.deskew;
-  scan->X_WL_start = to_pose(X_WL.front());
-  scan->X_WL_end = to_pose(X_WL.back());
+  scan->X_WL_start = in_world(X_WL.front(), origin_);
+  scan->X_WL_end = in_world(X_WL.back(), origin_);
   write_points(X_WL, scan.get());
   if (lidar_.options.truth) add_truth(scan.get());
   return scan;

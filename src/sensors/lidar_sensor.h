@@ -43,6 +43,7 @@ class LidarSensor {
   const LidarDescription lidar_;
   const LidarModel model_;
   const uint64_t seed_;
+  Vec3 origin_;                                      ///< RenderDescription::origin
   std::vector<float> lidar_ratios_;                  ///< by volume [sr]
   std::vector<LidarParticleTable> particle_tables_;  ///< by volume; empty = none has any
   std::vector<LidarParticles> particles_;            ///< views of these

@@ -88,7 +88,7 @@ std::vector<ObjectView> view_objects(const RenderDescription& description, const
     const InstanceDescription& root = **std::min_element(
         parts.begin(), parts.end(), [](const auto* a, const auto* b) { return a->body < b->body; });
     const Affine3f X_WO = pose_in_world(frame, root.body, {}), X_OW = inverse(X_WO);
-    object.X_WO = to_pose(X_WO);
+    object.X_WO = in_world(X_WO, description.origin);
     Bounds3 box;
     object.endless =
         std::any_of(parts.begin(), parts.end(), [](const auto* in) { return is_endless(*in); });

@@ -1,6 +1,7 @@
 #pragma once
 // Where everything visible is at one instant, in structure-of-arrays with a leading world index
-// (one world live). Made by PoseSolver on the consumer's thread; free of MuJoCo types.
+// (one world live). Made by PoseSolver on the consumer's thread; free of MuJoCo types. Places are
+// counted from the World's render origin (world/render_origin.h).
 
 #include <cstdint>
 #include <vector>

@@ -8,6 +8,7 @@
 #include "sim/live_fields.h"
 #include "sim/skinning.h"
 #include "sim/state_layout.h"
+#include "world/render_origin.h"
 #include "world/visual_soil.h"
 #include "world/visual_water.h"
 
@@ -24,7 +25,8 @@ Result<std::unique_ptr<PoseSolver>> PoseSolver::create(std::shared_ptr<const Com
   std::unique_ptr<PoseSolver> solver(new PoseSolver);
   solver->world_ = std::move(world);
   solver->layout_ = deformable_layout(*solver->world_->model);
-  if (solver->model().opt.enableflags & mjENBL_SLEEP) GLOAM_TRY_STATUS(solver->own_the_model());
+  const bool sleeps = (solver->model().opt.enableflags & mjENBL_SLEEP) != 0;
+  if (sleeps || !is_zero(solver->world_->render_origin)) GLOAM_TRY_STATUS(solver->own_the_model());
   const mjModel* model = &solver->model();
   mjData* data = nullptr;
   GLOAM_TRY_STATUS(guarded([&] { data = mj_makeData(model); }));
@@ -38,6 +40,7 @@ Status PoseSolver::own_the_model() {
   GLOAM_TRY_STATUS(guarded([&] { model = mj_copyModel(nullptr, world_->model.get()); }));
   own_model_.reset(model);
   own_model_->opt.enableflags &= ~mjENBL_SLEEP;  // kinematics skips what sleeps
+  move_model(world_->render_origin, own_model_.get());
   return {};
 }
 
@@ -69,6 +72,7 @@ Status PoseSolver::solve(const Snapshot& snapshot, PoseFrame& frame) {
   mjData* data = data_.get();
   GLOAM_TRY_STATUS(guarded([&] {
     mj_setState(model, data, in.state.data(), mjSTATE_INTEGRATION);
+    if (!is_zero(world_->render_origin)) move_state(*model, world_->render_origin, data);
     mj_kinematics(model, data);
     mj_comPos(model, data);
     mj_camlight(model, data);

@@ -21,6 +21,7 @@
 #include "world/level.h"
 #include "world/mesh_object.h"
 #include "world/model_cache.h"
+#include "world/render_origin.h"
 #include "world/rigs.h"
 #include "world/sampled_ground.h"
 #include "world/sensor_description.h"
@@ -119,6 +120,7 @@ Status describe_rest(CompiledWorld* world) {
   GLOAM_TRY(world->waters, describe_waters(world->scene));
   GLOAM_TRY(world->soils, describe_soils(world->scene, *world->model));
   GLOAM_TRY(world->agents, describe_agents(*world));
+  world->render_origin = choose_render_origin(*world, &world->place_notes);
   return {};
 }
 

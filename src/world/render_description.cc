@@ -17,6 +17,7 @@
 #include "world/drawn_points.h"
 #include "world/free_view.h"
 #include "world/model_names.h"
+#include "world/render_origin.h"
 #include "world/studio.h"
 #include "world/visual_camera.h"
 #include "world/visual_deformable.h"
@@ -273,7 +274,9 @@ void present_model(const CompiledWorld& world, RenderDescription* out) {
 
 }  // namespace
 
-Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
+namespace {
+
+Result<RenderDescription> describe_from_origin(const CompiledWorld& world) {
   const mjModel& m = *world.model;
   RenderDescription out;
   out.center = {static_cast<float>(m.stat.center[0]), static_cast<float>(m.stat.center[1]),
@@ -385,6 +388,16 @@ Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
   out.ev100 = world.ev100 ? static_cast<float>(*world.ev100) : exposure(levels, out);
   GLOAM_TRY_STATUS(set_clips(world, &out));
   present_model(world, &out);
+  return out;
+}
+
+}  // namespace
+
+Result<RenderDescription> describe_for_rendering(const CompiledWorld& world) {
+  if (is_zero(world.render_origin)) return describe_from_origin(world);
+  GLOAM_TRY(const std::unique_ptr<CompiledWorld> moved, moved_world(world));
+  GLOAM_TRY(RenderDescription out, describe_from_origin(*moved));
+  out.origin = world.render_origin;
   return out;
 }
 

@@ -216,6 +216,7 @@ struct RenderDescription {
       cameras;  ///< all of the model's, then one free camera that frames the model, "free"
   SkyDescription sky;
   float ev100 = 0;   ///< exposure by the scene's rule, used when the user gives none
+  Vec3 origin;       ///< in the world [m]: all places here and in PoseFrames are counted from it
   Vec3f center;      ///< of the model's bounding sphere at qpos0 [m]
   float extent = 1;  ///< MuJoCo's stat.extent, about its diameter [m]
   std::vector<Error> unsupported;

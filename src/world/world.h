@@ -75,6 +75,7 @@ struct CompiledWorld {
   int initial_key = -1;
   uint64_t place_hash = 0;      ///< of what was generated or made of meshes, 0 = nothing
   std::optional<double> ev100;  ///< of a generated environment
+  Vec3 render_origin;           ///< of the render scene [m]; world/render_origin.h
   std::vector<Region> regions;  ///< floors of a generated environment
   std::vector<DrawnOption> drawn;
   std::vector<RobotInstance> robots;

@@ -75,7 +75,7 @@ TEST(Schema, OfScenesRefusesWhatTheReaderRefuses) {
                           "position = 1",
                           "position = [0, 0]",
                           "position = [0, 0, \"1\"]",
-                          "position = [0, 0, 1e7]",
+                          "position = [0, 0, 1e8]",
                           "keyframe = 3",
                           "controller.type = \"trott\"",
                           "controller.rate = 0",
