@@ -332,6 +332,7 @@ def full(tally):
         "sweeps of meshes": lambda t: gtest(t, "release", "geometry", "*.DISABLED_Sweep*"),
         "sweeps of running scenes": lambda t: gtest(t, "release", "runtime", "*.DISABLED_Sweep*"),
         "pack": pack,
+        "first look at models": lambda t: python_tests(t, "tests/e2e/gallery_models.py"),
         "Mitsuba's mutations": lambda t: python_tests(t, "tests/e2e/mitsuba_mutations.py"),
     }
     for module in modules_with("Mutations"):

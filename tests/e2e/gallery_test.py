@@ -5,10 +5,12 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from e2e.support import ROOT
+import fetch_data
+from e2e.support import PROGRAM, ROOT
 
 sys.path.insert(0, str(ROOT / "tools" / "gallery"))
 import gallery  # noqa: E402
+import models  # noqa: E402
 import page  # noqa: E402
 import pixels  # noqa: E402
 import plot  # noqa: E402
@@ -87,6 +89,23 @@ class Plots(unittest.TestCase):
         for picture in plots:
             self.assertRegex(picture.axis, r"^[a-z ]+ \[[a-z/]+\]$", picture.name)
             self.assertLessEqual(set(picture.axis), set(plot.GLYPHS))
+
+
+class FirstLook(unittest.TestCase):
+    """A robot as a newcomer first sees it; all of the packages' are in gallery_models.py."""
+    ROBOTS = ["mjlab/mjlab/asset_zoo/robots/unitree_go1/xmls/go1.xml", *(f"robosuite/robosuite/models/assets/{name}" for name in (
+        "robots/panda/robot.xml", "robots/jaco/robot.xml", "robots/baxter/robot.xml", "grippers/robotiq_gripper_140.xml", "objects/door.xml",
+        "bullet_data/panda_description/urdf/hand.urdf", "grippers/fourier_left_hand.xml"))]
+
+    def test_black_robots_hands_and_doors_are_seen_well(self):
+        data = fetch_data.default_folder()
+        if not data.exists():
+            self.skipTest("the robots of the tests are not here: tests/fetch_data.py")
+        with tempfile.TemporaryDirectory() as folder:
+            for robot in self.ROBOTS:
+                result = models.measure(PROGRAM, data / robot, data, Path(folder))
+                self.assertIn("picture", result, f"{robot}: {result}")
+                self.assertEqual(list(models.faults(result)), [], robot)
 
 
 class Faults(unittest.TestCase):
