@@ -21,6 +21,7 @@ PEER_PACKAGES = ["libllvm19", "libegl1", "libgles2", "libgl1-mesa-dri", "mesa-vu
 
 sys.path.insert(0, str(ROOT / "tests"))
 import fetch_data  # noqa: E402
+import view_rate  # noqa: E402
 
 
 def say(text):
@@ -193,6 +194,18 @@ def direct_places(quick):
                                       "--frames", 3 if quick else 9)[0] / 1e3
         yield at_most(f"direct tier in {place}: seconds a sample at 640x360", wall["direct"], 0.25,
                       f"wall; path tier {wall['path']:.2f} s, ratio {wall['direct'] / wall['path']:.2f}")
+
+
+def view(quick):
+    """the live page at 640x480: pictures a second of the demo while it runs, and the first one in a generated house"""
+    demo = view_rate.watch(BIN / "gloam", ROOT / "examples" / "demo.toml", "free", 3 if quick else 8)
+    yield at_least("page, demo: pictures a second while it runs", demo["rate"], 10,
+                   f"{demo['width']} px wide; paused, {demo['still']} pictures of {demo['still_width']} px were added up")
+    scene = CACHE / "bench_places" / "house_view.toml"
+    scene.parent.mkdir(parents=True, exist_ok=True)
+    scene.write_text("[environment.house]\nseed = 4\n")
+    house = view_rate.watch(BIN / "gloam", scene, "free", 3 if quick else 8)
+    yield at_most("page, house: seconds to the first picture", house["first"], 3, f"then {house['rate']:.1f} a second, {house['width']} px wide")
 
 
 def truth(quick):
@@ -412,6 +425,6 @@ def all_effects(quick):
 
 
 # With the seconds that each takes on two cores: the first estimate of the time left.
-ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, direct_places: 60, fast_tier: 400, truth: 40, load_time: 120, import_time: 60,
+ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, direct_places: 60, view: 40, fast_tier: 400, truth: 40, load_time: 120, import_time: 60,
        first_picture: 15, adaptive_sampling: 120, lidar: 25, environments: 60, hfield: 25, gas: 20,
        effects: 90, all_effects: 75}
