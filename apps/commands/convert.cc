@@ -26,7 +26,7 @@ Status parse_scale(const std::string& text, Vec3* scale) {
   while (numbers.size() < 4) {
     double value = 0;
     const auto [after, error] = std::from_chars(at, end, value);
-    if (error != std::errc() || !(value > 0) || !std::isfinite(value)) break;
+    if (error != std::errc() || value == 0 || !std::isfinite(value)) break;
     numbers.push_back(value);
     at = after;
     if (at == end) break;
@@ -34,9 +34,9 @@ Status parse_scale(const std::string& text, Vec3* scale) {
   }
   if (at != end || (numbers.size() != 1 && numbers.size() != 3))
     return Error{ErrorKind::kUsage,
-                 fmt::format("--scale {}: expected one positive number, or three", text),
+                 fmt::format("--scale {}: expected one number other than 0, or three", text),
                  {},
-                 "for example 0.5 or 1,1,2"};
+                 "for example 0.5, 1,1,2 or -1,1,1, which mirrors"};
   numbers.resize(3, numbers[0]);
   *scale = {numbers[0], numbers[1], numbers[2]};
   return {};
@@ -78,7 +78,7 @@ int convert(ConvertCommand command, const Globals& globals) {
                                          {"max_distance", r.max_distance},
                                          {"seconds", r.seconds},
                                          {"notes", r.notes}};
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     return 0;
   }
   fmt::print("mesh       {} triangles, {}, {:.3g} x {:.3g} x {:.3g} m\n", r.triangles,
@@ -102,7 +102,8 @@ void add_convert(CLI::App& app, Globals& globals, Action& action) {
   sub->add_option("--node", command->object.node, "One node by its name");
   sub->add_option("--colliders", command->object.colliders, "As in [[object]]");
   ObjectOptions& o = command->object;
-  sub->add_option("--scale", command->scale, "One number, or three along its axes, as 2 or 1,1,2");
+  sub->add_option("--scale", command->scale,
+                  "One number, or three along its axes, as 2, 1,1,2 or -1,1,1");
   sub->add_option("--up", o.up, "Axis of the file that points up; auto: y of glTF, z of the others")
       ->check(CLI::IsMember({"auto", "y", "z"}));
   sub->add_option("--unit", o.unit, "Metres of one unit of the file: 0.001 for millimetres")

@@ -55,7 +55,7 @@ void print_json(const WorldInfo& info, const NotDrawn& not_drawn,
                       {"hint", error.hint}});
     }
   }
-  std::printf("%s\n", json.dump(2).c_str());
+  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
 }
 
 void print_text(const WorldInfo& info, const NotDrawn& not_drawn,

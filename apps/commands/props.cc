@@ -23,7 +23,7 @@ int list_props(const Globals& globals) {
                       {"size", {p.size.x, p.size.y, p.size.z}},
                       {"mass", p.mass},
                       {"loose", p.loose}});
-    fmt::print("{}\n", json.dump(2));
+    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
     return 0;
   }
   size_t width = 4;

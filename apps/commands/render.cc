@@ -64,7 +64,8 @@ int render(const RenderCommand& command_line, const Globals& globals) {
         std::printf("%s\n", file.string().c_str());
     }
   }
-  if (globals.json) std::printf("%s\n", json.dump(2).c_str());
+  if (globals.json)
+    std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
   return 0;
 }
 

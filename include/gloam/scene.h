@@ -200,7 +200,9 @@ struct VisualOptions {
   std::string node = {};            ///< name of a node of the file; empty = all of it
   std::string body = {};            ///< full name of the body it is fixed to; empty = world
   Pose X_BV = {};                   ///< where it is in that body
-  Vec3 scale = {1, 1, 1};    ///< along the visual's axes, after `up`; > 0; one number for all three
+  Vec3 scale = {
+      1, 1,
+      1};  ///< along the visual's axes, after `up`; not 0, < 0 mirrors; one number for all three
   std::string up = "auto";   ///< y | z: axis of the file that points up; auto = y of glTF, else z
   double unit = 1;           ///< [m] of one unit of the file
   bool casts_shadow = true;  ///< false: light passes through it

@@ -148,7 +148,7 @@ struct ObjectOptions {
   std::string node =
       {};          ///< name of a node of the file, the second of a name is NAME_2; empty = all
   Pose X_WO = {};  ///< where the file's origin is in the world
-  Vec3 scale = {1, 1, 1};   ///< after `up`; > 0; one number for all three
+  Vec3 scale = {1, 1, 1};   ///< after `up`; not 0, < 0 mirrors; one number for all three
   std::string up = "auto";  ///< y | z: axis of the file that points up; auto = y of glTF, else z
   double unit = 1;          ///< [m] of one unit of the file
   std::string motion = "dynamic";   ///< static | dynamic | mocap
@@ -168,7 +168,7 @@ struct HeightFieldOptions {
   std::string name = {};            ///< unique; of its geom
   std::filesystem::path file = {};  ///< glTF, GLB, OBJ, STL or PLY, relative to the scene file
   Pose X_WF = {};                   ///< where the file's origin is in the world
-  Vec3 scale = {1, 1, 1};           ///< after `up`; > 0; one number for all three
+  Vec3 scale = {1, 1, 1};           ///< after `up`; not 0, < 0 mirrors; one number for all three
   std::string up = "auto";  ///< y | z: axis of the file that points up; auto = y of glTF, else z
   double unit = 1;          ///< [m] of one unit of the file
   /// Corners x, y of what is sampled, in the world [m]; empty = all of it.

@@ -1,6 +1,10 @@
 #include "base/plain_text.h"
 
+#include <array>
+#include <cstring>
+
 #include "base/files.h"
+#include "base/text.h"
 
 namespace gloam {
 namespace {
@@ -45,6 +49,46 @@ std::string from_utf16(std::string_view bytes, bool is_big) {
   return out;
 }
 
+// Code points of the bytes 0x80 to 0x9F (WHATWG Encoding Standard, windows-1252); those from 0xA0
+// on are their own.
+constexpr std::array<uint16_t, 32> kWindows1252 = {
+    0x20AC, 0x0081, 0x201A, 0x0192, 0x201E, 0x2026, 0x2020, 0x2021, 0x02C6, 0x2030, 0x0160,
+    0x2039, 0x0152, 0x008D, 0x017D, 0x008F, 0x0090, 0x2018, 0x2019, 0x201C, 0x201D, 0x2022,
+    0x2013, 0x2014, 0x02DC, 0x2122, 0x0161, 0x203A, 0x0153, 0x009D, 0x017E, 0x0178};
+
+/// Length of the part at the front that is UTF-8.
+size_t utf8_part(std::string_view text) {
+  size_t at = 0;
+  while (at < text.size()) {
+    uint64_t eight = 0;
+    while (at + 8 <= text.size()) {  // ASCII
+      std::memcpy(&eight, text.data() + at, 8);
+      if ((eight & 0x8080808080808080U) != 0) break;
+      at += 8;
+    }
+    if (at == text.size()) break;
+    const size_t length = utf8_length(text.substr(at));
+    if (length == 0) break;
+    at += length;
+  }
+  return at;
+}
+
+std::string from_windows_1252(std::string_view text) {
+  std::string out;
+  out.reserve(text.size() + text.size() / 16);
+  while (!text.empty()) {
+    const size_t valid = utf8_part(text);
+    out += text.substr(0, valid);
+    text.remove_prefix(valid);
+    if (text.empty()) break;
+    const auto byte = static_cast<uint8_t>(text.front());
+    append_utf8(byte < 0xA0 ? kWindows1252[byte - 0x80U] : byte, &out);
+    text.remove_prefix(1);
+  }
+  return out;
+}
+
 bool has_old_line_ends(std::string_view text) {
   return text.find('\r') != std::string_view::npos && text.find('\n') == std::string_view::npos &&
          text.find('\r') + 1 < text.size();
@@ -67,8 +111,12 @@ Result<std::optional<std::string>> plain_text(std::string_view bytes, const std:
     text = owned;
   }
   while (!text.empty() && (text.back() == '\0' || text.back() == '\x1A')) text.remove_suffix(1);
+  if (utf8_part(text) < text.size()) {
+    owned = from_windows_1252(text);
+    text = owned;
+  }
   const bool is_old = has_old_line_ends(text);
-  if (text.size() == bytes.size() && !is_old) return std::optional<std::string>();
+  if (owned.empty() && text.size() == bytes.size() && !is_old) return std::optional<std::string>();
   std::string out(text);
   if (is_old)
     for (char& c : out)

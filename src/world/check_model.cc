@@ -6,6 +6,7 @@
 #include <csignal>
 #include <cstring>
 
+#include "base/text.h"
 #include "scene/mujoco_guard.h"
 #include "scene/mujoco_plugins.h"
 #include "world/export_mjcf.h"
@@ -66,6 +67,17 @@ uint64_t bytes_below(const fs::path& folder) {
   return bytes;
 }
 
+// Stock MuJoCo keeps the bytes of names of files in other encodings; here they are UTF-8.
+bool names_are_utf8(const mjModel& model) {
+  const std::string_view names(model.names, static_cast<size_t>(model.nnames));
+  return as_utf8(names) == names;
+}
+
+bool is_of_names(const std::string& field) {
+  return field == "names" || field == "nnames" || field == "names_map" ||
+         field.starts_with("name_");
+}
+
 bool is_read_by_stock(const fs::path& file) { return file.extension() != ".toml"; }
 
 }  // namespace
@@ -93,7 +105,10 @@ ModelCheck check_model(const fs::path& file, const FileAccess& access, const fs:
   if (is_read_by_stock(file)) {
     const Result<ModelPtr> stock = load_stock_model(file);
     check.stock_refusal = stock.ok() ? "" : one_line(stock.error().message);
-    if (stock.ok()) check.unlike_stock = compare_models(stock->get(), compiled.model.get());
+    if (stock.ok()) {
+      check.unlike_stock = compare_models(stock->get(), compiled.model.get());
+      if (!names_are_utf8(**stock)) std::erase_if(check.unlike_stock, is_of_names);
+    }
   }
   const Result<ExportedModel> exported = write_mjcf(compiled, folder);
   if (!exported.ok()) {

@@ -47,6 +47,21 @@ class Help(ProgramTest):
         self.assertIn("render", answer.stdout, answer.stderr)
 
 
+class Encodings(ProgramTest):
+    """Files in Windows-1252, as editors there write them without being asked."""
+
+    def test_names_are_utf8_in_all_that_comes_out(self):
+        (self.folder / "m.xml").write_bytes("<?xml version='1.0' encoding='ISO-8859-1'?><mujoco><worldbody><light pos='0 0 3'/><body name='M\u00fcller'><freejoint/>"
+                                            "<geom name='r\u00e4d' size='.1'/></body></worldbody></mujoco>".encode("latin-1"))
+        (self.folder / "s.toml").write_bytes("[[robot]]\nname = 'k\u00fcche'\nfile = 'm.xml'\n".encode("latin-1"))
+        self.assertIn("M\u00fcller", self.gloam("info", "m.xml", "--json").stdout)
+        self.assertIn("k\u00fcche/M\u00fcller", self.gloam("info", "s.toml", "--json").stdout)
+        self.gloam("run", "s.toml", "--duration", "0.01", "--output", "segmentation,state", "--resolution", "8x8", "--spp", "1", "--out", "r")
+        self.assertIn("k\u00fcche/M\u00fcller", (self.folder / "r" / "labels.json").read_text(encoding="utf-8"))
+        self.assertIn("k\u00fcche/M\u00fcller", (self.folder / "r" / "state.csv").read_text(encoding="utf-8"))
+        self.assertIn("passed", self.gloam("check", "m.xml", "s.toml").stdout)
+
+
 class Cache(ProgramTest):
     def test_lists_and_clears_what_it_keeps(self):
         obj = self.write("m.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")

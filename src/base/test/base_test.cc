@@ -8,6 +8,7 @@
 #include "base/files.h"
 #include "base/hash.h"
 #include "base/parallel.h"
+#include "base/plain_text.h"
 #include "base/rng.h"
 #include "base/text.h"
 #include "base/vec.h"
@@ -15,6 +16,23 @@
 
 namespace gloam {
 namespace {
+
+TEST(PlainText, TakesWhatIsNotUtf8ForWindows1252) {
+  const auto plain = [](std::string_view bytes) {
+    const auto text = plain_text(bytes, "f");
+    EXPECT_TRUE(text.ok());
+    return text.ok() && *text ? **text : std::string(bytes);
+  };
+  EXPECT_EQ(plain("<body name='M\xFCller'/>"), "<body name='M\u00FCller'/>");
+  EXPECT_EQ(plain("5 \x80, \x93quoted\x94, \x81"), "5 \u20AC, \u201Cquoted\u201D, \u0081");
+  EXPECT_EQ(plain("M\u00FCller, \u20AC and \xE4 in one line, longer than eight bytes"),
+            "M\u00FCller, \u20AC and \u00E4 in one line, longer than eight bytes");
+  EXPECT_EQ(plain("\xEF\xBB\xBFr\xE4"), "r\u00E4") << "a mark before it";
+  EXPECT_EQ(plain("cut off: \xC3"), "cut off: \u00C3");
+  const auto ascii = plain_text("all of it is ASCII, \u00FC or UTF-8", "f");
+  ASSERT_TRUE(ascii.ok());
+  EXPECT_FALSE(ascii->has_value()) << "nothing was to be changed";
+}
 
 TEST(Error, NamesFileLineCauseAndWhatToDo) {
   const Error error{
