@@ -9,6 +9,7 @@
 
 #include "control/controllers.h"
 #include "geometry/single.h"
+#include "runtime/label_table.h"
 #include "runtime/pick.h"
 
 namespace gloam {
@@ -189,24 +190,9 @@ std::vector<std::string> LiveSimulation::camera_names() const {
   return names;
 }
 
-std::vector<LabelIds> ids_of_labels(const RenderDescription& description) {
-  std::vector<LabelIds> ids;
-  for (const InstanceDescription& instance : description.instances)
-    ids.push_back({instance.geom, instance.body});
-  return ids;
-}
-
 Result<std::vector<LabelRow>> LiveSimulation::labels() {
   GLOAM_TRY(auto shared, renderer());
-  std::vector<LabelRow> rows;
-  for (const InstanceDescription& instance : shared->description.instances)
-    if (!instance.color_only) rows.push_back(instance.label);
-  return rows;
-}
-
-Result<std::vector<LabelIds>> LiveSimulation::label_ids() {
-  GLOAM_TRY(auto shared, renderer());
-  return ids_of_labels(shared->description);
+  return label_rows(shared->description).rows;
 }
 
 // Returns the World of the instant.

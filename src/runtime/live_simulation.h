@@ -7,16 +7,12 @@
 #include <optional>
 
 #include "gloam/simulation.h"
-#include "record/recorder.h"
 #include "runtime/exposure_meter.h"
 #include "runtime/live_camera.h"
 #include "runtime/live_lidar.h"
 #include "runtime/live_sensors.h"
 
 namespace gloam {
-
-/// MuJoCo's ids of the rows of a label table.
-std::vector<LabelIds> ids_of_labels(const RenderDescription& description);
 
 /// Whether automatic exposures go on while nobody opens their cameras, which takes rendering.
 enum class Metering : uint8_t { kAlways, kNever };
@@ -61,8 +57,6 @@ class LiveSimulation final : public Simulation {
   /// All sensors of the model in one stream.
   Result<std::unique_ptr<LiveSensors>> open_all_sensors(bool required, SensorCallback on_message);
   const ExposureMeters& meters() const { return meters_; }
-  /// MuJoCo's ids of the rows of labels().
-  Result<std::vector<LabelIds>> label_ids();
   Result<std::unique_ptr<LiveLidar>> open_live_lidar(const LidarRequest& request,
                                                      ScanCallback on_scan);
 

@@ -18,6 +18,7 @@
 #include "gloam/run.h"
 #include "record/frame_files.h"
 #include "record/recorder.h"
+#include "runtime/label_table.h"
 #include "runtime/live_simulation.h"
 #include "runtime/robot_metrics.h"
 #include "runtime/run_to_step.h"
@@ -259,8 +260,9 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
     GLOAM_TRY_STATUS(check_memory(memory, fmt::format("recording {} camera(s)", requests.size()),
                                   "lower the resolution or record fewer cameras"));
     if (pictures) {
-      GLOAM_TRY(info.labels, simulation->labels());
-      GLOAM_TRY(info.label_ids, simulation->label_ids());
+      LabelTableRows labels = label_rows(shared->description);
+      info.labels = std::move(labels.rows);
+      info.label_ids = std::move(labels.ids);
     }
     info.metric_columns = metrics.columns();
     if (state) info.state_columns = state->columns();

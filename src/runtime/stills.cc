@@ -15,6 +15,7 @@
 #include "record/frame_files.h"
 #include "record/run_files.h"
 #include "record/run_folder.h"
+#include "runtime/label_table.h"
 #include "runtime/live_simulation.h"
 #include "runtime/run_to_step.h"
 
@@ -145,11 +146,9 @@ Result<std::vector<StillFiles>> write_stills(const World& world,
   GLOAM_TRY_STATUS(write_text_file_atomic(folder / "cameras.json", cameras_json(cameras, taken)));
   if (!has_ids) return written;
   GLOAM_TRY(const RenderDescription description, describe_for_rendering(*world.compiled()));
-  std::vector<LabelRow> labels;
-  for (const InstanceDescription& instance : description.instances)
-    labels.push_back(instance.label);
-  GLOAM_TRY_STATUS(write_text_file_atomic(folder / "labels.json",
-                                          labels_json(labels, ids_of_labels(description))));
+  const LabelTableRows labels = label_rows(description);
+  GLOAM_TRY_STATUS(
+      write_text_file_atomic(folder / "labels.json", labels_json(labels.rows, labels.ids)));
   return written;
 }
 

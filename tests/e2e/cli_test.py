@@ -47,6 +47,17 @@ class Help(ProgramTest):
         self.assertIn("render", answer.stdout, answer.stderr)
 
 
+class Labels(ProgramTest):
+    def test_stills_have_the_table_of_recordings_without_what_ids_do_not_show(self):
+        model = self.write("m.xml", "<mujoco><worldbody><body name='b' pos='0 0 .2'><freejoint/><geom name='g' size='.1'/><site name='mark'/></body></worldbody></mujoco>")
+        small = ["--camera", "free", "--output", "segmentation", "--sites", "--resolution", "16x16", "--spp", "1"]
+        self.gloam("run", model, *small, "--duration", "0.01", "--out", "r")
+        self.gloam("render", model, *small, "--out", "s")
+        recorded, still = (json.loads((self.folder / folder / "labels.json").read_text()) for folder in "rs")
+        self.assertEqual(still, recorded)
+        self.assertEqual([(row["geom"], row["geom_id"], row["body_id"]) for row in still["parts"]], [("g", 0, 1)])
+
+
 class Encodings(ProgramTest):
     """Files in Windows-1252, as editors there write them without being asked."""
 
