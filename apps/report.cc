@@ -1,5 +1,7 @@
 #include "report.h"
 
+#include "json_text.h"
+
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -23,7 +25,7 @@ int run_and_report(const World& world, const RunRequest& request, const Globals&
         {"frames", report->frames},
         {"written", report->written},
         {"error", report->status.ok() ? "" : report->status.error().to_string()}};
-    std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    std::printf("%s\n", json_text(json).c_str());
   } else {
     std::printf("simulated %.3f s in %.1f s (%.2f x real time), %lld steps, state hash %016llx\n",
                 report->sim_time, report->wall_time, factor, static_cast<long long>(report->steps),

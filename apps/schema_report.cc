@@ -9,6 +9,7 @@
 
 #include "gloam/mjcf.h"
 #include "interrupt.h"
+#include "json_text.h"
 
 namespace gloam::cli {
 namespace {
@@ -51,7 +52,7 @@ void print_json(const SchemaCoverage& coverage, const Count& attributes, const C
   }
   Json& by_attribute = json["attribute_fields"] = Json::object();
   for (const auto& attribute : coverage.attributes) by_attribute[attribute.name] = attribute.fields;
-  fmt::print("{}\n", json.dump(1, ' ', false, nlohmann::json::error_handler_t::replace));
+  fmt::print("{}\n", json_text(json, 1));
 }
 
 // "mujoco/actuator/motor/gear" of thirty elements as "gear of actuator/motor, actuator/position …".

@@ -8,6 +8,7 @@
 
 #include "command.h"
 #include "gloam/program.h"
+#include "json_text.h"
 
 namespace gloam::cli {
 namespace {
@@ -59,7 +60,7 @@ int list(const Globals& globals) {
                  {"limit_bytes", info->limit_bytes},
                  {"kinds", Json::array()}};
     for (const CacheKind& kind : info->kinds) json["kinds"].push_back(as_json(kind));
-    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}\n", json_text(json));
     return 0;
   }
   fmt::print("{}: {} of at most {}\n", info->folder.string(), mebibytes(bytes),
@@ -84,7 +85,7 @@ int clear(const std::string& which, const Globals& globals) {
     if (!globals.json)
       fmt::print("{}: {} removed, {}\n", kind.name, entries_of(kind), mebibytes(kind.bytes));
   }
-  if (globals.json) fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+  if (globals.json) fmt::print("{}\n", json_text(json));
   return 0;
 }
 

@@ -10,6 +10,7 @@
 
 #include "command.h"
 #include "interrupt.h"
+#include "json_text.h"
 
 namespace gloam::cli {
 namespace {
@@ -121,7 +122,7 @@ int check(const CheckCommand& command, const Globals& globals) {
   const size_t count = command.files.size();
   if (globals.json) {
     const Json json = {{"models", models}, {"passed", passed}, {"failed", count - passed}};
-    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}\n", json_text(json));
   } else if (count > 1) {
     fmt::print("{} of {} passed\n", passed, count);
   }

@@ -10,6 +10,7 @@
 #include "command.h"
 #include "gloam/world.h"
 #include "interrupt.h"
+#include "json_text.h"
 
 namespace gloam::cli {
 namespace {
@@ -78,7 +79,7 @@ int convert(ConvertCommand command, const Globals& globals) {
                                          {"max_distance", r.max_distance},
                                          {"seconds", r.seconds},
                                          {"notes", r.notes}};
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", json_text(json));
     return 0;
   }
   fmt::print("mesh       {} triangles, {}, {:.3g} x {:.3g} x {:.3g} m\n", r.triangles,

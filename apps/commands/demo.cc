@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "gloam/program.h"
+#include "json_text.h"
 #include "report.h"
 #include "run_options.h"
 
@@ -102,7 +103,7 @@ int demo_adversity(const DemoCommand& command, const Globals& globals) {
     }
   }
   if (globals.json) {
-    std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    std::printf("%s\n", json_text(json).c_str());
   } else {
     std::fprintf(stderr, "gloam: videos of both places are in %s\n", request.out.string().c_str());
   }

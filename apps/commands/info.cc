@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "json_text.h"
 #include "run_options.h"
 #include "schema_report.h"
 
@@ -55,7 +56,7 @@ void print_json(const WorldInfo& info, const NotDrawn& not_drawn,
                       {"hint", error.hint}});
     }
   }
-  std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  std::printf("%s\n", json_text(json).c_str());
 }
 
 void print_text(const WorldInfo& info, const NotDrawn& not_drawn,

@@ -7,6 +7,7 @@
 
 #include "command.h"
 #include "gloam/scene.h"
+#include "json_text.h"
 
 namespace gloam::cli {
 namespace {
@@ -23,7 +24,7 @@ int list_props(const Globals& globals) {
                       {"size", {p.size.x, p.size.y, p.size.z}},
                       {"mass", p.mass},
                       {"loose", p.loose}});
-    fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace));
+    fmt::print("{}\n", json_text(json));
     return 0;
   }
   size_t width = 4;

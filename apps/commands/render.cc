@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "json_text.h"
 #include "run_options.h"
 
 namespace gloam::cli {
@@ -64,8 +65,7 @@ int render(const RenderCommand& command_line, const Globals& globals) {
         std::printf("%s\n", file.string().c_str());
     }
   }
-  if (globals.json)
-    std::printf("%s\n", json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+  if (globals.json) std::printf("%s\n", json_text(json).c_str());
   return 0;
 }
 

@@ -273,10 +273,9 @@ void Driver::follow_drag() {
   pull(true);
 }
 
-Status Driver::open_camera(const std::string& wanted) {
-  const std::string name = wanted;  // it may be camera_ itself
+Status Driver::open_camera(std::string name) {
   if (name != camera_) full_width_ = full_height_ = 0;
-  const std::string before = std::exchange(camera_, name);
+  const std::string before = std::exchange(camera_, std::move(name));
   const Status status = open_stream(full_width_ > 0 ? scale_.scale() : 1);
   if (!status.ok()) camera_ = before;
   return status;

@@ -84,7 +84,7 @@ class Driver {
   void do_message(int64_t client, const DragMoveMessage& message);
   void do_message(int64_t client, const DragEndMessage&);
 
-  Status open_camera(const std::string& name);
+  Status open_camera(std::string name);
   void close_camera();
   void keep_camera();
   void follow_pictures();

@@ -20,11 +20,9 @@ Result<std::vector<LidarDescription>> describe_lidars(const CompiledWorld& world
           fmt::format("lidar '{}': there is no body '{}'", options.name, options.body), options.loc,
           suggest_name(options.body, object_names(m, mjOBJ_BODY, static_cast<int>(m->nbody)))};
     }
-    std::vector<uint8_t> hidden;
-    if (!options.hide.empty()) {
-      GLOAM_TRY(hidden, hidden_bodies(*m, options.hide, fmt::format("lidar '{}'", options.name),
-                                      options.loc));
-    }
+    GLOAM_TRY(
+        std::vector<uint8_t> hidden,
+        hidden_bodies(*m, options.hide, fmt::format("lidar '{}'", options.name), options.loc));
     lidars.push_back({options, body, {options.position, options.orientation}, std::move(hidden)});
   }
   return lidars;

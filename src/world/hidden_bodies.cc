@@ -10,6 +10,7 @@ namespace gloam {
 Result<std::vector<uint8_t>> hidden_bodies(const mjModel& model,
                                            const std::vector<std::string>& patterns,
                                            const std::string& owner, const SourceLoc& loc) {
+  if (patterns.empty()) return std::vector<uint8_t>();
   const int count = static_cast<int>(model.nbody);
   std::vector<uint8_t> bodies(static_cast<size_t>(count));
   for (const std::string& pattern : patterns) {

@@ -10,7 +10,7 @@
 
 namespace gloam {
 
-/// By body: whether it or one above it fits one of the patterns. `owner`,
+/// By body: whether it or one above it fits one of the patterns; empty = there are none. `owner`,
 /// `loc`: who hides them, for errors. Errors: a pattern that fits none.
 Result<std::vector<uint8_t>> hidden_bodies(const mjModel& model,
                                            const std::vector<std::string>& patterns,

@@ -8,7 +8,7 @@
 namespace gloam {
 
 /// Shadow rays of a sample in scenes with a light tree, which takes as many lights. Their draws are
-/// stratified; each ray beyond the second costs more than a whole sample's surface and gains less.
+/// stratified: one light in each half of the tree's weight.
 inline constexpr uint32_t kTreeShadows = 2;
 
 struct DirectState {

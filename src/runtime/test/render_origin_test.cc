@@ -114,8 +114,7 @@ TEST(RenderOrigin, PicturesAreAsAtTheOrigin) {
     ASSERT_EQ(a.objects.size(), b.objects.size());
     for (size_t i = 0; i < a.objects.size(); ++i) {
       if (a.objects[i].endless) continue;
-      EXPECT_NEAR(b.objects[i].X_WO.p.x - a.objects[i].X_WO.p.x,
-                  a.objects[i].X_WO.p.x == 0 && b.objects[i].X_WO.p.x == 0 ? 0 : kMap.x, 1e-5);
+      EXPECT_NEAR(b.objects[i].X_WO.p.x - a.objects[i].X_WO.p.x, kMap.x, 1e-5);
     }
   }
 }

@@ -1,4 +1,4 @@
-// What cameras and LiDARs do not see: near planes, backs of surfaces, hidden bodies.
+// Near planes, backs of surfaces and hidden bodies, which cameras and LiDARs do not see.
 
 #include <gmock/gmock.h>
 
