@@ -23,6 +23,10 @@ Result<Image8> read_image(const std::filesystem::path& path) {
 
 Result<ImageF> decode_float_image(std::span<const uint8_t> bytes, const std::string& name,
                                   uint64_t max_pixels) {
+  // An HDR's head is text, and some editors put a byte-order mark before a text.
+  const bool is_marked =
+      bytes.size() >= 3 && bytes[0] == 0xEF && bytes[1] == 0xBB && bytes[2] == 0xBF;
+  if (is_marked) bytes = bytes.subspan(3);
   if (bytes.size() >= 2 && bytes[0] == '#' && bytes[1] == '?')
     return decode_hdr(bytes, name, max_pixels);
   GLOAM_TRY(const ExrImage exr, decode_exr(bytes, name, 4 * max_pixels));

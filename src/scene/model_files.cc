@@ -327,6 +327,24 @@ Status ModelFiles::set_spec_only(const fs::path& file, mjSpec* spec) const {
   return {};
 }
 
+SourceLoc ModelFiles::find_setting(const fs::path& model, const std::string& element,
+                                   const std::string& attribute) const {
+  const fs::path path = absolute_path(model, "");
+  const auto scan = scans_.find(path);
+  const auto content = contents_.find(path);
+  if (scan == scans_.end() || content == contents_.end()) return {};
+  const int line = attribute.empty() ? line_of_element(*content->second, element)
+                                     : line_of_element_with(*content->second, element, {attribute});
+  if (line > 0) return written_at({path.string(), line, 0});
+  for (const FileReference& reference : scan->second.references) {
+    if (reference.element != "include") continue;
+    const SourceLoc found =
+        find_setting(absolute_path(reference.value, path.parent_path()), element, attribute);
+    if (found.line > 0) return found;
+  }
+  return {};
+}
+
 SourceLoc ModelFiles::find_reference(const fs::path& path) const {
   SourceLoc best;
   size_t best_tail = 0;

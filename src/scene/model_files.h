@@ -76,6 +76,11 @@ class ModelFiles {
   Error explain(const std::string& message, const std::filesystem::path& model) const;
   void forget_failures();
 
+  /// Where a model, or else what it includes, first has an element with this attribute (any, if
+  /// empty); line 0 where none has.
+  SourceLoc find_setting(const std::filesystem::path& model, const std::string& element,
+                         const std::string& attribute) const;
+
   /// In the order of first use.
   std::vector<Dependency> dependencies() const;
 

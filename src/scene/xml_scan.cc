@@ -216,6 +216,19 @@ bool has_element_at(std::string_view text, std::string_view name, int line) {
   return found;
 }
 
+int line_of_element(std::string_view text, std::string_view name) {
+  pugi::xml_document document;
+  if (!parse_xml(text, "", pugi::parse_default, &document).ok()) return 0;
+  const XmlLines lines(text);
+  int line = 0;
+  walk(document, [&](const pugi::xml_node& node, int) {
+    if (name != node.name()) return true;
+    line = lines.at(node.offset_debug());
+    return false;
+  });
+  return line;
+}
+
 int line_of_element_with(std::string_view text, std::string_view name,
                          const std::vector<std::string>& words) {
   pugi::xml_document document;

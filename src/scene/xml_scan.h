@@ -39,6 +39,9 @@ Result<XmlScan> scan_model_xml(std::string_view text, const std::string& file);
 /// Is there an element `name` (any, if empty) that starts in line `line`?
 bool has_element_at(std::string_view text, std::string_view name, int line);
 
+/// Line of the first element `name`; 0 = none.
+int line_of_element(std::string_view text, std::string_view name);
+
 /// Line of the first element `name` (any, if empty) with an attribute whose name or value is one of
 /// `words`; 0 = none.
 int line_of_element_with(std::string_view text, std::string_view name,

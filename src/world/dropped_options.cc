@@ -53,7 +53,7 @@ class SettingsComparison {
     mj_defaultVisual(&usual_.visual);
   }
 
-  std::vector<std::string> run() {
+  std::vector<DroppedSetting> run() {
 #define X(type, name, count) \
   compare(#name, &own_.option.name, &level_.option.name, &usual_.option.name, count);
 #define XVEC(type, name, count) \
@@ -84,16 +84,18 @@ class SettingsComparison {
     if (name.ends_with("flags")) return;  // bit by bit
     if (std::equal(own, own + count, level)) return;
     if (std::equal(own, own + count, usual) && !given_.contains(std::string(name))) return;
-    dropped_.push_back(fmt::format("{} {}, the level has {}", name, text_of(name, own, count),
-                                   text_of(name, level, count)));
+    dropped_.push_back({fmt::format("{} {}, the level has {}", name, text_of(name, own, count),
+                                    text_of(name, level, count)),
+                        "option", std::string(name)});
   }
 
   void compare_flags(int own, int level, const FlagNames& flags) {
     for (int i = 0; i < flags.count; ++i) {
       const int bit = 1 << i;
       if ((own & bit) == 0 || (level & bit) != 0) continue;
-      dropped_.push_back(fmt::format("flag {} {}, the level has {}", lower(flags.names[i]),
-                                     flags.own, flags.level));
+      const std::string name = lower(flags.names[i]);
+      dropped_.push_back({fmt::format("flag {} {}, the level has {}", name, flags.own, flags.level),
+                          "flag", name});
     }
   }
 
@@ -101,19 +103,19 @@ class SettingsComparison {
   void compare_group(const char* name, const Group& own, const Group& level, const Group& usual) {
     if (std::memcmp(&own, &level, sizeof(Group)) == 0) return;
     if (std::memcmp(&own, &usual, sizeof(Group)) == 0) return;
-    dropped_.push_back(fmt::format("visual/{} is not the level's", name));
+    dropped_.push_back({fmt::format("visual/{} is not the level's", name), name, ""});
   }
 
   const ModelSettings &own_, &level_;
   ModelSettings usual_;
   const std::set<std::string>& given_;
-  std::vector<std::string> dropped_;
+  std::vector<DroppedSetting> dropped_;
 };
 
 }  // namespace
 
-std::vector<std::string> dropped_settings(const ModelSettings& own, const ModelSettings& level,
-                                          const std::set<std::string>& given) {
+std::vector<DroppedSetting> dropped_settings(const ModelSettings& own, const ModelSettings& level,
+                                             const std::set<std::string>& given) {
   return SettingsComparison(own, level, given).run();
 }
 

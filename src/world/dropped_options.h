@@ -18,10 +18,16 @@ struct ModelSettings {
   static ModelSettings of(const mjSpec& spec) { return {spec.option, spec.visual}; }
 };
 
-/// Settings that the file `own` gives and the level does not have, one sentence each, as
-/// "integrator implicitfast, the level has Euler". What `own` has by default is not given, unless
-/// its name is one of `given`.
-std::vector<std::string> dropped_settings(const ModelSettings& own, const ModelSettings& level,
-                                          const std::set<std::string>& given);
+/// One setting that is lost.
+struct DroppedSetting {
+  std::string text;       ///< "integrator implicitfast, the level has Euler"
+  std::string element;    ///< of MJCF: "option", "flag", "headlight" …
+  std::string attribute;  ///< "" = any of the element's
+};
+
+/// Settings that the file `own` gives and the level does not have. What `own` has by default is not
+/// given, unless its name is one of `given`.
+std::vector<DroppedSetting> dropped_settings(const ModelSettings& own, const ModelSettings& level,
+                                             const std::set<std::string>& given);
 
 }  // namespace gloam

@@ -130,13 +130,16 @@ std::set<std::string> settings_told(mjSpec* spec, int first) {
   return names;
 }
 
-void report_dropped(const LevelRobot& robot, const mjSpec& level, std::vector<Error>* unsupported) {
+void report_dropped(const LevelRobot& robot, const mjSpec& level, const ModelFiles& files,
+                    std::vector<Error>* unsupported) {
   const RobotOptions& o = robot.options;
   const SourceLoc loc = o.loc.file.empty() ? SourceLoc{o.file.string(), 0, 0} : o.loc;
-  for (const std::string& setting :
+  for (const DroppedSetting& setting :
        dropped_settings(robot.settings, ModelSettings::of(level), robot.settings_told)) {
+    const SourceLoc own = files.find_setting(o.file, setting.element, setting.attribute);
     unsupported->push_back({ErrorKind::kUnsupported,
-                            fmt::format("robot '{}' gives {}", o.name, setting), loc,
+                            fmt::format("robot '{}' gives {}", o.name, setting.text),
+                            own.line > 0 ? own : loc,
                             "the level has one value for all robots; set it in the environment"});
   }
 }
@@ -264,7 +267,7 @@ Result<Level> assemble(const Scene& scene, const std::optional<Place>& place,
     GLOAM_TRY_STATUS(attach_robot(level.spec.get(), &level.robots.back(), files));
   }
   for (const LevelRobot& robot : level.robots)
-    report_dropped(robot, *level.spec, &level.unsupported);
+    report_dropped(robot, *level.spec, *files, &level.unsupported);
   if (scene.sim.timestep) level.spec->option.timestep = *scene.sim.timestep;
   return level;
 }

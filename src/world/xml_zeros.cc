@@ -1,6 +1,7 @@
 #include "world/xml_zeros.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
@@ -29,6 +30,8 @@ bool is_of_number(char c) { return (c >= '0' && c <= '9') || std::strchr("+-.e",
 }  // namespace
 
 NegativeZeros::NegativeZeros(mjSpec* spec) {
+  // Orientations first: a mark among Euler angles would reach every component of the quaternion.
+  resolve_orientations(spec);
   const auto mark = [&](auto* value, auto number) {
     if (!is_negative_zero(static_cast<double>(*value))) return;
     *value = number;
@@ -48,6 +51,45 @@ NegativeZeros::NegativeZeros(mjSpec* spec) {
   }
 }
 
+void NegativeZeros::resolve_orientations(mjSpec* spec) {
+  const auto each = [&](mjtObj type, auto&& f) {
+    for (mjsElement* e = mjs_firstElement(spec, type); e != nullptr; e = mjs_nextElement(spec, e))
+      f(e);
+  };
+  each(mjOBJ_BODY, [&](mjsElement* e) {
+    mjsBody* body = mjs_asBody(e);
+    resolve(*mjs_getCompiler(e), body->quat, &body->alt);
+    resolve(*mjs_getCompiler(e), body->iquat, &body->ialt);
+  });
+  each(mjOBJ_FRAME, [&](mjsElement* e) {
+    resolve(*mjs_getCompiler(e), mjs_asFrame(e)->quat, &mjs_asFrame(e)->alt);
+  });
+  each(mjOBJ_GEOM, [&](mjsElement* e) {
+    resolve(*mjs_getCompiler(e), mjs_asGeom(e)->quat, &mjs_asGeom(e)->alt);
+  });
+  each(mjOBJ_SITE, [&](mjsElement* e) {
+    resolve(*mjs_getCompiler(e), mjs_asSite(e)->quat, &mjs_asSite(e)->alt);
+  });
+  each(mjOBJ_CAMERA, [&](mjsElement* e) {
+    resolve(*mjs_getCompiler(e), mjs_asCamera(e)->quat, &mjs_asCamera(e)->alt);
+  });
+}
+
+void NegativeZeros::resolve(const mjsCompiler& compiler, double* quat, mjsOrientation* alt) {
+  if (alt->type == mjORIENTATION_QUAT) return;
+  std::array<double, 4> resolved;
+  if (mjs_resolveOrientation(resolved.data(), compiler.degree, compiler.eulerseq, alt) != nullptr)
+    return;  // the compiler says what is wrong with it
+  std::array<double, 4> before;
+  std::copy_n(quat, 4, before.begin());
+  restore_.emplace_back([=, type = alt->type] {
+    std::copy(before.begin(), before.end(), quat);
+    alt->type = type;
+  });
+  std::copy(resolved.begin(), resolved.end(), quat);
+  alt->type = mjORIENTATION_QUAT;
+}
+
 void NegativeZeros::mark_vector(mjDoubleVec* values) {
   int size = 0;
   const double* data = values != nullptr ? mjs_getDouble(values, &size) : nullptr;
@@ -61,7 +103,10 @@ void NegativeZeros::mark_vector(mjDoubleVec* values) {
 }
 
 NegativeZeros::~NegativeZeros() {
-  for (const auto& restore : restore_) restore();
+  while (!restore_.empty()) {  // the last change first
+    restore_.back()();
+    restore_.pop_back();
+  }
 }
 
 Status NegativeZeros::write_signs(const std::filesystem::path& file) {

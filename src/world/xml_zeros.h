@@ -25,6 +25,8 @@ class NegativeZeros {
   static Status write_signs(const std::filesystem::path& file);
 
  private:
+  void resolve_orientations(mjSpec* spec);
+  void resolve(const mjsCompiler& compiler, double* quat, mjsOrientation* alt);
   void mark_vector(mjDoubleVec* values);
 
   std::vector<std::function<void()>> restore_;

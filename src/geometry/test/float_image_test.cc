@@ -52,6 +52,24 @@ TEST(Hdr, ExposureAndRowOrderCount) {
   EXPECT_THAT(image->texels, ElementsAre(0, 0, 0, 1, 0, 0.5f));
 }
 
+// Heads as cameras, Windows editors and other programs write them.
+TEST(Hdr, HeadsOfOtherProgramsAreRead) {
+  const std::string texels("\x80\x00\x40\x81\x01\x02\x03\x00", 8);
+  for (const std::string& head : {
+           std::string("#?RGBE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 1\n"),
+           std::string("#?RADIANCE\r\nFORMAT=32-bit_rle_rgbe\r\n\r\n-Y 2 +X 1\r\n"),
+           std::string("#?RADIANCE\n\n-Y 2 +X 1\n"),
+           std::string(
+               "#?RADIANCE\nSOFTWARE=x\n# FORMAT=32-bit_rle_xyze\nGAMMA=1\n\n-Y  2\t+X 1\n"),
+           std::string("\xEF\xBB\xBF#?RADIANCE\nFORMAT=32-bit_rle_rgbe \n\n-Y 2 +X 1\n"),
+       }) {
+    const std::string file = head + texels;
+    const Result<ImageF> image = decode_float_image(as_bytes(file), "a.hdr");
+    ASSERT_TRUE(image.ok()) << head << image.error().to_string();
+    EXPECT_THAT(image->texels, ElementsAre(1, 0, 0.5f, 0, 0, 0)) << head;
+  }
+}
+
 TEST(Hdr, DamageIsNamed) {
   for (const HdrPacking packing : {HdrPacking::kNone, HdrPacking::kOld, HdrPacking::kNew}) {
     const std::string file = hdr_file(300, 2, some_texels(), packing);

@@ -21,9 +21,9 @@
 #include "render/cpu/light_guide.h"
 #include "render/cpu/object_cover.h"
 #include "render/cpu/particle_streaks.h"
+#include "render/cpu/picture_clip.h"
 #include "render/cpu/tile.h"
 #include "render/cpu/traced_scene.h"
-#include "render/cpu/view_clip.h"
 #include "render/cpu/watch.h"
 #include "render/cuda/cuda_stages.h"
 #include "render/scene/pose.h"
@@ -121,10 +121,10 @@ class CpuRenderer final : public Renderer {
     // What is measured before the picture, and the fast tier, know no times: mean lamps.
     const DeviceSpan<const float> levels = std::exchange(job.scene.light_levels, {});
     job.tracer = traced_.tracer();
-    ViewClip clip{job.scene, job.camera, view.near, view.culls_backs, {}};
+    PictureClip clip{job.scene, job.camera, {view.near, view.culls_backs, {}}};
     if (view.hidden != nullptr)
-      clip.hidden = {view.hidden->data(), static_cast<uint32_t>(view.hidden->size())};
-    if (!clip.is_idle()) job.tracer.clip = &clip;
+      clip.view.hidden = {view.hidden->data(), static_cast<uint32_t>(view.hidden->size())};
+    if (!clip.view.is_idle()) job.tracer.clip = &clip;
     if (settings.tier != RenderTier::kDirect) {
       if (!has_guide_) guide_.build(job.scene, traced_.static_tracer(), described_);
       has_guide_ = true;
@@ -226,8 +226,9 @@ class CpuRenderer final : public Renderer {
   RenderScene& scene() { return traced_.scene(); }
   const RenderScene& scene() const { return traced_.scene(); }
   CudaJob on_cuda(const Job& job) const {
-    return {scene(),  traced_.own(),    job.scene,      job.camera,  job.settings,
-            job.path, job.log2_samples, job.has_motion, job.centered};
+    const ViewClip clip = job.tracer.clip != nullptr ? job.tracer.clip->view : ViewClip();
+    return {scene(),      traced_.own(), job.scene,        job.camera,     clip,
+            job.settings, job.path,      job.log2_samples, job.has_motion, job.centered};
   }
 
   /// The picture by all threads.

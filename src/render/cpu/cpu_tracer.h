@@ -10,7 +10,7 @@ struct RTCSceneTy;  // Embree's RTCScene points to it
 
 namespace gloam {
 
-struct ViewClip;  // render/cpu/view_clip.h
+struct PictureClip;  // render/cpu/picture_clip.h
 
 /// A scene of Embree's and what it lies in.
 struct EmbreePart {
@@ -44,7 +44,7 @@ class CpuTracer {
   /// Of our own BVH, which then answers for all that is above.
   std::optional<BvhTracer> own;
   /// Of the camera whose picture is traced: its rays pass what it does not see. Null = none.
-  const ViewClip* clip = nullptr;
+  const PictureClip* clip = nullptr;
 
  private:
   MaskLanes closest_of_all(const RayOf<FloatLanes>& ray, MaskLanes active, bool coherent,

@@ -1,7 +1,7 @@
 // Embree or our own BVH, ray by ray or in lanes.
 
 #include "render/cpu/cpu_tracer.h"
-#include "render/cpu/view_clip.h"
+#include "render/cpu/picture_clip.h"
 
 namespace gloam {
 
@@ -42,7 +42,6 @@ MaskLanes CpuTracer::closest(const RayOf<FloatLanes>& ray, MaskLanes active, boo
 MaskLanes CpuTracer::closest_in_view(const RayOf<FloatLanes>& ray, MaskLanes active,
                                      MaskLanes first, bool coherent,
                                      RayHitOf<FloatLanes>* hit) const {
-  constexpr int kMostPassed = 64;  // surfaces, one behind the other
   RayOf<FloatLanes> rest = ray;
   FloatLanes begun = 0.0f;  // [m] from the camera
   const auto go_on = [&](int i, float way) {
@@ -50,23 +49,20 @@ MaskLanes CpuTracer::closest_in_view(const RayOf<FloatLanes>& ray, MaskLanes act
     set_lane(&rest.o, i, lane(rest.o, i) + lane(ray.d, i) * way);
     set_lane(&rest.tmax, i, lane(rest.tmax, i) - way);
   };
-  each_lane(first, [&](int i) { go_on(i, clip->start(lane(ray, i))); });
+  each_lane(first, [&](int i) { go_on(i, clip->view.start(clip->camera, lane(ray, i))); });
   MaskLanes open = active & (rest.tmax > 0.0f), found = false;
   *hit = {};
-  for (int n = 0; n < kMostPassed && any(open); ++n) {
+  for (int n = 0; n < ViewClip::kMostPassed && any(open); ++n) {
     RayHitOf<FloatLanes> one;
     const MaskLanes met = closest_of_all(rest, open, coherent && n == 0, &one);
-    const MaskLanes passed = clip->passes(rest, one, met & first);
+    const MaskLanes passed = clip->view.passes<FloatLanes>(clip->scene, rest, one, met & first);
     each_lane(met & !passed, [&](int i) {
       set_lane(hit, i, lane(one, i));
       set_lane(&hit->t, i, lane(one.t, i) + lane(begun, i));
       set_lane(&found, i, true);
     });
-    each_lane(passed, [&](int i) {
-      const Vec3f o = lane(rest.o, i);
-      const float size = max(max(fabsf(o.x), fabsf(o.y)), max(fabsf(o.z), lane(one.t, i)));
-      go_on(i, lane(one.t, i) + 1e-5f + 2e-6f * size);
-    });
+    each_lane(passed,
+              [&](int i) { go_on(i, ViewClip::step_past(lane(rest.o, i), lane(one.t, i))); });
     open = passed & (rest.tmax > 0.0f);
   }
   return found;

@@ -6,12 +6,17 @@ namespace {
 
 constexpr int kWarp = 32;
 
-/// Few paths, but with several places that trace: one function for all.
+/// Few paths, but with several places that trace: one function for all. The first ray is the
+/// camera's.
 struct CalledTracer {
-  const BvhTracer& tracer;
+  const DevicePicture& p;
+  mutable bool is_first = true;
 
   __device__ __noinline__ bool trace(const Ray& ray, bool any, RayHit* hit) const {
-    return tracer.trace(ray, any, hit);
+    const bool clips = is_first && !p.clip.is_idle();
+    is_first = false;
+    return clips ? trace_in_view(p.scene, p.tracer, p.camera, p.clip, ray, hit)
+                 : p.tracer.trace(ray, any, hit);
   }
   __device__ bool closest(const Ray& ray, bool active, bool, RayHit* hit) const {
     return active && trace(ray, false, hit);
@@ -25,8 +30,8 @@ struct CalledTracer {
 __global__ void __launch_bounds__(kWarp)
     ambient_kernel(const __grid_constant__ DevicePicture p, AmbientPath* paths) {
   const uint32_t i = blockIdx.x * kWarp + threadIdx.x;
-  paths[i] = ambient_path(p.scene, CalledTracer{p.tracer}, p.camera, p.width, p.height,
-                          p.path.max_depth, i);
+  paths[i] =
+      ambient_path(p.scene, CalledTracer{p}, p.camera, p.width, p.height, p.path.max_depth, i);
 }
 
 }  // namespace

@@ -54,7 +54,7 @@ class Card final : public CudaStages {
 
   std::vector<AmbientPath> trace_ambient(const CudaJob& job, int width, int height) override {
     DevicePicture picture = make_picture(job, width, height);
-    scene_.upload(job.view, job.camera, job.bvh, job.bvh.tracer(job.scene), stream_, &picture);
+    scene_.upload(job, stream_, &picture);
     std::vector<AmbientPath> paths(size_t{1} << kLog2AmbientPaths);
     auto* device = ambient_.reserve_of<AmbientPath>(paths.size());
     cuda::launch_ambient(picture, device, stream_);
@@ -69,10 +69,11 @@ class Card final : public CudaStages {
   RenderStats render(const CudaJob& job, Film* film) override {
     const RenderSettings& settings = job.settings;
     DevicePicture picture = make_picture(job, film->width, film->height);
-    const bool plain = job.view.is_plain() && job.camera.is_plain() && !job.has_motion;
+    const bool plain =
+        job.view.is_plain() && job.camera.is_plain() && job.clip.is_idle() && !job.has_motion;
     place_film(*film, &picture.film);
     start_.record(stream_);
-    scene_.upload(job.view, job.camera, job.bvh, job.bvh.tracer(job.scene), stream_, &picture);
+    scene_.upload(job, stream_, &picture);
     uploaded_.record(stream_);
     // The channels need no zeros: the launches write every pixel of each.
     check(cudaMemsetAsync(picture.film.rays, 0, sizeof *picture.film.rays, stream_),

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/kernel/ambient.h"
+#include "render/kernel/view_clip.h"
 #include "render/renderer.h"
 #include "render/scene/bvh_scene.h"
 
@@ -18,6 +19,7 @@ struct CudaJob {
   const BvhScene& bvh;
   SceneView view;
   CameraView32 camera;
+  ViewClip clip;
   const RenderSettings& settings;
   PathOptions path;
   uint32_t log2_samples = 0;

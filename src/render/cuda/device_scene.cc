@@ -56,12 +56,15 @@ MeshView DeviceScene::keep_mesh(const MeshView& mesh, bool deforms, Parcel* parc
   return out;
 }
 
-void DeviceScene::fill(const SceneView& scene, const CameraView32& camera, const BvhScene& bvh,
-                       const BvhTracer& tracer, Parcel* parcel, DevicePicture* picture) {
+void DeviceScene::fill(const CudaJob& job, Parcel* parcel, DevicePicture* picture) {
+  const SceneView& scene = job.view;
+  const BvhScene& bvh = job.bvh;
   SceneView& out = picture->scene;
   out = scene;
-  picture->camera = camera;
-  picture->camera.pose.keys = parcel->put(camera.pose.keys);
+  picture->camera = job.camera;
+  picture->camera.pose.keys = parcel->put(job.camera.pose.keys);
+  picture->clip = job.clip;
+  picture->clip.hidden = parcel->put(job.clip.hidden);
   std::vector<bool> deforms(scene.meshes.size);
   std::vector<InstanceView> instances(scene.instances.data,
                                       scene.instances.data + scene.instances.size);
@@ -116,6 +119,7 @@ void DeviceScene::fill(const SceneView& scene, const CameraView32& camera, const
   out.environment.row_cdf = bring(scene.environment.row_cdf);
   out.environment.column_cdf = bring(scene.environment.column_cdf);
 
+  const BvhTracer tracer = bvh.tracer(job.scene);
   BvhTracer& device = picture->tracer;
   device.bvh.instances = parcel->put(bvh.instances()).data;
   device.bvh.motion = parcel->put(bvh.motion()).data;
@@ -141,16 +145,15 @@ void DeviceScene::upload_trees(const BvhScene& bvh, Stream stream) {
   copy(bvh.triangles(), bvh.fresh_triangles(), &triangles_);
 }
 
-void DeviceScene::upload(const SceneView& scene, const CameraView32& camera, const BvhScene& bvh,
-                         const BvhTracer& tracer, Stream stream, DevicePicture* picture) {
+void DeviceScene::upload(const CudaJob& job, Stream stream, DevicePicture* picture) {
   Parcel parcel;
-  fill(scene, camera, bvh, tracer, &parcel, picture);
+  fill(job, &parcel, picture);
   const size_t bytes = parcel.used;
   parcel = {staging_.reserve(bytes), static_cast<char*>(parcel_.reserve(bytes)), 0};
-  fill(scene, camera, bvh, tracer, &parcel, picture);
+  fill(job, &parcel, picture);
   check(cudaMemcpyAsync(parcel.device, parcel.host, bytes, cudaMemcpyHostToDevice, stream),
         "the scene cannot be copied to the card");
-  upload_trees(bvh, stream);
+  upload_trees(job.bvh, stream);
   picture->tracer.bvh.nodes = static_cast<const BvhNode*>(nodes_.data());
   picture->tracer.bvh.triangles = static_cast<const BvhTriangle*>(triangles_.data());
 }

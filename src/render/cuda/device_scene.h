@@ -5,9 +5,9 @@
 #include <map>
 #include <vector>
 
+#include "render/cuda/cuda_stages.h"
 #include "render/cuda/device_memory.h"
 #include "render/cuda/kernels.h"
-#include "render/scene/bvh_scene.h"
 
 namespace gloam::cuda {
 
@@ -15,10 +15,9 @@ class DeviceScene {
  public:
   /// The host's tables of meshes have been made anew: forgets what it knows of them.
   void forget() { kept_.clear(); }
-  /// Sets the pointers of picture->scene, picture->camera and picture->tracer. The copy has been
-  /// made when the stream has come so far; until then the tables must stay as they are.
-  void upload(const SceneView& scene, const CameraView32& camera, const BvhScene& bvh,
-              const BvhTracer& tracer, Stream stream, DevicePicture* picture);
+  /// Sets picture->scene, camera, clip and tracer, with pointers of the card's. The copy has been
+  /// made when the stream has come so far; until then the job's tables must stay as they are.
+  void upload(const CudaJob& job, Stream stream, DevicePicture* picture);
 
  private:
   struct Kept {
@@ -41,8 +40,7 @@ class DeviceScene {
   DeviceSpan<const T> keep(DeviceSpan<const T> span);
   const void* keep(const void* data, size_t bytes);
   MeshView keep_mesh(const MeshView& mesh, bool deforms, Parcel* parcel);
-  void fill(const SceneView& scene, const CameraView32& camera, const BvhScene& bvh,
-            const BvhTracer& tracer, Parcel* parcel, DevicePicture* picture);
+  void fill(const CudaJob& job, Parcel* parcel, DevicePicture* picture);
   void upload_trees(const BvhScene& bvh, Stream stream);
 
   std::map<const void*, Kept> kept_;  ///< by the host's address

@@ -39,8 +39,9 @@ __global__ void __launch_bounds__(kBlock, kBlocks)
       direct_start(&state, ray, cone, sampler);
       RayHit hit;
       bool found;
+      const ViewTracer tracer{p};
       do {
-        found = p.tracer.trace(state.ray, state.any, &hit);
+        found = tracer.trace(state.ray, state.any, &hit);
       } while (direct_advance(
           scene, &state, found, hit, [&](const Ray& view, const Surface& s, const RayHit& first) {
             if (!describes) return;
@@ -74,7 +75,7 @@ __global__ void __launch_bounds__(kBlock, kBlocks)
                                static_cast<float>(at.y) + 0.5f, time, &cone);
     Surface s;
     RayHit hit;
-    const bool found = find_first(scene, p.tracer, ray, cone, &s, &hit, &rays);
+    const bool found = find_first(scene, ViewTracer{p}, ray, cone, &s, &hit, &rays);
     store_channels(
         p.film, pixel,
         found ? describe_surface(scene, p.camera, ray, s, hit) : describe_sky(p.camera, ray));

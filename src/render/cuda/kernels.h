@@ -4,6 +4,7 @@
 #include "render/kernel/ambient.h"
 #include "render/kernel/bvh_tracer.h"
 #include "render/kernel/path_state.h"
+#include "render/kernel/view_clip.h"
 
 struct CUstream_st;
 
@@ -30,6 +31,7 @@ struct DevicePicture {
   SceneView scene;
   BvhTracer tracer;
   CameraView32 camera;
+  ViewClip clip;
   PathOptions path;
   DeviceFilm film;
   int width = 0, height = 0;

@@ -28,6 +28,7 @@ __global__ void __launch_bounds__(kBlock, kPathBlocks)
     int next = p.samples * at.group / p.split;
     LightSharesOf<float> shares;
     PathMachine path;
+    bool is_first = true;  // ray of its path: the camera's
     // A lane whose path has ended starts the next at once: it does not wait for its warp.
     for (bool running = false; running || next < end;) {
       if (!running) {
@@ -39,10 +40,13 @@ __global__ void __launch_bounds__(kBlock, kPathBlocks)
           continue;
         }
         path.start(ray, cone, sampler, &shares);
+        is_first = true;
       }
       RayHit hit;
       bool shadowed;
-      const bool found = p.tracer.trace_both(path.shadow(scene), path.ray(scene), &shadowed, &hit);
+      bool found = p.tracer.trace_both(path.shadow(scene), path.ray(scene), &shadowed, &hit);
+      if (is_first) found = clip_first(p, path.ray(scene), found, &hit);
+      is_first = false;
       running = path.advance(scene, p.path, shadowed, found, hit);
       if (running) continue;
       mean.add(path.result());

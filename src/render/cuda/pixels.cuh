@@ -66,6 +66,34 @@ __device__ __forceinline__ Ray sample_ray(const DevicePicture& p, const Place& a
                     static_cast<float>(at.y) + 0.5f + offset.y, time, cone, &lens);
 }
 
+/// Behind a hit that the picture's camera does not see, the first that it sees. Rare, and one
+/// function for all places that trace: another traversal in a kernel would crowd its registers.
+__device__ __noinline__ bool trace_past(const DevicePicture& p, const Ray& ray, RayHit* hit) {
+  return trace_in_view(p.scene, p.tracer, p.camera, p.clip, ray, hit);
+}
+
+/// What a ray of the camera sees: `found` and `hit` are what it meets first.
+__device__ __forceinline__ bool clip_first(const DevicePicture& p, const Ray& ray, bool found,
+                                           RayHit* hit) {
+  if (kPlainScenes || !found || p.clip.is_idle()) return found;
+  const bool is_seen =
+      hit->t >= p.clip.start(p.camera, ray) && !p.clip.passes<float>(p.scene, ray, *hit, true);
+  return is_seen || trace_past(p, ray, hit);
+}
+
+/// Traces the camera's ray first, then others.
+struct ViewTracer {
+  const DevicePicture& p;
+  mutable bool is_first = true;
+
+  __device__ bool trace(const Ray& ray, bool any, RayHit* hit) const {
+    const bool found = p.tracer.trace(ray, any, hit);
+    const bool clips = is_first;
+    is_first = false;
+    return clips ? clip_first(p, ray, found, hit) : found;
+  }
+};
+
 // A film goes past the caches: no kernel reads it while there is room to keep, and the tree needs
 // that room.
 template <class T>

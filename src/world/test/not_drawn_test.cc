@@ -99,24 +99,29 @@ TEST_F(NotDrawnTest, DroppedOptionsAndFlagsOfRobotsAreAllNamed) {
   folder_.write("a.xml",
                 "<mujoco><option integrator='implicitfast' cone='elliptic' density='2'/><worldbody>"
                 "<body><freejoint/><geom size='.1'/></body></worldbody></mujoco>");
+  folder_.write("b.xml",
+                "<mujoco><option integrator='RK4'/>\n<include file='flags.xml'/>\n"
+                "<visual><headlight ambient='1 1 1'/></visual><worldbody><body><freejoint/><geom "
+                "size='.1'/></body></worldbody></mujoco>");
   folder_.write(
-      "b.xml",
-      "<mujoco><option integrator='RK4'><flag contact='disable' energy='enable'/></option>"
-      "<worldbody><body><freejoint/><geom size='.1'/></body></worldbody></mujoco>");
+      "flags.xml",
+      "<mujoco>\n\n<option>\n<flag contact='disable' energy='enable'/></option></mujoco>");
   const World world = compile(folder_.write("s.toml",
                                             "[[robot]]\nname = 'a'\nfile = 'a.xml'\n"
                                             "[[robot]]\nname = 'b'\nfile = 'b.xml'\n"));
   const mjModel& m = *world.compiled()->model;
   std::string all;
   for (const Error& error : world.unsupported()) all += error.to_string() + "\n";
-  EXPECT_THAT(all, HasSubstr("s.toml:4"));
-  EXPECT_THAT(all, HasSubstr("robot 'b' gives integrator RK4"));
+  EXPECT_THAT(all, HasSubstr("b.xml:1: robot 'b' gives integrator RK4"));
   EXPECT_EQ(m.opt.disableflags & mjDSBL_CONTACT, 0);
-  EXPECT_THAT(all, HasSubstr("robot 'b' gives flag contact disable, the level has enable"));
+  EXPECT_THAT(all,
+              HasSubstr("flags.xml:4: robot 'b' gives flag contact disable, the level has enable"));
   EXPECT_EQ(m.opt.enableflags & mjENBL_ENERGY, 0);
-  EXPECT_THAT(all, HasSubstr("robot 'b' gives flag energy enable, the level has disable"));
+  EXPECT_THAT(all,
+              HasSubstr("flags.xml:4: robot 'b' gives flag energy enable, the level has disable"));
   EXPECT_NE(m.opt.density, 2);
-  EXPECT_THAT(all, HasSubstr("robot 'a' gives density 2"));
+  EXPECT_THAT(all, HasSubstr("a.xml:1: robot 'a' gives density 2"));
+  EXPECT_THAT(all, HasSubstr("b.xml:3: robot 'b' gives visual/headlight"));
 }
 
 const std::string kUrdf =

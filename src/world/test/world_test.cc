@@ -159,6 +159,25 @@ TEST_F(WorldTest, AnExportKeepsNegativeZeros) {
   EXPECT_THAT(compare_models(world->compiled()->model.get(), again.get()), IsEmpty());
 }
 
+// A quaternion made of Euler angles, an axis and an angle or an axis has zeros of both signs.
+TEST_F(WorldTest, AnExportKeepsNegativeZerosOfOrientations) {
+  std::string bodies;
+  for (const char* a : {"-0", "0", "90", "-180"})
+    for (const char* b : {"-0", "0", "-90"})
+      for (const char* c : {"-0", "0", "30"})
+        bodies += fmt::format(
+            "<body pos='1 -0 0' euler='{0} {1} {2}'><geom size='.1' euler='{0} {1} {2}'/>"
+            "<camera euler='{1} {0} {2}'/><frame euler='{2} {1} {0}'><site pos='-0 0 1'/></frame>"
+            "<body axisangle='{2} {1} 1 {0}'><inertial mass='1' pos='-0 0 0' euler='{1} {2} {0}' "
+            "diaginertia='1 2 2.5'/><geom size='.1' zaxis='{0} 1 {1}'/></body></body>",
+            a, b, c);
+  folder_.write("euler.xml", "<mujoco><worldbody>" + bodies + "</worldbody></mujoco>");
+  const Result<World> world = compile(folder_.path() / "euler.xml");
+  ASSERT_TRUE(world.ok()) << world.error().to_string();
+  const Status status = world->export_mjcf(folder_.path() / "out");
+  EXPECT_TRUE(status.ok()) << status.error().to_string();
+}
+
 TEST_F(WorldTest, CompareModelsFindsOneBit) {
   const ModelPtr a = load_stock(folder_.path() / "arm.xml");
   const ModelPtr b = load_stock(folder_.path() / "arm.xml");

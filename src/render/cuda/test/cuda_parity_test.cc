@@ -126,6 +126,15 @@ std::vector<Case> cases() {
   Case soft{"an aperture", all_shapes(rich_material), {}, usual_view()};
   soft.view.aperture = {0.05f, 3};
   all.push_back(soft);
+  for (const bool moves : {false, true}) {
+    Case clip{"a clipped view", all_shapes(rich_material), {}, usual_view(), moves};
+    clip.view.near = 2.6f;
+    clip.view.culls_backs = true;
+    std::vector<uint8_t> hidden(clip.scene.description.instances.size());
+    for (size_t i = 5; i < hidden.size(); i += 3) hidden[i] = 1;
+    clip.view.hidden = std::make_shared<const std::vector<uint8_t>>(hidden);
+    all.push_back(clip);
+  }
   for (Case& c : all) {
     c.close = c.scene.frame;
     if (!c.moves) continue;
