@@ -56,8 +56,8 @@ Measured measure(Renderer* renderer, const NoiseScene& scene, RenderSettings set
   return m;
 }
 
-/// Root mean square of the pixels' errors as render/cpu/adaptive_tile.h defines them, relative to
-/// the values of `reference`.
+/// Root mean square of the pixels' errors as render/cpu/path/adaptive_tile.h defines them, relative
+/// to the values of `reference`.
 double true_error(const Measured& m, const std::vector<Vec3f>& reference, float floor) {
   double sum = 0;
   for (size_t i = 0; i < m.mean.size(); ++i) {

@@ -10,8 +10,8 @@
 #include "runtime/live_simulation.h"
 #include "runtime/sensing_quality.h"
 #include "runtime/visibility_probe.h"
-#include "sensors/lidar_sensor.h"
-#include "sim/pose_solver.h"
+#include "sensors/lidar/lidar_sensor.h"
+#include "sim/snapshots/pose_solver.h"
 
 namespace gloam {
 namespace {

@@ -17,7 +17,7 @@
 #include "bench/median.h"
 #include "gloam/scene.h"
 #include "runtime/live_simulation.h"
-#include "sim/simulator.h"
+#include "sim/loop/simulator.h"
 
 namespace gloam {
 namespace {

@@ -16,9 +16,9 @@
 #include "base/parallel.h"
 #include "bench/command_line.h"
 #include "gloam/simulation.h"
-#include "sensors/lidar_sensor.h"
-#include "sim/pose_solver.h"
-#include "sim/simulator.h"
+#include "sensors/lidar/lidar_sensor.h"
+#include "sim/loop/simulator.h"
+#include "sim/snapshots/pose_solver.h"
 
 namespace gloam {
 namespace {

@@ -14,7 +14,7 @@
 #include "base/parallel.h"
 #include "bench/command_line.h"
 #include "bench/room_scene.h"
-#include "render/cpu/embree_build.h"
+#include "render/cpu/tracer/embree_build.h"
 #include "render/test/probe.h"
 
 using namespace gloam;

@@ -14,8 +14,8 @@
 
 #include "base/hash.h"
 #include "bench/step_model.h"
-#include "sim/simulator.h"
-#include "sim/state_layout.h"
+#include "sim/loop/simulator.h"
+#include "sim/state/state_layout.h"
 
 namespace gloam {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "base/rng.h"
 #include "bench/command_line.h"
-#include "scene/mujoco_guard.h"
+#include "scene/files/mujoco_guard.h"
 #include "world/world.h"
 
 namespace gloam {

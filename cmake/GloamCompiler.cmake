@@ -22,7 +22,7 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(-Wno-maybe-uninitialized -Wno-restrict)
 endif()
 if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
-  # The kernel is generic over bool and lanes (render/kernel/lanes.h); GCC 12's std::stable_sort calls what C++17 deprecates.
+  # The kernel is generic over bool and lanes (render/kernel/math/lanes.h); GCC 12's std::stable_sort calls what C++17 deprecates.
   add_compile_options(-Wno-bitwise-instead-of-logical -Wno-deprecated-declarations)
 endif()
 add_compile_options("$<$<CONFIG:Release>:-O3>")

@@ -7,11 +7,11 @@ set(CMAKE_INSTALL_LIBDIR lib)  # the same everywhere: the program looks for its 
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
-set(modules base geometry scene world sim render sensors control record runtime studio)
+set(modules base geometry places scene world sim render sensors control record runtime studio)
 list(TRANSFORM modules PREPEND gloam_)
 add_library(gloam_library SHARED)
 foreach(module IN LISTS modules)
-  target_sources(gloam_library PRIVATE $<TARGET_OBJECTS:${module}> $<$<TARGET_EXISTS:${module}_part>:$<TARGET_OBJECTS:${module}_part>>)
+  target_sources(gloam_library PRIVATE $<TARGET_OBJECTS:${module}>)
 endforeach()
 target_link_libraries(gloam_library PRIVATE ${modules})  # for what they link in turn
 target_include_directories(gloam_library INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)

@@ -9,27 +9,14 @@ function(gloam_unity target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${GLOAM_UNITY} UNITY_BUILD_BATCH_SIZE 8)
 endfunction()
 
-# Files of one folder of a library, compiled without the options that are the library's own.
-function(gloam_optimised_part target folder)
-  get_target_property(sources ${target} SOURCES)
-  set(part ${sources})
-  list(FILTER part INCLUDE REGEX "^${folder}/")
-  list(REMOVE_ITEM sources ${part})
-  add_library(${target}_part OBJECT ${part})
-  gloam_unity(${target}_part)
-  target_include_directories(${target}_part PRIVATE $<TARGET_PROPERTY:${target},INTERFACE_INCLUDE_DIRECTORIES>)
-  target_link_libraries(${target}_part PRIVATE $<TARGET_PROPERTY:${target},INTERFACE_LINK_LIBRARIES>)
-  set_target_properties(${target} PROPERTIES SOURCES "${sources};$<TARGET_OBJECTS:${target}_part>")
-endfunction()
-
-# gloam_module(NAME [FAST_TESTS] [COLD [HOT folder]] [DEPENDS targets…] [TEST_DEPENDS targets…] [EXCLUDE files…])
+# gloam_module(NAME [FAST_TESTS] [COLD] [DEPENDS targets…] [TEST_DEPENDS targets…] [EXCLUDE files…])
 # One folder of src/ = one static library gloam_NAME of all its .cc files (test/ and fuzz/ apart),
 # one test program gloam_NAME_test of test/*_test.cc (FAST_TESTS: its tests do the work themselves, in code that headers
 # bring, so they are optimised like the library; the others are compiled in less time), one fuzz program per fuzz/*_fuzz.cc.
 # COLD: little of its time is its own code: it is optimised as far as that takes little of ours, and not at all in sanitized
-# builds; but for what lies in the folder HOT.
+# builds.
 function(gloam_module name)
-  cmake_parse_arguments(arg "FAST_TESTS;COLD" "HOT" "DEPENDS;TEST_DEPENDS;EXCLUDE" ${ARGN})
+  cmake_parse_arguments(arg "FAST_TESTS;COLD" "" "DEPENDS;TEST_DEPENDS;EXCLUDE" ${ARGN})
   set(folder ${CMAKE_SOURCE_DIR}/src/${name})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${folder}/*.cc)
   list(FILTER sources EXCLUDE REGEX "/(test|fuzz)/")
@@ -42,9 +29,6 @@ function(gloam_module name)
     gloam_unity(${target})
     if(arg_COLD)
       target_compile_options(${target} PRIVATE ${GLOAM_COLD_OPTIMISE})
-    endif()
-    if(arg_HOT)
-      gloam_optimised_part(${target} ${folder}/${arg_HOT})
     endif()
     set(scope PUBLIC)
   else()

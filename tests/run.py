@@ -26,8 +26,8 @@ import fetch_data  # noqa: E402
 
 BUILD = ROOT / "build"
 CLANG = "-19"
-READERS = {"base", "geometry", "scene", "world"}  # of strangers' files: under sanitizers in every CI
-UNIT = ["base", "geometry", "scene", "world", "sim", "render", "sensors", "control", "record", "runtime", "studio"]
+READERS = {"base", "geometry", "places", "scene", "world"}  # of strangers' files: under sanitizers in every CI
+UNIT = ["base", "geometry", "places", "scene", "world", "sim", "render", "sensors", "control", "record", "runtime", "studio"]
 
 
 class Tally:

@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 
 SIZE = (96, 72)  # pixels of every picture that is compared
 BLOCK = 8
-FILTER_SIGMA, FILTER_CUT = 0.42, 1.25  # [px] of the pixel's filter, as in src/render/kernel/camera.h
+FILTER_SIGMA, FILTER_CUT = 0.42, 1.25  # [px] of the pixel's filter, as in src/render/kernel/camera/camera.h
 
 
 @dataclass

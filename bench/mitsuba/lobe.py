@@ -1,4 +1,4 @@
-"""Gloam's surface as it is published, as a Mitsuba BSDF: the formulas stand at the top of src/render/kernel/bsdf.h and
+"""Gloam's surface as it is published, as a Mitsuba BSDF: the formulas stand at the top of src/render/kernel/bsdf/bsdf.h and
 layered_bsdf.h. Distribution, masking, Fresnel and sampling of microfacets are Mitsuba's own; tables are lobe_tables.py's.
 
 It takes one string property, `parameters`: JSON of the fields below. `scales` multiplies what a lobe reflects or lets

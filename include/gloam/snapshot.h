@@ -13,7 +13,7 @@
 
 namespace gloam {
 
-struct SnapshotData;  // src/sim/snapshot.h
+struct SnapshotData;  // src/sim/snapshots/snapshot.h
 
 /// Reads of one joint in one Snapshot. The spans live as long as the Snapshot.
 struct JointState {

@@ -21,7 +21,7 @@ GLOAM_HD float square_root(float x) { return sqrtf(x); }
 GLOAM_HD float safe_sqrt(float x) { return sqrtf(max(x, 0.0f)); }
 GLOAM_HD float select(bool condition, float a, float b) { return condition ? a : b; }
 
-/// F: float, or the lanes of render/kernel/lanes.h.
+/// F: float, or the lanes of render/kernel/math/lanes.h.
 template <class F>
 struct Vec2Of {
   F x{}, y{};
@@ -31,7 +31,7 @@ struct Vec2Of {
 };
 using Vec2f = Vec2Of<float>;
 
-/// F: float, or the lanes of render/kernel/lanes.h.
+/// F: float, or the lanes of render/kernel/math/lanes.h.
 template <class F>
 struct Vec3Of {
   F x{}, y{}, z{};

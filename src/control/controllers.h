@@ -1,7 +1,7 @@
 #pragma once
 // The list of controllers: the names that [robot.controller] type may have.
 
-#include "sim/controller.h"
+#include "sim/loop/controller.h"
 
 namespace gloam {
 

@@ -1,7 +1,7 @@
 #pragma once
 // Holds a robot's joints at angles.
 
-#include "sim/controller.h"
+#include "sim/loop/controller.h"
 
 namespace gloam {
 

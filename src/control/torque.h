@@ -1,7 +1,7 @@
 #pragma once
 // Constant torques: for tests, and for clients that send controls themselves.
 
-#include "sim/controller.h"
+#include "sim/loop/controller.h"
 
 namespace gloam {
 

@@ -12,7 +12,7 @@
 #include <memory>
 
 #include "gloam/result.h"
-#include "sim/controller.h"
+#include "sim/loop/controller.h"
 #include "world/world.h"
 
 namespace gloam {

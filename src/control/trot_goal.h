@@ -3,7 +3,7 @@
 
 #include "control/trot_options.h"
 #include "control/trot_state.h"
-#include "sim/controller.h"
+#include "sim/loop/controller.h"
 
 namespace gloam {
 

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "control/trot_legs.h"
-#include "sim/soil_reaction.h"
+#include "sim/effects/soil/soil_reaction.h"
 
 namespace gloam {
 

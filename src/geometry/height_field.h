@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/mesh.h"
+#include "geometry/mesh/mesh.h"
 #include "gloam/result.h"
 
 namespace gloam {

@@ -13,7 +13,7 @@
 
 #include "base/device.h"
 #include "base/vec.h"
-#include "geometry/single.h"
+#include "geometry/mesh/single.h"
 #include "gloam/camera.h"
 
 namespace gloam {

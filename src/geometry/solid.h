@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/mesh.h"
+#include "geometry/mesh/mesh.h"
 
 namespace gloam {
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
+#include "geometry/mesh/triangulate.h"
 #include "geometry/solid.h"
-#include "geometry/triangulate.h"
 
 namespace gloam {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <span>
 
-#include "render/kernel/lidar_detect.h"
-#include "render/kernel/lidar_motion.h"
+#include "render/kernel/lidar/lidar_detect.h"
+#include "render/kernel/lidar/lidar_motion.h"
 
 namespace gloam {
 

@@ -9,15 +9,15 @@
 #include <vector>
 
 #include "gloam/result.h"
+#include "instant/pose_frame.h"
 #include "render/film/film.h"
-#include "render/kernel/camera.h"
-#include "sim/pose_frame.h"
+#include "render/kernel/camera/camera.h"
 #include "world/render_description.h"
 
 namespace gloam {
 
 struct LidarView;    // render/lidar_view.h
-struct LidarReturn;  // render/kernel/lidar_detect.h
+struct LidarReturn;  // render/kernel/lidar/lidar_detect.h
 
 /// A camera, where it is, and when it sees. C looks along -Z with +Y up. Times are those of the
 /// scene's keys: 0 the first, 1 the last.
@@ -64,8 +64,8 @@ struct RenderSettings {
   int guide_samples = 0;
   ViewHistory* history = nullptr;  ///< fast tier: of this camera; null = a picture by itself
   /// Path tier: sampling goes on until the standard error of a pixel's mean is this share of its
-  /// value (render/cpu/adaptive_tile.h), 0 … 1; 0 = `spp` samples in every pixel. Then first_sample
-  /// is 0 and spp at least kLeastAdaptiveSpp.
+  /// value (render/cpu/path/adaptive_tile.h), 0 … 1; 0 = `spp` samples in every pixel. Then
+  /// first_sample is 0 and spp at least kLeastAdaptiveSpp.
   float error = 0;
   float error_floor = 0;  ///< [cd/m²] darker pixels count as of this value
   /// Told how much of the picture is done, 0..1, about ten times a second, from the threads that

@@ -17,7 +17,7 @@
 #include "runtime/run_to_step.h"
 #include "runtime/sensing_quality.h"
 #include "runtime/visibility_probe.h"
-#include "sensors/lidar_sensor.h"
+#include "sensors/lidar/lidar_sensor.h"
 
 namespace gloam {
 namespace {

@@ -9,11 +9,11 @@
 #include <thread>
 
 #include "runtime/shared_renderer.h"
-#include "sensors/camera_sensor.h"
+#include "sensors/camera/camera_sensor.h"
 #include "sensors/imager/exposure.h"
 #include "sensors/timing.h"
-#include "sim/pose_solver.h"
-#include "sim/simulator.h"
+#include "sim/loop/simulator.h"
+#include "sim/snapshots/pose_solver.h"
 
 namespace gloam {
 

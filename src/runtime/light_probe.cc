@@ -1,6 +1,6 @@
 #include "runtime/light_probe.h"
 
-#include "geometry/single.h"
+#include "geometry/mesh/single.h"
 
 namespace gloam {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "runtime/shared_renderer.h"
-#include "sim/pose_solver.h"
+#include "sim/snapshots/pose_solver.h"
 
 namespace gloam {
 

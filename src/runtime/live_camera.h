@@ -11,10 +11,10 @@
 #include "gloam/simulation.h"
 #include "runtime/exposure_meter.h"
 #include "runtime/shared_renderer.h"
-#include "sensors/camera_sensor.h"
+#include "sensors/camera/camera_sensor.h"
 #include "sensors/timing.h"
-#include "sim/pose_solver.h"
-#include "sim/simulator.h"
+#include "sim/loop/simulator.h"
+#include "sim/snapshots/pose_solver.h"
 
 namespace gloam {
 

@@ -9,9 +9,9 @@
 
 #include "gloam/sensor.h"
 #include "runtime/shared_renderer.h"
-#include "sensors/lidar_sensor.h"
-#include "sim/pose_solver.h"
-#include "sim/simulator.h"
+#include "sensors/lidar/lidar_sensor.h"
+#include "sim/loop/simulator.h"
+#include "sim/snapshots/pose_solver.h"
 
 namespace gloam {
 

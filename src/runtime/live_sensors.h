@@ -9,7 +9,7 @@
 
 #include "gloam/sensor.h"
 #include "sensors/sensor_group.h"
-#include "sim/simulator.h"
+#include "sim/loop/simulator.h"
 
 namespace gloam {
 

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "control/controllers.h"
-#include "geometry/single.h"
+#include "geometry/mesh/single.h"
 #include "runtime/label_table.h"
 #include "runtime/pick.h"
 

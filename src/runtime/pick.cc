@@ -3,8 +3,8 @@
 #include <mutex>
 
 #include "geometry/lens.h"
-#include "geometry/single.h"
-#include "sensors/camera_sensor.h"
+#include "geometry/mesh/single.h"
+#include "sensors/camera/camera_sensor.h"
 
 namespace gloam {
 

@@ -2,8 +2,8 @@
 // What stands under a pixel.
 
 #include "gloam/simulation.h"
+#include "instant/pose_frame.h"
 #include "runtime/shared_renderer.h"
-#include "sim/pose_frame.h"
 
 namespace gloam {
 

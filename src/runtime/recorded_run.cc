@@ -23,7 +23,7 @@
 #include "runtime/robot_metrics.h"
 #include "runtime/run_to_step.h"
 #include "runtime/state_table.h"
-#include "sim/step_schedule.h"
+#include "sim/loop/step_schedule.h"
 #include "world/version.h"
 
 namespace gloam {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "gloam/scene.h"
-#include "sim/command_check.h"
+#include "sim/commands/command_check.h"
 
 namespace gloam {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "gloam/result.h"
 #include "gloam/run.h"
-#include "sim/simulator.h"
+#include "sim/loop/simulator.h"
 
 namespace gloam {
 

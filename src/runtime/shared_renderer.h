@@ -9,7 +9,7 @@
 
 #include "gloam/result.h"
 #include "render/renderer.h"
-#include "sensors/event_track.h"
+#include "sensors/event/event_track.h"
 #include "world/render_description.h"
 #include "world/world.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "world/authored_volume.h"
+#include "world/media/authored_volume.h"
 
 namespace gloam {
 

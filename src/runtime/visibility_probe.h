@@ -3,7 +3,7 @@
 
 #include "base/vec.h"
 #include "render/scene/volume_store.h"
-#include "sim/snapshot.h"
+#include "sim/snapshots/snapshot.h"
 #include "world/render_description.h"
 #include "world/world.h"
 

@@ -1,7 +1,7 @@
 #include "scene/adversity.h"
 
 #include "base/rng.h"
-#include "scene/environment/generators.h"
+#include "places/generators.h"
 
 namespace gloam {
 namespace {

@@ -1,11 +1,11 @@
 #include "base/files.h"
 #include "base/plain_text.h"
-#include "geometry/model_file.h"
+#include "geometry/mesh/model_file.h"
 #include "gloam/scene.h"
-#include "scene/environment/generators.h"
-#include "scene/file_finder.h"
+#include "places/generators.h"
+#include "scene/files/file_finder.h"
 #include "scene/toml/toml_reader.h"
-#include "scene/validate.h"
+#include "scene/validate/validate.h"
 
 namespace gloam {
 namespace fs = std::filesystem;

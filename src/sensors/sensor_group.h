@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "gloam/sensor.h"
-#include "sensors/signal_model.h"
+#include "sensors/signal/signal_model.h"
 #include "sensors/timing.h"
-#include "sim/snapshot.h"
-#include "world/sensor_description.h"
+#include "sim/snapshots/snapshot.h"
+#include "world/sensors/sensor_description.h"
 
 namespace gloam {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "base/hash.h"
-#include "sensors/draw.h"
+#include "sensors/signal/draw.h"
 
 namespace gloam {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "gloam/result.h"
 #include "gloam/scene_imager.h"
-#include "sim/step_schedule.h"
+#include "sim/loop/step_schedule.h"
 
 namespace gloam {
 

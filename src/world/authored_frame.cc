@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-#include "world/visual_pose.h"
+#include "world/shapes/visual_pose.h"
 
 namespace gloam {
 namespace {

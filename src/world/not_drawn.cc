@@ -11,8 +11,8 @@
 #include "gloam/world.h"
 #include "world/model_names.h"
 #include "world/render_description.h"
-#include "world/tendon_path.h"
-#include "world/visual_site.h"
+#include "world/shapes/tendon_path.h"
+#include "world/shapes/visual_site.h"
 #include "world/world.h"
 
 namespace gloam {

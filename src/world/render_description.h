@@ -1,7 +1,7 @@
 #pragma once
 // What a World looks like, without MuJoCo types: the only thing render/ knows of a model. Moving
-// parts refer to bodies by index; where those are at an instant is in sim/pose_frame.h. Radiometry:
-// docs/light.md. Where textures land on shapes: world/texture_coordinates.h.
+// parts refer to bodies by index; where those are at an instant is in instant/pose_frame.h.
+// Radiometry: docs/light.md. Where textures land on shapes: world/materials/texture_coordinates.h.
 
 #include <array>
 #include <cstdint>
@@ -11,19 +11,19 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "geometry/image.h"
-#include "geometry/mesh.h"
+#include "geometry/image/image.h"
+#include "geometry/mesh/mesh.h"
 #include "gloam/camera.h"
 #include "gloam/result.h"
 #include "gloam/scene_sensor.h"
-#include "world/day_cycle.h"
-#include "world/ies_profile.h"
-#include "world/lamp_motion.h"
-#include "world/light_schedule.h"
-#include "world/medium_description.h"
-#include "world/procedural_description.h"
-#include "world/shape_type.h"
-#include "world/weather_description.h"
+#include "world/lights/ies_profile.h"
+#include "world/lights/lamp_motion.h"
+#include "world/lights/light_schedule.h"
+#include "world/materials/procedural_description.h"
+#include "world/media/medium_description.h"
+#include "world/shapes/shape_type.h"
+#include "world/sky/day_cycle.h"
+#include "world/weather/weather_description.h"
 
 namespace gloam {
 
@@ -83,7 +83,8 @@ struct MaterialDescription {
   float bump_scale = 0;        ///< [m] that a bump of 1 stands above one of 0
   bool glows_in_color = true;  ///< base_color's texture multiplies the emission (MuJoCo's rule)
   bool imported = false;       ///< came with a [[visual]], not with the model
-  // What set_look() (world/visual_rules.h) makes the values above from when they change live.
+  // What set_look() (world/materials/visual_rules.h) makes the values above from when they change
+  // live.
   int model_material = -1;      ///< row of PoseFrame::material_rgba and its kin, -1 = none
   std::array<float, 4> rgba{};  ///< display colour and opacity as in the model
   bool own_color = false;       ///< that is the geom's: material_rgba does not apply
@@ -125,7 +126,7 @@ struct DeformableDescription {
 };
 
 /// The grid behind a mesh that is a height field, to rebuild it when PoseFrame::height_field
-/// changes (height_field_mesh() in world/visual_mesh.h).
+/// changes (height_field_mesh() in world/shapes/visual_mesh.h).
 struct HeightFieldDescription {
   int mesh = 0;        ///< index into meshes
   int first_data = 0;  ///< into PoseFrame::height_field
@@ -163,7 +164,7 @@ struct LightDescription {
   bool of_sky = false;  ///< the sun of the scene's sky; of SkyDescription::day it is as at time 0
 };
 
-/// Light from far away, laid out as SkyLight::texels (world/atmosphere.h).
+/// Light from far away, laid out as SkyLight::texels (world/sky/atmosphere.h).
 struct EnvironmentDescription {
   std::string name;
   int width = 0, height = 0;  ///< [texels]; 0 = none

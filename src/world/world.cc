@@ -5,10 +5,10 @@
 #include <atomic>
 
 #include "base/text.h"
-#include "world/initial_overlaps.h"
-#include "world/level.h"
-#include "world/visual_camera.h"
-#include "world/visual_file.h"
+#include "world/compile/initial_overlaps.h"
+#include "world/compile/level.h"
+#include "world/sensors/visual_camera.h"
+#include "world/shapes/visual_file.h"
 #include "world/world.h"
 
 namespace gloam {

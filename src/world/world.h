@@ -11,11 +11,11 @@
 
 #include "gloam/scene.h"
 #include "gloam/world.h"
-#include "world/agent_description.h"
-#include "world/gas_description.h"
-#include "world/soil_description.h"
-#include "world/water_description.h"
-#include "world/wind_description.h"
+#include "world/agents/agent_description.h"
+#include "world/effects/gas_description.h"
+#include "world/effects/soil_description.h"
+#include "world/effects/water_description.h"
+#include "world/weather/wind_description.h"
 
 namespace gloam {
 
@@ -75,7 +75,7 @@ struct CompiledWorld {
   int initial_key = -1;
   uint64_t place_hash = 0;      ///< of what was generated or made of meshes, 0 = nothing
   std::optional<double> ev100;  ///< of a generated environment
-  Vec3 render_origin;           ///< of the render scene [m]; world/render_origin.h
+  Vec3 render_origin;           ///< of the render scene [m]; world/view/render_origin.h
   std::vector<Region> regions;  ///< floors of a generated environment
   std::vector<DrawnOption> drawn;
   std::vector<RobotInstance> robots;

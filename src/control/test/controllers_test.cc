@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "scene/mujoco_guard.h"
-#include "sim/simulator.h"
+#include "scene/files/mujoco_guard.h"
+#include "sim/loop/simulator.h"
 #include "trot_robots.h"
 
 namespace gloam {

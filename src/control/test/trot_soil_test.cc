@@ -8,8 +8,8 @@
 
 #include "control/trot.h"
 #include "control/trot_options.h"
-#include "scene/mujoco_guard.h"
-#include "sim/simulator.h"
+#include "scene/files/mujoco_guard.h"
+#include "sim/loop/simulator.h"
 #include "trot_robots.h"
 
 namespace gloam {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "geometry/text_lines.h"
+#include "geometry/mesh/text_lines.h"
 
 namespace gloam {
 namespace {

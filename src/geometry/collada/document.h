@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "geometry/model_source.h"
+#include "geometry/mesh/model_source.h"
 
 namespace gloam {
 

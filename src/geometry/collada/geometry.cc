@@ -7,8 +7,8 @@
 #include <optional>
 
 #include "geometry/collada/document.h"
-#include "geometry/triangulate.h"
-#include "geometry/vertex_colors.h"
+#include "geometry/mesh/triangulate.h"
+#include "geometry/mesh/vertex_colors.h"
 
 namespace gloam {
 namespace {

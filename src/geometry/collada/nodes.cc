@@ -6,7 +6,7 @@
 #include <map>
 
 #include "geometry/collada/document.h"
-#include "geometry/vertex_colors.h"
+#include "geometry/mesh/vertex_colors.h"
 
 namespace gloam {
 namespace {

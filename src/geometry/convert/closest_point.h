@@ -4,7 +4,7 @@
 #include <array>
 #include <memory>
 
-#include "geometry/bvh_build.h"
+#include "geometry/bvh/bvh_build.h"
 #include "geometry/convert/mass.h"
 
 namespace gloam {

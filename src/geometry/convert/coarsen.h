@@ -1,7 +1,7 @@
 #pragma once
 // Fewer triangles for much the same shape.
 
-#include "geometry/mesh.h"
+#include "geometry/mesh/mesh.h"
 
 namespace gloam {
 

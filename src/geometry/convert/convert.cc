@@ -12,7 +12,7 @@
 #include "geometry/convert/fit.h"
 #include "geometry/convert/hull.h"
 #include "geometry/convert/room.h"
-#include "geometry/weld.h"
+#include "geometry/mesh/weld.h"
 
 namespace gloam {
 namespace {

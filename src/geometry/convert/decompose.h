@@ -4,7 +4,7 @@
 
 #include <atomic>
 
-#include "geometry/mesh.h"
+#include "geometry/mesh/mesh.h"
 #include "gloam/result.h"
 
 namespace gloam {

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/mesh.h"
+#include "geometry/mesh/mesh.h"
 
 namespace gloam {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "geometry/mesh.h"
+#include "geometry/mesh/mesh.h"
 
 namespace gloam {
 

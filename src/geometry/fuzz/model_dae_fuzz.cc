@@ -1,4 +1,4 @@
-#include "geometry/model_source.h"
+#include "geometry/mesh/model_source.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   gloam::ModelFileOptions options;

@@ -1,5 +1,5 @@
-#include "geometry/mtl_reader.h"
-#include "geometry/text_lines.h"
+#include "geometry/mesh/mtl_reader.h"
+#include "geometry/mesh/text_lines.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   gloam::ModelFileOptions options;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "geometry/gltf/json_node.h"
-#include "geometry/model_source.h"
+#include "geometry/mesh/model_source.h"
 
 namespace gloam {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "base/vec.h"
-#include "geometry/model_limits.h"
+#include "geometry/mesh/model_limits.h"
 #include "gloam/result.h"
 
 namespace gloam {

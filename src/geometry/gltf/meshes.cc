@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "geometry/gltf/document.h"
-#include "geometry/vertex_colors.h"
+#include "geometry/mesh/vertex_colors.h"
 
 namespace gloam {
 namespace {

@@ -1,4 +1,4 @@
-#include "geometry/bvh_cache.h"
+#include "geometry/bvh/bvh_cache.h"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "base/plain_text.h"
-#include "geometry/image_file.h"
+#include "geometry/image/image_file.h"
 #include "geometry/test/gltf_builder.h"
 #include "geometry/test/read_helper.h"
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "geometry/image_file.h"
-#include "geometry/small_float.h"
+#include "geometry/image/image_file.h"
+#include "geometry/image/small_float.h"
 #include "geometry/test/image_writer.h"
 #include "geometry/test/read_helper.h"
 

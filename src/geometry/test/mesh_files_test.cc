@@ -5,8 +5,8 @@
 
 #include <cstring>
 
+#include "geometry/mesh/triangulate.h"
 #include "geometry/test/read_helper.h"
-#include "geometry/triangulate.h"
 
 namespace gloam {
 namespace {

@@ -1,4 +1,4 @@
-#include "geometry/model_file_cache.h"
+#include "geometry/mesh/model_file_cache.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

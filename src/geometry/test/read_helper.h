@@ -10,7 +10,7 @@
 #include <string>
 
 #include "base/cache_writer.h"
-#include "geometry/model_source.h"
+#include "geometry/mesh/model_source.h"
 
 namespace gloam {
 

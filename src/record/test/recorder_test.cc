@@ -19,8 +19,8 @@
 
 #include "base/files.h"
 #include "base/log.h"
-#include "geometry/image_exr.h"
-#include "geometry/image_file.h"
+#include "geometry/image/image_exr.h"
+#include "geometry/image/image_file.h"
 #include "gloam/scene.h"
 #include "record/frame_files.h"
 #include "record/run_folder.h"

@@ -4,8 +4,8 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
-#include "render/cpu/tile.h"
-#include "render/kernel/lidar.h"
+#include "render/cpu/path/tile.h"
+#include "render/kernel/lidar/lidar.h"
 
 namespace gloam {
 namespace {

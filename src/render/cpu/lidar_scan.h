@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "render/cpu/cpu_tracer.h"
+#include "render/cpu/tracer/cpu_tracer.h"
 #include "render/lidar_view.h"
 
 namespace gloam {

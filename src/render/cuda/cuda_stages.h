@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "render/kernel/ambient.h"
-#include "render/kernel/view_clip.h"
+#include "render/kernel/camera/view_clip.h"
+#include "render/kernel/light/ambient.h"
 #include "render/renderer.h"
 #include "render/scene/bvh_scene.h"
 

@@ -2,7 +2,7 @@
 // The kernels of the direct stage and of the exact channels.
 
 #include "render/cuda/pixels.cuh"
-#include "render/kernel/direct.h"
+#include "render/kernel/path/direct.h"
 
 namespace gloam::cuda {
 namespace {

@@ -1,10 +1,10 @@
 #pragma once
 // What the host asks of the card: plain structures that both compilers see, and the launches.
 
-#include "render/kernel/ambient.h"
-#include "render/kernel/bvh_tracer.h"
-#include "render/kernel/path_state.h"
-#include "render/kernel/view_clip.h"
+#include "render/kernel/camera/view_clip.h"
+#include "render/kernel/light/ambient.h"
+#include "render/kernel/path/path_state.h"
+#include "render/kernel/trace/bvh_tracer.h"
 
 struct CUstream_st;
 

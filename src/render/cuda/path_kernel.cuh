@@ -2,7 +2,7 @@
 // The kernel of the path stage.
 
 #include "render/cuda/pixels.cuh"
-#include "render/kernel/path_machine.h"
+#include "render/kernel/path/path_machine.h"
 
 namespace gloam::cuda {
 namespace {

@@ -3,7 +3,7 @@
 // render/kernel.
 
 #include "render/cuda/kernels.h"
-#include "render/kernel/pixel_mean.h"
+#include "render/kernel/camera/pixel_mean.h"
 
 namespace gloam::cuda {
 namespace {  // each of the files that include this has kernels of its own

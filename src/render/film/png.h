@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/png_writer.h"
+#include "geometry/image/png_writer.h"
 
 namespace gloam {
 

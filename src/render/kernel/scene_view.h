@@ -3,13 +3,13 @@
 // them. Device-safe.
 
 #include "geometry/motion_keys.h"
-#include "render/kernel/environment.h"
-#include "render/kernel/light_tree_view.h"
-#include "render/kernel/medium_view.h"
-#include "render/kernel/ray.h"
-#include "world/procedural_description.h"
+#include "render/kernel/light/environment.h"
+#include "render/kernel/light/light_tree_view.h"
+#include "render/kernel/math/ray.h"
+#include "render/kernel/media/medium_view.h"
+#include "world/materials/procedural_description.h"
 #include "world/render_description.h"
-#include "world/shelter_map.h"
+#include "world/weather/shelter_map.h"
 
 namespace gloam {
 

@@ -4,8 +4,8 @@
 
 #include "base/parallel.h"
 #include "base/rng.h"
-#include "render/kernel/bsdf.h"
-#include "render/kernel/sampler.h"
+#include "render/kernel/bsdf/bsdf.h"
+#include "render/kernel/math/sampler.h"
 
 namespace gloam {
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "render/kernel/bsdf.h"
+#include "render/kernel/bsdf/bsdf.h"
 
 namespace gloam {
 

@@ -1,6 +1,6 @@
 #include "render/scene/black_body.h"
 
-#include "world/black_body.h"
+#include "world/lights/black_body.h"
 
 namespace gloam {
 

@@ -3,11 +3,11 @@
 
 #include <vector>
 
-#include "render/kernel/medium_view.h"
+#include "render/kernel/media/medium_view.h"
 
 namespace gloam {
 
-/// What BlackBodyTable reads, of black_body_luminance() (world/black_body.h).
+/// What BlackBodyTable reads, of black_body_luminance() (world/lights/black_body.h).
 std::vector<Vec3f> make_black_body_table();
 
 }  // namespace gloam

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/parallel.h"
-#include "geometry/bvh_cache.h"
+#include "geometry/bvh/bvh_cache.h"
 #include "render/scene/scan_table.h"
 
 namespace gloam {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "geometry/bvh_build.h"
-#include "render/kernel/bvh_tracer.h"
+#include "geometry/bvh/bvh_build.h"
+#include "render/kernel/trace/bvh_tracer.h"
 #include "render/scene/scan_table.h"
 
 namespace gloam {

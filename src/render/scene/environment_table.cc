@@ -7,7 +7,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
-#include "geometry/image_file.h"
+#include "geometry/image/image_file.h"
 
 namespace gloam {
 namespace {

@@ -7,16 +7,16 @@
 #include <vector>
 
 #include "gloam/result.h"
-#include "render/kernel/environment.h"
+#include "render/kernel/light/environment.h"
 
 namespace gloam {
 
 class EnvironmentTable {
  public:
-  /// An equirectangular map, laid out as render/kernel/environment.h says. `texels`: linear Rec.
-  /// 709, (height x width), finite and not negative. `name` is for messages. Errors: an empty or
-  /// too large map (kMaxImagePixels), a number of texels that is not width x height, a texel that
-  /// is no light.
+  /// An equirectangular map, laid out as render/kernel/light/environment.h says. `texels`: linear
+  /// Rec. 709, (height x width), finite and not negative. `name` is for messages. Errors: an empty
+  /// or too large map (kMaxImagePixels), a number of texels that is not width x height, a texel
+  /// that is no light.
   static Result<EnvironmentTable> make(int width, int height, std::span<const Vec3f> texels,
                                        const std::string& name);
 

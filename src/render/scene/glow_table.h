@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "render/kernel/medium_view.h"
+#include "render/kernel/media/medium_view.h"
 
 namespace gloam {
 

@@ -4,10 +4,10 @@
 #include <optional>
 #include <utility>
 
-#include "render/kernel/light_picker.h"
-#include "render/kernel/shapes.h"
+#include "render/kernel/light/light_picker.h"
+#include "render/kernel/surface/shapes.h"
 #include "render/scene/pose.h"
-#include "world/visual_rules.h"
+#include "world/materials/visual_rules.h"
 
 namespace gloam {
 namespace {

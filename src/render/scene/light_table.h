@@ -4,10 +4,10 @@
 #include <span>
 #include <vector>
 
+#include "instant/pose_frame.h"
 #include "render/scene/level_table.h"
 #include "render/scene/light_tree.h"
 #include "render/scene/moving_sky.h"
-#include "sim/pose_frame.h"
 
 namespace gloam {
 

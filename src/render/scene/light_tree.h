@@ -1,5 +1,5 @@
 #pragma once
-// Builds the tree over many lights (render/kernel/light_tree.h).
+// Builds the tree over many lights (render/kernel/light/light_tree.h).
 
 #include <vector>
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "base/check.h"
-#include "render/kernel/layered_bsdf.h"
-#include "world/visual_rules.h"
+#include "render/kernel/bsdf/layered_bsdf.h"
+#include "world/materials/visual_rules.h"
 
 namespace gloam {
 namespace {

@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "instant/pose_frame.h"
 #include "render/kernel/scene_view.h"
 #include "render/scene/level_table.h"
 #include "render/scene/texture_store.h"
-#include "sim/pose_frame.h"
 
 namespace gloam {
 

@@ -7,7 +7,7 @@
 #include "base/check.h"
 #include "base/parallel.h"
 #include "render/scene/span_of.h"
-#include "world/visual_mesh.h"
+#include "world/shapes/visual_mesh.h"
 
 namespace gloam {
 namespace {

@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "instant/pose_frame.h"
 #include "render/kernel/scene_view.h"
-#include "sim/pose_frame.h"
 
 namespace gloam {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "render/scene/environment_table.h"
-#include "world/day_cycle.h"
+#include "world/sky/day_cycle.h"
 
 namespace gloam {
 

@@ -6,7 +6,7 @@
 #include "base/check.h"
 #include "base/vec.h"
 #include "gloam/types.h"
-#include "sim/pose_frame.h"
+#include "instant/pose_frame.h"
 #include "world/render_description.h"
 
 namespace gloam {

@@ -6,11 +6,11 @@
 
 #include "base/check.h"
 #include "base/memory.h"
-#include "render/kernel/shapes.h"
+#include "render/kernel/surface/shapes.h"
 #include "render/scene/albedo_table.h"
 #include "render/scene/pose.h"
 #include "render/scene/span_of.h"
-#include "world/visual_rules.h"
+#include "world/materials/visual_rules.h"
 
 namespace gloam {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "render/kernel/shapes.h"
+#include "render/kernel/surface/shapes.h"
 #include "render/scene/span_of.h"
 
 namespace gloam {

@@ -1,10 +1,10 @@
 #pragma once
-// Which instances every ray is tested against one by one (render/kernel/scan.h).
+// Which instances every ray is tested against one by one (render/kernel/trace/scan.h).
 
 #include <vector>
 
-#include "geometry/bvh_build.h"
-#include "render/kernel/scan.h"
+#include "geometry/bvh/bvh_build.h"
+#include "render/kernel/trace/scan.h"
 #include "render/scene/render_scene.h"
 
 namespace gloam {

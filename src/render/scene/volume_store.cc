@@ -10,7 +10,7 @@
 #include "base/parallel.h"
 #include "render/scene/black_body.h"
 #include "render/scene/span_of.h"
-#include "world/black_body.h"
+#include "world/lights/black_body.h"
 
 namespace gloam {
 namespace {

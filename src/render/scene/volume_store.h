@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "instant/pose_frame.h"
 #include "render/scene/glow_table.h"
-#include "sim/pose_frame.h"
 
 namespace gloam {
 

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "base/parallel.h"
-#include "render/cpu/ambient.h"
+#include "render/cpu/path/ambient.h"
 #include "render/test/probe.h"
 
 namespace gloam {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/kernel/surface.h"
+#include "render/kernel/surface/surface.h"
 #include "render/test/probe.h"
 
 namespace gloam {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/rng.h"
-#include "render/kernel/layered_bsdf.h"
+#include "render/kernel/bsdf/layered_bsdf.h"
 
 namespace gloam {
 

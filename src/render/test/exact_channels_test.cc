@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "render/kernel/channels.h"
+#include "render/kernel/camera/channels.h"
 #include "render/test/probe.h"
 
 namespace gloam {

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "base/parallel.h"
-#include "render/cpu/fast_filter.h"
+#include "render/cpu/realtime/fast_filter.h"
 #include "render/test/fast_picture.h"
 #include "render/test/panel.h"
 #include "render/test/room_with_window.h"

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "render/test/media_probe.h"
-#include "world/black_body.h"
+#include "world/lights/black_body.h"
 
 namespace gloam {
 namespace {

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "render/kernel/glow_line.h"
-#include "render/kernel/path_machine.h"
+#include "render/kernel/light/glow_line.h"
+#include "render/kernel/path/path_machine.h"
 #include "render/test/flame.h"
 #include "render/test/media_probe.h"
-#include "world/black_body.h"
+#include "world/lights/black_body.h"
 
 namespace gloam {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/kernel/light_directions.h"
+#include "render/kernel/light/light_directions.h"
 #include "render/test/direction_check.h"
 #include "render/test/probe.h"
 #include "render/test/room_with_window.h"

@@ -1,13 +1,13 @@
 // The tree over many lights: its bounds, its probabilities, and the pictures it makes.
 
-#include "render/kernel/light_tree.h"
+#include "render/kernel/light/light_tree.h"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
 
 #include "base/parallel.h"
-#include "render/kernel/light_picker.h"
+#include "render/kernel/light/light_picker.h"
 #include "render/test/light_crowd.h"
 
 namespace gloam {

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "base/check.h"
-#include "render/kernel/medium_march.h"
+#include "render/kernel/media/medium_march.h"
 #include "render/scene/volume_store.h"
 #include "render/test/plume.h"
 #include "render/test/probe.h"

@@ -4,7 +4,7 @@
 
 #include "render/scene/black_body.h"
 #include "render/test/media_probe.h"
-#include "world/black_body.h"
+#include "world/lights/black_body.h"
 
 namespace gloam {
 namespace {

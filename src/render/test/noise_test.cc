@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "base/rng.h"
-#include "render/kernel/noise.h"
+#include "render/kernel/math/noise.h"
 
 namespace gloam {
 namespace {

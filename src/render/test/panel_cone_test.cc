@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/kernel/light_tree.h"
+#include "render/kernel/light/light_tree.h"
 #include "render/scene/render_scene.h"
 #include "render/test/panel.h"
 

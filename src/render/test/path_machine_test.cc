@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/kernel/path_machine.h"
+#include "render/kernel/path/path_machine.h"
 #include "render/test/media_probe.h"
 
 namespace gloam {

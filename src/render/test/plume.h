@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "render/kernel/sampler.h"
-#include "world/medium_description.h"
+#include "render/kernel/math/sampler.h"
+#include "world/media/medium_description.h"
 
 namespace gloam {
 

@@ -1,10 +1,10 @@
 #pragma once
 // A scene with its tracer, for tests that call the kernel themselves.
 
-#include "render/cpu/light_guide.h"
-#include "render/cpu/traced_scene.h"
-#include "render/kernel/channels.h"
-#include "render/kernel/direct.h"
+#include "render/cpu/guide/light_guide.h"
+#include "render/cpu/tracer/traced_scene.h"
+#include "render/kernel/camera/channels.h"
+#include "render/kernel/path/direct.h"
 #include "render/test/scene_builder.h"
 
 namespace gloam {

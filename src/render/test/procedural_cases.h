@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "render/kernel/procedural.h"
+#include "render/kernel/surface/procedural.h"
 
 namespace gloam {
 

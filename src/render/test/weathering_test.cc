@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "base/rng.h"
-#include "render/kernel/weathering.h"
+#include "render/kernel/surface/weathering.h"
 
 namespace gloam {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "base/files.h"
-#include "geometry/image_file.h"
+#include "geometry/image/image_file.h"
 #include "gloam/run.h"
 #include "scenes.h"
 #include "world/world.h"

@@ -14,8 +14,8 @@
 #include "runtime/shared_renderer.h"
 #include "scene/test/temp_folder.h"
 #include "scenes.h"
-#include "sensors/camera_sensor.h"
-#include "sim/pose_solver.h"
+#include "sensors/camera/camera_sensor.h"
+#include "sim/snapshots/pose_solver.h"
 
 namespace gloam {
 namespace {

@@ -10,7 +10,7 @@
 #include "gloam/run.h"
 #include "runtime/live_simulation.h"
 #include "scene/test/temp_folder.h"
-#include "sim/live_fields.h"
+#include "sim/commands/live_fields.h"
 
 namespace gloam {
 namespace {

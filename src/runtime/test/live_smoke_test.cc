@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "render/kernel/medium_march.h"
+#include "render/kernel/media/medium_march.h"
 #include "render/scene/volume_store.h"
 #include "scenes.h"
-#include "sim/pose_solver.h"
+#include "sim/snapshots/pose_solver.h"
 #include "world/render_description.h"
 
 namespace gloam {

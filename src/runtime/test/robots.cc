@@ -3,8 +3,8 @@
 #include <cstdlib>
 
 #include "base/rng.h"
-#include "scene/mujoco_guard.h"
-#include "scene/mujoco_plugins.h"
+#include "scene/files/mujoco_guard.h"
+#include "scene/files/mujoco_plugins.h"
 
 namespace gloam {
 

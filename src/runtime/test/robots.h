@@ -13,7 +13,7 @@
 
 #include "gloam/simulation.h"
 #include "scene/test/temp_folder.h"
-#include "sim/stepper.h"
+#include "sim/loop/stepper.h"
 #include "world/world.h"
 
 namespace gloam {

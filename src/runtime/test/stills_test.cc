@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "base/files.h"
-#include "geometry/image_exr.h"
-#include "geometry/image_file.h"
+#include "geometry/image/image_exr.h"
+#include "geometry/image/image_file.h"
 #include "gloam/run.h"
 #include "scenes.h"
 

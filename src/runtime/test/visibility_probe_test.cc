@@ -5,7 +5,7 @@
 
 #include "runtime/robot_metrics.h"
 #include "scenes.h"
-#include "sim/pose_solver.h"
+#include "sim/snapshots/pose_solver.h"
 
 namespace gloam {
 namespace {

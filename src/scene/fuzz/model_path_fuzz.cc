@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-#include "scene/model_path.h"
+#include "scene/files/model_path.h"
 
 namespace fs = std::filesystem;
 

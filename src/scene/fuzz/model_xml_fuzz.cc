@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <string>
 
-#include "scene/urdf_text.h"
-#include "scene/xml_scan.h"
+#include "scene/files/urdf_text.h"
+#include "scene/files/xml_scan.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);

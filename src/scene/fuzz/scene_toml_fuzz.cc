@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "scene/randomize.h"
+#include "scene/randomize/randomize.h"
 #include "scene/toml/toml_reader.h"
-#include "scene/validate.h"
+#include "scene/validate/validate.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);

@@ -5,9 +5,9 @@
 #include "base/files.h"
 #include "base/plain_text.h"
 #include "base/text.h"
+#include "scene/files/model_path.h"
 #include "scene/mjcf/node.h"
 #include "scene/mjcf/spec_only.h"
-#include "scene/model_path.h"
 
 namespace gloam::mjcf {
 namespace fs = std::filesystem;

@@ -7,10 +7,10 @@
 #include <map>
 
 #include "base/check.h"
+#include "scene/files/mujoco_guard.h"
+#include "scene/files/mujoco_plugins.h"
 #include "scene/mjcf/spec_only.h"
 #include "scene/mjcf/specimen_parts.h"
-#include "scene/mujoco_guard.h"
-#include "scene/mujoco_plugins.h"
 
 namespace gloam::mjcf {
 namespace {

@@ -5,10 +5,10 @@
 #include <algorithm>
 
 #include "base/text.h"
+#include "scene/files/xml_text.h"
 #include "scene/mjcf/node.h"
 #include "scene/mjcf/toml_value.h"
 #include "scene/toml/toml_reader.h"
-#include "scene/xml_text.h"
 
 namespace gloam {
 

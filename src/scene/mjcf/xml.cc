@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "scene/files/xml_text.h"
 #include "scene/mjcf/node.h"
-#include "scene/xml_text.h"
 
 namespace gloam::mjcf {
 namespace {

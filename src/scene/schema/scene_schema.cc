@@ -14,7 +14,7 @@
 #include <type_traits>
 
 #include "gloam/scene.h"
-#include "scene/option_fields.h"
+#include "scene/options/option_fields.h"
 #include "scene/schema/override_schema.h"
 
 namespace gloam {

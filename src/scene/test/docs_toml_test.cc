@@ -4,7 +4,7 @@
 
 #include "base/files.h"
 #include "scene/toml/toml_reader.h"
-#include "scene/validate.h"
+#include "scene/validate/validate.h"
 
 namespace gloam {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/toml/toml_reader.h"
-#include "scene/validate.h"
+#include "scene/validate/validate.h"
 
 namespace gloam {
 namespace {

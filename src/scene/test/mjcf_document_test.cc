@@ -7,8 +7,8 @@
 
 #include "base/files.h"
 #include "gloam/mjcf_elements.h"
+#include "scene/files/model_files.h"
 #include "scene/mjcf/schema.h"
-#include "scene/model_files.h"
 #include "scene/test/temp_folder.h"
 
 namespace gloam::mjcf {

@@ -1,9 +1,9 @@
-#include "scene/model_files.h"
+#include "scene/files/model_files.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "scene/mujoco_guard.h"
+#include "scene/files/mujoco_guard.h"
 #include "scene/test/temp_folder.h"
 
 namespace gloam {

@@ -1,4 +1,4 @@
-#include "scene/mujoco_guard.h"
+#include "scene/files/mujoco_guard.h"
 
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>

@@ -7,10 +7,10 @@
 
 #include "base/files.h"
 #include "geometry/test/mutator.h"
+#include "scene/files/urdf_text.h"
+#include "scene/files/xml_scan.h"
 #include "scene/toml/toml_reader.h"
-#include "scene/urdf_text.h"
-#include "scene/validate.h"
-#include "scene/xml_scan.h"
+#include "scene/validate/validate.h"
 
 namespace gloam {
 namespace {

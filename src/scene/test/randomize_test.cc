@@ -1,6 +1,6 @@
 // [[randomize]]: what is drawn, of which distribution, and that one draw does not disturb another.
 
-#include "scene/randomize.h"
+#include "scene/randomize/randomize.h"
 
 #include <gtest/gtest.h>
 

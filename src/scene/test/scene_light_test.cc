@@ -5,7 +5,7 @@
 
 #include "gloam/scene.h"
 #include "scene/test/temp_folder.h"
-#include "scene/validate.h"
+#include "scene/validate/validate.h"
 
 namespace gloam {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "base/text.h"
-#include "scene/field_rule.h"
-#include "scene/option_fields.h"
+#include "scene/options/field_rule.h"
+#include "scene/options/option_fields.h"
 
 namespace gloam {
 

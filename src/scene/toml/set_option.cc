@@ -2,7 +2,7 @@
 
 #include "scene/toml/option_walker.h"
 #include "scene/toml/table_reader.h"
-#include "scene/validate.h"
+#include "scene/validate/validate.h"
 
 namespace gloam {
 namespace {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "base/text.h"
-#include "scene/option_fields.h"
+#include "scene/options/option_fields.h"
 #include "scene/toml/calendar.h"
 #include "scene/toml/override_reader.h"
 #include "scene/toml/toml_reader.h"

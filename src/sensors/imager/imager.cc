@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "geometry/image_file.h"
+#include "geometry/image/image_file.h"
 #include "gloam/view.h"
 #include "render/film/tone_map.h"
 #include "sensors/imager/vignetting.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/parallel.h"
-#include "sensors/draw.h"
+#include "sensors/signal/draw.h"
 
 namespace gloam {
 namespace {

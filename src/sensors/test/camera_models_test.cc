@@ -4,11 +4,11 @@
 
 #include "render/film/tone_map.h"
 #include "scene/test/temp_folder.h"
-#include "sensors/camera_sensor.h"
-#include "sensors/stereo_depth.h"
+#include "sensors/camera/camera_sensor.h"
+#include "sensors/depth/stereo_depth.h"
 #include "sensors/test/statistics.h"
-#include "sim/pose_solver.h"
-#include "sim/simulator.h"
+#include "sim/loop/simulator.h"
+#include "sim/snapshots/pose_solver.h"
 
 namespace gloam {
 namespace {

@@ -1,5 +1,5 @@
 // One camera, one instant: what its frame holds, against closed forms.
-#include "sensors/camera_sensor.h"
+#include "sensors/camera/camera_sensor.h"
 
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
@@ -11,8 +11,8 @@
 #include "base/rng.h"
 #include "gloam/program.h"
 #include "scene/test/temp_folder.h"
-#include "sim/pose_solver.h"
-#include "sim/simulator.h"
+#include "sim/loop/simulator.h"
+#include "sim/snapshots/pose_solver.h"
 
 namespace gloam {
 namespace {

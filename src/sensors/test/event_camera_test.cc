@@ -1,5 +1,5 @@
 // Events of known ramps of light.
-#include "sensors/event_track.h"
+#include "sensors/event/event_track.h"
 
 #include <algorithm>
 #include <map>

@@ -1,7 +1,7 @@
 // The LiDAR kernel with one float (as a GPU runs it) and with lanes.
 
 #include "render/cpu/lidar_scan.h"
-#include "render/kernel/lidar.h"
+#include "render/kernel/lidar/lidar.h"
 #include "render/test/media_probe.h"
 #include "sensors/test/lidar_scene.h"
 

@@ -1,14 +1,14 @@
 // Where and when beams go: presets against their manuals' tables, directions of rotation, rosettes.
 
-#include "sensors/lidar_pattern.h"
+#include "sensors/lidar/lidar_pattern.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
-#include "scene/lidar_names.h"
-#include "sensors/lidar_presets.h"
+#include "scene/options/lidar_names.h"
+#include "sensors/lidar/lidar_presets.h"
 
 namespace gloam {
 namespace {

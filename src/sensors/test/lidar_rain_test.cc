@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "render/kernel/lidar_particles.h"
-#include "sensors/lidar_particle_table.h"
+#include "render/kernel/lidar/lidar_particles.h"
+#include "sensors/lidar/lidar_particle_table.h"
 #include "sensors/test/lidar_scene.h"
 
 namespace gloam {

@@ -7,7 +7,7 @@
 
 #include "base/check.h"
 #include "render/test/scene_builder.h"
-#include "sensors/lidar_sensor.h"
+#include "sensors/lidar/lidar_sensor.h"
 #include "sensors/test/statistics.h"
 
 namespace gloam {

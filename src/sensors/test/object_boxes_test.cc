@@ -6,9 +6,9 @@
 #include <mutex>
 
 #include "scene/test/temp_folder.h"
-#include "sensors/camera_sensor.h"
-#include "sim/pose_solver.h"
-#include "sim/simulator.h"
+#include "sensors/camera/camera_sensor.h"
+#include "sim/loop/simulator.h"
+#include "sim/snapshots/pose_solver.h"
 
 namespace gloam {
 namespace {

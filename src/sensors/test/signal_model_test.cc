@@ -1,9 +1,9 @@
 // Errors of signals against their parameters, by Allan's figures.
-#include "sensors/signal_model.h"
+#include "sensors/signal/signal_model.h"
 
 #include <numbers>
 
-#include "scene/pattern_names.h"
+#include "scene/options/pattern_names.h"
 #include "sensors/test/statistics.h"
 
 namespace gloam {

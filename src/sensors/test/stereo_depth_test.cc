@@ -1,5 +1,5 @@
 // Depth of an active stereo camera against its parameters.
-#include "sensors/stereo_depth.h"
+#include "sensors/depth/stereo_depth.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,9 +1,9 @@
 // Black bodies in 8 … 14 µm, and a thermal camera's noise.
-#include "sensors/thermal_camera.h"
+#include "sensors/thermal/thermal_camera.h"
 
 #include "base/parallel.h"
 #include "sensors/test/statistics.h"
-#include "sensors/thermal_band.h"
+#include "sensors/thermal/thermal_band.h"
 
 namespace gloam {
 namespace {

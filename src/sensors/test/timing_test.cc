@@ -1,7 +1,7 @@
 // When samples are taken and arrive, from 10^5 of them.
 #include "sensors/timing.h"
 
-#include "sensors/draw.h"
+#include "sensors/signal/draw.h"
 #include "sensors/test/statistics.h"
 
 namespace gloam {

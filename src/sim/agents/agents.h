@@ -8,7 +8,7 @@
 
 #include "sim/agents/agent.h"
 #include "sim/agents/doors.h"
-#include "sim/step_schedule.h"
+#include "sim/loop/step_schedule.h"
 
 namespace gloam {
 

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "geometry/shape_corners.h"
-#include "sim/effects/collider_mesh.h"
+#include "sim/effects/bodies/collider_mesh.h"
 
 namespace gloam {
 namespace {

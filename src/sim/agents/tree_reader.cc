@@ -10,7 +10,7 @@
 #include "base/files.h"
 #include "base/plain_text.h"
 #include "base/text.h"
-#include "scene/xml_text.h"
+#include "scene/files/xml_text.h"
 #include "sim/agents/behavior_tree.h"
 
 namespace gloam {

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "sim/agents/agent_math.h"
-#include "world/agent_description.h"
+#include "world/agents/agent_description.h"
 
 namespace gloam {
 

@@ -13,7 +13,8 @@ constexpr double kSlowestCadence = 1.2;  // [1/s]
 constexpr double kStrikePitch = 17 * kDegree, kPushPitch = 36 * kDegree;
 constexpr double kToe = 0.7, kHeel = 0.22;        // pivots from the ankle, shares of the foot
 constexpr double kStands = 0.06, kStarts = 0.09;  // [m/s]
-constexpr double kAhead = 0.42;   // of the way in stance that a foot comes down ahead of the hips
+constexpr double kWalkerAhead =
+    0.42;                         // of the way in stance that a foot comes down ahead of the hips
 constexpr double kKnee = 0.025;   // that knees bent in mid-stance lower the hips at 1.3 m/s [m]
 constexpr double kReach = 0.997;  // of a leg's length: a knee is never quite straight
 
@@ -96,7 +97,7 @@ void Walker::aim(const WalkInput& in, int foot, double rate, const GroundHeight&
   const Vec3d ahead{c * v.x - s * v.y, s * v.x + c * v.y, 0};
   WalkInput then = in;
   then.heading = in.heading + turn + 0.5 * std::clamp(in.yaw_rate * stand, -0.6, 0.6);
-  then.p = in.p + ahead * (left + (speed > kStands ? kAhead * stand : 0));
+  then.p = in.p + ahead * (left + (speed > kStands ? kWalkerAhead * stand : 0));
   f.to = neutral(then, foot);
   f.to.z = ground.at(f.to);
   f.to_yaw = f.from_yaw + wrapped(then.heading - f.from_yaw);

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/hash.h"
-#include "sim/effects/gas_effect.h"
+#include "sim/effects/gas/gas_effect.h"
 
 namespace gloam {
 

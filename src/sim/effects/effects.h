@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "sim/effects/gas_forces.h"
-#include "sim/snapshot.h"
-#include "sim/soil_reaction.h"
-#include "sim/step_schedule.h"
+#include "sim/effects/gas/gas_forces.h"
+#include "sim/effects/soil/soil_reaction.h"
+#include "sim/loop/step_schedule.h"
+#include "sim/snapshots/snapshot.h"
 
 namespace gloam {
 

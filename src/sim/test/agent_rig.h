@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/test/temp_folder.h"
-#include "sim/stepper.h"
+#include "sim/loop/stepper.h"
 #include "test_world.h"
 
 namespace gloam {

@@ -7,7 +7,7 @@
 
 #include "agent_rig.h"
 #include "same_hash.h"
-#include "sim/pose_solver.h"
+#include "sim/snapshots/pose_solver.h"
 
 namespace gloam {
 namespace {

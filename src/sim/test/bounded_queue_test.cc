@@ -1,6 +1,6 @@
 // Nothing is lost, doubled or reordered between many threads.
 
-#include "sim/bounded_queue.h"
+#include "sim/commands/bounded_queue.h"
 
 #include <gtest/gtest.h>
 

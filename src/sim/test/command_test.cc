@@ -3,7 +3,7 @@
 #include <cmath>
 #include <thread>
 
-#include "sim/live_fields.h"
+#include "sim/commands/live_fields.h"
 #include "test_world.h"
 
 namespace gloam {

@@ -5,9 +5,9 @@
 
 #include "agent_rig.h"
 #include "same_hash.h"
-#include "sim/effects/contact_dust.h"
-#include "sim/effects/dust_law.h"
-#include "sim/pose_solver.h"
+#include "sim/effects/dust/contact_dust.h"
+#include "sim/effects/dust/dust_law.h"
+#include "sim/snapshots/pose_solver.h"
 #include "soil_rig.h"
 
 namespace gloam {

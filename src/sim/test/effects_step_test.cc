@@ -1,6 +1,6 @@
 // How a step with effects is put together from MuJoCo's halves of one.
 
-#include "sim/stepper.h"
+#include "sim/loop/stepper.h"
 #include "test_world.h"
 
 namespace gloam {

@@ -3,7 +3,7 @@
 #include <numeric>
 
 #include "same_hash.h"
-#include "sim/pose_solver.h"
+#include "sim/snapshots/pose_solver.h"
 
 namespace gloam {
 namespace {

@@ -3,7 +3,7 @@
 
 #include "same_hash.h"
 #include "soil_rig.h"
-#include "world/visual_soil.h"
+#include "world/effects/visual_soil.h"
 
 namespace gloam {
 namespace {

@@ -1,12 +1,12 @@
 // Air that pushes bodies: what moving air does that MuJoCo's own still air does not.
 
-#include "sim/effects/gas_forces.h"
+#include "sim/effects/gas/gas_forces.h"
 
 #include <array>
 #include <chrono>
 #include <cmath>
 
-#include "sim/effects/wind.h"
+#include "sim/effects/wind/wind.h"
 #include "test_world.h"
 
 namespace gloam {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sim/snapshot.h"
+#include "sim/snapshots/snapshot.h"
 
 namespace gloam {
 

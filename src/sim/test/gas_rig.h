@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
-#include "scene/mujoco_guard.h"
-#include "sim/effects/gas_obstacles.h"
+#include "scene/files/mujoco_guard.h"
+#include "sim/effects/gas/gas_obstacles.h"
 #include "test_world.h"
 
 namespace gloam {

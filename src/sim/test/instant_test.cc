@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sim/model_fields.h"
+#include "sim/commands/model_fields.h"
 #include "test_world.h"
 
 namespace gloam {

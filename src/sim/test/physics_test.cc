@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "sim/state_layout.h"
+#include "sim/state/state_layout.h"
 #include "test_world.h"
 
 namespace gloam {

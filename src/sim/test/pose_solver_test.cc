@@ -1,13 +1,13 @@
 // Poses of a Snapshot are those mj_forward gives for the same state, exactly.
 
-#include "sim/pose_solver.h"
+#include "sim/snapshots/pose_solver.h"
 
 #include <cstring>
 #include <thread>
 
 #include "test_world.h"
-#include "world/capsule_mesh.h"
-#include "world/tendon_path.h"
+#include "world/shapes/capsule_mesh.h"
+#include "world/shapes/tendon_path.h"
 
 namespace gloam {
 namespace {

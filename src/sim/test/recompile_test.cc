@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "sim/state_layout.h"
+#include "sim/state/state_layout.h"
 #include "test_world.h"
 
 namespace gloam {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "sim/step_schedule.h"
+#include "sim/loop/step_schedule.h"
 
 namespace gloam {
 namespace {

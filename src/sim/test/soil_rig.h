@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/effects/soil_effect.h"
+#include "sim/effects/soil/soil_effect.h"
 #include "test_world.h"
 
 namespace gloam {

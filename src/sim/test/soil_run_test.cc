@@ -2,7 +2,7 @@
 // run.
 
 #include "same_hash.h"
-#include "sim/effects/collider_bottom.h"
+#include "sim/effects/bodies/collider_bottom.h"
 #include "soil_rig.h"
 
 namespace gloam {

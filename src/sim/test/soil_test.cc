@@ -1,6 +1,6 @@
 // Beds of soil: how far plates and wheels sink, what they lose, what holds against sliding.
 
-#include "sim/effects/soil_bed.h"
+#include "sim/effects/soil/soil_bed.h"
 
 #include "soil_rig.h"
 

@@ -1,6 +1,6 @@
 // Our order of the state is MuJoCo's.
 
-#include "sim/state_layout.h"
+#include "sim/state/state_layout.h"
 
 #include "test_world.h"
 

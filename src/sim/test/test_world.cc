@@ -1,6 +1,6 @@
 #include "test_world.h"
 
-#include "scene/mujoco_guard.h"
+#include "scene/files/mujoco_guard.h"
 
 namespace gloam {
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "base/rng.h"
-#include "sim/simulator.h"
+#include "sim/loop/simulator.h"
 
 namespace gloam {
 

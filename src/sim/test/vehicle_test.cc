@@ -2,8 +2,8 @@
 
 #include "sim/agents/vehicle.h"
 #include "agent_rig.h"
+#include "places/catalogue.h"
 #include "same_hash.h"
-#include "scene/environment/catalogue.h"
 
 namespace gloam {
 namespace {

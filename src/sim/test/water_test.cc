@@ -1,6 +1,6 @@
 // Waters: what floats, how deep, how steadily, and how it rocks.
 
-#include "sim/effects/water_forces.h"
+#include "sim/effects/water/water_forces.h"
 
 #include <fmt/format.h>
 
@@ -8,9 +8,9 @@
 #include <numbers>
 
 #include "base/parallel.h"
-#include "sim/effects/water_effect.h"
-#include "sim/effects/water_surface.h"
-#include "sim/state_layout.h"
+#include "sim/effects/water/water_effect.h"
+#include "sim/effects/water/water_surface.h"
+#include "sim/state/state_layout.h"
 #include "test_world.h"
 
 namespace gloam {

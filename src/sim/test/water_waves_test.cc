@@ -6,8 +6,8 @@
 #include <numbers>
 
 #include "same_hash.h"
-#include "sim/effects/water_ripples.h"
-#include "sim/effects/water_surface.h"
+#include "sim/effects/water/water_ripples.h"
+#include "sim/effects/water/water_surface.h"
 
 namespace gloam {
 namespace {

@@ -1,13 +1,13 @@
 // Wind: its mean, gusts and spectrum as asked for, and what it does to bodies.
 
-#include "sim/effects/wind.h"
+#include "sim/effects/wind/wind.h"
 
 #include <cmath>
 #include <numbers>
 
 #include "base/parallel.h"
 #include "gloam/command.h"
-#include "sim/effects/air_drag.h"
+#include "sim/effects/wind/air_drag.h"
 #include "test_world.h"
 
 namespace gloam {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <cstdlib>
 
-#include "world/ies_profile.h"
+#include "world/lights/ies_profile.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const auto profile = gloam::parse_ies({reinterpret_cast<const char*>(data), size}, "fuzz.ies");

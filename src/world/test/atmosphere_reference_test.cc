@@ -6,9 +6,9 @@
 
 #include "base/angle.h"
 #include "base/rng.h"
-#include "world/air.h"
-#include "world/air_profile.h"
-#include "world/atmosphere.h"
+#include "world/sky/air.h"
+#include "world/sky/air_profile.h"
+#include "world/sky/atmosphere.h"
 
 namespace gloam {
 namespace {

@@ -1,6 +1,6 @@
 // The clear sky and the sun against measured and published figures.
 
-#include "world/atmosphere.h"
+#include "world/sky/atmosphere.h"
 #include "base/angle.h"
 
 #include <gmock/gmock.h>
@@ -11,8 +11,8 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "world/air.h"
-#include "world/air_profile.h"
+#include "world/sky/air.h"
+#include "world/sky/air_profile.h"
 
 namespace gloam {
 namespace {

@@ -1,6 +1,6 @@
 // [[light]] tables in the description: units, shapes, bodies, schedules, bad files.
 
-#include "world/authored_light.h"
+#include "world/lights/authored_light.h"
 
 #include <gmock/gmock.h>
 
@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "scene/test/temp_folder.h"
-#include "world/lamp_mesh.h"
-#include "world/light_strength.h"
+#include "world/lights/lamp_mesh.h"
+#include "world/lights/light_strength.h"
 #include "world/test/visual_test_model.h"
 
 namespace gloam {

@@ -1,6 +1,6 @@
 // [[material]] tables on the model's materials.
 
-#include "world/authored_material.h"
+#include "world/materials/authored_material.h"
 #include "world/test/visual_test_model.h"
 
 namespace gloam {

@@ -1,6 +1,6 @@
 // [sky] in the description: maps, clear skies, even ones, and what they take the place of.
 
-#include "world/authored_sky.h"
+#include "world/sky/authored_sky.h"
 
 #include <gmock/gmock.h>
 
@@ -9,8 +9,8 @@
 
 #include "geometry/test/image_writer.h"
 #include "scene/test/temp_folder.h"
-#include "world/atmosphere.h"
-#include "world/environment.h"
+#include "world/sky/atmosphere.h"
+#include "world/sky/environment.h"
 #include "world/test/visual_test_model.h"
 
 namespace gloam {

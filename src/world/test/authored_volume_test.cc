@@ -1,6 +1,6 @@
 // [[volume]] tables in the description: media, amounts, grids, patterns.
 
-#include "world/authored_volume.h"
+#include "world/media/authored_volume.h"
 
 #include <gmock/gmock.h>
 
@@ -9,9 +9,9 @@
 
 #include "geometry/test/npy_writer.h"
 #include "scene/test/temp_folder.h"
-#include "world/medium_presets.h"
+#include "world/media/medium_presets.h"
+#include "world/media/volume_pattern.h"
 #include "world/test/visual_test_model.h"
-#include "world/volume_pattern.h"
 
 namespace gloam {
 namespace {

@@ -1,6 +1,6 @@
 // [blackout] on the lamps of models and scenes.
 
-#include "world/blackout.h"
+#include "world/lights/blackout.h"
 
 #include <gmock/gmock.h>
 

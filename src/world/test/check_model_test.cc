@@ -4,9 +4,9 @@
 #include "base/cache_writer.h"
 #include "gloam/world.h"
 #include "scene/test/temp_folder.h"
-#include "world/level.h"
-#include "world/mesh_object.h"
-#include "world/model_cache.h"
+#include "world/cache/model_cache.h"
+#include "world/compile/level.h"
+#include "world/compile/mesh_object.h"
 
 namespace gloam {
 namespace {

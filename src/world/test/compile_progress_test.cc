@@ -1,4 +1,4 @@
-#include "world/compile_progress.h"
+#include "world/compile/compile_progress.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

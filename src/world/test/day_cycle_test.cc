@@ -1,6 +1,6 @@
 // A sky whose clock runs: where its sun is, and which skies it has.
 
-#include "world/day_cycle.h"
+#include "world/sky/day_cycle.h"
 
 #include <gtest/gtest.h>
 

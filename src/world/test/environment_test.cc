@@ -7,8 +7,8 @@
 #include <set>
 
 #include "base/files.h"
-#include "scene/environment/generators.h"
-#include "scene/environment/place_writer.h"
+#include "places/generators.h"
+#include "places/writer/place_writer.h"
 #include "scene/test/temp_folder.h"
 #include "world/render_description.h"
 #include "world/world.h"

@@ -1,6 +1,6 @@
 // [[gas]], [[fire]] and [[smoke]] on the compiled model.
 
-#include "world/gas_description.h"
+#include "world/effects/gas_description.h"
 
 #include <gmock/gmock.h>
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <string>
 
-#include "scene/environment/dice.h"
-#include "scene/environment_fields.h"
+#include "places/dice.h"
+#include "scene/options/environment_fields.h"
 #include "world/test/generated_place.h"
 
 namespace gloam {

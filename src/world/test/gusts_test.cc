@@ -1,6 +1,6 @@
 // Gusts: how far they carry what is in the air, against sums over time.
 
-#include "world/gusts.h"
+#include "world/weather/gusts.h"
 
 #include <gtest/gtest.h>
 

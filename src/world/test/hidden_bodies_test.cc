@@ -4,7 +4,7 @@
 
 #include "scene/test/temp_folder.h"
 #include "visual_test_model.h"
-#include "world/authored_lidar.h"
+#include "world/sensors/authored_lidar.h"
 
 namespace gloam {
 namespace {

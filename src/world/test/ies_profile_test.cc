@@ -1,6 +1,6 @@
 // Photometric files: closed forms, symmetries, wrong and damaged files.
 
-#include "world/ies_profile.h"
+#include "world/lights/ies_profile.h"
 #include "base/angle.h"
 
 #include <fmt/format.h>

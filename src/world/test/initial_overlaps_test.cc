@@ -1,4 +1,4 @@
-#include "world/initial_overlaps.h"
+#include "world/compile/initial_overlaps.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

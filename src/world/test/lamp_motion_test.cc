@@ -1,6 +1,6 @@
 // Lamps that turn and swing, against closed forms.
 
-#include "world/lamp_motion.h"
+#include "world/lights/lamp_motion.h"
 
 #include <gmock/gmock.h>
 

@@ -1,6 +1,6 @@
 // Lamps that switch, ripple, start and flicker.
 
-#include "world/light_schedule.h"
+#include "world/lights/light_schedule.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "world/load_progress.h"
+#include "world/compile/load_progress.h"
 
 #include <gtest/gtest.h>
 

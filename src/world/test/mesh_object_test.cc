@@ -1,4 +1,4 @@
-#include "world/mesh_object.h"
+#include "world/compile/mesh_object.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@
 #include "base/cache_writer.h"
 #include "gloam/world.h"
 #include "scene/test/temp_folder.h"
-#include "world/export_mjcf.h"
+#include "world/export/export_mjcf.h"
 #include "world/render_description.h"
 
 namespace gloam {

@@ -1,4 +1,4 @@
-#include "world/model_cache.h"
+#include "world/cache/model_cache.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,9 +11,9 @@
 #include "base/hash.h"
 #include "gloam/world.h"
 #include "scene/test/temp_folder.h"
-#include "world/level.h"
-#include "world/mesh_object.h"
-#include "world/model_compare.h"
+#include "world/compile/level.h"
+#include "world/compile/mesh_object.h"
+#include "world/export/model_compare.h"
 #include "world/render_description.h"
 
 namespace gloam {

@@ -4,7 +4,7 @@
 
 #include "scene/test/temp_folder.h"
 #include "visual_test_model.h"
-#include "world/export_mjcf.h"
+#include "world/export/export_mjcf.h"
 
 namespace gloam {
 namespace {

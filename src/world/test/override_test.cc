@@ -5,7 +5,7 @@
 #include "base/files.h"
 #include "gloam/world.h"
 #include "scene/test/temp_folder.h"
-#include "world/model_cache.h"
+#include "world/cache/model_cache.h"
 #include "world/world.h"
 
 namespace gloam {

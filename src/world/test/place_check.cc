@@ -9,7 +9,7 @@
 #include <memory>
 #include <set>
 
-#include "scene/spec_geom.h"
+#include "places/writer/spec_geom.h"
 #include "world/world.h"
 
 namespace gloam {

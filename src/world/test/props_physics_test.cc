@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "gloam/world.h"
-#include "scene/environment/catalogue.h"
+#include "places/catalogue.h"
 #include "scene/test/temp_folder.h"
 #include "world/render_description.h"
 #include "world/world.h"

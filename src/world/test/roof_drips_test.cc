@@ -1,6 +1,6 @@
 // What falls from the edges of roofs.
 
-#include "world/roof_drips.h"
+#include "world/weather/roof_drips.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // [[hfield]]: ground of mesh files as MuJoCo feels it.
 
-#include "world/sampled_ground.h"
+#include "world/compile/sampled_ground.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -12,9 +12,9 @@
 
 #include "base/rng.h"
 #include "scene/test/temp_folder.h"
-#include "world/mesh_object.h"
-#include "world/model_cache.h"
-#include "world/model_compare.h"
+#include "world/cache/model_cache.h"
+#include "world/compile/mesh_object.h"
+#include "world/export/model_compare.h"
 #include "world/render_description.h"
 
 namespace gloam {

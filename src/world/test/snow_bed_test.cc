@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "scene/test/temp_folder.h"
-#include "world/soil_description.h"
-#include "world/visual_soil.h"
+#include "world/effects/soil_description.h"
+#include "world/effects/visual_soil.h"
 #include "world/world.h"
 
 namespace gloam {

@@ -1,15 +1,15 @@
 // [[soil]] in scene files.
 
-#include "world/soil_description.h"
+#include "world/effects/soil_description.h"
 
 #include <gmock/gmock.h>
 
 #include <cmath>
 
+#include "scene/options/weather_fields.h"
 #include "scene/test/temp_folder.h"
-#include "scene/weather_fields.h"
+#include "world/effects/visual_soil.h"
 #include "world/render_description.h"
-#include "world/visual_soil.h"
 #include "world/world.h"
 
 namespace gloam {

@@ -1,12 +1,12 @@
 // The studio and the free camera's view of models that bring no light, or stand beside large
 // things.
 
-#include "world/studio.h"
+#include "world/view/studio.h"
 
 #include <cmath>
 
 #include "visual_test_model.h"
-#include "world/visual_rules.h"
+#include "world/materials/visual_rules.h"
 
 namespace gloam {
 namespace {

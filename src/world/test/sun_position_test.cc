@@ -1,6 +1,6 @@
 // The sun's place against an almanac.
 
-#include "world/sun_position.h"
+#include "world/sky/sun_position.h"
 #include "base/angle.h"
 
 #include <gmock/gmock.h>

@@ -8,11 +8,11 @@
 
 #include "base/cache_writer.h"
 #include "gloam/world.h"
-#include "scene/mujoco_plugins.h"
+#include "scene/files/mujoco_plugins.h"
 #include "scene/test/temp_folder.h"
-#include "world/export_mjcf.h"
-#include "world/model_cache.h"
-#include "world/model_compare.h"
+#include "world/cache/model_cache.h"
+#include "world/export/export_mjcf.h"
+#include "world/export/model_compare.h"
 #include "world/world.h"
 
 namespace gloam {

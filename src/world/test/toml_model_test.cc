@@ -8,8 +8,8 @@
 #include "gloam/mjcf.h"
 #include "gloam/world.h"
 #include "scene/test/temp_folder.h"
-#include "world/level.h"
-#include "world/model_compare.h"
+#include "world/compile/level.h"
+#include "world/export/model_compare.h"
 
 namespace gloam {
 namespace {

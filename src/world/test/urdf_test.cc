@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "gloam/world.h"
+#include "scene/files/urdf_text.h"
 #include "scene/test/temp_folder.h"
-#include "scene/urdf_text.h"
-#include "world/model_compare.h"
+#include "world/export/model_compare.h"
 #include "world/world.h"
 
 namespace gloam {

@@ -1,6 +1,6 @@
 // [[visual]] tables: model files as drawn things.
 
-#include "world/visual_file.h"
+#include "world/shapes/visual_file.h"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "visual_test_model.h"
-#include "world/visual_rules.h"
+#include "world/materials/visual_rules.h"
 
 namespace gloam {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "geometry/test/image_writer.h"
 #include "visual_test_model.h"
-#include "world/ktx_light.h"
-#include "world/visual_rules.h"
+#include "world/lights/ktx_light.h"
+#include "world/materials/visual_rules.h"
 
 namespace gloam {
 namespace {

@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "visual_test_model.h"
-#include "world/visual_mesh.h"
+#include "world/shapes/visual_mesh.h"
 
 namespace gloam {
 namespace {

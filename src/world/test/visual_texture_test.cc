@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "world/texture_coordinates.h"
+#include "world/materials/texture_coordinates.h"
 
 namespace gloam {
 namespace {

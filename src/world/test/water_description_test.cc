@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "scene/test/temp_folder.h"
+#include "world/effects/visual_water.h"
 #include "world/render_description.h"
-#include "world/visual_water.h"
 #include "world/world.h"
 
 namespace gloam {

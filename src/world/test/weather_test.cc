@@ -3,10 +3,10 @@
 #include <gmock/gmock.h>
 
 #include "scene/test/temp_folder.h"
-#include "world/extent.h"
-#include "world/medium_presets.h"
-#include "world/rain_splash.h"
+#include "world/media/medium_presets.h"
 #include "world/render_description.h"
+#include "world/shapes/extent.h"
+#include "world/weather/rain_splash.h"
 #include "world/world.h"
 
 namespace gloam {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <thread>
 
-#include "scene/mujoco_guard.h"
+#include "scene/files/mujoco_guard.h"
 #include "scene/test/temp_folder.h"
-#include "world/model_compare.h"
+#include "world/export/model_compare.h"
 #include "world/world.h"
 
 namespace gloam {

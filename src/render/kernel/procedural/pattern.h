@@ -2,8 +2,8 @@
 // What every family of procedural materials shares: its sample, the projection onto a surface, and
 // filtered patterns of repeated units. Device-safe.
 
-#include "render/kernel/noise.h"
-#include "world/procedural_description.h"
+#include "render/kernel/math/noise.h"
+#include "world/materials/procedural_description.h"
 
 namespace gloam {
 

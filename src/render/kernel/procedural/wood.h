@@ -1,8 +1,8 @@
 #pragma once
 // Wood cut from logs, solid or in boards. Device-safe.
 
+#include "render/kernel/math/ray.h"
 #include "render/kernel/procedural/pattern.h"
-#include "render/kernel/ray.h"
 
 namespace gloam {
 namespace woods {

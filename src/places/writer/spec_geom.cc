@@ -1,0 +1,34 @@
+#include "places/writer/spec_geom.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace gloam {
+
+void write_pose(const Pose& X, double* pos, double* quat) {
+  pos[0] = X.p.x, pos[1] = X.p.y, pos[2] = X.p.z;
+  quat[0] = X.q.w, quat[1] = X.q.x, quat[2] = X.q.y, quat[3] = X.q.z;
+  // MuJoCo normalises what it reads: what no longer changes by that survives export bit for bit.
+  for (int i = 0; i < 8; ++i) {
+    const double norm =
+        std::sqrt(quat[0] * quat[0] + quat[1] * quat[1] + quat[2] * quat[2] + quat[3] * quat[3]);
+    for (int k = 0; k < 4; ++k) quat[k] = quat[k] / norm + 0.0;  // no -0: MJCF leaves defaults out
+  }
+}
+
+void write_friction(const std::optional<Vec3>& friction, mjsGeom* geom) {
+  if (!friction) return;
+  const double numbers[3] = {friction->x, friction->y, friction->z};
+  std::copy(numbers, numbers + 3, geom->friction);
+}
+
+mjsGeom* add_collider_geom(mjsBody* body, const std::string& name) {
+  mjsGeom* geom = mjs_addGeom(body, nullptr);
+  mjs_setName(geom->element, name.c_str());
+  geom->group = kColliderGroup;
+  constexpr float kBlue[4] = {0.3f, 0.6f, 0.9f, 0.3f};
+  std::copy(kBlue, kBlue + 4, geom->rgba);
+  return geom;
+}
+
+}  // namespace gloam

@@ -1,0 +1,27 @@
+#pragma once
+// The direct tier's stand-in for reflected light and the sky.
+
+#include <vector>
+
+#include "render/cpu/tracer/embree_scene.h"
+#include "render/kernel/light/ambient.h"
+
+namespace gloam {
+
+/// Paths from points that the camera sees, of at most `max_depth` segments from the camera on. They
+/// are the same in every picture, so that what they find changes no faster than the view does.
+std::vector<AmbientPath> trace_ambient(const SceneView& scene, const CpuTracer& tracer,
+                                       const CameraView32& camera, int width, int height,
+                                       int max_depth);
+
+/// What surfaces in view receive, by the axis that they face, beyond the light of lamps and suns
+/// themselves.
+AmbientCube mean_ambient(const std::vector<AmbientPath>& paths);
+
+inline AmbientCube measure_ambient(const SceneView& scene, const CpuTracer& tracer,
+                                   const CameraView32& camera, int width, int height,
+                                   int max_depth) {
+  return mean_ambient(trace_ambient(scene, tracer, camera, width, height, max_depth));
+}
+
+}  // namespace gloam

@@ -1,0 +1,23 @@
+#pragma once
+// Cleaner albedo and normals for a denoiser than the few samples of a picture have.
+
+#include "render/cpu/tracer/embree_scene.h"
+#include "render/kernel/camera/camera.h"
+#include "render/renderer.h"
+
+namespace gloam {
+
+struct EdgeSamples {
+  SceneView scene;
+  CpuTracer tracer;
+  CameraView32 camera;
+  bool has_motion = false;  ///< something moves while the shutter is open
+};
+
+/// Where shape and albedo hardly change from pixel to pixel, the film's albedo and normal become
+/// those at the pixel's centre; at edges, the mean over `count` rays through the pixel's filter,
+/// which end at the first surface. Media before it take their share, with their own
+/// albedo and no normal. The film has the exact channels. Returns the rays traced.
+uint64_t refine_guides(const EdgeSamples& job, int count, Film* film);
+
+}  // namespace gloam

@@ -1,0 +1,69 @@
+#include "render/cpu/realtime/excess_regions.h"
+
+namespace gloam {
+namespace {
+
+constexpr float kMostTold = 500;  // cells and rounds that a region's excess is the mean of,
+constexpr float kAtFirst = 50;    // as long as light comes round for the first time,
+constexpr float kAtChange = 4;    // and where the light has changed;
+constexpr float kGuessed = 4;     // it counts as that of so many more cells of a wider region
+constexpr uint64_t kRegionMasks[] = {caches::kWideRegion | caches::kFacing,
+                                     caches::kRegion | caches::kFacing};
+constexpr float kDark = 1e-20f;  // [cd/m²]
+
+}  // namespace
+
+void ExcessRegions::Region::add(const OfCell& cell) {
+  sum += cell.excess;
+  light += cell.before;
+  ++cells;
+}
+
+void ExcessRegions::Region::fade(float most) {
+  const float kept = min(1.0f, most / max(cells, 1.0f));
+  sum = sum * kept;
+  light *= kept;
+  cells *= kept;
+}
+
+void ExcessRegions::spread(std::span<const OfCell> cells, bool remembers, std::span<Vec3f> light) {
+  // As long as light comes round, what was before is a share of less.
+  const float past = remembers ? kMostTold : kAtFirst;
+  all_.fade(past);
+  for (const OfCell& cell : cells) all_.add(cell);
+  all_.share = all_.sum / max(all_.light, kDark);
+  // From wide to narrow: what little a region has seen is completed by the wider one's.
+  for (size_t level = 0; level < kLevels; ++level) {
+    const auto key_of = [&](size_t k) { return cells[k].key; };
+    groups_.each(cells.size(), kRegionMasks[level], key_of, [&](auto group) {
+      const uint64_t key = group.front().first;
+      const Region& wider = level == 0 ? all_ : regions_[level - 1][key & kRegionMasks[level - 1]];
+      Region& region = regions_[level][key];
+      region.fade(past);
+      for (const auto& [_, k] : group) region.add(cells[k]);
+      region.last_traced = update_;
+      const float guessed = region.light / region.cells * kGuessed;
+      region.share = (region.sum + wider.share * guessed) / max(region.light + guessed, kDark);
+      if (level + 1 < kLevels) return;
+      // To each as it has light: dark corners of a region see little of what is bright, too.
+      for (const auto& [_, k] : group) light[k] = region.share * cells[k].before;
+    });
+  }
+}
+
+void ExcessRegions::forget(uint64_t key) {
+  all_.fade(kAtChange);
+  for (size_t level = 0; level < kLevels; ++level) {
+    regions_[level][key & kRegionMasks[level]].fade(kAtChange);
+  }
+}
+
+void ExcessRegions::end_update(uint32_t kept) {
+  ++update_;
+  for (auto& regions : regions_) {
+    std::erase_if(regions,
+                  [&](const auto& region) { return region.second.last_traced + kept < update_; });
+  }
+}
+
+}  // namespace gloam

@@ -1,0 +1,48 @@
+#pragma once
+// Light that few rays of the irradiance cache's cells meet: regions share it out over their cells,
+// as one that is met by chance would make a spot of a cell.
+
+#include <unordered_map>
+
+#include "render/cpu/path/key_groups.h"
+#include "render/kernel/realtime/irradiance_cache.h"
+
+namespace gloam {
+
+class ExcessRegions {
+ public:
+  /// Of a cell and round: what its rays brought above what is likely, and its luminance before.
+  struct OfCell {
+    uint64_t key = 0;
+    Vec3f excess;  ///< [cd/m²]
+    float before = 0;
+  };
+
+  /// Adds those of a round, and sets the light that each cell gets for them. `remembers`: it is not
+  /// the light's first coming round.
+  void spread(std::span<const OfCell> cells, bool remembers, std::span<Vec3f> light);
+  /// The light has changed about a cell.
+  void forget(uint64_t key);
+  /// Ends an update; drops regions that have had no cell for `kept` of them.
+  void end_update(uint32_t kept);
+
+ private:
+  /// Sums over cells and rounds, where old ones fade.
+  struct Region {
+    Vec3f sum, share;            ///< share: of a cell's light
+    float light = 0, cells = 0;  ///< what they had before
+    uint32_t last_traced = 0;
+
+    void add(const OfCell& cell);
+    /// From then on as those of `most` cells.
+    void fade(float most);
+  };
+  static constexpr size_t kLevels = 2;  ///< wide regions, and narrow ones in them
+
+  Region all_;
+  std::unordered_map<uint64_t, Region> regions_[kLevels];  ///< by masked key
+  KeyGroups groups_;
+  uint32_t update_ = 0;
+};
+
+}  // namespace gloam

@@ -1,0 +1,118 @@
+#include "render/cpu/realtime/fast_gain.h"
+
+#include <algorithm>
+
+namespace gloam {
+namespace {
+
+constexpr int kGainPatch = 8;   // [px], in which the change is sought
+constexpr float kLeast = 8;     // pixels that tell of a patch
+constexpr float kSureness = 1;  // standard errors that a change may be by chance: points that are
+                                // spread over patches make it less than it seems
+constexpr float kMostGain = 4;
+
+using F = FloatLanes;
+
+struct Sums {
+  F n, past, change, square;  // by columns, so that they are the same for any number of lanes
+
+  void add(MaskLanes known, F now, F before) {
+    n += select(known, F(1.0f), F(0.0f));
+    past += select(known, before, F(0.0f));
+    const F difference = select(known, now - before, F(0.0f));
+    change += difference;
+    square += difference * difference;
+  }
+  static float sum(F columns, int first) {
+    float total = 0;
+    for (int i = first; i < first + kGainPatch; ++i) total += lane(columns, i);
+    return total;
+  }
+  /// Of the patch whose columns are the lanes from `first` on.
+  float gain(int first) const {
+    const float count = sum(n, first), old = sum(past, first), more = sum(change, first);
+    if (count < kLeast || !(old > 0)) return 1;
+    // Of the change, what is not likely to be chance (James and Stein 1961, the positive part).
+    const float scatter = max(sum(square, first) - sqr(more) / count, 0.0f);
+    const float variance = scatter * count / (count - 1);
+    const float sure = max(1 - sqr(kSureness) * variance / max(sqr(more), 1e-30f), 0.0f);
+    return clamp(1 + sure * more / old, 0.0f, kMostGain);
+  }
+};
+
+}  // namespace
+
+FastPast find_past(const FastFrame& before, const FastFrame& f, int x, int y) {
+  F column;
+  for (int i = 0; i < kLaneCount; ++i) set_lane(&column, i, static_cast<float>(x + i));
+  const F motion_x = f.motion_x.load(x, y), motion_y = f.motion_y.load(x, y);
+  const F from_x = floor_of(column + 0.5f - motion_x);
+  const F from_y = floor_of(static_cast<float>(y) + 0.5f - motion_y);
+  const MaskLanes inside = (from_x >= 0.0f) & (from_y >= 0.0f) &
+                           (from_x < static_cast<float>(f.width)) &
+                           (from_y < static_cast<float>(f.height));
+  FastPast out;
+  out.rests = all((motion_x == F(0.0f)) & (motion_y == F(0.0f)));
+  out.x = select(inside, from_x, F(0.0f));
+  out.y = select(inside, from_y, F(0.0f));
+  const F part = f.part.load(x, y);
+  const MaskLanes alike = (part == F(0.0f)) | (dot(f.n.load(x, y), out.of(before.n, x, y)) > 0.8f);
+  out.known = inside & (part >= 0.0f) & (out.of(before.part, x, y) == part) & alike;
+  return out;
+}
+
+void LightGain::resize(int width, int height) {
+  columns_ = (width + kGainPatch - 1) / kGainPatch;
+  rows_ = (height + kGainPatch - 1) / kGainPatch;
+  changed_ = false;
+  gain_.assign(static_cast<size_t>(columns_) * static_cast<size_t>(rows_), 1.0f);
+}
+
+void measure_gains(const FastFrame& before, const FastFrame& now,
+                   std::span<const LightChange> changes) {
+  static_assert(kLaneCount % kGainPatch == 0);
+  const int columns = changes[0].gain->columns_;
+  parallel_for("fast gain", changes[0].gain->rows_, [&](int64_t row) {
+    const int y0 = static_cast<int>(row) * kGainPatch;
+    for (int column = 0; column < columns; column += kLaneCount / kGainPatch) {
+      const int x = column * kGainPatch;
+      Sums sums[kFastSignals];
+      for (int y = y0; y < std::min(y0 + kGainPatch, now.height); ++y) {
+        const FastPast past = find_past(before, now, x, y);
+        for (size_t i = 0; i < changes.size(); ++i) {
+          sums[i].add(past.known, luminance(changes[i].now.load(x, y)),
+                      luminance(past.of(changes[i].before, x, y)));
+        }
+      }
+      for (size_t i = 0; i < changes.size(); ++i) {
+        for (int k = 0; k < std::min(kLaneCount / kGainPatch, columns - column); ++k) {
+          changes[i].gain->gain_[static_cast<size_t>(row * columns + column + k)] =
+              sums[i].gain(k * kGainPatch);
+        }
+      }
+    }
+  });
+  for (const LightChange& change : changes) {
+    const std::vector<float>& gain = change.gain->gain_;
+    change.gain->changed_ = std::any_of(gain.begin(), gain.end(), [](float g) { return g != 1; });
+  }
+}
+
+FloatLanes LightGain::from(int x, int y) const {
+  if (!changed_) return 1.0f;
+  F column;
+  for (int i = 0; i < kLaneCount; ++i) set_lane(&column, i, static_cast<float>(x + i));
+  constexpr float kScale = 1.0f / kGainPatch;
+  const float right = static_cast<float>(columns_ - 1), low = static_cast<float>(rows_ - 1);
+  const F fx = clamp((column + 0.5f) * kScale - 0.5f, F(0.0f), F(right));
+  const float fy = clamp((static_cast<float>(y) + 0.5f) * kScale - 0.5f, 0.0f, low);
+  const int y0 = static_cast<int>(fy), y1 = std::min(y0 + 1, rows_ - 1);
+  const F x0 = floor_of(fx), x1 = min(x0 + 1.0f, F(right));
+  const auto row = [&](int patch_y) {
+    const float* values = gain_.data() + static_cast<size_t>(patch_y) * columns_;
+    return lerp(gather(values, to_uint(x0)), gather(values, to_uint(x1)), fx - x0);
+  };
+  return lerp(row(y0), row(y1), F(fy - static_cast<float>(y0)));
+}
+
+}  // namespace gloam

@@ -1,0 +1,169 @@
+#include "render/cpu/realtime/fast_tier.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/parallel.h"
+
+namespace gloam {
+namespace {
+
+using F = FloatLanes;
+
+constexpr float kCellPixels = 32;       // edge of a cache's cell in the picture,
+constexpr float kWidestCell = 0.05f;    // or over its distance if that is less
+constexpr size_t kManyCells = 8000;     // are asked for where each pixel shows a leaf of its own:
+constexpr float kCoarsest = 4;          // then cells are up to so many times as wide
+constexpr uint32_t kFirstPictures = 8;  // of the first instant, one upon the other
+constexpr size_t kFirstCells = 5000;    // of the cache that one of them traces again,
+constexpr size_t kMostCells = 2500;     // and a later picture
+
+/// Share of directions that meet what is near, by the four by four pixels about one, whose
+/// directions are spread evenly: one alone has all or nothing.
+F near_about(const FastFrame& f, int x, int y) {
+  constexpr float kTolerance = 0.02f;  // of places on one plane, over their distance
+  const F part = f.part.load(x, y);
+  const Vec3Of<F> p = f.p.load(x, y), n = f.n.load(x, y);
+  const F scale = 1.0f / (kTolerance * f.distance.load(x, y) + 1e-4f);
+  F sum, total;
+  for (int dy = -1; dy <= 2; ++dy) {
+    for (int dx = -1; dx <= 2; ++dx) {
+      const F same = select(f.part.load(x + dx, y + dy) == part, F(1.0f), F(0.0f));
+      const F facing = sqr(max(dot(n, f.n.load(x + dx, y + dy)), 0.0f));
+      const F off = dot(n, f.p.load(x + dx, y + dy) - p) * scale;
+      const F weight = same * sqr(sqr(facing)) * max(1.0f - off * off, 0.0f);
+      sum += f.near.load(x + dx, y + dy) * weight;
+      total += weight;
+    }
+  }
+  return sum / max(total, F(1e-6f));
+}
+
+float cell_edge(const CameraView32& camera) { return min(kCellPixels / camera.fx, kWidestCell); }
+
+}  // namespace
+
+bool FastHistory::find_moving_lamps(const SceneView& scene) {
+  // What goes less far from picture to picture, or gives so small a share of the strongest lamp's
+  // light, the cache follows.
+  constexpr float kFar = 0.005f, kTurn = 0.005f;  // [m], [rad]
+  constexpr float kWeak = 0.01f;
+  std::vector<LampPlace> now;
+  float strongest = 0;
+  for (uint32_t i = 0; i < scene.lights.size; ++i) {
+    const LightView& light = scene.lights[i];
+    now.push_back({light.p, light.direction});
+    if (light.kind != LightKind::kDirectional) strongest = max(strongest, light.strength);
+  }
+  // Where lamps go on or out, which are the same is not known; cells notice such changes.
+  bool moves = false;
+  for (uint32_t i = 0; !moves && now.size() == lamps_.size() && i < scene.lights.size; ++i) {
+    moves = scene.lights[i].strength > kWeak * strongest &&
+            (length(now[i].p_W - lamps_[i].p_W) > kFar ||
+             length(now[i].direction - lamps_[i].direction) > kTurn);
+  }
+  lamps_ = std::move(now);
+  return moves;
+}
+
+void FastHistory::look_up(const IrradianceCacheView& cache) {
+  parallel_for("fast light", now_.height, [&](int64_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < now_.width; x += kLaneCount) {
+      const F near = near_about(now_, x, y);
+      for (int i = 0; i < kLaneCount && x + i < now_.width; ++i) {
+        const int cell = find_cell(cache, now_.key[static_cast<size_t>(y) * now_.width + x + i]);
+        now_.signal[kCachedSignal].set(
+            x + i, y,
+            cell >= 0 ? light_at(cache.light[static_cast<uint32_t>(cell)], lane(near, i))
+                      : Vec3f{});
+      }
+    }
+  });
+}
+
+void FastHistory::compose() {
+  parallel_for("fast picture", now_.height, [&](int64_t row) {
+    const int y = static_cast<int>(row);
+    for (int x = 0; x < now_.width; x += kLaneCount) {
+      const Vec3Of<F> cached = filter_.smoothed(kCachedSignal).load(x, y);
+      const Vec3Of<F> diffuse = filter_.smoothed(kDirectSignal).load(x, y) + cached;
+      const Vec3Of<F> specular = filter_.smoothed(kSpecularSignal).load(x, y);
+      Vec3Of<F> color = now_.base.load(x, y) + now_.albedo.load(x, y) * diffuse +
+                        now_.gloss.load(x, y) * cached + specular;
+      if (now_.signals > kAirSignal) color += filter_.smoothed(kAirSignal).load(x, y);
+      now_.color.store(x, y, color);
+      const MaskLanes moves =
+          !((now_.motion_x.load(x, y) == F(0.0f)) & (now_.motion_y.load(x, y) == F(0.0f)));
+      const F gleam = 0.5f * luminance(specular) / max(luminance(color), F(1e-6f));
+      now_.gleam.store(x, y, select(moves & (now_.roughness.load(x, y) < kMirror), gleam, F(0.0f)));
+    }
+  });
+}
+
+void FastHistory::add_picture(const SceneView& scene, const CpuTracer& tracer,
+                              const CameraView32& camera, const RenderSettings& settings,
+                              uint32_t pass, RenderWatch* watch) {
+  SceneView plain = scene;  // rays of pixels go where they must
+  plain.guide.share = 0;
+  const Vec3f eye = camera.pose.X_WC_open.p;
+  for (bool again = true; again && !watch->stopped();) {
+    const bool first = cache_.size() == 0;
+    const float edge = cell_edge(camera) * coarse_;
+    IrradianceCacheView cache = cache_.view(eye, edge);
+    cache.lamps_move = lamps_move_;
+    trace({plain, tracer, camera, cache, settings.seed}, pass);
+    cache_.ask(requests_);
+    if (first && cache_.size() > kManyCells && coarse_ < kCoarsest) {
+      coarse_ *= 2;
+      cache_ = {};
+      continue;
+    }
+    again = first;  // a first picture is traced twice: its rays saw no cache
+    rays_ += cache_.update(scene, tracer, eye, edge, settings.seed, first,
+                           pictures_ < kFirstPictures ? kFirstCells : kMostCells, watch);
+    if (requests_.empty()) break;
+  }
+  look_up(cache_.view(eye, cell_edge(camera) * coarse_));
+  now_.signals = scene.media.volumes.empty() ? kAirSignal : kFastSignals;
+  filter_.accumulate(before_, &now_);
+  filter_.smooth(now_);
+  compose();
+  resolve(before_, &filter_.color_gain, &now_);
+  std::swap(now_, before_);
+  ++pictures_;
+}
+
+RenderStats FastHistory::render(const SceneView& scene, const CpuTracer& tracer,
+                                const CameraView32& camera, const RenderSettings& settings,
+                                Film* film) {
+  rays_ = 0;
+  if (film->width != now_.width || film->height != now_.height) {
+    now_.resize(film->width, film->height);
+    before_.resize(film->width, film->height);
+    filter_.resize(film->width, film->height);
+    pictures_ = 0;
+    coarse_ = 1;
+  }
+  const bool first = pictures_ == 0;
+  lamps_move_ = find_moving_lamps(scene);
+  const uint32_t passes = first ? kFirstPictures : 1;
+  RenderWatch watch(settings.progress, first ? IrradianceCache::kFirstRounds + kFirstPictures : 1);
+  for (uint32_t pass = 0; pass < passes && !watch.stopped(); ++pass) {
+    add_picture(scene, tracer, camera, settings, pass, &watch);
+  }
+  parallel_for("fast film", film->height, [&](int64_t y) {
+    for (int x = 0; x < film->width; ++x) {
+      film->radiance[static_cast<size_t>(y) * film->width + x] =
+          before_.resolved.get(x, static_cast<int>(y));
+    }
+  });
+  RenderStats stats;
+  stats.paths = film->pixel_count();
+  stats.rays = rays_;
+  stats.finished = !watch.stopped();
+  if (!stats.finished) *this = {};  // what it remembers is unfinished, too
+  return stats;
+}
+
+}  // namespace gloam

@@ -1,0 +1,60 @@
+#pragma once
+// The fast tier: what a camera remembers from picture to picture, and one picture more.
+
+#include "render/cpu/realtime/fast_filter.h"
+#include "render/cpu/realtime/irradiance_cache.h"
+#include "render/renderer.h"
+
+namespace gloam {
+
+/// What all rays of one picture share.
+struct FastView {
+  const SceneView& scene;
+  const CpuTracer& tracer;
+  const CameraView32& camera;
+  IrradianceCacheView cache;
+  uint64_t seed;
+};
+
+/// Requests of one tile: for surfaces in view, and for what mirrors show.
+struct AskedOfTile {
+  std::vector<CacheRequest> seen, mirrored;
+};
+
+/// Where a lamp is, and the way it shines.
+struct LampPlace {
+  Vec3f p_W, direction;
+};
+
+class FastHistory final : public ViewHistory {
+ public:
+  /// Renders into film->radiance.
+  RenderStats render(const SceneView& scene, const CpuTracer& tracer, const CameraView32& camera,
+                     const RenderSettings& settings, Film* film);
+
+ private:
+  /// One picture of the sequence; `pass` tells those of one instant apart.
+  void add_picture(const SceneView& scene, const CpuTracer& tracer, const CameraView32& camera,
+                   const RenderSettings& settings, uint32_t pass, RenderWatch* watch);
+  void trace(const FastView& view, uint32_t pass);
+  /// From the pixel (x0, y0) on. Returns the number of rays.
+  uint64_t trace_tile(const FastView& view, uint32_t pass, int x0, int y0, AskedOfTile* asked);
+  /// Whether lamps are not where they were in the last picture; keeps where they are.
+  bool find_moving_lamps(const SceneView& scene);
+  void look_up(const IrradianceCacheView& cache);
+  void compose();
+
+  IrradianceCache cache_;
+  FastFrame now_, before_;
+  FastFilter filter_;
+  std::vector<LampPlace> lamps_;  ///< in the last picture
+  bool lamps_move_ = false;
+  std::vector<AskedOfTile> asked_;  ///< by tile
+  std::vector<CacheRequest> requests_;
+  Vec2f turn_;  ///< in [0, 1)², of the directions of FastSampleOf::near
+  uint64_t rays_ = 0;
+  float coarse_ = 1;       ///< edges of the cache's cells, times those wanted
+  uint32_t pictures_ = 0;  ///< taken, those of one instant too
+};
+
+}  // namespace gloam

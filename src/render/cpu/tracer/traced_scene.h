@@ -1,0 +1,56 @@
+#pragma once
+// A RenderScene and what the CPU's rays go through: Embree where it is given one, or our own BVH.
+
+#include <memory>
+#include <utility>
+
+#include "base/check.h"
+#include "render/cpu/tracer/embree_scene.h"
+#include "render/scene/bvh_scene.h"
+
+namespace gloam {
+
+class TracedScene {
+ public:
+  /// `embree` may be null. `keeps_own`: our own BVH is kept up to date beside Embree.
+  TracedScene(std::unique_ptr<RenderScene> scene, std::unique_ptr<EmbreeScene> embree,
+              bool keeps_own = false)
+      : scene_(std::move(scene)),
+        embree_(std::move(embree)),
+        keeps_own_(keeps_own || embree_ == nullptr) {}
+
+  void update(std::span<const PoseFrame* const> keys, const PoseFrame& previous) {
+    scene_->update(keys, previous);
+    if (embree_ != nullptr)
+      GLOAM_CHECK(embree_->update(*scene_).ok(), "the BVH cannot be built: out of memory?");
+    if (keeps_own_) own_.update(*scene_);
+  }
+
+  /// Valid until the next update, as the one below.
+  CpuTracer tracer() const {
+    return embree_ != nullptr ? embree_->tracer(*scene_) : by_own(own_.tracer(*scene_));
+  }
+  /// Of what never moves alone, without infinite planes.
+  CpuTracer static_tracer() const {
+    return embree_ != nullptr ? embree_->static_tracer(*scene_)
+                              : by_own(own_.static_tracer(*scene_));
+  }
+  RenderScene& scene() { return *scene_; }
+  const RenderScene& scene() const { return *scene_; }
+  const BvhScene& own() const { return own_; }
+
+ private:
+  CpuTracer by_own(const BvhTracer& own) const {
+    CpuTracer tracer;
+    tracer.rows = {own_.still().data(), static_cast<uint32_t>(own_.still().size())};
+    tracer.own = own;
+    return tracer;
+  }
+
+  std::unique_ptr<RenderScene> scene_;
+  std::unique_ptr<EmbreeScene> embree_;
+  BvhScene own_;
+  bool keeps_own_;
+};
+
+}  // namespace gloam

@@ -1,0 +1,60 @@
+#pragma once
+// One path of the measure of the direct stage's ambient light. Device-safe.
+
+#include "render/kernel/camera/channels.h"
+#include "render/kernel/path/path.h"
+
+namespace gloam {
+
+inline constexpr int kLog2AmbientPaths = 11;  ///< all together
+
+/// What a path has found: light that arrives at a surface which the camera sees.
+struct AmbientPath {
+  int facing = -1;  ///< of the surface, as LightGuide::facing_of; -1 = no surface
+  Vec3f light;      ///< [cd/m²]
+};
+
+namespace ambient {
+
+inline constexpr float kSpread = 0.2f;  ///< of the rays' cones: no fine texture is sought
+
+/// Light that arrives along the ray, save that of lights which the direct tier samples itself.
+template <class Tracer>
+GLOAM_HD Vec3f incoming(const SceneView& scene, const Tracer& tracer, const Ray& ray, int max_depth,
+                        Sampler sampler) {
+  RayHit hit;
+  if (!tracer.trace(ray, false, &hit)) {
+    return sky_radiance(scene, ray.d, kSpread) + scene.sky_ambient;
+  }
+  if (scene.instances[hit.instance].light >= 0) return {};
+  constexpr int kRoulette = 3;
+  return trace_path(scene, tracer, ray, 0.0f, kSpread, {max_depth - 1, kRoulette}, sampler)
+      .radiance;
+}
+
+}  // namespace ambient
+
+/// Path `index` of a picture of width x height pixels.
+template <class Tracer>
+GLOAM_HD AmbientPath ambient_path(const SceneView& scene, const Tracer& tracer,
+                                  const CameraView32& camera, int width, int height, int max_depth,
+                                  uint32_t index) {
+  Sampler sampler = Sampler::make(0, 0, 0, 0, index, kLog2AmbientPaths);
+  const Vec2f at = sampler.next_2d(), u = sampler.next_2d();
+  RayCone cone;
+  const Ray view = camera_ray(camera, at.x * static_cast<float>(width),
+                              at.y * static_cast<float>(height), 0, &cone);
+  Surface s;
+  RayHit hit;
+  uint32_t rays = 0;
+  AmbientPath path;
+  if (!find_first(scene, tracer, view, cone, &s, &hit, &rays)) return path;
+  Ray ray;
+  ray.d = Frame::from_z(s.geometric).to_world(sample_cosine_hemisphere(u));
+  ray.o = leave_surface(s.p, s.geometric, ray.d, s.t);
+  path.facing = static_cast<int>(LightGuide::facing_of(s.geometric));
+  path.light = ambient::incoming(scene, tracer, ray, max_depth, sampler);
+  return path;
+}
+
+}  // namespace gloam

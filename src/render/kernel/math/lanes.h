@@ -1,0 +1,123 @@
+#pragma once
+// What the kernel computes with: one float, or several side by side. Code that is generic over F
+// takes no branch that differs between lanes: it computes both sides and selects, and skips what no
+// lane needs with any(). A lane gives the same bits as the float: same operations, same order.
+//   F     float     FloatLanes
+//   Mask  bool      MaskLanes
+//   Uint  uint32_t  UintLanes
+// Device-safe; nvcc sees the float side alone.
+
+#include "base/vec.h"
+
+namespace gloam {
+
+GLOAM_HD bool any(bool mask) { return mask; }
+GLOAM_HD bool all(bool mask) { return mask; }
+GLOAM_HD uint32_t select(bool condition, uint32_t a, uint32_t b) { return condition ? a : b; }
+GLOAM_HD bool select(bool condition, bool a, bool b) { return condition ? a : b; }
+GLOAM_HD float floor_of(float x) { return floorf(x); }
+GLOAM_HD float magnitude(float x) { return fabsf(x); }
+/// x in [0, 2^31).
+GLOAM_HD uint32_t to_uint(float x) { return static_cast<uint32_t>(static_cast<int32_t>(x)); }
+/// x in [0, 2^31).
+GLOAM_HD float to_float(uint32_t x) { return static_cast<float>(static_cast<int32_t>(x)); }
+GLOAM_HD float gather(const float* table, uint32_t index) { return table[index]; }
+GLOAM_HD uint32_t gather(const uint32_t* table, uint32_t index) { return table[index]; }
+/// The bits of a float, and back.
+GLOAM_HD uint32_t to_bits(float x) {
+  uint32_t bits;
+  __builtin_memcpy(&bits, &x, sizeof bits);
+  return bits;
+}
+GLOAM_HD float from_bits(uint32_t bits) {
+  float x;
+  __builtin_memcpy(&x, &bits, sizeof x);
+  return x;
+}
+GLOAM_HD float lane(float x, int) { return x; }
+GLOAM_HD uint32_t lane(uint32_t x, int) { return x; }
+GLOAM_HD bool lane(bool x, int) { return x; }
+GLOAM_HD void set_lane(float* x, int, float value) { *x = value; }
+GLOAM_HD void set_lane(uint32_t* x, int, uint32_t value) { *x = value; }
+GLOAM_HD void set_lane(bool* x, int, bool value) { *x = value; }
+/// Calls visit(i) for every lane i of the mask.
+template <class Visit>
+GLOAM_HD void each_lane(bool mask, const Visit& visit) {
+  if (mask) visit(0);
+}
+
+/// Calls visit(lanes, value) for every value that `key` has in the lanes of the mask.
+template <class Visit>
+GLOAM_HD void each_value(bool mask, uint32_t key, const Visit& visit) {
+  if (mask) visit(true, key);
+}
+
+template <class F>
+struct Lanes {  // float
+  static constexpr int kCount = 1;
+  using Mask = bool;
+  using Uint = uint32_t;
+};
+template <class F>
+using MaskOf = typename Lanes<F>::Mask;
+template <class F>
+using UintOf = typename Lanes<F>::Uint;
+
+}  // namespace gloam
+
+#ifndef __CUDACC__
+#include "render/kernel/math/simd_lanes.h"
+#endif
+
+namespace gloam {
+
+template <class F>
+GLOAM_HD Vec2Of<F> select(MaskOf<F> m, Vec2Of<F> a, Vec2Of<F> b) {
+  return {select(m, a.x, b.x), select(m, a.y, b.y)};
+}
+template <class F>
+GLOAM_HD Vec3Of<F> select(MaskOf<F> m, Vec3Of<F> a, Vec3Of<F> b) {
+  return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
+}
+
+/// The same vector in every lane.
+template <class F>
+GLOAM_HD Vec3Of<F> in_all_lanes(Vec3f v) {
+  return {F(v.x), F(v.y), F(v.z)};
+}
+template <class F>
+GLOAM_HD AffineOf<F> pose_in_all_lanes(const Affine3f& X) {
+  return {in_all_lanes<F>(X.x), in_all_lanes<F>(X.y), in_all_lanes<F>(X.z), in_all_lanes<F>(X.p)};
+}
+template <class F>
+GLOAM_HD Vec3f lane(const Vec3Of<F>& v, int i) {
+  return {lane(v.x, i), lane(v.y, i), lane(v.z, i)};
+}
+template <class F>
+GLOAM_HD Vec2f lane(const Vec2Of<F>& v, int i) {
+  return {lane(v.x, i), lane(v.y, i)};
+}
+template <class F>
+GLOAM_HD void set_lane(Vec2Of<F>* v, int i, Vec2f value) {
+  set_lane(&v->x, i, value.x);
+  set_lane(&v->y, i, value.y);
+}
+template <class F>
+GLOAM_HD void set_lane(Vec3Of<F>* v, int i, Vec3f value) {
+  set_lane(&v->x, i, value.x);
+  set_lane(&v->y, i, value.y);
+  set_lane(&v->z, i, value.z);
+}
+template <class F>
+GLOAM_HD void set_lane(AffineOf<F>* X, int i, const Affine3f& value) {
+  set_lane(&X->x, i, value.x);
+  set_lane(&X->y, i, value.y);
+  set_lane(&X->z, i, value.z);
+  set_lane(&X->p, i, value.p);
+}
+template <class F>
+GLOAM_HD Affine3f lane(const AffineOf<F>& X, int i) {
+  return {lane(X.x, i), lane(X.y, i), lane(X.z, i), lane(X.p, i)};
+}
+
+}  // namespace gloam

@@ -1,0 +1,58 @@
+#include "scene/validate/validate_agent.h"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <string>
+
+namespace gloam {
+namespace {
+
+Error agent_error(const AgentOptions& agent, std::string what, std::string hint) {
+  return {ErrorKind::kInput, fmt::format("agent '{}' {}", agent.name, what), agent.loc,
+          std::move(hint)};
+}
+
+Status check_behavior(const AgentOptions& agent) {
+  const size_t least = agent.behavior == "route" ? 1 : agent.behavior == "spline" ? 2 : 0;
+  if (agent.route.size() < least) {
+    return agent_error(
+        agent, fmt::format("is to follow a {} of {} points", agent.behavior, agent.route.size()),
+        fmt::format("give it at least {} in 'route'", least));
+  }
+  if (agent.behavior == "tree" && agent.tree.empty())
+    return agent_error(agent, "has no 'tree'", "give it a file of BehaviorTree.CPP's XML");
+  if (agent.behavior != "tree" && !agent.tree.empty())
+    return agent_error(agent, fmt::format("has a 'tree' and the behavior '{}'", agent.behavior),
+                       "say behavior = \"tree\", or leave the tree out");
+  if (agent.kind != "person" && agent.height)
+    return agent_error(agent, fmt::format("is a {} with a 'height'", agent.kind),
+                       "only people have one");
+  return {};
+}
+
+}  // namespace
+
+Status validate_agents(const Scene& scene) {
+  std::map<std::string, std::string> taken;  // name -> of what
+  for (const RobotOptions& o : scene.robots) taken.emplace(o.name, "robot");
+  for (const PropOptions& o : scene.props) taken.emplace(o.name, "prop");
+  for (const ObjectOptions& o : scene.objects) taken.emplace(o.name, "object");
+  const auto take = [&](const std::string& name, const char* kind, const SourceLoc& loc) -> Status {
+    const auto [found, is_new] = taken.emplace(name, kind);
+    if (is_new) return {};
+    return Error{ErrorKind::kInput,
+                 fmt::format("{} '{}' has the name of a {}", kind, name, found->second), loc,
+                 "rename one of them"};
+  };
+  for (const AgentOptions& agent : scene.agents) {
+    GLOAM_TRY_STATUS(take(agent.name, "agent", agent.loc));
+    GLOAM_TRY_STATUS(check_behavior(agent));
+  }
+  for (const CrowdOptions& crowd : scene.crowds)
+    for (int i = 0; i < crowd.count; ++i)
+      GLOAM_TRY_STATUS(take(fmt::format("{}{}", crowd.name, i), "one of a crowd", crowd.loc));
+  return {};
+}
+
+}  // namespace gloam

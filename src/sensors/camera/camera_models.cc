@@ -1,0 +1,118 @@
+#include "sensors/camera/camera_models.h"
+
+#include <fmt/format.h>
+
+#include "geometry/lens.h"
+#include "render/film/tone_map.h"
+#include "sensors/timing.h"
+
+namespace gloam {
+namespace {
+
+Exposure own_exposure(const ImagerOptions& imager) {
+  const ExposureOptions& exposure = *imager.exposure;
+  return {exposure.f_number, exposure.shutter, exposure.iso};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<CameraModels>> CameraModels::create(const RenderDescription& description,
+                                                           int camera, const Intrinsics& intrinsics,
+                                                           const ModelOutputs& outputs,
+                                                           double ev100, uint64_t seed) {
+  std::unique_ptr<CameraModels> models(new CameraModels(description, camera, intrinsics, outputs));
+  const CameraSensing& sensing = models->sensing_;
+  const auto refuse = [&](const char* output, const char* table) {
+    return Error{ErrorKind::kInput,
+                 fmt::format("camera '{}' has no {} for the output '{}'",
+                             description.cameras[static_cast<size_t>(camera)].name, table, output),
+                 {},
+                 fmt::format("add a [camera.{}] to the scene (docs/sensors.md)", table)};
+  };
+  if (outputs.raw && !sensing.imager) return refuse("raw", "imager");
+  if (outputs.sensor_depth && !sensing.stereo_depth) return refuse("sensor_depth", "stereo_depth");
+  if (outputs.sensor_depth && (intrinsics.orthographic || is_wide(intrinsics.lens))) {
+    return Error{ErrorKind::kInput,
+                 fmt::format("camera '{}' cannot match two such pictures: disparity is of lenses "
+                             "that keep straight lines, nearly",
+                             description.cameras[static_cast<size_t>(camera)].name),
+                 {},
+                 "give a camera with a [camera.stereo_depth] the lens pinhole, plumb_bob or "
+                 "rational_polynomial"};
+  }
+  if (outputs.events && !sensing.events) return refuse("events", "events");
+  if (outputs.thermal && !sensing.thermal) return refuse("thermal", "thermal");
+  const bool own = sensing.imager && sensing.imager->exposure;
+  models->exposure_ =
+      own ? own_exposure(*sensing.imager) : exposure_at(ev100, ExposureOptions().f_number);
+  models->seed_ = seed;
+  models->ev100_ = own ? models->exposure_.ev100() : ev100;
+  if (sensing.imager && (outputs.rgb || outputs.raw))
+    models->imager_ = std::make_unique<Imager>(*sensing.imager, intrinsics, seed);
+  if (outputs.sensor_depth) models->stereo_ = stereo_depth_model(*sensing.stereo_depth);
+  if (outputs.events)
+    models->events_ = std::make_shared<EventTrack>(
+        EventCamera(*sensing.events, intrinsics.width, intrinsics.height, seed));
+  if (outputs.sensor_depth || outputs.thermal) {
+    GLOAM_TRY(models->air_, SensorAir::make(description));
+  }
+  GLOAM_TRY_STATUS(models->set_temperatures({}));
+  return models;
+}
+
+Status CameraModels::set_temperatures(const std::vector<TemperatureOptions>& temperatures) {
+  if (!outputs_.thermal) return {};
+  GLOAM_TRY(thermal_, ThermalCamera::make(*sensing_.thermal, temperatures, description_, seed_));
+  return {};
+}
+
+void CameraModels::set_ev100(double ev100) {
+  const double f_number = exposure_.f_number;
+  exposure_ = sensing_.imager && sensing_.imager->auto_exposure
+                  ? program_exposure(ev100, f_number, *sensing_.imager->auto_exposure)
+                  : exposure_at(ev100, f_number);
+  ev100_ = exposure_.ev100();
+}
+
+uint64_t CameraModels::memory() const {
+  const auto pixels =
+      static_cast<uint64_t>(intrinsics_.width) * static_cast<uint64_t>(intrinsics_.height);
+  constexpr uint64_t kEvents = 20, kStereo = 14;  // [bytes] of a pixel
+  return (imager_ ? Imager::memory(*sensing_.imager, intrinsics_) : 0) +
+         (events_ ? kEvents * pixels : 0) + (stereo_ ? kStereo * pixels : 0);
+}
+
+double CameraModels::delivery_of(int64_t k, double time) const {
+  return sensing_.timing ? delivery_time(*sensing_.timing, seed_, k, time) : time;
+}
+
+void CameraModels::develop(const std::vector<Vec3f>& radiance, int64_t run, CameraFrame* frame) {
+  frame->ev100 = ev100_;
+  if (imager_) {
+    imager_->develop(radiance, exposure_, frame->index, outputs_.rgb ? &frame->rgb : nullptr,
+                     outputs_.raw ? &frame->raw : nullptr);
+  } else if (outputs_.rgb) {
+    tone_map(radiance, intrinsics_.width, intrinsics_.height, {.ev100 = static_cast<float>(ev100_)},
+             &frame->rgb);
+  }
+  if (events_) {
+    const double top = static_cast<double>(max_luminance(static_cast<float>(ev100_)));
+    frame->events = events_->see({run, frame->index}, frame->time, radiance, top, leads_events_);
+  }
+}
+
+void CameraModels::measure(const PoseFrame& now, const Film& film, const CameraView& view,
+                           CameraFrame* frame) {
+  if (!stereo_ && !thermal_) return;
+  air_.follow(description_, now);
+  if (stereo_) {
+    const std::vector<float> signal = stereo_->half_signal > 0
+                                          ? projector_signal(description_, air_.view(), film, view)
+                                          : std::vector<float>();
+    frame->sensor_depth = measure_stereo_depth(*stereo_, intrinsics_, film.depth, signal,
+                                               seed_ ^ sensing_.stereo_depth->seed, frame->index);
+  }
+  if (thermal_) frame->thermal = thermal_->see(film, view, frame->index, air_.view());
+}
+
+}  // namespace gloam

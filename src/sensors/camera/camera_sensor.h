@@ -1,0 +1,151 @@
+#pragma once
+// A camera: an instant's poses in, one CameraFrame out. Every channel is of the same rays; the
+// picture is a pure function of (World, seed, camera, frame index, poses).
+
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "gloam/camera.h"
+#include "gloam/result.h"
+#include "gloam/simulation.h"
+#include "instant/pose_frame.h"
+#include "render/film/denoise.h"
+#include "render/renderer.h"
+#include "sensors/camera/camera_models.h"
+#include "sensors/camera/lens_drops.h"
+#include "world/render_description.h"
+
+namespace gloam {
+
+/// Which channels of a CameraFrame are filled.
+struct CameraChannels {
+  bool rgb = false, radiance = false, samples = false, depth = false, segmentation = false;
+  bool normal = false, albedo = false, motion = false, distance = false, scene_flow = false;
+  bool boxes = false, raw = false, sensor_depth = false, events = false, thermal = false;
+  static Result<CameraChannels> parse(const std::vector<std::string>& names);
+  bool light() const { return rgb || radiance || samples || raw || events; }
+  bool geometry() const {
+    return depth || distance || segmentation || normal || albedo || motion || scene_flow ||
+           sensor_depth || thermal;
+  }
+  /// More than where things are and which.
+  bool details() const { return normal || albedo || motion || scene_flow || sensor_depth; }
+};
+
+/// What pictures take, nearly [bytes].
+struct PictureMemory {
+  uint64_t working = 0;  ///< of the sensor, from its first picture on
+  uint64_t frame = 0;    ///< of each CameraFrame
+};
+
+/// Longest path of a picture, in vertices: RenderOptions::max_depth, or what is usual in a scene
+/// with media or without.
+int path_depth(const RenderOptions& render, bool has_media);
+
+class CameraSensor {
+ public:
+  /// `description` must outlive the sensor. Errors: unknown camera (with the nearest name), channel
+  /// or tier; a number out of its range.
+  static Result<std::unique_ptr<CameraSensor>> create(const RenderDescription& description,
+                                                      const CameraRequest& request, uint64_t seed);
+
+  /// Renders the exposure that starts with the first of `keys`, which follow each other evenly and
+  /// reach over window(); with a single key the instant of that one. `renderer_mutex` is held while
+  /// the shared renderer works, not while this sensor denoises and converts. `previous` is the
+  /// first key of the frame before, for motion. Null if the progress callback ended it.
+  std::shared_ptr<const CameraFrame> capture(Renderer& renderer, std::mutex& renderer_mutex,
+                                             std::span<const PoseFrame* const> keys,
+                                             const PoseFrame& previous, int64_t frame_index);
+  std::shared_ptr<const CameraFrame> capture(Renderer& renderer, std::mutex& renderer_mutex,
+                                             const PoseFrame& now, const PoseFrame& previous,
+                                             int64_t frame_index) {
+    const PoseFrame* const key = &now;
+    return capture(renderer, renderer_mutex, {&key, 1}, previous, frame_index);
+  }
+  /// Whether the next capture is of the same instant as the last one. If its pose is the same too,
+  /// it adds samples to the picture: the light is the mean over the captures since the first, which
+  /// it replaces (that one's samples may lie at pixel centres). Not of the fast tier, which has a
+  /// history of its own, of adaptive samples or of events.
+  void set_same_instant(bool same) { same_instant_ = same; }
+  /// From the first row's exposure to the end of the last one's [s]; 0 = an instant.
+  Rational window() const;
+
+  /// What an exposure meter says before a capture; without it the exposure is the camera's own.
+  void set_ev100(double ev100) { models_->set_ev100(ev100); }
+  /// Of the output events, else null.
+  const std::shared_ptr<EventTrack>& events() const { return models_->events(); }
+  /// Before the first capture; `leads` as of EventTrack::see.
+  void share_events(std::shared_ptr<EventTrack> events, bool leads) {
+    models_->share_events(std::move(events), leads);
+  }
+  /// The scene's [[temperature]]s, for the output thermal. Error: one that fits nothing.
+  Status set_temperatures(const std::vector<TemperatureOptions>& temperatures) {
+    return models_->set_temperatures(temperatures);
+  }
+  /// Of each picture's rendering, see RenderSettings::progress.
+  void set_progress(std::function<bool(double done)> progress) {
+    settings_.progress = std::move(progress);
+  }
+  /// Of the last picture.
+  const RenderStats& stats() const { return stats_; }
+
+  const Intrinsics& intrinsics() const { return intrinsics_; }
+  const Rational& rate() const { return rate_; }
+  const CameraSensing& sensing() const {
+    return description_.cameras[static_cast<size_t>(camera_)].sensing;
+  }
+  /// To be compared with memory_room() before the first picture.
+  PictureMemory memory() const;
+  /// Pose of the free camera in the world; may be set from any thread.
+  void set_free_pose(const Pose& X_WC);
+  Pose free_pose() const;
+
+ private:
+  CameraSensor(const RenderDescription& description, int camera, const CameraChannels& channels);
+  /// The film's light, denoised where it is to be.
+  std::vector<Vec3f>* denoise();
+  Shutter shutter(std::span<const PoseFrame* const> keys) const;
+  void begin_samples(const CameraView& view);
+  void accumulate();
+  /// `light`: that of the finished picture; null = as denoise() gives it.
+  void convert(const PoseFrame& now, int64_t frame_index, const CameraView& view,
+               std::vector<Vec3f>* light, CameraFrame* frame);
+  const CameraDescription& camera() const {
+    return description_.cameras[static_cast<size_t>(camera_)];
+  }
+
+  const RenderDescription& description_;
+  const int camera_;
+  const CameraChannels channels_;
+  RenderSettings settings_;
+  RenderStats stats_;
+  Intrinsics intrinsics_;
+  Rational rate_;
+  std::unique_ptr<CameraModels> models_;  // what happens after the light
+  std::unique_ptr<ViewHistory> history_;  // of the fast tier
+  std::optional<LensDrops> drops_;
+  std::unique_ptr<Denoiser> denoiser_;  // null: the samples as they are
+  Film film_;
+  std::vector<Vec3f> clean_;
+  bool same_instant_ = false;
+  Affine3f accumulated_from_;   // pose of the camera
+  int pictures_ = 0;            // in a row of one instant from one pose
+  std::vector<Vec3f> sums_[3];  // of radiance, albedo and normal over them
+  mutable std::mutex pose_mutex_;
+  Affine3f free_pose_, previous_free_pose_;
+};
+
+/// Rigid pose <-> affine map.
+Pose to_pose(const Affine3f& X);
+Affine3f to_affine(const Pose& X);
+/// Between the world and a render scene whose origin is there (RenderDescription::origin).
+Pose in_world(const Affine3f& X, const Vec3& origin);
+Pose from_origin(const Pose& X_W, const Vec3& origin);
+
+}  // namespace gloam

@@ -1,0 +1,48 @@
+#pragma once
+// What Commands have put on the simulation and what stays until it is changed: controls, mocap
+// poses, wrenches, dragged bodies. Called on the sim thread only; allocates nothing.
+
+#include <mujoco/mujoco.h>
+
+#include <vector>
+
+#include "gloam/command.h"
+#include "sim/state/correspondence.h"
+
+namespace gloam {
+
+class AppliedInputs {
+ public:
+  explicit AppliedInputs(const mjModel& model);
+
+  /// Goes on where another World's left off, with what remains of it.
+  void take_over(const AppliedInputs& before, const Correspondence& same);
+
+  /// Forgets everything; the mjData has been reset by the caller.
+  void reset();
+
+  void apply(const mjModel& model, mjData& data, const SetControl& command);
+  void apply(const mjModel& model, mjData& data, const SetJointState& command);
+  void apply(const mjModel& model, mjData& data, const SetMocapPose& command);
+  void apply(const mjModel& model, mjData& data, const SetWrench& command);
+  void apply(const mjModel& model, mjData& data, const AddVelocity& command);
+  void apply(const mjModel& model, mjData& data, const DragBody& command);
+
+  /// Pulls dragged bodies; call before every step. MuJoCo errors possible: call it guarded.
+  void before_step(const mjModel& model, mjData& data);
+
+ private:
+  struct Drag {
+    int body;
+    double point_B[3], target_W[3];
+    double
+        mass;  // effective inertia at the point, the mean over directions [kg]; 0 = not yet known
+  };
+  void pull(const mjModel& model, mjData& data, Drag& drag);
+
+  std::vector<double> wrench_;             // by SetWrench: force, torque [N, N m], (nbody x 6)
+  std::vector<Drag> drags_;                // at most one per body
+  std::vector<double> jacobian_, solved_;  // (3 x nv) each
+};
+
+}  // namespace gloam

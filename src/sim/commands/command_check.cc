@@ -1,0 +1,164 @@
+#include "sim/commands/command_check.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <span>
+
+#include "sim/commands/live_fields.h"
+#include "sim/state/state_layout.h"
+
+namespace gloam {
+namespace {
+
+Error refuse(std::string message, std::string hint = {}) {
+  return Error{ErrorKind::kUsage, std::move(message), {}, std::move(hint)};
+}
+
+bool finite(std::span<const double> values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+bool finite(std::initializer_list<double> values) {
+  return finite(std::span(values.begin(), values.size()));
+}
+bool finite(Vec3 v) { return finite({v.x, v.y, v.z}); }
+
+std::string body_label(const mjModel& model, int body) {
+  const char* name = mj_id2name(&model, mjOBJ_BODY, body);
+  return name != nullptr && *name != 0 ? fmt::format("body '{}'", name)
+                                       : fmt::format("body {}", body);
+}
+
+// Has degrees of freedom above it; a mocap body has none.
+bool can_move(const mjModel& model, int body) {
+  while (body > 0 && model.body_dofnum[body] == 0) body = model.body_parentid[body];
+  return body > 0;
+}
+
+class Check {
+ public:
+  explicit Check(const CompiledWorld& world)
+      : serial_(world.serial),
+        model_(*world.model),
+        agents_(world.agents),
+        robot_count_(static_cast<int>(world.robots.size())) {}
+
+  Status operator()(const SetControl& c) const {
+    GLOAM_TRY_STATUS(check_handle(c.actuator, "actuator", 0, model_.nactuator));
+    if (model_.actuator_ctrlnum[c.actuator.id] != 1) {
+      return refuse(fmt::format("actuator {} takes {} controls, not one", c.actuator.id,
+                                model_.actuator_ctrlnum[c.actuator.id]),
+                    "set its controls in a step hook or a controller");
+    }
+    if (!finite({c.value})) return refuse("a control is not a finite number");
+    return {};
+  }
+  Status operator()(const SetJointState& c) const {
+    GLOAM_TRY_STATUS(check_handle(c.joint, "joint", 0, model_.njnt));
+    const JointWidth width = joint_width(model_.jnt_type[c.joint.id]);
+    const auto fits = [](const std::vector<double>& values, int count) {
+      return values.empty() || values.size() == static_cast<size_t>(count);
+    };
+    if (!fits(c.qpos, width.qpos) || !fits(c.qvel, width.qvel)) {
+      return refuse(fmt::format("joint {} has {} positions and {} velocities, not {} and {}",
+                                c.joint.id, width.qpos, width.qvel, c.qpos.size(), c.qvel.size()),
+                    "give all of them, or none to leave them as they are");
+    }
+    if (!finite(c.qpos) || !finite(c.qvel)) return refuse("the state of a joint is not finite");
+    if (c.qpos.size() >= 4 && mju_norm(c.qpos.data() + c.qpos.size() - 4, 4) < 1e-6)
+      return refuse("the quaternion of a joint is zero");
+    return {};
+  }
+  Status operator()(const SetVelocityGoal& c) const {
+    if (c.robot < 0 || c.robot >= robot_count_) {
+      return refuse(fmt::format("there is no robot number {}", c.robot));
+    }
+    if (!finite({c.vx, c.vy, c.yaw_rate})) return refuse("a velocity goal is not finite");
+    return {};
+  }
+  Status operator()(const SetMocapPose& c) const {
+    if (Status status = check_body(c.body); !status) return status;
+    if (model_.body_mocapid[c.body.id] < 0) {
+      return refuse(fmt::format("{} is not a mocap body", body_label(model_, c.body.id)),
+                    "give it mocap=\"true\" in the model");
+    }
+    for (const AgentDescription& agent : agents_) {
+      const auto end = agent.body.begin() + agent.parts();
+      if (std::find(agent.body.begin(), end, c.body.id) != end)
+        return refuse(fmt::format("{} is agent '{}', which moves by itself",
+                                  body_label(model_, c.body.id), agent.name));
+    }
+    const Quat& q = c.X_WB.q;
+    if (!finite(c.X_WB.p) || !finite({q.w, q.x, q.y, q.z}) ||
+        q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z < 1e-12) {
+      return refuse("a mocap pose is not finite, or its quaternion is zero");
+    }
+    return {};
+  }
+  Status operator()(const SetWrench& c) const {
+    if (Status status = check_body(c.body); !status) return status;
+    if (!finite(c.force) || !finite(c.torque)) return refuse("a wrench is not finite");
+    return {};
+  }
+  Status operator()(const AddVelocity& c) const {
+    if (Status status = check_body(c.body); !status) return status;
+    if (!finite(c.velocity)) return refuse("a velocity is not finite");
+    if (floating_joint(model_, c.body.id) < 0) {
+      return refuse(fmt::format("{} does not float: it has no free joint above it",
+                                body_label(model_, c.body.id)),
+                    "push it with a wrench instead");
+    }
+    return {};
+  }
+  Status operator()(const DragBody& c) const {
+    if (Status status = check_body(c.body); !status) return status;
+    if (!finite(c.point_B) || !finite(c.target_W)) return refuse("a drag point is not finite");
+    if (c.active && !can_move(model_, c.body.id)) {
+      return refuse(fmt::format("{} cannot move", body_label(model_, c.body.id)));
+    }
+    return {};
+  }
+  Status operator()(const ResetSim&) const { return {}; }
+  Status operator()(const SetLiveField& c) const { return check_live_field(model_, c); }
+
+ private:
+  template <class Kind>
+  Status check_handle(Handle<Kind> handle, const char* kind, int first, mjtSize end) const {
+    if (handle.world != 0 && handle.world != serial_) {
+      return refuse(
+          fmt::format("a handle of a {} is of another World than the one that runs", kind),
+          "find it again in Simulation::world(): a recompile makes a new World");
+    }
+    if (handle.id < first || handle.id >= end)
+      return refuse(fmt::format("there is no {} number {}", kind, handle.id));
+    return {};
+  }
+  Status check_body(Body body) const { return check_handle(body, "movable body", 1, model_.nbody); }
+
+  uint64_t serial_;
+  const mjModel& model_;
+  const std::vector<AgentDescription>& agents_;
+  int robot_count_;
+};
+
+}  // namespace
+
+int floating_joint(const mjModel& model, int body) {
+  const int root = model.body_rootid[body];
+  for (int i = 0; i < model.body_jntnum[root]; ++i) {
+    const int joint = model.body_jntadr[root] + i;
+    if (model.jnt_type[joint] == mjJNT_FREE) return joint;
+  }
+  return -1;
+}
+
+Status check_command(const CompiledWorld& world, const Command& command) {
+  if (command.step < Command::kNextStep) {
+    return refuse(fmt::format("a command cannot apply at step {}", command.step));
+  }
+  return std::visit(Check(world), command.what);
+}
+
+}  // namespace gloam

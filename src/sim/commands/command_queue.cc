@@ -1,0 +1,130 @@
+#include "sim/commands/command_queue.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+
+namespace gloam {
+
+CommandQueue::CommandQueue(int capacity, int64_t log_capacity)
+    : arrivals_(capacity), log_capacity_(log_capacity) {}
+
+CommandQueue::~CommandQueue() {
+  Node* node = nullptr;
+  while (arrivals_.try_pop(node)) delete node;
+  delete_list(pending_);
+  delete_list(log_.load());
+  delete_list(retired_.load());
+}
+
+Status CommandQueue::post(Command command) {
+  delete_list(retired_.exchange(nullptr, std::memory_order_acquire));
+  auto node = std::make_unique<Node>();
+  node->command = std::move(command);
+  Node* raw = node.get();
+  if (!arrivals_.try_push(raw)) {
+    return Error{ErrorKind::kIo,
+                 fmt::format("the command queue is full: {} commands wait for the simulation",
+                             arrivals_.capacity()),
+                 {},
+                 "post fewer commands per step, or let the simulation step"};
+  }
+  static_cast<void>(node.release());  // the queue owns it now
+  return {};
+}
+
+std::vector<LoggedCommand> CommandQueue::take_log() {
+  Node* const newest = log_.exchange(nullptr, std::memory_order_acquire);
+  std::vector<LoggedCommand> entries;
+  for (Node* node = newest; node != nullptr; node = node->next) {
+    entries.push_back({node->run, std::move(node->command)});
+  }
+  log_size_.fetch_sub(static_cast<int64_t>(entries.size()), std::memory_order_relaxed);
+  delete_list(newest);
+  std::reverse(entries.begin(), entries.end());
+  return entries;
+}
+
+void CommandQueue::take_arrivals(int64_t step) {
+  Node* node = nullptr;
+  while (arrivals_.try_pop(node)) {
+    node->arrival = arrival_count_++;
+    node->due = std::max(node->command.step, step);
+    insert(node);
+  }
+}
+
+void CommandQueue::insert(Node* node) {
+  node->next = nullptr;
+  if (pending_ == nullptr) {
+    pending_ = pending_tail_ = node;
+  } else if (pending_tail_->due <= node->due) {
+    pending_tail_ = pending_tail_->next = node;
+  } else {
+    Node** place = &pending_;
+    while ((*place)->due <= node->due) place = &(*place)->next;
+    node->next = *place;
+    *place = node;
+  }
+}
+
+CommandQueue::Node* CommandQueue::pop_pending() {
+  Node* node = pending_;
+  pending_ = node->next;
+  if (pending_ == nullptr) pending_tail_ = nullptr;
+  return node;
+}
+
+void CommandQueue::discard_before(int64_t arrival) {
+  Node* all = pending_;
+  pending_ = pending_tail_ = nullptr;
+  while (all != nullptr) {
+    Node* node = all;
+    all = all->next;
+    if (node->arrival < arrival) {
+      discarded_.fetch_add(1, std::memory_order_relaxed);
+      retire(node);
+    } else {
+      // Its step counts from the reset; "next step" is step 0.
+      node->due = std::max<int64_t>(node->command.step, 0);
+      insert(node);
+    }
+  }
+}
+
+void CommandQueue::reset_now(int64_t step, int64_t run) {
+  take_arrivals(step);
+  discard_before(arrival_count_);
+  Node* node = new Node;
+  node->command.what = ResetSim{};
+  log(node, run, step);
+}
+
+void CommandQueue::log(Node* node, int64_t run, int64_t step) {
+  node->command.step = step;
+  node->run = run;
+  applied_.fetch_add(1, std::memory_order_relaxed);
+  if (log_size_.load(std::memory_order_relaxed) >= log_capacity_) {
+    log_lost_.fetch_add(1, std::memory_order_relaxed);
+    retire(node);
+    return;
+  }
+  log_size_.fetch_add(1, std::memory_order_relaxed);
+  push(log_, node);
+}
+
+void CommandQueue::retire(Node* node) { push(retired_, node); }
+
+void CommandQueue::push(std::atomic<Node*>& stack, Node* node) {
+  // Only the sim thread pushes and readers take the whole stack, so the loop cannot see ABA.
+  node->next = stack.load(std::memory_order_relaxed);
+  while (!stack.compare_exchange_weak(node->next, node, std::memory_order_release)) {
+  }
+}
+
+void CommandQueue::delete_list(Node* node) {
+  while (node != nullptr) delete std::exchange(node, node->next);
+}
+
+}  // namespace gloam

@@ -1,0 +1,115 @@
+#pragma once
+// Commands on their way to the sim thread: posted by any thread, kept in order of (step, arrival)
+// until their step, then in the log with the step they really applied at. The sim thread neither
+// locks, allocates nor frees here: nodes are made and deleted by the threads that post and read.
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "gloam/command.h"
+#include "sim/commands/bounded_queue.h"
+
+namespace gloam {
+
+/// A command and when it really applied.
+struct LoggedCommand {
+  int64_t run = 0;  ///< number of resets before it
+  Command command;  ///< `step` = the step it applied at; a ResetSim ends its run
+};
+
+class CommandQueue {
+ public:
+  /// `capacity` = commands in flight between two steps; `log_capacity` = length of the log.
+  CommandQueue(int capacity, int64_t log_capacity);
+  ~CommandQueue();
+  CommandQueue(const CommandQueue&) = delete;
+  CommandQueue& operator=(const CommandQueue&) = delete;
+
+  // ---- any thread ----
+  /// kIo Error when the queue is full: the command is not taken.
+  Status post(Command command);
+  /// What has applied since the last call, in order.
+  std::vector<LoggedCommand> take_log();
+  /// Commands that have applied, over all runs.
+  int64_t applied() const { return applied_.load(std::memory_order_relaxed); }
+  /// What the log does not hold, so that a replay of it would not be exact: commands that found it
+  /// full, recompiles.
+  int64_t log_lost() const { return log_lost_.load(std::memory_order_relaxed); }
+  /// Commands for later steps that a reset threw away, or a recompile that took their thing away.
+  int64_t discarded() const { return discarded_.load(std::memory_order_relaxed); }
+
+  // ---- the sim thread ----
+  /// True when due() could find something: cheap, called before every step.
+  bool maybe_due(int64_t step) const {
+    return arrivals_.size() > 0 || (pending_ != nullptr && pending_->due <= step);
+  }
+  /// Calls apply(command) for the commands due before `step`, oldest first, and logs them. A
+  /// ResetSim ends the round: what was posted before it is thrown away, what came after it waits.
+  /// Returns true when there was one.
+  template <class Apply>
+  bool apply_due(int64_t step, int64_t run, Apply&& apply) {
+    take_arrivals(step);
+    while (pending_ != nullptr && pending_->due <= step) {
+      Node* node = pop_pending();
+      const bool reset = std::holds_alternative<ResetSim>(node->command.what);
+      if (!reset) apply(static_cast<const Command&>(node->command));
+      if (reset) discard_before(node->arrival);
+      log(node, run, step);
+      if (reset) return true;
+    }
+    return false;
+  }
+  /// Between two steps: every Command that waits becomes translate(command), or is thrown away
+  /// where that is nothing. What was logged before is of another World: from here on the log cannot
+  /// be replayed. Allocates.
+  template <class Translate>
+  void translate(int64_t step, Translate&& translate) {
+    take_arrivals(step);
+    Node* all = pending_;
+    pending_ = pending_tail_ = nullptr;
+    while (all != nullptr) {
+      Node* node = std::exchange(all, all->next);
+      if (std::optional<Command> command = translate(static_cast<const Command&>(node->command))) {
+        node->command = std::move(*command);
+        insert(node);
+      } else {
+        discarded_.fetch_add(1, std::memory_order_relaxed);
+        retire(node);
+      }
+    }
+    log_lost_.fetch_add(1, std::memory_order_relaxed);
+  }
+  /// A reset that did not come as a Command: throws away everything that waits and logs a ResetSim.
+  /// Allocates.
+  void reset_now(int64_t step, int64_t run);
+
+ private:
+  struct Node {
+    Command command;
+    int64_t due = 0, arrival = 0, run = 0;
+    Node* next = nullptr;
+  };
+
+  void take_arrivals(int64_t step);
+  void insert(Node* node);
+  Node* pop_pending();
+  void discard_before(int64_t arrival);
+  void log(Node* node, int64_t run, int64_t step);
+  void retire(Node* node);
+  static void push(std::atomic<Node*>& stack, Node* node);
+  static void delete_list(Node* node);
+
+  BoundedQueue<Node*> arrivals_;
+  Node* pending_ = nullptr;  // sorted by (due, arrival)
+  Node* pending_tail_ = nullptr;
+  int64_t arrival_count_ = 0;
+  int64_t log_capacity_;
+  std::atomic<int64_t> log_size_{0}, applied_{0}, log_lost_{0}, discarded_{0};
+  std::atomic<Node*> log_{nullptr};      // stack, newest first
+  std::atomic<Node*> retired_{nullptr};  // to be deleted by the next thread that posts
+};
+
+}  // namespace gloam

@@ -1,0 +1,199 @@
+#include "sim/commands/live_fields.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <type_traits>
+
+#include "base/check.h"
+#include "base/hash.h"
+#include "scene/files/mujoco_guard.h"
+
+namespace gloam {
+namespace {
+
+struct FieldRow {
+  const char* name;
+  float smallest, largest;  // allowed values
+};
+
+constexpr float kAny = 1e10f;  // mjMAXVAL: beyond it MuJoCo calls a number bad
+
+// By LiveFieldId.
+constexpr FieldRow kFields[kLiveFieldCount] = {
+    {"gravity", -kAny, kAny},      {"wind", -kAny, kAny},          {"body_mass", 0, kAny},
+    {"geom_friction", 0, kAny},    {"height_field", 0, 1},         {"light_diffuse", 0, kAny},
+    {"light_intensity", 0, kAny},  {"light_active", 0, 1},         {"geom_color", 0, 1},
+    {"material_color", 0, 1},      {"material_emission", 0, kAny}, {"material_specular", 0, 1},
+    {"material_shininess", 0, 1},  {"material_reflectance", 0, 1}, {"material_metallic", -1, 1},
+    {"material_roughness", -1, 1},
+};
+
+const FieldRow& row(LiveFieldId field) { return kFields[static_cast<int>(field)]; }
+
+// Calls use(first value, number of values): where the field lies in a model.
+template <class Model, class Use>
+auto visit_field(Model& m, LiveFieldId field, Use&& use) {
+  switch (field) {
+    case LiveFieldId::kGravity:
+      return use(m.opt.gravity, 3);
+    case LiveFieldId::kWind:
+      return use(m.opt.wind, 3);
+    case LiveFieldId::kBodyMass:
+      return use(m.body_mass, m.nbody);
+    case LiveFieldId::kGeomFriction:
+      return use(m.geom_friction, 3 * m.ngeom);
+    case LiveFieldId::kHeightField:
+      return use(m.hfield_data, m.nhfielddata);
+    case LiveFieldId::kLightDiffuse:
+      return use(m.light_diffuse, 3 * m.nlight);
+    case LiveFieldId::kLightIntensity:
+      return use(m.light_intensity, m.nlight);
+    case LiveFieldId::kLightActive:
+      return use(m.light_active, m.nlight);
+    case LiveFieldId::kGeomColor:
+      return use(m.geom_rgba, 4 * m.ngeom);
+    case LiveFieldId::kMaterialColor:
+      return use(m.mat_rgba, 4 * m.nmat);
+    case LiveFieldId::kMaterialEmission:
+      return use(m.mat_emission, m.nmat);
+    case LiveFieldId::kMaterialSpecular:
+      return use(m.mat_specular, m.nmat);
+    case LiveFieldId::kMaterialShininess:
+      return use(m.mat_shininess, m.nmat);
+    case LiveFieldId::kMaterialReflectance:
+      return use(m.mat_reflectance, m.nmat);
+    case LiveFieldId::kMaterialMetallic:
+      return use(m.mat_metallic, m.nmat);
+    case LiveFieldId::kMaterialRoughness:
+      return use(m.mat_roughness, m.nmat);
+  }
+  return use(static_cast<float*>(nullptr), 0);
+}
+
+// Values that are the World's own keep its full precision.
+template <class World, class T>
+void from_floats(std::span<const float> values, const World* world, T* target) {
+  for (size_t i = 0; i < values.size(); ++i) {
+    const bool is_own = values[i] == static_cast<float>(world[i]);
+    target[i] = static_cast<T>(is_own ? world[i] : static_cast<World>(values[i]));
+  }
+}
+
+// The inertia scales with the mass; massless bodies keep theirs.
+void write_masses(const mjModel& world_model, std::span<const float> masses, mjModel& model) {
+  from_floats(masses, world_model.body_mass, model.body_mass);
+  for (int body = 0; body < model.nbody; ++body) {
+    const double before = world_model.body_mass[body];
+    const double ratio = before > 0 ? model.body_mass[body] / before : 1;
+    for (int axis = 0; axis < 3; ++axis) {
+      model.body_inertia[3 * body + axis] = world_model.body_inertia[3 * body + axis] * ratio;
+    }
+  }
+}
+
+}  // namespace
+
+const char* live_field_name(LiveFieldId field) { return row(field).name; }
+
+int live_field_size(const mjModel& model, LiveFieldId field) {
+  return visit_field(model, field, [](const auto*, mjtSize n) { return static_cast<int>(n); });
+}
+
+std::vector<float> read_live_field(const mjModel& model, LiveFieldId field) {
+  std::vector<float> values;
+  live_field_at(model, nullptr, field, &values);
+  return values;
+}
+
+void live_field_at(const mjModel& model, const LiveFields* live, LiveFieldId field,
+                   std::vector<float>* values) {
+  if (live != nullptr && !live->values[static_cast<size_t>(field)].empty()) {
+    *values = live->values[static_cast<size_t>(field)];
+    return;
+  }
+  visit_field(model, field, [&](const auto* from, mjtSize n) { values->assign(from, from + n); });
+}
+
+Status check_live_field(const mjModel& model, const SetLiveField& change) {
+  if (static_cast<int>(change.field) < 0 || static_cast<int>(change.field) >= kLiveFieldCount) {
+    return Error{ErrorKind::kUsage,
+                 fmt::format("there is no live field number {}", static_cast<int>(change.field))};
+  }
+  const FieldRow& limits = row(change.field);
+  const int size = live_field_size(model, change.field);
+  const int64_t end = int64_t{change.first} + static_cast<int64_t>(change.values.size());
+  if (change.first < 0 || end > size || change.values.empty()) {
+    return Error{ErrorKind::kUsage,
+                 fmt::format("live field {} has {} values in this world; elements {} to {} are not "
+                             "a part of it",
+                             limits.name, size, change.first, end - 1)};
+  }
+  for (size_t i = 0; i < change.values.size(); ++i) {
+    const float value = change.values[i];
+    if (change.field == LiveFieldId::kBodyMass && value <= 0 &&
+        model.body_mass[static_cast<size_t>(change.first) + i] > 0) {
+      return Error{ErrorKind::kUsage, fmt::format("a mass of {} kg is not positive", value)};
+    }
+    if (!(value >= limits.smallest && value <= limits.largest)) {
+      return Error{ErrorKind::kUsage,
+                   fmt::format("{} is not a value of live field {} ({:g} … {:g})", value,
+                               limits.name, limits.smallest, limits.largest)};
+    }
+  }
+  return {};
+}
+
+std::shared_ptr<const LiveFields> change_live_field(const mjModel& world_model,
+                                                    const LiveFields* current,
+                                                    const SetLiveField& change, uint64_t serial) {
+  auto next =
+      current != nullptr ? std::make_shared<LiveFields>(*current) : std::make_shared<LiveFields>();
+  next->values.resize(kLiveFieldCount);
+  std::vector<float>& values = next->values[static_cast<size_t>(change.field)];
+  if (values.empty()) values = read_live_field(world_model, change.field);
+  std::copy(change.values.begin(), change.values.end(), values.begin() + change.first);
+  ++next->version;
+  next->serial = serial;
+  if (change.field == LiveFieldId::kHeightField) next->height_field_serial = serial;
+  return next;
+}
+
+uint64_t live_fields_digest(const LiveFields& live) {
+  uint64_t hash = hash_bytes(&live.version, sizeof(live.version));
+  for (size_t field = 0; field < live.values.size(); ++field) {
+    if (live.values[field].empty()) continue;
+    hash = hash_bytes(&field, sizeof(field), hash);
+    hash = hash_span<float>(live.values[field], hash);
+  }
+  return hash;
+}
+
+void own_live_field(LiveFieldId field, mjModel& model, std::vector<std::byte>* storage) {
+  GLOAM_CHECK(field != LiveFieldId::kBodyMass, "masses need a model of their own");
+  visit_field(model, field, [&](auto&& array, mjtSize n) {
+    using Array = std::remove_reference_t<decltype(array)>;
+    if constexpr (std::is_pointer_v<Array>) {  // the options are the model's own anyway
+      storage->resize(static_cast<size_t>(n) * sizeof(*array));
+      if (n > 0) std::memcpy(storage->data(), array, storage->size());
+      array = reinterpret_cast<Array>(storage->data());
+    }
+  });
+}
+
+Status write_live_field(const mjModel& world_model, LiveFieldId field,
+                        std::span<const float> values, mjModel& model, mjData* scratch) {
+  GLOAM_CHECK(static_cast<int>(values.size()) == live_field_size(model, field),
+              "a live field is written whole");
+  if (field == LiveFieldId::kBodyMass) {
+    write_masses(world_model, values, model);
+    return guarded([&] { mj_setConst(&model, scratch); });
+  }
+  visit_field(world_model, field, [&](const auto* world, mjtSize) {
+    visit_field(model, field, [&](auto* target, mjtSize) { from_floats(values, world, target); });
+  });
+  return {};
+}
+
+}  // namespace gloam

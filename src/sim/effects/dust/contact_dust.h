@@ -1,0 +1,62 @@
+#pragma once
+// Dust from what touches dusty ground, gathered on the sim thread between two ticks of a gas:
+// impacts of feet last milliseconds, and ticks would miss them.
+//
+// Of each contact of a body with what stands still: AP-42's law for the way it rolls, by the share
+// of its tree's weight that it carries; dust per energy for friction's work and for what it comes
+// down with. In a bed of soil the greater of both: what rolls there sinks in at each turn. Of
+// people, whose feet are in no contact with the ground, a step's worth at each step.
+
+#include <mujoco/mujoco.h>
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "sim/agents/agents.h"
+#include "sim/effects/soil/soil_reaction.h"
+#include "world/world.h"
+
+namespace gloam {
+
+struct DustDeposit {
+  Vec3f p;         ///< middle of where it was raised [m], world
+  float mass = 0;  ///< [kg]
+};
+
+class ContactDust {
+ public:
+  /// Gathers what is raised in the box from `low` to `high` [m].
+  ContactDust(const CompiledWorld& world, Vec3f low, Vec3f high);
+
+  void reset();
+  /// After mj_step, while `data` has its contacts, forces and velocities. `soil`: of that step.
+  /// `agents`: null = none.
+  void gather(const mjModel& model, const mjData& data, std::span<const SoilReaction> soil,
+              const Agents* agents);
+  /// What was gathered since the last call, by what raised it.
+  std::vector<DustDeposit> take();
+
+ private:
+  struct Heap {
+    double mass = 0;        // [kg]
+    double moment[3] = {};  // times position [kg m]
+  };
+  struct Ground {
+    const DustDescription* box = nullptr;
+    double per_energy = 0;        // dust [kg/J]
+    std::vector<double> per_way;  // by body, of what its tree weighs in the model [kg/m]
+  };
+  const Ground* ground_at(const double* p) const;
+  void gather_contact(const mjModel& model, const mjData& data, int contact);
+  void gather_soil(const mjModel& model, const mjData& data, const SoilReaction& reaction);
+  void gather_steps(const Agents& agents, const mjData& data);
+  static void put(double mass, const double* p, Heap* heap);
+
+  std::vector<Ground> grounds_;
+  Vec3f low_, high_;
+  std::vector<Heap> of_geoms_, of_agents_;
+  std::vector<std::array<bool, 2>> planted_;  // feet of agents, before
+};
+
+}  // namespace gloam

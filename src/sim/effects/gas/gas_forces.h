@@ -1,0 +1,64 @@
+#pragma once
+// What the air of gases does to bodies, on the sim thread: drag by how it moves there.
+//
+// It is that of MuJoCo's own model of a fluid, which knows one air for all bodies: rho/2 A |v| v
+// along each axis of the box of equal inertia, and Stokes' drag. In a model that has a fluid each
+// body gets the difference between that in the air of its gas and in MuJoCo's, so that where the
+// two are the same nothing changes. The air is that of the last tick, up to an interval old; hot
+// air is thinner by T0/T. Left out: torques, and bodies to which air can do less than kLeastPush.
+
+#include <mujoco/mujoco.h>
+
+#include <vector>
+
+#include "sim/effects/gas/medium_field.h"
+#include "sim/loop/step_schedule.h"
+#include "world/world.h"
+
+namespace gloam {
+
+class GasForces {
+ public:
+  /// A thousandth of what weight does [m/s²].
+  static constexpr double kLeastPush = 0.01;
+
+  GasForces(const CompiledWorld& world, Rational timestep);
+
+  /// Forgets the air: the next step looks at it.
+  void reset() { next_look_ = 0; }
+  /// Adds the forces of step `step` to data.qfrc_applied; poses and velocities in `data` are of its
+  /// state. `air(row)`: the field of a gas. The air around a body is looked at 50 times a second.
+  template <class Air>
+  void begin_step(int64_t step, const mjModel& model, mjData& data, Air&& air) {
+    if (step >= next_look_) {
+      for (Felt& felt : felt_) felt.gas = -1;
+      for (size_t row = 0; row < gases_.size(); ++row)
+        look(static_cast<int>(row), model, data, air(row));
+      next_look_ = looks_.step_of(looks_.first_at_or_after(step + 1));
+    }
+    push(model, data);
+  }
+
+ private:
+  // A body that moves, and the air around it.
+  struct Felt {
+    int body = 0;
+    double half[3] = {};  // of its box [m]
+    double reach = 0;     // of the rotors of its tree around the tree's centre, 0 = it has none [m]
+    double area = 0;      // of the largest side of the box [m²]
+    int gas = -1;         // that pushes it; -1 = none
+    double wind[3] = {};  // [m/s]
+    double thinness = 1;  // T0 / T
+  };
+  void look(int row, const mjModel& model, const mjData& data, const MediumField& field);
+  static double most_push(const mjModel& model, const mjData& data, const Felt& felt);
+  void push(const mjModel& model, mjData& data);
+
+  const std::vector<GasDescription>& gases_;
+  const mjModel& model_;
+  StepSchedule looks_;
+  int64_t next_look_ = 0;
+  std::vector<Felt> felt_;
+};
+
+}  // namespace gloam

@@ -1,0 +1,88 @@
+// What bodies do to the surface of a bed, as it is seen.
+
+#include "sim/effects/soil/soil_bed.h"
+
+namespace gloam {
+namespace {
+
+constexpr double kNoWay = 1e-9;     // [m]
+constexpr double kMovesOn = 0.05;   // [m/s]
+constexpr double kHeapWidth = 1.5;  // of a heap, over the sinkage beside it
+constexpr double kNoSlide = 1e-5;   // [m]
+constexpr int kFarthest = 64;       // cells to it
+
+}  // namespace
+
+// Returns by how much [m].
+float SoilBed::lower_track(const SoilTouch& touch) {
+  const SoilCell& cell = cells_[static_cast<size_t>(touch.cell)];
+  const double share = std::min(touch.area / (soil_.dx * soil_.dy), 1.0);
+  const double deepest = cell.sinkage_under(touch.fallen);
+  const double left =
+      deepest - double{cell.pressure} / cell.unloading(soil_.strength, touch.fallen);
+  const auto height = static_cast<float>(-left * share);
+  const float lower = tracks_.height(touch.cell) - height;
+  if (lower <= 0) return 0;
+  tracks_.set_height(touch.cell, height);
+  return lower;
+}
+
+// What is displaced rises beside what displaces it: away from its middle, or, where it moves on, at
+// its sides. That is seen and not felt.
+void SoilBed::push_aside(const SoilTouch& touch, const double* velocity, double volume) {
+  if (volume <= 0) return;
+  const double* centre = contacts_.centre(touch.patch);
+  double way[2] = {touch.p[0] - centre[0], touch.p[1] - centre[1]};
+  const double speed = std::hypot(velocity[0], velocity[1]);
+  if (speed > kMovesOn) {
+    const double across[2] = {-velocity[1] / speed, velocity[0] / speed};
+    const double side = way[0] * across[0] + way[1] * across[1] < 0 ? -1 : 1;
+    way[0] = side * across[0], way[1] = side * across[1];
+  }
+  const double length = std::hypot(way[0], way[1]);
+  if (length < kNoWay) return;
+  // From cell to cell, out of what is touched, then over as many as the heap is wide.
+  const double step = std::min(soil_.dx, soil_.dy);
+  const int wide = std::clamp(static_cast<int>(std::ceil(kHeapWidth * touch.depth / step)), 2, 8);
+  int left = wide;
+  for (int i = 1; i <= kFarthest && left > 0; ++i) {
+    const double x = touch.p[0] + way[0] / length * step * i - soil_.low_x();
+    const double y = touch.p[1] + way[1] / length * step * i - soil_.low_y();
+    if (x < 0 || y < 0 || x >= soil_.size_x || y >= soil_.size_y) return;
+    const int cell = std::min(static_cast<int>(y / soil_.dy), soil_.ny - 1) * soil_.nx +
+                     std::min(static_cast<int>(x / soil_.dx), soil_.nx - 1);
+    if (contacts_.is_touched(cell)) continue;
+    const double share = 2.0 * left / (wide * (wide + 1));
+    tracks_.set_height(
+        cell, tracks_.height(cell) + static_cast<float>(share * volume / soil_.dx / soil_.dy));
+    slide(cell);
+    --left;
+  }
+}
+
+// What lies loose slides down from a cell to the lowest beside it, and from there, until it is no
+// steeper than its friction holds; not into what is in the ground.
+void SoilBed::slide(int cell) {
+  for (int way = 0; way < kFarthest; ++way) {
+    const int i = cell % soil_.nx, j = cell / soil_.nx;
+    int lowest = -1;
+    double excess = 0;  // [m]
+    const auto look = [&](bool is_inside, int beside, double distance) {
+      if (!is_inside || contacts_.is_touched(beside)) return;
+      const double over = double{tracks_.height(cell)} - double{tracks_.height(beside)} -
+                          distance * soil_.strength.tan_friction;
+      if (over > excess) excess = over, lowest = beside;
+    };
+    look(i > 0, cell - 1, soil_.dx);
+    look(i + 1 < soil_.nx, cell + 1, soil_.dx);
+    look(j > 0, cell - soil_.nx, soil_.dy);
+    look(j + 1 < soil_.ny, cell + soil_.nx, soil_.dy);
+    if (excess < kNoSlide) return;
+    const auto part = static_cast<float>(excess / 2);
+    tracks_.set_height(cell, tracks_.height(cell) - part);
+    tracks_.set_height(lowest, tracks_.height(lowest) + part);
+    cell = lowest;
+  }
+}
+
+}  // namespace gloam

@@ -1,0 +1,87 @@
+#pragma once
+// One bed of soil on the sim thread: what colliders do to its cells, and what it does to them.
+//
+// The pressure under a body depends on where the step will take it, along lines far too steep for
+// an explicit step. So the wrench on each body is that of the step's end (implicit Euler): Newton's
+// method with the inverse inertia of the body among its joints. After the idea of Chrono's soil
+// contact model (Tasora et al. 2019).
+
+#include "sim/effects/bodies/body_forces.h"
+#include "sim/effects/soil/soil_lanes.h"
+#include "sim/effects/soil/soil_reaction.h"
+#include "sim/effects/soil/soil_tracks.h"
+
+namespace gloam {
+
+class SoilBed {
+ public:
+  /// `geoms`: all that may touch it.
+  SoilBed(const SoilDescription& soil, const mjModel& model, std::span<const int> geoms);
+
+  void reset();
+  /// Goes on with the cells of another bed, if that is one of the same name, place and grid.
+  bool take_over(const SoilBed& before);
+
+  /// Does a collider's box reach into the bed at data.time?
+  bool is_near(const mjModel& model, const mjData& data, int geom) const;
+
+  /// Finds what `colliders` touch at the beginning of step `step`, in order of geoms, and what that
+  /// does to the ground; their poses are set. The hash goes in and comes out with it.
+  uint64_t press(uint32_t step, const mjModel& model, const mjData& data,
+                 std::span<const ColliderBottom* const> colliders, uint64_t hash);
+  /// Adds the forces of the coming step to data.qfrc_applied. data.qLD is of the present.
+  void push(uint32_t step, const mjModel& model, mjData& data, ResponseSolver* solver);
+
+  /// Of the last push(), by geoms.
+  std::span<const SoilReaction> reactions() const { return reactions_; }
+
+  SoilTracks& tracks() { return tracks_; }
+  const SoilDescription& description() const { return soil_; }
+  const std::vector<SoilCell>& cells() const { return cells_; }
+
+ private:
+  /// What the bed does to a body in a step: accelerations of the joints that move it, which stand
+  /// in answers_.
+  struct Answer {
+    uint32_t step = 0;  // after the one it was for
+    size_t first = 0, count = 0;
+  };
+  /// What a body touches.
+  struct Body {
+    int id = 0;
+    double point[3] = {};         // where its motion is told of [m]
+    size_t first = 0, count = 0;  // touches
+    size_t lanes = 0;             // the first of them; kSide touches each
+  };
+  struct Change {
+    int cell = 0;
+    SoilCell is;
+  };
+  void find_bodies();
+  std::span<SoilLanes> lanes_of(const Body& body);
+  void press_cell(uint32_t step, double dt, const SoilTouch& touch, const SoilLanes& lanes,
+                  size_t i, const double* motion);
+  void fill_in(uint32_t step, double dt, const SoilTouch& touch, SoilCell* cell) const;
+  float lower_track(const SoilTouch& touch);
+  void push_aside(const SoilTouch& touch, const double* velocity, double volume);
+  void slide(int cell);
+  void push_body(const mjModel& model, mjData& data, const Body& body, uint32_t step,
+                 ResponseSolver* solver);
+  double limit_work(const Body& body, const double* free, const double* change, double dt,
+                    const double* wrench);
+  void react(const Body& body, const double* motion, double share);
+
+  const SoilDescription& soil_;
+  SoilContacts contacts_;
+  std::vector<SoilCell> cells_;
+  std::vector<Answer> answers_of_;  // of the last step, (nbody)
+  std::vector<double> answers_;
+  std::vector<double> moduli_;    // of patches: k_c / b + k_phi [N/m^(n+2)]
+  std::vector<Body> bodies_;      // of this step
+  std::vector<SoilLanes> lanes_;  // of their touches
+  std::vector<Change> changes_;   // of touched cells, room
+  std::vector<SoilReaction> reactions_;
+  SoilTracks tracks_;
+};
+
+}  // namespace gloam

@@ -1,0 +1,90 @@
+#include "sim/effects/water/water_effect.h"
+
+#include "base/hash.h"
+#include "sim/effects/water/water_surface.h"
+
+namespace gloam {
+
+std::unique_ptr<WaterEffect> WaterEffect::create(std::shared_ptr<const CompiledWorld> world,
+                                                 Rational timestep) {
+  // All waters have one rate.
+  const auto schedule = StepSchedule::at_most(world->waters.front().ripple_rate, timestep);
+  return std::unique_ptr<WaterEffect>(new WaterEffect(std::move(world), timestep, schedule));
+}
+
+WaterEffect::WaterEffect(std::shared_ptr<const CompiledWorld> world, Rational timestep,
+                         StepSchedule schedule)
+    : world_(std::move(world)),
+      schedule_(schedule),
+      timestep_(timestep.value()),
+      shapes_(water_shapes(*world_->model)),
+      forces_(*world_->model, waters(), shapes_),
+      changes_(waters().size()) {
+  // Ticks fall on whole steps, so that one may be a step longer than the rate says.
+  const double longest = 1 / waters().front().ripple_rate.value() + timestep_;
+  for (const WaterDescription& water : waters()) {
+    ripples_.push_back(water.ripples.nx > 0 ? std::make_unique<WaterRipples>(water, longest)
+                                            : nullptr);
+  }
+}
+
+void WaterEffect::reset() {
+  for (const auto& ripples : ripples_)
+    if (ripples != nullptr) ripples->reset();
+  tick_ = -1;
+}
+
+void WaterEffect::take_over(int64_t step, const WaterEffect* before) {
+  reset();
+  tick_ = schedule_.first_at_or_after(step) - 1;
+  for (size_t i = 0; before != nullptr && i < ripples_.size(); ++i) {
+    for (size_t k = 0; k < before->ripples_.size(); ++k) {
+      const WaterDescription &a = waters()[i], &b = before->waters()[k];
+      if (ripples_[i] != nullptr && before->ripples_[k] != nullptr && a.name == b.name &&
+          a.ripples == b.ripples)
+        ripples_[i]->take_over(*before->ripples_[k]);
+    }
+  }
+}
+
+bool WaterEffect::begin_step(int64_t step, mjModel& model, mjData& data, uint64_t* hash) {
+  if (step == schedule_.step_of(tick_ + 1)) {
+    tick(data);
+    for (const auto& ripples : ripples_) {
+      const uint64_t digest = ripples != nullptr ? ripples->digest() : 0;
+      if (digest != 0) *hash = hash_bytes(&digest, sizeof(digest), *hash);
+    }
+  }
+  look(step, changes_);
+  return forces_.begin(model, data, changes_);
+}
+
+void WaterEffect::tick(const mjData& data) {
+  const int64_t from = tick_ >= 0 ? schedule_.step_of(tick_) : 0;
+  const double interval = static_cast<double>(schedule_.step_of(++tick_) - from) * timestep_;
+  for (size_t i = 0; i < ripples_.size(); ++i) {
+    if (ripples_[i] == nullptr) continue;
+    const WaterDescription& water = waters()[i];
+    for (const WaterShape& shape : shapes_) {
+      if (!forces_.is_near(i, shape, data)) continue;
+      const double* p = data.geom_xpos + 3 * shape.geom;
+      const double surface = water.level + wave_height(water, p[0], p[1], data.time);
+      ripples_[i]->displace(shape, p, data.geom_xmat + 9 * shape.geom, surface);
+    }
+    ripples_[i]->advance(interval);
+  }
+}
+
+void WaterEffect::look(int64_t step, std::span<HeightChange> changes) const {
+  const int64_t from = tick_ >= 0 ? schedule_.step_of(tick_) : 0;
+  const auto since = static_cast<float>(static_cast<double>(step - from) * timestep_);
+  for (size_t i = 0; i < ripples_.size(); ++i) {
+    if (ripples_[i] != nullptr) changes[i] = {ripples_[i]->field(), since};
+  }
+}
+
+void WaterEffect::fill(int64_t step, std::vector<HeightChange>* heights) const {
+  look(step, *heights);
+}
+
+}  // namespace gloam

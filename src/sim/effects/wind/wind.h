@@ -1,0 +1,65 @@
+#pragma once
+// Wind with gusts: a pure function of time and height.
+//
+// The mean grows with height by the logarithmic law over open country (Stull 1988, "An Introduction
+// to Boundary Layer Meteorology"; roughness length 3 cm, class 3 of Davenport's, WMO-No. 8); to
+// that come world/weather/gusts.h.
+
+#include <optional>
+
+#include "sim/loop/step_schedule.h"
+#include "world/weather/gusts.h"
+#include "world/world.h"
+
+namespace gloam {
+
+class Wind {
+ public:
+  explicit Wind(const WindDescription& wind);
+
+  bool blows() const { return wind_.blows(); }
+  /// Along the wind [m/s]; `height` above z = 0 [m], below 0.1 m as there.
+  double mean_speed(double height) const;
+  /// What comes to the mean [m/s], world.
+  Vec3 gust(double time) const;
+  Vec3 at(double time, double height) const {
+    return blows() ? with_mean(gust(time), height) : Vec3{};
+  }
+  /// What gusts come to there.
+  Vec3 with_mean(Vec3 gust, double height) const;
+
+ private:
+  WindDescription wind_;
+  std::optional<Gusts> gusts_;  // where it blows
+};
+
+// ICAO's standard atmosphere at sea level, rounded.
+inline constexpr double kAirDensity = 1.2;       ///< [kg/m³]
+inline constexpr double kAirViscosity = 1.8e-5;  ///< [Pa s]
+
+/// Gives a model that has no fluid of its own air to move in.
+void give_air(mjOption* option);
+
+/// Blows on bodies, by MuJoCo's own model of a fluid, which knows one wind for all of them: that at
+/// the mean height of the robots' root bodies, weighted by mass; without robots of all that floats.
+class WindOnBodies {
+ public:
+  WindOnBodies(const CompiledWorld& world, Rational timestep);
+
+  /// Sets the wind of step `step`, from `qpos`. Gusts change at 100 Hz.
+  void blow(int64_t step, const double* qpos, mjOption* option);
+
+ private:
+  struct Root {
+    int qpos;          // where its height stands, -1 = it stays
+    double z, weight;  // [m], share
+  };
+  Wind wind_;
+  StepSchedule schedule_;
+  double timestep_;  // [s]
+  int64_t gust_step_ = -1;
+  Vec3 gust_;  // of that step [m/s]
+  std::vector<Root> roots_;
+};
+
+}  // namespace gloam

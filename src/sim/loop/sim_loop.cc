@@ -1,0 +1,201 @@
+#include "sim/loop/sim_loop.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "base/check.h"
+#include "sim/commands/command_check.h"
+
+namespace gloam {
+namespace {
+constexpr int64_t kNever = std::numeric_limits<int64_t>::max();
+}  // namespace
+
+SimLoop::SimLoop(std::unique_ptr<Stepper> stepper, Rational timestep, CommandQueue& commands,
+                 std::vector<Command> scene_commands, std::vector<LoggedCommand> replay)
+    : stepper_(std::move(stepper)),
+      timestep_(timestep),
+      commands_(commands),
+      scene_commands_(std::move(scene_commands)),
+      replay_(std::move(replay)),
+      goals_(stepper_->world().robots.size()),
+      next_publication_(kNever) {}
+
+Status SimLoop::add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate) {
+  GLOAM_TRY(
+      ControllerSlot slot,
+      ControllerSlot::make(stepper_->world(), {robot, std::move(controller), rate}, timestep_));
+  slot.begin(stepper_->step_count());
+  slot.controller->reset(&stepper_->model(), &stepper_->data());
+  controllers_.push_back(std::move(slot));
+  return {};
+}
+
+Status SimLoop::exchange(NextWorld& next, const Correspondence& same) {
+  if (stepper_->failed())
+    return Error{ErrorKind::kUsage,
+                 "a simulation that has failed cannot go on in another World",
+                 {},
+                 "reset it first"};
+  if (!replay_.empty())
+    return Error{ErrorKind::kUsage, "a log that is replayed is of one World: no recompile"};
+  if (!next.stepper->take_over(*stepper_, same)) return next.stepper->error();
+  std::swap(stepper_, next.stepper);
+  const int64_t step = stepper_->step_count();
+  for (ControllerSlot& slot : next.controllers) {
+    slot.begin(step);
+    const int old = same.robot[static_cast<size_t>(slot.robot)];
+    const auto before = std::find_if(controllers_.begin(), controllers_.end(),
+                                     [old](const ControllerSlot& s) { return s.robot == old; });
+    if (before == controllers_.end()) {
+      slot.controller->reset(&stepper_->model(), &stepper_->data());
+    } else {
+      slot.controller->take_over(&stepper_->model(), &stepper_->data(), *before->controller);
+    }
+  }
+  std::swap(controllers_, next.controllers);
+  std::swap(scene_commands_, next.scene_commands);
+  take_over_goals(same);
+  commands_.translate(step, [&](const Command& command) {
+    std::optional<Command> translated = same.translate(command);
+    if (translated && !check_command(same.after, *translated)) translated.reset();
+    return translated;
+  });
+  for (Subscription& s : subscriptions_) {
+    s.forget_windows();
+    stepper_->pool().add_slots(s.slots());
+  }
+  find_next_publication();
+  return {};
+}
+
+// What the scene said about earlier times is past; but the goal of a robot that is new is the last
+// of those that it would have got.
+void SimLoop::take_over_goals(const Correspondence& same) {
+  std::vector<VelocityTarget> before(same.robot.size());
+  std::swap(before, goals_);
+  for (scene_cursor_ = 0; scene_cursor_ < scene_commands_.size(); ++scene_cursor_) {
+    const Command& command = scene_commands_[scene_cursor_];
+    if (command.step >= stepper_->step_count()) break;
+    if (std::holds_alternative<SetVelocityGoal>(command.what)) apply(command);
+  }
+  for (size_t robot = 0; robot < same.robot.size(); ++robot) {
+    const int old = same.robot[robot];
+    if (old >= 0) goals_[robot] = before[static_cast<size_t>(old)];
+  }
+}
+
+Result<std::shared_ptr<SnapshotQueue>> SimLoop::subscribe(const SubscriptionOptions& options,
+                                                          const std::shared_ptr<Signal>& signal) {
+  GLOAM_TRY(Subscription subscription, Subscription::make(options, timestep_, signal));
+  subscription.begin(stepper_->step_count());
+  stepper_->pool().add_slots(subscription.slots());
+  subscriptions_.push_back(std::move(subscription));
+  find_next_publication();
+  return subscriptions_.back().queue();
+}
+
+void SimLoop::find_next_publication() {
+  next_publication_ = kNever;
+  for (const Subscription& s : subscriptions_) {
+    next_publication_ = std::min(next_publication_, s.due());
+  }
+}
+
+bool SimLoop::publish_due() {
+  const int64_t step = stepper_->step_count();
+  if (step < next_publication_) return true;
+  bool all = true;
+  for (Subscription& s : subscriptions_) {
+    if (s.due() > step || s.queue()->closed()) continue;
+    all = s.publish(step, *stepper_) && all;
+  }
+  std::erase_if(subscriptions_, [this](const Subscription& s) {
+    if (s.queue()->closed()) dropped_by_closed_ += s.queue()->dropped();
+    return s.queue()->closed();
+  });
+  find_next_publication();
+  return all;
+}
+
+void SimLoop::apply(const Command& command) {
+  if (const auto* goal = std::get_if<SetVelocityGoal>(&command.what)) {
+    goal_of(goal->robot) = {goal->vx, goal->vy, goal->yaw_rate};
+  } else {
+    stepper_->apply(command);
+  }
+}
+
+// True when one of them was a reset.
+bool SimLoop::apply_commands() {
+  const int64_t step = stepper_->step_count();
+  while (scene_cursor_ < scene_commands_.size() && scene_commands_[scene_cursor_].step <= step) {
+    apply(scene_commands_[scene_cursor_++]);
+  }
+  while (replay_cursor_ < replay_.size() && replay_[replay_cursor_].run == run_ &&
+         replay_[replay_cursor_].command.step <= step) {
+    const Command& command = replay_[replay_cursor_++].command;
+    if (std::holds_alternative<ResetSim>(command.what)) {
+      commands_.reset_now(step, run_);
+      return true;
+    }
+    apply(command);
+  }
+  return commands_.maybe_due(step) &&
+         commands_.apply_due(step, run_, [this](const Command& command) { apply(command); });
+}
+
+void SimLoop::run_controllers() {
+  const int64_t step = stepper_->step_count();
+  for (ControllerSlot& slot : controllers_) {
+    if (slot.due > step) continue;
+    slot.controller->control(&stepper_->model(), &stepper_->data(), stepper_->soil_reactions(),
+                             step, slot.period, goal_of(slot.robot));
+    slot.due = slot.schedule.step_of(++slot.k);
+  }
+}
+
+bool SimLoop::advance() {
+  if (stepper_->failed()) return false;
+  if (apply_commands()) {
+    begin_run();
+    return !stepper_->failed();
+  }
+  run_controllers();
+  if (hook_) hook_(&stepper_->model(), &stepper_->data());
+  return stepper_->step();
+}
+
+void SimLoop::reset() {
+  commands_.reset_now(stepper_->step_count(), run_);
+  begin_run();
+}
+
+void SimLoop::begin_run() {
+  ++run_;
+  scene_cursor_ = 0;
+  while (replay_cursor_ < replay_.size() && replay_[replay_cursor_].run < run_) ++replay_cursor_;
+  std::fill(goals_.begin(), goals_.end(), VelocityTarget{});
+  if (!stepper_->reset()) return;
+  for (ControllerSlot& slot : controllers_) {
+    slot.k = slot.due = 0;
+    slot.controller->reset(&stepper_->model(), &stepper_->data());
+  }
+  for (Subscription& s : subscriptions_) s.begin(0);
+  find_next_publication();
+}
+
+int64_t SimLoop::dropped() const {
+  int64_t dropped = dropped_by_closed_;
+  for (const Subscription& s : subscriptions_) dropped += s.queue()->dropped();
+  return dropped;
+}
+
+void SimLoop::close_queues() {
+  for (const Subscription& s : subscriptions_) s.queue()->close();
+}
+
+}  // namespace gloam

@@ -1,0 +1,82 @@
+#pragma once
+// What happens around every step, in a fixed order, on whichever thread runs it:
+//   Snapshots due now -> Commands due now -> controllers -> step hook -> physics.
+
+#include <functional>
+#include <vector>
+
+#include "sim/commands/command_queue.h"
+#include "sim/loop/controller_slot.h"
+#include "sim/loop/stepper.h"
+#include "sim/snapshots/subscription.h"
+#include "sim/state/correspondence.h"
+
+namespace gloam {
+
+/// Raw access before every step, after Commands and controllers. What it writes into mjData counts
+/// as input: it is in state and hash. MuJoCo functions that can fail need try_mujoco.
+using StepHook = std::function<void(const mjModel*, mjData*)>;
+
+/// What a SimLoop has of one World.
+struct NextWorld {
+  std::unique_ptr<Stepper> stepper;
+  std::vector<Command> scene_commands;
+  std::vector<ControllerSlot> controllers;
+};
+
+class SimLoop {
+ public:
+  /// `scene_commands` apply in every run, `replay` in the run each entry names; both sorted.
+  SimLoop(std::unique_ptr<Stepper> stepper, Rational timestep, CommandQueue& commands,
+          std::vector<Command> scene_commands, std::vector<LoggedCommand> replay);
+
+  Status add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate);
+  /// Goes on in another World at the present step. `next` comes as it was made, with what belongs
+  /// to its World; it gets back what was here before. Error: then nothing has changed.
+  Status exchange(NextWorld& next, const Correspondence& same);
+  void set_step_hook(StepHook hook) { hook_ = std::move(hook); }
+  Result<std::shared_ptr<SnapshotQueue>> subscribe(const SubscriptionOptions& options,
+                                                   const std::shared_ptr<Signal>& signal);
+
+  /// Hands out the Snapshots that are due at the present step. False when a required queue is full:
+  /// call again when it may have room.
+  bool publish_due();
+  /// Applies Commands and takes one step; when a Command was a reset, stands at step 0 instead.
+  /// False when physics failed.
+  bool advance();
+  /// Back to step 0; Commands that wait are thrown away.
+  void reset();
+
+  Stepper& stepper() { return *stepper_; }
+  const Stepper& stepper() const { return *stepper_; }
+  Rational timestep() const { return timestep_; }
+  int64_t run() const { return run_; }
+  /// Snapshots that best-effort subscriptions have lost.
+  int64_t dropped() const;
+  void close_queues();
+
+ private:
+  void apply(const Command& command);
+  bool apply_commands();
+  void run_controllers();
+  void begin_run();
+  void take_over_goals(const Correspondence& same);
+  void find_next_publication();
+  VelocityTarget& goal_of(int robot) { return goals_[static_cast<size_t>(robot)]; }
+
+  std::unique_ptr<Stepper> stepper_;
+  Rational timestep_;
+  CommandQueue& commands_;
+  std::vector<Command> scene_commands_;
+  std::vector<LoggedCommand> replay_;
+  size_t scene_cursor_ = 0, replay_cursor_ = 0;
+  std::vector<VelocityTarget> goals_;  // by robot
+  std::vector<ControllerSlot> controllers_;
+  std::vector<Subscription> subscriptions_;
+  StepHook hook_;
+  int64_t run_ = 0;
+  int64_t next_publication_ = 0;  // earliest `due` of the subscriptions
+  int64_t dropped_by_closed_ = 0;
+};
+
+}  // namespace gloam

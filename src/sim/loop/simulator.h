@@ -1,0 +1,148 @@
+#pragma once
+// A running simulation: physics on its own thread, Commands in, Snapshots out. Every function may
+// be called from any thread but the sim thread itself (controllers, step hook); those that change
+// the simulation take effect between two steps and return when they have.
+
+#include <array>
+#include <condition_variable>
+#include <functional>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <thread>
+
+#include "gloam/simulation.h"
+#include "sim/loop/pacer.h"
+#include "sim/loop/sim_loop.h"
+
+namespace gloam {
+
+struct SimulatorOptions {
+  uint64_t seed = 1;                    ///< the chain of state hashes starts from it
+  std::optional<double> timestep = {};  ///< instead of the model's, > 0 [s]
+  Pace pace = Pace::kFast;
+  double speed = 1;                         ///< for kRealTime, > 0
+  int command_capacity = 4096;              ///< Commands in flight between two steps, 2 … 2^20
+  int64_t log_capacity = int64_t{1} << 20;  ///< Commands the log keeps until they are taken
+  std::vector<LoggedCommand> replay = {};   ///< a log of the same world, applied at its exact steps
+};
+
+struct SimCounters {
+  int64_t steps = 0;  ///< over all runs
+  int64_t resets = 0;
+  int64_t snapshots_dropped = 0;   ///< by best-effort subscriptions whose reader was too slow
+  int64_t pool_grown = 0;          ///< Snapshots allocated because readers held too many
+  int64_t commands_applied = 0;    ///< posted ones, resets among them
+  int64_t commands_discarded = 0;  ///< that waited when a reset came, or a recompile without
+                                   ///< their thing
+  int64_t log_lost = 0;  ///< missing in the log: Commands, recompiles: a replay would not be exact
+  int64_t deadlines_missed = 0;                ///< steps that began late in real-time mode
+  int64_t most_contacts = 0;                   ///< in one step
+  std::array<int64_t, mjNWARNING> warnings{};  ///< of MuJoCo, by mjtWarning
+};
+
+class Simulator {
+ public:
+  static constexpr int64_t kForever = std::numeric_limits<int64_t>::max();
+
+  /// Stands at step 0; nothing moves before start().
+  static Result<std::unique_ptr<Simulator>> create(std::shared_ptr<const CompiledWorld> world,
+                                                   SimulatorOptions options = {});
+  ~Simulator();  ///< stops
+
+  /// Starts the thread, once. In kLockstep it then waits to be told; otherwise it runs to `until`.
+  void start(int64_t until = kForever);
+  /// Ends the thread and all subscriptions. Snapshots that were handed out stay good.
+  void stop();
+  void pause();
+  void resume();
+  /// Runs until `step` steps since reset, then waits. Returns at once.
+  void run_until(int64_t step);
+  /// Takes n steps and returns when they are done and their Snapshots published. A required queue
+  /// that this thread reads must have room for them.
+  Status step(int64_t n = 1);
+  /// Waits until it runs no longer: paused, told step reached, failed or stopped. The Error of a
+  /// failure.
+  Status wait();
+  /// Back to step 0 now, also after a failure. Commands that wait are thrown away.
+  Status reset();
+  void set_pace(Pace pace, double speed);
+
+  /// Checks a Command and queues it; waits for nothing but a recompile's moment. Errors: not a
+  /// thing of this World, queue full.
+  Status post(Command command);
+  /// Runs before steps at `rate`, of which the step rate is a multiple; reset now and at every
+  /// reset.
+  Status add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate);
+  void set_step_hook(StepHook hook);
+  /// Goes on in another World between two steps, with the state of what remains (state_transfer.h),
+  /// the Commands that wait (Correspondence::translate), all subscriptions (their next Snapshots
+  /// are of the new World; windows that have begun are lost) and these controllers. Error: then the
+  /// old World runs on; another timestep, a simulation that has failed, what MuJoCo says.
+  Status recompile(std::shared_ptr<const CompiledWorld> world,
+                   std::vector<RobotController> controllers);
+  /// From the present step on. The reader holds what it got for as long as it likes.
+  Result<std::shared_ptr<SnapshotQueue>> subscribe(const SubscriptionOptions& options);
+  /// The present instant; after a failure the last good one.
+  Snapshot latest();
+
+  /// kDiverged (or MuJoCo's own error) once physics has failed, until reset().
+  Status status();
+  SimCounters counters();
+  /// Posted Commands that have applied since the last call, in order, with the step they applied
+  /// at.
+  std::vector<LoggedCommand> take_command_log() { return commands_.take_log(); }
+
+  int64_t step_count() const { return step_count_.load(std::memory_order_relaxed); }
+  /// Exact as a fraction: a step takes num / den seconds.
+  Rational timestep() const { return loop_.timestep(); }
+  /// CPU time of the sim thread [s]; 0 before start() and after stop().
+  double cpu_time();
+  std::shared_ptr<const CompiledWorld> world() const {
+    const std::lock_guard lock(world_mutex_);
+    return world_;
+  }
+
+ private:
+  Simulator(std::unique_ptr<Stepper> stepper, Rational timestep, SimulatorOptions options,
+            std::vector<Command> scene_commands);
+  Status check_timestep(const CompiledWorld& world) const;
+
+  void call(const std::function<void()>& f);
+  void run_thread();
+  void answer_calls();
+  void report_idle();
+  bool wants_step() const {
+    return !paused_ && remaining_ > 0 && loop_.stepper().step_count() < until_;
+  }
+  void take_step();
+
+  const uint64_t seed_;
+  const std::optional<double> own_timestep_;  // [s]
+  Pace pace_;
+  CommandQueue commands_;
+  SimLoop loop_;
+  RealTimePacer pacer_;
+
+  // The sim thread's own (any thread's inside call()).
+  bool paused_ = false, quit_ = false;
+  int64_t until_ = 0, remaining_ = kForever;
+  int64_t total_steps_ = 0;
+
+  std::thread thread_;
+  std::shared_ptr<Signal> signal_ = std::make_shared<Signal>();
+  std::atomic<bool> called_{false};
+  std::atomic<int64_t> step_count_{0};
+  std::mutex recompile_mutex_;      // one at a time
+  mutable std::mutex world_mutex_;  // guards world_; a Command is checked and queued under it
+  std::shared_ptr<const CompiledWorld> world_;
+  std::mutex join_mutex_;  // one thread at a time joins or asks for the handle
+  std::mutex mutex_;       // guards what follows
+  std::condition_variable changed_;
+  std::vector<const std::function<void()>*> calls_;
+  int64_t calls_made_ = 0, calls_answered_ = 0;
+  bool running_ = false;  // the thread lives
+  bool idle_ = true;
+};
+
+}  // namespace gloam

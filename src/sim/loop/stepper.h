@@ -1,0 +1,121 @@
+#pragma once
+// One simulation without its thread: private options and mjData, the step, the hash of every step,
+// live fields and what Commands left behind. Used by one thread at a time.
+
+#include <array>
+#include <optional>
+
+#include "gloam/command.h"
+#include "sim/agents/agents.h"
+#include "sim/commands/applied_inputs.h"
+#include "sim/effects/effects.h"
+#include "sim/effects/soil/soil_effect.h"
+#include "sim/effects/water/water_effect.h"
+#include "sim/effects/wind/air_drag.h"
+#include "sim/effects/wind/wind.h"
+#include "sim/snapshots/snapshot_pool.h"
+#include "sim/state/state_layout.h"
+#include "world/world.h"
+
+namespace gloam {
+
+class Stepper {
+ public:
+  /// Stands at the initial state. The chain of hashes starts from `seed`.
+  static Result<std::unique_ptr<Stepper>> create(std::shared_ptr<const CompiledWorld> world,
+                                                 uint64_t seed, std::optional<double> timestep);
+
+  /// Back to the initial state, live fields included. False and error() when MuJoCo refuses.
+  bool reset();
+
+  /// Goes on at the step where `before`, of another World, stands, with the state of what remains.
+  /// To be called once, before the first step. False and error() when MuJoCo refuses; `before` is
+  /// as it was.
+  bool take_over(const Stepper& before, const Correspondence& same);
+
+  /// Applies one checked Command now. Velocity goals and resets are not its business.
+  void apply(const Command& command);
+
+  /// One physics step, bit-equal to mj_step on the same state. False when it failed: then it stands
+  /// at the last good state and error() says why; only reset() goes on from there.
+  bool step();
+
+  bool failed() const { return failed_; }
+  const Error& error() const { return error_; }
+
+  /// The present instant; made once, however often it is asked for. Allocates only when readers
+  /// hold the whole pool.
+  const Snapshot& snapshot();
+
+  int64_t step_count() const { return step_; }
+  double time() const { return state_[0]; }
+  uint64_t hash() const { return hash_; }
+  const mjModel& model() const { return model_; }
+  mjData& data() { return *data_; }
+  const CompiledWorld& world() const { return *world_; }
+  const std::shared_ptr<const CompiledWorld>& shared_world() const { return world_; }
+  SnapshotPool& pool() { return *pool_; }
+  /// MuJoCo's warnings since creation, by mjtWarning.
+  const std::array<int64_t, mjNWARNING>& warnings() const { return warnings_; }
+  /// Most contacts seen in a step since creation.
+  int most_contacts() const { return most_contacts_; }
+  /// Null where there are none.
+  const Agents* agents() const { return agents_.get(); }
+  /// Of the last step.
+  std::span<const SoilReaction> soil_reactions() const {
+    return soil_ != nullptr ? soil_->reactions() : std::span<const SoilReaction>{};
+  }
+
+ private:
+  Stepper() = default;
+  bool fail(Error error);
+  void restore_last_good_state();
+  bool stand_at_state();
+  void change_live(const SetLiveField& change);
+  bool own_the_field(LiveFieldId field);
+  void take_model(const mjModel& model);
+  void count_diagnostics();
+  void step_with_effects();
+  void tick_effects();
+  void blow(const double* qpos);
+  Status make_agents();
+
+  std::shared_ptr<const CompiledWorld> world_;
+  std::optional<double> timestep_;
+  uint64_t seed_ = 0;
+  mjModel model_;  // options of its own; its arrays are the World's until a live field changes
+  std::array<std::vector<std::byte>, kLiveFieldCount> own_fields_;  // of model_, where changed
+  ModelPtr own_model_;  // once masses change model_'s arrays are all this one's
+  bool owns_all_ = false;
+  DataPtr data_;
+  StateReader reader_;  // of data_
+  DataPtr scratch_;     // for mj_setConst; made on first use
+  std::unique_ptr<AppliedInputs> inputs_;
+  std::unique_ptr<Effects> effects_;    // null = none
+  std::unique_ptr<WaterEffect> water_;  // null = none
+  std::unique_ptr<SoilEffect> soil_;    // null = none
+  std::unique_ptr<WindOnBodies> wind_;  // null = the air is still
+  std::unique_ptr<AirDrag> drag_;       // of the wind's air; null = MuJoCo's own does it
+  std::unique_ptr<Agents> agents_;      // null = none
+  std::shared_ptr<const LiveFields> live_;
+  uint64_t live_changes_ = 0;  // since creation
+  std::shared_ptr<SnapshotPool> pool_;
+
+  int64_t run_ = -1;  // resets since the one that create() makes
+  int64_t step_ = 0;
+  uint64_t hash_ = 0;
+  std::vector<double> state_;       // of the last good step
+  std::vector<double> next_state_;  // being checked
+  std::vector<double> applied_;     // room for qfrc_applied (nv)
+  std::vector<double> sensors_;     // where mjData's are not those of a step: at start and failure
+  bool own_sensors_ = false;
+  double sensor_stamp_ = 0;  // [s]
+  Snapshot snapshot_;        // of this step, once made
+  bool failed_ = false;
+  Error error_;
+  std::array<int64_t, mjNWARNING> warnings_{};
+  std::array<int, mjNWARNING> warnings_seen_{};
+  int most_contacts_ = 0;
+};
+
+}  // namespace gloam

@@ -1,0 +1,174 @@
+#include "sim/snapshots/pose_solver.h"
+
+#include <algorithm>
+
+#include "base/check.h"
+#include "scene/files/mujoco_guard.h"
+#include "sim/commands/live_fields.h"
+#include "sim/effects/water/water_surface.h"
+#include "sim/snapshots/skinning.h"
+#include "sim/state/state_layout.h"
+#include "world/effects/visual_soil.h"
+#include "world/effects/visual_water.h"
+#include "world/view/render_origin.h"
+
+namespace gloam {
+namespace {
+
+void assign(const mjtNum* values, mjtSize n, std::vector<double>& out) {
+  out.assign(values, values + n);
+}
+
+}  // namespace
+
+Result<std::unique_ptr<PoseSolver>> PoseSolver::create(std::shared_ptr<const CompiledWorld> world) {
+  std::unique_ptr<PoseSolver> solver(new PoseSolver);
+  solver->world_ = std::move(world);
+  solver->layout_ = deformable_layout(*solver->world_->model);
+  const bool sleeps = (solver->model().opt.enableflags & mjENBL_SLEEP) != 0;
+  if (sleeps || !is_zero(solver->world_->render_origin)) GLOAM_TRY_STATUS(solver->own_the_model());
+  const mjModel* model = &solver->model();
+  mjData* data = nullptr;
+  GLOAM_TRY_STATUS(guarded([&] { data = mj_makeData(model); }));
+  solver->data_.reset(data);
+  return solver;
+}
+
+Status PoseSolver::own_the_model() {
+  if (own_model_) return {};
+  mjModel* model = nullptr;
+  GLOAM_TRY_STATUS(guarded([&] { model = mj_copyModel(nullptr, world_->model.get()); }));
+  own_model_.reset(model);
+  own_model_->opt.enableflags &= ~mjENBL_SLEEP;  // kinematics skips what sleeps
+  move_model(world_->render_origin, own_model_.get());
+  return {};
+}
+
+// Masses move centres of mass, which cameras and lights may track; no other live field moves
+// anything that is seen.
+Status PoseSolver::follow_live_fields(const std::shared_ptr<const LiveFields>& live) {
+  const auto field = static_cast<size_t>(LiveFieldId::kBodyMass);
+  const bool changed = live != nullptr && !live->values[field].empty();
+  if (!changed && masses_.empty()) return {};
+  const std::vector<float> masses =
+      changed ? live->values[field] : read_live_field(*world_->model, LiveFieldId::kBodyMass);
+  if (masses == masses_) return {};
+  GLOAM_TRY_STATUS(own_the_model());
+  if (scratch_ == nullptr) {
+    mjData* scratch = nullptr;
+    GLOAM_TRY_STATUS(guarded([&] { scratch = mj_makeData(own_model_.get()); }));
+    scratch_.reset(scratch);
+  }
+  masses_ = masses;
+  return write_live_field(*world_->model, LiveFieldId::kBodyMass, masses, *own_model_,
+                          scratch_.get());
+}
+
+Status PoseSolver::solve(const Snapshot& snapshot, PoseFrame& frame) {
+  const SnapshotData& in = snapshot.data();
+  GLOAM_CHECK(in.world == world_, "a Snapshot of another World");
+  GLOAM_TRY_STATUS(follow_live_fields(in.live));
+  const mjModel* model = &this->model();
+  mjData* data = data_.get();
+  GLOAM_TRY_STATUS(guarded([&] {
+    mj_setState(model, data, in.state.data(), mjSTATE_INTEGRATION);
+    if (!is_zero(world_->render_origin)) move_state(*model, world_->render_origin, data);
+    mj_kinematics(model, data);
+    mj_comPos(model, data);
+    mj_camlight(model, data);
+    if (model->nflex > 0) mj_flex(model, data);
+    if (layout_.has_tendons) mj_tendon(model, data);
+  }));
+  frame.n_world = 1;
+  frame.run = in.run;
+  frame.step = in.step;
+  frame.time = in.time;
+  fill_poses(frame);
+  fill_vertices(in.live.get(), frame);
+  fill_waters(in, frame);
+  fill_soils(in, frame);
+  fill_live(in.live.get(), frame);
+  frame.fields.resize(in.fields.size());
+  for (size_t i = 0; i < in.fields.size(); ++i)
+    in.fields[i].read(&frame.fields[i].density, &frame.fields[i].temperature);
+  return {};
+}
+
+void PoseSolver::fill_poses(PoseFrame& frame) const {
+  const mjModel& m = model();
+  const mjData& d = *data_;
+  assign(d.xpos, 3 * m.nbody, frame.body_p);
+  assign(d.xmat, 9 * m.nbody, frame.body_R);
+  assign(d.cam_xpos, 3 * m.ncam, frame.camera_p);
+  assign(d.cam_xmat, 9 * m.ncam, frame.camera_R);
+  assign(d.light_xpos, 3 * m.nlight, frame.light_p);
+  assign(d.light_xdir, 3 * m.nlight, frame.light_dir);
+}
+
+void PoseSolver::fill_vertices(const LiveFields* live, PoseFrame& frame) {
+  const mjModel& m = model();
+  const mjData& d = *data_;
+  frame.vertices.resize(static_cast<size_t>(3 * layout_.nvertex));
+  for (int skin = 0; skin < m.nskin; ++skin) {
+    skin_vertices(m, skin, d.xpos, d.xquat,
+                  frame.vertices.data() + 3 * layout_.skin_first[static_cast<size_t>(skin)]);
+  }
+  std::transform(d.flexvert_xpos, d.flexvert_xpos + 3 * m.nflexvert,
+                 frame.vertices.begin() + 3 * m.nskinvert,
+                 [](mjtNum x) { return static_cast<float>(x); });
+  live_field_at(m, live, LiveFieldId::kGravity, &gravity_);
+  const double gravity[3] = {gravity_[0], gravity_[1], gravity_[2]};
+  place_capsules(m, d, gravity, layout_, frame.vertices.data());
+}
+
+void PoseSolver::fill_waters(const SnapshotData& in, PoseFrame& frame) {
+  for (size_t i = 0; i < world_->waters.size(); ++i) {
+    const WaterDescription& water = world_->waters[i];
+    heights_.resize(static_cast<size_t>(water_vertices(water)));
+    surface_heights(water, in.heights[i], in.time, heights_);
+    size_t n = 0;
+    for (int row = 0; row <= water.mesh.ny; ++row) {
+      for (int column = 0; column <= water.mesh.nx; ++column, ++n) {
+        frame.vertices.push_back(static_cast<float>(water.low_x() + water.mesh.dx * column));
+        frame.vertices.push_back(static_cast<float>(water.low_y() + water.mesh.dy * row));
+        frame.vertices.push_back(static_cast<float>(water.level) + heights_[n]);
+      }
+    }
+  }
+}
+
+void PoseSolver::fill_soils(const SnapshotData& in, PoseFrame& frame) const {
+  for (size_t i = 0; i < world_->soils.size(); ++i) {
+    const auto& field = in.tracks[i].field;
+    append_soil_vertices(
+        world_->soils[i],
+        field != nullptr ? std::span<const float>(field->height) : std::span<const float>{},
+        in.time, &frame.vertices);
+  }
+}
+
+void PoseSolver::fill_live(const LiveFields* live, PoseFrame& frame) {
+  const mjModel& m = *world_->model;
+  frame.live_serial = live != nullptr ? live->serial : 0;
+  live_field_at(m, live, LiveFieldId::kLightDiffuse, &frame.light_diffuse);
+  live_field_at(m, live, LiveFieldId::kLightIntensity, &frame.light_intensity);
+  live_field_at(m, live, LiveFieldId::kLightActive, &active_);
+  frame.light_active.resize(active_.size());
+  std::transform(active_.begin(), active_.end(), frame.light_active.begin(),
+                 [](float v) { return static_cast<uint8_t>(v != 0); });
+  live_field_at(m, live, LiveFieldId::kGeomColor, &frame.geom_rgba);
+  live_field_at(m, live, LiveFieldId::kMaterialColor, &frame.material_rgba);
+  live_field_at(m, live, LiveFieldId::kMaterialEmission, &frame.material_emission);
+  live_field_at(m, live, LiveFieldId::kMaterialSpecular, &frame.material_specular);
+  live_field_at(m, live, LiveFieldId::kMaterialShininess, &frame.material_shininess);
+  live_field_at(m, live, LiveFieldId::kMaterialReflectance, &frame.material_reflectance);
+  live_field_at(m, live, LiveFieldId::kMaterialMetallic, &frame.material_metallic);
+  live_field_at(m, live, LiveFieldId::kMaterialRoughness, &frame.material_roughness);
+  const uint64_t height_field = live != nullptr ? live->height_field_serial : 0;
+  if (height_field == frame.height_field_serial) return;
+  frame.height_field_serial = height_field;
+  frame.height_field.clear();
+  if (height_field != 0) live_field_at(m, live, LiveFieldId::kHeightField, &frame.height_field);
+}
+
+}  // namespace gloam

@@ -1,0 +1,42 @@
+#include "sim/snapshots/snapshot_queue.h"
+
+namespace gloam {
+
+// Twice the room that is used: a reader that is interrupted in the middle of a pop holds a cell,
+// and the writer must be able to go on around it.
+SnapshotQueue::SnapshotQueue(const SubscriptionOptions& options, std::shared_ptr<Signal> sim_signal)
+    : options_(options), queue_(2 * options.capacity), sim_signal_(std::move(sim_signal)) {}
+
+SnapshotWindow SnapshotQueue::try_next_window() {
+  SnapshotWindow window;
+  if (queue_.try_pop(window) && options_.required) sim_signal_->raise();
+  return window;
+}
+
+SnapshotWindow SnapshotQueue::next_window() {
+  for (;;) {
+    const uint32_t ticket = readers_.ticket();
+    const bool was_closed = closed();
+    if (SnapshotWindow window = try_next_window()) return window;
+    if (was_closed) return {};
+    readers_.wait(ticket);
+  }
+}
+
+void SnapshotQueue::close() {
+  closed_.store(true, std::memory_order_release);
+  readers_.raise();
+  sim_signal_->raise();
+}
+
+void SnapshotQueue::publish(SnapshotWindow window) {
+  SnapshotWindow oldest;
+  while (full() && queue_.try_pop(oldest)) {
+    oldest = {};
+    dropped_.fetch_add(1, std::memory_order_relaxed);
+  }
+  if (!queue_.try_push(window)) dropped_.fetch_add(1, std::memory_order_relaxed);
+  readers_.raise();
+}
+
+}  // namespace gloam

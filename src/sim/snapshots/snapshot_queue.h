@@ -1,0 +1,81 @@
+#pragma once
+// A subscription's end at the consumer: Snapshots, or windows of them, in order, on a schedule.
+
+#include <atomic>
+#include <functional>
+#include <memory>
+
+#include "sim/commands/bounded_queue.h"
+#include "sim/snapshots/snapshot_window.h"
+
+namespace gloam {
+
+/// Wakes a thread that waits for one of several things.
+class Signal {
+ public:
+  uint32_t ticket() const { return value_.load(std::memory_order_acquire); }
+  void raise() {
+    value_.fetch_add(1, std::memory_order_acq_rel);
+    value_.notify_all();
+  }
+  /// Returns once raise() has been called since `ticket` was taken.
+  void wait(uint32_t ticket) const { value_.wait(ticket, std::memory_order_acquire); }
+
+ private:
+  std::atomic<uint32_t> value_{0};
+};
+
+struct SubscriptionOptions {
+  Rational rate = {20, 1};  ///< Snapshots per second of simulation time, at most the step rate [Hz]
+  Rational phase = {0, 1};  ///< time of the first one [s], >= 0
+  /// Instead of rate and phase, of schedules that are not even: the first step at or after the one
+  /// given at which there is a Snapshot. Pure; the sim thread calls it.
+  std::function<int64_t(int64_t step)> due = {};
+  bool required = false;  ///< the simulation waits while the queue is full and nothing is lost
+                          ///< (but what it waits with when a reset comes); else the oldest are
+                          ///< dropped and counted
+  int capacity = 8;       ///< Snapshots (or windows) that wait to be consumed, 1 … 65536
+  /// Length of a window from each event on [s], >= 0: instead of one Snapshot there are several, as
+  /// key_steps() says, handed out together once the last of them is there. An event is dropped as a
+  /// whole. Windows may reach beyond the next event, up to four of them.
+  Rational window = {0, 1};
+};
+
+/// Blocking reads from any number of threads; the sim thread is the only writer and takes no lock.
+class SnapshotQueue final : public SnapshotSource {
+ public:
+  SnapshotQueue(const SubscriptionOptions& options, std::shared_ptr<Signal> sim_signal);
+
+  /// The next window; waits for it. Empty once the simulation has stopped or this queue was closed,
+  /// and everything before that has been read.
+  SnapshotWindow next_window();
+  /// The next window if there is one now, else an empty one.
+  SnapshotWindow try_next_window();
+  /// Likewise of a window its first Snapshot, for subscriptions without windows.
+  Snapshot next() override { return std::move(next_window().keys[0]); }
+  Snapshot try_next() { return std::move(try_next_window().keys[0]); }
+  /// Ends the subscription: the simulation forgets it, waiting readers return.
+  void close();
+
+  bool closed() const { return closed_.load(std::memory_order_acquire); }
+  /// Snapshots lost since the subscription began because the reader was too slow.
+  int64_t dropped() const { return dropped_.load(std::memory_order_relaxed); }
+  const SubscriptionOptions& options() const { return options_; }
+
+  // ---- the sim thread's side ----
+  /// What could not be completed is lost.
+  void count_lost(int64_t count) { dropped_.fetch_add(count, std::memory_order_relaxed); }
+  bool full() const { return queue_.size() >= options_.capacity; }
+  /// Required queues must not be full.
+  void publish(SnapshotWindow window);
+
+ private:
+  SubscriptionOptions options_;
+  BoundedQueue<SnapshotWindow> queue_;
+  Signal readers_;
+  std::shared_ptr<Signal> sim_signal_;
+  std::atomic<bool> closed_{false};
+  std::atomic<int64_t> dropped_{0};
+};
+
+}  // namespace gloam

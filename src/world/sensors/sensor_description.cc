@@ -1,0 +1,66 @@
+#include "world/sensors/sensor_description.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "base/text.h"
+#include "world/world.h"
+
+namespace gloam {
+namespace {
+
+std::string sensor_name(const mjModel& m, int i) {
+  const char* name = mj_id2name(&m, mjOBJ_SENSOR, i);
+  return name != nullptr && *name != 0 ? name : fmt::format("sensor_{}", i);
+}
+
+SensorKind kind_of(int type) {
+  switch (type) {
+    case mjSENS_BALLQUAT:
+    case mjSENS_FRAMEQUAT:
+      return SensorKind::kRotation;
+    case mjSENS_FRAMEXAXIS:
+    case mjSENS_FRAMEYAXIS:
+    case mjSENS_FRAMEZAXIS:
+    case mjSENS_GEOMNORMAL:
+      return SensorKind::kDirection;
+    case mjSENS_RANGEFINDER:
+      return SensorKind::kDistance;
+    default:
+      return SensorKind::kNumbers;
+  }
+}
+
+}  // namespace
+
+std::vector<SensorDescription> describe_sensors(const CompiledWorld& world) {
+  const mjModel& m = *world.model;
+  std::vector<SensorDescription> sensors;
+  for (int i = 0; i < static_cast<int>(m.nsensor); ++i) {
+    SensorDescription sensor{sensor_name(m, i), m.sensor_adr[i], m.sensor_dim[i],
+                             kind_of(m.sensor_type[i])};
+    for (const SensorOptions& options : world.scene.sensors) {
+      if (fits_pattern(options.match, sensor.name)) sensor.options = &options;
+    }
+    sensors.push_back(std::move(sensor));
+  }
+  return sensors;
+}
+
+Status check_sensors(const CompiledWorld& world) {
+  std::vector<std::string> names;
+  for (int i = 0; i < static_cast<int>(world.model->nsensor); ++i)
+    names.push_back(sensor_name(*world.model, i));
+  for (const SensorOptions& options : world.scene.sensors) {
+    if (std::any_of(names.begin(), names.end(),
+                    [&](const std::string& name) { return fits_pattern(options.match, name); }))
+      continue;
+    return Error{ErrorKind::kInput, fmt::format("there is no sensor '{}'", options.match),
+                 options.loc,
+                 names.empty() ? "the model has no sensors" : suggest_name(options.match, names)};
+  }
+  return {};
+}
+
+}  // namespace gloam
