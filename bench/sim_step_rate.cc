@@ -24,10 +24,7 @@ class TableController final : public Controller {
  public:
   explicit TableController(const ControlTable& table) : table_(table) {}
   void reset(const mjModel*, const mjData*) override {}
-  void control(const mjModel*, mjData* data, std::span<const SoilReaction>, int64_t step, double,
-               const VelocityTarget&) override {
-    table_.apply(step, data);
-  }
+  void control(const ControlInputs& in) override { table_.apply(in.step, in.data); }
 
  private:
   const ControlTable& table_;

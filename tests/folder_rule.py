@@ -10,7 +10,7 @@ MUJOCO_FOLDERS = {"places", "scene", "world", "sim", "control"}
 # memcpy is how bits are reinterpreted on both sides; intrinsics stand behind guards of the host.
 STD_IN_KERNEL = re.compile(r"^\s*#include\s+<(?!cmath|cstdint|cstddef|cfloat|cstring|[a-z]mmintrin)")
 MOST_FILES = 40
-STILL_LONG = {"mjcf.h", "scene.h", "scene_effect.h", "scene_environment.h", "scene_light.h", "simulation.h", "world.h"}
+STILL_LONG = {"mjcf.h", "scene.h", "scene_effect.h", "scene_environment.h", "scene_light.h"}
 INCLUDE = re.compile(r'^\s*#include\s+["<]([^">]+)[">]', re.M)
 
 

@@ -63,7 +63,8 @@ def main():
             kept[name] = now
             said = " ".join(now.values())
         else:
-            is_same = kept.get(name) == now
+            known = kept.get(name, {})  # "A or B": which of two coplanar faces a ray meets is Embree's choice
+            is_same = known.keys() == now.keys() and all(now[k] in known[k].split(" or ") for k in now)
             bad += not is_same
             said = "same" if is_same else f"DIFFERS: {now}, kept {kept.get(name)}"
         print(f"{name}: {said} ({left:.0f} s left)", flush=True)

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "gloam/model_tools.h"
 #include "interrupt.h"
 #include "json_text.h"
 

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "command.h"
+#include "gloam/model_tools.h"
 #include "gloam/world.h"
 #include "interrupt.h"
 #include "json_text.h"

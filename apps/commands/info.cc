@@ -1,8 +1,10 @@
 // gloam info: what a scene or model holds, and what of it Gloam cannot do.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -16,7 +18,7 @@ namespace {
 struct InfoCommand {
   std::string file;
   SceneOptions scene;
-  bool schema = false;
+  bool schema = false, streams = false;
 };
 
 using Section = std::pair<const char*, const std::vector<NamedElement>*>;
@@ -94,10 +96,76 @@ void print_text(const WorldInfo& info, const NotDrawn& not_drawn,
     fmt::print("\neverything in the file is simulated and drawn\n");
 }
 
+nlohmann::ordered_json pose_json(const Pose& X) {
+  return {{"position", {X.p.x, X.p.y, X.p.z}}, {"orientation_wxyz", {X.q.w, X.q.x, X.q.y, X.q.z}}};
+}
+
+void print_streams_json(const World& world) {
+  const std::vector<BodyInfo> bodies = world.bodies();
+  nlohmann::ordered_json json;
+  auto& says = json["says"] = nlohmann::ordered_json::array();
+  for (const StreamInfo& stream : world.streams()) {
+    says.push_back({{"kind", to_string(stream.kind)},
+                    {"name", stream.name},
+                    {"frame_id", stream.frame_id},
+                    {"parent", bodies[static_cast<size_t>(stream.parent.id)].name},
+                    {"pose_in_parent", pose_json(stream.X_PS)},
+                    {"rate_hz", {stream.rate.num, stream.rate.den}},
+                    {"outputs", stream.outputs},
+                    {"unit", stream.unit}});
+  }
+  auto& hears = json["hears"] = nlohmann::ordered_json::array();
+  const auto limits = [](const std::vector<double>& values) {
+    auto list = nlohmann::ordered_json::array();
+    for (const double v : values) {
+      if (std::isfinite(v))
+        list.push_back(v);
+      else
+        list.push_back(nullptr);
+    }
+    return list;
+  };
+  for (const InputInfo& input : world.inputs()) {
+    hears.push_back({{"kind", to_string(input.kind)},
+                     {"name", input.name},
+                     {"elements", input.elements},
+                     {"low", limits(input.low)},
+                     {"high", limits(input.high)},
+                     {"unit", input.unit}});
+  }
+  std::printf("%s\n", json_text(json).c_str());
+}
+
+void print_streams(const World& world) {
+  const std::vector<BodyInfo> bodies = world.bodies();
+  fmt::print("says\n  {:<8} {:<32} {:<24} {:<12} {}\n", "kind", "name", "on body", "rate",
+             "outputs");
+  for (const StreamInfo& stream : world.streams()) {
+    const std::string& parent = bodies[static_cast<size_t>(stream.parent.id)].name;
+    fmt::print("  {:<8} {:<32} {:<24} {:<12} {}\n", to_string(stream.kind), stream.name,
+               parent.empty() ? "world" : parent,
+               stream.rate.num == 0 ? "every step" : fmt::format("{:g} Hz", stream.rate.value()),
+               stream.outputs.size() > 6
+                   ? fmt::format("{} … ({})",
+                                 fmt::join(stream.outputs.begin(), stream.outputs.begin() + 5, " "),
+                                 stream.outputs.size())
+                   : fmt::format("{}", fmt::join(stream.outputs, " ")));
+  }
+  fmt::print("\nhears\n");
+  for (const InputInfo& input : world.inputs())
+    fmt::print("  {:<8} {:<32} {}\n", to_string(input.kind), input.name,
+               input.elements.size() > 6 ? fmt::format("{} values", input.elements.size())
+                                         : fmt::format("{}", fmt::join(input.elements, " ")));
+}
+
 int info(InfoCommand& command, const Globals& globals) {
   if (command.schema) return report_schema(globals);
   auto world = command.scene.compile(command.file, globals);
   if (!world.ok()) return fail(world.error());
+  if (command.streams) {
+    globals.json ? print_streams_json(*world) : print_streams(*world);
+    return 0;
+  }
   WorldInfo info = world->info();
   const NotDrawn not_drawn = world->not_drawn();
   info.unsupported.insert(info.unsupported.end(), not_drawn.lacking.begin(),
@@ -125,9 +193,14 @@ void add_info(CLI::App& app, Globals& globals, Action& action) {
       sub->add_flag("--schema", command->schema,
                     "How much of MuJoCo's own schema is mirrored, and what sets what");
   file->excludes(schema);
+  sub->add_flag("--streams", command->streams,
+                "What a simulation of it can say and hear: cameras, sensors, controls …")
+      ->excludes(schema);
   command->scene.add_keyframe_to(*sub);
   command->scene.add_to(*sub);
-  sub->footer("Examples:\n  gloam info robot.urdf --json\n  gloam info --schema");
+  sub->footer(
+      "Examples:\n  gloam info robot.urdf --json\n  gloam info examples/demo.toml --streams\n  "
+      "gloam info --schema");
   sub->callback([&globals, &action, command] {
     if (command->file.empty() && !command->schema) throw CLI::RequiredError("FILE");
     action = [&globals, command] { return info(*command, globals); };

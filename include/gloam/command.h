@@ -23,9 +23,15 @@ struct SetJointState {
   Joint joint;
   std::vector<double> qpos, qvel;  ///< all of the joint's numbers; empty = stays as it is
 };
+/// Sets all controls of a robot at once, in the order of RobotInfo::actuators, each in its
+/// actuator's own unit.
+struct SetControls {
+  Robot robot;
+  std::vector<double> values;
+};
 /// Velocity goal of the robot's controller, in its heading frame [m/s, m/s, rad/s].
 struct SetVelocityGoal {
-  int robot = 0;
+  Robot robot = {0, 0};
   double vx = 0, vy = 0, yaw_rate = 0;
 };
 /// Pose of a mocap body.
@@ -89,8 +95,14 @@ struct Command {
   static constexpr int64_t kNextStep = -1;
   int64_t step = kNextStep;  ///< applies before this step is taken
   std::variant<SetControl, SetVelocityGoal, SetMocapPose, SetWrench, AddVelocity, DragBody,
-               ResetSim, SetLiveField, SetJointState>
+               ResetSim, SetLiveField, SetJointState, SetControls>
       what;
+};
+
+/// A Command and when it really applied.
+struct LoggedCommand {
+  int64_t run = 0;  ///< number of resets before it
+  Command command;  ///< `step` = the step it applied at; a ResetSim ends its run
 };
 
 }  // namespace gloam

@@ -39,9 +39,16 @@ struct VelocityGoal {
   SourceLoc loc = {};
 };
 
+/// A value as it stands in a scene file: "0.5", "[1, 0, 0]", "08:30:00", "\"oak\"".
+struct TomlText {
+  std::string text = {};
+};
+
 /// [robot.controller]: what drives a robot's actuators.
 struct ControllerOptions {
-  std::string type = "none";  ///< none | torque | joint_position | trot (control/ has the list)
+  /// none | torque | joint_position | trot, or a type that the program has registered
+  /// (gloam/controller.h)
+  std::string type = "none";
   Rational rate = {500,
                    1};  ///< how often it runs [Hz]; the model's step rate must be a multiple of it
   double kp = 40;       ///< joint_position: stiffness [N m/rad]
@@ -49,6 +56,7 @@ struct ControllerOptions {
   std::vector<double> target =
       {};  ///< joint_position: joint angles [rad], torque: torques [N m]; empty = keyframe / zero
   std::vector<VelocityGoal> goals = {};  ///< trot: velocity goals over time; empty = stand
+  TomlText params = {};                  ///< table of settings of a registered type's own
   SourceLoc loc = {};
 };
 
@@ -78,11 +86,6 @@ struct OverrideOptions {
   std::string attribute = {};
   std::string value = {};  ///< as in MJCF: "0.5", "1 0 0", "true"
   SourceLoc loc = {};
-};
-
-/// A value as it stands in a scene file: "0.5", "[1, 0, 0]", "08:30:00", "\"oak\"".
-struct TomlText {
-  std::string text = {};
 };
 
 /// [[randomize]]: an option that sim.seed draws (docs/environments.md). One of the distributions.
@@ -316,6 +319,11 @@ struct Scene {
 
 /// Reads a scene (.toml) or wraps a bare model (.xml, .urdf). Every error names file and line.
 Result<Scene> load_scene(const std::filesystem::path& path, const FileAccess& access = {});
+
+/// Reads a scene from text, as if it were a file in `folder`: relative paths start there. Errors
+/// name line and column.
+Result<Scene> parse_scene(std::string_view toml, const std::filesystem::path& folder,
+                          const FileAccess& access = {});
 
 /// Overrides one option, as a line of the scene file would: `path` is "sim.duration",
 /// "robot.NAME.controller.kp", "camera.NAME.width" …, `toml_value` is the text after "=". Quotes

@@ -1,20 +1,24 @@
 #pragma once
 // Simulation: a World that runs. Physics has its own thread; cameras render on theirs. Everything
-// here may be called from any thread; callbacks say on which thread they come.
+// here may be called from any thread; callbacks say on which thread they come. On the physics
+// thread itself (step hooks, controllers) what would wait for a step is an Error: step(),
+// run_until(), recompile(), opening and closing streams.
 
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "gloam/camera.h"
+#include "gloam/camera_stream.h"
 #include "gloam/command.h"
 #include "gloam/result.h"
 #include "gloam/scene.h"
 #include "gloam/sensor.h"
 #include "gloam/snapshot.h"
+#include "gloam/snapshot_stream.h"
 #include "gloam/world.h"
 
 struct mjModel_;
@@ -34,36 +38,6 @@ struct SimulationOptions {
   Pace pace = Pace::kFast;
   double speed = 1;  ///< of Pace::kRealTime, > 0
 };
-
-/// One stream of pictures from one camera.
-struct CameraRequest {
-  std::string camera = "free";  ///< full name, or "free": frames the whole model until moved
-  Rational rate = {20, 1};      ///< frames per second of simulation time
-  int width = 0, height = 0;    ///< [px]; 0 = the camera's own
-  /// rgb radiance samples depth distance segmentation normal albedo motion scene_flow boxes; raw
-  /// sensor_depth events thermal (with their tables in the scene)
-  std::vector<std::string> outputs = {"rgb"};
-  RenderOptions render = {};
-  std::optional<Pose> X_WC = {};  ///< of camera "free": where it stands at first
-  bool required =
-      false;  ///< the simulation waits for this camera; else frames are dropped, oldest first
-};
-
-/// An open stream. Closing (destroying) it waits for its last callback.
-class CameraStream {
- public:
-  virtual ~CameraStream() = default;
-  /// Moves the free camera: pose of the camera in the world, looks along -Z. No effect on the
-  /// model's own cameras.
-  virtual void set_pose(const Pose& X_WC) = 0;
-  virtual Pose pose() const = 0;
-  /// Renders the latest Snapshot again, also while the simulation is paused.
-  virtual void refresh() = 0;
-  virtual int64_t dropped() const = 0;
-  /// Why it delivers no more, if so: memory ran out, or a recompile took its camera away.
-  virtual Status status() const { return {}; }
-};
-using FrameCallback = std::function<void(std::shared_ptr<const CameraFrame>)>;
 
 struct SimulationStats {
   int64_t step = 0;
@@ -101,9 +75,7 @@ class Simulation {
   /// Handles must be found again. Time, step and the chain of hashes go on; ResetSim goes to the
   /// initial state of the new World. The old World runs on while the new one is made, and after an
   /// Error: a scene that does not compile, another timestep, a simulation that has failed.
-  virtual Status recompile(const World&) {
-    return Error{ErrorKind::kUnsupported, "this simulation cannot be recompiled"};
-  }
+  virtual Status recompile(const World& world) = 0;
   Status recompile(const Scene& scene) {
     GLOAM_TRY(const World world, World::compile(scene));
     return recompile(world);
@@ -125,6 +97,11 @@ class Simulation {
 
   /// Queues a Command. Errors: the queue is full, the handle is not of this World.
   virtual Status post(const Command& command) = 0;
+  /// Queues all of them for the same moment, or none.
+  virtual Status post(std::span<const Command> commands) = 0;
+  /// Posted Commands that have applied since the last call, in order, with the step they applied
+  /// at.
+  virtual std::vector<LoggedCommand> take_command_log() = 0;
   virtual Snapshot latest() const = 0;
   virtual SimulationStats stats() const = 0;
   /// Called on the physics thread before every step, after Commands and controllers, with the
@@ -136,24 +113,21 @@ class Simulation {
                                                             FrameCallback on_frame) = 0;
   /// Opens a stream of one of MuJoCo's sensors, with the model of the scene's [[sensor]] (without
   /// one: the truth, at every step). Errors: no such sensor, a rate above the step rate.
-  virtual Result<std::unique_ptr<SensorStream>> open_sensor(const SensorRequest&, SensorCallback) {
-    return Error{ErrorKind::kUnsupported, "this simulation has no streams of sensors"};
-  }
+  virtual Result<std::unique_ptr<SensorStream>> open_sensor(const SensorRequest& request,
+                                                            SensorCallback on_message) = 0;
   virtual std::vector<std::string> camera_names() const = 0;
   /// Opens the stream of a [[lidar]]; `on_scan` comes on the stream's own thread, scans in order.
-  virtual Result<std::unique_ptr<LidarStream>> open_lidar(const LidarRequest&, ScanCallback) {
-    return Error{.kind = ErrorKind::kUnsupported, .message = "this simulation has no lidars"};
-  }
+  virtual Result<std::unique_ptr<LidarStream>> open_lidar(const LidarRequest& request,
+                                                          ScanCallback on_scan) = 0;
+  /// Opens a stream of Snapshots. Errors: a rate above the step rate, a capacity below 1.
+  virtual Result<std::unique_ptr<SnapshotStream>> open_snapshots(const SnapshotRequest& request,
+                                                                 SnapshotCallback on_snapshot) = 0;
   virtual Result<std::vector<LabelRow>> labels() = 0;
   /// What the ray through pixel (u, v) [px] of a frame hits in the latest Snapshot. Error: nothing
   /// there.
   virtual Result<PickResult> pick(const CameraFrame& frame, double u, double v) = 0;
-  /// Pose X_WB of a body in the latest Snapshot. Errors: no such body; a Simulation that cannot
-  /// tell.
-  virtual Result<Pose> body_pose(Body) {
-    return Error{.kind = ErrorKind::kUnsupported,
-                 .message = "this simulation does not tell the poses of bodies"};
-  }
+  /// Pose X_WB of a body in the latest Snapshot. Error: no such body.
+  virtual Result<Pose> body_pose(Body body) = 0;
 
   /// Physics steps per simulated second, exact.
   virtual Rational step_rate() const = 0;

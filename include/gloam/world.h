@@ -5,31 +5,17 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "gloam/handle.h"
 #include "gloam/result.h"
 #include "gloam/scene.h"
+#include "gloam/stream_info.h"
 
 namespace gloam {
 
 struct CompiledWorld;  // src/world/world.h
-
-/// Typed index of a named element. Resolve once with World::find_*, then use on every Snapshot of
-/// that World. After a recompile find it again: a handle of another World is refused.
-template <class Kind>
-struct Handle {
-  int id = -1;
-  uint64_t world = 0;  ///< which World found it; 0 = an id of one's own, taken as it stands
-};
-using Joint = Handle<struct JointKind>;
-using Body = Handle<struct BodyKind>;
-using Actuator = Handle<struct ActuatorKind>;
-using SensorHandle = Handle<struct SensorHandleKind>;
-using Camera = Handle<struct CameraKind>;
-using Geom = Handle<struct GeomKind>;
-using Tendon = Handle<struct TendonKind>;
 
 /// A name and its kind, for listings.
 struct NamedElement {
@@ -51,6 +37,21 @@ struct WorldInfo {
   std::vector<DrawnOption> drawn;  ///< what came of [[randomize]]
   std::vector<Error> notes;        ///< as World::notes()
   std::vector<Error> unsupported;  ///< as World::unsupported()
+};
+
+/// A robot of a World: a [[robot]], or the trees of a bare model that actuators move.
+struct RobotInfo {
+  Robot robot;
+  std::string name;
+  Body root;
+  std::vector<Joint> joints;  ///< in the model's order
+  std::vector<Actuator> actuators;
+};
+
+struct BodyInfo {
+  Body body, parent;  ///< the world's own body is its parent's child
+  std::string name;   ///< full name, "" when the model gives none
+  Robot robot;        ///< id -1 = no robot's
 };
 
 /// Elements of the files that pictures do not show.
@@ -91,6 +92,14 @@ class World {
   Result<Camera> find_camera(const std::string& name) const;
   Result<Geom> find_geom(const std::string& name) const;
   Result<Tendon> find_tendon(const std::string& name) const;
+  Result<Robot> find_robot(const std::string& name) const;
+
+  const Scene& scene() const;  ///< that it was compiled from, with what generators added
+  std::vector<RobotInfo> robots() const;
+  std::vector<BodyInfo> bodies() const;  ///< in MuJoCo's order, the world first
+  /// All that a simulation of it can say and hear: what bridges and logs go by.
+  std::vector<StreamInfo> streams() const;
+  std::vector<InputInfo> inputs() const;
 
   WorldInfo info() const;
   /// What is odd about the scene and taken all the same, and where: open meshes, sizes that look
@@ -114,42 +123,5 @@ class World {
  private:
   std::shared_ptr<const CompiledWorld> compiled_;
 };
-
-/// What a mesh becomes as an [[object]], and how near its colliders are to it.
-struct ObjectReport {
-  std::vector<std::string> colliders = {};  ///< "box", "hull" … of each
-  uint64_t triangles = 0;
-  bool is_closed = false;
-  Vec3 size = {};     ///< of its bounding box [m]
-  double volume = 0;  ///< of the mesh where it is closed, else of its hull [m³]
-  double mass = 0;    ///< [kg]
-  double shared = 0;  ///< of closed meshes: intersection over union with the colliders, 0 … 1
-  double mean_distance = 0, max_distance = 0;  ///< between the surfaces, by sampled points [m]
-  double seconds = 0;                          ///< that the colliders took
-  std::vector<std::string> notes = {};         ///< what is odd about the mesh
-};
-/// Converts one object without a scene. Progress and Errors: as of World::compile.
-Result<ObjectReport> convert_object(const ObjectOptions& object, const FileAccess& access = {},
-                                    const ProgressCallback& progress = {});
-
-/// How a model fares against stock MuJoCo, and on its way out into MJCF and back.
-struct ModelCheck {
-  Status status;  ///< of loading and exporting it
-  int bodies = 0, joints = 0, geoms = 0;
-  int compared = 0;  ///< fields of mjModel that each comparison looks at: sizes, options, arrays
-  /// Why stock MuJoCo does not load the file, "" where it does. Nothing is known of scenes, nor of
-  /// models in TOML.
-  std::optional<std::string> stock_refusal;
-  std::vector<std::string> unlike_stock;   ///< fields that are not what stock MuJoCo makes of them
-  std::vector<std::string> unlike_export;  ///< fields that stock MuJoCo reads back differently
-  uint64_t export_bytes = 0;               ///< of all files written
-
-  bool passed() const { return status.ok() && unlike_stock.empty() && unlike_export.empty(); }
-};
-/// Loads a scene or model, exports it into `folder`, has stock MuJoCo load the model file and the
-/// export, and compares all bits. A file that Gloam refuses is given to stock MuJoCo in a process
-/// of its own, for `longest_stock_load` seconds at most; that one reads whatever the file names.
-ModelCheck check_model(const std::filesystem::path& file, const FileAccess& access,
-                       const std::filesystem::path& folder, unsigned longest_stock_load = 60);
 
 }  // namespace gloam

@@ -39,8 +39,8 @@ class JointPositionController final : public Controller {
     }
   }
 
-  void control(const mjModel*, mjData* data, std::span<const SoilReaction>, int64_t, double,
-               const VelocityTarget&) override {
+  void control(const ControlInputs& in) override {
+    mjData* const data = in.data;
     for (size_t i = 0; i < joints_.size(); ++i) {
       const DrivenJoint& joint = joints_[i];
       data->ctrl[joint.ctrl] = std::clamp(

@@ -1,7 +1,7 @@
 #pragma once
 // Holds a robot's joints at angles.
 
-#include "sim/loop/controller.h"
+#include "gloam/controller.h"
 
 namespace gloam {
 

@@ -28,8 +28,8 @@ class TorqueController final : public Controller {
     started_ = old != nullptr && old->started_ && old->controls_ == controls_;
   }
 
-  void control(const mjModel*, mjData* data, std::span<const SoilReaction>, int64_t, double,
-               const VelocityTarget&) override {
+  void control(const ControlInputs& in) override {
+    mjData* const data = in.data;
     if (started_) return;
     started_ = true;
     for (size_t i = 0; i < motors_.size(); ++i) data->ctrl[motors_[i].ctrl] = controls_[i];

@@ -1,7 +1,7 @@
 #pragma once
 // Constant torques: for tests, and for clients that send controls themselves.
 
-#include "sim/loop/controller.h"
+#include "gloam/controller.h"
 
 namespace gloam {
 

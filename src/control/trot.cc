@@ -49,8 +49,7 @@ class Trot final : public TrotController {
         forces_(options_) {}
 
   void reset(const mjModel* model, const mjData* data) override;
-  void control(const mjModel* model, mjData* data, std::span<const SoilReaction> soil, int64_t step,
-               double period, const VelocityTarget& goal) override;
+  void control(const ControlInputs& in) override;
   void take_over(const mjModel* model, const mjData* data, const Controller& before) override;
   const TrotStatus& status() const override { return status_; }
 
@@ -258,16 +257,17 @@ void Trot::write_torque(int k, const Vector3d& torque, mjData* data) {
   }
 }
 
-void Trot::control(const mjModel*, mjData* data, std::span<const SoilReaction> soil, int64_t,
-                   double period, const VelocityTarget& goal) {
+void Trot::control(const ControlInputs& in) {
+  mjData* const data = in.data;
+  const double period = in.period;
   ++status_.calls;
-  measure(robot_, *data, soil, s_);
+  measure(robot_, *data, in.loads, s_);
   watch_for_fall(period);
   if (status_.fallen) {
     for (int k = 0; k < 4; ++k) write_torque(k, -kFallenDamping * s_.qd[k], data);
     return;
   }
-  shaper_.update(goal, s_, period);
+  shaper_.update(in.goal, s_, period);
   choose_gait(period);
   watch_feet(period);
   ForceProblem problem = wanted_wrench(period);

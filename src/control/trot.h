@@ -11,8 +11,8 @@
 
 #include <memory>
 
+#include "gloam/controller.h"
 #include "gloam/result.h"
-#include "sim/loop/controller.h"
 #include "world/world.h"
 
 namespace gloam {

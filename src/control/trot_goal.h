@@ -3,7 +3,7 @@
 
 #include "control/trot_options.h"
 #include "control/trot_state.h"
-#include "sim/loop/controller.h"
+#include "gloam/controller.h"
 
 namespace gloam {
 

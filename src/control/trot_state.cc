@@ -4,7 +4,7 @@
 
 namespace gloam {
 
-void measure(const Quadruped& robot, const mjData& d, std::span<const SoilReaction> soil,
+void measure(const Quadruped& robot, const mjData& d, std::span<const ContactLoad> loads,
              TrotState& out) {
   const mjtNum* qpos = d.qpos + robot.base_qpos;
   const mjtNum* qvel = d.qvel + robot.base_dof;
@@ -40,9 +40,9 @@ void measure(const Quadruped& robot, const mjData& d, std::span<const SoilReacti
           d.contact[c].geom[1] == robot.legs[k].foot_geom)
         out.touching[k] = true;
   }
-  for (const SoilReaction& reaction : soil) {
+  for (const ContactLoad& load : loads) {
     for (int k = 0; k < 4; ++k)
-      if (reaction.geom == robot.legs[k].foot_geom) out.touching[k] = true;
+      if (load.geom == robot.legs[k].foot_geom) out.touching[k] = true;
   }
 }
 

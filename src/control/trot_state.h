@@ -6,7 +6,7 @@
 #include <span>
 
 #include "control/trot_legs.h"
-#include "sim/effects/soil/soil_reaction.h"
+#include "instant/contact_load.h"
 
 namespace gloam {
 
@@ -25,7 +25,7 @@ struct TrotState {
 };
 
 /// Reads the state; contacts are those of the last step. No allocation.
-void measure(const Quadruped& robot, const mjData& data, std::span<const SoilReaction> soil,
+void measure(const Quadruped& robot, const mjData& data, std::span<const ContactLoad> loads,
              TrotState& out);
 
 /// Inertia of the whole robot about its centre of mass as it stands now, in B [kg m²].

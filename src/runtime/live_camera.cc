@@ -10,6 +10,7 @@
 
 #include "base/log.h"
 #include "base/memory.h"
+#include "world/sensors/camera_rate.h"
 
 namespace gloam {
 namespace {
@@ -39,14 +40,16 @@ Result<std::unique_ptr<LiveCamera>> LiveCamera::open(Simulator& simulator,
                                                      const CameraRequest& request, uint64_t seed,
                                                      FrameCallback on_frame,
                                                      const ExposureMeters& meters) {
+  CameraRequest wanted = request;
+  if (wanted.rate.num == 0) wanted.rate = own_camera_rate(simulator.world()->scene, wanted.camera);
   std::unique_ptr<LiveCamera> camera(
-      new LiveCamera(simulator, renderers, request, seed, std::move(on_frame), meters));
+      new LiveCamera(simulator, renderers, wanted, seed, std::move(on_frame), meters));
   GLOAM_TRY_STATUS(camera->follow(simulator.world()));
   // Two in the queue keep the camera busy; more would only make a live picture older.
   const int capacity = request.required ? 2 : 1;
   const bool timed = camera->sensor_->sensing().timing.has_value();
   GLOAM_TRY(camera->queue_,
-            simulator.subscribe({.rate = request.rate,
+            simulator.subscribe({.rate = wanted.rate,
                                  .due = timed ? due_steps(camera->timing_) : nullptr,
                                  .required = request.required,
                                  .capacity = capacity,

@@ -3,15 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <new>
 #include <utility>
 
 #include "base/log.h"
 #include "base/text.h"
 
 namespace gloam {
-namespace {
-
 Result<LidarDescription> find_lidar(const CompiledWorld& world, const std::string& name) {
   GLOAM_TRY(const std::vector<LidarDescription> lidars, describe_lidars(world));
   std::vector<std::string> names;
@@ -24,8 +21,6 @@ Result<LidarDescription> find_lidar(const CompiledWorld& world, const std::strin
                {},
                names.empty() ? "the scene has no [[lidar]]" : suggest_name(name, names)};
 }
-
-}  // namespace
 
 int motion_stretches(Rational rate, Rational timestep, int wanted) {
   // Steps of a scan: an integer, or cut as told.
@@ -58,10 +53,12 @@ Result<std::unique_ptr<LiveLidar>> LiveLidar::open(Simulator& simulator, SharedR
   GLOAM_TRY_STATUS(live->follow(simulator.world()));
   // Room for the keys of a scan, which come while the one before is traced.
   const int capacity = live->stretches_ + 1;
-  GLOAM_TRY(live->queue_,
+  GLOAM_TRY(auto queue,
             simulator.subscribe(
                 {.rate = live->key_rate_, .required = request.required, .capacity = capacity}));
-  live->thread_ = std::thread([raw = live.get()] { raw->run(); });
+  live->thread_.start(std::move(queue), fmt::format("lidar '{}'", request.lidar),
+                      "lower its number of beams",
+                      [raw = live.get()](const Snapshot& now) { return raw->take(now); });
   return live;
 }
 
@@ -88,61 +85,26 @@ Status LiveLidar::follow(const std::shared_ptr<const CompiledWorld>& world) {
   return {};
 }
 
-LiveLidar::~LiveLidar() {
-  if (queue_ != nullptr) queue_->close();  // null when open() failed
-  if (thread_.joinable()) thread_.join();
-}
-
-void LiveLidar::drain() {
-  if (thread_.joinable()) thread_.join();
-}
-
-Status LiveLidar::status() const {
-  const std::lock_guard lock(mutex_);
-  return status_;
-}
-
-void LiveLidar::run() {
-  try {
-    while (const Snapshot snapshot = queue_->next()) {
-      const auto& world = snapshot.data().world;
-      if (world != shared_->world) {
-        if (const Status status = follow(world); !status.ok()) return end(status.error());
-      }
-      take(snapshot);
-    }
-  } catch (const std::bad_alloc&) {
-    end({ErrorKind::kPartial,
-         fmt::format("out of memory for scans of lidar '{}'", request_.lidar),
-         {},
-         "lower its number of beams"});
-  }
-}
-
-void LiveLidar::end(Error why) {
-  const std::lock_guard lock(mutex_);
-  log_error("a lidar stopped: {}", why.to_string());
-  status_ = std::move(why);
-  queue_->close();  // the simulation must not wait for it
-}
-
 // Key k is the instant of step schedule_.step_of(k); scan s lies between the keys s * stretches_
 // and (s + 1) * stretches_. After a gap or a reset, scans begin anew where the next one can.
-void LiveLidar::take(const Snapshot& snapshot) {
+Status LiveLidar::take(const Snapshot& snapshot) {
+  const auto& world = snapshot.data().world;
+  if (world != shared_->world) GLOAM_TRY_STATUS(follow(world));
   const int64_t key = schedule_.first_at_or_after(snapshot.step());
-  if (schedule_.step_of(key) != snapshot.step()) return;
+  if (schedule_.step_of(key) != snapshot.step()) return {};
   if (key != next_key_) gathered_ = 0;
   next_key_ = key + 1;
-  if (gathered_ == 0 && key % stretches_ != 0) return;
+  if (gathered_ == 0 && key % stretches_ != 0) return {};
   if (const Status status = solver_->solve(snapshot, keys_[gathered_]); !status.ok()) {
     log_error("a lidar lost its poses: {}", status.error().to_string());
     gathered_ = 0;
-    return;
+    return {};
   }
-  if (++gathered_ < keys_.size()) return;
+  if (++gathered_ < keys_.size()) return {};
   on_scan_(sensor_->scan(*shared_->renderer, shared_->mutex, keys_, key / stretches_ - 1));
   std::swap(keys_.front(), keys_.back());  // the end of one scan begins the next
   gathered_ = 1;
+  return {};
 }
 
 }  // namespace gloam

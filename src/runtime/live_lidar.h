@@ -3,12 +3,11 @@
 // into points.
 
 #include <memory>
-#include <mutex>
-#include <thread>
 #include <vector>
 
 #include "gloam/sensor.h"
 #include "runtime/shared_renderer.h"
+#include "runtime/stream_thread.h"
 #include "sensors/lidar/lidar_sensor.h"
 #include "sim/loop/simulator.h"
 #include "sim/snapshots/pose_solver.h"
@@ -21,21 +20,17 @@ class LiveLidar final : public LidarStream {
   static Result<std::unique_ptr<LiveLidar>> open(Simulator& simulator, SharedRenderers& renderers,
                                                  const LidarRequest& request, uint64_t seed,
                                                  ScanCallback on_scan);
-  ~LiveLidar() override;
-
   /// Snapshots that were lost; a scan that lacks one is not made.
-  int64_t dropped() const override { return queue_->dropped(); }
+  int64_t dropped() const override { return thread_.dropped(); }
   /// Waits until the queue has ended (the simulation stopped) and every scan was delivered.
-  void drain();
-  Status status() const override;
+  void drain() { thread_.drain(); }
+  Status status() const override { return thread_.status(); }
 
  private:
   LiveLidar(Simulator& simulator, SharedRenderers& renderers, const LidarRequest& request,
             uint64_t seed, ScanCallback on_scan);
   Status follow(const std::shared_ptr<const CompiledWorld>& world);
-  void run();
-  void end(Error why);
-  void take(const Snapshot& snapshot);
+  Status take(const Snapshot& snapshot);
 
   Simulator& simulator_;
   SharedRenderers& renderers_;
@@ -45,17 +40,17 @@ class LiveLidar final : public LidarStream {
   std::shared_ptr<SharedRenderer> shared_;  // of the World whose Snapshots come
   std::unique_ptr<LidarSensor> sensor_;
   std::unique_ptr<PoseSolver> solver_;
-  std::shared_ptr<SnapshotQueue> queue_;
   Rational key_rate_ = {1, 1};   // [Hz]
   StepSchedule schedule_;        // of the keys
   int stretches_ = 1;            // of a scan, between its keys
   std::vector<PoseFrame> keys_;  // of the scan that is being gathered
   int64_t next_key_ = 0;         // number of the key that is expected
   size_t gathered_ = 0;          // of keys_
-  mutable std::mutex mutex_;
-  Status status_;
-  std::thread thread_;
+  StreamThread thread_;          // last: it uses the others
 };
+
+/// The [[lidar]] of a name. Error: there is none.
+Result<LidarDescription> find_lidar(const CompiledWorld& world, const std::string& name);
 
 /// How many even stretches a scan is cut into: at least `wanted` where that is possible, and such
 /// that the instants between them are steps of the simulation where that is possible.

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "base/log.h"
 #include "base/text.h"
 #include "runtime/shared_renderer.h"
 
@@ -35,24 +34,12 @@ Result<std::unique_ptr<LiveSensors>> LiveSensors::open(Simulator& simulator,
   options.due = live->group_.due();
   options.required = required;
   options.capacity = 64;
-  GLOAM_TRY(live->queue_, simulator.subscribe(options));
-  live->thread_ =
-      std::thread([raw = live.get(), timestep = simulator.timestep()] { raw->run(timestep); });
+  GLOAM_TRY(auto queue, simulator.subscribe(options));
+  live->thread_.start(std::move(queue), "a stream of sensors", "",
+                      [raw = live.get(), timestep = simulator.timestep()](const Snapshot& now) {
+                        return raw->sample(now, timestep);
+                      });
   return live;
-}
-
-LiveSensors::~LiveSensors() {
-  if (queue_ != nullptr) queue_->close();
-  drain();
-}
-
-void LiveSensors::drain() {
-  if (thread_.joinable()) thread_.join();
-}
-
-Status LiveSensors::status() const {
-  const std::lock_guard lock(mutex_);
-  return status_;
 }
 
 Result<SensorGroup> LiveSensors::group_of(const CompiledWorld& world, Rational timestep) const {
@@ -65,24 +52,16 @@ Result<SensorGroup> LiveSensors::group_of(const CompiledWorld& world, Rational t
   return SensorGroup::make(wanted, timestep, seed_);
 }
 
-void LiveSensors::run(Rational timestep) {
-  while (const Snapshot snapshot = queue_->next()) {
-    const auto& world = snapshot.data().world;
-    if (world != world_) {
-      Result<SensorGroup> next = group_of(*world, timestep);
-      if (next.ok() && !next->same_steps(group_)) next = other_schedule("a sensor");
-      if (!next.ok()) {
-        const std::lock_guard lock(mutex_);
-        log_error("a stream of sensors stopped: {}", next.error().to_string());
-        status_ = next.error();
-        queue_->close();  // the simulation must not wait for it
-        return;
-      }
-      group_ = std::move(*next);
-      world_ = world;
-    }
-    group_.sample(snapshot, on_message_);
+Status LiveSensors::sample(const Snapshot& snapshot, Rational timestep) {
+  const auto& world = snapshot.data().world;
+  if (world != world_) {
+    GLOAM_TRY(SensorGroup next, group_of(*world, timestep));
+    if (!next.same_steps(group_)) return other_schedule("a sensor");
+    group_ = std::move(next);
+    world_ = world;
   }
+  group_.sample(snapshot, on_message_);
+  return {};
 }
 
 }  // namespace gloam

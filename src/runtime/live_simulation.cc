@@ -19,10 +19,11 @@ double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-Result<std::vector<RobotController>> make_controllers(const CompiledWorld& world) {
+Result<std::vector<RobotController>> make_controllers(
+    const std::shared_ptr<const CompiledWorld>& world) {
   std::vector<RobotController> controllers;
-  for (size_t i = 0; i < world.robots.size(); ++i) {
-    const RobotInstance& robot = world.robots[i];
+  for (size_t i = 0; i < world->robots.size(); ++i) {
+    const RobotInstance& robot = world->robots[i];
     if (robot.options.controller.type == "none") continue;
     GLOAM_TRY(auto controller, make_controller(world, robot));
     controllers.push_back(
@@ -50,7 +51,7 @@ Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& worl
   core.pace = options.pace;
   core.speed = options.speed;
   GLOAM_TRY(live->simulator_, Simulator::create(world.compiled(), core));
-  GLOAM_TRY(auto controllers, make_controllers(*world.compiled()));
+  GLOAM_TRY(auto controllers, make_controllers(world.compiled()));
   for (RobotController& c : controllers)
     GLOAM_TRY_STATUS(live->simulator_->add_controller(c.robot, std::move(c.controller), c.rate));
   // Exposure goes on from step 0, whether or not anyone opens the camera.
@@ -66,7 +67,7 @@ Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& worl
 // find it when the first Snapshot of the new World comes to them.
 Status LiveSimulation::recompile(const World& world) {
   const std::lock_guard one_at_a_time(recompile_mutex_);
-  GLOAM_TRY(auto controllers, make_controllers(*world.compiled()));
+  GLOAM_TRY(auto controllers, make_controllers(world.compiled()));
   if (renderers_.any()) GLOAM_TRY_STATUS(renderers_.of(world.compiled()));
   const Status status = simulator_->recompile(world.compiled(), std::move(controllers));
   renderers_.keep_only(simulator_->world());
@@ -81,6 +82,7 @@ void LiveSimulation::restart_speed_clock() {
 }
 
 Status LiveSimulation::run_until(int64_t step) {
+  if (simulator_->is_on_sim_thread()) return simulator_->wait();  // says that it cannot
   restart_speed_clock();
   paused_ = false;
   simulator_->run_until(step);
@@ -117,8 +119,12 @@ void LiveSimulation::set_pace(Pace pace, double speed) {
   simulator_->set_pace(pace, speed);
 }
 
+Status LiveSimulation::post(std::span<const Command> commands) {
+  return simulator_->post(commands);
+}
+
 Status LiveSimulation::post(const Command& command) {
-  if (std::holds_alternative<ResetSim>(command.what)) {
+  if (std::holds_alternative<ResetSim>(command.what) && !simulator_->is_on_sim_thread()) {
     const Status status = simulator_->reset();  // works after a failure, too
     restart_speed_clock();
     return status;
@@ -181,6 +187,12 @@ Result<std::unique_ptr<LidarStream>> LiveSimulation::open_lidar(const LidarReque
                                                                 ScanCallback on_scan) {
   GLOAM_TRY(auto lidar, open_live_lidar(request, std::move(on_scan)));
   return std::unique_ptr<LidarStream>(std::move(lidar));
+}
+
+Result<std::unique_ptr<SnapshotStream>> LiveSimulation::open_snapshots(
+    const SnapshotRequest& request, SnapshotCallback on_snapshot) {
+  GLOAM_TRY(auto live, LiveSnapshots::open(*simulator_, request, std::move(on_snapshot)));
+  return std::unique_ptr<SnapshotStream>(std::move(live));
 }
 
 std::vector<std::string> LiveSimulation::camera_names() const {

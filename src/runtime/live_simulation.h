@@ -11,6 +11,7 @@
 #include "runtime/live_camera.h"
 #include "runtime/live_lidar.h"
 #include "runtime/live_sensors.h"
+#include "runtime/live_snapshots.h"
 
 namespace gloam {
 
@@ -34,6 +35,8 @@ class LiveSimulation final : public Simulation {
   void request_stop() override { stop_requested_ = true; }
   Status status() const override { return simulator_->status(); }
   Status post(const Command& command) override;
+  Status post(std::span<const Command> commands) override;
+  std::vector<LoggedCommand> take_command_log() override { return simulator_->take_command_log(); }
   Snapshot latest() const override { return simulator_->latest(); }
   SimulationStats stats() const override;
   void set_step_hook(std::function<void(const mjModel_*, mjData_*)> hook) override;
@@ -43,6 +46,8 @@ class LiveSimulation final : public Simulation {
                                                     SensorCallback on_message) override;
   Result<std::unique_ptr<LidarStream>> open_lidar(const LidarRequest& request,
                                                   ScanCallback on_scan) override;
+  Result<std::unique_ptr<SnapshotStream>> open_snapshots(const SnapshotRequest& request,
+                                                         SnapshotCallback on_snapshot) override;
   std::vector<std::string> camera_names() const override;
   Result<std::vector<LabelRow>> labels() override;
   Result<Pose> body_pose(Body body) override;

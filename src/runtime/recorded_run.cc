@@ -24,6 +24,7 @@
 #include "runtime/run_to_step.h"
 #include "runtime/state_table.h"
 #include "sim/loop/step_schedule.h"
+#include "world/sensors/camera_rate.h"
 #include "world/version.h"
 
 namespace gloam {
@@ -93,6 +94,7 @@ Result<std::vector<CameraRequest>> camera_requests(const World& world, const Run
   for (const std::string& name : names) {
     CameraRequest camera;
     camera.camera = name;
+    camera.rate = kUsualCameraRate;
     camera.width = request.width;
     camera.height = request.height;
     std::vector<std::string> outputs = scene.record.outputs;

@@ -18,6 +18,7 @@
 #include "runtime/label_table.h"
 #include "runtime/live_simulation.h"
 #include "runtime/run_to_step.h"
+#include "world/sensors/camera_rate.h"
 
 namespace gloam {
 namespace {
@@ -88,7 +89,10 @@ Result<std::vector<CameraFrame>> render_stills(const World& world, double time,
   std::set<int64_t> wanted;  // steps, over all cameras' exposures
   std::vector<int64_t> previous;
   for (size_t i = 0; i < requests.size(); ++i) {
-    previous.push_back(step_of_frame_before(steps, requests[i].rate, simulation->step_rate()));
+    const Rational rate = requests[i].rate.num > 0
+                              ? requests[i].rate
+                              : own_camera_rate(world.compiled()->scene, requests[i].camera);
+    previous.push_back(step_of_frame_before(steps, rate, simulation->step_rate()));
     wanted.insert(previous.back());
     const KeySteps keys = key_steps(sensors[i]->window(), timestep);
     for (int k = 0; k < keys.count; ++k) wanted.insert(steps + k * keys.stride);

@@ -46,7 +46,7 @@ double VisibilityProbe::visibility(const SnapshotData& snapshot, Vec3f p_W) cons
     float density = 0;
     if (fields_[i] < 0) {
       density = media::density_at(volume, p_G);
-    } else if (const FieldWindow& window = snapshot.fields[static_cast<size_t>(fields_[i])];
+    } else if (const FieldWindow& window = snapshot.effects.media[static_cast<size_t>(fields_[i])];
                window.before != nullptr) {
       window.before->wait();
       density = density_in(window.before->density());

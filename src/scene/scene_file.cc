@@ -46,6 +46,27 @@ Status find_files(const FileFinder& finder, Scene* scene) {
 
 }  // namespace
 
+namespace {
+
+Result<Scene> read_scene(const toml::table& table, const fs::path& path, Scene scene) {
+  scene.file = path;
+  GLOAM_TRY_STATUS(read_scene_toml(table, path.string(), &scene));
+  GLOAM_TRY(const FileFinder finder, FileFinder::of_scene(path, scene.access));
+  GLOAM_TRY_STATUS(find_files(finder, &scene));
+  GLOAM_TRY_STATUS(validate_scene(scene));
+  if (scene.robots.empty() && scene.environment.file.empty() && !has_generator(scene.environment) &&
+      scene.props.empty() && scene.visuals.empty() && scene.objects.empty() &&
+      scene.hfields.empty() && scene.agents.empty() && scene.crowds.empty()) {
+    return Error{ErrorKind::kInput,
+                 "the scene has nothing in it",
+                 {path.string(), 0, 0},
+                 "add at least one [[robot]], [[object]], [[visual]] or an [environment]"};
+  }
+  return scene;
+}
+
+}  // namespace
+
 Result<Scene> load_scene(const fs::path& path, const FileAccess& access) {
   Scene scene;
   scene.access = access;
@@ -70,20 +91,19 @@ Result<Scene> load_scene(const fs::path& path, const FileAccess& access) {
   if (text->size() > kLargestScene)
     return Error{
         ErrorKind::kInput, "a scene of more than 4 MiB is not read", {path.string(), 0, 0}};
-  scene.file = path;
-  GLOAM_TRY_STATUS(read_scene_toml(table, path.string(), &scene));
-  GLOAM_TRY(const FileFinder finder, FileFinder::of_scene(path, access));
-  GLOAM_TRY_STATUS(find_files(finder, &scene));
-  GLOAM_TRY_STATUS(validate_scene(scene));
-  if (scene.robots.empty() && scene.environment.file.empty() && !has_generator(scene.environment) &&
-      scene.props.empty() && scene.visuals.empty() && scene.objects.empty() &&
-      scene.hfields.empty() && scene.agents.empty() && scene.crowds.empty()) {
-    return Error{ErrorKind::kInput,
-                 "the scene has nothing in it",
-                 {path.string(), 0, 0},
-                 "add at least one [[robot]], [[object]], [[visual]] or an [environment]"};
-  }
-  return scene;
+  return read_scene(table, path, std::move(scene));
+}
+
+Result<Scene> parse_scene(std::string_view text, const fs::path& folder, const FileAccess& access) {
+  const fs::path path = folder / "scene.toml";  // need not exist: files are found from there
+  if (text.size() > kLargestScene)
+    return Error{ErrorKind::kInput, "a scene of more than 4 MiB is not read"};
+  GLOAM_TRY(const std::optional<std::string> plain, plain_text(text, path.string()));
+  GLOAM_TRY(const toml::table table, parse_toml(plain ? *plain : std::string(text), path.string()));
+  Scene scene;
+  scene.access = access;
+  scene.name = "scene";
+  return read_scene(table, path, std::move(scene));
 }
 
 }  // namespace gloam

@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 #include "places/generators.h"
 #include "world/authored_frame.h"
+#include "world/effects/surface_layout.h"
 #include "world/effects/visual_soil.h"
 #include "world/effects/visual_water.h"
 #include "world/lights/authored_light.h"
@@ -371,14 +372,12 @@ Result<RenderDescription> describe_from_origin(const CompiledWorld& world) {
     visual->convert_meshes();
     visual->materials().load_textures();
   }
-  // Their vertices come after the waters', their materials may be the scene's.
-  int first_vertex = deformable_layout(m).nvertex;
-  for (const WaterDescription& water : world.waters) first_vertex += water_vertices(water);
-  author_soils(world.soils, first_vertex, &labels, &out);
+  // Before the scene's materials, which may be theirs.
+  author_soils(world.soils, first_soil_vertex(world), &labels, &out);
   GLOAM_TRY_STATUS(author_materials(world.scene.materials, &out));
   restore_authored_frames(m, &out);
   GLOAM_TRY_STATUS(author_lights(world, poses, is_static, &labels, &levels, &out));
-  author_waters(world.waters, deformable_layout(m).nvertex, &labels, &out);
+  author_waters(world.waters, first_water_vertex(world), &labels, &out);
   if (world.scene.sky) GLOAM_TRY_STATUS(author_sky(*world.scene.sky, &levels, &out));
   if (world.scene.blackout) GLOAM_TRY_STATUS(author_blackout(*world.scene.blackout, &out));
   GLOAM_TRY_STATUS(author_volumes(world.scene.volumes, &out));

@@ -1,5 +1,7 @@
 #include "world/world_robots.h"
 
+#include <string_view>
+
 namespace gloam {
 namespace {
 
@@ -53,6 +55,11 @@ class RootMarks {
   std::vector<bool> marked_;
 };
 
+bool is_part_of(const mjModel& model, int body, int root) {
+  while (body > root && body > 0) body = model.body_parentid[body];
+  return body == root;
+}
+
 }  // namespace
 
 std::vector<int> robot_roots(const mjModel& model) {
@@ -61,6 +68,29 @@ std::vector<int> robot_roots(const mjModel& model) {
   for (int joint = 0; model.nactuator == 0 && joint < static_cast<int>(model.njnt); ++joint)
     if (model.jnt_type[joint] != mjJNT_FREE) marks.mark_joint(joint);
   return marks.bodies();
+}
+
+std::vector<int> robot_joints(const mjModel& model, const RobotInstance& robot) {
+  std::vector<int> joints;
+  for (int joint = 0; joint < static_cast<int>(model.njnt); ++joint)
+    if (is_part_of(model, model.jnt_bodyid[joint], robot.root_body)) joints.push_back(joint);
+  return joints;
+}
+
+std::vector<int> robot_actuators(const mjModel& model, const RobotInstance& robot) {
+  std::vector<int> actuators;
+  for (int actuator = 0; actuator < static_cast<int>(model.nactuator); ++actuator) {
+    const char* name = mj_id2name(&model, mjOBJ_ACTUATOR, actuator);
+    const bool has_name = !robot.prefix.empty() && name != nullptr &&
+                          std::string_view(name).starts_with(robot.prefix);
+    RootMarks marks(model);
+    marks.mark_actuator(actuator);
+    const std::vector<int> roots = marks.bodies();
+    const bool drives = !roots.empty() && robot.root_body > 0 &&
+                        roots.front() == model.body_rootid[robot.root_body];
+    if (has_name || (robot.prefix.empty() && drives)) actuators.push_back(actuator);
+  }
+  return actuators;
 }
 
 }  // namespace gloam

@@ -5,10 +5,17 @@
 
 #include <vector>
 
+#include "world/world.h"
+
 namespace gloam {
 
 /// Bodies directly under the world, in order, whose tree an actuator moves. Of a model without
 /// actuators (most URDFs): those with a joint that is not free.
 std::vector<int> robot_roots(const mjModel& model);
+
+/// Joints and actuators of a robot, in the model's order. An actuator is its robot's whose tree it
+/// drives, or whose name it has.
+std::vector<int> robot_joints(const mjModel& model, const RobotInstance& robot);
+std::vector<int> robot_actuators(const mjModel& model, const RobotInstance& robot);
 
 }  // namespace gloam

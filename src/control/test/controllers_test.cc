@@ -37,7 +37,7 @@ std::shared_ptr<CompiledWorld> make_world(ControllerOptions options) {
 }
 
 std::unique_ptr<Simulator> start(const std::shared_ptr<CompiledWorld>& world) {
-  auto controller = make_controller(*world, world->robots[0]);
+  auto controller = make_controller(world, world->robots[0]);
   EXPECT_TRUE(controller.ok());
   auto sim = Simulator::create(world, {.pace = Pace::kLockstep});
   EXPECT_TRUE(sim.ok());
@@ -89,9 +89,9 @@ TEST(Torque, IsConstantUntilACommandChangesIt) {
   EXPECT_EQ(sim->latest().control(Actuator{0}), 0.5);
 }
 
-std::vector<RobotController> controllers_of(const CompiledWorld& world) {
+std::vector<RobotController> controllers_of(const std::shared_ptr<const CompiledWorld>& world) {
   std::vector<RobotController> controllers;
-  controllers.push_back({0, *make_controller(world, world.robots[0]), {500, 1}});
+  controllers.push_back({0, *make_controller(world, world->robots[0]), {500, 1}});
   return controllers;
 }
 
@@ -102,7 +102,7 @@ TEST(JointPosition, HoldsOnThroughARecompile) {
   ASSERT_TRUE(sim->step(200).ok());
   EXPECT_LT(sim->latest()[Joint{0}].position(), -0.01) << "it gives way";
   const auto again = make_world({.type = "joint_position"});
-  ASSERT_TRUE(sim->recompile(again, controllers_of(*again)).ok());
+  ASSERT_TRUE(sim->recompile(again, controllers_of(again)).ok());
   ASSERT_TRUE(sim->post({.what = SetWrench{{2}, {}, {}}}).ok());
   ASSERT_TRUE(sim->step(4000).ok());
   EXPECT_NEAR(sim->latest()[Joint{0}].position(), 0, 1e-3) << "and comes back to where it began";
@@ -115,11 +115,11 @@ TEST(Torque, OfACommandSurvivesARecompile) {
   ASSERT_TRUE(sim->post({.what = SetControl{Actuator{0}, -1}}).ok());
   ASSERT_TRUE(sim->step(10).ok());
   const auto again = make_world(options);
-  ASSERT_TRUE(sim->recompile(again, controllers_of(*again)).ok());
+  ASSERT_TRUE(sim->recompile(again, controllers_of(again)).ok());
   ASSERT_TRUE(sim->step(10).ok());
   EXPECT_EQ(sim->latest().control(Actuator{0}), -1);
   const auto stronger = make_world({.type = "torque", .target = {2, 0.5}});
-  ASSERT_TRUE(sim->recompile(stronger, controllers_of(*stronger)).ok());
+  ASSERT_TRUE(sim->recompile(stronger, controllers_of(stronger)).ok());
   ASSERT_TRUE(sim->step(1).ok());
   EXPECT_EQ(sim->latest().control(Actuator{0}), 1) << "the scene asks for another one now";
 }
@@ -136,13 +136,13 @@ TEST(Trot, WalksOnThroughARecompile) {
   };
   const auto begin = [&] {
     auto sim = start(quadruped_world());
-    EXPECT_TRUE(sim->post({.what = SetVelocityGoal{0, 0.5, 0, 0.3}}).ok());
+    EXPECT_TRUE(sim->post({.what = SetVelocityGoal{{0, 0}, 0.5, 0, 0.3}}).ok());
     EXPECT_TRUE(sim->step(733).ok());
     return sim;
   };
   auto plain = begin(), changed = begin();
   const auto again = quadruped_world();
-  ASSERT_TRUE(changed->recompile(again, controllers_of(*again)).ok());
+  ASSERT_TRUE(changed->recompile(again, controllers_of(again)).ok());
   ASSERT_TRUE(plain->step(500).ok() && changed->step(500).ok());
   const Snapshot a = plain->latest(), b = changed->latest();
   EXPECT_TRUE(std::equal(a.state().begin(), a.state().end(), b.state().begin()));
@@ -152,7 +152,7 @@ TEST(Controllers, AreFoundByNameAndErrorsSayWhatToDo) {
   auto make = [](ControllerOptions options) {
     options.loc = {"scene.toml", 9};
     auto world = make_world(std::move(options));
-    return make_controller(*world, world->robots[0]);
+    return make_controller(world, world->robots[0]);
   };
   auto none = make({.type = "none"});
   ASSERT_TRUE(none.ok());
@@ -164,6 +164,48 @@ TEST(Controllers, AreFoundByNameAndErrorsSayWhatToDo) {
   EXPECT_FALSE(make({.type = "joint_position", .target = {1}}).ok());
   EXPECT_FALSE(make({.type = "joint_position", .kp = -1}).ok());
   EXPECT_FALSE(make({.type = "torque", .target = {1, 2, 3}}).ok());
+}
+
+// A controller from outside of Gloam, with a setting of its own.
+class ConstantControl final : public Controller {
+ public:
+  explicit ConstantControl(double value) : value_(value) {}
+  void reset(const mjModel*, const mjData*) override {}
+  void control(const ControlInputs& in) override { in.data->ctrl[0] = value_; }
+
+ private:
+  double value_;
+};
+
+Result<std::unique_ptr<Controller>> make_constant(const ControllerRequest& request) {
+  GLOAM_TRY(const std::vector<double> value, controller_param(request.robot.controller, "value"));
+  EXPECT_EQ(request.robot.controller.type, "constant");
+  EXPECT_TRUE(request.world.compiled() != nullptr);
+  return std::unique_ptr<Controller>(
+      std::make_unique<ConstantControl>(value.empty() ? 0.25 : value[0]));
+}
+
+TEST(Controllers, OnesOfAProgramAreRegisteredOnce) {
+  ASSERT_TRUE(register_controller("constant", make_constant).ok());
+  EXPECT_FALSE(register_controller("constant", make_constant).ok());
+  EXPECT_FALSE(register_controller("trot", make_constant).ok());
+  EXPECT_FALSE(register_controller("no name", make_constant).ok());
+  EXPECT_FALSE(register_controller("empty", {}).ok());
+  const std::vector<std::string> types = controller_types();
+  EXPECT_EQ(types.front(), "none");
+  EXPECT_EQ(types.back(), "constant");
+  const auto sim = start(make_world({.type = "constant", .params = {"{ value = -1.5 }"}}));
+  ASSERT_TRUE(sim->step(1).ok());
+  EXPECT_EQ(sim->latest().control(Actuator{0}), -1.5);
+}
+
+TEST(Controllers, ParamsAreNumbersOrNamedAsWrong) {
+  const auto read = [](const char* text) { return controller_param({.params = {text}}, "value"); };
+  EXPECT_TRUE(read("")->empty());
+  EXPECT_TRUE(read("{ other = 1 }")->empty());
+  EXPECT_EQ(*read("{ value = [1, 2.5] }"), (std::vector<double>{1, 2.5}));
+  for (const char* bad : {"{ value = \"1\" }", "{ value = [1, true] }", "3", "{", "{} x = 1"})
+    EXPECT_FALSE(read(bad).ok()) << bad;
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ TEST(TrotAllocation, ControlNeverAllocates) {
   long inside = 0;
   for (int step = 0; step < 1500; ++step) {
     const long before = g_allocations;
-    (*trot)->control(model.get(), data.get(), {}, step, 0.002, {step < 1000 ? 0.5 : 0.0, 0, 0.3});
+    (*trot)->control({model.get(), data.get(), {}, step, 0.002, {step < 1000 ? 0.5 : 0.0, 0, 0.3}});
     inside += g_allocations - before;
     mj_step(model.get(), data.get());
   }

@@ -104,7 +104,7 @@ TrialResult run_trial(const mjModel& known_model, const Trial& trial) {
       }
     if (step % every == 0) {
       const double start = cpu_seconds();
-      trot.control(&model, d, {}, step, every * dt, goal);
+      trot.control({&model, d, {}, step, every * dt, goal});
       spent += cpu_seconds() - start;
     }
     mj_step(&model, d);

@@ -68,7 +68,7 @@ std::shared_ptr<CompiledWorld> world_with_bed(const std::string& kind, double fr
 /// Pieces of the bed that lie deeper than `depth`, and the deepest.
 int count_prints(const Snapshot& now, double depth, double* deepest) {
   const SoilDescription& soil = now.data().world->soils[0];
-  const auto& field = now.data().tracks[0].field;
+  const auto& field = now.data().effects.surfaces[0].field;
   if (field == nullptr) return 0;
   std::vector<bool> low(soil.cells());
   for (size_t i = 0; i < low.size(); ++i) {

@@ -193,8 +193,8 @@ TEST(TrotWalk, EachOfTwoRobotsInOneWorldIsDrivenByItsOwnController) {
   mj_forward(model.get(), data.get());
   for (auto& trot : trots) trot->reset(model.get(), data.get());
   for (int step = 0; step < 1500; ++step) {
-    trots[0]->control(model.get(), data.get(), {}, step, 0.002, {0.5, 0, 0});
-    trots[1]->control(model.get(), data.get(), {}, step, 0.002, {-0.3, 0, 0});
+    trots[0]->control({model.get(), data.get(), {}, step, 0.002, {0.5, 0, 0}});
+    trots[1]->control({model.get(), data.get(), {}, step, 0.002, {-0.3, 0, 0}});
     mj_step(model.get(), data.get());
   }
   EXPECT_NEAR(data->qpos[base[0]], 1.5, 0.15);
@@ -221,13 +221,13 @@ TEST(TrotWalk, SaysWhenItHasFallenAndThenOnlyBrakes) {
   mj_forward(model.get(), data.get());
   (*trot)->reset(model.get(), data.get());
   for (int step = 0; step < 100; ++step) {
-    (*trot)->control(model.get(), data.get(), {}, step, 0.002, {});
+    (*trot)->control({model.get(), data.get(), {}, step, 0.002, {}});
     mj_step(model.get(), data.get());
   }
   EXPECT_TRUE((*trot)->fallen());
   for (int i = 0; i < model->nu; ++i) {
     const double speed = data->qvel[model->jnt_dofadr[model->actuator_trnid[2 * i]]];
-    (*trot)->control(model.get(), data.get(), {}, 100, 0.002, {1, 0, 0});
+    (*trot)->control({model.get(), data.get(), {}, 100, 0.002, {1, 0, 0}});
     EXPECT_LE(data->ctrl[i] * speed, 0.3 * std::abs(speed));
   }
   mj_resetDataKeyframe(model.get(), data.get(), 0);

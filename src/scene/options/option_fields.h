@@ -10,6 +10,7 @@
 
 #include "gloam/scene.h"
 #include "scene/options/agent_fields.h"
+#include "scene/options/controller_types.h"
 #include "scene/options/effect_fields.h"
 #include "scene/options/environment_fields.h"
 #include "scene/options/field_rule.h"
@@ -32,12 +33,13 @@ void visit_fields(Visitor& v, VelocityGoal& o) {
 
 template <class Visitor>
 void visit_fields(Visitor& v, ControllerOptions& o) {
-  v("type", o.type, FieldRule{.choices = {"none", "torque", "joint_position", "trot"}});
+  v("type", o.type, FieldRule{.choices = controller_type_names()});
   v("rate", o.rate, FieldRule{.unit = "Hz", .min = 0, .max = kFastestRate, .open = true});
   v("kp", o.kp, FieldRule{.unit = "N m/rad", .min = 0, .max = 1e6});
   v("kd", o.kd, FieldRule{.unit = "N m s/rad", .min = 0, .max = 1e6});
   v("target", o.target, FieldRule{.unit = "rad or N m", .min = -1e6, .max = 1e6});
   v("goals", o.goals, FieldRule{});
+  v("params", o.params, FieldRule{});
 }
 
 template <class Visitor>

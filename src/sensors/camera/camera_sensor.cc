@@ -13,6 +13,7 @@
 #include "sensors/camera/object_boxes.h"
 #include "sensors/timing.h"
 #include "sim/loop/step_schedule.h"
+#include "world/sensors/camera_rate.h"
 
 namespace gloam {
 namespace {
@@ -47,7 +48,7 @@ Status check_numbers(const CameraRequest& request) {
   const auto refuse = [&](const std::string& what) {
     return Error{ErrorKind::kUsage, fmt::format("camera '{}': {}", request.camera, what)};
   };
-  if (request.rate.num <= 0 || request.rate.den <= 0) return refuse("the rate must be positive");
+  if (request.rate.num < 0 || request.rate.den <= 0) return refuse("the rate must be positive");
   constexpr int kMaxSide = 16384;  // [px]
   const int width = request.width, height = request.height;
   const bool own = width == 0 && height == 0;
@@ -159,7 +160,7 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
                  fmt::format("camera '{}' at {} x {} pixels: {}", request.camera,
                              sensor->intrinsics_.width, sensor->intrinsics_.height, fault)};
   }
-  sensor->rate_ = request.rate;
+  sensor->rate_ = request.rate.num > 0 ? request.rate : kUsualCameraRate;
   const double ev100 = request.render.ev100.value_or(static_cast<double>(description.ev100));
   GLOAM_TRY(sensor->models_,
             CameraModels::create(description, camera, sensor->intrinsics_,

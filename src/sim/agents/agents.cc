@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/log.h"
+#include "scene/files/mujoco_guard.h"
 #include "sim/agents/brain.h"
+#include "sim/state/initial_state.h"
 
 namespace gloam {
 namespace {
@@ -21,46 +24,57 @@ constexpr double kFromRobot = 1.5;
 Agents::Agents(std::shared_ptr<const CompiledWorld> world, uint64_t seed)
     : world_(std::move(world)), seed_(seed) {}
 
-Result<std::unique_ptr<Agents>> Agents::create(std::shared_ptr<const CompiledWorld> world,
-                                               uint64_t seed, Rational timestep, const mjModel& m,
-                                               const mjData& data) {
-  std::unique_ptr<Agents> made;
-  if (world->agents.empty()) return made;
-  made.reset(new Agents(world, seed));
-  const NavigationOptions& o = world->scene.navigation;
+Result<std::unique_ptr<Effect>> Agents::make(const EffectParts& parts) {
+  if (parts.world->agents.empty()) return std::unique_ptr<Effect>();
+  std::unique_ptr<Agents> agents(new Agents(parts.world, parts.seed));
+  const mjModel* model = &parts.model;
+  mjData* data = &parts.data;
+  GLOAM_TRY_STATUS(guarded([&] { place_at_initial_state(*parts.world, *model, data); }));
+  GLOAM_TRY_STATUS(agents->prepare(parts.timestep, *model, *data));
+  return std::unique_ptr<Effect>(std::move(agents));
+}
+
+Status Agents::prepare(Rational timestep, const mjModel& m, const mjData& data) {
+  const NavigationOptions& o = world_->scene.navigation;
   Result<StepSchedule> decisions = StepSchedule::make(o.rate, {0, 1}, timestep);
   if (!decisions.ok()) {
     Error error = std::move(decisions).error();
     if (error.loc.line == 0) error.loc = o.loc;
     return error;
   }
-  made->decisions_ = *decisions;
-  made->motions_ = StepSchedule::at_most(kMotionRate, timestep);
-  made->timestep_ = timestep.value();
-  made->decision_time_ = 1 / o.rate.value();
-  GLOAM_TRY(made->nav_, NavWorld::create(*world, m, data));
-  made->doors_ = std::make_unique<AgentDoors>(*world, m, data);
-  made->agent_of_geom_.assign(static_cast<size_t>(m.ngeom), -1);
-  made->is_robot_geom_.assign(static_cast<size_t>(m.ngeom), false);
-  made->agents_.reserve(world->agents.size());
-  for (const AgentDescription& d : world->agents) {
+  decisions_ = *decisions;
+  motions_ = StepSchedule::at_most(kMotionRate, timestep);
+  timestep_ = timestep.value();
+  decision_time_ = 1 / o.rate.value();
+  GLOAM_TRY(nav_, NavWorld::create(*world_, m, data));
+  doors_ = std::make_unique<AgentDoors>(*world_, m, data);
+  agents_.reserve(world_->agents.size());
+  for (const AgentDescription& d : world_->agents) {
+    agents_.emplace_back(d);
+    splines_.push_back(d.behavior == AgentBehavior::kSpline ? AgentSpline(d.route, d.loop)
+                                                            : AgentSpline());
+  }
+  map_geoms(m);
+  GLOAM_TRY_STATUS(read_trees());
+  nav_->reset(m, data);
+  return place(true);
+}
+
+void Agents::map_geoms(const mjModel& m) {
+  agent_of_geom_.assign(static_cast<size_t>(m.ngeom), -1);
+  is_robot_geom_.assign(static_cast<size_t>(m.ngeom), false);
+  for (size_t row = 0; row < agents_.size(); ++row) {
+    const AgentDescription& d = *agents_[row].description;
     for (int part = 0; part < d.parts(); ++part) {
       const int body = d.body[static_cast<size_t>(part)];
       for (int g = m.body_geomadr[body]; g < m.body_geomadr[body] + m.body_geomnum[body]; ++g)
-        made->agent_of_geom_[static_cast<size_t>(g)] = static_cast<int>(made->agents_.size());
+        agent_of_geom_[static_cast<size_t>(g)] = static_cast<int>(row);
     }
-    made->agents_.emplace_back(d);
-    made->splines_.push_back(d.behavior == AgentBehavior::kSpline ? AgentSpline(d.route, d.loop)
-                                                                  : AgentSpline());
   }
-  for (const RobotInstance& robot : world->robots)
+  for (const RobotInstance& robot : world_->robots)
     for (int g = 0; robot.root_body > 0 && g < static_cast<int>(m.ngeom); ++g)
       if (m.body_rootid[m.geom_bodyid[g]] == robot.root_body)
-        made->is_robot_geom_[static_cast<size_t>(g)] = true;
-  GLOAM_TRY_STATUS(made->read_trees());
-  made->nav_->reset(m, data);
-  GLOAM_TRY_STATUS(made->place(true));
-  return made;
+        is_robot_geom_[static_cast<size_t>(g)] = true;
 }
 
 Status Agents::read_trees() {
@@ -175,17 +189,25 @@ Status Agents::place(bool tell) {
   return {};
 }
 
-void Agents::reset(const mjModel& m, const mjData& data) {
+void Agents::begin(const mjModel& m, const mjData& data) {
   nav_->reset(m, data);
   doors_->reset();
   const Status placed = place(false);  // as at first, when there was room
   static_cast<void>(placed);
   decision_ = motion_ = 0;
   last_motion_step_ = next_motion_step_ = 0;
+  planted_.assign(agents_.size(), {true, true});
 }
 
-void Agents::take_over(int64_t step, const Agents* before, const mjModel& m, const mjData& data) {
-  reset(m, data);
+void Agents::reset(const EffectContext& at) {
+  at.events.footfalls.reserve(2 * agents_.size());
+  begin(at.model, at.data);
+}
+
+void Agents::take_over(const EffectContext& at, Effect* other) {
+  const int64_t step = at.step;
+  const auto* before = static_cast<const Agents*>(other);
+  reset(at);
   decision_ = decisions_.first_at_or_after(step + 1);
   motion_ = motions_.first_at_or_after(step + 1);
   last_motion_step_ = step;
@@ -269,20 +291,40 @@ void Agents::move(int64_t step) {
   }
 }
 
-uint64_t Agents::advance(int64_t step, const mjModel& m, mjData* data, uint64_t hash) {
-  if (step > 0) read_contacts(m, *data);
-  if (step == decisions_.step_of(decision_)) {
-    decide(step, m, *data);
-    for (const AgentBody& agent : agents_) hash = agent.hash(hash);
-    hash = doors_->hash(nav_->hash(hash));
+void Agents::advance(const EffectContext& at) {
+  if (at.step > 0) read_contacts(at.model, at.data);
+  if (at.step == decisions_.step_of(decision_)) {
+    decide(at.step, at.model, at.data);
+    for (const AgentBody& agent : agents_) at.hash = agent.hash(at.hash);
+    at.hash = doors_->hash(nav_->hash(at.hash));
     ++decision_;
   }
-  if (step == motions_.step_of(motion_)) move(step);
-  write(step, data);
-  return hash;
+  if (at.step == motions_.step_of(motion_)) move(at.step);
+  write_state(at.step, &at.data);
+  if (at.step > 0) find_footfalls(at.data, &at.events.footfalls);
 }
 
-void Agents::write(int64_t step, mjData* data) const {
+void Agents::find_footfalls(const mjData& data, std::vector<Footfall>* footfalls) {
+  for (size_t row = 0; row < agents_.size(); ++row) {
+    const AgentBody& agent = agents_[row];
+    const AgentDescription& d = *agent.description;
+    if (d.kind != AgentKind::kPerson) continue;
+    for (int foot = 0; foot < 2; ++foot) {
+      bool& was = planted_[row][static_cast<size_t>(foot)];
+      const bool is = agent.walker.is_planted(foot);
+      if (is && !was) {
+        const double* p = data.mocap_pos + 3 * d.mocap[foot == 0 ? kFootL : kFootR];
+        footfalls->push_back({static_cast<int>(row),
+                              {p[0], p[1], p[2]},
+                              d.person.mass,
+                              std::hypot(agent.motion.velocity.x, agent.motion.velocity.y)});
+      }
+      was = is;
+    }
+  }
+}
+
+void Agents::write_state(int64_t step, mjData* data) const {
   const double length = static_cast<double>(next_motion_step_ - last_motion_step_);
   const double t = length > 0 ? static_cast<double>(step - last_motion_step_) / length : 1;
   for (const AgentBody& agent : agents_) {

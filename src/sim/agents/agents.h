@@ -3,48 +3,49 @@
 // on the sim thread, bodies move at 50 Hz of simulation time, and mocap poses are interpolated
 // between these for every step: a Snapshot holds those of its own instant.
 
+#include <array>
 #include <memory>
 #include <vector>
 
 #include "sim/agents/agent.h"
 #include "sim/agents/doors.h"
+#include "sim/effects/effect.h"
 #include "sim/loop/step_schedule.h"
 
 namespace gloam {
 
-class Agents {
+class Agents final : public Effect {
  public:
-  /// Null where the World has none. `data`: poses of the initial state. Errors: nowhere to go, a
-  /// place without room, a behaviour tree that is none, a rate above the step rate; no Recast.
-  static Result<std::unique_ptr<Agents>> create(std::shared_ptr<const CompiledWorld> world,
-                                                uint64_t seed, Rational timestep,
-                                                const mjModel& model, const mjData& data);
+  /// Errors: nowhere to go, a place without room, a behaviour tree that is none, a rate above the
+  /// step rate; no Recast.
+  static Result<std::unique_ptr<Effect>> make(const EffectParts& parts);
 
-  /// Back to the beginning; `data` has the poses of the initial state, but the agents'.
-  void reset(const mjModel& model, const mjData& data);
-  /// At a step in the middle of a run: goes on with those that were in `before` by the same name,
-  /// kind and seed, null = none; the others begin.
-  void take_over(int64_t step, const Agents* before, const mjModel& model, const mjData& data);
-
-  /// After a step: the simulation stands at `step`, and mjData still has poses and contacts of the
-  /// step before. Decides and moves when it is time, and writes the mocap poses of this instant.
-  /// The hash of the simulation's state goes in and comes out with the agents'.
-  uint64_t advance(int64_t step, const mjModel& model, mjData* data, uint64_t hash);
+  std::string_view kind() const override { return "agents"; }
+  void reset(const EffectContext& at) override;
+  /// Goes on with those of the same name, kind and seed; the others begin.
+  void take_over(const EffectContext& at, Effect* before) override;
   /// The mocap poses of a step since the last advance() or reset(); what doors are pushed by.
-  void write(int64_t step, mjData* data) const;
+  void write_state(int64_t step, mjData* data) const override;
+  /// Decides and moves when it is time, and writes the mocap poses of this instant. The hash comes
+  /// out with the agents'; feet that have come down are among the events.
+  void advance(const EffectContext& at) override;
 
   const std::vector<AgentBody>& bodies() const { return agents_; }
   const NavWorld& navigation() const { return *nav_; }
 
  private:
   Agents(std::shared_ptr<const CompiledWorld> world, uint64_t seed);
+  Status prepare(Rational timestep, const mjModel& model, const mjData& data);
+  void map_geoms(const mjModel& model);
   Status read_trees();
+  void begin(const mjModel& model, const mjData& data);
   Status place(bool tell);
   bool draw_place(size_t row, NavPoint* at) const;
   void stand(size_t row, const NavPoint& at, double heading);
   void read_contacts(const mjModel& model, const mjData& data);
   void decide(int64_t step, const mjModel& model, const mjData& data);
   void move(int64_t step);
+  void find_footfalls(const mjData& data, std::vector<Footfall>* footfalls);
   Vec3d steer(size_t row, const mjData& data);
   void avoid(size_t row, Vec3d* wanted);
   bool has_room(size_t row, Vec3d wanted) const;
@@ -65,6 +66,7 @@ class Agents {
   std::vector<AgentSpline> splines_;  // by agent; empty ones too
   std::vector<int> agent_of_geom_;    // -1 = none's
   std::vector<bool> is_robot_geom_;
+  std::vector<std::array<bool, 2>> planted_;  // feet of agents, at the step before
 };
 
 }  // namespace gloam

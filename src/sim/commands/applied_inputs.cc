@@ -4,14 +4,20 @@
 #include <cmath>
 
 #include "sim/commands/command_check.h"
+#include "world/world_robots.h"
 
 namespace gloam {
 
-AppliedInputs::AppliedInputs(const mjModel& model)
+AppliedInputs::AppliedInputs(const CompiledWorld& world, const mjModel& model)
     : wrench_(static_cast<size_t>(6 * model.nbody)),
       jacobian_(static_cast<size_t>(3 * model.nv)),
       solved_(static_cast<size_t>(3 * model.nv)) {
   drags_.reserve(static_cast<size_t>(model.nbody));
+  for (const RobotInstance& robot : world.robots) {
+    std::vector<int>& controls = controls_.emplace_back();
+    for (const int actuator : robot_actuators(model, robot))
+      controls.push_back(model.actuator_ctrladr[actuator]);
+  }
 }
 
 void AppliedInputs::take_over(const AppliedInputs& before, const Correspondence& same) {
@@ -34,6 +40,11 @@ void AppliedInputs::reset() {
 
 void AppliedInputs::apply(const mjModel& model, mjData& data, const SetControl& command) {
   data.ctrl[model.actuator_ctrladr[command.actuator.id]] = command.value;
+}
+
+void AppliedInputs::apply(const mjModel&, mjData& data, const SetControls& command) {
+  const std::vector<int>& controls = controls_[static_cast<size_t>(command.robot.id)];
+  for (size_t i = 0; i < controls.size(); ++i) data.ctrl[controls[i]] = command.values[i];
 }
 
 void AppliedInputs::apply(const mjModel& model, mjData& data, const SetJointState& command) {

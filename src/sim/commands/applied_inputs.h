@@ -13,7 +13,7 @@ namespace gloam {
 
 class AppliedInputs {
  public:
-  explicit AppliedInputs(const mjModel& model);
+  explicit AppliedInputs(const CompiledWorld& world, const mjModel& model);
 
   /// Goes on where another World's left off, with what remains of it.
   void take_over(const AppliedInputs& before, const Correspondence& same);
@@ -22,6 +22,7 @@ class AppliedInputs {
   void reset();
 
   void apply(const mjModel& model, mjData& data, const SetControl& command);
+  void apply(const mjModel& model, mjData& data, const SetControls& command);
   void apply(const mjModel& model, mjData& data, const SetJointState& command);
   void apply(const mjModel& model, mjData& data, const SetMocapPose& command);
   void apply(const mjModel& model, mjData& data, const SetWrench& command);
@@ -40,9 +41,10 @@ class AppliedInputs {
   };
   void pull(const mjModel& model, mjData& data, Drag& drag);
 
-  std::vector<double> wrench_;             // by SetWrench: force, torque [N, N m], (nbody x 6)
-  std::vector<Drag> drags_;                // at most one per body
-  std::vector<double> jacobian_, solved_;  // (3 x nv) each
+  std::vector<std::vector<int>> controls_;  // indices of controls, by robot
+  std::vector<double> wrench_;              // by SetWrench: force, torque [N, N m], (nbody x 6)
+  std::vector<Drag> drags_;                 // at most one per body
+  std::vector<double> jacobian_, solved_;   // (3 x nv) each
 };
 
 }  // namespace gloam

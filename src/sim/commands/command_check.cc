@@ -9,6 +9,7 @@
 
 #include "sim/commands/live_fields.h"
 #include "sim/state/state_layout.h"
+#include "world/world_robots.h"
 
 namespace gloam {
 namespace {
@@ -40,7 +41,8 @@ bool can_move(const mjModel& model, int body) {
 class Check {
  public:
   explicit Check(const CompiledWorld& world)
-      : serial_(world.serial),
+      : world_(world),
+        serial_(world.serial),
         model_(*world.model),
         agents_(world.agents),
         robot_count_(static_cast<int>(world.robots.size())) {}
@@ -71,10 +73,23 @@ class Check {
       return refuse("the quaternion of a joint is zero");
     return {};
   }
+  Status operator()(const SetControls& c) const {
+    GLOAM_TRY_STATUS(check_handle(c.robot, "robot", 0, robot_count_));
+    const RobotInstance& robot = world_.robots[static_cast<size_t>(c.robot.id)];
+    const std::vector<int> actuators = robot_actuators(model_, robot);
+    if (c.values.size() != actuators.size())
+      return refuse(fmt::format("robot '{}' has {} actuators, not {}", robot.name, actuators.size(),
+                                c.values.size()),
+                    "give one value for each of RobotInfo::actuators");
+    for (const int actuator : actuators)
+      if (model_.actuator_ctrlnum[actuator] != 1)
+        return refuse(fmt::format("actuator {} takes more than one control", actuator),
+                      "set its controls in a step hook or a controller");
+    if (!finite(c.values)) return refuse("a control is not a finite number");
+    return {};
+  }
   Status operator()(const SetVelocityGoal& c) const {
-    if (c.robot < 0 || c.robot >= robot_count_) {
-      return refuse(fmt::format("there is no robot number {}", c.robot));
-    }
+    GLOAM_TRY_STATUS(check_handle(c.robot, "robot", 0, robot_count_));
     if (!finite({c.vx, c.vy, c.yaw_rate})) return refuse("a velocity goal is not finite");
     return {};
   }
@@ -137,6 +152,7 @@ class Check {
   }
   Status check_body(Body body) const { return check_handle(body, "movable body", 1, model_.nbody); }
 
+  const CompiledWorld& world_;
   uint64_t serial_;
   const mjModel& model_;
   const std::vector<AgentDescription>& agents_;

@@ -12,26 +12,28 @@ CommandQueue::CommandQueue(int capacity, int64_t log_capacity)
 
 CommandQueue::~CommandQueue() {
   Node* node = nullptr;
-  while (arrivals_.try_pop(node)) delete node;
+  while (arrivals_.try_pop(node)) delete_list(node);
   delete_list(pending_);
   delete_list(log_.load());
   delete_list(retired_.load());
 }
 
-Status CommandQueue::post(Command command) {
+Status CommandQueue::post(std::span<const Command> commands) {
   delete_list(retired_.exchange(nullptr, std::memory_order_acquire));
-  auto node = std::make_unique<Node>();
-  node->command = std::move(command);
-  Node* raw = node.get();
-  if (!arrivals_.try_push(raw)) {
-    return Error{ErrorKind::kIo,
-                 fmt::format("the command queue is full: {} commands wait for the simulation",
-                             arrivals_.capacity()),
-                 {},
-                 "post fewer commands per step, or let the simulation step"};
+  Node* list = nullptr;
+  for (size_t i = commands.size(); i-- > 0;) {
+    auto* node = new Node;
+    node->command = commands[i];
+    node->next = list;
+    list = node;
   }
-  static_cast<void>(node.release());  // the queue owns it now
-  return {};
+  if (list == nullptr || arrivals_.try_push(list)) return {};  // the queue owns it now
+  delete_list(list);
+  return Error{ErrorKind::kIo,
+               fmt::format("the command queue is full: {} commands wait for the simulation",
+                           arrivals_.capacity()),
+               {},
+               "post fewer commands per step, or let the simulation step"};
 }
 
 std::vector<LoggedCommand> CommandQueue::take_log() {
@@ -49,9 +51,13 @@ std::vector<LoggedCommand> CommandQueue::take_log() {
 void CommandQueue::take_arrivals(int64_t step) {
   Node* node = nullptr;
   while (arrivals_.try_pop(node)) {
-    node->arrival = arrival_count_++;
-    node->due = std::max(node->command.step, step);
-    insert(node);
+    while (node != nullptr) {
+      Node* const rest = node->next;
+      node->arrival = arrival_count_++;
+      node->due = std::max(node->command.step, step);
+      insert(node);
+      node = rest;
+    }
   }
 }
 

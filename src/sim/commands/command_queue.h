@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -13,12 +14,6 @@
 #include "sim/commands/bounded_queue.h"
 
 namespace gloam {
-
-/// A command and when it really applied.
-struct LoggedCommand {
-  int64_t run = 0;  ///< number of resets before it
-  Command command;  ///< `step` = the step it applied at; a ResetSim ends its run
-};
 
 class CommandQueue {
  public:
@@ -30,7 +25,9 @@ class CommandQueue {
 
   // ---- any thread ----
   /// kIo Error when the queue is full: the command is not taken.
-  Status post(Command command);
+  Status post(Command command) { return post(std::span<const Command>(&command, 1)); }
+  /// The same for several that come to the simulation together: all or none.
+  Status post(std::span<const Command> commands);
   /// What has applied since the last call, in order.
   std::vector<LoggedCommand> take_log();
   /// Commands that have applied, over all runs.
@@ -102,8 +99,8 @@ class CommandQueue {
   static void push(std::atomic<Node*>& stack, Node* node);
   static void delete_list(Node* node);
 
-  BoundedQueue<Node*> arrivals_;
-  Node* pending_ = nullptr;  // sorted by (due, arrival)
+  BoundedQueue<Node*> arrivals_;  // of lists
+  Node* pending_ = nullptr;       // sorted by (due, arrival)
   Node* pending_tail_ = nullptr;
   int64_t arrival_count_ = 0;
   int64_t log_capacity_;

@@ -3,8 +3,9 @@
 
 #include <memory>
 
-#include "sim/loop/controller.h"
+#include "gloam/controller.h"
 #include "sim/loop/step_schedule.h"
+#include "world/world.h"
 
 namespace gloam {
 

@@ -50,7 +50,7 @@ Result<std::vector<Command>> scene_schedule(const CompiledWorld& world, Rational
   for (int robot = 0; robot < robot_count; ++robot) {
     for (const VelocityGoal& goal :
          world.robots[static_cast<size_t>(robot)].options.controller.goals) {
-      GLOAM_TRY_STATUS(add({.what = SetVelocityGoal{robot, goal.vx, goal.vy, goal.yaw_rate}},
+      GLOAM_TRY_STATUS(add({.what = SetVelocityGoal{{robot, 0}, goal.vx, goal.vy, goal.yaw_rate}},
                            goal.time, goal.loc));
     }
   }

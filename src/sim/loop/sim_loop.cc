@@ -123,7 +123,7 @@ bool SimLoop::publish_due() {
 
 void SimLoop::apply(const Command& command) {
   if (const auto* goal = std::get_if<SetVelocityGoal>(&command.what)) {
-    goal_of(goal->robot) = {goal->vx, goal->vy, goal->yaw_rate};
+    goal_of(goal->robot.id) = {goal->vx, goal->vy, goal->yaw_rate};
   } else {
     stepper_->apply(command);
   }
@@ -152,8 +152,8 @@ void SimLoop::run_controllers() {
   const int64_t step = stepper_->step_count();
   for (ControllerSlot& slot : controllers_) {
     if (slot.due > step) continue;
-    slot.controller->control(&stepper_->model(), &stepper_->data(), stepper_->soil_reactions(),
-                             step, slot.period, goal_of(slot.robot));
+    slot.controller->control({&stepper_->model(), &stepper_->data(), stepper_->events().loads, step,
+                              slot.period, goal_of(slot.robot)});
     slot.due = slot.schedule.step_of(++slot.k);
   }
 }

@@ -12,6 +12,16 @@
 #include "sim/loop/scene_schedule.h"
 
 namespace gloam {
+namespace {
+
+Error no_call_from_a_step() {
+  return {ErrorKind::kUsage,
+          "a controller or step hook cannot make its own simulation step, wait or change",
+          {},
+          "call it from another thread, or post a Command"};
+}
+
+}  // namespace
 
 Result<std::unique_ptr<Simulator>> Simulator::create(std::shared_ptr<const CompiledWorld> world,
                                                      SimulatorOptions options) {
@@ -50,6 +60,7 @@ Simulator::~Simulator() { stop(); }
 // ---- the sim thread ----
 
 void Simulator::run_thread() {
+  sim_thread_ = std::this_thread::get_id();
   MujocoWarningCapture warnings;  // they are counted by type in mjData
   while (!quit_) {
     const uint32_t ticket = signal_->ticket();
@@ -70,6 +81,7 @@ void Simulator::run_thread() {
   calls_answered_ += static_cast<int64_t>(calls_.size());
   calls_.clear();
   loop_.close_queues();
+  sim_thread_ = std::thread::id();
   running_ = false;  // from here on, calls run where they are made
   idle_ = true;
   changed_.notify_all();
@@ -111,14 +123,13 @@ void Simulator::report_idle() {
 
 // Runs f between two steps: on the sim thread if it lives, else here.
 void Simulator::call(const std::function<void()>& f) {
+  if (is_on_sim_thread()) return f();  // in the middle of a step: f only looks, or sets a wish
   std::unique_lock lock(mutex_);
   if (!running_) {
     f();
     step_count_.store(loop_.stepper().step_count(), std::memory_order_relaxed);
     return;
   }
-  GLOAM_CHECK(std::this_thread::get_id() != thread_.get_id(),
-              "controllers and step hooks cannot call the Simulator they run in");
   calls_.push_back(&f);
   const int64_t mine = ++calls_made_;
   called_.store(true, std::memory_order_release);
@@ -167,6 +178,7 @@ void Simulator::run_until(int64_t step) {
 }
 
 Status Simulator::step(int64_t n) {
+  if (is_on_sim_thread()) return no_call_from_a_step();
   call([this, n] {
     if (loop_.stepper().failed()) return;  // nothing to take up after a reset
     paused_ = false;
@@ -178,6 +190,7 @@ Status Simulator::step(int64_t n) {
 }
 
 Status Simulator::wait() {
+  if (is_on_sim_thread()) return no_call_from_a_step();
   {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return idle_ || !running_; });
@@ -186,6 +199,7 @@ Status Simulator::wait() {
 }
 
 Status Simulator::reset() {
+  if (is_on_sim_thread()) return no_call_from_a_step();
   call([this] {
     loop_.reset();
     pacer_.restart();
@@ -201,10 +215,10 @@ void Simulator::set_pace(Pace pace, double speed) {
   });
 }
 
-Status Simulator::post(Command command) {
+Status Simulator::post(std::span<const Command> commands) {
   const std::lock_guard lock(world_mutex_);
-  GLOAM_TRY_STATUS(check_command(*world_, command));
-  return commands_.post(std::move(command));
+  for (const Command& command : commands) GLOAM_TRY_STATUS(check_command(*world_, command));
+  return commands_.post(commands);
 }
 
 Status Simulator::check_timestep(const CompiledWorld& world) const {
@@ -219,6 +233,7 @@ Status Simulator::check_timestep(const CompiledWorld& world) const {
 // All that takes long happens here, while the old World runs on.
 Status Simulator::recompile(std::shared_ptr<const CompiledWorld> world,
                             std::vector<RobotController> controllers) {
+  if (is_on_sim_thread()) return no_call_from_a_step();
   const std::lock_guard one_at_a_time(recompile_mutex_);
   GLOAM_TRY_STATUS(check_timestep(*world));
   NextWorld next;
@@ -240,16 +255,19 @@ Status Simulator::recompile(std::shared_ptr<const CompiledWorld> world,
 }
 
 Status Simulator::add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate) {
+  if (is_on_sim_thread()) return no_call_from_a_step();
   Status status;
   call([&] { status = loop_.add_controller(robot, std::move(controller), rate); });
   return status;
 }
 
 void Simulator::set_step_hook(StepHook hook) {
+  GLOAM_CHECK(!is_on_sim_thread(), "a step hook cannot replace itself");
   call([&] { loop_.set_step_hook(std::move(hook)); });
 }
 
 Result<std::shared_ptr<SnapshotQueue>> Simulator::subscribe(const SubscriptionOptions& options) {
+  if (is_on_sim_thread()) return no_call_from_a_step();
   Result<std::shared_ptr<SnapshotQueue>> result = std::shared_ptr<SnapshotQueue>();
   call([&] { result = loop_.subscribe(options, signal_); });
   return result;

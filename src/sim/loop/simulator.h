@@ -1,7 +1,8 @@
 #pragma once
 // A running simulation: physics on its own thread, Commands in, Snapshots out. Every function may
-// be called from any thread but the sim thread itself (controllers, step hook); those that change
-// the simulation take effect between two steps and return when they have.
+// be called from any thread; those that change the simulation take effect between two steps and
+// return when they have. On the sim thread itself (controllers, step hook) what is told at once
+// (latest, status, counters, pause, set_pace) works, and what would wait for a step is an Error.
 
 #include <array>
 #include <condition_variable>
@@ -70,7 +71,9 @@ class Simulator {
 
   /// Checks a Command and queues it; waits for nothing but a recompile's moment. Errors: not a
   /// thing of this World, queue full.
-  Status post(Command command);
+  Status post(Command command) { return post(std::span<const Command>(&command, 1)); }
+  /// The same for several, which come to the simulation together: all or none.
+  Status post(std::span<const Command> commands);
   /// Runs before steps at `rate`, of which the step rate is a multiple; reset now and at every
   /// reset.
   Status add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate);
@@ -93,6 +96,10 @@ class Simulator {
   /// at.
   std::vector<LoggedCommand> take_command_log() { return commands_.take_log(); }
 
+  /// Whether the caller is a controller, a step hook or what they call.
+  bool is_on_sim_thread() const {
+    return sim_thread_.load(std::memory_order_relaxed) == std::this_thread::get_id();
+  }
   int64_t step_count() const { return step_count_.load(std::memory_order_relaxed); }
   /// Exact as a fraction: a step takes num / den seconds.
   Rational timestep() const { return loop_.timestep(); }
@@ -130,6 +137,7 @@ class Simulator {
   int64_t total_steps_ = 0;
 
   std::thread thread_;
+  std::atomic<std::thread::id> sim_thread_{};  // of thread_, while it runs
   std::shared_ptr<Signal> signal_ = std::make_shared<Signal>();
   std::atomic<bool> called_{false};
   std::atomic<int64_t> step_count_{0};

@@ -6,6 +6,7 @@
 #include "scene/files/mujoco_guard.h"
 #include "sim/commands/live_fields.h"
 #include "sim/loop/divergence.h"
+#include "sim/loop/step_halves.h"
 #include "sim/loop/step_schedule.h"
 #include "sim/state/initial_state.h"
 #include "sim/state/state_layout.h"
@@ -14,20 +15,6 @@
 namespace gloam {
 namespace {
 constexpr int kFirstSlots = 8;
-
-// With the poses of bodies and nothing that follows from them.
-void place_at_beginning(const CompiledWorld& world, const mjModel& model, mjData* data) {
-  reset_to_initial_state(world, model, *data);
-  mj_kinematics(&model, data);
-  mj_comPos(&model, data);
-}
-
-// Whether mj_step1 and mj_step2 are mj_step, also when inertia grows in between: no solver has made
-// a matrix of it yet, and nobody sleeps whom a force has to wake.
-bool has_halves(const mjModel& m) {
-  return m.opt.integrator != mjINT_RK4 && m.opt.solver != mjSOL_PGS &&
-         m.opt.noslip_iterations == 0 && m.nflex == 0 && (m.opt.enableflags & mjENBL_SLEEP) == 0;
-}
 
 }  // namespace
 
@@ -38,40 +25,32 @@ Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledW
   stepper->seed_ = seed;
   stepper->timestep_ = timestep;
   stepper->take_model(*world->model);
-  const mjModel* model = &stepper->model_;
+  mjModel* model = &stepper->model_;
   mjData* data = nullptr;
   GLOAM_TRY_STATUS(guarded([&] { data = mj_makeData(model); }));
   stepper->data_.reset(data);
   stepper->reader_ = StateReader(*model, *data);
-  stepper->inputs_ = std::make_unique<AppliedInputs>(*model);
+  stepper->inputs_ = std::make_unique<AppliedInputs>(*world, *model);
   stepper->state_.resize(static_cast<size_t>(state_size(*model)));
   stepper->next_state_.resize(stepper->state_.size());
   stepper->applied_.resize(static_cast<size_t>(model->nv));
   stepper->sensors_.resize(static_cast<size_t>(model->nsensordata));
   stepper->pool_ = SnapshotPool::create(world, kFirstSlots);
   const Rational step_time = exact_rational(model->opt.timestep);
-  GLOAM_TRY(stepper->effects_, Effects::create(world, step_time));
-  if (!world->waters.empty()) stepper->water_ = WaterEffect::create(world, step_time);
-  if (!world->soils.empty()) stepper->soil_ = SoilEffect::create(world, *model);
-  if (world->wind.blows()) {
-    stepper->wind_ = std::make_unique<WindOnBodies>(*world, step_time);
-    const mjOption& own = world->model->opt;
-    if (own.density == 0 && own.viscosity == 0 && has_halves(*model) && AirDrag::can_be(*model))
-      stepper->drag_ = std::make_unique<AirDrag>(*model);
-  }
-  GLOAM_TRY_STATUS(stepper->make_agents());
+  GLOAM_TRY(stepper->effects_, make_effects({world, seed, step_time, *model, *data}));
+  for (const auto& effect : stepper->effects_) stepper->acts_on_bodies_ |= effect->acts_on_bodies();
   if (!stepper->reset()) return stepper->error();
   return stepper;
 }
 
-Status Stepper::make_agents() {
-  if (world_->agents.empty()) return {};
-  const mjModel* model = &model_;
-  mjData* data = data_.get();
-  GLOAM_TRY_STATUS(guarded([&] { place_at_beginning(*world_, *model, data); }));
-  GLOAM_TRY(agents_,
-            Agents::create(world_, seed_, exact_rational(model_.opt.timestep), model_, *data_));
-  return {};
+const Effect* Stepper::find_effect(std::string_view kind) const {
+  for (const auto& effect : effects_)
+    if (effect->kind() == kind) return effect.get();
+  return nullptr;
+}
+
+EffectContext Stepper::context(int64_t step) {
+  return {step, model_, *data_, hash_, events_, live_.get()};
 }
 
 // Refers to the arrays of `model`, meshes of 70 MB among them; the options are copied and changed.
@@ -80,8 +59,7 @@ void Stepper::take_model(const mjModel& model) {
   owns_all_ = false;
   model_.opt.disableflags |= mjDSBL_AUTORESET;
   if (timestep_) model_.opt.timestep = *timestep_;
-  if (world_->wind.blows()) give_air(&model_.opt);
-  if (drag_ != nullptr) drag_->measure(model_);
+  for (const auto& effect : effects_) effect->follow_model(model_);
 }
 
 // Live fields are written into the arrays: not into those that all simulations of the World share.
@@ -109,11 +87,9 @@ bool Stepper::own_the_field(LiveFieldId field) {
   return true;
 }
 
-// A Command that sets the wind takes the weather's place until the next reset.
-void Stepper::blow(const double* qpos) {
-  const auto field = static_cast<size_t>(LiveFieldId::kWind);
-  if (wind_ == nullptr || (live_ != nullptr && !live_->values[field].empty())) return;
-  wind_->blow(step_, qpos, &model_.opt);
+// For a step, or a forward pass, from the state of data_.
+void Stepper::set_options() {
+  for (const auto& effect : effects_) effect->set_options(context(step_));
 }
 
 bool Stepper::reset() {
@@ -124,51 +100,58 @@ bool Stepper::reset() {
   }
   step_ = 0;
   inputs_->reset();
-  // Sensors and the warm start of the solver are computed by a forward pass. The sensors are
-  // wanted, but a bare mj_step loop starts cold, so the state is made anew after it.
-  const mjModel* model = &model_;
-  mjData* data = data_.get();
-  bool ok = true;
-  if (agents_ != nullptr) {
-    ok = try_mujoco([&] { place_at_beginning(*world_, *model, data); });
-    agents_->reset(*model, *data);
-  }
-  const Agents* agents = agents_.get();
-  ok = ok && try_mujoco([&] {
-         reset_to_initial_state(*world_, *model, *data);
-         if (agents != nullptr) agents->write(0, data);
-         blow(data->qpos);
-         mj_forward(model, data);
-         mju_copy(sensors_.data(), data->sensordata, static_cast<int>(model->nsensordata));
-         reset_to_initial_state(*world_, *model, *data);
-         if (agents != nullptr) agents->write(0, data);
-         mj_kinematics(model,
-                       data);  // so that controllers and hooks see poses before the first step
-         mj_comPos(model, data);
-         mj_getState(model, data, state_.data(), mjSTATE_INTEGRATION);
-       });
+  const bool ok = restart();
   ++run_;
   snapshot_ = {};
   own_sensors_ = true;
   sensor_stamp_ = state_[0];
   warnings_seen_.fill(0);
   hash_ = hash_span<double>(state_, hash_bytes(&seed_, sizeof(seed_)));
-  if (water_ != nullptr) water_->reset();
-  if (soil_ != nullptr) soil_->reset();
-  if (agents_ != nullptr) hash_ = agents_->advance(0, *model, data, hash_);
-  if (effects_ != nullptr) {
-    effects_->reset();
-    tick_effects();
-  }
+  for (const auto& effect : effects_) effect->advance(context(0));
+  if (next_tick() == 0) tick_effects();
   if (!ok) return fail({ErrorKind::kInput, mujoco_error_message()});
   return true;
 }
 
+// Sensors and the warm start of the solver are computed by a forward pass. The sensors are wanted,
+// but a bare mj_step loop starts cold, so the state is made anew after it.
+bool Stepper::restart() {
+  const mjModel* model = &model_;
+  mjData* data = data_.get();
+  events_.loads.clear();
+  events_.footfalls.clear();
+  if (!effects_.empty() && !try_mujoco([&] { place_at_initial_state(*world_, *model, data); }))
+    return false;
+  for (const auto& effect : effects_) effect->reset(context(0));
+  const auto begin = [&] {
+    reset_to_initial_state(*world_, *model, *data);
+    for (const auto& effect : effects_) effect->write_state(0, data);
+  };
+  return try_mujoco([&] {
+    begin();
+    set_options();
+    mj_forward(model, data);
+    mju_copy(sensors_.data(), data->sensordata, static_cast<int>(model->nsensordata));
+    begin();
+    mj_kinematics(model, data);  // so that controllers and hooks see poses before the first step
+    mj_comPos(model, data);
+    mj_getState(model, data, state_.data(), mjSTATE_INTEGRATION);
+  });
+}
+
+int64_t Stepper::next_tick() const {
+  int64_t next = Effect::kNever;
+  for (const auto& effect : effects_) next = std::min(next, effect->next_tick());
+  return next;
+}
+
 // Snapshots of this step on hold the fields of this instant and those that are begun here.
 void Stepper::tick_effects() {
-  hash_ = effects_->tick(step_, hash_);
+  for (const auto& effect : effects_)
+    if (effect->next_tick() == step_) effect->tick(context(step_));
   snapshot_ = {};
-  effects_->start(snapshot());
+  const Snapshot& now = snapshot();
+  for (const auto& effect : effects_) effect->start(now);
 }
 
 bool Stepper::take_over(const Stepper& before, const Correspondence& same) {
@@ -186,15 +169,12 @@ bool Stepper::take_over(const Stepper& before, const Correspondence& same) {
     }
   }
   transfer_state(same, *before.data_, *data_);
-  if (agents_ != nullptr) {
-    agents_->take_over(step_, before.agents_.get(), model_, *data_);
-    agents_->write(step_, data_.get());
+  for (const auto& effect : effects_) {
+    effect->take_over(context(step_), const_cast<Effect*>(before.find_effect(effect->kind())));
+    effect->write_state(step_, data_.get());
   }
   mj_getState(&model_, data_.get(), state_.data(), mjSTATE_INTEGRATION);
   hash_ = hash_span<double>(state_, hash_);
-  if (water_ != nullptr) water_->take_over(step_, before.water_.get());
-  if (soil_ != nullptr) soil_->take_over(before.soil_.get());
-  if (effects_ != nullptr) effects_->take_over(step_, before.effects_.get());
   return stand_at_state() || fail({ErrorKind::kInput, mujoco_error_message()});
 }
 
@@ -231,37 +211,33 @@ void Stepper::change_live(const SetLiveField& change) {
       write_live_field(*world_->model, change.field,
                        live_->values[static_cast<size_t>(change.field)], model_, scratch_.get());
   if (!written) fail(written.error());
-  if (drag_ != nullptr) drag_->measure(model_);
+  for (const auto& effect : effects_) effect->follow_model(model_);
 }
 
-// What acts on bodies needs poses, velocities and inertias of the present. They are what the first
-// half of a step computes; where a step has no halves they are computed for this alone.
-void Stepper::step_with_effects() {
+// Forces of effects need poses, velocities and inertias of the present, which the first half of a
+// step computes. Where a step has no halves they are computed for this alone.
+void Stepper::step_in_halves() {
   mjModel* m = &model_;
   mjData* d = data_.get();
-  const bool halved = has_halves(*m);
-  if (halved) {
-    if (drag_ != nullptr) m->opt.density = m->opt.viscosity = 0;  // MuJoCo leaves drag to it
+  EffectContext at = context(step_);
+  at.is_halved = has_halves(*m);
+  if (at.is_halved) {
+    for (const auto& effect : effects_) effect->prepare_step(at);
     mj_step1(m, d);
-    if (drag_ != nullptr) give_air(&m->opt);
   } else {
     mj_kinematics(m, d);
     mj_comPos(m, d);
     mj_comVel(m, d);
   }
-  std::copy_n(d->qfrc_applied, m->nv, applied_.begin());  // what others apply stays as it is
-  if (drag_ != nullptr) drag_->push(*m, *d);
-  if (effects_ != nullptr) effects_->begin_step(step_, *m, *d);
-  const bool wet = water_ != nullptr && water_->begin_step(step_, *m, *d, &hash_);
-  if (!halved) {  // with the water that bodies carry along
+  std::copy_n(d->qfrc_applied, m->nv, applied_.begin());  // others' forces stay as they are
+  for (const auto& effect : effects_) effect->apply_forces(at);
+  if (!at.is_halved) {
     mj_makeM(m, d);
     mj_factorM(m, d);
-  } else if (wet) {
-    water_->add_masses(*m, *d);
   }
-  if (soil_ != nullptr) hash_ = soil_->begin_step(step_, *m, *d, hash_);
-  halved ? mj_step2(m, d) : mj_step(m, d);
-  if (soil_ != nullptr) soil_->feel(*m, *d);
+  for (const auto& effect : effects_) effect->apply_loads(at);
+  at.is_halved ? mj_step2(m, d) : mj_step(m, d);
+  for (const auto& effect : effects_) effect->update_sensors(at);
   std::copy(applied_.begin(), applied_.end(), d->qfrc_applied);
 }
 
@@ -269,18 +245,18 @@ bool Stepper::step() {
   if (failed_) return false;
   const mjModel* model = &model_;
   mjData* data = data_.get();
-  blow(data->qpos);
+  events_.loads.clear();
+  events_.footfalls.clear();
+  set_options();
   AppliedInputs* inputs = inputs_.get();
   const bool ok = try_mujoco([=, this] {
     inputs->before_step(*model, *data);
-    if (effects_ == nullptr && water_ == nullptr && soil_ == nullptr && drag_ == nullptr) {
+    if (acts_on_bodies_)
+      step_in_halves();
+    else
       mj_step(model, data);
-    } else {
-      step_with_effects();
-    }
   });
-  if (water_ != nullptr) water_->end_step(model_);
-  if (drag_ != nullptr) give_air(&model_.opt);
+  for (const auto& effect : effects_) effect->end_step(model_);
   if (!ok) {
     Error error{ErrorKind::kDiverged, mujoco_error_message()};
     error.message +=
@@ -288,20 +264,21 @@ bool Stepper::step() {
     return fail(std::move(error));
   }
   count_diagnostics();
-  uint64_t hash = hash_;
-  if (agents_ != nullptr) hash = agents_->advance(step_ + 1, *model, data, hash);
-  if (effects_ != nullptr) effects_->gather(*model, *data, soil_reactions(), agents_.get());
+  const uint64_t good_hash = hash_;
+  for (const auto& effect : effects_) effect->advance(context(step_ + 1));
+  for (const auto& effect : effects_) effect->observe(context(step_ + 1));
   reader_.read(next_state_.data());
   if (!is_sound(*model, *data, next_state_)) {
+    hash_ = good_hash;
     return fail(describe_divergence(*model, *data, next_state_, step_, time()));
   }
   sensor_stamp_ = state_[0];
   own_sensors_ = false;
   state_.swap(next_state_);
   ++step_;
-  hash_ = hash_span<double>(state_, hash);
+  hash_ = hash_span<double>(state_, hash_);
   snapshot_ = {};
-  if (effects_ != nullptr && step_ == effects_->next_tick()) tick_effects();
+  if (step_ == next_tick()) tick_effects();
   return true;
 }
 
@@ -334,7 +311,7 @@ bool Stepper::stand_at_state() {
   mjData* data = data_.get();
   return try_mujoco([&] {
     mj_setState(model, data, state_.data(), mjSTATE_INTEGRATION);
-    blow(data->qpos);
+    set_options();
     mj_forward(model, data);
     mju_copy(sensors_.data(), data->sensordata, static_cast<int>(model->nsensordata));
     mj_setState(model, data, state_.data(), mjSTATE_INTEGRATION);
@@ -361,9 +338,8 @@ const Snapshot& Stepper::snapshot() {
       out.timestep = model_.opt.timestep;
       out.hash = hash_;
       out.live = live_;
-      if (effects_ != nullptr) effects_->fill(step_, &out.fields);
-      if (water_ != nullptr) water_->fill(step_, &out.heights);
-      if (soil_ != nullptr) soil_->fill(&out.tracks);
+      for (const auto& effect : effects_) effect->publish(step_, &out.effects);
+      out.effects.loads.assign(events_.loads.begin(), events_.loads.end());
       out.sensor_stamp = sensor_stamp_;
       std::copy(state_.begin(), state_.end(), out.state.begin());
       const double* sensors = own_sensors_ ? sensors_.data() : data_->sensordata;

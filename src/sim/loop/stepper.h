@@ -6,13 +6,8 @@
 #include <optional>
 
 #include "gloam/command.h"
-#include "sim/agents/agents.h"
 #include "sim/commands/applied_inputs.h"
-#include "sim/effects/effects.h"
-#include "sim/effects/soil/soil_effect.h"
-#include "sim/effects/water/water_effect.h"
-#include "sim/effects/wind/air_drag.h"
-#include "sim/effects/wind/wind.h"
+#include "sim/effects/effect.h"
 #include "sim/snapshots/snapshot_pool.h"
 #include "sim/state/state_layout.h"
 #include "world/world.h"
@@ -59,12 +54,10 @@ class Stepper {
   const std::array<int64_t, mjNWARNING>& warnings() const { return warnings_; }
   /// Most contacts seen in a step since creation.
   int most_contacts() const { return most_contacts_; }
-  /// Null where there are none.
-  const Agents* agents() const { return agents_.get(); }
-  /// Of the last step.
-  std::span<const SoilReaction> soil_reactions() const {
-    return soil_ != nullptr ? soil_->reactions() : std::span<const SoilReaction>{};
-  }
+  /// Of the last step: loads and footfalls that MuJoCo's contacts have not.
+  const StepEvents& events() const { return events_; }
+  /// The effect of a kind, null where the World has none.
+  const Effect* find_effect(std::string_view kind) const;
 
  private:
   Stepper() = default;
@@ -75,10 +68,12 @@ class Stepper {
   bool own_the_field(LiveFieldId field);
   void take_model(const mjModel& model);
   void count_diagnostics();
-  void step_with_effects();
+  EffectContext context(int64_t step);
+  bool restart();
+  void set_options();
+  void step_in_halves();
   void tick_effects();
-  void blow(const double* qpos);
-  Status make_agents();
+  int64_t next_tick() const;
 
   std::shared_ptr<const CompiledWorld> world_;
   std::optional<double> timestep_;
@@ -91,12 +86,9 @@ class Stepper {
   StateReader reader_;  // of data_
   DataPtr scratch_;     // for mj_setConst; made on first use
   std::unique_ptr<AppliedInputs> inputs_;
-  std::unique_ptr<Effects> effects_;    // null = none
-  std::unique_ptr<WaterEffect> water_;  // null = none
-  std::unique_ptr<SoilEffect> soil_;    // null = none
-  std::unique_ptr<WindOnBodies> wind_;  // null = the air is still
-  std::unique_ptr<AirDrag> drag_;       // of the wind's air; null = MuJoCo's own does it
-  std::unique_ptr<Agents> agents_;      // null = none
+  EffectList effects_;
+  bool acts_on_bodies_ = false;  // one of them does
+  StepEvents events_;
   std::shared_ptr<const LiveFields> live_;
   uint64_t live_changes_ = 0;  // since creation
   std::shared_ptr<SnapshotPool> pool_;
@@ -106,7 +98,7 @@ class Stepper {
   uint64_t hash_ = 0;
   std::vector<double> state_;       // of the last good step
   std::vector<double> next_state_;  // being checked
-  std::vector<double> applied_;     // room for qfrc_applied (nv)
+  std::vector<double> applied_;     // copy of qfrc_applied (nv)
   std::vector<double> sensors_;     // where mjData's are not those of a step: at start and failure
   bool own_sensors_ = false;
   double sensor_stamp_ = 0;  // [s]

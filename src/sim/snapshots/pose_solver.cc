@@ -5,11 +5,9 @@
 #include "base/check.h"
 #include "scene/files/mujoco_guard.h"
 #include "sim/commands/live_fields.h"
-#include "sim/effects/water/water_surface.h"
+#include "sim/effects/surface_vertices.h"
 #include "sim/snapshots/skinning.h"
 #include "sim/state/state_layout.h"
-#include "world/effects/visual_soil.h"
-#include "world/effects/visual_water.h"
 #include "world/view/render_origin.h"
 
 namespace gloam {
@@ -85,12 +83,11 @@ Status PoseSolver::solve(const Snapshot& snapshot, PoseFrame& frame) {
   frame.time = in.time;
   fill_poses(frame);
   fill_vertices(in.live.get(), frame);
-  fill_waters(in, frame);
-  fill_soils(in, frame);
+  append_surface_vertices(*world_, in.effects.surfaces, in.time, &heights_, &frame.vertices);
   fill_live(in.live.get(), frame);
-  frame.fields.resize(in.fields.size());
-  for (size_t i = 0; i < in.fields.size(); ++i)
-    in.fields[i].read(&frame.fields[i].density, &frame.fields[i].temperature);
+  frame.fields.resize(in.effects.media.size());
+  for (size_t i = 0; i < frame.fields.size(); ++i)
+    in.effects.media[i].read(&frame.fields[i].density, &frame.fields[i].temperature);
   return {};
 }
 
@@ -119,32 +116,6 @@ void PoseSolver::fill_vertices(const LiveFields* live, PoseFrame& frame) {
   live_field_at(m, live, LiveFieldId::kGravity, &gravity_);
   const double gravity[3] = {gravity_[0], gravity_[1], gravity_[2]};
   place_capsules(m, d, gravity, layout_, frame.vertices.data());
-}
-
-void PoseSolver::fill_waters(const SnapshotData& in, PoseFrame& frame) {
-  for (size_t i = 0; i < world_->waters.size(); ++i) {
-    const WaterDescription& water = world_->waters[i];
-    heights_.resize(static_cast<size_t>(water_vertices(water)));
-    surface_heights(water, in.heights[i], in.time, heights_);
-    size_t n = 0;
-    for (int row = 0; row <= water.mesh.ny; ++row) {
-      for (int column = 0; column <= water.mesh.nx; ++column, ++n) {
-        frame.vertices.push_back(static_cast<float>(water.low_x() + water.mesh.dx * column));
-        frame.vertices.push_back(static_cast<float>(water.low_y() + water.mesh.dy * row));
-        frame.vertices.push_back(static_cast<float>(water.level) + heights_[n]);
-      }
-    }
-  }
-}
-
-void PoseSolver::fill_soils(const SnapshotData& in, PoseFrame& frame) const {
-  for (size_t i = 0; i < world_->soils.size(); ++i) {
-    const auto& field = in.tracks[i].field;
-    append_soil_vertices(
-        world_->soils[i],
-        field != nullptr ? std::span<const float>(field->height) : std::span<const float>{},
-        in.time, &frame.vertices);
-  }
 }
 
 void PoseSolver::fill_live(const LiveFields* live, PoseFrame& frame) {

@@ -26,8 +26,6 @@ class PoseSolver {
   Status own_the_model();
   void fill_poses(PoseFrame& frame) const;
   void fill_vertices(const LiveFields* live, PoseFrame& frame);
-  void fill_waters(const SnapshotData& in, PoseFrame& frame);
-  void fill_soils(const SnapshotData& in, PoseFrame& frame) const;
   void fill_live(const LiveFields* live, PoseFrame& frame);
 
   std::shared_ptr<const CompiledWorld> world_;
@@ -36,7 +34,7 @@ class PoseSolver {
   DeformableLayout layout_;
   std::vector<float> masses_;            // in own_model_; empty = the World's
   std::vector<float> gravity_, active_;  // room to read live fields into
-  std::vector<float> heights_;           // of a water
+  std::vector<float> heights_;           // scratch for surfaces
 };
 
 }  // namespace gloam

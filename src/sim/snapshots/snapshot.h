@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "gloam/snapshot.h"
-#include "sim/effects/gas/medium_field.h"
-#include "sim/effects/height_change.h"
+#include "sim/effects/effect_outputs.h"
 
 namespace gloam {
 
@@ -31,9 +30,7 @@ struct SnapshotData {
   std::vector<double> sensordata;          ///< (nsensordata), of the state before the last step
   double sensor_stamp = 0;                 ///< [s]
   std::shared_ptr<const LiveFields> live;  ///< null = nothing changed
-  std::vector<FieldWindow> fields;         ///< by row of CompiledWorld::gases
-  std::vector<HeightChange> heights;       ///< by row of CompiledWorld::waters
-  std::vector<HeightChange> tracks;        ///< by row of CompiledWorld::soils
+  EffectOutputs effects;
 };
 
 /// Whoever can hand out Snapshots in order: the live simulation, or a replay.

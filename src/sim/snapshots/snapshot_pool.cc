@@ -62,9 +62,7 @@ SnapshotPool::Slot* SnapshotPool::add_slot() {
   data.world = world_;
   data.state.resize(static_cast<size_t>(state_size(*world_->model)));
   data.sensordata.resize(static_cast<size_t>(world_->model->nsensordata));
-  data.fields.resize(world_->gases.gases.size());
-  data.heights.resize(world_->waters.size());
-  data.tracks.resize(world_->soils.size());
+  data.effects.fit(*world_);
   slots_.fetch_add(1, std::memory_order_relaxed);
   return all_.back().get();
 }
@@ -93,9 +91,7 @@ Snapshot SnapshotPool::finish(Slot* slot) {
       &slot->data,
       [](SnapshotData* data) {
         data->live.reset();
-        for (FieldWindow& field : data->fields) field = {};
-        for (HeightChange& height : data->heights) height = {};
-        for (HeightChange& track : data->tracks) track = {};
+        data->effects.clear();
       },
       SlotAllocator<SnapshotData>(shared_from_this(), slot)));
 }

@@ -197,8 +197,9 @@ std::optional<Command> Correspondence::translate(const Command& command) const {
         } else if constexpr (std::is_same_v<T, SetJointState>) {
           return follow(what.joint, joint);
         } else if constexpr (std::is_same_v<T, SetVelocityGoal>) {
-          what.robot = after_id(robot, what.robot);
-          return what.robot >= 0;
+          return follow(what.robot, robot);
+        } else if constexpr (std::is_same_v<T, SetControls>) {
+          return follow(what.robot, robot);
         } else if constexpr (std::is_same_v<T, SetLiveField>) {
           // Values that lay side by side may lie apart now.
           const std::vector<int> places = live_values(what.field);

@@ -10,4 +10,10 @@ void reset_to_initial_state(const CompiledWorld& world, const mjModel& model, mj
   }
 }
 
+void place_at_initial_state(const CompiledWorld& world, const mjModel& model, mjData* data) {
+  reset_to_initial_state(world, model, *data);
+  mj_kinematics(&model, data);
+  mj_comPos(&model, data);
+}
+
 }  // namespace gloam

@@ -9,4 +9,7 @@ namespace gloam {
 /// none. Call it guarded.
 void reset_to_initial_state(const CompiledWorld& world, const mjModel& model, mjData& data);
 
+/// The same with the poses of bodies, and nothing else that follows from them. Call it guarded.
+void place_at_initial_state(const CompiledWorld& world, const mjModel& model, mjData* data);
+
 }  // namespace gloam

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "scene/test/temp_folder.h"
+#include "sim/agents/agents.h"
 #include "sim/loop/stepper.h"
 #include "test_world.h"
 
@@ -61,8 +62,12 @@ class AgentRig {
   Scene scene;
 };
 
+inline const Agents& agents_of(const Stepper& stepper) {
+  return static_cast<const Agents&>(*stepper.find_effect("agents"));
+}
+
 inline const AgentMotion& motion_of(const Stepper& stepper, size_t row) {
-  return stepper.agents()->bodies()[row].motion;
+  return agents_of(stepper).bodies()[row].motion;
 }
 
 }  // namespace gloam

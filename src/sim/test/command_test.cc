@@ -251,8 +251,8 @@ TEST_F(CommandTest, RefusesWhatMakesNoSense) {
   EXPECT_TRUE(refused({.what = SetWrench{body("cart"), {nan, 0, 0}, {}}}));
   EXPECT_TRUE(refused({.what = AddVelocity{body("cart"), {1, 0, 0}}}));  // does not float
   EXPECT_TRUE(refused({.what = DragBody{body("hand"), {}, {}, true}}));
-  EXPECT_TRUE(refused({.what = SetVelocityGoal{1, 0, 0, 0}}));
-  EXPECT_TRUE(refused({.what = SetVelocityGoal{0, nan, 0, 0}}));
+  EXPECT_TRUE(refused({.what = SetVelocityGoal{{1, 0}, 0, 0, 0}}));
+  EXPECT_TRUE(refused({.what = SetVelocityGoal{{0, 0}, nan, 0, 0}}));
   EXPECT_TRUE(refused({.what = SetLiveField{LiveFieldId::kGravity, 2, {1, 2}}}));
   EXPECT_TRUE(refused({.what = SetLiveField{LiveFieldId::kGravity, -1, {1}}}));
   EXPECT_TRUE(refused({.what = SetLiveField{LiveFieldId::kGravity, 0, {}}}));
@@ -312,10 +312,9 @@ class GoalRecorder final : public Controller {
  public:
   explicit GoalRecorder(std::vector<std::pair<int64_t, double>>& goals) : goals_(goals) {}
   void reset(const mjModel*, const mjData*) override { goals_.clear(); }
-  void control(const mjModel*, mjData*, std::span<const SoilReaction>, int64_t step, double period,
-               const VelocityTarget& goal) override {
-    EXPECT_EQ(period, 0.02);
-    goals_.emplace_back(step, goal.vx);
+  void control(const ControlInputs& in) override {
+    EXPECT_EQ(in.period, 0.02);
+    goals_.emplace_back(in.step, in.goal.vx);
   }
   std::vector<std::pair<int64_t, double>>& goals_;
 };
@@ -333,7 +332,7 @@ TEST(SceneSchedule, GoalsAndPushesApplyAtTheirExactStepsInEveryRun) {
     EXPECT_EQ(sim->latest()[Joint{1}].qvel[2], 0);
     ASSERT_TRUE(sim->step(1).ok());
     EXPECT_EQ(sim->latest()[Joint{1}].qvel[2], 1);
-    ASSERT_TRUE(sim->post({32, SetVelocityGoal{0, 7, 0, 0}}).ok());
+    ASSERT_TRUE(sim->post({32, SetVelocityGoal{{0, 0}, 7, 0, 0}}).ok());
     ASSERT_TRUE(sim->step(14).ok());
     ASSERT_EQ(goals.size(), 20u);
     for (size_t i = 0; i < goals.size(); ++i) {

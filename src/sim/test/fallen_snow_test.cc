@@ -121,15 +121,15 @@ TEST(FallenSnow, ResetRepeatsTheRunAndARecompileKeepsTheTracks) {
   OnSoil rig(busy_snow());
   rig.steps(400);
   const uint64_t first = rig.sim->latest().hash();
-  const std::vector<float> tracks = rig.sim->latest().data().tracks[0].field->height;
+  const std::vector<float> tracks = rig.sim->latest().data().effects.surfaces[0].field->height;
   ASSERT_TRUE(rig.sim->reset().ok());
   rig.steps(400);
   EXPECT_EQ(rig.sim->latest().hash(), first);
-  EXPECT_EQ(rig.sim->latest().data().tracks[0].field->height, tracks);
+  EXPECT_EQ(rig.sim->latest().data().effects.surfaces[0].field->height, tracks);
   ASSERT_TRUE(rig.sim->recompile(busy_snow(), {}).ok());
-  EXPECT_EQ(rig.sim->latest().data().tracks[0].field->height, tracks);
+  EXPECT_EQ(rig.sim->latest().data().effects.surfaces[0].field->height, tracks);
   ASSERT_TRUE(rig.sim->recompile(busy_snow(0), {}).ok());
-  EXPECT_EQ(rig.sim->latest().data().tracks[0].field, nullptr) << "other snow";
+  EXPECT_EQ(rig.sim->latest().data().effects.surfaces[0].field, nullptr) << "other snow";
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ struct OnSoil {
   /// Of the surface against rest, in the cell at (x, y) of a bed in the world's middle [m].
   double track(double x, double y) {
     const Snapshot now = sim->latest();
-    const auto& field = now.data().tracks.at(0).field;
+    const auto& field = now.data().effects.surfaces.at(0).field;
     if (field == nullptr) return 0;
     const SoilDescription& soil = now.data().world->soils[0];
     const auto i = static_cast<size_t>((x - soil.low_x()) / soil.dx);

@@ -207,35 +207,34 @@ TEST(SoilEffectRun, ResetRepeatsTheRun) {
   sim->start();
   ASSERT_TRUE(sim->step(400).ok());
   const uint64_t first = sim->latest().hash();
-  ASSERT_NE(sim->latest().data().tracks[0].field, nullptr);
-  const std::vector<float> heights = sim->latest().data().tracks[0].field->height;
+  ASSERT_NE(sim->latest().data().effects.surfaces[0].field, nullptr);
+  const std::vector<float> heights = sim->latest().data().effects.surfaces[0].field->height;
   ASSERT_TRUE(sim->reset().ok());
-  EXPECT_EQ(sim->latest().data().tracks[0].field, nullptr) << "tracks of a run before";
+  EXPECT_EQ(sim->latest().data().effects.surfaces[0].field, nullptr) << "tracks of a run before";
   ASSERT_TRUE(sim->step(400).ok());
   EXPECT_EQ(sim->latest().hash(), first);
-  EXPECT_EQ(sim->latest().data().tracks[0].field->height, heights);
+  EXPECT_EQ(sim->latest().data().effects.surfaces[0].field->height, heights);
 }
 
 TEST(SoilEffectRun, ARecompileKeepsTheTracks) {
   auto sim = make_simulator(busy_bed(), lockstep());
   sim->start();
   ASSERT_TRUE(sim->step(400).ok());
-  const std::vector<float> before = sim->latest().data().tracks[0].field->height;
+  const std::vector<float> before = sim->latest().data().effects.surfaces[0].field->height;
   ASSERT_TRUE(sim->recompile(busy_bed(), {}).ok());
-  EXPECT_EQ(sim->latest().data().tracks[0].field->height, before);
+  EXPECT_EQ(sim->latest().data().effects.surfaces[0].field->height, before);
   ASSERT_TRUE(sim->step(100).ok());
 }
 
 /// Keeps what soil did, of every call.
 class ReactionRecorder final : public Controller {
  public:
-  explicit ReactionRecorder(std::vector<std::vector<SoilReaction>>& calls) : calls_(calls) {}
+  explicit ReactionRecorder(std::vector<std::vector<ContactLoad>>& calls) : calls_(calls) {}
   void reset(const mjModel*, const mjData*) override { calls_.clear(); }
-  void control(const mjModel*, mjData*, std::span<const SoilReaction> soil, int64_t, double,
-               const VelocityTarget&) override {
-    calls_.emplace_back(soil.begin(), soil.end());
+  void control(const ControlInputs& in) override {
+    calls_.emplace_back(in.loads.begin(), in.loads.end());
   }
-  std::vector<std::vector<SoilReaction>>& calls_;
+  std::vector<std::vector<ContactLoad>>& calls_;
 };
 
 TEST(SoilReactions, CarryWhatRestsThereAndAreNoneInTheAirOrOnRock) {
@@ -246,12 +245,12 @@ TEST(SoilReactions, CarryWhatRestsThereAndAreNoneInTheAirOrOnRock) {
       "<body pos='2 0 .1'><freejoint/><geom name='on rock' size='.05'/></body>",
       bed_of("dry_sand"));
   OnSoil rig(world);
-  std::vector<std::vector<SoilReaction>> calls;
+  std::vector<std::vector<ContactLoad>> calls;
   ASSERT_TRUE(rig.sim->add_controller(0, std::make_unique<ReactionRecorder>(calls), {500, 1}).ok());
   rig.run(1.5);
   EXPECT_TRUE(calls[60].empty()) << "in the air";
   ASSERT_EQ(calls.back().size(), 1u);
-  const SoilReaction& ball = calls.back().front();
+  const ContactLoad& ball = calls.back().front();
   EXPECT_EQ(ball.geom, mj_name2id(world->model.get(), mjOBJ_GEOM, "ball"));
   EXPECT_EQ(ball.body, world->model->geom_bodyid[ball.geom]);
   const double weight[3] = {0, 0, 3 * 9.81};
@@ -302,12 +301,12 @@ TEST(SoilEffectRun, SnapshotsKeepTheirTracks) {
   for (int i = 0; i < 8; ++i) {
     ASSERT_TRUE(sim->step(60).ok());
     held.push_back(sim->latest());
-    const auto& field = held.back().data().tracks[0].field;
+    const auto& field = held.back().data().effects.surfaces[0].field;
     heights.push_back(field != nullptr ? field->height : std::vector<float>{});
   }
   EXPECT_NE(heights.front(), heights.back());
   for (size_t i = 0; i < held.size(); ++i) {
-    const auto& field = held[i].data().tracks[0].field;
+    const auto& field = held[i].data().effects.surfaces[0].field;
     EXPECT_EQ(field != nullptr ? field->height : std::vector<float>{}, heights[i]) << i;
   }
 }

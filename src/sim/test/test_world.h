@@ -29,9 +29,8 @@ double random_control(int64_t step, int i);
 class RandomController final : public Controller {
  public:
   void reset(const mjModel*, const mjData*) override { ++resets; }
-  void control(const mjModel* model, mjData* data, std::span<const SoilReaction>, int64_t step,
-               double, const VelocityTarget&) override {
-    for (int i = 0; i < model->nu; ++i) data->ctrl[i] = random_control(step, i);
+  void control(const ControlInputs& in) override {
+    for (int i = 0; i < in.model->nu; ++i) in.data->ctrl[i] = random_control(in.step, i);
     ++calls;
   }
   int64_t calls = 0, resets = 0;

@@ -38,14 +38,14 @@ TEST(Vehicle, WheelsRollAsFarAsTheyGoAndPointThere) {
     AgentRig rig(agent_place("", 24));
     add_vehicle(&rig, kind, {-8, -6, 0}, bend(), "spline");
     auto stepper = rig.stepper();
-    const AgentDescription& d = *stepper->agents()->bodies()[0].description;
+    const AgentDescription& d = *agents_of(*stepper).bodies()[0].description;
     const mjModel& m = stepper->model();
     std::array<double, 4> way = {}, rolled = {}, before = {};
     std::array<Vec3d, 4> at;
     double aside = 0, steered = 0;
     for (int i = 0; i < 5000; ++i) {
       ASSERT_TRUE(stepper->step());
-      const AgentBody& agent = stepper->agents()->bodies()[0];
+      const AgentBody& agent = agents_of(*stepper).bodies()[0];
       for (size_t w = 0; w < 4; ++w) {
         const mjtNum* p = stepper->data().mocap_pos + 3 * d.mocap[kWheelFL + w];
         const Vec3d now{p[0], p[1], p[2]};
@@ -148,7 +148,7 @@ TEST(Vehicle, StopsForSomebodyInItsWayAndGoesOn) {
     double nearest = 99, waited = 0;
     for (int i = 0; i < 14000; ++i) {
       ASSERT_TRUE(stepper->step());
-      const AgentBody& v = stepper->agents()->bodies()[0];
+      const AgentBody& v = agents_of(*stepper).bodies()[0];
       const Vec3d to = flat(motion_of(*stepper, 1).p - v.motion.p);
       if (std::abs(to.y) < 1)
         nearest = std::min(nearest, to.x > 0 ? to.x - length_ahead(v.description->vehicle) : 99.0);

@@ -215,8 +215,8 @@ TEST(WaterRipplesGrid, WhatFloatsStillLeavesTheWaterStill) {
   sim->start();
   ASSERT_TRUE(sim->step(30000).ok());
   const Snapshot s = sim->latest();
-  ASSERT_NE(s.data().heights[0].field, nullptr);
-  const auto& heights = s.data().heights[0].field->height;
+  ASSERT_NE(s.data().effects.surfaces[0].field, nullptr);
+  const auto& heights = s.data().effects.surfaces[0].field->height;
   const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
   EXPECT_LT(*high - *low, 0.001f) << "a minute after it was laid on the water";
 }
@@ -258,9 +258,9 @@ TEST(WaterEffectRun, ResetRepeatsTheRun) {
   sim->start();
   ASSERT_TRUE(sim->step(400).ok());
   const uint64_t first = sim->latest().hash();
-  ASSERT_NE(sim->latest().data().heights[0].field, nullptr);
+  ASSERT_NE(sim->latest().data().effects.surfaces[0].field, nullptr);
   ASSERT_TRUE(sim->reset().ok());
-  EXPECT_EQ(sim->latest().data().heights[0].field, nullptr);
+  EXPECT_EQ(sim->latest().data().effects.surfaces[0].field, nullptr);
   ASSERT_TRUE(sim->step(400).ok());
   EXPECT_EQ(sim->latest().hash(), first);
 }
@@ -269,10 +269,10 @@ TEST(WaterEffectRun, ARecompileKeepsTheRipples) {
   auto sim = make_simulator(rough_pool(), lockstep());
   sim->start();
   ASSERT_TRUE(sim->step(401).ok());
-  const auto before = sim->latest().data().heights[0].field;
+  const auto before = sim->latest().data().effects.surfaces[0].field;
   ASSERT_NE(before, nullptr);
   ASSERT_TRUE(sim->recompile(rough_pool(), {}).ok());
-  EXPECT_EQ(sim->latest().data().heights[0].field, before);
+  EXPECT_EQ(sim->latest().data().effects.surfaces[0].field, before);
   ASSERT_TRUE(sim->step(100).ok());
 }
 

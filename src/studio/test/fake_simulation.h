@@ -29,12 +29,29 @@ class FakeSimulation : public Simulation {
   void set_pace(Pace pace, double speed) override;
   void request_stop() override {}
   Status status() const override;
+  using Simulation::recompile;
+  Status recompile(const World&) override { return unsupported(); }
   Status post(const Command& command) override;
+  Status post(std::span<const Command> commands) override {
+    for (const Command& command : commands) GLOAM_TRY_STATUS(post(command));
+    return {};
+  }
+  std::vector<LoggedCommand> take_command_log() override { return {}; }
   Snapshot latest() const override { return {}; }
   SimulationStats stats() const override;
   void set_step_hook(std::function<void(const mjModel_*, mjData_*)>) override {}
   Result<std::unique_ptr<CameraStream>> open_camera(const CameraRequest& request,
                                                     FrameCallback on_frame) override;
+  Result<std::unique_ptr<SensorStream>> open_sensor(const SensorRequest&, SensorCallback) override {
+    return unsupported();
+  }
+  Result<std::unique_ptr<LidarStream>> open_lidar(const LidarRequest&, ScanCallback) override {
+    return unsupported();
+  }
+  Result<std::unique_ptr<SnapshotStream>> open_snapshots(const SnapshotRequest&,
+                                                         SnapshotCallback) override {
+    return unsupported();
+  }
   std::vector<std::string> camera_names() const override { return {"front", "robot/head"}; }
   Result<std::vector<LabelRow>> labels() override { return std::vector<LabelRow>{}; }
   Result<PickResult> pick(const CameraFrame& frame, double u, double v) override;
@@ -49,6 +66,10 @@ class FakeSimulation : public Simulation {
   std::atomic<int> step_milliseconds = 0;  ///< how long a step takes
 
  private:
+  static Error unsupported() {
+    return {ErrorKind::kUnsupported, "the made-up simulation has pictures alone"};
+  }
+
   class Stream;
   struct Ball {
     Vec3 center;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geometry/convert/convert.h"
+#include "gloam/model_tools.h"
 #include "world/compile/level.h"
 
 namespace gloam {

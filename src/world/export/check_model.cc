@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "base/text.h"
+#include "gloam/model_tools.h"
 #include "scene/files/mujoco_guard.h"
 #include "scene/files/mujoco_plugins.h"
 #include "world/export/export_mjcf.h"

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "base/cache_writer.h"
+#include "gloam/model_tools.h"
 #include "gloam/world.h"
 #include "scene/test/temp_folder.h"
 #include "world/cache/model_cache.h"

@@ -1,4 +1,5 @@
 #include "world/compile/compile_progress.h"
+#include "gloam/model_tools.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>

@@ -7,6 +7,7 @@
 #include <cstdlib>
 
 #include "base/cache_writer.h"
+#include "gloam/model_tools.h"
 #include "gloam/world.h"
 #include "scene/files/mujoco_plugins.h"
 #include "scene/test/temp_folder.h"

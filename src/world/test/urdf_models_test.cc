@@ -6,6 +6,7 @@
 
 #include <bit>
 
+#include "gloam/model_tools.h"
 #include "gloam/world.h"
 #include "scene/test/temp_folder.h"
 #include "world/world.h"

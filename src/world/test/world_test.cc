@@ -289,7 +289,7 @@ TEST_F(LevelTest, SettingsMergeByMuJoCosRulesAndLosersAreReported) {
   ASSERT_TRUE(clash.ok()) << clash.error().to_string();
   EXPECT_EQ(clash->compiled()->model->opt.integrator, mjINT_IMPLICITFAST);
   ASSERT_EQ(clash->info().unsupported.size(), 1u);
-  EXPECT_THAT(clash->info().unsupported[0].to_string(), HasSubstr("clash.toml:3"));
+  EXPECT_THAT(clash->info().unsupported[0].to_string(), HasSubstr("other.xml:1: "));
   EXPECT_THAT(clash->info().unsupported[0].to_string(), HasSubstr("integrator"));
 }
 

@@ -32,8 +32,7 @@ ContactDust::ContactDust(const CompiledWorld& world, Vec3f low, Vec3f high)
     : low_(low),
       high_(high),
       of_geoms_(static_cast<size_t>(world.model->ngeom)),
-      of_agents_(world.agents.size()),
-      planted_(world.agents.size(), {true, true}) {
+      of_agents_(world.agents.size()) {
   const mjModel& m = *world.model;
   for (const DustDescription& dust : world.gases.dusts) {
     Ground& ground = grounds_.emplace_back();
@@ -49,7 +48,6 @@ ContactDust::ContactDust(const CompiledWorld& world, Vec3f low, Vec3f high)
 void ContactDust::reset() {
   std::fill(of_geoms_.begin(), of_geoms_.end(), Heap{});
   std::fill(of_agents_.begin(), of_agents_.end(), Heap{});
-  std::fill(planted_.begin(), planted_.end(), std::array<bool, 2>{true, true});
 }
 
 const ContactDust::Ground* ContactDust::ground_at(const double* p) const {
@@ -66,11 +64,10 @@ void ContactDust::put(double mass, const double* p, Heap* heap) {
   mju_addToScl3(heap->moment, p, mass);
 }
 
-void ContactDust::gather(const mjModel& model, const mjData& data,
-                         std::span<const SoilReaction> soil, const Agents* agents) {
+void ContactDust::gather(const mjModel& model, const mjData& data, const StepEvents& events) {
   for (int i = 0; i < data.ncon; ++i) gather_contact(model, data, i);
-  for (const SoilReaction& reaction : soil) gather_soil(model, data, reaction);
-  if (agents != nullptr) gather_steps(*agents, data);
+  for (const ContactLoad& load : events.loads) gather_soil(model, data, load);
+  for (const Footfall& footfall : events.footfalls) gather_footfall(footfall);
 }
 
 void ContactDust::gather_contact(const mjModel& m, const mjData& d, int i) {
@@ -97,7 +94,7 @@ void ContactDust::gather_contact(const mjModel& m, const mjData& d, int i) {
       &of_geoms_[static_cast<size_t>(geom)]);
 }
 
-void ContactDust::gather_soil(const mjModel& m, const mjData& d, const SoilReaction& soil) {
+void ContactDust::gather_soil(const mjModel& m, const mjData& d, const ContactLoad& soil) {
   const Ground* ground = ground_at(soil.p);
   if (ground == nullptr) return;
   double v[3];
@@ -110,24 +107,11 @@ void ContactDust::gather_soil(const mjModel& m, const mjData& d, const SoilReact
       &of_geoms_[static_cast<size_t>(soil.geom)]);
 }
 
-void ContactDust::gather_steps(const Agents& agents, const mjData& data) {
-  for (size_t i = 0; i < planted_.size(); ++i) {
-    const AgentBody& agent = agents.bodies()[i];
-    const AgentDescription& d = *agent.description;
-    if (d.kind != AgentKind::kPerson) continue;
-    for (int foot = 0; foot < 2; ++foot) {
-      bool& was = planted_[i][static_cast<size_t>(foot)];
-      const bool is = agent.walker.is_planted(foot);
-      const bool lands = is && !was;
-      was = is;
-      if (!lands) continue;
-      const double* p = data.mocap_pos + 3 * d.mocap[foot == 0 ? kFootL : kFootR];
-      const Ground* ground = ground_at(p);
-      if (ground == nullptr) continue;
-      const double speed = std::hypot(agent.motion.velocity.x, agent.motion.velocity.y);
-      put(ground->per_energy * step_energy(d.person.mass, speed), p, &of_agents_[i]);
-    }
-  }
+void ContactDust::gather_footfall(const Footfall& footfall) {
+  const Ground* ground = ground_at(footfall.p);
+  if (ground == nullptr) return;
+  put(ground->per_energy * step_energy(footfall.mass, footfall.speed), footfall.p,
+      &of_agents_[static_cast<size_t>(footfall.agent)]);
 }
 
 std::vector<DustDeposit> ContactDust::take() {

@@ -9,12 +9,9 @@
 
 #include <mujoco/mujoco.h>
 
-#include <array>
-#include <span>
 #include <vector>
 
-#include "sim/agents/agents.h"
-#include "sim/effects/soil/soil_reaction.h"
+#include "sim/effects/effect.h"
 #include "world/world.h"
 
 namespace gloam {
@@ -30,10 +27,8 @@ class ContactDust {
   ContactDust(const CompiledWorld& world, Vec3f low, Vec3f high);
 
   void reset();
-  /// After mj_step, while `data` has its contacts, forces and velocities. `soil`: of that step.
-  /// `agents`: null = none.
-  void gather(const mjModel& model, const mjData& data, std::span<const SoilReaction> soil,
-              const Agents* agents);
+  /// After mj_step, while `data` has its contacts, forces and velocities. `events`: of that step.
+  void gather(const mjModel& model, const mjData& data, const StepEvents& events);
   /// What was gathered since the last call, by what raised it.
   std::vector<DustDeposit> take();
 
@@ -49,14 +44,13 @@ class ContactDust {
   };
   const Ground* ground_at(const double* p) const;
   void gather_contact(const mjModel& model, const mjData& data, int contact);
-  void gather_soil(const mjModel& model, const mjData& data, const SoilReaction& reaction);
-  void gather_steps(const Agents& agents, const mjData& data);
+  void gather_soil(const mjModel& model, const mjData& data, const ContactLoad& load);
+  void gather_footfall(const Footfall& footfall);
   static void put(double mass, const double* p, Heap* heap);
 
   std::vector<Ground> grounds_;
   Vec3f low_, high_;
   std::vector<Heap> of_geoms_, of_agents_;
-  std::vector<std::array<bool, 2>> planted_;  // feet of agents, before
 };
 
 }  // namespace gloam

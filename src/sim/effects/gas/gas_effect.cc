@@ -150,9 +150,8 @@ FieldWindow GasEffect::window(int64_t step) const {
   return {now_, coming_, static_cast<float>(step - from) / static_cast<float>(to - from)};
 }
 
-void GasEffect::gather(const mjModel& model, const mjData& data, std::span<const SoilReaction> soil,
-                       const Agents* agents) {
-  if (contact_dust_ != nullptr) contact_dust_->gather(model, data, soil, agents);
+void GasEffect::observe(const mjModel& model, const mjData& data, const StepEvents& events) {
+  if (contact_dust_ != nullptr) contact_dust_->gather(model, data, events);
 }
 
 // ---- its own thread ----

@@ -38,10 +38,8 @@ class GasEffect {
   void start(const Snapshot& now);
   FieldWindow window(int64_t step) const;
 
-  /// After each mj_step, while `data` has its contacts: what raises dust. `soil`: of that step.
-  /// `agents`: null = none.
-  void gather(const mjModel& model, const mjData& data, std::span<const SoilReaction> soil,
-              const Agents* agents);
+  /// After each mj_step, while `data` has its contacts: gathers dust that is raised.
+  void observe(const mjModel& model, const mjData& data, const StepEvents& events);
   /// The air since the last tick, as it was at it.
   const MediumField& air() const { return *now_; }
 

@@ -11,7 +11,7 @@
 
 #include <vector>
 
-#include "sim/effects/gas/medium_field.h"
+#include "instant/medium_field.h"
 #include "sim/loop/step_schedule.h"
 #include "world/world.h"
 

@@ -13,7 +13,7 @@ SoilBed::SoilBed(const SoilDescription& soil, const mjModel& model, std::span<co
   const size_t most = contacts_.most_touches();
   bodies_.reserve(geoms.size()), moduli_.reserve(geoms.size());
   lanes_.reserve(most / SoilLanes::kSide + geoms.size()), changes_.reserve(most);
-  reactions_.reserve(geoms.size());
+  loads_.reserve(geoms.size());
   for (const int geom : geoms) {
     const int body = model.geom_bodyid[geom];
     Answer& answer = answers_of_[static_cast<size_t>(body)];
@@ -28,7 +28,7 @@ void SoilBed::reset() {
   std::fill(cells_.begin(), cells_.end(), SoilCell{});
   for (Answer& answer : answers_of_) answer.step = 0;
   contacts_.reset();
-  reactions_.clear();
+  loads_.clear();
   tracks_.reset();
 }
 

@@ -6,9 +6,9 @@
 // method with the inverse inertia of the body among its joints. After the idea of Chrono's soil
 // contact model (Tasora et al. 2019).
 
+#include "instant/contact_load.h"
 #include "sim/effects/bodies/body_forces.h"
 #include "sim/effects/soil/soil_lanes.h"
-#include "sim/effects/soil/soil_reaction.h"
 #include "sim/effects/soil/soil_tracks.h"
 
 namespace gloam {
@@ -33,7 +33,7 @@ class SoilBed {
   void push(uint32_t step, const mjModel& model, mjData& data, ResponseSolver* solver);
 
   /// Of the last push(), by geoms.
-  std::span<const SoilReaction> reactions() const { return reactions_; }
+  std::span<const ContactLoad> loads() const { return loads_; }
 
   SoilTracks& tracks() { return tracks_; }
   const SoilDescription& description() const { return soil_; }
@@ -80,7 +80,7 @@ class SoilBed {
   std::vector<Body> bodies_;      // of this step
   std::vector<SoilLanes> lanes_;  // of their touches
   std::vector<Change> changes_;   // of touched cells, room
-  std::vector<SoilReaction> reactions_;
+  std::vector<ContactLoad> loads_;
   SoilTracks tracks_;
 };
 

@@ -3,12 +3,13 @@
 #include <algorithm>
 
 #include "sim/effects/bodies/collider_mesh.h"
+#include "world/effects/surface_layout.h"
 
 namespace gloam {
 
-std::unique_ptr<SoilEffect> SoilEffect::create(std::shared_ptr<const CompiledWorld> world,
-                                               const mjModel& model) {
-  return std::unique_ptr<SoilEffect>(new SoilEffect(std::move(world), model));
+Result<std::unique_ptr<Effect>> SoilEffect::make(const EffectParts& parts) {
+  if (parts.world->soils.empty()) return std::unique_ptr<Effect>();
+  return std::unique_ptr<Effect>(new SoilEffect(parts.world, parts.model));
 }
 
 SoilEffect::SoilEffect(std::shared_ptr<const CompiledWorld> world, const mjModel& m)
@@ -26,26 +27,27 @@ SoilEffect::SoilEffect(std::shared_ptr<const CompiledWorld> world, const mjModel
       touch_sensors_.push_back(sensor);
   }
   near_.reserve(colliders_.size());
-  reactions_.reserve(geoms.size() * world_->soils.size());
   for (const SoilDescription& soil : world_->soils)
     beds_.push_back(std::make_unique<SoilBed>(soil, m, geoms));
 }
 
-void SoilEffect::reset() {
-  reactions_.clear();
+void SoilEffect::reset(const EffectContext& at) {
+  at.events.loads.reserve(colliders_.size() * beds_.size());
   for (const auto& bed : beds_) bed->reset();
 }
 
-void SoilEffect::take_over(const SoilEffect* before) {
-  reset();
-  for (size_t i = 0; before != nullptr && i < beds_.size(); ++i) {
-    for (const auto& other : before->beds_)
-      if (beds_[i]->take_over(*other)) break;
+void SoilEffect::take_over(const EffectContext& at, Effect* before) {
+  reset(at);
+  const auto* other = static_cast<const SoilEffect*>(before);
+  for (size_t i = 0; other != nullptr && i < beds_.size(); ++i) {
+    for (const auto& bed : other->beds_)
+      if (beds_[i]->take_over(*bed)) break;
   }
 }
 
-uint64_t SoilEffect::begin_step(int64_t step, const mjModel& m, mjData& d, uint64_t hash) {
-  reactions_.clear();
+void SoilEffect::apply_loads(const EffectContext& at) {
+  const mjModel& m = at.model;
+  mjData& d = at.data;
   near_.clear();
   for (ColliderBottom& collider : colliders_) {
     const bool near = std::any_of(beds_.begin(), beds_.end(), [&](const auto& bed) {
@@ -56,25 +58,26 @@ uint64_t SoilEffect::begin_step(int64_t step, const mjModel& m, mjData& d, uint6
     near_.push_back(&collider);
   }
   // Cells count from 1, so that one that nothing has touched is none of the last step's.
-  const uint32_t now = static_cast<uint32_t>(step) + 1;
+  const uint32_t now = static_cast<uint32_t>(at.step) + 1;
   for (const auto& bed : beds_) {
-    hash = bed->press(now, m, d, near_, hash);
+    at.hash = bed->press(now, m, d, near_, at.hash);
     bed->push(now, m, d, &solver_);
-    reactions_.insert(reactions_.end(), bed->reactions().begin(), bed->reactions().end());
+    at.events.loads.insert(at.events.loads.end(), bed->loads().begin(), bed->loads().end());
   }
-  return hash;
 }
 
-void SoilEffect::feel(const mjModel& m, mjData& d) const {
+void SoilEffect::update_sensors(const EffectContext& at) {
+  const mjModel& m = at.model;
+  mjData& d = at.data;
   if (m.opt.disableflags & mjDSBL_SENSOR) return;
-  for (const SoilReaction& reaction : reactions_) {
-    const double load = dot3(reaction.force, reaction.normal);
-    const double outwards[3] = {-reaction.normal[0], -reaction.normal[1], -reaction.normal[2]};
+  for (const ContactLoad& contact : at.events.loads) {
+    const double load = dot3(contact.force, contact.normal);
+    const double outwards[3] = {-contact.normal[0], -contact.normal[1], -contact.normal[2]};
     for (const int sensor : touch_sensors_) {
       const int site = m.sensor_objid[sensor];
-      if (load <= 0 || m.site_bodyid[site] != reaction.body ||
+      if (load <= 0 || m.site_bodyid[site] != contact.body ||
           mju_rayGeom(d.site_xpos + 3 * site, d.site_xmat + 9 * site, m.site_size + 3 * site,
-                      reaction.p, outwards, m.site_type[site], nullptr) < 0)
+                      contact.p, outwards, m.site_type[site], nullptr) < 0)
         continue;
       double& reading = d.sensordata[m.sensor_adr[sensor]];
       reading += load;
@@ -83,8 +86,9 @@ void SoilEffect::feel(const mjModel& m, mjData& d) const {
   }
 }
 
-void SoilEffect::fill(std::vector<HeightChange>* tracks) {
-  for (size_t i = 0; i < beds_.size(); ++i) (*tracks)[i] = {beds_[i]->tracks().field(), 0};
+void SoilEffect::publish(int64_t, EffectOutputs* out) {
+  for (size_t i = 0; i < beds_.size(); ++i)
+    out->surfaces[soil_surface(*world_, i)] = {beds_[i]->tracks().field(), 0};
 }
 
 }  // namespace gloam

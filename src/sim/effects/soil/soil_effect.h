@@ -4,34 +4,27 @@
 #include <memory>
 #include <vector>
 
+#include "sim/effects/effect.h"
 #include "sim/effects/soil/soil_bed.h"
 #include "world/world.h"
 
 namespace gloam {
 
-class SoilEffect {
+class SoilEffect final : public Effect {
  public:
-  /// The World has soils.
-  static std::unique_ptr<SoilEffect> create(std::shared_ptr<const CompiledWorld> world,
-                                            const mjModel& model);
+  static Result<std::unique_ptr<Effect>> make(const EffectParts& parts);
 
-  void reset();
-  /// Goes on with the tracks of soils of the same name and grid in `before`, null = none.
-  void take_over(const SoilEffect* before);
-
-  /// Adds the forces of step `step` to data.qfrc_applied; poses, velocities and qLD in `data` are
-  /// of its state. The hash goes in and comes out with what the ground has been through.
-  uint64_t begin_step(int64_t step, const mjModel& model, mjData& data, uint64_t hash);
-
-  /// After the physics of that step: touch sensors sum the loads whose middle lies in their site,
-  /// as MuJoCo sums contacts. Not those with a delay, an interval or a history.
-  void feel(const mjModel& model, mjData& data) const;
-
-  /// Of the last step, by beds and geoms.
-  std::span<const SoilReaction> reactions() const { return reactions_; }
-
-  /// Tracks as they are now.
-  void fill(std::vector<HeightChange>* tracks);
+  std::string_view kind() const override { return "soil"; }
+  void reset(const EffectContext& at) override;
+  /// Goes on with the tracks of soils of the same name and grid.
+  void take_over(const EffectContext& at, Effect* before) override;
+  bool acts_on_bodies() const override { return true; }
+  /// The hash comes out with what the ground has been through; loads are by beds and geoms.
+  void apply_loads(const EffectContext& at) override;
+  /// Touch sensors sum the loads whose middle lies in their site, as MuJoCo sums contacts. Not
+  /// those with a delay, an interval or a history.
+  void update_sensors(const EffectContext& at) override;
+  void publish(int64_t step, EffectOutputs* out) override;
 
   const SoilBed& bed(size_t row) const { return *beds_[row]; }
 
@@ -43,7 +36,6 @@ class SoilEffect {
   std::vector<const ColliderBottom*> near_;  // room
   std::vector<std::unique_ptr<SoilBed>> beds_;
   ResponseSolver solver_;
-  std::vector<SoilReaction> reactions_;
   std::vector<int> touch_sensors_;
 };
 

@@ -100,7 +100,7 @@ struct Sums {
 }  // namespace
 
 void SoilBed::push(uint32_t step, const mjModel& m, mjData& d, ResponseSolver* solver) {
-  reactions_.clear();
+  loads_.clear();
   for (const Body& body : bodies_) {
     if (last_dof(m, body.id) >= 0) push_body(m, d, body, step, solver);
   }
@@ -171,10 +171,10 @@ void SoilBed::react(const Body& body, const double* motion, double share) {
   const std::span<const SoilTouch> touches = contacts_.touches().subspan(body.first, body.count);
   const std::span<const SoilLanes> lanes = lanes_of(body);
   double load = 0;
-  SoilReaction* now = nullptr;
+  ContactLoad* now = nullptr;
   const auto finish = [&] {
     if (now != nullptr && load > 0) mju_scl3(now->p, now->p, 1 / load), mju_normalize3(now->normal);
-    if (now != nullptr && load <= 0) reactions_.pop_back();
+    if (now != nullptr && load <= 0) loads_.pop_back();
   };
   for (size_t n = 0; n < touches.size(); ++n) {
     const SoilTouch& touch = touches[n];
@@ -182,7 +182,7 @@ void SoilBed::react(const Body& body, const double* motion, double share) {
     const size_t i = n % SoilLanes::kSide;
     if (now == nullptr || now->geom != touch.geom) {
       finish();
-      now = &reactions_.emplace_back();
+      now = &loads_.emplace_back();
       now->geom = touch.geom, now->body = touch.body;
       load = 0;
     }

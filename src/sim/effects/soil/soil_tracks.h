@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "sim/effects/height_change.h"
+#include "instant/surface_heights.h"
 #include "world/effects/soil_description.h"
 
 namespace gloam {

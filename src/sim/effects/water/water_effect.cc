@@ -2,14 +2,16 @@
 
 #include "base/hash.h"
 #include "sim/effects/water/water_surface.h"
+#include "world/effects/surface_layout.h"
 
 namespace gloam {
 
-std::unique_ptr<WaterEffect> WaterEffect::create(std::shared_ptr<const CompiledWorld> world,
-                                                 Rational timestep) {
+Result<std::unique_ptr<Effect>> WaterEffect::make(const EffectParts& parts) {
+  if (parts.world->waters.empty()) return std::unique_ptr<Effect>();
   // All waters have one rate.
-  const auto schedule = StepSchedule::at_most(world->waters.front().ripple_rate, timestep);
-  return std::unique_ptr<WaterEffect>(new WaterEffect(std::move(world), timestep, schedule));
+  const auto schedule =
+      StepSchedule::at_most(parts.world->waters.front().ripple_rate, parts.timestep);
+  return std::unique_ptr<Effect>(new WaterEffect(parts.world, parts.timestep, schedule));
 }
 
 WaterEffect::WaterEffect(std::shared_ptr<const CompiledWorld> world, Rational timestep,
@@ -28,38 +30,42 @@ WaterEffect::WaterEffect(std::shared_ptr<const CompiledWorld> world, Rational ti
   }
 }
 
-void WaterEffect::reset() {
+void WaterEffect::reset(const EffectContext&) { clear(); }
+
+void WaterEffect::clear() {
   for (const auto& ripples : ripples_)
     if (ripples != nullptr) ripples->reset();
   tick_ = -1;
 }
 
-void WaterEffect::take_over(int64_t step, const WaterEffect* before) {
-  reset();
-  tick_ = schedule_.first_at_or_after(step) - 1;
-  for (size_t i = 0; before != nullptr && i < ripples_.size(); ++i) {
-    for (size_t k = 0; k < before->ripples_.size(); ++k) {
-      const WaterDescription &a = waters()[i], &b = before->waters()[k];
-      if (ripples_[i] != nullptr && before->ripples_[k] != nullptr && a.name == b.name &&
+void WaterEffect::take_over(const EffectContext& at, Effect* before) {
+  clear();
+  tick_ = schedule_.first_at_or_after(at.step) - 1;
+  const auto* other = static_cast<const WaterEffect*>(before);
+  for (size_t i = 0; other != nullptr && i < ripples_.size(); ++i) {
+    for (size_t k = 0; k < other->ripples_.size(); ++k) {
+      const WaterDescription &a = waters()[i], &b = other->waters()[k];
+      if (ripples_[i] != nullptr && other->ripples_[k] != nullptr && a.name == b.name &&
           a.ripples == b.ripples)
-        ripples_[i]->take_over(*before->ripples_[k]);
+        ripples_[i]->take_over(*other->ripples_[k]);
     }
   }
 }
 
-bool WaterEffect::begin_step(int64_t step, mjModel& model, mjData& data, uint64_t* hash) {
-  if (step == schedule_.step_of(tick_ + 1)) {
-    tick(data);
+void WaterEffect::apply_forces(const EffectContext& at) {
+  if (at.step == schedule_.step_of(tick_ + 1)) {
+    advance_ripples(at.data);
     for (const auto& ripples : ripples_) {
       const uint64_t digest = ripples != nullptr ? ripples->digest() : 0;
-      if (digest != 0) *hash = hash_bytes(&digest, sizeof(digest), *hash);
+      if (digest != 0) at.hash = hash_bytes(&digest, sizeof(digest), at.hash);
     }
   }
-  look(step, changes_);
-  return forces_.begin(model, data, changes_);
+  look(at.step, changes_);
+  const bool has_masses = forces_.begin(at.model, at.data, changes_);
+  if (has_masses && at.is_halved) forces_.add_masses(at.model, at.data);
 }
 
-void WaterEffect::tick(const mjData& data) {
+void WaterEffect::advance_ripples(const mjData& data) {
   const int64_t from = tick_ >= 0 ? schedule_.step_of(tick_) : 0;
   const double interval = static_cast<double>(schedule_.step_of(++tick_) - from) * timestep_;
   for (size_t i = 0; i < ripples_.size(); ++i) {
@@ -83,8 +89,8 @@ void WaterEffect::look(int64_t step, std::span<HeightChange> changes) const {
   }
 }
 
-void WaterEffect::fill(int64_t step, std::vector<HeightChange>* heights) const {
-  look(step, *heights);
+void WaterEffect::publish(int64_t step, EffectOutputs* out) {
+  look(step, std::span(out->surfaces).subspan(water_surface(*world_, 0), ripples_.size()));
 }
 
 }  // namespace gloam

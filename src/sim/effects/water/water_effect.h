@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "sim/effects/effect.h"
 #include "sim/effects/water/water_forces.h"
 #include "sim/effects/water/water_ripples.h"
 #include "sim/loop/step_schedule.h"
@@ -12,33 +13,27 @@
 
 namespace gloam {
 
-class WaterEffect {
+class WaterEffect final : public Effect {
  public:
-  /// The World has waters.
-  static std::unique_ptr<WaterEffect> create(std::shared_ptr<const CompiledWorld> world,
-                                             Rational timestep);
+  static Result<std::unique_ptr<Effect>> make(const EffectParts& parts);
 
-  void reset();
-  /// Goes on at `step` with the ripples of waters of the same name and grid in `before`, null =
-  /// none.
-  void take_over(int64_t step, const WaterEffect* before);
-
-  /// Adds the forces of step `step` to data.qfrc_applied, and added masses to `model` until
-  /// end_step(): true = there are some. Poses and velocities in `data` are of its state. Ripples
-  /// advance at their ticks, and the hash comes out with theirs.
-  bool begin_step(int64_t step, mjModel& model, mjData& data, uint64_t* hash);
-  /// Where a step that has been begun has its inertias already: adds those masses to them.
-  void add_masses(const mjModel& model, mjData& data) const { forces_.add_masses(model, data); }
-  /// After it, whether it went well or not.
-  void end_step(mjModel& model) { forces_.end(model); }
-
-  /// Ripples at a step that begin_step() has not yet been called for.
-  void fill(int64_t step, std::vector<HeightChange>* heights) const;
+  std::string_view kind() const override { return "water"; }
+  void reset(const EffectContext& at) override;
+  /// Goes on with the ripples of waters of the same name and grid.
+  void take_over(const EffectContext& at, Effect* before) override;
+  bool acts_on_bodies() const override { return true; }
+  /// Ripples advance at their ticks, and the hash comes out with theirs. Masses of the water that
+  /// bodies carry along are added to the model until end_step().
+  void apply_forces(const EffectContext& at) override;
+  void end_step(mjModel& model) override { forces_.end(model); }
+  /// Ripples at a step that apply_forces() has not yet been called for.
+  void publish(int64_t step, EffectOutputs* out) override;
 
  private:
   WaterEffect(std::shared_ptr<const CompiledWorld> world, Rational timestep, StepSchedule schedule);
   const std::vector<WaterDescription>& waters() const { return world_->waters; }
-  void tick(const mjData& data);
+  void clear();
+  void advance_ripples(const mjData& data);
   void look(int64_t step, std::span<HeightChange> changes) const;
 
   const std::shared_ptr<const CompiledWorld> world_;

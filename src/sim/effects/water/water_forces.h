@@ -16,7 +16,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/effects/height_change.h"
+#include "instant/surface_heights.h"
 #include "sim/effects/water/water_shape.h"
 #include "sim/effects/water/water_surface.h"
 #include "world/effects/water_description.h"

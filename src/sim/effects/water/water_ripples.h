@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "sim/effects/height_change.h"
+#include "instant/surface_heights.h"
 #include "sim/effects/water/water_shape.h"
 #include "world/effects/water_description.h"
 

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "sim/effects/height_change.h"
+#include "instant/surface_heights.h"
 #include "world/effects/water_description.h"
 
 namespace gloam {

@@ -1,4 +1,4 @@
-#include "sim/effects/gas/medium_field.h"
+#include "instant/medium_field.h"
 
 #include <vector>
 

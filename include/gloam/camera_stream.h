@@ -1,0 +1,48 @@
+#pragma once
+// Streams of pictures of a running simulation.
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gloam/camera.h"
+#include "gloam/result.h"
+#include "gloam/scene.h"
+
+namespace gloam {
+
+/// One stream of pictures from one camera.
+struct CameraRequest {
+  std::string camera = "free";  ///< full name, or "free": frames the whole model until moved
+  /// Frames per second of simulation time; 0 = the camera's own, else 20.
+  Rational rate = {0, 1};
+  int width = 0, height = 0;  ///< [px]; 0 = the camera's own
+  /// rgb radiance samples depth distance segmentation normal albedo motion scene_flow boxes; raw
+  /// sensor_depth events thermal (with their tables in the scene)
+  std::vector<std::string> outputs = {"rgb"};
+  RenderOptions render = {};
+  std::optional<Pose> X_WC = {};  ///< of camera "free": where it stands at first
+  bool required =
+      false;  ///< the simulation waits for this camera; else frames are dropped, oldest first
+};
+
+/// An open stream. Closing (destroying) it waits for its last callback.
+class CameraStream {
+ public:
+  virtual ~CameraStream() = default;
+  /// Moves the free camera: pose of the camera in the world, looks along -Z. No effect on the
+  /// model's own cameras.
+  virtual void set_pose(const Pose& X_WC) = 0;
+  virtual Pose pose() const = 0;
+  /// Renders the latest Snapshot again, also while the simulation is paused.
+  virtual void refresh() = 0;
+  virtual int64_t dropped() const = 0;
+  /// Why it delivers no more, if so: memory ran out, or a recompile took its camera away.
+  virtual Status status() const { return {}; }
+};
+using FrameCallback = std::function<void(std::shared_ptr<const CameraFrame>)>;
+
+}  // namespace gloam

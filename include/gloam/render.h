@@ -1,0 +1,45 @@
+#pragma once
+// Pictures and scans of given Snapshots, without a running simulation: of a replay, of a state that
+// was edited, under another look.
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "gloam/camera_stream.h"
+#include "gloam/result.h"
+#include "gloam/sensor.h"
+#include "gloam/snapshot.h"
+#include "gloam/world.h"
+
+namespace gloam {
+
+/// Renders Snapshots of one World. One thread at a time; several renderers may share a World.
+class SceneRenderer {
+ public:
+  /// Loads all that pictures show. Errors: files that cannot be read, no memory.
+  static Result<SceneRenderer> create(const World& world);
+  SceneRenderer(SceneRenderer&&) noexcept;
+  SceneRenderer& operator=(SceneRenderer&&) noexcept;
+  ~SceneRenderer();
+
+  /// A picture whose exposure begins at the first Snapshot and lasts to the last one: one Snapshot
+  /// is an instant, what moves is sharp. Motion counts from the Snapshot rendered before for this
+  /// camera. `request.rate` and `request.required` mean nothing. The pixels are those that an open
+  /// stream of the same request gives for the same instants, frame number and seed. Errors: no such
+  /// camera or output, a Snapshot of another World, no Snapshot, the output events.
+  Result<std::shared_ptr<const CameraFrame>> render(std::span<const Snapshot> exposure,
+                                                    const CameraRequest& request,
+                                                    int64_t frame_index = 0);
+  /// One scan of a [[lidar]] from the first Snapshot to the last one, evenly spaced: 2 or more.
+  Result<std::shared_ptr<const LidarScan>> scan(std::span<const Snapshot> sweep,
+                                                const LidarRequest& request,
+                                                int64_t scan_index = 0);
+
+ private:
+  struct State;
+  explicit SceneRenderer(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace gloam

@@ -1,0 +1,16 @@
+#pragma once
+// What touches the ground without being a contact of MuJoCo's.
+
+#include "gloam/contact.h"
+
+namespace gloam {
+
+/// A foot of an agent that came down on the ground in the last step.
+struct Footfall {
+  int agent = -1;    ///< row of CompiledWorld::agents
+  double p[3] = {};  ///< of the foot, world [m]
+  double mass = 0;   ///< of the agent [kg]
+  double speed = 0;  ///< of the agent over the ground [m/s]
+};
+
+}  // namespace gloam

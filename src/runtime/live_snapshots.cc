@@ -1,0 +1,23 @@
+#include "runtime/live_snapshots.h"
+
+namespace gloam {
+
+Result<std::unique_ptr<LiveSnapshots>> LiveSnapshots::open(Simulator& simulator,
+                                                           const SnapshotRequest& request,
+                                                           SnapshotCallback on_snapshot) {
+  std::unique_ptr<LiveSnapshots> live(new LiveSnapshots(std::move(on_snapshot)));
+  const Rational timestep = simulator.timestep();
+  const Rational every_step{timestep.den, timestep.num};
+  GLOAM_TRY(auto queue,
+            simulator.subscribe({.rate = request.rate.num != 0 ? request.rate : every_step,
+                                 .required = request.required,
+                                 .capacity = request.capacity}));
+  live->thread_.start(std::move(queue), "a stream of snapshots", "keep fewer Snapshots",
+                      [raw = live.get()](const Snapshot& now) {
+                        raw->on_snapshot_(now);
+                        return Status();
+                      });
+  return live;
+}
+
+}  // namespace gloam

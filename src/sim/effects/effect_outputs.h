@@ -1,0 +1,25 @@
+#pragma once
+// What effects put into Snapshots, by what it is and not by whose it is.
+
+#include <vector>
+
+#include "instant/contact_load.h"
+#include "instant/medium_field.h"
+#include "instant/surface_heights.h"
+
+namespace gloam {
+
+struct CompiledWorld;
+
+struct EffectOutputs {
+  std::vector<FieldWindow> media;      ///< by row of CompiledWorld::gases
+  std::vector<HeightChange> surfaces;  ///< by row of world/effects/surface_layout.h
+  std::vector<ContactLoad> loads;      ///< of the last step
+
+  /// Room for the outputs of a World.
+  void fit(const CompiledWorld& world);
+  /// Lets go of all that is shared.
+  void clear();
+};
+
+}  // namespace gloam

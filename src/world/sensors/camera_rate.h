@@ -1,0 +1,15 @@
+#pragma once
+// How often cameras take pictures.
+
+#include <string>
+
+#include "gloam/scene.h"
+
+namespace gloam {
+
+inline constexpr Rational kUsualCameraRate{20, 1};  ///< of cameras that say nothing [Hz]
+
+/// The rate that the scene gives a camera, else the usual one.
+Rational own_camera_rate(const Scene& scene, const std::string& camera);
+
+}  // namespace gloam

@@ -1,0 +1,15 @@
+#pragma once
+// What a World says and hears, as its model and scene tell.
+
+#include <vector>
+
+#include "gloam/stream_info.h"
+
+namespace gloam {
+
+struct CompiledWorld;
+
+/// LiDARs have the rate that their options give; 0 = their preset's.
+std::vector<StreamInfo> list_streams(const CompiledWorld& world);
+
+}  // namespace gloam
