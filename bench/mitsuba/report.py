@@ -17,8 +17,10 @@ def write(rows, folder, complete):
     old, tail = rest.split(END)
     lines = {line.split("|")[1].strip(): line for line in old.splitlines() if line.startswith("| ") and "---" not in line}
     lines.update({name: table_line(name, row) for name, row in rows.items()})
-    table = ["| scene | what | blocks that agree | chi-square | picture z | difference | largest error, ours / theirs | samples | mutations |",
-             "|---|---|---|---|---|---|---|---|---|", *(lines[name] for name in scenes.ALL if name in lines)]
+    there = [name for name in scenes.ALL if name in lines]
+    table = ["| scene | blocks that agree | chi-square | picture z | difference | closed form | largest error | samples | mutations |",
+             "|---|---|---|---|---|---|---|---|---|", *(lines[name] for name in there),
+             "", *(f"* **{name}**: {scenes.ALL[name].title}" for name in there)]
     PAGE.write_text(head + BEGIN + "\n" + "\n".join(table) + "\n" + END + tail)
     if complete:
         sheet = {"folder": str(folder), "out": str(ROOT / "docs" / "images" / "mitsuba.jpg"), "scenes": list(scenes.ALL),
@@ -29,11 +31,8 @@ def write(rows, folder, complete):
 def table_line(name, row):
     peer = scenes.ALL[name].peer
     found = row["found"]["Mitsuba" if peer else "closed form"]
-    what = scenes.ALL[name].title
-    if not peer:
-        what += " (the closed form alone)"
-    elif "closed form" in row["found"]:
-        what += f" (from the closed form: {100 * row['found']['closed form'].difference:+.3f} %)"
-    return (f"| {name} | {what} | {found.share:.1%} | {found.chi_square:.2f} | {found.picture_z:+.1f} | {100 * found.difference:+.3f} % | "
-            f"{100 * found.ours:.2f} / {100 * found.theirs:.2f} % | {row['spp']} / {row['reference_spp']} | "
+    exact = row["found"].get("closed form")
+    from_exact = "" if not exact else f"{100 * exact.difference:+.3f} %" if peer else "alone"
+    return (f"| {name} | {found.share:.1%} | {found.chi_square:.2f} | {found.picture_z:+.1f} | {100 * found.difference:+.3f} % | "
+            f"{from_exact} | {100 * found.ours:.2f} / {100 * found.theirs:.2f} % | {row['spp']} / {row['reference_spp']} | "
             f"{row['mutations'] - len(row['missed'])} of {row['mutations']} |")

@@ -1,4 +1,8 @@
-"""Every command in README.md and docs/ works as printed: each ```sh block runs, in order, in a scratch folder."""
+"""Every command in README.md and docs/ works as printed: each ```sh block runs, in order, in a scratch folder.
+
+A ```toml block whose first line is the comment "# examples/NAME.toml" is saved there first. And of all documents: lines are
+no longer than a screen is wide, links lead somewhere, docs/README.md lists every page.
+"""
 import os
 import re
 import shutil
@@ -13,6 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
 NOT_HERE = re.compile(r"^(\./gloam (test|bench|mitsuba|gallery|pack)\b|\./gloam demo$|git clone|cd )")
 NEEDS_A_CARD = re.compile(r"^GLOAM_PRESET=cuda ")  # and minutes of nvcc; gloam_cuda_test shows that it compiles
 MINUTES = 60
+WIDEST = 140  # [columns]; prose is wrapped at 120
 
 
 def blocks(path):
@@ -29,12 +34,61 @@ def commands(path):
                 yield line
 
 
+def save_scenes(path, folder):
+    for name, text in re.findall(r"^```toml\n# (examples/\w+\.toml)\n(.*?)^```", path.read_text(), re.M | re.S):
+        (folder / name).write_text(text)
+
+
+def documents():
+    listing = subprocess.run(["git", "ls-files", "*.md"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    return [ROOT / name for name in listing.splitlines() if (ROOT / name).exists()]
+
+
+def without_code(text):
+    return re.sub(r"^```.*?^```|<pre>.*?</pre>|`[^`\n]*`", "", text, flags=re.M | re.S)
+
+
+def anchors(path):
+    """Of the page's headings, as GitHub makes them."""
+    headings = re.findall(r"^#+ (.*)$", re.sub(r"^```.*?^```", "", path.read_text(), flags=re.M | re.S), re.M)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+class Rules(unittest.TestCase):
+    """Of every document that git knows; nothing is run."""
+
+    def test_lines_are_no_wider_than_a_screen(self):
+        long = [f"{path.relative_to(ROOT)}:{number}: {len(line)} columns" for path in documents()
+                for number, line in enumerate(path.read_text().splitlines(), 1) if len(line) > WIDEST]
+        self.assertEqual(long, [], f"wrap prose at 120; tables: shorter cells, notes below, or a list; at most {WIDEST}")
+
+    def test_links_lead_somewhere(self):
+        bad = []
+        for path in documents():
+            text = without_code(path.read_text())
+            targets = re.findall(r"\]\(([^)\s]+)\)", text) + re.findall(r'(?:href|src)="([^"]+)"', text)
+            for target in (t for t in targets if "://" not in t):
+                file, _, anchor = target.partition("#")
+                page = path.parent / file if file else path
+                if not page.exists():
+                    bad.append(f"{path.relative_to(ROOT)} links to {target}, which does not exist")
+                elif anchor and anchor not in anchors(page):
+                    bad.append(f"{path.relative_to(ROOT)} links to {target}, where no heading is called so")
+        self.assertEqual(bad, [])
+
+    def test_the_index_lists_every_page(self):
+        index = (ROOT / "docs/README.md").read_text()
+        pages = sorted(path.name for path in (ROOT / "docs").glob("*.md") if path.name != "README.md")
+        self.assertEqual([name for name in pages if f"]({name})" not in index], [])
+
+
 class Documentation(unittest.TestCase):
     def run_page(self, path):
         with tempfile.TemporaryDirectory(prefix="gloam_docs_") as scratch:
             os.symlink(ROOT / "gloam", Path(scratch) / "gloam")
             for name in ["examples", "assets"]:  # copies: a scene may not read through links out of its root
                 shutil.copytree(ROOT / name, Path(scratch) / name)
+            save_scenes(path, Path(scratch))
             own = {**os.environ, "GLOAM_CACHE": str(Path(scratch) / "cache")}  # a page clears it
             for command in commands(path):
                 if NOT_HERE.match(command) or (NEEDS_A_CARD.match(command) and not shutil.which("nvidia-smi")):
@@ -49,13 +103,6 @@ class Documentation(unittest.TestCase):
                     process.send_signal(signal.SIGINT)
                     output, _ = process.communicate(timeout=30)
                 self.assertEqual(process.returncode, 0, f"{path.name}: `{command}` says\n{output}")
-
-    def test_links_lead_somewhere(self):
-        for path in [ROOT / "README.md", ROOT / "ARCHITECTURE.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]:
-            prose = re.sub(r"^```.*?^```", "", path.read_text(), flags=re.M | re.S)
-            for target in re.findall(r"\]\(([^)#]+)", prose):
-                if "://" not in target:
-                    self.assertTrue((path.parent / target).exists(), f"{path.name} links to {target}, which does not exist")
 
 
 def add_page(path):

@@ -291,7 +291,7 @@ TEST(LiveCamera, WhatCannotBeOpenedSaysWhy) {
   EXPECT_NE(refused(changed([](R& r) { r.outputs = {"dept"}; })).find("depth"), std::string::npos);
   EXPECT_NE(refused(changed([](R& r) { r.render.tier = "raster"; })).find("raster"),
             std::string::npos);
-  EXPECT_NE(refused(changed([](R& r) { r.rate = {0, 1}; })).find("rate"), std::string::npos);
+  EXPECT_NE(refused(changed([](R& r) { r.rate = {-1, 1}; })).find("rate"), std::string::npos);
   EXPECT_NE(refused(changed([](R& r) { r.rate = {501, 1}; })).find("501"), std::string::npos);
   for (const auto& [width, height] : std::vector<std::pair<int, int>>{
            {-1, 12}, {16, -1}, {16, 0}, {0, 12}, {16385, 12}, {16, 1 << 30}}) {
