@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs Gloam's tests: `./gloam test [fast|full] [--only NAME]`.
 
-fast  everything that takes about a minute once built
+fast  what takes about six minutes once built
       (no tier) what CI runs: format, lint of changed files, all tests; ASan+UBSan over the unit tests of what reads files, TSan over
       base and sim if one of them did; the other modules' sanitizers are in full, which also makes and tries the bundle
 full  the same plus lint of every file, every sanitizer over everything, 10 000 damaged files for every reader, five minutes of
@@ -281,8 +281,14 @@ def slow_units(tally):
         list(pool.map(lambda part: gtest(tally, "release", part[0], shard_filter="*Slow*", shard=part[1]), parts))
 
 
+def rules(tally):
+    """What reading the source tells."""
+    for file in ("tests/folder_rule.py", "tests/extending.py"):
+        python_tests(tally, file)
+
+
 def fast(tally):
-    python_tests(tally, "tests/folder_rule.py")
+    rules(tally)
     units(tally, "release", "-*Slow*")
     python_tests(tally, "tests/e2e/cli_test.py")
 
@@ -290,7 +296,7 @@ def fast(tally):
 def ci(tally):
     run([sys.executable, "tests/fetch_data.py"])
     check_format(tally)
-    python_tests(tally, "tests/folder_rule.py")
+    rules(tally)
     units(tally, "release", "-*Slow*")
     slow_units(tally)
     e2e_tests(tally)

@@ -98,6 +98,29 @@ class Install(unittest.TestCase):
         ran = json.loads(run([BUILD / "bin" / "gloam", "run", "made.xml", "--duration", "0.1", "--json"], self.elsewhere))
         self.assertEqual(ran["steps"], 100)
 
+    def test_the_examples_in_cpp_build_and_run(self):
+        build = self.folder / "examples"
+        include = ROOT / ".venv" / "wheels" / "mujoco" / "include"  # a controller sees MuJoCo's own structures
+        run(["cmake", "-S", ROOT / "examples" / "cpp", "-B", build, "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={self.prefix}",
+             f"-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror -isystem {include}"], "/")
+        run(["cmake", "--build", build], "/")
+        cache = {"GLOAM_CACHE": str(self.folder / "cache")}
+        model = self.model
+        said = run([build / "run_and_read", model], self.elsewhere, **cache)
+        program = json.loads(run([BUILD / "bin" / "gloam", "run", model, "--duration", "1", "--json"], self.elsewhere))
+        self.assertIn(f"t = 1.000 s, state hash {program['state_hash']}", said)
+        self.assertIn("1 actuators", said)
+        said = run([build / "subscribe", model], self.elsewhere, **cache)
+        self.assertIn("camera side (side_optical_frame)", said)
+        self.assertRegex(said, r"26 snapshots, 1[01] frames")
+        self.assertIn("most control 0.50", run([build / "drive", model], self.elsewhere, **cache))
+        said = run([build / "render_a_snapshot", model], self.elsewhere, **cache)
+        self.assertRegex(said, r"t = 0\.\d+ s: [1-9]\d* of 3072 pixels show something")
+        for name in ("run_and_read", "drive"):
+            failed = subprocess.run([build / name, "missing.xml"], capture_output=True, text=True, env={**os.environ, **cache})
+            self.assertEqual(failed.returncode, 1)
+            self.assertIn("missing.xml", failed.stderr)
+
     def test_the_page_of_the_library_builds_and_runs(self):
         consumer = self.program_of("library.md")
         said = run(hidden([consumer, self.model]), self.elsewhere, GLOAM_CACHE=str(self.folder / "cache"))
