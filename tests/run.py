@@ -23,6 +23,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests"))
 import fetch_data  # noqa: E402
+import labels  # noqa: E402
 
 BUILD = ROOT / "build"
 CLANG = "-19"
@@ -124,16 +125,8 @@ def gtest(tally, preset, module, only=None, shard_filter=None, shard=None):
     tally.add(name, max(ran - failed - skipped, 0), failed, skipped, seconds, "" if not failed else tail(result.stdout, 80))
 
 
-# What CI leaves out under sanitizers: tests of speed and memory, and means of so many samples that they take minutes there; their
-# code runs in shorter tests, and they themselves in the full tier.
-TOO_SLOW_SANITIZED = ("-*Slow*:*Allocat*:Adaptive.HasTheMeanOfEvenSampling:Adaptive.ReachesWhatIsAskedFor:"
-                      "Fast.LampsInMirrorsLightTheRoom:Fast.IndirectLightIsThatOfThePathTier:Fast.ARareBrightRayMakesNoSpot:"
-                      "Fast.CellsLookForLightWhereTheGuideHasFoundIt:Path.WhiteFurnaceReturnsAllLight:"
-                      "ManyLights.ThePictureIsTheSumOfThoseOfEachLight:Adaptive.EndsWhenItsUserSaysSo:"
-                      "TrotWalk.NoFallsInTwentySeedsOfPushes:PropsPhysics.*:AtmosphereReference.*:Glow.BringsTheLight*:"
-                      "GeneratedEnvironment.OfOneSeedIsOneHash*:Sky.SamplingAMap*:Fast.ARoomIsDarkSoon*:Guide.IsTheSameWhatever*:"
-                      "MovingSky.TheFastTier*:FastMedia.*:MovingSky.TheGround*:Fast.PicturesAreTheSameForAnyNumberOfThreads:Glow.FillsAClosedWhiteRoom*:Bvh.AMillionRays*:Fog.White*:"
-                      "*CameraLensTest.KnownPoints*:HeightErrorOf.APlane*:GasBudget.*:GasFire.*:GasFlow.*:GasWalls.*")
+# What CI leaves out under sanitizers.
+TOO_SLOW_SANITIZED = labels.without(labels.SLOW, labels.UNSANITIZED)
 MUTATIONS = 10_000  # damaged files per reader; without GLOAM_MUTATIONS the tests take 200
 
 
@@ -192,9 +185,25 @@ def check_lint_of_changes(tally):
     check_lint(tally, [name for name in changed("src/*.cc", "apps/*.cc") if (ROOT / name).exists()], at_most=16)
 
 
+LANDING = 30  # commits
+
+
+def base_commit():
+    """Where this work branched off from its upstream; on the upstream itself some landing before. "" in a clone without history."""
+    upstream = run(["git", "merge-base", "HEAD", "origin/main"]).stdout.strip()
+    head = run(["git", "rev-parse", "HEAD"]).stdout.strip()
+    if re.fullmatch("[0-9a-f]{40}", upstream) and upstream != head:
+        return upstream
+    older = run(["git", "rev-list", "--first-parent", f"--skip={LANDING}", "-n", "1", "HEAD"]).stdout.strip()
+    return older if re.fullmatch("[0-9a-f]{40}", older) else ""
+
+
 def changed(*patterns):
-    """Files that changed last, also those that have gone. In a clone without history, all."""
-    return list(dict.fromkeys(run(["git", "log", "--since=8 hours ago", "--name-only", "--pretty=", "--", *patterns]).stdout.split()))
+    """Files that changed since base_commit(), also those that have gone; newest first. In a clone without history, all."""
+    base = base_commit()
+    if not base:
+        return tracked(*patterns)
+    return list(dict.fromkeys(run(["git", "log", "--name-only", "--pretty=", f"{base}..HEAD", "--", *patterns]).stdout.split()))
 
 
 def commands_of_each_file():
@@ -274,22 +283,23 @@ def units(tally, preset, shard_filter, modules=UNIT):
         list(pool.map(lambda module: gtest(tally, preset, module, shard_filter=shard_filter), by_length))
 
 
-def slow_units(tally):
+def slow_units(tally, chosen):
     """Tests that take seconds each: two programs at a time, the places of all generators in two halves."""
-    parts = [("world", (0, 2)), ("world", (1, 2))] + [(module, None) for module in modules_with("Slow") if module != "world"]
+    modules = ["scene", "sim", "runtime", "geometry", "render", "sensors", "control", "studio"]
+    parts = [("world", (0, 2)), ("world", (1, 2))] + [(module, None) for module in modules]
     with ThreadPoolExecutor(2) as pool:
-        list(pool.map(lambda part: gtest(tally, "release", part[0], shard_filter="*Slow*", shard=part[1]), parts))
+        list(pool.map(lambda part: gtest(tally, "release", part[0], shard_filter=chosen, shard=part[1]), parts))
 
 
 def rules(tally):
     """What reading the source tells."""
-    for file in ("tests/folder_rule.py", "tests/extending.py"):
+    for file in ("tests/folder_rule.py", "tests/extending.py", "tests/labels_test.py"):
         python_tests(tally, file)
 
 
 def fast(tally):
     rules(tally)
-    units(tally, "release", "-*Slow*")
+    units(tally, "release", labels.without(labels.SLOW))
     python_tests(tally, "tests/e2e/cli_test.py")
 
 
@@ -297,8 +307,8 @@ def ci(tally):
     run([sys.executable, "tests/fetch_data.py"])
     check_format(tally)
     rules(tally)
-    units(tally, "release", "-*Slow*")
-    slow_units(tally)
+    units(tally, "release", labels.without(labels.SLOW))
+    slow_units(tally, labels.only(labels.SLOW, but=labels.FULL))
     e2e_tests(tally)
     check_lint_of_changes(tally)
     touched = {Path(name).parts[1] for name in changed("src/*")}
@@ -333,10 +343,11 @@ def full(tally):
     parts = {
         "ci": ci,
         "lint of all": lambda t: check_lint(t, tracked("src/*.cc", "apps/*.cc")),
-        "sweeps": lambda t: gtest(t, "release", "control", "*.DISABLED_Sweep*"),
-        "sweeps of places": lambda t: gtest(t, "release", "world", "*.DISABLED_Sweep*"),
-        "sweeps of meshes": lambda t: gtest(t, "release", "geometry", "*.DISABLED_Sweep*"),
-        "sweeps of running scenes": lambda t: gtest(t, "release", "runtime", "*.DISABLED_Sweep*"),
+        "slow and rare": lambda t: slow_units(t, labels.only(labels.FULL)),
+        "sweeps": lambda t: gtest(t, "release", "control", labels.only(labels.SWEEPS)),
+        "sweeps of places": lambda t: gtest(t, "release", "world", labels.only(labels.SWEEPS)),
+        "sweeps of meshes": lambda t: gtest(t, "release", "geometry", labels.only(labels.SWEEPS)),
+        "sweeps of running scenes": lambda t: gtest(t, "release", "runtime", labels.only(labels.SWEEPS)),
         "pack": pack,
         "first look at models": lambda t: python_tests(t, "tests/e2e/gallery_models.py"),
         "Mitsuba's mutations": lambda t: python_tests(t, "tests/e2e/mitsuba_mutations.py"),
@@ -368,7 +379,7 @@ def full(tally):
 
 
 def modules_with(word):
-    """Those whose tests' names hold it: "Mutations" is a reader's suite, "Slow" a test of speed."""
+    """Those that have a suite whose name holds it: "Mutations" is a reader's."""
     return [m for m in UNIT if any(word in path.read_text() for path in (ROOT / "src" / m / "test").glob("*_test.cc"))]
 
 

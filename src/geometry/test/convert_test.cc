@@ -494,26 +494,26 @@ TEST(Coarsen, KeepsBothSidesOfThinWalls) {
   EXPECT_GT(above, 1000u);
 }
 
-class PartsSlow : public testing::Test {
+class MeshParts : public testing::Test {
  protected:
   void SetUp() override {
 #ifdef GLOAM_SANITIZED
     GTEST_SKIP() << "CoACD is loaded with its own symbols first, which sanitizers refuse";
 #endif
   }
-  PartsSlow() {
+  MeshParts() {
     folder_ =
         std::filesystem::temp_directory_path() / ("gloam_parts_" + std::to_string(::getpid()));
     ::setenv("GLOAM_CACHE", folder_.c_str(), 1);
   }
-  ~PartsSlow() override {
+  ~MeshParts() override {
     ::unsetenv("GLOAM_CACHE");
     std::filesystem::remove_all(folder_);
   }
   std::filesystem::path folder_;
 };
 
-TEST_F(PartsSlow, OfThinAndThickThings) {
+TEST_F(MeshParts, OfThinAndThickThings) {
   struct Case {
     const char* name;
     TriangleMesh mesh;
@@ -559,7 +559,7 @@ TriangleMesh large_scan() {
   return scan;
 }
 
-TEST_F(PartsSlow, TheHullOfAScanOfFiveMillionTriangles) {
+TEST_F(MeshParts, TheHullOfAScanOfFiveMillionTriangles) {
   Converted hull;
   const double seconds = seconds_of(large_scan(), "hull", &hull);
   EXPECT_TRUE(hull.is_closed);
@@ -569,7 +569,7 @@ TEST_F(PartsSlow, TheHullOfAScanOfFiveMillionTriangles) {
   std::printf("hull of a scan: %.1f s\n", seconds);
 }
 
-TEST_F(PartsSlow, DISABLED_SweepPartsOfAScanOfFiveMillionTriangles) {
+TEST_F(MeshParts, DISABLED_SweepPartsOfAScanOfFiveMillionTriangles) {
   Converted parts;
   const double seconds = seconds_of(large_scan(), "hulls", &parts);
   EXPECT_GT(parts.colliders.size(), 1u);
@@ -580,7 +580,7 @@ TEST_F(PartsSlow, DISABLED_SweepPartsOfAScanOfFiveMillionTriangles) {
               overlap.shared);
 }
 
-TEST_F(PartsSlow, AreTheSameEveryTime) {
+TEST_F(MeshParts, AreTheSameEveryTime) {
   const TriangleMesh mesh = chair();
   const auto run = [&] {
     const auto start = std::chrono::steady_clock::now();

@@ -201,9 +201,9 @@ int64_t pixels_alone(const RenderDescription& whole, size_t instance, const Pose
   return pixels;
 }
 
-class SlowDrawnComplete : public ThirdPartyRobot {};
+class DrawnComplete : public ThirdPartyRobot {};
 
-TEST_P(SlowDrawnComplete, EveryGeomInViewIsInTheSegmentation) {
+TEST_P(DrawnComplete, EveryGeomInViewIsInTheSegmentation) {
   const StockModel& stock = *stock_;
   const mjModel& m = *stock.model;
   mjData* d = stock.data.get();
@@ -285,7 +285,7 @@ TEST_P(SlowDrawnComplete, EveryGeomInViewIsInTheSegmentation) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Robots, SlowDrawnComplete,
+    Robots, DrawnComplete,
     ::testing::Values(kGo1, kG1, kYam, kPanda,
                       "robosuite/robosuite/models/assets/robots/ur5e/robot.xml",
                       "robosuite/robosuite/models/assets/robots/baxter/robot.xml",

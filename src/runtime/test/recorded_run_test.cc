@@ -219,7 +219,7 @@ TEST_F(RecordedRun, PhysicsDoesNotDependOnBeingRecorded) {
 }
 
 // The main job itself: controller, contacts, two cameras in the furnished room.
-TEST_F(RecordedRun, SlowTheDemoDoesNotDependOnThreadsOrRecording) {
+TEST_F(RecordedRun, TheDemoDoesNotDependOnThreadsOrRecording) {
   ::setenv("GLOAM_CACHE", (folder_.path() / "cache").c_str(), 1);
   const Result<Scene> scene = load_scene(GLOAM_SOURCE_DIR "/examples/demo.toml");
   ASSERT_TRUE(scene.ok()) << scene.error().to_string();

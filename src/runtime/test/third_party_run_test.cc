@@ -120,9 +120,9 @@ bool sees_something(const CameraFrame& frame) {
                      [](uint16_t i) { return i != 0; });
 }
 
-class SlowThirdPartyRun : public ThirdPartyRobot {};
+class ThirdPartyRun : public ThirdPartyRobot {};
 
-TEST_P(SlowThirdPartyRun, IsStockBitForBitWhileTwoCamerasRender) {
+TEST_P(ThirdPartyRun, IsStockBitForBitWhileTwoCamerasRender) {
   const StockModel& stock = *stock_;
   std::vector<double> last;
   const States states = stock_run(stock, &last);
@@ -156,7 +156,7 @@ TEST_P(SlowThirdPartyRun, IsStockBitForBitWhileTwoCamerasRender) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Robots, SlowThirdPartyRun, ::testing::Values(kGo1, kG1, kYam, kPanda),
+INSTANTIATE_TEST_SUITE_P(Robots, ThirdPartyRun, ::testing::Values(kGo1, kG1, kYam, kPanda),
                          robot_name);
 
 // Stock loading throws a URDF's visuals away; Gloam draws them and steps the same.
@@ -191,7 +191,7 @@ TEST(UrdfRun, IsStockBitForBitAndShowsItsVisuals) {
 }
 
 // Contacts, friction and two robots in one model: what export writes is what runs.
-TEST(SlowThirdPartyLevel, TwoRobotsOnAFloorRunAsTheirExport) {
+TEST(ThirdPartyLevel, TwoRobotsOnAFloorRunAsTheirExport) {
   const auto go1 = third_party_file(kGo1), panda = third_party_file(kPanda);
   if (!go1 || !panda) GTEST_SKIP() << "no third-party robots: run tests/fetch_data.py";
   const TempFolder folder;

@@ -123,7 +123,7 @@ constexpr std::string_view kLeaveNothing =
     "body/flexcomp/scale body/geom/castshadow default/dcmotor/nominal default/geom/castshadow "
     "default/intvelocity/actlimited default/pid/imax";
 
-TEST(MjcfSpec, SlowEveryAttributeIsReadAndEveryFieldIsMirrored) {
+TEST(MjcfSpec, EveryAttributeIsReadAndEveryFieldIsMirrored) {
   const mjcf::SchemaCoverage coverage = mjcf::find_schema_coverage();
   EXPECT_EQ(coverage.elements, static_cast<int>(MjcfSchema::get().elements().size()));
   EXPECT_GE(coverage.attributes.size(), 1900U);
@@ -163,7 +163,7 @@ tendon/spatial/geom/geom tendon/spatial/geom/sidesite tendon/spatial/pulley/divi
 tendon/spatial/site/site
 )";
 
-TEST(MjcfSpec, SlowSettingAfterwardsIsTheSameAsWritingItInTheFile) {
+TEST(MjcfSpec, SettingAfterwardsIsTheSameAsWritingItInTheFile) {
   std::set<std::string> different;
   int same = 0;
   for (const MjcfElement& element : MjcfSchema::get().elements()) {

@@ -108,7 +108,7 @@ std::shared_ptr<CompiledWorld> busy_snow(double water = kWater) {
   return snowed(bodies, 0.1, water, 2);
 }
 
-TEST(FallenSnow, SlowHashDoesNotDependOnThreadsPaceOrWatchers) {
+TEST(FallenSnow, HashDoesNotDependOnThreadsPaceOrWatchers) {
   const uint64_t reference = expect_one_hash([](SimulatorOptions options, bool watched) {
     std::function<void(const Snapshot&)> look;
     if (watched) look = [](const Snapshot&) {};

@@ -153,7 +153,7 @@ void check_plume(float voxel) {
 }
 
 TEST(GasFlow, PlumesObeyTheirLaw) { check_plume(0.16f); }
-TEST(GasFlowSlow, PlumesObeyTheirLaw) { check_plume(0.1f); }
+TEST(GasPlumes, PlumesObeyTheirLaw) { check_plume(0.1f); }
 
 }  // namespace
 }  // namespace gloam

@@ -183,7 +183,7 @@ std::shared_ptr<CompiledWorld> drone_world(bool in_gas, float wind) {
   return world;
 }
 
-TEST(GasForcesSlow, ADroneIsNotBlownDownByItsOwnRotorsButAsideByWind) {
+TEST(GasForcesOnDrones, ADroneIsNotBlownDownByItsOwnRotorsButAsideByWind) {
   const auto after = [](std::shared_ptr<CompiledWorld> world) {
     auto sim = make_simulator(std::move(world), lockstep());
     sim->start();

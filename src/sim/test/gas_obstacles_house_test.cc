@@ -18,7 +18,7 @@ double seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-class GasObstaclesSlow : public ::testing::Test {
+class GasObstaclesOfHouses : public ::testing::Test {
  protected:
   void SetUp() override { ::setenv("GLOAM_CACHE", (folder_.path() / "cache").c_str(), 1); }
 
@@ -77,7 +77,7 @@ class GasObstaclesSlow : public ::testing::Test {
   TempFolder folder_;
 };
 
-TEST_F(GasObstaclesSlow, AirGetsFromTheHallToEveryRoomThroughOpenDoorsOnly) {
+TEST_F(GasObstaclesOfHouses, AirGetsFromTheHallToEveryRoomThroughOpenDoorsOnly) {
   for (const float voxel : {.1f, .08f}) {
     SCOPED_TRACE(voxel);
     GasRig open(house(4, "open"), around(*house(4, "open"), voxel), GasObstacles::kSealedGap);
@@ -123,7 +123,7 @@ std::string robot_and_doors() {
   return xml;
 }
 
-TEST_F(GasObstaclesSlow, TakesMillisecondsForARobotAndTwentyDoors) {
+TEST_F(GasObstaclesOfHouses, TakesMillisecondsForARobotAndTwentyDoors) {
   GasRig rig(robot_and_doors(), {100, 80, 26, .1f, {-5, -4, -.1f}}, .01);
   mjModel& m = *rig.world->model;
   ASSERT_EQ(m.ngeom, 51);
@@ -146,7 +146,7 @@ TEST_F(GasObstaclesSlow, TakesMillisecondsForARobotAndTwentyDoors) {
   EXPECT_LT(walls, .003);
 }
 
-TEST_F(GasObstaclesSlow, TakesLessThanHalfASecondForWhatStandsStill) {
+TEST_F(GasObstaclesOfHouses, TakesLessThanHalfASecondForWhatStandsStill) {
   const auto world = house(6, "open");
   for (const float voxel : {.1f, .05f}) {
     const GasGrid grid = around(*world, voxel);

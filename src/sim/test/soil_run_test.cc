@@ -196,7 +196,7 @@ uint64_t busy_hash(SimulatorOptions options, bool watched, const std::string& ki
   return hash_after_steps(make_simulator(busy_bed(kind), std::move(options)), 600, look);
 }
 
-TEST(SoilEffectRun, SlowHashDoesNotDependOnThreadsPaceOrWatchers) {
+TEST(SoilEffectRun, HashDoesNotDependOnThreadsPaceOrWatchers) {
   const uint64_t reference = expect_one_hash(
       [](SimulatorOptions options, bool watched) { return busy_hash(options, watched); });
   EXPECT_NE(busy_hash({}, false, "sandy_loam"), reference);

@@ -37,7 +37,7 @@ std::string round_plate(double radius) {
   return fmt::format("type='cylinder' size='{} .02'", radius);
 }
 
-TEST(SoilPlates, SlowSinkAsBekkerSaysAndTakeTheEnergyOfIt) {
+TEST(SoilPlates, SinkAsBekkerSaysAndTakeTheEnergyOfIt) {
   for (const char* kind : {"dry_sand", "clayey_soil"}) {
     const Law law(kind);
     for (const double radius : {0.05, 0.1, 0.15}) {
@@ -152,7 +152,7 @@ struct Drawn {
 
 // Janosi and Hanamoto: what is under the plate from the beginning has been sheared by the way that
 // it went, what it has come over since by less.
-TEST(SoilShear, SlowADrawnPlateMeetsMohrAndCoulombsLimit) {
+TEST(SoilShear, ADrawnPlateMeetsMohrAndCoulombsLimit) {
   for (const char* kind : {"dry_sand", "clayey_soil"}) {
     const SoilStrength s = soil_strength(kind);
     Drawn drawn(20e3, kind);
@@ -192,7 +192,7 @@ TEST(SoilShear, WhatIsPushedLessThanTheLimitStays) {
 
 // A rigid wheel that is towed slowly: Bekker's formula takes z along the circle for a parabola and
 // leaves out what shear carries.
-TEST(SoilWheel, SlowSinksAsBekkersRigidWheel) {
+TEST(SoilWheel, SinksAsBekkersRigidWheel) {
   const Law law("dry_sand");
   const double radius = 0.25, width = 0.15;
   for (const double load : {150.0, 300.0, 600.0}) {

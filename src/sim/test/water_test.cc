@@ -254,7 +254,7 @@ TEST(WaterFloats, ABallRisesWithItsAddedMassAndEndsAtItsTerminalSpeed) {
   EXPECT_NEAR(ball.joint().qvel[2], end, 0.03 * end);
 }
 
-TEST(WaterFloats, SlowBallsSinkByStokesLaw) {
+TEST(WaterFloats, BallsSinkByStokesLaw) {
   WaterOptions honey = calm_water(20, 100);
   honey.viscosity = 10;
   const double r = 0.01, mu = 10;

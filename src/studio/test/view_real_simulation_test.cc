@@ -87,7 +87,7 @@ TEST_F(ViewOfARealSimulation, WatchingChangesNothing) {
   EXPECT_EQ(hash_watched(world, 1000, 2), hash_alone(world, 1000));
 }
 
-TEST_F(ViewOfARealSimulation, SlowWatchingAThirdPartyRobotChangesNothing) {
+TEST_F(ViewOfARealSimulation, WatchingAThirdPartyRobotChangesNothing) {
   const char* data = std::getenv("GLOAM_TEST_DATA");
   const fs::path robots = fs::path(data != nullptr ? data : "") / "mjlab/mjlab/asset_zoo/robots";
   if (data == nullptr || !fs::is_directory(robots)) GTEST_SKIP() << "run tests/fetch_data.py";

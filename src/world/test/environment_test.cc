@@ -54,7 +54,7 @@ TEST_F(GeneratedEnvironment, RefusesWhatItCannotMake) {
             std::string::npos);
 }
 
-TEST_F(GeneratedEnvironment, SlowIsMadeAsTheManualShowsIt) {
+TEST_F(GeneratedEnvironment, IsMadeAsTheManualShowsIt) {
   const std::filesystem::path source = GLOAM_SOURCE_DIR;
   std::string manual = read_text_file(source / "docs/environments.md").value();
   const std::string here = "\"../assets/";

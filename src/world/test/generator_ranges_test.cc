@@ -51,7 +51,7 @@ class RangeDice {
   Dice dice_;
 };
 
-class GeneratorRangesSlow : public GeneratedPlace {
+class GeneratorRanges : public GeneratedPlace {
  protected:
   template <class Options>
   static Options drawn(uint64_t number, std::string* text) {
@@ -81,38 +81,38 @@ class GeneratorRangesSlow : public GeneratedPlace {
   }
 };
 
-TEST_F(GeneratorRangesSlow, HousesAreMade) { expect_made<HouseOptions>(1, 24); }
-TEST_F(GeneratorRangesSlow, WarehousesAreMade) { expect_made<WarehouseOptions>(1, 12); }
-TEST_F(GeneratorRangesSlow, OfficesAreMade) { expect_made<OfficeOptions>(1, 24); }
-TEST_F(GeneratorRangesSlow, HallwaysAreMade) { expect_made<HallwayOptions>(1, 48); }
-TEST_F(GeneratorRangesSlow, BedroomsAreMade) { expect_made<BedroomOptions>(1, 48); }
-TEST_F(GeneratorRangesSlow, TunnelsAreMade) { expect_made<TunnelOptions>(1, 16); }
-TEST_F(GeneratorRangesSlow, TerrainsAreMade) { expect_made<TerrainOptions>(1, 12); }
+TEST_F(GeneratorRanges, HousesAreMade) { expect_made<HouseOptions>(1, 24); }
+TEST_F(GeneratorRanges, WarehousesAreMade) { expect_made<WarehouseOptions>(1, 12); }
+TEST_F(GeneratorRanges, OfficesAreMade) { expect_made<OfficeOptions>(1, 24); }
+TEST_F(GeneratorRanges, HallwaysAreMade) { expect_made<HallwayOptions>(1, 48); }
+TEST_F(GeneratorRanges, BedroomsAreMade) { expect_made<BedroomOptions>(1, 48); }
+TEST_F(GeneratorRanges, TunnelsAreMade) { expect_made<TunnelOptions>(1, 16); }
+TEST_F(GeneratorRanges, TerrainsAreMade) { expect_made<TerrainOptions>(1, 12); }
 
-TEST_F(GeneratorRangesSlow, DISABLED_SweepHouses) { expect_made<HouseOptions>(101, 500); }
-TEST_F(GeneratorRangesSlow, DISABLED_SweepWarehouses) { expect_made<WarehouseOptions>(101, 400); }
-TEST_F(GeneratorRangesSlow, DISABLED_SweepOffices) { expect_made<OfficeOptions>(101, 500); }
-TEST_F(GeneratorRangesSlow, DISABLED_SweepHallways) { expect_made<HallwayOptions>(101, 700); }
-TEST_F(GeneratorRangesSlow, DISABLED_SweepBedrooms) { expect_made<BedroomOptions>(101, 700); }
-TEST_F(GeneratorRangesSlow, DISABLED_SweepTunnels) { expect_made<TunnelOptions>(101, 400); }
-TEST_F(GeneratorRangesSlow, DISABLED_SweepTerrains) { expect_made<TerrainOptions>(101, 400); }
+TEST_F(GeneratorRanges, DISABLED_SweepHouses) { expect_made<HouseOptions>(101, 500); }
+TEST_F(GeneratorRanges, DISABLED_SweepWarehouses) { expect_made<WarehouseOptions>(101, 400); }
+TEST_F(GeneratorRanges, DISABLED_SweepOffices) { expect_made<OfficeOptions>(101, 500); }
+TEST_F(GeneratorRanges, DISABLED_SweepHallways) { expect_made<HallwayOptions>(101, 700); }
+TEST_F(GeneratorRanges, DISABLED_SweepBedrooms) { expect_made<BedroomOptions>(101, 700); }
+TEST_F(GeneratorRanges, DISABLED_SweepTunnels) { expect_made<TunnelOptions>(101, 400); }
+TEST_F(GeneratorRanges, DISABLED_SweepTerrains) { expect_made<TerrainOptions>(101, 400); }
 
-TEST_F(GeneratorRangesSlow, AreSoundInside) {
+TEST_F(GeneratorRanges, AreSoundInside) {
   expect_sound_numbers<HouseOptions>(3, 4, kFine);
   expect_sound_numbers<OfficeOptions>(1, 2, kFine);
   expect_sound_numbers<HallwayOptions>(1, 4, kFine);
   expect_sound_numbers<BedroomOptions>(1, 4, kFine);
 }
-TEST_F(GeneratorRangesSlow, DISABLED_SweepHousesAreSound) {
+TEST_F(GeneratorRanges, DISABLED_SweepHousesAreSound) {
   expect_sound_numbers<HouseOptions>(101, 160, kFine);
 }
-TEST_F(GeneratorRangesSlow, DISABLED_SweepOfficesAreSound) {
+TEST_F(GeneratorRanges, DISABLED_SweepOfficesAreSound) {
   expect_sound_numbers<OfficeOptions>(101, 160, kFine);
 }
-TEST_F(GeneratorRangesSlow, DISABLED_SweepHallwaysAreSound) {
+TEST_F(GeneratorRanges, DISABLED_SweepHallwaysAreSound) {
   expect_sound_numbers<HallwayOptions>(101, 200, kFine);
 }
-TEST_F(GeneratorRangesSlow, DISABLED_SweepBedroomsAreSound) {
+TEST_F(GeneratorRanges, DISABLED_SweepBedroomsAreSound) {
   expect_sound_numbers<BedroomOptions>(101, 200, kFine);
 }
 

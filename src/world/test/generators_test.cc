@@ -11,7 +11,7 @@
 namespace gloam {
 namespace {
 
-class GeneratorsSlow : public GeneratedPlace {
+class GeneratedPlaces : public GeneratedPlace {
  protected:
   static std::vector<HouseOptions> houses_of_all_sizes() {
     std::vector<HouseOptions> houses;
@@ -72,17 +72,17 @@ class GeneratorsSlow : public GeneratedPlace {
   }
 };
 
-TEST_F(GeneratorsSlow, MakeHousesThatAreReachableAndAtRest) {
+TEST_F(GeneratedPlaces, MakeHousesThatAreReachableAndAtRest) {
   expect_sound_seeds<HouseOptions>(1, 10, kFine);
 }
-TEST_F(GeneratorsSlow, DISABLED_SweepHousesOfHundredSeeds) {
+TEST_F(GeneratedPlaces, DISABLED_SweepHousesOfHundredSeeds) {
   expect_sound_seeds<HouseOptions>(1, 100, kFine);
 }
-TEST_F(GeneratorsSlow, DISABLED_SweepHousesOfAnotherHundred) {
+TEST_F(GeneratedPlaces, DISABLED_SweepHousesOfAnotherHundred) {
   expect_sound_seeds<HouseOptions>(101, 200, kFine);
 }
 
-TEST_F(GeneratorsSlow, MakeHousesOfAsManyRoomsAsAskedForOnOneOrTwoStoreys) {
+TEST_F(GeneratedPlaces, MakeHousesOfAsManyRoomsAsAskedForOnOneOrTwoStoreys) {
   for (const HouseOptions& house : houses_of_all_sizes()) {
     const Result<World> world = World::compile(scene_of(house));
     ASSERT_TRUE(world.ok()) << world.error().to_string();
@@ -91,12 +91,12 @@ TEST_F(GeneratorsSlow, MakeHousesOfAsManyRoomsAsAskedForOnOneOrTwoStoreys) {
     EXPECT_EQ(count, std::max(house.rooms, house.storeys == 2 ? 4 : 3));
   }
 }
-TEST_F(GeneratorsSlow, DISABLED_SweepHousesOfAllSizes) {
+TEST_F(GeneratedPlaces, DISABLED_SweepHousesOfAllSizes) {
   for (const HouseOptions& house : houses_of_all_sizes())
     expect_sound(house, kFine, ", storeys " + std::to_string(house.storeys));
 }
 
-TEST_F(GeneratorsSlow, MakeHousesAtTheExtremesOfTheirParameters) {
+TEST_F(GeneratedPlaces, MakeHousesAtTheExtremesOfTheirParameters) {
   for (const bool high : {false, true}) {
     HouseOptions house;
     house.ceiling = high ? 4 : 2.2;
@@ -109,17 +109,17 @@ TEST_F(GeneratorsSlow, MakeHousesAtTheExtremesOfTheirParameters) {
   }
 }
 
-TEST_F(GeneratorsSlow, MakeWarehousesThatAreReachableAndAtRest) {
+TEST_F(GeneratedPlaces, MakeWarehousesThatAreReachableAndAtRest) {
   expect_sound_seeds(1, 10, kCoarse, small_warehouse());
 }
-TEST_F(GeneratorsSlow, DISABLED_SweepWarehousesOfHundredSeeds) {
+TEST_F(GeneratedPlaces, DISABLED_SweepWarehousesOfHundredSeeds) {
   expect_sound_seeds(1, 100, kCoarse, small_warehouse());
 }
-TEST_F(GeneratorsSlow, DISABLED_SweepWarehousesOfAnotherHundred) {
+TEST_F(GeneratedPlaces, DISABLED_SweepWarehousesOfAnotherHundred) {
   expect_sound_seeds(101, 200, kCoarse, small_warehouse());
 }
 
-TEST_F(GeneratorsSlow, MakeWarehousesAtTheExtremesOfTheirParameters) {
+TEST_F(GeneratedPlaces, MakeWarehousesAtTheExtremesOfTheirParameters) {
   for (const bool high : {false, true}) {
     WarehouseOptions warehouse;
     warehouse.length = high ? 24 : 12;
@@ -134,39 +134,39 @@ TEST_F(GeneratorsSlow, MakeWarehousesAtTheExtremesOfTheirParameters) {
   }
 }
 
-TEST_F(GeneratorsSlow, MakeOfficesThatAreReachableAndAtRest) {
+TEST_F(GeneratedPlaces, MakeOfficesThatAreReachableAndAtRest) {
   expect_sound_seeds(1, 10, kFine, small_office());
 }
-TEST_F(GeneratorsSlow, DISABLED_SweepOfficesOfTwoHundredSeeds) {
+TEST_F(GeneratedPlaces, DISABLED_SweepOfficesOfTwoHundredSeeds) {
   expect_sound_seeds(1, 200, kFine, small_office());
 }
-TEST_F(GeneratorsSlow, MakeHallwaysThatAreReachableAndAtRest) {
+TEST_F(GeneratedPlaces, MakeHallwaysThatAreReachableAndAtRest) {
   expect_sound_seeds<HallwayOptions>(1, 10, kCoarse);
 }
-TEST_F(GeneratorsSlow, DISABLED_SweepHallwaysOfTwoHundredSeeds) {
+TEST_F(GeneratedPlaces, DISABLED_SweepHallwaysOfTwoHundredSeeds) {
   expect_sound_seeds<HallwayOptions>(1, 200, kCoarse);
 }
-TEST_F(GeneratorsSlow, MakeBedroomsThatAreReachableAndAtRest) {
+TEST_F(GeneratedPlaces, MakeBedroomsThatAreReachableAndAtRest) {
   expect_sound_seeds<BedroomOptions>(1, 10, kFine);
 }
-TEST_F(GeneratorsSlow, DISABLED_SweepBedroomsOfTwoHundredSeeds) {
+TEST_F(GeneratedPlaces, DISABLED_SweepBedroomsOfTwoHundredSeeds) {
   expect_sound_seeds<BedroomOptions>(1, 200, kFine);
 }
-TEST_F(GeneratorsSlow, MakeTunnelsThatAreReachableAndAtRest) {
+TEST_F(GeneratedPlaces, MakeTunnelsThatAreReachableAndAtRest) {
   expect_sound_seeds(1, 10, kCoarse, short_tunnel());
 }
-TEST_F(GeneratorsSlow, DISABLED_SweepTunnelsOfTwoHundredSeeds) {
+TEST_F(GeneratedPlaces, DISABLED_SweepTunnelsOfTwoHundredSeeds) {
   expect_sound_seeds(1, 200, kCoarse, short_tunnel());
 }
 
-TEST_F(GeneratorsSlow, MakeTerrainsThatAreReachableAndAtRest) {
+TEST_F(GeneratedPlaces, MakeTerrainsThatAreReachableAndAtRest) {
   expect_sound_seeds(1, 10, kWide, small_terrain());
 }
-TEST_F(GeneratorsSlow, DISABLED_SweepTerrainsOfTwoHundredSeeds) {
+TEST_F(GeneratedPlaces, DISABLED_SweepTerrainsOfTwoHundredSeeds) {
   expect_sound_seeds(1, 200, kWide, small_terrain());
 }
 
-TEST_F(GeneratorsSlow, MakeTerrainsAtTheExtremesOfTheirParameters) {
+TEST_F(GeneratedPlaces, MakeTerrainsAtTheExtremesOfTheirParameters) {
   for (const bool high : {false, true}) {
     TerrainOptions terrain;
     terrain.length = high ? 60 : 20;
@@ -181,7 +181,7 @@ TEST_F(GeneratorsSlow, MakeTerrainsAtTheExtremesOfTheirParameters) {
   }
 }
 
-TEST_F(GeneratorsSlow, DrawTheGroundOfTerrainsWhereItIsFelt) {
+TEST_F(GeneratedPlaces, DrawTheGroundOfTerrainsWhereItIsFelt) {
   const Result<World> world = World::compile(scene_of(small_terrain()));
   ASSERT_TRUE(world.ok()) << world.error().to_string();
   const mjModel* m = world->compiled()->model.get();
@@ -212,7 +212,7 @@ TEST_F(GeneratorsSlow, DrawTheGroundOfTerrainsWhereItIsFelt) {
   mj_deleteData(d);
 }
 
-TEST_F(GeneratorsSlow, MakeTheOthersAtTheExtremesOfTheirParameters) {
+TEST_F(GeneratedPlaces, MakeTheOthersAtTheExtremesOfTheirParameters) {
   for (const bool high : {false, true}) {
     OfficeOptions office;
     office.length = high ? 20 : 10;
@@ -248,24 +248,24 @@ TEST_F(GeneratorsSlow, MakeTheOthersAtTheExtremesOfTheirParameters) {
 }
 
 // Of the sizes that scenes have by default.
-TEST_F(GeneratorsSlow, DISABLED_SweepWarehousesOfDefaultSize) {
+TEST_F(GeneratedPlaces, DISABLED_SweepWarehousesOfDefaultSize) {
   expect_sound_seeds<WarehouseOptions>(1, 20, kCoarse);
 }
-TEST_F(GeneratorsSlow, DISABLED_SweepOfficesOfDefaultSize) {
+TEST_F(GeneratedPlaces, DISABLED_SweepOfficesOfDefaultSize) {
   expect_sound_seeds<OfficeOptions>(1, 20, kFine);
 }
-TEST_F(GeneratorsSlow, DISABLED_SweepTunnelsOfDefaultSize) {
+TEST_F(GeneratedPlaces, DISABLED_SweepTunnelsOfDefaultSize) {
   expect_sound_seeds<TunnelOptions>(1, 20, kCoarse);
 }
-TEST_F(GeneratorsSlow, DISABLED_SweepTerrainsOfDefaultSize) {
+TEST_F(GeneratedPlaces, DISABLED_SweepTerrainsOfDefaultSize) {
   expect_sound_seeds<TerrainOptions>(1, 20, kWide);
 }
 
-TEST_F(GeneratorsSlow, MakeLooseThingsAndLidsThatStayWhereTheyAre) {
+TEST_F(GeneratedPlaces, MakeLooseThingsAndLidsThatStayWhereTheyAre) {
   expect_sound(all_loose(OfficeOptions(), 11), kFine);
   expect_sound(all_loose(BedroomOptions(), 2), kCoarse);
 }
-TEST_F(GeneratorsSlow, DISABLED_SweepLooseThingsAndLids) {
+TEST_F(GeneratedPlaces, DISABLED_SweepLooseThingsAndLids) {
   for (uint64_t seed = 1; seed <= 20; ++seed) {
     expect_sound(all_loose(OfficeOptions(), seed), kFine, ", office");
     expect_sound(all_loose(HouseOptions(), seed), kFine, ", house");
@@ -277,11 +277,11 @@ TEST_F(GeneratorsSlow, DISABLED_SweepLooseThingsAndLids) {
 }
 
 // To each room, for a robot of that width.
-TEST_F(GeneratorsSlow, LeaveTheWayFreeThatIsAskedFor) { expect_ways(1, 1); }
-TEST_F(GeneratorsSlow, DISABLED_SweepWaysThatAreAskedFor) { expect_ways(2, 21); }
+TEST_F(GeneratedPlaces, LeaveTheWayFreeThatIsAskedFor) { expect_ways(1, 1); }
+TEST_F(GeneratedPlaces, DISABLED_SweepWaysThatAreAskedFor) { expect_ways(2, 21); }
 
 // Their corners once had walls of no width at all.
-TEST_F(GeneratorsSlow, MakeHallwaysOfAsManyTurnsAsAskedForAndOfTheirLength) {
+TEST_F(GeneratedPlaces, MakeHallwaysOfAsManyTurnsAsAskedForAndOfTheirLength) {
   for (const double width : {1.6, 2.4, 2.8, 3.2, 6.0})
     for (const double length : {8.0, 20.0, 30.0, 40.0, 80.0})
       for (const int turns : {1, 2, 3}) {
@@ -304,7 +304,7 @@ TEST_F(GeneratorsSlow, MakeHallwaysOfAsManyTurnsAsAskedForAndOfTheirLength) {
       }
 }
 
-TEST_F(GeneratorsSlow, MakeTheSameOfOneSeedAndAnotherOfTheNext) {
+TEST_F(GeneratedPlaces, MakeTheSameOfOneSeedAndAnotherOfTheNext) {
   HouseOptions house;
   const Result<World> one = World::compile(scene_of(house)),
                       again = World::compile(scene_of(house));

@@ -111,7 +111,7 @@ TEST_F(PropsPhysics, LeavesMoveFreelyOverTheirWholeTravel) {
   }
 }
 
-TEST_F(PropsPhysics, SlowAllCanBeDrawn) {
+TEST_F(PropsPhysics, AllCanBeDrawn) {
   const Result<World> world = compile([](const Prop&) { return true; }, false);
   ASSERT_TRUE(world.ok()) << world.error().to_string();
   const Result<RenderDescription> drawn = describe_for_rendering(*world->compiled());

@@ -63,7 +63,7 @@ TEST_F(ThirdParty, UnitreeAndYamAreStockAndRoundTrip) {
   for (const char* name : kMjlab) EXPECT_EQ(check(mjlab_ / name), "") << name;
 }
 
-TEST_F(ThirdParty, SlowEveryFileThatStockLoadsRoundTrips) {
+TEST_F(ThirdParty, EveryFileThatStockLoadsRoundTrips) {
   if (!fs::is_directory(data_ / "robosuite")) GTEST_SKIP() << "robosuite was not fetched";
   std::vector<fs::path> files;
   for (const char* wheel : {"mjlab", "robosuite"}) {
