@@ -8,7 +8,7 @@ LidarMotion make_lidar_motion(const Affine3f& X_WL_open, const Affine3f& X_WL_cl
   LidarMotion motion;
   motion.X_WL = X_WL_open;
   motion.shift = X_WL_close.p - X_WL_open.p;
-  // Of the turn from open to close, in the frame at open: twice its sine times the axis is what its
+  // Rotation from open to close, in the frame at open: twice its sine times the axis is what its
   // matrix R lacks to be symmetric.
   const Affine3f& a = X_WL_open;
   const Affine3f& b = X_WL_close;

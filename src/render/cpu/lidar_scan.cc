@@ -21,7 +21,7 @@ struct ScanJob {
   bool has_media;
 };
 
-/// Up to kLanes beams that follow each other.
+/// Scan of up to kLanes beams that follow each other.
 void scan_packet(const ScanJob& job, const LidarBeam* beams, int count, LidarReturn* out) {
   const LidarOptics& optics = job.view.optics;
   Vec3Of<FloatLanes> d_L;

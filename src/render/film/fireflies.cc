@@ -14,7 +14,7 @@ constexpr int kSpread = 16;           // how far the light of a firefly is sprea
 constexpr float kMostSpread = 0.02f;  // share of a firefly's limit that one pixel may get of it
 constexpr float kFacing = 0.9f;       // cosine between surfaces that take each other's light
 
-/// What is not a number, or infinite, is an error somewhere and not light.
+/// Values that are infinite or no number are errors elsewhere, not light.
 float sanitize(float x) { return x > 0 && x < INFINITY ? min(x, 1e9f) : 0.0f; }
 
 struct Firefly {
@@ -49,7 +49,7 @@ class Fireflies {
     });
   }
 
-  /// In the order of the rows, so sums do not depend on threads.
+  /// Spreads the light in the order of the rows, so sums do not depend on threads.
   void spread() {
     parallel_for("fireflies", height_, [&](int64_t row) {
       const int y = static_cast<int>(row), last = std::min(height_ - 1, y + kSpread);

@@ -1,6 +1,6 @@
 #pragma once
-// What the kernel reads: plain arrays in the memory of the side that runs it. render/scene fills
-// them. Device-safe.
+// Scene as the kernel reads it: plain arrays in the memory of the side that runs it. render/scene
+// fills them. Device-safe.
 
 #include "geometry/motion_keys.h"
 #include "render/kernel/light/environment.h"
@@ -22,7 +22,7 @@ struct TriangleUv {
 struct MeshView {
   DeviceSpan<const Vec3f> positions;           ///< frame G [m]; deformables: world, shutter open
   DeviceSpan<const Vec3f> positions_previous;  ///< deformables only
-  /// Of deformables that move while the shutter is open: the positions at key_count times, one key
+  /// Positions of deformables that move while the shutter is open, at key_count times, one key
   /// after the other.
   DeviceSpan<const Vec3f> position_keys;
   uint32_t key_count = 0;
@@ -65,7 +65,7 @@ struct Texel {
   uint16_t r = 0, g = 0, b = 0, a = 0;
 };
 
-/// What lies over the base of a material, or makes glass of it; names after OpenPBR 1.1.
+/// Layers over the base of a material, and glass; names after OpenPBR 1.1.
 struct MaterialLayers {
   float coat_weight = 0, coat_roughness = 0;
   float coat_f0 = 0.04f;  ///< at normal incidence
@@ -138,7 +138,7 @@ struct LightView {
   friend bool operator==(const LightView&, const LightView&) = default;
 };
 
-/// Where a lamp or sun is at one instant; as in LightView.
+/// State of a lamp or sun at one instant; as in LightView.
 struct LightKey {
   Vec3f p, direction, x;
 };
@@ -149,7 +149,7 @@ struct ProfileView {
   int rows = 0, columns = 0;
 };
 
-/// What light static geometry lets through to the cells of a regular grid, and from where. It
+/// Light that static geometry lets through to the cells of a regular grid, and from where. It
 /// steers sampling alone: a wrong guess costs noise, never the mean. A wall's two sides see
 /// different lights, so a cell has a row for static surfaces of each facing that it holds, and one
 /// for all else in it.
@@ -254,7 +254,8 @@ inline constexpr bool kOnCard = true;
 inline constexpr bool kOnCard = false;
 #endif
 
-/// What the weather has left on surfaces that the sky reaches, as of kernel/weathering.h.
+/// Water and snow that the weather has left on surfaces under the open sky, as of
+/// kernel/surface/weathering.h.
 struct FallenView {
   float wetness = 0, snow = 0;
   float time = 0;     ///< [s]
@@ -275,8 +276,8 @@ struct SceneView {
   DeviceSpan<const LightView> lights;
   DeviceSpan<const LightKey> light_keys;  ///< light_key_count of every light that moves
   uint32_t light_key_count = 0;
-  /// Of lights that flicker while the shutter is open: their light in light_level_count even spans
-  /// of time, as shares of its mean.
+  /// Levels of lights that flicker while the shutter is open: their light in light_level_count
+  /// equal spans of time, as fractions of its mean.
   DeviceSpan<const float> light_levels;
   uint32_t light_level_count = 0;
   DeviceSpan<const ProfileView> profiles;
@@ -303,8 +304,8 @@ struct SceneView {
   GLOAM_HD bool has_layers() const { return !kPlainScenes && layers.size > 0; }
   GLOAM_HD bool has_fallen() const { return !kPlainScenes && fallen.wetness + fallen.snow > 0; }
   GLOAM_HD bool has_media() const { return !kPlainScenes && media.volumes.size > 0; }
-  /// Some medium's light is drawn. Not on a card, where rays find it by chance alone: kernels for
-  /// all scenes are too long as they are.
+  /// Whether a medium's light is sampled. Not on a card, where rays find it by chance alone:
+  /// kernels for all scenes are too long as they are.
   GLOAM_HD bool has_glow() const { return !kOnCard && media.glows.size > 0; }
   GLOAM_HD bool has_environment() const { return !kPlainScenes && !environment.levels.empty(); }
   GLOAM_HD bool has_flicker() const { return !kPlainScenes && light_levels.size > 0; }

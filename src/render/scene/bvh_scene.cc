@@ -41,7 +41,7 @@ BvhBox box_of_all(const std::vector<BvhBox>& boxes) {
   return all;
 }
 
-/// Of a box in frame G, in the world.
+/// World bounds of a box in frame G.
 BvhBox moved(const BvhBox& b, const Affine3f& X_WG) {
   BvhBox out;
   for (int i = 0; i < 8; ++i) {
@@ -119,7 +119,7 @@ void BvhScene::place_mesh(const RenderScene& scene, uint32_t row) {
   place_triangles(scene.meshes()[row], mesh);
 }
 
-/// Those at the shutter's opening, then of deformables those at the other keys.
+/// Places triangles: those at the shutter's opening, then of deformables those at the other keys.
 void BvhScene::place_triangles(const MeshView& mesh, const MeshTree& tree) {
   const size_t count = tree.tree.order.size();
   const auto place = [&](const Vec3f* positions, size_t first) {

@@ -18,7 +18,7 @@ class BvhScene {
 
   /// Valid until the next update.
   BvhTracer tracer(const RenderScene& scene) const;
-  /// Of what never moves alone, without infinite planes.
+  /// Tracer of the bodies that never move, without infinite planes.
   BvhTracer static_tracer(const RenderScene& scene) const;
 
   const std::vector<BvhNode>& nodes() const { return nodes_; }
@@ -29,7 +29,7 @@ class BvhScene {
   const std::vector<uint32_t>& still() const { return still_; }
   /// Changes whenever anything but the first nodes and triangles may have.
   uint64_t version() const { return version_; }
-  /// So many of the first nodes and triangles are new after each update.
+  /// Number of the first nodes and triangles that are new after each update.
   size_t fresh_nodes() const { return fresh_nodes_; }
   size_t fresh_triangles() const { return fresh_triangles_; }
 

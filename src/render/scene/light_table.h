@@ -36,9 +36,9 @@ class LightTable {
   /// SceneView::light_keys.
   const std::vector<LightKey>& keys() const { return keys_; }
   uint32_t key_count() const { return key_count_; }
-  /// Over them where they are many, else empty.
+  /// Tree over the lights where they are many, else empty.
   LightTreeView tree() const { return tree_.view(); }
-  /// Some sphere or sun can be hit.
+  /// Whether a ray can hit some sphere or sun.
   bool has_visible() const { return has_visible_; }
 
  private:

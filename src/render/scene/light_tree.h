@@ -9,9 +9,9 @@ namespace gloam {
 
 class LightTree {
  public:
-  /// Over all of `lights`, a function of them alone; `headlights`: rows of those at the camera, in
-  /// order. Positions and strengths must be finite. Takes about 1 µs of CPU and 125 bytes a light,
-  /// and 60 more while it lasts.
+  /// Builds the tree over all of `lights`, a function of them alone; `headlights`: rows of those at
+  /// the camera, in order. Positions and strengths must be finite. Takes about 1 µs of CPU and 125
+  /// bytes a light, and 60 more while it lasts.
   void build(const std::vector<LightView>& lights, const std::vector<uint32_t>& headlights);
   /// Follows headlights that have moved; `lights` otherwise as they were built from.
   void move_headlights(const std::vector<LightView>& lights,

@@ -35,7 +35,7 @@ void MovingSky::update(double time) {
   const double at = sky_row(std::asin(std::clamp<double>(sun_.to_sun.z, -1, 1)));
   const int low = std::min(static_cast<int>(at), sky_count() - 2);
   const auto share = static_cast<float>(at - low);
-  // Of the two maps around it one is shown, as bright as between the two.
+  // Map shown: one of the two around the sun's elevation, as bright as between the two.
   const Map& below = map_of(low);
   const Vec3f sun_below = below.sun;
   const float bright_below = below.brightness;

@@ -1,5 +1,5 @@
 #pragma once
-// Where things fixed to bodies are.
+// Poses of things fixed to bodies.
 
 #include <cmath>
 

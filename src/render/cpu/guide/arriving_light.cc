@@ -19,7 +19,7 @@ constexpr float kOwn = 0.7f;         // share of a row's own light; its neighbou
 constexpr float kBeside = 0.1f;      // share that a cell gets of those beside it
 constexpr uint32_t kAcross = directions::kAcross, kCells = kAcross * kAcross;
 
-/// What a probe met.
+/// Surface or sky that a probe met.
 struct Arrival {
   float light = 0;   ///< luminance of what shines by itself or is lit by lights [cd/m²]
   float albedo = 0;  ///< of the surface
@@ -139,7 +139,7 @@ class ArrivingLight {
         });
   }
 
-  /// What the probe brought, for the map's area.
+  /// Luminance that the probe brought, weighted by the map's area.
   float light_of(const Arrival& a) const {
     const float reflected = a.row < 0 ? 0.0f : reflected_[static_cast<size_t>(a.row)];
     return (a.light + a.albedo * reflected) * a.weight;
@@ -217,7 +217,7 @@ class ArrivingLight {
     double before = 0;
     for (uint32_t cell = 0; cell < kCells; ++cell) {
       sums[cell] = static_cast<float>(std::min(before, 1.0));
-      // Where all is dark: from all around alike.
+      // Dark maps count as even light from all around.
       before += total > 0 ? static_cast<double>(light[cell]) / total : 1.0 / kCells;
     }
     sums[kCells] = 1;

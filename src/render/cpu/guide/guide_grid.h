@@ -21,14 +21,14 @@ struct SurfacePoint {
   Vec3f p, n;  ///< just off the surface [m], and its unit normal
 };
 
-/// Where the rays of one row of the guide start: at surfaces, or anywhere in the cell.
+/// Place where the rays of one row of the guide start: at surfaces, or anywhere in the cell.
 struct GuideRow {
   int cell = 0;
   int facing = -1;  ///< -1: anywhere
   std::vector<SurfacePoint> points;
 };
 
-/// Where ray `ray` of the row starts; n = 0: anywhere in the cell.
+/// Start of ray `ray` of the row; n = 0: anywhere in the cell.
 SurfacePoint start_of(const LightGuide& grid, const GuideRow& row, int ray, Sampler* sampler);
 
 /// Points in the cell on the outside of static surfaces that face `facing` (LightGuide::facing_of).

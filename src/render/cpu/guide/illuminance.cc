@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kLog2Rays = 10;
 
-/// Of lamps and the sun, by one sample [lx].
+/// Illuminance of lamps and the sun, by one sample [lx].
 Vec3f direct_light(const SceneView& scene, const CpuTracer& tracer, Vec3f p, Vec3f n,
                    Sampler* sampler) {
   if (scene.lights.size == 0) return {};

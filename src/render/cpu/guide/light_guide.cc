@@ -41,8 +41,8 @@ void LightGuideStore::find_rows(const SceneView& scene, const CpuTracer& statics
   }
 }
 
-/// With lights taken by the roots of their mean squares, one of them stands for all with the least
-/// noise.
+/// Weights of lights are the roots of their mean squares: one light then stands for all with the
+/// least noise.
 void LightGuideStore::look_for_lights(const SceneView& scene, const CpuTracer& statics, int row) {
   const GuideRow& from = rows_[static_cast<size_t>(row)];
   for (uint32_t light = 0; light < grid_.lights; ++light) {
@@ -96,7 +96,7 @@ void LightGuideStore::look_for_sky(const SceneView& scene, const CpuTracer& stat
 void LightGuideStore::conclude(int row) {
   int rows[7];
   const int count = neighborhood(view(), rows_, row, rows);
-  // Of what a row has seen itself, and its neighbours.
+  // Mean of what a row has seen itself and what its neighbours have.
   const auto smooth = [&](const std::vector<float>& seen, size_t stride, size_t first) {
     const auto of = [&](int r) { return seen[static_cast<size_t>(r) * stride + first]; };
     float around = 0;
@@ -133,8 +133,8 @@ void LightGuideStore::build(SceneView scene, const CpuTracer& statics, const Des
   scene.instances = {look.instances.data(), static_cast<uint32_t>(look.instances.size())};
   find_rows(scene, statics);
   const bool has_map = !scene.environment.row_cdf.empty();
-  // What comes through windows falls on small patches. Lamps light a room more evenly: there,
-  // looking up directions costs more time than it saves noise.
+  // Light through windows falls on small patches. Lamps light a room more evenly: there, looking up
+  // directions costs more time than it saves noise.
   if (has_sky || has_sun) {
     arriving_ = find_arriving_light(scene, statics, view(), rows_);
     grid_.share = unevenness_of(arriving_, rows_) > kEven ? kShare : 0.0f;

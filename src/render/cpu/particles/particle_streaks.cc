@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kPerCell = 6;  // particles, in the mean
 
-/// What the particles of a set cover of each pixel, and the light they bring.
+/// Coverage of each pixel by the particles of a set, and the light that they bring.
 struct Layer {
   std::vector<float> cover;
   std::vector<Vec3f> light;
@@ -27,7 +27,7 @@ void draw_rows(const std::vector<Streak>& streaks, const Film& film, int first, 
     const float most = min(2 * s.radius, 1.0f);
     for (int y = y0; y < y1; ++y) {
       const float py = static_cast<float>(y) + 0.5f;
-      // Only the part of the way that comes near this row.
+      // Part of the streak that comes near this row.
       float xa = min(s.from.x, s.to.x), xb = max(s.from.x, s.to.x);
       if (std::fabs(way.y) > 1e-6f) {
         const auto x_at = [&](float row) {

@@ -113,7 +113,7 @@ void StreakFinder::find_drips(uint64_t seed, std::vector<Streak>* out) const {
   for (const auto& part : found) out->insert(out->end(), part.begin(), part.end());
 }
 
-// Where what stands highest ends on the way from the edge's cell to the one beside it.
+// Tip: end of the highest obstacle on the way from the edge's cell to the one beside it.
 bool StreakFinder::find_tip(const DripEdge& edge, float along, Vec3f* tip) const {
   constexpr float kAbove = 0.5f, kSame = 0.1f, kBeside = 0.003f;  // [m]
   constexpr int kHalvings = 6;
@@ -142,7 +142,7 @@ void StreakFinder::add_drips(const DripEdge& edge, uint64_t seed, std::vector<St
   const float far = reach(kLargestDrip);
   if (dot(to, to) > far * far) return;
   const double now = middle();
-  // They land on the lowest ground at the latest.
+  // Drops land on the lowest ground at the latest.
   const auto deepest = static_cast<double>(edge.from.z - view_.weather.shelter->lowest);
   const DripFall last(kSmallestDrip);
   const double seen = last.time(std::max(deepest, 0.0)) +

@@ -58,7 +58,7 @@ class AdaptiveTile {
  private:
   static constexpr int kBatches = 4;
   static constexpr int kPilotSamples = 8;
-  // Any numbers: scramblings of their own.
+  // Seeds that scramble the sampler, each in its own way; arbitrary.
   static constexpr uint64_t kOtherHalf = 0xD1B54A32D192ED03u, kPilotSeed = 0x8CB92BA72F3D8DD7u;
   static constexpr int kSide = 8;  // of a block [px]
   static constexpr int kAcross = kTile / kSide;
@@ -81,8 +81,8 @@ class AdaptiveTile {
       for (const Batch& b : batches) sum.add(b);
       return sum;
     }
-    /// Of all channels, without the brightest and the darkest batch: one bright path among few
-    /// samples raises the variance and must not raise what that is compared with.
+    /// Mean of all channels, without the brightest and the darkest batch: one bright path among few
+    /// samples raises the variance and must not raise the value that this is compared with.
     float value() const {
       float least = INFINITY, most = 0, sum = 0;
       for (const Batch& b : batches) {
@@ -93,7 +93,7 @@ class AdaptiveTile {
       }
       return (sum - least - most) / (kBatches - 2);
     }
-    /// Of the mean, per channel.
+    /// Variance of the mean, per channel.
     Vec3f variance(const Batch& all) const {
       Vec3f squares;
       for (const Batch& b : batches) {
@@ -111,7 +111,7 @@ class AdaptiveTile {
     float value = 0;             ///< mean over the pixels
   };
 
-  /// Of the errors of a half's means, per block.
+  /// Squares of the errors of a half's means, per block.
   void add_squares(const Tile& tile, int half) {
     for (Block& block : blocks_) block.squares[half] = block.value = 0;
     for (int i = 0; i < tile.count(); ++i) {

@@ -33,7 +33,7 @@ struct AdaptivePlan {
 /// its pixels of the relative deviation of single samples.
 double look_adaptive(const Job& job, int x0, int y0, RenderStats* stats);
 
-/// Of the `deviations` of all tiles and the number of pixels that each has.
+/// Plan by the `deviations` of all tiles and the number of pixels of each.
 AdaptivePlan plan_adaptive(const RenderSettings& settings, const std::vector<double>& deviations,
                            const std::vector<int>& pixels);
 

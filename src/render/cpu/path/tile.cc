@@ -93,7 +93,7 @@ void Tile::store_means(RenderStats* stats) const {
   stats->rays = rays_;
 }
 
-/// All samples of `range` of each pixel: lanes whose path has ended begin another one.
+/// Traces all samples of `range` of each pixel: lanes whose path has ended begin another one.
 void Tile::trace_paths(const SampleRange& range, PathResult* results) {
   using F = FloatLanes;
   const int count = count_ * range.count;

@@ -1,6 +1,6 @@
 #pragma once
-// Light that few rays of the irradiance cache's cells meet: regions share it out over their cells,
-// as one that is met by chance would make a spot of a cell.
+// Light that few rays of the irradiance cache's cells meet: regions spread it over their cells, as
+// a source that one ray meets by chance would make a bright spot of its cell.
 
 #include <unordered_map>
 
@@ -11,7 +11,8 @@ namespace gloam {
 
 class ExcessRegions {
  public:
-  /// Of a cell and round: what its rays brought above what is likely, and its luminance before.
+  /// Excess of a cell in one round: light that its rays brought above what is likely, and its
+  /// luminance before.
   struct OfCell {
     uint64_t key = 0;
     Vec3f excess;  ///< [cd/m²]
@@ -34,7 +35,7 @@ class ExcessRegions {
     uint32_t last_traced = 0;
 
     void add(const OfCell& cell);
-    /// From then on as those of `most` cells.
+    /// Scales the sums down to those of `most` cells.
     void fade(float most);
   };
   static constexpr size_t kLevels = 2;  ///< wide regions, and narrow ones in them

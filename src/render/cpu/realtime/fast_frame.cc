@@ -57,7 +57,7 @@ class Accumulation {
   static constexpr int kParts = kPatch / kLaneCount;  // of a row
 
   void find_places() {
-    // By columns, so that the sums are the same for any number of lanes.
+    // Sums by columns, so that they are the same for any number of lanes.
     F now[kFastSignals][kParts], past[kFastSignals][kParts];
     for (int y = y0_; y < y1_; ++y) {
       for (int part = 0; part < kParts; ++part) {
@@ -72,7 +72,8 @@ class Accumulation {
         }
       }
     }
-    // Where the light of a whole tile is another, old pictures say little.
+    // Weight of the new picture grows where the light of a whole patch has changed: old pictures
+    // say little there.
     for (int s = 0; s < f_.signals; ++s) {
       const float a = sum_of(now[s]), b = sum_of(past[s]);
       const float change = fabsf(a - b) / max(max(a, b), 1e-6f);
@@ -98,17 +99,18 @@ class Accumulation {
       Vec3Of<F> now = f_.signal[s].load(x, y);
       F l = luminance(now), share = max(1.0f / age, least_share_[s]);
       if (s == kSpecularSignal) {
-        // Of rays that a rough surface scatters, few meet a lamp: no brighter than the others.
+        // Rays that a rough surface scatters seldom meet a lamp: one that does is made no brighter
+        // than the others.
         // A rounding error below zero must not become 0 / 0 where all is dark.
         const F most = max(kSpike * luminance_about(f_, s, x, y), F(0.0f));
         now = select<F>(l > most, now * (most / l), now);
         l = min(l, most);
-        // What mirrors show does not go along with them.
+        // Images in mirrors do not move with the mirror's surface.
         const MaskLanes moves =
             !((f_.motion_x.load(x, y) == F(0.0f)) & (f_.motion_y.load(x, y) == F(0.0f)));
         share = select(moves & (f_.roughness.load(x, y) < kMirror), max(share, 0.5f), share);
       }
-      // What is out of the range of its neighbours is a trail of what has moved on.
+      // Old light out of the range of its neighbours is a trail of something that has moved on.
       const F gain = gain_[s].from(x, y);
       const Vec3Of<F> old = place.of(before_.signal[s], x, y) * gain;
       const Vec3Of<F> least = mean - deviation * F(kRange), most = mean + deviation * F(kRange);
@@ -243,7 +245,7 @@ F spread_around(const FastPlane3& signal, int step, int x, int y, const Counts& 
   return safe_sqrt(squares / max(n, 1.0f) - mean * mean);
 }
 
-/// For likeness(): over how much light may differ by chance.
+/// Inverse of the difference of light that may be chance, for likeness().
 F sharpness(F deviation, F light) { return 1.0f / (2.0f * deviation + 0.005f * light + 1e-4f); }
 F likeness(F light, F own, F sharp) {
   const F d = (light - own) * sharp;

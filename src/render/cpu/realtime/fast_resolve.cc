@@ -15,7 +15,7 @@ constexpr float kMostMoving = 2;    // where they lie between pixels, each blurs
 constexpr float kPastRange = 1;     // of deviations around a pixel that its past may have,
 constexpr float kSlack = 0.015f;    // and of its mean: light that flickers is noise
 
-/// What the 3 x 3 pixels around those from (x, y) on say.
+/// Neighbourhood of 3 x 3 pixels around those from (x, y) on.
 struct Around {
   Vec3Of<F> now;  ///< their colours, weighted by the pixel filter
   NeighbourMoments color;

@@ -44,8 +44,8 @@ float cell_edge(const CameraView32& camera) { return min(kCellPixels / camera.fx
 }  // namespace
 
 bool FastHistory::find_moving_lamps(const SceneView& scene) {
-  // What goes less far from picture to picture, or gives so small a share of the strongest lamp's
-  // light, the cache follows.
+  // Lamps that move less far from picture to picture, or give less than kWeak of the strongest
+  // lamp's light, are left to the cache, which follows them.
   constexpr float kFar = 0.005f, kTurn = 0.005f;  // [m], [rad]
   constexpr float kWeak = 0.01f;
   std::vector<LampPlace> now;
@@ -55,7 +55,7 @@ bool FastHistory::find_moving_lamps(const SceneView& scene) {
     now.push_back({light.p, light.direction});
     if (light.kind != LightKind::kDirectional) strongest = max(strongest, light.strength);
   }
-  // Where lamps go on or out, which are the same is not known; cells notice such changes.
+  // Lamps that go on or out change the rows, so none can be followed; cells notice such changes.
   bool moves = false;
   for (uint32_t i = 0; !moves && now.size() == lamps_.size() && i < scene.lights.size; ++i) {
     moves = scene.lights[i].strength > kWeak * strongest &&

@@ -72,7 +72,8 @@ void IrradianceCache::ask(const std::vector<CacheRequest>& requests, size_t most
     const uint32_t row = rows_[slot];
     Cell& cell = cells_[row];
     cell.last_asked = update_;
-    // Of many places that ask, some by chance: rays start all over the cell.
+    // Reservoir of starts: some of many places that ask, by chance, so that rays start all over the
+    // cell.
     const auto count = static_cast<uint32_t>(cell.starts++);
     const uint32_t place = count < kStarts ? count : dice() % (count + 1);
     if (place < kStarts) starts_[row * kStarts + place] = request;
@@ -146,12 +147,12 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
   using F = FloatLanes;
   const uint32_t row = asked_[k];
   const Cell& cell = cells_[row];
-  // The best guess at what is not known around a dark place.
+  // Light of the cell itself: the best guess for cells around it that are not known.
   if (cell.samples > 0) cache.mean = light_[row].all;
   const float edge = caches::edge_of(cell.key);
   const bool in_air = caches::is_air(cell.key);
-  // At least as bright as what is beside it: a cell that has met too little would cut off what it
-  // lacks, for good.
+  // Luminance at least as bright as the cells beside: a cell that has met too little would cut off
+  // what it lacks, for good.
   const float beside = luminance_beside(cell.key);
   const float own = cell.samples == 0 ? beside : luminance(light_[row].all);
   const float usual = max(own, beside);
@@ -248,15 +249,16 @@ IrradianceCache::LightChange IrradianceCache::change_of(
     const float past = luminance(light_[asked_[k]].all);
     sum.light += past;
     sum.change += luminance(traced_[k].light.all) - past;
-    // By the spread of these few rays alone, cells that met few of the bright ones would count as
-    // changed.
+    // Variance of these few rays, or of earlier ones if that is greater: cells that met few of the
+    // bright ones would count as changed.
     sum.variance += max(traced_[k].variance, cells_[asked_[k]].variance);
   }
   return sum;
 }
 
 void IrradianceCache::find_changes() {
-  // A cell's few rays say little; those of a region together tell a change of the light from noise.
+  // Few rays of one cell say little; those of a region together tell a change of the light from
+  // noise.
   const auto key_of = [&](size_t k) { return cells_[asked_[k]].key; };
   groups_.each(traced_.size(), caches::kRegion, key_of, [&](auto group) {
     const LightChange sum = change_of(group);
@@ -264,7 +266,7 @@ void IrradianceCache::find_changes() {
         fabsf(sum.change) > kSurprise * sqrtf(sum.variance) + kNoRegionChange * sum.light;
     for (const auto& [key, k] : group) traced_[k].changed = changed && !traced_[k].is_new;
   });
-  // What fades everywhere is seen here long before it is seen in each region.
+  // Light that fades everywhere shows here long before it shows in each region.
   groups_.each(traced_.size(), 0, key_of, [&](auto group) {
     const LightChange sum = change_of(group);
     if (fabsf(sum.change) > kSurprise * sqrtf(sum.variance) + kFades * sum.light) {
@@ -302,7 +304,7 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
     const Traced& traced = traced_[k];
     Cell& cell = cells_[asked_[k]];
     CellLight& light = light_[asked_[k]];
-    // As long as little of the light has come round, what there was before is no part of the mean.
+    // Light from before is no part of the mean as long as little of the light has come round.
     if (!remembers || traced.changed) cell.samples = std::min(cell.samples, kRays / 8);
     if (!remembers) cell.samples = 0;
     if (traced.changed) excess_.forget(cell.key);
@@ -317,7 +319,7 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
     cell.last_traced = update_;
     rays += traced.rays;
   }
-  // In the geometric mean, as few cells out of doors are as bright as all in a room.
+  // Geometric mean, as few cells out of doors are as bright as all in a room together.
   Vec3f sum;
   float logs = 0, known = 0;
   for (const CellLight& light : light_) {
@@ -374,7 +376,8 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
   bool remembers = !settles;
   int rounds = settles ? kFirstRounds : 1;
   double last_share = 1;
-  // Where each ray meets a leaf of its own, what lies further on is known by larger cells' light.
+  // Cells are limited: where each ray meets a leaf of its own, larger cells' light stands for what
+  // lies further on.
   const size_t most =
       kFurtherRoom + kFurtherCells * static_cast<size_t>(std::count_if(
                                          cells_.begin(), cells_.end(),
@@ -385,8 +388,8 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
     for (uint32_t row = 0; row < cells_.size(); ++row) {
       if (cells_[row].starts > 0) asked_.push_back(row);
     }
-    // Those that have waited longest, above all where things move, new ones before all; of these in
-    // the order of their making.
+    // Cells that have waited longest, above all where things move, and new ones before all; among
+    // equals in the order of their making.
     const auto waits = [this](uint32_t row) {
       const Cell& cell = cells_[row];
       if (cell.samples == 0) return 1e9f;

@@ -58,7 +58,8 @@ GLOAM_HD Vec3Of<F> eval_glass(const LayeredBsdfOf<F>& b, Vec3Of<F> wo, Vec3Of<F>
   const F d = ggx::distribution(b.glass_alpha, h);
   const F g = ggx::visibility(wo.z, b.glass_root, away, ggx::smith_root(b.glass_alpha, wi));
   const F visible = d / (2.0f * (wo.z + b.glass_root));  // density of h over 4 cos_o
-  // Of wi about h: refraction spreads half vectors otherwise than a mirror does.
+  // Density of wi for that of the half vector h: refraction spreads half vectors otherwise than a
+  // mirror does.
   const F denominator = sqr(cos_i + cos_o / b.eta);
   const F spread =
       select(bent, 4.0f * cos_o * magnitude(cos_i) / max(denominator, 1e-12f), F(1.0f));
@@ -138,7 +139,7 @@ GLOAM_HD Vec3Of<F> eval_bsdf(const LayeredBsdfOf<F>& b, Vec3Of<F> wo, Vec3Of<F> 
   return value;
 }
 
-/// As of BsdfOf; what is given lies on the near side.
+/// Sample as BsdfOf's; the given direction lies on the near side.
 template <class F>
 GLOAM_HD BsdfSampleOf<F> sample_bsdf(const LayeredBsdfOf<F>& b, Vec3Of<F> wo, F pick, Vec2Of<F> u,
                                      MaskOf<F> given = false, Vec3Of<F> wi_given = {}) {
@@ -201,7 +202,7 @@ GLOAM_HD float glass_albedo(const GlassTable& table, float roughness, float cosi
   return max(lerp(plane(cell), plane(cell + n * n), fz), 1e-3f);
 }
 
-/// What a material's layers lie on, textures included.
+/// Base that a material's layers lie on, textures included.
 struct SurfaceParameters {
   Vec3f base_color;
   float metallic = 0, roughness = 0, f0 = 0, f90 = 0;
@@ -301,7 +302,7 @@ GLOAM_HD LayeredBsdf make_layered(const SceneView& scene, const MaterialLayers& 
                            through * luminance(b.under), luminance(b.beyond * b.under)};
   float total = 0;
   for (const float w : weight) total += w;
-  // What reflects no light at all still has one part to sample.
+  // Surfaces that reflect no light still have one part to sample.
   const float scale = total > 0 ? 1.0f / total : 0.0f;
   b.p_coat = weight[1] * scale;
   b.p_fuzz = weight[2] * scale;

@@ -24,7 +24,7 @@ GLOAM_HD bool stands_still(const CameraPose& pose) {
   return pose.keys.empty() && a.x == b.x && a.y == b.y && a.z == b.z && a.p == b.p;
 }
 
-/// When the rows of a picture are exposed, in times of the scene's keys, 0 … 1.
+/// Exposure times of the rows of a picture, in times of the scene's keys, 0 … 1.
 struct Shutter {
   float open = 0;    ///< of the first row
   float length = 1;  ///< of every row's exposure
@@ -168,7 +168,8 @@ GLOAM_HD RayOf<F> camera_rays(const CameraView32& camera, F u, F v, F time, RayC
   return rays;
 }
 
-/// Where the points p_W of the `active` lanes appear [px]; returns the lanes that the camera sees.
+/// Projects the points p_W of the `active` lanes into the picture [px]; returns the lanes that the
+/// camera sees.
 template <class F>
 GLOAM_HD MaskOf<F> project_points(const CameraView32& camera, const Affine3f& X_WC, Vec3Of<F> p_W,
                                   MaskOf<F> active, Vec2Of<F>* uv) {
@@ -190,7 +191,7 @@ GLOAM_HD MaskOf<F> project_points(const CameraView32& camera, const Affine3f& X_
   return seen;
 }
 
-/// Where the point p_W appears [px]; false where the camera does not see it.
+/// Projects the point p_W into the picture [px]; false where the camera does not see it.
 GLOAM_HD bool project(const CameraView32& camera, const Affine3f& X_WC, Vec3f p_W, Vec2f* uv) {
   return project_points<float>(camera, X_WC, p_W, true, uv);
 }

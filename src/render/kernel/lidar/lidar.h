@@ -1,10 +1,10 @@
 #pragma once
-// What comes back of a LiDAR's pulse from the surfaces that it meets. Signals are relative to what
-// a white Lambertian plate across the beam, 1 m away, sends back: of a surface at range R that is
+// Signal of a LiDAR's pulse from the surfaces that it meets, relative to that of a white Lambertian
+// plate across the beam, 1 m away: of a surface at range R it is
 //   G T² O(R) / R²,  G = pi f(w, w) cos
 // with the BSDF f back along the beam, the two-way transmittance T² of what lies before it and the
-// overlap O of beam and receiver (kernel/lidar_particles.h; the LiDAR equation, e.g. Wehr and Lohr
-// 1999, "Airborne laser scanning - an introduction and overview"). Device-safe.
+// overlap O of beam and receiver (kernel/lidar/lidar_particles.h; the LiDAR equation, e.g. Wehr and
+// Lohr 1999, "Airborne laser scanning - an introduction and overview"). Device-safe.
 
 #include "render/kernel/lidar/lidar_detect.h"
 #include "render/kernel/lidar/lidar_media.h"
@@ -70,8 +70,8 @@ GLOAM_HD F reflectivity(const SceneView& scene, const LidarOptics& optics, Vec3O
   return (eval_bsdf(*bsdf, w, w, &pdf).x + retro * w.z) * kPi * s->opacity;
 }
 
-/// What the light's colours say of the inside of glass gives way to what is known at the sensor's
-/// wavelength, in the lanes that have crossed the surfaces `s`.
+/// Absorption of glass at the sensor's wavelength, where it is known, instead of that of the
+/// visible bands, in the lanes that have crossed the surfaces `s`.
 template <class F>
 GLOAM_HD Vec3Of<F> own_absorption(const LidarOptics& optics, const SurfaceOf<F>& s,
                                   MaskOf<F> crossing, Vec3Of<F> beyond) {
@@ -83,7 +83,7 @@ GLOAM_HD Vec3Of<F> own_absorption(const LidarOptics& optics, const SurfaceOf<F>&
   return beyond;
 }
 
-/// What pass_glass() reads of a BSDF.
+/// Parts of a BSDF that pass_glass() reads, in lane i.
 template <class F>
 GLOAM_HD LayeredBsdf glass_of(const LayeredBsdfOf<F>& b, int i) {
   LayeredBsdf one;

@@ -93,8 +93,8 @@ GLOAM_HD float media_step(const MediumWalk& walk, float resolution, float length
   return max(step, length / kMostSteps);
 }
 
-/// Those of a volume's particles that lie in [from, to] of the ray, one by one. `share`: of the
-/// pulse at `from`; `way`: the range at the ray's origin.
+/// Adds those particles of a volume that lie in [from, to] of the ray, one by one. `share`:
+/// fraction of the pulse at `from`; `way`: the range at the ray's origin.
 GLOAM_HD void add_particles(const LidarOptics& optics, uint32_t row, float from, float to,
                             float way, float density, float extinction, float share,
                             Backscatter* soft) {

@@ -6,7 +6,7 @@
 
 namespace gloam {
 
-/// Where a sensor is while it scans: L turns evenly about a fixed axis and moves evenly. Times run
+/// Motion of a sensor while it scans: L turns evenly about a fixed axis and moves evenly. Times run
 /// from 0 to 1.
 struct LidarMotion {
   Affine3f X_WL;   ///< at 0
@@ -31,7 +31,7 @@ GLOAM_HD RayOf<F> beam_ray(const LidarMotion& motion, Vec3Of<F> d_L, F time) {
   return ray;
 }
 
-/// Of a sensor that moves through several such stretches, equally long, one after the other.
+/// Ray of a sensor that moves through several such stretches, equally long, one after the other.
 template <class F>
 GLOAM_HD RayOf<F> beam_ray(DeviceSpan<const LidarMotion> stretches, Vec3Of<F> d_L, F time) {
   uint32_t stretch[Lanes<F>::kCount];

@@ -1,17 +1,18 @@
 #pragma once
-// Points of media that glow, in proportion to what they give off: light that a small flame sends
-// into a room is seldom found by chance (Villemin and Hery 2013, "Practical illumination from
-// flames"). What rays find on their way has its share in it, by multiple importance sampling point
-// by point, so that points close by and inside of the medium do no harm. Device-safe.
+// Points of media that glow, sampled in proportion to their emission: light that a small flame
+// sends into a room is seldom found by chance (Villemin and Hery 2013, "Practical illumination from
+// flames"). Emission that rays meet on their way is weighted against it, by multiple importance
+// sampling point by point, so that points close by and inside of the medium do no harm.
+// Device-safe.
 
 #include "render/kernel/light/light.h"
 #include "render/kernel/media/medium.h"
 
 namespace gloam::glow {
 
-/// A bound, up to a factor, of what something that gives off light within `reach` of `to` brings to
-/// a surface with the normal n, or to a point that takes light from all sides (n = 0), for its
-/// intensity [1/m²]; as light_weight(). Nearer than `least` [m] it brings no more.
+/// Bound, up to a factor, of the illuminance by a source within `reach` of `to` at a surface with
+/// the normal n, or at a point that takes light from all sides (n = 0), over the source's intensity
+/// [1/m²]; as light_weight(). Nearer than `least` [m] it does not grow.
 GLOAM_HD float share_of(Vec3f to, float reach, float least, Vec3f n) {
   const float d2 = max(dot(to, to), sqr(least));
   float cosine = 1;
@@ -23,12 +24,12 @@ GLOAM_HD float share_of(Vec3f to, float reach, float least, Vec3f n) {
   return (cosine + 0.05f) / d2;
 }
 
-/// That of a medium, at p.
+/// Weight of a medium, for a point p with the normal n.
 GLOAM_HD float weight(const GlowView& glow, Vec3f p, Vec3f n) {
   return glow.strength * share_of(glow.center - p, glow.reach, max(glow.reach, 1e-4f), n);
 }
 
-/// That of all of them.
+/// Weight of all of them.
 GLOAM_HD float weight(const DeviceSpan<const GlowView>& glows, Vec3f p, Vec3f n) {
   float sum = 0;
   for (uint32_t k = 0; k < glows.size; ++k) sum += weight(glows[k], p, n);
@@ -121,7 +122,7 @@ GLOAM_HD PointSample sample_point(const VolumeView& v, const GlowView& glow, Vec
   return s;
 }
 
-/// That as a light for p.
+/// Sample of that point as a light for p.
 GLOAM_HD LightSample sample(const MediaView& media, const GlowView& glow, Vec3f p, Vec2f u) {
   LightSample s;
   const VolumeView& v = media.volumes[glow.volume];

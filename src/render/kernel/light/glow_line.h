@@ -1,18 +1,19 @@
 #pragma once
-// What glows, as light for a point, by lines through it: Simon et al. 2017, "Line integration for
-// rendering heterogeneous emissive volumes". The inside of a thick flame gives no light, and a
-// sample of one point there would be noise. Device-safe.
+// Media that glow, as light for a point, by lines through them: Simon et al. 2017, "Line
+// integration for rendering heterogeneous emissive volumes". The inside of a thick flame gives no
+// light, so samples of points there would be noise. Device-safe.
 
 #include "render/kernel/light/glow.h"
 #include "render/kernel/media/medium_walk.h"
 
 namespace gloam::glow {
 
-/// What glows closer by is no lamp [m]: few of its points would bring nearly all light.
+/// Distance within which glowing media are not sampled as a lamp [m]: few of their points would
+/// bring nearly all light.
 inline constexpr float kNearGlow = 0.1f;
 
-/// From within so many times the reach of what glows, the nearest of it is the brightest: a point
-/// is chosen among kDraws then (Talbot et al. 2005, "Importance resampling for global
+/// Distance, in reaches of the glowing medium, within which its nearest part is the brightest: a
+/// point is chosen among kDraws there (Talbot et al. 2005, "Importance resampling for global
 /// illumination").
 inline constexpr float kBeside = 2;
 inline constexpr int kDraws = 2;

@@ -139,7 +139,7 @@ struct EmitterPointOf {
 };
 using EmitterPoint = EmitterPointOf<float>;
 
-/// Towards points of emitters that were drawn with a density per area.
+/// Samples towards points of emitters that were sampled with a density per area.
 template <class F>
 GLOAM_HD LightSampleOf<F> aim_at(const EmitterPointOf<F>& at, F pdf_area, bool one_sided,
                                  Vec3Of<F> p) {
@@ -172,7 +172,8 @@ GLOAM_HD F sample_box(Vec3f size, const Affine3f& X_WG, Vec3Of<F> p, Vec2Of<F> u
   return pdf_area;
 }
 
-/// Towards spheres, from outside; every lane may have its own. `normal`: there.
+/// Samples towards spheres, from outside; every lane may have its own. `normal`: at the sampled
+/// point.
 template <class F>
 GLOAM_HD LightSampleOf<F> sample_ball(F radius, Vec3Of<F> center, Vec3Of<F> p, Vec2Of<F> u,
                                       Vec3Of<F>* normal) {
@@ -194,7 +195,8 @@ GLOAM_HD MaskOf<F> is_outside_ball(F radius, Vec3Of<F> center, Vec3Of<F> p) {
   return length_squared(center - p) > sqr(radius) * 1.0001f;
 }
 
-/// Towards points of a sheet: with no triangle to look up, and no seam in the points' even spread.
+/// Samples towards points of a sheet: with no triangle to look up, and no seam in the points' even
+/// spread.
 template <class F>
 GLOAM_HD LightSampleOf<F> sample_sheet(const LightView& light, Vec3Of<F> p, Vec2Of<F> u) {
   const Vec3f normal = cross(light.edges[0], light.edges[1]);
@@ -266,7 +268,7 @@ GLOAM_HD F sample_mesh(const MeshView& mesh, const Affine3f& X_WG, Vec2Of<F> u, 
   return 1.0f / mesh.area;
 }
 
-/// Any emitting instance: moving, textured, of whatever shape.
+/// Samples any emitting instance: moving, textured, of whatever shape.
 GLOAM_HD LightSample sample_instance(const SceneView& scene, const LightView& light, Vec3f p,
                                      Vec2f u, float time) {
   LightSample s;
@@ -355,7 +357,7 @@ GLOAM_HD LightSampleOf<F> sample_one_light(const SceneView& scene, uint32_t inde
     });
   }
   s.casts_shadow = light.casts_shadow;
-  // What cannot be hit must be found here alone.
+  // Lights that no ray can hit are found by light sampling alone.
   if (!light.casts_shadow && light.kind != LightKind::kInstance) s.is_delta = true;
   return s;
 }

@@ -17,7 +17,7 @@ GLOAM_HD F with_sign_of(F value, F sign) {
   return select(sign < 0.0f, -value, value);
 }
 
-/// Of the direction d, of any length, on the square.
+/// Point of the square for the direction d, of any length.
 template <class F>
 GLOAM_HD Vec2Of<F> to_square(Vec3Of<F> d) {
   const F inverse = 1.0f / (magnitude(d.x) + magnitude(d.y) + magnitude(d.z));

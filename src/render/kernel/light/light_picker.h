@@ -1,7 +1,7 @@
 #pragma once
-// Many lights: which to take at a surface, and the radiance of what a ray meets. The luminous
-// spheres of lamps and the disc of a sun are seen in reflections, do not block rays, and are not
-// shown to the camera. Device-safe.
+// Sampling of one of many lights at a surface, and the radiance of lamps and suns that a ray meets.
+// The luminous spheres of lamps and the disc of a sun are seen in reflections, do not block rays,
+// and are not shown to the camera. Device-safe.
 
 #include "render/kernel/light/glow.h"
 #include "render/kernel/light/light_tree.h"
@@ -9,7 +9,7 @@
 
 namespace gloam {
 
-/// A bound, up to a factor, of what the light brings to the surface at p with the geometric normal
+/// Bound, up to a factor, of the light's illuminance at the surface at p with the geometric normal
 /// n if nothing is in between; zero only if it brings nothing. Light from behind counts where the
 /// surface lets it through; points in a medium (n = 0) take it from all around.
 template <class F>
@@ -45,7 +45,7 @@ struct GuideRowsOf {
   MaskOf<F> guided = false;
 };
 
-/// Those of the points p on surfaces with the geometric normals n, in the `active` lanes.
+/// Rows for the points p on surfaces with the geometric normals n, in the `active` lanes.
 template <class F>
 GLOAM_HD GuideRowsOf<F> find_rows(const LightGuide& guide, Vec3Of<F> p, Vec3Of<F> n,
                                   MaskOf<F> active) {
@@ -56,14 +56,14 @@ GLOAM_HD GuideRowsOf<F> find_rows(const LightGuide& guide, Vec3Of<F> p, Vec3Of<F
   return rows;
 }
 
-/// Room for the probabilities of lights, one each.
+/// Scratch for the probabilities of lights, one each.
 template <class F>
 struct LightSharesOf {
   F of[kMaxWeighedLights];
 };
 
-/// How lights are taken at one surface: in proportion to light_weight where there are few, by a
-/// tree where there are many.
+/// Light sampler of one surface: in proportion to light_weight where lights are few, by a tree
+/// where there are many.
 template <class F>
 class LightPickerOf {
  public:
@@ -78,10 +78,9 @@ class LightPickerOf {
   void keep_in(LightSharesOf<F>*) {}
 #endif
 
-  /// For the surfaces at p with the geometric normals n, or points in a medium (n = 0), in the
-  /// `active` lanes; the others keep what they were prepared for. `both_sides`: those that let
-  /// light through.
-  /// Returns the rows of the scene's guide there.
+  /// Prepares for the surfaces at p with the geometric normals n, or points in a medium (n = 0), in
+  /// the `active` lanes; the others keep what they were prepared for. `both_sides`: lanes whose
+  /// surface lets light through. Returns the rows of the scene's guide there.
   GLOAM_HD GuideRowsOf<F> prepare(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n,
                                   Mask active = true, Mask both_sides = false) {
     count_ = scene.lights.size;
@@ -105,7 +104,7 @@ class LightPickerOf {
     if (scene.has_environment() && !scene.environment.row_cdf.empty()) {
       sky = 0.25f * scene.environment.illuminance;  // of even light from all around
       if (any(rows.guided)) {
-        // Of what is seen through windows the guide has the better directions.
+        // Directions through windows are the guide's: it knows them better than the whole map.
         const F visible = gather(scene.guide.sky_visible.data, rows.row);
         sky = select(rows.guided, sky * visible * visible, sky);
       }
@@ -121,7 +120,7 @@ class LightPickerOf {
     return rows;
   }
 
-  /// After prepare(): media that glow get their share of choices, too; `beside_many`: that where
+  /// Adds, after prepare(), media that glow to the choice; `beside_many`: their probability where
   /// lights are not weighed.
   GLOAM_HD void add_glow(const SceneView& scene, Mask active, float beside_many = 0.5f) {
     each_lane(active, [&](int i) {
@@ -135,7 +134,8 @@ class LightPickerOf {
     if (scene.has_environment()) sky_share_ *= rest;
   }
 
-  /// After leave_out_sky() and add_glow(): sample() takes what glows by u.x below this.
+  /// Probability of media, after leave_out_sky() and add_glow(): sample() takes them by u.x below
+  /// this.
   GLOAM_HD F glow_share() const { return glow_share_; }
 
   /// Density per solid angle, as in glow::pdf, with which sample() finds the point p_W, p_G in the
@@ -149,7 +149,7 @@ class LightPickerOf {
            glow::pdf(scene.media, mine, p, p_W, p_G);
   }
 
-  /// After prepare(): the sky is none of this picker's business.
+  /// Removes, after prepare(), the sky from the choice.
   GLOAM_HD void leave_out_sky(const SceneView& scene) {
     const F rest = 1.0f - sky_share_, scale = select(rest > 1e-6f, 1.0f / rest, F(0.0f));
     for (uint32_t i = 0; !scene.has_many_lights() && i < count_; ++i) share_[i] *= scale;
@@ -174,8 +174,9 @@ class LightPickerOf {
            light_tree::probability(scene.light_tree, i, lane(p_, at), lane(n_, at));
   }
 
-  /// Takes a light, or the sky, by u.x and, by what is left of u.x and by u.y, a direction from p
-  /// towards it, for the `active` lanes: points u that are spread evenly are so over each light.
+  /// Sample of a light, or of the sky: which by u.x, and a direction from p towards it by what is
+  /// left of u.x and by u.y, for the `active` lanes. Points u that are spread evenly are so over
+  /// each light.
   GLOAM_HD LightSampleOf<F> sample(const SceneView& scene, Vec3Of<F> p, Vec2Of<F> u, F time,
                                    Mask active = true) const {
     LightSampleOf<F> out;
@@ -242,7 +243,7 @@ class LightPickerOf {
   }
 
  private:
-  /// What the sky and media leave to the lights.
+  /// Probability of the lights: the rest of that of the sky and of media.
   GLOAM_HD F lights_share(const SceneView& scene) const {
     return scene.has_glow() ? 1.0f - sky_share_ - glow_share_ : 1.0f - sky_share_;
   }
@@ -254,8 +255,8 @@ class LightPickerOf {
     s.pdf *= choice.probability;
     return s;
   }
-  /// Towards those lights `index` of the `active` lanes that are balls around none of the points p,
-  /// all at once; returns their lanes.
+  /// Samples towards those lights `index` of the `active` lanes that are balls around none of the
+  /// points p, all at once; returns their lanes.
   GLOAM_HD static Mask sample_balls(const SceneView& scene, Vec3Of<F> p, Vec2Of<F> u, Mask active,
                                     Uint index, LightSampleOf<F>* out) {
     Mask balls = false;

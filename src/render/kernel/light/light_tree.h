@@ -40,8 +40,8 @@ GLOAM_HD float fast_angle(float x, float y) {
 
 inline constexpr float kAngleSlack = 1e-3f;  // [rad]: bounds stay bounds despite rounding
 
-/// From one where angle <= 0 down to a little at `falloff`: near enough to a cosine and to a spot's
-/// rim. Zero beyond.
+/// Falloff from one where angle <= 0 down to a little at `falloff`: near enough to a cosine and to
+/// a spot's rim. Zero beyond.
 GLOAM_HD float fade(float angle, float falloff) {
   if (angle <= 0) return 1;
   const float x = angle / max(falloff, 1e-6f);

@@ -1,5 +1,5 @@
 #pragma once
-// What rays that leave the scene see: an environment map, or MuJoCo's cube. Device-safe.
+// Sky that rays which leave the scene see: an environment map, or MuJoCo's cube. Device-safe.
 
 #include "render/kernel/surface/texture.h"
 

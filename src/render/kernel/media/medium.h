@@ -25,7 +25,7 @@ class WalkRandom {
   uint32_t state_, step_;
 };
 
-/// What became of a ray on its way to tmax.
+/// Event that ends a ray on its way to tmax: scattering, or arrival.
 struct MediumEvent {
   float t = 0;      ///< distance at which it is scattered, or tmax [m]
   int volume = -1;  ///< row of the volume that scatters it; -1 = it arrives
@@ -41,19 +41,20 @@ inline constexpr float kLeastStep = 1.2e-7f;
 
 GLOAM_HD Vec3f exp_of(Vec3f x) { return {expf(x.x), expf(x.y), expf(x.z)}; }
 
-/// All of what glows, for sample_distance().
+/// Weight one for all emission, for sample_distance().
 struct AllGlow {
   GLOAM_HD float operator()(const VolumeView&, Vec3f, Vec3f) const { return 1; }
 };
 
 }  // namespace media
 
-/// Where the ray is scattered first. One band makes the decisions, drawn by its share in
+/// Samples where the ray is scattered first. One band makes the decisions, sampled in proportion to
 /// `throughput`; `weight` is the balance heuristic's over the three that might have made them
 /// (Miller et al. 2019, "A null-scattering path integral formulation of light transport"), so
-/// dot(shares, weight) <= 1. Per density, null collisions are as likely in every band, so that
-/// their probabilities drop out of it. `u`: for the band and the first distance, [0, 1)²; well
-/// spread points pay there. `random`: for all else. share(volume, p_W, p_G): of what glows there.
+/// dot(probabilities, weight) <= 1. Per density, null collisions are as likely in every band, so
+/// that their probabilities drop out of it. `u`: for the band and the first distance, [0, 1)²; well
+/// spread points pay there. `random`: for all else. emission_weight(volume, p_W, p_G): factor on
+/// the emission there.
 template <class Share = media::AllGlow>
 GLOAM_HD MediumEvent sample_distance(const MediaView& media, const Ray& ray, float tmax,
                                      Bands bands, Vec3f throughput, Vec2f u, WalkRandom random,

@@ -111,12 +111,12 @@ GLOAM_HD float glow_step(const MediumWalk& walk, Bands bands) {
 /// Marches through the media in steps of at most `step` [m], or longer ones where that would take
 /// more than about `max_steps`. Empty cells are skipped. Along a step all is as in its middle and
 /// Beer-Lambert's law is integrated, so even media are exact with any step.
-/// What glows along the ray counts if `glows`.
+/// Emission along the ray counts if `glows`.
 /// `source(const MarchStep&)`: light that media scatter towards the ray's origin [cd/m² per m].
 template <class Source>
 GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, float step,
                            int max_steps, Bands bands, bool glows, const Source& source) {
-  // What is behind so much is not seen.
+  // Transmittance below which nothing behind is seen.
   constexpr float kDark = 1e-3f;
   MarchResult result;
   result.transmittance = {1, 1, 1};

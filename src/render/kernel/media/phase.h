@@ -1,6 +1,7 @@
 #pragma once
-// Into which directions a medium scatters: Henyey and Greenstein 1941, "Diffuse radiation in the
-// galaxy". Cosines are between the directions of flight before and after. Device-safe.
+// Phase function: directions into which a medium scatters (Henyey and Greenstein 1941, "Diffuse
+// radiation in the galaxy"). Cosines are between the directions of flight before and after.
+// Device-safe.
 
 #include "render/kernel/media/medium_view.h"
 
@@ -20,9 +21,9 @@ GLOAM_HD float sample_henyey_greenstein(float g, float u) {
   return clamp((1.0f + g * g - a * a) / (2.0f * g), -1.0f, 1.0f);
 }
 
-/// Shares by which a band is drawn for the decisions that one alone can make: with a path's
-/// throughput, what the bands carry together never grows (Wilkie et al. 2014, "Hero wavelength
-/// spectral sampling").
+/// Probabilities of the bands for the decisions that one alone can make: in proportion to a path's
+/// throughput, the sum over the bands never grows (Wilkie et al. 2014, "Hero wavelength spectral
+/// sampling").
 GLOAM_HD Vec3f band_shares(Vec3f throughput) {
   const float sum = throughput.x + throughput.y + throughput.z;
   return sum > 0 ? throughput / sum : Vec3f{1.0f / 3, 1.0f / 3, 1.0f / 3};

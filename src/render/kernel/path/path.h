@@ -8,13 +8,13 @@
 namespace gloam {
 namespace paths {
 
-/// Share of a path's weight behind its first vertex below which it may end by chance. The first
-/// vertex dims all of a pixel alike, and what the first reflections take off is not little: to end
-/// paths by their mere weight made more noise than it saved time.
+/// Fraction of a path's weight behind its first vertex below which it may end by Russian roulette.
+/// The first vertex dims all of a pixel alike, and what the first reflections take off is not
+/// little: to end paths by their mere weight made more noise than it saved time.
 inline constexpr float kRouletteBelow = 0.35f;
 
-/// Share of directions that are drawn from the guide instead of the BSDF: what is sharp finds its
-/// light by itself.
+/// Probability of sampling the guide instead of the BSDF: sharp lobes find their light by
+/// themselves.
 template <class F>
 GLOAM_HD F guided_share(const LightGuide& guide, const LayeredBsdfOf<F>& bsdf, MaskOf<F> guided) {
   F diffuse = 1.0f - bsdf.base.p_layer;
@@ -22,7 +22,7 @@ GLOAM_HD F guided_share(const LightGuide& guide, const LayeredBsdfOf<F>& bsdf, M
   return select(guided, guide.share * diffuse, F(0.0f));
 }
 
-/// The BSDF at the vertices of paths, and what was drawn for the choice of its lobe.
+/// BSDF at the vertices of paths, and the random number for the choice of its lobe.
 template <class F>
 struct ScatterOf {
   FrameOf<F> frame;
@@ -119,7 +119,8 @@ GLOAM_HD MaskOf<F> scatter(const SceneView& scene, const Tracer& tracer, const P
   return turn(scene, options, path, v, at, active);
 }
 
-/// Where rays of paths have ended, and what becomes of them there.
+/// End of a path's segment: the surface or medium vertex there, and whether the path scatters at it
+/// or passes.
 template <class F>
 struct ArrivalOf {
   SurfaceOf<F> v;
@@ -128,7 +129,8 @@ struct ArrivalOf {
   MaskOf<F> scatters = false;  ///< at the surface, or at the mote
 };
 
-/// The rays of the `active` lanes have been traced: takes what they bring.
+/// Adds the light of what the rays of the `active` lanes have met, and decides what the paths do
+/// there.
 template <class F>
 GLOAM_HD ArrivalOf<F> arrive(const SceneView& scene, const PathOptions& options, State<F>* state,
                              MaskOf<F> active, MaskOf<F> found, const RayHitOf<F>& hit) {

@@ -45,7 +45,7 @@ class PathMachine {
     goes_on_ = true;
   }
 
-  /// Any hit ends it.
+  /// Shadow ray: any hit ends it.
   GLOAM_HD Ray shadow(const SceneView& scene) const {
     Ray ray = shadow_.ray;
     if (!in_shadow_ || scene.lets_light_through()) ray.tmax = 0;
@@ -80,7 +80,7 @@ class PathMachine {
   }
 
  private:
-  /// Aims the shadow ray and turns the path.
+  /// Samples a light and a direction at the vertex.
   GLOAM_HD void scatter(const SceneView& scene, const PathOptions& options,
                         const paths::ArrivalOf<float>& at) {
     paths::NextEventOf<float> event;
@@ -99,7 +99,7 @@ class PathMachine {
     if (!in_shadow_) bring_light(scene);
   }
 
-  /// The light that is left of the shadow ray's.
+  /// Adds the light that is left of the shadow ray's.
   GLOAM_HD void bring_light(const SceneView& scene) {
     if (!(max_component(shadow_.arriving) > 0)) return;
     path_.result.radiance +=
@@ -112,7 +112,7 @@ class PathMachine {
   bool goes_on_ = true;     ///< the path itself
 };
 
-/// As trace_path.
+/// Traces a path as trace_path does.
 template <class Tracer>
 GLOAM_HD PathResult run_path(const SceneView& scene, const Tracer& tracer, const Ray& ray,
                              RayCone cone, const PathOptions& options, const Sampler& sampler) {

@@ -5,7 +5,7 @@
 
 namespace gloam::paths {
 
-/// Where media scatter rays.
+/// Vertices at which media scatter rays.
 template <class F>
 struct MediumVertexOf {
   MaskOf<F> scattered = false;
@@ -13,7 +13,7 @@ struct MediumVertexOf {
   UintOf<F> volume{};  ///< row of MediaView::volumes
 };
 
-/// Takes the media along the rays of the `active` lanes up to `tmax` into account.
+/// Samples the media along the rays of the `active` lanes up to `tmax`: emission and scattering.
 template <class F>
 GLOAM_HD MediumVertexOf<F> cross_media(const SceneView& scene, F tmax, MaskOf<F> active,
                                        State<F>* path) {
@@ -56,8 +56,8 @@ GLOAM_HD Vec3Of<F> eval_phases(const SceneView& scene, const State<F>& path,
   return value;
 }
 
-/// Samples one light at the vertices of the `active` lanes. `band` is what was drawn for the choice
-/// of a band.
+/// Samples one light at the vertices of the `active` lanes. `band`: the random number for the
+/// choice of a band.
 template <class F>
 GLOAM_HD NextEventOf<F> aim_at_light_in_media(const SceneView& scene, State<F>* path,
                                               const MediumVertexOf<F>& v, MaskOf<F> active,

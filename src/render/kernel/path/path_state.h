@@ -1,5 +1,5 @@
 #pragma once
-// What a path carries along, and what it asks of the scene on its way. Device-safe.
+// State of a path, and its tests for occlusion and transmittance. Device-safe.
 
 #include "render/kernel/light/light_picker.h"
 #include "render/kernel/math/sampler.h"
@@ -14,7 +14,7 @@ struct PathOptions {
   int roulette_depth = 100;  ///< segments before Russian roulette starts
 };
 
-/// What one camera sample saw.
+/// Result of one camera sample.
 template <class F>
 struct PathResultOf {
   Vec3Of<F> radiance;   ///< [cd/m²]
@@ -84,7 +84,7 @@ struct NextEventOf {
   Vec3Of<F> arriving;
 };
 
-/// Share of light that glass lets through on a way of length t.
+/// Transmittance of glass over a way of length t.
 template <class F>
 GLOAM_HD Vec3Of<F> through_glass(Vec3Of<F> absorption, F t) {
   Vec3Of<F> share = in_all_lanes<F>({1, 1, 1});
@@ -151,7 +151,7 @@ GLOAM_HD MaskOf<F> gives_nothing(const SceneView& scene, const RayHitOf<F>& hit,
   return dark;
 }
 
-/// Share of light that surfaces let through along the shadow rays of the `open` lanes.
+/// Transmittance of surfaces along the shadow rays of the `open` lanes.
 template <class F, class Tracer>
 GLOAM_HD Vec3Of<F> transmit(const SceneView& scene, const Tracer& tracer, RayOf<F> ray,
                             MaskOf<F> open, UintOf<F>* rays) {
@@ -175,7 +175,7 @@ GLOAM_HD Vec3Of<F> transmit(const SceneView& scene, const Tracer& tracer, RayOf<
   return light;
 }
 
-/// Share of light that media let through along the rays of the `active` lanes.
+/// Transmittance of media along the rays of the `active` lanes.
 template <class F>
 GLOAM_HD Vec3Of<F> through_media(const SceneView& scene, const RayOf<F>& ray, MaskOf<F> active,
                                  SamplerOf<F>* sampler) {
@@ -189,7 +189,8 @@ GLOAM_HD Vec3Of<F> through_media(const SceneView& scene, const RayOf<F>& ray, Ma
   return share;
 }
 
-/// What is left of `arriving` at the near end of shadow rays, in the `lit` lanes.
+/// Light of a light sample that gets through along its shadow ray, in the `lit` lanes. `arriving`:
+/// the same where nothing is in between.
 template <class F, class Tracer>
 GLOAM_HD Vec3Of<F> bring_light(const SceneView& scene, const Tracer& tracer, const RayOf<F>& shadow,
                                MaskOf<F> casts_shadow, MaskOf<F> lit, Vec3Of<F> arriving,
@@ -202,7 +203,7 @@ GLOAM_HD Vec3Of<F> bring_light(const SceneView& scene, const Tracer& tracer, con
   return arriving * through_media(scene, shadow, left, &path->sampler);
 }
 
-/// Sends the paths of the `next` lanes on from p, or `o` just off it, along wi, which was drawn
+/// Continues the paths of the `next` lanes from p, or `o` just off it, along wi, which was sampled
 /// with the density `pdf`.
 template <class F>
 GLOAM_HD void go_on(MaskOf<F> next, Vec3Of<F> p, Vec3Of<F> o, Vec3Of<F> wi, Vec3Of<F> weight, F pdf,

@@ -134,7 +134,7 @@ GLOAM_HD ProceduralSample procedural_tiles(const ProceduralDescription& d,
     const float mean = sqr(1.0f - d.gap / pitch_u);
     const float t = smooth_step(0.1f, 0.8f, foot / pitch_u);
     const auto share = [&](float width) {
-      // Of an interval across the nearest border, what lies outside the joint.
+      // Part of an interval across the nearest border that lies outside the joint.
       const float half = 0.5f * d.gap, lo = cell.inner.value - 0.5f * width, hi = lo + width;
       const float joint = clamp(hi, -half, half) - clamp(lo, -half, half);
       const auto in_joint = [&](float x) { return fabsf(x) < half ? 1.0f : 0.0f; };

@@ -1,13 +1,13 @@
 #pragma once
-// What every family of procedural materials shares: its sample, the projection onto a surface, and
-// filtered patterns of repeated units. Device-safe.
+// Parts that all families of procedural materials share: the sample, the projection onto a surface,
+// and filtered patterns of repeated units. Device-safe.
 
 #include "render/kernel/math/noise.h"
 #include "world/materials/procedural_description.h"
 
 namespace gloam {
 
-/// Where a procedural material is asked for, in the frame that it is fixed to.
+/// Point at which a procedural material is asked for, in the frame that it is fixed to.
 struct ProceduralPoint {
   Vec3f p;              ///< [m]
   Vec3f n{0, 0, 1};     ///< unit normal; anything else is taken as one

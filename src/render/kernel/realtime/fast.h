@@ -13,7 +13,7 @@ struct FastTurnsOf {
   MaskOf<F> of_four = true;  ///< one of each quad
 };
 
-/// What becomes of the light that reflections' rays bring.
+/// Weights of the light that reflection rays bring.
 template <class F>
 struct ReflectionUseOf {
   MaskOf<F> goes = false;      ///< lanes that have a ray of their own
@@ -50,8 +50,8 @@ GLOAM_HD void copy_lane(const ReflectionOf<F>& from, int i, ReflectionOf<F>* to,
   to->sampler.take_lane(k, from.sampler, i);
 }
 
-/// What one camera ray saw: base + air + through (albedo (direct + cached) + cached gloss +
-/// specular + what its reflection shows).
+/// Result of one camera ray; its radiance is base + air + through (albedo (direct + cached) +
+/// cached gloss + specular + the light of its reflection ray).
 template <class F>
 struct FastSampleOf {
   Vec3Of<F> base;     ///< [cd/m²], with its edges
@@ -92,7 +92,7 @@ GLOAM_HD Vec3Of<F> look_along(const SceneView& scene, const Tracer& tracer,
   return light;
 }
 
-/// What goes on to the camera when the rays have brought the light `seen`.
+/// Light towards the camera when the reflection rays have brought the light `seen`.
 template <class F>
 GLOAM_HD Vec3Of<F> reflected_light(const ReflectionUseOf<F>& r, const Vec3Of<F>& seen) {
   const Vec3Of<F> own = select<F>(r.goes, seen * r.weight, Vec3Of<F>{});
@@ -174,7 +174,7 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
     CacheRequest asked[Lanes<F>::kCount];
     const fasts::CachePlaceOf<F> at = fasts::place_of(v);
     const CacheCellOf<F> cells = fasts::ask_cells(cache, at, active, jitter, 0, asked);
-    // What the first solid surface has of the cache is looked up when its cells have been traced.
+    // Light of the first solid surface is looked up later, when its cells have been traced.
     const Vec3Of<F> cached = fasts::cached_light(cache, at, cells, pane, 0, cache.mean);
     if (any(solid)) {
       const Vec3Of<F> out_W =
@@ -193,7 +193,7 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
     layer_albedo(*scene.albedo, v.roughness, wo.z, &a, &b);
     const Vec3Of<F> reflected = bsdf.base.f0 * a + bsdf.base.f90 * b;
     const Vec3Of<F> gloss = select<F>(traced, Vec3Of<F>{}, reflected);
-    // Of several panes any, by chance.
+    // Request of one of several panes, by chance.
     const F chosen = passed == 0 ? F(0.0f) : path.sampler.next_1d(pane);
     const Mask one = solid | (pane & (chosen * static_cast<float>(passed + 1) < 1.0f));
     each_lane(one,

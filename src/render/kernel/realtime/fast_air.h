@@ -1,5 +1,5 @@
 #pragma once
-// The fast stage: light that media on the way of a ray scatter and give off. Device-safe.
+// Scattering and emission of media along a ray, in the fast stage. Device-safe.
 
 #include "render/kernel/media/medium_march.h"
 #include "render/kernel/realtime/fast_cache.h"
@@ -14,11 +14,11 @@ struct AirLamp {
   Vec3f light;  ///< that it brings to the ray's origin if nothing is in between [cd/m²]
 };
 
-/// What shines less than this far from air [m] lights it by the rays of its cells alone: samples of
-/// a large lamp's points bring without bound more the nearer they are.
+/// Distance from air [m] below which a lamp's surface lights it by the rays of the cache's cells
+/// alone: samples of points of a large lamp grow without bound as they come nearer.
 inline constexpr float kNearLamp = 0.25f;
 
-/// At p_W on the ray. `share`: MarchStep::share.
+/// Sample of lamps for media at p_W on the ray. `share`: MarchStep::share.
 GLOAM_HD AirLamp sample_air(const SceneView& scene, const Ray& ray, const MediumPoint& medium,
                             Vec3f share, Vec3f p_W, Vec2f u) {
   AirLamp out{{}, p_W, {}};
@@ -39,7 +39,7 @@ GLOAM_HD AirLamp sample_air(const SceneView& scene, const Ray& ray, const Medium
   return out;
 }
 
-/// Share of its light that what lies between lets through.
+/// Transmittance from the lamp of a sample to its place in the air.
 template <class Tracer>
 GLOAM_HD Vec3f arriving_share(const SceneView& scene, const Tracer& tracer, const Ray& ray,
                               const AirLamp& air, WalkRandom* random, uint32_t* rays) {
@@ -85,8 +85,8 @@ GLOAM_HD AirCell find_air(const Tracer& tracer, const IrradianceCacheView& cache
 struct AirLight {
   Vec3f all, lamps;  ///< lamps: of that
 };
-/// For media of the mean cosine g at p_W and a ray along d: what the cache has for the air there,
-/// or `otherwise`.
+/// Light for media of the mean cosine g at p_W and a ray along d: of the cache's cell of the air
+/// there, or `otherwise`.
 template <class Tracer>
 GLOAM_HD AirLight air_light(const Tracer& tracer, const IrradianceCacheView& cache, Vec3f p_W,
                             Vec3f d, float g, uint32_t coarser, const AirLight& otherwise,
@@ -109,7 +109,7 @@ GLOAM_HD AirLight air_light(const Tracer& tracer, const IrradianceCacheView& cac
   return {light.all, light.near};
 }
 
-/// Light of what glows where samples of lamps leave it out: right before the ray [cd/m²].
+/// Emission that samples of lamps leave out: of media right before the ray [cd/m²].
 GLOAM_HD Vec3f near_glow(const MediaView& media, const Ray& ray) {
   constexpr int kSteps = 4;
   return march(media, ray, min(ray.tmax, glow::kNearGlow), 0.0f, kSteps, {}, true,
@@ -117,8 +117,8 @@ GLOAM_HD Vec3f near_glow(const MediaView& media, const Ray& ray) {
       .radiance;
 }
 
-/// Of that, what a medium of the mean cosine g at p_W scatters against a ray along d, by one
-/// sample.
+/// Part of near_glow() that a medium of the mean cosine g at p_W scatters against a ray along d, by
+/// one sample.
 GLOAM_HD Vec3f near_glow_in_air(const MediaView& media, Vec3f p_W, Vec3f d, float g,
                                 WalkRandom* random) {
   const float z = sample_henyey_greenstein(g, random->next());
@@ -142,8 +142,8 @@ struct Turn {
   }
 };
 
-/// What media along path->ray up to `tmax` do to light: scatter that of lamps once and that of all
-/// around, give off, and let through.
+/// Light of media along path->ray up to `tmax`: scattered once from lamps, scattered from all
+/// around, emitted, and let through.
 template <class F>
 struct MediaLightOf {
   Vec3Of<F> radiance;   ///< that they give off [cd/m²]
@@ -208,7 +208,7 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
                 return Vec3f{};
               });
     if (lane(samples, i) && in_all > 0) {
-      // By half even, as what would bring most may be hidden.
+      // Probability half even, half by the light: the brighter sample may be hidden.
       AirLamp lamps[kDrawn];
       float light[kDrawn], all = 0;
       for (int k = 0; k < kDrawn; ++k) {

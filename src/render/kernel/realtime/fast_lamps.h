@@ -1,5 +1,5 @@
 #pragma once
-// The fast stage: light of lamps, and of what glows, at surfaces. Device-safe.
+// Direct light of lamps and glowing media at surfaces, in the fast stage. Device-safe.
 
 #include "render/kernel/light/glow_line.h"
 #include "render/kernel/math/quads.h"
@@ -12,8 +12,8 @@ inline constexpr uint32_t kMaxFastLights = kMaxWeighedLights, kDrawnLights = 4;
 /// Surfaces rougher than this reflect the light of the cache instead of what a ray finds: that is
 /// of all directions alike.
 inline constexpr float kMaxTracedRoughness = 0.6f;
-/// Of two by two pixels on a surface as rough as this, one sends out a ray for all: what they
-/// reflect is blurred over more than that.
+/// Roughness from which one pixel of two by two traces a reflection ray for all: the reflection is
+/// blurred over more than these pixels.
 inline constexpr float kLeastSharedRoughness = 0.2f;
 
 namespace fasts {
@@ -31,7 +31,8 @@ GLOAM_HD Vec3Of<F> diffuse_albedo(const LayeredBsdfOf<F>& b) {
   return select<F>(b.layered, b.base.diffuse * b.under, b.base.diffuse);
 }
 
-/// Surfaces so rough that samples of what glows make less noise of its reflection than rays do.
+/// Lanes whose surface is so rough that samples of glowing media make less noise in its reflection
+/// than rays do.
 template <class F>
 GLOAM_HD MaskOf<F> blurs_flames(const SurfaceOf<F>& v, const LayeredBsdfOf<F>& b) {
   const MaskOf<F> sharp =
@@ -59,7 +60,8 @@ struct LampSampleOf {
   MaskOf<F> glows = false;
 };
 
-/// What glows, from p on a surface with the normal n, or in the air (n = 0), in the `active` lanes.
+/// Sample of media that glow, from p on a surface with the normal n, or in the air (n = 0), in the
+/// `active` lanes.
 template <class F>
 GLOAM_HD void sample_glow(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, Vec2Of<F> u,
                           MaskOf<F> active, LampSampleOf<F>* out) {

@@ -96,8 +96,8 @@ GLOAM_HD float hit_capsule(float radius, float half, Vec3f o, Vec3f d, float tmi
 
 }  // namespace shapes
 
-/// Of all but boxes, which are crossed in lanes or are triangles: nearest hit of the ray (in G)
-/// with tmin < t < tmax, or a value <= 0. `d` need not be unit.
+/// Nearest hit of the ray (in G) with tmin < t < tmax, or a value <= 0, for all shapes but boxes,
+/// which are crossed in lanes or are triangles. `d` need not be unit.
 GLOAM_HD float intersect_shape(ShapeType shape, Vec3f size, Vec3f o, Vec3f d, float tmin,
                                float tmax) {
   switch (shape) {
