@@ -29,7 +29,7 @@ std::array<Vec2f, kMostFootprintRays> footprint_points(int rays) {
   for (int i = 0; i < rays; ++i) {
     // Within the radius r (in half angles at 1/e²) lies 1 - exp(-2 r²) of the power; turns by the
     // golden angle spread the points (Vogel 1979, "A better way to construct the sunflower head").
-    const double share = (i + 0.5) / rays, r = std::sqrt(-0.5 * std::log(1 - share));
+    const double fraction = (i + 0.5) / rays, r = std::sqrt(-0.5 * std::log(1 - fraction));
     const double angle = 2.399963229728653 * i;
     points[static_cast<size_t>(i)] = {static_cast<float>(r * std::cos(angle)),
                                       static_cast<float>(r * std::sin(angle))};

@@ -39,7 +39,7 @@ CameraKey camera_key(const Affine3f& X) {
            static_cast<float>(q.z)}};
 }
 
-/// `keys`: room for what it refers to.
+/// `keys`: scratch for what it refers to.
 CameraView32 make_camera(const CameraView& view, std::vector<CameraKey>* keys) {
   CameraView32 camera;
   camera.fx = static_cast<float>(view.intrinsics.fx);
@@ -142,7 +142,7 @@ class CpuRenderer final : public Renderer {
                                   film->height, objects_);
     }
     if (settings.tier == RenderTier::kFast) {
-      job.scene.environment.row_cdf = {};  // the cache has the sky's light: none is drawn
+      job.scene.environment.row_cdf = {};  // the cache has the sky's light: none is sampled
       FastHistory own;
       auto* history = static_cast<FastHistory*>(settings.history);
       RenderStats stats = (history != nullptr ? *history : own)
@@ -168,7 +168,7 @@ class CpuRenderer final : public Renderer {
           on_card ? mean_ambient(cuda_->trace_ambient(on_cuda(job), film->width, film->height))
                   : measure_ambient(job.scene, job.tracer, job.camera, film->width, film->height,
                                     settings.max_depth);
-      job.scene.environment.row_cdf = {};  // it stands for the sky's light: none is drawn
+      job.scene.environment.row_cdf = {};  // it stands for the sky's light: none is sampled
     }
     if (flickers) job.scene.light_levels = levels;
     job.film = film;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "render/kernel/camera/view_clip.h"
-#include "render/kernel/light/ambient.h"
+#include "render/kernel/light/ambient_path.h"
 #include "render/renderer.h"
 #include "render/scene/bvh_scene.h"
 

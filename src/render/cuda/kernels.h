@@ -2,7 +2,7 @@
 // Interface of the host to the card: plain structures that both compilers see, and the launches.
 
 #include "render/kernel/camera/view_clip.h"
-#include "render/kernel/light/ambient.h"
+#include "render/kernel/light/ambient_path.h"
 #include "render/kernel/path/path_state.h"
 #include "render/kernel/trace/bvh_tracer.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// Pixels to threads, and what all kernels share. All shading and traversal is that of
+// Pixels to threads, and helpers of all kernels. All shading and traversal is that of
 // render/kernel.
 
 #include "render/cuda/kernels.h"

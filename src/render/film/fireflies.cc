@@ -11,7 +11,7 @@ namespace {
 constexpr float kRatio = 4;           // to the third brightest of the pixels around
 constexpr int kRadius = 2;            // of those [px]
 constexpr int kSpread = 16;           // how far the light of a firefly is spread [px]
-constexpr float kMostSpread = 0.02f;  // share of a firefly's limit that one pixel may get of it
+constexpr float kMostSpread = 0.02f;  // fraction of a firefly's limit that one pixel may get of it
 constexpr float kFacing = 0.9f;       // cosine between surfaces that take each other's light
 
 /// Values that are infinite or no number are errors elsewhere, not light.
@@ -103,9 +103,9 @@ class Fireflies {
     Firefly fly{x, y, {excess.x / a.x, excess.y / a.y, excess.z / a.z}};
     const float received = luminance(fly.light * reflected_around(fly));
     if (!(received > 0)) return;  // nothing around looks the same way
-    const float share = luminance(excess) / received;
+    const float fraction = luminance(excess) / received;
     const float most = kMostSpread * limit / luminance(fly.light);
-    fly.light *= min(share, most);
+    fly.light *= min(fraction, most);
     rows_[static_cast<size_t>(y)].push_back(fly);
   }
 

@@ -3,7 +3,7 @@
 // fills them. Device-safe.
 
 #include "geometry/motion_keys.h"
-#include "render/kernel/light/environment.h"
+#include "render/kernel/light/environment_map.h"
 #include "render/kernel/light/light_tree_view.h"
 #include "render/kernel/math/ray.h"
 #include "render/kernel/media/medium_view.h"
@@ -163,14 +163,14 @@ struct LightGuide {
   DeviceSpan<const uint32_t> surface_row;  ///< cell-major, one per facing; kNone = no such surface
   /// Row-major: root mean square of what each light brings, over that of light_weight; above zero.
   DeviceSpan<const float> gain;
-  DeviceSpan<const float> sky_visible;  ///< by row: share of the environment map's light
+  DeviceSpan<const float> sky_visible;  ///< by row: fraction of the environment map's light
   /// Cells along an edge of the octahedral map of directions (kernel/light_directions.h).
   static constexpr uint32_t kAcross = 16;
   static constexpr uint32_t kSums = kAcross * kAcross + 1;
   /// Row-major: running sums, 0 to 1, over the map's cells, of the light that arrives from each.
   DeviceSpan<const float> arriving;
-  float share =
-      0;  ///< of directions that are drawn so on diffuse surfaces; the BSDF's are the rest
+  float probability =
+      0;  ///< of sampling directions by it on diffuse surfaces; the rest is the BSDF's
 
   /// kNone outside the grid.
   template <class F>
@@ -312,7 +312,7 @@ struct SceneView {
   GLOAM_HD bool has_sky_texture() const { return !kPlainScenes && sky_texture >= 0; }
   GLOAM_HD bool lets_light_through() const { return !kPlainScenes && has_transparent; }
   GLOAM_HD bool has_many_lights() const { return !kPlainScenes && lights.size > kMaxWeighedLights; }
-  GLOAM_HD bool guides_directions() const { return guide.share > 0; }
+  GLOAM_HD bool guides_directions() const { return guide.probability > 0; }
   /// On the host alone: it reads the lights.
   bool is_plain() const {
     bool lamps = lights.size <= kMaxWeighedLights;
@@ -337,7 +337,7 @@ GLOAM_HD MaskOf<F> color_only_lanes(const SceneView& scene, UintOf<F> instance, 
   return out;
 }
 
-/// Light of a row of SceneView::light_levels at a time in the shutter, as a share of its mean.
+/// Light of a row of SceneView::light_levels at a time in the shutter, as a fraction of its mean.
 GLOAM_HD float level_at(const SceneView& scene, int row, float time) {
   const uint32_t count = scene.light_level_count;
   const float at = clamp(time, 0.0f, 1.0f) * static_cast<float>(count);
@@ -346,12 +346,12 @@ GLOAM_HD float level_at(const SceneView& scene, int row, float time) {
 }
 
 /// Pose of an instance at a time in the shutter (linear between the keys, as Embree does);
-/// `between` is room for it.
+/// `between` is scratch for it.
 GLOAM_HD const Affine3f& pose_at(const InstanceView& instance, float time, Affine3f* between) {
   if (kPlainScenes || !instance.moving || time == 0) return instance.X_WG;
-  float share;
-  const uint32_t key = key_before(instance.keys.size, time, &share);
-  *between = lerp(instance.keys[key], instance.keys[key + 1], share);
+  float fraction;
+  const uint32_t key = key_before(instance.keys.size, time, &fraction);
+  *between = lerp(instance.keys[key], instance.keys[key + 1], fraction);
   return *between;
 }
 GLOAM_HD Affine3f pose_at(const InstanceView& instance, float time) {
@@ -364,9 +364,9 @@ GLOAM_HD bool deforms_in_shutter(const MeshView& mesh) {
 }
 GLOAM_HD Vec3f mesh_vertex(const MeshView& mesh, uint32_t i, float time) {
   if (!deforms_in_shutter(mesh) || time == 0) return mesh.positions[i];
-  float share;
-  const uint32_t row = key_before(mesh.key_count, time, &share) * mesh.positions.size + i;
-  return lerp(mesh.position_keys[row], mesh.position_keys[row + mesh.positions.size], share);
+  float fraction;
+  const uint32_t row = key_before(mesh.key_count, time, &fraction) * mesh.positions.size + i;
+  return lerp(mesh.position_keys[row], mesh.position_keys[row + mesh.positions.size], fraction);
 }
 
 /// Corners i of a mesh.

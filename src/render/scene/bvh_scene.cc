@@ -98,7 +98,7 @@ void BvhScene::lay_out(const RenderScene& scene) {
   }
 }
 
-/// Appends the mesh's tree and room for its triangles.
+/// Appends the mesh's tree and space for its triangles.
 void BvhScene::place_mesh(const RenderScene& scene, uint32_t row) {
   MeshTree& mesh = meshes_[row];
   if (mesh.tree.order.empty()) return;
@@ -115,7 +115,7 @@ void BvhScene::place_mesh(const RenderScene& scene, uint32_t row) {
   }
   mesh.root = in_all(mesh.tree.root);
   triangles_.resize(triangles_.size() +
-                    mesh.tree.order.size() * (mesh.deforms ? room_for_keys_ : 1));
+                    mesh.tree.order.size() * (mesh.deforms ? key_capacity_ : 1));
   place_triangles(scene.meshes()[row], mesh);
 }
 
@@ -227,8 +227,8 @@ void BvhScene::place_top(const std::vector<BvhBox>& boxes, bool anew, TopTree* t
 void BvhScene::update(const RenderScene& scene) {
   bool anew = drawn_version_ != scene.drawn_version();
   for (const MeshView& mesh : scene.meshes()) {
-    if (mesh.key_count <= room_for_keys_) continue;
-    room_for_keys_ = mesh.key_count;
+    if (mesh.key_count <= key_capacity_) continue;
+    key_capacity_ = mesh.key_count;
     anew = true;
   }
   for (const uint32_t mesh : scene.rebuilt_meshes()) {

@@ -58,13 +58,14 @@ class BvhScene {
   void place_top(const std::vector<BvhBox>& boxes, bool anew, TopTree* top);
   BvhBox box_of(const RenderScene& scene, const BvhInstance& instance) const;
 
-  std::vector<MeshTree> meshes_;  ///< by row of SceneView::meshes; empty trees of what is not drawn
-  std::vector<BvhNode> nodes_;    ///< of top_, of static_top_, of deformables, of rigid meshes
+  std::vector<MeshTree>
+      meshes_;  ///< by row of SceneView::meshes; empty trees of meshes that are not rendered
+  std::vector<BvhNode> nodes_;  ///< of top_, of static_top_, of deformables, of rigid meshes
   std::vector<BvhTriangle> triangles_;  ///< of deformables, of rigid meshes
   std::vector<BvhInstance> instances_;
   std::vector<Affine3f> motion_;  ///< key_count_ of each that moves
   uint32_t key_count_ = 1;        ///< of all that moves
-  uint32_t room_for_keys_ = 2;    ///< of deformables, in triangles_
+  uint32_t key_capacity_ = 2;     ///< of deformables, in triangles_
   TopTree top_, static_top_;
   ScanTable scanned_;
   std::vector<uint32_t> still_;

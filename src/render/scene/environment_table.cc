@@ -14,7 +14,7 @@ namespace {
 
 /// Below this many rows the sine of the polar angle is too coarse for the density: rows are added.
 constexpr int kLeastRows = 33;
-/// Least chance of a step with any light, as a share of its running sum: four units in the last
+/// Least chance of a step with any light, as a fraction of its running sum: four units in the last
 /// place of a float near one, so that rounding leaves none empty.
 constexpr double kLeastShare = 0x1p-22;
 
@@ -56,7 +56,7 @@ std::vector<Vec3f> add_rows(int width, int height, std::span<const Vec3f> texels
     for (int column = 0; column < width; ++column) {
       out[static_cast<size_t>(row) * width + column] =
           lerp(texels[static_cast<size_t>(rows.low) * width + column],
-               texels[static_cast<size_t>(rows.high) * width + column], rows.share);
+               texels[static_cast<size_t>(rows.high) * width + column], rows.fraction);
     }
   }
   return out;

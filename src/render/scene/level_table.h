@@ -20,7 +20,7 @@ class LevelTable {
 
   const std::vector<LightLevel>& lights() const { return lights_; }
   const std::vector<LightLevel>& materials() const { return materials_; }
-  /// SceneView::light_levels: bin_count() even spans of time of each row, as shares of the mean.
+  /// SceneView::light_levels: bin_count() even spans of time of each row, as fractions of the mean.
   const std::vector<float>& bins() const { return bins_; }
   uint32_t bin_count() const { return bin_count_; }
 

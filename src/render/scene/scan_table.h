@@ -25,8 +25,8 @@ struct ScanTable {
   std::vector<ScanGroup> groups;     ///< that of the largest solid first
 
   /// Takes all infinite planes, and of the solids that stand still the `most` largest: most rays
-  /// end there. Those with less than `least_share` of the largest's surface are left out.
-  static ScanTable choose(const RenderScene& scene, size_t most, float least_share);
+  /// end there. Those with less than `least_fraction` of the largest's surface are left out.
+  static ScanTable choose(const RenderScene& scene, size_t most, float least_fraction);
   bool holds(size_t instance) const;
   ScanList list(const RenderScene& scene) const;
 };

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "render/cpu/tracer/embree_scene.h"
-#include "render/kernel/light/light_picker.h"
+#include "render/kernel/light/light_sampler.h"
 #include "render/kernel/math/sampler.h"
 
 namespace gloam {
@@ -14,7 +14,7 @@ namespace gloam {
 /// 0 where there is nothing to cover.
 LightGuide place_guide_grid(const SceneView& scene, DeviceSpan<const uint32_t> rows, int along);
 
-/// Point at the share u of each edge of the cell [m].
+/// Point at the fraction u of each edge of the cell [m].
 Vec3f point_in_cell(const LightGuide& grid, int cell, Vec3f u);
 
 struct SurfacePoint {

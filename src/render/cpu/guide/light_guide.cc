@@ -6,7 +6,7 @@
 #include "render/cpu/guide/arriving_light.h"
 #include "render/cpu/guide/guide_probes.h"
 #include "render/kernel/light/light_directions.h"
-#include "render/kernel/light/light_picker.h"
+#include "render/kernel/light/light_sampler.h"
 
 namespace gloam {
 namespace {
@@ -14,9 +14,10 @@ namespace {
 constexpr int kCellsAlong = 16;   // of the longest edge
 constexpr int kLightRays = 32;    // to each light from a cell
 constexpr float kFloor = 0.002f;  // gain of a light that no ray has seen
-constexpr float kWorth = 0.02f;   // share of the map below which nothing is drawn from it
+constexpr float kWorth = 0.02f;   // fraction of the map below which nothing is sampled from it
 constexpr float kEven = 0.5f;     // unevenness up to which the BSDF finds light as well
-constexpr float kShare = 0.75f;   // of directions by the guide, where surfaces are diffuse
+constexpr float kGuidedProbability =
+    0.75f;  // of directions by the guide, where surfaces are diffuse
 constexpr int kFacings = LightGuide::kFacings;
 
 }  // namespace
@@ -137,7 +138,7 @@ void LightGuideStore::build(SceneView scene, const CpuTracer& statics, const Des
   // directions costs more time than it saves noise.
   if (has_sky || has_sun) {
     arriving_ = find_arriving_light(scene, statics, view(), rows_);
-    grid_.share = unevenness_of(arriving_, rows_) > kEven ? kShare : 0.0f;
+    grid_.probability = unevenness_of(arriving_, rows_) > kEven ? kGuidedProbability : 0.0f;
   }
   gain_.resize(rows_.size() * grid_.lights);
   found_.resize(gain_.size());

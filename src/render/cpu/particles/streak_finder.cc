@@ -118,7 +118,7 @@ void StreakFinder::add(const Particle& particle, Vec3f p, float far, const Philo
   s.radius += blur_at(s.distance);
   if (!is_in_picture(s)) return;
   // A disc of the radius r covers its way of length l and width 2 r for as long as makes pi r².
-  s.share = disc / (2 * s.radius * way + kPi * s.radius * s.radius);
+  s.cover = disc / (2 * s.radius * way + kPi * s.radius * s.radius);
   s.soft = particle.kind == ParticleKind::kFlake;
   s.light = light_of(particle.kind, p, uv, bits);
   out->push_back(s);

@@ -20,7 +20,7 @@ inline constexpr float kFarthestParticle = 30;   ///< [m]
 struct Streak {
   Vec2f from, to;      ///< [px]
   float radius = 0;    ///< [px]
-  float share = 1;     ///< of the exposure for which it covers a point of its way
+  float cover = 1;     ///< fraction of the exposure for which it covers a point of its way
   float distance = 0;  ///< [m]
   Vec3f light;         ///< that it sends to the camera [cd/m²]
   bool soft = false;   ///< thinner towards its edge

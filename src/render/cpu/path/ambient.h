@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "render/cpu/tracer/embree_scene.h"
-#include "render/kernel/light/ambient.h"
+#include "render/kernel/light/ambient_path.h"
 
 namespace gloam {
 

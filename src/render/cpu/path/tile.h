@@ -1,5 +1,5 @@
 #pragma once
-// One tile of a picture and what every pixel of a render call shares.
+// One tile of a picture, and the inputs of a render call.
 
 #include <immintrin.h>
 

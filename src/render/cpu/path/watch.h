@@ -17,7 +17,7 @@ class RenderWatch {
   /// One more tile is finished.
   void tile_done() { ask(1); }
   /// Whether the work in progress may continue.
-  bool goes_on() {
+  bool may_continue() {
     ask(0);
     return !stopped();
   }

@@ -5,7 +5,7 @@
 #include <unordered_map>
 
 #include "render/cpu/path/key_groups.h"
-#include "render/kernel/realtime/irradiance_cache.h"
+#include "render/kernel/realtime/irradiance_cache_view.h"
 
 namespace gloam {
 
@@ -30,7 +30,7 @@ class ExcessRegions {
  private:
   /// Sums over cells and rounds, where old ones fade.
   struct Region {
-    Vec3f sum, share;            ///< share: of a cell's light
+    Vec3f sum, ratio;            ///< ratio: of excess to a cell's light
     float light = 0, cells = 0;  ///< what they had before
     uint32_t last_traced = 0;
 

@@ -20,7 +20,7 @@ constexpr size_t kMostCells = 2500;     // and a later picture
 
 /// Share of directions that meet what is near, by the four by four pixels about one, whose
 /// directions are spread evenly: one alone has all or nothing.
-F near_about(const FastFrame& f, int x, int y) {
+F mean_near(const FastFrame& f, int x, int y) {
   constexpr float kTolerance = 0.02f;  // of places on one plane, over their distance
   const F part = f.part.load(x, y);
   const Vec3Of<F> p = f.p.load(x, y), n = f.n.load(x, y);
@@ -70,7 +70,7 @@ void FastHistory::look_up(const IrradianceCacheView& cache) {
   parallel_for("fast light", now_.height, [&](int64_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < now_.width; x += kLaneCount) {
-      const F near = near_about(now_, x, y);
+      const F near = mean_near(now_, x, y);
       for (int i = 0; i < kLaneCount && x + i < now_.width; ++i) {
         const int cell = find_cell(cache, now_.key[static_cast<size_t>(y) * now_.width + x + i]);
         now_.signal[kCachedSignal].set(
@@ -105,7 +105,7 @@ void FastHistory::add_picture(const SceneView& scene, const CpuTracer& tracer,
                               const CameraView32& camera, const RenderSettings& settings,
                               uint32_t pass, RenderWatch* watch) {
   SceneView plain = scene;  // rays of pixels go where they must
-  plain.guide.share = 0;
+  plain.guide.probability = 0;
   const Vec3f eye = camera.pose.X_WC_open.p;
   for (bool again = true; again && !watch->stopped();) {
     const bool first = cache_.size() == 0;

@@ -35,8 +35,8 @@ class IrradianceCache {
     uint32_t rounds = 0;                       ///< of rays, since it was made
     int starts = 0;                            ///< places that asked since the last update
     float variance = 0;                        ///< of the luminance of a round's mean
-    float stir = 0;                            ///< share of directions in which things moved lately
-    int samples = 0;                           ///< rays that `light` is the mean of
+    float stir = 0;   ///< fraction of directions in which things moved lately
+    int samples = 0;  ///< rays that `light` is the mean of
   };
   /// Light that a cell's rays of one round brought.
   struct Traced {
@@ -44,7 +44,7 @@ class IrradianceCache {
     Vec3f excess;                    ///< of rays that bring more than is likely: what is above that
     float variance = 0, before = 0;  ///< of its luminance; luminance before the round
     float usual = 0;                 ///< luminance that rays are judged by
-    float stir = 0;                  ///< share of the rays that met what has moved
+    float stir = 0;                  ///< fraction of the rays that met what has moved
     bool is_new = false, changed = false;  ///< it had no light yet; it is not what it was
     uint64_t rays = 0;
   };
@@ -56,7 +56,7 @@ class IrradianceCache {
   static constexpr int kStarts = 8, kFurther = 8;
 
   /// Next random number, of the same sequence each time.
-  uint32_t dice();
+  uint32_t next_random();
   uint32_t slot_of(uint64_t key) const;
   void rebuild(size_t slots);
   /// Mean luminance of the cells beside that of a key, or of all cells if there are none.
@@ -93,7 +93,7 @@ class IrradianceCache {
   std::vector<ExcessRegions::OfCell> of_cells_;  ///< of traced_
   std::vector<Vec3f> spread_;                    ///< what they get
   uint32_t update_ = 0;
-  uint64_t dice_ = 1;
+  uint64_t random_state_ = 1;
 };
 
 }  // namespace gloam

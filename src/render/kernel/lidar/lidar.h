@@ -29,7 +29,7 @@ namespace lidar {
 
 /// Surfaces that one ray may meet.
 inline constexpr int kMostSurfaces = 8;
-/// Two-way share of the pulse below which it is not followed.
+/// Two-way fraction of the pulse below which it is not followed.
 inline constexpr float kFaint = 1e-4f;
 
 /// Half the mean divergence [rad], as a GGX width. The spot that a flat mirror throws back at the
@@ -95,8 +95,8 @@ GLOAM_HD LayeredBsdf glass_of(const LayeredBsdfOf<F>& b, int i) {
   return one;
 }
 
-/// One-way share of a pulse that a surface of glass passes on in the direction *d, which it bends.
-/// Rough glass scatters the rest out of the beam. `roughness`: without blur.
+/// One-way fraction of a pulse that a surface of glass passes on in the direction *d, which it
+/// bends. Rough glass scatters the rest out of the beam. `roughness`: without blur.
 GLOAM_HD float pass_glass(const LayeredBsdf& b, const Frame& frame, float roughness, float blur,
                           Vec3f* d) {
   Vec3f wo = frame.to_local(-*d);
@@ -125,13 +125,13 @@ GLOAM_HD void trace_echoes(const SceneView& scene, const Tracer& tracer, const L
   const float blur = lidar::blur_of(optics);
   const bool has_media = !scene.media.volumes.empty();
   F way = F(optics.min_range);  // to the ray's origin [m]
-  F share = F(1.0f);            // of the pulse that arrives there
+  F fraction = F(1.0f);         // of the pulse that arrives there
   F index = F(1.0f);            // of refraction
   Vec3Of<F> absorption;
   const auto dim = [&](F length, F from, Backscatter* back) {
     each_lane(active, [&](int i) {
-      const float before = lane(share, i);
-      set_lane(&share, i,
+      const float before = lane(fraction, i);
+      set_lane(&fraction, i,
                before * cross_media(scene.media, optics, lane(ray, i), lane(length, i),
                                     lane(from, i), before, back == nullptr ? nullptr : &back[i]));
     });
@@ -146,7 +146,7 @@ GLOAM_HD void trace_echoes(const SceneView& scene, const Tracer& tracer, const L
     if (has_media) dim(select(found, hit.t, ray.tmax), way, soft);
     active = found;
     if (!any(active)) return;
-    if (n > 0) share *= paths::through_glass(absorption, hit.t).x;
+    if (n > 0) fraction *= paths::through_glass(absorption, hit.t).x;
 
     SurfaceOf<F> s = make_surface(scene, ray, hit, cone, active);
     const F roughness = s.roughness;
@@ -160,7 +160,7 @@ GLOAM_HD void trace_echoes(const SceneView& scene, const Tracer& tracer, const L
         if (optics.hidden[lane(s.instance, i)] != 0) set_lane(&unseen, i, true);
       });
     }
-    const F signal = select(unseen, F(0.0f), g * share * share * pulse / (way * way));
+    const F signal = select(unseen, F(0.0f), g * fraction * fraction * pulse / (way * way));
     each_lane(active & (signal > 0.0f), [&](int i) {
       const float range = lane(way, i), seen = lane(signal, i) * lidar::overlap(optics, range);
       if (seen > 0) echoes[i].add({range, seen, lane(s.instance, i) + 1});
@@ -181,8 +181,8 @@ GLOAM_HD void trace_echoes(const SceneView& scene, const Tracer& tracer, const L
         set_lane(&index, i, max(lane(index, i) * lane(bsdf.eta, i), 1.0f));
       }
     });
-    share *= passed;
-    active = active & (share * share > lidar::kFaint);
+    fraction *= passed;
+    active = active & (fraction * fraction > lidar::kFaint);
     if (!any(active)) return;
     const MaskOf<F> crossing = active & !unseen & (dot(d, s.geometric) < 0.0f);
     absorption = paths::absorption_beyond(scene, s, crossing, absorption);

@@ -97,11 +97,11 @@ GLOAM_HD Vec3Of<F> sample_cosine_hemisphere(Vec2Of<F> u) {
 }
 
 /// Remainder of x, uniform in [0, 1), after a choice by x took the interval that begins at `from`
-/// and is as long as `share`: where in it x lies, uniform in [0, 1) again. Points that are spread
+/// and is as long as `width`: where in it x lies, uniform in [0, 1) again. Points that are spread
 /// evenly stay so in each interval.
 template <class F>
-GLOAM_HD F rest_of(F x, F from, F share) {
-  return clamp((x - from) / share, 0.0f, 0.99999994f);
+GLOAM_HD F rest_of(F x, F from, F width) {
+  return clamp((x - from) / width, 0.0f, 0.99999994f);
 }
 
 /// Uniform direction on the unit sphere; pdf = 1 / (4 pi).

@@ -73,14 +73,14 @@ GLOAM_HD Vec3f scattering_at(const MediaView& media, Vec3f p_W, Bands bands, flo
 struct MarchResult {
   Vec3f transmittance;
   Vec3f radiance;   ///< of emission and source [cd/m²]
-  Vec3f scattered;  ///< share that was scattered on its way, of light that is even all around
+  Vec3f scattered;  ///< fraction that was scattered on its way, of light that is even all around
 };
 
 /// A step through media.
 struct MarchStep {
   MediumPoint medium;   ///< its mean
   float begin, length;  ///< along the ray [m]
-  Vec3f share;          ///< of light [cd/m² per m] from all over it, what gets to the origin [m]
+  Vec3f weight;         ///< transmittance from its points to the origin, integrated over it [m]
   bool is_hot;          ///< something around it may glow
 };
 
@@ -159,9 +159,9 @@ GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, f
         result.transmittance *= media::exp_of(-depth);
         media::add(point, 1 / parts, &mean);
       }
-      const Vec3f share = before * media::mean_transmittance(mean.extinction * ds) * ds;
-      result.scattered += share * mean.scattering;
-      result.radiance += share * source(MarchStep{mean, begin, ds, share, is_hot});
+      const Vec3f weight = before * media::mean_transmittance(mean.extinction * ds) * ds;
+      result.scattered += weight * mean.scattering;
+      result.radiance += weight * source(MarchStep{mean, begin, ds, weight, is_hot});
       if (max_component(result.transmittance) < kDark) return result;
     }
   }

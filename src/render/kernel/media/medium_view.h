@@ -58,7 +58,7 @@ struct GlowView {
   float reach = 0;                     ///< half its diagonal [m]
   float strength = 0;                  ///< mean luminous intensity, at most [cd]
   float voxels_per_volume = 0;         ///< [1/m³]
-  DeviceSpan<const float> cell_sums;   ///< running sums of the cells' shares, 0 to 1
+  DeviceSpan<const float> cell_sums;   ///< running sums of the cells' probabilities, 0 to 1
   DeviceSpan<const int> rows;          ///< of each cell; -1 = dark
   DeviceSpan<const float> voxel_sums;  ///< the same of a cell's voxels, x fastest; kSums in a row
 };

@@ -18,13 +18,13 @@ struct AirLamp {
 /// alone: samples of points of a large lamp grow without bound as they come nearer.
 inline constexpr float kNearLamp = 0.25f;
 
-/// Sample of lamps for media at p_W on the ray. `share`: MarchStep::share.
+/// Sample of lamps for media at p_W on the ray. `weight`: MarchStep::weight.
 GLOAM_HD AirLamp sample_air(const SceneView& scene, const Ray& ray, const MediumPoint& medium,
-                            Vec3f share, Vec3f p_W, Vec2f u) {
+                            Vec3f weight, Vec3f p_W, Vec2f u) {
   AirLamp out{{}, p_W, {}};
-  LightPicker picker;
-  prepare_picker<float>(scene, p_W, Vec3f{}, true, kOneGlow, &picker);
-  out.lamp = sample_lamp<float>(scene, picker, p_W, Vec3f{}, u, ray.time, true);
+  LightSampler light_sampler;
+  prepare_light_sampler<float>(scene, p_W, Vec3f{}, true, kOneGlow, &light_sampler);
+  out.lamp = sample_lamp<float>(scene, light_sampler, p_W, Vec3f{}, u, ray.time, true);
   const LightSample& light = out.lamp.light;
   const bool has_surface = length_squared(light.lift) > 0;
   if (!(light.pdf > 0) || (has_surface && light.distance < kNearLamp)) return out;
@@ -34,21 +34,21 @@ GLOAM_HD AirLamp sample_air(const SceneView& scene, const Ray& ray, const Medium
     return scattering * henyey_greenstein(g, cosine);
   };
   const Vec3f s = medium.scattering, g = medium.g_scattering;
-  out.light =
-      Vec3f{phase(s.x, g.x), phase(s.y, g.y), phase(s.z, g.z)} * share * light.radiance / light.pdf;
+  out.light = Vec3f{phase(s.x, g.x), phase(s.y, g.y), phase(s.z, g.z)} * weight * light.radiance /
+              light.pdf;
   return out;
 }
 
 /// Transmittance from the lamp of a sample to its place in the air.
 template <class Tracer>
-GLOAM_HD Vec3f arriving_share(const SceneView& scene, const Tracer& tracer, const Ray& ray,
-                              const AirLamp& air, WalkRandom* random, uint32_t* rays) {
+GLOAM_HD Vec3f transmittance_to(const SceneView& scene, const Tracer& tracer, const Ray& ray,
+                                const AirLamp& air, WalkRandom* random, uint32_t* rays) {
   Ray shadow = ray;
   aim_shadow_ray(air.p_W, Vec3f{}, 0.0f, air.lamp.light, &shadow);
-  Vec3f share{1, 1, 1};
-  if (air.lamp.light.casts_shadow) share = paths::transmit(scene, tracer, shadow, true, rays);
-  if (!(max_component(share) > 0)) return {};
-  return share * transmittance(scene.media, shadow, min(shadow.tmax, air.lamp.clear), {}, *random);
+  Vec3f passed{1, 1, 1};
+  if (air.lamp.light.casts_shadow) passed = paths::transmit(scene, tracer, shadow, true, rays);
+  if (!(max_component(passed) > 0)) return {};
+  return passed * transmittance(scene.media, shadow, min(shadow.tmax, air.lamp.clear), {}, *random);
 }
 
 /// Light of lamps that media of the mean cosine g at ray.o would scatter against the ray: of even
@@ -61,7 +61,7 @@ GLOAM_HD Vec3f lamps_in_air(const SceneView& scene, const Tracer& tracer, const 
   one.g_scattering = {g, g, g};
   const AirLamp lamp = sample_air(scene, ray, one, {1, 1, 1}, ray.o, u);
   if (!(max_component(lamp.light) > 0)) return {};
-  return lamp.light * arriving_share(scene, tracer, ray, lamp, random, rays);
+  return lamp.light * transmittance_to(scene, tracer, ray, lamp, random, rays);
 }
 
 /// The cell of a key, or the one behind the walls that hide p_W from that.
@@ -149,7 +149,7 @@ struct MediaLightOf {
   Vec3Of<F> radiance;   ///< that they give off [cd/m²]
   Vec3Of<F> around;     ///< scattered from all around [cd/m²]
   Vec3Of<F> lamps;      ///< scattered from lamps: one sample of one place [cd/m²]
-  Vec3Of<F> scattered;  ///< share of what arrives from all around
+  Vec3Of<F> scattered;  ///< fraction of the light that arrives from all around
   Vec3Of<F> through;
 };
 /// `samples`: lanes that take a sample of lamps; in others the cache's light of lamps counts.
@@ -175,19 +175,19 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
     AirLight air{cache.mean, {}};  // of the last step that the cache knew
     Vec3f around;
     // Two steps, by what they scatter, take a sample of lamps, and one of these stands for all.
-    constexpr int kDrawn = 2;
+    constexpr int kSampled = 2;
     constexpr float kEven = 0.1f;  // of what all light brings counts, as lamps may move
     struct {
       MediumPoint point;
-      Vec3f p_W, share;
+      Vec3f p_W, weight;
       float brings = 0;
-    } drawn[kDrawn];
+    } sampled[kSampled];
     const MarchResult m =
         march(scene.media, ray, lane(tmax, i), 0.0f, steps, {}, lane(glows, i),
               [&](const MarchStep& step) {
                 const MediumPoint& point = step.medium;
                 const Vec3f p_W = ray.o + ray.d * place_in(step, random.next());
-                const Vec3f scattered = point.scattering * step.share;
+                const Vec3f scattered = point.scattering * step.weight;
                 const float scatters = max_component(scattered);
                 if (const float chance = min(scatters / kOfAir, 1.0f); of_air.comes(chance)) {
                   CacheRequest request;
@@ -202,18 +202,18 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
                 }
                 const float brings = scatters * luminance(air.all * kEven + air.lamps);
                 in_all += brings;
-                for (auto& one : drawn) {
-                  if (random.next() * in_all < brings) one = {point, p_W, step.share, brings};
+                for (auto& one : sampled) {
+                  if (random.next() * in_all < brings) one = {point, p_W, step.weight, brings};
                 }
                 return Vec3f{};
               });
     if (lane(samples, i) && in_all > 0) {
       // Probability half even, half by the light: the brighter sample may be hidden.
-      AirLamp lamps[kDrawn];
-      float light[kDrawn], all = 0;
-      for (int k = 0; k < kDrawn; ++k) {
-        const Vec3f share = drawn[k].share * (in_all / drawn[k].brings);
-        lamps[k] = sample_air(scene, ray, drawn[k].point, share, drawn[k].p_W,
+      AirLamp lamps[kSampled];
+      float light[kSampled], all = 0;
+      for (int k = 0; k < kSampled; ++k) {
+        const Vec3f weight = sampled[k].weight * (in_all / sampled[k].brings);
+        lamps[k] = sample_air(scene, ray, sampled[k].point, weight, sampled[k].p_W,
                               {random.next(), random.next()});
         light[k] = luminance(lamps[k].light);
         all += light[k];
@@ -222,9 +222,9 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
         const float first = 0.25f + 0.5f * light[0] / all;
         const int k = random.next() < first ? 0 : 1;
         uint32_t rays = 0;
-        const Vec3f share = arriving_share(scene, tracer, ray, lamps[k], &random, &rays);
+        const Vec3f passed = transmittance_to(scene, tracer, ray, lamps[k], &random, &rays);
         const float chance = k == 0 ? first : 1 - first;
-        set_lane(&out.lamps, i, lamps[k].light * share * (0.5f / chance));
+        set_lane(&out.lamps, i, lamps[k].light * passed * (0.5f / chance));
         set_lane(&path->result.rays, i, lane(path->result.rays, i) + rays);
       }
     }

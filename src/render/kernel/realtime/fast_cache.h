@@ -1,7 +1,7 @@
 #pragma once
 // Requests of the fast stage to the irradiance cache, and lookups in it. Device-safe.
 
-#include "render/kernel/realtime/irradiance_cache.h"
+#include "render/kernel/realtime/irradiance_cache_view.h"
 #include "render/kernel/surface/surface_point.h"
 
 namespace gloam {

@@ -75,7 +75,7 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
       const F pdf = paths::emitter_pdf(scene, *path, v, shines & first, [&](uint32_t row, int i) {
         // Light of lamps to a cell counts where surfaces sample it: no light sampler is prepared
         // there.
-        return count_lamps ? chance_of(scene, *path, row, every, kDrawnLights, i) : 1.0f;
+        return count_lamps ? chance_of(scene, *path, row, every, kSampledLights, i) : 1.0f;
       });
       const F weight = select(first & (pdf > 0.0f),
                               count_lamps ? mis_weight(path->pdf_bsdf, pdf)
@@ -85,13 +85,13 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
     }
     MaskOf<F> through = false;
     if (scene.has_transparent) {
-      const F met = met_share(v);
-      const MaskOf<F> thin = active & (met < 1.0f);
-      if (any(thin)) through = thin & (path->sampler.next_1d(thin) >= met);
-      const Vec3Of<F> share = select<F>(through, passing_light(v) / (1.0f - met),
-                                        in_all_lanes<F>({1, 1, 1}) * (v.opacity / met));
+      const F opacity = opacity_of(v);
+      const MaskOf<F> thin = active & (opacity < 1.0f);
+      if (any(thin)) through = thin & (path->sampler.next_1d(thin) >= opacity);
+      const Vec3Of<F> weight = select<F>(through, passing_light(v) / (1.0f - opacity),
+                                         in_all_lanes<F>({1, 1, 1}) * (v.opacity / opacity));
       throughput =
-          select<F>(thin & (max_component(v.straight) > 0.0f), throughput * share, throughput);
+          select<F>(thin & (max_component(v.straight) > 0.0f), throughput * weight, throughput);
     }
     const Vec3Of<F> wo_W = -path->ray.d;
     FrameOf<F> frame;
@@ -135,7 +135,7 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
       path->ray.d = select<F>(goes, wi, path->ray.d);
       first = first & !goes;
       if (count_lamps) flames = flames | goes;
-      // No light was drawn for this bounce: what it meets counts in full.
+      // No light was sampled for this bounce: what it meets counts in full.
       path->pdf_bsdf = select(goes, F(1e12f), path->pdf_bsdf);
       path->from = select<F>(goes, v.p, path->from);
       active = goes | through;

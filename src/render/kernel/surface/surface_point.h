@@ -31,7 +31,7 @@ struct SurfaceOf {
   F metallic{}, roughness{};
   F f0{}, f90{};  ///< as in MaterialView
   F opacity = F(1.0f);
-  Vec3Of<F> straight;  ///< of light on what is opaque, the share that goes straight through: sheets
+  Vec3Of<F> straight;  ///< transmittance straight through the opaque part: sheets
   Vec3Of<F> tangent;   ///< unit, across `normal`: highlights are drawn out along it; zero = round
   // Layers, in materials that have some: as in MaterialLayers, patterns and weather included.
   F coat_weight{}, coat_roughness{}, coat_f0{}, coat_darkening{}, fuzz_weight{}, transmission{};
@@ -85,7 +85,7 @@ GLOAM_HD void set_lane(SurfaceOf<F>* s, int i, const Surface& value) {
 /// Opacity of a surface, the part that lets rays straight through left out: the rest of the light
 /// passes as if nothing were there.
 template <class F>
-GLOAM_HD F met_share(const SurfaceOf<F>& s) {
+GLOAM_HD F opacity_of(const SurfaceOf<F>& s) {
   return s.opacity * (1.0f - max_component(s.straight));
 }
 /// Light that passes straight through the surface.

@@ -9,28 +9,29 @@ namespace gloam {
 
 /// Light on the surfaces of a cell, as the luminance of even surroundings [cd/m²].
 struct CellLight {
-  Vec3f all;        ///< from everywhere
-  Vec3f near;       ///< of that, from surfaces less than the cell's edge away; in air, from lamps
-  float share = 0;  ///< of directions that meet such surfaces
+  Vec3f all;   ///< from everywhere
+  Vec3f near;  ///< of that, from surfaces less than the cell's edge away; in air, from lamps
+  float near_fraction = 0;  ///< of directions that meet such surfaces
 
   /// Light before a cell's first rays: `all` is a guess, and larger cells know better.
   static CellLight unknown(Vec3f guess) { return {guess, {}, -1}; }
-  GLOAM_HD bool is_known() const { return share >= 0; }
+  GLOAM_HD bool is_known() const { return near_fraction >= 0; }
 };
 
 GLOAM_HD CellLight lerp(const CellLight& a, const CellLight& b, float t) {
-  return {lerp(a.all, b.all, t), lerp(a.near, b.near, t), lerp(a.share, b.share, t)};
+  return {lerp(a.all, b.all, t), lerp(a.near, b.near, t),
+          lerp(a.near_fraction, b.near_fraction, t)};
 }
 
-/// Light at a place in the cell from which the share `near` of directions meet what is near: in
+/// Light at a place in the cell from which the fraction `near` of directions meet what is near: in
 /// corners and under things it differs from the cell's mean.
 GLOAM_HD Vec3f light_at(const CellLight& cell, float near) {
   // Assumption where few of a cell's directions meet near surfaces: these are a good deal darker
   // than the rest.
   constexpr float kDoubt = 0.05f, kDarker = 0.45f;
   if (!cell.is_known()) return cell.all;
-  const Vec3f far = (cell.all - cell.near) / max(1.0f - cell.share, 0.05f);
-  const Vec3f close = (cell.near + far * (kDoubt * kDarker)) / (cell.share + kDoubt);
+  const Vec3f far = (cell.all - cell.near) / max(1.0f - cell.near_fraction, 0.05f);
+  const Vec3f close = (cell.near + far * (kDoubt * kDarker)) / (cell.near_fraction + kDoubt);
   return lerp(far, close, near);
 }
 

@@ -7,7 +7,7 @@
 
 namespace gloam {
 
-class LightTree {
+class LightTreeTable {
  public:
   /// Builds the tree over all of `lights`, a function of them alone; `headlights`: rows of those at
   /// the camera, in order. Positions and strengths must be finite. Takes about 1 µs of CPU and 125
@@ -21,7 +21,7 @@ class LightTree {
  private:
   std::vector<LightNode> nodes_;
   std::vector<uint32_t> leaf_of_;
-  float scale_ = 0;             ///< makes shares of strengths
+  float scale_ = 0;             ///< turns strengths into fractions of their sum
   uint32_t first_carried_ = 0;  ///< row of nodes_: the headlights' are from here on
 };
 
