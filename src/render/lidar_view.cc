@@ -8,7 +8,7 @@ LidarMotion make_lidar_motion(const Affine3f& X_WL_open, const Affine3f& X_WL_cl
   LidarMotion motion;
   motion.X_WL = X_WL_open;
   motion.shift = X_WL_close.p - X_WL_open.p;
-  // Of the turn from open to close, in the frame at open: twice its sine times the axis is what its
+  // Rotation from open to close, in the frame at open: twice its sine times the axis is what its
   // matrix R lacks to be symmetric.
   const Affine3f& a = X_WL_open;
   const Affine3f& b = X_WL_close;
@@ -29,7 +29,7 @@ std::array<Vec2f, kMostFootprintRays> footprint_points(int rays) {
   for (int i = 0; i < rays; ++i) {
     // Within the radius r (in half angles at 1/e²) lies 1 - exp(-2 r²) of the power; turns by the
     // golden angle spread the points (Vogel 1979, "A better way to construct the sunflower head").
-    const double share = (i + 0.5) / rays, r = std::sqrt(-0.5 * std::log(1 - share));
+    const double fraction = (i + 0.5) / rays, r = std::sqrt(-0.5 * std::log(1 - fraction));
     const double angle = 2.399963229728653 * i;
     points[static_cast<size_t>(i)] = {static_cast<float>(r * std::cos(angle)),
                                       static_cast<float>(r * std::sin(angle))};

@@ -28,7 +28,7 @@ struct CameraView {
   std::vector<Affine3f> X_WC_keys{};  ///< one per key of the scene; empty = it stands still
   Shutter shutter{};                  ///< of the exact channels its opening counts
   Aperture aperture{};                ///< path tier; the exact channels are of its middle
-  // What its own rays pass, in all channels; shadows and reflections are of all.
+  // Surfaces that its own rays pass, in all channels; shadows and reflections are of all.
   float near = 0;                                        ///< [m]
   bool culls_backs = false;                              ///< surfaces seen from behind
   std::shared_ptr<const std::vector<uint8_t>> hidden{};  ///< by instance; null = none
@@ -40,7 +40,7 @@ enum class RenderTier : uint8_t {
   kFast,    ///< direct light, cached indirect light, one specular bounce; filtered over pictures
 };
 
-/// What the fast tier remembers of one camera's earlier pictures. A picture is a function of the
+/// Memory of one camera's earlier pictures, for the fast tier. A picture is a function of the
 /// scene, the seed and the pictures since the history was made.
 class ViewHistory {
  public:

@@ -39,7 +39,7 @@ CameraKey camera_key(const Affine3f& X) {
            static_cast<float>(q.z)}};
 }
 
-/// `keys`: room for what it refers to.
+/// `keys`: scratch for what it refers to.
 CameraView32 make_camera(const CameraView& view, std::vector<CameraKey>* keys) {
   CameraView32 camera;
   camera.fx = static_cast<float>(view.intrinsics.fx);
@@ -90,8 +90,8 @@ int64_t scattered(int64_t i, int64_t tiles) {
 
 class CpuRenderer final : public Renderer {
  public:
-  /// Without `embree` the CPU's rays go through our own BVH; `cuda`: runs what
-  /// it has stages for.
+  /// Renderer of the CPU. Without `embree` its rays go through our own BVH; `cuda` renders the
+  /// stages that it has.
   CpuRenderer(std::unique_ptr<RenderScene> scene, std::unique_ptr<EmbreeScene> embree,
               std::unique_ptr<CudaStages> cuda = nullptr)
       : traced_(std::move(scene), std::move(embree), cuda != nullptr), cuda_(std::move(cuda)) {
@@ -118,7 +118,7 @@ class CpuRenderer final : public Renderer {
     job.camera = make_camera(view, &camera_keys_);
     job.scene = job.camera.pose.keys.empty() ? scene().view_from(view.X_WC_open)
                                              : scene().view_from(view.X_WC_open, view.X_WC_keys);
-    // What is measured before the picture, and the fast tier, know no times: mean lamps.
+    // Measurements before the picture, and the fast tier, know no times: they see mean lamps.
     const DeviceSpan<const float> levels = std::exchange(job.scene.light_levels, {});
     job.tracer = traced_.tracer();
     PictureClip clip{job.scene, job.camera, {view.near, view.culls_backs, {}}};
@@ -142,7 +142,7 @@ class CpuRenderer final : public Renderer {
                                   film->height, objects_);
     }
     if (settings.tier == RenderTier::kFast) {
-      job.scene.environment.row_cdf = {};  // the cache has the sky's light: none is drawn
+      job.scene.environment.row_cdf = {};  // the cache has the sky's light: none is sampled
       FastHistory own;
       auto* history = static_cast<FastHistory*>(settings.history);
       RenderStats stats = (history != nullptr ? *history : own)
@@ -168,7 +168,7 @@ class CpuRenderer final : public Renderer {
           on_card ? mean_ambient(cuda_->trace_ambient(on_cuda(job), film->width, film->height))
                   : measure_ambient(job.scene, job.tracer, job.camera, film->width, film->height,
                                     settings.max_depth);
-      job.scene.environment.row_cdf = {};  // it stands for the sky's light: none is drawn
+      job.scene.environment.row_cdf = {};  // it stands for the sky's light: none is sampled
     }
     if (flickers) job.scene.light_levels = levels;
     job.film = film;
@@ -182,7 +182,7 @@ class CpuRenderer final : public Renderer {
         adaptive ? settings.spp / 2 : int64_t{settings.first_sample} + settings.spp;
     while ((int64_t{1} << job.log2_samples) < samples) ++job.log2_samples;
     RenderStats total = on_card ? cuda_->render(on_cuda(job), film) : render_tiles(job);
-    // What is blurred has blurred guides: those of the samples.
+    // Blurred pictures have blurred guides: those of the samples.
     const bool sharp =
         !(job.camera.aperture.radius > 0) && !(moves && job.camera.shutter.length > 0);
     if (total.finished && settings.spp > 0 && settings.spp < settings.guide_samples && sharp) {

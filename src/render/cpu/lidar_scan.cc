@@ -21,7 +21,7 @@ struct ScanJob {
   bool has_media;
 };
 
-/// Up to kLanes beams that follow each other.
+/// Scan of up to kLanes beams that follow each other.
 void scan_packet(const ScanJob& job, const LidarBeam* beams, int count, LidarReturn* out) {
   const LidarOptics& optics = job.view.optics;
   Vec3Of<FloatLanes> d_L;
@@ -61,7 +61,7 @@ void scan_beams(const SceneView& scene, const CpuTracer& tracer, const LidarView
                   optics.most_returns >= 1 && optics.most_returns <= kMostLidarReturns,
               "numbers of rays and returns are within their bounds");
   GLOAM_CHECK(returns.size() == view.beams.size() * static_cast<size_t>(optics.most_returns),
-              "there is room for every return");
+              "there is space for every return");
   const DeviceSpan<const LidarMotion> motions{view.motions.data(),
                                               static_cast<uint32_t>(view.motions.size())};
   const ScanJob job{scene,

@@ -1,4 +1,4 @@
-// Of any scene: the paths that measure its ambient light.
+// Kernel of the paths that measure the ambient light, for any scene.
 #include "render/cuda/kernels.h"
 
 namespace gloam::cuda {
@@ -6,7 +6,7 @@ namespace {
 
 constexpr int kWarp = 32;
 
-/// Few paths, but with several places that trace: one function for all. The first ray is the
+/// Tracer as one function for several places that trace: these paths are few. The first ray is the
 /// camera's.
 struct CalledTracer {
   const DevicePicture& p;

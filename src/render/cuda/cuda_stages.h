@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "render/kernel/camera/view_clip.h"
-#include "render/kernel/light/ambient.h"
+#include "render/kernel/light/ambient_path.h"
 #include "render/renderer.h"
 #include "render/scene/bvh_scene.h"
 
@@ -35,7 +35,7 @@ class CudaStages {
 
   /// "NVIDIA H200"
   virtual std::string device_name() const = 0;
-  /// After every update of the scene and of the BVH.
+  /// Copies the scene to the card, after every update of the scene and of the BVH.
   virtual void update(const RenderScene& scene) = 0;
   /// Paths for AmbientCube, as trace_ambient makes them.
   virtual std::vector<AmbientPath> trace_ambient(const CudaJob& job, int width, int height) = 0;

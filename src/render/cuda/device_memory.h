@@ -9,7 +9,7 @@
 
 namespace gloam::cuda {
 
-/// What fails here is a bug, a broken driver or a full card: nothing of the user's to mend.
+/// Failures here are bugs, a broken driver or a full card: no user can mend them.
 inline void check(cudaError_t error, const char* what) {
   if (error != cudaSuccess) check_failed("CUDA", 0, cudaGetErrorString(error), what);
 }

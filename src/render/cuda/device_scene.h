@@ -24,7 +24,7 @@ class DeviceScene {
     DeviceBuffer buffer;
     size_t bytes = 0;
   };
-  /// What is copied for each picture: first measured, then filled.
+  /// Buffer that is copied for each picture: first measured, then filled.
   struct Parcel {
     char *host = nullptr, *device = nullptr;
     size_t used = 0;

@@ -1,4 +1,4 @@
-// Of any scene: the direct stage and the exact channels.
+// Kernels of the direct stage and the exact channels, for any scene.
 #include "render/cuda/direct_kernels.cuh"
 
 namespace gloam::cuda {

@@ -1,4 +1,4 @@
-// Of any scene: the path stage.
+// Kernel of the path stage, for any scene.
 #include "render/cuda/path_kernel.cuh"
 
 namespace gloam::cuda {

@@ -1,8 +1,8 @@
 #pragma once
-// What the host asks of the card: plain structures that both compilers see, and the launches.
+// Interface of the host to the card: plain structures that both compilers see, and the launches.
 
 #include "render/kernel/camera/view_clip.h"
-#include "render/kernel/light/ambient.h"
+#include "render/kernel/light/ambient_path.h"
 #include "render/kernel/path/path_state.h"
 #include "render/kernel/trace/bvh_tracer.h"
 
@@ -45,20 +45,20 @@ struct DevicePicture {
   bool centered = false;  ///< direct stage: its sample answers for the exact channels too
 };
 
-/// What the direct stage leaves in `part` where the exact channels need rays of their own.
+/// Value that the direct stage leaves in `part` where the exact channels need rays of their own.
 inline constexpr uint32_t kUnknownPart = ~0u;
 
 namespace cuda {
 
 using Stream = CUstream_st*;
 
-// Of plain pictures, and of any. Those of paths round as the card likes it best; what must be exact
-// rounds as on the CPU.
+// Kernels for plain pictures, and for any. Those of paths are compiled with fast arithmetic; those
+// of exact channels round as on the CPU.
 void launch_plain_path(const DevicePicture& picture, Stream stream);
 void launch_full_path(const DevicePicture& picture, Stream stream);
 void launch_plain_direct(const DevicePicture& picture, Stream stream);
 void launch_full_direct(const DevicePicture& picture, Stream stream);
-/// Of all pixels, or those of kUnknownPart alone.
+/// Exact channels of all pixels, or of those of kUnknownPart alone.
 void launch_plain_channels(const DevicePicture& picture, bool unknown_alone, Stream stream);
 void launch_full_channels(const DevicePicture& picture, bool unknown_alone, Stream stream);
 /// (1 << kLog2AmbientPaths) paths of any picture.

@@ -13,8 +13,8 @@ constexpr int kPathBlocks = kPlainPathBlocks;
 constexpr int kPathBlocks = kBlocks;
 #endif
 
-/// Each warp has a tile's pixels and a share of their samples; the warps of a tile meet in shared
-/// memory, in order.
+/// Each warp has a tile's pixels and a fraction of their samples; the warps of a tile meet in
+/// shared memory, in order.
 __global__ void __launch_bounds__(kBlock, kPathBlocks)
     path_kernel(const __grid_constant__ DevicePicture p) {
   __shared__ PixelMean means[kBlock];
@@ -26,7 +26,7 @@ __global__ void __launch_bounds__(kBlock, kPathBlocks)
   if (at.inside) {
     const int end = p.samples * (at.group + 1) / p.split;
     int next = p.samples * at.group / p.split;
-    LightSharesOf<float> shares;
+    LightProbabilitiesOf<float> probabilities;
     PathMachine path;
     bool is_first = true;  // ray of its path: the camera's
     // A lane whose path has ended starts the next at once: it does not wait for its warp.
@@ -39,7 +39,7 @@ __global__ void __launch_bounds__(kBlock, kPathBlocks)
           mean.add({});
           continue;
         }
-        path.start(ray, cone, sampler, &shares);
+        path.start(ray, cone, sampler, &probabilities);
         is_first = true;
       }
       RayHit hit;

@@ -1,5 +1,5 @@
 #pragma once
-// Pixels to threads, and what all kernels share. All shading and traversal is that of
+// Pixels to threads, and helpers of all kernels. All shading and traversal is that of
 // render/kernel.
 
 #include "render/cuda/kernels.h"
@@ -72,7 +72,7 @@ __device__ __noinline__ bool trace_past(const DevicePicture& p, const Ray& ray, 
   return trace_in_view(p.scene, p.tracer, p.camera, p.clip, ray, hit);
 }
 
-/// What a ray of the camera sees: `found` and `hit` are what it meets first.
+/// First surface that a ray of the camera sees: `found` and `hit` are the first that it meets.
 __device__ __forceinline__ bool clip_first(const DevicePicture& p, const Ray& ray, bool found,
                                            RayHit* hit) {
   if (kPlainScenes || !found || p.clip.is_idle()) return found;

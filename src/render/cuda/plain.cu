@@ -1,4 +1,5 @@
-// Of scenes without anything special: the direct stage and the exact channels.
+// Kernels of the direct stage and the exact channels, for plain scenes (ARCHITECTURE.md,
+// kPlainScenes).
 #define GLOAM_PLAIN_KERNELS
 #include "render/cuda/direct_kernels.cuh"
 

@@ -1,4 +1,4 @@
-// Of scenes without anything special: the path stage.
+// Kernel of the path stage, for plain scenes (ARCHITECTURE.md, kPlainScenes).
 #define GLOAM_PLAIN_KERNELS
 #include "render/cuda/path_kernel.cuh"
 

@@ -1,5 +1,5 @@
 #pragma once
-// Where the bytes of a file that grows go. Errors are returned, never thrown: a disk may fill up.
+// Sink for the bytes of a file that grows. Errors are returned, never thrown: a disk may fill up.
 
 #include <cstdint>
 #include <filesystem>

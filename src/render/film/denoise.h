@@ -11,8 +11,8 @@
 
 namespace gloam {
 
-/// Of Open Image Denoise. kHigh also denoises albedo and normals first and then trusts them, which
-/// keeps the finest texture and costs about seven times as much: for stills.
+/// Quality of Open Image Denoise. kHigh also denoises albedo and normals first and then trusts
+/// them, which keeps the finest texture and costs about seven times as much: for stills.
 enum class DenoiseQuality : uint8_t { kFast, kBalanced, kHigh };
 
 enum class DenoiseDevice : uint8_t { kCpu, kCuda };
@@ -47,7 +47,7 @@ std::unique_ptr<Denoiser> make_edge_denoiser();
 /// Open Image Denoise if wanted and present, on the CPU where the card refuses, else our own.
 std::unique_ptr<Denoiser> make_denoiser(const DenoiseOptions& options);
 
-/// What both do first: not-a-number to black, and pixels brighter than four times the third
+/// Steps that both do first: not-a-number to black, and pixels brighter than four times the third
 /// brightest of their 5 x 5 neighbours down to that. Every thin line or highlight of three or more
 /// pixels passes unchanged. What fireflies lose is spread, as light on the albedo there, over the
 /// 33 x 33 pixels around that face the same way, so that the picture keeps its mean; a pixel gets

@@ -18,7 +18,7 @@ constexpr float kLeastSupport = 0.4f;
 constexpr float kSigmaMixedAlbedo = 0.15f, kSigmaMixedNormal = 0.5f;
 constexpr int kMixedReach = 3;  // [px]
 
-/// What says whether two pixels belong together.
+/// Geometry of a pixel that says whether two pixels belong together.
 struct Guide {
   float depth = INFINITY;  // [m]
   float slope = 0;         // change of depth per pixel that the surface itself explains [m]
@@ -98,8 +98,8 @@ class EdgeDenoiser : public Denoiser {
     });
   }
 
-  // Of the luminance of demodulated pixels; from their 7 x 7 neighbours where the renderer gives
-  // none. Smoothed over 3 x 3: a variance from few samples is itself noisy.
+  // Variance of the luminance of demodulated pixels; from their 7 x 7 neighbours where the renderer
+  // gives none. Smoothed over 3 x 3: a variance from few samples is itself noisy.
   void estimate_variance(const Film& film) {
     const size_t n = film.pixel_count();
     const bool given = film.variance.size() == n;
@@ -159,8 +159,8 @@ class EdgeDenoiser : public Denoiser {
     });
   }
 
-  // What a pixel's light is compared by: a raw noisy pixel would choose neighbours like itself, so
-  // rare bright ones would stand out and the rest would lose their light.
+  // Smoothed light that pixels are compared by: a raw noisy pixel would choose neighbours like
+  // itself, so rare bright ones would stand out and the rest would lose their light.
   void smooth_light() {
     light_.resize(color_.size());
     light_variance_.resize(color_.size());

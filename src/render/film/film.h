@@ -10,14 +10,15 @@
 
 namespace gloam {
 
-/// What a picture has of one object, and would have if nothing stood in front.
+/// Bounding boxes of one object in a picture: of its visible part, and of all of it if nothing
+/// stood in front.
 struct ObjectCover {
   PixelBox seen, all;
 };
 
 struct Film {
   int width = 0, height = 0;
-  // Of light; empty where no samples are asked for.
+  // Light; empty where no samples are asked for.
   std::vector<Vec3f> radiance;         ///< mean over samples, linear Rec. 709 [cd/m²]
   std::vector<Vec3f> variance;         ///< of that mean, per channel; empty unless asked for
   std::vector<uint32_t> sample_count;  ///< in that mean; empty where every pixel has as many

@@ -11,10 +11,10 @@ namespace {
 constexpr float kRatio = 4;           // to the third brightest of the pixels around
 constexpr int kRadius = 2;            // of those [px]
 constexpr int kSpread = 16;           // how far the light of a firefly is spread [px]
-constexpr float kMostSpread = 0.02f;  // share of a firefly's limit that one pixel may get of it
+constexpr float kMostSpread = 0.02f;  // fraction of a firefly's limit that one pixel may get of it
 constexpr float kFacing = 0.9f;       // cosine between surfaces that take each other's light
 
-/// What is not a number, or infinite, is an error somewhere and not light.
+/// Values that are infinite or no number are errors elsewhere, not light.
 float sanitize(float x) { return x > 0 && x < INFINITY ? min(x, 1e9f) : 0.0f; }
 
 struct Firefly {
@@ -49,7 +49,7 @@ class Fireflies {
     });
   }
 
-  /// In the order of the rows, so sums do not depend on threads.
+  /// Spreads the light in the order of the rows, so sums do not depend on threads.
   void spread() {
     parallel_for("fireflies", height_, [&](int64_t row) {
       const int y = static_cast<int>(row), last = std::min(height_ - 1, y + kSpread);
@@ -103,9 +103,9 @@ class Fireflies {
     Firefly fly{x, y, {excess.x / a.x, excess.y / a.y, excess.z / a.z}};
     const float received = luminance(fly.light * reflected_around(fly));
     if (!(received > 0)) return;  // nothing around looks the same way
-    const float share = luminance(excess) / received;
+    const float fraction = luminance(excess) / received;
     const float most = kMostSpread * limit / luminance(fly.light);
-    fly.light *= min(share, most);
+    fly.light *= min(fraction, most);
     rows_[static_cast<size_t>(y)].push_back(fly);
   }
 

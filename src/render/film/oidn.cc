@@ -99,7 +99,7 @@ std::vector<fs::path> candidates() {
   return paths;
 }
 
-/// Where the library computes.
+/// Device on which the library computes.
 struct Device {
   OidnDevice handle = nullptr;
   DenoiseDevice kind = DenoiseDevice::kCpu;

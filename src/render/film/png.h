@@ -1,5 +1,5 @@
 #pragma once
-// What 16-bit PNG files hold of measurements.
+// Measurements in 16-bit PNG files.
 
 #include <cstdint>
 #include <span>

@@ -17,16 +17,15 @@ float gradient_noise(int x, int y) {
   return outer - std::floor(outer);
 }
 
-// Of what falls on a channel, what it holds: straight up to the top of the scale, and full at
-// kFull.
+// Response of a channel: straight up to the top of the scale, and full at kFull.
 constexpr float kFull = 1.5f;
 float held(float x) {
   constexpr float kAbove = kFull - 1;
   return x < 1 ? x : kFull - kAbove * std::exp((1 - x) / kAbove);
 }
 
-// Of the neutral curve: what Fresnel adds to base colours, where it begins to bend, and what
-// becomes of the brightest channel.
+// Neutral curve: what Fresnel adds to base colours, where the curve begins to bend, and how far it
+// compresses the brightest channel.
 constexpr float kF90 = 0.04f, kStart = 0.8f - kF90, kRoom = 1 - kStart;
 constexpr float compressed(float peak) {
   return peak < kStart ? peak : 1 - kRoom * kRoom / (peak + kRoom - kStart);
@@ -52,7 +51,7 @@ Vec3f tone_curve_neutral(Vec3f color) {
 
 Vec3f tone_curve_of_sensor(Vec3f color) {
   color = tone_curve_neutral({held(color.x), held(color.y), held(color.z)});
-  // From where the curve bends, so that it ends at white.
+  // Value from which the curve bends, so that it ends at white.
   constexpr float kEnd = compressed(kFull - kF90);
   const float peak = max_component(color);
   if (peak <= kStart) return color;

@@ -1,5 +1,5 @@
 #pragma once
-// From light to display values: exposure, tone curve, sRGB, dither.
+// Tone mapping, from light to display values: exposure, tone curve, sRGB, dither.
 
 #include <cstdint>
 #include <vector>
@@ -17,10 +17,10 @@ float max_luminance(float ev100);
 /// in >= 0, out 0..1.
 Vec3f tone_curve_neutral(Vec3f color);
 
-/// That curve on what a sensor holds, whose channels fill up one by one, half the scale above its
-/// top: a flame's orange turns to yellow where it is overexposed, as cameras show it, and not to
-/// the pink that the curve makes of it. What fills all three is white, 1; what fills two
-/// is up to a hundredth more.
+/// Tone curve after a sensor, whose channels fill up one by one, half the scale above its top: a
+/// flame's orange turns to yellow where it is overexposed, as cameras show it, and not to the pink
+/// that the curve alone makes of it. Light that fills all three channels is white, 1; light that
+/// fills two is up to a hundredth more.
 Vec3f tone_curve_of_sensor(Vec3f color);
 
 struct ToneMapSettings {

@@ -1,9 +1,9 @@
 #pragma once
-// What the kernel reads: plain arrays in the memory of the side that runs it. render/scene fills
-// them. Device-safe.
+// Scene as the kernel reads it: plain arrays in the memory of the side that runs it. render/scene
+// fills them. Device-safe.
 
 #include "geometry/motion_keys.h"
-#include "render/kernel/light/environment.h"
+#include "render/kernel/light/environment_map.h"
 #include "render/kernel/light/light_tree_view.h"
 #include "render/kernel/math/ray.h"
 #include "render/kernel/media/medium_view.h"
@@ -22,7 +22,7 @@ struct TriangleUv {
 struct MeshView {
   DeviceSpan<const Vec3f> positions;           ///< frame G [m]; deformables: world, shutter open
   DeviceSpan<const Vec3f> positions_previous;  ///< deformables only
-  /// Of deformables that move while the shutter is open: the positions at key_count times, one key
+  /// Positions of deformables that move while the shutter is open, at key_count times, one key
   /// after the other.
   DeviceSpan<const Vec3f> position_keys;
   uint32_t key_count = 0;
@@ -65,7 +65,7 @@ struct Texel {
   uint16_t r = 0, g = 0, b = 0, a = 0;
 };
 
-/// What lies over the base of a material, or makes glass of it; names after OpenPBR 1.1.
+/// Layers over the base of a material, and glass; names after OpenPBR 1.1.
 struct MaterialLayers {
   float coat_weight = 0, coat_roughness = 0;
   float coat_f0 = 0.04f;  ///< at normal incidence
@@ -138,7 +138,7 @@ struct LightView {
   friend bool operator==(const LightView&, const LightView&) = default;
 };
 
-/// Where a lamp or sun is at one instant; as in LightView.
+/// State of a lamp or sun at one instant; as in LightView.
 struct LightKey {
   Vec3f p, direction, x;
 };
@@ -149,7 +149,7 @@ struct ProfileView {
   int rows = 0, columns = 0;
 };
 
-/// What light static geometry lets through to the cells of a regular grid, and from where. It
+/// Light that static geometry lets through to the cells of a regular grid, and from where. It
 /// steers sampling alone: a wrong guess costs noise, never the mean. A wall's two sides see
 /// different lights, so a cell has a row for static surfaces of each facing that it holds, and one
 /// for all else in it.
@@ -163,14 +163,14 @@ struct LightGuide {
   DeviceSpan<const uint32_t> surface_row;  ///< cell-major, one per facing; kNone = no such surface
   /// Row-major: root mean square of what each light brings, over that of light_weight; above zero.
   DeviceSpan<const float> gain;
-  DeviceSpan<const float> sky_visible;  ///< by row: share of the environment map's light
+  DeviceSpan<const float> sky_visible;  ///< by row: fraction of the environment map's light
   /// Cells along an edge of the octahedral map of directions (kernel/light_directions.h).
   static constexpr uint32_t kAcross = 16;
   static constexpr uint32_t kSums = kAcross * kAcross + 1;
   /// Row-major: running sums, 0 to 1, over the map's cells, of the light that arrives from each.
   DeviceSpan<const float> arriving;
-  float share =
-      0;  ///< of directions that are drawn so on diffuse surfaces; the BSDF's are the rest
+  float probability =
+      0;  ///< of sampling directions by it on diffuse surfaces; the rest is the BSDF's
 
   /// kNone outside the grid.
   template <class F>
@@ -254,7 +254,8 @@ inline constexpr bool kOnCard = true;
 inline constexpr bool kOnCard = false;
 #endif
 
-/// What the weather has left on surfaces that the sky reaches, as of kernel/weathering.h.
+/// Water and snow that the weather has left on surfaces under the open sky, as of
+/// kernel/surface/weathering.h.
 struct FallenView {
   float wetness = 0, snow = 0;
   float time = 0;     ///< [s]
@@ -275,8 +276,8 @@ struct SceneView {
   DeviceSpan<const LightView> lights;
   DeviceSpan<const LightKey> light_keys;  ///< light_key_count of every light that moves
   uint32_t light_key_count = 0;
-  /// Of lights that flicker while the shutter is open: their light in light_level_count even spans
-  /// of time, as shares of its mean.
+  /// Levels of lights that flicker while the shutter is open: their light in light_level_count
+  /// equal spans of time, as fractions of its mean.
   DeviceSpan<const float> light_levels;
   uint32_t light_level_count = 0;
   DeviceSpan<const ProfileView> profiles;
@@ -303,15 +304,15 @@ struct SceneView {
   GLOAM_HD bool has_layers() const { return !kPlainScenes && layers.size > 0; }
   GLOAM_HD bool has_fallen() const { return !kPlainScenes && fallen.wetness + fallen.snow > 0; }
   GLOAM_HD bool has_media() const { return !kPlainScenes && media.volumes.size > 0; }
-  /// Some medium's light is drawn. Not on a card, where rays find it by chance alone: kernels for
-  /// all scenes are too long as they are.
+  /// Whether a medium's light is sampled. Not on a card, where rays find it by chance alone:
+  /// kernels for all scenes are too long as they are.
   GLOAM_HD bool has_glow() const { return !kOnCard && media.glows.size > 0; }
   GLOAM_HD bool has_environment() const { return !kPlainScenes && !environment.levels.empty(); }
   GLOAM_HD bool has_flicker() const { return !kPlainScenes && light_levels.size > 0; }
   GLOAM_HD bool has_sky_texture() const { return !kPlainScenes && sky_texture >= 0; }
   GLOAM_HD bool lets_light_through() const { return !kPlainScenes && has_transparent; }
   GLOAM_HD bool has_many_lights() const { return !kPlainScenes && lights.size > kMaxWeighedLights; }
-  GLOAM_HD bool guides_directions() const { return guide.share > 0; }
+  GLOAM_HD bool guides_directions() const { return guide.probability > 0; }
   /// On the host alone: it reads the lights.
   bool is_plain() const {
     bool lamps = lights.size <= kMaxWeighedLights;
@@ -336,7 +337,7 @@ GLOAM_HD MaskOf<F> color_only_lanes(const SceneView& scene, UintOf<F> instance, 
   return out;
 }
 
-/// Light of a row of SceneView::light_levels at a time in the shutter, as a share of its mean.
+/// Light of a row of SceneView::light_levels at a time in the shutter, as a fraction of its mean.
 GLOAM_HD float level_at(const SceneView& scene, int row, float time) {
   const uint32_t count = scene.light_level_count;
   const float at = clamp(time, 0.0f, 1.0f) * static_cast<float>(count);
@@ -345,12 +346,12 @@ GLOAM_HD float level_at(const SceneView& scene, int row, float time) {
 }
 
 /// Pose of an instance at a time in the shutter (linear between the keys, as Embree does);
-/// `between` is room for it.
+/// `between` is scratch for it.
 GLOAM_HD const Affine3f& pose_at(const InstanceView& instance, float time, Affine3f* between) {
   if (kPlainScenes || !instance.moving || time == 0) return instance.X_WG;
-  float share;
-  const uint32_t key = key_before(instance.keys.size, time, &share);
-  *between = lerp(instance.keys[key], instance.keys[key + 1], share);
+  float fraction;
+  const uint32_t key = key_before(instance.keys.size, time, &fraction);
+  *between = lerp(instance.keys[key], instance.keys[key + 1], fraction);
   return *between;
 }
 GLOAM_HD Affine3f pose_at(const InstanceView& instance, float time) {
@@ -363,9 +364,9 @@ GLOAM_HD bool deforms_in_shutter(const MeshView& mesh) {
 }
 GLOAM_HD Vec3f mesh_vertex(const MeshView& mesh, uint32_t i, float time) {
   if (!deforms_in_shutter(mesh) || time == 0) return mesh.positions[i];
-  float share;
-  const uint32_t row = key_before(mesh.key_count, time, &share) * mesh.positions.size + i;
-  return lerp(mesh.position_keys[row], mesh.position_keys[row + mesh.positions.size], share);
+  float fraction;
+  const uint32_t row = key_before(mesh.key_count, time, &fraction) * mesh.positions.size + i;
+  return lerp(mesh.position_keys[row], mesh.position_keys[row + mesh.positions.size], fraction);
 }
 
 /// Corners i of a mesh.

@@ -41,7 +41,7 @@ BvhBox box_of_all(const std::vector<BvhBox>& boxes) {
   return all;
 }
 
-/// Of a box in frame G, in the world.
+/// World bounds of a box in frame G.
 BvhBox moved(const BvhBox& b, const Affine3f& X_WG) {
   BvhBox out;
   for (int i = 0; i < 8; ++i) {
@@ -98,7 +98,7 @@ void BvhScene::lay_out(const RenderScene& scene) {
   }
 }
 
-/// Appends the mesh's tree and room for its triangles.
+/// Appends the mesh's tree and space for its triangles.
 void BvhScene::place_mesh(const RenderScene& scene, uint32_t row) {
   MeshTree& mesh = meshes_[row];
   if (mesh.tree.order.empty()) return;
@@ -115,11 +115,11 @@ void BvhScene::place_mesh(const RenderScene& scene, uint32_t row) {
   }
   mesh.root = in_all(mesh.tree.root);
   triangles_.resize(triangles_.size() +
-                    mesh.tree.order.size() * (mesh.deforms ? room_for_keys_ : 1));
+                    mesh.tree.order.size() * (mesh.deforms ? key_capacity_ : 1));
   place_triangles(scene.meshes()[row], mesh);
 }
 
-/// Those at the shutter's opening, then of deformables those at the other keys.
+/// Places triangles: those at the shutter's opening, then of deformables those at the other keys.
 void BvhScene::place_triangles(const MeshView& mesh, const MeshTree& tree) {
   const size_t count = tree.tree.order.size();
   const auto place = [&](const Vec3f* positions, size_t first) {
@@ -227,8 +227,8 @@ void BvhScene::place_top(const std::vector<BvhBox>& boxes, bool anew, TopTree* t
 void BvhScene::update(const RenderScene& scene) {
   bool anew = drawn_version_ != scene.drawn_version();
   for (const MeshView& mesh : scene.meshes()) {
-    if (mesh.key_count <= room_for_keys_) continue;
-    room_for_keys_ = mesh.key_count;
+    if (mesh.key_count <= key_capacity_) continue;
+    key_capacity_ = mesh.key_count;
     anew = true;
   }
   for (const uint32_t mesh : scene.rebuilt_meshes()) {

@@ -18,7 +18,7 @@ class BvhScene {
 
   /// Valid until the next update.
   BvhTracer tracer(const RenderScene& scene) const;
-  /// Of what never moves alone, without infinite planes.
+  /// Tracer of the bodies that never move, without infinite planes.
   BvhTracer static_tracer(const RenderScene& scene) const;
 
   const std::vector<BvhNode>& nodes() const { return nodes_; }
@@ -29,7 +29,7 @@ class BvhScene {
   const std::vector<uint32_t>& still() const { return still_; }
   /// Changes whenever anything but the first nodes and triangles may have.
   uint64_t version() const { return version_; }
-  /// So many of the first nodes and triangles are new after each update.
+  /// Number of the first nodes and triangles that are new after each update.
   size_t fresh_nodes() const { return fresh_nodes_; }
   size_t fresh_triangles() const { return fresh_triangles_; }
 
@@ -58,13 +58,14 @@ class BvhScene {
   void place_top(const std::vector<BvhBox>& boxes, bool anew, TopTree* top);
   BvhBox box_of(const RenderScene& scene, const BvhInstance& instance) const;
 
-  std::vector<MeshTree> meshes_;  ///< by row of SceneView::meshes; empty trees of what is not drawn
-  std::vector<BvhNode> nodes_;    ///< of top_, of static_top_, of deformables, of rigid meshes
+  std::vector<MeshTree>
+      meshes_;  ///< by row of SceneView::meshes; empty trees of meshes that are not rendered
+  std::vector<BvhNode> nodes_;  ///< of top_, of static_top_, of deformables, of rigid meshes
   std::vector<BvhTriangle> triangles_;  ///< of deformables, of rigid meshes
   std::vector<BvhInstance> instances_;
   std::vector<Affine3f> motion_;  ///< key_count_ of each that moves
   uint32_t key_count_ = 1;        ///< of all that moves
-  uint32_t room_for_keys_ = 2;    ///< of deformables, in triangles_
+  uint32_t key_capacity_ = 2;     ///< of deformables, in triangles_
   TopTree top_, static_top_;
   ScanTable scanned_;
   std::vector<uint32_t> still_;

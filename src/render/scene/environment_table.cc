@@ -14,7 +14,7 @@ namespace {
 
 /// Below this many rows the sine of the polar angle is too coarse for the density: rows are added.
 constexpr int kLeastRows = 33;
-/// Least chance of a step with any light, as a share of its running sum: four units in the last
+/// Least chance of a step with any light, as a fraction of its running sum: four units in the last
 /// place of a float near one, so that rounding leaves none empty.
 constexpr double kLeastShare = 0x1p-22;
 
@@ -56,7 +56,7 @@ std::vector<Vec3f> add_rows(int width, int height, std::span<const Vec3f> texels
     for (int column = 0; column < width; ++column) {
       out[static_cast<size_t>(row) * width + column] =
           lerp(texels[static_cast<size_t>(rows.low) * width + column],
-               texels[static_cast<size_t>(rows.high) * width + column], rows.share);
+               texels[static_cast<size_t>(rows.high) * width + column], rows.fraction);
     }
   }
   return out;
@@ -65,7 +65,8 @@ std::vector<Vec3f> add_rows(int width, int height, std::span<const Vec3f> texels
 /// Share of the sphere between rows a and b of n (fractions allowed), times two.
 double zone(double a, double b, int n) { return std::cos(M_PI * a / n) - std::cos(M_PI * b / n); }
 
-/// Half the rows, and half the columns where texels are not wider than high at the horizon.
+/// Level of half the rows, and half the columns where texels are not wider than high at the
+/// horizon.
 EnvironmentLevel halved(const EnvironmentLevel& from, size_t first) {
   const int height = std::max(1, from.height / 2);
   const bool narrow = from.width > 2 * height;
@@ -112,7 +113,7 @@ double running_sum(const double* weights, int n, float* out) {
                        : static_cast<float>(static_cast<double>(i) / n);
     sum += weights[i] > 0 ? weights[i] + least : 0;
   }
-  // From the last light on: 1 exactly, so that no draw falls on the dark end.
+  // Sums from the last light on are 1 exactly, so that no sample falls on the dark end.
   out[n] = 1;
   for (int i = n; total > 0 && i-- > 0 && !(weights[i] > 0);) out[i] = 1;
   return total;

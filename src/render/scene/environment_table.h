@@ -1,22 +1,22 @@
 #pragma once
-// The buffers behind an EnvironmentView: mip levels, and the running sums that directions are drawn
-// by.
+// The buffers behind an EnvironmentView: mip levels, and the running sums that directions are
+// sampled by.
 
 #include <span>
 #include <string>
 #include <vector>
 
 #include "gloam/result.h"
-#include "render/kernel/light/environment.h"
+#include "render/kernel/light/environment_map.h"
 
 namespace gloam {
 
 class EnvironmentTable {
  public:
-  /// An equirectangular map, laid out as render/kernel/light/environment.h says. `texels`: linear
-  /// Rec. 709, (height x width), finite and not negative. `name` is for messages. Errors: an empty
-  /// or too large map (kMaxImagePixels), a number of texels that is not width x height, a texel
-  /// that is no light.
+  /// An equirectangular map, laid out as render/kernel/light/environment_map.h says. `texels`:
+  /// linear Rec. 709, (height x width), finite and not negative. `name` is for messages. Errors: an
+  /// empty or too large map (kMaxImagePixels), a number of texels that is not width x height, a
+  /// texel that is no light.
   static Result<EnvironmentTable> make(int width, int height, std::span<const Vec3f> texels,
                                        const std::string& name);
 

@@ -109,7 +109,7 @@ void GlowTable::build(const MediaView& media, uint32_t row) {
   view_.center = transform_point(view_.X_WG, (low + high) * 0.5f);
   view_.reach = 0.5f * length(size);
   view_.voxels_per_volume = 1 / voxel;
-  // What is thick shines by its surface alone; of a convex body a quarter of it is seen on average.
+  // Thick media shine by their surface alone; of a convex body a quarter of it is seen on average.
   const Vec3f absorbed = Vec3f{1, 1, 1} - Bands{}.of(v.albedo);
   const float brightest = luminance(absorbed * media.black_body.at(hottest)) * v.emission;
   const float face = 0.5f * (size.x * size.y + size.y * size.z + size.z * size.x);

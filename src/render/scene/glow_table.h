@@ -1,5 +1,5 @@
 #pragma once
-// Where volumes give off light, by cell and voxel: what GlowView reads.
+// Emission of volumes by cell and voxel, for GlowView.
 
 #include <vector>
 
@@ -9,8 +9,8 @@ namespace gloam {
 
 class GlowTable {
  public:
-  /// Of volume `row` of `media`, whose grids and bounds are set. Allocates only where more cells
-  /// glow than ever did.
+  /// Builds the table of volume `row` of `media`, whose grids and bounds are set. Allocates only
+  /// where more cells glow than ever did.
   void build(const MediaView& media, uint32_t row);
   bool is_dark() const { return cell_sums_.empty(); }
   /// Valid until the next build().

@@ -1,5 +1,5 @@
 #pragma once
-// How much light lamps and glowing materials with schedules give while the shutter is open.
+// Light levels of lamps and glowing materials with schedules while the shutter is open.
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace gloam {
 
-/// Of one lamp or material.
+/// Light level of one lamp or material.
 struct LightLevel {
   float mean = 1;  ///< factor on its light
   int row = -1;    ///< of LevelTable::bins(), in bins; -1 = it stays at the mean
@@ -15,12 +15,12 @@ struct LightLevel {
 
 class LevelTable {
  public:
-  /// For a shutter that is open from `open` to `close` [s].
+  /// Updates for a shutter that is open from `open` to `close` [s].
   void update(const RenderDescription& description, double open, double close);
 
   const std::vector<LightLevel>& lights() const { return lights_; }
   const std::vector<LightLevel>& materials() const { return materials_; }
-  /// SceneView::light_levels: bin_count() even spans of time of each row, as shares of the mean.
+  /// SceneView::light_levels: bin_count() even spans of time of each row, as fractions of the mean.
   const std::vector<float>& bins() const { return bins_; }
   uint32_t bin_count() const { return bin_count_; }
 

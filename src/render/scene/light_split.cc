@@ -17,7 +17,7 @@ struct Box {
   Vec3f size() const { return high - low; }
 };
 
-/// What some of the items have together.
+/// Bounds, sum of axes and power of some of the items together.
 struct Part {
   Box box;
   Vec3f axes;  ///< sum
@@ -36,8 +36,8 @@ struct Part {
     power += other.power;
     count += other.count;
   }
-  /// As Conty Estevez & Kulla's power x area x solid angle, of a form that a row of lamps on one
-  /// line, whose area is zero, has too, and with the agreement of the axes for their cone.
+  /// Cost as Conty Estevez & Kulla's power x area x solid angle, of a form that a row of lamps on
+  /// one line, whose area is zero, has too, and with the agreement of the axes for their cone.
   float cost() const {
     const float agreement = length(axes) / static_cast<float>(count);
     return power * length_squared(box.size()) * (1.0f - 0.75f * agreement);

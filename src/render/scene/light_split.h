@@ -1,5 +1,5 @@
 #pragma once
-// Where a set of lights is parted in two so that each half is close together and shines one way.
+// Split of a set of lights in two, so that each half is close together and shines one way.
 
 #include <span>
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "render/kernel/light/light_picker.h"
+#include "render/kernel/light/light_sampler.h"
 #include "render/kernel/surface/shapes.h"
 #include "render/scene/pose.h"
 #include "world/materials/visual_rules.h"

@@ -6,7 +6,7 @@
 
 #include "instant/pose_frame.h"
 #include "render/scene/level_table.h"
-#include "render/scene/light_tree.h"
+#include "render/scene/light_tree_table.h"
 #include "render/scene/moving_sky.h"
 
 namespace gloam {
@@ -36,9 +36,9 @@ class LightTable {
   /// SceneView::light_keys.
   const std::vector<LightKey>& keys() const { return keys_; }
   uint32_t key_count() const { return key_count_; }
-  /// Over them where they are many, else empty.
+  /// Tree over the lights where they are many, else empty.
   LightTreeView tree() const { return tree_.view(); }
-  /// Some sphere or sun can be hit.
+  /// Whether a ray can hit some sphere or sun.
   bool has_visible() const { return has_visible_; }
 
  private:
@@ -53,7 +53,7 @@ class LightTable {
   size_t lamp_keys_ = 0;  ///< of keys_; the rest is of headlights
   uint32_t key_count_ = 0;
   std::vector<uint32_t> headlights_;  ///< rows of lights_
-  LightTree tree_;
+  LightTreeTable tree_;
   bool has_visible_ = false;
 };
 

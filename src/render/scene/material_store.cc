@@ -151,7 +151,7 @@ bool MaterialStore::update(const RenderDescription& description, const TextureSt
       const MaterialDescription& in = materials[i];
       const bool own = in.own_color || in.model_material < 0;
       const auto rgba = own ? in.rgba : rgba_at(frame.material_rgba, in.model_material);
-      // Materials of drawn things that are not simulated never change.
+      // Materials of rendered things that are not simulated never change.
       const bool is_live = in.model_material >= 0;
       views_[i] = is_live ? live_view(in, rgba, frame, textures) : view_of(in, textures);
       views_[i].layers = layer_rows_[i];

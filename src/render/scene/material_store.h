@@ -14,7 +14,7 @@ namespace gloam {
 class MaterialStore {
  public:
   MaterialStore() = default;
-  /// As described. Both must outlive it.
+  /// Store of the described materials. Both arguments must outlive it.
   MaterialStore(const RenderDescription& description, const TextureStore& textures);
 
   /// Takes the live fields of `frame`. An instance whose colour is no longer that of its described

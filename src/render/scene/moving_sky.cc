@@ -34,16 +34,16 @@ void MovingSky::update(double time) {
   sun_.to_sun = to_sun_at(day_, time);
   const double at = sky_row(std::asin(std::clamp<double>(sun_.to_sun.z, -1, 1)));
   const int low = std::min(static_cast<int>(at), sky_count() - 2);
-  const auto share = static_cast<float>(at - low);
-  // Of the two maps around it one is shown, as bright as between the two.
+  const auto fraction = static_cast<float>(at - low);
+  // Map shown: one of the two around the sun's elevation, as bright as between the two.
   const Map& below = map_of(low);
   const Vec3f sun_below = below.sun;
   const float bright_below = below.brightness;
   const Map& above = map_of(low + 1);
-  sun_.illuminance = lerp(sun_below, above.sun, share);
+  sun_.illuminance = lerp(sun_below, above.sun, fraction);
   const float rise = std::log(above.brightness / bright_below);
-  row_ = share < 0.5f ? low : low + 1;
-  scale_ = std::exp(share < 0.5f ? rise * share : rise * (share - 1));
+  row_ = fraction < 0.5f ? low : low + 1;
+  scale_ = std::exp(fraction < 0.5f ? rise * fraction : rise * (fraction - 1));
 }
 
 EnvironmentView MovingSky::view() const {

@@ -1,5 +1,5 @@
 #pragma once
-// Where things fixed to bodies are.
+// Poses of things fixed to bodies.
 
 #include <cmath>
 
@@ -30,7 +30,7 @@ inline Affine3f pose_in_world(const PoseFrame& frame, int body, const Affine3f& 
           rotate(X_BG.p, p)};
 }
 
-/// X_WG of a drawn thing, X_WL of a lamp that is fixed to a body.
+/// X_WG of a rendered thing, X_WL of a lamp that is fixed to a body.
 inline Affine3f pose_in_world(const RenderDescription& description, const PoseFrame& frame,
                               const InstanceDescription& in) {
   const auto row = static_cast<size_t>(in.motion);

@@ -15,8 +15,9 @@
 namespace gloam {
 namespace {
 
-/// What drawing takes beside the description: of a triangle its shading and its share of the BVH,
-/// of a texel its linear one and the smaller levels, of a voxel its share of the majorants.
+/// Memory that rendering takes beside the description [B]: for a triangle its shading data and its
+/// part of the BVH, for a texel its linear value and the smaller levels, for a voxel its part of
+/// the majorants.
 uint64_t bytes_to_draw(const RenderDescription& d) {
   constexpr uint64_t kTriangle = 250, kTexel = 11, kEnvironment = 24, kVoxel = 4;
   uint64_t bytes = kEnvironment * d.sky.environment.texels.size();

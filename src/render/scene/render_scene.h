@@ -33,7 +33,7 @@ class RenderScene {
   /// positive, broken meshes and textures.
   static Result<std::unique_ptr<RenderScene>> make(const RenderDescription& description);
 
-  /// As Renderer::update.
+  /// Updates as Renderer::update does.
   void update(std::span<const PoseFrame* const> keys, const PoseFrame& previous);
   /// Scene with its headlights at the camera, which is at `keys` at the scene's keys; empty = it
   /// stands still. Valid until the next update or view_from.
@@ -42,11 +42,11 @@ class RenderScene {
   const RenderDescription& description() const { return description_; }
   const std::vector<InstanceView>& instances() const { return instances_; }
   const std::vector<MeshView>& meshes() const { return mesh_views_; }
-  /// What a LightGuide is made of.
+  /// Description of the scene that a LightGuide is made of.
   DescribedLook described_look(const PoseFrame& frame) const;
-  /// Something moves between shutter open and close.
+  /// Whether something moves between shutter open and close.
   bool has_motion() const;
-  /// Some light flickers between shutter open and close.
+  /// Whether a light flickers between shutter open and close.
   bool has_flicker() const { return !levels_.bins().empty(); }
   /// Invisible instances are in the tables but never traced: fully transparent ones and those
   /// that are not shown.

@@ -80,11 +80,11 @@ Bounds shape_bounds(ShapeType shape, Vec3f size, const Affine3f& X) {
 }
 
 Bounds wider(const Bounds& b) {
-  const Vec3f room = (b.high - b.low) * 1e-5f + Vec3f{1e-6f, 1e-6f, 1e-6f};
-  return {b.low - room, b.high + room};
+  const Vec3f margin = (b.high - b.low) * 1e-5f + Vec3f{1e-6f, 1e-6f, 1e-6f};
+  return {b.low - margin, b.high + margin};
 }
 
-ScanTable ScanTable::choose(const RenderScene& scene, size_t most, float least_share) {
+ScanTable ScanTable::choose(const RenderScene& scene, size_t most, float least_fraction) {
   ScanTable table;
   const std::vector<InstanceView>& instances = scene.instances();
   std::vector<std::pair<float, uint32_t>> by_area;
@@ -100,7 +100,7 @@ ScanTable ScanTable::choose(const RenderScene& scene, size_t most, float least_s
   by_area.resize(std::min(by_area.size(), most));
   std::vector<Cluster> clusters;
   for (const auto& [area, row] : by_area) {
-    if (area > least_share * by_area.front().first) break;  // they are negative
+    if (area > least_fraction * by_area.front().first) break;  // they are negative
     const InstanceView& in = instances[row];
     const Bounds bounds = shape_bounds(in.shape, in.size, in.X_WG);
     const bool is_bounds = in.shape == ShapeType::kBox && lies_along_axes(in.X_WG);

@@ -1,5 +1,5 @@
 #pragma once
-// Which instances every ray is tested against one by one (render/kernel/trace/scan.h).
+// Instances that every ray is tested against one by one (render/kernel/trace/scan.h).
 
 #include <vector>
 
@@ -14,9 +14,9 @@ inline BvhBox as_box(const Bounds& b) { return {b.low, b.high}; }
 bool is_infinite_plane(const InstanceView& instance);
 /// Drawn, in one place, of finite extent.
 bool stands_still(const RenderScene& scene, size_t instance);
-/// Of an analytic shape.
+/// Bounds of an analytic shape in the world.
 Bounds shape_bounds(ShapeType shape, Vec3f size, const Affine3f& X_WG);
-/// With room for rounding.
+/// Bounds wide enough to allow for rounding.
 Bounds wider(const Bounds& bounds);
 
 struct ScanTable {
@@ -25,8 +25,8 @@ struct ScanTable {
   std::vector<ScanGroup> groups;     ///< that of the largest solid first
 
   /// Takes all infinite planes, and of the solids that stand still the `most` largest: most rays
-  /// end there. Those with less than `least_share` of the largest's surface are left out.
-  static ScanTable choose(const RenderScene& scene, size_t most, float least_share);
+  /// end there. Those with less than `least_fraction` of the largest's surface are left out.
+  static ScanTable choose(const RenderScene& scene, size_t most, float least_fraction);
   bool holds(size_t instance) const;
   ScanList list(const RenderScene& scene) const;
 };

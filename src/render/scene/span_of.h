@@ -6,7 +6,7 @@
 
 namespace gloam {
 
-/// What kernels read of a vector, until it changes.
+/// Span of a vector's elements for kernels, valid until the vector changes.
 template <class T>
 DeviceSpan<const T> span_of(const std::vector<T>& v) {
   return {v.data(), static_cast<uint32_t>(v.size())};

@@ -8,7 +8,7 @@
 
 #include "base/check.h"
 #include "base/parallel.h"
-#include "render/scene/black_body.h"
+#include "render/scene/black_body_table.h"
 #include "render/scene/span_of.h"
 #include "world/lights/black_body.h"
 
@@ -20,7 +20,7 @@ int cells_along(int voxels) { return (voxels + kBoundsVoxels - 1) / kBoundsVoxel
 bool is_amount(float x) { return x >= 0 && x <= FLT_MAX; }
 
 /// Calls store(cell, low, high) with the bounds of what trilinear lookups in the cells of one row
-/// read. False if some value is no amount. Works along x in chunks, so that the room for it is on
+/// read. False if some value is no amount. Works along x in chunks, so that its scratch is on
 /// the stack.
 template <class Store>
 bool bound_row(const VolumeView& v, const float* grid, int cell_y, int cell_z, const Store& store) {

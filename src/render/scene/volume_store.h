@@ -34,7 +34,7 @@ class VolumeStore {
 
   struct Fields {
     VolumeGrid density, temperature;
-    std::vector<CellBounds> cells, spare;  ///< spare: room for the next ones
+    std::vector<CellBounds> cells, spare;  ///< spare: scratch for the next ones
   };
 
   std::vector<VolumeView> views_;

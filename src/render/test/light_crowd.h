@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "render/scene/light_tree.h"
+#include "render/scene/light_tree_table.h"
 #include "render/test/direction_check.h"
 
 namespace gloam {

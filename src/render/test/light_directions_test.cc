@@ -137,8 +137,8 @@ TEST(LightDirections, AreLeftToTheBsdfInTheOpen) {
   open.guide();
   room.guide();
   ASSERT_GT(open.view.guide.nx, 0);
-  EXPECT_EQ(open.view.guide.share, 0);
-  EXPECT_GT(room.view.guide.share, 0.5f);
+  EXPECT_EQ(open.view.guide.probability, 0);
+  EXPECT_GT(room.view.guide.probability, 0.5f);
 }
 
 }  // namespace

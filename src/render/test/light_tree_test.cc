@@ -7,7 +7,7 @@
 #include <chrono>
 
 #include "base/parallel.h"
-#include "render/kernel/light/light_picker.h"
+#include "render/kernel/light/light_sampler.h"
 #include "render/test/light_crowd.h"
 
 namespace gloam {
@@ -37,7 +37,7 @@ class LightTreeTest : public testing::TestWithParam<Crowd> {
     tree_.build(lights_, {});
   }
   std::vector<LightView> lights_;
-  LightTree tree_;
+  LightTreeTable tree_;
 };
 
 TEST_P(LightTreeTest, ProbabilitiesSumToOneOrLess) {
@@ -142,7 +142,7 @@ INSTANTIATE_TEST_SUITE_P(Crowds, LightTreeTest, testing::ValuesIn(all_crowds()),
                          [](const auto& info) { return std::string(info.param.name); });
 
 /// Structure of the tree: every light has its leaf, every parent its children, bounds hold.
-TEST(LightTree, IsABinaryTreeOverAllLightsOfBoundedDepth) {
+TEST(LightTreeTable, IsABinaryTreeOverAllLightsOfBoundedDepth) {
   for (const Crowd& crowd : all_crowds()) {
     std::vector<LightView> lights = make_crowd(crowd);
     // Each twice as far and as strong as the last: the worst order for splits by place.
@@ -150,7 +150,7 @@ TEST(LightTree, IsABinaryTreeOverAllLightsOfBoundedDepth) {
       lights[i].p = lights[i].p * std::ldexp(1.0f, static_cast<int>(i) - 25);
       lights[i].strength = std::ldexp(1.0f, static_cast<int>(i) - 25);
     }
-    LightTree tree;
+    LightTreeTable tree;
     tree.build(lights, {});
     const LightTreeView view = tree.view();
     for (uint32_t i = 0; i < lights.size(); ++i) {
@@ -167,13 +167,13 @@ TEST(LightTree, IsABinaryTreeOverAllLightsOfBoundedDepth) {
   }
 }
 
-TEST(LightTree, IsTheSameForAnyNumberOfThreads) {
+TEST(LightTreeTable, IsTheSameForAnyNumberOfThreads) {
   Crowd crowd = all_crowds()[0];
   crowd.count = 30000;
   const std::vector<LightView> lights = make_crowd(crowd);
   const auto probabilities = [&](int threads) {
     set_thread_count(threads);
-    LightTree tree;
+    LightTreeTable tree;
     tree.build(lights, {});
     set_thread_count(0);
     std::vector<float> out;
@@ -187,7 +187,7 @@ TEST(LightTree, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(one, probabilities(5));
 }
 
-TEST(LightTree, AllLightsAtOnePlaceAreTakenByPowerAndDirection) {
+TEST(LightTreeTable, AllLightsAtOnePlaceAreTakenByPowerAndDirection) {
   std::vector<LightView> lights(100);
   for (size_t i = 0; i < lights.size(); ++i) {
     lights[i].p = {1, 1, 1};
@@ -196,7 +196,7 @@ TEST(LightTree, AllLightsAtOnePlaceAreTakenByPowerAndDirection) {
     lights[i].spread = 0.2f;
     lights[i].falloff = 0.1f;
   }
-  LightTree tree;
+  LightTreeTable tree;
   tree.build(lights, {});
   double sum = 0;
   for (uint32_t i = 0; i < lights.size(); ++i) {
@@ -228,13 +228,13 @@ DrawVariance draw_variance(const std::vector<LightView>& lights, const LightTree
   return {by_tree / (sum * sum) - 1, by_power / (sum * sum) - 1};
 }
 
-TEST(LightTree, IsFarLessNoisyThanPowerInALongCorridor) {
+TEST(LightTreeTable, IsFarLessNoisyThanPowerInALongCorridor) {
   std::vector<LightView> lights(1000);
   for (size_t i = 0; i < lights.size(); ++i) {
     lights[i].p = {2.0f * static_cast<float>(i), 0, 2.8f};
     lights[i].strength = i % 7 == 0 ? 1000.0f : 100.0f;
   }
-  LightTree tree;
+  LightTreeTable tree;
   tree.build(lights, {});
   DrawVariance mean;
   constexpr int kPoints = 200;
@@ -254,12 +254,12 @@ TEST(LightTree, IsFarLessNoisyThanPowerInALongCorridor) {
   EXPECT_GT(mean.power, 100);
 }
 
-TEST(LightTree, AMillionLightsAreBuiltInTime) {
+TEST(LightTreeTable, AMillionLightsAreBuiltInTime) {
   Crowd crowd = all_crowds()[0];
   crowd.count = 1000000;
   const std::vector<LightView> lights = make_crowd(crowd);
   const auto start = std::chrono::steady_clock::now();
-  LightTree tree;
+  LightTreeTable tree;
   tree.build(lights, {});
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/scene/black_body.h"
+#include "render/scene/black_body_table.h"
 #include "render/test/media_probe.h"
 #include "world/lights/black_body.h"
 

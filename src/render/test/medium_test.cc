@@ -169,7 +169,7 @@ TEST(Medium, FreePathsAreUnbiasedPerBand) {
       const RaySums expected = integrate_ray(store.view(), c.ray, min(c.tmax, 5));
       ASSERT_GT(expected.scattered[1], 0.1) << c.name;
       glowing += expected.emission[1] > 1 ? 1 : 0;
-      const Vec3f shares = band_shares(throughput);
+      const Vec3f shares = band_probabilities(throughput);
       Mean passed[3], scattered[3], emission[3];
       for (uint32_t i = 0; i < 60000; ++i) {
         Sampler s = independent(i, 1);

@@ -125,9 +125,9 @@ Mean one_technique(const Probe& probe, const CameraView& view, bool by_light, in
       const float pick = sampler.next_1d();
       const Vec2f u = sampler.next_2d();
       if (by_light) {
-        LightPicker picker;
-        picker.prepare(probe.view, s.p, s.geometric);
-        const LightSample light = picker.sample(probe.view, s.p, u, 0);
+        LightSampler light_sampler;
+        light_sampler.prepare(probe.view, s.p, s.geometric);
+        const LightSample light = light_sampler.sample(probe.view, s.p, u, 0);
         if (light.pdf > 0 && dot(light.wi, s.geometric) > 0) {
           float pdf = 0;
           const Vec3f f = eval_bsdf(bsdf, wo, frame.to_local(light.wi), &pdf);

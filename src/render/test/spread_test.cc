@@ -44,10 +44,10 @@ TEST(Spread, OnePointOnSeveralLightsIsSpreadOverEachOfThem) {
         b.add_emitter({60, 60, 60}));
   const Probe probe(b);
   const Vec3f p{0.2f, 0.1f, 0}, n{0, 0, 1};
-  LightPicker picker;
-  picker.prepare(probe.view, p, n);
+  LightSampler light_sampler;
+  light_sampler.prepare(probe.view, p, n);
   const double share = share_of_independent([&](Sampler sampler) {
-    const LightSample s = picker.sample(probe.view, p, sampler.next_2d(), 0);
+    const LightSample s = light_sampler.sample(probe.view, p, sampler.next_2d(), 0);
     return s.pdf > 0 ? static_cast<double>(luminance(s.radiance) * max(s.wi.z, 0.0f) / s.pdf) : 0.0;
   });
   EXPECT_LT(share, 0.2);

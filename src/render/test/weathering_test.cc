@@ -118,7 +118,7 @@ TEST(Weathering, DustSettlesOnWhatFacesUp) {
 TEST(Weathering, SnowStartsInPatchesAndLeavesSteepFaces) {
   const auto share = [](float amount, Vec3f n, float footprint) {
     return mean(
-        [&](Vec3f p) { return apply_snow(concrete(), {amount, 1}, p, n, footprint).share; });
+        [&](Vec3f p) { return apply_snow(concrete(), {amount, 1}, p, n, footprint).cover; });
   };
   double before = 0;
   for (const float amount : {0.2f, 0.4f, 0.6f, 0.8f, 1.0f}) {
@@ -152,7 +152,7 @@ TEST(Weathering, EverythingStaysInRange) {
     const SnowCover snow = apply_snow(m, {u(16), i}, p, n, footprint);
     m = snow.material;
     for (const float x : {m.base_color.x, m.base_color.y, m.base_color.z, m.metallic, m.roughness,
-                          m.coat_weight, m.coat_roughness, m.fuzz, m.bump, snow.share}) {
+                          m.coat_weight, m.coat_roughness, m.fuzz, m.bump, snow.cover}) {
       ASSERT_TRUE(x >= 0 && x <= 1) << x;
     }
     ASSERT_TRUE(m.coat_ior >= 1.3f && m.coat_ior <= 1.51f) << m.coat_ior;

@@ -14,12 +14,12 @@ namespace {
 constexpr int kProbes = 256;         // of a row, evenly; then as many where light was found
 constexpr int kReflections = 4;      // among rows
 constexpr float kConeSpread = 0.2f;  // of a probe: about a cell's width
-constexpr float kSought = 0.75f;     // share of the later probes that follow the earlier ones
-constexpr float kOwn = 0.7f;         // share of a row's own light; its neighbours' is the rest
-constexpr float kBeside = 0.1f;      // share that a cell gets of those beside it
+constexpr float kSought = 0.75f;     // fraction of the later probes that follow the earlier ones
+constexpr float kOwn = 0.7f;         // fraction of a row's own light; its neighbours' is the rest
+constexpr float kBeside = 0.1f;      // fraction that a cell gets of those beside it
 constexpr uint32_t kAcross = directions::kAcross, kCells = kAcross * kAcross;
 
-/// What a probe met.
+/// Surface or sky that a probe met.
 struct Arrival {
   float light = 0;   ///< luminance of what shines by itself or is lit by lights [cd/m²]
   float albedo = 0;  ///< of the surface
@@ -120,9 +120,9 @@ class ArrivingLight {
           arrivals[i].albedo = luminance(s.base_color);
           arrivals[i].row = static_cast<int>(grid_.row_at(s.p, s.geometric));
           Sampler sampler = guide_sampler(row, i, 3 + 2 * round);
-          LightPicker picker;
-          picker.prepare(scene_, s.p, s.geometric);
-          lights[i] = picker.sample(scene_, s.p, sampler.next_2d(), 0.0f);
+          LightSampler light_sampler;
+          light_sampler.prepare(scene_, s.p, s.geometric);
+          lights[i] = light_sampler.sample(scene_, s.p, sampler.next_2d(), 0.0f);
         });
     probes.trace(
         kProbes,
@@ -139,7 +139,7 @@ class ArrivingLight {
         });
   }
 
-  /// What the probe brought, for the map's area.
+  /// Luminance that the probe brought, weighted by the map's area.
   float light_of(const Arrival& a) const {
     const float reflected = a.row < 0 ? 0.0f : reflected_[static_cast<size_t>(a.row)];
     return (a.light + a.albedo * reflected) * a.weight;
@@ -161,9 +161,9 @@ class ArrivingLight {
     const int count = neighborhood(grid_, rows_, row, near);
     Map found{}, spread{};
     for (int k = 0; k < count; ++k) {
-      const float share = k == 0 ? 1.0f : 1.0f / static_cast<float>(count);
+      const float weight = k == 0 ? 1.0f : 1.0f / static_cast<float>(count);
       for (size_t i = 0; i < kProbes; ++i)
-        found[cells[i % cells.size()]] += share * light_of(even_of(near[k])[i]);
+        found[cells[i % cells.size()]] += weight * light_of(even_of(near[k])[i]);
     }
     double total = 0;
     for (const uint32_t cell : cells) {
@@ -195,8 +195,8 @@ class ArrivingLight {
     return squares;
   }
 
-  /// The running sums of the row. Directions are drawn by the root of the mean square: where light
-  /// fills a part of a cell, that part needs them.
+  /// The running sums of the row. Directions are sampled by the root of the mean square: where
+  /// light fills a part of a cell, that part needs them.
   void conclude(const std::vector<Map>& squares, int row, float* sums) const {
     int near[7];
     const int count = neighborhood(grid_, rows_, row, near);
@@ -217,7 +217,7 @@ class ArrivingLight {
     double before = 0;
     for (uint32_t cell = 0; cell < kCells; ++cell) {
       sums[cell] = static_cast<float>(std::min(before, 1.0));
-      // Where all is dark: from all around alike.
+      // Dark maps count as even light from all around.
       before += total > 0 ? static_cast<double>(light[cell]) / total : 1.0 / kCells;
     }
     sums[kCells] = 1;
@@ -248,13 +248,13 @@ float unevenness_of(const std::vector<float>& arriving, const std::vector<GuideR
     const float* sums = &arriving[row * LightGuide::kSums];
     double squares = 0;
     for (uint32_t cell = 0; cell < kCells; ++cell) {
-      const float share = sums[cell + 1] - sums[cell];
+      const float probability = sums[cell + 1] - sums[cell];
       const Vec3f d = direction_in(cell, {0.5f, 0.5f});
       const float cosine = (facing % 2 == 0 ? d : -d)[facing / 2];
-      if (share > 0 && cosine <= 0) break;  // all is dark
+      if (probability > 0 && cosine <= 0) break;  // all is dark
       if (!(cosine > 0)) continue;
       const float even = cosine * (4 * kInvPi / kCells) / directions::area_per_solid_angle(d);
-      squares += static_cast<double>(sqr(share) / even);
+      squares += static_cast<double>(sqr(probability) / even);
     }
     sum += std::max(squares - 1, 0.0);
   }

@@ -1,5 +1,5 @@
 #pragma once
-// From where light comes to the rows of the light guide.
+// Directions from which light comes to the rows of the light guide.
 
 #include "render/cpu/guide/guide_grid.h"
 
@@ -12,8 +12,9 @@ namespace gloam {
 std::vector<float> find_arriving_light(const SceneView& scene, const CpuTracer& statics,
                                        const LightGuide& grid, const std::vector<GuideRow>& rows);
 
-/// By how much directions by the cosine alone would miss what arrives at surfaces: the relative
-/// variance of its sum by one of them, a mean over the rows. 0: it comes evenly from all around.
+/// Unevenness of light over directions: the relative variance of the sum of what arrives at
+/// surfaces, estimated by one direction by the cosine alone, a mean over the rows. 0: it comes
+/// evenly from all around.
 float unevenness_of(const std::vector<float>& arriving, const std::vector<GuideRow>& rows);
 
 }  // namespace gloam

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "render/cpu/tracer/embree_scene.h"
-#include "render/kernel/light/light_picker.h"
+#include "render/kernel/light/light_sampler.h"
 #include "render/kernel/math/sampler.h"
 
 namespace gloam {
@@ -14,21 +14,21 @@ namespace gloam {
 /// 0 where there is nothing to cover.
 LightGuide place_guide_grid(const SceneView& scene, DeviceSpan<const uint32_t> rows, int along);
 
-/// Point at the share u of each edge of the cell [m].
+/// Point at the fraction u of each edge of the cell [m].
 Vec3f point_in_cell(const LightGuide& grid, int cell, Vec3f u);
 
 struct SurfacePoint {
   Vec3f p, n;  ///< just off the surface [m], and its unit normal
 };
 
-/// Where the rays of one row of the guide start: at surfaces, or anywhere in the cell.
+/// Place where the rays of one row of the guide start: at surfaces, or anywhere in the cell.
 struct GuideRow {
   int cell = 0;
   int facing = -1;  ///< -1: anywhere
   std::vector<SurfacePoint> points;
 };
 
-/// Where ray `ray` of the row starts; n = 0: anywhere in the cell.
+/// Start of ray `ray` of the row; n = 0: anywhere in the cell.
 SurfacePoint start_of(const LightGuide& grid, const GuideRow& row, int ray, Sampler* sampler);
 
 /// Points in the cell on the outside of static surfaces that face `facing` (LightGuide::facing_of).

@@ -3,31 +3,31 @@
 #include <vector>
 
 #include "base/parallel.h"
-#include "render/kernel/light/ambient.h"
+#include "render/kernel/light/ambient_path.h"
 
 namespace gloam {
 namespace {
 
 constexpr int kLog2Rays = 10;
 
-/// Of lamps and the sun, by one sample [lx].
+/// Illuminance of lamps and the sun, by one sample [lx].
 Vec3f direct_light(const SceneView& scene, const CpuTracer& tracer, Vec3f p, Vec3f n,
                    Sampler* sampler) {
   if (scene.lights.size == 0) return {};
-  LightPicker picker;
-  picker.prepare(scene, p, n);
-  picker.leave_out_sky(scene);
-  const LightSample light = picker.sample(scene, p, sampler->next_2d(), 0.0f);
+  LightSampler light_sampler;
+  light_sampler.prepare(scene, p, n);
+  light_sampler.leave_out_sky(scene);
+  const LightSample light = light_sampler.sample(scene, p, sampler->next_2d(), 0.0f);
   const float cosine = dot(light.wi, n);
   if (!(light.pdf > 0) || !(cosine > 0)) return {};
   Ray shadow;
   shadow.o = p;
   aim_shadow_ray(p, n, 0.0f, light, &shadow);
-  Vec3f share{1, 1, 1};
+  Vec3f passed{1, 1, 1};
   uint32_t rays = 0;
-  if (light.casts_shadow) share = paths::transmit(scene, tracer, shadow, true, &rays);
-  share *= paths::through_media(scene, shadow, true, sampler);
-  return light.radiance * share * (cosine / light.pdf);
+  if (light.casts_shadow) passed = paths::transmit(scene, tracer, shadow, true, &rays);
+  passed *= paths::through_media(scene, shadow, true, sampler);
+  return light.radiance * passed * (cosine / light.pdf);
 }
 
 }  // namespace

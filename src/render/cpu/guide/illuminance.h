@@ -1,5 +1,5 @@
 #pragma once
-// What a lux meter shows.
+// Illuminance, as a lux meter shows it.
 
 #include "render/cpu/tracer/cpu_tracer.h"
 #include "render/kernel/scene_view.h"

@@ -6,7 +6,7 @@
 #include "render/cpu/guide/arriving_light.h"
 #include "render/cpu/guide/guide_probes.h"
 #include "render/kernel/light/light_directions.h"
-#include "render/kernel/light/light_picker.h"
+#include "render/kernel/light/light_sampler.h"
 
 namespace gloam {
 namespace {
@@ -14,9 +14,10 @@ namespace {
 constexpr int kCellsAlong = 16;   // of the longest edge
 constexpr int kLightRays = 32;    // to each light from a cell
 constexpr float kFloor = 0.002f;  // gain of a light that no ray has seen
-constexpr float kWorth = 0.02f;   // share of the map below which nothing is drawn from it
+constexpr float kWorth = 0.02f;   // fraction of the map below which nothing is sampled from it
 constexpr float kEven = 0.5f;     // unevenness up to which the BSDF finds light as well
-constexpr float kShare = 0.75f;   // of directions by the guide, where surfaces are diffuse
+constexpr float kGuidedProbability =
+    0.75f;  // of directions by the guide, where surfaces are diffuse
 constexpr int kFacings = LightGuide::kFacings;
 
 }  // namespace
@@ -41,8 +42,8 @@ void LightGuideStore::find_rows(const SceneView& scene, const CpuTracer& statics
   }
 }
 
-/// With lights taken by the roots of their mean squares, one of them stands for all with the least
-/// noise.
+/// Weights of lights are the roots of their mean squares: one light then stands for all with the
+/// least noise.
 void LightGuideStore::look_for_lights(const SceneView& scene, const CpuTracer& statics, int row) {
   const GuideRow& from = rows_[static_cast<size_t>(row)];
   for (uint32_t light = 0; light < grid_.lights; ++light) {
@@ -96,7 +97,7 @@ void LightGuideStore::look_for_sky(const SceneView& scene, const CpuTracer& stat
 void LightGuideStore::conclude(int row) {
   int rows[7];
   const int count = neighborhood(view(), rows_, row, rows);
-  // Of what a row has seen itself, and its neighbours.
+  // Mean of what a row has seen itself and what its neighbours have.
   const auto smooth = [&](const std::vector<float>& seen, size_t stride, size_t first) {
     const auto of = [&](int r) { return seen[static_cast<size_t>(r) * stride + first]; };
     float around = 0;
@@ -133,11 +134,11 @@ void LightGuideStore::build(SceneView scene, const CpuTracer& statics, const Des
   scene.instances = {look.instances.data(), static_cast<uint32_t>(look.instances.size())};
   find_rows(scene, statics);
   const bool has_map = !scene.environment.row_cdf.empty();
-  // What comes through windows falls on small patches. Lamps light a room more evenly: there,
-  // looking up directions costs more time than it saves noise.
+  // Light through windows falls on small patches. Lamps light a room more evenly: there, looking up
+  // directions costs more time than it saves noise.
   if (has_sky || has_sun) {
     arriving_ = find_arriving_light(scene, statics, view(), rows_);
-    grid_.share = unevenness_of(arriving_, rows_) > kEven ? kShare : 0.0f;
+    grid_.probability = unevenness_of(arriving_, rows_) > kEven ? kGuidedProbability : 0.0f;
   }
   gain_.resize(rows_.size() * grid_.lights);
   found_.resize(gain_.size());

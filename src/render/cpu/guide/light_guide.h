@@ -21,7 +21,7 @@ class LightGuideStore {
   void find_rows(const SceneView& scene, const CpuTracer& statics);
   void look_for_lights(const SceneView& scene, const CpuTracer& statics, int row);
   void look_for_sky(const SceneView& scene, const CpuTracer& statics, int row);
-  /// What the row and its neighbours have seen.
+  /// Weights of a row, of what it and its neighbours have seen.
   void conclude(int row);
 
   LightGuide grid_;

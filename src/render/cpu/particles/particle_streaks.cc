@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kPerCell = 6;  // particles, in the mean
 
-/// What the particles of a set cover of each pixel, and the light they bring.
+/// Coverage of each pixel by the particles of a set, and the light that they bring.
 struct Layer {
   std::vector<float> cover;
   std::vector<Vec3f> light;
@@ -27,7 +27,7 @@ void draw_rows(const std::vector<Streak>& streaks, const Film& film, int first, 
     const float most = min(2 * s.radius, 1.0f);
     for (int y = y0; y < y1; ++y) {
       const float py = static_cast<float>(y) + 0.5f;
-      // Only the part of the way that comes near this row.
+      // Part of the streak that comes near this row.
       float xa = min(s.from.x, s.to.x), xb = max(s.from.x, s.to.x);
       if (std::fabs(way.y) > 1e-6f) {
         const auto x_at = [&](float row) {
@@ -42,7 +42,7 @@ void draw_rows(const std::vector<Streak>& streaks, const Film& film, int first, 
         const Vec2f at = Vec2f{static_cast<float>(x) + 0.5f, py} - s.from;
         const float t = way2 > 0 ? clamp((at.x * way.x + at.y * way.y) / way2, 0.0f, 1.0f) : 0.0f;
         const float off = way_length(at - way * t);
-        float alpha = s.share * clamp(0.5f + s.radius - off, 0.0f, most);
+        float alpha = s.cover * clamp(0.5f + s.radius - off, 0.0f, most);
         if (s.soft && s.radius > 1) alpha *= max(1.5f * (1 - sqr(off / reach)), 0.0f);
         const size_t i =
             static_cast<size_t>(y) * static_cast<size_t>(film.width) + static_cast<size_t>(x);
@@ -54,7 +54,8 @@ void draw_rows(const std::vector<Streak>& streaks, const Film& film, int first, 
   }
 }
 
-/// Mean share of the pixel's ray that the drawn ones cover, of which the medium has dimmed it.
+/// Mean fraction of the pixel's ray that the rendered particles cover, of which the medium has
+/// dimmed it.
 float mean_cover(const ParticleView& view, const ParticleSet& set, const StreakFinder& finder,
                  Vec3f eye, Vec3f d, float distance) {
   float sum = 0, farthest = 0;
@@ -95,7 +96,7 @@ void draw_particles(const ParticleView& view, const Film& film, std::vector<Vec3
     Vec3f mean_light;
     float weight = 0;
     for (const Streak& s : streaks) {
-      const float w = s.share * s.radius * (2 * way_length(s.to - s.from) + kPi * s.radius);
+      const float w = s.cover * s.radius * (2 * way_length(s.to - s.from) + kPi * s.radius);
       mean_light += s.light * w;
       weight += w;
     }

@@ -80,7 +80,7 @@ void StreakFinder::add_crown(const Crown& crown, const Splash& splash, Vec3f gro
     Streak s;
     s.distance = length((a + b) * 0.5f - eye_);
     s.radius = 0.5f * width * scale + blur_at(s.distance);
-    s.share = cover * 0.5f * width * scale / s.radius;
+    s.cover = cover * 0.5f * width * scale / s.radius;
     s.light = light;
     if (projector_.project(a, 0, &s.from) && projector_.project(b, 0, &s.to) && is_in_picture(s))
       out->push_back(s);
@@ -113,15 +113,15 @@ void StreakFinder::find_drips(uint64_t seed, std::vector<Streak>* out) const {
   for (const auto& part : found) out->insert(out->end(), part.begin(), part.end());
 }
 
-// Where what stands highest ends on the way from the edge's cell to the one beside it.
+// Tip: end of the highest obstacle on the way from the edge's cell to the one beside it.
 bool StreakFinder::find_tip(const DripEdge& edge, float along, Vec3f* tip) const {
   constexpr float kAbove = 0.5f, kSame = 0.1f, kBeside = 0.003f;  // [m]
   constexpr int kHalvings = 6;
   const Vec3f out{edge.out.x, edge.out.y, 0}, side{-edge.out.y, edge.out.x, 0};
   float in = 0, far = 1, top = 0;
-  const auto is_roof = [&](float share) {
+  const auto is_roof = [&](float fraction) {
     const Vec3f from =
-        edge.from + side * (along * edge.way) + out * (share * edge.way) + Vec3f{0, 0, kAbove};
+        edge.from + side * (along * edge.way) + out * (fraction * edge.way) + Vec3f{0, 0, kAbove};
     float way = 0;
     if (!way_down(from, &way) || std::fabs(way - kAbove) > kSame) return false;
     top = from.z - way;
@@ -129,8 +129,8 @@ bool StreakFinder::find_tip(const DripEdge& edge, float along, Vec3f* tip) const
   };
   if (!is_roof(0)) return false;
   for (int i = 0; i < kHalvings; ++i) {
-    const float middle_share = 0.5f * (in + far);
-    (is_roof(middle_share) ? in : far) = middle_share;
+    const float middle = 0.5f * (in + far);
+    (is_roof(middle) ? in : far) = middle;
   }
   *tip = edge.from + side * (along * edge.way) + out * (far * edge.way + kBeside);
   tip->z = top;
@@ -142,7 +142,7 @@ void StreakFinder::add_drips(const DripEdge& edge, uint64_t seed, std::vector<St
   const float far = reach(kLargestDrip);
   if (dot(to, to) > far * far) return;
   const double now = middle();
-  // They land on the lowest ground at the latest.
+  // Drops land on the lowest ground at the latest.
   const auto deepest = static_cast<double>(edge.from.z - view_.weather.shelter->lowest);
   const DripFall last(kSmallestDrip);
   const double seen = last.time(std::max(deepest, 0.0)) +

@@ -12,7 +12,7 @@ constexpr float kLeastWidth = 0.12f;  // [px] of a particle that is drawn
 // Mean cosines of what is scattered without diffraction: of water by Mie theory for large spheres.
 constexpr float kDropG = 0.885f, kFlakeG = 0.3f;
 
-/// How many of Poisson's law with this mean, of one uniform number.
+/// Sample of Poisson's law with this mean, by one uniform number.
 int poisson(float mean, float u) {
   float p = std::exp(-mean), sum = p;
   int n = 0;
@@ -106,7 +106,7 @@ void StreakFinder::add(const Particle& particle, Vec3f p, float far, const Philo
   if (s.distance < kNearestParticle || s.distance > far) return;
   Vec2f uv;
   if (!projector_.project(p, 0, &uv)) return;
-  // Its row's own exposure.
+  // Exposure of the row that the particle is in.
   const float row = clamp(uv.y, 0.0f, static_cast<float>(film_.height)) * camera.shutter.row;
   const auto seconds = static_cast<float>(view_.seconds);
   const float half = 0.5f * camera.shutter.length;
@@ -118,7 +118,7 @@ void StreakFinder::add(const Particle& particle, Vec3f p, float far, const Philo
   s.radius += blur_at(s.distance);
   if (!is_in_picture(s)) return;
   // A disc of the radius r covers its way of length l and width 2 r for as long as makes pi r².
-  s.share = disc / (2 * s.radius * way + kPi * s.radius * s.radius);
+  s.cover = disc / (2 * s.radius * way + kPi * s.radius * s.radius);
   s.soft = particle.kind == ParticleKind::kFlake;
   s.light = light_of(particle.kind, p, uv, bits);
   out->push_back(s);
@@ -142,7 +142,7 @@ Vec3f StreakFinder::light_of(ParticleKind kind, Vec3f p, Vec2f uv, const Philox4
   const bool drop = kind == ParticleKind::kDrop;
   Vec3f light;
   if (drop) {
-    // Half of what a sphere of water sends on comes from within some twenty degrees behind it.
+    // Spheres of water send on light, half of it from within some twenty degrees behind them.
     light = blurred_.at(uv) * 0.5f + around_.on(d) * 0.5f;
   } else {
     light = around_.on(d) * 0.6f + around_.on(-d) * 0.4f;

@@ -20,7 +20,7 @@ inline constexpr float kFarthestParticle = 30;   ///< [m]
 struct Streak {
   Vec2f from, to;      ///< [px]
   float radius = 0;    ///< [px]
-  float share = 1;     ///< of the exposure for which it covers a point of its way
+  float cover = 1;     ///< fraction of the exposure for which it covers a point of its way
   float distance = 0;  ///< [m]
   Vec3f light;         ///< that it sends to the camera [cd/m²]
   bool soft = false;   ///< thinner towards its edge
@@ -61,7 +61,7 @@ struct Lattice {
   uint32_t row = 0;
   float cell = 1;  ///< [m]
 
-  /// Where the frame's origin is.
+  /// Position of the frame's origin at `time` [m].
   void origin(double time, double p[3]) const {
     const Vec3 gusts = set.gusts != nullptr ? set.gusts->way(time, kind.lag()) : Vec3{};
     p[0] = static_cast<double>(set.wind.x) * time + gusts.x;
@@ -86,19 +86,19 @@ class StreakFinder {
   StreakFinder(const ParticleView& view, const Film& film, const AmbientCube& around,
                const BlurredPicture& blurred);
 
-  /// Beyond it a particle is too small to be drawn [m].
+  /// Distance beyond which a particle is too small to be rendered [m].
   float reach(float diameter) const;
   void find(const Lattice& lattice, std::vector<Streak>* out) const;
-  /// What flies up where drops of class `row` have landed.
+  /// Splashes where drops of class `row` have landed.
   void find_splashes(const ParticleSet& set, uint32_t row, std::vector<Streak>* out) const;
-  /// What falls from edges, and its splashes.
+  /// Drips from edges, and their splashes.
   void find_drips(uint64_t seed, std::vector<Streak>* out) const;
 
  private:
   struct Cell {
     int64_t i, j, k;
   };
-  /// Of the exposure [s].
+  /// Middle of the exposure [s].
   double middle() const {
     return view_.opens + view_.seconds * static_cast<double>(view_.camera.shutter.length) / 2;
   }

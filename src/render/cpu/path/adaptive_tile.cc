@@ -19,7 +19,7 @@ class AdaptiveTile {
   /// See look_adaptive.
   double look(RenderStats* stats) {
     Tile tile(job_, x0_, y0_);
-    draw(&tile, 0, kPilotSeed, 0, kPilotSamples);
+    sample(&tile, 0, kPilotSeed, 0, kPilotSamples);
     stats->rays += tile.rays();
     stats->paths += static_cast<uint64_t>(tile.count()) * kPilotSamples;
     for (int i = 0; i < tile.count(); ++i) ++blocks_[block_of(tile.index(i))].pixels;
@@ -41,24 +41,25 @@ class AdaptiveTile {
       if (job_.settings.variance) film.variance[pixel] = {};
       film.sample_count[pixel] = 0;
     }
-    int drawn = 0;
+    int sampled = 0;
     while (std::any_of(blocks_, std::end(blocks_), [](const Block& b) { return b.open; })) {
-      const int next = drawn == 0 ? std::min(plan.least, most_) : std::min(2 * drawn, most_);
+      const int next = sampled == 0 ? std::min(plan.least, most_) : std::min(2 * sampled, most_);
       Tile tile(job_, x0_, y0_, [this](int index) { return blocks_[block_of(index)].open; });
       for (int half = 0; half < 2; ++half) {
-        draw(&tile, half, half == 0 ? 0 : kOtherHalf, drawn, next);
+        sample(&tile, half, half == 0 ? 0 : kOtherHalf, sampled, next);
       }
       stats->rays += tile.rays();
-      stats->paths += 2 * static_cast<uint64_t>(tile.count()) * static_cast<uint64_t>(next - drawn);
-      drawn = next;
-      decide(tile, plan, drawn, stats);
+      stats->paths +=
+          2 * static_cast<uint64_t>(tile.count()) * static_cast<uint64_t>(next - sampled);
+      sampled = next;
+      decide(tile, plan, sampled, stats);
     }
   }
 
  private:
   static constexpr int kBatches = 4;
   static constexpr int kPilotSamples = 8;
-  // Any numbers: scramblings of their own.
+  // Seeds that scramble the sampler, each in its own way; arbitrary.
   static constexpr uint64_t kOtherHalf = 0xD1B54A32D192ED03u, kPilotSeed = 0x8CB92BA72F3D8DD7u;
   static constexpr int kSide = 8;  // of a block [px]
   static constexpr int kAcross = kTile / kSide;
@@ -81,8 +82,8 @@ class AdaptiveTile {
       for (const Batch& b : batches) sum.add(b);
       return sum;
     }
-    /// Of all channels, without the brightest and the darkest batch: one bright path among few
-    /// samples raises the variance and must not raise what that is compared with.
+    /// Mean of all channels, without the brightest and the darkest batch: one bright path among few
+    /// samples raises the variance and must not raise the value that this is compared with.
     float value() const {
       float least = INFINITY, most = 0, sum = 0;
       for (const Batch& b : batches) {
@@ -93,7 +94,7 @@ class AdaptiveTile {
       }
       return (sum - least - most) / (kBatches - 2);
     }
-    /// Of the mean, per channel.
+    /// Variance of the mean, per channel.
     Vec3f variance(const Batch& all) const {
       Vec3f squares;
       for (const Batch& b : batches) {
@@ -111,7 +112,7 @@ class AdaptiveTile {
     float value = 0;             ///< mean over the pixels
   };
 
-  /// Of the errors of a half's means, per block.
+  /// Squares of the errors of a half's means, per block.
   void add_squares(const Tile& tile, int half) {
     for (Block& block : blocks_) block.squares[half] = block.value = 0;
     for (int i = 0; i < tile.count(); ++i) {
@@ -132,11 +133,11 @@ class AdaptiveTile {
     return y / kSide * kAcross + x / kSide;
   }
 
-  /// The samples [drawn, next) of one half. In the first round they make four batches; later those
-  /// before make two and these the others.
-  void draw(Tile* tile, int half, uint64_t other, int drawn, int next) {
-    const int parts = drawn == 0 ? kBatches : kBatches / 2;
-    for (int i = 0; drawn > 0 && i < tile->count(); ++i) {
+  /// The samples [sampled, next) of one half. In the first round they make four batches; later
+  /// those before make two and these the others.
+  void sample(Tile* tile, int half, uint64_t other, int sampled, int next) {
+    const int parts = sampled == 0 ? kBatches : kBatches / 2;
+    for (int i = 0; sampled > 0 && i < tile->count(); ++i) {
       Batch* b = halves_[half][tile->index(i)].batches;
       for (int k = 0; k < kBatches / 2; ++k) {
         const Batch later = b[2 * k + 1];
@@ -146,8 +147,8 @@ class AdaptiveTile {
     }
     Film& film = *job_.film;
     for (int part = 0; part < parts; ++part) {
-      const int begin = drawn + (next - drawn) * part / parts;
-      const int end = drawn + (next - drawn) * (part + 1) / parts;
+      const int begin = sampled + (next - sampled) * part / parts;
+      const int end = sampled + (next - sampled) * (part + 1) / parts;
       tile->render_path({job_.settings.seed ^ other, begin, end - begin});
       for (int i = 0; i < tile->count(); ++i) {
         PixelMean& mean = tile->mean(i);
@@ -161,7 +162,7 @@ class AdaptiveTile {
     }
   }
 
-  void decide(const Tile& tile, const AdaptivePlan& plan, int drawn, RenderStats* stats) {
+  void decide(const Tile& tile, const AdaptivePlan& plan, int sampled, RenderStats* stats) {
     for (int half = 0; half < 2; ++half) add_squares(tile, half);
     bool fixed[2][kAcross * kAcross] = {};
     for (int b = 0; b < kAcross * kAcross; ++b) {
@@ -169,12 +170,12 @@ class AdaptiveTile {
       if (!block.open) continue;
       bool reached = true;
       for (int half = 0; half < 2; ++half) {
-        const bool enough = wanted(plan, block, 1 - half, drawn) <= kRounding * 2 * drawn;
+        const bool enough = wanted(plan, block, 1 - half, sampled) <= kRounding * 2 * sampled;
         reached = reached && (enough || block.counted[half] > 0);
-        fixed[half][b] = block.counted[half] == 0 && (enough || drawn == most_);
-        if (fixed[half][b]) block.counted[half] = drawn;
+        fixed[half][b] = block.counted[half] == 0 && (enough || sampled == most_);
+        if (fixed[half][b]) block.counted[half] = sampled;
       }
-      if (!reached && drawn == most_) stats->unreached += static_cast<uint64_t>(block.pixels);
+      if (!reached && sampled == most_) stats->unreached += static_cast<uint64_t>(block.pixels);
       block.open = block.counted[0] == 0 || block.counted[1] == 0;
     }
     for (int i = 0; i < tile.count(); ++i) {
@@ -182,13 +183,13 @@ class AdaptiveTile {
       for (int half = 0; half < 2; ++half) {
         if (fixed[half][b]) count(halves_[half][tile.index(i)], tile.pixel_of(i));
       }
-      if (!blocks_[b].open) finish_guides(tile.pixel_of(i), 2 * drawn);
+      if (!blocks_[b].open) finish_guides(tile.pixel_of(i), 2 * sampled);
     }
   }
 
-  /// Samples of a pixel of the block, as the half shows that has `drawn` of them.
-  static double wanted(const AdaptivePlan& plan, const Block& block, int half, int drawn) {
-    return plan.per_deviation * std::sqrt(drawn * block.squares[half] / block.pixels);
+  /// Samples of a pixel of the block, as the half shows that has `sampled` of them.
+  static double wanted(const AdaptivePlan& plan, const Block& block, int half, int sampled) {
+    return plan.per_deviation * std::sqrt(sampled * block.squares[half] / block.pixels);
   }
 
   /// The mean of a half becomes part of the picture.
@@ -199,10 +200,10 @@ class AdaptiveTile {
     if (job_.settings.variance) film.variance[pixel] += half.variance(all) * 0.25f;
     film.sample_count[pixel] += static_cast<uint32_t>(all.count);
   }
-  /// Guides are the means of all that was drawn.
-  void finish_guides(size_t pixel, int drawn) {
-    job_.film->albedo[pixel] *= 1.0f / static_cast<float>(drawn);
-    job_.film->normal[pixel] *= 1.0f / static_cast<float>(drawn);
+  /// Guides are the means of all that was sampled.
+  void finish_guides(size_t pixel, int sampled) {
+    job_.film->albedo[pixel] *= 1.0f / static_cast<float>(sampled);
+    job_.film->normal[pixel] *= 1.0f / static_cast<float>(sampled);
   }
 
   const Job& job_;

@@ -9,11 +9,11 @@
 // what they show. None has less than half of what the picture needs on the mean: light that is rare
 // is seen in the picture long before it is seen in every block.
 //
-// The mean of a pixel is that of two halves, drawn with scramblings of their own, so independent.
+// The mean of a pixel is that of two halves, sampled with scramblings of their own, so independent.
 // How many samples count in one half is decided by what the other half shows alone: a count that
 // depends on the very values it counts favours dark ones (Kirk and Arvo 1991, "Unbiased sampling
 // techniques for image synthesis"). So the picture is unbiased, whatever the scene. What a half has
-// drawn beyond its count, to decide for the other, is not used; nor are the first few samples.
+// sampled beyond its count, to decide for the other, is not used; nor are the first few samples.
 //
 // The variance of a half's mean is estimated from the means of four runs of its samples (batch
 // means), so that what runs gain by their low discrepancy is in it. It is compared with a pixel's
@@ -33,7 +33,7 @@ struct AdaptivePlan {
 /// its pixels of the relative deviation of single samples.
 double look_adaptive(const Job& job, int x0, int y0, RenderStats* stats);
 
-/// Of the `deviations` of all tiles and the number of pixels that each has.
+/// Plan by the `deviations` of all tiles and the number of pixels of each.
 AdaptivePlan plan_adaptive(const RenderSettings& settings, const std::vector<double>& deviations,
                            const std::vector<int>& pixels);
 

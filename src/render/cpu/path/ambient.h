@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "render/cpu/tracer/embree_scene.h"
-#include "render/kernel/light/ambient.h"
+#include "render/kernel/light/ambient_path.h"
 
 namespace gloam {
 
@@ -14,8 +14,8 @@ std::vector<AmbientPath> trace_ambient(const SceneView& scene, const CpuTracer& 
                                        const CameraView32& camera, int width, int height,
                                        int max_depth);
 
-/// What surfaces in view receive, by the axis that they face, beyond the light of lamps and suns
-/// themselves.
+/// Light that surfaces in view receive, by the axis that they face, beyond that straight from lamps
+/// and suns.
 AmbientCube mean_ambient(const std::vector<AmbientPath>& paths);
 
 inline AmbientCube measure_ambient(const SceneView& scene, const CpuTracer& tracer,

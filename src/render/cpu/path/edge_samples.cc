@@ -11,8 +11,8 @@
 namespace gloam {
 namespace {
 
-/// Whether what the two pixels' centres show differs so much that one ray each cannot tell what
-/// lies between.
+/// Whether the centres of two pixels differ so much that one ray each cannot tell what lies
+/// between.
 bool differs(const Film& film, size_t i, size_t j) {
   constexpr float kCosine = 0.9f, kAlbedo = 0.15f;
   const Vec3f d = film.center_albedo[i] - film.center_albedo[j];
@@ -75,7 +75,7 @@ class Row {
         march(job_.scene.media, ray, min(film_->distance[i], 1e30f), 0.0f, kSteps, {}, true,
               [](const MarchStep& step) { return step.medium.scattering; });
     const Vec3f albedo = film_->albedo[i] * m.transmittance + m.radiance;
-    // What glows is brighter than any albedo.
+    // Emission is brighter than any albedo.
     film_->albedo[i] = {min(albedo.x, 1.0f), min(albedo.y, 1.0f), min(albedo.z, 1.0f)};
     film_->normal[i] *= luminance(m.transmittance);
   }

@@ -14,9 +14,9 @@ struct EdgeSamples {
   bool has_motion = false;  ///< something moves while the shutter is open
 };
 
-/// Where shape and albedo hardly change from pixel to pixel, the film's albedo and normal become
-/// those at the pixel's centre; at edges, the mean over `count` rays through the pixel's filter,
-/// which end at the first surface. Media before it take their share, with their own
+/// Guides for the denoiser. In pixels where shape and albedo hardly change, the film's albedo and
+/// normal become those at the pixel's centre; at edges, the mean over `count` rays through the
+/// pixel's filter, which end at the first surface. Media before it take their part, with their own
 /// albedo and no normal. The film has the exact channels. Returns the rays traced.
 uint64_t refine_guides(const EdgeSamples& job, int count, Film* film);
 

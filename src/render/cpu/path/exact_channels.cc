@@ -30,7 +30,8 @@ class ChannelLanes {
     const RayOf<F> ray = camera_rays(job_.camera, u, v, time, &cone);
     RayHitOf<F> hit;
     const MaskLanes found = trace(ray, centers, &hit);
-    // What is nowhere transparent and asked for its place alone needs no material.
+    // Material of the surface is needed only where surfaces may be transparent or details are asked
+    // for.
     const bool details = !film_.center_normal.empty();
     SurfaceOf<F> s;
     if (details || job_.scene.has_transparent) {
@@ -65,7 +66,7 @@ class ChannelLanes {
     return found;
   }
 
-  /// What a ray meets beyond surfaces that do not show.
+  /// First surface that a ray meets beyond surfaces that do not show.
   ExactChannels look_through(const Ray& ray, RayCone cone) {
     Surface s;
     RayHit hit;

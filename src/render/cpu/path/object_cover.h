@@ -1,5 +1,5 @@
 #pragma once
-// How much of each object a camera sees, and how much it would see with nothing in front.
+// Pixels of each object that a camera sees, and that it would see with nothing in front.
 
 #include "render/cpu/tracer/cpu_tracer.h"
 #include "render/film/film.h"
@@ -7,8 +7,8 @@
 
 namespace gloam {
 
-/// By object, which `object_of` tells for every instance (0 = none): counts the pixels whose centre
-/// ray meets the object first, and those whose ray meets it at all.
+/// Cover by object, which `object_of` tells for every instance (0 = none): counts the pixels whose
+/// centre ray meets the object first, and those whose ray meets it at all.
 std::map<uint32_t, ObjectCover> measure_cover(const SceneView& scene, const CpuTracer& tracer,
                                               const CameraView32& camera, bool has_motion,
                                               int width, int height,

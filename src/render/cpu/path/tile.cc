@@ -93,7 +93,7 @@ void Tile::store_means(RenderStats* stats) const {
   stats->rays = rays_;
 }
 
-/// All samples of `range` of each pixel: lanes whose path has ended begin another one.
+/// Traces all samples of `range` of each pixel: lanes whose path has ended begin another one.
 void Tile::trace_paths(const SampleRange& range, PathResult* results) {
   using F = FloatLanes;
   const int count = count_ * range.count;
@@ -142,9 +142,9 @@ paths::CameraSampleOf<FloatLanes> Tile::camera_sample(const SampleRange& range, 
   const Vec2Of<FloatLanes> offset = sample_pixel_filter(out.sampler.next_2d());
   FloatLanes time = 0.0f;
   if (job_.has_motion) {
-    const FloatLanes share = out.sampler.next_1d();
+    const FloatLanes fraction = out.sampler.next_1d();
     each_lane(*seeing, [&](int i) {
-      set_lane(&time, i, job_.camera.time_of(static_cast<int>(lane(y, i)), lane(share, i)));
+      set_lane(&time, i, job_.camera.time_of(static_cast<int>(lane(y, i)), lane(fraction, i)));
     });
   }
   Vec2Of<FloatLanes> lens;

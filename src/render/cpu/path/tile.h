@@ -1,5 +1,5 @@
 #pragma once
-// One tile of a picture and what every pixel of a render call shares.
+// One tile of a picture, and the inputs of a render call.
 
 #include <immintrin.h>
 
@@ -47,7 +47,7 @@ inline void tile_pixel(int index, int* x, int* y) {
   *y = block / (kTile / 4) * 4 + in / 4;
 }
 
-/// What rays through the centres of a tile's pixels have met, in tile_pixel()'s order.
+/// Hits of rays through the centres of a tile's pixels, in tile_pixel()'s order.
 struct CenterHits {
   bool known[kTile * kTile] = {}, found[kTile * kTile] = {};
   RayHit hits[kTile * kTile];
@@ -66,7 +66,7 @@ struct SampleRange {
 class Tile {
  public:
   Tile(const Job& job, int x0, int y0) : Tile(job, x0, y0, [](int) { return true; }) {}
-  /// Of every pixel i of the tile (see tile_pixel) that `wanted` takes.
+  /// Tile of the pixels i (see tile_pixel) that `wanted` takes.
   template <class Wanted>
   Tile(const Job& job, int x0, int y0, const Wanted& wanted) : job_(job) {
     for (int i = 0; i < kTile * kTile; ++i) {
@@ -82,7 +82,7 @@ class Tile {
 
   /// Adds samples of the path tier to the means.
   void render_path(const SampleRange& range);
-  /// All samples of the direct tier. Those that are centred serve the exact channels too.
+  /// Renders all samples of the direct tier. Those that are centred serve the exact channels too.
   void render_direct(CenterHits* centers);
   void store_means(RenderStats* stats) const;
 

@@ -16,8 +16,8 @@ class RenderWatch {
   bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
   /// One more tile is finished.
   void tile_done() { ask(1); }
-  /// In the middle of one: may it go on?
-  bool goes_on() {
+  /// Whether the work in progress may continue.
+  bool may_continue() {
     ask(0);
     return !stopped();
   }

@@ -27,12 +27,12 @@ void ExcessRegions::Region::fade(float most) {
 }
 
 void ExcessRegions::spread(std::span<const OfCell> cells, bool remembers, std::span<Vec3f> light) {
-  // As long as light comes round, what was before is a share of less.
+  // Light from before counts less as long as light comes round for the first time.
   const float past = remembers ? kMostTold : kAtFirst;
   all_.fade(past);
   for (const OfCell& cell : cells) all_.add(cell);
-  all_.share = all_.sum / max(all_.light, kDark);
-  // From wide to narrow: what little a region has seen is completed by the wider one's.
+  all_.ratio = all_.sum / max(all_.light, kDark);
+  // Levels from wide to narrow: a region that has seen few cells is completed by the wider region.
   for (size_t level = 0; level < kLevels; ++level) {
     const auto key_of = [&](size_t k) { return cells[k].key; };
     groups_.each(cells.size(), kRegionMasks[level], key_of, [&](auto group) {
@@ -43,10 +43,11 @@ void ExcessRegions::spread(std::span<const OfCell> cells, bool remembers, std::s
       for (const auto& [_, k] : group) region.add(cells[k]);
       region.last_traced = update_;
       const float guessed = region.light / region.cells * kGuessed;
-      region.share = (region.sum + wider.share * guessed) / max(region.light + guessed, kDark);
+      region.ratio = (region.sum + wider.ratio * guessed) / max(region.light + guessed, kDark);
       if (level + 1 < kLevels) return;
-      // To each as it has light: dark corners of a region see little of what is bright, too.
-      for (const auto& [_, k] : group) light[k] = region.share * cells[k].before;
+      // Excess in proportion to each cell's light: dark corners of a region see little of bright
+      // surfaces, too.
+      for (const auto& [_, k] : group) light[k] = region.ratio * cells[k].before;
     });
   }
 }

@@ -1,17 +1,18 @@
 #pragma once
-// Light that few rays of the irradiance cache's cells meet: regions share it out over their cells,
-// as one that is met by chance would make a spot of a cell.
+// Light that few rays of the irradiance cache's cells meet: regions spread it over their cells, as
+// a source that one ray meets by chance would make a bright spot of its cell.
 
 #include <unordered_map>
 
 #include "render/cpu/path/key_groups.h"
-#include "render/kernel/realtime/irradiance_cache.h"
+#include "render/kernel/realtime/irradiance_cache_view.h"
 
 namespace gloam {
 
 class ExcessRegions {
  public:
-  /// Of a cell and round: what its rays brought above what is likely, and its luminance before.
+  /// Excess of a cell in one round: light that its rays brought above what is likely, and its
+  /// luminance before.
   struct OfCell {
     uint64_t key = 0;
     Vec3f excess;  ///< [cd/m²]
@@ -29,12 +30,12 @@ class ExcessRegions {
  private:
   /// Sums over cells and rounds, where old ones fade.
   struct Region {
-    Vec3f sum, share;            ///< share: of a cell's light
+    Vec3f sum, ratio;            ///< ratio: of excess to a cell's light
     float light = 0, cells = 0;  ///< what they had before
     uint32_t last_traced = 0;
 
     void add(const OfCell& cell);
-    /// From then on as those of `most` cells.
+    /// Scales the sums down to those of `most` cells.
     void fade(float most);
   };
   static constexpr size_t kLevels = 2;  ///< wide regions, and narrow ones in them

@@ -1,19 +1,19 @@
 #pragma once
-// From noisy pictures of the fast tier to smooth ones: over pictures, over surfaces, over points of
+// Filter of the fast tier's noisy pictures: over earlier pictures, over surfaces, over points of
 // the pixels.
 
 #include "render/cpu/realtime/fast_gain.h"
 
 namespace gloam {
 
-/// Room for the filter.
+/// Filter over pictures and surfaces, and its scratch memory.
 struct FastFilter {
   FastPlane3 a[kFastSignals], b[kFastSignals];
   FastPlane deviation[kFastSignals];         ///< of the signals' means, by the pixels around
   LightGain gain[kFastSignals], color_gain;  ///< of the signals, and of the whole light
 
   void resize(int width, int height);
-  /// Takes over from `before` what is the same place, as far as it agrees with what is new.
+  /// Blends in signals of the same places in `before`, as far as they agree with the new ones.
   void accumulate(const FastFrame& before, FastFrame* frame);
   /// Smooths the signals over surfaces, that of the air over what is as far away.
   void smooth(const FastFrame& frame);

@@ -14,10 +14,10 @@ constexpr float kRange = 1.6f;       // of deviations around a pixel that its pa
 constexpr float kLongest = 8;        // pictures in a mean: older ones fade
 constexpr float kSpike = 4;          // times its neighbours, at most, that a mirror's light may be
 constexpr int kPatch = 16;           // [px], in which a change of the light is sought:
-constexpr float kNoChange = 0.01f;   // a share that may be noise,
+constexpr float kNoChange = 0.01f;   // a fraction that may be noise,
 constexpr float kHaste = 8;          // and what of the rest is taken over at once
 constexpr float kTolerance = 0.01f;  // of places on one plane, over their distance
-constexpr float kSameDepth = 0.2f;   // share by which the ways through air differ that are alike
+constexpr float kSameDepth = 0.2f;   // fraction by which the ways through air differ that are alike
 constexpr int kSpikeRounds = 2;      // of a surface's filter, that take what stands out along
 constexpr float kFarthest = 1e8f;    // deviations squared, so that products stay finite
 
@@ -39,7 +39,7 @@ F luminance_about(const FastFrame& f, int signal, int x, int y) {
   return select(n > 0.0f, sum / max(n, 1.0f), F(1e30f));
 }
 
-/// One patch's share of accumulate().
+/// One patch of accumulate().
 class Accumulation {
  public:
   Accumulation(const FastFrame& before, const LightGain* gain, int x0, int y0, FastFrame* frame,
@@ -57,7 +57,7 @@ class Accumulation {
   static constexpr int kParts = kPatch / kLaneCount;  // of a row
 
   void find_places() {
-    // By columns, so that the sums are the same for any number of lanes.
+    // Sums by columns, so that they are the same for any number of lanes.
     F now[kFastSignals][kParts], past[kFastSignals][kParts];
     for (int y = y0_; y < y1_; ++y) {
       for (int part = 0; part < kParts; ++part) {
@@ -72,11 +72,12 @@ class Accumulation {
         }
       }
     }
-    // Where the light of a whole tile is another, old pictures say little.
+    // Weight of the new picture grows where the light of a whole patch has changed: old pictures
+    // say little there.
     for (int s = 0; s < f_.signals; ++s) {
       const float a = sum_of(now[s]), b = sum_of(past[s]);
       const float change = fabsf(a - b) / max(max(a, b), 1e-6f);
-      least_share_[s] = clamp((change - kNoChange) * kHaste, 0.0f, 1.0f);
+      least_weight_[s] = clamp((change - kNoChange) * kHaste, 0.0f, 1.0f);
     }
   }
   static float sum_of(const F (&columns)[kParts]) {
@@ -96,30 +97,32 @@ class Accumulation {
         return f_.part.load(x + dx, y + dy) == own_part;
       });
       Vec3Of<F> now = f_.signal[s].load(x, y);
-      F l = luminance(now), share = max(1.0f / age, least_share_[s]);
+      F l = luminance(now), weight = max(1.0f / age, least_weight_[s]);
       if (s == kSpecularSignal) {
-        // Of rays that a rough surface scatters, few meet a lamp: no brighter than the others.
+        // Rays that a rough surface scatters seldom meet a lamp: one that does is made no brighter
+        // than the others.
         // A rounding error below zero must not become 0 / 0 where all is dark.
         const F most = max(kSpike * luminance_about(f_, s, x, y), F(0.0f));
         now = select<F>(l > most, now * (most / l), now);
         l = min(l, most);
-        // What mirrors show does not go along with them.
+        // Images in mirrors do not move with the mirror's surface.
         const MaskLanes moves =
             !((f_.motion_x.load(x, y) == F(0.0f)) & (f_.motion_y.load(x, y) == F(0.0f)));
-        share = select(moves & (f_.roughness.load(x, y) < kMirror), max(share, 0.5f), share);
+        weight = select(moves & (f_.roughness.load(x, y) < kMirror), max(weight, 0.5f), weight);
       }
-      // What is out of the range of its neighbours is a trail of what has moved on.
+      // Old light out of the range of its neighbours is a trail of something that has moved on.
       const F gain = gain_[s].from(x, y);
       const Vec3Of<F> old = place.of(before_.signal[s], x, y) * gain;
       const Vec3Of<F> least = mean - deviation * F(kRange), most = mean + deviation * F(kRange);
       const Vec3Of<F> kept{clamp(old.x, least.x, most.x), clamp(old.y, least.y, most.y),
                            clamp(old.z, least.z, most.z)};
-      out_[s].store(x, y, select<F>(place.known, lerp(kept, now, share), now));
+      out_[s].store(x, y, select<F>(place.known, lerp(kept, now, weight), now));
       const F old_mean = place.of(before_.mean[s], x, y) * gain;
-      f_.mean[s].store(x, y, select(place.known, lerp(old_mean, l, share), l));
+      f_.mean[s].store(x, y, select(place.known, lerp(old_mean, l, weight), l));
       const F old_square = place.of(before_.square[s], x, y) * sqr(gain);
       const F spread = sqr(luminance(deviation));  // until more is known
-      f_.square[s].store(x, y, select(place.known, lerp(old_square, l * l, share), l * l + spread));
+      f_.square[s].store(x, y,
+                         select(place.known, lerp(old_square, l * l, weight), l * l + spread));
     }
   }
 
@@ -129,7 +132,7 @@ class Accumulation {
   FastPlane3* out_;
   const int x0_, y0_, y1_ = min(y0_ + kPatch, f_.height);
   FastPast places_[kPatch][kParts];
-  float least_share_[kFastSignals] = {};
+  float least_weight_[kFastSignals] = {};
 };
 
 }  // namespace
@@ -243,13 +246,13 @@ F spread_around(const FastPlane3& signal, int step, int x, int y, const Counts& 
   return safe_sqrt(squares / max(n, 1.0f) - mean * mean);
 }
 
-/// For likeness(): over how much light may differ by chance.
+/// Inverse of the difference of light that may be chance, for likeness().
 F sharpness(F deviation, F light) { return 1.0f / (2.0f * deviation + 0.005f * light + 1e-4f); }
 F likeness(F light, F own, F sharp) {
   const F d = (light - own) * sharp;
   return 1.0f / (1.0f + sqr(min(d * d, kFarthest)));
 }
-F corner_share(int dx, int dy) { return dx != 0 && dy != 0 ? 0.5f : 0.75f; }
+F corner_weight(int dx, int dy) { return dx != 0 && dy != 0 ? 0.5f : 0.75f; }
 
 }  // namespace
 
@@ -289,7 +292,7 @@ void FastFilter::smooth_signals(const FastFrame& f, int round, const FastPlane3*
           const F facing = max(dot(n, f.n.load(qx, qy)), 0.0f);
           const F f4 = sqr(sqr(facing)), f16 = sqr(sqr(f4));
           const F off = dot(n, f.p.load(qx, qy) - p) * scale;
-          const F tap = same * f16 * max(1.0f - off * off, 0.0f) * corner_share(dx, dy);
+          const F tap = same * f16 * max(1.0f - off * off, 0.0f) * corner_weight(dx, dy);
           Vec3Of<F> v[kAirSignal];
           F weight[kAirSignal];
           for (int s = kFirst; s < kAirSignal; ++s) {
@@ -328,7 +331,7 @@ void FastFilter::smooth_air(const FastFrame& f, int round, const FastPlane3& fro
           if (dx == 0 && dy == 0) continue;
           const int qx = x + dx * step, qy = y + dy * step;
           const F off = (f.distance.load(qx, qy) - distance) * scale;
-          const F near = max(1.0f - off * off, 0.0f) * corner_share(dx, dy);
+          const F near = max(1.0f - off * off, 0.0f) * corner_weight(dx, dy);
           const Vec3Of<F> v = from.load(qx, qy);
           const F weight = select(f.part.load(qx, qy) >= 0.0f,
                                   near * likeness(luminance(v), own, sharp), F(0.0f));

@@ -108,7 +108,7 @@ struct FastFrame {
   FastPlane3 base, albedo, gloss;
   FastPlane motion_x, motion_y;  ///< [px]
   std::vector<uint64_t> key;     ///< of the cache's cell
-  FastPlane gleam;      ///< least share of this picture in `resolved`: of moving highlights
+  FastPlane gleam;      ///< least weight of this picture in `resolved`: of moving highlights
   FastPlane edge;       ///< 1 beside another part
   FastPlane3 color;     ///< of this picture
   FastPlane3 resolved;  ///< of this one and those before

@@ -28,11 +28,11 @@ struct Sums {
     for (int i = first; i < first + kGainPatch; ++i) total += lane(columns, i);
     return total;
   }
-  /// Of the patch whose columns are the lanes from `first` on.
+  /// Gain of the patch whose columns are the lanes from `first` on.
   float gain(int first) const {
     const float count = sum(n, first), old = sum(past, first), more = sum(change, first);
     if (count < kLeast || !(old > 0)) return 1;
-    // Of the change, what is not likely to be chance (James and Stein 1961, the positive part).
+    // Part of the change that is not likely to be chance (James and Stein 1961, the positive part).
     const float scatter = max(sum(square, first) - sqr(more) / count, 0.0f);
     const float variance = scatter * count / (count - 1);
     const float sure = max(1 - sqr(kSureness) * variance / max(sqr(more), 1e-30f), 0.0f);

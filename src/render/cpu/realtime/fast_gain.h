@@ -1,6 +1,6 @@
 #pragma once
-// How much the light has changed since the picture before, by place in the picture. A mean over
-// pictures lags behind light that changes evenly; brought up to the new level first, it does not.
+// Change of the light since the picture before, by place in the picture. A mean over pictures lags
+// behind light that changes evenly; brought up to the new level first, it does not.
 
 #include <cstdint>
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace gloam {
 
-/// Where the pixels from (x, y) on were in the picture before.
+/// Places of the pixels from (x, y) on in the picture before.
 struct FastPast {
   FloatLanes x, y;
   MaskLanes known = false;  ///< the same place was seen then

@@ -15,7 +15,7 @@ constexpr float kMostMoving = 2;    // where they lie between pixels, each blurs
 constexpr float kPastRange = 1;     // of deviations around a pixel that its past may have,
 constexpr float kSlack = 0.015f;    // and of its mean: light that flickers is noise
 
-/// What the 3 x 3 pixels around those from (x, y) on say.
+/// Neighbourhood of 3 x 3 pixels around those from (x, y) on.
 struct Around {
   Vec3Of<F> now;  ///< their colours, weighted by the pixel filter
   NeighbourMoments color;
@@ -126,9 +126,9 @@ void resolve_lanes(const FastFrame& before, const LightGain& gain, const FilterW
                        keep(past.z, least.z, most.z)};
   const F longest = select(rests, F(kMostPictures), F(kMostMoving));
   pictures = select(known, min(pictures + 1.0f, longest), F(1.0f));
-  const F share = max(1.0f / pictures, f.gleam.load(x, y));
+  const F weight = max(1.0f / pictures, f.gleam.load(x, y));
   f.edge.store(x, y, select(around.edge, F(1.0f), F(0.0f)));
-  f.resolved.store(x, y, select<F>(known, kept + (now - kept) * share, now));
+  f.resolved.store(x, y, select<F>(known, kept + (now - kept) * weight, now));
   f.pictures.store(x, y, pictures);
 }
 

@@ -20,7 +20,7 @@ constexpr size_t kMostCells = 2500;     // and a later picture
 
 /// Share of directions that meet what is near, by the four by four pixels about one, whose
 /// directions are spread evenly: one alone has all or nothing.
-F near_about(const FastFrame& f, int x, int y) {
+F mean_near(const FastFrame& f, int x, int y) {
   constexpr float kTolerance = 0.02f;  // of places on one plane, over their distance
   const F part = f.part.load(x, y);
   const Vec3Of<F> p = f.p.load(x, y), n = f.n.load(x, y);
@@ -44,8 +44,8 @@ float cell_edge(const CameraView32& camera) { return min(kCellPixels / camera.fx
 }  // namespace
 
 bool FastHistory::find_moving_lamps(const SceneView& scene) {
-  // What goes less far from picture to picture, or gives so small a share of the strongest lamp's
-  // light, the cache follows.
+  // Lamps that move less far from picture to picture, or give less than kWeak of the strongest
+  // lamp's light, are left to the cache, which follows them.
   constexpr float kFar = 0.005f, kTurn = 0.005f;  // [m], [rad]
   constexpr float kWeak = 0.01f;
   std::vector<LampPlace> now;
@@ -55,7 +55,7 @@ bool FastHistory::find_moving_lamps(const SceneView& scene) {
     now.push_back({light.p, light.direction});
     if (light.kind != LightKind::kDirectional) strongest = max(strongest, light.strength);
   }
-  // Where lamps go on or out, which are the same is not known; cells notice such changes.
+  // Lamps that go on or out change the rows, so none can be followed; cells notice such changes.
   bool moves = false;
   for (uint32_t i = 0; !moves && now.size() == lamps_.size() && i < scene.lights.size; ++i) {
     moves = scene.lights[i].strength > kWeak * strongest &&
@@ -70,7 +70,7 @@ void FastHistory::look_up(const IrradianceCacheView& cache) {
   parallel_for("fast light", now_.height, [&](int64_t row) {
     const int y = static_cast<int>(row);
     for (int x = 0; x < now_.width; x += kLaneCount) {
-      const F near = near_about(now_, x, y);
+      const F near = mean_near(now_, x, y);
       for (int i = 0; i < kLaneCount && x + i < now_.width; ++i) {
         const int cell = find_cell(cache, now_.key[static_cast<size_t>(y) * now_.width + x + i]);
         now_.signal[kCachedSignal].set(
@@ -105,7 +105,7 @@ void FastHistory::add_picture(const SceneView& scene, const CpuTracer& tracer,
                               const CameraView32& camera, const RenderSettings& settings,
                               uint32_t pass, RenderWatch* watch) {
   SceneView plain = scene;  // rays of pixels go where they must
-  plain.guide.share = 0;
+  plain.guide.probability = 0;
   const Vec3f eye = camera.pose.X_WC_open.p;
   for (bool again = true; again && !watch->stopped();) {
     const bool first = cache_.size() == 0;

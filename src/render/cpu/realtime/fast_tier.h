@@ -7,7 +7,7 @@
 
 namespace gloam {
 
-/// What all rays of one picture share.
+/// Inputs that all rays of one picture share.
 struct FastView {
   const SceneView& scene;
   const CpuTracer& tracer;
@@ -21,7 +21,7 @@ struct AskedOfTile {
   std::vector<CacheRequest> seen, mirrored;
 };
 
-/// Where a lamp is, and the way it shines.
+/// Position and direction of a lamp.
 struct LampPlace {
   Vec3f p_W, direction;
 };
@@ -37,9 +37,9 @@ class FastHistory final : public ViewHistory {
   void add_picture(const SceneView& scene, const CpuTracer& tracer, const CameraView32& camera,
                    const RenderSettings& settings, uint32_t pass, RenderWatch* watch);
   void trace(const FastView& view, uint32_t pass);
-  /// From the pixel (x0, y0) on. Returns the number of rays.
+  /// Traces the tile from the pixel (x0, y0) on. Returns the number of rays.
   uint64_t trace_tile(const FastView& view, uint32_t pass, int x0, int y0, AskedOfTile* asked);
-  /// Whether lamps are not where they were in the last picture; keeps where they are.
+  /// Whether lamps have moved since the last picture; stores their places.
   bool find_moving_lamps(const SceneView& scene);
   void look_up(const IrradianceCacheView& cache);
   void compose();

@@ -149,7 +149,7 @@ void spread_air(int x0, int y0, FastFrame* frame) {
   });
 }
 
-/// What one block's pixels wait for.
+/// Reflections that one block's pixels wait for.
 struct PendingBlock {
   int x = 0, y = 0;
   ReflectionUseOf<F> use;
@@ -171,7 +171,7 @@ class ReflectedRays {
       if (count_ == kLaneCount) trace();
     });
   }
-  /// Those that are left; returns the number of rays, all over.
+  /// Traces the reflections that are left; returns the number of all rays.
   uint64_t finish() {
     if (count_ > 0) trace();
     return traced_;

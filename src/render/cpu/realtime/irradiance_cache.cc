@@ -20,14 +20,14 @@ constexpr float kStirred = 40;       // of a cell that sees moving things in all
 constexpr float kSettles = 0.75f;    // of what a cell saw move, from update to update
 constexpr uint32_t kForgotten = 30;  // updates after which a cell that nobody asks for goes
 constexpr float kSurprise = 3;       // standard errors,
-constexpr float kNoRegionChange = 0.02f;  // and this share, that a region's light may be off
+constexpr float kNoRegionChange = 0.02f;  // and this fraction, that a region's light may be off
 constexpr float kBrightest = 16;      // times what is usual: what a ray brings beyond that is the
                                       // region's, as few rays meet it
 constexpr float kBrightestInAir = 8;  // there, a filter passes over what cells have too much
-constexpr float kFades = 0.1f;        // share of all light that must have changed to change all
+constexpr float kFades = 0.1f;        // fraction of all light that must have changed to change all
 constexpr int kMostRounds = 3;        // of an update while light changes in many cells
 constexpr int kMeanRounds = 3;        // of the first update, the last ones
-constexpr double kSettled = 0.01;     // share that the last round changed of all light
+constexpr double kSettled = 0.01;     // fraction that the last round changed of all light
 constexpr size_t kFurtherCells = 2, kFurtherRoom = 4000;  // cells, for each that pixels ask for,
                                                           // and so many more
 constexpr float kRayConeSpread = 0.15f;  // of the rays' cones: no fine texture is sought
@@ -72,16 +72,17 @@ void IrradianceCache::ask(const std::vector<CacheRequest>& requests, size_t most
     const uint32_t row = rows_[slot];
     Cell& cell = cells_[row];
     cell.last_asked = update_;
-    // Of many places that ask, some by chance: rays start all over the cell.
+    // Reservoir of starts: some of many places that ask, by chance, so that rays start all over the
+    // cell.
     const auto count = static_cast<uint32_t>(cell.starts++);
-    const uint32_t place = count < kStarts ? count : dice() % (count + 1);
+    const uint32_t place = count < kStarts ? count : next_random() % (count + 1);
     if (place < kStarts) starts_[row * kStarts + place] = request;
   }
 }
 
-uint32_t IrradianceCache::dice() {
-  dice_ = dice_ * 6364136223846793005ull + 1442695040888963407ull;
-  return static_cast<uint32_t>(dice_ >> 33);
+uint32_t IrradianceCache::next_random() {
+  random_state_ = random_state_ * 6364136223846793005ull + 1442695040888963407ull;
+  return static_cast<uint32_t>(random_state_ >> 33);
 }
 
 float IrradianceCache::luminance_beside(uint64_t key) const {
@@ -146,12 +147,12 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
   using F = FloatLanes;
   const uint32_t row = asked_[k];
   const Cell& cell = cells_[row];
-  // The best guess at what is not known around a dark place.
+  // Light of the cell itself: the best guess for cells around it that are not known.
   if (cell.samples > 0) cache.mean = light_[row].all;
   const float edge = caches::edge_of(cell.key);
   const bool in_air = caches::is_air(cell.key);
-  // At least as bright as what is beside it: a cell that has met too little would cut off what it
-  // lacks, for good.
+  // Luminance at least as bright as the cells beside: a cell that has met too little would cut off
+  // what it lacks, for good.
   const float beside = luminance_beside(cell.key);
   const float own = cell.samples == 0 ? beside : luminance(light_[row].all);
   const float usual = max(own, beside);
@@ -226,7 +227,7 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
       out.light.all += one;
       if (near) out.light.near += one;
       out.light.near += lamps * kept;
-      out.light.share += near ? w : 0.0f;
+      out.light.near_fraction += near ? w : 0.0f;
       if (lane(light.way, i) < 1e30f && scene.instances[lane(light.first, i)].has_moved)
         out.stir += w * per_ray;
       out.variance += sqr(luminance(one));
@@ -235,7 +236,7 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
     if (first == 0) std::copy_n(met, kFurther, &further_[k * kFurther]);
   }
   CellLight& light = out.light;
-  light = {light.all * per_ray, light.near * per_ray, light.share * per_ray};
+  light = {light.all * per_ray, light.near * per_ray, light.near_fraction * per_ray};
   out.excess = out.excess * per_ray;
   out.variance = max(out.variance * per_ray - sqr(luminance(light.all)), 0.0f) * per_ray;
 }
@@ -248,15 +249,16 @@ IrradianceCache::LightChange IrradianceCache::change_of(
     const float past = luminance(light_[asked_[k]].all);
     sum.light += past;
     sum.change += luminance(traced_[k].light.all) - past;
-    // By the spread of these few rays alone, cells that met few of the bright ones would count as
-    // changed.
+    // Variance of these few rays, or of earlier ones if that is greater: cells that met few of the
+    // bright ones would count as changed.
     sum.variance += max(traced_[k].variance, cells_[asked_[k]].variance);
   }
   return sum;
 }
 
 void IrradianceCache::find_changes() {
-  // A cell's few rays say little; those of a region together tell a change of the light from noise.
+  // Few rays of one cell say little; those of a region together tell a change of the light from
+  // noise.
   const auto key_of = [&](size_t k) { return cells_[asked_[k]].key; };
   groups_.each(traced_.size(), caches::kRegion, key_of, [&](auto group) {
     const LightChange sum = change_of(group);
@@ -264,7 +266,7 @@ void IrradianceCache::find_changes() {
         fabsf(sum.change) > kSurprise * sqrtf(sum.variance) + kNoRegionChange * sum.light;
     for (const auto& [key, k] : group) traced_[k].changed = changed && !traced_[k].is_new;
   });
-  // What fades everywhere is seen here long before it is seen in each region.
+  // Light that fades everywhere shows here long before it shows in each region.
   groups_.each(traced_.size(), 0, key_of, [&](auto group) {
     const LightChange sum = change_of(group);
     if (fabsf(sum.change) > kSurprise * sqrtf(sum.variance) + kFades * sum.light) {
@@ -285,7 +287,7 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
                      });
   parallel_for_range("irradiance cache", static_cast<int64_t>(asked_.size()), 4,
                      [&](int64_t begin, int64_t end) {
-                       for (int64_t k = begin; k < end && watch->goes_on(); ++k)
+                       for (int64_t k = begin; k < end && watch->may_continue(); ++k)
                          trace_cell(scene, tracer, cache, seed, remembers ? kRays : kFirstRays,
                                     static_cast<size_t>(k));
                      });
@@ -302,7 +304,7 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
     const Traced& traced = traced_[k];
     Cell& cell = cells_[asked_[k]];
     CellLight& light = light_[asked_[k]];
-    // As long as little of the light has come round, what there was before is no part of the mean.
+    // Light from before is no part of the mean as long as little of the light has come round.
     if (!remembers || traced.changed) cell.samples = std::min(cell.samples, kRays / 8);
     if (!remembers) cell.samples = 0;
     if (traced.changed) excess_.forget(cell.key);
@@ -310,14 +312,14 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
     cell.stir = max(traced.stir, kSettles * cell.stir);
     const auto memory = static_cast<int>(kMemory / (1 + kStirred * cell.stir));
     cell.samples = std::min(cell.samples, std::max(memory - kRays, 0));
-    const float share = static_cast<float>(kRays) / static_cast<float>(cell.samples + kRays);
-    light = light.is_known() ? lerp(light, traced.light, share) : traced.light;
-    cell.variance = lerp(cell.variance, traced.variance, share);
+    const float weight = static_cast<float>(kRays) / static_cast<float>(cell.samples + kRays);
+    light = light.is_known() ? lerp(light, traced.light, weight) : traced.light;
+    cell.variance = lerp(cell.variance, traced.variance, weight);
     cell.samples = std::min(cell.samples + kRays, kMemory);
     cell.last_traced = update_;
     rays += traced.rays;
   }
-  // In the geometric mean, as few cells out of doors are as bright as all in a room.
+  // Geometric mean, as few cells out of doors are as bright as all in a room together.
   Vec3f sum;
   float logs = 0, known = 0;
   for (const CellLight& light : light_) {
@@ -350,12 +352,12 @@ double IrradianceCache::extrapolate(int round, bool remembers) {
   const double quotient = change / std::exchange(last_change_, change);
   const double last_quotient = std::exchange(last_quotient_, quotient);
   terms_ = round == 0 ? 1 : terms_ + 1;
-  const double share = light > 0 ? std::abs(change) / light : 1;
+  const double relative_change = light > 0 ? std::abs(change) / light : 1;
   // Two quotients that agree tell it from noise. While a picture waits there is time for one.
   const double ratio = remembers ? quotient : std::min(quotient, last_quotient);
   const auto dies = [](double r) { return r > 0 && r < kMostRatio; };
-  if (terms_ < (remembers ? 3 : 4) || share <= kWorthIt) return share;
-  if (!dies(quotient) || !(remembers || dies(last_quotient))) return share;
+  if (terms_ < (remembers ? 3 : 4) || relative_change <= kWorthIt) return relative_change;
+  if (!dies(quotient) || !(remembers || dies(last_quotient))) return relative_change;
   const auto factor = static_cast<float>(std::max(0.0, 1 + change * ratio / ((1 - ratio) * light)));
   for (size_t k = 0; k < asked_.size(); ++k) {
     if (!counts(k)) continue;
@@ -364,7 +366,7 @@ double IrradianceCache::extrapolate(int round, bool remembers) {
     cell.near = cell.near * factor;
   }
   terms_ = 0;
-  return share;
+  return relative_change;
 }
 
 uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer, Vec3f eye,
@@ -373,8 +375,9 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
   uint64_t rays = 0;
   bool remembers = !settles;
   int rounds = settles ? kFirstRounds : 1;
-  double last_share = 1;
-  // Where each ray meets a leaf of its own, what lies further on is known by larger cells' light.
+  double last_change = 1;
+  // Cells are limited: where each ray meets a leaf of its own, larger cells' light stands for what
+  // lies further on.
   const size_t most =
       kFurtherRoom + kFurtherCells * static_cast<size_t>(std::count_if(
                                          cells_.begin(), cells_.end(),
@@ -385,8 +388,8 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
     for (uint32_t row = 0; row < cells_.size(); ++row) {
       if (cells_[row].starts > 0) asked_.push_back(row);
     }
-    // Those that have waited longest, above all where things move, new ones before all; of these in
-    // the order of their making.
+    // Cells that have waited longest, above all where things move, and new ones before all; among
+    // equals in the order of their making.
     const auto waits = [this](uint32_t row) {
       const Cell& cell = cells_[row];
       if (cell.samples == 0) return 1e9f;
@@ -402,10 +405,10 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
                                        [](const Traced& traced) { return traced.changed; });
     const bool many = !settles && 8 * changed > static_cast<int64_t>(asked_.size());
     if (remembers && !many) continue;
-    const double share = extrapolate(i, remembers);
+    const double relative_change = extrapolate(i, remembers);
     if (many && rounds < kMostRounds) ++rounds;
-    const bool rests = share < kSettled && last_share < kSettled;
-    last_share = share;
+    const bool rests = relative_change < kSettled && last_change < kSettled;
+    last_change = relative_change;
     if (settles && ((i > 1 && rests) || i + 1 + kMeanRounds == kFirstRounds)) {
       remembers = true;
       rounds = i + 1 + kMeanRounds;

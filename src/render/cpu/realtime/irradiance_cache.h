@@ -35,32 +35,33 @@ class IrradianceCache {
     uint32_t rounds = 0;                       ///< of rays, since it was made
     int starts = 0;                            ///< places that asked since the last update
     float variance = 0;                        ///< of the luminance of a round's mean
-    float stir = 0;                            ///< share of directions in which things moved lately
-    int samples = 0;                           ///< rays that `light` is the mean of
+    float stir = 0;   ///< fraction of directions in which things moved lately
+    int samples = 0;  ///< rays that `light` is the mean of
   };
-  /// What a cell's rays of one round brought.
+  /// Light that a cell's rays of one round brought.
   struct Traced {
     CellLight light;
     Vec3f excess;                    ///< of rays that bring more than is likely: what is above that
     float variance = 0, before = 0;  ///< of its luminance; luminance before the round
     float usual = 0;                 ///< luminance that rays are judged by
-    float stir = 0;                  ///< share of the rays that met what has moved
+    float stir = 0;                  ///< fraction of the rays that met what has moved
     bool is_new = false, changed = false;  ///< it had no light yet; it is not what it was
     uint64_t rays = 0;
   };
-  /// Of several cells: what they had, how much more the last rays brought, variance of that.
+  /// Change of several cells: their luminance before, how much more the last rays brought, and the
+  /// variance of that.
   struct LightChange {
     float light = 0, change = 0, variance = 0;
   };
   static constexpr int kStarts = 8, kFurther = 8;
 
-  /// The same sequence each time.
-  uint32_t dice();
+  /// Next random number, of the same sequence each time.
+  uint32_t next_random();
   uint32_t slot_of(uint64_t key) const;
   void rebuild(size_t slots);
-  /// Of the cells beside that of a key, or of all if there are none.
+  /// Mean luminance of the cells beside that of a key, or of all cells if there are none.
   float luminance_beside(uint64_t key) const;
-  /// Of new cells of air; places that are hidden from there start no rays.
+  /// Home of a new cell of air; places that are hidden from there start no rays.
   void find_home(const CpuTracer& tracer, uint32_t row);
   /// Cell k of asked_ into traced_.
   void trace_cell(const SceneView& scene, const CpuTracer& tracer, IrradianceCacheView cache,
@@ -69,7 +70,8 @@ class IrradianceCache {
   void find_changes();
   uint64_t trace(const SceneView& scene, const CpuTracer& tracer, const IrradianceCacheView& cache,
                  uint64_t seed, bool remembers, RenderWatch* watch);
-  /// After each round: to where the light would come in many more. The share that it has changed.
+  /// Extrapolates, after each round, to the light after many more. Returns the fraction by which it
+  /// has changed.
   double extrapolate(int round, bool remembers);
   void forget();
 
@@ -91,7 +93,7 @@ class IrradianceCache {
   std::vector<ExcessRegions::OfCell> of_cells_;  ///< of traced_
   std::vector<Vec3f> spread_;                    ///< what they get
   uint32_t update_ = 0;
-  uint64_t dice_ = 1;
+  uint64_t random_state_ = 1;
 };
 
 }  // namespace gloam

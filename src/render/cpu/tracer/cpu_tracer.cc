@@ -48,7 +48,7 @@ void fill(const RayOf<FloatLanes>& ray, const FloatLanes& tmax, Packet* q) {
   store(UintLanes(0u).v, q->flags);
 }
 
-/// Which rays of a packet Embree is to trace.
+/// Mask of the rays of a packet that Embree is to trace.
 struct Valid {
   alignas(64) int32_t lanes[kLaneCount];
   explicit Valid(MaskLanes m) { store(select(m, UintLanes(~0u), UintLanes(0u)).v, lanes); }

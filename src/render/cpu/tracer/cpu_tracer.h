@@ -1,6 +1,6 @@
 #pragma once
-// What the kernel traces with: a short list that is scanned, and Embree's
-// traversal of the rest; or our own BVH for all of it.
+// Tracer of the kernel on the CPU: a short list that is scanned, and Embree's traversal of the
+// rest; or our own BVH for all of it.
 
 #include <optional>
 
@@ -31,7 +31,7 @@ class CpuTracer {
   MaskLanes closest(const RayOf<FloatLanes>& ray, MaskLanes active, bool coherent,
                     RayHitOf<FloatLanes>* hit) const;
   MaskLanes occluded(const RayOf<FloatLanes>& ray, MaskLanes active) const;
-  /// Up to kPacket rays of one kind at once.
+  /// Traces up to kPacket rays of one kind at once.
   void trace_packet(const Ray* const* rays, int count, bool any, bool coherent, RayHit* hits,
                     bool* found) const;
 
@@ -41,9 +41,10 @@ class CpuTracer {
   DeviceSpan<const uint32_t> rows;  ///< Embree id -> instance, what moves first
   uint32_t first_still = 0;         ///< id of the first that never moves
   ScanList scanned;
-  /// Of our own BVH, which then answers for all that is above.
+  /// Tracer of our own BVH, which then answers for all of the above.
   std::optional<BvhTracer> own;
-  /// Of the camera whose picture is traced: its rays pass what it does not see. Null = none.
+  /// Clip of the camera whose picture is traced: its rays pass the surfaces that it does not see.
+  /// Null = none.
   const PictureClip* clip = nullptr;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// What embree_scene.h promises, with Embree.
+// Implementation of embree_scene.h with Embree.
 
 #include <embree3/rtcore.h>
 

@@ -12,8 +12,8 @@
 namespace gloam {
 namespace {
 
-/// So many solids that stand still are scanned: 40 take half the time that they
-/// take in a BVH, and the time grows with their number.
+/// Number of solids that stand still and are scanned, at most: 40 take half the time that they take
+/// in a BVH, and the time grows with their number.
 constexpr size_t kMaxScanned = 64;
 
 /// Copies of one mesh that stand still are triangles of the world, which rays pass fastest, until
@@ -25,7 +25,7 @@ void commit(const std::vector<RTCScene>& shapes) {
                [&](int64_t i) { rtcCommitScene(shapes[static_cast<size_t>(i)]); });
 }
 
-/// Over the whole time of the shutter.
+/// Bounds over the whole time of the shutter.
 Bounds bounds_of(RTCScene scene) {
   RTCLinearBounds b;
   rtcGetSceneLinearBounds(scene, &b);

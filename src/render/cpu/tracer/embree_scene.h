@@ -22,7 +22,8 @@ class EmbreeScene {
   /// and stay the same object.
   virtual Status update(const RenderScene& scene) = 0;
   virtual CpuTracer tracer(const RenderScene& scene) const = 0;
-  /// Of what never moves alone, without infinite planes; no scene = nothing.
+  /// Tracer of the bodies that never move, without infinite planes; without a scene it hits
+  /// nothing.
   virtual CpuTracer static_tracer(const RenderScene& scene) const = 0;
 };
 

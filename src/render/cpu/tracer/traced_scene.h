@@ -30,7 +30,7 @@ class TracedScene {
   CpuTracer tracer() const {
     return embree_ != nullptr ? embree_->tracer(*scene_) : by_own(own_.tracer(*scene_));
   }
-  /// Of what never moves alone, without infinite planes.
+  /// Tracer of the bodies that never move, without infinite planes.
   CpuTracer static_tracer() const {
     return embree_ != nullptr ? embree_->static_tracer(*scene_)
                               : by_own(own_.static_tracer(*scene_));

@@ -44,12 +44,12 @@ MaskLanes CpuTracer::closest_in_view(const RayOf<FloatLanes>& ray, MaskLanes act
                                      RayHitOf<FloatLanes>* hit) const {
   RayOf<FloatLanes> rest = ray;
   FloatLanes begun = 0.0f;  // [m] from the camera
-  const auto go_on = [&](int i, float way) {
+  const auto move_on = [&](int i, float way) {
     set_lane(&begun, i, lane(begun, i) + way);
     set_lane(&rest.o, i, lane(rest.o, i) + lane(ray.d, i) * way);
     set_lane(&rest.tmax, i, lane(rest.tmax, i) - way);
   };
-  each_lane(first, [&](int i) { go_on(i, clip->view.start(clip->camera, lane(ray, i))); });
+  each_lane(first, [&](int i) { move_on(i, clip->view.start(clip->camera, lane(ray, i))); });
   MaskLanes open = active & (rest.tmax > 0.0f), found = false;
   *hit = {};
   for (int n = 0; n < ViewClip::kMostPassed && any(open); ++n) {
@@ -62,7 +62,7 @@ MaskLanes CpuTracer::closest_in_view(const RayOf<FloatLanes>& ray, MaskLanes act
       set_lane(&found, i, true);
     });
     each_lane(passed,
-              [&](int i) { go_on(i, ViewClip::step_past(lane(rest.o, i), lane(one.t, i))); });
+              [&](int i) { move_on(i, ViewClip::step_past(lane(rest.o, i), lane(one.t, i))); });
     open = passed & (rest.tmax > 0.0f);
   }
   return found;

@@ -1,4 +1,4 @@
-// What the card makes is what the CPU makes: exact channels to 1e-5, radiance by a Z-test, and the
+// Parity of the card with the CPU: exact channels to 1e-5, radiance by a Z-test, and the
 // same bits from run to run.
 
 #include <fmt/format.h>

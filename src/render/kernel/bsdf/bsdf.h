@@ -14,7 +14,7 @@ namespace gloam {
 
 template <class F>
 struct BsdfOf {
-  Vec3Of<F> diffuse;  ///< albedo of the base after the layer took its share
+  Vec3Of<F> diffuse;  ///< albedo of the base under the layer
   Vec3Of<F> f0;       ///< of the layer at normal incidence, energy compensation included
   Vec3Of<F> f90;      ///< of the layer at grazing incidence, energy compensation included
   Vec2Of<F> alpha;    ///< GGX widths along x and y
@@ -79,7 +79,7 @@ GLOAM_HD Vec2Of<F> ggx_widths(F roughness, F anisotropy) {
   return {max(along, 1e-3f), max(along * across, 1e-3f)};
 }
 
-/// `opaque`: share of what is no metal that is no glass. `wo`: viewing direction, z > 0.
+/// `opaque`: fraction of the non-metal that is no glass. `wo`: viewing direction, z > 0.
 template <class F>
 GLOAM_HD BsdfOf<F> make_bsdf(const AlbedoTable& table, Vec3Of<F> metal_color,
                              Vec3Of<F> diffuse_color, F metallic, F opaque, F roughness,
@@ -104,9 +104,9 @@ GLOAM_HD BsdfOf<F> make_bsdf(const AlbedoTable& table, Vec3Of<F> metal_color,
   bsdf.f90 = gain_m * metallic + white * (dielectric_f90 * gain_d * dielectric);
   const F layer = luminance(bsdf.f0 * a + bsdf.f90 * b), base = luminance(bsdf.diffuse);
   // Both parts keep a fair chance, as their lobes differ; a mere rounding error gets none.
-  const F share = select(layer > 0.0f, layer / (layer + base), F(0.0f));
-  bsdf.p_layer =
-      select(share < 1e-5f, F(0.0f), select(share > 0.99999f, F(1.0f), clamp(share, 0.1f, 0.9f)));
+  const F probability = select(layer > 0.0f, layer / (layer + base), F(0.0f));
+  bsdf.p_layer = select(probability < 1e-5f, F(0.0f),
+                        select(probability > 0.99999f, F(1.0f), clamp(probability, 0.1f, 0.9f)));
   return bsdf;
 }
 
@@ -123,8 +123,8 @@ GLOAM_HD Vec3Of<F> eval_bsdf(const BsdfOf<F>& bsdf, Vec3Of<F> wo, Vec3Of<F> wi, 
     const F f = ggx::schlick(dot(wo, h));
     const Vec3Of<F> layer = lerp(bsdf.f0, bsdf.f90, f) * (d * g * wi.z);
     value = select<F>(layered, value + layer, value);
-    const F share = bsdf.p_layer * d / (2.0f * (wo.z + bsdf.root_o));  // G1 D / (4 cos_o)
-    *pdf += select(layered, share, F(0.0f));
+    const F layer_pdf = bsdf.p_layer * d / (2.0f * (wo.z + bsdf.root_o));  // G1 D / (4 cos_o)
+    *pdf += select(layered, layer_pdf, F(0.0f));
   }
   const MaskOf<F> above = (wi.z > 0.0f) & (wo.z > 0.0f);
   *pdf = select(above, *pdf, F(0.0f));

@@ -13,7 +13,7 @@ struct LayeredBsdfOf {
   BsdfOf<F> base;
   MaskOf<F> layered = false;  ///< all that follows counts for these lanes alone
   F p_base = F(1.0f), p_coat{}, p_fuzz{}, p_glass{}, p_beyond{};  ///< of sampling each; sum = 1
-  Vec3Of<F> under;                                     ///< share of light that passes fuzz and coat
+  Vec3Of<F> under;  ///< fraction of light that passes fuzz and coat
   F coat_alpha{}, coat_root{}, coat_f0{}, coat_f90{};  ///< as in BsdfOf, coat weight included
   Vec3Of<F> fuzz;                                      ///< colour times weight
   F fuzz_alpha{};
@@ -58,16 +58,17 @@ GLOAM_HD Vec3Of<F> eval_glass(const LayeredBsdfOf<F>& b, Vec3Of<F> wo, Vec3Of<F>
   const F d = ggx::distribution(b.glass_alpha, h);
   const F g = ggx::visibility(wo.z, b.glass_root, away, ggx::smith_root(b.glass_alpha, wi));
   const F visible = d / (2.0f * (wo.z + b.glass_root));  // density of h over 4 cos_o
-  // Of wi about h: refraction spreads half vectors otherwise than a mirror does.
+  // Density of wi for that of the half vector h: refraction spreads half vectors otherwise than a
+  // mirror does.
   const F denominator = sqr(cos_i + cos_o / b.eta);
   const F spread =
       select(bent, 4.0f * cos_o * magnitude(cos_i) / max(denominator, 1e-12f), F(1.0f));
-  const F share = select(through, select(b.straight, F(0.0f), 1.0f - reflects), reflects);
+  const F fraction = select(through, select(b.straight, F(0.0f), 1.0f - reflects), reflects);
   const F chance = reflection_chance(b, reflects);
   const MaskOf<F> possible = (length2 > 1e-12f) & (cos_o > 0.0f) & (away > 0.0f) &
                              select(bent, cos_i < 0.0f, cos_i > 0.0f);
   *pdf = select(possible, visible * spread * select(through, 1.0f - chance, chance), F(0.0f));
-  const F value = d * g * away * spread * share * select(bent, 1.0f / sqr(b.eta), F(1.0f));
+  const F value = d * g * away * spread * fraction * select(bent, 1.0f / sqr(b.eta), F(1.0f));
   const Vec3Of<F> color = select<F>(through, b.tint, in_all_lanes<F>({1, 1, 1}));
   return color * select(possible, value, F(0.0f));
 }
@@ -138,18 +139,18 @@ GLOAM_HD Vec3Of<F> eval_bsdf(const LayeredBsdfOf<F>& b, Vec3Of<F> wo, Vec3Of<F> 
   return value;
 }
 
-/// As of BsdfOf; what is given lies on the near side.
+/// Sample as BsdfOf's; the given direction lies on the near side.
 template <class F>
 GLOAM_HD BsdfSampleOf<F> sample_bsdf(const LayeredBsdfOf<F>& b, Vec3Of<F> wo, F pick, Vec2Of<F> u,
                                      MaskOf<F> given = false, Vec3Of<F> wi_given = {}) {
   if (kPlainScenes || !any(b.layered)) return sample_bsdf(b.base, wo, pick, u, given, wi_given);
-  // Each part takes its share of `pick`, and stretches it to [0, 1).
+  // Each part takes an interval of `pick` as long as its probability, stretched to [0, 1).
   MaskOf<F> open = true;
   F own = pick, left = pick;
-  const auto take = [&](F share) {
-    const MaskOf<F> mine = open & (left < share);
-    own = select(mine, clamp(left / share, 0.0f, 0.9999999f), own);
-    left -= share;
+  const auto take = [&](F probability) {
+    const MaskOf<F> mine = open & (left < probability);
+    own = select(mine, clamp(left / probability, 0.0f, 0.9999999f), own);
+    left -= probability;
     open = open & !mine;
     return mine;
   };
@@ -201,7 +202,7 @@ GLOAM_HD float glass_albedo(const GlassTable& table, float roughness, float cosi
   return max(lerp(plane(cell), plane(cell + n * n), fz), 1e-3f);
 }
 
-/// What a material's layers lie on, textures included.
+/// Base that a material's layers lie on, textures included.
 struct SurfaceParameters {
   Vec3f base_color;
   float metallic = 0, roughness = 0, f0 = 0, f90 = 0;
@@ -257,19 +258,19 @@ GLOAM_HD LayeredBsdf make_layered(const SceneView& scene, const MaterialLayers& 
     const float single = max(a + f, 1e-3f);
     const float gain = 1.0f + s.coat_f0 * (1.0f - single) / single;
     coat_albedo = (s.coat_f0 * a + f) * gain;
-    const float share = coat * gain * under_fuzz.x;  // fuzz dims all channels alike
-    b.coat_f0 = share * s.coat_f0;
-    b.coat_f90 = share;
+    const float weight_f90 = coat * gain * under_fuzz.x;  // fuzz dims all channels alike
+    b.coat_f0 = weight_f90 * s.coat_f0;
+    b.coat_f90 = weight_f90;
     b.under = b.under * lerp(Vec3f{1, 1, 1}, m.coat_color, coat) * (1.0f - coat * coat_albedo);
   }
   const float roughness = roughness_under_coat(s.roughness, s.coat_roughness, coat);
   const float through = s.transmission * (1.0f - s.metallic);
   b.base = make_bsdf(table, s.base_color, Vec3f{1, 1, 1}, s.metallic, 1.0f - s.transmission,
                      roughness, s.f0, s.f90, m.anisotropy, wo);
-  const float base_share = b.base.diffuse.x;  // of light that gets below the base's own layer
+  const float base_fraction = b.base.diffuse.x;  // of light that gets below the base's own layer
   const Vec3f inside = m.subsurface_color * (m.thin ? 0.5f : 1.0f);
-  b.base.diffuse = lerp(s.base_color, inside, m.subsurface) * base_share;
-  if (m.thin) b.beyond = inside * (m.subsurface * base_share);
+  b.base.diffuse = lerp(s.base_color, inside, m.subsurface) * base_fraction;
+  if (m.thin) b.beyond = inside * (m.subsurface * base_fraction);
   if (coat * s.coat_darkening > 0) {
     // Glass is not dimmed: what the coat throws back goes through.
     const Vec3f white{1, 1, 1};
@@ -301,7 +302,7 @@ GLOAM_HD LayeredBsdf make_layered(const SceneView& scene, const MaterialLayers& 
                            through * luminance(b.under), luminance(b.beyond * b.under)};
   float total = 0;
   for (const float w : weight) total += w;
-  // What reflects no light at all still has one part to sample.
+  // Surfaces that reflect no light still have one part to sample.
   const float scale = total > 0 ? 1.0f / total : 0.0f;
   b.p_coat = weight[1] * scale;
   b.p_fuzz = weight[2] * scale;

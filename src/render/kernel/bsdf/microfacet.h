@@ -70,7 +70,7 @@ template <class F>
 GLOAM_HD F visibility(F cos_o, F root_o, F cos_i, F root_i) {
   return 0.5f / (cos_i * root_o + cos_o * root_i);
 }
-/// G2 / G1: of what leaves a visible microfacet, the share that is not caught by others.
+/// G2 / G1: fraction of the light leaving a visible microfacet that others do not catch.
 template <class F>
 GLOAM_HD F escaping(F cos_o, F root_o, F cos_i, F root_i) {
   return cos_i * (cos_o + root_o) / (cos_i * root_o + cos_o * root_i);

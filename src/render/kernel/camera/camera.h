@@ -24,7 +24,7 @@ GLOAM_HD bool stands_still(const CameraPose& pose) {
   return pose.keys.empty() && a.x == b.x && a.y == b.y && a.z == b.z && a.p == b.p;
 }
 
-/// When the rows of a picture are exposed, in times of the scene's keys, 0 … 1.
+/// Exposure times of the rows of a picture, in times of the scene's keys, 0 … 1.
 struct Shutter {
   float open = 0;    ///< of the first row
   float length = 1;  ///< of every row's exposure
@@ -50,7 +50,7 @@ struct CameraView32 {
   }
   GLOAM_HD bool is_pinhole() const { return kPlainScenes || lens.model == LensModel::kPinhole; }
   GLOAM_HD bool has_aperture() const { return !kPlainScenes && aperture.radius > 0; }
-  /// The time of row `y` when a share `u` of its exposure has passed.
+  /// The time of row `y` when a fraction `u` of its exposure has passed.
   GLOAM_HD float time_of(int y, float u) const {
     return min(shutter.open + shutter.row * static_cast<float>(y) + shutter.length * u, 1.0f);
   }
@@ -69,18 +69,18 @@ GLOAM_HD Affine3f pose_of(const float* q, Vec3f p) {
 /// made unit, so that the camera stays rigid.
 GLOAM_HD Affine3f camera_pose_at(const CameraPose& pose, float time) {
   if (kPlainScenes || pose.keys.empty() || time == 0) return pose.X_WC_open;
-  float share;
-  const uint32_t key = key_before(pose.keys.size, time, &share);
+  float fraction;
+  const uint32_t key = key_before(pose.keys.size, time, &fraction);
   const CameraKey &a = pose.keys[key], &b = pose.keys[key + 1];
   float inner = 0, square = 0, q[4];
   for (int i = 0; i < 4; ++i) inner += a.q[i] * b.q[i];
   for (int i = 0; i < 4; ++i) {
-    q[i] = lerp(a.q[i], inner < 0 ? -b.q[i] : b.q[i], share);
+    q[i] = lerp(a.q[i], inner < 0 ? -b.q[i] : b.q[i], fraction);
     square += q[i] * q[i];
   }
   const float scale = 1.0f / sqrtf(square);
   for (float& value : q) value *= scale;
-  return pose_of(q, lerp(a.p, b.p, share));
+  return pose_of(q, lerp(a.p, b.p, fraction));
 }
 
 /// Whether the ray of a pixel sees anything: some lenses leave parts of the picture black. Rays of
@@ -168,7 +168,8 @@ GLOAM_HD RayOf<F> camera_rays(const CameraView32& camera, F u, F v, F time, RayC
   return rays;
 }
 
-/// Where the points p_W of the `active` lanes appear [px]; returns the lanes that the camera sees.
+/// Projects the points p_W of the `active` lanes into the picture [px]; returns the lanes that the
+/// camera sees.
 template <class F>
 GLOAM_HD MaskOf<F> project_points(const CameraView32& camera, const Affine3f& X_WC, Vec3Of<F> p_W,
                                   MaskOf<F> active, Vec2Of<F>* uv) {
@@ -190,7 +191,7 @@ GLOAM_HD MaskOf<F> project_points(const CameraView32& camera, const Affine3f& X_
   return seen;
 }
 
-/// Where the point p_W appears [px]; false where the camera does not see it.
+/// Projects the point p_W into the picture [px]; false where the camera does not see it.
 GLOAM_HD bool project(const CameraView32& camera, const Affine3f& X_WC, Vec3f p_W, Vec2f* uv) {
   return project_points<float>(camera, X_WC, p_W, true, uv);
 }

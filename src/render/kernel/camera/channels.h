@@ -22,8 +22,9 @@ GLOAM_HD ExactChannels lane(const ExactChannelsOf<F>& c, int i) {
           lane(c.albedo, i), lane(c.motion, i),   lane(c.scene_flow, i)};
 }
 
-/// Whether the exact channels stop at a surface: what is evenly transparent is a thing, as MuJoCo
-/// draws it; holes in an opacity texture are not, nor what colour pictures alone show.
+/// Whether the exact channels stop at a surface: evenly transparent surfaces count as things, as
+/// MuJoCo renders them; holes in an opacity texture do not, nor surfaces that colour pictures alone
+/// show.
 GLOAM_HD bool shows(const SceneView& scene, const Surface& s) {
   if (scene.instances[s.instance].color_only) return false;
   return s.opacity >= 0.5f || scene.materials[scene.instances[s.instance].material].opacity < 1.0f;
@@ -48,7 +49,7 @@ GLOAM_HD bool find_first(const SceneView& scene, const Tracer& tracer, Ray ray, 
   return false;
 }
 
-/// Where the point p of a surface that is seen at `time` was at the previous frame.
+/// Position at the previous frame of the point p of a surface that is seen at `time`.
 GLOAM_HD Vec3f previous_point(const SceneView& scene, Vec3f p, const RayHit& hit, float time) {
   const InstanceView& instance = scene.instances[hit.instance];
   if (instance.shape == ShapeType::kDeformable) {

@@ -1,6 +1,6 @@
 #pragma once
-// What a camera does not see of what its own rays meet: nearer than its near plane, of bodies that
-// it hides, back faces. Light that has left a surface meets all of it. Device-safe.
+// Surfaces that a camera's own rays pass: nearer than its near plane, of bodies that it hides, back
+// faces. Rays that have left a surface meet all of them. Device-safe.
 
 #include "render/kernel/camera/camera.h"
 #include "render/kernel/surface/surface.h"
@@ -16,7 +16,7 @@ struct ViewClip {
 
   GLOAM_HD bool is_idle() const { return !(near > 0) && !culls_backs && hidden.empty(); }
 
-  /// Where a ray of the camera begins to see [m].
+  /// Distance at which a ray of the camera begins to see [m].
   GLOAM_HD float start(const CameraView32& camera, const Ray& ray) const {
     if (!(near > 0) || is_wide(camera.lens.model)) return near;
     const Affine3f X_WC = camera_pose_at(camera.pose, ray.time);

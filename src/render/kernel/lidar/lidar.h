@@ -1,10 +1,10 @@
 #pragma once
-// What comes back of a LiDAR's pulse from the surfaces that it meets. Signals are relative to what
-// a white Lambertian plate across the beam, 1 m away, sends back: of a surface at range R that is
+// Signal of a LiDAR's pulse from the surfaces that it meets, relative to that of a white Lambertian
+// plate across the beam, 1 m away: of a surface at range R it is
 //   G T² O(R) / R²,  G = pi f(w, w) cos
 // with the BSDF f back along the beam, the two-way transmittance T² of what lies before it and the
-// overlap O of beam and receiver (kernel/lidar_particles.h; the LiDAR equation, e.g. Wehr and Lohr
-// 1999, "Airborne laser scanning - an introduction and overview"). Device-safe.
+// overlap O of beam and receiver (kernel/lidar/lidar_particles.h; the LiDAR equation, e.g. Wehr and
+// Lohr 1999, "Airborne laser scanning - an introduction and overview"). Device-safe.
 
 #include "render/kernel/lidar/lidar_detect.h"
 #include "render/kernel/lidar/lidar_media.h"
@@ -29,7 +29,7 @@ namespace lidar {
 
 /// Surfaces that one ray may meet.
 inline constexpr int kMostSurfaces = 8;
-/// Two-way share of the pulse below which it is not followed.
+/// Two-way fraction of the pulse below which it is not followed.
 inline constexpr float kFaint = 1e-4f;
 
 /// Half the mean divergence [rad], as a GGX width. The spot that a flat mirror throws back at the
@@ -70,8 +70,8 @@ GLOAM_HD F reflectivity(const SceneView& scene, const LidarOptics& optics, Vec3O
   return (eval_bsdf(*bsdf, w, w, &pdf).x + retro * w.z) * kPi * s->opacity;
 }
 
-/// What the light's colours say of the inside of glass gives way to what is known at the sensor's
-/// wavelength, in the lanes that have crossed the surfaces `s`.
+/// Absorption of glass at the sensor's wavelength, where it is known, instead of that of the
+/// visible bands, in the lanes that have crossed the surfaces `s`.
 template <class F>
 GLOAM_HD Vec3Of<F> own_absorption(const LidarOptics& optics, const SurfaceOf<F>& s,
                                   MaskOf<F> crossing, Vec3Of<F> beyond) {
@@ -83,7 +83,7 @@ GLOAM_HD Vec3Of<F> own_absorption(const LidarOptics& optics, const SurfaceOf<F>&
   return beyond;
 }
 
-/// What pass_glass() reads of a BSDF.
+/// Parts of a BSDF that pass_glass() reads, in lane i.
 template <class F>
 GLOAM_HD LayeredBsdf glass_of(const LayeredBsdfOf<F>& b, int i) {
   LayeredBsdf one;
@@ -95,8 +95,8 @@ GLOAM_HD LayeredBsdf glass_of(const LayeredBsdfOf<F>& b, int i) {
   return one;
 }
 
-/// One-way share of a pulse that a surface of glass passes on in the direction *d, which it bends.
-/// Rough glass scatters the rest out of the beam. `roughness`: without blur.
+/// One-way fraction of a pulse that a surface of glass passes on in the direction *d, which it
+/// bends. Rough glass scatters the rest out of the beam. `roughness`: without blur.
 GLOAM_HD float pass_glass(const LayeredBsdf& b, const Frame& frame, float roughness, float blur,
                           Vec3f* d) {
   Vec3f wo = frame.to_local(-*d);
@@ -125,13 +125,13 @@ GLOAM_HD void trace_echoes(const SceneView& scene, const Tracer& tracer, const L
   const float blur = lidar::blur_of(optics);
   const bool has_media = !scene.media.volumes.empty();
   F way = F(optics.min_range);  // to the ray's origin [m]
-  F share = F(1.0f);            // of the pulse that arrives there
+  F fraction = F(1.0f);         // of the pulse that arrives there
   F index = F(1.0f);            // of refraction
   Vec3Of<F> absorption;
   const auto dim = [&](F length, F from, Backscatter* back) {
     each_lane(active, [&](int i) {
-      const float before = lane(share, i);
-      set_lane(&share, i,
+      const float before = lane(fraction, i);
+      set_lane(&fraction, i,
                before * cross_media(scene.media, optics, lane(ray, i), lane(length, i),
                                     lane(from, i), before, back == nullptr ? nullptr : &back[i]));
     });
@@ -146,7 +146,7 @@ GLOAM_HD void trace_echoes(const SceneView& scene, const Tracer& tracer, const L
     if (has_media) dim(select(found, hit.t, ray.tmax), way, soft);
     active = found;
     if (!any(active)) return;
-    if (n > 0) share *= paths::through_glass(absorption, hit.t).x;
+    if (n > 0) fraction *= paths::through_glass(absorption, hit.t).x;
 
     SurfaceOf<F> s = make_surface(scene, ray, hit, cone, active);
     const F roughness = s.roughness;
@@ -160,7 +160,7 @@ GLOAM_HD void trace_echoes(const SceneView& scene, const Tracer& tracer, const L
         if (optics.hidden[lane(s.instance, i)] != 0) set_lane(&unseen, i, true);
       });
     }
-    const F signal = select(unseen, F(0.0f), g * share * share * pulse / (way * way));
+    const F signal = select(unseen, F(0.0f), g * fraction * fraction * pulse / (way * way));
     each_lane(active & (signal > 0.0f), [&](int i) {
       const float range = lane(way, i), seen = lane(signal, i) * lidar::overlap(optics, range);
       if (seen > 0) echoes[i].add({range, seen, lane(s.instance, i) + 1});
@@ -181,8 +181,8 @@ GLOAM_HD void trace_echoes(const SceneView& scene, const Tracer& tracer, const L
         set_lane(&index, i, max(lane(index, i) * lane(bsdf.eta, i), 1.0f));
       }
     });
-    share *= passed;
-    active = active & (share * share > lidar::kFaint);
+    fraction *= passed;
+    active = active & (fraction * fraction > lidar::kFaint);
     if (!any(active)) return;
     const MaskOf<F> crossing = active & !unseen & (dot(d, s.geometric) < 0.0f);
     absorption = paths::absorption_beyond(scene, s, crossing, absorption);

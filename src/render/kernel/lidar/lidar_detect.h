@@ -7,7 +7,7 @@
 
 namespace gloam {
 
-/// Which of its returns a sensor reports.
+/// Returns that a sensor reports.
 enum class LidarReturns : uint8_t {
   kFirst,
   kStrongest,
@@ -19,7 +19,7 @@ enum class LidarReturns : uint8_t {
 inline constexpr int kMostLidarReturns = 5;
 inline constexpr int kMostFootprintRays = 32;
 
-/// What a surface is at a LiDAR's wavelength.
+/// Optical properties of a surface at a LiDAR's wavelength.
 struct LidarSurface {
   float diffuse = 1;      ///< factor on its red
   float retro = 0;        ///< coefficient of retroreflection [1/sr]
@@ -32,7 +32,7 @@ struct LidarParticle {
   float backscatter = 0;  ///< differential cross-section straight back [m²/sr]
 };
 
-/// How the particles in one cell of range (lidar::kCell) come back.
+/// Echo of the particles in one cell of range (lidar::kCell).
 struct LidarCell {
   float mean = 0;      ///< number of those in the beam that are seen one by one
   uint32_t first = 0;  ///< their first class
@@ -46,7 +46,7 @@ struct LidarParticles {
   float density = 1;                        ///< at which their numbers count [kg/m³]
 };
 
-/// Of a LiDAR. Signals: see kernel/lidar.h.
+/// Optics and receiver of a LiDAR. Signals: see kernel/lidar/lidar.h.
 struct LidarOptics {
   MediumBand band = MediumBand::k905nm;
   float min_range = 0.1f, max_range = 100;  ///< [m]
@@ -61,8 +61,8 @@ struct LidarOptics {
   float threshold = 0;  ///< least signal that is reported [1/m²]
   LidarReturns returns = LidarReturns::kStrongest;
   int most_returns = 1;  ///< 1 … kMostLidarReturns
-  /// Of each of the scene's volumes: extinction over backscattering coefficient [sr]; 0 = by its
-  /// phase function. Empty = all of them.
+  /// Extinction over backscattering coefficient of each of the scene's volumes [sr]; 0 = by its
+  /// phase function. Empty = all by their phase functions.
   DeviceSpan<const float> lidar_ratios;
   DeviceSpan<const LidarParticles> particles;  ///< of each volume; empty = all are media
   DeviceSpan<const uint8_t> hidden;            ///< by instance: beams pass it; empty = none
@@ -111,7 +111,7 @@ GLOAM_HD Vec2f normal_pair(const Philox4& bits) {
 
 }  // namespace lidar
 
-/// What comes back of one pulse from one place.
+/// Echo of one pulse from one place.
 struct LidarEcho {
   float range;  ///< [m]
   float signal;
@@ -166,7 +166,8 @@ class LidarEchoes {
   int count_ = 0;
 };
 
-/// What the receiver makes of the echoes of one beam: `out` takes optics.most_returns returns,
+/// Returns that the receiver makes of the echoes of one beam: `out` takes optics.most_returns
+/// returns,
 /// those that are none last. With noise, amplitudes have a normal error of threshold / kLeastRatio,
 /// and ranges one of
 ///   sigma² = range_sigma² + rise² / (signal / noise)

@@ -12,10 +12,10 @@ namespace gloam {
 /// Gathers what media send back along one beam, in bins of range as deep as the receiver resolves,
 /// and finds false returns in it. A bin's signal is
 ///   pi Int beta T² O(r) / r² dr
-/// with the volume backscattering coefficient beta [1/(m sr)]. With noise it is speckle: drawn from
-/// the exponential distribution with that mean (Goodman 1985, "Statistical optics", 2.9), which
-/// neglects that wide receivers average some of it away, and comes from anywhere in the bin. A run
-/// of bins above the threshold is one echo, at its peak.
+/// with the volume backscattering coefficient beta [1/(m sr)]. With noise it is speckle: sampled
+/// from the exponential distribution with that mean (Goodman 1985, "Statistical optics", 2.9),
+/// which neglects that wide receivers average some of it away, and comes from anywhere in the bin.
+/// A run of bins above the threshold is one echo, at its peak.
 class Backscatter {
  public:
   GLOAM_HD Backscatter() = default;
@@ -93,10 +93,10 @@ GLOAM_HD float media_step(const MediumWalk& walk, float resolution, float length
   return max(step, length / kMostSteps);
 }
 
-/// Those of a volume's particles that lie in [from, to] of the ray, one by one. `share`: of the
-/// pulse at `from`; `way`: the range at the ray's origin.
+/// Adds those particles of a volume that lie in [from, to] of the ray, one by one. `fraction`:
+/// fraction of the pulse at `from`; `way`: the range at the ray's origin.
 GLOAM_HD void add_particles(const LidarOptics& optics, uint32_t row, float from, float to,
-                            float way, float density, float extinction, float share,
+                            float way, float density, float extinction, float fraction,
                             Backscatter* soft) {
   const LidarParticles& set = optics.particles[row];
   const uint32_t last = min(cell_of(way + to), set.cells.size - 1);
@@ -106,7 +106,7 @@ GLOAM_HD void add_particles(const LidarOptics& optics, uint32_t row, float from,
       const ParticleHit hit = particles[i];
       const float t = hit.range - way;
       if (t < from || t >= to || hit.rank * set.density >= density) continue;
-      const float one_way = share * expf(-extinction * (t - from));
+      const float one_way = fraction * expf(-extinction * (t - from));
       soft->add_single(hit.range, hit.signal * sqr(one_way));
     }
   }
@@ -114,11 +114,11 @@ GLOAM_HD void add_particles(const LidarOptics& optics, uint32_t row, float from,
 
 }  // namespace lidar
 
-/// Share of a pulse that media let through along [0, length] of the ray. `way` and `share`: the
-/// range and the one-way share of the pulse at its origin. What comes back is added to `soft`,
-/// unless that is null.
+/// Fraction of a pulse that media let through along [0, length] of the ray. `way` and `fraction`:
+/// the range and the one-way fraction of the pulse at its origin. What comes back is added to
+/// `soft`, unless that is null.
 GLOAM_HD float cross_media(const MediaView& media, const LidarOptics& optics, const Ray& ray,
-                           float length, float way, float share, Backscatter* soft) {
+                           float length, float way, float fraction, Backscatter* soft) {
   const Bands bands = Bands::only(optics.band);
   float passed = 1;
   MediumWalk walk(media, ray, length);
@@ -147,7 +147,7 @@ GLOAM_HD float cross_media(const MediaView& media, const LidarOptics& optics, co
           const uint32_t cell = lidar::cell_of(way + 0.5f * (from + to));
           backscatter += set.cells[min(cell, set.cells.size - 1)].even * density / set.density;
           lidar::add_particles(optics, row, from, to, way, density, before.extinction.x,
-                               share * passed, soft);
+                               fraction * passed, soft);
           continue;
         }
         const float ratio = row < optics.lidar_ratios.size ? optics.lidar_ratios[row] : 0;
@@ -157,13 +157,13 @@ GLOAM_HD float cross_media(const MediaView& media, const LidarOptics& optics, co
       }
       const float depth = point.extinction.x * (to - from);
       if (soft != nullptr && backscatter > 0) {
-        const float two_way = sqr(share * passed) * media::mean_transmittance(2 * depth);
+        const float two_way = sqr(fraction * passed) * media::mean_transmittance(2 * depth);
         soft->add(way + from, way + to,
                   kPi * backscatter * two_way * lidar::overlap(optics, way + 0.5f * (from + to)) *
                       (to - from) / ((way + from) * (way + to)));
       }
       passed *= expf(-depth);
-      if (passed * share < 1e-4f) return 0;  // of 1e-8 of the pulse, nothing is detected
+      if (passed * fraction < 1e-4f) return 0;  // of 1e-8 of the pulse, nothing is detected
       from = to;
     }
   }

@@ -6,7 +6,7 @@
 
 namespace gloam {
 
-/// Where a sensor is while it scans: L turns evenly about a fixed axis and moves evenly. Times run
+/// Motion of a sensor while it scans: L turns evenly about a fixed axis and moves evenly. Times run
 /// from 0 to 1.
 struct LidarMotion {
   Affine3f X_WL;   ///< at 0
@@ -31,24 +31,24 @@ GLOAM_HD RayOf<F> beam_ray(const LidarMotion& motion, Vec3Of<F> d_L, F time) {
   return ray;
 }
 
-/// Of a sensor that moves through several such stretches, equally long, one after the other.
+/// Ray of a sensor that moves through several such stretches, equally long, one after the other.
 template <class F>
 GLOAM_HD RayOf<F> beam_ray(DeviceSpan<const LidarMotion> stretches, Vec3Of<F> d_L, F time) {
   uint32_t stretch[Lanes<F>::kCount];
-  F share{};
+  F fraction{};
   bool together = true;  // beams are in the order of time, nearly
   each_lane(MaskOf<F>(true), [&](int i) {
     float one;
     stretch[i] = key_before(stretches.size + 1, lane(time, i), &one);
-    set_lane(&share, i, one);
+    set_lane(&fraction, i, one);
     together = together && stretch[i] == stretch[0];
   });
   RayOf<F> ray;
   if (together) {
-    ray = beam_ray(stretches[stretch[0]], d_L, share);
+    ray = beam_ray(stretches[stretch[0]], d_L, fraction);
   } else {
     each_lane(MaskOf<F>(true), [&](int i) {
-      const Ray one = beam_ray<float>(stretches[stretch[i]], lane(d_L, i), lane(share, i));
+      const Ray one = beam_ray<float>(stretches[stretch[i]], lane(d_L, i), lane(fraction, i));
       set_lane(&ray.o, i, one.o);
       set_lane(&ray.d, i, one.d);
     });

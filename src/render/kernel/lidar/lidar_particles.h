@@ -10,10 +10,10 @@
 
 namespace gloam::lidar {
 
-/// Length of the cells of range that particles are drawn in [m].
+/// Length of the cells of range that particles are sampled in [m].
 inline constexpr float kCell = 0.5f;
-/// Radius of the beam in which particles are drawn, in half widths at 1/e²: beyond it is a 90th of
-/// the power on the axis.
+/// Radius of the beam in which particles are sampled, in half widths at 1/e²: beyond it is a 90th
+/// of the power on the axis.
 inline constexpr float kRim = 1.5f;
 /// Least half width of a beam [m].
 inline constexpr float kThinnest = 5e-4f;

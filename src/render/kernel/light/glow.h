@@ -1,18 +1,19 @@
 #pragma once
-// Points of media that glow, in proportion to what they give off: light that a small flame sends
-// into a room is seldom found by chance (Villemin and Hery 2013, "Practical illumination from
-// flames"). What rays find on their way has its share in it, by multiple importance sampling point
-// by point, so that points close by and inside of the medium do no harm. Device-safe.
+// Points of media that glow, sampled in proportion to their emission: light that a small flame
+// sends into a room is seldom found by chance (Villemin and Hery 2013, "Practical illumination from
+// flames"). Emission that rays meet on their way is weighted against it, by multiple importance
+// sampling point by point, so that points close by and inside of the medium do no harm.
+// Device-safe.
 
 #include "render/kernel/light/light.h"
 #include "render/kernel/media/medium.h"
 
 namespace gloam::glow {
 
-/// A bound, up to a factor, of what something that gives off light within `reach` of `to` brings to
-/// a surface with the normal n, or to a point that takes light from all sides (n = 0), for its
-/// intensity [1/m²]; as light_weight(). Nearer than `least` [m] it brings no more.
-GLOAM_HD float share_of(Vec3f to, float reach, float least, Vec3f n) {
+/// Bound, up to a factor, of the illuminance by a source within `reach` of `to` at a surface with
+/// the normal n, or at a point that takes light from all sides (n = 0), over the source's intensity
+/// [1/m²]; as light_weight(). Nearer than `least` [m] it does not grow.
+GLOAM_HD float point_weight(Vec3f to, float reach, float least, Vec3f n) {
   const float d2 = max(dot(to, to), sqr(least));
   float cosine = 1;
   if (length_squared(n) > 0) {
@@ -23,12 +24,12 @@ GLOAM_HD float share_of(Vec3f to, float reach, float least, Vec3f n) {
   return (cosine + 0.05f) / d2;
 }
 
-/// That of a medium, at p.
+/// Weight of a medium, for a point p with the normal n.
 GLOAM_HD float weight(const GlowView& glow, Vec3f p, Vec3f n) {
-  return glow.strength * share_of(glow.center - p, glow.reach, max(glow.reach, 1e-4f), n);
+  return glow.strength * point_weight(glow.center - p, glow.reach, max(glow.reach, 1e-4f), n);
 }
 
-/// That of all of them.
+/// Weight of all of them.
 GLOAM_HD float weight(const DeviceSpan<const GlowView>& glows, Vec3f p, Vec3f n) {
   float sum = 0;
   for (uint32_t k = 0; k < glows.size; ++k) sum += weight(glows[k], p, n);
@@ -67,7 +68,7 @@ GLOAM_HD uint32_t cell_at(const VolumeView& v, Vec3f p_G) {
   return (k * static_cast<uint32_t>(v.cells_y) + j) * static_cast<uint32_t>(v.cells_x) + i;
 }
 
-/// Density of points that sample() draws, at p_G in the volume [1/m³].
+/// Density of points that sample() takes, at p_G in the volume [1/m³].
 GLOAM_HD float point_density(const MediaView& media, const GlowView& glow, Vec3f p_G) {
   const VolumeView& v = media.volumes[glow.volume];
   const uint32_t cell = cell_at(v, p_G);
@@ -82,12 +83,12 @@ GLOAM_HD float point_density(const MediaView& media, const GlowView& glow, Vec3f
       (within(p_G.z, v.cells_z) * kBoundsVoxels + within(p_G.y, v.cells_y)) * kBoundsVoxels +
       within(p_G.x, v.cells_x);
   const float* sums = glow.voxel_sums.data + static_cast<size_t>(row) * GlowView::kSums + voxel;
-  const float share = (glow.cell_sums[cell + 1] - glow.cell_sums[cell]) * (sums[1] - sums[0]);
-  return share * glow.voxels_per_volume;
+  const float probability = (glow.cell_sums[cell + 1] - glow.cell_sums[cell]) * (sums[1] - sums[0]);
+  return probability * glow.voxels_per_volume;
 }
 
 /// Density with which sample() finds the point x, p_G in the volume, from p: per solid angle, for
-/// the share of it that rays find there.
+/// the fraction of it that rays find there.
 GLOAM_HD float pdf(const MediaView& media, const GlowView& glow, Vec3f p, Vec3f x, Vec3f p_G) {
   const VolumeView& v = media.volumes[glow.volume];
   const float density = point_density(media, glow, p_G);
@@ -121,7 +122,7 @@ GLOAM_HD PointSample sample_point(const VolumeView& v, const GlowView& glow, Vec
   return s;
 }
 
-/// That as a light for p.
+/// Sample of that point as a light for p.
 GLOAM_HD LightSample sample(const MediaView& media, const GlowView& glow, Vec3f p, Vec2f u) {
   LightSample s;
   const VolumeView& v = media.volumes[glow.volume];

@@ -1,18 +1,19 @@
 #pragma once
-// What glows, as light for a point, by lines through it: Simon et al. 2017, "Line integration for
-// rendering heterogeneous emissive volumes". The inside of a thick flame gives no light, and a
-// sample of one point there would be noise. Device-safe.
+// Media that glow, as light for a point, by lines through them: Simon et al. 2017, "Line
+// integration for rendering heterogeneous emissive volumes". The inside of a thick flame gives no
+// light, so samples of points there would be noise. Device-safe.
 
 #include "render/kernel/light/glow.h"
 #include "render/kernel/media/medium_walk.h"
 
 namespace gloam::glow {
 
-/// What glows closer by is no lamp [m]: few of its points would bring nearly all light.
+/// Distance within which glowing media are not sampled as a lamp [m]: few of their points would
+/// bring nearly all light.
 inline constexpr float kNearGlow = 0.1f;
 
-/// From within so many times the reach of what glows, the nearest of it is the brightest: a point
-/// is chosen among kDraws then (Talbot et al. 2005, "Importance resampling for global
+/// Distance, in reaches of the glowing medium, within which its nearest part is the brightest: a
+/// point is chosen among kDraws there (Talbot et al. 2005, "Importance resampling for global
 /// illumination").
 inline constexpr float kBeside = 2;
 inline constexpr int kDraws = 2;
@@ -35,7 +36,7 @@ GLOAM_HD Vec3f extinction_beside(const MediaView& media, uint32_t but, Vec3f p) 
   return sum;
 }
 
-/// A line is drawn with a point of it, as by sample(), and so are the places on it at which light
+/// A line is sampled with a point of it, as by sample(), and so are the places on it at which light
 /// is summed up, a step apart: of these any might have been the point, and the line's density is
 /// that of all. Beyond kNearGlow.
 GLOAM_HD LineSample sample_line(const MediaView& media, Vec3f p, Vec3f n, Vec2f u) {
@@ -48,23 +49,25 @@ GLOAM_HD LineSample sample_line(const MediaView& media, Vec3f p, Vec3f n, Vec2f 
   const VolumeView& v = media.volumes[glow.volume];
   LightSample& light = out.light;
   const bool beside = length_squared(glow.center - p) < sqr(kBeside * glow.reach);
-  const auto share = [&](Vec3f to) { return beside ? share_of(to, 0, kNearGlow, n) : 1.0f; };
+  const auto weight_of = [&](Vec3f to) {
+    return beside ? point_weight(to, 0, kNearGlow, n) : 1.0f;
+  };
   const int draws = beside ? kDraws : 1;
   WalkRandom random({u.y, u.x});
   Vec3f to;
-  float shares = 0;
+  float weights = 0;
   for (int i = 0; i < draws; ++i) {
     const PointSample point = sample_point(v, glow, u);
     u = {u.x + 1.0f / kDraws, random.next()};
     if (u.x >= 1) u.x -= 1;
     if (!(point.density > 0)) continue;
     const Vec3f there = transform_point(glow.X_WG, point.p_G) - p;
-    const float its = share(there);
-    shares += its;
-    if (i == 0 || random.next() * shares < its) to = there;
+    const float its = weight_of(there);
+    weights += its;
+    if (i == 0 || random.next() * weights < its) to = there;
   }
   light.distance = length(to);
-  if (!(shares > 0 && light.distance > 1e-6f)) return out;
+  if (!(weights > 0 && light.distance > 1e-6f)) return out;
   light.wi = to / light.distance;
   const Vec3f o_G = transform_point(v.X_GW, p), d_G = transform_vector(v.X_GW, light.wi);
   float from = 0, end = 1e30f;
@@ -86,10 +89,10 @@ GLOAM_HD LineSample sample_line(const MediaView& media, Vec3f p, Vec3f n, Vec2f 
       radiance += through * half * extinction * absorbed * media::glow_at(media, v, p_G, {});
     }
     through *= half * half;
-    pdf += point_density(media, glow, p_G) * sqr(t) * share(light.wi * t);
+    pdf += point_density(media, glow, p_G) * sqr(t) * weight_of(light.wi * t);
   }
   light.radiance = radiance;
-  light.pdf = pdf * choice.probability * (static_cast<float>(draws) / shares);
+  light.pdf = pdf * choice.probability * (static_cast<float>(draws) / weights);
   if (!(max_component(radiance) > 0)) light.pdf = 0;
   return out;
 }

@@ -42,41 +42,41 @@ GLOAM_HD void set_lane(LightSampleOf<F>* s, int i, const LightSample& value) {
 
 /// Share of a lamp's full intensity in the unit direction from its centre.
 template <class F>
-GLOAM_HD F lamp_share(const SceneView& scene, const LightView& light, Vec3Of<F> d) {
-  F share = 1.0f;
+GLOAM_HD F relative_intensity(const SceneView& scene, const LightView& light, Vec3Of<F> d) {
+  F relative = 1.0f;
   if (light.kind == LightKind::kSpot) {
     const F cosine = dot(in_all_lanes<F>(light.direction), d);
-    share = select(cosine >= light.cos_inner, F(1.0f), F(0.0f));
+    relative = select(cosine >= light.cos_inner, F(1.0f), F(0.0f));
     each_lane((cosine > light.cos_cutoff) & (cosine < light.cos_inner), [&](int i) {
       const float angle = acosf(clamp(lane(cosine, i), -1.0f, 1.0f));
       const float x = (light.cutoff - angle) / max(light.cutoff - light.inner, 1e-6f);
-      set_lane(&share, i, x * x * (3.0f - 2.0f * x));
+      set_lane(&relative, i, x * x * (3.0f - 2.0f * x));
     });
   }
   if (!kPlainScenes && light.profile >= 0) {
     const ProfileView& profile = scene.profiles[static_cast<uint32_t>(light.profile)];
     const Frame R_WL{light.x, cross(light.x, light.direction), -light.direction};
-    each_lane(share > 0.0f, [&](int i) {
+    each_lane(relative > 0.0f, [&](int i) {
       const float of_profile =
           ies_intensity(scene.profile_values.data + profile.first, profile.rows, profile.columns,
                         R_WL.to_local(lane(d, i)));
-      set_lane(&share, i, lane(share, i) * of_profile);
+      set_lane(&relative, i, lane(relative, i) * of_profile);
     });
   }
-  return share;
+  return relative;
 }
 
 /// A lamp or sun as it is at a time in the shutter: evenly between its keys.
 GLOAM_HD LightView light_at(const SceneView& scene, const LightView& light, float time) {
   LightView now = light;
   if (light.first_key < 0) return now;
-  float share;
+  float fraction;
   const uint32_t row =
-      static_cast<uint32_t>(light.first_key) + key_before(scene.light_key_count, time, &share);
+      static_cast<uint32_t>(light.first_key) + key_before(scene.light_key_count, time, &fraction);
   const LightKey &a = scene.light_keys[row], &b = scene.light_keys[row + 1];
-  now.p = lerp(a.p, b.p, share);
-  now.direction = normalize(lerp(a.direction, b.direction, share));
-  now.x = normalize(lerp(a.x, b.x, share));
+  now.p = lerp(a.p, b.p, fraction);
+  now.direction = normalize(lerp(a.direction, b.direction, fraction));
+  now.x = normalize(lerp(a.x, b.x, fraction));
   now.first_key = -1;
   return now;
 }
@@ -90,7 +90,8 @@ GLOAM_HD LightSampleOf<F> sample_lamp(const SceneView& scene, const LightView& l
   const Vec3Of<F> to = in_all_lanes<F>(light.p) - p;
   const F d2 = max(dot(to, to), 1e-12f), d = square_root(d2);
   const Vec3Of<F> axis = to / d;
-  const Vec3Of<F> intensity = in_all_lanes<F>(light.intensity) * lamp_share(scene, light, -axis);
+  const Vec3Of<F> intensity =
+      in_all_lanes<F>(light.intensity) * relative_intensity(scene, light, -axis);
   const float r2 = light.radius * light.radius;
   // Within the sphere it acts as a point.
   const MaskOf<F> point = MaskOf<F>(light.is_delta) | (d2 <= r2 * 1.0001f);
@@ -139,7 +140,7 @@ struct EmitterPointOf {
 };
 using EmitterPoint = EmitterPointOf<float>;
 
-/// Towards points of emitters that were drawn with a density per area.
+/// Samples towards points of emitters that were sampled with a density per area.
 template <class F>
 GLOAM_HD LightSampleOf<F> aim_at(const EmitterPointOf<F>& at, F pdf_area, bool one_sided,
                                  Vec3Of<F> p) {
@@ -172,7 +173,8 @@ GLOAM_HD F sample_box(Vec3f size, const Affine3f& X_WG, Vec3Of<F> p, Vec2Of<F> u
   return pdf_area;
 }
 
-/// Towards spheres, from outside; every lane may have its own. `normal`: there.
+/// Samples towards spheres, from outside; every lane may have its own. `normal`: at the sampled
+/// point.
 template <class F>
 GLOAM_HD LightSampleOf<F> sample_ball(F radius, Vec3Of<F> center, Vec3Of<F> p, Vec2Of<F> u,
                                       Vec3Of<F>* normal) {
@@ -194,7 +196,8 @@ GLOAM_HD MaskOf<F> is_outside_ball(F radius, Vec3Of<F> center, Vec3Of<F> p) {
   return length_squared(center - p) > sqr(radius) * 1.0001f;
 }
 
-/// Towards points of a sheet: with no triangle to look up, and no seam in the points' even spread.
+/// Samples towards points of a sheet: with no triangle to look up, and no seam in the points' even
+/// spread.
 template <class F>
 GLOAM_HD LightSampleOf<F> sample_sheet(const LightView& light, Vec3Of<F> p, Vec2Of<F> u) {
   const Vec3f normal = cross(light.edges[0], light.edges[1]);
@@ -266,7 +269,7 @@ GLOAM_HD F sample_mesh(const MeshView& mesh, const Affine3f& X_WG, Vec2Of<F> u, 
   return 1.0f / mesh.area;
 }
 
-/// Any emitting instance: moving, textured, of whatever shape.
+/// Samples any emitting instance: moving, textured, of whatever shape.
 GLOAM_HD LightSample sample_instance(const SceneView& scene, const LightView& light, Vec3f p,
                                      Vec2f u, float time) {
   LightSample s;
@@ -355,7 +358,7 @@ GLOAM_HD LightSampleOf<F> sample_one_light(const SceneView& scene, uint32_t inde
     });
   }
   s.casts_shadow = light.casts_shadow;
-  // What cannot be hit must be found here alone.
+  // Lights that no ray can hit are found by light sampling alone.
   if (!light.casts_shadow && light.kind != LightKind::kInstance) s.is_delta = true;
   return s;
 }

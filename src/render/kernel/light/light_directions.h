@@ -4,7 +4,7 @@
 // The sphere is laid out on the square [-1, 1]² by the octahedral map (Cigolle et al. 2014, "A
 // survey of efficient representations for independent unit vectors"): neither way needs more than
 // a square root, cells have areas that are known, and the planes between the axes fall on edges of
-// cells, so that a wall takes no share of the cells behind it.
+// cells, so that a wall takes no light of the cells behind it.
 
 #include "render/kernel/scene_view.h"
 
@@ -17,7 +17,7 @@ GLOAM_HD F with_sign_of(F value, F sign) {
   return select(sign < 0.0f, -value, value);
 }
 
-/// Of the direction d, of any length, on the square.
+/// Point of the square for the direction d, of any length.
 template <class F>
 GLOAM_HD Vec2Of<F> to_square(Vec3Of<F> d) {
   const F inverse = 1.0f / (magnitude(d.x) + magnitude(d.y) + magnitude(d.z));
@@ -56,8 +56,8 @@ GLOAM_HD UintOf<F> cell_of(Vec2Of<F> q) {
 template <class F>
 GLOAM_HD F pdf(const LightGuide& guide, UintOf<F> row, Vec3Of<F> d) {
   const UintOf<F> cell = row * LightGuide::kSums + cell_of(to_square(d));
-  const F share = gather(guide.arriving.data, cell + 1u) - gather(guide.arriving.data, cell);
-  return share * (0.25f * kAcross * kAcross) * area_per_solid_angle(d);
+  const F probability = gather(guide.arriving.data, cell + 1u) - gather(guide.arriving.data, cell);
+  return probability * (0.25f * kAcross * kAcross) * area_per_solid_angle(d);
 }
 
 /// A direction by u in [0, 1)²: a line of the map by u.y, a cell of it by u.x, a point in the cell

@@ -40,8 +40,8 @@ GLOAM_HD float fast_angle(float x, float y) {
 
 inline constexpr float kAngleSlack = 1e-3f;  // [rad]: bounds stay bounds despite rounding
 
-/// From one where angle <= 0 down to a little at `falloff`: near enough to a cosine and to a spot's
-/// rim. Zero beyond.
+/// Falloff from one where angle <= 0 down to a little at `falloff`: near enough to a cosine and to
+/// a spot's rim. Zero beyond.
 GLOAM_HD float fade(float angle, float falloff) {
   if (angle <= 0) return 1;
   const float x = angle / max(falloff, 1e-6f);
@@ -88,28 +88,28 @@ GLOAM_HD float bound(const LightNode& node, Vec3f p, Vec3f n) {
   if (node.spread + node.falloff < kPi && d2 > r2) {
     const float inv_d = 1.0f / sqrtf(d2);
     const float seen_within = 0.5f * kPi - fast_acos(sqrtf(r2) * inv_d);  // of the box
-    const float share =
+    const float facing =
         fade(fast_acos(-dot(to, node.axis) * inv_d) - node.spread - seen_within - kAngleSlack,
              node.falloff);
-    if (!(share > 0)) return 0;
-    weight *= share;
+    if (!(facing > 0)) return 0;
+    weight *= facing;
   }
   return max(weight * mean_inverse_square(to, h, d2), kLeast);
 }
 
-/// Shares of the three roots. What is in between is not known, so each that may bring light gets
+/// Probabilities of the three roots. Occlusion is not known, so each that may bring light gets
 /// its part of three quarters: a sun outdoors must not leave a room's lamps without rays.
-GLOAM_HD void root_shares(const LightTreeView& tree, Vec3f p, Vec3f n, double* share) {
+GLOAM_HD void root_probabilities(const LightTreeView& tree, Vec3f p, Vec3f n, double* roots) {
   constexpr double kEven = 0.75;
   double total = 0;
   int some = 0;
   for (uint32_t i = 0; i < LightTreeView::kRoots; ++i) {
-    share[i] = static_cast<double>(bound(tree.nodes[i], p, n));
-    total += share[i];
-    some += share[i] > 0 ? 1 : 0;
+    roots[i] = static_cast<double>(bound(tree.nodes[i], p, n));
+    total += roots[i];
+    some += roots[i] > 0 ? 1 : 0;
   }
   for (uint32_t i = 0; i < LightTreeView::kRoots; ++i) {
-    if (share[i] > 0) share[i] = (1 - kEven) * share[i] / total + kEven / some;
+    if (roots[i] > 0) roots[i] = (1 - kEven) * roots[i] / total + kEven / some;
   }
 }
 
@@ -127,17 +127,17 @@ GLOAM_HD double lengthen(Vec2f u) {
 
 /// Takes a light for the point p with the normal n (0: none) by the uniform number `pick`.
 GLOAM_HD LightChoice choose(const LightTreeView& tree, Vec3f p, Vec3f n, double pick) {
-  double share[LightTreeView::kRoots];
-  root_shares(tree, p, n, share);
+  double roots[LightTreeView::kRoots];
+  root_probabilities(tree, p, n, roots);
   uint32_t row = LightTreeView::kRoots;
   for (uint32_t i = 0; i < LightTreeView::kRoots; ++i) {
-    if (!(share[i] > 0)) continue;
-    if (row < LightTreeView::kRoots) pick -= share[row];
+    if (!(roots[i] > 0)) continue;
+    if (row < LightTreeView::kRoots) pick -= roots[row];
     row = i;
-    if (pick < share[i]) break;
+    if (pick < roots[i]) break;
   }
   if (row == LightTreeView::kRoots) return {};
-  double probability = share[row];
+  double probability = roots[row];
   pick /= probability;
   while ((tree.nodes[row].flags & LightNode::kLeaf) == 0) {
     row = tree.nodes[row].first;
@@ -168,9 +168,9 @@ GLOAM_HD float probability(const LightTreeView& tree, uint32_t light, Vec3f p, V
     result *= mine / (mine + static_cast<double>(bound(tree.nodes[row ^ 1u], p, n)));
     row = tree.nodes[row].parent;
   }
-  double share[LightTreeView::kRoots];
-  root_shares(tree, p, n, share);
-  return static_cast<float>(result * share[row]);
+  double roots[LightTreeView::kRoots];
+  root_probabilities(tree, p, n, roots);
+  return static_cast<float>(result * roots[row]);
 }
 
 /// Whether the ray may meet something of the node before `tmax`.

@@ -1,5 +1,5 @@
 #pragma once
-// The tree over many lights as the kernel reads it: render/scene/light_tree.h builds it,
+// The tree over many lights as the kernel reads it: render/scene/light_tree_table.h builds it,
 // render/kernel/light/light_tree.h goes through it. Device-safe.
 
 #include "base/vec.h"
@@ -17,7 +17,8 @@ struct LightNode {
   Vec3f axis;          ///< of the cone of their axes, unit
   float spread = kPi;  ///< half angle of that cone [rad]
   float falloff = 0;   ///< angle from its axis within which a light of the set shines [rad]
-  float power = 0;  ///< luminous intensity, of far ones illuminance, as a share of all; 0 = empty
+  float power =
+      0;  ///< luminous intensity, of far ones illuminance, as a fraction of all; 0 = empty
   uint32_t first = kNone;   ///< row of nodes: its two children's first; of a leaf: row of lights
   uint32_t parent = kNone;  ///< row of nodes; kNone: a root
   uint32_t flags = 0;

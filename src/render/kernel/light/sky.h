@@ -1,5 +1,5 @@
 #pragma once
-// What rays that leave the scene see: an environment map, or MuJoCo's cube. Device-safe.
+// Sky that rays which leave the scene see: an environment map, or MuJoCo's cube. Device-safe.
 
 #include "render/kernel/surface/texture.h"
 
@@ -13,8 +13,8 @@ GLOAM_HD Vec3f sky_radiance(const SceneView& scene, Vec3f d, float spread) {
   return lookup_cube(scene, scene.sky_texture, {d.x, d.z, -d.y}, spread).rgb * scene.sky_scale;
 }
 
-/// The same for directions in lanes, without the filter where directions are drawn from a map: the
-/// two ways to find its light must see the same.
+/// The same for directions in lanes, without the filter where directions are sampled from a map:
+/// the two ways to find its light must see the same.
 template <class F>
 GLOAM_HD Vec3Of<F> sky_radiance_of(const SceneView& scene, Vec3Of<F> d, F spread,
                                    MaskOf<F> active) {

@@ -1,5 +1,6 @@
 #pragma once
-// What the kernel computes with: one float, or several side by side. Code that is generic over F
+// Numbers that the kernel computes with: one float, or several side by side. Code that is generic
+// over F
 // takes no branch that differs between lanes: it computes both sides and selects, and skips what no
 // lane needs with any(). A lane gives the same bits as the float: same operations, same order.
 //   F     float     FloatLanes

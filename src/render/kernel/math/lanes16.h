@@ -63,7 +63,7 @@ inline UintLanes select(MaskLanes m, UintLanes a, UintLanes b) {
   return lanes::of(_mm512_mask_blend_epi32(m.v, lanes::native(b), lanes::native(a)));
 }
 inline MaskLanes select(MaskLanes m, MaskLanes a, MaskLanes b) { return (m & a) | (b & !m); }
-// As a < b ? a : b and a > b ? a : b, for what is no number too.
+// Minimum and maximum as a < b ? a : b and a > b ? a : b, for not-a-number too.
 inline FloatLanes min(FloatLanes a, FloatLanes b) {
   return lanes::of(_mm512_maskz_min_ps(lanes::kAll, lanes::native(a), lanes::native(b)));
 }

@@ -52,7 +52,7 @@ inline FloatLanes select(MaskLanes m, FloatLanes a, FloatLanes b) { return m.v ?
 inline UintLanes select(MaskLanes m, UintLanes a, UintLanes b) { return m.v ? a.v : b.v; }
 inline MaskLanes select(MaskLanes m, MaskLanes a, MaskLanes b) { return m.v ? a.v : b.v; }
 #ifdef __AVX__
-// As a < b ? a : b and a > b ? a : b, for what is no number too.
+// Minimum and maximum as a < b ? a : b and a > b ? a : b, for not-a-number too.
 inline FloatLanes min(FloatLanes a, FloatLanes b) {
   return reinterpret_cast<FloatLanes::Native>(
       _mm256_min_ps(reinterpret_cast<__m256>(a.v), reinterpret_cast<__m256>(b.v)));

@@ -51,7 +51,7 @@ GLOAM_HD MaskOf<F> even_quads(MaskOf<F> mask, UintOf<F> instance, const Vec3Of<F
   return all > 0.0f;
 }
 
-/// In each lane the sum over its quad.
+/// Sum over its quad, in each lane.
 template <class F>
 GLOAM_HD Vec3Of<F> quad_sums(Vec3Of<F> v) {
   v += flip<1>(v);

@@ -13,7 +13,7 @@ struct RayOf {
 };
 using Ray = RayOf<float>;
 
-/// What a Traverser reports: enough to find the surface again.
+/// Hit that a Traverser reports: enough to find the surface again.
 template <class F>
 struct RayHitOf {
   F t{};                  ///< distance [m]
@@ -96,11 +96,12 @@ GLOAM_HD Vec3Of<F> sample_cosine_hemisphere(Vec2Of<F> u) {
   return cosine_direction(to_disc(u));
 }
 
-/// After a choice by x, uniform in [0, 1), took what begins at `from` and is as long as `share`:
-/// where in it x lies, uniform in [0, 1) again. Points that are spread evenly stay so in each part.
+/// Remainder of x, uniform in [0, 1), after a choice by x took the interval that begins at `from`
+/// and is as long as `width`: where in it x lies, uniform in [0, 1) again. Points that are spread
+/// evenly stay so in each interval.
 template <class F>
-GLOAM_HD F rest_of(F x, F from, F share) {
-  return clamp((x - from) / share, 0.0f, 0.99999994f);
+GLOAM_HD F rest_of(F x, F from, F width) {
+  return clamp((x - from) / width, 0.0f, 0.99999994f);
 }
 
 /// Uniform direction on the unit sphere; pdf = 1 / (4 pi).
@@ -151,7 +152,7 @@ GLOAM_HD F mis_weight(F a, F b) {
   return select(a > 1e18f, F(1.0f), a * a / (a * a + b * b));
 }
 
-/// More than the rounding [m] of the surface point p that was found at distance t.
+/// Bound of the rounding [m] of the surface point p that was found at distance t.
 template <class F>
 GLOAM_HD F surface_step(Vec3Of<F> p, F t) {
   return 4e-6f * max(max(magnitude(p.x), max(magnitude(p.y), magnitude(p.z))), t) + 1e-7f;

@@ -9,8 +9,8 @@
 
 namespace gloam {
 
-/// Draws of one random walk, of which there may be many: hashes of one point of the sampler, so
-/// that what comes after keeps its place in the sequence.
+/// Random numbers of one random walk, of which there may be many: hashes of one point of the
+/// sampler, so that what comes after keeps its place in the sequence.
 class WalkRandom {
  public:
   GLOAM_HD explicit WalkRandom(Vec2f u)
@@ -25,7 +25,7 @@ class WalkRandom {
   uint32_t state_, step_;
 };
 
-/// What became of a ray on its way to tmax.
+/// Event that ends a ray on its way to tmax: scattering, or arrival.
 struct MediumEvent {
   float t = 0;      ///< distance at which it is scattered, or tmax [m]
   int volume = -1;  ///< row of the volume that scatters it; -1 = it arrives
@@ -35,43 +35,44 @@ struct MediumEvent {
 
 namespace media {
 
-/// Share of its distance by which a walk moves on at least: less would be lost to rounding, and
+/// Fraction of its distance by which a walk moves on at least: less would be lost to rounding, and
 /// where a medium is that thick far away, the walk would not end.
 inline constexpr float kLeastStep = 1.2e-7f;
 
 GLOAM_HD Vec3f exp_of(Vec3f x) { return {expf(x.x), expf(x.y), expf(x.z)}; }
 
-/// All of what glows, for sample_distance().
+/// Weight one for all emission, for sample_distance().
 struct AllGlow {
   GLOAM_HD float operator()(const VolumeView&, Vec3f, Vec3f) const { return 1; }
 };
 
 }  // namespace media
 
-/// Where the ray is scattered first. One band makes the decisions, drawn by its share in
+/// Samples where the ray is scattered first. One band makes the decisions, sampled in proportion to
 /// `throughput`; `weight` is the balance heuristic's over the three that might have made them
 /// (Miller et al. 2019, "A null-scattering path integral formulation of light transport"), so
-/// dot(shares, weight) <= 1. Per density, null collisions are as likely in every band, so that
-/// their probabilities drop out of it. `u`: for the band and the first distance, [0, 1)²; well
-/// spread points pay there. `random`: for all else. share(volume, p_W, p_G): of what glows there.
-template <class Share = media::AllGlow>
+/// dot(probabilities, weight) <= 1. Per density, null collisions are as likely in every band, so
+/// that their probabilities drop out of it. `u`: for the band and the first distance, [0, 1)²; well
+/// spread points pay there. `random`: for all else. emission_weight(volume, p_W, p_G): factor on
+/// the emission there.
+template <class EmissionWeight = media::AllGlow>
 GLOAM_HD MediumEvent sample_distance(const MediaView& media, const Ray& ray, float tmax,
                                      Bands bands, Vec3f throughput, Vec2f u, WalkRandom random,
-                                     const Share& share = {}) {
+                                     const EmissionWeight& emission_weight = {}) {
   MediumEvent event;
   event.t = tmax;
   event.weight = {1, 1, 1};
   MediumWalk walk(media, ray, tmax);
   if (walk.is_over()) return event;
 
-  const Vec3f shares = band_shares(throughput);
-  const int hero = draw_band(shares, u.x);
+  const Vec3f probabilities = band_probabilities(throughput);
+  const int hero = sample_band(probabilities, u.x);
   float wanted = -logf(1.0f - u.y);  // optical depth of bounds to the next collision
   Vec3f excess;                      // optical depth of bounds since the last, over the hero's
   float t = 0;
   const auto settle = [&](Vec3f factor) {
     const Vec3f q = event.weight * media::exp_of(-excess) * factor;
-    event.weight = q / dot(shares, q);
+    event.weight = q / dot(probabilities, q);
     excess = {};
   };
   for (; !walk.is_over(); walk.advance()) {
@@ -96,17 +97,17 @@ GLOAM_HD MediumEvent sample_distance(const MediaView& media, const Ray& ray, flo
       const VolumeView& volume = walk[i].volume();
       const float high = walk[i].high(), low = walk[i].low();
       settle(bands.of(volume.mass_extinction));
-      const float drawn = random.next() * high;
+      const float sampled = random.next() * high;
       const bool glows = media::glows(volume, walk[i].hottest(), bands);
       const Vec3f p_W = ray.o + ray.d * t, p_G = transform_point(volume.X_GW, p_W);
-      const float density = drawn < low && !glows ? low : media::density_at(volume, p_G);
+      const float density = sampled < low && !glows ? low : media::density_at(volume, p_G);
       const Vec3f albedo = bands.of(volume.albedo);
       if (glows) {
         event.emission += event.weight * (Vec3f{1, 1, 1} - albedo) *
                           media::glow_at(media, volume, p_G, bands) *
-                          (density / high * share(volume, p_W, p_G));
+                          (density / high * emission_weight(volume, p_W, p_G));
       }
-      if (drawn < density) {
+      if (sampled < density) {
         event.t = t;
         event.volume = static_cast<int>(&volume - media.volumes.data);
         event.weight *= albedo;
@@ -121,11 +122,11 @@ GLOAM_HD MediumEvent sample_distance(const MediaView& media, const Ray& ray, flo
   return event;
 }
 
-/// Share of light that passes, per band. Where the bounds of the density meet (an even medium),
+/// Transmittance, per band. Where the bounds of the density meet (an even medium),
 /// exact; elsewhere an estimate between 0 and 1 up to roulette.
 GLOAM_HD Vec3f transmittance(const MediaView& media, const Ray& ray, float tmax, Bands bands,
                              WalkRandom random) {
-  // Below this share, few rays carry on for many.
+  // Transmittance below which roulette begins: few rays carry on for many.
   constexpr float kRoulette = 0.1f;
   Vec3f passed{1, 1, 1};
   for (uint32_t i = 0; i < media.volumes.size; ++i) {
@@ -134,7 +135,7 @@ GLOAM_HD Vec3f transmittance(const MediaView& media, const Ray& ray, float tmax,
     const Vec3f k = bands.of(volume.mass_extinction);
     const float k_max = max_component(k);
     if (!(k_max > 0) || !walk.start(volume, ray, tmax)) continue;
-    const Vec3f share = k / k_max;
+    const Vec3f relative = k / k_max;
     float mass = 0;           // per area, of the lower bounds [kg/m²]
     float t = 0, wanted = 0;  // optical depth between the bounds to the next collision
     do {
@@ -146,7 +147,7 @@ GLOAM_HD Vec3f transmittance(const MediaView& media, const Ray& ray, float tmax,
         wanted = -logf(1.0f - random.next());
         const Vec3f p_G = transform_point(volume.X_GW, ray.o + ray.d * t);
         const float part = clamp((media::density_at(volume, p_G) - low) / range, 0.0f, 1.0f);
-        passed *= Vec3f{1, 1, 1} - share * part;
+        passed *= Vec3f{1, 1, 1} - relative * part;
         const float most = max_component(passed);
         if (most < kRoulette) {
           if (!(random.next() * kRoulette < most)) return {};

@@ -73,14 +73,14 @@ GLOAM_HD Vec3f scattering_at(const MediaView& media, Vec3f p_W, Bands bands, flo
 struct MarchResult {
   Vec3f transmittance;
   Vec3f radiance;   ///< of emission and source [cd/m²]
-  Vec3f scattered;  ///< share that was scattered on its way, of light that is even all around
+  Vec3f scattered;  ///< fraction that was scattered on its way, of light that is even all around
 };
 
 /// A step through media.
 struct MarchStep {
   MediumPoint medium;   ///< its mean
   float begin, length;  ///< along the ray [m]
-  Vec3f share;          ///< of light [cd/m² per m] from all over it, what gets to the origin [m]
+  Vec3f weight;         ///< transmittance from its points to the origin, integrated over it [m]
   bool is_hot;          ///< something around it may glow
 };
 
@@ -111,12 +111,12 @@ GLOAM_HD float glow_step(const MediumWalk& walk, Bands bands) {
 /// Marches through the media in steps of at most `step` [m], or longer ones where that would take
 /// more than about `max_steps`. Empty cells are skipped. Along a step all is as in its middle and
 /// Beer-Lambert's law is integrated, so even media are exact with any step.
-/// What glows along the ray counts if `glows`.
+/// Emission along the ray counts if `glows`.
 /// `source(const MarchStep&)`: light that media scatter towards the ray's origin [cd/m² per m].
 template <class Source>
 GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, float step,
                            int max_steps, Bands bands, bool glows, const Source& source) {
-  // What is behind so much is not seen.
+  // Transmittance below which nothing behind is seen.
   constexpr float kDark = 1e-3f;
   MarchResult result;
   result.transmittance = {1, 1, 1};
@@ -159,9 +159,9 @@ GLOAM_HD MarchResult march(const MediaView& media, const Ray& ray, float tmax, f
         result.transmittance *= media::exp_of(-depth);
         media::add(point, 1 / parts, &mean);
       }
-      const Vec3f share = before * media::mean_transmittance(mean.extinction * ds) * ds;
-      result.scattered += share * mean.scattering;
-      result.radiance += share * source(MarchStep{mean, begin, ds, share, is_hot});
+      const Vec3f weight = before * media::mean_transmittance(mean.extinction * ds) * ds;
+      result.scattered += weight * mean.scattering;
+      result.radiance += weight * source(MarchStep{mean, begin, ds, weight, is_hot});
       if (max_component(result.transmittance) < kDark) return result;
     }
   }

@@ -11,7 +11,7 @@ inline constexpr int kBoundsVoxels = 8;
 /// Volumes of a scene, at most: a ray may pass through all of them at once.
 inline constexpr int kMaxVolumes = 32;
 
-/// What no lookup in a cell exceeds.
+/// Bounds that no lookup in a cell exceeds.
 struct CellBounds {
   float low = 0, high = 0;  ///< of the density [kg/m³]
   float hottest = 0;        ///< [K]
@@ -47,8 +47,8 @@ struct VolumeView {
   bool changes = false;  ///< its grids are others in every picture
 };
 
-/// Where a volume gives off light, to draw points of it: a cell of the grid of bounds, then one of
-/// its voxels. Steers sampling alone.
+/// Emission of a volume, for sampling points of it: a cell of the grid of bounds, then one of its
+/// voxels. Steers sampling alone.
 struct GlowView {
   static constexpr uint32_t kSums = kBoundsVoxels * kBoundsVoxels * kBoundsVoxels + 1;
   uint32_t volume = 0;
@@ -58,7 +58,7 @@ struct GlowView {
   float reach = 0;                     ///< half its diagonal [m]
   float strength = 0;                  ///< mean luminous intensity, at most [cd]
   float voxels_per_volume = 0;         ///< [1/m³]
-  DeviceSpan<const float> cell_sums;   ///< running sums of the cells' shares, 0 to 1
+  DeviceSpan<const float> cell_sums;   ///< running sums of the cells' probabilities, 0 to 1
   DeviceSpan<const int> rows;          ///< of each cell; -1 = dark
   DeviceSpan<const float> voxel_sums;  ///< the same of a cell's voxels, x fastest; kSums in a row
 };
@@ -131,7 +131,7 @@ GLOAM_HD bool glows(const VolumeView& v, float hottest, Bands bands) {
   return v.emission > 0 && hottest >= BlackBodyTable::kLow && bands.is_visible();
 }
 
-/// What black bodies would send at this point, times the medium's emission [cd/m²].
+/// Radiance of black bodies at this point, times the medium's emission [cd/m²].
 GLOAM_HD Vec3f glow_at(const MediaView& media, const VolumeView& v, Vec3f p_G, Bands bands) {
   if (!(v.emission > 0) || !bands.is_visible()) return {};
   const Vec3f light = media.black_body.at(temperature_at(v, p_G)) * v.emission;

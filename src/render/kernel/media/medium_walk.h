@@ -52,7 +52,7 @@ class CellWalk {
     return true;
   }
 
-  /// To the next cell; false behind the last.
+  /// Moves to the next cell; false behind the last.
   GLOAM_HD bool advance() {
     if (to_ >= end_) return false;
     if (is_inside_) {
@@ -89,8 +89,8 @@ class CellWalk {
   bool is_inside_;
 };
 
-/// Whether some part of the segment [0, tmax] lies in a volume. Where none does, the random walks
-/// of medium.h draw nothing.
+/// Whether some part of the segment [0, tmax] lies in a volume. If not, the random walks of
+/// medium.h use no random numbers.
 GLOAM_HD bool meets_media(const MediaView& media, const Ray& ray, float tmax) {
   CellWalk walk;
   for (uint32_t i = 0; i < media.volumes.size; ++i) {
@@ -114,7 +114,7 @@ class MediumWalk {
   GLOAM_HD const CellWalk& operator[](int i) const { return walks_[i]; }
   GLOAM_HD float to() const { return to_; }  ///< distance at which the segment ends [m]
 
-  /// To the next segment.
+  /// Moves to the next segment.
   GLOAM_HD void advance() {
     for (int i = 0; i < count_;) {
       if (walks_[i].to() <= to_ && !walks_[i].advance()) {

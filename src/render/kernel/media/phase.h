@@ -1,6 +1,7 @@
 #pragma once
-// Into which directions a medium scatters: Henyey and Greenstein 1941, "Diffuse radiation in the
-// galaxy". Cosines are between the directions of flight before and after. Device-safe.
+// Phase function: directions into which a medium scatters (Henyey and Greenstein 1941, "Diffuse
+// radiation in the galaxy"). Cosines are between the directions of flight before and after.
+// Device-safe.
 
 #include "render/kernel/media/medium_view.h"
 
@@ -20,17 +21,17 @@ GLOAM_HD float sample_henyey_greenstein(float g, float u) {
   return clamp((1.0f + g * g - a * a) / (2.0f * g), -1.0f, 1.0f);
 }
 
-/// Shares by which a band is drawn for the decisions that one alone can make: with a path's
-/// throughput, what the bands carry together never grows (Wilkie et al. 2014, "Hero wavelength
-/// spectral sampling").
-GLOAM_HD Vec3f band_shares(Vec3f throughput) {
+/// Probabilities of the bands for the decisions that one alone can make: in proportion to a path's
+/// throughput, the sum over the bands never grows (Wilkie et al. 2014, "Hero wavelength spectral
+/// sampling").
+GLOAM_HD Vec3f band_probabilities(Vec3f throughput) {
   const float sum = throughput.x + throughput.y + throughput.z;
   return sum > 0 ? throughput / sum : Vec3f{1.0f / 3, 1.0f / 3, 1.0f / 3};
 }
-GLOAM_HD int draw_band(Vec3f shares, float u) {
-  if (u < shares.x) return 0;
-  if (shares.y > 0 && (u < shares.x + shares.y || !(shares.z > 0))) return 1;
-  return shares.z > 0 ? 2 : 0;  // never a band without a share, however the sum is rounded
+GLOAM_HD int sample_band(Vec3f probability, float u) {
+  if (u < probability.x) return 0;
+  if (probability.y > 0 && (u < probability.x + probability.y || !(probability.z > 0))) return 1;
+  return probability.z > 0 ? 2 : 0;  // never a band of probability zero, however the sum is rounded
 }
 
 /// Per band [1/sr]. `pdf`: of sample_phase() with the same throughput.
@@ -39,7 +40,7 @@ GLOAM_HD Vec3f eval_phase(const VolumeView& volume, Bands bands, Vec3f throughpu
   const Vec3f g = bands.of(volume.g);
   const Vec3f p{henyey_greenstein(g.x, cosine), henyey_greenstein(g.y, cosine),
                 henyey_greenstein(g.z, cosine)};
-  *pdf = dot(band_shares(throughput), p);
+  *pdf = dot(band_probabilities(throughput), p);
   return p;
 }
 
@@ -54,7 +55,7 @@ struct PhaseSample {
 GLOAM_HD PhaseSample sample_phase(const VolumeView& volume, Bands bands, Vec3f throughput, Vec3f d,
                                   float u_band, Vec2f u) {
   PhaseSample sample;
-  const int band = draw_band(band_shares(throughput), u_band);
+  const int band = sample_band(band_probabilities(throughput), u_band);
   const float z = sample_henyey_greenstein(bands.of(volume.g)[band], u.x);
   const float r = safe_sqrt(1.0f - z * z);
   float s, c;

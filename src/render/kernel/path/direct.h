@@ -7,8 +7,8 @@
 
 namespace gloam {
 
-/// Shadow rays of a sample in scenes with a light tree, which takes as many lights. Their draws are
-/// stratified: one light in each half of the tree's weight.
+/// Shadow rays of a sample in scenes with a light tree, which takes as many lights. Their samples
+/// are stratified: one light in each half of the tree's weight.
 inline constexpr uint32_t kTreeShadows = 2;
 
 struct DirectState {
@@ -25,7 +25,7 @@ struct DirectState {
   Vec3f passing;                 ///< light that passes the surface met last
   RayCone cone;
   Sampler sampler;
-  LightPicker picker;
+  LightSampler light_sampler;
   Surface s;
   LayeredBsdf bsdf;
   Frame frame;
@@ -75,7 +75,7 @@ GLOAM_HD void meet_surface(const SceneView& scene, DirectState* d, const RayHit&
   d->result.radiance +=
       (d->s.emission + albedo * scene.ambient.on(d->s.normal)) * (d->transmittance * d->s.opacity);
   d->next_light = 0;
-  if (scene.has_many_lights()) d->picker.prepare(scene, d->s.p, d->s.geometric);
+  if (scene.has_many_lights()) d->light_sampler.prepare(scene, d->s.p, d->s.geometric);
 }
 
 /// Sets the shadow ray of the next light that can reach the surface; false when none is left.
@@ -88,12 +88,12 @@ GLOAM_HD bool next_shadow(const SceneView& scene, DirectState* d) {
     Vec2f u = d->sampler.next_2d();
     if (!all) u.x = (static_cast<float>(index) + u.x) * (1.0f / static_cast<float>(kTreeShadows));
     const LightSample light = all ? sample_one_light(scene, index, s.p, u, d->ray.time)
-                                  : d->picker.sample(scene, s.p, u, d->ray.time);
+                                  : d->light_sampler.sample(scene, s.p, u, d->ray.time);
     if (!(light.pdf > 0) || dot(light.wi, s.geometric) <= 0) continue;
     float pdf;
-    const float share = all ? 1.0f : 1.0f / static_cast<float>(kTreeShadows);
+    const float weight = all ? 1.0f : 1.0f / static_cast<float>(kTreeShadows);
     d->light_radiance = eval_bsdf(d->bsdf, d->wo, d->frame.to_local(light.wi), &pdf) *
-                        light.radiance * d->transmittance * (s.opacity * share / light.pdf);
+                        light.radiance * d->transmittance * (s.opacity * weight / light.pdf);
     if (max_component(d->light_radiance) <= 0) continue;
     if (!light.casts_shadow) {
       d->result.radiance += d->light_radiance;

@@ -8,21 +8,22 @@
 namespace gloam {
 namespace paths {
 
-/// Share of a path's weight behind its first vertex below which it may end by chance. The first
-/// vertex dims all of a pixel alike, and what the first reflections take off is not little: to end
-/// paths by their mere weight made more noise than it saved time.
+/// Fraction of a path's weight behind its first vertex below which it may end by Russian roulette.
+/// The first vertex dims all of a pixel alike, and what the first reflections take off is not
+/// little: to end paths by their mere weight made more noise than it saved time.
 inline constexpr float kRouletteBelow = 0.35f;
 
-/// Share of directions that are drawn from the guide instead of the BSDF: what is sharp finds its
-/// light by itself.
+/// Probability of sampling the guide instead of the BSDF: sharp lobes find their light by
+/// themselves.
 template <class F>
-GLOAM_HD F guided_share(const LightGuide& guide, const LayeredBsdfOf<F>& bsdf, MaskOf<F> guided) {
+GLOAM_HD F guide_probability(const LightGuide& guide, const LayeredBsdfOf<F>& bsdf,
+                             MaskOf<F> guided) {
   F diffuse = 1.0f - bsdf.base.p_layer;
   diffuse = select(bsdf.layered, diffuse * bsdf.p_base, diffuse);
-  return select(guided, guide.share * diffuse, F(0.0f));
+  return select(guided, guide.probability * diffuse, F(0.0f));
 }
 
-/// The BSDF at the vertices of paths, and what was drawn for the choice of its lobe.
+/// BSDF at the vertices of paths, and the random number for the choice of its lobe.
 template <class F>
 struct ScatterOf {
   FrameOf<F> frame;
@@ -30,12 +31,12 @@ struct ScatterOf {
   Vec3Of<F> wo;  ///< in `frame`
   F lobe{};
   GuideRowsOf<F> rows;
-  F guided{};  ///< share of directions by the guide
+  F guided{};  ///< probability of sampling the guide
 };
 
 /// Samples one light at the vertices of the `active` lanes.
 template <class F>
-GLOAM_HD NextEventOf<F> aim_at_light(const SceneView& scene, State<F>* path, const SurfaceOf<F>& v,
+GLOAM_HD NextEventOf<F> sample_light(const SceneView& scene, State<F>* path, const SurfaceOf<F>& v,
                                      MaskOf<F> active, ScatterOf<F>* at) {
   const Vec3Of<F> wo_W = -path->ray.d;
   at->bsdf = surface_bsdf(scene, v, wo_W, &at->frame, active);
@@ -43,12 +44,12 @@ GLOAM_HD NextEventOf<F> aim_at_light(const SceneView& scene, State<F>* path, con
   const LayeredBsdfOf<F>& bsdf = at->bsdf;
   const MaskOf<F> both_sides = bsdf.layered & ((bsdf.p_glass > 0.0f) | (bsdf.p_beyond > 0.0f));
 
-  at->rows = path->picker.prepare(scene, v.p, v.geometric, active, both_sides);
-  if (scene.has_glow()) path->picker.add_glow(scene, active);
-  if (scene.guides_directions()) at->guided = guided_share(scene.guide, bsdf, at->rows.guided);
+  at->rows = path->light_sampler.prepare(scene, v.p, v.geometric, active, both_sides);
+  if (scene.has_glow()) path->light_sampler.add_glow(scene, active);
+  if (scene.guides_directions()) at->guided = guide_probability(scene.guide, bsdf, at->rows.guided);
   at->lobe = path->sampler.next_1d(active);
   const Vec2Of<F> u = path->sampler.next_2d(active);
-  const LightSampleOf<F> light = path->picker.sample(scene, v.p, u, path->ray.time, active);
+  const LightSampleOf<F> light = path->light_sampler.sample(scene, v.p, u, path->ray.time, active);
   const F side = dot(light.wi, v.geometric);
   NextEventOf<F> event;
   event.lit = active & (light.pdf > 0.0f) & ((side > 0.0f) | (both_sides & (side < 0.0f)));
@@ -76,9 +77,10 @@ GLOAM_HD NextEventOf<F> aim_at_light(const SceneView& scene, State<F>* path, con
 /// Samples one direction at the vertices of the `active` lanes; returns the lanes whose path goes
 /// on.
 template <class F>
-GLOAM_HD MaskOf<F> turn(const SceneView& scene, const PathOptions& options, State<F>* path,
-                        const SurfaceOf<F>& v, const ScatterOf<F>& at, MaskOf<F> active) {
-  MaskOf<F> next = may_go_on(scene, options, *path, active);
+GLOAM_HD MaskOf<F> sample_direction(const SceneView& scene, const PathOptions& options,
+                                    State<F>* path, const SurfaceOf<F>& v, const ScatterOf<F>& at,
+                                    MaskOf<F> active) {
+  MaskOf<F> next = can_continue(scene, options, *path, active);
   const Vec2Of<F> u = path->sampler.next_2d(next);
   if (!any(next)) return next;
   BsdfSampleOf<F> sample;
@@ -100,7 +102,8 @@ GLOAM_HD MaskOf<F> turn(const SceneView& scene, const PathOptions& options, Stat
   next = next & (sample.pdf > 0.0f) & (sample.wi.z * side > 0.0f) &
          (max_component(sample.weight) > 0.0f);
   path->absorption = absorption_beyond(scene, v, next & (side < 0.0f), path->absorption);
-  go_on(next, v.p, leave_surface(v.p, v.geometric, wi, v.t), wi, sample.weight, sample.pdf, path);
+  spawn_ray(next, v.p, leave_surface(v.p, v.geometric, wi, v.t), wi, sample.weight, sample.pdf,
+            path);
   return next;
 }
 
@@ -110,61 +113,64 @@ template <class F, class Tracer>
 GLOAM_HD MaskOf<F> scatter(const SceneView& scene, const Tracer& tracer, const PathOptions& options,
                            State<F>* path, const SurfaceOf<F>& v, MaskOf<F> active) {
   ScatterOf<F> at;
-  const NextEventOf<F> event = aim_at_light(scene, path, v, active, &at);
+  const NextEventOf<F> event = sample_light(scene, path, v, active, &at);
   if (any(event.lit)) {
-    const Vec3Of<F> arriving = bring_light(scene, tracer, event.shadow, event.casts_shadow,
-                                           event.lit, event.arriving, path);
+    const Vec3Of<F> arriving = trace_shadow(scene, tracer, event.shadow, event.casts_shadow,
+                                            event.lit, event.arriving, path);
     path->result.radiance += select<F>(event.lit, arriving, Vec3Of<F>{});
   }
-  return turn(scene, options, path, v, at, active);
+  return sample_direction(scene, options, path, v, at, active);
 }
 
-/// Where rays of paths have ended, and what becomes of them there.
+/// End of a path's segment: the surface or medium vertex there, and whether the path scatters at it
+/// or passes.
 template <class F>
-struct ArrivalOf {
+struct SegmentEndOf {
   SurfaceOf<F> v;
-  MediumVertexOf<F> mote;      ///< in a medium, before the surface
-  MaskOf<F> through = false;   ///< goes on behind the surface as if it were not there
-  MaskOf<F> scatters = false;  ///< at the surface, or at the mote
+  MediumVertexOf<F> medium_vertex;  ///< in a medium, before the surface
+  MaskOf<F> through = false;        ///< goes on behind the surface as if it were not there
+  MaskOf<F> scatters = false;       ///< at the surface, or at the medium vertex
 };
 
-/// The rays of the `active` lanes have been traced: takes what they bring.
+/// Adds the light of what the rays of the `active` lanes have met, and decides what the paths do
+/// there.
 template <class F>
-GLOAM_HD ArrivalOf<F> arrive(const SceneView& scene, const PathOptions& options, State<F>* state,
-                             MaskOf<F> active, MaskOf<F> found, const RayHitOf<F>& hit) {
+GLOAM_HD SegmentEndOf<F> end_segment(const SceneView& scene, const PathOptions& options,
+                                     State<F>* state, MaskOf<F> active, MaskOf<F> found,
+                                     const RayHitOf<F>& hit) {
   using Mask = MaskOf<F>;
   State<F>& path = *state;
   const uint32_t max_depth = static_cast<uint32_t>(options.max_depth);
-  ArrivalOf<F> out;
+  SegmentEndOf<F> out;
   const Mask scattered = path.pdf_bsdf > 0.0f;
   if (scene.has_visible_lights && any(active & scattered)) {
     Vec2Of<F> u;
     if (scene.has_media()) u = path.sampler.next_2d(active & scattered);
     const Vec3Of<F> lamps = visible_lights(
-        scene, path.ray, select(found, hit.t, F(1e30f)), path.from, path.picker, path.pdf_bsdf,
-        active & scattered, [&](int i, float t) {
+        scene, path.ray, select(found, hit.t, F(1e30f)), path.from, path.light_sampler,
+        path.pdf_bsdf, active & scattered, [&](int i, float t) {
           return transmittance(scene.media, lane(path.ray, i), t, {}, WalkRandom(lane(u, i)));
         });
     path.result.radiance += select<F>(active & scattered, path.throughput * lamps, Vec3Of<F>{});
   }
-  MediumVertexOf<F>& mote = out.mote;
+  MediumVertexOf<F>& medium_vertex = out.medium_vertex;
   if (scene.has_media()) {
-    mote = cross_media(scene, select(found, hit.t, F(1e30f)), active, &path);
-    active = active & !mote.scattered;
-    found = found & !mote.scattered;
+    medium_vertex = cross_media(scene, select(found, hit.t, F(1e30f)), active, &path);
+    active = active & !medium_vertex.scattered;
+    found = found & !medium_vertex.scattered;
   }
   if (const Mask missed = active & !found; any(missed)) {
     Vec3Of<F> sky = sky_radiance_of(scene, path.ray.d, path.cone_spread, missed);
     sky = select<F>(path.depth > 0u, sky + in_all_lanes<F>(scene.sky_ambient), sky);
-    const F weight =
-        select(scattered, mis_weight(path.pdf_bsdf, path.picker.sky_pdf(scene, path.ray.d, missed)),
-               F(1.0f));
+    const F weight = select(
+        scattered, mis_weight(path.pdf_bsdf, path.light_sampler.sky_pdf(scene, path.ray.d, missed)),
+        F(1.0f));
     path.result.radiance += select<F>(missed, path.throughput * sky * weight, Vec3Of<F>{});
   }
   const Mask last = found & (path.depth > 0u) & (path.depth + 1u >= max_depth);
   if (any(last)) found = found & !gives_nothing(scene, hit, last);
-  if (!any(found | mote.scattered)) return out;
-  const F way = select(mote.scattered, mote.t, hit.t);
+  if (!any(found | medium_vertex.scattered)) return out;
+  const F way = select(medium_vertex.scattered, medium_vertex.t, hit.t);
   if (scene.has_layers() && any(max_component(path.absorption) > 0.0f)) {
     path.throughput *= through_glass(path.absorption, way);
   }
@@ -174,35 +180,36 @@ GLOAM_HD ArrivalOf<F> arrive(const SceneView& scene, const PathOptions& options,
   weigh_emission(scene, path, found, &v);
   Mask& through = out.through;
   if (scene.lets_light_through()) {
-    const F met = met_share(v);
-    const Mask thin = found & (met < 1.0f) & !(path.passed >= kMaxPassed);
-    if (any(thin)) through = thin & (path.sampler.next_1d(thin) >= met);
+    const F opacity = opacity_of(v);
+    const Mask thin = found & (opacity < 1.0f) & !(path.passed >= kMaxPassed);
+    if (any(thin)) through = thin & (path.sampler.next_1d(thin) >= opacity);
     path.passed = select(through, path.passed + 1u, UintOf<F>(0u));
-    // A clear sheet takes its own share of each colour.
+    // A clear sheet absorbs each colour by a fraction of its own.
     if (const Mask sheet = thin & (max_component(v.straight) > 0.0f); any(sheet)) {
-      const Vec3Of<F> passing = path.throughput * passing_light(v) / (1.0f - met);
-      path.throughput = select<F>(
-          sheet, select<F>(through, passing, path.throughput * (v.opacity / met)), path.throughput);
+      const Vec3Of<F> passing = path.throughput * passing_light(v) / (1.0f - opacity);
+      path.throughput =
+          select<F>(sheet, select<F>(through, passing, path.throughput * (v.opacity / opacity)),
+                    path.throughput);
     }
   }
   Mask solid = found & !through;
-  path.cone_width =
-      select(found | mote.scattered, path.cone_width + path.cone_spread * way, path.cone_width);
+  path.cone_width = select(found | medium_vertex.scattered,
+                           path.cone_width + path.cone_spread * way, path.cone_width);
   const Mask first = solid & !path.seen_first;
-  if (const Mask hidden = mote.scattered & !path.seen_first; any(hidden)) {
+  if (const Mask hidden = medium_vertex.scattered & !path.seen_first; any(hidden)) {
     each_lane(hidden, [&](int i) {
       set_lane(&path.result.albedo, i,
-               Bands{}.of(scene.media.volumes[lane(mote.volume, i)].albedo));
+               Bands{}.of(scene.media.volumes[lane(medium_vertex.volume, i)].albedo));
     });
   }
-  path.seen_first = path.seen_first | first | mote.scattered;
+  path.seen_first = path.seen_first | first | medium_vertex.scattered;
   path.result.albedo = select<F>(first, v.base_color, path.result.albedo);
   path.result.normal = select<F>(first, v.normal, path.result.normal);
   path.result.radiance += select<F>(solid, path.throughput * v.emission, Vec3Of<F>{});
 
-  path.depth += select(solid | mote.scattered, UintOf<F>(1u), UintOf<F>(0u));
+  path.depth += select(solid | medium_vertex.scattered, UintOf<F>(1u), UintOf<F>(0u));
   Mask& scatters = out.scatters;
-  scatters = (solid | mote.scattered) & !(path.depth >= max_depth);
+  scatters = (solid | medium_vertex.scattered) & !(path.depth >= max_depth);
   if (const Mask chance = scatters & (path.depth > static_cast<uint32_t>(options.roulette_depth));
       any(chance)) {
     const F survive = min(max_component(path.throughput) / (kRouletteBelow * path.scale), 1.0f);
@@ -223,13 +230,13 @@ GLOAM_HD MaskOf<F> advance(const SceneView& scene, const Tracer& tracer, const P
   RayHitOf<F> hit;
   path->result.rays += select(active, UintOf<F>(1u), UintOf<F>(0u));
   const MaskOf<F> found = tracer.closest(path->ray, active, coherent, &hit);
-  const ArrivalOf<F> at = arrive(scene, options, path, active, found, hit);
+  const SegmentEndOf<F> at = end_segment(scene, options, path, active, found, hit);
   active = at.through;
-  if (const MaskOf<F> on = at.scatters & !at.mote.scattered; any(on)) {
+  if (const MaskOf<F> on = at.scatters & !at.medium_vertex.scattered; any(on)) {
     active = active | scatter(scene, tracer, options, path, at.v, on);
   }
-  if (const MaskOf<F> in = at.scatters & at.mote.scattered; any(in)) {
-    active = active | scatter_in_media(scene, tracer, options, path, at.mote, in);
+  if (const MaskOf<F> in = at.scatters & at.medium_vertex.scattered; any(in)) {
+    active = active | scatter_in_media(scene, tracer, options, path, at.medium_vertex, in);
   }
   return active;
 }
@@ -249,8 +256,8 @@ GLOAM_HD PathResultOf<F> trace_path(const SceneView& scene, const Tracer& tracer
                                     const PathOptions& options, const SamplerOf<F>& sampler,
                                     MaskOf<F> active = true) {
   paths::State<F> path;
-  LightSharesOf<F> shares;
-  path.picker.keep_in(&shares);
+  LightProbabilitiesOf<F> probabilities;
+  path.light_sampler.keep_in(&probabilities);
   path.start({ray, cone_width, cone_spread, sampler}, true);
   for (bool coherent = true; any(active); coherent = false) {
     active = paths::advance(scene, tracer, options, coherent, &path, active);

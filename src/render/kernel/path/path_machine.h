@@ -1,7 +1,7 @@
 #pragma once
 // The path stage with one place at which rays are traced, for one path: on a GPU the instruction
-// cache is the first wall. Draws what trace_path draws, save that in media the shadow ray's numbers
-// come after those of the next direction. Device-safe.
+// cache is the first wall. Uses the random numbers that trace_path uses, save that in media the
+// shadow ray's numbers come after those of the next direction. Device-safe.
 
 #include "render/kernel/path/path.h"
 
@@ -31,21 +31,21 @@ GLOAM_HD bool pass_surface(const SceneView& scene, const RayHit& hit, ShadowWalk
 /// 0, and give the answers to advance() until it returns false.
 class PathMachine {
  public:
-  /// `shares` is the path's as long as it runs.
+  /// `probabilities` are the path's as long as it runs.
   GLOAM_HD void start(const Ray& ray, RayCone cone, const Sampler& sampler,
-                      LightSharesOf<float>* shares) {
+                      LightProbabilitiesOf<float>* probabilities) {
     path_ = {};
-    path_.picker.keep_in(shares);
+    path_.light_sampler.keep_in(probabilities);
     path_.ray = ray;
     path_.cone_width = cone.width;
     path_.cone_spread = cone.spread;
     path_.sampler = sampler;
     path_.throughput = {1, 1, 1};
     in_shadow_ = false;
-    goes_on_ = true;
+    continues_ = true;
   }
 
-  /// Any hit ends it.
+  /// Shadow ray: any hit ends it.
   GLOAM_HD Ray shadow(const SceneView& scene) const {
     Ray ray = shadow_.ray;
     if (!in_shadow_ || scene.lets_light_through()) ray.tmax = 0;
@@ -54,7 +54,7 @@ class PathMachine {
   GLOAM_HD Ray ray(const SceneView& scene) const {
     if (in_shadow_ && scene.lets_light_through()) return shadow_.ray;
     Ray ray = path_.ray;
-    if (!goes_on_) ray.tmax = 0;
+    if (!continues_) ray.tmax = 0;
     return ray;
   }
   GLOAM_HD const PathResult& result() const { return path_.result; }
@@ -65,42 +65,44 @@ class PathMachine {
       ++path_.result.rays;
       if (scene.lets_light_through()) {
         in_shadow_ = found && paths::pass_surface(scene, hit, &shadow_);
-        if (!in_shadow_) bring_light(scene);
-        return in_shadow_ || goes_on_;
+        if (!in_shadow_) add_shadow_light(scene);
+        return in_shadow_ || continues_;
       }
       in_shadow_ = false;
-      if (!shadowed) bring_light(scene);
+      if (!shadowed) add_shadow_light(scene);
     }
-    if (!goes_on_) return false;
+    if (!continues_) return false;
     ++path_.result.rays;
-    const paths::ArrivalOf<float> at = paths::arrive(scene, options, &path_, true, found, hit);
-    goes_on_ = at.through;
+    const paths::SegmentEndOf<float> at =
+        paths::end_segment(scene, options, &path_, true, found, hit);
+    continues_ = at.through;
     if (at.scatters) scatter(scene, options, at);
-    return in_shadow_ || goes_on_;
+    return in_shadow_ || continues_;
   }
 
  private:
-  /// Aims the shadow ray and turns the path.
+  /// Samples a light and a direction at the vertex.
   GLOAM_HD void scatter(const SceneView& scene, const PathOptions& options,
-                        const paths::ArrivalOf<float>& at) {
+                        const paths::SegmentEndOf<float>& at) {
     paths::NextEventOf<float> event;
-    if (at.mote.scattered) {
+    if (at.medium_vertex.scattered) {
       float band;
-      event = paths::aim_at_light_in_media(scene, &path_, at.mote, true, &band);
-      goes_on_ = paths::turn_in_media(scene, options, &path_, at.mote, band, true);
+      event = paths::sample_light_in_media(scene, &path_, at.medium_vertex, true, &band);
+      continues_ =
+          paths::sample_phase_direction(scene, options, &path_, at.medium_vertex, band, true);
     } else {
       paths::ScatterOf<float> how;
-      event = paths::aim_at_light(scene, &path_, at.v, true, &how);
-      goes_on_ = paths::turn(scene, options, &path_, at.v, how, true);
+      event = paths::sample_light(scene, &path_, at.v, true, &how);
+      continues_ = paths::sample_direction(scene, options, &path_, at.v, how, true);
     }
     if (!event.lit) return;
     shadow_ = {event.shadow, event.arriving, 0};
     in_shadow_ = event.casts_shadow;
-    if (!in_shadow_) bring_light(scene);
+    if (!in_shadow_) add_shadow_light(scene);
   }
 
-  /// The light that is left of the shadow ray's.
-  GLOAM_HD void bring_light(const SceneView& scene) {
+  /// Adds the light that is left of the shadow ray's.
+  GLOAM_HD void add_shadow_light(const SceneView& scene) {
     if (!(max_component(shadow_.arriving) > 0)) return;
     path_.result.radiance +=
         shadow_.arriving * paths::through_media(scene, shadow_.ray, true, &path_.sampler);
@@ -109,16 +111,16 @@ class PathMachine {
   paths::State<float> path_;
   paths::ShadowWalk shadow_;
   bool in_shadow_ = false;  ///< a shadow ray is to be traced
-  bool goes_on_ = true;     ///< the path itself
+  bool continues_ = true;   ///< the path itself
 };
 
-/// As trace_path.
+/// Traces a path as trace_path does.
 template <class Tracer>
 GLOAM_HD PathResult run_path(const SceneView& scene, const Tracer& tracer, const Ray& ray,
                              RayCone cone, const PathOptions& options, const Sampler& sampler) {
-  LightSharesOf<float> shares;
+  LightProbabilitiesOf<float> probabilities;
   PathMachine path;
-  path.start(ray, cone, sampler, &shares);
+  path.start(ray, cone, sampler, &probabilities);
   RayHit hit;
   bool shadowed, found;
   do {

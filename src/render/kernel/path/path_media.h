@@ -5,7 +5,7 @@
 
 namespace gloam::paths {
 
-/// Where media scatter rays.
+/// Vertices at which media scatter rays.
 template <class F>
 struct MediumVertexOf {
   MaskOf<F> scattered = false;
@@ -13,7 +13,7 @@ struct MediumVertexOf {
   UintOf<F> volume{};  ///< row of MediaView::volumes
 };
 
-/// Takes the media along the rays of the `active` lanes up to `tmax` into account.
+/// Samples the media along the rays of the `active` lanes up to `tmax`: emission and scattering.
 template <class F>
 GLOAM_HD MediumVertexOf<F> cross_media(const SceneView& scene, F tmax, MaskOf<F> active,
                                        State<F>* path) {
@@ -21,14 +21,14 @@ GLOAM_HD MediumVertexOf<F> cross_media(const SceneView& scene, F tmax, MaskOf<F>
   const Vec2Of<F> first = path->sampler.next_2d(active), later = path->sampler.next_2d(active);
   each_lane(active, [&](int i) {
     const Vec3f throughput = lane(path->throughput, i);
-    const auto share = [&](const VolumeView& volume, Vec3f p_W, Vec3f p_G) {
+    const auto emission_weight = [&](const VolumeView& volume, Vec3f p_W, Vec3f p_G) {
       const float pdf = lane(path->pdf_bsdf, i);
       if (!scene.has_glow() || volume.glow < 0 || !(pdf > 0)) return 1.0f;
-      return mis_weight(pdf, path->picker.glow_pdf(scene, volume.glow, i, p_W, p_G));
+      return mis_weight(pdf, path->light_sampler.glow_pdf(scene, volume.glow, i, p_W, p_G));
     };
     const MediumEvent event =
         sample_distance(scene.media, lane(path->ray, i), lane(tmax, i), {}, throughput,
-                        lane(first, i), WalkRandom(lane(later, i)), share);
+                        lane(first, i), WalkRandom(lane(later, i)), emission_weight);
     set_lane(&path->result.radiance, i,
              lane(path->result.radiance, i) + throughput * event.emission);
     set_lane(&path->throughput, i, throughput * event.weight);
@@ -56,18 +56,18 @@ GLOAM_HD Vec3Of<F> eval_phases(const SceneView& scene, const State<F>& path,
   return value;
 }
 
-/// Samples one light at the vertices of the `active` lanes. `band` is what was drawn for the choice
-/// of a band.
+/// Samples one light at the vertices of the `active` lanes. `band`: the random number for the
+/// choice of a band.
 template <class F>
-GLOAM_HD NextEventOf<F> aim_at_light_in_media(const SceneView& scene, State<F>* path,
+GLOAM_HD NextEventOf<F> sample_light_in_media(const SceneView& scene, State<F>* path,
                                               const MediumVertexOf<F>& v, MaskOf<F> active,
                                               F* band) {
   const Vec3Of<F> p = path->ray.o + path->ray.d * v.t;
-  path->picker.prepare(scene, p, Vec3Of<F>{}, active);
-  if (scene.has_glow()) path->picker.add_glow(scene, active);
+  path->light_sampler.prepare(scene, p, Vec3Of<F>{}, active);
+  if (scene.has_glow()) path->light_sampler.add_glow(scene, active);
   *band = path->sampler.next_1d(active);
   const Vec2Of<F> u = path->sampler.next_2d(active);
-  const LightSampleOf<F> light = path->picker.sample(scene, p, u, path->ray.time, active);
+  const LightSampleOf<F> light = path->light_sampler.sample(scene, p, u, path->ray.time, active);
   NextEventOf<F> event;
   event.lit = active & (light.pdf > 0.0f);
   if (!any(event.lit)) return event;
@@ -84,10 +84,11 @@ GLOAM_HD NextEventOf<F> aim_at_light_in_media(const SceneView& scene, State<F>* 
 /// Samples one direction at the vertices of the `active` lanes; returns the lanes whose path goes
 /// on.
 template <class F>
-GLOAM_HD MaskOf<F> turn_in_media(const SceneView& scene, const PathOptions& options, State<F>* path,
-                                 const MediumVertexOf<F>& v, F band, MaskOf<F> active) {
+GLOAM_HD MaskOf<F> sample_phase_direction(const SceneView& scene, const PathOptions& options,
+                                          State<F>* path, const MediumVertexOf<F>& v, F band,
+                                          MaskOf<F> active) {
   const Vec3Of<F> p = path->ray.o + path->ray.d * v.t;
-  const MaskOf<F> next = may_go_on(scene, options, *path, active);
+  const MaskOf<F> next = can_continue(scene, options, *path, active);
   const Vec2Of<F> u = path->sampler.next_2d(next);
   Vec3Of<F> wi, weight;
   F pdf = 1.0f;
@@ -99,7 +100,7 @@ GLOAM_HD MaskOf<F> turn_in_media(const SceneView& scene, const PathOptions& opti
     set_lane(&weight, i, s.weight);
     set_lane(&pdf, i, s.pdf);
   });
-  go_on(next, p, p, wi, weight, pdf, path);
+  spawn_ray(next, p, p, wi, weight, pdf, path);
   return next;
 }
 
@@ -110,13 +111,13 @@ GLOAM_HD MaskOf<F> scatter_in_media(const SceneView& scene, const Tracer& tracer
                                     const PathOptions& options, State<F>* path,
                                     const MediumVertexOf<F>& v, MaskOf<F> active) {
   F band{};
-  const NextEventOf<F> event = aim_at_light_in_media(scene, path, v, active, &band);
+  const NextEventOf<F> event = sample_light_in_media(scene, path, v, active, &band);
   if (any(event.lit)) {
-    const Vec3Of<F> arriving = bring_light(scene, tracer, event.shadow, event.casts_shadow,
-                                           event.lit, event.arriving, path);
+    const Vec3Of<F> arriving = trace_shadow(scene, tracer, event.shadow, event.casts_shadow,
+                                            event.lit, event.arriving, path);
     path->result.radiance += select<F>(event.lit, arriving, Vec3Of<F>{});
   }
-  return turn_in_media(scene, options, path, v, band, active);
+  return sample_phase_direction(scene, options, path, v, band, active);
 }
 
 }  // namespace gloam::paths

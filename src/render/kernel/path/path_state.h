@@ -1,7 +1,7 @@
 #pragma once
-// What a path carries along, and what it asks of the scene on its way. Device-safe.
+// State of a path, and its tests for occlusion and transmittance. Device-safe.
 
-#include "render/kernel/light/light_picker.h"
+#include "render/kernel/light/light_sampler.h"
 #include "render/kernel/math/sampler.h"
 #include "render/kernel/media/medium.h"
 
@@ -14,7 +14,7 @@ struct PathOptions {
   int roulette_depth = 100;  ///< segments before Russian roulette starts
 };
 
-/// What one camera sample saw.
+/// Result of one camera sample.
 template <class F>
 struct PathResultOf {
   Vec3Of<F> radiance;   ///< [cd/m²]
@@ -46,11 +46,11 @@ struct State {
   F cone_width{}, cone_spread{};
   SamplerOf<F> sampler;
   Vec3Of<F> throughput;
-  F scale = 1.0f;           ///< the most of it behind the first vertex
-  F pdf_bsdf = 0.0f;        ///< of the direction of the path's ray; 0 = from the camera
-  Vec3Of<F> from;           ///< the last scattering vertex
-  LightPickerOf<F> picker;  ///< of that vertex
-  Vec3Of<F> absorption;     ///< of the glass that the path is in [1/m]
+  F scale = 1.0f;                   ///< the most of it behind the first vertex
+  F pdf_bsdf = 0.0f;                ///< of the direction of the path's ray; 0 = from the camera
+  Vec3Of<F> from;                   ///< the last scattering vertex
+  LightSamplerOf<F> light_sampler;  ///< of that vertex
+  Vec3Of<F> absorption;             ///< of the glass that the path is in [1/m]
 
   /// The given lanes begin a path; what the others are at stays.
   GLOAM_HD void start(const CameraSampleOf<F>& camera, MaskOf<F> lanes) {
@@ -84,15 +84,15 @@ struct NextEventOf {
   Vec3Of<F> arriving;
 };
 
-/// Share of light that glass lets through on a way of length t.
+/// Transmittance of glass over a way of length t.
 template <class F>
 GLOAM_HD Vec3Of<F> through_glass(Vec3Of<F> absorption, F t) {
-  Vec3Of<F> share = in_all_lanes<F>({1, 1, 1});
+  Vec3Of<F> transmittance = in_all_lanes<F>({1, 1, 1});
   each_lane(max_component(absorption) > 0.0f, [&](int i) {
     const Vec3f depth = lane(absorption, i) * lane(t, i);
-    set_lane(&share, i, {expf(-depth.x), expf(-depth.y), expf(-depth.z)});
+    set_lane(&transmittance, i, {expf(-depth.x), expf(-depth.y), expf(-depth.z)});
   });
-  return share;
+  return transmittance;
 }
 
 /// Absorption beyond the surfaces of the lanes in `crossing`.
@@ -134,7 +134,7 @@ GLOAM_HD void weigh_emission(const SceneView& scene, const State<F>& path, MaskO
   const MaskOf<F> sampled = found & (max_component(s->emission) > 0.0f) & (path.pdf_bsdf > 0.0f);
   if (!any(sampled)) return;
   const F pdf = emitter_pdf(scene, path, *s, sampled, [&](uint32_t row, int i) {
-    return path.picker.probability(scene, row, i);
+    return path.light_sampler.probability(scene, row, i);
   });
   s->emission =
       select<F>(sampled & (pdf > 0.0f), s->emission * mis_weight(path.pdf_bsdf, pdf), s->emission);
@@ -151,7 +151,7 @@ GLOAM_HD MaskOf<F> gives_nothing(const SceneView& scene, const RayHitOf<F>& hit,
   return dark;
 }
 
-/// Share of light that surfaces let through along the shadow rays of the `open` lanes.
+/// Transmittance of surfaces along the shadow rays of the `open` lanes.
 template <class F, class Tracer>
 GLOAM_HD Vec3Of<F> transmit(const SceneView& scene, const Tracer& tracer, RayOf<F> ray,
                             MaskOf<F> open, UintOf<F>* rays) {
@@ -175,38 +175,39 @@ GLOAM_HD Vec3Of<F> transmit(const SceneView& scene, const Tracer& tracer, RayOf<
   return light;
 }
 
-/// Share of light that media let through along the rays of the `active` lanes.
+/// Transmittance of media along the rays of the `active` lanes.
 template <class F>
 GLOAM_HD Vec3Of<F> through_media(const SceneView& scene, const RayOf<F>& ray, MaskOf<F> active,
                                  SamplerOf<F>* sampler) {
-  Vec3Of<F> share = in_all_lanes<F>({1, 1, 1});
-  if (!scene.has_media()) return share;
+  Vec3Of<F> passed = in_all_lanes<F>({1, 1, 1});
+  if (!scene.has_media()) return passed;
   const Vec2Of<F> u = sampler->next_2d(active);
   each_lane(active, [&](int i) {
     const Ray one = lane(ray, i);
-    set_lane(&share, i, transmittance(scene.media, one, one.tmax, {}, WalkRandom(lane(u, i))));
+    set_lane(&passed, i, transmittance(scene.media, one, one.tmax, {}, WalkRandom(lane(u, i))));
   });
-  return share;
+  return passed;
 }
 
-/// What is left of `arriving` at the near end of shadow rays, in the `lit` lanes.
+/// Light of a light sample that gets through along its shadow ray, in the `lit` lanes. `arriving`:
+/// the same where nothing is in between.
 template <class F, class Tracer>
-GLOAM_HD Vec3Of<F> bring_light(const SceneView& scene, const Tracer& tracer, const RayOf<F>& shadow,
-                               MaskOf<F> casts_shadow, MaskOf<F> lit, Vec3Of<F> arriving,
-                               State<F>* path) {
+GLOAM_HD Vec3Of<F> trace_shadow(const SceneView& scene, const Tracer& tracer,
+                                const RayOf<F>& shadow, MaskOf<F> casts_shadow, MaskOf<F> lit,
+                                Vec3Of<F> arriving, State<F>* path) {
   if (const MaskOf<F> shadowed = lit & casts_shadow; any(shadowed)) {
-    const Vec3Of<F> share = transmit(scene, tracer, shadow, shadowed, &path->result.rays);
-    arriving = select<F>(shadowed, arriving * share, arriving);
+    const Vec3Of<F> passed = transmit(scene, tracer, shadow, shadowed, &path->result.rays);
+    arriving = select<F>(shadowed, arriving * passed, arriving);
   }
   const MaskOf<F> left = lit & (max_component(arriving) > 0.0f);
   return arriving * through_media(scene, shadow, left, &path->sampler);
 }
 
-/// Sends the paths of the `next` lanes on from p, or `o` just off it, along wi, which was drawn
+/// Continues the paths of the `next` lanes from p, or `o` just off it, along wi, which was sampled
 /// with the density `pdf`.
 template <class F>
-GLOAM_HD void go_on(MaskOf<F> next, Vec3Of<F> p, Vec3Of<F> o, Vec3Of<F> wi, Vec3Of<F> weight, F pdf,
-                    State<F>* path) {
+GLOAM_HD void spawn_ray(MaskOf<F> next, Vec3Of<F> p, Vec3Of<F> o, Vec3Of<F> wi, Vec3Of<F> weight,
+                        F pdf, State<F>* path) {
   path->throughput = select<F>(next, path->throughput * weight, path->throughput);
   path->pdf_bsdf = select(next, pdf, path->pdf_bsdf);
   path->scale = select(next & (path->depth == 1u), max_component(path->throughput), path->scale);
@@ -221,8 +222,8 @@ GLOAM_HD void go_on(MaskOf<F> next, Vec3Of<F> p, Vec3Of<F> o, Vec3Of<F> wi, Vec3
 /// Lanes that take one segment more, of which the last can only bring light from something that a
 /// ray can hit.
 template <class F>
-GLOAM_HD MaskOf<F> may_go_on(const SceneView& scene, const PathOptions& options,
-                             const State<F>& path, MaskOf<F> active) {
+GLOAM_HD MaskOf<F> can_continue(const SceneView& scene, const PathOptions& options,
+                                const State<F>& path, MaskOf<F> active) {
   if (scene.has_emitters) return active;
   return active & !(path.depth + 1u >= static_cast<uint32_t>(options.max_depth));
 }

@@ -13,7 +13,7 @@ GLOAM_HD bool warp_on_top(Weave weave, int column, int row) {
 
 /// Share of the crossings in the square of `width` < 3 crossings about (u, v) at which the weft
 /// lies on top, by area.
-GLOAM_HD float weft_share(Weave weave, const CellSplit& u, const CellSplit& v, float width) {
+GLOAM_HD float weft_coverage(Weave weave, const CellSplit& u, const CellSplit& v, float width) {
   const float half = 0.5f * width;
   float sum = 0;
   for (int y = -2; y <= 2; ++y) {
@@ -79,12 +79,12 @@ GLOAM_HD ProceduralSample procedural_fabric(const ProceduralDescription& d,
   }
   const Noise wear = fbm(at.p, 7.0f, 2, 0.5f, foot, d.seed + 7u);
   const float pattern = 1.0f - smooth_step(1.5f, 3.0f, cells);
-  float weft_share = 0.5f;
+  float weft_coverage = 0.5f;
   if (pattern > 0) {
-    weft_share = lerp(0.5f, fabrics::weft_share(d.weave, cu, cv, max(cells, 0.02f)), pattern);
+    weft_coverage = lerp(0.5f, fabrics::weft_coverage(d.weave, cu, cv, max(cells, 0.02f)), pattern);
   }
   s.base_color =
-      lerp(d.color_a, d.color_b, weft_share) *
+      lerp(d.color_a, d.color_b, weft_coverage) *
       max(shade * (1.0f + d.variation * (0.16f * tone + 0.05f * wear.field.value)), 0.0f);
   s.roughness = d.roughness;
   s.fuzz = d.fuzz;

@@ -30,9 +30,9 @@ GLOAM_HD ProceduralSample procedural_brick(const ProceduralDescription& d,
   const Field local_v{v.value - on.v + row.offset, v.gradient};  // keeps precision far out
   // The wandering that is no longer seen blurs joints.
   const float lost = wander * sqrtf(12.0f * wear.lost);
-  const auto share = [&](float width, Field* joint_u) {
+  const auto coverage = [&](float width, Field* joint_u) {
     const float w = sqrtf(width * width + lost * lost);
-    Field across = patterns::unit_share(u, pitch_u, d.gap, w);
+    Field across = patterns::unit_coverage(u, pitch_u, d.gap, w);
     if (d.bond != BrickBond::kStack) {  // several rows, shifted against each other
       const float t = smooth_step(0.6f, 1.6f, w / pitch_v);
       const float mean = d.bond == BrickBond::kRunning ? 1.0f - d.gap / pitch_u
@@ -40,11 +40,11 @@ GLOAM_HD ProceduralSample procedural_brick(const ProceduralDescription& d,
       across = across * (1.0f - t) + mean * t;
     }
     *joint_u = across;
-    return across * patterns::unit_share(local_v, pitch_v, d.gap, w);
+    return across * patterns::unit_coverage(local_v, pitch_v, d.gap, w);
   };
   Field joint;
-  const float brick = share(max(foot, 0.3f * d.bevel), &joint).value;
-  const Field rounded = share(max(foot, 2.0f * d.bevel), &joint);
+  const float brick = coverage(max(foot, 0.3f * d.bevel), &joint).value;
+  const Field rounded = coverage(max(foot, 2.0f * d.bevel), &joint);
   // One brick's shade: between the colours, and some burnt dark.
   const uint32_t h = hash_cell(patterns::repeat(u.value, pitch_u).index, row.index,
                                static_cast<int>(d.bond), d.seed);
@@ -113,9 +113,9 @@ GLOAM_HD ProceduralSample procedural_tiles(const ProceduralDescription& d,
   uint32_t h;
   if (d.tile == TileShape::kSquare) {
     const float pitch_v = d.size_v + d.gap;
-    const auto share = [&](float width) {
-      return patterns::unit_share(on.field_u(), pitch_u, d.gap, width) *
-             patterns::unit_share(on.field_v(), pitch_v, d.gap, width);
+    const auto coverage = [&](float width) {
+      return patterns::unit_coverage(on.field_u(), pitch_u, d.gap, width) *
+             patterns::unit_coverage(on.field_v(), pitch_v, d.gap, width);
     };
     const patterns::Repeat column = patterns::repeat(on.u, pitch_u),
                            row = patterns::repeat(on.v, pitch_v);
@@ -123,8 +123,8 @@ GLOAM_HD ProceduralSample procedural_tiles(const ProceduralDescription& d,
     from_u = column.offset - 0.5f * pitch_u;
     from_v = row.offset - 0.5f * pitch_v;
     smaller = min(pitch_u, pitch_v);
-    tile = share(sharp).value;
-    rounded = share(soft);
+    tile = coverage(sharp).value;
+    rounded = coverage(soft);
   } else {
     const masonry::HexCell cell = masonry::hexagon(on, pitch_u);
     h = hash_cell(cell.column, cell.row, 4, d.seed);
@@ -133,8 +133,8 @@ GLOAM_HD ProceduralSample procedural_tiles(const ProceduralDescription& d,
     smaller = pitch_u;
     const float mean = sqr(1.0f - d.gap / pitch_u);
     const float t = smooth_step(0.1f, 0.8f, foot / pitch_u);
-    const auto share = [&](float width) {
-      // Of an interval across the nearest border, what lies outside the joint.
+    const auto coverage = [&](float width) {
+      // Part of an interval across the nearest border that lies outside the joint.
       const float half = 0.5f * d.gap, lo = cell.inner.value - 0.5f * width, hi = lo + width;
       const float joint = clamp(hi, -half, half) - clamp(lo, -half, half);
       const auto in_joint = [&](float x) { return fabsf(x) < half ? 1.0f : 0.0f; };
@@ -142,8 +142,8 @@ GLOAM_HD ProceduralSample procedural_tiles(const ProceduralDescription& d,
                                  (in_joint(lo) - in_joint(hi)) / width);
       return here * (1.0f - t) + mean * t;
     };
-    tile = share(sharp).value;
-    rounded = share(soft);
+    tile = coverage(sharp).value;
+    rounded = coverage(soft);
   }
   const float left = patterns::detail_left(foot, smaller);
   const uint32_t g = mix_bits(h + 1u);

@@ -1,13 +1,13 @@
 #pragma once
-// What every family of procedural materials shares: its sample, the projection onto a surface, and
-// filtered patterns of repeated units. Device-safe.
+// Parts that all families of procedural materials fraction: the sample, the projection onto a
+// surface, and filtered patterns of repeated units. Device-safe.
 
 #include "render/kernel/math/noise.h"
 #include "world/materials/procedural_description.h"
 
 namespace gloam {
 
-/// Where a procedural material is asked for, in the frame that it is fixed to.
+/// Point at which a procedural material is asked for, in the frame that it is fixed to.
 struct ProceduralPoint {
   Vec3f p;              ///< [m]
   Vec3f n{0, 0, 1};     ///< unit normal; anything else is taken as one
@@ -56,7 +56,7 @@ GLOAM_HD Repeat repeat(float x, float period) {
 
 /// Share of [x - width/2, x + width/2] that lies inside units, which repeat with `period` and leave
 /// a `gap` centred on each border: exact for any width > 0.
-GLOAM_HD Field unit_share(Field x, float period, float gap, float width) {
+GLOAM_HD Field unit_coverage(Field x, float period, float gap, float width) {
   const float t = repeat(x.value, period).offset, body = period - gap, half = 0.5f * gap;
   const auto inside_below = [&](float y) {  // length inside units from 0 to y
     const float turns = floorf(y / period);
@@ -77,7 +77,7 @@ GLOAM_HD float detail_left(float footprint, float length) {
 }
 
 /// Round dots, at most one per square cell and wholly inside it, of radius up to `radius` <= 0.25
-/// [cells]: `presence` = share of cells that have one. Coverage as seen through `footprint`
+/// [cells]: `presence` = fraction of cells that have one. Coverage as seen through `footprint`
 /// [cells].
 struct Dots {
   float coverage;

@@ -73,8 +73,8 @@ GLOAM_HD ProceduralSample procedural_concrete(const ProceduralDescription& d,
              pit(fine.bowl, 95.0f, 0.4f * d.depth);
   if (d.size_u > 0 && d.size_v > 0) {
     const float width = max(foot, d.bevel);
-    const Field body = patterns::unit_share(on.field_u(), d.size_u, d.gap, width) *
-                       patterns::unit_share(on.field_v(), d.size_v, d.gap, width);
+    const Field body = patterns::unit_coverage(on.field_u(), d.size_u, d.gap, width) *
+                       patterns::unit_coverage(on.field_v(), d.size_v, d.gap, width);
     s.relief = s.relief + (body - 1.0f) * d.depth;
     dark = 1.0f - (1.0f - dark) * (0.35f + 0.65f * body.value);
     // Each panel cast a shade of its own; four tie holes of 25 mm at its quarters.

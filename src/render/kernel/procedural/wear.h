@@ -7,8 +7,8 @@ namespace gloam {
 namespace wearing {
 
 struct Scratches {
-  float share = 0;  ///< of the footprint
-  Field groove;     ///< depth, 0..1
+  float coverage = 0;  ///< of the footprint
+  Field groove;        ///< depth, 0..1
 };
 
 /// One layer of straight scratches in lanes `lane` apart, at most one per lane and length, turned
@@ -24,9 +24,9 @@ GLOAM_HD Scratches layer(const patterns::SurfaceFrame& on, float angle, float le
   const uint32_t h = hash_cell(row.cell, piece.cell, 0x5D, seed), g = mix_bits(h + 1u);
   // A scratch takes 30 to 100 % of the piece, fades at both ends, and leans within its lane.
   const float half = 0.5f * (0.3f + 0.7f * hash_unit(h, 1));
-  const float mean_share = presence * 0.65f * (8.0f / 15.0f) * width / lane;
+  const float mean_coverage = presence * 0.65f * (8.0f / 15.0f) * width / lane;
   const float left = patterns::detail_left(footprint, lane);
-  Scratches out{mean_share * (1.0f - left), {}};
+  Scratches out{mean_coverage * (1.0f - left), {}};
   if (left <= 0 || hash_unit(h, 0) >= presence) return out;
   const float t = (piece.f - 0.5f) / half;
   if (fabsf(t) >= 1) return out;
@@ -37,7 +37,7 @@ GLOAM_HD Scratches layer(const patterns::SurfaceFrame& on, float angle, float le
   if (fabsf(e) >= 1) return out;
   const float bell = sqr(1.0f - e * e), faint = width / wide;
   // The bell's integral is 16/15 of its half width.
-  out.share += left * faint * fade * bell * (15.0f / 16.0f);
+  out.coverage += left * faint * fade * bell * (15.0f / 16.0f);
   const float k = left * faint * faint;
   const Vec3f de = (across - along * (lean / (half * length))) * (1.0f / wide);
   const Vec3f dt = along * (1.0f / (half * length));
@@ -67,7 +67,7 @@ GLOAM_HD ProceduralSample procedural_scratches(const ProceduralDescription& d,
     const wearing::Scratches l =
         wearing::layer(on, main + spread * kPi * d.variation, d.scale * size,
                        0.035f * d.scale * size, d.gap * size, d.amount, at.footprint, seed);
-    clean *= 1.0f - min(l.share, 1.0f);
+    clean *= 1.0f - min(l.coverage, 1.0f);
     s.relief = s.relief - l.groove * (d.depth * size);
   }
   s.mask = 1.0f - clean;

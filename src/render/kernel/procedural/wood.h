@@ -13,7 +13,7 @@ struct LogPoint {
   Vec3f x, y, z;         ///< the log's axes in the material's frame
   float tone = 0;        ///< shade of this board, about 0, at most ±0.5
   Field seam{1, {}};     ///< 1 inside a board, 0 in the joint
-  float seam_share = 0;  ///< of the footprint
+  float seam_cover = 0;  ///< of the footprint
 };
 
 GLOAM_HD LogPoint solid(const ProceduralDescription& d, const ProceduralPoint& at) {
@@ -45,12 +45,12 @@ GLOAM_HD LogPoint board(const ProceduralDescription& d, const ProceduralPoint& a
   log.y = on.along_v * s + on.outwards * c;
   log.z = on.along_u;
   log.tone = (hash_unit(g, 1) - 0.5f) * patterns::detail_left(at.footprint, 1.5f * d.size_v);
-  const auto share = [&](float width) {
-    return patterns::unit_share(u, d.size_u, d.gap, width) *
-           patterns::unit_share(on.field_v(), d.size_v, d.gap, width);
+  const auto coverage = [&](float width) {
+    return patterns::unit_coverage(u, d.size_u, d.gap, width) *
+           patterns::unit_coverage(on.field_v(), d.size_v, d.gap, width);
   };
-  log.seam = share(max(at.footprint, d.bevel));
-  log.seam_share = 1.0f - log.seam.value;
+  log.seam = coverage(max(at.footprint, d.bevel));
+  log.seam_cover = 1.0f - log.seam.value;
   return log;
 }
 
@@ -115,14 +115,14 @@ GLOAM_HD ProceduralSample procedural_wood(const ProceduralDescription& d,
   color = lerp(color, d.color_c, 0.5f * clamp(pores.value, 0.0f, 1.0f));
   color = color * (1.0f + 0.35f * ray);
   ProceduralSample s;
-  s.base_color = lerp(color, d.color_c, log.seam_share);
+  s.base_color = lerp(color, d.color_c, log.seam_cover);
   const Field grain = fibre.field * 0.000008f - pores * 0.00003f;
   s.relief = Field{grain.value, to_material(grain.gradient)} + (log.seam - 1.0f) * d.depth;
   s.roughness = clamp(lerp(d.roughness + 0.08f * (pores.value - 0.05f) - 0.06f * (late - 0.25f),
-                           d.gap_roughness, log.seam_share),
+                           d.gap_roughness, log.seam_cover),
                       0.03f, 1.0f);
   s.metallic = d.metallic;
-  s.coat_weight = d.coat * (1.0f - log.seam_share);
+  s.coat_weight = d.coat * (1.0f - log.seam_cover);
   s.coat_roughness = d.coat_roughness;
   return s;
 }

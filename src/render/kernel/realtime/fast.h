@@ -13,13 +13,13 @@ struct FastTurnsOf {
   MaskOf<F> of_four = true;  ///< one of each quad
 };
 
-/// What becomes of the light that reflections' rays bring.
+/// Weights of the light that reflection rays bring.
 template <class F>
 struct ReflectionUseOf {
   MaskOf<F> goes = false;      ///< lanes that have a ray of their own
   MaskOf<F> together = false;  ///< in quads that share what they have,
   MaskOf<F> borrows = false;   ///< and have none
-  Vec3Of<F> weight;            ///< share of the ray's light that goes on to the camera
+  Vec3Of<F> weight;            ///< fraction of the ray's light that gets to the camera
   Vec3Of<F> albedo;            ///< of all light that is reflected
 };
 
@@ -50,13 +50,13 @@ GLOAM_HD void copy_lane(const ReflectionOf<F>& from, int i, ReflectionOf<F>* to,
   to->sampler.take_lane(k, from.sampler, i);
 }
 
-/// What one camera ray saw: base + air + through (albedo (direct + cached) + cached gloss +
-/// specular + what its reflection shows).
+/// Result of one camera ray; its radiance is base + air + through (albedo (direct + cached) +
+/// cached gloss + specular + the light of its reflection ray).
 template <class F>
 struct FastSampleOf {
   Vec3Of<F> base;     ///< [cd/m²], with its edges
   Vec3Of<F> air;      ///< light that media scatter [cd/m²]: noise of few samples
-  Vec3Of<F> through;  ///< share of the first solid surface's light that gets to the camera
+  Vec3Of<F> through;  ///< fraction of the first solid surface's light that gets to the camera
   MaskOf<F> solid = false;
   RayHitOf<F> hit;      ///< of that surface; t: distance from the camera
   Vec3Of<F> p, normal;  ///< where it is, world [m], and its shading normal
@@ -83,7 +83,8 @@ GLOAM_HD Vec3Of<F> look_along(const SceneView& scene, const Tracer& tracer,
   path.pdf_bsdf = r.pdf;
   path.sampler = r.sampler;
   if (scene.lights.size > kMaxFastLights) {  // for the chances of lamps that are met
-    fasts::prepare_picker(scene, r.from, r.normal, active, fasts::kGlowAmongLamps, &path.picker);
+    fasts::prepare_light_sampler(scene, r.from, r.normal, active, fasts::kGlowAmongLamps,
+                                 &path.light_sampler);
   }
   const Vec3Of<F> light =
       fasts::gather(scene, tracer, cache, true, 0.0f, r.flames, !r.flames, active, &path, requests)
@@ -92,14 +93,15 @@ GLOAM_HD Vec3Of<F> look_along(const SceneView& scene, const Tracer& tracer,
   return light;
 }
 
-/// What goes on to the camera when the rays have brought the light `seen`.
+/// Light towards the camera when the reflection rays have brought the light `seen`.
 template <class F>
 GLOAM_HD Vec3Of<F> reflected_light(const ReflectionUseOf<F>& r, const Vec3Of<F>& seen) {
   const Vec3Of<F> own = select<F>(r.goes, seen * r.weight, Vec3Of<F>{});
   if (!any(r.borrows)) return own;
   const auto over = [](F x, F y) { return x / max(y, F(1e-6f)); };
-  const Vec3Of<F> share{over(own.x, r.albedo.x), over(own.y, r.albedo.y), over(own.z, r.albedo.z)};
-  const Vec3Of<F> lent = quad_sums(select<F>(r.together, share, Vec3Of<F>{}));
+  const Vec3Of<F> irradiance{over(own.x, r.albedo.x), over(own.y, r.albedo.y),
+                             over(own.z, r.albedo.z)};
+  const Vec3Of<F> lent = quad_sums(select<F>(r.together, irradiance, Vec3Of<F>{}));
   return select<F>(r.borrows, lent * r.albedo, own);
 }
 
@@ -167,14 +169,14 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
     Vec3Of<F> diffuse, specular;
     const Mask borrows = even_quads<F>(solid, hit.instance, v.normal) & !turns.of_two;
     fasts::direct_light(scene, tracer, &path, v, shiny, frame, wo, traced, active, borrows, every,
-                        kDrawnLights, &diffuse, &specular);
+                        kSampledLights, &diffuse, &specular);
     const Vec2Of<F> u = path.sampler.next_2d(active);
     const Vec3Of<F> jitter{u.x, u.y, path.sampler.next_1d(active)};
     const Mask pane = active & !solid;
     CacheRequest asked[Lanes<F>::kCount];
     const fasts::CachePlaceOf<F> at = fasts::place_of(v);
     const CacheCellOf<F> cells = fasts::ask_cells(cache, at, active, jitter, 0, asked);
-    // What the first solid surface has of the cache is looked up when its cells have been traced.
+    // Light of the first solid surface is looked up later, when its cells have been traced.
     const Vec3Of<F> cached = fasts::cached_light(cache, at, cells, pane, 0, cache.mean);
     if (any(solid)) {
       const Vec3Of<F> out_W =
@@ -193,7 +195,7 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
     layer_albedo(*scene.albedo, v.roughness, wo.z, &a, &b);
     const Vec3Of<F> reflected = bsdf.base.f0 * a + bsdf.base.f90 * b;
     const Vec3Of<F> gloss = select<F>(traced, Vec3Of<F>{}, reflected);
-    // Of several panes any, by chance.
+    // Request of one of several panes, by chance.
     const F chosen = passed == 0 ? F(0.0f) : path.sampler.next_1d(pane);
     const Mask one = solid | (pane & (chosen * static_cast<float>(passed + 1) < 1.0f));
     each_lane(one,
@@ -204,10 +206,11 @@ GLOAM_HD FastSampleOf<F> trace_fast(const SceneView& scene, const Tracer& tracer
       const F pick = path.sampler.next_1d(traced);
       const BsdfSampleOf<F> s = sample_bsdf(shiny, wo, pick, toss);
       const Vec3Of<F> wi = frame.to_world(s.wi);
-      const Mask shares = traced & solid & !bsdf.layered & (v.roughness >= kLeastSharedRoughness);
+      const Mask can_share =
+          traced & solid & !bsdf.layered & (v.roughness >= kLeastSharedRoughness);
       ReflectionOf<F> r;
       ReflectionUseOf<F>& use = r.use;
-      use.together = even_quads<F>(shares, hit.instance, v.normal);
+      use.together = even_quads<F>(can_share, hit.instance, v.normal);
       use.borrows = use.together & !turns.of_four;
       use.goes = traced & !use.borrows & (s.pdf > 0.0f) & (max_component(s.weight) > 0.0f);
       r.ray = path.ray;

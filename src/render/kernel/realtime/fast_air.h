@@ -1,5 +1,5 @@
 #pragma once
-// The fast stage: light that media on the way of a ray scatter and give off. Device-safe.
+// Scattering and emission of media along a ray, in the fast stage. Device-safe.
 
 #include "render/kernel/media/medium_march.h"
 #include "render/kernel/realtime/fast_cache.h"
@@ -14,17 +14,17 @@ struct AirLamp {
   Vec3f light;  ///< that it brings to the ray's origin if nothing is in between [cd/m²]
 };
 
-/// What shines less than this far from air [m] lights it by the rays of its cells alone: samples of
-/// a large lamp's points bring without bound more the nearer they are.
+/// Distance from air [m] below which a lamp's surface lights it by the rays of the cache's cells
+/// alone: samples of points of a large lamp grow without bound as they come nearer.
 inline constexpr float kNearLamp = 0.25f;
 
-/// At p_W on the ray. `share`: MarchStep::share.
+/// Sample of lamps for media at p_W on the ray. `weight`: MarchStep::weight.
 GLOAM_HD AirLamp sample_air(const SceneView& scene, const Ray& ray, const MediumPoint& medium,
-                            Vec3f share, Vec3f p_W, Vec2f u) {
+                            Vec3f weight, Vec3f p_W, Vec2f u) {
   AirLamp out{{}, p_W, {}};
-  LightPicker picker;
-  prepare_picker<float>(scene, p_W, Vec3f{}, true, kOneGlow, &picker);
-  out.lamp = sample_lamp<float>(scene, picker, p_W, Vec3f{}, u, ray.time, true);
+  LightSampler light_sampler;
+  prepare_light_sampler<float>(scene, p_W, Vec3f{}, true, kOneGlow, &light_sampler);
+  out.lamp = sample_lamp<float>(scene, light_sampler, p_W, Vec3f{}, u, ray.time, true);
   const LightSample& light = out.lamp.light;
   const bool has_surface = length_squared(light.lift) > 0;
   if (!(light.pdf > 0) || (has_surface && light.distance < kNearLamp)) return out;
@@ -34,21 +34,21 @@ GLOAM_HD AirLamp sample_air(const SceneView& scene, const Ray& ray, const Medium
     return scattering * henyey_greenstein(g, cosine);
   };
   const Vec3f s = medium.scattering, g = medium.g_scattering;
-  out.light =
-      Vec3f{phase(s.x, g.x), phase(s.y, g.y), phase(s.z, g.z)} * share * light.radiance / light.pdf;
+  out.light = Vec3f{phase(s.x, g.x), phase(s.y, g.y), phase(s.z, g.z)} * weight * light.radiance /
+              light.pdf;
   return out;
 }
 
-/// Share of its light that what lies between lets through.
+/// Transmittance from the lamp of a sample to its place in the air.
 template <class Tracer>
-GLOAM_HD Vec3f arriving_share(const SceneView& scene, const Tracer& tracer, const Ray& ray,
-                              const AirLamp& air, WalkRandom* random, uint32_t* rays) {
+GLOAM_HD Vec3f transmittance_to(const SceneView& scene, const Tracer& tracer, const Ray& ray,
+                                const AirLamp& air, WalkRandom* random, uint32_t* rays) {
   Ray shadow = ray;
   aim_shadow_ray(air.p_W, Vec3f{}, 0.0f, air.lamp.light, &shadow);
-  Vec3f share{1, 1, 1};
-  if (air.lamp.light.casts_shadow) share = paths::transmit(scene, tracer, shadow, true, rays);
-  if (!(max_component(share) > 0)) return {};
-  return share * transmittance(scene.media, shadow, min(shadow.tmax, air.lamp.clear), {}, *random);
+  Vec3f passed{1, 1, 1};
+  if (air.lamp.light.casts_shadow) passed = paths::transmit(scene, tracer, shadow, true, rays);
+  if (!(max_component(passed) > 0)) return {};
+  return passed * transmittance(scene.media, shadow, min(shadow.tmax, air.lamp.clear), {}, *random);
 }
 
 /// Light of lamps that media of the mean cosine g at ray.o would scatter against the ray: of even
@@ -61,7 +61,7 @@ GLOAM_HD Vec3f lamps_in_air(const SceneView& scene, const Tracer& tracer, const 
   one.g_scattering = {g, g, g};
   const AirLamp lamp = sample_air(scene, ray, one, {1, 1, 1}, ray.o, u);
   if (!(max_component(lamp.light) > 0)) return {};
-  return lamp.light * arriving_share(scene, tracer, ray, lamp, random, rays);
+  return lamp.light * transmittance_to(scene, tracer, ray, lamp, random, rays);
 }
 
 /// The cell of a key, or the one behind the walls that hide p_W from that.
@@ -85,8 +85,8 @@ GLOAM_HD AirCell find_air(const Tracer& tracer, const IrradianceCacheView& cache
 struct AirLight {
   Vec3f all, lamps;  ///< lamps: of that
 };
-/// For media of the mean cosine g at p_W and a ray along d: what the cache has for the air there,
-/// or `otherwise`.
+/// Light for media of the mean cosine g at p_W and a ray along d: of the cache's cell of the air
+/// there, or `otherwise`.
 template <class Tracer>
 GLOAM_HD AirLight air_light(const Tracer& tracer, const IrradianceCacheView& cache, Vec3f p_W,
                             Vec3f d, float g, uint32_t coarser, const AirLight& otherwise,
@@ -109,7 +109,7 @@ GLOAM_HD AirLight air_light(const Tracer& tracer, const IrradianceCacheView& cac
   return {light.all, light.near};
 }
 
-/// Light of what glows where samples of lamps leave it out: right before the ray [cd/m²].
+/// Emission that samples of lamps leave out: of media right before the ray [cd/m²].
 GLOAM_HD Vec3f near_glow(const MediaView& media, const Ray& ray) {
   constexpr int kSteps = 4;
   return march(media, ray, min(ray.tmax, glow::kNearGlow), 0.0f, kSteps, {}, true,
@@ -117,8 +117,8 @@ GLOAM_HD Vec3f near_glow(const MediaView& media, const Ray& ray) {
       .radiance;
 }
 
-/// Of that, what a medium of the mean cosine g at p_W scatters against a ray along d, by one
-/// sample.
+/// Part of near_glow() that a medium of the mean cosine g at p_W scatters against a ray along d, by
+/// one sample.
 GLOAM_HD Vec3f near_glow_in_air(const MediaView& media, Vec3f p_W, Vec3f d, float g,
                                 WalkRandom* random) {
   const float z = sample_henyey_greenstein(g, random->next());
@@ -142,14 +142,14 @@ struct Turn {
   }
 };
 
-/// What media along path->ray up to `tmax` do to light: scatter that of lamps once and that of all
-/// around, give off, and let through.
+/// Light of media along path->ray up to `tmax`: scattered once from lamps, scattered from all
+/// around, emitted, and let through.
 template <class F>
 struct MediaLightOf {
   Vec3Of<F> radiance;   ///< that they give off [cd/m²]
   Vec3Of<F> around;     ///< scattered from all around [cd/m²]
   Vec3Of<F> lamps;      ///< scattered from lamps: one sample of one place [cd/m²]
-  Vec3Of<F> scattered;  ///< share of what arrives from all around
+  Vec3Of<F> scattered;  ///< fraction of the light that arrives from all around
   Vec3Of<F> through;
 };
 /// `samples`: lanes that take a sample of lamps; in others the cache's light of lamps counts.
@@ -175,19 +175,19 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
     AirLight air{cache.mean, {}};  // of the last step that the cache knew
     Vec3f around;
     // Two steps, by what they scatter, take a sample of lamps, and one of these stands for all.
-    constexpr int kDrawn = 2;
+    constexpr int kSampled = 2;
     constexpr float kEven = 0.1f;  // of what all light brings counts, as lamps may move
     struct {
       MediumPoint point;
-      Vec3f p_W, share;
+      Vec3f p_W, weight;
       float brings = 0;
-    } drawn[kDrawn];
+    } sampled[kSampled];
     const MarchResult m =
         march(scene.media, ray, lane(tmax, i), 0.0f, steps, {}, lane(glows, i),
               [&](const MarchStep& step) {
                 const MediumPoint& point = step.medium;
                 const Vec3f p_W = ray.o + ray.d * place_in(step, random.next());
-                const Vec3f scattered = point.scattering * step.share;
+                const Vec3f scattered = point.scattering * step.weight;
                 const float scatters = max_component(scattered);
                 if (const float chance = min(scatters / kOfAir, 1.0f); of_air.comes(chance)) {
                   CacheRequest request;
@@ -202,18 +202,18 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
                 }
                 const float brings = scatters * luminance(air.all * kEven + air.lamps);
                 in_all += brings;
-                for (auto& one : drawn) {
-                  if (random.next() * in_all < brings) one = {point, p_W, step.share, brings};
+                for (auto& one : sampled) {
+                  if (random.next() * in_all < brings) one = {point, p_W, step.weight, brings};
                 }
                 return Vec3f{};
               });
     if (lane(samples, i) && in_all > 0) {
-      // By half even, as what would bring most may be hidden.
-      AirLamp lamps[kDrawn];
-      float light[kDrawn], all = 0;
-      for (int k = 0; k < kDrawn; ++k) {
-        const Vec3f share = drawn[k].share * (in_all / drawn[k].brings);
-        lamps[k] = sample_air(scene, ray, drawn[k].point, share, drawn[k].p_W,
+      // Probability half even, half by the light: the brighter sample may be hidden.
+      AirLamp lamps[kSampled];
+      float light[kSampled], all = 0;
+      for (int k = 0; k < kSampled; ++k) {
+        const Vec3f weight = sampled[k].weight * (in_all / sampled[k].brings);
+        lamps[k] = sample_air(scene, ray, sampled[k].point, weight, sampled[k].p_W,
                               {random.next(), random.next()});
         light[k] = luminance(lamps[k].light);
         all += light[k];
@@ -222,9 +222,9 @@ GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& trace
         const float first = 0.25f + 0.5f * light[0] / all;
         const int k = random.next() < first ? 0 : 1;
         uint32_t rays = 0;
-        const Vec3f share = arriving_share(scene, tracer, ray, lamps[k], &random, &rays);
+        const Vec3f passed = transmittance_to(scene, tracer, ray, lamps[k], &random, &rays);
         const float chance = k == 0 ? first : 1 - first;
-        set_lane(&out.lamps, i, lamps[k].light * share * (0.5f / chance));
+        set_lane(&out.lamps, i, lamps[k].light * passed * (0.5f / chance));
         set_lane(&path->result.rays, i, lane(path->result.rays, i) + rays);
       }
     }

@@ -1,7 +1,7 @@
 #pragma once
-// What the fast stage asks the irradiance cache for, and what it gets. Device-safe.
+// Requests of the fast stage to the irradiance cache, and lookups in it. Device-safe.
 
-#include "render/kernel/realtime/irradiance_cache.h"
+#include "render/kernel/realtime/irradiance_cache_view.h"
 #include "render/kernel/surface/surface_point.h"
 
 namespace gloam {
@@ -15,7 +15,7 @@ struct CacheRequest {
 
 namespace fasts {
 
-/// Where the cache is asked: at surfaces, or in the air that a ray crosses.
+/// Places that ask the cache: surfaces, or air that a ray crosses.
 template <class F>
 struct CachePlaceOf {
   Vec3Of<F> p, n;
@@ -41,8 +41,8 @@ GLOAM_HD CacheCellOf<F> ask_cells(const IrradianceCacheView& cache, const CacheP
   return cells;
 }
 
-/// What the cache holds for them. Until a cell is there, the one about the point itself or a larger
-/// one stands for it, or `otherwise`.
+/// Light that the cache holds for the cells. Until a cell is there, the one about the point itself
+/// or a larger one stands for it, or `otherwise`.
 template <class F>
 GLOAM_HD Vec3Of<F> cached_light(const IrradianceCacheView& cache, const CachePlaceOf<F>& at,
                                 const CacheCellOf<F>& cells, MaskOf<F> active, uint32_t coarser,

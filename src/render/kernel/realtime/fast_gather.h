@@ -5,7 +5,7 @@
 
 namespace gloam::fasts {
 
-/// What a ray brings.
+/// Light that a ray brings, and the first surface that it meets.
 template <class F>
 struct GatheredOf {
   Vec3Of<F> light;  ///< [cd/m²]
@@ -14,9 +14,10 @@ struct GatheredOf {
 };
 
 /// Light along path->ray in the `active` lanes, from its first surface that is no glass or mirror.
-/// What lamps themselves send is weighed against direct_light() by path->pdf_bsdf if `count_lamps`;
-/// if not, it is none of the path's business. `flames`: lanes in which what glows counts, `near`:
-/// or does within glow::kNearGlow. `near_lamp`: how far lamps count that are none of its business.
+/// Light that comes straight from lamps is weighted against direct_light() by path->pdf_bsdf if
+/// `count_lamps`; if not, direct_light() at the ray's origin alone counts it, save that of lamps
+/// nearer than `near_lamp` [m]. `flames`: lanes in which emission of media counts, `near`: or
+/// counts within glow::kNearGlow.
 template <class F, class Tracer>
 GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
                               const IrradianceCacheView& cache, bool count_lamps, float near_lamp,
@@ -49,7 +50,7 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
       const MediaLightOf<F> media = cross_media(scene, tracer, cache, tmax, active, false, kSteps,
                                                 count_lamps ? 0 : 2, flames, path, air);
       sum += select<F>(active, throughput * (media.radiance + media.around), Vec3Of<F>{});
-      // What brings more light is asked for: the air on the way, or the surface.
+      // Request of what brings more light: the air on the way, or the surface.
       const MaskOf<F> airy =
           active & ((!found) | (max_component(media.scattered) > max_component(media.through)));
       each_lane(airy & !asked, [&](int i) { requests[i] = air[i]; });
@@ -72,8 +73,9 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
     path->cone_width = path->cone_width + path->cone_spread * hit.t;
     if (const MaskOf<F> shines = active & (max_component(v.emission) > 0.0f); any(shines)) {
       const F pdf = paths::emitter_pdf(scene, *path, v, shines & first, [&](uint32_t row, int i) {
-        // What lamps send to a cell counts where surfaces ask it: no picker is prepared there.
-        return count_lamps ? chance_of(scene, *path, row, every, kDrawnLights, i) : 1.0f;
+        // Light of lamps to a cell counts where surfaces sample it: no light sampler is prepared
+        // there.
+        return count_lamps ? chance_of(scene, *path, row, every, kSampledLights, i) : 1.0f;
       });
       const F weight = select(first & (pdf > 0.0f),
                               count_lamps ? mis_weight(path->pdf_bsdf, pdf)
@@ -83,19 +85,19 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
     }
     MaskOf<F> through = false;
     if (scene.has_transparent) {
-      const F met = met_share(v);
-      const MaskOf<F> thin = active & (met < 1.0f);
-      if (any(thin)) through = thin & (path->sampler.next_1d(thin) >= met);
-      const Vec3Of<F> share = select<F>(through, passing_light(v) / (1.0f - met),
-                                        in_all_lanes<F>({1, 1, 1}) * (v.opacity / met));
+      const F opacity = opacity_of(v);
+      const MaskOf<F> thin = active & (opacity < 1.0f);
+      if (any(thin)) through = thin & (path->sampler.next_1d(thin) >= opacity);
+      const Vec3Of<F> weight = select<F>(through, passing_light(v) / (1.0f - opacity),
+                                         in_all_lanes<F>({1, 1, 1}) * (v.opacity / opacity));
       throughput =
-          select<F>(thin & (max_component(v.straight) > 0.0f), throughput * share, throughput);
+          select<F>(thin & (max_component(v.straight) > 0.0f), throughput * weight, throughput);
     }
     const Vec3Of<F> wo_W = -path->ray.d;
     FrameOf<F> frame;
     const LayeredBsdfOf<F> bsdf = surface_bsdf(scene, v, wo_W, &frame, active & !through);
     const Vec3Of<F> wo = frame.to_local(wo_W);
-    // What glass and mirrors show lies further on.
+    // Glass and mirrors show a surface further on.
     const MaskOf<F> mirror =
         (!bsdf.layered) & (bsdf.base.p_layer > 0.8f) & (v.roughness < kMaxTracedRoughness);
     const MaskOf<F> glass = active & !through & (mirror | (bsdf.layered & (bsdf.p_glass > 0.3f)));
@@ -133,7 +135,7 @@ GLOAM_HD GatheredOf<F> gather(const SceneView& scene, const Tracer& tracer,
       path->ray.d = select<F>(goes, wi, path->ray.d);
       first = first & !goes;
       if (count_lamps) flames = flames | goes;
-      // No light was drawn for this bounce: what it meets counts in full.
+      // No light was sampled for this bounce: what it meets counts in full.
       path->pdf_bsdf = select(goes, F(1e12f), path->pdf_bsdf);
       path->from = select<F>(goes, v.p, path->from);
       active = goes | through;

@@ -1,5 +1,5 @@
 #pragma once
-// The fast stage: light of lamps, and of what glows, at surfaces. Device-safe.
+// Direct light of lamps and glowing media at surfaces, in the fast stage. Device-safe.
 
 #include "render/kernel/light/glow_line.h"
 #include "render/kernel/math/quads.h"
@@ -7,13 +7,13 @@
 
 namespace gloam {
 
-/// Scenes with more lights than this draw so many of them at each surface.
-inline constexpr uint32_t kMaxFastLights = kMaxWeighedLights, kDrawnLights = 4;
+/// Scenes with more lights than this sample so many of them at each surface.
+inline constexpr uint32_t kMaxFastLights = kMaxWeighedLights, kSampledLights = 4;
 /// Surfaces rougher than this reflect the light of the cache instead of what a ray finds: that is
 /// of all directions alike.
 inline constexpr float kMaxTracedRoughness = 0.6f;
-/// Of two by two pixels on a surface as rough as this, one sends out a ray for all: what they
-/// reflect is blurred over more than that.
+/// Roughness from which one pixel of two by two traces a reflection ray for all: the reflection is
+/// blurred over more than these pixels.
 inline constexpr float kLeastSharedRoughness = 0.2f;
 
 namespace fasts {
@@ -31,7 +31,8 @@ GLOAM_HD Vec3Of<F> diffuse_albedo(const LayeredBsdfOf<F>& b) {
   return select<F>(b.layered, b.base.diffuse * b.under, b.base.diffuse);
 }
 
-/// Surfaces so rough that samples of what glows make less noise of its reflection than rays do.
+/// Lanes whose surface is so rough that samples of glowing media make less noise in its reflection
+/// than rays do.
 template <class F>
 GLOAM_HD MaskOf<F> blurs_flames(const SurfaceOf<F>& v, const LayeredBsdfOf<F>& b) {
   const MaskOf<F> sharp =
@@ -42,14 +43,15 @@ GLOAM_HD MaskOf<F> blurs_flames(const SurfaceOf<F>& v, const LayeredBsdfOf<F>& b
 /// For lamps, and for what glows with the probability `glow` where lights are too many to be
 /// weighed against it; 0: not at all. The sky is the cache's.
 template <class F>
-GLOAM_HD void prepare_picker(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, MaskOf<F> active,
-                             float glow, LightPickerOf<F>* picker) {
-  picker->prepare(scene, p, n, active);
-  picker->leave_out_sky(scene);
-  if (glow > 0 && scene.has_glow()) picker->add_glow(scene, active, glow);
+GLOAM_HD void prepare_light_sampler(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n,
+                                    MaskOf<F> active, float glow,
+                                    LightSamplerOf<F>* light_sampler) {
+  light_sampler->prepare(scene, p, n, active);
+  light_sampler->leave_out_sky(scene);
+  if (glow > 0 && scene.has_glow()) light_sampler->add_glow(scene, active, glow);
 }
 /// Where one sample is taken, and of the samples at a surface.
-inline constexpr float kOneGlow = 0.5f, kGlowAmongLamps = 1.0f / kDrawnLights;
+inline constexpr float kOneGlow = 0.5f, kGlowAmongLamps = 1.0f / kSampledLights;
 
 /// A sample of a lamp, or of what glows.
 template <class F>
@@ -59,7 +61,8 @@ struct LampSampleOf {
   MaskOf<F> glows = false;
 };
 
-/// What glows, from p on a surface with the normal n, or in the air (n = 0), in the `active` lanes.
+/// Sample of media that glow, from p on a surface with the normal n, or in the air (n = 0), in the
+/// `active` lanes.
 template <class F>
 GLOAM_HD void sample_glow(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, Vec2Of<F> u,
                           MaskOf<F> active, LampSampleOf<F>* out) {
@@ -72,21 +75,21 @@ GLOAM_HD void sample_glow(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, Vec2
   out->glows = out->glows | active;
 }
 
-/// One of all, as `picker` takes them.
+/// One of all, as `light_sampler` takes them.
 template <class F>
-GLOAM_HD LampSampleOf<F> sample_lamp(const SceneView& scene, const LightPickerOf<F>& picker,
+GLOAM_HD LampSampleOf<F> sample_lamp(const SceneView& scene, const LightSamplerOf<F>& light_sampler,
                                      Vec3Of<F> p, Vec3Of<F> n, Vec2Of<F> u, F time,
                                      MaskOf<F> active) {
   LampSampleOf<F> out;
   if (!scene.has_glow()) {
-    out.light = picker.sample(scene, p, u, time, active);
+    out.light = light_sampler.sample(scene, p, u, time, active);
     return out;
   }
-  const F share = picker.glow_share();
-  const MaskOf<F> glows = active & (u.x < share);
-  out.light = picker.sample(scene, p, u, time, active & !glows);
-  sample_glow(scene, p, n, Vec2Of<F>{rest_of(u.x, F(0.0f), share), u.y}, glows, &out);
-  out.light.pdf = select(glows, out.light.pdf * share, out.light.pdf);
+  const F probability = light_sampler.glow_probability();
+  const MaskOf<F> glows = active & (u.x < probability);
+  out.light = light_sampler.sample(scene, p, u, time, active & !glows);
+  sample_glow(scene, p, n, Vec2Of<F>{rest_of(u.x, F(0.0f), probability), u.y}, glows, &out);
+  out.light.pdf = select(glows, out.light.pdf * probability, out.light.pdf);
   return out;
 }
 
@@ -119,8 +122,8 @@ GLOAM_HD void add_light(const SceneView& scene, const Tracer& tracer, paths::Sta
   aim_shadow_ray(v.p, v.geometric, v.t, light, &shadow);
   Vec3Of<F> arriving = light.radiance * (1.0f / light.pdf);
   if (const MaskOf<F> shadowed = lit & light.casts_shadow; any(shadowed)) {
-    const Vec3Of<F> share = paths::transmit(scene, tracer, shadow, shadowed, &path->result.rays);
-    arriving = select<F>(shadowed, arriving * share, arriving);
+    const Vec3Of<F> passed = paths::transmit(scene, tracer, shadow, shadowed, &path->result.rays);
+    arriving = select<F>(shadowed, arriving * passed, arriving);
   }
   sum->diffuse += select<F>(lit, arriving * (wi.z * kInvPi), Vec3Of<F>{});
   sum->specular += select<F>(lit, arriving * f * weight, Vec3Of<F>{});
@@ -134,13 +137,13 @@ GLOAM_HD void add_light(const SceneView& scene, const Tracer& tracer, paths::Sta
 }
 
 /// Direct light at the vertices of the `active` lanes: of every light and of what glows where there
-/// are few lights, or of `drawn` of them all. Media take from all what they take from one, in the
+/// are few lights, or of `samples` of them all. Media take from all what they take from one, in the
 /// `borrows` lanes from one of the lane beside.
 template <class F, class Tracer>
 GLOAM_HD void direct_light(const SceneView& scene, const Tracer& tracer, paths::State<F>* path,
                            const SurfaceOf<F>& v, const LayeredBsdfOf<F>& shiny,
                            const FrameOf<F>& frame, Vec3Of<F> wo, MaskOf<F> traced,
-                           MaskOf<F> active, MaskOf<F> borrows, bool every, uint32_t drawn,
+                           MaskOf<F> active, MaskOf<F> borrows, bool every, uint32_t samples,
                            Vec3Of<F>* diffuse, Vec3Of<F>* specular) {
   ArrivingOf<F> sum;
   const auto add = [&](const LampSampleOf<F>& lamp) {
@@ -152,38 +155,38 @@ GLOAM_HD void direct_light(const SceneView& scene, const Tracer& tracer, paths::
     add(lamp);
   }
   if (scene.lights.size > 0) {
-    const float glow = every ? 0.0f : (drawn > 1 ? kGlowAmongLamps : kOneGlow);
-    prepare_picker(scene, v.p, v.geometric, active, glow, &path->picker);
+    const float glow = every ? 0.0f : (samples > 1 ? kGlowAmongLamps : kOneGlow);
+    prepare_light_sampler(scene, v.p, v.geometric, active, glow, &path->light_sampler);
   }
-  if (every || scene.lights.size == 0) drawn = scene.lights.size;
-  for (uint32_t k = 0; k < drawn; ++k) {
+  if (every || scene.lights.size == 0) samples = scene.lights.size;
+  for (uint32_t k = 0; k < samples; ++k) {
     Vec2Of<F> u = path->sampler.next_2d(active);
     LampSampleOf<F> lamp;
     if (every) {
-      const MaskOf<F> near = active & (path->picker.shares(k) > 0.0f);
+      const MaskOf<F> near = active & (path->light_sampler.probabilities(k) > 0.0f);
       if (!any(near)) continue;
       lamp.light = sample_one_light(scene, k, v.p, u, path->ray.time, near);
       lamp.light.pdf = select(near, lamp.light.pdf, F(0.0f));
     } else {
-      u.x = (u.x + static_cast<float>(k)) * (1.0f / static_cast<float>(drawn));
-      lamp = sample_lamp(scene, path->picker, v.p, v.geometric, u, path->ray.time, active);
-      lamp.light.pdf *= static_cast<float>(drawn);
+      u.x = (u.x + static_cast<float>(k)) * (1.0f / static_cast<float>(samples));
+      lamp = sample_lamp(scene, path->light_sampler, v.p, v.geometric, u, path->ray.time, active);
+      lamp.light.pdf *= static_cast<float>(samples);
     }
     add(lamp);
   }
   const MaskOf<F> lit = active & (sum.total > 0.0f);
   borrows = borrows & (flip<1>(sum.total) > 0.0f);
-  Vec3Of<F> share = paths::through_media(scene, sum.way, lit & !borrows, &path->sampler);
-  share = select<F>(borrows, flip<1>(share), share);
-  *diffuse = sum.diffuse * share;
-  *specular = sum.specular * share;
+  Vec3Of<F> transmittance = paths::through_media(scene, sum.way, lit & !borrows, &path->sampler);
+  transmittance = select<F>(borrows, flip<1>(transmittance), transmittance);
+  *diffuse = sum.diffuse * transmittance;
+  *specular = sum.specular * transmittance;
 }
 
 /// Probability with which direct_light() takes the light of a row.
 template <class F>
 GLOAM_HD float chance_of(const SceneView& scene, const paths::State<F>& path, uint32_t row,
-                         bool every, uint32_t drawn, int i) {
-  return every ? 1.0f : static_cast<float>(drawn) * path.picker.probability(scene, row, i);
+                         bool every, uint32_t samples, int i) {
+  return every ? 1.0f : static_cast<float>(samples) * path.light_sampler.probability(scene, row, i);
 }
 
 /// Light of lamps' spheres and of suns that path->ray meets before `tmax`, weighed against
@@ -208,7 +211,7 @@ GLOAM_HD Vec3Of<F> lamps_met(const SceneView& scene, const paths::State<F>& path
     light_tree::each_shown(scene.light_tree, ray, most, [&](uint32_t i) {
       light += visible_light<float>(
           scene, i, ray, most, lane(path.from, at), lane(path.pdf_bsdf, at), true,
-          [&] { return chance_of(scene, path, i, false, kDrawnLights, at); }, clear);
+          [&] { return chance_of(scene, path, i, false, kSampledLights, at); }, clear);
     });
     set_lane(&sum, at, light);
   });

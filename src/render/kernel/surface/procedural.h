@@ -89,10 +89,10 @@ GLOAM_HD ProceduralSample eval_procedural(const ProceduralDescription& d, Proced
   const float n2 = dot(at.n, at.n);
   if (!(n2 > 1e-6f && n2 < 1e6f)) at.n = {0, 0, 1};
   ProceduralSample s = procedurals::of_kind(d, at);
-  const auto share = [](float x) { return clamp(x, 0.0f, 1.0f); };
-  s.base_color = {share(s.base_color.x), share(s.base_color.y), share(s.base_color.z)};
-  s.roughness = share(s.roughness);
-  s.mask = share(s.mask);
+  const auto unit = [](float x) { return clamp(x, 0.0f, 1.0f); };
+  s.base_color = {unit(s.base_color.x), unit(s.base_color.y), unit(s.base_color.z)};
+  s.roughness = unit(s.roughness);
+  s.mask = unit(s.mask);
   return s;
 }
 

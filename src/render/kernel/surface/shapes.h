@@ -96,8 +96,8 @@ GLOAM_HD float hit_capsule(float radius, float half, Vec3f o, Vec3f d, float tmi
 
 }  // namespace shapes
 
-/// Of all but boxes, which are crossed in lanes or are triangles: nearest hit of the ray (in G)
-/// with tmin < t < tmax, or a value <= 0. `d` need not be unit.
+/// Nearest hit of the ray (in G) with tmin < t < tmax, or a value <= 0, for all shapes but boxes,
+/// which are crossed in lanes or are triangles. `d` need not be unit.
 GLOAM_HD float intersect_shape(ShapeType shape, Vec3f size, Vec3f o, Vec3f d, float tmin,
                                float tmax) {
   switch (shape) {
@@ -228,9 +228,9 @@ GLOAM_HD Vec3f sample_shape(ShapeType shape, Vec3f s, Vec2f u, Vec3f* normal) {
       *normal = snap_to_shape(shape, s, &p);
       return p;
     case ShapeType::kCapsule: {
-      const float share = s.y / (s.x + s.y);  // of the wall
-      const bool wall = u.x < share;
-      u.x = wall ? rest_of(u.x, 0.0f, share) : rest_of(u.x, share, 1 - share);
+      const float probability = s.y / (s.x + s.y);  // of the wall
+      const bool wall = u.x < probability;
+      u.x = wall ? rest_of(u.x, 0.0f, probability) : rest_of(u.x, probability, 1 - probability);
       if (!wall) {
         *normal = sample_sphere(u);
         p = *normal * s.x;
@@ -245,12 +245,12 @@ GLOAM_HD Vec3f sample_shape(ShapeType shape, Vec3f s, Vec2f u, Vec3f* normal) {
     case ShapeType::kCylinder: {
       float sine, cosine;
       sincos_turn(u.y, &sine, &cosine);
-      const float share = 2 * s.y / (2 * s.y + s.x);  // of the wall
-      if (u.x < share) {
+      const float probability = 2 * s.y / (2 * s.y + s.x);  // of the wall
+      if (u.x < probability) {
         *normal = {cosine, sine, 0};
-        return {cosine * s.x, sine * s.x, (rest_of(u.x, 0.0f, share) * 2 - 1) * s.y};
+        return {cosine * s.x, sine * s.x, (rest_of(u.x, 0.0f, probability) * 2 - 1) * s.y};
       }
-      const float x = rest_of(u.x, share, 1 - share), side = x < 0.5f ? -1.0f : 1.0f;
+      const float x = rest_of(u.x, probability, 1 - probability), side = x < 0.5f ? -1.0f : 1.0f;
       const float r = s.x * sqrtf(rest_of(x, x < 0.5f ? 0.0f : 0.5f, 0.5f));
       *normal = {0, 0, side};
       return {cosine * r, sine * r, side * s.y};

@@ -1,5 +1,5 @@
 #pragma once
-// From a hit to the surface there: position, normals, textures, layers, BSDF. Device-safe.
+// Surface at a hit: position, normals, textures, layers, BSDF. Device-safe.
 
 #include "render/kernel/bsdf/layered_bsdf.h"
 #include "render/kernel/surface/surface_layers.h"
@@ -8,7 +8,7 @@ namespace gloam {
 
 namespace surfaces {
 
-/// What the rest of make_surface() needs of the first part.
+/// Results of the first part of make_surface() that the rest needs.
 template <class F>
 struct PlacedOf {
   AffineOf<F> X_WG;

@@ -1,5 +1,5 @@
 #pragma once
-// What patterns, wear, weather and layers make of a surface after its textures. Device-safe.
+// Patterns, wear, weather and layers, applied to a surface after its textures. Device-safe.
 
 #include "render/kernel/bsdf/microfacet.h"
 #include "render/kernel/surface/procedural.h"
@@ -121,8 +121,8 @@ GLOAM_HD void apply_layer_textures(const SceneView& scene, const InstanceView& i
   if (map.transmission >= 0) s->transmission *= lookup(scene, m, map.transmission, at).rgb.x;
 }
 
-/// All that a material with layers is at the place of the surface `s`, seen along d by a ray
-/// `width` wide there [m].
+/// Layers of a material, with patterns and weather, at the place of the surface `s`, seen along d
+/// by a ray `width` wide there [m].
 GLOAM_HD void apply_layers(const SceneView& scene, const RayHit& hit, const Affine3f& X_WG,
                            Vec3f p_G, Vec3f d, float width, float time, Surface* s) {
   const InstanceView& instance = scene.instances[s->instance];

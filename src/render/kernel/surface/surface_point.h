@@ -1,5 +1,5 @@
 #pragma once
-// What the kernel knows of a place on a surface. Device-safe.
+// Place on a surface: position, normals and material there. Device-safe.
 
 #include "render/kernel/scene_view.h"
 
@@ -11,7 +11,7 @@ GLOAM_HD Vec3Of<F> to_frame(const AffineOf<F>& X_AB, Vec3Of<F> v_A) {
   return {dot(v_A, X_AB.x), dot(v_A, X_AB.y), dot(v_A, X_AB.z)};
 }
 
-/// How wide a ray is: a cone of `width` [m] at its origin that grows by `spread` [m/m].
+/// Width of a ray: a cone of `width` [m] at its origin that grows by `spread` [m/m].
 template <class F>
 struct RayConeOf {
   F width{}, spread{};
@@ -31,9 +31,9 @@ struct SurfaceOf {
   F metallic{}, roughness{};
   F f0{}, f90{};  ///< as in MaterialView
   F opacity = F(1.0f);
-  Vec3Of<F> straight;  ///< of light on what is opaque, the share that goes straight through: sheets
+  Vec3Of<F> straight;  ///< transmittance straight through the opaque part: sheets
   Vec3Of<F> tangent;   ///< unit, across `normal`: highlights are drawn out along it; zero = round
-  // Of materials with layers alone: as in MaterialLayers, patterns and weather included.
+  // Layers, in materials that have some: as in MaterialLayers, patterns and weather included.
   F coat_weight{}, coat_roughness{}, coat_f0{}, coat_darkening{}, fuzz_weight{}, transmission{};
 };
 using Surface = SurfaceOf<float>;
@@ -63,7 +63,7 @@ GLOAM_HD Surface lane(const SurfaceOf<F>& s, int i) {
           lane(s.transmission, i)};
 }
 
-/// What textures and layers change.
+/// Lane i of the members that textures and layers change.
 template <class F>
 GLOAM_HD void set_lane(SurfaceOf<F>* s, int i, const Surface& value) {
   set_lane(&s->normal, i, value.normal);
@@ -82,9 +82,10 @@ GLOAM_HD void set_lane(SurfaceOf<F>* s, int i, const Surface& value) {
   set_lane(&s->transmission, i, value.transmission);
 }
 
-/// Of the light on a surface the share that is met: the rest passes as if nothing were there.
+/// Opacity of a surface, the part that lets rays straight through left out: the rest of the light
+/// passes as if nothing were there.
 template <class F>
-GLOAM_HD F met_share(const SurfaceOf<F>& s) {
+GLOAM_HD F opacity_of(const SurfaceOf<F>& s) {
   return s.opacity * (1.0f - max_component(s.straight));
 }
 /// Light that passes straight through the surface.

@@ -1,5 +1,5 @@
 #pragma once
-// What a material's textures make of a surface. Device-safe.
+// Textures of a material, applied to a surface. Device-safe.
 
 #include "render/kernel/surface/procedural.h"
 #include "render/kernel/surface/shapes.h"
@@ -45,8 +45,8 @@ GLOAM_HD float texture_density(const InstanceView& instance, const MaterialView&
   return sqrtf(scale.x * scale.y * material.texture_repeat.x * material.texture_repeat.y);
 }
 
-/// Where the hit lies on the material's textures, by the rules of
-/// world/materials/texture_coordinates.h. `n_G` = unit geometric normal in the shape's frame.
+/// Texture coordinates of the hit, by the rules of world/materials/texture_coordinates.h. `n_G` =
+/// unit geometric normal in the shape's frame.
 GLOAM_HD TextureCoordinates texture_coordinates(const SceneView& scene,
                                                 const InstanceView& instance,
                                                 const MaterialView& material, const RayHit& hit,
@@ -173,7 +173,7 @@ GLOAM_HD Vec3f bump_gradient(const SceneView& scene, const InstanceView& instanc
          frame.y * ((height(y) - height(-y)) * scale);
 }
 
-/// Of the surface `s` of an instance, at p_G in its frame.
+/// Textures applied to the surface `s` of an instance, at p_G in its frame.
 GLOAM_HD void apply_textures(const SceneView& scene, const InstanceView& instance,
                              const RayHit& hit, const Affine3f& X_WG, Vec3f p_G, float width,
                              float time, Surface* s) {

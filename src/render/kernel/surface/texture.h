@@ -116,7 +116,7 @@ GLOAM_HD Rgba lookup_2d(const SceneView& scene, int texture, Vec2f uv, float foo
 }
 
 /// `direction` need not be unit. Faces right +X, left -X, up +Y, down -Y, front +Z, back -Z, laid
-/// out as OpenGL's cube maps. `footprint`: angle seen, as a share of a face.
+/// out as OpenGL's cube maps. `footprint`: angle seen, as a fraction of a face.
 GLOAM_HD Rgba lookup_cube(const SceneView& scene, int texture, Vec3f d, float footprint) {
   const TextureView& view = scene.textures[texture];
   const float ax = fabsf(d.x), ay = fabsf(d.y), az = fabsf(d.z);

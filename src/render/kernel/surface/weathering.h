@@ -13,26 +13,26 @@ struct WeatheredMaterial {
   float coat_weight = 0, coat_ior = 1.5f, coat_roughness = 0.1f;
   float fuzz = 0;
   float bump = 1;   ///< scale of the height gradients beneath, 0..1: water and snow level them
-  float water = 0;  ///< share that lies under a puddle
+  float water = 0;  ///< fraction that lies under a puddle
 };
 
 namespace weathering {
 
-/// Lays `share` of a surface of the layer's own over m: every field is the mean by area.
+/// Lays `cover` of a surface of the layer's own over m: every field is the mean by area.
 GLOAM_HD WeatheredMaterial cover(const WeatheredMaterial& m, const WeatheredMaterial& layer,
-                                 float share) {
+                                 float cover) {
   // Coat parameters only count by the coat's weight.
-  const float coat = lerp(m.coat_weight, layer.coat_weight, share);
-  const float t = coat > 0 ? share * layer.coat_weight / coat : share;
-  return {lerp(m.base_color, layer.base_color, share),
-          lerp(m.metallic, layer.metallic, share),
-          lerp(m.roughness, layer.roughness, share),
+  const float coat = lerp(m.coat_weight, layer.coat_weight, cover);
+  const float t = coat > 0 ? cover * layer.coat_weight / coat : cover;
+  return {lerp(m.base_color, layer.base_color, cover),
+          lerp(m.metallic, layer.metallic, cover),
+          lerp(m.roughness, layer.roughness, cover),
           coat,
           lerp(m.coat_ior, layer.coat_ior, t),
           lerp(m.coat_roughness, layer.coat_roughness, t),
-          lerp(m.fuzz, layer.fuzz, share),
-          lerp(m.bump, layer.bump, share),
-          lerp(m.water, layer.water, share)};
+          lerp(m.fuzz, layer.fuzz, cover),
+          lerp(m.bump, layer.bump, cover),
+          lerp(m.water, layer.water, cover)};
 }
 
 /// Cosine of the unit normal with +z; degenerate normals count as level.
@@ -112,7 +112,7 @@ GLOAM_HD Field rain_rings(Vec3f p, float time, float impacts, float footprint) {
     for (int i = -1; i <= 1; ++i) {
       const uint32_t own = hash_cell(cx + i, cy + j, 0, 77u);
       const float turn = turns + hash_unit(own, 0);
-      const float count = floorf(turn), age = turn - count;  // share of its life
+      const float count = floorf(turn), age = turn - count;  // fraction of its life
       const uint32_t h = hash_cell(cx + i, cy + j, static_cast<int>(count) + 1, 78u);
       if (!(hash_unit(hash_cell(cx + i, cy + j, static_cast<int>(count) + 1, 79u), 0) < chance))
         continue;
@@ -142,7 +142,7 @@ GLOAM_HD WeatheredMaterial apply_dust(WeatheredMaterial m, const Dust& d, Vec3f 
   if (d.amount <= 0) return m;
   const float up = weathering::upwards(n), settled = 0.1f + 0.9f * sqr(max(up, 0.0f));
   const Noise drift = fbm(p, 6.0f, 4, 0.6f, footprint, d.seed + 1u);
-  // Grains cover at random: the bare share falls exponentially with their amount.
+  // Grains cover at random: the bare fraction falls exponentially with their amount.
   const float layer = 3.0f * d.amount / max(1.05f - d.amount, 0.05f) * settled *
                       max(1.0f + 0.25f * drift.field.value, 0.0f);
   const WeatheredMaterial dust{d.color, 0, 1, 0, 1.5f, 1, 0, 0.5f};
@@ -155,7 +155,7 @@ struct Snow {
 };
 struct SnowCover {
   WeatheredMaterial material;
-  float share = 0;  ///< of the surface that is under snow
+  float cover = 0;  ///< of the surface that is under snow
   Field relief;     ///< height of the snow over the surface [m], up to 40 mm, gradient by p
 };
 
@@ -173,7 +173,7 @@ GLOAM_HD SnowCover apply_snow(const WeatheredMaterial& m, const Snow& snow, Vec3
   const float level = lerp(-3.0f, 4.0f, snow.amount) - 6.0f * (1.0f - hold);
   const Field lies = soft_step(drift.field + level, sqrtf(0.06f + drift.lost));
   const Noise grain = fbm(p, 300.0f, 2, 0.7f, footprint, snow.seed + 9u);
-  out.share = lies.value;
+  out.cover = lies.value;
   out.relief = lies * (0.04f * snow.amount) + grain.field * (0.0004f * lies.value);
   const WeatheredMaterial white{{0.88f, 0.9f, 0.92f}, 0, 0.9f, 0, 1.31f, 0.3f, 0.2f, 0.0f};
   out.material = weathering::cover(m, white, lies.value);

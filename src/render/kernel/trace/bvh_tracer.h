@@ -61,7 +61,7 @@ struct BvhTracer {
   }
 
  private:
-  /// What the tree has found, or else the row of the scan.
+  /// Hit that the tree has found, or else the row of the scan.
   GLOAM_HD bool nearest(const Ray& ray, bool in_tree, const BvhHit& found, uint32_t row, float tmax,
                         RayHit* hit) const {
     if (in_tree) {

@@ -1,7 +1,7 @@
 #pragma once
-// What every ray is tested against one by one, in lanes: infinite planes, and the largest simple
-// solids that stand still. For a few that takes a fraction of what a BVH takes, and a room is made
-// of them. Device-safe.
+// Solids that every ray is tested against one by one, in lanes: infinite planes, and the largest
+// simple solids that stand still. For a few solids the test takes a fraction of the time of a BVH,
+// and rooms are made of such solids. Device-safe.
 
 #include "render/kernel/surface/surface.h"
 
@@ -32,8 +32,8 @@ struct ScanList {
 
 namespace scans {
 
-/// Where a ray enters and leaves a box; misses it if it leaves before it enters. `inverse`: one by
-/// the ray's direction, component by component.
+/// Distances at which a ray enters and leaves a box; it misses the box if it leaves before it
+/// enters. `inverse`: one over the ray's direction, component by component.
 template <class F>
 GLOAM_HD void cross_box(Vec3Of<F> low, Vec3Of<F> high, Vec3Of<F> o, Vec3Of<F> inverse, F* enter,
                         F* leave) {
@@ -75,8 +75,8 @@ GLOAM_HD MaskOf<F> hit_plane(const InstanceView& plane, const RayOf<F>& ray, F t
   return *t > 0.0f;
 }
 
-/// Of the `active` lanes those that hit the solid before tmax, and where. `inverse` as above, in
-/// the world.
+/// Lanes of `active` whose ray hits the solid before tmax, and where. `inverse` as above, in the
+/// world.
 template <class F>
 GLOAM_HD MaskOf<F> hit_solid(const ScannedSolid& solid, const InstanceView& instance,
                              const RayOf<F>& ray, Vec3Of<F> inverse, MaskOf<F> active, F tmax,

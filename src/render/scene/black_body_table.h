@@ -1,5 +1,5 @@
 #pragma once
-// How bright and of which colour glowing media are.
+// Luminance and colour of glowing media.
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace gloam {
 
-/// What BlackBodyTable reads, of black_body_luminance() (world/lights/black_body.h).
+/// Samples for BlackBodyTable, of black_body_luminance() (world/lights/black_body.h).
 std::vector<Vec3f> make_black_body_table();
 
 }  // namespace gloam

@@ -1,7 +1,7 @@
 #pragma once
-// Many lights: which to take at a surface, and the radiance of what a ray meets. The luminous
-// spheres of lamps and the disc of a sun are seen in reflections, do not block rays, and are not
-// shown to the camera. Device-safe.
+// Sampling of one of many lights at a surface, and the radiance of lamps and suns that a ray meets.
+// The luminous spheres of lamps and the disc of a sun are seen in reflections, do not block rays,
+// and are not shown to the camera. Device-safe.
 
 #include "render/kernel/light/glow.h"
 #include "render/kernel/light/light_tree.h"
@@ -9,7 +9,7 @@
 
 namespace gloam {
 
-/// A bound, up to a factor, of what the light brings to the surface at p with the geometric normal
+/// Bound, up to a factor, of the light's illuminance at the surface at p with the geometric normal
 /// n if nothing is in between; zero only if it brings nothing. Light from behind counts where the
 /// surface lets it through; points in a medium (n = 0) take it from all around.
 template <class F>
@@ -33,7 +33,7 @@ GLOAM_HD F light_weight(const SceneView& scene, const LightView& light, Vec3Of<F
   F weight = select(height > 0.0f, light.strength * inv_d2 * (cosine + 0.05f), F(0.0f));
   // Outside the cone of a spot nothing arrives.
   if (!turns && (light.kind == LightKind::kSpot || light.profile >= 0)) {
-    weight *= lamp_share(scene, light, -to / square_root(max(distance2, 1e-12f)));
+    weight *= relative_intensity(scene, light, -to / square_root(max(distance2, 1e-12f)));
   }
   return weight;
 }
@@ -45,7 +45,7 @@ struct GuideRowsOf {
   MaskOf<F> guided = false;
 };
 
-/// Those of the points p on surfaces with the geometric normals n, in the `active` lanes.
+/// Rows for the points p on surfaces with the geometric normals n, in the `active` lanes.
 template <class F>
 GLOAM_HD GuideRowsOf<F> find_rows(const LightGuide& guide, Vec3Of<F> p, Vec3Of<F> n,
                                   MaskOf<F> active) {
@@ -56,16 +56,16 @@ GLOAM_HD GuideRowsOf<F> find_rows(const LightGuide& guide, Vec3Of<F> p, Vec3Of<F
   return rows;
 }
 
-/// Room for the probabilities of lights, one each.
+/// Scratch for the probabilities of lights, one each.
 template <class F>
-struct LightSharesOf {
+struct LightProbabilitiesOf {
   F of[kMaxWeighedLights];
 };
 
-/// How lights are taken at one surface: in proportion to light_weight where there are few, by a
-/// tree where there are many.
+/// Light sampler of one surface: in proportion to light_weight where lights are few, by a tree
+/// where there are many.
 template <class F>
-class LightPickerOf {
+class LightSamplerOf {
  public:
   using Mask = MaskOf<F>;
   using Uint = UintOf<F>;
@@ -73,15 +73,14 @@ class LightPickerOf {
   /// On a card the probabilities lie apart: what is indexed at run time lies in memory, and would
   /// draw all of a path's state there with it. To be called there before all else.
 #ifdef __CUDACC__
-  GLOAM_HD void keep_in(LightSharesOf<F>* room) { share_ = room->of; }
+  GLOAM_HD void keep_in(LightProbabilitiesOf<F>* scratch) { probability_ = scratch->of; }
 #else
-  void keep_in(LightSharesOf<F>*) {}
+  void keep_in(LightProbabilitiesOf<F>*) {}
 #endif
 
-  /// For the surfaces at p with the geometric normals n, or points in a medium (n = 0), in the
-  /// `active` lanes; the others keep what they were prepared for. `both_sides`: those that let
-  /// light through.
-  /// Returns the rows of the scene's guide there.
+  /// Prepares for the surfaces at p with the geometric normals n, or points in a medium (n = 0), in
+  /// the `active` lanes; the others keep what they were prepared for. `both_sides`: lanes whose
+  /// surface lets light through. Returns the rows of the scene's guide there.
   GLOAM_HD GuideRowsOf<F> prepare(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n,
                                   Mask active = true, Mask both_sides = false) {
     count_ = scene.lights.size;
@@ -105,7 +104,7 @@ class LightPickerOf {
     if (scene.has_environment() && !scene.environment.row_cdf.empty()) {
       sky = 0.25f * scene.environment.illuminance;  // of even light from all around
       if (any(rows.guided)) {
-        // Of what is seen through windows the guide has the better directions.
+        // Directions through windows are the guide's: it knows them better than the whole map.
         const F visible = gather(scene.guide.sky_visible.data, rows.row);
         sky = select(rows.guided, sky * visible * visible, sky);
       }
@@ -114,94 +113,96 @@ class LightPickerOf {
     const F inverse = select(total > 0.0f, 1.0f / total, F(0.0f));
     for (uint32_t i = 0; weighs && i < count_; ++i) {
       // Written above for all of them. NOLINTNEXTLINE(clang-analyzer-core.CallAndMessage)
-      share_[i] = select(active, weight[i] * inverse, share_[i]);
+      probability_[i] = select(active, weight[i] * inverse, probability_[i]);
     }
-    if (scene.has_environment()) sky_share_ = select(active, sky * inverse, sky_share_);
+    if (scene.has_environment()) sky_probability_ = select(active, sky * inverse, sky_probability_);
     if (scene.has_glow()) total_ = select(active, weighs ? total : F(-1.0f), total_);
     return rows;
   }
 
-  /// After prepare(): media that glow get their share of choices, too; `beside_many`: that where
+  /// Adds, after prepare(), media that glow to the choice; `beside_many`: their probability where
   /// lights are not weighed.
   GLOAM_HD void add_glow(const SceneView& scene, Mask active, float beside_many = 0.5f) {
     each_lane(active, [&](int i) {
       const float glow = glow::weight(scene.media.glows, lane(p_, i), lane(n_, i));
       const float total = lane(total_, i);
-      const float share = total < 0 ? beside_many : glow / (glow + total);
-      set_lane(&glow_share_, i, glow > 0 ? share : 0.0f);
+      const float probability = total < 0 ? beside_many : glow / (glow + total);
+      set_lane(&glow_probability_, i, glow > 0 ? probability : 0.0f);
     });
-    const F rest = select(active, 1.0f - glow_share_, F(1.0f));
-    for (uint32_t i = 0; !scene.has_many_lights() && i < count_; ++i) share_[i] *= rest;
-    if (scene.has_environment()) sky_share_ *= rest;
+    const F rest = select(active, 1.0f - glow_probability_, F(1.0f));
+    for (uint32_t i = 0; !scene.has_many_lights() && i < count_; ++i) probability_[i] *= rest;
+    if (scene.has_environment()) sky_probability_ *= rest;
   }
 
-  /// After leave_out_sky() and add_glow(): sample() takes what glows by u.x below this.
-  GLOAM_HD F glow_share() const { return glow_share_; }
+  /// Probability of media, after leave_out_sky() and add_glow(): sample() takes them by u.x below
+  /// this.
+  GLOAM_HD F glow_probability() const { return glow_probability_; }
 
   /// Density per solid angle, as in glow::pdf, with which sample() finds the point p_W, p_G in the
   /// volume of scene.media.glows[row], in the lane `at`.
   GLOAM_HD float glow_pdf(const SceneView& scene, int row, int at, Vec3f p_W, Vec3f p_G) const {
     const Vec3f p = lane(p_, at), n = lane(n_, at);
-    if (!(lane(glow_share_, at) > 0)) return 0;
+    if (!(lane(glow_probability_, at) > 0)) return 0;
     const GlowView& mine = scene.media.glows[static_cast<uint32_t>(row)];
     const float total = glow::weight(scene.media.glows, p, n);
-    return lane(glow_share_, at) * glow::weight(mine, p, n) / total *
+    return lane(glow_probability_, at) * glow::weight(mine, p, n) / total *
            glow::pdf(scene.media, mine, p, p_W, p_G);
   }
 
-  /// After prepare(): the sky is none of this picker's business.
+  /// Removes, after prepare(), the sky from the choice.
   GLOAM_HD void leave_out_sky(const SceneView& scene) {
-    const F rest = 1.0f - sky_share_, scale = select(rest > 1e-6f, 1.0f / rest, F(0.0f));
-    for (uint32_t i = 0; !scene.has_many_lights() && i < count_; ++i) share_[i] *= scale;
-    sky_share_ = 0.0f;
+    const F rest = 1.0f - sky_probability_, scale = select(rest > 1e-6f, 1.0f / rest, F(0.0f));
+    for (uint32_t i = 0; !scene.has_many_lights() && i < count_; ++i) probability_[i] *= scale;
+    sky_probability_ = 0.0f;
   }
 
   /// Density with which sample() makes the direction d for its sky, in the `active` lanes.
   GLOAM_HD F sky_pdf(const SceneView& scene, Vec3Of<F> d, Mask active) const {
     F pdf = 0.0f;
-    each_lane(active & (sky_share_ > 0.0f) & scene.has_environment(), [&](int i) {
-      set_lane(&pdf, i, lane(sky_share_, i) * environment_pdf(scene.environment, lane(d, i)));
+    each_lane(active & (sky_probability_ > 0.0f) & scene.has_environment(), [&](int i) {
+      set_lane(&pdf, i, lane(sky_probability_, i) * environment_pdf(scene.environment, lane(d, i)));
     });
     return pdf;
   }
 
   /// Probabilities of taking light i where there are few.
-  GLOAM_HD F shares(uint32_t i) const { return share_[i]; }
+  GLOAM_HD F probabilities(uint32_t i) const { return probability_[i]; }
   /// Probability of taking light i in the lane `at`.
   GLOAM_HD float probability(const SceneView& scene, uint32_t i, int at) const {
-    if (!scene.has_many_lights()) return lane(share_[i], at);
-    return lane(lights_share(scene), at) *
+    if (!scene.has_many_lights()) return lane(probability_[i], at);
+    return lane(lights_probability(scene), at) *
            light_tree::probability(scene.light_tree, i, lane(p_, at), lane(n_, at));
   }
 
-  /// Takes a light, or the sky, by u.x and, by what is left of u.x and by u.y, a direction from p
-  /// towards it, for the `active` lanes: points u that are spread evenly are so over each light.
+  /// Sample of a light, or of the sky: which by u.x, and a direction from p towards it by what is
+  /// left of u.x and by u.y, for the `active` lanes. Points u that are spread evenly are so over
+  /// each light.
   GLOAM_HD LightSampleOf<F> sample(const SceneView& scene, Vec3Of<F> p, Vec2Of<F> u, F time,
                                    Mask active = true) const {
     LightSampleOf<F> out;
     Mask open = active;
     if (scene.has_environment()) {
-      const Mask sky = active & (u.x < sky_share_);
+      const Mask sky = active & (u.x < sky_probability_);
       each_lane(sky, [&](int i) {
         const Vec2f at = lane(u, i);
-        const float x = rest_of(at.x, 0.0f, lane(sky_share_, i));
+        const float x = rest_of(at.x, 0.0f, lane(sky_probability_, i));
         set_lane(&out, i, sample_sky(scene, {x, at.y}, i));
       });
       open = active & !sky;
     }
-    F before = sky_share_;
+    F before = sky_probability_;
     if (scene.has_glow()) {
-      const Mask glowing = open & (u.x < before + glow_share_);
+      const Mask glowing = open & (u.x < before + glow_probability_);
       each_lane(glowing, [&](int i) {
         const Vec2f at = lane(u, i);
-        const float x = rest_of(at.x, lane(before, i), lane(glow_share_, i));
+        const float x = rest_of(at.x, lane(before, i), lane(glow_probability_, i));
         set_lane(&out, i, sample_glow(scene, i, {x, at.y}));
       });
       open = open & !glowing;
-      before += glow_share_;
+      before += glow_probability_;
     }
     if (scene.has_many_lights()) {
-      const F of_lights = lights_share(scene);
+      const F of_lights = lights_probability(scene);
       u.x = rest_of(u.x, before, of_lights);
       each_lane(open, [&](int i) {
         set_lane(&out, i,
@@ -214,9 +215,9 @@ class LightPickerOf {
     Uint index{};
     Mask searching = open;
     for (uint32_t i = 0; i < count_; ++i) {
-      const Mask can = searching & (share_[i] > 0.0f);
+      const Mask can = searching & (probability_[i] > 0.0f);
       before = select(can, before + taken, before);
-      taken = select(can, share_[i], taken);
+      taken = select(can, probability_[i], taken);
       index = select(can, Uint(i), index);
       searching = searching & !(can & (u.x < before + taken));
     }
@@ -242,9 +243,9 @@ class LightPickerOf {
   }
 
  private:
-  /// What the sky and media leave to the lights.
-  GLOAM_HD F lights_share(const SceneView& scene) const {
-    return scene.has_glow() ? 1.0f - sky_share_ - glow_share_ : 1.0f - sky_share_;
+  /// Probability of the lights: the rest of that of the sky and of media.
+  GLOAM_HD F lights_probability(const SceneView& scene) const {
+    return scene.has_glow() ? 1.0f - sky_probability_ - glow_probability_ : 1.0f - sky_probability_;
   }
   GLOAM_HD static LightSample sample_by_tree(const SceneView& scene, Vec3f p, Vec3f n, Vec2f u,
                                              float time) {
@@ -254,8 +255,8 @@ class LightPickerOf {
     s.pdf *= choice.probability;
     return s;
   }
-  /// Towards those lights `index` of the `active` lanes that are balls around none of the points p,
-  /// all at once; returns their lanes.
+  /// Samples towards those lights `index` of the `active` lanes that are balls around none of the
+  /// points p, all at once; returns their lanes.
   GLOAM_HD static Mask sample_balls(const SceneView& scene, Vec3Of<F> p, Vec2Of<F> u, Mask active,
                                     Uint index, LightSampleOf<F>* out) {
     Mask balls = false;
@@ -279,7 +280,7 @@ class LightPickerOf {
   }
   GLOAM_HD LightSample sample_glow(const SceneView& scene, int at, Vec2f u) const {
     LightSample s = glow::sample(scene.media, lane(p_, at), lane(n_, at), u);
-    s.pdf *= lane(glow_share_, at);
+    s.pdf *= lane(glow_probability_, at);
     return s;
   }
   GLOAM_HD LightSample sample_sky(const SceneView& scene, Vec2f u, int at) const {
@@ -288,22 +289,22 @@ class LightPickerOf {
     s.wi = sky.wi;
     s.distance = 1e7f;
     s.radiance = sky.radiance + scene.sky_ambient;
-    s.pdf = sky.pdf * lane(sky_share_, at);
+    s.pdf = sky.pdf * lane(sky_probability_, at);
     return s;
   }
 
   uint32_t count_ = 0;
 #ifdef __CUDACC__
-  F* share_ = nullptr;
+  F* probability_ = nullptr;
 #else
-  F share_[kMaxWeighedLights];
+  F probability_[kMaxWeighedLights];
 #endif
-  Vec3Of<F> p_, n_;  ///< of the surface; n_ = 0: takes from all sides
-  F sky_share_{};    ///< of the environment map
-  F glow_share_{};   ///< of media that glow
-  F total_{};        ///< what the shares were before they were divided by it; -1 = is not known
+  Vec3Of<F> p_, n_;       ///< of the surface; n_ = 0: takes from all sides
+  F sky_probability_{};   ///< of the environment map
+  F glow_probability_{};  ///< of media that glow
+  F total_{};             ///< sum of the weights that gave the probabilities; -1 = is not known
 };
-using LightPicker = LightPickerOf<float>;
+using LightSampler = LightSamplerOf<float>;
 
 /// A lamp or sun that stands still, as in visible_lights. `probability`: of taking it at `from`.
 template <class F, class Probability, class Passing>
@@ -326,7 +327,7 @@ GLOAM_HD Vec3Of<F> still_light(const SceneView& scene, const LightView& light, c
     seen = active & (t > 0.0f) & (t < tmax) & (d2 > r2 * 1.0001f);
     if (!any(seen)) return {};
     radiance = in_all_lanes<F>(light.intensity) *
-               (lamp_share(scene, light, -to / square_root(d2)) / (kPi * r2));
+               (relative_intensity(scene, light, -to / square_root(d2)) / (kPi * r2));
     sin2 = min(r2 / d2, 1.0f);
   }
   if (scene.has_media()) {
@@ -363,17 +364,18 @@ GLOAM_HD Vec3Of<F> visible_light(const SceneView& scene, uint32_t i, const RayOf
 }
 
 /// Light of lamps and suns that the scattered rays of the `active` lanes meet before `tmax`, each
-/// weighted against `picker` at `from`, the point that scattered it, by the density `pdf_bsdf` of
-/// its direction. `passing(lane, t)`: share of light that media let through up to there.
+/// weighted against `light_sampler` at `from`, the point that scattered it, by the density
+/// `pdf_bsdf` of its direction. `passing(lane, t)`: transmittance of media up to there.
 template <class F, class Passing>
 GLOAM_HD Vec3Of<F> visible_lights(const SceneView& scene, const RayOf<F>& ray, F tmax,
-                                  Vec3Of<F> from, const LightPickerOf<F>& picker, F pdf_bsdf,
-                                  MaskOf<F> active, const Passing& passing) {
+                                  Vec3Of<F> from, const LightSamplerOf<F>& light_sampler,
+                                  F pdf_bsdf, MaskOf<F> active, const Passing& passing) {
   Vec3Of<F> sum;
   if (!scene.has_many_lights()) {
     for (uint32_t i = 0; i < scene.lights.size; ++i) {
       sum += visible_light(
-          scene, i, ray, tmax, from, pdf_bsdf, active, [&] { return picker.shares(i); }, passing);
+          scene, i, ray, tmax, from, pdf_bsdf, active,
+          [&] { return light_sampler.probabilities(i); }, passing);
     }
     return sum;
   }
@@ -384,7 +386,7 @@ GLOAM_HD Vec3Of<F> visible_lights(const SceneView& scene, const RayOf<F>& ray, F
     light_tree::each_shown(scene.light_tree, one, most, [&](uint32_t i) {
       light += visible_light<float>(
           scene, i, one, most, lane(from, at), lane(pdf_bsdf, at), true,
-          [&] { return picker.probability(scene, i, at); },
+          [&] { return light_sampler.probability(scene, i, at); },
           [&](int, float t) { return passing(at, t); });
     });
     set_lane(&sum, at, light);

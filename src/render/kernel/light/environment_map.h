@@ -1,16 +1,16 @@
 #pragma once
 // Light from far away: an equirectangular map around the scene, filtered look-ups, and directions
-// drawn in proportion to it. Device-safe.
+// sampled in proportion to it. Device-safe.
 //
 // The map's own frame E has Z up; row 0 is at the zenith, the middle column lies along +X, and
 // columns run to the right as one sees them from inside (from +X by -Y). Texels are points at their
 // centres: columns repeat, rows are clamped at the poles.
 //
 // Density. What `radiance` returns is the sum over texels of value times a tent in u and in v. A
-// direction is drawn from the same sum with weights for values: a texel by its weight, then a point
-// of its tent. So the density is positive wherever the radiance is, and both are continuous. It is
-// computed from the very numbers that the choice compares with, not from the texels again: the
-// rounding of sums over a map with a sun in it costs noise, no bias.
+// direction is sampled from the same sum with weights for values: a texel by its weight, then a
+// point of its tent. So the density is positive wherever the radiance is, and both are continuous.
+// It is computed from the very numbers that the choice compares with, not from the texels again:
+// the rounding of sums over a map with a sun in it costs noise, no bias.
 
 #include "base/vec.h"
 
@@ -41,10 +41,10 @@ struct EnvironmentSample {
 
 namespace environments {
 
-/// Neighbours of a point between texel centres, and the share of the second.
+/// Neighbours of a point between texel centres, and the fraction of the second.
 struct Between {
   int low, high;
-  float share;
+  float fraction;
 };
 /// `x` in [0, 1] over n columns that repeat.
 GLOAM_HD Between between_columns(float x, int n) {
@@ -63,11 +63,11 @@ GLOAM_HD Vec3f bilinear(const EnvironmentView& map, const EnvironmentLevel& leve
   const Between x = between_columns(uv.x, level.width), y = between_rows(uv.y, level.height);
   const Vec3f* row0 = map.texels.data + level.first + static_cast<size_t>(y.low) * level.width;
   const Vec3f* row1 = map.texels.data + level.first + static_cast<size_t>(y.high) * level.width;
-  return lerp(lerp(row0[x.low], row0[x.high], x.share), lerp(row1[x.low], row1[x.high], x.share),
-              y.share);
+  return lerp(lerp(row0[x.low], row0[x.high], x.fraction),
+              lerp(row1[x.low], row1[x.high], x.fraction), y.fraction);
 }
 
-/// Density of the drawn (u, v) over the unit square.
+/// Density of the sampled (u, v) over the unit square.
 GLOAM_HD float density(const EnvironmentView& map, Vec2f uv) {
   const EnvironmentLevel& level = map.levels[0];
   const Between x = between_columns(uv.x, level.width), y = between_rows(uv.y, level.height);
@@ -75,11 +75,11 @@ GLOAM_HD float density(const EnvironmentView& map, Vec2f uv) {
   const float* row0 = map.column_cdf.data + static_cast<size_t>(y.low) * stride;
   const float* row1 = map.column_cdf.data + static_cast<size_t>(y.high) * stride;
   const auto in_row = [&](const float* cdf) {
-    return lerp(cdf[x.low + 1] - cdf[x.low], cdf[x.high + 1] - cdf[x.high], x.share);
+    return lerp(cdf[x.low + 1] - cdf[x.low], cdf[x.high + 1] - cdf[x.high], x.fraction);
   };
   const float* rows = map.row_cdf.data;
   return lerp((rows[y.low + 1] - rows[y.low]) * in_row(row0),
-              (rows[y.high + 1] - rows[y.high]) * in_row(row1), y.share) *
+              (rows[y.high + 1] - rows[y.high]) * in_row(row1), y.fraction) *
          static_cast<float>(level.width) * static_cast<float>(level.height);
 }
 
@@ -126,10 +126,10 @@ GLOAM_HD Vec3f environment_radiance(const EnvironmentView& map, Vec3f d_W, float
   const float lod = texels_wide > 1.0f ? log2f(texels_wide) : 0.0f;
   const float level = min(lod, static_cast<float>(map.levels.size - 1));
   const uint32_t base = static_cast<uint32_t>(level);
-  const float share = level - static_cast<float>(base);
+  const float fraction = level - static_cast<float>(base);
   const Vec3f fine = environments::bilinear(map, map.levels[base], uv);
-  if (share == 0.0f) return fine * map.scale;
-  return lerp(fine, environments::bilinear(map, map.levels[base + 1], uv), share) * map.scale;
+  if (fraction == 0.0f) return fine * map.scale;
+  return lerp(fine, environments::bilinear(map, map.levels[base + 1], uv), fraction) * map.scale;
 }
 
 /// Density per solid angle with which environment_sample makes the unit direction d_W.

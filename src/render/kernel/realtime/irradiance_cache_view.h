@@ -9,32 +9,33 @@ namespace gloam {
 
 /// Light on the surfaces of a cell, as the luminance of even surroundings [cd/m²].
 struct CellLight {
-  Vec3f all;        ///< from everywhere
-  Vec3f near;       ///< of that, from surfaces less than the cell's edge away; in air, from lamps
-  float share = 0;  ///< of directions that meet such surfaces
+  Vec3f all;   ///< from everywhere
+  Vec3f near;  ///< of that, from surfaces less than the cell's edge away; in air, from lamps
+  float near_fraction = 0;  ///< of directions that meet such surfaces
 
-  /// Until its first rays, `all` is a guess: larger cells know better.
+  /// Light before a cell's first rays: `all` is a guess, and larger cells know better.
   static CellLight unknown(Vec3f guess) { return {guess, {}, -1}; }
-  GLOAM_HD bool is_known() const { return share >= 0; }
+  GLOAM_HD bool is_known() const { return near_fraction >= 0; }
 };
 
 GLOAM_HD CellLight lerp(const CellLight& a, const CellLight& b, float t) {
-  return {lerp(a.all, b.all, t), lerp(a.near, b.near, t), lerp(a.share, b.share, t)};
+  return {lerp(a.all, b.all, t), lerp(a.near, b.near, t),
+          lerp(a.near_fraction, b.near_fraction, t)};
 }
 
-/// Light at a place in the cell from which the share `near` of directions meet what is near: in
+/// Light at a place in the cell from which the fraction `near` of directions meet what is near: in
 /// corners and under things it differs from the cell's mean.
 GLOAM_HD Vec3f light_at(const CellLight& cell, float near) {
-  // Where the cell knows little of what is near, that is taken for a good deal darker than the
-  // rest.
+  // Assumption where few of a cell's directions meet near surfaces: these are a good deal darker
+  // than the rest.
   constexpr float kDoubt = 0.05f, kDarker = 0.45f;
   if (!cell.is_known()) return cell.all;
-  const Vec3f far = (cell.all - cell.near) / max(1.0f - cell.share, 0.05f);
-  const Vec3f close = (cell.near + far * (kDoubt * kDarker)) / (cell.share + kDoubt);
+  const Vec3f far = (cell.all - cell.near) / max(1.0f - cell.near_fraction, 0.05f);
+  const Vec3f close = (cell.near + far * (kDoubt * kDarker)) / (cell.near_fraction + kDoubt);
   return lerp(far, close, near);
 }
 
-/// Where in the air the first ray of a cell starts.
+/// Start of the first ray of a cell of air.
 struct AirHome {
   Vec3f p;
   bool sees_all = true;  ///< that may ask the cell; else light differs on both sides of a wall
@@ -58,7 +59,7 @@ GLOAM_HD uint32_t slot_of(uint64_t key, uint32_t size) {
   return static_cast<uint32_t>((key * 0x9E3779B97F4A7C15ull) >> 32) & (size - 1u);
 }
 
-/// What the keys of one region have alike: four cells wide, of all facings.
+/// Bits that the keys of one region share: four cells wide, of all facings.
 inline constexpr uint64_t kRegion =
     ~(uint64_t{7} | uint64_t{3} << 9 | uint64_t{3} << 27 | uint64_t{3} << 45);
 /// Sixteen cells wide, of all facings; and the facing of a cell.
@@ -83,7 +84,7 @@ GLOAM_HD uint64_t beside(uint64_t key, int axis, bool up) {
   return (key & ~mask) | ((up ? key + one : key - one) & mask);
 }
 
-/// Which of kOutsideCell, kInsideCell, kAirCell and kHiddenAirCell the cell of a key is.
+/// Side of the cell of a key: kOutsideCell, kInsideCell, kAirCell or kHiddenAirCell.
 GLOAM_HD uint32_t side_of(uint64_t key) { return static_cast<uint32_t>(key >> 61 & 3u); }
 GLOAM_HD bool is_air(uint64_t key) { return key >> 62 & 1u; }
 
@@ -109,9 +110,10 @@ GLOAM_HD Vec3f middle_of(uint64_t key) {
 
 }  // namespace caches
 
-/// What a cell's light falls on: inner sides of panes lie where their outer sides do, and air where
-/// both do. A cell of air faces the way that a ray goes, against which it scatters light; where a
-/// wall passes through it, air behind that has a cell of its own.
+/// Side of a cell: surfaces seen from outside or inside, air, or air behind a wall. Inner sides of
+/// panes lie where their outer sides do, and air where both do. A cell of air faces the direction
+/// of the ray, against which it scatters light; where a wall passes through it, air behind the wall
+/// has a cell of its own.
 inline constexpr uint32_t kOutsideCell = 0, kInsideCell = 1, kAirCell = 2, kHiddenAirCell = 3;
 
 /// A cell before its numbers are packed.
@@ -173,7 +175,7 @@ GLOAM_HD uint64_t cache_key(const IrradianceCacheView& cache, Vec3f p, Vec3f n, 
 
 namespace caches {
 
-/// Nothing is between a and b.
+/// Whether nothing is between a and b.
 template <class Tracer>
 GLOAM_HD bool is_clear(const Tracer& tracer, Vec3f a, Vec3f b) {
   Ray ray;
@@ -184,7 +186,7 @@ GLOAM_HD bool is_clear(const Tracer& tracer, Vec3f a, Vec3f b) {
   ray.d = to / ray.tmax;
   return !tracer.occluded(ray, true);
 }
-/// p_W may ask the cell.
+/// Whether p_W may ask the cell.
 template <class Tracer>
 GLOAM_HD bool is_seen(const Tracer& tracer, const AirHome& home, Vec3f p_W) {
   return home.sees_all || is_clear(tracer, home.p, p_W);

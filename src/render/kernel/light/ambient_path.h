@@ -8,7 +8,7 @@ namespace gloam {
 
 inline constexpr int kLog2AmbientPaths = 11;  ///< all together
 
-/// What a path has found: light that arrives at a surface which the camera sees.
+/// Light that a path has found: it arrives at a surface which the camera sees.
 struct AmbientPath {
   int facing = -1;  ///< of the surface, as LightGuide::facing_of; -1 = no surface
   Vec3f light;      ///< [cd/m²]

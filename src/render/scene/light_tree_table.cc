@@ -1,4 +1,4 @@
-#include "render/scene/light_tree.h"
+#include "render/scene/light_tree_table.h"
 
 #include <algorithm>
 
@@ -136,8 +136,8 @@ LightItem item_of(const LightView& light, uint32_t row) {
           light.spread < kPi ? light.direction : Vec3f{}, light.strength, row};
 }
 
-/// Factor that makes shares of strengths.
-float share_scale(const std::vector<LightView>& lights) {
+/// Factor that makes fractions of strengths.
+float fraction_scale(const std::vector<LightView>& lights) {
   double sum = 0;
   for (const LightView& light : lights) sum += static_cast<double>(light.strength);
   return sum > 0 ? static_cast<float>(1 / sum) : 0;
@@ -145,8 +145,8 @@ float share_scale(const std::vector<LightView>& lights) {
 
 }  // namespace
 
-void LightTree::build(const std::vector<LightView>& lights,
-                      const std::vector<uint32_t>& headlights) {
+void LightTreeTable::build(const std::vector<LightView>& lights,
+                           const std::vector<uint32_t>& headlights) {
   std::vector<LightItem> items[LightTreeView::kRoots];
   std::vector<uint32_t>::const_iterator carried = headlights.begin();
   for (uint32_t i = 0; i < lights.size(); ++i) {
@@ -162,7 +162,7 @@ void LightTree::build(const std::vector<LightView>& lights,
   for (const std::vector<LightItem>& part : items) rows += part.empty() ? 0 : 2 * (part.size() - 1);
   nodes_.assign(rows, {});
   leaf_of_.assign(lights.size(), LightNode::kNone);
-  scale_ = share_scale(lights);
+  scale_ = fraction_scale(lights);
   Builder builder(lights, &nodes_, &leaf_of_, scale_);
   uint32_t pairs = kFirstPair;
   for (uint32_t root = 0; root < LightTreeView::kRoots; ++root) {
@@ -173,8 +173,8 @@ void LightTree::build(const std::vector<LightView>& lights,
   }
 }
 
-void LightTree::move_headlights(const std::vector<LightView>& lights,
-                                const std::vector<uint32_t>& headlights) {
+void LightTreeTable::move_headlights(const std::vector<LightView>& lights,
+                                     const std::vector<uint32_t>& headlights) {
   if (headlights.empty()) return;
   // One after another from below: a node comes after its parent.
   Builder builder(lights, &nodes_, &leaf_of_, scale_);
@@ -184,7 +184,7 @@ void LightTree::move_headlights(const std::vector<LightView>& lights,
   }
 }
 
-LightTreeView LightTree::view() const {
+LightTreeView LightTreeTable::view() const {
   return {{nodes_.data(), static_cast<uint32_t>(nodes_.size())},
           {leaf_of_.data(), static_cast<uint32_t>(leaf_of_.size())}};
 }

@@ -1,4 +1,4 @@
-#include "render/scene/black_body.h"
+#include "render/scene/black_body_table.h"
 
 #include "world/lights/black_body.h"
 

@@ -7,11 +7,11 @@
 
 namespace gloam {
 
-class LightTree {
+class LightTreeTable {
  public:
-  /// Over all of `lights`, a function of them alone; `headlights`: rows of those at the camera, in
-  /// order. Positions and strengths must be finite. Takes about 1 µs of CPU and 125 bytes a light,
-  /// and 60 more while it lasts.
+  /// Builds the tree over all of `lights`, a function of them alone; `headlights`: rows of those at
+  /// the camera, in order. Positions and strengths must be finite. Takes about 1 µs of CPU and 125
+  /// bytes a light, and 60 more while it lasts.
   void build(const std::vector<LightView>& lights, const std::vector<uint32_t>& headlights);
   /// Follows headlights that have moved; `lights` otherwise as they were built from.
   void move_headlights(const std::vector<LightView>& lights,
@@ -21,7 +21,7 @@ class LightTree {
  private:
   std::vector<LightNode> nodes_;
   std::vector<uint32_t> leaf_of_;
-  float scale_ = 0;             ///< makes shares of strengths
+  float scale_ = 0;             ///< turns strengths into fractions of their sum
   uint32_t first_carried_ = 0;  ///< row of nodes_: the headlights' are from here on
 };
 
