@@ -153,8 +153,12 @@ void check(World (*make)(const TempFolder&), double time, std::initializer_list<
 TEST(EffectsHash, OfASecondOfFireIsTheSame) { check(burning_room, 1, {1, 10}); }
 TEST(EffectsHash, OfASecondOfAllEffectsIsTheSame) { check(garden, 1, {1, 10}); }
 // Each is twelve minutes, most of which are waited for.
-TEST(EffectsHashOfMinutes, DISABLED_SweepAMinuteOfFireIsTheSame) { check(burning_room, 60, {1, 0.1}); }
-TEST(EffectsHashOfMinutes, DISABLED_SweepAMinuteOfAllEffectsIsTheSame) { check(garden, 60, {1, 0.1}); }
+TEST(EffectsHashOfMinutes, DISABLED_SweepAMinuteOfFireIsTheSame) {
+  check(burning_room, 60, {1, 0.1});
+}
+TEST(EffectsHashOfMinutes, DISABLED_SweepAMinuteOfAllEffectsIsTheSame) {
+  check(garden, 60, {1, 0.1});
+}
 
 }  // namespace
 }  // namespace gloam
