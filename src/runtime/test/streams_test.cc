@@ -5,6 +5,7 @@
 
 #include <atomic>
 
+#include "gloam/controller.h"
 #include "gloam/render.h"
 #include "gloam/simulation.h"
 #include "scene/test/temp_folder.h"
@@ -249,6 +250,21 @@ TEST_F(Streams, ASnapshotOfAnotherWorldIsRefused) {
   const Snapshot other = start()->latest();
   EXPECT_THAT(renderer->render({&other, 1}, {.camera = "eye"}).error().to_string(),
               HasSubstr("another World"));
+}
+
+TEST(ParseScene, SettingsOfAControllerAreATableOfEitherKind) {
+  TempFolder folder;
+  folder.write("arm.xml", kArm);
+  for (const char* params : {"params = { gain = 2.5, offset = [0, 1] }",
+                             "[robot.controller.params]\ngain = 2.5\noffset = [0, 1]"}) {
+    const Result<Scene> scene = parse_scene(
+        std::string("[[robot]]\nname = \"a\"\nfile = \"arm.xml\"\n[robot.controller]\n") + params,
+        folder.path());
+    ASSERT_TRUE(scene.ok()) << scene.error().to_string();
+    const ControllerOptions& options = scene->robots[0].controller;
+    EXPECT_THAT(*controller_param(options, "gain"), ElementsAre(2.5)) << options.params.text;
+    EXPECT_THAT(*controller_param(options, "offset"), ElementsAre(0, 1));
+  }
 }
 
 TEST(ParseScene, NamesTheLineOfAMistakeAndFindsFilesInItsFolder) {

@@ -42,7 +42,11 @@ class MemberTexts {
       if (!std::less_equal<const void*>()(member.begin, field) ||
           !std::less<const void*>()(field, member.end))
         continue;
-      if (best == nullptr || member.end - member.begin <= best->end - best->begin) best = &member;
+      const ptrdiff_t size = member.end - member.begin;
+      const ptrdiff_t least = best == nullptr ? size : best->end - best->begin;
+      // A struct's only member, of which nothing is said, is what the struct is.
+      if (best == nullptr || size < least || (size == least && !member.text.empty()))
+        best = &member;
     }
     return std::string(best == nullptr ? "" : best->text);
   }
@@ -152,7 +156,7 @@ Json schema_of(const ClockTime& /*value*/, const FieldRule& /*rule*/) {
 }
 
 Json schema_of(const TomlText& /*value*/, const FieldRule& /*rule*/) {
-  return {{"type", {"boolean", "number", "string", "array"}}};
+  return {{"type", {"boolean", "number", "string", "array", "object"}}};
 }
 
 template <class Options>

@@ -99,7 +99,13 @@ class TableReader {
   // Any value, as it stands.
   void read(const toml::node& node, const std::string&, TomlText& out, const FieldRule&) {
     std::ostringstream text;
-    node.visit([&](const auto& value) { text << value; });
+    if (const toml::table* table = node.as_table(); table != nullptr) {
+      toml::table on_one_line = *table;  // as a value is written, not as a section
+      on_one_line.is_inline(true);
+      text << on_one_line;
+    } else {
+      node.visit([&](const auto& value) { text << value; });
+    }
     out.text = text.str();
   }
 
