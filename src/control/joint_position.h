@@ -2,6 +2,7 @@
 // Holds a robot's joints at angles.
 
 #include "gloam/controller.h"
+#include "world/world.h"
 
 namespace gloam {
 

@@ -2,6 +2,7 @@
 // Constant torques: for tests, and for clients that send controls themselves.
 
 #include "gloam/controller.h"
+#include "world/world.h"
 
 namespace gloam {
 
