@@ -1,5 +1,5 @@
 #pragma once
-// What the examples share: the World of a file, and the end of a program that cannot go on.
+// Helpers of the examples: the World of a file, and the end of a program that cannot go on.
 
 #include <cstdio>
 #include <cstdlib>

@@ -19,12 +19,12 @@ struct mjData_;
 
 namespace gloam {
 
-/// What a walking or driving robot is to do.
+/// Velocity that a walking or driving robot is to have.
 struct VelocityTarget {
   double vx = 0, vy = 0, yaw_rate = 0;  ///< heading frame [m/s, m/s, rad/s]
 };
 
-/// What a controller is given at each call.
+/// Inputs of a controller at one call.
 struct ControlInputs {
   const mjModel_* model;               ///< with the simulation's own options
   mjData_* data;                       ///< of the instant; contacts are the last step's
@@ -51,7 +51,7 @@ class Controller {
   virtual void control(const ControlInputs& in) = 0;
 };
 
-/// What a controller is made for.
+/// The robot that a controller is made for, and its World.
 struct ControllerRequest {
   World world;
   RobotOptions robot;  ///< its name, and robot.controller as the scene gives it

@@ -1,5 +1,6 @@
 #pragma once
-// Questions about one file without a simulation: what a mesh becomes, how a model fares.
+// Questions about one file without a simulation: the colliders of a mesh, a model beside stock
+// MuJoCo.
 
 #include <cstdint>
 #include <filesystem>
@@ -13,7 +14,7 @@
 
 namespace gloam {
 
-/// What a mesh becomes as an [[object]], and how near its colliders are to it.
+/// A mesh as an [[object]]: its colliders, and how near they are to it.
 struct ObjectReport {
   std::vector<std::string> colliders = {};  ///< "box", "hull" … of each
   uint64_t triangles = 0;

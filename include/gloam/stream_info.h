@@ -11,23 +11,22 @@
 namespace gloam {
 
 enum class StreamKind : uint8_t {
-  kCamera,   ///< CameraFrame, Simulation::open_camera
-  kLidar,    ///< LidarScan, Simulation::open_lidar
-  kSensor,   ///< SensorMessage, Simulation::open_sensor
-  kJoints,   ///< positions and velocities of a robot's joints, in each Snapshot
-  kPoses,    ///< poses of all bodies, from each Snapshot
-  kMetrics,  ///< rows of metrics.csv for a robot, as in recorded runs
+  kCamera,  ///< CameraFrame, Simulation::open_camera
+  kLidar,   ///< LidarScan, Simulation::open_lidar
+  kSensor,  ///< SensorMessage, Simulation::open_sensor
+  kJoints,  ///< positions and velocities of a robot's joints, in each Snapshot
+  kPoses,   ///< poses of all bodies, from each Snapshot
 };
 const char* to_string(StreamKind kind);  ///< "camera", "lidar" …
 
 struct StreamInfo {
   StreamKind kind = StreamKind::kCamera;
-  std::string name;        ///< as its request asks for it; of joints, metrics: the robot's; "world"
+  std::string name;        ///< as its request asks for it; of joints: the robot's; "world"
   std::string frame_id;    ///< of its data: cameras "NAME_optical_frame", else NAME or the body's
   Body parent;             ///< that it moves with
   Pose X_PS = {};          ///< of the sensor in that body; cameras look along -Z
   Rational rate = {0, 1};  ///< [Hz] of simulation time, the sensor's own; 0 = every step
-  std::vector<std::string> outputs = {};  ///< channels, or names of joints and sensors
+  std::vector<std::string> outputs = {};  ///< channels, or names of joints and bodies
   std::string unit = {};                  ///< of a sensor's numbers, where it is known
 };
 
@@ -35,7 +34,6 @@ enum class InputKind : uint8_t {
   kVelocity,  ///< SetVelocityGoal of a robot
   kControls,  ///< SetControls of a robot, or SetControl of one actuator
   kMocap,     ///< SetMocapPose of a body
-  kField,     ///< SetLiveField
 };
 const char* to_string(InputKind kind);
 

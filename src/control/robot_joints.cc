@@ -2,13 +2,10 @@
 
 #include <limits>
 
+#include "world/world_robots.h"
+
 namespace gloam {
 namespace {
-
-bool belongs_to(const mjModel& model, int body, int root) {
-  while (body > root && body > 0) body = model.body_parentid[body];
-  return body == root;
-}
 
 // kp u - kp q - kv v, as MJCF's <position> makes it.
 bool is_position_servo(const mjModel& model, int actuator) {
@@ -38,7 +35,7 @@ std::vector<DrivenJoint> driven_joints(const mjModel& model, const RobotInstance
     const int type = model.jnt_type[joint];
     const bool servo = is_position_servo(model, actuator);
     if ((type != mjJNT_HINGE && type != mjJNT_SLIDE) ||
-        !belongs_to(model, model.jnt_bodyid[joint], robot.root_body) ||
+        !is_part_of(model, model.jnt_bodyid[joint], robot.root_body) ||
         (!servo && !is_motor(model, actuator))) {
       continue;
     }

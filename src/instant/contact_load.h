@@ -1,5 +1,5 @@
 #pragma once
-// What touches the ground without being a contact of MuJoCo's.
+// Touches of the ground that are no contacts of MuJoCo's.
 
 #include "gloam/contact.h"
 

@@ -177,11 +177,7 @@ class StreamLister {
     for (const int joint : robot_joints(m_, robot))
       if (m_.jnt_type[joint] != mjJNT_FREE)
         joints.outputs.push_back(name_of(m_, mjOBJ_JOINT, joint));
-    StreamInfo metrics = joints;
-    metrics.kind = StreamKind::kMetrics;
-    metrics.outputs = {"position", "velocity", "goal", "contacts", "energy"};
     streams_.push_back(std::move(joints));
-    streams_.push_back(std::move(metrics));
   }
 
   const CompiledWorld& world_;
@@ -211,7 +207,7 @@ const char* to_string(StreamKind kind) {
 }
 
 const char* to_string(InputKind kind) {
-  static constexpr const char* kNames[] = {"velocity", "controls", "mocap", "field"};
+  static constexpr const char* kNames[] = {"velocity", "controls", "mocap"};
   return kNames[static_cast<size_t>(kind)];
 }
 
@@ -255,9 +251,8 @@ std::vector<BodyInfo> World::bodies() const {
     info.name = name_of(m, mjOBJ_BODY, body);
     for (size_t robot = 0; robot < compiled_->robots.size(); ++robot) {
       const int root = compiled_->robots[robot].root_body;
-      int above = body;
-      while (above > root && above > 0) above = m.body_parentid[above];
-      if (root > 0 && above == root) info.robot = {static_cast<int>(robot), compiled_->serial};
+      if (root > 0 && is_part_of(m, body, root))
+        info.robot = {static_cast<int>(robot), compiled_->serial};
     }
   }
   return bodies;

@@ -1,5 +1,5 @@
 #pragma once
-// What a World says and hears, as its model and scene tell.
+// Streams of a World, as its model and scene tell.
 
 #include <vector>
 

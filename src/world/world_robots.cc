@@ -55,11 +55,6 @@ class RootMarks {
   std::vector<bool> marked_;
 };
 
-bool is_part_of(const mjModel& model, int body, int root) {
-  while (body > root && body > 0) body = model.body_parentid[body];
-  return body == root;
-}
-
 }  // namespace
 
 std::vector<int> robot_roots(const mjModel& model) {
@@ -68,6 +63,11 @@ std::vector<int> robot_roots(const mjModel& model) {
   for (int joint = 0; model.nactuator == 0 && joint < static_cast<int>(model.njnt); ++joint)
     if (model.jnt_type[joint] != mjJNT_FREE) marks.mark_joint(joint);
   return marks.bodies();
+}
+
+bool is_part_of(const mjModel& model, int body, int root) {
+  while (body > root && body > 0) body = model.body_parentid[body];
+  return body == root;
 }
 
 std::vector<int> robot_joints(const mjModel& model, const RobotInstance& robot) {

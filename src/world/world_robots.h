@@ -13,6 +13,9 @@ namespace gloam {
 /// actuators (most URDFs): those with a joint that is not free.
 std::vector<int> robot_roots(const mjModel& model);
 
+/// Whether `body` is `root` or hangs on it.
+bool is_part_of(const mjModel& model, int body, int root);
+
 /// Joints and actuators of a robot, in the model's order. An actuator is its robot's whose tree it
 /// drives, or whose name it has.
 std::vector<int> robot_joints(const mjModel& model, const RobotInstance& robot);

@@ -1,4 +1,4 @@
-// What a simulation says and hears, Snapshots by subscription, batches of Commands, calls from
+// Lists of streams and inputs, Snapshots by subscription, batches of Commands, calls from
 // hooks, pictures of given Snapshots.
 
 #include <gmock/gmock.h>

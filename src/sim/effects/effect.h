@@ -19,7 +19,7 @@ namespace gloam {
 class Snapshot;
 struct LiveFields;
 
-/// What happened in one step that other effects, controllers and sensors ask for. Room is reserved
+/// Events of one step that other effects, controllers and sensors ask for. Room is reserved
 /// by Effect::reset, so that a step allocates nothing.
 struct StepEvents {
   std::vector<ContactLoad> loads;
@@ -78,7 +78,7 @@ class Effect {
   /// After the advance() of all effects: reads contacts and events.
   virtual void observe(const EffectContext&) {}
 
-  // What is solved for on threads of the effect's own, at a rate of its own.
+  // Ticks: solving on threads of the effect's own, at a rate of its own.
 
   /// Step of the next tick.
   virtual int64_t next_tick() const { return kNever; }
@@ -91,7 +91,7 @@ class Effect {
   virtual void publish(int64_t, EffectOutputs*) {}
 };
 
-/// Of what effects are made. `data` has no state yet.
+/// Parts that effects are made of. `data` has no state yet.
 struct EffectParts {
   std::shared_ptr<const CompiledWorld> world;
   uint64_t seed;

@@ -1,5 +1,5 @@
 #pragma once
-// What effects put into Snapshots, by what it is and not by whose it is.
+// Outputs of effects in Snapshots, by kind of output and not by effect.
 
 #include <vector>
 
