@@ -3,13 +3,9 @@
 namespace gloam {
 namespace {
 
-constexpr float kMostTold = 500;  // cells and rounds that a region's excess is the mean of,
-constexpr float kAtFirst = 50;    // as long as light comes round for the first time,
-constexpr float kAtChange = 4;    // and where the light has changed;
-constexpr float kGuessed = 4;     // it counts as that of so many more cells of a wider region
+/// Bits of keys that tell wide regions, and narrow ones in them.
 constexpr uint64_t kRegionMasks[] = {caches::kWideRegion | caches::kFacing,
                                      caches::kRegion | caches::kFacing};
-constexpr float kDark = 1e-20f;  // [cd/m²]
 
 }  // namespace
 
@@ -28,10 +24,10 @@ void ExcessRegions::Region::fade(float most) {
 
 void ExcessRegions::spread(std::span<const OfCell> cells, bool remembers, std::span<Vec3f> light) {
   // Light from before counts less as long as light comes round for the first time.
-  const float past = remembers ? kMostTold : kAtFirst;
+  const float past = remembers ? realtime::kMostTold : realtime::kToldAtFirst;
   all_.fade(past);
   for (const OfCell& cell : cells) all_.add(cell);
-  all_.ratio = all_.sum / max(all_.light, kDark);
+  all_.ratio = all_.sum / max(all_.light, realtime::kDark);
   // Levels from wide to narrow: a region that has seen few cells is completed by the wider region.
   for (size_t level = 0; level < kLevels; ++level) {
     const auto key_of = [&](size_t k) { return cells[k].key; };
@@ -42,8 +38,9 @@ void ExcessRegions::spread(std::span<const OfCell> cells, bool remembers, std::s
       region.fade(past);
       for (const auto& [_, k] : group) region.add(cells[k]);
       region.last_traced = update_;
-      const float guessed = region.light / region.cells * kGuessed;
-      region.ratio = (region.sum + wider.ratio * guessed) / max(region.light + guessed, kDark);
+      const float guessed = region.light / region.cells * realtime::kGuessedCells;
+      region.ratio =
+          (region.sum + wider.ratio * guessed) / max(region.light + guessed, realtime::kDark);
       if (level + 1 < kLevels) return;
       // Excess in proportion to each cell's light: dark corners of a region see little of bright
       // surfaces, too.
@@ -53,9 +50,9 @@ void ExcessRegions::spread(std::span<const OfCell> cells, bool remembers, std::s
 }
 
 void ExcessRegions::forget(uint64_t key) {
-  all_.fade(kAtChange);
+  all_.fade(realtime::kToldAtChange);
   for (size_t level = 0; level < kLevels; ++level) {
-    regions_[level][key & kRegionMasks[level]].fade(kAtChange);
+    regions_[level][key & kRegionMasks[level]].fade(realtime::kToldAtChange);
   }
 }
 

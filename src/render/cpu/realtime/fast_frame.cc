@@ -10,17 +10,6 @@
 namespace gloam {
 namespace {
 
-constexpr float kRange = 1.6f;       // of deviations around a pixel that its past may have
-constexpr float kLongest = 8;        // pictures in a mean: older ones fade
-constexpr float kSpike = 4;          // times its neighbours, at most, that a mirror's light may be
-constexpr int kPatch = 16;           // [px], in which a change of the light is sought:
-constexpr float kNoChange = 0.01f;   // a fraction that may be noise,
-constexpr float kHaste = 8;          // and what of the rest is taken over at once
-constexpr float kTolerance = 0.01f;  // of places on one plane, over their distance
-constexpr float kSameDepth = 0.2f;   // fraction by which the ways through air differ that are alike
-constexpr int kSpikeRounds = 2;      // of a surface's filter, that take what stands out along
-constexpr float kFarthest = 1e8f;    // deviations squared, so that products stay finite
-
 using F = FloatLanes;
 
 /// Mean luminance of a signal two pixels away on the same part; without bound where there is none.
@@ -54,7 +43,7 @@ class Accumulation {
   }
 
  private:
-  static constexpr int kParts = kPatch / kLaneCount;  // of a row
+  static constexpr int kParts = realtime::kPatch / kLaneCount;  // of a row
 
   void find_places() {
     // Sums by columns, so that they are the same for any number of lanes.
@@ -77,19 +66,19 @@ class Accumulation {
     for (int s = 0; s < f_.signals; ++s) {
       const float a = sum_of(now[s]), b = sum_of(past[s]);
       const float change = fabsf(a - b) / max(max(a, b), 1e-6f);
-      least_weight_[s] = clamp((change - kNoChange) * kHaste, 0.0f, 1.0f);
+      least_weight_[s] = clamp((change - realtime::kNoChange) * realtime::kHaste, 0.0f, 1.0f);
     }
   }
   static float sum_of(const F (&columns)[kParts]) {
     float sum = 0;
-    for (int i = 0; i < kPatch; ++i) sum += lane(columns[i / kLaneCount], i % kLaneCount);
+    for (int i = 0; i < realtime::kPatch; ++i) sum += lane(columns[i / kLaneCount], i % kLaneCount);
     return sum;
   }
 
   void blend(int x, int y, int part) {
     const FastPast& place = places_[y - y0_][part];
     const F own_part = f_.part.load(x, y);
-    const F longer = min(place.of(before_.age, x, y) + 1.0f, kLongest);
+    const F longer = min(place.of(before_.age, x, y) + 1.0f, realtime::kLongest);
     const F age = select(place.known, longer, F(1.0f));
     f_.age.store(x, y, age);
     for (int s = 0; s < f_.signals; ++s) {
@@ -102,18 +91,20 @@ class Accumulation {
         // Rays that a rough surface scatters seldom meet a lamp: one that does is made no brighter
         // than the others.
         // A rounding error below zero must not become 0 / 0 where all is dark.
-        const F most = max(kSpike * luminance_about(f_, s, x, y), F(0.0f));
+        const F most = max(realtime::kSpike * luminance_about(f_, s, x, y), F(0.0f));
         now = select<F>(l > most, now * (most / l), now);
         l = min(l, most);
         // Images in mirrors do not move with the mirror's surface.
         const MaskLanes moves =
             !((f_.motion_x.load(x, y) == F(0.0f)) & (f_.motion_y.load(x, y) == F(0.0f)));
-        weight = select(moves & (f_.roughness.load(x, y) < kMirror), max(weight, 0.5f), weight);
+        weight = select(moves & (f_.roughness.load(x, y) < realtime::kSharpMirror),
+                        max(weight, realtime::kMovingMirror), weight);
       }
       // Old light out of the range of its neighbours is a trail of something that has moved on.
       const F gain = gain_[s].from(x, y);
       const Vec3Of<F> old = place.of(before_.signal[s], x, y) * gain;
-      const Vec3Of<F> least = mean - deviation * F(kRange), most = mean + deviation * F(kRange);
+      const Vec3Of<F> least = mean - deviation * F(realtime::kRange),
+                      most = mean + deviation * F(realtime::kRange);
       const Vec3Of<F> kept{clamp(old.x, least.x, most.x), clamp(old.y, least.y, most.y),
                            clamp(old.z, least.z, most.z)};
       out_[s].store(x, y, select<F>(place.known, lerp(kept, now, weight), now));
@@ -130,8 +121,8 @@ class Accumulation {
   const LightGain* gain_;  // of each signal
   FastFrame& f_;
   FastPlane3* out_;
-  const int x0_, y0_, y1_ = min(y0_ + kPatch, f_.height);
-  FastPast places_[kPatch][kParts];
+  const int x0_, y0_, y1_ = min(y0_ + realtime::kPatch, f_.height);
+  FastPast places_[realtime::kPatch][kParts];
   float least_weight_[kFastSignals] = {};
 };
 
@@ -203,11 +194,11 @@ void FastFilter::accumulate(const FastFrame& before, FastFrame* frame) {
   for (int s = 0; s < frame->signals; ++s)
     changes.push_back({before.signal[s], frame->signal[s], &gain[s]});
   measure_gains(before, *frame, changes);
-  const int columns = (frame->width + kPatch - 1) / kPatch;
-  const int rows = (frame->height + kPatch - 1) / kPatch;
+  const int columns = (frame->width + realtime::kPatch - 1) / realtime::kPatch;
+  const int rows = (frame->height + realtime::kPatch - 1) / realtime::kPatch;
   parallel_for("fast history", int64_t{columns} * rows, [&](int64_t i) {
     const int x = static_cast<int>(i % columns), y = static_cast<int>(i / columns);
-    Accumulation(before, gain, x * kPatch, y * kPatch, frame, a).run();
+    Accumulation(before, gain, x * realtime::kPatch, y * realtime::kPatch, frame, a).run();
   });
   for (int s = 0; s < frame->signals; ++s) std::swap(frame->signal[s], a[s]);
 }
@@ -250,7 +241,7 @@ F spread_around(const FastPlane3& signal, int step, int x, int y, const Counts& 
 F sharpness(F deviation, F light) { return 1.0f / (2.0f * deviation + 0.005f * light + 1e-4f); }
 F likeness(F light, F own, F sharp) {
   const F d = (light - own) * sharp;
-  return 1.0f / (1.0f + sqr(min(d * d, kFarthest)));
+  return 1.0f / (1.0f + sqr(min(d * d, realtime::kFarthest)));
 }
 F corner_weight(int dx, int dy) { return dx != 0 && dy != 0 ? 0.5f : 0.75f; }
 
@@ -266,7 +257,8 @@ void FastFilter::smooth_signals(const FastFrame& f, int round, const FastPlane3*
       const F part = f.part.load(x, y);
       const Vec3Of<F> p = f.p.load(x, y), n = f.n.load(x, y);
       const F scale =
-          1.0f / (kTolerance * static_cast<float>(step) * f.distance.load(x, y) + 1e-4f);
+          1.0f /
+          (realtime::kPlaneTolerance * static_cast<float>(step) * f.distance.load(x, y) + 1e-4f);
       const F rough = f.roughness.load(x, y);
       const F mirror = min(rough * rough * 8.0f, 1.0f);
       Vec3Of<F> sum[kAirSignal];
@@ -276,7 +268,7 @@ void FastFilter::smooth_signals(const FastFrame& f, int round, const FastPlane3*
         total[s] = 1.0f;
         if (round == 0) deviation[s].store(x, y, deviation_at(f, s, x, y));
         F spread = deviation[s].load(x, y);
-        if (s != kDirectSignal && round < kSpikeRounds) {  // light of lamps has edges
+        if (s != kDirectSignal && round < realtime::kSpikeRounds) {  // light of lamps has edges
           spread = max(spread, spread_around(from[s], step, x, y, [&](int qx, int qy) {
                          return f.part.load(qx, qy) == part;
                        }));
@@ -324,7 +316,7 @@ void FastFilter::smooth_air(const FastFrame& f, int round, const FastPlane3& fro
                    }));
       Vec3Of<F> sum = from.load(x, y);
       const F own = luminance(sum), sharp = sharpness(spread, own);
-      const F distance = f.distance.load(x, y), scale = 1.0f / (kSameDepth * distance);
+      const F distance = f.distance.load(x, y), scale = 1.0f / (realtime::kSameDepth * distance);
       F total = 1.0f;
       for (int dy = -1; dy <= 1; ++dy) {
         for (int dx = -1; dx <= 1; ++dx) {

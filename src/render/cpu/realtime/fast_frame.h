@@ -7,6 +7,7 @@
 
 #include "base/vec.h"
 #include "render/kernel/math/lanes.h"
+#include "render/kernel/realtime/realtime_constants.h"
 
 namespace gloam {
 
@@ -89,8 +90,6 @@ class PlaneMemory {
 /// The noisy parts: light of lamps, of mirrors, of the cache and, where there are media, of the
 /// air in front.
 enum FastSignal { kDirectSignal, kSpecularSignal, kCachedSignal, kAirSignal, kFastSignals };
-/// Smoother surfaces show sharp pictures of other things.
-inline constexpr float kMirror = 0.25f;
 
 struct FastFrame {
   int width = 0, height = 0;

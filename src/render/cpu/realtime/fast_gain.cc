@@ -5,12 +5,6 @@
 namespace gloam {
 namespace {
 
-constexpr int kGainPatch = 8;   // [px], in which the change is sought
-constexpr float kLeast = 8;     // pixels that tell of a patch
-constexpr float kSureness = 1;  // standard errors that a change may be by chance: points that are
-                                // spread over patches make it less than it seems
-constexpr float kMostGain = 4;
-
 using F = FloatLanes;
 
 struct Sums {
@@ -25,18 +19,18 @@ struct Sums {
   }
   static float sum(F columns, int first) {
     float total = 0;
-    for (int i = first; i < first + kGainPatch; ++i) total += lane(columns, i);
+    for (int i = first; i < first + realtime::kGainPatch; ++i) total += lane(columns, i);
     return total;
   }
   /// Gain of the patch whose columns are the lanes from `first` on.
   float gain(int first) const {
     const float count = sum(n, first), old = sum(past, first), more = sum(change, first);
-    if (count < kLeast || !(old > 0)) return 1;
+    if (count < realtime::kLeastPixels || !(old > 0)) return 1;
     // Part of the change that is not likely to be chance (James and Stein 1961, the positive part).
     const float scatter = max(sum(square, first) - sqr(more) / count, 0.0f);
     const float variance = scatter * count / (count - 1);
-    const float sure = max(1 - sqr(kSureness) * variance / max(sqr(more), 1e-30f), 0.0f);
-    return clamp(1 + sure * more / old, 0.0f, kMostGain);
+    const float sure = max(1 - sqr(realtime::kSureness) * variance / max(sqr(more), 1e-30f), 0.0f);
+    return clamp(1 + sure * more / old, 0.0f, realtime::kMostGain);
   }
 };
 
@@ -62,22 +56,22 @@ FastPast find_past(const FastFrame& before, const FastFrame& f, int x, int y) {
 }
 
 void LightGain::resize(int width, int height) {
-  columns_ = (width + kGainPatch - 1) / kGainPatch;
-  rows_ = (height + kGainPatch - 1) / kGainPatch;
+  columns_ = (width + realtime::kGainPatch - 1) / realtime::kGainPatch;
+  rows_ = (height + realtime::kGainPatch - 1) / realtime::kGainPatch;
   changed_ = false;
   gain_.assign(static_cast<size_t>(columns_) * static_cast<size_t>(rows_), 1.0f);
 }
 
 void measure_gains(const FastFrame& before, const FastFrame& now,
                    std::span<const LightChange> changes) {
-  static_assert(kLaneCount % kGainPatch == 0);
+  static_assert(kLaneCount % realtime::kGainPatch == 0);
   const int columns = changes[0].gain->columns_;
   parallel_for("fast gain", changes[0].gain->rows_, [&](int64_t row) {
-    const int y0 = static_cast<int>(row) * kGainPatch;
-    for (int column = 0; column < columns; column += kLaneCount / kGainPatch) {
-      const int x = column * kGainPatch;
+    const int y0 = static_cast<int>(row) * realtime::kGainPatch;
+    for (int column = 0; column < columns; column += kLaneCount / realtime::kGainPatch) {
+      const int x = column * realtime::kGainPatch;
       Sums sums[kFastSignals];
-      for (int y = y0; y < std::min(y0 + kGainPatch, now.height); ++y) {
+      for (int y = y0; y < std::min(y0 + realtime::kGainPatch, now.height); ++y) {
         const FastPast past = find_past(before, now, x, y);
         for (size_t i = 0; i < changes.size(); ++i) {
           sums[i].add(past.known, luminance(changes[i].now.load(x, y)),
@@ -85,9 +79,9 @@ void measure_gains(const FastFrame& before, const FastFrame& now,
         }
       }
       for (size_t i = 0; i < changes.size(); ++i) {
-        for (int k = 0; k < std::min(kLaneCount / kGainPatch, columns - column); ++k) {
+        for (int k = 0; k < std::min(kLaneCount / realtime::kGainPatch, columns - column); ++k) {
           changes[i].gain->gain_[static_cast<size_t>(row * columns + column + k)] =
-              sums[i].gain(k * kGainPatch);
+              sums[i].gain(k * realtime::kGainPatch);
         }
       }
     }
@@ -102,7 +96,7 @@ FloatLanes LightGain::from(int x, int y) const {
   if (!changed_) return 1.0f;
   F column;
   for (int i = 0; i < kLaneCount; ++i) set_lane(&column, i, static_cast<float>(x + i));
-  constexpr float kScale = 1.0f / kGainPatch;
+  constexpr float kScale = 1.0f / realtime::kGainPatch;
   const float right = static_cast<float>(columns_ - 1), low = static_cast<float>(rows_ - 1);
   const F fx = clamp((column + 0.5f) * kScale - 0.5f, F(0.0f), F(right));
   const float fy = clamp((static_cast<float>(y) + 0.5f) * kScale - 0.5f, 0.0f, low);

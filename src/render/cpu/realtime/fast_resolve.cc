@@ -10,11 +10,6 @@ namespace {
 
 using F = FloatLanes;
 
-constexpr float kMostPictures = 8;  // in a mean: older ones fade;
-constexpr float kMostMoving = 2;    // where they lie between pixels, each blurs a little
-constexpr float kPastRange = 1;     // of deviations around a pixel that its past may have,
-constexpr float kSlack = 0.015f;    // and of its mean: light that flickers is noise
-
 /// Neighbourhood of 3 x 3 pixels around those from (x, y) on.
 struct Around {
   Vec3Of<F> now;  ///< their colours, weighted by the pixel filter
@@ -119,12 +114,13 @@ void resolve_lanes(const FastFrame& before, const LightGain& gain, const FilterW
   past = past * gain.from(x, y);
   const MaskLanes same = around.edge | (edge > 0.0f) | (part == f.part.load(x, y));
   const MaskLanes known = inside & same & (pictures > 0.0f);
-  const Vec3Of<F> reach = around.color.deviation * F(kPastRange) + around.color.mean * F(kSlack);
+  const Vec3Of<F> reach =
+      around.color.deviation * F(realtime::kPastRange) + around.color.mean * F(realtime::kSlack);
   const Vec3Of<F> least = around.color.mean - reach, most = around.color.mean + reach;
   const auto keep = [](F value, F low, F high) { return max(clamp(value, low, high), F(0.0f)); };
   const Vec3Of<F> kept{keep(past.x, least.x, most.x), keep(past.y, least.y, most.y),
                        keep(past.z, least.z, most.z)};
-  const F longest = select(rests, F(kMostPictures), F(kMostMoving));
+  const F longest = select(rests, F(realtime::kMostPictures), F(realtime::kMostMoving));
   pictures = select(known, min(pictures + 1.0f, longest), F(1.0f));
   const F weight = max(1.0f / pictures, f.gleam.load(x, y));
   f.edge.store(x, y, select(around.edge, F(1.0f), F(0.0f)));

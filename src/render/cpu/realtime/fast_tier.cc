@@ -10,21 +10,12 @@ namespace {
 
 using F = FloatLanes;
 
-constexpr float kCellPixels = 32;       // edge of a cache's cell in the picture,
-constexpr float kWidestCell = 0.05f;    // or over its distance if that is less
-constexpr size_t kManyCells = 8000;     // are asked for where each pixel shows a leaf of its own:
-constexpr float kCoarsest = 4;          // then cells are up to so many times as wide
-constexpr uint32_t kFirstPictures = 8;  // of the first instant, one upon the other
-constexpr size_t kFirstCells = 5000;    // of the cache that one of them traces again,
-constexpr size_t kMostCells = 2500;     // and a later picture
-
-/// Share of directions that meet what is near, by the four by four pixels about one, whose
+/// Fraction of directions that meet a near surface, by the four by four pixels about one, whose
 /// directions are spread evenly: one alone has all or nothing.
 F mean_near(const FastFrame& f, int x, int y) {
-  constexpr float kTolerance = 0.02f;  // of places on one plane, over their distance
   const F part = f.part.load(x, y);
   const Vec3Of<F> p = f.p.load(x, y), n = f.n.load(x, y);
-  const F scale = 1.0f / (kTolerance * f.distance.load(x, y) + 1e-4f);
+  const F scale = 1.0f / (realtime::kNearTolerance * f.distance.load(x, y) + 1e-4f);
   F sum, total;
   for (int dy = -1; dy <= 2; ++dy) {
     for (int dx = -1; dx <= 2; ++dx) {
@@ -39,15 +30,15 @@ F mean_near(const FastFrame& f, int x, int y) {
   return sum / max(total, F(1e-6f));
 }
 
-float cell_edge(const CameraView32& camera) { return min(kCellPixels / camera.fx, kWidestCell); }
+float cell_edge(const CameraView32& camera) {
+  return min(realtime::kCellPixels / camera.fx, realtime::kWidestCell);
+}
 
 }  // namespace
 
 bool FastHistory::find_moving_lamps(const SceneView& scene) {
-  // Lamps that move less far from picture to picture, or give less than kWeak of the strongest
+  // Lamps that move less far from picture to picture, or give less than kWeakLamp of the strongest
   // lamp's light, are left to the cache, which follows them.
-  constexpr float kFar = 0.005f, kTurn = 0.005f;  // [m], [rad]
-  constexpr float kWeak = 0.01f;
   std::vector<LampPlace> now;
   float strongest = 0;
   for (uint32_t i = 0; i < scene.lights.size; ++i) {
@@ -58,9 +49,9 @@ bool FastHistory::find_moving_lamps(const SceneView& scene) {
   // Lamps that go on or out change the rows, so none can be followed; cells notice such changes.
   bool moves = false;
   for (uint32_t i = 0; !moves && now.size() == lamps_.size() && i < scene.lights.size; ++i) {
-    moves = scene.lights[i].strength > kWeak * strongest &&
-            (length(now[i].p_W - lamps_[i].p_W) > kFar ||
-             length(now[i].direction - lamps_[i].direction) > kTurn);
+    moves = scene.lights[i].strength > realtime::kWeakLamp * strongest &&
+            (length(now[i].p_W - lamps_[i].p_W) > realtime::kLampWay ||
+             length(now[i].direction - lamps_[i].direction) > realtime::kLampTurn);
   }
   lamps_ = std::move(now);
   return moves;
@@ -96,7 +87,9 @@ void FastHistory::compose() {
       const MaskLanes moves =
           !((now_.motion_x.load(x, y) == F(0.0f)) & (now_.motion_y.load(x, y) == F(0.0f)));
       const F gleam = 0.5f * luminance(specular) / max(luminance(color), F(1e-6f));
-      now_.gleam.store(x, y, select(moves & (now_.roughness.load(x, y) < kMirror), gleam, F(0.0f)));
+      now_.gleam.store(
+          x, y,
+          select(moves & (now_.roughness.load(x, y) < realtime::kSharpMirror), gleam, F(0.0f)));
     }
   });
 }
@@ -114,14 +107,15 @@ void FastHistory::add_picture(const SceneView& scene, const CpuTracer& tracer,
     cache.lamps_move = lamps_move_;
     trace({plain, tracer, camera, cache, settings.seed}, pass);
     cache_.ask(requests_);
-    if (first && cache_.size() > kManyCells && coarse_ < kCoarsest) {
+    if (first && cache_.size() > realtime::kManyCells && coarse_ < realtime::kCoarsest) {
       coarse_ *= 2;
       cache_ = {};
       continue;
     }
     again = first;  // a first picture is traced twice: its rays saw no cache
-    rays_ += cache_.update(scene, tracer, eye, edge, settings.seed, first,
-                           pictures_ < kFirstPictures ? kFirstCells : kMostCells, watch);
+    rays_ += cache_.update(
+        scene, tracer, eye, edge, settings.seed, first,
+        pictures_ < realtime::kFirstPictures ? realtime::kFirstCells : realtime::kMostCells, watch);
     if (requests_.empty()) break;
   }
   look_up(cache_.view(eye, cell_edge(camera) * coarse_));
@@ -147,8 +141,9 @@ RenderStats FastHistory::render(const SceneView& scene, const CpuTracer& tracer,
   }
   const bool first = pictures_ == 0;
   lamps_move_ = find_moving_lamps(scene);
-  const uint32_t passes = first ? kFirstPictures : 1;
-  RenderWatch watch(settings.progress, first ? IrradianceCache::kFirstRounds + kFirstPictures : 1);
+  const uint32_t passes = first ? realtime::kFirstPictures : 1;
+  RenderWatch watch(settings.progress,
+                    first ? IrradianceCache::kFirstRounds + realtime::kFirstPictures : 1);
   for (uint32_t pass = 0; pass < passes && !watch.stopped(); ++pass) {
     add_picture(scene, tracer, camera, settings, pass, &watch);
   }

@@ -51,7 +51,7 @@ class FastHistory final : public ViewHistory {
   bool lamps_move_ = false;
   std::vector<AskedOfTile> asked_;  ///< by tile
   std::vector<CacheRequest> requests_;
-  Vec2f turn_;  ///< in [0, 1)², of the directions of FastSampleOf::near
+  Vec2f near_offset_;  ///< in [0, 1)², of the directions of FastSampleOf::near
   uint64_t rays_ = 0;
   float coarse_ = 1;       ///< edges of the cache's cells, times those wanted
   uint32_t pictures_ = 0;  ///< taken, those of one instant too

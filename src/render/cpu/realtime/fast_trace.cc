@@ -1,35 +1,33 @@
-// One picture of the fast tier before it is filtered: camera rays block by block, and what they see
-// in mirrors by the tile.
+// One picture of the fast tier before it is filtered: camera rays block by block, and their
+// reflections by the tile.
 
 #include <cstdlib>
 
 #include "base/parallel.h"
 #include "render/cpu/path/tile.h"
 #include "render/cpu/realtime/fast_tier.h"
-#include "render/kernel/realtime/fast.h"
+#include "render/kernel/realtime/fast_sample.h"
 
 namespace gloam {
 namespace {
 
 using F = FloatLanes;
 
-constexpr uint32_t kPattern = 16;  // points of a pixel that pictures go through in turn
-
 /// Requests of one tile: of each cell, one place by chance.
 class TileRequests {
  public:
   explicit TileRequests(std::vector<CacheRequest>* list) : list_(*list) { list_.clear(); }
 
-  static constexpr uint32_t kDice = 1u << 24;
-  /// `dice`: below kDice.
-  void add(const CacheRequest& request, uint32_t dice) {
+  static constexpr uint32_t kRandomEnd = 1u << 24;
+  /// Adds a request; `random`: below kRandomEnd.
+  void add(const CacheRequest& request, uint32_t random) {
     if (request.key == 0) return;
     Slot& slot = slots_[caches::slot_of(request.key, kSlots)];
     if (slot.key != request.key) {
       slot = {request.key, static_cast<uint32_t>(list_.size()), 0};
       list_.push_back(request);
     }
-    if (uint64_t{dice} * ++slot.count < kDice) list_[slot.row] = request;
+    if (uint64_t{random} * ++slot.count < kRandomEnd) list_[slot.row] = request;
   }
 
  private:
@@ -42,8 +40,8 @@ class TileRequests {
   Slot slots_[kSlots];
 };
 
-/// By chance, below TileRequests::kDice: for one of the requests of a pixel in a picture.
-uint32_t dice_of(int x, int y, int kind, uint32_t picture) {
+/// Random number below TileRequests::kRandomEnd, for one of the requests of a pixel in a picture.
+uint32_t random_of(int x, int y, int kind, uint32_t picture) {
   const auto place = static_cast<uint32_t>(y) << 16 | static_cast<uint32_t>(x);
   return mix_bits(place ^ (picture * 8u + static_cast<uint32_t>(kind)) * 0x9E3779B9u) >> 8;
 }
@@ -76,7 +74,7 @@ PixelBlock make_block(const CameraView32& camera, const FastFrame& frame, int x,
   return block;
 }
 
-/// Way of what is seen since the previous picture [px].
+/// Motion of the surfaces in view since the previous picture [px].
 Vec2Of<F> motion_of(const SceneView& scene, const CameraView32& camera, const PixelBlock& block,
                     const FastSampleOf<F>& sample) {
   const MaskLanes solid = block.active & sample.solid;
@@ -84,21 +82,22 @@ Vec2Of<F> motion_of(const SceneView& scene, const CameraView32& camera, const Pi
   return find_motion(camera, block.ray, sample.p, before, solid, block.active);
 }
 
-/// Pixels take turns from picture to picture.
-FastTurnsOf<F> turns_of(const PixelBlock& block, uint32_t picture) {
+/// Leaders of quads, other pixels from picture to picture.
+QuadLeadersOf<F> leaders_of(const PixelBlock& block, uint32_t picture) {
   constexpr uint32_t kOrder[4] = {0, 3, 1, 2};
   const UintLanes place = (block.px & 1u) + (block.py & 1u) * 2u;
   return {((block.px + block.py + picture) & 1u) == 0u, place == kOrder[picture % 4]};
 }
 
 /// Points of [0, 1)² for the pixels from `first` on of four by four, each in a part of its own.
-Vec2Of<F> stratified(int first, Vec2f turn) {
+Vec2Of<F> stratified(int first, Vec2f offset) {
   constexpr int kOrder[16] = {0, 10, 5, 15, 12, 6, 9, 3, 8, 2, 13, 7, 4, 14, 1, 11};
   Vec2Of<F> u;
   for (int i = 0; i < kLaneCount; ++i) {
     const int k = kOrder[(first + i) % 16], column = k % 4, row = k / 4;
-    set_lane(&u, i,
-             {(static_cast<float>(column) + turn.x) / 4, (static_cast<float>(row) + turn.y) / 4});
+    set_lane(
+        &u, i,
+        {(static_cast<float>(column) + offset.x) / 4, (static_cast<float>(row) + offset.y) / 4});
   }
   return u;
 }
@@ -127,10 +126,9 @@ void store(const PixelBlock& block, const FastSampleOf<F>& sample, Vec2Of<F> mot
   });
 }
 
-/// Gives what single pixels of a tile have too much of to all that its media scatter: filters pass
-/// over what stands out, and the light of lamps nearby comes to few pixels.
+/// Spreads the excess of single pixels over all light that a tile's media scatter: filters preserve
+/// outliers, and the light of lamps nearby comes to few pixels.
 void spread_air(int x0, int y0, FastFrame* frame) {
-  constexpr float kBrightest = 4;  // times the tile's mean
   FastPlane3& air = frame->signal[kAirSignal];
   const int x1 = std::min(x0 + kTile, frame->width), y1 = std::min(y0 + kTile, frame->height);
   const auto each = [&](const auto& visit) {
@@ -140,7 +138,7 @@ void spread_air(int x0, int y0, FastFrame* frame) {
   };
   float all = 0, kept = 0;
   each([&](int, int, Vec3f v) { all += luminance(v); });
-  const float most = kBrightest * all / static_cast<float>((x1 - x0) * (y1 - y0));
+  const float most = realtime::kBrightestAir * all / static_cast<float>((x1 - x0) * (y1 - y0));
   each([&](int, int, Vec3f v) { kept += min(luminance(v), most); });
   if (!(kept < all)) return;
   const float gain = all / kept;
@@ -161,8 +159,8 @@ struct PendingBlock {
 /// own.
 class ReflectedRays {
  public:
-  ReflectedRays(const FastView& view, uint32_t picture, TileRequests* requests)
-      : view_(view), picture_(picture), requests_(*requests) {}
+  ReflectedRays(const FastWorld<CpuTracer>& world, uint32_t picture, TileRequests* requests)
+      : world_(world), picture_(picture), requests_(*requests) {}
 
   void add(const ReflectionOf<F>& rays, PendingBlock* block) {
     each_lane(rays.use.goes, [&](int i) {
@@ -183,12 +181,12 @@ class ReflectedRays {
     for (int k = 0; k < count_; ++k) set_lane(&active, k, true);
     CacheRequest asked[kLaneCount];
     UintLanes traced = 0u;
-    const Vec3Of<F> seen =
-        look_along(view_.scene, view_.tracer, view_.cache, rays_, active, &traced, asked);
+    const Vec3Of<F> seen = trace_reflection(world_, rays_, active, &traced, asked);
     for (int k = 0; k < count_; ++k) {
       const auto [block, i] = of_[k];
       set_lane(&block->seen, i, lane(seen, k));
-      requests_.add(asked[k], dice_of(block->x + i % 4, block->y + i / 4, kFastRequests, picture_));
+      requests_.add(asked[k],
+                    random_of(block->x + i % 4, block->y + i / 4, kFastRequests, picture_));
       traced_ += lane(traced, k);
     }
     count_ = 0;
@@ -198,7 +196,7 @@ class ReflectedRays {
     PendingBlock* block;
     int lane;
   };
-  const FastView& view_;
+  const FastWorld<CpuTracer>& world_;
   const uint32_t picture_;
   TileRequests& requests_;
   ReflectionOf<F> rays_;
@@ -212,8 +210,9 @@ class ReflectedRays {
 uint64_t FastHistory::trace_tile(const FastView& view, uint32_t pass, int x0, int y0,
                                  AskedOfTile* asked) {
   const FlushDenormals flush;
+  const FastWorld<CpuTracer> world{view.scene, view.tracer, view.cache};
   TileRequests seen(&asked->seen), mirrored(&asked->mirrored);
-  ReflectedRays reflected(view, pictures_, &mirrored);
+  ReflectedRays reflected(world, pictures_, &mirrored);
   PendingBlock blocks[kTile * kTile / kLaneCount];
   int count = 0;
   uint64_t rays = 0;
@@ -222,11 +221,14 @@ uint64_t FastHistory::trace_tile(const FastView& view, uint32_t pass, int x0, in
     tile_pixel(first, &x, &y);
     if (x0 + x >= now_.width || y0 + y >= now_.height) continue;
     const PixelBlock pixels = make_block(view.camera, now_, x0 + x, y0 + y);
-    const auto sampler = SamplerOf<F>::of_turn(view.seed, pixels.px, pixels.py, pictures_);
     CacheRequest requests[kFastRequests * kLaneCount];
-    const FastSampleOf<F> sample = trace_fast(
-        view.scene, view.tracer, view.cache, pixels.ray, pixels.cone.width, pixels.cone.spread,
-        sampler, stratified(first, turn_), turns_of(pixels, pictures_), pixels.active, requests);
+    const FastPixelsOf<F> rays_in{pixels.ray,
+                                  pixels.cone,
+                                  SamplerOf<F>::of_turn(view.seed, pixels.px, pixels.py, pictures_),
+                                  stratified(first, near_offset_),
+                                  leaders_of(pixels, pictures_),
+                                  pixels.active};
+    const FastSampleOf<F> sample = trace_fast(world, rays_in, requests);
     // Pictures of one instant have no way between them.
     const Vec2Of<F> motion =
         pass == 0 ? motion_of(view.scene, view.camera, pixels, sample) : Vec2Of<F>{};
@@ -235,7 +237,7 @@ uint64_t FastHistory::trace_tile(const FastView& view, uint32_t pass, int x0, in
     for (int i = 0; i < kLaneCount; ++i) {
       for (int kind = 0; kind < kFastRequests; ++kind) {
         seen.add(requests[kind * kLaneCount + i],
-                 dice_of(pixels.x + i % 4, pixels.y + i / 4, kind, pictures_));
+                 random_of(pixels.x + i % 4, pixels.y + i / 4, kind, pictures_));
       }
     }
     PendingBlock& block = blocks[count++];
@@ -255,9 +257,9 @@ uint64_t FastHistory::trace_tile(const FastView& view, uint32_t pass, int x0, in
 }
 
 void FastHistory::trace(const FastView& view, uint32_t pass) {
-  Sampler pattern = Sampler::make(0, 0, 0, 0, pictures_ % kPattern, 3);
+  Sampler pattern = Sampler::make(0, 0, 0, 0, pictures_ % realtime::kPixelPoints, 3);
   now_.offset = pattern.next_2d() - Vec2f{0.5f, 0.5f};
-  turn_ = pattern.next_2d();
+  near_offset_ = pattern.next_2d();
   const int columns = (now_.width + kTile - 1) / kTile, rows = (now_.height + kTile - 1) / kTile;
   asked_.resize(static_cast<size_t>(columns) * static_cast<size_t>(rows));
   std::vector<uint64_t> traced(asked_.size());

@@ -8,32 +8,6 @@
 #include "render/kernel/realtime/fast_gather.h"
 
 namespace gloam {
-namespace {
-
-constexpr int kRays = 32;            // of a cell and update,
-constexpr int kFirstRays = 16;       // and as long as light comes round for the first time
-constexpr int kRaysTogether = 8;     // of them go by the cosine, as many by the guide
-constexpr int kMemory = 10 * kRays;  // rays that a cell's mean is of, at most
-constexpr uint32_t kRounds = 16;     // of rays through one set of points
-constexpr float kStirred = 40;       // of a cell that sees moving things in all directions, as many
-                                     // times less
-constexpr float kSettles = 0.75f;    // of what a cell saw move, from update to update
-constexpr uint32_t kForgotten = 30;  // updates after which a cell that nobody asks for goes
-constexpr float kSurprise = 3;       // standard errors,
-constexpr float kNoRegionChange = 0.02f;  // and this fraction, that a region's light may be off
-constexpr float kBrightest = 16;      // times what is usual: what a ray brings beyond that is the
-                                      // region's, as few rays meet it
-constexpr float kBrightestInAir = 8;  // there, a filter passes over what cells have too much
-constexpr float kFades = 0.1f;        // fraction of all light that must have changed to change all
-constexpr int kMostRounds = 3;        // of an update while light changes in many cells
-constexpr int kMeanRounds = 3;        // of the first update, the last ones
-constexpr double kSettled = 0.01;     // fraction that the last round changed of all light
-constexpr size_t kFurtherCells = 2, kFurtherRoom = 4000;  // cells, for each that pixels ask for,
-                                                          // and so many more
-constexpr float kRayConeSpread = 0.15f;  // of the rays' cones: no fine texture is sought
-
-}  // namespace
-
 uint32_t IrradianceCache::slot_of(uint64_t key) const {
   const auto size = static_cast<uint32_t>(keys_.size());
   uint32_t slot = caches::slot_of(key, size);
@@ -157,8 +131,10 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
   const float own = cell.samples == 0 ? beside : luminance(light_[row].all);
   const float usual = max(own, beside);
   const auto starts = static_cast<size_t>(std::min(cell.starts, kStarts));
-  const float brightest = usual > 0 ? (in_air ? kBrightestInAir : kBrightest) * usual : 1e30f;
+  const float brightest =
+      usual > 0 ? (in_air ? realtime::kBrightestInAir : realtime::kBrightest) * usual : 1e30f;
   const float per_ray = 1 / static_cast<float>(rays);
+  const FastWorld<CpuTracer> world{scene, tracer, cache};
   Traced& out = traced_[k];
   out = {};
   out.is_new = cell.samples == 0;
@@ -166,12 +142,13 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
   for (int first = 0; first < rays; first += kLaneCount) {
     paths::State<F> path;
     UintLanes index;
-    const uint32_t begin = cell.rounds % kRounds * kRays + static_cast<uint32_t>(first);
+    const uint32_t begin =
+        cell.rounds % realtime::kRounds * realtime::kRays + static_cast<uint32_t>(first);
     for (int i = 0; i < kLaneCount; ++i) set_lane(&index, i, begin + static_cast<uint32_t>(i));
     const uint64_t mixed = cell.key * 0x9E3779B97F4A7C15ull;
     // Rays of one round after the other go on with the same points: all that a mean is of are
     // spread evenly.
-    path.sampler = SamplerOf<F>::make(seed ^ mixed, cell.rounds / kRounds, UintLanes(0u),
+    path.sampler = SamplerOf<F>::make(seed ^ mixed, cell.rounds / realtime::kRounds, UintLanes(0u),
                                       UintLanes(0u), index, 0);
     path.throughput = in_all_lanes<F>({1, 1, 1});
     // Each stratum is a part of a ring: over compact patches of directions a rare bright lamp left
@@ -186,7 +163,7 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
       set_lane(&path.ray.o, i, start.p);
       set_lane(&normal, i, start.n);
       set_lane(&g, i, start.g);
-      set_lane(&seeks, i, (first + i) / kRaysTogether % 2 != 0);
+      set_lane(&seeks, i, (first + i) / realtime::kRaysTogether % 2 != 0);
     }
     const Vec3Of<F> local = in_air ? phase_direction(g, u) : cosine_direction(u);
     path.ray.d = FrameOf<F>::from_z(normal).to_world(local);
@@ -200,12 +177,13 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
       const F sought = directions::pdf(scene.guide, rows.row, path.ray.d);
       weight = select(rows.guided, 2.0f * even / max(even + sought, F(1e-9f)), F(1.0f));
     }
-    path.cone_spread = kRayConeSpread;
+    path.cone_spread = realtime::kRayConeSpread;
     const Vec3Of<F> origin = path.from = path.ray.o;
     CacheRequest met[kLaneCount];
-    const fasts::GatheredOf<F> light =
-        fasts::gather<F>(scene, tracer, cache, false, in_air ? fasts::kNearLamp : 0.0f, false,
-                         !in_air, weight > 0.0f, &path, met);
+    fasts::GatherOptionsOf<F> options;
+    options.near_lamp = in_air ? realtime::kNearLamp : 0.0f;
+    options.near_flames = !in_air;
+    const fasts::GatheredOf<F> light = fasts::gather<F>(world, options, weight > 0.0f, &path, met);
     for (int i = 0; i < kLaneCount; ++i) {
       const float w = lane(weight, i);
       Vec3f all = w > 0 ? lane(light.light, i) * w : Vec3f{}, lamps;
@@ -223,12 +201,12 @@ void IrradianceCache::trace_cell(const SceneView& scene, const CpuTracer& tracer
       const float kept = brightest / max(luminance(all), brightest);
       const Vec3f one = all * kept;
       out.excess += all - one;
-      const bool near = !in_air && lane(light.way, i) < edge;
+      const bool near = !in_air && lane(light.distance, i) < edge;
       out.light.all += one;
       if (near) out.light.near += one;
       out.light.near += lamps * kept;
       out.light.near_fraction += near ? w : 0.0f;
-      if (lane(light.way, i) < 1e30f && scene.instances[lane(light.first, i)].has_moved)
+      if (lane(light.distance, i) < 1e30f && scene.instances[lane(light.first, i)].has_moved)
         out.stir += w * per_ray;
       out.variance += sqr(luminance(one));
       out.rays += lane(path.result.rays, i);
@@ -262,14 +240,15 @@ void IrradianceCache::find_changes() {
   const auto key_of = [&](size_t k) { return cells_[asked_[k]].key; };
   groups_.each(traced_.size(), caches::kRegion, key_of, [&](auto group) {
     const LightChange sum = change_of(group);
-    const bool changed =
-        fabsf(sum.change) > kSurprise * sqrtf(sum.variance) + kNoRegionChange * sum.light;
+    const bool changed = fabsf(sum.change) > realtime::kSurprise * sqrtf(sum.variance) +
+                                                 realtime::kNoRegionChange * sum.light;
     for (const auto& [key, k] : group) traced_[k].changed = changed && !traced_[k].is_new;
   });
   // Light that fades everywhere shows here long before it shows in each region.
   groups_.each(traced_.size(), 0, key_of, [&](auto group) {
     const LightChange sum = change_of(group);
-    if (fabsf(sum.change) > kSurprise * sqrtf(sum.variance) + kFades * sum.light) {
+    if (fabsf(sum.change) >
+        realtime::kSurprise * sqrtf(sum.variance) + realtime::kFades * sum.light) {
       for (Traced& traced : traced_) traced.changed = true;
     }
   });
@@ -285,12 +264,12 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
                        for (int64_t k = begin; k < end; ++k)
                          find_home(tracer, asked_[static_cast<size_t>(k)]);
                      });
-  parallel_for_range("irradiance cache", static_cast<int64_t>(asked_.size()), 4,
-                     [&](int64_t begin, int64_t end) {
-                       for (int64_t k = begin; k < end && watch->may_continue(); ++k)
-                         trace_cell(scene, tracer, cache, seed, remembers ? kRays : kFirstRays,
-                                    static_cast<size_t>(k));
-                     });
+  parallel_for_range(
+      "irradiance cache", static_cast<int64_t>(asked_.size()), 4, [&](int64_t begin, int64_t end) {
+        for (int64_t k = begin; k < end && watch->may_continue(); ++k)
+          trace_cell(scene, tracer, cache, seed, remembers ? realtime::kRays : realtime::kFirstRays,
+                     static_cast<size_t>(k));
+      });
   of_cells_.clear();
   for (size_t k = 0; k < traced_.size(); ++k) {
     of_cells_.push_back({cells_[asked_[k]].key, traced_[k].excess, traced_[k].usual});
@@ -305,17 +284,18 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
     Cell& cell = cells_[asked_[k]];
     CellLight& light = light_[asked_[k]];
     // Light from before is no part of the mean as long as little of the light has come round.
-    if (!remembers || traced.changed) cell.samples = std::min(cell.samples, kRays / 8);
+    if (!remembers || traced.changed) cell.samples = std::min(cell.samples, realtime::kRays / 8);
     if (!remembers) cell.samples = 0;
     if (traced.changed) excess_.forget(cell.key);
     ++cell.rounds;
-    cell.stir = max(traced.stir, kSettles * cell.stir);
-    const auto memory = static_cast<int>(kMemory / (1 + kStirred * cell.stir));
-    cell.samples = std::min(cell.samples, std::max(memory - kRays, 0));
-    const float weight = static_cast<float>(kRays) / static_cast<float>(cell.samples + kRays);
+    cell.stir = max(traced.stir, realtime::kSettles * cell.stir);
+    const auto memory = static_cast<int>(realtime::kMemory / (1 + realtime::kStirred * cell.stir));
+    cell.samples = std::min(cell.samples, std::max(memory - realtime::kRays, 0));
+    const float weight =
+        static_cast<float>(realtime::kRays) / static_cast<float>(cell.samples + realtime::kRays);
     light = light.is_known() ? lerp(light, traced.light, weight) : traced.light;
     cell.variance = lerp(cell.variance, traced.variance, weight);
-    cell.samples = std::min(cell.samples + kRays, kMemory);
+    cell.samples = std::min(cell.samples + realtime::kRays, realtime::kMemory);
     cell.last_traced = update_;
     rays += traced.rays;
   }
@@ -336,7 +316,6 @@ uint64_t IrradianceCache::trace(const SceneView& scene, const CpuTracer& tracer,
 double IrradianceCache::extrapolate(int round, bool remembers) {
   // Light that comes round once more in each of them dies away as a geometric series: its sum is
   // known from two terms (Aitken 1926).
-  constexpr double kMostRatio = 0.97, kWorthIt = 0.004;
   const auto counts = [&](size_t k) {
     return !traced_[k].is_new && (!remembers || traced_[k].changed);
   };
@@ -355,8 +334,8 @@ double IrradianceCache::extrapolate(int round, bool remembers) {
   const double relative_change = light > 0 ? std::abs(change) / light : 1;
   // Two quotients that agree tell it from noise. While a picture waits there is time for one.
   const double ratio = remembers ? quotient : std::min(quotient, last_quotient);
-  const auto dies = [](double r) { return r > 0 && r < kMostRatio; };
-  if (terms_ < (remembers ? 3 : 4) || relative_change <= kWorthIt) return relative_change;
+  const auto dies = [](double r) { return r > 0 && r < realtime::kMostRatio; };
+  if (terms_ < (remembers ? 3 : 4) || relative_change <= realtime::kWorthIt) return relative_change;
   if (!dies(quotient) || !(remembers || dies(last_quotient))) return relative_change;
   const auto factor = static_cast<float>(std::max(0.0, 1 + change * ratio / ((1 - ratio) * light)));
   for (size_t k = 0; k < asked_.size(); ++k) {
@@ -379,9 +358,10 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
   // Cells are limited: where each ray meets a leaf of its own, larger cells' light stands for what
   // lies further on.
   const size_t most =
-      kFurtherRoom + kFurtherCells * static_cast<size_t>(std::count_if(
-                                         cells_.begin(), cells_.end(),
-                                         [](const Cell& cell) { return cell.starts > 0; }));
+      realtime::kFurtherMargin +
+      realtime::kFurtherCells *
+          static_cast<size_t>(std::count_if(cells_.begin(), cells_.end(),
+                                            [](const Cell& cell) { return cell.starts > 0; }));
   for (int i = 0; i < rounds && !watch->stopped(); ++i) {
     ask(std::vector<CacheRequest>(std::move(further_)), most);
     asked_.clear();
@@ -393,7 +373,7 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
     const auto waits = [this](uint32_t row) {
       const Cell& cell = cells_[row];
       if (cell.samples == 0) return 1e9f;
-      return static_cast<float>(update_ - cell.last_traced) * (1 + kStirred * cell.stir);
+      return static_cast<float>(update_ - cell.last_traced) * (1 + realtime::kStirred * cell.stir);
     };
     std::stable_sort(asked_.begin(), asked_.end(),
                      [&](uint32_t a, uint32_t b) { return waits(a) > waits(b); });
@@ -406,12 +386,12 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
     const bool many = !settles && 8 * changed > static_cast<int64_t>(asked_.size());
     if (remembers && !many) continue;
     const double relative_change = extrapolate(i, remembers);
-    if (many && rounds < kMostRounds) ++rounds;
-    const bool rests = relative_change < kSettled && last_change < kSettled;
+    if (many && rounds < realtime::kMostRounds) ++rounds;
+    const bool rests = relative_change < realtime::kSettled && last_change < realtime::kSettled;
     last_change = relative_change;
-    if (settles && ((i > 1 && rests) || i + 1 + kMeanRounds == kFirstRounds)) {
+    if (settles && ((i > 1 && rests) || i + 1 + realtime::kMeanRounds == kFirstRounds)) {
       remembers = true;
-      rounds = i + 1 + kMeanRounds;
+      rounds = i + 1 + realtime::kMeanRounds;
     }
   }
   forget();
@@ -420,11 +400,11 @@ uint64_t IrradianceCache::update(const SceneView& scene, const CpuTracer& tracer
 
 void IrradianceCache::forget() {
   ++update_;
-  excess_.end_update(kForgotten);
+  excess_.end_update(realtime::kForgotten);
   size_t kept = 0;
   for (size_t row = 0; row < cells_.size(); ++row) {
     cells_[row].starts = 0;
-    if (cells_[row].last_asked + kForgotten < update_) continue;
+    if (cells_[row].last_asked + realtime::kForgotten < update_) continue;
     cells_[kept] = cells_[row];
     light_[kept] = light_[row];
     homes_[kept] = homes_[row];

@@ -7,27 +7,23 @@
 
 namespace gloam::fasts {
 
-/// A sample of lamps for a step of a ray through media.
+/// Sample of lamps for a step of a ray through media.
 struct AirLamp {
   LampSampleOf<float> lamp;
   Vec3f p_W;    ///< in the step
   Vec3f light;  ///< that it brings to the ray's origin if nothing is in between [cd/m²]
 };
 
-/// Distance from air [m] below which a lamp's surface lights it by the rays of the cache's cells
-/// alone: samples of points of a large lamp grow without bound as they come nearer.
-inline constexpr float kNearLamp = 0.25f;
-
 /// Sample of lamps for media at p_W on the ray. `weight`: MarchStep::weight.
 GLOAM_HD AirLamp sample_air(const SceneView& scene, const Ray& ray, const MediumPoint& medium,
                             Vec3f weight, Vec3f p_W, Vec2f u) {
   AirLamp out{{}, p_W, {}};
   LightSampler light_sampler;
-  prepare_light_sampler<float>(scene, p_W, Vec3f{}, true, kOneGlow, &light_sampler);
+  prepare_light_sampler<float>(scene, p_W, Vec3f{}, true, realtime::kOneGlow, &light_sampler);
   out.lamp = sample_lamp<float>(scene, light_sampler, p_W, Vec3f{}, u, ray.time, true);
   const LightSample& light = out.lamp.light;
   const bool has_surface = length_squared(light.lift) > 0;
-  if (!(light.pdf > 0) || (has_surface && light.distance < kNearLamp)) return out;
+  if (!(light.pdf > 0) || (has_surface && light.distance < realtime::kNearLamp)) return out;
   const float cosine = dot(ray.d, light.wi);
   const auto phase = [&](float scattering, float g_scattering) {
     const float g = scattering > 0 ? g_scattering / scattering : 0.0f;
@@ -92,16 +88,15 @@ GLOAM_HD AirLight air_light(const Tracer& tracer, const IrradianceCacheView& cac
                             Vec3f d, float g, uint32_t coarser, const AirLight& otherwise,
                             WalkRandom* random, CacheRequest* request) {
   // Larger cells are asked for, too, to stand for those that are not there yet.
-  constexpr float kLarger = 0.125f;
-  constexpr uint32_t kLevels = 2;
   const auto cell_for = [&](Vec3f jitter, uint32_t level) {
     return find_air(tracer, cache, cache_key(cache, p_W, d, kAirCell, jitter, level), p_W);
   };
   const Vec3f jitter{random->next(), random->next(), random->next()}, middle{0.5f, 0.5f, 0.0f};
   AirCell cell = cell_for(jitter, coarser);
   *request = {cell.key, p_W, d, g};
-  if (random->next() < kLarger) request->key = cell_for(middle, coarser + kLevels).key;
-  for (uint32_t more = 0; cell.row < 0 && more <= kLevels; ++more) {
+  if (random->next() < realtime::kLargerCell)
+    request->key = cell_for(middle, coarser + realtime::kLargerLevels).key;
+  for (uint32_t more = 0; cell.row < 0 && more <= realtime::kLargerLevels; ++more) {
     cell = cell_for(middle, coarser + more);
   }
   if (cell.row < 0) return otherwise;
@@ -111,8 +106,7 @@ GLOAM_HD AirLight air_light(const Tracer& tracer, const IrradianceCacheView& cac
 
 /// Emission that samples of lamps leave out: of media right before the ray [cd/m²].
 GLOAM_HD Vec3f near_glow(const MediaView& media, const Ray& ray) {
-  constexpr int kSteps = 4;
-  return march(media, ray, min(ray.tmax, glow::kNearGlow), 0.0f, kSteps, {}, true,
+  return march(media, ray, min(ray.tmax, glow::kNearGlow), 0.0f, realtime::kNearGlowSteps, {}, true,
                [](const MarchStep&) { return Vec3f{}; })
       .radiance;
 }
@@ -131,13 +125,13 @@ GLOAM_HD Vec3f near_glow_in_air(const MediaView& media, Vec3f p_W, Vec3f d, floa
   return near_glow(media, ray);
 }
 
-/// Takes of many as many as their chances add up to, evenly spread.
-struct Turn {
-  float owed;  ///< at first by chance, in [0, 1)
-  GLOAM_HD bool comes(float chance) {
-    owed += chance;
-    if (owed < 1) return false;
-    owed -= 1;
+/// Choice of some of many items, as many as their probabilities add up to, evenly spread.
+struct EvenChoice {
+  float sum;  ///< of the probabilities since the last item taken; at first by chance, in [0, 1)
+  GLOAM_HD bool takes(float probability) {
+    sum += probability;
+    if (sum < 1) return false;
+    sum -= 1;
     return true;
   }
 };
@@ -146,90 +140,143 @@ struct Turn {
 /// around, emitted, and let through.
 template <class F>
 struct MediaLightOf {
-  Vec3Of<F> radiance;   ///< that they give off [cd/m²]
+  Vec3Of<F> radiance;   ///< emitted [cd/m²]
   Vec3Of<F> around;     ///< scattered from all around [cd/m²]
   Vec3Of<F> lamps;      ///< scattered from lamps: one sample of one place [cd/m²]
   Vec3Of<F> scattered;  ///< fraction of the light that arrives from all around
-  Vec3Of<F> through;
+  Vec3Of<F> through;    ///< transmittance
 };
-/// `samples`: lanes that take a sample of lamps; in others the cache's light of lamps counts.
-/// `glows`: what glows on the way counts. `requests`:
-/// one per lane, for one of the places that scatter light.
-template <class F, class Tracer>
-GLOAM_HD MediaLightOf<F> cross_media(const SceneView& scene, const Tracer& tracer,
-                                     const IrradianceCacheView& cache, F tmax, MaskOf<F> active,
-                                     MaskOf<F> samples, int steps, uint32_t coarser,
-                                     MaskOf<F> glows, paths::State<F>* path,
-                                     CacheRequest* requests) {
-  MediaLightOf<F> out{{}, {}, {}, {}, in_all_lanes<F>({1, 1, 1})};
-  if (scene.media.volumes.empty()) return out;
-  const Vec2Of<F> u = path->sampler.next_2d(active);
-  each_lane(active, [&](int i) {
-    WalkRandom random(lane(u, i));
-    const Ray ray = lane(path->ray, i);
-    // Steps ask by turns, the more seldom the less they scatter, and count for as many more.
-    constexpr float kOfAir = 0.1f;
-    Turn of_air{random.next()};
-    float weighed = 0;             // what has been asked for
-    float in_all = 0;              // what lamps may bring
-    AirLight air{cache.mean, {}};  // of the last step that the cache knew
-    Vec3f around;
-    // Two steps, by what they scatter, take a sample of lamps, and one of these stands for all.
-    constexpr int kSampled = 2;
-    constexpr float kEven = 0.1f;  // of what all light brings counts, as lamps may move
-    struct {
-      MediumPoint point;
-      Vec3f p_W, weight;
-      float brings = 0;
-    } sampled[kSampled];
-    const MarchResult m =
-        march(scene.media, ray, lane(tmax, i), 0.0f, steps, {}, lane(glows, i),
-              [&](const MarchStep& step) {
-                const MediumPoint& point = step.medium;
-                const Vec3f p_W = ray.o + ray.d * place_in(step, random.next());
-                const Vec3f scattered = point.scattering * step.weight;
-                const float scatters = max_component(scattered);
-                if (const float chance = min(scatters / kOfAir, 1.0f); of_air.comes(chance)) {
-                  CacheRequest request;
-                  const float g = luminance(point.g_scattering) / luminance(point.scattering);
-                  air = air_light(tracer, cache, p_W, ray.d, g, coarser, air, &random, &request);
-                  Vec3f from_all = lane(samples, i) ? air.all - air.lamps : air.all;
-                  if (step.is_hot)
-                    from_all += near_glow_in_air(scene.media, p_W, ray.d, g, &random);
-                  around += scattered * from_all * (1 / chance);
-                  weighed += scatters / chance;
-                  if (random.next() * weighed < scatters / chance) requests[i] = request;
-                }
-                const float brings = scatters * luminance(air.all * kEven + air.lamps);
-                in_all += brings;
-                for (auto& one : sampled) {
-                  if (random.next() * in_all < brings) one = {point, p_W, step.weight, brings};
-                }
-                return Vec3f{};
-              });
-    if (lane(samples, i) && in_all > 0) {
-      // Probability half even, half by the light: the brighter sample may be hidden.
-      AirLamp lamps[kSampled];
-      float light[kSampled], all = 0;
-      for (int k = 0; k < kSampled; ++k) {
-        const Vec3f weight = sampled[k].weight * (in_all / sampled[k].brings);
-        lamps[k] = sample_air(scene, ray, sampled[k].point, weight, sampled[k].p_W,
-                              {random.next(), random.next()});
-        light[k] = luminance(lamps[k].light);
-        all += light[k];
-      }
-      if (all > 0) {
-        const float first = 0.25f + 0.5f * light[0] / all;
-        const int k = random.next() < first ? 0 : 1;
-        uint32_t rays = 0;
-        const Vec3f passed = transmittance_to(scene, tracer, ray, lamps[k], &random, &rays);
-        const float chance = k == 0 ? first : 1 - first;
-        set_lane(&out.lamps, i, lamps[k].light * passed * (0.5f / chance));
-        set_lane(&path->result.rays, i, lane(path->result.rays, i) + rays);
-      }
+
+/// Media that cross_media() takes into account.
+template <class F>
+struct MediaOptionsOf {
+  F tmax = 1e30f;  ///< [m]
+  int steps = 1;
+  uint32_t coarser = 0;  ///< doublings of the cells' edges
+  MaskOf<F> active = true;
+  MaskOf<F> samples_lamps = false;  ///< lanes that sample lamps; else the cache's light counts
+  MaskOf<F> flames = true;          ///< lanes in which emission counts
+};
+
+/// Media along one ray of the fast stage.
+template <class Tracer>
+class AirRay {
+ public:
+  /// Options of MediaOptionsOf in one lane.
+  struct Options {
+    float tmax;  ///< [m]
+    int steps;
+    uint32_t coarser;
+    bool samples_lamps, flames;
+  };
+  GLOAM_HD AirRay(const FastWorld<Tracer>& world, const Ray& ray, const Options& options, Vec2f u)
+      : world_(world),
+        ray_(ray),
+        options_(options),
+        random_(u),
+        choice_{random_.next()},
+        air_{world.cache.mean, {}} {}
+
+  /// Marches through the media; `request`: of one of the places that scatter light.
+  GLOAM_HD MarchResult march_through(CacheRequest* request) {
+    return march(world_.scene.media, ray_, options_.tmax, 0.0f, options_.steps, {}, options_.flames,
+                 [&](const MarchStep& step) {
+                   take_step(step, request);
+                   return Vec3f{};
+                 });
+  }
+  GLOAM_HD Vec3f around() const { return around_; }
+
+  /// Light of lamps [cd/m²], after march_through(), by one of the steps kept.
+  GLOAM_HD Vec3f sample_lamps(uint32_t* rays) {
+    if (!(options_.samples_lamps && in_all_ > 0)) return {};
+    AirLamp lamps[realtime::kLampSteps];
+    float light[realtime::kLampSteps], all = 0;
+    for (int k = 0; k < realtime::kLampSteps; ++k) {
+      const Vec3f weight = kept_[k].weight * (in_all_ / kept_[k].brings);
+      lamps[k] = sample_air(world_.scene, ray_, kept_[k].point, weight, kept_[k].p_W,
+                            {random_.next(), random_.next()});
+      light[k] = luminance(lamps[k].light);
+      all += light[k];
     }
+    if (!(all > 0)) return {};
+    // Probability half even, half by the light: the brighter sample may be hidden.
+    const float first = 0.25f + 0.5f * light[0] / all;
+    const int k = random_.next() < first ? 0 : 1;
+    const Vec3f passed =
+        transmittance_to(world_.scene, world_.tracer, ray_, lamps[k], &random_, rays);
+    const float probability = k == 0 ? first : 1 - first;
+    return lamps[k].light * passed * (0.5f / probability);
+  }
+
+ private:
+  /// Step that takes a sample of lamps.
+  struct LampStep {
+    MediumPoint point;
+    Vec3f p_W, weight;
+    float brings = 0;
+  };
+
+  GLOAM_HD void take_step(const MarchStep& step, CacheRequest* request) {
+    const MediumPoint& point = step.medium;
+    const Vec3f p_W = ray_.o + ray_.d * place_in(step, random_.next());
+    const Vec3f scattered = point.scattering * step.weight;
+    const float scatters = max_component(scattered);
+    // Some steps ask the cache, the fewer the less they scatter, and count for as many more.
+    if (const float probability = min(scatters / realtime::kSureScattering, 1.0f);
+        choice_.takes(probability)) {
+      CacheRequest asked;
+      const float g = luminance(point.g_scattering) / luminance(point.scattering);
+      air_ = air_light(world_.tracer, world_.cache, p_W, ray_.d, g, options_.coarser, air_,
+                       &random_, &asked);
+      Vec3f from_all = options_.samples_lamps ? air_.all - air_.lamps : air_.all;
+      if (step.is_hot) {
+        from_all += near_glow_in_air(world_.scene.media, p_W, ray_.d, g, &random_);
+      }
+      around_ += scattered * from_all * (1 / probability);
+      weight_asked_ += scatters / probability;
+      if (random_.next() * weight_asked_ < scatters / probability) *request = asked;
+    }
+    const float brings = scatters * luminance(air_.all * realtime::kEvenLamps + air_.lamps);
+    in_all_ += brings;
+    for (LampStep& one : kept_) {
+      if (random_.next() * in_all_ < brings) one = {point, p_W, step.weight, brings};
+    }
+  }
+
+  const FastWorld<Tracer>& world_;
+  const Ray& ray_;
+  const Options& options_;
+  WalkRandom random_;
+  EvenChoice choice_;
+  AirLight air_;            ///< of the last step that the cache knew
+  float weight_asked_ = 0;  ///< scattered fraction of the steps that have asked
+  float in_all_ = 0;        ///< light that lamps may bring to all steps
+  Vec3f around_;            ///< scattered from all around [cd/m²]
+  LampStep kept_[realtime::kLampSteps];
+};
+
+/// Light of media along path->ray. `requests`: one per lane.
+template <class F, class Tracer>
+[[gnu::noinline]] GLOAM_HD MediaLightOf<F> cross_media(const FastWorld<Tracer>& world,
+                                                       const MediaOptionsOf<F>& options,
+                                                       paths::State<F>* path,
+                                                       CacheRequest* requests) {
+  MediaLightOf<F> out{{}, {}, {}, {}, in_all_lanes<F>({1, 1, 1})};
+  if (world.scene.media.volumes.empty()) return out;
+  const Vec2Of<F> u = path->sampler.next_2d(options.active);
+  each_lane(options.active, [&](int i) {
+    const Ray ray = lane(path->ray, i);
+    const typename AirRay<Tracer>::Options one{lane(options.tmax, i), options.steps,
+                                               options.coarser, lane(options.samples_lamps, i),
+                                               lane(options.flames, i)};
+    AirRay<Tracer> air(world, ray, one, lane(u, i));
+    const MarchResult m = air.march_through(&requests[i]);
+    uint32_t rays = 0;
+    set_lane(&out.lamps, i, air.sample_lamps(&rays));
+    set_lane(&path->result.rays, i, lane(path->result.rays, i) + rays);
     set_lane(&out.radiance, i, m.radiance);
-    set_lane(&out.around, i, around);
+    set_lane(&out.around, i, air.around());
     set_lane(&out.scattered, i, m.scattered);
     set_lane(&out.through, i, m.transmittance);
   });

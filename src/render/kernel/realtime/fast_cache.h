@@ -13,6 +13,15 @@ struct CacheRequest {
   float g = 0;       ///< of their lobe about n, in the air
 };
 
+/// Scene, tracer and cache that all rays of a picture see. Long functions that take it are not
+/// inlined: each is called from several places, and the instruction cache is small.
+template <class Tracer>
+struct FastWorld {
+  const SceneView& scene;
+  const Tracer& tracer;
+  const IrradianceCacheView& cache;
+};
+
 namespace fasts {
 
 /// Places that ask the cache: surfaces, or air that a ray crosses.

@@ -4,19 +4,10 @@
 #include "render/kernel/light/glow_line.h"
 #include "render/kernel/math/quads.h"
 #include "render/kernel/path/path.h"
+#include "render/kernel/realtime/fast_cache.h"
+#include "render/kernel/realtime/realtime_constants.h"
 
-namespace gloam {
-
-/// Scenes with more lights than this sample so many of them at each surface.
-inline constexpr uint32_t kMaxFastLights = kMaxWeighedLights, kSampledLights = 4;
-/// Surfaces rougher than this reflect the light of the cache instead of what a ray finds: that is
-/// of all directions alike.
-inline constexpr float kMaxTracedRoughness = 0.6f;
-/// Roughness from which one pixel of two by two traces a reflection ray for all: the reflection is
-/// blurred over more than these pixels.
-inline constexpr float kLeastSharedRoughness = 0.2f;
-
-namespace fasts {
+namespace gloam::fasts {
 
 /// The BSDF without its diffuse parts, sampled by itself.
 template <class F>
@@ -36,12 +27,13 @@ GLOAM_HD Vec3Of<F> diffuse_albedo(const LayeredBsdfOf<F>& b) {
 template <class F>
 GLOAM_HD MaskOf<F> blurs_flames(const SurfaceOf<F>& v, const LayeredBsdfOf<F>& b) {
   const MaskOf<F> sharp =
-      (b.p_glass > 0.0f) | ((b.p_coat > 0.0f) & (v.coat_roughness < kLeastSharedRoughness));
-  return (v.roughness >= kLeastSharedRoughness) & !(b.layered & sharp);
+      (b.p_glass > 0.0f) |
+      ((b.p_coat > 0.0f) & (v.coat_roughness < realtime::kLeastSharedRoughness));
+  return (v.roughness >= realtime::kLeastSharedRoughness) & !(b.layered & sharp);
 }
 
-/// For lamps, and for what glows with the probability `glow` where lights are too many to be
-/// weighed against it; 0: not at all. The sky is the cache's.
+/// Prepares for lamps, and for glowing media with the probability `glow` where lights are too many
+/// to be weighed against them; 0: not at all. The sky's light is the cache's.
 template <class F>
 GLOAM_HD void prepare_light_sampler(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n,
                                     MaskOf<F> active, float glow,
@@ -50,14 +42,11 @@ GLOAM_HD void prepare_light_sampler(const SceneView& scene, Vec3Of<F> p, Vec3Of<
   light_sampler->leave_out_sky(scene);
   if (glow > 0 && scene.has_glow()) light_sampler->add_glow(scene, active, glow);
 }
-/// Where one sample is taken, and of the samples at a surface.
-inline constexpr float kOneGlow = 0.5f, kGlowAmongLamps = 1.0f / kSampledLights;
-
-/// A sample of a lamp, or of what glows.
+/// Sample of a lamp, or of media that glow.
 template <class F>
 struct LampSampleOf {
   LightSampleOf<F> light;
-  F clear = 1e30f;  ///< what is farther away than this does not dim it [m]
+  F clear = 1e30f;  ///< distance beyond which media do not dim it [m]
   MaskOf<F> glows = false;
 };
 
@@ -75,7 +64,7 @@ GLOAM_HD void sample_glow(const SceneView& scene, Vec3Of<F> p, Vec3Of<F> n, Vec2
   out->glows = out->glows | active;
 }
 
-/// One of all, as `light_sampler` takes them.
+/// Sample of one of all lights and glowing media, as `light_sampler` takes them.
 template <class F>
 GLOAM_HD LampSampleOf<F> sample_lamp(const SceneView& scene, const LightSamplerOf<F>& light_sampler,
                                      Vec3Of<F> p, Vec3Of<F> n, Vec2Of<F> u, F time,
@@ -93,76 +82,125 @@ GLOAM_HD LampSampleOf<F> sample_lamp(const SceneView& scene, const LightSamplerO
   return out;
 }
 
-/// Light of lamps at vertices, before media on its way.
+/// Surface that a ray has met, and its BSDF there: references, as copies in lanes cost time.
 template <class F>
-struct ArrivingOf {
-  Vec3Of<F> diffuse, specular;  ///< over the diffuse albedo, and the rest [cd/m²]
-  RayOf<F> way;                 ///< of one sample, by what it brings
-  F total = 0.0f;               ///< that all bring
+struct LitSurfaceOf {
+  const SurfaceOf<F>& v;
+  const FrameOf<F>& frame;  ///< of the BSDF
+  const LayeredBsdfOf<F>& bsdf;
+  const LayeredBsdfOf<F>& shiny;  ///< bsdf without its diffuse parts
+  Vec3Of<F> wo;                   ///< towards the ray's origin, in `frame`, unit
 };
 
-/// Adds one lamp sample. `traced`: lanes whose specular ray may find the lamp too, if it has an
-/// extent; of what `glows`, either that ray or this sample shows the reflection.
-template <class F, class Tracer>
-GLOAM_HD void add_light(const SceneView& scene, const Tracer& tracer, paths::State<F>* path,
-                        const SurfaceOf<F>& v, const LayeredBsdfOf<F>& shiny,
-                        const FrameOf<F>& frame, Vec3Of<F> wo, MaskOf<F> traced, MaskOf<F> active,
-                        const LampSampleOf<F>& lamp, ArrivingOf<F>* sum) {
-  const LightSampleOf<F>& light = lamp.light;
-  MaskOf<F> lit = active & (light.pdf > 0.0f) & (dot(light.wi, v.geometric) > 0.0f);
-  if (!any(lit)) return;
-  const Vec3Of<F> wi = frame.to_local(light.wi);
-  lit = lit & (wi.z > 0.0f);
-  F pdf;
-  const Vec3Of<F> f = eval_bsdf(shiny, wo, wi, &pdf);
-  const F seen = select(blurs_flames(v, shiny), F(1.0f), F(0.0f));
-  const F weight = select(traced & !light.is_delta,
-                          select(lamp.glows, seen, mis_weight(light.pdf, pdf)), F(1.0f));
-  RayOf<F> shadow = path->ray;
-  aim_shadow_ray(v.p, v.geometric, v.t, light, &shadow);
-  Vec3Of<F> arriving = light.radiance * (1.0f / light.pdf);
-  if (const MaskOf<F> shadowed = lit & light.casts_shadow; any(shadowed)) {
-    const Vec3Of<F> passed = paths::transmit(scene, tracer, shadow, shadowed, &path->result.rays);
-    arriving = select<F>(shadowed, arriving * passed, arriving);
-  }
-  sum->diffuse += select<F>(lit, arriving * (wi.z * kInvPi), Vec3Of<F>{});
-  sum->specular += select<F>(lit, arriving * f * weight, Vec3Of<F>{});
-  if (!scene.has_media()) return;
-  const F brings = select(lit, luminance(arriving) * wi.z, F(0.0f));
-  sum->total += brings;
-  const MaskOf<F> taken = path->sampler.next_1d(lit) * sum->total < brings;
-  sum->way.o = select<F>(taken, shadow.o, sum->way.o);
-  sum->way.d = select<F>(taken, shadow.d, sum->way.d);
-  sum->way.tmax = select(taken, min(shadow.tmax, lamp.clear), sum->way.tmax);
-}
+/// Samples that direct_light() takes.
+template <class F>
+struct LampOptionsOf {
+  MaskOf<F> active = true;
+  /// Lanes whose specular ray may find the lamp too, if it has an extent; of glowing media either
+  /// that ray or this sample shows the reflection.
+  MaskOf<F> traced = false;
+  MaskOf<F> borrows = false;  ///< lanes that take the transmittance of media of the lane beside
+  bool every = false;         ///< a sample of each light, and of glowing media
+  uint32_t samples = 1;       ///< else, of lights
+};
 
-/// Direct light at the vertices of the `active` lanes: of every light and of what glows where there
-/// are few lights, or of `samples` of them all. Media take from all what they take from one, in the
-/// `borrows` lanes from one of the lane beside.
+/// Direct light.
+template <class F>
+struct LampLightOf {
+  Vec3Of<F> diffuse;   ///< over the diffuse albedo [cd/m²]
+  Vec3Of<F> specular;  ///< [cd/m²]
+};
+
+/// Sum over samples of lamps at vertices, before media on the way of their light.
 template <class F, class Tracer>
-GLOAM_HD void direct_light(const SceneView& scene, const Tracer& tracer, paths::State<F>* path,
-                           const SurfaceOf<F>& v, const LayeredBsdfOf<F>& shiny,
-                           const FrameOf<F>& frame, Vec3Of<F> wo, MaskOf<F> traced,
-                           MaskOf<F> active, MaskOf<F> borrows, bool every, uint32_t samples,
-                           Vec3Of<F>* diffuse, Vec3Of<F>* specular) {
-  ArrivingOf<F> sum;
-  const auto add = [&](const LampSampleOf<F>& lamp) {
-    add_light(scene, tracer, path, v, shiny, frame, wo, traced, active, lamp, &sum);
-  };
-  if (scene.has_glow() && (every || scene.lights.size == 0)) {
+class LampSum {
+ public:
+  GLOAM_HD LampSum(const FastWorld<Tracer>& world, const LitSurfaceOf<F>& surface,
+                   const LampOptionsOf<F>& options, paths::State<F>* path)
+      : world_(world), s_(surface), options_(options), path_(*path) {}
+
+  [[gnu::always_inline]] GLOAM_HD void add(const LampSampleOf<F>& lamp) {
+    const LightSampleOf<F>& light = lamp.light;
+    const SurfaceOf<F>& v = s_.v;
+    MaskOf<F> lit = options_.active & (light.pdf > 0.0f) & (dot(light.wi, v.geometric) > 0.0f);
+    if (!any(lit)) return;
+    const Vec3Of<F> wi = s_.frame.to_local(light.wi);
+    lit = lit & (wi.z > 0.0f);
+    F pdf;
+    const Vec3Of<F> f = eval_bsdf(s_.shiny, s_.wo, wi, &pdf);
+    const F seen = select(blurs_flames(v, s_.shiny), F(1.0f), F(0.0f));
+    const F weight = select(options_.traced & !light.is_delta,
+                            select(lamp.glows, seen, mis_weight(light.pdf, pdf)), F(1.0f));
+    RayOf<F> shadow = path_.ray;
+    aim_shadow_ray(v.p, v.geometric, v.t, light, &shadow);
+    Vec3Of<F> arriving = light.radiance * (1.0f / light.pdf);
+    if (const MaskOf<F> shadowed = lit & light.casts_shadow; any(shadowed)) {
+      const Vec3Of<F> passed =
+          paths::transmit(world_.scene, world_.tracer, shadow, shadowed, &path_.result.rays);
+      arriving = select<F>(shadowed, arriving * passed, arriving);
+    }
+    light_.diffuse += select<F>(lit, arriving * (wi.z * kInvPi), Vec3Of<F>{});
+    light_.specular += select<F>(lit, arriving * f * weight, Vec3Of<F>{});
+    if (world_.scene.has_media()) choose_way(lamp, lit, arriving, wi.z, shadow);
+  }
+
+  /// Light after media: they take from all samples what they take from the one chosen.
+  GLOAM_HD LampLightOf<F> finish() {
+    const MaskOf<F> lit = options_.active & (total_ > 0.0f);
+    const MaskOf<F> borrows = options_.borrows & (flip<1>(total_) > 0.0f);
+    Vec3Of<F> passed = paths::through_media(world_.scene, way_, lit & !borrows, &path_.sampler);
+    passed = select<F>(borrows, flip<1>(passed), passed);
+    return {light_.diffuse * passed, light_.specular * passed};
+  }
+
+ private:
+  /// Chooses the shadow ray of this sample for all so far, in proportion to its light.
+  GLOAM_HD void choose_way(const LampSampleOf<F>& lamp, MaskOf<F> lit, const Vec3Of<F>& arriving,
+                           F cosine, const RayOf<F>& shadow) {
+    const F illuminance = select(lit, luminance(arriving) * cosine, F(0.0f));
+    total_ += illuminance;
+    const MaskOf<F> taken = path_.sampler.next_1d(lit) * total_ < illuminance;
+    way_.o = select<F>(taken, shadow.o, way_.o);
+    way_.d = select<F>(taken, shadow.d, way_.d);
+    way_.tmax = select(taken, min(shadow.tmax, lamp.clear), way_.tmax);
+  }
+
+  const FastWorld<Tracer>& world_;
+  const LitSurfaceOf<F>& s_;
+  const LampOptionsOf<F>& options_;
+  paths::State<F>& path_;
+  LampLightOf<F> light_;
+  RayOf<F> way_;    ///< shadow ray of the sample chosen
+  F total_ = 0.0f;  ///< illuminance of all samples [lx]
+};
+
+/// Direct light at the surfaces of the active lanes: of every light and glowing medium, or of some
+/// samples of them all.
+template <class F, class Tracer>
+[[gnu::noinline]] GLOAM_HD LampLightOf<F> direct_light(const FastWorld<Tracer>& world,
+                                                       const LitSurfaceOf<F>& surface,
+                                                       const LampOptionsOf<F>& options,
+                                                       paths::State<F>* path) {
+  const SceneView& scene = world.scene;
+  const SurfaceOf<F>& v = surface.v;
+  const MaskOf<F> active = options.active;
+  LampSum<F, Tracer> sum(world, surface, options, path);
+  if (scene.has_glow() && (options.every || scene.lights.size == 0)) {
     LampSampleOf<F> lamp;
     sample_glow(scene, v.p, v.geometric, path->sampler.next_2d(active), active, &lamp);
-    add(lamp);
+    sum.add(lamp);
   }
+  uint32_t samples = options.samples;
   if (scene.lights.size > 0) {
-    const float glow = every ? 0.0f : (samples > 1 ? kGlowAmongLamps : kOneGlow);
+    const float glow =
+        options.every ? 0.0f : (samples > 1 ? realtime::kGlowAmongLamps : realtime::kOneGlow);
     prepare_light_sampler(scene, v.p, v.geometric, active, glow, &path->light_sampler);
   }
-  if (every || scene.lights.size == 0) samples = scene.lights.size;
+  if (options.every || scene.lights.size == 0) samples = scene.lights.size;
   for (uint32_t k = 0; k < samples; ++k) {
     Vec2Of<F> u = path->sampler.next_2d(active);
     LampSampleOf<F> lamp;
-    if (every) {
+    if (options.every) {
       const MaskOf<F> near = active & (path->light_sampler.probabilities(k) > 0.0f);
       if (!any(near)) continue;
       lamp.light = sample_one_light(scene, k, v.p, u, path->ray.time, near);
@@ -172,31 +210,29 @@ GLOAM_HD void direct_light(const SceneView& scene, const Tracer& tracer, paths::
       lamp = sample_lamp(scene, path->light_sampler, v.p, v.geometric, u, path->ray.time, active);
       lamp.light.pdf *= static_cast<float>(samples);
     }
-    add(lamp);
+    sum.add(lamp);
   }
-  const MaskOf<F> lit = active & (sum.total > 0.0f);
-  borrows = borrows & (flip<1>(sum.total) > 0.0f);
-  Vec3Of<F> transmittance = paths::through_media(scene, sum.way, lit & !borrows, &path->sampler);
-  transmittance = select<F>(borrows, flip<1>(transmittance), transmittance);
-  *diffuse = sum.diffuse * transmittance;
-  *specular = sum.specular * transmittance;
+  return sum.finish();
 }
 
-/// Probability with which direct_light() takes the light of a row.
+/// Number of samples with which direct_light() at a surface in view takes the light of a row, in
+/// the mean, for lane i.
 template <class F>
-GLOAM_HD float chance_of(const SceneView& scene, const paths::State<F>& path, uint32_t row,
-                         bool every, uint32_t samples, int i) {
-  return every ? 1.0f : static_cast<float>(samples) * path.light_sampler.probability(scene, row, i);
+GLOAM_HD float lamp_probability(const SceneView& scene, const paths::State<F>& path, uint32_t row,
+                                int i) {
+  if (scene.lights.size <= realtime::kMaxFastLights) return 1.0f;
+  return static_cast<float>(realtime::kSampledLights) *
+         path.light_sampler.probability(scene, row, i);
 }
 
-/// Light of lamps' spheres and of suns that path->ray meets before `tmax`, weighed against
-/// direct_light() at path->from.
+/// Light of lamps' spheres and of suns that path.ray meets before `tmax`, weighted against
+/// direct_light() at path.from.
 template <class F>
 GLOAM_HD Vec3Of<F> lamps_met(const SceneView& scene, const paths::State<F>& path, F tmax,
                              MaskOf<F> active) {
   const auto clear = [](int, float) { return Vec3f{1, 1, 1}; };
   Vec3Of<F> sum;
-  if (scene.lights.size <= kMaxFastLights) {
+  if (scene.lights.size <= realtime::kMaxFastLights) {
     for (uint32_t i = 0; i < scene.lights.size; ++i) {
       sum += visible_light(
           scene, i, path.ray, tmax, path.from, path.pdf_bsdf, active, [] { return F(1.0f); },
@@ -211,12 +247,11 @@ GLOAM_HD Vec3Of<F> lamps_met(const SceneView& scene, const paths::State<F>& path
     light_tree::each_shown(scene.light_tree, ray, most, [&](uint32_t i) {
       light += visible_light<float>(
           scene, i, ray, most, lane(path.from, at), lane(path.pdf_bsdf, at), true,
-          [&] { return chance_of(scene, path, i, false, kSampledLights, at); }, clear);
+          [&] { return lamp_probability(scene, path, i, at); }, clear);
     });
     set_lane(&sum, at, light);
   });
   return sum;
 }
 
-}  // namespace fasts
-}  // namespace gloam
+}  // namespace gloam::fasts

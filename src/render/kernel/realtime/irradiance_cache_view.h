@@ -4,6 +4,7 @@
 // media there scatter. Cells grow with the distance from the camera. Device-safe.
 
 #include "render/kernel/math/ray.h"
+#include "render/kernel/realtime/realtime_constants.h"
 
 namespace gloam {
 
@@ -26,12 +27,10 @@ GLOAM_HD CellLight lerp(const CellLight& a, const CellLight& b, float t) {
 /// Light at a place in the cell from which the fraction `near` of directions meet what is near: in
 /// corners and under things it differs from the cell's mean.
 GLOAM_HD Vec3f light_at(const CellLight& cell, float near) {
-  // Assumption where few of a cell's directions meet near surfaces: these are a good deal darker
-  // than the rest.
-  constexpr float kDoubt = 0.05f, kDarker = 0.45f;
   if (!cell.is_known()) return cell.all;
-  const Vec3f far = (cell.all - cell.near) / max(1.0f - cell.near_fraction, 0.05f);
-  const Vec3f close = (cell.near + far * (kDoubt * kDarker)) / (cell.near_fraction + kDoubt);
+  const Vec3f far = (cell.all - cell.near) / max(1.0f - cell.near_fraction, realtime::kLeastFar);
+  const Vec3f close = (cell.near + far * (realtime::kNearDoubt * realtime::kNearDarkness)) /
+                      (cell.near_fraction + realtime::kNearDoubt);
   return lerp(far, close, near);
 }
 
@@ -131,14 +130,15 @@ GLOAM_HD CacheCellOf<F> cache_cell(const IrradianceCacheView& cache, Vec3Of<F> p
                                    UintOf<F> side, Vec3Of<F> jitter, uint32_t coarser) {
   const Vec3Of<F> from_eye = p - in_all_lanes<F>(cache.eye);
   // The greatest power of two up to edge (1 + jitter), so that sizes blend.
-  const F wanted = max(square_root(dot(from_eye, from_eye)) * cache.edge_per_metre, F(0.01f)) *
-                   (1.0f + jitter.z);
+  const F wanted =
+      max(square_root(dot(from_eye, from_eye)) * cache.edge_per_metre, F(realtime::kLeastEdge)) *
+      (1.0f + jitter.z);
   CacheCellOf<F> cell;
   cell.exponent = (to_bits(wanted) >> 23) + coarser;
   cell.edge = from_bits(cell.exponent << 23);
   const F per_edge = 1.0f / cell.edge;
   const Vec3Of<F> shift{jitter.x - 0.5f, jitter.y - 0.5f, jitter.z - 0.5f};
-  const Vec3Of<F> bent = n + shift * F(0.3f);
+  const Vec3Of<F> bent = n + shift * F(realtime::kFacingBlur);
   const Vec3Of<F> a{magnitude(bent.x), magnitude(bent.y), magnitude(bent.z)};
   const MaskOf<F> up = (a.z >= a.x) & (a.z >= a.y), along_y = (!up) & (a.y >= a.x);
   const F most = select(up, bent.z, select(along_y, bent.y, bent.x));
@@ -150,7 +150,8 @@ GLOAM_HD CacheCellOf<F> cache_cell(const IrradianceCacheView& cache, Vec3Of<F> p
   const FrameOf<F> frame = FrameOf<F>::from_z(n);
   // Off the surface, as faces of rooms and boxes like to lie on the borders of cells.
   const Vec3Of<F> at =
-      (p + (frame.x * shift.x + frame.y * shift.y + n * F(0.3f)) * cell.edge) * per_edge;
+      (p + (frame.x * shift.x + frame.y * shift.y + n * F(realtime::kOffSurface)) * cell.edge) *
+      per_edge;
   cell.place = {floor_of(at.x), floor_of(at.y), floor_of(at.z)};
   return cell;
 }
