@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "gloam/camera.h"
-#include "gloam/result.h"
 #include "gloam/scene.h"
+#include "gloam/stream.h"
 
 namespace gloam {
 
@@ -27,21 +27,17 @@ struct CameraRequest {
   std::optional<Pose> X_WC = {};  ///< of camera "free": where it stands at first
   bool required =
       false;  ///< the simulation waits for this camera; else frames are dropped, oldest first
+  EndCallback on_end = {};
 };
 
-/// An open stream. Closing (destroying) it waits for its last callback.
-class CameraStream {
+class CameraStream : public Stream {
  public:
-  virtual ~CameraStream() = default;
   /// Moves the free camera: pose of the camera in the world, looks along -Z. No effect on the
   /// model's own cameras.
   virtual void set_pose(const Pose& X_WC) = 0;
   virtual Pose pose() const = 0;
   /// Renders the latest Snapshot again, also while the simulation is paused.
   virtual void refresh() = 0;
-  virtual int64_t dropped() const = 0;
-  /// Why it delivers no more, if so: memory ran out, or a recompile took its camera away.
-  virtual Status status() const { return {}; }
 };
 using FrameCallback = std::function<void(std::shared_ptr<const CameraFrame>)>;
 

@@ -34,6 +34,12 @@ struct SetVelocityGoal {
   Robot robot = {0, 0};
   double vx = 0, vy = 0, yaw_rate = 0;
 };
+/// Position that the robot's controller is to bring a hinge or slide joint to [rad, m]; stays until
+/// changed. "joint_position" obeys it, in place of its target.
+struct SetJointGoal {
+  Joint joint;
+  double position = 0;
+};
 /// Pose of a mocap body.
 struct SetMocapPose {
   Body body;
@@ -95,7 +101,7 @@ struct Command {
   static constexpr int64_t kNextStep = -1;
   int64_t step = kNextStep;  ///< applies before this step is taken
   std::variant<SetControl, SetVelocityGoal, SetMocapPose, SetWrench, AddVelocity, DragBody,
-               ResetSim, SetLiveField, SetJointState, SetControls>
+               ResetSim, SetLiveField, SetJointState, SetControls, SetJointGoal>
       what;
 };
 

@@ -32,6 +32,8 @@ struct ControlInputs {
   int64_t step = 0;                    ///< that is taken next
   double period = 0;                   ///< between calls [s]
   VelocityTarget goal;                 ///< the robot's, from its scene or SetVelocityGoal
+  /// Positions that SetJointGoal has given [rad, m], NaN = none, by MuJoCo's joint id, (njnt)
+  std::span<const double> joint_goals = {};
 };
 
 /// Reads the state, writes controls. All calls come on the simulation's thread.
@@ -49,6 +51,9 @@ class Controller {
   }
   /// Writes data->ctrl of its own actuators only. Must not allocate, lock or throw.
   virtual void control(const ControlInputs& in) = 0;
+  /// A copy that goes on exactly as this one would. Null: it cannot be copied; a checkpoint is then
+  /// restored by stepping the run again.
+  virtual std::unique_ptr<Controller> clone() const { return nullptr; }
 };
 
 /// The robot that a controller is made for, and its World.

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "gloam/result.h"
+#include "gloam/stream.h"
 #include "gloam/types.h"
 
 namespace gloam {
@@ -26,16 +26,10 @@ struct SensorMessage {
 struct SensorRequest {
   std::string sensor;     ///< full name, or "sensor_ID" where the model gives none
   bool required = false;  ///< the simulation waits for it; else samples are lost, oldest first
+  EndCallback on_end = {};
 };
 
-/// An open stream. Closing (destroying) it waits for its last callback.
-class SensorStream {
- public:
-  virtual ~SensorStream() = default;
-  virtual int64_t dropped() const = 0;  ///< lost because the reader was slow, not by the model
-  /// Why it delivers no more, if so: a recompile took its sensor away.
-  virtual Status status() const { return {}; }
-};
+class SensorStream : public Stream {};
 /// Comes on the stream's own thread as soon as a sample is made; who wants it at its time looks at
 /// `delivery`.
 using SensorCallback = std::function<void(const SensorMessage&)>;
@@ -82,16 +76,10 @@ struct LidarScan {
 struct LidarRequest {
   std::string lidar;      ///< name of a [[lidar]]
   bool required = false;  ///< the simulation waits for it; else scans are dropped, oldest first
+  EndCallback on_end = {};
 };
 
-/// An open stream. Closing (destroying) it waits for its last callback.
-class LidarStream {
- public:
-  virtual ~LidarStream() = default;
-  virtual int64_t dropped() const = 0;
-  /// Why it delivers no more, if so: memory ran out, or a recompile took its LiDAR away.
-  virtual Status status() const { return {}; }
-};
+class LidarStream : public Stream {};
 using ScanCallback = std::function<void(std::shared_ptr<const LidarScan>)>;
 
 }  // namespace gloam

@@ -13,7 +13,9 @@
 
 #include "gloam/camera.h"
 #include "gloam/camera_stream.h"
+#include "gloam/checkpoint.h"
 #include "gloam/command.h"
+#include "gloam/control_lease.h"
 #include "gloam/result.h"
 #include "gloam/scene.h"
 #include "gloam/sensor.h"
@@ -99,6 +101,18 @@ class Simulation {
   virtual Status post(const Command& command) = 0;
   /// Queues all of them for the same moment, or none.
   virtual Status post(std::span<const Command> commands) = 0;
+  /// The present instant, to be gone back to or branched from. Errors: the simulation has failed;
+  /// more Commands than are kept (2^20 in a run).
+  virtual Result<Checkpoint> checkpoint() = 0;
+  /// Goes on from a checkpoint of this or another simulation of the same scene and timestep:
+  /// Snapshots are of a new run, Commands that wait are thrown away, streams and claims stay.
+  /// Blocks; where the checkpoint is not a copy, the run is stepped again while this one runs on.
+  /// Error: it ended in another state (step hooks are not repeated); then nothing has changed.
+  virtual Status restore(const Checkpoint& checkpoint) = 0;
+  /// Makes the controls and goals of a robot this caller's alone until the lease is destroyed:
+  /// SetControl, SetControls, SetVelocityGoal and SetJointGoal of others are an Error from then on.
+  /// Error: it is claimed already.
+  virtual Result<std::unique_ptr<ControlLease>> claim(Robot robot) = 0;
   /// Posted Commands that have applied since the last call, in order, with the step they applied
   /// at.
   virtual std::vector<LoggedCommand> take_command_log() = 0;

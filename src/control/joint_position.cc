@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "control/robot_joints.h"
 
@@ -43,13 +44,22 @@ class JointPositionController final : public Controller {
     mjData* const data = in.data;
     for (size_t i = 0; i < joints_.size(); ++i) {
       const DrivenJoint& joint = joints_[i];
-      data->ctrl[joint.ctrl] = std::clamp(
-          joint.takes_target ? joint.gear * target_[i] : motor_control(joint, *data, target_[i]),
-          joint.lowest, joint.highest);
+      const double target = goal_of(in, joint).value_or(target_[i]);
+      data->ctrl[joint.ctrl] =
+          std::clamp(joint.takes_target ? joint.gear * target : motor_control(joint, *data, target),
+                     joint.lowest, joint.highest);
     }
+  }
+  std::unique_ptr<Controller> clone() const override {
+    return std::make_unique<JointPositionController>(*this);
   }
 
  private:
+  static std::optional<double> goal_of(const ControlInputs& in, const DrivenJoint& joint) {
+    if (in.joint_goals.empty()) return {};
+    const double goal = in.joint_goals[static_cast<size_t>(joint.joint)];
+    return std::isfinite(goal) ? std::optional(goal) : std::nullopt;
+  }
   double motor_control(const DrivenJoint& joint, const mjData& data, double target) const {
     const double torque = kp_ * (target - data.qpos[joint.qpos]) - kd_ * data.qvel[joint.dof];
     const double force = std::clamp(torque / joint.gear, joint.force_lowest, joint.force_highest);

@@ -34,6 +34,9 @@ class TorqueController final : public Controller {
     started_ = true;
     for (size_t i = 0; i < motors_.size(); ++i) data->ctrl[motors_[i].ctrl] = controls_[i];
   }
+  std::unique_ptr<Controller> clone() const override {
+    return std::make_unique<TorqueController>(*this);
+  }
 
  private:
   std::vector<DrivenJoint> motors_;

@@ -51,6 +51,7 @@ class Trot final : public TrotController {
   void reset(const mjModel* model, const mjData* data) override;
   void control(const ControlInputs& in) override;
   void take_over(const mjModel* model, const mjData* data, const Controller& before) override;
+  std::unique_ptr<Controller> clone() const override { return std::make_unique<Trot>(*this); }
   const TrotStatus& status() const override { return status_; }
 
  private:

@@ -1,5 +1,7 @@
 #include "runtime/exposure_meter.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 
@@ -50,14 +52,29 @@ Result<std::unique_ptr<ExposureMeter>> ExposureMeter::open(Simulator& simulator,
       new ExposureMeter(simulator, renderers, camera, seed, timing, required));
   GLOAM_TRY_STATUS(meter->follow(simulator.world()));
   GLOAM_TRY(
-      meter->queue_,
+      auto queue,
       simulator.subscribe(
           {.rate = camera.rate, .due = due_steps(timing), .required = required, .capacity = 2}));
   // Between two of its instants it begins with the present one: no picture waits for the next,
   // which the simulation may not reach before that picture is made.
   if (const Snapshot now = simulator.latest(); meter->instant_of(now.step()) < now.step())
     GLOAM_TRY_STATUS(meter->meter(now));
-  meter->thread_ = std::thread([raw = meter.get()] { raw->run(); });
+  ExposureMeter* const raw = meter.get();
+  meter->thread_.start(std::move(queue),
+                       {.what = fmt::format("the exposure meter of camera '{}'", camera.name),
+                        .take = [raw](const SnapshotWindow& now) { return raw->take(now.keys[0]); },
+                        .finish =
+                            [raw] {
+                              const std::lock_guard lock(raw->mutex_);
+                              raw->ended_ = true;
+                              raw->changed_.notify_all();
+                            },
+                        .on_end =
+                            [name = camera.name](const Error& why) {
+                              if (why.kind == ErrorKind::kInterrupted) return;
+                              log_error("the exposure meter of camera '{}' stopped: {}", name,
+                                        why.to_string());
+                            }});
   return meter;
 }
 
@@ -82,27 +99,14 @@ bool ExposureMeter::goes_on_in(const CompiledWorld& world) const {
   return timing.ok() && timing->same_steps(timing_);
 }
 
-ExposureMeter::~ExposureMeter() {
-  if (queue_ != nullptr) queue_->close();
-  if (thread_.joinable()) thread_.join();
-}
-
-void ExposureMeter::run() {
-  while (const Snapshot snapshot = queue_->next()) {
-    const auto& world = snapshot.data().world;
-    if (world != shared_->world && !goes_on_in(*world)) break;
-    Status status = world != shared_->world ? follow(world) : Status();
-    if (status.ok()) status = meter(snapshot);
-    if (!status.ok()) {
-      log_error("the exposure meter of camera '{}' stopped: {}", camera_,
-                status.error().to_string());
-      break;
-    }
+Status ExposureMeter::take(const Snapshot& snapshot) {
+  const auto& world = snapshot.data().world;
+  if (world != shared_->world) {
+    if (!goes_on_in(*world))
+      return Error{ErrorKind::kInterrupted, "another meter is open for this World"};
+    GLOAM_TRY_STATUS(follow(world));
   }
-  queue_->close();  // the simulation must not wait for it
-  const std::lock_guard lock(mutex_);
-  ended_ = true;
-  changed_.notify_all();
+  return meter(snapshot);
 }
 
 int64_t ExposureMeter::instant_of(int64_t step) const {

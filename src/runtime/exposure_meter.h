@@ -6,9 +6,9 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <thread>
 
 #include "runtime/shared_renderer.h"
+#include "runtime/stream_thread.h"
 #include "sensors/camera/camera_sensor.h"
 #include "sensors/imager/exposure.h"
 #include "sensors/timing.h"
@@ -25,7 +25,6 @@ class ExposureMeter {
                                                      SharedRenderers& renderers,
                                                      const CameraOptions& camera, uint64_t seed,
                                                      bool required);
-  ~ExposureMeter();
 
   /// Exposure value of a picture taken at `step`, a step that the simulation has come to; waits for
   /// its metering. Where that instant was lost, or the simulation has ended, the last one known.
@@ -45,7 +44,7 @@ class ExposureMeter {
         required_(required),
         automatic_(*camera.sensing.imager->auto_exposure) {}
   Status follow(const std::shared_ptr<const CompiledWorld>& world);
-  void run();
+  Status take(const Snapshot& snapshot);
   Status meter(const Snapshot& snapshot);
   // The last step of the schedule that is not after `step`.
   int64_t instant_of(int64_t step) const;
@@ -61,13 +60,12 @@ class ExposureMeter {
   std::unique_ptr<CameraSensor> probe_;
   std::unique_ptr<PoseSolver> solver_;
   PoseFrame poses_;
-  std::shared_ptr<SnapshotQueue> queue_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::map<int64_t, double> values_;  // the last ones, by step
   double newest_ = 0;
   bool ended_ = false;
-  std::thread thread_;
+  StreamThread thread_;  // last: it uses the others
 };
 
 /// The meters of a simulation. Any thread.

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <new>
 #include <utility>
 
 #include "base/log.h"
@@ -48,13 +46,20 @@ Result<std::unique_ptr<LiveCamera>> LiveCamera::open(Simulator& simulator,
   // Two in the queue keep the camera busy; more would only make a live picture older.
   const int capacity = request.required ? 2 : 1;
   const bool timed = camera->sensor_->sensing().timing.has_value();
-  GLOAM_TRY(camera->queue_,
-            simulator.subscribe({.rate = wanted.rate,
-                                 .due = timed ? due_steps(camera->timing_) : nullptr,
-                                 .required = request.required,
-                                 .capacity = capacity,
-                                 .window = camera->sensor_->window()}));
-  camera->thread_ = std::thread([raw = camera.get()] { raw->run(); });
+  GLOAM_TRY(auto queue, simulator.subscribe({.rate = wanted.rate,
+                                             .due = timed ? due_steps(camera->timing_) : nullptr,
+                                             .required = request.required,
+                                             .capacity = capacity,
+                                             .window = camera->sensor_->window()}));
+  camera->queue_ = queue;
+  LiveCamera* const raw = camera.get();
+  camera->thread_.start(std::move(queue),
+                        {.what = fmt::format("camera '{}'", wanted.camera),
+                         .memory_hint = "lower the resolution",
+                         .take = [raw](const SnapshotWindow& window) { return raw->take(window); },
+                         .next = [raw] { return raw->next_window(); },
+                         .finish = [raw] { raw->lead_.reset(); },
+                         .on_end = wanted.on_end});
   return camera;
 }
 
@@ -95,20 +100,6 @@ Status LiveCamera::follow(const std::shared_ptr<const CompiledWorld>& world) {
   return {};
 }
 
-LiveCamera::~LiveCamera() {
-  {
-    const std::lock_guard lock(mutex_);
-    closing_ = true;
-  }
-  changed_.notify_all();
-  if (queue_ != nullptr) queue_->close();  // null when open() failed
-  if (thread_.joinable()) thread_.join();
-}
-
-void LiveCamera::drain() {
-  if (thread_.joinable()) thread_.join();
-}
-
 void LiveCamera::set_pose(const Pose& X_WC) {
   const std::lock_guard lock(mutex_);
   sensor_->set_free_pose(X_WC);
@@ -120,76 +111,40 @@ Pose LiveCamera::pose() const {
 }
 
 void LiveCamera::refresh() {
-  {
-    const std::lock_guard lock(mutex_);
-    refresh_wanted_ = true;
-  }
-  changed_.notify_all();
+  refresh_wanted_ = true;
+  queue_->wake();
 }
 
-SnapshotWindow LiveCamera::wait_for_work() {
+SnapshotWindow LiveCamera::next_window() {
   if (request_.required) return queue_->next_window();
-  // A live camera also answers refresh() while the simulation is paused, so it looks at both.
-  constexpr auto kLook = std::chrono::milliseconds(4);
-  std::unique_lock lock(mutex_);
   for (;;) {
-    if (closing_) return {};
-    if (SnapshotWindow window = queue_->try_next_window()) return window;
+    if (SnapshotWindow window = queue_->next_window_or_wake()) return window;
     if (queue_->closed()) return {};
-    if (std::exchange(refresh_wanted_, false)) {  // an instant: nothing moves
+    if (refresh_wanted_.exchange(false)) {  // an instant: nothing moves
       SnapshotWindow window;
       window.add(simulator_.latest());
       return window;
     }
-    changed_.wait_for(lock, kLook);
   }
 }
 
-void LiveCamera::run() {
-  try {
-    while (const SnapshotWindow window = wait_for_work()) {
-      const auto& world = window.keys[0].data().world;
-      if (world != shared_->world) {
-        if (const Status status = follow(world); !status.ok()) {
-          end(status.error());
-          break;
-        }
-      }
-      capture(window);
-    }
-  } catch (const std::bad_alloc&) {
-    const Intrinsics& k = sensor_->intrinsics();
-    end({ErrorKind::kPartial,
-         fmt::format("out of memory for pictures of {} x {} pixels", k.width, k.height),
-         {},
-         "lower the resolution"});
-  }
-  lead_.reset();
+Status LiveCamera::take(const SnapshotWindow& window) {
+  const auto& world = window.keys[0].data().world;
+  if (world != shared_->world) GLOAM_TRY_STATUS(follow(world));
+  return capture(window);
 }
 
-void LiveCamera::end(Error why) {
-  const std::lock_guard lock(mutex_);
-  if (!request_.required) log_error("a camera stopped: {}", why.to_string());
-  status_ = std::move(why);
-  queue_->close();  // the simulation must not wait for it
-}
-
-Status LiveCamera::status() const {
-  const std::lock_guard lock(mutex_);
-  return status_;
-}
-
-void LiveCamera::capture(const SnapshotWindow& window) {
+Status LiveCamera::capture(const SnapshotWindow& window) {
   const int64_t step = window.all().front().step();
   const int64_t index = std::max<int64_t>(0, timing_.last_at_or_before(step));
-  if (timing_.step_of(index) == step && timing_.dropped(index)) return;
+  if (timing_.step_of(index) == step && timing_.dropped(index)) return {};
   keys_.resize(std::max(keys_.size(), static_cast<size_t>(window.count)));
   std::vector<const PoseFrame*> keys;
   for (const Snapshot& snapshot : window.all()) {
     PoseFrame& key = keys_[keys.size()];
     if (const Status status = solver_->solve(snapshot, key); !status.ok()) {
       log_error("a camera lost its poses: {}", status.error().to_string());
-      return;
+      return {};
     }
     keys.push_back(&key);
   }
@@ -206,6 +161,7 @@ void LiveCamera::capture(const SnapshotWindow& window) {
   on_frame_(std::move(frame));
   std::swap(now, previous_);
   has_previous_ = true;
+  return {};
 }
 
 }  // namespace gloam

@@ -2,15 +2,15 @@
 // A camera of a running simulation: a thread that turns Snapshots into frames.
 
 #include <atomic>
-#include <condition_variable>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <thread>
+#include <vector>
 
 #include "gloam/simulation.h"
 #include "runtime/exposure_meter.h"
 #include "runtime/shared_renderer.h"
+#include "runtime/stream_thread.h"
 #include "sensors/camera/camera_sensor.h"
 #include "sensors/timing.h"
 #include "sim/loop/simulator.h"
@@ -24,25 +24,21 @@ class LiveCamera final : public CameraStream {
                                                   const CameraRequest& request, uint64_t seed,
                                                   FrameCallback on_frame,
                                                   const ExposureMeters& meters);
-  ~LiveCamera() override;
-
   void set_pose(const Pose& X_WC) override;
   Pose pose() const override;
   void refresh() override;
-  int64_t dropped() const override { return queue_->dropped(); }
-
-  /// Waits until the queue has ended (the simulation stopped) and every frame was delivered.
-  void drain();
-  Status status() const override;
+  int64_t dropped() const override { return thread_.dropped(); }
+  Status status() const override { return thread_.status(); }
+  /// Waits until the simulation has stopped and every frame was delivered.
+  void drain() { thread_.drain(); }
 
  private:
   LiveCamera(Simulator& simulator, SharedRenderers& renderers, const CameraRequest& request,
              uint64_t seed, FrameCallback on_frame, const ExposureMeters& meters);
   Status follow(const std::shared_ptr<const CompiledWorld>& world);
-  void run();
-  void end(Error why);
-  SnapshotWindow wait_for_work();
-  void capture(const SnapshotWindow& window);
+  SnapshotWindow next_window();
+  Status take(const SnapshotWindow& window);
+  Status capture(const SnapshotWindow& window);
 
   Simulator& simulator_;
   SharedRenderers& renderers_;
@@ -52,7 +48,7 @@ class LiveCamera final : public CameraStream {
   const ExposureMeters& meters_;
   std::shared_ptr<SharedRenderer> shared_;  // of the World whose Snapshots come
   std::unique_ptr<CameraSensor> sensor_;
-  std::optional<EventLead> lead_;  // of a required stream with events, until run() ends
+  std::optional<EventLead> lead_;  // of a required stream with events, until its thread ends
   SensorTiming timing_;
   std::shared_ptr<ExposureMeter> meter_;  // null: the exposure is the camera's own
   std::unique_ptr<PoseSolver> solver_;
@@ -61,11 +57,9 @@ class LiveCamera final : public CameraStream {
   PoseFrame previous_;           ///< the first of the window before
   bool has_previous_ = false;
   bool previous_is_still_ = false;  ///< it was an instant by itself, not a window
-  mutable std::mutex mutex_;
-  std::condition_variable changed_;
-  Status status_;
-  bool refresh_wanted_ = false, closing_ = false;
-  std::thread thread_;
+  mutable std::mutex mutex_;        // guards sensor_ against set_pose() and pose()
+  std::atomic<bool> refresh_wanted_{false};
+  StreamThread thread_;  // last: it uses the others
 };
 
 }  // namespace gloam

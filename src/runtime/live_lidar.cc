@@ -56,9 +56,12 @@ Result<std::unique_ptr<LiveLidar>> LiveLidar::open(Simulator& simulator, SharedR
   GLOAM_TRY(auto queue,
             simulator.subscribe(
                 {.rate = live->key_rate_, .required = request.required, .capacity = capacity}));
-  live->thread_.start(std::move(queue), fmt::format("lidar '{}'", request.lidar),
-                      "lower its number of beams",
-                      [raw = live.get()](const Snapshot& now) { return raw->take(now); });
+  live->thread_.start(
+      std::move(queue),
+      {.what = fmt::format("lidar '{}'", request.lidar),
+       .memory_hint = "lower its number of beams",
+       .take = [raw = live.get()](const SnapshotWindow& now) { return raw->take(now.keys[0]); },
+       .on_end = request.on_end});
   return live;
 }
 

@@ -26,7 +26,8 @@ Result<SensorDescription> find_sensor(const std::vector<SensorDescription>& sens
 Result<std::unique_ptr<LiveSensors>> LiveSensors::open(Simulator& simulator,
                                                        const std::vector<std::string>& sensors,
                                                        bool required, uint64_t seed,
-                                                       SensorCallback on_message) {
+                                                       SensorCallback on_message,
+                                                       EndCallback on_end) {
   std::unique_ptr<LiveSensors> live(new LiveSensors(sensors, seed, std::move(on_message)));
   live->world_ = simulator.world();
   GLOAM_TRY(live->group_, live->group_of(*live->world_, simulator.timestep()));
@@ -35,10 +36,12 @@ Result<std::unique_ptr<LiveSensors>> LiveSensors::open(Simulator& simulator,
   options.required = required;
   options.capacity = 64;
   GLOAM_TRY(auto queue, simulator.subscribe(options));
-  live->thread_.start(std::move(queue), "a stream of sensors", "",
-                      [raw = live.get(), timestep = simulator.timestep()](const Snapshot& now) {
-                        return raw->sample(now, timestep);
-                      });
+  live->thread_.start(
+      std::move(queue),
+      {.what = "a stream of sensors",
+       .take = [raw = live.get(), timestep = simulator.timestep()](
+                   const SnapshotWindow& now) { return raw->sample(now.keys[0], timestep); },
+       .on_end = std::move(on_end)});
   return live;
 }
 

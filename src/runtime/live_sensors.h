@@ -18,7 +18,8 @@ class LiveSensors final : public SensorStream {
   static Result<std::unique_ptr<LiveSensors>> open(Simulator& simulator,
                                                    const std::vector<std::string>& sensors,
                                                    bool required, uint64_t seed,
-                                                   SensorCallback on_message);
+                                                   SensorCallback on_message,
+                                                   EndCallback on_end = {});
   int64_t dropped() const override { return thread_.dropped(); }
   Status status() const override { return thread_.status(); }
   /// Waits until the simulation has stopped and every message was delivered.

@@ -75,6 +75,30 @@ Status LiveSimulation::recompile(const World& world) {
   return metering_ == Metering::kAlways ? meters_.open(*simulator_, renderers_) : Status();
 }
 
+Result<Checkpoint> LiveSimulation::checkpoint() {
+  GLOAM_TRY(auto data, simulator_->checkpoint());
+  return Checkpoint(std::move(data));
+}
+
+Status LiveSimulation::restore(const Checkpoint& checkpoint) {
+  const std::lock_guard one_at_a_time(recompile_mutex_);
+  const auto& world = checkpoint.data().record.chapters.back().world;
+  if (renderers_.any()) GLOAM_TRY_STATUS(renderers_.of(world));
+  const Status status = simulator_->restore(checkpoint.data(), make_controllers);
+  renderers_.keep_only(simulator_->world());
+  GLOAM_TRY_STATUS(status);
+  restart_speed_clock();
+  return metering_ == Metering::kAlways ? meters_.open(*simulator_, renderers_) : Status();
+}
+
+Result<std::unique_ptr<ControlLease>> LiveSimulation::claim(Robot robot) {
+  const auto post = [this](std::span<const Command> commands, const std::string& holder) -> Status {
+    GLOAM_TRY_STATUS(claims_.check(*simulator_->world(), commands, holder));
+    return simulator_->post(commands);
+  };
+  return claims_.claim(simulator_->world(), robot, post);
+}
+
 void LiveSimulation::restart_speed_clock() {
   const std::lock_guard lock(clock_mutex_);
   clock_wall_ = wall_seconds();
@@ -120,6 +144,7 @@ void LiveSimulation::set_pace(Pace pace, double speed) {
 }
 
 Status LiveSimulation::post(std::span<const Command> commands) {
+  GLOAM_TRY_STATUS(claims_.check(*simulator_->world(), commands));
   return simulator_->post(commands);
 }
 
@@ -129,7 +154,7 @@ Status LiveSimulation::post(const Command& command) {
     restart_speed_clock();
     return status;
   }
-  return simulator_->post(command);
+  return post(std::span<const Command>(&command, 1));
 }
 
 SimulationStats LiveSimulation::stats() const {
@@ -160,7 +185,7 @@ Result<std::unique_ptr<LiveCamera>> LiveSimulation::open_live_camera(const Camer
 Result<std::unique_ptr<SensorStream>> LiveSimulation::open_sensor(const SensorRequest& request,
                                                                   SensorCallback on_message) {
   GLOAM_TRY(auto live, LiveSensors::open(*simulator_, {request.sensor}, request.required, seed_,
-                                         std::move(on_message)));
+                                         std::move(on_message), request.on_end));
   return std::unique_ptr<SensorStream>(std::move(live));
 }
 

@@ -12,6 +12,7 @@
 #include "runtime/live_lidar.h"
 #include "runtime/live_sensors.h"
 #include "runtime/live_snapshots.h"
+#include "runtime/robot_claims.h"
 
 namespace gloam {
 
@@ -36,6 +37,9 @@ class LiveSimulation final : public Simulation {
   Status status() const override { return simulator_->status(); }
   Status post(const Command& command) override;
   Status post(std::span<const Command> commands) override;
+  Result<Checkpoint> checkpoint() override;
+  Status restore(const Checkpoint& checkpoint) override;
+  Result<std::unique_ptr<ControlLease>> claim(Robot robot) override;
   std::vector<LoggedCommand> take_command_log() override { return simulator_->take_command_log(); }
   Snapshot latest() const override { return simulator_->latest(); }
   SimulationStats stats() const override;
@@ -77,6 +81,7 @@ class LiveSimulation final : public Simulation {
   SharedRenderers renderers_;
   std::mutex recompile_mutex_;  // one at a time
   ExposureMeters meters_;
+  RobotClaims claims_;
   std::mutex solver_mutex_;
   std::unique_ptr<PoseSolver> solver_;  // for questions about the latest instant
   std::atomic<bool> paused_{true}, stop_requested_{false};

@@ -12,11 +12,14 @@ Result<std::unique_ptr<LiveSnapshots>> LiveSnapshots::open(Simulator& simulator,
             simulator.subscribe({.rate = request.rate.num != 0 ? request.rate : every_step,
                                  .required = request.required,
                                  .capacity = request.capacity}));
-  live->thread_.start(std::move(queue), "a stream of snapshots", "keep fewer Snapshots",
-                      [raw = live.get()](const Snapshot& now) {
-                        raw->on_snapshot_(now);
-                        return Status();
-                      });
+  live->thread_.start(std::move(queue), {.what = "a stream of snapshots",
+                                         .memory_hint = "keep fewer Snapshots",
+                                         .take =
+                                             [raw = live.get()](const SnapshotWindow& now) {
+                                               raw->on_snapshot_(now.keys[0]);
+                                               return Status();
+                                             },
+                                         .on_end = request.on_end});
   return live;
 }
 

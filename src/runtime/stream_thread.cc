@@ -9,27 +9,36 @@
 
 namespace gloam {
 
-void StreamThread::start(std::shared_ptr<SnapshotQueue> queue, std::string what,
-                         std::string memory_hint, std::function<Status(const Snapshot&)> take) {
+void StreamThread::start(std::shared_ptr<SnapshotQueue> queue, StreamJob job) {
   queue_ = std::move(queue);
-  what_ = std::move(what);
-  thread_ = std::thread(
-      [this, hint = std::move(memory_hint), take = std::move(take)] { run(hint, take); });
+  job_ = std::move(job);
+  if (!job_.next) job_.next = [this] { return queue_->next_window(); };
+  thread_ = std::thread([this] { run(); });
 }
 
-void StreamThread::run(const std::string& memory_hint,
-                       const std::function<Status(const Snapshot&)>& take) {
+void StreamThread::run() {
+  if (const Status status = take_all(); !status.ok()) end(status.error());
+  if (job_.finish) job_.finish();
+}
+
+Status StreamThread::take_all() {
   try {
-    while (const Snapshot snapshot = queue_->next())
-      if (const Status status = take(snapshot); !status.ok()) return end(status.error());
+    while (const SnapshotWindow window = job_.next()) GLOAM_TRY_STATUS(job_.take(window));
   } catch (const std::bad_alloc&) {
-    end({ErrorKind::kPartial, fmt::format("out of memory for {}", what_), {}, memory_hint});
+    return Error{
+        ErrorKind::kPartial, fmt::format("out of memory for {}", job_.what), {}, job_.memory_hint};
   }
+  return {};
 }
 
 void StreamThread::end(Error why) {
+  // Whoever has asked to be told is told; a required stream's owner reads its status.
+  if (job_.on_end) {
+    job_.on_end(why);
+  } else if (!queue_->options().required) {
+    log_error("{} stopped: {}", job_.what, why.to_string());
+  }
   const std::lock_guard lock(mutex_);
-  log_error("{} stopped: {}", what_, why.to_string());
   status_ = std::move(why);
   queue_->close();  // the simulation must not wait for it
 }

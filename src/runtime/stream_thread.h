@@ -1,6 +1,6 @@
 #pragma once
-// The thread of one stream: takes Snapshots out of a queue until the simulation ends, the stream is
-// closed or `take` fails, and says why.
+// The thread of one stream: takes Snapshots, or windows of them, out of a queue until the
+// simulation ends, the stream is closed or `take` fails, and says why.
 
 #include <functional>
 #include <memory>
@@ -8,18 +8,30 @@
 #include <string>
 #include <thread>
 
+#include "gloam/stream.h"
 #include "sim/snapshots/snapshot_queue.h"
 
 namespace gloam {
+
+struct StreamJob {
+  std::string what;              ///< "lidar 'roof'", for messages
+  std::string memory_hint = {};  ///< what to do when memory runs out
+  /// Comes on the new thread; its Error ends the stream.
+  std::function<Status(const SnapshotWindow&)> take;
+  /// Where windows come from besides the queue; empty = the queue alone. An empty window ends the
+  /// stream.
+  std::function<SnapshotWindow()> next = {};
+  /// Comes on the thread as the last thing, however the stream ended.
+  std::function<void()> finish = {};
+  EndCallback on_end = {};
+};
 
 class StreamThread {
  public:
   ~StreamThread() { close(); }
 
-  /// Once. `take` comes on the new thread; its Error ends the stream. `what`: "lidar 'roof'", for
-  /// messages; `memory_hint`: what to do when memory runs out.
-  void start(std::shared_ptr<SnapshotQueue> queue, std::string what, std::string memory_hint,
-             std::function<Status(const Snapshot&)> take);
+  /// Once.
+  void start(std::shared_ptr<SnapshotQueue> queue, StreamJob job);
   /// Waits for the call of `take` that is under way. To be called before what `take` uses goes.
   void close();
   /// Waits until the simulation has stopped and all was taken.
@@ -30,11 +42,12 @@ class StreamThread {
   Status status() const;
 
  private:
-  void run(const std::string& memory_hint, const std::function<Status(const Snapshot&)>& take);
+  void run();
+  Status take_all();
   void end(Error why);
 
   std::shared_ptr<SnapshotQueue> queue_;
-  std::string what_;
+  StreamJob job_;
   mutable std::mutex mutex_;
   Status status_;
   std::thread thread_;

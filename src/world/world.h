@@ -68,8 +68,10 @@ struct ElementLines {
 
 struct CompiledWorld {
   uint64_t serial = next_world_serial();  ///< what handles remember
-  Scene scene;
-  ModelPtr model;  ///< the whole level, exactly what stock MuJoCo would load
+  Scene scene;           ///< drawn, with the looks, lamps and cameras of its place and meshes
+  Scene written;         ///< as it was given; with `keyframe` it compiles to this World again
+  std::string keyframe;  ///< that was asked for, "" = none
+  ModelPtr model;        ///< the whole level, exactly what stock MuJoCo would load
   /// Keyframe of `model` that the simulation starts from; -1 = mj_resetData's state. A scene whose
   /// robots name keyframes gets one made of theirs, so that the start survives export.
   int initial_key = -1;

@@ -50,6 +50,22 @@ inline std::string range_text(const FieldRule& rule) {
   return fmt::format("a finite number{}", unit);
 }
 
+inline double largest_of(const double (&v)[4]) {
+  return std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2]), std::abs(v[3])});
+}
+
+/// The rotation of a quaternion wxyz that is not zero.
+inline Quat unit_quaternion(const double (&wxyz)[4]) {
+  const double largest = largest_of(wxyz);
+  double v[4], norm = 0;
+  for (int i = 0; i < 4; ++i) {
+    v[i] = wxyz[i] / largest;  // squares of huge or tiny components would overflow or vanish
+    norm += v[i] * v[i];
+  }
+  norm = std::sqrt(norm);
+  return {v[0] / norm, v[1] / norm, v[2] / norm, v[3] / norm};
+}
+
 class TableReader {
  public:
   TableReader(const toml::table& table, const std::string& file, std::string where, Status* status)
@@ -260,19 +276,11 @@ class TableReader {
   void read(const toml::node& node, const std::string& key, Quat& out, const FieldRule& rule) {
     double v[4] = {};
     if (!read_numbers(node, key, v, rule)) return;
-    const double largest =
-        std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2]), std::abs(v[3])});
-    if (!(largest > 1e-12)) {
+    if (!(largest_of(v) > 1e-12)) {
       return fail(node, fmt::format("'{}' is zero, which is not a rotation", key),
                   "a quaternion w, x, y, z; no rotation is [1, 0, 0, 0]");
     }
-    double norm = 0;
-    for (double& x : v) {
-      x /= largest;  // squares of huge or tiny components would overflow or vanish
-      norm += x * x;
-    }
-    norm = std::sqrt(norm);
-    out = {v[0] / norm, v[1] / norm, v[2] / norm, v[3] / norm};
+    out = unit_quaternion(v);
   }
 
   template <class T>

@@ -93,6 +93,14 @@ class Check {
     if (!finite({c.vx, c.vy, c.yaw_rate})) return refuse("a velocity goal is not finite");
     return {};
   }
+  Status operator()(const SetJointGoal& c) const {
+    GLOAM_TRY_STATUS(check_handle(c.joint, "joint", 0, model_.njnt));
+    if (joint_width(model_.jnt_type[c.joint.id]).qpos != 1)
+      return refuse(fmt::format("joint {} is no hinge and no slide", c.joint.id),
+                    "its position is more than one number");
+    if (!finite({c.position})) return refuse("the goal of a joint is not finite");
+    return {};
+  }
   Status operator()(const SetMocapPose& c) const {
     if (Status status = check_body(c.body); !status) return status;
     if (model_.body_mocapid[c.body.id] < 0) {

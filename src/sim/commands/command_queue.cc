@@ -36,16 +36,62 @@ Status CommandQueue::post(std::span<const Command> commands) {
                "post fewer commands per step, or let the simulation step"};
 }
 
-std::vector<LoggedCommand> CommandQueue::take_log() {
+void CommandQueue::drain_log() {
   Node* const newest = log_.exchange(nullptr, std::memory_order_acquire);
-  std::vector<LoggedCommand> entries;
-  for (Node* node = newest; node != nullptr; node = node->next) {
-    entries.push_back({node->run, std::move(node->command)});
-  }
-  log_size_.fetch_sub(static_cast<int64_t>(entries.size()), std::memory_order_relaxed);
+  const auto first = static_cast<std::ptrdiff_t>(entries_.size());
+  for (Node* node = newest; node != nullptr; node = node->next)
+    entries_.push_back({node->run, std::move(node->command)});
   delete_list(newest);
-  std::reverse(entries.begin(), entries.end());
-  return entries;
+  std::reverse(entries_.begin() + first, entries_.end());
+}
+
+std::vector<LoggedCommand> CommandQueue::take_log() {
+  const std::lock_guard lock(history_mutex_);
+  drain_log();
+  std::vector<LoggedCommand> fresh(entries_.begin() + static_cast<std::ptrdiff_t>(taken_),
+                                   entries_.end());
+  log_size_.fetch_sub(static_cast<int64_t>(fresh.size()), std::memory_order_relaxed);
+  // Entries of runs that are over are wanted no longer.
+  const auto end = std::find_if(entries_.rbegin(), entries_.rend(), [](const LoggedCommand& entry) {
+    return std::holds_alternative<ResetSim>(entry.command.what);
+  });
+  entries_.erase(entries_.begin(), end.base());
+  if (static_cast<int64_t>(entries_.size()) > log_capacity_) {
+    lost_run_.store(entries_.back().run, std::memory_order_relaxed);
+    entries_.clear();
+  }
+  taken_ = entries_.size();
+  return fresh;
+}
+
+Result<std::vector<Command>> CommandQueue::history(int64_t run) {
+  const std::lock_guard lock(history_mutex_);
+  drain_log();
+  if (lost_run_.load(std::memory_order_relaxed) == run) {
+    return Error{ErrorKind::kPartial,
+                 fmt::format("this run has had more than {} Commands, which were not all kept",
+                             log_capacity_),
+                 {},
+                 "take checkpoints after a reset, or post fewer Commands"};
+  }
+  std::vector<Command> commands;
+  for (const LoggedCommand& entry : entries_)
+    if (entry.run == run) commands.push_back(entry.command);
+  return commands;
+}
+
+void CommandQueue::begin_history(std::vector<Command> commands, int64_t run) {
+  take_arrivals(0);
+  discard_before(arrival_count_);
+  const std::lock_guard lock(history_mutex_);
+  drain_log();
+  const auto kept = static_cast<std::ptrdiff_t>(taken_);
+  entries_.erase(entries_.begin(), entries_.begin() + kept);
+  std::vector<LoggedCommand> before;
+  for (Command& command : commands) before.push_back({run, std::move(command)});
+  taken_ = before.size();
+  entries_.insert(entries_.begin(), before.begin(), before.end());
+  log_lost_.fetch_add(1, std::memory_order_relaxed);
 }
 
 void CommandQueue::take_arrivals(int64_t step) {
@@ -113,6 +159,7 @@ void CommandQueue::log(Node* node, int64_t run, int64_t step) {
   applied_.fetch_add(1, std::memory_order_relaxed);
   if (log_size_.load(std::memory_order_relaxed) >= log_capacity_) {
     log_lost_.fetch_add(1, std::memory_order_relaxed);
+    lost_run_.store(run, std::memory_order_relaxed);
     retire(node);
     return;
   }

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <utility>
@@ -28,8 +29,10 @@ class CommandQueue {
   Status post(Command command) { return post(std::span<const Command>(&command, 1)); }
   /// The same for several that come to the simulation together: all or none.
   Status post(std::span<const Command> commands);
-  /// What has applied since the last call, in order.
+  /// Commands that have applied since the last call, in order.
   std::vector<LoggedCommand> take_log();
+  /// Commands that have applied in `run`, the present one, in order. Error: some were not kept.
+  Result<std::vector<Command>> history(int64_t run);
   /// Commands that have applied, over all runs.
   int64_t applied() const { return applied_.load(std::memory_order_relaxed); }
   /// What the log does not hold, so that a replay of it would not be exact: commands that found it
@@ -82,6 +85,9 @@ class CommandQueue {
   /// A reset that did not come as a Command: throws away everything that waits and logs a ResetSim.
   /// Allocates.
   void reset_now(int64_t step, int64_t run);
+  /// A simulation that goes on in `run` from a checkpoint, to which these Commands have led. Those
+  /// that wait are thrown away, and the log can no longer be replayed. Allocates.
+  void begin_history(std::vector<Command> commands, int64_t run);
 
  private:
   struct Node {
@@ -96,6 +102,7 @@ class CommandQueue {
   void discard_before(int64_t arrival);
   void log(Node* node, int64_t run, int64_t step);
   void retire(Node* node);
+  void drain_log();
   static void push(std::atomic<Node*>& stack, Node* node);
   static void delete_list(Node* node);
 
@@ -107,6 +114,11 @@ class CommandQueue {
   std::atomic<int64_t> log_size_{0}, applied_{0}, log_lost_{0}, discarded_{0};
   std::atomic<Node*> log_{nullptr};      // stack, newest first
   std::atomic<Node*> retired_{nullptr};  // to be deleted by the next thread that posts
+  std::atomic<int64_t> lost_run_{-1};    // the last run of which the log is not whole
+
+  std::mutex history_mutex_;            // guards what follows
+  std::vector<LoggedCommand> entries_;  // out of log_: of the present run, and those not yet taken
+  size_t taken_ = 0;                    // of entries_
 };
 
 }  // namespace gloam

@@ -8,10 +8,12 @@
 
 #include "base/check.h"
 #include "sim/commands/command_check.h"
+#include "sim/loop/checkpoint.h"
 
 namespace gloam {
 namespace {
 constexpr int64_t kNever = std::numeric_limits<int64_t>::max();
+constexpr double kNoGoal = std::numeric_limits<double>::quiet_NaN();
 }  // namespace
 
 SimLoop::SimLoop(std::unique_ptr<Stepper> stepper, Rational timestep, CommandQueue& commands,
@@ -22,6 +24,8 @@ SimLoop::SimLoop(std::unique_ptr<Stepper> stepper, Rational timestep, CommandQue
       scene_commands_(std::move(scene_commands)),
       replay_(std::move(replay)),
       goals_(stepper_->world().robots.size()),
+      joint_goals_(static_cast<size_t>(stepper_->model().njnt), kNoGoal),
+      chapters_{{stepper_->shared_world(), 0}},
       next_publication_(kNever) {}
 
 Status SimLoop::add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate) {
@@ -40,11 +44,10 @@ Status SimLoop::exchange(NextWorld& next, const Correspondence& same) {
                  "a simulation that has failed cannot go on in another World",
                  {},
                  "reset it first"};
-  if (!replay_.empty())
-    return Error{ErrorKind::kUsage, "a log that is replayed is of one World: no recompile"};
   if (!next.stepper->take_over(*stepper_, same)) return next.stepper->error();
   std::swap(stepper_, next.stepper);
   const int64_t step = stepper_->step_count();
+  chapters_.push_back({stepper_->shared_world(), step});
   for (ControllerSlot& slot : next.controllers) {
     slot.begin(step);
     const int old = same.robot[static_cast<size_t>(slot.robot)];
@@ -86,6 +89,12 @@ void SimLoop::take_over_goals(const Correspondence& same) {
     const int old = same.robot[robot];
     if (old >= 0) goals_[robot] = before[static_cast<size_t>(old)];
   }
+  std::vector<double> joints_before(same.joint.size(), kNoGoal);
+  std::swap(joints_before, joint_goals_);
+  for (size_t joint = 0; joint < same.joint.size(); ++joint) {
+    const int old = same.joint[joint];
+    if (old >= 0) joint_goals_[joint] = joints_before[static_cast<size_t>(old)];
+  }
 }
 
 Result<std::shared_ptr<SnapshotQueue>> SimLoop::subscribe(const SubscriptionOptions& options,
@@ -124,6 +133,8 @@ bool SimLoop::publish_due() {
 void SimLoop::apply(const Command& command) {
   if (const auto* goal = std::get_if<SetVelocityGoal>(&command.what)) {
     goal_of(goal->robot.id) = {goal->vx, goal->vy, goal->yaw_rate};
+  } else if (const auto* joint = std::get_if<SetJointGoal>(&command.what)) {
+    joint_goals_[static_cast<size_t>(joint->joint.id)] = joint->position;
   } else {
     stepper_->apply(command);
   }
@@ -153,7 +164,7 @@ void SimLoop::run_controllers() {
   for (ControllerSlot& slot : controllers_) {
     if (slot.due > step) continue;
     slot.controller->control({&stepper_->model(), &stepper_->data(), stepper_->events().loads, step,
-                              slot.period, goal_of(slot.robot)});
+                              slot.period, goal_of(slot.robot), joint_goals_});
     slot.due = slot.schedule.step_of(++slot.k);
   }
 }
@@ -179,12 +190,65 @@ void SimLoop::begin_run() {
   scene_cursor_ = 0;
   while (replay_cursor_ < replay_.size() && replay_[replay_cursor_].run < run_) ++replay_cursor_;
   std::fill(goals_.begin(), goals_.end(), VelocityTarget{});
+  std::fill(joint_goals_.begin(), joint_goals_.end(), kNoGoal);
+  chapters_ = {{stepper_->shared_world(), 0}};
   if (!stepper_->reset()) return;
   for (ControllerSlot& slot : controllers_) {
     slot.k = slot.due = 0;
     slot.controller->reset(&stepper_->model(), &stepper_->data());
   }
   for (Subscription& s : subscriptions_) s.begin(0);
+  find_next_publication();
+}
+
+std::unique_ptr<LoopState> SimLoop::save() const {
+  auto saved = std::make_unique<LoopState>();
+  saved->stepper = stepper_->save();
+  if (saved->stepper == nullptr) return nullptr;
+  for (const ControllerSlot& slot : controllers_) {
+    std::unique_ptr<Controller> copy = slot.controller->clone();
+    if (copy == nullptr) return nullptr;
+    saved->controllers.push_back({std::move(copy), slot.k, slot.due});
+  }
+  saved->goals = goals_;
+  saved->joint_goals = joint_goals_;
+  saved->scene_cursor = scene_cursor_;
+  return saved;
+}
+
+Status SimLoop::restore(const LoopState& saved, const RunRecord& record) {
+  GLOAM_CHECK(saved.controllers.size() == controllers_.size(), "controllers of the same World");
+  if (!stepper_->restore(*saved.stepper)) return stepper_->error();
+  for (size_t i = 0; i < controllers_.size(); ++i) {
+    const LoopState::Slot& from = saved.controllers[i];
+    controllers_[i].controller = from.controller->clone();
+    controllers_[i].k = from.k;
+    controllers_[i].due = from.due;
+  }
+  goals_ = saved.goals;
+  joint_goals_ = saved.joint_goals;
+  scene_cursor_ = saved.scene_cursor;
+  begin_run_at(record);
+  return {};
+}
+
+void SimLoop::adopt(SimLoop& made, const RunRecord& record) {
+  std::swap(stepper_, made.stepper_);
+  std::swap(controllers_, made.controllers_);
+  std::swap(scene_commands_, made.scene_commands_);
+  std::swap(scene_cursor_, made.scene_cursor_);
+  std::swap(goals_, made.goals_);
+  std::swap(joint_goals_, made.joint_goals_);
+  for (const Subscription& s : subscriptions_) stepper_->pool().add_slots(s.slots());
+  begin_run_at(record);
+}
+
+void SimLoop::begin_run_at(const RunRecord& record) {
+  ++run_;
+  stepper_->set_run(run_);
+  chapters_ = record.chapters;
+  commands_.begin_history(record.commands, run_);
+  for (Subscription& s : subscriptions_) s.begin(stepper_->step_count());
   find_next_publication();
 }
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "sim/commands/command_queue.h"
-#include "sim/loop/controller_slot.h"
-#include "sim/loop/stepper.h"
+#include "sim/loop/next_world.h"
+#include "sim/loop/run_record.h"
 #include "sim/snapshots/subscription.h"
 #include "sim/state/correspondence.h"
 
@@ -17,12 +17,7 @@ namespace gloam {
 /// as input: it is in state and hash. MuJoCo functions that can fail need try_mujoco.
 using StepHook = std::function<void(const mjModel*, mjData*)>;
 
-/// What a SimLoop has of one World.
-struct NextWorld {
-  std::unique_ptr<Stepper> stepper;
-  std::vector<Command> scene_commands;
-  std::vector<ControllerSlot> controllers;
-};
+struct LoopState;
 
 class SimLoop {
  public:
@@ -47,6 +42,16 @@ class SimLoop {
   /// Back to step 0; Commands that wait are thrown away.
   void reset();
 
+  /// Worlds of the present run, and the instant at which it stands.
+  const std::vector<RunRecord::Chapter>& chapters() const { return chapters_; }
+  /// A copy of the instant; null where effects or controllers cannot be copied.
+  std::unique_ptr<LoopState> save() const;
+  /// Goes on in a new run from an instant that was saved in the World that runs. Error: then only a
+  /// reset goes on.
+  Status restore(const LoopState& saved, const RunRecord& record);
+  /// Goes on in a new run where `made` stands, which gets back what was here before.
+  void adopt(SimLoop& made, const RunRecord& record);
+
   Stepper& stepper() { return *stepper_; }
   const Stepper& stepper() const { return *stepper_; }
   Rational timestep() const { return timestep_; }
@@ -60,6 +65,7 @@ class SimLoop {
   bool apply_commands();
   void run_controllers();
   void begin_run();
+  void begin_run_at(const RunRecord& record);
   void take_over_goals(const Correspondence& same);
   void find_next_publication();
   VelocityTarget& goal_of(int robot) { return goals_[static_cast<size_t>(robot)]; }
@@ -71,9 +77,11 @@ class SimLoop {
   std::vector<LoggedCommand> replay_;
   size_t scene_cursor_ = 0, replay_cursor_ = 0;
   std::vector<VelocityTarget> goals_;  // by robot
+  std::vector<double> joint_goals_;    // by joint [rad, m], NaN = none
   std::vector<ControllerSlot> controllers_;
   std::vector<Subscription> subscriptions_;
   StepHook hook_;
+  std::vector<RunRecord::Chapter> chapters_;
   int64_t run_ = 0;
   int64_t next_publication_ = 0;  // earliest `due` of the subscriptions
   int64_t dropped_by_closed_ = 0;

@@ -37,17 +37,16 @@ Result<std::unique_ptr<Simulator>> Simulator::create(std::shared_ptr<const Compi
                  fmt::format("a command queue of {} is not in 2 … 2^20", options.command_capacity)};
   }
   const Rational timestep = exact_rational(dt);
-  GLOAM_TRY(std::vector<Command> scene_commands, scene_schedule(*world, timestep));
-  GLOAM_TRY(std::unique_ptr<Stepper> stepper,
-            Stepper::create(std::move(world), options.seed, options.timestep));
-  return std::unique_ptr<Simulator>(
-      new Simulator(std::move(stepper), timestep, std::move(options), std::move(scene_commands)));
+  GLOAM_TRY(NextWorld first, make_next_world(world, options.seed, options.timestep, {}));
+  return std::unique_ptr<Simulator>(new Simulator(
+      std::move(first.stepper), timestep, std::move(options), std::move(first.scene_commands)));
 }
 
 Simulator::Simulator(std::unique_ptr<Stepper> stepper, Rational timestep, SimulatorOptions options,
                      std::vector<Command> scene_commands)
     : seed_(options.seed),
       own_timestep_(options.timestep),
+      replays_(!options.replay.empty()),
       pace_(options.pace),
       commands_(options.command_capacity, options.log_capacity),
       loop_(std::move(stepper), timestep, commands_, std::move(scene_commands),
@@ -236,13 +235,9 @@ Status Simulator::recompile(std::shared_ptr<const CompiledWorld> world,
   if (is_on_sim_thread()) return no_call_from_a_step();
   const std::lock_guard one_at_a_time(recompile_mutex_);
   GLOAM_TRY_STATUS(check_timestep(*world));
-  NextWorld next;
-  GLOAM_TRY(next.scene_commands, scene_schedule(*world, timestep()));
-  GLOAM_TRY(next.stepper, Stepper::create(world, seed_, own_timestep_));
-  for (RobotController& controller : controllers) {
-    GLOAM_TRY(ControllerSlot slot, ControllerSlot::make(*world, std::move(controller), timestep()));
-    next.controllers.push_back(std::move(slot));
-  }
+  if (replays_)
+    return Error{ErrorKind::kUsage, "a log that is replayed is of one World: no recompile"};
+  GLOAM_TRY(NextWorld next, make_next_world(world, seed_, own_timestep_, std::move(controllers)));
   const std::shared_ptr<const CompiledWorld> before = this->world();
   const Correspondence same(*before, *world);
   Status status;
@@ -250,6 +245,69 @@ Status Simulator::recompile(std::shared_ptr<const CompiledWorld> world,
     const std::lock_guard lock(world_mutex_);
     status = loop_.exchange(next, same);
     if (status.ok()) world_ = world;
+  });
+  return status;
+}
+
+Result<std::shared_ptr<const CheckpointData>> Simulator::checkpoint() {
+  if (is_on_sim_thread()) return no_call_from_a_step();
+  auto made = std::make_shared<CheckpointData>();
+  Status status;
+  call([&] {
+    Stepper& stepper = loop_.stepper();
+    if (stepper.failed()) {
+      status = stepper.error();
+      return;
+    }
+    Result<std::vector<Command>> commands = commands_.history(loop_.run());
+    if (!commands.ok()) {
+      status = commands.error();
+      return;
+    }
+    made->record = {
+        seed_,         own_timestep_, loop_.chapters(), std::move(*commands), stepper.step_count(),
+        stepper.hash()};
+    made->time = stepper.time();
+    made->copy = loop_.save();
+  });
+  GLOAM_TRY_STATUS(status);
+  return std::shared_ptr<const CheckpointData>(std::move(made));
+}
+
+Status Simulator::restore(const CheckpointData& checkpoint, const ControllerMaker& controllers) {
+  if (is_on_sim_thread()) return no_call_from_a_step();
+  const std::lock_guard one_at_a_time(recompile_mutex_);
+  const RunRecord& record = checkpoint.record;
+  const std::shared_ptr<const CompiledWorld>& world = record.chapters.back().world;
+  const double wanted = record.timestep.value_or(double{world->model->opt.timestep});
+  if (!(exact_rational(wanted) == timestep()))
+    return Error{ErrorKind::kUsage,
+                 fmt::format("the checkpoint is of a timestep of {:g} s, this simulation of {:g} s",
+                             wanted, timestep().value())};
+  std::unique_ptr<Restepper> again;
+  if (checkpoint.copy == nullptr || world != this->world()) {
+    GLOAM_TRY(again, Restepper::create(record, controllers));
+    GLOAM_TRY_STATUS(again->run_until(record.step));
+    if (again->loop().stepper().hash() != record.hash) {
+      return Error{ErrorKind::kPartial,
+                   fmt::format("the run was stepped again to step {}, where its state hash is "
+                               "{:016x} and not {:016x}",
+                               record.step, again->loop().stepper().hash(), record.hash),
+                   {},
+                   "step hooks, and controllers that use anything but their inputs, are not "
+                   "repeated"};
+    }
+  }
+  Status status;
+  call([&] {
+    const std::lock_guard lock(world_mutex_);
+    if (again != nullptr) {
+      loop_.adopt(again->loop(), record);
+    } else {
+      status = loop_.restore(*checkpoint.copy, record);
+    }
+    world_ = world;
+    pacer_.restart();
   });
   return status;
 }

@@ -13,8 +13,9 @@
 #include <thread>
 
 #include "gloam/simulation.h"
+#include "sim/loop/checkpoint.h"
 #include "sim/loop/pacer.h"
-#include "sim/loop/sim_loop.h"
+#include "sim/loop/restepper.h"
 
 namespace gloam {
 
@@ -84,6 +85,13 @@ class Simulator {
   /// old World runs on; another timestep, a simulation that has failed, what MuJoCo says.
   Status recompile(std::shared_ptr<const CompiledWorld> world,
                    std::vector<RobotController> controllers);
+  /// What has led to the present instant, and a copy of it where that can be. Errors: the
+  /// simulation has failed, Commands were not kept.
+  Result<std::shared_ptr<const CheckpointData>> checkpoint();
+  /// Goes on from there in a new run. What takes long is done before, while the simulation runs on.
+  /// Commands that wait are thrown away. Errors: of another timestep; stepping it again ends
+  /// elsewhere, which is what a step hook or an unpredictable controller does.
+  Status restore(const CheckpointData& checkpoint, const ControllerMaker& controllers);
   /// From the present step on. The reader holds what it got for as long as it likes.
   Result<std::shared_ptr<SnapshotQueue>> subscribe(const SubscriptionOptions& options);
   /// The present instant; after a failure the last good one.
@@ -126,6 +134,7 @@ class Simulator {
 
   const uint64_t seed_;
   const std::optional<double> own_timestep_;  // [s]
+  const bool replays_;                        // a log
   Pace pace_;
   CommandQueue commands_;
   SimLoop loop_;

@@ -185,7 +185,8 @@ void Stepper::apply(const Command& command) {
         using T = std::decay_t<decltype(what)>;
         if constexpr (std::is_same_v<T, SetLiveField>) {
           change_live(what);
-        } else if constexpr (!std::is_same_v<T, SetVelocityGoal> && !std::is_same_v<T, ResetSim>) {
+        } else if constexpr (!std::is_same_v<T, SetVelocityGoal> &&
+                             !std::is_same_v<T, SetJointGoal> && !std::is_same_v<T, ResetSim>) {
           inputs_->apply(model_, data, what);
         }
       },

@@ -14,6 +14,8 @@
 
 namespace gloam {
 
+struct StepperState;
+
 class Stepper {
  public:
   /// Stands at the initial state. The chain of hashes starts from `seed`.
@@ -28,7 +30,14 @@ class Stepper {
   /// as it was.
   bool take_over(const Stepper& before, const Correspondence& same);
 
-  /// Applies one checked Command now. Velocity goals and resets are not its business.
+  /// A copy of the instant; null where an effect has a state of its own, or MuJoCo refuses.
+  std::unique_ptr<StepperState> save() const;
+  /// Stands where a Stepper of the same World was saved. False and error() when MuJoCo refuses.
+  bool restore(const StepperState& saved);
+  /// Number of the run in Snapshots.
+  void set_run(int64_t run);
+
+  /// Applies one checked Command now. Goals and resets are the loop's.
   void apply(const Command& command);
 
   /// One physics step, bit-equal to mj_step on the same state. False when it failed: then it stands
@@ -65,6 +74,7 @@ class Stepper {
   void restore_last_good_state();
   bool stand_at_state();
   void change_live(const SetLiveField& change);
+  bool set_live(const std::shared_ptr<const LiveFields>& live);
   bool own_the_field(LiveFieldId field);
   void take_model(const mjModel& model);
   void count_diagnostics();

@@ -23,6 +23,21 @@ SnapshotWindow SnapshotQueue::next_window() {
   }
 }
 
+SnapshotWindow SnapshotQueue::next_window_or_wake() {
+  for (;;) {
+    const uint32_t ticket = readers_.ticket();
+    const bool was_closed = closed();
+    if (SnapshotWindow window = try_next_window()) return window;
+    if (was_closed || woken_.exchange(false, std::memory_order_acq_rel)) return {};
+    readers_.wait(ticket);
+  }
+}
+
+void SnapshotQueue::wake() {
+  woken_.store(true, std::memory_order_release);
+  readers_.raise();
+}
+
 void SnapshotQueue::close() {
   closed_.store(true, std::memory_order_release);
   readers_.raise();

@@ -49,6 +49,9 @@ class SnapshotQueue final : public SnapshotSource {
   /// The next window; waits for it. Empty once the simulation has stopped or this queue was closed,
   /// and everything before that has been read.
   SnapshotWindow next_window();
+  /// The same, but empty also when wake() has been called since the last such call.
+  SnapshotWindow next_window_or_wake();
+  void wake();
   /// The next window if there is one now, else an empty one.
   SnapshotWindow try_next_window();
   /// Likewise of a window its first Snapshot, for subscriptions without windows.
@@ -74,7 +77,7 @@ class SnapshotQueue final : public SnapshotSource {
   BoundedQueue<SnapshotWindow> queue_;
   Signal readers_;
   std::shared_ptr<Signal> sim_signal_;
-  std::atomic<bool> closed_{false};
+  std::atomic<bool> closed_{false}, woken_{false};
   std::atomic<int64_t> dropped_{0};
 };
 

@@ -194,7 +194,7 @@ std::optional<Command> Correspondence::translate(const Command& command) const {
         using T = std::decay_t<decltype(what)>;
         if constexpr (std::is_same_v<T, SetControl>) {
           return follow(what.actuator, actuator);
-        } else if constexpr (std::is_same_v<T, SetJointState>) {
+        } else if constexpr (std::is_same_v<T, SetJointState> || std::is_same_v<T, SetJointGoal>) {
           return follow(what.joint, joint);
         } else if constexpr (std::is_same_v<T, SetVelocityGoal>) {
           return follow(what.robot, robot);

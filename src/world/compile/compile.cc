@@ -192,6 +192,8 @@ Result<std::shared_ptr<CompiledWorld>> compile_scene(const Scene& written,
     if (!scene.bare_model.empty()) cached->robots = {bare_robot(scene, cached->model.get())};
     GLOAM_TRY_STATUS(choose_keyframe(keyframe, cached.get()));
     GLOAM_TRY_STATUS(describe_rest(cached.get()));
+    cached->written = written;
+    cached->keyframe = keyframe;
     progress.finish();
     return cached;
   }
@@ -201,6 +203,8 @@ Result<std::shared_ptr<CompiledWorld>> compile_scene(const Scene& written,
   GLOAM_TRY(Level level, build_level(scene, place, objects, &files, &progress));
   auto world = std::make_shared<CompiledWorld>();
   world->scene = scene;
+  world->written = written;
+  world->keyframe = keyframe;
   world->place_hash = place_hash;
   world->drawn = drawn;
   if (place) describe_place(*place, world.get());

@@ -1,0 +1,24 @@
+#pragma once
+// ControlLease: the claim of one client on a robot.
+
+#include <span>
+#include <string>
+
+#include "gloam/command.h"
+#include "gloam/result.h"
+
+namespace gloam {
+
+/// Held by who alone drives a robot; destroying it gives the robot back. It must go before its
+/// simulation does. Any thread. A recompile keeps it for the robot of the same name.
+class ControlLease {
+ public:
+  virtual ~ControlLease() = default;
+  virtual std::string robot() const = 0;  ///< name
+  /// Simulation::post, for the holder. Errors: those of post; a Command to a robot that somebody
+  /// else has claimed.
+  virtual Status post(std::span<const Command> commands) = 0;
+  Status post(const Command& command) { return post(std::span<const Command>(&command, 1)); }
+};
+
+}  // namespace gloam

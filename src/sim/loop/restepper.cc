@@ -1,0 +1,51 @@
+#include "sim/loop/restepper.h"
+
+#include <utility>
+
+#include "scene/files/mujoco_guard.h"
+#include "sim/loop/next_world.h"
+
+namespace gloam {
+
+Result<std::unique_ptr<Restepper>> Restepper::create(RunRecord record,
+                                                     ControllerMaker controllers) {
+  std::unique_ptr<Restepper> made(new Restepper(std::move(record), std::move(controllers)));
+  const RunRecord& run = made->record_;
+  const auto& world = run.chapters.front().world;
+  const Rational timestep =
+      exact_rational(run.timestep.value_or(double{world->model->opt.timestep}));
+  GLOAM_TRY(NextWorld first, make_next_world(world, run.seed, run.timestep, {}));
+  std::vector<LoggedCommand> replay;
+  for (const Command& command : run.commands) replay.push_back({0, command});
+  made->loop_ = std::make_unique<SimLoop>(std::move(first.stepper), timestep, made->queue_,
+                                          std::move(first.scene_commands), std::move(replay));
+  GLOAM_TRY(auto robots, made->controllers_(world));
+  for (RobotController& c : robots)
+    GLOAM_TRY_STATUS(made->loop_->add_controller(c.robot, std::move(c.controller), c.rate));
+  return made;
+}
+
+Status Restepper::begin_chapter(const RunRecord::Chapter& chapter) {
+  const std::shared_ptr<const CompiledWorld> before = loop_->stepper().shared_world();
+  GLOAM_TRY(auto robots, controllers_(chapter.world));
+  GLOAM_TRY(NextWorld next,
+            make_next_world(chapter.world, record_.seed, record_.timestep, std::move(robots)));
+  const Correspondence same(*before, *chapter.world);
+  return loop_->exchange(next, same);
+}
+
+Status Restepper::run_until(int64_t step) {
+  MujocoWarningCapture warnings;  // the first run has told them
+  const Stepper* stepper = &loop_->stepper();
+  while (true) {
+    while (next_chapter_ < record_.chapters.size() &&
+           record_.chapters[next_chapter_].from == stepper->step_count()) {
+      GLOAM_TRY_STATUS(begin_chapter(record_.chapters[next_chapter_++]));
+      stepper = &loop_->stepper();
+    }
+    if (stepper->step_count() >= step) return {};
+    if (!loop_->advance()) return stepper->error();
+  }
+}
+
+}  // namespace gloam

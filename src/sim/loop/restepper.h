@@ -1,0 +1,42 @@
+#pragma once
+// Restepper: makes a recorded run again, step by step, on the calling thread: for checkpoints and
+// for the verification of logs.
+
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "sim/loop/run_record.h"
+#include "sim/loop/sim_loop.h"
+
+namespace gloam {
+
+/// Makes the controllers of all robots of a World.
+using ControllerMaker = std::function<Result<std::vector<RobotController>>(
+    const std::shared_ptr<const CompiledWorld>&)>;
+
+class Restepper {
+ public:
+  /// Stands at step 0 of the record's first World.
+  static Result<std::unique_ptr<Restepper>> create(RunRecord record, ControllerMaker controllers);
+
+  /// Goes on to `step`. Errors: physics fails, a World of the record cannot go on from the one
+  /// before it.
+  Status run_until(int64_t step);
+
+  SimLoop& loop() { return *loop_; }
+  const RunRecord& record() const { return record_; }
+
+ private:
+  Restepper(RunRecord record, ControllerMaker controllers)
+      : record_(std::move(record)), controllers_(std::move(controllers)) {}
+  Status begin_chapter(const RunRecord::Chapter& chapter);
+
+  RunRecord record_;
+  ControllerMaker controllers_;
+  CommandQueue queue_{2, 0};
+  std::unique_ptr<SimLoop> loop_;
+  size_t next_chapter_ = 1;
+};
+
+}  // namespace gloam

@@ -1,0 +1,30 @@
+#pragma once
+// RunRecord: everything that has led a run from its initial state to an instant. By the promise of
+// determinism, stepping from it again leads to the same state hash.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "gloam/command.h"
+#include "world/world.h"
+
+namespace gloam {
+
+struct RunRecord {
+  /// A World and the step from which the run has been in it.
+  struct Chapter {
+    std::shared_ptr<const CompiledWorld> world;
+    int64_t from = 0;
+  };
+
+  uint64_t seed = 1;
+  std::optional<double> timestep = {};  ///< instead of the model's [s]
+  std::vector<Chapter> chapters;        ///< the first from step 0, then one per recompile
+  std::vector<Command> commands = {};   ///< posted ones, each with the step it applied at
+  int64_t step = 0;                     ///< of the instant
+  uint64_t hash = 0;                    ///< of its state, chained from the initial one
+};
+
+}  // namespace gloam

@@ -1,0 +1,182 @@
+// Checkpoints: whoever goes on from one has the bits of the run it was taken of, by a copy and by
+// stepping again.
+
+#include "sim/state/state_layout.h"
+#include "test_world.h"
+
+namespace gloam {
+namespace {
+
+/// RandomController that can be copied.
+class CopiedController final : public Controller {
+ public:
+  void reset(const mjModel*, const mjData*) override { sum_ = 0; }
+  void control(const ControlInputs& in) override {
+    for (int i = 0; i < in.model->nu; ++i) {
+      sum_ += 0.01 * random_control(in.step, i) + 1e-3 * in.data->qpos[0];
+      in.data->ctrl[i] = sum_;
+    }
+  }
+  std::unique_ptr<Controller> clone() const override {
+    return std::make_unique<CopiedController>(*this);
+  }
+
+ private:
+  double sum_ = 0;
+};
+
+template <class C>
+Result<std::vector<RobotController>> controllers_of(const std::shared_ptr<const CompiledWorld>&) {
+  std::vector<RobotController> controllers;
+  controllers.push_back({0, std::make_unique<C>(), {250, 1}});
+  return controllers;
+}
+
+std::unique_ptr<Simulator> driven(std::shared_ptr<const CompiledWorld> world,
+                                  std::unique_ptr<Controller> controller) {
+  auto sim = make_simulator(std::move(world), lockstep());
+  EXPECT_TRUE(sim->add_controller(0, std::move(controller), {250, 1}).ok());
+  sim->start();
+  return sim;
+}
+
+Body body(const CompiledWorld& world, const char* name) {
+  return {mj_name2id(world.model.get(), mjOBJ_BODY, name), world.serial};
+}
+
+/// Pushes, drags, live fields: the marks that Commands leave.
+void disturb(Simulator& sim, int64_t step) {
+  const CompiledWorld& world = *sim.world();
+  ASSERT_TRUE(sim.post({step, SetWrench{body(world, "ball"), {0.1, 0, 1}, {}}}).ok());
+  ASSERT_TRUE(sim.post({step, DragBody{body(world, "base"), {0, 0, .05}, {.2, 0, 1}}}).ok());
+  ASSERT_TRUE(sim.post({step + 20, SetLiveField{LiveFieldId::kGravity, 0, {1, 0, -8}}}).ok());
+  ASSERT_TRUE(sim.post({step + 30, SetLiveField{LiveFieldId::kBodyMass, 1, {1.5f}}}).ok());
+}
+
+template <class C>
+void expect_the_same_tail(bool copied) {
+  const auto world = world_from_mjcf(kRichModel);
+  auto sim = driven(world, std::make_unique<C>());
+  ASSERT_TRUE(sim->step(40).ok());
+  disturb(*sim, 60);
+  ASSERT_TRUE(sim->step(100).ok());
+  const auto checkpoint = *sim->checkpoint();
+  EXPECT_EQ(checkpoint->copy != nullptr, copied);
+  const uint64_t there = sim->latest().hash();
+  disturb(*sim, 150);
+  ASSERT_TRUE(sim->step(100).ok());
+  const uint64_t end = sim->latest().hash();
+  const std::vector<double> sensors = sim->latest().data().sensordata;
+
+  const auto go_on = [&](Simulator& other) {
+    ASSERT_TRUE(other.restore(*checkpoint, controllers_of<C>).ok());
+    EXPECT_EQ(other.latest().step(), 140);
+    EXPECT_EQ(other.latest().hash(), there);
+    disturb(other, 150);
+    ASSERT_TRUE(other.step(100).ok());
+    EXPECT_EQ(other.latest().hash(), end);
+    EXPECT_EQ(other.latest().data().sensordata, sensors);
+  };
+  go_on(*sim);
+  go_on(*sim);  // as often as one likes
+  auto fresh = driven(world, std::make_unique<C>());
+  go_on(*fresh);
+  // Then another way: another end.
+  ASSERT_TRUE(fresh->restore(*checkpoint, controllers_of<C>).ok());
+  ASSERT_TRUE(fresh->step(100).ok());
+  EXPECT_NE(fresh->latest().hash(), end);
+}
+
+TEST(Checkpoint, CopyGoesOnWithTheSameBits) { expect_the_same_tail<CopiedController>(true); }
+TEST(Checkpoint, SteppedAgainGoesOnWithTheSameBits) {
+  expect_the_same_tail<RandomController>(false);
+}
+
+TEST(Checkpoint, OfACheckpointsBranchIsWholeToo) {
+  const auto world = world_from_mjcf(kRichModel);
+  auto sim = driven(world, std::make_unique<RandomController>());
+  disturb(*sim, 10);
+  ASSERT_TRUE(sim->step(50).ok());
+  const auto first = *sim->checkpoint();
+  ASSERT_TRUE(sim->restore(*first, controllers_of<RandomController>).ok());
+  disturb(*sim, 60);
+  ASSERT_TRUE(sim->step(50).ok());
+  const auto second = *sim->checkpoint();
+  const uint64_t hash = sim->latest().hash();
+  auto fresh = driven(world, std::make_unique<RandomController>());
+  ASSERT_TRUE(fresh->restore(*second, controllers_of<RandomController>).ok());
+  EXPECT_EQ(fresh->latest().hash(), hash);
+}
+
+TEST(Checkpoint, LeadsThroughARecompile) {
+  const auto world = world_from_mjcf(kRichModel), other = world_from_mjcf(kRichModel);
+  auto sim = driven(world, std::make_unique<RandomController>());
+  disturb(*sim, 10);
+  ASSERT_TRUE(sim->step(50).ok());
+  ASSERT_TRUE(sim->recompile(other, *controllers_of<RandomController>(other)).ok());
+  disturb(*sim, 60);
+  ASSERT_TRUE(sim->step(50).ok());
+  const auto checkpoint = *sim->checkpoint();
+  const uint64_t hash = sim->latest().hash();
+  ASSERT_EQ(checkpoint->record.chapters.size(), 2u);
+  auto fresh = driven(world, std::make_unique<RandomController>());
+  ASSERT_TRUE(fresh->restore(*checkpoint, controllers_of<RandomController>).ok());
+  EXPECT_EQ(fresh->latest().hash(), hash);
+  EXPECT_EQ(fresh->world(), other);
+}
+
+TEST(Checkpoint, ForgetsWhatWasBeforeAReset) {
+  auto sim = driven(world_from_mjcf(kRichModel), std::make_unique<RandomController>());
+  disturb(*sim, 10);
+  ASSERT_TRUE(sim->step(50).ok());
+  ASSERT_TRUE(sim->reset().ok());
+  ASSERT_TRUE(sim->step(5).ok());
+  EXPECT_TRUE((*sim->checkpoint())->record.commands.empty());
+}
+
+TEST(Checkpoint, StepHookThatIsNotRepeatedIsToldOf) {
+  auto sim = driven(world_from_mjcf(kRichModel), std::make_unique<RandomController>());
+  sim->set_step_hook([](const mjModel*, mjData* d) { d->qvel[0] += 1e-3; });
+  ASSERT_TRUE(sim->step(50).ok());
+  const auto checkpoint = *sim->checkpoint();
+  const uint64_t before = sim->latest().hash();
+  const Status restored = sim->restore(*checkpoint, controllers_of<RandomController>);
+  ASSERT_FALSE(restored.ok());
+  EXPECT_NE(restored.error().to_string().find("state hash"), std::string::npos);
+  EXPECT_EQ(sim->latest().hash(), before);
+}
+
+TEST(Checkpoint, RefusesAnotherTimestepAndAFailedSimulation) {
+  auto sim = driven(world_from_mjcf(kRichModel), std::make_unique<RandomController>());
+  ASSERT_TRUE(sim->step(5).ok());
+  const auto checkpoint = *sim->checkpoint();
+  auto slower =
+      make_simulator(world_from_mjcf(kRichModel), {.timestep = 0.01, .pace = Pace::kLockstep});
+  slower->start();
+  EXPECT_FALSE(slower->restore(*checkpoint, controllers_of<RandomController>).ok());
+  sim->set_step_hook([](const mjModel*, mjData* d) { d->qvel[0] = std::nan(""); });
+  EXPECT_FALSE(sim->step(2).ok());
+  EXPECT_FALSE(sim->checkpoint().ok());
+  // Going back heals it, as a reset does.
+  sim->set_step_hook({});
+  ASSERT_TRUE(sim->restore(*checkpoint, controllers_of<RandomController>).ok());
+  EXPECT_TRUE(sim->step(5).ok());
+}
+
+TEST(Checkpoint, StreamsGoOnInANewRun) {
+  auto sim = driven(world_from_mjcf(kRichModel), std::make_unique<CopiedController>());
+  auto queue = *sim->subscribe({.rate = {50, 1}, .required = true, .capacity = 64});
+  ASSERT_TRUE(sim->step(40).ok());
+  const auto checkpoint = *sim->checkpoint();
+  ASSERT_TRUE(sim->step(20).ok());
+  ASSERT_TRUE(sim->restore(*checkpoint, controllers_of<CopiedController>).ok());
+  ASSERT_TRUE(sim->step(20).ok());
+  std::vector<std::pair<int64_t, int64_t>> seen;  // run, step
+  while (const Snapshot s = queue->try_next()) seen.push_back({s.data().run, s.step()});
+  const std::vector<std::pair<int64_t, int64_t>> wanted = {
+      {0, 0}, {0, 10}, {0, 20}, {0, 30}, {0, 40}, {0, 50}, {0, 60}, {1, 40}, {1, 50}, {1, 60}};
+  EXPECT_EQ(seen, wanted);
+}
+
+}  // namespace
+}  // namespace gloam
