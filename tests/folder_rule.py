@@ -4,7 +4,8 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-ORDER = ["base", "geometry", "places", "scene", "world", "instant", "sim", "render", "sensors", "control", "record", "runtime"]
+ORDER = ["base", "geometry", "places", "scene", "world", "instant", "sim", "render", "sensors", "control", "topics", "record",
+         "runtime"]
 OUTSIDERS = ["src/bridge", "src/studio", "apps", "python"]
 MUJOCO_FOLDERS = {"places", "scene", "world", "sim", "control"}
 # memcpy is how bits are reinterpreted on both sides; intrinsics stand behind guards of the host.
