@@ -1,9 +1,10 @@
 """Labels of unit tests, as patterns of Google Test. `./gloam test` chooses by them; tests/labels_test.py holds that each fits a test.
 
 SLOW       takes seconds or needs the machine for itself: not in `fast`, in CI two programs at a time
-FULL       slow and rarely fails: in `full` alone
+FULL       slow and rarely fails, and others nearby promise much the same: in `full` alone
 SWEEPS     hundreds of seeds: disabled unless asked for, in `full`
-UNSANITIZED  speed, memory and means of many samples: not under sanitizers in CI, in `full` they are
+UNSANITIZED  speed, memory, means of many samples or seeds: not under sanitizers in CI, in `full` they are
+THREADS    of sim: several threads meet: these alone under TSan in CI, in `full` all are
 """
 SLOW = [
     "CheckModel.StockIsAskedForAsLongAsIsSaid",
@@ -33,26 +34,43 @@ SLOW = [
     "WaterFloats.BallsSinkByStokesLaw",
 ]
 FULL = [
+    "Adaptive.HasTheMeanOfEvenSampling",
+    "Fast.CellsLookForLightWhereTheGuideHasFoundIt",
+    "FastMedia.FlamesLightTheRoomAsInThePathTier",
+    "FastMedia.SmokeIsLitAsByThePathTier",
+    "FastMedia.WallsKeepTheLightOfFogOutside",
     "GeneratedPlaces.LeaveTheWayFreeThatIsAskedFor",
     "GeneratedPlaces.MakeHallwaysOfAsManyTurnsAsAskedForAndOfTheirLength",
+    "GeneratedPlaces.MakeHousesAtTheExtremesOfTheirParameters",
     "GeneratedPlaces.MakeHousesOfAsManyRoomsAsAskedForOnOneOrTwoStoreys",
     "GeneratedPlaces.MakeLooseThingsAndLidsThatStayWhereTheyAre",
     "GeneratedPlaces.MakeTerrainsAtTheExtremesOfTheirParameters",
     "GeneratedPlaces.MakeTheOthersAtTheExtremesOfTheirParameters",
     "GeneratedPlaces.MakeWarehousesAtTheExtremesOfTheirParameters",
     "GeneratorRanges.*AreMade",
+    "GeneratorRanges.AreSoundInside",
+    "MeshParts.OfThinAndThickThings",
+    "MjcfSpec.SettingAfterwardsIsTheSameAsWritingItInTheFile",
+    "MovingLight.TheFastTierFollowsABeacon",
+    "Stills.PartsAndObjectsBeyond16BitsAreToldApart",
+    "ThirdParty.EveryFileThatStockLoadsRoundTrips",
 ]
 SWEEPS = ["*.DISABLED_Sweep*"]
 UNSANITIZED = [
     "*Allocat*", "AtmosphereReference.*", "PropsPhysics.*", "GasBudget.*", "FastMedia.*",
-    "Adaptive.EndsWhenItsUserSaysSo", "Adaptive.HasTheMeanOfEvenSampling", "Adaptive.ReachesWhatIsAskedFor",
-    "Bvh.AMillionRays*", "*CameraLensTest.KnownPoints*",
-    "Fast.ARareBrightRayMakesNoSpot", "Fast.ARoomIsDarkSoon*", "Fast.CellsLookForLightWhereTheGuideHasFoundIt",
+    "Adaptive.EndsWhenItsUserSaysSo", "Adaptive.ReachesWhatIsAskedFor", "Atmosphere.*",
+    "Bvh.AMillionRays*", "*CameraLensTest.KnownPoints*", "ConvertRoom.OfAScanIsFewSlabs",
+    "Fast.ARareBrightRayMakesNoSpot", "Fast.ARoomIsDarkSoon*",
     "Fast.IndirectLightIsThatOfThePathTier", "Fast.LampsInMirrorsLightTheRoom", "Fast.PicturesAreTheSameForAnyNumberOfThreads",
     "Fog.White*", "GasFire.*", "GasFlow.*", "GasWalls.*", "GeneratedEnvironment.OfOneSeedIsOneHash*",
     "Glow.BringsTheLight*", "Glow.FillsAClosedWhiteRoom*", "Guide.IsTheSameWhatever*", "HeightErrorOf.APlane*",
+    "LightSchedule.TubesFlashThenStayOn",
     "ManyLights.ThePictureIsTheSumOfThoseOfEachLight", "MovingSky.TheFastTier*", "MovingSky.TheGround*",
-    "Path.WhiteFurnaceReturnsAllLight", "Sky.SamplingAMap*", "TrotWalk.NoFallsInTwentySeedsOfPushes",
+    "Path.WhiteFurnaceReturnsAllLight", "Randomize.TheNumbersHaveTheDistribution", "Sky.SamplingAMap*", "TrotWalk.NoFallsInTwentySeedsOfPushes",
+]
+THREADS = [
+    "*Thread*", "BoundedQueue.*", "CommandTest.*", "Determinism.*", "Divergence.*", "Effects.*", "EffectsStep.*", "Instant.*", "Pace.*",
+    "PoseSolver.*", "Recompile.*", "StateReader.*", "Subscription.*",
 ]
 
 

@@ -3,7 +3,7 @@
 
 fast  what takes about six minutes once built
       (no tier) what CI runs: format, lint of changed files, all tests; ASan+UBSan over the unit tests of what reads files, TSan over
-      base and sim if one of them did; the other modules' sanitizers are in full, which also makes and tries the bundle
+      base and sim, where threads meet, if one of them did; all else under sanitizers is in full, which also makes and tries the bundle
 full  the same plus lint of every file, every sanitizer over everything, 10 000 damaged files for every reader, five minutes of
       fuzzing per target and sweeps over 200 seeds: an hour or more, but resumable: parts that passed are kept in build/full_state.json until the source changes
 """
@@ -27,7 +27,7 @@ import labels  # noqa: E402
 
 BUILD = ROOT / "build"
 CLANG = "-19"
-READERS = {"base", "geometry", "places", "scene", "world", "topics"}  # of strangers' files: under sanitizers in every CI
+READERS = {"base", "geometry", "scene", "world", "topics"}  # of strangers' files: under sanitizers in every CI
 UNIT = ["base", "geometry", "places", "scene", "world", "sim", "render", "sensors", "control", "topics", "record", "runtime",
         "studio"]
 
@@ -127,7 +127,7 @@ def gtest(tally, preset, module, only=None, shard_filter=None, shard=None):
 
 
 # What CI leaves out under sanitizers.
-TOO_SLOW_SANITIZED = labels.without(labels.SLOW, labels.UNSANITIZED)
+TOO_SLOW_SANITIZED = labels.without(labels.SLOW, labels.FULL, labels.UNSANITIZED)
 MUTATIONS = 10_000  # damaged files per reader; without GLOAM_MUTATIONS the tests take 200
 
 
@@ -277,11 +277,12 @@ def main():
 
 
 def units(tally, preset, shard_filter, modules=UNIT):
-    """Modules' unit tests but those of speed: two modules at a time, longest first (the page's tests mostly wait)."""
+    """Modules' unit tests but the slow ones: two programs at a time, longest first (the page's tests mostly wait), world in two halves."""
     longest = ["studio", "render", "control", "world"]
     by_length = sorted(modules, key=lambda module: (longest + [module]).index(module))
+    parts = [(module, shard) for module in by_length for shard in ([(0, 2), (1, 2)] if module == "world" else [None])]
     with ThreadPoolExecutor(2) as pool:
-        list(pool.map(lambda module: gtest(tally, preset, module, shard_filter=shard_filter), by_length))
+        list(pool.map(lambda part: gtest(tally, preset, part[0], shard_filter=shard_filter, shard=part[1]), parts))
 
 
 def slow_units(tally, chosen):
@@ -300,7 +301,7 @@ def rules(tally):
 
 def fast(tally):
     rules(tally)
-    units(tally, "release", labels.without(labels.SLOW))
+    units(tally, "release", labels.without(labels.SLOW, labels.FULL))
     python_tests(tally, "tests/e2e/cli_test.py")
 
 
@@ -308,17 +309,16 @@ def ci(tally):
     run([sys.executable, "tests/fetch_data.py"])
     check_format(tally)
     rules(tally)
-    units(tally, "release", labels.without(labels.SLOW))
+    units(tally, "release", labels.without(labels.SLOW, labels.FULL))
     slow_units(tally, labels.only(labels.SLOW, but=labels.FULL))
     e2e_tests(tally)
     check_lint_of_changes(tally)
-    touched = {Path(name).parts[1] for name in changed("src/*")}
     modules = [module for module in UNIT if module in READERS]
     if build(tally, "asan", [f"gloam_{module}_test" for module in modules]):
         units(tally, "asan", TOO_SLOW_SANITIZED, modules)
-    if touched & {"base", "sim"} and build(tally, "tsan", ["gloam_base_test", "gloam_sim_test"]):
-        for module in ("base", "sim"):
-            gtest(tally, "tsan", module, shard_filter=TOO_SLOW_SANITIZED)
+    if any(name.startswith(("src/base/", "src/sim/")) for name in changed("src/*")) and build(tally, "tsan", ["gloam_base_test", "gloam_sim_test"]):
+        gtest(tally, "tsan", "base", shard_filter=TOO_SLOW_SANITIZED)
+        gtest(tally, "tsan", "sim", shard_filter=labels.only(labels.THREADS, but=labels.SLOW + labels.FULL + labels.UNSANITIZED))
     run(["cmake", "--preset", "release"])  # it may have been set up before nvcc was there
     if build(tally, "release", ["gloam_cuda_test", "gloam_gas_cuda_test"]):  # without a card this shows that the card's source compiles
         gtest(tally, "release", "cuda")
