@@ -1,12 +1,9 @@
 #pragma once
-// What happens in a scene beside its robots: smoke, fire, rotors and dust ([[gas]], [[fire]],
-// [[smoke]], [[rotor]], [[dust]]: docs/effects.md), [weather] and [adversity] (docs/weather.md),
-// [[water]] (docs/water.md), [[soil]] (docs/soil.md), people and vehicles ([[agent]], [[crowd]],
-// [navigation]: docs/agents.md). Part of gloam/scene.h; longer than other headers so that those a
-// user meets are few.
+// Effects of a scene, physics beside rigid bodies: air, smoke, fire, rotors and dust ([[gas]],
+// [[fire]], [[smoke]], [[rotor]], [[dust]]: docs/effects.md), [[water]] (docs/water.md) and
+// [[soil]] (docs/soil.md). Part of gloam/scene.h.
 
 #include <array>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -86,42 +83,6 @@ struct DustOptions {
   SourceLoc loc = {};
 };
 
-/// [weather]: in numbers. What is not given is what the level of [adversity] says, and without one
-/// fair. Rain and snow fall where the sky is open above.
-struct WeatherOptions {
-  std::optional<double> rain = {};        ///< [mm/h], default 0
-  std::optional<double> snow = {};        ///< of water [mm/h], default 0
-  std::optional<double> visibility = {};  ///< through what hangs in the air, by Koschmieder [m];
-                                          ///< without rain and snow; default: clear
-  std::optional<std::string> medium =
-      {};  ///< what hangs, as of [[volume]]: fog (default) mist haze dust smoke
-  std::optional<std::string> where = {};  ///< it hangs: everywhere (default) | rooms, those of a
-                                          ///< generated building alone
-  double scale_height = 0;  ///< over which it thins to 1/e above the lowest ground [m]; 0 = even
-  double turbulence = 0;    ///< of its density: standard deviation over mean, 0 … 1
-  std::optional<double> wind = {};  ///< mean speed 10 m above the ground [m/s], default 0
-  double wind_from = 270;           ///< where it comes from, as of [sky]'s azimuth [deg]
-  std::optional<double> gusts =
-      {};  ///< standard deviation of its speed over the mean, default 0.15
-  std::optional<double> wetness = {};  ///< of what the sky reaches, at the start, 0 … 1; default:
-                                       ///< what the rain keeps it at
-  std::optional<double> snow_cover = {};  ///< likewise: depth of snow at the start [m], default 0
-  std::optional<double> lens_drops = {};  ///< share of cameras' front glass under drops, default 0
-  SourceLoc loc = {};
-};
-
-/// [adversity]: a level, for which docs/weather.md has the numbers, and its numbers that stand
-/// nowhere else.
-struct AdversityOptions {
-  std::string level = "none";          ///< none | minor | major
-  std::optional<double> light = {};    ///< share of its light that each lamp of the place keeps
-  std::optional<double> failing = {};  ///< share of those lamps that flicker
-  std::optional<double> clutter = {};  ///< of the generated place, 0 bare … 1
-  std::optional<int> people = {};      ///< who walk about
-  std::optional<double> people_speed = {};  ///< [m/s]
-  SourceLoc loc = {};
-};
-
 /// [[water]]: a box of water with a surface that waves move. It carries and drags bodies.
 struct WaterOptions {
   std::string name = {};                ///< unique
@@ -161,52 +122,6 @@ struct SoilOptions {
   std::optional<double> shear = {};     ///< Janosi and Hanamoto's displacement modulus K [m]
   std::optional<double> k_0 = {};       ///< Wong's stiffness of unloading at no sinkage [N/m³]
   std::optional<double> a_u = {};       ///< and its growth with sinkage [N/m⁴]
-  SourceLoc loc = {};
-};
-
-/// [navigation]: where agents can go, as Recast finds it from the colliders.
-struct NavigationOptions {
-  double cell = 0.1;        ///< edge of its voxels in the plane [m]
-  double headroom = 1.9;    ///< [m]
-  double radius = 0.3;      ///< that people keep from walls [m]
-  double climb = 0.22;      ///< step that is taken without stairs [m]
-  double slope = 40;        ///< [deg]
-  Rational rate = {10, 1};  ///< decisions per second of simulation time
-  SourceLoc loc = {};
-};
-
-/// One place on the way of an agent.
-struct WaypointOptions {
-  Vec3 position = {};  ///< on the ground below [m]
-  double pause = 0;    ///< there [s]
-  SourceLoc loc = {};
-};
-
-/// [[agent]]: someone or something that moves by itself and is no robot.
-struct AgentOptions {
-  std::string name = {};                    ///< unique
-  std::string kind = "person";              ///< person | cart | forklift | car
-  Vec3 position = {};                       ///< on the ground below, at the start [m]
-  double heading = 0;                       ///< at the start, from +x to +y [deg]
-  uint64_t seed = 0;                        ///< of body, clothes, paint and what it decides
-  std::optional<double> height = {};        ///< of a person [m]; default: drawn
-  std::optional<double> speed = {};         ///< that it likes to go [m/s]; default: of its kind
-  std::string behavior = "wander";          ///< stand | wander | route | spline | tree
-  std::vector<WaypointOptions> route = {};  ///< where it goes in turn, or a spline's points
-  bool loop = true;                         ///< from the last of them to the first
-  std::filesystem::path tree = {};          ///< behaviour tree, BehaviorTree.CPP's XML
-  double start = 0;                         ///< of its first step [s]
-  bool yields = true;  ///< it is pushed aside, and stops for what stands in its way; false: goes on
-  SourceLoc loc = {};
-};
-
-/// [[crowd]]: people at places drawn from where one can go.
-struct CrowdOptions {
-  std::string name = {};             ///< unique; they are NAME0, NAME1 …
-  int count = 4;                     ///< of them
-  uint64_t seed = 0;                 ///< of all of them
-  std::optional<double> speed = {};  ///< that they like to go [m/s]; default: drawn
-  bool yields = true;                ///< as of [[agent]]
   SourceLoc loc = {};
 };
 

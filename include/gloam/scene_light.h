@@ -1,6 +1,6 @@
 #pragma once
-// What a scene says of light beyond MJCF: lamps, the sky, and volumes of smoke, fog and dust. Part
-// of gloam/scene.h; docs/light.md and docs/media.md have examples.
+// Lamps of a scene: [[light]] with schedule and motion, [blackout]. Part of gloam/scene.h;
+// docs/light.md has examples.
 
 #include <array>
 #include <filesystem>
@@ -100,77 +100,6 @@ struct LightOptions {
   bool casts_shadow = true;             ///< areas always do
   std::optional<LightMotionOptions> motion = {};
   std::optional<LightScheduleOptions> schedule = {};
-  SourceLoc loc = {};
-};
-
-/// A day of the Gregorian calendar.
-struct CalendarDate {
-  int year = 2000, month = 1, day = 1;  ///< 1900 … 2100, 1 … 12, 1 … the month's last
-  bool operator==(const CalendarDate&) const = default;
-};
-/// Of a local clock.
-struct ClockTime {
-  int hour = 12, minute = 0;  ///< 0 … 23, 0 … 59
-  double second = 0;          ///< 0 <= second < 60
-  bool operator==(const ClockTime&) const = default;
-};
-
-/// [sky]: light from far away, one of: a picture (`file`), an even sky (`luminance`), or a clear
-/// sky with its sun, by date and place or by the sun's position. It takes the place of MuJoCo's
-/// skybox, image lights, ambient light and headlight.
-struct SkyOptions {
-  std::filesystem::path file = {};         ///< equirectangular HDR or EXR; its middle faces +X
-  std::optional<double> scale = {};        ///< file: [cd/m²] of a value of one; 1
-  std::optional<double> illuminance = {};  ///< file: instead of `scale`, of level ground [lx]
-  std::optional<double> turn = {};         ///< file: counter-clockwise from above [deg]; 0
-
-  std::optional<double> luminance = {};  ///< even [cd/m²]
-  std::optional<Vec3> color = {};        ///< even: linear Rec. 709, hue only
-
-  std::optional<CalendarDate> date = {};     ///< 2026-06-21
-  std::optional<ClockTime> time = {};        ///< of day, by the clock there: 14:30:00
-  std::optional<double> utc_offset = {};     ///< of the clock, east positive [h]; 0
-  std::optional<double> speed = {};          ///< of the clock, in seconds of it per second of the
-                                             ///< simulation; 0 = it stands still
-  std::optional<double> latitude = {};       ///< north positive [deg]
-  std::optional<double> longitude = {};      ///< east positive [deg]
-  std::optional<double> sun_elevation = {};  ///< instead of date and place [deg]
-  std::optional<double> sun_azimuth = {};    ///< with it: clockwise from north [deg]; 180
-  std::optional<double> turbidity = {};      ///< 1 … 10; 2 very clear, 3 clear, 6 hazy; 3
-  std::optional<double> ground_albedo = {};  ///< 0 … 1; 0.2
-  std::optional<double> altitude = {};       ///< above sea level [m]; 0
-  std::optional<double> north = {};          ///< of true north from +Y, counter-clockwise [deg]; 0
-  SourceLoc loc = {};
-};
-
-/// [volume.pattern]: a density made by formula, 0 … 1, times the volume's.
-struct VolumePatternOptions {
-  std::string kind = {};  ///< plume: rises from the middle of the floor; cloud: fills the box
-  uint64_t seed = 0;      ///< another shape of the same kind
-  int resolution = 64;    ///< voxels along the longest edge, 8 … 256
-  SourceLoc loc = {};
-};
-
-/// [[volume]]: a box that holds a medium. How much is `density` or `visibility`: even, or of a
-/// value of one of `grid` or `pattern`.
-struct VolumeOptions {
-  std::string name = {};                 ///< unique
-  Vec3 position = {};                    ///< of the box's centre in the world [m]
-  std::optional<Quat> orientation = {};  ///< of the box in the world
-  Vec3 size = {};                        ///< edges of the box [m]
-  std::string medium = {};               ///< smoke fog mist haze dust; empty = own numbers
-  /// Own numbers: one for all bands, or one each for red, green, blue, 905 nm, 1550 nm, 8–14 µm.
-  std::vector<double> mass_extinction = {};  ///< [m²/kg]
-  std::vector<double> albedo = {};           ///< of single scattering, 0 … 1
-  std::vector<double> g = {};                ///< mean cosine of scattering, -1 … 1
-  std::optional<double> density = {};        ///< [kg/m³]
-  std::optional<double> visibility = {};     ///< [m]: contrast falls to 2 % there, green light
-  double temperature = 293;                  ///< [K]
-  double emission = 0;  ///< of its glow, relative to a black body's (1: Kirchhoff's law)
-  double fade = 0;      ///< smooth fall to zero over this distance from the walls [m]
-  std::filesystem::path grid = {};              ///< density: .npy of float32, (nz, ny, nx)
-  std::filesystem::path temperature_grid = {};  ///< temperatures [K], of the same shape
-  std::optional<VolumePatternOptions> pattern = {};
   SourceLoc loc = {};
 };
 

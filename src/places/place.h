@@ -9,7 +9,6 @@
 
 #include "geometry/height_field_parts.h"
 #include "gloam/scene.h"
-#include "gloam/scene_environment.h"
 #include "places/catalogue.h"
 
 namespace gloam {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "gloam/scene_environment.h"
+#include "gloam/scene_place.h"
 
 namespace gloam {
 

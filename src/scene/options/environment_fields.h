@@ -2,6 +2,7 @@
 // Options of generated environments and props, as in option_fields.h.
 
 #include "gloam/scene_environment.h"
+#include "gloam/scene_object.h"
 #include "places/catalogue.h"
 #include "scene/options/field_rule.h"
 

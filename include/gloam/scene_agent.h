@@ -1,0 +1,62 @@
+#pragma once
+// People and vehicles that move by themselves: [[agent]], [[crowd]], [navigation]. Part of
+// gloam/scene.h; docs/agents.md has examples.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "gloam/result.h"
+#include "gloam/types.h"
+
+namespace gloam {
+
+/// [navigation]: where agents can go, as Recast finds it from the colliders.
+struct NavigationOptions {
+  double cell = 0.1;        ///< edge of its voxels in the plane [m]
+  double headroom = 1.9;    ///< [m]
+  double radius = 0.3;      ///< that people keep from walls [m]
+  double climb = 0.22;      ///< step that is taken without stairs [m]
+  double slope = 40;        ///< [deg]
+  Rational rate = {10, 1};  ///< decisions per second of simulation time
+  SourceLoc loc = {};
+};
+
+/// One place on the way of an agent.
+struct WaypointOptions {
+  Vec3 position = {};  ///< on the ground below [m]
+  double pause = 0;    ///< there [s]
+  SourceLoc loc = {};
+};
+
+/// [[agent]]: someone or something that moves by itself and is no robot.
+struct AgentOptions {
+  std::string name = {};                    ///< unique
+  std::string kind = "person";              ///< person | cart | forklift | car
+  Vec3 position = {};                       ///< on the ground below, at the start [m]
+  double heading = 0;                       ///< at the start, from +x to +y [deg]
+  uint64_t seed = 0;                        ///< of body, clothes, paint and what it decides
+  std::optional<double> height = {};        ///< of a person [m]; default: drawn
+  std::optional<double> speed = {};         ///< that it likes to go [m/s]; default: of its kind
+  std::string behavior = "wander";          ///< stand | wander | route | spline | tree
+  std::vector<WaypointOptions> route = {};  ///< where it goes in turn, or a spline's points
+  bool loop = true;                         ///< from the last of them to the first
+  std::filesystem::path tree = {};          ///< behaviour tree, BehaviorTree.CPP's XML
+  double start = 0;                         ///< of its first step [s]
+  bool yields = true;  ///< it is pushed aside, and stops for what stands in its way; false: goes on
+  SourceLoc loc = {};
+};
+
+/// [[crowd]]: people at places drawn from where one can go.
+struct CrowdOptions {
+  std::string name = {};             ///< unique; they are NAME0, NAME1 …
+  int count = 4;                     ///< of them
+  uint64_t seed = 0;                 ///< of all of them
+  std::optional<double> speed = {};  ///< that they like to go [m/s]; default: drawn
+  bool yields = true;                ///< as of [[agent]]
+  SourceLoc loc = {};
+};
+
+}  // namespace gloam
