@@ -27,7 +27,7 @@ class Element {
 
   std::string_view tag() const;   ///< as written: "joint", "worldbody"
   std::string_view path() const;  ///< in the grammar: "mujoco/body/joint"
-  SourceLoc loc() const;          ///< where it was read; of a new one nothing
+  SourceLoc loc() const;          ///< place where it was read; empty for a new element
 
   /// As written; empty where it is not given. Errors: the element has no such attribute.
   Result<std::optional<std::string>> get(std::string_view attribute) const;
@@ -49,7 +49,7 @@ class Element {
   bool operator==(const Element& other) const { return node_ == other.node_; }
 
  protected:
-  // What the generated classes call: the attribute exists and the type is its own.
+  // Accessors for the generated classes, which know that the attribute exists and its type.
   std::optional<std::string> text_of(std::string_view attribute) const;
   std::optional<double> real_of(std::string_view attribute) const;
   std::optional<int> int_of(std::string_view attribute) const;
@@ -61,7 +61,7 @@ class Element {
   std::optional<bool> flag_of(std::string_view attribute) const;
   Element add_known(std::string_view tag);
   Element find_or_add(std::string_view tag);
-  // Of generated enums: words_of(E{}) lists their words.
+  // Keywords of a generated enum E: words_of(E{}) lists them.
   template <class E>
   std::vector<E> keywords_of(std::string_view attribute) const {
     std::vector<E> list;
@@ -84,7 +84,7 @@ class Element {
 
  private:
   friend class Document;
-  // Where the attribute's words stand in a list.
+  // Positions of the attribute's words in a list.
   std::vector<int> places_of(std::string_view attribute,
                              std::span<const std::string_view> words) const;
   std::shared_ptr<Node> node_;

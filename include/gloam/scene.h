@@ -28,7 +28,7 @@ namespace gloam {
 
 struct Scene {
   std::string name = "scene";
-  std::filesystem::path file = {};  ///< what it was read from; empty for scenes made in code
+  std::filesystem::path file = {};  ///< file it was read from; empty for scenes made in code
   FileAccess access = {};
   EnvironmentOptions environment = {};
   std::vector<PropOptions> props = {};
@@ -58,7 +58,7 @@ struct Scene {
   std::vector<VisualOptions> visuals = {};
   std::vector<PushOptions> pushes = {};
   std::vector<StereoOptions> stereo = {};  ///< a compiled Scene has their cameras in `cameras`
-  std::vector<RgbdOptions> rgbd = {};      ///< likewise
+  std::vector<RgbdOptions> rgbd = {};      ///< as for `stereo`
   std::vector<SensorOptions> sensors = {};
   std::vector<TemperatureOptions> temperatures = {};
   std::vector<RandomizeOptions> randomize = {};  ///< empty in a compiled Scene

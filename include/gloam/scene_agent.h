@@ -17,7 +17,7 @@ namespace gloam {
 struct NavigationOptions {
   double cell = 0.1;        ///< edge of its voxels in the plane [m]
   double headroom = 1.9;    ///< [m]
-  double radius = 0.3;      ///< that people keep from walls [m]
+  double radius = 0.3;      ///< distance that people keep from walls [m]
   double climb = 0.22;      ///< step that is taken without stairs [m]
   double slope = 40;        ///< [deg]
   Rational rate = {10, 1};  ///< decisions per second of simulation time
@@ -27,7 +27,7 @@ struct NavigationOptions {
 /// One place on the way of an agent.
 struct WaypointOptions {
   Vec3 position = {};  ///< on the ground below [m]
-  double pause = 0;    ///< there [s]
+  double pause = 0;    ///< time that the agent waits there [s]
   SourceLoc loc = {};
 };
 
@@ -37,25 +37,25 @@ struct AgentOptions {
   std::string kind = "person";              ///< person | cart | forklift | car
   Vec3 position = {};                       ///< on the ground below, at the start [m]
   double heading = 0;                       ///< at the start, from +x to +y [deg]
-  uint64_t seed = 0;                        ///< of body, clothes, paint and what it decides
-  std::optional<double> height = {};        ///< of a person [m]; default: drawn
-  std::optional<double> speed = {};         ///< that it likes to go [m/s]; default: of its kind
+  uint64_t seed = 0;                        ///< seed of body, clothes, paint and decisions
+  std::optional<double> height = {};        ///< height of a person [m]; default: random
+  std::optional<double> speed = {};         ///< preferred speed [m/s]; default: by its kind
   std::string behavior = "wander";          ///< stand | wander | route | spline | tree
-  std::vector<WaypointOptions> route = {};  ///< where it goes in turn, or a spline's points
+  std::vector<WaypointOptions> route = {};  ///< stations in order, or a spline's points
   bool loop = true;                         ///< from the last of them to the first
   std::filesystem::path tree = {};          ///< behaviour tree, BehaviorTree.CPP's XML
-  double start = 0;                         ///< of its first step [s]
-  bool yields = true;  ///< it is pushed aside, and stops for what stands in its way; false: goes on
+  double start = 0;                         ///< time of its first step [s]
+  bool yields = true;  ///< can be pushed aside, and stops for obstacles; false: goes on
   SourceLoc loc = {};
 };
 
 /// [[crowd]]: people at places drawn from where one can go.
 struct CrowdOptions {
   std::string name = {};             ///< unique; they are NAME0, NAME1 …
-  int count = 4;                     ///< of them
-  uint64_t seed = 0;                 ///< of all of them
-  std::optional<double> speed = {};  ///< that they like to go [m/s]; default: drawn
-  bool yields = true;                ///< as of [[agent]]
+  int count = 4;                     ///< number of people
+  uint64_t seed = 0;                 ///< seed of all of them
+  std::optional<double> speed = {};  ///< preferred speed [m/s]; default: random
+  bool yields = true;                ///< as for [[agent]]
   SourceLoc loc = {};
 };
 

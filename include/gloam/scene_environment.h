@@ -17,11 +17,12 @@ struct EnvironmentOptions {
   /// MJCF, or a glTF, GLB, OBJ, STL or PLY file of a place; empty = nothing but a floor when a TOML
   /// scene has robots, nothing otherwise
   std::filesystem::path file = {};
-  std::string up = "auto";         ///< of a mesh file: y | z points up; auto = y of glTF, else z
-  double unit = 1;                 ///< of a mesh file: [m] of one of its units
-  std::string colliders = "auto";  ///< of a mesh file, each node's: as of [[object]]
-  /// Of a mesh file, nodes whose name another node or the scene has: rename = the later is NAME_2
-  /// …, and so said; refuse = an error; prefix = all are FILE_STEM/NODE.
+  /// Axis of a mesh file that points up: y | z; auto = y for glTF, else z.
+  std::string up = "auto";
+  double unit = 1;                 ///< length of one unit of a mesh file [m]
+  std::string colliders = "auto";  ///< colliders of each node of a mesh file, as in [[object]]
+  /// Nodes of a mesh file whose name another node or the scene has: rename = the later becomes
+  /// NAME_2 …, with a note; refuse = an error; prefix = all become FILE_STEM/NODE.
   std::string clash = "rename";
   // Instead of a file, one of the generators:
   std::optional<HouseOptions> house = {};
@@ -37,7 +38,7 @@ struct EnvironmentOptions {
 /// A floor that can be walked on.
 struct Region {
   std::string name = {};     ///< "kitchen"
-  std::string label = {};    ///< what it is: room kinds, "aisle", "stairs"
+  std::string label = {};    ///< kind: room kinds, "aisle", "stairs"
   Vec3 low = {}, high = {};  ///< box above the floor, in the world [m]
 };
 

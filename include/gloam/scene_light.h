@@ -16,8 +16,8 @@ namespace gloam {
 /// On for `duty` of every period.
 struct OnOffOptions {
   double period = 1;  ///< [s], > 0
-  double duty = 0.5;  ///< share of the period, 0 … 1
-  double phase = 0;   ///< share of a period that is over at time 0, 0 … 1
+  double duty = 0.5;  ///< fraction of the period, 0 … 1
+  double phase = 0;   ///< fraction of a period that is over at time 0, 0 … 1
 };
 /// The light's level from a time on.
 struct LightKeyOptions {
@@ -26,7 +26,7 @@ struct LightKeyOptions {
 };
 /// Ripple at twice the mains' frequency, with the mean 1.
 struct MainsOptions {
-  double frequency = 50;  ///< of the mains [Hz], > 0
+  double frequency = 50;  ///< frequency of the mains [Hz], > 0
   double depth = 0.3;     ///< (max - min) / (max + min), 0 … 1
 };
 /// A fluorescent tube that is switched on.
@@ -57,9 +57,9 @@ struct LightMotionOptions {
   std::optional<double> sway = {};  ///< greatest angle of a hanging lamp's swing [deg]
   std::optional<double> cord = {};  ///< sway: from the lamp up to where it hangs [m], which sets
                                     ///< its period; 1
-  std::optional<Vec3> axis = {};    ///< that it turns about, in the frame of `body`; 0, 0, 1; of a
-                                    ///< sway 1, 0, 0
-  double phase = 0;                 ///< share of a turn or swing that is over at time 0, 0 … 1
+  /// Axis of the turn, in the frame of `body`; 0, 0, 1; for a sway 1, 0, 0.
+  std::optional<Vec3> axis = {};
+  double phase = 0;  ///< fraction of a turn or swing that is over at time 0, 0 … 1
   SourceLoc loc = {};
 };
 
@@ -67,10 +67,11 @@ struct LightMotionOptions {
 struct BlackoutOptions {
   double at = 0;                     ///< when [s]
   std::optional<double> until = {};  ///< when they come back [s], > at; empty = never
-  bool starter = false;  ///< they come back as fluorescent tubes do, each in its own time
-  std::vector<std::string> except = {};     ///< names of lamps, or materials that glow, that stay
-                                            ///< as they are; * stands for any text
-  std::vector<std::string> emergency = {};  ///< likewise: of those that shine only while it lasts
+  bool starter = false;  ///< lamps come back as fluorescent tubes do, each in its own time
+  std::vector<std::string> except = {};  ///< names of lamps, or materials that glow, that stay
+                                         ///< as they are; * stands for any text
+  /// Names, as in `except`, of lamps that shine only during the blackout.
+  std::vector<std::string> emergency = {};
   SourceLoc loc = {};
 };
 
@@ -81,7 +82,7 @@ struct LightOptions {
   std::string type = {};                   ///< point spot directional rect disk sphere mesh
   std::string body = {};                   ///< full name of the body it is fixed to; empty = world
   Vec3 position = {};                      ///< in the frame of `body` [m]
-  std::optional<Vec3> look_at = {};        ///< what it points at, in the same frame [m]
+  std::optional<Vec3> look_at = {};        ///< point it shines at, in the same frame [m]
   std::optional<Quat> orientation = {};    ///< instead of look_at; with neither it shines along -Z
   std::optional<double> intensity = {};    ///< [cd]: point, spot: the most; rect, disk: along the
                                            ///< axis; sphere
@@ -94,7 +95,7 @@ struct LightOptions {
   std::optional<double> radius = {};    ///< disk, sphere; point, spot: of the luminous sphere [m]
   std::optional<double> angle = {};     ///< spot: half angle of the cone, 45; directional: angular
                                         ///< diameter, 0 [deg]
-  std::optional<double> softness = {};  ///< spot: outer share of the cone over which it fades, 0
+  std::optional<double> softness = {};  ///< spot: outer fraction of the cone over which it fades, 0
   std::filesystem::path file = {};      ///< mesh: OBJ, STL, PLY, glTF in the light's frame
   std::filesystem::path ies = {};       ///< point, spot: photometric file (LM-63)
   bool casts_shadow = true;             ///< areas always do

@@ -23,14 +23,14 @@ struct PatternOptions {
   std::optional<Vec3> color_c = {};      ///< pores, seams, mortar, grout
   std::optional<double> scale = {};      ///< characteristic length [m]
   std::optional<double> size_u = {};     ///< length of a board, panel, brick or tile [m]
-  std::optional<double> size_v = {};     ///< its other side [m]
+  std::optional<double> size_v = {};     ///< the other side [m]
   std::optional<double> gap = {};        ///< joint, or width of a scratch [m]
-  std::optional<double> depth = {};      ///< of joints, pores, yarns [m]
-  std::optional<double> roughness = {};  ///< of the ground, 0 … 1
+  std::optional<double> depth = {};      ///< depth of joints, pores, yarns [m]
+  std::optional<double> roughness = {};  ///< roughness of the ground, 0 … 1
   std::optional<double> coat = {};       ///< varnish or glaze, 0 … 1
   std::optional<double> variation = {};  ///< between units, 0 … 1
-  std::optional<double> amount = {};     ///< of pores, veins, scratches or dirt, 0 … 1
-  std::optional<Vec3> axis = {};         ///< of the grain or the scratches
+  std::optional<double> amount = {};     ///< amount of pores, veins, scratches or dirt, 0 … 1
+  std::optional<Vec3> axis = {};         ///< direction of the grain or the scratches
   std::string basis = "fbm";             ///< noise: fbm turbulence ridged cells
   std::string bond = "running";          ///< brick: running stack english
   std::string tile = "square";           ///< tiles: square hexagon
@@ -42,13 +42,14 @@ struct PatternOptions {
 /// roughness, metalness, emission, opacity and textures of an MJCF material stay the model's. What
 /// is not given stays as the file has it that the material came with, or as in OpenPBR.
 struct MaterialOptions {
-  /// Of the model's material, robot prefix included, or "VISUAL/MATERIAL"; * stands for any text.
+  /// Name of the model's material, robot prefix included, or "VISUAL/MATERIAL"; * stands for any
+  /// text.
   std::string name = {};
-  // Of materials of [[visual]]s alone; these multiply the file's textures.
+  // Values for materials of [[visual]]s alone; they multiply the file's textures.
   std::optional<Vec3> base_color = {};                  ///< linear Rec. 709, 0 … 1
   std::optional<double> metallic = {}, roughness = {};  ///< 0 … 1
   std::optional<Vec3> emission = {};                    ///< luminance per channel [cd/m²]
-  // Of all materials.
+  // Values for all materials.
   std::optional<double> ior = {};                  ///< index of refraction, 1 … 3
   std::optional<double> anisotropy = {};           ///< 0 … 1, along the texture's u
   std::optional<double> anisotropy_rotation = {};  ///< [turns], counter-clockwise
@@ -60,12 +61,12 @@ struct MaterialOptions {
   std::optional<double> subsurface_weight = {};   ///< 0 … 1; light that goes through, of sheets
   std::optional<Vec3> subsurface_color = {};      ///< default 0.8
   std::optional<double> coat_weight = {}, coat_roughness = {}, coat_ior = {};  ///< ior: 1.6
-  std::optional<Vec3> coat_color = {};  ///< of the coat, linear Rec. 709, 0 … 1
+  std::optional<Vec3> coat_color = {};  ///< colour of the coat, linear Rec. 709, 0 … 1
   /// 0 … 1, default 1: light that the coat throws back down is dimmed by the base again, as it is
   /// beneath real lacquer; 0: the base keeps its colour (OpenPBR 1.1)
   std::optional<double> coat_darkening = {};
   std::optional<double> fuzz_weight = {}, fuzz_roughness = {};  ///< roughness: 0.5
-  std::optional<Vec3> fuzz_color = {};         ///< of the fibres, linear Rec. 709, 0 … 1
+  std::optional<Vec3> fuzz_color = {};         ///< colour of the fibres, linear Rec. 709, 0 … 1
   std::optional<PatternOptions> pattern = {};  ///< multiplies the colour, sets roughness and bumps
   std::optional<PatternOptions> wear = {};     ///< scratches or dirt over it
   std::optional<double> wetness = {};          ///< 0 dry … 1 under water where level

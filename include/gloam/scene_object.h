@@ -17,13 +17,13 @@ namespace gloam {
 /// [[prop]]: one thing of the catalogue (`gloam props` lists it), in any scene.
 struct PropOptions {
   std::string name = {};                 ///< unique; of its body
-  std::string kind = {};                 ///< of the catalogue: gloam props
-  uint64_t seed = 0;                     ///< which variant
-  Vec3 position = {};                    ///< of the floor below its middle, in the world [m]
-  std::optional<Quat> orientation = {};  ///< its front is +x
+  std::string kind = {};                 ///< kind in the catalogue: gloam props
+  uint64_t seed = 0;                     ///< seed of the variant
+  Vec3 position = {};                    ///< point on the floor below its middle, in the world [m]
+  std::optional<Quat> orientation = {};  ///< rotation in the world; its front is +x
   std::optional<Vec3> size = {};   ///< depth, width, height, as far as the kind can have them [m]
   std::optional<Vec3> color = {};  ///< linear Rec. 709, 0 … 1, of what is coloured about it
-  std::optional<bool> loose = {};  ///< it can be pushed and falls; empty = as its kind usually is
+  std::optional<bool> loose = {};  ///< can be pushed and falls; empty = as its kind usually is
   SourceLoc loc = {};
 };
 
@@ -31,14 +31,14 @@ struct PropOptions {
 struct ObjectOptions {
   std::string name = {};            ///< unique; of its body
   std::filesystem::path file = {};  ///< relative to the scene file
-  std::string node =
-      {};          ///< name of a node of the file, the second of a name is NAME_2; empty = all
-  Pose X_WO = {};  ///< where the file's origin is in the world
+  /// Name of a node of the file, the second of a name is NAME_2; empty = all.
+  std::string node = {};
+  Pose X_WO = {};           ///< pose of the file's origin in the world
   Vec3 scale = {1, 1, 1};   ///< after `up`; not 0, < 0 mirrors; one number for all three
   std::string up = "auto";  ///< y | z: axis of the file that points up; auto = y of glTF, else z
   double unit = 1;          ///< [m] of one unit of the file
   std::string motion = "dynamic";   ///< static | dynamic | mocap
-  double density = 1000;            ///< of its volume, unless `mass` is given [kg/m³]
+  double density = 1000;            ///< density of its volume, unless `mass` is given [kg/m³]
   std::optional<double> mass = {};  ///< [kg]
   /// box sphere capsule: the smallest around it; hull: convex; hulls: convex parts (CoACD); none;
   /// auto: box, sphere or capsule where it is one, a hull where it is convex, else hulls.
@@ -53,7 +53,7 @@ struct ObjectOptions {
 struct HeightFieldOptions {
   std::string name = {};            ///< unique; of its geom
   std::filesystem::path file = {};  ///< glTF, GLB, OBJ, STL or PLY, relative to the scene file
-  Pose X_WF = {};                   ///< where the file's origin is in the world
+  Pose X_WF = {};                   ///< pose of the file's origin in the world
   Vec3 scale = {1, 1, 1};           ///< after `up`; not 0, < 0 mirrors; one number for all three
   std::string up = "auto";  ///< y | z: axis of the file that points up; auto = y of glTF, else z
   double unit = 1;          ///< [m] of one unit of the file
@@ -72,10 +72,9 @@ struct VisualOptions {
   std::filesystem::path file = {};  ///< relative to the scene file
   std::string node = {};            ///< name of a node of the file; empty = all of it
   std::string body = {};            ///< full name of the body it is fixed to; empty = world
-  Pose X_BV = {};                   ///< where it is in that body
-  Vec3 scale = {
-      1, 1,
-      1};  ///< along the visual's axes, after `up`; not 0, < 0 mirrors; one number for all three
+  Pose X_BV = {};                   ///< pose in that body
+  /// Factors along the visual's axes, after `up`; not 0, < 0 mirrors; one number for all three.
+  Vec3 scale = {1, 1, 1};
   std::string up = "auto";   ///< y | z: axis of the file that points up; auto = y of glTF, else z
   double unit = 1;           ///< [m] of one unit of the file
   bool casts_shadow = true;  ///< false: light passes through it
@@ -85,8 +84,8 @@ struct VisualOptions {
 /// One kind of the catalogue, as its variant 0 is.
 struct PropInfo {
   std::string kind = {};
-  std::string text = {};  ///< what it is
-  Vec3 size = {};         ///< of its bounding box: depth, width, height [m]
+  std::string text = {};  ///< description
+  Vec3 size = {};         ///< size of its bounding box: depth, width, height [m]
   double mass = 0;        ///< [kg]
   bool loose = false;     ///< usually not fixed
 };

@@ -12,13 +12,13 @@
 
 namespace gloam {
 
-/// How far a model's files may reach. Models come from strangers: see docs/security.md.
+/// Limits on the files that a model may read. Models come from strangers: see docs/security.md.
 struct FileAccess {
-  std::filesystem::path root =
-      {};  ///< no file outside it is read; empty = found by the rules in docs/security.md
+  /// No file outside it is read; empty = found by the rules in docs/security.md.
+  std::filesystem::path root = {};
   bool strict = false;  ///< root = the model file's own folder
-  std::vector<std::pair<std::string, std::filesystem::path>> packages =
-      {};  ///< package://NAME -> folder (URDF)
+  /// package://NAME -> folder (URDF).
+  std::vector<std::pair<std::string, std::filesystem::path>> packages = {};
 };
 
 /// One change of a velocity goal on the schedule of a robot's controller.
@@ -40,12 +40,12 @@ struct ControllerOptions {
   /// none | torque | joint_position | trot, or a type that the program has registered
   /// (gloam/controller.h)
   std::string type = "none";
-  Rational rate = {500,
-                   1};  ///< how often it runs [Hz]; the model's step rate must be a multiple of it
-  double kp = 40;       ///< joint_position: stiffness [N m/rad]
-  double kd = 1;        ///< joint_position: damping [N m s/rad]
-  std::vector<double> target =
-      {};  ///< joint_position: joint angles [rad], torque: torques [N m]; empty = keyframe / zero
+  /// Rate of its calls [Hz]; the model's step rate must be a multiple of it.
+  Rational rate = {500, 1};
+  double kp = 40;  ///< joint_position: stiffness [N m/rad]
+  double kd = 1;   ///< joint_position: damping [N m s/rad]
+  /// joint_position: joint angles [rad], torque: torques [N m]; empty = keyframe / zero.
+  std::vector<double> target = {};
   std::vector<VelocityGoal> goals = {};  ///< trot: velocity goals over time; empty = stand
   TomlText params = {};                  ///< table of settings of a registered type's own
   SourceLoc loc = {};
@@ -54,9 +54,9 @@ struct ControllerOptions {
 /// [[robot]]: one MJCF or URDF file, attached under a name prefix "NAME/".
 struct RobotOptions {
   std::string name = {};  ///< unique; prefix of every element it brings
-  std::filesystem::path file =
-      {};          ///< MJCF (.xml, .mjz, .mjb not) or URDF (.urdf), relative to the scene file
-  Pose X_WR = {};  ///< where its root frame stands in the world
+  /// MJCF (.xml, .mjz, .mjb not) or URDF (.urdf), relative to the scene file.
+  std::filesystem::path file = {};
+  Pose X_WR = {};             ///< pose of its root frame in the world
   std::string keyframe = {};  ///< initial pose by name; empty = the model's default
   /// model = as in its file (a URDF's root link is fixed); free = on a free joint "floating_base"
   std::string base = "model";

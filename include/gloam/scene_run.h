@@ -21,7 +21,7 @@ namespace gloam {
 struct SimOptions {
   std::optional<double> timestep = {};  ///< [s]; empty = the model's own
   double duration = 10;                 ///< [s] of simulation time, > 0
-  uint64_t seed = 1;                    ///< of everything random
+  uint64_t seed = 1;                    ///< seed of everything random
   SourceLoc loc = {};
 };
 
@@ -29,8 +29,8 @@ struct SimOptions {
 struct RenderOptions {
   std::string tier = "path";    ///< path | fast | direct (docs/light.md)
   std::optional<int> spp = {};  ///< samples per pixel, 1 … 65536; with `error` at most, from 16
-  /// Of the path tier: each pixel is sampled until its standard error is this share of its value,
-  /// 0.0001 … 1 (docs/light.md); empty = as many samples in every pixel.
+  /// Error bound of the path tier: each pixel is sampled until its standard error is this fraction
+  /// of its value, 0.0001 … 1 (docs/light.md); empty = as many samples in every pixel.
   std::optional<double> error = {};
   /// Path vertices after the camera, 1 … 64; empty = 5, where there are media 24: fog is white by
   /// light that it scatters many times.
@@ -42,8 +42,8 @@ struct RenderOptions {
   /// and a floor, in colour pictures alone; model: what MuJoCo shows; auto: the studio for models
   /// without lamps and sky (docs/light.md).
   std::string look = "auto";
-  std::optional<double> ev100 =
-      {};  ///< exposure value at ISO 100; empty = the scene's rule (docs/light.md)
+  /// Exposure value at ISO 100; empty = the scene's rule (docs/light.md).
+  std::optional<double> ev100 = {};
   /// Groups of geoms, skins, flexes, tendons and sites that are drawn, 0 … 5; empty = 0 to 2, and
   /// collision shapes of what has nothing else to show
   std::vector<int> groups = {};
@@ -54,7 +54,7 @@ struct RenderOptions {
   int samples() const { return spp.value_or(error ? 4096 : 4); }
 };
 
-/// What can be recorded of a run: of all cameras, and of the rest.
+/// Outputs of a run that can be recorded: those of all cameras, and the rest.
 inline constexpr auto kRecordOutputs = [] {
   constexpr std::array<std::string_view, 5> kRest = {"lidar", "metrics", "contact_sheet", "sensors",
                                                      "state"};
@@ -66,7 +66,7 @@ inline constexpr auto kRecordOutputs = [] {
 
 /// [record]: what is written of a run.
 struct RecordOptions {
-  std::vector<std::string> outputs = {"video", "png", "lidar"};  ///< of kRecordOutputs
+  std::vector<std::string> outputs = {"video", "png", "lidar"};  ///< outputs, from kRecordOutputs
   SourceLoc loc = {};
 };
 
@@ -79,11 +79,11 @@ struct RandomizeOptions {
   std::vector<TomlText> log_uniform = {};  ///< from, to; > 0
   std::vector<TomlText> normal = {};       ///< mean, standard deviation; within the option's range
   std::vector<TomlText> choice = {};       ///< one of these
-  std::vector<double> weights = {};        ///< of the choices; empty = equal
+  std::vector<double> weights = {};        ///< weights of the choices; empty = equal
   SourceLoc loc = {};
 };
 
-/// What came of a [[randomize]].
+/// Value that a [[randomize]] gave an option.
 struct DrawnOption {
   std::string option = {};  ///< full path
   std::string value = {};   ///< as in a scene file

@@ -16,7 +16,7 @@ struct CalendarDate {
   int year = 2000, month = 1, day = 1;  ///< 1900 … 2100, 1 … 12, 1 … the month's last
   bool operator==(const CalendarDate&) const = default;
 };
-/// Of a local clock.
+/// A time of a local clock.
 struct ClockTime {
   int hour = 12, minute = 0;  ///< 0 … 23, 0 … 59
   double second = 0;          ///< 0 <= second < 60
@@ -35,19 +35,19 @@ struct SkyOptions {
   std::optional<double> luminance = {};  ///< even [cd/m²]
   std::optional<Vec3> color = {};        ///< even: linear Rec. 709, hue only
 
-  std::optional<CalendarDate> date = {};     ///< 2026-06-21
-  std::optional<ClockTime> time = {};        ///< of day, by the clock there: 14:30:00
-  std::optional<double> utc_offset = {};     ///< of the clock, east positive [h]; 0
-  std::optional<double> speed = {};          ///< of the clock, in seconds of it per second of the
-                                             ///< simulation; 0 = it stands still
-  std::optional<double> latitude = {};       ///< north positive [deg]
-  std::optional<double> longitude = {};      ///< east positive [deg]
+  std::optional<CalendarDate> date = {};  ///< 2026-06-21
+  std::optional<ClockTime> time = {};     ///< time of day, by the clock there: 14:30:00
+  std::optional<double> utc_offset = {};  ///< offset of the clock from UTC, east positive [h]; 0
+  std::optional<double> speed = {};      ///< speed of the clock, in seconds of it per second of the
+                                         ///< simulation; 0 = it stands still
+  std::optional<double> latitude = {};   ///< north positive [deg]
+  std::optional<double> longitude = {};  ///< east positive [deg]
   std::optional<double> sun_elevation = {};  ///< instead of date and place [deg]
-  std::optional<double> sun_azimuth = {};    ///< with it: clockwise from north [deg]; 180
+  std::optional<double> sun_azimuth = {};    ///< its azimuth, clockwise from north [deg]; 180
   std::optional<double> turbidity = {};      ///< 1 … 10; 2 very clear, 3 clear, 6 hazy; 3
   std::optional<double> ground_albedo = {};  ///< 0 … 1; 0.2
   std::optional<double> altitude = {};       ///< above sea level [m]; 0
-  std::optional<double> north = {};          ///< of true north from +Y, counter-clockwise [deg]; 0
+  std::optional<double> north = {};  ///< angle of true north from +Y, counter-clockwise [deg]; 0
   SourceLoc loc = {};
 };
 
@@ -55,23 +55,24 @@ struct SkyOptions {
 /// fair. Rain and snow fall where the sky is open above.
 struct WeatherOptions {
   std::optional<double> rain = {};        ///< [mm/h], default 0
-  std::optional<double> snow = {};        ///< of water [mm/h], default 0
+  std::optional<double> snow = {};        ///< rate of snow as water [mm/h], default 0
   std::optional<double> visibility = {};  ///< through what hangs in the air, by Koschmieder [m];
                                           ///< without rain and snow; default: clear
-  std::optional<std::string> medium =
-      {};  ///< what hangs, as of [[volume]]: fog (default) mist haze dust smoke
-  std::optional<std::string> where = {};  ///< it hangs: everywhere (default) | rooms, those of a
-                                          ///< generated building alone
+  /// Medium in the air, as in [[volume]]: fog (default) mist haze dust smoke.
+  std::optional<std::string> medium = {};
+  std::optional<std::string> where = {};  ///< place of the medium: everywhere (default) | rooms,
+                                          ///< only those of a generated building
   double scale_height = 0;  ///< over which it thins to 1/e above the lowest ground [m]; 0 = even
-  double turbulence = 0;    ///< of its density: standard deviation over mean, 0 … 1
+  double turbulence = 0;    ///< turbulence of its density: standard deviation over mean, 0 … 1
   std::optional<double> wind = {};  ///< mean speed 10 m above the ground [m/s], default 0
-  double wind_from = 270;           ///< where it comes from, as of [sky]'s azimuth [deg]
-  std::optional<double> gusts =
-      {};  ///< standard deviation of its speed over the mean, default 0.15
-  std::optional<double> wetness = {};  ///< of what the sky reaches, at the start, 0 … 1; default:
-                                       ///< what the rain keeps it at
-  std::optional<double> snow_cover = {};  ///< likewise: depth of snow at the start [m], default 0
-  std::optional<double> lens_drops = {};  ///< share of cameras' front glass under drops, default 0
+  double wind_from = 270;           ///< direction it comes from, as [sky]'s azimuth [deg]
+  /// Standard deviation of its speed over the mean, default 0.15.
+  std::optional<double> gusts = {};
+  std::optional<double> wetness = {};  ///< wetness of surfaces under the open sky at the start, 0 …
+                                       ///< 1; default: the level that the rain sustains
+  std::optional<double> snow_cover = {};  ///< depth of snow on them at the start [m], default 0
+  /// Fraction of cameras' front glass under drops, default 0.
+  std::optional<double> lens_drops = {};
   SourceLoc loc = {};
 };
 
@@ -79,10 +80,10 @@ struct WeatherOptions {
 /// nowhere else.
 struct AdversityOptions {
   std::string level = "none";          ///< none | minor | major
-  std::optional<double> light = {};    ///< share of its light that each lamp of the place keeps
-  std::optional<double> failing = {};  ///< share of those lamps that flicker
-  std::optional<double> clutter = {};  ///< of the generated place, 0 bare … 1
-  std::optional<int> people = {};      ///< who walk about
+  std::optional<double> light = {};    ///< fraction of its light that each lamp of the place keeps
+  std::optional<double> failing = {};  ///< fraction of those lamps that flicker
+  std::optional<double> clutter = {};  ///< clutter of the generated place, 0 bare … 1
+  std::optional<int> people = {};      ///< number of people who walk about
   std::optional<double> people_speed = {};  ///< [m/s]
   SourceLoc loc = {};
 };

@@ -24,20 +24,21 @@ struct VolumePatternOptions {
 /// value of one of `grid` or `pattern`.
 struct VolumeOptions {
   std::string name = {};                 ///< unique
-  Vec3 position = {};                    ///< of the box's centre in the world [m]
-  std::optional<Quat> orientation = {};  ///< of the box in the world
+  Vec3 position = {};                    ///< centre of the box in the world [m]
+  std::optional<Quat> orientation = {};  ///< rotation of the box in the world
   Vec3 size = {};                        ///< edges of the box [m]
   std::string medium = {};               ///< smoke fog mist haze dust; empty = own numbers
   /// Own numbers: one for all bands, or one each for red, green, blue, 905 nm, 1550 nm, 8–14 µm.
   std::vector<double> mass_extinction = {};  ///< [m²/kg]
-  std::vector<double> albedo = {};           ///< of single scattering, 0 … 1
+  std::vector<double> albedo = {};           ///< albedo of single scattering, 0 … 1
   std::vector<double> g = {};                ///< mean cosine of scattering, -1 … 1
   std::optional<double> density = {};        ///< [kg/m³]
   std::optional<double> visibility = {};     ///< [m]: contrast falls to 2 % there, green light
   double temperature = 293;                  ///< [K]
-  double emission = 0;  ///< of its glow, relative to a black body's (1: Kirchhoff's law)
-  double fade = 0;      ///< smooth fall to zero over this distance from the walls [m]
-  std::filesystem::path grid = {};              ///< density: .npy of float32, (nz, ny, nx)
+  /// Emission of thermal light, relative to a black body's (1: Kirchhoff's law).
+  double emission = 0;
+  double fade = 0;                  ///< smooth fall to zero over this distance from the walls [m]
+  std::filesystem::path grid = {};  ///< density: .npy of float32, (nz, ny, nx)
   std::filesystem::path temperature_grid = {};  ///< temperatures [K], of the same shape
   std::optional<VolumePatternOptions> pattern = {};
   SourceLoc loc = {};
