@@ -106,7 +106,8 @@ void move_body(double dt, double time, const NavMesh& mesh, const NavWorld& worl
   if (norm(by) > 0 && agent->intent.mode != AgentIntent::Mode::kSpline &&
       agent->path.at().ref != 0) {
     const Vec3d on = agent->path.move(mesh, to);
-    // What was built into the mesh under it is left at walking pace, not by a jump.
+    // A height difference of the mesh, where something was built into it, is climbed at walking
+    // pace, not in one jump.
     to = m.p + shortened(flat(on - m.p), std::max(norm(by), 0.8 * dt));
     to.z = on.z;
   }

@@ -15,7 +15,7 @@ namespace gloam {
 
 class Agents;
 
-/// What a behaviour wants.
+/// Intention of a behaviour.
 struct AgentIntent {
   enum class Mode : uint8_t { kStand, kGo, kSpline };
   Mode mode = Mode::kStand;
@@ -26,7 +26,7 @@ struct AgentIntent {
   double facing = 0;  ///< heading that it turns to while it stands [rad]
 };
 
-/// Where the body is and how it moves. Plain, without holes: it is hashed.
+/// Place and motion of the body. The struct has no padding: it is hashed.
 struct AgentMotion {
   Vec3d p;                ///< on the ground [m]
   Vec3d velocity;         ///< of its own, in the plane [m/s]

@@ -52,7 +52,7 @@ enum class TreeNodeKind : uint8_t {
 struct TreeNode {
   TreeNodeKind kind = TreeNodeKind::kAlwaysSuccess;
   std::vector<int> children;  ///< numbers of nodes
-  // What its ports say; which of them a kind has: tree_reader.cc.
+  // Values of its ports; tree_reader.cc lists the ports of each kind.
   Vec3d goal;           ///< [m]
   double seconds = 0;   ///< of waits, delays, timeouts
   double distance = 0;  ///< [m]
@@ -67,7 +67,7 @@ struct BehaviorTree {
   std::vector<TreeNode> nodes;  ///< the first is the root
 };
 
-/// What leaves see of an agent and make it do.
+/// Interface through which leaves see and control an agent.
 class TreeHost {
  public:
   virtual ~TreeHost() = default;
@@ -85,7 +85,7 @@ class TreeHost {
   virtual bool was_touched() const = 0;
 };
 
-/// Where one agent is in its tree.
+/// State of one agent in its tree.
 class TreeState {
  public:
   explicit TreeState(std::shared_ptr<const BehaviorTree> tree);

@@ -1,11 +1,11 @@
 #pragma once
-// What an agent means to do next.
+// Decisions of an agent: its next intention.
 
 #include "sim/agents/agent.h"
 
 namespace gloam {
 
-/// What a behaviour can see.
+/// Surroundings as a behaviour sees them.
 struct AgentSurroundings {
   const CompiledWorld& world;
   const NavWorld& nav;

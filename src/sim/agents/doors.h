@@ -14,8 +14,8 @@ class AgentDoors {
   AgentDoors(const CompiledWorld& world, const mjModel& model, const mjData& data);
   void reset();
 
-  /// Which doors are to open, for those who are near and go towards them, and which to close; `dt`
-  /// since the decision before [s].
+  /// Chooses the doors that are to open, for agents who are near and go towards them, and those
+  /// that are to close; `dt`: time since the decision before [s].
   void decide(const mjData& data, const std::vector<AgentBody>& agents,
               std::span<const NavObstacle> obstacles, double dt);
   /// Is a door that is not yet open in the way of one who goes?

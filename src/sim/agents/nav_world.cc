@@ -60,7 +60,7 @@ Vec3d position_of(const mjData& d, int body) {
   return {p[0], p[1], p[2]};
 }
 
-// Of a triangle at (x, y); false where it is not above that point.
+// Height of a triangle at (x, y); false if the point is outside of it.
 bool height_at(const Vec3f* t, double x, double y, double* z) {
   const double ax = double{t[0].x} - x, ay = double{t[0].y} - y, bx = double{t[1].x} - x,
                by = double{t[1].y} - y, cx = double{t[2].x} - x, cy = double{t[2].y} - y;

@@ -1,6 +1,6 @@
 #pragma once
-// What agents walk on and around, as the simulation goes on: colliders that stand still, things
-// that can move and are at rest, both in the navigation meshes, and what moves, which is avoided.
+// Ground and obstacles of agents while the simulation goes on. Colliders that stand still and
+// movable things at rest are part of the navigation meshes; moving things are avoided.
 
 #include <array>
 #include <memory>
@@ -27,7 +27,7 @@ class NavWorld {
   static Result<std::unique_ptr<NavWorld>> create(const CompiledWorld& world, const mjModel& model,
                                                   const mjData& data);
 
-  /// Of the agent in that row of CompiledWorld::agents.
+  /// Mesh for the agent in that row of CompiledWorld::agents.
   const NavMesh& mesh_of(size_t agent) const { return *meshes_[mesh_of_agent_[agent]].mesh; }
   /// Height of the highest surface that is at most `up` above p and `down` below it; p's own where
   /// there is none [m].
@@ -46,7 +46,7 @@ class NavWorld {
   void reset(const mjModel& model, const mjData& data);
 
   const std::vector<NavObstacle>& obstacles() const { return obstacles_; }
-  /// Of robots in CompiledWorld::robots, by row; -1 = it has no bodies.
+  /// Obstacle of the robot in that row of CompiledWorld::robots; -1 = it has no bodies.
   int obstacle_of_robot(size_t robot) const { return obstacle_of_robot_[robot]; }
   /// Digest of what is where in the meshes.
   uint64_t hash(uint64_t seed) const;

@@ -1,4 +1,4 @@
-// How an agent gets where it means to go: along its way, around others, not into them.
+// Steering of agents: along the path, around others.
 
 #include "sim/agents/agents.h"
 #include "sim/agents/brain.h"
@@ -18,7 +18,7 @@ struct Nearby {
   double radius, away;
 };
 
-// What an agent takes up: f(centre, radius), for a vehicle from its rear to its front.
+// Circles that cover an agent: f(centre, radius), for a vehicle from its rear to its front.
 template <class F>
 void for_circles(const AgentBody& agent, const F& f) {
   const AgentDescription& d = *agent.description;

@@ -22,8 +22,8 @@ double follow(double value, double target, double dt, double time) {
   return value + (target - value) * (1 - std::exp(-dt / time));
 }
 
-// Of the way that a foot swings: it is pushed off, is never faster than 1.4 times its mean speed
-// and comes down without any.
+// Progress of a swinging foot: it starts at once, is never faster than 1.4 times its mean speed and
+// ends at rest.
 double swing_profile(double u) { return u * (0.6 + u * (1.8 - 1.4 * u)); }
 
 }  // namespace
@@ -54,7 +54,7 @@ Vec3d Walker::neutral(const WalkInput& in, int foot) const {
   return in.p + Vec3d{-ahead.y, ahead.x, 0} * side;
 }
 
-// How far a foot is from where it should stand; a turn by a radian counts as 0.3 m.
+// Distance of a foot from where it should stand; a turn by a radian counts as 0.3 m.
 double Walker::error_of(const WalkInput& in, int foot) const {
   const Foot& f = state_.feet[foot];
   return flat_norm(f.p - neutral(in, foot)) + 0.3 * std::abs(wrapped(f.yaw - in.heading));
@@ -87,7 +87,7 @@ void Walker::begin_step(const WalkInput& in) {
   f.from = f.p, f.from_yaw = f.yaw;
 }
 
-// Where a foot that swings will come down: as far ahead of the hips as it will be left behind.
+// Landing place of a swinging foot: as far ahead of the hips as it will be left behind.
 void Walker::aim(const WalkInput& in, int foot, double rate, const GroundHeight& ground) {
   Foot& f = state_.feet[foot];
   const double left = (1 - phase_of(foot)) / rate, stand = state_.stance / rate;

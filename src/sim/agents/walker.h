@@ -1,10 +1,9 @@
 #pragma once
-// How a person walks: steps that follow from where the body goes, feet that stay where they are put
-// down, and a body over them.
+// Gait of a person: steps follow from the motion of the body, feet stay where they are put down.
 //
-// Cadence and step length grow alike with speed (a constant walk ratio: Sekiya and Nagasaki 1998);
-// the share of stance falls with speed (Murray 1967, Nilsson et al. 1985); the hips rise and fall
-// as far as step length asks for (Gard and Childress 2001). Angles of pelvis, trunk and arms are
+// Cadence and step length grow alike with speed (a constant walk ratio: Sekiya and Nagasaki 1998).
+// The fraction of stance falls with speed (Murray 1967, Nilsson et al. 1985). The hips rise and
+// fall as step length requires (Gard and Childress 2001). Angles of pelvis, trunk and arms are
 // those of Perry and Burnfield 2010 at 1.3 m/s, less when slower.
 
 #include <array>
@@ -14,15 +13,15 @@
 
 namespace gloam {
 
-/// Where the ground is.
+/// Height of the ground.
 class GroundHeight {
  public:
   virtual ~GroundHeight() = default;
-  /// Of the surface that a foot at p finds [m].
+  /// Height of the surface that a foot at p finds [m].
   virtual double at(Vec3d p) const = 0;
 };
 
-/// What a body does over its feet, at an instant.
+/// Motion of the body over the feet, at an instant.
 struct WalkInput {
   Vec3d p;              ///< on the ground below the hips [m]
   Vec3d velocity;       ///< in the plane [m/s]
@@ -43,7 +42,7 @@ class Walker {
   void reset(const WalkInput& in, const GroundHeight& ground);
   /// Goes on by `dt` [s] to where `in` is.
   void step(double dt, const WalkInput& in, const GroundHeight& ground);
-  /// Of all parts in the world.
+  /// Poses of all parts in the world.
   PersonPose pose(const WalkInput& in) const;
 
   /// Steps per second at a speed, and the share of the cycle that a foot stands.

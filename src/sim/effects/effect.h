@@ -58,7 +58,7 @@ class Effect {
 
   // One step, in this order.
 
-  /// Whether steps must be taken in halves, for the forces of this effect.
+  /// True if steps must be taken in halves, for the forces of this effect.
   virtual bool acts_on_bodies() const { return false; }
   /// Sets options of the model for a step from this state. Also before forward passes.
   virtual void set_options(const EffectContext&) {}

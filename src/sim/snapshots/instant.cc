@@ -117,7 +117,7 @@ Status Instant::solve(const Snapshot& snapshot) {
     mj_setState(model, data, in.state.data(), mjSTATE_INTEGRATION);
     s.blow(in);
     mj_forward(model, data);
-    // What a forward pass computes only where a sensor asks for it.
+    // Quantities that a forward pass computes only if a sensor asks for them.
     mj_energyPos(model, data);
     mj_energyVel(model, data);
     mj_subtreeVel(model, data);

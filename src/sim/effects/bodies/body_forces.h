@@ -22,7 +22,8 @@ inline void cross3(const double* a, const double* b, double* out) {
 /// Edges along the world's axes of the box around a box with half edges `half`, turned by `R`.
 void edges_around(const double* R, const double* half, double* out);
 
-/// Of the degrees of freedom that move a body the last; -1 = none does. dof_parentid has the rest.
+/// Last of the degrees of freedom that move a body; -1 = none does. dof_parentid leads to the
+/// others.
 int last_dof(const mjModel& model, int body);
 
 /// Velocity of a body where a point is [m/s], by its twist in data.cvel.
@@ -52,7 +53,7 @@ class ResponseSolver {
   /// acceleration of those joints, from the last of them to the root; empty = nothing.
   BodyResponse solve(const mjModel& model, const mjData& data, int body, const double* point,
                      std::span<const double> less);
-  /// What a wrench at that point does to the acceleration of those joints, in that order.
+  /// Accelerations of those joints by a wrench at that point, in that order.
   void accelerations(const mjModel& model, const mjData& data, int body, const double* wrench,
                      std::span<double> out);
 

@@ -1,5 +1,6 @@
 #pragma once
-// How much dust ground gives, by published laws. What they leave open is said to be a guess.
+// Amount of dust that ground gives, by published laws. Guesses, where they leave something open,
+// are marked as such.
 
 #include <algorithm>
 #include <cmath>

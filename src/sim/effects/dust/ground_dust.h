@@ -1,6 +1,6 @@
 #pragma once
-// What cells of a gas get of dust in a tick: from ground that air blows over, and from deposits of
-// what touched it.
+// Dust that cells of a gas receive in a tick: from ground that air blows over, and from deposits of
+// contacts.
 
 #include <span>
 #include <vector>

@@ -228,7 +228,7 @@ void GasEffect::find_sources(double time) {
   }
 }
 
-/// Of the air around: what the gas says, else the weather's at the height of its middle.
+/// Wind of the air around: the gas's own, else the weather's at the height of its middle.
 Vec3f GasEffect::wind(double time) const {
   if (gas().wind) return *gas().wind;
   const Vec3 v = wind_.at(time, double{gas().low.z} + 0.5 * double{gas().size().z});

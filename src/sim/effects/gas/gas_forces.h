@@ -1,11 +1,11 @@
 #pragma once
-// What the air of gases does to bodies, on the sim thread: drag by how it moves there.
+// Forces of the air of gases on bodies, on the sim thread: drag by the air's velocity at the body.
 //
-// It is that of MuJoCo's own model of a fluid, which knows one air for all bodies: rho/2 A |v| v
-// along each axis of the box of equal inertia, and Stokes' drag. In a model that has a fluid each
-// body gets the difference between that in the air of its gas and in MuJoCo's, so that where the
-// two are the same nothing changes. The air is that of the last tick, up to an interval old; hot
-// air is thinner by T0/T. Left out: torques, and bodies to which air can do less than kLeastPush.
+// The law is MuJoCo's own model of a fluid, which has one air for all bodies: rho/2 A |v| v along
+// each axis of the box of equal inertia, and Stokes' drag. In a model that has a fluid each body
+// gets the difference between the drag in its gas and in MuJoCo's fluid, so that nothing changes
+// where the two are the same. The air is that of the last tick, up to an interval old; hot air is
+// thinner by T0/T. Left out: torques, and bodies to which air can give less than kLeastPush.
 
 #include <mujoco/mujoco.h>
 

@@ -18,7 +18,7 @@ namespace gloam {
 /// Used by one thread at a time; the same bits for any number of threads.
 class GasObstacles {
  public:
-  /// Of a door that is shut, 4 to 8 mm: a line through one would make a gap of a whole voxel of it.
+  /// Gap of a shut door, 4 to 8 mm: a line through one would open it by a whole voxel.
   static constexpr double kSealedGap = 0.01;
   static constexpr double kTeleport = 20;  ///< [m/s]
 
@@ -43,10 +43,10 @@ class GasObstacles {
   /// The same of what is closed or solid, whatever its velocity.
   bool shape_changed() const { return shape_changed_; }
 
-  /// Of what stands still, as of the last call; no velocities.
+  /// Walls of static things, as of the last call; no velocities.
   const GasWalls& still() const { return still_; }
 
-  /// Where a body was at the instant of the last call.
+  /// Pose of a body at the instant of the last call.
   Affine3f X_WB(int body) const;
 
   /// Colliders that are not seen: geoms of type sdf, flexes.

@@ -36,7 +36,7 @@ struct GasProperties {
   /// Time in which fuel and air of one voxel mix [s]: "mixed is burnt" (eddy break-up, Magnussen
   /// and Hjertager 1977; of FDS's order at voxels of this size).
   float mixing_time = 0.1f;
-  /// Of the luminous soot inside burning voxels, for rendering [K].
+  /// Temperature of the luminous soot inside burning voxels, for rendering [K].
   float flame_temperature = 1500;
   /// Sides of the box, -x +x -y +y -z +z: open air at rest pressure, or closed.
   bool open[6] = {true, true, true, true, true, true};
@@ -68,7 +68,7 @@ struct GasRotor {
   float thrust = 0;  ///< [N]
 };
 
-/// What a cell is given of smoke; nothing where it is solid.
+/// Smoke that a cell is given; nothing where it is solid.
 struct GasEmission {
   size_t cell = 0;  ///< as GasWalls::cell() counts
   float rate = 0;   ///< [kg/s]
@@ -94,8 +94,9 @@ struct GasBudget {
   double smoke_buried = 0, fuel_buried = 0, heat_buried = 0;  ///< in pockets that walls filled
 };
 
-/// What steps a gas. A card does what the CPU does, in the same order of sums, but for the budget
-/// and for the mean divergence of enclosed spaces, which round in the sixteenth digit.
+/// Processor that steps a gas. A card computes the same as the CPU, in the same order of sums, but
+/// for the budget and for the mean divergence of enclosed spaces, which round in the sixteenth
+/// digit.
 enum class GasDevice { kCpu, kCuda };
 
 class GasSolver {
@@ -120,7 +121,7 @@ class GasSolver {
   /// which the soot gives the light of its luminous share: flames are thinner than voxels.
   void read(std::vector<float>* density, std::vector<float>* temperature) const;
 
-  /// Of cells' centres [m/s], world, (nz, ny, nx, 3).
+  /// Velocities of cells' centres [m/s], world, (nz, ny, nx, 3).
   void read_velocity(std::vector<float>* velocity) const;
 
   double smoke_mass() const;  ///< [kg]

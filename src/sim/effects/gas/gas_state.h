@@ -1,5 +1,5 @@
 #pragma once
-// What a GasSolver is made of.
+// State of a GasSolver.
 
 #include <string>
 

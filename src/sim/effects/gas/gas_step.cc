@@ -14,7 +14,7 @@ constexpr float kLongestSubstep = 0.1f;  ///< buoyancy is explicit: well below i
 constexpr float kVoxelsPerSubstep = 3;   ///< that air may move
 constexpr int kMostSubsteps = 1000;
 
-/// By a source in a substep: of kHeat, kSmoke, kFuel, times cells.
+/// Amounts that a source gives in a substep: of kHeat, kSmoke, kFuel, times cells.
 struct Given {
   float heat, smoke, fuel;
 };

@@ -1,4 +1,4 @@
-// What rotors give to faces and emissions to cells, in one substep.
+// Momentum that rotors give to faces, and smoke that emissions give to cells, in one substep.
 
 #include "sim/effects/gas/stirring.h"
 

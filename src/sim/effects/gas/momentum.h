@@ -14,8 +14,8 @@ class Momentum {
   /// Finds the ways that air takes in `dt`.
   void trace(const Openings& openings, const Faces<const float>& open,
              const Faces<const float>& velocity, float voxel, float dt);
-  /// Of cells and ghosts: 1 where flow changes little over a voxel, 0 where the grid does not
-  /// resolve it; there, pressure that is carried along would feed eddies.
+  /// Smoothness of cells and ghosts: 1 where flow changes little over a voxel, 0 where the grid
+  /// does not resolve it; there, pressure that is carried along would feed eddies.
   const Field& smoothness() const { return smooth_; }
   /// Carries `velocity` along them; closed faces stay as they are. `wind` [m/s]: of the air
   /// outside.

@@ -17,7 +17,8 @@ float distance(const std::vector<float>& width, int i) {
 Multigrid::Multigrid(const Shape& shape) : open_(size_t(shape.size()), 0) {
   for (Shape s = shape;;) {
     Level& level = levels_.emplace_back();
-    // Where walls ask for it, half of the cells along an axis are not joined: room for that.
+    // Walls may require that half of the cells along an axis stay unjoined: reserve memory for
+    // that.
     level.shape = s;
     const size_t n = size_t(s.size());
     for (Field& w : level.weight) w.assign(n, 0.0f);
@@ -52,8 +53,8 @@ void Multigrid::update() {
   }
 }
 
-/// What is closed on each plane of faces along the axis, of those between cells that have an open
-/// face: their number less their weights' share of the largest.
+/// Closed faces on each plane of faces along the axis, among those between cells that have an open
+/// face: their number less the sum of their weights over the largest weight.
 void Multigrid::find_lost(const Level& fine, int axis) {
   const Shape& s = fine.shape;
   const int n = s.n(axis), stride = s.stride(axis);
@@ -197,7 +198,7 @@ void Multigrid::invert(Level& level) {
   });
 }
 
-/// What the step with kSmooth[0] makes of x = 0.
+/// Result of the step with kSmooth[0] from x = 0.
 struct Multigrid::FirstStep {
   const float *inverse, *b;
   float operator[](int c) const { return kSmooth[0] * inverse[c] * b[c]; }

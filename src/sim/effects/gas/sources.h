@@ -1,5 +1,5 @@
 #pragma once
-// Which cells a source reaches.
+// Cells that a source reaches.
 
 #include "sim/effects/gas/gas_solver.h"
 #include "sim/effects/gas/openings.h"

@@ -32,7 +32,7 @@ class SoilBed {
   /// Adds the forces of the coming step to data.qfrc_applied. data.qLD is of the present.
   void push(uint32_t step, const mjModel& model, mjData& data, ResponseSolver* solver);
 
-  /// Of the last push(), by geoms.
+  /// Loads of the last push(), by geoms.
   std::span<const ContactLoad> loads() const { return loads_; }
 
   SoilTracks& tracks() { return tracks_; }
@@ -40,13 +40,13 @@ class SoilBed {
   const std::vector<SoilCell>& cells() const { return cells_; }
 
  private:
-  /// What the bed does to a body in a step: accelerations of the joints that move it, which stand
-  /// in answers_.
+  /// Response of the bed to a body in a step: accelerations of the joints that move it, stored in
+  /// answers_.
   struct Answer {
     uint32_t step = 0;  // after the one it was for
     size_t first = 0, count = 0;
   };
-  /// What a body touches.
+  /// Contacts of a body.
   struct Body {
     int id = 0;
     double point[3] = {};         // where its motion is told of [m]

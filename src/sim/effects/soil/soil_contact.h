@@ -1,12 +1,12 @@
 #pragma once
-// Which cells of a bed of soil colliders reach into, how far, and over what share of them; and the
+// Cells of a bed of soil that colliders reach into, with depth and covered fraction; and the
 // patches that these make, with Bekker's width b of each.
 //
-// A collider is looked at along lines in x, two or more to a row of cells and at least sixteen over
-// the collider. The ends of what is below the undisturbed surface are exact, or found by bisection,
-// so that areas and edges do not depend on how a collider lies over cells. What is found is kept
-// until the collider has moved by a tenth of a cell or a twentieth of its sinkage: until then the
-// underside rises and falls over the same cells.
+// A collider is sampled along lines in x, two or more to a row of cells and at least sixteen over
+// the collider. The ends of the part below the undisturbed surface are exact, or found by
+// bisection, so that areas and edges do not depend on how a collider lies over cells. The result is
+// kept until the collider has moved by a tenth of a cell or a twentieth of its sinkage: until then
+// the underside rises and falls over the same cells.
 
 #include <cstdint>
 #include <optional>
@@ -44,7 +44,7 @@ class SoilContacts {
   /// After the last add(): colliders in the same or neighbouring cells make one patch.
   void finish();
 
-  /// That there can be.
+  /// Upper bound of the number of touches.
   size_t most_touches() const { return touches_.capacity(); }
   /// In the order of add(); of each collider by rows of cells.
   std::span<SoilTouch> touches() { return touches_; }
@@ -60,7 +60,7 @@ class SoilContacts {
   struct Point {
     double x = 0, y = 0;
   };
-  // Of a line along x: what is below the surface [m].
+  // Part below the surface of a line along x [m].
   struct Line {
     double y = 0, left = 0, right = 0;
     int number = 0;  // of all that the bed may have
@@ -69,7 +69,7 @@ class SoilContacts {
     double width = 0;  // Bekker's b [m]
     double centre[2] = {};
   };
-  // What a collider covered when it was looked at last: good until it has moved by a part of that.
+  // Cover of a collider when it was sampled last: valid until it has moved by a fraction of that.
   struct Footprint {
     bool known = false;
     double p[3] = {}, R[9] = {};     // of the collider then
@@ -85,7 +85,7 @@ class SoilContacts {
     std::vector<double> rise;        // of the underside over each touch since then [m]
     int parent = 0;                  // another of the same patch among here_, or itself
   };
-  // Of many places under a collider.
+  // Samples of many places under a collider.
   struct Samples {
     std::vector<double> x, y, area, z, slope_x, slope_y;
     std::vector<int> cell;

@@ -24,7 +24,7 @@ struct SoilLanes {
   double loading[kSide] = {};      // on the loading curve, as it is now [Pa]
   double shearing[3][kSide] = {};  // what cell.shear goes to since the last step
   double share[kSide] = {};        // and how far
-  // What cells have been through:
+  // History of cells:
   double sinkage[kSide] = {}, pressure[kSide] = {}, unloading[kSide] = {}, shear[3][kSide] = {};
   // Force at a velocity u of its place: f - across u - along d (d u), where d is where the ground
   // presses to, (-slope, 1); pressing at no velocity, and less by it.
@@ -45,7 +45,7 @@ struct SoilLanes {
     for (int a = 0; a < 3; ++a) shear[a][i] = double{cell.shear[a]};
   }
 
-  /// What the present does to cells: loading, shearing, share.
+  /// Finds the present state of cells: loading, shearing, covered fraction.
   void find_loading(const SoilStrength& s, const double* motion, double dt);
   /// After set() of the cells.
   void find_unloading(const SoilStrength& s);

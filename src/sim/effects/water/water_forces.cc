@@ -95,7 +95,7 @@ void WaterForces::push(const mjModel& model, mjData& data, const WaterShape& sha
   carry(model, data, wet);
 }
 
-// What is displaced, and drag. False: nothing is under water.
+// Sums displacement and drag. False: nothing is under water.
 bool WaterForces::sum_elements(const SurfacePatch& surface, Wet* wet) {
   const WaterShape& shape = wet->shape;
   const WaterDescription& water = wet->water;
@@ -168,8 +168,8 @@ bool WaterForces::sum_elements(const SurfacePatch& surface, Wet* wet) {
   return true;
 }
 
-// What acts on the collider as a whole, at the middle of what is under water: buoyancy and waves,
-// viscous drag, and the momentum of the water that it takes up as it enters.
+// Sums the forces on the collider as a whole, at the middle of its submerged part: buoyancy and
+// waves, viscous drag, and the momentum of the added water as it enters.
 void WaterForces::sum_whole(Wet* wet) {
   const WaterShape& shape = wet->shape;
   const double part = wet->mass / wet->water.density / shape.volume;

@@ -24,18 +24,18 @@ class WaterRipples {
   /// Goes on with the waves of another of the same grid.
   void take_over(const WaterRipples& before);
 
-  /// What a body displaces at this tick: call for each, then advance(). `p`, `R` = X_WG, `surface`
-  /// = height at rest there, in the world [m].
+  /// Adds the displacement of a body at this tick: call for each, then advance(). `p`, `R` = X_WG,
+  /// `surface` = height at rest there, in the world [m].
   void displace(const WaterShape& shape, const double* p, const double* R, double surface);
   /// To the next tick, `interval` later [s].
   void advance(double interval);
 
-  /// Of all that decides what comes; 0 where the water is calm.
+  /// Digest of all state that decides the future; 0 where the water is calm.
   uint64_t digest() const;
-  /// What Snapshots and forces read; null where the water is calm. It stays as it is when
+  /// Heights for Snapshots and forces; null where the water is calm. The object stays as it is when
   /// advance() makes a new one.
   const std::shared_ptr<const SurfaceHeights>& field() const { return shown_; }
-  /// That the wave equation keeps: half the integral of h_t² + c² |grad h|² [m⁴/s²].
+  /// Energy that the wave equation keeps: half the integral of h_t² + c² |grad h|² [m⁴/s²].
   double energy() const;
 
  private:

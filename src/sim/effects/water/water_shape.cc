@@ -21,7 +21,7 @@ struct DragRow {
 constexpr DragRow kBoxDrag{1.05, 1.05}, kBallDrag{0.47, 0.47}, kCylinderDrag{0.75, 0.85},
     kCapsuleDrag{0.75, 0.3};
 
-/// Where a line along z is inside.
+/// Interval of a line along z inside the shape.
 struct Inside {
   double low, high;  // high <= low: nowhere
 };

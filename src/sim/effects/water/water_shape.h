@@ -1,7 +1,6 @@
 #pragma once
-// What a collider displaces: small elements of its volume, and the coefficients of what water does
-// to a shape of its kind. Of boxes, ellipsoids, spheres, cylinders, capsules, and the convex hulls
-// of meshes.
+// Volume elements of a collider, and the coefficients of water for a shape of its kind. Supported:
+// boxes, ellipsoids, spheres, cylinders, capsules, and the convex hulls of meshes.
 
 #include <mujoco/mujoco.h>
 
@@ -45,7 +44,7 @@ void make_clusters(const double* low, WaterShape* shape);
 /// Nothing for planes, height fields and SDFs. `elements`: about how many are wanted.
 std::optional<WaterShape> water_shape(const mjModel& model, int geom, int elements = 216);
 
-/// Of every collider of a body that is not fixed to the world.
+/// Shapes of every collider of a body that is not fixed to the world.
 std::vector<WaterShape> water_shapes(const mjModel& model);
 
 }  // namespace gloam

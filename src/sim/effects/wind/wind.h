@@ -20,12 +20,12 @@ class Wind {
   bool blows() const { return wind_.blows(); }
   /// Along the wind [m/s]; `height` above z = 0 [m], below 0.1 m as there.
   double mean_speed(double height) const;
-  /// What comes to the mean [m/s], world.
+  /// Deviation from the mean by gusts [m/s], world.
   Vec3 gust(double time) const;
   Vec3 at(double time, double height) const {
     return blows() ? with_mean(gust(time), height) : Vec3{};
   }
-  /// What gusts come to there.
+  /// Wind there for that gust.
   Vec3 with_mean(Vec3 gust, double height) const;
 
  private:

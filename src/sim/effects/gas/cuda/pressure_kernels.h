@@ -21,7 +21,7 @@ struct EnclosedView {
   double* space_sum;
 };
 
-/// What a projection works on.
+/// System of equations of a projection.
 struct System {
   Shape shape;
   Faces<const float> u;

@@ -26,7 +26,7 @@ struct CarryView {
   float* corrected;  ///< the result
 };
 
-/// How far a place lies beyond an open side [voxels].
+/// Distance of a place beyond an open side [voxels].
 GLOAM_HD float outside(const CarryView& v, float x, float y, float z) {
   const float hx = float(v.shape.nx - (v.axis != 0)), hy = float(v.shape.ny - (v.axis != 1)),
               hz = float(v.shape.nz - (v.axis != 2));
@@ -36,7 +36,7 @@ GLOAM_HD float outside(const CarryView& v, float x, float y, float z) {
   return max(max(max(ox, oy), oz), 0.0f);
 }
 
-/// Where the air of a face comes from, or goes to.
+/// Path of the air of a face, backwards or forwards in time.
 struct Way {
   Between at;
   float past;  ///< how far that lies beyond an open side [voxels]
@@ -95,8 +95,9 @@ GLOAM_HD void correct_face(const CarryView& v, int i, int j, int k) {
   set_corrected(v, v.shape.at(i, j, k), corners(v.shape, v.carried, way.at.c), way);
 }
 
-/// What the component becomes at an open side of the box through which wind comes in, even where
-/// the air stands still; `share`: of the way over which it takes on what is there, in the step.
+/// New value of the component at an open side of the box through which wind comes in, even where
+/// the air stands still; `share`: fraction of the difference to the wind that it takes on in the
+/// step.
 GLOAM_HD float let_in(const CarryView& v, int c, float share) {
   const float here = v.corrected[c];
   return v.open[c] > 0.0f ? here + (v.wind - here) * share : here;

@@ -1,5 +1,6 @@
 #pragma once
-// What speeds gas up: heat, the weight of smoke, and eddies that a coarse grid loses. Device-safe.
+// Forces on gas: buoyancy of heat, the weight of smoke, and eddies that a coarse grid loses.
+// Device-safe.
 
 #include "sim/effects/gas/kernel/reaction.h"
 
@@ -29,7 +30,7 @@ GLOAM_HD float fluctuation(int c, uint32_t count) {
   return (float(int(bits >> 8)) * 0x1p-23f - 1.0f) * 1.7320508f;
 }
 
-/// What lifts the faces across z.
+/// Inputs of the lift on faces across z.
 struct LiftView {
   Shape shape;
   const float* open;
@@ -41,7 +42,7 @@ struct LiftView {
   uint32_t count;         ///< of fluctuation()
 };
 
-/// What the face at c gains [m/s]. Where flow is not smooth, heat fluctuates.
+/// Velocity that the face at c gains [m/s]. Where flow is not smooth, heat fluctuates.
 GLOAM_HD float lift(const LiftView& v, int c) {
   const int b = c - v.shape.sz;
   const float rough = 1.0f - 0.5f * (v.smooth[c] + v.smooth[b]);

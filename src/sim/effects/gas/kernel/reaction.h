@@ -1,5 +1,5 @@
 #pragma once
-// What happens inside a voxel: burning, cooling, settling of smoke. Device-safe.
+// Processes inside a voxel: burning, cooling, settling of smoke. Device-safe.
 
 #include "sim/effects/gas/kernel/transport.h"
 
@@ -38,7 +38,7 @@ struct Reaction {
 GLOAM_HD Reaction react(const ReactionRates& r, float* heat, float* smoke, float* fuel,
                         float* spent, float* heated) {
   Reaction out;
-  // What is not fuel nor what came of burning is air, as thin as it is hot.
+  // The remainder, neither fuel nor product of burning, is air, thinned by its heat.
   const float air =
       max(r.density * (1.0f - *heat) - *fuel - *spent * (1.0f + 1.0f / r.air_per_fuel), 0.0f);
   out.burnt = r.burn * min(*fuel, air / r.air_per_fuel);
