@@ -38,7 +38,8 @@ enum PersonPart {
   kForearmR,
   kPersonParts
 };
-/// Of a vehicle: what moves as one, wheels in the order of kWheelNames, the fork of a forklift.
+/// Parts of a vehicle that move as one; wheels in the order of kWheelNames, then the fork of a
+/// forklift.
 enum VehiclePart { kChassis, kWheelFL, kWheelFR, kWheelRL, kWheelRR, kFork, kVehicleParts };
 
 /// "pelvis", "chassis" …; empty for a part that the kind does not have.
@@ -89,7 +90,7 @@ struct AgentDescription {
   VehicleSize vehicle;  ///< else
 
   int parts() const { return part_count(kind); }
-  /// Of the body of a part: NAME for the first, else NAME/PART.
+  /// Name of the body of a part: NAME for the first, else NAME/PART.
   std::string body_name(int part) const;
   // In the compiled model, by part.
   std::array<int, kPersonParts> body = {}, mocap = {};

@@ -9,8 +9,8 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 constexpr Seconds kInterval{0.1};
-// How far a stage is that was expected to take `expected`, by the clock: as expected at first, then
-// ever slower, so that it never stands still and never ends by itself.
+// Progress by the clock of a stage that was expected to take `expected`: as expected at first, then
+// ever slower, so that it never stops and never reaches the end by itself.
 double expected_share(double passed, double expected) {
   constexpr double kAsExpected = 0.8;
   const double x = passed / expected;

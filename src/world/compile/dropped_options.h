@@ -10,7 +10,7 @@
 
 namespace gloam {
 
-/// What a model's file says of <option> and <visual>.
+/// Options and visual settings of a model's file: <option> and <visual>.
 struct ModelSettings {
   mjOption option;
   mjVisual visual;

@@ -1,6 +1,7 @@
 #pragma once
-// What MuJoCo's compiler never ends with: to find the length range of a muscle it simulates until
-// some time has passed, and a joint that moves the wrong way sets its clock back again and again.
+// Refusal of models that MuJoCo's compiler never finishes: to find the length range of a muscle it
+// simulates until some time has passed, and a joint that moves the wrong way sets its clock back
+// again and again.
 
 #include <mujoco/mujoco.h>
 

@@ -13,7 +13,7 @@ namespace gloam {
 /// In messages.
 inline std::string title(const ObjectOptions& o) { return "object '" + o.name + "'"; }
 
-/// What is to be a body. Its frame is the file's, in Gloam's axes and metres.
+/// An object that is to be a body. Its frame is the file's, in Gloam's axes and metres.
 struct MeshObject {
   ObjectOptions options;  ///< its name is no other's
   TriangleMesh mesh;      ///< of its node or the whole file, in the body's frame

@@ -201,7 +201,8 @@ Result<std::vector<Converted>> convert_objects(const MeshObjects& objects,
   const std::vector<MeshObject>& all = objects.objects;
   if (all.empty()) return std::vector<Converted>();
   const ConvertWatch watch(objects, progress);
-  // Where the large ones come first, none of them is left for the end. Shares by what they cost.
+  // Large objects come first, so that none of them is left for the end. Progress counts their
+  // costs.
   std::vector<size_t> order(all.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::stable_sort(order.begin(), order.end(),

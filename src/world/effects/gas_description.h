@@ -15,7 +15,7 @@ namespace gloam {
 
 struct CompiledWorld;
 
-/// What burns, by its heat and its soot.
+/// A fuel: its heat and its soot.
 struct FuelDescription {
   float heat_of_combustion = 0;  ///< chemical [J/kg]
   float soot_yield = 0;          ///< soot per fuel [kg/kg]
@@ -64,7 +64,7 @@ struct DustDescription {
   }
 };
 
-/// Of luminous soot in flames [K]: sooty ones have 1200 to 1700 K.
+/// Temperature of luminous soot in flames [K]: sooty ones have 1200 to 1700 K.
 inline constexpr float kFlameTemperature = 1500;
 
 struct GasDescription {

@@ -27,7 +27,7 @@ constexpr double kLeastDepth = 0.01;  // of it there, over its depth
 // clay (22 %) by the Waterways Experiment Station; snow by Harrison; mud is Hanamoto's sandy loam
 // of 32 %. Lunar soil: Heiken et al. 1991, "Lunar Sourcebook", chapter 9.
 // Shear displacement: Wong, section 2.4.3: 1 cm firm sand, 2.5 cm loose, 0.6 cm clay, 2.5 cm snow.
-// What rises at the sides is our estimate: wet clay and mud keep their volume, snow is compacted.
+// The rise at the sides is our estimate: wet clay and mud keep their volume, snow is compacted.
 // Unloading: A_u of LETE sand for what is mineral, of Petawawa's snow A: Wong, table 2.4.
 constexpr double kSandUnloading = 503e6, kSnowUnloading = 109.6e6;  // [N/m⁴]
 struct KindRow {

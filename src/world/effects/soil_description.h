@@ -48,7 +48,7 @@ struct SoilDescription {
   /// At time 0; `level`, `rest` and `depth` are of then.
   double rest_of(size_t cell) const { return rest.empty() ? level : double{rest[cell]}; }
   double share_of(size_t cell) const { return share.empty() ? 1 : double{share[cell]}; }
-  /// What has come to rest_of() by a time at which `fallen_depth` = growth * time [m].
+  /// Depth over rest_of() at a time at which `fallen_depth` = growth * time [m].
   double depth_of(size_t cell, double fallen_depth) const {
     return share_of(cell) * (depth + fallen_depth);
   }
@@ -60,7 +60,7 @@ inline float track_height(float kept, float fallen) {
   return kept < 0 ? std::min(kept + fallen, 0.0f) : std::max(kept - fallen, 0.0f);
 }
 
-/// What was measured of a kind of ground, as docs/soil.md has it. `kind`: of kSoilKinds.
+/// Measured strength of a kind of ground, after docs/soil.md. `kind`: one of kSoilKinds.
 SoilStrength soil_strength(const std::string& kind);
 
 /// Errors: beds that overlap, of too many cells, over ground where there is none, snow that falls

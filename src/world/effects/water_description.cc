@@ -14,7 +14,8 @@ namespace {
 constexpr double kGravity = 9.81;  // [m/s²]
 constexpr double kPi2 = 2 * std::numbers::pi;
 constexpr int kWaveCount = 40;
-// Of the frequency of the strongest waves: below and above lie 0.2 % and 0.2 % of the energy.
+// Range of frequencies over that of the strongest waves: 0.2 % of the energy lies below it and 0.2
+// % above.
 constexpr double kLongest = 0.6, kShortest = 5;
 constexpr double kPeakedness = 3.3;  // JONSWAP's mean gamma
 

@@ -126,7 +126,7 @@ class VisualExport {
     if (instance.shape != ShapeType::kMesh) std::copy_n(size, 3, geom->size);
   }
 
-  // Of one mesh, its name in the spec; written at its first use.
+  // Name in the spec of a mesh, which is written at its first use.
   Result<std::string> mesh_of(int row) {
     const auto [known, is_new] = meshes_.try_emplace(row, fmt::format("visual_{}", row));
     if (!is_new) return known->second;

@@ -1,6 +1,6 @@
 #pragma once
-// How strongly a luminaire shines into each direction: photometric files after ANSI/IESNA LM-63
-// (1986, 1991, 1995, 2002, 2019), goniometer types A, B and C.
+// Intensity of a luminaire by direction: photometric files after ANSI/IESNA LM-63 (1986, 1991,
+// 1995, 2002, 2019), goniometer types A, B and C.
 
 #include <filesystem>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-// How a lamp turns or swings on simulation time: a pure function of time.
+// Turns and swings of a lamp: a pure function of simulation time.
 
 #include "base/vec.h"
 

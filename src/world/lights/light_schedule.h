@@ -1,6 +1,6 @@
 #pragma once
-// How a lamp's light changes on simulation time: a factor on its intensity, a pure function of
-// time, seed and lamp, so that any step can be asked for in any order, by any thread.
+// Changes of a lamp's light: a factor on its intensity, a pure function of simulation time, seed
+// and lamp, so that any step can be asked for in any order, by any thread.
 
 #include <cstdint>
 #include <string>

@@ -75,7 +75,7 @@ class SurfaceMaker {
     UvTransform& t = surface_.uv.transform;
     if (all_repeat)
       t.offset = {t.offset.x - std::floor(t.offset.x), t.offset.y - std::floor(t.offset.y)};
-    // What only scales is the material's own, so that the mesh stays as it is for others.
+    // A pure scaling goes to the material, so that the mesh stays as it is for others.
     if (t.offset.x == 0 && t.offset.y == 0 && t.rotation == 0 && t.scale.x > 0 && t.scale.y > 0) {
       m().texture_repeat = t.scale;
       t.scale = {1, 1};

@@ -13,7 +13,7 @@
 
 namespace gloam {
 
-/// What is made of a picture.
+/// Source and conversion of a texture.
 struct TextureRecipe {
   TextureRef source;
   bool keep_alpha = false;  ///< of a colour

@@ -1,5 +1,5 @@
 #pragma once
-// How often cameras take pictures.
+// Rate of cameras' pictures.
 
 #include <string>
 

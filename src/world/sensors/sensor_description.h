@@ -11,7 +11,7 @@ namespace gloam {
 
 struct CompiledWorld;
 
-/// What errors may do to a sensor's numbers.
+/// Kinds of values, which decide how errors may change them.
 enum class SensorKind {
   kNumbers,    ///< each by itself
   kDistance,   ///< each by itself; below 0 = nothing there, which stays

@@ -106,7 +106,7 @@ CameraDescription free_camera(const mjModel& m, const Framing& framing) {
   return camera;
 }
 
-/// Whether <visual><global> says from where to look.
+/// True if <visual><global> gives a direction of view.
 bool gives_direction(const mjModel& model) {
   constexpr float kMujocoAzimuth = 90, kMujocoElevation = -45;  // where it does not
   const auto& global = model.vis.global;

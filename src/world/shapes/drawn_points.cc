@@ -110,7 +110,7 @@ struct PartBox {
   }
 };
 
-/// Whether a geom of the world is the base that the tree of bodies at `tree` hangs on, as the first
+/// True if a geom of the world is the base that the tree of bodies at `tree` hangs on, as the first
 /// link of a URDF robot: a mesh that touches it and is no place around it.
 bool is_base(const InstanceDescription& in, const PartBox& own, const PartBox& tree) {
   constexpr float kLargest = 4;  // in diagonals of the tree

@@ -17,7 +17,7 @@ struct RoundSolid {
   float flat = 1;
 };
 
-/// What lies on the side of p that n, a unit vector, points to.
+/// Half-space on the side of p that n, a unit vector, points to.
 struct CutPlane {
   Vec3f p, n;
 };

@@ -113,7 +113,7 @@ bool draws_something(const ModelFile& model) {
                      });
 }
 
-// By the name of the sphere that stands in for it. Files that cannot be read are told.
+// Meshes by the name of the sphere that stands in for each. Unreadable files are reported.
 std::map<std::string, VisualOnlyMesh> find_meshes(const Scene& scene,
                                                   const std::vector<UrdfRobot>& robots,
                                                   std::vector<Error>* unsupported) {

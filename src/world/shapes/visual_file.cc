@@ -140,7 +140,8 @@ class VisualImporter {
       for (const int part : node->instances) add_part(visual, index, file, part, X_BF);
       if (visual.node != nodes_[file][0].name) return {};
     }
-    // What belongs to no node comes once, with the first. A robot's meshes bring no lamps along.
+    // Lamps and reports that belong to no node come once, with the first. A robot's meshes bring no
+    // lamps.
     if (is_model_) {
       report(visual, model);
       return {};

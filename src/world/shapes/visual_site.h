@@ -11,7 +11,7 @@ namespace gloam {
 
 inline constexpr int kFirstHiddenGroup = 3;  ///< of those that MuJoCo's viewer shows at first
 
-/// Whether the scene draws a group: those that it lists, else those that MuJoCo shows at first.
+/// True if the scene draws a group: those that it lists, else those that MuJoCo shows at first.
 bool draws_group(const RenderOptions& render, int group);
 
 /// Adds an instance for every site of the groups that are drawn, if the scene draws sites. Sites

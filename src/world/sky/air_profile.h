@@ -1,5 +1,5 @@
 #pragma once
-// What the air over a place holds at each height.
+// Composition of the air over a place at each height.
 
 namespace gloam {
 

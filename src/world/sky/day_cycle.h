@@ -17,7 +17,7 @@ struct DayCycle {
 /// Unit, towards the sun as seen through the air, in the world; `time` [s].
 Vec3f to_sun_at(const DayCycle& day, double time);
 
-/// Of a direction with X east, Y north; `north` as in DayCycle.
+/// Direction in the world of one with X east, Y north; `north` as in DayCycle.
 Vec3f turned_north(Vec3f d, double north);
 
 /// Heights of the sun [rad] for which skies are made: a quarter of a degree apart from the end of
@@ -25,10 +25,10 @@ Vec3f turned_north(Vec3f d, double north);
 /// degree, then one degree up to the zenith.
 int sky_count();
 double sky_elevation(int row);
-/// Of rows, with fractions; within the first and the last.
+/// Row of an elevation, with fractions; within the first and the last.
 double sky_row(double elevation);
 
-/// Of the day with the sun at sky_elevation(row) over +X.
+/// Sky of the day with the sun at sky_elevation(row) over +X.
 SkyLight sky_of_row(const DayCycle& day, int row);
 
 }  // namespace gloam

@@ -1,11 +1,11 @@
 #pragma once
-// Where the sun stands, by date, time and place.
+// Position of the sun by date, time and place.
 //
 // Solar coordinates and sidereal time after Meeus 1998, "Astronomical Algorithms", chapters 12, 22
 // and 25 (lower accuracy), with parallax; refraction after Saemundsson 1986 down to -0.575 degrees
 // and NOAA's continuation below. Against the solar position algorithm of Reda and Andreas 2004
-// (0.0003 degrees): within 0.01 degrees without refraction, 0.02 with it at
-// standard pressure. Real refraction at the horizon varies by tenths of a degree.
+// (0.0003 degrees): within 0.01 degrees without refraction, 0.02 with it at standard pressure. Real
+// refraction at the horizon varies by tenths of a degree.
 
 #include "base/vec.h"
 #include "gloam/result.h"

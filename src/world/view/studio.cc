@@ -150,7 +150,7 @@ void add_key_light(const Affine3f& X_WC, RenderDescription* out) {
   out->lights.push_back(std::move(key));
 }
 
-/// Whether the model stands on a floor of its own: a plane that faces up, or something flat and
+/// True if the model stands on a floor of its own: a plane that faces up, or something flat and
 /// wide.
 bool has_floor(std::span<const DrawnPart> all, float diagonal, const RenderDescription& scene) {
   for (const InstanceDescription& in : scene.instances) {

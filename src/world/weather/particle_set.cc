@@ -27,7 +27,8 @@ void add_classes(double from, double to, const Number& number, const Diameter& d
       flux += n * speed(D);
       water += n * kPi64 / 6 * std::pow(1e-3 * D, 3) * 1000;
     }
-    // Of the class's own diameter as many as cover what all of it covers.
+    // A class has the number of particles, all of its own diameter, that cover the area of its part
+    // of the distribution.
     set->classes.push_back({static_cast<float>(1e-3 * std::sqrt(area / count)),
                             static_cast<float>(count), static_cast<float>(flux / count)});
   }

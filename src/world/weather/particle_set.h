@@ -36,10 +36,10 @@ struct ParticleSet {
 
   /// Mean share of a view that they cover, per metre [1/m].
   float cover() const;
-  /// Of water, in the air [kg/m³].
+  /// Density of water in the air [kg/m³].
   float water = 0;
-  /// Of light, twice the covered share: what passes by a large particle is diffracted (van de
-  /// Hulst 1957, "Light scattering by small particles", 8.1) [1/m].
+  /// Extinction of light, twice the covered fraction: light that passes by a large particle is
+  /// diffracted (van de Hulst 1957, "Light scattering by small particles", 8.1) [1/m].
   float extinction() const { return 2 * cover(); }
 };
 

@@ -7,7 +7,8 @@ namespace {
 
 constexpr double kSlot = 0.05;  // for which splashes are drawn at once [s]
 constexpr float kSplashGravity = 9.81f;
-// Of the drop's: within what crowns of drops of 2 to 5 mm throw up, a hand's breadth at most.
+// Factors on the drop's speed and radius: within the range of crowns of drops of 2 to 5 mm, a
+// hand's breadth at most.
 constexpr float kSlowestDroplet = 0.08f, kFastestDroplet = 0.2f;  // speed
 constexpr float kCrown = 1.5f;                                    // radius of the crown's rim
 
@@ -65,7 +66,7 @@ void find_splashes(const ParticleSet& set, uint32_t row, int64_t i, int64_t j, d
   for (int64_t slot = first; slot <= last; ++slot) {
     const auto bits = [](int64_t x) { return static_cast<uint64_t>(x) & 0x1FFFFF; };
     const uint64_t key = bits(i) | bits(j) << 21 | bits(slot) << 42;
-    // Of Poisson's law, by the times between one and the next.
+    // Number by Poisson's law, from the times between one splash and the next.
     double at = 0;
     for (uint32_t n = 0;; ++n) {
       const Philox4 draw = random.draw(key, n);

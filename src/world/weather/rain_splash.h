@@ -1,7 +1,7 @@
 #pragma once
-// What raindrops do where they land: some droplets that fly up from the rim of the crown and fall
-// back. A pure function of (seed, time), as the drops in the air are: as many land on an area as
-// fall on it, but not the very ones that are drawn in the air.
+// Splashes of raindrops: some droplets that fly up from the rim of the crown and fall back. A pure
+// function of (seed, time), as the drops in the air are: as many land on an area as fall on it, but
+// not the very ones that are drawn in the air.
 
 #include <vector>
 

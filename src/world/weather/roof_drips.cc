@@ -120,7 +120,7 @@ std::vector<DripEdge> find_drip_edges(const ShelterMap& map, double rain) {
 }
 
 double mean_drip_volume() {
-  // Of diameters drawn evenly.
+  // Mean over evenly distributed diameters.
   const auto fourth = [](double d) { return d * d * d * d; };
   return 3.14159265358979323846 / 6 * (fourth(kHigh) - fourth(kLow)) / (4 * (kHigh - kLow));
 }
@@ -133,7 +133,7 @@ void find_drips(const DripEdge& edge, uint64_t seed, double from, double to,
   const auto place = [](float x) {  // [cm]
     return static_cast<uint64_t>(static_cast<int64_t>(std::lround(x * 100))) & 0xFFFFF;
   };
-  // Of the edge's middle, so that those of one cell differ.
+  // Key of the edge's middle, so that those of one cell differ.
   const uint64_t site = place(edge.from.x + 0.4f * edge.way * edge.out.x) |
                         place(edge.from.y + 0.4f * edge.way * edge.out.y) << 20;
   const auto first = static_cast<int64_t>(std::floor(from / kDripSlot));
