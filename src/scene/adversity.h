@@ -1,5 +1,5 @@
 #pragma once
-// What a level of adversity makes of a scene: docs/weather.md has its table and sources.
+// Effect of a level of adversity on a scene: docs/weather.md has its table and sources.
 
 #include <span>
 

@@ -1,5 +1,5 @@
 #pragma once
-// What to do about what MuJoCo's parser and compiler refuse.
+// Remedies for refusals of MuJoCo's parser and compiler.
 
 #include <string>
 #include <string_view>

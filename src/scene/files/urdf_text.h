@@ -1,5 +1,5 @@
 #pragma once
-// What MuJoCo is given instead of a URDF's own text: the same robot with mesh paths that it can
+// Texts that MuJoCo is given instead of a URDF's own: the same robot with mesh paths that it can
 // find, and a second, static one that keeps the visuals which stock loading discards.
 
 #include <functional>

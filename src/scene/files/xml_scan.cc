@@ -115,8 +115,8 @@ Status check_sizes(const pugi::xml_node& node, const std::function<SourceLoc()>&
   return {};
 }
 
-// What MuJoCo 4.0.1 ends the whole process at, instead of complaining. (A C++ exception in it
-// cannot be caught outside: it comes with a runtime library of its own.)
+// Checks for faults at which MuJoCo 4.0.1 ends the whole process, instead of reporting an error. (A
+// C++ exception in it cannot be caught outside: it comes with a runtime library of its own.)
 Status check_fatal(const pugi::xml_node& node, const std::function<SourceLoc()>& loc) {
   const std::string_view element = node.name(), above = node.parent().name();
   const auto is_blank = [&](const char* attribute) {

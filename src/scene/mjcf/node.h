@@ -1,5 +1,5 @@
 #pragma once
-// What an Element of gloam/mjcf.h refers to.
+// Node that an Element of gloam/mjcf.h refers to.
 
 #include <memory>
 #include <string>

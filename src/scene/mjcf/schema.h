@@ -53,10 +53,10 @@ class MjcfSchema {
   const MjcfElement& root() const { return elements_.front(); }
   std::span<const MjcfElement> elements() const { return elements_; }  ///< in the grammar's order
   const MjcfElement* find(std::string_view path) const;
-  /// What <tag> is inside of `above`; null if it may not stand there. <frame> and <replicate> hold
-  /// what bodies do.
+  /// Element that <tag> is inside of `above`; null if it may not stand there. <frame> and
+  /// <replicate> hold the same elements as bodies.
   const MjcfElement* child(const MjcfElement& above, std::string_view tag) const;
-  /// How `element` is written inside of `above`: the world's body is <worldbody>.
+  /// Tag of `element` inside of `above`: the world's body is <worldbody>.
   static std::string_view tag(const MjcfElement& element, const MjcfElement& above);
   /// Tags that may stand in it.
   std::vector<std::string> tags_in(const MjcfElement& above) const;

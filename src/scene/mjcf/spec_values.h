@@ -1,5 +1,5 @@
 #pragma once
-// What the fields of a spec hold: as text, compared, set.
+// Values of the fields of a spec: as text, compared, set.
 
 #include "gloam/result.h"
 #include "scene/mjcf/spec_fields.h"

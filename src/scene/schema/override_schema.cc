@@ -50,7 +50,7 @@ class Definitions {
     return table(std::move(properties));
   }
 
-  // Of an actuator, say: the attributes of all of them. Where they differ, either's values.
+  // Attributes of a group of elements, say all actuators. Where they differ, either's values.
   Json attributes_of(const std::vector<const MjcfElement*>& elements) {
     Json properties = Json::object();
     std::map<std::string_view, std::map<std::string, Json>> kinds;  // by what they take
