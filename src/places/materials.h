@@ -56,7 +56,7 @@ class MaterialSet {
   std::vector<Look> looks_;
 };
 
-/// What a whole place has in common.
+/// Style that a whole place has in common.
 struct Style {
   std::string wood = "oak";       ///< oak walnut pine birch
   std::string metal = "steel";    ///< of handles and taps: steel brass black

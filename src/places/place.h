@@ -29,7 +29,7 @@ struct Scatter {
   std::vector<Pose> poses;
 };
 
-/// What is walked on where it is not level. It is felt, not drawn.
+/// Uneven ground as a height field: a collider that is not drawn.
 struct Ground {
   std::string name;  ///< of its geom
   HeightField field;
@@ -69,7 +69,7 @@ class Place {
   const std::vector<Placement>& placements() const { return placements_; }
   const std::vector<Scatter>& scatters() const { return scatters_; }
 
-  /// Of all that it is: the key of what is compiled from it.
+  /// Hash of the whole place: the key of the model compiled from it.
   uint64_t hash() const;
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// What a maker of the catalogue hands over: one thing that stands in a place, with all that it
-// looks like, collides with, weighs and gives light by.
+// Prop: one thing in a place, as a maker of the catalogue returns it, with looks, colliders, mass
+// and lamps.
 //
 // A prop's frame lies on the floor below its middle; +x is its front, its back is to a wall. What
 // hangs on a wall has its origin on the wall, what hangs from a ceiling on the ceiling.
@@ -91,7 +91,7 @@ struct Prop {
   struct Box {
     Vec3f low, high;
   };
-  /// Of all that it shows and collides with, joints where they stand at first.
+  /// Bounding box of all visuals and colliders, joints where they stand at first.
   Box bounds() const;
   double mass() const;  ///< of all parts [kg]
 };

@@ -48,7 +48,7 @@ class WarehouseBuilder {
           {},
           fmt::format("make it at least {:.1f} m wide", needed - kBackGap + 2 * kRackToWall)};
     aisles_ = static_cast<int>(rows);
-    // What the rows leave over makes the aisles wider.
+    // Space that the rows leave over makes the aisles wider.
     const double racks = aisles_ * 2 * kRackDepth + (aisles_ - 1) * kBackGap;
     aisle_ = (o_.width - racks - 2 * kRackToWall) / aisles_;
     bays_ = static_cast<int>((east_ - kEnd - kCross / 2) / kBay);
@@ -210,7 +210,7 @@ class WarehouseBuilder {
     }
   }
 
-  // What lies on one shelf of a bay: three pallets, or on the floor at times two tanks.
+  // Load of one shelf of a bay: three pallets, or on the floor at times two tanks.
   void fill(const std::string& zone, double x, double y, double yaw, const PropSurface& shelf) {
     const double room = std::min({1.5, shelf.clearance - 0.12, o_.height - kGirders - shelf.z});
     if (room < 0.5) return;

@@ -1,5 +1,6 @@
 #pragma once
-// What makers of props work with: the request, dice of its own, and materials by their trade names.
+// Tools of makers of props: the request, random numbers of its own, and materials by their trade
+// names.
 
 #include <functional>
 #include <optional>
@@ -10,7 +11,7 @@
 
 namespace gloam {
 
-/// Which variant of a kind is wanted.
+/// Variant of a kind that is wanted.
 struct PropRequest {
   std::string kind;
   uint64_t seed = 0;

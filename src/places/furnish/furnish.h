@@ -1,5 +1,5 @@
 #pragma once
-// What people put into rooms, kind by kind of room.
+// Furniture of rooms, by kind of room.
 
 #include "places/plan/room_layout.h"
 
@@ -32,11 +32,11 @@ class Furnisher {
   Furnisher(const FloorPlan& plan, int room, const FurnishOptions& options, uint64_t seed,
             Place* place);
 
-  /// By the room's kind.
+  /// Furnishes by the room's kind.
   void furnish();
 
  private:
-  // Of the catalogue, in a size or as it comes; the same in every call for one seed.
+  // Makes a prop of the catalogue, in a size or in its own; the same in every call for one seed.
   int make(const std::string& kind, std::optional<Vec3> size = {},
            std::optional<uint64_t> seed = {});
   const Prop& prop(int index) const { return place_->prop(index); }
@@ -75,7 +75,7 @@ class Furnisher {
   void study();
   void utility();
   void hall();
-  // Of offices (furnish_office.cc).
+  // Furnishing of offices (furnish_office.cc).
   void corridor();
   void open_office();
   void office();

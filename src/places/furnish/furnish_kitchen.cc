@@ -80,7 +80,7 @@ std::vector<KitchenPiece> main_row(double length, bool cold_first) {
   const bool cold = length >= 2.0;
   if (cold) used += 0.6;
   if (length - used >= 0.6) row.push_back({"dishwasher", 0.6}), used += 0.6;
-  // What is left becomes cupboards of one width.
+  // The rest of the wall becomes cupboards of one width.
   const double rest = length - used;
   const int cupboards = static_cast<int>(std::ceil(rest / 0.85));
   for (int i = 0; i < cupboards && rest / cupboards >= 0.35; ++i)
@@ -155,7 +155,7 @@ void Furnisher::kitchen_rows(const std::vector<KitchenWall>& walls, const Kitche
   bool high = std::abs(at - a.from) > std::abs(at - a.to);  // the row ends at the upper end
   if (is_corner) {
     high = !at_low_end(b->side);
-    // Of the two, one has the corner's cabinet, the other begins at its front.
+    // One of the two walls has the corner's cabinet, the other begins at its front.
     KitchenWall& shorter = has_corner_right(a.side, b->side) ? *b : a;
     const Side other = &shorter == &a ? b->side : a.side;
     (at_low_end(other) ? shorter.from : shorter.to) +=

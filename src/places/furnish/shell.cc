@@ -12,7 +12,7 @@ struct WallPiece {
 
 constexpr double kSliver = 0.001;  // what is narrower is rounding [m]
 
-// What is left of a wall between `from` and `to`, `low` and `high`, around its openings.
+// Pieces of a wall between `from` and `to`, `low` and `high`, around its openings.
 std::vector<WallPiece> cut(double from, double to, double low, double high,
                            std::vector<Opening> openings) {
   std::sort(openings.begin(), openings.end(),

@@ -1,6 +1,6 @@
 #pragma once
-// Where rooms are and what leads from one to another, before walls have thickness on paper. A
-// building is storeys of rooms that share one rectangular outline.
+// Rooms and the openings between them, before walls have thickness on paper. A building is storeys
+// of rooms that share one rectangular outline.
 
 #include <optional>
 #include <string>

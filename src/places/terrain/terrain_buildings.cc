@@ -1,4 +1,4 @@
-// What people built on open country: fences, barns of boards that have stood for long.
+// Buildings on open country: fences, weathered barns of boards.
 
 #include <array>
 #include <cmath>

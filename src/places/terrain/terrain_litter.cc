@@ -106,7 +106,7 @@ class Litter {
               std::move(list));
   }
 
-  // Where the pond's share is that much in that direction from its middle.
+  // Point in that direction from the pond's middle at which the pond's share has that value.
   Vec2f shore(const Pond& pond, double a, double share) const {
     double r = 0.5 * pond.radius;
     while (r < 2 * pond.radius &&

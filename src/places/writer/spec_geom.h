@@ -1,5 +1,5 @@
 #pragma once
-// What geoms that Gloam adds to a spec have in common.
+// Settings that geoms added to a spec by Gloam have in common.
 
 #include <mujoco/mujoco.h>
 

@@ -107,7 +107,7 @@ Prop toaster(Workshop& shop) {
         b.show("wires", steel,
                bar({c + wall, 0.022f * float(i), z - 0.09f},
                    {c + wall, 0.022f * float(i), z - 0.008f}, 0.001f, 0.001f, 5));
-    // Where round corners of the two halves leave the top open.
+    // Cover of the gap that the round corners of the two halves leave in the top.
   }
   b.show("shell", body, slab({-0.012f, -top.y, z - 0.003f}, {0.012f, top.y, z - 0.0003f}, 0));
   b.show("track", dark, slab({-0.004f, y - 0.004f, 0.05f}, {0.004f, y + 0.0006f, 0.155f}, 0));

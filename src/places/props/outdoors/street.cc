@@ -1,4 +1,4 @@
-// What stands in streets and yards.
+// Things in streets and yards.
 
 #include <cmath>
 #include <utility>

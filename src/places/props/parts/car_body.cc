@@ -121,7 +121,7 @@ Profile side_view() {
   return out;
 }
 
-// Of the cabin at its middle, z up to the roof; `in` moves all inwards.
+// Outline of the cabin at its middle, z up to the roof; `in` moves all inwards.
 Profile cabin_view(float in) {
   return inset(rounded_outline({{0.83f, kBelt - 0.03f},
                                 {0.16f, 1.365f},
@@ -202,7 +202,7 @@ void add_car_cabin(PropPart* b, Workshop* shop, const std::string& paint,
     b->show("mirror_glass", shop->mirror(),
             panel(0.15f, 0.085f).turned(Axis::kZ, 180).moved(0.513f, side * 0.90f, 1.0f));
   }
-  // What is seen through the windows.
+  // Interior, as seen through the windows.
   const std::string cloth = shop->fabric({0.10, 0.10, 0.105}),
                     dark = shop->plastic({0.05, 0.05, 0.052}, 0.6);
   b->show("inside", dark, slab({-1.70f, -0.66f, kBelt - 0.02f}, {0.66f, 0.66f, kBelt + 0.015f}, 0));

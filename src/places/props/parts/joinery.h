@@ -1,5 +1,5 @@
 #pragma once
-// What makers of furniture have in common: legs, pulls, drawers, hinged doors, shades, books.
+// Parts that makers of furniture have in common: legs, pulls, drawers, hinged doors, shades, books.
 
 #include "places/catalogue.h"
 
@@ -22,7 +22,7 @@ void collide_legs(PropPart* part, float x, float y, float height, float radius, 
 Solid bow_pull(float length, bool upright);
 Solid knob_pull(float radius);
 
-/// How the fronts of a piece of furniture look.
+/// Look of the fronts of a piece of furniture.
 struct FrontLook {
   std::string material;
   std::string pull_material;

@@ -1,4 +1,4 @@
-// What warehouses are full of.
+// Goods of warehouses.
 
 #include <cmath>
 

@@ -1,4 +1,4 @@
-// Where work is done in halls.
+// Workplaces in halls.
 
 #include <cmath>
 
