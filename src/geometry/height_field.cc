@@ -73,7 +73,7 @@ class GridTriangles {
   size_t count_ = 0;
 };
 
-/// What a line along x at y cuts out of a triangle.
+/// Part of a line along x at y inside of a triangle.
 struct Span {
   double x0 = std::numeric_limits<double>::infinity(), z0 = 0;  // its ends, x0 <= x1
   double x1 = -std::numeric_limits<double>::infinity(), z1 = 0;
@@ -150,7 +150,7 @@ struct Hit {
   bool faces_up;
 };
 
-/// Of the hits of one sample, sorted from above: `out(layer, z)`.
+/// Chooses floors from the hits of one sample, sorted from above: `out(layer, z)`.
 template <class Out>
 void choose_floors(std::span<const Hit> hits, int layers, Out&& out) {
   out(0, hits[0].z);

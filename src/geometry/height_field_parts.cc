@@ -235,7 +235,7 @@ Result<HeightError> height_error(std::span<const PlacedMesh> meshes, const Floor
   HeightGrid cells = floors.grid;
   --cells.columns, --cells.rows;
   GLOAM_TRY(const Floors source, sample_floors(meshes, cells, floors.layers, kErrorSeed));
-  // Of cells all of whose corners met something: the others' heights are made up.
+  // Cells count only if all of their corners met something: the others' heights are made up.
   const auto is_met = [&](int column, int row) {
     const auto corner = static_cast<size_t>(row) * static_cast<size_t>(floors.grid.columns) +
                         static_cast<size_t>(column);

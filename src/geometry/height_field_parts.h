@@ -25,7 +25,8 @@ struct HeightField {
 /// that are known, ring by ring. Error: there is none anywhere.
 Result<HeightField> ground_of(const Floors& floors);
 
-/// Of slabs: what is left under them of the air over the floor beneath [m].
+/// Slabs: thickness of the base, and the height by which they may shorten the air over the floor
+/// beneath [m].
 inline constexpr double kSlabBase = 0.05, kMostLostAir = 0.2;
 inline constexpr size_t kMostSlabs = 255;
 

@@ -1,5 +1,5 @@
 #pragma once
-// Where a time lies among keys of a motion. Device-safe.
+// Position of a time among keys of a motion. Device-safe.
 
 #include "base/vec.h"
 

@@ -26,7 +26,7 @@ GLOAM_HD uint32_t triangle_count(BvhRef ref) { return (ref & 7u) + 1; }
 
 }  // namespace bvh
 
-/// Of two children: the boxes as centre and half size, and what is in them.
+/// Node with two children: their boxes as centre and half size, and references to their content.
 struct alignas(64) BvhNode {
   Vec3f center[2], half[2];
   BvhRef child[2] = {bvh::kNothing, bvh::kNothing};

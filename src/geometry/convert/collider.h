@@ -43,7 +43,7 @@ class ColliderDistance {
   std::vector<Plane> planes_;  // of a hull's triangles
 };
 
-/// Of a rigid map.
+/// Rotation of a rigid map.
 Quat quaternion_of(const AffineOf<double>& X);
 
 }  // namespace gloam

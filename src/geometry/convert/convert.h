@@ -33,7 +33,7 @@ struct Converted {
 /// A flat mesh becomes a plate as thick as a thousandth of its longest side.
 Result<Converted> convert_mesh(const TriangleMesh& mesh, const ConvertOptions& options);
 
-/// How the colliders compare with the mesh, by sampled points.
+/// Comparison of the colliders with the mesh, by sampled points.
 struct Overlap {
   double mean_distance = 0, max_distance = 0;   ///< between the surfaces, of both ways [m]
   double mesh_volume = 0, collider_volume = 0;  ///< of closed meshes, of all colliders [m^3]

@@ -32,7 +32,7 @@ inline Vec2f transform_uv(const UvTransform& t, Vec2f uv) {
   return {c * u + s * v + t.offset.x, 1 - (-s * u + c * v + t.offset.y)};
 }
 
-/// Which channels of a picture a texture reads.
+/// Channels of a picture that a texture reads.
 enum class TextureChannel : uint8_t { kRed, kGreen, kBlue, kAlpha, kColor };
 
 /// A picture put on a material. Its value multiplies the material's own number or colour, unless

@@ -1,6 +1,5 @@
 #pragma once
-// How much of a stranger's model file is believed. All of them are checked before memory is asked
-// for.
+// Limits on a stranger's model file. All of them are checked before memory is allocated.
 
 #include <cstdint>
 

@@ -253,7 +253,7 @@ class ObjReader {
   }
 
   Status join_elements() {
-    // What relative indices count from: the number of elements before each piece.
+    // Base of relative indices: the number of elements before each piece.
     bases_.resize(pieces_.size());
     for (size_t i = 1; i < pieces_.size(); ++i) {
       const ObjPiece& before = pieces_[i - 1];

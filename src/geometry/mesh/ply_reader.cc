@@ -20,7 +20,7 @@ namespace {
 
 constexpr size_t kSlots = 11;
 
-// Which number of a vertex a property is: x y z, normal, u v, red green blue; -1 = none.
+// Slot of a vertex's property: x y z, normal, u v, red green blue; -1 = none.
 int slot_of(const std::string& name) {
   constexpr std::string_view kNames[kSlots][4] = {{"x"},
                                                   {"y"},
