@@ -27,7 +27,8 @@ class MediumField {
 
   const VolumeGrid& density() const { return density_; }          ///< [kg/m³]; null = clear
   const VolumeGrid& temperature() const { return temperature_; }  ///< [K]
-  /// Of cells' centres [m/s], world, (nz, ny, nx, 3); null = nothing that moves could feel it.
+  /// Velocities of cells' centres [m/s], world, (nz, ny, nx, 3); null = no moving thing is
+  /// affected.
   const VolumeGrid& velocity() const { return velocity_; }
   uint64_t digest() const { return digest_; }
 

@@ -1,5 +1,5 @@
 #pragma once
-// Where everything visible is at one instant, in structure-of-arrays with a leading world index
+// Poses of everything visible at one instant, in structure-of-arrays with a leading world index
 // (one world live). Made by PoseSolver on the consumer's thread; free of MuJoCo types. Places are
 // counted from the World's render origin (world/view/render_origin.h).
 

@@ -1,6 +1,6 @@
 #pragma once
-// What an effect adds to the height of a surface: ripples on water. One version of it, which
-// whoever has a Snapshot may hold.
+// Heights that an effect adds to a surface: ripples on water. One immutable version, which holders
+// of Snapshots share.
 
 #include <memory>
 #include <vector>
