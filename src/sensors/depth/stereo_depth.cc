@@ -46,7 +46,7 @@ float scattered_share(const MaterialDescription& m) {
   return m.opacity * (1 - through) * (1 - m.metallic * (1 - rough * rough));
 }
 
-/// What media on the way leave of a signal.
+/// Part of a signal that media on the way let through.
 float signal_through(const MediaView& media, Vec3f origin, Vec3f direction, float distance,
                      float signal) {
   const Bands bands = Bands::only(MediumBand::k905nm);

@@ -1,5 +1,5 @@
 #pragma once
-// What a depth camera with two eyes and a pattern projector measures.
+// Measurements of a depth camera with two eyes and a pattern projector.
 //
 // The disparity d = f B / Z of a pixel gets normal noise and is rounded to the matcher's steps, so
 // the depth's error grows with its square: sigma_Z = Z² / (f B) sigma_d (Khoshelham and Elberink
@@ -42,11 +42,11 @@ struct StereoDepthModel {
   double half_signal = 0;
 };
 
-/// What the table says, else what its preset says, else nothing. d435: Intel RealSense D400 series
+/// Values of the table, else of its preset, else nothing. d435: Intel RealSense D400 series
 /// (baseline 50 mm, 126 disparities, 1/32 px: white paper "Subpixel Linearity Improvement"; 0.08 px
-/// of noise: what its makers advise to reckon with, librealsense issue 3904). kinect:
-/// Khoshelham and Elberink 2012 (75 mm, steps and noise of 1/8 and 1/16 px, 0.5 … 5 m). Their edge
-/// and signal losses are estimates.
+/// of noise: the value that its makers advise, librealsense issue 3904). kinect: Khoshelham and
+/// Elberink 2012 (75 mm, steps and noise of 1/8 and 1/16 px, 0.5 … 5 m). Their edge and signal
+/// losses are estimates.
 StereoDepthModel stereo_depth_model(const StereoDepthOptions& options);
 
 /// Signal per pixel, (height x width), of exact channels: see above.

@@ -25,7 +25,7 @@ class Imager {
   void develop(const std::vector<Vec3f>& radiance, const Exposure& exposure, int64_t frame,
                std::vector<uint8_t>* rgb, std::vector<uint16_t>* raw);
 
-  /// What it keeps and works with [bytes].
+  /// Memory that it takes [bytes].
   static uint64_t memory(const ImagerOptions& options, const Intrinsics& intrinsics);
 
  private:

@@ -17,7 +17,7 @@ class PixelArray {
  public:
   PixelArray(const PixelOptions& options, size_t sites, uint64_t seed);
 
-  /// What an exposure makes of light.
+  /// Factors from light to electrons in an exposure.
   struct Gains {
     double electrons_per_light = 0;  ///< per cd/m²
     double dark_electrons = 0;

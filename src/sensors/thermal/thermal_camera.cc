@@ -27,7 +27,7 @@ double sent_by(const TemperatureOptions& o) {
          (1 - o.emissivity) * thermal_radiance(o.ambient);
 }
 
-/// What of `radiance` [W/(m² sr)] gets through the media, and what they add.
+/// Part of `radiance` [W/(m² sr)] that passes the media, and the radiance that they add.
 double through_media(const MediaView& media, Vec3f origin, Vec3f direction, double distance,
                      double radiance) {
   static const double room = thermal_radiance(kRoom);
