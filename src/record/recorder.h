@@ -84,7 +84,7 @@ struct LabelIds {
 using NamedText = std::pair<std::string, std::string>;
 using NamedNumber = std::pair<std::string, double>;
 
-/// What is known when a run starts.
+/// Facts that are known when a run starts.
 struct RunInfo {
   std::string title;                ///< heading of the contact sheet
   std::vector<NamedText> versions;  ///< {"gloam", "0.1.0"}, {"mujoco", "4.0.1"} …
@@ -105,7 +105,7 @@ struct RunInfo {
   std::vector<RecordedSensor> sensors;  ///< in the order that add_sensor() may be called for
 };
 
-/// What is known when it ended.
+/// Facts that are known when it ended.
 struct RunOutcome {
   std::string exit_reason = "completed";  ///< or "interrupted", "diverged: …"
   int64_t steps = 0;
