@@ -52,8 +52,8 @@ class LiveLidar final : public LidarStream {
 /// The [[lidar]] of a name. Error: there is none.
 Result<LidarDescription> find_lidar(const CompiledWorld& world, const std::string& name);
 
-/// How many even stretches a scan is cut into: at least `wanted` where that is possible, and such
-/// that the instants between them are steps of the simulation where that is possible.
+/// Number of even stretches that a scan is cut into: at least `wanted` where that is possible, and
+/// such that the instants between them are steps of the simulation where that is possible.
 int motion_stretches(Rational rate, Rational timestep, int wanted);
 
 }  // namespace gloam

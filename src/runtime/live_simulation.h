@@ -15,7 +15,8 @@
 
 namespace gloam {
 
-/// Whether automatic exposures go on while nobody opens their cameras, which takes rendering.
+/// Choice whether automatic exposures go on while nobody opens their cameras, which takes
+/// rendering.
 enum class Metering : uint8_t { kAlways, kNever };
 
 class LiveSimulation final : public Simulation {

@@ -21,7 +21,7 @@ VelocityGoal goal_at(const RobotOptions& robot, double time) {
   return current;
 }
 
-// Of what the robot collides with, sideways from its base [m].
+// Reach of the robot's colliders, sideways from its base [m].
 double reach_of(const mjModel& m, const mjData& d, int root) {
   double reach = 0;
   for (int g = 0; g < m.ngeom; ++g) {

@@ -1,6 +1,6 @@
 #pragma once
-// How well each robot follows its velocity goals, and how far it sees: one row of metrics.csv per
-// sample, and the numbers of the summary.
+// Metrics of robots: error against their velocity goals, and the visibility around them. One row of
+// metrics.csv per sample, and the numbers of the summary.
 
 #include <memory>
 #include <string>

@@ -1,5 +1,5 @@
 #pragma once
-// How much there is to see in a picture and in a scan.
+// Measures of the detail in a picture and in a scan.
 
 #include <vector>
 
