@@ -22,7 +22,7 @@ class WalkGround final : public GroundHeight {
 
  private:
   const NavWorld& world_;
-  double height_;  // of where the body is [m]
+  double height_;  // height of the body's place [m]
 };
 
 void move_person(double dt, AgentBody* agent) {

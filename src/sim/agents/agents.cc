@@ -13,10 +13,10 @@
 namespace gloam {
 namespace {
 
-constexpr Rational kMotionRate = {50, 1};  // of gait and bodies [Hz]
+constexpr Rational kMotionRate = {50, 1};  // rate of gait and bodies [Hz]
 constexpr int kPlaceTries = 200;
-constexpr double kMostShift = 3;  // of an agent that begins in something [m]
-constexpr double kApart = 0.9;    // that those of a crowd begin from each other [m]
+constexpr double kMostShift = 3;  // longest shift of an agent that begins in something [m]
+constexpr double kApart = 0.9;    // distance at which agents of a crowd begin from each other [m]
 constexpr double kFromRobot = 1.5;
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace {
 constexpr double kThere = 0.3;                 // from the end of a way [m]
 constexpr double kLeastWander = 4;             // [m]
 constexpr double kStuck = 6, kProgress = 0.4;  // [s], [m]
-constexpr double kTouch = 1;                   // that a touch is remembered for [s]
+constexpr double kTouch = 1;                   // time that a touch is remembered for [s]
 constexpr int kTries = 12;
 
 bool has_arrived(const AgentBody& agent) {

@@ -29,10 +29,10 @@ class AgentDoors {
   struct Door {
     int qpos = 0, dof = 0;
     double open = 0, rest = 0;  // angles [rad]
-    Vec3d middle;               // of the opening [m]
+    Vec3d middle;               // middle of the opening [m]
     // Plain, without holes: it is hashed.
     struct State {
-      double idle = 0;  // that nobody has been near since it was opened [s]
+      double idle = 0;  // time without anybody near since it was opened [s]
       int32_t is_wanted = 0, was_opened = 0, is_closing = 0, is_driven = 0;
     } state;
   };

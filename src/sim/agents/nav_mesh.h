@@ -19,7 +19,7 @@ struct NavSettings {
   double radius = 0.3;    ///< from walls [m]
   double climb = 0.22;    ///< [m]
   double slope = 40;      ///< [deg]
-  NavBounds bounds;       ///< of all that there is
+  NavBounds bounds;       ///< bounds of all geometry
   bool operator==(const NavSettings& o) const {
     return cell == o.cell && headroom == o.headroom && radius == o.radius && climb == o.climb &&
            slope == o.slope;

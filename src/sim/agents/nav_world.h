@@ -13,7 +13,7 @@ namespace gloam {
 
 /// Something that moves and is not an agent: a circle in the plane.
 struct NavObstacle {
-  Vec3d p;            ///< of its middle [m]
+  Vec3d p;            ///< place of its middle [m]
   double radius = 0;  ///< [m]
   Vec3d velocity;     ///< [m/s]
   bool is_robot = false;
@@ -56,7 +56,7 @@ class NavWorld {
     std::unique_ptr<NavMesh> mesh;
     std::vector<bool> dirty;  // by tile
     size_t dirty_count = 0;
-    std::vector<NavTile> initial;  // of the initial state
+    std::vector<NavTile> initial;  // tiles of the initial state
     bool is_initial = false;
   };
   // Bodies that move as one thing, or a robot.
@@ -64,7 +64,7 @@ class NavWorld {
     int body = 0;
     std::vector<int> geoms;
     bool is_robot = false;
-    Vec3d p, p_in_mesh;    // of its body, at the last time and when it came into the meshes
+    Vec3d p, p_in_mesh;    // place of its body, at the last time and when it came into the meshes
     double rest_time = 0;  // [s]
     bool is_in_mesh = false;
     std::vector<ColliderSurface> surfaces;  // in the meshes

@@ -9,9 +9,9 @@ namespace {
 constexpr double kLook = 6;         // [m]
 constexpr double kPersonal = 0.05;  // beyond radii [m]
 constexpr double kHorizon = 0.7;    // within which a collision makes it stop [s]
-constexpr double kGap = 0.6;        // that a vehicle leaves before it [m]
+constexpr double kGap = 0.6;        // gap that a vehicle leaves in front [m]
 constexpr double kBeside = 0.15;    // and to its sides [m]
-constexpr double kSlowing = 1.2;    // of vehicles that see something coming [m/s²]
+constexpr double kSlowing = 1.2;    // deceleration of vehicles that see something coming [m/s²]
 
 struct Nearby {
   Vec3d p, velocity, wanted;

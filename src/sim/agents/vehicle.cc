@@ -6,9 +6,9 @@ namespace {
 // Electric lift trucks and cars are driven at up to 1.5 m/s² in yards; passengers find 2 m/s² to
 // the side comfortable (Bosetti et al. 2014).
 constexpr double kThrust = 1.2, kBrakes = 2.2, kLateral = 1.8;  // [m/s²]
-constexpr double kSteerRate = 0.8;                              // of wheels [rad/s]
-constexpr double kLookTime = 0.8;                               // ahead of which a driver looks [s]
-constexpr double kSpin = 1.2;                                   // of what turns on the spot [rad/s]
+constexpr double kSteerRate = 0.8;  // rate of the wheels' steering [rad/s]
+constexpr double kLookTime = 0.8;   // ahead of which a driver looks [s]
+constexpr double kSpin = 1.2;       // rate of vehicles that turn on the spot [rad/s]
 
 double unsteered_x(const VehicleSize& s) {
   return static_cast<double>(s.steers_rear ? s.front_axle.x : s.rear_axle.x);

@@ -11,9 +11,9 @@
 namespace gloam {
 
 struct VehicleState {
-  double curvature = 0;              ///< that its wheels are set to, to the left [1/m]
-  std::array<double, 4> roll = {};   ///< by which the wheels have turned [rad]
-  std::array<double, 4> angle = {};  ///< that they are set to, to the left [rad]
+  double curvature = 0;              ///< curvature that its wheels are set to, to the left [1/m]
+  std::array<double, 4> roll = {};   ///< angles by which the wheels have turned [rad]
+  std::array<double, 4> angle = {};  ///< steering angles, to the left [rad]
 };
 
 /// x of the middle between the axles, in the frame of the prop [m].

@@ -7,16 +7,16 @@ namespace gloam {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kUsualSpeed = 1.3;      // that amplitudes are given for [m/s]
+constexpr double kUsualSpeed = 1.3;      // speed that amplitudes are given for [m/s]
 constexpr double kWalkRatio = 0.0063;    // step length / cadence of people of 1.7 m [m min]
 constexpr double kSlowestCadence = 1.2;  // [1/s]
 constexpr double kStrikePitch = 17 * kDegree, kPushPitch = 36 * kDegree;
 constexpr double kToe = 0.7, kHeel = 0.22;        // pivots from the ankle, shares of the foot
 constexpr double kStands = 0.06, kStarts = 0.09;  // [m/s]
 constexpr double kWalkerAhead =
-    0.42;                         // of the way in stance that a foot comes down ahead of the hips
-constexpr double kKnee = 0.025;   // that knees bent in mid-stance lower the hips at 1.3 m/s [m]
-constexpr double kReach = 0.997;  // of a leg's length: a knee is never quite straight
+    0.42;  // fraction of the way in stance by which a foot comes down ahead of the hips
+constexpr double kKnee = 0.025;   // descent of the hips by knees bent in mid-stance at 1.3 m/s [m]
+constexpr double kReach = 0.997;  // fraction of a leg's length: a knee is never quite straight
 
 double follow(double value, double target, double dt, double time) {
   return value + (target - value) * (1 - std::exp(-dt / time));

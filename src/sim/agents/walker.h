@@ -57,21 +57,21 @@ class Walker {
   struct Foot {
     Vec3d p;         // below the ankle on the sole [m]
     double yaw = 0;  // [rad]
-    Vec3d from;      // where it left the ground
+    Vec3d from;      // place where it left the ground
     double from_yaw = 0;
-    Vec3d to;  // where it will come down
+    Vec3d to;  // place where it will come down
     double to_yaw = 0;
   };
   // Plain, without holes: it is hashed.
   struct State {
     Foot feet[2];
-    double phase = 0;  // of the left foot: 0 = it comes down, 1 = again
+    double phase = 0;  // phase of the left foot: 0 = it comes down, 1 = again
     double stance = 0.62;
     double speed = 0;     // filtered [m/s]
     double activity = 0;  // 0 stands … 1 walks
     double ground = 0;    // below the hips, filtered [m]
-    double bob = 0;       // of the hips, down from standing [m], filtered
-    double lean[2] = {};  // of the trunk: forward, to the left [rad], filtered
+    double bob = 0;       // descent of the hips from standing [m], filtered
+    double lean[2] = {};  // lean of the trunk: forward, to the left [rad], filtered
     int64_t is_stepping = 0;
   };
   double phase_of(int foot) const;

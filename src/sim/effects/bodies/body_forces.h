@@ -41,8 +41,8 @@ void factor_tree(const mjModel& model, mjData& data, int tree);
 /// angular, in the world.
 struct BodyResponse {
   double velocity[6] = {};      ///< [m/s], [rad/s]
-  double acceleration[6] = {};  ///< of the last step, without what turning adds
-  double inverse[36] = {};      ///< of its inertia, as all its joints share it: row by row
+  double acceleration[6] = {};  ///< acceleration of the last step, without rotational terms
+  double inverse[36] = {};      ///< inverse of its inertia, as all its joints share it: row by row
 };
 
 /// One body at a time. data.qLD is of the present.

@@ -9,8 +9,8 @@
 namespace gloam {
 namespace {
 
-constexpr double kUpright = 1e-9;        // of a normal: the facet is a wall
-constexpr double kAsGoodAsAWall = 1e-3;  // of a normal's z: the surface is as good as a wall
+constexpr double kUpright = 1e-9;        // z of a normal below which the facet is a wall
+constexpr double kAsGoodAsAWall = 1e-3;  // z of a normal below which the surface counts as a wall
 
 }  // namespace
 

@@ -66,10 +66,11 @@ class ColliderBottom {
 
   int geom_, body_, type_;
   double size_[3], box_centre_[3], box_half_[3];
-  std::vector<SolidPlane> planes_;  // of boxes and hulls, in the geom's frame
+  std::vector<SolidPlane> planes_;  // planes of boxes and hulls, in the geom's frame
   double p_[3] = {}, R_[9] = {};
-  double p_G_[3] = {};                      // the world's origin in the geom's frame
-  double per_round_ = 0, per_upright_ = 0;  // of cylinders: 1 / (x² + y²), 1 / z of upright lines
+  double p_G_[3] = {};  // the world's origin in the geom's frame
+  // Terms of cylinders: 1 / (x² + y²), 1 / z of upright lines
+  double per_round_ = 0, per_upright_ = 0;
   double centre_[3] = {}, half_[3] = {};
   std::vector<Facet> lower_, upper_;
   std::vector<SolidPlane> upright_;  // in the world; n[2] = 0

@@ -8,7 +8,7 @@
 
 namespace gloam {
 namespace {
-constexpr double kLevel = 1e-9;  // of an axis' z: it lies level
+constexpr double kLevel = 1e-9;  // z of an axis below which it lies level
 }
 
 // From its middle along an axis of the world, which is `n` in the geom's frame [m].

@@ -41,7 +41,8 @@ class GridSolid {
   void inside(int axis, int b0, int c, int n, double grow, double* lo, double* hi) const;
 
  private:
-  static constexpr double kDiagonal = 1.7320508;  // of a cube, by which a box may reach further
+  // Diagonal of a cube over its edge: reach of a grown box
+  static constexpr double kDiagonal = 1.7320508;
   enum class Kind : uint8_t { kPlanes, kEllipsoid, kCylinder, kCapsule };
   void add_plane(const SolidPlane& plane);
   void bound(const double* centre, const double* half);

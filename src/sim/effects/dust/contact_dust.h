@@ -40,8 +40,9 @@ class ContactDust {
   };
   struct Ground {
     const DustDescription* box = nullptr;
-    double per_energy = 0;        // dust [kg/J]
-    std::vector<double> per_way;  // by body, of what its tree weighs in the model [kg/m]
+    double per_energy = 0;  // dust [kg/J]
+    // Dust per distance, by body, for the weight of its tree in the model [kg/m]
+    std::vector<double> per_way;
   };
   const Ground* ground_at(const double* p) const;
   void gather_contact(const mjModel& model, const mjData& data, int contact);

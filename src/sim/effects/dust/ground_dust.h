@@ -29,7 +29,7 @@ class GroundDust {
 
   const std::vector<DustDescription>& dusts_;
   GasGrid grid_;
-  std::vector<int> ground_;  // by column: k of the lowest cell of air above ground, -1 = none
+  std::vector<int> ground_;  // k of the lowest cell of air above ground, by column; -1 = none
   std::vector<GasEmission> emissions_;
 };
 

@@ -164,7 +164,7 @@ void GasEffect::run_thread() {
     {
       std::unique_lock lock(mutex_);
       wanted_.wait(lock, [this] { return quit_ || work_; });
-      if (!work_) return;  // what was begun is finished: Snapshots may outlive the simulation
+      if (!work_) return;  // running work is finished first: Snapshots may outlive the simulation
       now = std::move(work_);
       work_ = {};
       deposits.swap(deposits_);

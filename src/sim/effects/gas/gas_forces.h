@@ -43,10 +43,11 @@ class GasForces {
   // A body that moves, and the air around it.
   struct Felt {
     int body = 0;
-    double half[3] = {};  // of its box [m]
-    double reach = 0;     // of the rotors of its tree around the tree's centre, 0 = it has none [m]
-    double area = 0;      // of the largest side of the box [m²]
-    int gas = -1;         // that pushes it; -1 = none
+    double half[3] = {};  // half sides of its box [m]
+    // Reach of the rotors of its tree around the tree's centre, 0 = it has none [m]
+    double reach = 0;
+    double area = 0;      // area of the largest side of the box [m²]
+    int gas = -1;         // gas that pushes it; -1 = none
     double wind[3] = {};  // [m/s]
     double thinness = 1;  // T0 / T
   };

@@ -79,23 +79,23 @@ class GasObstacles {
   GasGrid grid_;
   WallRuns lines_;
   GridSolid solid_;                             // room
-  std::vector<std::vector<SolidPlane>> hulls_;  // by mesh, where a collider is one
+  std::vector<std::vector<SolidPlane>> hulls_;  // hulls by mesh, where a collider is one
   std::vector<int> still_geoms_, height_geoms_, moving_geoms_;
   int left_out_ = 0;
 
-  GasWalls still_;              // of what stands still; no velocities
+  GasWalls still_;              // walls of static things; no velocities
   GasWalls fixed_;              // without height fields; empty where there are none
   uint64_t height_serial_ = 0;  // LiveFields'
   struct Mocap {
     mjtNum p[3], q[4];
     RigidMotion motion;
   };
-  std::vector<Mocap> mocaps_;  // by mocap id, at the last instant
-  int64_t mocap_run_ = -1;     // of that
+  std::vector<Mocap> mocaps_;  // states by mocap id, at the last instant
+  int64_t mocap_run_ = -1;     // run of that instant
   double mocap_time_ = 0;      // [s]
   std::vector<Mover> movers_, movers_before_;
   std::vector<WallRun> runs_, runs_before_;
-  const GasWalls* filled_ = nullptr;  // by the last call
+  const GasWalls* filled_ = nullptr;  // walls filled by the last call
   bool changed_ = false, shape_changed_ = false;
 };
 

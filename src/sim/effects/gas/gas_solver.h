@@ -27,7 +27,7 @@ struct GasProperties {
   float vorticity = 0.4f;
   /// Share of its heat that warm gas loses per second to walls and by radiation [1/s].
   float cooling = 0.02f;
-  float dissipation = 0;  ///< of smoke, by deposition [1/s]
+  float dissipation = 0;  ///< rate of deposition of smoke [1/s]
   /// [J/kg]. Flexible polyurethane foam: 25 MJ/kg (SFPE Handbook, Tewarson: GM21 to GM37).
   float heat_of_combustion = 25e6f;
   /// Soot per fuel [kg/kg]. Flexible polyurethane foam: 0.10 to 0.23 (same table), wood: 0.015.
@@ -52,7 +52,8 @@ struct GasSource {
   float heat = 0;                     ///< [W], all of it to the gas
   float smoke = 0;                    ///< [kg/s]
   bool blows = false;
-  Vec3f velocity;  ///< where it blows: what its cells' air is driven at [m/s], world; at most 50
+  /// Velocity of a blower, to which its cells' air is driven [m/s], world; at most 50
+  Vec3f velocity;
 };
 
 /// A disc that drives air, of which it takes its thrust: the actuator disc of momentum theory
@@ -62,7 +63,7 @@ struct GasSource {
 /// than a voxel is spread over one.
 struct GasRotor {
   Vec3f hub;         ///< [m], world, at the beginning of the step; elsewhere it does nothing
-  Vec3f velocity;    ///< of the hub during the step [m/s], world
+  Vec3f velocity;    ///< velocity of the hub during the step [m/s], world
   Vec3f axis;        ///< unit, along which thrust points
   float radius = 0;  ///< [m]
   float thrust = 0;  ///< [N]
@@ -75,8 +76,8 @@ struct GasEmission {
 };
 
 struct GasStep {
-  int substeps = 0;             ///< of the whole step
-  int transport_substeps = 0;   ///< of smoke, heat and fuel, in all
+  int substeps = 0;             ///< substeps of the whole step
+  int transport_substeps = 0;   ///< substeps of smoke, heat and fuel, in all
   int pressure_iterations = 0;  ///< in all
   float max_speed = 0;          ///< at the end [m/s]
   /// L2 norms over cells of what is wrong with the divergence [1/s], the worst substep's.

@@ -11,7 +11,7 @@ namespace gloam {
 namespace {
 
 constexpr float kLongestSubstep = 0.1f;  ///< buoyancy is explicit: well below its period [s]
-constexpr float kVoxelsPerSubstep = 3;   ///< that air may move
+constexpr float kVoxelsPerSubstep = 3;   ///< distance that air may move
 constexpr int kMostSubsteps = 1000;
 
 /// Amounts that a source gives in a substep: of kHeat, kSmoke, kFuel, times cells.

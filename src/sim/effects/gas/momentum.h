@@ -39,7 +39,7 @@ class Momentum {
 
   Shape shape_;
   Field centre_[3];  ///< velocities of cells' centres [voxels per step]
-  Field moved_[3];   ///< by how much their air moved in the step [voxels]
+  Field moved_[3];   ///< displacement of their air in the step [voxels]
   Field smooth_;
   Field trusted_;  ///< 0 where something was in the way: no correction there
   Field carried_, least_, most_, corrected_;

@@ -103,7 +103,7 @@ void Multigrid::choose_cells(const Level& fine, int axis, std::vector<int>* star
   const int n = s.n(axis), coarse_n = (n + 1) / 2;
   find_lost(fine, axis);
   const float plane = float(s.nx) * float(s.ny) * float(s.nz) / float(n);
-  const float uneven = 0.01f * plane;  // what a cell that is not of two costs
+  const float uneven = 0.01f * plane;  // cost of a coarse cell that is not made of two
   // cost_[m][i]: of the first i cells joined to m.
   const auto at = [&](int m, int i) { return size_t(m) * size_t(n + 1) + size_t(i); };
   constexpr float kNever = 1e30f;
@@ -149,7 +149,7 @@ void Multigrid::coarsen(const Level& fine, Level& coarse) {
       return axis == a ? first(axis, i) + 1 : coarse.start[axis][size_t(i) + 1];
     };
     for_rows(faces, [&](int j, int k) {
-      float row[kLongestRow + 1];  // of the finer faces, added up along y and z
+      float row[kLongestRow + 1];  // sums of the finer faces along y and z
       const int n = t.faces(a).nx;
       std::fill_n(row, n, 0.0f);
       for (int z = first(2, k); z < end(2, k); ++z) {

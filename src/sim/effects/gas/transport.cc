@@ -194,7 +194,7 @@ void Transport::sweep_block(const Sweep& sweep, int first, int width, double* es
         GLOAM_IVDEP
         for (int i = 0; i < width; ++i) row.q[f][i] = field[i] / row.air[i];
       }
-      if (m < begin_face || m > n) {  // of nothing and nothing
+      if (m < begin_face || m > n) {  // zero on both sides
         std::fill_n(row.d[f], width, 0.0f);
       } else {
         const float* open = sweep.open + begin;

@@ -32,7 +32,7 @@ class Transport {
   void sweep_block(const Sweep& sweep, int first, int width, double* escaped);
 
   Shape shape_;
-  Field courant_[3];  ///< of faces: speed dt / voxel, 0 where closed
+  Field courant_[3];  ///< Courant numbers of faces: speed dt / voxel, 0 where closed
   std::vector<float> row_most_;
   std::vector<double> row_escaped_;
 };

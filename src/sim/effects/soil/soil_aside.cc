@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kNoWay = 1e-9;     // [m]
 constexpr double kMovesOn = 0.05;   // [m/s]
-constexpr double kHeapWidth = 1.5;  // of a heap, over the sinkage beside it
+constexpr double kHeapWidth = 1.5;  // width of a heap, over the sinkage beside it
 constexpr double kNoSlide = 1e-5;   // [m]
 constexpr int kFarthest = 64;       // cells to it
 

@@ -49,7 +49,7 @@ class SoilBed {
   /// Contacts of a body.
   struct Body {
     int id = 0;
-    double point[3] = {};         // where its motion is told of [m]
+    double point[3] = {};         // point at which its motion is given [m]
     size_t first = 0, count = 0;  // touches
     size_t lanes = 0;             // the first of them; kSide touches each
   };
@@ -74,12 +74,12 @@ class SoilBed {
   const SoilDescription& soil_;
   SoilContacts contacts_;
   std::vector<SoilCell> cells_;
-  std::vector<Answer> answers_of_;  // of the last step, (nbody)
+  std::vector<Answer> answers_of_;  // answers of the last step, (nbody)
   std::vector<double> answers_;
-  std::vector<double> moduli_;    // of patches: k_c / b + k_phi [N/m^(n+2)]
-  std::vector<Body> bodies_;      // of this step
-  std::vector<SoilLanes> lanes_;  // of their touches
-  std::vector<Change> changes_;   // of touched cells, room
+  std::vector<double> moduli_;    // moduli of patches: k_c / b + k_phi [N/m^(n+2)]
+  std::vector<Body> bodies_;      // bodies of this step
+  std::vector<SoilLanes> lanes_;  // lanes of their touches
+  std::vector<Change> changes_;   // changes of touched cells, scratch
   std::vector<ContactLoad> loads_;
   SoilTracks tracks_;
 };

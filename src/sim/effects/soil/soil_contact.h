@@ -27,7 +27,7 @@ struct SoilTouch {
   double p[3] = {};      ///< on the collider's underside, world [m]
   double slope[2] = {};  ///< dz/dx, dz/dy of it
   double depth = 0;      ///< below the undisturbed surface [m]
-  double fallen = 0;     ///< that surface's height over that of time 0 [m]
+  double fallen = 0;     ///< height of that surface over that of time 0 [m]
 };
 
 class SoilContacts {
@@ -63,7 +63,7 @@ class SoilContacts {
   // Part below the surface of a line along x [m].
   struct Line {
     double y = 0, left = 0, right = 0;
-    int number = 0;  // of all that the bed may have
+    int number = 0;  // number among all that the bed may have
   };
   struct Patch {
     double width = 0;  // Bekker's b [m]
@@ -72,17 +72,17 @@ class SoilContacts {
   // Cover of a collider when it was sampled last: valid until it has moved by a fraction of that.
   struct Footprint {
     bool known = false;
-    double p[3] = {}, R[9] = {};     // of the collider then
+    double p[3] = {}, R[9] = {};     // pose of the collider then
     double anchor[3] = {};           // in its frame
     double deepest = 0, size = 0;    // [m]
     double fallen = 0;               // until then [m]
     int low[2] = {}, high[2] = {};   // cells along x and y, inclusive
     std::vector<SoilTouch> touches;  // depths below the surface of time 0
     std::vector<Line> outline;       // from low y to high
-    uint64_t number = 0;             // of the look
-    uint64_t patch_number = 0;       // of the looks of all of
-    Patch patch;                     // that begins with it
-    std::vector<double> rise;        // of the underside over each touch since then [m]
+    uint64_t number = 0;             // number of the sampling
+    uint64_t patch_number = 0;       // number of the samplings of all its members
+    Patch patch;                     // patch that begins with it
+    std::vector<double> rise;        // rise of the underside over each touch since then [m]
     int parent = 0;                  // another of the same patch among here_, or itself
   };
   // Samples of many places under a collider.
@@ -92,7 +92,7 @@ class SoilContacts {
   };
   struct Mark {
     uint32_t round = 0;
-    int row = 0;     // of here_
+    int row = 0;     // row of here_
     float area = 0;  // covered [m²]
   };
   static constexpr int kContactLines = 16;      // over a collider, at least
@@ -132,7 +132,7 @@ class SoilContacts {
   double fallen_ = 0;               // [m]
   std::vector<int> here_, before_;  // rows of prints_: of this instant and of the last
   bool changed_ = true;
-  std::vector<SoilTouch> row_;  // of cells along x, sums
+  std::vector<SoilTouch> row_;  // sums of cells along x
   int row_low_, row_high_;      // in use
   std::vector<SoilTouch> touches_;
   std::vector<Patch> patches_;
@@ -140,7 +140,7 @@ class SoilContacts {
   std::vector<double> ys_, left_, right_;  // room, of lines
   Samples samples_;                        // room
   std::vector<Point> hull_;                // room
-  std::vector<Mark> marks_;                // of each cell
+  std::vector<Mark> marks_;                // mark of each cell
   uint32_t round_ = 0;
   uint64_t looks_ = 0;
 };

@@ -22,7 +22,7 @@ struct SoilLanes {
   double per_steep[kSide] = {},
          stretch[kSide] = {};      // 1 / (d d), and the area over that from above
   double loading[kSide] = {};      // on the loading curve, as it is now [Pa]
-  double shearing[3][kSide] = {};  // what cell.shear goes to since the last step
+  double shearing[3][kSide] = {};  // limit that cell.shear goes to since the last step
   double share[kSide] = {};        // and how far
   // History of cells:
   double sinkage[kSide] = {}, pressure[kSide] = {}, unloading[kSide] = {}, shear[3][kSide] = {};

@@ -85,7 +85,7 @@ void SoilContacts::add_chain(std::span<const Line> lines, double Line::* end, do
       if (side * ((b.y - a.y) * (c.x - a.x) - (b.x - a.x) * (c.y - a.y)) < 0) break;
       hull_.pop_back();
     }
-    if (hull_.size() == base + 1 && hull_.back().y == c.y) {  // of two lowest the farther one
+    if (hull_.size() == base + 1 && hull_.back().y == c.y) {  // the farther one of two lowest
       if (side * (c.x - hull_.back().x) > 0) hull_.back() = c;
       continue;
     }

@@ -39,7 +39,7 @@ class SoilTracks {
   };
   struct Version {
     std::shared_ptr<SurfaceHeights> heights;
-    Box stale;  // what it does not have yet
+    Box stale;  // part that it does not have yet
   };
   float fallen_on(int cell) const {
     return static_cast<float>(soil_.share_of(static_cast<size_t>(cell)) * fallen_);

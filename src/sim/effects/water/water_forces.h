@@ -52,7 +52,7 @@ class WaterForces {
 
   const std::vector<WaterDescription>& waters_;
   const std::vector<WaterShape>& shapes_;
-  std::vector<double> crests_;              // of each water: what its waves reach above rest [m]
+  std::vector<double> crests_;              // greatest height of each water's waves above rest [m]
   std::vector<double> armature_, inertia_;  // the model's dof_armature and dof_M0, for a step (nv)
   mjtNum *model_armature_ = nullptr, *model_inertia_ = nullptr;  // null: no step has begun
 };

@@ -30,7 +30,7 @@ class Wind {
 
  private:
   WindDescription wind_;
-  std::optional<Gusts> gusts_;  // where it blows
+  std::optional<Gusts> gusts_;  // gusts, if it blows
 };
 
 // ICAO's standard atmosphere at sea level, rounded.
@@ -51,14 +51,14 @@ class WindOnBodies {
 
  private:
   struct Root {
-    int qpos;          // where its height stands, -1 = it stays
+    int qpos;          // place of its height, -1 = it stays
     double z, weight;  // [m], share
   };
   Wind wind_;
   StepSchedule schedule_;
   double timestep_;  // [s]
   int64_t gust_step_ = -1;
-  Vec3 gust_;  // of that step [m/s]
+  Vec3 gust_;  // gust of that step [m/s]
   std::vector<Root> roots_;
 };
 

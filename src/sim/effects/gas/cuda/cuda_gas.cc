@@ -14,7 +14,7 @@ namespace gloam::gas {
 namespace {
 
 constexpr int kCellValues =
-    kScalars + 1;  ///< of a cell that goes to the host: scalars, heat release
+    kScalars + 1;  ///< values of a cell that goes to the host: scalars, heat release
 /// Floats in the card's memory for each cell and ghost, about.
 constexpr uint64_t kFloatsPerCell = 45;
 

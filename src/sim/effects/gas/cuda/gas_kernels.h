@@ -7,7 +7,7 @@
 
 namespace gloam::gas {
 
-inline constexpr int kCellValues = kScalars + 1;  ///< of a cell: scalars, heat release
+inline constexpr int kCellValues = kScalars + 1;  ///< values of a cell: scalars, heat release
 struct CellValues {
   float* of[kCellValues];
 };

@@ -10,8 +10,8 @@ namespace gloam::gas {
 /// Numbers that kernels leave for the host and for each other: one struct in the card's memory.
 struct CardNumbers {
   double reaction[4], escaped[4];
-  double before, norm, rz, after;  ///< of the projection: norms, residual times preconditioned
-  float alpha, beta;               ///< of the conjugate gradients' iteration
+  double before, norm, rz, after;  ///< sums of the projection: norms, residual times preconditioned
+  float alpha, beta;               ///< factors of the conjugate gradients' iteration
   int fresh;                       ///< 1: no direction to go on from
   int positive;                    ///< 0: the curvature is none, nothing is left but rounding
   int most;                        ///< bits of a float that is at least 0

@@ -13,14 +13,14 @@ struct CarryView {
   Shape shape;
   int axis;
   int stride;                 ///< from the cell before a face to that beyond
-  float wind;                 ///< of the air outside of the box
+  float wind;                 ///< wind of the air outside of the box
   float side[6];              ///< -x +x -y +y -z +z; 1 = open, 0 = closed
-  Faces<const float> moved;   ///< of cells: by how much their air moved [voxels]
-  Faces<const float> centre;  ///< of cells: velocity [voxels per step]
-  const float* trusted;       ///< of cells: 0 where something was in the way
+  Faces<const float> moved;   ///< displacement of cells' air [voxels]
+  Faces<const float> centre;  ///< velocity of cells [voxels per step]
+  const float* trusted;       ///< trust of cells: 0 where something was in the way
   const float* open;
   const float* old;  ///< the component
-  float* carried;    ///< of first order
+  float* carried;    ///< result of first order
   float* least;      ///< among the values that it was interpolated from
   float* most;
   float* corrected;  ///< the result
@@ -39,7 +39,7 @@ GLOAM_HD float outside(const CarryView& v, float x, float y, float z) {
 /// Path of the air of a face, backwards or forwards in time.
 struct Way {
   Between at;
-  float past;  ///< how far that lies beyond an open side [voxels]
+  float past;  ///< distance of that place beyond an open side [voxels]
 };
 
 GLOAM_HD Way way_back(const CarryView& v, int i, int j, int k) {

@@ -34,12 +34,12 @@ GLOAM_HD float fluctuation(int c, uint32_t count) {
 struct LiftView {
   Shape shape;
   const float* open;
-  const float* smooth;  ///< of cells: smoothness_at()
+  const float* smooth;  ///< smoothness_at() of cells
   const float* heat;
   const float* smoke;
   float ambient_density;  ///< [kg/m³]
   float dt;               ///< [s]
-  uint32_t count;         ///< of fluctuation()
+  uint32_t count;         ///< counter of fluctuation()
 };
 
 /// Velocity that the face at c gains [m/s]. Where flow is not smooth, heat fluctuates.

@@ -12,7 +12,7 @@ namespace gloam::gas {
 struct PoissonView {
   Shape shape;
   Faces<const float> weight;
-  const float* inverse;  ///< of the diagonal; 0 where a cell has no open face
+  const float* inverse;  ///< inverse of the diagonal; 0 where a cell has no open face
 };
 
 /// Weights of a cell's faces.
