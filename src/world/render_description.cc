@@ -269,7 +269,7 @@ void present_model(const CompiledWorld& world, RenderDescription* out) {
   free.near = 0;  // it stands where nothing is in its way
   free.culls_backs = false;
   if (needs_studio(scene, *out)) return add_studio(subject, all, free.X_WC, out);
-  const bool own_light = !scene.lights.empty() || scene.sky;  // of the scene, in real units
+  const bool own_light = !scene.lights.empty() || scene.sky;  // light of the scene, in real units
   if (scene.render.look == "auto" && !own_light) open_exposure(subject, free.X_WC, out);
 }
 

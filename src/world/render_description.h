@@ -67,12 +67,12 @@ struct CameraDescription {
   Intrinsics intrinsics;
   int camera = -1;  ///< row of PoseFrame's camera poses; -1 = free camera at X_WC
   Affine3f X_WC;
-  CameraSensing sensing;                               ///< of the scene's [[camera]] of this name
+  CameraSensing sensing;  ///< sensing of the scene's [[camera]] of this name
   float aperture_radius = 0, focus_distance = 1;       ///< [m]; radius 0 = everything is sharp
   double exposure_time = 0, readout_time = 0;          ///< as in CameraOptions [s]
   float near = 0;                                      ///< nothing nearer is seen [m]
   bool culls_backs = false;                            ///< nor surfaces from behind
-  std::shared_ptr<const std::vector<uint8_t>> hidden;  ///< by instance: not seen; null = none
+  std::shared_ptr<const std::vector<uint8_t>> hidden;  ///< flags by instance: not seen; null = none
 };
 
 struct RenderDescription {
@@ -96,7 +96,7 @@ struct RenderDescription {
   SkyDescription sky;
   float ev100 = 0;   ///< exposure by the scene's rule, used when the user gives none
   Vec3 origin;       ///< in the world [m]: all places here and in PoseFrames are counted from it
-  Vec3f center;      ///< of the model's bounding sphere at qpos0 [m]
+  Vec3f center;      ///< centre of the model's bounding sphere at qpos0 [m]
   float extent = 1;  ///< MuJoCo's stat.extent, about its diameter [m]
   std::vector<Error> unsupported;
 };

@@ -39,7 +39,7 @@ class LabelTable {
   std::string robot_name(int robot) const;
 
   const CompiledWorld& world_;
-  std::vector<int> bare_roots_;  // of a bare model's robots
+  std::vector<int> bare_roots_;  // roots of a bare model's robots
   std::map<std::pair<int, int>, uint32_t> instances_;
   std::map<std::string, uint32_t> classes_;
 };

@@ -69,7 +69,7 @@ Progress CompileProgress::state(bool is_all) const {
     const double by_clock = expected_share(passed, expected_);
     if (by_clock > share) {
       share = by_clock;
-      constexpr double kLate = 0.25;  // what is late stays late, in proportion
+      constexpr double kLate = 0.25;  // least remaining time of a late stage, over the time passed
       out.left = std::max(expected_ - passed, kLate * passed);
     }
   }

@@ -11,7 +11,7 @@
 namespace gloam {
 
 struct EndlessCompile {
-  std::string name;   ///< of the element, full
+  std::string name;   ///< name of the element, full
   std::string fault;  ///< "joint 'arm/elbow': armature is nan, line 3", as MuJoCo's errors are
 };
 

@@ -16,14 +16,14 @@ inline std::string title(const ObjectOptions& o) { return "object '" + o.name + 
 /// An object that is to be a body. Its frame is the file's, in Gloam's axes and metres.
 struct MeshObject {
   ObjectOptions options;  ///< its name is no other's
-  TriangleMesh mesh;      ///< of its node or the whole file, in the body's frame
+  TriangleMesh mesh;      ///< mesh of its node or of the whole file, in the body's frame
   bool is_place = false;  ///< a node of [environment], which may be a room
 };
 
 struct MeshObjects {
   std::vector<MeshObject> objects;
   std::vector<Error> notes;  ///< names that were changed, sizes that are odd
-  uint64_t hash = 0;         ///< of all that physics sees of them; 0 = there are none
+  uint64_t hash = 0;         ///< hash of all that physics uses of them; 0 = there are none
 };
 
 /// Reads their files, by way of the cache on disk. Errors: a file that cannot be read, no such

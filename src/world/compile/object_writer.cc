@@ -236,7 +236,7 @@ Status add_objects(const MeshObjects& objects, const std::vector<Converted>& con
   for (size_t i = 0; i < objects.objects.size(); ++i) {
     const ObjectOptions& o = objects.objects[i].options;
     for (const std::string& note : converted[i].notes)
-      if (o.motion == "dynamic" || !note.ends_with("its hull's"))  // what stands weighs nothing
+      if (o.motion == "dynamic" || !note.ends_with("its hull's"))  // static objects have no weight
         notes->push_back(
             {ErrorKind::kInput, fmt::format("{} {}", title_of(objects.objects[i]), note), o.loc});
     GLOAM_TRY_STATUS(ObjectWriter(objects.objects[i], spec).write(converted[i]));

@@ -31,8 +31,9 @@ static_assert(std::size(kFuelTable) == kFuels.size());
 constexpr float kGrowthTable[] = {0, 2.93f, 11.72f, 46.9f, 187.6f};
 static_assert(std::size(kGrowthTable) == kFireGrowths.size());
 
-constexpr double kUsualVoxel = 0.1;      // [m]
-constexpr double kUsualVoxels = 250e3;   // of a box whose voxels are left to us: 30 ms a step
+constexpr double kUsualVoxel = 0.1;  // [m]
+// Voxels of a box without a given size of voxels: 30 ms a step
+constexpr double kUsualVoxels = 250e3;
 constexpr double kMostVoxels = 1 << 27;  // 16 GB
 constexpr Vec3 kUsualSize = {8, 8, 4};   // [m]
 constexpr double kWall = 0.3;            // beyond the rooms of a generated place [m]

@@ -25,11 +25,11 @@ struct FuelDescription {
 /// Gives fuel, smoke or heat from `start` to `stop`.
 struct GasSourceDescription {
   std::string name;
-  int body = 0;  ///< that it moves with
+  int body = 0;  ///< body that it moves with
   Affine3f X_BS;
-  Vec3f half_size;             ///< of its box [m]
-  float power = 0;             ///< of a fire that has grown [W]
-  float growth = 0;            ///< of a fire: power = growth t² [W/s²]; 0 = at once
+  Vec3f half_size;             ///< half size of its box [m]
+  float power = 0;             ///< power of a fire that has grown [W]
+  float growth = 0;            ///< growth of a fire: power = growth t² [W/s²]; 0 = at once
   float smoke = 0;             ///< [kg/s]
   float heat = 0;              ///< [W]
   std::optional<Vec3f> jet;    ///< velocity of the air in it, in the body [m/s]
@@ -43,9 +43,9 @@ struct GasSourceDescription {
 /// A disc that drives air against its thrust.
 struct RotorDescription {
   std::string name;
-  int body = 0;             ///< that it moves with
-  int actuator = -1;        ///< whose force is the thrust; -1 = none
-  Vec3f p_B;                ///< of its hub [m]
+  int body = 0;             ///< body that it moves with
+  int actuator = -1;        ///< actuator whose force is the thrust; -1 = none
+  Vec3f p_B;                ///< place of its hub [m]
   Vec3f axis_B;             ///< unit, along which positive thrust points
   float thrust = 0;         ///< [N]; per unit of the actuator's force, if there is one
   float radius = 0;         ///< [m]
@@ -75,7 +75,7 @@ struct GasDescription {
   Rational rate;               ///< [Hz]
   MediumDescription medium;
   FuelDescription fuel;
-  float temperature = 0;      ///< of the air around [K]
+  float temperature = 0;      ///< temperature of the air around [K]
   std::optional<Vec3f> wind;  ///< [m/s]; empty = the scene's
   bool open[6] = {};          ///< sides of the box: -x +x -y +y -z +z
   float vorticity = 0, cooling = 0, settling = 0;
@@ -91,7 +91,7 @@ struct GasesDescription {
   std::vector<GasDescription> gases;
   std::vector<GasSourceDescription> sources;  ///< each gives to whichever gas it is in
   std::vector<RotorDescription> rotors;       ///< likewise
-  std::vector<DustDescription> dusts;         ///< of those that overlap the first counts
+  std::vector<DustDescription> dusts;  ///< areas of dust; the first of those that overlap counts
 };
 
 /// Errors: no such body or medium, a source in no box, boxes that overlap or have too many voxels.

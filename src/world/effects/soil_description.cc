@@ -20,7 +20,7 @@ constexpr double kUsualCells = 6e4;   // at most, unless a cell is asked for
 constexpr double kMostSoilCells = 5e5;
 constexpr double kGroundCell = 0.1;   // between looks for the ground [m]
 constexpr double kThinEdge = 0.3;     // over which a bed over ground thins out [m]
-constexpr double kLeastDepth = 0.01;  // of it there, over its depth
+constexpr double kLeastDepth = 0.01;  // least depth of it there, over its depth
 
 // Pressure, sinkage and strength: J. Y. Wong, "Theory of Ground Vehicles", table 2.3: dry sand,
 // sandy loam (15 % water) by the Land Locomotion Laboratory; clayey soil (38 %), Thailand; lean
@@ -61,7 +61,7 @@ SoilStrength strength_of(const SoilOptions& o) {
 }
 
 bool overlap(const SoilDescription& a, const SoilDescription& b) {
-  constexpr double kTouch = 1e-6;  // of edges that meet [m]
+  constexpr double kTouch = 1e-6;  // tolerance of edges that meet [m]
   return std::abs(a.x - b.x) < (a.size_x + b.size_x) / 2 - kTouch &&
          std::abs(a.y - b.y) < (a.size_y + b.size_y) / 2 - kTouch &&
          std::abs(a.level - b.level) < std::max(a.depth, b.depth);

@@ -20,7 +20,7 @@ struct SoilStrength {
   double k_c = 0;           ///< [N/m^(n+1)]
   double k_phi = 0;         ///< [N/m^(n+2)]
   double cohesion = 0;      ///< [Pa]
-  double tan_friction = 0;  ///< of the angle of internal friction
+  double tan_friction = 0;  ///< tangent of the angle of internal friction
   double shear = 0.01;      ///< K [m]
   double k_0 = 0;           ///< [N/m³]
   double a_u = 0;           ///< [N/m⁴]
@@ -31,14 +31,14 @@ struct SoilDescription {
   std::string name, kind;
   double x = 0, y = 0;            ///< middle [m]
   double size_x = 0, size_y = 0;  ///< [m]
-  double depth = 0;               ///< where all of it lies [m]
-  double growth = 0;              ///< of `depth`, where snow falls [m/s]
+  double depth = 0;               ///< depth where all of it lies [m]
+  double growth = 0;              ///< growth of `depth` under falling snow [m/s]
   bool fallen = false;            ///< it is what [weather] has let fall
   int nx = 0, ny = 0;             ///< cells, rows along y
-  double dx = 0, dy = 0;          ///< of a cell [m]
+  double dx = 0, dy = 0;          ///< size of a cell [m]
   double level = 0;               ///< z of a level surface, or of the highest cell's [m]
   std::vector<float> rest;        ///< z of each cell's surface at rest [m]; empty = `level`
-  std::vector<float> share;       ///< of `depth` that lies in each cell, 0 … 1; empty = 1
+  std::vector<float> share;       ///< fraction of `depth` that lies in each cell, 0 … 1; empty = 1
   SoilStrength strength;
   SourceLoc loc;
 

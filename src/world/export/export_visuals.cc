@@ -15,7 +15,7 @@ namespace gloam {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kExportedGroup = 2;  // of visuals in MuJoCo's own collection of models
+constexpr int kExportedGroup = 2;  // group of visuals in MuJoCo's own collection of models
 
 // The mesh as Wavefront OBJ, in metres.
 std::string to_obj(const TriangleMesh& mesh) {

@@ -72,7 +72,8 @@ LampMotion motion_of(const LightOptions& light) {
 
 /// Illuminance that an area gives at `distance`, at most that right in front of it [lx].
 float area_illuminance(double luminance, double area, bool is_flat, float distance) {
-  const double shown = is_flat ? area : area / 4;  // of convex shapes from all sides (Cauchy)
+  // Mean shadow of convex shapes over all directions (Cauchy)
+  const double shown = is_flat ? area : area / 4;
   return static_cast<float>(luminance * std::min(M_PI, shown / sqr(distance)));
 }
 

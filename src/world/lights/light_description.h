@@ -21,11 +21,12 @@ struct LightDescription {
       0, 0,
       0};  ///< point, spot: [cd] per channel; directional: illuminance on a facing surface [lx]
   float radius =
-      0;  ///< of the luminous sphere (point, spot) [m]; directional: sine of the half angle
-  float cos_cutoff = -1;   ///< spot: cosine of the half angle of the cone
-  float softness = 0;      ///< spot: share of the cone over which it fades
-  float legacy_scale = 0;  ///< what PoseFrame::light_diffuse is multiplied by to give `intensity`
-                           ///< while the light has no intensity in cd (docs/light.md)
+      0;  ///< radius of the luminous sphere (point, spot) [m]; directional: sine of the half angle
+  float cos_cutoff = -1;  ///< spot: cosine of the half angle of the cone
+  float softness = 0;     ///< spot: share of the cone over which it fades
+  /// Factor on PoseFrame::light_diffuse that gives `intensity` while the light has no intensity in
+  /// cd (docs/light.md)
+  float legacy_scale = 0;
   Vec3f ambient{0, 0, 0};  ///< MuJoCo's; a part of SkyDescription::ambient while it is active, the
                            ///< headlight's always
   bool is_static = false;  ///< never moves: fixed to a body that is welded to the world

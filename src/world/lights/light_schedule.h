@@ -32,7 +32,7 @@ struct Keyframes {
 /// frequency. Its mean is 1, and depth is the percent flicker of IES RP-16, (max - min) / (max +
 /// min).
 struct MainsRipple {
-  double frequency = 50;  ///< of the mains [Hz], > 0: ripple of 100 Hz
+  double frequency = 50;  ///< frequency of the mains [Hz], > 0: ripple of 100 Hz
   double depth = 0.3;     ///< 0..1: incandescent 0.1, fluorescent on a magnetic ballast 0.3
 };
 

@@ -239,7 +239,7 @@ class SurfaceMaker {
   ImportedTextures* textures_;
   RenderDescription* out_;
   ImportedSurface surface_;
-  const TextureRef* reference_ = nullptr;  // whose coordinates all textures have
+  const TextureRef* reference_ = nullptr;  // texture whose coordinates all textures use
   bool told_nearest_ = false;
 };
 

@@ -10,7 +10,7 @@ namespace gloam {
 
 struct ImportedSurface {
   MaterialDescription material;
-  UvUse uv;  ///< that meshes with this material need
+  UvUse uv;  ///< uvs that meshes with this material need
   /// True if MaterialDescription::bump_scale is still to be multiplied by the metres that one
   /// texture length spans, because MTL gives heights no unit.
   bool bump_by_texture = false;

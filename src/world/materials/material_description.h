@@ -33,9 +33,9 @@ struct MaterialDescription {
   Vec3f base_color{0.5f, 0.5f, 0.5f};  ///< linear, multiplies the texture
   float opacity = 1;
   float metallic = 0;
-  float roughness = 0.5f;         ///< of the specular layer, 0..1 (alpha = roughness²)
+  float roughness = 0.5f;         ///< roughness of the specular layer, 0..1 (alpha = roughness²)
   float specular_weight = 1;      ///< 0..1, scales the dielectric layer
-  float ior = 1.5f;               ///< of the dielectric layer
+  float ior = 1.5f;               ///< index of refraction of the dielectric layer
   Vec3f emission{0, 0, 0};        ///< luminance per channel [cd/m²]
   bool emits_outwards = false;    ///< the back of a mesh's triangles is dark
   int schedule = -1;              ///< row of RenderDescription::schedules, of the emission
@@ -53,7 +53,7 @@ struct MaterialDescription {
   Vec3f subsurface_color{0.8f, 0.8f, 0.8f};
   float coat_weight = 0, coat_roughness = 0, coat_ior = 1.6f;
   float coat_darkening = 1;   ///< 0..1, of the base by light that the coat throws back down
-  Vec3f coat_color{1, 1, 1};  ///< of light that has gone in and out through the coat
+  Vec3f coat_color{1, 1, 1};  ///< tint of light that has gone in and out through the coat
   float fuzz_weight = 0, fuzz_roughness = 0.5f;
   Vec3f fuzz_color{1, 1, 1};
   int pattern = -1, wear = -1;  ///< rows of RenderDescription::procedurals, in the geom's frame
@@ -69,7 +69,7 @@ struct MaterialDescription {
   // change live.
   int model_material = -1;      ///< row of PoseFrame::material_rgba and its kin, -1 = none
   std::array<float, 4> rgba{};  ///< display colour and opacity as in the model
-  bool own_color = false;       ///< that is the geom's: material_rgba does not apply
+  bool own_color = false;       ///< rgba is the geom's: material_rgba does not apply
   float own_ior = 0;            ///< given by the scene instead of the rules'; 0 = not given
   bool can_mirror = false;      ///< reflectance counts: of planes and boxes
 };

@@ -20,7 +20,7 @@ inline constexpr int kMediumBands = 6;
 struct MediumDescription {
   std::string name;
   std::array<float, kMediumBands> mass_extinction{};  ///< [m²/kg], >= 0
-  std::array<float, kMediumBands> albedo{};           ///< of single scattering, 0..1
+  std::array<float, kMediumBands> albedo{};           ///< albedo of single scattering, 0..1
   std::array<float, kMediumBands> g{};  ///< mean cosine of scattering (Henyey–Greenstein), -1..1
   /// Emission per metre, relative to a black body of its absorption coefficient and temperature: 1
   /// by Kirchhoff's law, 0 = dark. Red, green and blue alone.

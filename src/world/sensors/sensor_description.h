@@ -21,7 +21,7 @@ enum class SensorKind {
 
 struct SensorDescription {
   std::string name;  ///< full name, or "sensor_ID" where the model gives none
-  int first = 0;     ///< of its numbers in SnapshotData::sensordata
+  int first = 0;     ///< index of its numbers in SnapshotData::sensordata
   int count = 1;
   SensorKind kind = SensorKind::kNumbers;
   const SensorOptions* options = nullptr;  ///< the scene's last [[sensor]] that fits, or null

@@ -7,7 +7,7 @@
 namespace gloam {
 namespace {
 
-constexpr size_t kMostPoints = 2000;  // of a mesh
+constexpr size_t kMostPoints = 2000;  // points of a mesh
 
 /// Points of the unit sphere, evenly spread (a Fibonacci lattice).
 std::vector<Vec3f> unit_sphere(int count) {
@@ -157,7 +157,7 @@ std::vector<DrawnPart> subject_of(std::vector<DrawnPart> parts, const RenderDesc
     PartBox box;
     size_t parts = 0;
   };
-  std::map<int, Tree> trees;  // by root body; the world's own are 0
+  std::map<int, Tree> trees;  // trees by root body; the world's own are 0
   const auto root = [&](const DrawnPart& part) {
     return root_of[static_cast<size_t>(scene.instances[part.instance].body)];
   };

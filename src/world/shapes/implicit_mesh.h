@@ -24,7 +24,7 @@ struct CutPlane {
 
 struct ImplicitShape {
   std::vector<RoundSolid> solids;
-  float blend = 0.03f;  ///< how far solids flow into each other [m]
+  float blend = 0.03f;  ///< distance over which solids blend into each other [m]
   std::vector<CutPlane> cuts;
 
   /// Negative inside; near the surface about the distance [m].

@@ -9,7 +9,7 @@
 
 namespace gloam {
 
-inline constexpr int kFirstHiddenGroup = 3;  ///< of those that MuJoCo's viewer shows at first
+inline constexpr int kFirstHiddenGroup = 3;  ///< first group that MuJoCo's viewer hides at first
 
 /// True if the scene draws a group: those that it lists, else those that MuJoCo shows at first.
 bool draws_group(const RenderOptions& render, int group);

@@ -17,8 +17,8 @@ constexpr double kOzoneMolecules = 300 * 2.687e20;  // 300 Dobson units [1/m²]
 /// directions approximates a forward peak badly. Up to g² = 0.49; half of it errs least against
 /// path tracing of this air.
 constexpr double kPeak = 0.25;
-constexpr int kRadii = 48, kCosines = 128;     // of the sunlight table
-constexpr int kHeights = 16, kAngles = 33;     // of the scattered table
+constexpr int kRadii = 48, kCosines = 128;     // size of the sunlight table
+constexpr int kHeights = 16, kAngles = 33;     // size of the scattered table
 constexpr double kAngleReach = 0.2;            // [rad] on the earth, of a view from its ground
 constexpr int kZeniths = 8, kAirAzimuths = 6;  // directions about a point: per hemisphere; half
 constexpr int kScatterSteps = 24;

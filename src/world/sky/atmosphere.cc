@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kEyeHeight = 2;  // [m]
 constexpr int kSteps = 64;        // along a view
-constexpr int kAzimuths = 65;     // of views, over the half circle from the sun
+constexpr int kAzimuths = 65;     // azimuths of views, over the half circle from the sun
 constexpr double kNight = 2e-4;   // [cd/m²]
 
 /// Radiance along a view without the phase functions, which alone change fast from texel to texel.

@@ -9,8 +9,8 @@ namespace gloam {
 struct DayCycle {
   CivilTime start;  ///< at time 0
   GeoPosition place;
-  double speed = 1;       ///< of the clock [s/s]
-  double north = 0;       ///< of true north from +Y, counter-clockwise [rad]
+  double speed = 1;       ///< speed of the clock [s/s]
+  double north = 0;       ///< angle of true north from +Y, counter-clockwise [rad]
   AtmosphereOptions air;  ///< without its sun
 };
 

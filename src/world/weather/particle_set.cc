@@ -14,7 +14,7 @@ constexpr double kPi64 = 3.14159265358979323846;
 template <class Number, class Diameter, class Speed>
 void add_classes(double from, double to, const Number& number, const Diameter& diameter,
                  const Speed& speed, ParticleSet* set) {
-  constexpr int kParts = 64;  // of a class, for its integrals
+  constexpr int kParts = 64;  // parts of a class, for its integrals
   const double ratio = std::pow(to / from, 1.0 / kClasses);
   double low = from, water = 0;
   for (int i = 0; i < kClasses; ++i, low *= ratio) {

@@ -43,7 +43,7 @@ SplashDroplet splash_droplet(const ParticleClass& kind, const Splash& splash, in
 Crown crown_at(const ParticleClass& kind, float t) {
   constexpr float kYarinWeiss = 0.904f;          // (2/3)^(1/4)
   constexpr float kLife = 40, kFlare = 1.2f;     // [D / V]; the rim's radius over the foot's
-  constexpr float kRise = 0.065f, kRim = 0.17f;  // of the drop's: speed, diameter
+  constexpr float kRise = 0.065f, kRim = 0.17f;  // factors on the drop's speed, diameter
   const float d = kind.diameter, v = kind.fall_speed, age = t * v / (d * kLife);
   if (!(age > 0 && age < 1)) return {};
   const float radius = kYarinWeiss * std::sqrt(d * v * t);

@@ -8,7 +8,7 @@ namespace gloam {
 namespace {
 
 constexpr float kLeastDrop = 0.3f;  // from an edge [m]
-constexpr float kUphill = 0.01f;    // that water of some depth runs over [m]
+constexpr float kUphill = 0.01f;    // height that water of some depth runs over [m]
 constexpr double kDripGravity = 9.81;
 constexpr double kDripSlot = 0.25;  // for which drips are drawn at once [s]
 // Drops hang from edges about as far apart as the fastest growing ripples of a film do: 2 pi sqrt 2
@@ -140,7 +140,7 @@ void find_drips(const DripEdge& edge, uint64_t seed, double from, double to,
   const auto last = static_cast<int64_t>(std::floor(to / kDripSlot));
   for (int64_t slot = first; slot <= last; ++slot) {
     const uint64_t key = site | static_cast<uint64_t>(slot) << 40;
-    double at = 0;  // of Poisson's law, by the times between one and the next
+    double at = 0;  // time by Poisson's law, from the times between one and the next
     for (uint32_t n = 0;; ++n) {
       const Philox4 draw = random.draw(key, n);
       at -= std::log(1 - static_cast<double>(uniform_float(draw.v[0]))) / mean;

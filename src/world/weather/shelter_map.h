@@ -37,7 +37,7 @@ struct ShelterView {
 struct ShelterMap {
   Vec2f low;
   float cell = 0.1f;  ///< [m]
-  float lowest = 0;   ///< of what stands still, ground included [m]
+  float lowest = 0;   ///< height of the lowest static thing, ground included [m]
   int nx = 0, ny = 0;
   std::vector<float> height;  ///< as in ShelterView
 
