@@ -23,7 +23,7 @@ namespace gloam {
 struct Dependency {
   std::filesystem::path path;
   bool exists = true;
-  uint64_t hash = 0;  ///< of the content
+  uint64_t hash = 0;  ///< hash of the content
 };
 
 /// Files of the models of one level. Not movable: MuJoCo keeps pointers to it.

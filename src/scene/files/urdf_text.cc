@@ -97,7 +97,7 @@ class Preparer {
  private:
   // Checks for faults that MuJoCo refuses without a name or a line.
   Status check_tree(const pugi::xml_node& robot) const {
-    std::map<std::string, pugi::xml_node> links, joint_above;  // by the link's name
+    std::map<std::string, pugi::xml_node> links, joint_above;  // nodes by the link's name
     for (const pugi::xml_node& link : robot.children("link")) {
       const auto [first, is_new] = links.emplace(link.attribute("name").value(), link);
       if (is_new) continue;

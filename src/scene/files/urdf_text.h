@@ -14,7 +14,7 @@ namespace gloam {
 /// mesh compiler. In the visual text a small sphere of that name stands in its place.
 struct UrdfVisualMesh {
   std::string stand_in;    ///< name of the sphere
-  std::string link, name;  ///< of the link, and the visual's own, which may be empty
+  std::string link, name;  ///< names of the link and of the visual, which may be empty
   std::filesystem::path file;
   Vec3 scale = {1, 1, 1};
   SourceLoc loc;

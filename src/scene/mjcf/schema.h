@@ -22,12 +22,12 @@ struct MjcfAttribute {
 
   std::string_view name;
   MjcfType type = MjcfType::kString;
-  int least = 1, most = 1;     ///< how many numbers or keywords it takes; most may be kAnyLength
-  std::string_view keywords;   ///< of kKeyword, separated by spaces
+  int least = 1, most = 1;     ///< number of numbers or keywords it takes; most may be kAnyLength
+  std::string_view keywords;   ///< keywords of kKeyword, separated by spaces
   bool is_required = false;    ///< the parser refuses an element without it
-  std::string_view otherwise;  ///< what holds where it is not given; "" = none, or it depends
+  std::string_view otherwise;  ///< value that holds where it is not given; "" = none, or it depends
   std::string_view unit;       ///< "kg m^2"; "m|rad": which of them, the joint or tendon says
-  std::string_view text;       ///< of the manual
+  std::string_view text;       ///< text of the manual
   /// MJCF lacks it: the field of this name in one of mjSpec's structs, "mjsMesh". Only models in
   /// TOML can give it.
   std::string_view spec_owner;

@@ -21,7 +21,7 @@ struct AttributeEffect {
   /// "mjsGeom.name" for an element's name, "mjsWrap" for one more of them. Empty: it tells the
   /// parser something and leaves nothing behind (<include file>, <replicate count> …).
   std::vector<std::string> fields;
-  std::string complaint;  ///< of the parser, about the last value that it did not take
+  std::string complaint;  ///< message of the parser for the last value that it did not take
 };
 AttributeEffect find_effect(const MjcfElement& element, const MjcfAttribute& attribute);
 

@@ -50,7 +50,7 @@ class Drawer : private DrawChecks {
   using DrawChecks::begin_example;
   using DrawChecks::end_example;
 
-  int fitting() const { return fitting_; }  ///< how many options have been drawn
+  int fitting() const { return fitting_; }  ///< number of options that have been drawn
 
   // The value of an [override], whose types are the model's.
   std::optional<std::string> draw_override();

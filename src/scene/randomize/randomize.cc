@@ -56,7 +56,7 @@ Status draw_override(const RandomizeOptions& o, Drawer* drawer, Scene* scene,
 struct Draws {
   DrawStage stage;
   std::optional<FileFinder> files = {};
-  std::map<std::string, int> times = {};  // that an option has been drawn
+  std::map<std::string, int> times = {};  // number of times that an option has been drawn
   std::vector<DrawnOption> drawn = {};
 
   bool has(const RandomizeOptions& o) const {

@@ -225,7 +225,7 @@ class TableSchema {
 template <class Options>
   requires requires(Options& o) { struct_text(o); }
 Json schema_of(const Options& value, const FieldRule& /*rule*/) {
-  Options copy = value;  // what visits fields may change them
+  Options copy = value;  // a visitor of fields may change them
   MemberTexts texts;
   visit_texts(texts, copy);
   TableSchema table(std::move(texts));
