@@ -20,7 +20,7 @@ enum class ColliderShape { kBox, kCylinder, kCapsule, kSphere, kHull };
 
 struct PropVisual {
   std::string name;
-  std::string material;  ///< of a MaterialSet
+  std::string material;  ///< name in a MaterialSet
   TriangleMesh mesh;     ///< in the part's frame
 };
 
@@ -37,7 +37,7 @@ struct PropJoint {
   bool slides = false;
   Vec3 axis = {0, 0, 1};
   double low = 0, high = 0;  ///< [rad or m]
-  double initial = 0;        ///< where it stands at first, within the range
+  double initial = 0;        ///< position at first, within the range
   double damping = 0;        ///< [N m s/rad or N s/m]
   double friction = 0;       ///< dry [N m or N]
 };
@@ -93,7 +93,7 @@ struct Prop {
   };
   /// Bounding box of all visuals and colliders, joints where they stand at first.
   Box bounds() const;
-  double mass() const;  ///< of all parts [kg]
+  double mass() const;  ///< mass of all parts [kg]
 };
 
 /// About the axis by the angle [rad].

@@ -16,7 +16,7 @@ inline constexpr std::array<std::string_view, 4> kWheelNames = {
 struct VehicleAxle {
   float x = 0;                  ///< in the frame of the prop [m]
   float track = 0;              ///< between the middles of its wheels [m]
-  float radius = 0, width = 0;  ///< of its wheels [m]
+  float radius = 0, width = 0;  ///< size of its wheels [m]
 };
 
 struct VehicleSize {

@@ -23,7 +23,7 @@ constexpr double kPalletPitch = 0.9;
 constexpr double kDockWidth = 3.0, kDockHeight = 3.2;
 constexpr double kWay = 1.1;      // stays free in the staging zone
 constexpr double kLevel = 1.6;    // between shelves [m]
-constexpr double kGirders = 0.6;  // what hangs below the ceiling [m]
+constexpr double kGirders = 0.6;  // height of the girders below the ceiling [m]
 constexpr double kGirder = 6;     // between girders
 
 class WarehouseBuilder {
@@ -355,7 +355,7 @@ class WarehouseBuilder {
   const WarehouseOptions& o_;
   Dice dice_;
   Place place_;
-  FloorPlan plan_;  // of the staging zone alone
+  FloorPlan plan_;  // plan of the staging zone alone
   const double west_, east_, south_, north_;
   int aisles_ = 0, bays_ = 0;
   double aisle_ = 0;  // width [m]

@@ -10,10 +10,10 @@
 namespace gloam {
 namespace {
 
-constexpr double kDepth = 0.62;     // of a row of units, with the gap behind
-constexpr double kCorner = 1.10;    // of a corner's cabinet along its wall
-constexpr double kTop = 0.9;        // of the worktop
-constexpr double kTilesTop = 1.45;  // where cupboards begin
+constexpr double kDepth = 0.62;     // depth of a row of units, with the gap behind
+constexpr double kCorner = 1.10;    // length of a corner's cabinet along its wall
+constexpr double kTop = 0.9;        // height of the worktop
+constexpr double kTilesTop = 1.45;  // height where cupboards begin
 
 // The wall that a corner's cabinet stands at has the corner on the cabinet's right, its -y.
 bool has_corner_right(Side side, Side other) {
@@ -149,7 +149,7 @@ void Furnisher::kitchen_rows(const std::vector<KitchenWall>& walls, const Kitche
   KitchenWall a = first;
   std::optional<KitchenWall> b;
   if (second) b = *second;
-  double at = (a.from + a.to) / 2;  // where the window is
+  double at = (a.from + a.to) / 2;  // place of the window
   for (const Opening& o : layout_.openings(a.side))
     if (o.kind == OpeningKind::kWindow) at = o.center;
   bool high = std::abs(at - a.from) > std::abs(at - a.to);  // the row ends at the upper end
@@ -179,7 +179,7 @@ void Furnisher::kitchen_row(Side side, double from, const std::vector<KitchenPie
   std::vector<Opening> windows;
   for (const Opening& o : layout_.openings(side))
     if (o.kind == OpeningKind::kWindow) windows.push_back(o);
-  double at = from, low = 1e9, high = -1e9;  // of the worktop
+  double at = from, low = 1e9, high = -1e9;  // ends of the worktop
   uint64_t number = 2;
   for (const KitchenPiece& piece : row) {
     const std::string kind = piece.kind;

@@ -10,7 +10,7 @@ struct WallPiece {
   double from, to, low, high;
 };
 
-constexpr double kSliver = 0.001;  // what is narrower is rounding [m]
+constexpr double kSliver = 0.001;  // width below which a piece is rounding [m]
 
 // Pieces of a wall between `from` and `to`, `low` and `high`, around its openings.
 std::vector<WallPiece> cut(double from, double to, double low, double high,

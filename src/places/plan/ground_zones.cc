@@ -9,7 +9,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kBase = 2;  // of solid ground under its lowest sample [m]
+constexpr double kBase = 2;  // depth of solid ground under its lowest sample [m]
 
 struct Corner {
   Vec3f p, n;

@@ -90,7 +90,7 @@ class RoomLayout {
   Place* place_;
   WayMap ways_;
   std::vector<Opening> openings_[4];
-  std::vector<Rect> keep_free_;                   // where doors swing and one steps through them
+  std::vector<Rect> keep_free_;  // areas where doors swing and one steps through them
   std::vector<std::pair<double, double>> steps_;  // points that must be reached: before openings
   std::vector<Taken> taken_;
   struct Hung {

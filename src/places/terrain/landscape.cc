@@ -6,7 +6,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kSteepest = 0.42;               // of the hills: what robots climb
+constexpr double kSteepest = 0.42;               // slope of the hills: robots can climb it
 constexpr double kFlatRadius = 2.5, kBlend = 7;  // about the origin [m]
 constexpr double kRoadStep = 1, kRoadAway = 60;  // [m]
 constexpr double kShoulder = 0.8, kGraded = 5;   // beside the road: level, then to the hills [m]

@@ -15,16 +15,16 @@ namespace gloam {
 
 /// A level rectangle for a building, turned.
 struct BuildingSite {
-  double x = 0, y = 0, heading = 0;  ///< of its middle; its front looks along the heading
+  double x = 0, y = 0, heading = 0;  ///< place of its middle; its front looks along the heading
   double half_x = 0, half_y = 0;     ///< [m] along the heading, across it
-  double z = 0;                      ///< of its ground [m]
+  double z = 0;                      ///< height of its ground [m]
   /// Distance of a point outside of it [m]; 0 inside.
   double distance(double px, double py) const;
 };
 
 struct Pond {
   double x = 0, y = 0, radius = 0;  ///< [m] of its water, about
-  double z = 0;                     ///< of its surface [m]
+  double z = 0;                     ///< height of its surface [m]
 };
 
 class Landscape {

@@ -9,7 +9,8 @@
 namespace gloam {
 namespace {
 
-constexpr double kPebblePatch = 0.5;  // of pebbles, square and flat: small where ground bends [m]
+// Patch of pebbles, square and flat: small where ground bends [m]
+constexpr double kPebblePatch = 0.5;
 constexpr int kPebbleShapes = 3;
 
 // Stones of 1 to 5 cm, half in the ground: a foot, a shoulder and a top each.

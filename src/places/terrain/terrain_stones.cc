@@ -11,7 +11,8 @@ namespace gloam {
 namespace {
 
 constexpr Vec3 kRock{0.36, 0.28, 0.2};  // size of a rock [m]
-constexpr double kClearOfFence = 1.0;   // of a rock's middle to the border: the fence is inside it
+// Distance of a rock's middle to the border: the fence is inside it
+constexpr double kClearOfFence = 1.0;
 
 // Pose of a stone at rest on three points of the ground's collider. Empty: it would slide, or the
 // ground rises between them.

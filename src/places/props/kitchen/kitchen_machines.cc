@@ -129,7 +129,7 @@ Prop microwave(Workshop& shop) {
   const Vec3f size = shop.size({0.36f, 0.48f, 0.28f});
   const float x = std::clamp(size.x, 0.30f, 0.50f) / 2, y = std::clamp(size.y, 0.42f, 0.62f) / 2,
               z = std::clamp(size.z, 0.24f, 0.40f);
-  const float body = x - 0.034f, wide = 2 * y - 0.11f;  // of the door, at -y
+  const float body = x - 0.034f, wide = 2 * y - 0.11f;  // size of the door, at -y
   const float split = -y + wide;
   Prop p;
   PropPart& b = p.body();

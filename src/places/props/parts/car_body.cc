@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kBelt = kCarBelt;
 constexpr float kWheelArch = kCarSize.front_axle.radius + 0.055f, kUnder = kCarUnder;
-constexpr float kTumble = 12;  // that the cabin's sides lean in [deg]
+constexpr float kTumble = 12;  // angle by which the cabin's sides lean in [deg]
 
 Profile arc(float x, float z, float radius, float from, float to, int steps) {
   Profile out;
@@ -93,7 +93,7 @@ Solid shell(const Profile& outline, float half, float radius, float round_ends) 
 
 Profile side_view() {
   const float front = kCarSize.front_axle.x, rear = kCarSize.rear_axle.x, z = 0.302f;
-  const float low = std::asin((kUnder - z) / kWheelArch);  // where an arch meets the sill
+  const float low = std::asin((kUnder - z) / kWheelArch);  // angle where an arch meets the sill
   Profile out;
   for (const float x : {rear, front}) {
     const Profile arch = arc(x, z, kWheelArch, kPi - low, low, 16);
