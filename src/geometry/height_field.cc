@@ -18,8 +18,8 @@ constexpr float kNoHeight = std::numeric_limits<float>::quiet_NaN();
 constexpr double kSameSurface = 1e-3;  // [m] two triangles that meet in an edge under a sample
 constexpr size_t kMostSurfaces = 64;   // over one another, on average over a band of rows
 constexpr double kMostDrawn = 1024;    // the same over the grid, where the highest alone is kept
-constexpr int kBands = 64;             // of rows, one task each
-constexpr int kShares = 16;            // of triangles, one task each
+constexpr int kBands = 64;             // bands of rows, one task each
+constexpr int kShares = 16;            // groups of triangles, one task each
 
 Vec3d to_double(Vec3f v) { return {v.x, v.y, v.z}; }
 
@@ -145,7 +145,7 @@ class Band {
 };
 
 struct Hit {
-  uint32_t sample;  // of the band
+  uint32_t sample;  // index in the band
   float z;
   bool faces_up;
 };

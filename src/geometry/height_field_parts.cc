@@ -197,7 +197,7 @@ class Slabs {
 
   const Floors& floors_;
   size_t columns_;
-  std::vector<bool> used_;  // of quads, by the node at their low corner
+  std::vector<bool> used_;  // flags of quads, by the node at their low corner
   std::array<double, 2> reach_;
 };
 

@@ -8,7 +8,7 @@ namespace gloam {
 /// Solid from `z` down to `base` below its lowest sample.
 struct HeightField {
   HeightGrid grid;
-  int column = 0, row = 0;  ///< of the floors' grid that its first sample is
+  int column = 0, row = 0;  ///< place of its first sample in the floors' grid
   double base = 1;          ///< [m]
   std::vector<float> z;     ///< [m], by row and column
   int64_t filled = 0;       ///< samples that met nothing

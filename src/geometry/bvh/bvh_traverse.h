@@ -118,7 +118,7 @@ GLOAM_HD bool traverse(const BvhView& view, const Solids& solids, Vec3f o, Vec3f
     if (enough && !in_shadow) return true;
     if (ref != kNothing && !enough) continue;
     if (in_mesh && !enough) {
-      in_mesh = false;  // what was put off before it lies in the world again
+      in_mesh = false;  // references pushed before it are in the world again
       local = {from, along};
       box = BoxRay::make(from, along);
       ref = stack[--top];

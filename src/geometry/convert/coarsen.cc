@@ -137,7 +137,7 @@ class Clustering {
   }
 
   const TriangleMesh& mesh_;
-  std::vector<Vec3d> facing_;  // of vertices, not normalised
+  std::vector<Vec3d> facing_;  // normals of vertices, not normalised
   Vec3f low_, high_;
   double cell_ = 0;  // [m]
   std::vector<uint32_t> cluster_;

@@ -17,9 +17,9 @@ namespace {
 constexpr double kRoomHeight = 1.5, kRoomWidth = 0.8;  // the least that one stands in [m]
 constexpr size_t kMostTriangles = 8000;                // larger shells are made coarser
 constexpr size_t kEnoughPieces = 256;
-constexpr double kThickest = 0.1, kThickness = 0.05, kThinnest = 0.01;  // of slabs [m]
+constexpr double kThickest = 0.1, kThickness = 0.05, kThinnest = 0.01;  // thickness of slabs [m]
 constexpr double kDepthStep = 0.02;                                     // [m]
-constexpr size_t kDepthSamples = 64;                                    // of a piece
+constexpr size_t kDepthSamples = 64;                                    // samples of a piece
 constexpr double kBent = 0.7;  // least cosine between the normals of what is one face
 
 /// Tolerances of one face: `rough` = distance from its plane [m]; `gaps` = fraction of its
@@ -206,7 +206,7 @@ class Faces {
   const MeshQueries* air_;
   const double size_;  // diagonal [m]
   std::vector<size_t> owner_;
-  std::vector<Piece> pieces_;  // by the triangle that owns it
+  std::vector<Piece> pieces_;  // pieces by the triangle that owns each
   std::vector<Edge> edges_;
   size_t count_ = 0;
 };

@@ -44,7 +44,7 @@ struct ImportedLight {
   Vec3f color = {1, 1, 1};                     ///< linear Rec. 709
   float intensity = 1;                         ///< [cd]; directional: [lx]
   float range = 0;                             ///< [m] beyond which it gives nothing; 0 = no end
-  float inner_cone = 0, outer_cone = kPi / 4;  ///< of a spot: half angles [rad]
+  float inner_cone = 0, outer_cone = kPi / 4;  ///< half angles of a spot [rad]
   Affine3f X_FL;                               ///< light's frame; it shines along its -z
 };
 
@@ -54,7 +54,7 @@ struct ModelFile {
   std::vector<ImportedImage> images;
   std::vector<ImportedInstance> instances;
   std::vector<ImportedLight> lights;
-  uint64_t dropped_triangles = 0;  ///< of no area
+  uint64_t dropped_triangles = 0;  ///< triangles without area
   bool was_y_up = false;           ///< glTF, most COLLADA: turned into Gloam's axes
   /// Parts of the file that Gloam leaves out (skins, missing pictures …), one sentence each.
   std::vector<std::string> notes;

@@ -17,7 +17,7 @@ namespace gloam {
 struct ModelPart {
   std::string name;  ///< relative to the model's folder
   bool exists = true;
-  uint64_t hash = 0;  ///< of its content
+  uint64_t hash = 0;  ///< hash of its content
 };
 
 /// Files beside a model, none outside the root.

@@ -356,10 +356,10 @@ class PlyReader {
   std::span<const uint8_t> body_;
   ProgressCount progress_;
   size_t vertex_element_ = SIZE_MAX;
-  std::vector<int> slots_;  // of the vertices' properties
+  std::vector<int> slots_;  // slots of the vertices' properties
   TriangleMesh mesh_;
   std::vector<Vec3f> colors_;  // linear, by vertex; empty = none
-  float full_scale_ = 1;       // of a channel
+  float full_scale_ = 1;       // full scale of a channel
   PolygonList faces_;
 };
 
