@@ -41,7 +41,7 @@ class MediumField {
 /// The two versions between which an instant lies.
 struct FieldWindow {
   std::shared_ptr<const MediumField> before, after;
-  float share = 0;  ///< of `after`, 0 <= … < 1
+  float share = 0;  ///< weight of `after`, 0 <= … < 1
 
   /// The grids at the instant; waits for what is not yet done.
   void read(VolumeGrid* density, VolumeGrid* temperature) const;

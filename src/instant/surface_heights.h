@@ -9,7 +9,7 @@ namespace gloam {
 
 struct SurfaceHeights {
   std::vector<float> height;  ///< [m], (ny x nx), at the middles of the grid's cells
-  std::vector<float> rate;    ///< of its change [m/s], likewise
+  std::vector<float> rate;    ///< rate of its change [m/s], likewise
 };
 
 /// At an instant `since` after the field's: height + rate * since.
