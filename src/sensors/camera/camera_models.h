@@ -68,13 +68,13 @@ class CameraModels {
   const ModelOutputs outputs_;
   uint64_t seed_ = 0;
   double ev100_ = 0;
-  Exposure exposure_;  // of that value, for the imager
+  Exposure exposure_;  // exposure of that value, for the imager
   std::unique_ptr<Imager> imager_;
   std::optional<StereoDepthModel> stereo_;
   std::shared_ptr<EventTrack> events_;
   bool leads_events_ = true;
   std::optional<ThermalCamera> thermal_;
-  SensorAir air_;  // of these two
+  SensorAir air_;  // air of these two
 };
 
 }  // namespace gloam

@@ -40,8 +40,8 @@ struct CameraChannels {
 
 /// Memory that pictures take, nearly [bytes].
 struct PictureMemory {
-  uint64_t working = 0;  ///< of the sensor, from its first picture on
-  uint64_t frame = 0;    ///< of each CameraFrame
+  uint64_t working = 0;  ///< memory of the sensor, from its first picture on
+  uint64_t frame = 0;    ///< memory of each CameraFrame
 };
 
 /// Longest path of a picture, in vertices: RenderOptions::max_depth, or what is usual in a scene
@@ -126,8 +126,8 @@ class CameraSensor {
   RenderStats stats_;
   Intrinsics intrinsics_;
   Rational rate_;
-  std::unique_ptr<CameraModels> models_;  // what happens after the light
-  std::unique_ptr<ViewHistory> history_;  // of the fast tier
+  std::unique_ptr<CameraModels> models_;  // models after the light
+  std::unique_ptr<ViewHistory> history_;  // history of the fast tier
   std::optional<LensDrops> drops_;
   std::unique_ptr<Denoiser> denoiser_;  // null: the samples as they are
   Film film_;
@@ -135,7 +135,7 @@ class CameraSensor {
   bool same_instant_ = false;
   Affine3f accumulated_from_;   // pose of the camera
   int pictures_ = 0;            // in a row of one instant from one pose
-  std::vector<Vec3f> sums_[3];  // of radiance, albedo and normal over them
+  std::vector<Vec3f> sums_[3];  // sums of radiance, albedo and normal over them
   mutable std::mutex pose_mutex_;
   Affine3f free_pose_, previous_free_pose_;
 };

@@ -36,7 +36,7 @@ class EventCamera {
   int width_, height_;
   uint64_t seed_;
   bool started_ = false;
-  double time_ = 0;                 // of the last frame [s]
+  double time_ = 0;                 // time of the last frame [s]
   std::vector<float> seen_;         // log light in the last frame
   std::vector<float> reference_;    // log light at the last event
   std::vector<double> last_event_;  // [s]

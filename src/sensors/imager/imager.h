@@ -40,7 +40,7 @@ class Imager {
   std::optional<Mosaic> mosaic_;
   std::optional<PixelArray> pixels_;
   std::vector<float> vignetting_;  // factors on the light of pixels; empty = none
-  std::vector<float> shares_;      // of the top of the scale, per site
+  std::vector<float> shares_;      // fractions of the top of the scale, per site
   std::vector<Vec3f> light_;       // the developed picture's [cd/m²]
 };
 

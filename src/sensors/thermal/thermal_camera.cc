@@ -15,7 +15,7 @@ namespace gloam {
 namespace {
 
 constexpr double kRoom = 293.15;    // [K]
-constexpr double kReference = 300;  // of NETD [K]
+constexpr double kReference = 300;  // reference of NETD [K]
 constexpr int kBand = static_cast<int>(MediumBand::k8to14um);
 
 bool fits(const TemperatureOptions& o, const LabelRow& label) {

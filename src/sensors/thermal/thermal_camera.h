@@ -33,7 +33,7 @@ class ThermalCamera {
 
   ThermalOptions options_;
   uint64_t seed_;
-  std::vector<double> radiance_;  // by part; 0 = the sky [W/(m² sr)]
+  std::vector<double> radiance_;  // radiance by part; 0 = the sky [W/(m² sr)]
 };
 
 }  // namespace gloam
