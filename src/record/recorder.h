@@ -89,16 +89,16 @@ struct RunInfo {
   std::string title;                ///< heading of the contact sheet
   std::vector<NamedText> versions;  ///< {"gloam", "0.1.0"}, {"mujoco", "4.0.1"} …
   std::string scene_file;           ///< "" for scenes made in code
-  std::string scene_hash;           ///< of its content, hexadecimal
+  std::string scene_hash;           ///< hash of its content, hexadecimal
   uint64_t seed = 0;
   double timestep = 0;              ///< [s]
   double duration = 0;              ///< planned [s]
   std::vector<NamedText> settings;  ///< renderer tier, samples, threads …
-  std::vector<NamedText> drawn;     ///< what came of [[randomize]]: option and value
+  std::vector<NamedText> drawn;     ///< result of [[randomize]]: option and value
   std::vector<RecordedCamera> cameras;
   std::vector<RecordedLidar> lidars;
   std::vector<LabelRow> labels;
-  std::vector<LabelIds> label_ids;          ///< of `labels`, in order
+  std::vector<LabelIds> label_ids;          ///< ids of `labels`, in order
   std::vector<std::string> metric_columns;  ///< the first is the time [s]
   std::vector<std::string> state_columns;   ///< likewise
   std::vector<MetricPlot> plots;
