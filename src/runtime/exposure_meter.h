@@ -56,7 +56,7 @@ class ExposureMeter {
   const uint64_t seed_;
   const SensorTiming timing_;
   const bool required_;
-  std::shared_ptr<SharedRenderer> shared_;  // of the World whose Snapshots come
+  std::shared_ptr<SharedRenderer> shared_;  // renderer of the World whose Snapshots come
   AutoExposure automatic_;
   std::unique_ptr<CameraSensor> probe_;
   std::unique_ptr<PoseSolver> solver_;

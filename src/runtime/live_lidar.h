@@ -37,15 +37,15 @@ class LiveLidar final : public LidarStream {
   const LidarRequest request_;
   const uint64_t seed_;
   ScanCallback on_scan_;
-  std::shared_ptr<SharedRenderer> shared_;  // of the World whose Snapshots come
+  std::shared_ptr<SharedRenderer> shared_;  // renderer of the World whose Snapshots come
   std::unique_ptr<LidarSensor> sensor_;
   std::unique_ptr<PoseSolver> solver_;
   Rational key_rate_ = {1, 1};   // [Hz]
-  StepSchedule schedule_;        // of the keys
-  int stretches_ = 1;            // of a scan, between its keys
-  std::vector<PoseFrame> keys_;  // of the scan that is being gathered
+  StepSchedule schedule_;        // schedule of the keys
+  int stretches_ = 1;            // stretches of a scan, between its keys
+  std::vector<PoseFrame> keys_;  // poses of the scan that is being gathered
   int64_t next_key_ = 0;         // number of the key that is expected
-  size_t gathered_ = 0;          // of keys_
+  size_t gathered_ = 0;          // number of keys_ gathered
   StreamThread thread_;          // last: it uses the others
 };
 

@@ -156,7 +156,7 @@ void RobotMetrics::measure_light(const Snapshot& snapshot) {
 double RobotMetrics::visibility(const Tracked& robot, const Snapshot& snapshot, double x, double y,
                                 double z) const {
   constexpr int kPoints = 8;
-  constexpr double kClear = 0.15;  // of voxels that it fills in part [m]
+  constexpr double kClear = 0.15;  // margin for voxels that it fills in part [m]
   double least = VisibilityProbe::kClear;
   for (int i = 0; i < kPoints; ++i) {
     const double a = 2 * M_PI * i / kPoints, r = robot.reach + kClear;

@@ -40,7 +40,7 @@ class RobotMetrics {
     const RobotOptions* options = nullptr;
     Joint base;               // its free joint
     double start_height = 0;  // [m]
-    double reach = 0;         // of what it collides with, sideways from its base, at qpos0 [m]
+    double reach = 0;         // reach of its colliders, sideways from its base, at qpos0 [m]
     bool has_start = false, fallen = false;
     int64_t falls = 0;
     double error_squared[3] = {}, goal_squared[3] = {};

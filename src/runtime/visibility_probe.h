@@ -27,7 +27,7 @@ class VisibilityProbe {
 
  private:
   VolumeStore store_;
-  std::vector<int> fields_;  ///< of each volume: row of SnapshotData::fields, -1 = it stays
+  std::vector<int> fields_;  ///< rows of SnapshotData::fields by volume, -1 = it stays
 };
 
 }  // namespace gloam
