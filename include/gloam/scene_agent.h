@@ -49,7 +49,7 @@ struct AgentOptions {
   SourceLoc loc = {};
 };
 
-/// [[crowd]]: people at places drawn from where one can go.
+/// [[crowd]]: people at random places of the navigable ground.
 struct CrowdOptions {
   std::string name = {};             ///< unique; they are NAME0, NAME1 …
   int count = 4;                     ///< number of people

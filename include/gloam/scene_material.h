@@ -62,7 +62,7 @@ struct MaterialOptions {
   std::optional<Vec3> subsurface_color = {};      ///< default 0.8
   std::optional<double> coat_weight = {}, coat_roughness = {}, coat_ior = {};  ///< ior: 1.6
   std::optional<Vec3> coat_color = {};  ///< colour of the coat, linear Rec. 709, 0 … 1
-  /// 0 … 1, default 1: light that the coat throws back down is dimmed by the base again, as it is
+  /// 0 … 1, default 1: light that the coat reflects back down is dimmed by the base again, as it is
   /// beneath real lacquer; 0: the base keeps its colour (OpenPBR 1.1)
   std::optional<double> coat_darkening = {};
   std::optional<double> fuzz_weight = {}, fuzz_roughness = {};  ///< roughness: 0.5

@@ -49,7 +49,7 @@ struct ObjectOptions {
   SourceLoc loc = {};
 };
 
-/// [[hfield]]: ground sampled from a mesh file, felt as a height field of MuJoCo.
+/// [[hfield]]: ground sampled from a mesh file, as a height field of MuJoCo.
 struct HeightFieldOptions {
   std::string name = {};            ///< unique; of its geom
   std::filesystem::path file = {};  ///< glTF, GLB, OBJ, STL or PLY, relative to the scene file

@@ -41,8 +41,8 @@ struct EventOptions {
   SourceLoc loc = {};
 };
 
-/// [camera.thermal]: a bolometer camera for 8 … 14 µm, output thermal. Its noise is told as by ASTM
-/// E1543, "Noise Equivalent Temperature Difference of Thermal Imaging Systems".
+/// [camera.thermal]: a bolometer camera for 8 … 14 µm, output thermal. Its noise is stated as in
+/// ASTM E1543, "Noise Equivalent Temperature Difference of Thermal Imaging Systems".
 struct ThermalOptions {
   double netd = 0;             ///< noise-equivalent temperature difference at 300 K [K]
   double fixed_pattern = 0;    ///< spread of the pixels' offsets, at 300 K [K]

@@ -11,7 +11,7 @@ struct HeightField {
   int column = 0, row = 0;  ///< place of its first sample in the floors' grid
   double base = 1;          ///< [m]
   std::vector<float> z;     ///< [m], by row and column
-  int64_t filled = 0;       ///< samples that met nothing
+  int64_t filled = 0;       ///< samples without a hit
 
   float at(int c, int r) const {
     return z[static_cast<size_t>(r) * static_cast<size_t>(grid.columns) + static_cast<size_t>(c)];

@@ -24,8 +24,8 @@ struct VehicleSize {
   float width = 0, height = 0;  ///< [m]
   VehicleAxle front_axle, rear_axle;
   double mass = 0;  ///< [kg]
-  double turning_radius =
-      0;  ///< the least, of the middle of its unsteered axle [m]; 0 = turns there
+  /// Least turning radius of the middle of its unsteered axle [m]; 0 = turns there.
+  double turning_radius = 0;
   bool steers_rear = false;  ///< else by the front wheels
 };
 

@@ -95,7 +95,7 @@ void RobotMetrics::measure(Tracked& robot, const Snapshot& snapshot) {
   const double yaw = std::atan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz));
   const double pitch = std::asin(std::fmin(1.0, std::fmax(-1.0, 2 * (qw * qy - qz * qx))));
   const double roll = std::atan2(2 * (qw * qx + qy * qz), 1 - 2 * (qx * qx + qy * qy));
-  const double up = 1 - 2 * (qx * qx + qy * qy);  // vertical share of the body's z axis
+  const double up = 1 - 2 * (qx * qx + qy * qy);  // vertical fraction of the body's z axis
 
   // A free joint's linear velocity is in world axes, its angular velocity in the body's.
   const double c = std::cos(yaw), s = std::sin(yaw);

@@ -12,7 +12,7 @@ struct AdversityNumbers {
   double rain = 0, wind = 0, gusts = 0.15;  ///< [mm/h], [m/s], 1
   std::optional<double> visibility = {};    ///< [m]; empty = clear
   std::string_view medium = "fog";          ///< medium in the air
-  double lens_drops = 0;                    ///< share of the picture
+  double lens_drops = 0;                    ///< fraction of the picture
   double light = 1, failing = 0;            ///< lamps of the place
   double clutter = 0.5;                     ///< clutter of the place
   int people = 0;

@@ -91,8 +91,8 @@ struct RenderDescription {
   std::vector<MediumDescription> media;
   std::vector<VolumeDescription> volumes;
   WeatherDescription weather;
-  std::vector<CameraDescription>
-      cameras;  ///< all of the model's, then one free camera that frames the model, "free"
+  /// All of the model's, then one free camera that frames the model, "free".
+  std::vector<CameraDescription> cameras;
   SkyDescription sky;
   float ev100 = 0;   ///< exposure by the scene's rule, used when the user gives none
   Vec3 origin;       ///< in the world [m]: all places here and in PoseFrames are counted from it

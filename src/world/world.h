@@ -45,8 +45,8 @@ struct VisualOnlyGeom {
   int body = 0;   ///< body id in `model`
   int geom = -1;  ///< geom id in `visual_model`
   Pose X_BG;
-  int mesh =
-      -1;  ///< row of `visual_meshes`, for which the geom only stands in; -1 = the geom itself
+  /// Row of `visual_meshes`, for which the geom only stands in; -1 = the geom itself.
+  int mesh = -1;
 };
 
 /// A mesh file that a URDF draws. It is read anew, by way of the cache, where it is drawn.

@@ -24,9 +24,9 @@ constexpr double kExact = 1e-5;   // gap of the hull of the mesh, over the diago
 constexpr double kSmooth = 1e-3;  // gap of a hull, over the longest side
 constexpr double kSeam = 1e-6;    // between vertices that are one, of the diagonal
 constexpr double kRoom = 0.25;    // volume that an open room encloses at least, over its hull's
-constexpr size_t kMostNear =
-    4096;                          // vertices of nearly one place along the sweep that are compared
-constexpr double kFarthest = 1e9;  // [m] a vertex from the origin
+// Vertices of nearly one place along the sweep that are compared.
+constexpr size_t kMostNear = 4096;
+constexpr double kFarthest = 1e9;   // [m] a vertex from the origin
 constexpr int kHullVertices = 128;  // vertices of a collider
 constexpr size_t kSamples = 4096;   // samples of a surface, to find its shape
 

@@ -29,8 +29,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kLibrary = "lib_coacd.so";
-constexpr uint64_t kHullsMagic =
-    0x33304C48'4D4F4C47ull;  // "GLOMHL03": changes with the layout and what is asked of CoACD
+// "GLOMHL03": changes with the layout and what is asked of CoACD.
+constexpr uint64_t kHullsMagic = 0x33304C48'4D4F4C47ull;
 
 // As the cache keeps it: an archive of whole meshes, with normals and more, is model_file_cache's.
 struct KeptHull {

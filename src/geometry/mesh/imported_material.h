@@ -14,7 +14,7 @@ namespace gloam {
 enum class AlphaMode : uint8_t {
   kOpaque,  ///< opacity counts as 1
   kMask,    ///< there where opacity >= alpha_cutoff, absent elsewhere
-  kBlend,   ///< opacity is the share of the surface that is there
+  kBlend,   ///< opacity is the fraction of the surface that is there
 };
 
 /// Texture coordinates changed before the look-up, as in KHR_texture_transform: they act on
@@ -56,7 +56,7 @@ struct TextureRef {
   }
 };
 
-/// Colours are linear Rec. 709, weights and shares 0..1.
+/// Colours are linear Rec. 709, weights and fractions 0..1.
 struct MaterialValues {
   Vec3f base_color = {1, 1, 1};
   TextureRef base_color_texture;

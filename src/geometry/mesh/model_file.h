@@ -67,7 +67,7 @@ struct ModelFileOptions {
   /// No file outside this folder is read; empty = the model file's own folder.
   std::filesystem::path root = {};
   ModelLimits limits = {};
-  /// Called now and then with the share that is done, 0..1, never less than before; from any
+  /// Called now and then with the fraction that is done, 0..1, never less than before; from any
   /// thread, one at a time.
   std::function<void(double share)> progress = {};
 };

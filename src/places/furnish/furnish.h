@@ -8,7 +8,7 @@ namespace gloam {
 struct FurnishOptions {
   double passage = 0.7;  ///< [m]
   double clutter = 0.5;  ///< 0 … 1
-  double loose = 0.1;    ///< share of what could move that does
+  double loose = 0.1;    ///< fraction of what could move that does
 };
 
 /// A stretch of wall without doors.

@@ -37,7 +37,7 @@ std::pair<Polygon, Polygon> part(const Polygon& polygon, size_t field) {
   return parts;
 }
 
-// One zone's share of the ground. Corners of the grid are shared, those of cuts are not.
+// One zone's part of the ground. Corners of the grid are shared, those of cuts are not.
 class ZoneMesh {
  public:
   explicit ZoneMesh(size_t samples) : known_(samples, -1) {}

@@ -1,4 +1,4 @@
-// Pebbles beside the track and the water, reeds in the pond's edge: drawn, not felt.
+// Pebbles beside the track and the water, reeds in the pond's edge: visible, without colliders.
 
 #include <cmath>
 #include <map>

@@ -1,5 +1,5 @@
 #pragma once
-// Options as the numbers that are drawn of them.
+// Options as the numbers that are sampled for them.
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ namespace gloam {
 
 using Numbers = std::vector<double>;
 
-/// Numbers by which a type is drawn. An orientation: the angle in degrees by which it is turned
+/// Numbers by which a type is sampled. An orientation: the angle in degrees by which it is turned
 /// about the vertical; a time of day: seconds; a date: days.
 Numbers numbers_of(double x);
 Numbers numbers_of(const Vec3& v);
@@ -41,7 +41,7 @@ constexpr bool kIsNumbers =
     kIsInteger<T> || std::is_same_v<T, double> || std::is_same_v<T, Vec3> ||
     std::is_same_v<T, Quat> || std::is_same_v<T, std::array<double, 2>> || kIsTime<T>;
 
-/// An option as the numbers that are drawn for it.
+/// An option as the numbers that are sampled for it.
 template <class T>
 Numbers written_of(const T& member) {
   if constexpr (kIsInteger<T>)

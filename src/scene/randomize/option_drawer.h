@@ -76,7 +76,7 @@ class Drawer : private DrawChecks {
     const bool choice = distribution.kind == Distribution::kChoice;
     if (choice && o_.operation == "set") return o_.choice[choose(o_, &dice)].text;
     if constexpr (!kIsNumbers<T>) {
-      return std::nullopt;  // check_all has told
+      return std::nullopt;  // check_all has reported it
     } else {
       const size_t first = choice ? choose(o_, &dice) : 0;
       const std::optional<Numbers> a = parse<T>(first), b = choice ? a : parse_second<T>();
@@ -93,7 +93,7 @@ class Drawer : private DrawChecks {
     const size_t n = written.size();
     if (std::is_same_v<T, ClockTime> && kind == Distribution::kUniform && b[0] < a[0])
       b[0] += 86400;
-    // Draws that fall out of the option's range are thrown again; at last the nearest is taken.
+    // Draws outside of the option's range are repeated; at last the nearest value is taken.
     const bool kept_inside = kind == Distribution::kNormal || o_.operation != "set";
     constexpr int kMostThrows = 100;
     Numbers v;

@@ -190,7 +190,7 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
   }
   settings.spp = channels.light() ? request.render.samples() : 0;
   if (request.render.error && channels.light()) {
-    // Darker than this share of the display's top, an error shows less and less (docs/light.md).
+    // Darker than this fraction of the display's top, an error shows less and less (docs/light.md).
     constexpr float kFloor = 0.05f;
     settings.error = static_cast<float>(*request.render.error);
     settings.error_floor = kFloor * max_luminance(static_cast<float>(sensor->models_->ev100()));

@@ -13,11 +13,11 @@
 // at 1 m: diffuse albedo, times the cosine, over Z²; what glass lets through and smooth metal
 // mirrors away is lost. A share s² / (s² + half_signal²) of pixels of signal s has a depth.
 //
-// Media take their share of the projector's light on both ways, T², and send some back, which veils
-// the pattern: with the signal b = pi Int beta T² / r² dr of what they scatter back (as a LiDAR's,
-// render/kernel/lidar/lidar_media.h), from where the second eye's view meets the projector's beam
-// on, the pattern's contrast is s T² / (s T² + b), and the signal that is left s T² times that. The
-// band is the one nearest to projectors' 850 nm, of 905 nm.
+// Media take their fraction of the projector's light on both ways, T², and send some back, which
+// veils the pattern: with the signal b = pi Int beta T² / r² dr of what they scatter back (as a
+// LiDAR's, render/kernel/lidar/lidar_media.h), from where the second eye's view meets the
+// projector's beam on, the pattern's contrast is s T² / (s T² + b), and the signal that is left s
+// T² times that. The band is the one nearest to projectors' 850 nm, of 905 nm.
 
 #include <cstdint>
 #include <vector>

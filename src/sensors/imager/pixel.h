@@ -26,9 +26,9 @@ class PixelArray {
   Gains gains(const Exposure& exposure) const;
 
   /// Reading of site i for `light` [cd/m²] in a picture's frame: a number of the converter [DN], or
-  /// without bits a share of the top of the scale.
+  /// without bits a fraction of the top of the scale.
   double read(const Gains& gains, double light, uint64_t frame, size_t i) const;
-  /// The reading as a share of the top of the scale; noise may take it below 0.
+  /// The reading as a fraction of the top of the scale; noise may take it below 0.
   double share(double reading) const {
     return (reading - options_.black_level * quantised_) /
            (top_ - options_.black_level * quantised_);

@@ -13,7 +13,7 @@ struct SignalErrors {
   double random_walk = 0;       ///< [unit √Hz]: Allan deviation K √(τ / 3)
   double bias = 0;              ///< standard deviation of the offset at the start
   double offset = 0;
-  double scale_error = 0;  ///< standard deviation, a share
+  double scale_error = 0;  ///< standard deviation, a fraction
   double range = 0;        ///< largest magnitude
   double resolution = 0;
 };

@@ -43,7 +43,7 @@ struct AgentMotion {
   Vec3d seen_at;          ///< place of that [m]
   Vec3d goal;             ///< end of the path [m]
   int64_t waypoint = 0;   ///< index in the route
-  int64_t draws = 0;      ///< decisions that were drawn
+  int64_t draws = 0;      ///< random decisions so far
   int64_t has_goal = 0, is_facing = 0, is_whole = 1;
 };
 

@@ -20,7 +20,7 @@ struct AgentSurroundings {
 void decide_intent(const AgentSurroundings& around, size_t row, AgentBody* agent);
 
 /// Sees that the way leads to `goal`, which may be off the mesh or out of reach: then to the point
-/// that is nearest to it, which is told once. False: the agent is nowhere on the mesh.
+/// that is nearest to it, which is reported once. False: the agent is nowhere on the mesh.
 bool find_way(const NavMesh& mesh, Vec3d goal, AgentBody* agent);
 
 }  // namespace gloam

@@ -11,10 +11,10 @@ constexpr double kUsualSpeed = 1.3;      // speed that amplitudes are given for 
 constexpr double kWalkRatio = 0.0063;    // step length / cadence of people of 1.7 m [m min]
 constexpr double kSlowestCadence = 1.2;  // [1/s]
 constexpr double kStrikePitch = 17 * kDegree, kPushPitch = 36 * kDegree;
-constexpr double kToe = 0.7, kHeel = 0.22;        // pivots from the ankle, shares of the foot
+constexpr double kToe = 0.7, kHeel = 0.22;        // pivots from the ankle, fractions of the foot
 constexpr double kStands = 0.06, kStarts = 0.09;  // [m/s]
-constexpr double kWalkerAhead =
-    0.42;  // fraction of the way in stance by which a foot comes down ahead of the hips
+// Fraction of the way in stance by which a foot comes down ahead of the hips.
+constexpr double kWalkerAhead = 0.42;
 constexpr double kKnee = 0.025;   // descent of the hips by knees bent in mid-stance at 1.3 m/s [m]
 constexpr double kReach = 0.997;  // fraction of a leg's length: a knee is never quite straight
 
@@ -107,7 +107,7 @@ void Walker::advance(double dt, const WalkInput& in, const GroundHeight& ground)
   const double rate = cadence(state_.speed) / 2;  // a cycle is two steps
   double before[2];
   for (int i = 0; i < 2; ++i) before[i] = phase_of(i);
-  // The share of stance changes only so far that no foot changes its state by it.
+  // The fraction of stance changes only so far that no foot changes its state by it.
   const double wanted = stance_share(state_.speed);
   bool is_near = false;
   for (const double phase : before) is_near |= std::abs(phase - state_.stance) < 0.06;

@@ -45,7 +45,7 @@ class Walker {
   /// Poses of all parts in the world.
   PersonPose pose(const WalkInput& in) const;
 
-  /// Steps per second at a speed, and the share of the cycle that a foot stands.
+  /// Steps per second at a speed, and the fraction of the cycle that a foot stands.
   double cadence(double speed) const;
   static double stance_share(double speed);
   bool is_stepping() const { return state_.is_stepping != 0; }

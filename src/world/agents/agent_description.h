@@ -46,7 +46,7 @@ enum VehiclePart { kChassis, kWheelFL, kWheelFR, kWheelRL, kWheelRR, kFork, kVeh
 std::string_view part_name(AgentKind kind, int part);
 int part_count(AgentKind kind);
 
-/// Lengths of a person [m]: shares of the height after Drillis and Contini 1966 (in Winter,
+/// Lengths of a person [m]: fractions of the height after Drillis and Contini 1966 (in Winter,
 /// Biomechanics and Motor Control of Human Movement, fig. 4.1), varied by a few percent.
 struct PersonShape {
   double height = 1.7;
@@ -74,7 +74,7 @@ struct AgentDescription {
   AgentKind kind = AgentKind::kPerson;
   AgentBehavior behavior = AgentBehavior::kWander;
   uint64_t seed = 0;       ///< its own: of the options and the name
-  bool is_placed = false;  ///< else it begins at a place drawn from where one can go
+  bool is_placed = false;  ///< else it begins at a random place that it can reach
   Vec3 position;           ///< [m]
   double heading = 0;      ///< from +x to +y [rad]
   double speed = 0;        ///< preferred speed [m/s]

@@ -38,7 +38,7 @@ Status add_object_visuals(const MeshObjects& objects, Scene* scene);
 Result<std::vector<Converted>> convert_objects(const MeshObjects& objects,
                                                CompileProgress* progress = nullptr);
 
-/// Adds a body for each, with its colliders in group 3. What is odd about the meshes is told in
+/// Adds a body for each, with its colliders in group 3. Oddities of the meshes are reported in
 /// `notes`. Errors: names that the spec has, what is too light to move.
 Status add_objects(const MeshObjects& objects, const std::vector<Converted>& converted,
                    mjSpec* spec, std::vector<Error>* notes);

@@ -19,7 +19,7 @@
 namespace gloam {
 namespace {
 
-// Chemical heat of combustion, soot yield and radiative share in well-ventilated fires: SFPE
+// Chemical heat of combustion, soot yield and radiative fraction in well-ventilated fires: SFPE
 // Handbook of Fire Protection Engineering, 5th ed., table A.39 (Tewarson). Polyurethane is the
 // flexible foam GM23, wood red oak. Order of kFuels.
 constexpr FuelDescription kFuelTable[] = {{43.7e6f, 0.024f, 0.29f}, {41.2e6f, 0.037f, 0.33f},

@@ -19,7 +19,7 @@ struct CompiledWorld;
 struct FuelDescription {
   float heat_of_combustion = 0;  ///< chemical [J/kg]
   float soot_yield = 0;          ///< soot per fuel [kg/kg]
-  float radiated = 0;            ///< share of the heat that leaves as radiation
+  float radiated = 0;            ///< fraction of the heat that leaves as radiation
 };
 
 /// Gives fuel, smoke or heat from `start` to `stop`.
@@ -56,7 +56,7 @@ struct RotorDescription {
 struct DustDescription {
   std::string name;
   Vec3f low, high;           ///< corners [m]
-  float silt = 0, clay = 0;  ///< shares, as of DustOptions
+  float silt = 0, clay = 0;  ///< fractions, as in DustOptions
   float threshold = 0;       ///< friction velocity [m/s]
   bool holds(Vec3f p) const {
     return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y &&

@@ -24,7 +24,7 @@ struct SoilStrength {
   double shear = 0.01;      ///< K [m]
   double k_0 = 0;           ///< [N/m³]
   double a_u = 0;           ///< [N/m⁴]
-  double aside = 0;         ///< share of what is displaced that rises beside it
+  double aside = 0;         ///< fraction of what is displaced that rises beside it
 };
 
 struct SoilDescription {

@@ -17,13 +17,12 @@ struct LightDescription {
   LightType type = LightType::kPoint;
   bool active = true;
   bool casts_shadow = true;
-  Vec3f intensity{
-      0, 0,
-      0};  ///< point, spot: [cd] per channel; directional: illuminance on a facing surface [lx]
-  float radius =
-      0;  ///< radius of the luminous sphere (point, spot) [m]; directional: sine of the half angle
+  /// Point, spot: [cd] per channel; directional: illuminance on a facing surface [lx].
+  Vec3f intensity{0, 0, 0};
+  /// Radius of the luminous sphere (point, spot) [m]; directional: sine of the half angle.
+  float radius = 0;
   float cos_cutoff = -1;  ///< spot: cosine of the half angle of the cone
-  float softness = 0;     ///< spot: share of the cone over which it fades
+  float softness = 0;     ///< spot: fraction of the cone over which it fades
   /// Factor on PoseFrame::light_diffuse that gives `intensity` while the light has no intensity in
   /// cd (docs/light.md)
   float legacy_scale = 0;

@@ -14,8 +14,8 @@ namespace gloam {
 /// On for `duty` of every period, off for the rest.
 struct OnOff {
   double period = 1;  ///< [s], > 0
-  double duty = 0.5;  ///< share of the period, 0..1
-  double phase = 0;   ///< share of a period that is over at time 0, 0..1
+  double duty = 0.5;  ///< fraction of the period, 0..1
+  double phase = 0;   ///< fraction of a period that is over at time 0, 0..1
 };
 
 /// Levels at times; the first holds before, the last after.

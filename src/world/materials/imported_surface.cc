@@ -11,7 +11,7 @@
 namespace gloam {
 namespace {
 
-/// Height of a bump of MTL, as a share of the texture's length, with -bm 1.
+/// Height of a bump of MTL, as a fraction of the texture's length, with -bm 1.
 constexpr float kBumpShare = 0.01f;
 constexpr float kCoatIor = 1.5f;  // KHR_materials_clearcoat
 constexpr float kMirrorIor = 1000;

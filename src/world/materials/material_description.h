@@ -14,8 +14,8 @@ namespace gloam {
 /// Index into RenderDescription::textures, or -1.
 struct MaterialTextures {
   int base_color = -1;  ///< sRGB; 4 channels carry opacity
-  int roughness = -1, metallic = -1, occlusion = -1,
-      orm = -1;     ///< linear; orm = occlusion, roughness, metallic in r, g, b
+  /// Linear; orm = occlusion, roughness, metallic in r, g, b.
+  int roughness = -1, metallic = -1, occlusion = -1, orm = -1;
   int normal = -1;  ///< tangent space, linear
   int opacity = -1, emission = -1;
   int bump = -1;  ///< linear; heights of MaterialDescription::bump_scale
@@ -52,7 +52,7 @@ struct MaterialDescription {
   float subsurface_weight = 0;  ///< 0..1
   Vec3f subsurface_color{0.8f, 0.8f, 0.8f};
   float coat_weight = 0, coat_roughness = 0, coat_ior = 1.6f;
-  float coat_darkening = 1;   ///< 0..1, of the base by light that the coat throws back down
+  float coat_darkening = 1;   ///< 0..1, of the base by light that the coat reflects back down
   Vec3f coat_color{1, 1, 1};  ///< tint of light that has gone in and out through the coat
   float fuzz_weight = 0, fuzz_roughness = 0.5f;
   Vec3f fuzz_color{1, 1, 1};

@@ -17,7 +17,7 @@ enum class ProceduralKind : uint8_t {
   kBrick,      ///< bricks in mortar
   kTiles,      ///< tiles in grout
   kFabric,     ///< woven yarns
-  kScratches,  ///< fine lines; `mask` = share of the surface that they take
+  kScratches,  ///< fine lines; `mask` = fraction of the surface that they take
   kDirt,       ///< grime in corners, near the floor and on top; `mask` = how much covers
 };
 inline constexpr int kProceduralKindCount = 9;
@@ -34,8 +34,8 @@ struct ProceduralDescription {
   uint32_t seed = 0;
   Vec3f color_a{0.5f, 0.5f, 0.5f};  ///< ground: early wood, stone, brick, tile, warp, clean surface
   Vec3f color_b{0.5f, 0.5f, 0.5f};  ///< second: late wood, veins, brick's other end, weft, dirt
-  Vec3f color_c{0.5f, 0.5f,
-                0.5f};  ///< third: pores, seams, mortar, grout, over-burnt bricks' shade
+  /// Third: pores, seams, mortar, grout, over-burnt bricks' shade.
+  Vec3f color_c{0.5f, 0.5f, 0.5f};
   /// Characteristic length [m], > 0: largest noise cell, mean ring width, distance of veins,
   /// largest stain, yarn spacing, length of a scratch, size of dirt's ragged edge.
   float scale = 0.1f;

@@ -28,7 +28,7 @@
 
 namespace gloam {
 
-/// Angle around z as a share of the full turn, [0, 1).
+/// Angle around z as a fraction of the full turn, [0, 1).
 GLOAM_HD float turn_about_z(float x, float y) {
   const float turn = atan2f(y, x) * (0.5f * kInvPi);
   return turn < 0 ? turn + 1 : turn;

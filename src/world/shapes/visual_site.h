@@ -15,7 +15,7 @@ inline constexpr int kFirstHiddenGroup = 3;  ///< first group that MuJoCo's view
 bool draws_group(const RenderOptions& render, int group);
 
 /// Adds an instance for every site of the groups that are drawn, if the scene draws sites. Sites
-/// are marks, not things: colour pictures alone show them, and they throw no shadow.
+/// are marks, not things: colour pictures alone show them, and they cast no shadow.
 void describe_sites(const CompiledWorld& world, MaterialTable* materials, LabelTable* labels,
                     RenderDescription* out);
 

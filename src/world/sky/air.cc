@@ -218,7 +218,7 @@ AirRay Air::march(double r, double mu, int count) const {
 }
 
 Bands Air::scattered_at(double r, double angle, const std::vector<AirRay>& rays) const {
-  // `once`: light that was scattered once or came from the sunlit ground. `again`: the share of
+  // `once`: light that was scattered once or came from the sunlit ground. `again`: the fraction of
   // even light of one from all sides that comes here after another scattering.
   Bands once{}, again{};
   for (size_t k = 0; k < rays.size(); ++k) {

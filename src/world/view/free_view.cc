@@ -7,7 +7,7 @@
 namespace gloam {
 namespace {
 
-constexpr float kFill = 0.94f;  // share of the picture's half width or height that is filled
+constexpr float kFill = 0.94f;  // fraction of the picture's half width or height that is filled
 constexpr float kLeastCover = 0.17f, kMostCover = 0.42f;  // fraction of the picture's area
 
 struct Spread {
@@ -69,7 +69,7 @@ void place_camera(std::span<const DrawnPart> subject, ViewDirection direction, f
   X_WC.p = X_WC.x * right.middle() + X_WC.y * up.middle() + X_WC.z * away;
 }
 
-/// About the share of the picture that the points cover, in cells of 1/48 of its width.
+/// About the fraction of the picture that the points cover, in cells of 1/48 of its width.
 float cover_of(std::span<const DrawnPart> subject, const CameraDescription& camera) {
   constexpr int kColumns = 48;
   const Intrinsics& k = camera.intrinsics;

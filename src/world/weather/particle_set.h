@@ -34,7 +34,7 @@ struct ParticleSet {
   std::shared_ptr<const Gusts> gusts;  ///< gusts that carry them; null = none
   uint64_t seed = 0;
 
-  /// Mean share of a view that they cover, per metre [1/m].
+  /// Mean fraction of a view that they cover, per metre [1/m].
   float cover() const;
   /// Density of water in the air [kg/m³].
   float water = 0;

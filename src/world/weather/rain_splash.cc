@@ -5,7 +5,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kSlot = 0.05;  // for which splashes are drawn at once [s]
+constexpr double kSlot = 0.05;  // for which splashes are sampled at once [s]
 constexpr float kSplashGravity = 9.81f;
 // Factors on the drop's speed and radius: within the range of crowns of drops of 2 to 5 mm, a
 // hand's breadth at most.

@@ -20,7 +20,7 @@ struct Splash {
   Philox4 bits;     ///< draws of its own
 };
 
-/// An edge of the squares that splashes are drawn for [m].
+/// An edge of the squares that splashes are sampled for [m].
 inline constexpr float kSplashCell = 0.25f;
 inline constexpr int kSplashDroplets = 7;
 inline constexpr float kDropletSize = 0.25f;  ///< diameter, of the drop's: they are a ninth of it

@@ -10,7 +10,7 @@ namespace {
 constexpr float kLeastDrop = 0.3f;  // from an edge [m]
 constexpr float kUphill = 0.01f;    // height that water of some depth runs over [m]
 constexpr double kDripGravity = 9.81;
-constexpr double kDripSlot = 0.25;  // for which drips are drawn at once [s]
+constexpr double kDripSlot = 0.25;  // for which drips are sampled at once [s]
 // Drops hang from edges about as far apart as the fastest growing ripples of a film do: 2 pi sqrt 2
 // times the capillary length, 24 mm (Fermigier et al. 1992). Four to a usual cell.
 constexpr float kSites = 4;

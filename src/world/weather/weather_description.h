@@ -24,7 +24,7 @@ struct WeatherDescription {
   float wetting_time = 1;                    ///< time constant from one to the other [s]
   float impacts = 0;  ///< rate of drops of a millimetre and more on level ground [1/(m² s)]
   float snow_start = 0, snow_rate = 0;  ///< depth of snow on level ground [m], [m/s]
-  float lens_drops = 0;                 ///< share of the picture, 0 … 1
+  float lens_drops = 0;                 ///< fraction of the picture, 0 … 1
   bool drops_fall_on_lenses = false;    ///< they come and go
   uint64_t seed = 0;
 

@@ -42,8 +42,8 @@ struct FrontLoader {
   const bool dryer;
   float x = 0, y = 0, z = 0;
   std::string white, dark, steel, chrome;
-  float face = 0, panel = 0,
-        hole = 0;            // front of the case, bottom of the panel, radius of the hole
+  // Front of the case, bottom of the panel, radius of the hole.
+  float face = 0, panel = 0, hole = 0;
   const float low = 0.012f;  // bottom of the case
   Vec3f port;                // middle of the hole
 };

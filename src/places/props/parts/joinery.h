@@ -47,7 +47,7 @@ void add_bulb(Prop* p, Vec3f at, double flux, double temperature, double radius 
 /// its colours. `size` = depth, thickness, height.
 void show_book(PropPart* part, Workshop& shop, Vec3f size, Vec3f at, float lean_degrees,
                float turn_degrees, int tint, bool lying = false);
-/// Fills a shelf's bay with books from low.y on, up to a share of its width; returns where they
+/// Fills a shelf's bay with books from low.y on, up to a fraction of its width; returns where they
 /// end. low = the bay's left front corner on its floor.
 float show_books(PropPart* part, Workshop& shop, Vec3f low, float width, float height, float depth,
                  float share);

@@ -59,8 +59,8 @@ class ResponseSolver {
 
  private:
   std::vector<double> columns_;  // L^-T J', (nv x 6)
-  std::vector<double> by_dof_;   // room, (nv)
-  std::vector<int> chain_;       // room
+  std::vector<double> by_dof_;   // scratch, (nv)
+  std::vector<int> chain_;       // scratch
 };
 
 /// Joints' degrees of freedom that move a body.

@@ -20,7 +20,7 @@ struct SolidPlane {
   double n[3], offset;
 };
 
-/// One convex solid. Made anew for every pose, in the same room.
+/// One convex solid. Made anew for every pose, in the same memory.
 class GridSolid {
  public:
   /// Sets grid and pose of the solids made after it: p [m], R row by row (mjData's xpos and xmat).

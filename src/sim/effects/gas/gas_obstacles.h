@@ -78,7 +78,7 @@ class GasObstacles {
   DataPtr data_;
   GasGrid grid_;
   WallRuns lines_;
-  GridSolid solid_;                             // room
+  GridSolid solid_;                             // scratch
   std::vector<std::vector<SolidPlane>> hulls_;  // hulls by mesh, where a collider is one
   std::vector<int> still_geoms_, height_geoms_, moving_geoms_;
   int left_out_ = 0;

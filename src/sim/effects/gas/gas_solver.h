@@ -32,7 +32,7 @@ struct GasProperties {
   float heat_of_combustion = 25e6f;
   /// Soot per fuel [kg/kg]. Flexible polyurethane foam: 0.10 to 0.23 (same table), wood: 0.015.
   float soot_yield = 0.10f;
-  float radiated = 0.35f;  ///< share of the heat release that leaves as radiation (FDS's default)
+  float radiated = 0.35f;  ///< fraction of the heat release that is radiated (FDS's default)
   /// Time in which fuel and air of one voxel mix [s]: "mixed is burnt" (eddy break-up, Magnussen
   /// and Hjertager 1977; of FDS's order at voxels of this size).
   float mixing_time = 0.1f;
@@ -119,7 +119,7 @@ class GasSolver {
                std::span<const GasRotor> rotors = {}, std::span<const GasEmission> emissions = {});
 
   /// Soot concentration [kg/m³] and temperature [K], (nz, ny, nx). Where it burns, it is that at
-  /// which the soot gives the light of its luminous share: flames are thinner than voxels.
+  /// which the soot gives the light of its luminous fraction: flames are thinner than voxels.
   void read(std::vector<float>* density, std::vector<float>* temperature) const;
 
   /// Velocities of cells' centres [m/s], world, (nz, ny, nx, 3).

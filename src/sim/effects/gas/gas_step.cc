@@ -154,7 +154,7 @@ void GasSolver::State::account_motion(const gas::Projection& projection, int tra
   budget.fuel_escaped += escaped[gas::kFuel] * cell_volume();
 }
 
-/// Calls give(source, what it gives in all, cell, the cell's share).
+/// Calls give(source, what it gives in all, cell, the cell's fraction).
 template <class F>
 void GasSolver::State::feed(float dt, std::span<const GasSource> sources, GasStep* step, F&& give) {
   const double volume = cell_volume();

@@ -62,8 +62,8 @@ void Multigrid::find_lost(const Level& fine, int axis) {
   planes_.assign(size_t(s.nz) * size_t(n), {});
   for_slabs(s.nz, [&](int k) {
     Plane* planes = &planes_[size_t(k) * size_t(n)];
-    float count[kLongestRow] = {}, sum[kLongestRow] = {},
-          most[kLongestRow] = {};  // side by side, along x
+    // Sums side by side, along x.
+    float count[kLongestRow] = {}, sum[kLongestRow] = {}, most[kLongestRow] = {};
     const auto add_up = [&](int plane) {
       for (int i = 0; i < s.nx; ++i) {
         Plane& to = planes[axis == 0 ? i : plane];

@@ -136,10 +136,10 @@ class SoilContacts {
   int row_low_, row_high_;      // in use
   std::vector<SoilTouch> touches_;
   std::vector<Patch> patches_;
-  std::vector<Line> lines_, merged_;       // room
-  std::vector<double> ys_, left_, right_;  // room, of lines
-  Samples samples_;                        // room
-  std::vector<Point> hull_;                // room
+  std::vector<Line> lines_, merged_;       // scratch
+  std::vector<double> ys_, left_, right_;  // scratch, of lines
+  Samples samples_;                        // scratch
+  std::vector<Point> hull_;                // scratch
   std::vector<Mark> marks_;                // mark of each cell
   uint32_t round_ = 0;
   uint64_t looks_ = 0;

@@ -19,8 +19,8 @@ struct SoilLanes {
   double arm[3][kSide] = {}, slope[2][kSide] = {};  // from the point [m]; of the underside
   double modulus[kSide] = {};                       // k_c / b + k_phi [N/m^(n+2)]
   double bottom[kSide] = {};                        // depth of the bed [m]
-  double per_steep[kSide] = {},
-         stretch[kSide] = {};      // 1 / (d d), and the area over that from above
+  // 1 / (d d), and the true area over the area seen from above.
+  double per_steep[kSide] = {}, stretch[kSide] = {};
   double loading[kSide] = {};      // on the loading curve, as it is now [Pa]
   double shearing[3][kSide] = {};  // limit that cell.shear goes to since the last step
   double share[kSide] = {};        // and how far

@@ -203,8 +203,8 @@ void SoilBed::react(const Body& body, const double* motion, double share) {
 }
 
 // A body so light that a step takes it far through the ground must not be thrown out of it: the bed
-// gives no more energy than it can have stored, nor than a share of what the body brings along.
-// Returns the share of the wrench that it gives. `change`: inverse * wrench.
+// gives no more energy than it can have stored, nor than a fraction of what the body brings along.
+// Returns the fraction of the wrench that it gives. `change`: inverse * wrench.
 double SoilBed::limit_work(const Body& body, const double* free, const double* change, double dt,
                            const double* wrench) {
   double by_motion = 0, by_change = 0;

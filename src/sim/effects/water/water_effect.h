@@ -42,7 +42,7 @@ class WaterEffect final : public Effect {
   const std::vector<WaterShape> shapes_;
   WaterForces forces_;
   std::vector<std::unique_ptr<WaterRipples>> ripples_;  // ripples of each water, null = none
-  std::vector<HeightChange> changes_;                   // room, of each water
+  std::vector<HeightChange> changes_;                   // scratch, of each water
   int64_t tick_ = -1;                                   // the last one
 };
 

@@ -173,8 +173,8 @@ bool WaterForces::sum_elements(const SurfacePatch& surface, Wet* wet) {
 void WaterForces::sum_whole(Wet* wet) {
   const WaterShape& shape = wet->shape;
   const double part = wet->mass / wet->water.density / shape.volume;
-  const double viscous =
-      6 * std::numbers::pi * wet->water.viscosity * shape.radius * part;      // Stokes
+  // Drag of a sphere (Stokes).
+  const double viscous = 6 * std::numbers::pi * wet->water.viscosity * shape.radius * part;
   const double viscous_spin = viscous * shape.radius * shape.radius * 4 / 3;  // Kirchhoff
   double lift[3], flow[3], u[3], force[3], torque[3];
   mju_mulMatTVec3(lift, wet->R, wet->lift_W);

@@ -4,7 +4,7 @@
 // h'' = c² (h_xx + h_yy) + b'' - losses, with the height h and the column b of what bodies
 // displace: the linear equation of shallow water with bodies in it (continuity of h - b; Lamb 1932,
 // article 189), with the speed c of waves 1 m long. What lies deep displaces less of the surface,
-// by exp(-k depth) of those waves. They are thrown back at the sides of the box.
+// by exp(-k depth) of those waves. They are reflected at the sides of the box.
 
 #include <memory>
 #include <vector>
@@ -49,8 +49,8 @@ class WaterRipples {
   bool calm_ = true, displaced_ = false;
   std::vector<float> height_, rate_;    // [m], [m/s]
   std::vector<float> column_, before_;  // displaced, of this tick and of the last [m]
-  std::vector<float> next_;             // room
-  std::vector<float> tent_;             // room, along x
+  std::vector<float> next_;             // scratch
+  std::vector<float> tent_;             // scratch, along x
   std::vector<std::shared_ptr<SurfaceHeights>> pool_;
   std::shared_ptr<const SurfaceHeights> shown_;
 };

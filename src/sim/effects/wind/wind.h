@@ -52,7 +52,7 @@ class WindOnBodies {
  private:
   struct Root {
     int qpos;          // place of its height, -1 = it stays
-    double z, weight;  // [m], share
+    double z, weight;  // height [m] and its weight
   };
   Wind wind_;
   StepSchedule schedule_;

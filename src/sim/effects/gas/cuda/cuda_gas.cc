@@ -13,8 +13,8 @@
 namespace gloam::gas {
 namespace {
 
-constexpr int kCellValues =
-    kScalars + 1;  ///< values of a cell that goes to the host: scalars, heat release
+/// Values of a cell that goes to the host: scalars, heat release.
+constexpr int kCellValues = kScalars + 1;
 /// Floats in the card's memory for each cell and ghost, about.
 constexpr uint64_t kFloatsPerCell = 45;
 

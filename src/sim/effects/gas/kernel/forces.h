@@ -12,9 +12,9 @@ GLOAM_HD float buoyancy(float heat, float smoke, float ambient_density) {
   return kGravity * (heat - smoke / ambient_density);
 }
 
-/// Temperatures in flames and plumes fluctuate by about this share of their mean's rise (McCaffrey
-/// 1979; George, Alpert and Tamanini 1977): what a grid does not resolve, and without which narrow
-/// plumes stay laminar and do not mix with air.
+/// Temperatures in flames and plumes fluctuate by about this fraction of their mean's rise
+/// (McCaffrey 1979; George, Alpert and Tamanini 1977): what a grid does not resolve, and without
+/// which narrow plumes stay laminar and do not mix with air.
 inline constexpr float kFluctuation = 0.4f;
 
 /// MurmurHash3's finaliser: lanes compute it too.

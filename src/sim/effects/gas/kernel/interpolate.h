@@ -11,7 +11,7 @@ namespace gloam::gas {
 /// A place between the points of a lattice.
 struct Between {
   int c;          ///< the lowest corner
-  float x, y, z;  ///< shares of the higher ones
+  float x, y, z;  ///< fractions of the higher ones
 };
 
 /// p: in steps of the lattice, which has one point more along `growing` (-1 = none). Places outside

@@ -23,11 +23,11 @@ struct ReactionRates {
   float density = 0;           ///< density of ambient air [kg/m³]
   float heat_unit = 0;         ///< density cp T of ambient air [J/m³]
   float hottest = 0;           ///< limit of kHeat
-  float burn = 0;              ///< share of the mixed fuel that burns in the step
+  float burn = 0;              ///< fraction of the mixed fuel that burns in the step
   float heat_per_fuel = 0;     ///< heat that stays in the gas, in heat_unit per [kg/m³]
   float air_per_fuel = 0;      ///< [kg/kg]
   float soot_yield = 0;        ///< [kg/kg]
-  float cool = 0, settle = 0;  ///< shares lost in the step
+  float cool = 0, settle = 0;  ///< fractions lost in the step
 };
 
 struct Reaction {
