@@ -106,8 +106,7 @@ void move_body(double dt, double time, const NavMesh& mesh, const NavWorld& worl
   if (norm(by) > 0 && agent->intent.mode != AgentIntent::Mode::kSpline &&
       agent->path.at().ref != 0) {
     const Vec3d on = agent->path.move(mesh, to);
-    // A height difference of the mesh, where something was built into it, is climbed at walking
-    // pace, not in one jump.
+    // An agent whose ground was taken out of the mesh leaves it at walking pace, not in one jump.
     to = m.p + shortened(flat(on - m.p), std::max(norm(by), 0.8 * dt));
     to.z = on.z;
   }

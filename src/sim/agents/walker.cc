@@ -22,8 +22,8 @@ double follow(double value, double target, double dt, double time) {
   return value + (target - value) * (1 - std::exp(-dt / time));
 }
 
-// Progress of a swinging foot: it starts at once, is never faster than 1.4 times its mean speed and
-// ends at rest.
+// Progress of a swinging foot: it is pushed off at 0.6 times its mean speed, is never faster than
+// 1.4 times that, and comes down at rest.
 double swing_profile(double u) { return u * (0.6 + u * (1.8 - 1.4 * u)); }
 
 }  // namespace
