@@ -17,7 +17,7 @@ struct Globals {
   bool quiet = false;
 };
 
-/// What a command does after parsing; the value is the exit code.
+/// Action of a command after parsing; the value is the exit code.
 using Action = std::function<int()>;
 
 void add_demo(CLI::App& app, Globals& globals, Action& action);
@@ -35,8 +35,7 @@ void add_completion(CLI::App& app, Globals& globals, Action& action);
 /// Prints "error: …" on stderr and returns the exit code.
 int fail(const Error& error);
 
-/// What numbers on the command line are checked with. (CLI11's own messages print the largest
-/// double in full.)
+/// Checks of numbers on the command line. (CLI11's own messages print the largest double in full.)
 CLI::Validator positive_number();
 CLI::Validator non_negative_number();
 

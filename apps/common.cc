@@ -1,4 +1,4 @@
-// What several commands share: errors, progress, option parsing.
+// Functions that several commands share: errors, progress, option parsing.
 
 #include <fmt/format.h>
 #include <unistd.h>

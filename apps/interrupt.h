@@ -1,5 +1,5 @@
 #pragma once
-// What Ctrl-C and SIGTERM do.
+// Handling of Ctrl-C and SIGTERM.
 
 #include <condition_variable>
 #include <functional>

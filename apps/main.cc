@@ -57,7 +57,7 @@ int run_program(int argc, char** argv) {
   return action();
 }
 
-/// Whether all that was printed has arrived. A reader that has seen enough (`| head`) is no fault.
+/// True if all output has arrived. A reader that has seen enough (`| head`) is no fault.
 int finish_data() {
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return 0;
   pollfd out{STDOUT_FILENO, POLLOUT, 0};

@@ -16,7 +16,7 @@ bool any_camera(const Scene& scene, Has&& has) {
                              [&](const CameraOptions& camera) { return has(camera.sensing); });
 }
 
-// Why nothing delivers `output`; "" when something does.
+// Reason why nothing delivers `output`; "" when something does.
 std::string why_void(const std::string& output, const Scene& scene, const World& world) {
   if (output == "lidar" && scene.lidars.empty()) return "the scene has no [[lidar]]";
   if (output == "sensors" && world.info().sensors.empty()) return "the model has no sensors";

@@ -9,7 +9,7 @@
 
 namespace gloam::cli {
 
-/// What all commands that load a scene may change about it.
+/// Changes to a scene that all commands which load one may make.
 struct SceneOptions {
   std::optional<uint64_t> seed;
   std::vector<std::string> settings, packages;
@@ -23,7 +23,7 @@ struct SceneOptions {
   Result<World> compile(const std::string& file, const Globals& globals);
 };
 
-/// Of commands that run or draw it.
+/// Options of commands that run or render it.
 struct RunOptions : SceneOptions {
   std::optional<double> duration, timestep, ev100, error;
   std::optional<int> spp, max_depth;

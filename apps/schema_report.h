@@ -1,5 +1,5 @@
 #pragma once
-// What `gloam info --schema` prints: how much of MuJoCo's schema is mirrored.
+// Report of `gloam info --schema`: the coverage of MuJoCo's schema.
 
 #include "command.h"
 

@@ -16,7 +16,7 @@ std::vector<std::pair<std::string, std::string>> commands(const CLI::App& root);
 /// "--name" and "-n" of an App's own options.
 std::vector<std::string> option_names(const CLI::App& app);
 
-/// What `error` says of a command line whose first word is `word` ("" if there is none but
+/// Message for an `error` of a command line whose first word is `word` ("" if there are only
 /// options): with the nearest command or option where one of that name does not exist.
 Error explain(const CLI::App& root, const std::string& word, const CLI::ParseError& error);
 

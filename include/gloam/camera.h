@@ -1,5 +1,5 @@
 #pragma once
-// What cameras put out: one message per frame, every channel of the same instant and the same rays.
+// Messages of cameras: one per frame, every channel of the same instant and the same rays.
 
 #include <array>
 #include <cstdint>
@@ -12,7 +12,8 @@
 
 namespace gloam {
 
-/// How a lens maps directions to the picture (docs/cameras.md); ROS's names where it has one.
+/// Mapping of a lens from directions to the picture (docs/cameras.md); names of ROS where it has
+/// one.
 enum class LensModel : uint8_t {
   kPinhole,
   kPlumbBob,            ///< Brown–Conrady: k1 k2 p1 p2 k3
@@ -31,10 +32,9 @@ struct Intrinsics {
   std::array<double, 8> distortion = {};  ///< in the order above; the rest is 0
 };
 
-/// What a point of the picture shows lies on this ray, in the camera's frame C: it looks along -Z
-/// with +Y up.
+/// Ray through a point of the picture, in the camera's frame C, which looks along -Z with +Y up.
 struct PixelRay {
-  Vec3 p_C;  ///< where it starts; other than 0 of orthographic cameras alone [m]
+  Vec3 p_C;  ///< origin; differs from 0 in orthographic cameras only [m]
   Vec3 d_C;  ///< unit
   /// CameraFrame::depth of what is seen over its distance along the ray.
   double depth_share = 1;
@@ -45,7 +45,7 @@ struct PixelRay {
   }
   Vec3 at_depth(double depth) const { return at(depth / depth_share); }
 };
-/// Of the point (u, v) [px], of every lens; none where the lens sees nothing.
+/// Ray through the point (u, v) [px], for every lens; none where the lens sees nothing.
 std::optional<PixelRay> pixel_ray(const Intrinsics& intrinsics, double u, double v);
 
 /// Pixels, and the edges of the rectangle around them [px]; u1, v1 are those of the last ones' far
@@ -62,9 +62,9 @@ struct ObjectView {
   std::string name;
   uint32_t semantic = 0;
   PixelBox seen;  ///< pixels whose centre shows it
-  PixelBox all;   ///< that would if nothing stood in front of it, within the picture
+  PixelBox all;   ///< pixels that would show it if nothing stood in front of it, within the picture
   Pose X_WO;
-  Vec3 center, size;     ///< of the box along O's axes that holds all that is drawn of it [m]
+  Vec3 center, size;     ///< box along O's axes that holds all visible parts of it [m]
   bool endless = false;  ///< an infinite plane is part of it: it has no box in space
   /// Share of it that is not hidden by others, 0 … 1.
   double visibility() const {
@@ -83,17 +83,18 @@ struct CameraFrame {
   double delivery = 0;  ///< [s] simulation time at which it reaches a reader, >= time
   double ev100 = 0;     ///< exposure value of `rgb` and `raw`
   Pose X_WC;  ///< pose of the camera at `time`; looks along -Z, +Y up (MuJoCo's convention)
-  double exposure_time = 0;  ///< of each row [s]
+  double exposure_time = 0;  ///< exposure time of each row [s]
   double readout_time = 0;   ///< from the first row's exposure to the last one's [s]
 
   std::vector<uint8_t> rgb;     ///< tone-mapped sRGB, (height x width x 3)
   std::vector<float> radiance;  ///< linear Rec. 709 [cd/m²], (height x width x 3)
-  // What follows is exact: of the ray through each pixel's centre, when its row's exposure starts.
+  // Exact channels from here on: taken from the ray through each pixel's centre, when its row's
+  // exposure starts.
   std::vector<float> depth;     ///< along the optical axis, of fisheyes and panoramas along the ray
                                 ///< [m], +inf = nothing hit, (height x width)
   std::vector<float> distance;  ///< along the ray [m], +inf = nothing hit, (height x width)
-  std::vector<uint32_t>
-      part;  ///< row of the label table (one per drawn geom), 0 = nothing, (height x width)
+  /// Row of the label table (one per drawn geom), 0 = nothing, (height x width).
+  std::vector<uint32_t> part;
   uint32_t part_count = 0;  ///< rows of the label table: the most that any of these ids may be
   std::vector<uint32_t> instance;  ///< object id of the label table, 0 = nothing, (height x width)
   std::vector<uint32_t> semantic;  ///< class id of the label table, 0 = nothing, (height x width)
@@ -104,14 +105,14 @@ struct CameraFrame {
                               ///< [px], (height x width x 2)
   /// Numbers of the imager [DN]: behind a mosaic (height x width), else (height x width x 3).
   std::vector<uint16_t> raw;
-  /// What the camera's stereo_depth model measures along the optical axis [m], 0 = nothing,
+  /// Depth along the optical axis as the camera's stereo_depth model measures it [m], 0 = nothing,
   /// (height x width). `depth` is the truth.
   std::vector<float> sensor_depth;
   std::vector<Event> events;        ///< since the frame before, in order of time
   std::vector<float> thermal;       ///< apparent temperature [K], (height x width)
   std::vector<float> scene_flow;    ///< way of the point that is seen since the previous frame [m],
                                     ///< world axes, (height x width x 3)
-  std::vector<ObjectView> objects;  ///< that the picture holds or hides, by id
+  std::vector<ObjectView> objects;  ///< objects in the picture, hidden ones included, ordered by id
 };
 
 /// The content of ROS's sensor_msgs/CameraInfo. Pixel centres lie at integers there, so the
@@ -133,8 +134,8 @@ Pose optical_pose(const Pose& X_WC);
 struct LabelRow {
   uint32_t part = 0;
   std::string geom, body, material;  ///< full names; "" when unnamed
-  uint32_t instance =
-      0;  ///< id of the object (body directly under the world, or robot) it belongs to
+  /// Id of the object (body directly under the world, or robot) it belongs to.
+  uint32_t instance = 0;
   std::string instance_name;
   uint32_t semantic = 0;
   std::string semantic_name;  ///< class: robot's or object's name without trailing digits; "floor",

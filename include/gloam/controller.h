@@ -26,12 +26,13 @@ struct VelocityTarget {
 
 /// Inputs of a controller at one call.
 struct ControlInputs {
-  const mjModel_* model;               ///< with the simulation's own options
-  mjData_* data;                       ///< of the instant; contacts are the last step's
-  std::span<const ContactLoad> loads;  ///< of soft ground, of the last step, as data's contacts are
-  int64_t step = 0;                    ///< that is taken next
-  double period = 0;                   ///< between calls [s]
-  VelocityTarget goal;                 ///< the robot's, from its scene or SetVelocityGoal
+  const mjModel_* model;  ///< with the simulation's own options
+  mjData_* data;          ///< data of the instant; contacts are the last step's
+  /// Loads of soft ground in the last step, as contacts in `data`.
+  std::span<const ContactLoad> loads;
+  int64_t step = 0;     ///< number of the step that is taken next
+  double period = 0;    ///< between calls [s]
+  VelocityTarget goal;  ///< the robot's, from its scene or SetVelocityGoal
   /// Positions that SetJointGoal has given [rad, m], NaN = none, by MuJoCo's joint id, (njnt)
   std::span<const double> joint_goals = {};
 };
@@ -59,7 +60,7 @@ class Controller {
 /// The robot that a controller is made for, and its World.
 struct ControllerRequest {
   World world;
-  RobotOptions robot;  ///< its name, and robot.controller as the scene gives it
+  RobotOptions robot;  ///< name and robot.controller as the scene gives them
 };
 /// Null: the robot is not driven. Errors: with the options' place in the scene file.
 using ControllerFactory =

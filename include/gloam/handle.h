@@ -10,7 +10,7 @@ namespace gloam {
 template <class Kind>
 struct Handle {
   int id = -1;
-  uint64_t world = 0;  ///< which World found it; 0 = an id of one's own, taken as it stands
+  uint64_t world = 0;  ///< World that found it; 0 = an id made by the user, taken unchecked
 };
 using Joint = Handle<struct JointKind>;
 using Body = Handle<struct BodyKind>;

@@ -5,7 +5,6 @@
 // holds is what MuJoCo's parser reads; MuJoCo's manual says what it means.
 
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -13,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gloam/mjcf_schema.h"
 #include "gloam/result.h"
 
 namespace gloam::mjcf {
@@ -27,7 +27,7 @@ class Element {
 
   std::string_view tag() const;   ///< as written: "joint", "worldbody"
   std::string_view path() const;  ///< in the grammar: "mujoco/body/joint"
-  SourceLoc loc() const;          ///< where it was read; of a new one nothing
+  SourceLoc loc() const;          ///< place where it was read; empty for a new element
 
   /// As written; empty where it is not given. Errors: the element has no such attribute.
   Result<std::optional<std::string>> get(std::string_view attribute) const;
@@ -49,7 +49,7 @@ class Element {
   bool operator==(const Element& other) const { return node_ == other.node_; }
 
  protected:
-  // What the generated classes call: the attribute exists and the type is its own.
+  // Accessors for the generated classes, which know that the attribute exists and its type.
   std::optional<std::string> text_of(std::string_view attribute) const;
   std::optional<double> real_of(std::string_view attribute) const;
   std::optional<int> int_of(std::string_view attribute) const;
@@ -61,7 +61,7 @@ class Element {
   std::optional<bool> flag_of(std::string_view attribute) const;
   Element add_known(std::string_view tag);
   Element find_or_add(std::string_view tag);
-  // Of generated enums: words_of(E{}) lists their words.
+  // Keywords of a generated enum E: words_of(E{}) lists them.
   template <class E>
   std::vector<E> keywords_of(std::string_view attribute) const {
     std::vector<E> list;
@@ -84,7 +84,7 @@ class Element {
 
  private:
   friend class Document;
-  // Where the attribute's words stand in a list.
+  // Positions of the attribute's words in a list.
   std::vector<int> places_of(std::string_view attribute,
                              std::span<const std::string_view> words) const;
   std::shared_ptr<Node> node_;
@@ -129,34 +129,5 @@ class Document {
   explicit Document(Element root) : root_(std::move(root)) {}
   Element root_;
 };
-
-/// What this MuJoCo has, and by what it is given here: `gloam info --schema`.
-struct SchemaCoverage {
-  struct Attribute {
-    std::string name;           ///< "mujoco/body/joint/damping"
-    bool is_mirrored = false;   ///< the parser takes a value of it
-    bool is_spec_only = false;  ///< MJCF lacks it: of mjSpec, for models in TOML
-    std::string complaint;      ///< of the parser, where it takes none
-    /// That it sets: names of Fields, "mjsGeom.name" for the name of an element, "mjsGeom" where
-    /// there are more or fewer of them. Empty: it tells the parser something.
-    std::vector<std::string> fields;
-  };
-  struct Field {
-    std::string name;                     ///< "mjsJoint.damping"
-    std::vector<std::string> attributes;  ///< that set it
-    std::string follows_from;             ///< where none does and none can
-    bool is_mirrored() const { return !attributes.empty() || !follows_from.empty(); }
-  };
-  int elements = 0;
-  std::vector<Attribute> attributes;  ///< of the grammar, then those that are spec-only
-  std::vector<Field> fields;          ///< of mjSpec and all that is in it
-};
-
-/// Asks MuJoCo's parser about every attribute, which takes seconds. `progress` is told the share
-/// that is done, from any thread, and returns false to stop.
-SchemaCoverage find_schema_coverage(const std::function<bool(double)>& progress = {});
-
-/// JSON Schema (draft 7) of models in TOML, for editors: docs/models.md.
-std::string model_schema();
 
 }  // namespace gloam::mjcf

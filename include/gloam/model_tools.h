@@ -19,29 +19,29 @@ struct ObjectReport {
   std::vector<std::string> colliders = {};  ///< "box", "hull" … of each
   uint64_t triangles = 0;
   bool is_closed = false;
-  Vec3 size = {};     ///< of its bounding box [m]
-  double volume = 0;  ///< of the mesh where it is closed, else of its hull [m³]
+  Vec3 size = {};     ///< size of its bounding box [m]
+  double volume = 0;  ///< volume of a closed mesh, else of its hull [m³]
   double mass = 0;    ///< [kg]
-  double shared = 0;  ///< of closed meshes: intersection over union with the colliders, 0 … 1
+  double shared = 0;  ///< intersection over union of a closed mesh and its colliders, 0 … 1
   double mean_distance = 0, max_distance = 0;  ///< between the surfaces, by sampled points [m]
-  double seconds = 0;                          ///< that the colliders took
-  std::vector<std::string> notes = {};         ///< what is odd about the mesh
+  double seconds = 0;                          ///< time that the colliders took [s]
+  std::vector<std::string> notes = {};         ///< oddities of the mesh
 };
 /// Converts one object without a scene. Progress and Errors: as of World::compile.
 Result<ObjectReport> convert_object(const ObjectOptions& object, const FileAccess& access = {},
                                     const ProgressCallback& progress = {});
 
-/// How a model fares against stock MuJoCo, and on its way out into MJCF and back.
+/// Result of checking a model against stock MuJoCo and of its export to MJCF and back.
 struct ModelCheck {
-  Status status;  ///< of loading and exporting it
+  Status status;  ///< status of loading and exporting it
   int bodies = 0, joints = 0, geoms = 0;
   int compared = 0;  ///< fields of mjModel that each comparison looks at: sizes, options, arrays
-  /// Why stock MuJoCo does not load the file, "" where it does. Nothing is known of scenes, nor of
-  /// models in TOML.
+  /// Reason why stock MuJoCo does not load the file, "" if it does. Empty for scenes and models in
+  /// TOML.
   std::optional<std::string> stock_refusal;
   std::vector<std::string> unlike_stock;   ///< fields that are not what stock MuJoCo makes of them
   std::vector<std::string> unlike_export;  ///< fields that stock MuJoCo reads back differently
-  uint64_t export_bytes = 0;               ///< of all files written
+  uint64_t export_bytes = 0;               ///< size of all files written
 
   bool passed() const { return status.ok() && unlike_stock.empty() && unlike_export.empty(); }
 };

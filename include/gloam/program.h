@@ -38,11 +38,12 @@ struct CacheKind {
   std::filesystem::path folder;
   int64_t entries = 0;
   uint64_t bytes = 0;  ///< with what is being written
-  std::optional<std::chrono::system_clock::time_point> oldest_use, newest_use;  ///< of an entry
+  /// Time of use of an entry.
+  std::optional<std::chrono::system_clock::time_point> oldest_use, newest_use;
 };
 struct CacheInfo {
   std::filesystem::path folder;  ///< $GLOAM_CACHE, else $XDG_CACHE_HOME/gloam, else ~/.cache/gloam
-  uint64_t limit_bytes = 0;      ///< of all kinds together: $GLOAM_CACHE_SIZE, else 10 GiB
+  uint64_t limit_bytes = 0;      ///< limit for all kinds together: $GLOAM_CACHE_SIZE, else 10 GiB
   std::vector<CacheKind> kinds;
 };
 /// Errors: a folder that cannot be read, GLOAM_CACHE_SIZE is no size.

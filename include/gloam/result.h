@@ -15,12 +15,12 @@ struct SourceLoc {
   int column = 0;
 };
 
-/// What kind of failure it is decides the exit code of the program.
+/// Kind of a failure; it decides the exit code of the program.
 enum class ErrorKind {
   kInput,        ///< a file or value the user gave is wrong: exit 1
   kIo,           ///< reading or writing failed (permission, disk full, port in use): exit 1
   kUsage,        ///< the command line or the call is wrong: exit 2
-  kPartial,      ///< it stopped early but what was recorded is complete and readable: exit 3
+  kPartial,      ///< the run stopped early, the recording so far is complete and readable: exit 3
   kDiverged,     ///< physics left the finite numbers; the last good state is kept: exit 3
   kUnsupported,  ///< valid input that this build cannot do: exit 1
   kInterrupted,  ///< the user stopped it: exit 130
@@ -30,8 +30,8 @@ enum class ErrorKind {
 struct [[nodiscard]] Error {
   ErrorKind kind = ErrorKind::kInput;
   std::string message;    ///< one sentence without a final full stop
-  SourceLoc loc = {};     ///< where in the user's files; empty when it has no place
-  std::string hint = {};  ///< what to do; may be empty
+  SourceLoc loc = {};     ///< place in the user's files; empty when there is none
+  std::string hint = {};  ///< remedy; may be empty
 
   /// "file:line:column: message (hint)", one line.
   std::string to_string() const;

@@ -1,6 +1,6 @@
 #pragma once
-// What a scene says of its cameras: where they stand, their lenses and shutters. Part of
-// gloam/scene.h; docs/cameras.md has examples.
+// Cameras of a scene: places, lenses and shutters. Part of gloam/scene.h; docs/cameras.md has
+// examples.
 
 #include <array>
 #include <optional>
@@ -14,7 +14,7 @@
 
 namespace gloam {
 
-/// What can be recorded of a camera.
+/// Outputs of a camera that can be recorded.
 inline constexpr std::array<std::string_view, 19> kCameraOutputs = {"video",
                                                                     "png",
                                                                     "radiance_exr",
@@ -61,17 +61,17 @@ struct LensOptions {
 struct CameraOptions {
   std::string name = {};  ///< unique
   std::string body = {};  ///< full name of the body it sits on; empty = world
-  std::string track =
-      {};  ///< body whose position it follows with a fixed offset and heading; empty = none
+  /// Body whose position it follows with a fixed offset and heading; empty = none.
+  std::string track = {};
   Vec3 position = {};  ///< in the frame of `body`; for `track`: offset from it in world axes [m]
   std::optional<Vec3> look_at = {};  ///< point to look at, in the same frame [m]
-  std::optional<Quat> orientation =
-      {};            ///< instead of look_at: looks along its -Z, up is +Y (MuJoCo's convention)
-  double fovy = 45;  ///< vertical field of view [deg], (0, 180)
+  /// Instead of look_at: looks along its -Z, up is +Y (MuJoCo's convention).
+  std::optional<Quat> orientation = {};
+  double fovy = 45;               ///< vertical field of view [deg], (0, 180)
   int width = 640, height = 480;  ///< [px], 1 … 16384
   Rational rate = {20, 1};        ///< frames per second of simulation time
   std::optional<LensOptions> lens = {};
-  /// How long each row sees light [s], >= 0: what moves is blurred. 0 = an instant.
+  /// Time that each row sees light [s], >= 0: moving things are blurred. 0 = an instant.
   double exposure_time = 0;
   /// From the first row's exposure to the last one's [s], >= 0: above 0 a rolling shutter.
   double readout_time = 0;

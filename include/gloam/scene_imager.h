@@ -1,6 +1,6 @@
 #pragma once
-// What happens between light and message: [camera.imager], [camera.timing]. Every model is off
-// until its table or value is there (docs/sensors.md).
+// Imager and timing of cameras: [camera.imager], [camera.timing]. Every model is off until its
+// table or value is there (docs/sensors.md).
 
 #include <array>
 #include <optional>
@@ -15,11 +15,11 @@ namespace gloam {
 /// at the first physics step at or after phase + k / rate + its jitter, the aperture uncertainty of
 /// IEEE Std 1241-2010; losses are independent of each other (no source but simplicity).
 struct TimingOptions {
-  Rational phase = {0, 1};    ///< time of sample 0 [s], >= 0
-  double jitter = 0;          ///< of the instant of a sample: standard deviation, cut at four [s]
-  double latency = 0;         ///< from the instant to the delivery [s]
+  Rational phase = {0, 1};  ///< time of sample 0 [s], >= 0
+  double jitter = 0;   ///< standard deviation of the time of a sample, cut at four times that [s]
+  double latency = 0;  ///< from the instant to the delivery [s]
   double latency_jitter = 0;  ///< standard deviation of the latency, cut at four [s]
-  double drop = 0;            ///< share of samples that are lost, independent of each other, 0 … 1
+  double drop = 0;  ///< fraction of samples that are lost, independent of each other, 0 … 1
   SourceLoc loc = {};
 };
 
@@ -34,8 +34,8 @@ struct ExposureOptions {
 /// [camera.imager.auto_exposure]: meters a picture of 32 pixels' width of its own at the camera's
 /// rate, from the start of the simulation on. Reflected-light meter of ISO 2720.
 struct AutoExposureOptions {
-  double time_constant = 0.5;        ///< of the approach to the metered exposure value [s]
-  double compensation = 0;           ///< brighter by so many stops [EV]
+  double time_constant = 0.5;  ///< time constant of the approach to the metered exposure value [s]
+  double compensation = 0;     ///< brighter by so many stops [EV]
   std::string metering = "average";  ///< average | center: a Gaussian of a quarter of the width
   double min_ev100 = -6, max_ev100 = 18;  ///< limits of the exposure value at ISO 100
   double max_shutter = 0.02;  ///< the shutter opens up to this before the gain rises [s]
@@ -46,7 +46,7 @@ struct AutoExposureOptions {
 /// [camera.imager.vignetting]: factor on the light at a pixel (Gardner 1947, "Validity of the
 /// cosine-fourth-power law of illumination"; polynomial: Goldman 2010).
 struct VignettingOptions {
-  bool cos4 = false;  ///< by the angle of the pixel's ray with the axis of a pinhole
+  bool cos4 = false;  ///< falloff by the angle of the pixel's ray with the axis of a pinhole
   /// 1 + a r² + b r⁴ + c r⁶, r = distance from the picture's centre by half its diagonal
   Vec3 polynomial = {0, 0, 0};
   SourceLoc loc = {};
@@ -56,13 +56,13 @@ struct VignettingOptions {
 struct PixelOptions {
   double full_well = 10000;         ///< electrons at which a pixel is full
   double quantum_efficiency = 0.6;  ///< electrons per photon of 555 nm, 0 … 1
-  double pitch = 3.5;               ///< of the pixels [µm]
+  double pitch = 3.5;               ///< pitch of the pixels [µm]
   bool shot_noise = false;          ///< the number of electrons is Poisson's
   double read_noise = 0;            ///< standard deviation in the dark [electrons]
   double dark_current = 0;          ///< [electrons/s]; with shot_noise it has its own
-  double prnu = 0;                  ///< spread of the pixels' sensitivity, a share
+  double prnu = 0;                  ///< spread of the pixels' sensitivity, a fraction
   double dsnu = 0;                  ///< spread of the pixels' offsets [electrons]
-  int bits = 0;                     ///< of the converter, 1 … 16; 0 = no quantisation
+  int bits = 0;                     ///< bits of the converter, 1 … 16; 0 = no quantisation
   int black_level = 0;              ///< number that stands for no light [DN]
   SourceLoc loc = {};
 };

@@ -14,22 +14,22 @@ namespace gloam {
 /// [[lidar.surface]]: what a material is at the LiDAR's wavelength, which its colour does not tell.
 struct LidarSurfaceOptions {
   std::string material = {};  ///< full name; * stands for any text; the last that fits counts
-  std::optional<double> diffuse = {};  ///< of its untextured base, 0 … 1; empty = its red
+  std::optional<double> diffuse = {};  ///< albedo of its untextured base, 0 … 1; empty = its red
   /// Coefficient of retroreflection [cd/(lx m²)] (ASTM D4956: 70 engineer grade, 580 prismatic).
   double retro = 0;
   SourceLoc loc = {};
 };
 
-/// What is not given is the preset's. Angles in degrees, as in data sheets. The sensor's frame: x
-/// ahead, y to the left, z up (ROS REP 103).
+/// Options of a LiDAR; the preset gives those that are empty. Angles in degrees, as in data sheets.
+/// The sensor's frame: x ahead, y to the left, z up (ROS REP 103).
 struct LidarOptions {
   std::string name = {};          ///< unique
   std::string body = {};          ///< full name of the body it sits on; empty = world
   Vec3 position = {};             ///< in the frame of `body` [m]
   Quat orientation = {};          ///< in the frame of `body`
   std::string preset = "OS1-64";  ///< named after data sheets; docs/lidar.md has the list
-  /// How beams are spread: spinning (rings that turn), raster (a grid, column by column), flash (a
-  /// grid, all at once), rosette (two prisms that turn).
+  /// Scan pattern: spinning (rings that turn), raster (a grid, column by column), flash (a grid,
+  /// all at once), rosette (two prisms that turn).
   std::optional<std::string> pattern = {};
   std::optional<Rational> rate = {};  ///< scans per second of simulation time [Hz]
   /// spinning: elevation of each ring, up [deg]
@@ -59,7 +59,7 @@ struct LidarOptions {
   std::optional<double> pulse_length = {};   ///< echoes closer together are one [m]
   int footprint_rays = 1;                    ///< over the beam's cross-section, 1 … 32
   std::optional<std::string> returns = {};   ///< first strongest last dual all
-  int most_returns = 3;                      ///< of `all`, 1 … 5
+  int most_returns = 3;                      ///< most returns with `all`, 1 … 5
 
   /// Bodies that its beams pass, each with all that hangs on it: full names, * stands for any text.
   std::vector<std::string> hide = {};

@@ -35,18 +35,18 @@ struct EventOptions {
   double threshold = 0.2;  ///< change of log light that makes an event, both signs
   double mismatch = 0;     ///< spread of the pixels' thresholds, same unit
   double refractory = 0;   ///< a pixel's dead time after an event [s]
-  double noise_rate = 0;   ///< of each pixel's events without a change [Hz]
-  double dark = 0.001;     ///< added light, as a share of the top of the scale
+  double noise_rate = 0;   ///< rate of each pixel's events without a change [Hz]
+  double dark = 0.001;     ///< added light, as a fraction of the top of the scale
   uint64_t seed = 0;       ///< beside the simulation's and the sensor's name
   SourceLoc loc = {};
 };
 
-/// [camera.thermal]: a bolometer camera for 8 … 14 µm, output thermal. Its noise is told as by ASTM
-/// E1543, "Noise Equivalent Temperature Difference of Thermal Imaging Systems".
+/// [camera.thermal]: a bolometer camera for 8 … 14 µm, output thermal. Its noise is stated as in
+/// ASTM E1543, "Noise Equivalent Temperature Difference of Thermal Imaging Systems".
 struct ThermalOptions {
   double netd = 0;             ///< noise-equivalent temperature difference at 300 K [K]
   double fixed_pattern = 0;    ///< spread of the pixels' offsets, at 300 K [K]
-  double step = 0;             ///< of the temperatures put out [K]; 0 = none
+  double step = 0;             ///< quantisation of the temperatures put out [K]; 0 = none
   double min = 0, max = 5000;  ///< range of the temperatures put out [K]
   uint64_t seed = 0;           ///< beside the simulation's and the sensor's name
   SourceLoc loc = {};
@@ -91,11 +91,11 @@ struct SensorOptions {
   SourceLoc loc = {};
 };
 
-/// Where a rig stands and what its cameras have in common.
+/// Place of a rig and the options that its cameras have in common.
 struct RigOptions {
   std::string name = {};                 ///< unique; its cameras are NAME/…
   std::string body = {};                 ///< full name of the body it sits on; empty = world
-  Vec3 position = {};                    ///< of the left (or only reference) eye [m]
+  Vec3 position = {};                    ///< position of the left (or only reference) eye [m]
   std::optional<Vec3> look_at = {};      ///< point to look at, in the same frame [m]
   std::optional<Quat> orientation = {};  ///< instead of look_at
   double fovy = 58;                      ///< vertical field of view [deg]
@@ -113,7 +113,7 @@ struct StereoOptions : RigOptions {
 /// [[rgbd]]: NAME/depth, the reference eye with a stereo_depth model, and NAME/color beside it.
 struct RgbdOptions : RigOptions {
   StereoDepthOptions depth = {.preset = "d435"};
-  double color_offset = 0.015;            ///< of the colour camera along +X [m]
+  double color_offset = 0.015;            ///< offset of the colour camera along +X [m]
   std::optional<double> color_fovy = {};  ///< [deg]; the rig's if not given
   CameraSensing sensing = {};
   SourceLoc loc = {};

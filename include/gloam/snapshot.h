@@ -17,8 +17,8 @@ struct SnapshotData;  // src/sim/snapshots/snapshot.h
 
 /// Reads of one joint in one Snapshot. The spans live as long as the Snapshot.
 struct JointState {
-  std::span<const double>
-      qpos;  ///< 1 (hinge [rad], slide [m]), 4 (ball, wxyz) or 7 (free: xyz, wxyz)
+  /// 1 (hinge [rad], slide [m]), 4 (ball, wxyz) or 7 (free: xyz, wxyz).
+  std::span<const double> qpos;
   std::span<const double> qvel;  ///< 1, 3 or 6 [rad/s, m/s]
   double position() const { return qpos[0]; }
   double velocity() const { return qvel[0]; }
@@ -27,8 +27,8 @@ struct JointState {
 /// Values of one MuJoCo sensor and the time of the state they were computed from.
 struct SensorState {
   std::span<const double> values;
-  double stamp =
-      0;  ///< [s] one timestep before Snapshot::time after a step, see ARCHITECTURE.md "Poses"
+  /// [s] one timestep before Snapshot::time after a step, see ARCHITECTURE.md "Poses".
+  double stamp = 0;
 };
 
 class Snapshot {
@@ -46,7 +46,7 @@ class Snapshot {
   SensorState operator[](SensorHandle sensor) const;
   double control(Actuator actuator) const;  ///< the first of several
 
-  World world() const;  ///< of which this is an instant: after a recompile another one
+  World world() const;  ///< World of this instant; another one after a recompile
 
   const SnapshotData& data() const { return *data_; }
 
@@ -57,7 +57,7 @@ class Snapshot {
 /// A body at an instant, world axes.
 struct BodyState {
   Pose X_WB;
-  Vec3 velocity, angular_velocity;       ///< of its origin [m/s], [rad/s]
+  Vec3 velocity, angular_velocity;       ///< velocity of its origin [m/s], [rad/s]
   Vec3 external_force, external_torque;  ///< applied at its centre of mass [N], [N m]
 };
 
@@ -71,12 +71,12 @@ struct ContactState {
   Vec3 position;        ///< between the surfaces [m]
   Vec3 normal;          ///< unit, from the first geom to the second
   Vec3 tangents[2];     ///< complete the frame
-  double distance = 0;  ///< of the surfaces; negative = they overlap [m]
+  double distance = 0;  ///< distance between the surfaces; negative = they overlap [m]
   Vec3 force, torque;   ///< on the second geom, world axes [N], [N m]
 };
 
 /// All that MuJoCo knows of an instant, as one forward pass tells from its Snapshot: poses,
-/// velocities, forces of actuators and contacts, any array by name. Keeps its room from one
+/// velocities, forces of actuators and contacts, any array by name. Keeps its memory from one
 /// Snapshot to the next; used by one thread at a time. Errors: a handle of another World than the
 /// last Snapshot's, a name that there is not.
 class Instant {

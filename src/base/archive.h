@@ -76,7 +76,7 @@ class ArchiveReader {
       for (uint64_t i = 0; i < count && ok_; ++i) visit_parts(*this, values.emplace_back());
     }
   }
-  /// What block() wrote; empty on failure.
+  /// Bytes that block() wrote; empty on failure.
   std::span<const uint8_t> block() {
     uint64_t size = 0;
     (*this)(size);

@@ -196,7 +196,7 @@ void trim_cache(uint64_t limit) {
       entries.push_back(entry);
     }
   }
-  // What dead writers left goes first.
+  // Leftovers of dead writers go first.
   std::ranges::sort(entries, {}, [](const Entry& e) { return std::pair(e.is_whole, e.used); });
   for (const Entry& entry : entries) {
     if (total <= limit && entry.is_whole) break;

@@ -1,10 +1,10 @@
 #pragma once
-// What Gloam keeps on disk so that a second start is faster: a folder for each kind below
-// cache_folder(), an entry a file there, named by a hash. Several processes may use one cache: an
-// entry is written aside and renamed, carries the hash of its content, and may vanish at any time.
-// All kinds together stay within cache_limit(). Only what is an entry by its name and first bytes
-// is ever counted or removed: someone's files, which a mistaken GLOAM_CACHE may lead to, are left
-// alone. gloam/program.h lists and clears.
+// Cache on disk, so that a second start is faster: a folder for each kind below cache_folder(), an
+// entry a file there, named by a hash. Several processes may use one cache: an entry is written
+// aside and renamed, carries the hash of its content, and may vanish at any time. All kinds
+// together stay within cache_limit(). Only files that are entries by name and first bytes are ever
+// counted or removed: someone's files, which a mistaken GLOAM_CACHE may lead to, are left alone.
+// gloam/program.h lists and clears.
 
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace gloam {
 
-/// Of one kind of entries.
+/// Format of one kind of entries.
 struct CacheFormat {
   std::string_view kind;    ///< and its folder's name
   std::string_view ending;  ///< of its files
@@ -30,14 +30,14 @@ inline constexpr CacheFormat kVisualCache{"visuals", ".model", "model files of [
 inline constexpr CacheFormat kBvhCache{"bvhs", ".bvh", "trees of large meshes, for cards"};
 inline constexpr CacheFormat kHullCache{"hulls", ".hulls", "convex parts of meshes"};
 
-/// What every entry begins with, as the first bytes of its format's number.
+/// First bytes of every entry: those of its format's number.
 inline constexpr std::string_view kCacheMagic = "GLOM";
 
 /// An entry is a head, by which it is known to be whole, and what the format has to say. First
 /// room for the head, then what is to be kept behind it, then the head itself.
 void begin_cache_entry(std::vector<uint8_t>* entry);
 void seal_cache_entry(uint64_t magic, std::vector<uint8_t>* entry);
-/// What is behind the head; nothing of an entry that is damaged or of another format.
+/// Content behind the head; nothing if the entry is damaged or of another format.
 std::span<const uint8_t> unseal_cache_entry(uint64_t magic, std::span<const uint8_t> entry);
 
 /// Hash of large data, by all threads.

@@ -15,7 +15,7 @@ namespace gloam {
 void keep_in_cache_later(const std::filesystem::path& path, uint64_t magic, uint64_t held,
                          std::function<std::vector<uint8_t>()> make);
 
-/// Of an entry that is made, but not sealed.
+/// Keeps an entry that is made, but not sealed, in the same way.
 void keep_in_cache_later(const std::filesystem::path& path, uint64_t magic,
                          std::vector<uint8_t> entry);
 

@@ -23,7 +23,7 @@ Result<std::string> read_text_file(const std::filesystem::path& path,
 /// ".toml" of "scene.TOML".
 std::string lower_extension(const std::filesystem::path& path);
 
-/// What a file is called while it is written: its name, a point, hexadecimal digits and this.
+/// Ending of a file's name while it is written: its name, a point, hexadecimal digits and this.
 inline constexpr std::string_view kTemporaryEnding = ".tmp";
 
 /// Writes to a temporary file beside `path` and renames it: readers see the old file or the new

@@ -1,6 +1,6 @@
 #pragma once
-// How much memory there still is. Linux promises memory that it has not, and ends the process that
-// then uses it: what a user asks for is compared with this before it is taken.
+// Memory that is still available. Linux promises memory that it has not, and ends the process that
+// then uses it: a user's demand is compared with this before it is taken.
 
 #include <cstdint>
 #include <filesystem>

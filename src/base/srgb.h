@@ -5,14 +5,14 @@
 
 namespace gloam {
 
-/// Of linear light, what a display is given.
+/// Display value of linear light.
 template <class F>
 F srgb_encode(F linear) {
   return linear <= F(0.0031308) ? F(12.92) * linear
                                 : F(1.055) * std::pow(linear, F(1) / F(2.4)) - F(0.055);
 }
 
-/// Of what a display is given, the linear light.
+/// Linear light of a display value.
 template <class F>
 F srgb_decode(F encoded) {
   return encoded <= F(0.04045) ? encoded / F(12.92)

@@ -17,7 +17,7 @@ inline constexpr double kRound = 0x1.8p52;
 inline double whole(double x) { return (x + kRound) - kRound; }
 }  // namespace wave_math
 
-/// Of |x| < 1e6, within 1e-9 of the exact ones; near 0 within 1e-13.
+/// Sine and cosine for |x| < 1e6, within 1e-9 of the exact ones; near 0 within 1e-13.
 inline SinCos sin_cos(double x) {
   using wave_math::whole;
   // pi in two parts, of which the first has zeros enough for exact products.
@@ -47,7 +47,7 @@ inline SinCos sin_cos(double x) {
   return {sign * s * r, sign * c};
 }
 
-/// Of x from -700 to 700, within 1e-13 of the exact one; beyond as there.
+/// Exponential for x from -700 to 700, within 1e-13 of the exact one; beyond as at the ends.
 inline double exponential(double x) {
   constexpr double kLn2 = 0x1.62e42feep-1, kLn2Rest = 0x1.a39ef35793c76p-33;
   x = x < -700 ? -700 : x;
@@ -73,7 +73,7 @@ inline double exponential(double x) {
   return p * std::bit_cast<double>((bits + 1023) << 52);
 }
 
-/// Of x from 1e-300 to 1e300, within 1e-14 of the exact one, or of that over it.
+/// Logarithm for x from 1e-300 to 1e300, within 1e-14 of the exact one, absolute or relative.
 inline double logarithm(double x) {
   // x = m 2^n with m in [0.7, 1.42): n from the highest bits, as a whole number in those of 2^52.
   constexpr uint64_t kBase = 0x3FE6A09E00000000u;

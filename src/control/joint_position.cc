@@ -27,7 +27,7 @@ class JointPositionController final : public Controller {
     for (size_t i = 0; i < joints_.size(); ++i) target_[i] = data->qpos[joints_[i].qpos];
   }
 
-  // What is held stays where it was: a held joint sags, and would sag further each time.
+  // Held joints keep their goal: a held joint sags, and would sag further each time.
   void take_over(const mjModel* model, const mjData* data, const Controller& before) override {
     reset(model, data);
     const auto* old = dynamic_cast<const JointPositionController*>(&before);

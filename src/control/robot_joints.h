@@ -1,5 +1,5 @@
 #pragma once
-// Which actuators of a robot drive which of its joints.
+// Actuators of a robot by the joints that they drive.
 
 #include <mujoco/mujoco.h>
 

@@ -19,7 +19,7 @@ namespace gloam {
 
 struct TrotOptions;
 
-/// What a trot controller says about itself.
+/// Status of a trot controller.
 struct TrotStatus {
   bool fallen = false;    ///< tipped over or collapsed; the motors then only brake
   bool stepping = false;  ///< false = stands on four feet

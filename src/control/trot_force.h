@@ -1,5 +1,5 @@
 #pragma once
-// Which ground forces give the body the wanted acceleration: a small quadratic programme over the
+// Ground forces that give the body the wanted acceleration: a small quadratic programme over the
 // friction pyramids of the feet that stand.
 
 #include <Eigen/Dense>

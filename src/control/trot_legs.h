@@ -47,7 +47,7 @@ struct Quadruped {
 /// Reads a quadruped out of a model. Errors say what is missing (legs, feet, torque motors).
 Result<Quadruped> find_quadruped(const mjModel& model, const RobotInstance& robot);
 
-/// Where one leg is, in B.
+/// Pose of one leg, in B.
 struct LegPose {
   std::array<Vector3d, 3> axis, anchor, com;
   std::array<Matrix3d, 3> R;  ///< link rotation from the reference
@@ -59,7 +59,7 @@ LegPose leg_pose(const Leg& leg, const Vector3d& q);
 /// Acceleration of the foot that joint velocities alone cause, J-dot qdot, in B with B at rest.
 Vector3d foot_bias_acceleration(const LegPose& pose, const Vector3d& qd);
 
-/// What the motion of a leg needs.
+/// Terms of a leg's dynamics.
 struct LegDynamics {
   Vector3d torque;  ///< of the joints [N m], armature included
   Vector3d force;   ///< total of the links' mass times acceleration [N], in B

@@ -11,7 +11,7 @@ inline constexpr double kReferenceLeg = 0.426;
 struct TrotOptions {
   // Gait.
   double period = 0.38;     ///< of one stride [s]
-  double duty = 0.61;       ///< share of the stride a foot is on the ground, 0.5 … 0.8
+  double duty = 0.61;       ///< fraction of the stride a foot is on the ground, 0.5 … 0.8
   double clearance = 0.06;  ///< height of the swinging foot's lowest point above ground [m]
   double crouch = 0.65;     ///< hip height over foot centre / leg length when standing
   double press = 0.006;  ///< how far below the ground a foothold is aimed, so that it touches [m]

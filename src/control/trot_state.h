@@ -1,5 +1,5 @@
 #pragma once
-// What the trot controller measures each step: the robot's base, legs, feet and contacts.
+// Measurements of the trot controller in each step: the robot's base, legs, feet and contacts.
 
 #include <Eigen/Dense>
 #include <array>

@@ -1,6 +1,5 @@
 #pragma once
-// Where a swinging foot goes: a smooth path from lift-off to the foothold, which may move
-// meanwhile.
+// Path of a swinging foot: smooth from lift-off to the foothold, which may move meanwhile.
 
 #include <Eigen/Dense>
 

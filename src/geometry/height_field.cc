@@ -18,8 +18,8 @@ constexpr float kNoHeight = std::numeric_limits<float>::quiet_NaN();
 constexpr double kSameSurface = 1e-3;  // [m] two triangles that meet in an edge under a sample
 constexpr size_t kMostSurfaces = 64;   // over one another, on average over a band of rows
 constexpr double kMostDrawn = 1024;    // the same over the grid, where the highest alone is kept
-constexpr int kBands = 64;             // of rows, one task each
-constexpr int kShares = 16;            // of triangles, one task each
+constexpr int kBands = 64;             // bands of rows, one task each
+constexpr int kShares = 16;            // groups of triangles, one task each
 
 Vec3d to_double(Vec3f v) { return {v.x, v.y, v.z}; }
 
@@ -73,7 +73,7 @@ class GridTriangles {
   size_t count_ = 0;
 };
 
-/// What a line along x at y cuts out of a triangle.
+/// Part of a line along x at y inside of a triangle.
 struct Span {
   double x0 = std::numeric_limits<double>::infinity(), z0 = 0;  // its ends, x0 <= x1
   double x1 = -std::numeric_limits<double>::infinity(), z1 = 0;
@@ -145,12 +145,12 @@ class Band {
 };
 
 struct Hit {
-  uint32_t sample;  // of the band
+  uint32_t sample;  // index in the band
   float z;
   bool faces_up;
 };
 
-/// Of the hits of one sample, sorted from above: `out(layer, z)`.
+/// Chooses floors from the hits of one sample, sorted from above: `out(layer, z)`.
 template <class Out>
 void choose_floors(std::span<const Hit> hits, int layers, Out&& out) {
   out(0, hits[0].z);

@@ -23,9 +23,9 @@ struct HeightGrid {
   size_t size() const { return static_cast<size_t>(columns) * static_cast<size_t>(rows); }
 };
 
-/// Of all layers of a grid together: 4096 x 4096.
+/// Limit on all layers of a grid together: 4096 x 4096.
 inline constexpr int64_t kMostHeightSamples = int64_t{1} << 24;
-/// Of air over a floor that lies under something [m]; less is no floor.
+/// Least height of air over a floor that lies under something [m].
 inline constexpr double kFloorClearance = 0.3;
 
 /// From low to high, both included, in equal steps of at most `resolution` [m]. Errors: low is not

@@ -197,7 +197,7 @@ class Slabs {
 
   const Floors& floors_;
   size_t columns_;
-  std::vector<bool> used_;  // of quads, by the node at their low corner
+  std::vector<bool> used_;  // flags of quads, by the node at their low corner
   std::array<double, 2> reach_;
 };
 
@@ -235,7 +235,7 @@ Result<HeightError> height_error(std::span<const PlacedMesh> meshes, const Floor
   HeightGrid cells = floors.grid;
   --cells.columns, --cells.rows;
   GLOAM_TRY(const Floors source, sample_floors(meshes, cells, floors.layers, kErrorSeed));
-  // Of cells all of whose corners met something: the others' heights are made up.
+  // Cells count only if all of their corners met something: the others' heights are made up.
   const auto is_met = [&](int column, int row) {
     const auto corner = static_cast<size_t>(row) * static_cast<size_t>(floors.grid.columns) +
                         static_cast<size_t>(column);

@@ -8,10 +8,10 @@ namespace gloam {
 /// Solid from `z` down to `base` below its lowest sample.
 struct HeightField {
   HeightGrid grid;
-  int column = 0, row = 0;  ///< of the floors' grid that its first sample is
+  int column = 0, row = 0;  ///< place of its first sample in the floors' grid
   double base = 1;          ///< [m]
   std::vector<float> z;     ///< [m], by row and column
-  int64_t filled = 0;       ///< samples that met nothing
+  int64_t filled = 0;       ///< samples without a hit
 
   float at(int c, int r) const {
     return z[static_cast<size_t>(r) * static_cast<size_t>(grid.columns) + static_cast<size_t>(c)];
@@ -25,7 +25,8 @@ struct HeightField {
 /// that are known, ring by ring. Error: there is none anywhere.
 Result<HeightField> ground_of(const Floors& floors);
 
-/// Of slabs: what is left under them of the air over the floor beneath [m].
+/// Slabs: thickness of the base, and the height by which they may shorten the air over the floor
+/// beneath [m].
 inline constexpr double kSlabBase = 0.05, kMostLostAir = 0.2;
 inline constexpr size_t kMostSlabs = 255;
 

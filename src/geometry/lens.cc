@@ -9,10 +9,10 @@
 namespace gloam {
 namespace {
 
-constexpr double kWidest = 89.4 * kDegree;  // of models that know no angle beyond a right one
+constexpr double kWidest = 89.4 * kDegree;  // limit of models that have no angle beyond a right one
 constexpr double kNarrowFisheye = 80;       // [deg] that a fisheye sees at least on each side
 
-/// Whether the picture goes on growing with the angle from the axis at `angle` [rad].
+/// True if the picture still grows with the angle from the axis at `angle` [rad].
 bool grows(const LensOf<double>& lens, double angle) {
   double slope;
   if (lens.model == LensModel::kEquidistant) {

@@ -46,7 +46,7 @@ void add_lathe_corners(const std::vector<Vec3f>& rings, ShapeCorners* out) {
 
 void add_ball_corners(Vec3f radii, float half_length, ShapeCorners* out) {
   std::vector<Vec3f> rings;
-  constexpr int kRings = 4;  // of a half
+  constexpr int kRings = 4;  // rings of a half
   for (const float side : {-1.0f, 1.0f}) {
     for (int i = 0; i < kRings; ++i) {
       const int k = side < 0 ? kRings - 1 - i : i;

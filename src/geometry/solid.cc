@@ -191,7 +191,7 @@ Solid cushion(Vec3f size, float bulge, float radius, uint64_t seed, float edge, 
       at(&p, thin) += wrinkle * std::sin(wave) * dome;
     }
   }
-  // Where faces of the box meet, both have the same vertices: one normal for each place.
+  // Faces that meet at an edge of the box have the same vertices: one normal for each place.
   TriangleMesh welded = mesh;
   smooth_normals(&welded);
   std::vector<uint32_t> order(mesh.positions.size());

@@ -1,6 +1,6 @@
 #pragma once
 // Solids made by formula: bevelled boxes, turned and extruded profiles, tubes, sheets, cushions.
-// What generated environments are built of. Lengths in metres, Z up, angles in degrees.
+// Generated environments are built of them. Lengths in metres, Z up, angles in degrees.
 
 #include <span>
 #include <utility>

@@ -8,9 +8,9 @@ namespace gloam {
 /// A foot of an agent that came down on the ground in the last step.
 struct Footfall {
   int agent = -1;    ///< row of CompiledWorld::agents
-  double p[3] = {};  ///< of the foot, world [m]
-  double mass = 0;   ///< of the agent [kg]
-  double speed = 0;  ///< of the agent over the ground [m/s]
+  double p[3] = {};  ///< place of the foot, world [m]
+  double mass = 0;   ///< mass of the agent [kg]
+  double speed = 0;  ///< speed of the agent over the ground [m/s]
 };
 
 }  // namespace gloam

@@ -27,7 +27,8 @@ class MediumField {
 
   const VolumeGrid& density() const { return density_; }          ///< [kg/m³]; null = clear
   const VolumeGrid& temperature() const { return temperature_; }  ///< [K]
-  /// Of cells' centres [m/s], world, (nz, ny, nx, 3); null = nothing that moves could feel it.
+  /// Velocities of cells' centres [m/s], world, (nz, ny, nx, 3); null = no moving thing is
+  /// affected.
   const VolumeGrid& velocity() const { return velocity_; }
   uint64_t digest() const { return digest_; }
 
@@ -40,7 +41,7 @@ class MediumField {
 /// The two versions between which an instant lies.
 struct FieldWindow {
   std::shared_ptr<const MediumField> before, after;
-  float share = 0;  ///< of `after`, 0 <= … < 1
+  float share = 0;  ///< weight of `after`, 0 <= … < 1
 
   /// The grids at the instant; waits for what is not yet done.
   void read(VolumeGrid* density, VolumeGrid* temperature) const;

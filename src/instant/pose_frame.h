@@ -1,5 +1,5 @@
 #pragma once
-// Where everything visible is at one instant, in structure-of-arrays with a leading world index
+// Poses of everything visible at one instant, in structure-of-arrays with a leading world index
 // (one world live). Made by PoseSolver on the consumer's thread; free of MuJoCo types. Places are
 // counted from the World's render origin (world/view/render_origin.h).
 
@@ -34,7 +34,7 @@ struct PoseFrame {
   std::vector<float> material_emission;  ///< (n_world x nmat); likewise below
   std::vector<float> material_specular, material_shininess, material_reflectance;
   std::vector<float> material_metallic, material_roughness;  ///< -1 = not given
-  uint64_t height_field_serial = 0;  ///< of their last change, 0 = as in the World's model
+  uint64_t height_field_serial = 0;  ///< serial of their last change, 0 = as in the World's model
   std::vector<float> height_field;   ///< (n_world x nhfielddata) 0..1; empty while that is 0
 
   /// Grids of what is solved for, by VolumeDescription::field.

@@ -1,6 +1,6 @@
 #pragma once
-// What an effect adds to the height of a surface: ripples on water. One version of it, which
-// whoever has a Snapshot may hold.
+// Heights that an effect adds to a surface: ripples on water. One immutable version, which holders
+// of Snapshots share.
 
 #include <memory>
 #include <vector>
@@ -9,7 +9,7 @@ namespace gloam {
 
 struct SurfaceHeights {
   std::vector<float> height;  ///< [m], (ny x nx), at the middles of the grid's cells
-  std::vector<float> rate;    ///< of its change [m/s], likewise
+  std::vector<float> rate;    ///< rate of its change [m/s], likewise
 };
 
 /// At an instant `since` after the field's: height + rate * since.

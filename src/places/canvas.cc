@@ -37,7 +37,7 @@ void Canvas::put(int x, int y, Vec3 color, float share) {
 }
 
 Canvas& Canvas::fill(const Profile& outline, Vec3 color) {
-  constexpr int kSamples = 3;  // of a texel's edge
+  constexpr int kSamples = 3;  // samples of a texel's edge
   const auto unit = static_cast<float>(image_.height);
   Vec2f low = outline[0], high = outline[0];
   for (const Vec2f p : outline) {

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
-#include "gloam/scene_environment.h"
+#include "gloam/scene_object.h"
 
 namespace gloam {
 

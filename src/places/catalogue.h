@@ -12,7 +12,7 @@ namespace gloam {
 struct PropKind {
   const char* name;  ///< as in [[prop]] kind, and the semantic class
   Prop (*make)(Workshop& shop);
-  const char* text;  ///< what it is, for lists
+  const char* text;  ///< description, for lists
 };
 
 using PropFamily = std::span<const PropKind>;

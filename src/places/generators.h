@@ -16,7 +16,7 @@ Result<Place> make_bedroom(const BedroomOptions& options);
 Result<Place> make_tunnel(const TunnelOptions& options);
 Result<Place> make_terrain(const TerrainOptions& options);
 
-/// What the scene's environment, its [[prop]]s and its vehicles make; empty when it has none.
+/// Place made of the scene's environment, its [[prop]]s and its vehicles; empty when it has none.
 /// Errors: with the place in the scene file.
 Result<std::optional<Place>> make_place(const Scene& scene);
 

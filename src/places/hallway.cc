@@ -23,7 +23,7 @@ class HallwayPlanner {
     plan_.ceiling = o_.ceiling;
     const std::vector<double> lengths = share_out();
     const int legs = static_cast<int>(lengths.size());
-    double x = -kBehind, y = 0;  // where the next leg begins, in its middle
+    double x = -kBehind, y = 0;  // middle of the next leg's beginning
     for (int i = 0; i < legs; ++i) {
       const bool east = i % 2 == 0;
       const double length = lengths[static_cast<size_t>(i)], w = o_.width / 2;

@@ -40,7 +40,7 @@ struct Look {
   Vec3 color{1, 1, 1};  ///< display (sRGB), 0 … 1
   double roughness = 0.6, metallic = 0;
   double opacity = 1;
-  double luminance = 0;       ///< of what glows [cd/m²]
+  double luminance = 0;       ///< luminance of glowing materials [cd/m²]
   Picture picture = {};       ///< on texture coordinates; empty = none
   MaterialOptions more = {};  ///< its name is empty
 };
@@ -56,19 +56,19 @@ class MaterialSet {
   std::vector<Look> looks_;
 };
 
-/// What a whole place has in common.
+/// Style that a whole place has in common.
 struct Style {
   std::string wood = "oak";       ///< oak walnut pine birch
-  std::string metal = "steel";    ///< of handles and taps: steel brass black
-  Vec3 fabric{0.55, 0.53, 0.50};  ///< of the large upholstery
+  std::string metal = "steel";    ///< metal of handles and taps: steel brass black
+  Vec3 fabric{0.55, 0.53, 0.50};  ///< colour of the large upholstery
   Vec3 accent{0.20, 0.36, 0.38};
   Vec3 wall{0.90, 0.88, 0.84};
   Vec3 trim{0.86, 0.85, 0.82};     ///< skirting, doors, window frames
   Vec3 cabinet{0.83, 0.83, 0.80};  ///< kitchen fronts
   Vec3 tiles{0.86, 0.86, 0.84};    ///< behind worktops
-  bool wooden_fronts = false;      ///< of kitchens: of `wood` instead of `cabinet`
+  bool wooden_fronts = false;      ///< kitchens have fronts of `wood` instead of `cabinet`
   std::string worktop = "wood";    ///< wood marble concrete
-  uint64_t door = 0;               ///< which make of inner doors
+  uint64_t door = 0;               ///< seed of the make of inner doors
 };
 
 }  // namespace gloam

@@ -50,7 +50,7 @@ Result<int> Place::make(const PropRequest& request) {
   GLOAM_TRY(Prop made, make_prop(request, style, &materials));
   for (PropPart& part : made.parts) {
     part.join_visuals();
-    // What stands ajar from the start stays a joint.
+    // A part that stands ajar from the start stays a joint.
     if (!openable && part.joint && part.joint->initial == 0) part.joint.reset();
   }
   const int index = add(std::move(made));
@@ -70,7 +70,7 @@ int Place::put(int index, const std::string& room, const Pose& X_WP, bool loose)
   return static_cast<int>(placements_.size()) - 1;
 }
 
-// What a material looks like in Gloam is not compiled, but what MuJoCo knows of it is.
+// Looks of materials beyond MuJoCo's are not compiled; those that MuJoCo knows are.
 uint64_t Place::hash() const {
   const std::span<const Look> looks = materials.looks();
   std::vector<uint64_t> pictures(looks.size());

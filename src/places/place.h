@@ -9,7 +9,6 @@
 
 #include "geometry/height_field_parts.h"
 #include "gloam/scene.h"
-#include "gloam/scene_environment.h"
 #include "places/catalogue.h"
 
 namespace gloam {
@@ -26,13 +25,13 @@ struct Placement {
 /// Many of one prop, all of one body: what is drawn alone, without parts or colliders.
 struct Scatter {
   int prop = 0;
-  std::string name;  ///< of the body: "grass"
+  std::string name;  ///< name of the body: "grass"
   std::vector<Pose> poses;
 };
 
-/// What is walked on where it is not level. It is felt, not drawn.
+/// Uneven ground as a height field: a collider that is not drawn.
 struct Ground {
-  std::string name;  ///< of its geom
+  std::string name;  ///< name of its geom
   HeightField field;
   double friction = 1;  ///< sliding
 };
@@ -46,8 +45,8 @@ class Place {
   MaterialSet materials;
   std::vector<Ground> grounds;
   std::vector<Region> regions;         ///< floors that can be walked on
-  std::optional<SkyOptions> sky = {};  ///< of a scene that has none of its own
-  std::optional<double> ev100 = {};    ///< likewise: exposure by which its rooms look well
+  std::optional<SkyOptions> sky = {};  ///< sky for a scene that has none of its own
+  std::optional<double> ev100 = {};    ///< exposure by which its rooms look well, likewise
 
   /// Can doors and drawers of things of the catalogue be opened? Set it before make().
   bool openable = true;
@@ -70,7 +69,7 @@ class Place {
   const std::vector<Placement>& placements() const { return placements_; }
   const std::vector<Scatter>& scatters() const { return scatters_; }
 
-  /// Of all that it is: the key of what is compiled from it.
+  /// Hash of the whole place: the key of the model compiled from it.
   uint64_t hash() const;
 
  private:
@@ -83,7 +82,7 @@ class Place {
   std::vector<Made> made_;
   std::vector<Placement> placements_;
   std::vector<Scatter> scatters_;
-  std::map<std::string, int> numbers_;  // of names given so far
+  std::map<std::string, int> numbers_;  // counts of names given so far
 };
 
 }  // namespace gloam

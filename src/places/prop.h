@@ -1,6 +1,6 @@
 #pragma once
-// What a maker of the catalogue hands over: one thing that stands in a place, with all that it
-// looks like, collides with, weighs and gives light by.
+// Prop: one thing in a place, as a maker of the catalogue returns it, with looks, colliders, mass
+// and lamps.
 //
 // A prop's frame lies on the floor below its middle; +x is its front, its back is to a wall. What
 // hangs on a wall has its origin on the wall, what hangs from a ceiling on the ceiling.
@@ -20,7 +20,7 @@ enum class ColliderShape { kBox, kCylinder, kCapsule, kSphere, kHull };
 
 struct PropVisual {
   std::string name;
-  std::string material;  ///< of a MaterialSet
+  std::string material;  ///< name in a MaterialSet
   TriangleMesh mesh;     ///< in the part's frame
 };
 
@@ -37,7 +37,7 @@ struct PropJoint {
   bool slides = false;
   Vec3 axis = {0, 0, 1};
   double low = 0, high = 0;  ///< [rad or m]
-  double initial = 0;        ///< where it stands at first, within the range
+  double initial = 0;        ///< position at first, within the range
   double damping = 0;        ///< [N m s/rad or N s/m]
   double friction = 0;       ///< dry [N m or N]
 };
@@ -91,9 +91,9 @@ struct Prop {
   struct Box {
     Vec3f low, high;
   };
-  /// Of all that it shows and collides with, joints where they stand at first.
+  /// Bounding box of all visuals and colliders, joints where they stand at first.
   Box bounds() const;
-  double mass() const;  ///< of all parts [kg]
+  double mass() const;  ///< mass of all parts [kg]
 };
 
 /// About the axis by the angle [rad].

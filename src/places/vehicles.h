@@ -16,7 +16,7 @@ inline constexpr std::array<std::string_view, 4> kWheelNames = {
 struct VehicleAxle {
   float x = 0;                  ///< in the frame of the prop [m]
   float track = 0;              ///< between the middles of its wheels [m]
-  float radius = 0, width = 0;  ///< of its wheels [m]
+  float radius = 0, width = 0;  ///< size of its wheels [m]
 };
 
 struct VehicleSize {
@@ -24,8 +24,8 @@ struct VehicleSize {
   float width = 0, height = 0;  ///< [m]
   VehicleAxle front_axle, rear_axle;
   double mass = 0;  ///< [kg]
-  double turning_radius =
-      0;  ///< the least, of the middle of its unsteered axle [m]; 0 = turns there
+  /// Least turning radius of the middle of its unsteered axle [m]; 0 = turns there.
+  double turning_radius = 0;
   bool steers_rear = false;  ///< else by the front wheels
 };
 

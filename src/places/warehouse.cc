@@ -23,7 +23,7 @@ constexpr double kPalletPitch = 0.9;
 constexpr double kDockWidth = 3.0, kDockHeight = 3.2;
 constexpr double kWay = 1.1;      // stays free in the staging zone
 constexpr double kLevel = 1.6;    // between shelves [m]
-constexpr double kGirders = 0.6;  // what hangs below the ceiling [m]
+constexpr double kGirders = 0.6;  // height of the girders below the ceiling [m]
 constexpr double kGirder = 6;     // between girders
 
 class WarehouseBuilder {
@@ -48,7 +48,7 @@ class WarehouseBuilder {
           {},
           fmt::format("make it at least {:.1f} m wide", needed - kBackGap + 2 * kRackToWall)};
     aisles_ = static_cast<int>(rows);
-    // What the rows leave over makes the aisles wider.
+    // Space that the rows leave over makes the aisles wider.
     const double racks = aisles_ * 2 * kRackDepth + (aisles_ - 1) * kBackGap;
     aisle_ = (o_.width - racks - 2 * kRackToWall) / aisles_;
     bays_ = static_cast<int>((east_ - kEnd - kCross / 2) / kBay);
@@ -210,7 +210,7 @@ class WarehouseBuilder {
     }
   }
 
-  // What lies on one shelf of a bay: three pallets, or on the floor at times two tanks.
+  // Load of one shelf of a bay: three pallets, or on the floor at times two tanks.
   void fill(const std::string& zone, double x, double y, double yaw, const PropSurface& shelf) {
     const double room = std::min({1.5, shelf.clearance - 0.12, o_.height - kGirders - shelf.z});
     if (room < 0.5) return;
@@ -355,7 +355,7 @@ class WarehouseBuilder {
   const WarehouseOptions& o_;
   Dice dice_;
   Place place_;
-  FloorPlan plan_;  // of the staging zone alone
+  FloorPlan plan_;  // plan of the staging zone alone
   const double west_, east_, south_, north_;
   int aisles_ = 0, bays_ = 0;
   double aisle_ = 0;  // width [m]

@@ -1,5 +1,6 @@
 #pragma once
-// What makers of props work with: the request, dice of its own, and materials by their trade names.
+// Tools of makers of props: the request, random numbers of its own, and materials by their trade
+// names.
 
 #include <functional>
 #include <optional>
@@ -10,11 +11,11 @@
 
 namespace gloam {
 
-/// Which variant of a kind is wanted.
+/// Variant of a kind that is wanted.
 struct PropRequest {
   std::string kind;
   uint64_t seed = 0;
-  std::optional<Vec3> size = {};   ///< of its bounding box: depth x, width y, height z [m]
+  std::optional<Vec3> size = {};   ///< size of its bounding box: depth x, width y, height z [m]
   std::optional<Vec3> color = {};  ///< display (sRGB), of what is coloured about it
   bool operator==(const PropRequest&) const = default;
 };
@@ -65,14 +66,14 @@ class Workshop {
   std::string leaf(Vec3 color);
   std::string earth();
   // Ground and what grows on it; colours are linear.
-  std::string gravel();                                   ///< of a worn track
+  std::string gravel();                                   ///< gravel of a worn track
   std::string soil(Vec3 dry, Vec3 dark, double wet = 0);  ///< bare, with crumbs and stones
-  std::string turf();                                     ///< what is seen between blades of grass
+  std::string turf();                                     ///< ground between blades of grass
   std::string bedrock();                                  ///< grey, with lichen
   std::string blades(const std::string& name, Vec3 young, Vec3 old);  ///< grass, thin
-  std::string water();                                                ///< of a pond, clear to murky
-  std::string weathered_boards(Axis grain);                           ///< grey, never painted
-  std::string rusty_sheet();                                          ///< zinc that is mostly gone
+  std::string water();                             ///< water of a pond, clear to murky
+  std::string weathered_boards(Axis grain);        ///< grey, never painted
+  std::string rusty_sheet();                       ///< zinc that is mostly gone
   std::string glow(Vec3 color, double luminance);  ///< shades and screens that shine [cd/m²]
   std::string picture(const std::string& name, std::function<Image8()> paint,
                       double roughness = 0.6);

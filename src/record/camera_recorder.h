@@ -41,7 +41,7 @@ class CameraRecorder {
   const RecordedCamera& camera() const { return camera_; }
   const std::string& file_name() const { return file_name_; }
   bool writes(const std::string& output) const { return outputs_.contains(output); }
-  /// Whether files of pictures or a video come out, not the poses or another thing alone.
+  /// True if files of pictures or a video are written, not the poses or another thing alone.
   bool writes_pictures() const;
   int64_t frames() const { return frames_; }
   const std::vector<Thumbnail>& thumbnails() const { return thumbnails_.items(); }

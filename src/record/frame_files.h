@@ -12,10 +12,10 @@
 namespace gloam {
 
 struct FrameFile {
-  const char* output;   ///< that asks for it, as in [record]: "depth_exr"
-  const char* channel;  ///< of CameraRequest that fills it: "depth"
-  const char* folder;   ///< of a recording: CAMERA/depth_exr/000000.exr
-  const char* suffix;   ///< of a still: NAME_depth.exr
+  const char* output;   ///< output that asks for it, as in [record]: "depth_exr"
+  const char* channel;  ///< channel of CameraRequest that fills it: "depth"
+  const char* folder;   ///< folder of a recording: CAMERA/depth_exr/000000.exr
+  const char* suffix;   ///< suffix of a still: NAME_depth.exr
   /// The content; empty for a frame that lacks the channel.
   Result<std::vector<uint8_t>> (*encode)(const CameraFrame&);
 

@@ -329,12 +329,12 @@ class FolderRecorder : public Recorder {
   const RecorderOptions options_;
   const RunInfo info_;
   const std::set<std::string> outputs_;
-  std::vector<std::string> file_names_;  // of the cameras
+  std::vector<std::string> file_names_;  // file names of the cameras
   std::vector<std::string> lidar_file_names_, sensor_file_names_;
-  std::vector<std::string> entries_;  // of the folder, as listed in the summary
+  std::vector<std::string> entries_;  // entries of the folder, as listed in the summary
   FirstFailure failure_;
   std::optional<CsvWriter> metrics_, state_;
-  std::map<std::string, CsvWriter> sensors_;  // by name
+  std::map<std::string, CsvWriter> sensors_;  // writers by name
   int64_t metric_rows_ = 0;
   Timeline<std::vector<double>> rows_;
   // The threads come last, so they end before anything that they use.

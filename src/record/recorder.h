@@ -84,28 +84,28 @@ struct LabelIds {
 using NamedText = std::pair<std::string, std::string>;
 using NamedNumber = std::pair<std::string, double>;
 
-/// What is known when a run starts.
+/// Facts that are known when a run starts.
 struct RunInfo {
   std::string title;                ///< heading of the contact sheet
   std::vector<NamedText> versions;  ///< {"gloam", "0.1.0"}, {"mujoco", "4.0.1"} …
   std::string scene_file;           ///< "" for scenes made in code
-  std::string scene_hash;           ///< of its content, hexadecimal
+  std::string scene_hash;           ///< hash of its content, hexadecimal
   uint64_t seed = 0;
   double timestep = 0;              ///< [s]
   double duration = 0;              ///< planned [s]
   std::vector<NamedText> settings;  ///< renderer tier, samples, threads …
-  std::vector<NamedText> drawn;     ///< what came of [[randomize]]: option and value
+  std::vector<NamedText> drawn;     ///< result of [[randomize]]: option and value
   std::vector<RecordedCamera> cameras;
   std::vector<RecordedLidar> lidars;
   std::vector<LabelRow> labels;
-  std::vector<LabelIds> label_ids;          ///< of `labels`, in order
+  std::vector<LabelIds> label_ids;          ///< ids of `labels`, in order
   std::vector<std::string> metric_columns;  ///< the first is the time [s]
   std::vector<std::string> state_columns;   ///< likewise
   std::vector<MetricPlot> plots;
   std::vector<RecordedSensor> sensors;  ///< in the order that add_sensor() may be called for
 };
 
-/// What is known when it ended.
+/// Facts that are known when it ended.
 struct RunOutcome {
   std::string exit_reason = "completed";  ///< or "interrupted", "diverged: …"
   int64_t steps = 0;

@@ -8,7 +8,7 @@ namespace gloam {
 namespace {
 using Json = nlohmann::ordered_json;
 
-// Names come from users' files: bytes that are not UTF-8 are replaced, never thrown about.
+// Names come from users' files: bytes that are not UTF-8 are replaced, never passed on.
 std::string dump(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

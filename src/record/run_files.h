@@ -9,7 +9,7 @@
 
 namespace gloam {
 
-/// Of a camera, or, with scans for frames, of a LiDAR.
+/// Counts of a camera, or, with scans for frames, of a LiDAR.
 struct CameraCounts {
   std::string name, file_name;
   int64_t frames = 0;

@@ -23,7 +23,7 @@ std::string in_lower_case(std::string text) {
 }
 
 /// Removes what an earlier recording says it wrote. Its summary is a file like any other: names
-/// that are not plain names are not believed.
+/// that are not plain names are not trusted.
 Status remove_recording(const fs::path& folder) {
   GLOAM_TRY(const std::string text, read_text_file(folder / kSummaryName, 16 << 20));
   const nlohmann::json summary = nlohmann::json::parse(text, nullptr, false);

@@ -1,5 +1,5 @@
 #pragma once
-// Where a run's results go. Nobody's files are ever destroyed unasked.
+// Folder of a run's results. Nobody's files are ever destroyed unasked.
 
 #include <filesystem>
 #include <initializer_list>

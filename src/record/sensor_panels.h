@@ -1,5 +1,5 @@
 #pragma once
-// What sensors deliver as small pictures for people, side by side.
+// Outputs of sensors as small pictures for people, side by side.
 
 #include <cstdint>
 #include <vector>

@@ -35,7 +35,7 @@ struct Seen {
   ComparisonResult result;
   Strip strip;
   int width = 0, height = 0;
-  double seconds = 0;  // of simulation
+  double seconds = 0;  // duration of simulation
 };
 
 class ComparedScene {

@@ -19,8 +19,8 @@ namespace gloam {
 
 class ExposureMeter {
  public:
-  /// Of a [[camera]] with an auto_exposure. `required`: the simulation waits for it, so that the
-  /// exposure is the same in every run.
+  /// Opens the meter of a [[camera]] with an auto_exposure. `required`: the simulation waits for
+  /// it, so that the exposure is the same in every run.
   static Result<std::unique_ptr<ExposureMeter>> open(Simulator& simulator,
                                                      SharedRenderers& renderers,
                                                      const CameraOptions& camera, uint64_t seed,
@@ -55,7 +55,7 @@ class ExposureMeter {
   const uint64_t seed_;
   const SensorTiming timing_;
   const bool required_;
-  std::shared_ptr<SharedRenderer> shared_;  // of the World whose Snapshots come
+  std::shared_ptr<SharedRenderer> shared_;  // renderer of the World whose Snapshots come
   AutoExposure automatic_;
   std::unique_ptr<CameraSensor> probe_;
   std::unique_ptr<PoseSolver> solver_;
@@ -74,7 +74,7 @@ class ExposureMeters {
   ExposureMeters(uint64_t seed, bool required) : seed_(seed), required_(required) {}
   /// Opens those of the World that runs; what goes on in it stays open.
   Status open(Simulator& simulator, SharedRenderers& renderers);
-  /// Of a camera in `world`; null where it has none, or is not open yet.
+  /// Meter of a camera in `world`; null where it has none, or is not open yet.
   std::shared_ptr<ExposureMeter> of(const std::string& camera, const CompiledWorld& world) const;
 
  private:

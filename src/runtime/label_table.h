@@ -1,5 +1,5 @@
 #pragma once
-// The table that tells what the numbers in segmentation mean: of a simulation, a recording, stills.
+// Table of the meanings of the numbers in segmentation: of a simulation, a recording, stills.
 
 #include "record/recorder.h"
 #include "world/render_description.h"

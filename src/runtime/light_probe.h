@@ -1,5 +1,5 @@
 #pragma once
-// How bright it is at a place, without a camera there.
+// Illuminance at a place, without a camera there.
 
 #include <memory>
 #include <vector>

@@ -46,14 +46,14 @@ class LiveCamera final : public CameraStream {
   const uint64_t seed_;
   FrameCallback on_frame_;
   const ExposureMeters& meters_;
-  std::shared_ptr<SharedRenderer> shared_;  // of the World whose Snapshots come
+  std::shared_ptr<SharedRenderer> shared_;  // renderer of the World whose Snapshots come
   std::unique_ptr<CameraSensor> sensor_;
-  std::optional<EventLead> lead_;  // of a required stream with events, until its thread ends
+  std::optional<EventLead> lead_;  // lead of a required stream with events, until its thread ends
   SensorTiming timing_;
   std::shared_ptr<ExposureMeter> meter_;  // null: the exposure is the camera's own
   std::unique_ptr<PoseSolver> solver_;
   std::shared_ptr<SnapshotQueue> queue_;
-  std::vector<PoseFrame> keys_;  ///< of the window that is exposed
+  std::vector<PoseFrame> keys_;  ///< poses of the window that is exposed
   PoseFrame previous_;           ///< the first of the window before
   bool has_previous_ = false;
   bool previous_is_still_ = false;  ///< it was an instant by itself, not a window

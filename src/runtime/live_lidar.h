@@ -37,23 +37,23 @@ class LiveLidar final : public LidarStream {
   const LidarRequest request_;
   const uint64_t seed_;
   ScanCallback on_scan_;
-  std::shared_ptr<SharedRenderer> shared_;  // of the World whose Snapshots come
+  std::shared_ptr<SharedRenderer> shared_;  // renderer of the World whose Snapshots come
   std::unique_ptr<LidarSensor> sensor_;
   std::unique_ptr<PoseSolver> solver_;
   Rational key_rate_ = {1, 1};   // [Hz]
-  StepSchedule schedule_;        // of the keys
-  int stretches_ = 1;            // of a scan, between its keys
-  std::vector<PoseFrame> keys_;  // of the scan that is being gathered
+  StepSchedule schedule_;        // schedule of the keys
+  int stretches_ = 1;            // stretches of a scan, between its keys
+  std::vector<PoseFrame> keys_;  // poses of the scan that is being gathered
   int64_t next_key_ = 0;         // number of the key that is expected
-  size_t gathered_ = 0;          // of keys_
+  size_t gathered_ = 0;          // number of keys_ gathered
   StreamThread thread_;          // last: it uses the others
 };
 
 /// The [[lidar]] of a name. Error: there is none.
 Result<LidarDescription> find_lidar(const CompiledWorld& world, const std::string& name);
 
-/// How many even stretches a scan is cut into: at least `wanted` where that is possible, and such
-/// that the instants between them are steps of the simulation where that is possible.
+/// Number of even stretches that a scan is cut into: at least `wanted` where that is possible, and
+/// such that the instants between them are steps of the simulation where that is possible.
 int motion_stretches(Rational rate, Rational timestep, int wanted);
 
 }  // namespace gloam

@@ -34,7 +34,8 @@ class LiveSensors final : public SensorStream {
   const std::vector<std::string> names_;
   const uint64_t seed_;
   SensorCallback on_message_;
-  std::shared_ptr<const CompiledWorld> world_;  // whose Snapshots come; holds the group's options
+  // World whose Snapshots come; holds the group's options
+  std::shared_ptr<const CompiledWorld> world_;
   SensorGroup group_;
   StreamThread thread_;  // last: it uses the others
 };

@@ -63,8 +63,8 @@ Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& worl
   return live;
 }
 
-// What takes long, the renderer of the new World too, is made while the old one runs on. Streams
-// find it when the first Snapshot of the new World comes to them.
+// Slow parts, the renderer of the new World too, are made while the old one runs on. Streams find
+// it when the first Snapshot of the new World comes to them.
 Status LiveSimulation::recompile(const World& world) {
   const std::lock_guard one_at_a_time(recompile_mutex_);
   GLOAM_TRY(auto controllers, make_controllers(world.compiled()));

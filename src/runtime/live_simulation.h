@@ -16,7 +16,8 @@
 
 namespace gloam {
 
-/// Whether automatic exposures go on while nobody opens their cameras, which takes rendering.
+/// Choice whether automatic exposures go on while nobody opens their cameras, which takes
+/// rendering.
 enum class Metering : uint8_t { kAlways, kNever };
 
 class LiveSimulation final : public Simulation {
@@ -86,7 +87,7 @@ class LiveSimulation final : public Simulation {
   std::unique_ptr<PoseSolver> solver_;  // for questions about the latest instant
   std::atomic<bool> paused_{true}, stop_requested_{false};
   mutable std::mutex clock_mutex_;
-  double clock_wall_ = 0, clock_sim_ = 0;  // where the real-time factor counts from [s]
+  double clock_wall_ = 0, clock_sim_ = 0;  // times from which the real-time factor counts [s]
 };
 
 }  // namespace gloam

@@ -1,5 +1,5 @@
 #pragma once
-// What stands under a pixel.
+// Object under a pixel.
 
 #include "gloam/simulation.h"
 #include "instant/pose_frame.h"

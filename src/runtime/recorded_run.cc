@@ -62,7 +62,7 @@ bool is_picture(const std::string& output) {
   return std::ranges::any_of(frame_files(), [&](const FrameFile& f) { return output == f.output; });
 }
 
-/// Whether any camera has anything to record.
+/// True if any camera has anything to record.
 bool wants_pictures(const Scene& scene) {
   if (std::ranges::any_of(scene.record.outputs, is_picture)) return true;
   return std::ranges::any_of(scene.cameras, [](const CameraOptions& camera) {

@@ -21,7 +21,7 @@ VelocityGoal goal_at(const RobotOptions& robot, double time) {
   return current;
 }
 
-// Of what the robot collides with, sideways from its base [m].
+// Reach of the robot's colliders, sideways from its base [m].
 double reach_of(const mjModel& m, const mjData& d, int root) {
   double reach = 0;
   for (int g = 0; g < m.ngeom; ++g) {
@@ -95,7 +95,7 @@ void RobotMetrics::measure(Tracked& robot, const Snapshot& snapshot) {
   const double yaw = std::atan2(2 * (qw * qz + qx * qy), 1 - 2 * (qy * qy + qz * qz));
   const double pitch = std::asin(std::fmin(1.0, std::fmax(-1.0, 2 * (qw * qy - qz * qx))));
   const double roll = std::atan2(2 * (qw * qx + qy * qz), 1 - 2 * (qx * qx + qy * qy));
-  const double up = 1 - 2 * (qx * qx + qy * qy);  // vertical share of the body's z axis
+  const double up = 1 - 2 * (qx * qx + qy * qy);  // vertical fraction of the body's z axis
 
   // A free joint's linear velocity is in world axes, its angular velocity in the body's.
   const double c = std::cos(yaw), s = std::sin(yaw);
@@ -156,7 +156,7 @@ void RobotMetrics::measure_light(const Snapshot& snapshot) {
 double RobotMetrics::visibility(const Tracked& robot, const Snapshot& snapshot, double x, double y,
                                 double z) const {
   constexpr int kPoints = 8;
-  constexpr double kClear = 0.15;  // of voxels that it fills in part [m]
+  constexpr double kClear = 0.15;  // margin for voxels that it fills in part [m]
   double least = VisibilityProbe::kClear;
   for (int i = 0; i < kPoints; ++i) {
     const double a = 2 * M_PI * i / kPoints, r = robot.reach + kClear;

@@ -1,6 +1,6 @@
 #pragma once
-// How well each robot follows its velocity goals, and how far it sees: one row of metrics.csv per
-// sample, and the numbers of the summary.
+// Metrics of robots: error against their velocity goals, and the visibility around them. One row of
+// metrics.csv per sample, and the numbers of the summary.
 
 #include <memory>
 #include <string>
@@ -40,7 +40,7 @@ class RobotMetrics {
     const RobotOptions* options = nullptr;
     Joint base;               // its free joint
     double start_height = 0;  // [m]
-    double reach = 0;         // of what it collides with, sideways from its base, at qpos0 [m]
+    double reach = 0;         // reach of its colliders, sideways from its base, at qpos0 [m]
     bool has_start = false, fallen = false;
     int64_t falls = 0;
     double error_squared[3] = {}, goal_squared[3] = {};

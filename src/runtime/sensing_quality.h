@@ -1,5 +1,5 @@
 #pragma once
-// How much there is to see in a picture and in a scan.
+// Measures of the detail in a picture and in a scan.
 
 #include <vector>
 
@@ -12,7 +12,7 @@ namespace gloam {
 /// little. `radiance`: linear Rec. 709, (height x width x 3).
 double contrast_of(const std::vector<float>& radiance, int width);
 
-/// First returns of a scan with truth, as shares of its beams.
+/// First returns of a scan with truth, as fractions of its beams.
 struct ReturnShares {
   double surfaces = 0, media = 0;
 };

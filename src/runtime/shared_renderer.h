@@ -1,6 +1,6 @@
 #pragma once
-// What all cameras of one World share: its visuals, a renderer, events. Made when the first camera
-// is opened: physics alone needs neither.
+// State that all cameras of one World share: its visuals, a renderer, events. Made when the first
+// camera is opened: physics alone needs neither.
 
 #include <memory>
 #include <mutex>
@@ -30,7 +30,7 @@ class SharedRenderers {
  public:
   /// Makes it when it is first asked for; others wait.
   Result<std::shared_ptr<SharedRenderer>> of(const std::shared_ptr<const CompiledWorld>& world);
-  /// Whether one was asked for.
+  /// True if one was asked for.
   bool any() const;
   /// Forgets those of other Worlds; who has one keeps it.
   void keep_only(const std::shared_ptr<const CompiledWorld>& world);
@@ -40,7 +40,7 @@ class SharedRenderers {
   std::vector<std::shared_ptr<SharedRenderer>> renderers_;
 };
 
-/// What ends a stream whose camera, LiDAR or sensor a recompile made another.
+/// Error that ends a stream whose camera, LiDAR or sensor a recompile has changed.
 Error other_schedule(const std::string& what);
 
 }  // namespace gloam

@@ -38,7 +38,7 @@ class StreamThread {
   void drain();
   /// Snapshots that were lost.
   int64_t dropped() const { return queue_ != nullptr ? queue_->dropped() : 0; }
-  /// Why it takes no more, if so.
+  /// Error for which it takes no more, if any.
   Status status() const;
 
  private:

@@ -1,5 +1,5 @@
 #pragma once
-// How far one sees in the media at a point, without a camera there.
+// Visibility in the media at a point, without a camera there.
 
 #include "base/vec.h"
 #include "render/scene/volume_store.h"
@@ -16,7 +16,7 @@ class VisibilityProbe {
 
   /// Errors: those of the scene's media.
   static Result<VisibilityProbe> make(const CompiledWorld& world);
-  /// Of a World that is described already.
+  /// Makes a probe of a World that is described already.
   static Result<VisibilityProbe> make(const RenderDescription& description);
 
   /// Is there anything that could be in the way?
@@ -27,7 +27,7 @@ class VisibilityProbe {
 
  private:
   VolumeStore store_;
-  std::vector<int> fields_;  ///< of each volume: row of SnapshotData::fields, -1 = it stays
+  std::vector<int> fields_;  ///< rows of SnapshotData::fields by volume, -1 = it stays
 };
 
 }  // namespace gloam

@@ -1,5 +1,5 @@
 #pragma once
-// What a level of adversity makes of a scene: docs/weather.md has its table and sources.
+// Effect of a level of adversity on a scene: docs/weather.md has its table and sources.
 
 #include <span>
 
@@ -11,10 +11,10 @@ namespace gloam {
 struct AdversityNumbers {
   double rain = 0, wind = 0, gusts = 0.15;  ///< [mm/h], [m/s], 1
   std::optional<double> visibility = {};    ///< [m]; empty = clear
-  std::string_view medium = "fog";          ///< that hangs in the air
-  double lens_drops = 0;                    ///< share of the picture
-  double light = 1, failing = 0;            ///< of the place's lamps
-  double clutter = 0.5;                     ///< of the place
+  std::string_view medium = "fog";          ///< medium in the air
+  double lens_drops = 0;                    ///< fraction of the picture
+  double light = 1, failing = 0;            ///< lamps of the place
+  double clutter = 0.5;                     ///< clutter of the place
   int people = 0;
   double people_speed = 1.2;  ///< [m/s]
 };

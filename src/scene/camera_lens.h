@@ -6,7 +6,7 @@
 
 namespace gloam {
 
-/// What goes together in a lens; ranges are checked elsewhere.
+/// Checks that options of a lens go together; ranges are checked elsewhere.
 Status validate_lens(const CameraOptions& camera);
 
 /// Puts the camera's lens, if it has one, over intrinsics of its picture's size. Errors: a

@@ -53,7 +53,8 @@ Error unknown_attribute(const OverrideOptions& override) {
           override.loc, suggest_name(override.attribute, list)};
 }
 
-// What is set once and then in many elements: reading it asks MuJoCo's parser two dozen times.
+// Values that are parsed once and set in many elements: parsing one asks MuJoCo's parser two dozen
+// times.
 class Values {
  public:
   explicit Values(const OverrideOptions& override) : override_(override) {}

@@ -11,7 +11,8 @@
 
 namespace gloam {
 
-inline constexpr const char* kEnvironmentName = "environment";  ///< where a robot's name may stand
+/// Word that may stand for a robot's name
+inline constexpr const char* kEnvironmentName = "environment";
 
 /// Elements that a tag may mean: <joint>; all of <actuator>; <option>, which a model has once.
 std::vector<const MjcfElement*> overridden_elements(std::string_view tag);

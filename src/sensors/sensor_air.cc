@@ -7,7 +7,8 @@ namespace gloam {
 Result<SensorAir> SensorAir::make(const RenderDescription& description) {
   SensorAir air;
   std::vector<MediumDescription> media = description.media;
-  for (MediumDescription& medium : media) medium.emission = 0;  // of light: none of them looks
+  // Emission of light, which no sensor uses
+  for (MediumDescription& medium : media) medium.emission = 0;
   GLOAM_TRY(air.volumes_, VolumeStore::make(media, description.volumes));
   return air;
 }

@@ -27,8 +27,8 @@ class SensorAir {
   VolumeStore volumes_;
 };
 
-/// Where the ray is inside the volume's box, [near, far] along it in units of `direction_G`; false
-/// = nowhere.
+/// Interval of the ray inside the volume's box, [near, far] along it in units of `direction_G`;
+/// false = nowhere.
 bool crosses(const VolumeView& volume, Vec3f origin_G, Vec3f direction_G, double* near,
              double* far);
 

@@ -35,7 +35,7 @@ class SensorGroup {
     SensorDescription description;
     SensorTiming timing;
     std::unique_ptr<SignalModel> model;  // null: the truth
-    SensorMessage message;               // its room is used again
+    SensorMessage message;               // its memory is used again
   };
   std::vector<Member> members_;
 };

@@ -1,7 +1,7 @@
 #pragma once
-// Who may talk to the view's server. Pure functions of what a request says, so that the rules can
-// be read and tested in one place. The rules follow Jupyter's: a random token, checks of Host and
-// Origin against DNS rebinding and cross-site WebSocket hijacking, no CORS.
+// Access to the view's server. Pure functions of a request's fields, so that the rules can be read
+// and tested in one place. The rules follow Jupyter's: a random token, checks of Host and Origin
+// against DNS rebinding and cross-site WebSocket hijacking, no CORS.
 
 #include <string>
 #include <string_view>

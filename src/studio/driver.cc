@@ -42,7 +42,7 @@ bool merge(ControlMessage& waiting, const ControlMessage& next) {
   return false;
 }
 
-/// Where a camera that sees nothing at its centre turns about: the floor, or a step ahead [m].
+/// Pivot of a camera that sees nothing at its centre: the floor, or a step ahead [m].
 double distance_to_floor(const Pose& X_WC) {
   const double fall = -rotate(X_WC.q, {0, 0, -1}).z;
   const double distance = fall > 0.01 ? X_WC.p.z / fall : 0;

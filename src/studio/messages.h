@@ -63,7 +63,7 @@ inline constexpr int kPicturesInFlight = 2;
 /// Reads one message. Errors: not JSON, unknown type or key, a value missing or out of range.
 Result<ControlMessage> parse_message(std::string_view text);
 
-/// What every client is told ten times a second.
+/// State that every client is told ten times a second.
 struct ViewState {
   int64_t step = 0;
   double time = 0;  ///< [s]
@@ -86,7 +86,7 @@ std::string state_message(const ViewState& state);
 std::string picked_message(std::string_view body, const Vec3& point_W, bool dragging);
 /// Answer to a pick that hit nothing.
 std::string picked_nothing_message();
-/// Where the point that is dragged has moved to [m].
+/// New place of the point that is dragged [m].
 std::string pulled_message(const Vec3& point_W);
 /// Something the user should read.
 std::string notice_message(std::string_view text);

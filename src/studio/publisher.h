@@ -16,7 +16,7 @@ namespace gloam::studio {
 
 class Publisher {
  public:
-  /// What it calls, always on its own thread.
+  /// Callbacks, always on its own thread.
   struct Outputs {
     std::function<void(const CameraFrame&, uint64_t sequence)> picture;
     std::function<void()> beat;  ///< ten times a second

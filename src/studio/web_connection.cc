@@ -40,7 +40,7 @@ RequestFacts facts_of(const http::request<http::empty_body>& request) {
           .websocket = websocket::is_upgrade(request)};
 }
 
-/// What a browser must not do with any answer of this server.
+/// Header fields that forbid a browser unsafe uses of any answer of this server.
 void add_safety_fields(http::fields& fields) {
   fields.set("Content-Security-Policy",
              "default-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'");

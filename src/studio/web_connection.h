@@ -27,7 +27,7 @@ namespace gloam::studio {
 
 class WebConnection;
 
-/// What the connections of one server share.
+/// State that the connections of one server share.
 struct WebShared {
   WebOptions options;
   std::string cookie_name;

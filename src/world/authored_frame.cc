@@ -17,7 +17,8 @@ bool wants_own_frame(const MaterialDescription& material) {
 }  // namespace
 
 void restore_authored_frames(const mjModel& m, RenderDescription* out) {
-  // By row of the mesh: one in its own frame; and whether others need the row as it is.
+  // Maps by row of the mesh: the row with the mesh in its authored frame; whether other instances
+  // need the row as it is.
   std::map<int, int> restored;
   std::map<int, bool> shared;
   const auto is_ours = [&](const InstanceDescription& in) {

@@ -1,4 +1,4 @@
-// What is in a model and not in its pictures.
+// Parts of a model that its pictures do not show.
 
 #include <fmt/format.h>
 

@@ -119,7 +119,7 @@ int GeomImporter::mesh_row(int asset, bool is_height_field) {
 std::optional<InstanceDescription> GeomImporter::instance(int g) {
   const mjModel& m = model_;
   const float* rgba = m.geom_rgba + 4 * g;
-  // What is fully transparent may be made visible by a Command, but only in the simulated model.
+  // A Command may make fully transparent geoms visible, but only in the simulated model.
   if (!live_ && drawn_rgba(m, m.geom_matid[g], rgba)[3] == 0) return std::nullopt;
   InstanceDescription instance;
   const mjtNum* size = m.geom_size + 3 * g;
@@ -189,7 +189,7 @@ void GeomImporter::convert_meshes() {
   });
 }
 
-/// Whether each body can never move.
+/// Flags of the bodies that can never move.
 std::vector<bool> static_bodies(const mjModel& m) {
   std::vector<bool> is_static(static_cast<size_t>(m.nbody), true);
   for (size_t b = 1; b < is_static.size(); ++b)
@@ -269,7 +269,7 @@ void present_model(const CompiledWorld& world, RenderDescription* out) {
   free.near = 0;  // it stands where nothing is in its way
   free.culls_backs = false;
   if (needs_studio(scene, *out)) return add_studio(subject, all, free.X_WC, out);
-  const bool own_light = !scene.lights.empty() || scene.sky;  // of the scene, in real units
+  const bool own_light = !scene.lights.empty() || scene.sky;  // light of the scene, in real units
   if (scene.render.look == "auto" && !own_light) open_exposure(subject, free.X_WC, out);
 }
 

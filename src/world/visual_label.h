@@ -1,5 +1,5 @@
 #pragma once
-// Which object a drawn thing belongs to, and its class.
+// Object that a visible part belongs to, and its class.
 
 #include <map>
 #include <string>
@@ -17,9 +17,9 @@ namespace gloam {
 /// left.
 std::string semantic_class(std::string_view name);
 
-/// What a body is called in tables: its name, or "body 3", which no other body has.
+/// Name of a body in tables: its own, or "body 3", which no other body has.
 std::string body_label(const mjModel& model, int body);
-/// What a geom is called in tables: its name, or "body 3 geom 7 (box)", which no other geom has.
+/// Name of a geom in tables: its own, or "body 3 geom 7 (box)", which no other geom has.
 std::string geom_label(const mjModel& model, int geom);
 
 /// Hands out instance and semantic ids, from 1, in order of first use. An object is a robot, or a
@@ -39,7 +39,7 @@ class LabelTable {
   std::string robot_name(int robot) const;
 
   const CompiledWorld& world_;
-  std::vector<int> bare_roots_;  // of a bare model's robots
+  std::vector<int> bare_roots_;  // roots of a bare model's robots
   std::map<std::pair<int, int>, uint32_t> instances_;
   std::map<std::string, uint32_t> classes_;
 };

@@ -45,8 +45,8 @@ struct VisualOnlyGeom {
   int body = 0;   ///< body id in `model`
   int geom = -1;  ///< geom id in `visual_model`
   Pose X_BG;
-  int mesh =
-      -1;  ///< row of `visual_meshes`, for which the geom only stands in; -1 = the geom itself
+  /// Row of `visual_meshes`, for which the geom only stands in; -1 = the geom itself.
+  int mesh = -1;
 };
 
 /// A mesh file that a URDF draws. It is read anew, by way of the cache, where it is drawn.
@@ -54,7 +54,7 @@ struct VisualOnlyMesh {
   std::string name;   ///< "go1/base": robot and link; its materials are "NAME/MATERIAL"
   std::string label;  ///< the visual's own name; may be empty
   std::filesystem::path file;
-  Vec3 scale = {1, 1, 1};  ///< of the file's content, in Gloam's axes and metres
+  Vec3 scale = {1, 1, 1};  ///< scale of the file's content, in Gloam's axes and metres
   SourceLoc loc;
 };
 
@@ -63,11 +63,11 @@ uint64_t next_world_serial();
 
 /// Lines in the model files where elements stand; 0 = not known.
 struct ElementLines {
-  std::vector<int> geoms, sites, tendons;  ///< by id in `model`
+  std::vector<int> geoms, sites, tendons;  ///< lines by id in `model`
 };
 
 struct CompiledWorld {
-  uint64_t serial = next_world_serial();  ///< what handles remember
+  uint64_t serial = next_world_serial();  ///< number that handles remember
   Scene scene;           ///< drawn, with the looks, lamps and cameras of its place and meshes
   Scene written;         ///< as it was given; with `keyframe` it compiles to this World again
   std::string keyframe;  ///< that was asked for, "" = none
@@ -75,9 +75,9 @@ struct CompiledWorld {
   /// Keyframe of `model` that the simulation starts from; -1 = mj_resetData's state. A scene whose
   /// robots name keyframes gets one made of theirs, so that the start survives export.
   int initial_key = -1;
-  uint64_t place_hash = 0;      ///< of what was generated or made of meshes, 0 = nothing
-  std::optional<double> ev100;  ///< of a generated environment
-  Vec3 render_origin;           ///< of the render scene [m]; world/view/render_origin.h
+  uint64_t place_hash = 0;      ///< hash of generated parts and of meshes, 0 = nothing
+  std::optional<double> ev100;  ///< exposure of a generated environment
+  Vec3 render_origin;           ///< origin of the render scene [m]; world/view/render_origin.h
   std::vector<Region> regions;  ///< floors of a generated environment
   std::vector<DrawnOption> drawn;
   std::vector<RobotInstance> robots;
@@ -89,8 +89,8 @@ struct CompiledWorld {
   ModelPtr visual_model;  ///< source of visual_only meshes and materials; null when there are none
   std::vector<VisualOnlyGeom> visual_only;
   std::vector<VisualOnlyMesh> visual_meshes;
-  std::vector<Error> notes;        ///< what is odd, and taken as it is
-  std::vector<Error> place_notes;  ///< likewise, of what is generated; not in the cache, as that is
+  std::vector<Error> notes;        ///< oddities that are taken as they are
+  std::vector<Error> place_notes;  ///< the same, of generated parts; not in the cache, as those are
   std::vector<Error> unsupported;
   ElementLines lines;
 };

@@ -13,7 +13,7 @@ namespace gloam {
 /// actuators (most URDFs): those with a joint that is not free.
 std::vector<int> robot_roots(const mjModel& model);
 
-/// Whether `body` is `root` or hangs on it.
+/// True if `body` is `root` or hangs on it.
 bool is_part_of(const mjModel& model, int body, int root);
 
 /// Joints and actuators of a robot, in the model's order. An actuator is its robot's whose tree it

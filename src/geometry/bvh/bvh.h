@@ -13,7 +13,7 @@ namespace bvh {
 
 inline constexpr BvhRef kTriangles = 1u << 30, kInstance = 2u << 30, kNothing = 3u << 30;
 inline constexpr BvhRef kKind = 3u << 30;
-inline constexpr int kMostTriangles = 8;  ///< of a leaf
+inline constexpr int kMostTriangles = 8;  ///< triangles of a leaf
 /// Nodes above a leaf, at most: of one mesh, and of the instances. Together they bound the stack.
 inline constexpr int kMeshDepth = 40, kTopDepth = 22;
 
@@ -26,7 +26,7 @@ GLOAM_HD uint32_t triangle_count(BvhRef ref) { return (ref & 7u) + 1; }
 
 }  // namespace bvh
 
-/// Of two children: the boxes as centre and half size, and what is in them.
+/// Node with two children: their boxes as centre and half size, and references to their content.
 struct alignas(64) BvhNode {
   Vec3f center[2], half[2];
   BvhRef child[2] = {bvh::kNothing, bvh::kNothing};
@@ -46,13 +46,14 @@ static_assert(sizeof(BvhTriangle) == 48);
 
 /// A mesh or one solid in its place, in frame G.
 struct alignas(16) BvhInstance {
-  Vec3f row[3];           ///< of R_GW
-  Vec3f shift;            ///< p_G = rows p_W + shift
-  BvhRef root = 0;        ///< of a mesh; bvh::kNothing = a solid
-  uint32_t id = 0;        ///< what a hit reports
-  int32_t motion = -1;    ///< first row of BvhView::motion; -1 = stands still
-  uint32_t key_step = 0;  ///< of a mesh that changes its form: triangles from those of one key to
-                          ///< those of the next; 0 = it does not
+  Vec3f row[3];         ///< rows of R_GW
+  Vec3f shift;          ///< p_G = rows p_W + shift
+  BvhRef root = 0;      ///< root of a mesh; bvh::kNothing = a solid
+  uint32_t id = 0;      ///< id that a hit reports
+  int32_t motion = -1;  ///< first row of BvhView::motion; -1 = stands still
+  /// Step from the triangles of one key to those of the next, for a mesh that changes its form; 0 =
+  /// it does not
+  uint32_t key_step = 0;
 };
 static_assert(sizeof(BvhInstance) == 64);
 

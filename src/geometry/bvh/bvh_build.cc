@@ -26,7 +26,7 @@ struct Item {
 
 struct Part {
   uint32_t first = 0, count = 0;
-  int depth = 0;  ///< of nodes that may still be above its leaves
+  int depth = 0;  ///< nodes that may still be above its leaves
 };
 
 /// Nodes that halving takes down to leaves of `most`.

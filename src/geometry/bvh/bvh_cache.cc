@@ -9,8 +9,8 @@
 namespace gloam {
 namespace {
 
-constexpr uint64_t kBvhMagic =
-    0x313048564D4F4C47ull;  // "GLOMVH01": changes with what build_bvh gives
+// "GLOMVH01": changes with what build_bvh gives.
+constexpr uint64_t kBvhMagic = 0x313048564D4F4C47ull;
 
 template <class F>
 void visit_tree(F& f, BvhTree& tree, uint64_t& boxes) {

@@ -8,7 +8,7 @@ namespace gloam {
 /// From as many boxes on a tree is kept: below, building takes no longer than 0.1 s.
 inline constexpr size_t kBvhWorthCaching = 200'000;
 
-/// What build_bvh gives, out of the cache where it holds the tree of these boxes.
+/// Result of build_bvh, out of the cache if it holds the tree of these boxes.
 BvhTree build_bvh_cached(const std::vector<BvhBox>& boxes, const BvhBuild& options);
 
 }  // namespace gloam

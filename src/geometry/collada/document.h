@@ -47,7 +47,7 @@ struct ColladaPart {
   std::vector<Vec3f> colors;  ///< linear, by vertex; empty = it has none
 };
 
-/// What "#id" of the file's materials has become; filled as they are used.
+/// Materials made for "#id" of the file; filled as they are used.
 class ColladaMaterials {
  public:
   ColladaMaterials(ColladaDocument* document, ModelFile* model)

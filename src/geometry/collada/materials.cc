@@ -32,7 +32,7 @@ class EffectReader {
   Result<ImportedMaterial> read(const std::string& name) {
     ImportedMaterial out;
     out.name = name.substr(0, kMaxName);
-    out.double_sided = true;  // the common profile knows no sides
+    out.double_sided = true;  // the common profile has no sides
     const pugi::xml_node technique = profile_.child("technique");
     pugi::xml_node shader;
     for (const char* kind : {"phong", "blinn", "lambert", "constant"})
@@ -70,7 +70,7 @@ class EffectReader {
     float exponent = 0;
     GLOAM_TRY(const bool has_exponent, read_float(shader.child("shininess"), &exponent));
     if (!has_exponent) return {};
-    // Some programs write Blinn's exponent as a share of 128.
+    // Some programs write Blinn's exponent as a fraction of 128.
     if (exponent > 0 && exponent <= 1) exponent *= 128;
     out->roughness = std::pow(2 / (std::max(exponent, 0.0f) + 2), 0.25f);
     return {};

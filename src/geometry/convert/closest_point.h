@@ -12,7 +12,7 @@ namespace gloam {
 using Triangle3d = std::array<Vec3d, 3>;
 Triangle3d triangle_of(const TriangleMesh& mesh, size_t triangle);
 
-/// Of the nearest point of a triangle, edges included [m^2].
+/// Squared distance to the nearest point of a triangle, edges included [m^2].
 double squared_distance(Vec3d p, const Triangle3d& triangle);
 
 /// Answers from any thread. The mesh outlives it.
@@ -21,7 +21,7 @@ class MeshQueries {
   explicit MeshQueries(const TriangleMesh& mesh);
   /// To the nearest point of the surface [m]; `most` if there is none nearer.
   double distance(Vec3d p, double most = 1e300) const;
-  /// Of a closed mesh: by the number of its triangles above the point.
+  /// True inside of a closed mesh: by the number of its triangles above the point.
   bool is_inside(Vec3d p) const;
 
  private:

@@ -15,8 +15,8 @@ constexpr double kFinest = 256;  // cells along the longest side that are tried 
 constexpr double kOneWay = 0.5;  // least cosine between vertices that face one way
 constexpr double kLean = 1e-3;   // weight of the cell's mean beside the planes, of their own
 
-// Of the squared distance to planes, about a point nearby: p^T A p - 2 b p, and the mean of the
-// vertices.
+// Quadric of the squared distance to planes, about a point nearby: p^T A p - 2 b p, and the mean of
+// the vertices.
 struct Quadric {
   double xx = 0, yy = 0, zz = 0, xy = 0, xz = 0, yz = 0;
   Vec3d b, sum;
@@ -66,7 +66,7 @@ class Clustering {
     return out;
   }
 
-  // Of the clusters of the last with_cells().
+  // Positions of the clusters of the last with_cells().
   std::vector<Vec3f> positions() const {
     std::vector<Quadric> quadrics(count_);
     for (size_t v = 0; v < cluster_.size(); ++v) {
@@ -86,8 +86,9 @@ class Clustering {
 
  private:
   void assign() {
-    // Of a cell the clusters begun so far, each with the way its first vertex faces. Not by octants
-    // of the direction: a wall along the axes that is a little rough has four of them everywhere.
+    // Clusters of a cell begun so far, each with the direction that its first vertex faces. Octants
+    // of the direction would not do: a slightly rough wall along the axes has four of them
+    // everywhere.
     struct Begun {
       Vec3d facing;
       uint32_t cluster;
@@ -136,7 +137,7 @@ class Clustering {
   }
 
   const TriangleMesh& mesh_;
-  std::vector<Vec3d> facing_;  // of vertices, not normalised
+  std::vector<Vec3d> facing_;  // normals of vertices, not normalised
   Vec3f low_, high_;
   double cell_ = 0;  // [m]
   std::vector<uint32_t> cluster_;

@@ -10,7 +10,7 @@
 namespace gloam {
 namespace {
 
-constexpr int kSegments = 96;  // of round surfaces: 0.05 % of the radius inside
+constexpr int kSegments = 96;  // segments of round surfaces: 0.05 % of the radius inside
 
 Vec3d local(const AffineOf<double>& X, Vec3d p) {
   const Vec3d d = p - X.p;
@@ -103,7 +103,7 @@ double ColliderDistance::operator()(Vec3d p_M) const {
   if (collider_.type == MeshColliderType::kHull) return from_hull(p_M);
   const Vec3d p = local(collider_.X_MG, p_M);
   const Vec3d& size = collider_.size;
-  const auto box = [](double x, double y, double z) {  // by how much a point is past each side
+  const auto box = [](double x, double y, double z) {  // excess of a point over each side
     const Vec3d out{std::max(x, 0.0), std::max(y, 0.0), std::max(z, 0.0)};
     return length_of(out) + std::min(std::max({x, y, z}), 0.0);
   };

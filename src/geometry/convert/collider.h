@@ -16,7 +16,7 @@ struct MeshCollider {
   /// Box: half of its sides; sphere: radius; cylinder, capsule (along z): radius, half of the
   /// length without caps [m].
   Vec3d size;
-  AffineOf<double> X_MG;  ///< of the box, sphere, cylinder or capsule; rigid
+  AffineOf<double> X_MG;  ///< pose of the box, sphere, cylinder or capsule; rigid
   TriangleMesh hull;      ///< kHull: its surface, in M
 };
 
@@ -40,10 +40,10 @@ class ColliderDistance {
   };
   double from_hull(Vec3d p) const;
   const MeshCollider& collider_;
-  std::vector<Plane> planes_;  // of a hull's triangles
+  std::vector<Plane> planes_;  // planes of a hull's triangles
 };
 
-/// Of a rigid map.
+/// Rotation of a rigid map.
 Quat quaternion_of(const AffineOf<double>& X);
 
 }  // namespace gloam

@@ -20,15 +20,15 @@ namespace {
 constexpr double kAlike = 0.01;   // distance of surfaces that count as one, of the size
 constexpr double kFlat = 1e-4;    // thickness of what is flat, of the longest side
 constexpr double kPlate = 1e-3;   // thickness that it gets, of the longest side
-constexpr double kExact = 1e-5;   // what the hull of the mesh leaves out, of the diagonal
-constexpr double kSmooth = 1e-3;  // what a hull may leave out, of the longest side
+constexpr double kExact = 1e-5;   // gap of the hull of the mesh, over the diagonal
+constexpr double kSmooth = 1e-3;  // gap of a hull, over the longest side
 constexpr double kSeam = 1e-6;    // between vertices that are one, of the diagonal
-constexpr double kRoom = 0.25;    // what an open room encloses at least, of its hull
-constexpr size_t kMostNear =
-    4096;                          // vertices of nearly one place along the sweep that are compared
-constexpr double kFarthest = 1e9;  // [m] a vertex from the origin
-constexpr int kHullVertices = 128;  // of a collider
-constexpr size_t kSamples = 4096;   // of a surface, to tell what shape it is
+constexpr double kRoom = 0.25;    // volume that an open room encloses at least, over its hull's
+// Vertices of nearly one place along the sweep that are compared.
+constexpr size_t kMostNear = 4096;
+constexpr double kFarthest = 1e9;   // [m] a vertex from the origin
+constexpr int kHullVertices = 128;  // vertices of a collider
+constexpr size_t kSamples = 4096;   // samples of a surface, to find its shape
 
 double diagonal(const TriangleMesh& mesh) {
   Vec3f low = mesh.positions[0], high = low;
@@ -44,7 +44,7 @@ double diagonal(const TriangleMesh& mesh) {
 TriangleMesh without_seams(TriangleMesh mesh) {
   const std::vector<Vec3f>& p = mesh.positions;
   const auto near = static_cast<float>(kSeam * diagonal(mesh));
-  constexpr Vec3f kLine{0.7309f, 0.5413f, 0.4155f};  // of length 1
+  constexpr Vec3f kLine{0.7309f, 0.5413f, 0.4155f};  // direction of length 1
   std::vector<float> along;
   for (const Vec3f q : p) along.push_back(dot(q - p[0], kLine));
   std::vector<uint32_t> order(p.size()), vertex(p.size());

@@ -21,7 +21,7 @@ struct ConvertOptions {
 
 struct Converted {
   std::vector<MeshCollider> colliders;
-  MassProperties mass;  ///< of the mesh where it is closed, else of its hull
+  MassProperties mass;  ///< mass of the mesh where it is closed, else of its hull
   TriangleMesh mesh;    ///< the mesh, welded, looking outwards
   bool is_closed = false;
   bool is_room = false;
@@ -33,11 +33,12 @@ struct Converted {
 /// A flat mesh becomes a plate as thick as a thousandth of its longest side.
 Result<Converted> convert_mesh(const TriangleMesh& mesh, const ConvertOptions& options);
 
-/// How the colliders compare with the mesh, by sampled points.
+/// Comparison of the colliders with the mesh, by sampled points.
 struct Overlap {
-  double mean_distance = 0, max_distance = 0;   ///< between the surfaces, of both ways [m]
-  double mesh_volume = 0, collider_volume = 0;  ///< of closed meshes, of all colliders [m^3]
-  double shared = 0;  ///< of closed meshes: intersection over union, 0 … 1
+  double mean_distance = 0, max_distance = 0;  ///< between the surfaces, of both ways [m]
+  /// Volumes of closed meshes and of all colliders [m^3]
+  double mesh_volume = 0, collider_volume = 0;
+  double shared = 0;  ///< intersection over union, for closed meshes, 0 … 1
 };
 Overlap overlap_of(const Converted& converted);
 

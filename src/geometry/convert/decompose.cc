@@ -29,8 +29,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kLibrary = "lib_coacd.so";
-constexpr uint64_t kHullsMagic =
-    0x33304C48'4D4F4C47ull;  // "GLOMHL03": changes with the layout and what is asked of CoACD
+// "GLOMHL03": changes with the layout and what is asked of CoACD.
+constexpr uint64_t kHullsMagic = 0x33304C48'4D4F4C47ull;
 
 // As the cache keeps it: an archive of whole meshes, with normals and more, is model_file_cache's.
 struct KeptHull {
@@ -72,7 +72,7 @@ std::vector<fs::path> candidates() {
   std::vector<fs::path> paths;
   if (const Result<fs::path> home = gloam_home(); home.ok()) {
     paths.push_back(*home / ".venv" / "wheels" / "coacd" / kLibrary);
-    const fs::path prefix = home->parent_path().parent_path();  // of an installation
+    const fs::path prefix = home->parent_path().parent_path();  // prefix of an installation
     paths.push_back(prefix / "lib" / "gloam" / "coacd" / kLibrary);
   }
   return paths;
@@ -123,7 +123,7 @@ std::vector<TriangleMesh> run(const CoacdApi& api, const TriangleMesh& mesh,
   constexpr int kRemeshAuto = 0, kRemeshNever = 2;
   const int remesh = count_edges(mesh).is_closed() ? kRemeshNever : kRemeshAuto;
   constexpr int kGrid = 50, kSamples = 2000, kHullVertices = 256;
-  constexpr int kNodes = 10, kIterations = 60, kDepth = 3;  // of the tree search
+  constexpr int kNodes = 10, kIterations = 60, kDepth = 3;  // limits of the tree search
   const CoacdMeshes parts =
       api.run(in, options.concavity, options.max_hulls, remesh, kGrid, kSamples, kNodes,
               kIterations, kDepth, false, true, false, kHullVertices, false, 0.01, 0, 0, false);
@@ -187,7 +187,7 @@ Result<std::vector<TriangleMesh>> work(const Job& job) {
   const std::lock_guard lock(one_at_a_time);
   std::vector<TriangleMesh> hulls;
   if (job.is_unwanted) return cancelled();
-  if (load_hulls(job.entry, &hulls)) return hulls;  // of a twin
+  if (load_hulls(job.entry, &hulls)) return hulls;  // entry of a twin
   try {
     hulls = run(job.api, job.mesh, job.options);
   } catch (const std::exception& e) {

@@ -10,7 +10,7 @@
 namespace gloam {
 
 struct DecomposeOptions {
-  double concavity = 0.05;  ///< how far a part may be from its hull, 0.01 … 1
+  double concavity = 0.05;  ///< distance that a part may have from its hull, 0.01 … 1
   int max_hulls = 32;       ///< at most
   /// Looked at all the time. CoACD cannot be stopped: it goes on alone, to the cache; the end of
   /// the program waits for it.

@@ -10,7 +10,7 @@
 namespace gloam {
 namespace {
 
-constexpr int kMostCorners = 256;  // of the hull by which directions are searched
+constexpr int kMostCorners = 256;  // corners of the hull by which directions are searched
 
 using Points = std::vector<Vec3d>;
 

@@ -35,9 +35,9 @@ struct Face {
   Int3 normal;
   std::vector<int> outside;  // points above it that no other face has
   int farthest = -1;
-  int64_t height = 0;  // of the farthest, times the normal's length
+  int64_t height = 0;  // height of the farthest point, times the normal's length
   bool is_dead = false;
-  int visit = -1;  // of the point by which it was last looked at
+  int visit = -1;  // point by which it was visited last
 };
 
 class Quickhull {

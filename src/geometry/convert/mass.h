@@ -22,13 +22,13 @@ EdgeCount count_edges(const TriangleMesh& welded);
 
 struct MassProperties {
   double volume = 0;                   ///< [m^3]; below 0: the triangles look inwards
-  Vec3d center;                        ///< of mass [m]
+  Vec3d center;                        ///< centre of mass [m]
   std::array<double, 6> inertia = {};  ///< xx yy zz xy xz yz about it, of 1 kg/m^3 [m^5]
 };
-/// By the divergence theorem, of a closed surface; pieces that overlap count twice.
+/// Mass properties by the divergence theorem, of a closed surface; pieces that overlap count twice.
 MassProperties mass_properties(const TriangleMesh& mesh);
 
-/// What a rigid body can have: positive, and no moment above the sum of the other two.
+/// True if a rigid body can have them: positive, and no moment above the sum of the other two.
 bool is_physical(const MassProperties& mass);
 
 }  // namespace gloam

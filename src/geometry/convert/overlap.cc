@@ -30,7 +30,7 @@ std::vector<double> for_each(const std::vector<Point>& points, F&& f) {
 
 // Points of a box, evenly, by the sequence R3 (Roberts 2018).
 std::vector<Vec3d> points_in(const BvhBox& box) {
-  constexpr double kRoot = 1.22074408460575947536;  // of x^4 = x + 1
+  constexpr double kRoot = 1.22074408460575947536;  // root of x^4 = x + 1
   const Vec3f side = box.high - box.low;
   std::vector<Vec3d> out;
   for (size_t i = 0; i < kVolumeSamples; ++i) {

@@ -17,14 +17,14 @@ namespace {
 constexpr double kRoomHeight = 1.5, kRoomWidth = 0.8;  // the least that one stands in [m]
 constexpr size_t kMostTriangles = 8000;                // larger shells are made coarser
 constexpr size_t kEnoughPieces = 256;
-constexpr double kThickest = 0.1, kThickness = 0.05, kThinnest = 0.01;  // of slabs [m]
+constexpr double kThickest = 0.1, kThickness = 0.05, kThinnest = 0.01;  // thickness of slabs [m]
 constexpr double kDepthStep = 0.02;                                     // [m]
-constexpr size_t kDepthSamples = 64;                                    // of a piece
+constexpr size_t kDepthSamples = 64;                                    // samples of a piece
 constexpr double kBent = 0.7;  // least cosine between the normals of what is one face
 
-/// What may be one face: `rough` = how far from its plane [m]; `gaps` = what of its outline's hull
-/// is none of it, of its area, and in square metres. More may be where a slab does not reach into
-/// the air, as can be told of closed shells.
+/// Tolerances of one face: `rough` = distance from its plane [m]; `gaps` = fraction of its
+/// outline's hull that is no part of it, and the same as an area [m²]. More is allowed where a slab
+/// does not reach into the air, which can be tested for closed shells.
 struct Slack {
   double rough, gaps, gap_area;
 };
@@ -206,12 +206,12 @@ class Faces {
   const MeshQueries* air_;
   const double size_;  // diagonal [m]
   std::vector<size_t> owner_;
-  std::vector<Piece> pieces_;  // by the triangle that owns it
+  std::vector<Piece> pieces_;  // pieces by the triangle that owns each
   std::vector<Edge> edges_;
   size_t count_ = 0;
 };
 
-// How deep behind the face there is no air.
+// Depth behind the face without air.
 double thickness_behind(const Piece& piece, const TriangleMesh& shell, const MeshQueries& air) {
   const Vec3d n = piece.area * (1 / length_of(piece.area));
   const size_t stride = piece.triangles.size() / kDepthSamples + 1;

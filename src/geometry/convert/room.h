@@ -8,8 +8,8 @@ namespace gloam {
 /// Can one stand in the shell, by its bounding box?
 bool is_room_sized(const TriangleMesh& shell);
 
-/// Of triangles that need not close: the volume that they enclose about the middle of their
-/// bounding box; below 0: they look inwards [m^3].
+/// Volume of triangles that need not close, about the middle of their bounding box; below 0: they
+/// look inwards [m^3].
 double enclosed_volume(const TriangleMesh& shell);
 
 /// Convex slabs behind the faces of a shell that looks inwards. Faces are joined while they are

@@ -32,7 +32,7 @@ class GltfDocument {
   /// Indices: unsigned whole numbers.
   bool read_indices(int accessor, std::vector<uint32_t>* out);
 
-  /// What a URI stands for: the bytes of a data URI or of a file beside the model.
+  /// Content of a URI: the bytes of a data URI or of a file beside the model.
   Result<std::vector<uint8_t>> fetch(const std::string& uri, const std::string& pointer);
 
  private:

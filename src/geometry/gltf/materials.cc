@@ -9,7 +9,7 @@
 namespace gloam {
 namespace {
 
-// What to read of a texture that a material names.
+// Parts of a texture that a material uses.
 struct TextureUse {
   TextureChannel channel = TextureChannel::kColor;
   ColorSpace color_space = ColorSpace::kLinear;

@@ -90,7 +90,7 @@ class NodeReader {
     std::vector<int> roots = find_roots();
     struct Visit {
       int node;
-      Affine3f X_FP;  // of the parent
+      Affine3f X_FP;  // pose of the parent
     };
     std::vector<Visit> stack;
     for (auto it = roots.rbegin(); it != roots.rend(); ++it) stack.push_back({*it, kZUp});

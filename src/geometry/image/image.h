@@ -8,7 +8,7 @@ namespace gloam {
 
 enum class ColorSpace : uint8_t { kLinear, kSrgb };
 
-/// What a texture shows beyond its edges.
+/// Continuation of a texture beyond its edges.
 enum class TextureWrap : uint8_t { kRepeat, kMirror, kClamp };
 
 /// 8-bit texels of a texture.

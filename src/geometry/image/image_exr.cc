@@ -16,7 +16,8 @@ namespace {
 
 constexpr uint32_t kExrMagic = 20000630;
 constexpr int64_t kMaxSize = 16384;
-constexpr uint64_t kMaxDeflateRatio = 1032;  // of zlib: a file cannot hold more than this
+// Greatest ratio of zlib: a file cannot hold more than this
+constexpr uint64_t kMaxDeflateRatio = 1032;
 enum PixelType : uint32_t { kUint = 0, kHalf = 1, kFloat = 2 };
 enum Compression : uint8_t { kNone = 0, kZips = 2, kZip = 3 };
 
@@ -122,7 +123,7 @@ std::string read_exr_header(Cursor* cursor, ExrHeader* header) {
 /// Undoes deflate, differences of bytes, and their split into even and odd ones.
 bool expand(std::span<const uint8_t> packed, size_t size, std::vector<uint8_t>* out) {
   out->assign(size, 0);
-  if (packed.size() == size) {  // what would not shrink is stored
+  if (packed.size() == size) {  // incompressible data is stored
     std::copy(packed.begin(), packed.end(), out->begin());
     return true;
   }

@@ -12,7 +12,7 @@ namespace gloam {
 
 struct ExrImage {
   int width = 0, height = 0;
-  std::vector<std::string> names;          ///< of the channels
+  std::vector<std::string> names;          ///< names of the channels
   std::vector<std::vector<float>> planes;  ///< one per name, (height x width)
   /// The plane of this name, or null.
   const std::vector<float>* find(const std::string& name) const;

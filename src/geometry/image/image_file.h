@@ -39,8 +39,8 @@ Result<Image8> decode_jpeg(std::span<const uint8_t> bytes, const std::string& na
 Result<ImageF> decode_hdr(std::span<const uint8_t> bytes, const std::string& name,
                           uint64_t max_pixels = kMaxImagePixels);
 
-/// What is in a KTX 1 file: one picture, or the six of a cube in the order +x -x +y -y +z -z. Those
-/// of bytes are in `faces`, those of floats in `float_faces`.
+/// Content of a KTX 1 file: one picture, or the six of a cube in the order +x -x +y -y +z -z.
+/// Pictures of bytes are in `faces`, those of floats in `float_faces`.
 struct KtxImage {
   std::vector<Image8> faces;
   std::vector<ImageF> float_faces;

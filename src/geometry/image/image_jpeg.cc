@@ -10,8 +10,8 @@
 namespace gloam {
 namespace {
 
-// What libjpeg's longjmp passes over must be trivial, so everything that owns memory is here and
-// in decode_jpeg.
+// State that libjpeg's longjmp passes over must be trivial, so everything that owns memory is here
+// and in decode_jpeg.
 struct JpegReader {
   jpeg_decompress_struct info = {};
   jpeg_error_mgr errors = {};

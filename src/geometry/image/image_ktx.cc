@@ -92,7 +92,7 @@ class KtxReader {
         uint64_t{width_} * height_ * faces > max_pixels_)
       return bad(fmt::format("its size is {} x {}", width_, height_));
     const size_t row = (width_ * texel_bytes_ + 3) / 4 * 4, size = row * height_;
-    const uint64_t start = kKtxHeaderBytes + uint64_t{metadata} + 4;  // of the largest level
+    const uint64_t start = kKtxHeaderBytes + uint64_t{metadata} + 4;  // start of the largest level
     if (start > bytes_.size() || faces * uint64_t{size} > bytes_.size() - start)
       return bad(fmt::format("it ends too early: {} faces of {} bytes from byte {} do not fit",
                              faces, size, start));

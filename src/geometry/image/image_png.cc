@@ -14,8 +14,8 @@ struct Source {
   size_t position = 0;
 };
 
-// What libpng's longjmp passes over must be trivial, so everything that owns memory is here and in
-// the callers.
+// State that libpng's longjmp passes over must be trivial, so everything that owns memory is here
+// and in the callers.
 struct PngReader {
   png_structp png = nullptr;
   png_infop info = nullptr;

@@ -14,7 +14,7 @@ namespace gloam {
 enum class AlphaMode : uint8_t {
   kOpaque,  ///< opacity counts as 1
   kMask,    ///< there where opacity >= alpha_cutoff, absent elsewhere
-  kBlend,   ///< opacity is the share of the surface that is there
+  kBlend,   ///< opacity is the fraction of the surface that is there
 };
 
 /// Texture coordinates changed before the look-up, as in KHR_texture_transform: they act on
@@ -32,13 +32,13 @@ inline Vec2f transform_uv(const UvTransform& t, Vec2f uv) {
   return {c * u + s * v + t.offset.x, 1 - (-s * u + c * v + t.offset.y)};
 }
 
-/// Which channels of a picture a texture reads.
+/// Channels of a picture that a texture reads.
 enum class TextureChannel : uint8_t { kRed, kGreen, kBlue, kAlpha, kColor };
 
 /// A picture put on a material. Its value multiplies the material's own number or colour, unless
 /// the material says otherwise.
 struct TextureRef {
-  int image = -1;  ///< of ModelFile::images; -1 = none
+  int image = -1;  ///< index in ModelFile::images; -1 = none
   TextureChannel channel = TextureChannel::kColor;
   ColorSpace color_space = ColorSpace::kLinear;
   int uv_set = 0;  ///< 0 or 1: TriangleMesh::uvs or uvs1
@@ -56,7 +56,7 @@ struct TextureRef {
   }
 };
 
-/// Colours are linear Rec. 709, weights and shares 0..1.
+/// Colours are linear Rec. 709, weights and fractions 0..1.
 struct MaterialValues {
   Vec3f base_color = {1, 1, 1};
   TextureRef base_color_texture;
@@ -73,7 +73,7 @@ struct MaterialValues {
 
   float transmission_weight = 0;
   TextureRef transmission_texture;
-  Vec3f transmission_color = {1, 1, 1};  ///< what is left of white light after transmission_depth
+  Vec3f transmission_color = {1, 1, 1};  ///< colour of white light after transmission_depth
   float transmission_depth = 0;          ///< [m] in the mesh's frame; 0 = nothing is absorbed
   bool thin_walled = false;              ///< a sheet: light passes without being bent
 
@@ -104,7 +104,7 @@ struct MaterialValues {
   float alpha_cutoff = 0.5f;
 
   TextureRef normal_texture;  ///< tangent space, x along u, y along v upwards
-  float normal_scale = 1;     ///< of its x and y
+  float normal_scale = 1;     ///< scale of its x and y
   TextureRef bump_texture;    ///< height
   float bump_scale = 1;       ///< [m] that a texel of 1 stands above one of 0
   TextureRef occlusion_texture;

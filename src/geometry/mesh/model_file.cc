@@ -54,7 +54,7 @@ bool looks_like_collada(std::span<const uint8_t> bytes) {
 
 Result<ModelFile> read_by_format(const ModelSource& source) {
   const std::span<const uint8_t> bytes = source.bytes;
-  constexpr uint64_t kGrowth = 3;  // of what is unpacked over the file, nearly at most
+  constexpr uint64_t kGrowth = 3;  // size unpacked over the file's, nearly at most
   GLOAM_TRY_STATUS(check_memory(kGrowth * bytes.size(), fmt::format("unpacking '{}'", source.name),
                                 "use a mesh of fewer triangles"));
   if (starts_with(bytes, "glTF")) return read_glb(source);

@@ -1,9 +1,9 @@
 #pragma once
-// What a file with a 3-D model holds, whatever its format, and the one way to read it.
+// Content of a file with a 3-D model, in any format, and its reader.
 // Frames: F is the file's content in Gloam's axes (right-handed, Z up, metres). glTF is Y up by its
-// standard: its x, y, z become x, z, -y of F's x, z, y: p_F = (x, -z, y). COLLADA says its axes and
-// its unit, which both are undone here. OBJ, STL and PLY have no
-// axes of their own and are taken as they are.
+// standard: its x, y, z become x, z, -y of F's x, z, y: p_F = (x, -z, y). COLLADA gives its axes
+// and its unit, which both are undone here. OBJ, STL and PLY have no axes of their own and are
+// taken as they are.
 
 #include <cstdint>
 #include <filesystem>
@@ -44,7 +44,7 @@ struct ImportedLight {
   Vec3f color = {1, 1, 1};                     ///< linear Rec. 709
   float intensity = 1;                         ///< [cd]; directional: [lx]
   float range = 0;                             ///< [m] beyond which it gives nothing; 0 = no end
-  float inner_cone = 0, outer_cone = kPi / 4;  ///< of a spot: half angles [rad]
+  float inner_cone = 0, outer_cone = kPi / 4;  ///< half angles of a spot [rad]
   Affine3f X_FL;                               ///< light's frame; it shines along its -z
 };
 
@@ -54,9 +54,9 @@ struct ModelFile {
   std::vector<ImportedImage> images;
   std::vector<ImportedInstance> instances;
   std::vector<ImportedLight> lights;
-  uint64_t dropped_triangles = 0;  ///< of no area
+  uint64_t dropped_triangles = 0;  ///< triangles without area
   bool was_y_up = false;           ///< glTF, most COLLADA: turned into Gloam's axes
-  /// What the file has and Gloam leaves out (skins, missing pictures …), one sentence each.
+  /// Parts of the file that Gloam leaves out (skins, missing pictures …), one sentence each.
   std::vector<std::string> notes;
   /// Other files that it was made of, or that it names and that are not there; relative to its
   /// folder. Known where it was read by way of the cache.
@@ -67,7 +67,7 @@ struct ModelFileOptions {
   /// No file outside this folder is read; empty = the model file's own folder.
   std::filesystem::path root = {};
   ModelLimits limits = {};
-  /// Called now and then with the share that is done, 0..1, never less than before; from any
+  /// Called now and then with the fraction that is done, 0..1, never less than before; from any
   /// thread, one at a time.
   std::function<void(double share)> progress = {};
 };
@@ -78,7 +78,7 @@ struct ModelFileOptions {
 Result<ModelFile> read_model_file(const std::filesystem::path& path,
                                   const ModelFileOptions& options = {});
 
-/// By its name: .gltf .glb .dae .obj .stl .ply, in any case.
+/// True if the name has an ending of a model file: .gltf .glb .dae .obj .stl .ply, in any case.
 bool is_model_file(const std::filesystem::path& path);
 
 }  // namespace gloam

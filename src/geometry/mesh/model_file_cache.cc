@@ -13,13 +13,13 @@ namespace gloam {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr uint64_t kModelMagic =
-    0x33304C444D4F4C47ull;  // "GLOMDL03": changes with what readers give
+// "GLOMDL03": changes with what readers give.
+constexpr uint64_t kModelMagic = 0x33304C444D4F4C47ull;
 constexpr uint64_t kLargestEntry = uint64_t{8} << 30;
 
 }  // namespace
 
-// What an entry holds, for writing, and in the same order for reading.
+// Parts of an entry, in the order of writing and of reading.
 template <class F>
 void visit_parts(F& f, TriangleMesh& m) {
   f(m.positions), f(m.normals), f(m.uvs), f(m.indices), f(m.uvs1);
@@ -54,8 +54,8 @@ void visit_parts(F& f, ModelFile& m) {
 
 namespace {
 
-// What a reader gives depends on the content, on how the file is called (its ending) and on the
-// limits, which are errors that are not kept.
+// Path of an entry. The result of a reader depends on the content, on the ending of the file's name
+// and on the limits, which lead to errors that are not cached.
 fs::path entry_path(const fs::path& folder, const fs::path& model, uint64_t content) {
   const std::string ending = model.extension().string();
   const uint64_t key = hash_bytes(ending.data(), ending.size(), content ^ kModelMagic);

@@ -1,16 +1,15 @@
 #pragma once
-// How much of a stranger's model file is believed. All of them are checked before memory is asked
-// for.
+// Limits on a stranger's model file. All of them are checked before memory is allocated.
 
 #include <cstdint>
 
 namespace gloam {
 
 struct ModelLimits {
-  uint64_t file_bytes = uint64_t{4} << 30;     ///< of one file
-  uint64_t decoded_bytes = uint64_t{8} << 30;  ///< of all that a model file unpacks to
-  uint64_t vertices = uint64_t{1} << 28;       ///< of one mesh
-  uint64_t triangles = uint64_t{1} << 28;      ///< of one mesh
+  uint64_t file_bytes = uint64_t{4} << 30;     ///< size of one file
+  uint64_t decoded_bytes = uint64_t{8} << 30;  ///< size of all that a model file unpacks to
+  uint64_t vertices = uint64_t{1} << 28;       ///< vertices of one mesh
+  uint64_t triangles = uint64_t{1} << 28;      ///< triangles of one mesh
   uint64_t instances = uint64_t{1} << 20;
   uint64_t meshes = uint64_t{1} << 20;
   uint64_t materials = uint64_t{1} << 16;

@@ -1,5 +1,5 @@
 #pragma once
-// What the readers of model files read from and report to. Not for others.
+// Input and reports of the readers of model files. For them alone.
 
 #include <atomic>
 #include <filesystem>
@@ -17,7 +17,7 @@ namespace gloam {
 struct ModelPart {
   std::string name;  ///< relative to the model's folder
   bool exists = true;
-  uint64_t hash = 0;  ///< of its content
+  uint64_t hash = 0;  ///< hash of its content
 };
 
 /// Files beside a model, none outside the root.
@@ -85,7 +85,7 @@ Result<ModelFile> read_stl(const ModelSource& source);
 Result<ModelFile> read_ply(const ModelSource& source);
 Result<ModelFile> read_collada(const ModelSource& source);
 
-/// By content, then by the ending of the name.
+/// Reads by content, then by the ending of the name.
 Result<ModelFile> read_model_bytes(const ModelSource& source);
 
 /// Adds a note unless there are many already.

@@ -235,7 +235,7 @@ class MtlParser {
     if (now_->specular && max_component(*now_->specular) == 0 && !m.specular_color_texture.ok() &&
         !now_->roughness)
       m.specular_weight = 0;
-    m.double_sided = true;  // MTL knows no sides
+    m.double_sided = true;  // MTL has no sides
     if (m.ior < 1) m.ior = 1.5f;
     m.anisotropy_rotation *= 2 * kPi;
     m.emission = m.emission * kFullWhite;

@@ -104,7 +104,7 @@ class PieceParser {
           {out_.sizes.size(), word == "usemtl", std::string(trim(line).substr(0, kMaxName))});
     } else if (word == "mtllib") {
       std::string name(trim(line));
-      std::replace(name.begin(), name.end(), '\\', '/');  // of Windows
+      std::replace(name.begin(), name.end(), '\\', '/');  // Windows' separators
       out_.libraries.push_back({std::move(name), out_.lines});
     }  // s, l, p, curves and what programs add of their own carry no triangles
   }
@@ -253,7 +253,7 @@ class ObjReader {
   }
 
   Status join_elements() {
-    // What relative indices count from: the number of elements before each piece.
+    // Base of relative indices: the number of elements before each piece.
     bases_.resize(pieces_.size());
     for (size_t i = 1; i < pieces_.size(); ++i) {
       const ObjPiece& before = pieces_[i - 1];

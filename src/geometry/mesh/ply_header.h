@@ -32,7 +32,7 @@ struct PlyElement {
 struct PlyHeader {
   PlyFormat format = PlyFormat::kAscii;
   std::vector<PlyElement> elements;
-  uint64_t bytes = 0;  ///< of the head
+  uint64_t bytes = 0;  ///< size of the head
   uint64_t lines = 0;
 };
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr size_t kSlots = 11;
 
-// Which number of a vertex a property is: x y z, normal, u v, red green blue; -1 = none.
+// Slot of a vertex's property: x y z, normal, u v, red green blue; -1 = none.
 int slot_of(const std::string& name) {
   constexpr std::string_view kNames[kSlots][4] = {{"x"},
                                                   {"y"},
@@ -356,10 +356,10 @@ class PlyReader {
   std::span<const uint8_t> body_;
   ProgressCount progress_;
   size_t vertex_element_ = SIZE_MAX;
-  std::vector<int> slots_;  // of the vertices' properties
+  std::vector<int> slots_;  // slots of the vertices' properties
   TriangleMesh mesh_;
   std::vector<Vec3f> colors_;  // linear, by vertex; empty = none
-  float full_scale_ = 1;       // of a channel
+  float full_scale_ = 1;       // full scale of a channel
   PolygonList faces_;
 };
 

@@ -15,7 +15,7 @@ inline std::string_view as_text(std::span<const uint8_t> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-inline constexpr size_t kPieceBytes = size_t{1} << 20;  ///< that one thread reads
+inline constexpr size_t kPieceBytes = size_t{1} << 20;  ///< size that one thread reads
 
 /// Pieces of about `size` bytes that end behind a line; a line that ends with a backslash and the
 /// next one stay together.

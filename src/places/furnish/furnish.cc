@@ -60,7 +60,8 @@ std::optional<int> Furnisher::dining_set(const Vec3& table_size, const std::stri
   const int table = make(table_kind, table_size);
   const int chair = make(chair_kind);
   const Prop::Box t = prop(table).bounds(), c = prop(chair).bounds();
-  const double tuck = 0.18, drawn = 0.12;  // how far a seat goes under the table, at most less
+  // Depth to which a seat goes under the table, and its reduction at most
+  const double tuck = 0.18, drawn = 0.12;
   const float out = float(t.high.x + (c.high.x - c.low.x) - tuck + drawn);
   // Free on all sides, or else with one side at the wall.
   Prop all, half;

@@ -1,5 +1,5 @@
 #pragma once
-// What people put into rooms, kind by kind of room.
+// Furniture of rooms, by kind of room.
 
 #include "places/plan/room_layout.h"
 
@@ -8,7 +8,7 @@ namespace gloam {
 struct FurnishOptions {
   double passage = 0.7;  ///< [m]
   double clutter = 0.5;  ///< 0 … 1
-  double loose = 0.1;    ///< share of what could move that does
+  double loose = 0.1;    ///< fraction of what could move that does
 };
 
 /// A stretch of wall without doors.
@@ -32,11 +32,11 @@ class Furnisher {
   Furnisher(const FloorPlan& plan, int room, const FurnishOptions& options, uint64_t seed,
             Place* place);
 
-  /// By the room's kind.
+  /// Furnishes by the room's kind.
   void furnish();
 
  private:
-  // Of the catalogue, in a size or as it comes; the same in every call for one seed.
+  // Makes a prop of the catalogue, in a size or in its own; the same in every call for one seed.
   int make(const std::string& kind, std::optional<Vec3> size = {},
            std::optional<uint64_t> seed = {});
   const Prop& prop(int index) const { return place_->prop(index); }
@@ -75,7 +75,7 @@ class Furnisher {
   void study();
   void utility();
   void hall();
-  // Of offices (furnish_office.cc).
+  // Furnishing of offices (furnish_office.cc).
   void corridor();
   void open_office();
   void office();

@@ -10,10 +10,10 @@
 namespace gloam {
 namespace {
 
-constexpr double kDepth = 0.62;     // of a row of units, with the gap behind
-constexpr double kCorner = 1.10;    // of a corner's cabinet along its wall
-constexpr double kTop = 0.9;        // of the worktop
-constexpr double kTilesTop = 1.45;  // where cupboards begin
+constexpr double kDepth = 0.62;     // depth of a row of units, with the gap behind
+constexpr double kCorner = 1.10;    // length of a corner's cabinet along its wall
+constexpr double kTop = 0.9;        // height of the worktop
+constexpr double kTilesTop = 1.45;  // height where cupboards begin
 
 // The wall that a corner's cabinet stands at has the corner on the cabinet's right, its -y.
 bool has_corner_right(Side side, Side other) {
@@ -80,7 +80,7 @@ std::vector<KitchenPiece> main_row(double length, bool cold_first) {
   const bool cold = length >= 2.0;
   if (cold) used += 0.6;
   if (length - used >= 0.6) row.push_back({"dishwasher", 0.6}), used += 0.6;
-  // What is left becomes cupboards of one width.
+  // The rest of the wall becomes cupboards of one width.
   const double rest = length - used;
   const int cupboards = static_cast<int>(std::ceil(rest / 0.85));
   for (int i = 0; i < cupboards && rest / cupboards >= 0.35; ++i)
@@ -149,13 +149,13 @@ void Furnisher::kitchen_rows(const std::vector<KitchenWall>& walls, const Kitche
   KitchenWall a = first;
   std::optional<KitchenWall> b;
   if (second) b = *second;
-  double at = (a.from + a.to) / 2;  // where the window is
+  double at = (a.from + a.to) / 2;  // place of the window
   for (const Opening& o : layout_.openings(a.side))
     if (o.kind == OpeningKind::kWindow) at = o.center;
   bool high = std::abs(at - a.from) > std::abs(at - a.to);  // the row ends at the upper end
   if (is_corner) {
     high = !at_low_end(b->side);
-    // Of the two, one has the corner's cabinet, the other begins at its front.
+    // One of the two walls has the corner's cabinet, the other begins at its front.
     KitchenWall& shorter = has_corner_right(a.side, b->side) ? *b : a;
     const Side other = &shorter == &a ? b->side : a.side;
     (at_low_end(other) ? shorter.from : shorter.to) +=
@@ -179,7 +179,7 @@ void Furnisher::kitchen_row(Side side, double from, const std::vector<KitchenPie
   std::vector<Opening> windows;
   for (const Opening& o : layout_.openings(side))
     if (o.kind == OpeningKind::kWindow) windows.push_back(o);
-  double at = from, low = 1e9, high = -1e9;  // of the worktop
+  double at = from, low = 1e9, high = -1e9;  // ends of the worktop
   uint64_t number = 2;
   for (const KitchenPiece& piece : row) {
     const std::string kind = piece.kind;

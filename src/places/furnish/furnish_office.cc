@@ -8,7 +8,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kDesk = 1.6, kDeskDepth = 0.8;  // of a workplace [m]
+constexpr double kDesk = 1.6, kDeskDepth = 0.8;  // size of a workplace [m]
 constexpr double kScreen = 0.03;                 // thickness of what stands between two desks
 constexpr double kSeat = 0.95;                   // behind a desk
 constexpr double kApart = 0.025;                 // between desks in a row

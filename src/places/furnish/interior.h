@@ -1,5 +1,5 @@
 #pragma once
-// What the insides of dwellings and offices share: how they are finished and lit.
+// Interiors of dwellings and offices: finishes and lamps.
 
 #include "places/furnish/furnish.h"
 #include "places/furnish/shell.h"
@@ -15,7 +15,7 @@ RoomFinish finish_of(const PlanRoom& room, Workshop* shop);
 /// A sky with a sun of moderate height from anywhere; without a roof one that shines into rooms.
 SkyOptions draw_sky(Dice* dice, bool roof);
 
-/// What places made of rooms have in common.
+/// Options that places made of rooms have in common.
 struct InteriorOptions {
   uint64_t seed = 1;
   FurnishOptions furnish;

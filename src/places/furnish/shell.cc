@@ -10,9 +10,9 @@ struct WallPiece {
   double from, to, low, high;
 };
 
-constexpr double kSliver = 0.001;  // what is narrower is rounding [m]
+constexpr double kSliver = 0.001;  // width below which a piece is rounding [m]
 
-// What is left of a wall between `from` and `to`, `low` and `high`, around its openings.
+// Pieces of a wall between `from` and `to`, `low` and `high`, around its openings.
 std::vector<WallPiece> cut(double from, double to, double low, double high,
                            std::vector<Opening> openings) {
   std::sort(openings.begin(), openings.end(),

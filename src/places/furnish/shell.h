@@ -1,6 +1,6 @@
 #pragma once
-// What encloses rooms: walls with their openings, floors, ceilings, skirting, doors, windows,
-// stairs, the outside and the roof.
+// Shell of rooms: walls with their openings, floors, ceilings, skirting, doors, windows, stairs,
+// the outside and the roof.
 
 #include <map>
 

@@ -11,7 +11,7 @@ constexpr float kRiser = 0.18f, kGoing = 0.28f, kTread = 0.035f, kRailHeight = 0
 
 struct Flight {
   float x0, z0;     // the first riser's foot
-  float direction;  // of x
+  float direction;  // sign of x
   float y0, y1;
   int treads;  // between floors
   float riser, going;

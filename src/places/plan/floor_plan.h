@@ -1,12 +1,12 @@
 #pragma once
-// Where rooms are and what leads from one to another, before walls have thickness on paper. A
-// building is storeys of rooms that share one rectangular outline.
+// Rooms and the openings between them, before walls have thickness on paper. A building is storeys
+// of rooms that share one rectangular outline.
 
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "gloam/scene_environment.h"
+#include "gloam/scene_place.h"
 
 namespace gloam {
 
@@ -49,7 +49,7 @@ enum class OpeningKind { kDoor, kArch, kWindow, kEntrance, kBare, kLocked };
 struct Opening {
   OpeningKind kind = OpeningKind::kDoor;
   int a = 0, b = -1;         ///< b: -1 = outside
-  Side side = Side::kNorth;  ///< of a
+  Side side = Side::kNorth;  ///< side of a
   double center = 0;         ///< along the wall [m]
   double width = 0.86;
   double sill = 0, head = 2.04;  ///< above the floor [m]
@@ -61,7 +61,7 @@ struct Opening {
 struct FloorPlan {
   std::vector<PlanRoom> rooms;
   std::vector<Opening> openings;
-  Rect outline;                  ///< of all rooms and their halves of the walls
+  Rect outline;                  ///< outline of all rooms and their halves of the walls
   double wall = 0.12;            ///< between rooms [m]
   double ceiling = 2.5;          ///< clear height [m]
   double floor_thickness = 0.3;  ///< between storeys [m]

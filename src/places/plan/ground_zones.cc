@@ -9,7 +9,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kBase = 2;  // of solid ground under its lowest sample [m]
+constexpr double kBase = 2;  // depth of solid ground under its lowest sample [m]
 
 struct Corner {
   Vec3f p, n;
@@ -37,7 +37,7 @@ std::pair<Polygon, Polygon> part(const Polygon& polygon, size_t field) {
   return parts;
 }
 
-// One zone's share of the ground. Corners of the grid are shared, those of cuts are not.
+// One zone's part of the ground. Corners of the grid are shared, those of cuts are not.
 class ZoneMesh {
  public:
   explicit ZoneMesh(size_t samples) : known_(samples, -1) {}

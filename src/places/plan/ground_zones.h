@@ -1,6 +1,6 @@
 #pragma once
-// What the ground of open country looks like: its triangles, exactly those that are walked on,
-// cut into zones along ragged borders, and the country around it.
+// Visible ground of open country: its triangles, exactly those that are walked on, cut into zones
+// along ragged borders, and the country around it.
 
 #include "places/place.h"
 #include "places/terrain/landscape.h"
@@ -10,7 +10,7 @@ namespace gloam {
 /// The ground under the area, its samples `step` apart or closer.
 HeightField sample_landscape(const Landscape& land, const Rect& area, double step);
 
-/// Of the field's triangles at a place within it [m].
+/// Height of the field's triangles at a place within it [m].
 double ground_height(const HeightField& field, double x, double y);
 
 /// Draws meadow, road, shore, bare earth and rock on the field's triangulation.

@@ -18,7 +18,7 @@ struct Wish {
   double width_low, width_high;  // along its strip [m]
 };
 
-// What a home has, in the order in which it is first given a room.
+// Rooms of a home, in the order in which each is first given space.
 const Wish kLiving{"living", 5.0, 6.2}, kKitchen{"kitchen", 3.3, 4.0}, kBath{"bathroom", 2.2, 2.7},
     kBedroom{"bedroom", 3.4, 4.2}, kStudy{"study", 2.8, 3.4}, kUtilityRoom{"utility", 2.2, 2.6};
 const std::vector<Wish> kOneStorey = {kLiving,  kBedroom,     kBath, kKitchen, kBedroom, kStudy,

@@ -1,4 +1,4 @@
-// What fills the openings of walls: doors with their frames, bare linings, windows.
+// Fillings of the openings of walls: doors with their frames, bare linings, windows.
 
 #include <algorithm>
 #include <cmath>

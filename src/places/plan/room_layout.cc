@@ -8,9 +8,9 @@ namespace {
 
 constexpr double kWallGap = 0.02;    // behind furniture, for the skirting [m]
 constexpr double kThingGap = 0.02;   // between things
-constexpr double kLowEnough = 0.03;  // what is lower is walked over: rugs [m]
-constexpr double kOverhead = 1.9;    // what hangs higher is walked under
-constexpr double kStep = 0.05;       // of the search
+constexpr double kLowEnough = 0.03;  // height of things that are walked over: rugs [m]
+constexpr double kOverhead = 1.9;    // height of things that are walked under
+constexpr double kStep = 0.05;       // step of the search
 
 double along(Side side, const Spot& spot) { return runs_along_x(side) ? spot.x : spot.y; }
 

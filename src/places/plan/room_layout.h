@@ -1,6 +1,6 @@
 #pragma once
-// Where things can stand in a room: nothing overlaps, doors can swing, what must be used can be
-// walked up to, and a disc of a given width gets from every opening to every other.
+// Layout of things in a room: nothing overlaps, doors can swing, things in use can be walked up to,
+// and a disc of a given width gets from every opening to every other.
 
 #include <functional>
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace gloam {
 
-/// Where a prop stands: a point of the ground plan and which way its +x looks, in quarter turns
+/// Place of a prop: a point of the ground plan and the direction of its +x, in quarter turns
 /// counter-clockwise from east.
 struct Spot {
   double x = 0, y = 0;
@@ -90,7 +90,7 @@ class RoomLayout {
   Place* place_;
   WayMap ways_;
   std::vector<Opening> openings_[4];
-  std::vector<Rect> keep_free_;                   // where doors swing and one steps through them
+  std::vector<Rect> keep_free_;  // areas where doors swing and one steps through them
   std::vector<std::pair<double, double>> steps_;  // points that must be reached: before openings
   std::vector<Taken> taken_;
   struct Hung {

@@ -1,5 +1,5 @@
 #pragma once
-// Where the middle of a disc can be in a room, as a grid, and what it can get to from where.
+// Free places for the centre of a disc in a room, as a grid, and the paths between them.
 
 #include <cstdint>
 #include <utility>
@@ -13,7 +13,7 @@ class WayMap {
  public:
   using Point = std::pair<double, double>;
 
-  /// Of a disc of this radius between the walls of `room`.
+  /// Map for a disc of this radius between the walls of `room`.
   WayMap(const Rect& room, double radius);
   /// A thing stands there.
   void block(const Rect& thing);

@@ -1,5 +1,4 @@
-// What is seen from the windows of a house: lawn, a terrace around the walls, a path, a hedge,
-// trees.
+// View from the windows of a house: lawn, a terrace around the walls, a path, a hedge, trees.
 
 #include "places/terrain/garden.h"
 

@@ -6,7 +6,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kSteepest = 0.42;               // of the hills: what robots climb
+constexpr double kSteepest = 0.42;               // slope of the hills: robots can climb it
 constexpr double kFlatRadius = 2.5, kBlend = 7;  // about the origin [m]
 constexpr double kRoadStep = 1, kRoadAway = 60;  // [m]
 constexpr double kShoulder = 0.8, kGraded = 5;   // beside the road: level, then to the hills [m]
@@ -99,7 +99,7 @@ double Landscape::road_z(double x) const {
   return mix(road_z_[i], road_z_[i + 1], f * f * (3 - 2 * f));
 }
 
-// Where the ground is lowest, clear of the road.
+// Places the pond at the lowest ground, clear of the road.
 void Landscape::place_pond(Dice* dice) {
   const double side = std::min(o_.length, o_.width);
   const double wanted = std::min(0.16 * side, 12.0) * dice->uniform(0.85, 1.1);

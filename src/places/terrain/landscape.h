@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "gloam/scene_environment.h"
+#include "gloam/scene_place.h"
 #include "places/dice.h"
 #include "places/plan/floor_plan.h"
 #include "places/smooth_noise.h"
@@ -15,23 +15,23 @@ namespace gloam {
 
 /// A level rectangle for a building, turned.
 struct BuildingSite {
-  double x = 0, y = 0, heading = 0;  ///< of its middle; its front looks along the heading
+  double x = 0, y = 0, heading = 0;  ///< place of its middle; its front looks along the heading
   double half_x = 0, half_y = 0;     ///< [m] along the heading, across it
-  double z = 0;                      ///< of its ground [m]
-  /// How far a point is outside of it [m]; 0 inside.
+  double z = 0;                      ///< height of its ground [m]
+  /// Distance of a point outside of it [m]; 0 inside.
   double distance(double px, double py) const;
 };
 
 struct Pond {
   double x = 0, y = 0, radius = 0;  ///< [m] of its water, about
-  double z = 0;                     ///< of its surface [m]
+  double z = 0;                     ///< height of its surface [m]
 };
 
 class Landscape {
  public:
   explicit Landscape(const TerrainOptions& options);
 
-  /// Of the ground, also beyond its border [m].
+  /// Height of the ground, also beyond its border [m].
   double height(double x, double y) const;
   /// Unit, upwards.
   Vec3f normal(double x, double y) const;
@@ -45,7 +45,7 @@ class Landscape {
   double pond_share(double x, double y) const;
   /// -1 dry and bare … 1 lush.
   double moisture(double x, double y) const { return tint_.sum(x / 14, y / 14, 3); }
-  /// Of a border between kinds of ground, about -1 … 1.
+  /// Displacement of a border between kinds of ground, about -1 … 1.
   double ragged(double x, double y) const { return ragged_.sum(x / 1.7, y / 1.7, 3); }
 
   const std::optional<Pond>& pond() const { return pond_; }

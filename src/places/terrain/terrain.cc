@@ -12,7 +12,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kMostSamples = 250000;  // of the ground: what a picture and a compiler can bear
+constexpr double kMostSamples = 250000;  // samples of the ground: a limit for pictures and compiler
 
 // A box above the ground of a rectangle.
 Region region_of(const Landscape& land, const char* label, std::string name, const Rect& r) {

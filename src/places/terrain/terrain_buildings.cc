@@ -1,4 +1,4 @@
-// What people built on open country: fences, barns of boards that have stood for long.
+// Buildings on open country: fences, weathered barns of boards.
 
 #include <array>
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kFenceBay = 2.5, kInside = 0.6;              // of the fence; from the border [m]
+constexpr double kFenceBay = 2.5, kInside = 0.6;  // bay of the fence; distance from the border [m]
 constexpr float kEaves = 2.5f, kRidge = 3.7f, kDoor = 0.95f;  // barn: heights, half a door [m]
 
 // One wall of boards along y at x = 0, its lower corners at y0 and y1; outside is +x.

@@ -14,7 +14,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kGrassPatch = 1.5;  // of grass, square [m]
+constexpr double kGrassPatch = 1.5;  // patch of grass, square [m]
 constexpr int kGrassShapes = 3;
 constexpr size_t kMostPatches = 2600;
 

@@ -1,4 +1,4 @@
-// Pebbles beside the track and the water, reeds in the pond's edge: drawn, not felt.
+// Pebbles beside the track and the water, reeds in the pond's edge: visible, without colliders.
 
 #include <cmath>
 #include <map>
@@ -9,7 +9,8 @@
 namespace gloam {
 namespace {
 
-constexpr double kPebblePatch = 0.5;  // of pebbles, square and flat: small where ground bends [m]
+// Patch of pebbles, square and flat: small where ground bends [m]
+constexpr double kPebblePatch = 0.5;
 constexpr int kPebbleShapes = 3;
 
 // Stones of 1 to 5 cm, half in the ground: a foot, a shoulder and a top each.
@@ -106,7 +107,7 @@ class Litter {
               std::move(list));
   }
 
-  // Where the pond's share is that much in that direction from its middle.
+  // Point in that direction from the pond's middle at which the pond's share has that value.
   Vec2f shore(const Pond& pond, double a, double share) const {
     double r = 0.5 * pond.radius;
     while (r < 2 * pond.radius &&

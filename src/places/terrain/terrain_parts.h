@@ -1,5 +1,5 @@
 #pragma once
-// What stands and grows on open country.
+// Plants and things on open country.
 
 #include "places/place.h"
 #include "places/terrain/landscape.h"

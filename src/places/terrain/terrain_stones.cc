@@ -11,10 +11,11 @@ namespace gloam {
 namespace {
 
 constexpr Vec3 kRock{0.36, 0.28, 0.2};  // size of a rock [m]
-constexpr double kClearOfFence = 1.0;   // of a rock's middle to the border: the fence is inside it
+// Distance of a rock's middle to the border: the fence is inside it
+constexpr double kClearOfFence = 1.0;
 
-// How a stone on three feet comes to rest on the ground that is felt. Empty: it would slide, or the
-// ground rises between its feet.
+// Pose of a stone at rest on three points of the ground's collider. Empty: it would slide, or the
+// ground rises between them.
 std::optional<Pose> lying(const HeightField& ground, const Prop& stone, double x, double y,
                           double turned) {
   constexpr double kSteepest = 0.12, kGap = 0.001;  // [m]

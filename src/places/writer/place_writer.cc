@@ -14,7 +14,7 @@
 namespace gloam {
 namespace {
 
-constexpr double kWhiteLuminance = 100;  // of MuJoCo's emission 1 (docs/light.md) [cd/m²]
+constexpr double kWhiteLuminance = 100;  // luminance of MuJoCo's emission 1 (docs/light.md) [cd/m²]
 
 // Enclosed by a closed mesh.
 double volume_of(const TriangleMesh& mesh) {

@@ -1,5 +1,5 @@
 #pragma once
-// What geoms that Gloam adds to a spec have in common.
+// Settings that geoms added to a spec by Gloam have in common.
 
 #include <mujoco/mujoco.h>
 
@@ -18,7 +18,7 @@ void write_pose(const Pose& X, double* pos, double* quat);
 /// Empty = the model's default stays.
 void write_friction(const std::optional<Vec3>& friction, mjsGeom* geom);
 
-/// A geom that is felt and only drawn on request: translucent blue, in kColliderGroup.
+/// A collider that is only drawn on request: translucent blue, in kColliderGroup.
 mjsGeom* add_collider_geom(mjsBody* body, const std::string& name);
 
 }  // namespace gloam

@@ -112,6 +112,120 @@ void write_sample_entry(const Mp4Track& track, BoxWriter* w) {
   w->u8(0);  // limited range
 }
 
+void write_movie_times(uint32_t timescale, uint64_t duration, BoxWriter* w) {
+  const auto mvhd = w->full_box("mvhd", 1, 0);
+  w->zeros(16);  // times of creation and change: left out, so that equal runs give equal files
+  w->u32(timescale);
+  w->u64(duration);
+  w->u32(0x10000);  // rate 1
+  w->u16(0x100);    // volume 1
+  w->zeros(10);
+  w->matrix();
+  w->zeros(24);
+  w->u32(2);  // next track
+}
+
+void write_track_header(const Mp4Track& track, uint64_t duration, BoxWriter* w) {
+  const auto tkhd = w->full_box("tkhd", 1, 3);  // enabled, in the movie
+  w->zeros(16);
+  w->u32(1);
+  w->u32(0);
+  w->u64(duration);
+  w->zeros(16);
+  w->matrix();
+  w->u32(static_cast<uint32_t>(track.width) << 16);
+  w->u32(static_cast<uint32_t>(track.height) << 16);
+}
+
+void write_media_headers(uint32_t timescale, uint64_t duration, BoxWriter* w) {
+  {
+    const auto mdhd = w->full_box("mdhd", 1, 0);
+    w->zeros(16);
+    w->u32(timescale);
+    w->u64(duration);
+    w->u16(0x55c4);  // language "und"
+    w->u16(0);
+  }
+  const auto hdlr = w->full_box("hdlr", 0, 0);
+  w->u32(0);
+  w->text("vide");
+  w->zeros(12);
+  w->text("Gloam");
+  w->u8(0);
+}
+
+void write_media_information(BoxWriter* w) {
+  {
+    const auto vmhd = w->full_box("vmhd", 0, 1);
+    w->zeros(8);
+  }
+  const auto dinf = w->box("dinf");
+  const auto dref = w->full_box("dref", 0, 0);
+  w->u32(1);
+  const auto url = w->full_box("url ", 0, 1);  // in this file
+}
+
+void write_sample_durations(std::span<const Mp4Sample> samples, uint32_t duration, BoxWriter* w) {
+  const auto stts = w->full_box("stts", 0, 0);
+  std::vector<std::array<uint32_t, 2>> runs;  // (pictures, duration of each)
+  for (size_t i = 0; i < samples.size(); ++i) {
+    const int64_t steps = i + 1 < samples.size() ? samples[i + 1].index - samples[i].index : 1;
+    const uint32_t lasts = static_cast<uint32_t>(steps) * duration;
+    if (runs.empty() || runs.back()[1] != lasts) runs.push_back({0, lasts});
+    ++runs.back()[0];
+  }
+  w->u32(static_cast<uint32_t>(runs.size()));
+  for (const auto& run : runs) {
+    w->u32(run[0]);
+    w->u32(run[1]);
+  }
+}
+
+void write_key_samples(std::span<const Mp4Sample> samples, BoxWriter* w) {
+  const auto stss = w->full_box("stss", 0, 0);
+  const size_t count = w->bytes.size();
+  w->u32(0);
+  uint32_t keys = 0;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (!samples[i].key) continue;
+    w->u32(static_cast<uint32_t>(i + 1));
+    ++keys;
+  }
+  w->patch32(count, keys);
+}
+
+void write_sample_places(std::span<const Mp4Sample> samples, BoxWriter* w) {
+  const auto n = static_cast<uint32_t>(samples.size());
+  {
+    const auto stsc = w->full_box("stsc", 0, 0);  // every chunk holds one picture
+    w->u32(n > 0 ? 1 : 0);
+    if (n > 0) {
+      w->u32(1);
+      w->u32(1);
+      w->u32(1);
+    }
+  }
+  {
+    const auto stsz = w->full_box("stsz", 0, 0);
+    w->u32(0);
+    w->u32(n);
+    for (const Mp4Sample& sample : samples) w->u32(sample.size);
+  }
+  const auto co64 = w->full_box("co64", 0, 0);
+  w->u32(n);
+  for (const Mp4Sample& sample : samples) w->u64(sample.offset);
+}
+
+void write_fragment_defaults(uint32_t duration, BoxWriter* w) {
+  const auto mvex = w->box("mvex");
+  const auto trex = w->full_box("trex", 0, 0);
+  w->u32(1);
+  w->u32(1);
+  w->u32(duration);
+  w->u32(0);
+  w->u32(kOtherSample);
+}
+
 }  // namespace
 
 Result<Mp4Writer> Mp4Writer::start(std::unique_ptr<ByteSink> sink, const Mp4Track& track) {
@@ -156,122 +270,26 @@ std::vector<uint8_t> Mp4Writer::movie_header(bool indexed) const {
       samples_.empty() ? 0
                        : static_cast<uint64_t>(samples_.back().index - samples_.front().index + 1);
   const uint64_t duration = indexed ? pictures * duration_ : 0;
-  const uint32_t width = static_cast<uint32_t>(track_.width);
-  const uint32_t height = static_cast<uint32_t>(track_.height);
   BoxWriter w;
   {
     const auto moov = w.box("moov");
-    {
-      const auto mvhd = w.full_box("mvhd", 1, 0);
-      w.zeros(16);  // times of creation and change: left out, so that equal runs give equal files
-      w.u32(timescale_);
-      w.u64(duration);
-      w.u32(0x10000);  // rate 1
-      w.u16(0x100);    // volume 1
-      w.zeros(10);
-      w.matrix();
-      w.zeros(24);
-      w.u32(2);  // next track
-    }
+    write_movie_times(timescale_, duration, &w);
     {
       const auto trak = w.box("trak");
-      {
-        const auto tkhd = w.full_box("tkhd", 1, 3);  // enabled, in the movie
-        w.zeros(16);
-        w.u32(1);
-        w.u32(0);
-        w.u64(duration);
-        w.zeros(16);
-        w.matrix();
-        w.u32(width << 16);
-        w.u32(height << 16);
-      }
+      write_track_header(track_, duration, &w);
       const auto mdia = w.box("mdia");
-      {
-        const auto mdhd = w.full_box("mdhd", 1, 0);
-        w.zeros(16);
-        w.u32(timescale_);
-        w.u64(duration);
-        w.u16(0x55c4);  // language "und"
-        w.u16(0);
-      }
-      {
-        const auto hdlr = w.full_box("hdlr", 0, 0);
-        w.u32(0);
-        w.text("vide");
-        w.zeros(12);
-        w.text("Gloam");
-        w.u8(0);
-      }
+      write_media_headers(timescale_, duration, &w);
       const auto minf = w.box("minf");
-      {
-        const auto vmhd = w.full_box("vmhd", 0, 1);
-        w.zeros(8);
-      }
-      {
-        const auto dinf = w.box("dinf");
-        const auto dref = w.full_box("dref", 0, 0);
-        w.u32(1);
-        const auto url = w.full_box("url ", 0, 1);  // in this file
-      }
+      write_media_information(&w);
       const auto stbl = w.box("stbl");
       write_sample_entry(track_, &w);
-      const uint32_t n = indexed ? static_cast<uint32_t>(samples_.size()) : 0;
-      {
-        const auto stts = w.full_box("stts", 0, 0);
-        std::vector<std::array<uint32_t, 2>> runs;  // (pictures, duration of each)
-        for (uint32_t i = 0; i < n; ++i) {
-          const int64_t steps = i + 1 < n ? samples_[i + 1].index - samples_[i].index : 1;
-          const uint32_t lasts = static_cast<uint32_t>(steps) * duration_;
-          if (runs.empty() || runs.back()[1] != lasts) runs.push_back({0, lasts});
-          ++runs.back()[0];
-        }
-        w.u32(static_cast<uint32_t>(runs.size()));
-        for (const auto& run : runs) {
-          w.u32(run[0]);
-          w.u32(run[1]);
-        }
-      }
-      if (n > 0) {
-        const auto stss = w.full_box("stss", 0, 0);
-        const size_t count = w.bytes.size();
-        w.u32(0);
-        uint32_t keys = 0;
-        for (uint32_t i = 0; i < n; ++i) {
-          if (!samples_[i].key) continue;
-          w.u32(i + 1);
-          ++keys;
-        }
-        w.patch32(count, keys);
-      }
-      {
-        const auto stsc = w.full_box("stsc", 0, 0);  // every chunk holds one picture
-        w.u32(n > 0 ? 1 : 0);
-        if (n > 0) {
-          w.u32(1);
-          w.u32(1);
-          w.u32(1);
-        }
-      }
-      {
-        const auto stsz = w.full_box("stsz", 0, 0);
-        w.u32(0);
-        w.u32(n);
-        for (uint32_t i = 0; i < n; ++i) w.u32(samples_[i].size);
-      }
-      const auto co64 = w.full_box("co64", 0, 0);
-      w.u32(n);
-      for (uint32_t i = 0; i < n; ++i) w.u64(samples_[i].offset);
+      const std::span<const Mp4Sample> listed =
+          indexed ? std::span<const Mp4Sample>(samples_) : std::span<const Mp4Sample>();
+      write_sample_durations(listed, duration_, &w);
+      if (!listed.empty()) write_key_samples(listed, &w);
+      write_sample_places(listed, &w);
     }
-    if (!indexed) {
-      const auto mvex = w.box("mvex");
-      const auto trex = w.full_box("trex", 0, 0);
-      w.u32(1);
-      w.u32(1);
-      w.u32(duration_);
-      w.u32(0);
-      w.u32(kOtherSample);
-    }
+    if (!indexed) write_fragment_defaults(duration_, &w);
   }
   return std::move(w.bytes);
 }

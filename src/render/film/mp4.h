@@ -20,6 +20,14 @@ struct Mp4Track {
   std::vector<uint8_t> sps, pps;  ///< without start codes
 };
 
+/// A picture in the file.
+struct Mp4Sample {
+  uint64_t offset;  ///< [bytes]
+  uint32_t size;    ///< [bytes]
+  int64_t index;    ///< on the grid of the track's rate
+  bool key;
+};
+
 class Mp4Writer {
  public:
   /// Writes the header.
@@ -30,12 +38,6 @@ class Mp4Writer {
   Status finish();
 
  private:
-  struct Sample {
-    uint64_t offset;
-    uint32_t size;
-    int64_t index;
-    bool key;
-  };
   Mp4Writer(std::unique_ptr<ByteSink> sink, Mp4Track track)
       : sink_(std::move(sink)), track_(std::move(track)) {}
   Status append(std::span<const uint8_t> bytes);
@@ -47,7 +49,7 @@ class Mp4Writer {
   uint64_t free_box_ = 0;   // offset of the box that becomes the header of the media data
   uint32_t timescale_ = 1;  // [1/s]
   uint32_t duration_ = 1;   // of one picture [1/timescale]
-  std::vector<Sample> samples_;
+  std::vector<Mp4Sample> samples_;
 };
 
 }  // namespace gloam

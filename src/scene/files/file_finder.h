@@ -13,7 +13,7 @@ namespace gloam {
 /// Nearest name in the folder of a file that is not there, as a hint.
 std::string suggest_file(const std::filesystem::path& missing);
 
-/// By its text a model in TOML, not a scene: all of it is below [mujoco].
+/// True if the text is a model in TOML, not a scene: all of it is below [mujoco].
 bool is_model_toml(const toml::table& table);
 
 /// Errors: no such file, no plain file; by its name a scene or an archive.

@@ -34,7 +34,8 @@ bool leads_to_xml(const FileReference& reference) {
   return reference.element == "include" || reference.element == "model";
 }
 
-// How well an attribute's value explains that `path` was opened: shared trailing components.
+// Score of how well an attribute's value explains that `path` was opened: shared trailing
+// components.
 size_t shared_tail(const fs::path& path, const fs::path& value) {
   std::vector<fs::path> a(path.begin(), path.end()), b(value.begin(), value.end());
   size_t shared = 0;

@@ -23,7 +23,7 @@ namespace gloam {
 struct Dependency {
   std::filesystem::path path;
   bool exists = true;
-  uint64_t hash = 0;  ///< of the content
+  uint64_t hash = 0;  ///< hash of the content
 };
 
 /// Files of the models of one level. Not movable: MuJoCo keeps pointers to it.
@@ -45,7 +45,7 @@ class ModelFiles {
 
   /// Top element of a model that was added: "mujoco" or "robot".
   const std::string& root_element(const std::filesystem::path& file) const;
-  /// That MuJoCo takes for the slowest <replicate> of all files, roughly [s].
+  /// Time that MuJoCo takes for the slowest <replicate> of all files, roughly [s].
   double slowest_replicate() const { return slowest_replicate_; }
   /// Text of a model or of a file that it includes, as on disk.
   const std::string& text(const std::filesystem::path& file) const;
@@ -71,13 +71,13 @@ class ModelFiles {
   /// To be passed to mj_parseXML and mj_compile.
   const mjVFS* vfs() const { return &vfs_; }
 
-  /// What went wrong and where, from MuJoCo's message and from the files that could not be opened
-  /// since the last forget_failures().
+  /// Cause and place of a failure, from MuJoCo's message and from the files that could not be
+  /// opened since the last forget_failures().
   Error explain(const std::string& message, const std::filesystem::path& model) const;
   void forget_failures();
 
-  /// Where a model, or else what it includes, first has an element with this attribute (any, if
-  /// empty); line 0 where none has.
+  /// Place where a model, or else a file that it includes, first has an element with this attribute
+  /// (any, if empty); line 0 where none has.
   SourceLoc find_setting(const std::filesystem::path& model, const std::string& element,
                          const std::string& attribute) const;
 
@@ -101,7 +101,7 @@ class ModelFiles {
   void find_place(const std::string& element, Error* error,
                   const std::filesystem::path& model) const;
   SourceLoc find_reference(const std::filesystem::path& path) const;
-  // Of a place in the XML of a model in TOML, the place in its file.
+  // Place in the file of a model in TOML for a place in its XML.
   SourceLoc written_at(SourceLoc loc) const;
 
   static int provider_open(mjResource* resource);

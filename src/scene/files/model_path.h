@@ -1,5 +1,5 @@
 #pragma once
-// Where a model's files may lie. Models come from strangers: a model must not make Gloam read
+// Allowed places of a model's files. Models come from strangers: a model must not make Gloam read
 // /etc/passwd or a private key next to the downloads folder.
 
 #include <filesystem>
@@ -10,10 +10,10 @@
 
 namespace gloam {
 
-/// Of one file of a model in XML or TOML [bytes].
+/// Limit on one file of a model in XML or TOML [bytes].
 inline constexpr uint64_t kLargestModelText = uint64_t{64} << 20;
 
-/// By its name an archive or a binary model, which is not read.
+/// True if the name is that of an archive or a binary model, which is not read.
 bool is_container(const std::filesystem::path& path);
 
 /// Refuses what is by its name a mesh, where a model is wanted at `loc`; `as_written`: its name

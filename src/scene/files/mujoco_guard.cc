@@ -113,7 +113,7 @@ bool run_guarded(void (*call)(void*), void* context) {
     recovery_point = outer;
     copy_message(exception.what());
     return false;
-  } catch (...) {  // of its own standard library, whose types this program does not know
+  } catch (...) {  // exception of its own standard library, whose types this program does not know
     recovery_point = outer;
     copy_message("MuJoCo failed without a message");
     return false;

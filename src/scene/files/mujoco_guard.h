@@ -20,7 +20,7 @@ void install_mujoco_handler();
 /// Message of the last guarded call of this thread that failed, until its next one.
 const char* mujoco_error_message();
 
-/// What MuJoCo says, as one line and without "XML Error: ".
+/// Message of MuJoCo as one line and without "XML Error: ".
 std::string plain_message(std::string_view said);
 
 /// Warnings that MuJoCo has logged in this process; mjData::warning counts them by type as well.

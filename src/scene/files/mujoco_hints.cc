@@ -9,8 +9,8 @@ struct Hint {
   std::string_view hint;
 };
 
-// What MuJoCo's changelog says of elements, attributes and plugins that are gone, and what its
-// compiler asks for without saying how. The first that fits counts.
+// Hints from MuJoCo's changelog for elements, attributes and plugins that are gone, and for demands
+// of its compiler that do not say how. The first that fits counts.
 constexpr Hint kHints[] = {
     {"unrecognized element", "composite",
      "MuJoCo 4 no longer has <composite>: a cable, rope or loop is a <flexcomp dim=\"1\"> with "

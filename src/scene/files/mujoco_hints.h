@@ -1,12 +1,12 @@
 #pragma once
-// What to do about what MuJoCo's parser and compiler refuse.
+// Remedies for refusals of MuJoCo's parser and compiler.
 
 #include <string>
 #include <string_view>
 
 namespace gloam {
 
-/// A sentence for an error that MuJoCo told as `message`, of the element `element` ("" = not
+/// A sentence for an error that MuJoCo reported as `message`, of the element `element` ("" = not
 /// known);
 /// "" where Gloam knows nothing that MuJoCo does not say.
 std::string mujoco_hint(std::string_view message, std::string_view element);

@@ -95,9 +95,9 @@ class Preparer {
   }
 
  private:
-  // What MuJoCo refuses without a name or a line.
+  // Checks for faults that MuJoCo refuses without a name or a line.
   Status check_tree(const pugi::xml_node& robot) const {
-    std::map<std::string, pugi::xml_node> links, joint_above;  // by the link's name
+    std::map<std::string, pugi::xml_node> links, joint_above;  // nodes by the link's name
     for (const pugi::xml_node& link : robot.children("link")) {
       const auto [first, is_new] = links.emplace(link.attribute("name").value(), link);
       if (is_new) continue;
@@ -125,7 +125,7 @@ class Preparer {
                  "one link must be the root; close loops by <equality> in MJCF"};
   }
 
-  // Of materials MuJoCo takes the colours.
+  // MuJoCo reads the colours of materials, not their pictures.
   void list_pictures(const pugi::xml_node& robot, std::vector<Error>* unsupported) const {
     for (const pugi::xpath_node& found : robot.select_nodes(".//material/texture")) {
       const pugi::xml_node texture = found.node();

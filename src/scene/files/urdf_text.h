@@ -1,5 +1,5 @@
 #pragma once
-// What MuJoCo is given instead of a URDF's own text: the same robot with mesh paths that it can
+// Texts that MuJoCo is given instead of a URDF's own: the same robot with mesh paths that it can
 // find, and a second, static one that keeps the visuals which stock loading discards.
 
 #include <functional>
@@ -14,7 +14,7 @@ namespace gloam {
 /// mesh compiler. In the visual text a small sphere of that name stands in its place.
 struct UrdfVisualMesh {
   std::string stand_in;    ///< name of the sphere
-  std::string link, name;  ///< of the link, and the visual's own, which may be empty
+  std::string link, name;  ///< names of the link and of the visual, which may be empty
   std::filesystem::path file;
   Vec3 scale = {1, 1, 1};
   SourceLoc loc;

@@ -115,8 +115,8 @@ Status check_sizes(const pugi::xml_node& node, const std::function<SourceLoc()>&
   return {};
 }
 
-// What MuJoCo 4.0.1 ends the whole process at, instead of complaining. (A C++ exception in it
-// cannot be caught outside: it comes with a runtime library of its own.)
+// Checks for faults at which MuJoCo 4.0.1 ends the whole process, instead of reporting an error. (A
+// C++ exception in it cannot be caught outside: it comes with a runtime library of its own.)
 Status check_fatal(const pugi::xml_node& node, const std::function<SourceLoc()>& loc) {
   const std::string_view element = node.name(), above = node.parent().name();
   const auto is_blank = [&](const char* attribute) {
@@ -154,7 +154,7 @@ Status check_expanded(const pugi::xml_node& node, const std::function<SourceLoc(
 // The elements that `node` becomes. MuJoCo attaches copies one by one and goes through all elements
 // of the copies so far at each: measured for 10⁴ to 5·10⁴ lights with 3.12 on a server's core.
 double weigh(const pugi::xml_node& node, const XmlLines& lines, Replicate* slowest) {
-  constexpr double kSeconds = 3e-8;  // of each copy and element
+  constexpr double kSeconds = 3e-8;  // time of each copy and element
   double inside = 0;
   for (const pugi::xml_node& child : node.children())
     if (child.type() == pugi::node_element) inside += weigh(child, lines, slowest);

@@ -15,12 +15,12 @@ struct FileReference {
   std::string element;    ///< "mesh", "include" …
   std::string attribute;  ///< "file", "fileup", "filename" …
   std::string value;      ///< as written
-  int line = 0;           ///< of the element
+  int line = 0;           ///< line of the element
 };
 
 /// A <replicate>, of which MuJoCo's time grows with the square of its copies.
 struct Replicate {
-  double seconds = 0;  ///< that MuJoCo takes for it, roughly
+  double seconds = 0;  ///< time that MuJoCo takes for it, roughly
   double copies = 0;
   int line = 0;
 };

@@ -13,7 +13,7 @@ namespace gloam {
 
 inline constexpr int kDeepestXml = 200;  ///< elements in each other, in files of strangers
 
-/// Which line an offset into a text is in.
+/// Line numbers of offsets into a text.
 class XmlLines {
  public:
   explicit XmlLines(std::string_view text);

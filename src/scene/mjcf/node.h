@@ -1,5 +1,5 @@
 #pragma once
-// What an Element of gloam/mjcf.h refers to.
+// Node that an Element of gloam/mjcf.h refers to.
 
 #include <memory>
 #include <string>
@@ -16,8 +16,8 @@ struct Node : std::enable_shared_from_this<Node> {
   Node* parent = nullptr;
   std::vector<std::pair<const MjcfAttribute*, std::string>> values = {};  // as written, in order
   std::vector<std::shared_ptr<Node>> children = {};
-  std::string comment = {};       // that stands before it
-  std::string last_comment = {};  // that stands behind its children
+  std::string comment = {};       // comment before it
+  std::string last_comment = {};  // comment behind its children
   std::string content = {};       // CDATA of a <text>
   SourceLoc loc = {};
 

@@ -10,7 +10,7 @@
 namespace gloam {
 namespace {
 
-using namespace std::string_view_literals;  // of the table: "text"sv
+using namespace std::string_view_literals;  // suffix in the table: "text"sv
 
 constexpr MjcfType kString = MjcfType::kString, kInt = MjcfType::kInt, kReal = MjcfType::kReal,
                    kKeyword = MjcfType::kKeyword;

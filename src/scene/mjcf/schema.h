@@ -22,12 +22,12 @@ struct MjcfAttribute {
 
   std::string_view name;
   MjcfType type = MjcfType::kString;
-  int least = 1, most = 1;     ///< how many numbers or keywords it takes; most may be kAnyLength
-  std::string_view keywords;   ///< of kKeyword, separated by spaces
+  int least = 1, most = 1;     ///< number of numbers or keywords it takes; most may be kAnyLength
+  std::string_view keywords;   ///< keywords of kKeyword, separated by spaces
   bool is_required = false;    ///< the parser refuses an element without it
-  std::string_view otherwise;  ///< what holds where it is not given; "" = none, or it depends
+  std::string_view otherwise;  ///< value that holds where it is not given; "" = none, or it depends
   std::string_view unit;       ///< "kg m^2"; "m|rad": which of them, the joint or tendon says
-  std::string_view text;       ///< of the manual
+  std::string_view text;       ///< text of the manual
   /// MJCF lacks it: the field of this name in one of mjSpec's structs, "mjsMesh". Only models in
   /// TOML can give it.
   std::string_view spec_owner;
@@ -53,10 +53,10 @@ class MjcfSchema {
   const MjcfElement& root() const { return elements_.front(); }
   std::span<const MjcfElement> elements() const { return elements_; }  ///< in the grammar's order
   const MjcfElement* find(std::string_view path) const;
-  /// What <tag> is inside of `above`; null if it may not stand there. <frame> and <replicate> hold
-  /// what bodies do.
+  /// Element that <tag> is inside of `above`; null if it may not stand there. <frame> and
+  /// <replicate> hold the same elements as bodies.
   const MjcfElement* child(const MjcfElement& above, std::string_view tag) const;
-  /// How `element` is written inside of `above`: the world's body is <worldbody>.
+  /// Tag of `element` inside of `above`: the world's body is <worldbody>.
   static std::string_view tag(const MjcfElement& element, const MjcfElement& above);
   /// Tags that may stand in it.
   std::vector<std::string> tags_in(const MjcfElement& above) const;

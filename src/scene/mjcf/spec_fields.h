@@ -39,7 +39,7 @@ struct SpecField {
   std::string_view name;   ///< "damping"
   std::string_view type_name;
   SpecType type = SpecType::kDouble;
-  int count = 1;  ///< of a fixed array
+  int count = 1;  ///< length of a fixed array
   size_t offset = 0;
 };
 
@@ -52,7 +52,7 @@ struct SpecObject {
   std::string_view owner;
   std::string label;  ///< for messages: "mjsGeom[2]", "default 'main' mjsGeom"
   const void* address;
-  std::string name;  ///< of an element, "" where it has none
+  std::string name;  ///< name of an element, "" where it has none
 };
 
 /// Everything in the spec: itself, what it holds by value, its elements and defaults, in its order.

@@ -49,8 +49,7 @@ mjsElement* specimen_of(const mjSpec* spec, const MjcfElement& element) {
 
 namespace {
 
-// What tells elements of one kind from each other: a servo from a motor, a gyro from a touch
-// sensor.
+// Variant of an element among those of its kind: a servo or a motor, a gyro or a touch sensor.
 int variant_of(mjsElement* element) {
   if (const mjsActuator* actuator = mjs_asActuator(element))
     return actuator->plugin.active ? -1 : actuator->type;

@@ -1,5 +1,5 @@
 #pragma once
-// Which kind of element of mjSpec an element of MJCF is, and the way back.
+// Kinds of elements of mjSpec for elements of MJCF, and the way back.
 
 #include <mujoco/mujoco.h>
 

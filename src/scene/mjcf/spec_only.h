@@ -1,6 +1,6 @@
 #pragma once
-// What mjSpec has and MJCF has no attribute for: a document keeps it, and it is set in the model
-// once MuJoCo has parsed the rest.
+// Fields of mjSpec for which MJCF has no attribute: a document keeps them, and they are set in the
+// model once MuJoCo has parsed the rest.
 
 #include <mujoco/mujoco.h>
 

@@ -36,7 +36,7 @@ std::vector<SpecObject> objects_of(const mjSpec* spec, mjsElement* element) {
 // One attribute's documents: the value asked for, if any, and as many others as the parser takes.
 struct Readings {
   std::vector<OwnedSpec> specs;
-  int taken = 0;          // of the values that were tried
+  int taken = 0;          // number of tried values that the parser took
   Status complaint = {};  // about the last that was not taken
   Status refused = {};    // why the value asked for was not taken
 };

@@ -1,8 +1,8 @@
 #pragma once
-// What each attribute of MJCF sets in a parsed model, and the same set in a model that is parsed
-// already. Nobody has written it down: MuJoCo's parser reads a document with and without the
-// attribute, and what differs is what it sets. So `kp` of a position servo or `euler` of a body
-// mean here what they mean in a file.
+// Fields that each attribute of MJCF sets in a parsed model, and the same set in a model that is
+// parsed already. No list of them exists: MuJoCo's parser reads a document with and without the
+// attribute, and the fields that differ are those that it sets. So `kp` of a position servo or
+// `euler` of a body mean here what they mean in a file.
 
 #include <memory>
 #include <string>
@@ -14,14 +14,14 @@
 
 namespace gloam {
 
-/// What the parser makes of an attribute.
+/// Effect of an attribute on the parsed model.
 struct AttributeEffect {
   bool is_read = false;  ///< it takes one of the values that were tried
   /// Fields that it sets, as "mjsJoint.damping", "mjOption.timestep", "mjsOrientation.euler";
   /// "mjsGeom.name" for an element's name, "mjsWrap" for one more of them. Empty: it tells the
   /// parser something and leaves nothing behind (<include file>, <replicate count> …).
   std::vector<std::string> fields;
-  std::string complaint;  ///< of the parser, about the last value that it did not take
+  std::string complaint;  ///< message of the parser for the last value that it did not take
 };
 AttributeEffect find_effect(const MjcfElement& element, const MjcfAttribute& attribute);
 

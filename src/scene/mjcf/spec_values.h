@@ -1,5 +1,5 @@
 #pragma once
-// What the fields of a spec hold: as text, compared, set.
+// Values of the fields of a spec: as text, compared, set.
 
 #include "gloam/result.h"
 #include "scene/mjcf/spec_fields.h"
@@ -13,7 +13,7 @@ std::string spec_text(const SpecObject& object, const SpecField& field);
 /// Do they hold the same, bit by bit? Handles always do.
 bool spec_equal(const SpecObject& a, const SpecObject& b, const SpecField& field);
 
-size_t spec_size(SpecType type);  ///< of one number [bytes]
+size_t spec_size(SpecType type);  ///< size of one number [bytes]
 
 /// Sets numbers from text, as spec_text writes them without the brackets. Errors: not the field's
 /// kind or number of values; a field that is not numbers.

@@ -15,7 +15,7 @@
 namespace gloam::mjcf {
 namespace {
 
-// What <include> and <model> name in their specimens.
+// Files that <include> and <model> name in their specimens.
 class SpecimenFiles {
  public:
   SpecimenFiles() {

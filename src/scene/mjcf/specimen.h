@@ -33,7 +33,7 @@ struct SpecDeleter {
 };
 using OwnedSpec = std::unique_ptr<mjSpec_, SpecDeleter>;
 
-/// What MuJoCo's parser makes of it. Errors: what it says against it.
+/// Spec that MuJoCo's parser makes of a document. Errors: the parser's message.
 Result<OwnedSpec> parse_document(const Document& document);
 
 }  // namespace gloam::mjcf

@@ -1,6 +1,6 @@
 #pragma once
-// What MuJoCo's parser wants beside an element before it reads it, found out by trying: the facts
-// that specimens (specimen.h) are made of.
+// Elements that MuJoCo's parser requires beside an element before it reads it, found by trial: the
+// facts that specimens (specimen.h) are made of.
 
 #include <map>
 #include <optional>

@@ -13,7 +13,7 @@ namespace gloam {
 /// As it would be written in XML; nothing if TOML holds what no attribute takes.
 std::optional<std::string> mjcf_text(const toml::node& node);
 
-/// What `true` and `false` mean where MJCF says enable and disable.
+/// Keyword of MJCF for `true` and `false`, such as enable and disable.
 std::string mjcf_keyword(const MjcfAttribute& attribute, std::string text);
 
 }  // namespace gloam

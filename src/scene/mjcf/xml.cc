@@ -23,7 +23,7 @@ class XmlReader {
     for (const pugi::xml_attribute& attribute : from.attributes()) {
       if (std::string_view(attribute.name()).starts_with("xmlns") ||
           std::string_view(attribute.name()).starts_with("xsi:"))
-        continue;  // where an editor finds MJCF's schema
+        continue;  // place where an editor finds MJCF's schema
       GLOAM_TRY(const MjcfAttribute* known, attribute_of(*to->element, attribute.name(), to->loc));
       if (known->is_spec_only())
         return to->refused({ErrorKind::kInput,

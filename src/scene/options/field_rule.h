@@ -1,5 +1,5 @@
 #pragma once
-// What one option of a scene file may hold.
+// Rules for the value of one option of a scene file.
 
 #include <limits>
 #include <span>

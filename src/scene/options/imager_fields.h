@@ -1,5 +1,5 @@
 #pragma once
-// The fields of [camera.imager], [camera.timing] and of other sensors' models: a part of
+// Fields of [camera.imager], [camera.timing] and of other sensors' models. A part of
 // scene/options/option_fields.h.
 
 #include "gloam/scene_sensor.h"
@@ -145,42 +145,6 @@ void visit_fields(Visitor& v, SensorOptions& o) {
   v("range", o.range, size);
   v("resolution", o.resolution, size);
   v("seed", o.seed, FieldRule{});
-}
-
-/// What cameras and rigs of them have alike: where they stand, what they see, how often.
-template <class Visitor, class Options>
-void visit_view(Visitor& v, Options& o) {
-  v("position", o.position, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
-  v("look_at", o.look_at, FieldRule{.unit = "m", .min = -kLargestLength, .max = kLargestLength});
-  v("orientation", o.orientation, FieldRule{.unit = "wxyz"});
-  v("fovy", o.fovy, FieldRule{.unit = "deg", .min = 0, .max = 180, .open = true});
-  v("width", o.width, FieldRule{.unit = "px", .min = 1, .max = 16384});
-  v("height", o.height, FieldRule{.unit = "px", .min = 1, .max = 16384});
-  v("rate", o.rate, FieldRule{.unit = "Hz", .min = 0, .max = kFastestRate, .open = true});
-}
-
-template <class Visitor>
-void visit_rig(Visitor& v, RigOptions& o) {
-  v("name", o.name, FieldRule{.required = true, .identifier = true});
-  v("body", o.body, FieldRule{});
-  visit_view(v, o);
-}
-
-template <class Visitor>
-void visit_fields(Visitor& v, StereoOptions& o) {
-  visit_rig(v, o);
-  v("baseline", o.baseline, FieldRule{.unit = "m", .min = 0, .max = 100, .open = true});
-  visit_sensing(v, o.sensing);
-}
-
-template <class Visitor>
-void visit_fields(Visitor& v, RgbdOptions& o) {
-  visit_rig(v, o);
-  v("depth", o.depth, FieldRule{});
-  v("color_offset", o.color_offset, FieldRule{.unit = "m", .min = -10, .max = 10});
-  v("color_fovy", o.color_fovy, FieldRule{.unit = "deg", .min = 0, .max = 180, .open = true});
-  v("imager", o.sensing.imager, FieldRule{});
-  v("timing", o.sensing.timing, FieldRule{});
 }
 
 }  // namespace gloam

@@ -6,6 +6,7 @@
 #include "places/generators.h"
 #include "scene/randomize/option_drawer.h"
 #include "scene/toml/option_walker.h"
+#include "scene/toml/override_reader.h"
 #include "scene/validate/validate.h"
 
 namespace gloam {
@@ -51,11 +52,11 @@ Status draw_override(const RandomizeOptions& o, Drawer* drawer, Scene* scene,
   return {};
 }
 
-// What all draws of it are made with.
+// Inputs and results of all draws.
 struct Draws {
   DrawStage stage;
   std::optional<FileFinder> files = {};
-  std::map<std::string, int> times = {};  // that an option has been drawn
+  std::map<std::string, int> times = {};  // number of times that an option has been drawn
   std::vector<DrawnOption> drawn = {};
 
   bool has(const RandomizeOptions& o) const {

@@ -8,12 +8,13 @@
 
 namespace gloam {
 
-/// That each has one distribution, whose every draw is one that the option can have, as far as that
-/// can be told before generators have added theirs; that none brings in a second environment.
+/// Checks that each [[randomize]] has one distribution, and that every draw is a value that the
+/// option can have, as far as is known before generators have added theirs; that none brings in a
+/// second environment.
 Status validate_randomize(const Scene& scene);
 
-/// Which of them: those that decide what is generated come first, so that the rest can mean what a
-/// generator made, its lamps and materials.
+/// Stages of drawing: options that decide what is generated come first, so that the others can
+/// refer to the result of a generator, its lamps and materials.
 enum class DrawStage { kPlace, kRest };
 
 /// Draws the options of a stage, in the order of the file, and appends what came of them. A draw

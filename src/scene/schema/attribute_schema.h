@@ -1,5 +1,5 @@
 #pragma once
-// What an attribute of MJCF takes in TOML, as JSON Schema: in models and in overrides.
+// JSON Schema of the values of an MJCF attribute in TOML: in models and in overrides.
 
 #include <nlohmann/json.hpp>
 

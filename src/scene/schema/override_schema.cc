@@ -50,14 +50,15 @@ class Definitions {
     return table(std::move(properties));
   }
 
-  // Of an actuator, say: the attributes of all of them. Where they differ, either's values.
+  // Attributes of a group of elements, say all actuators. Where they differ, either's values.
   Json attributes_of(const std::vector<const MjcfElement*>& elements) {
     Json properties = Json::object();
-    std::map<std::string_view, std::map<std::string, Json>> kinds;  // by what they take
+    // Schemas by the values that they allow
+    std::map<std::string_view, std::map<std::string, Json>> kinds;
     for (const MjcfElement* element : elements) {
       for (const MjcfAttribute& attribute : element->attributes) {
         Json schema = attribute_schema(attribute);
-        schema.erase("default");  // where nothing is overridden, the file's value holds
+        schema.erase("default");  // the file's value holds where nothing is overridden
         Json takes = schema;
         takes.erase("description");
         auto& known = kinds[attribute.name];
@@ -83,7 +84,7 @@ class Definitions {
   }
 
   Json all_ = Json::object();
-  std::map<std::string, std::string> names_;  // of definitions, by what they say
+  std::map<std::string, std::string> names_;  // names of definitions, by their content
 };
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 namespace gloam {
 
-/// Of "#/definitions": "override", [override.ROBOT], and all that it refers to.
+/// Part of "#/definitions": "override", [override.ROBOT], and all that it refers to.
 nlohmann::ordered_json override_definitions();
 
 }  // namespace gloam

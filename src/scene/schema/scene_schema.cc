@@ -25,8 +25,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// What is said of the members of a struct, found by where a field lies in it: the field `position`
-/// is a part of the member X_WR.
+/// Texts of the members of a struct, found by the address of a field: the field `position` is a
+/// part of the member X_WR.
 class MemberTexts {
  public:
   template <class T>
@@ -35,7 +35,7 @@ class MemberTexts {
     members_.push_back({begin, begin + sizeof(T), text});
     if constexpr (requires { visit_texts(*this, member); }) visit_texts(*this, member);
   }
-  /// Of the smallest member that holds the field.
+  /// Text of the smallest member that holds the field.
   std::string find(const void* field) const {
     const Member* best = nullptr;
     for (const Member& member : members_) {
@@ -225,7 +225,7 @@ class TableSchema {
 template <class Options>
   requires requires(Options& o) { struct_text(o); }
 Json schema_of(const Options& value, const FieldRule& /*rule*/) {
-  Options copy = value;  // what visits fields may change them
+  Options copy = value;  // a visitor of fields may change them
   MemberTexts texts;
   visit_texts(texts, copy);
   TableSchema table(std::move(texts));

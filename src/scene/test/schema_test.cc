@@ -160,7 +160,7 @@ TEST(Schema, OfScenesTellsOfEveryKey) {
   expect_described(scenes().root(), "");
   const Json& tables = scenes().root()["properties"];
   const Json& robot = tables["robot"]["items"]["properties"];
-  EXPECT_EQ(robot["position"]["description"], "where its root frame stands in the world [m]");
+  EXPECT_EQ(robot["position"]["description"], "pose of its root frame in the world [m]");
   EXPECT_EQ(robot["controller"]["properties"]["kp"]["description"],
             "joint_position: stiffness [N m/rad]");
   EXPECT_EQ(robot["controller"]["properties"]["kp"]["default"], 40);

@@ -20,9 +20,9 @@ std::vector<std::string> split_option_path(std::string_view path);
 
 /// A visitor of fields. Calls `leaf(path, key, member, rule)` for each option that the names mean:
 /// one of a list by its name or number, or all whose names fit where a name has a *. A table that
-/// may be left out comes into being with its first option.
-/// Where nothing has the name, that is an error if Leaf::kNeedsOne; else the leaf may ask for an
-/// example: its begin_example(is the name a pattern?) returns true and end_example() follows.
+/// may be left out comes into being with its first option. If nothing has the name, that is an
+/// error if Leaf::kNeedsOne; else the leaf may ask for an example: its begin_example(is the name a
+/// pattern?) returns true and end_example() follows.
 template <class Leaf>
 class OptionWalker {
  public:

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "scene/toml/option_walker.h"
+#include "scene/toml/override_reader.h"
 #include "scene/toml/table_reader.h"
 #include "scene/validate/validate.h"
 

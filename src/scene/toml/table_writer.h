@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "scene/options/option_fields.h"
-#include "scene/toml/table_reader.h"
+#include "scene/toml/value_reader.h"
 
 namespace gloam {
 

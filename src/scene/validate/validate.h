@@ -1,6 +1,6 @@
 #pragma once
-// What one option alone cannot tell: names that clash, options that exclude each other. Ranges are
-// checked here too, because scenes made in code have met no reader.
+// Checks that no option alone can fail: names that clash, options that exclude each other. Ranges
+// are checked here too, because scenes made in code have passed no reader.
 
 #include "gloam/scene.h"
 

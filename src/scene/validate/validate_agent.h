@@ -1,5 +1,5 @@
 #pragma once
-// What is wrong with people and vehicles of a scene beyond the ranges of their options.
+// Checks of people and vehicles of a scene beyond the ranges of their options.
 
 #include "gloam/scene.h"
 

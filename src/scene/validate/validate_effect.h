@@ -1,5 +1,5 @@
 #pragma once
-// What goes together in [[gas]], [[fire]] and [[smoke]]; ranges are checked elsewhere.
+// Checks that options of [[gas]], [[fire]] and [[smoke]] go together; ranges are checked elsewhere.
 
 #include "gloam/scene.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// What the fields of a camera's imager and of rigs must agree on.
+// Checks that the fields of a camera's imager and of rigs agree.
 
 #include "gloam/scene.h"
 

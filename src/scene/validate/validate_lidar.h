@@ -1,5 +1,5 @@
 #pragma once
-// What goes together in a [[lidar]]; ranges of single values are checked elsewhere.
+// Checks that options of a [[lidar]] go together; ranges of single values are checked elsewhere.
 
 #include "gloam/scene.h"
 

@@ -1,5 +1,6 @@
 #pragma once
-// What goes together in [[light]], [sky], [blackout] and [[volume]]; ranges are checked elsewhere.
+// Checks that options of [[light]], [sky], [blackout] and [[volume]] go together; ranges are
+// checked elsewhere.
 
 #include "gloam/scene.h"
 

@@ -19,15 +19,15 @@
 
 namespace gloam {
 
-/// What a camera is asked for beyond the truth.
+/// Outputs of a camera beyond the exact channels.
 struct ModelOutputs {
   bool rgb = false, raw = false, sensor_depth = false, events = false, thermal = false;
 };
 
 class CameraModels {
  public:
-  /// Of camera row `camera`; `ev100` where its imager does not say, `seed` of sensor_seed().
-  /// Errors: an output without its table in the scene.
+  /// Makes the models of camera row `camera`; `ev100` where its imager does not say, `seed` of
+  /// sensor_seed(). Errors: an output without its table in the scene.
   static Result<std::unique_ptr<CameraModels>> create(const RenderDescription& description,
                                                       int camera, const Intrinsics& intrinsics,
                                                       const ModelOutputs& outputs, double ev100,
@@ -38,7 +38,8 @@ class CameraModels {
   Status set_temperatures(const std::vector<TemperatureOptions>& temperatures);
   double ev100() const { return ev100_; }
   uint64_t memory() const;
-  /// Of the output events, else null: the camera's own until it is given one that others share.
+  /// Track for the output events, else null: the camera's own until it is given one that others
+  /// share.
   const std::shared_ptr<EventTrack>& events() const { return events_; }
   void share_events(std::shared_ptr<EventTrack> events, bool leads) {
     events_ = std::move(events);
@@ -67,13 +68,13 @@ class CameraModels {
   const ModelOutputs outputs_;
   uint64_t seed_ = 0;
   double ev100_ = 0;
-  Exposure exposure_;  // of that value, for the imager
+  Exposure exposure_;  // exposure of that value, for the imager
   std::unique_ptr<Imager> imager_;
   std::optional<StereoDepthModel> stereo_;
   std::shared_ptr<EventTrack> events_;
   bool leads_events_ = true;
   std::optional<ThermalCamera> thermal_;
-  SensorAir air_;  // of these two
+  SensorAir air_;  // air of these two
 };
 
 }  // namespace gloam

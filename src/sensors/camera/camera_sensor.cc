@@ -43,7 +43,7 @@ Intrinsics resized(const Intrinsics& from, int width, int height) {
   return to;
 }
 
-// What a request says in numbers.
+// Checks the numbers of a request.
 Status check_numbers(const CameraRequest& request) {
   const auto refuse = [&](const std::string& what) {
     return Error{ErrorKind::kUsage, fmt::format("camera '{}': {}", request.camera, what)};
@@ -190,7 +190,7 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
   }
   settings.spp = channels.light() ? request.render.samples() : 0;
   if (request.render.error && channels.light()) {
-    // Darker than this share of the display's top, an error shows less and less (docs/light.md).
+    // Darker than this fraction of the display's top, an error shows less and less (docs/light.md).
     constexpr float kFloor = 0.05f;
     settings.error = static_cast<float>(*request.render.error);
     settings.error_floor = kFloor * max_luminance(static_cast<float>(sensor->models_->ev100()));
@@ -319,8 +319,8 @@ void CameraSensor::accumulate() {
 }
 
 std::vector<Vec3f>* CameraSensor::denoise() {
-  // Where the light is blurred, albedo and normal are, too: means over the same samples. Depth is
-  // sharp and no guide.
+  // Blurred light has blurred albedo and normal, too: means over the same samples. Depth is sharp
+  // and no guide.
   const bool blurred = camera().aperture_radius > 0 || camera().exposure_time > 0;
   std::vector<float> sharp;
   if (blurred) sharp.swap(film_.depth);

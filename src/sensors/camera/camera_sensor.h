@@ -23,7 +23,7 @@
 
 namespace gloam {
 
-/// Which channels of a CameraFrame are filled.
+/// Flags of the channels of a CameraFrame that are filled.
 struct CameraChannels {
   bool rgb = false, radiance = false, samples = false, depth = false, segmentation = false;
   bool normal = false, albedo = false, motion = false, distance = false, scene_flow = false;
@@ -38,10 +38,10 @@ struct CameraChannels {
   bool details() const { return normal || albedo || motion || scene_flow || sensor_depth; }
 };
 
-/// What pictures take, nearly [bytes].
+/// Memory that pictures take, nearly [bytes].
 struct PictureMemory {
-  uint64_t working = 0;  ///< of the sensor, from its first picture on
-  uint64_t frame = 0;    ///< of each CameraFrame
+  uint64_t working = 0;  ///< memory of the sensor, from its first picture on
+  uint64_t frame = 0;    ///< memory of each CameraFrame
 };
 
 /// Longest path of a picture, in vertices: RenderOptions::max_depth, or what is usual in a scene
@@ -68,17 +68,17 @@ class CameraSensor {
     const PoseFrame* const key = &now;
     return capture(renderer, renderer_mutex, {&key, 1}, previous, frame_index);
   }
-  /// Whether the next capture is of the same instant as the last one. If its pose is the same too,
-  /// it adds samples to the picture: the light is the mean over the captures since the first, which
-  /// it replaces (that one's samples may lie at pixel centres). Not of the fast tier, which has a
-  /// history of its own, of adaptive samples or of events.
+  /// Announces that the next capture is of the same instant as the last one, or not. If its pose is
+  /// the same too, it adds samples to the picture: the light is the mean over the captures since
+  /// the first, which it replaces (that one's samples may lie at pixel centres). Not for the fast
+  /// tier, which has a history of its own, for adaptive samples or for events.
   void set_same_instant(bool same) { same_instant_ = same; }
   /// From the first row's exposure to the end of the last one's [s]; 0 = an instant.
   Rational window() const;
 
-  /// What an exposure meter says before a capture; without it the exposure is the camera's own.
+  /// Exposure value of a meter, before a capture; without it the exposure is the camera's own.
   void set_ev100(double ev100) { models_->set_ev100(ev100); }
-  /// Of the output events, else null.
+  /// Track for the output events, else null.
   const std::shared_ptr<EventTrack>& events() const { return models_->events(); }
   /// Before the first capture; `leads` as of EventTrack::see.
   void share_events(std::shared_ptr<EventTrack> events, bool leads) {
@@ -88,13 +88,12 @@ class CameraSensor {
   Status set_temperatures(const std::vector<TemperatureOptions>& temperatures) {
     return models_->set_temperatures(temperatures);
   }
-  /// Of each picture's rendering, see RenderSettings::progress.
+  /// Progress callback for the rendering of each picture, see RenderSettings::progress.
   void set_progress(std::function<bool(double done)> progress) {
     settings_.progress = std::move(progress);
   }
-  /// Of the last picture.
+  /// Statistics of the last picture.
   const RenderStats& stats() const { return stats_; }
-
   const Intrinsics& intrinsics() const { return intrinsics_; }
   const Rational& rate() const { return rate_; }
   const CameraSensing& sensing() const {
@@ -127,8 +126,8 @@ class CameraSensor {
   RenderStats stats_;
   Intrinsics intrinsics_;
   Rational rate_;
-  std::unique_ptr<CameraModels> models_;  // what happens after the light
-  std::unique_ptr<ViewHistory> history_;  // of the fast tier
+  std::unique_ptr<CameraModels> models_;  // models after the light
+  std::unique_ptr<ViewHistory> history_;  // history of the fast tier
   std::optional<LensDrops> drops_;
   std::unique_ptr<Denoiser> denoiser_;  // null: the samples as they are
   Film film_;
@@ -136,7 +135,7 @@ class CameraSensor {
   bool same_instant_ = false;
   Affine3f accumulated_from_;   // pose of the camera
   int pictures_ = 0;            // in a row of one instant from one pose
-  std::vector<Vec3f> sums_[3];  // of radiance, albedo and normal over them
+  std::vector<Vec3f> sums_[3];  // sums of radiance, albedo and normal over them
   mutable std::mutex pose_mutex_;
   Affine3f free_pose_, previous_free_pose_;
 };

@@ -24,7 +24,7 @@ class LensDrops {
   struct Drop {
     Vec2f center;      ///< [px]
     float radius = 0;  ///< [m]
-    float there = 1;   ///< share of it that is there: it spreads, and is wiped away
+    float there = 1;   ///< fraction of it that is there: it spreads, and is wiped away
   };
   Drop drop_at(int slot, double time) const;
 

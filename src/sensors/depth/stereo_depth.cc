@@ -46,7 +46,7 @@ float scattered_share(const MaterialDescription& m) {
   return m.opacity * (1 - through) * (1 - m.metallic * (1 - rough * rough));
 }
 
-/// What media on the way leave of a signal.
+/// Part of a signal that media on the way let through.
 float signal_through(const MediaView& media, Vec3f origin, Vec3f direction, float distance,
                      float signal) {
   const Bands bands = Bands::only(MediumBand::k905nm);
@@ -166,7 +166,7 @@ std::vector<float> measure_stereo_depth(const StereoDepthModel& model, const Int
   const double side = model.baseline > 0 ? 1 : -1;
   std::vector<float> disparity(n);
   for (size_t i = 0; i < n; ++i)
-    disparity[i] = static_cast<float>(scale / std::max(double{depth[i]}, 1e-6));  // of +inf: 0
+    disparity[i] = static_cast<float>(scale / std::max(double{depth[i]}, 1e-6));  // 0 for +inf
   std::vector<uint8_t> lost(n, 0);
   if (model.edge_loss > 0) lost = near_jumps(disparity, k.width, k.height, model.edge_loss);
   if (model.occlusion) {

@@ -1,5 +1,5 @@
 #pragma once
-// What a depth camera with two eyes and a pattern projector measures.
+// Measurements of a depth camera with two eyes and a pattern projector.
 //
 // The disparity d = f B / Z of a pixel gets normal noise and is rounded to the matcher's steps, so
 // the depth's error grows with its square: sigma_Z = Z² / (f B) sigma_d (Khoshelham and Elberink
@@ -13,11 +13,11 @@
 // at 1 m: diffuse albedo, times the cosine, over Z²; what glass lets through and smooth metal
 // mirrors away is lost. A share s² / (s² + half_signal²) of pixels of signal s has a depth.
 //
-// Media take their share of the projector's light on both ways, T², and send some back, which veils
-// the pattern: with the signal b = pi Int beta T² / r² dr of what they scatter back (as a LiDAR's,
-// render/kernel/lidar/lidar_media.h), from where the second eye's view meets the projector's beam
-// on, the pattern's contrast is s T² / (s T² + b), and the signal that is left s T² times that. The
-// band is the one nearest to projectors' 850 nm, of 905 nm.
+// Media take their fraction of the projector's light on both ways, T², and send some back, which
+// veils the pattern: with the signal b = pi Int beta T² / r² dr of what they scatter back (as a
+// LiDAR's, render/kernel/lidar/lidar_media.h), from where the second eye's view meets the
+// projector's beam on, the pattern's contrast is s T² / (s T² + b), and the signal that is left s
+// T² times that. The band is the one nearest to projectors' 850 nm, of 905 nm.
 
 #include <cstdint>
 #include <vector>
@@ -42,11 +42,11 @@ struct StereoDepthModel {
   double half_signal = 0;
 };
 
-/// What the table says, else what its preset says, else nothing. d435: Intel RealSense D400 series
+/// Values of the table, else of its preset, else nothing. d435: Intel RealSense D400 series
 /// (baseline 50 mm, 126 disparities, 1/32 px: white paper "Subpixel Linearity Improvement"; 0.08 px
-/// of noise: what its makers advise to reckon with, librealsense issue 3904). kinect:
-/// Khoshelham and Elberink 2012 (75 mm, steps and noise of 1/8 and 1/16 px, 0.5 … 5 m). Their edge
-/// and signal losses are estimates.
+/// of noise: the value that its makers advise, librealsense issue 3904). kinect: Khoshelham and
+/// Elberink 2012 (75 mm, steps and noise of 1/8 and 1/16 px, 0.5 … 5 m). Their edge and signal
+/// losses are estimates.
 StereoDepthModel stereo_depth_model(const StereoDepthOptions& options);
 
 /// Signal per pixel, (height x width), of exact channels: see above.

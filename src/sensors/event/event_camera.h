@@ -19,8 +19,8 @@ class EventCamera {
   EventCamera(const EventOptions& options, int width, int height, uint64_t seed);
 
   /// Events since the frame before: none for the first one, and for one that is not later. Light
-  /// [cd/m²], (height x width), as a share of `top`, the top of the scale. In order of time; of one
-  /// time in order of pixels.
+  /// [cd/m²], (height x width), as a fraction of `top`, the top of the scale. In order of time; of
+  /// one time in order of pixels.
   std::vector<Event> see(const std::vector<Vec3f>& radiance, double top, double time,
                          int64_t frame);
   /// The next frame is the first one.
@@ -36,7 +36,7 @@ class EventCamera {
   int width_, height_;
   uint64_t seed_;
   bool started_ = false;
-  double time_ = 0;                 // of the last frame [s]
+  double time_ = 0;                 // time of the last frame [s]
   std::vector<float> seen_;         // log light in the last frame
   std::vector<float> reference_;    // log light at the last event
   std::vector<double> last_event_;  // [s]

@@ -5,7 +5,7 @@
 
 namespace gloam {
 
-/// What a picture is exposed with.
+/// Settings of an exposure.
 struct Exposure {
   double f_number = 2.8;
   double shutter = 0.01;  ///< [s]

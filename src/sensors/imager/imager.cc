@@ -115,7 +115,7 @@ void Imager::join_colors(float top_light, float full) {
     for (Vec3f& light : light_) light = light * top_light;
     return;
   }
-  // Where red and blue are amplified they would outshine a green that is full: all are cut there.
+  // Amplified red and blue would outshine a green that is full: all are cut there.
   const Vec3f balance{static_cast<float>(options_.white_balance.x),
                       static_cast<float>(options_.white_balance.y),
                       static_cast<float>(options_.white_balance.z)};

@@ -25,7 +25,7 @@ class Imager {
   void develop(const std::vector<Vec3f>& radiance, const Exposure& exposure, int64_t frame,
                std::vector<uint8_t>* rgb, std::vector<uint16_t>* raw);
 
-  /// What it keeps and works with [bytes].
+  /// Memory that it takes [bytes].
   static uint64_t memory(const ImagerOptions& options, const Intrinsics& intrinsics);
 
  private:
@@ -40,7 +40,7 @@ class Imager {
   std::optional<Mosaic> mosaic_;
   std::optional<PixelArray> pixels_;
   std::vector<float> vignetting_;  // factors on the light of pixels; empty = none
-  std::vector<float> shares_;      // of the top of the scale, per site
+  std::vector<float> shares_;      // fractions of the top of the scale, per site
   std::vector<Vec3f> light_;       // the developed picture's [cd/m²]
 };
 

@@ -10,10 +10,10 @@ namespace {
 
 // The other colours change as the pixel's own does: gradient correction.
 struct Estimates {
-  float cross;       // of the colour on the four sides, at red and blue: green
-  float horizontal;  // of the colour left and right, at green
-  float vertical;    // of the colour above and below, at green
-  float diagonal;    // of the colour at the corners: blue at red, red at blue
+  float cross;       // estimate from the colour on the four sides, at red and blue: green
+  float horizontal;  // estimate from the colour left and right, at green
+  float vertical;    // estimate from the colour above and below, at green
+  float diagonal;    // estimate from the colour at the corners: blue at red, red at blue
 };
 
 int mirror(int i, int n) {

@@ -8,7 +8,7 @@
 
 namespace gloam {
 
-/// Which colour each pixel sees (Bayer, US patent 3971065). Places repeat every 2 x 2 pixels.
+/// Colour that each pixel sees (Bayer, US patent 3971065). Places repeat every 2 x 2 pixels.
 class Mosaic {
  public:
   /// "rggb", "bggr", "grbg", "gbrg": the top left 2 x 2 by rows.

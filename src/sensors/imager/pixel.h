@@ -17,7 +17,7 @@ class PixelArray {
  public:
   PixelArray(const PixelOptions& options, size_t sites, uint64_t seed);
 
-  /// What an exposure makes of light.
+  /// Factors from light to electrons in an exposure.
   struct Gains {
     double electrons_per_light = 0;  ///< per cd/m²
     double dark_electrons = 0;
@@ -26,9 +26,9 @@ class PixelArray {
   Gains gains(const Exposure& exposure) const;
 
   /// Reading of site i for `light` [cd/m²] in a picture's frame: a number of the converter [DN], or
-  /// without bits a share of the top of the scale.
+  /// without bits a fraction of the top of the scale.
   double read(const Gains& gains, double light, uint64_t frame, size_t i) const;
-  /// The reading as a share of the top of the scale; noise may take it below 0.
+  /// The reading as a fraction of the top of the scale; noise may take it below 0.
   double share(double reading) const {
     return (reading - options_.black_level * quantised_) /
            (top_ - options_.black_level * quantised_);

@@ -92,7 +92,7 @@ Result<LidarModel> make_lidar_model(const LidarOptions& options) {
         fmt::format("sees from {} m to {} m", model.optics.min_range, model.optics.max_range),
         "'max_range' must be more than 'min_range'");
   }
-  // Of a scan; the densest sensors that are sold have less than a million.
+  // Limit on the beams of a scan; the densest sensors that are sold have less than a million.
   constexpr int64_t kMostBeams = int64_t{1} << 22;
   const bool spins = model.pattern == LidarPatternKind::kSpinning;
   const bool is_rosette = model.pattern == LidarPatternKind::kRosette;

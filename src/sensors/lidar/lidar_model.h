@@ -16,15 +16,15 @@ struct LidarModel {
   LidarPatternKind pattern = LidarPatternKind::kSpinning;
   Rational rate = {10, 1};  ///< scans per second
   // Spinning.
-  std::vector<float> elevations;  ///< of the rings, from below [rad]
-  std::vector<float> delays;      ///< of each ring's firing within its column [s]; empty = none
-  int columns = 1024;             ///< of a whole turn; of a grid
-  bool clockwise = true;          ///< seen from above
+  std::vector<float> elevations;  ///< elevations of the rings, from below [rad]
+  std::vector<float> delays;  ///< delay of each ring's firing within its column [s]; empty = none
+  int columns = 1024;         ///< columns of a whole turn; of a grid
+  bool clockwise = true;      ///< seen from above
   float azimuth_from = -kPi, azimuth_to = kPi;  ///< counter-clockwise from ahead [rad]
   // Grids and rosettes.
   int rows = 0;
   float width = 0, height = 0;  ///< field of view [rad]
-  int points = 0;               ///< of a rosette's scan
+  int points = 0;               ///< points of a rosette's scan
   double prism_hz[2] = {};      ///< revolutions of its prisms per second
   LidarOptics optics;
 };

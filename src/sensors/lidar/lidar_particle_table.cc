@@ -9,7 +9,8 @@
 namespace gloam {
 namespace {
 
-// Of particles in one cell of a beam: more are a medium, whose sum varies by less than a sixth.
+// Limit on particles in one cell of a beam: more are a medium, whose sum varies by less than a
+// sixth.
 constexpr float kMany = 32;
 constexpr size_t kMostCells = 4096;
 

@@ -1,5 +1,5 @@
 #pragma once
-// What falls, as a LiDAR meets it: which of its particles are echoes of their own at which range.
+// Falling particles as a LiDAR meets them: those that are echoes of their own at each range.
 
 #include <vector>
 
@@ -27,7 +27,7 @@ struct LidarParticleTable {
 /// swinging, have not. Flakes: a lidar ratio of 18.8 sr, as ice is taken everywhere here.
 float particle_backscatter(ParticleKind kind, float diameter);
 
-/// By volume; empty where none of them holds what falls.
+/// Tables by volume; empty where it holds no falling particles.
 std::vector<LidarParticleTable> tabulate_particles(const RenderDescription& rendered,
                                                    const LidarOptics& optics);
 

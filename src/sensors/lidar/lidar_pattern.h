@@ -1,5 +1,5 @@
 #pragma once
-// Where and when a LiDAR's beams go: one file for each kind of pattern.
+// Directions and times of a LiDAR's beams: one file for each kind of pattern.
 
 #include <cstdint>
 #include <vector>

@@ -50,11 +50,11 @@ class LidarSensor {
   std::vector<uint8_t> hidden_;                      ///< by instance; empty = none
   std::vector<LidarSurface> surfaces_;               ///< by instance; empty = as their colours say
   std::vector<LidarFiring> firings_;
-  std::vector<float> cuts_;  ///< of the keys, 0 … 1
+  std::vector<float> cuts_;  ///< times of the keys, 0 … 1
   /// In the order in which they are traced. Their times count every stretch as equally long.
   std::vector<LidarBeam> beams_;
   std::vector<uint32_t> place_;       ///< in beams_, by firing
-  std::vector<LidarMotion> motions_;  ///< of the stretches between keys
+  std::vector<LidarMotion> motions_;  ///< motions of the stretches between keys
   std::vector<LidarReturn> returns_;  ///< by beams_
 };
 

@@ -11,7 +11,7 @@ namespace gloam {
 
 std::vector<LidarFiring> fire_spinning(const LidarModel& model, int64_t) {
   const size_t rings = model.elevations.size();
-  std::vector<size_t> order(rings);  // of firing
+  std::vector<size_t> order(rings);  // order of firing
   std::iota(order.begin(), order.end(), size_t{0});
   if (!model.delays.empty()) {
     std::stable_sort(order.begin(), order.end(),
@@ -21,7 +21,7 @@ std::vector<LidarFiring> fire_spinning(const LidarModel& model, int64_t) {
   std::vector<LidarFiring> firings;
   firings.reserve(rings * static_cast<size_t>(model.columns));
   for (int column = 0; column < model.columns; ++column) {
-    const double begin = static_cast<double>(column) / model.columns;  // of a turn
+    const double begin = static_cast<double>(column) / model.columns;  // fraction of a turn
     const double azimuth = std::remainder(M_PI + turn * begin, 2 * M_PI);
     constexpr double kRounding = 1e-6;
     if (azimuth < model.azimuth_from - kRounding || azimuth > model.azimuth_to + kRounding)

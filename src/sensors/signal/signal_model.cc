@@ -110,7 +110,7 @@ double SignalModel::allan_variance(double tau) const {
                 errors_.noise_density * errors_.noise_density / 2) /
                    tau +
                errors_.random_walk * errors_.random_walk * tau / 3;
-  for (const double t : times_) {  // of a Gauss-Markov process
+  for (const double t : times_) {  // times of a Gauss-Markov process
     const double e = std::exp(-tau / t), x = t / tau;
     sum += 2 * relaxation_variance_ * x * (1 - x / 2 * (3 - 4 * e + e * e));
   }

@@ -16,7 +16,7 @@ namespace gloam {
 
 class SignalModel {
  public:
-  /// Of a sensor with `count` numbers at `rate` [Hz]; `seed` of sensor_seed().
+  /// Model of a sensor with `count` numbers at `rate` [Hz]; `seed` of sensor_seed().
   SignalModel(const SignalErrors& errors, SensorKind kind, int count, double rate, uint64_t seed);
 
   /// Makes the truth of sample k >= 0 what the sensor says. Later samples cost nothing more; an

@@ -15,7 +15,7 @@ namespace gloam {
 namespace {
 
 constexpr double kRoom = 293.15;    // [K]
-constexpr double kReference = 300;  // of NETD [K]
+constexpr double kReference = 300;  // reference of NETD [K]
 constexpr int kBand = static_cast<int>(MediumBand::k8to14um);
 
 bool fits(const TemperatureOptions& o, const LabelRow& label) {
@@ -27,7 +27,7 @@ double sent_by(const TemperatureOptions& o) {
          (1 - o.emissivity) * thermal_radiance(o.ambient);
 }
 
-/// What of `radiance` [W/(m² sr)] gets through the media, and what they add.
+/// Part of `radiance` [W/(m² sr)] that passes the media, and the radiance that they add.
 double through_media(const MediaView& media, Vec3f origin, Vec3f direction, double distance,
                      double radiance) {
   static const double room = thermal_radiance(kRoom);

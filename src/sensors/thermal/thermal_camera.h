@@ -16,8 +16,8 @@ namespace gloam {
 
 class ThermalCamera {
  public:
-  /// Of what no [[temperature]] fits, and of what rays that hit nothing see (a body named "sky"):
-  /// 293.15 K, emissivity 0.95. Error: a [[temperature]] that fits nothing.
+  /// Temperatures where no [[temperature]] fits, and for rays that hit nothing (a body named
+  /// "sky"): 293.15 K, emissivity 0.95. Error: a [[temperature]] that fits nothing.
   static Result<ThermalCamera> make(const ThermalOptions& options,
                                     const std::vector<TemperatureOptions>& temperatures,
                                     const RenderDescription& description, uint64_t seed);
@@ -33,7 +33,7 @@ class ThermalCamera {
 
   ThermalOptions options_;
   uint64_t seed_;
-  std::vector<double> radiance_;  // by part; 0 = the sky [W/(m² sr)]
+  std::vector<double> radiance_;  // radiance by part; 0 = the sky [W/(m² sr)]
 };
 
 }  // namespace gloam

@@ -22,7 +22,7 @@ class WalkGround final : public GroundHeight {
 
  private:
   const NavWorld& world_;
-  double height_;  // of where the body is [m]
+  double height_;  // height of the body's place [m]
 };
 
 void move_person(double dt, AgentBody* agent) {
@@ -106,7 +106,7 @@ void move_body(double dt, double time, const NavMesh& mesh, const NavWorld& worl
   if (norm(by) > 0 && agent->intent.mode != AgentIntent::Mode::kSpline &&
       agent->path.at().ref != 0) {
     const Vec3d on = agent->path.move(mesh, to);
-    // What was built into the mesh under it is left at walking pace, not by a jump.
+    // An agent whose ground was taken out of the mesh leaves it at walking pace, not in one jump.
     to = m.p + shortened(flat(on - m.p), std::max(norm(by), 0.8 * dt));
     to.z = on.z;
   }

@@ -15,35 +15,35 @@ namespace gloam {
 
 class Agents;
 
-/// What a behaviour wants.
+/// Intention of a behaviour.
 struct AgentIntent {
   enum class Mode : uint8_t { kStand, kGo, kSpline };
   Mode mode = Mode::kStand;
-  Vec3d goal;        ///< of kGo [m]
+  Vec3d goal;        ///< goal of kGo [m]
   double speed = 0;  ///< [m/s]
-  Vec3d velocity;    ///< of kSpline [m/s]
+  Vec3d velocity;    ///< velocity of kSpline [m/s]
   bool faces = false;
   double facing = 0;  ///< heading that it turns to while it stands [rad]
 };
 
-/// Where the body is and how it moves. Plain, without holes: it is hashed.
+/// Place and motion of the body. The struct has no padding: it is hashed.
 struct AgentMotion {
   Vec3d p;                ///< on the ground [m]
-  Vec3d velocity;         ///< of its own, in the plane [m/s]
-  Vec3d push;             ///< that it has been given [m/s]
+  Vec3d velocity;         ///< own velocity, in the plane [m/s]
+  Vec3d push;             ///< velocity added by pushes [m/s]
   Vec3d wanted;           ///< velocity that was decided on [m/s]
   Vec3d acceleration;     ///< [m/s²]
   double heading = 0;     ///< [rad]
   double yaw_rate = 0;    ///< [rad/s]
   double touched = -1e9;  ///< when a robot last did [s]
   double way = 0;         ///< along a spline [m]
-  double pause_end = 0;   ///< of a route's or a wanderer's pause [s]
+  double pause_end = 0;   ///< end of a route's or a wanderer's pause [s]
   double progress = 0;    ///< when it was last seen to get on [s]
   double facing = 0;      ///< [rad]
-  Vec3d seen_at;          ///< where [m]
-  Vec3d goal;             ///< of its way [m]
-  int64_t waypoint = 0;   ///< of its route
-  int64_t draws = 0;      ///< decisions that were drawn
+  Vec3d seen_at;          ///< place of that [m]
+  Vec3d goal;             ///< end of the path [m]
+  int64_t waypoint = 0;   ///< index in the route
+  int64_t draws = 0;      ///< random decisions so far
   int64_t has_goal = 0, is_facing = 0, is_whole = 1;
 };
 
@@ -54,13 +54,13 @@ struct AgentBody {
   AgentMotion motion;
   AgentIntent intent;
   NavPath path;
-  Walker walker;         ///< of a person
+  Walker walker;         ///< gait of a person
   VehicleState vehicle;  ///< else
   std::unique_ptr<TreeState> tree;
   std::array<PartPose, kPersonParts> before, after;  ///< poses that are gone between
-  Vec3d warned_goal{1e30, 0, 0};                     ///< that was said to be out of reach
+  Vec3d warned_goal{1e30, 0, 0};                     ///< goal that was reported as out of reach
   Vec3d force;                                       ///< sum of contacts' [N]
-  int force_steps = 0;                               ///< that it is of
+  int force_steps = 0;                               ///< number of steps that it covers
   bool robot_touches = false;
 
   WalkInput walk_input(double time) const;
@@ -78,7 +78,7 @@ void move_body(double dt, double time, const NavMesh& mesh, const NavWorld& worl
 
 /// A smooth curve through the points of a route (Catmull and Rom 1974).
 struct AgentSpline {
-  AgentSpline() = default;  ///< of those who follow none
+  AgentSpline() = default;  ///< empty, for agents that follow none
   AgentSpline(const std::vector<WaypointOptions>& route, bool loop);
   double length() const { return lengths.back(); }
   /// At a way along it [m]; the direction there too.

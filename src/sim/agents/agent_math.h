@@ -15,7 +15,7 @@ inline Vec3d to_vec3d(const Vec3& v) { return {v.x, v.y, v.z}; }
 inline double norm(Vec3d a) { return std::sqrt(dot(a, a)); }
 inline double flat_norm(Vec3d a) { return std::sqrt(a.x * a.x + a.y * a.y); }
 inline Vec3d flat(Vec3d a) { return {a.x, a.y, 0}; }
-/// Of length one; `otherwise` where there is no direction.
+/// Unit vector along `a`; `otherwise` if `a` is zero.
 inline Vec3d unit_or(Vec3d a, Vec3d otherwise) {
   const double n = norm(a);
   return n > 1e-9 ? a * (1 / n) : otherwise;
@@ -47,7 +47,7 @@ inline Quat turn_x(double angle) { return {std::cos(angle / 2), std::sin(angle /
 inline Quat turn_y(double angle) { return {std::cos(angle / 2), 0, std::sin(angle / 2), 0}; }
 inline Quat turn_z(double angle) { return {std::cos(angle / 2), 0, 0, std::sin(angle / 2)}; }
 
-/// Of a frame whose axes have these directions in the world (Shepperd 1978).
+/// Rotation of a frame whose axes have these directions in the world (Shepperd 1978).
 inline Quat quat_of_axes(Vec3d x, Vec3d y, Vec3d z) {
   const double trace = x.x + y.y + z.z;
   Quat q;
@@ -67,7 +67,7 @@ inline Quat quat_of_axes(Vec3d x, Vec3d y, Vec3d z) {
   return q;
 }
 
-/// Where a part is: origin [m] and rotation in the world.
+/// Pose of a part: origin [m] and rotation in the world.
 struct PartPose {
   Vec3d p;
   Quat q;

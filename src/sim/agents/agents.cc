@@ -13,10 +13,10 @@
 namespace gloam {
 namespace {
 
-constexpr Rational kMotionRate = {50, 1};  // of gait and bodies [Hz]
+constexpr Rational kMotionRate = {50, 1};  // rate of gait and bodies [Hz]
 constexpr int kPlaceTries = 200;
-constexpr double kMostShift = 3;  // of an agent that begins in something [m]
-constexpr double kApart = 0.9;    // that those of a crowd begin from each other [m]
+constexpr double kMostShift = 3;  // longest shift of an agent that begins in something [m]
+constexpr double kApart = 0.9;    // distance at which agents of a crowd begin from each other [m]
 constexpr double kFromRobot = 1.5;
 
 }  // namespace
@@ -144,7 +144,7 @@ bool Agents::draw_place(size_t row, NavPoint* at) const {
   for (uint64_t i = 0; i < kPlaceTries; ++i) {
     *at = nav_->random_place(row, {}, stream.uniform(i, 0), stream.uniform(i, 1),
                              stream.uniform(i, 2));
-    // Where it is crowded it may be closer.
+    // The later half of the tries accepts half the distance, for crowded places.
     if (at->ref != 0 && is_free(at->p, i < kPlaceTries / 2 ? kApart : kApart / 2)) return true;
   }
   return false;
@@ -226,7 +226,7 @@ void Agents::take_over(const EffectContext& at, Effect* other) {
     agent.motion = found->motion;
     agent.walker = found->walker;
     agent.vehicle = found->vehicle;
-    // What it was about to do may be gone: its way is found anew.
+    // The goal and the path may no longer exist: both are found anew.
     agent.motion.has_goal = 0;
     agent.path.reset(nav_->mesh_of(row).nearest(agent.motion.p, 1.5, 1));
     agent.after = found->after;

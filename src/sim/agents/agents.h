@@ -58,7 +58,7 @@ class Agents final : public Effect {
   StepSchedule decisions_, motions_;
   int64_t decision_ = 0, motion_ = 0;  // the next ones
   int64_t last_motion_step_ = 0, next_motion_step_ = 0;
-  double decision_time_ = 0;  // of a period [s]
+  double decision_time_ = 0;  // length of a period [s]
   std::unique_ptr<NavWorld> nav_;
   std::unique_ptr<AgentDoors> doors_;
   NavAvoidance avoidance_;

@@ -37,7 +37,7 @@ enum class TreeNodeKind : uint8_t {
   kAlwaysFailure,
   kWait,         ///< for a time, standing
   kGoTo,         ///< runs until it is there
-  kWander,       ///< likewise, to a place that is drawn
+  kWander,       ///< the same, to a random place
   kFollow,       ///< runs; keeps `distance` from a robot or another agent
   kStopFor,      ///< runs, standing, as long as a robot is nearer than `distance`; then succeeds
   kStand,        ///< runs
@@ -52,13 +52,13 @@ enum class TreeNodeKind : uint8_t {
 struct TreeNode {
   TreeNodeKind kind = TreeNodeKind::kAlwaysSuccess;
   std::vector<int> children;  ///< numbers of nodes
-  // What its ports say; which of them a kind has: tree_reader.cc.
+  // Values of its ports; tree_reader.cc lists the ports of each kind.
   Vec3d goal;           ///< [m]
-  double seconds = 0;   ///< of waits, delays, timeouts
+  double seconds = 0;   ///< duration of waits, delays, timeouts
   double distance = 0;  ///< [m]
   double speed = 0;     ///< [m/s]; 0 = the agent's own
-  int count = 0;        ///< of cycles, attempts, successes; -1 = no end, all
-  int failures = 1;     ///< of a Parallel
+  int count = 0;        ///< number of cycles, attempts, successes; -1 = no end, all
+  int failures = 1;     ///< failures that a Parallel allows
   std::string target;   ///< name of a robot or agent; "" = the nearest robot
   SourceLoc loc;
 };
@@ -67,7 +67,7 @@ struct BehaviorTree {
   std::vector<TreeNode> nodes;  ///< the first is the root
 };
 
-/// What leaves see of an agent and make it do.
+/// Interface through which leaves see and control an agent.
 class TreeHost {
  public:
   virtual ~TreeHost() = default;
@@ -85,7 +85,7 @@ class TreeHost {
   virtual bool was_touched() const = 0;
 };
 
-/// Where one agent is in its tree.
+/// State of one agent in its tree.
 class TreeState {
  public:
   explicit TreeState(std::shared_ptr<const BehaviorTree> tree);
@@ -98,7 +98,7 @@ class TreeState {
   struct Memory {
     double begin = 0;  // [s]
     int32_t child = 0, count = 0;
-    NodeStatus status = NodeStatus::kIdle;  // of the last tick
+    NodeStatus status = NodeStatus::kIdle;  // status of the last tick
     uint8_t padding[7] = {};
   };
   NodeStatus tick_node(int node, TreeHost* host);

@@ -12,13 +12,14 @@ namespace {
 constexpr double kThere = 0.3;                 // from the end of a way [m]
 constexpr double kLeastWander = 4;             // [m]
 constexpr double kStuck = 6, kProgress = 0.4;  // [s], [m]
-constexpr double kTouch = 1;                   // that a touch is remembered for [s]
+constexpr double kTouch = 1;                   // time that a touch is remembered for [s]
 constexpr int kTries = 12;
 
 bool has_arrived(const AgentBody& agent) {
   if (agent.motion.has_goal == 0) return false;
   const Vec3d to = flat(agent.path.end() - agent.motion.p);
-  // What turns in circles has passed what lies behind it and cannot be turned to.
+  // Vehicles cannot turn to a point inside their turning circle: it counts as passed once it lies
+  // behind.
   const double radius =
       agent.description->kind == AgentKind::kPerson ? 0 : agent.description->vehicle.turning_radius;
   return norm(to) < kThere ||
@@ -186,7 +187,7 @@ class Brain final : public TreeHost {
     const AgentDescription& d = *agent_.description;
     const auto count = static_cast<int64_t>(d.route.size());
     if (motion_.waypoint >= count || around_.time < motion_.pause_end) return;
-    // Where no way leads to the point it waits, for a while if there are others to go to.
+    // An agent without a path to its station waits, and after a while goes on if there are others.
     if (has_arrived(agent_) && (motion_.is_whole != 0 || (count > 1 && is_stuck()))) {
       motion_.progress = around_.time;
       const double pause = d.route[static_cast<size_t>(motion_.waypoint)].pause;

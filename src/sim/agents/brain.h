@@ -1,11 +1,11 @@
 #pragma once
-// What an agent means to do next.
+// Decisions of an agent: its next intention.
 
 #include "sim/agents/agent.h"
 
 namespace gloam {
 
-/// What a behaviour can see.
+/// Surroundings as a behaviour sees them.
 struct AgentSurroundings {
   const CompiledWorld& world;
   const NavWorld& nav;
@@ -20,7 +20,7 @@ struct AgentSurroundings {
 void decide_intent(const AgentSurroundings& around, size_t row, AgentBody* agent);
 
 /// Sees that the way leads to `goal`, which may be off the mesh or out of reach: then to the point
-/// that is nearest to it, which is told once. False: the agent is nowhere on the mesh.
+/// that is nearest to it, which is reported once. False: the agent is nowhere on the mesh.
 bool find_way(const NavMesh& mesh, Vec3d goal, AgentBody* agent);
 
 }  // namespace gloam

@@ -21,8 +21,8 @@ struct NavBounds {
   Vec3f low, high;
 };
 
-/// Of one geom at a pose (p [m], R row by row). Round shapes are prisms and lathed hulls of 16
-/// sides, meshes their hulls, height fields of `hfield_data` their surface. Empty for SDFs.
+/// Triangles of one geom at a pose (p [m], R row by row). Round shapes are prisms and lathed hulls
+/// of 16 sides, meshes their hulls, height fields of `hfield_data` their surface. Empty for SDFs.
 ColliderSurface collider_surface(const mjModel& model, int geom, const mjtNum* p, const mjtNum* R,
                                  const NavBounds& bounds);
 

@@ -6,7 +6,7 @@ namespace gloam {
 namespace {
 
 constexpr double kNear = 1.8, kAtDoor = 1.15, kInDoor = 0.7;  // [m]
-constexpr double kWide = 0.75;     // share of the way that a leaf has to be open
+constexpr double kWide = 0.75;     // fraction of the way that a leaf has to be open
 constexpr double kPush = 30;       // a hand's, at a metre (ISO 21542: doors open at 25 N) [N m]
 constexpr double kStiffness = 40;  // [N m/rad]
 constexpr double kDamping = 14;    // [N m s/rad]

@@ -14,8 +14,8 @@ class AgentDoors {
   AgentDoors(const CompiledWorld& world, const mjModel& model, const mjData& data);
   void reset();
 
-  /// Which doors are to open, for those who are near and go towards them, and which to close; `dt`
-  /// since the decision before [s].
+  /// Chooses the doors that are to open, for agents who are near and go towards them, and those
+  /// that are to close; `dt`: time since the decision before [s].
   void decide(const mjData& data, const std::vector<AgentBody>& agents,
               std::span<const NavObstacle> obstacles, double dt);
   /// Is a door that is not yet open in the way of one who goes?
@@ -29,10 +29,10 @@ class AgentDoors {
   struct Door {
     int qpos = 0, dof = 0;
     double open = 0, rest = 0;  // angles [rad]
-    Vec3d middle;               // of the opening [m]
+    Vec3d middle;               // middle of the opening [m]
     // Plain, without holes: it is hashed.
     struct State {
-      double idle = 0;  // that nobody has been near since it was opened [s]
+      double idle = 0;  // time without anybody near since it was opened [s]
       int32_t is_wanted = 0, was_opened = 0, is_closing = 0, is_driven = 0;
     } state;
   };

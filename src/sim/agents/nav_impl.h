@@ -1,5 +1,5 @@
 #pragma once
-// What the files of the navigation mesh share: Recast's and Detour's objects.
+// Objects of Recast and Detour, for the files of the navigation mesh.
 
 #include <recastnavigation/DetourNavMesh.h>
 #include <recastnavigation/DetourNavMeshQuery.h>

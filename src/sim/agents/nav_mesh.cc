@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kMostTiles = 8192;  // leaves Detour's numbers of 32 bits room for 512 polygons each
 constexpr int kSearchNodes = 8192;
-constexpr float kMostHeights = 8000;  // of Recast's voxels, which have 13 bits
+constexpr float kMostHeights = 8000;  // limit of Recast's voxels, which have 13 bits
 
 // In the plane, of a polygon of the mesh [m²].
 double area_of(const dtMeshTile& tile, const dtPoly& poly) {

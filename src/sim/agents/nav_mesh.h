@@ -1,7 +1,7 @@
 #pragma once
-// Where agents of one size can go: a navigation mesh in tiles, made by Recast out of colliders and
-// searched by Detour (Mononen; recastnavigation.org). One mesh is used by one thread at a time;
-// tiles are built by any. Recast's axes stay in here.
+// Navigation mesh for agents of one size, in tiles, made by Recast out of colliders and searched by
+// Detour (Mononen; recastnavigation.org). One mesh is used by one thread at a time; tiles are built
+// by any. Recast's axes stay in here.
 
 #include <memory>
 #include <span>
@@ -19,7 +19,7 @@ struct NavSettings {
   double radius = 0.3;    ///< from walls [m]
   double climb = 0.22;    ///< [m]
   double slope = 40;      ///< [deg]
-  NavBounds bounds;       ///< of all that there is
+  NavBounds bounds;       ///< bounds of all geometry
   bool operator==(const NavSettings& o) const {
     return cell == o.cell && headroom == o.headroom && radius == o.radius && climb == o.climb &&
            slope == o.slope;
@@ -48,9 +48,9 @@ class NavMesh {
   bool clear();
   int columns() const;
   int rows() const;
-  /// What a tile depends on: its box and a border around it.
+  /// Box that a tile depends on: its own and a border around it.
   NavBounds tile_reach(int column, int row) const;
-  /// Of the surfaces that meet its tile_reach.
+  /// Builds a tile from the surfaces that meet its tile_reach.
   NavTile build_tile(int column, int row, std::span<const ColliderSurface* const> near) const;
   void set_tile(int column, int row, const NavTile& tile);
   /// To be called when tiles have been set: finds the parts that hang together.
@@ -105,8 +105,8 @@ class NavPath {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What an agent might run into, and the velocity that it takes so that it does not: sampled
-/// reciprocal velocity obstacles (van den Berg et al. 2008), Detour's.
+/// Avoidance of collisions: the obstacles of an agent and the velocity that avoids them. Sampled
+/// reciprocal velocity obstacles (van den Berg et al. 2008), from Detour.
 class NavAvoidance {
  public:
   static constexpr int kMostCircles = 12, kMostWalls = 16;

@@ -9,7 +9,7 @@
 namespace gloam {
 namespace {
 
-constexpr int kMostPolys = 256;  // of a way; what is beyond is found on the way
+constexpr int kMostPolys = 256;  // limit of a path; the rest is searched on the way
 constexpr int kMostCorners = 8;
 constexpr int kLookAhead = 8;  // polygons
 

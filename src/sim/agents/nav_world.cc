@@ -13,16 +13,17 @@
 namespace gloam {
 namespace {
 
-constexpr size_t kChunk = 512;      // triangles of a ground that are looked at as one
-constexpr double kAround = 12;      // of agents and their goals, where a plane has no end [m]
-constexpr float kSquare = 1;        // of the map of surfaces [m]
+constexpr size_t kChunk = 512;  // triangles of a ground that are looked at as one
+// Margin around agents and their goals, where a plane has no end [m]
+constexpr double kAround = 12;
+constexpr float kSquare = 1;        // edge of a square in the map of surfaces [m]
 constexpr double kLeastLeaf = 0.7;  // half the height of a door's leaf [m]
 constexpr double kMoves = 0.05;     // faster is moving [m/s]
 constexpr double kLeft = 0.15;      // further from where it lay is away [m]
 constexpr double kRest = 0.5;       // until a thing is at rest [s]
 constexpr double kRobotRest = 3;    // a robot pauses [s]
-constexpr float kSmall = 0.12f;     // what has no larger edge is in nobody's way [m]
-constexpr double kLeastPart = 4;    // of a mesh that somebody is put on [m²]
+constexpr float kSmall = 0.12f;     // edge below which a thing is in nobody's way [m]
+constexpr double kLeastPart = 4;    // least area of a mesh that somebody is put on [m²]
 constexpr float kInf = std::numeric_limits<float>::infinity();
 
 bool can_collide(const mjModel& m, int geom) {
@@ -60,7 +61,7 @@ Vec3d position_of(const mjData& d, int body) {
   return {p[0], p[1], p[2]};
 }
 
-// Of a triangle at (x, y); false where it is not above that point.
+// Height of a triangle at (x, y); false if the point is outside of it.
 bool height_at(const Vec3f* t, double x, double y, double* z) {
   const double ax = double{t[0].x} - x, ay = double{t[0].y} - y, bx = double{t[1].x} - x,
                by = double{t[1].y} - y, cx = double{t[2].x} - x, cy = double{t[2].y} - y;
@@ -156,7 +157,7 @@ void NavWorld::add_still(ColliderSurface surface) {
 }
 
 void NavWorld::sort_geoms(const CompiledWorld& world, const mjModel& m, const mjData& d) {
-  std::map<int, size_t> rows;  // of movables, by body
+  std::map<int, size_t> rows;  // rows of movables, by body
   std::vector<int> robot_of_root(static_cast<size_t>(m.nbody), -1);
   for (size_t i = 0; i < world.robots.size(); ++i)
     if (world.robots[i].root_body > 0)

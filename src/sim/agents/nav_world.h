@@ -1,6 +1,6 @@
 #pragma once
-// What agents walk on and around, as the simulation goes on: colliders that stand still, things
-// that can move and are at rest, both in the navigation meshes, and what moves, which is avoided.
+// Ground and obstacles of agents while the simulation goes on. Colliders that stand still and
+// movable things at rest are part of the navigation meshes; moving things are avoided.
 
 #include <array>
 #include <memory>
@@ -13,7 +13,7 @@ namespace gloam {
 
 /// Something that moves and is not an agent: a circle in the plane.
 struct NavObstacle {
-  Vec3d p;            ///< of its middle [m]
+  Vec3d p;            ///< place of its middle [m]
   double radius = 0;  ///< [m]
   Vec3d velocity;     ///< [m/s]
   bool is_robot = false;
@@ -27,7 +27,7 @@ class NavWorld {
   static Result<std::unique_ptr<NavWorld>> create(const CompiledWorld& world, const mjModel& model,
                                                   const mjData& data);
 
-  /// Of the agent in that row of CompiledWorld::agents.
+  /// Mesh for the agent in that row of CompiledWorld::agents.
   const NavMesh& mesh_of(size_t agent) const { return *meshes_[mesh_of_agent_[agent]].mesh; }
   /// Height of the highest surface that is at most `up` above p and `down` below it; p's own where
   /// there is none [m].
@@ -46,7 +46,7 @@ class NavWorld {
   void reset(const mjModel& model, const mjData& data);
 
   const std::vector<NavObstacle>& obstacles() const { return obstacles_; }
-  /// Of robots in CompiledWorld::robots, by row; -1 = it has no bodies.
+  /// Obstacle of the robot in that row of CompiledWorld::robots; -1 = it has no bodies.
   int obstacle_of_robot(size_t robot) const { return obstacle_of_robot_[robot]; }
   /// Digest of what is where in the meshes.
   uint64_t hash(uint64_t seed) const;
@@ -56,7 +56,7 @@ class NavWorld {
     std::unique_ptr<NavMesh> mesh;
     std::vector<bool> dirty;  // by tile
     size_t dirty_count = 0;
-    std::vector<NavTile> initial;  // of the initial state
+    std::vector<NavTile> initial;  // tiles of the initial state
     bool is_initial = false;
   };
   // Bodies that move as one thing, or a robot.
@@ -64,7 +64,7 @@ class NavWorld {
     int body = 0;
     std::vector<int> geoms;
     bool is_robot = false;
-    Vec3d p, p_in_mesh;    // of its body, at the last time and when it came into the meshes
+    Vec3d p, p_in_mesh;    // place of its body, at the last time and when it came into the meshes
     double rest_time = 0;  // [s]
     bool is_in_mesh = false;
     std::vector<ColliderSurface> surfaces;  // in the meshes

@@ -1,4 +1,4 @@
-// How an agent gets where it means to go: along its way, around others, not into them.
+// Steering of agents: along the path, around others.
 
 #include "sim/agents/agents.h"
 #include "sim/agents/brain.h"
@@ -9,16 +9,16 @@ namespace {
 constexpr double kLook = 6;         // [m]
 constexpr double kPersonal = 0.05;  // beyond radii [m]
 constexpr double kHorizon = 0.7;    // within which a collision makes it stop [s]
-constexpr double kGap = 0.6;        // that a vehicle leaves before it [m]
+constexpr double kGap = 0.6;        // gap that a vehicle leaves in front [m]
 constexpr double kBeside = 0.15;    // and to its sides [m]
-constexpr double kSlowing = 1.2;    // of vehicles that see something coming [m/s²]
+constexpr double kSlowing = 1.2;    // deceleration of vehicles that see something coming [m/s²]
 
 struct Nearby {
   Vec3d p, velocity, wanted;
   double radius, away;
 };
 
-// What an agent takes up: f(centre, radius), for a vehicle from its rear to its front.
+// Circles that cover an agent: f(centre, radius), for a vehicle from its rear to its front.
 template <class F>
 void for_circles(const AgentBody& agent, const F& f) {
   const AgentDescription& d = *agent.description;

@@ -119,7 +119,7 @@ std::optional<Vec3d> point_in(std::string_view text) {
   return Vec3d{p[0], p[1], p[2]};
 }
 
-using Ports = std::map<std::string, std::string>;  // of a SubTree: what its keys stand for
+using Ports = std::map<std::string, std::string>;  // values of a SubTree's keys
 
 class TreeReader {
  public:

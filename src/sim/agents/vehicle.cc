@@ -6,9 +6,9 @@ namespace {
 // Electric lift trucks and cars are driven at up to 1.5 m/s² in yards; passengers find 2 m/s² to
 // the side comfortable (Bosetti et al. 2014).
 constexpr double kThrust = 1.2, kBrakes = 2.2, kLateral = 1.8;  // [m/s²]
-constexpr double kSteerRate = 0.8;                              // of wheels [rad/s]
-constexpr double kLookTime = 0.8;                               // ahead of which a driver looks [s]
-constexpr double kSpin = 1.2;                                   // of what turns on the spot [rad/s]
+constexpr double kSteerRate = 0.8;  // rate of the wheels' steering [rad/s]
+constexpr double kLookTime = 0.8;   // ahead of which a driver looks [s]
+constexpr double kSpin = 1.2;       // rate of vehicles that turn on the spot [rad/s]
 
 double unsteered_x(const VehicleSize& s) {
   return static_cast<double>(s.steers_rear ? s.front_axle.x : s.rear_axle.x);
@@ -17,7 +17,7 @@ double wheelbase(const VehicleSize& s) {
   return static_cast<double>(s.front_axle.x) - static_cast<double>(s.rear_axle.x);
 }
 
-// Of a wheel in the frame of the prop, `x` from the unsteered axle [m].
+// Place of a wheel in the frame of the prop, `x` from the unsteered axle [m].
 Vec3d wheel_place(const VehicleSize& s, size_t i) {
   const VehicleAxle& axle = i < 2 ? s.front_axle : s.rear_axle;
   const double side = i % 2 == 0 ? 0.5 : -0.5;
@@ -71,7 +71,7 @@ void roll_wheels(const VehicleSize& size, double dt, double speed, double yaw_ra
   for (size_t i = 0; i < 4; ++i) {
     const Vec3d p = wheel_place(size, i);
     const double x = p.x - unsteered_x(size);
-    // Of the hub, in the frame of the chassis.
+    // Velocity of the hub, in the frame of the chassis.
     const Vec3d v{speed - yaw_rate * p.y, yaw_rate * x, 0};
     double& angle = state->angle[i];
     if (size.turning_radius > 0)

@@ -1,7 +1,7 @@
 #pragma once
-// How a vehicle drives: a bicycle model (Rajamani 2012, Vehicle Dynamics and Control, 2.2) without
-// slip, whose reference point is on the ground in the middle between its axles. What turns on the
-// spot, a cart, has fixed driven wheels behind and castors in front.
+// Motion of vehicles: a bicycle model (Rajamani 2012, Vehicle Dynamics and Control, 2.2) without
+// slip. Its reference point is on the ground in the middle between the axles. A cart, which can
+// turn on the spot, has fixed driven wheels behind and castors in front.
 
 #include <array>
 
@@ -11,9 +11,9 @@
 namespace gloam {
 
 struct VehicleState {
-  double curvature = 0;              ///< that its wheels are set to, to the left [1/m]
-  std::array<double, 4> roll = {};   ///< by which the wheels have turned [rad]
-  std::array<double, 4> angle = {};  ///< that they are set to, to the left [rad]
+  double curvature = 0;              ///< curvature that its wheels are set to, to the left [1/m]
+  std::array<double, 4> roll = {};   ///< angles by which the wheels have turned [rad]
+  std::array<double, 4> angle = {};  ///< steering angles, to the left [rad]
 };
 
 /// x of the middle between the axles, in the frame of the prop [m].
@@ -39,7 +39,7 @@ void drive(const VehicleSize& size, double dt, Vec3d wanted, Vec3d* velocity, do
 void roll_wheels(const VehicleSize& size, double dt, double speed, double yaw_rate,
                  VehicleState* state);
 
-/// Of all parts; `p` on the ground in the middle between the axles [m].
+/// Poses of all parts; `p` on the ground in the middle between the axles [m].
 std::array<PartPose, kVehicleParts> vehicle_pose(const VehicleSize& size, Vec3d p, double heading,
                                                  const VehicleState& state);
 

@@ -7,23 +7,23 @@ namespace gloam {
 namespace {
 
 constexpr double kDegree = M_PI / 180;
-constexpr double kUsualSpeed = 1.3;      // that amplitudes are given for [m/s]
+constexpr double kUsualSpeed = 1.3;      // speed that amplitudes are given for [m/s]
 constexpr double kWalkRatio = 0.0063;    // step length / cadence of people of 1.7 m [m min]
 constexpr double kSlowestCadence = 1.2;  // [1/s]
 constexpr double kStrikePitch = 17 * kDegree, kPushPitch = 36 * kDegree;
-constexpr double kToe = 0.7, kHeel = 0.22;        // pivots from the ankle, shares of the foot
+constexpr double kToe = 0.7, kHeel = 0.22;        // pivots from the ankle, fractions of the foot
 constexpr double kStands = 0.06, kStarts = 0.09;  // [m/s]
-constexpr double kWalkerAhead =
-    0.42;                         // of the way in stance that a foot comes down ahead of the hips
-constexpr double kKnee = 0.025;   // that knees bent in mid-stance lower the hips at 1.3 m/s [m]
-constexpr double kReach = 0.997;  // of a leg's length: a knee is never quite straight
+// Fraction of the way in stance by which a foot comes down ahead of the hips.
+constexpr double kWalkerAhead = 0.42;
+constexpr double kKnee = 0.025;   // descent of the hips by knees bent in mid-stance at 1.3 m/s [m]
+constexpr double kReach = 0.997;  // fraction of a leg's length: a knee is never quite straight
 
 double follow(double value, double target, double dt, double time) {
   return value + (target - value) * (1 - std::exp(-dt / time));
 }
 
-// Of the way that a foot swings: it is pushed off, is never faster than 1.4 times its mean speed
-// and comes down without any.
+// Progress of a swinging foot: it is pushed off at 0.6 times its mean speed, is never faster than
+// 1.4 times that, and comes down at rest.
 double swing_profile(double u) { return u * (0.6 + u * (1.8 - 1.4 * u)); }
 
 }  // namespace
@@ -54,7 +54,7 @@ Vec3d Walker::neutral(const WalkInput& in, int foot) const {
   return in.p + Vec3d{-ahead.y, ahead.x, 0} * side;
 }
 
-// How far a foot is from where it should stand; a turn by a radian counts as 0.3 m.
+// Distance of a foot from where it should stand; a turn by a radian counts as 0.3 m.
 double Walker::error_of(const WalkInput& in, int foot) const {
   const Foot& f = state_.feet[foot];
   return flat_norm(f.p - neutral(in, foot)) + 0.3 * std::abs(wrapped(f.yaw - in.heading));
@@ -87,7 +87,7 @@ void Walker::begin_step(const WalkInput& in) {
   f.from = f.p, f.from_yaw = f.yaw;
 }
 
-// Where a foot that swings will come down: as far ahead of the hips as it will be left behind.
+// Landing place of a swinging foot: as far ahead of the hips as it will be left behind.
 void Walker::aim(const WalkInput& in, int foot, double rate, const GroundHeight& ground) {
   Foot& f = state_.feet[foot];
   const double left = (1 - phase_of(foot)) / rate, stand = state_.stance / rate;
@@ -107,7 +107,7 @@ void Walker::advance(double dt, const WalkInput& in, const GroundHeight& ground)
   const double rate = cadence(state_.speed) / 2;  // a cycle is two steps
   double before[2];
   for (int i = 0; i < 2; ++i) before[i] = phase_of(i);
-  // The share of stance changes only so far that no foot changes its state by it.
+  // The fraction of stance changes only so far that no foot changes its state by it.
   const double wanted = stance_share(state_.speed);
   bool is_near = false;
   for (const double phase : before) is_near |= std::abs(phase - state_.stance) < 0.06;

@@ -1,10 +1,9 @@
 #pragma once
-// How a person walks: steps that follow from where the body goes, feet that stay where they are put
-// down, and a body over them.
+// Gait of a person: steps follow from the motion of the body, feet stay where they are put down.
 //
-// Cadence and step length grow alike with speed (a constant walk ratio: Sekiya and Nagasaki 1998);
-// the share of stance falls with speed (Murray 1967, Nilsson et al. 1985); the hips rise and fall
-// as far as step length asks for (Gard and Childress 2001). Angles of pelvis, trunk and arms are
+// Cadence and step length grow alike with speed (a constant walk ratio: Sekiya and Nagasaki 1998).
+// The fraction of stance falls with speed (Murray 1967, Nilsson et al. 1985). The hips rise and
+// fall as step length requires (Gard and Childress 2001). Angles of pelvis, trunk and arms are
 // those of Perry and Burnfield 2010 at 1.3 m/s, less when slower.
 
 #include <array>
@@ -14,15 +13,15 @@
 
 namespace gloam {
 
-/// Where the ground is.
+/// Height of the ground.
 class GroundHeight {
  public:
   virtual ~GroundHeight() = default;
-  /// Of the surface that a foot at p finds [m].
+  /// Height of the surface that a foot at p finds [m].
   virtual double at(Vec3d p) const = 0;
 };
 
-/// What a body does over its feet, at an instant.
+/// Motion of the body over the feet, at an instant.
 struct WalkInput {
   Vec3d p;              ///< on the ground below the hips [m]
   Vec3d velocity;       ///< in the plane [m/s]
@@ -43,10 +42,10 @@ class Walker {
   void reset(const WalkInput& in, const GroundHeight& ground);
   /// Goes on by `dt` [s] to where `in` is.
   void step(double dt, const WalkInput& in, const GroundHeight& ground);
-  /// Of all parts in the world.
+  /// Poses of all parts in the world.
   PersonPose pose(const WalkInput& in) const;
 
-  /// Steps per second at a speed, and the share of the cycle that a foot stands.
+  /// Steps per second at a speed, and the fraction of the cycle that a foot stands.
   double cadence(double speed) const;
   static double stance_share(double speed);
   bool is_stepping() const { return state_.is_stepping != 0; }
@@ -58,21 +57,21 @@ class Walker {
   struct Foot {
     Vec3d p;         // below the ankle on the sole [m]
     double yaw = 0;  // [rad]
-    Vec3d from;      // where it left the ground
+    Vec3d from;      // place where it left the ground
     double from_yaw = 0;
-    Vec3d to;  // where it will come down
+    Vec3d to;  // place where it will come down
     double to_yaw = 0;
   };
   // Plain, without holes: it is hashed.
   struct State {
     Foot feet[2];
-    double phase = 0;  // of the left foot: 0 = it comes down, 1 = again
+    double phase = 0;  // phase of the left foot: 0 = it comes down, 1 = again
     double stance = 0.62;
     double speed = 0;     // filtered [m/s]
     double activity = 0;  // 0 stands … 1 walks
     double ground = 0;    // below the hips, filtered [m]
-    double bob = 0;       // of the hips, down from standing [m], filtered
-    double lean[2] = {};  // of the trunk: forward, to the left [rad], filtered
+    double bob = 0;       // descent of the hips from standing [m], filtered
+    double lean[2] = {};  // lean of the trunk: forward, to the left [rad], filtered
     int64_t is_stepping = 0;
   };
   double phase_of(int foot) const;

@@ -28,11 +28,11 @@ struct StepEvents {
 
 /// A simulation as an effect finds it.
 struct EffectContext {
-  int64_t step;  ///< that is being made, or at which the simulation stands
+  int64_t step;  ///< step that is being made, or at which the simulation stands
   mjModel& model;
   mjData& data;
-  uint64_t& hash;          ///< of the simulation's state; effects add what decides their future
-  StepEvents& events;      ///< of the step that is being made, then of the last one
+  uint64_t& hash;      ///< hash of the simulation's state; effects add what decides their future
+  StepEvents& events;  ///< events of the step that is being made, then of the last one
   const LiveFields* live;  ///< null = no field has been changed
   bool is_halved = false;  ///< mj_step1 is done and mj_step2 to come: inertia is known already
 };
@@ -58,7 +58,7 @@ class Effect {
 
   // One step, in this order.
 
-  /// Whether steps must be taken in halves, for the forces of this effect.
+  /// True if steps must be taken in halves, for the forces of this effect.
   virtual bool acts_on_bodies() const { return false; }
   /// Sets options of the model for a step from this state. Also before forward passes.
   virtual void set_options(const EffectContext&) {}

@@ -14,7 +14,7 @@ struct CompiledWorld;
 struct EffectOutputs {
   std::vector<FieldWindow> media;      ///< by row of CompiledWorld::gases
   std::vector<HeightChange> surfaces;  ///< by row of world/effects/surface_layout.h
-  std::vector<ContactLoad> loads;      ///< of the last step
+  std::vector<ContactLoad> loads;      ///< loads of the last step
 
   /// Room for the outputs of a World.
   void fit(const CompiledWorld& world);

@@ -1,5 +1,5 @@
 #pragma once
-// Where the vertices of a World's surfaces are at an instant.
+// Places of the vertices of a World's surfaces at an instant.
 
 #include <span>
 #include <vector>

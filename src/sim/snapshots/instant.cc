@@ -25,7 +25,7 @@ struct Instant::Solved {
   ModelPtr own_model;  // once live fields have changed
   uint64_t live_serial = 0;
   DataPtr data, scratch;
-  std::optional<WindOnBodies> wind;  // where it blows, of steps as long as wind_timestep
+  std::optional<WindOnBodies> wind;  // wind of steps as long as wind_timestep, if it blows
   double wind_timestep = 0;
   bool good = false;  // the last forward pass was
 
@@ -110,14 +110,14 @@ Status Instant::solve(const Snapshot& snapshot) {
   GLOAM_TRY_STATUS(s.begin(in));
   GLOAM_TRY_STATUS(s.follow_live_fields(in));
   s.model.opt.timestep = in.timestep;
-  s.model.opt.enableflags &= ~mjENBL_SLEEP;  // what sleeps would be left out
+  s.model.opt.enableflags &= ~mjENBL_SLEEP;  // sleeping bodies would be left out
   const mjModel* model = &s.model;
   mjData* data = s.data.get();
   GLOAM_TRY_STATUS(guarded([&] {
     mj_setState(model, data, in.state.data(), mjSTATE_INTEGRATION);
     s.blow(in);
     mj_forward(model, data);
-    // What a forward pass computes only where a sensor asks for it.
+    // Quantities that a forward pass computes only if a sensor asks for them.
     mj_energyPos(model, data);
     mj_energyVel(model, data);
     mj_subtreeVel(model, data);

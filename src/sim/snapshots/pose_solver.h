@@ -33,7 +33,7 @@ class PoseSolver {
   DataPtr data_, scratch_;
   DeformableLayout layout_;
   std::vector<float> masses_;            // in own_model_; empty = the World's
-  std::vector<float> gravity_, active_;  // room to read live fields into
+  std::vector<float> gravity_, active_;  // scratch to read live fields into
   std::vector<float> heights_;           // scratch for surfaces
 };
 

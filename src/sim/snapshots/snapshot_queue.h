@@ -54,7 +54,7 @@ class SnapshotQueue final : public SnapshotSource {
   void wake();
   /// The next window if there is one now, else an empty one.
   SnapshotWindow try_next_window();
-  /// Likewise of a window its first Snapshot, for subscriptions without windows.
+  /// Next window's first Snapshot, for subscriptions without windows.
   Snapshot next() override { return std::move(next_window().keys[0]); }
   Snapshot try_next() { return std::move(try_next_window().keys[0]); }
   /// Ends the subscription: the simulation forgets it, waiting readers return.
@@ -66,7 +66,7 @@ class SnapshotQueue final : public SnapshotSource {
   const SubscriptionOptions& options() const { return options_; }
 
   // ---- the sim thread's side ----
-  /// What could not be completed is lost.
+  /// Counts Snapshots that could not be completed.
   void count_lost(int64_t count) { dropped_.fetch_add(count, std::memory_order_relaxed); }
   bool full() const { return queue_.size() >= options_.capacity; }
   /// Required queues must not be full.

@@ -38,28 +38,29 @@ enum PersonPart {
   kForearmR,
   kPersonParts
 };
-/// Of a vehicle: what moves as one, wheels in the order of kWheelNames, the fork of a forklift.
+/// Parts of a vehicle that move as one; wheels in the order of kWheelNames, then the fork of a
+/// forklift.
 enum VehiclePart { kChassis, kWheelFL, kWheelFR, kWheelRL, kWheelRR, kFork, kVehicleParts };
 
 /// "pelvis", "chassis" …; empty for a part that the kind does not have.
 std::string_view part_name(AgentKind kind, int part);
 int part_count(AgentKind kind);
 
-/// Lengths of a person [m]: shares of the height after Drillis and Contini 1966 (in Winter,
+/// Lengths of a person [m]: fractions of the height after Drillis and Contini 1966 (in Winter,
 /// Biomechanics and Motor Control of Human Movement, fig. 4.1), varied by a few percent.
 struct PersonShape {
   double height = 1.7;
   double girth = 1;         ///< thickness of trunk and limbs, of the mean
-  double hip_height = 0.9;  ///< of the hip joints while standing
-  double hip = 0.08;        ///< of a hip joint from the middle
+  double hip_height = 0.9;  ///< height of the hip joints while standing
+  double hip = 0.08;        ///< distance of a hip joint from the middle
   double thigh = 0.41, shank = 0.42;
   double ankle = 0.066;  ///< above the sole
   double foot = 0.26;    ///< length
-  double waist = 0.17;   ///< of the chest's frame above the pelvis's
+  double waist = 0.17;   ///< height of the chest's frame above the pelvis's
   double trunk = 0.33;   ///< from there up to the shoulders
   double shoulder = 0.19;
   double upper_arm = 0.31, forearm = 0.42;  ///< the latter with the hand
-  double neck = 0.05;                       ///< of the head's frame above the shoulders
+  double neck = 0.05;                       ///< height of the head's frame above the shoulders
   double mass = 72;                         ///< [kg]
 };
 /// Drawn by the seed: heights are normal, of women and men alike (1.69 m, deviation 0.09; NCD-RisC
@@ -73,11 +74,11 @@ struct AgentDescription {
   AgentKind kind = AgentKind::kPerson;
   AgentBehavior behavior = AgentBehavior::kWander;
   uint64_t seed = 0;       ///< its own: of the options and the name
-  bool is_placed = false;  ///< else it begins at a place drawn from where one can go
+  bool is_placed = false;  ///< else it begins at a random place that it can reach
   Vec3 position;           ///< [m]
   double heading = 0;      ///< from +x to +y [rad]
-  double speed = 0;        ///< that it likes [m/s]
-  double radius = 0;       ///< that it keeps from walls [m]
+  double speed = 0;        ///< preferred speed [m/s]
+  double radius = 0;       ///< distance that it keeps from walls [m]
   double height = 0;       ///< headroom that it needs [m]
   std::vector<WaypointOptions> route;
   bool loop = true;
@@ -85,11 +86,11 @@ struct AgentDescription {
   double start = 0;  ///< [s]
   bool yields = true;
   SourceLoc loc;
-  PersonShape person;   ///< where it is one
+  PersonShape person;   ///< shape, if it is a person
   VehicleSize vehicle;  ///< else
 
   int parts() const { return part_count(kind); }
-  /// Of the body of a part: NAME for the first, else NAME/PART.
+  /// Name of the body of a part: NAME for the first, else NAME/PART.
   std::string body_name(int part) const;
   // In the compiled model, by part.
   std::array<int, kPersonParts> body = {}, mocap = {};

@@ -264,7 +264,7 @@ class SkinWriter {
     add_material(name, color, roughness);
     add_skin(name, name, mesh_of(shape, cell), bones);
   }
-  /// Of a material that is there already.
+  /// Adds a skin of a material that exists already.
   void add_of(const char* what, const char* material, const ImplicitShape& shape, float cell,
               const std::vector<int>& bones) {
     add_skin(fmt::format("{}/{}", agent_.name, what), fmt::format("{}/{}", agent_.name, material),

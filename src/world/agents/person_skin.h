@@ -1,6 +1,6 @@
 #pragma once
-// What is seen of a person: skin, hair, shirt, trousers and shoes as skinned meshes over the bodies
-// of its parts. Shapes are this project's own; breadths follow Pheasant and Haslegrave 2006.
+// Visible surface of a person: skin, hair, shirt, trousers and shoes as skinned meshes over the
+// bodies of its parts. Shapes are this project's own; breadths follow Pheasant and Haslegrave 2006.
 
 #include <mujoco/mujoco.h>
 

@@ -20,7 +20,7 @@ namespace gloam {
 namespace fs = std::filesystem;
 namespace {
 
-/// What an entry holds beside the models.
+/// Data that an entry holds beside the models.
 struct CacheEntry {
   std::vector<Dependency> dependencies;
   int initial_key = -1;

@@ -98,7 +98,7 @@ class AgentWriter {
   }
 
   // Trunk, head, legs; hips, head and feet belong to the parts next to them, and arms touch
-  // nothing: each body that can collide costs every step of physics. Thicknesses: shares of the
+  // nothing: each body that can collide costs every step of physics. Thicknesses: fractions of the
   // height, from breadths and depths in Pheasant and Haslegrave 2006.
   void write_person() {
     const PersonShape& s = agent_.person;

@@ -64,7 +64,7 @@ RobotInstance bare_robot(const Scene& scene, const mjModel* model) {
   return robot;
 }
 
-// What is not in the model.
+// Describes the parts of a place that are not in the model.
 void describe_place(const Place& place, CompiledWorld* world) {
   world->regions = place.regions;
   world->ev100 = place.ev100;
@@ -108,7 +108,7 @@ double weights_of(const Scene& scene) {
          (scene.hfields.empty() ? 0 : kSampleWeight);
 }
 
-/// What refers to the compiled model.
+/// Describes all that refers to the compiled model.
 Status describe_rest(CompiledWorld* world) {
   GLOAM_TRY_STATUS(check_sensors(*world));
   GLOAM_TRY_STATUS(describe_lidars(*world));
@@ -124,8 +124,8 @@ Status describe_rest(CompiledWorld* world) {
   return {};
 }
 
-// Where the simulation of a bare model starts; of a scene, as its robots say. Cached models may
-// have been stored with another keyframe.
+// Chooses the keyframe that a bare model starts from; a scene's robots name theirs. Cached models
+// may have been stored with another keyframe.
 Status choose_keyframe(const std::string& keyframe, CompiledWorld* world) {
   if (world->scene.bare_model.empty()) return {};
   world->initial_key = -1;

@@ -9,8 +9,8 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 constexpr Seconds kInterval{0.1};
-// How far a stage is that was expected to take `expected`, by the clock: as expected at first, then
-// ever slower, so that it never stands still and never ends by itself.
+// Progress by the clock of a stage that was expected to take `expected`: as expected at first, then
+// ever slower, so that it never stops and never reaches the end by itself.
 double expected_share(double passed, double expected) {
   constexpr double kAsExpected = 0.8;
   const double x = passed / expected;
@@ -69,7 +69,7 @@ Progress CompileProgress::state(bool is_all) const {
     const double by_clock = expected_share(passed, expected_);
     if (by_clock > share) {
       share = by_clock;
-      constexpr double kLate = 0.25;  // what is late stays late, in proportion
+      constexpr double kLate = 0.25;  // least remaining time of a late stage, over the time passed
       out.left = std::max(expected_ - passed, kLate * passed);
     }
   }

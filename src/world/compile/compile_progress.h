@@ -1,5 +1,5 @@
 #pragma once
-// How far a compilation is, for whoever asked for it, and whether he has had enough.
+// Progress of a compilation, for the caller, who may also cancel it.
 
 #include <atomic>
 #include <chrono>
@@ -32,10 +32,10 @@ class CompileProgress {
   /// kInterrupted from when the callback has returned false.
   Status check() const;
 
-  /// What is made from now on; what was before is done. `expected` = time that it takes [s], 0 =
-  /// not known.
+  /// Begins the next stage; the one before is done. `expected` = time that it takes [s], 0 = not
+  /// known.
   void begin(std::string what, double weight, double expected = 0);
-  /// How much of it is done, 0 … 1.
+  /// Reports the progress of the stage, 0 … 1.
   void report(double share);
   /// The same, when it has another name by now.
   void report(double share, std::string what);

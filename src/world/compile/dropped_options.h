@@ -10,7 +10,7 @@
 
 namespace gloam {
 
-/// What a model's file says of <option> and <visual>.
+/// Options and visual settings of a model's file: <option> and <visual>.
 struct ModelSettings {
   mjOption option;
   mjVisual visual;
@@ -21,7 +21,7 @@ struct ModelSettings {
 /// One setting that is lost.
 struct DroppedSetting {
   std::string text;       ///< "integrator implicitfast, the level has Euler"
-  std::string element;    ///< of MJCF: "option", "flag", "headlight" …
+  std::string element;    ///< element of MJCF: "option", "flag", "headlight" …
   std::string attribute;  ///< "" = any of the element's
 };
 

@@ -1,6 +1,7 @@
 #pragma once
-// What MuJoCo's compiler never ends with: to find the length range of a muscle it simulates until
-// some time has passed, and a joint that moves the wrong way sets its clock back again and again.
+// Refusal of models that MuJoCo's compiler never finishes: to find the length range of a muscle it
+// simulates until some time has passed, and a joint that moves the wrong way sets its clock back
+// again and again.
 
 #include <mujoco/mujoco.h>
 
@@ -10,7 +11,7 @@
 namespace gloam {
 
 struct EndlessCompile {
-  std::string name;   ///< of the element, full
+  std::string name;   ///< name of the element, full
   std::string fault;  ///< "joint 'arm/elbow': armature is nan, line 3", as MuJoCo's errors are
 };
 

@@ -67,7 +67,7 @@ std::optional<NotFinite> find_not_finite(const mjModel& model) {
 #define MJ_M(n) m->n
 #define X(type, field, rows, columns) \
   if (auto found = look_at(model, kind, #field, m->field, m->rows, columns)) return found;
-  // What others are made of comes first: bodies have the inertia of their geoms.
+  // The order is that of dependence: bodies have the inertia of their geoms.
   mjtObj kind = mjOBJ_MATERIAL;
   MJMODEL_POINTERS_MATERIAL
   kind = mjOBJ_GEOM;

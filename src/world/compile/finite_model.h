@@ -12,7 +12,7 @@ namespace gloam {
 struct NotFinite {
   mjtObj type = mjOBJ_UNKNOWN;
   int id = -1;
-  std::string name;   ///< of the element, full; of one without a name that of its body
+  std::string name;   ///< name of the element, full; without one that of its body
   std::string fault;  ///< "camera 'go1/front': fovy is not a number", with `name` in the quotes
 };
 

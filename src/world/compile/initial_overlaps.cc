@@ -21,7 +21,7 @@ class Overlaps {
   std::vector<Error> find() {
     const DataPtr data(mj_makeData(&m_));
     mjData* d = data.get();
-    const MujocoWarningCapture warnings;  // that there are many contacts
+    const MujocoWarningCapture warnings;  // a warning that there are many contacts
     const bool is_done = d != nullptr && try_mujoco([&] {
                            world_.initial_key >= 0
                                ? mj_resetDataKeyframe(&m_, d, world_.initial_key)

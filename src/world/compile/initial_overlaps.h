@@ -1,5 +1,5 @@
 #pragma once
-// What begins inside something else.
+// Geoms that begin inside others.
 
 #include <vector>
 

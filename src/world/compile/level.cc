@@ -33,8 +33,8 @@ namespace {
 // library, whose std::string has another layout than mjString's declaration says here.
 void set_name(mjsElement* element, const std::string& name) { mjs_setName(element, name.c_str()); }
 
-// What MuJoCo's parser and compiler grumble about but take ("<mimic> on joint 'x' ignored"): from
-// its log, and those after the first `known` of the spec.
+// Reports warnings of MuJoCo's parser and compiler ("<mimic> on joint 'x' ignored"): those of its
+// log, and those after the first `known` of the spec.
 void report_warnings(const MujocoWarningCapture& warnings, const mjSpec* spec, int known,
                      const fs::path& file, std::vector<Error>* notes) {
   std::vector<std::string> messages = warnings.messages();
@@ -168,7 +168,8 @@ Status free_base(const RobotOptions& robot, mjSpec* spec) {
   return {};
 }
 
-// What begins with the robot's name is taken for a part of it: by labels, overrides, bindings.
+// An element whose name begins with the robot's name would count as a part of it: in labels,
+// overrides, bindings.
 Status check_prefix(mjSpec* base, const RobotOptions& robot) {
   for (mjsElement* e = mjs_firstElement(base, mjOBJ_BODY); e != nullptr;
        e = mjs_nextElement(base, e)) {

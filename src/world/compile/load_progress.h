@@ -1,5 +1,5 @@
 #pragma once
-// How far the reading of several files is, together.
+// Progress of reading several files together.
 
 #include <cstdint>
 #include <mutex>
@@ -17,7 +17,7 @@ class LoadProgress {
   /// before 2 s nor within 2 s of the last: "reading model files: 1 of 4, 120 of 410 MB, about 5 s
   /// left". From any thread.
   std::string report(size_t file, double share, double seconds);
-  /// Of all bytes, 0 … 1, that are read. From any thread.
+  /// Fraction of all bytes that are read, 0 … 1. From any thread.
   double share() const;
 
  private:

@@ -88,7 +88,7 @@ class ObjectLoader {
         {ErrorKind::kInput, fmt::format("{} is {:.3g} m large", what, size), loc, std::move(hint)});
   }
 
-  /// What has a name already, by the name.
+  /// Names that are taken, with the kind of thing that has each.
   std::map<std::string, std::string> names_taken(const EnvironmentOptions& place) const {
     std::map<std::string, std::string> taken = {{"world", "the world"}};
     const auto add = [&](const auto& things, std::string_view kind) {

@@ -13,17 +13,17 @@ namespace gloam {
 /// In messages.
 inline std::string title(const ObjectOptions& o) { return "object '" + o.name + "'"; }
 
-/// What is to be a body. Its frame is the file's, in Gloam's axes and metres.
+/// An object that is to be a body. Its frame is the file's, in Gloam's axes and metres.
 struct MeshObject {
   ObjectOptions options;  ///< its name is no other's
-  TriangleMesh mesh;      ///< of its node or the whole file, in the body's frame
+  TriangleMesh mesh;      ///< mesh of its node or of the whole file, in the body's frame
   bool is_place = false;  ///< a node of [environment], which may be a room
 };
 
 struct MeshObjects {
   std::vector<MeshObject> objects;
   std::vector<Error> notes;  ///< names that were changed, sizes that are odd
-  uint64_t hash = 0;         ///< of all that physics sees of them; 0 = there are none
+  uint64_t hash = 0;         ///< hash of all that physics uses of them; 0 = there are none
 };
 
 /// Reads their files, by way of the cache on disk. Errors: a file that cannot be read, no such
@@ -38,7 +38,7 @@ Status add_object_visuals(const MeshObjects& objects, Scene* scene);
 Result<std::vector<Converted>> convert_objects(const MeshObjects& objects,
                                                CompileProgress* progress = nullptr);
 
-/// Adds a body for each, with its colliders in group 3. What is odd about the meshes is told in
+/// Adds a body for each, with its colliders in group 3. Oddities of the meshes are reported in
 /// `notes`. Errors: names that the spec has, what is too light to move.
 Status add_objects(const MeshObjects& objects, const std::vector<Converted>& converted,
                    mjSpec* spec, std::vector<Error>* notes);

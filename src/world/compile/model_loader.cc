@@ -58,7 +58,7 @@ Result<ModelFile> load_model_file(const Scene& scene, const fs::path& file, cons
 Result<std::vector<LoadedModel>> load_model_files(const Scene& scene,
                                                   const std::vector<FileUse>& uses,
                                                   CompileProgress* progress) {
-  std::vector<const FileUse*> first;  // of each file
+  std::vector<const FileUse*> first;  // first use of each file
   std::set<fs::path> known;
   for (const FileUse& use : uses)
     if (known.insert(use.path).second) first.push_back(&use);

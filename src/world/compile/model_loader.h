@@ -16,7 +16,7 @@ Error said_of(const std::string& user, const SourceLoc& loc, const Error& error)
 
 struct LoadedModel {
   std::filesystem::path path;  ///< as in VisualOptions::file
-  std::string name;            ///< of the file, for messages
+  std::string name;            ///< name of the file, for messages
   ModelFile model;
 };
 

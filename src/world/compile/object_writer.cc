@@ -201,7 +201,8 @@ Result<std::vector<Converted>> convert_objects(const MeshObjects& objects,
   const std::vector<MeshObject>& all = objects.objects;
   if (all.empty()) return std::vector<Converted>();
   const ConvertWatch watch(objects, progress);
-  // Where the large ones come first, none of them is left for the end. Shares by what they cost.
+  // Large objects come first, so that none of them is left for the end. Progress counts their
+  // costs.
   std::vector<size_t> order(all.size());
   std::iota(order.begin(), order.end(), size_t{0});
   std::stable_sort(order.begin(), order.end(),
@@ -235,7 +236,7 @@ Status add_objects(const MeshObjects& objects, const std::vector<Converted>& con
   for (size_t i = 0; i < objects.objects.size(); ++i) {
     const ObjectOptions& o = objects.objects[i].options;
     for (const std::string& note : converted[i].notes)
-      if (o.motion == "dynamic" || !note.ends_with("its hull's"))  // what stands weighs nothing
+      if (o.motion == "dynamic" || !note.ends_with("its hull's"))  // static objects have no weight
         notes->push_back(
             {ErrorKind::kInput, fmt::format("{} {}", title_of(objects.objects[i]), note), o.loc});
     GLOAM_TRY_STATUS(ObjectWriter(objects.objects[i], spec).write(converted[i]));

@@ -151,7 +151,7 @@ Result<std::vector<SampledGround>> sample_grounds(const Scene& scene, ModelFiles
     GLOAM_TRY(const ModelFile model, load_model_file(scene, o.file, title(o), o.loc));
     GLOAM_TRY_STATUS(files->read(o.file));
     for (const std::string& part : model.parts)
-      (void)files->read(o.file.parent_path() / part);  // what is missing is remembered as missing
+      (void)files->read(o.file.parent_path() / part);  // a missing file is remembered as missing
     Result<std::vector<HeightField>> fields = sample(o, model, notes);
     if (!fields.ok()) return said_of(title(o), o.loc, fields.error());
     grounds.push_back({o, std::move(fields).value()});

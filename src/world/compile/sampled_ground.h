@@ -19,7 +19,7 @@ struct SampledGround {
 /// Admits the files of the scene's hfields, so that they may be read.
 Status admit_ground_files(const Scene& scene, ModelFiles* files);
 
-/// Reads and samples; tells the log what came out. What the fields are made of joins the
+/// Reads and samples; logs the result. The sources of the fields join the
 /// dependencies of `files`; what the user ought to know goes to `notes`. Errors: a file that cannot
 /// be read, a region that is empty, too large or has no surface, too many slabs.
 Result<std::vector<SampledGround>> sample_grounds(const Scene& scene, ModelFiles* files,

@@ -19,7 +19,7 @@
 namespace gloam {
 namespace {
 
-// Chemical heat of combustion, soot yield and radiative share in well-ventilated fires: SFPE
+// Chemical heat of combustion, soot yield and radiative fraction in well-ventilated fires: SFPE
 // Handbook of Fire Protection Engineering, 5th ed., table A.39 (Tewarson). Polyurethane is the
 // flexible foam GM23, wood red oak. Order of kFuels.
 constexpr FuelDescription kFuelTable[] = {{43.7e6f, 0.024f, 0.29f}, {41.2e6f, 0.037f, 0.33f},
@@ -31,8 +31,9 @@ static_assert(std::size(kFuelTable) == kFuels.size());
 constexpr float kGrowthTable[] = {0, 2.93f, 11.72f, 46.9f, 187.6f};
 static_assert(std::size(kGrowthTable) == kFireGrowths.size());
 
-constexpr double kUsualVoxel = 0.1;      // [m]
-constexpr double kUsualVoxels = 250e3;   // of a box whose voxels are left to us: 30 ms a step
+constexpr double kUsualVoxel = 0.1;  // [m]
+// Voxels of a box without a given size of voxels: 30 ms a step
+constexpr double kUsualVoxels = 250e3;
 constexpr double kMostVoxels = 1 << 27;  // 16 GB
 constexpr Vec3 kUsualSize = {8, 8, 4};   // [m]
 constexpr double kWall = 0.3;            // beyond the rooms of a generated place [m]
@@ -42,8 +43,8 @@ size_t row_of(const std::array<std::string_view, N>& words, const std::string& w
   return static_cast<size_t>(std::find(words.begin(), words.end(), word) - words.begin());
 }
 
-/// Where the scene's gas is if it does not say: the rooms of a generated place, else around what
-/// gives smoke or dust, from half a metre below the lowest source, or dusty ground, up.
+/// Box of a gas whose scene gives none: the rooms of a generated place, else around the sources of
+/// smoke or dust, from half a metre below the lowest source, or dusty ground, up.
 Extent usual_extent(const CompiledWorld& world, const std::vector<GasSourceDescription>& sources,
                     const std::vector<DustDescription>& dusts, const std::vector<Affine3f>& X_WB) {
   if (!world.regions.empty()) return extent_of(world.regions, kWall);
@@ -90,7 +91,7 @@ Status set_grid(const GasOptions& options, const Extent& extent, GasDescription*
   }
   gas->voxel = static_cast<float>(voxel);
   gas->nx = static_cast<int>(nx), gas->ny = static_cast<int>(ny), gas->nz = static_cast<int>(nz);
-  // What whole voxels add is shared by opposite sides, but the floor stays where it is.
+  // Rounding to whole voxels grows opposite sides alike, but the floor stays where it is.
   gas->low = {static_cast<float>(extent.low.x - (nx * voxel - edges.x) / 2),
               static_cast<float>(extent.low.y - (ny * voxel - edges.y) / 2),
               static_cast<float>(extent.low.z)};
@@ -163,7 +164,7 @@ bool holds(const GasDescription& gas, Vec3f p) {
   return true;
 }
 
-/// What stands still must be in some box; what moves may enter one later.
+/// Static sources must be in some box; moving ones may enter one later.
 template <class Options>
 Status check_inside(const Options& options, const char* kind, int body, Vec3f p_B,
                     const std::vector<GasDescription>& gases) {
@@ -181,7 +182,7 @@ Status check_inside(const Options& options, const char* kind, int body, Vec3f p_
                            gas.name, gas.low.x, gas.low.y, gas.low.z, high.x, high.y, high.z)};
 }
 
-/// Of what makes a gas where the scene has none.
+/// Place in the file of the first option that makes a gas where the scene has none.
 SourceLoc first_loc(const Scene& scene) {
   if (!scene.fires.empty()) return scene.fires.front().loc;
   return scene.smokes.empty() ? scene.dusts.front().loc : scene.smokes.front().loc;

@@ -15,21 +15,21 @@ namespace gloam {
 
 struct CompiledWorld;
 
-/// What burns, by its heat and its soot.
+/// A fuel: its heat and its soot.
 struct FuelDescription {
   float heat_of_combustion = 0;  ///< chemical [J/kg]
   float soot_yield = 0;          ///< soot per fuel [kg/kg]
-  float radiated = 0;            ///< share of the heat that leaves as radiation
+  float radiated = 0;            ///< fraction of the heat that leaves as radiation
 };
 
 /// Gives fuel, smoke or heat from `start` to `stop`.
 struct GasSourceDescription {
   std::string name;
-  int body = 0;  ///< that it moves with
+  int body = 0;  ///< body that it moves with
   Affine3f X_BS;
-  Vec3f half_size;             ///< of its box [m]
-  float power = 0;             ///< of a fire that has grown [W]
-  float growth = 0;            ///< of a fire: power = growth t² [W/s²]; 0 = at once
+  Vec3f half_size;             ///< half size of its box [m]
+  float power = 0;             ///< power of a fire that has grown [W]
+  float growth = 0;            ///< growth of a fire: power = growth t² [W/s²]; 0 = at once
   float smoke = 0;             ///< [kg/s]
   float heat = 0;              ///< [W]
   std::optional<Vec3f> jet;    ///< velocity of the air in it, in the body [m/s]
@@ -43,9 +43,9 @@ struct GasSourceDescription {
 /// A disc that drives air against its thrust.
 struct RotorDescription {
   std::string name;
-  int body = 0;             ///< that it moves with
-  int actuator = -1;        ///< whose force is the thrust; -1 = none
-  Vec3f p_B;                ///< of its hub [m]
+  int body = 0;             ///< body that it moves with
+  int actuator = -1;        ///< actuator whose force is the thrust; -1 = none
+  Vec3f p_B;                ///< place of its hub [m]
   Vec3f axis_B;             ///< unit, along which positive thrust points
   float thrust = 0;         ///< [N]; per unit of the actuator's force, if there is one
   float radius = 0;         ///< [m]
@@ -56,7 +56,7 @@ struct RotorDescription {
 struct DustDescription {
   std::string name;
   Vec3f low, high;           ///< corners [m]
-  float silt = 0, clay = 0;  ///< shares, as of DustOptions
+  float silt = 0, clay = 0;  ///< fractions, as in DustOptions
   float threshold = 0;       ///< friction velocity [m/s]
   bool holds(Vec3f p) const {
     return p.x >= low.x && p.y >= low.y && p.z >= low.z && p.x <= high.x && p.y <= high.y &&
@@ -64,7 +64,7 @@ struct DustDescription {
   }
 };
 
-/// Of luminous soot in flames [K]: sooty ones have 1200 to 1700 K.
+/// Temperature of luminous soot in flames [K]: sooty ones have 1200 to 1700 K.
 inline constexpr float kFlameTemperature = 1500;
 
 struct GasDescription {
@@ -75,7 +75,7 @@ struct GasDescription {
   Rational rate;               ///< [Hz]
   MediumDescription medium;
   FuelDescription fuel;
-  float temperature = 0;      ///< of the air around [K]
+  float temperature = 0;      ///< temperature of the air around [K]
   std::optional<Vec3f> wind;  ///< [m/s]; empty = the scene's
   bool open[6] = {};          ///< sides of the box: -x +x -y +y -z +z
   float vorticity = 0, cooling = 0, settling = 0;
@@ -91,7 +91,7 @@ struct GasesDescription {
   std::vector<GasDescription> gases;
   std::vector<GasSourceDescription> sources;  ///< each gives to whichever gas it is in
   std::vector<RotorDescription> rotors;       ///< likewise
-  std::vector<DustDescription> dusts;         ///< of those that overlap the first counts
+  std::vector<DustDescription> dusts;  ///< areas of dust; the first of those that overlap counts
 };
 
 /// Errors: no such body or medium, a source in no box, boxes that overlap or have too many voxels.

@@ -16,8 +16,8 @@ namespace gloam {
 namespace {
 
 // A collider that is in the disc, but for this, is a blade, or the disc that stands for them.
-constexpr float kBladeReach = 1.15f;      // of the radius, in the disc's plane
-constexpr float kBladeThickness = 0.35f;  // of the radius, from the plane
+constexpr float kBladeReach = 1.15f;      // reach over the radius, in the disc's plane
+constexpr float kBladeThickness = 0.35f;  // distance from the plane, over the radius
 
 Vec3f float3(const mjtNum* v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2])};

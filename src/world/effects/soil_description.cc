@@ -20,14 +20,14 @@ constexpr double kUsualCells = 6e4;   // at most, unless a cell is asked for
 constexpr double kMostSoilCells = 5e5;
 constexpr double kGroundCell = 0.1;   // between looks for the ground [m]
 constexpr double kThinEdge = 0.3;     // over which a bed over ground thins out [m]
-constexpr double kLeastDepth = 0.01;  // of it there, over its depth
+constexpr double kLeastDepth = 0.01;  // least depth of it there, over its depth
 
 // Pressure, sinkage and strength: J. Y. Wong, "Theory of Ground Vehicles", table 2.3: dry sand,
 // sandy loam (15 % water) by the Land Locomotion Laboratory; clayey soil (38 %), Thailand; lean
 // clay (22 %) by the Waterways Experiment Station; snow by Harrison; mud is Hanamoto's sandy loam
 // of 32 %. Lunar soil: Heiken et al. 1991, "Lunar Sourcebook", chapter 9.
 // Shear displacement: Wong, section 2.4.3: 1 cm firm sand, 2.5 cm loose, 0.6 cm clay, 2.5 cm snow.
-// What rises at the sides is our estimate: wet clay and mud keep their volume, snow is compacted.
+// The rise at the sides is our estimate: wet clay and mud keep their volume, snow is compacted.
 // Unloading: A_u of LETE sand for what is mineral, of Petawawa's snow A: Wong, table 2.4.
 constexpr double kSandUnloading = 503e6, kSnowUnloading = 109.6e6;  // [N/m⁴]
 struct KindRow {
@@ -61,7 +61,7 @@ SoilStrength strength_of(const SoilOptions& o) {
 }
 
 bool overlap(const SoilDescription& a, const SoilDescription& b) {
-  constexpr double kTouch = 1e-6;  // of edges that meet [m]
+  constexpr double kTouch = 1e-6;  // tolerance of edges that meet [m]
   return std::abs(a.x - b.x) < (a.size_x + b.size_x) / 2 - kTouch &&
          std::abs(a.y - b.y) < (a.size_y + b.size_y) / 2 - kTouch &&
          std::abs(a.level - b.level) < std::max(a.depth, b.depth);

@@ -20,25 +20,25 @@ struct SoilStrength {
   double k_c = 0;           ///< [N/m^(n+1)]
   double k_phi = 0;         ///< [N/m^(n+2)]
   double cohesion = 0;      ///< [Pa]
-  double tan_friction = 0;  ///< of the angle of internal friction
+  double tan_friction = 0;  ///< tangent of the angle of internal friction
   double shear = 0.01;      ///< K [m]
   double k_0 = 0;           ///< [N/m³]
   double a_u = 0;           ///< [N/m⁴]
-  double aside = 0;         ///< share of what is displaced that rises beside it
+  double aside = 0;         ///< fraction of what is displaced that rises beside it
 };
 
 struct SoilDescription {
   std::string name, kind;
   double x = 0, y = 0;            ///< middle [m]
   double size_x = 0, size_y = 0;  ///< [m]
-  double depth = 0;               ///< where all of it lies [m]
-  double growth = 0;              ///< of `depth`, where snow falls [m/s]
+  double depth = 0;               ///< depth where all of it lies [m]
+  double growth = 0;              ///< growth of `depth` under falling snow [m/s]
   bool fallen = false;            ///< it is what [weather] has let fall
   int nx = 0, ny = 0;             ///< cells, rows along y
-  double dx = 0, dy = 0;          ///< of a cell [m]
+  double dx = 0, dy = 0;          ///< size of a cell [m]
   double level = 0;               ///< z of a level surface, or of the highest cell's [m]
   std::vector<float> rest;        ///< z of each cell's surface at rest [m]; empty = `level`
-  std::vector<float> share;       ///< of `depth` that lies in each cell, 0 … 1; empty = 1
+  std::vector<float> share;       ///< fraction of `depth` that lies in each cell, 0 … 1; empty = 1
   SoilStrength strength;
   SourceLoc loc;
 
@@ -48,7 +48,7 @@ struct SoilDescription {
   /// At time 0; `level`, `rest` and `depth` are of then.
   double rest_of(size_t cell) const { return rest.empty() ? level : double{rest[cell]}; }
   double share_of(size_t cell) const { return share.empty() ? 1 : double{share[cell]}; }
-  /// What has come to rest_of() by a time at which `fallen_depth` = growth * time [m].
+  /// Depth over rest_of() at a time at which `fallen_depth` = growth * time [m].
   double depth_of(size_t cell, double fallen_depth) const {
     return share_of(cell) * (depth + fallen_depth);
   }
@@ -60,7 +60,7 @@ inline float track_height(float kept, float fallen) {
   return kept < 0 ? std::min(kept + fallen, 0.0f) : std::max(kept - fallen, 0.0f);
 }
 
-/// What was measured of a kind of ground, as docs/soil.md has it. `kind`: of kSoilKinds.
+/// Measured strength of a kind of ground, after docs/soil.md. `kind`: one of kSoilKinds.
 SoilStrength soil_strength(const std::string& kind);
 
 /// Errors: beds that overlap, of too many cells, over ground where there is none, snow that falls

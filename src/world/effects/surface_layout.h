@@ -13,7 +13,7 @@ size_t water_surface(const CompiledWorld& world, size_t water);
 size_t soil_surface(const CompiledWorld& world, size_t soil);
 size_t surface_count(const CompiledWorld& world);
 
-/// Where the vertices of the first water and of the first bed begin.
+/// Indices of the first vertex of the first water and of the first bed.
 int first_water_vertex(const CompiledWorld& world);
 int first_soil_vertex(const CompiledWorld& world);
 

@@ -56,7 +56,7 @@ double seen_height(double depth) {
   constexpr double kThin = 0.025;  // [m]
   return depth - kThin * std::max(1 - depth / (4 * kThin), 0.0);
 }
-// Of what is left in a print that goes down to the ground [m].
+// Snow that is left in a print that goes down to the ground [m].
 constexpr double kCrust = 0.003;
 
 /// Vertices at the middles of cells, those of the outer cells moved out to the edges, and one more

@@ -14,12 +14,13 @@ namespace {
 constexpr double kGravity = 9.81;  // [m/s²]
 constexpr double kPi2 = 2 * std::numbers::pi;
 constexpr int kWaveCount = 40;
-// Of the frequency of the strongest waves: below and above lie 0.2 % and 0.2 % of the energy.
+// Range of frequencies over that of the strongest waves: 0.2 % of the energy lies below it and 0.2
+// % above.
 constexpr double kLongest = 0.6, kShortest = 5;
 constexpr double kPeakedness = 3.3;  // JONSWAP's mean gamma
 
-constexpr double kRippleLength = 1;       // that ripples have the speed of [m]
-constexpr double kFinestCell = 0.04;      // of ripples [m]
+constexpr double kRippleLength = 1;       // wave length whose speed ripples have [m]
+constexpr double kFinestCell = 0.04;      // finest cell of ripples [m]
 constexpr double kCoarsestCell = 0.25;    // beyond which bodies are lost between cells [m]
 constexpr double kMostRippleCells = 192;  // along an edge
 constexpr Rational kRippleRate{60, 1};
@@ -116,7 +117,7 @@ Status check_waves(const WaterOptions& o) {
 
 bool overlap(const WaterOptions& a, const WaterOptions& b) {
   const auto apart = [](double p, double half_p, double q, double half_q) {
-    constexpr double kTouch = 1e-6;  // of edges that meet [m]
+    constexpr double kTouch = 1e-6;  // tolerance of edges that meet [m]
     return std::abs(p - q) >= half_p + half_q - kTouch;
   };
   return !apart(a.position.x, a.size[0] / 2, b.position.x, b.size[0] / 2) &&

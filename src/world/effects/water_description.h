@@ -38,8 +38,8 @@ struct WaterDescription {
   std::vector<WaveDescription> waves;
   WaterGrid ripples;        ///< none = bodies make no waves
   Rational ripple_rate;     ///< steps of them [Hz]
-  double ripple_speed = 0;  ///< of them [m/s]
-  WaterGrid mesh;           ///< that is drawn of the surface
+  double ripple_speed = 0;  ///< speed of ripples [m/s]
+  WaterGrid mesh;           ///< mesh of the visible surface
   SourceLoc loc;
 
   double low_x() const { return x - size_x / 2; }

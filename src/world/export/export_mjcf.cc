@@ -247,7 +247,7 @@ Result<ExportedModel> save_and_compare(mjSpec* spec, const mjModel* wanted, cons
   return load_and_compare(wanted, path);
 }
 
-// Whether visual geoms have left the physics as it was.
+// True if visual geoms have left the physics as it was.
 bool is_same_physics(const mjModel& a, const mjModel& b) {
   const auto same = [](const mjtNum* x, const mjtNum* y, mjtSize count) {
     return std::equal(x, x + count, y);

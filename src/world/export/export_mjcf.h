@@ -9,7 +9,7 @@
 
 namespace gloam {
 
-/// What came back when stock MuJoCo loaded what was written.
+/// Comparison of the World's model with the one that stock MuJoCo loads from the written files.
 struct ExportedModel {
   int compared = 0;                    ///< fields of mjModel
   std::vector<std::string> differing;  ///< those that are not equal in every bit

@@ -15,7 +15,7 @@ namespace gloam {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kExportedGroup = 2;  // of visuals in MuJoCo's own collection of models
+constexpr int kExportedGroup = 2;  // group of visuals in MuJoCo's own collection of models
 
 // The mesh as Wavefront OBJ, in metres.
 std::string to_obj(const TriangleMesh& mesh) {
@@ -126,7 +126,7 @@ class VisualExport {
     if (instance.shape != ShapeType::kMesh) std::copy_n(size, 3, geom->size);
   }
 
-  // Of one mesh, its name in the spec; written at its first use.
+  // Name in the spec of a mesh, which is written at its first use.
   Result<std::string> mesh_of(int row) {
     const auto [known, is_new] = meshes_.try_emplace(row, fmt::format("visual_{}", row));
     if (!is_new) return known->second;

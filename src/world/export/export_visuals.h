@@ -1,5 +1,5 @@
 #pragma once
-// What a World shows and its model does not have, for its export.
+// Visible parts of a World that its model does not have, for its export.
 
 #include <filesystem>
 #include <vector>
@@ -15,7 +15,7 @@ namespace gloam {
 Result<int> add_visual_geoms(const CompiledWorld& world, const std::filesystem::path& folder,
                              mjSpec* spec, std::vector<Error>* left_out);
 
-/// What else of the scene MJCF has no words for, one line a kind.
+/// Parts of the scene that MJCF cannot express, one line a kind.
 std::vector<Error> list_left_out(const Scene& scene);
 
 }  // namespace gloam

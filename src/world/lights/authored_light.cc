@@ -70,13 +70,14 @@ LampMotion motion_of(const LightOptions& light) {
   return out;
 }
 
-/// What it sends to a point `distance` away, not more than it would from right in front [lx].
+/// Illuminance that an area gives at `distance`, at most that right in front of it [lx].
 float area_illuminance(double luminance, double area, bool is_flat, float distance) {
-  const double shown = is_flat ? area : area / 4;  // of convex shapes from all sides (Cauchy)
+  // Mean shadow of convex shapes over all directions (Cauchy)
+  const double shown = is_flat ? area : area / 4;
   return static_cast<float>(luminance * std::min(M_PI, shown / sqr(distance)));
 }
 
-/// Where a lamp is, and how it changes.
+/// Place of a lamp and the rows of its changes.
 struct LampPlace {
   int body = 0, schedule = -1, motion = -1;  ///< the latter two: rows, -1 = none
   bool is_static = true;

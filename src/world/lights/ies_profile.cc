@@ -17,8 +17,7 @@ constexpr double kSlack = 1e-3;  // [degrees], in comparisons of what files roun
 
 bool near(double a, double b) { return std::abs(a - b) < kSlack; }
 
-/// Where x lies among rising `angles`: index of the one below and the share of the next; false
-/// outside.
+/// Finds x among rising `angles`: index of the one below and the weight of the next; false outside.
 bool find(const std::vector<double>& angles, double x, size_t* low, double* share) {
   if (x < angles.front() - kSlack || x > angles.back() + kSlack) return false;
   *low = 0;
@@ -147,7 +146,7 @@ double flux_of(const IesProfile& p) {
   const double step = M_PI / (p.rows - 1);
   double flux = 0;
   for (int row = 0; row < p.rows; ++row) {
-    // Of the tent of one row times the sine.
+    // Weight: integral of the linear tent of one row times the sine.
     const double at = step * row, bend = (1 - std::cos(step)) / step;
     double weight = 2 * bend * std::sin(at);
     if (row == 0 || row == p.rows - 1) weight = 1 - std::sin(step) / step;

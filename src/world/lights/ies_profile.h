@@ -1,6 +1,6 @@
 #pragma once
-// How strongly a luminaire shines into each direction: photometric files after ANSI/IESNA LM-63
-// (1986, 1991, 1995, 2002, 2019), goniometer types A, B and C.
+// Intensity of a luminaire by direction: photometric files after ANSI/IESNA LM-63 (1986, 1991,
+// 1995, 2002, 2019), goniometer types A, B and C.
 
 #include <filesystem>
 #include <string>
@@ -40,7 +40,7 @@ GLOAM_HD float ies_intensity(const float* grid, int rows, int columns, Vec3f d_L
 struct IesProfile {
   int rows = 0, columns = 0;
   std::vector<float> candela;  ///< (rows x columns) [cd], finite, >= 0
-  double flux = 0;             ///< of the grid, interpolated, over the sphere [lm]
+  double flux = 0;             ///< flux of the grid, interpolated, over the sphere [lm]
   float most = 0;              ///< [cd]
 
   /// Towards the unit direction d_L, bilinear in the angles [cd].

@@ -100,7 +100,7 @@ class Reader {
   std::string_view text_;
   const std::string& name_;
   size_t at_ = 0;
-  int line_ = 0, next_ = 1;  ///< of what was read last; of what comes next
+  int line_ = 0, next_ = 1;  ///< lines of the last token and of the next
 };
 
 std::string_view trimmed(std::string_view line) {

@@ -16,7 +16,7 @@ struct IesMeasurement {
   Goniometer type = Goniometer::kC;
   std::vector<double> vertical, horizontal;
   std::vector<double> candela;                 ///< (horizontal x vertical)
-  int vertical_line = 0, horizontal_line = 0;  ///< where the angles begin
+  int vertical_line = 0, horizontal_line = 0;  ///< lines where the angles begin
 };
 
 Result<IesMeasurement> read_ies_text(std::string_view text, const std::string& name);

@@ -1,5 +1,5 @@
 #pragma once
-// How a lamp turns or swings on simulation time: a pure function of time.
+// Turns and swings of a lamp: a pure function of simulation time.
 
 #include "base/vec.h"
 
@@ -12,7 +12,7 @@ struct LampMotion {
   double turns = 0;       ///< [1/s], counter-clockwise seen against the axis
   double swing = 0;       ///< amplitude [rad]
   double swing_rate = 0;  ///< [Hz]
-  double phase = 0;       ///< share of a turn or swing that is over at time 0
+  double phase = 0;       ///< fraction of a turn or swing that is over at time 0
 };
 
 /// Pose in its body at `time` [s] of a lamp that rests at X_BL.

@@ -1,6 +1,6 @@
 #pragma once
-// How a lamp's light changes on simulation time: a factor on its intensity, a pure function of
-// time, seed and lamp, so that any step can be asked for in any order, by any thread.
+// Changes of a lamp's light: a factor on its intensity, a pure function of simulation time, seed
+// and lamp, so that any step can be asked for in any order, by any thread.
 
 #include <cstdint>
 #include <string>
@@ -14,8 +14,8 @@ namespace gloam {
 /// On for `duty` of every period, off for the rest.
 struct OnOff {
   double period = 1;  ///< [s], > 0
-  double duty = 0.5;  ///< share of the period, 0..1
-  double phase = 0;   ///< share of a period that is over at time 0, 0..1
+  double duty = 0.5;  ///< fraction of the period, 0..1
+  double phase = 0;   ///< fraction of a period that is over at time 0, 0..1
 };
 
 /// Levels at times; the first holds before, the last after.
@@ -32,7 +32,7 @@ struct Keyframes {
 /// frequency. Its mean is 1, and depth is the percent flicker of IES RP-16, (max - min) / (max +
 /// min).
 struct MainsRipple {
-  double frequency = 50;  ///< of the mains [Hz], > 0: ripple of 100 Hz
+  double frequency = 50;  ///< frequency of the mains [Hz], > 0: ripple of 100 Hz
   double depth = 0.3;     ///< 0..1: incandescent 0.1, fluorescent on a magnetic ballast 0.3
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// How strong lamps shine: from what a scene says of them to candela and cd/m². Angles in radians.
+// Strength of lamps: from the units of a scene to candela and cd/m². Angles in radians.
 
 #include "gloam/scene.h"
 #include "world/lights/ies_profile.h"
@@ -11,11 +11,11 @@ namespace gloam {
 /// temperature; white when none is given.
 Vec3f light_color(const LightOptions& light);
 
-/// What an intensity of 1 cd gives altogether [lm], a factor [sr]: of a point or spot light whose
-/// cone, softness and type are set, with its profile's shape, or (null) even in all directions.
+/// Luminous flux of a light of 1 cd [lm], a factor [sr]: of a point or spot light whose cone,
+/// softness and type are set, with its profile's shape, or (null) even in all directions.
 double solid_angle(const LightDescription& light, const IesProfile* profile);
 
-/// Where a point or spot light is at its most [cd]. `light` as above. `profile`: as in the file.
+/// Greatest intensity of a point or spot light [cd]. `light` as above. `profile`: as in the file.
 double candela(const LightOptions& options, const LightDescription& light,
                const IesProfile* profile);
 

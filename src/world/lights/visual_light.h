@@ -12,7 +12,7 @@
 
 namespace gloam {
 
-/// How much light there is, for the exposure.
+/// Amount of light, for the exposure.
 struct LightLevels {
   std::vector<float> illuminance;  ///< [lx] of each active light, facing it at the model's centre
   bool photometric = false;        ///< an active light has an intensity in cd, or the scene says
@@ -29,8 +29,8 @@ LightLevels describe_light(const mjModel& model, const Scene& scene,
                            const std::vector<Affine3f>& poses, LightLevels levels,
                            MaterialTable* materials, RenderDescription* out);
 
-/// How far what a light at p_W is meant for is taken to be away [m]: the scene's centre, or a
-/// quarter of its extent if that is further.
+/// Distance at which a light at p_W is assumed to be looked at [m]: that of the scene's centre, or
+/// a quarter of its extent if that is further.
 float light_distance(Vec3f p_W, const RenderDescription& scene);
 
 /// EV100 of the described scene, whose textures are loaded.

@@ -131,7 +131,7 @@ void apply(const MaterialOptions& in, int pattern, int wear, const OwnTextures& 
   number(in.bump_scale, &out->bump_scale);
 }
 
-/// Why the table cannot be applied to a material, or "".
+/// Reason why the table cannot be applied to a material, or "".
 std::string why_not(const MaterialOptions& in, const MaterialDescription& material) {
   if (!material.imported && (in.base_color || in.metallic || in.roughness || in.emission))
     return "comes from the model: say its colour, metalness, roughness and emission there";

@@ -1,5 +1,5 @@
 #pragma once
-// What a scene file says of the model's materials beyond MJCF.
+// Options of a scene file for the model's materials beyond MJCF.
 
 #include "gloam/scene.h"
 #include "world/render_description.h"
@@ -11,7 +11,7 @@ namespace gloam {
 /// colours of a material that the model itself describes.
 Status author_materials(const std::vector<MaterialOptions>& options, RenderDescription* out);
 
-/// Whether a name is what a pattern says, in which * stands for any text.
+/// True if a name fits a pattern, in which * stands for any text.
 bool fits(std::string_view pattern, std::string_view name);
 
 }  // namespace gloam

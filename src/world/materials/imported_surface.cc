@@ -11,7 +11,7 @@
 namespace gloam {
 namespace {
 
-/// Height of a bump of MTL, as a share of the texture's length, with -bm 1.
+/// Height of a bump of MTL, as a fraction of the texture's length, with -bm 1.
 constexpr float kBumpShare = 0.01f;
 constexpr float kCoatIor = 1.5f;  // KHR_materials_clearcoat
 constexpr float kMirrorIor = 1000;
@@ -75,7 +75,7 @@ class SurfaceMaker {
     UvTransform& t = surface_.uv.transform;
     if (all_repeat)
       t.offset = {t.offset.x - std::floor(t.offset.x), t.offset.y - std::floor(t.offset.y)};
-    // What only scales is the material's own, so that the mesh stays as it is for others.
+    // A pure scaling goes to the material, so that the mesh stays as it is for others.
     if (t.offset.x == 0 && t.offset.y == 0 && t.rotation == 0 && t.scale.x > 0 && t.scale.y > 0) {
       m().texture_repeat = t.scale;
       t.scale = {1, 1};
@@ -239,7 +239,7 @@ class SurfaceMaker {
   ImportedTextures* textures_;
   RenderDescription* out_;
   ImportedSurface surface_;
-  const TextureRef* reference_ = nullptr;  // whose coordinates all textures have
+  const TextureRef* reference_ = nullptr;  // texture whose coordinates all textures use
   bool told_nearest_ = false;
 };
 

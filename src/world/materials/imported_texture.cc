@@ -14,7 +14,7 @@
 namespace gloam {
 namespace {
 
-/// Of all pictures of one file: their mip-mapped texels take 11 bytes each.
+/// Limit on all pictures of one file [pixels]: their mip-mapped texels take 11 bytes each.
 constexpr uint64_t kMostPixels = uint64_t{1} << 28;
 
 Result<Image8> decode_picture(const ImportedImage& image, uint64_t most) {

@@ -13,12 +13,12 @@
 
 namespace gloam {
 
-/// What is made of a picture.
+/// Source and conversion of a texture.
 struct TextureRecipe {
   TextureRef source;
-  bool keep_alpha = false;  ///< of a colour
+  bool keep_alpha = false;  ///< alpha of a colour is kept
   float cutoff = -1;        ///< >= 0: alpha is 1 from there on and 0 below
-  float normal_scale = 1;   ///< of x and y of a normal map
+  float normal_scale = 1;   ///< scale of x and y of a normal map
 };
 
 /// The pictures of one model file, and rows of RenderDescription::textures made of them.

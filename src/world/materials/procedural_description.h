@@ -17,7 +17,7 @@ enum class ProceduralKind : uint8_t {
   kBrick,      ///< bricks in mortar
   kTiles,      ///< tiles in grout
   kFabric,     ///< woven yarns
-  kScratches,  ///< fine lines; `mask` = share of the surface that they take
+  kScratches,  ///< fine lines; `mask` = fraction of the surface that they take
   kDirt,       ///< grime in corners, near the floor and on top; `mask` = how much covers
 };
 inline constexpr int kProceduralKindCount = 9;
@@ -34,23 +34,24 @@ struct ProceduralDescription {
   uint32_t seed = 0;
   Vec3f color_a{0.5f, 0.5f, 0.5f};  ///< ground: early wood, stone, brick, tile, warp, clean surface
   Vec3f color_b{0.5f, 0.5f, 0.5f};  ///< second: late wood, veins, brick's other end, weft, dirt
-  Vec3f color_c{0.5f, 0.5f,
-                0.5f};  ///< third: pores, seams, mortar, grout, over-burnt bricks' shade
+  /// Third: pores, seams, mortar, grout, over-burnt bricks' shade.
+  Vec3f color_c{0.5f, 0.5f, 0.5f};
   /// Characteristic length [m], > 0: largest noise cell, mean ring width, distance of veins,
   /// largest stain, yarn spacing, length of a scratch, size of dirt's ragged edge.
   float scale = 0.1f;
-  float size_u = 0.2f, size_v = 0.1f;  ///< of a board, formwork panel, brick or tile [m], > 0;
-                                       ///< 0 for wood and concrete = no boards, no panels
-  float gap = 0.01f;                   ///< joint between units, or width of a scratch [m]
-  float depth = 0.002f;        ///< of joints, pores, scratches; height of noise and yarns [m]
+  /// Size of a board, formwork panel, brick or tile [m], > 0; 0 for wood and concrete = no boards,
+  /// no panels
+  float size_u = 0.2f, size_v = 0.1f;
+  float gap = 0.01f;           ///< joint between units, or width of a scratch [m]
+  float depth = 0.002f;        ///< depth of joints, pores, scratches; height of noise and yarns [m]
   float bevel = 0.002f;        ///< width over which a unit's edge falls into its joint [m], > 0
-  float roughness = 0.5f;      ///< of the ground, 0..1
-  float gap_roughness = 0.9f;  ///< of joints, scratches, dirt, 0..1
+  float roughness = 0.5f;      ///< roughness of the ground, 0..1
+  float gap_roughness = 0.9f;  ///< roughness of joints, scratches, dirt, 0..1
   float coat = 0;              ///< weight of varnish or glaze, 0..1
   float coat_roughness = 0.1f;
   float variation = 0.5f;  ///< between units and of the ground's tone, 0..1
-  float amount = 0.5f;     ///< of pores, veins, rays, chips, scratches or dirt, 0..1
-  float metallic = 0;      ///< of the ground
+  float amount = 0.5f;     ///< amount of pores, veins, rays, chips, scratches or dirt, 0..1
+  float metallic = 0;      ///< metalness of the ground
   float fuzz = 0;          ///< weight of a fabric's sheen, 0..1
   float pith = 0.2f;       ///< wood: how far the log's middle is from the surface's origin [m]
   Vec3f axis{0, 0, 1};     ///< unit: grain of solid wood, direction of scratches

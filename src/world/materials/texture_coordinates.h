@@ -1,6 +1,6 @@
 #pragma once
-// Where a texture lands on a shape: the conventions of MuJoCo's classic renderer, measured on
-// MuJoCo 4.0.0 with a texture whose texels name their row and column. Device-safe.
+// Texture coordinates of shapes: the conventions of MuJoCo's classic renderer, measured on MuJoCo
+// 4.0.0 with a texture whose texels name their row and column. Device-safe.
 //
 // p is the hit in the shape's own frame [m], n the unit geometric normal there, size that of
 // InstanceDescription. With s to the right and t DOWN the image (t = 0 is the top of the first
@@ -23,17 +23,12 @@
 // in a capsule's caps q.z = +-(1 + (|z| - size.y) / r); texrepeat does nothing there.
 
 #include "base/vec.h"
+#include "world/materials/texture_cube.h"
 #include "world/shapes/shape_type.h"
 
 namespace gloam {
 
-/// Texel of a cube texture: face in the order of TextureDescription, uv on that face.
-struct CubeTexel {
-  int face = 0;
-  Vec2f uv;  ///< v upwards, 0..1
-};
-
-/// Angle around z as a share of the full turn, [0, 1).
+/// Angle around z as a fraction of the full turn, [0, 1).
 GLOAM_HD float turn_about_z(float x, float y) {
   const float turn = atan2f(y, x) * (0.5f * kInvPi);
   return turn < 0 ? turn + 1 : turn;
@@ -109,59 +104,5 @@ GLOAM_HD Vec2f texture_uv(ShapeType shape, Vec3f p, Vec3f n, Vec3f size, Vec2f u
   }
   return {s * repeat.x, 1 - t * repeat.y};
 }
-
-/// Direction in which a cube texture is looked up (any length > 0).
-GLOAM_HD Vec3f texture_cube_direction(ShapeType shape, Vec3f p, Vec3f size, bool uniform) {
-  Vec3f a = size;  // half extents of the shape along its axes
-  switch (shape) {
-    case ShapeType::kMesh:
-    case ShapeType::kDeformable:
-    case ShapeType::kPlane:
-      return uniform ? p * size : p;
-    case ShapeType::kSphere:
-      a = {size.x, size.x, size.x};
-      break;
-    case ShapeType::kCapsule:
-    case ShapeType::kCylinder:
-      a = {size.x, size.x, size.y};
-      break;
-    case ShapeType::kBox:
-    case ShapeType::kEllipsoid:
-      break;
-  }
-  Vec3f q{p.x / a.x, p.y / a.y, p.z / a.z};
-  if (shape == ShapeType::kCapsule && fabsf(p.z) > size.y)
-    q.z = copysignf(1 + (fabsf(p.z) - size.y) / size.x, p.z);
-  return uniform ? q * a : q;
-}
-
-/// The cube map of OpenGL: faces right, left, up, down, front, back = +X, -X, +Y, -Y, +Z, -Z.
-GLOAM_HD CubeTexel cube_texel(Vec3f d) {
-  const float ax = fabsf(d.x), ay = fabsf(d.y), az = fabsf(d.z);
-  float s = 0, t = 0, major = ax;
-  CubeTexel texel;
-  if (ax >= ay && ax >= az) {
-    texel.face = d.x >= 0 ? 0 : 1;
-    s = d.x >= 0 ? -d.z : d.z;
-    t = -d.y;
-  } else if (ay >= az) {
-    texel.face = d.y >= 0 ? 2 : 3;
-    s = d.x;
-    t = d.y >= 0 ? d.z : -d.z;
-    major = ay;
-  } else {
-    texel.face = d.z >= 0 ? 4 : 5;
-    s = d.z >= 0 ? d.x : -d.x;
-    t = -d.y;
-    major = az;
-  }
-  const float half = 0.5f / max(major, 1e-30f);
-  texel.uv = {0.5f + s * half, 0.5f - t * half};
-  return texel;
-}
-
-/// World direction to direction in the skybox: MuJoCo draws it turned by 90 degrees about +X, so
-/// that images made for +Y up stand upright.
-GLOAM_HD Vec3f sky_cube_direction(Vec3f d_W) { return {d_W.x, d_W.z, -d_W.y}; }
 
 }  // namespace gloam

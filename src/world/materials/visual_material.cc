@@ -18,7 +18,8 @@ namespace {
 struct Texels {
   const mjtByte* data = nullptr;
   int width = 0, height = 0;
-  std::unique_ptr<mjtByte, void (*)(void*)> owned{nullptr, mju_free};  ///< of by-reference textures
+  /// Owner of by-reference textures
+  std::unique_ptr<mjtByte, void (*)(void*)> owned{nullptr, mju_free};
 };
 
 /// MuJoCo keeps a KTX file as it is: a row of its bytes as one channel.

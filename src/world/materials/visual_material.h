@@ -45,7 +45,7 @@ class MaterialTable {
   std::vector<PendingTexture> pending_;
 };
 
-/// What is in a texture whose texels are a KTX file inside the model; empty when they are not, or
+/// Picture in a texture whose texels are a KTX file inside the model; empty when they are not, or
 /// are damaged.
 KtxImage embedded_ktx(const mjModel& model, int texid);
 

@@ -78,7 +78,7 @@ float ev100_for(float luminance, float display) {
 }
 
 float mean_luminance(const TextureDescription& texture) {
-  constexpr size_t kSamples = 1024;  // of each face, evenly spread
+  constexpr size_t kSamples = 1024;  // samples of each face, evenly spread
   double sum = 0;
   size_t count = 0;
   for (const Image8& face : texture.faces) {

@@ -14,7 +14,7 @@ namespace gloam {
 /// the sky, a white material of emission 1 [cd/m²].
 inline constexpr float kWhiteLuminance = 100;
 
-/// Where kWhiteLuminance lands on the display scale 0..1 before tone mapping.
+/// Place of kWhiteLuminance on the display scale 0..1 before tone mapping.
 inline constexpr float kWhiteExposed = 0.85f;
 
 /// MuJoCo's colours are display values: sRGB (IEC 61966-2-1) to linear Rec. 709.
@@ -26,7 +26,7 @@ Vec3f emission_luminance(Vec3f color, float emission);
 /// GGX roughness (alpha = roughness²) of a Blinn-Phong lobe with exponent 128 x shininess.
 float roughness_of_shininess(float shininess);
 
-/// What MuJoCo knows of a surface, in its own terms; these are its defaults.
+/// Surface in MuJoCo's terms; these are its defaults.
 struct ModelSurface {
   std::array<float, 4> rgba{0.5f, 0.5f, 0.5f, 1};  ///< display colour and opacity
   float emission = 0, specular = 0.5f, shininess = 0.5f, reflectance = 0;
@@ -40,7 +40,7 @@ void set_look(const ModelSurface& surface, MaterialDescription* material);
 /// Geoms, skins, flexes and tendons without a colour of their own have this one.
 bool is_default_rgba(const float* rgba);
 
-/// What LightDescription::intensity holds, from the light's live values. `intensity` [cd], 0 = none
+/// Value of LightDescription::intensity, from the light's live values. `intensity` [cd], 0 = none
 /// given: then `legacy_scale` x diffuse. Otherwise diffuse gives the hue only. Directional: [lx].
 Vec3f light_intensity(Vec3f diffuse, float intensity, float legacy_scale);
 

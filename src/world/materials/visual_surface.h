@@ -12,7 +12,7 @@ namespace gloam {
 /// one behind the other in y.
 void add_grid_triangles(int columns, TriangleMesh* mesh);
 
-/// What a surface is called: `kind` tells it from MuJoCo's types of objects, `index` from its like.
+/// Name of a surface: `kind` is MuJoCo's type of object, `index` its number among them.
 struct SurfaceName {
   std::string name;
   int kind = 0, index = 0;

@@ -22,7 +22,7 @@ Error volume_error(const VolumeOptions& options, std::string message, std::strin
   return {ErrorKind::kInput, fmt::format("volume '{}': {}", options.name, message), options.loc,
           std::move(hint)};
 }
-/// What the parts below say has no place of its own.
+/// Errors of the functions below, which have no place in the file, get the volume's.
 Status placed(Status status, const VolumeOptions& options) {
   if (status.ok()) return status;
   return Error{status.error().kind, status.error().message, options.loc, status.error().hint};

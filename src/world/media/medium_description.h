@@ -12,7 +12,7 @@
 
 namespace gloam {
 
-/// Where a sensor looks: each uses its own band of the same field.
+/// Bands of sensors: each uses its own band of the same field.
 enum class MediumBand : uint8_t { kRed, kGreen, kBlue, k905nm, k1550nm, k8to14um };
 inline constexpr int kMediumBands = 6;
 
@@ -20,13 +20,13 @@ inline constexpr int kMediumBands = 6;
 struct MediumDescription {
   std::string name;
   std::array<float, kMediumBands> mass_extinction{};  ///< [m²/kg], >= 0
-  std::array<float, kMediumBands> albedo{};           ///< of single scattering, 0..1
+  std::array<float, kMediumBands> albedo{};           ///< albedo of single scattering, 0..1
   std::array<float, kMediumBands> g{};  ///< mean cosine of scattering (Henyey–Greenstein), -1..1
-  /// What it gives off per metre, relative to a black body of its absorption coefficient and
-  /// temperature: 1 by Kirchhoff's law, 0 = dark. Red, green and blue alone.
+  /// Emission per metre, relative to a black body of its absorption coefficient and temperature: 1
+  /// by Kirchhoff's law, 0 = dark. Red, green and blue alone.
   float emission = 0;
-  /// Whose hue all has that glows [K]; 0 = each its own. Where a voxel's temperature tells how much
-  /// of it is flame, that is as bright as it says, and no redder for being thin.
+  /// Temperature of the hue of all emission [K]; 0 = each voxel's own. For voxels whose temperature
+  /// stands for the fraction that is flame: their brightness follows it, their hue must not.
   float hue_temperature = 0;
 };
 

@@ -53,7 +53,7 @@ double plume(const RandomStream& random, double x, double y, double z, const dou
   const double v = y + sway * (billows(random, 9, 1.3 * n[1], 1.3 * n[2]) - 0.5);
   const double width = 0.12 + 0.45 * z, r = std::hypot(u, v) / width;
   const double torn = billows(random, 4 * n[0], 4 * n[1], 3 * n[2]);
-  const double dilution = 0.12 * 0.12 / (width * width);  // what rises is spread over its section
+  const double dilution = 0.12 * 0.12 / (width * width);  // rising smoke is spread over its section
   const double edge = std::max(std::exp(-r * r) - 0.02, 0.0) *
                       smooth_step(0.15 + 0.25 * z, 0.75, torn + 0.35 * (1 - z));
   return edge * std::sqrt(dilution) * (1 - smooth_step(0.85, 1, z));
@@ -95,7 +95,7 @@ VolumeFile make_pattern(const VolumePatternOptions& options, Vec3f size) {
 
 std::vector<float> haze_layer(const GridShape& shape, Vec3f size, float low, double scale_height,
                               double turbulence, float density, uint64_t seed) {
-  constexpr double kAcross = 40, kUp = 15;  // of the largest billows [m]
+  constexpr double kAcross = 40, kUp = 15;  // size of the largest billows [m]
   const auto nx = static_cast<size_t>(shape.nx), ny = static_cast<size_t>(shape.ny);
   const auto nz = static_cast<size_t>(shape.nz);
   std::vector<float> out(nx * ny * nz);

@@ -13,9 +13,9 @@ struct CompiledWorld;
 
 struct LidarDescription {
   LidarOptions options;
-  int body = 0;  ///< that it moves with
+  int body = 0;  ///< body that it moves with
   Pose X_BL;
-  std::vector<uint8_t> hidden = {};  ///< by body: its beams pass it; empty = none
+  std::vector<uint8_t> hidden = {};  ///< flags by body: its beams pass it; empty = none
 };
 
 /// Error: no such body, with the nearest name.

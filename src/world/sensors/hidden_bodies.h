@@ -10,8 +10,8 @@
 
 namespace gloam {
 
-/// By body: whether it or one above it fits one of the patterns; empty = there are none. `owner`,
-/// `loc`: who hides them, for errors. Errors: a pattern that fits none.
+/// Flags by body: it or one above it fits one of the patterns; empty = there are no patterns.
+/// `owner`, `loc`: who hides them, for errors. Errors: a pattern that fits none.
 Result<std::vector<uint8_t>> hidden_bodies(const mjModel& model,
                                            const std::vector<std::string>& patterns,
                                            const std::string& owner, const SourceLoc& loc);

@@ -11,7 +11,7 @@ namespace gloam {
 
 struct CompiledWorld;
 
-/// What errors may do to a sensor's numbers.
+/// Kinds of values, which decide how errors may change them.
 enum class SensorKind {
   kNumbers,    ///< each by itself
   kDistance,   ///< each by itself; below 0 = nothing there, which stays
@@ -21,7 +21,7 @@ enum class SensorKind {
 
 struct SensorDescription {
   std::string name;  ///< full name, or "sensor_ID" where the model gives none
-  int first = 0;     ///< of its numbers in SnapshotData::sensordata
+  int first = 0;     ///< index of its numbers in SnapshotData::sensordata
   int count = 1;
   SensorKind kind = SensorKind::kNumbers;
   const SensorOptions* options = nullptr;  ///< the scene's last [[sensor]] that fits, or null

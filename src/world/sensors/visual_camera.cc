@@ -106,9 +106,9 @@ CameraDescription free_camera(const mjModel& m, const Framing& framing) {
   return camera;
 }
 
-/// Whether <visual><global> says from where to look.
+/// True if <visual><global> gives a direction of view.
 bool gives_direction(const mjModel& model) {
-  constexpr float kMujocoAzimuth = 90, kMujocoElevation = -45;  // where it does not
+  constexpr float kMujocoAzimuth = 90, kMujocoElevation = -45;  // defaults without a direction
   const auto& global = model.vis.global;
   return global.azimuth != kMujocoAzimuth || global.elevation != kMujocoElevation;
 }

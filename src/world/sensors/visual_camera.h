@@ -9,7 +9,7 @@
 
 namespace gloam {
 
-/// What the free camera looks at.
+/// Region that the free camera looks at.
 struct Framing {
   Vec3 center;        ///< [m]
   double extent = 1;  ///< about the diameter [m]

@@ -10,12 +10,14 @@
 namespace gloam {
 
 struct DeformableLayout {
-  std::vector<int> skin_first;    ///< first vertex of each skin, (nskin)
-  std::vector<int> flex_first;    ///< first vertex of each flex, (nflex)
-  std::vector<int> cable_first;   ///< of each flex's capsules, -1 = dimension 2 or 3, (nflex)
-  std::vector<int> tendon_first;  ///< of each tendon's capsules, -1 = no path, (ntendon)
-  bool has_tendons = false;       ///< some tendon has a path
-  int nvertex = 0;                ///< of all
+  std::vector<int> skin_first;  ///< first vertex of each skin, (nskin)
+  std::vector<int> flex_first;  ///< first vertex of each flex, (nflex)
+  /// First vertex of each flex's capsules, -1 = dimension 2 or 3, (nflex)
+  std::vector<int> cable_first;
+  /// First vertex of each tendon's capsules, -1 = no path, (ntendon)
+  std::vector<int> tendon_first;
+  bool has_tendons = false;  ///< some tendon has a path
+  int nvertex = 0;           ///< number of all vertices
 };
 
 DeformableLayout deformable_layout(const mjModel& model);

@@ -7,7 +7,7 @@
 namespace gloam {
 namespace {
 
-constexpr size_t kMostPoints = 2000;  // of a mesh
+constexpr size_t kMostPoints = 2000;  // points of a mesh
 
 /// Points of the unit sphere, evenly spread (a Fibonacci lattice).
 std::vector<Vec3f> unit_sphere(int count) {
@@ -110,7 +110,7 @@ struct PartBox {
   }
 };
 
-/// Whether a geom of the world is the base that the tree of bodies at `tree` hangs on, as the first
+/// True if a geom of the world is the base that the tree of bodies at `tree` hangs on, as the first
 /// link of a URDF robot: a mesh that touches it and is no place around it.
 bool is_base(const InstanceDescription& in, const PartBox& own, const PartBox& tree) {
   constexpr float kLargest = 4;  // in diagonals of the tree
@@ -157,7 +157,7 @@ std::vector<DrawnPart> subject_of(std::vector<DrawnPart> parts, const RenderDesc
     PartBox box;
     size_t parts = 0;
   };
-  std::map<int, Tree> trees;  // by root body; the world's own are 0
+  std::map<int, Tree> trees;  // trees by root body; the world's own are 0
   const auto root = [&](const DrawnPart& part) {
     return root_of[static_cast<size_t>(scene.instances[part.instance].body)];
   };

@@ -1,5 +1,5 @@
 #pragma once
-// How a model file lies in Gloam's axes and metres.
+// Conversion of a model file's axes and units to Gloam's axes and metres.
 
 #include <string>
 

@@ -17,14 +17,14 @@ struct RoundSolid {
   float flat = 1;
 };
 
-/// What lies on the side of p that n, a unit vector, points to.
+/// Half-space on the side of p that n, a unit vector, points to.
 struct CutPlane {
   Vec3f p, n;
 };
 
 struct ImplicitShape {
   std::vector<RoundSolid> solids;
-  float blend = 0.03f;  ///< how far solids flow into each other [m]
+  float blend = 0.03f;  ///< distance over which solids blend into each other [m]
   std::vector<CutPlane> cuts;
 
   /// Negative inside; near the surface about the distance [m].

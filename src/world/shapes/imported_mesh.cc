@@ -14,8 +14,8 @@ struct Matrix3d {
 };
 
 constexpr int64_t kGrain = 1 << 15;
-constexpr double kFlat = 1e-9;    // of a determinant: as good as no volume
-constexpr int kStretchBits = 18;  // that are kept of a stretch: float's rounding is gone
+constexpr double kFlat = 1e-9;    // determinant that counts as no volume
+constexpr int kStretchBits = 18;  // bits that are kept of a stretch: float's rounding is gone
 
 Matrix3d matrix_of(const Affine3f& X) {
   const auto d = [](Vec3f v) { return Vec3d{v.x, v.y, v.z}; };
@@ -72,7 +72,7 @@ RigidAndStretch split_stretch(const Affine3f& X) {
   }
   Matrix3d r = rotation_of(scaled(m, 1 / size));
   if (determinant(r) < 0) r = scaled(r, -1);  // the stretch mirrors
-  const auto column = [&](const Vec3d& v) {   // of R^T m
+  const auto column = [&](const Vec3d& v) {   // column of R^T m
     return Vec3d{dot(r.x, v), dot(r.y, v), dot(r.z, v)};
   };
   const Matrix3d s{column(m.x), column(m.y), column(m.z)};

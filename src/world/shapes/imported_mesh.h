@@ -17,7 +17,7 @@ struct RigidAndStretch {
 /// Polar decomposition (Higham 1986). X is finite.
 RigidAndStretch split_stretch(const Affine3f& X);
 
-/// Which uvs of a mesh textures use, and how they are changed.
+/// Set of uvs of a mesh that textures use, and its transform.
 struct UvUse {
   int set = 0;
   UvTransform transform = {};

@@ -9,7 +9,7 @@ namespace gloam {
 namespace {
 
 constexpr int kArcSegments = 10;       // around one geom
-constexpr int kCatenarySegments = 24;  // of a slack tendon
+constexpr int kCatenarySegments = 24;  // segments of a slack tendon
 
 constexpr int kPulley = -2;  // in mjData::wrap_obj; -1 = a site
 

@@ -35,7 +35,7 @@ std::vector<UrdfRobot> find_robots(const Scene& scene, ModelFiles* files,
     const Result<UrdfText> urdf =
         prepare_urdf(files->text(path), path, scene.access,
                      [&](const std::filesystem::path& mesh) { return files->readable(mesh); });
-    if (!urdf.ok()) return;  // the physics model has met this error already
+    if (!urdf.ok()) return;  // the physics model has reported this error already
     unsupported->insert(unsupported->end(), urdf->unsupported.begin(), urdf->unsupported.end());
     if (!urdf->visual.empty()) robots.push_back({path, prefix, X_WR, *urdf});
   };
@@ -113,7 +113,7 @@ bool draws_something(const ModelFile& model) {
                      });
 }
 
-// By the name of the sphere that stands in for it. Files that cannot be read are told.
+// Meshes by the name of the sphere that stands in for each. Unreadable files are reported.
 std::map<std::string, VisualOnlyMesh> find_meshes(const Scene& scene,
                                                   const std::vector<UrdfRobot>& robots,
                                                   std::vector<Error>* unsupported) {

@@ -140,7 +140,8 @@ class VisualImporter {
       for (const int part : node->instances) add_part(visual, index, file, part, X_BF);
       if (visual.node != nodes_[file][0].name) return {};
     }
-    // What belongs to no node comes once, with the first. A robot's meshes bring no lamps along.
+    // Lamps and reports that belong to no node come once, with the first. A robot's meshes bring no
+    // lamps.
     if (is_model_) {
       report(visual, model);
       return {};
@@ -295,7 +296,7 @@ class VisualImporter {
   const CompiledWorld& world_;
   std::vector<VisualOptions> visuals_;
   bool is_model_ = false;        // meshes of URDFs
-  std::vector<int> plain_rows_;  // of materials, by visual; of those
+  std::vector<int> plain_rows_;  // rows of plain materials, by visual
   const std::vector<Affine3f>& poses_;
   const AddVisualPart& add_;
   LightLevels* levels_;
@@ -304,9 +305,9 @@ class VisualImporter {
   std::vector<ImportedTextures> textures_;     // by file
   std::vector<std::vector<ModelNode>> nodes_;  // by file
   std::vector<int> bodies_;                    // by visual
-  std::vector<ImportedSurface> surfaces_;      // of all visuals
-  std::vector<int> rows_;                      // of materials, by surface
-  size_t first_surface_ = 0;                   // of the visual at hand
+  std::vector<ImportedSurface> surfaces_;      // surfaces of all visuals
+  std::vector<int> rows_;                      // rows of materials, by surface
+  size_t first_surface_ = 0;                   // first surface of the visual at hand
   int plain_ = -1;                             // its surface for parts without one
   std::map<MeshKey, int> mesh_rows_;
   std::vector<BakedMesh> baked_;

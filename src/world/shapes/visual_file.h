@@ -38,7 +38,8 @@ struct DrawnMesh {
   int material = 0;
 };
 
-/// Likewise the meshes of URDF visuals. A file that has gone since is told, it is never an error.
+/// Describes the meshes of URDF visuals in the same way. A file that is missing by now is reported
+/// and never an error.
 Status describe_model_meshes(const CompiledWorld& world, const std::vector<DrawnMesh>& meshes,
                              const std::vector<Affine3f>& poses, const AddMeshPart& add,
                              RenderDescription* out);

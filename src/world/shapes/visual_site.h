@@ -9,13 +9,13 @@
 
 namespace gloam {
 
-inline constexpr int kFirstHiddenGroup = 3;  ///< of those that MuJoCo's viewer shows at first
+inline constexpr int kFirstHiddenGroup = 3;  ///< first group that MuJoCo's viewer hides at first
 
-/// Whether the scene draws a group: those that it lists, else those that MuJoCo shows at first.
+/// True if the scene draws a group: those that it lists, else those that MuJoCo shows at first.
 bool draws_group(const RenderOptions& render, int group);
 
 /// Adds an instance for every site of the groups that are drawn, if the scene draws sites. Sites
-/// are marks, not things: colour pictures alone show them, and they throw no shadow.
+/// are marks, not things: colour pictures alone show them, and they cast no shadow.
 void describe_sites(const CompiledWorld& world, MaterialTable* materials, LabelTable* labels,
                     RenderDescription* out);
 

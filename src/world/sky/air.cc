@@ -12,12 +12,13 @@ namespace {
 constexpr double kAngstrom = 1.3, kAerosolAlbedo = 0.95, kAsymmetry = 0.7;
 constexpr double kOzoneMolecules = 300 * 2.687e20;  // 300 Dobson units [1/m²]
 
-/// Of what aerosol scatters, the share that is taken as not scattered at all (Joseph, Wiscombe and
-/// Weinman 1976, "The delta-Eddington approximation"): even light from all sides is a bad stand-in
-/// for a forward peak. Up to g² = 0.49; half of it errs least against path tracing of this air.
+/// Fraction of the light scattered by aerosol that is taken as not scattered at all (Joseph,
+/// Wiscombe and Weinman 1976, "The delta-Eddington approximation"): an even distribution over all
+/// directions approximates a forward peak badly. Up to g² = 0.49; half of it errs least against
+/// path tracing of this air.
 constexpr double kPeak = 0.25;
-constexpr int kRadii = 48, kCosines = 128;     // of the sunlight table
-constexpr int kHeights = 16, kAngles = 33;     // of the scattered table
+constexpr int kRadii = 48, kCosines = 128;     // size of the sunlight table
+constexpr int kHeights = 16, kAngles = 33;     // size of the scattered table
 constexpr double kAngleReach = 0.2;            // [rad] on the earth, of a view from its ground
 constexpr int kZeniths = 8, kAirAzimuths = 6;  // directions about a point: per hemisphere; half
 constexpr int kScatterSteps = 24;
@@ -40,7 +41,7 @@ double horizon_cosine(double r, double ground) {
   return -std::sqrt(std::max(0.0, 1 - squared(ground / r)));
 }
 
-/// What lies along the ray of length d from the radius r with the zenith cosine mu [m].
+/// Columns of air along the ray of length d from the radius r with the zenith cosine mu [m].
 Densities columns(double r, double mu, double d) {
   Densities sum;
   // Short steps where the ray is lowest: at the point nearest to the earth, or at its start.
@@ -60,7 +61,7 @@ Densities columns(double r, double mu, double d) {
   return sum;
 }
 
-/// Where in a table of n entries, and the share of the next one.
+/// Index in a table of n entries, and the weight of the next one.
 struct AirPoint {
   int low;
   float share;
@@ -204,7 +205,7 @@ AirRay Air::march(double r, double mu, int count) const {
     const AirAt air = at(step.r);
     for (int b = 0; b < kBandCount; ++b) {
       const float through = std::exp(-air.extinction[b] * dt);
-      // What the piece scatters, attenuated on its way through the piece itself.
+      // Light that the piece scatters, attenuated on its way through the piece itself.
       const float inside = air.extinction[b] > 0
                                ? ray.transmittance[b] * (1 - through) / air.extinction[b]
                                : ray.transmittance[b] * dt;
@@ -217,7 +218,7 @@ AirRay Air::march(double r, double mu, int count) const {
 }
 
 Bands Air::scattered_at(double r, double angle, const std::vector<AirRay>& rays) const {
-  // `once`: light that was scattered once or came from the sunlit ground. `again`: the share of
+  // `once`: light that was scattered once or came from the sunlit ground. `again`: the fraction of
   // even light of one from all sides that comes here after another scattering.
   Bands once{}, again{};
   for (size_t k = 0; k < rays.size(); ++k) {

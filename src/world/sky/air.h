@@ -1,7 +1,7 @@
 #pragma once
-// What air holds at each height, how much of the sun's beam is left in it, and how bright it is
-// from all sides after more than one scattering. Behind world/sky/atmosphere.h, where the model is
-// described. Lengths in metres from the centre of the earth.
+// Content of air at each height, transmittance of the sun's beam, and light from more than one
+// scattering. Used by world/sky/atmosphere.h, where the model is described. Lengths in metres from
+// the centre of the earth.
 
 #include <vector>
 

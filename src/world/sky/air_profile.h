@@ -1,10 +1,10 @@
 #pragma once
-// What the air over a place holds at each height.
+// Composition of the air over a place at each height.
 
 namespace gloam {
 
 inline constexpr double kEarthRadius = 6371e3;              ///< at sea level [m]
-inline constexpr double kTopRadius = kEarthRadius + 100e3;  ///< of the air [m]
+inline constexpr double kTopRadius = kEarthRadius + 100e3;  ///< outer radius of the air [m]
 
 /// Molecules at sea level [1/m³], and how high all would reach at that density [m]: 1013.25 hPa at
 /// 288.15 K.

@@ -13,10 +13,10 @@ namespace {
 
 constexpr double kEyeHeight = 2;  // [m]
 constexpr int kSteps = 64;        // along a view
-constexpr int kAzimuths = 65;     // of views, over the half circle from the sun
+constexpr int kAzimuths = 65;     // azimuths of views, over the half circle from the sun
 constexpr double kNight = 2e-4;   // [cd/m²]
 
-/// What a view brings, the phase functions apart: they alone change fast from texel to texel.
+/// Radiance along a view without the phase functions, which alone change fast from texel to texel.
 struct Parts {
   Bands rayleigh{}, aerosol{}, even{};
 };
@@ -94,8 +94,8 @@ class Sky {
     return row;
   }
 
-  /// Of level ground by the sky whose `rows` are views at `mu`, each for the zone of `weight` (of
-  /// the cosine).
+  /// Illuminance of level ground by the sky whose `rows` are views at `mu`, each for the zone of
+  /// `weight` (of the cosine).
   Bands sky_light(const std::vector<std::vector<Parts>>& rows, const std::vector<double>& mu,
                   const std::vector<double>& weight) const {
     Bands sum{};

@@ -30,8 +30,8 @@ struct AtmosphereOptions {
   double turbidity = 3;   ///< 1..10: (molecules + aerosol) / molecules, vertical optical depths
                           ///< at 550 nm from sea level up; 2 very clear, 3 clear, 6 hazy
   double ground_albedo = 0.2;     ///< 0..1, of a grey matt ground everywhere
-  double altitude = 0;            ///< of the ground above sea level [m], 0..9000
-  int width = 512, height = 256;  ///< of the map [texels], 8 x 4 to 8192 x 4096; height even
+  double altitude = 0;            ///< height of the ground above sea level [m], 0..9000
+  int width = 512, height = 256;  ///< size of the map [texels], 8 x 4 to 8192 x 4096; height even
 };
 
 struct SkyLight {
@@ -39,9 +39,10 @@ struct SkyLight {
   /// (height x width), linear Rec. 709 [cd/m²], equirectangular: row 0 at the zenith, the middle
   /// column towards +X, columns to the right by -Y; seen 2 m above the ground, the sun left out.
   std::vector<Vec3f> texels;
-  Vec3f sun_illuminance;  ///< of a surface that faces the sun [lx], linear Rec. 709; zero when set
+  /// Illuminance of a surface that faces the sun [lx], linear Rec. 709; zero when set
+  Vec3f sun_illuminance;
   double sun_angular_radius = kSunAngularRadius;
-  Vec3f sky_illuminance;  ///< of a level surface, by the sky without the sun [lx]
+  Vec3f sky_illuminance;  ///< illuminance of a level surface, by the sky without the sun [lx]
 };
 
 /// Errors: an option outside of its range; the message names it.

@@ -16,7 +16,7 @@ namespace {
 Error sky_error(const SkyOptions& options, std::string message, std::string hint = {}) {
   return {ErrorKind::kInput, std::move(message), options.loc, std::move(hint)};
 }
-/// What the parts below say has no place of its own.
+/// Errors of the functions below, which have no place in the file, get the table's.
 Error in_sky(const SkyOptions& options, const Error& error) {
   return sky_error(options, fmt::format("[sky]: {}", error.to_string()));
 }

@@ -9,15 +9,15 @@ namespace gloam {
 struct DayCycle {
   CivilTime start;  ///< at time 0
   GeoPosition place;
-  double speed = 1;       ///< of the clock [s/s]
-  double north = 0;       ///< of true north from +Y, counter-clockwise [rad]
+  double speed = 1;       ///< speed of the clock [s/s]
+  double north = 0;       ///< angle of true north from +Y, counter-clockwise [rad]
   AtmosphereOptions air;  ///< without its sun
 };
 
 /// Unit, towards the sun as seen through the air, in the world; `time` [s].
 Vec3f to_sun_at(const DayCycle& day, double time);
 
-/// Of a direction with X east, Y north; `north` as in DayCycle.
+/// Direction in the world of one with X east, Y north; `north` as in DayCycle.
 Vec3f turned_north(Vec3f d, double north);
 
 /// Heights of the sun [rad] for which skies are made: a quarter of a degree apart from the end of
@@ -25,10 +25,10 @@ Vec3f turned_north(Vec3f d, double north);
 /// degree, then one degree up to the zenith.
 int sky_count();
 double sky_elevation(int row);
-/// Of rows, with fractions; within the first and the last.
+/// Row of an elevation, with fractions; within the first and the last.
 double sky_row(double elevation);
 
-/// Of the day with the sun at sky_elevation(row) over +X.
+/// Sky of the day with the sun at sky_elevation(row) over +X.
 SkyLight sky_of_row(const DayCycle& day, int row);
 
 }  // namespace gloam

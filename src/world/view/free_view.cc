@@ -7,8 +7,8 @@
 namespace gloam {
 namespace {
 
-constexpr float kFill = 0.94f;  // share of the picture's half width or height that is filled
-constexpr float kLeastCover = 0.17f, kMostCover = 0.42f;  // of the picture's area
+constexpr float kFill = 0.94f;  // fraction of the picture's half width or height that is filled
+constexpr float kLeastCover = 0.17f, kMostCover = 0.42f;  // fraction of the picture's area
 
 struct Spread {
   float low = INFINITY, high = -INFINITY;
@@ -57,7 +57,7 @@ void place_camera(std::span<const DrawnPart> subject, ViewDirection direction, f
   const float tan_y = fill * 0.5f * static_cast<float>(k.height / k.fy);
   // The smallest cone of the picture's shape about all points, in closed form: its four sides are
   // planes of fixed direction, so each is pushed until it touches; the apex is where they meet.
-  Spread right, up;  // of x ± z tan, y ± z tan: how far the sides are out at z = 0
+  Spread right, up;  // spreads of x ± z tan, y ± z tan: places of the sides at z = 0
   each_point(subject, [&](Vec3f p) {
     const float px = dot(p, X_WC.x), py = dot(p, X_WC.y), pz = dot(p, X_WC.z);
     right.high = max(right.high, px + pz * tan_x);
@@ -69,7 +69,7 @@ void place_camera(std::span<const DrawnPart> subject, ViewDirection direction, f
   X_WC.p = X_WC.x * right.middle() + X_WC.y * up.middle() + X_WC.z * away;
 }
 
-/// About the share of the picture that the points cover, in cells of 1/48 of its width.
+/// About the fraction of the picture that the points cover, in cells of 1/48 of its width.
 float cover_of(std::span<const DrawnPart> subject, const CameraDescription& camera) {
   constexpr int kColumns = 48;
   const Intrinsics& k = camera.intrinsics;

@@ -9,7 +9,7 @@
 
 namespace gloam {
 
-/// Where a free camera looks, as MuJoCo measures it [rad]: azimuth of the axis about Z from +X,
+/// Direction of a free camera, as MuJoCo measures it [rad]: azimuth of the axis about Z from +X,
 /// elevation above the horizon.
 struct ViewDirection {
   float azimuth = 0, elevation = 0;

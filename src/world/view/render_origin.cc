@@ -16,7 +16,7 @@ bool is_far(const mjtNum* p) {
   return std::any_of(p, p + 3, [](mjtNum x) { return std::abs(x) > kFarFromOrigin; });
 }
 
-/// Whether anything of the model starts far out.
+/// True if a body of the model starts far out.
 bool starts_far(const mjModel& m, int key) {
   for (int b = 1; b < static_cast<int>(m.nbody); ++b)
     if (m.body_parentid[b] == 0 && is_far(m.body_pos + 3 * b)) return true;

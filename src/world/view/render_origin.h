@@ -9,9 +9,9 @@
 
 namespace gloam {
 
-/// Where the render scene of a World has its origin, in world axes [m]: zero where the bodies are
-/// within kFarFromOrigin of the world's, else the median place of the geoms at the start, rounded.
-/// Scenes with media, weather, water, soil or agents keep the world's origin, and a note says so.
+/// Origin of the render scene of a World, in world axes [m]: zero where the bodies are within
+/// kFarFromOrigin of the world's, else the median place of the geoms at the start, rounded. Scenes
+/// with media, weather, water, soil or agents keep the world's origin, and a note says so.
 Vec3 choose_render_origin(const CompiledWorld& world, std::vector<Error>* notes);
 
 inline constexpr double kFarFromOrigin = 4096;  ///< [m] floats step by 0.5 mm there

@@ -9,12 +9,13 @@
 namespace gloam {
 namespace {
 
-constexpr float kKeyIlluminance = 900;      // [lx], on a surface that faces the key light
-constexpr float kZenithLuminance = 520;     // [cd/m²]
-constexpr float kKeyRadius = 0.1f;          // sine of the half angle: soft shadows
-constexpr float kKeyElevation = 0.9f;       // [rad]
-constexpr float kKeyLeftOfCamera = 0.8f;    // [rad]
-constexpr float kSubjectOnDisplay = 0.31f;  // of the median of the subject, linear, 1 = white
+constexpr float kKeyIlluminance = 900;    // [lx], on a surface that faces the key light
+constexpr float kZenithLuminance = 520;   // [cd/m²]
+constexpr float kKeyRadius = 0.1f;        // sine of the half angle: soft shadows
+constexpr float kKeyElevation = 0.9f;     // [rad]
+constexpr float kKeyLeftOfCamera = 0.8f;  // [rad]
+// Display value of the subject's median, linear, 1 = white
+constexpr float kSubjectOnDisplay = 0.31f;
 constexpr float kDarkest = 0.01f, kBrightest = 0.7f;  // reflectances that an exposure is fitted to
 constexpr float kFloorOnDisplay = 0.46f;
 constexpr float kFloorReach = 7;  // half width in diagonals of the subject
@@ -150,7 +151,7 @@ void add_key_light(const Affine3f& X_WC, RenderDescription* out) {
   out->lights.push_back(std::move(key));
 }
 
-/// Whether the model stands on a floor of its own: a plane that faces up, or something flat and
+/// True if the model stands on a floor of its own: a plane that faces up, or something flat and
 /// wide.
 bool has_floor(std::span<const DrawnPart> all, float diagonal, const RenderDescription& scene) {
   for (const InstanceDescription& in : scene.instances) {

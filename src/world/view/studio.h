@@ -11,7 +11,7 @@
 
 namespace gloam {
 
-/// Whether the studio lights the scene: `look` says so, or is "auto" and the model has no lamp but
+/// True if the studio lights the scene: `look` says so, or is "auto" and the model has no lamp but
 /// the headlight and no sky.
 bool needs_studio(const Scene& scene, const RenderDescription& description);
 

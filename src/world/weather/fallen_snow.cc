@@ -22,7 +22,7 @@ double smooth(double low, double high, double x) {
   return t * t * (3 - 2 * t);
 }
 
-/// What the ground is like in a cell and those beside it.
+/// Ground in a cell and its neighbours.
 struct Spot {
   double lowest = 1e10;  // [m]
   double hold = 1;       // share that its slope holds, 0 where the sky is not open
@@ -106,7 +106,7 @@ bool lay_fallen_snow(const WeatherOptions& weather, const mjModel& m, double fro
                            smooth(0, kBareEdge, double{to_bare[cell]} * cell_edge) *
                            smooth(0, wide, to_edge);
       soil->share[cell] = static_cast<float>(share);
-      // What is bare is seen under all that is beside it: no snow hangs down the side of a crate.
+      // Bare cells are drawn below all their neighbours: no snow hangs down the side of a crate.
       const double z = share > 0 ? ground.at(u, v) : spot_of(ground, *soil, i, j).lowest;
       soil->rest.push_back(static_cast<float>(z + share * soil->depth));
       soil->level = std::max(soil->level, double{soil->rest.back()});

@@ -13,7 +13,7 @@ double snow_growth(const WeatherOptions& weather);
 bool is_fallen_snow(const SoilOptions& soil, const std::optional<WeatherOptions>& weather);
 
 /// Fills depth, growth, share, rest and level of a bed whose grid is there. False where there is no
-/// ground below all of it. A bed that lies nowhere has a share of 0 in each cell.
+/// ground below all of it. A bed that lies nowhere has a fraction of 0 in each cell.
 bool lay_fallen_snow(const WeatherOptions& weather, const mjModel& model, double from,
                      SoilDescription* soil);
 

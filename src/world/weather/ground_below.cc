@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kNoGround = -1e10;
 constexpr double kSky = 1e4;          // [m]
-constexpr double kOverGround = 0.05;  // that what lies on it may reach: carpets, markings [m]
-constexpr int kShownGroups = 3;       // of geoms, as MuJoCo's viewers have it
+constexpr double kOverGround = 0.05;  // height of flat things on the ground: carpets, markings [m]
+constexpr int kShownGroups = 3;       // groups of geoms, as in MuJoCo's viewers
 
 bool can_be_touched(const mjModel& m, int geom) {
   return m.geom_contype[geom] != 0 || m.geom_conaffinity[geom] != 0;

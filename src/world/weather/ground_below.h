@@ -8,7 +8,7 @@
 
 namespace gloam {
 
-/// Where it is looked for [m].
+/// Area in which the ground is searched [m].
 struct GroundArea {
   double low_x = 0, low_y = 0, size_x = 0, size_y = 0;
   double from = 0;  ///< z; downwards from here [m]
@@ -19,11 +19,11 @@ class GroundBelow {
   /// nx x ny squares, at whose corners it is looked for. `sky`: whether the sky is open there, too.
   GroundBelow(const mjModel& model, const GroundArea& area, int nx, int ny, bool sky);
 
-  /// Whether there is any at every corner.
+  /// True if there is ground at every corner.
   bool everywhere() const;
   /// `u`, `v`: over the area, 0 … 1. Linear between corners.
   double at(double u, double v) const;
-  /// Of the corner in column i of row j, 0 … nx, 0 … ny.
+  /// Height of the corner in column i of row j, 0 … nx, 0 … ny.
   double height(int i, int j) const { return heights_[row(i, j)]; }
   /// Nothing that stands still, seen or touched, is above it.
   bool is_open(int i, int j) const { return open_[row(i, j)]; }

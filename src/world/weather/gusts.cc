@@ -9,7 +9,8 @@
 namespace gloam {
 namespace {
 
-constexpr double kShares[3] = {1, 0.8, 0.5};  // of the standard deviation: along, across, up
+// Factors on the standard deviation: along, across, up
+constexpr double kShares[3] = {1, 0.8, 0.5};
 // Integral scales are 8.1, 2.7 and 0.66 of 0.7 times the height, here ten metres.
 constexpr double kScales[3] = {8.1 * 7, 2.7 * 7, 0.66 * 7};  // [m]
 constexpr double kSlowest = 1.0 / 600, kFastest = 5;         // [Hz]

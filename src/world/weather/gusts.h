@@ -17,11 +17,11 @@ class Gusts {
   /// The wind blows.
   explicit Gusts(const WindDescription& wind);
 
-  /// What comes to the mean [m/s], world.
+  /// Deviation from the mean velocity [m/s], world.
   Vec3 at(double time) const;
 
-  /// Of something that takes on the air's velocity with the time constant `lag` [s]: what comes to
-  /// its mean velocity [m/s], and how far that has carried it since time 0 [m].
+  /// Deviation of something that takes on the air's velocity with the time constant `lag` [s]: of
+  /// its velocity from the mean [m/s], and of its place since time 0 [m].
   Vec3 carry(double time, double lag) const;
   Vec3 way(double time, double lag) const;
 

@@ -14,7 +14,7 @@ constexpr double kPi64 = 3.14159265358979323846;
 template <class Number, class Diameter, class Speed>
 void add_classes(double from, double to, const Number& number, const Diameter& diameter,
                  const Speed& speed, ParticleSet* set) {
-  constexpr int kParts = 64;  // of a class, for its integrals
+  constexpr int kParts = 64;  // parts of a class, for its integrals
   const double ratio = std::pow(to / from, 1.0 / kClasses);
   double low = from, water = 0;
   for (int i = 0; i < kClasses; ++i, low *= ratio) {
@@ -27,7 +27,8 @@ void add_classes(double from, double to, const Number& number, const Diameter& d
       flux += n * speed(D);
       water += n * kPi64 / 6 * std::pow(1e-3 * D, 3) * 1000;
     }
-    // Of the class's own diameter as many as cover what all of it covers.
+    // A class has the number of particles, all of its own diameter, that cover the area of its part
+    // of the distribution.
     set->classes.push_back({static_cast<float>(1e-3 * std::sqrt(area / count)),
                             static_cast<float>(count), static_cast<float>(flux / count)});
   }

@@ -23,23 +23,23 @@ struct ParticleClass {
 };
 
 enum class ParticleKind : uint8_t {
-  kDrop,   ///< of water: sends on what light comes from behind it
-  kFlake,  ///< of ice: scatters what light is around it
+  kDrop,   ///< drop of water: it refracts light from behind it
+  kFlake,  ///< flake of ice: it scatters light from all sides
 };
 
 struct ParticleSet {
   ParticleKind kind = ParticleKind::kDrop;
   std::vector<ParticleClass> classes;  ///< from small to large
   Vec3f wind;                          ///< mean, that carries them all [m/s]
-  std::shared_ptr<const Gusts> gusts;  ///< that come to it; null = none
+  std::shared_ptr<const Gusts> gusts;  ///< gusts that carry them; null = none
   uint64_t seed = 0;
 
-  /// Mean share of a view that they cover, per metre [1/m].
+  /// Mean fraction of a view that they cover, per metre [1/m].
   float cover() const;
-  /// Of water, in the air [kg/m³].
+  /// Density of water in the air [kg/m³].
   float water = 0;
-  /// Of light, twice the covered share: what passes by a large particle is diffracted (van de
-  /// Hulst 1957, "Light scattering by small particles", 8.1) [1/m].
+  /// Extinction of light, twice the covered fraction: light that passes by a large particle is
+  /// diffracted (van de Hulst 1957, "Light scattering by small particles", 8.1) [1/m].
   float extinction() const { return 2 * cover(); }
 };
 

@@ -5,9 +5,10 @@
 namespace gloam {
 namespace {
 
-constexpr double kSlot = 0.05;  // for which splashes are drawn at once [s]
+constexpr double kSlot = 0.05;  // for which splashes are sampled at once [s]
 constexpr float kSplashGravity = 9.81f;
-// Of the drop's: within what crowns of drops of 2 to 5 mm throw up, a hand's breadth at most.
+// Factors on the drop's speed and radius: within the range of crowns of drops of 2 to 5 mm, a
+// hand's breadth at most.
 constexpr float kSlowestDroplet = 0.08f, kFastestDroplet = 0.2f;  // speed
 constexpr float kCrown = 1.5f;                                    // radius of the crown's rim
 
@@ -42,7 +43,7 @@ SplashDroplet splash_droplet(const ParticleClass& kind, const Splash& splash, in
 Crown crown_at(const ParticleClass& kind, float t) {
   constexpr float kYarinWeiss = 0.904f;          // (2/3)^(1/4)
   constexpr float kLife = 40, kFlare = 1.2f;     // [D / V]; the rim's radius over the foot's
-  constexpr float kRise = 0.065f, kRim = 0.17f;  // of the drop's: speed, diameter
+  constexpr float kRise = 0.065f, kRim = 0.17f;  // factors on the drop's speed, diameter
   const float d = kind.diameter, v = kind.fall_speed, age = t * v / (d * kLife);
   if (!(age > 0 && age < 1)) return {};
   const float radius = kYarinWeiss * std::sqrt(d * v * t);
@@ -65,7 +66,7 @@ void find_splashes(const ParticleSet& set, uint32_t row, int64_t i, int64_t j, d
   for (int64_t slot = first; slot <= last; ++slot) {
     const auto bits = [](int64_t x) { return static_cast<uint64_t>(x) & 0x1FFFFF; };
     const uint64_t key = bits(i) | bits(j) << 21 | bits(slot) << 42;
-    // Of Poisson's law, by the times between one and the next.
+    // Number by Poisson's law, from the times between one splash and the next.
     double at = 0;
     for (uint32_t n = 0;; ++n) {
       const Philox4 draw = random.draw(key, n);

@@ -1,7 +1,7 @@
 #pragma once
-// What raindrops do where they land: some droplets that fly up from the rim of the crown and fall
-// back. A pure function of (seed, time), as the drops in the air are: as many land on an area as
-// fall on it, but not the very ones that are drawn in the air.
+// Splashes of raindrops: some droplets that fly up from the rim of the crown and fall back. A pure
+// function of (seed, time), as the drops in the air are: as many land on an area as fall on it, but
+// not the very ones that are drawn in the air.
 
 #include <vector>
 
@@ -16,11 +16,11 @@ bool splashes(const ParticleClass& kind);
 
 struct Splash {
   Vec2f at;         ///< level place [m]
-  double time = 0;  ///< of the impact [s]
+  double time = 0;  ///< time of the impact [s]
   Philox4 bits;     ///< draws of its own
 };
 
-/// An edge of the squares that splashes are drawn for [m].
+/// An edge of the squares that splashes are sampled for [m].
 inline constexpr float kSplashCell = 0.25f;
 inline constexpr int kSplashDroplets = 7;
 inline constexpr float kDropletSize = 0.25f;  ///< diameter, of the drop's: they are a ninth of it
@@ -36,9 +36,9 @@ SplashDroplet splash_droplet(const ParticleClass& kind, const Splash& splash, in
 struct Crown {
   float radius = 0, rim_radius = 0, height = 0;  ///< at its foot; of the rim [m]
   float rim = 0;                                 ///< thickness [m]
-  float cover = 0;                               ///< of what is behind the rim; 0 = it is gone
+  float cover = 0;  ///< opacity of the crown's foot and rim; 0 = it is gone
 };
-inline constexpr float kWallCover = 0.25f;  ///< of the wall's, over the rim's
+inline constexpr float kWallCover = 0.25f;  ///< opacity of the wall, over the rim's
 
 /// `t`: after the impact [s]. On a film as deep as the drop is wide its radius is that of Yarin and
 /// Weiss 1995, "Impact of drops on solid surfaces: self-similar capillary waves, and splashing as a

@@ -8,9 +8,9 @@ namespace gloam {
 namespace {
 
 constexpr float kLeastDrop = 0.3f;  // from an edge [m]
-constexpr float kUphill = 0.01f;    // that water of some depth runs over [m]
+constexpr float kUphill = 0.01f;    // height that water of some depth runs over [m]
 constexpr double kDripGravity = 9.81;
-constexpr double kDripSlot = 0.25;  // for which drips are drawn at once [s]
+constexpr double kDripSlot = 0.25;  // for which drips are sampled at once [s]
 // Drops hang from edges about as far apart as the fastest growing ripples of a film do: 2 pi sqrt 2
 // times the capillary length, 24 mm (Fermigier et al. 1992). Four to a usual cell.
 constexpr float kSites = 4;
@@ -120,7 +120,7 @@ std::vector<DripEdge> find_drip_edges(const ShelterMap& map, double rain) {
 }
 
 double mean_drip_volume() {
-  // Of diameters drawn evenly.
+  // Mean over evenly distributed diameters.
   const auto fourth = [](double d) { return d * d * d * d; };
   return 3.14159265358979323846 / 6 * (fourth(kHigh) - fourth(kLow)) / (4 * (kHigh - kLow));
 }
@@ -133,14 +133,14 @@ void find_drips(const DripEdge& edge, uint64_t seed, double from, double to,
   const auto place = [](float x) {  // [cm]
     return static_cast<uint64_t>(static_cast<int64_t>(std::lround(x * 100))) & 0xFFFFF;
   };
-  // Of the edge's middle, so that those of one cell differ.
+  // Key of the edge's middle, so that those of one cell differ.
   const uint64_t site = place(edge.from.x + 0.4f * edge.way * edge.out.x) |
                         place(edge.from.y + 0.4f * edge.way * edge.out.y) << 20;
   const auto first = static_cast<int64_t>(std::floor(from / kDripSlot));
   const auto last = static_cast<int64_t>(std::floor(to / kDripSlot));
   for (int64_t slot = first; slot <= last; ++slot) {
     const uint64_t key = site | static_cast<uint64_t>(slot) << 40;
-    double at = 0;  // of Poisson's law, by the times between one and the next
+    double at = 0;  // time by Poisson's law, from the times between one and the next
     for (uint32_t n = 0;; ++n) {
       const Philox4 draw = random.draw(key, n);
       at -= std::log(1 - static_cast<double>(uniform_float(draw.v[0]))) / mean;

@@ -10,8 +10,8 @@
 
 namespace gloam {
 
-/// Where water leaves what it has run over: between the middle of a cell of the shelter map and
-/// that of a lower one beside it.
+/// Edge over which water leaves a roof: between the middle of a cell of the shelter map and that of
+/// a lower one beside it.
 struct DripEdge {
   Vec3f from;      ///< the cell's middle, at its height [m]
   Vec2f out;       ///< unit vector to the lower cell
@@ -31,7 +31,7 @@ struct Drip {
 };
 
 inline constexpr float kSmallestDrip = 4e-3f, kLargestDrip = 5e-3f;  ///< diameters [m]
-/// Of drops from edges [m³].
+/// Mean volume of drops from edges [m³].
 double mean_drip_volume();
 
 /// Adds those that let go at times in [from, to) [s].

@@ -1,5 +1,5 @@
 #pragma once
-// How high what stands still reaches, from above: below it nothing falls from the sky.
+// Height of static things, seen from above: nothing falls from the sky below it.
 
 #include <memory>
 #include <vector>
@@ -37,7 +37,7 @@ struct ShelterView {
 struct ShelterMap {
   Vec2f low;
   float cell = 0.1f;  ///< [m]
-  float lowest = 0;   ///< of what stands still, ground included [m]
+  float lowest = 0;   ///< height of the lowest static thing, ground included [m]
   int nx = 0, ny = 0;
   std::vector<float> height;  ///< as in ShelterView
 
@@ -46,8 +46,8 @@ struct ShelterMap {
   }
 };
 
-/// Of the static instances that are shown, in cells of 0.1 m or more, at most 1024 along an edge.
-/// `X_WB`: of all bodies.
+/// Map of the static instances that are shown, in cells of 0.1 m or more, at most 1024 along an
+/// edge. `X_WB`: poses of all bodies.
 std::shared_ptr<const ShelterMap> make_shelter_map(const RenderDescription& description,
                                                    const std::vector<Affine3f>& X_WB);
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "gloam/scene_effect.h"
 #include "gloam/scene_environment.h"
+#include "gloam/scene_sky.h"
 #include "world/weather/particle_set.h"
 #include "world/weather/roof_drips.h"
 #include "world/weather/shelter_map.h"
@@ -19,12 +19,12 @@ struct WeatherDescription {
   std::vector<ParticleSet> particles;
   /// Nothing that falls gets under it; null = nothing falls or lies.
   std::shared_ptr<const ShelterMap> shelter;
-  std::vector<DripEdge> drips;               ///< where rain falls from edges
-  float wetness_start = 0, wetness_end = 0;  ///< of what the sky reaches, 0 … 1
+  std::vector<DripEdge> drips;               ///< edges from which rain drips
+  float wetness_start = 0, wetness_end = 0;  ///< wetness of surfaces under the open sky, 0 … 1
   float wetting_time = 1;                    ///< time constant from one to the other [s]
-  float impacts = 0;  ///< of drops of a millimetre and more on level ground [1/(m² s)]
+  float impacts = 0;  ///< rate of drops of a millimetre and more on level ground [1/(m² s)]
   float snow_start = 0, snow_rate = 0;  ///< depth of snow on level ground [m], [m/s]
-  float lens_drops = 0;                 ///< share of the picture, 0 … 1
+  float lens_drops = 0;                 ///< fraction of the picture, 0 … 1
   bool drops_fall_on_lenses = false;    ///< they come and go
   uint64_t seed = 0;
 

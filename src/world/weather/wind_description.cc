@@ -8,7 +8,8 @@
 namespace gloam {
 namespace {
 
-constexpr double kUsualGusts = 0.15;  // of the mean: open, flat country (Stull 1988, chapter 4)
+// Fraction of the mean: open, flat country (Stull 1988, chapter 4)
+constexpr double kUsualGusts = 0.15;
 
 bool is_under_the_sky(const EnvironmentOptions& environment) {
   return !has_generator(environment) || environment.terrain.has_value();

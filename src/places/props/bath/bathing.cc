@@ -100,17 +100,35 @@ Prop bathtub(Workshop& shop) {
   return p;
 }
 
-Prop shower(Workshop& shop) {
-  const float usual = shop.dice.pick({0.8f, 0.9f, 0.9f, 1.0f});
-  const Vec3f size = shop.size({usual, usual, 2.02f});
-  const float x = std::clamp(size.x, 0.7f, 1.2f) / 2, y = std::clamp(size.y, 0.7f, 1.4f) / 2,
-              z = std::clamp(size.z, 1.8f, 2.2f);
-  const bool black = shop.style.metal == "black";
-  const std::string frame = black ? shop.metal("black") : shop.metal("chrome"),
-                    chrome = black ? frame : shop.metal("chrome");
-  Prop p;
-  PropPart& b = p.body();
-  const float tray = 0.05f, t = 0.003f;
+// A glass cubicle. The frame is the prop's; x, y are half its size, z its height [m].
+struct Shower {
+  explicit Shower(Workshop& maker) : shop(maker) {
+    const float usual = shop.dice.pick({0.8f, 0.9f, 0.9f, 1.0f});
+    const Vec3f size = shop.size({usual, usual, 2.02f});
+    x = std::clamp(size.x, 0.7f, 1.2f) / 2, y = std::clamp(size.y, 0.7f, 1.4f) / 2,
+    z = std::clamp(size.z, 1.8f, 2.2f);
+    const bool black = shop.style.metal == "black";
+    frame = black ? shop.metal("black") : shop.metal("chrome");
+    chrome = black ? frame : shop.metal("chrome");
+    back = -x;
+    high = min(2.0f, z - 0.02f);
+  }
+
+  void show_tray(PropPart& b) const;
+  void show_panes(PropPart& b) const;
+  void show_mixer(PropPart& b) const;
+  void show_riser(PropPart& b) const;
+  void hang_door(Prop& p) const;
+  void show_handle(PropPart& door, float grip) const;
+
+  Workshop& shop;
+  float x = 0, y = 0, z = 0;
+  std::string frame, chrome;
+  float back = 0, high = 0;              // wall behind; top of the riser
+  const float tray = 0.05f, t = 0.003f;  // height of the tray, half thickness of glass
+};
+
+void Shower::show_tray(PropPart& b) const {
   const auto outer = [&](float in, float at) {
     return ring({-x + in, -y + in}, {x - in, y - in}, 0.015f, at, 5);
   };
@@ -124,6 +142,9 @@ Prop shower(Workshop& shop) {
                point_of(outer(0, 0), {0, 0, tray - 0.024f})}));
   b.show("drain", chrome, cylinder(0.055f, tray - 0.026f, tray - 0.016f, 0.003f, 36));
   b.collide_box({-x, -y, 0}, {x, y, tray - 0.02f});
+}
+
+void Shower::show_panes(PropPart& b) const {
   for (const float side : {-1.0f, 1.0f}) {
     const float at = side * (y - 0.025f);
     b.show("panes", shop.glass(),
@@ -137,8 +158,9 @@ Prop shower(Workshop& shop) {
   }
   b.show("profiles", frame,
          slab({x - 0.030f, -y + 0.02f, z - 0.018f}, {x - 0.018f, y - 0.02f, z}, 0.002f));
-  // Mixer, riser and showers on the wall behind.
-  const float back = -x;
+}
+
+void Shower::show_mixer(PropPart& b) const {
   b.show("mixer", chrome,
          bar({back + 0.05f, -0.13f, 1.10f}, {back + 0.05f, 0.13f, 1.10f}, 0.021f, 0.021f, 20));
   for (const float side : {-1.0f, 1.0f}) {
@@ -152,7 +174,9 @@ Prop shower(Workshop& shop) {
            bar({back + 0.05f, side * 0.134f, 1.10f}, {back + 0.05f, side * 0.175f, 1.10f}, 0.024f,
                0.022f, 18));
   }
-  const float high = min(2.0f, z - 0.02f);
+}
+
+void Shower::show_riser(PropPart& b) const {
   b.show("riser", chrome,
          tube(smooth_path({{back + 0.05f, 0, 1.11f},
                            {back + 0.05f, 0, 1.5f},
@@ -186,11 +210,22 @@ Prop shower(Workshop& shop) {
                            {back + 0.055f, -0.01f, 1.08f}},
                           8),
               0.007f, 10));
-  b.collide_box({back, -0.17f, 1.075f}, {back + 0.075f, 0.17f, 1.125f});
-  b.collide_capsule({back + 0.05f, 0, 1.12f}, {back + 0.05f, 0, high - 0.05f}, 0.012f);
-  b.collide_cylinder(0.11f, high - 0.045f, high, back + 0.35f, 0);
-  b.mass = 2500.0 * 0.006 * 4 * x * z + 30;  // glass of 6 mm
+}
 
+void Shower::show_handle(PropPart& door, float grip) const {
+  const float zg = 0.95f;
+  for (const float out : {-2 * t - 0.03f, 0.03f}) {
+    door.show("handle", frame,
+              bar({out, grip, zg - 0.13f}, {out, grip, zg + 0.13f}, 0.008f, 0.008f, 14));
+    for (const float at : {-0.1f, 0.1f})
+      door.show(
+          "handle", frame,
+          bar({out, grip, zg + at}, {out > 0 ? 0 : -2 * t, grip, zg + at}, 0.006f, 0.006f, 10));
+    door.collide_capsule({out, grip, zg - 0.12f}, {out, grip, zg + 0.12f}, 0.008f);
+  }
+}
+
+void Shower::hang_door(Prop& p) const {
   const float side = shop.dice.chance(0.5) ? 1.0f : -1.0f, width = 2 * y - 0.08f,
               tall = z - 0.03f - tray;
   PropPart& door = p.hang("door", {x - 0.022f, side * (y - 0.04f), tray + 0.01f},
@@ -206,18 +241,24 @@ Prop shower(Workshop& shop) {
     const auto [h0, h1] = span(-0.012f, 0.05f);
     door.show("hinges", frame, slab({-0.014f, h0, at}, {0.007f, h1, at + 0.07f}, 0.003f));
   }
-  const float grip = -side * (width - 0.07f), zg = 0.95f;
-  for (const float out : {-2 * t - 0.03f, 0.03f}) {
-    door.show("handle", frame,
-              bar({out, grip, zg - 0.13f}, {out, grip, zg + 0.13f}, 0.008f, 0.008f, 14));
-    for (const float at : {-0.1f, 0.1f})
-      door.show(
-          "handle", frame,
-          bar({out, grip, zg + at}, {out > 0 ? 0 : -2 * t, grip, zg + at}, 0.006f, 0.006f, 10));
-    door.collide_capsule({out, grip, zg - 0.12f}, {out, grip, zg + 0.12f}, 0.008f);
-  }
+  show_handle(door, -side * (width - 0.07f));
   door.collide_box({-2 * t, y0, 0}, {0, y1, tall});
   door.mass = 2500.0 * 2 * t * width * tall + 1;
+}
+
+Prop shower(Workshop& shop) {
+  const Shower s(shop);
+  Prop p;
+  PropPart& b = p.body();
+  s.show_tray(b);
+  s.show_panes(b);
+  s.show_mixer(b);
+  s.show_riser(b);
+  b.collide_box({s.back, -0.17f, 1.075f}, {s.back + 0.075f, 0.17f, 1.125f});
+  b.collide_capsule({s.back + 0.05f, 0, 1.12f}, {s.back + 0.05f, 0, s.high - 0.05f}, 0.012f);
+  b.collide_cylinder(0.11f, s.high - 0.045f, s.high, s.back + 0.35f, 0);
+  b.mass = 2500.0 * 0.006 * 4 * s.x * s.z + 30;  // glass of 6 mm
+  s.hang_door(p);
   p.front = 0.6f;
   return p;
 }

@@ -1,4 +1,4 @@
-// What is fitted to the walls of bathrooms, and their shelves.
+// Fittings on the walls of bathrooms, and their shelves.
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-// What hangs and stands about in bathrooms.
+// Small things in bathrooms.
 
 #include <algorithm>
 #include <cmath>

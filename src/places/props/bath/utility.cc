@@ -1,4 +1,4 @@
-// What stands and hangs in utility rooms.
+// Things in utility rooms.
 
 #include <algorithm>
 #include <cmath>

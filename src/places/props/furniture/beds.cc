@@ -93,7 +93,7 @@ Prop bed(Workshop& shop) {
   const Vec3 cover = shop.color(dice.pick<Vec3>(
       {linen, shop.style.accent, {0.55, 0.60, 0.64}, {0.62, 0.50, 0.42}, {0.33, 0.36, 0.42}}));
   const float head = inside + 0.58f;
-  const uint64_t folds = dice.seed();  // of all that lies on one another
+  const uint64_t folds = dice.seed();  // folds of all layers
   b.show("duvet", shop.fabric(cover, 0.0011),
          quilt(head, m1 + 0.012f, my + 0.01f, lie + 0.030f, 0.22f, folds, 0.028f, true));
   // Turned back at the head: a band of the lining.

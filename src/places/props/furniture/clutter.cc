@@ -1,4 +1,4 @@
-// What lies about in rooms: things to read, to play with, remote controls.
+// Small things in rooms: things to read, to play with, remote controls.
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// What hangs on walls and stands on sills: pictures, mirrors, clocks, vases.
+// Things on walls and sills: pictures, mirrors, clocks, vases.
 
 #include <fmt/format.h>
 

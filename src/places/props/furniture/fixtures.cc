@@ -1,4 +1,4 @@
-// What is fixed to walls and piped or wired: radiators, sockets.
+// Things fixed to walls and piped or wired: radiators, sockets.
 
 #include <cmath>
 

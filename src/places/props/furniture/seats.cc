@@ -85,51 +85,66 @@ Prop bench(Workshop& shop) {
   return p;
 }
 
-Prop office_chair(Workshop& shop) {
-  Dice& dice = shop.dice;
-  const float seat = float(dice.uniform(0.45, 0.52)), top = seat + 0.52f;
-  Prop p;
-  PropPart& b = p.body();
-  const std::string black = shop.plastic({0.11, 0.11, 0.113}, 0.45);
-  const bool pale = dice.chance(0.3);
-  const std::string shell = pale ? shop.plastic({0.72, 0.72, 0.71}, 0.4) : black;
-  const std::string cloth = shop.fabric(
-      shop.color(dice.pick<Vec3>(
-          {{0.145, 0.145, 0.15}, {0.20, 0.22, 0.25}, shop.style.accent, {0.34, 0.10, 0.09}})),
-      0.0014);
-  // Five arms, each on a twin castor.
-  for (int k = 0; k < 5; ++k) {
-    const float a = 2 * kPi * float(k) / 5, degrees = 72.0f * float(k), c = std::cos(a),
-                s = std::sin(a), r = 0.29f;
-    b.show(
-        "base", pale ? shop.metal("aluminium") : shell,
-        extrude(
-            rounded_outline(
-                {{0.02f, -0.028f}, {0.30f, -0.015f}, {0.312f, 0}, {0.30f, 0.015f}, {0.02f, 0.028f}},
-                0.006f, 2),
-            0.065f, 0.090f)
-            .turned(Axis::kY, 2)
-            .turned(Axis::kZ, degrees)
-            .moved(0, 0, 0.010f));
-    const float twist = float(dice.uniform(0, 360));
-    for (const float side : {-1.0f, 1.0f})
-      b.show("castors", black,
-             cylinder(0.028f, -0.009f, 0.009f, 0.005f, 20)
-                 .moved(0, 0, side * 0.014f)
-                 .turned(Axis::kX, 90)
-                 .turned(Axis::kZ, twist)
-                 .moved(r * c, r * s, 0.028f));
-    b.show("castors", black,
-           cylinder(0.008f, 0.03f, 0.07f, 0.002f, 12).moved(r * c, r * s, 0) +
-               rounded_box({0.042f, 0.012f, 0.026f}, 0.005f, 2)
-                   .moved(0.004f, 0, 0.042f)
-                   .turned(Axis::kZ, twist)
-                   .moved(r * c, r * s, 0));
-    b.collide_box({0.16f * c, 0.16f * s, 0.084f}, {0.145f, 0.022f, 0.016f},
-                  turn({0, 0, 1}, double(a)));
-    b.collide_capsule({r * c, r * s, 0.027f}, {r * c, r * s, 0.041f}, 0.027f);
-    b.colliders.back().friction = 0.15;  // castors roll
+// A swivel chair on five castors; heights [m].
+struct OfficeChair {
+  explicit OfficeChair(Workshop& maker) : shop(maker) {
+    seat = float(dice.uniform(0.45, 0.52)), top = seat + 0.52f;
+    black = shop.plastic({0.11, 0.11, 0.113}, 0.45);
+    pale = dice.chance(0.3);
+    shell = pale ? shop.plastic({0.72, 0.72, 0.71}, 0.4) : black;
+    cloth = shop.fabric(
+        shop.color(dice.pick<Vec3>(
+            {{0.145, 0.145, 0.15}, {0.20, 0.22, 0.25}, shop.style.accent, {0.34, 0.10, 0.09}})),
+        0.0014);
   }
+
+  void show_castor_arm(PropPart& b, int k) const;
+  void show_seat(PropPart& b) const;
+  void show_back(PropPart& b) const;
+  void show_arm_rests(PropPart& b) const;
+
+  Workshop& shop;
+  Dice& dice = shop.dice;
+  float seat = 0, top = 0;
+  std::string black, shell, cloth;
+  bool pale = false;
+};
+
+// One of five arms, each on a twin castor.
+void OfficeChair::show_castor_arm(PropPart& b, int k) const {
+  const float a = 2 * kPi * float(k) / 5, degrees = 72.0f * float(k), c = std::cos(a),
+              s = std::sin(a), r = 0.29f;
+  b.show(
+      "base", pale ? shop.metal("aluminium") : shell,
+      extrude(
+          rounded_outline(
+              {{0.02f, -0.028f}, {0.30f, -0.015f}, {0.312f, 0}, {0.30f, 0.015f}, {0.02f, 0.028f}},
+              0.006f, 2),
+          0.065f, 0.090f)
+          .turned(Axis::kY, 2)
+          .turned(Axis::kZ, degrees)
+          .moved(0, 0, 0.010f));
+  const float twist = float(dice.uniform(0, 360));
+  for (const float side : {-1.0f, 1.0f})
+    b.show("castors", black,
+           cylinder(0.028f, -0.009f, 0.009f, 0.005f, 20)
+               .moved(0, 0, side * 0.014f)
+               .turned(Axis::kX, 90)
+               .turned(Axis::kZ, twist)
+               .moved(r * c, r * s, 0.028f));
+  b.show("castors", black,
+         cylinder(0.008f, 0.03f, 0.07f, 0.002f, 12).moved(r * c, r * s, 0) +
+             rounded_box({0.042f, 0.012f, 0.026f}, 0.005f, 2)
+                 .moved(0.004f, 0, 0.042f)
+                 .turned(Axis::kZ, twist)
+                 .moved(r * c, r * s, 0));
+  b.collide_box({0.16f * c, 0.16f * s, 0.084f}, {0.145f, 0.022f, 0.016f},
+                turn({0, 0, 1}, double(a)));
+  b.collide_capsule({r * c, r * s, 0.027f}, {r * c, r * s, 0.041f}, 0.027f);
+  b.colliders.back().friction = 0.15;  // castors roll
+}
+
+void OfficeChair::show_seat(PropPart& b) const {
   b.show("base_hub", pale ? shop.metal("aluminium") : shell,
          cylinder(0.038f, 0.062f, 0.118f, 0.006f, 28));
   b.show("gas_lift", black, cylinder(0.026f, 0.11f, 0.25f, 0.004f, 24));
@@ -143,7 +158,10 @@ Prop office_chair(Workshop& shop) {
   b.show("seat", cloth,
          cushion({0.49f, 0.49f, 0.065f}, 0.25f, 0.03f, dice.seed(), 1, 0.001f)
              .moved(0.02f, 0, seat - 0.030f));
-  // The back: an upholstered or netted shell, curved to the sitter, on a spine.
+}
+
+// An upholstered or netted shell, curved to the sitter, on a spine.
+void OfficeChair::show_back(PropPart& b) const {
   constexpr int kAcross = 16, kUp = 14;
   Path points;
   for (int i = 0; i <= kUp; ++i) {
@@ -164,25 +182,36 @@ Prop office_chair(Workshop& shop) {
                            {-0.300f, 0, seat + 0.06f},
                            {-0.305f, 0, seat + 0.26f}}),
               0.019f, 12));
-  if (dice.chance(0.7)) {
-    for (const float side : {-1.0f, 1.0f}) {
-      b.show("arms", shell,
-             tube(smooth_path({{0.0f, side * 0.20f, seat - 0.06f},
-                               {0.0f, side * 0.285f, seat - 0.035f},
-                               {-0.01f, side * 0.295f, seat + 0.10f},
-                               {-0.01f, side * 0.285f, seat + 0.205f}}),
-                  0.014f, 10));
-      b.show("arm_pads", black,
-             slab({-0.11f, side * 0.285f - 0.042f, seat + 0.20f},
-                  {0.13f, side * 0.285f + 0.042f, seat + 0.228f}, 0.012f, 3));
-      b.collide_box({-0.11f, side * 0.285f - 0.042f, seat + 0.05f},
-                    {0.13f, side * 0.285f + 0.042f, seat + 0.228f});
-    }
+}
+
+void OfficeChair::show_arm_rests(PropPart& b) const {
+  for (const float side : {-1.0f, 1.0f}) {
+    b.show("arms", shell,
+           tube(smooth_path({{0.0f, side * 0.20f, seat - 0.06f},
+                             {0.0f, side * 0.285f, seat - 0.035f},
+                             {-0.01f, side * 0.295f, seat + 0.10f},
+                             {-0.01f, side * 0.285f, seat + 0.205f}}),
+                0.014f, 10));
+    b.show("arm_pads", black,
+           slab({-0.11f, side * 0.285f - 0.042f, seat + 0.20f},
+                {0.13f, side * 0.285f + 0.042f, seat + 0.228f}, 0.012f, 3));
+    b.collide_box({-0.11f, side * 0.285f - 0.042f, seat + 0.05f},
+                  {0.13f, side * 0.285f + 0.042f, seat + 0.228f});
   }
-  b.collide_cylinder(0.03f, 0.10f, seat - 0.11f);
-  b.collide_box({-0.225f, -0.24f, seat - 0.11f}, {0.265f, 0.24f, seat});
-  b.collide_box({-0.292f, 0, (seat + 0.03f + top) / 2}, {0.026f, 0.225f, (top - seat - 0.03f) / 2},
-                turn({0, 1, 0}, -0.08));
+}
+
+Prop office_chair(Workshop& shop) {
+  const OfficeChair c(shop);
+  Prop p;
+  PropPart& b = p.body();
+  for (int k = 0; k < 5; ++k) c.show_castor_arm(b, k);
+  c.show_seat(b);
+  c.show_back(b);
+  if (shop.dice.chance(0.7)) c.show_arm_rests(b);
+  b.collide_cylinder(0.03f, 0.10f, c.seat - 0.11f);
+  b.collide_box({-0.225f, -0.24f, c.seat - 0.11f}, {0.265f, 0.24f, c.seat});
+  b.collide_box({-0.292f, 0, (c.seat + 0.03f + c.top) / 2},
+                {0.026f, 0.225f, (c.top - c.seat - 0.03f) / 2}, turn({0, 1, 0}, -0.08));
   b.mass = 13;
   p.loose = true;
   return p;

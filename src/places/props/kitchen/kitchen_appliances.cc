@@ -51,7 +51,7 @@ Prop cooker(Workshop& shop) {
   Prop p;
   PropPart& b = p.body();
   const float face = u.front(), body = face - 0.045f, y = u.y - 0.002f, inner = y - 0.05f;
-  const float low = 0.30f, high = u.z - 0.17f;  // of the oven
+  const float low = 0.30f, high = u.z - 0.17f;  // ends of the oven
   b.show("feet", shop.paint({0.05, 0.05, 0.05}),
          slab({-u.x + 0.03f, -y + 0.01f, 0}, {face - 0.06f, y - 0.01f, 0.09f}, 0.002f));
   for (const float side : {-1.0f, 1.0f}) {

@@ -107,7 +107,7 @@ Prop toaster(Workshop& shop) {
         b.show("wires", steel,
                bar({c + wall, 0.022f * float(i), z - 0.09f},
                    {c + wall, 0.022f * float(i), z - 0.008f}, 0.001f, 0.001f, 5));
-    // Where round corners of the two halves leave the top open.
+    // Cover of the gap that the round corners of the two halves leave in the top.
   }
   b.show("shell", body, slab({-0.012f, -top.y, z - 0.003f}, {0.012f, top.y, z - 0.0003f}, 0));
   b.show("track", dark, slab({-0.004f, y - 0.004f, 0.05f}, {0.004f, y + 0.0006f, 0.155f}, 0));
@@ -129,7 +129,7 @@ Prop microwave(Workshop& shop) {
   const Vec3f size = shop.size({0.36f, 0.48f, 0.28f});
   const float x = std::clamp(size.x, 0.30f, 0.50f) / 2, y = std::clamp(size.y, 0.42f, 0.62f) / 2,
               z = std::clamp(size.z, 0.24f, 0.40f);
-  const float body = x - 0.034f, wide = 2 * y - 0.11f;  // of the door, at -y
+  const float body = x - 0.034f, wide = 2 * y - 0.11f;  // size of the door, at -y
   const float split = -y + wide;
   Prop p;
   PropPart& b = p.body();

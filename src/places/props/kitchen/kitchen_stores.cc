@@ -1,4 +1,4 @@
-// What food is kept in, and what is left of it.
+// Food and its containers: bowls, jars, spices, bottles.
 
 #include <cmath>
 

@@ -33,7 +33,7 @@ Prop pan(Workshop& shop) {
   for (const float y : {-0.012f, 0.012f})
     b.show("rivets", shop.metal("steel"), ball(0.004f, 10).moved(-r + 0.010f, y, h - 0.012f));
   b.collide_cylinder(r * 0.78f, 0, 0.005f);
-  constexpr int kSides = 8;  // of the rim
+  constexpr int kSides = 8;  // sides of the rim
   for (int i = 0; i < kSides; ++i) {
     const float angle = 2 * kPi * float(i) / kSides, at = r * 0.90f;
     b.collide_box({at * std::cos(angle), at * std::sin(angle), h / 2 + 0.002f},

@@ -63,95 +63,104 @@ Prop mug(Workshop& shop) {
   return p;
 }
 
+// `k` scales the usual size.
+void show_wine_bottle(Workshop& shop, PropPart& b, float k) {
+  b.show(
+      "glass",
+      shop.plastic(shop.dice.chance(0.7) ? Vec3{0.11, 0.145, 0.115} : Vec3{0.16, 0.08, 0.03}, 0.06),
+      vessel({{0, 0.012f},
+              {0.022f, 0.004f},
+              {0.030f, 0},
+              {0.0375f, 0.004f},
+              {0.0375f, 0.19f},
+              {0.015f, 0.235f},
+              {0.0145f, 0.285f},
+              {0.0165f, 0.287f},
+              {0.0165f, 0.298f},
+              {0.0130f, 0.300f},
+              {0, 0.300f}},
+             k, 0.014f));
+  b.show(
+      "capsule",
+      shop.paint(shop.dice.pick<Vec3>({{0.30, 0.05, 0.06}, {0.07, 0.07, 0.08}, {0.62, 0.50, 0.24}}),
+                 0.3),
+      vessel({{0.0150f, 0.25f},
+              {0.0153f, 0.285f},
+              {0.0172f, 0.287f},
+              {0.0172f, 0.3005f},
+              {0.0100f, 0.3012f},
+              {0, 0.3012f}},
+             k, 0.002f, 32));
+  b.show("label", shop.paper({0.86, 0.83, 0.74}),
+         vessel({{0.0379f, 0.05f}, {0.0379f, 0.14f}}, k, 0, 40));
+  b.show("label_band", shop.paper({0.40, 0.12, 0.10}),
+         vessel({{0.0381f, 0.112f}, {0.0381f, 0.121f}}, k, 0, 40));
+}
+
+void show_water_bottle(Workshop& shop, PropPart& b, float k) {
+  b.show("bottle", shop.solid_glass({0.86, 0.93, 0.95}),
+         vessel({{0, 0.006f},
+                 {0.02f, 0},
+                 {0.030f, 0},
+                 {0.0335f, 0.008f},
+                 {0.0335f, 0.075f},
+                 {0.0310f, 0.085f},
+                 {0.0335f, 0.095f},
+                 {0.0335f, 0.15f},
+                 {0.0125f, 0.205f},
+                 {0.0125f, 0.215f}},
+                k, 0.008f));
+  b.show("label",
+         shop.paper(
+             shop.dice.pick<Vec3>({{0.20, 0.42, 0.62}, {0.22, 0.50, 0.36}, {0.72, 0.30, 0.22}})),
+         vessel({{0.0338f, 0.100f}, {0.0338f, 0.145f}}, k, 0, 40));
+  b.show(
+      "cap", shop.plastic({0.16, 0.36, 0.58}, 0.4),
+      vessel(
+          {{0.0128f, 0.208f}, {0.0150f, 0.209f}, {0.0150f, 0.228f}, {0.0130f, 0.230f}, {0, 0.230f}},
+          k, 0.002f, 28));
+  b.show("cap", shop.plastic({0.16, 0.36, 0.58}, 0.4),
+         vessel({{0.0125f, 0.203f}, {0.0148f, 0.2035f}, {0.0148f, 0.2065f}, {0.0125f, 0.207f}}, k,
+                0.0005f, 28));
+}
+
+void show_flask(Workshop& shop, PropPart& b, float k) {
+  b.show("flask",
+         shop.paint(
+             shop.color(shop.dice.pick<Vec3>(
+                 {{0.10, 0.22, 0.26}, {0.70, 0.68, 0.64}, {0.50, 0.16, 0.12}, {0.09, 0.09, 0.10}})),
+             0.42),
+         vessel({{0, 0.002f},
+                 {0.028f, 0},
+                 {0.0345f, 0},
+                 {0.0355f, 0.004f},
+                 {0.0355f, 0.185f},
+                 {0.0245f, 0.212f},
+                 {0.0235f, 0.22f},
+                 {0, 0.22f}},
+                k, 0.006f));
+  b.show("ring", shop.metal("steel"),
+         vessel({{0.0225f, 0.214f}, {0.0243f, 0.215f}, {0.0243f, 0.223f}, {0.0225f, 0.224f}}, k,
+                0.001f, 36));
+  b.show(
+      "lid", shop.plastic({0.125, 0.125, 0.127}, 0.5),
+      vessel({{0.02f, 0.222f}, {0.026f, 0.224f}, {0.0255f, 0.257f}, {0.022f, 0.260f}, {0, 0.260f}},
+             k, 0.004f, 32));
+}
+
 Prop bottle(Workshop& shop) {
-  Dice& dice = shop.dice;
-  const int kind = dice.integer(0, 2);  // wine, water of plastic, flask of steel
+  const int kind = shop.dice.integer(0, 2);  // wine, water of plastic, flask of steel
   const float usual = kind == 0 ? 0.30f : kind == 1 ? 0.23f : 0.26f;
   const float h = limited(shop.size({0.075f, 0.075f, usual}), {0, 0, 0.12f}, {10, 10, 0.45f}).z,
               k = h / usual;
   Prop p;
   PropPart& b = p.body();
-  if (kind == 0) {
-    b.show("glass",
-           shop.plastic(dice.chance(0.7) ? Vec3{0.11, 0.145, 0.115} : Vec3{0.16, 0.08, 0.03}, 0.06),
-           vessel({{0, 0.012f},
-                   {0.022f, 0.004f},
-                   {0.030f, 0},
-                   {0.0375f, 0.004f},
-                   {0.0375f, 0.19f},
-                   {0.015f, 0.235f},
-                   {0.0145f, 0.285f},
-                   {0.0165f, 0.287f},
-                   {0.0165f, 0.298f},
-                   {0.0130f, 0.300f},
-                   {0, 0.300f}},
-                  k, 0.014f));
-    b.show("capsule",
-           shop.paint(dice.pick<Vec3>({{0.30, 0.05, 0.06}, {0.07, 0.07, 0.08}, {0.62, 0.50, 0.24}}),
-                      0.3),
-           vessel({{0.0150f, 0.25f},
-                   {0.0153f, 0.285f},
-                   {0.0172f, 0.287f},
-                   {0.0172f, 0.3005f},
-                   {0.0100f, 0.3012f},
-                   {0, 0.3012f}},
-                  k, 0.002f, 32));
-    b.show("label", shop.paper({0.86, 0.83, 0.74}),
-           vessel({{0.0379f, 0.05f}, {0.0379f, 0.14f}}, k, 0, 40));
-    b.show("label_band", shop.paper({0.40, 0.12, 0.10}),
-           vessel({{0.0381f, 0.112f}, {0.0381f, 0.121f}}, k, 0, 40));
-  } else if (kind == 1) {
-    b.show("bottle", shop.solid_glass({0.86, 0.93, 0.95}),
-           vessel({{0, 0.006f},
-                   {0.02f, 0},
-                   {0.030f, 0},
-                   {0.0335f, 0.008f},
-                   {0.0335f, 0.075f},
-                   {0.0310f, 0.085f},
-                   {0.0335f, 0.095f},
-                   {0.0335f, 0.15f},
-                   {0.0125f, 0.205f},
-                   {0.0125f, 0.215f}},
-                  k, 0.008f));
-    b.show(
-        "label",
-        shop.paper(dice.pick<Vec3>({{0.20, 0.42, 0.62}, {0.22, 0.50, 0.36}, {0.72, 0.30, 0.22}})),
-        vessel({{0.0338f, 0.100f}, {0.0338f, 0.145f}}, k, 0, 40));
-    b.show("cap", shop.plastic({0.16, 0.36, 0.58}, 0.4),
-           vessel({{0.0128f, 0.208f},
-                   {0.0150f, 0.209f},
-                   {0.0150f, 0.228f},
-                   {0.0130f, 0.230f},
-                   {0, 0.230f}},
-                  k, 0.002f, 28));
-    b.show("cap", shop.plastic({0.16, 0.36, 0.58}, 0.4),
-           vessel({{0.0125f, 0.203f}, {0.0148f, 0.2035f}, {0.0148f, 0.2065f}, {0.0125f, 0.207f}}, k,
-                  0.0005f, 28));
-  } else {
-    b.show(
-        "flask",
-        shop.paint(
-            shop.color(dice.pick<Vec3>(
-                {{0.10, 0.22, 0.26}, {0.70, 0.68, 0.64}, {0.50, 0.16, 0.12}, {0.09, 0.09, 0.10}})),
-            0.42),
-        vessel({{0, 0.002f},
-                {0.028f, 0},
-                {0.0345f, 0},
-                {0.0355f, 0.004f},
-                {0.0355f, 0.185f},
-                {0.0245f, 0.212f},
-                {0.0235f, 0.22f},
-                {0, 0.22f}},
-               k, 0.006f));
-    b.show("ring", shop.metal("steel"),
-           vessel({{0.0225f, 0.214f}, {0.0243f, 0.215f}, {0.0243f, 0.223f}, {0.0225f, 0.224f}}, k,
-                  0.001f, 36));
-    b.show(
-        "lid", shop.plastic({0.125, 0.125, 0.127}, 0.5),
-        vessel(
-            {{0.02f, 0.222f}, {0.026f, 0.224f}, {0.0255f, 0.257f}, {0.022f, 0.260f}, {0, 0.260f}},
-            k, 0.004f, 32));
-  }
+  if (kind == 0)
+    show_wine_bottle(shop, b, k);
+  else if (kind == 1)
+    show_water_bottle(shop, b, k);
+  else
+    show_flask(shop, b, k);
   const float r = (kind == 1   ? 0.0335f
                    : kind == 0 ? 0.0375f
                                : 0.0355f) *

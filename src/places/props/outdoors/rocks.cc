@@ -48,7 +48,7 @@ Solid stone(Vec3f size, int cuts, uint64_t seed) {
   return Solid(std::move(mesh));
 }
 
-/// What of it lies below `above` is flat there, to its collider.
+/// A rock; its part below `above` has a flat collider there.
 Prop rock_of(Workshop& shop, Vec3f size, int cuts, float above = 0) {
   const uint64_t seed = shop.dice.seed();
   const float lift = 0.22f * size.z;

@@ -1,4 +1,4 @@
-// What stands in streets and yards.
+// Things in streets and yards.
 
 #include <cmath>
 #include <utility>
@@ -303,82 +303,104 @@ Prop mailbox(Workshop& shop) {
   return p;
 }
 
-Prop bicycle(Workshop& shop) {
-  // City bicycle along x on its side stand, leaning 8 degrees; wheels of 700 mm.
-  const float r = 0.345f, back = -0.53f, front = 0.53f, lean = 8;
-  Prop p;
-  PropPart& b = p.body();
-  const std::string paint =
-      shop.paint(shop.color(shop.dice.pick({Vec3{0.05, 0.16, 0.22}, Vec3{0.55, 0.06, 0.05},
-                                            Vec3{0.10, 0.10, 0.11}, Vec3{0.62, 0.68, 0.60}})),
-                 0.22);
-  const std::string chrome = shop.metal("chrome"), black = shop.rubber({0.035, 0.035, 0.037});
-  const auto lift = [&](const Solid& s) { return s.turned(Axis::kX, lean).moved(0, 0, 0.0017f); };
+// City bicycle along x on its side stand, leaning 8 degrees; wheels of 700 mm. Points are those of
+// the upright bicycle, its wheels on the ground [m].
+struct Bicycle {
+  explicit Bicycle(Workshop& maker) : shop(maker) {
+    paint = shop.paint(shop.color(shop.dice.pick({Vec3{0.05, 0.16, 0.22}, Vec3{0.55, 0.06, 0.05},
+                                                  Vec3{0.10, 0.10, 0.11}, Vec3{0.62, 0.68, 0.60}})),
+                       0.22);
+    chrome = shop.metal("chrome"), black = shop.rubber({0.035, 0.035, 0.037});
+  }
+
+  Solid lift(const Solid& s) const { return s.turned(Axis::kX, lean).moved(0, 0, 0.0017f); }
+  void pipe(PropPart& b, Vec3f from, Vec3f to, float radius) const {
+    b.show("frame", paint, lift(bar(from, to, radius, radius, 14)));
+  }
+  void show_frame(PropPart& b) const;
+  void show_side(PropPart& b, float s) const;
+  void show_wheel(PropPart& b, float wx) const;
+  void show_mudguard(PropPart& b, float wx) const;
+  void show_fittings(PropPart& b) const;
+  void collide(PropPart& b) const;
+
+  Workshop& shop;
+  std::string paint, chrome, black;
+  const float r = 0.345f, back = -0.53f, front = 0.53f, lean = 8;  // radius, hubs; [deg]
   const Vec3f bracket{-0.09f, 0, 0.29f}, seat{-0.235f, 0, 0.80f}, head{0.36f, 0, 0.86f},
       fork{0.40f, 0, 0.70f}, rear{back, 0, r}, axle{front, 0, r};
-  const auto pipe = [&](Vec3f from, Vec3f to, float radius) {
-    b.show("frame", paint, lift(bar(from, to, radius, radius, 14)));
-  };
-  pipe(bracket, seat, 0.016f), pipe(bracket, fork, 0.019f),
-      pipe(seat - Vec3f{0, 0, 0.06f}, head - Vec3f{-0.005f, 0, 0.03f}, 0.016f),
-      pipe(fork - Vec3f{-0.008f, 0, 0.03f}, head, 0.021f);
-  for (const float s : {-1.0f, 1.0f}) {
-    const Vec3f out{0, s * 0.055f, 0};
-    pipe(bracket + out * 0.5f, rear + out, 0.009f),
-        pipe(seat + Vec3f{0.01f, s * 0.02f, -0.05f}, rear + out, 0.008f);
-    b.show("frame", paint,
-           lift(tube(smooth_path({fork + Vec3f{0.006f, s * 0.045f, -0.02f},
-                                  fork + Vec3f{0.05f, s * 0.05f, -0.2f}, axle + out}),
-                     0.010f, 8)));
-    b.show("cranks", chrome,
-           lift(beam(bracket + Vec3f{0, s * 0.075f, 0},
-                     bracket + Vec3f{s * 0.12f, s * 0.085f, s * -0.12f}, 0.012f, 0.022f, 0.004f)));
-    b.show("pedals", black,
-           lift(rounded_box({0.09f, 0.085f, 0.022f}, 0.005f)
-                    .moved(bracket + Vec3f{s * 0.12f, s * 0.14f, s * -0.12f})));
-    b.show("grips", black,
-           lift(bar({0.22f, s * 0.29f, 1.06f}, {0.12f, s * 0.30f, 1.05f}, 0.016f, 0.017f, 12)));
-    b.show("bars", chrome,
-           lift(tube(smooth_path({{0.345f, 0, 1.03f},
-                                  {0.36f, s * 0.12f, 1.04f},
-                                  {0.30f, s * 0.26f, 1.065f},
-                                  {0.14f, s * 0.30f, 1.052f}}),
-                     0.0115f, 8)));
-    b.show("levers", chrome,
-           lift(tube(smooth_path({{0.27f, s * 0.275f, 1.06f},
-                                  {0.28f, s * 0.29f, 1.03f},
-                                  {0.17f, s * 0.305f, 1.02f}}),
-                     0.005f, 6)));
+};
+
+void Bicycle::show_frame(PropPart& b) const {
+  pipe(b, bracket, seat, 0.016f), pipe(b, bracket, fork, 0.019f),
+      pipe(b, seat - Vec3f{0, 0, 0.06f}, head - Vec3f{-0.005f, 0, 0.03f}, 0.016f),
+      pipe(b, fork - Vec3f{-0.008f, 0, 0.03f}, head, 0.021f);
+}
+
+// Parts of one side: s = -1, 1.
+void Bicycle::show_side(PropPart& b, float s) const {
+  const Vec3f out{0, s * 0.055f, 0};
+  pipe(b, bracket + out * 0.5f, rear + out, 0.009f),
+      pipe(b, seat + Vec3f{0.01f, s * 0.02f, -0.05f}, rear + out, 0.008f);
+  b.show("frame", paint,
+         lift(tube(smooth_path({fork + Vec3f{0.006f, s * 0.045f, -0.02f},
+                                fork + Vec3f{0.05f, s * 0.05f, -0.2f}, axle + out}),
+                   0.010f, 8)));
+  b.show("cranks", chrome,
+         lift(beam(bracket + Vec3f{0, s * 0.075f, 0},
+                   bracket + Vec3f{s * 0.12f, s * 0.085f, s * -0.12f}, 0.012f, 0.022f, 0.004f)));
+  b.show("pedals", black,
+         lift(rounded_box({0.09f, 0.085f, 0.022f}, 0.005f)
+                  .moved(bracket + Vec3f{s * 0.12f, s * 0.14f, s * -0.12f})));
+  b.show("grips", black,
+         lift(bar({0.22f, s * 0.29f, 1.06f}, {0.12f, s * 0.30f, 1.05f}, 0.016f, 0.017f, 12)));
+  b.show("bars", chrome,
+         lift(tube(smooth_path({{0.345f, 0, 1.03f},
+                                {0.36f, s * 0.12f, 1.04f},
+                                {0.30f, s * 0.26f, 1.065f},
+                                {0.14f, s * 0.30f, 1.052f}}),
+                   0.0115f, 8)));
+  b.show("levers", chrome,
+         lift(tube(smooth_path({{0.27f, s * 0.275f, 1.06f},
+                                {0.28f, s * 0.29f, 1.03f},
+                                {0.17f, s * 0.305f, 1.02f}}),
+                   0.005f, 6)));
+}
+
+void Bicycle::show_wheel(PropPart& b, float wx) const {
+  Path loop, rim;
+  for (int k = 0; k <= 48; ++k) {
+    const float a = 2 * kPi * float(k) / 48;
+    loop.push_back({wx + (r - 0.019f) * std::cos(a), 0, r + (r - 0.019f) * std::sin(a)});
+    rim.push_back({wx + (r - 0.042f) * std::cos(a), 0, r + (r - 0.042f) * std::sin(a)});
   }
-  for (const float wx : {back, front}) {
-    Path loop, rim;
-    for (int k = 0; k <= 48; ++k) {
-      const float a = 2 * kPi * float(k) / 48;
-      loop.push_back({wx + (r - 0.019f) * std::cos(a), 0, r + (r - 0.019f) * std::sin(a)});
-      rim.push_back({wx + (r - 0.042f) * std::cos(a), 0, r + (r - 0.042f) * std::sin(a)});
-    }
-    b.show("tyres", shop.rubber(), lift(tube(loop, 0.019f, 10)));
-    b.show("rims", shop.metal("aluminium"), lift(tube(rim, 0.010f, 6)));
-    b.show("hubs", shop.metal("aluminium"),
-           lift(bar({wx, -0.05f, r}, {wx, 0.05f, r}, 0.018f, 0.018f, 14)));
-    for (int k = 0; k < 28; ++k) {
-      const float a = 2 * kPi * float(k) / 28, s = k % 2 == 0 ? 1.0f : -1.0f,
-                  twist = (k / 2) % 2 == 0 ? 0.5f : -0.5f;
-      b.show("spokes", chrome,
-             lift(tube(
-                 {{wx + 0.018f * std::cos(a + twist), s * 0.035f, r + 0.018f * std::sin(a + twist)},
-                  {wx + (r - 0.048f) * std::cos(a), 0, r + (r - 0.048f) * std::sin(a)}},
-                 0.001f, 3)));
-    }
-    std::vector<Vec3f> guard;  // mudguards
-    const float from = wx < 0 ? 0.6f : 0.9f, to = wx < 0 ? 3.5f : 2.9f;
-    for (int k = 0; k <= 14; ++k)
-      for (const float s : {-1.0f, 0.0f, 1.0f}) {
-        const float a = from + (to - from) * float(k) / 14, q = r + 0.014f - 0.010f * s * s;
-        guard.push_back({wx + q * std::cos(a), s * 0.026f, r + q * std::sin(a)});
-      }
-    b.show("guards", shop.plastic(kSafetyBlack, 0.3), lift(sheet(guard, 3, 0.0015f)));
+  b.show("tyres", shop.rubber(), lift(tube(loop, 0.019f, 10)));
+  b.show("rims", shop.metal("aluminium"), lift(tube(rim, 0.010f, 6)));
+  b.show("hubs", shop.metal("aluminium"),
+         lift(bar({wx, -0.05f, r}, {wx, 0.05f, r}, 0.018f, 0.018f, 14)));
+  for (int k = 0; k < 28; ++k) {
+    const float a = 2 * kPi * float(k) / 28, s = k % 2 == 0 ? 1.0f : -1.0f,
+                twist = (k / 2) % 2 == 0 ? 0.5f : -0.5f;
+    b.show("spokes", chrome,
+           lift(tube(
+               {{wx + 0.018f * std::cos(a + twist), s * 0.035f, r + 0.018f * std::sin(a + twist)},
+                {wx + (r - 0.048f) * std::cos(a), 0, r + (r - 0.048f) * std::sin(a)}},
+               0.001f, 3)));
   }
+}
+
+void Bicycle::show_mudguard(PropPart& b, float wx) const {
+  std::vector<Vec3f> guard;
+  const float from = wx < 0 ? 0.6f : 0.9f, to = wx < 0 ? 3.5f : 2.9f;
+  for (int k = 0; k <= 14; ++k)
+    for (const float s : {-1.0f, 0.0f, 1.0f}) {
+      const float a = from + (to - from) * float(k) / 14, q = r + 0.014f - 0.010f * s * s;
+      guard.push_back({wx + q * std::cos(a), s * 0.026f, r + q * std::sin(a)});
+    }
+  b.show("guards", shop.plastic(kSafetyBlack, 0.3), lift(sheet(guard, 3, 0.0015f)));
+}
+
+void Bicycle::show_fittings(PropPart& b) const {
   b.show(
       "post", chrome,
       lift(bar(seat - Vec3f{0, 0, 0.02f}, seat + Vec3f{-0.035f, 0, 0.12f}, 0.0125f, 0.0125f, 12) +
@@ -408,6 +430,9 @@ Prop bicycle(Workshop& shop) {
   // Leans to -y, where the stand is.
   b.show("stand", shop.metal("black"),
          bar({-0.14f, -0.03f, 0.27f}, {-0.10f, -0.185f, 0.006f}, 0.008f, 0.007f, 8));
+}
+
+void Bicycle::collide(PropPart& b) const {
   const auto at = [&](Vec3f q) {
     const float c = std::cos(lean * kPi / 180), s = std::sin(lean * kPi / 180);
     return Vec3f{q.x, c * q.y - s * q.z, s * q.y + c * q.z + 0.0017f};
@@ -419,6 +444,20 @@ Prop bicycle(Workshop& shop) {
       .collide_capsule(at(seat), at(head), 0.02f);
   b.collide_capsule(at({0.2f, -0.29f, 1.055f}), at({0.2f, 0.29f, 1.055f}), 0.02f)
       .collide_sphere(at(seat + Vec3f{-0.05f, 0, 0.13f}), 0.06f);
+}
+
+Prop bicycle(Workshop& shop) {
+  const Bicycle m(shop);
+  Prop p;
+  PropPart& b = p.body();
+  m.show_frame(b);
+  for (const float side : {-1.0f, 1.0f}) m.show_side(b, side);
+  for (const float hub : {m.back, m.front}) {
+    m.show_wheel(b, hub);
+    m.show_mudguard(b, hub);
+  }
+  m.show_fittings(b);
+  m.collide(b);
   b.mass = 16;
   return p;
 }

@@ -1,4 +1,4 @@
-// What grows outdoors: broadleaves, conifers, bushes.
+// Plants outdoors: broadleaves, conifers, bushes.
 
 #include "places/props/outdoors/trees.h"
 
@@ -50,7 +50,7 @@ Prop make_tree(double high, Workshop* shop, Dice* dice) {
 
 namespace {
 
-// Of twigs and leaves in the box around a crown [kg].
+// Mass of twigs and leaves in the box around a crown [kg].
 double foliage_mass(const Prop& p) {
   constexpr double kDensity = 3;  // [kg/m³]
   const Prop::Box box = p.bounds();

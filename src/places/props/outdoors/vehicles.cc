@@ -1,4 +1,4 @@
-// What drives: a car, and a cart.
+// Vehicles: a car, and a cart.
 
 #include "places/vehicles.h"
 

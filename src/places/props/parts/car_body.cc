@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kBelt = kCarBelt;
 constexpr float kWheelArch = kCarSize.front_axle.radius + 0.055f, kUnder = kCarUnder;
-constexpr float kTumble = 12;  // that the cabin's sides lean in [deg]
+constexpr float kTumble = 12;  // angle by which the cabin's sides lean in [deg]
 
 Profile arc(float x, float z, float radius, float from, float to, int steps) {
   Profile out;
@@ -93,7 +93,7 @@ Solid shell(const Profile& outline, float half, float radius, float round_ends) 
 
 Profile side_view() {
   const float front = kCarSize.front_axle.x, rear = kCarSize.rear_axle.x, z = 0.302f;
-  const float low = std::asin((kUnder - z) / kWheelArch);  // where an arch meets the sill
+  const float low = std::asin((kUnder - z) / kWheelArch);  // angle where an arch meets the sill
   Profile out;
   for (const float x : {rear, front}) {
     const Profile arch = arc(x, z, kWheelArch, kPi - low, low, 16);
@@ -121,7 +121,7 @@ Profile side_view() {
   return out;
 }
 
-// Of the cabin at its middle, z up to the roof; `in` moves all inwards.
+// Outline of the cabin at its middle, z up to the roof; `in` moves all inwards.
 Profile cabin_view(float in) {
   return inset(rounded_outline({{0.83f, kBelt - 0.03f},
                                 {0.16f, 1.365f},
@@ -202,7 +202,7 @@ void add_car_cabin(PropPart* b, Workshop* shop, const std::string& paint,
     b->show("mirror_glass", shop->mirror(),
             panel(0.15f, 0.085f).turned(Axis::kZ, 180).moved(0.513f, side * 0.90f, 1.0f));
   }
-  // What is seen through the windows.
+  // Interior, as seen through the windows.
   const std::string cloth = shop->fabric({0.10, 0.10, 0.105}),
                     dark = shop->plastic({0.05, 0.05, 0.052}, 0.6);
   b->show("inside", dark, slab({-1.70f, -0.66f, kBelt - 0.02f}, {0.66f, 0.66f, kBelt + 0.015f}, 0));

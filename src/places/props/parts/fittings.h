@@ -1,6 +1,6 @@
 #pragma once
-// What kitchens, bathrooms and utility rooms are fitted with: boxes of board, fronts that open,
-// handles, taps, basins.
+// Fittings of kitchens, bathrooms and utility rooms: boxes of board, fronts that open, handles,
+// taps, basins.
 
 #include "places/catalogue.h"
 
@@ -35,9 +35,9 @@ PropPart& hang_door(Workshop& shop, Prop* prop, const std::string& name, Vec3f c
 PropPart& hang_drawer(Workshop& shop, Prop* prop, const std::string& name, Vec3f corner,
                       float width, float height, float depth);
 
-/// What large machines are cased in: white, black or bare steel.
+/// Casing of large machines: white, black or bare steel.
 std::string appliance_casing(Workshop& shop);
-/// Of taps and rails.
+/// Metal of taps and rails.
 std::string bright_metal(Workshop& shop);
 Vec3 towel_color(Workshop& shop);
 /// Mixer with a swan's neck that reaches over to +x.

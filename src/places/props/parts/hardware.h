@@ -35,7 +35,7 @@ void add_wheel(PropPart* part, Workshop* shop, Vec3f center, float radius, float
 void add_caster(PropPart* part, Workshop* shop, float x, float y, float top, float radius);
 
 // Flat loads and what lies on them; all add to a part.
-/// Of EUR build; its own frame: length along x. Adds its colliders.
+/// Adds a pallet of EUR build with its colliders; its own frame: length along x.
 void add_pallet(PropPart* part, Workshop* shop, Vec3f size);
 /// Fills the box with cartons in layers, all of one size.
 void add_cartons(PropPart* part, Workshop* shop, Vec3f low, Vec3f high);

@@ -1,5 +1,5 @@
 #pragma once
-// What makers of furniture have in common: legs, pulls, drawers, hinged doors, shades, books.
+// Parts that makers of furniture have in common: legs, pulls, drawers, hinged doors, shades, books.
 
 #include "places/catalogue.h"
 
@@ -22,7 +22,7 @@ void collide_legs(PropPart* part, float x, float y, float height, float radius, 
 Solid bow_pull(float length, bool upright);
 Solid knob_pull(float radius);
 
-/// How the fronts of a piece of furniture look.
+/// Look of the fronts of a piece of furniture.
 struct FrontLook {
   std::string material;
   std::string pull_material;
@@ -47,7 +47,7 @@ void add_bulb(Prop* p, Vec3f at, double flux, double temperature, double radius 
 /// its colours. `size` = depth, thickness, height.
 void show_book(PropPart* part, Workshop& shop, Vec3f size, Vec3f at, float lean_degrees,
                float turn_degrees, int tint, bool lying = false);
-/// Fills a shelf's bay with books from low.y on, up to a share of its width; returns where they
+/// Fills a shelf's bay with books from low.y on, up to a fraction of its width; returns where they
 /// end. low = the bay's left front corner on its floor.
 float show_books(PropPart* part, Workshop& shop, Vec3f low, float width, float height, float depth,
                  float share);

@@ -6,12 +6,13 @@
 namespace gloam {
 
 constexpr float kWorktop = 0.038f, kPlinth = 0.10f, kOverhang = 0.02f;  // [m]
-constexpr float kGap = 0.0015f;  ///< of a front to the end of its unit: half the joint of two [m]
+/// Gap of a front to the end of its unit: half the joint of two [m]
+constexpr float kGap = 0.0015f;
 
 struct KitchenUnit {
   float x, y, z;                                 ///< half depth, half width, height of the worktop
-  float front() const { return x - kOverhang; }  ///< of the faces
-  float top() const { return z - kWorktop; }     ///< of the carcass
+  float front() const { return x - kOverhang; }  ///< x of the faces
+  float top() const { return z - kWorktop; }     ///< top of the carcass
 };
 
 KitchenUnit kitchen_unit(Workshop& shop, float width);

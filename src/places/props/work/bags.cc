@@ -1,4 +1,4 @@
-// What things are carried in: bags; shoes.
+// Bags and shoes.
 
 #include <cmath>
 

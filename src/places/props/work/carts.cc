@@ -1,4 +1,4 @@
-// What people push, pull and climb in halls.
+// Carts, trucks and ladders of halls.
 
 #include <cmath>
 

@@ -28,7 +28,7 @@ void show_screen(PropPart* b, Workshop& shop, const std::string& material, float
 Prop television(Workshop& shop) {
   Dice& dice = shop.dice;
   const double inches = dice.pick({43.0, 50.0, 55.0, 65.0});
-  const float usual = float(0.0254 * inches * 0.8716) + 0.012f;  // of a 16:9 diagonal
+  const float usual = float(0.0254 * inches * 0.8716) + 0.012f;  // width of a 16:9 diagonal
   const float width = limited(shop.size({0.25f, usual, 1}), {0, 0.5f, 0}, {10, 2.2f, 10}).y,
               height = 0.5625f * width + 0.012f, bottom = 0.07f;
   Prop p;

@@ -1,4 +1,4 @@
-// What warehouses are full of.
+// Goods of warehouses.
 
 #include <cmath>
 
@@ -36,7 +36,7 @@ Prop goods_pallet(Workshop& shop) {
   add_pallet(&b, &shop, base);
   Vec3f low{-size.x / 2 + 0.012f, -size.y / 2 + 0.012f, base.z};
   Vec3f high{size.x / 2 - 0.012f, size.y / 2 - 0.012f, size.z};
-  double density;  // of the goods, air between them included [kg/m³]
+  double density;  // density of the goods, air between them included [kg/m³]
   const int kind = shop.dice.pick({0, 0, 0, 0, 1, 1, 2});
   bool wrapped = shop.dice.chance(0.45);
   if (kind == 0) {

@@ -1,4 +1,4 @@
-// What goods lie on, and what saves it from trucks.
+// Racks for goods, and guards that save them from trucks.
 
 #include <cmath>
 

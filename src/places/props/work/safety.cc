@@ -1,4 +1,4 @@
-// What keeps people and trucks apart, and what one reaches for when it burns.
+// Barriers between people and trucks, and fire equipment.
 
 #include <cmath>
 

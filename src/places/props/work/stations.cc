@@ -1,4 +1,4 @@
-// Where work is done in halls.
+// Workplaces in halls.
 
 #include <cmath>
 
@@ -11,13 +11,31 @@ namespace {
 
 constexpr Vec3 kBlue{0.06, 0.21, 0.45};
 
-Prop workbench(Workshop& shop) {
-  const Vec3f size = shop.size({0.75f, 1.6f, 0.88f});
-  const float x = std::clamp(size.x, 0.5f, 1.0f) / 2, y = std::clamp(size.y, 1.0f, 3.0f) / 2,
-              z = std::clamp(size.z, 0.75f, 1.0f), top = 0.045f;
-  Prop p;
-  PropPart& b = p.body();
-  const std::string blue = shop.paint(shop.color(kBlue), 0.38), steel = shop.metal("steel");
+// A workbench with drawers, a vice and a panel of tools. The frame is the prop's; x, y are half its
+// size, z its height [m].
+struct Workbench {
+  explicit Workbench(Workshop& maker) : shop(maker) {
+    const Vec3f size = shop.size({0.75f, 1.6f, 0.88f});
+    x = std::clamp(size.x, 0.5f, 1.0f) / 2, y = std::clamp(size.y, 1.0f, 3.0f) / 2,
+    z = std::clamp(size.z, 0.75f, 1.0f);
+    blue = shop.paint(shop.color(kBlue), 0.38), steel = shop.metal("steel");
+    wall = -x + 0.02f, w0 = z + 0.06f, w1 = z + 0.62f;
+  }
+
+  void show_frame(PropPart& b) const;
+  void show_drawers(PropPart& b) const;
+  void show_vice(PropPart& b) const;
+  void show_panel(PropPart& b) const;
+  void show_tools(PropPart& b) const;
+
+  Workshop& shop;
+  float x = 0, y = 0, z = 0;
+  std::string blue, steel;
+  const float top = 0.045f;        // thickness of the board
+  float wall = 0, w0 = 0, w1 = 0;  // front of the panel of tools, its bottom and its top
+};
+
+void Workbench::show_frame(PropPart& b) const {
   b.show("top", shop.wood("birch", Axis::kY), slab({-x, -y, z - top}, {x, y, z}, 0.005f, 2));
   for (const float s : {-1.0f, 1.0f}) {
     for (const float e : {-1.0f, 1.0f})
@@ -40,7 +58,10 @@ Prop workbench(Workshop& shop) {
          slab({-x + 0.08f, -y + 0.09f, 0.172f}, {x - 0.18f, y - 0.09f, 0.19f}, 0.002f));
   b.collide_box({-x + 0.08f, -y + 0.1f, 0.15f}, {x - 0.18f, y - 0.1f, 0.19f})
       .collide_box({-x, -y, z - top}, {x, y, z});
-  // Drawers below one end; fixed, with a gap all round.
+}
+
+void Workbench::show_drawers(PropPart& b) const {
+  // The drawers are fixed, with a gap all round.
   const float d0 = y - 0.55f, d1 = y - 0.105f;
   b.show("cabinet", blue,
          slab({-x + 0.12f, d0, z - top - 0.36f}, {x - 0.09f, d1, z - top}, 0.004f));
@@ -53,7 +74,9 @@ Prop workbench(Workshop& shop) {
         slab({x - 0.074f, d0 + 0.03f, h - 0.028f}, {x - 0.060f, d1 - 0.03f, h - 0.012f}, 0.005f));
   }
   b.collide_box({-x + 0.12f, d0, z - top - 0.36f}, {x - 0.06f, d1, z - top});
-  // Vice at the other end.
+}
+
+void Workbench::show_vice(PropPart& b) const {
   const float vy = -y + 0.28f, vx = x - 0.06f;
   const std::string cast = shop.paint({0.10, 0.22, 0.36}, 0.35);
   b.show("vice", cast,
@@ -75,8 +98,9 @@ Prop workbench(Workshop& shop) {
           ball(0.010f, 10).moved(vx + 0.135f, vy - 0.02f, z - 0.01f) +
           ball(0.010f, 10).moved(vx + 0.135f, vy + 0.03f, z + 0.18f));
   b.collide_box({vx - 0.22f, vy - 0.07f, z}, {vx + 0.09f, vy + 0.07f, z + 0.152f});
-  // Perforated panel with tools.
-  const float wall = -x + 0.02f, w0 = z + 0.06f, w1 = z + 0.62f;
+}
+
+void Workbench::show_panel(PropPart& b) const {
   b.show("board", shop.paint({0.42, 0.44, 0.46}, 0.45),
          slab({wall - 0.02f, -y + 0.03f, w0}, {wall, y - 0.03f, w1}, 0.003f));
   for (const float s : {-1.0f, 1.0f})
@@ -88,6 +112,9 @@ Prop workbench(Workshop& shop) {
     for (float hz = w0 + 0.03f; hz < w1 - 0.02f; hz += 0.04f)
       holes += panel(0.011f, 0.011f).moved(wall + 0.0006f, hy, hz);
   b.show("holes", shop.paint({0.02, 0.02, 0.02}, 0.9), holes);
+}
+
+void Workbench::show_tools(PropPart& b) const {
   const std::string red = shop.plastic({0.62, 0.05, 0.04}, 0.3), wood = shop.wood("oak", Axis::kZ);
   float at = -y + 0.16f;
   for (int i = 0; i < 5; ++i, at += 0.06f) {  // screwdrivers
@@ -119,9 +146,20 @@ Prop workbench(Workshop& shop) {
            slab({wall + 0.017f, at - 0.055f, w1 - 0.125f},
                 {wall + 0.043f, at + 0.055f, w1 - 0.098f}, 0.004f));
   }
-  b.collide_box({wall - 0.02f, -y + 0.03f, z}, {wall + 0.02f, y - 0.03f, w1});
-  b.mass = 25 + 700 * top * 4 * x * y + 20;
-  p.surfaces.push_back({{-x + 0.1f, -y + 0.5f}, {x - 0.02f, y - 0.02f}, z});
+}
+
+Prop workbench(Workshop& shop) {
+  const Workbench w(shop);
+  Prop p;
+  PropPart& b = p.body();
+  w.show_frame(b);
+  w.show_drawers(b);
+  w.show_vice(b);
+  w.show_panel(b);
+  w.show_tools(b);
+  b.collide_box({w.wall - 0.02f, -w.y + 0.03f, w.z}, {w.wall + 0.02f, w.y - 0.03f, w.w1});
+  b.mass = 25 + 700 * w.top * 4 * w.x * w.y + 20;
+  p.surfaces.push_back({{-w.x + 0.1f, -w.y + 0.5f}, {w.x - 0.02f, w.y - 0.02f}, w.z});
   p.front = 0.7f;
   return p;
 }

@@ -22,7 +22,8 @@ inline void cross3(const double* a, const double* b, double* out) {
 /// Edges along the world's axes of the box around a box with half edges `half`, turned by `R`.
 void edges_around(const double* R, const double* half, double* out);
 
-/// Of the degrees of freedom that move a body the last; -1 = none does. dof_parentid has the rest.
+/// Last of the degrees of freedom that move a body; -1 = none does. dof_parentid leads to the
+/// others.
 int last_dof(const mjModel& model, int body);
 
 /// Velocity of a body where a point is [m/s], by its twist in data.cvel.
@@ -40,8 +41,8 @@ void factor_tree(const mjModel& model, mjData& data, int tree);
 /// angular, in the world.
 struct BodyResponse {
   double velocity[6] = {};      ///< [m/s], [rad/s]
-  double acceleration[6] = {};  ///< of the last step, without what turning adds
-  double inverse[36] = {};      ///< of its inertia, as all its joints share it: row by row
+  double acceleration[6] = {};  ///< acceleration of the last step, without rotational terms
+  double inverse[36] = {};      ///< inverse of its inertia, as all its joints share it: row by row
 };
 
 /// One body at a time. data.qLD is of the present.
@@ -52,14 +53,14 @@ class ResponseSolver {
   /// acceleration of those joints, from the last of them to the root; empty = nothing.
   BodyResponse solve(const mjModel& model, const mjData& data, int body, const double* point,
                      std::span<const double> less);
-  /// What a wrench at that point does to the acceleration of those joints, in that order.
+  /// Accelerations of those joints by a wrench at that point, in that order.
   void accelerations(const mjModel& model, const mjData& data, int body, const double* wrench,
                      std::span<double> out);
 
  private:
   std::vector<double> columns_;  // L^-T J', (nv x 6)
-  std::vector<double> by_dof_;   // room, (nv)
-  std::vector<int> chain_;       // room
+  std::vector<double> by_dof_;   // scratch, (nv)
+  std::vector<int> chain_;       // scratch
 };
 
 /// Joints' degrees of freedom that move a body.

@@ -9,8 +9,8 @@
 namespace gloam {
 namespace {
 
-constexpr double kUpright = 1e-9;        // of a normal: the facet is a wall
-constexpr double kAsGoodAsAWall = 1e-3;  // of a normal's z: the surface is as good as a wall
+constexpr double kUpright = 1e-9;        // z of a normal below which the facet is a wall
+constexpr double kAsGoodAsAWall = 1e-3;  // z of a normal below which the surface counts as a wall
 
 }  // namespace
 
@@ -88,7 +88,7 @@ bool ColliderBottom::at(double x, double y, BottomPoint* out) const {
   double normal[3] = {}, n[3];
   if (!quadric_at(x, y, &out->z, normal)) return false;
   for (int a = 0; a < 3; ++a) n[a] = dot3(R_ + 3 * a, normal);
-  // Of unit length before it is judged.
+  // The normal is scaled to unit length first.
   const double down = std::min(n[2], -kAsGoodAsAWall * std::sqrt(dot3(n, n)));
   out->slope[0] = -n[0] / down, out->slope[1] = -n[1] / down;
   return true;
@@ -147,7 +147,7 @@ bool ColliderBottom::quadric_at(double x, double y, double* out, double* normal)
   return true;
 }
 
-// Where the line enters: through the round side, then normal[2] = 0, or through an end.
+// Entry point of the line: through the round side, then normal[2] = 0, or through an end.
 bool ColliderBottom::cylinder_at(const double* o, const double* d, double* t,
                                  double* normal) const {
   double low = -kNowhere, high = kNowhere;

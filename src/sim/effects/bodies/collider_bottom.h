@@ -19,23 +19,23 @@ struct BottomPoint {
 
 class ColliderBottom {
  public:
-  /// Whether it can be one: planes, height fields and SDFs cannot.
+  /// True if the geom is supported: planes, height fields and SDFs are not.
   static bool can_be(const mjModel& model, int geom);
   ColliderBottom(const mjModel& model, int geom);
 
   int geom() const { return geom_; }
   int body() const { return body_; }
-  /// Where it stands: of data's poses. Before what follows.
+  /// Takes the geom's pose from `data`. Call it before the functions below.
   void set_pose(const mjData& data);
-  /// Of the box around it in the world [m].
+  /// Bounding box in the world [m].
   double low(int axis) const { return centre_[axis] - half_[axis]; }
   double high(int axis) const { return centre_[axis] + half_[axis]; }
-  /// Of one around what of it is lower than `level`, which something is: (x, y) each [m].
+  /// Bounding box of the part lower than `level`, which is not empty: (x, y) each [m].
   void box_below(double level, double* low, double* high) const;
   /// A point of the geom's frame whose motion tells how that part of its surface moves which is at
   /// `point` in the world: spinning about an axis of revolution does not move it.
   void anchor_of(const double* point, double* p_G) const;
-  /// How far it has turned from an orientation `R`, as far as its shape shows that [rad], at least.
+  /// Angle to an orientation `R`, ignoring symmetries of the shape [rad], a lower bound.
   double turned(const double* R) const;
   const double* position() const { return p_; }
   const double* rotation() const { return R_; }
@@ -47,8 +47,8 @@ class ColliderBottom {
   /// Only how high [m].
   bool height_at(double x, double y, double* z) const;
   bool is_round() const { return type_ == mjGEOM_SPHERE || type_ == mjGEOM_CAPSULE; }
-  /// Of round ones: from where to where along x, at each of `ys`, it is lower than `level`, which
-  /// may be from more to less: nowhere.
+  /// Interval of x in which a round geom is lower than `level`, for each of `ys`; left > right:
+  /// none.
   void round_ends(double level, std::span<const double> ys, double* left, double* right) const;
 
   static constexpr double kNowhere = 1e30;  ///< [m]
@@ -66,10 +66,11 @@ class ColliderBottom {
 
   int geom_, body_, type_;
   double size_[3], box_centre_[3], box_half_[3];
-  std::vector<SolidPlane> planes_;  // of boxes and hulls, in the geom's frame
+  std::vector<SolidPlane> planes_;  // planes of boxes and hulls, in the geom's frame
   double p_[3] = {}, R_[9] = {};
-  double p_G_[3] = {};                      // the world's origin in the geom's frame
-  double per_round_ = 0, per_upright_ = 0;  // of cylinders: 1 / (x² + y²), 1 / z of upright lines
+  double p_G_[3] = {};  // the world's origin in the geom's frame
+  // Terms of cylinders: 1 / (x² + y²), 1 / z of upright lines
+  double per_round_ = 0, per_upright_ = 0;
   double centre_[3] = {}, half_[3] = {};
   std::vector<Facet> lower_, upper_;
   std::vector<SolidPlane> upright_;  // in the world; n[2] = 0

@@ -1,4 +1,4 @@
-// How far a collider reaches, and how it has moved.
+// Bounding boxes of colliders, and their motion.
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace gloam {
 namespace {
-constexpr double kLevel = 1e-9;  // of an axis' z: it lies level
+constexpr double kLevel = 1e-9;  // z of an axis below which it lies level
 }
 
 // From its middle along an axis of the world, which is `n` in the geom's frame [m].
@@ -52,7 +52,7 @@ void ColliderBottom::anchor_of(const double* point, double* p_G) const {
   if (round) p_G[2] = std::clamp(p_G[2], -size_[1], size_[1]);
 }
 
-// How far it has turned, as far as its shape shows it [rad].
+// Angle turned, ignoring symmetries of the shape [rad].
 double ColliderBottom::turned(const double* R) const {
   if (type_ == mjGEOM_SPHERE) return 0;
   const bool round = type_ == mjGEOM_CAPSULE || type_ == mjGEOM_CYLINDER;

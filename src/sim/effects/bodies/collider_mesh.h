@@ -1,5 +1,5 @@
 #pragma once
-// What MuJoCo collides meshes and height fields as: hulls and prisms, as planes.
+// Solids that MuJoCo collides meshes and height fields as: hulls and prisms, as planes.
 
 #include <span>
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace gloam {
 
-/// Which geoms can be touched.
+/// Flags of the geoms that can be in contact.
 std::vector<bool> colliders(const mjModel& model);
 
 /// Numbers of vertices, three for each face of the convex hull that a mesh collides as.
@@ -24,7 +24,7 @@ class HeightFieldPrisms {
   HeightFieldPrisms(const mjModel& model, int id, const float* data);
   int rows() const { return rows_; }
   int columns() const { return columns_; }
-  /// Of the cell from (column, row) to the next: one of its two prisms, where the solid's pose is.
+  /// Makes one of the two prisms of the cell from (column, row) to the next, at the solid's pose.
   void make_prism(int column, int row, bool second, GridSolid* solid) const;
 
  private:

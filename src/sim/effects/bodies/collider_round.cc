@@ -12,7 +12,7 @@ namespace gloam {
 namespace {
 
 constexpr double kNoLength = 1e-18;    // square of one that a division needs
-constexpr double kSteepestRim = 1e-3;  // of a normal's z: the surface is as good as a wall
+constexpr double kSteepestRim = 1e-3;  // z of a normal below which the surface counts as a wall
 
 struct Sweep {
   double a[3], u[3];      // beginning [m] and direction

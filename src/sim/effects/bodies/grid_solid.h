@@ -1,6 +1,7 @@
 #pragma once
-// Where the lines through the centres of a grid's cells are inside a convex solid: closed forms.
-// All lengths are in voxels from the grid's low corner: the centre of cell i is at i + 1/2.
+// Intervals in which the lines through the centres of a grid's cells are inside a convex solid:
+// closed forms. All lengths are in voxels from the grid's low corner: the centre of cell i is at i
+// + 1/2.
 
 #include <mujoco/mujoco.h>
 
@@ -19,14 +20,15 @@ struct SolidPlane {
   double n[3], offset;
 };
 
-/// One convex solid. Made anew for every pose, in the same room.
+/// One convex solid. Made anew for every pose, in the same memory.
 class GridSolid {
  public:
-  /// Where and in which grid what comes next stands: p [m], R row by row (mjData's xpos and xmat).
+  /// Sets grid and pose of the solids made after it: p [m], R row by row (mjData's xpos and xmat).
   void set_pose(const GasGrid& grid, const double* p, const double* R);
   /// Sphere, ellipsoid, capsule, cylinder, box or plane by MuJoCo's geom_size [m]. False: another.
   bool make_primitive(int type, const double* size);
-  /// What lies under all `planes`, and in the box at `centre` of half sides `half` [m].
+  /// Makes the intersection of the half-spaces below all `planes` with the box at `centre` of half
+  /// sides `half` [m].
   void make_polyhedron(std::span<const SolidPlane> planes, const double* centre,
                        const double* half);
 
@@ -39,7 +41,8 @@ class GridSolid {
   void inside(int axis, int b0, int c, int n, double grow, double* lo, double* hi) const;
 
  private:
-  static constexpr double kDiagonal = 1.7320508;  // of a cube, by which a box may reach further
+  // Diagonal of a cube over its edge: reach of a grown box
+  static constexpr double kDiagonal = 1.7320508;
   enum class Kind : uint8_t { kPlanes, kEllipsoid, kCylinder, kCapsule };
   void add_plane(const SolidPlane& plane);
   void bound(const double* centre, const double* half);

@@ -16,7 +16,7 @@ struct WallRun {
   int axis;  ///< the line's direction
   int b, c;  ///< its cell in the other two axes, in order
   int first_face, last_face;
-  int first_cell, last_cell;  ///< whose centres are inside; none where first > last
+  int first_cell, last_cell;  ///< cells whose centres are inside; none where first > last
   bool operator==(const WallRun&) const = default;
 };
 
@@ -50,8 +50,8 @@ class WallRuns {
 
   GasGrid grid_;
   int n_[3];
-  double grow_;                  // of all surfaces, for faces [voxels]
-  std::vector<double> lo_, hi_;  // of a row of lines
+  double grow_;                  // growth of all surfaces, for faces [voxels]
+  std::vector<double> lo_, hi_;  // ends of a row of lines
 };
 
 }  // namespace gloam

@@ -12,8 +12,8 @@ namespace {
 // Least part of a contact's normal along z: ground, not a wall.
 constexpr double kGroundNormal = 0.7;
 
-// How fast the rim of a geom turns past `p`, across `normal`, by the share of its tree's weight
-// that is `load` [m/s].
+// Speed at which the rim of a geom rolls past `p`, across `normal`, times `load`, the fraction of
+// its tree's weight [m/s].
 double rolled_way(const mjModel& m, const mjData& d, int geom, const double* p,
                   const double* normal, double load) {
   const int body = m.geom_bodyid[geom];

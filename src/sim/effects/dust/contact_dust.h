@@ -1,11 +1,12 @@
 #pragma once
-// Dust from what touches dusty ground, gathered on the sim thread between two ticks of a gas:
+// Dust from contacts with dusty ground, gathered on the sim thread between two ticks of a gas:
 // impacts of feet last milliseconds, and ticks would miss them.
 //
-// Of each contact of a body with what stands still: AP-42's law for the way it rolls, by the share
-// of its tree's weight that it carries; dust per energy for friction's work and for what it comes
-// down with. In a bed of soil the greater of both: what rolls there sinks in at each turn. Of
-// people, whose feet are in no contact with the ground, a step's worth at each step.
+// Each contact of a body with the static ground gives: AP-42's law for the distance it rolls, by
+// the fraction of its tree's weight that it carries; dust per energy for the work of friction and
+// for the energy of impacts. In a bed of soil the greater of both counts, since rolling things sink
+// in at each turn. People, whose feet have no contact with the ground, give a step's worth at each
+// step.
 
 #include <mujoco/mujoco.h>
 
@@ -29,7 +30,7 @@ class ContactDust {
   void reset();
   /// After mj_step, while `data` has its contacts, forces and velocities. `events`: of that step.
   void gather(const mjModel& model, const mjData& data, const StepEvents& events);
-  /// What was gathered since the last call, by what raised it.
+  /// Deposits gathered since the last call, by what raised them.
   std::vector<DustDeposit> take();
 
  private:
@@ -39,8 +40,9 @@ class ContactDust {
   };
   struct Ground {
     const DustDescription* box = nullptr;
-    double per_energy = 0;        // dust [kg/J]
-    std::vector<double> per_way;  // by body, of what its tree weighs in the model [kg/m]
+    double per_energy = 0;  // dust [kg/J]
+    // Dust per distance, by body, for the weight of its tree in the model [kg/m]
+    std::vector<double> per_way;
   };
   const Ground* ground_at(const double* p) const;
   void gather_contact(const mjModel& model, const mjData& data, int contact);

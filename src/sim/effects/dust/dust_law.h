@@ -1,5 +1,6 @@
 #pragma once
-// How much dust ground gives, by published laws. What they leave open is said to be a guess.
+// Amount of dust that ground gives, by published laws. Guesses, where they leave something open,
+// are marked as such.
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +17,7 @@ inline double friction_velocity(double speed, double height) {
 }
 
 /// Dust that saltating grains raise [kg/(m² s)]: White's flux of grains (1979) times the ratio of
-/// dust to it by the soil's share of clay, up to 0.2, after Marticorena and Bergametti 1995. All
+/// dust to it by the soil's fraction of clay, up to 0.2, after Marticorena and Bergametti 1995. All
 /// above the threshold friction velocity [m/s]. `density`: of the air [kg/m³].
 inline double saltation_dust(double friction_velocity, double threshold, double clay,
                              double density) {
@@ -28,7 +29,7 @@ inline double saltation_dust(double friction_velocity, double threshold, double 
 }
 
 /// Dust that a vehicle of a mass [kg] raises per way it rolls [kg/m]: EPA, AP-42, section 13.2.2
-/// (2006), equation 1a for particles up to 30 µm, by the share of silt. The law was fitted to
+/// (2006), equation 1a for particles up to 30 µm, by the fraction of silt. The law was fitted to
 /// vehicles of 1.8 to 260 t; robots are far below.
 inline double rolling_dust(double silt, double mass) {
   constexpr double kPerMile = 281.9e-6;  // 1 lb per mile [kg/m]

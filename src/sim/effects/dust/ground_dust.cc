@@ -9,7 +9,7 @@
 namespace gloam {
 namespace {
 
-constexpr int kMostRings = 10;  // of cells around a deposit that are looked at for air
+constexpr int kMostRings = 10;  // rings of cells around a deposit that are searched for air
 
 }  // namespace
 

@@ -1,6 +1,6 @@
 #pragma once
-// What cells of a gas get of dust in a tick: from ground that air blows over, and from deposits of
-// what touched it.
+// Dust that cells of a gas receive in a tick: from ground that air blows over, and from deposits of
+// contacts.
 
 #include <span>
 #include <vector>
@@ -29,7 +29,7 @@ class GroundDust {
 
   const std::vector<DustDescription>& dusts_;
   GasGrid grid_;
-  std::vector<int> ground_;  // by column: k of the lowest cell of air above ground, -1 = none
+  std::vector<int> ground_;  // k of the lowest cell of air above ground, by column; -1 = none
   std::vector<GasEmission> emissions_;
 };
 

@@ -164,7 +164,7 @@ void GasEffect::run_thread() {
     {
       std::unique_lock lock(mutex_);
       wanted_.wait(lock, [this] { return quit_ || work_; });
-      if (!work_) return;  // what was begun is finished: Snapshots may outlive the simulation
+      if (!work_) return;  // running work is finished first: Snapshots may outlive the simulation
       now = std::move(work_);
       work_ = {};
       deposits.swap(deposits_);
@@ -228,7 +228,7 @@ void GasEffect::find_sources(double time) {
   }
 }
 
-/// Of the air around: what the gas says, else the weather's at the height of its middle.
+/// Wind of the air around: the gas's own, else the weather's at the height of its middle.
 Vec3f GasEffect::wind(double time) const {
   if (gas().wind) return *gas().wind;
   const Vec3 v = wind_.at(time, double{gas().low.z} + 0.5 * double{gas().size().z});

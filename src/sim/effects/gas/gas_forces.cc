@@ -63,7 +63,7 @@ struct Fluid {
   double density, viscosity;  // [kg/m³], [Pa s]
 };
 
-// What the air of a gas is when it is as warm as that around it.
+// Air of a gas at the temperature of its surroundings.
 Fluid air_of(const mjOption& option) {
   if (option.density > 0 || option.viscosity > 0) return {option.density, option.viscosity};
   return {kAirDensity, kAirViscosity};
@@ -145,7 +145,7 @@ void GasForces::look(int row, const mjModel& m, const mjData& d, const MediumFie
   }
 }
 
-// What air can do to a body that moves as it does now, at most [m/s²].
+// Greatest acceleration that air can give a body at its present speed [m/s²].
 double GasForces::most_push(const mjModel& m, const mjData& d, const Felt& felt) {
   const mjOption& option = m.opt;
   const Fluid air = air_of(option);

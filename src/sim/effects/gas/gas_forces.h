@@ -1,11 +1,11 @@
 #pragma once
-// What the air of gases does to bodies, on the sim thread: drag by how it moves there.
+// Forces of the air of gases on bodies, on the sim thread: drag by the air's velocity at the body.
 //
-// It is that of MuJoCo's own model of a fluid, which knows one air for all bodies: rho/2 A |v| v
-// along each axis of the box of equal inertia, and Stokes' drag. In a model that has a fluid each
-// body gets the difference between that in the air of its gas and in MuJoCo's, so that where the
-// two are the same nothing changes. The air is that of the last tick, up to an interval old; hot
-// air is thinner by T0/T. Left out: torques, and bodies to which air can do less than kLeastPush.
+// The law is MuJoCo's own model of a fluid, which has one air for all bodies: rho/2 A |v| v along
+// each axis of the box of equal inertia, and Stokes' drag. In a model that has a fluid each body
+// gets the difference between the drag in its gas and in MuJoCo's fluid, so that nothing changes
+// where the two are the same. The air is that of the last tick, up to an interval old; hot air is
+// thinner by T0/T. Left out: torques, and bodies to which air can give less than kLeastPush.
 
 #include <mujoco/mujoco.h>
 
@@ -43,10 +43,11 @@ class GasForces {
   // A body that moves, and the air around it.
   struct Felt {
     int body = 0;
-    double half[3] = {};  // of its box [m]
-    double reach = 0;     // of the rotors of its tree around the tree's centre, 0 = it has none [m]
-    double area = 0;      // of the largest side of the box [m²]
-    int gas = -1;         // that pushes it; -1 = none
+    double half[3] = {};  // half sides of its box [m]
+    // Reach of the rotors of its tree around the tree's centre, 0 = it has none [m]
+    double reach = 0;
+    double area = 0;      // area of the largest side of the box [m²]
+    int gas = -1;         // gas that pushes it; -1 = none
     double wind[3] = {};  // [m/s]
     double thinness = 1;  // T0 / T
   };

@@ -189,7 +189,7 @@ bool GasObstacles::follow_height_fields(const LiveFields* live) {
   return true;
 }
 
-// What a mocap body did since the last instant: MuJoCo knows no velocity of it.
+// Velocity of a mocap body since the last instant: MuJoCo has none.
 void GasObstacles::follow_mocap(const SnapshotData& in) {
   const double dt = in.time - mocap_time_;
   const bool goes_on = in.run == mocap_run_ && dt > 0;

@@ -18,7 +18,7 @@ namespace gloam {
 /// Used by one thread at a time; the same bits for any number of threads.
 class GasObstacles {
  public:
-  /// Of a door that is shut, 4 to 8 mm: a line through one would make a gap of a whole voxel of it.
+  /// Gap of a shut door, 4 to 8 mm: a line through one would open it by a whole voxel.
   static constexpr double kSealedGap = 0.01;
   static constexpr double kTeleport = 20;  ///< [m/s]
 
@@ -43,10 +43,10 @@ class GasObstacles {
   /// The same of what is closed or solid, whatever its velocity.
   bool shape_changed() const { return shape_changed_; }
 
-  /// Of what stands still, as of the last call; no velocities.
+  /// Walls of static things, as of the last call; no velocities.
   const GasWalls& still() const { return still_; }
 
-  /// Where a body was at the instant of the last call.
+  /// Pose of a body at the instant of the last call.
   Affine3f X_WB(int body) const;
 
   /// Colliders that are not seen: geoms of type sdf, flexes.
@@ -78,24 +78,24 @@ class GasObstacles {
   DataPtr data_;
   GasGrid grid_;
   WallRuns lines_;
-  GridSolid solid_;                             // room
-  std::vector<std::vector<SolidPlane>> hulls_;  // by mesh, where a collider is one
+  GridSolid solid_;                             // scratch
+  std::vector<std::vector<SolidPlane>> hulls_;  // hulls by mesh, where a collider is one
   std::vector<int> still_geoms_, height_geoms_, moving_geoms_;
   int left_out_ = 0;
 
-  GasWalls still_;              // of what stands still; no velocities
+  GasWalls still_;              // walls of static things; no velocities
   GasWalls fixed_;              // without height fields; empty where there are none
   uint64_t height_serial_ = 0;  // LiveFields'
   struct Mocap {
     mjtNum p[3], q[4];
     RigidMotion motion;
   };
-  std::vector<Mocap> mocaps_;  // by mocap id, at the last instant
-  int64_t mocap_run_ = -1;     // of that
+  std::vector<Mocap> mocaps_;  // states by mocap id, at the last instant
+  int64_t mocap_run_ = -1;     // run of that instant
   double mocap_time_ = 0;      // [s]
   std::vector<Mover> movers_, movers_before_;
   std::vector<WallRun> runs_, runs_before_;
-  const GasWalls* filled_ = nullptr;  // by the last call
+  const GasWalls* filled_ = nullptr;  // walls filled by the last call
   bool changed_ = false, shape_changed_ = false;
 };
 

@@ -76,10 +76,10 @@ uint64_t bytes_of(const GasGrid& g) {
          cells * (9 * 4 + 16 + 7 + 4 + 4 + 12);
 }
 
-/// What glows in a voxel is soot in sheets of flame much thinner than it, as many of them as it
-/// burns fast: the temperature [K] at which all of the voxel's soot would send as much light as
-/// these do, by Wien's law at 600 nm. Thermal cameras see it too hot: to them a sheet of a tenth is
-/// less.
+/// Apparent temperature of a burning voxel. Its soot glows in sheets of flame much thinner than the
+/// voxel, and in more of them the faster it burns. The result is the temperature [K] at which all
+/// of the voxel's soot would emit as much light as these sheets, by Wien's law at 600 nm. Thermal
+/// cameras see it too hot: in their band a sheet of a tenth emits less.
 float glowing_temperature(float share, float flame) {
   constexpr float kBand = 600e-9f / 1.4387769e-2f;  // wavelength over hc/k [1/K]
   return 1.0f / (1.0f / flame - kBand * std::log(min(share, 1.0f)));

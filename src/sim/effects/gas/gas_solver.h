@@ -27,16 +27,16 @@ struct GasProperties {
   float vorticity = 0.4f;
   /// Share of its heat that warm gas loses per second to walls and by radiation [1/s].
   float cooling = 0.02f;
-  float dissipation = 0;  ///< of smoke, by deposition [1/s]
+  float dissipation = 0;  ///< rate of deposition of smoke [1/s]
   /// [J/kg]. Flexible polyurethane foam: 25 MJ/kg (SFPE Handbook, Tewarson: GM21 to GM37).
   float heat_of_combustion = 25e6f;
   /// Soot per fuel [kg/kg]. Flexible polyurethane foam: 0.10 to 0.23 (same table), wood: 0.015.
   float soot_yield = 0.10f;
-  float radiated = 0.35f;  ///< share of the heat release that leaves as radiation (FDS's default)
+  float radiated = 0.35f;  ///< fraction of the heat release that is radiated (FDS's default)
   /// Time in which fuel and air of one voxel mix [s]: "mixed is burnt" (eddy break-up, Magnussen
   /// and Hjertager 1977; of FDS's order at voxels of this size).
   float mixing_time = 0.1f;
-  /// Of the luminous soot inside burning voxels, for rendering [K].
+  /// Temperature of the luminous soot inside burning voxels, for rendering [K].
   float flame_temperature = 1500;
   /// Sides of the box, -x +x -y +y -z +z: open air at rest pressure, or closed.
   bool open[6] = {true, true, true, true, true, true};
@@ -52,7 +52,8 @@ struct GasSource {
   float heat = 0;                     ///< [W], all of it to the gas
   float smoke = 0;                    ///< [kg/s]
   bool blows = false;
-  Vec3f velocity;  ///< where it blows: what its cells' air is driven at [m/s], world; at most 50
+  /// Velocity of a blower, to which its cells' air is driven [m/s], world; at most 50
+  Vec3f velocity;
 };
 
 /// A disc that drives air, of which it takes its thrust: the actuator disc of momentum theory
@@ -62,21 +63,21 @@ struct GasSource {
 /// than a voxel is spread over one.
 struct GasRotor {
   Vec3f hub;         ///< [m], world, at the beginning of the step; elsewhere it does nothing
-  Vec3f velocity;    ///< of the hub during the step [m/s], world
+  Vec3f velocity;    ///< velocity of the hub during the step [m/s], world
   Vec3f axis;        ///< unit, along which thrust points
   float radius = 0;  ///< [m]
   float thrust = 0;  ///< [N]
 };
 
-/// What a cell is given of smoke; nothing where it is solid.
+/// Smoke that a cell is given; nothing where it is solid.
 struct GasEmission {
   size_t cell = 0;  ///< as GasWalls::cell() counts
   float rate = 0;   ///< [kg/s]
 };
 
 struct GasStep {
-  int substeps = 0;             ///< of the whole step
-  int transport_substeps = 0;   ///< of smoke, heat and fuel, in all
+  int substeps = 0;             ///< substeps of the whole step
+  int transport_substeps = 0;   ///< substeps of smoke, heat and fuel, in all
   int pressure_iterations = 0;  ///< in all
   float max_speed = 0;          ///< at the end [m/s]
   /// L2 norms over cells of what is wrong with the divergence [1/s], the worst substep's.
@@ -94,8 +95,9 @@ struct GasBudget {
   double smoke_buried = 0, fuel_buried = 0, heat_buried = 0;  ///< in pockets that walls filled
 };
 
-/// What steps a gas. A card does what the CPU does, in the same order of sums, but for the budget
-/// and for the mean divergence of enclosed spaces, which round in the sixteenth digit.
+/// Processor that steps a gas. A card computes the same as the CPU, in the same order of sums, but
+/// for the budget and for the mean divergence of enclosed spaces, which round in the sixteenth
+/// digit.
 enum class GasDevice { kCpu, kCuda };
 
 class GasSolver {
@@ -117,10 +119,10 @@ class GasSolver {
                std::span<const GasRotor> rotors = {}, std::span<const GasEmission> emissions = {});
 
   /// Soot concentration [kg/m³] and temperature [K], (nz, ny, nx). Where it burns, it is that at
-  /// which the soot gives the light of its luminous share: flames are thinner than voxels.
+  /// which the soot gives the light of its luminous fraction: flames are thinner than voxels.
   void read(std::vector<float>* density, std::vector<float>* temperature) const;
 
-  /// Of cells' centres [m/s], world, (nz, ny, nx, 3).
+  /// Velocities of cells' centres [m/s], world, (nz, ny, nx, 3).
   void read_velocity(std::vector<float>* velocity) const;
 
   double smoke_mass() const;  ///< [kg]

@@ -1,5 +1,5 @@
 #pragma once
-// What a GasSolver is made of.
+// State of a GasSolver.
 
 #include <string>
 
@@ -24,26 +24,26 @@ struct GasSolver::State {
   gas::Transport transport;
 
   // With the pressure's solution, all that decides what comes next.
-  gas::Field velocity[3];             ///< of faces [m/s]
-  gas::Field scalars[gas::kScalars];  ///< of cells; ghosts hold ambient air: 0
+  gas::Field velocity[3];             ///< velocity of faces [m/s]
+  gas::Field scalars[gas::kScalars];  ///< scalars of cells; ghosts hold ambient air: 0
   gas::Field burning;                 ///< heat release in the last substep [W/m³]
   uint64_t parity = 0;                ///< substeps of transport so far
-  float last_dt = 0;                  ///< of the last substep [s]
+  float last_dt = 0;                  ///< length of the last substep [s]
   GasBudget budget;
   GasWalls walls;
 
-  gas::Field heated;                      ///< what kHeat gains in a substep
-  std::vector<double> row_sums;           ///< of reactions: four for each row
-  std::vector<float> row_most;            ///< of speeds
+  gas::Field heated;                      ///< gain of kHeat in a substep
+  std::vector<double> row_sums;           ///< sums of reactions: four for each row
+  std::vector<float> row_most;            ///< greatest speeds
   std::vector<int> filled, freed, order;  ///< cells that walls took or left
-  std::vector<int> depth;                 ///< of filled cells, 0 elsewhere
+  std::vector<int> depth;                 ///< depth of filled cells, 0 elsewhere
 
   /// If there is one, it steps the gas; fields here are then what was last fetched of it.
   std::unique_ptr<gas::CudaGas> card;
   uint32_t stale = 0;                    ///< a bit for each field that is newer on the card
-  std::vector<gas::Gift> gifts;          ///< of sources in a substep on the card
+  std::vector<gas::Gift> gifts;          ///< gifts of sources in a substep on the card
   std::vector<int> gift_cells, touched;  ///< touched: cells that walls' motion reads or changes
-  gas::Additions additions;              ///< of rotors and emissions in a substep
+  gas::Additions additions;              ///< additions of rotors and emissions in a substep
 
   gas::Faces<float> faces() { return {velocity[0].data(), velocity[1].data(), velocity[2].data()}; }
   float ambient_density() const {  ///< [kg/m³]

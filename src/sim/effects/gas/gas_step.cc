@@ -11,10 +11,10 @@ namespace gloam {
 namespace {
 
 constexpr float kLongestSubstep = 0.1f;  ///< buoyancy is explicit: well below its period [s]
-constexpr float kVoxelsPerSubstep = 3;   ///< that air may move
+constexpr float kVoxelsPerSubstep = 3;   ///< distance that air may move
 constexpr int kMostSubsteps = 1000;
 
-/// By a source in a substep: of kHeat, kSmoke, kFuel, times cells.
+/// Amounts that a source gives in a substep: of kHeat, kSmoke, kFuel, times cells.
 struct Given {
   float heat, smoke, fuel;
 };
@@ -154,7 +154,7 @@ void GasSolver::State::account_motion(const gas::Projection& projection, int tra
   budget.fuel_escaped += escaped[gas::kFuel] * cell_volume();
 }
 
-/// Calls give(source, what it gives in all, cell, the cell's share).
+/// Calls give(source, what it gives in all, cell, the cell's fraction).
 template <class F>
 void GasSolver::State::feed(float dt, std::span<const GasSource> sources, GasStep* step, F&& give) {
   const double volume = cell_volume();

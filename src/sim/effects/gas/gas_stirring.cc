@@ -1,4 +1,4 @@
-// What rotors give to faces and emissions to cells, in one substep.
+// Momentum that rotors give to faces, and smoke that emissions give to cells, in one substep.
 
 #include "sim/effects/gas/stirring.h"
 
@@ -73,7 +73,8 @@ void GasSolver::State::push_by(const GasRotor& rotor, Vec3f hub, float dt) {
       }
     }
     if (!(sum > 0)) continue;
-    const double mass = double(ambient_density()) * cell_volume();  // of the air of a face [kg]
+    // Mass of the air of a face [kg]
+    const double mass = double(ambient_density()) * cell_volume();
     const float gain = float(double(force) * double(dt) / (mass * sum));
     for (size_t n = begin; n < additions.values.size(); ++n) additions.values[n] *= gain;
     additions.list.push_back({a, int(additions.at.size() - begin)});

@@ -1,5 +1,5 @@
 #pragma once
-// Where gas can not go, as the solver reads it.
+// Walls of a gas, as the solver reads them.
 
 #include <cstddef>
 #include <cstdint>
@@ -26,13 +26,13 @@ struct GasGrid {
   }
 };
 
-/// What closes faces between cells. Face (i, j, k) across axis 0 lies between cells (i-1, j, k) and
-/// (i, j, k); arrays are (nz, ny, nx+1), (nz, ny+1, nx), (nz+1, ny, nx).
+/// Closed faces between cells. Face (i, j, k) across axis 0 lies between cells (i-1, j, k) and (i,
+/// j, k); arrays are (nz, ny, nx+1), (nz, ny+1, nx), (nz+1, ny, nx).
 struct GasWalls {
   GasGrid grid;
   /// 1 = closed. Thin things (a door leaf) close faces without filling a cell.
   std::vector<uint8_t> closed[3];
-  /// Of what closes the face, along its axis [m/s]; 0 where open.
+  /// Velocity of the wall that closes the face, along its axis [m/s]; 0 where open.
   std::vector<float> velocity[3];
   /// (nz, ny, nx); 1 = the cell's centre lies in something; all its faces are closed.
   std::vector<uint8_t> solid;

@@ -21,7 +21,7 @@ void for_neighbours(const Shape& s, int c, F&& f) {
   }
 }
 
-/// Of one grid, on several threads.
+/// Walls of one grid, copied on several threads.
 void copy_walls(const GasWalls& from, GasWalls* to) {
   parallel_for("gas", 7, [&from, to](int64_t n) {
     if (n < 3) {
@@ -108,8 +108,8 @@ void GasSolver::State::use_walls() {
   }
 }
 
-/// What filled cells hold goes, from the innermost outwards, to neighbours nearer to open ones, in
-/// even parts. What no open cell can be reached from stays behind as buried.
+/// The content of newly filled cells moves, from the innermost outwards, to neighbours nearer to
+/// open ones, in even parts. Content from which no open cell can be reached stays as buried.
 void GasSolver::State::push_out(const GasWalls& next) {
   const gas::Faces<const float> open = pressure.open();
   // Steps to the nearest open cell through faces that were open; 0 = open, -1 = not known.

@@ -14,8 +14,8 @@ class Momentum {
   /// Finds the ways that air takes in `dt`.
   void trace(const Openings& openings, const Faces<const float>& open,
              const Faces<const float>& velocity, float voxel, float dt);
-  /// Of cells and ghosts: 1 where flow changes little over a voxel, 0 where the grid does not
-  /// resolve it; there, pressure that is carried along would feed eddies.
+  /// Smoothness of cells and ghosts: 1 where flow changes little over a voxel, 0 where the grid
+  /// does not resolve it; there, pressure that is carried along would feed eddies.
   const Field& smoothness() const { return smooth_; }
   /// Carries `velocity` along them; closed faces stay as they are. `wind` [m/s]: of the air
   /// outside.
@@ -39,7 +39,7 @@ class Momentum {
 
   Shape shape_;
   Field centre_[3];  ///< velocities of cells' centres [voxels per step]
-  Field moved_[3];   ///< by how much their air moved in the step [voxels]
+  Field moved_[3];   ///< displacement of their air in the step [voxels]
   Field smooth_;
   Field trusted_;  ///< 0 where something was in the way: no correction there
   Field carried_, least_, most_, corrected_;

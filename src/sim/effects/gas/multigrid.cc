@@ -17,7 +17,8 @@ float distance(const std::vector<float>& width, int i) {
 Multigrid::Multigrid(const Shape& shape) : open_(size_t(shape.size()), 0) {
   for (Shape s = shape;;) {
     Level& level = levels_.emplace_back();
-    // Where walls ask for it, half of the cells along an axis are not joined: room for that.
+    // Walls may require that half of the cells along an axis stay unjoined: reserve memory for
+    // that.
     level.shape = s;
     const size_t n = size_t(s.size());
     for (Field& w : level.weight) w.assign(n, 0.0f);
@@ -52,8 +53,8 @@ void Multigrid::update() {
   }
 }
 
-/// What is closed on each plane of faces along the axis, of those between cells that have an open
-/// face: their number less their weights' share of the largest.
+/// Closed faces on each plane of faces along the axis, among those between cells that have an open
+/// face: their number less the sum of their weights over the largest weight.
 void Multigrid::find_lost(const Level& fine, int axis) {
   const Shape& s = fine.shape;
   const int n = s.n(axis), stride = s.stride(axis);
@@ -61,8 +62,8 @@ void Multigrid::find_lost(const Level& fine, int axis) {
   planes_.assign(size_t(s.nz) * size_t(n), {});
   for_slabs(s.nz, [&](int k) {
     Plane* planes = &planes_[size_t(k) * size_t(n)];
-    float count[kLongestRow] = {}, sum[kLongestRow] = {},
-          most[kLongestRow] = {};  // side by side, along x
+    // Sums side by side, along x.
+    float count[kLongestRow] = {}, sum[kLongestRow] = {}, most[kLongestRow] = {};
     const auto add_up = [&](int plane) {
       for (int i = 0; i < s.nx; ++i) {
         Plane& to = planes[axis == 0 ? i : plane];
@@ -102,7 +103,7 @@ void Multigrid::choose_cells(const Level& fine, int axis, std::vector<int>* star
   const int n = s.n(axis), coarse_n = (n + 1) / 2;
   find_lost(fine, axis);
   const float plane = float(s.nx) * float(s.ny) * float(s.nz) / float(n);
-  const float uneven = 0.01f * plane;  // what a cell that is not of two costs
+  const float uneven = 0.01f * plane;  // cost of a coarse cell that is not made of two
   // cost_[m][i]: of the first i cells joined to m.
   const auto at = [&](int m, int i) { return size_t(m) * size_t(n + 1) + size_t(i); };
   constexpr float kNever = 1e30f;
@@ -148,7 +149,7 @@ void Multigrid::coarsen(const Level& fine, Level& coarse) {
       return axis == a ? first(axis, i) + 1 : coarse.start[axis][size_t(i) + 1];
     };
     for_rows(faces, [&](int j, int k) {
-      float row[kLongestRow + 1];  // of the finer faces, added up along y and z
+      float row[kLongestRow + 1];  // sums of the finer faces along y and z
       const int n = t.faces(a).nx;
       std::fill_n(row, n, 0.0f);
       for (int z = first(2, k); z < end(2, k); ++z) {
@@ -197,7 +198,7 @@ void Multigrid::invert(Level& level) {
   });
 }
 
-/// What the step with kSmooth[0] makes of x = 0.
+/// Result of the step with kSmooth[0] from x = 0.
 struct Multigrid::FirstStep {
   const float *inverse, *b;
   float operator[](int c) const { return kSmooth[0] * inverse[c] * b[c]; }

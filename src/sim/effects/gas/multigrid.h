@@ -21,7 +21,7 @@ class Multigrid {
   /// To be filled before update(): 1 = open, 0 = closed, sides of the box too.
   Faces<float> weights();
   PoissonView finest() const { return view(0); }
-  /// Of the finest level's cells: open_faces(), after update().
+  /// Open faces of the finest level's cells: open_faces(), after update().
   const uint8_t* open_faces() const { return open_.data(); }
   /// x = about A⁻¹ b, by a symmetric linear map. `x`, `b`: with ghosts of 0.
   void precondition(const float* b, float* x);

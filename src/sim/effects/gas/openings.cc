@@ -67,7 +67,7 @@ void Openings::find_clearance(const Faces<const float>& open) {
   // Spreads by one cell at a time, along one axis after the other.
   uint8_t *from = near_.data(), *to = spread_.data();
   for (int distance = 1; distance <= kReach + 1; ++distance) {
-    // What is near a wall by less than `distance` is clear by one less.
+    // Cells near a wall by less than `distance` are clear by one less.
     for_rows(s, [s, from, clear, distance](int j, int k) {
       const int begin = s.at(0, j, k), end = begin + s.nx;
       const uint8_t *const near = from, most = uint8_t(distance > 1 ? distance - 2 : 0);

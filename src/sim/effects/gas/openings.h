@@ -39,7 +39,7 @@ struct Openings {
   void join(int a, int b);
 
   std::vector<uint8_t> near_, spread_;        ///< scratch of find_clearance()
-  std::vector<int> parent_, number_, count_;  ///< of runs, of find_spaces()
+  std::vector<int> parent_, number_, count_;  ///< arrays of runs, of find_spaces()
 };
 
 }  // namespace gloam::gas

@@ -175,7 +175,8 @@ Projection Pressure::project(const Openings& openings, const Faces<float>& veloc
     });
     norm = std::sqrt(square);
     if (norm > goal) continue;
-    // What conjugate gradients believe is left drifts from what is: look, and go on if need be.
+    // The residual of conjugate gradients drifts from the true one: compute that, and go on if need
+    // be.
     norm = std::sqrt(grid_sum(s, partial_, [&](int j, int k) {
       const int begin = s.at(0, j, k), end = begin + s.nx;
       GLOAM_IVDEP
@@ -189,7 +190,7 @@ Projection Pressure::project(const Openings& openings, const Faces<float>& veloc
   subtract(velocity, [x](const float* weight, int c, int stride) {
     return weight[c] * (x[c] - x[c - stride]);
   });
-  // Of the velocities themselves: what conjugate gradients believe drifts from it.
+  // Error of the velocities themselves: the estimate of conjugate gradients drifts from it.
   out.after = std::sqrt(grid_sum(s, partial_,
                                  [&](int j, int k) {
                                    return row_sum(s.at(0, j, k), s.nx, [&](int c) {

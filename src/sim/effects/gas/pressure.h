@@ -21,7 +21,7 @@ class Pressure {
   static uint64_t bytes(uint64_t cells) { return Multigrid::bytes(cells) + cells * 4 * 6; }
 
   explicit Pressure(const Shape& shape);
-  /// Of the finest level; written before update().
+  /// Multigrid, whose finest level is written before update().
   Multigrid& multigrid() { return multigrid_; }
   /// Open or closed; ghosts' faces that are no sides of the box: closed.
   Faces<const float> open() const { return multigrid_.finest().weight; }

@@ -47,7 +47,7 @@ double row_sum(int begin, int n, F&& f) {
   return sum;
 }
 
-/// Sum over the grid of what f(j, k) gives for each row (double). `partial`: room for nz.
+/// Sum over the grid of what f(j, k) gives for each row (double). `partial`: scratch for nz.
 template <class F>
 double grid_sum(const Shape& s, std::vector<double>& partial, F&& f) {
   for_slabs(s.nz, [&s, &f, &partial](int k) {

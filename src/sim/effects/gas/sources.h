@@ -1,5 +1,5 @@
 #pragma once
-// Which cells a source reaches.
+// Cells that a source reaches.
 
 #include "sim/effects/gas/gas_solver.h"
 #include "sim/effects/gas/openings.h"
@@ -9,8 +9,8 @@ namespace gloam::gas {
 /// Greatest speed at which a source drives air [m/s].
 inline constexpr float kFastestSource = 50;
 
-/// Calls f(c, share) for the open cells of the source, with shares that add up to 1; counts those
-/// that are solid.
+/// Calls f(c, share) for the open cells of the source, with fractions that add up to 1; counts
+/// those that are solid.
 template <class F>
 bool for_cells_of(const GasSource& source, const GasGrid& grid, const Openings& openings,
                   int* blocked, F&& f) {

@@ -1,5 +1,5 @@
 #pragma once
-// What rotors do to air.
+// Effect of rotors on air.
 
 #include "sim/effects/gas/gas_solver.h"
 
@@ -12,7 +12,7 @@ inline constexpr float kDiscReach = 2, kDiscEdge = 3;
 
 /// Radius of the disc that a grid can hold [m].
 float disc_radius(const GasRotor& rotor, float voxel);
-/// Of air far behind a hovering rotor, by momentum theory [m/s].
+/// Speed of air far behind a hovering rotor, by momentum theory [m/s].
 float far_wake_speed(const GasRotor& rotor, float voxel, float ambient_density);
 
 }  // namespace gloam::gas

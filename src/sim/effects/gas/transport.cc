@@ -8,13 +8,13 @@ namespace {
 
 constexpr int kBlock = 32;  ///< cells side by side in a sweep along y or z
 
-/// What such a row needs while a sweep passes over it: ratios, and differences to the row before,
+/// Buffers of such a row while a sweep passes over it: ratios, and differences to the row before,
 /// for each scalar; its air.
 struct Row {
   float q[kScalars][kBlock], d[kScalars][kBlock], air[kBlock];
 };
 
-/// Whether anything is in n cells, which hold nothing below 0: of bits, which lanes compare.
+/// True if any of n cells, none below 0, holds something. It compares bits, which vectorizes.
 bool holds_any(const float* field, int n) {
   uint32_t bits = 0;
   GLOAM_IVDEP
@@ -194,7 +194,7 @@ void Transport::sweep_block(const Sweep& sweep, int first, int width, double* es
         GLOAM_IVDEP
         for (int i = 0; i < width; ++i) row.q[f][i] = field[i] / row.air[i];
       }
-      if (m < begin_face || m > n) {  // of nothing and nothing
+      if (m < begin_face || m > n) {  // zero on both sides
         std::fill_n(row.d[f], width, 0.0f);
       } else {
         const float* open = sweep.open + begin;

@@ -8,7 +8,7 @@ namespace gloam::gas {
 
 /// Share of its air that may leave a cell in a sweep.
 inline constexpr float kMostOutflow = 0.95f;
-/// Of axes, in turn from substep to substep.
+/// Orders of the axes, in turn from substep to substep.
 inline constexpr int kOrders[6][3] = {{0, 1, 2}, {2, 1, 0}, {1, 2, 0},
                                       {0, 2, 1}, {2, 0, 1}, {1, 0, 2}};
 
@@ -32,7 +32,7 @@ class Transport {
   void sweep_block(const Sweep& sweep, int first, int width, double* escaped);
 
   Shape shape_;
-  Field courant_[3];  ///< of faces: speed dt / voxel, 0 where closed
+  Field courant_[3];  ///< Courant numbers of faces: speed dt / voxel, 0 where closed
   std::vector<float> row_most_;
   std::vector<double> row_escaped_;
 };

@@ -1,4 +1,4 @@
-// What bodies do to the surface of a bed, as it is seen.
+// Visible changes of a bed's surface by bodies.
 
 #include "sim/effects/soil/soil_bed.h"
 
@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kNoWay = 1e-9;     // [m]
 constexpr double kMovesOn = 0.05;   // [m/s]
-constexpr double kHeapWidth = 1.5;  // of a heap, over the sinkage beside it
+constexpr double kHeapWidth = 1.5;  // width of a heap, over the sinkage beside it
 constexpr double kNoSlide = 1e-5;   // [m]
 constexpr int kFarthest = 64;       // cells to it
 
@@ -27,8 +27,8 @@ float SoilBed::lower_track(const SoilTouch& touch) {
   return lower;
 }
 
-// What is displaced rises beside what displaces it: away from its middle, or, where it moves on, at
-// its sides. That is seen and not felt.
+// Displaced soil rises beside the body: away from its middle, or, if it moves on, at its sides.
+// This is visible only and changes no force.
 void SoilBed::push_aside(const SoilTouch& touch, const double* velocity, double volume) {
   if (volume <= 0) return;
   const double* centre = contacts_.centre(touch.patch);
@@ -60,8 +60,8 @@ void SoilBed::push_aside(const SoilTouch& touch, const double* velocity, double 
   }
 }
 
-// What lies loose slides down from a cell to the lowest beside it, and from there, until it is no
-// steeper than its friction holds; not into what is in the ground.
+// Loose soil slides down from a cell to its lowest neighbour, and on from there, until it is no
+// steeper than its friction holds; not into cells that a body occupies.
 void SoilBed::slide(int cell) {
   for (int way = 0; way < kFarthest; ++way) {
     const int i = cell % soil_.nx, j = cell / soil_.nx;

@@ -120,7 +120,7 @@ std::span<SoilLanes> SoilBed::lanes_of(const Body& body) {
   return std::span(lanes_).subspan(body.lanes, (body.count + kSide - 1) / kSide);
 }
 
-// What has happened since the last step; `lanes`: with its i-th the touch's. `motion`: the body's.
+// Update of a cell since the last step; `lanes`: its i-th is the touch's. `motion`: the body's.
 void SoilBed::press_cell(uint32_t step, double dt, const SoilTouch& touch, const SoilLanes& lanes,
                          size_t i, const double* motion) {
   SoilCell& cell = cells_[static_cast<size_t>(touch.cell)];
@@ -138,7 +138,7 @@ void SoilBed::press_cell(uint32_t step, double dt, const SoilTouch& touch, const
     cell.sinkage = static_cast<float>(z - touch.fallen);
     cell.pressure = static_cast<float>(loading);
   }
-  // What stands in its print keeps that from what falls.
+  // A body that stands in its print shelters it from falling snow.
   const bool sheltered = soil_.growth > 0 && cell.pressure > 0;
   const float lower = yields || sheltered ? lower_track(touch) : 0;
   if (yields && lower > 0) {

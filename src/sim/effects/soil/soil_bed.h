@@ -32,7 +32,7 @@ class SoilBed {
   /// Adds the forces of the coming step to data.qfrc_applied. data.qLD is of the present.
   void push(uint32_t step, const mjModel& model, mjData& data, ResponseSolver* solver);
 
-  /// Of the last push(), by geoms.
+  /// Loads of the last push(), by geoms.
   std::span<const ContactLoad> loads() const { return loads_; }
 
   SoilTracks& tracks() { return tracks_; }
@@ -40,16 +40,16 @@ class SoilBed {
   const std::vector<SoilCell>& cells() const { return cells_; }
 
  private:
-  /// What the bed does to a body in a step: accelerations of the joints that move it, which stand
-  /// in answers_.
+  /// Response of the bed to a body in a step: accelerations of the joints that move it, stored in
+  /// answers_.
   struct Answer {
     uint32_t step = 0;  // after the one it was for
     size_t first = 0, count = 0;
   };
-  /// What a body touches.
+  /// Contacts of a body.
   struct Body {
     int id = 0;
-    double point[3] = {};         // where its motion is told of [m]
+    double point[3] = {};         // point at which its motion is given [m]
     size_t first = 0, count = 0;  // touches
     size_t lanes = 0;             // the first of them; kSide touches each
   };
@@ -74,12 +74,12 @@ class SoilBed {
   const SoilDescription& soil_;
   SoilContacts contacts_;
   std::vector<SoilCell> cells_;
-  std::vector<Answer> answers_of_;  // of the last step, (nbody)
+  std::vector<Answer> answers_of_;  // answers of the last step, (nbody)
   std::vector<double> answers_;
-  std::vector<double> moduli_;    // of patches: k_c / b + k_phi [N/m^(n+2)]
-  std::vector<Body> bodies_;      // of this step
-  std::vector<SoilLanes> lanes_;  // of their touches
-  std::vector<Change> changes_;   // of touched cells, room
+  std::vector<double> moduli_;    // moduli of patches: k_c / b + k_phi [N/m^(n+2)]
+  std::vector<Body> bodies_;      // bodies of this step
+  std::vector<SoilLanes> lanes_;  // lanes of their touches
+  std::vector<Change> changes_;   // changes of touched cells, scratch
   std::vector<ContactLoad> loads_;
   SoilTracks tracks_;
 };

@@ -1,12 +1,12 @@
 #pragma once
-// Which cells of a bed of soil colliders reach into, how far, and over what share of them; and the
+// Cells of a bed of soil that colliders reach into, with depth and covered fraction; and the
 // patches that these make, with Bekker's width b of each.
 //
-// A collider is looked at along lines in x, two or more to a row of cells and at least sixteen over
-// the collider. The ends of what is below the undisturbed surface are exact, or found by bisection,
-// so that areas and edges do not depend on how a collider lies over cells. What is found is kept
-// until the collider has moved by a tenth of a cell or a twentieth of its sinkage: until then the
-// underside rises and falls over the same cells.
+// A collider is sampled along lines in x, two or more to a row of cells and at least sixteen over
+// the collider. The ends of the part below the undisturbed surface are exact, or found by
+// bisection, so that areas and edges do not depend on how a collider lies over cells. The result is
+// kept until the collider has moved by a tenth of a cell or a twentieth of its sinkage: until then
+// the underside rises and falls over the same cells.
 
 #include <cstdint>
 #include <optional>
@@ -27,7 +27,7 @@ struct SoilTouch {
   double p[3] = {};      ///< on the collider's underside, world [m]
   double slope[2] = {};  ///< dz/dx, dz/dy of it
   double depth = 0;      ///< below the undisturbed surface [m]
-  double fallen = 0;     ///< that surface's height over that of time 0 [m]
+  double fallen = 0;     ///< height of that surface over that of time 0 [m]
 };
 
 class SoilContacts {
@@ -44,7 +44,7 @@ class SoilContacts {
   /// After the last add(): colliders in the same or neighbouring cells make one patch.
   void finish();
 
-  /// That there can be.
+  /// Upper bound of the number of touches.
   size_t most_touches() const { return touches_.capacity(); }
   /// In the order of add(); of each collider by rows of cells.
   std::span<SoilTouch> touches() { return touches_; }
@@ -60,39 +60,39 @@ class SoilContacts {
   struct Point {
     double x = 0, y = 0;
   };
-  // Of a line along x: what is below the surface [m].
+  // Part below the surface of a line along x [m].
   struct Line {
     double y = 0, left = 0, right = 0;
-    int number = 0;  // of all that the bed may have
+    int number = 0;  // number among all that the bed may have
   };
   struct Patch {
     double width = 0;  // Bekker's b [m]
     double centre[2] = {};
   };
-  // What a collider covered when it was looked at last: good until it has moved by a part of that.
+  // Cover of a collider when it was sampled last: valid until it has moved by a fraction of that.
   struct Footprint {
     bool known = false;
-    double p[3] = {}, R[9] = {};     // of the collider then
+    double p[3] = {}, R[9] = {};     // pose of the collider then
     double anchor[3] = {};           // in its frame
     double deepest = 0, size = 0;    // [m]
     double fallen = 0;               // until then [m]
     int low[2] = {}, high[2] = {};   // cells along x and y, inclusive
     std::vector<SoilTouch> touches;  // depths below the surface of time 0
     std::vector<Line> outline;       // from low y to high
-    uint64_t number = 0;             // of the look
-    uint64_t patch_number = 0;       // of the looks of all of
-    Patch patch;                     // that begins with it
-    std::vector<double> rise;        // of the underside over each touch since then [m]
+    uint64_t number = 0;             // number of the sampling
+    uint64_t patch_number = 0;       // number of the samplings of all its members
+    Patch patch;                     // patch that begins with it
+    std::vector<double> rise;        // rise of the underside over each touch since then [m]
     int parent = 0;                  // another of the same patch among here_, or itself
   };
-  // Of many places under a collider.
+  // Samples of many places under a collider.
   struct Samples {
     std::vector<double> x, y, area, z, slope_x, slope_y;
     std::vector<int> cell;
   };
   struct Mark {
     uint32_t round = 0;
-    int row = 0;     // of here_
+    int row = 0;     // row of here_
     float area = 0;  // covered [m²]
   };
   static constexpr int kContactLines = 16;      // over a collider, at least
@@ -132,15 +132,15 @@ class SoilContacts {
   double fallen_ = 0;               // [m]
   std::vector<int> here_, before_;  // rows of prints_: of this instant and of the last
   bool changed_ = true;
-  std::vector<SoilTouch> row_;  // of cells along x, sums
+  std::vector<SoilTouch> row_;  // sums of cells along x
   int row_low_, row_high_;      // in use
   std::vector<SoilTouch> touches_;
   std::vector<Patch> patches_;
-  std::vector<Line> lines_, merged_;       // room
-  std::vector<double> ys_, left_, right_;  // room, of lines
-  Samples samples_;                        // room
-  std::vector<Point> hull_;                // room
-  std::vector<Mark> marks_;                // of each cell
+  std::vector<Line> lines_, merged_;       // scratch
+  std::vector<double> ys_, left_, right_;  // scratch, of lines
+  Samples samples_;                        // scratch
+  std::vector<Point> hull_;                // scratch
+  std::vector<Mark> marks_;                // mark of each cell
   uint32_t round_ = 0;
   uint64_t looks_ = 0;
 };

@@ -33,7 +33,7 @@ class SoilEffect final : public Effect {
 
   const std::shared_ptr<const CompiledWorld> world_;
   std::vector<ColliderBottom> colliders_;
-  std::vector<const ColliderBottom*> near_;  // room
+  std::vector<const ColliderBottom*> near_;  // scratch
   std::vector<std::unique_ptr<SoilBed>> beds_;
   ResponseSolver solver_;
   std::vector<int> touch_sensors_;

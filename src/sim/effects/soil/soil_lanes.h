@@ -19,12 +19,12 @@ struct SoilLanes {
   double arm[3][kSide] = {}, slope[2][kSide] = {};  // from the point [m]; of the underside
   double modulus[kSide] = {};                       // k_c / b + k_phi [N/m^(n+2)]
   double bottom[kSide] = {};                        // depth of the bed [m]
-  double per_steep[kSide] = {},
-         stretch[kSide] = {};      // 1 / (d d), and the area over that from above
+  // 1 / (d d), and the true area over the area seen from above.
+  double per_steep[kSide] = {}, stretch[kSide] = {};
   double loading[kSide] = {};      // on the loading curve, as it is now [Pa]
-  double shearing[3][kSide] = {};  // what cell.shear goes to since the last step
+  double shearing[3][kSide] = {};  // limit that cell.shear goes to since the last step
   double share[kSide] = {};        // and how far
-  // What cells have been through:
+  // History of cells:
   double sinkage[kSide] = {}, pressure[kSide] = {}, unloading[kSide] = {}, shear[3][kSide] = {};
   // Force at a velocity u of its place: f - across u - along d (d u), where d is where the ground
   // presses to, (-slope, 1); pressing at no velocity, and less by it.
@@ -45,7 +45,7 @@ struct SoilLanes {
     for (int a = 0; a < 3; ++a) shear[a][i] = double{cell.shear[a]};
   }
 
-  /// What the present does to cells: loading, shearing, share.
+  /// Finds the present state of cells: loading, shearing, covered fraction.
   void find_loading(const SoilStrength& s, const double* motion, double dt);
   /// After set() of the cells.
   void find_unloading(const SoilStrength& s);

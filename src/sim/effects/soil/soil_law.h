@@ -1,5 +1,5 @@
 #pragma once
-// How a bed of soil resists where it is pressed and sheared.
+// Resistance of a bed of soil to pressure and shear:
 //   loading      p = (k_c / b + k_phi) z^n                              Bekker 1956, 1969
 //   unloading    p = p_u - k_u (z_u - z), k_u = k_0 + a_u z_u           Wong 2008, section 2.4
 //   shear        d tau = (tau_max d - tau) |dj| / K, against the motion d; from rest that is
@@ -38,7 +38,7 @@ inline SoilLine unloading_line(double z_u, double p_u, double k_u, double per_z,
   return {p_u - slope * (z_u - z), slope};
 }
 
-/// What a cell has been through.
+/// History of a cell.
 struct SoilCell {
   float sinkage = 0;     ///< z_u: from which it unloads, below the surface of time 0 [m]
   float pressure = 0;    ///< p_u: at that sinkage [Pa]; 0 = nothing has pressed it

@@ -1,4 +1,4 @@
-// Where the underside of a collider lies in a bed.
+// Underside of colliders in a bed.
 
 #include <algorithm>
 #include <cmath>
@@ -119,8 +119,8 @@ void SoilContacts::find_lines(const ColliderBottom& collider, std::optional<doub
   }
 }
 
-// What of the line along x at `y` is below the surface is one piece, since colliders are convex.
-// `ends`: comes in as that of the line before, or empty.
+// Interval of the line along x at `y` that is below the surface. It is one piece, since colliders
+// are convex. `ends`: in: that of the line before, or empty.
 bool SoilContacts::find_ends(const ColliderBottom& collider, double y, double low, double high,
                              double step, double* ends) const {
   double inside = std::clamp((ends[0] + ends[1]) / 2, low, high);

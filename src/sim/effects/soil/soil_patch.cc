@@ -1,4 +1,4 @@
-// Which touches make a patch of a bed, and how wide that is.
+// Grouping of touches into patches of a bed, and the width of each.
 
 #include <algorithm>
 #include <cmath>
@@ -34,7 +34,7 @@ void SoilContacts::join(int here) {
   touches_.insert(touches_.end(), print.touches.begin(), print.touches.end());
 }
 
-// Whether there is one before it, of another patch, around which its cells may be.
+// True if a touch before it, of another patch, may have cells around it.
 bool SoilContacts::may_join(int here) const {
   const Footprint& a = print_at(here);
   for (int other = 0; other < here; ++other) {
@@ -85,7 +85,7 @@ void SoilContacts::add_chain(std::span<const Line> lines, double Line::* end, do
       if (side * ((b.y - a.y) * (c.x - a.x) - (b.x - a.x) * (c.y - a.y)) < 0) break;
       hull_.pop_back();
     }
-    if (hull_.size() == base + 1 && hull_.back().y == c.y) {  // of two lowest the farther one
+    if (hull_.size() == base + 1 && hull_.back().y == c.y) {  // the farther one of two lowest
       if (side * (c.x - hull_.back().x) > 0) hull_.back() = c;
       continue;
     }
@@ -93,7 +93,7 @@ void SoilContacts::add_chain(std::span<const Line> lines, double Line::* end, do
   }
 }
 
-// Of all that are joined to it.
+// Patch of all touches that are joined to it.
 SoilContacts::Patch SoilContacts::patch_of(int here) {
   lines_.clear();
   for (int i = here; i < static_cast<int>(here_.size()); ++i) {

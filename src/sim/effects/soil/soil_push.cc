@@ -1,4 +1,4 @@
-// What a bed does to bodies in a step: Newton's method for the wrench of its end.
+// Forces of a bed on bodies in a step: Newton's method for the wrench at the step's end.
 
 #include "sim/effects/soil/soil_bed.h"
 
@@ -6,9 +6,9 @@ namespace gloam {
 namespace {
 
 constexpr int kMostIterations = 8;
-constexpr double kConverged = 2e-2;   // of the change of velocity
+constexpr double kConverged = 2e-2;   // fraction of the change of velocity
 constexpr double kLeastSpeed = 1e-9;  // [m/s], [rad/s]
-constexpr double kRestored = 0.1;     // of the energy of an impact, at most
+constexpr double kRestored = 0.1;     // fraction of the energy of an impact, at most
 
 // A x = b, (6 x 6), row by row; x in b's place. Gauss with pivots of rows.
 void solve6(double* A, double* b) {
@@ -34,8 +34,8 @@ void solve6(double* A, double* b) {
   }
 }
 
-// What touches sum to: X' f and X' K X, where X = (I, -[arm]) takes the body's motion to the
-// touch's, and K = across I + along d d'. Of symmetric matrices the upper triangle, row by row.
+// Sums over touches: X' f and X' K X, where X = (I, -[arm]) takes the body's motion to the touch's,
+// and K = across I + along d d'. Symmetric matrices hold the upper triangle, row by row.
 struct Sums {
   static constexpr size_t kSide = SoilLanes::kSide;
   enum { kForce = 0, kAcross = 6, kFirst = 7, kSecond = 10, kAlong = 16, kCount = 37 };
@@ -166,7 +166,7 @@ void SoilBed::push_body(const mjModel& m, mjData& d, const Body& body, uint32_t 
   react(body, motion, share);
 }
 
-// What of the wrench is on which geom.
+// Splits the wrench among the geoms.
 void SoilBed::react(const Body& body, const double* motion, double share) {
   const std::span<const SoilTouch> touches = contacts_.touches().subspan(body.first, body.count);
   const std::span<const SoilLanes> lanes = lanes_of(body);
@@ -203,8 +203,8 @@ void SoilBed::react(const Body& body, const double* motion, double share) {
 }
 
 // A body so light that a step takes it far through the ground must not be thrown out of it: the bed
-// gives no more energy than it can have stored, nor than a share of what the body brings along.
-// Returns the share of the wrench that it gives. `change`: inverse * wrench.
+// gives no more energy than it can have stored, nor than a fraction of what the body brings along.
+// Returns the fraction of the wrench that it gives. `change`: inverse * wrench.
 double SoilBed::limit_work(const Body& body, const double* free, const double* change, double dt,
                            const double* wrench) {
   double by_motion = 0, by_change = 0;
@@ -212,7 +212,7 @@ double SoilBed::limit_work(const Body& body, const double* free, const double* c
     by_motion += dt * wrench[k] * free[k];
     by_change += dt * dt / 2 * wrench[k] * change[k];
   }
-  // Of what takes energy nothing need be known.
+  // A response that takes energy needs no further check.
   if (by_change <= 0 || by_motion + by_change <= 0) return 1;
   double stored = 0;
   for (const SoilLanes& l : lanes_of(body)) {

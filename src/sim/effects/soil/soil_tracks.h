@@ -1,10 +1,10 @@
 #pragma once
-// What bodies have left of a bed's surface, for whoever looks: versions of its heights that are
-// made when a Snapshot asks and something has changed.
+// Tracks of bodies in a bed's surface, for readers on other threads: versions of its heights, made
+// when a Snapshot asks and something has changed.
 //
-// Where snow falls, hollows and heaps are evened out by as much as falls: an estimate of what wind
-// and slides do. A height is kept as what it was when it was set, and what had fallen by then with
-// its sign against it, so that nothing has to be done until somebody looks.
+// Falling snow evens out hollows and heaps by its own depth: an estimate of the effect of wind and
+// slides. A height is stored as of the time when it was set, together with the negative depth that
+// had fallen by then, so that nothing has to be done until somebody reads it.
 
 #include <memory>
 #include <vector>
@@ -23,7 +23,7 @@ class SoilTracks {
   void take_over(const SoilTracks& before);
   /// Says how much has fallen since time 0 where all of it lies [m].
   void let_fall(double fallen) { fallen_ = fallen; }
-  /// Of a cell against the undisturbed surface [m].
+  /// Height of a cell against the undisturbed surface [m].
   float height(int cell) const {
     return track_height(height_[static_cast<size_t>(cell)], fallen_on(cell));
   }
@@ -39,7 +39,7 @@ class SoilTracks {
   };
   struct Version {
     std::shared_ptr<SurfaceHeights> heights;
-    Box stale;  // what it does not have yet
+    Box stale;  // part that it does not have yet
   };
   float fallen_on(int cell) const {
     return static_cast<float>(soil_.share_of(static_cast<size_t>(cell)) * fallen_);

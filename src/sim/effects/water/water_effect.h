@@ -41,8 +41,8 @@ class WaterEffect final : public Effect {
   const double timestep_;  // [s]
   const std::vector<WaterShape> shapes_;
   WaterForces forces_;
-  std::vector<std::unique_ptr<WaterRipples>> ripples_;  // of each water, null = none
-  std::vector<HeightChange> changes_;                   // room, of each water
+  std::vector<std::unique_ptr<WaterRipples>> ripples_;  // ripples of each water, null = none
+  std::vector<HeightChange> changes_;                   // scratch, of each water
   int64_t tick_ = -1;                                   // the last one
 };
 

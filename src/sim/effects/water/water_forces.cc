@@ -21,9 +21,9 @@ struct WaterForces::Wet {
   double v[3], v_W[3], turn[3];  // its motion through the water [m/s], [rad/s]
   double flow_W[3], lift_W[3];   // acceleration of the water, and that less gravity [m/s²]
   // Sums over its elements:
-  double mass = 0;                       // of the water displaced [kg]
-  double centre[3] = {};                 // of it [m]
-  double entering = 0;                   // what is displaced more each second [kg/s]
+  double mass = 0;                       // mass of the water displaced [kg]
+  double centre[3] = {};                 // centre of it [m]
+  double entering = 0;                   // rate at which the displaced mass grows [kg/s]
   double force[3] = {}, torque[3] = {};  // [N], [N m]
   double damping[3] = {}, spin[3] = {};  // -force over velocity [kg/s], -torque over turn [N m s]
 };
@@ -95,7 +95,7 @@ void WaterForces::push(const mjModel& model, mjData& data, const WaterShape& sha
   carry(model, data, wet);
 }
 
-// What is displaced, and drag. False: nothing is under water.
+// Sums displacement and drag. False: nothing is under water.
 bool WaterForces::sum_elements(const SurfacePatch& surface, Wet* wet) {
   const WaterShape& shape = wet->shape;
   const WaterDescription& water = wet->water;
@@ -133,7 +133,7 @@ bool WaterForces::sum_elements(const SurfacePatch& surface, Wet* wet) {
       const double u[3] = {v[0] + turn[1] * e[2] - turn[2] * e[1],
                            v[1] + turn[2] * e[0] - turn[0] * e[2],
                            v[2] + turn[0] * e[1] - turn[1] * e[0]};
-      const double lower = (1 - share) * high / 2;  // what is wet of it lies
+      const double lower = (1 - share) * high / 2;  // lower part, which is wet
       const double crossing =
           inside * per_high * cluster.volume[n] * (over > 0 ? 1.0 : 0.0) * (over < 1 ? 1.0 : 0.0);
       entering[n] -= crossing * (R[6] * u[0] + R[7] * u[1] + R[8] * u[2]);
@@ -168,13 +168,13 @@ bool WaterForces::sum_elements(const SurfacePatch& surface, Wet* wet) {
   return true;
 }
 
-// What acts on the collider as a whole, at the middle of what is under water: buoyancy and waves,
-// viscous drag, and the momentum of the water that it takes up as it enters.
+// Sums the forces on the collider as a whole, at the middle of its submerged part: buoyancy and
+// waves, viscous drag, and the momentum of the added water as it enters.
 void WaterForces::sum_whole(Wet* wet) {
   const WaterShape& shape = wet->shape;
   const double part = wet->mass / wet->water.density / shape.volume;
-  const double viscous =
-      6 * std::numbers::pi * wet->water.viscosity * shape.radius * part;      // Stokes
+  // Drag of a sphere (Stokes).
+  const double viscous = 6 * std::numbers::pi * wet->water.viscosity * shape.radius * part;
   const double viscous_spin = viscous * shape.radius * shape.radius * 4 / 3;  // Kirchhoff
   double lift[3], flow[3], u[3], force[3], torque[3];
   mju_mulMatTVec3(lift, wet->R, wet->lift_W);
@@ -198,7 +198,8 @@ void WaterForces::sum_whole(Wet* wet) {
 // drag by the velocity at the step's end and stable however light the body is.
 void WaterForces::carry(const mjModel& m, mjData& d, const Wet& wet) {
   const WaterShape& shape = wet.shape;
-  const double density = wet.mass / shape.volume;  // of the water, spread over the whole shape
+  // Density of the water, spread over the whole shape
+  const double density = wet.mass / shape.volume;
   const double mean = (shape.added[0] + shape.added[1] + shape.added[2]) / 3;
   const double dt = m.opt.timestep;
   double arm[3];
@@ -209,7 +210,8 @@ void WaterForces::carry(const mjModel& m, mjData& d, const Wet& wet) {
     const int joint = m.dof_jntid[dof], axis = dof - m.jnt_dofadr[joint];
     const bool shift = m.jnt_type[joint] == mjJNT_FREE && axis < 3;
     const double* motion = d.cdof + 6 * dof;
-    double shift_W[3], s[3], t[3], change[3];  // of the collider, by that of the joint
+    // Motion of the collider per unit of the joint's.
+    double shift_W[3], s[3], t[3], change[3];
     mju_cross(shift_W, motion, arm);
     mju_addTo3(shift_W, motion + 3);
     mju_mulMatTVec3(s, wet.R, shift_W);

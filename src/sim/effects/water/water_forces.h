@@ -1,12 +1,12 @@
 #pragma once
-// What waters do to bodies that move: buoyancy, drag, and the mass of the water that moves along.
+// Forces of water on moving bodies: buoyancy, drag, and the mass of the water that moves along.
 //
 // Each collider is many small elements of volume (water_shape.h); those below the surface displace.
 //   buoyancy and waves  rho V (a - g): the pressure of still water and of the waves (Froude and
 //                       Krylov), with the water's acceleration a
 //   drag                of each element by its own velocity, rho/2 Cd A |v| v by axis, and Stokes'
 //   added mass          rho V Ca (a - x''), as armature of the joints that move the collider, with
-//                       which MuJoCo solves; what enters takes it up with its momentum kept
+//                       which MuJoCo solves; a body that enters takes it up with its momentum kept
 //                       (von Karman 1929)
 // After Morison et al. 1950 and Newman 1977, "Marine Hydrodynamics". Bodies do not shelter each
 // other, and colliders that overlap displace twice.
@@ -52,7 +52,7 @@ class WaterForces {
 
   const std::vector<WaterDescription>& waters_;
   const std::vector<WaterShape>& shapes_;
-  std::vector<double> crests_;              // of each water: what its waves reach above rest [m]
+  std::vector<double> crests_;              // greatest height of each water's waves above rest [m]
   std::vector<double> armature_, inertia_;  // the model's dof_armature and dof_M0, for a step (nv)
   mjtNum *model_armature_ = nullptr, *model_inertia_ = nullptr;  // null: no step has begun
 };

@@ -1,4 +1,4 @@
-// Where the masses of the water that moves along stand during a step.
+// Places of the added mass of water during a step.
 
 #include <algorithm>
 

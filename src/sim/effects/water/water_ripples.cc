@@ -10,10 +10,10 @@
 namespace gloam {
 namespace {
 
-constexpr double kDecay = 2 * std::numbers::pi;  // of what lies deep, for waves of 1 m [1/m]
-constexpr float kLoss = 0.15f;                   // of the rate of change, to walls and eddies [1/s]
-constexpr float kSmoothing = 0.02f;              // of what is as short as a cell, per step
-constexpr float kStill = 2e-6f;                  // [m] and [m/s]: nobody sees it
+constexpr double kDecay = 2 * std::numbers::pi;  // decay with depth, for waves of 1 m [1/m]
+constexpr float kLoss = 0.15f;       // loss of the rate of change, to walls and eddies [1/s]
+constexpr float kSmoothing = 0.02f;  // loss of waves as short as a cell, per step
+constexpr float kStill = 2e-6f;      // [m] and [m/s]: nobody sees it
 constexpr int kFirstFields = 4;
 
 int substeps_of(const WaterDescription& water, double interval) {

@@ -21,7 +21,7 @@ struct DragRow {
 constexpr DragRow kBoxDrag{1.05, 1.05}, kBallDrag{0.47, 0.47}, kCylinderDrag{0.75, 0.85},
     kCapsuleDrag{0.75, 0.3};
 
-/// Where a line along z is inside.
+/// Interval of a line along z inside the shape.
 struct Inside {
   double low, high;  // high <= low: nowhere
 };
@@ -106,7 +106,7 @@ void set_drag(const mjModel& m, int geom, WaterShape* shape) {
   shape->drag[2] = row.along;
 }
 
-/// Fills a column of elements from lines through it; `seen`: its share of the area along z.
+/// Fills a column of elements from lines through it; `seen`: its fraction of the area along z.
 void add_column(const SolidLines& solid, const double* low, const int* n, int i, int j,
                 WaterShape* shape, double* seen) {
   std::vector<double> sums(static_cast<size_t>(4 * n[2]));  // volume and its first moments

@@ -1,7 +1,6 @@
 #pragma once
-// What a collider displaces: small elements of its volume, and the coefficients of what water does
-// to a shape of its kind. Of boxes, ellipsoids, spheres, cylinders, capsules, and the convex hulls
-// of meshes.
+// Volume elements of a collider, and the coefficients of water for a shape of its kind. Supported:
+// boxes, ellipsoids, spheres, cylinders, capsules, and the convex hulls of meshes.
 
 #include <mujoco/mujoco.h>
 
@@ -21,22 +20,22 @@ struct WaterElement {
 struct WaterCluster {
   static constexpr size_t kSide = 8;
   double x[kSide] = {}, y[kSide] = {}, z[kSide] = {}, volume[kSide] = {};
-  double centre[3] = {}, half[3] = {};  ///< of the box around their middles [m]
+  double centre[3] = {}, half[3] = {};  ///< box around their middles [m]
 };
 
 struct WaterShape {
   int geom = 0, body = 0;
   std::vector<WaterElement> elements;
-  std::vector<WaterCluster> clusters;  ///< of them
-  double volume = 0;                   ///< of all [m³]
-  double centre[3] = {};               ///< of the bounding box, in the geom's frame [m]
+  std::vector<WaterCluster> clusters;  ///< clusters of elements
+  double volume = 0;                   ///< volume of all [m³]
+  double centre[3] = {};               ///< bounding box, in the geom's frame [m]
   double half[3] = {};                 ///< its half edges [m]
   double cell[3] = {};                 ///< edges of an element [m]
   double area[3] = {};                 ///< seen along each axis [m²]
   double drag[3] = {};                 ///< coefficients of drag along each axis
-  double added[3] = {};                ///< of added mass, over that of the water displaced
+  double added[3] = {};                ///< added mass over that of the water displaced
   double added_inertia[3] = {};        ///< over the water's density [m⁵]
-  double radius = 0;                   ///< of the sphere of the same volume [m]
+  double radius = 0;                   ///< radius of the sphere of the same volume [m]
 };
 
 /// Sorts elements and makes clusters of them; `low`: corner of the bounding box.
@@ -45,7 +44,7 @@ void make_clusters(const double* low, WaterShape* shape);
 /// Nothing for planes, height fields and SDFs. `elements`: about how many are wanted.
 std::optional<WaterShape> water_shape(const mjModel& model, int geom, int elements = 216);
 
-/// Of every collider of a body that is not fixed to the world.
+/// Shapes of every collider of a body that is not fixed to the world.
 std::vector<WaterShape> water_shapes(const mjModel& model);
 
 }  // namespace gloam

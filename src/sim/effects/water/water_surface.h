@@ -12,7 +12,7 @@ namespace gloam {
 /// Above the level at rest [m].
 double wave_height(const WaterDescription& water, double x, double y, double time);
 
-/// What waves do to the water at a point.
+/// Motion of water by waves at a point.
 struct WaveMotion {
   Vec3 velocity;      ///< [m/s], without the current
   Vec3 acceleration;  ///< [m/s²]

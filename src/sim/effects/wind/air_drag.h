@@ -11,7 +11,7 @@ namespace gloam {
 
 class AirDrag {
  public:
-  /// Whether it can take MuJoCo's place in a step whose forces are explicit: nothing in the model
+  /// True if it can take MuJoCo's place in a step whose forces are explicit: nothing in the model
   /// is an ellipsoid to the fluid, and no integrator wants derivatives.
   static bool can_be(const mjModel& model);
 

@@ -7,7 +7,7 @@ namespace gloam {
 
 RotorThrust::RotorThrust(std::shared_ptr<const CompiledWorld> world)
     : world_(std::move(world)), model_(*world_->model) {
-  model_.opt.enableflags &= ~mjENBL_SLEEP;  // what sleeps would be left out
+  model_.opt.enableflags &= ~mjENBL_SLEEP;  // sleeping bodies would be left out
   model_.opt.disableflags |= mjDSBL_CONSTRAINT | mjDSBL_CONTACT | mjDSBL_SENSOR;  // not asked for
 }
 

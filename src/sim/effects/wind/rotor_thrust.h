@@ -1,5 +1,5 @@
 #pragma once
-// What the rotors of a World do at an instant: where their discs are, and their thrust.
+// Rotors of a World at an instant: places of their discs, and thrust.
 
 #include <memory>
 #include <vector>

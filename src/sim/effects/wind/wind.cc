@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kRoughness = 0.03;  // length [m]
 constexpr double kLowest = 0.1;      // [m]; nearer to the ground the law says nothing
-constexpr double kReference = 10;    // height that winds are told for [m]
+constexpr double kReference = 10;    // reference height of winds [m]
 constexpr Rational kGustRate{100, 1};
 
 }  // namespace

@@ -20,17 +20,17 @@ class Wind {
   bool blows() const { return wind_.blows(); }
   /// Along the wind [m/s]; `height` above z = 0 [m], below 0.1 m as there.
   double mean_speed(double height) const;
-  /// What comes to the mean [m/s], world.
+  /// Deviation from the mean by gusts [m/s], world.
   Vec3 gust(double time) const;
   Vec3 at(double time, double height) const {
     return blows() ? with_mean(gust(time), height) : Vec3{};
   }
-  /// What gusts come to there.
+  /// Wind there for that gust.
   Vec3 with_mean(Vec3 gust, double height) const;
 
  private:
   WindDescription wind_;
-  std::optional<Gusts> gusts_;  // where it blows
+  std::optional<Gusts> gusts_;  // gusts, if it blows
 };
 
 // ICAO's standard atmosphere at sea level, rounded.
@@ -51,14 +51,14 @@ class WindOnBodies {
 
  private:
   struct Root {
-    int qpos;          // where its height stands, -1 = it stays
-    double z, weight;  // [m], share
+    int qpos;          // place of its height, -1 = it stays
+    double z, weight;  // height [m] and its weight
   };
   Wind wind_;
   StepSchedule schedule_;
   double timestep_;  // [s]
   int64_t gust_step_ = -1;
-  Vec3 gust_;  // of that step [m/s]
+  Vec3 gust_;  // gust of that step [m/s]
   std::vector<Root> roots_;
 };
 

@@ -13,8 +13,8 @@
 namespace gloam::gas {
 namespace {
 
-constexpr int kCellValues =
-    kScalars + 1;  ///< of a cell that goes to the host: scalars, heat release
+/// Values of a cell that goes to the host: scalars, heat release.
+constexpr int kCellValues = kScalars + 1;
 /// Floats in the card's memory for each cell and ghost, about.
 constexpr uint64_t kFloatsPerCell = 45;
 
@@ -130,7 +130,7 @@ class Card final : public CudaGas {
     gift_cells_.assign(cells, stream_);
     indices_.assign(additions.at, stream_);
     values_.assign(additions.values, stream_);
-    // Of fields [from, to). One after the other: two may add to the same face.
+    // Additions to fields [from, to). One after the other: two may add to the same face.
     const auto add = [&](int from, int to) {
       const int* at = indices_.get();
       const float* values = values_.get();
@@ -238,7 +238,7 @@ class Card final : public CudaGas {
          "nothing can be copied from the card");
     finish();
   }
-  /// What find_most() has found.
+  /// Result of find_most().
   float most() {
     look();
     return std::bit_cast<float>(look_.get()->most);

@@ -28,7 +28,7 @@ class CudaGas {
  public:
   struct Substep {
     float dt = 0;               ///< [s]
-    float rescale = 1;          ///< of the last solution: for another dt
+    float rescale = 1;          ///< scale of the last solution, for another dt
     Vec3f wind;                 ///< [m/s]
     float ambient_density = 0;  ///< [kg/m³]
     float vorticity = 0;        ///< GasProperties::vorticity

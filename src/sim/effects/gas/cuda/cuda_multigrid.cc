@@ -112,7 +112,7 @@ void CudaMultigrid::precondition(const float* r, float* z, cudaStream_t stream) 
       n = end;
       continue;
     }
-    // What begins or comes back from a coarser level is smoothed at once.
+    // Smoothing follows at once, on the way down and on the way up.
     const CycleStep step = works_[n].step;
     launch_step(works_[n], r, z, stream);
     n += step == CycleStep::kBegin || step == CycleStep::kProlong ? 2 : 1;

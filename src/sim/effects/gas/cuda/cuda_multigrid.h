@@ -14,7 +14,7 @@ struct CudaLevel {
   Shape shape;
   DeviceArray<float> weight[3], inverse, x, b, scratch;
   DeviceArray<int> start[3];   ///< as Multigrid::start(), of levels but the finest
-  DeviceArray<int> parent[3];  ///< of the finer level's cells and ghosts: the cell they are in
+  DeviceArray<int> parent[3];  ///< parents of the finer level's cells and ghosts
 
   PoissonView view() const {
     return {shape, {weight[0].get(), weight[1].get(), weight[2].get()}, inverse.get()};

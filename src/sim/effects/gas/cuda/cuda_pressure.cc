@@ -26,7 +26,7 @@ void CudaPressure::take_walls(const Openings& openings, const Multigrid& multigr
 void CudaPressure::take_spaces(const Openings& openings) {
   enclosed_ = {};
   if (openings.enclosed == 0) return;
-  // By space, each in the order of cells; then in pieces.
+  // Order: by space, each in the order of cells; then in pieces.
   const size_t spaces = size_t(openings.enclosed);
   std::vector<int> first(spaces + 1, 0), cell, space, moving, piece_begin, space_begin;
   for (const int n : openings.space) {
@@ -129,12 +129,13 @@ Projection CudaPressure::project(const Faces<float>& velocity, const float* want
     must(cudaStreamSynchronize(stream), "a kernel of the gas fails");
     if (host_->positive == 0) break;  // nothing is left but rounding
     if (host_->norm > goal) continue;
-    // What conjugate gradients believe is left drifts from what is: look, and go on if need be.
+    // The residual of conjugate gradients drifts from the true one: compute that, and go on if need
+    // be.
     find_residual(system, summing_);
     look();
   }
   subtract_gradient(shape_, open(), velocity, ones_.get(), x_.get(), stream);
-  // Of the velocities themselves.
+  // Error of the velocities themselves.
   find_error(system, summing_);
   look();
   out.after = host_->after / double(voxel);

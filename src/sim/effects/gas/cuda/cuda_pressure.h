@@ -16,7 +16,7 @@ class CudaPressure {
   CudaPressure& operator=(const CudaPressure&) = delete;
   ~CudaPressure();
 
-  /// Which take_walls() changed on the host.
+  /// Copies walls that take_walls() changed on the host.
   void take_walls(const Openings& openings, const Multigrid& multigrid);
   Faces<const float> open() const { return multigrid_.finest().weight; }
   float* solution() { return x_.get(); }

@@ -11,7 +11,7 @@
 
 namespace gloam::gas {
 
-/// What fails here is a bug, a broken driver or a full card: nothing of the user's to mend.
+/// Failures here are bugs, a broken driver or a full card: the user can mend none of them.
 inline void must(cudaError_t error, const char* what) {
   if (error != cudaSuccess) check_failed("CUDA", 0, cudaGetErrorString(error), what);
 }

@@ -1,5 +1,5 @@
 #pragma once
-// What happens to a gas in its cells, and copies of a few of them, as launches.
+// Launches of kernels for the cells of a gas, and copies of a few cells.
 
 #include "sim/effects/gas/cuda/gift.h"
 #include "sim/effects/gas/cuda/summing.h"
@@ -7,7 +7,7 @@
 
 namespace gloam::gas {
 
-inline constexpr int kCellValues = kScalars + 1;  ///< of a cell: scalars, heat release
+inline constexpr int kCellValues = kScalars + 1;  ///< values of a cell: scalars, heat release
 struct CellValues {
   float* of[kCellValues];
 };

@@ -11,8 +11,8 @@ __device__ float residual(const PoissonView& v, const float* x, const float* b, 
   return b[c] - apply_poisson(v, x, c);
 }
 
-/// What the finer cells of coarse cell (i, j, k) leave: a lane of the warp for each of the at most
-/// 27, as one thread would wait for the memory once for each. In the order of the CPU's rows.
+/// Sum of the finer cells of coarse cell (i, j, k): a lane of the warp for each of the at most 27,
+/// as one thread would wait for the memory once for each. The order is that of the CPU's rows.
 template <class F>
 __device__ float gather(const Shape& fine, const int* const (&start)[3], int i, int j, int k, F f) {
   const int lane = int(threadIdx.x % 32);
@@ -136,7 +136,7 @@ __global__ void __launch_bounds__(kSmallThreads)
   }
 }
 
-/// What the first step from 0 makes.
+/// Result of the first step from 0.
 struct FirstStep {
   const float* inverse;
   const float* b;

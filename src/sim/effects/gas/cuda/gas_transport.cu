@@ -43,7 +43,7 @@ __device__ void find_flux(const SweepView& v, int c, int m) {
   }
 }
 
-/// What left through both sides of the box along the axis: a block for each scalar.
+/// Amounts that left through both sides of the box along the axis: a block for each scalar.
 __global__ void __launch_bounds__(kBorderThreads) border_kernel(SweepView v, CardNumbers* numbers) {
   __shared__ double sums[kBorderThreads];
   const float* flux = v.flux.of[blockIdx.x];

@@ -1,5 +1,5 @@
 #pragma once
-// What sources give, as the card is told.
+// Amounts that sources give, as the card receives them.
 
 #include <vector>
 
@@ -7,18 +7,18 @@
 
 namespace gloam::gas {
 
-/// What a source gives to each of its cells in a substep.
+/// Amount that a source gives to each of its cells in a substep.
 struct Gift {
-  int cells = 0;                        ///< how many
-  float heat = 0, smoke = 0, fuel = 0;  ///< of kHeat, kSmoke, kFuel
+  int cells = 0;                        ///< number of cells
+  float heat = 0, smoke = 0, fuel = 0;  ///< gains of kHeat, kSmoke, kFuel
   bool blows = false;
   Vec3f velocity;  ///< [m/s]
 };
 
-/// What cells or faces of a field gain in a substep; none of them twice.
+/// Amounts that cells or faces of a field gain in a substep; each appears once.
 struct Addition {
   int field = 0;  ///< as HostFields counts
-  int count = 0;  ///< how many
+  int count = 0;  ///< number of cells or faces
 };
 
 /// Additions, with the indices and values of all of them one after the other.

@@ -27,21 +27,21 @@ struct CycleWork {
 
 /// Levels that one block keeps in its own memory.
 struct SmallLevels {
-  static constexpr int kArrays = 7;  ///< of a level there: weights, inverse, x, b, scratch
+  static constexpr int kArrays = 7;  ///< arrays of a level there: weights, inverse, x, b, scratch
   static constexpr int kMost = 12;
-  static constexpr int kMostCells = 2048;  ///< of one
+  static constexpr int kMostCells = 2048;  ///< limit of one level
   struct Level {
     Shape shape;
     const float* weight[3];
     const float* inverse;
     const int* start[3];
     const int* parent[3];
-    int place;  ///< of its values in the block's memory
+    int place;  ///< offset of its values in the block's memory
   };
   Level levels[kMost];
   int first, count, values;
   const CycleWork* works;
-  const float* b;  ///< of the first
+  const float* b;  ///< right side of the first level
   float* x;
 };
 

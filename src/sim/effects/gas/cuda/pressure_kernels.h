@@ -11,17 +11,17 @@ namespace gloam::gas {
 struct EnclosedView {
   int cells, pieces, spaces;
   const int* cell;
-  const int* space;        ///< of a cell of the list
+  const int* space;        ///< space of a cell of the list
   const int* moving;       ///< faces of it
   const int* piece_begin;  ///< one more than pieces
-  const int* space_begin;  ///< of its pieces; one more than spaces
+  const int* space_begin;  ///< first of a space's pieces; one more than spaces
   const double* space_cells;
   const double* space_moving;
   double* piece_sum;
   double* space_sum;
 };
 
-/// What a projection works on.
+/// System of equations of a projection.
 struct System {
   Shape shape;
   Faces<const float> u;

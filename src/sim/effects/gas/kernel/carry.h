@@ -13,20 +13,20 @@ struct CarryView {
   Shape shape;
   int axis;
   int stride;                 ///< from the cell before a face to that beyond
-  float wind;                 ///< of the air outside of the box
+  float wind;                 ///< wind of the air outside of the box
   float side[6];              ///< -x +x -y +y -z +z; 1 = open, 0 = closed
-  Faces<const float> moved;   ///< of cells: by how much their air moved [voxels]
-  Faces<const float> centre;  ///< of cells: velocity [voxels per step]
-  const float* trusted;       ///< of cells: 0 where something was in the way
+  Faces<const float> moved;   ///< displacement of cells' air [voxels]
+  Faces<const float> centre;  ///< velocity of cells [voxels per step]
+  const float* trusted;       ///< trust of cells: 0 where something was in the way
   const float* open;
   const float* old;  ///< the component
-  float* carried;    ///< of first order
+  float* carried;    ///< result of first order
   float* least;      ///< among the values that it was interpolated from
   float* most;
   float* corrected;  ///< the result
 };
 
-/// How far a place lies beyond an open side [voxels].
+/// Distance of a place beyond an open side [voxels].
 GLOAM_HD float outside(const CarryView& v, float x, float y, float z) {
   const float hx = float(v.shape.nx - (v.axis != 0)), hy = float(v.shape.ny - (v.axis != 1)),
               hz = float(v.shape.nz - (v.axis != 2));
@@ -36,10 +36,10 @@ GLOAM_HD float outside(const CarryView& v, float x, float y, float z) {
   return max(max(max(ox, oy), oz), 0.0f);
 }
 
-/// Where the air of a face comes from, or goes to.
+/// Path of the air of a face, backwards or forwards in time.
 struct Way {
   Between at;
-  float past;  ///< how far that lies beyond an open side [voxels]
+  float past;  ///< distance of that place beyond an open side [voxels]
 };
 
 GLOAM_HD Way way_back(const CarryView& v, int i, int j, int k) {
@@ -95,8 +95,9 @@ GLOAM_HD void correct_face(const CarryView& v, int i, int j, int k) {
   set_corrected(v, v.shape.at(i, j, k), corners(v.shape, v.carried, way.at.c), way);
 }
 
-/// What the component becomes at an open side of the box through which wind comes in, even where
-/// the air stands still; `share`: of the way over which it takes on what is there, in the step.
+/// New value of the component at an open side of the box through which wind comes in, even where
+/// the air stands still; `share`: fraction of the difference to the wind that it takes on in the
+/// step.
 GLOAM_HD float let_in(const CarryView& v, int c, float share) {
   const float here = v.corrected[c];
   return v.open[c] > 0.0f ? here + (v.wind - here) * share : here;

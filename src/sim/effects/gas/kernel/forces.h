@@ -1,5 +1,6 @@
 #pragma once
-// What speeds gas up: heat, the weight of smoke, and eddies that a coarse grid loses. Device-safe.
+// Forces on gas: buoyancy of heat, the weight of smoke, and eddies that a coarse grid loses.
+// Device-safe.
 
 #include "sim/effects/gas/kernel/reaction.h"
 
@@ -11,9 +12,9 @@ GLOAM_HD float buoyancy(float heat, float smoke, float ambient_density) {
   return kGravity * (heat - smoke / ambient_density);
 }
 
-/// Temperatures in flames and plumes fluctuate by about this share of their mean's rise (McCaffrey
-/// 1979; George, Alpert and Tamanini 1977): what a grid does not resolve, and without which narrow
-/// plumes stay laminar and do not mix with air.
+/// Temperatures in flames and plumes fluctuate by about this fraction of their mean's rise
+/// (McCaffrey 1979; George, Alpert and Tamanini 1977): what a grid does not resolve, and without
+/// which narrow plumes stay laminar and do not mix with air.
 inline constexpr float kFluctuation = 0.4f;
 
 /// MurmurHash3's finaliser: lanes compute it too.
@@ -29,19 +30,19 @@ GLOAM_HD float fluctuation(int c, uint32_t count) {
   return (float(int(bits >> 8)) * 0x1p-23f - 1.0f) * 1.7320508f;
 }
 
-/// What lifts the faces across z.
+/// Inputs of the lift on faces across z.
 struct LiftView {
   Shape shape;
   const float* open;
-  const float* smooth;  ///< of cells: smoothness_at()
+  const float* smooth;  ///< smoothness_at() of cells
   const float* heat;
   const float* smoke;
   float ambient_density;  ///< [kg/m³]
   float dt;               ///< [s]
-  uint32_t count;         ///< of fluctuation()
+  uint32_t count;         ///< counter of fluctuation()
 };
 
-/// What the face at c gains [m/s]. Where flow is not smooth, heat fluctuates.
+/// Velocity that the face at c gains [m/s]. Where flow is not smooth, heat fluctuates.
 GLOAM_HD float lift(const LiftView& v, int c) {
   const int b = c - v.shape.sz;
   const float rough = 1.0f - 0.5f * (v.smooth[c] + v.smooth[b]);

@@ -12,7 +12,7 @@ namespace gloam::gas {
 struct PoissonView {
   Shape shape;
   Faces<const float> weight;
-  const float* inverse;  ///< of the diagonal; 0 where a cell has no open face
+  const float* inverse;  ///< inverse of the diagonal; 0 where a cell has no open face
 };
 
 /// Weights of a cell's faces.
@@ -39,8 +39,8 @@ GLOAM_HD float apply_poisson(const PoissonView& v, X x, int c) {
   return apply_poisson(v.shape, face_weights(v, c), x, c);
 }
 
-/// Which faces of a cell are open, a bit each: -x +x -y +y -z +z. On the finest level it says all
-/// that the weights do in a twelfth of their memory, which is what a sweep waits for.
+/// Open faces of a cell, a bit each: -x +x -y +y -z +z. On the finest level this carries all that
+/// the weights do in a twelfth of their memory, and a sweep is bound by memory.
 GLOAM_HD uint8_t open_faces(const Faces<const float>& weight, const Shape& s, int c) {
   const auto bit = [](float w, int n) { return w > 0.0f ? 1 << n : 0; };
   return uint8_t(bit(weight.x[c], 0) | bit(weight.x[c + 1], 1) | bit(weight.y[c], 2) |
@@ -59,7 +59,8 @@ GLOAM_HD float apply_poisson(const Shape& s, uint8_t open, X x, int c) {
          (flow(x[c - s.sz], 4) + flow(x[c + s.sz], 5));
 }
 
-/// By how much pressure slows the face at c: half of `share` [of cells] of its gradient's work.
+/// Velocity that pressure takes from the face at c: half of `share` [of cells] of its gradient's
+/// work.
 GLOAM_HD float pressed(const float* open, const float* share, const float* x, int c, int stride) {
   return open[c] * 0.5f * (share[c] + share[c - stride]) * (x[c] - x[c - stride]);
 }

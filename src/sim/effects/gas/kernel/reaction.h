@@ -1,13 +1,14 @@
 #pragma once
-// What happens inside a voxel: burning, cooling, settling of smoke. Device-safe.
+// Processes inside a voxel: burning, cooling, settling of smoke. Device-safe.
 
 #include "sim/effects/gas/kernel/transport.h"
 
 namespace gloam::gas {
 
-inline constexpr float kAirDensity = 1.204f;    ///< at 293 K and 101325 Pa [kg/m³]
-inline constexpr float kHeatCapacity = 1006.f;  ///< of air at constant pressure [J/(kg K)]
-inline constexpr float kGravity = 9.81f;        ///< [m/s²]
+inline constexpr float kAirDensity = 1.204f;  ///< at 293 K and 101325 Pa [kg/m³]
+/// Heat capacity of air at constant pressure [J/(kg K)]
+inline constexpr float kHeatCapacity = 1006.f;
+inline constexpr float kGravity = 9.81f;  ///< [m/s²]
 /// No gas of an open fire is hotter (adiabatic flames of hydrocarbons in air: 2250 K) [K].
 inline constexpr float kHottest = 2300.0f;
 /// Air per fuel of complete burning [kg/kg]; polyurethane: 9.4 (SFPE Handbook, Drysdale: 13.1 MJ
@@ -19,14 +20,14 @@ inline constexpr float kNothing = 1e-12f;
 
 /// GasProperties as a step needs them.
 struct ReactionRates {
-  float density = 0;           ///< of ambient air [kg/m³]
+  float density = 0;           ///< density of ambient air [kg/m³]
   float heat_unit = 0;         ///< density cp T of ambient air [J/m³]
-  float hottest = 0;           ///< of kHeat
-  float burn = 0;              ///< share of the mixed fuel that burns in the step
-  float heat_per_fuel = 0;     ///< that stays in the gas, in heat_unit per [kg/m³]
+  float hottest = 0;           ///< limit of kHeat
+  float burn = 0;              ///< fraction of the mixed fuel that burns in the step
+  float heat_per_fuel = 0;     ///< heat that stays in the gas, in heat_unit per [kg/m³]
   float air_per_fuel = 0;      ///< [kg/kg]
   float soot_yield = 0;        ///< [kg/kg]
-  float cool = 0, settle = 0;  ///< shares lost in the step
+  float cool = 0, settle = 0;  ///< fractions lost in the step
 };
 
 struct Reaction {
@@ -38,7 +39,7 @@ struct Reaction {
 GLOAM_HD Reaction react(const ReactionRates& r, float* heat, float* smoke, float* fuel,
                         float* spent, float* heated) {
   Reaction out;
-  // What is not fuel nor what came of burning is air, as thin as it is hot.
+  // The remainder, neither fuel nor product of burning, is air, thinned by its heat.
   const float air =
       max(r.density * (1.0f - *heat) - *fuel - *spent * (1.0f + 1.0f / r.air_per_fuel), 0.0f);
   out.burnt = r.burn * min(*fuel, air / r.air_per_fuel);

@@ -1,5 +1,5 @@
 #pragma once
-// How fields lie in memory: cells and faces share one index, with a ghost cell around the box.
+// Layout of fields in memory: cells and faces share one index, with a ghost cell around the box.
 // Device-safe.
 
 #include "base/vec.h"
@@ -26,7 +26,7 @@ struct Shape {
   GLOAM_HD int size() const { return sz * (nz + 2); }  ///< with ghosts
   GLOAM_HD int n(int axis) const { return axis == 0 ? nx : (axis == 1 ? ny : nz); }
   GLOAM_HD int stride(int axis) const { return axis == 0 ? 1 : (axis == 1 ? sy : sz); }
-  /// Of the faces across `axis`: one more than cells along it, in the same memory.
+  /// Shape of the faces across `axis`: one more than cells along it, in the same memory.
   GLOAM_HD Shape faces(int axis) const {
     return {nx + (axis == 0), ny + (axis == 1), nz + (axis == 2), sy, sz};
   }
@@ -53,7 +53,7 @@ GLOAM_HD float speed_squared(const Shape& s, const Faces<const float>& u, int c)
   return v.x * v.x + v.y * v.y + v.z * v.z;
 }
 
-/// What flows out of the cell at c through all faces less what flows in, per area.
+/// Net outflow of the cell at c through all faces, per area.
 GLOAM_HD float outflow(const Shape& s, const Faces<const float>& u, int c) {
   return (u.x[c + 1] - u.x[c]) + (u.y[c + s.sy] - u.y[c]) + (u.z[c + s.sz] - u.z[c]);
 }

@@ -1,8 +1,8 @@
 #pragma once
-// How smoke, heat and fuel are carried: what leaves a cell enters its neighbour, so mass is kept to
-// rounding; one axis after the other. What is reconstructed (van Leer 1977) is the ratio to air
-// that is carried along (Easter 1993), so that an even mixture stays even whatever the flow along
-// one axis alone. Device-safe.
+// Transport of smoke, heat and fuel: the amount that leaves a cell enters its neighbour, so mass is
+// kept to rounding; one axis after the other. The reconstructed quantity (van Leer 1977) is the
+// ratio to air that is carried along (Easter 1993), so that an even mixture stays even whatever the
+// flow along one axis alone. Device-safe.
 
 #include "sim/effects/gas/kernel/shape.h"
 

@@ -1,0 +1,47 @@
+#pragma once
+// Fields of [sim], [render], [record] and [[randomize]]. A part of
+// scene/options/option_fields.h.
+
+#include "gloam/scene_run.h"
+#include "scene/options/field_rule.h"
+
+namespace gloam {
+
+template <class Visitor>
+void visit_fields(Visitor& v, SimOptions& o) {
+  v("timestep", o.timestep, FieldRule{.unit = "s", .min = 0, .max = 1, .open = true});
+  v("duration", o.duration, FieldRule{.unit = "s", .min = 0, .max = kLongestTime, .open = true});
+  v("seed", o.seed, FieldRule{});
+}
+
+template <class Visitor>
+void visit_fields(Visitor& v, RenderOptions& o) {
+  v("tier", o.tier, FieldRule{.choices = {"path", "fast", "direct"}});
+  v("look", o.look, FieldRule{.choices = {"auto", "studio", "model"}});
+  v("spp", o.spp, FieldRule{.min = 1, .max = 65536});
+  v("error", o.error, FieldRule{.min = 1e-4, .max = 1});
+  v("max_depth", o.max_depth, FieldRule{.min = 1, .max = 64});
+  v("device", o.device, FieldRule{.choices = {"auto", "cpu", "cuda"}});
+  v("denoise", o.denoise, FieldRule{});
+  v("ev100", o.ev100, FieldRule{.unit = "EV", .min = -30, .max = 30});
+  v("groups", o.groups, FieldRule{.min = 0, .max = 5});
+  v("sites", o.sites, FieldRule{});
+}
+
+template <class Visitor>
+void visit_fields(Visitor& v, RecordOptions& o) {
+  v("outputs", o.outputs, FieldRule{.choices = words(kRecordOutputs)});
+}
+
+template <class Visitor>
+void visit_fields(Visitor& v, RandomizeOptions& o) {
+  v("option", o.option, FieldRule{.required = true});
+  v("operation", o.operation, FieldRule{.choices = {"set", "add", "scale"}});
+  v("uniform", o.uniform, FieldRule{});
+  v("log_uniform", o.log_uniform, FieldRule{});
+  v("normal", o.normal, FieldRule{});
+  v("choice", o.choice, FieldRule{});
+  v("weights", o.weights, FieldRule{.min = 0, .max = 1e9});
+}
+
+}  // namespace gloam
