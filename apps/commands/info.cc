@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "json_text.h"
+#include "log_report.h"
 #include "run_options.h"
 #include "schema_report.h"
 
@@ -18,7 +19,7 @@ namespace {
 struct InfoCommand {
   std::string file;
   SceneOptions scene;
-  bool schema = false, streams = false;
+  bool schema = false, streams = false, topics = false;
 };
 
 using Section = std::pair<const char*, const std::vector<NamedElement>*>;
@@ -160,8 +161,10 @@ void print_streams(const World& world) {
 
 int info(InfoCommand& command, const Globals& globals) {
   if (command.schema) return report_schema(globals);
+  if (is_log(command.file)) return report_log(command.file, globals);
   auto world = command.scene.compile(command.file, globals);
   if (!world.ok()) return fail(world.error());
+  if (command.topics) return report_topics(*world, globals);
   if (command.streams) {
     globals.json ? print_streams_json(*world) : print_streams(*world);
     return 0;
@@ -188,13 +191,15 @@ void add_info(CLI::App& app, Globals& globals, Action& action) {
   CLI::App* sub =
       app.add_subcommand("info", "List what a scene or model holds, and what is not supported");
   auto command = std::make_shared<InfoCommand>();
-  CLI::Option* file = sub->add_option("FILE", command->file, "Scene or model");
+  CLI::Option* file = sub->add_option("FILE", command->file, "Scene, model or log");
   CLI::Option* schema =
       sub->add_flag("--schema", command->schema,
                     "How much of MuJoCo's own schema is mirrored, and what sets what");
   file->excludes(schema);
   sub->add_flag("--streams", command->streams,
                 "What a simulation of it can say and hear: cameras, sensors, controls …")
+      ->excludes(schema);
+  sub->add_flag("--topics", command->topics, "ROS 2 topics of a simulation of it")
       ->excludes(schema);
   command->scene.add_keyframe_to(*sub);
   command->scene.add_to(*sub);

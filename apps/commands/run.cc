@@ -20,7 +20,7 @@ namespace {
 struct RunCommand {
   std::string file, out;
   RunOptions options;
-  bool overwrite = false, realtime = false, view = false;
+  bool overwrite = false, realtime = false, view = false, mcap = false;
   double speed = 1;
   int port = 8080;
 };
@@ -71,6 +71,7 @@ int run(const RunCommand& command_line, const Globals& globals) {
   }
   if (const Status status = check_outputs(command.options.outputs); !status.ok())
     return fail(status.error());
+  scene->record.mcap |= command.mcap;
   auto world = compile(*scene, globals, command.options.keyframe);
   if (!world.ok()) return fail(world.error());
   tell_void_outputs(command.options.outputs, *scene, *world);
@@ -108,6 +109,7 @@ void add_run(CLI::App& app, Globals& globals, Action& action) {
       ->check(positive_number());
   command->options.add_to(*sub);
   sub->add_option("--out", command->out, "Results folder; default for scenes: results/NAME");
+  sub->add_flag("--mcap", command->mcap, "Write a log, too: run.mcap in the results folder");
   sub->add_flag("--overwrite", command->overwrite, "Replace an existing results folder");
   sub->add_flag("--realtime", command->realtime,
                 "Pace by the wall clock; default: as fast as possible");

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gloam/camera.h"
+#include "gloam/log.h"
 #include "gloam/result.h"
 #include "gloam/scene.h"
 #include "gloam/simulation.h"
@@ -23,6 +24,8 @@ struct RunRequest {
   int width = 0, height = 0;  ///< of every camera [px]; 0 = the camera's own
   Rational rate = {0, 1};     ///< of every camera [Hz]; 0 = the camera's own
   SimulationOptions simulation = {};
+  /// Log of the run; without a file, [record] mcap makes one in `out`, run.mcap.
+  LogRequest log = {};
   double duration = 0;  ///< [s]; 0 = the scene's
 };
 

@@ -19,45 +19,16 @@
 #include "gloam/result.h"
 #include "gloam/scene.h"
 #include "gloam/sensor.h"
+#include "gloam/simulation_options.h"
 #include "gloam/snapshot.h"
 #include "gloam/snapshot_stream.h"
+#include "gloam/topics.h"
 #include "gloam/world.h"
 
 struct mjModel_;
 struct mjData_;
 
 namespace gloam {
-
-enum class Pace {
-  kFast,      ///< as fast as possible: waits for required consumers
-  kLockstep,  ///< as fast as possible, but only when told to: step(), run_until()
-  kRealTime,  ///< paced by the wall clock times `speed`; late consumers lose frames
-};
-
-struct SimulationOptions {
-  uint64_t seed = 1;
-  double timestep = 0;  ///< [s]; 0 = the model's own
-  Pace pace = Pace::kFast;
-  double speed = 1;  ///< of Pace::kRealTime, > 0
-};
-
-struct SimulationStats {
-  int64_t step = 0;
-  double time = 0;             ///< [s]
-  uint64_t hash = 0;           ///< of the state, chained over all steps
-  double realtime_factor = 0;  ///< simulated seconds per wall second since the last resume
-  int64_t dropped_snapshots = 0;
-  int64_t commands_applied = 0;  ///< posted ones, over all runs
-  int64_t warnings = 0;          ///< MuJoCo's, all types
-};
-
-/// A body under a pixel, for dragging.
-struct PickResult {
-  Body body;
-  std::string name;
-  Vec3 point_B;  ///< hit point in the body's frame [m]
-  Vec3 point_W;  ///< and in the world [m]
-};
 
 class Simulation {
  public:
@@ -136,6 +107,15 @@ class Simulation {
   /// Opens a stream of Snapshots. Errors: a rate above the step rate, a capacity below 1.
   virtual Result<std::unique_ptr<SnapshotStream>> open_snapshots(const SnapshotRequest& request,
                                                                  SnapshotCallback on_snapshot) = 0;
+  /// Topics of the World that runs. Error: a [[topic]] of the scene that fits none.
+  virtual Result<std::vector<TopicInfo>> topics() const = 0;
+  /// Opens topics as streams of encoded messages. What nobody opens is not computed. After a
+  /// recompile, topics that are gone are silent. Errors: no such topic, one that is heard.
+  virtual Result<std::unique_ptr<TopicStream>> open_topics(const TopicRequest& request,
+                                                           TopicCallback on_message) = 0;
+  /// Posts what a message to an input topic asks for; `data` is CDR. Errors: no such input, a
+  /// damaged message, those of post().
+  virtual Status publish(std::string_view topic, std::span<const uint8_t> data) = 0;
   virtual Result<std::vector<LabelRow>> labels() = 0;
   /// What the ray through pixel (u, v) [px] of a frame hits in the latest Snapshot. Error: nothing
   /// there.

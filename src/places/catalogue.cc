@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "base/text.h"
-#include "gloam/scene_object.h"
+#include "gloam/scene/object.h"
 
 namespace gloam {
 

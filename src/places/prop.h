@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "geometry/solid.h"
-#include "gloam/scene_light.h"
+#include "gloam/scene/light.h"
 #include "gloam/types.h"
 
 namespace gloam {

@@ -99,6 +99,7 @@ class FolderRecorder : public Recorder {
     }
     if (outputs_.contains("sensors") && !info_.sensors.empty()) entries_.push_back(kSensorsName);
     entries_.insert(entries_.end(), lidar_file_names_.begin(), lidar_file_names_.end());
+    entries_.insert(entries_.end(), info_.beside.begin(), info_.beside.end());
     entries_.push_back(kSummaryName);
     GLOAM_TRY_STATUS(write_summary(nullptr));
     GLOAM_TRY_STATUS(write_text("cameras.json", cameras_json(info_.cameras, file_names_)));

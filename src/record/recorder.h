@@ -102,6 +102,7 @@ struct RunInfo {
   std::vector<std::string> metric_columns;  ///< the first is the time [s]
   std::vector<std::string> state_columns;   ///< likewise
   std::vector<MetricPlot> plots;
+  std::vector<std::string> beside;      ///< names of files that others write into the folder
   std::vector<RecordedSensor> sensors;  ///< in the order that add_sensor() may be called for
 };
 

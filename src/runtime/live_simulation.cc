@@ -11,6 +11,7 @@
 #include "geometry/mesh/single.h"
 #include "runtime/label_table.h"
 #include "runtime/pick.h"
+#include "runtime/streams/topic_feed.h"
 
 namespace gloam {
 namespace {
@@ -18,6 +19,8 @@ namespace {
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
+
+}  // namespace
 
 Result<std::vector<RobotController>> make_controllers(
     const std::shared_ptr<const CompiledWorld>& world) {
@@ -31,8 +34,6 @@ Result<std::vector<RobotController>> make_controllers(
   }
   return controllers;
 }
-
-}  // namespace
 
 Result<std::unique_ptr<Simulation>> Simulation::create(const World& world,
                                                        const SimulationOptions& options) {
@@ -218,6 +219,31 @@ Result<std::unique_ptr<SnapshotStream>> LiveSimulation::open_snapshots(
     const SnapshotRequest& request, SnapshotCallback on_snapshot) {
   GLOAM_TRY(auto live, LiveSnapshots::open(*simulator_, request, std::move(on_snapshot)));
   return std::unique_ptr<SnapshotStream>(std::move(live));
+}
+
+Result<std::vector<TopicInfo>> LiveSimulation::topics() const {
+  GLOAM_TRY(const auto table, topics_.of(simulator_->world()));
+  std::vector<TopicInfo> infos;
+  for (const Topic& topic : *table) infos.push_back(topic.info);
+  return infos;
+}
+
+Result<std::unique_ptr<TopicStream>> LiveSimulation::open_topics(const TopicRequest& request,
+                                                                 TopicCallback on_message) {
+  GLOAM_TRY(auto feed, TopicFeed::open(*this, topics_, request, std::move(on_message)));
+  return std::unique_ptr<TopicStream>(std::move(feed));
+}
+
+Status LiveSimulation::publish(std::string_view topic, std::span<const uint8_t> data) {
+  GLOAM_TRY(const auto table, topics_.of(simulator_->world()));
+  GLOAM_TRY(const auto found, find_topics(*table, std::string(topic)));
+  const auto* decode = std::get_if<InputDecoder>(&found.front()->code);
+  if (decode == nullptr)
+    return Error{ErrorKind::kUsage, fmt::format("topic '{}' is said, not heard", topic)};
+  GLOAM_TRY(const std::vector<Command> commands,
+            (*decode)(data, simulator_->latest(), simulator_->timestep().value()));
+  if (commands.size() == 1) return post(commands[0]);
+  return post(commands);
 }
 
 std::vector<std::string> LiveSimulation::camera_names() const {

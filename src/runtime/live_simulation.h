@@ -7,14 +7,19 @@
 #include <optional>
 
 #include "gloam/simulation.h"
-#include "runtime/exposure_meter.h"
-#include "runtime/live_camera.h"
-#include "runtime/live_lidar.h"
-#include "runtime/live_sensors.h"
-#include "runtime/live_snapshots.h"
 #include "runtime/robot_claims.h"
+#include "runtime/streams/exposure_meter.h"
+#include "runtime/streams/live_camera.h"
+#include "runtime/streams/live_lidar.h"
+#include "runtime/streams/live_sensors.h"
+#include "runtime/streams/live_snapshots.h"
+#include "runtime/streams/topic_tables.h"
 
 namespace gloam {
+
+/// Makes the controllers of all robots of a World, as their options say.
+Result<std::vector<RobotController>> make_controllers(
+    const std::shared_ptr<const CompiledWorld>& world);
 
 /// Choice whether automatic exposures go on while nobody opens their cameras, which takes
 /// rendering.
@@ -53,6 +58,10 @@ class LiveSimulation final : public Simulation {
                                                   ScanCallback on_scan) override;
   Result<std::unique_ptr<SnapshotStream>> open_snapshots(const SnapshotRequest& request,
                                                          SnapshotCallback on_snapshot) override;
+  Result<std::vector<TopicInfo>> topics() const override;
+  Result<std::unique_ptr<TopicStream>> open_topics(const TopicRequest& request,
+                                                   TopicCallback on_message) override;
+  Status publish(std::string_view topic, std::span<const uint8_t> data) override;
   std::vector<std::string> camera_names() const override;
   Result<std::vector<LabelRow>> labels() override;
   Result<Pose> body_pose(Body body) override;
@@ -60,6 +69,7 @@ class LiveSimulation final : public Simulation {
   Rational step_rate() const override;
 
   // For the runtime's own jobs.
+  uint64_t seed() const { return seed_; }
   Simulator& simulator() { return *simulator_; }
   Result<std::shared_ptr<SharedRenderer>> renderer() { return renderers_.of(simulator_->world()); }
   Result<std::unique_ptr<LiveCamera>> open_live_camera(const CameraRequest& request,
@@ -83,6 +93,7 @@ class LiveSimulation final : public Simulation {
   std::mutex recompile_mutex_;  // one at a time
   ExposureMeters meters_;
   RobotClaims claims_;
+  mutable TopicTables topics_;
   std::mutex solver_mutex_;
   std::unique_ptr<PoseSolver> solver_;  // for questions about the latest instant
   std::atomic<bool> paused_{true}, stop_requested_{false};

@@ -20,6 +20,7 @@
 #include "record/recorder.h"
 #include "runtime/label_table.h"
 #include "runtime/live_simulation.h"
+#include "runtime/log/log_recorder.h"
 #include "runtime/robot_metrics.h"
 #include "runtime/run_to_step.h"
 #include "runtime/state_table.h"
@@ -133,6 +134,21 @@ Result<std::vector<RecordedLidar>> recorded_lidars(const World& world, Rational 
   return lidars;
 }
 
+constexpr const char* kLogName = "run.mcap";
+
+// The log that is asked for, or the scene's.
+LogRequest log_request_of(const Scene& scene, const RunRequest& request) {
+  LogRequest log = request.log;
+  const RecordOptions& record = scene.record;
+  if (log.file.empty() && record.mcap && !request.out.empty()) log.file = request.out / kLogName;
+  if (log.topics.empty()) log.topics = record.topics;
+  log.durable |= record.durable;
+  log.embed |= record.embed;
+  log.state_rate = record.state_rate;
+  log.required = request.simulation.pace == Pace::kFast;
+  return log;
+}
+
 std::string scene_hash(const Scene& scene) {
   const auto path = scene.bare_model.empty() ? scene.file : scene.bare_model;
   if (path.empty()) return {};
@@ -199,9 +215,11 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   const auto start = Clock::now();
   const Scene& scene = world.compiled()->scene;
   const bool pictures = !request.out.empty() && wants_pictures(scene);
+  const LogRequest log_request = log_request_of(scene, request);
+  const bool metered_always = pictures || !log_request.file.empty();
   GLOAM_TRY(auto simulation,
             LiveSimulation::create(world, request.simulation,
-                                   pictures ? Metering::kAlways : Metering::kNever));
+                                   metered_always ? Metering::kAlways : Metering::kNever));
   Simulator& simulator = simulation->simulator();
   const double duration = request.duration > 0 ? request.duration : scene.sim.duration;
   const Rational rate = simulation->step_rate();
@@ -233,6 +251,7 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   std::vector<std::unique_ptr<LiveCamera>> cameras;
   std::unique_ptr<LiveSensors> sensors;
   std::vector<std::unique_ptr<LiveLidar>> lidars;
+  std::unique_ptr<LogRecorder> log;
   double prepared = 0;
   if (!request.out.empty()) {
     std::shared_ptr<SharedRenderer> shared;
@@ -244,6 +263,7 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
     const bool has_media = shared != nullptr ? !shared->description.volumes.empty()
                                              : !scene.volumes.empty() || !scene.gases.empty();
     RunInfo info = run_info(world, request, has_media, 1 / rate.value(), duration);
+    if (log_request.file == request.out / kLogName) info.beside = {kLogName};
     GLOAM_TRY(info.lidars, recorded_lidars(world, simulator.timestep()));
     uint64_t memory = 0;
     for (const CameraRequest& camera : requests) {
@@ -302,6 +322,9 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
     }
     prepared = seconds_since(start);
   }
+  if (!log_request.file.empty()) {
+    GLOAM_TRY(log, LogRecorder::start(*simulation, log_request));
+  }
   GLOAM_TRY(auto metric_queue,
             simulator.subscribe({.rate = metric_rate, .required = true, .capacity = 256}));
   MetricsThread metrics_thread(metric_queue, metrics, state ? &*state : nullptr, recorder.get());
@@ -309,6 +332,7 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   const auto recording = [&]() -> Status {
     for (const auto& camera : cameras) GLOAM_TRY_STATUS(camera->status());
     for (const auto& lidar : lidars) GLOAM_TRY_STATUS(lidar->status());
+    if (log != nullptr) GLOAM_TRY_STATUS(log->status());
     return recorder != nullptr ? recorder->status() : Status();
   };
   report.status = run_to_step(simulator, steps, cameras.empty() ? "simulating" : "rendering",
@@ -329,6 +353,11 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   }
   lidars.clear();
   metrics_thread.join();
+  if (log != nullptr) {
+    const Status finished = log->finish(last);
+    if (report.status.ok()) report.status = finished;
+    report.written.push_back(log_request.file.string());
+  }
 
   report.out = request.out;
   report.steps = last.step();

@@ -7,8 +7,8 @@
 
 #include "base/text.h"
 #include "gloam/render.h"
-#include "runtime/live_lidar.h"
 #include "runtime/shared_renderer.h"
+#include "runtime/streams/live_lidar.h"
 #include "sensors/camera/camera_sensor.h"
 #include "sensors/lidar/lidar_sensor.h"
 #include "sim/snapshots/pose_solver.h"

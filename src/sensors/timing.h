@@ -6,7 +6,7 @@
 #include <string>
 
 #include "gloam/result.h"
-#include "gloam/scene_imager.h"
+#include "gloam/scene/imager.h"
 #include "sim/loop/step_schedule.h"
 
 namespace gloam {

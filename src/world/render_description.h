@@ -12,7 +12,7 @@
 #include "geometry/mesh/mesh.h"
 #include "gloam/camera.h"
 #include "gloam/result.h"
-#include "gloam/scene_sensor.h"
+#include "gloam/scene/sensor.h"
 #include "world/lights/ies_profile.h"
 #include "world/lights/lamp_motion.h"
 #include "world/lights/light_description.h"

@@ -11,6 +11,7 @@
 
 #include "gloam/scene.h"
 #include "gloam/world.h"
+#include "scene/files/dependency.h"
 #include "world/agents/agent_description.h"
 #include "world/effects/gas_description.h"
 #include "world/effects/soil_description.h"
@@ -71,7 +72,8 @@ struct CompiledWorld {
   Scene scene;           ///< drawn, with the looks, lamps and cameras of its place and meshes
   Scene written;         ///< as it was given; with `keyframe` it compiles to this World again
   std::string keyframe;  ///< that was asked for, "" = none
-  ModelPtr model;        ///< the whole level, exactly what stock MuJoCo would load
+  std::vector<Dependency> files;  ///< files of the models and what they include
+  ModelPtr model;                 ///< the whole level, exactly what stock MuJoCo would load
   /// Keyframe of `model` that the simulation starts from; -1 = mj_resetData's state. A scene whose
   /// robots name keyframes gets one made of theirs, so that the start survives export.
   int initial_key = -1;

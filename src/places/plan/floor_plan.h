@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "gloam/scene_place.h"
+#include "gloam/scene/place.h"
 
 namespace gloam {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "gloam/scene_place.h"
+#include "gloam/scene/place.h"
 #include "places/dice.h"
 #include "places/plan/floor_plan.h"
 #include "places/smooth_noise.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "gloam/scene_object.h"
+#include "gloam/scene/object.h"
 #include "places/catalogue.h"
 #include "places/place.h"
 

@@ -8,7 +8,7 @@
 #include "base/files.h"
 #include "gloam/program.h"
 #include "gloam/run.h"
-#include "runtime/live_lidar.h"
+#include "runtime/streams/live_lidar.h"
 #include "scenes.h"
 
 namespace gloam {

@@ -13,18 +13,12 @@
 #include <vector>
 
 #include "gloam/scene.h"
+#include "scene/files/dependency.h"
 #include "scene/files/model_path.h"
 #include "scene/files/xml_scan.h"
 #include "scene/mjcf/model_text.h"
 
 namespace gloam {
-
-/// One file that the models were made of, or one that was looked for in vain (`exists` false).
-struct Dependency {
-  std::filesystem::path path;
-  bool exists = true;
-  uint64_t hash = 0;  ///< hash of the content
-};
 
 /// Files of the models of one level. Not movable: MuJoCo keeps pointers to it.
 class ModelFiles {

@@ -2,8 +2,8 @@
 // Fields of [[camera]], its lens, [[stereo]] and [[rgbd]]. A part of
 // scene/options/option_fields.h.
 
-#include "gloam/scene_camera.h"
-#include "gloam/scene_sensor.h"
+#include "gloam/scene/camera.h"
+#include "gloam/scene/sensor.h"
 #include "scene/options/field_rule.h"
 #include "scene/options/imager_fields.h"
 

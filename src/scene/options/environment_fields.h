@@ -2,7 +2,7 @@
 // Fields of [environment] and of generated places. A part of
 // scene/options/option_fields.h.
 
-#include "gloam/scene_environment.h"
+#include "gloam/scene/environment.h"
 #include "scene/options/field_rule.h"
 #include "scene/options/object_fields.h"
 

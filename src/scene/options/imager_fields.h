@@ -2,7 +2,7 @@
 // Fields of [camera.imager], [camera.timing] and of other sensors' models. A part of
 // scene/options/option_fields.h.
 
-#include "gloam/scene_sensor.h"
+#include "gloam/scene/sensor.h"
 #include "scene/options/field_rule.h"
 #include "scene/options/pattern_names.h"
 

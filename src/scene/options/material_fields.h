@@ -2,7 +2,7 @@
 // Fields of [[material]] and its patterns. A part of
 // scene/options/option_fields.h.
 
-#include "gloam/scene_material.h"
+#include "gloam/scene/material.h"
 #include "scene/options/field_rule.h"
 #include "scene/options/pattern_names.h"
 

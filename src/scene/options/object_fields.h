@@ -6,7 +6,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "gloam/scene_object.h"
+#include "gloam/scene/object.h"
 #include "places/catalogue.h"
 #include "scene/options/field_rule.h"
 

@@ -73,6 +73,7 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("randomize", scene.randomize, FieldRule{});
   v("render", scene.render, FieldRule{});
   v("record", scene.record, FieldRule{});
+  v("topic", scene.topics, FieldRule{});
 }
 
 }  // namespace gloam

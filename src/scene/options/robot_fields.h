@@ -2,7 +2,7 @@
 // Fields of [[robot]], its controller and [[push]]. A part of
 // scene/options/option_fields.h.
 
-#include "gloam/scene_robot.h"
+#include "gloam/scene/robot.h"
 #include "scene/options/controller_types.h"
 #include "scene/options/field_rule.h"
 

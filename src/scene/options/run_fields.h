@@ -2,7 +2,7 @@
 // Fields of [sim], [render], [record] and [[randomize]]. A part of
 // scene/options/option_fields.h.
 
-#include "gloam/scene_run.h"
+#include "gloam/scene/run.h"
 #include "scene/options/field_rule.h"
 
 namespace gloam {
@@ -31,6 +31,22 @@ void visit_fields(Visitor& v, RenderOptions& o) {
 template <class Visitor>
 void visit_fields(Visitor& v, RecordOptions& o) {
   v("outputs", o.outputs, FieldRule{.choices = words(kRecordOutputs)});
+  v("mcap", o.mcap, FieldRule{});
+  v("topics", o.topics, FieldRule{});
+  v("state_rate", o.state_rate,
+    FieldRule{.unit = "Hz", .min = 0, .max = kFastestRate, .open = true});
+  v("embed", o.embed, FieldRule{});
+  v("durable", o.durable, FieldRule{});
+}
+
+template <class Visitor>
+void visit_fields(Visitor& v, TopicOptions& o) {
+  v("name", o.name, FieldRule{.required = true});
+  v("rename", o.rename, FieldRule{});
+  v("frame", o.frame, FieldRule{});
+  v("rate", o.rate, FieldRule{.unit = "Hz", .min = 0, .max = kFastestRate, .open = true});
+  v("log", o.log, FieldRule{});
+  v("off", o.off, FieldRule{});
 }
 
 template <class Visitor>

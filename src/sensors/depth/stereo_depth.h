@@ -23,7 +23,7 @@
 #include <vector>
 
 #include "gloam/camera.h"
-#include "gloam/scene_sensor.h"
+#include "gloam/scene/sensor.h"
 #include "render/film/film.h"
 #include "render/renderer.h"
 #include "sensors/sensor_air.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/vec.h"
-#include "gloam/scene_sensor.h"
+#include "gloam/scene/sensor.h"
 #include "gloam/sensor.h"
 
 namespace gloam {

@@ -1,7 +1,7 @@
 #pragma once
 // Exposure by f-number, shutter and speed, and the automatic that sets them.
 
-#include "gloam/scene_imager.h"
+#include "gloam/scene/imager.h"
 
 namespace gloam {
 

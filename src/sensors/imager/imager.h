@@ -8,7 +8,7 @@
 
 #include "base/vec.h"
 #include "gloam/camera.h"
-#include "gloam/scene_imager.h"
+#include "gloam/scene/imager.h"
 #include "sensors/imager/exposure.h"
 #include "sensors/imager/mosaic.h"
 #include "sensors/imager/pixel.h"

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "gloam/scene_imager.h"
+#include "gloam/scene/imager.h"
 #include "sensors/imager/exposure.h"
 
 namespace gloam {

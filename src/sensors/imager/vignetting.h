@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "gloam/camera.h"
-#include "gloam/scene_imager.h"
+#include "gloam/scene/imager.h"
 
 namespace gloam {
 

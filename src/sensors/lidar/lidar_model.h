@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gloam/result.h"
-#include "gloam/scene_lidar.h"
+#include "gloam/scene/lidar.h"
 #include "render/kernel/lidar/lidar_detect.h"
 
 namespace gloam {

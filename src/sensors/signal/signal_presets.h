@@ -1,7 +1,7 @@
 #pragma once
 // Errors of a sensor that puts out numbers, and those of parts by their data sheets.
 
-#include "gloam/scene_sensor.h"
+#include "gloam/scene/sensor.h"
 
 namespace gloam {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "gloam/scene_sensor.h"
+#include "gloam/scene/sensor.h"
 #include "render/film/film.h"
 #include "render/renderer.h"
 #include "sensors/sensor_air.h"

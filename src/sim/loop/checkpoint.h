@@ -18,7 +18,7 @@ struct StepperState {
   DataPtr data;
   AppliedInputs inputs;
   std::shared_ptr<const LiveFields> live;
-  int64_t step = 0;
+  int64_t since = 0, step = 0;
   uint64_t hash = 0;
   std::vector<double> state, sensors;
   bool own_sensors = false;

@@ -108,6 +108,8 @@ class Simulator {
   bool is_on_sim_thread() const {
     return sim_thread_.load(std::memory_order_relaxed) == std::this_thread::get_id();
   }
+  /// Timestep instead of the model's, if there is one [s].
+  std::optional<double> own_timestep() const { return own_timestep_; }
   int64_t step_count() const { return step_count_.load(std::memory_order_relaxed); }
   /// Exact as a fraction: a step takes num / den seconds.
   Rational timestep() const { return loop_.timestep(); }

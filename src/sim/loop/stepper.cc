@@ -98,7 +98,7 @@ bool Stepper::reset() {
     live_.reset();
     take_model(*world_->model);
   }
-  step_ = 0;
+  step_ = since_ = 0;
   inputs_->reset();
   const bool ok = restart();
   ++run_;
@@ -156,7 +156,7 @@ void Stepper::tick_effects() {
 
 bool Stepper::take_over(const Stepper& before, const Correspondence& same) {
   run_ = before.run_;
-  step_ = before.step_;
+  step_ = since_ = before.step_;
   hash_ = before.hash_;
   live_changes_ = before.live_changes_;
   warnings_ = before.warnings_;
@@ -334,6 +334,7 @@ const Snapshot& Stepper::snapshot() {
   if (!snapshot_) {
     snapshot_ = pool_->make([this](SnapshotData& out) {
       out.run = run_;
+      out.world_since = since_;
       out.step = step_;
       out.time = time();
       out.timestep = model_.opt.timestep;

@@ -103,7 +103,8 @@ class Stepper {
   uint64_t live_changes_ = 0;  // since creation
   std::shared_ptr<SnapshotPool> pool_;
 
-  int64_t run_ = -1;  // resets since the one that create() makes
+  int64_t since_ = 0;  // step from which the run is in this World
+  int64_t run_ = -1;   // resets since the one that create() makes
   int64_t step_ = 0;
   uint64_t hash_ = 0;
   std::vector<double> state_;       // of the last good step

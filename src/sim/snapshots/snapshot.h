@@ -21,7 +21,8 @@ struct LiveFields {
 
 struct SnapshotData {
   std::shared_ptr<const CompiledWorld> world;
-  int64_t run = 0;  ///< resets before it
+  int64_t world_since = 0;  ///< step of its run from which the simulation is in this World
+  int64_t run = 0;          ///< resets before it
   int64_t step = 0;
   double time = 0;      ///< [s]
   double timestep = 0;  ///< [s]

@@ -51,6 +51,6 @@ using AllMessages = MessageList<
     rmw_dds_common::NodeEntitiesInfo, rmw_dds_common::Gid, foxglove_msgs::CompressedVideo,
     event_camera_msgs::EventPacket, std_srvs::Empty_Request, std_srvs::Empty_Response,
     std_srvs::Trigger_Request, std_srvs::Trigger_Response, std_srvs::SetBool_Request,
-    std_srvs::SetBool_Response, gloam_msgs::Contact, gloam_msgs::Contacts>;
+    std_srvs::SetBool_Response, gloam_msgs::Contact, gloam_msgs::Contacts, gloam_msgs::State>;
 
 }  // namespace gloam

@@ -23,4 +23,13 @@ struct Contacts {
   GLOAM_MESSAGE(Contacts, header, contacts)
 };
 
+/// Where a simulation stands at an instant: of Gloam's own, for replays.
+struct State {
+  std_msgs::Header header;
+  int64_t run = 0, step = 0;  ///< resets before it; physics steps since the last
+  uint64_t hash = 0;          ///< of the state, chained over all steps of the run
+  std::vector<double> state;  ///< mjSTATE_INTEGRATION
+  GLOAM_MESSAGE(State, header, run, step, hash, state)
+};
+
 }  // namespace gloam::gloam_msgs

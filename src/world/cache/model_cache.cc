@@ -200,6 +200,7 @@ std::shared_ptr<CompiledWorld> load_cached_world(const Scene& scene, uint64_t pl
     return nullptr;
   auto world = std::make_shared<CompiledWorld>();
   world->scene = scene;
+  world->files = entry.dependencies;
   world->initial_key = entry.initial_key;
   world->robots = std::move(entry.robots);
   for (size_t i = 0; i < world->robots.size() && i < scene.robots.size(); ++i)

@@ -219,8 +219,9 @@ Result<std::shared_ptr<CompiledWorld>> compile_scene(const Scene& written,
   world->lines = std::move(level.lines);
   GLOAM_TRY_STATUS(describe_rest(world.get()));
   add_urdf_visuals(scene, &files, world.get());
+  world->files = files.dependencies();
   if (std::chrono::steady_clock::now() - start > kWorthCaching)
-    store_cached_world(world, files.dependencies());
+    store_cached_world(world, world->files);
   progress.finish();
   return world;
 }

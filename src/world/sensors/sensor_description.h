@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "gloam/result.h"
-#include "gloam/scene_sensor.h"
+#include "gloam/scene/sensor.h"
 
 namespace gloam {
 

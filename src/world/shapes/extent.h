@@ -5,7 +5,7 @@
 #include <limits>
 #include <span>
 
-#include "gloam/scene_environment.h"
+#include "gloam/scene/environment.h"
 
 namespace gloam {
 

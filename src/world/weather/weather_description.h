@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "gloam/scene_environment.h"
-#include "gloam/scene_sky.h"
+#include "gloam/scene/environment.h"
+#include "gloam/scene/sky.h"
 #include "world/weather/particle_set.h"
 #include "world/weather/roof_drips.h"
 #include "world/weather/shelter_map.h"

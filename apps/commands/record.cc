@@ -1,0 +1,76 @@
+// gloam record: a run as a log that ROS 2's tools open and `gloam replay` steps again.
+
+#include <filesystem>
+
+#include "report.h"
+#include "run_options.h"
+
+namespace gloam::cli {
+namespace {
+
+struct RecordCommand {
+  std::string file, log;
+  RunOptions options;
+  std::vector<std::string> topics;
+  bool overwrite = false, realtime = false, durable = false, embed = false;
+  double speed = 1;
+};
+
+int record(const RecordCommand& command_line, const Globals& globals) {
+  RecordCommand command = command_line;
+  auto scene = command.options.load(command.file);
+  if (!scene.ok()) return fail(scene.error());
+  RunRequest request;
+  request.log.file = command.log;
+  request.log.topics = command.topics;
+  request.log.durable = command.durable;
+  request.log.embed = command.embed;
+  request.simulation.seed = scene->sim.seed;
+  request.simulation.timestep = scene->sim.timestep.value_or(0);
+  request.simulation.pace = command.realtime ? Pace::kRealTime : Pace::kFast;
+  request.simulation.speed = command.speed;
+  std::error_code code;
+  if (std::filesystem::exists(command.log, code) && !command.overwrite)
+    return fail({ErrorKind::kUsage,
+                 "there is a file '" + command.log + "' already",
+                 {},
+                 "choose another name, or --overwrite"});
+  auto world = compile(*scene, globals, command.options.keyframe);
+  if (!world.ok()) return fail(world.error());
+  std::filesystem::remove(command.log, code);
+  return run_and_report(*world, request, globals);
+}
+
+}  // namespace
+
+void add_record(CLI::App& app, Globals& globals, Action& action) {
+  CLI::App* sub = app.add_subcommand("record", "Simulate a scene or model into a log (MCAP)");
+  auto command = std::make_shared<RecordCommand>();
+  sub->add_option("FILE", command->file, "Scene or model")->required();
+  sub->add_option("-o,--log", command->log, "Log to write")->required();
+  sub->add_option("--topics", command->topics,
+                  "Topics of the log, * for any text; default: all but raw pictures")
+      ->delimiter(',');
+  sub->add_option("--duration", command->options.duration, "Seconds of simulation time")
+      ->check(positive_number());
+  command->options.add_to(*sub);
+  sub->add_flag("--overwrite", command->overwrite, "Replace an existing log");
+  sub->add_flag("--durable", command->durable,
+                "Sync each chunk to the disk: outlives a loss of power, too");
+  sub->add_flag("--embed", command->embed, "Put the models' files into the log");
+  sub->add_flag("--realtime", command->realtime,
+                "Pace by the wall clock; a slow disk then loses messages");
+  sub->add_option("--speed", command->speed, "Simulated seconds per second, with --realtime")
+      ->check(positive_number());
+  sub->footer(
+      "Examples:\n  gloam record examples/house_fire.toml -o fire.mcap --duration 3\n  gloam "
+      "record "
+      "robot.xml -o run.mcap --topics '/tf*,/*/joint_states'\n  gloam info run.mcap\n  gloam "
+      "replay "
+      "run.mcap --verify");
+  sub->callback([&globals, &action, command] {
+    action = [&globals, command] { return record(*command, globals); };
+  });
+}
+
+}  // namespace gloam::cli

@@ -1,0 +1,45 @@
+#pragma once
+// Surroundings of a scene: [environment], a file or a generated place. Part of gloam/scene.h;
+// docs/environments.md has examples.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "gloam/result.h"
+#include "gloam/scene/place.h"
+#include "gloam/types.h"
+
+namespace gloam {
+
+/// [environment]: everything that is not a robot.
+struct EnvironmentOptions {
+  /// MJCF, or a glTF, GLB, OBJ, STL or PLY file of a place; empty = nothing but a floor when a TOML
+  /// scene has robots, nothing otherwise
+  std::filesystem::path file = {};
+  /// Axis of a mesh file that points up: y | z; auto = y for glTF, else z.
+  std::string up = "auto";
+  double unit = 1;                 ///< length of one unit of a mesh file [m]
+  std::string colliders = "auto";  ///< colliders of each node of a mesh file, as in [[object]]
+  /// Nodes of a mesh file whose name another node or the scene has: rename = the later becomes
+  /// NAME_2 …, with a note; refuse = an error; prefix = all become FILE_STEM/NODE.
+  std::string clash = "rename";
+  // Instead of a file, one of the generators:
+  std::optional<HouseOptions> house = {};
+  std::optional<WarehouseOptions> warehouse = {};
+  std::optional<OfficeOptions> office = {};
+  std::optional<HallwayOptions> hallway = {};
+  std::optional<BedroomOptions> bedroom = {};
+  std::optional<TunnelOptions> tunnel = {};
+  std::optional<TerrainOptions> terrain = {};
+  SourceLoc loc = {};
+};
+
+/// A floor that can be walked on.
+struct Region {
+  std::string name = {};     ///< "kitchen"
+  std::string label = {};    ///< kind: room kinds, "aisle", "stairs"
+  Vec3 low = {}, high = {};  ///< box above the floor, in the world [m]
+};
+
+}  // namespace gloam

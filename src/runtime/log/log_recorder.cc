@@ -1,0 +1,202 @@
+#include "runtime/log/log_recorder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/files.h"
+#include "runtime/log/command_text.h"
+#include "runtime/log/run_text.h"
+#include "topics/codec.h"
+#include "topics/message_types.h"
+#include "topics/messages/gloam_msgs.h"
+#include "topics/ros_values.h"
+
+namespace gloam {
+namespace {
+
+// As rosbag2 writes it: YAML, with the numbers of rmw's enums.
+std::string qos_text(const TopicQos& qos) {
+  return fmt::format(
+      "- history: 1\n  depth: {}\n  reliability: {}\n  durability: {}\n  deadline:\n    sec: "
+      "9223372036\n    nsec: 854775807\n  lifespan:\n    sec: 9223372036\n    nsec: 854775807\n  "
+      "liveliness: 1\n  liveliness_lease_duration:\n    sec: 9223372036\n    nsec: 854775807\n  "
+      "avoid_ros_namespace_conventions: false",
+      qos.depth, qos.is_reliable ? 1 : 2, qos.is_latched ? 1 : 2);
+}
+
+std::span<const uint8_t> bytes_of(const std::string& text) {
+  return {reinterpret_cast<const uint8_t*>(text.data()), text.size()};
+}
+
+std::vector<std::string> usual_topics(const std::vector<TopicInfo>& topics) {
+  std::vector<std::string> names;
+  for (const TopicInfo& topic : topics)
+    if (topic.is_logged && !topic.is_input) names.push_back(topic.name);
+  return names;
+}
+
+}  // namespace
+
+Result<std::unique_ptr<LogRecorder>> LogRecorder::start(LiveSimulation& simulation,
+                                                        const LogRequest& request) {
+  GLOAM_TRY(const std::vector<TopicInfo> topics, simulation.topics());
+  GLOAM_TRY(auto sink, FileSink::create(request.file));
+  McapWriterOptions options;
+  options.durable = request.durable;
+  std::unique_ptr<LogRecorder> log(new LogRecorder(simulation, request));
+  LogQueueOptions queue;
+  queue.policy = request.required ? LogQueuePolicy::kWait : LogQueuePolicy::kDropOldest;
+  log->queue_ = std::make_unique<LogQueue>(
+      std::make_unique<McapWriter>(std::move(sink), std::move(options)), queue);
+  GLOAM_TRY_STATUS(log->add_channels(topics));
+  const Snapshot now = simulation.latest();
+  log->write_world(now);
+  if (request.embed) GLOAM_TRY_STATUS(log->embed_files(*log->world_));
+  simulation.take_command_log();  // of before
+  GLOAM_TRY_STATUS(
+      log->open_streams(request.topics.empty() ? usual_topics(topics) : request.topics));
+  return log;
+}
+
+LogRecorder::~LogRecorder() {
+  topics_.reset();
+  states_.reset();
+}
+
+Status LogRecorder::add_channel(const TopicInfo& topic, const std::string& encoding,
+                                const std::string& schema, const std::string& hash) {
+  uint16_t& schema_id = schemas_[topic.type];
+  if (schema_id == 0 && !schema.empty()) {
+    schema_id = static_cast<uint16_t>(schemas_.size());
+    GLOAM_TRY_STATUS(
+        queue_->push(McapSchema{schema_id, topic.type, "ros2msg", {schema.begin(), schema.end()}}));
+  }
+  const auto id = static_cast<uint16_t>(channels_.size() + 1);
+  McapChannel channel{id, schema_id, topic.name, encoding, {}};
+  if (encoding == "cdr")
+    channel.metadata = {{"offered_qos_profiles", qos_text(topic.qos)}, {"topic_type_hash", hash}};
+  GLOAM_TRY_STATUS(queue_->push(std::move(channel)));
+  channels_[topic.name] = {id};
+  return {};
+}
+
+Status LogRecorder::add_channels(const std::vector<TopicInfo>& topics) {
+  GLOAM_TRY_STATUS(add_channel({.name = kWorldTopic, .type = "gloam/World"}, "json", "", ""));
+  GLOAM_TRY_STATUS(add_channel({.name = kCommandTopic, .type = "gloam/Command"}, "json", "", ""));
+  const MessageType& state = message_type<gloam_msgs::State>();
+  GLOAM_TRY_STATUS(
+      add_channel({.name = kStateTopic, .type = state.name}, "cdr", state.text, state.hash));
+  for (const TopicInfo& topic : topics) {
+    if (topic.is_input) continue;
+    GLOAM_TRY(const MessageInfo type, message_info(topic.type));
+    GLOAM_TRY_STATUS(add_channel(topic, "cdr", type.definition, type.hash));
+  }
+  return {};
+}
+
+Status LogRecorder::embed_files(const CompiledWorld& world) {
+  for (const Dependency& file : world.files) {
+    if (!file.exists) continue;
+    GLOAM_TRY(auto bytes, read_file(file.path));
+    McapAttachment attachment;
+    attachment.name = file.path.string();
+    attachment.media_type = "application/octet-stream";
+    attachment.data.assign(bytes.begin(), bytes.end());
+    GLOAM_TRY_STATUS(queue_->push(std::move(attachment)));
+  }
+  return {};
+}
+
+Status LogRecorder::open_streams(const std::vector<std::string>& topics) {
+  TopicRequest request{.topics = topics, .required = request_.required};
+  GLOAM_TRY(topics_, simulation_.open_topics(request, [this](const TopicMessage& message) {
+    write(message.topic.name, message.time, message.run, message.data);
+  }));
+  const Rational step_rate = simulation_.step_rate();
+  SnapshotRequest states{
+      .rate = request_.state_rate, .required = request_.required, .capacity = 256};
+  if (states.rate.value() > step_rate.value()) states.rate = step_rate;
+  GLOAM_TRY(states_,
+            simulation_.open_snapshots(states, [this](const Snapshot& now) { take(now); }));
+  return {};
+}
+
+// Log time goes on over resets: a run begins where the one before ended.
+uint64_t LogRecorder::log_time(double time, int64_t run) {
+  const std::lock_guard lock(time_mutex_);
+  while (static_cast<int64_t>(run_starts_.size()) <= run) {
+    run_starts_.push_back(run_starts_.back() + run_end_);
+    run_end_ = 0;
+  }
+  if (run + 1 == static_cast<int64_t>(run_starts_.size())) run_end_ = std::max(run_end_, time);
+  const double at = run_starts_[static_cast<size_t>(run)] + time;
+  return static_cast<uint64_t>(std::llround(std::max(0.0, at) * 1e9));
+}
+
+void LogRecorder::write(const std::string& topic, double time, int64_t run,
+                        std::span<const uint8_t> data) {
+  const auto found = channels_.find(topic);
+  if (found == channels_.end()) return;  // came with a recompile
+  LogQueueMessage message;
+  message.channel = found->second.id;
+  message.sequence = found->second.sequence++;
+  message.log_time = message.publish_time = log_time(time, run);
+  message.data = queue_->take_buffer();
+  message.data.assign(data.begin(), data.end());
+  static_cast<void>(queue_->push(std::move(message)));  // status() tells of a failure
+}
+
+void LogRecorder::write_world(const Snapshot& now) {
+  world_ = now.data().world;
+  const auto timestep = simulation_.simulator().own_timestep();
+  RunText text = describe_run(*world_, simulation_.seed(), timestep);
+  text.run = now.data().run;
+  text.step = now.data().world_since;
+  const std::string json = to_json(text);
+  write(kWorldTopic, now.time(), now.data().run, bytes_of(json));
+}
+
+void LogRecorder::write_commands() {
+  for (const LoggedCommand& logged : simulation_.take_command_log()) {
+    const std::string json = command_text(logged, *world_);
+    const double time =
+        static_cast<double>(logged.command.step) * simulation_.simulator().timestep().value();
+    write(kCommandTopic, time, logged.run, bytes_of(json));
+  }
+}
+
+void LogRecorder::write_state(const Snapshot& now) {
+  gloam_msgs::State state;
+  state.header = ros_header(now.time(), "");
+  if (now.data().run == last_run_ && now.step() == last_step_) return;
+  last_run_ = now.data().run;
+  last_step_ = now.step();
+  state.run = now.data().run;
+  state.step = now.step();
+  state.hash = now.hash();
+  state.state.assign(now.state().begin(), now.state().end());
+  encode(state, &bytes_);
+  write(kStateTopic, now.time(), now.data().run, bytes_);
+}
+
+void LogRecorder::take(const Snapshot& now) {
+  if (now.data().world != world_) write_world(now);
+  write_commands();
+  write_state(now);
+}
+
+Status LogRecorder::status() const {
+  GLOAM_TRY_STATUS(topics_->status());
+  return queue_->status();
+}
+
+Status LogRecorder::finish(const Snapshot& last) {
+  topics_.reset();
+  states_.reset();
+  take(last);
+  return queue_->close();
+}
+
+}  // namespace gloam

@@ -1,0 +1,65 @@
+#pragma once
+// LogRecorder: writes a running simulation as a log: its topics, and what it takes to step it again
+// (World, Commands, states with their hashes).
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "gloam/log.h"
+#include "record/mcap/log_queue.h"
+#include "runtime/live_simulation.h"
+
+namespace gloam {
+
+class LogRecorder {
+ public:
+  /// Before the first step. Errors: the file exists, no such topic, those of the streams.
+  static Result<std::unique_ptr<LogRecorder>> start(LiveSimulation& simulation,
+                                                    const LogRequest& request);
+  ~LogRecorder();
+
+  /// Why it writes no more, if so.
+  Status status() const;
+  /// After the simulation has stopped: writes what waits, the last state and the log's index.
+  Status finish(const Snapshot& last);
+  /// Messages lost because the disk was slow, real-time runs alone.
+  int64_t dropped() const { return static_cast<int64_t>(queue_->dropped()); }
+
+ private:
+  struct Channel {
+    uint16_t id;
+    uint32_t sequence = 0;
+  };
+
+  LogRecorder(LiveSimulation& simulation, const LogRequest& request)
+      : simulation_(simulation), request_(request) {}
+  Status add_channels(const std::vector<TopicInfo>& topics);
+  Status add_channel(const TopicInfo& topic, const std::string& encoding, const std::string& schema,
+                     const std::string& hash);
+  Status embed_files(const CompiledWorld& world);
+  Status open_streams(const std::vector<std::string>& topics);
+  void take(const Snapshot& now);
+  void write_commands();
+  void write_world(const Snapshot& now);
+  void write_state(const Snapshot& now);
+  void write(const std::string& topic, double time, int64_t run, std::span<const uint8_t> data);
+  uint64_t log_time(double time, int64_t run);
+
+  LiveSimulation& simulation_;
+  const LogRequest request_;
+  std::unique_ptr<LogQueue> queue_;
+  std::map<std::string, Channel> channels_;  // by topic
+  std::map<std::string, uint16_t> schemas_;  // by message type
+  std::mutex time_mutex_;
+  std::vector<double> run_starts_ = {0};        // where runs begin in the log's time [s]
+  double run_end_ = 0;                          // latest time of the present run [s]
+  std::shared_ptr<const CompiledWorld> world_;  // that was written last
+  int64_t last_run_ = -1, last_step_ = -1;      // of the last state that was written
+  std::vector<uint8_t> bytes_;
+  std::unique_ptr<TopicStream> topics_;
+  std::unique_ptr<SnapshotStream> states_;
+};
+
+}  // namespace gloam

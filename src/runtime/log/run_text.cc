@@ -1,0 +1,158 @@
+#include "runtime/log/run_text.h"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "base/files.h"
+#include "base/hash.h"
+#include "gloam/options.h"
+#include "gloam/program.h"
+#include "world/version.h"
+
+namespace gloam {
+namespace fs = std::filesystem;
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string near(const fs::path& path, const fs::path& folder) {
+  const fs::path relative = folder.empty() ? fs::path() : path.lexically_relative(folder);
+  return (relative.empty() ? path : relative).string();
+}
+
+uint64_t hash_file(const fs::path& path) {
+  const auto bytes = read_file(path);
+  return bytes.ok() ? hash_bytes(bytes->data(), bytes->size()) : 0;
+}
+
+uint64_t from_hex(const std::string& text) { return std::stoull(text, nullptr, 16); }
+
+}  // namespace
+
+uint64_t hash_model(const mjModel& model) {
+  std::vector<std::byte> bytes(static_cast<size_t>(mj_sizeModel(&model)));
+  mj_saveModel(&model, nullptr, bytes.data(), static_cast<int>(bytes.size()));
+  return hash_bytes(bytes.data(), bytes.size());
+}
+
+RunText describe_run(const CompiledWorld& world, uint64_t seed, std::optional<double> timestep) {
+  const Scene& scene = world.written;
+  RunText text;
+  text.version = version();
+  text.mujoco = mujoco_version();
+  text.configuration = configuration();
+  text.seed = seed;
+  text.timestep = timestep.value_or(0);
+  text.name = scene.name;
+  const fs::path file = scene.bare_model.empty() ? scene.file : scene.bare_model;
+  const fs::path folder = file.empty() ? fs::path() : fs::absolute(file).parent_path();
+  text.folder = folder.string();
+  if (!scene.bare_model.empty()) text.bare_model = near(fs::absolute(scene.bare_model), folder);
+  text.keyframe = world.keyframe;
+  text.toml = to_toml(scene);
+  text.model_hash = hash_model(*world.model);
+  for (const Dependency& dependency : world.files)
+    if (dependency.exists)
+      text.files.push_back({near(dependency.path, folder), hash_file(dependency.path)});
+  return text;
+}
+
+std::string to_json(const RunText& text) {
+  Json files = Json::array();
+  for (const RunText::File& file : text.files)
+    files.push_back({{"path", file.path}, {"hash", hash_to_hex(file.hash)}});
+  const Json json = {{"run", text.run},
+                     {"step", text.step},
+                     {"gloam", text.version},
+                     {"mujoco", text.mujoco},
+                     {"configuration", text.configuration},
+                     {"seed", text.seed},
+                     {"timestep", text.timestep},
+                     {"name", text.name},
+                     {"folder", text.folder},
+                     {"bare_model", text.bare_model},
+                     {"keyframe", text.keyframe},
+                     {"model_hash", hash_to_hex(text.model_hash)},
+                     {"files", std::move(files)},
+                     {"scene", text.toml}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+Result<RunText> parse_run_text(std::string_view json_text) {
+  try {
+    const Json json = Json::parse(json_text);
+    RunText text;
+    json.at("run").get_to(text.run);
+    json.at("step").get_to(text.step);
+    json.at("gloam").get_to(text.version);
+    json.at("mujoco").get_to(text.mujoco);
+    json.at("configuration").get_to(text.configuration);
+    json.at("seed").get_to(text.seed);
+    json.at("timestep").get_to(text.timestep);
+    json.at("name").get_to(text.name);
+    json.at("folder").get_to(text.folder);
+    json.at("bare_model").get_to(text.bare_model);
+    json.at("keyframe").get_to(text.keyframe);
+    json.at("scene").get_to(text.toml);
+    text.model_hash = from_hex(json.at("model_hash").get<std::string>());
+    for (const Json& file : json.at("files"))
+      text.files.push_back(
+          {file.at("path").get<std::string>(), from_hex(file.at("hash").get<std::string>())});
+    return text;
+  } catch (const std::exception& error) {
+    return Error{ErrorKind::kInput,
+                 fmt::format("the log's description of its run: {:.200}", error.what())};
+  }
+}
+
+namespace {
+
+// Says which file is the cause, as far as that can be told.
+Error other_model(const RunText& text, const fs::path& folder) {
+  std::string changed;
+  for (const RunText::File& file : text.files) {
+    const fs::path path =
+        fs::path(file.path).is_absolute() ? fs::path(file.path) : folder / file.path;
+    if (hash_file(path) != file.hash) changed += (changed.empty() ? "" : ", ") + path.string();
+  }
+  if (!changed.empty())
+    return {ErrorKind::kInput,
+            "files of the scene have changed since the log was written: " + changed,
+            {},
+            "bring back the files that it was written with"};
+  return {
+      ErrorKind::kInput,
+      fmt::format("the scene compiles to another model than the log was written with (Gloam {}, "
+                  "MuJoCo {}, {}; this is Gloam {}, MuJoCo {}, {})",
+                  text.version, text.mujoco, text.configuration, version(), mujoco_version(),
+                  configuration()),
+      {},
+      "step it again with the version that wrote it"};
+}
+
+}  // namespace
+
+Result<std::shared_ptr<const CompiledWorld>> compile_run(const RunText& text,
+                                                         const fs::path& folder) {
+  const fs::path from = folder.empty() ? fs::path(text.folder) : folder;
+  Scene scene;
+  if (text.bare_model.empty()) {
+    GLOAM_TRY(scene, parse_scene(text.toml, from));
+  } else {
+    GLOAM_TRY(scene, load_scene(from / text.bare_model));
+  }
+  scene.name = text.name;
+  Result<World> world =
+      text.keyframe.empty() ? World::compile(scene) : World::compile_at(scene, text.keyframe);
+  if (!world.ok()) {
+    Error error = world.error();
+    const Error changed = other_model(text, from);
+    if (changed.message.starts_with("files")) error.hint = changed.message;
+    return error;
+  }
+  if (hash_model(*world->compiled()->model) != text.model_hash) return other_model(text, from);
+  return world->compiled();
+}
+
+}  // namespace gloam

@@ -1,0 +1,65 @@
+#pragma once
+// A camera of a running simulation: a thread that turns Snapshots into frames.
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "gloam/simulation.h"
+#include "runtime/shared_renderer.h"
+#include "runtime/streams/exposure_meter.h"
+#include "runtime/streams/stream_thread.h"
+#include "sensors/camera/camera_sensor.h"
+#include "sensors/timing.h"
+#include "sim/loop/simulator.h"
+#include "sim/snapshots/pose_solver.h"
+
+namespace gloam {
+
+class LiveCamera final : public CameraStream {
+ public:
+  static Result<std::unique_ptr<LiveCamera>> open(Simulator& simulator, SharedRenderers& renderers,
+                                                  const CameraRequest& request, uint64_t seed,
+                                                  FrameCallback on_frame,
+                                                  const ExposureMeters& meters);
+  void set_pose(const Pose& X_WC) override;
+  Pose pose() const override;
+  void refresh() override;
+  int64_t dropped() const override { return thread_.dropped(); }
+  Status status() const override { return thread_.status(); }
+  /// Waits until the simulation has stopped and every frame was delivered.
+  void drain() { thread_.drain(); }
+
+ private:
+  LiveCamera(Simulator& simulator, SharedRenderers& renderers, const CameraRequest& request,
+             uint64_t seed, FrameCallback on_frame, const ExposureMeters& meters);
+  Status follow(const std::shared_ptr<const CompiledWorld>& world);
+  SnapshotWindow next_window();
+  Status take(const SnapshotWindow& window);
+  Status capture(const SnapshotWindow& window);
+
+  Simulator& simulator_;
+  SharedRenderers& renderers_;
+  const CameraRequest request_;
+  const uint64_t seed_;
+  FrameCallback on_frame_;
+  const ExposureMeters& meters_;
+  std::shared_ptr<SharedRenderer> shared_;  // renderer of the World whose Snapshots come
+  std::unique_ptr<CameraSensor> sensor_;
+  std::optional<EventLead> lead_;  // lead of a required stream with events, until its thread ends
+  SensorTiming timing_;
+  std::shared_ptr<ExposureMeter> meter_;  // null: the exposure is the camera's own
+  std::unique_ptr<PoseSolver> solver_;
+  std::shared_ptr<SnapshotQueue> queue_;
+  std::vector<PoseFrame> keys_;  ///< poses of the window that is exposed
+  PoseFrame previous_;           ///< the first of the window before
+  bool has_previous_ = false;
+  bool previous_is_still_ = false;  ///< it was an instant by itself, not a window
+  mutable std::mutex mutex_;        // guards sensor_ against set_pose() and pose()
+  std::atomic<bool> refresh_wanted_{false};
+  StreamThread thread_;  // last: it uses the others
+};
+
+}  // namespace gloam

@@ -1,0 +1,27 @@
+#pragma once
+// Snapshots of a running simulation for whoever asks.
+
+#include <memory>
+
+#include "gloam/snapshot_stream.h"
+#include "runtime/streams/stream_thread.h"
+#include "sim/loop/simulator.h"
+
+namespace gloam {
+
+class LiveSnapshots final : public SnapshotStream {
+ public:
+  static Result<std::unique_ptr<LiveSnapshots>> open(Simulator& simulator,
+                                                     const SnapshotRequest& request,
+                                                     SnapshotCallback on_snapshot);
+  int64_t dropped() const override { return thread_.dropped(); }
+  Status status() const override { return thread_.status(); }
+
+ private:
+  explicit LiveSnapshots(SnapshotCallback on_snapshot) : on_snapshot_(std::move(on_snapshot)) {}
+
+  SnapshotCallback on_snapshot_;
+  StreamThread thread_;  // last: it uses the other
+};
+
+}  // namespace gloam

@@ -1,0 +1,60 @@
+#include "runtime/streams/stream_thread.h"
+
+#include <fmt/format.h>
+
+#include <new>
+#include <utility>
+
+#include "base/log.h"
+
+namespace gloam {
+
+void StreamThread::start(std::shared_ptr<SnapshotQueue> queue, StreamJob job) {
+  queue_ = std::move(queue);
+  job_ = std::move(job);
+  if (!job_.next) job_.next = [this] { return queue_->next_window(); };
+  thread_ = std::thread([this] { run(); });
+}
+
+void StreamThread::run() {
+  if (const Status status = take_all(); !status.ok()) end(status.error());
+  if (job_.finish) job_.finish();
+}
+
+Status StreamThread::take_all() {
+  try {
+    while (const SnapshotWindow window = job_.next()) GLOAM_TRY_STATUS(job_.take(window));
+  } catch (const std::bad_alloc&) {
+    return Error{
+        ErrorKind::kPartial, fmt::format("out of memory for {}", job_.what), {}, job_.memory_hint};
+  }
+  return {};
+}
+
+void StreamThread::end(Error why) {
+  // Whoever has asked to be told is told; a required stream's owner reads its status.
+  if (job_.on_end) {
+    job_.on_end(why);
+  } else if (!queue_->options().required) {
+    log_error("{} stopped: {}", job_.what, why.to_string());
+  }
+  const std::lock_guard lock(mutex_);
+  status_ = std::move(why);
+  queue_->close();  // the simulation must not wait for it
+}
+
+void StreamThread::close() {
+  if (queue_ != nullptr) queue_->close();
+  drain();
+}
+
+void StreamThread::drain() {
+  if (thread_.joinable()) thread_.join();
+}
+
+Status StreamThread::status() const {
+  const std::lock_guard lock(mutex_);
+  return status_;
+}
+
+}  // namespace gloam

@@ -1,0 +1,245 @@
+#include "runtime/streams/topic_feed.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "base/log.h"
+
+namespace gloam {
+namespace {
+
+constexpr size_t kMostWaiting = 1024;  // steps of which samples are not complete
+
+}  // namespace
+
+Result<std::unique_ptr<TopicFeed>> TopicFeed::open(Simulation& simulation, TopicTables& tables,
+                                                   const TopicRequest& request,
+                                                   TopicCallback on_message) {
+  std::unique_ptr<TopicFeed> feed(new TopicFeed(tables, request, std::move(on_message)));
+  GLOAM_TRY(feed->table_, tables.of(simulation.world().compiled()));
+  GLOAM_TRY_STATUS(feed->open_all(simulation));
+  return feed;
+}
+
+Status TopicFeed::open_all(Simulation& simulation) {
+  std::vector<const Topic*> wanted;
+  for (const std::string& pattern : request_.topics) {
+    GLOAM_TRY(const auto found, find_topics(*table_, pattern));
+    for (const Topic* topic : found) {
+      const bool is_named = topic->info.name == pattern;
+      if (topic->info.is_input && is_named)
+        return Error{ErrorKind::kUsage, fmt::format("topic '{}' is heard, not said", pattern)};
+      if (!topic->info.is_input && std::ranges::count(wanted, topic) == 0) wanted.push_back(topic);
+    }
+  }
+  const Rational step_rate = simulation.step_rate(), timestep = {step_rate.den, step_rate.num};
+  std::map<std::string, Outlets> cameras, lidars;
+  Outlets sensors, instants, latched;
+  for (const Topic* topic : wanted) {
+    Outlet outlet{topic};
+    if (topic->info.rate.num > 0)
+      outlet.schedule = StepSchedule::at_most(topic->info.rate, timestep);
+    if (std::holds_alternative<FrameEncoder>(topic->code))
+      cameras[topic->streams[0]].push_back(std::move(outlet));
+    else if (std::holds_alternative<ScanEncoder>(topic->code))
+      lidars[topic->streams[0]].push_back(std::move(outlet));
+    else if (std::holds_alternative<SampleEncoder>(topic->code))
+      sensors.push_back(std::move(outlet));
+    else if (std::holds_alternative<InstantEncoder>(topic->code))
+      instants.push_back(std::move(outlet));
+    else
+      latched.push_back(std::move(outlet));
+  }
+  GLOAM_TRY_STATUS(send_latched(simulation, std::move(latched)));
+  for (auto& [camera, outlets] : cameras)
+    GLOAM_TRY_STATUS(open_camera(simulation, camera, std::move(outlets)));
+  for (auto& [lidar, outlets] : lidars)
+    GLOAM_TRY_STATUS(open_lidar(simulation, lidar, std::move(outlets)));
+  GLOAM_TRY_STATUS(open_sensors(simulation, std::move(sensors)));
+  return open_snapshots(simulation, std::move(instants));
+}
+
+// After a recompile: the rows of the new World's table; what is gone is silent.
+Status TopicFeed::follow(const std::shared_ptr<const CompiledWorld>& world, Outlets* outlets) {
+  GLOAM_TRY(const auto table, tables_.of(world));
+  Outlets next;
+  for (Outlet& outlet : *outlets) {
+    const auto same = std::ranges::find_if(*table, [&outlet](const Topic& topic) {
+      return topic.info.name == outlet.topic->info.name;
+    });
+    if (same == table->end()) continue;
+    outlet.topic = &*same;
+    next.push_back(std::move(outlet));
+  }
+  *outlets = std::move(next);
+  table_of_snapshots_ = table;
+  return {};
+}
+
+void TopicFeed::send(Outlet* outlet, const Status& encoded, TopicMessage message) {
+  if (!encoded.ok()) {
+    const std::lock_guard lock(mutex_);
+    if (fault_.ok()) {
+      log_warning("topic '{}': {}", outlet->topic->info.name, encoded.error().to_string());
+      fault_ = encoded;
+    }
+    return;
+  }
+  message.data = outlet->bytes;
+  on_message_(message);
+}
+
+Status TopicFeed::send_latched(Simulation& simulation, Outlets outlets) {
+  const Snapshot now = simulation.latest();
+  for (Outlet& outlet : outlets) {
+    const TopicInfo& info = outlet.topic->info;
+    const Status encoded =
+        std::get<LatchedEncoder>(outlet.topic->code)(info, now.time(), &outlet.bytes);
+    GLOAM_TRY_STATUS(encoded);
+    send(&outlet, encoded, {info, now.data().run, now.step(), now.time(), now.time(), {}});
+  }
+  return {};
+}
+
+Status TopicFeed::open_camera(Simulation& simulation, const std::string& camera, Outlets outlets) {
+  CameraRequest request{.camera = camera, .required = request_.required, .on_end = request_.on_end};
+  request.render = simulation.world().scene().render;
+  request.outputs.clear();
+  for (const Outlet& outlet : outlets) {
+    if (std::ranges::count(request.outputs, outlet.topic->channel) == 0)
+      request.outputs.push_back(outlet.topic->channel);
+    // All topics of a camera have its pictures: the fastest decides.
+    if (outlet.topic->info.rate.value() > request.rate.value())
+      request.rate = outlet.topic->info.rate;
+  }
+  auto shared = std::make_shared<Outlets>(std::move(outlets));
+  GLOAM_TRY(auto stream, simulation.open_camera(
+                             request, [this, shared](std::shared_ptr<const CameraFrame> frame) {
+                               for (Outlet& outlet : *shared) {
+                                 const TopicInfo& info = outlet.topic->info;
+                                 const auto& encode = std::get<FrameEncoder>(outlet.topic->code);
+                                 send(&outlet, encode(info, *frame, &outlet.bytes),
+                                      {info, 0, frame->step, frame->time, frame->delivery, {}});
+                               }
+                             }));
+  streams_.push_back(std::move(stream));
+  return {};
+}
+
+Status TopicFeed::open_lidar(Simulation& simulation, const std::string& lidar, Outlets outlets) {
+  auto shared = std::make_shared<Outlets>(std::move(outlets));
+  LidarRequest request{lidar, request_.required, request_.on_end};
+  GLOAM_TRY(auto stream,
+            simulation.open_lidar(request, [this, shared](std::shared_ptr<const LidarScan> scan) {
+              for (Outlet& outlet : *shared) {
+                const TopicInfo& info = outlet.topic->info;
+                const auto& encode = std::get<ScanEncoder>(outlet.topic->code);
+                send(&outlet, encode(info, *scan, &outlet.bytes),
+                     {info, 0, scan->step, scan->start, scan->end, {}});
+              }
+            }));
+  streams_.push_back(std::move(stream));
+  return {};
+}
+
+// A stream for each sensor of a topic; the message is made when all have given a sample of one
+// step.
+Status TopicFeed::open_sensors(Simulation& simulation, Outlets outlets) {
+  for (Outlet& outlet : outlets) {
+    const size_t parts = outlet.topic->streams.size();
+    gatherings_.push_back(std::make_unique<Gathering>());
+    Gathering* const gathering = gatherings_.back().get();
+    gathering->outlet = std::move(outlet);
+    for (size_t part = 0; part < parts; ++part) {
+      const SensorRequest request{gathering->outlet.topic->streams[part], request_.required,
+                                  request_.on_end};
+      GLOAM_TRY(auto stream, simulation.open_sensor(
+                                 request, [this, gathering, part](const SensorMessage& message) {
+                                   static_cast<void>(take_sample(gathering, part, message));
+                                 }));
+      streams_.push_back(std::move(stream));
+    }
+  }
+  return {};
+}
+
+Status TopicFeed::take_sample(Gathering* gathering, size_t part, const SensorMessage& message) {
+  Outlet& outlet = gathering->outlet;
+  const StepSchedule& schedule = outlet.schedule;
+  if (schedule.step_of(schedule.first_at_or_after(message.step)) != message.step) return {};
+  const std::lock_guard lock(sensors_mutex_);
+  auto& waiting = gathering->by_step;
+  // Time has begun anew, or a sensor drops its samples: what cannot be completed goes.
+  if (!waiting.empty() && message.step < waiting.begin()->first && part == 0) waiting.clear();
+  if (waiting.size() > kMostWaiting) waiting.erase(waiting.begin());
+  Gathering::Samples& samples = waiting[message.step];
+  samples.messages.resize(outlet.topic->streams.size());
+  samples.messages[part] = message;
+  if (++samples.count < samples.messages.size()) return {};
+  const TopicInfo& info = outlet.topic->info;
+  const auto& encode = std::get<SampleEncoder>(outlet.topic->code);
+  send(&outlet, encode(info, samples.messages, &outlet.bytes),
+       {info, 0, message.step, message.time, message.delivery, {}});
+  waiting.erase(message.step);
+  return {};
+}
+
+// One stream at the rates' common steps: every step at which one of the topics is due.
+Status TopicFeed::open_snapshots(Simulation& simulation, Outlets outlets) {
+  if (outlets.empty()) return {};
+  struct Reader {
+    Outlets outlets;
+    std::unique_ptr<PoseSolver> solver;
+    std::shared_ptr<const CompiledWorld> world;
+  };
+  auto reader = std::make_shared<Reader>();
+  SnapshotRequest request{.required = request_.required, .on_end = request_.on_end};
+  request.rate = outlets[0].topic->info.rate;
+  for (const Outlet& outlet : outlets)
+    if (!(outlet.topic->info.rate == request.rate)) request.rate = {0, 1};
+  reader->outlets = std::move(outlets);
+  reader->world = simulation.world().compiled();
+  const auto take = [this, reader](const Snapshot& now) {
+    const auto is_due = [&now](const Outlet& outlet) {
+      return outlet.schedule.step_of(outlet.schedule.first_at_or_after(now.step())) == now.step();
+    };
+    if (std::ranges::none_of(reader->outlets, is_due)) return;
+    const auto& world = now.data().world;
+    if (reader->world != world) {
+      if (!follow(world, &reader->outlets).ok()) return;
+      reader->world = world;
+    }
+    if (reader->solver == nullptr || reader->solver->world() != world) {
+      auto solver = PoseSolver::create(world);
+      if (!solver.ok()) return;
+      reader->solver = std::move(*solver);
+    }
+    TopicInstant instant(now, *reader->solver);
+    for (Outlet& outlet : reader->outlets) {
+      if (!is_due(outlet)) continue;
+      const TopicInfo& info = outlet.topic->info;
+      const auto& encode = std::get<InstantEncoder>(outlet.topic->code);
+      send(&outlet, encode(info, instant, &outlet.bytes),
+           {info, now.data().run, now.step(), now.time(), now.time(), {}});
+    }
+  };
+  GLOAM_TRY(auto stream, simulation.open_snapshots(request, take));
+  streams_.push_back(std::move(stream));
+  return {};
+}
+
+int64_t TopicFeed::dropped() const {
+  int64_t dropped = 0;
+  for (const auto& stream : streams_) dropped += stream->dropped();
+  return dropped;
+}
+
+Status TopicFeed::status() const {
+  for (const auto& stream : streams_) GLOAM_TRY_STATUS(stream->status());
+  const std::lock_guard lock(mutex_);
+  return fault_;
+}
+
+}  // namespace gloam

@@ -1,0 +1,68 @@
+#pragma once
+// TopicFeed: the topics that a reader asked for, out of the streams of a simulation. One stream of
+// a camera serves all topics of it; what nobody asked for is neither rendered nor encoded.
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "gloam/simulation.h"
+#include "runtime/streams/topic_tables.h"
+
+namespace gloam {
+
+class TopicFeed final : public TopicStream {
+ public:
+  /// Errors: no such topic, an input, those of the streams.
+  static Result<std::unique_ptr<TopicFeed>> open(Simulation& simulation, TopicTables& tables,
+                                                 const TopicRequest& request,
+                                                 TopicCallback on_message);
+  int64_t dropped() const override;
+  Status status() const override;
+
+ private:
+  TopicFeed(TopicTables& tables, const TopicRequest& request, TopicCallback on_message)
+      : tables_(tables), request_(request), on_message_(std::move(on_message)) {}
+
+  /// A topic and the room for its messages.
+  struct Outlet {
+    const Topic* topic;
+    StepSchedule schedule = {};
+    MessageBytes bytes = {};
+  };
+  using Outlets = std::vector<Outlet>;
+  /// Samples of the sensors of one topic by step, until all of a step are there: each sensor's
+  /// stream has a thread of its own.
+  struct Gathering {
+    struct Samples {
+      std::vector<SensorMessage> messages;
+      size_t count = 0;
+    };
+    Outlet outlet;
+    std::map<int64_t, Samples> by_step;
+  };
+
+  Status open_all(Simulation& simulation);
+  Status open_camera(Simulation& simulation, const std::string& camera, Outlets outlets);
+  Status open_lidar(Simulation& simulation, const std::string& lidar, Outlets outlets);
+  Status open_sensors(Simulation& simulation, Outlets outlets);
+  Status open_snapshots(Simulation& simulation, Outlets outlets);
+  Status send_latched(Simulation& simulation, Outlets outlets);
+  Status take_sample(Gathering* gathering, size_t part, const SensorMessage& message);
+  Status follow(const std::shared_ptr<const CompiledWorld>& world, Outlets* outlets);
+  void send(Outlet* outlet, const Status& encoded, TopicMessage message);
+
+  TopicTables& tables_;
+  std::shared_ptr<const TopicTable> table_;               // of the World at the opening
+  std::shared_ptr<const TopicTable> table_of_snapshots_;  // after a recompile
+  const TopicRequest request_;
+  TopicCallback on_message_;
+  std::mutex sensors_mutex_;  // guards the gatherings
+  std::vector<std::unique_ptr<Gathering>> gatherings_;
+  mutable std::mutex mutex_;  // guards the first fault
+  Status fault_;
+  std::vector<std::unique_ptr<Stream>> streams_;  // last: they use the others
+};
+
+}  // namespace gloam

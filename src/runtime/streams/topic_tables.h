@@ -1,0 +1,30 @@
+#pragma once
+// TopicTables: the table of topics of the World that runs, made once for each World.
+
+#include <memory>
+#include <mutex>
+
+#include "topics/topic_table.h"
+
+namespace gloam {
+
+/// Any thread.
+class TopicTables {
+ public:
+  Result<std::shared_ptr<const TopicTable>> of(const std::shared_ptr<const CompiledWorld>& world) {
+    const std::lock_guard lock(mutex_);
+    if (world_ != world) {
+      GLOAM_TRY(TopicTable table, make_topic_table(world));
+      table_ = std::make_shared<const TopicTable>(std::move(table));
+      world_ = world;
+    }
+    return table_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::shared_ptr<const CompiledWorld> world_;
+  std::shared_ptr<const TopicTable> table_;
+};
+
+}  // namespace gloam

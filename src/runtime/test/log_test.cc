@@ -1,0 +1,223 @@
+// Logs: what is written is read back, stepped again to the bit, and found out where it is not.
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+
+#include "gloam/log.h"
+#include "gloam/run.h"
+#include "runtime/log/command_text.h"
+#include "runtime/log/log_recorder.h"
+#include "runtime/log/run_text.h"
+#include "scene/test/temp_folder.h"
+
+namespace gloam {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+constexpr const char* kSwing = R"(<mujoco model="swing"><option timestep="0.002"/>
+<worldbody><light pos="0 0 3"/><geom type="plane" size="3 3 .1"/>
+<body name="box" pos="0 0 .5"><freejoint/><geom type="box" size=".1 .1 .1" mass="1"/></body>
+<body name="upper" pos="1 0 1"><joint name="shoulder" axis="0 1 0" damping=".1"/>
+  <geom type="capsule" size=".05" fromto="0 0 0 .4 0 0"/></body>
+<body name="hand" mocap="true" pos="-1 0 1"><geom size=".05" contype="0" conaffinity="0"/></body>
+</worldbody><actuator><motor name="s" joint="shoulder"/></actuator></mujoco>)";
+
+constexpr const char* kLogScene = "[[robot]]\nname = \"swing\"\nfile = \"swing.xml\"\n";
+
+class Logs : public testing::Test {
+ protected:
+  Logs() {
+    folder_.write("swing.xml", kSwing);
+    folder_.write("s.toml", kLogScene);
+    file_ = folder_.path() / "run.mcap";
+  }
+  World world() { return *World::compile(*load_scene(folder_.path() / "s.toml")); }
+  static std::unique_ptr<LiveSimulation> simulation(const World& world) {
+    return *LiveSimulation::create(world, {.seed = 7, .pace = Pace::kLockstep});
+  }
+  void disturb(LiveSimulation& simulation) {
+    const World world = simulation.world();
+    const RobotInfo robot = world.robots()[0];
+    const Body box = *world.find_body("swing/box");
+    ASSERT_TRUE(simulation.post({.what = SetControls{robot.robot, {0.7}}}).ok());
+    ASSERT_TRUE(simulation.post({.what = SetWrench{box, {0.1, 1.0 / 3, 2}, {0, 0, 0.05}}}).ok());
+    ASSERT_TRUE(simulation.post({.what = AddVelocity{box, {0.2, 0, 0.1}}}).ok());
+    ASSERT_TRUE(simulation.post({.what = DragBody{box, {0, 0, .1}, {.3, 0, 1}}}).ok());
+    ASSERT_TRUE(simulation.post({.what = SetLiveField{LiveFieldId::kGravity, 2, {-3.7f}}}).ok());
+    ASSERT_TRUE(simulation
+                    .post({.what = SetMocapPose{*world.find_body("swing/hand"),
+                                                {{0, 0, .1}, {1, 0, 0, 0}}}})
+                    .ok());
+  }
+  LogVerification verify() { return *verify_log(file_, "", {}); }
+
+  TempFolder folder_;
+  fs::path file_;
+};
+
+TEST_F(Logs, AreSteppedAgainToTheBit) {
+  auto live = simulation(world());
+  auto log = *LogRecorder::start(*live, {.file = file_});
+  ASSERT_TRUE(live->step(100).ok());
+  disturb(*live);
+  ASSERT_TRUE(live->step(100).ok());
+  ASSERT_TRUE(live->recompile(world()).ok());  // in the middle of it
+  disturb(*live);
+  ASSERT_TRUE(live->step(57).ok());
+  ASSERT_TRUE(live->post({.what = ResetSim{}}).ok());
+  disturb(*live);
+  ASSERT_TRUE(live->step(33).ok());
+  live->simulator().stop();
+  ASSERT_TRUE(log->finish(live->latest()).ok());
+  const LogVerification found = verify();
+  EXPECT_TRUE(found.is_equal()) << found.where;
+  EXPECT_TRUE(found.notes.empty());
+  EXPECT_EQ(found.runs, 2);
+  EXPECT_EQ(found.steps, 255 + 33);  // up to the last state before the reset
+  EXPECT_GT(found.states, 45);
+  const LogInfo info = *describe_log(file_);
+  EXPECT_TRUE(info.has_run);
+  EXPECT_EQ(info.scene, "s");
+  EXPECT_EQ(info.profile, "ros2");
+}
+
+// A step hook's inputs are no Commands: the run comes out another, and the log says where.
+TEST_F(Logs, WhatWasNoCommandIsFound) {
+  auto live = simulation(world());
+  live->set_step_hook([](const mjModel_*, mjData_* d) {
+    if (d->time > 0.1999 && d->time < 0.2001) d->qvel[6] += 1e-9;
+  });
+  auto log = *LogRecorder::start(*live, {.file = file_});
+  ASSERT_TRUE(live->step(200).ok());
+  live->simulator().stop();
+  ASSERT_TRUE(log->finish(live->latest()).ok());
+  const LogVerification found = verify();
+  EXPECT_FALSE(found.is_equal());
+  EXPECT_EQ(found.equal_step, 100);
+  EXPECT_EQ(found.step, 105);
+  EXPECT_EQ(found.differing, 100);
+  EXPECT_THAT(found.where, HasSubstr("swing/shoulder"));
+}
+
+TEST_F(Logs, RunFromACheckpointIsToldOf) {
+  auto live = simulation(world());
+  auto log = *LogRecorder::start(*live, {.file = file_});
+  ASSERT_TRUE(live->step(50).ok());
+  const Checkpoint checkpoint = *live->checkpoint();
+  ASSERT_TRUE(live->step(50).ok());
+  ASSERT_TRUE(live->restore(checkpoint).ok());
+  ASSERT_TRUE(live->step(50).ok());
+  live->simulator().stop();
+  ASSERT_TRUE(log->finish(live->latest()).ok());
+  const LogVerification found = verify();
+  EXPECT_TRUE(found.is_equal());
+  ASSERT_EQ(found.notes.size(), 1u);
+  EXPECT_THAT(found.notes[0], HasSubstr("checkpoint"));
+}
+
+TEST_F(Logs, ChangedModelIsNamed) {
+  RunRequest request;
+  request.log.file = file_;
+  request.duration = 0.2;
+  ASSERT_TRUE(run_and_record(world(), request, {}).ok());
+  EXPECT_TRUE(verify().is_equal());
+  std::string other = kSwing;
+  other.replace(other.find("mass=\"1\""), 8, "mass=\"2\"");
+  folder_.write("swing.xml", other);
+  const auto found = verify_log(file_, "", {});
+  ASSERT_FALSE(found.ok());
+  EXPECT_THAT(found.error().to_string(), HasSubstr("swing.xml"));
+  fs::remove(folder_.path() / "swing.xml");
+  EXPECT_FALSE(verify_log(file_, "", {}).ok());
+  // Elsewhere it is as it was.
+  fs::create_directory(folder_.path() / "moved");
+  std::ofstream(folder_.path() / "moved" / "swing.xml") << kSwing;
+  EXPECT_TRUE(verify_log(file_, folder_.path() / "moved", {}).ok());
+}
+
+TEST_F(Logs, ExistingFileAndUnknownTopicAreRefused) {
+  auto live = simulation(world());
+  EXPECT_FALSE(LogRecorder::start(*live, {.file = file_, .topics = {"/nothing"}}).ok());
+  fs::remove(file_);
+  std::ofstream(file_) << "mine";
+  EXPECT_FALSE(LogRecorder::start(*live, {.file = file_}).ok());
+  EXPECT_FALSE(describe_log(file_).ok());
+  EXPECT_FALSE(verify_log(file_, "", {}).ok());
+  EXPECT_FALSE(LogRecorder::start(*live, {.file = folder_.path() / "no" / "such.mcap"}).ok());
+}
+
+TEST_F(Logs, CutLogIsRecoveredAndVerified) {
+  RunRequest request;
+  request.log.file = file_;
+  request.duration = 0.5;
+  ASSERT_TRUE(run_and_record(world(), request, {}).ok());
+  fs::resize_file(file_, fs::file_size(file_) * 6 / 10);
+  const fs::path whole = folder_.path() / "whole.mcap";
+  const auto recovery = recover_log(file_, whole);
+  ASSERT_TRUE(recovery.ok()) << recovery.error().to_string();
+  EXPECT_FALSE(recovery->is_whole);
+  const auto found = verify_log(whole, "", {});
+  ASSERT_TRUE(found.ok()) << found.error().to_string();
+  EXPECT_TRUE(found->is_equal());
+}
+
+TEST_F(Logs, CommandsAreReadBackToTheBit) {
+  const World world = this->world();
+  const CompiledWorld& compiled = *world.compiled();
+  const uint64_t serial = compiled.serial;
+  const std::vector<decltype(Command::what)> all = {
+      SetControl{{0, serial}, 0.1 + 0.2},
+      SetVelocityGoal{{0, serial}, 1e-300, -0.0, 1.0 / 3},
+      SetMocapPose{{3, serial}, {{1, 2, 3}, {0.5, 0.5, -0.5, 0.5}}},
+      SetWrench{{1, serial}, {1, 2, 3}, {4, 5, 6}},
+      AddVelocity{{1, serial}, {1, 2, 3}},
+      DragBody{{1, serial}, {1, 2, 3}, {4, 5, 6}, false},
+      ResetSim{},
+      SetLiveField{LiveFieldId::kBodyMass, 1, {0.1f, 3.3f}},
+      SetJointState{{1, serial}, {0.7}, {}},
+      SetControls{{0, serial}, {0.25}},
+      SetJointGoal{{1, serial}, 0.3}};
+  ASSERT_EQ(all.size(), std::variant_size_v<decltype(Command::what)>);
+  for (const auto& what : all) {
+    const std::string text = command_text({2, {17, what}}, compiled);
+    const auto again = parse_command(text, compiled);
+    ASSERT_TRUE(again.ok()) << text;
+    EXPECT_EQ(again->run, 2);
+    EXPECT_EQ(again->command.step, 17);
+    EXPECT_EQ(command_text(*again, compiled), text);
+  }
+  for (const char* bad : {"", "{}", "[]", R"({"run":0,"step":0,"command":"fly"})",
+                          R"({"run":0,"step":0,"command":"set_control","actuator":"x","value":1})",
+                          R"({"run":0,"step":0,"command":"set_control","actuator":0})"})
+    EXPECT_FALSE(parse_command(bad, compiled).ok()) << bad;
+  for (const char* bad : {"", "{}", "[1]", R"({"run":0})"}) EXPECT_FALSE(parse_run_text(bad).ok());
+}
+
+class ExampleLog : public testing::TestWithParam<const char*> {};
+
+TEST_P(ExampleLog, ZeroStepsDiffer) {
+  const TempFolder folder;
+  Scene scene =
+      *load_scene(fs::path(GLOAM_SOURCE_DIR) / "examples" / (std::string(GetParam()) + ".toml"));
+  RunRequest request;
+  request.log.file = folder.path() / "run.mcap";
+  request.log.topics = {"/clock", "/tf"};
+  request.duration = 0.4;
+  const auto report = run_and_record(*World::compile(scene), request, {});
+  ASSERT_TRUE(report.ok() && report->status.ok());
+  const auto found = verify_log(request.log.file, "", {});
+  ASSERT_TRUE(found.ok()) << found.error().to_string();
+  EXPECT_TRUE(found->is_equal()) << found->where;
+  EXPECT_EQ(found->steps, report->steps);
+}
+
+INSTANTIATE_TEST_SUITE_P(Worlds, ExampleLog,
+                         testing::Values("demo", "house_fire", "sand", "pool", "crowd", "rover",
+                                         "randomized_house"),
+                         [](const auto& info) { return std::string(info.param); });
+
+}  // namespace
+}  // namespace gloam

@@ -1,0 +1,378 @@
+// The table of topics of a scene, its messages at known instants, streams of them, and inputs as
+// Commands.
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+
+#include "gloam/simulation.h"
+#include "scene/test/temp_folder.h"
+#include "topics/messages/nav_msgs.h"
+#include "topics/messages/sensor_images.h"
+#include "topics/messages/tf2_msgs.h"
+#include "topics/messages/trajectory_msgs.h"
+#include "topics/model_frames.h"
+#include "topics/ros_values.h"
+#include "topics/topic_table.h"
+
+namespace gloam {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kCart = R"(<mujoco model="cart"><option timestep="0.002"/>
+<worldbody><geom name="ground" type="plane" size="5 5 .1"/><light pos="0 0 3"/>
+<body name="base" pos="0 0 0.1"><freejoint/>
+  <geom type="box" size=".2 .1 .1" mass="1"/><site name="imu" pos="0 0 .1"/>
+  <camera name="eye" pos=".25 0 0" xyaxes="0 -1 0 0 0 1"/>
+  <body name="arm" pos="0 0 .2"><joint name="lift" axis="0 1 0" range="-1 1"/>
+    <geom type="capsule" size=".02" fromto="0 0 0 .2 0 0" mass=".01"/>
+    <body name="tip" pos=".2 0 0" quat="0 1 0 0"><geom size=".02" mass=".01"/></body></body></body>
+</worldbody>
+<actuator><position name="lift" joint="lift" kp="5"/></actuator>
+<sensor><gyro name="gyro" site="imu"/><accelerometer name="accel" site="imu"/>
+  <rangefinder name="range" site="imu" cutoff="10"/><jointpos name="angle" joint="lift"/></sensor>
+</mujoco>)";
+
+constexpr const char* kTopicScene = R"(
+[[robot]]
+name = "cart"
+file = "cart.xml"
+[robot.controller]
+type = "joint_position"
+[[lidar]]
+name = "roof"
+preset = "VLP-16"
+body = "cart/base"
+position = [0, 0, 0.3]
+)";
+
+class Topics : public testing::Test {
+ protected:
+  Topics() { folder_.write("cart.xml", kCart); }
+
+  World world_of(const std::string& more = "") {
+    return *World::compile(*parse_scene(kTopicScene + more, folder_.path()));
+  }
+  std::vector<std::string> names(const World& world) {
+    std::vector<std::string> names;
+    const std::vector<TopicInfo> topics = *list_topics(world);
+    for (const TopicInfo& topic : topics) names.push_back(topic.name);
+    return names;
+  }
+  /// One message of a topic of an instant.
+  template <class T>
+  T message(const char* name, TopicInstant& instant) {
+    const Topic& topic = *find_topics(table_, name)->front();
+    MessageBytes bytes;
+    EXPECT_TRUE(std::get<InstantEncoder>(topic.code)(topic.info, instant, &bytes).ok());
+    return *decode<T>(bytes);
+  }
+
+  TempFolder folder_;
+  TopicTable table_;
+};
+
+TEST_F(Topics, FollowTheConventionsOfRos) {
+  const World world = world_of();
+  const std::vector<TopicInfo> topics = *list_topics(world);
+  const auto expect = [&](const char* name, const char* type, const char* frame) {
+    const auto found = std::ranges::find(topics, name, &TopicInfo::name);
+    ASSERT_NE(found, topics.end()) << name;
+    EXPECT_EQ(found->type, type) << name;
+    EXPECT_EQ(found->frame_id, frame) << name;
+    EXPECT_TRUE(message_info(found->type).ok()) << name;
+  };
+  expect("/clock", "rosgraph_msgs/msg/Clock", "");
+  expect("/tf", "tf2_msgs/msg/TFMessage", "world");
+  expect("/tf_static", "tf2_msgs/msg/TFMessage", "world");
+  expect("/contacts", "gloam_msgs/msg/Contacts", "world");
+  expect("/cart/joint_states", "sensor_msgs/msg/JointState", "cart/base");
+  expect("/cart/odom", "nav_msgs/msg/Odometry", "world");
+  expect("/cart/imu/imu", "sensor_msgs/msg/Imu", "cart/imu");
+  expect("/cart/range", "sensor_msgs/msg/Range", "cart/imu");
+  expect("/cart/angle", "std_msgs/msg/Float64MultiArray", "cart/arm");
+  expect("/cart/eye/image_raw", "sensor_msgs/msg/Image", "cart/eye_optical_frame");
+  expect("/cart/eye/image_raw/compressed", "sensor_msgs/msg/CompressedImage",
+         "cart/eye_optical_frame");
+  expect("/cart/eye/camera_info", "sensor_msgs/msg/CameraInfo", "cart/eye_optical_frame");
+  expect("/roof/points", "sensor_msgs/msg/PointCloud2", "roof");
+  expect("/cart/cmd_vel", "geometry_msgs/msg/Twist", "");
+  expect("/cart/joint_trajectory", "trajectory_msgs/msg/JointTrajectory", "");
+  EXPECT_THAT(names(world), Not(Contains("/cart/gyro")));  // a part of the IMU
+  EXPECT_THAT(names(world), Not(Contains("/cart/eye/thermal/image_raw")));
+}
+
+TEST_F(Topics, AreChangedByTheScene) {
+  const World world = world_of(R"(
+[[topic]]
+name = "/roof/points"
+rename = "/velodyne_points"
+frame = "velodyne"
+rate = 5
+[[topic]]
+name = "/cart/eye/*"
+off = true
+)");
+  const auto topics = *list_topics(world);
+  const auto points = std::ranges::find(topics, "/velodyne_points", &TopicInfo::name);
+  ASSERT_NE(points, topics.end());
+  EXPECT_EQ(points->frame_id, "velodyne");
+  EXPECT_EQ(points->rate, (Rational{5, 1}));
+  EXPECT_THAT(names(world), Not(Contains(HasSubstr("/cart/eye"))));
+  const auto wrong = list_topics(world_of("[[topic]]\nname = \"/roof/pionts\"\n"));
+  ASSERT_FALSE(wrong.ok());
+  EXPECT_THAT(wrong.error().to_string(), HasSubstr("/roof/points"));
+  EXPECT_GT(wrong.error().loc.line, 0);
+  EXPECT_FALSE(
+      list_topics(world_of("[[topic]]\nname = \"/roof/points\"\nrename = \"/tf\"\n")).ok());
+}
+
+TEST_F(Topics, NamesOfElementsBecomeNamesThatRosTakes) {
+  EXPECT_EQ(topic_token("go1/front left"), "go1/front_left");
+  EXPECT_EQ(topic_token("3d/4"), "_3d/_4");
+  EXPECT_EQ(topic_token("//a//b/"), "a/b");
+  EXPECT_EQ(topic_token(""), "_");
+  EXPECT_EQ(topic_token("t\xc3\xbcr"), "t__r");
+}
+
+TEST_F(Topics, TimesAreTheNearestNanosecond) {
+  EXPECT_EQ(ros_time(1.25), (builtin_interfaces::Time{1, 250000000}));
+  EXPECT_EQ(ros_time(0.1 + 0.2), (builtin_interfaces::Time{0, 300000000}));
+  EXPECT_EQ(ros_time(0.9999999999), (builtin_interfaces::Time{1, 0}));
+  EXPECT_EQ(ros_time(-1), (builtin_interfaces::Time{0, 0}));
+}
+
+// The frames of a message form the tree of bodies, and lead to the poses that physics has.
+TEST_F(Topics, FramesLeadToThePosesOfBodies) {
+  const World world = world_of();
+  table_ = *make_topic_table(world.compiled());
+  auto simulation = *Simulation::create(world, {.pace = Pace::kLockstep});
+  ASSERT_TRUE(simulation->step(100).ok());
+  const Snapshot now = simulation->latest();
+  auto solver = *PoseSolver::create(world.compiled());
+  TopicInstant instant(now, *solver);
+  const auto dynamic = message<tf2_msgs::TFMessage>("/tf", instant);
+  const Topic& fixed = *find_topics(table_, "/tf_static")->front();
+  MessageBytes bytes;
+  ASSERT_TRUE(std::get<LatchedEncoder>(fixed.code)(fixed.info, 0, &bytes).ok());
+  const auto still = *decode<tf2_msgs::TFMessage>(bytes);
+  ASSERT_EQ(dynamic.transforms.size(), 2u);  // the base and its arm
+  std::map<std::string, std::pair<std::string, Pose>> frames;
+  for (const auto* list : {&dynamic, &still}) {
+    for (const auto& t : list->transforms) {
+      const auto& p = t.transform.translation;
+      const auto& q = t.transform.rotation;
+      EXPECT_TRUE(
+          frames
+              .emplace(t.child_frame_id,
+                       std::pair(t.header.frame_id, Pose{{p.x, p.y, p.z}, {q.w, q.x, q.y, q.z}}))
+              .second)
+          << t.child_frame_id;
+    }
+  }
+  const auto pose_in_world = [&](std::string frame) {
+    Pose X = {};
+    for (; frame != "world" && frames.contains(frame); frame = frames[frame].first)
+      X = product(frames[frame].second, X);
+    EXPECT_EQ(frame, "world");
+    return X;
+  };
+  for (const char* body : {"cart/base", "cart/arm", "cart/tip"}) {
+    const Pose X = pose_in_world(body), truth = *simulation->body_pose(*world.find_body(body));
+    EXPECT_NEAR(X.p.x, truth.p.x, 1e-6) << body;
+    EXPECT_NEAR(X.p.y, truth.p.y, 1e-6) << body;
+    EXPECT_NEAR(X.p.z, truth.p.z, 1e-6) << body;
+    const double cosine =
+        X.q.w * truth.q.w + X.q.x * truth.q.x + X.q.y * truth.q.y + X.q.z * truth.q.z;
+    EXPECT_NEAR(std::abs(cosine), 1, 1e-6) << body;
+  }
+  // The camera looks along +X of the base: its optical frame's Z.
+  const Pose X_BC =
+      product(inverse(pose_in_world("cart/base")), pose_in_world("cart/eye_optical_frame"));
+  EXPECT_NEAR(rotate_back(X_BC.q, {1, 0, 0}).z, 1, 1e-9);
+  pose_in_world("roof");
+  pose_in_world("cart/imu");
+}
+
+TEST_F(Topics, OdometryTurnsIntoTheBodysFrame) {
+  const World world = world_of();
+  table_ = *make_topic_table(world.compiled());
+  auto simulation = *Simulation::create(world, {.pace = Pace::kLockstep});
+  // Turned to +Y, moving along +Y of the world: ahead in its own frame.
+  const double half = std::sqrt(.5);
+  const SetJointState put{{0, 0}, {1, 2, 3, half, 0, 0, half}, {0, 2, 0, 0, 0, 0.5}};
+  ASSERT_TRUE(simulation->post({.what = put}).ok());
+  ASSERT_TRUE(simulation->step(1).ok());
+  const Snapshot now = simulation->latest();
+  auto solver = *PoseSolver::create(world.compiled());
+  TopicInstant instant(now, *solver);
+  const auto odom = message<nav_msgs::Odometry>("/cart/odom", instant);
+  EXPECT_EQ(odom.child_frame_id, "cart/base");
+  EXPECT_NEAR(odom.pose.pose.position.y, 2, 0.01);
+  EXPECT_NEAR(odom.twist.twist.linear.x, 2, 0.05);
+  EXPECT_NEAR(odom.twist.twist.linear.y, 0, 0.05);
+  EXPECT_NEAR(odom.twist.twist.angular.z, 0.5, 0.05);
+  EXPECT_EQ(odom.header.stamp, ros_time(now.time()));
+}
+
+/// What a stream of topics has delivered, by topic.
+struct TopicInbox {
+  std::mutex mutex;
+  std::map<std::string, std::vector<std::vector<uint8_t>>> messages;
+  std::map<std::string, std::vector<int64_t>> steps;
+
+  TopicCallback callback() {
+    return [this](const TopicMessage& message) {
+      const std::lock_guard lock(mutex);
+      messages[message.topic.name].emplace_back(message.data.begin(), message.data.end());
+      steps[message.topic.name].push_back(message.step);
+    };
+  }
+};
+
+TEST_F(Topics, StreamsDeliverMessagesOfAllSensorsWithOneStamp) {
+  const World world = world_of(
+      "[[camera]]\nname = \"wall\"\nposition = [-2, 0, 1]\nlook_at = [0, 0, 0]\n"
+      "rate = 10\nwidth = 32\nheight = 24\n[render]\ntier = \"direct\"\nspp = 1\n");
+  auto simulation = *Simulation::create(world, {.pace = Pace::kLockstep});
+  TopicInbox inbox;
+  {
+    auto stream =
+        *simulation->open_topics({.topics = {"/clock", "/tf*", "/cart/imu/imu", "/cart/range",
+                                             "/cart/joint_states", "/wall/*", "/contacts"},
+                                  .required = true},
+                                 inbox.callback());
+    ASSERT_TRUE(simulation->step(500).ok());
+    ASSERT_TRUE(simulation->step(1).ok());
+    EXPECT_TRUE(stream->status().ok());
+    EXPECT_EQ(stream->dropped(), 0);
+  }
+  EXPECT_EQ(inbox.messages["/tf_static"].size(), 1u);
+  EXPECT_NEAR(static_cast<double>(inbox.messages["/clock"].size()), 101, 1);
+  EXPECT_NEAR(static_cast<double>(inbox.messages["/cart/joint_states"].size()), 51, 1);
+  EXPECT_NEAR(static_cast<double>(inbox.messages["/wall/image_raw"].size()), 11, 1);
+  EXPECT_EQ(inbox.steps["/wall/image_raw"], inbox.steps["/wall/camera_info"]);
+  EXPECT_EQ(inbox.steps["/wall/image_raw"], inbox.steps["/wall/depth/image_rect_raw"]);
+
+  const auto image = *decode<sensor_msgs::Image>(inbox.messages["/wall/image_raw"][5]);
+  const auto info = *decode<sensor_msgs::CameraInfo>(inbox.messages["/wall/camera_info"][5]);
+  EXPECT_EQ(image.header.stamp, info.header.stamp);
+  EXPECT_EQ(image.header.frame_id, "wall_optical_frame");
+  EXPECT_EQ(image.encoding, "rgb8");
+  EXPECT_EQ(image.data.size(), 32u * 24 * 3);
+  EXPECT_EQ(info.width, 32u);
+  // A box at rest on the ground: the accelerometer shows +g upwards, the gyro nothing.
+  const auto imu = *decode<sensor_msgs::Imu>(inbox.messages["/cart/imu/imu"].back());
+  EXPECT_NEAR(imu.linear_acceleration.z, 9.81, 0.2);
+  EXPECT_NEAR(imu.angular_velocity.x, 0, 0.05);
+  EXPECT_EQ(imu.orientation_covariance[0], -1);
+  EXPECT_NEAR(static_cast<double>(inbox.messages["/cart/imu/imu"].size()), 100, 2);
+}
+
+TEST_F(Topics, NobodyListensNothingIsMade) {
+  const World world = world_of();
+  auto simulation = *Simulation::create(world, {.pace = Pace::kLockstep});
+  TopicInbox inbox;
+  auto stream =
+      *simulation->open_topics({.topics = {"/clock"}, .required = true}, inbox.callback());
+  ASSERT_TRUE(simulation->step(50).ok());
+  stream.reset();
+  EXPECT_EQ(inbox.messages.size(), 1u);
+  EXPECT_FALSE(simulation->open_topics({.topics = {"/nothing"}}, inbox.callback()).ok());
+  EXPECT_FALSE(simulation->open_topics({.topics = {"/cart/cmd_vel"}}, inbox.callback()).ok());
+}
+
+TEST_F(Topics, GoOnThroughARecompile) {
+  const World world = world_of(), other = world_of("[[push]]\nbody=\"cart/base\"\ntime=9\n");
+  auto simulation = *Simulation::create(world, {.pace = Pace::kLockstep});
+  TopicInbox inbox;
+  auto stream = *simulation->open_topics(
+      {.topics = {"/tf", "/cart/joint_states"}, .required = true}, inbox.callback());
+  ASSERT_TRUE(simulation->step(100).ok());
+  ASSERT_TRUE(simulation->recompile(other).ok());
+  ASSERT_TRUE(simulation->step(100).ok());
+  stream.reset();
+  EXPECT_NEAR(static_cast<double>(inbox.messages["/tf"].size()), 21, 1);
+}
+
+class TopicInputs : public Topics {
+ protected:
+  TopicInputs() : world_(world_of()) {
+    simulation_ = *Simulation::create(world_, {.pace = Pace::kLockstep});
+  }
+  template <class T>
+  Status publish(const char* topic, const T& message) {
+    MessageBytes bytes;
+    encode(message, &bytes);
+    return simulation_->publish(topic, bytes);
+  }
+
+  World world_;
+  std::unique_ptr<Simulation> simulation_;
+};
+
+TEST_F(TopicInputs, JointCommandsBecomeGoals) {
+  sensor_msgs::JointState command;
+  command.name = {"lift"};
+  command.position = {0.4};
+  ASSERT_TRUE(publish("/cart/joint_command", command).ok());
+  ASSERT_TRUE(simulation_->step(1).ok());
+  const auto log = simulation_->take_command_log();
+  ASSERT_EQ(log.size(), 1u);
+  EXPECT_EQ(std::get<SetJointGoal>(log[0].command.what).position, 0.4);
+  command.name = {"lfit"};
+  EXPECT_THAT(publish("/cart/joint_command", command).error().to_string(), HasSubstr("lift"));
+  command.position = {};
+  EXPECT_FALSE(publish("/cart/joint_command", command).ok());
+}
+
+TEST_F(TopicInputs, TrajectoriesAreCutIntoGoalsAtTheirTimes) {
+  trajectory_msgs::JointTrajectory way;
+  way.joint_names = {"lift"};
+  way.points.resize(2);
+  way.points[0].positions = {0.2};
+  way.points[0].time_from_start = {0, 100000000};
+  way.points[1].positions = {0.2};
+  way.points[1].time_from_start = {0, 200000000};
+  ASSERT_TRUE(publish("/cart/joint_trajectory", way).ok());
+  ASSERT_TRUE(simulation_->step(150).ok());
+  const auto log = simulation_->take_command_log();
+  ASSERT_EQ(log.size(), 10u);
+  for (size_t i = 0; i < 10; ++i) {
+    EXPECT_EQ(log[i].command.step, static_cast<int64_t>(10 * (i + 1)));
+    EXPECT_NEAR(std::get<SetJointGoal>(log[i].command.what).position,
+                std::min(0.2, 0.04 * static_cast<double>(i + 1)), 1e-9);
+  }
+  way.points[1].time_from_start = {0, 0};
+  EXPECT_FALSE(publish("/cart/joint_trajectory", way).ok());  // back in time
+}
+
+TEST_F(TopicInputs, EveryOtherInputIsHeard) {
+  EXPECT_TRUE(publish("/cart/cmd_vel", geometry_msgs::Twist{{0.5, 0, 0}, {0, 0, 0.1}}).ok());
+  std_msgs::Float64MultiArray controls;
+  controls.data = {0.3};
+  EXPECT_TRUE(publish("/cart/controls", controls).ok());
+  controls.data = {0.3, 0.4};
+  EXPECT_FALSE(publish("/cart/controls", controls).ok());
+  geometry_msgs::WrenchStamped wrench;
+  wrench.wrench.force = {0, 0, 5};
+  EXPECT_TRUE(publish("/cart/wrench_command", wrench).ok());
+  wrench.header.frame_id = "cart/base";
+  EXPECT_FALSE(publish("/cart/wrench_command", wrench).ok());
+  ASSERT_TRUE(simulation_->step(5).ok());
+  EXPECT_EQ(simulation_->take_command_log().size(), 3u);
+  EXPECT_TRUE(publish("/reset", std_msgs::Empty{}).ok());
+  EXPECT_EQ(simulation_->latest().step(), 0);
+  const std::vector<uint8_t> damaged = {0, 1, 0, 0, 1};
+  EXPECT_FALSE(simulation_->publish("/cart/cmd_vel", damaged).ok());
+  EXPECT_FALSE(simulation_->publish("/clock", damaged).ok());
+  EXPECT_FALSE(simulation_->publish("/nothing", damaged).ok());
+}
+
+}  // namespace
+}  // namespace gloam

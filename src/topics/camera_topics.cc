@@ -1,0 +1,200 @@
+// Topics of cameras: pictures, intrinsics, depth, ids, temperatures, events.
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "gloam/view.h"
+#include "topics/message_types.h"
+#include "topics/messages/event_camera_msgs.h"
+#include "topics/messages/sensor_images.h"
+#include "topics/ros_values.h"
+#include "topics/topic_table.h"
+#include "world/streams.h"
+
+namespace gloam {
+namespace {
+
+constexpr int kJpegQuality = 90;
+
+template <class T>
+Bytes view_of(const std::vector<T>& values) {
+  const auto* bytes = reinterpret_cast<const uint8_t*>(values.data());
+  return Bytes::view({bytes, values.size() * sizeof(T)});
+}
+
+sensor_msgs::Image image_of(const TopicInfo& topic, const CameraFrame& frame, const char* encoding,
+                            size_t pixel_bytes) {
+  sensor_msgs::Image image;
+  image.header = ros_header(frame.time, topic.frame_id);
+  image.width = static_cast<uint32_t>(frame.intrinsics.width);
+  image.height = static_cast<uint32_t>(frame.intrinsics.height);
+  image.encoding = encoding;
+  image.step = static_cast<uint32_t>(image.width * pixel_bytes);
+  return image;
+}
+
+Status encode_rgb(const TopicInfo& topic, const CameraFrame& frame, MessageBytes* out) {
+  sensor_msgs::Image image = image_of(topic, frame, "rgb8", 3);
+  image.data = view_of(frame.rgb);
+  encode(image, out);
+  return {};
+}
+
+Status encode_rgb_jpeg(const TopicInfo& topic, const CameraFrame& frame, MessageBytes* out) {
+  sensor_msgs::CompressedImage image;
+  image.header = ros_header(frame.time, topic.frame_id);
+  image.format = "jpeg";
+  GLOAM_TRY(const std::vector<uint8_t> jpeg,
+            encode_jpeg(frame.intrinsics.width, frame.intrinsics.height, frame.rgb, kJpegQuality));
+  image.data = view_of(jpeg);
+  encode(image, out);
+  return {};
+}
+
+Status encode_info(const TopicInfo& topic, const CameraFrame& frame, MessageBytes* out) {
+  const CameraInfo from = camera_info(frame.camera, frame.intrinsics);
+  sensor_msgs::CameraInfo info;
+  info.header = ros_header(frame.time, topic.frame_id);
+  info.width = static_cast<uint32_t>(from.width);
+  info.height = static_cast<uint32_t>(from.height);
+  info.distortion_model = from.distortion_model;
+  info.d = from.d;
+  info.k = from.k;
+  info.r = from.r;
+  info.p = from.p;
+  encode(info, out);
+  return {};
+}
+
+// REP 118: metres as 32FC1 with +inf where nothing is hit.
+Status encode_depth(const TopicInfo& topic, const std::vector<float>& depth,
+                    const CameraFrame& frame, MessageBytes* out) {
+  sensor_msgs::Image image = image_of(topic, frame, "32FC1", 4);
+  image.data = view_of(depth);
+  encode(image, out);
+  return {};
+}
+
+Status encode_depth_mm(const TopicInfo& topic, const std::vector<float>& depth,
+                       const CameraFrame& frame, MessageBytes* out) {
+  std::vector<uint16_t> mm(depth.size());
+  std::transform(depth.begin(), depth.end(), mm.begin(), [](float z) {
+    const double whole = std::round(1000.0 * static_cast<double>(z));
+    return whole >= 1 && whole <= 65535 ? static_cast<uint16_t>(whole) : uint16_t{0};
+  });
+  sensor_msgs::Image image = image_of(topic, frame, "16UC1", 2);
+  image.data = view_of(mm);
+  encode(image, out);
+  return {};
+}
+
+Status encode_ids(const TopicInfo& topic, const std::vector<uint32_t>& ids,
+                  const CameraFrame& frame, MessageBytes* out) {
+  std::vector<uint16_t> small(ids.size());
+  std::transform(ids.begin(), ids.end(), small.begin(),
+                 [](uint32_t id) { return static_cast<uint16_t>(std::min(id, 65535u)); });
+  sensor_msgs::Image image = image_of(topic, frame, "mono16", 2);
+  image.data = view_of(small);
+  encode(image, out);
+  return {};
+}
+
+// Hundredths of a kelvin, as thermal cameras' drivers have it.
+Status encode_thermal(const TopicInfo& topic, const CameraFrame& frame, MessageBytes* out) {
+  std::vector<uint16_t> hundredths(frame.thermal.size());
+  std::transform(frame.thermal.begin(), frame.thermal.end(), hundredths.begin(), [](float kelvin) {
+    return static_cast<uint16_t>(std::clamp(std::round(100.0f * kelvin), 0.0f, 65535.0f));
+  });
+  sensor_msgs::Image image = image_of(topic, frame, "mono16", 2);
+  image.data = view_of(hundredths);
+  encode(image, out);
+  return {};
+}
+
+// Encoding "mono" of event_camera_msgs: eight bytes an event, little endian: 32 bits of nanoseconds
+// since time_base, 16 of x, 15 of y, the last bit the polarity.
+Status encode_events(const TopicInfo& topic, const CameraFrame& frame, MessageBytes* out) {
+  event_camera_msgs::EventPacket packet;
+  packet.header = ros_header(frame.time, topic.frame_id);
+  packet.width = static_cast<uint32_t>(frame.intrinsics.width);
+  packet.height = static_cast<uint32_t>(frame.intrinsics.height);
+  packet.seq = static_cast<uint64_t>(frame.index);
+  packet.encoding = "mono";
+  const double base = frame.events.empty() ? frame.time : frame.events.front().time;
+  packet.time_base = static_cast<uint64_t>(std::llround(base * 1e9));
+  std::vector<uint64_t> events;
+  events.reserve(frame.events.size());
+  for (const Event& event : frame.events) {
+    const auto since = static_cast<uint64_t>(std::llround(event.time * 1e9)) - packet.time_base;
+    events.push_back((since & 0xffffffffu) | uint64_t{event.x} << 32 | uint64_t{event.y} << 48 |
+                     uint64_t{event.brighter} << 63);
+  }
+  packet.events = view_of(events);
+  encode(packet, out);
+  return {};
+}
+
+/// A kind of messages that cameras can send.
+struct CameraTopicKind {
+  const char* suffix;   ///< of the topic's name
+  const char* channel;  ///< of CameraRequest::outputs that it needs
+  std::string (*type)();
+  bool is_logged;
+  FrameEncoder encode;
+};
+
+const std::vector<CameraTopicKind>& camera_topic_kinds() {
+  using Frame = const CameraFrame&;
+  using Info = const TopicInfo&;
+  const auto image = type_name<sensor_msgs::Image>;
+  static const std::vector<CameraTopicKind> kinds = {
+      {"image_raw", "rgb", image, false, encode_rgb},
+      {"image_raw/compressed", "rgb", type_name<sensor_msgs::CompressedImage>, true,
+       encode_rgb_jpeg},
+      {"camera_info", "rgb", type_name<sensor_msgs::CameraInfo>, true, encode_info},
+      {"depth/image_rect_raw", "depth", image, false,
+       [](Info t, Frame f, MessageBytes* out) { return encode_depth(t, f.depth, f, out); }},
+      {"depth/image_rect_mm", "depth", image, false,
+       [](Info t, Frame f, MessageBytes* out) { return encode_depth_mm(t, f.depth, f, out); }},
+      {"depth/camera_info", "depth", type_name<sensor_msgs::CameraInfo>, false, encode_info},
+      {"sensor_depth/image_rect_raw", "sensor_depth", image, false,
+       [](Info t, Frame f, MessageBytes* out) { return encode_depth(t, f.sensor_depth, f, out); }},
+      {"sensor_depth/image_rect_mm", "sensor_depth", image, true,
+       [](Info t, Frame f, MessageBytes* out) {
+         return encode_depth_mm(t, f.sensor_depth, f, out);
+       }},
+      {"segmentation/instance", "segmentation", image, false,
+       [](Info t, Frame f, MessageBytes* out) { return encode_ids(t, f.instance, f, out); }},
+      {"segmentation/semantic", "segmentation", image, false,
+       [](Info t, Frame f, MessageBytes* out) { return encode_ids(t, f.semantic, f, out); }},
+      {"thermal/image_raw", "thermal", image, true, encode_thermal},
+      {"events", "events", type_name<event_camera_msgs::EventPacket>, true, encode_events},
+  };
+  return kinds;
+}
+
+}  // namespace
+
+void add_camera_topics(const TopicSource& world, TopicTable* table) {
+  for (const StreamInfo& stream : list_streams(*world)) {
+    if (stream.kind != StreamKind::kCamera) continue;
+    for (const CameraTopicKind& kind : camera_topic_kinds()) {
+      if (std::ranges::find(stream.outputs, kind.channel) == stream.outputs.end()) continue;
+      Topic& topic = table->emplace_back();
+      topic.info = {.name = "/" + topic_token(stream.name) + "/" + kind.suffix,
+                    .type = kind.type(),
+                    .frame_id = stream.frame_id,
+                    .rate = stream.rate,
+                    .qos = kSensorQos,
+                    .is_logged = kind.is_logged,
+                    .source = "camera " + stream.name};
+      topic.streams = {stream.name};
+      topic.channel = kind.channel;
+      topic.code = kind.encode;
+    }
+  }
+}
+
+}  // namespace gloam

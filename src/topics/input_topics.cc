@@ -1,0 +1,214 @@
+// Topics that are heard: goals, controls, poses, forces, resets.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/text.h"
+#include "topics/messages/sensor_msgs.h"
+#include "topics/messages/trajectory_msgs.h"
+#include "topics/model_frames.h"
+#include "topics/ros_values.h"
+#include "topics/topic_table.h"
+#include "world/world.h"
+#include "world/world_robots.h"
+
+namespace gloam {
+namespace {
+
+using InputBytes = std::span<const uint8_t>;
+using Commands = Result<std::vector<Command>>;
+
+/// Joints of one robot that have one number, by their local names.
+struct RobotJoints {
+  std::string robot;
+  uint64_t world = 0;
+  std::vector<std::string> names;
+  std::vector<int> ids;
+
+  Result<Joint> find(const std::string& name) const {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found != names.end()) return Joint{ids[static_cast<size_t>(found - names.begin())], world};
+    return Error{ErrorKind::kInput,
+                 fmt::format("robot '{}' has no hinge or slide '{}'", robot, name),
+                 {},
+                 suggest_name(name, names)};
+  }
+};
+
+RobotJoints joints_by_name(const CompiledWorld& world, const RobotInstance& robot) {
+  RobotJoints joints{robot.name, world.serial, {}, {}};
+  const mjModel& m = *world.model;
+  for (const int id : robot_joints(m, robot)) {
+    if (m.jnt_type[id] != mjJNT_HINGE && m.jnt_type[id] != mjJNT_SLIDE) continue;
+    joints.names.push_back(local_name(element_name(m, mjOBJ_JOINT, id), robot.prefix));
+    joints.ids.push_back(id);
+  }
+  return joints;
+}
+
+Command now(auto what) { return Command{.what = std::move(what)}; }
+
+InputDecoder velocity(Robot robot) {
+  return [robot](InputBytes bytes, const Snapshot&, double) -> Commands {
+    GLOAM_TRY(const auto twist, decode<geometry_msgs::Twist>(bytes));
+    return std::vector{
+        now(SetVelocityGoal{robot, twist.linear.x, twist.linear.y, twist.angular.z})};
+  };
+}
+
+Status check_lengths(const std::string& what, size_t names, size_t values) {
+  if (names == values) return {};
+  return Error{ErrorKind::kInput, fmt::format("{}: {} names and {} numbers", what, names, values)};
+}
+
+InputDecoder joint_command(RobotJoints joints) {
+  return [joints = std::move(joints)](InputBytes bytes, const Snapshot&, double) -> Commands {
+    GLOAM_TRY(const auto state, decode<sensor_msgs::JointState>(bytes));
+    GLOAM_TRY_STATUS(check_lengths("joint_command", state.name.size(), state.position.size()));
+    std::vector<Command> commands;
+    for (size_t i = 0; i < state.name.size(); ++i) {
+      GLOAM_TRY(const Joint joint, joints.find(state.name[i]));
+      commands.push_back(now(SetJointGoal{joint, state.position[i]}));
+    }
+    return commands;
+  };
+}
+
+/// Seconds between the goals that a trajectory is cut into.
+constexpr double kGoalInterval = 0.02;
+constexpr double kLongestTrajectory = 60;  // [s]
+
+// One joint's goals along the straight lines between the points, from where it is now.
+void add_goals(const trajectory_msgs::JointTrajectory& way, size_t column, Joint joint,
+               const Snapshot& now, double timestep, std::vector<Command>* commands) {
+  double from_time = 0, from = now[joint].position();
+  for (const auto& point : way.points) {
+    const double to_time = point.time_from_start.sec + 1e-9 * point.time_from_start.nanosec;
+    const double to = point.positions[column], length = to_time - from_time;
+    const int count = std::max(1, static_cast<int>(std::ceil(length / kGoalInterval)));
+    for (int i = 1; i <= count; ++i) {
+      const double share = static_cast<double>(i) / count;
+      const double time = from_time + share * length;
+      commands->push_back({now.step() + std::llround(time / timestep),
+                           SetJointGoal{joint, from + share * (to - from)}});
+    }
+    from_time = to_time;
+    from = to;
+  }
+}
+
+InputDecoder joint_trajectory(RobotJoints joints) {
+  return [joints = std::move(joints)](InputBytes bytes, const Snapshot& now,
+                                      double timestep) -> Commands {
+    GLOAM_TRY(const auto way, decode<trajectory_msgs::JointTrajectory>(bytes));
+    double before = 0;
+    for (const auto& point : way.points) {
+      GLOAM_TRY_STATUS(
+          check_lengths("joint_trajectory", way.joint_names.size(), point.positions.size()));
+      const double time = point.time_from_start.sec + 1e-9 * point.time_from_start.nanosec;
+      if (time < before || time > kLongestTrajectory)
+        return Error{ErrorKind::kInput,
+                     "joint_trajectory: times must not go back, nor beyond 60 s"};
+      before = time;
+    }
+    std::vector<Command> commands;
+    for (size_t i = 0; i < way.joint_names.size(); ++i) {
+      GLOAM_TRY(const Joint joint, joints.find(way.joint_names[i]));
+      add_goals(way, i, joint, now, timestep, &commands);
+    }
+    return commands;
+  };
+}
+
+InputDecoder controls(Robot robot) {
+  return [robot](InputBytes bytes, const Snapshot&, double) -> Commands {
+    GLOAM_TRY(auto message, decode<std_msgs::Float64MultiArray>(bytes));
+    return std::vector{now(SetControls{robot, std::move(message.data)})};
+  };
+}
+
+Status check_frame(const std_msgs::Header& header) {
+  if (header.frame_id.empty() || header.frame_id == kWorldFrameId) return {};
+  return Error{ErrorKind::kInput,
+               fmt::format("frame '{}' is not understood here", header.frame_id),
+               {},
+               "give it in frame 'world'"};
+}
+
+InputDecoder mocap_pose(Body body) {
+  return [body](InputBytes bytes, const Snapshot&, double) -> Commands {
+    GLOAM_TRY(const auto pose, decode<geometry_msgs::PoseStamped>(bytes));
+    GLOAM_TRY_STATUS(check_frame(pose.header));
+    return std::vector{now(SetMocapPose{body, from_ros(pose.pose)})};
+  };
+}
+
+InputDecoder wrench(Body body) {
+  return [body](InputBytes bytes, const Snapshot&, double) -> Commands {
+    GLOAM_TRY(const auto message, decode<geometry_msgs::WrenchStamped>(bytes));
+    GLOAM_TRY_STATUS(check_frame(message.header));
+    return std::vector{
+        now(SetWrench{body, from_ros(message.wrench.force), from_ros(message.wrench.torque)})};
+  };
+}
+
+Commands reset(InputBytes bytes, const Snapshot&, double) {
+  GLOAM_TRY_STATUS(decode<std_msgs::Empty>(bytes));
+  return std::vector{now(ResetSim{})};
+}
+
+void add_input(std::string name, std::string type, std::string source, InputDecoder decoder,
+               TopicTable* table) {
+  Topic& topic = table->emplace_back();
+  topic.info = {.name = std::move(name),
+                .type = std::move(type),
+                .is_input = true,
+                .is_logged = false,
+                .source = std::move(source)};
+  topic.code = std::move(decoder);
+}
+
+bool is_agents(const CompiledWorld& world, int body) {
+  return std::ranges::any_of(world.agents, [&](const AgentDescription& agent) {
+    const auto end = agent.body.begin() + agent.parts();
+    return std::find(agent.body.begin(), end, body) != end;
+  });
+}
+
+}  // namespace
+
+void add_input_topics(const TopicSource& world, TopicTable* table) {
+  const mjModel& m = *world->model;
+  for (size_t i = 0; i < world->robots.size(); ++i) {
+    const RobotInstance& robot = world->robots[i];
+    const Robot handle{static_cast<int>(i), world->serial};
+    const std::string space = "/" + topic_token(robot.name), source = "robot " + robot.name;
+    const std::string& controller = robot.options.controller.type;
+    if (controller != "none") {
+      add_input(space + "/cmd_vel", type_name<geometry_msgs::Twist>(), source, velocity(handle),
+                table);
+      const RobotJoints joints = joints_by_name(*world, robot);
+      add_input(space + "/joint_command", type_name<sensor_msgs::JointState>(), source,
+                joint_command(joints), table);
+      add_input(space + "/joint_trajectory", type_name<trajectory_msgs::JointTrajectory>(), source,
+                joint_trajectory(joints), table);
+    }
+    if (!robot_actuators(m, robot).empty())
+      add_input(space + "/controls", type_name<std_msgs::Float64MultiArray>(), source,
+                controls(handle), table);
+    if (robot.root_body > 0)
+      add_input(space + "/wrench_command", type_name<geometry_msgs::WrenchStamped>(), source,
+                wrench({robot.root_body, world->serial}), table);
+  }
+  for (int body = 1; body < static_cast<int>(m.nbody); ++body) {
+    if (m.body_mocapid[body] < 0 || is_agents(*world, body)) continue;
+    const std::string name = body_frame(m, body);
+    add_input("/" + topic_token(name) + "/pose", type_name<geometry_msgs::PoseStamped>(),
+              "mocap body " + name, mocap_pose({body, world->serial}), table);
+  }
+  add_input("/reset", type_name<std_msgs::Empty>(), "simulation", reset, table);
+}
+
+}  // namespace gloam

@@ -1,0 +1,54 @@
+#include "topics/model_frames.h"
+
+#include <fmt/format.h>
+
+namespace gloam {
+namespace {
+
+struct Numbers {
+  mjtNum p[3], q[4];
+  explicit Numbers(const Pose& X) : p{X.p.x, X.p.y, X.p.z}, q{X.q.w, X.q.x, X.q.y, X.q.z} {}
+};
+Pose pose_from(const mjtNum* p, const mjtNum* q) {
+  return {{p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]}};
+}
+
+}  // namespace
+
+std::string element_name(const mjModel& model, mjtObj type, int id) {
+  const char* name = id >= 0 ? mj_id2name(&model, type, id) : nullptr;
+  return name != nullptr ? name : "";
+}
+
+std::string body_frame(const mjModel& model, int body) {
+  if (body == 0) return "world";
+  const std::string name = element_name(model, mjOBJ_BODY, body);
+  return name.empty() ? fmt::format("body_{}", body) : name;
+}
+
+std::string local_name(const std::string& name, const std::string& prefix) {
+  return name.starts_with(prefix) ? name.substr(prefix.size()) : name;
+}
+
+Pose product(const Pose& X_AB, const Pose& X_BC) {
+  const Numbers a(X_AB), b(X_BC);
+  mjtNum p[3], q[4];
+  mju_mulPose(p, q, a.p, a.q, b.p, b.q);
+  return pose_from(p, q);
+}
+
+Pose inverse(const Pose& X_AB) {
+  const Numbers a(X_AB);
+  mjtNum p[3], q[4];
+  mju_negPose(p, q, a.p, a.q);
+  return pose_from(p, q);
+}
+
+Vec3 rotate_back(const Quat& q, const Vec3& v) {
+  const mjtNum from[3] = {v.x, v.y, v.z}, back[4] = {q.w, -q.x, -q.y, -q.z};
+  mjtNum out[3];
+  mju_rotVecQuat(out, from, back);
+  return {out[0], out[1], out[2]};
+}
+
+}  // namespace gloam

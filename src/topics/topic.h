@@ -1,0 +1,74 @@
+#pragma once
+// Topic: a row of the table of topics, with the stream that its data come from and the function
+// that makes messages of them. A kind of topics is a file that adds its rows, and a line in
+// topic_table.cc.
+
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "gloam/camera.h"
+#include "gloam/command.h"
+#include "gloam/sensor.h"
+#include "gloam/topics.h"
+#include "sim/snapshots/pose_solver.h"
+#include "topics/codec.h"
+
+namespace gloam {
+
+/// An instant as encoders see it. Poses and forces are solved for when they are first asked for.
+class TopicInstant {
+ public:
+  TopicInstant(const Snapshot& snapshot, PoseSolver& solver)
+      : snapshot_(snapshot), solver_(solver) {}
+  const Snapshot& snapshot() const { return snapshot_; }
+  const mjModel& model() const { return *snapshot_.data().world->model; }
+  /// Pose of a body in the world. Error: MuJoCo's.
+  Result<Pose> X_WB(int body);
+  /// All that a forward pass tells.
+  Result<const Instant*> forces();
+
+ private:
+  const Snapshot& snapshot_;
+  PoseSolver& solver_;
+  PoseFrame poses_;
+  Instant instant_;
+  bool has_poses_ = false, has_forces_ = false;
+};
+
+using MessageBytes = std::vector<uint8_t>;
+using FrameEncoder = std::function<Status(const TopicInfo&, const CameraFrame&, MessageBytes*)>;
+using ScanEncoder = std::function<Status(const TopicInfo&, const LidarScan&, MessageBytes*)>;
+/// One sample of each of the topic's streams, all of one step.
+using SampleEncoder =
+    std::function<Status(const TopicInfo&, std::span<const SensorMessage>, MessageBytes*)>;
+using InstantEncoder = std::function<Status(const TopicInfo&, TopicInstant&, MessageBytes*)>;
+/// Of a topic that is latched, at a simulation time [s].
+using LatchedEncoder = std::function<Status(const TopicInfo&, double, MessageBytes*)>;
+/// Commands of a message that is heard at an instant; steps take `timestep` [s].
+using InputDecoder = std::function<Result<std::vector<Command>>(
+    std::span<const uint8_t>, const Snapshot& now, double timestep)>;
+
+struct Topic {
+  TopicInfo info;
+  std::vector<std::string> streams = {};  ///< camera, LiDAR or sensors; empty of others
+  std::string channel = {};               ///< of CameraRequest::outputs
+  std::variant<FrameEncoder, ScanEncoder, SampleEncoder, InstantEncoder, LatchedEncoder,
+               InputDecoder>
+      code;
+};
+
+/// The message type of a struct, as TopicInfo::type.
+template <Message T>
+std::string type_name() {
+  return std::string(T::kNamespace) + "/" + std::string(T::kName);
+}
+
+inline constexpr const char* kWorldFrameId = "world";
+inline constexpr Rational kStateRate = {50, 1};    ///< of joints, poses, contacts [Hz]
+inline constexpr Rational kSampleRate = {100, 1};  ///< of the clock and sensors without a rate
+inline constexpr TopicQos kSensorQos = {.is_reliable = false, .depth = 5};
+inline constexpr TopicQos kLatchedQos = {.is_latched = true, .depth = 1};
+
+}  // namespace gloam

@@ -1,0 +1,115 @@
+#include "topics/topic_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "base/text.h"
+#include "geometry/mesh/single.h"
+#include "topics/message_types.h"
+#include "world/view/render_origin.h"
+#include "world/world.h"
+
+namespace gloam {
+namespace {
+
+// A new kind of topics is a line here.
+constexpr void (*kKinds[])(const TopicSource&, TopicTable*) = {
+    add_world_topics,  add_robot_topics, add_sensor_topics,
+    add_camera_topics, add_lidar_topics, add_input_topics,
+};
+
+std::vector<std::string> names_of(const TopicTable& table) {
+  std::vector<std::string> names;
+  for (const Topic& topic : table) names.push_back(topic.info.name);
+  return names;
+}
+
+}  // namespace
+
+Result<Pose> TopicInstant::X_WB(int body) {
+  if (body == 0) return Pose{};
+  if (!has_poses_) GLOAM_TRY_STATUS(solver_.solve(snapshot_, poses_));
+  has_poses_ = true;
+  const auto id = static_cast<size_t>(body);
+  const double *p = poses_.body_p.data() + 3 * id, *R = poses_.body_R.data() + 9 * id;
+  mjtNum q[4];
+  mju_mat2Quat(q, R);
+  const Vec3& o = snapshot_.data().world->render_origin;
+  return Pose{{p[0] + o.x, p[1] + o.y, p[2] + o.z}, {q[0], q[1], q[2], q[3]}};
+}
+
+Result<const Instant*> TopicInstant::forces() {
+  if (!has_forces_) GLOAM_TRY_STATUS(instant_.solve(snapshot_));
+  has_forces_ = true;
+  return const_cast<const Instant*>(&instant_);
+}
+
+Result<std::vector<const Topic*>> find_topics(const TopicTable& table, const std::string& pattern) {
+  std::vector<const Topic*> found;
+  for (const Topic& topic : table)
+    if (topic.info.name == pattern || fits_pattern(pattern, topic.info.name))
+      found.push_back(&topic);
+  if (!found.empty()) return found;
+  return Error{ErrorKind::kInput,
+               fmt::format("there is no topic '{}'", pattern),
+               {},
+               suggest_name(pattern, names_of(table))};
+}
+
+Result<TopicTable> make_topic_table(const std::shared_ptr<const CompiledWorld>& world) {
+  TopicTable table;
+  for (const auto add : kKinds) add(world, &table);
+  // A later line wins, as elsewhere in scenes; names are those of the rules.
+  const std::vector<std::string> names = names_of(table);
+  std::vector<bool> is_off(table.size());
+  for (const TopicOptions& options : world->scene.topics) {
+    bool fits_one = false;
+    for (size_t i = 0; i < table.size(); ++i) {
+      if (names[i] != options.name && !fits_pattern(options.name, names[i])) continue;
+      fits_one = true;
+      TopicInfo& info = table[i].info;
+      if (!options.rename.empty()) info.name = options.rename;
+      if (!options.frame.empty()) info.frame_id = options.frame;
+      if (options.rate) info.rate = *options.rate;
+      if (options.log) info.is_logged = *options.log;
+      if (options.off) is_off[i] = *options.off;
+    }
+    if (!fits_one)
+      return Error{ErrorKind::kInput, fmt::format("there is no topic '{}'", options.name),
+                   options.loc, suggest_name(options.name, names)};
+  }
+  TopicTable on;
+  std::set<std::string> taken;
+  for (size_t i = 0; i < table.size(); ++i) {
+    if (is_off[i]) continue;
+    if (!taken.insert(table[i].info.name).second)
+      return Error{ErrorKind::kInput,
+                   fmt::format("two topics would have the name '{}'", table[i].info.name),
+                   {},
+                   "rename one by a [[topic]]"};
+    on.push_back(std::move(table[i]));
+  }
+  return on;
+}
+
+Result<std::vector<TopicInfo>> list_topics(const World& world) {
+  GLOAM_TRY(const TopicTable table, make_topic_table(world.compiled()));
+  std::vector<TopicInfo> infos;
+  for (const Topic& topic : table) infos.push_back(topic.info);
+  return infos;
+}
+
+Result<MessageInfo> message_info(std::string_view type) {
+  if (const MessageType* found = find_message_type(type); found != nullptr)
+    return MessageInfo{found->dds_name, found->text, found->hash};
+  std::vector<std::string> names;
+  for (const MessageType& known : message_types()) names.push_back(known.name);
+  return Error{ErrorKind::kInput,
+               fmt::format("Gloam has no message '{}'", type),
+               {},
+               suggest_name(std::string(type), names)};
+}
+
+}  // namespace gloam

@@ -1,0 +1,28 @@
+#pragma once
+// The table of topics of a World.
+
+#include <memory>
+
+#include "topics/topic.h"
+
+namespace gloam {
+
+using TopicTable = std::vector<Topic>;
+
+/// Topics by the default rules, changed as the scene's [[topic]]s say, without those that are off.
+/// Errors: a [[topic]] that fits none; two topics of one name.
+Result<TopicTable> make_topic_table(const std::shared_ptr<const CompiledWorld>& world);
+
+/// Rows of a table whose names fit a name or pattern; * stands for any text. Error: none does.
+Result<std::vector<const Topic*>> find_topics(const TopicTable& table, const std::string& pattern);
+
+// The kinds, in the order of the table.
+using TopicSource = std::shared_ptr<const CompiledWorld>;
+void add_world_topics(const TopicSource& world, TopicTable* table);
+void add_robot_topics(const TopicSource& world, TopicTable* table);
+void add_sensor_topics(const TopicSource& world, TopicTable* table);
+void add_camera_topics(const TopicSource& world, TopicTable* table);
+void add_lidar_topics(const TopicSource& world, TopicTable* table);
+void add_input_topics(const TopicSource& world, TopicTable* table);
+
+}  // namespace gloam
