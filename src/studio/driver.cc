@@ -9,7 +9,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr size_t kMaxWishes = 256;
+constexpr size_t kMaxRequests = 256;
 constexpr milliseconds kBeat{20};
 constexpr milliseconds kCameraLinger{3000};  // longer than the reload of a page takes
 constexpr milliseconds kRetry{1000};
@@ -77,11 +77,11 @@ Status Driver::start() {
 bool Driver::post(int64_t client, const ControlMessage& message) {
   {
     const std::lock_guard lock(mutex_);
-    if (!wishes_.empty() && wishes_.back().client == client &&
-        merge(wishes_.back().message, message))
+    if (!requests_.empty() && requests_.back().client == client &&
+        merge(requests_.back().message, message))
       return true;
-    if (wishes_.size() >= kMaxWishes) return false;
-    wishes_.push_back({client, message});
+    if (requests_.size() >= kMaxRequests) return false;
+    requests_.push_back({client, message});
   }
   wake_.notify_one();
   return true;
@@ -89,7 +89,7 @@ bool Driver::post(int64_t client, const ControlMessage& message) {
 
 void Driver::release(int64_t client) {
   const std::lock_guard lock(mutex_);
-  wishes_.push_back({client, DragEndMessage{}});
+  requests_.push_back({client, DragEndMessage{}});
 }
 
 void Driver::set_clients(int count) {
@@ -120,12 +120,12 @@ Driver::CameraReport Driver::report() const {
 void Driver::run() {
   std::unique_lock lock(mutex_);
   while (!stopping_) {
-    wake_.wait_for(lock, kBeat, [this] { return stopping_ || !wishes_.empty(); });
-    while (!stopping_ && !wishes_.empty()) {
-      const Wish wish = std::move(wishes_.front());
-      wishes_.pop_front();
+    wake_.wait_for(lock, kBeat, [this] { return stopping_ || !requests_.empty(); });
+    while (!stopping_ && !requests_.empty()) {
+      const ControlRequest request = std::move(requests_.front());
+      requests_.pop_front();
       lock.unlock();
-      carry_out(wish);
+      carry_out(request);
       lock.lock();
     }
     if (stopping_) break;
@@ -141,14 +141,14 @@ void Driver::run() {
   close_camera();
 }
 
-void Driver::carry_out(const Wish& wish) {
+void Driver::carry_out(const ControlRequest& request) {
   std::visit(
       [&](const auto& message) {
         // Messages about control itself and about seen pictures end in the server.
-        if constexpr (requires { do_message(wish.client, message); })
-          do_message(wish.client, message);
+        if constexpr (requires { do_message(request.client, message); })
+          do_message(request.client, message);
       },
-      wish.message);
+      request.message);
 }
 
 void Driver::do_message(int64_t, const PauseMessage&) {
@@ -344,8 +344,8 @@ void Driver::adapt_resolution() {
   }
 }
 
-/// Tells scale_ how long pictures take: between them while the simulation runs, and from the wish
-/// for one to its arrival while it is paused and the camera moves.
+/// Tells scale_ how long pictures take: between them while the simulation runs, and from the
+/// request for one to its arrival while it is paused and the camera moves.
 void Driver::measure_pictures(uint64_t pictures) {
   const auto now = Clock::now();
   if (simulation_.paused()) {

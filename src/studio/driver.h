@@ -1,5 +1,5 @@
 #pragma once
-// Carries out the controller's wishes on the Simulation, in order, on a thread of its own: steps
+// Carries out the controller's requests on the Simulation, in order, on a thread of its own: steps
 // and picks may block, and the network must not wait for them. Owns the camera stream.
 
 #include <chrono>
@@ -53,7 +53,7 @@ class Driver {
 
  private:
   using Clock = std::chrono::steady_clock;
-  struct Wish {
+  struct ControlRequest {
     int64_t client;
     ControlMessage message;
   };
@@ -69,7 +69,7 @@ class Driver {
   };
 
   void run();
-  void carry_out(const Wish& wish);
+  void carry_out(const ControlRequest& request);
   void do_message(int64_t client, const PauseMessage&);
   void do_message(int64_t client, const ResumeMessage&);
   void do_message(int64_t client, const StepMessage& message);
@@ -107,7 +107,7 @@ class Driver {
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  std::deque<Wish> wishes_;
+  std::deque<ControlRequest> requests_;
   int clients_ = 0;
   bool someone_came_ = false;
   Clock::time_point last_client_;

@@ -1,11 +1,7 @@
 #include "world/render_description.h"
 
-#include <fmt/format.h>
-
-#include <map>
 #include <optional>
 
-#include "base/parallel.h"
 #include "places/generators.h"
 #include "world/authored_frame.h"
 #include "world/effects/surface_layout.h"
@@ -21,9 +17,9 @@
 #include "world/sensors/visual_camera.h"
 #include "world/shapes/deformable_layout.h"
 #include "world/shapes/drawn_points.h"
+#include "world/shapes/geom_importer.h"
 #include "world/shapes/visual_deformable.h"
 #include "world/shapes/visual_file.h"
-#include "world/shapes/visual_mesh.h"
 #include "world/shapes/visual_pose.h"
 #include "world/shapes/visual_site.h"
 #include "world/sky/authored_sky.h"
@@ -35,159 +31,6 @@
 
 namespace gloam {
 namespace {
-
-/// Vec3f and Vec2f are packed floats: MuJoCo's arrays are read in place.
-std::span<const Vec3f> vec3_span(const float* data, int first, int count) {
-  static_assert(sizeof(Vec3f) == 3 * sizeof(float));
-  return {reinterpret_cast<const Vec3f*>(data) + first, static_cast<size_t>(count)};
-}
-std::span<const Vec2f> vec2_span(const float* data, int first, int count) {
-  static_assert(sizeof(Vec2f) == 2 * sizeof(float));
-  return {reinterpret_cast<const Vec2f*>(data) + first, static_cast<size_t>(count)};
-}
-
-TriangleMesh convert_mesh(const mjModel& m, int i) {
-  const auto faces = [&](const int* data) {
-    return std::span<const int>(data + 3 * m.mesh_faceadr[i],
-                                3 * static_cast<size_t>(m.mesh_facenum[i]));
-  };
-  IndexedCorners corners;
-  corners.positions = vec3_span(m.mesh_vert, m.mesh_vertadr[i], m.mesh_vertnum[i]);
-  corners.normals = vec3_span(m.mesh_normal, m.mesh_normaladr[i], m.mesh_normalnum[i]);
-  corners.face = faces(m.mesh_face);
-  corners.face_normal = faces(m.mesh_facenormal);
-  if (m.mesh_texcoordadr[i] >= 0 && m.mesh_texcoordnum[i] > 0) {
-    corners.uvs = vec2_span(m.mesh_texcoord, m.mesh_texcoordadr[i], m.mesh_texcoordnum[i]);
-    corners.face_uv = faces(m.mesh_facetexcoord);
-  }
-  return split_corners(corners);
-}
-
-/// Geoms of one model on their way into the description. Meshes are handed out as rows first and
-/// converted together at the end, in parallel.
-class GeomImporter {
- public:
-  GeomImporter(const mjModel& model, bool live, RenderDescription* out)
-      : model_(model), live_(live), materials_(model, live, out), out_(out) {}
-
-  /// The geom's shape, material and flags; nothing when it cannot be seen.
-  std::optional<InstanceDescription> instance(int geom);
-  /// Row of the material that a mesh in the geom's place has.
-  int mesh_material(int geom) {
-    return materials_.row(model_.geom_matid[geom], model_.geom_rgba + 4 * geom, ShapeType::kMesh);
-  }
-  void convert_meshes();
-  MaterialTable& materials() { return materials_; }
-
- private:
-  int mesh_row(int asset, bool is_height_field);
-
-  struct PendingMesh {
-    int asset = 0, row = 0, height_field = -1;
-  };
-  const mjModel& model_;
-  const bool live_;
-  MaterialTable materials_;
-  RenderDescription* out_;
-  std::map<std::pair<int, bool>, int> mesh_rows_;
-  std::vector<PendingMesh> pending_;
-};
-
-int GeomImporter::mesh_row(int asset, bool is_height_field) {
-  const auto [entry, added] =
-      mesh_rows_.try_emplace({asset, is_height_field}, static_cast<int>(out_->meshes.size()));
-  if (!added) return entry->second;
-  out_->meshes.emplace_back();
-  PendingMesh pending{asset, entry->second, -1};
-  if (is_height_field) {
-    const mjtNum* size = model_.hfield_size + 4 * asset;
-    HeightFieldDescription field;
-    field.mesh = entry->second;
-    field.first_data = model_.hfield_adr[asset];
-    field.rows = model_.hfield_nrow[asset];
-    field.columns = model_.hfield_ncol[asset];
-    field.size = {static_cast<float>(size[0]), static_cast<float>(size[1]),
-                  static_cast<float>(size[2])};
-    field.base = static_cast<float>(size[3]);
-    pending.height_field = static_cast<int>(out_->height_fields.size());
-    out_->height_fields.push_back(field);
-  }
-  pending_.push_back(pending);
-  return entry->second;
-}
-
-std::optional<InstanceDescription> GeomImporter::instance(int g) {
-  const mjModel& m = model_;
-  const float* rgba = m.geom_rgba + 4 * g;
-  // A Command may make fully transparent geoms visible, but only in the simulated model.
-  if (!live_ && drawn_rgba(m, m.geom_matid[g], rgba)[3] == 0) return std::nullopt;
-  InstanceDescription instance;
-  const mjtNum* size = m.geom_size + 3 * g;
-  instance.size = {static_cast<float>(size[0]), static_cast<float>(size[1]),
-                   static_cast<float>(size[2])};
-  const int asset = m.geom_dataid[g];
-  switch (m.geom_type[g]) {
-    case mjGEOM_PLANE:
-      instance.shape = ShapeType::kPlane;
-      instance.size.z = 0;
-      break;
-    case mjGEOM_SPHERE:
-      instance.shape = ShapeType::kSphere;
-      break;
-    case mjGEOM_CAPSULE:
-      instance.shape = ShapeType::kCapsule;
-      break;
-    case mjGEOM_ELLIPSOID:
-      instance.shape = ShapeType::kEllipsoid;
-      break;
-    case mjGEOM_CYLINDER:
-      instance.shape = ShapeType::kCylinder;
-      break;
-    case mjGEOM_BOX:
-      instance.shape = ShapeType::kBox;
-      break;
-    case mjGEOM_HFIELD:
-      instance.shape = ShapeType::kMesh;
-      instance.mesh = mesh_row(asset, true);
-      instance.size = {static_cast<float>(m.hfield_size[4 * asset]),
-                       static_cast<float>(m.hfield_size[4 * asset + 1]),
-                       static_cast<float>(m.hfield_size[4 * asset + 2])};
-      break;
-    case mjGEOM_MESH:
-    case mjGEOM_SDF:
-      if (asset >= 0) {
-        instance.shape = ShapeType::kMesh;
-        instance.mesh = mesh_row(asset, false);
-        break;
-      }
-      [[fallthrough]];
-    default:
-      out_->unsupported.push_back(
-          {ErrorKind::kUnsupported,
-           fmt::format("geom '{}' has a shape that is not drawn", name_of(m, mjOBJ_GEOM, g))});
-      return std::nullopt;
-  }
-  instance.material = materials_.row(m.geom_matid[g], rgba, instance.shape);
-  instance.group = m.geom_group[g];
-  instance.geom = live_ ? g : -1;
-  instance.casts_shadow = m.geom_castshadow[g] != 0;
-  instance.X_BG = rigid_pose(m.geom_pos + 3 * g, m.geom_quat + 4 * g);
-  return instance;
-}
-
-void GeomImporter::convert_meshes() {
-  parallel_for("world.meshes", static_cast<int64_t>(pending_.size()), [&](int64_t i) {
-    const PendingMesh& pending = pending_[static_cast<size_t>(i)];
-    TriangleMesh& mesh = out_->meshes[static_cast<size_t>(pending.row)];
-    if (pending.height_field < 0) {
-      mesh = convert_mesh(model_, pending.asset);
-      return;
-    }
-    const auto& field = out_->height_fields[static_cast<size_t>(pending.height_field)];
-    mesh = height_field_mesh(field, {model_.hfield_data + field.first_data,
-                                     static_cast<size_t>(field.rows) * field.columns});
-  });
-}
 
 /// Flags of the bodies that can never move.
 std::vector<bool> static_bodies(const mjModel& m) {
@@ -273,121 +116,181 @@ void present_model(const CompiledWorld& world, RenderDescription* out) {
   if (scene.render.look == "auto" && !own_light) open_exposure(subject, free.X_WC, out);
 }
 
-}  // namespace
+/// Steps of the description of a World whose render origin is the world's. Their order is that of
+/// the rows in the tables.
+class RenderDescriber {
+ public:
+  explicit RenderDescriber(const CompiledWorld& world)
+      : world_(world),
+        m_(*world.model),
+        labels_(world),
+        poses_(body_poses_at_qpos0(m_)),
+        is_static_(static_bodies(m_)),
+        simulated_(m_, true, &out_) {}
+  RenderDescriber(const RenderDescriber&) = delete;
+  RenderDescriber& operator=(const RenderDescriber&) = delete;
 
-namespace {
+  Result<RenderDescription> describe();
 
-Result<RenderDescription> describe_from_origin(const CompiledWorld& world) {
-  const mjModel& m = *world.model;
-  RenderDescription out;
-  out.center = {static_cast<float>(m.stat.center[0]), static_cast<float>(m.stat.center[1]),
-                static_cast<float>(m.stat.center[2])};
-  out.extent = static_cast<float>(m.stat.extent);
-  LabelTable labels(world);
-  const std::vector<Affine3f> poses = body_poses_at_qpos0(m);
-  const std::vector<bool> is_static = static_bodies(m);
+ private:
+  void add(InstanceDescription instance, int body, std::string name, int kind, int id);
+  void add_geoms();
+  Status add_visual_only();
+  Status add_files();
+  Status add_cameras(const Framing& framing);
+  void mark_static_lights();
+  void convert();
+  Status author();
 
-  const auto add = [&](InstanceDescription instance, int body, std::string name, int kind, int id) {
-    instance.body = body;
-    instance.is_static = is_static[static_cast<size_t>(body)];
-    instance.label = labels.label(body, name, kind, id);
-    instance.label.geom = name.empty() && kind == mjOBJ_GEOM ? geom_label(m, id) : std::move(name);
-    instance.label.material = out.materials[static_cast<size_t>(instance.material)].name;
-    instance.label.part = static_cast<uint32_t>(out.instances.size()) + 1;
-    out.instances.push_back(std::move(instance));
-  };
+  static constexpr int kVisualOnly = mjOBJ_UNKNOWN;
+  const CompiledWorld& world_;
+  const mjModel& m_;
+  RenderDescription out_;
+  LabelTable labels_;
+  const std::vector<Affine3f> poses_;  // of bodies at qpos0
+  const std::vector<bool> is_static_;  // by body
+  GeomImporter simulated_;
+  std::optional<GeomImporter> visual_;
+  size_t first_visual_ = 0, first_file_ = 0;  // instances
+  LightLevels levels_;
+};
 
-  GeomImporter simulated(m, true, &out);
-  out.instances.reserve(static_cast<size_t>(m.ngeom) + world.visual_only.size());
-  for (int g = 0; g < static_cast<int>(m.ngeom); ++g)
-    if (auto instance = simulated.instance(g))
-      add(std::move(*instance), m.geom_bodyid[g], name_of(m, mjOBJ_GEOM, g), mjOBJ_GEOM, g);
+void RenderDescriber::add(InstanceDescription instance, int body, std::string name, int kind,
+                          int id) {
+  instance.body = body;
+  instance.is_static = is_static_[static_cast<size_t>(body)];
+  instance.label = labels_.label(body, name, kind, id);
+  instance.label.geom = name.empty() && kind == mjOBJ_GEOM ? geom_label(m_, id) : std::move(name);
+  instance.label.material = out_.materials[static_cast<size_t>(instance.material)].name;
+  instance.label.part = static_cast<uint32_t>(out_.instances.size()) + 1;
+  out_.instances.push_back(std::move(instance));
+}
 
-  const size_t first_visual = out.instances.size();
-  std::optional<GeomImporter> visual;
-  constexpr int kVisualOnly = mjOBJ_UNKNOWN;
+void RenderDescriber::add_geoms() {
+  out_.instances.reserve(static_cast<size_t>(m_.ngeom) + world_.visual_only.size());
+  for (int g = 0; g < static_cast<int>(m_.ngeom); ++g)
+    if (auto instance = simulated_.instance(g))
+      add(std::move(*instance), m_.geom_bodyid[g], name_of(m_, mjOBJ_GEOM, g), mjOBJ_GEOM, g);
+  first_visual_ = out_.instances.size();
+}
+
+Status RenderDescriber::add_visual_only() {
   std::vector<DrawnMesh> meshes;
-  if (world.visual_model != nullptr) {
-    visual.emplace(*world.visual_model, false, &out);
-    for (size_t i = 0; i < world.visual_only.size(); ++i) {
-      const VisualOnlyGeom& geom = world.visual_only[i];
-      auto instance = visual->instance(geom.geom);
+  if (world_.visual_model != nullptr) {
+    visual_.emplace(*world_.visual_model, false, &out_);
+    for (size_t i = 0; i < world_.visual_only.size(); ++i) {
+      const VisualOnlyGeom& geom = world_.visual_only[i];
+      auto instance = visual_->instance(geom.geom);
       if (!instance) continue;
       if (geom.mesh >= 0) {
-        meshes.push_back({static_cast<int>(i), visual->mesh_material(geom.geom)});
+        meshes.push_back({static_cast<int>(i), visual_->mesh_material(geom.geom)});
         continue;
       }
       const mjtNum p[3] = {geom.X_BG.p.x, geom.X_BG.p.y, geom.X_BG.p.z};
       const mjtNum q[4] = {geom.X_BG.q.w, geom.X_BG.q.x, geom.X_BG.q.y, geom.X_BG.q.z};
       instance->X_BG = rigid_pose(p, q);
-      add(std::move(*instance), geom.body, name_of(*world.visual_model, mjOBJ_GEOM, geom.geom),
+      add(std::move(*instance), geom.body, name_of(*world_.visual_model, mjOBJ_GEOM, geom.geom),
           kVisualOnly, static_cast<int>(i));
     }
   }
-
   const auto add_mesh = [&](InstanceDescription instance, int body, int index) {
-    const int mesh = world.visual_only[static_cast<size_t>(index)].mesh;
-    add(std::move(instance), body, world.visual_meshes[static_cast<size_t>(mesh)].label,
+    const int mesh = world_.visual_only[static_cast<size_t>(index)].mesh;
+    add(std::move(instance), body, world_.visual_meshes[static_cast<size_t>(mesh)].label,
         kVisualOnly, index);
   };
-  GLOAM_TRY_STATUS(describe_model_meshes(world, meshes, poses, add_mesh, &out));
+  GLOAM_TRY_STATUS(describe_model_meshes(world_, meshes, poses_, add_mesh, &out_));
+  first_file_ = out_.instances.size();
+  return {};
+}
 
-  const size_t first_file = out.instances.size();
-  LightLevels levels;
+Status RenderDescriber::add_files() {
   const auto add_part = [&](InstanceDescription instance, int body, std::string name, int visual,
                             const std::string& visual_name) {
     constexpr int kVisualFile = -3;
     add(std::move(instance), body, visual_name, kVisualFile, visual);
-    out.instances.back().label.geom = std::move(name);
+    out_.instances.back().label.geom = std::move(name);
   };
-  GLOAM_TRY_STATUS(describe_visuals(world, poses, add_part, &levels, &out));
-  const Framing framing = framing_of(m, poses, first_file, out);
-  choose_what_is_shown(m, world, first_visual, first_file, &out.instances);
-  const size_t first_deformable = out.instances.size();
-  describe_deformables(m, poses, &simulated.materials(), &labels, &out);
-  for (size_t i = first_deformable; i < out.instances.size(); ++i)
-    out.instances[i].shown = draws_group(world.scene.render, out.instances[i].group);
-  describe_sites(world, &simulated.materials(), &labels, &out);
-  describe_cameras(m, framing, &out);
-  for (CameraDescription& camera : out.cameras) {
-    for (const CameraOptions& options : world.scene.cameras) {
+  return describe_visuals(world_, poses_, add_part, &levels_, &out_);
+}
+
+Status RenderDescriber::add_cameras(const Framing& framing) {
+  describe_cameras(m_, framing, &out_);
+  for (CameraDescription& camera : out_.cameras) {
+    for (const CameraOptions& options : world_.scene.cameras) {
       if (options.name == camera.name) camera.sensing = options.sensing;
     }
   }
-  GLOAM_TRY_STATUS(set_optics(world.scene, &out.cameras));
-  levels = describe_light(m, world.scene, poses, std::move(levels), &simulated.materials(), &out);
-  out.center = {static_cast<float>(framing.center.x), static_cast<float>(framing.center.y),
-                static_cast<float>(framing.center.z)};
-  out.extent = static_cast<float>(framing.extent);
-  for (LightDescription& light : out.lights) {
+  return set_optics(world_.scene, &out_.cameras);
+}
+
+void RenderDescriber::mark_static_lights() {
+  for (LightDescription& light : out_.lights) {
     if (light.body >= 0)
-      light.is_static = is_static[static_cast<size_t>(light.body)];
+      light.is_static = is_static_[static_cast<size_t>(light.body)];
     else
-      light.is_static = light.light >= 0 && m.light_mode[light.light] == mjCAMLIGHT_FIXED &&
-                        is_static[static_cast<size_t>(m.light_bodyid[light.light])];
+      light.is_static = light.light >= 0 && m_.light_mode[light.light] == mjCAMLIGHT_FIXED &&
+                        is_static_[static_cast<size_t>(m_.light_bodyid[light.light])];
   }
-  simulated.convert_meshes();
-  simulated.materials().load_textures();
-  if (visual) {
-    visual->convert_meshes();
-    visual->materials().load_textures();
+}
+
+void RenderDescriber::convert() {
+  simulated_.convert_meshes();
+  simulated_.materials().load_textures();
+  if (visual_) {
+    visual_->convert_meshes();
+    visual_->materials().load_textures();
   }
-  // Before the scene's materials, which may be theirs.
-  author_soils(world.soils, first_soil_vertex(world), &labels, &out);
-  GLOAM_TRY_STATUS(author_materials(world.scene.materials, &out));
-  restore_authored_frames(m, &out);
-  GLOAM_TRY_STATUS(author_lights(world, poses, is_static, &labels, &levels, &out));
-  author_waters(world.waters, first_water_vertex(world), &labels, &out);
-  if (world.scene.sky) GLOAM_TRY_STATUS(author_sky(*world.scene.sky, &levels, &out));
-  if (world.scene.blackout) GLOAM_TRY_STATUS(author_blackout(*world.scene.blackout, &out));
-  GLOAM_TRY_STATUS(author_volumes(world.scene.volumes, &out));
-  author_gases(world.gases.gases, &out);
-  if (world.scene.weather)
-    GLOAM_TRY_STATUS(author_weather(*world.scene.weather, world.wind, world.regions, poses, &out));
-  out.ev100 = world.ev100 ? static_cast<float>(*world.ev100) : exposure(levels, out);
-  GLOAM_TRY_STATUS(set_clips(world, &out));
-  present_model(world, &out);
-  return out;
+}
+
+/// Adds what the scene defines itself.
+Status RenderDescriber::author() {
+  const Scene& scene = world_.scene;
+  // Soils come before the scene's materials, which may be theirs.
+  author_soils(world_.soils, first_soil_vertex(world_), &labels_, &out_);
+  GLOAM_TRY_STATUS(author_materials(scene.materials, &out_));
+  restore_authored_frames(m_, &out_);
+  GLOAM_TRY_STATUS(author_lights(world_, poses_, is_static_, &labels_, &levels_, &out_));
+  author_waters(world_.waters, first_water_vertex(world_), &labels_, &out_);
+  if (scene.sky) GLOAM_TRY_STATUS(author_sky(*scene.sky, &levels_, &out_));
+  if (scene.blackout) GLOAM_TRY_STATUS(author_blackout(*scene.blackout, &out_));
+  GLOAM_TRY_STATUS(author_volumes(scene.volumes, &out_));
+  author_gases(world_.gases.gases, &out_);
+  if (scene.weather)
+    GLOAM_TRY_STATUS(author_weather(*scene.weather, world_.wind, world_.regions, poses_, &out_));
+  return {};
+}
+
+Result<RenderDescription> RenderDescriber::describe() {
+  out_.center = {static_cast<float>(m_.stat.center[0]), static_cast<float>(m_.stat.center[1]),
+                 static_cast<float>(m_.stat.center[2])};
+  out_.extent = static_cast<float>(m_.stat.extent);
+  add_geoms();
+  GLOAM_TRY_STATUS(add_visual_only());
+  GLOAM_TRY_STATUS(add_files());
+  const Framing framing = framing_of(m_, poses_, first_file_, out_);
+  choose_what_is_shown(m_, world_, first_visual_, first_file_, &out_.instances);
+  const size_t first_deformable = out_.instances.size();
+  describe_deformables(m_, poses_, &simulated_.materials(), &labels_, &out_);
+  for (size_t i = first_deformable; i < out_.instances.size(); ++i)
+    out_.instances[i].shown = draws_group(world_.scene.render, out_.instances[i].group);
+  describe_sites(world_, &simulated_.materials(), &labels_, &out_);
+  GLOAM_TRY_STATUS(add_cameras(framing));
+  levels_ =
+      describe_light(m_, world_.scene, poses_, std::move(levels_), &simulated_.materials(), &out_);
+  out_.center = {static_cast<float>(framing.center.x), static_cast<float>(framing.center.y),
+                 static_cast<float>(framing.center.z)};
+  out_.extent = static_cast<float>(framing.extent);
+  mark_static_lights();
+  convert();
+  GLOAM_TRY_STATUS(author());
+  out_.ev100 = world_.ev100 ? static_cast<float>(*world_.ev100) : exposure(levels_, out_);
+  GLOAM_TRY_STATUS(set_clips(world_, &out_));
+  present_model(world_, &out_);
+  return std::move(out_);
+}
+
+Result<RenderDescription> describe_from_origin(const CompiledWorld& world) {
+  return RenderDescriber(world).describe();
 }
 
 }  // namespace

@@ -13,24 +13,27 @@
 namespace gloam {
 namespace {
 
-struct Wish {
+// A room that the house should have.
+struct RoomRequest {
   std::string kind;
   double width_low, width_high;  // along its strip [m]
 };
 
 // Rooms of a home, in the order in which each is first given space.
-const Wish kLiving{"living", 5.0, 6.2}, kKitchen{"kitchen", 3.3, 4.0}, kBath{"bathroom", 2.2, 2.7},
-    kBedroom{"bedroom", 3.4, 4.2}, kStudy{"study", 2.8, 3.4}, kUtilityRoom{"utility", 2.2, 2.6};
-const std::vector<Wish> kOneStorey = {kLiving,  kBedroom,     kBath, kKitchen, kBedroom, kStudy,
-                                      kBedroom, kUtilityRoom, kBath, kBedroom, kStudy};
+const RoomRequest kLiving{"living", 5.0, 6.2}, kKitchen{"kitchen", 3.3, 4.0},
+    kBath{"bathroom", 2.2, 2.7}, kBedroom{"bedroom", 3.4, 4.2}, kStudy{"study", 2.8, 3.4},
+    kUtilityRoom{"utility", 2.2, 2.6};
+const std::vector<RoomRequest> kOneStorey = {kLiving,  kBedroom, kBath,    kKitchen,
+                                             kBedroom, kStudy,   kBedroom, kUtilityRoom,
+                                             kBath,    kBedroom, kStudy};
 // Upstairs and downstairs in turn.
-const std::vector<Wish> kDownstairs = {kLiving, kKitchen, kUtilityRoom, kStudy, kBath};
-const std::vector<Wish> kUpstairs = {kBedroom, kBath, kBedroom, kBedroom, kStudy};
+const std::vector<RoomRequest> kDownstairs = {kLiving, kKitchen, kUtilityRoom, kStudy, kBath};
+const std::vector<RoomRequest> kUpstairs = {kBedroom, kBath, kBedroom, kBedroom, kStudy};
 
 constexpr double kStairWidth = 2.1, kHallLow = 1.5, kHallHigh = 1.9;
 
 struct Slot {
-  Wish wish;
+  RoomRequest request;
   double width = 0;
 };
 using Strip = std::vector<Slot>;
@@ -52,16 +55,16 @@ class HousePlanner {
     hall_ = dice_.uniform(kHallLow, kHallHigh);
     south_ = dice_.uniform(3.5, 4.2);
     north_ = dice_.uniform(3.5, 4.2);
-    std::vector<std::vector<Wish>> wishes = share_out();
-    end_room_ = options_.storeys == 1 && wishes[0].size() >= 4 && dice_.chance(0.4);
+    std::vector<std::vector<RoomRequest>> requests = assign_to_storeys();
+    end_room_ = options_.storeys == 1 && requests[0].size() >= 4 && dice_.chance(0.4);
     if (end_room_) {
-      std::erase_if(wishes[0], [](const Wish& w) { return w.kind == "living"; });
+      std::erase_if(requests[0], [](const RoomRequest& w) { return w.kind == "living"; });
       end_width_ = dice_.uniform(3.9, 4.6);
     }
     // All storeys are as long as the longest needs.
     std::vector<std::pair<Strip, Strip>> strips;
     double length = 0;
-    for (const std::vector<Wish>& storey : wishes) {
+    for (const std::vector<RoomRequest>& storey : requests) {
       strips.push_back(split(storey));
       length = std::max({length, width_of(strips.back().first, plan_.wall),
                          width_of(strips.back().second, plan_.wall)});
@@ -81,8 +84,8 @@ class HousePlanner {
 
  private:
   // Rooms of each storey, without the halls.
-  std::vector<std::vector<Wish>> share_out() const {
-    std::vector<std::vector<Wish>> out(static_cast<size_t>(options_.storeys));
+  std::vector<std::vector<RoomRequest>> assign_to_storeys() const {
+    std::vector<std::vector<RoomRequest>> out(static_cast<size_t>(options_.storeys));
     if (options_.storeys == 1) {
       const auto count =
           std::min<size_t>(static_cast<size_t>(options_.rooms - 1), kOneStorey.size());
@@ -91,17 +94,17 @@ class HousePlanner {
     }
     const int left = std::max(options_.rooms - 2, 2);
     for (int i = 0; i < left; ++i) {
-      const std::vector<Wish>& list = i % 2 == 0 ? kDownstairs : kUpstairs;
+      const std::vector<RoomRequest>& list = i % 2 == 0 ? kDownstairs : kUpstairs;
       out[static_cast<size_t>(i % 2)].push_back(list[static_cast<size_t>(i / 2)]);
     }
     return out;
   }
 
   // Two strips of about one length; the stairs are the first slot of the south.
-  std::pair<Strip, Strip> split(const std::vector<Wish>& wishes) {
+  std::pair<Strip, Strip> split(const std::vector<RoomRequest>& requests) {
     std::vector<Slot> slots;
-    for (const Wish& wish : wishes)
-      slots.push_back({wish, dice_.uniform(wish.width_low, wish.width_high)});
+    for (const RoomRequest& request : requests)
+      slots.push_back({request, dice_.uniform(request.width_low, request.width_high)});
     const double stairs = options_.storeys > 1 ? kStairWidth + plan_.wall : 0;
     double best = 1e9;
     unsigned best_mask = 0;
@@ -129,7 +132,7 @@ class HousePlanner {
     dice_.shuffle(strip);
     const auto find = [&](const char* kind) {
       return std::find_if(strip->begin(), strip->end(),
-                          [&](const Slot& s) { return s.wish.kind == kind; });
+                          [&](const Slot& s) { return s.request.kind == kind; });
     };
     const auto kitchen = find("kitchen"), living = find("living");
     if (kitchen == strip->end() || living == strip->end()) return;
@@ -151,7 +154,9 @@ class HousePlanner {
   void stretch(Strip* strip, double length) const {
     const double spare = length - width_of(*strip, plan_.wall);
     const auto elastic = [](const Slot& s) {
-      return s.wish.kind == "stairs" ? 0.0 : s.wish.kind == "bathroom" ? 0.15 * s.width : s.width;
+      return s.request.kind == "stairs"     ? 0.0
+             : s.request.kind == "bathroom" ? 0.15 * s.width
+                                            : s.width;
     };
     double sum = 0;
     for (const Slot& slot : *strip) sum += elastic(slot);
@@ -170,7 +175,7 @@ class HousePlanner {
         const Rect clear = south ? Rect{x, -y - t - south_, x + slot.width, -y - t}
                                  : Rect{x, y + t, x + slot.width, y + t + north_};
         x += slot.width + t;
-        const int room = add_room(slot.wish.kind, storey, clear);
+        const int room = add_room(slot.request.kind, storey, clear);
         lead_to_hall(hall, room, south ? Side::kSouth : Side::kNorth);
         if (previous >= 0) join_living(previous, room);
         previous = room;

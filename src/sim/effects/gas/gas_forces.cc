@@ -94,23 +94,23 @@ GasForces::GasForces(const CompiledWorld& world, Rational timestep)
   const std::vector<Affine3f> X_WB = body_poses_at_qpos0(m);
   for (int b = 1; b < static_cast<int>(m.nbody); ++b) {
     if (!moves[static_cast<size_t>(b)] || m.body_mass[b] < kLeastMass) continue;
-    Felt felt;
-    felt.body = b;
+    ExposedBody exposed;
+    exposed.body = b;
     const mjtNum* inertia = m.body_inertia + 3 * b;
     for (int a = 0; a < 3; ++a) {
       const double square = inertia[(a + 1) % 3] + inertia[(a + 2) % 3] - inertia[a];
-      felt.half[a] = std::sqrt(std::max(square, 1e-15) / m.body_mass[b] * 6) / 2;
+      exposed.half[a] = std::sqrt(std::max(square, 1e-15) / m.body_mass[b] * 6) / 2;
     }
     for (int a = 0; a < 3; ++a)
-      felt.area = std::max(felt.area, 4 * felt.half[a] * felt.half[(a + 1) % 3]);
+      exposed.area = std::max(exposed.area, 4 * exposed.half[a] * exposed.half[(a + 1) % 3]);
     const int root = m.body_rootid[b];
     for (const RotorDescription& rotor : world.gases.rotors) {
       if (m.body_rootid[rotor.body] != root) continue;
       const Vec3f away = transform_point(X_WB[static_cast<size_t>(rotor.body)], rotor.p_B) -
                          X_WB[static_cast<size_t>(root)].p;
-      felt.reach = std::max(felt.reach, double{length(away) + rotor.radius});
+      exposed.reach = std::max(exposed.reach, double{length(away) + rotor.radius});
     }
-    felt_.push_back(felt);
+    exposed_.push_back(exposed);
   }
 }
 
@@ -122,67 +122,68 @@ void GasForces::look(int row, const mjModel& m, const mjData& d, const MediumFie
   if (field.velocity() == nullptr) return;
   const std::vector<float>& velocity = *field.velocity();
   const double voxel = double{gas.voxel};
-  for (Felt& felt : felt_) {
-    const bool flies = felt.reach > 0;
+  for (ExposedBody& exposed : exposed_) {
+    const bool flies = exposed.reach > 0;
     const double* centre =
-        flies ? d.subtree_com + 3 * model_.body_rootid[felt.body] : d.xipos + 3 * felt.body;
+        flies ? d.subtree_com + 3 * model_.body_rootid[exposed.body] : d.xipos + 3 * exposed.body;
     if (!is_inside(gas, centre)) continue;
-    felt.gas = row;
-    const double* R = d.ximat + 9 * felt.body;
-    std::fill_n(felt.wind, 3, 0.0);
+    exposed.gas = row;
+    const double* R = d.ximat + 9 * exposed.body;
+    std::fill_n(exposed.wind, 3, 0.0);
     const int sides = flies ? 4 : 6;
     for (int side = 0; side < sides; ++side) {
       const int axis = side / 2;
-      const double way =
-          (side % 2 != 0 ? 1 : -1) * (flies ? felt.reach + 2 * voxel : felt.half[axis] + voxel);
+      const double way = (side % 2 != 0 ? 1 : -1) *
+                         (flies ? exposed.reach + 2 * voxel : exposed.half[axis] + voxel);
       double p[3] = {centre[0], centre[1], centre[2]};
       for (int a = 0; a < 3; ++a) p[a] += way * (flies ? (a == axis ? 1 : 0) : R[3 * a + axis]);
-      add_velocity(gas, velocity, p, 1.0 / sides, felt.wind);
+      add_velocity(gas, velocity, p, 1.0 / sides, exposed.wind);
     }
-    felt.thinness =
+    exposed.thinness =
         double{gas.temperature} / double{(*field.temperature())[nearest_cell(gas, centre)]};
-    if (most_push(m, d, felt) < kLeastPush) felt.gas = -1;
+    if (most_push(m, d, exposed) < kLeastPush) exposed.gas = -1;
   }
 }
 
 // Greatest acceleration that air can give a body at its present speed [m/s²].
-double GasForces::most_push(const mjModel& m, const mjData& d, const Felt& felt) {
+double GasForces::most_push(const mjModel& m, const mjData& d, const ExposedBody& exposed) {
   const mjOption& option = m.opt;
   const Fluid air = air_of(option);
   double twist[6];
-  mj_objectVelocity(&m, &d, mjOBJ_BODY, felt.body, twist, 0);
-  double fast = mju_dist3(twist + 3, felt.wind), square = fast * fast;
+  mj_objectVelocity(&m, &d, mjOBJ_BODY, exposed.body, twist, 0);
+  double fast = mju_dist3(twist + 3, exposed.wind), square = fast * fast;
   if (option.density > 0 || option.viscosity > 0) {
     const double own = mju_dist3(twist + 3, option.wind);
-    fast = mju_dist3(felt.wind, option.wind);
-    square = fast * (fast + 2 * own) + std::abs(1 - felt.thinness) * own * own;
+    fast = mju_dist3(exposed.wind, option.wind);
+    square = fast * (fast + 2 * own) + std::abs(1 - exposed.thinness) * own * own;
   }
-  const double edges = 2 * (felt.half[0] + felt.half[1] + felt.half[2]);
-  return (air.density / 2 * felt.area * square + std::numbers::pi * edges * air.viscosity * fast) /
-         m.body_mass[felt.body];
+  const double edges = 2 * (exposed.half[0] + exposed.half[1] + exposed.half[2]);
+  return (air.density / 2 * exposed.area * square +
+          std::numbers::pi * edges * air.viscosity * fast) /
+         m.body_mass[exposed.body];
 }
 
 void GasForces::push(const mjModel& m, mjData& d) {
   const mjOption& option = m.opt;
   const Fluid own{option.density, option.viscosity}, air = air_of(option);
-  for (const Felt& felt : felt_) {
-    if (felt.gas < 0) continue;
-    const double* R = d.ximat + 9 * felt.body;
+  for (const ExposedBody& exposed : exposed_) {
+    if (exposed.gas < 0) continue;
+    const double* R = d.ximat + 9 * exposed.body;
     double twist[6], past[3], past_own[3], force[3] = {}, force_W[3];
-    mj_objectVelocity(&m, &d, mjOBJ_BODY, felt.body, twist, 0);
-    mju_sub3(past, twist + 3, felt.wind);
+    mj_objectVelocity(&m, &d, mjOBJ_BODY, exposed.body, twist, 0);
+    mju_sub3(past, twist + 3, exposed.wind);
     const double speed = mju_norm3(past);
     mju_mulMatTVec3(past_own, R, past);
-    add_drag(felt.half, past_own, {air.density * felt.thinness, air.viscosity}, 1, force);
-    const double most = kMostPerStep * m.body_mass[felt.body] * speed / option.timestep;
+    add_drag(exposed.half, past_own, {air.density * exposed.thinness, air.viscosity}, 1, force);
+    const double most = kMostPerStep * m.body_mass[exposed.body] * speed / option.timestep;
     const double drag = mju_norm3(force);
     if (drag > most) mju_scl3(force, force, most / drag);
     mju_sub3(past, twist + 3, option.wind);
     mju_mulMatTVec3(past_own, R, past);
-    add_drag(felt.half, past_own, own, -1, force);
+    add_drag(exposed.half, past_own, own, -1, force);
     mju_mulMatVec3(force_W, R, force);
     constexpr double kNoTorque[3] = {};
-    add_wrench(m, d, felt.body, force_W, kNoTorque, d.xipos + 3 * felt.body);
+    add_wrench(m, d, exposed.body, force_W, kNoTorque, d.xipos + 3 * exposed.body);
   }
 }
 

@@ -31,7 +31,7 @@ class GasForces {
   template <class Air>
   void begin_step(int64_t step, const mjModel& model, mjData& data, Air&& air) {
     if (step >= next_look_) {
-      for (Felt& felt : felt_) felt.gas = -1;
+      for (ExposedBody& exposed : exposed_) exposed.gas = -1;
       for (size_t row = 0; row < gases_.size(); ++row)
         look(static_cast<int>(row), model, data, air(row));
       next_look_ = looks_.step_of(looks_.first_at_or_after(step + 1));
@@ -41,7 +41,7 @@ class GasForces {
 
  private:
   // A body that moves, and the air around it.
-  struct Felt {
+  struct ExposedBody {
     int body = 0;
     double half[3] = {};  // half sides of its box [m]
     // Reach of the rotors of its tree around the tree's centre, 0 = it has none [m]
@@ -52,14 +52,14 @@ class GasForces {
     double thinness = 1;  // T0 / T
   };
   void look(int row, const mjModel& model, const mjData& data, const MediumField& field);
-  static double most_push(const mjModel& model, const mjData& data, const Felt& felt);
+  static double most_push(const mjModel& model, const mjData& data, const ExposedBody& exposed);
   void push(const mjModel& model, mjData& data);
 
   const std::vector<GasDescription>& gases_;
   const mjModel& model_;
   StepSchedule looks_;
   int64_t next_look_ = 0;
-  std::vector<Felt> felt_;
+  std::vector<ExposedBody> exposed_;
 };
 
 }  // namespace gloam

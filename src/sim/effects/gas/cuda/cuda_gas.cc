@@ -18,10 +18,10 @@ constexpr int kCellValues = kScalars + 1;
 /// Floats in the card's memory for each cell and ghost, about.
 constexpr uint64_t kFloatsPerCell = 45;
 
-class Card final : public CudaGas {
+class DeviceGas final : public CudaGas {
  public:
-  Card(std::string name, const GasGrid& grid, const Openings& openings, const Multigrid& multigrid,
-       const HostFields& fields)
+  DeviceGas(std::string name, const GasGrid& grid, const Openings& openings,
+            const Multigrid& multigrid, const HostFields& fields)
       : name_(std::move(name)),
         grid_(grid),
         shape_(openings.shape),
@@ -45,7 +45,7 @@ class Card final : public CudaGas {
     }
     must(cudaDeviceSynchronize(), "the card does not answer");
   }
-  ~Card() override {
+  ~DeviceGas() override {
     cudaStreamSynchronize(stream_);
     for (Field* f : host_) cudaHostUnregister(f->data());
     cudaStreamDestroy(stream_);
@@ -296,7 +296,8 @@ Result<std::unique_ptr<CudaGas>> CudaGas::make(const GasGrid& grid, const Openin
     return none(fmt::format("a gas of {} cells needs {} MiB of the card's memory; {} are free",
                             grid.cells(), need >> 20, free >> 20));
   }
-  return std::unique_ptr<CudaGas>(new Card(properties.name, grid, openings, multigrid, fields));
+  return std::unique_ptr<CudaGas>(
+      new DeviceGas(properties.name, grid, openings, multigrid, fields));
 }
 
 }  // namespace gloam::gas
