@@ -114,6 +114,10 @@ class Install(unittest.TestCase):
         self.assertIn("camera side (side_optical_frame)", said)
         self.assertRegex(said, r"26 snapshots, 1[01] frames")
         self.assertIn("most control 0.50", run([build / "drive", model], self.elsewhere, **cache))
+        said = run([build / "branch", model], self.elsewhere, **cache)
+        ends = re.findall(r"control [+-]0\.5: step 300, first joint at ([+-]\d\.\d+)", said)
+        self.assertEqual(len(ends), 2, said)
+        self.assertNotEqual(*ends, "two ways on from one instant")
         said = run([build / "render_a_snapshot", model], self.elsewhere, **cache)
         self.assertRegex(said, r"t = 0\.\d+ s: [1-9]\d* of 3072 pixels show something")
         for name in ("run_and_read", "drive"):
