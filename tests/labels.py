@@ -18,6 +18,8 @@ SLOW = [
     "GeneratedEnvironment.IsMadeAsTheManualShowsIt",
     "GeneratedPlaces.*",
     "GeneratorRanges.*",
+    "McapKill.*",
+    "McapRecover.EachOfTheFirst500WritesMayFail",
     "MeshParts.*",
     "MjcfSpec.EveryAttributeIsReadAndEveryFieldIsMirrored",
     "MjcfSpec.SettingAfterwardsIsTheSameAsWritingItInTheFile",
