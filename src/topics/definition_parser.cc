@@ -38,7 +38,10 @@ bool is_name(std::string_view text, std::string_view others = "") {
 std::string full_name(std::string_view name, std::string_view package) {
   if (!is_name(name, "/")) return {};
   const size_t first = name.find('/'), last = name.rfind('/');
-  if (first == std::string_view::npos) return fmt::format("{}/msg/{}", package, name);
+  if (first == std::string_view::npos) {
+    std::string full = fmt::format("{}/msg/{}", package, name);
+    return full.size() > kLongestName ? "" : full;
+  }
   if (last + 1 == name.size()) return {};
   if (first == last) return fmt::format("{}/msg/{}", name.substr(0, first), name.substr(last + 1));
   return std::string(name);

@@ -6,122 +6,12 @@
 
 #include "base/text.h"
 #include "topics/codec.h"
+#include "topics/message_walk.h"
 
 namespace gloam {
 namespace {
 
 using SchemaField = MessageSchema::Field;
-
-/// Calls f(std::type_identity of the C++ type) of a primitive; false for strings and messages.
-template <class F>
-bool with_primitive(FieldKind kind, F&& f) {
-  switch (kind) {
-    case FieldKind::kMessage:
-    case FieldKind::kString:
-      return false;
-    case FieldKind::kInt8:
-      return f(std::type_identity<int8_t>());
-    case FieldKind::kUint8:
-    case FieldKind::kChar:
-    case FieldKind::kByte:
-      return f(std::type_identity<uint8_t>());
-    case FieldKind::kInt16:
-      return f(std::type_identity<int16_t>());
-    case FieldKind::kUint16:
-      return f(std::type_identity<uint16_t>());
-    case FieldKind::kInt32:
-      return f(std::type_identity<int32_t>());
-    case FieldKind::kUint32:
-      return f(std::type_identity<uint32_t>());
-    case FieldKind::kInt64:
-      return f(std::type_identity<int64_t>());
-    case FieldKind::kUint64:
-      return f(std::type_identity<uint64_t>());
-    case FieldKind::kFloat32:
-      return f(std::type_identity<float>());
-    case FieldKind::kFloat64:
-      return f(std::type_identity<double>());
-    case FieldKind::kBool:
-      return f(std::type_identity<bool>());
-  }
-  return false;
-}
-
-/// Reads how many elements a field has: 1 where it is no array.
-bool read_length(CdrReader* reader, const SchemaField& field, size_t* count) {
-  *count = field.type.array == ArrayKind::kFixed ? field.type.array_size : 1;
-  if (field.type.array < ArrayKind::kBounded) return true;
-  if (!reader->read_count(count, field.least_size)) return false;
-  if (field.type.array == ArrayKind::kBounded && *count > field.type.array_size) {
-    return reader->fail(
-        fmt::format("{} elements, where {} are allowed", *count, field.type.array_size));
-  }
-  return true;
-}
-
-/// Steps over `count` elements of a field. The work is bounded by the bytes, as each has one.
-bool skip_elements(const MessageSchema& schema, CdrReader* reader, const SchemaField& field,
-                   size_t count);
-
-bool skip_field(const MessageSchema& schema, CdrReader* reader, const SchemaField& field) {
-  size_t count = 0;
-  if (read_length(reader, field, &count) && skip_elements(schema, reader, field, count))
-    return true;
-  reader->add_place(field.name);
-  return false;
-}
-
-bool skip_elements(const MessageSchema& schema, CdrReader* reader, const SchemaField& field,
-                   size_t count) {
-  if (const size_t size = primitive_size(field.type.kind); size > 0) {
-    if (count == 0) return true;
-    const uint8_t* from = reader->take(size, count);
-    if (from == nullptr) return false;
-    if (field.type.kind != FieldKind::kBool) return true;
-    return std::all_of(from, from + count, [](uint8_t byte) { return byte <= 1; }) ||
-           reader->fail("a bool is neither 0 nor 1");
-  }
-  for (size_t i = 0; i < count; ++i) {
-    if (field.type.kind == FieldKind::kString) {
-      std::string_view text;
-      if (!reader->read_string(&text, field.type.string_bound)) return false;
-      continue;
-    }
-    const std::vector<SchemaField>& fields = schema.fields(field.part);
-    if (fields.empty() && reader->take(1, 1) == nullptr) return false;
-    for (const SchemaField& part : fields) {
-      if (!skip_field(schema, reader, part)) return false;
-    }
-  }
-  return true;
-}
-
-/// Appends all numbers of a field; false where a string is among them, or on damage.
-bool collect_numbers(const MessageSchema& schema, CdrReader* reader, const SchemaField& field,
-                     std::vector<double>* numbers) {
-  size_t count = 0;
-  if (field.type.kind == FieldKind::kString || !read_length(reader, field, &count)) return false;
-  if (field.type.kind != FieldKind::kMessage) {
-    return with_primitive(field.type.kind, [&]<class T>(std::type_identity<T>) {
-      if (count > reader->left() / sizeof(T)) return reader->fail("the message ends too soon");
-      numbers->reserve(numbers->size() + count);
-      for (size_t i = 0; i < count; ++i) {
-        T value = {};
-        if (!reader->read(&value)) return false;
-        numbers->push_back(static_cast<double>(value));
-      }
-      return true;
-    });
-  }
-  for (size_t i = 0; i < count; ++i) {
-    const std::vector<SchemaField>& fields = schema.fields(field.part);
-    if (fields.empty() && reader->take(1, 1) == nullptr) return false;
-    for (const SchemaField& part : fields) {
-      if (!collect_numbers(schema, reader, part, numbers)) return false;
-    }
-  }
-  return true;
-}
 
 /// One step of a path, "transforms[2]".
 struct PathStep {

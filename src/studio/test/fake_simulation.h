@@ -52,6 +52,14 @@ class FakeSimulation : public Simulation {
                                                          SnapshotCallback) override {
     return unsupported();
   }
+  Result<Checkpoint> checkpoint() override { return unsupported(); }
+  Status restore(const Checkpoint&) override { return unsupported(); }
+  Result<std::unique_ptr<ControlLease>> claim(Robot) override { return unsupported(); }
+  Result<std::vector<TopicInfo>> topics() const override { return unsupported(); }
+  Result<std::unique_ptr<TopicStream>> open_topics(const TopicRequest&, TopicCallback) override {
+    return unsupported();
+  }
+  Status publish(std::string_view, std::span<const uint8_t>) override { return unsupported(); }
   std::vector<std::string> camera_names() const override { return {"front", "robot/head"}; }
   Result<std::vector<LabelRow>> labels() override { return std::vector<LabelRow>{}; }
   Result<PickResult> pick(const CameraFrame& frame, double u, double v) override;
