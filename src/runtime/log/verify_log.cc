@@ -82,6 +82,9 @@ class Verifier {
     GLOAM_TRY_STATUS(stepper_->run_until(state.step));
     at_ = state.step;
     ++found_.states;
+    // A state may have been taken before or after a recompile at its step.
+    if (stepper_->has_chapter_here() && stepper_->loop().stepper().hash() != state.hash)
+      GLOAM_TRY_STATUS(stepper_->begin_chapters());
     const Snapshot& again = stepper_->loop().stepper().snapshot();
     if (again.hash() == state.hash) {
       equal_ = state.step;

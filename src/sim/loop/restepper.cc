@@ -36,16 +36,21 @@ Status Restepper::begin_chapter(const RunRecord::Chapter& chapter) {
 
 Status Restepper::run_until(int64_t step) {
   MujocoWarningCapture warnings;  // the first run has told them
-  const Stepper* stepper = &loop_->stepper();
-  while (true) {
-    while (next_chapter_ < record_.chapters.size() &&
-           record_.chapters[next_chapter_].from == stepper->step_count()) {
-      GLOAM_TRY_STATUS(begin_chapter(record_.chapters[next_chapter_++]));
-      stepper = &loop_->stepper();
-    }
-    if (stepper->step_count() >= step) return {};
-    if (!loop_->advance()) return stepper->error();
+  while (loop_->stepper().step_count() < step) {
+    GLOAM_TRY_STATUS(begin_chapters());
+    if (!loop_->advance()) return loop_->stepper().error();
   }
+  return {};
+}
+
+bool Restepper::has_chapter_here() const {
+  return next_chapter_ < record_.chapters.size() &&
+         record_.chapters[next_chapter_].from == loop_->stepper().step_count();
+}
+
+Status Restepper::begin_chapters() {
+  while (has_chapter_here()) GLOAM_TRY_STATUS(begin_chapter(record_.chapters[next_chapter_++]));
+  return {};
 }
 
 }  // namespace gloam

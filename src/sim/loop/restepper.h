@@ -20,9 +20,12 @@ class Restepper {
   /// Stands at step 0 of the record's first World.
   static Result<std::unique_ptr<Restepper>> create(RunRecord record, ControllerMaker controllers);
 
-  /// Goes on to `step`. Errors: physics fails, a World of the record cannot go on from the one
-  /// before it.
+  /// Goes on to `step`, and stands there as before a recompile at it. Errors: physics fails, a
+  /// World of the record cannot go on from the one before it.
   Status run_until(int64_t step);
+  /// Goes on in another World where the record does so at the present step.
+  Status begin_chapters();
+  bool has_chapter_here() const;
 
   SimLoop& loop() { return *loop_; }
   const RunRecord& record() const { return record_; }

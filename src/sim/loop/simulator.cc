@@ -288,6 +288,7 @@ Status Simulator::restore(const CheckpointData& checkpoint, const ControllerMake
   if (checkpoint.copy == nullptr || world != this->world()) {
     GLOAM_TRY(again, Restepper::create(record, controllers));
     GLOAM_TRY_STATUS(again->run_until(record.step));
+    GLOAM_TRY_STATUS(again->begin_chapters());
     if (again->loop().stepper().hash() != record.hash) {
       return Error{ErrorKind::kPartial,
                    fmt::format("the run was stepped again to step {}, where its state hash is "

@@ -73,6 +73,7 @@ class FakeSimulation::Stream : public CameraStream {
     wake_.notify_one();
   }
   int64_t dropped() const override { return 0; }
+  Status status() const override { return {}; }
 
  private:
   void run() {
