@@ -5,6 +5,7 @@
 
 #include "base/parallel.h"
 #include "render/cpu/path/tile.h"
+#include "render/cpu/realtime/fast_gather.h"
 #include "render/cpu/realtime/fast_tier.h"
 #include "render/kernel/realtime/fast_sample.h"
 

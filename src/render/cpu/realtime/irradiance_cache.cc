@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "render/cpu/realtime/fast_gather.h"
 #include "render/kernel/light/light_directions.h"
-#include "render/kernel/realtime/fast_gather.h"
 
 namespace gloam {
 uint32_t IrradianceCache::slot_of(uint64_t key) const {

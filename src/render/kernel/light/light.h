@@ -313,8 +313,9 @@ GLOAM_HD LightSample sample_instance(const SceneView& scene, const LightView& li
 /// A direction from p towards light `index` for the `active` lanes; the density does not include
 /// its selection.
 template <class F>
-GLOAM_HD LightSampleOf<F> sample_one_light(const SceneView& scene, uint32_t index, Vec3Of<F> p,
-                                           Vec2Of<F> u, F time, MaskOf<F> active = true) {
+GLOAM_HD_LARGE LightSampleOf<F> sample_one_light(const SceneView& scene, uint32_t index,
+                                                 Vec3Of<F> p, Vec2Of<F> u, F time,
+                                                 MaskOf<F> active = true) {
   const LightView& light = scene.lights[index];
   LightSampleOf<F> s;
   if (!kPlainScenes && light.first_key >= 0) {
@@ -375,5 +376,14 @@ GLOAM_HD void aim_shadow_ray(Vec3Of<F> p, Vec3Of<F> geometric, F t, const LightS
   ray->d = select<F>(distance > 0.0f, to / distance, light.wi);
   ray->tmax = distance * 0.9999f;
 }
+
+#ifndef __CUDACC__  // instantiated in render/cpu/kernels/lights.cc
+extern template LightSample sample_one_light<float>(const SceneView&, uint32_t, Vec3f, Vec2f, float,
+                                                    bool);
+extern template LightSampleOf<FloatLanes> sample_one_light<FloatLanes>(const SceneView&, uint32_t,
+                                                                       Vec3Of<FloatLanes>,
+                                                                       Vec2Of<FloatLanes>,
+                                                                       FloatLanes, MaskLanes);
+#endif
 
 }  // namespace gloam

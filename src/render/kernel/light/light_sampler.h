@@ -177,8 +177,8 @@ class LightSamplerOf {
   /// Sample of a light, or of the sky: which by u.x, and a direction from p towards it by what is
   /// left of u.x and by u.y, for the `active` lanes. Points u that are spread evenly are so over
   /// each light.
-  GLOAM_HD LightSampleOf<F> sample(const SceneView& scene, Vec3Of<F> p, Vec2Of<F> u, F time,
-                                   Mask active = true) const {
+  GLOAM_HD_LARGE LightSampleOf<F> sample(const SceneView& scene, Vec3Of<F> p, Vec2Of<F> u, F time,
+                                         Mask active = true) const {
     LightSampleOf<F> out;
     Mask open = active;
     if (scene.has_environment()) {
@@ -305,6 +305,12 @@ class LightSamplerOf {
   F total_{};             ///< sum of the weights that gave the probabilities; -1 = is not known
 };
 using LightSampler = LightSamplerOf<float>;
+
+#ifndef __CUDACC__  // instantiated in render/cpu/kernels/lights.cc
+extern template LightSample LightSampler::sample(const SceneView&, Vec3f, Vec2f, float, bool) const;
+extern template LightSampleOf<FloatLanes> LightSamplerOf<FloatLanes>::sample(
+    const SceneView&, Vec3Of<FloatLanes>, Vec2Of<FloatLanes>, FloatLanes, MaskLanes) const;
+#endif
 
 /// A lamp or sun that stands still, as in visible_lights. `probability`: of taking it at `from`.
 template <class F, class Probability, class Passing>

@@ -66,8 +66,12 @@ using UintOf = typename Lanes<F>::Uint;
 
 }  // namespace gloam
 
-#ifndef __CUDACC__
+#ifdef __CUDACC__
+#define GLOAM_HD_LARGE GLOAM_HD
+#else
 #include "render/kernel/math/simd_lanes.h"
+/// Large templates: calls on the CPU, so that one file compiles them for all that use them.
+#define GLOAM_HD_LARGE [[gnu::noinline]]
 #endif
 
 namespace gloam {

@@ -258,10 +258,9 @@ class AirRay {
 
 /// Light of media along path->ray. `requests`: one per lane.
 template <class F, class Tracer>
-[[gnu::noinline]] GLOAM_HD MediaLightOf<F> cross_media(const FastWorld<Tracer>& world,
-                                                       const MediaOptionsOf<F>& options,
-                                                       paths::State<F>* path,
-                                                       CacheRequest* requests) {
+GLOAM_HD_LARGE MediaLightOf<F> cross_media(const FastWorld<Tracer>& world,
+                                           const MediaOptionsOf<F>& options, paths::State<F>* path,
+                                           CacheRequest* requests) {
   MediaLightOf<F> out{{}, {}, {}, {}, in_all_lanes<F>({1, 1, 1})};
   if (world.scene.media.volumes.empty()) return out;
   const Vec2Of<F> u = path->sampler.next_2d(options.active);

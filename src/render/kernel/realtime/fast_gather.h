@@ -212,9 +212,9 @@ class GatherRays {
 /// Light along path->ray in the `active` lanes, from its first surface that is no glass or mirror.
 /// `requests`: one per lane.
 template <class F, class Tracer>
-[[gnu::noinline]] GLOAM_HD GatheredOf<F> gather(const FastWorld<Tracer>& world,
-                                                const GatherOptionsOf<F>& options, MaskOf<F> active,
-                                                paths::State<F>* path, CacheRequest* requests) {
+GLOAM_HD_LARGE GatheredOf<F> gather(const FastWorld<Tracer>& world,
+                                    const GatherOptionsOf<F>& options, MaskOf<F> active,
+                                    paths::State<F>* path, CacheRequest* requests) {
   return GatherRays<F, Tracer>(world, options, active, path, requests).trace();
 }
 

@@ -177,10 +177,9 @@ class LampSum {
 /// Direct light at the surfaces of the active lanes: of every light and glowing medium, or of some
 /// samples of them all.
 template <class F, class Tracer>
-[[gnu::noinline]] GLOAM_HD LampLightOf<F> direct_light(const FastWorld<Tracer>& world,
-                                                       const LitSurfaceOf<F>& surface,
-                                                       const LampOptionsOf<F>& options,
-                                                       paths::State<F>* path) {
+GLOAM_HD_LARGE LampLightOf<F> direct_light(const FastWorld<Tracer>& world,
+                                           const LitSurfaceOf<F>& surface,
+                                           const LampOptionsOf<F>& options, paths::State<F>* path) {
   const SceneView& scene = world.scene;
   const SurfaceOf<F>& v = surface.v;
   const MaskOf<F> active = options.active;

@@ -127,9 +127,9 @@ GLOAM_HD PlacedOf<F> place_surface(const SceneView& scene, const RayOf<F>& ray,
 
 /// The surfaces that the lanes of `found` have hit. `cone` is that of the ray at its origin.
 template <class F>
-GLOAM_HD SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>& ray,
-                                   const RayHitOf<F>& hit, RayConeOf<F> cone,
-                                   MaskOf<F> found = true) {
+GLOAM_HD_LARGE SurfaceOf<F> make_surface(const SceneView& scene, const RayOf<F>& ray,
+                                         const RayHitOf<F>& hit, RayConeOf<F> cone,
+                                         MaskOf<F> found = true) {
   SurfaceOf<F> s;
   const surfaces::PlacedOf<F> at = surfaces::place_surface(scene, ray, hit, found, &s);
   const F cosine = dot(s.geometric, ray.d);
@@ -196,5 +196,14 @@ GLOAM_HD LayeredBsdfOf<F> surface_bsdf(const SceneView& scene, const SurfaceOf<F
   }
   return bsdf;
 }
+
+#ifndef __CUDACC__  // instantiated in render/cpu/kernels/surfaces.cc
+extern template Surface make_surface<float>(const SceneView&, const Ray&, const RayHit&, RayCone,
+                                            bool);
+extern template SurfaceOf<FloatLanes> make_surface<FloatLanes>(const SceneView&,
+                                                               const RayOf<FloatLanes>&,
+                                                               const RayHitOf<FloatLanes>&,
+                                                               RayConeOf<FloatLanes>, MaskLanes);
+#endif
 
 }  // namespace gloam
