@@ -29,6 +29,13 @@ int record(const RecordCommand& command_line, const Globals& globals) {
   request.simulation.timestep = scene->sim.timestep.value_or(0);
   request.simulation.pace = command.realtime ? Pace::kRealTime : Pace::kFast;
   request.simulation.speed = command.speed;
+  if (!command.options.resolution.empty()) {
+    if (const Status status =
+            parse_resolution(command.options.resolution, request.width, request.height);
+        !status.ok()) {
+      return fail(status.error());
+    }
+  }
   std::error_code code;
   if (std::filesystem::exists(command.log, code) && !command.overwrite)
     return fail({ErrorKind::kUsage,

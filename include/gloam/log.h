@@ -16,6 +16,7 @@ namespace gloam {
 struct LogRequest {
   std::filesystem::path file = {};       ///< new file; empty = no log
   std::vector<std::string> topics = {};  ///< names, * stands for any text; empty = the usual ones
+  int width = 0, height = 0;             ///< of every camera's pictures [px]; 0 = the camera's own
   bool required = true;            ///< the simulation waits for the disk; else messages are lost
   bool durable = false;            ///< each chunk is synced before the next is written
   bool embed = false;              ///< with the files that the scene reads

@@ -59,6 +59,7 @@ using TopicCallback = std::function<void(const TopicMessage&)>;
 
 struct TopicRequest {
   std::vector<std::string> topics;  ///< names; * stands for any text
+  int width = 0, height = 0;        ///< of every camera's pictures [px]; 0 = the camera's own
   bool required = false;  ///< the simulation waits for its reader; else messages are lost, counted
   EndCallback on_end = {};
 };

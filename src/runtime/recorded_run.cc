@@ -145,6 +145,8 @@ LogRequest log_request_of(const Scene& scene, const RunRequest& request) {
   log.durable |= record.durable;
   log.embed |= record.embed;
   log.state_rate = record.state_rate;
+  log.width = request.width;
+  log.height = request.height;
   log.required = request.simulation.pace == Pace::kFast;
   return log;
 }

@@ -110,7 +110,10 @@ Status LogRecorder::embed_files(const CompiledWorld& world) {
 }
 
 Status LogRecorder::open_streams(const std::vector<std::string>& topics) {
-  TopicRequest request{.topics = topics, .required = request_.required};
+  const TopicRequest request{.topics = topics,
+                             .width = request_.width,
+                             .height = request_.height,
+                             .required = request_.required};
   GLOAM_TRY(topics_, simulation_.open_topics(request, [this](const TopicMessage& message) {
     write(message.topic.name, message.time, message.run, message.data);
   }));

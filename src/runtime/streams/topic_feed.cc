@@ -106,6 +106,8 @@ Status TopicFeed::send_latched(Simulation& simulation, Outlets outlets) {
 Status TopicFeed::open_camera(Simulation& simulation, const std::string& camera, Outlets outlets) {
   CameraRequest request{.camera = camera, .required = request_.required, .on_end = request_.on_end};
   request.render = simulation.world().scene().render;
+  request.width = request_.width;
+  request.height = request_.height;
   request.outputs.clear();
   for (const Outlet& outlet : outlets) {
     if (std::ranges::count(request.outputs, outlet.topic->channel) == 0)
