@@ -17,6 +17,8 @@ SLOW = [
     "GeneratedEnvironment.IsMadeAsTheManualShowsIt",
     "GeneratedPlaces.*",
     "GeneratorRanges.*",
+    "McapKill.*",
+    "McapRecover.EachOfTheFirst500WritesMayFail",
     "MeshParts.*",
     "MjcfSpec.EveryAttributeIsReadAndEveryFieldIsMirrored",
     "MjcfSpec.SettingAfterwardsIsTheSameAsWritingItInTheFile",

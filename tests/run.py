@@ -27,7 +27,7 @@ import labels  # noqa: E402
 
 BUILD = ROOT / "build"
 CLANG = "-19"
-READERS = {"base", "geometry", "places", "scene", "world"}  # of strangers' files: under sanitizers in every CI
+READERS = {"base", "geometry", "places", "scene", "world", "record"}  # of strangers' files: under sanitizers in every CI
 UNIT = ["base", "geometry", "places", "scene", "world", "sim", "render", "sensors", "control", "record", "runtime", "studio"]
 
 
@@ -285,7 +285,7 @@ def units(tally, preset, shard_filter, modules=UNIT):
 
 def slow_units(tally, chosen):
     """Tests that take seconds each: two programs at a time, the places of all generators in two halves."""
-    modules = ["scene", "sim", "runtime", "geometry", "render", "sensors", "control", "studio"]
+    modules = ["scene", "sim", "runtime", "geometry", "render", "sensors", "control", "record", "studio"]
     parts = [("world", (0, 2)), ("world", (1, 2))] + [(module, None) for module in modules]
     with ThreadPoolExecutor(2) as pool:
         list(pool.map(lambda part: gtest(tally, "release", part[0], shard_filter=chosen, shard=part[1]), parts))
@@ -347,6 +347,7 @@ def full(tally):
         "sweeps": lambda t: gtest(t, "release", "control", labels.only(labels.SWEEPS)),
         "sweeps of places": lambda t: gtest(t, "release", "world", labels.only(labels.SWEEPS)),
         "sweeps of meshes": lambda t: gtest(t, "release", "geometry", labels.only(labels.SWEEPS)),
+        "sweeps of logs": lambda t: gtest(t, "release", "record", labels.only(labels.SWEEPS)),
         "sweeps of running scenes": lambda t: gtest(t, "release", "runtime", labels.only(labels.SWEEPS)),
         "pack": pack,
         "first look at models": lambda t: python_tests(t, "tests/e2e/gallery_models.py"),
