@@ -424,7 +424,18 @@ def all_effects(quick):
                       f"{', '.join(f'{name} {us:.0f}' for name, us in data['each_us'].items())} µs")
 
 
+def log_rate(quick):
+    """writing a log of pictures against plain writes and one fsync of the same bytes; time to a message in the middle of it"""
+    megabytes = 100 if quick else 1000
+    CACHE.mkdir(parents=True, exist_ok=True)
+    data = run_json(BIN / "bench_log_rate", CACHE, "--json", "--megabytes", megabytes, "--pairs", 1 if quick else 3)
+    yield at_least("log of incompressible messages: bytes per second / plain writes", data["ratio"], 0.7,
+                   f"200 KiB each, {megabytes} MB, through the queue, with one fsync: {data['log_mb_s']:.0f} MB/s, plain {data['plain_mb_s']:.0f} MB/s")
+    yield at_most("the same: open, seek, read a message, worst of 20 [ms]", data["seek_max_ms"], 100,
+                  f"log not in memory; median {data['seek_median_ms']:.1f} ms")
+
+
 # With the seconds that each takes on two cores: the first estimate of the time left.
 ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, direct_places: 60, view: 40, fast_tier: 400, truth: 40, load_time: 120, import_time: 60,
        first_picture: 15, adaptive_sampling: 120, lidar: 25, environments: 60, hfield: 25, gas: 20,
-       effects: 90, all_effects: 75}
+       effects: 90, all_effects: 75, log_rate: 60}
