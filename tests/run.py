@@ -27,8 +27,8 @@ import labels  # noqa: E402
 
 BUILD = ROOT / "build"
 CLANG = "-19"
-READERS = {"base", "geometry", "scene", "world", "topics", "record"}  # of strangers' files: under sanitizers in every CI
-UNIT = ["base", "geometry", "places", "scene", "world", "sim", "render", "sensors", "control", "topics", "record", "runtime",
+READERS = {"base", "ros", "mcap", "geometry", "scene", "world"}  # of strangers' files: under sanitizers in every CI
+UNIT = ["base", "ros", "mcap", "geometry", "places", "scene", "world", "sim", "render", "sensors", "control", "topics", "record", "runtime",
         "studio"]
 
 
@@ -348,7 +348,7 @@ def full(tally):
         "sweeps": lambda t: gtest(t, "release", "control", labels.only(labels.SWEEPS)),
         "sweeps of places": lambda t: gtest(t, "release", "world", labels.only(labels.SWEEPS)),
         "sweeps of meshes": lambda t: gtest(t, "release", "geometry", labels.only(labels.SWEEPS)),
-        "sweeps of logs": lambda t: gtest(t, "release", "record", labels.only(labels.SWEEPS)),
+        "sweeps of logs": lambda t: gtest(t, "release", "mcap", labels.only(labels.SWEEPS)),
         "sweeps of running scenes": lambda t: gtest(t, "release", "runtime", labels.only(labels.SWEEPS)),
         "pack": pack,
         "first look at models": lambda t: python_tests(t, "tests/e2e/gallery_models.py"),
