@@ -19,9 +19,9 @@
 #include "base/rng.h"
 #include "bench/command_line.h"
 #include "bench/median.h"
-#include "record/mcap/log_queue.h"
-#include "record/mcap/mcap_reader.h"
-#include "record/mcap/mcap_writer.h"
+#include "mcap/log_queue.h"
+#include "mcap/mcap_reader.h"
+#include "mcap/mcap_writer.h"
 
 using namespace gloam;
 

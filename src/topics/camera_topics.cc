@@ -6,9 +6,9 @@
 #include <cstring>
 
 #include "gloam/view.h"
-#include "topics/message_types.h"
-#include "topics/messages/event_camera_msgs.h"
-#include "topics/messages/sensor_images.h"
+#include "ros/message_types.h"
+#include "ros/messages/event_camera_msgs.h"
+#include "ros/messages/sensor_images.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"
 #include "world/streams.h"

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "base/text.h"
-#include "topics/messages/sensor_msgs.h"
-#include "topics/messages/trajectory_msgs.h"
+#include "ros/messages/sensor_msgs.h"
+#include "ros/messages/trajectory_msgs.h"
 #include "topics/model_frames.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "topics/messages/sensor_images.h"
+#include "ros/messages/sensor_images.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"
 #include "world/streams.h"

@@ -1,8 +1,8 @@
 // Topics of robots: joints, odometry, the model.
 
 #include "base/files.h"
-#include "topics/messages/nav_msgs.h"
-#include "topics/messages/sensor_msgs.h"
+#include "ros/messages/nav_msgs.h"
+#include "ros/messages/sensor_msgs.h"
 #include "topics/model_frames.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "gloam/types.h"
-#include "topics/messages/geometry_msgs.h"
+#include "ros/messages/geometry_msgs.h"
 
 namespace gloam {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <map>
 
-#include "topics/messages/sensor_msgs.h"
+#include "ros/messages/sensor_msgs.h"
 #include "topics/model_frames.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"

@@ -12,8 +12,8 @@
 #include "gloam/command.h"
 #include "gloam/sensor.h"
 #include "gloam/topics.h"
+#include "ros/codec.h"
 #include "sim/snapshots/pose_solver.h"
-#include "topics/codec.h"
 
 namespace gloam {
 

@@ -7,7 +7,7 @@
 
 #include "base/text.h"
 #include "geometry/mesh/single.h"
-#include "topics/message_types.h"
+#include "ros/message_types.h"
 #include "world/view/render_origin.h"
 #include "world/world.h"
 

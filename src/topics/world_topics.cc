@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "topics/messages/gloam_msgs.h"
-#include "topics/messages/rosgraph_msgs.h"
-#include "topics/messages/tf2_msgs.h"
-#include "topics/messages/visualization_msgs.h"
+#include "ros/messages/gloam_msgs.h"
+#include "ros/messages/rosgraph_msgs.h"
+#include "ros/messages/tf2_msgs.h"
+#include "ros/messages/visualization_msgs.h"
 #include "topics/model_frames.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"

@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "record/mcap/crc32.h"
-#include "record/mcap/mcap_describe.h"
-#include "record/mcap/mcap_reader.h"
-#include "record/mcap/mcap_recover.h"
-#include "record/mcap/mcap_writer.h"
+#include "mcap/crc32.h"
+#include "mcap/mcap_describe.h"
+#include "mcap/mcap_reader.h"
+#include "mcap/mcap_recover.h"
+#include "mcap/mcap_writer.h"
 
 namespace gloam {
 namespace {

@@ -12,7 +12,7 @@ from e2e.support import ROOT
 sys.path.insert(0, str(ROOT / "tests"))
 import fetch_data  # noqa: E402
 
-PROGRAM = ROOT / "build" / "release" / "bin" / "gloam_topics_test"
+PROGRAM = ROOT / "build" / "release" / "bin" / "gloam_ros_test"
 MESSAGES = 8  # of each type, as in message_files_test.cc
 OURS_ALONE = {"foxglove_msgs", "event_camera_msgs", "std_srvs", "gloam_msgs"}  # packages that rosbags does not know
 

@@ -9,13 +9,13 @@
 
 #include <jpeglib.h>
 
+#include "base/test/mutator.h"
 #include "geometry/image/image_file.h"
 #include "geometry/mesh/mtl_reader.h"
 #include "geometry/mesh/text_lines.h"
 #include "geometry/test/gltf_builder.h"
 #include "geometry/test/image_writer.h"
 #include "geometry/test/largest_request.h"
-#include "geometry/test/mutator.h"
 #include "geometry/test/npy_writer.h"
 #include "geometry/test/read_helper.h"
 #include "geometry/volume_file.h"

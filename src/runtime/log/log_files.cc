@@ -1,9 +1,9 @@
 // gloam::describe_log and recover_log.
 
 #include "gloam/log.h"
-#include "record/mcap/mcap_describe.h"
-#include "record/mcap/mcap_reader.h"
-#include "record/mcap/mcap_recover.h"
+#include "mcap/mcap_describe.h"
+#include "mcap/mcap_reader.h"
+#include "mcap/mcap_recover.h"
 #include "runtime/log/run_text.h"
 
 namespace gloam {

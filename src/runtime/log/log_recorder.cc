@@ -6,11 +6,11 @@
 #include <cmath>
 
 #include "base/files.h"
+#include "ros/codec.h"
+#include "ros/message_types.h"
+#include "ros/messages/gloam_msgs.h"
 #include "runtime/log/command_text.h"
 #include "runtime/log/run_text.h"
-#include "topics/codec.h"
-#include "topics/message_types.h"
-#include "topics/messages/gloam_msgs.h"
 #include "topics/ros_values.h"
 
 namespace gloam {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "gloam/log.h"
-#include "record/mcap/log_queue.h"
+#include "mcap/log_queue.h"
 #include "runtime/live_simulation.h"
 
 namespace gloam {

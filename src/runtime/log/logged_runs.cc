@@ -2,11 +2,11 @@
 
 #include <algorithm>
 
+#include "ros/codec.h"
+#include "ros/messages/gloam_msgs.h"
 #include "runtime/log/command_text.h"
 #include "runtime/log/run_text.h"
 #include "sim/commands/command_check.h"
-#include "topics/codec.h"
-#include "topics/messages/gloam_msgs.h"
 
 namespace gloam {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "record/mcap/mcap_reader.h"
+#include "mcap/mcap_reader.h"
 #include "sim/loop/run_record.h"
 
 namespace gloam {

@@ -6,13 +6,13 @@
 #include <cmath>
 
 #include "gloam/log.h"
+#include "ros/codec.h"
+#include "ros/messages/gloam_msgs.h"
 #include "runtime/live_simulation.h"
 #include "runtime/log/logged_runs.h"
 #include "runtime/log/run_text.h"
 #include "sim/loop/restepper.h"
 #include "sim/state/state_layout.h"
-#include "topics/codec.h"
-#include "topics/messages/gloam_msgs.h"
 
 namespace gloam {
 namespace {

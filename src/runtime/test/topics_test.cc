@@ -8,11 +8,11 @@
 #include <mutex>
 
 #include "gloam/simulation.h"
+#include "ros/messages/nav_msgs.h"
+#include "ros/messages/sensor_images.h"
+#include "ros/messages/tf2_msgs.h"
+#include "ros/messages/trajectory_msgs.h"
 #include "scene/test/temp_folder.h"
-#include "topics/messages/nav_msgs.h"
-#include "topics/messages/sensor_images.h"
-#include "topics/messages/tf2_msgs.h"
-#include "topics/messages/trajectory_msgs.h"
 #include "topics/model_frames.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"

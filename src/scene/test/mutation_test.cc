@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "base/files.h"
-#include "geometry/test/mutator.h"
+#include "base/test/mutator.h"
 #include "scene/files/urdf_text.h"
 #include "scene/files/xml_scan.h"
 #include "scene/toml/toml_reader.h"

@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <functional>
 
-#include "geometry/test/mutator.h"
+#include "base/test/mutator.h"
 
 namespace gloam {
 namespace {
