@@ -377,7 +377,8 @@ GLOAM_HD void aim_shadow_ray(Vec3Of<F> p, Vec3Of<F> geometric, F t, const LightS
   ray->tmax = distance * 0.9999f;
 }
 
-#ifndef __CUDACC__  // instantiated in render/cpu/kernels/lights.cc
+#if !defined(__CUDACC__) && \
+    !defined(GLOAM_LARGE_IN_PLACE)  // instantiated in render/cpu/kernels/lights.cc
 extern template LightSample sample_one_light<float>(const SceneView&, uint32_t, Vec3f, Vec2f, float,
                                                     bool);
 extern template LightSampleOf<FloatLanes> sample_one_light<FloatLanes>(const SceneView&, uint32_t,

@@ -306,7 +306,8 @@ class LightSamplerOf {
 };
 using LightSampler = LightSamplerOf<float>;
 
-#ifndef __CUDACC__  // instantiated in render/cpu/kernels/lights.cc
+#if !defined(__CUDACC__) && \
+    !defined(GLOAM_LARGE_IN_PLACE)  // instantiated in render/cpu/kernels/lights.cc
 extern template LightSample LightSampler::sample(const SceneView&, Vec3f, Vec2f, float, bool) const;
 extern template LightSampleOf<FloatLanes> LightSamplerOf<FloatLanes>::sample(
     const SceneView&, Vec3Of<FloatLanes>, Vec2Of<FloatLanes>, FloatLanes, MaskLanes) const;

@@ -197,7 +197,8 @@ GLOAM_HD LayeredBsdfOf<F> surface_bsdf(const SceneView& scene, const SurfaceOf<F
   return bsdf;
 }
 
-#ifndef __CUDACC__  // instantiated in render/cpu/kernels/surfaces.cc
+#if !defined(__CUDACC__) && \
+    !defined(GLOAM_LARGE_IN_PLACE)  // instantiated in render/cpu/kernels/surfaces.cc
 extern template Surface make_surface<float>(const SceneView&, const Ray&, const RayHit&, RayCone,
                                             bool);
 extern template SurfaceOf<FloatLanes> make_surface<FloatLanes>(const SceneView&,
