@@ -73,6 +73,40 @@ class Log(unittest.TestCase):
         self.assertTrue(info["can_be_stepped_again"])
         self.assertEqual(info["damage"], "")
 
+    def test_trajectories_and_tables_are_those_of_the_messages(self):
+        from rosbags.typesys import Stores, get_typestore
+        store = get_typestore(Stores.ROS2_KILTED)
+        odom = [store.deserialize_cdr(m.data, "nav_msgs/msg/Odometry") for _, c, m in self.messages() if c.topic == "/left/odom"]
+        self.assertGreater(len(odom), 40)
+        tum, kitti, euroc, table = (self.folder / f"left.{end}" for end in ("tum", "kitti", "euroc", "csv"))
+        for path, to in ((tum, "tum"), (kitti, "kitti"), (euroc, "euroc")):
+            gloam("export", self.log, "--to", to, "--topic", "/left/odom", "--out", path)
+        rows = [[float(x) for x in line.split()] for line in tum.read_text().splitlines()]
+        self.assertEqual(len(rows), len(odom))
+        for row, message in zip(rows, odom):
+            p, q = message.pose.pose.position, message.pose.pose.orientation
+            self.assertEqual(row[1:], [p.x, p.y, p.z, q.x, q.y, q.z, q.w])
+            self.assertAlmostEqual(row[0], message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec, delta=1e-9)
+        matrices = [[float(x) for x in line.split()] for line in kitti.read_text().splitlines()]
+        self.assertEqual([[m[3], m[7], m[11]] for m in matrices], [r[1:4] for r in rows])
+        for m in matrices:
+            self.assertAlmostEqual(sum(x * x for x in (m[0], m[4], m[8])), 1, delta=1e-12)
+        lines = euroc.read_text().splitlines()
+        self.assertTrue(lines[0].startswith("#timestamp"))
+        self.assertEqual([float(x) for x in lines[1].split(",")][1:4], rows[0][1:4])
+        gloam("export", self.log, "--to", "csv", "--topic", "/left/odom", "--out", table)
+        import csv
+        with table.open() as stream:
+            read = list(csv.DictReader(stream))
+        self.assertEqual([float(r["pose.pose.position.x"]) for r in read], [r[1] for r in rows])
+        self.assertEqual(read[0]["child_frame_id"], odom[0].child_frame_id)
+        frame = self.folder / "frame.tum"
+        gloam("export", self.log, "--to", "tum", "--topic", f"/tf:{odom[0].child_frame_id}", "--out", frame)
+        self.assertEqual([line.split()[1:4] for line in frame.read_text().splitlines()][0], tum.read_text().split()[1:4])
+        for topic, word in (("/left/odmo", "/left/odom"), ("/clock", "no pose"), ("/tf:nothing", "no pose")):
+            self.assertIn(word, gloam("export", self.log, "--to", "tum", "--topic", topic, "--out", self.folder / "x", expect=1).stderr)
+        gloam("export", self.log, "--to", "tum", "--topic", "/left/odom", "--out", tum, expect=2)  # is there already
+
     def test_a_cut_log_is_made_whole(self):
         cut, whole = self.folder / "cut.mcap", self.folder / "whole.mcap"
         cut.write_bytes(self.log.read_bytes()[:self.log.stat().st_size // 2])
