@@ -76,11 +76,11 @@ class Log(unittest.TestCase):
     def test_trajectories_and_tables_are_those_of_the_messages(self):
         from rosbags.typesys import Stores, get_typestore
         store = get_typestore(Stores.ROS2_KILTED)
-        odom = [store.deserialize_cdr(m.data, "nav_msgs/msg/Odometry") for _, c, m in self.messages() if c.topic == "/left/odom"]
+        odom = [store.deserialize_cdr(m.data, "nav_msgs/msg/Odometry") for _, c, m in self.messages() if c.topic == "/ada/odom"]
         self.assertGreater(len(odom), 40)
-        tum, kitti, euroc, table = (self.folder / f"left.{end}" for end in ("tum", "kitti", "euroc", "csv"))
+        tum, kitti, euroc, table = (self.folder / f"ada.{end}" for end in ("tum", "kitti", "euroc", "csv"))
         for path, to in ((tum, "tum"), (kitti, "kitti"), (euroc, "euroc")):
-            gloam("export", self.log, "--to", to, "--topic", "/left/odom", "--out", path)
+            gloam("export", self.log, "--to", to, "--topic", "/ada/odom", "--out", path)
         rows = [[float(x) for x in line.split()] for line in tum.read_text().splitlines()]
         self.assertEqual(len(rows), len(odom))
         for row, message in zip(rows, odom):
@@ -94,7 +94,7 @@ class Log(unittest.TestCase):
         lines = euroc.read_text().splitlines()
         self.assertTrue(lines[0].startswith("#timestamp"))
         self.assertEqual([float(x) for x in lines[1].split(",")][1:4], rows[0][1:4])
-        gloam("export", self.log, "--to", "csv", "--topic", "/left/odom", "--out", table)
+        gloam("export", self.log, "--to", "csv", "--topic", "/ada/odom", "--out", table)
         import csv
         with table.open() as stream:
             read = list(csv.DictReader(stream))
@@ -103,9 +103,9 @@ class Log(unittest.TestCase):
         frame = self.folder / "frame.tum"
         gloam("export", self.log, "--to", "tum", "--topic", f"/tf:{odom[0].child_frame_id}", "--out", frame)
         self.assertEqual([line.split()[1:4] for line in frame.read_text().splitlines()][0], tum.read_text().split()[1:4])
-        for topic, word in (("/left/odmo", "/left/odom"), ("/clock", "no pose"), ("/tf:nothing", "no pose")):
+        for topic, word in (("/ada/odmo", "/ada/odom"), ("/clock", "no pose"), ("/tf:nothing", "no pose")):
             self.assertIn(word, gloam("export", self.log, "--to", "tum", "--topic", topic, "--out", self.folder / "x", expect=1).stderr)
-        gloam("export", self.log, "--to", "tum", "--topic", "/left/odom", "--out", tum, expect=2)  # is there already
+        gloam("export", self.log, "--to", "tum", "--topic", "/ada/odom", "--out", tum, expect=2)  # is there already
 
     def test_a_cut_log_is_made_whole(self):
         cut, whole = self.folder / "cut.mcap", self.folder / "whole.mcap"
