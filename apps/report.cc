@@ -10,7 +10,10 @@
 namespace gloam::cli {
 
 int run_and_report(const World& world, const RunRequest& request, const Globals& globals) {
-  auto report = run_and_record(world, request, progress_display(globals));
+  return tell_of(run_and_record(world, request, progress_display(globals)), globals);
+}
+
+int tell_of(const Result<RunReport>& report, const Globals& globals) {
   finish_progress();
   if (!report.ok()) return fail(report.error());
   const double factor = report->wall_time > 0 ? report->sim_time / report->wall_time : 0;

@@ -5,6 +5,8 @@
 
 namespace gloam::cli {
 
+/// Prints it; returns the exit code.
+int tell_of(const Result<RunReport>& report, const Globals& globals);
 int run_and_report(const World& world, const RunRequest& request, const Globals& globals);
 
 }  // namespace gloam::cli

@@ -1,23 +1,66 @@
-// gloam replay: steps a log's run again, and says whether it came out the same.
+// gloam replay: steps a log's run again, to say whether it comes out the same, or to look at it
+// under another sky.
 
 #include <fmt/format.h>
 
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "command.h"
 #include "gloam/log.h"
+#include "gloam/log_replay.h"
 #include "json_text.h"
+#include "outputs.h"
+#include "report.h"
 
 namespace gloam::cli {
 namespace {
 
 struct ReplayCommand {
-  std::string log, folder;
-  bool verify = false;
+  std::string log, folder, out, to_log, resolution;
+  std::vector<std::string> settings, cameras, outputs;
+  double duration = 0;
+  bool verify = false, overwrite = false;
 };
 
+int look_again(const ReplayCommand& command, const Globals& globals) {
+  if (command.out.empty() && command.to_log.empty())
+    return fail({ErrorKind::kUsage,
+                 "nothing is asked for",
+                 {},
+                 "--verify compares; --out FOLDER or --log FILE records the run again"});
+  LogReplay replay{.log = command.log, .folder = command.folder};
+  for (const std::string& setting : command.settings) {
+    const size_t split = setting.find('=');
+    if (split == std::string::npos)
+      return fail({ErrorKind::kUsage,
+                   "--set " + setting + ": expected KEY=VALUE",
+                   {},
+                   "for example weather.visibility=8"});
+    replay.settings.emplace_back(setting.substr(0, split), setting.substr(split + 1));
+  }
+  if (const Status known = check_outputs(command.outputs); !known.ok()) return fail(known.error());
+  if (!command.outputs.empty()) {
+    std::string list;
+    for (const std::string& output : command.outputs)
+      list += (list.empty() ? "'" : ", '") + output + "'";
+    replay.settings.emplace_back("record.outputs", "[" + list + "]");
+  }
+  replay.request.out = command.out;
+  replay.request.log.file = command.to_log;
+  replay.request.overwrite = command.overwrite;
+  replay.request.cameras = command.cameras;
+  replay.request.duration = command.duration;
+  if (!command.resolution.empty()) {
+    if (const Status size =
+            parse_resolution(command.resolution, replay.request.width, replay.request.height);
+        !size.ok())
+      return fail(size.error());
+  }
+  return tell_of(replay_log(replay, progress_display(globals)), globals);
+}
+
 int replay(const ReplayCommand& command, const Globals& globals) {
+  if (!command.verify) return look_again(command, globals);
   const auto found = verify_log(command.log, command.folder, progress_display(globals));
   finish_progress();
   if (!found.ok()) return fail(found.error());
@@ -41,17 +84,30 @@ int replay(const ReplayCommand& command, const Globals& globals) {
 }  // namespace
 
 void add_replay(CLI::App& app, Globals& globals, Action& action) {
-  CLI::App* sub = app.add_subcommand("replay", "Step the run of a log again");
+  CLI::App* sub = app.add_subcommand(
+      "replay", "Step the run of a log again: compare it, or record it under another sky");
   auto command = std::make_shared<ReplayCommand>();
   sub->add_option("LOG", command->log, "Log that Gloam has written")->required();
   sub->add_flag("--verify", command->verify,
-                "Compare every logged state and hash: 0 of N steps differ")
-      ->required();
+                "Compare every logged state and hash: 0 of N steps differ");
   sub->add_option("--folder", command->folder,
                   "Where the scene's files are; default: where they were");
+  sub->add_option("--set", command->settings,
+                  "Change what is seen, as weather.visibility=8 (repeatable)");
+  sub->add_option("--out", command->out, "Results folder of the run as it is seen now");
+  sub->add_option("--log", command->to_log, "New log of it");
+  sub->add_flag("--overwrite", command->overwrite, "Replace an existing results folder");
+  sub->add_option("--camera", command->cameras, "Cameras to record; default: the scene's")
+      ->delimiter(',');
+  sub->add_option("--output", command->outputs, "What to record, as of `gloam run`")
+      ->delimiter(',');
+  sub->add_option("--resolution", command->resolution, "WIDTHxHEIGHT of every camera");
+  sub->add_option("--duration", command->duration, "Seconds of it; default: all")
+      ->check(positive_number());
   sub->footer(
-      "Exit codes: 0 equal, 1 different, 3 a run could not be verified\nExample: gloam replay "
-      "run.mcap --verify");
+      "Exit codes of --verify: 0 equal, 1 different, 3 a run could not be verified\nExamples:\n  "
+      "gloam replay run.mcap --verify\n  gloam replay run.mcap --set weather.visibility=8 --set "
+      "render.tier=direct --out results/foggy");
   sub->callback([&globals, &action, command] {
     action = [&globals, command] { return replay(*command, globals); };
   });

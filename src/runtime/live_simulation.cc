@@ -43,7 +43,8 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const World& world,
 
 Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& world,
                                                                const SimulationOptions& options,
-                                                               Metering metering) {
+                                                               Metering metering,
+                                                               std::unique_ptr<Motion> motion) {
   std::unique_ptr<LiveSimulation> live(
       new LiveSimulation(options.seed, options.pace != Pace::kRealTime, metering));
   SimulatorOptions core;
@@ -52,9 +53,13 @@ Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& worl
   core.pace = options.pace;
   core.speed = options.speed;
   GLOAM_TRY(live->simulator_, Simulator::create(world.compiled(), core));
-  GLOAM_TRY(auto controllers, make_controllers(world.compiled()));
-  for (RobotController& c : controllers)
-    GLOAM_TRY_STATUS(live->simulator_->add_controller(c.robot, std::move(c.controller), c.rate));
+  if (motion != nullptr) {
+    GLOAM_TRY_STATUS(live->simulator_->follow(std::move(motion)));
+  } else {
+    GLOAM_TRY(auto controllers, make_controllers(world.compiled()));
+    for (RobotController& c : controllers)
+      GLOAM_TRY_STATUS(live->simulator_->add_controller(c.robot, std::move(c.controller), c.rate));
+  }
   // Exposure goes on from step 0, whether or not anyone opens the camera.
   if (metering == Metering::kAlways)
     GLOAM_TRY_STATUS(live->meters_.open(*live->simulator_, live->renderers_));

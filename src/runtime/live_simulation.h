@@ -29,7 +29,8 @@ class LiveSimulation final : public Simulation {
  public:
   static Result<std::unique_ptr<LiveSimulation>> create(const World& world,
                                                         const SimulationOptions& options,
-                                                        Metering metering = Metering::kAlways);
+                                                        Metering metering = Metering::kAlways,
+                                                        std::unique_ptr<Motion> motion = nullptr);
   World world() const override { return World(simulator_->world()); }
   Status recompile(const World& world) override;
   using Simulation::recompile;

@@ -21,6 +21,7 @@
 #include "runtime/label_table.h"
 #include "runtime/live_simulation.h"
 #include "runtime/log/log_recorder.h"
+#include "runtime/recorded_run.h"
 #include "runtime/robot_metrics.h"
 #include "runtime/run_to_step.h"
 #include "runtime/state_table.h"
@@ -214,6 +215,11 @@ class MetricsThread {
 
 Result<RunReport> run_and_record(const World& world, const RunRequest& request,
                                  const ProgressCallback& progress) {
+  return record_motion(world, request, nullptr, progress);
+}
+
+Result<RunReport> record_motion(const World& world, const RunRequest& request,
+                                std::unique_ptr<Motion> motion, const ProgressCallback& progress) {
   const auto start = Clock::now();
   const Scene& scene = world.compiled()->scene;
   const bool pictures = !request.out.empty() && wants_pictures(scene);
@@ -221,7 +227,8 @@ Result<RunReport> run_and_record(const World& world, const RunRequest& request,
   const bool metered_always = pictures || !log_request.file.empty();
   GLOAM_TRY(auto simulation,
             LiveSimulation::create(world, request.simulation,
-                                   metered_always ? Metering::kAlways : Metering::kNever));
+                                   metered_always ? Metering::kAlways : Metering::kNever,
+                                   std::move(motion)));
   Simulator& simulator = simulation->simulator();
   const double duration = request.duration > 0 ? request.duration : scene.sim.duration;
   const Rational rate = simulation->step_rate();

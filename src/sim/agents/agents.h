@@ -21,6 +21,7 @@ class Agents final : public Effect {
   static Result<std::unique_ptr<Effect>> make(const EffectParts& parts);
 
   std::string_view kind() const override { return "agents"; }
+  bool moves_bodies() const override { return true; }
   void reset(const EffectContext& at) override;
   /// Goes on with those of the same name, kind and seed; the others begin.
   void take_over(const EffectContext& at, Effect* before) override;

@@ -51,6 +51,8 @@ class Effect {
   /// In the middle of a run, after a recompile: goes on from `before`, the World before's effect of
   /// this kind, null = it had none. Instead of reset().
   virtual void take_over(const EffectContext& at, Effect* before) = 0;
+  /// Whether it writes the poses of bodies itself: a replayed motion has them already.
+  virtual bool moves_bodies() const { return false; }
   /// Options and masses of the model have been set anew.
   virtual void follow_model(mjModel&) {}
   /// Writes what of the state of `data` is the effect's own (mocap poses), as of at.step.

@@ -171,6 +171,7 @@ void SimLoop::run_controllers() {
 
 bool SimLoop::advance() {
   if (stepper_->failed()) return false;
+  if (stepper_->follows()) return stepper_->step();
   if (apply_commands()) {
     begin_run();
     return !stepper_->failed();

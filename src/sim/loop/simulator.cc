@@ -214,6 +214,12 @@ void Simulator::set_pace(Pace pace, double speed) {
   });
 }
 
+Status Simulator::follow(std::unique_ptr<Motion> motion) {
+  Stepper& stepper = loop_.stepper();
+  GLOAM_CHECK(!running_ && stepper.step_count() == 0, "a motion is followed from its beginning");
+  return stepper.follow(std::move(motion)) ? Status() : Status(stepper.error());
+}
+
 Status Simulator::post(std::span<const Command> commands) {
   const std::lock_guard lock(world_mutex_);
   for (const Command& command : commands) GLOAM_TRY_STATUS(check_command(*world_, command));

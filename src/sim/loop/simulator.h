@@ -14,6 +14,7 @@
 
 #include "gloam/simulation.h"
 #include "sim/loop/checkpoint.h"
+#include "sim/loop/motion.h"
 #include "sim/loop/pacer.h"
 #include "sim/loop/restepper.h"
 
@@ -69,6 +70,9 @@ class Simulator {
   /// Back to step 0 now, also after a failure. Commands that wait are thrown away.
   Status reset();
   void set_pace(Pace pace, double speed);
+
+  /// Before start(): `motion` tells where bodies are, instead of physics, controllers and Commands.
+  Status follow(std::unique_ptr<Motion> motion);
 
   /// Checks a Command and queues it; waits for nothing but a recompile's moment. Errors: not a
   /// thing of this World, queue full.

@@ -6,6 +6,7 @@
 #include "scene/files/mujoco_guard.h"
 #include "sim/commands/live_fields.h"
 #include "sim/loop/divergence.h"
+#include "sim/loop/motion.h"
 #include "sim/loop/step_halves.h"
 #include "sim/loop/step_schedule.h"
 #include "sim/state/initial_state.h"
@@ -42,6 +43,8 @@ Result<std::unique_ptr<Stepper>> Stepper::create(std::shared_ptr<const CompiledW
   if (!stepper->reset()) return stepper->error();
   return stepper;
 }
+
+Stepper::~Stepper() = default;
 
 const Effect* Stepper::find_effect(std::string_view kind) const {
   for (const auto& effect : effects_)
@@ -244,6 +247,7 @@ void Stepper::step_in_halves() {
 
 bool Stepper::step() {
   if (failed_) return false;
+  if (motion_ != nullptr) return step_along();
   const mjModel* model = &model_;
   mjData* data = data_.get();
   events_.loads.clear();

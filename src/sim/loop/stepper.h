@@ -15,9 +15,12 @@
 namespace gloam {
 
 struct StepperState;
+class Motion;
 
 class Stepper {
  public:
+  ~Stepper();
+
   /// Stands at the initial state. The chain of hashes starts from `seed`.
   static Result<std::unique_ptr<Stepper>> create(std::shared_ptr<const CompiledWorld> world,
                                                  uint64_t seed, std::optional<double> timestep);
@@ -34,6 +37,10 @@ class Stepper {
   std::unique_ptr<StepperState> save() const;
   /// Stands where a Stepper of the same World was saved. False and error() when MuJoCo refuses.
   bool restore(const StepperState& saved);
+  /// From now on, before the first step, `motion` tells where bodies are: neither physics nor
+  /// Commands. False and error() when it has no beginning.
+  bool follow(std::unique_ptr<Motion> motion);
+  bool follows() const { return motion_ != nullptr; }
   /// Number of the run in Snapshots.
   void set_run(int64_t run);
 
@@ -74,6 +81,8 @@ class Stepper {
   void restore_last_good_state();
   bool stand_at_state();
   void change_live(const SetLiveField& change);
+  bool stand_where_moved();
+  bool step_along();
   bool set_live(const std::shared_ptr<const LiveFields>& live);
   bool own_the_field(LiveFieldId field);
   void take_model(const mjModel& model);
@@ -97,7 +106,8 @@ class Stepper {
   DataPtr scratch_;     // for mj_setConst; made on first use
   std::unique_ptr<AppliedInputs> inputs_;
   EffectList effects_;
-  bool acts_on_bodies_ = false;  // one of them does
+  std::unique_ptr<Motion> motion_;  // null = physics
+  bool acts_on_bodies_ = false;     // one of them does
   StepEvents events_;
   std::shared_ptr<const LiveFields> live_;
   uint64_t live_changes_ = 0;  // since creation

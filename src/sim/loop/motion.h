@@ -1,0 +1,21 @@
+#pragma once
+// Motion: where bodies are at every step, told to a simulation in place of physics: a recorded run
+// that is looked at again, under another sky.
+
+#include <mujoco/mujoco.h>
+
+#include <cstdint>
+
+#include "gloam/result.h"
+
+namespace gloam {
+
+class Motion {
+ public:
+  virtual ~Motion() = default;
+  /// Brings positions, velocities, mocap poses, controls and time of `data`, of the simulation's
+  /// own World, to `step`, the next one; 0 at first. Error: the motion has no such step.
+  virtual Status advance(int64_t step, mjData* data) = 0;
+};
+
+}  // namespace gloam
