@@ -48,7 +48,8 @@ Result<std::vector<TopicInfo>> list_topics(const World& world);
 /// One message. What it refers to lives as long as the callback.
 struct TopicMessage {
   const TopicInfo& topic;
-  int64_t run = 0, step = 0;      ///< resets before it; physics step of its data
+  int64_t run = -1;               ///< resets before it; -1 = its sensor does not tell
+  int64_t step = 0;               ///< physics step of its data
   double time = 0;                ///< simulation time of its stamp [s]
   double delivery = 0;            ///< when it reaches a reader [s], >= time
   std::span<const uint8_t> data;  ///< CDR, little endian, with its head of four bytes

@@ -78,7 +78,7 @@ Status encode_numbers(const TopicInfo&, Samples samples, MessageBytes* out) {
 class SensorTopics {
  public:
   SensorTopics(const TopicSource& world, TopicTable* table)
-      : world_(*world), m_(*world->model), table_(table), sensors_(describe_sensors(*world)) {
+      : m_(*world->model), table_(table), sensors_(describe_sensors(*world)) {
     for (const StreamInfo& stream : list_streams(*world))
       if (stream.kind == StreamKind::kSensor) streams_.push_back(stream);
     taken_.resize(sensors_.size());
@@ -148,7 +148,6 @@ class SensorTopics {
     table_->push_back(std::move(topic));
   }
 
-  const CompiledWorld& world_;
   const mjModel& m_;
   TopicTable* table_;
   std::vector<SensorDescription> sensors_;

@@ -37,6 +37,14 @@ std::vector<std::string> usual_topics(const std::vector<TopicInfo>& topics) {
   return names;
 }
 
+// What was written stays readable.
+Status partial(const Status& status) {
+  if (status.ok()) return status;
+  Error error = status.error();
+  error.kind = ErrorKind::kPartial;
+  return error;
+}
+
 }  // namespace
 
 Result<std::unique_ptr<LogRecorder>> LogRecorder::start(LiveSimulation& simulation,
@@ -129,6 +137,7 @@ Status LogRecorder::open_streams(const std::vector<std::string>& topics) {
 // Log time goes on over resets: a run begins where the one before ended.
 uint64_t LogRecorder::log_time(double time, int64_t run) {
   const std::lock_guard lock(time_mutex_);
+  if (run < 0) run = static_cast<int64_t>(run_starts_.size()) - 1;  // the present one
   while (static_cast<int64_t>(run_starts_.size()) <= run) {
     run_starts_.push_back(run_starts_.back() + run_end_);
     run_end_ = 0;
@@ -192,14 +201,14 @@ void LogRecorder::take(const Snapshot& now) {
 
 Status LogRecorder::status() const {
   GLOAM_TRY_STATUS(topics_->status());
-  return queue_->status();
+  return partial(queue_->status());
 }
 
 Status LogRecorder::finish(const Snapshot& last) {
   topics_.reset();
   states_.reset();
   take(last);
-  return queue_->close();
+  return partial(queue_->close());
 }
 
 }  // namespace gloam

@@ -123,7 +123,7 @@ Status TopicFeed::open_camera(Simulation& simulation, const std::string& camera,
                                  const TopicInfo& info = outlet.topic->info;
                                  const auto& encode = std::get<FrameEncoder>(outlet.topic->code);
                                  send(&outlet, encode(info, *frame, &outlet.bytes),
-                                      {info, 0, frame->step, frame->time, frame->delivery, {}});
+                                      {info, -1, frame->step, frame->time, frame->delivery, {}});
                                }
                              }));
   streams_.push_back(std::move(stream));
@@ -139,7 +139,7 @@ Status TopicFeed::open_lidar(Simulation& simulation, const std::string& lidar, O
                 const TopicInfo& info = outlet.topic->info;
                 const auto& encode = std::get<ScanEncoder>(outlet.topic->code);
                 send(&outlet, encode(info, *scan, &outlet.bytes),
-                     {info, 0, scan->step, scan->start, scan->end, {}});
+                     {info, -1, scan->step, scan->start, scan->end, {}});
               }
             }));
   streams_.push_back(std::move(stream));
@@ -183,7 +183,7 @@ Status TopicFeed::take_sample(Gathering* gathering, size_t part, const SensorMes
   const TopicInfo& info = outlet.topic->info;
   const auto& encode = std::get<SampleEncoder>(outlet.topic->code);
   send(&outlet, encode(info, samples.messages, &outlet.bytes),
-       {info, 0, message.step, message.time, message.delivery, {}});
+       {info, -1, message.step, message.time, message.delivery, {}});
   waiting.erase(message.step);
   return {};
 }
