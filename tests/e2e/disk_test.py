@@ -5,7 +5,7 @@ import resource
 import subprocess
 import unittest
 
-from e2e.support import PENDULUM, ProgramTest, video_frames
+from e2e.support import PENDULUM, PROGRAM, ProgramTest, video_frames
 
 
 @contextlib.contextmanager
@@ -53,6 +53,16 @@ class Disk(ProgramTest):
             self.assertIn("No space left", error)
             self.assertIn("disk/out", error)
             self.check_readable(disk / "out")
+
+    def test_a_log_on_a_disk_that_fills_up(self):
+        model = self.write("m.xml", PENDULUM)
+        with small_disk(self.folder / "disk", "size=1m") as disk:
+            result = self.gloam("record", model, "-o", disk / "run.mcap", "--duration", "3000", "--topics", "/tf,/contacts", expect=3)
+            self.assertIn("No space left", result.stderr)
+            whole = self.folder / "whole.mcap"
+            recovered = subprocess.run([str(PROGRAM), "recover", str(disk / "run.mcap"), "-o", str(whole)], capture_output=True, text=True)
+            self.assertIn(recovered.returncode, (0, 3), recovered.stderr)
+            self.assertRegex(self.gloam("replay", whole, "--verify").stdout, r"^0 of [1-9]\d+ steps differ")
 
     def test_a_disk_that_is_full_from_the_start(self):
         with small_disk(self.folder / "disk", "size=64k") as disk:
