@@ -7,7 +7,7 @@
 #include "gloam/log_export.h"
 #include "record/csv.h"
 #include "render/film/byte_sink.h"
-#include "runtime/log/logged_topic.h"
+#include "runtime/log/topic_reader.h"
 
 namespace gloam {
 namespace {
@@ -80,7 +80,7 @@ std::string cell(const DynamicMessage& message, const Column& column) {
 Result<int64_t> write_topic_table(const std::filesystem::path& log, const std::string& topic,
                                   const std::filesystem::path& to) {
   GLOAM_TRY(const McapReader reader, McapReader::open(log));
-  GLOAM_TRY(const LoggedTopic logged, LoggedTopic::find(reader, topic));
+  GLOAM_TRY(const TopicReader logged, TopicReader::find(reader, topic));
   GLOAM_TRY(auto sink, create_file_sink(to));
   std::vector<Column> columns;
   int64_t rows = 0;

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "gloam/log_export.h"
-#include "runtime/log/logged_topic.h"
+#include "runtime/log/topic_reader.h"
 
 namespace gloam {
 namespace {
@@ -96,7 +96,7 @@ Result<std::vector<StampedPose>> read_trajectory(const std::filesystem::path& lo
   GLOAM_TRY(const McapReader reader, McapReader::open(log));
   const size_t colon = topic.find(':');
   const std::string frame = colon == std::string::npos ? "" : topic.substr(colon + 1);
-  GLOAM_TRY(const LoggedTopic logged, LoggedTopic::find(reader, topic.substr(0, colon)));
+  GLOAM_TRY(const TopicReader logged, TopicReader::find(reader, topic.substr(0, colon)));
   std::vector<StampedPose> poses;
   if (logged.schema.name() == kFrames && !frame.empty()) {
     GLOAM_TRY_STATUS(logged.for_each(

@@ -4,8 +4,8 @@
 
 #include "gloam/log_replay.h"
 #include "runtime/log/logged_motion.h"
-#include "runtime/log/same_physics.h"
 #include "runtime/recorded_run.h"
+#include "sim/state/same_physics.h"
 
 namespace gloam {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "gloam/simulation.h"
 #include "runtime/streams/topic_tables.h"
+#include "sim/loop/step_schedule.h"
 
 namespace gloam {
 

@@ -1,4 +1,4 @@
-#include "runtime/log/same_physics.h"
+#include "sim/state/same_physics.h"
 
 #include <mujoco/mjxmacro.h>
 

@@ -1,4 +1,4 @@
-#include "runtime/log/logged_topic.h"
+#include "runtime/log/topic_reader.h"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 
 namespace gloam {
 
-Result<LoggedTopic> LoggedTopic::find(const McapReader& log, const std::string& name) {
+Result<TopicReader> TopicReader::find(const McapReader& log, const std::string& name) {
   std::vector<std::string> names;
   for (const auto& [id, channel] : log.channels()) {
     names.push_back(channel.topic);
@@ -20,7 +20,7 @@ Result<LoggedTopic> LoggedTopic::find(const McapReader& log, const std::string& 
     const std::vector<uint8_t>& data = schema->second.data;
     const std::string_view text(reinterpret_cast<const char*>(data.data()), data.size());
     GLOAM_TRY(MessageSchema parsed, MessageSchema::parse(text, schema->second.name));
-    return LoggedTopic{name, std::move(parsed)};
+    return TopicReader{name, std::move(parsed)};
   }
   return Error{ErrorKind::kInput,
                fmt::format("{} has no topic '{}'", log.name(), name),
@@ -28,7 +28,7 @@ Result<LoggedTopic> LoggedTopic::find(const McapReader& log, const std::string& 
                suggest_name(name, names)};
 }
 
-Status LoggedTopic::for_each(const McapReader& log,
+Status TopicReader::for_each(const McapReader& log,
                              const std::function<Status(const DynamicMessage&)>& f) const {
   McapMessages messages = log.messages({.topics = {name}});
   for (;;) {

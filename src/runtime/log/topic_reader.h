@@ -1,5 +1,5 @@
 #pragma once
-// LoggedTopic: one topic of a log of any writer, read field by field.
+// TopicReader: one topic of a log of any writer, read field by field.
 
 #include <functional>
 #include <string>
@@ -9,12 +9,12 @@
 
 namespace gloam {
 
-struct LoggedTopic {
+struct TopicReader {
   std::string name;
   MessageSchema schema;
 
   /// Errors: no such topic, messages that are not CDR by a ros2msg definition.
-  static Result<LoggedTopic> find(const McapReader& log, const std::string& name);
+  static Result<TopicReader> find(const McapReader& log, const std::string& name);
   /// Calls f for each message in the order of the log; its Error ends it.
   Status for_each(const McapReader& log,
                   const std::function<Status(const DynamicMessage&)>& f) const;
