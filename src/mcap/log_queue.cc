@@ -58,6 +58,7 @@ template Status LogQueue::push_record(McapSchema);
 template Status LogQueue::push_record(McapChannel);
 template Status LogQueue::push_record(McapAttachment);
 template Status LogQueue::push_record(McapMetadata);
+template Status LogQueue::push_record(LogQueueFlush);
 
 Status LogQueue::refuse_locked() const {
   GLOAM_TRY_STATUS(status_);
@@ -165,6 +166,7 @@ Status LogQueue::write(const Item& item) {
     Status operator()(const McapChannel& channel) const { return to->add_channel(channel); }
     Status operator()(const McapAttachment& file) const { return to->add_attachment(file); }
     Status operator()(const McapMetadata& metadata) const { return to->add_metadata(metadata); }
+    Status operator()(const LogQueueFlush&) const { return to->flush(); }
   };
   return std::visit(Visitor{writer_.get()}, item);
 }

@@ -37,6 +37,9 @@ struct LogQueueMessage {
   std::vector<uint8_t> data;
 };
 
+/// Mark in the queue: what was pushed before it is handed to the operating system.
+struct LogQueueFlush {};
+
 /// All calls may come from any thread.
 class LogQueue {
  public:
@@ -56,6 +59,7 @@ class LogQueue {
   Status push(McapChannel channel) { return push_record(std::move(channel)); }
   Status push(McapAttachment attachment) { return push_record(std::move(attachment)); }
   Status push(McapMetadata metadata) { return push_record(std::move(metadata)); }
+  Status push(LogQueueFlush flush) { return push_record(flush); }
 
   /// First error of the writer.
   Status status() const;
@@ -66,7 +70,8 @@ class LogQueue {
   Status close();
 
  private:
-  using Item = std::variant<LogQueueMessage, McapSchema, McapChannel, McapAttachment, McapMetadata>;
+  using Item = std::variant<LogQueueMessage, McapSchema, McapChannel, McapAttachment, McapMetadata,
+                            LogQueueFlush>;
 
   template <class T>
   Status push_record(T record);

@@ -61,6 +61,8 @@ Result<std::unique_ptr<LogRecorder>> LogRecorder::start(LiveSimulation& simulati
   GLOAM_TRY_STATUS(log->add_channels(topics));
   const Snapshot now = simulation.latest();
   log->write_world(now);
+  // In a chunk of its own: a log that is cut anywhere behind it can be stepped again.
+  GLOAM_TRY_STATUS(log->queue_->push(LogQueueFlush{}));
   if (request.embed) GLOAM_TRY_STATUS(log->embed_files(*log->world_));
   simulation.take_command_log();  // of before
   GLOAM_TRY_STATUS(

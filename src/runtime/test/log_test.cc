@@ -155,13 +155,15 @@ TEST_F(Logs, CutLogIsRecoveredAndVerified) {
   request.log.file = file_;
   request.duration = 0.5;
   ASSERT_TRUE(run_and_record(world(), request, {}).ok());
-  fs::resize_file(file_, fs::file_size(file_) - 200);  // without its end: its only chunk is whole
+  fs::resize_file(file_, fs::file_size(file_) * 6 / 10);  // in the chunk behind the World's
   const fs::path whole = folder_.path() / "whole.mcap";
   const auto recovery = recover_log(file_, whole);
   ASSERT_TRUE(recovery.ok()) << recovery.error().to_string();
   const auto found = verify_log(whole, "", {});
   ASSERT_TRUE(found.ok()) << found.error().to_string();
   EXPECT_TRUE(found->is_equal());
+  EXPECT_FALSE(recovery->is_whole);
+  EXPECT_GT(recovery->bytes_lost, 0);
 }
 
 TEST_F(Logs, CommandsAreReadBackToTheBit) {
