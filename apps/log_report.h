@@ -1,5 +1,5 @@
 #pragma once
-// What `gloam info` tells of logs and topics.
+// Reports of `gloam info` on logs and topics.
 
 #include <string>
 

@@ -6,6 +6,16 @@
 
 namespace gloam::cli {
 
+Result<std::pair<std::string, std::string>> split_setting(const std::string& setting) {
+  const size_t split = setting.find('=');
+  if (split != std::string::npos)
+    return std::pair(setting.substr(0, split), setting.substr(split + 1));
+  return Error{ErrorKind::kUsage,
+               "--set " + setting + ": expected KEY=VALUE",
+               {},
+               "for example sim.duration=5"};
+}
+
 void SceneOptions::add_to(CLI::App& command) {
   command.add_option("--seed", seed, "Seed of everything random");
   command.add_option("--set", settings,
@@ -69,14 +79,8 @@ Result<Scene> SceneOptions::load(const std::string& file) {
   GLOAM_TRY_STATUS(apply_packages(access, packages));
   GLOAM_TRY(Scene scene, load_scene(file, access));
   for (const std::string& setting : settings) {
-    const size_t split = setting.find('=');
-    if (split == std::string::npos) {
-      return Error{ErrorKind::kUsage,
-                   "--set " + setting + ": expected KEY=VALUE",
-                   {},
-                   "for example sim.duration=5"};
-    }
-    GLOAM_TRY_STATUS(set_option(scene, setting.substr(0, split), setting.substr(split + 1)));
+    GLOAM_TRY(const auto split, split_setting(setting));
+    GLOAM_TRY_STATUS(set_option(scene, split.first, split.second));
   }
   if (seed) scene.sim.seed = *seed;
   return scene;

@@ -3,11 +3,15 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command.h"
 
 namespace gloam::cli {
+
+/// "KEY=VALUE" of --set. Error: no '='.
+Result<std::pair<std::string, std::string>> split_setting(const std::string& setting);
 
 /// Changes to a scene that all commands which load one may make.
 struct SceneOptions {

@@ -22,6 +22,7 @@ int record(const RecordCommand& command_line, const Globals& globals) {
   if (!scene.ok()) return fail(scene.error());
   RunRequest request;
   request.log.file = command.log;
+  request.log.overwrite = command.overwrite;
   request.log.topics = command.topics;
   request.log.durable = command.durable;
   request.log.embed = command.embed;
@@ -44,7 +45,6 @@ int record(const RecordCommand& command_line, const Globals& globals) {
                  "choose another name, or --overwrite"});
   auto world = compile(*scene, globals, command.options.keyframe);
   if (!world.ok()) return fail(world.error());
-  std::filesystem::remove(command.log, code);
   return run_and_report(*world, request, globals);
 }
 

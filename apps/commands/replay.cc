@@ -11,6 +11,7 @@
 #include "json_text.h"
 #include "outputs.h"
 #include "report.h"
+#include "run_options.h"
 
 namespace gloam::cli {
 namespace {
@@ -30,13 +31,9 @@ int look_again(const ReplayCommand& command, const Globals& globals) {
                  "--verify compares; --out FOLDER or --log FILE records the run again"});
   LogReplay replay{.log = command.log, .folder = command.folder};
   for (const std::string& setting : command.settings) {
-    const size_t split = setting.find('=');
-    if (split == std::string::npos)
-      return fail({ErrorKind::kUsage,
-                   "--set " + setting + ": expected KEY=VALUE",
-                   {},
-                   "for example weather.visibility=8"});
-    replay.settings.emplace_back(setting.substr(0, split), setting.substr(split + 1));
+    auto split = split_setting(setting);
+    if (!split.ok()) return fail(split.error());
+    replay.settings.push_back(std::move(*split));
   }
   if (const Status known = check_outputs(command.outputs); !known.ok()) return fail(known.error());
   if (!command.outputs.empty()) {

@@ -15,6 +15,7 @@ namespace gloam {
 
 struct LogRequest {
   std::filesystem::path file = {};       ///< new file; empty = no log
+  bool overwrite = false;                ///< a file of this name is replaced
   std::vector<std::string> topics = {};  ///< names, * stands for any text; empty = the usual ones
   int width = 0, height = 0;             ///< of every camera's pictures [px]; 0 = the camera's own
   bool required = true;            ///< the simulation waits for the disk; else messages are lost
@@ -48,7 +49,7 @@ struct LogVerification {
   int64_t runs = 0, steps = 0;  ///< that were stepped again
   int64_t states = 0;           ///< whose hash and numbers were compared
   int64_t differing = 0;        ///< steps from the first different state on
-  /// Of the first difference: the states are equal at `equal_step`, and no more at `step`.
+  /// Place of the first difference: states are equal at `equal_step` and no longer at `step`.
   int64_t run = 0, equal_step = 0, step = 0;
   std::string where;               ///< "joint 'go1/FL_hip': position differs by 1e-12"
   std::vector<std::string> notes;  ///< what could not be verified, and why

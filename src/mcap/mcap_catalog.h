@@ -1,5 +1,6 @@
 #pragma once
-// What a log holds and where, from its summary or, where there is none to be used, from a scan.
+// Contents of a log and their places: from its summary, or from a scan where no summary can be
+// used.
 
 #include <cstdint>
 #include <map>

@@ -20,7 +20,7 @@ bool append_compressed(std::span<const uint8_t> records, ZstdCompressor* compres
   const bool smaller =
       compressor->append(records, records.size() - records.size() / kLeastGain, out);
   *size = out->size() - length_at - 8;
-  // What shrinks more than our own reader believes of a stranger is stored, too.
+  // A chunk is stored, too, where it shrinks by more than the reader takes from strangers.
   if (smaller && ratio_is_credible(*size, records.size(), McapLimits())) {
     patch_u64(out, length_at, *size);
     return true;

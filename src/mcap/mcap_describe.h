@@ -1,5 +1,5 @@
 #pragma once
-// What a log holds, for people: `gloam info LOG`.
+// Description of a log for people: `gloam info LOG`.
 
 #include <cstdint>
 #include <map>

@@ -21,7 +21,7 @@ struct McapRecordPlace {
   uint64_t length = 0;  ///< with opcode and length [bytes]
 };
 
-/// What scan_log() meets, in the order of the log. An Error ends the scan with it.
+/// Calls of scan_log() for each record, in the order of the log. An Error ends the scan with it.
 class McapVisitor {
  public:
   virtual ~McapVisitor() = default;

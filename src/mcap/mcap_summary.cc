@@ -76,7 +76,7 @@ std::string take_record(const McapRecordCursor& cursor, const McapLimits& limits
   return fine ? std::string() : "a record of the summary is damaged";
 }
 
-/// What keeps the summary from being used alone, or "".
+/// Reason why the summary cannot be used alone, or "".
 std::string find_gap(const SummaryParts& parts, uint64_t log_bytes) {
   const McapCatalog& catalog = parts.catalog;
   const McapStatistics& counts = catalog.statistics;

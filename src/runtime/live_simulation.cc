@@ -227,7 +227,7 @@ Result<std::unique_ptr<SnapshotStream>> LiveSimulation::open_snapshots(
 }
 
 Result<std::vector<TopicInfo>> LiveSimulation::topics() const {
-  GLOAM_TRY(const auto table, topics_.of(simulator_->world()));
+  GLOAM_TRY(const auto table, topic_table());
   std::vector<TopicInfo> infos;
   for (const Topic& topic : *table) infos.push_back(topic.info);
   return infos;
@@ -240,7 +240,7 @@ Result<std::unique_ptr<TopicStream>> LiveSimulation::open_topics(const TopicRequ
 }
 
 Status LiveSimulation::publish(std::string_view topic, std::span<const uint8_t> data) {
-  GLOAM_TRY(const auto table, topics_.of(simulator_->world()));
+  GLOAM_TRY(const auto table, topic_table());
   GLOAM_TRY(const auto found, find_topics(*table, std::string(topic)));
   const auto* decode = std::get_if<InputDecoder>(&found.front()->code);
   if (decode == nullptr)

@@ -71,6 +71,9 @@ class LiveSimulation final : public Simulation {
 
   // For the runtime's own jobs.
   uint64_t seed() const { return seed_; }
+  Result<std::shared_ptr<const TopicTable>> topic_table() const {
+    return topics_.of(simulator_->world());
+  }
   Simulator& simulator() { return *simulator_; }
   Result<std::shared_ptr<SharedRenderer>> renderer() { return renderers_.of(simulator_->world()); }
   Result<std::unique_ptr<LiveCamera>> open_live_camera(const CameraRequest& request,

@@ -11,6 +11,8 @@
 #include "topics/model_frames.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"
+#include "world/agents/agent_bodies.h"
+#include "world/model_names.h"
 #include "world/world.h"
 #include "world/world_robots.h"
 
@@ -42,7 +44,7 @@ RobotJoints joints_by_name(const CompiledWorld& world, const RobotInstance& robo
   const mjModel& m = *world.model;
   for (const int id : robot_joints(m, robot)) {
     if (m.jnt_type[id] != mjJNT_HINGE && m.jnt_type[id] != mjJNT_SLIDE) continue;
-    joints.names.push_back(local_name(element_name(m, mjOBJ_JOINT, id), robot.prefix));
+    joints.names.push_back(local_name(name_of(m, mjOBJ_JOINT, id), robot.prefix));
     joints.ids.push_back(id);
   }
   return joints;
@@ -170,13 +172,6 @@ void add_input(std::string name, std::string type, std::string source, InputDeco
   topic.code = std::move(decoder);
 }
 
-bool is_agents(const CompiledWorld& world, int body) {
-  return std::ranges::any_of(world.agents, [&](const AgentDescription& agent) {
-    const auto end = agent.body.begin() + agent.parts();
-    return std::find(agent.body.begin(), end, body) != end;
-  });
-}
-
 }  // namespace
 
 void add_input_topics(const TopicSource& world, TopicTable* table) {
@@ -203,7 +198,7 @@ void add_input_topics(const TopicSource& world, TopicTable* table) {
                 wrench({robot.root_body, world->serial}), table);
   }
   for (int body = 1; body < static_cast<int>(m.nbody); ++body) {
-    if (m.body_mocapid[body] < 0 || is_agents(*world, body)) continue;
+    if (m.body_mocapid[body] < 0 || find_agent(*world, body) != nullptr) continue;
     const std::string name = body_frame(m, body);
     add_input("/" + topic_token(name) + "/pose", type_name<geometry_msgs::PoseStamped>(),
               "mocap body " + name, mocap_pose({body, world->serial}), table);

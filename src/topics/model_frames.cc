@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "world/model_names.h"
+
 namespace gloam {
 namespace {
 
@@ -15,14 +17,9 @@ Pose pose_from(const mjtNum* p, const mjtNum* q) {
 
 }  // namespace
 
-std::string element_name(const mjModel& model, mjtObj type, int id) {
-  const char* name = id >= 0 ? mj_id2name(&model, type, id) : nullptr;
-  return name != nullptr ? name : "";
-}
-
 std::string body_frame(const mjModel& model, int body) {
   if (body == 0) return "world";
-  const std::string name = element_name(model, mjOBJ_BODY, body);
+  const std::string name = name_of(model, mjOBJ_BODY, body);
   return name.empty() ? fmt::format("body_{}", body) : name;
 }
 

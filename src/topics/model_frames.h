@@ -12,9 +12,6 @@ namespace gloam {
 /// Full name of a body; "body_ID" where the model gives none, "world" for 0.
 std::string body_frame(const mjModel& model, int body);
 
-/// Name of any element, "" where the model gives none.
-std::string element_name(const mjModel& model, mjtObj type, int id);
-
 /// The name without a robot's prefix "go1/".
 std::string local_name(const std::string& name, const std::string& prefix);
 

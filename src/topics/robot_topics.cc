@@ -6,6 +6,7 @@
 #include "topics/model_frames.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"
+#include "world/model_names.h"
 #include "world/world.h"
 #include "world/world_robots.h"
 
@@ -23,7 +24,7 @@ JointList joints_of(const mjModel& m, const RobotInstance& robot) {
   for (const int id : robot_joints(m, robot)) {
     if (m.jnt_type[id] != mjJNT_HINGE && m.jnt_type[id] != mjJNT_SLIDE) continue;
     joints.ids.push_back(id);
-    joints.names.push_back(local_name(element_name(m, mjOBJ_JOINT, id), robot.prefix));
+    joints.names.push_back(local_name(name_of(m, mjOBJ_JOINT, id), robot.prefix));
   }
   return joints;
 }

@@ -10,6 +10,7 @@
 #include "topics/model_frames.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"
+#include "world/model_names.h"
 #include "world/streams.h"
 #include "world/world.h"
 
@@ -93,7 +94,7 @@ Status encode_contacts(const TopicInfo& topic, TopicInstant& at, MessageBytes* o
     for (int side = 0; side < 2; ++side) {
       const int geom = contact.geoms[side].id;
       if (geom < 0) continue;
-      *geoms[side] = element_name(m, mjOBJ_GEOM, geom);
+      *geoms[side] = name_of(m, mjOBJ_GEOM, geom);
       *bodies[side] = body_frame(m, m.geom_bodyid[geom]);
     }
     one.position = ros_point(contact.position);

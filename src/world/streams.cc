@@ -7,7 +7,9 @@
 
 #include "base/text.h"
 #include "gloam/world.h"
+#include "world/agents/agent_bodies.h"
 #include "world/compile/level.h"
+#include "world/model_names.h"
 #include "world/sensors/authored_lidar.h"
 #include "world/sensors/camera_rate.h"
 #include "world/sensors/sensor_description.h"
@@ -21,11 +23,6 @@ constexpr const char* kWorldFrame = "world";
 
 Pose pose_of(const mjtNum* p, const mjtNum* q) {
   return {{p[0], p[1], p[2]}, {q[0], q[1], q[2], q[3]}};
-}
-
-std::string name_of(const mjModel& m, mjtObj type, int id) {
-  const char* name = id >= 0 ? mj_id2name(&m, type, id) : nullptr;
-  return name != nullptr ? name : "";
 }
 
 /// The body or site that a sensor sits on, where it sits on one.
@@ -277,11 +274,7 @@ std::vector<InputInfo> World::inputs() const {
   for (int body = 1; body < static_cast<int>(m.nbody); ++body) {
     if (m.body_mocapid[body] < 0) continue;
     const std::string name = name_of(m, mjOBJ_BODY, body);
-    const bool is_agent = std::ranges::any_of(compiled_->agents, [&](const AgentDescription& a) {
-      return std::find(a.body.begin(), a.body.begin() + a.parts(), body) !=
-             a.body.begin() + a.parts();
-    });
-    if (!is_agent)
+    if (find_agent(*compiled_, body) == nullptr)
       inputs.push_back({.kind = InputKind::kMocap,
                         .name = name.empty() ? fmt::format("body_{}", body) : name,
                         .elements = {"x", "y", "z", "qw", "qx", "qy", "qz"},

@@ -102,7 +102,7 @@ TEST(McapRecover, EachOfTheFirst500WritesMayFail) {
       EXPECT_FALSE(writer.finish().ok());
       EXPECT_EQ(bytes->size(), size) << "and writes nothing more";
       const size_t found = check_prefix(*bytes, messages);
-      // Of those accepted, all but the chunk that failed are there.
+      // Messages that were accepted are there, all but those of the chunk that failed.
       EXPECT_GE(found + 4, accepted);
       ASSERT_FALSE(HasFailure()) << "write " << fails_at;
     }

@@ -47,10 +47,10 @@ class Writer {
 
 class Reader {
  public:
-  Reader(const Json& json, const CompiledWorld& world) : json_(json), world_(world) {}
+  explicit Reader(const Json& json) : json_(json) {}
   template <class Kind>
   void handle(const char* key, Handle<Kind>& handle, mjtObj) {
-    handle = {json_.at(key).get<int>(), world_.serial};
+    handle = {json_.at(key).get<int>(), 0};
   }
   void value(const char* key, double& v) { v = json_.at(key).get<double>(); }
   void value(const char* key, int& v) { v = json_.at(key).get<int>(); }
@@ -75,7 +75,6 @@ class Reader {
 
  private:
   const Json& json_;
-  const CompiledWorld& world_;
 };
 
 // The keys of each Command. A new one is a line in kNames and a function here.
@@ -156,7 +155,7 @@ std::string command_text(const LoggedCommand& logged, const CompiledWorld& world
   return json.dump();
 }
 
-Result<LoggedCommand> parse_command(std::string_view text, const CompiledWorld& world) {
+Result<LoggedCommand> parse_command(std::string_view text) {
   try {
     const Json json = Json::parse(text);
     LoggedCommand logged;
@@ -164,7 +163,7 @@ Result<LoggedCommand> parse_command(std::string_view text, const CompiledWorld& 
     logged.command.step = json.at("step").get<int64_t>();
     const auto name = json.at("command").get<std::string>();
     const auto found = std::find(std::begin(kNames), std::end(kNames), name);
-    Reader reader(json, world);
+    Reader reader(json);
     const auto index = static_cast<size_t>(found - std::begin(kNames));
     if (!read_as(index, reader, &logged.command.what))
       return Error{ErrorKind::kInput, fmt::format("there is no command '{:.40}'", name)};

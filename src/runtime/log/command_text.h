@@ -13,8 +13,8 @@ namespace gloam {
 /// "value": 0.5}. Things are told by their ids in the World; names are for people.
 std::string command_text(const LoggedCommand& logged, const CompiledWorld& world);
 
-/// Reads it for a World of the same model. Errors: no JSON, an unknown command, a key that is
-/// missing or of another type. Whether ids and values fit the World: check_command.
-Result<LoggedCommand> parse_command(std::string_view text, const CompiledWorld& world);
+/// Reads it; handles are of no World in particular (Handle::world 0). Errors: no JSON, an unknown
+/// command, a key that is missing or of another type. Whether it fits a World: check_command.
+Result<LoggedCommand> parse_command(std::string_view text);
 
 }  // namespace gloam

@@ -30,11 +30,21 @@ std::span<const uint8_t> bytes_of(const std::string& text) {
   return {reinterpret_cast<const uint8_t*>(text.data()), text.size()};
 }
 
-std::vector<std::string> usual_topics(const std::vector<TopicInfo>& topics) {
-  std::vector<std::string> names;
-  for (const TopicInfo& topic : topics)
-    if (topic.is_logged && !topic.is_input) names.push_back(topic.name);
-  return names;
+// Topics of the log: those that are asked for, else the usual ones. Error: there is no such topic.
+Result<std::vector<TopicInfo>> wanted_topics(const TopicTable& table,
+                                             const std::vector<std::string>& patterns) {
+  std::vector<TopicInfo> wanted;
+  for (const Topic& topic : table)
+    if (patterns.empty() && topic.info.is_logged && !topic.info.is_input)
+      wanted.push_back(topic.info);
+  for (const std::string& pattern : patterns) {
+    GLOAM_TRY(const auto found, find_topics(table, pattern));
+    for (const Topic* topic : found)
+      if (!topic->info.is_input &&
+          std::ranges::count(wanted, topic->info.name, &TopicInfo::name) == 0)
+        wanted.push_back(topic->info);
+  }
+  return wanted;
 }
 
 // What was written stays readable.
@@ -49,7 +59,12 @@ Status partial(const Status& status) {
 
 Result<std::unique_ptr<LogRecorder>> LogRecorder::start(LiveSimulation& simulation,
                                                         const LogRequest& request) {
-  GLOAM_TRY(const std::vector<TopicInfo> topics, simulation.topics());
+  GLOAM_TRY(const auto table, simulation.topic_table());
+  GLOAM_TRY(const std::vector<TopicInfo> topics, wanted_topics(*table, request.topics));
+  if (request.overwrite) {
+    std::error_code code;  // what is in the way is told of by the sink
+    std::filesystem::remove(request.file, code);
+  }
   GLOAM_TRY(auto sink, FileSink::create(request.file));
   McapWriterOptions options;
   options.durable = request.durable;
@@ -65,8 +80,7 @@ Result<std::unique_ptr<LogRecorder>> LogRecorder::start(LiveSimulation& simulati
   GLOAM_TRY_STATUS(log->queue_->push(LogQueueFlush{}));
   if (request.embed) GLOAM_TRY_STATUS(log->embed_files(*log->world_));
   simulation.take_command_log();  // of before
-  GLOAM_TRY_STATUS(
-      log->open_streams(request.topics.empty() ? usual_topics(topics) : request.topics));
+  GLOAM_TRY_STATUS(log->open_streams(topics));
   return log;
 }
 
@@ -99,7 +113,6 @@ Status LogRecorder::add_channels(const std::vector<TopicInfo>& topics) {
   GLOAM_TRY_STATUS(
       add_channel({.name = kStateTopic, .type = state.name}, "cdr", state.text, state.hash));
   for (const TopicInfo& topic : topics) {
-    if (topic.is_input) continue;
     GLOAM_TRY(const MessageInfo type, message_info(topic.type));
     GLOAM_TRY_STATUS(add_channel(topic, "cdr", type.definition, type.hash));
   }
@@ -119,11 +132,10 @@ Status LogRecorder::embed_files(const CompiledWorld& world) {
   return {};
 }
 
-Status LogRecorder::open_streams(const std::vector<std::string>& topics) {
-  const TopicRequest request{.topics = topics,
-                             .width = request_.width,
-                             .height = request_.height,
-                             .required = request_.required};
+Status LogRecorder::open_streams(const std::vector<TopicInfo>& topics) {
+  TopicRequest request{
+      .width = request_.width, .height = request_.height, .required = request_.required};
+  for (const TopicInfo& topic : topics) request.topics.push_back(topic.name);
   GLOAM_TRY(topics_, simulation_.open_topics(request, [this](const TopicMessage& message) {
     write(message.topic.name, message.time, message.run, message.data);
   }));

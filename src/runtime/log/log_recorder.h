@@ -39,7 +39,7 @@ class LogRecorder {
   Status add_channel(const TopicInfo& topic, const std::string& encoding, const std::string& schema,
                      const std::string& hash);
   Status embed_files(const CompiledWorld& world);
-  Status open_streams(const std::vector<std::string>& topics);
+  Status open_streams(const std::vector<TopicInfo>& topics);
   void take(const Snapshot& now);
   void write_commands();
   void write_world(const Snapshot& now);

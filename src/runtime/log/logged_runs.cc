@@ -79,12 +79,10 @@ class RunReader {
   }
 
   Status add_command(const McapMessage& message) {
-    const CompiledWorld* world = worlds_.front().world.get();
-    GLOAM_TRY(LoggedCommand logged, parse_command(text_of(message), *world));
-    world = world_at(logged.run, logged.command.step).world.get();
-    GLOAM_TRY(logged, parse_command(text_of(message), *world));
+    GLOAM_TRY(LoggedCommand logged, parse_command(text_of(message)));
     if (std::holds_alternative<ResetSim>(logged.command.what)) return {};
-    GLOAM_TRY_STATUS(check_command(*world, logged.command));
+    const LoggedWorld& at = world_at(logged.run, logged.command.step);
+    GLOAM_TRY_STATUS(check_command(*at.world, logged.command));
     runs_.runs[logged.run].record.commands.push_back(std::move(logged.command));
     return {};
   }

@@ -48,10 +48,7 @@ Result<RunReport> replay_log(const LogReplay& replay, const ProgressCallback& pr
   for (const auto& [path, value] : replay.settings)
     GLOAM_TRY_STATUS(set_option(scene, path, value));
   Result<World> world = compile_alike(scene, logged);
-  if (!world.ok()) {
-    const bool is_alone = replay.settings.empty();
-    return is_alone ? world.error() : name_the_setting(replay, logged, world.error());
-  }
+  if (!world.ok()) return name_the_setting(replay, logged, world.error());
   GLOAM_TRY(auto motion, LoggedMotion::create(run->second, world->compiled()));
   RunRequest request = replay.request;
   request.simulation.seed = run->second.record.seed;

@@ -11,6 +11,7 @@
 #include "runtime/live_simulation.h"
 #include "runtime/log/logged_runs.h"
 #include "runtime/log/run_text.h"
+#include "sim/loop/divergence.h"
 #include "sim/loop/restepper.h"
 #include "sim/state/state_layout.h"
 
@@ -18,12 +19,6 @@ namespace gloam {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-std::string joint_label(const mjModel& m, int joint) {
-  const char* name = mj_id2name(&m, mjOBJ_JOINT, joint);
-  return name != nullptr && *name != 0 ? fmt::format("joint '{}'", name)
-                                       : fmt::format("joint {}", joint);
-}
 
 // The first joint whose numbers differ, and by how much; else that something else does.
 std::string first_difference(const mjModel& m, std::span<const double> logged,

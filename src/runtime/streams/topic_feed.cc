@@ -61,11 +61,13 @@ Status TopicFeed::open_all(Simulation& simulation) {
   return open_snapshots(simulation, std::move(instants));
 }
 
-// After a recompile: the rows of the new World's table; what is gone is silent.
-Status TopicFeed::follow(const std::shared_ptr<const CompiledWorld>& world, Outlets* outlets) {
+// Makes what reads instants of a World: at first, and after a recompile, when what is gone is
+// silent.
+Status TopicFeed::follow(const std::shared_ptr<const CompiledWorld>& world, InstantReader* reader) {
   GLOAM_TRY(const auto table, tables_.of(world));
+  GLOAM_TRY(reader->solver, PoseSolver::create(world));
   Outlets next;
-  for (Outlet& outlet : *outlets) {
+  for (Outlet& outlet : reader->outlets) {
     const auto same = std::ranges::find_if(*table, [&outlet](const Topic& topic) {
       return topic.info.name == outlet.topic->info.name;
     });
@@ -73,22 +75,22 @@ Status TopicFeed::follow(const std::shared_ptr<const CompiledWorld>& world, Outl
     outlet.topic = &*same;
     next.push_back(std::move(outlet));
   }
-  *outlets = std::move(next);
-  table_of_snapshots_ = table;
+  reader->outlets = std::move(next);
+  reader->table = table;
   return {};
 }
 
 void TopicFeed::send(Outlet* outlet, const Status& encoded, TopicMessage message) {
-  if (!encoded.ok()) {
-    const std::lock_guard lock(mutex_);
-    if (fault_.ok()) {
-      log_warning("topic '{}': {}", outlet->topic->info.name, encoded.error().to_string());
-      fault_ = encoded;
-    }
-    return;
-  }
+  if (!encoded.ok()) return note(fmt::format("topic '{}'", outlet->topic->info.name), encoded);
   message.data = outlet->bytes;
   on_message_(message);
+}
+
+void TopicFeed::note(const std::string& what, const Status& fault) {
+  const std::lock_guard lock(mutex_);
+  if (!fault_.ok()) return;
+  log_warning("{}: {}", what, fault.error().to_string());
+  fault_ = fault;
 }
 
 Status TopicFeed::send_latched(Simulation& simulation, Outlets outlets) {
@@ -159,7 +161,7 @@ Status TopicFeed::open_sensors(Simulation& simulation, Outlets outlets) {
                                   request_.on_end};
       GLOAM_TRY(auto stream, simulation.open_sensor(
                                  request, [this, gathering, part](const SensorMessage& message) {
-                                   static_cast<void>(take_sample(gathering, part, message));
+                                   take_sample(gathering, part, message);
                                  }));
       streams_.push_back(std::move(stream));
     }
@@ -167,10 +169,10 @@ Status TopicFeed::open_sensors(Simulation& simulation, Outlets outlets) {
   return {};
 }
 
-Status TopicFeed::take_sample(Gathering* gathering, size_t part, const SensorMessage& message) {
+void TopicFeed::take_sample(Gathering* gathering, size_t part, const SensorMessage& message) {
   Outlet& outlet = gathering->outlet;
   const StepSchedule& schedule = outlet.schedule;
-  if (schedule.step_of(schedule.first_at_or_after(message.step)) != message.step) return {};
+  if (schedule.step_of(schedule.first_at_or_after(message.step)) != message.step) return;
   const std::lock_guard lock(sensors_mutex_);
   auto& waiting = gathering->by_step;
   // Time has begun anew, or a sensor drops its samples: what cannot be completed goes.
@@ -179,56 +181,47 @@ Status TopicFeed::take_sample(Gathering* gathering, size_t part, const SensorMes
   Gathering::Samples& samples = waiting[message.step];
   samples.messages.resize(outlet.topic->streams.size());
   samples.messages[part] = message;
-  if (++samples.count < samples.messages.size()) return {};
+  if (++samples.count < samples.messages.size()) return;
   const TopicInfo& info = outlet.topic->info;
   const auto& encode = std::get<SampleEncoder>(outlet.topic->code);
   send(&outlet, encode(info, samples.messages, &outlet.bytes),
        {info, -1, message.step, message.time, message.delivery, {}});
   waiting.erase(message.step);
-  return {};
 }
 
 // One stream at the rates' common steps: every step at which one of the topics is due.
 Status TopicFeed::open_snapshots(Simulation& simulation, Outlets outlets) {
   if (outlets.empty()) return {};
-  struct Reader {
-    Outlets outlets;
-    std::unique_ptr<PoseSolver> solver;
-    std::shared_ptr<const CompiledWorld> world;
-  };
-  auto reader = std::make_shared<Reader>();
   SnapshotRequest request{.required = request_.required, .on_end = request_.on_end};
   request.rate = outlets[0].topic->info.rate;
   for (const Outlet& outlet : outlets)
     if (!(outlet.topic->info.rate == request.rate)) request.rate = {0, 1};
+  auto reader = std::make_shared<InstantReader>();
   reader->outlets = std::move(outlets);
-  reader->world = simulation.world().compiled();
-  const auto take = [this, reader](const Snapshot& now) {
-    const auto is_due = [&now](const Outlet& outlet) {
-      return outlet.schedule.step_of(outlet.schedule.first_at_or_after(now.step())) == now.step();
-    };
-    if (std::ranges::none_of(reader->outlets, is_due)) return;
-    const auto& world = now.data().world;
-    if (reader->world != world) {
-      if (!follow(world, &reader->outlets).ok()) return;
-      reader->world = world;
-    }
-    if (reader->solver == nullptr || reader->solver->world() != world) {
-      auto solver = PoseSolver::create(world);
-      if (!solver.ok()) return;
-      reader->solver = std::move(*solver);
-    }
-    TopicInstant instant(now, *reader->solver);
-    for (Outlet& outlet : reader->outlets) {
-      if (!is_due(outlet)) continue;
-      const TopicInfo& info = outlet.topic->info;
-      const auto& encode = std::get<InstantEncoder>(outlet.topic->code);
-      send(&outlet, encode(info, instant, &outlet.bytes),
-           {info, now.data().run, now.step(), now.time(), now.time(), {}});
-    }
-  };
-  GLOAM_TRY(auto stream, simulation.open_snapshots(request, take));
+  GLOAM_TRY_STATUS(follow(simulation.world().compiled(), reader.get()));
+  GLOAM_TRY(auto stream, simulation.open_snapshots(request, [this, reader](const Snapshot& now) {
+    if (const Status taken = take_instant(reader.get(), now); !taken.ok())
+      note("topics of instants", taken);
+  }));
   streams_.push_back(std::move(stream));
+  return {};
+}
+
+Status TopicFeed::take_instant(InstantReader* reader, const Snapshot& now) {
+  const auto is_due = [&now](const Outlet& outlet) {
+    return outlet.schedule.step_of(outlet.schedule.first_at_or_after(now.step())) == now.step();
+  };
+  if (std::ranges::none_of(reader->outlets, is_due)) return {};
+  const auto& world = now.data().world;
+  if (reader->solver->world() != world) GLOAM_TRY_STATUS(follow(world, reader));
+  TopicInstant instant(now, *reader->solver);
+  for (Outlet& outlet : reader->outlets) {
+    if (!is_due(outlet)) continue;
+    const TopicInfo& info = outlet.topic->info;
+    const auto& encode = std::get<InstantEncoder>(outlet.topic->code);
+    send(&outlet, encode(info, instant, &outlet.bytes),
+         {info, now.data().run, now.step(), now.time(), now.time(), {}});
+  }
   return {};
 }
 

@@ -44,19 +44,27 @@ class TopicFeed final : public TopicStream {
     std::map<int64_t, Samples> by_step;
   };
 
+  /// Topics of instants, of the World whose Snapshots come.
+  struct InstantReader {
+    Outlets outlets;
+    std::shared_ptr<const TopicTable> table;
+    std::unique_ptr<PoseSolver> solver;
+  };
+
   Status open_all(Simulation& simulation);
   Status open_camera(Simulation& simulation, const std::string& camera, Outlets outlets);
   Status open_lidar(Simulation& simulation, const std::string& lidar, Outlets outlets);
   Status open_sensors(Simulation& simulation, Outlets outlets);
   Status open_snapshots(Simulation& simulation, Outlets outlets);
   Status send_latched(Simulation& simulation, Outlets outlets);
-  Status take_sample(Gathering* gathering, size_t part, const SensorMessage& message);
-  Status follow(const std::shared_ptr<const CompiledWorld>& world, Outlets* outlets);
+  void take_sample(Gathering* gathering, size_t part, const SensorMessage& message);
+  Status take_instant(InstantReader* reader, const Snapshot& now);
+  Status follow(const std::shared_ptr<const CompiledWorld>& world, InstantReader* reader);
+  void note(const std::string& what, const Status& fault);
   void send(Outlet* outlet, const Status& encoded, TopicMessage message);
 
   TopicTables& tables_;
-  std::shared_ptr<const TopicTable> table_;               // of the World at the opening
-  std::shared_ptr<const TopicTable> table_of_snapshots_;  // after a recompile
+  std::shared_ptr<const TopicTable> table_;  // of the World at the opening
   const TopicRequest request_;
   TopicCallback on_message_;
   std::mutex sensors_mutex_;  // guards the gatherings

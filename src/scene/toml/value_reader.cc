@@ -60,8 +60,7 @@ void ValueReader::read(const toml::node& node, const std::string& key, std::stri
 }
 
 // Any value, as it stands.
-void ValueReader::read(const toml::node& node, const std::string&, TomlText& out,
-                       const FieldRule&) {
+std::string toml_text(const toml::node& node) {
   std::ostringstream text;
   if (const toml::table* table = node.as_table(); table != nullptr) {
     toml::table on_one_line = *table;  // as a value is written, not as a section
@@ -70,7 +69,12 @@ void ValueReader::read(const toml::node& node, const std::string&, TomlText& out
   } else {
     node.visit([&](const auto& value) { text << value; });
   }
-  out.text = text.str();
+  return text.str();
+}
+
+void ValueReader::read(const toml::node& node, const std::string&, TomlText& out,
+                       const FieldRule&) {
+  out.text = toml_text(node);
 }
 
 bool ValueReader::check_text(const toml::node& node, const std::string& key,

@@ -24,6 +24,8 @@ const char* type_name(const toml::node& node);
 /// "from 0 to 1 m", for messages.
 std::string range_text(const FieldRule& rule);
 
+/// A node as a value is written in TOML, on one line.
+std::string toml_text(const toml::node& node);
 /// Largest magnitude of four numbers.
 double largest_of(const double (&v)[4]);
 /// The rotation of a quaternion wxyz that is not zero.

@@ -9,19 +9,7 @@
 namespace gloam {
 namespace {
 
-std::string text_of(const toml::node& node) {
-  std::ostringstream text;
-  if (const toml::table* table = node.as_table(); table != nullptr) {
-    toml::table on_one_line = *table;
-    on_one_line.is_inline(true);
-    text << on_one_line;
-  } else {
-    node.visit([&](const auto& value) { text << value; });
-  }
-  return text.str();
-}
-
-std::string quoted(const std::string& text) { return text_of(toml::value<std::string>(text)); }
+std::string quoted(const std::string& text) { return toml_text(toml::value<std::string>(text)); }
 
 // Lines, since their order counts and a table of TOML has none. Of two for one attribute the later
 // holds.
@@ -60,7 +48,7 @@ struct OptionGetter {
     const toml::node* node = table.get(key);
     if (node == nullptr && status->ok())
       *status = Error{ErrorKind::kInput, fmt::format("'{}' is not given", path)};
-    if (node != nullptr) *value = text_of(*node);
+    if (node != nullptr) *value = toml_text(*node);
   }
 };
 
@@ -107,7 +95,7 @@ class OptionLister {
     TableWriter writer(&table, folder_);
     writer("value", member, rule);
     const toml::node* node = table.get("value");
-    OptionInfo info{path, node != nullptr ? text_of(*node) : "", std::string(rule.unit), rule.min,
+    OptionInfo info{path, node != nullptr ? toml_text(*node) : "", std::string(rule.unit), rule.min,
                     rule.max};
     info.choices.assign(rule.choices.begin(), rule.choices.end());
     out_->push_back(std::move(info));

@@ -9,6 +9,7 @@
 
 #include "sim/commands/live_fields.h"
 #include "sim/state/state_layout.h"
+#include "world/agents/agent_bodies.h"
 #include "world/world_robots.h"
 
 namespace gloam {
@@ -44,7 +45,6 @@ class Check {
       : world_(world),
         serial_(world.serial),
         model_(*world.model),
-        agents_(world.agents),
         robot_count_(static_cast<int>(world.robots.size())) {}
 
   Status operator()(const SetControl& c) const {
@@ -107,12 +107,9 @@ class Check {
       return refuse(fmt::format("{} is not a mocap body", body_label(model_, c.body.id)),
                     "give it mocap=\"true\" in the model");
     }
-    for (const AgentDescription& agent : agents_) {
-      const auto end = agent.body.begin() + agent.parts();
-      if (std::find(agent.body.begin(), end, c.body.id) != end)
-        return refuse(fmt::format("{} is agent '{}', which moves by itself",
-                                  body_label(model_, c.body.id), agent.name));
-    }
+    if (const AgentDescription* agent = find_agent(world_, c.body.id); agent != nullptr)
+      return refuse(fmt::format("{} is agent '{}', which moves by itself",
+                                body_label(model_, c.body.id), agent->name));
     const Quat& q = c.X_WB.q;
     if (!finite(c.X_WB.p) || !finite({q.w, q.x, q.y, q.z}) ||
         q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z < 1e-12) {
@@ -163,7 +160,6 @@ class Check {
   const CompiledWorld& world_;
   uint64_t serial_;
   const mjModel& model_;
-  const std::vector<AgentDescription>& agents_;
   int robot_count_;
 };
 

@@ -17,10 +17,14 @@ std::string label(const mjModel& model, mjtObj type, const char* kind, int id) {
                                        : fmt::format("{} {}", kind, id);
 }
 
+}  // namespace
+
 std::string joint_label(const mjModel& model, int joint) {
   return fmt::format("{} of {}", label(model, mjOBJ_JOINT, "joint", joint),
                      label(model, mjOBJ_BODY, "body", model.jnt_bodyid[joint]));
 }
+
+namespace {
 
 int joint_of_qpos(const mjModel& model, int address) {
   int joint = static_cast<int>(model.njnt) - 1;

@@ -4,10 +4,14 @@
 #include <mujoco/mujoco.h>
 
 #include <span>
+#include <string>
 
 #include "gloam/result.h"
 
 namespace gloam {
+
+/// "joint 'arm/elbow' of body 'arm/forearm'"; numbers where the model gives no names.
+std::string joint_label(const mjModel& model, int joint);
 
 /// True when positions, velocities and activations are numbers MuJoCo can go on with (|x| <= 1e10)
 /// and it did not complain about any in the last step. `state` is that of `data`.
