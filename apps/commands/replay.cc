@@ -36,12 +36,7 @@ int look_again(const ReplayCommand& command, const Globals& globals) {
     replay.settings.push_back(std::move(*split));
   }
   if (const Status known = check_outputs(command.outputs); !known.ok()) return fail(known.error());
-  if (!command.outputs.empty()) {
-    std::string list;
-    for (const std::string& output : command.outputs)
-      list += (list.empty() ? "'" : ", '") + output + "'";
-    replay.settings.emplace_back("record.outputs", "[" + list + "]");
-  }
+  replay.outputs = command.outputs;
   replay.request.out = command.out;
   replay.request.log.file = command.to_log;
   replay.request.overwrite = command.overwrite;

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -60,15 +59,7 @@ int run(const RunCommand& command_line, const Globals& globals) {
   RunCommand command = command_line;
   auto scene = command.options.load(command.file);
   if (!scene.ok()) return fail(scene.error());
-  if (!command.options.outputs.empty()) {
-    scene->record.outputs = command.options.outputs;
-    for (CameraOptions& camera : scene->cameras) camera.outputs.reset();
-    const bool has_lidar = std::ranges::count(scene->record.outputs, "lidar") > 0;
-    for (LidarOptions& lidar : scene->lidars) {
-      // Formats of its own are kept; [] asks for none, "lidar" for the usual one.
-      if (!has_lidar || (lidar.outputs && lidar.outputs->empty())) lidar.outputs.reset();
-    }
-  }
+  if (!command.options.outputs.empty()) set_record_outputs(command.options.outputs, &*scene);
   if (const Status status = check_outputs(command.options.outputs); !status.ok())
     return fail(status.error());
   scene->record.mcap |= command.mcap;

@@ -19,6 +19,7 @@ struct LogReplay {
   /// Options to change, as set_option takes them: weather, lights, materials, sky, cameras, LiDARs,
   /// smoke. Forces of what is changed do not act: bodies move as they did.
   std::vector<std::pair<std::string, std::string>> settings = {};
+  std::vector<std::string> outputs = {};  ///< as of set_record_outputs; empty = the scene's
   RunRequest request = {};  ///< what is recorded, and where; a duration of 0 = the whole run
 };
 

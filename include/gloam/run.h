@@ -42,6 +42,10 @@ struct RunReport {
   Status status;  ///< why it ended early, if it did; what was recorded is readable
 };
 
+/// Makes `outputs`, of kRecordOutputs, what a run of the scene records, of cameras and LiDARs with
+/// outputs of their own, too. Formats of LiDARs stay, where "lidar" is among them.
+void set_record_outputs(const std::vector<std::string>& outputs, Scene* scene);
+
 /// Runs a World for its duration and records what its Scene asks for. `progress` is called first
 /// before any file is written; when it returns false the files are finished all the same. An Error
 /// means that nothing could be started.

@@ -213,6 +213,16 @@ class MetricsThread {
 
 }  // namespace
 
+void set_record_outputs(const std::vector<std::string>& outputs, Scene* scene) {
+  scene->record.outputs = outputs;
+  for (CameraOptions& camera : scene->cameras) camera.outputs.reset();
+  const bool has_lidar = wants(outputs, "lidar");
+  for (LidarOptions& lidar : scene->lidars) {
+    // Formats of its own are kept; [] asks for none, "lidar" for the usual one.
+    if (!has_lidar || (lidar.outputs && lidar.outputs->empty())) lidar.outputs.reset();
+  }
+}
+
 Result<RunReport> run_and_record(const World& world, const RunRequest& request,
                                  const ProgressCallback& progress) {
   return record_motion(world, request, nullptr, progress);

@@ -47,6 +47,7 @@ Result<RunReport> replay_log(const LogReplay& replay, const ProgressCallback& pr
   Scene scene = logged.written;
   for (const auto& [path, value] : replay.settings)
     GLOAM_TRY_STATUS(set_option(scene, path, value));
+  if (!replay.outputs.empty()) set_record_outputs(replay.outputs, &scene);
   Result<World> world = compile_alike(scene, logged);
   if (!world.ok()) return name_the_setting(replay, logged, world.error());
   GLOAM_TRY(auto motion, LoggedMotion::create(run->second, world->compiled()));

@@ -104,6 +104,16 @@ TEST_F(Replays, UnderAnotherSkyMovesAlikeAndLooksOtherwise) {
   EXPECT_NE(file("dusk", "eye/rgb/000003.png"), file("first", "eye/rgb/000003.png"));
 }
 
+TEST_F(Replays, OutputsAreThoseAskedForWhateverTheCameraSays) {
+  LogReplay replay{
+      .log = log_, .settings = {{"camera.eye.outputs", "['depth_png']"}}, .outputs = {"png"}};
+  replay.request.out = folder_.path() / "png";
+  replay.request.duration = 0.1;
+  ASSERT_TRUE(replay_log(replay, {}).ok());
+  EXPECT_TRUE(fs::exists(folder_.path() / "png" / "eye" / "rgb" / "000000.png"));
+  EXPECT_FALSE(fs::exists(folder_.path() / "png" / "eye" / "depth"));
+}
+
 TEST_F(Replays, SettingThatChangesTheMotionIsRefusedByName) {
   const auto heavier =
       replay({{"sky.sun_elevation", "3"}, {"override.toy.geom..*.density", "2000"}}, "heavy");
