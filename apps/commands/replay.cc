@@ -7,9 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "gloam/log.h"
+#include "gloam/log_player.h"
 #include "gloam/log_replay.h"
 #include "json_text.h"
 #include "outputs.h"
+#include "page.h"
 #include "report.h"
 #include "run_options.h"
 
@@ -17,38 +19,87 @@ namespace gloam::cli {
 namespace {
 
 struct ReplayCommand {
-  std::string log, folder, out, to_log, resolution;
-  std::vector<std::string> settings, cameras, outputs;
+  std::string log, folder, out, to_log, resolution, adversity, randomize;
+  std::vector<std::string> settings, overlays, cameras, outputs;
+  std::optional<uint64_t> seed;
+  int64_t run = 0, variants = 0;
   double duration = 0;
-  bool verify = false, overwrite = false;
+  bool verify = false, poses = false, restep = false, overwrite = false, view = false;
+  ViewCommand page;
 };
 
-int look_again(const ReplayCommand& command, const Globals& globals) {
-  if (command.out.empty() && command.to_log.empty())
-    return fail({ErrorKind::kUsage,
-                 "nothing is asked for",
-                 {},
-                 "--verify compares; --out FOLDER or --log FILE records the run again"});
-  LogReplay replay{.log = command.log, .folder = command.folder};
+Result<LogReplay> replay_of(const ReplayCommand& command) {
+  LogReplay replay{.log = command.log, .folder = command.folder, .run = command.run};
+  if (command.poses) replay.motion = ReplayMotion::kPoses;
+  if (command.restep) replay.motion = ReplayMotion::kNewRun;
+  replay.overlays.assign(command.overlays.begin(), command.overlays.end());
+  replay.draw_seed = command.seed;
+  if (!command.adversity.empty())
+    replay.settings.emplace_back("adversity.level", command.adversity);
   for (const std::string& setting : command.settings) {
-    auto split = split_setting(setting);
-    if (!split.ok()) return fail(split.error());
-    replay.settings.push_back(std::move(*split));
+    GLOAM_TRY(auto split, split_setting(setting));
+    replay.settings.push_back(std::move(split));
   }
-  if (const Status known = check_outputs(command.outputs); !known.ok()) return fail(known.error());
+  GLOAM_TRY_STATUS(check_outputs(command.outputs));
   replay.outputs = command.outputs;
   replay.request.out = command.out;
   replay.request.log.file = command.to_log;
   replay.request.overwrite = command.overwrite;
   replay.request.cameras = command.cameras;
   replay.request.duration = command.duration;
-  if (!command.resolution.empty()) {
-    if (const Status size =
-            parse_resolution(command.resolution, replay.request.width, replay.request.height);
-        !size.ok())
-      return fail(size.error());
+  if (!command.resolution.empty())
+    GLOAM_TRY_STATUS(
+        parse_resolution(command.resolution, replay.request.width, replay.request.height));
+  return replay;
+}
+
+int record_variants(const ReplayCommand& command, LogReplay replay, const Globals& globals) {
+  if (command.randomize.empty())
+    return fail({ErrorKind::kUsage,
+                 "--variants needs --randomize",
+                 {},
+                 "a file with [[randomize]] tables says what is drawn"});
+  const VariantRequest request{.replay = std::move(replay),
+                               .randomize = command.randomize,
+                               .count = command.variants,
+                               .first_seed = command.seed.value_or(1)};
+  const auto variants = replay_variants(request, progress_display(globals));
+  finish_progress();
+  if (!variants.ok()) return fail(variants.error());
+  if (globals.json) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (const ReplayVariant& v : *variants)
+      json.push_back({{"seed", v.seed}, {"out", v.out.string()}, {"was_done", v.was_done}});
+    std::printf("%s\n", json_text(json).c_str());
+  } else {
+    for (const ReplayVariant& v : *variants)
+      fmt::print("{}  seed {}{}\n", v.out.string(), v.seed, v.was_done ? "  (done before)" : "");
   }
-  return tell_of(replay_log(replay, progress_display(globals)), globals);
+  return 0;
+}
+
+int play(const ReplayCommand& command, const LogReplay& replay) {
+  EndOnInterrupt starting;
+  auto player = LogPlayer::open(replay);
+  if (!player.ok()) return fail(player.error());
+  ViewOptions view{.width = replay.request.width, .height = replay.request.height};
+  if (!replay.request.cameras.empty()) view.camera = replay.request.cameras.front();
+  view.player = player->get();
+  return show_page((*player)->simulation(), view, command.page, starting);
+}
+
+int look_again(const ReplayCommand& command, const Globals& globals) {
+  if (command.out.empty() && command.to_log.empty() && !command.view)
+    return fail({ErrorKind::kUsage,
+                 "nothing is asked for",
+                 {},
+                 "--verify compares; --out FOLDER or --log FILE records the run again; --view "
+                 "shows it"});
+  auto replay = replay_of(command);
+  if (!replay.ok()) return fail(replay.error());
+  if (command.view) return play(command, *replay);
+  if (command.variants > 0) return record_variants(command, *std::move(replay), globals);
+  return tell_of(replay_log(*replay, progress_display(globals)), globals);
 }
 
 int replay(const ReplayCommand& command, const Globals& globals) {
@@ -84,6 +135,22 @@ void add_replay(CLI::App& app, Globals& globals, Action& action) {
                 "Compare every logged state and hash: 0 of N steps differ");
   sub->add_option("--folder", command->folder,
                   "Where the scene's files are; default: where they were");
+  sub->add_option("--run", command->run, "Which run of the log, from 0: a reset ends one");
+  sub->add_flag("--poses", command->poses,
+                "Take bodies' poses from the logged states, do not step the run again");
+  sub->add_flag("--restep", command->restep,
+                "Let changes act on the motion: a new run under the log's Commands")
+      ->excludes("--poses");
+  sub->add_option("--overlay", command->overlays,
+                  "Scene file whose tables are laid over the scene: cameras, lamps (repeatable)");
+  sub->add_option("--adversity", command->adversity, "none, minor or major");
+  sub->add_option("--variants", command->variants, "Number of variants into OUT/0000, 0001 …")
+      ->check(CLI::Range(1, 1000000));
+  sub->add_option("--randomize", command->randomize,
+                  "Scene file with the [[randomize]]s that variants draw")
+      ->check(CLI::ExistingFile);
+  sub->add_option("--seed", command->seed,
+                  "Seed of [[randomize]]s of overlays, of the first variant");
   sub->add_option("--set", command->settings,
                   "Change what is seen, as weather.visibility=8 (repeatable)");
   sub->add_option("--out", command->out, "Results folder of the run as it is seen now");
@@ -96,10 +163,14 @@ void add_replay(CLI::App& app, Globals& globals, Action& action) {
   sub->add_option("--resolution", command->resolution, "WIDTHxHEIGHT of every camera");
   sub->add_option("--duration", command->duration, "Seconds of it; default: all")
       ->check(positive_number());
+  sub->add_flag("--view", command->view, "Serve a live page on this machine to go about in it");
+  sub->add_flag("--loop", command->page.loop, "Begin again at the end, with --view");
+  command->page.add_to(*sub);
   sub->footer(
       "Exit codes of --verify: 0 equal, 1 different, 3 a run could not be verified\nExamples:\n  "
       "gloam replay run.mcap --verify\n  gloam replay run.mcap --set weather.visibility=8 --set "
-      "render.tier=direct --out results/foggy");
+      "render.tier=direct --out results/foggy\n  gloam replay run.mcap --variants 8 --randomize "
+      "skies.toml --out results/skies\n  gloam replay run.mcap --view");
   sub->callback([&globals, &action, command] {
     action = [&globals, command] { return replay(*command, globals); };
   });

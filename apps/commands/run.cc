@@ -2,14 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
-#include <cstdio>
-#include <nlohmann/json.hpp>
-#include <thread>
+#include <optional>
 
-#include "gloam/view.h"
-#include "interrupt.h"
+#include "gloam/log_replay.h"
 #include "outputs.h"
+#include "page.h"
 #include "report.h"
 #include "run_options.h"
 
@@ -20,43 +17,75 @@ struct RunCommand {
   std::string file, out;
   RunOptions options;
   bool overwrite = false, realtime = false, view = false, mcap = false;
-  double speed = 1;
-  int port = 8080;
+  std::optional<double> at;  ///< [s]
+  ViewCommand page;
 };
 
-int watch(const World& world, const SimulationOptions& options, const RunCommand& command,
-          const Scene& scene) {
+int watch(const World& world, const RunRequest& request, const RunCommand& command) {
+  const Scene& scene = world.scene();
   EndOnInterrupt starting;
-  auto simulation = Simulation::create(world, options);
+  auto simulation = Simulation::create(world, request.simulation);
   if (!simulation.ok()) return fail(simulation.error());
-  ViewOptions view;
-  view.port = command.port;
+  if (request.from) {
+    if (const Status status = (*simulation)->restore(*request.from); !status.ok())
+      return fail(status.error());
+  }
+  ViewOptions view{.width = request.width, .height = request.height};
   // A live picture is a quick one unless the user asked for light on the command line.
   if (!command.options.tier.empty()) view.render = scene.render;
   view.render.ev100 = scene.render.ev100;
-  if (!command.options.cameras.empty()) {
-    view.camera = command.options.cameras.front();
+  if (!request.cameras.empty()) {
+    view.camera = request.cameras.front();
   } else if (!scene.cameras.empty()) {
     view.camera = scene.cameras.front().name;  // the free camera may stand outside the walls
   }
+  return show_page(**simulation, view, command.page, starting);
+}
+
+int run_world(const World& world, RunRequest request, const RunCommand& command,
+              const Globals& globals) {
+  const Scene& scene = world.scene();
+  request.out = command.out;
+  if (request.out.empty() && scene.bare_model.empty() && !command.view)
+    request.out = std::filesystem::path("results") / scene.name;
+  request.overwrite = command.overwrite;
+  request.cameras = command.options.cameras;
+  request.simulation.pace = command.realtime || command.view ? Pace::kRealTime : Pace::kFast;
+  request.simulation.speed = command.page.speed;
   if (!command.options.resolution.empty()) {
-    if (const Status status = parse_resolution(command.options.resolution, view.width, view.height);
+    if (const Status status =
+            parse_resolution(command.options.resolution, request.width, request.height);
         !status.ok()) {
       return fail(status.error());
     }
   }
-  auto server = ViewServer::start(**simulation, view);
-  if (!server.ok()) return fail(server.error());
-  starting.release();
-  std::fprintf(stderr, "gloam: open %s  (Ctrl-C ends it)\n", (*server)->url().c_str());
-  (*simulation)->resume();
-  while (!interrupted()) std::this_thread::sleep_for(std::chrono::milliseconds(100));
-  (*server)->stop();
-  return 0;
+  return command.view ? watch(world, request, command) : run_and_report(world, request, globals);
+}
+
+// Goes on from an instant of a log, in its World.
+int run_on(const RunCommand& command, const Globals& globals) {
+  const RunOptions& o = command.options;
+  if (!o.settings.empty() || !o.outputs.empty() || o.seed || o.timestep || !o.tier.empty())
+    return fail({ErrorKind::kUsage,
+                 "a log is gone on from as it is",
+                 {},
+                 "gloam replay LOG --restep --set … runs a changed scene under its Commands"});
+  auto from = log_checkpoint(command.file, {}, 0, *command.at);
+  if (!from.ok()) return fail(from.error());
+  RunRequest request;
+  request.simulation.seed = from->seed();
+  request.simulation.timestep = from->world().scene().sim.timestep.value_or(0);
+  request.from = *from;
+  request.duration = o.duration.value_or(0);
+  request.log.file = command.mcap && !command.out.empty()
+                         ? std::filesystem::path(command.out) / "run.mcap"
+                         : std::filesystem::path();
+  return run_world(from->world(), request, command, globals);
 }
 
 int run(const RunCommand& command_line, const Globals& globals) {
   RunCommand command = command_line;
+  if (command.at) return run_on(command, globals);
   auto scene = command.options.load(command.file);
   if (!scene.ok()) return fail(scene.error());
   if (!command.options.outputs.empty()) set_record_outputs(command.options.outputs, &*scene);
@@ -66,27 +95,10 @@ int run(const RunCommand& command_line, const Globals& globals) {
   auto world = compile(*scene, globals, command.options.keyframe);
   if (!world.ok()) return fail(world.error());
   tell_void_outputs(command.options.outputs, *scene, *world);
-
   RunRequest request;
-  request.out = command.out;
-  if (request.out.empty() && scene->bare_model.empty() && !command.view) {
-    request.out = std::filesystem::path("results") / scene->name;
-  }
-  request.overwrite = command.overwrite;
-  request.cameras = command.options.cameras;
   request.simulation.seed = scene->sim.seed;
   request.simulation.timestep = scene->sim.timestep.value_or(0);
-  request.simulation.pace = command.realtime || command.view ? Pace::kRealTime : Pace::kFast;
-  request.simulation.speed = command.speed;
-  if (!command.options.resolution.empty()) {
-    if (const Status status =
-            parse_resolution(command.options.resolution, request.width, request.height);
-        !status.ok()) {
-      return fail(status.error());
-    }
-  }
-  if (command.view) return watch(*world, request.simulation, command, *scene);
-  return run_and_report(*world, request, globals);
+  return run_world(*world, request, command, globals);
 }
 
 }  // namespace
@@ -104,16 +116,16 @@ void add_run(CLI::App& app, Globals& globals, Action& action) {
   sub->add_flag("--overwrite", command->overwrite, "Replace an existing results folder");
   sub->add_flag("--realtime", command->realtime,
                 "Pace by the wall clock; default: as fast as possible");
-  sub->add_option("--speed", command->speed,
-                  "Simulated seconds per second, with --realtime or --view")
-      ->check(positive_number());
   sub->add_flag("--view", command->view, "Serve a live page on this machine instead of recording");
-  sub->add_option("--port", command->port, "Port of --view; 0 = any free one")
-      ->check(CLI::Range(0, 65535));
+  command->page.add_to(*sub);
+  sub->add_option("--at", command->at,
+                  "FILE is a log: go on from this time of it [s], for --duration more")
+      ->check(non_negative_number());
   sub->footer(
       "Examples:\n  gloam run examples/demo.toml --duration 3\n  gloam run robot.xml --out "
       "results/robot --camera front\n  gloam run examples/lidar.toml --duration 1 --output "
-      "lidar,sensors,depth_exr\n  gloam run robot.urdf --view");
+      "lidar,sensors,depth_exr\n  gloam run robot.urdf --view\n  gloam run run.mcap --at 2.5 "
+      "--duration 3 --out results/branch");
   sub->callback([&globals, &action, command] {
     action = [&globals, command] { return run(*command, globals); };
   });

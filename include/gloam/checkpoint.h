@@ -18,6 +18,7 @@ class Checkpoint {
 
   int64_t step() const;   ///< since reset
   double time() const;    ///< simulation time [s]
+  uint64_t seed() const;  ///< of the run
   uint64_t hash() const;  ///< of the state; a restored simulation has the same
   World world() const;    ///< the one that ran
   /// Whether restoring takes a copy. Else the run is stepped again from its beginning, as fast as

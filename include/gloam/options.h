@@ -1,6 +1,7 @@
 #pragma once
 // Options of a Scene by their paths, and whole Scenes as text.
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -29,5 +30,12 @@ struct OptionInfo {
 
 /// All options of the tables that stand in a Scene, in the order of scene_schema().
 std::vector<OptionInfo> list_options(const Scene& scene);
+
+/// A Scene changed by the text of a second scene file: its options replace those of the Scene; its
+/// list tables ([[camera]], [[light]] …) change those of the same name and add the others. `file`
+/// names it in errors; relative paths start from the Scene's folder. Errors: those of parse_scene.
+Result<Scene> overlay_scene(const Scene& scene, std::string_view toml, const std::string& file);
+/// The same of a file.
+Result<Scene> overlay_scene(const Scene& scene, const std::filesystem::path& file);
 
 }  // namespace gloam

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "gloam/camera.h"
+#include "gloam/checkpoint.h"
+#include "gloam/command.h"
 #include "gloam/log.h"
 #include "gloam/result.h"
 #include "gloam/scene.h"
@@ -27,6 +29,9 @@ struct RunRequest {
   /// Log of the run; without a file, [record] mcap makes one in `out`, run.mcap.
   LogRequest log = {};
   double duration = 0;  ///< [s]; 0 = the scene's
+  /// Instant that the run goes on from, for `duration` more, in the World that is given.
+  std::optional<Checkpoint> from = {};
+  std::vector<Command> commands = {};  ///< posted before the first step
 };
 
 struct RunReport {
@@ -40,6 +45,7 @@ struct RunReport {
   std::vector<std::pair<std::string, double>>
       results;    ///< velocity errors, falls … as in summary.json
   Status status;  ///< why it ended early, if it did; what was recorded is readable
+  std::vector<std::string> notes = {};  ///< for people: "poses only, since …"
 };
 
 /// Makes `outputs`, of kRecordOutputs, what a run of the scene records, of cameras and LiDARs with

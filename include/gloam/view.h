@@ -15,21 +15,25 @@
 
 namespace gloam {
 
+class LogPlayer;  // gloam/log_player.h
+
 struct ViewOptions {
   int port = 8080;                 ///< 0 = any free port, else 1 … 65535
   std::string host = "127.0.0.1";  ///< a loopback name only: 127.x.y.z, localhost or ::1
   int max_clients = 32;            ///< open connections, watching or not, 1 … 1024
   std::string camera = "free";     ///< shown first: full name, or "free"
   RenderOptions render = {.tier = "direct", .spp = 1, .denoise = false};
-  int width = 0, height = 0;  ///< [px]; 0 = the camera's own
-  double rate = 20;           ///< pictures per second of simulation time, (0, 240]
+  int width = 0, height = 0;    ///< [px]; 0 = the camera's own
+  double rate = 20;             ///< pictures per second of simulation time, (0, 240]
+  double speed = 1;             ///< simulated seconds per second, 0.001 … 100
+  LogPlayer* player = nullptr;  ///< whose simulation it is: the page goes about in time
 };
 
-/// Serves the page from threads of its own until stopped or destroyed. The Simulation must live
-/// longer. Thread-safe.
+/// Serves the page from threads of its own until stopped or destroyed. The Simulation and the
+/// LogPlayer must live longer. Thread-safe.
 class ViewServer {
  public:
-  /// Starts to listen and sets the pace to real time, speed 1; whether the simulation runs or is
+  /// Starts to listen and sets the pace to real time; whether the simulation runs or is
   /// paused stays as it is. Errors: usage (host is not loopback, a number out of range), I/O (port
   /// in use), what open_camera says.
   static Result<std::unique_ptr<ViewServer>> start(Simulation& simulation,

@@ -43,25 +43,25 @@ Result<std::unique_ptr<Simulation>> Simulation::create(const World& world,
 
 Result<std::unique_ptr<LiveSimulation>> LiveSimulation::create(const World& world,
                                                                const SimulationOptions& options,
-                                                               Metering metering,
-                                                               std::unique_ptr<Motion> motion) {
+                                                               LiveOptions how) {
   std::unique_ptr<LiveSimulation> live(
-      new LiveSimulation(options.seed, options.pace != Pace::kRealTime, metering));
+      new LiveSimulation(options.seed, options.pace != Pace::kRealTime, how.metering));
   SimulatorOptions core;
   core.seed = options.seed;
   if (options.timestep != 0) core.timestep = options.timestep;
   core.pace = options.pace;
   core.speed = options.speed;
+  core.command_capacity += static_cast<int>(std::min(how.commands, size_t{1} << 19));
   GLOAM_TRY(live->simulator_, Simulator::create(world.compiled(), core));
-  if (motion != nullptr) {
-    GLOAM_TRY_STATUS(live->simulator_->follow(std::move(motion)));
+  if (how.motion != nullptr) {
+    GLOAM_TRY_STATUS(live->simulator_->follow(std::move(how.motion), how.end));
   } else {
     GLOAM_TRY(auto controllers, make_controllers(world.compiled()));
     for (RobotController& c : controllers)
       GLOAM_TRY_STATUS(live->simulator_->add_controller(c.robot, std::move(c.controller), c.rate));
   }
   // Exposure goes on from step 0, whether or not anyone opens the camera.
-  if (metering == Metering::kAlways)
+  if (how.metering == Metering::kAlways)
     GLOAM_TRY_STATUS(live->meters_.open(*live->simulator_, live->renderers_));
   // The thread starts with the first call that moves time: hooks, controllers and cameras come
   // before.
@@ -115,6 +115,7 @@ Status LiveSimulation::run_until(int64_t step) {
   if (simulator_->is_on_sim_thread()) return simulator_->wait();  // says that it cannot
   restart_speed_clock();
   paused_ = false;
+  step = std::min(step, simulator_->end());
   simulator_->run_until(step);
   while (simulator_->step_count() < step && simulator_->status().ok() && !stop_requested_) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));

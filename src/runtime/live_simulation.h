@@ -25,12 +25,18 @@ Result<std::vector<RobotController>> make_controllers(
 /// rendering.
 enum class Metering : uint8_t { kAlways, kNever };
 
+struct LiveOptions {
+  Metering metering = Metering::kAlways;
+  std::unique_ptr<Motion> motion = nullptr;  ///< instead of physics
+  int64_t end = Simulator::kForever;         ///< step at which the motion ends
+  size_t commands = 0;  ///< that are posted before the first step, beyond the usual number
+};
+
 class LiveSimulation final : public Simulation {
  public:
   static Result<std::unique_ptr<LiveSimulation>> create(const World& world,
                                                         const SimulationOptions& options,
-                                                        Metering metering = Metering::kAlways,
-                                                        std::unique_ptr<Motion> motion = nullptr);
+                                                        LiveOptions live = {});
   World world() const override { return World(simulator_->world()); }
   Status recompile(const World& world) override;
   using Simulation::recompile;

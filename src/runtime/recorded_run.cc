@@ -181,6 +181,17 @@ RunInfo run_info(const World& world, const RunRequest& request, bool has_media, 
   return info;
 }
 
+// Goes on from the request's checkpoint, in `world`, and posts its Commands.
+Status begin_where_asked(LiveSimulation& simulation, const World& world,
+                         const RunRequest& request) {
+  if (request.from) {
+    GLOAM_TRY_STATUS(simulation.restore(*request.from));
+    if (request.from->world().compiled() != world.compiled())
+      GLOAM_TRY_STATUS(simulation.recompile(world));
+  }
+  return request.commands.empty() ? Status() : simulation.post(request.commands);
+}
+
 // The metrics' own consumer of Snapshots.
 class MetricsThread {
  public:
@@ -235,14 +246,17 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
   const bool pictures = !request.out.empty() && wants_pictures(scene);
   const LogRequest log_request = log_request_of(scene, request);
   const bool metered_always = pictures || !log_request.file.empty();
-  GLOAM_TRY(auto simulation,
-            LiveSimulation::create(world, request.simulation,
-                                   metered_always ? Metering::kAlways : Metering::kNever,
-                                   std::move(motion)));
+  GLOAM_TRY(auto simulation, LiveSimulation::create(
+                                 world, request.simulation,
+                                 {.metering = metered_always ? Metering::kAlways : Metering::kNever,
+                                  .motion = std::move(motion),
+                                  .commands = request.commands.size()}));
+  GLOAM_TRY_STATUS(begin_where_asked(*simulation, world, request));
   Simulator& simulator = simulation->simulator();
   const double duration = request.duration > 0 ? request.duration : scene.sim.duration;
   const Rational rate = simulation->step_rate();
-  GLOAM_TRY(const int64_t steps, step_of_time(duration, rate, "a duration"));
+  GLOAM_TRY(int64_t steps, step_of_time(duration, rate, "a duration"));
+  steps += simulator.latest().step();
 
   RunReport report;
   // Metrics at 100 Hz, or every step of slower models; illuminance once a second.

@@ -1,9 +1,11 @@
 #include "base/files.h"
 #include "base/plain_text.h"
 #include "geometry/mesh/model_file.h"
+#include "gloam/options.h"
 #include "gloam/scene.h"
 #include "places/generators.h"
 #include "scene/files/file_finder.h"
+#include "scene/toml/overlay.h"
 #include "scene/toml/toml_reader.h"
 #include "scene/validate/validate.h"
 
@@ -56,7 +58,8 @@ Result<Scene> read_scene(const toml::table& table, const fs::path& path, Scene s
   GLOAM_TRY_STATUS(validate_scene(scene));
   if (scene.robots.empty() && scene.environment.file.empty() && !has_generator(scene.environment) &&
       scene.props.empty() && scene.visuals.empty() && scene.objects.empty() &&
-      scene.hfields.empty() && scene.agents.empty() && scene.crowds.empty()) {
+      scene.hfields.empty() && scene.agents.empty() && scene.crowds.empty() &&
+      scene.bare_model.empty()) {
     return Error{ErrorKind::kInput,
                  "the scene has nothing in it",
                  {path.string(), 0, 0},
@@ -104,6 +107,26 @@ Result<Scene> parse_scene(std::string_view text, const fs::path& folder, const F
   scene.access = access;
   scene.name = "scene";
   return read_scene(table, path, std::move(scene));
+}
+
+Result<Scene> overlay_scene(const Scene& scene, std::string_view text, const std::string& file) {
+  if (text.size() > kLargestScene)
+    return Error{ErrorKind::kInput, "a scene of more than 4 MiB is not read", {file, 0, 0}};
+  GLOAM_TRY(const std::optional<std::string> plain, plain_text(text, file));
+  GLOAM_TRY(toml::table over, parse_toml(plain ? *plain : std::string(text), file));
+  const fs::path path = scene.file.empty() ? fs::path("scene.toml") : scene.file;
+  GLOAM_TRY(toml::table table, parse_toml(to_toml(scene), path.string()));
+  overlay_table(std::move(over), &table);
+  Scene changed;
+  changed.access = scene.access;
+  changed.name = scene.name;
+  changed.bare_model = scene.bare_model;
+  return read_scene(table, path, std::move(changed));
+}
+
+Result<Scene> overlay_scene(const Scene& scene, const fs::path& file) {
+  GLOAM_TRY(const std::string text, read_plain_text(file, kLargestScene));
+  return overlay_scene(scene, text, file.string());
 }
 
 }  // namespace gloam

@@ -1,5 +1,7 @@
 #include "studio/driver.h"
 
+#include "gloam/log_player.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -35,7 +37,8 @@ bool merge(ControlMessage& waiting, const ControlMessage& next) {
     zoom->amount += std::get<ZoomMessage>(next).amount;
     return true;
   }
-  if (std::holds_alternative<DragMoveMessage>(waiting)) {
+  if (std::holds_alternative<DragMoveMessage>(waiting) ||
+      std::holds_alternative<SeekMessage>(waiting)) {
     waiting = next;
     return true;
   }
@@ -68,6 +71,7 @@ Status Driver::start() {
   GLOAM_TRY_STATUS(open_camera(options_.camera));
   {
     const std::lock_guard lock(mutex_);
+    speed_ = report_.speed = options_.speed;
     last_client_ = Clock::now();
   }
   thread_ = std::thread([this] { run(); });
@@ -178,7 +182,17 @@ void Driver::do_message(int64_t, const SpeedMessage& message) {
   report_.speed = message.value;
 }
 
+void Driver::do_message(int64_t client, const SeekMessage& message) {
+  if (options_.player == nullptr)
+    return reply_(client, notice_message("This is no log: its time cannot be gone about in."));
+  const double time = std::min(message.time, options_.player->end());
+  tell_failure(client, options_.player->seek(time));
+  picture_is_old_ = true;
+  last_moved_ = Clock::now();
+}
+
 void Driver::do_message(int64_t client, const ResetMessage&) {
+  if (options_.player != nullptr) return do_message(client, SeekMessage{0});
   tell_failure(client, simulation_.post({.what = ResetSim{}}));
   picture_is_old_ = true;
 }

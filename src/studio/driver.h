@@ -75,6 +75,7 @@ class Driver {
   void do_message(int64_t client, const StepMessage& message);
   void do_message(int64_t client, const SpeedMessage& message);
   void do_message(int64_t client, const ResetMessage&);
+  void do_message(int64_t client, const SeekMessage& message);
   void do_message(int64_t client, const CameraMessage& message);
   void do_message(int64_t client, const OrbitMessage& message);
   void do_message(int64_t client, const PanMessage& message);

@@ -110,16 +110,20 @@ Result<ControlMessage> parse_message(std::string_view text) {
   if (type == "speed")
     return reader.finish(SpeedMessage{reader.number("value", kMinSpeed, kMaxSpeed)});
   if (type == "reset") return reader.finish(ResetMessage{});
+  if (type == "seek") return reader.finish(SeekMessage{reader.number("time", 0, kMaxTime)});
   if (type == "camera") return reader.finish(CameraMessage{reader.text("name", kMaxName)});
   if (type == "claim") return reader.finish(ClaimMessage{});
   if (type == "release") return reader.finish(ReleaseMessage{});
   return wrong("the message has a type that this server does not know");
 }
 
-std::string hello_message(int64_t client, const std::vector<std::string>& cameras,
-                          double step_rate) {
-  return to_text(
-      {{"type", "hello"}, {"client", client}, {"cameras", cameras}, {"step_rate", step_rate}});
+std::string hello_message(int64_t client, const std::vector<std::string>& cameras, double step_rate,
+                          double log_end) {
+  return to_text({{"type", "hello"},
+                  {"client", client},
+                  {"cameras", cameras},
+                  {"step_rate", step_rate},
+                  {"log_end", log_end}});
 }
 
 std::string state_message(const ViewState& state) {

@@ -21,6 +21,10 @@ struct SpeedMessage {
   double value = 1;  ///< simulated seconds per wall second, kMinSpeed … kMaxSpeed
 };
 struct ResetMessage {};
+/// Goes to an instant of a log that is played.
+struct SeekMessage {
+  double time = 0;  ///< [s], 0 … kMaxTime
+};
 struct CameraMessage {
   std::string name;
 };
@@ -51,13 +55,15 @@ struct ReleaseMessage {};
 /// The client has shown a picture; the server sends no more than kPicturesInFlight ahead.
 struct SeenMessage {};
 
-using ControlMessage = std::variant<PauseMessage, ResumeMessage, StepMessage, SpeedMessage,
-                                    ResetMessage, CameraMessage, OrbitMessage, PanMessage,
-                                    ZoomMessage, PickMessage, DragStartMessage, DragMoveMessage,
-                                    DragEndMessage, ClaimMessage, ReleaseMessage, SeenMessage>;
+using ControlMessage =
+    std::variant<PauseMessage, ResumeMessage, StepMessage, SpeedMessage, ResetMessage, SeekMessage,
+                 CameraMessage, OrbitMessage, PanMessage, ZoomMessage, PickMessage,
+                 DragStartMessage, DragMoveMessage, DragEndMessage, ClaimMessage, ReleaseMessage,
+                 SeenMessage>;
 
 inline constexpr int kMaxStepCount = 100;
 inline constexpr double kMinSpeed = 0.001, kMaxSpeed = 100;
+inline constexpr double kMaxTime = 1e9;  // [s]
 inline constexpr int kPicturesInFlight = 2;
 
 /// Reads one message. Errors: not JSON, unknown type or key, a value missing or out of range.
@@ -79,8 +85,9 @@ struct ViewState {
   int64_t controller = 0;  ///< client number; 0 = nobody
 };
 
-std::string hello_message(int64_t client, const std::vector<std::string>& cameras,
-                          double step_rate);
+/// `log_end`: of a log that is played [s], 0 = none is.
+std::string hello_message(int64_t client, const std::vector<std::string>& cameras, double step_rate,
+                          double log_end);
 std::string state_message(const ViewState& state);
 /// Answer to a pick or the start of a drag; `point_W` [m] is where the line of a drag begins.
 std::string picked_message(std::string_view body, const Vec3& point_W, bool dragging);

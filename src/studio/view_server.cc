@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "gloam/log_player.h"
 #include "gloam/view.h"
 #include "studio/access.h"
 #include "studio/driver.h"
@@ -59,7 +60,7 @@ class ViewServer::Impl : public WebEvents {
   Status start() {
     GLOAM_TRY_STATUS(web_.listen());
     GLOAM_TRY_STATUS(driver_.start());
-    simulation_.set_pace(Pace::kRealTime, 1);
+    simulation_.set_pace(Pace::kRealTime, options_.speed);
     publisher_.start();
     return {};
   }
@@ -82,7 +83,8 @@ class ViewServer::Impl : public WebEvents {
   void on_open(int64_t client) override {
     driver_.set_clients(++clients_);
     if (controller_ == 0) controller_ = client;
-    web_.send(client, hello_message(client, driver_.cameras(), simulation_.step_rate().value()));
+    web_.send(client, hello_message(client, driver_.cameras(), simulation_.step_rate().value(),
+                                    options_.player != nullptr ? options_.player->end() : 0));
   }
 
   void on_close(int64_t client) override {

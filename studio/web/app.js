@@ -5,6 +5,7 @@
 const $ = (id) => document.getElementById(id);
 const stage = $("stage"), canvas = $("picture"), context = canvas.getContext("2d", { alpha: false });
 const kSpeeds = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50];
+const kReverseBeat = 0.1;  // seconds between two instants that are asked for backwards
 const kClickTravel = 3;  // CSS pixels a hand may shake
 
 let socket = null, client = 0, retries = 0, ended = false, cameras = [];
@@ -12,6 +13,7 @@ let state = null;      // newest state message
 let picture = null;    // header of the picture on the screen
 let drag = null;       // pull of a body: {u, v, point: null until the server has found one}
 let noticeTimer = 0;
+let logEnd = 0, seeking = false, reverseTimer = 0;  // of a log that is played [s]
 
 // The token has become a cookie: out of the address bar, history and screenshots.
 if (location.search) history.replaceState(null, "", location.pathname);
@@ -90,6 +92,10 @@ function receive(message) {
       retries = 0;
       lastSequence = 0n;
       cameras = message.cameras;
+      logEnd = message.log_end;
+      $("timeline").hidden = logEnd === 0;
+      $("seek").max = logEnd;
+      $("end").textContent = `of ${logEnd.toFixed(2)} s`;
       $("camera").replaceChildren(...cameras.map((name) => new Option(name === "free" ? "Free camera" : name, name)));
       document.body.classList.remove("offline");
       if (!picture) $("placeholder-text").textContent = "Waiting for the first picture…";
@@ -226,6 +232,7 @@ function showState() {
   $("warnings").textContent = state.warnings;
   $("warnings-cell").hidden = state.warnings === 0;
   $("hash").textContent = state.hash;
+  if (!seeking) $("seek").value = state.time;
   const now = performance.now();
   while (arrivals.length && arrivals[0] < now - 1000) arrivals.shift();
   $("rate").textContent = `${arrivals.length} /s`;
@@ -235,7 +242,7 @@ function showState() {
 
 function showControls() {
   const mine = inControl();
-  for (const id of ["play", "step", "reset", "slower", "faster", "camera"]) $(id).disabled = !mine;
+  for (const id of ["play", "step", "reset", "slower", "faster", "camera", "seek", "reverse"]) $(id).disabled = !mine;
   $("role").hidden = $("claim").hidden = mine || !socket || !state;
   $("role").textContent = state && state.controller === 0 ? "Nobody is in control" : "Watching: another window is in control";
   if (!mine) endDrag();
@@ -269,6 +276,33 @@ function showPicked(message) {
   $("selected").hidden = !message.found;
 }
 
+// ---- the time of a log ----
+
+function seekTo(time) {
+  wish({ type: "seek", time: Math.max(0, Math.min(logEnd, time)) });
+}
+
+function playBackwards(on) {
+  clearInterval(reverseTimer);
+  $("reverse").setAttribute("aria-pressed", on);
+  if (!on || !state) return;
+  if (!state.paused) wish({ type: "pause" });
+  let time = state.time;
+  reverseTimer = setInterval(() => {
+    time -= kReverseBeat * state.speed;
+    seekTo(time);
+    if (time <= 0 || !inControl()) playBackwards(false);
+  }, 1000 * kReverseBeat);
+}
+
+$("seek").addEventListener("input", () => {
+  seeking = true;
+  playBackwards(false);
+  seekTo(Number($("seek").value));
+});
+$("seek").addEventListener("change", () => { seeking = false; });
+$("reverse").addEventListener("click", () => playBackwards($("reverse").getAttribute("aria-pressed") !== "true"));
+
 // ---- wishes ----
 
 function changeSpeed(by) {
@@ -287,6 +321,7 @@ function changeCamera(by) {
 
 const actions = {
   play: () => {
+    playBackwards(false);
     if (state) wishFor({ type: state.paused ? "resume" : "pause" }, { paused: !state.paused });
   },
   step: (event) => wish({ type: "step", count: event.shiftKey ? 10 : 1 }),

@@ -86,6 +86,7 @@ struct RandomizeOptions {
   std::vector<TomlText> normal = {};       ///< mean, standard deviation; within the option's range
   std::vector<TomlText> choice = {};       ///< one of these
   std::vector<double> weights = {};        ///< weights of the choices; empty = equal
+  std::optional<uint64_t> seed = {};       ///< seed of this draw; empty = sim.seed
   SourceLoc loc = {};
 };
 

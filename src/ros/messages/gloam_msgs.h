@@ -32,4 +32,13 @@ struct State {
   GLOAM_MESSAGE(State, header, run, step, hash, state)
 };
 
+/// Numbers of the state that a program wrote before a step, beside Commands: for replays.
+struct StepInput {
+  std_msgs::Header header;
+  int64_t run = 0, step = 0;
+  std::vector<int32_t> index;  ///< in mjSTATE_INTEGRATION
+  std::vector<double> value;
+  GLOAM_MESSAGE(StepInput, header, run, step, index, value)
+};
+
 }  // namespace gloam::gloam_msgs

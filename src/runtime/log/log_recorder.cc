@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/files.h"
+#include "base/log.h"
 #include "ros/codec.h"
 #include "ros/message_types.h"
 #include "ros/messages/gloam_msgs.h"
@@ -74,17 +75,18 @@ Result<std::unique_ptr<LogRecorder>> LogRecorder::start(LiveSimulation& simulati
   log->queue_ = std::make_unique<LogQueue>(
       std::make_unique<McapWriter>(std::move(sink), std::move(options)), queue);
   GLOAM_TRY_STATUS(log->add_channels(topics));
-  const Snapshot now = simulation.latest();
-  log->write_world(now);
+  log->write_new_world(simulation.latest());
   // In a chunk of its own: a log that is cut anywhere behind it can be stepped again.
   GLOAM_TRY_STATUS(log->queue_->push(LogQueueFlush{}));
   if (request.embed) GLOAM_TRY_STATUS(log->embed_files(*log->world_));
   simulation.take_command_log();  // of before
+  simulation.simulator().keep_hook_inputs(log->inputs_);
   GLOAM_TRY_STATUS(log->open_streams(topics));
   return log;
 }
 
 LogRecorder::~LogRecorder() {
+  simulation_.simulator().keep_hook_inputs(nullptr);
   topics_.reset();
   states_.reset();
 }
@@ -109,9 +111,12 @@ Status LogRecorder::add_channel(const TopicInfo& topic, const std::string& encod
 Status LogRecorder::add_channels(const std::vector<TopicInfo>& topics) {
   GLOAM_TRY_STATUS(add_channel({.name = kWorldTopic, .type = "gloam/World"}, "json", "", ""));
   GLOAM_TRY_STATUS(add_channel({.name = kCommandTopic, .type = "gloam/Command"}, "json", "", ""));
-  const MessageType& state = message_type<gloam_msgs::State>();
+  const MessageType &state = message_type<gloam_msgs::State>(),
+                    &input = message_type<gloam_msgs::StepInput>();
   GLOAM_TRY_STATUS(
       add_channel({.name = kStateTopic, .type = state.name}, "cdr", state.text, state.hash));
+  GLOAM_TRY_STATUS(
+      add_channel({.name = kInputTopic, .type = input.name}, "cdr", input.text, input.hash));
   for (const TopicInfo& topic : topics) {
     GLOAM_TRY(const MessageInfo type, message_info(topic.type));
     GLOAM_TRY_STATUS(add_channel(topic, "cdr", type.definition, type.hash));
@@ -184,12 +189,54 @@ void LogRecorder::write_world(const Snapshot& now) {
   write(kWorldTopic, now.time(), now.data().run, bytes_of(json));
 }
 
+// Everything that had led to a run's first step, if that is a checkpoint's: so it can be stepped
+// again from its beginning.
+bool LogRecorder::write_history(const Snapshot& now) {
+  const auto checkpoint = simulation_.checkpoint();
+  const int64_t run = now.data().run;
+  if (!checkpoint.ok() || simulation_.latest().data().run != run) return false;
+  const RunRecord& record = checkpoint->data().record;
+  if (record.first_step == 0) return false;
+  RunText text;
+  for (const RunRecord::Chapter& chapter : record.chapters) {
+    if (chapter.from > now.step()) break;
+    text = describe_run(*chapter.world, record.seed, record.timestep);
+    text.run = run;
+    text.step = chapter.from;
+    text.has_history = true;
+    const std::string json = to_json(text);
+    write(kWorldTopic, now.time(), run, bytes_of(json));
+  }
+  for (const Command& command : record.commands) {
+    if (command.step >= record.first_step) break;  // this run's own
+    const std::string json = command_text({run, command}, record.world_at(command.step));
+    write(kCommandTopic, now.time(), run, bytes_of(json));
+  }
+  world_ = now.data().world;
+  return true;
+}
+
 void LogRecorder::write_commands() {
   for (const LoggedCommand& logged : simulation_.take_command_log()) {
     const std::string json = command_text(logged, *world_);
     const double time =
         static_cast<double>(logged.command.step) * simulation_.simulator().timestep().value();
     write(kCommandTopic, time, logged.run, bytes_of(json));
+  }
+}
+
+void LogRecorder::write_hook_inputs() {
+  for (StepInput& input : inputs_->take()) {
+    gloam_msgs::StepInput message;
+    const double time =
+        static_cast<double>(input.step) * simulation_.simulator().timestep().value();
+    message.header = ros_header(time, "");
+    message.run = input.run;
+    message.step = input.step;
+    message.index = std::move(input.index);
+    message.value = std::move(input.value);
+    encode(message, &bytes_);
+    write(kInputTopic, time, message.run, bytes_);
   }
 }
 
@@ -207,9 +254,17 @@ void LogRecorder::write_state(const Snapshot& now) {
   write(kStateTopic, now.time(), now.data().run, bytes_);
 }
 
+// Writes the World of a run that begins with a checkpoint, or that goes on in another World.
+void LogRecorder::write_new_world(const Snapshot& now) {
+  const bool may_have_history = now.data().run != world_run_ && now.step() > 0;
+  if (!(may_have_history && write_history(now)) && now.data().world != world_) write_world(now);
+  world_run_ = now.data().run;
+}
+
 void LogRecorder::take(const Snapshot& now) {
-  if (now.data().world != world_) write_world(now);
+  write_new_world(now);
   write_commands();
+  write_hook_inputs();
   write_state(now);
 }
 
@@ -222,6 +277,11 @@ Status LogRecorder::finish(const Snapshot& last) {
   topics_.reset();
   states_.reset();
   take(last);
+  if (inputs_->lost() > 0)
+    log_warning(
+        "{}: what a step hook wrote in {} steps found no room: the run cannot be stepped "
+        "again",
+        request_.file.string(), inputs_->lost());
   return partial(queue_->close());
 }
 

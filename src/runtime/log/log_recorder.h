@@ -42,7 +42,10 @@ class LogRecorder {
   Status open_streams(const std::vector<TopicInfo>& topics);
   void take(const Snapshot& now);
   void write_commands();
+  void write_hook_inputs();
   void write_world(const Snapshot& now);
+  bool write_history(const Snapshot& now);
+  void write_new_world(const Snapshot& now);
   void write_state(const Snapshot& now);
   void write(const std::string& topic, double time, int64_t run, std::span<const uint8_t> data);
   uint64_t log_time(double time, int64_t run);
@@ -56,8 +59,10 @@ class LogRecorder {
   std::vector<double> run_starts_ = {0};        // where runs begin in the log's time [s]
   double run_end_ = 0;                          // latest time of the present run [s]
   std::shared_ptr<const CompiledWorld> world_;  // that was written last
+  int64_t world_run_ = -1;                      // run in which it was looked for last
   int64_t last_run_ = -1, last_step_ = -1;      // of the last state that was written
   std::vector<uint8_t> bytes_;
+  const std::shared_ptr<HookInputs> inputs_ = std::make_shared<HookInputs>();
   std::unique_ptr<TopicStream> topics_;
   std::unique_ptr<SnapshotStream> states_;
 };

@@ -9,7 +9,7 @@ namespace gloam {
 
 Result<std::unique_ptr<LoggedMotion>> LoggedMotion::create(
     const LoggedRuns::Run& run, const std::shared_ptr<const CompiledWorld>& world) {
-  if (!run.begins_anew || run.record.chapters.size() != 1)
+  if (!run.has_beginning || run.record.chapters.size() != 1)
     return Error{
         ErrorKind::kUnsupported,
         "the run began from a checkpoint or was recompiled on its way: its motion cannot be "

@@ -1,6 +1,9 @@
 #include "runtime/log/logged_runs.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <iterator>
 
 #include "ros/codec.h"
 #include "ros/messages/gloam_msgs.h"
@@ -17,8 +20,9 @@ std::string_view text_of(const McapMessage& message) {
 
 /// A World of the log and from where it runs.
 struct LoggedWorld {
-  int64_t run, step;
+  RunText text;
   std::shared_ptr<const CompiledWorld> world;
+  Status same_bits;
 };
 
 class RunReader {
@@ -35,7 +39,8 @@ class RunReader {
                    "`gloam info` tells what it holds"};
     GLOAM_TRY_STATUS(for_each(kStateTopic, [this](const auto& m) { return add_state(m); }));
     GLOAM_TRY_STATUS(for_each(kCommandTopic, [this](const auto& m) { return add_command(m); }));
-    for (auto& [number, run] : runs_.runs) add_chapters(number, &run.record);
+    GLOAM_TRY_STATUS(for_each(kInputTopic, [this](const auto& m) { return add_input(m); }));
+    for (auto& [number, run] : runs_.runs) add_chapters(number, &run);
     return std::move(runs_);
   }
 
@@ -50,27 +55,26 @@ class RunReader {
   }
 
   Status add_world(const McapMessage& message) {
-    GLOAM_TRY(const RunText text, parse_run_text(text_of(message)));
+    GLOAM_TRY(RunText text, parse_run_text(text_of(message)));
     GLOAM_TRY(auto world, compile_run(text, folder_));
-    if (worlds_.empty()) {
-      seed_ = text.seed;
-      if (text.timestep > 0) timestep_ = text.timestep;
-    }
-    worlds_.push_back({text.run, text.step, std::move(world)});
+    Status same = check_same_bits(text, *world, folder_);
+    worlds_.push_back({std::move(text), std::move(world), std::move(same)});
     return {};
   }
 
   const LoggedWorld& world_at(int64_t run, int64_t step) const {
     const LoggedWorld* found = &worlds_.front();
     for (const LoggedWorld& world : worlds_)
-      if (world.run < run || (world.run == run && world.step <= step)) found = &world;
+      if (world.text.run < run || (world.text.run == run && world.text.step <= step))
+        found = &world;
     return *found;
   }
 
   Status add_state(const McapMessage& message) {
     GLOAM_TRY(const auto state, decode<gloam_msgs::State>(message.data));
     LoggedRuns::Run& run = runs_.runs[state.run];
-    if (state.step == 0) run.begins_anew = true;
+    if (state.step == 0) run.has_beginning = true;
+    if (run.first_step < 0) run.first_step = state.step;
     if (state.step < run.last_step) return {};
     run.last_step = state.step;
     run.record.step = state.step;
@@ -82,25 +86,46 @@ class RunReader {
     GLOAM_TRY(LoggedCommand logged, parse_command(text_of(message)));
     if (std::holds_alternative<ResetSim>(logged.command.what)) return {};
     const LoggedWorld& at = world_at(logged.run, logged.command.step);
+    if (!at.same_bits.ok()) return {};  // what its handles name may be another thing
     GLOAM_TRY_STATUS(check_command(*at.world, logged.command));
     runs_.runs[logged.run].record.commands.push_back(std::move(logged.command));
     return {};
   }
 
-  void add_chapters(int64_t number, RunRecord* record) {
-    record->seed = seed_;
-    record->timestep = timestep_;
-    record->chapters = {{world_at(number, 0).world, 0}};
-    for (const LoggedWorld& world : worlds_)
-      if (world.run == number && world.step > 0)
-        record->chapters.push_back({world.world, world.step});
+  Status add_input(const McapMessage& message) {
+    GLOAM_TRY(auto input, decode<gloam_msgs::StepInput>(message.data));
+    const CompiledWorld& world = *world_at(input.run, input.step).world;
+    const int size = mj_stateSize(world.model.get(), mjSTATE_INTEGRATION);
+    const bool fits = input.index.size() == input.value.size() &&
+                      std::ranges::all_of(input.index, [&](int i) { return i >= 0 && i < size; });
+    if (!fits)
+      return Error{ErrorKind::kInput, fmt::format("{}: the inputs at step {} are not of its state",
+                                                  log_.name(), input.step)};
+    runs_.runs[input.run].record.inputs.push_back(
+        {input.run, input.step, std::move(input.index), std::move(input.value)});
+    return {};
+  }
+
+  void add_chapters(int64_t number, LoggedRuns::Run* run) {
+    const LoggedWorld& first = world_at(number, 0);
+    RunRecord& record = run->record;
+    record.seed = first.text.seed;
+    if (first.text.timestep > 0) record.timestep = first.text.timestep;
+    record.chapters = {{first.world, 0}};
+    run->number = number;
+    run->same_bits = first.same_bits;
+    for (const LoggedWorld& world : worlds_) {
+      if (world.text.run != number) continue;
+      if (run->same_bits.ok()) run->same_bits = world.same_bits;
+      run->has_beginning |= world.text.has_history;
+      if (world.text.step > 0) record.chapters.push_back({world.world, world.text.step});
+    }
+    std::ranges::stable_sort(record.commands, {}, &Command::step);
   }
 
   const McapReader& log_;
   const std::filesystem::path& folder_;
   std::vector<LoggedWorld> worlds_;
-  uint64_t seed_ = 1;
-  std::optional<double> timestep_;
   LoggedRuns runs_;
 };
 
@@ -108,6 +133,13 @@ class RunReader {
 
 Result<LoggedRuns> LoggedRuns::read(const McapReader& log, const std::filesystem::path& folder) {
   return RunReader(log, folder).read();
+}
+
+Result<const LoggedRuns::Run*> LoggedRuns::find(int64_t place) const {
+  if (place >= 0 && place < static_cast<int64_t>(runs.size()))
+    return &std::next(runs.begin(), static_cast<std::ptrdiff_t>(place))->second;
+  return Error{ErrorKind::kUsage,
+               fmt::format("the log has {} run(s), from 0: none is run {}", runs.size(), place)};
 }
 
 }  // namespace gloam

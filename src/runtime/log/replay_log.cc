@@ -2,63 +2,102 @@
 
 #include <fmt/format.h>
 
-#include "gloam/log_replay.h"
+#include <cmath>
+
 #include "runtime/log/logged_motion.h"
+#include "runtime/log/pose_motion.h"
+#include "runtime/log/replay_scene.h"
 #include "runtime/recorded_run.h"
-#include "sim/state/same_physics.h"
+#include "sim/state/correspondence.h"
 
 namespace gloam {
 namespace {
 
-/// The World that `scene` compiles to, if it moves as the log's does.
-Result<World> compile_alike(const Scene& scene, const CompiledWorld& logged) {
-  Result<World> world =
-      logged.keyframe.empty() ? World::compile(scene) : World::compile_at(scene, logged.keyframe);
-  if (!world.ok()) return world;
-  const std::string field = physical_difference(*logged.model, *world->compiled()->model);
-  if (field.empty()) return world;
-  return Error{ErrorKind::kUsage, fmt::format("it would move otherwise: {} differs", field)};
+// Commands of the run for another World, at the same times.
+Result<std::vector<Command>> commands_for(const RunRecord& record, const CompiledWorld& world,
+                                          double timestep) {
+  const CompiledWorld& logged = *record.chapters.front().world;
+  const double ratio = record.timestep.value_or(logged.model->opt.timestep) / timestep;
+  const Correspondence same(logged, world);
+  std::vector<Command> commands;
+  for (const Command& command : record.commands) {
+    std::optional<Command> translated = same.translate(command);
+    if (!translated) continue;  // its thing is gone
+    translated->step = std::llround(static_cast<double>(command.step) * ratio);
+    commands.push_back(*std::move(translated));
+  }
+  return commands;
 }
 
-// Says which of the settings changes physics.
-Error name_the_setting(const LogReplay& replay, const CompiledWorld& logged, Error error) {
-  for (const auto& [path, value] : replay.settings) {
-    Scene alone = logged.written;
-    if (!set_option(alone, path, value).ok()) continue;
-    if (const auto world = compile_alike(alone, logged); !world.ok())
-      return {ErrorKind::kUsage,
-              fmt::format("'{}' changes the motion: {}", path, world.error().message),
-              {},
-              "run the scene anew with it; a replay changes what is seen alone"};
+class Replay {
+ public:
+  Replay(const LogReplay& replay, const McapReader& log, const LoggedRuns::Run& run)
+      : replay_(replay),
+        log_(log),
+        run_(run),
+        logged_(*run.record.chapters.front().world),
+        request_(replay.request) {
+    request_.simulation.seed = run.record.seed;
+    request_.simulation.timestep = run.record.timestep.value_or(0);
   }
-  return error;
-}
+
+  Result<RunReport> record(const ProgressCallback& progress) {
+    const bool is_new = replay_.motion == ReplayMotion::kNewRun;
+    GLOAM_TRY(const World world, compile_replay(replay_, run_));
+    const double length = static_cast<double>(run_.last_step) *
+                          run_.record.timestep.value_or(double{logged_.model->opt.timestep});
+    if (request_.duration <= 0 || (!is_new && request_.duration > length))
+      request_.duration = length;
+    GLOAM_TRY(auto motion, is_new ? begin_anew(world) : motion_of(world));
+    GLOAM_TRY(RunReport report, record_motion(world, request_, std::move(motion), progress));
+    report.notes.insert(report.notes.begin(), notes_.begin(), notes_.end());
+    return report;
+  }
+
+ private:
+  Result<std::unique_ptr<Motion>> motion_of(const World& world) {
+    if (replay_.motion == ReplayMotion::kStepped && run_.same_bits.ok() && run_.has_beginning) {
+      GLOAM_TRY(auto stepped, LoggedMotion::create(run_, world.compiled()));
+      return std::unique_ptr<Motion>(std::move(stepped));
+    }
+    notes_.emplace_back("poses only: bodies are where the logged states say, interpolated between");
+    if (!run_.same_bits.ok()) notes_.back() += "; " + run_.same_bits.error().message;
+    GLOAM_TRY(auto poses, PoseMotion::create(log_, run_, world.compiled()));
+    return std::unique_ptr<Motion>(std::move(poses));
+  }
+
+  // No motion: physics.
+  Result<std::unique_ptr<Motion>> begin_anew(const World& world) {
+    GLOAM_TRY_STATUS(run_.same_bits);  // else its Commands were not read
+    if (!run_.has_beginning || run_.record.chapters.size() != 1)
+      return Error{ErrorKind::kUnsupported,
+                   "the run's Commands from its beginning on are not in the log, or it was "
+                   "recompiled on its way: it cannot be run anew"};
+    const double timestep = request_.simulation.timestep > 0
+                                ? request_.simulation.timestep
+                                : double{world.compiled()->model->opt.timestep};
+    GLOAM_TRY(request_.commands, commands_for(run_.record, *world.compiled(), timestep));
+    notes_.emplace_back(fmt::format(
+        "a new run: {} of the log's {} Commands act in the changed scene by its own physics",
+        request_.commands.size(), run_.record.commands.size()));
+    return std::unique_ptr<Motion>();
+  }
+
+  const LogReplay& replay_;
+  const McapReader& log_;
+  const LoggedRuns::Run& run_;
+  const CompiledWorld& logged_;
+  RunRequest request_;
+  std::vector<std::string> notes_;
+};
 
 }  // namespace
 
 Result<RunReport> replay_log(const LogReplay& replay, const ProgressCallback& progress) {
   GLOAM_TRY(const McapReader log, McapReader::open(replay.log));
   GLOAM_TRY(const LoggedRuns runs, LoggedRuns::read(log, replay.folder));
-  const auto run = runs.runs.find(replay.run);
-  if (run == runs.runs.end())
-    return Error{ErrorKind::kInput,
-                 fmt::format("{} has no run {}", replay.log.string(), replay.run)};
-  const CompiledWorld& logged = *run->second.record.chapters.front().world;
-  Scene scene = logged.written;
-  for (const auto& [path, value] : replay.settings)
-    GLOAM_TRY_STATUS(set_option(scene, path, value));
-  if (!replay.outputs.empty()) set_record_outputs(replay.outputs, &scene);
-  Result<World> world = compile_alike(scene, logged);
-  if (!world.ok()) return name_the_setting(replay, logged, world.error());
-  GLOAM_TRY(auto motion, LoggedMotion::create(run->second, world->compiled()));
-  RunRequest request = replay.request;
-  request.simulation.seed = run->second.record.seed;
-  request.simulation.timestep = run->second.record.timestep.value_or(0);
-  const double timestep =
-      request.simulation.timestep > 0 ? request.simulation.timestep : logged.model->opt.timestep;
-  const double length = static_cast<double>(run->second.last_step) * timestep;
-  request.duration = request.duration > 0 ? std::min(request.duration, length) : length;
-  return record_motion(*world, request, std::move(motion), progress);
+  GLOAM_TRY(const LoggedRuns::Run* run, runs.find(replay.run));
+  return Replay(replay, log, *run).record(progress);
 }
 
 }  // namespace gloam

@@ -75,6 +75,7 @@ std::string to_json(const RunText& text) {
                      {"keyframe", text.keyframe},
                      {"model_hash", hash_to_hex(text.model_hash)},
                      {"files", std::move(files)},
+                     {"history", text.has_history},
                      {"scene", text.toml}};
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -95,6 +96,7 @@ Result<RunText> parse_run_text(std::string_view json_text) {
     json.at("bare_model").get_to(text.bare_model);
     json.at("keyframe").get_to(text.keyframe);
     json.at("scene").get_to(text.toml);
+    text.has_history = json.value("history", false);
     text.model_hash = from_hex(json.at("model_hash").get<std::string>());
     for (const Json& file : json.at("files"))
       text.files.push_back(
@@ -108,34 +110,25 @@ Result<RunText> parse_run_text(std::string_view json_text) {
 
 namespace {
 
-// Says which file is the cause, as far as that can be told.
-Error other_model(const RunText& text, const fs::path& folder) {
+std::string changed_files(const RunText& text, const fs::path& folder) {
   std::string changed;
   for (const RunText::File& file : text.files) {
     const fs::path path =
         fs::path(file.path).is_absolute() ? fs::path(file.path) : folder / file.path;
     if (hash_file(path) != file.hash) changed += (changed.empty() ? "" : ", ") + path.string();
   }
-  if (!changed.empty())
-    return {ErrorKind::kInput,
-            "files of the scene have changed since the log was written: " + changed,
-            {},
-            "bring back the files that it was written with"};
-  return {
-      ErrorKind::kInput,
-      fmt::format("the scene compiles to another model than the log was written with (Gloam {}, "
-                  "MuJoCo {}, {}; this is Gloam {}, MuJoCo {}, {})",
-                  text.version, text.mujoco, text.configuration, version(), mujoco_version(),
-                  configuration()),
-      {},
-      "step it again with the version that wrote it"};
+  return changed.empty() ? changed
+                         : "files of the scene have changed since the log was written: " + changed;
 }
 
 }  // namespace
 
-Result<std::shared_ptr<const CompiledWorld>> compile_run(const RunText& text,
-                                                         const fs::path& folder) {
-  const fs::path from = folder.empty() ? fs::path(text.folder) : folder;
+fs::path folder_of(const RunText& text, const fs::path& folder) {
+  return folder.empty() ? fs::path(text.folder) : folder;
+}
+
+Result<Scene> scene_of(const RunText& text, const fs::path& folder) {
+  const fs::path from = folder_of(text, folder);
   Scene scene;
   if (text.bare_model.empty()) {
     GLOAM_TRY(scene, parse_scene(text.toml, from));
@@ -143,16 +136,37 @@ Result<std::shared_ptr<const CompiledWorld>> compile_run(const RunText& text,
     GLOAM_TRY(scene, load_scene(from / text.bare_model));
   }
   scene.name = text.name;
+  return scene;
+}
+
+Result<std::shared_ptr<const CompiledWorld>> compile_run(const RunText& text,
+                                                         const fs::path& folder) {
+  GLOAM_TRY(const Scene scene, scene_of(text, folder));
   Result<World> world =
       text.keyframe.empty() ? World::compile(scene) : World::compile_at(scene, text.keyframe);
   if (!world.ok()) {
     Error error = world.error();
-    const Error changed = other_model(text, from);
-    if (changed.message.starts_with("files")) error.hint = changed.message;
+    const std::string changed = changed_files(text, folder_of(text, folder));
+    if (!changed.empty()) error.hint = changed;
     return error;
   }
-  if (hash_model(*world->compiled()->model) != text.model_hash) return other_model(text, from);
   return world->compiled();
+}
+
+Status check_same_bits(const RunText& text, const CompiledWorld& world, const fs::path& folder) {
+  const bool is_same_program = text.version == version() && text.mujoco == mujoco_version() &&
+                               text.configuration == configuration();
+  if (is_same_program && hash_model(*world.model) == text.model_hash) return {};
+  const std::string changed = changed_files(text, folder_of(text, folder));
+  if (!changed.empty())
+    return Error{ErrorKind::kInput, changed, {}, "bring back the files that it was written with"};
+  return Error{ErrorKind::kInput,
+               fmt::format("the log was written by another program or machine (Gloam {}, MuJoCo "
+                           "{}, {}; this is Gloam {}, MuJoCo {}, {})",
+                           text.version, text.mujoco, text.configuration, version(),
+                           mujoco_version(), configuration()),
+               {},
+               "step it again with the version that wrote it; a replay shows its poses"};
 }
 
 }  // namespace gloam

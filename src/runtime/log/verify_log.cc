@@ -103,7 +103,8 @@ class Verifier {
     run_ = number;
     at_ = equal_ = 0;
     const LoggedRuns::Run& run = runs_.runs[number];
-    if (!run.begins_anew) {
+    GLOAM_TRY_STATUS(run.same_bits);
+    if (!run.has_beginning) {
       found_.notes.push_back(
           fmt::format("run {} began from a checkpoint, not from the scene: not verified", number));
       return {};
@@ -114,7 +115,7 @@ class Verifier {
   }
 
   void finish_run() {
-    if (run_ >= 0 && runs_.runs[run_].begins_anew) done_ += runs_.runs[run_].last_step;
+    if (run_ >= 0 && runs_.runs[run_].has_beginning) done_ += runs_.runs[run_].last_step;
     found_.steps = done_;
     stepper_.reset();
   }

@@ -4,8 +4,11 @@
 
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <sstream>
 
 #include "gloam/log.h"
+#include "gloam/log_player.h"
 #include "gloam/log_replay.h"
 #include "scene/test/temp_folder.h"
 
@@ -116,7 +119,7 @@ TEST_F(Replays, OutputsAreThoseAskedForWhateverTheCameraSays) {
 
 TEST_F(Replays, SettingThatChangesTheMotionIsRefusedByName) {
   const auto heavier =
-      replay({{"sky.sun_elevation", "3"}, {"override.toy.geom..*.density", "2000"}}, "heavy");
+      replay({{"sky.sun_elevation", "3"}, {"override.toy.geom.\".*\".density", "2000"}}, "heavy");
   ASSERT_FALSE(heavier.ok());
   EXPECT_THAT(heavier.error().to_string(), HasSubstr("density"));
   EXPECT_FALSE(replay({{"sim.timestep", "0.001"}}, "fast").ok());
@@ -134,6 +137,140 @@ TEST_F(Replays, ItsOwnLogHasTheSameStates) {
   ASSERT_TRUE(found.ok()) << found.error().to_string();
   EXPECT_TRUE(found->is_equal()) << found->where;
   EXPECT_EQ(found->steps, 200);
+}
+
+TEST_F(Replays, OverlaysAddCamerasAndLidars) {
+  folder_.write(
+      "more.toml",
+      "[[camera]]\nname = \"second\"\nposition = [3, 0, 1]\nlook_at = [0, 0, 0]\nwidth = 16\n"
+      "height = 12\nrate = 10\n[[lidar]]\nname = \"roof\"\nbody = \"toy/arm\"\n");
+  LogReplay replay{.log = log_, .overlays = {folder_.path() / "more.toml"}};
+  replay.outputs = {"png", "lidar"};
+  replay.request.out = folder_.path() / "more";
+  const auto report = replay_log(replay, {});
+  ASSERT_TRUE(report.ok()) << report.error().to_string();
+  EXPECT_TRUE(fs::exists(folder_.path() / "more" / "second" / "rgb" / "000003.png"));
+  EXPECT_EQ(file("more", "eye/rgb/000003.png"), file("first", "eye/rgb/000003.png"));
+  folder_.write("heavy.toml", "[override.toy.geom.floor]\nfriction = \"2 1 1\"\n");
+  replay.overlays = {folder_.path() / "heavy.toml"};
+  const auto heavy = replay_log(replay, {});
+  ASSERT_FALSE(heavy.ok());
+  EXPECT_THAT(heavy.error().to_string(), HasSubstr("heavy.toml' changes the motion"));
+}
+
+/// Rows of state.csv by their first cell, the time.
+std::map<double, std::vector<double>> states_of(const std::string& csv) {
+  std::map<double, std::vector<double>> rows;
+  std::istringstream lines(csv);
+  std::string line;
+  std::getline(lines, line);  // names
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    std::vector<double> row;
+    for (std::string cell; std::getline(cells, cell, ',');) row.push_back(std::stod(cell));
+    rows[row.at(0)] = row;
+  }
+  return rows;
+}
+
+// Logged 100 times a second, as state.csv is: there poses are what they were.
+TEST_F(Replays, PosesAreThoseOfTheLog) {
+  LogReplay replay{.log = log_, .motion = ReplayMotion::kPoses};
+  replay.request.out = folder_.path() / "poses";
+  const auto report = replay_log(replay, {});
+  ASSERT_TRUE(report.ok()) << report.error().to_string();
+  ASSERT_TRUE(report->status.ok()) << report->status.error().to_string();
+  EXPECT_THAT(report->notes, testing::ElementsAre(HasSubstr("poses only")));
+  EXPECT_EQ(file("poses", "eye/rgb/000003.png"), file("first", "eye/rgb/000003.png"));
+  const auto first = states_of(file("first", "state.csv"));
+  const auto poses = states_of(file("poses", "state.csv"));
+  ASSERT_EQ(first.size(), poses.size());
+  for (const auto& [time, row] : first)
+    for (size_t i = 0; i < 1 + 8; ++i)  // time, qpos of box and arm
+      EXPECT_NEAR(row[i], poses.at(time)[i], 1e-12) << time << " " << i;
+}
+
+TEST_F(Replays, ARunAnewIsAnother) {
+  LogReplay replay{.log = log_,
+                   .motion = ReplayMotion::kNewRun,
+                   .settings = {{"override.toy.geom.\".*\".density", "2000"}}};
+  replay.request.out = folder_.path() / "anew";
+  const auto report = replay_log(replay, {});
+  ASSERT_TRUE(report.ok()) << report.error().to_string();
+  EXPECT_THAT(report->notes, testing::ElementsAre(HasSubstr("a new run")));
+  EXPECT_EQ(report->steps, 200);
+  EXPECT_NE(file("anew", "state.csv"), file("first", "state.csv"));
+  replay.settings.clear();
+  replay.request.out = folder_.path() / "same";
+  ASSERT_TRUE(replay_log(replay, {}).ok());
+  EXPECT_EQ(file("same", "state.csv"), file("first", "state.csv"));
+}
+
+TEST_F(Replays, VariantsAreDrawnOnceEachAndGoOn) {
+  folder_.write("skies.toml", "[[randomize]]\noption = \"sky.sun_elevation\"\nuniform = [5, 80]\n");
+  VariantRequest request{.replay = {.log = log_, .outputs = {"png"}},
+                         .randomize = folder_.path() / "skies.toml",
+                         .count = 2};
+  request.replay.request.out = folder_.path() / "skies";
+  const auto two = replay_variants(request, {});
+  ASSERT_TRUE(two.ok()) << two.error().to_string();
+  const std::string first = file("skies", "0000/eye/rgb/000001.png");
+  EXPECT_NE(first, file("skies", "0001/eye/rgb/000001.png"));
+  std::string summary = file("skies", "0001/summary.json");
+  summary.replace(summary.find("finished"), 8, "recording");  // as if it had been stopped
+  folder_.write("skies/0001/summary.json", summary);
+  request.count = 3;
+  const auto three = replay_variants(request, {});
+  ASSERT_TRUE(three.ok()) << three.error().to_string();
+  ASSERT_EQ(three->size(), 3u);
+  EXPECT_TRUE((*three)[0].was_done);
+  EXPECT_FALSE((*three)[1].was_done);
+  EXPECT_EQ((*three)[2].seed, 3u);
+  EXPECT_EQ(file("skies", "0000/eye/rgb/000001.png"), first);
+  request.replay.settings = {{"weather.visibility", "8"}};
+  EXPECT_THAT(replay_variants(request, {}).error().to_string(), HasSubstr("another log"));
+}
+
+// Where the run was at 0.2 s, stepped on, is where it came to.
+TEST_F(Replays, AreGoneOnFrom) {
+  const auto from = log_checkpoint(log_, "", 0, 0.205);
+  ASSERT_TRUE(from.ok()) << from.error().to_string();
+  EXPECT_EQ(from->step(), 100);
+  RunRequest request{.out = folder_.path() / "rest", .duration = 0.2, .from = *from};
+  request.log = {.file = folder_.path() / "rest.mcap", .topics = {"/tf"}};
+  const auto report = run_and_record(from->world(), request, {});
+  ASSERT_TRUE(report.ok()) << report.error().to_string();
+  EXPECT_EQ(report->steps, 200);
+  const auto first = states_of(file("first", "state.csv"));
+  const auto rest = states_of(file("rest", "state.csv"));
+  EXPECT_EQ(rest.size(), 21u);
+  for (const auto& [time, row] : rest) EXPECT_EQ(row, first.at(time)) << time;
+  const auto found = verify_log(request.log.file, "", {});  // from its beginning on
+  ASSERT_TRUE(found.ok()) << found.error().to_string();
+  EXPECT_TRUE(found->is_equal()) << found->where;
+  EXPECT_TRUE(found->notes.empty());
+  EXPECT_EQ(found->steps, 200);
+  EXPECT_FALSE(log_checkpoint(log_, "", 1, 0.2).ok());
+}
+
+TEST_F(Replays, ArePlayedForwardsAndBack) {
+  auto player = *LogPlayer::open({.log = log_});
+  Simulation& simulation = player->simulation();
+  EXPECT_DOUBLE_EQ(player->end(), 0.4);
+  const auto first = states_of(file("first", "state.csv"));
+  const auto height = [&] { return simulation.latest().state()[1 + 2]; };
+  ASSERT_TRUE(player->seek(0.3).ok());
+  EXPECT_EQ(simulation.latest().step(), 150);
+  EXPECT_NEAR(height(), first.lower_bound(0.2999)->second[3], 1e-12);
+  ASSERT_TRUE(player->seek(0.1).ok());
+  EXPECT_NEAR(height(), first.lower_bound(0.0999)->second[3], 1e-12);
+  ASSERT_TRUE(simulation.step(5).ok());
+  EXPECT_EQ(simulation.latest().step(), 55);
+  EXPECT_FALSE(player->seek(0.5).ok());
+  ASSERT_TRUE(simulation.run_until(1000).ok());  // stands still at the end
+  EXPECT_EQ(simulation.latest().step(), 200);
+  ASSERT_TRUE(player->seek(0).ok());
+  EXPECT_EQ(simulation.latest().step(), 0);
 }
 
 }  // namespace

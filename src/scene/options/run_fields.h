@@ -58,6 +58,7 @@ void visit_fields(Visitor& v, RandomizeOptions& o) {
   v("normal", o.normal, FieldRule{});
   v("choice", o.choice, FieldRule{});
   v("weights", o.weights, FieldRule{.min = 0, .max = 1e9});
+  v("seed", o.seed, FieldRule{});
 }
 
 }  // namespace gloam

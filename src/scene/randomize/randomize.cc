@@ -65,7 +65,8 @@ struct Draws {
   Status draw(const RandomizeOptions& o, bool warns, Scene* scene) {
     const std::vector<std::string> names = split_option_path(o.option);
     Status status;
-    Drawer drawer(o, scene->sim.seed, files ? &*files : nullptr, &times, &drawn, &status);
+    Drawer drawer(o, o.seed.value_or(scene->sim.seed), files ? &*files : nullptr, &times, &drawn,
+                  &status);
     if (names[0] == "override") return blamed(o, draw_override(o, &drawer, scene, &drawn, status));
     walk_options(names, o.loc, scene, &drawer, &status);
     if (warns && status.ok() && drawer.fitting() == 0)

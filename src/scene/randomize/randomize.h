@@ -18,8 +18,8 @@ Status validate_randomize(const Scene& scene);
 enum class DrawStage { kPlace, kRest };
 
 /// Draws the options of a stage, in the order of the file, and appends what came of them. A draw
-/// depends on sim.seed and the option's path alone: others do not disturb it. Errors: an unknown
-/// option; a distribution that the option cannot have; a value out of its range; what
+/// depends on its seed, else sim.seed, and the option's path alone: others do not disturb it.
+/// Errors: an unknown option; a distribution that it cannot have; a value out of its range; what
 /// validate_scene finds wrong afterwards.
 Status draw_options(DrawStage stage, Scene* scene, std::vector<DrawnOption>* drawn);
 

@@ -11,11 +11,12 @@
 
 namespace gloam {
 
-/// Place of a toml::node, toml::key or toml::parse_error.
+/// Place of a toml::node, toml::key or toml::parse_error; `file` where it does not know its own.
 template <class Parsed>
 SourceLoc loc_of(const Parsed& parsed, const std::string& file) {
-  const toml::source_position at = parsed.source().begin;
-  return {file, static_cast<int>(at.line), static_cast<int>(at.column)};
+  const toml::source_region& source = parsed.source();
+  return {source.path ? *source.path : file, static_cast<int>(source.begin.line),
+          static_cast<int>(source.begin.column)};
 }
 
 /// Errors: syntax, with the place.

@@ -4,6 +4,7 @@ namespace gloam {
 
 int64_t Checkpoint::step() const { return data_->record.step; }
 double Checkpoint::time() const { return data_->time; }
+uint64_t Checkpoint::seed() const { return data_->record.seed; }
 uint64_t Checkpoint::hash() const { return data_->record.hash; }
 World Checkpoint::world() const { return World(data_->record.chapters.back().world); }
 bool Checkpoint::is_copied() const { return data_->copy != nullptr; }

@@ -22,7 +22,18 @@ Result<std::unique_ptr<Restepper>> Restepper::create(RunRecord record,
   GLOAM_TRY(auto robots, made->controllers_(world));
   for (RobotController& c : robots)
     GLOAM_TRY_STATUS(made->loop_->add_controller(c.robot, std::move(c.controller), c.rate));
+  if (!run.inputs.empty()) made->repeat_inputs();
   return made;
+}
+
+// What step hooks wrote comes where they wrote it.
+void Restepper::repeat_inputs() {
+  loop_->set_step_hook([this](const mjModel* model, mjData* data) {
+    const int64_t step = loop_->stepper().step_count();
+    const std::vector<StepInput>& inputs = record_.inputs;
+    for (; next_input_ < inputs.size() && inputs[next_input_].step <= step; ++next_input_)
+      if (inputs[next_input_].step == step) apply_input(*model, inputs[next_input_], &state_, data);
+  });
 }
 
 Status Restepper::begin_chapter(const RunRecord::Chapter& chapter) {

@@ -34,12 +34,14 @@ class Restepper {
   Restepper(RunRecord record, ControllerMaker controllers)
       : record_(std::move(record)), controllers_(std::move(controllers)) {}
   Status begin_chapter(const RunRecord::Chapter& chapter);
+  void repeat_inputs();
 
   RunRecord record_;
   ControllerMaker controllers_;
   CommandQueue queue_{2, 0};
   std::unique_ptr<SimLoop> loop_;
-  size_t next_chapter_ = 1;
+  size_t next_chapter_ = 1, next_input_ = 0;
+  std::vector<double> state_;  // of apply_input
 };
 
 }  // namespace gloam

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gloam/command.h"
+#include "sim/loop/hook_inputs.h"
 #include "world/world.h"
 
 namespace gloam {
@@ -23,8 +24,18 @@ struct RunRecord {
   std::optional<double> timestep = {};  ///< instead of the model's [s]
   std::vector<Chapter> chapters;        ///< the first from step 0, then one per recompile
   std::vector<Command> commands = {};   ///< posted ones, each with the step it applied at
+  std::vector<StepInput> inputs = {};   ///< that step hooks wrote, where a log has kept them
   int64_t step = 0;                     ///< of the instant
   uint64_t hash = 0;                    ///< of its state, chained from the initial one
+  int64_t first_step = 0;               ///< of a run that went on from a checkpoint; 0 = of others
+
+  /// The World that a Command at `step` is for.
+  const CompiledWorld& world_at(int64_t step) const {
+    const Chapter* found = &chapters.front();
+    for (const Chapter& chapter : chapters)
+      if (chapter.from <= step) found = &chapter;
+    return *found->world;
+  }
 };
 
 }  // namespace gloam

@@ -26,6 +26,7 @@ SimLoop::SimLoop(std::unique_ptr<Stepper> stepper, Rational timestep, CommandQue
       goals_(stepper_->world().robots.size()),
       joint_goals_(static_cast<size_t>(stepper_->model().njnt), kNoGoal),
       chapters_{{stepper_->shared_world(), 0}},
+      run_seed_(stepper_->seed()),
       next_publication_(kNever) {}
 
 Status SimLoop::add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate) {
@@ -177,8 +178,16 @@ bool SimLoop::advance() {
     return !stepper_->failed();
   }
   run_controllers();
-  if (hook_) hook_(&stepper_->model(), &stepper_->data());
+  if (hook_) run_hook();
   return stepper_->step();
+}
+
+void SimLoop::run_hook() {
+  const mjModel& model = stepper_->model();
+  mjData& data = stepper_->data();
+  if (hook_inputs_ != nullptr) hook_inputs_->before_hook(model, data);
+  hook_(&model, &data);
+  if (hook_inputs_ != nullptr) hook_inputs_->after_hook(model, data, run_, stepper_->step_count());
 }
 
 void SimLoop::reset() {
@@ -193,12 +202,22 @@ void SimLoop::begin_run() {
   std::fill(goals_.begin(), goals_.end(), VelocityTarget{});
   std::fill(joint_goals_.begin(), joint_goals_.end(), kNoGoal);
   chapters_ = {{stepper_->shared_world(), 0}};
+  run_seed_ = stepper_->seed();
+  first_step_ = 0;
   if (!stepper_->reset()) return;
   for (ControllerSlot& slot : controllers_) {
     slot.k = slot.due = 0;
     slot.controller->reset(&stepper_->model(), &stepper_->data());
   }
   for (Subscription& s : subscriptions_) s.begin(0);
+  find_next_publication();
+}
+
+void SimLoop::jump(int64_t step) {
+  ++run_;
+  if (!stepper_->jump(step)) return;
+  stepper_->set_run(run_);
+  for (Subscription& s : subscriptions_) s.begin(stepper_->step_count());
   find_next_publication();
 }
 
@@ -248,6 +267,8 @@ void SimLoop::begin_run_at(const RunRecord& record) {
   ++run_;
   stepper_->set_run(run_);
   chapters_ = record.chapters;
+  run_seed_ = record.seed;
+  first_step_ = record.step;
   commands_.begin_history(record.commands, run_);
   for (Subscription& s : subscriptions_) s.begin(stepper_->step_count());
   find_next_publication();

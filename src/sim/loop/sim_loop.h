@@ -30,6 +30,7 @@ class SimLoop {
   /// to its World; it gets back what was here before. Error: then nothing has changed.
   Status exchange(NextWorld& next, const Correspondence& same);
   void set_step_hook(StepHook hook) { hook_ = std::move(hook); }
+  void keep_hook_inputs(std::shared_ptr<HookInputs> inputs) { hook_inputs_ = std::move(inputs); }
   Result<std::shared_ptr<SnapshotQueue>> subscribe(const SubscriptionOptions& options,
                                                    const std::shared_ptr<Signal>& signal);
 
@@ -44,6 +45,12 @@ class SimLoop {
 
   /// Worlds of the present run, and the instant at which it stands.
   const std::vector<RunRecord::Chapter>& chapters() const { return chapters_; }
+  uint64_t run_seed() const { return run_seed_; }  ///< from which the run's hashes are chained
+  int64_t first_step() const {
+    return first_step_;
+  }  ///< of the run; of a checkpoint, if it is one's
+  /// Stepper::jump.
+  void jump(int64_t step);
   /// A copy of the instant; null where effects or controllers cannot be copied.
   std::unique_ptr<LoopState> save() const;
   /// Goes on in a new run from an instant that was saved in the World that runs. Error: then only a
@@ -64,6 +71,7 @@ class SimLoop {
   void apply(const Command& command);
   bool apply_commands();
   void run_controllers();
+  void run_hook();
   void begin_run();
   void begin_run_at(const RunRecord& record);
   void take_over_goals(const Correspondence& same);
@@ -81,7 +89,10 @@ class SimLoop {
   std::vector<ControllerSlot> controllers_;
   std::vector<Subscription> subscriptions_;
   StepHook hook_;
+  std::shared_ptr<HookInputs> hook_inputs_;  // null = not kept
   std::vector<RunRecord::Chapter> chapters_;
+  uint64_t run_seed_ = 0;
+  int64_t first_step_ = 0;
   int64_t run_ = 0;
   int64_t next_publication_ = 0;  // earliest `due` of the subscriptions
   int64_t dropped_by_closed_ = 0;

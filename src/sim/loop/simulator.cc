@@ -214,7 +214,27 @@ void Simulator::set_pace(Pace pace, double speed) {
   });
 }
 
-Status Simulator::follow(std::unique_ptr<Motion> motion) {
+Status Simulator::seek(int64_t step) {
+  if (is_on_sim_thread()) return no_call_from_a_step();
+  Pace pace = Pace::kFast;
+  call([&] {
+    loop_.jump(std::clamp(step, int64_t{0}, end_));
+    pace = std::exchange(pace_, Pace::kFast);
+    paused_ = false;
+    until_ = step;
+    remaining_ = kForever;
+  });
+  const Status status = wait();
+  call([&] {
+    pace_ = pace;
+    paused_ = true;
+    pacer_.restart();
+  });
+  return status;
+}
+
+Status Simulator::follow(std::unique_ptr<Motion> motion, int64_t end) {
+  end_ = end;
   Stepper& stepper = loop_.stepper();
   GLOAM_CHECK(!running_ && stepper.step_count() == 0, "a motion is followed from its beginning");
   return stepper.follow(std::move(motion)) ? Status() : Status(stepper.error());
@@ -270,9 +290,13 @@ Result<std::shared_ptr<const CheckpointData>> Simulator::checkpoint() {
       status = commands.error();
       return;
     }
-    made->record = {
-        seed_,         own_timestep_, loop_.chapters(), std::move(*commands), stepper.step_count(),
-        stepper.hash()};
+    made->record = {.seed = loop_.run_seed(),
+                    .timestep = own_timestep_,
+                    .chapters = loop_.chapters(),
+                    .commands = std::move(*commands),
+                    .step = stepper.step_count(),
+                    .hash = stepper.hash(),
+                    .first_step = loop_.first_step()};
     made->time = stepper.time();
     made->copy = loop_.save();
   });
@@ -329,6 +353,10 @@ Status Simulator::add_controller(int robot, std::unique_ptr<Controller> controll
 void Simulator::set_step_hook(StepHook hook) {
   GLOAM_CHECK(!is_on_sim_thread(), "a step hook cannot replace itself");
   call([&] { loop_.set_step_hook(std::move(hook)); });
+}
+
+void Simulator::keep_hook_inputs(std::shared_ptr<HookInputs> inputs) {
+  call([&] { loop_.keep_hook_inputs(std::move(inputs)); });
 }
 
 Result<std::shared_ptr<SnapshotQueue>> Simulator::subscribe(const SubscriptionOptions& options) {

@@ -72,7 +72,12 @@ class Simulator {
   void set_pace(Pace pace, double speed);
 
   /// Before start(): `motion` tells where bodies are, instead of physics, controllers and Commands.
-  Status follow(std::unique_ptr<Motion> motion);
+  /// It ends at `end`, where the simulation then stands still.
+  Status follow(std::unique_ptr<Motion> motion, int64_t end = kForever);
+  /// Of a motion: goes to `step` in a new run, forwards or back, and stands there. Blocks: effects
+  /// are solved from the beginning on.
+  Status seek(int64_t step);
+  int64_t end() const { return end_; }
 
   /// Checks a Command and queues it; waits for nothing but a recompile's moment. Errors: not a
   /// thing of this World, queue full.
@@ -83,6 +88,8 @@ class Simulator {
   /// reset.
   Status add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate);
   void set_step_hook(StepHook hook);
+  /// From now on what the step hook writes is kept there; null = no longer.
+  void keep_hook_inputs(std::shared_ptr<HookInputs> inputs);
   /// Goes on in another World between two steps, with the state of what remains (state_transfer.h),
   /// the Commands that wait (Correspondence::translate), all subscriptions (their next Snapshots
   /// are of the new World; windows that have begun are lost) and these controllers. Error: then the
@@ -134,7 +141,7 @@ class Simulator {
   void answer_calls();
   void report_idle();
   bool wants_step() const {
-    return !paused_ && remaining_ > 0 && loop_.stepper().step_count() < until_;
+    return !paused_ && remaining_ > 0 && loop_.stepper().step_count() < std::min(until_, end_);
   }
   void take_step();
 
@@ -148,7 +155,7 @@ class Simulator {
 
   // The sim thread's own (any thread's inside call()).
   bool paused_ = false, quit_ = false;
-  int64_t until_ = 0, remaining_ = kForever;
+  int64_t until_ = 0, remaining_ = kForever, end_ = kForever;
   int64_t total_steps_ = 0;
 
   std::thread thread_;

@@ -41,6 +41,9 @@ class Stepper {
   /// Commands. False and error() when it has no beginning.
   bool follow(std::unique_ptr<Motion> motion);
   bool follows() const { return motion_ != nullptr; }
+  /// Stands where the motion is at `step`, in a new run; at step 0 where there are effects, which
+  /// are solved from the beginning on. False and error() as follow().
+  bool jump(int64_t step);
   /// Number of the run in Snapshots.
   void set_run(int64_t run);
 
@@ -61,6 +64,7 @@ class Stepper {
   int64_t step_count() const { return step_; }
   double time() const { return state_[0]; }
   uint64_t hash() const { return hash_; }
+  uint64_t seed() const { return seed_; }
   const mjModel& model() const { return model_; }
   mjData& data() { return *data_; }
   const CompiledWorld& world() const { return *world_; }

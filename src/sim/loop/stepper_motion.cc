@@ -18,6 +18,17 @@ bool Stepper::follow(std::unique_ptr<Motion> motion) {
   return stand_where_moved() || fail({ErrorKind::kInput, mujoco_error_message()});
 }
 
+bool Stepper::jump(int64_t step) {
+  if (!reset()) return false;
+  const int64_t to = effects_.empty() ? step : 0;
+  if (const Status moved = motion_->advance(to, data_.get()); !moved.ok())
+    return fail(moved.error());
+  if (!stand_where_moved()) return fail({ErrorKind::kInput, mujoco_error_message()});
+  step_ = to;
+  hash_ = hash_span<double>(state_, hash_);
+  return true;
+}
+
 // Poses, contacts and sensors of the state that is in mjData.
 bool Stepper::stand_where_moved() {
   const mjModel* model = &model_;
