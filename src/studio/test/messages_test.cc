@@ -17,6 +17,7 @@ TEST(Messages, EveryTypeIsRead) {
                          R"({"type":"step","count":7})",
                          R"({"type":"speed","value":0.25})",
                          R"({"type":"reset"})",
+                         R"({"type":"seek","time":2.5})",
                          R"({"type":"camera","name":"robot/head"})",
                          R"({"type":"orbit","dx":0.5,"dy":-1})",
                          R"({"type":"pan","dx":2,"dy":3})",
@@ -35,9 +36,9 @@ TEST(Messages, EveryTypeIsRead) {
   }
   EXPECT_EQ(std::get<StepMessage>(*parse_message(texts[2])).count, 7);
   EXPECT_EQ(std::get<SpeedMessage>(*parse_message(texts[3])).value, 0.25);
-  EXPECT_EQ(std::get<CameraMessage>(*parse_message(texts[5])).name, "robot/head");
-  EXPECT_EQ(std::get<OrbitMessage>(*parse_message(texts[6])).dy, -1);
-  EXPECT_EQ(std::get<DragMoveMessage>(*parse_message(texts[11])).v, 6);
+  EXPECT_EQ(std::get<CameraMessage>(*parse_message(texts[6])).name, "robot/head");
+  EXPECT_EQ(std::get<OrbitMessage>(*parse_message(texts[7])).dy, -1);
+  EXPECT_EQ(std::get<DragMoveMessage>(*parse_message(texts[12])).v, 6);
 }
 
 TEST(Messages, WrongOnesAreRefusedInPlainWords) {
@@ -57,6 +58,8 @@ TEST(Messages, WrongOnesAreRefusedInPlainWords) {
       {R"({"type":"step","count":1.5})", "whole number"},
       {R"({"type":"step","count":"1"})", "must be a number"},
       {R"({"type":"speed","value":0})", "out of range"},
+      {R"({"type":"seek","time":-1})", "out of range"},
+      {R"({"type":"seek"})", "must be a number"},
       {R"({"type":"speed","value":-1})", "out of range"},
       {R"({"type":"speed","value":1e400})", "not JSON"},
       {R"({"type":"speed","value":null})", "must be a number"},

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <thread>
 
+#include "gloam/log_player.h"
 #include "gloam/view.h"
 #include "raw_client.h"
 
@@ -85,6 +86,34 @@ class ViewOfARealSimulation : public ::testing::Test {
 TEST_F(ViewOfARealSimulation, WatchingChangesNothing) {
   const World world = compile(folder_ / "model.xml");
   EXPECT_EQ(hash_watched(world, 1000, 2), hash_alone(world, 1000));
+}
+
+TEST_F(ViewOfARealSimulation, ALogIsGoneAboutIn) {
+  RunRequest request{.duration = 0.4};
+  request.log = {.file = folder_ / "run.mcap", .topics = {"/clock"}};
+  ASSERT_TRUE(run_and_record(compile(folder_ / "model.xml"), request, {}).ok());
+  auto player = LogPlayer::open({.log = folder_ / "run.mcap"});
+  ASSERT_TRUE(player.ok()) << player.error().to_string();
+  auto server = ViewServer::start((*player)->simulation(),
+                                  {.port = 0, .width = 48, .height = 36, .player = player->get()});
+  ASSERT_TRUE(server.ok()) << server.error().to_string();
+  const std::string url = (*server)->url();
+  RawClient client((*server)->port());
+  ASSERT_EQ(
+      client.upgrade("Host: 127.0.0.1:" + std::to_string((*server)->port()) +
+                     "\r\nAuthorization: token " + url.substr(url.find("token=") + 6) + "\r\n"),
+      101);
+  const auto hello = client.wait_for("hello");
+  ASSERT_TRUE(hello);
+  EXPECT_DOUBLE_EQ((*hello)["log_end"], 0.4);
+  for (const double time : {0.3, 0.1, 9.0}) {  // beyond the end: its end
+    client.send_text(R"({"type":"seek","time":)" + std::to_string(time) + "}");
+    double shown = -1;
+    for (int i = 0; i < 100 && std::abs(shown - std::min(time, 0.4)) > 1e-9; ++i)
+      if (const auto state = client.wait_for("state")) shown = (*state)["time"];
+    EXPECT_NEAR(shown, std::min(time, 0.4), 1e-9);
+  }
+  (*server)->stop();
 }
 
 TEST_F(ViewOfARealSimulation, WatchingAThirdPartyRobotChangesNothing) {
