@@ -121,7 +121,8 @@ Status serve_ours(const std::shared_ptr<const CompiledWorld>& compiled, int bloc
             LiveSimulation::create(World(compiled), {.pace = Pace::kLockstep}));
   ControlTable table(*compiled->model, block);
   int64_t step = 0;
-  simulation->set_step_hook([&](const mjModel*, mjData* data) { table.apply(step++, data); });
+  static_cast<void>(
+      simulation->set_step_hook([&](const mjModel*, mjData* data) { table.apply(step++, data); }));
   TwoCameras cameras;
   GLOAM_TRY_STATUS(cameras.open(*simulation, {20, 1}));
   while (wait_for_turn(in)) {

@@ -130,6 +130,7 @@ void print_streams_json(const World& world) {
     hears.push_back({{"kind", to_string(input.kind)},
                      {"name", input.name},
                      {"elements", input.elements},
+                     {"count", input.count},
                      {"low", limits(input.low)},
                      {"high", limits(input.high)},
                      {"unit", input.unit}});
@@ -155,8 +156,9 @@ void print_streams(const World& world) {
   fmt::print("\nhears\n");
   for (const InputInfo& input : world.inputs())
     fmt::print("  {:<8} {:<32} {}\n", to_string(input.kind), input.name,
-               input.elements.size() > 6 ? fmt::format("{} values", input.elements.size())
-                                         : fmt::format("{}", fmt::join(input.elements, " ")));
+               input.elements.empty() || input.elements.size() > 6
+                   ? fmt::format("{} values", input.count)
+                   : fmt::format("{}", fmt::join(input.elements, " ")));
 }
 
 int info(InfoCommand& command, const Globals& globals) {

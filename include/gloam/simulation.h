@@ -91,7 +91,8 @@ class Simulation {
   virtual SimulationStats stats() const = 0;
   /// Called on the physics thread before every step, after Commands and controllers, with the
   /// private model and data: what it writes into mjData counts as input. Set before the first step.
-  virtual void set_step_hook(std::function<void(const mjModel_*, mjData_*)> hook) = 0;
+  /// Error: called by a step hook or controller.
+  virtual Status set_step_hook(std::function<void(const mjModel_*, mjData_*)> hook) = 0;
 
   /// Opens a stream; `on_frame` comes on the stream's own thread, frames in order.
   virtual Result<std::unique_ptr<CameraStream>> open_camera(const CameraRequest& request,

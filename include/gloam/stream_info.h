@@ -31,17 +31,19 @@ struct StreamInfo {
 };
 
 enum class InputKind : uint8_t {
-  kVelocity,  ///< SetVelocityGoal of a robot
-  kControls,  ///< SetControls of a robot, or SetControl of one actuator
-  kMocap,     ///< SetMocapPose of a body
+  kVelocity,   ///< SetVelocityGoal of a robot
+  kControls,   ///< SetControls of a robot, or SetControl of one actuator
+  kMocap,      ///< SetMocapPose of a body
+  kLiveField,  ///< SetLiveField of the model
 };
 const char* to_string(InputKind kind);
 
 struct InputInfo {
   InputKind kind = InputKind::kControls;
   std::string name;                         ///< of the robot, body or field
-  std::vector<std::string> elements = {};   ///< actuators in order, or axes
-  std::vector<double> low = {}, high = {};  ///< limits of each element, where there are some
+  std::vector<std::string> elements = {};   ///< actuators in order, or axes; of live fields none
+  int64_t count = 0;                        ///< numbers that it takes
+  std::vector<double> low = {}, high = {};  ///< limits of each element, or one of all
   std::string unit = {};
 };
 

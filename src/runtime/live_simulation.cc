@@ -180,8 +180,8 @@ SimulationStats LiveSimulation::stats() const {
   return stats;
 }
 
-void LiveSimulation::set_step_hook(std::function<void(const mjModel_*, mjData_*)> hook) {
-  simulator_->set_step_hook(std::move(hook));
+Status LiveSimulation::set_step_hook(std::function<void(const mjModel_*, mjData_*)> hook) {
+  return simulator_->set_step_hook(std::move(hook));
 }
 
 Result<std::unique_ptr<LiveCamera>> LiveSimulation::open_live_camera(const CameraRequest& request,

@@ -56,7 +56,7 @@ class LiveSimulation final : public Simulation {
   std::vector<LoggedCommand> take_command_log() override { return simulator_->take_command_log(); }
   Snapshot latest() const override { return simulator_->latest(); }
   SimulationStats stats() const override;
-  void set_step_hook(std::function<void(const mjModel_*, mjData_*)> hook) override;
+  Status set_step_hook(std::function<void(const mjModel_*, mjData_*)> hook) override;
   Result<std::unique_ptr<CameraStream>> open_camera(const CameraRequest& request,
                                                     FrameCallback on_frame) override;
   Result<std::unique_ptr<SensorStream>> open_sensor(const SensorRequest& request,

@@ -204,7 +204,7 @@ const char* to_string(StreamKind kind) {
 }
 
 const char* to_string(InputKind kind) {
-  static constexpr const char* kNames[] = {"velocity", "controls", "mocap"};
+  static constexpr const char* kNames[] = {"velocity", "controls", "mocap", "live_field"};
   return kNames[static_cast<size_t>(kind)];
 }
 
@@ -259,10 +259,10 @@ std::vector<StreamInfo> list_streams(const CompiledWorld& world) {
   return StreamLister(world).list();
 }
 
-std::vector<InputInfo> World::inputs() const {
-  const mjModel& m = *compiled_->model;
+std::vector<InputInfo> list_inputs(const CompiledWorld& world) {
+  const mjModel& m = *world.model;
   std::vector<InputInfo> inputs;
-  for (const RobotInstance& robot : compiled_->robots) {
+  for (const RobotInstance& robot : world.robots) {
     if (robot.options.controller.type != "none")
       inputs.push_back({.kind = InputKind::kVelocity,
                         .name = robot.name,
@@ -274,12 +274,13 @@ std::vector<InputInfo> World::inputs() const {
   for (int body = 1; body < static_cast<int>(m.nbody); ++body) {
     if (m.body_mocapid[body] < 0) continue;
     const std::string name = name_of(m, mjOBJ_BODY, body);
-    if (find_agent(*compiled_, body) == nullptr)
+    if (find_agent(world, body) == nullptr)
       inputs.push_back({.kind = InputKind::kMocap,
                         .name = name.empty() ? fmt::format("body_{}", body) : name,
                         .elements = {"x", "y", "z", "qw", "qx", "qy", "qz"},
                         .unit = "m, 1"});
   }
+  for (InputInfo& input : inputs) input.count = static_cast<int64_t>(input.elements.size());
   return inputs;
 }
 

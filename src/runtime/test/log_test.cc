@@ -91,11 +91,12 @@ TEST_F(Logs, AreSteppedAgainToTheBit) {
 // Velocities, forces and a control that a controller would write, too.
 TEST_F(Logs, InputsOfStepHooksAreSteppedAgain) {
   auto live = simulation(world());
-  live->set_step_hook([](const mjModel_*, mjData_* d) {
-    d->ctrl[0] = std::sin(20 * d->time);
-    d->qfrc_applied[2] = d->time > 0.1 ? 11.5 : 0;
-    if (d->time > 0.1999 && d->time < 0.2001) d->qvel[6] += 1e-9;
-  });
+  ASSERT_TRUE(live->set_step_hook([](const mjModel_*, mjData_* d) {
+                    d->ctrl[0] = std::sin(20 * d->time);
+                    d->qfrc_applied[2] = d->time > 0.1 ? 11.5 : 0;
+                    if (d->time > 0.1999 && d->time < 0.2001) d->qvel[6] += 1e-9;
+                  })
+                  .ok());
   auto log = *LogRecorder::start(*live, {.file = file_});
   disturb(*live);
   ASSERT_TRUE(live->step(120).ok());

@@ -95,7 +95,8 @@ TEST(LiveSimulation, TheStepHookSeesTheStateBeforeEveryStep) {
   const TempFolder folder;
   auto simulation = simulate(flight(folder));
   std::vector<double> times;
-  simulation->set_step_hook([&](const mjModel*, mjData* d) { times.push_back(d->time); });
+  ASSERT_TRUE(
+      simulation->set_step_hook([&](const mjModel*, mjData* d) { times.push_back(d->time); }).ok());
   ASSERT_TRUE(simulation->step(3).ok());
   ASSERT_EQ(times.size(), 3u);
   for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(times[i], 0.002 * static_cast<double>(i), 1e-12);

@@ -12,10 +12,11 @@
 
 namespace gloam {
 namespace {
-
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
+
 using testing::SizeIs;
 
 constexpr const char* kArm = R"(<mujoco model="arm"><option timestep="0.002"/>
@@ -107,8 +108,14 @@ TEST_F(Streams, OfAWorldAreListedWithFramesRatesAndParents) {
 }
 
 TEST_F(Streams, InputsHaveTheirActuatorsAndLimits) {
-  std::vector<std::string> names;
+  std::vector<std::string> names, fields;
   for (const InputInfo& input : world_.inputs()) {
+    if (input.kind == InputKind::kLiveField) {
+      fields.push_back(input.name);
+      EXPECT_GT(input.count, 0) << input.name;
+      EXPECT_LT(input.low.at(0), input.high.at(0));
+      continue;
+    }
     names.push_back(std::string(to_string(input.kind)) + " " + input.name);
     if (input.kind != InputKind::kControls) continue;
     EXPECT_THAT(input.elements, ElementsAre(input.name + "/s", input.name + "/e"));
@@ -117,6 +124,8 @@ TEST_F(Streams, InputsHaveTheirActuatorsAndLimits) {
   }
   EXPECT_THAT(names, ElementsAre("controls left", "controls right", "mocap left/target",
                                  "mocap right/target"));
+  EXPECT_THAT(fields, Contains("body_mass"));
+  EXPECT_THAT(fields, Not(Contains("height_field"))) << "there is none";
 }
 
 TEST_F(Streams, RobotsAndBodiesKnowEachOther) {
@@ -183,26 +192,29 @@ TEST_F(Streams, CallsFromAHookAreAnsweredOrRefusedAndNeverAbort) {
   double time = -1;
   bool once = false;
   Simulation* raw = simulation.get();
-  simulation->set_step_hook([&, raw](const mjModel_*, mjData_*) {
-    if (std::exchange(once, true)) return;
-    time = raw->latest().time();
-    EXPECT_TRUE(raw->status().ok());
-    EXPECT_EQ(raw->stats().step, 0);
-    EXPECT_TRUE(raw->post(Command{.what = SetControls{{0, 0}, {1, 1}}}).ok());
-    raw->pause();
-    const auto note = [&](const Status& status) {
-      refused.push_back(status.ok() ? "ok" : status.error().message);
-    };
-    note(raw->step(1));
-    note(raw->run_until(100));
-    note(raw->recompile(world_));
-    note(raw->open_snapshots({}, [](const Snapshot&) {}).ok()
-             ? Status()
-             : Status(raw->open_snapshots({}, [](const Snapshot&) {}).error()));
-  });
+  ASSERT_TRUE(simulation
+                  ->set_step_hook([&, raw](const mjModel_*, mjData_*) {
+                    if (std::exchange(once, true)) return;
+                    time = raw->latest().time();
+                    EXPECT_TRUE(raw->status().ok());
+                    EXPECT_EQ(raw->stats().step, 0);
+                    EXPECT_TRUE(raw->post(Command{.what = SetControls{{0, 0}, {1, 1}}}).ok());
+                    raw->pause();
+                    const auto note = [&](const Status& status) {
+                      refused.push_back(status.ok() ? "ok" : status.error().message);
+                    };
+                    note(raw->step(1));
+                    note(raw->set_step_hook({}));
+                    note(raw->run_until(100));
+                    note(raw->recompile(world_));
+                    note(raw->open_snapshots({}, [](const Snapshot&) {}).ok()
+                             ? Status()
+                             : Status(raw->open_snapshots({}, [](const Snapshot&) {}).error()));
+                  })
+                  .ok());
   ASSERT_TRUE(simulation->step(3).ok());
   EXPECT_EQ(time, 0);
-  ASSERT_THAT(refused, SizeIs(4));
+  ASSERT_THAT(refused, SizeIs(5));
   for (const std::string& why : refused) EXPECT_THAT(why, HasSubstr("step hook"));
 }
 

@@ -76,9 +76,11 @@ void gloam_run(const World& world, const mjModel& stock, Watching watching, Gloa
   set_thread_count(watching.threads);
   auto simulation = Simulation::create(world, {});
   ASSERT_TRUE(simulation.ok()) << simulation.error().to_string();
-  (*simulation)->set_step_hook([run](const mjModel* m, mjData* d) {
-    run->states.push_back(motion_state(*m, *d));
-  });
+  ASSERT_TRUE((*simulation)
+                  ->set_step_hook([run](const mjModel* m, mjData* d) {
+                    run->states.push_back(motion_state(*m, *d));
+                  })
+                  .ok());
   std::vector<std::unique_ptr<CameraStream>> streams;
   if (watching.cameras) {
     // One of the model's own cameras and the free one, one of each tier.

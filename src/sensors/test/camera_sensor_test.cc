@@ -50,9 +50,9 @@ class CameraSensorTest : public ::testing::Test {
     renderer_ = std::move(make_cpu_renderer(description_)).value();
     solver_ = std::move(PoseSolver::create(world_.compiled())).value();
     simulator_ = std::move(Simulator::create(world_.compiled(), {.pace = Pace::kLockstep})).value();
-    simulator_->set_step_hook([](const mjModel*, mjData* d) {
+    static_cast<void>(simulator_->set_step_hook([](const mjModel*, mjData* d) {
       if (d->time == 0) d->qvel[0] = 1;
-    });
+    }));
     simulator_->start();
   }
 

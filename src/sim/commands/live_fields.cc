@@ -16,18 +16,21 @@ namespace {
 struct FieldRow {
   const char* name;
   float smallest, largest;  // allowed values
+  const char* unit;
 };
 
 constexpr float kAny = 1e10f;  // mjMAXVAL: beyond it MuJoCo calls a number bad
 
 // By LiveFieldId.
 constexpr FieldRow kFields[kLiveFieldCount] = {
-    {"gravity", -kAny, kAny},      {"wind", -kAny, kAny},          {"body_mass", 0, kAny},
-    {"geom_friction", 0, kAny},    {"height_field", 0, 1},         {"light_diffuse", 0, kAny},
-    {"light_intensity", 0, kAny},  {"light_active", 0, 1},         {"geom_color", 0, 1},
-    {"material_color", 0, 1},      {"material_emission", 0, kAny}, {"material_specular", 0, 1},
-    {"material_shininess", 0, 1},  {"material_reflectance", 0, 1}, {"material_metallic", -1, 1},
-    {"material_roughness", -1, 1},
+    {"gravity", -kAny, kAny, "m/s^2"},   {"wind", -kAny, kAny, "m/s"},
+    {"body_mass", 0, kAny, "kg"},        {"geom_friction", 0, kAny, "1, m, m"},
+    {"height_field", 0, 1, "1"},         {"light_diffuse", 0, kAny, "1"},
+    {"light_intensity", 0, kAny, "cd"},  {"light_active", 0, 1, "1"},
+    {"geom_color", 0, 1, "1"},           {"material_color", 0, 1, "1"},
+    {"material_emission", 0, kAny, "1"}, {"material_specular", 0, 1, "1"},
+    {"material_shininess", 0, 1, "1"},   {"material_reflectance", 0, 1, "1"},
+    {"material_metallic", -1, 1, "1"},   {"material_roughness", -1, 1, "1"},
 };
 
 const FieldRow& row(LiveFieldId field) { return kFields[static_cast<int>(field)]; }
@@ -96,6 +99,10 @@ void write_masses(const mjModel& world_model, std::span<const float> masses, mjM
 }  // namespace
 
 const char* live_field_name(LiveFieldId field) { return row(field).name; }
+
+LiveFieldRange live_field_range(LiveFieldId field) {
+  return {row(field).smallest, row(field).largest, row(field).unit};
+}
 
 int live_field_size(const mjModel& model, LiveFieldId field) {
   return visit_field(model, field, [](const auto*, mjtSize n) { return static_cast<int>(n); });

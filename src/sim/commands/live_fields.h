@@ -14,6 +14,12 @@ namespace gloam {
 
 /// "gravity", "body_mass" …
 const char* live_field_name(LiveFieldId field);
+/// Values that a field may have, and their unit.
+struct LiveFieldRange {
+  double low, high;
+  const char* unit;
+};
+LiveFieldRange live_field_range(LiveFieldId field);
 /// Number of values of a field.
 int live_field_size(const mjModel& model, LiveFieldId field);
 /// The field as it stands in a model.

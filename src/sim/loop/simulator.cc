@@ -350,9 +350,10 @@ Status Simulator::add_controller(int robot, std::unique_ptr<Controller> controll
   return status;
 }
 
-void Simulator::set_step_hook(StepHook hook) {
-  GLOAM_CHECK(!is_on_sim_thread(), "a step hook cannot replace itself");
+Status Simulator::set_step_hook(StepHook hook) {
+  if (is_on_sim_thread()) return no_call_from_a_step();
   call([&] { loop_.set_step_hook(std::move(hook)); });
+  return {};
 }
 
 void Simulator::keep_hook_inputs(std::shared_ptr<HookInputs> inputs) {

@@ -87,7 +87,8 @@ class Simulator {
   /// Runs before steps at `rate`, of which the step rate is a multiple; reset now and at every
   /// reset.
   Status add_controller(int robot, std::unique_ptr<Controller> controller, Rational rate);
-  void set_step_hook(StepHook hook);
+  /// Error: called by a step hook or controller.
+  Status set_step_hook(StepHook hook);
   /// From now on what the step hook writes is kept there; null = no longer.
   void keep_hook_inputs(std::shared_ptr<HookInputs> inputs);
   /// Goes on in another World between two steps, with the state of what remains (state_transfer.h),

@@ -136,7 +136,7 @@ TEST(Checkpoint, ForgetsWhatWasBeforeAReset) {
 
 TEST(Checkpoint, StepHookThatIsNotRepeatedIsToldOf) {
   auto sim = driven(world_from_mjcf(kRichModel), std::make_unique<RandomController>());
-  sim->set_step_hook([](const mjModel*, mjData* d) { d->qvel[0] += 1e-3; });
+  ASSERT_TRUE(sim->set_step_hook([](const mjModel*, mjData* d) { d->qvel[0] += 1e-3; }).ok());
   ASSERT_TRUE(sim->step(50).ok());
   const auto checkpoint = *sim->checkpoint();
   const uint64_t before = sim->latest().hash();
@@ -154,11 +154,12 @@ TEST(Checkpoint, RefusesAnotherTimestepAndAFailedSimulation) {
       make_simulator(world_from_mjcf(kRichModel), {.timestep = 0.01, .pace = Pace::kLockstep});
   slower->start();
   EXPECT_FALSE(slower->restore(*checkpoint, controllers_of<RandomController>).ok());
-  sim->set_step_hook([](const mjModel*, mjData* d) { d->qvel[0] = std::nan(""); });
+  ASSERT_TRUE(
+      sim->set_step_hook([](const mjModel*, mjData* d) { d->qvel[0] = std::nan(""); }).ok());
   EXPECT_FALSE(sim->step(2).ok());
   EXPECT_FALSE(sim->checkpoint().ok());
   // Going back heals it, as a reset does.
-  sim->set_step_hook({});
+  ASSERT_TRUE(sim->set_step_hook({}).ok());
   ASSERT_TRUE(sim->restore(*checkpoint, controllers_of<RandomController>).ok());
   EXPECT_TRUE(sim->step(5).ok());
 }

@@ -77,10 +77,11 @@ TEST_F(CommandTest, AddVelocityMovesTheWholeFloatingSubtree) {
 TEST_F(CommandTest, MocapPoseIsSetAndItsQuaternionMadeUnit) {
   ASSERT_TRUE(sim->post({.what = SetMocapPose{body("hand"), {{1, 2, 3}, {0, 0, 2, 0}}}}).ok());
   double seen[7] = {};
-  sim->set_step_hook([&seen](const mjModel*, mjData* d) {
-    mju_copy(seen, d->mocap_pos, 3);
-    mju_copy(seen + 3, d->mocap_quat, 4);
-  });
+  ASSERT_TRUE(sim->set_step_hook([&seen](const mjModel*, mjData* d) {
+                   mju_copy(seen, d->mocap_pos, 3);
+                   mju_copy(seen + 3, d->mocap_quat, 4);
+                 })
+                  .ok());
   sim->start();
   ASSERT_TRUE(sim->step().ok());
   const double expected[7] = {1, 2, 3, 0, 0, 1, 0};
@@ -116,9 +117,11 @@ TEST_F(CommandTest, GravityMassAndFrictionChangeWhileItRuns) {
   ASSERT_TRUE(sim->post({0, SetLiveField{LiveFieldId::kBodyMass, body("cart").id, {8}}}).ok());
   ASSERT_TRUE(sim->post({0, SetControl{Actuator{0}, 8}}).ok());
   double inertia = 0, m0 = 0, friction = 0;
-  sim->set_step_hook([&](const mjModel* model, mjData*) {
-    inertia = model->body_inertia[3], m0 = model->dof_M0[0], friction = model->geom_friction[0];
-  });
+  ASSERT_TRUE(sim->set_step_hook([&](const mjModel* model, mjData*) {
+                   inertia = model->body_inertia[3], m0 = model->dof_M0[0],
+                   friction = model->geom_friction[0];
+                 })
+                  .ok());
   sim->start();
   ASSERT_TRUE(sim->step(10).ok());
   EXPECT_NEAR(velocity(), 0.1, 1e-12);                                 // 8 N on 8 kg
@@ -155,9 +158,11 @@ TEST_F(CommandTest, FieldsKeepTheirChangesInWhateverOrderTheyCome) {
   const double friction_before = m.geom_friction[0];
   const int cart = body("cart").id;
   double friction = 0, mass = 0, m0 = 0;
-  sim->set_step_hook([&](const mjModel* model, mjData*) {
-    friction = model->geom_friction[0], mass = model->body_mass[cart], m0 = model->dof_M0[0];
-  });
+  ASSERT_TRUE(sim->set_step_hook([&](const mjModel* model, mjData*) {
+                   friction = model->geom_friction[0], mass = model->body_mass[cart],
+                   m0 = model->dof_M0[0];
+                 })
+                  .ok());
   const auto set = [&](int64_t step, LiveFieldId field, int first, float value) {
     ASSERT_TRUE(sim->post({step, SetLiveField{field, first, {value}}}).ok());
   };

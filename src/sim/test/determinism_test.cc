@@ -58,9 +58,10 @@ TEST(Determinism, HashDoesNotDependOnWatchersThreadsOrPace) {
 TEST(Determinism, HashSeesEveryBitOfTheState) {
   auto run = [](double offset) {
     auto sim = make_simulator(world_from_mjcf(kRichModel), lockstep());
-    sim->set_step_hook([offset](const mjModel*, mjData* d) {
-      if (d->time == 0) d->qvel[0] += offset;
-    });
+    EXPECT_TRUE(sim->set_step_hook([offset](const mjModel*, mjData* d) {
+                     if (d->time == 0) d->qvel[0] += offset;
+                   })
+                    .ok());
     sim->start();
     EXPECT_TRUE(sim->step(1).ok());
     return sim->latest().hash();

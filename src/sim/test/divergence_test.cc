@@ -53,9 +53,10 @@ TEST(Divergence, StopsAtTheLastGoodStateAndNamesTheJoint) {
 
 TEST(Divergence, NotANumberFromAHookIsCaught) {
   auto sim = make_simulator(world_from_mjcf(kRichModel), lockstep());
-  sim->set_step_hook([](const mjModel*, mjData* d) {
-    if (d->time > 0.0399) d->qvel[8] = std::nan("");
-  });
+  ASSERT_TRUE(sim->set_step_hook([](const mjModel*, mjData* d) {
+                   if (d->time > 0.0399) d->qvel[8] = std::nan("");
+                 })
+                  .ok());
   sim->start();
   const Status status = sim->step(100);
   ASSERT_FALSE(status.ok());
@@ -66,7 +67,8 @@ TEST(Divergence, NotANumberFromAHookIsCaught) {
 
 TEST(Divergence, BadControlsAreCountedAndPhysicsGoesOn) {
   auto sim = make_simulator(world_from_mjcf(kRichModel), lockstep());
-  sim->set_step_hook([](const mjModel*, mjData* d) { d->ctrl[0] = std::nan(""); });
+  ASSERT_TRUE(
+      sim->set_step_hook([](const mjModel*, mjData* d) { d->ctrl[0] = std::nan(""); }).ok());
   sim->start();
   ASSERT_TRUE(sim->step(10).ok());
   EXPECT_EQ(sim->counters().warnings[mjWARN_BADCTRL], 10);
@@ -97,7 +99,9 @@ TEST(Divergence, AutoResetIsOffOnThePrivateCopyOnly) {
   auto world = world_from_mjcf(kExplodes);
   auto sim = make_simulator(world, lockstep());
   int flags = 0;
-  sim->set_step_hook([&flags](const mjModel* m, mjData*) { flags = m->opt.disableflags; });
+  ASSERT_TRUE(
+      sim->set_step_hook([&flags](const mjModel* m, mjData*) { flags = m->opt.disableflags; })
+          .ok());
   sim->start();
   ASSERT_TRUE(sim->step(1).ok());
   EXPECT_NE(flags & mjDSBL_AUTORESET, 0);

@@ -41,7 +41,7 @@ TEST(StepLoop, AllocatesNothingOnceWarm) {
   const Body base{mj_name2id(world->model.get(), mjOBJ_BODY, "base")};
   auto sim = make_simulator(world);
   ASSERT_TRUE(sim->add_controller(0, std::make_unique<RandomController>(), {500, 1}).ok());
-  sim->set_step_hook([](const mjModel*, mjData* d) { counting = d->time > 0.1; });
+  ASSERT_TRUE(sim->set_step_hook([](const mjModel*, mjData* d) { counting = d->time > 0.1; }).ok());
   auto required = *sim->subscribe({.rate = {250, 1}, .required = true, .capacity = 4});
   auto slow = *sim->subscribe({.rate = {500, 1}, .capacity = 2});
   std::thread reader([required] {
@@ -64,11 +64,12 @@ TEST(StepLoop, AllocatesNothingOnceWarm) {
   EXPECT_EQ(allocations.load(), 0);
   EXPECT_EQ(frees.load(), 0);
   // The hook does count what it should.
-  sim->set_step_hook([](const mjModel*, mjData*) {
-    counting = true;
-    free(malloc(10));
-    counting = false;
-  });
+  ASSERT_TRUE(sim->set_step_hook([](const mjModel*, mjData*) {
+                   counting = true;
+                   free(malloc(10));
+                   counting = false;
+                 })
+                  .ok());
   sim->run_until(4001);
   ASSERT_TRUE(sim->wait().ok());
   EXPECT_GE(allocations.load(), 1);
@@ -80,7 +81,8 @@ TEST(StepLoop, AllocatesNothingOnceWarm) {
 void expect_no_allocation(std::shared_ptr<const CompiledWorld> world, double warm, int64_t steps,
                           int capacity) {
   auto sim = make_simulator(std::move(world));
-  sim->set_step_hook([warm](const mjModel*, mjData* d) { counting = d->time > warm; });
+  ASSERT_TRUE(
+      sim->set_step_hook([warm](const mjModel*, mjData* d) { counting = d->time > warm; }).ok());
   auto queue = *sim->subscribe({.rate = {250, 1}, .required = true, .capacity = capacity});
   std::thread reader([queue] {
     while (queue->next()) {
@@ -91,7 +93,7 @@ void expect_no_allocation(std::shared_ptr<const CompiledWorld> world, double war
   EXPECT_TRUE(sim->wait().ok());
   EXPECT_EQ(allocations.load(), 0);
   EXPECT_EQ(frees.load(), 0);
-  sim->set_step_hook([](const mjModel*, mjData*) { counting = false; });
+  ASSERT_TRUE(sim->set_step_hook([](const mjModel*, mjData*) { counting = false; }).ok());
   sim->stop();
   reader.join();
 }
@@ -138,7 +140,7 @@ TEST(Agents, DecideAndWalkWithoutAllocating) {
   for (int i = 0; i < 3; ++i) rig.add("a" + std::to_string(i), {-3.0 + 2 * i, 3, 0}, "wander");
   auto sim = make_simulator(rig.compile());
   allocations = frees = 0;
-  sim->set_step_hook([](const mjModel*, mjData* d) { counting = d->time > 1; });
+  ASSERT_TRUE(sim->set_step_hook([](const mjModel*, mjData* d) { counting = d->time > 1; }).ok());
   sim->start(5000);
   ASSERT_TRUE(sim->wait().ok());
   EXPECT_EQ(allocations.load(), 0);

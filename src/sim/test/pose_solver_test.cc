@@ -258,8 +258,10 @@ TEST(PoseSolver, FollowsLiveFields) {
   ASSERT_TRUE(sim->post({.what = SetLiveField{LiveFieldId::kHeightField, 3, {.75f}}}).ok());
   // Poses are those of the model as the simulation has it, tracked centres of mass included.
   ModelPtr live_model;
-  sim->set_step_hook(
-      [&](const mjModel* model, mjData*) { live_model.reset(mj_copyModel(nullptr, model)); });
+  ASSERT_TRUE(sim->set_step_hook([&](const mjModel* model, mjData*) {
+                   live_model.reset(mj_copyModel(nullptr, model));
+                 })
+                  .ok());
   ASSERT_TRUE(sim->step(50).ok());
   const Snapshot s = sim->latest();
   ASSERT_TRUE(solver->solve(s, frame).ok());
@@ -301,7 +303,8 @@ TEST(PoseSolver, SeesWhatSleeps) {
       <body pos="0 0 .05"><freejoint/><geom type="box" size=".05 .05 .05"/></body></worldbody></mujoco>)");
   auto sim = make_simulator(world, lockstep());
   int awake = -1;
-  sim->set_step_hook([&awake](const mjModel*, mjData* d) { awake = d->ntree_awake; });
+  ASSERT_TRUE(
+      sim->set_step_hook([&awake](const mjModel*, mjData* d) { awake = d->ntree_awake; }).ok());
   sim->start();
   ASSERT_TRUE(sim->step(3000).ok());
   EXPECT_EQ(awake, 0) << "the box should be asleep by now";

@@ -39,7 +39,7 @@ class FakeSimulation : public Simulation {
   std::vector<LoggedCommand> take_command_log() override { return {}; }
   Snapshot latest() const override { return {}; }
   SimulationStats stats() const override;
-  void set_step_hook(std::function<void(const mjModel_*, mjData_*)>) override {}
+  Status set_step_hook(std::function<void(const mjModel_*, mjData_*)>) override { return {}; }
   Result<std::unique_ptr<CameraStream>> open_camera(const CameraRequest& request,
                                                     FrameCallback on_frame) override;
   Result<std::unique_ptr<SensorStream>> open_sensor(const SensorRequest&, SensorCallback) override {
