@@ -140,11 +140,11 @@ void print_streams_json(const World& world) {
 
 void print_streams(const World& world) {
   const std::vector<BodyInfo> bodies = world.bodies();
-  fmt::print("says\n  {:<8} {:<32} {:<24} {:<12} {}\n", "kind", "name", "on body", "rate",
+  fmt::print("says\n  {:<10} {:<32} {:<24} {:<12} {}\n", "kind", "name", "on body", "rate",
              "outputs");
   for (const StreamInfo& stream : world.streams()) {
     const std::string& parent = bodies[static_cast<size_t>(stream.parent.id)].name;
-    fmt::print("  {:<8} {:<32} {:<24} {:<12} {}\n", to_string(stream.kind), stream.name,
+    fmt::print("  {:<10} {:<32} {:<24} {:<12} {}\n", to_string(stream.kind), stream.name,
                parent.empty() ? "world" : parent,
                stream.rate.num == 0 ? "every step" : fmt::format("{:g} Hz", stream.rate.value()),
                stream.outputs.size() > 6
@@ -155,7 +155,7 @@ void print_streams(const World& world) {
   }
   fmt::print("\nhears\n");
   for (const InputInfo& input : world.inputs())
-    fmt::print("  {:<8} {:<32} {}\n", to_string(input.kind), input.name,
+    fmt::print("  {:<10} {:<32} {}\n", to_string(input.kind), input.name,
                input.elements.empty() || input.elements.size() > 6
                    ? fmt::format("{} values", input.count)
                    : fmt::format("{}", fmt::join(input.elements, " ")));

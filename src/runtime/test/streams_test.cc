@@ -12,11 +12,11 @@
 
 namespace gloam {
 namespace {
+
 using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
-
 using testing::SizeIs;
 
 constexpr const char* kArm = R"(<mujoco model="arm"><option timestep="0.002"/>
