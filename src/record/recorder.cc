@@ -10,7 +10,7 @@
 
 #include "base/check.h"
 #include "base/text.h"
-#include "gloam/scene.h"
+#include "gloam/outputs.h"
 #include "record/camera_recorder.h"
 #include "record/csv.h"
 #include "record/run_files.h"
