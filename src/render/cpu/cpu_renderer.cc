@@ -70,13 +70,8 @@ void resize_film(const CameraView& view, const RenderSettings& settings, Film* f
   film->normal.resize(light);
   film->variance.resize(settings.variance ? light : 0);
   film->sample_count.resize(settings.error > 0 ? n : 0);
-  film->depth.resize(exact);
-  film->distance.resize(exact);
-  film->part.resize(exact);
-  film->center_normal.resize(details);
-  film->center_albedo.resize(details);
-  film->motion.resize(details);
-  film->scene_flow.resize(details);
+  visit_places([&](auto& plane) { plane.resize(exact); }, *film);
+  visit_details([&](auto& plane) { plane.resize(details); }, *film);
 }
 
 /// Tile `i` of the order in which tiles are rendered: far apart, so that those
