@@ -5,33 +5,24 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "gloam/outputs.h"
 #include "gloam/program.h"
 
 namespace gloam::cli {
 namespace {
 
-template <class Has>
-bool any_camera(const Scene& scene, Has&& has) {
-  return std::ranges::any_of(scene.cameras,
-                             [&](const CameraOptions& camera) { return has(camera.sensing); });
-}
-
 // Reason why nothing delivers `output`; "" when something does.
 std::string why_void(const std::string& output, const Scene& scene, const World& world) {
   if (output == "lidar" && scene.lidars.empty()) return "the scene has no [[lidar]]";
   if (output == "sensors" && world.info().sensors.empty()) return "the model has no sensors";
-  if (output.starts_with("raw") &&
-      !any_camera(scene, [](const CameraSensing& s) { return s.imager.has_value(); }))
-    return "no [[camera]] has an [camera.imager]";
-  if (output.starts_with("sensor_depth") &&
-      !any_camera(scene, [](const CameraSensing& s) { return s.stereo_depth.has_value(); }))
-    return "no [[camera]] measures depth";
-  if (output == "events" &&
-      !any_camera(scene, [](const CameraSensing& s) { return s.events.has_value(); }))
-    return "no [[camera]] has [camera.events]";
-  if (output.starts_with("thermal") &&
-      !any_camera(scene, [](const CameraSensing& s) { return s.thermal.has_value(); }))
-    return "no [[camera]] has [camera.thermal]";
+  const auto* file = std::ranges::find(kCameraFiles, output, &CameraFile::output);
+  if (file == kCameraFiles.end()) return {};
+  const CameraChannel& channel = *find_camera_channel(file->channel);
+  const bool any =
+      channel.model.empty() || std::ranges::any_of(scene.cameras, [&](const CameraOptions& camera) {
+        return channel.has_model(camera.sensing);
+      });
+  if (!any) return fmt::format("no [[camera]] has a table [camera.{}]", channel.model);
   return {};
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/ranges.h>
 
+#include "gloam/outputs.h"
 #include "gloam/program.h"
 
 namespace gloam::cli {

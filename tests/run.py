@@ -352,6 +352,7 @@ def full(tally):
         "sweeps of running scenes": lambda t: gtest(t, "release", "runtime", labels.only(labels.SWEEPS)),
         "pack": pack,
         "first look at models": lambda t: python_tests(t, "tests/e2e/gallery_models.py"),
+        "recipes": lambda t: python_tests(t, "tests/e2e/recipes.py"),
         "Mitsuba's mutations": lambda t: python_tests(t, "tests/e2e/mitsuba_mutations.py"),
     }
     for module in modules_with("Mutations"):

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "gloam/outputs.h"
 #include "json_text.h"
 #include "run_options.h"
 
@@ -18,6 +20,18 @@ struct RenderCommand {
   RunOptions options;
   double time = 0;
 };
+
+// Channels that a still can show: all but those of all frames together.
+std::string channel_help() {
+  std::string plain = "Channels:", modelled;
+  for (const CameraChannel& channel : kCameraChannels) {
+    const bool has_still = std::ranges::any_of(kCameraFiles, [&](const CameraFile& file) {
+      return file.channel == channel.name && file.is_of_each_frame();
+    });
+    if (has_still) (channel.model.empty() ? plain : modelled) += fmt::format(" {}", channel.name);
+  }
+  return fmt::format("{};{} of cameras with these models", plain, modelled);
+}
 
 int render(const RenderCommand& command_line, const Globals& globals) {
   RenderCommand command = command_line;
@@ -76,10 +90,7 @@ void add_render(CLI::App& app, Globals& globals, Action& action) {
   auto command = std::make_shared<RenderCommand>();
   sub->add_option("FILE", command->file, "Scene or model")->required();
   command->options.add_to(*sub);
-  sub->get_option("--output")
-      ->description(
-          "Channels: rgb radiance samples depth distance segmentation normal albedo motion "
-          "scene_flow boxes; raw sensor_depth thermal of cameras with these models");
+  sub->get_option("--output")->description(channel_help());
   sub->get_option("--spp")->description(fmt::format(
       "Samples per pixel; default: {}, whatever the scene says; with --error at most, default "
       "4096",

@@ -20,8 +20,7 @@ struct CameraRequest {
   /// Frames per second of simulation time; 0 = the camera's own, else 20.
   Rational rate = {0, 1};
   int width = 0, height = 0;  ///< [px]; 0 = the camera's own
-  /// rgb radiance samples depth distance segmentation normal albedo motion scene_flow boxes; raw
-  /// sensor_depth events thermal (with their tables in the scene)
+  /// Channels by name, from kCameraChannels (gloam/outputs.h).
   std::vector<std::string> outputs = {"rgb"};
   RenderOptions render = {};
   std::optional<Pose> X_WC = {};  ///< of camera "free": where it stands at first

@@ -48,8 +48,9 @@ struct RunReport {
   std::vector<std::string> notes = {};  ///< for people: "poses only, since …"
 };
 
-/// Makes `outputs`, of kRecordOutputs, what a run of the scene records, of cameras and LiDARs with
-/// outputs of their own, too. Formats of LiDARs stay, where "lidar" is among them.
+/// Makes `outputs`, of kRecordOutputs (gloam/outputs.h), what a run of the scene records, of
+/// cameras and LiDARs with outputs of their own, too. Formats of LiDARs stay, where "lidar" is
+/// among them.
 void set_record_outputs(const std::vector<std::string>& outputs, Scene* scene);
 
 /// Runs a World for its duration and records what its Scene asks for. `progress` is called first

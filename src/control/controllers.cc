@@ -21,7 +21,7 @@ Result<std::unique_ptr<Controller>> make_none(const CompiledWorld&, const RobotI
   return std::unique_ptr<Controller>();
 }
 
-// Gloam's own; a new one is a line here and its name in scene/options/controller_types.cc.
+// Gloam's own; names and options are in scene/options/controller_types.cc.
 constexpr std::pair<std::string_view, OwnFactory> kControllers[] = {
     {"none", make_none},
     {"torque", make_torque_controller},

@@ -57,9 +57,9 @@ CameraRecorder::CameraRecorder(RecordedCamera camera, std::filesystem::path fold
       thumbnails_(kThumbnails) {}
 
 bool CameraRecorder::writes_pictures() const {
-  return writes("video") || std::ranges::any_of(frame_files(), [this](const FrameFile& file) {
-           return writes(file.output);
-         });
+  return std::ranges::any_of(kCameraFiles, [this](const CameraFile& file) {
+    return file.format != FileFormat::kCsv && writes(std::string(file.output));
+  });
 }
 
 Status CameraRecorder::start() {
@@ -95,12 +95,12 @@ Status CameraRecorder::add(const CameraFrame& frame) {
 }
 
 Status CameraRecorder::write_pictures(const CameraFrame& frame) {
-  for (const FrameFile& file : frame_files()) {
-    if (!writes(file.output)) continue;
-    GLOAM_TRY(const std::vector<uint8_t> bytes, file.encode(frame));
+  for (const CameraFile& file : kCameraFiles) {
+    if (!file.is_of_each_frame() || !writes(std::string(file.output))) continue;
+    GLOAM_TRY(const std::vector<uint8_t> bytes, encode_frame_file(file, frame));
     if (bytes.empty()) continue;
     const std::filesystem::path folder = folder_ / file_name_ / file.folder;
-    if (made_folders_.insert(file.folder).second) GLOAM_TRY_STATUS(store_->make_folder(folder));
+    if (made_folders_.emplace(file.folder).second) GLOAM_TRY_STATUS(store_->make_folder(folder));
     GLOAM_TRY_STATUS(
         store_->write_file(folder / fmt::format("{:06}.{}", frame.index, file.extension()), bytes));
   }

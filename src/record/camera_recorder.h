@@ -43,7 +43,7 @@ class CameraRecorder {
   bool writes(const std::string& output) const { return outputs_.contains(output); }
   /// True if files of pictures or a video are written, not the poses or another thing alone.
   bool writes_pictures() const;
-  int64_t frames() const { return frames_; }
+  int64_t count() const { return frames_; }  ///< frames so far
   const std::vector<Thumbnail>& thumbnails() const { return thumbnails_.items(); }
 
  private:

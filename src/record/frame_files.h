@@ -1,27 +1,16 @@
 #pragma once
-// The files that hold one frame of a camera, a line each: what a recording writes into a folder per
-// kind, and a still beside its picture.
+// Content of the files that hold one frame of a camera: what a recording writes into a folder per
+// kind, and a still beside its picture. The files are the rows of kCameraFiles.
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
-#include "gloam/camera.h"
+#include "gloam/outputs.h"
 #include "gloam/result.h"
 
 namespace gloam {
 
-struct FrameFile {
-  const char* output;   ///< output that asks for it, as in [record]: "depth_exr"
-  const char* channel;  ///< channel of CameraRequest that fills it: "depth"
-  const char* folder;   ///< folder of a recording: CAMERA/depth_exr/000000.exr
-  const char* suffix;   ///< suffix of a still: NAME_depth.exr
-  /// The content; empty for a frame that lacks the channel.
-  Result<std::vector<uint8_t>> (*encode)(const CameraFrame&);
-
-  const char* extension() const;  ///< "exr"
-};
-
-std::span<const FrameFile> frame_files();
+/// The content of a file that is_of_each_frame(); empty for a frame that lacks the channel.
+Result<std::vector<uint8_t>> encode_frame_file(const CameraFile& file, const CameraFrame& frame);
 
 }  // namespace gloam

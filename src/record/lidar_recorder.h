@@ -29,7 +29,7 @@ class LidarRecorder {
   Status start();
   Status add(const LidarScan& scan);
   Status finish();
-  int64_t scans() const { return scans_; }
+  int64_t count() const { return scans_; }  ///< scans so far
 
  private:
   RecordedLidar lidar_;

@@ -3,20 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <map>
-#include <mutex>
 #include <optional>
 
 #include "base/check.h"
 #include "base/text.h"
-#include "gloam/scene.h"
+#include "gloam/outputs.h"
 #include "record/camera_recorder.h"
 #include "record/csv.h"
+#include "record/recorder_lanes.h"
 #include "record/run_files.h"
 #include "record/run_folder.h"
 #include "record/run_sheet.h"
-#include "record/worker.h"
 #include "render/film/h264.h"
 
 namespace gloam {
@@ -25,56 +23,6 @@ namespace {
 constexpr const char* kSensorsName = "sensors";
 constexpr size_t kQueuedRows = 4096;   // metric rows that may wait for the disk
 constexpr size_t kPlottedRows = 2000;  // kept in memory for the contact sheet
-
-/// The failure that ended a recording: what was written before it is complete, so its kind is
-/// kPartial. Others that follow from it are of no interest.
-class FirstFailure {
- public:
-  void report(const Status& status) {
-    if (status.ok()) return;
-    const std::lock_guard lock(mutex_);
-    if (error_) return;
-    error_ = status.error();
-    error_->kind = ErrorKind::kPartial;
-    error_->message = "recording stopped: " + error_->message;
-    failed_ = true;
-  }
-  /// Does `write`, whose failure or want of memory ends the recording.
-  template <class F>
-  void attempt(F&& write) {
-    try {
-      report(write());
-    } catch (const std::bad_alloc&) {
-      report(Error{ErrorKind::kIo, "out of memory", {}, "lower the resolution"});
-    }
-  }
-  bool failed() const { return failed_; }
-  Status status() const {
-    const std::lock_guard lock(mutex_);
-    return error_ ? Status(*error_) : Status();
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::atomic<bool> failed_{false};
-  std::optional<Error> error_;
-};
-
-/// A LiDAR's files and the thread that writes them.
-struct LidarLane {
-  LidarLane(LidarRecorder lidar_recorder, size_t capacity, bool wait)
-      : recorder(std::move(lidar_recorder)), worker(capacity, wait) {}
-  LidarRecorder recorder;
-  Worker worker;  // after what it uses: it is destroyed, and so ends, first
-};
-
-/// A camera's files and the thread that writes them.
-struct CameraLane {
-  CameraLane(CameraRecorder camera_recorder, size_t capacity, bool wait)
-      : recorder(std::move(camera_recorder)), worker(capacity, wait) {}
-  CameraRecorder recorder;
-  Worker worker;  // after what it uses: it is destroyed, and so ends, first
-};
 
 class FolderRecorder : public Recorder {
  public:
@@ -107,16 +55,12 @@ class FolderRecorder : public Recorder {
     for (size_t i = 0; i < info_.cameras.size(); ++i) {
       CameraRecorder recorder(info_.cameras[i], options_.folder, file_names_[i],
                               outputs_of(info_.cameras[i]), options_.store);
-      GLOAM_TRY_STATUS(recorder.start());
-      lanes_[info_.cameras[i].name] = std::make_unique<CameraLane>(
-          std::move(recorder), static_cast<size_t>(options_.queue_frames), options_.wait);
+      GLOAM_TRY_STATUS(cameras_.open(info_.cameras[i].name, std::move(recorder), options_));
     }
     for (size_t i = 0; i < info_.lidars.size(); ++i) {
       LidarRecorder recorder(info_.lidars[i], options_.folder / lidar_file_names_[i],
                              options_.store);
-      GLOAM_TRY_STATUS(recorder.start());
-      lidar_lanes_[info_.lidars[i].name] = std::make_unique<LidarLane>(
-          std::move(recorder), static_cast<size_t>(options_.queue_frames), options_.wait);
+      GLOAM_TRY_STATUS(lidars_.open(info_.lidars[i].name, std::move(recorder), options_));
     }
     GLOAM_TRY_STATUS(open_table("metrics", info_.metric_columns, &metrics_));
     GLOAM_TRY_STATUS(open_table("state", info_.state_columns, &state_));
@@ -126,23 +70,13 @@ class FolderRecorder : public Recorder {
   }
 
   void add_frame(std::shared_ptr<const CameraFrame> frame) override {
-    const auto lane = lanes_.find(frame->camera);
-    GLOAM_CHECK(lane != lanes_.end(), "a frame of a camera that is not recorded");
-    if (failure_.failed()) return;
-    CameraRecorder* recorder = &lane->second->recorder;
-    lane->second->worker.post([this, recorder, frame = std::move(frame)] {
-      if (!failure_.failed()) failure_.attempt([&] { return recorder->add(*frame); });
-    });
+    const std::string& camera = frame->camera;
+    cameras_.add(camera, std::move(frame), &failure_);
   }
 
   void add_scan(std::shared_ptr<const LidarScan> scan) override {
-    const auto lane = lidar_lanes_.find(scan->lidar);
-    GLOAM_CHECK(lane != lidar_lanes_.end(), "a scan of a lidar that is not recorded");
-    if (failure_.failed()) return;
-    LidarRecorder* recorder = &lane->second->recorder;
-    lane->second->worker.post([this, recorder, scan = std::move(scan)] {
-      if (!failure_.failed()) failure_.attempt([&] { return recorder->add(*scan); });
-    });
+    const std::string& lidar = scan->lidar;
+    lidars_.add(lidar, std::move(scan), &failure_);
   }
 
   void add_metrics(std::span<const double> row) override {
@@ -182,19 +116,19 @@ class FolderRecorder : public Recorder {
   Status status() const override { return failure_.status(); }
 
   Status finish(const RunOutcome& outcome) override {
-    for (auto& [name, lane] : lanes_) lane->worker.close();
-    for (auto& [name, lane] : lidar_lanes_) lane->worker.close();
+    cameras_.close();
+    lidars_.close();
     metrics_worker_->close();
     // After a failure too: what can be ended properly should be.
-    for (auto& [name, lane] : lanes_) failure_.report(lane->recorder.finish());
-    for (auto& [name, lane] : lidar_lanes_) failure_.report(lane->recorder.finish());
+    cameras_.finish(&failure_);
+    lidars_.finish(&failure_);
     if (metrics_) failure_.report(metrics_->finish());
     if (state_) failure_.report(state_->finish());
     for (auto& [name, csv] : sensors_) failure_.report(csv.finish());
     if (outputs_.contains("contact_sheet") && !failure_.failed()) {
       std::vector<const CameraRecorder*> cameras;
       for (const RecordedCamera& camera : info_.cameras)
-        cameras.push_back(&lanes_.at(camera.name)->recorder);
+        cameras.push_back(&cameras_.recorder(camera.name));
       failure_.report(
           options_.store->write_file(options_.folder / "contact_sheet.png",
                                      run_sheet_png(info_, outcome, cameras, rows_.items())));
@@ -205,8 +139,10 @@ class FolderRecorder : public Recorder {
 
   int64_t frames() const override {
     int64_t sum = 0;
-    for (const auto& [name, lane] : lanes_)
-      if (lane->recorder.writes_pictures()) sum += lane->recorder.frames();
+    for (const RecordedCamera& camera : info_.cameras) {
+      const CameraRecorder& recorder = cameras_.recorder(camera.name);
+      if (recorder.writes_pictures()) sum += recorder.count();
+    }
     return sum;
   }
 
@@ -304,22 +240,11 @@ class FolderRecorder : public Recorder {
   }
 
   Status write_summary(const RunOutcome* outcome) {
-    std::vector<CameraCounts> counts;
-    for (size_t i = 0; i < info_.cameras.size(); ++i) {
-      const auto lane = lanes_.find(info_.cameras[i].name);
-      const bool known = lane != lanes_.end();
-      counts.push_back({info_.cameras[i].name, file_names_[i],
-                        known ? lane->second->recorder.frames() : 0,
-                        known ? lane->second->worker.dropped() : 0});
-    }
-    std::vector<CameraCounts> scans;
-    for (size_t i = 0; i < info_.lidars.size(); ++i) {
-      const auto lane = lidar_lanes_.find(info_.lidars[i].name);
-      const bool known = lane != lidar_lanes_.end();
-      scans.push_back({info_.lidars[i].name, lidar_file_names_[i],
-                       known ? lane->second->recorder.scans() : 0,
-                       known ? lane->second->worker.dropped() : 0});
-    }
+    std::vector<CameraCounts> counts, scans;
+    for (size_t i = 0; i < info_.cameras.size(); ++i)
+      counts.push_back(cameras_.counts(info_.cameras[i].name, file_names_[i]));
+    for (size_t i = 0; i < info_.lidars.size(); ++i)
+      scans.push_back(lidars_.counts(info_.lidars[i].name, lidar_file_names_[i]));
     const Status status = failure_.status();
     return write_text(kSummaryName,
                       summary_json(info_, outcome, counts, scans, sensor_file_names_, metric_rows_,
@@ -339,8 +264,8 @@ class FolderRecorder : public Recorder {
   int64_t metric_rows_ = 0;
   Timeline<std::vector<double>> rows_;
   // The threads come last, so they end before anything that they use.
-  std::map<std::string, std::unique_ptr<CameraLane>> lanes_;
-  std::map<std::string, std::unique_ptr<LidarLane>> lidar_lanes_;
+  Lanes<CameraRecorder> cameras_;
+  Lanes<LidarRecorder> lidars_;
   std::unique_ptr<Worker> metrics_worker_;
 };
 

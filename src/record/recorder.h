@@ -10,7 +10,7 @@
 //   contact_sheet.png   the run at a glance
 //   CAMERA.mp4          H.264
 //   CAMERA/poses.csv    pose of the camera's optical frame (Z forward, X right, Y down) per frame
-//   CAMERA/rgb/000000.png        8-bit sRGB; the kinds of pictures are in record/frame_files.cc:
+//   CAMERA/rgb/000000.png        8-bit sRGB; the kinds of pictures are in gloam/outputs.h:
 //   CAMERA/depth/000000.png      16-bit mm along the optical axis (ROS 16UC1), 0 = nothing or
 //                                beyond 65.535 m
 //   CAMERA/depth_exr/000000.exr  float m, channel Z (ROS 32FC1), +inf = nothing

@@ -14,9 +14,9 @@
 #include "base/hash.h"
 #include "base/log.h"
 #include "base/memory.h"
+#include "gloam/outputs.h"
 #include "gloam/program.h"
 #include "gloam/run.h"
-#include "record/frame_files.h"
 #include "record/recorder.h"
 #include "runtime/label_table.h"
 #include "runtime/live_simulation.h"
@@ -38,7 +38,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-bool wants(const std::vector<std::string>& outputs, const std::string& name) {
+bool wants(const std::vector<std::string>& outputs, std::string_view name) {
   return std::find(outputs.begin(), outputs.end(), name) != outputs.end();
 }
 
@@ -47,21 +47,18 @@ bool wants(const std::vector<std::string>& outputs, const std::string& name) {
 std::vector<std::string> channels_for(const std::vector<std::string>& outputs,
                                       const CameraSensing& sensing) {
   std::set<std::string> channels;
-  for (const FrameFile& file : frame_files())
-    if (wants(outputs, file.output)) channels.insert(file.channel);
-  if (wants(outputs, "video")) channels.insert("rgb");
-  if (wants(outputs, "events")) channels.insert("events");
+  for (const CameraFile& file : kCameraFiles)
+    if (wants(outputs, file.output)) channels.emplace(file.channel);
   if (wants(outputs, "contact_sheet")) channels.insert({"rgb", "depth", "segmentation"});
-  if (!sensing.imager) channels.erase("raw");
-  if (!sensing.stereo_depth) channels.erase("sensor_depth");
-  if (!sensing.thermal) channels.erase("thermal");
-  if (!sensing.events) channels.erase("events");
+  std::erase_if(channels, [&](const std::string& channel) {
+    return !find_camera_channel(channel)->has_model(sensing);
+  });
   return {channels.begin(), channels.end()};
 }
 
 bool is_picture(const std::string& output) {
-  if (output == "video" || output == "events" || output == "contact_sheet") return true;
-  return std::ranges::any_of(frame_files(), [&](const FrameFile& f) { return output == f.output; });
+  return output == "contact_sheet" ||
+         std::ranges::find(kCameraOutputs, output) != kCameraOutputs.end();
 }
 
 /// True if any camera has anything to record.

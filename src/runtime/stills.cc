@@ -136,7 +136,8 @@ Result<std::vector<StillFiles>> write_stills(const World& world,
                                              const std::filesystem::path& folder) {
   FileNames names{"cameras.json", "labels.json"};
   std::vector<std::string> suffixes, taken;
-  for (const FrameFile& file : frame_files()) suffixes.emplace_back(file.suffix);
+  for (const CameraFile& file : kCameraFiles)
+    if (file.is_of_each_frame()) suffixes.emplace_back(file.suffix);
   std::vector<StillFiles> written;
   std::vector<RecordedCamera> cameras;
   bool has_ids = false;
@@ -161,10 +162,11 @@ Result<std::vector<std::filesystem::path>> write_frame(const CameraFrame& frame,
                                                        const std::string& name) {
   GLOAM_TRY_STATUS(make_folder(folder));
   std::vector<std::filesystem::path> written;
-  for (const FrameFile& file : frame_files()) {
-    GLOAM_TRY(const std::vector<uint8_t> bytes, file.encode(frame));
+  for (const CameraFile& file : kCameraFiles) {
+    if (!file.is_of_each_frame()) continue;
+    GLOAM_TRY(const std::vector<uint8_t> bytes, encode_frame_file(file, frame));
     if (bytes.empty()) continue;
-    written.push_back(folder / (name + file.suffix));
+    written.push_back(folder / fmt::format("{}{}", name, file.suffix));
     GLOAM_TRY_STATUS(write_file_atomic(written.back(), bytes));
   }
   return written;

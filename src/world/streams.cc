@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "base/text.h"
+#include "gloam/outputs.h"
 #include "gloam/world.h"
 #include "world/agents/agent_bodies.h"
 #include "world/compile/level.h"
@@ -118,16 +119,12 @@ class StreamLister {
   }
 
   std::vector<std::string> outputs_of(const std::string& camera) const {
-    std::vector<std::string> outputs = {"rgb",      "radiance",     "samples", "depth",
-                                        "distance", "segmentation", "normal",  "albedo",
-                                        "motion",   "scene_flow",   "boxes"};
-    for (const CameraOptions& options : world_.scene.cameras) {
-      if (options.name != camera) continue;
-      if (options.sensing.imager) outputs.emplace_back("raw");
-      if (options.sensing.stereo_depth) outputs.emplace_back("sensor_depth");
-      if (options.sensing.events) outputs.emplace_back("events");
-      if (options.sensing.thermal) outputs.emplace_back("thermal");
-    }
+    const auto found = std::ranges::find(world_.scene.cameras, camera, &CameraOptions::name);
+    const CameraSensing sensing =
+        found != world_.scene.cameras.end() ? found->sensing : CameraSensing();
+    std::vector<std::string> outputs;
+    for (const CameraChannel& channel : kCameraChannels)
+      if (channel.has_model(sensing)) outputs.emplace_back(channel.name);
     return outputs;
   }
 

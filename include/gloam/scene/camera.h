@@ -5,7 +5,6 @@
 #include <array>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "gloam/result.h"
@@ -13,27 +12,6 @@
 #include "gloam/types.h"
 
 namespace gloam {
-
-/// Outputs of a camera that can be recorded.
-inline constexpr std::array<std::string_view, 19> kCameraOutputs = {"video",
-                                                                    "png",
-                                                                    "radiance_exr",
-                                                                    "samples_exr",
-                                                                    "depth_png",
-                                                                    "depth_exr",
-                                                                    "distance_exr",
-                                                                    "segmentation",
-                                                                    "normal_exr",
-                                                                    "albedo_exr",
-                                                                    "motion_exr",
-                                                                    "scene_flow_exr",
-                                                                    "boxes_json",
-                                                                    "sensor_depth_png",
-                                                                    "sensor_depth_exr",
-                                                                    "raw_png",
-                                                                    "thermal_png",
-                                                                    "thermal_exr",
-                                                                    "events"};
 
 /// camera.lens: how directions become pixels, in the terms of ROS's CameraInfo, or in millimetres.
 /// Pixels are those of the camera's own width and height, and their centres lie at integer + 0.5:
@@ -75,8 +53,8 @@ struct CameraOptions {
   double exposure_time = 0;
   /// From the first row's exposure to the last one's [s], >= 0: above 0 a rolling shutter.
   double readout_time = 0;
-  /// Those of kCameraOutputs that are recorded, instead of what [record] says; [] = its poses
-  /// alone.
+  /// Those of kCameraOutputs (gloam/outputs.h) that are recorded, instead of what [record] says; []
+  /// = its poses alone.
   std::optional<std::vector<std::string>> outputs = {};
   double near = 0;  ///< nothing nearer than this plane is seen [m], >= 0
   /// Bodies that it does not see, each with all that hangs on it: full names, * stands for any

@@ -2,17 +2,12 @@
 // Settings of a run: [sim], [render], [record] and options drawn at random ([[randomize]]). Part of
 // gloam/scene.h.
 
-#include <algorithm>
-#include <array>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "gloam/result.h"
-#include "gloam/scene/camera.h"
 #include "gloam/scene/robot.h"
 
 namespace gloam {
@@ -54,19 +49,10 @@ struct RenderOptions {
   int samples() const { return spp.value_or(error ? 4096 : 4); }
 };
 
-/// Outputs of a run that can be recorded: those of all cameras, and the rest.
-inline constexpr auto kRecordOutputs = [] {
-  constexpr std::array<std::string_view, 5> kRest = {"lidar", "metrics", "contact_sheet", "sensors",
-                                                     "state"};
-  std::array<std::string_view, kCameraOutputs.size() + kRest.size()> all;
-  std::copy(kRest.begin(), kRest.end(),
-            std::copy(kCameraOutputs.begin(), kCameraOutputs.end(), all.begin()));
-  return all;
-}();
-
 /// [record]: what is written of a run.
 struct RecordOptions {
-  std::vector<std::string> outputs = {"video", "png", "lidar"};  ///< outputs, from kRecordOutputs
+  std::vector<std::string> outputs = {"video", "png",
+                                      "lidar"};  ///< those of kRecordOutputs (gloam/outputs.h)
   bool mcap = false;  ///< writes the run as a log, run.mcap, too (docs/logs.md)
   /// Topics of the log by name; * stands for any text. Empty = the usual ones (docs/topics.md).
   std::vector<std::string> topics = {};

@@ -139,13 +139,9 @@ class Card final : public CudaStages {
     visit(film.variance, &device->squares);
     visit(film.albedo, &device->albedo);
     visit(film.normal, &device->normal);
-    visit(film.depth, &device->depth);
-    visit(film.distance, &device->distance);
-    visit(film.part, &device->part);
-    visit(film.center_normal, &device->center_normal);
-    visit(film.center_albedo, &device->center_albedo);
-    visit(film.motion, &device->motion);
-    visit(film.scene_flow, &device->scene_flow);
+    const auto exact = [&](auto& plane, auto& pointer) { visit(plane, &pointer); };
+    visit_places(exact, film, *device);
+    visit_details(exact, film, *device);
   }
 
   void place_film(const Film& film, DeviceFilm* device) {

@@ -9,14 +9,9 @@ namespace {
 
 __device__ __forceinline__ void store_channels(const DeviceFilm& film, size_t pixel,
                                                const ExactChannels& c) {
-  put(film.depth + pixel, c.depth);
-  put(film.distance + pixel, c.distance);
-  put(film.part + pixel, c.part);
-  if (film.center_normal == nullptr) return;
-  put(film.center_normal + pixel, c.normal);
-  put(film.center_albedo + pixel, c.albedo);
-  put(film.motion + pixel, c.motion);
-  put(film.scene_flow + pixel, c.scene_flow);
+  const auto store = [&](auto* plane, const auto& value) { put(plane + pixel, value); };
+  visit_places(store, film, c);
+  if (film.center_normal != nullptr) visit_details(store, film, c);
 }
 
 __global__ void __launch_bounds__(kBlock, kBlocks)

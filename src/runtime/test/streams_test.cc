@@ -267,11 +267,17 @@ TEST_F(Streams, ASnapshotOfAnotherWorldIsRefused) {
 TEST(ParseScene, SettingsOfAControllerAreATableOfEitherKind) {
   TempFolder folder;
   folder.write("arm.xml", kArm);
+  const auto no_controller = [](const ControllerRequest&) -> Result<std::unique_ptr<Controller>> {
+    return std::unique_ptr<Controller>();
+  };
+  ASSERT_TRUE(register_controller("settings_alone", no_controller).ok());
   for (const char* params : {"params = { gain = 2.5, offset = [0, 1] }",
                              "[robot.controller.params]\ngain = 2.5\noffset = [0, 1]"}) {
-    const Result<Scene> scene = parse_scene(
-        std::string("[[robot]]\nname = \"a\"\nfile = \"arm.xml\"\n[robot.controller]\n") + params,
-        folder.path());
+    const Result<Scene> scene =
+        parse_scene(std::string("[[robot]]\nname = \"a\"\nfile = \"arm.xml\"\n[robot.controller]\n"
+                                "type = \"settings_alone\"\n") +
+                        params,
+                    folder.path());
     ASSERT_TRUE(scene.ok()) << scene.error().to_string();
     const ControllerOptions& options = scene->robots[0].controller;
     EXPECT_THAT(*controller_param(options, "gain"), ElementsAre(2.5)) << options.params.text;

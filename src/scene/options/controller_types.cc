@@ -10,13 +10,26 @@
 namespace gloam {
 namespace {
 
-struct TypeNames {
-  std::mutex mutex;
-  std::deque<std::string> names = {"none", "torque", "joint_position", "trot"};
+using Keys = std::vector<std::string_view>;
+
+struct ControllerType {
+  std::string name;
+  Keys options;
 };
 
-TypeNames& type_names() {
-  static TypeNames instance;
+struct ControllerTypes {
+  std::mutex mutex;
+  // Gloam's own; their factories are in control/controllers.cc.
+  std::deque<ControllerType> rows = {
+      {"none", {}},
+      {"torque", {"target"}},
+      {"joint_position", {"kp", "kd", "target"}},
+      {"trot", {"goals"}},
+  };
+};
+
+ControllerTypes& controller_types_table() {
+  static ControllerTypes instance;
   return instance;
 }
 
@@ -29,19 +42,28 @@ bool is_identifier(const std::string& name) {
 }  // namespace
 
 std::vector<std::string_view> controller_type_names() {
-  TypeNames& types = type_names();
+  ControllerTypes& types = controller_types_table();
   const std::lock_guard lock(types.mutex);
-  return {types.names.begin(), types.names.end()};
+  std::vector<std::string_view> names;
+  for (const ControllerType& row : types.rows) names.emplace_back(row.name);
+  return names;
+}
+
+bool has_controller_option(std::string_view type, std::string_view key) {
+  ControllerTypes& types = controller_types_table();
+  const std::lock_guard lock(types.mutex);
+  const auto row = std::ranges::find(types.rows, type, &ControllerType::name);
+  return row == types.rows.end() || std::ranges::find(row->options, key) != row->options.end();
 }
 
 Status add_controller_type(const std::string& name) {
   if (!is_identifier(name))
     return Error{ErrorKind::kUsage, fmt::format("'{:.80}' is no name of a controller", name)};
-  TypeNames& types = type_names();
+  ControllerTypes& types = controller_types_table();
   const std::lock_guard lock(types.mutex);
-  if (std::find(types.names.begin(), types.names.end(), name) != types.names.end())
+  if (std::ranges::find(types.rows, name, &ControllerType::name) != types.rows.end())
     return Error{ErrorKind::kUsage, fmt::format("there is a controller '{}' already", name)};
-  types.names.push_back(name);
+  types.rows.push_back({name, {"goals", "params"}});
   return {};
 }
 

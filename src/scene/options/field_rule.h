@@ -17,8 +17,9 @@ struct FieldRule {
   bool open = false;                           ///< min and max themselves are not allowed
   bool required = false;                       ///< must stand in the file
   std::vector<std::string_view> choices = {};  ///< closed list of words; empty = any
-  bool identifier = false;     ///< a name: not empty, no '/' and no control characters
-  bool one_for_three = false;  ///< a vector may be written as one number
+  bool identifier = false;       ///< a name: not empty, no '/' and no control characters
+  std::string_view not_of = {};  ///< type of its table that has no such option; "" = it has
+  bool one_for_three = false;    ///< a vector may be written as one number
 };
 
 /// For FieldRule::choices.

@@ -21,11 +21,15 @@ template <class Visitor>
 void visit_fields(Visitor& v, ControllerOptions& o) {
   v("type", o.type, FieldRule{.choices = controller_type_names()});
   v("rate", o.rate, FieldRule{.unit = "Hz", .min = 0, .max = kFastestRate, .open = true});
-  v("kp", o.kp, FieldRule{.unit = "N m/rad", .min = 0, .max = 1e6});
-  v("kd", o.kd, FieldRule{.unit = "N m s/rad", .min = 0, .max = 1e6});
-  v("target", o.target, FieldRule{.unit = "rad or N m", .min = -1e6, .max = 1e6});
-  v("goals", o.goals, FieldRule{});
-  v("params", o.params, FieldRule{});
+  const auto of_type = [&](std::string_view key, auto& member, FieldRule rule) {
+    if (!has_controller_option(o.type, key)) rule.not_of = o.type;
+    v(key, member, rule);
+  };
+  of_type("kp", o.kp, FieldRule{.unit = "N m/rad", .min = 0, .max = 1e6});
+  of_type("kd", o.kd, FieldRule{.unit = "N m s/rad", .min = 0, .max = 1e6});
+  of_type("target", o.target, FieldRule{.unit = "rad or N m", .min = -1e6, .max = 1e6});
+  of_type("goals", o.goals, FieldRule{});
+  of_type("params", o.params, FieldRule{});
 }
 
 template <class Visitor>

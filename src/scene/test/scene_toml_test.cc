@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "gloam/options.h"
 #include "gloam/scene.h"
 #include "scene/test/temp_folder.h"
 #include "scene/toml/toml_reader.h"
@@ -9,6 +10,7 @@ namespace gloam {
 namespace {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 constexpr const char* kModel = "<mujoco><worldbody><body name='b'/></worldbody></mujoco>";
 
@@ -203,9 +205,18 @@ INSTANTIATE_TEST_SUITE_P(
                  {"'outputs[1]' cannot be 'deph_png'", "did you mean 'depth_png'?"}},
         BadScene{
             "goals_out_of_order",
-            "[[robot]]\nname = \"a\"\nfile = \"robot.xml\"\n[[robot.controller.goals]]\ntime = "
-            "2\n[[robot.controller.goals]]\ntime = 1\n",
-            {"scene.toml:6", "order the goals by time"}},
+            "[[robot]]\nname = \"a\"\nfile = \"robot.xml\"\n[robot.controller]\ntype = \"trot\"\n"
+            "[[robot.controller.goals]]\ntime = 2\n[[robot.controller.goals]]\ntime = 1\n",
+            {"scene.toml:8", "order the goals by time"}},
+        BadScene{"option_of_another_controller",
+                 "[[robot]]\nname = \"a\"\nfile = \"robot.xml\"\n[robot.controller]\nkp = 40\n"
+                 "type = \"trot\"\n",
+                 {"scene.toml:5", "'trot' has no 'kp'", "one of: type, rate, goals"}},
+        BadScene{
+            "option_of_another_controller_that_is_near",
+            "[[robot]]\nname = \"a\"\nfile = \"robot.xml\"\n[robot.controller]\ntype = \"none\"\n"
+            "rat = 3\n",
+            {"scene.toml:6", "unknown key 'rat'", "did you mean 'rate'?"}},
         BadScene{"nothing_in_it", "[sim]\nduration = 1\n", {"nothing in it"}}),
     [](const auto& info) { return info.param.what; });
 
@@ -283,14 +294,40 @@ TEST_F(SetOption, ChangesOneOption) {
   EXPECT_EQ(scene_.render.tier, "direct");
   EXPECT_EQ(set("scene.name", "\"yard\""), "");
   EXPECT_EQ(scene_.name, "yard");
+  EXPECT_EQ(set("robot.go1.controller.type", "joint_position"), "");
   EXPECT_EQ(set("robot.go1.controller.kp", "7"), "");
   EXPECT_EQ(scene_.robots[0].controller.kp, 7);
   EXPECT_EQ(set("camera.0.position", "[1, 2, 3]"), "");
   EXPECT_EQ(scene_.cameras[0].position, (Vec3{1, 2, 3}));
   EXPECT_EQ(set("camera.top.rate", "\"30000/1001\""), "");
   EXPECT_EQ(scene_.cameras[0].rate, (Rational{30000, 1001}));
+  EXPECT_EQ(set("robot.go1.controller.type", "trot"), "");
   EXPECT_EQ(set("robot.go1.controller.goals", "[{time = 0, vx = 0.5}]"), "");
   EXPECT_EQ(scene_.robots[0].controller.goals.at(0).vx, 0.5);
+}
+
+TEST_F(SetOption, KnowsWhichOptionsAControllerHas) {
+  const auto options = [&] {
+    std::string keys;
+    for (const OptionInfo& option : list_options(scene_))
+      if (const size_t at = option.path.find("controller."); at != std::string::npos)
+        keys += option.path.substr(at + 11) + " ";
+    return keys;
+  };
+  EXPECT_EQ(options(), "type rate ");
+  EXPECT_THAT(set("robot.go1.controller.kp", "7"), HasSubstr("'none' has no 'kp'"));
+  EXPECT_EQ(set("robot.go1.controller.type", "joint_position"), "");
+  EXPECT_EQ(options(), "type rate kp kd target ");
+  EXPECT_THAT(set("robot.go1.controller.goals", "[]"),
+              HasSubstr("'joint_position' has no 'goals'"));
+  EXPECT_THAT(set("robot.go1.controller.tarket", "[1]"), HasSubstr("did you mean 'target'?"));
+  EXPECT_EQ(set("robot.go1.controller.kp", "7"), "");
+  EXPECT_EQ(*get_option(scene_, "robot.go1.controller.kp"), "7.0");
+  EXPECT_THAT(to_toml(scene_), HasSubstr("kp = 7"));
+  // The stiffness of another type is not written: it could not be read again.
+  EXPECT_EQ(set("robot.go1.controller.type", "trot"), "");
+  EXPECT_FALSE(get_option(scene_, "robot.go1.controller.kp").ok());
+  EXPECT_THAT(to_toml(scene_), Not(HasSubstr("kp = 7")));
 }
 
 TEST_F(SetOption, RefusesWhatTheFileWouldRefuse) {

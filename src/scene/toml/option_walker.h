@@ -12,6 +12,7 @@
 #include "base/text.h"
 #include "scene/options/field_rule.h"
 #include "scene/options/option_fields.h"
+#include "scene/toml/absent_options.h"
 
 namespace gloam {
 
@@ -33,6 +34,7 @@ class OptionWalker {
 
   template <class T>
   void operator()(std::string_view key, T& member, const FieldRule& rule) {
+    if (!rule.not_of.empty()) return absent_.note(key, rule);
     known_.emplace_back(key);
     if (found_ || names_[0] != key) return;
     found_ = true;
@@ -41,7 +43,10 @@ class OptionWalker {
 
   /// Call after all fields.
   void finish() {
-    if (!found_)
+    if (found_) return;
+    if (Status absent = absent_.error(names_[0], known_, loc_); status_->ok() && !absent.ok())
+      *status_ = std::move(absent);
+    else
       fail(fmt::format("unknown option '{}'", names_[0]), suggest_name(names_[0], known_));
   }
 
@@ -132,6 +137,7 @@ class OptionWalker {
   Leaf* leaf_;
   Status* status_;
   std::vector<std::string> known_;
+  AbsentOptions absent_;
   bool found_ = false;
 };
 

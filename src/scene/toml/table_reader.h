@@ -16,6 +16,7 @@
 
 #include "base/text.h"
 #include "scene/options/option_fields.h"
+#include "scene/toml/absent_options.h"
 #include "scene/toml/toml_reader.h"
 #include "scene/toml/value_reader.h"
 
@@ -29,6 +30,7 @@ class TableReader : private ValueReader {
   /// One field of the struct that this table fills.
   template <class T>
   void operator()(std::string_view key, T& member, const FieldRule& rule) {
+    if (!rule.not_of.empty()) return absent_.note(key, rule);
     known_.emplace_back(key);
     if (!status_->ok()) return;
     const toml::node* node = table_.get(key);
@@ -44,8 +46,11 @@ class TableReader : private ValueReader {
     if (!status_->ok()) return;
     for (const auto& [key, node] : table_) {
       if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
-      *status_ = Error{ErrorKind::kInput, fmt::format("unknown key '{}' in {}", key.str(), where_),
-                       loc_of(key, file_), suggest_name(key.str(), known_)};
+      *status_ = absent_.error(key.str(), known_, loc_of(key, file_));
+      if (status_->ok())
+        *status_ =
+            Error{ErrorKind::kInput, fmt::format("unknown key '{}' in {}", key.str(), where_),
+                  loc_of(key, file_), suggest_name(key.str(), known_)};
       return;
     }
   }
@@ -97,6 +102,7 @@ class TableReader : private ValueReader {
   const toml::table& table_;
   std::string where_;
   std::vector<std::string> known_;
+  AbsentOptions absent_;
 };
 
 }  // namespace gloam

@@ -28,8 +28,8 @@ class TableWriter {
     write(key, member);
   }
 
-  /// The table of an option struct, without what is as in `defaults`; an option that must be given
-  /// stays.
+  /// The table of an option struct, without what is as in `defaults` and what its type does not
+  /// have; an option that must be given stays.
   template <class Options>
   static toml::table table_of(Options& options, const std::filesystem::path& folder) {
     toml::table all, defaults;
@@ -37,12 +37,14 @@ class TableWriter {
     Options fresh{};
     visit_fields(writer, options);
     visit_fields(default_writer, fresh);
-    RequiredKeys required;
-    visit_fields(required, fresh);
+    KeyRules rules;
+    visit_fields(rules, options);
     for (const auto& [key, node] : defaults) {
       const toml::node* own = all.get(key);
-      if (own != nullptr && same(*own, node) && !required.holds(key.str())) all.erase(key);
+      if (own != nullptr && same(*own, node) && !contains(rules.required, key.str()))
+        all.erase(key);
     }
+    for (const std::string_view key : rules.absent) all.erase(key);
     return all;
   }
 
@@ -50,17 +52,18 @@ class TableWriter {
   static constexpr bool kIsTable = requires(TableWriter& v, T& o) { visit_fields(v, o); };
 
  private:
-  struct RequiredKeys {
-    std::vector<std::string_view> keys;
+  struct KeyRules {
+    std::vector<std::string_view> required, absent;
     template <class T>
     void operator()(std::string_view key, T&, const FieldRule& rule) {
-      if (rule.required) keys.push_back(key);
-    }
-    bool holds(std::string_view key) const {
-      return std::find(keys.begin(), keys.end(), key) != keys.end();
+      if (rule.required) required.push_back(key);
+      if (!rule.not_of.empty()) absent.push_back(key);
     }
   };
 
+  static bool contains(const std::vector<std::string_view>& keys, std::string_view key) {
+    return std::find(keys.begin(), keys.end(), key) != keys.end();
+  }
   static bool same(const toml::node& a, const toml::node& b) {
     return a.type() == b.type() && a.visit([&b](const auto& value) {
       return value == *b.as<std::remove_cvref_t<decltype(value)>>();

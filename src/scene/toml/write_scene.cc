@@ -60,7 +60,7 @@ class OptionLister {
 
   template <class T>
   void operator()(std::string_view key, T& member, const FieldRule& rule) {
-    list(above_ + std::string(key), member, rule);
+    if (rule.not_of.empty()) list(above_ + std::string(key), member, rule);
   }
 
  private:

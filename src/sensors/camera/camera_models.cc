@@ -18,42 +18,39 @@ Exposure own_exposure(const ImagerOptions& imager) {
 
 Result<std::unique_ptr<CameraModels>> CameraModels::create(const RenderDescription& description,
                                                            int camera, const Intrinsics& intrinsics,
-                                                           const ModelOutputs& outputs,
+                                                           const CameraChannels& channels,
                                                            double ev100, uint64_t seed) {
-  std::unique_ptr<CameraModels> models(new CameraModels(description, camera, intrinsics, outputs));
+  std::unique_ptr<CameraModels> models(new CameraModels(description, camera, intrinsics, channels));
   const CameraSensing& sensing = models->sensing_;
-  const auto refuse = [&](const char* output, const char* table) {
+  const std::string& name = description.cameras[static_cast<size_t>(camera)].name;
+  if (const CameraChannel* channel = channels.without_model(sensing); channel != nullptr) {
     return Error{ErrorKind::kInput,
-                 fmt::format("camera '{}' has no {} for the output '{}'",
-                             description.cameras[static_cast<size_t>(camera)].name, table, output),
+                 fmt::format("camera '{}' has no {} for the output '{}'", name, channel->model,
+                             channel->name),
                  {},
-                 fmt::format("add a [camera.{}] to the scene (docs/sensors.md)", table)};
-  };
-  if (outputs.raw && !sensing.imager) return refuse("raw", "imager");
-  if (outputs.sensor_depth && !sensing.stereo_depth) return refuse("sensor_depth", "stereo_depth");
-  if (outputs.sensor_depth && (intrinsics.orthographic || is_wide(intrinsics.lens))) {
+                 fmt::format("add a [camera.{}] to the scene (docs/sensors.md)", channel->model)};
+  }
+  if (channels.has("sensor_depth") && (intrinsics.orthographic || is_wide(intrinsics.lens))) {
     return Error{ErrorKind::kInput,
                  fmt::format("camera '{}' cannot match two such pictures: disparity is of lenses "
                              "that keep straight lines, nearly",
-                             description.cameras[static_cast<size_t>(camera)].name),
+                             name),
                  {},
                  "give a camera with a [camera.stereo_depth] the lens pinhole, plumb_bob or "
                  "rational_polynomial"};
   }
-  if (outputs.events && !sensing.events) return refuse("events", "events");
-  if (outputs.thermal && !sensing.thermal) return refuse("thermal", "thermal");
   const bool own = sensing.imager && sensing.imager->exposure;
   models->exposure_ =
       own ? own_exposure(*sensing.imager) : exposure_at(ev100, ExposureOptions().f_number);
   models->seed_ = seed;
   models->ev100_ = own ? models->exposure_.ev100() : ev100;
-  if (sensing.imager && (outputs.rgb || outputs.raw))
+  if (sensing.imager && (channels.has("rgb") || channels.has("raw")))
     models->imager_ = std::make_unique<Imager>(*sensing.imager, intrinsics, seed);
-  if (outputs.sensor_depth) models->stereo_ = stereo_depth_model(*sensing.stereo_depth);
-  if (outputs.events)
+  if (channels.has("sensor_depth")) models->stereo_ = stereo_depth_model(*sensing.stereo_depth);
+  if (channels.has("events"))
     models->events_ = std::make_shared<EventTrack>(
         EventCamera(*sensing.events, intrinsics.width, intrinsics.height, seed));
-  if (outputs.sensor_depth || outputs.thermal) {
+  if (channels.has("sensor_depth") || channels.has("thermal")) {
     GLOAM_TRY(models->air_, SensorAir::make(description));
   }
   GLOAM_TRY_STATUS(models->set_temperatures({}));
@@ -61,7 +58,7 @@ Result<std::unique_ptr<CameraModels>> CameraModels::create(const RenderDescripti
 }
 
 Status CameraModels::set_temperatures(const std::vector<TemperatureOptions>& temperatures) {
-  if (!outputs_.thermal) return {};
+  if (!channels_.has("thermal")) return {};
   GLOAM_TRY(thermal_, ThermalCamera::make(*sensing_.thermal, temperatures, description_, seed_));
   return {};
 }
@@ -89,9 +86,10 @@ double CameraModels::delivery_of(int64_t k, double time) const {
 void CameraModels::develop(const std::vector<Vec3f>& radiance, int64_t run, CameraFrame* frame) {
   frame->ev100 = ev100_;
   if (imager_) {
-    imager_->develop(radiance, exposure_, frame->index, outputs_.rgb ? &frame->rgb : nullptr,
-                     outputs_.raw ? &frame->raw : nullptr);
-  } else if (outputs_.rgb) {
+    imager_->develop(radiance, exposure_, frame->index,
+                     channels_.has("rgb") ? &frame->rgb : nullptr,
+                     channels_.has("raw") ? &frame->raw : nullptr);
+  } else if (channels_.has("rgb")) {
     tone_map(radiance, intrinsics_.width, intrinsics_.height, {.ev100 = static_cast<float>(ev100_)},
              &frame->rgb);
   }

@@ -10,6 +10,7 @@
 #include "gloam/result.h"
 #include "render/film/film.h"
 #include "render/renderer.h"
+#include "sensors/camera/camera_channels.h"
 #include "sensors/depth/stereo_depth.h"
 #include "sensors/event/event_track.h"
 #include "sensors/imager/imager.h"
@@ -19,18 +20,13 @@
 
 namespace gloam {
 
-/// Outputs of a camera beyond the exact channels.
-struct ModelOutputs {
-  bool rgb = false, raw = false, sensor_depth = false, events = false, thermal = false;
-};
-
 class CameraModels {
  public:
   /// Makes the models of camera row `camera`; `ev100` where its imager does not say, `seed` of
   /// sensor_seed(). Errors: an output without its table in the scene.
   static Result<std::unique_ptr<CameraModels>> create(const RenderDescription& description,
                                                       int camera, const Intrinsics& intrinsics,
-                                                      const ModelOutputs& outputs, double ev100,
+                                                      const CameraChannels& channels, double ev100,
                                                       uint64_t seed);
 
   void set_ev100(double ev100);
@@ -56,16 +52,16 @@ class CameraModels {
 
  private:
   CameraModels(const RenderDescription& description, int camera, const Intrinsics& intrinsics,
-               const ModelOutputs& outputs)
+               const CameraChannels& channels)
       : description_(description),
         sensing_(description.cameras[static_cast<size_t>(camera)].sensing),
         intrinsics_(intrinsics),
-        outputs_(outputs) {}
+        channels_(channels) {}
 
   const RenderDescription& description_;
   const CameraSensing sensing_;
   const Intrinsics intrinsics_;
-  const ModelOutputs outputs_;
+  const CameraChannels channels_;
   uint64_t seed_ = 0;
   double ev100_ = 0;
   Exposure exposure_;  // exposure of that value, for the imager

@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "geometry/mesh/single.h"
 #include "render/film/tone_map.h"
+#include "render/kernel/camera/channels.h"
 #include "render/scene/pose.h"
 #include "sensors/camera/object_boxes.h"
 #include "sensors/timing.h"
@@ -113,33 +114,6 @@ Affine3f to_affine(const Pose& X) {
           f(X.p.x, X.p.y, X.p.z)};
 }
 
-Result<CameraChannels> CameraChannels::parse(const std::vector<std::string>& names) {
-  CameraChannels channels;
-  const std::vector<std::pair<std::string, bool*>> known = {
-      {"rgb", &channels.rgb},           {"radiance", &channels.radiance},
-      {"depth", &channels.depth},       {"normal", &channels.normal},
-      {"albedo", &channels.albedo},     {"segmentation", &channels.segmentation},
-      {"motion", &channels.motion},     {"samples", &channels.samples},
-      {"distance", &channels.distance}, {"scene_flow", &channels.scene_flow},
-      {"boxes", &channels.boxes},       {"raw", &channels.raw},
-      {"events", &channels.events},     {"sensor_depth", &channels.sensor_depth},
-      {"thermal", &channels.thermal}};
-  std::vector<std::string> all;
-  for (const auto& entry : known) all.push_back(entry.first);
-  for (const std::string& name : names) {
-    const auto found = std::find_if(known.begin(), known.end(),
-                                    [&](const auto& entry) { return entry.first == name; });
-    if (found == known.end()) {
-      return Error{ErrorKind::kInput,
-                   fmt::format("there is no camera output '{}'", name),
-                   {},
-                   suggest_name(name, all)};
-    }
-    *found->second = true;
-  }
-  return channels;
-}
-
 CameraSensor::CameraSensor(const RenderDescription& description, int camera,
                            const CameraChannels& channels)
     : description_(description), camera_(camera), channels_(channels) {}
@@ -163,10 +137,8 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
   sensor->rate_ = request.rate.num > 0 ? request.rate : kUsualCameraRate;
   const double ev100 = request.render.ev100.value_or(static_cast<double>(description.ev100));
   GLOAM_TRY(sensor->models_,
-            CameraModels::create(description, camera, sensor->intrinsics_,
-                                 {channels.rgb, channels.raw, channels.sensor_depth,
-                                  channels.events, channels.thermal},
-                                 ev100, sensor_seed(seed, request.camera)));
+            CameraModels::create(description, camera, sensor->intrinsics_, channels, ev100,
+                                 sensor_seed(seed, request.camera)));
   sensor->free_pose_ = sensor->previous_free_pose_ =
       request.X_WC ? to_affine(from_origin(*request.X_WC, description.origin)) : described.X_WC;
 
@@ -205,10 +177,12 @@ Result<std::unique_ptr<CameraSensor>> CameraSensor::create(const RenderDescripti
         make_denoiser({.device = on_card ? DenoiseDevice::kCuda : DenoiseDevice::kCpu});
     settings.guide_samples = 4;
   }
-  settings.cover = channels.boxes;
+  const bool details = channels.needs(ChannelSource::kDetails);
+  const bool geometry = details || channels.needs(ChannelSource::kSurface);
+  settings.cover = channels.needs(ChannelSource::kCover);
   const bool particles = channels.light() && !weather.particles.empty();
-  settings.exact_channels = channels.geometry() || sensor->denoiser_ != nullptr || particles;
-  settings.exact_details = channels.details() || sensor->denoiser_ != nullptr;
+  settings.exact_channels = geometry || sensor->denoiser_ != nullptr || particles;
+  settings.exact_details = details || sensor->denoiser_ != nullptr;
   return sensor;
 }
 
@@ -218,7 +192,7 @@ PictureMemory CameraSensor::memory() const {
   // Planes of render/film/film.h and render/cpu/realtime/fast_frame.h; two of the latter and the
   // filter's.
   uint64_t pixel = channels_.light() ? 36 : 0;
-  if (settings_.exact_channels) pixel += settings_.exact_details ? 56 : 12;
+  if (settings_.exact_channels) pixel += settings_.exact_details ? sizeof(ExactChannels) : 12;
   if (settings_.error > 0) pixel += 4;
   if (settings_.tier == RenderTier::kFast) pixel += 400;
   PictureMemory out;
@@ -229,12 +203,7 @@ PictureMemory CameraSensor::memory() const {
     out.working = kDenoiser * std::min(pixels, kTile);
   }
   out.working += pixel * pixels + models_->memory();
-  const CameraChannels& c = channels_;
-  const auto of = [](bool wanted, uint64_t bytes) { return wanted ? bytes : 0; };
-  out.frame = pixels * (of(c.rgb, 3) + of(c.radiance, 12) + of(c.samples, 4) + of(c.depth, 4) +
-                        of(c.normal, 12) + of(c.albedo, 12) + of(c.motion, 8) +
-                        of(c.segmentation, 12) + of(c.distance, 4) + of(c.scene_flow, 12) +
-                        of(c.raw, 6) + of(c.sensor_depth, 4) + of(c.events, 64) + of(c.thermal, 4));
+  out.frame = pixels * channels_.pixel_bytes();
   return out;
 }
 
@@ -357,21 +326,21 @@ void CameraSensor::convert(const PoseFrame& now, int64_t frame_index, const Came
     if (light == nullptr) light = denoise();
     if (drops_) drops_->draw(now.time, light);
     models_->develop(*light, now.run, frame);
-    if (channels_.radiance) frame->radiance = flatten(*light);
-    if (channels_.samples) {
+    if (channels_.has("radiance")) frame->radiance = flatten(*light);
+    if (channels_.has("samples")) {
       frame->samples = film_.sample_count;
       frame->samples.resize(film_.pixel_count(), static_cast<uint32_t>(settings_.spp));
     }
   }
-  if (channels_.depth) frame->depth = film_.depth;
-  if (channels_.boxes) frame->objects = view_objects(description_, now, film_.cover);
-  if (channels_.distance) frame->distance = film_.distance;
-  if (channels_.scene_flow) frame->scene_flow = flatten(film_.scene_flow);
-  if (channels_.normal) frame->normal = flatten(film_.center_normal);
-  if (channels_.albedo) frame->albedo = flatten(film_.center_albedo);
-  if (channels_.motion) frame->motion = flatten(film_.motion);
+  if (channels_.has("depth")) frame->depth = film_.depth;
+  if (channels_.has("boxes")) frame->objects = view_objects(description_, now, film_.cover);
+  if (channels_.has("distance")) frame->distance = film_.distance;
+  if (channels_.has("scene_flow")) frame->scene_flow = flatten(film_.scene_flow);
+  if (channels_.has("normal")) frame->normal = flatten(film_.center_normal);
+  if (channels_.has("albedo")) frame->albedo = flatten(film_.center_albedo);
+  if (channels_.has("motion")) frame->motion = flatten(film_.motion);
   models_->measure(now, film_, view, frame);
-  if (channels_.segmentation) {
+  if (channels_.has("segmentation")) {
     frame->part = film_.part;
     frame->part_count = static_cast<uint32_t>(description_.instances.size());
     frame->instance.resize(film_.part.size());

@@ -17,26 +17,12 @@
 #include "instant/pose_frame.h"
 #include "render/film/denoise.h"
 #include "render/renderer.h"
+#include "sensors/camera/camera_channels.h"
 #include "sensors/camera/camera_models.h"
 #include "sensors/camera/lens_drops.h"
 #include "world/render_description.h"
 
 namespace gloam {
-
-/// Flags of the channels of a CameraFrame that are filled.
-struct CameraChannels {
-  bool rgb = false, radiance = false, samples = false, depth = false, segmentation = false;
-  bool normal = false, albedo = false, motion = false, distance = false, scene_flow = false;
-  bool boxes = false, raw = false, sensor_depth = false, events = false, thermal = false;
-  static Result<CameraChannels> parse(const std::vector<std::string>& names);
-  bool light() const { return rgb || radiance || samples || raw || events; }
-  bool geometry() const {
-    return depth || distance || segmentation || normal || albedo || motion || scene_flow ||
-           sensor_depth || thermal;
-  }
-  /// More than where things are and which.
-  bool details() const { return normal || albedo || motion || scene_flow || sensor_depth; }
-};
 
 /// Memory that pictures take, nearly [bytes].
 struct PictureMemory {

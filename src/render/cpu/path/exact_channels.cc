@@ -79,14 +79,9 @@ class ChannelLanes {
 
   void store(int i, const ExactChannels& c, bool details) {
     const size_t pixel = static_cast<size_t>(y_[i]) * film_.width + x_[i];
-    film_.depth[pixel] = c.depth;
-    film_.distance[pixel] = c.distance;
-    film_.part[pixel] = c.part;
-    if (!details) return;
-    film_.center_normal[pixel] = c.normal;
-    film_.center_albedo[pixel] = c.albedo;
-    film_.motion[pixel] = c.motion;
-    film_.scene_flow[pixel] = c.scene_flow;
+    const auto put = [&](auto& plane, const auto& value) { plane[pixel] = value; };
+    visit_places(put, film_, c);
+    if (details) visit_details(put, film_, c);
   }
 
   const Job& job_;

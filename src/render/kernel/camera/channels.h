@@ -10,7 +10,7 @@ struct ExactChannelsOf {
   F depth = INFINITY;     ///< along the optical axis, of wide lenses along the ray [m]
   F distance = INFINITY;  ///< along the ray [m]
   UintOf<F> part = 0u;    ///< instance + 1; 0 = nothing
-  Vec3Of<F> normal, albedo;
+  Vec3Of<F> center_normal, center_albedo;
   Vec2Of<F> motion;      ///< [px]
   Vec3Of<F> scene_flow;  ///< of the surface's point since the previous frame, world [m]
 };
@@ -18,8 +18,25 @@ using ExactChannels = ExactChannelsOf<float>;
 
 template <class F>
 GLOAM_HD ExactChannels lane(const ExactChannelsOf<F>& c, int i) {
-  return {lane(c.depth, i),  lane(c.distance, i), lane(c.part, i),      lane(c.normal, i),
-          lane(c.albedo, i), lane(c.motion, i),   lane(c.scene_flow, i)};
+  return {lane(c.depth, i),         lane(c.distance, i),      lane(c.part, i),
+          lane(c.center_normal, i), lane(c.center_albedo, i), lane(c.motion, i),
+          lane(c.scene_flow, i)};
+}
+
+/// Calls visit(plane of each) for the channels of one or more ExactChannels, Films or DeviceFilms:
+/// where a surface is and which, and the details.
+template <class Visit, class... Planes>
+GLOAM_HD void visit_places(const Visit& visit, Planes&... planes) {
+  visit(planes.depth...);
+  visit(planes.distance...);
+  visit(planes.part...);
+}
+template <class Visit, class... Planes>
+GLOAM_HD void visit_details(const Visit& visit, Planes&... planes) {
+  visit(planes.center_normal...);
+  visit(planes.center_albedo...);
+  visit(planes.motion...);
+  visit(planes.scene_flow...);
 }
 
 /// Whether the exact channels stop at a surface: evenly transparent surfaces count as things, as
@@ -144,8 +161,8 @@ GLOAM_HD ExactChannelsOf<F> describe_surface(const SceneView& scene, const Camer
   c.depth = select(found, depth, c.depth);
   c.part = select(found, hit.instance + 1u, c.part);
   if (!details) return c;
-  c.normal = select<F>(found, s.normal, c.normal);
-  c.albedo = select<F>(found, s.base_color, c.albedo);
+  c.center_normal = select<F>(found, s.normal, c.center_normal);
+  c.center_albedo = select<F>(found, s.base_color, c.center_albedo);
   const Vec3Of<F> before = previous_points(scene, s.p, hit, ray.time, found);
   c.scene_flow = select<F>(found, s.p - before, c.scene_flow);
   c.motion = find_motion(camera, ray, s.p, before, found, ray.tmax > 0.0f);

@@ -1,27 +1,22 @@
-// The kernel's stages over Embree, or our own BVH, and all threads of
-// parallel_for; on a card where there is one.
+// The renderer: a scene and the stages that make pictures of it, those of the CPU and, where there
+// is one, a card's.
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
-#include <numeric>
 #include <utility>
 
 #include "base/check.h"
 #include "base/log.h"
-#include "base/parallel.h"
+#include "render/cpu/cpu_stages.h"
 #include "render/cpu/guide/illuminance.h"
 #include "render/cpu/guide/light_guide.h"
 #include "render/cpu/lidar_scan.h"
 #include "render/cpu/particles/particle_streaks.h"
-#include "render/cpu/path/adaptive_tile.h"
 #include "render/cpu/path/ambient.h"
 #include "render/cpu/path/edge_samples.h"
-#include "render/cpu/path/exact_channels.h"
 #include "render/cpu/path/object_cover.h"
-#include "render/cpu/path/tile.h"
-#include "render/cpu/path/watch.h"
 #include "render/cpu/realtime/fast_tier.h"
 #include "render/cpu/tracer/picture_clip.h"
 #include "render/cpu/tracer/traced_scene.h"
@@ -70,30 +65,16 @@ void resize_film(const CameraView& view, const RenderSettings& settings, Film* f
   film->normal.resize(light);
   film->variance.resize(settings.variance ? light : 0);
   film->sample_count.resize(settings.error > 0 ? n : 0);
-  film->depth.resize(exact);
-  film->distance.resize(exact);
-  film->part.resize(exact);
-  film->center_normal.resize(details);
-  film->center_albedo.resize(details);
-  film->motion.resize(details);
-  film->scene_flow.resize(details);
+  visit_places([&](auto& plane) { plane.resize(exact); }, *film);
+  visit_details([&](auto& plane) { plane.resize(details); }, *film);
 }
 
-/// Tile `i` of the order in which tiles are rendered: far apart, so that those
-/// which are done tell how long the others will take. A bijection: the step has
-/// no divisor in common with `tiles`.
-int64_t scattered(int64_t i, int64_t tiles) {
-  int64_t step = static_cast<int64_t>(0.6180339887 * static_cast<double>(tiles)) | 1;
-  while (std::gcd(step, tiles) != 1) ++step;
-  return i * step % tiles;
-}
-
-class CpuRenderer final : public Renderer {
+/// Owns its stages, which know a picture's inputs (Job, CudaJob) and nothing of a renderer.
+class StagedRenderer final : public Renderer {
  public:
-  /// Renderer of the CPU. Without `embree` its rays go through our own BVH; `cuda` renders the
-  /// stages that it has.
-  CpuRenderer(std::unique_ptr<RenderScene> scene, std::unique_ptr<EmbreeScene> embree,
-              std::unique_ptr<CudaStages> cuda = nullptr)
+  /// Without `embree` the CPU's rays go through our own BVH; `cuda` renders what it has stages for.
+  StagedRenderer(std::unique_ptr<RenderScene> scene, std::unique_ptr<EmbreeScene> embree,
+                 std::unique_ptr<CudaStages> cuda = nullptr)
       : traced_(std::move(scene), std::move(embree), cuda != nullptr), cuda_(std::move(cuda)) {
     for (const InstanceDescription& in : traced_.scene().description().instances)
       objects_.push_back(in.label.instance);
@@ -149,12 +130,7 @@ class CpuRenderer final : public Renderer {
                               .render(job.scene, job.tracer, job.camera, settings, film);
       job.settings = settings;
       job.film = film;
-      columns_ = (film->width + kTile - 1) / kTile;
-      const int64_t count = int64_t{columns_} * ((film->height + kTile - 1) / kTile);
-      if (settings.exact_channels) {
-        for_tiles(count,
-                  [&](int64_t tile) { render_channels(job, x_of(tile), y_of(tile), nullptr); });
-      }
+      if (settings.exact_channels) cpu_.render_exact_channels(job);
       stats.trace_seconds =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       return stats;
@@ -181,7 +157,7 @@ class CpuRenderer final : public Renderer {
     const int64_t samples =
         adaptive ? settings.spp / 2 : int64_t{settings.first_sample} + settings.spp;
     while ((int64_t{1} << job.log2_samples) < samples) ++job.log2_samples;
-    RenderStats total = on_card ? cuda_->render(on_cuda(job), film) : render_tiles(job);
+    RenderStats total = on_card ? cuda_->render(on_cuda(job), film) : cpu_.render(job);
     // Blurred pictures have blurred guides: those of the samples.
     const bool sharp =
         !(job.camera.aperture.radius > 0) && !(moves && job.camera.shutter.length > 0);
@@ -231,84 +207,11 @@ class CpuRenderer final : public Renderer {
             job.settings, job.path,      job.log2_samples, job.has_motion, job.centered};
   }
 
-  /// The picture by all threads.
-  RenderStats render_tiles(const Job& job) {
-    const RenderSettings& settings = job.settings;
-    const Film* film = job.film;
-    const bool adaptive = settings.error > 0;
-    columns_ = (film->width + kTile - 1) / kTile;
-    tiles_.assign(static_cast<size_t>(columns_) * ((film->height + kTile - 1) / kTile), {});
-    const int64_t count = static_cast<int64_t>(tiles_.size());
-    const AdaptivePlan plan = adaptive ? look(job) : AdaptivePlan();
-    RenderWatch watch(settings.progress, count);
-    for_tiles(count, [&](int64_t i) {
-      if (watch.stopped()) return;
-      const int64_t tile = settings.progress ? scattered(i, count) : i;
-      render_tile(job, tile, plan);
-      watch.tile_done();
-    });
-    RenderStats total;
-    for (const RenderStats& tile : tiles_) {
-      total.paths += tile.paths;
-      total.rays += tile.rays;
-      total.unreached += tile.unreached;
-    }
-    total.finished = !watch.stopped();
-    return total;
-  }
-
-  template <class F>
-  static void for_tiles(int64_t count, const F& f) {
-    parallel_for("render tiles", count, [&](int64_t i) {
-      const FlushDenormals flush;
-      f(i);
-    });
-  }
-  int x_of(int64_t tile) const { return static_cast<int>(tile % columns_) * kTile; }
-  int y_of(int64_t tile) const { return static_cast<int>(tile / columns_) * kTile; }
-
-  AdaptivePlan look(const Job& job) {
-    std::vector<double> deviations(tiles_.size());
-    std::vector<int> pixels(tiles_.size());
-    for_tiles(static_cast<int64_t>(tiles_.size()), [&](int64_t tile) {
-      const auto i = static_cast<size_t>(tile);
-      deviations[i] = look_adaptive(job, x_of(tile), y_of(tile), &tiles_[i]);
-      pixels[i] = std::min(kTile, job.film->width - x_of(tile)) *
-                  std::min(kTile, job.film->height - y_of(tile));
-    });
-    return plan_adaptive(job.settings, deviations, pixels);
-  }
-
-  void render_tile(const Job& job, int64_t tile, const AdaptivePlan& plan) {
-    const RenderSettings& settings = job.settings;
-    RenderStats* stats = &tiles_[static_cast<size_t>(tile)];
-    const int x0 = x_of(tile), y0 = y_of(tile);
-    if (settings.error > 0) {
-      render_adaptive(job, x0, y0, plan, stats);
-      if (settings.exact_channels) stats->rays += render_channels(job, x0, y0, nullptr);
-      return;
-    }
-    CenterHits centers;
-    if (settings.spp > 0) {
-      Tile pixels(job, x0, y0);
-      if (settings.tier == RenderTier::kDirect) {
-        pixels.render_direct(&centers);
-      } else {
-        pixels.render_path({settings.seed, settings.first_sample, settings.spp});
-      }
-      pixels.store_means(stats);
-    }
-    if (settings.exact_channels) {
-      stats->rays += render_channels(job, x0, y0, job.centered ? &centers : nullptr);
-    }
-  }
-
   TracedScene traced_;
-  std::unique_ptr<CudaStages> cuda_;
-  std::vector<RenderStats> tiles_;
+  CpuStages cpu_;
+  std::unique_ptr<CudaStages> cuda_;  // null: all is rendered on the CPU
   std::vector<CameraKey> camera_keys_;
   std::vector<uint32_t> objects_;  ///< by instance
-  int columns_ = 0;                ///< of tiles
   DescribedLook described_;        ///< until the guide is built
   LightGuideStore guide_;
   double opens_ = 0, seconds_ = 0;  ///< of the keys: the first, and to the last [s]
@@ -338,7 +241,7 @@ Result<std::unique_ptr<Renderer>> make_cpu_renderer(const RenderDescription& des
   if (tracer == RayTracer::kEmbree) {
     GLOAM_TRY(embree, EmbreeScene::make());
   }
-  return std::unique_ptr<Renderer>(new CpuRenderer(std::move(scene), std::move(embree)));
+  return std::unique_ptr<Renderer>(new StagedRenderer(std::move(scene), std::move(embree)));
 }
 
 Result<std::unique_ptr<Renderer>> make_cuda_renderer(const RenderDescription& description) {
@@ -346,7 +249,7 @@ Result<std::unique_ptr<Renderer>> make_cuda_renderer(const RenderDescription& de
   GLOAM_TRY(auto scene, RenderScene::make(description));
   GLOAM_TRY(auto embree, EmbreeScene::make());
   return std::unique_ptr<Renderer>(
-      new CpuRenderer(std::move(scene), std::move(embree), std::move(cuda)));
+      new StagedRenderer(std::move(scene), std::move(embree), std::move(cuda)));
 }
 
 Result<std::unique_ptr<Renderer>> make_renderer(const RenderDescription& description,
