@@ -6,52 +6,13 @@
 #include <cmath>
 
 #include "base/text.h"
+#include "metrics/expression_operators.h"
 
 namespace gloam {
 namespace {
 
 using Kind = ExpressionToken::Kind;
 using Op = Instruction::Op;
-
-// Truth of an operation on what is not NaN; NaN else.
-template <class Operation>
-double truth(double a, double b, Operation operation) {
-  return std::isnan(a) || std::isnan(b) ? NAN : operation(a, b) ? 1.0 : 0.0;
-}
-double add(double a, double b) { return a + b; }
-double subtract(double a, double b) { return a - b; }
-double multiply_numbers(double a, double b) { return a * b; }
-double divide(double a, double b) { return a / b; }
-double negate(double a) { return -a; }
-double is_untrue(double a) { return std::isnan(a) ? NAN : a == 0 ? 1.0 : 0.0; }
-double is_either(double a, double b) {
-  return truth(a, b, [](double x, double y) { return x != 0 || y != 0; });
-}
-double is_both(double a, double b) {
-  return truth(a, b, [](double x, double y) { return x != 0 && y != 0; });
-}
-
-struct Comparison {
-  std::string_view sign;
-  double (*call)(double, double);
-};
-constexpr Comparison kComparisons[] = {
-    {"<", [](double a, double b) { return truth(a, b, [](double x, double y) { return x < y; }); }},
-    {"<=",
-     [](double a, double b) { return truth(a, b, [](double x, double y) { return x <= y; }); }},
-    {">", [](double a, double b) { return truth(a, b, [](double x, double y) { return x > y; }); }},
-    {">=",
-     [](double a, double b) { return truth(a, b, [](double x, double y) { return x >= y; }); }},
-    {"==",
-     [](double a, double b) { return truth(a, b, [](double x, double y) { return x == y; }); }},
-    {"!=",
-     [](double a, double b) { return truth(a, b, [](double x, double y) { return x != y; }); }}};
-
-struct NamedConstant {
-  std::string_view name;
-  double value;
-};
-constexpr NamedConstant kConstants[] = {{"pi", M_PI}, {"true", 1}, {"false", 0}};
 
 Error refuse(const SourceLoc& loc, std::string message, std::string hint = {}) {
   return {ErrorKind::kInput, std::move(message), loc, std::move(hint)};
@@ -156,8 +117,12 @@ Result<int> ExpressionParser::chain(Width (ExpressionParser::*part)(), std::stri
   return width;
 }
 
-Result<int> ExpressionParser::either() { return chain(&ExpressionParser::both, "or", is_either); }
-Result<int> ExpressionParser::both() { return chain(&ExpressionParser::negation, "and", is_both); }
+Result<int> ExpressionParser::either() {
+  return chain(&ExpressionParser::both, "or", expression::is_either);
+}
+Result<int> ExpressionParser::both() {
+  return chain(&ExpressionParser::negation, "and", expression::is_both);
+}
 
 Result<int> ExpressionParser::negation() {
   if (!at("not")) return comparison();
@@ -166,20 +131,20 @@ Result<int> ExpressionParser::negation() {
   const SourceLoc loc = token_.loc;
   GLOAM_TRY(const int width, negation());
   GLOAM_TRY_STATUS(want_number(width, loc, "what stands after 'not'"));
-  emit_call(is_untrue, 1);
+  emit_call(expression::is_untrue, 1);
   --depth_;
   return 1;
 }
 
 Result<int> ExpressionParser::comparison() {
-  const auto find = [&]() -> const Comparison* {
-    for (const Comparison& comparison : kComparisons)
+  const auto find = [&]() -> const expression::Comparison* {
+    for (const expression::Comparison& comparison : expression::kComparisons)
       if (at(comparison.sign)) return &comparison;
     return nullptr;
   };
   const SourceLoc left = token_.loc;
   GLOAM_TRY(int width, sum());
-  const Comparison* comparison = find();
+  const expression::Comparison* comparison = find();
   if (comparison == nullptr) return width;
   GLOAM_TRY_STATUS(want_number(width, left, "what is compared"));
   GLOAM_TRY_STATUS(advance());
@@ -195,13 +160,13 @@ Result<int> ExpressionParser::comparison() {
 Result<int> ExpressionParser::sum() {
   GLOAM_TRY(int width, product());
   while (at("+") || at("-")) {
-    const auto call = at("+") ? add : subtract;
+    const auto call = at("+") ? expression::add : expression::subtract;
     const SourceLoc loc = token_.loc;
     GLOAM_TRY_STATUS(advance());
     GLOAM_TRY(const int right, product());
     if (right != width)
-      return refuse(loc,
-                    fmt::format("a number and a vector have no '{}'", call == add ? '+' : '-'));
+      return refuse(loc, fmt::format("a number and a vector have no '{}'",
+                                     call == expression::add ? '+' : '-'));
     emit_call(call, width);
   }
   return width;
@@ -221,7 +186,7 @@ Result<int> ExpressionParser::product() {
 
 Result<int> ExpressionParser::multiply(int left, int right, bool divides, const SourceLoc& loc) {
   if (left == 1 && right == 1) {
-    emit_call(divides ? divide : multiply_numbers, 1);
+    emit_call(divides ? expression::divide : expression::multiply_numbers, 1);
     return 1;
   }
   if (divides && right == 3) return refuse(loc, "nothing is divided by a vector");
@@ -237,7 +202,7 @@ Result<int> ExpressionParser::sign() {
   GLOAM_TRY_STATUS(deeper());
   GLOAM_TRY_STATUS(advance());
   GLOAM_TRY(const int width, sign());
-  if (negative) emit_call(negate, width);
+  if (negative) emit_call(expression::negate, width);
   --depth_;
   return width;
 }
@@ -289,7 +254,7 @@ Result<int> ExpressionParser::primary() {
   for (const std::string_view keyword : {"and", "or", "not"})
     if (token.text == keyword) return unexpected();
   GLOAM_TRY_STATUS(advance());
-  for (const NamedConstant& constant : kConstants) {
+  for (const expression::NamedConstant& constant : expression::kConstants) {
     if (token.text != constant.name) continue;
     push({.op = Op::kNumber, .number = constant.value});
     return 1;

@@ -30,10 +30,6 @@ class ExpressionParser {
  private:
   /// Numbers of a part's value: 1, or 3 of a vector.
   using Width = Result<int>;
-  struct Operator {
-    std::string_view sign;
-    double (*call)(double, double);
-  };
 
   Width choice();
   Width either();

@@ -34,7 +34,7 @@ struct GoalOptions {
   double radius = 0.5;     ///< distance of the robot's root body at which it is reached [m]
   double time_limit = 0;   ///< time by which it has to be reached, from the start [s]; 0 = any
   /// Length of the shortest way here from the last goal, or from the start, for SPL [m]; empty = a
-  /// straight line, less the radius.
+  /// straight line.
   std::optional<double> shortest_path = {};
   /// Speed that the robot could have on that way, for the success weighted by completion time
   /// [m/s]; 0 = it is not told.

@@ -4,19 +4,22 @@
 // p (Anderson et al. 2018, On Evaluation of Embodied Navigation Agents, arXiv:1807.06757, eq. 1).
 // SCT, success weighted by completion time: S · T / max(C, T) with the time T that the shortest way
 // takes at the robot's speed and the time C that it took (Yokoyama, Ha and Batra 2021, arXiv:
-// 2103.08022). The shortest way is `shortest_path` of the goals, where it is empty a straight line.
+// 2103.08022). The shortest way is `shortest_path` of the goals; where it is empty, on the
+// navigation mesh of the scene's agents, without agents a straight line.
 
 #include <algorithm>
 #include <cmath>
 
 #include "metrics/builtin/robot_metric.h"
+#include "metrics/builtin/shortest_way.h"
 
 namespace gloam {
 namespace {
 
 class GoalMetric final : public RobotMetric {
  public:
-  explicit GoalMetric(const MetricRobot& robot) : root_(robot.root()), goals_(robot.goals) {}
+  explicit GoalMetric(const MetricRobot& robot)
+      : world_(robot.world), root_(robot.root()), goals_(robot.goals) {}
   std::vector<MetricColumn> columns() const override {
     return {{"goal_distance", "m"}, {"goals_reached", ""}, {"success", ""}};
   }
@@ -29,7 +32,7 @@ class GoalMetric final : public RobotMetric {
   /// The distance is to the goal that comes next; of the last one for good.
   void sample(const MetricInstant& instant, std::span<double> out) override {
     const mjtNum* p = instant.data->xpos + 3 * root_;
-    if (!has_start_) begin(p);
+    if (!has_start_) begin(instant);
     if (!is_done()) way_ += std::hypot(p[0] - last_[0], p[1] - last_[1]);
     std::copy_n(p, 2, last_);
     while (!is_done()) {
@@ -64,14 +67,17 @@ class GoalMetric final : public RobotMetric {
   }
   bool is_success() const { return reached_ == goals_.size(); }
   bool is_done() const { return failed_ || is_success(); }
-  void begin(const mjtNum* p) {
+  void begin(const MetricInstant& instant) {
     has_start_ = true;
+    const mjtNum* p = instant.data->xpos + 3 * root_;
     std::copy_n(p, 2, last_);
-    Vec3 from{p[0], p[1], 0};
+    Vec3 from{p[0], p[1], p[2]};
     bool has_speeds = true;
     for (const GoalOptions& goal : goals_) {
-      const double straight = std::hypot(goal.position.x - from.x, goal.position.y - from.y);
-      const double leg = goal.shortest_path.value_or(straight);
+      if (!goal.shortest_path && ways_ == nullptr)
+        ways_ = std::make_unique<ShortestWays>(*world_, instant);
+      const double leg =
+          goal.shortest_path ? *goal.shortest_path : ways_->length(from, goal.position);
       shortest_ += leg;
       has_speeds = has_speeds && goal.top_speed > 0;
       if (has_speeds) fastest_ += leg / goal.top_speed;
@@ -80,8 +86,10 @@ class GoalMetric final : public RobotMetric {
     if (!has_speeds) fastest_ = 0;
   }
 
+  const CompiledWorld* world_;
   int root_;
   std::vector<GoalOptions> goals_;
+  std::unique_ptr<ShortestWays> ways_;  // of the first episode's start
   bool has_start_ = false, failed_ = false;
   size_t reached_ = 0;
   double last_[2] = {}, distance_ = 0;           // [m]

@@ -35,6 +35,19 @@ double reach_of(const mjModel& m, const MetricRobot& robot) {
   return reach;
 }
 
+// Its own by name, and those without one that drive its tree.
+std::vector<int> actuators_of(const mjModel& m, const RobotInstance& robot) {
+  std::vector<int> own = robot_actuators(m, robot);
+  RobotInstance unnamed = robot;
+  unnamed.prefix.clear();
+  for (const int actuator : robot_actuators(m, unnamed)) {
+    const bool is_new = std::ranges::find(own, actuator) == own.end();
+    if (is_new && name_of(m, mjOBJ_ACTUATOR, actuator).empty()) own.push_back(actuator);
+  }
+  std::ranges::sort(own);
+  return own;
+}
+
 bool root_slides(const mjModel& m, int root) {
   for (int j = 0; j < m.body_jntnum[root]; ++j) {
     const int type = m.jnt_type[m.body_jntadr[root] + j];
@@ -59,7 +72,7 @@ MetricRobot describe_robot(const CompiledWorld& world, int index, const MetricPr
   if (root <= 0) return robot;
   robot.base = floating_joint(m, root);
   robot.moves_about = robot.base >= 0 || root_slides(m, root);
-  robot.actuators = robot_actuators(m, *robot.instance);
+  robot.actuators = actuators_of(m, *robot.instance);
   const std::string& prefix = robot.instance->prefix;
   for (int b = 1; b < m.nbody; ++b) {
     const bool below = is_part_of(m, b, root);
