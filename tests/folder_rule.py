@@ -4,10 +4,10 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-ORDER = ["base", "ros", "mcap", "geometry", "places", "scene", "world", "instant", "sim", "render", "sensors", "control", "topics", "record",
+ORDER = ["base", "ros", "mcap", "geometry", "places", "scene", "world", "instant", "sim", "render", "sensors", "control", "metrics", "topics", "record",
          "runtime"]
 OUTSIDERS = ["src/bridge", "src/studio", "apps", "python"]
-MUJOCO_FOLDERS = {"places", "scene", "world", "sim", "control", "topics"}
+MUJOCO_FOLDERS = {"places", "scene", "world", "sim", "control", "metrics", "topics"}
 # memcpy is how bits are reinterpreted on both sides; intrinsics stand behind guards of the host.
 STD_IN_KERNEL = re.compile(r"^\s*#include\s+<(?!cmath|cstdint|cstddef|cfloat|cstring|[a-z]mmintrin)")
 MOST_FILES = 40

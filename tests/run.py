@@ -28,7 +28,7 @@ import labels  # noqa: E402
 BUILD = ROOT / "build"
 CLANG = "-19"
 READERS = {"base", "ros", "mcap", "geometry", "scene", "world"}  # of strangers' files: under sanitizers in every CI
-UNIT = ["base", "ros", "mcap", "geometry", "places", "scene", "world", "sim", "render", "sensors", "control", "topics", "record", "runtime",
+UNIT = ["base", "ros", "mcap", "geometry", "places", "scene", "world", "sim", "render", "sensors", "control", "metrics", "topics", "record", "runtime",
         "studio"]
 
 

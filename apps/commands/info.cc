@@ -19,7 +19,7 @@ namespace {
 struct InfoCommand {
   std::string file;
   SceneOptions scene;
-  bool schema = false, streams = false, topics = false;
+  bool schema = false, streams = false, topics = false, metrics = false;
 };
 
 using Section = std::pair<const char*, const std::vector<NamedElement>*>;
@@ -161,12 +161,32 @@ void print_streams(const World& world) {
                    : fmt::format("{}", fmt::join(input.elements, " ")));
 }
 
+int report_metrics(const World& world, const Globals& globals) {
+  const auto metrics = world.metrics();
+  if (!metrics.ok()) return fail(metrics.error());
+  nlohmann::ordered_json json;
+  auto& list = json["metrics"] = nlohmann::ordered_json::array();
+  for (const MetricInfo& metric : *metrics) {
+    list.push_back({{"name", metric.name},
+                    {"unit", metric.unit},
+                    {"robot", metric.robot},
+                    {"declared", metric.declared}});
+    if (!globals.json)
+      fmt::print("{:<40} {:<8} {}\n", metric.name, metric.unit,
+                 metric.declared ? "declared" : "built in");
+  }
+  if (globals.json) std::printf("%s\n", json_text(json).c_str());
+  return 0;
+}
+
 int info(InfoCommand& command, const Globals& globals) {
   if (command.schema) return report_schema(globals);
   if (is_log(command.file)) return report_log(command.file, globals);
   auto world = command.scene.compile(command.file, globals);
   if (!world.ok()) return fail(world.error());
   if (command.topics) return report_topics(*world, globals);
+  if (command.metrics) return report_metrics(*world, globals);
+  if (const auto metrics = world->metrics(); !metrics.ok()) return fail(metrics.error());
   if (command.streams) {
     globals.json ? print_streams_json(*world) : print_streams(*world);
     return 0;
@@ -202,6 +222,8 @@ void add_info(CLI::App& app, Globals& globals, Action& action) {
                 "What a simulation of it can say and hear: cameras, sensors, controls …")
       ->excludes(schema);
   sub->add_flag("--topics", command->topics, "ROS 2 topics of a simulation of it")
+      ->excludes(schema);
+  sub->add_flag("--metrics", command->metrics, "Metrics of a run of it: columns of metrics.csv")
       ->excludes(schema);
   command->scene.add_keyframe_to(*sub);
   command->scene.add_to(*sub);

@@ -17,6 +17,7 @@
 #include "gloam/scene/lidar.h"
 #include "gloam/scene/light.h"
 #include "gloam/scene/material.h"
+#include "gloam/scene/metric.h"
 #include "gloam/scene/object.h"
 #include "gloam/scene/robot.h"
 #include "gloam/scene/run.h"
@@ -66,6 +67,8 @@ struct Scene {
   SimOptions sim = {};
   RenderOptions render = {};
   std::vector<TopicOptions> topics = {};
+  std::vector<MetricOptions> metrics = {};
+  std::vector<GoalOptions> goals = {};
   RecordOptions record = {};
   /// A bare MJCF or URDF is used as it stands: no prefix, nothing added, options unchanged. Then
   /// this is its path and robots and environment are empty.

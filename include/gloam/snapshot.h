@@ -11,6 +11,9 @@
 #include "gloam/types.h"
 #include "gloam/world.h"
 
+struct mjModel_;
+struct mjData_;
+
 namespace gloam {
 
 struct SnapshotData;  // src/sim/snapshots/snapshot.h
@@ -93,12 +96,18 @@ class Instant {
   Result<TendonState> tendon(Tendon tendon) const;
   Result<double> force(Actuator actuator) const;  ///< in the actuator's space: N, N m
   std::vector<ContactState> contacts() const;
+  /// The same into a vector whose memory is used again.
+  void contacts(std::vector<ContactState>* contacts) const;
 
   /// A field of mjData, mjModel or its options ("opt.gravity") by its name in MuJoCo, as numbers:
   /// all of it row by row, or what belongs to one named element: value("xfrc_applied",
   /// "go1/trunk"), value("qpos", "arm/elbow"), value("geom_friction", "floor").
   Result<std::vector<double>> value(const std::string& field,
                                     const std::string& element = {}) const;
+
+  /// MuJoCo's own, after a solve() that was ok, until the next; for those who link it.
+  const mjModel_* model() const;
+  const mjData_* data() const;
 
  private:
   struct Solved;

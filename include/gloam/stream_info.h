@@ -30,6 +30,14 @@ struct StreamInfo {
   std::string unit = {};                  ///< of a sensor's numbers, where it is known
 };
 
+/// A number that a run of a World tells of each instant (docs/metrics.md).
+struct MetricInfo {
+  std::string name;       ///< column of metrics.csv: "ada.path_length_m"
+  std::string unit;       ///< "m", "m/s" …; "" = none
+  std::string robot;      ///< robot that it is of; "" = the scene's, or the only one's
+  bool declared = false;  ///< by a [[metric]], not built in
+};
+
 enum class InputKind : uint8_t {
   kVelocity,   ///< SetVelocityGoal of a robot
   kControls,   ///< SetControls of a robot, or SetControl of one actuator

@@ -100,6 +100,9 @@ class World {
   /// All that a simulation of it can say and hear: what bridges and logs go by.
   std::vector<StreamInfo> streams() const;
   std::vector<InputInfo> inputs() const;
+  /// Columns of metrics.csv but the time. Error: a [[metric]] or [[goal]] of the scene that does
+  /// not parse, or is of what there is not.
+  Result<std::vector<MetricInfo>> metrics() const;
 
   WorldInfo info() const;
   /// What is odd about the scene and taken all the same, and where: open meshes, sizes that look

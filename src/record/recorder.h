@@ -114,6 +114,16 @@ struct RunOutcome {
   std::string final_state_hash;      ///< hexadecimal
   std::vector<NamedNumber> timings;  ///< [s]
   std::vector<NamedNumber> results;  ///< numbers worth a line: velocity errors, falls …
+  /// From the start, or a reset, to the next or the end.
+  struct Episode {
+    int64_t steps = 0;
+    double simulated = 0;    ///< [s]
+    std::string state_hash;  ///< at its end, hexadecimal
+    std::vector<NamedNumber> results;
+  };
+  std::vector<Episode> episodes;
+  /// Columns of metrics.csv with empty cells for want of a value, and how many.
+  std::vector<std::pair<std::string, int64_t>> missing_metrics;
 };
 
 class Recorder {

@@ -20,6 +20,17 @@ Json object(const Pairs& pairs) {
   return out;
 }
 
+void add_episodes(const RunOutcome& outcome, Json* metrics) {
+  if (!outcome.missing_metrics.empty())
+    (*metrics)["missing_values"] = object(outcome.missing_metrics);
+  Json& list = (*metrics)["episodes"] = Json::array();
+  for (const RunOutcome::Episode& episode : outcome.episodes)
+    list.push_back({{"steps", episode.steps},
+                    {"simulated_s", episode.simulated},
+                    {"final_state_hash", episode.state_hash},
+                    {"results", object(episode.results)}});
+}
+
 }  // namespace
 
 std::string summary_json(const RunInfo& info, const RunOutcome* outcome,
@@ -72,6 +83,7 @@ std::string summary_json(const RunInfo& info, const RunOutcome* outcome,
     out["sensors"] = list;
   }
   out["metrics"] = {{"rows", metric_rows}, {"dropped_rows", dropped_metric_rows}};
+  if (outcome != nullptr) add_episodes(*outcome, &out["metrics"]);
   out["entries"] = entries;
   return dump(out);
 }

@@ -22,7 +22,7 @@
 #include "runtime/live_simulation.h"
 #include "runtime/log/log_recorder.h"
 #include "runtime/recorded_run.h"
-#include "runtime/robot_metrics.h"
+#include "runtime/run_metrics.h"
 #include "runtime/run_to_step.h"
 #include "runtime/state_table.h"
 #include "sim/loop/step_schedule.h"
@@ -189,36 +189,6 @@ Status begin_where_asked(LiveSimulation& simulation, const World& world,
   return request.commands.empty() ? Status() : simulation.post(request.commands);
 }
 
-// The metrics' own consumer of Snapshots.
-class MetricsThread {
- public:
-  /// `recorder` and `state` may be null.
-  MetricsThread(std::shared_ptr<SnapshotQueue> queue, RobotMetrics& metrics, StateTable* state,
-                Recorder* recorder)
-      : queue_(std::move(queue)), thread_([this, &metrics, state, recorder] {
-          while (const Snapshot snapshot = queue_->next()) {
-            const std::vector<double>& row = metrics.sample(snapshot);
-            if (recorder == nullptr) continue;
-            recorder->add_metrics(row);
-            if (state == nullptr) continue;
-            if (const auto values = state->row(snapshot); values.ok())
-              recorder->add_state(*values);
-            else
-              log_warning("state.csv lacks t = {} s: {}", snapshot.time(),
-                          values.error().to_string());
-          }
-        }) {}
-  ~MetricsThread() { join(); }
-  void join() {
-    queue_->close();
-    if (thread_.joinable()) thread_.join();
-  }
-
- private:
-  std::shared_ptr<SnapshotQueue> queue_;
-  std::thread thread_;
-};
-
 }  // namespace
 
 void set_record_outputs(const std::vector<std::string>& outputs, Scene* scene) {
@@ -256,24 +226,14 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
   steps += simulator.latest().step();
 
   RunReport report;
-  // Metrics at 100 Hz, or every step of slower models; illuminance once a second.
-  const Rational metric_rate = rate.value() >= 100 ? Rational{100, 1} : rate;
-  const auto light_every = std::max<int64_t>(1, std::llround(metric_rate.value()));
-  VisibilityProbe probe;
-  std::unique_ptr<LightProbe> light;
-  // A renderer is made for pictures, and for the light at robots that move about.
-  const bool metered = !request.out.empty() && wants(scene.record.outputs, "metrics") &&
-                       RobotMetrics(*world.compiled()).columns().size() > 1;
-  if (pictures || metered) {
-    GLOAM_TRY(auto shared, simulation->renderer());
-    GLOAM_TRY(probe, VisibilityProbe::make(shared->description));
-    if (metered) {
-      GLOAM_TRY(light, LightProbe::make(std::move(shared)));
-    }
-  } else {
-    GLOAM_TRY(probe, VisibilityProbe::make(*world.compiled()));
-  }
-  RobotMetrics metrics(*world.compiled(), std::move(probe), std::move(light), light_every);
+  // Metrics at their rate, or every step of slower models.
+  const Rational wanted = scene.record.metrics_rate;
+  const Rational metric_rate = rate.value() >= wanted.value() ? wanted : rate;
+  const bool recorded = !request.out.empty() && wants(scene.record.outputs, "metrics");
+  GLOAM_TRY(
+      const auto metrics,
+      make_metrics(world, *simulation,
+                   {.has_renderer = pictures, .records = recorded, .rate = metric_rate.value()}));
   std::optional<StateTable> state;
   if (!request.out.empty() && wants(scene.record.outputs, "state"))
     state.emplace(*world.compiled(), world.compiled()->serial);
@@ -316,9 +276,10 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
       info.labels = std::move(labels.rows);
       info.label_ids = std::move(labels.ids);
     }
-    info.metric_columns = metrics.columns();
+    info.metric_columns = metrics->columns();
     if (state) info.state_columns = state->columns();
-    info.plots = metrics.plots();
+    for (const Metrics::Plot& plot : metrics->plots())
+      info.plots.push_back({plot.title, plot.unit, plot.measured, plot.commanded});
     if (wants(scene.record.outputs, "sensors")) {
       for (const SensorDescription& sensor : describe_sensors(*world.compiled()))
         info.sensors.push_back({sensor.name, sensor.count});
@@ -357,7 +318,7 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
   }
   GLOAM_TRY(auto metric_queue,
             simulator.subscribe({.rate = metric_rate, .required = true, .capacity = 256}));
-  MetricsThread metrics_thread(metric_queue, metrics, state ? &*state : nullptr, recorder.get());
+  MetricsThread metrics_thread(metric_queue, *metrics, state ? &*state : nullptr, recorder.get());
 
   const auto recording = [&]() -> Status {
     for (const auto& camera : cameras) GLOAM_TRY_STATUS(camera->status());
@@ -402,7 +363,7 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
     outcome.timings = {{"prepare_s", prepared},
                        {"run_s", simulated - prepared},
                        {"total_s", seconds_since(start)}};
-    outcome.results = metrics.summary();
+    add_metrics(*metrics, &outcome);
     const Status finished = recorder->finish(outcome);
     if (report.status.ok()) report.status = finished;
     report.frames = recorder->frames();
@@ -417,7 +378,7 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
     }
     std::sort(report.written.begin(), report.written.end());
   }
-  report.results = metrics.summary();
+  report.results = metrics->summary();
   report.wall_time = seconds_since(start);
   return report;
 }

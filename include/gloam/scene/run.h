@@ -57,6 +57,9 @@ struct RecordOptions {
   /// Topics of the log by name; * stands for any text. Empty = the usual ones (docs/topics.md).
   std::vector<std::string> topics = {};
   Rational state_rate = {100, 1};  ///< states in the log per second of simulation time [Hz]
+  /// Rows of metrics.csv per second of simulation time [Hz], which metrics are summed up over, too;
+  /// at most one a step.
+  Rational metrics_rate = {100, 1};
   bool embed = false;    ///< files that the scene reads are in the log, not their hashes alone
   bool durable = false;  ///< each chunk of the log is synced to the disk before the next is written
   SourceLoc loc = {};

@@ -1,6 +1,6 @@
 // Metrics of motions whose numbers are known in closed form.
-#include "runtime/robot_metrics.h"
 #include "base/angle.h"
+#include "metrics/metrics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -38,7 +38,7 @@ class FreeFlight {
     }
     world_ = std::move(*world);
     simulation_ = simulate(world_, {.timestep = 0.01});
-    metrics_ = std::make_unique<RobotMetrics>(*world_.compiled());
+    metrics_ = std::move(*Metrics::make(*world_.compiled()));
   }
 
   /// Moves on by `steps` of 10 ms and measures.
@@ -57,13 +57,13 @@ class FreeFlight {
     const auto numbers = metrics_->summary();
     return {numbers.begin(), numbers.end()};
   }
-  const RobotMetrics& metrics() const { return *metrics_; }
+  const Metrics& metrics() const { return *metrics_; }
 
  private:
   TempFolder folder_;
   World world_;
   std::unique_ptr<Simulation> simulation_;
-  std::unique_ptr<RobotMetrics> metrics_;
+  std::unique_ptr<Metrics> metrics_;
 };
 
 TEST(RobotMetrics, AStraightLineUnderAConstantTurn) {
@@ -132,14 +132,14 @@ TEST(RobotMetrics, AFallIsCountedOnceEachTime) {
   EXPECT_EQ(sinking.summary()["r.falls"], 1);
 }
 
-TEST(RobotMetrics, ARobotOnAFixedBaseGivesNoColumns) {
+TEST(RobotMetrics, WhatNobodyMovesGivesNoColumns) {
   const TempFolder folder;
   const World world = compile_text(folder, "arm.xml",
                                    "<mujoco><worldbody><body><joint/><geom size='1'/></body>"
                                    "</worldbody></mujoco>");
-  const RobotMetrics metrics(*world.compiled());
-  EXPECT_EQ(metrics.columns(), std::vector<std::string>{"time_s"});
-  EXPECT_TRUE(metrics.summary().empty());
+  const auto metrics = std::move(*Metrics::make(*world.compiled()));
+  EXPECT_EQ(metrics->columns(), std::vector<std::string>{"time_s"});
+  EXPECT_TRUE(metrics->summary().empty());
 }
 
 }  // namespace

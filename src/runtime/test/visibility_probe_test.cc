@@ -1,9 +1,10 @@
 // Visibility at a point: that which media are written with, and that of smoke that is solved for.
 #include "runtime/visibility_probe.h"
 
+#include <algorithm>
 #include <map>
 
-#include "runtime/robot_metrics.h"
+#include "metrics/metrics.h"
 #include "scenes.h"
 #include "sim/snapshots/pose_solver.h"
 
@@ -56,10 +57,19 @@ position = [0.5, 0, 0]
 size = [1.6, 1.6, 0.8]
 rate = 1e-3
 )");
-  RobotMetrics metrics(*world.compiled(), VisibilityProbe::make(*world.compiled()).value());
-  EXPECT_EQ(metrics.columns().back(), "a.visibility_m");
+  const VisibilityProbe probe = VisibilityProbe::make(*world.compiled()).value();
+  const auto metrics = std::move(
+      *Metrics::make(*world.compiled(), {.visibility = [&](const SnapshotData& at, Vec3f p_W) {
+        return probe.visibility(at, p_W);
+      }}));
+  const auto visibility = [&](const Snapshot& at) {
+    const std::vector<double>& row = metrics->sample(at);
+    const auto column = std::ranges::find(metrics->columns(), "a.visibility_m");
+    return column != metrics->columns().end() ? row[size_t(column - metrics->columns().begin())]
+                                              : -1;
+  };
   const auto simulation = simulate(world);
-  EXPECT_EQ(metrics.sample(simulation->latest()).back(), VisibilityProbe::kClear);
+  EXPECT_EQ(visibility(simulation->latest()), VisibilityProbe::kClear);
   ASSERT_TRUE(simulation->step(225).ok());  // 0.45 s: between two ticks
   const Snapshot snapshot = simulation->latest();
   const auto solver = PoseSolver::create(world.compiled()).value();
@@ -76,20 +86,19 @@ rate = 1e-3
   EXPECT_EQ(seen_at(world, snapshot, {0.45f, 0.05f, 0.05f}), VisibilityProbe::kClear)
       << "inside of the ball there is no smoke";
   // The ball of 0.2 m is at 0.45 m: what its robot sees is that of the air around it.
-  const double seen = metrics.sample(snapshot).back();
+  const double seen = visibility(snapshot);
   EXPECT_GT(seen, 0.5 * expected(14, 10, 10));
   EXPECT_LT(seen, 2 * expected(14, 10, 10));
-  const auto numbers = metrics.summary();
+  const auto numbers = metrics->summary();
   const std::map<std::string, double> summary(numbers.begin(), numbers.end());
   EXPECT_EQ(summary.at("a.visibility_min_m"), seen);
   EXPECT_NEAR(summary.at("a.visibility_mean_m"), 2 * seen, 0.01 * seen);
 }
 
-TEST(VisibilityProbe, ScenesWithoutMediaHaveNoColumn) {
+TEST(VisibilityProbe, ScenesWithoutMediaHaveNone) {
   const TempFolder folder;
   const World world = flight(folder);
-  const RobotMetrics metrics(*world.compiled(), VisibilityProbe::make(*world.compiled()).value());
-  EXPECT_EQ(metrics.columns().back(), "a.fallen");
+  EXPECT_FALSE(VisibilityProbe::make(*world.compiled())->has_media());
 }
 
 }  // namespace

@@ -18,6 +18,7 @@
 #include "scene/options/lidar_fields.h"
 #include "scene/options/light_fields.h"
 #include "scene/options/material_fields.h"
+#include "scene/options/metric_fields.h"
 #include "scene/options/object_fields.h"
 #include "scene/options/robot_fields.h"
 #include "scene/options/run_fields.h"
@@ -74,6 +75,8 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("render", scene.render, FieldRule{});
   v("record", scene.record, FieldRule{});
   v("topic", scene.topics, FieldRule{});
+  v("metric", scene.metrics, FieldRule{});
+  v("goal", scene.goals, FieldRule{});
 }
 
 }  // namespace gloam

@@ -36,6 +36,8 @@ void visit_fields(Visitor& v, RecordOptions& o) {
   v("topics", o.topics, FieldRule{});
   v("state_rate", o.state_rate,
     FieldRule{.unit = "Hz", .min = 0, .max = kFastestRate, .open = true});
+  v("metrics_rate", o.metrics_rate,
+    FieldRule{.unit = "Hz", .min = 0, .max = kFastestRate, .open = true});
   v("embed", o.embed, FieldRule{});
   v("durable", o.durable, FieldRule{});
 }

@@ -157,9 +157,15 @@ Result<double> Instant::force(Actuator actuator) const {
 }
 
 std::vector<ContactState> Instant::contacts() const {
+  std::vector<ContactState> list;
+  contacts(&list);
+  return list;
+}
+
+void Instant::contacts(std::vector<ContactState>* contacts) const {
   const Solved& s = *solved_;
-  std::vector<ContactState> contacts;
-  if (!s.good) return contacts;
+  contacts->clear();
+  if (!s.good) return;
   for (int i = 0; i < s.data->ncon; ++i) {
     const mjContact& from = s.data->contact[i];
     mjtNum in_frame[6], force[3], torque[3];
@@ -175,10 +181,12 @@ std::vector<ContactState> Instant::contacts() const {
     contact.distance = from.dist;
     contact.force = vec3(force);
     contact.torque = vec3(torque);
-    contacts.push_back(contact);
+    contacts->push_back(contact);
   }
-  return contacts;
 }
+
+const mjModel* Instant::model() const { return &solved_->model; }
+const mjData* Instant::data() const { return solved_->data.get(); }
 
 Result<std::vector<double>> Instant::value(const std::string& field,
                                            const std::string& element) const {
