@@ -39,6 +39,8 @@ class TopicInstant {
 
 using MessageBytes = std::vector<uint8_t>;
 using FrameEncoder = std::function<Status(const TopicInfo&, const CameraFrame&, MessageBytes*)>;
+/// Makes the encoder of one subscription, which remembers the pictures before.
+using FrameEncoderMaker = std::function<FrameEncoder()>;
 using ScanEncoder = std::function<Status(const TopicInfo&, const LidarScan&, MessageBytes*)>;
 /// One sample of each of the topic's streams, all of one step.
 using SampleEncoder =
@@ -50,13 +52,14 @@ using LatchedEncoder = std::function<Status(const TopicInfo&, double, MessageByt
 using InputDecoder = std::function<Result<std::vector<Command>>(
     std::span<const uint8_t>, const Snapshot& now, double timestep)>;
 
+using TopicCode = std::variant<FrameEncoder, FrameEncoderMaker, ScanEncoder, SampleEncoder,
+                               InstantEncoder, LatchedEncoder, InputDecoder>;
+
 struct Topic {
   TopicInfo info;
   std::vector<std::string> streams = {};  ///< camera, LiDAR or sensors; empty of others
   std::string channel = {};               ///< of CameraRequest::outputs
-  std::variant<FrameEncoder, ScanEncoder, SampleEncoder, InstantEncoder, LatchedEncoder,
-               InputDecoder>
-      code;
+  TopicCode code;
 };
 
 /// The message type of a struct, as TopicInfo::type.

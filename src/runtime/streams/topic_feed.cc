@@ -41,7 +41,11 @@ Status TopicFeed::open_all(Simulation& simulation) {
     Outlet outlet{topic};
     if (topic->info.rate.num > 0)
       outlet.schedule = StepSchedule::at_most(topic->info.rate, timestep);
-    if (std::holds_alternative<FrameEncoder>(topic->code))
+    if (const auto* encode = std::get_if<FrameEncoder>(&topic->code))
+      outlet.encode_frame = *encode;
+    if (const auto* make = std::get_if<FrameEncoderMaker>(&topic->code))
+      outlet.encode_frame = (*make)();
+    if (outlet.encode_frame)
       cameras[topic->streams[0]].push_back(std::move(outlet));
     else if (std::holds_alternative<ScanEncoder>(topic->code))
       lidars[topic->streams[0]].push_back(std::move(outlet));
@@ -123,8 +127,7 @@ Status TopicFeed::open_camera(Simulation& simulation, const std::string& camera,
                              request, [this, shared](std::shared_ptr<const CameraFrame> frame) {
                                for (Outlet& outlet : *shared) {
                                  const TopicInfo& info = outlet.topic->info;
-                                 const auto& encode = std::get<FrameEncoder>(outlet.topic->code);
-                                 send(&outlet, encode(info, *frame, &outlet.bytes),
+                                 send(&outlet, outlet.encode_frame(info, *frame, &outlet.bytes),
                                       {info, -1, frame->step, frame->time, frame->delivery, {}});
                                }
                              }));

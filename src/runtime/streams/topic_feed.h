@@ -30,6 +30,7 @@ class TopicFeed final : public TopicStream {
   struct Outlet {
     const Topic* topic;
     StepSchedule schedule = {};
+    FrameEncoder encode_frame = {};  // of a camera's topic
     MessageBytes bytes = {};
   };
   using Outlets = std::vector<Outlet>;
