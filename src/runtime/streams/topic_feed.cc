@@ -99,10 +99,11 @@ void TopicFeed::note(const std::string& what, const Status& fault) {
 
 Status TopicFeed::send_latched(Simulation& simulation, Outlets outlets) {
   const Snapshot now = simulation.latest();
+  const LatchedInputs inputs{now.time(), [&simulation] { return simulation.labels(); }};
   for (Outlet& outlet : outlets) {
     const TopicInfo& info = outlet.topic->info;
     const Status encoded =
-        std::get<LatchedEncoder>(outlet.topic->code)(info, now.time(), &outlet.bytes);
+        std::get<LatchedEncoder>(outlet.topic->code)(info, inputs, &outlet.bytes);
     GLOAM_TRY_STATUS(encoded);
     send(&outlet, encoded, {info, now.data().run, now.step(), now.time(), now.time(), {}});
   }
@@ -200,6 +201,7 @@ Status TopicFeed::open_snapshots(Simulation& simulation, Outlets outlets) {
   for (const Outlet& outlet : outlets)
     if (!(outlet.topic->info.rate == request.rate)) request.rate = {0, 1};
   auto reader = std::make_shared<InstantReader>();
+  reader->performance = [&simulation] { return simulation.stats(); };
   reader->outlets = std::move(outlets);
   GLOAM_TRY_STATUS(follow(simulation.world().compiled(), reader.get()));
   GLOAM_TRY(auto stream, simulation.open_snapshots(request, [this, reader](const Snapshot& now) {
@@ -217,7 +219,7 @@ Status TopicFeed::take_instant(InstantReader* reader, const Snapshot& now) {
   if (std::ranges::none_of(reader->outlets, is_due)) return {};
   const auto& world = now.data().world;
   if (reader->solver->world() != world) GLOAM_TRY_STATUS(follow(world, reader));
-  TopicInstant instant(now, *reader->solver);
+  TopicInstant instant(now, *reader->solver, reader->performance);
   for (Outlet& outlet : reader->outlets) {
     if (!is_due(outlet)) continue;
     const TopicInfo& info = outlet.topic->info;

@@ -50,6 +50,7 @@ class TopicFeed final : public TopicStream {
     Outlets outlets;
     std::shared_ptr<const TopicTable> table;
     std::unique_ptr<PoseSolver> solver;
+    TopicInstant::Performance performance;
   };
 
   Status open_all(Simulation& simulation);

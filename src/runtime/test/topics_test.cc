@@ -159,7 +159,7 @@ TEST_F(Topics, FramesLeadToThePosesOfBodies) {
   const auto dynamic = message<tf2_msgs::TFMessage>("/tf", instant);
   const Topic& fixed = *find_topics(table_, "/tf_static")->front();
   MessageBytes bytes;
-  ASSERT_TRUE(std::get<LatchedEncoder>(fixed.code)(fixed.info, 0, &bytes).ok());
+  ASSERT_TRUE(std::get<LatchedEncoder>(fixed.code)(fixed.info, {}, &bytes).ok());
   const auto still = *decode<tf2_msgs::TFMessage>(bytes);
   ASSERT_EQ(dynamic.transforms.size(), 2u);  // the base and its arm
   std::map<std::string, std::pair<std::string, Pose>> frames;
