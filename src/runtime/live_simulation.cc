@@ -191,8 +191,10 @@ Result<std::unique_ptr<LiveCamera>> LiveSimulation::open_live_camera(const Camer
 
 Result<std::unique_ptr<SensorStream>> LiveSimulation::open_sensor(const SensorRequest& request,
                                                                   SensorCallback on_message) {
-  GLOAM_TRY(auto live, LiveSensors::open(*simulator_, {request.sensor}, request.required, seed_,
-                                         std::move(on_message), request.on_end));
+  GLOAM_TRY(auto live, open_live_sensors({.sensors = {request.sensor},
+                                          .required = request.required,
+                                          .on_end = request.on_end},
+                                         std::move(on_message)));
   return std::unique_ptr<SensorStream>(std::move(live));
 }
 
@@ -201,7 +203,13 @@ Result<std::unique_ptr<LiveSensors>> LiveSimulation::open_all_sensors(bool requi
   std::vector<std::string> names;
   for (const SensorDescription& sensor : describe_sensors(*simulator_->world()))
     names.push_back(sensor.name);
-  return LiveSensors::open(*simulator_, names, required, seed_, std::move(on_message));
+  return open_live_sensors({.sensors = std::move(names), .required = required},
+                           std::move(on_message));
+}
+
+Result<std::unique_ptr<LiveSensors>> LiveSimulation::open_live_sensors(LiveSensorsRequest request,
+                                                                       SensorCallback on_message) {
+  return LiveSensors::open(*simulator_, seed_, std::move(request), std::move(on_message));
 }
 
 Result<std::unique_ptr<CameraStream>> LiveSimulation::open_camera(const CameraRequest& request,

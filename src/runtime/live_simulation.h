@@ -84,6 +84,9 @@ class LiveSimulation final : public Simulation {
   Result<std::shared_ptr<SharedRenderer>> renderer() { return renderers_.of(simulator_->world()); }
   Result<std::unique_ptr<LiveCamera>> open_live_camera(const CameraRequest& request,
                                                        FrameCallback on_frame);
+  /// Several sensors in one stream.
+  Result<std::unique_ptr<LiveSensors>> open_live_sensors(LiveSensorsRequest request,
+                                                         SensorCallback on_message);
   /// All sensors of the model in one stream.
   Result<std::unique_ptr<LiveSensors>> open_all_sensors(bool required, SensorCallback on_message);
   const ExposureMeters& meters() const { return meters_; }

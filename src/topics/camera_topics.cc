@@ -8,9 +8,11 @@
 #include "gloam/view.h"
 #include "ros/message_types.h"
 #include "ros/messages/event_camera_msgs.h"
+#include "ros/messages/foxglove_msgs.h"
 #include "ros/messages/sensor_images.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"
+#include "topics/topic_video.h"
 #include "world/streams.h"
 
 namespace gloam {
@@ -142,7 +144,8 @@ struct CameraTopicKind {
   const char* channel;  ///< of CameraRequest::outputs that it needs
   std::string (*type)();
   bool is_logged;
-  FrameEncoder encode;
+  TopicCode code;
+  TopicQos qos = kSensorQos;
 };
 
 const std::vector<CameraTopicKind>& camera_topic_kinds() {
@@ -153,6 +156,9 @@ const std::vector<CameraTopicKind>& camera_topic_kinds() {
       {"image_raw", "rgb", image, false, encode_rgb},
       {"image_raw/compressed", "rgb", type_name<sensor_msgs::CompressedImage>, true,
        encode_rgb_jpeg},
+      // A picture that is lost on the way spoils those after it: reliable.
+      {"image_raw/h264", "rgb", type_name<foxglove_msgs::CompressedVideo>, false,
+       FrameEncoderMaker(h264_encoder), TopicQos{}},
       {"camera_info", "rgb", type_name<sensor_msgs::CameraInfo>, true, encode_info},
       {"depth/image_rect_raw", "depth", image, false,
        [](Info t, Frame f, MessageBytes* out) { return encode_depth(t, f.depth, f, out); }},
@@ -187,12 +193,12 @@ void add_camera_topics(const TopicSource& world, TopicTable* table) {
                     .type = kind.type(),
                     .frame_id = stream.frame_id,
                     .rate = stream.rate,
-                    .qos = kSensorQos,
+                    .qos = kind.qos,
                     .is_logged = kind.is_logged,
                     .source = "camera " + stream.name};
       topic.streams = {stream.name};
       topic.channel = kind.channel;
-      topic.code = kind.encode;
+      topic.code = kind.code;
     }
   }
 }

@@ -44,7 +44,7 @@ RobotJoints joints_by_name(const CompiledWorld& world, const RobotInstance& robo
   const mjModel& m = *world.model;
   for (const int id : robot_joints(m, robot)) {
     if (m.jnt_type[id] != mjJNT_HINGE && m.jnt_type[id] != mjJNT_SLIDE) continue;
-    joints.names.push_back(local_name(name_of(m, mjOBJ_JOINT, id), robot.prefix));
+    joints.names.push_back(joint_label(m, id, robot.prefix));
     joints.ids.push_back(id);
   }
   return joints;

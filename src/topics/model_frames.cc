@@ -23,6 +23,15 @@ std::string body_frame(const mjModel& model, int body) {
   return name.empty() ? fmt::format("body_{}", body) : name;
 }
 
+bool moves_in_parent(const mjModel& model, int body) {
+  return model.body_dofnum[body] > 0 || model.body_mocapid[body] >= 0;
+}
+
+std::string joint_label(const mjModel& model, int joint, const std::string& prefix) {
+  const std::string name = local_name(name_of(model, mjOBJ_JOINT, joint), prefix);
+  return name.empty() ? fmt::format("joint_{}", joint) : name;
+}
+
 std::string local_name(const std::string& name, const std::string& prefix) {
   return name.starts_with(prefix) ? name.substr(prefix.size()) : name;
 }

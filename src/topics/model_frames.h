@@ -12,6 +12,13 @@ namespace gloam {
 /// Full name of a body; "body_ID" where the model gives none, "world" for 0.
 std::string body_frame(const mjModel& model, int body);
 
+/// True if a body has degrees of freedom of its own or is a mocap body: others keep their place in
+/// their parent.
+bool moves_in_parent(const mjModel& model, int body);
+
+/// Name of a joint without a robot's prefix; "joint_ID" where the model gives none.
+std::string joint_label(const mjModel& model, int joint, const std::string& prefix);
+
 /// The name without a robot's prefix "go1/".
 std::string local_name(const std::string& name, const std::string& prefix);
 

@@ -3,7 +3,9 @@
 #include "base/files.h"
 #include "ros/messages/nav_msgs.h"
 #include "ros/messages/sensor_msgs.h"
+#include "scene/files/xml_scan.h"
 #include "topics/model_frames.h"
+#include "topics/robot_urdf.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"
 #include "world/model_names.h"
@@ -24,7 +26,7 @@ JointList joints_of(const mjModel& m, const RobotInstance& robot) {
   for (const int id : robot_joints(m, robot)) {
     if (m.jnt_type[id] != mjJNT_HINGE && m.jnt_type[id] != mjJNT_SLIDE) continue;
     joints.ids.push_back(id);
-    joints.names.push_back(local_name(name_of(m, mjOBJ_JOINT, id), robot.prefix));
+    joints.names.push_back(joint_label(m, id, robot.prefix));
   }
   return joints;
 }
@@ -62,10 +64,17 @@ InstantEncoder odometry(int joint, int body) {
   };
 }
 
-LatchedEncoder description(std::string text) {
-  return [text = std::move(text)](const TopicInfo&, double, MessageBytes* out) {
-    encode(std_msgs::String{text}, out);
-    return Status();
+// A URDF as it is, since it is what ROS's tools read; of another file the URDF of its model.
+LatchedEncoder description(const TopicSource& world, size_t robot) {
+  return [world, robot](const TopicInfo&, const LatchedInputs&, MessageBytes* out) -> Status {
+    const RobotInstance& instance = world->robots[robot];
+    std::string text;
+    if (const auto file = read_file(instance.options.file); file.ok())
+      text.assign(file->begin(), file->end());
+    const auto scan = scan_model_xml(text, instance.options.file.string());
+    if (!scan.ok() || scan->root != "robot") text = robot_urdf(*world->model, instance);
+    encode(std_msgs::String{std::move(text)}, out);
+    return {};
   };
 }
 
@@ -97,15 +106,14 @@ void add_robot_topics(const TopicSource& world, TopicTable* table) {
                         {},
                         odometry(joint, robot.root_body)});
     }
-    // The file as it is: URDF is what ROS's tools read, MJCF what some do.
-    if (const auto text = read_file(robot.options.file); text.ok() && !text->empty())
+    if (robot.root_body > 0)
       table->push_back({{.name = space + "/robot_description",
                          .type = type_name<std_msgs::String>(),
                          .qos = kLatchedQos,
                          .source = source},
                         {},
                         {},
-                        description({text->begin(), text->end()})});
+                        description(world, static_cast<size_t>(&robot - world->robots.data()))});
   }
 }
 

@@ -11,6 +11,7 @@
 #include "gloam/camera.h"
 #include "gloam/command.h"
 #include "gloam/sensor.h"
+#include "gloam/simulation_options.h"
 #include "gloam/topics.h"
 #include "ros/codec.h"
 #include "sim/snapshots/pose_solver.h"
@@ -20,18 +21,24 @@ namespace gloam {
 /// An instant as encoders see it. Poses and forces are solved for when they are first asked for.
 class TopicInstant {
  public:
-  TopicInstant(const Snapshot& snapshot, PoseSolver& solver)
-      : snapshot_(snapshot), solver_(solver) {}
+  /// Tells how the running simulation does by the wall clock.
+  using Performance = std::function<SimulationStats()>;
+
+  TopicInstant(const Snapshot& snapshot, PoseSolver& solver, Performance performance = {})
+      : snapshot_(snapshot), solver_(solver), performance_(std::move(performance)) {}
   const Snapshot& snapshot() const { return snapshot_; }
   const mjModel& model() const { return *snapshot_.data().world->model; }
   /// Pose of a body in the world. Error: MuJoCo's.
   Result<Pose> X_WB(int body);
   /// All that a forward pass tells.
   Result<const Instant*> forces();
+  /// Not a function of the instant: for topics that are in no log.
+  SimulationStats performance() const { return performance_ ? performance_() : SimulationStats(); }
 
  private:
   const Snapshot& snapshot_;
   PoseSolver& solver_;
+  Performance performance_;
   PoseFrame poses_;
   Instant instant_;
   bool has_poses_ = false, has_forces_ = false;
@@ -39,24 +46,31 @@ class TopicInstant {
 
 using MessageBytes = std::vector<uint8_t>;
 using FrameEncoder = std::function<Status(const TopicInfo&, const CameraFrame&, MessageBytes*)>;
+/// Makes the encoder of one subscription, which remembers the pictures before.
+using FrameEncoderMaker = std::function<FrameEncoder()>;
 using ScanEncoder = std::function<Status(const TopicInfo&, const LidarScan&, MessageBytes*)>;
 /// One sample of each of the topic's streams, all of one step.
 using SampleEncoder =
     std::function<Status(const TopicInfo&, std::span<const SensorMessage>, MessageBytes*)>;
 using InstantEncoder = std::function<Status(const TopicInfo&, TopicInstant&, MessageBytes*)>;
-/// Of a topic that is latched, at a simulation time [s].
-using LatchedEncoder = std::function<Status(const TopicInfo&, double, MessageBytes*)>;
+/// What latched topics tell of at the moment that they are opened.
+struct LatchedInputs {
+  double time = 0;                                             ///< simulation time [s]
+  std::function<Result<std::vector<LabelRow>>()> labels = {};  ///< of what pictures show; slow
+};
+using LatchedEncoder = std::function<Status(const TopicInfo&, const LatchedInputs&, MessageBytes*)>;
 /// Commands of a message that is heard at an instant; steps take `timestep` [s].
 using InputDecoder = std::function<Result<std::vector<Command>>(
     std::span<const uint8_t>, const Snapshot& now, double timestep)>;
+
+using TopicCode = std::variant<FrameEncoder, FrameEncoderMaker, ScanEncoder, SampleEncoder,
+                               InstantEncoder, LatchedEncoder, InputDecoder>;
 
 struct Topic {
   TopicInfo info;
   std::vector<std::string> streams = {};  ///< camera, LiDAR or sensors; empty of others
   std::string channel = {};               ///< of CameraRequest::outputs
-  std::variant<FrameEncoder, ScanEncoder, SampleEncoder, InstantEncoder, LatchedEncoder,
-               InputDecoder>
-      code;
+  TopicCode code;
 };
 
 /// The message type of a struct, as TopicInfo::type.

@@ -19,9 +19,13 @@ Result<std::vector<const Topic*>> find_topics(const TopicTable& table, const std
 // The kinds, in the order of the table.
 using TopicSource = std::shared_ptr<const CompiledWorld>;
 void add_world_topics(const TopicSource& world, TopicTable* table);
+void add_object_topics(const TopicSource& world, TopicTable* table);
+void add_air_topics(const TopicSource& world, TopicTable* table);
+void add_diagnostic_topics(const TopicSource& world, TopicTable* table);
 void add_robot_topics(const TopicSource& world, TopicTable* table);
 void add_sensor_topics(const TopicSource& world, TopicTable* table);
 void add_camera_topics(const TopicSource& world, TopicTable* table);
+void add_label_topics(const TopicSource& world, TopicTable* table);
 void add_lidar_topics(const TopicSource& world, TopicTable* table);
 void add_input_topics(const TopicSource& world, TopicTable* table);
 

@@ -1,4 +1,4 @@
-// Topics of the whole world: clock, frames, contacts, agents.
+// Topics of the whole world: clock, frames, contacts.
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,6 @@
 #include "ros/messages/gloam_msgs.h"
 #include "ros/messages/rosgraph_msgs.h"
 #include "ros/messages/tf2_msgs.h"
-#include "ros/messages/visualization_msgs.h"
 #include "topics/model_frames.h"
 #include "topics/ros_values.h"
 #include "topics/topic_table.h"
@@ -17,8 +16,6 @@
 namespace gloam {
 namespace {
 
-constexpr Rational kAgentRate = {10, 1};  // [Hz]
-
 geometry_msgs::TransformStamped transform_of(double time, const std::string& parent,
                                              const std::string& child, const Pose& X_PC) {
   return {ros_header(time, parent), child, {ros_vector(X_PC.p), ros_quaternion(X_PC.q)}};
@@ -27,11 +24,6 @@ geometry_msgs::TransformStamped transform_of(double time, const std::string& par
 Status encode_clock(const TopicInfo&, TopicInstant& at, MessageBytes* out) {
   encode(rosgraph_msgs::Clock{ros_time(at.snapshot().time())}, out);
   return {};
-}
-
-// A body without degrees of freedom of its own that is no mocap body keeps its place in its parent.
-bool moves_in_parent(const mjModel& m, int body) {
-  return m.body_dofnum[body] > 0 || m.body_mocapid[body] >= 0;
 }
 
 Status encode_moving_frames(const TopicInfo& topic, TopicInstant& at, MessageBytes* out) {
@@ -54,7 +46,8 @@ Status encode_moving_frames(const TopicInfo& topic, TopicInstant& at, MessageByt
 constexpr Pose kOptical = {{}, {0, 1, 0, 0}};
 
 LatchedEncoder static_frames(const TopicSource& world) {
-  return [world](const TopicInfo& topic, double time, MessageBytes* out) {
+  return [world](const TopicInfo& topic, const LatchedInputs& at, MessageBytes* out) {
+    const double time = at.time;
     const mjModel& m = *world->model;
     tf2_msgs::TFMessage message;
     const auto frame = [&](int body) { return body == 0 ? topic.frame_id : body_frame(m, body); };
@@ -107,23 +100,6 @@ Status encode_contacts(const TopicInfo& topic, TopicInstant& at, MessageBytes* o
   return {};
 }
 
-Status encode_agents(const TopicInfo& topic, TopicInstant& at, MessageBytes* out) {
-  visualization_msgs::MarkerArray message;
-  for (const AgentDescription& agent : at.snapshot().data().world->agents) {
-    visualization_msgs::Marker& marker = message.markers.emplace_back();
-    marker.header = ros_header(at.snapshot().time(), topic.frame_id);
-    marker.ns = agent.name;
-    marker.type = visualization_msgs::Marker::CUBE;
-    GLOAM_TRY(Pose X_WA, at.X_WB(agent.body[0]));
-    marker.pose = ros_pose(X_WA);
-    marker.scale = {2 * agent.radius, 2 * agent.radius, agent.height};
-    marker.color = {0.9f, 0.5f, 0.1f, 0.8f};
-    marker.text = agent.name;
-  }
-  encode(message, out);
-  return {};
-}
-
 }  // namespace
 
 void add_world_topics(const TopicSource& world, TopicTable* table) {
@@ -166,15 +142,6 @@ void add_world_topics(const TopicSource& world, TopicTable* table) {
                       {},
                       {},
                       InstantEncoder(encode_contacts)});
-  if (!world->agents.empty())
-    table->push_back({{.name = "/agents",
-                       .type = type_name<visualization_msgs::MarkerArray>(),
-                       .frame_id = kWorldFrameId,
-                       .rate = kAgentRate,
-                       .source = "people and vehicles"},
-                      {},
-                      {},
-                      InstantEncoder(encode_agents)});
 }
 
 }  // namespace gloam

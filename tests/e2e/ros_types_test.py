@@ -14,7 +14,7 @@ import fetch_data  # noqa: E402
 
 PROGRAM = ROOT / "build" / "release" / "bin" / "gloam_ros_test"
 MESSAGES = 8  # of each type, as in message_files_test.cc
-OURS_ALONE = {"foxglove_msgs", "event_camera_msgs", "std_srvs", "gloam_msgs"}  # packages that rosbags does not know
+OURS_ALONE = {"foxglove_msgs", "event_camera_msgs", "std_srvs", "vision_msgs", "gloam_msgs"}  # packages that rosbags does not know
 
 
 def types_of_text(text, name):

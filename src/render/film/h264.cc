@@ -4,6 +4,7 @@
 #include <wels/codec_api.h>
 
 #include <algorithm>
+#include <span>
 
 #include "base/check.h"
 
@@ -53,6 +54,8 @@ class OpenH264Encoder : public H264Encoder {
     }
     return out;
   }
+
+  void request_key() override { encoder_->ForceIntraFrame(true); }
 
   const std::vector<uint8_t>& sps() const override { return sps_; }
   const std::vector<uint8_t>& pps() const override { return pps_; }
@@ -147,6 +150,27 @@ Result<std::unique_ptr<H264Encoder>> H264Encoder::create(int width, int height, 
     return Error{ErrorKind::kUnsupported,
                  fmt::format("the H.264 encoder refused {} x {} pixels", width, height)};
   return std::unique_ptr<H264Encoder>(new OpenH264Encoder(std::move(encoder), width, height));
+}
+
+std::vector<uint8_t> annex_b(const H264Encoder& encoder, const H264Picture& picture) {
+  std::vector<uint8_t> out;
+  out.reserve(picture.bytes.size() + encoder.sps().size() + encoder.pps().size() + 8);
+  const auto add = [&out](std::span<const uint8_t> nal) {
+    out.insert(out.end(), {0, 0, 0, 1});
+    out.insert(out.end(), nal.begin(), nal.end());
+  };
+  if (picture.key) {
+    add(encoder.sps());
+    add(encoder.pps());
+  }
+  std::span<const uint8_t> rest = picture.bytes;
+  while (rest.size() >= 4) {
+    const size_t length =
+        size_t{rest[0]} << 24 | size_t{rest[1]} << 16 | size_t{rest[2]} << 8 | size_t{rest[3]};
+    add(rest.subspan(4, length));
+    rest = rest.subspan(4 + length);
+  }
+  return out;
 }
 
 }  // namespace gloam

@@ -16,6 +16,7 @@
 #include "ros/messages/std_srvs.h"
 #include "ros/messages/tf2_msgs.h"
 #include "ros/messages/trajectory_msgs.h"
+#include "ros/messages/vision_msgs.h"
 #include "ros/messages/visualization_msgs.h"
 
 namespace gloam {
@@ -47,10 +48,11 @@ using AllMessages = MessageList<
     trajectory_msgs::JointTrajectory, trajectory_msgs::JointTrajectoryPoint,
     diagnostic_msgs::DiagnosticArray, diagnostic_msgs::DiagnosticStatus, diagnostic_msgs::KeyValue,
     visualization_msgs::MarkerArray, visualization_msgs::Marker, visualization_msgs::MeshFile,
-    visualization_msgs::UVCoordinate, rmw_dds_common::ParticipantEntitiesInfo,
-    rmw_dds_common::NodeEntitiesInfo, rmw_dds_common::Gid, foxglove_msgs::CompressedVideo,
-    event_camera_msgs::EventPacket, std_srvs::Empty_Request, std_srvs::Empty_Response,
-    std_srvs::Trigger_Request, std_srvs::Trigger_Response, std_srvs::SetBool_Request,
-    std_srvs::SetBool_Response, gloam_msgs::Contact, gloam_msgs::Contacts, gloam_msgs::State>;
+    visualization_msgs::UVCoordinate, vision_msgs::VisionClass, vision_msgs::LabelInfo,
+    rmw_dds_common::ParticipantEntitiesInfo, rmw_dds_common::NodeEntitiesInfo, rmw_dds_common::Gid,
+    foxglove_msgs::CompressedVideo, event_camera_msgs::EventPacket, std_srvs::Empty_Request,
+    std_srvs::Empty_Response, std_srvs::Trigger_Request, std_srvs::Trigger_Response,
+    std_srvs::SetBool_Request, std_srvs::SetBool_Response, gloam_msgs::Contact,
+    gloam_msgs::Contacts, gloam_msgs::State, gloam_msgs::Weather, gloam_msgs::Gas>;
 
 }  // namespace gloam

@@ -23,6 +23,32 @@ struct Contacts {
   GLOAM_MESSAGE(Contacts, header, contacts)
 };
 
+/// The weather of a scene at an instant.
+struct Weather {
+  std_msgs::Header header;
+  double visibility =
+      0;  ///< through what hangs in the air, without rain and snow [m]; +inf = clear
+  double rain = 0, snow = 0;    ///< rates, snow as water [mm/h]
+  geometry_msgs::Vector3 wind;  ///< 10 m above the ground, with its gust [m/s]
+  double mean_wind = 0;         ///< speed there without gusts [m/s]
+  GLOAM_MESSAGE(Weather, header, visibility, rain, snow, wind, mean_wind)
+};
+
+/// The air of one [[gas]] at an instant.
+struct Gas {
+  std_msgs::Header header;
+  std::string name;
+  double medium_mass = 0;          ///< of the smoke, dust … in it [kg]
+  double highest_temperature = 0;  ///< of its cells [K]
+  double mean_temperature = 0;     ///< of its cells [K]
+  double heat_release = 0;         ///< of its fires, as the scene asks for [W]
+  double fuel_rate = 0;            ///< fuel for that [kg/s]
+  double heat_released = 0;        ///< since the beginning [J]
+  double fuel_burned = 0;          ///< since the beginning [kg]
+  GLOAM_MESSAGE(Gas, header, name, medium_mass, highest_temperature, mean_temperature, heat_release,
+                fuel_rate, heat_released, fuel_burned)
+};
+
 /// Where a simulation stands at an instant: of Gloam's own, for replays.
 struct State {
   std_msgs::Header header;

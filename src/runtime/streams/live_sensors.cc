@@ -21,19 +21,36 @@ Result<SensorDescription> find_sensor(const std::vector<SensorDescription>& sens
                suggest_name(name, names)};
 }
 
+// Steps at which a sensor has a sample and the reader uses it. Where the two hardly ever meet, some
+// of those without a sample are among them: nothing is delivered then.
+std::function<int64_t(int64_t)> both_due(std::function<int64_t(int64_t)> sampled,
+                                         std::function<int64_t(int64_t)> used) {
+  constexpr int kTries = 32;
+  if (!used) return sampled;
+  return [sampled = std::move(sampled), used = std::move(used)](int64_t step) {
+    int64_t next = sampled(step);
+    for (int i = 0; i < kTries; ++i) {
+      const int64_t wanted = used(next);
+      if (wanted == next) break;
+      next = sampled(wanted);
+    }
+    return next;
+  };
+}
+
 }  // namespace
 
-Result<std::unique_ptr<LiveSensors>> LiveSensors::open(Simulator& simulator,
-                                                       const std::vector<std::string>& sensors,
-                                                       bool required, uint64_t seed,
-                                                       SensorCallback on_message,
-                                                       EndCallback on_end) {
-  std::unique_ptr<LiveSensors> live(new LiveSensors(sensors, seed, std::move(on_message)));
+Result<std::unique_ptr<LiveSensors>> LiveSensors::open(Simulator& simulator, uint64_t seed,
+                                                       LiveSensorsRequest request,
+                                                       SensorCallback on_message) {
+  std::unique_ptr<LiveSensors> live(
+      new LiveSensors(seed, std::move(request), std::move(on_message)));
+  const LiveSensorsRequest& wanted = live->request_;
   live->world_ = simulator.world();
-  GLOAM_TRY(live->group_, live->group_of(*live->world_, simulator.timestep()));
+  GLOAM_TRY(live->group_, live->group_of(wanted.sensors, *live->world_, simulator.timestep()));
   SubscriptionOptions options;
-  options.due = live->group_.due();
-  options.required = required;
+  options.due = both_due(live->group_.due(), wanted.used);
+  options.required = wanted.required;
   options.capacity = 64;
   GLOAM_TRY(auto queue, simulator.subscribe(options));
   live->thread_.start(
@@ -41,28 +58,45 @@ Result<std::unique_ptr<LiveSensors>> LiveSensors::open(Simulator& simulator,
       {.what = "a stream of sensors",
        .take = [raw = live.get(), timestep = simulator.timestep()](
                    const SnapshotWindow& now) { return raw->sample(now.keys[0], timestep); },
-       .on_end = std::move(on_end)});
+       .on_end = wanted.on_end});
   return live;
 }
 
-Result<SensorGroup> LiveSensors::group_of(const CompiledWorld& world, Rational timestep) const {
+Result<SensorGroup> LiveSensors::group_of(const std::vector<std::string>& names,
+                                          const CompiledWorld& world, Rational timestep) const {
   const std::vector<SensorDescription> all = describe_sensors(world);
   std::vector<SensorDescription> wanted;
-  for (const std::string& name : names_) {
+  for (const std::string& name : names) {
     GLOAM_TRY(SensorDescription sensor, find_sensor(all, name));
     wanted.push_back(std::move(sensor));
   }
   return SensorGroup::make(wanted, timestep, seed_);
 }
 
-Status LiveSensors::sample(const Snapshot& snapshot, Rational timestep) {
-  const auto& world = snapshot.data().world;
-  if (world != world_) {
-    GLOAM_TRY(SensorGroup next, group_of(*world, timestep));
-    if (!next.same_steps(group_)) return other_schedule("a sensor");
-    group_ = std::move(next);
-    world_ = world;
+// The sensors of another World that are the same go on.
+Status LiveSensors::follow(const std::shared_ptr<const CompiledWorld>& world, Rational timestep) {
+  std::vector<std::string> kept;
+  Status lost;
+  for (const std::string& name : request_.sensors) {
+    GLOAM_TRY(const SensorGroup before, group_of({name}, *world_, timestep));
+    const Result<SensorGroup> after = group_of({name}, *world, timestep);
+    if (after.ok() && after->same_steps(before)) {
+      kept.push_back(name);
+      continue;
+    }
+    const Error why = after.ok() ? other_schedule("sensor '" + name + "'") : after.error();
+    if (lost.ok()) lost = why;
+    if (request_.on_lost) request_.on_lost(why);
   }
+  if (!lost.ok() && (kept.empty() || !request_.on_lost)) return lost;
+  GLOAM_TRY(group_, group_of(kept, *world, timestep));
+  request_.sensors = std::move(kept);
+  world_ = world;
+  return {};
+}
+
+Status LiveSensors::sample(const Snapshot& snapshot, Rational timestep) {
+  if (snapshot.data().world != world_) GLOAM_TRY_STATUS(follow(snapshot.data().world, timestep));
   group_.sample(snapshot, on_message_);
   return {};
 }

@@ -1,6 +1,7 @@
 #pragma once
 // MuJoCo's sensors of a running simulation: a thread that turns Snapshots into messages.
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,27 +13,39 @@
 
 namespace gloam {
 
+struct LiveSensorsRequest {
+  std::vector<std::string> sensors;
+  bool required = false;
+  /// The first step at or after the one given whose samples the reader uses; empty = every step
+  /// with a sample. For sensors without errors, whose samples do not hang on those before.
+  std::function<int64_t(int64_t step)> used = {};
+  /// A recompile has taken a sensor away or changed its steps: the others go on. Empty = the stream
+  /// ends.
+  std::function<void(const Error&)> on_lost = {};
+  EndCallback on_end = {};
+};
+
 class LiveSensors final : public SensorStream {
  public:
   /// Errors: no such sensor, SensorGroup's.
-  static Result<std::unique_ptr<LiveSensors>> open(Simulator& simulator,
-                                                   const std::vector<std::string>& sensors,
-                                                   bool required, uint64_t seed,
-                                                   SensorCallback on_message,
-                                                   EndCallback on_end = {});
+  static Result<std::unique_ptr<LiveSensors>> open(Simulator& simulator, uint64_t seed,
+                                                   LiveSensorsRequest request,
+                                                   SensorCallback on_message);
   int64_t dropped() const override { return thread_.dropped(); }
   Status status() const override { return thread_.status(); }
   /// Waits until the simulation has stopped and every message was delivered.
   void drain() { thread_.drain(); }
 
  private:
-  LiveSensors(std::vector<std::string> names, uint64_t seed, SensorCallback on_message)
-      : names_(std::move(names)), seed_(seed), on_message_(std::move(on_message)) {}
-  Result<SensorGroup> group_of(const CompiledWorld& world, Rational timestep) const;
+  LiveSensors(uint64_t seed, LiveSensorsRequest request, SensorCallback on_message)
+      : seed_(seed), request_(std::move(request)), on_message_(std::move(on_message)) {}
+  Result<SensorGroup> group_of(const std::vector<std::string>& names, const CompiledWorld& world,
+                               Rational timestep) const;
+  Status follow(const std::shared_ptr<const CompiledWorld>& world, Rational timestep);
   Status sample(const Snapshot& snapshot, Rational timestep);
 
-  const std::vector<std::string> names_;
   const uint64_t seed_;
+  LiveSensorsRequest request_;
   SensorCallback on_message_;
   // World whose Snapshots come; holds the group's options
   std::shared_ptr<const CompiledWorld> world_;

@@ -4,12 +4,14 @@ namespace gloam {
 
 Result<std::unique_ptr<LiveSnapshots>> LiveSnapshots::open(Simulator& simulator,
                                                            const SnapshotRequest& request,
-                                                           SnapshotCallback on_snapshot) {
+                                                           SnapshotCallback on_snapshot,
+                                                           std::function<int64_t(int64_t)> due) {
   std::unique_ptr<LiveSnapshots> live(new LiveSnapshots(std::move(on_snapshot)));
   const Rational timestep = simulator.timestep();
   const Rational every_step{timestep.den, timestep.num};
   GLOAM_TRY(auto queue,
             simulator.subscribe({.rate = request.rate.num != 0 ? request.rate : every_step,
+                                 .due = std::move(due),
                                  .required = request.required,
                                  .capacity = request.capacity}));
   live->thread_.start(std::move(queue), {.what = "a stream of snapshots",

@@ -6,15 +6,12 @@
 #include <utility>
 
 #include "base/log.h"
+#include "runtime/live_simulation.h"
+#include "runtime/streams/due_steps.h"
 
 namespace gloam {
-namespace {
 
-constexpr size_t kMostWaiting = 1024;  // steps of which samples are not complete
-
-}  // namespace
-
-Result<std::unique_ptr<TopicFeed>> TopicFeed::open(Simulation& simulation, TopicTables& tables,
+Result<std::unique_ptr<TopicFeed>> TopicFeed::open(LiveSimulation& simulation, TopicTables& tables,
                                                    const TopicRequest& request,
                                                    TopicCallback on_message) {
   std::unique_ptr<TopicFeed> feed(new TopicFeed(tables, request, std::move(on_message)));
@@ -23,7 +20,7 @@ Result<std::unique_ptr<TopicFeed>> TopicFeed::open(Simulation& simulation, Topic
   return feed;
 }
 
-Status TopicFeed::open_all(Simulation& simulation) {
+Status TopicFeed::open_all(LiveSimulation& simulation) {
   std::vector<const Topic*> wanted;
   for (const std::string& pattern : request_.topics) {
     GLOAM_TRY(const auto found, find_topics(*table_, pattern));
@@ -41,7 +38,10 @@ Status TopicFeed::open_all(Simulation& simulation) {
     Outlet outlet{topic};
     if (topic->info.rate.num > 0)
       outlet.schedule = StepSchedule::at_most(topic->info.rate, timestep);
-    if (std::holds_alternative<FrameEncoder>(topic->code))
+    if (const auto* encode = std::get_if<FrameEncoder>(&topic->code)) outlet.encode_frame = *encode;
+    if (const auto* make = std::get_if<FrameEncoderMaker>(&topic->code))
+      outlet.encode_frame = (*make)();
+    if (outlet.encode_frame)
       cameras[topic->streams[0]].push_back(std::move(outlet));
     else if (std::holds_alternative<ScanEncoder>(topic->code))
       lidars[topic->streams[0]].push_back(std::move(outlet));
@@ -93,19 +93,21 @@ void TopicFeed::note(const std::string& what, const Status& fault) {
   fault_ = fault;
 }
 
-Status TopicFeed::send_latched(Simulation& simulation, Outlets outlets) {
+Status TopicFeed::send_latched(LiveSimulation& simulation, Outlets outlets) {
   const Snapshot now = simulation.latest();
+  const LatchedInputs inputs{now.time(), [&simulation] { return simulation.labels(); }};
   for (Outlet& outlet : outlets) {
     const TopicInfo& info = outlet.topic->info;
     const Status encoded =
-        std::get<LatchedEncoder>(outlet.topic->code)(info, now.time(), &outlet.bytes);
+        std::get<LatchedEncoder>(outlet.topic->code)(info, inputs, &outlet.bytes);
     GLOAM_TRY_STATUS(encoded);
     send(&outlet, encoded, {info, now.data().run, now.step(), now.time(), now.time(), {}});
   }
   return {};
 }
 
-Status TopicFeed::open_camera(Simulation& simulation, const std::string& camera, Outlets outlets) {
+Status TopicFeed::open_camera(LiveSimulation& simulation, const std::string& camera,
+                              Outlets outlets) {
   CameraRequest request{.camera = camera, .required = request_.required, .on_end = request_.on_end};
   request.render = simulation.world().scene().render;
   request.width = request_.width;
@@ -123,8 +125,7 @@ Status TopicFeed::open_camera(Simulation& simulation, const std::string& camera,
                              request, [this, shared](std::shared_ptr<const CameraFrame> frame) {
                                for (Outlet& outlet : *shared) {
                                  const TopicInfo& info = outlet.topic->info;
-                                 const auto& encode = std::get<FrameEncoder>(outlet.topic->code);
-                                 send(&outlet, encode(info, *frame, &outlet.bytes),
+                                 send(&outlet, outlet.encode_frame(info, *frame, &outlet.bytes),
                                       {info, -1, frame->step, frame->time, frame->delivery, {}});
                                }
                              }));
@@ -132,7 +133,8 @@ Status TopicFeed::open_camera(Simulation& simulation, const std::string& camera,
   return {};
 }
 
-Status TopicFeed::open_lidar(Simulation& simulation, const std::string& lidar, Outlets outlets) {
+Status TopicFeed::open_lidar(LiveSimulation& simulation, const std::string& lidar,
+                             Outlets outlets) {
   auto shared = std::make_shared<Outlets>(std::move(outlets));
   LidarRequest request{lidar, request_.required, request_.on_end};
   GLOAM_TRY(auto stream,
@@ -148,61 +150,22 @@ Status TopicFeed::open_lidar(Simulation& simulation, const std::string& lidar, O
   return {};
 }
 
-// A stream for each sensor of a topic; the message is made when all have given a sample of one
-// step.
-Status TopicFeed::open_sensors(Simulation& simulation, Outlets outlets) {
-  for (Outlet& outlet : outlets) {
-    const size_t parts = outlet.topic->streams.size();
-    gatherings_.push_back(std::make_unique<Gathering>());
-    Gathering* const gathering = gatherings_.back().get();
-    gathering->outlet = std::move(outlet);
-    for (size_t part = 0; part < parts; ++part) {
-      const SensorRequest request{gathering->outlet.topic->streams[part], request_.required,
-                                  request_.on_end};
-      GLOAM_TRY(auto stream, simulation.open_sensor(
-                                 request, [this, gathering, part](const SensorMessage& message) {
-                                   take_sample(gathering, part, message);
-                                 }));
-      streams_.push_back(std::move(stream));
-    }
-  }
-  return {};
-}
-
-void TopicFeed::take_sample(Gathering* gathering, size_t part, const SensorMessage& message) {
-  Outlet& outlet = gathering->outlet;
-  const StepSchedule& schedule = outlet.schedule;
-  if (schedule.step_of(schedule.first_at_or_after(message.step)) != message.step) return;
-  const std::lock_guard lock(sensors_mutex_);
-  auto& waiting = gathering->by_step;
-  // Time has begun anew, or a sensor drops its samples: what cannot be completed goes.
-  if (!waiting.empty() && message.step < waiting.begin()->first && part == 0) waiting.clear();
-  if (waiting.size() > kMostWaiting) waiting.erase(waiting.begin());
-  Gathering::Samples& samples = waiting[message.step];
-  samples.messages.resize(outlet.topic->streams.size());
-  samples.messages[part] = message;
-  if (++samples.count < samples.messages.size()) return;
-  const TopicInfo& info = outlet.topic->info;
-  const auto& encode = std::get<SampleEncoder>(outlet.topic->code);
-  send(&outlet, encode(info, samples.messages, &outlet.bytes),
-       {info, -1, message.step, message.time, message.delivery, {}});
-  waiting.erase(message.step);
-}
-
-// One stream at the rates' common steps: every step at which one of the topics is due.
-Status TopicFeed::open_snapshots(Simulation& simulation, Outlets outlets) {
+// One stream of the steps at which one of the topics is due.
+Status TopicFeed::open_snapshots(LiveSimulation& simulation, Outlets outlets) {
   if (outlets.empty()) return {};
-  SnapshotRequest request{.required = request_.required, .on_end = request_.on_end};
-  request.rate = outlets[0].topic->info.rate;
-  for (const Outlet& outlet : outlets)
-    if (!(outlet.topic->info.rate == request.rate)) request.rate = {0, 1};
+  const SnapshotRequest request{.required = request_.required, .on_end = request_.on_end};
+  std::vector<StepSchedule> schedules;
+  for (const Outlet& outlet : outlets) schedules.push_back(outlet.schedule);
   auto reader = std::make_shared<InstantReader>();
+  reader->performance = [&simulation] { return simulation.stats(); };
   reader->outlets = std::move(outlets);
   GLOAM_TRY_STATUS(follow(simulation.world().compiled(), reader.get()));
-  GLOAM_TRY(auto stream, simulation.open_snapshots(request, [this, reader](const Snapshot& now) {
+  const auto on_snapshot = [this, reader](const Snapshot& now) {
     if (const Status taken = take_instant(reader.get(), now); !taken.ok())
       note("topics of instants", taken);
-  }));
+  };
+  GLOAM_TRY(auto stream,
+            LiveSnapshots::open(simulation.simulator(), request, on_snapshot, first_of(schedules)));
   streams_.push_back(std::move(stream));
   return {};
 }
@@ -214,7 +177,7 @@ Status TopicFeed::take_instant(InstantReader* reader, const Snapshot& now) {
   if (std::ranges::none_of(reader->outlets, is_due)) return {};
   const auto& world = now.data().world;
   if (reader->solver->world() != world) GLOAM_TRY_STATUS(follow(world, reader));
-  TopicInstant instant(now, *reader->solver);
+  TopicInstant instant(now, *reader->solver, reader->performance);
   for (Outlet& outlet : reader->outlets) {
     if (!is_due(outlet)) continue;
     const TopicInfo& info = outlet.topic->info;

@@ -13,10 +13,12 @@
 
 namespace gloam {
 
+class LiveSimulation;
+
 class TopicFeed final : public TopicStream {
  public:
   /// Errors: no such topic, an input, those of the streams.
-  static Result<std::unique_ptr<TopicFeed>> open(Simulation& simulation, TopicTables& tables,
+  static Result<std::unique_ptr<TopicFeed>> open(LiveSimulation& simulation, TopicTables& tables,
                                                  const TopicRequest& request,
                                                  TopicCallback on_message);
   int64_t dropped() const override;
@@ -30,11 +32,11 @@ class TopicFeed final : public TopicStream {
   struct Outlet {
     const Topic* topic;
     StepSchedule schedule = {};
+    FrameEncoder encode_frame = {};  // of a camera's topic
     MessageBytes bytes = {};
   };
   using Outlets = std::vector<Outlet>;
-  /// Samples of the sensors of one topic by step, until all of a step are there: each sensor's
-  /// stream has a thread of its own.
+  /// Samples of the sensors of one topic by step, until all of a step are there.
   struct Gathering {
     struct Samples {
       std::vector<SensorMessage> messages;
@@ -43,20 +45,29 @@ class TopicFeed final : public TopicStream {
     Outlet outlet;
     std::map<int64_t, Samples> by_step;
   };
+  enum class SampleSteps : uint8_t { kAll, kUsed };
+  /// Where samples of a sensor go.
+  struct SampleSlot {
+    Gathering* gathering = nullptr;
+    size_t part = 0;
+  };
 
   /// Topics of instants, of the World whose Snapshots come.
   struct InstantReader {
     Outlets outlets;
     std::shared_ptr<const TopicTable> table;
     std::unique_ptr<PoseSolver> solver;
+    TopicInstant::Performance performance;
   };
 
-  Status open_all(Simulation& simulation);
-  Status open_camera(Simulation& simulation, const std::string& camera, Outlets outlets);
-  Status open_lidar(Simulation& simulation, const std::string& lidar, Outlets outlets);
-  Status open_sensors(Simulation& simulation, Outlets outlets);
-  Status open_snapshots(Simulation& simulation, Outlets outlets);
-  Status send_latched(Simulation& simulation, Outlets outlets);
+  Status open_all(LiveSimulation& simulation);
+  Status open_camera(LiveSimulation& simulation, const std::string& camera, Outlets outlets);
+  Status open_lidar(LiveSimulation& simulation, const std::string& lidar, Outlets outlets);
+  Status open_sensors(LiveSimulation& simulation, Outlets outlets);
+  Status open_sensor_stream(LiveSimulation& simulation, std::vector<Gathering*> gatherings,
+                            SampleSteps steps);
+  Status open_snapshots(LiveSimulation& simulation, Outlets outlets);
+  Status send_latched(LiveSimulation& simulation, Outlets outlets);
   void take_sample(Gathering* gathering, size_t part, const SensorMessage& message);
   Status take_instant(InstantReader* reader, const Snapshot& now);
   Status follow(const std::shared_ptr<const CompiledWorld>& world, InstantReader* reader);

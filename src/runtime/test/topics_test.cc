@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <map>
-#include <mutex>
 
 #include "gloam/simulation.h"
 #include "ros/messages/nav_msgs.h"
 #include "ros/messages/sensor_images.h"
 #include "ros/messages/tf2_msgs.h"
 #include "ros/messages/trajectory_msgs.h"
+#include "runtime/test/topic_inbox.h"
 #include "scene/test/temp_folder.h"
 #include "topics/model_frames.h"
 #include "topics/ros_values.h"
@@ -159,7 +159,7 @@ TEST_F(Topics, FramesLeadToThePosesOfBodies) {
   const auto dynamic = message<tf2_msgs::TFMessage>("/tf", instant);
   const Topic& fixed = *find_topics(table_, "/tf_static")->front();
   MessageBytes bytes;
-  ASSERT_TRUE(std::get<LatchedEncoder>(fixed.code)(fixed.info, 0, &bytes).ok());
+  ASSERT_TRUE(std::get<LatchedEncoder>(fixed.code)(fixed.info, {}, &bytes).ok());
   const auto still = *decode<tf2_msgs::TFMessage>(bytes);
   ASSERT_EQ(dynamic.transforms.size(), 2u);  // the base and its arm
   std::map<std::string, std::pair<std::string, Pose>> frames;
@@ -219,21 +219,6 @@ TEST_F(Topics, OdometryTurnsIntoTheBodysFrame) {
   EXPECT_NEAR(odom.twist.twist.angular.z, 0.5, 0.05);
   EXPECT_EQ(odom.header.stamp, ros_time(now.time()));
 }
-
-/// What a stream of topics has delivered, by topic.
-struct TopicInbox {
-  std::mutex mutex;
-  std::map<std::string, std::vector<std::vector<uint8_t>>> messages;
-  std::map<std::string, std::vector<int64_t>> steps;
-
-  TopicCallback callback() {
-    return [this](const TopicMessage& message) {
-      const std::lock_guard lock(mutex);
-      messages[message.topic.name].emplace_back(message.data.begin(), message.data.end());
-      steps[message.topic.name].push_back(message.step);
-    };
-  }
-};
 
 TEST_F(Topics, StreamsDeliverMessagesOfAllSensorsWithOneStamp) {
   const World world = world_of(

@@ -30,6 +30,7 @@ struct SnapshotData {
   std::vector<double> state;               ///< mjSTATE_INTEGRATION
   std::vector<double> sensordata;          ///< (nsensordata), of the state before the last step
   double sensor_stamp = 0;                 ///< [s]
+  std::vector<int> warnings;               ///< MuJoCo's since the reset, by mjtWarning
   std::shared_ptr<const LiveFields> live;  ///< null = nothing changed
   EffectOutputs effects;
 };

@@ -1,0 +1,95 @@
+// Topics of diagnostics. /diagnostics is a function of the instant alone, so that equal runs have
+// equal messages; what depends on the wall clock is in /diagnostics/performance, which no log has
+// that does not ask for it.
+
+#include <fmt/format.h>
+
+#include "ros/messages/diagnostic_msgs.h"
+#include "topics/ros_values.h"
+#include "topics/topic_table.h"
+#include "world/world.h"
+
+namespace gloam {
+namespace {
+
+using diagnostic_msgs::DiagnosticArray;
+using diagnostic_msgs::DiagnosticStatus;
+
+constexpr Rational kDiagnosticRate = {1, 1};  // [Hz]
+// Slower than this fraction of the wall clock is worth a warning.
+constexpr double kLeastRealtime = 0.95;
+// By mjtWarning.
+constexpr const char* kWarningNames[] = {"inertia",      "contacts_full", "constraints_full",
+                                         "bad_position", "bad_velocity",  "bad_acceleration",
+                                         "bad_control"};
+
+std::string warning_name(size_t type) {
+  return type < std::size(kWarningNames) ? kWarningNames[type] : fmt::format("warning_{}", type);
+}
+
+DiagnosticStatus status_of(const char* name, std::string trouble) {
+  DiagnosticStatus status;
+  status.name = name;
+  status.hardware_id = "gloam";
+  status.level =
+      std::byte{trouble.empty() ? uint8_t{DiagnosticStatus::OK} : uint8_t{DiagnosticStatus::WARN}};
+  status.message = trouble.empty() ? "OK" : std::move(trouble);
+  return status;
+}
+
+Status encode_physics(const TopicInfo& topic, TopicInstant& at, MessageBytes* out) {
+  const SnapshotData& now = at.snapshot().data();
+  std::string trouble;
+  std::vector<diagnostic_msgs::KeyValue> values = {{"run", fmt::format("{}", now.run)},
+                                                   {"step", fmt::format("{}", now.step)},
+                                                   {"timestep", fmt::format("{}", now.timestep)}};
+  for (size_t type = 0; type < now.warnings.size(); ++type) {
+    values.push_back({warning_name(type), fmt::format("{}", now.warnings[type])});
+    if (now.warnings[type] > 0)
+      trouble += (trouble.empty() ? "MuJoCo's warnings: " : ", ") + warning_name(type);
+  }
+  DiagnosticArray message;
+  message.header = ros_header(at.snapshot().time(), topic.frame_id);
+  message.status = {status_of("gloam: physics", std::move(trouble))};
+  message.status[0].values = std::move(values);
+  encode(message, out);
+  return {};
+}
+
+Status encode_performance(const TopicInfo& topic, TopicInstant& at, MessageBytes* out) {
+  const SimulationStats stats = at.performance();
+  std::string trouble;
+  if (stats.realtime_factor > 0 && stats.realtime_factor < kLeastRealtime)
+    trouble = fmt::format("runs at {:.2f} of real time", stats.realtime_factor);
+  DiagnosticArray message;
+  message.header = ros_header(at.snapshot().time(), topic.frame_id);
+  message.status = {
+      status_of("gloam: speed", std::move(trouble)),
+      status_of("gloam: streams",
+                stats.dropped_snapshots > 0 ? "readers are too slow: instants were dropped" : "")};
+  message.status[0].values = {{"realtime_factor", fmt::format("{:.4g}", stats.realtime_factor)},
+                              {"step", fmt::format("{}", stats.step)}};
+  message.status[1].values = {{"dropped_snapshots", fmt::format("{}", stats.dropped_snapshots)},
+                              {"commands_applied", fmt::format("{}", stats.commands_applied)}};
+  encode(message, out);
+  return {};
+}
+
+}  // namespace
+
+void add_diagnostic_topics(const TopicSource&, TopicTable* table) {
+  const auto add = [table](const char* name, const char* source, InstantEncoder encode) {
+    table->push_back({{.name = name,
+                       .type = type_name<DiagnosticArray>(),
+                       .rate = kDiagnosticRate,
+                       .source = source},
+                      {},
+                      {},
+                      std::move(encode)});
+  };
+  add("/diagnostics", "physics", encode_physics);
+  add("/diagnostics/performance", "speed by the wall clock, lost messages", encode_performance);
+  table->back().info.is_logged = false;
+}
+
+}  // namespace gloam
