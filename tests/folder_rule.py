@@ -4,7 +4,7 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-ORDER = ["base", "ros", "mcap", "geometry", "places", "scene", "world", "instant", "sim", "render", "sensors", "control", "topics", "record",
+ORDER = ["base", "trajectory", "ros", "mcap", "geometry", "places", "scene", "world", "instant", "sim", "render", "sensors", "control", "topics", "record",
          "runtime"]
 OUTSIDERS = ["src/bridge", "src/studio", "apps", "python"]
 MUJOCO_FOLDERS = {"places", "scene", "world", "sim", "control", "topics"}

@@ -27,8 +27,8 @@ import labels  # noqa: E402
 
 BUILD = ROOT / "build"
 CLANG = "-19"
-READERS = {"base", "ros", "mcap", "geometry", "scene", "world"}  # of strangers' files: under sanitizers in every CI
-UNIT = ["base", "ros", "mcap", "geometry", "places", "scene", "world", "sim", "render", "sensors", "control", "topics", "record", "runtime",
+READERS = {"base", "trajectory", "ros", "mcap", "geometry", "scene", "world"}  # of strangers' files: under sanitizers in every CI
+UNIT = ["base", "trajectory", "ros", "mcap", "geometry", "places", "scene", "world", "sim", "render", "sensors", "control", "topics", "record", "runtime",
         "studio"]
 
 
