@@ -5,7 +5,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 ORDER = ["base", "trajectory", "ros", "mcap", "geometry", "places", "scene", "world", "instant", "sim", "render", "sensors", "control", "topics", "record",
-         "runtime"]
+         "runtime", "report"]
 OUTSIDERS = ["src/bridge", "src/studio", "apps", "python"]
 MUJOCO_FOLDERS = {"places", "scene", "world", "sim", "control", "topics"}
 # memcpy is how bits are reinterpreted on both sides; intrinsics stand behind guards of the host.

@@ -25,13 +25,19 @@ Trajectory picked(const Trajectory& from, const std::vector<size_t>& indices) {
   return out;
 }
 
+// Seconds as evo has them, rounded to a double: ties of times in the middle fall as there.
+double seconds_of(int64_t stamp) {
+  return static_cast<double>(static_cast<long double>(stamp) / 1e9L);
+}
+
 // Index of the stamp nearest to t; of two as near the earlier.
 size_t nearest_stamp(const std::vector<int64_t>& stamps, int64_t t) {
   const auto above = std::upper_bound(stamps.begin(), stamps.end(), t);
   if (above == stamps.begin()) return 0;
   const size_t below = static_cast<size_t>(above - stamps.begin()) - 1;
   if (above == stamps.end()) return below;
-  return *above - t < t - stamps[below] ? below + 1 : below;
+  const double time = seconds_of(t);
+  return seconds_of(*above) - time < time - seconds_of(stamps[below]) ? below + 1 : below;
 }
 
 std::string span_of(const Trajectory& t) {
