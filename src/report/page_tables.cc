@@ -75,17 +75,22 @@ bool has_repetitions(const ReportContent& content) {
                      [](const RunGroup& group) { return group.runs.size() > 1; });
 }
 
-// Groups in which some runs ended in one and the same state are fewer samples than they seem.
+// Groups in which some runs made one and the same motion are fewer samples than they seem.
 std::string repetition_note(const ReportContent& content) {
   std::string out;
   for (const RunGroup& group : content.groups) {
-    std::set<std::string> ends;
-    for (const size_t i : group.runs) ends.insert(content.runs[i].final_hash);
-    if (group.runs.size() > 1 && ends.size() < group.runs.size())
+    size_t different = group.runs.size();
+    for (const RunGroup& motion : content.motions) {
+      const auto inside = std::count_if(motion.runs.begin(), motion.runs.end(), [&](size_t i) {
+        return std::find(group.runs.begin(), group.runs.end(), i) != group.runs.end();
+      });
+      different -= inside > 1 ? static_cast<size_t>(inside) - 1 : 0;
+    }
+    if (different < group.runs.size())
       out += fmt::format(
           "<p class=\"note\">{}: {} runs have {} different motion{}; repetitions of one motion "
           "make an interval look narrower than it is.</p>",
-          html_text(group.label), group.runs.size(), ends.size(), ends.size() == 1 ? "" : "s");
+          html_text(group.label), group.runs.size(), different, different == 1 ? "" : "s");
   }
   return out;
 }
