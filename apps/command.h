@@ -28,6 +28,8 @@ void add_recover(CLI::App& app, Globals& globals, Action& action);
 void add_render(CLI::App& app, Globals& globals, Action& action);
 void add_info(CLI::App& app, Globals& globals, Action& action);
 void add_export(CLI::App& app, Globals& globals, Action& action);
+void add_evaluate(CLI::App& app, Globals& globals, Action& action);
+void add_report(CLI::App& app, Globals& globals, Action& action);
 void add_check(CLI::App& app, Globals& globals, Action& action);
 void add_cache(CLI::App& app, Globals& globals, Action& action);
 void add_props(CLI::App& app, Globals& globals, Action& action);

@@ -22,9 +22,9 @@ WHEELS = {  # name: (version, SHA-256 of the wheel)
     "mjlab": ("1.6.0", "03d003854e2f44c48330c6dcf4c2253ff7641bb569747846825a21b9efa8540b"),
     "robosuite": ("1.5.2", "b9e02df55de8949739de6ba1d196d2ba59cf33c51a76efcfbe5c2f73cdcf99ce"),
 }
-# A robot's log (nav2 on a TurtleBot) in the source archive of evo; its tests' data, not its code, are read.
-LOG_ARCHIVE = ("evo==1.38.1", "1d63faeeb37604641db65bdd08b0e83e71884071de368058a9c45bdcac3fc3f7",
-               "test/data/nav2_turtlebot.mcap")
+# A robot's log (nav2 on a TurtleBot) and trajectories in the source archive of evo; its tests' data, not its code, are read.
+EVO_ARCHIVE = ("evo==1.38.1", "1d63faeeb37604641db65bdd08b0e83e71884071de368058a9c45bdcac3fc3f7")
+TRAJECTORIES = ("KITTI_00_gt.txt", "KITTI_00_ORB.txt", "fr2_desk_groundtruth.txt", "fr2_desk_ORB.txt", "V102_groundtruth.csv", "V102.txt")
 REQUIREMENTS = pathlib.Path(__file__).resolve().parent / "e2e" / "requirements.txt"
 
 
@@ -64,6 +64,11 @@ def robot_log(folder: pathlib.Path) -> pathlib.Path:
     return folder / "nav2_turtlebot.mcap"
 
 
+def trajectories(folder: pathlib.Path) -> pathlib.Path:
+    """A folder with TRAJECTORIES."""
+    return folder / "evo_trajectories"
+
+
 def packages(folder: pathlib.Path) -> pathlib.Path:
     """Packages that tests import; a folder for each Python and each list of packages."""
     wanted = hashlib.sha256(REQUIREMENTS.read_bytes()).hexdigest()[:8]
@@ -78,17 +83,36 @@ def pip(*arguments) -> None:
         raise RuntimeError(f"pip {arguments[0]}: {lines[-1] if lines else 'failed'}")
 
 
-def fetch_log(folder: pathlib.Path, scratch: pathlib.Path) -> None:
-    requirement, sha256, member = LOG_ARCHIVE
+def open_archive(scratch: pathlib.Path) -> tarfile.TarFile:
+    requirement, sha256 = EVO_ARCHIVE
     (scratch / "requirements.txt").write_text(f"{requirement} --hash=sha256:{sha256}\n")
     pip("download", "--no-binary=:all:", "--require-hashes", "-r", scratch / "requirements.txt", "--dest", scratch)
-    archive = next(scratch.glob("*.tar.gz"))
-    with tarfile.open(archive) as tar:
-        found = next(m for m in tar.getmembers() if m.isfile() and m.name.endswith("/" + member))
-        part = scratch / "log"
-        with tar.extractfile(found) as source, part.open("wb") as out:
-            shutil.copyfileobj(source, out)
-    part.rename(robot_log(folder))
+    return tarfile.open(next(scratch.glob("*.tar.gz")))
+
+
+def take_member(tar: tarfile.TarFile, name: str, out: pathlib.Path) -> None:
+    found = next(m for m in tar.getmembers() if m.isfile() and m.name.endswith("/test/data/" + name))
+    with tar.extractfile(found) as source, out.open("wb") as stream:
+        shutil.copyfileobj(source, stream)
+
+
+def fetch_log(folder: pathlib.Path, scratch: pathlib.Path) -> None:
+    with open_archive(scratch) as tar:
+        take_member(tar, "nav2_turtlebot.mcap", scratch / "log")
+    (scratch / "log").rename(robot_log(folder))
+
+
+def fetch_trajectories(folder: pathlib.Path, scratch: pathlib.Path) -> None:
+    part = scratch / "trajectories"
+    part.mkdir()
+    with open_archive(scratch) as tar:
+        for name in TRAJECTORIES:
+            take_member(tar, name, part / name)
+    try:
+        part.rename(trajectories(folder))
+    except OSError:  # another run was faster
+        if not trajectories(folder).is_dir():
+            raise
 
 
 def fetch_packages(folder: pathlib.Path, scratch: pathlib.Path) -> None:
@@ -114,7 +138,8 @@ def main() -> int:
             if found != sha256:
                 raise RuntimeError(f"{wheel.name} has SHA-256 {found}, not the pinned {sha256}")
             unpack(wheel, target)
-    for there, fetch in ((robot_log(folder), fetch_log), (packages(folder), fetch_packages)):
+    for there, fetch in ((robot_log(folder), fetch_log), (trajectories(folder), fetch_trajectories),
+                         (packages(folder), fetch_packages)):
         if not there.exists():
             with tempfile.TemporaryDirectory(dir=folder) as temporary:
                 fetch(folder, pathlib.Path(temporary))

@@ -4,8 +4,8 @@ import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-ORDER = ["base", "ros", "mcap", "geometry", "places", "scene", "world", "instant", "sim", "render", "sensors", "control", "metrics", "topics", "record",
-         "runtime"]
+ORDER = ["base", "trajectory", "ros", "mcap", "geometry", "places", "scene", "world", "instant", "sim", "render", "sensors", "control", "metrics", "topics", "record",
+         "runtime", "report"]
 OUTSIDERS = ["src/bridge", "src/studio", "apps", "python"]
 MUJOCO_FOLDERS = {"places", "scene", "world", "sim", "control", "metrics", "topics"}
 # memcpy is how bits are reinterpreted on both sides; intrinsics stand behind guards of the host.

@@ -7,8 +7,10 @@
 #include <map>
 
 #include "gloam/log_export.h"
+#include "gloam/report.h"
 #include "log_report.h"
 #include "run_options.h"
+#include "trajectory_source.h"
 
 namespace gloam::cli {
 namespace {
@@ -22,17 +24,22 @@ const std::map<std::string, TrajectoryFormat> kTrajectories = {{"tum", Trajector
                                                                {"kitti", TrajectoryFormat::kKitti},
                                                                {"euroc", TrajectoryFormat::kEuroc}};
 
-// Its only topic with poses, where none is named.
-Result<std::string> topic_of(const ExportCommand& command) {
-  if (!command.topic.empty()) return command.topic;
-  GLOAM_TRY(const auto topics, trajectory_topics(command.file));
-  if (topics.size() == 1) return topics[0];
-  std::string all;
-  for (const std::string& topic : topics) all += (all.empty() ? "" : ", ") + topic;
-  return Error{ErrorKind::kUsage,
-               topics.empty() ? "the log has no topic of poses" : "the log has several: " + all,
-               {},
-               "name one with --topic; a frame as in /tf:robot/base"};
+/// What is written of a topic that is named, and how its parts are called.
+struct TopicWriter {
+  Result<int64_t> (*write)(const std::filesystem::path& log, const std::string& topic,
+                           const std::filesystem::path& to);
+  const char* parts;
+};
+const std::map<std::string, TopicWriter> kTopicWriters = {
+    {"csv", {write_topic_table, "rows"}},
+    {"parquet", {write_topic_parquet, "rows"}},
+    {"png", {write_topic_pictures, "pictures"}},
+    {"mp4", {write_topic_video, "pictures"}}};
+
+int tell_count(const ExportCommand& command, const Result<int64_t>& count, const char* parts) {
+  if (!count.ok()) return fail(count.error());
+  std::printf("%s: %lld %s\n", command.out.c_str(), static_cast<long long>(*count), parts);
+  return 0;
 }
 
 int export_log(const ExportCommand& command) {
@@ -40,19 +47,18 @@ int export_log(const ExportCommand& command) {
     return fail({ErrorKind::kUsage,
                  "of a log --to says what is written",
                  {},
-                 "one of tum, kitti, euroc, csv"});
-  if (command.to == "csv") {
+                 "one of tum, kitti, euroc, csv, parquet, png, mp4"});
+  if (const auto writer = kTopicWriters.find(command.to); writer != kTopicWriters.end()) {
     if (command.topic.empty())
       return fail({ErrorKind::kUsage,
-                   "--to csv needs a --topic",
+                   "--to " + command.to + " needs a --topic",
                    {},
                    "`gloam info " + command.file + "` lists them"});
-    const auto rows = write_topic_table(command.file, command.topic, command.out);
-    if (!rows.ok()) return fail(rows.error());
-    std::printf("%s: %lld rows\n", command.out.c_str(), static_cast<long long>(*rows));
-    return 0;
+    return tell_count(command, writer->second.write(command.file, command.topic, command.out),
+                      writer->second.parts);
   }
-  const auto topic = topic_of(command);
+  const auto topic =
+      command.topic.empty() ? only_pose_topic(command.file) : Result<std::string>(command.topic);
   if (!topic.ok()) return fail(topic.error());
   const auto poses = read_trajectory(command.file, *topic);
   if (!poses.ok()) return fail(poses.error());
@@ -88,12 +94,14 @@ void add_export(CLI::App& app, Globals& globals, Action& action) {
   CLI::App* sub = app.add_subcommand(
       "export", "Write a scene as one MJCF with its assets, or a log's trajectories and tables");
   auto command = std::make_shared<ExportCommand>();
-  sub->add_option("FILE", command->file, "Scene, model or log")->required();
+  sub->add_option("FILE", command->file, "Scene, model, log or metrics.csv")->required();
   sub->add_option("--out", command->out,
                   "Folder to write scene.xml and its assets into; of a log the file to write")
       ->required();
-  sub->add_option("--to", command->to, "Of a log: tum, kitti, euroc or csv")
-      ->check(CLI::IsMember({"tum", "kitti", "euroc", "csv"}));
+  sub->add_option("--to", command->to,
+                  "Of a log: tum, kitti, euroc (poses), csv, parquet (any topic), png, mp4 "
+                  "(pictures); of a CSV table: parquet")
+      ->check(CLI::IsMember({"tum", "kitti", "euroc", "csv", "parquet", "png", "mp4"}));
   sub->add_option("--topic", command->topic,
                   "Of a log: the topic; a frame of /tf as in /tf:robot/base");
   command->scene.add_to(*sub);
@@ -103,6 +111,8 @@ void add_export(CLI::App& app, Globals& globals, Action& action) {
       "--topic /go/odom --out go.tum");
   sub->callback([&globals, &action, command] {
     action = [&globals, command] {
+      if (command->to == "parquet" && std::filesystem::path(command->file).extension() == ".csv")
+        return tell_count(*command, write_table_parquet(command->file, command->out), "rows");
       return is_log(command->file) ? export_log(*command) : export_scene(*command, globals);
     };
   });

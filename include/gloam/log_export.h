@@ -7,15 +7,9 @@
 #include <vector>
 
 #include "gloam/result.h"
-#include "gloam/types.h"
+#include "gloam/trajectory.h"
 
 namespace gloam {
-
-/// A pose at an instant.
-struct StampedPose {
-  int64_t stamp = 0;  ///< of the message's header [ns]
-  Pose X_AB;          ///< in the message's frame
-};
 
 /// Poses of one topic in the order of the log: Odometry, PoseStamped, PoseWithCovarianceStamped,
 /// TransformStamped, or "/tf:FRAME" for one child frame of a TFMessage, in its parent. Logs of any

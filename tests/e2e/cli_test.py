@@ -12,7 +12,7 @@ import unittest
 import fetch_data
 from e2e.support import PENDULUM, PROGRAM, ROOT, ProgramTest, video_frames
 
-COMMANDS = ["demo", "run", "render", "info", "export", "check", "cache", "schema", "completion"]
+COMMANDS = ["demo", "run", "render", "info", "export", "evaluate", "report", "check", "cache", "schema", "completion"]
 SCRIPT_COMMANDS = re.findall(r"^  (\w+)\)$", (ROOT / "gloam").read_text(), re.M)
 
 

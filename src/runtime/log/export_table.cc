@@ -7,6 +7,7 @@
 #include "gloam/log_export.h"
 #include "record/csv.h"
 #include "render/film/byte_sink.h"
+#include "runtime/log/message_columns.h"
 #include "runtime/log/topic_reader.h"
 
 namespace gloam {
@@ -15,10 +16,11 @@ namespace {
 constexpr size_t kMostColumns = 4096;
 constexpr size_t kMostBytes = 64;  // an array of bytes that is longer is a picture or points
 
-struct Column {
-  std::string path;
-  bool is_text;
-};
+MessageColumn::Kind kind_of(FieldKind kind) {
+  if (kind == FieldKind::kString) return MessageColumn::Kind::kText;
+  return kind == FieldKind::kFloat32 || kind == FieldKind::kFloat64 ? MessageColumn::Kind::kReal
+                                                                    : MessageColumn::Kind::kInteger;
+}
 
 /// The columns of a message: its numbers and texts in order, arrays element by element.
 class ColumnLister {
@@ -26,7 +28,7 @@ class ColumnLister {
   ColumnLister(const MessageSchema& schema, const DynamicMessage& message)
       : schema_(schema), message_(message) {}
 
-  Result<std::vector<Column>> list() {
+  Result<std::vector<MessageColumn>> list() {
     GLOAM_TRY_STATUS(add_part(0, ""));
     return std::move(columns_);
   }
@@ -57,17 +59,17 @@ class ColumnLister {
     if (columns_.size() == kMostColumns)
       return Error{ErrorKind::kUnsupported,
                    fmt::format("a table of more than {} columns is not written", kMostColumns)};
-    columns_.push_back({path, field.type.kind == FieldKind::kString});
+    columns_.push_back({path, kind_of(field.type.kind)});
     return {};
   }
 
   const MessageSchema& schema_;
   const DynamicMessage& message_;
-  std::vector<Column> columns_;
+  std::vector<MessageColumn> columns_;
 };
 
-std::string cell(const DynamicMessage& message, const Column& column) {
-  if (column.is_text) {
+std::string cell(const DynamicMessage& message, const MessageColumn& column) {
+  if (column.kind == MessageColumn::Kind::kText) {
     const auto text = message.text(column.path);
     return text.ok() ? csv_field(*text) : "";
   }
@@ -77,22 +79,27 @@ std::string cell(const DynamicMessage& message, const Column& column) {
 
 }  // namespace
 
+Result<std::vector<MessageColumn>> list_columns(const MessageSchema& schema,
+                                                const DynamicMessage& message) {
+  return ColumnLister(schema, message).list();
+}
+
 Result<int64_t> write_topic_table(const std::filesystem::path& log, const std::string& topic,
                                   const std::filesystem::path& to) {
   GLOAM_TRY(const McapReader reader, McapReader::open(log));
   GLOAM_TRY(const TopicReader logged, TopicReader::find(reader, topic));
   GLOAM_TRY(auto sink, create_file_sink(to));
-  std::vector<Column> columns;
+  std::vector<MessageColumn> columns;
   int64_t rows = 0;
   std::string text;
   const auto take = [&](const DynamicMessage& message) -> Status {
     if (rows++ == 0) {
-      GLOAM_TRY(columns, ColumnLister(logged.schema, message).list());
-      for (const Column& column : columns)
+      GLOAM_TRY(columns, list_columns(logged.schema, message));
+      for (const MessageColumn& column : columns)
         text += (&column == columns.data() ? "" : ",") + csv_field(column.path);
       text += "\n";
     }
-    for (const Column& column : columns)
+    for (const MessageColumn& column : columns)
       text += (&column == columns.data() ? "" : ",") + cell(message, column);
     text += "\n";
     const Status written =

@@ -1,0 +1,33 @@
+#include "trajectory_source.h"
+
+#include "gloam/log_export.h"
+#include "log_report.h"
+
+namespace gloam::cli {
+
+Result<std::string> only_pose_topic(const std::string& log) {
+  GLOAM_TRY(const auto topics, trajectory_topics(log));
+  if (topics.size() == 1) return topics[0];
+  std::string all;
+  for (const std::string& topic : topics) all += (all.empty() ? "" : ", ") + topic;
+  return Error{ErrorKind::kUsage,
+               topics.empty() ? "the log has no topic of poses" : "the log has several: " + all,
+               {},
+               "name one (--topic, or LOG.mcap:/topic); a frame as in /tf:robot/base"};
+}
+
+Result<Trajectory> load_trajectory(const std::string& source) {
+  const size_t split = source.find(":/");
+  const std::string file = source.substr(0, split);
+  if (!is_log(file)) return read_trajectory_file(source);
+  std::string topic;
+  if (split != std::string::npos) {
+    topic = source.substr(split + 1);
+  } else {
+    GLOAM_TRY(topic, only_pose_topic(file));
+  }
+  GLOAM_TRY(const auto poses, read_trajectory(file, topic));
+  return make_trajectory(poses, file + ":" + topic);
+}
+
+}  // namespace gloam::cli

@@ -1,0 +1,19 @@
+#pragma once
+// Names of metrics: their units, and what is better.
+
+#include <string>
+
+namespace gloam {
+
+struct MetricName {
+  std::string subject;  ///< "ada" of "ada.vx_mps"; "" = the run's
+  std::string text;     ///< "vx"
+  std::string unit;     ///< "m/s"; "" = none
+};
+MetricName split_metric_name(const std::string& name);
+
+/// Is less of it better, or more? Of most numbers nobody can tell.
+enum class Better { kUnknown, kLess, kMore };
+Better better_of(const std::string& name);
+
+}  // namespace gloam

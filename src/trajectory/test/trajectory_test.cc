@@ -1,0 +1,273 @@
+// Errors of trajectories against closed forms; equality with evo is tests/e2e/evaluate_test.py's.
+
+#include "gloam/trajectory.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+
+#include "base/rng.h"
+
+namespace gloam {
+namespace {
+
+using testing::HasSubstr;
+
+// A helix that turns as it climbs: neither on a line nor in a plane.
+std::vector<StampedPose> helix(int poses) {
+  std::vector<StampedPose> out;
+  for (int i = 0; i < poses; ++i) {
+    const double a = 0.1 * i;
+    out.push_back(
+        {i * 100'000'000LL,
+         {{2 * std::cos(a), 2 * std::sin(a), 0.05 * i}, {std::cos(a / 2), 0, 0, std::sin(a / 2)}}});
+  }
+  return out;
+}
+std::vector<StampedPose> line(int poses, double step) {
+  std::vector<StampedPose> out;
+  for (int i = 0; i < poses; ++i) out.push_back({i * 100'000'000LL, {{step * i, 0, 0}, {}}});
+  return out;
+}
+Trajectory of(const std::vector<StampedPose>& poses) { return make_trajectory(poses, "x").value(); }
+
+// Turned by a quarter about z, scaled by 2 and moved: p' = 2 R p + t.
+Trajectory similar(const Trajectory& from) {
+  Trajectory out = from;
+  for (size_t i = 0; i < from.size(); ++i) {
+    const Vec3 p = from.positions[i];
+    out.positions[i] = {-2 * p.y + 5, 2 * p.x - 7, 2 * p.z + 11};
+    const RotationRows& R = from.rotations[i];
+    out.rotations[i] = {-R[3], -R[4], -R[5], R[0], R[1], R[2], R[6], R[7], R[8]};
+  }
+  return out;
+}
+
+TEST(TrajectoryAlign, RecoversAKnownSimilarity) {
+  const Trajectory moved = of(helix(80)), reference = similar(moved);
+  TrajectoryPair pair = associate(reference, moved).value();
+  const Similarity by = align(Alignment::kSim3, &pair).value();
+  EXPECT_NEAR(by.scale, 2, 1e-12);
+  EXPECT_NEAR(by.p_AB.x, 5, 1e-12);
+  EXPECT_NEAR(by.p_AB.y, -7, 1e-12);
+  EXPECT_NEAR(by.p_AB.z, 11, 1e-12);
+  const RotationRows expected = {0, -1, 0, 1, 0, 0, 0, 0, 1};
+  for (size_t i = 0; i < 9; ++i) EXPECT_NEAR(by.R_AB[i], expected[i], 1e-12);
+  for (const auto part : {ErrorPart::kTranslation, ErrorPart::kAngle, ErrorPart::kFull})
+    EXPECT_LT(absolute_errors(pair, part)->statistics.max, 1e-7);
+  EXPECT_LT(absolute_errors(pair, ErrorPart::kTranslation)->statistics.max, 1e-12);
+}
+
+TEST(TrajectoryAlign, NeverMirrors) {
+  Trajectory moved = of(helix(80)), reference = moved;
+  for (Vec3& p : reference.positions) p.z = -p.z;
+  TrajectoryPair pair = associate(reference, moved).value();
+  const RotationRows R = align(Alignment::kSe3, &pair)->R_AB;
+  const double determinant = R[0] * (R[4] * R[8] - R[5] * R[7]) -
+                             R[1] * (R[3] * R[8] - R[5] * R[6]) +
+                             R[2] * (R[3] * R[7] - R[4] * R[6]);
+  EXPECT_NEAR(determinant, 1, 1e-12);
+}
+
+TEST(TrajectoryAlign, ByScaleAloneAndByOrigin) {
+  const Trajectory moved = of(helix(40));
+  TrajectoryPair pair = associate(similar(moved), moved).value();
+  EXPECT_NEAR(align(Alignment::kScale, &pair)->scale, 2, 1e-12);
+  EXPECT_EQ(pair.estimate.rotations, moved.rotations);
+  pair = associate(similar(moved), moved).value();
+  ASSERT_TRUE(align(Alignment::kOrigin, &pair).ok());
+  EXPECT_NEAR(absolute_errors(pair, ErrorPart::kFull)->values[0], 0, 1e-12);
+  EXPECT_LT(absolute_errors(pair, ErrorPart::kAngle)->statistics.max, 1e-7);
+}
+
+TEST(TrajectoryAlign, OfALineSaysThatItsRotationIsOpen) {
+  TrajectoryPair pair = associate(of(line(20, 1)), of(line(20, 1.1))).value();
+  const auto aligned = align(Alignment::kSe3, &pair);
+  ASSERT_FALSE(aligned.ok());
+  EXPECT_THAT(aligned.error().to_string(), HasSubstr("one line"));
+  EXPECT_TRUE(align(Alignment::kOrigin, &pair).ok());
+}
+
+TEST(TrajectoryErrors, OfAStraightLineAtADriftingPaceAreThoseOfThePace) {
+  const TrajectoryPair pair = associate(of(line(11, 1)), of(line(11, 1.1))).value();
+  const auto absolute = absolute_errors(pair, ErrorPart::kTranslation);
+  for (size_t i = 0; i <= 10; ++i)
+    EXPECT_NEAR(absolute->values[i], 0.1 * static_cast<double>(i), 1e-12);
+  EXPECT_NEAR(absolute->statistics.mean, 0.5, 1e-12);
+  EXPECT_NEAR(absolute->statistics.median, 0.5, 1e-12);
+  EXPECT_NEAR(absolute->statistics.sse, 0.01 * 385, 1e-12);
+  EXPECT_NEAR(absolute->statistics.rmse, std::sqrt(0.35), 1e-12);
+  EXPECT_NEAR(absolute->statistics.std, std::sqrt(0.1), 1e-12);
+  const auto relative = relative_errors(pair, ErrorPart::kTranslation);
+  EXPECT_EQ(relative->values.size(), 10u);
+  EXPECT_NEAR(relative->statistics.min, 0.1, 1e-12);
+  EXPECT_NEAR(relative->statistics.max, 0.1, 1e-12);
+}
+
+TEST(TrajectoryErrors, OfOneAndTheSameAreZero) {
+  const Trajectory one = of(helix(100));
+  const TrajectoryPair pair = associate(one, one).value();
+  for (const DeltaUnit unit :
+       {DeltaUnit::kFrames, DeltaUnit::kMeters, DeltaUnit::kSeconds, DeltaUnit::kRadians})
+    for (const bool all : {false, true}) {
+      const auto errors =
+          relative_errors(pair, ErrorPart::kTranslation, {.unit = unit, .all_pairs = all});
+      ASSERT_TRUE(errors.ok()) << errors.error().to_string();
+      EXPECT_LT(errors->statistics.max, 1e-14);
+    }
+}
+
+TEST(TrajectoryErrors, OfAnglesAreTheAngle) {
+  Trajectory turned = of(line(5, 1));
+  const double angle = 2.5;
+  for (auto& R : turned.rotations)
+    R = {1, 0, 0, 0, std::cos(angle), -std::sin(angle), 0, std::sin(angle), std::cos(angle)};
+  const TrajectoryPair pair = associate(of(line(5, 1)), turned).value();
+  EXPECT_NEAR(absolute_errors(pair, ErrorPart::kAngle)->statistics.mean, angle, 1e-14);
+  // |R - 1|² = 4 (1 - cos)
+  EXPECT_NEAR(absolute_errors(pair, ErrorPart::kFull)->values[0],
+              2 * std::sqrt(1 - std::cos(angle)), 1e-12);
+}
+
+TEST(TrajectoryErrors, PairsAreAsFarApartAsAskedFor) {
+  const TrajectoryPair pair = associate(of(line(100, 0.1)), of(line(100, 0.1))).value();
+  const auto count = [&](RelativeOptions options) {
+    const auto errors = relative_errors(pair, ErrorPart::kTranslation, options);
+    return errors.ok() ? errors->values.size() : 0;
+  };
+  EXPECT_EQ(count({.delta = 3}), 33u);
+  EXPECT_EQ(count({.delta = 3, .all_pairs = true}), 97u);
+  EXPECT_EQ(count({.delta = 0.95, .unit = DeltaUnit::kMeters}), 9u);
+  EXPECT_EQ(count({.delta = 0.95, .unit = DeltaUnit::kSeconds}), 9u);
+  EXPECT_EQ(count({.delta = 1, .unit = DeltaUnit::kSeconds, .all_pairs = true, .tolerance = 0.05}),
+            90u);
+  EXPECT_EQ(count({.delta = 100}), 0u);
+  EXPECT_EQ(count({.delta = 1.5}), 0u);
+  EXPECT_EQ(count({.delta = -1, .unit = DeltaUnit::kMeters}), 0u);
+  EXPECT_EQ(count({.delta = 4, .unit = DeltaUnit::kRadians}), 0u);
+}
+
+TEST(TrajectoryAssociation, TakesTheNearestWithinTheLargestDifference) {
+  std::vector<StampedPose> few = {{0, {}}, {1'004'000'000, {}}, {2'020'000'000, {}}};
+  std::vector<StampedPose> many;
+  for (int i = 0; i < 300; ++i)
+    many.push_back({i * 10'000'000LL, {{static_cast<double>(i), 0, 0}, {}}});
+  const auto pair = associate(of(many), of(few)).value();
+  ASSERT_EQ(pair.reference.size(), 3u);
+  EXPECT_EQ(pair.reference.positions[1].x, 100);
+  EXPECT_EQ(associate(of(many), of(few), {.max_difference = 0.001})->reference.size(), 2u);
+  // 4 ms earlier the second is exact.
+  const auto moved = associate(of(many), of(few), {.max_difference = 0.0001, .offset = -0.004});
+  EXPECT_EQ(moved->reference.size(), 1u);
+  EXPECT_EQ(moved->reference.positions[0].x, 100);
+  const auto swapped = associate(of(few), of(many), {.max_difference = 0.0001, .offset = 0.004});
+  EXPECT_EQ(swapped->reference.size(), 1u);
+}
+
+TEST(TrajectoryAssociation, WithoutCommonTimesSaysWhere) {
+  std::vector<StampedPose> later = line(5, 1);
+  for (StampedPose& pose : later) pose.stamp += 1'000'000'000'000;
+  const auto pair = associate(of(line(5, 1)), of(later));
+  ASSERT_FALSE(pair.ok());
+  EXPECT_THAT(pair.error().to_string(), HasSubstr("from 1000.000 to 1000.400 s"));
+  EXPECT_TRUE(associate(of(line(5, 1)), of(later), {.offset = -1000}).ok());
+  Trajectory untimed = of(line(6, 1));
+  untimed.stamps.clear();
+  EXPECT_THAT(associate(untimed, of(later)).error().to_string(), HasSubstr("6 poses"));
+  EXPECT_TRUE(associate(untimed, of(line(6, 2))).ok());
+}
+
+TEST(TrajectoryFile, OfEachFormatIsOneAndTheSame) {
+  const auto tum = parse_trajectory(
+      "# time\r\n1.5 1 2 3 0 0 0.70710678118654752 0.70710678118654752\r\n", "tum");
+  const auto euroc = parse_trajectory(
+      "#timestamp\n1500000000,1,2,3,0.70710678118654752,0,0,0.70710678118654752,9,9\n", "euroc");
+  const auto kitti = parse_trajectory("0 -1 0 1 1 0 0 2 0 0 1 3", "kitti");
+  ASSERT_TRUE(tum.ok() && euroc.ok() && kitti.ok());
+  EXPECT_EQ(tum->stamps, euroc->stamps);
+  EXPECT_TRUE(kitti->stamps.empty());
+  for (size_t i = 0; i < 9; ++i) {
+    EXPECT_NEAR(tum->rotations[0][i], kitti->rotations[0][i], 1e-15);
+    EXPECT_NEAR(euroc->rotations[0][i], kitti->rotations[0][i], 1e-15);
+  }
+  EXPECT_EQ(tum->positions, kitti->positions);
+}
+
+TEST(TrajectoryFile, KeepsNanosecondsOfExponents) {
+  const auto read = parse_trajectory("1.403715529112143517e+09 0 0 0 0 0 0 1\n", "x");
+  EXPECT_EQ(read->stamps[0], 1'403'715'529'112'143'517);
+}
+
+TEST(TrajectoryFile, WhatIsWrongIsSaidByLine) {
+  const std::pair<const char*, const char*> cases[] = {
+      {"", "no pose"},
+      {"# only\n\n", "no pose"},
+      {"0 1 2 3 0 0 0 1\n1 nan 2 3 0 0 0 1\n", "x:2: 'nan 2 3 0 0 0 1' is no finite number"},
+      {"0 1 2 3 0 0 0 1\n1 1e999 2 3 0 0 0 1\n", "x:2"},
+      {"inf 1 2 3 0 0 0 1\n", "x:1: the time"},
+      {"0 1 2 3 0 0 0 2\n", "x:1: the quaternion's length is 2"},
+      {"0 1 2 3 0 0 0 0\n", "the quaternion's length is 0"},
+      {"5 1 2 3 0 0 0 1\n\n4 1 2 3 0 0 0 1\n", "x:3: time goes back by 1 s"},
+      {"1 0 0 0 0 2 0 0 0 0 1 0\n", "no rotation matrix"},
+      {"1 0 0 0 0 1 0 0 0 0 -1 0\n", "no rotation matrix"},
+      {"0 1 2 3 0 0 0\n", "7 fields"},
+      {"0 1 2 3 0 0 0 1\n1 0 0 0 0 1 0 0 0 0 1 0\n", "another format than before"},
+      {"0,1,2,3,1,0,0\n", "7 fields"},
+      {"0 1 2x 3 0 0 0 1\n", "no finite number"},
+      {"0 1e13 2 3 0 0 0 1\n", "1e12 m"},
+      {"1e300 1 2 3 0 0 0 1\n", "4e9 s"},
+      {"0,,2,3,1,0,0,0\n", "no finite number"},
+  };
+  for (const auto& [text, said] : cases) {
+    const auto read = parse_trajectory(text, "x");
+    ASSERT_FALSE(read.ok()) << text;
+    EXPECT_THAT(read.error().to_string(), HasSubstr(said)) << text;
+    EXPECT_EQ(read.error().to_string().find('\n'), std::string::npos);
+  }
+  EXPECT_FALSE(read_trajectory_file("/does/not/exist").ok());
+}
+
+TEST(TrajectoryFile, PosesOfLogsAreCheckedToo) {
+  std::vector<StampedPose> poses = line(3, 1);
+  poses[1].X_AB.q = {0, 0, 0, 0};
+  EXPECT_THAT(make_trajectory(poses, "/odom").error().to_string(), HasSubstr("pose 2"));
+  poses = line(3, 1);
+  poses[2].stamp = 5;
+  EXPECT_THAT(make_trajectory(poses, "/odom").error().to_string(), HasSubstr("pose 3 is earlier"));
+  poses = line(3, 1);
+  poses[0].X_AB.p.x = std::nan("");
+  EXPECT_THAT(make_trajectory(poses, "/odom").error().to_string(), HasSubstr("pose 1"));
+  EXPECT_FALSE(make_trajectory({}, "/odom").ok());
+}
+
+TEST(TrajectoryMutations, AnyBytesAreReadOrRefusedInOneLine) {
+  const std::string seeds[] = {
+      "0.5 1 2 3 0 0 0 1\n1.5 1 2 3 0 0 0.70710678 0.70710678\n",
+      "1 0 0 0 0 1 0 0 0 0 1 0\n0 -1 0 1 1 0 0 2 0 0 1 3\n",
+      "#t\n1403715524907143168,0.5,1.9,0.9,1,0,0,0,1\n1403715524907143169,0.5,1.9,0.9,1,0,0,0,1\n"};
+  const RandomStream random{7, stream_id("trajectory.mutations")};
+  const char letters[] = "0123456789.,-+e \n#naif\t\r\xff";
+  const char* asked = std::getenv("GLOAM_MUTATIONS");
+  const int count = asked != nullptr ? std::atoi(asked) : 200;
+  for (int i = 0; i < count; ++i) {
+    std::string text = seeds[i % 3];
+    for (uint32_t k = 0; k < 4; ++k) {
+      const Philox4 draw = random.draw(static_cast<uint64_t>(i), k);
+      text[draw.v[0] % text.size()] = letters[draw.v[1] % (sizeof letters - 1)];
+    }
+    const auto read = parse_trajectory(text, "x");
+    if (!read.ok()) {
+      EXPECT_EQ(read.error().to_string().find('\n'), std::string::npos) << text;
+      continue;
+    }
+    const auto pair = associate(*read, *read);
+    ASSERT_TRUE(pair.ok()) << text;
+    EXPECT_TRUE(std::isfinite(absolute_errors(*pair, ErrorPart::kFull)->statistics.rmse)) << text;
+  }
+}
+
+}  // namespace
+}  // namespace gloam
