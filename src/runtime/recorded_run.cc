@@ -24,6 +24,7 @@
 #include "runtime/recorded_run.h"
 #include "runtime/run_metrics.h"
 #include "runtime/run_to_step.h"
+#include "runtime/sensing_metrics.h"
 #include "runtime/state_table.h"
 #include "sim/loop/step_schedule.h"
 #include "world/sensors/camera_rate.h"
@@ -238,6 +239,7 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
   if (!request.out.empty() && wants(scene.record.outputs, "state"))
     state.emplace(*world.compiled(), world.compiled()->serial);
   std::unique_ptr<Recorder> recorder;
+  SensingMetrics sensing;
   std::vector<std::unique_ptr<LiveCamera>> cameras;
   std::unique_ptr<LiveSensors> sensors;
   std::vector<std::unique_ptr<LiveLidar>> lidars;
@@ -293,10 +295,12 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
       return Error{ErrorKind::kInterrupted, "interrupted"};
     GLOAM_TRY(recorder, Recorder::start(options, info));
     for (const CameraRequest& camera : requests) {
-      GLOAM_TRY(auto live,
-                simulation->open_live_camera(camera, [&](std::shared_ptr<const CameraFrame> frame) {
-                  recorder->add_frame(std::move(frame));
-                }));
+      CameraQuality* const quality = recorded ? sensing.add_camera(camera.camera) : nullptr;
+      const auto take = [&recorder, quality](std::shared_ptr<const CameraFrame> frame) {
+        if (quality != nullptr) quality->add(*frame);
+        recorder->add_frame(std::move(frame));
+      };
+      GLOAM_TRY(auto live, simulation->open_live_camera(camera, take));
       cameras.push_back(std::move(live));
     }
     if (!info.sensors.empty()) {
@@ -305,10 +309,13 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
                              [&](const SensorMessage& message) { recorder->add_sensor(message); }));
     }
     for (const RecordedLidar& lidar : info.lidars) {
-      GLOAM_TRY(auto live,
-                simulation->open_live_lidar(
-                    {lidar.name, request.simulation.pace == Pace::kFast},
-                    [&](std::shared_ptr<const LidarScan> scan) { recorder->add_scan(scan); }));
+      LidarQuality* const quality = recorded ? sensing.add_lidar(lidar.name) : nullptr;
+      const auto take = [&recorder, quality](const std::shared_ptr<const LidarScan>& scan) {
+        if (quality != nullptr) quality->add(*scan);
+        recorder->add_scan(scan);
+      };
+      GLOAM_TRY(auto live, simulation->open_live_lidar(
+                               {lidar.name, request.simulation.pace == Pace::kFast}, take));
       lidars.push_back(std::move(live));
     }
     prepared = seconds_since(start);
@@ -364,6 +371,8 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
                        {"run_s", simulated - prepared},
                        {"total_s", seconds_since(start)}};
     add_metrics(*metrics, &outcome);
+    for (auto& number : sensing.summary()) outcome.results.push_back(std::move(number));
+    report.results = outcome.results;
     const Status finished = recorder->finish(outcome);
     if (report.status.ok()) report.status = finished;
     report.frames = recorder->frames();
@@ -378,7 +387,7 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
     }
     std::sort(report.written.begin(), report.written.end());
   }
-  report.results = metrics->summary();
+  if (report.results.empty()) report.results = metrics->summary();
   report.wall_time = seconds_since(start);
   return report;
 }

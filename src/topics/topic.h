@@ -53,6 +53,8 @@ using ScanEncoder = std::function<Status(const TopicInfo&, const LidarScan&, Mes
 using SampleEncoder =
     std::function<Status(const TopicInfo&, std::span<const SensorMessage>, MessageBytes*)>;
 using InstantEncoder = std::function<Status(const TopicInfo&, TopicInstant&, MessageBytes*)>;
+/// Makes the encoder of one subscription, which sums up the instants before.
+using InstantEncoderMaker = std::function<InstantEncoder()>;
 /// What latched topics tell of at the moment that they are opened.
 struct LatchedInputs {
   double time = 0;                                             ///< simulation time [s]
@@ -64,7 +66,7 @@ using InputDecoder = std::function<Result<std::vector<Command>>(
     std::span<const uint8_t>, const Snapshot& now, double timestep)>;
 
 using TopicCode = std::variant<FrameEncoder, FrameEncoderMaker, ScanEncoder, SampleEncoder,
-                               InstantEncoder, LatchedEncoder, InputDecoder>;
+                               InstantEncoder, InstantEncoderMaker, LatchedEncoder, InputDecoder>;
 
 struct Topic {
   TopicInfo info;

@@ -20,6 +20,7 @@ Result<std::vector<const Topic*>> find_topics(const TopicTable& table, const std
 using TopicSource = std::shared_ptr<const CompiledWorld>;
 void add_world_topics(const TopicSource& world, TopicTable* table);
 void add_object_topics(const TopicSource& world, TopicTable* table);
+void add_metric_topics(const TopicSource& world, TopicTable* table);
 void add_air_topics(const TopicSource& world, TopicTable* table);
 void add_diagnostic_topics(const TopicSource& world, TopicTable* table);
 void add_robot_topics(const TopicSource& world, TopicTable* table);

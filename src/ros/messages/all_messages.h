@@ -53,6 +53,7 @@ using AllMessages = MessageList<
     foxglove_msgs::CompressedVideo, event_camera_msgs::EventPacket, std_srvs::Empty_Request,
     std_srvs::Empty_Response, std_srvs::Trigger_Request, std_srvs::Trigger_Response,
     std_srvs::SetBool_Request, std_srvs::SetBool_Response, gloam_msgs::Contact,
-    gloam_msgs::Contacts, gloam_msgs::State, gloam_msgs::Weather, gloam_msgs::Gas>;
+    gloam_msgs::Contacts, gloam_msgs::State, gloam_msgs::Weather, gloam_msgs::Gas,
+    gloam_msgs::Metrics, gloam_msgs::StepInput>;
 
 }  // namespace gloam

@@ -49,6 +49,15 @@ struct Gas {
                 fuel_rate, heat_released, fuel_burned)
 };
 
+/// Metrics of a run at an instant: docs/metrics.md.
+struct Metrics {
+  std_msgs::Header header;
+  std::vector<std::string> names;  ///< as columns of metrics.csv: "ada.path_length_m"
+  std::vector<std::string> units;  ///< of each; "" = none
+  std::vector<double> values;      ///< NaN = has none now
+  GLOAM_MESSAGE(Metrics, header, names, units, values)
+};
+
 /// Where a simulation stands at an instant: of Gloam's own, for replays.
 struct State {
   std_msgs::Header header;

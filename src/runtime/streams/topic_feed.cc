@@ -47,7 +47,8 @@ Status TopicFeed::open_all(LiveSimulation& simulation) {
       lidars[topic->streams[0]].push_back(std::move(outlet));
     else if (std::holds_alternative<SampleEncoder>(topic->code))
       sensors.push_back(std::move(outlet));
-    else if (std::holds_alternative<InstantEncoder>(topic->code))
+    else if (std::holds_alternative<InstantEncoder>(topic->code) ||
+             std::holds_alternative<InstantEncoderMaker>(topic->code))
       instants.push_back(std::move(outlet));
     else
       latched.push_back(std::move(outlet));
@@ -73,6 +74,8 @@ Status TopicFeed::follow(const std::shared_ptr<const CompiledWorld>& world, Inst
     });
     if (same == table->end()) continue;
     outlet.topic = &*same;
+    const auto* make = std::get_if<InstantEncoderMaker>(&same->code);
+    outlet.encode_instant = make != nullptr ? (*make)() : std::get<InstantEncoder>(same->code);
     next.push_back(std::move(outlet));
   }
   reader->outlets = std::move(next);
@@ -181,8 +184,7 @@ Status TopicFeed::take_instant(InstantReader* reader, const Snapshot& now) {
   for (Outlet& outlet : reader->outlets) {
     if (!is_due(outlet)) continue;
     const TopicInfo& info = outlet.topic->info;
-    const auto& encode = std::get<InstantEncoder>(outlet.topic->code);
-    send(&outlet, encode(info, instant, &outlet.bytes),
+    send(&outlet, outlet.encode_instant(info, instant, &outlet.bytes),
          {info, now.data().run, now.step(), now.time(), now.time(), {}});
   }
   return {};

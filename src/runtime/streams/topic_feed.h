@@ -32,7 +32,8 @@ class TopicFeed final : public TopicStream {
   struct Outlet {
     const Topic* topic;
     StepSchedule schedule = {};
-    FrameEncoder encode_frame = {};  // of a camera's topic
+    FrameEncoder encode_frame = {};      // of a camera's topic
+    InstantEncoder encode_instant = {};  // of a topic of instants
     MessageBytes bytes = {};
   };
   using Outlets = std::vector<Outlet>;
