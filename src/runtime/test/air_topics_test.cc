@@ -163,9 +163,11 @@ TEST_F(AirTopics, DiagnosticsTellOfMuJoCosWarnings) {
   const World world = world_of("");
   const auto run = [&](TopicInbox* inbox) {
     auto simulation = *Simulation::create(world, {.pace = Pace::kLockstep});
-    simulation->set_step_hook([](const mjModel*, mjData* data) {
-      data->ctrl[0] = data->time > 1.495 && data->time < 1.525 ? std::nan("") : 0;
-    });
+    EXPECT_TRUE(simulation
+                    ->set_step_hook([](const mjModel*, mjData* data) {
+                      data->ctrl[0] = data->time > 1.495 && data->time < 1.525 ? std::nan("") : 0;
+                    })
+                    .ok());
     auto stream = *simulation->open_topics(
         {.topics = {"/diagnostics", "/diagnostics/performance"}, .required = true},
         inbox->callback());

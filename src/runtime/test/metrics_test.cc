@@ -178,7 +178,8 @@ std::string goal(double x, double y, const std::string& more = "") {
 TEST(Metrics, AStraightWayHasAnSplOfOne) {
   Measured cart(kPlanarCart, goal(1, 0) + metric("close", "robot.goal_distance < 0.5",
                                                  "robots = 'r'\nreduce = ['first_time_true']"));
-  cart.simulation().set_step_hook([](const mjModel*, mjData* d) { d->qvel[0] = 1; });
+  EXPECT_TRUE(
+      cart.simulation().set_step_hook([](const mjModel*, mjData* d) { d->qvel[0] = 1; }).ok());
   const NumbersByName last = cart.run_to(1.5);
   EXPECT_EQ(last.at("r.success"), 1);
   EXPECT_NEAR(last.at("r.goal_distance_m"), 0.5, 0.01) << "it went on";
@@ -196,15 +197,15 @@ TEST(Metrics, AWayRoundACornerHasItsShareOfSpl) {
     d->qvel[1] = d->time < 1 - 1e-9 ? 0 : 1;
   };
   Measured around(kPlanarCart, goal(1, 1));
-  around.simulation().set_step_hook(drive);
+  EXPECT_TRUE(around.simulation().set_step_hook(drive).ok());
   around.run_to(2.5);
   EXPECT_NEAR(around.summary().at("r.spl"), std::sqrt(2) / 2, 0.01) << "the diagonal is shorter";
   Measured told(kPlanarCart, goal(1, 1, "shortest_path = 2"));
-  told.simulation().set_step_hook(drive);
+  EXPECT_TRUE(told.simulation().set_step_hook(drive).ok());
   told.run_to(2.5);
   EXPECT_NEAR(told.summary().at("r.spl"), 1, 0.01) << "there is a wall, as the scene says";
   Measured legs(kPlanarCart, goal(1, 0) + goal(1, 1));
-  legs.simulation().set_step_hook(drive);
+  EXPECT_TRUE(legs.simulation().set_step_hook(drive).ok());
   const NumbersByName half = legs.run_to(1.5);
   EXPECT_EQ(half.at("r.goals_reached"), 1);
   EXPECT_EQ(half.at("r.success"), 0);
@@ -237,7 +238,7 @@ radius = 0.05
 top_speed = 1000
 )" + agents);
     const auto simulation = simulate(world, {.timestep = 0.002});
-    simulation->set_step_hook([](const mjModel*, mjData* d) { d->qvel[0] = 2; });
+    EXPECT_TRUE(simulation->set_step_hook([](const mjModel*, mjData* d) { d->qvel[0] = 2; }).ok());
     const auto metrics = std::move(*Metrics::make(*world.compiled()));
     for (int i = 0; i <= 110; ++i) {
       metrics->sample(simulation->latest());
@@ -256,7 +257,8 @@ top_speed = 1000
 
 TEST(Metrics, AGoalThatIsReachedTooLateIsNotReached) {
   Measured cart(kPlanarCart, goal(1, 0, "time_limit = 0.9"));
-  cart.simulation().set_step_hook([](const mjModel*, mjData* d) { d->qvel[0] = 1; });
+  EXPECT_TRUE(
+      cart.simulation().set_step_hook([](const mjModel*, mjData* d) { d->qvel[0] = 1; }).ok());
   EXPECT_EQ(cart.run_to(1.5).at("r.success"), 0);
   EXPECT_EQ(cart.summary().at("r.spl"), 0);
 }
@@ -274,7 +276,8 @@ TEST(Metrics, CollisionsAreEpisodesByWhatIsHit) {
     <geom name="floor" type="plane" size="5 5 .1" condim="1"/>
     <body name="post" pos="1 0 1.25"><geom type="box" size=".1 1 1"/></body></worldbody></mujoco>)");
   double speed = 2;
-  ball.simulation().set_step_hook([&](const mjModel*, mjData* d) { d->qvel[0] = speed; });
+  EXPECT_TRUE(
+      ball.simulation().set_step_hook([&](const mjModel*, mjData* d) { d->qvel[0] = speed; }).ok());
   NumbersByName row = ball.run_to(0.38);
   EXPECT_EQ(row.at("r.collisions"), 0);
   row = ball.run_to(0.44);
