@@ -100,32 +100,30 @@ Result<Image8> VideoReader::decode(size_t wanted) const {
   size_t first = wanted;
   while (first > 0 && !index_.samples[first].key) --first;
   GLOAM_TRY(const Decoder decoder, make_decoder());
-  // Pictures come out later than they go in; they are counted.
-  const size_t target = wanted - first;
-  size_t seen = 0;
+  // Pictures come out later than they go in, with the stamp that they went in with.
   uint8_t* planes[3] = {};
   SBufferInfo info = {};
-  const auto is_wanted = [&] { return info.iBufferStatus == 1 && seen++ == target; };
-  bool found = false;
-  for (size_t i = first; i <= wanted && !found; ++i) {
-    const VideoIndex::Sample& sample = index_.samples[i];
-    const auto bytes =
-        with_start_codes(index_, std::span(bytes_).subspan(sample.offset, sample.size), i == first);
+  const auto is_wanted = [&] {
+    return info.iBufferStatus == 1 && info.uiOutYuvTimeStamp == wanted + 1;
+  };
+  for (size_t i = first; i <= wanted + 1 && !is_wanted(); ++i) {
+    std::vector<uint8_t>
+        bytes;  // none after the last: the end of a picture is seen by what follows
+    if (i <= wanted) {
+      const VideoIndex::Sample& sample = index_.samples[i];
+      bytes = with_start_codes(index_, std::span(bytes_).subspan(sample.offset, sample.size),
+                               i == first);
+      if (bytes.empty()) return failed;
+    }
     info = {};
-    if (bytes.empty() || decoder->DecodeFrame2(bytes.data(), static_cast<int>(bytes.size()), planes,
-                                               &info) != dsErrorFree)
+    info.uiInBsTimeStamp = i + 1;
+    if (decoder->DecodeFrame2(bytes.empty() ? nullptr : bytes.data(),
+                              static_cast<int>(bytes.size()), planes, &info) != dsErrorFree)
       return failed;
-    found = is_wanted();
   }
-  if (!found) {  // the end of the last picture is seen where nothing follows
-    info = {};
-    if (decoder->DecodeFrame2(nullptr, 0, planes, &info) != dsErrorFree) return failed;
-    found = is_wanted();
-  }
-  while (!found) {
+  while (!is_wanted()) {
     info = {};
     if (decoder->FlushFrame(planes, &info) != dsErrorFree || info.iBufferStatus != 1) return failed;
-    found = is_wanted();
   }
   const SSysMEMBuffer& memory = info.UsrData.sSystemBuffer;
   if (planes[0] == nullptr || memory.iWidth < 1 || memory.iHeight < 1 ||
