@@ -1,5 +1,8 @@
 """Logs of runs: what the command line writes, others' programs read, and `replay --verify` steps again."""
+import contextlib
+import io
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -65,6 +68,16 @@ class Log(unittest.TestCase):
                     self.assertEqual(stamp, log_time, name)
         image = next(v for n, ms in read.items() if n.endswith("/image_raw") for _, v in ms)
         self.assertEqual((image.encoding, image.width, image.height, image.data.size), ("rgb8", 64, 48, 64 * 48 * 3))
+
+    def test_the_lines_of_the_readme_read_it(self):
+        code = re.search(r"^```python\n(.*?)^```", (ROOT / "README.md").read_text(), re.M | re.S).group(1)
+        code = code.replace("fire.mcap", str(self.log)).replace("/go/odom", "/ada/odom")
+        said = io.StringIO()
+        with contextlib.redirect_stdout(said):
+            exec(compile(code, "README.md", "exec"), {})
+        rows = said.getvalue().splitlines()
+        self.assertGreater(len(rows), 40)
+        self.assertNotEqual(rows[0].split()[-1], rows[-1].split()[-1])
 
     def test_the_run_is_stepped_again_to_the_bit(self):
         said = gloam("replay", self.log, "--verify").stdout
