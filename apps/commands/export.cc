@@ -24,7 +24,7 @@ const std::map<std::string, TrajectoryFormat> kTrajectories = {{"tum", Trajector
                                                                {"kitti", TrajectoryFormat::kKitti},
                                                                {"euroc", TrajectoryFormat::kEuroc}};
 
-/// What is written of a topic that is named, and how its parts are called.
+/// Parts of a topic that are written, and their names.
 struct TopicWriter {
   Result<int64_t> (*write)(const std::filesystem::path& log, const std::string& topic,
                            const std::filesystem::path& to);

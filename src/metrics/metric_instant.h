@@ -1,5 +1,5 @@
 #pragma once
-// What metrics read of one instant.
+// Data of one instant that metrics read.
 
 #include <mujoco/mujoco.h>
 
@@ -25,7 +25,7 @@ struct MetricInstant {
   double time() const { return snapshot->time(); }
 };
 
-/// What is around robots, where it is measured: functions of renderers, which metrics do not see.
+/// Measures of what is around robots: functions of renderers, which metrics do not see.
 struct MetricProbes {
   /// Visibility at a place [m] (Koschmieder); empty = the scene has no media.
   std::function<double(const SnapshotData&, Vec3f p_W)> visibility = {};

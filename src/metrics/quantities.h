@@ -12,7 +12,7 @@
 
 namespace gloam {
 
-/// What a quantity reads of an instant.
+/// Data of an instant that quantities read.
 struct QuantityReader {
   int id = 0;              ///< of MuJoCo's element; row of its sensor, column of a built-in metric
   int width = 1;           ///< 1 or 3

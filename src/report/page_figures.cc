@@ -37,7 +37,7 @@ std::string goal_column(const std::string& column) {
   return column.substr(0, unit) + "_goal" + column.substr(unit);
 }
 
-/// What a column's values are, over all runs.
+/// Range of a column's values over all runs.
 struct ColumnRange {
   bool any = false, is_constant = true, are_equal = true;
   double first = 0;

@@ -22,7 +22,7 @@ struct RunMetricsRequest {
 Result<std::unique_ptr<Metrics>> make_metrics(const World& world, LiveSimulation& simulation,
                                               const RunMetricsRequest& request);
 
-/// What the outcome tells of them.
+/// Adds them to the outcome of a run.
 void add_metrics(const Metrics& metrics, RunOutcome* outcome);
 
 /// The metrics' own consumer of Snapshots.

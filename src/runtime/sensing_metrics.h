@@ -12,7 +12,7 @@
 
 namespace gloam {
 
-/// Of one camera; frames come on one thread at a time.
+/// Quality of one camera; frames come on one thread at a time.
 class CameraQuality {
  public:
   explicit CameraQuality(std::string camera) : name_(std::move(camera)) {}
@@ -29,7 +29,7 @@ class CameraQuality {
   int64_t pictures_ = 0, there_ = 0, measured_ = 0;
 };
 
-/// Of one LiDAR; scans come on one thread at a time.
+/// Quality of one LiDAR; scans come on one thread at a time.
 class LidarQuality {
  public:
   explicit LidarQuality(std::string lidar) : name_(std::move(lidar)) {}
@@ -44,7 +44,7 @@ class LidarQuality {
   bool has_truth_ = false;
 };
 
-/// Of all that a run records. Pointers stay good while it lives.
+/// Quality of all that a run records. Pointers stay good while it lives.
 class SensingMetrics {
  public:
   CameraQuality* add_camera(const std::string& name);

@@ -232,7 +232,7 @@ class UrdfWriter {
          m_.dof_frictionloss[dof]);
   }
 
-  // Of the joint's own limit, else of the actuators on it that have one.
+  // Limit of the joint's own, else of the actuators on it that have one.
   double most_effort(int joint) const {
     const mjtNum* own = m_.jnt_actfrcrange + 2 * joint;
     if (m_.jnt_actfrclimited[joint]) return std::max(std::abs(own[0]), std::abs(own[1]));

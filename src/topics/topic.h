@@ -55,7 +55,7 @@ using SampleEncoder =
 using InstantEncoder = std::function<Status(const TopicInfo&, TopicInstant&, MessageBytes*)>;
 /// Makes the encoder of one subscription, which sums up the instants before.
 using InstantEncoderMaker = std::function<InstantEncoder()>;
-/// What latched topics tell of at the moment that they are opened.
+/// Inputs of latched topics at the moment that they are opened.
 struct LatchedInputs {
   double time = 0;                                             ///< simulation time [s]
   std::function<Result<std::vector<LabelRow>>()> labels = {};  ///< of what pictures show; slow

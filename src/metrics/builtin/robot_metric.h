@@ -21,7 +21,7 @@ struct MetricColumn {
 /// Number of the summary, without the robot's name: "path_length_m".
 using MetricNumber = std::pair<std::string, double>;
 
-/// What families know of a robot.
+/// A robot as families know it.
 struct MetricRobot {
   const CompiledWorld* world = nullptr;
   const RobotInstance* instance = nullptr;

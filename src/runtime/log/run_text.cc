@@ -48,6 +48,7 @@ RunText describe_run(const CompiledWorld& world, uint64_t seed, std::optional<do
   const fs::path file = scene.bare_model.empty() ? scene.file : scene.bare_model;
   const fs::path folder = file.empty() ? fs::path() : fs::absolute(file).parent_path();
   text.folder = folder.string();
+  text.file = scene.bare_model.empty() ? file.filename().string() : std::string();
   if (!scene.bare_model.empty()) text.bare_model = near(fs::absolute(scene.bare_model), folder);
   text.keyframe = world.keyframe;
   text.toml = to_toml(scene);
@@ -71,6 +72,7 @@ std::string to_json(const RunText& text) {
                      {"timestep", text.timestep},
                      {"name", text.name},
                      {"folder", text.folder},
+                     {"file", text.file},
                      {"bare_model", text.bare_model},
                      {"keyframe", text.keyframe},
                      {"model_hash", hash_to_hex(text.model_hash)},
@@ -93,6 +95,7 @@ Result<RunText> parse_run_text(std::string_view json_text) {
     json.at("timestep").get_to(text.timestep);
     json.at("name").get_to(text.name);
     json.at("folder").get_to(text.folder);
+    text.file = json.value("file", "");
     json.at("bare_model").get_to(text.bare_model);
     json.at("keyframe").get_to(text.keyframe);
     json.at("scene").get_to(text.toml);
@@ -132,6 +135,7 @@ Result<Scene> scene_of(const RunText& text, const fs::path& folder) {
   Scene scene;
   if (text.bare_model.empty()) {
     GLOAM_TRY(scene, parse_scene(text.toml, from));
+    if (!text.file.empty()) scene.file = from / text.file;
   } else {
     GLOAM_TRY(scene, load_scene(from / text.bare_model));
   }

@@ -26,10 +26,10 @@ struct RunText {
   std::string version, mujoco, configuration;
   uint64_t seed = 1;
   double timestep = 0;  ///< instead of the model's [s]; 0 = the model's
-  std::string name, folder, bare_model, keyframe;
-  std::string toml;         ///< of the scene as it was given
-  uint64_t model_hash = 0;  ///< of all of mjModel
-  std::vector<File> files;  ///< of models and scene that exist
+  std::string name, folder, file, bare_model, keyframe;  ///< `file` in `folder`; "" = from text
+  std::string toml;                                      ///< of the scene as it was given
+  uint64_t model_hash = 0;                               ///< of all of mjModel
+  std::vector<File> files;                               ///< of models and scene that exist
   /// The run began from a checkpoint, and the Commands that led there from its beginning are
   /// logged.
   bool has_history = false;

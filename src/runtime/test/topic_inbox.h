@@ -43,7 +43,7 @@ inline void record_topics(const World& world, const std::vector<std::string>& to
   auto simulation = *Simulation::create(world, {.pace = Pace::kLockstep});
   auto stream = *simulation->open_topics({.topics = topics, .required = true}, inbox->callback());
   ASSERT_TRUE(simulation->step(steps).ok());
-  // What is due at the last step comes with the next.
+  // Topics due at the last step come with the next.
   ASSERT_TRUE(simulation->step(1).ok());
   ASSERT_TRUE(stream->status().ok()) << stream->status().error().to_string();
 }

@@ -26,7 +26,7 @@ Result<std::unique_ptr<Restepper>> Restepper::create(RunRecord record,
   return made;
 }
 
-// What step hooks wrote comes where they wrote it.
+// Inputs of step hooks come where the hooks wrote them.
 void Restepper::repeat_inputs() {
   loop_->set_step_hook([this](const mjModel* model, mjData* data) {
     const int64_t step = loop_->stepper().step_count();

@@ -74,7 +74,7 @@ class Simulator {
   /// Before start(): `motion` tells where bodies are, instead of physics, controllers and Commands.
   /// It ends at `end`, where the simulation then stands still.
   Status follow(std::unique_ptr<Motion> motion, int64_t end = kForever);
-  /// Of a motion: goes to `step` in a new run, forwards or back, and stands there. Blocks: effects
+  /// Goes to `step` of a motion in a new run, forwards or back, and stands there. Blocks: effects
   /// are solved from the beginning on.
   Status seek(int64_t step);
   int64_t end() const { return end_; }
