@@ -45,7 +45,8 @@ struct Cost {
 };
 
 Cost run(const World& world, int64_t steps, const fs::path& log, bool pictures) {
-  auto live = taken(LiveSimulation::create(world, {.pace = Pace::kFast}, {.metering = Metering::kNever}));
+  auto live =
+      taken(LiveSimulation::create(world, {.pace = Pace::kFast}, {.metering = Metering::kNever}));
   std::unique_ptr<LogRecorder> recorder;
   if (!log.empty()) {
     fs::remove(log);
