@@ -78,11 +78,11 @@ class Report(unittest.TestCase):
         cls.folder = Path(scratch.name)
         (cls.folder / "pendulum.xml").write_text(PENDULUM)
         (cls.folder / "swing.toml").write_text(SCENE)
-        quick = ["--tier", "direct", "--spp", "1", "--resolution", "96x64"]
+        quick = ["--tier", "direct", "--spp", "1", "--resolution", "96x64", "--camera", "side"]
         for seed in (1, 2, 3):
             cls.gloam("run", "swing.toml", "--out", f"swing-00{seed}", "--seed", seed, *(["--mcap"] if seed == 1 else []), *quick)
         cls.gloam("replay", "swing-001/run.mcap", "--set", "camera.side.fovy=20", "--set", "render.tier=direct", "--set", "render.spp=1",
-                  "--resolution", "96x64", "--out", "near")
+                  "--resolution", "96x64", "--camera", "side", "--out", "near")
         cls.said = cls.gloam("report", "swing-001", "swing-002", "swing-003", "near", "-o", "all.html", "--json").stdout
         cls.html = (cls.folder / "all.html").read_text()
         cls.page = Page(cls.html)

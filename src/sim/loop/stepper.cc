@@ -347,7 +347,7 @@ const Snapshot& Stepper::snapshot() {
       for (const auto& effect : effects_) effect->publish(step_, &out.effects);
       out.effects.loads.assign(events_.loads.begin(), events_.loads.end());
       out.sensor_stamp = sensor_stamp_;
-      out.warnings.assign(warnings_seen_.begin(), warnings_seen_.end());
+      out.warnings = warnings_seen_;
       std::copy(state_.begin(), state_.end(), out.state.begin());
       const double* sensors = own_sensors_ ? sensors_.data() : data_->sensordata;
       std::copy_n(sensors, out.sensordata.size(), out.sensordata.begin());

@@ -1,6 +1,9 @@
 #pragma once
 // The data behind gloam::Snapshot.
 
+#include <mujoco/mujoco.h>
+
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -30,7 +33,7 @@ struct SnapshotData {
   std::vector<double> state;               ///< mjSTATE_INTEGRATION
   std::vector<double> sensordata;          ///< (nsensordata), of the state before the last step
   double sensor_stamp = 0;                 ///< [s]
-  std::vector<int> warnings;               ///< MuJoCo's since the reset, by mjtWarning
+  std::array<int, mjNWARNING> warnings{};  ///< MuJoCo's since the reset, by mjtWarning
   std::shared_ptr<const LiveFields> live;  ///< null = nothing changed
   EffectOutputs effects;
 };
