@@ -9,7 +9,8 @@
 namespace gloam {
 namespace {
 
-constexpr int kLeastWidth = 16;  // pixels, below which four apart tell nothing
+constexpr size_t kApart = 4;     // [px]
+constexpr int kLeastWidth = 16;  // [px], below which four apart tell nothing
 
 /// Linear light of 8-bit sRGB.
 const std::array<float, 256>& linear_table() {
@@ -28,16 +29,26 @@ double percent(int64_t part, int64_t of) {
 }  // namespace
 
 void CameraQuality::add(const CameraFrame& frame) {
-  if (!frame.rgb.empty() && frame.intrinsics.width >= kLeastWidth &&
-      frame.intrinsics.height >= kLeastWidth) {
-    linear_.resize(frame.rgb.size());
-    for (size_t i = 0; i < frame.rgb.size(); ++i) linear_[i] = linear_table()[frame.rgb[i]];
-    const double contrast = contrast_of(linear_, frame.intrinsics.width);
-    if (std::isfinite(contrast)) {  // not of black pictures
-      contrast_ += contrast;
-      ++pictures_;
-    }
-  }
+  ++frames_;
+  events_ += static_cast<int64_t>(frame.events.size());
+  add_picture(frame);
+  add_depth(frame);
+  add_thermal(frame);
+}
+
+void CameraQuality::add_picture(const CameraFrame& frame) {
+  if (frame.rgb.empty() || frame.intrinsics.width < kLeastWidth ||
+      frame.intrinsics.height < kLeastWidth)
+    return;
+  linear_.resize(frame.rgb.size());
+  for (size_t i = 0; i < frame.rgb.size(); ++i) linear_[i] = linear_table()[frame.rgb[i]];
+  const double contrast = contrast_of(linear_, frame.intrinsics.width);
+  if (!std::isfinite(contrast)) return;  // a black picture
+  contrast_ += contrast;
+  ++pictures_;
+}
+
+void CameraQuality::add_depth(const CameraFrame& frame) {
   if (frame.sensor_depth.size() != frame.depth.size()) return;
   for (size_t i = 0; i < frame.depth.size(); ++i) {
     const auto truth = static_cast<double>(frame.depth[i]);
@@ -50,6 +61,16 @@ void CameraQuality::add(const CameraFrame& frame) {
   }
 }
 
+void CameraQuality::add_thermal(const CameraFrame& frame) {
+  const auto across = static_cast<size_t>(frame.intrinsics.width);
+  for (size_t i = 0; i + kApart < frame.thermal.size(); ++i) {
+    if (i % across + kApart >= across) continue;
+    const auto step = static_cast<double>(frame.thermal[i + kApart] - frame.thermal[i]);
+    thermal_squared_ += step * step;
+    ++thermal_;
+  }
+}
+
 void CameraQuality::summarize(std::vector<std::pair<std::string, double>>* numbers) const {
   if (pictures_ > 0)
     numbers->emplace_back(name_ + ".contrast", contrast_ / static_cast<double>(pictures_));
@@ -58,6 +79,12 @@ void CameraQuality::summarize(std::vector<std::pair<std::string, double>>* numbe
   if (measured_ > 0)
     numbers->emplace_back(name_ + ".depth_error_percent",
                           100 * std::sqrt(error_squared_ / static_cast<double>(measured_)));
+  if (thermal_ > 0)
+    numbers->emplace_back(name_ + ".thermal_contrast_K",
+                          std::sqrt(thermal_squared_ / static_cast<double>(thermal_)));
+  if (events_ > 0)
+    numbers->emplace_back(name_ + ".events_per_frame",
+                          static_cast<double>(events_) / static_cast<double>(frames_));
 }
 
 void LidarQuality::add(const LidarScan& scan) {

@@ -20,13 +20,19 @@ class CameraQuality {
   /// "CAMERA.contrast": mean of contrast_of the pictures (1 = a factor of e). With a depth model
   /// and true depth "CAMERA.depth_measured_percent": pixels with a measured depth of those where
   /// there is something; "CAMERA.depth_error_percent": root mean square of its relative error.
+  /// Thermal: "CAMERA.thermal_contrast_K", the root mean square of differences over four pixels of
+  /// a row. Event cameras: "CAMERA.events_per_frame".
   void summarize(std::vector<std::pair<std::string, double>>* numbers) const;
 
  private:
+  void add_picture(const CameraFrame& frame);
+  void add_depth(const CameraFrame& frame);
+  void add_thermal(const CameraFrame& frame);
+
   std::string name_;
   std::vector<float> linear_;  // of one picture
-  double contrast_ = 0, error_squared_ = 0;
-  int64_t pictures_ = 0, there_ = 0, measured_ = 0;
+  double contrast_ = 0, error_squared_ = 0, thermal_squared_ = 0;
+  int64_t pictures_ = 0, there_ = 0, measured_ = 0, thermal_ = 0, frames_ = 0, events_ = 0;
 };
 
 /// Quality of one LiDAR; scans come on one thread at a time.

@@ -190,6 +190,22 @@ TEST_F(Replays, PosesAreThoseOfTheLog) {
       EXPECT_NEAR(row[i], poses.at(time)[i], 1e-12) << time << " " << i;
 }
 
+// Another paint is another model: its bits are not promised, its poses are those of the log.
+TEST_F(Replays, ChangedFilesLeaveThePoses) {
+  std::string painted = kDropped;
+  painted.replace(painted.find("1 0 0 1"), 7, "0 0 1 1");
+  folder_.write("drop.xml", painted);
+  const auto report = replay({}, "painted");
+  ASSERT_TRUE(report.ok()) << report.error().to_string();
+  ASSERT_TRUE(report->status.ok()) << report->status.error().to_string();
+  ASSERT_EQ(report->notes.size(), 1u);
+  EXPECT_THAT(report->notes[0], HasSubstr("poses only"));
+  EXPECT_THAT(report->notes[0], HasSubstr("drop.xml"));
+  EXPECT_NE(file("painted", "eye/rgb/000003.png"), file("first", "eye/rgb/000003.png"));
+  EXPECT_EQ(file("painted", "eye/depth/000003.png"), file("first", "eye/depth/000003.png"));
+  EXPECT_FALSE(verify_log(log_, "", {}).ok());
+}
+
 TEST_F(Replays, ARunAnewIsAnother) {
   LogReplay replay{.log = log_,
                    .motion = ReplayMotion::kNewRun,

@@ -52,6 +52,22 @@ TEST(SensingMetrics, DepthIsComparedWhereThereIsSomething) {
   EXPECT_EQ(numbers.count("rgbd.contrast"), 0u);
 }
 
+TEST(SensingMetrics, HeatAndEventsAreCounted) {
+  CameraFrame frame;
+  frame.intrinsics.width = 8;
+  frame.intrinsics.height = 1;
+  frame.thermal = {290, 290, 290, 290, 293, 293, 293, 293};
+  frame.events.resize(5);
+  SensingMetrics metrics;
+  CameraQuality* hot = metrics.add_camera("hot");
+  hot->add(frame);
+  frame.events.clear();
+  hot->add(frame);
+  const auto numbers = numbers_of(metrics);
+  EXPECT_NEAR(numbers.at("hot.thermal_contrast_K"), 3, 1e-6);
+  EXPECT_EQ(numbers.at("hot.events_per_frame"), 2.5);
+}
+
 TEST(SensingMetrics, ReturnsAreFirstOnesAndFalseOnesAreMedias) {
   LidarScan scan;
   scan.beams = 8;
