@@ -48,6 +48,9 @@ int run_world(const World& world, RunRequest request, const RunCommand& command,
   request.out = command.out;
   if (request.out.empty() && scene.bare_model.empty() && !command.view)
     request.out = std::filesystem::path("results") / scene.name;
+  // The World of a log says what [record] said then; elsewhere the flag is in the scene.
+  if (request.from && command.mcap && !request.out.empty())
+    request.log.file = request.out / "run.mcap";
   request.overwrite = command.overwrite;
   request.cameras = command.options.cameras;
   request.simulation.pace = command.realtime || command.view ? Pace::kRealTime : Pace::kFast;
@@ -77,9 +80,6 @@ int run_on(const RunCommand& command, const Globals& globals) {
   request.simulation.timestep = from->world().scene().sim.timestep.value_or(0);
   request.from = *from;
   request.duration = o.duration.value_or(0);
-  request.log.file = command.mcap && !command.out.empty()
-                         ? std::filesystem::path(command.out) / "run.mcap"
-                         : std::filesystem::path();
   return run_world(from->world(), request, command, globals);
 }
 

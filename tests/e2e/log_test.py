@@ -86,6 +86,13 @@ class Log(unittest.TestCase):
         self.assertTrue(info["can_be_stepped_again"])
         self.assertEqual(info["damage"], "")
 
+    def test_a_run_that_goes_on_has_a_log_that_verifies(self):
+        said = subprocess.run([str(PROGRAM), "run", str(self.log), "--at", "0.5", "--duration", "0.2", "--mcap", "--camera", "chase",
+                               "--resolution", "64x48"], cwd=self.folder, capture_output=True, text=True, timeout=300)
+        self.assertEqual(said.returncode, 0, said.stderr)
+        log = self.folder / "results/two_robots/run.mcap"  # where a run goes that names no folder
+        self.assertRegex(gloam("replay", log, "--verify").stdout, r"^0 of 350 steps differ")
+
     def test_trajectories_and_tables_are_those_of_the_messages(self):
         from rosbags.typesys import Stores, get_typestore
         store = get_typestore(Stores.ROS2_KILTED)
