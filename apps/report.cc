@@ -16,6 +16,8 @@ int run_and_report(const World& world, const RunRequest& request, const Globals&
 int tell_of(const Result<RunReport>& report, const Globals& globals) {
   finish_progress();
   if (!report.ok()) return fail(report.error());
+  for (const std::string& note : report->notes)
+    std::fprintf(stderr, "gloam: note: %s\n", note.c_str());
   const double factor = report->wall_time > 0 ? report->sim_time / report->wall_time : 0;
   if (globals.json) {
     nlohmann::ordered_json json = {
@@ -27,6 +29,7 @@ int tell_of(const Result<RunReport>& report, const Globals& globals) {
         {"state_hash", fmt::format("{:016x}", report->hash)},
         {"frames", report->frames},
         {"written", report->written},
+        {"notes", report->notes},
         {"error", report->status.ok() ? "" : report->status.error().to_string()}};
     std::printf("%s\n", json_text(json).c_str());
   } else {

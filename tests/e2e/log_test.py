@@ -93,6 +93,13 @@ class Log(unittest.TestCase):
         log = self.folder / "results/two_robots/run.mcap"  # where a run goes that names no folder
         self.assertRegex(gloam("replay", log, "--verify").stdout, r"^0 of 350 steps differ")
 
+    def test_a_replay_says_where_its_motion_comes_from(self):
+        for option, word in (("--poses", "poses only"), ("--restep", "a new run")):
+            out = self.folder / option
+            said = gloam("replay", self.log, option, "--out", out, "--output", "state", "--json")
+            self.assertIn(word, said.stderr)
+            self.assertIn(word, json.loads(said.stdout)["notes"][0])
+
     def test_trajectories_and_tables_are_those_of_the_messages(self):
         from rosbags.typesys import Stores, get_typestore
         store = get_typestore(Stores.ROS2_KILTED)

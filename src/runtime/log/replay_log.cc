@@ -80,6 +80,7 @@ class Replay {
     notes_.emplace_back(fmt::format(
         "a new run: {} of the log's {} Commands act in the changed scene by its own physics",
         request_.commands.size(), run_.record.commands.size()));
+    if (!run_.record.inputs.empty()) notes_.back() += "; what step hooks wrote is left out";
     return std::unique_ptr<Motion>();
   }
 
