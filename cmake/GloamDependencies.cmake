@@ -22,6 +22,12 @@ pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
 pkg_check_modules(LZ4 REQUIRED IMPORTED_TARGET liblz4)
 pkg_check_modules(OPENH264 IMPORTED_TARGET openh264)
 
+# Bridges: what is missing is told of when such a bridge is asked for.
+find_package(fastrtps QUIET)
+pkg_check_modules(ZMQ IMPORTED_TARGET libzmq)
+find_path(CPPZMQ_INCLUDE zmq.hpp)
+find_path(MSGPACK_INCLUDE msgpack.hpp)
+
 # Recast and Detour, where agents can go: Debian's package has neither CMake nor pkg-config files. Without them a stub says so.
 find_path(RECAST_INCLUDE recastnavigation/Recast.h)
 foreach(part Recast Detour DetourCrowd)

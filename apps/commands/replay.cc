@@ -10,8 +10,8 @@
 #include "gloam/log_player.h"
 #include "gloam/log_replay.h"
 #include "json_text.h"
+#include "live.h"
 #include "outputs.h"
-#include "page.h"
 #include "report.h"
 #include "run_options.h"
 
@@ -24,8 +24,8 @@ struct ReplayCommand {
   std::optional<uint64_t> seed;
   int64_t run = 0, variants = 0;
   double duration = 0;
-  bool verify = false, poses = false, restep = false, overwrite = false, view = false;
-  ViewCommand page;
+  bool verify = false, poses = false, restep = false, overwrite = false;
+  LiveCommand live;
 };
 
 Result<LogReplay> replay_of(const ReplayCommand& command) {
@@ -82,14 +82,17 @@ int play(const ReplayCommand& command, const LogReplay& replay) {
   EndOnInterrupt starting;
   auto player = LogPlayer::open(replay);
   if (!player.ok()) return fail(player.error());
-  ViewOptions view{.width = replay.request.width, .height = replay.request.height};
-  if (!replay.request.cameras.empty()) view.camera = replay.request.cameras.front();
-  view.player = player->get();
-  return show_page((*player)->simulation(), view, command.page, starting);
+  LiveRun run{(*player)->simulation()};
+  run.view.width = replay.request.width;
+  run.view.height = replay.request.height;
+  if (!replay.request.cameras.empty()) run.view.camera = replay.request.cameras.front();
+  run.view.player = player->get();
+  run.bridges = command.live.options({});
+  return run_live(std::move(run), command.live, starting);
 }
 
 int look_again(const ReplayCommand& command, const Globals& globals) {
-  if (command.out.empty() && command.to_log.empty() && !command.view)
+  if (command.out.empty() && command.to_log.empty() && !command.live.any({}))
     return fail({ErrorKind::kUsage,
                  "nothing is asked for",
                  {},
@@ -97,7 +100,7 @@ int look_again(const ReplayCommand& command, const Globals& globals) {
                  "shows it"});
   auto replay = replay_of(command);
   if (!replay.ok()) return fail(replay.error());
-  if (command.view) return play(command, *replay);
+  if (command.live.any({})) return play(command, *replay);
   if (command.variants > 0) return record_variants(command, *std::move(replay), globals);
   return tell_of(replay_log(*replay, progress_display(globals)), globals);
 }
@@ -163,9 +166,8 @@ void add_replay(CLI::App& app, Globals& globals, Action& action) {
   sub->add_option("--resolution", command->resolution, "WIDTHxHEIGHT of every camera");
   sub->add_option("--duration", command->duration, "Seconds of it; default: all")
       ->check(positive_number());
-  sub->add_flag("--view", command->view, "Serve a live page on this machine to go about in it");
-  sub->add_flag("--loop", command->page.loop, "Begin again at the end, with --view");
-  command->page.add_to(*sub);
+  sub->add_flag("--loop", command->live.loop, "Begin again at the end, where it is live");
+  command->live.add_to(*sub);
   sub->footer(
       "Exit codes of --verify: 0 equal, 1 different, 3 a run could not be verified\nExamples:\n  "
       "gloam replay run.mcap --verify\n  gloam replay run.mcap --set weather.visibility=8 --set "

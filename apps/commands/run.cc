@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "gloam/log_replay.h"
+#include "live.h"
 #include "outputs.h"
-#include "page.h"
 #include "report.h"
 #include "run_options.h"
 
@@ -16,12 +16,12 @@ namespace {
 struct RunCommand {
   std::string file, out;
   RunOptions options;
-  bool overwrite = false, realtime = false, view = false, mcap = false;
+  bool overwrite = false, realtime = false, mcap = false;
   std::optional<double> at;  ///< [s]
-  ViewCommand page;
+  LiveCommand live;
 };
 
-int watch(const World& world, const RunRequest& request, const RunCommand& command) {
+int keep_live(const World& world, const RunRequest& request, const RunCommand& command) {
   const Scene& scene = world.scene();
   EndOnInterrupt starting;
   auto simulation = Simulation::create(world, request.simulation);
@@ -30,31 +30,49 @@ int watch(const World& world, const RunRequest& request, const RunCommand& comma
     if (const Status status = (*simulation)->restore(*request.from); !status.ok())
       return fail(status.error());
   }
-  ViewOptions view{.width = request.width, .height = request.height};
+  LiveRun run{**simulation};
+  run.view.width = request.width;
+  run.view.height = request.height;
   // A live picture is a quick one unless the user asked for light on the command line.
-  if (!command.options.tier.empty()) view.render = scene.render;
-  view.render.ev100 = scene.render.ev100;
+  if (!command.options.tier.empty()) run.view.render = scene.render;
+  run.view.render.ev100 = scene.render.ev100;
   if (!request.cameras.empty()) {
-    view.camera = request.cameras.front();
+    run.view.camera = request.cameras.front();
   } else if (!scene.cameras.empty()) {
-    view.camera = scene.cameras.front().name;  // the free camera may stand outside the walls
+    run.view.camera = scene.cameras.front().name;  // the free camera may stand outside the walls
   }
-  return show_page(**simulation, view, command.page, starting);
+  run.bridges = command.live.options(scene.bridge);
+  run.log = request.log;
+  run.duration = command.options.duration;
+  return run_live(std::move(run), command.live, starting);
+}
+
+// The log of a live run, in its folder.
+Status place_log(RunRequest* request) {
+  if (request->out.empty()) return {};
+  std::error_code code;
+  std::filesystem::create_directories(request->out, code);
+  if (code)
+    return Error{ErrorKind::kIo, "no folder " + request->out.string() + ": " + code.message()};
+  request->log.file = request->out / "run.mcap";
+  request->log.overwrite = request->overwrite;
+  return {};
 }
 
 int run_world(const World& world, RunRequest request, const RunCommand& command,
               const Globals& globals) {
   const Scene& scene = world.scene();
   request.out = command.out;
-  if (request.out.empty() && scene.bare_model.empty() && !command.view)
+  const bool is_live = command.live.any(scene.bridge);
+  if (request.out.empty() && (is_live ? command.mcap : scene.bare_model.empty()))
     request.out = std::filesystem::path("results") / scene.name;
   // The World of a log says what [record] said then; elsewhere the flag is in the scene.
   if (request.from && command.mcap && !request.out.empty())
     request.log.file = request.out / "run.mcap";
   request.overwrite = command.overwrite;
   request.cameras = command.options.cameras;
-  request.simulation.pace = command.realtime || command.view ? Pace::kRealTime : Pace::kFast;
-  request.simulation.speed = command.page.speed;
+  request.simulation.pace = command.realtime || is_live ? Pace::kRealTime : Pace::kFast;
+  request.simulation.speed = command.live.speed;
   if (!command.options.resolution.empty()) {
     if (const Status status =
             parse_resolution(command.options.resolution, request.width, request.height);
@@ -62,7 +80,11 @@ int run_world(const World& world, RunRequest request, const RunCommand& command,
       return fail(status.error());
     }
   }
-  return command.view ? watch(world, request, command) : run_and_report(world, request, globals);
+  if (!is_live) return run_and_report(world, request, globals);
+  if (command.mcap) {
+    if (const Status status = place_log(&request); !status.ok()) return fail(status.error());
+  }
+  return keep_live(world, request, command);
 }
 
 // Goes on from an instant of a log, in its World.
@@ -116,15 +138,15 @@ void add_run(CLI::App& app, Globals& globals, Action& action) {
   sub->add_flag("--overwrite", command->overwrite, "Replace an existing results folder");
   sub->add_flag("--realtime", command->realtime,
                 "Pace by the wall clock; default: as fast as possible");
-  sub->add_flag("--view", command->view, "Serve a live page on this machine instead of recording");
-  command->page.add_to(*sub);
+  command->live.add_to(*sub);
   sub->add_option("--at", command->at,
                   "FILE is a log: go on from this time of it [s], for --duration more")
       ->check(non_negative_number());
   sub->footer(
       "Examples:\n  gloam run examples/demo.toml --duration 3\n  gloam run robot.xml --out "
       "results/robot --camera front\n  gloam run examples/lidar.toml --duration 1 --output "
-      "lidar,sensors,depth_exr\n  gloam run robot.urdf --view\n  gloam run run.mcap --at 2.5 "
+      "lidar,sensors,depth_exr\n  gloam run robot.urdf --view\n  gloam run examples/demo.toml "
+      "--ros2 --view\n  gloam run run.mcap --at 2.5 "
       "--duration 3 --out results/branch");
   sub->callback([&globals, &action, command] {
     action = [&globals, command] { return run(*command, globals); };

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "gloam/world.h"
 
 namespace gloam {
+
+class Simulation;
 
 struct LogRequest {
   std::filesystem::path file = {};       ///< new file; empty = no log
@@ -23,6 +26,19 @@ struct LogRequest {
   bool embed = false;              ///< with the files that the scene reads
   Rational state_rate = {100, 1};  ///< states per second of simulation time [Hz]
 };
+
+/// A log that is being written. Destroyed unfinished, it is readable but lacks its index.
+class LogStream {
+ public:
+  virtual ~LogStream() = default;
+  virtual Status status() const = 0;    ///< why it writes no more, if so
+  virtual int64_t dropped() const = 0;  ///< messages lost because the disk was slow
+  /// Writes what waits, the last state and the index; the simulation rests meanwhile.
+  virtual Status finish() = 0;
+};
+/// Writes the log of a simulation from now on, which rests while it is begun; one log of a
+/// simulation at a time. Errors: the file exists, no such topic, called on the physics thread.
+Result<std::unique_ptr<LogStream>> start_log(Simulation& simulation, const LogRequest& request);
 
 struct LoggedTopic {
   std::string name, type;  ///< "/tf", "tf2_msgs/msg/TFMessage"

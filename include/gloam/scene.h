@@ -11,6 +11,7 @@
 
 #include "gloam/result.h"
 #include "gloam/scene/agent.h"
+#include "gloam/scene/bridge.h"
 #include "gloam/scene/camera.h"
 #include "gloam/scene/effect.h"
 #include "gloam/scene/environment.h"
@@ -70,6 +71,7 @@ struct Scene {
   std::vector<MetricOptions> metrics = {};
   std::vector<GoalOptions> goals = {};
   RecordOptions record = {};
+  BridgeOptions bridge = {};
   /// A bare MJCF or URDF is used as it stands: no prefix, nothing added, options unchanged. Then
   /// this is its path and robots and environment are empty.
   std::filesystem::path bare_model = {};

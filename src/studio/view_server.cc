@@ -5,7 +5,7 @@
 
 #include "gloam/log_player.h"
 #include "gloam/view.h"
-#include "studio/access.h"
+#include "web/access.h"
 #include "studio/driver.h"
 #include "studio/messages.h"
 #include "studio/picture.h"
@@ -22,7 +22,7 @@ Error usage(std::string message, std::string hint = {}) {
 }
 
 Status check(const ViewOptions& options) {
-  if (!is_loopback_name(options.host))
+  if (!web::is_loopback_name(options.host))
     return usage("the view serves this machine only, and '" + options.host +
                      "' is not one of its loopback names",
                  "from another machine: ssh -L 8080:localhost:8080, then open the printed address");
@@ -170,7 +170,7 @@ ViewServer::~ViewServer() = default;
 Result<std::unique_ptr<ViewServer>> ViewServer::start(Simulation& simulation,
                                                       const ViewOptions& options) {
   GLOAM_TRY_STATUS(check(options));
-  GLOAM_TRY(const std::string token, make_token());
+  GLOAM_TRY(const std::string token, web::make_token());
   auto impl = std::make_unique<Impl>(simulation, options, token);
   GLOAM_TRY_STATUS(impl->start());
   return std::unique_ptr<ViewServer>(new ViewServer(std::move(impl)));

@@ -27,7 +27,7 @@ constexpr std::chrono::seconds kGoodbyeTime{2};
 
 std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
 
-RequestFacts facts_of(const http::request<http::empty_body>& request) {
+web::RequestFacts facts_of(const http::request<http::empty_body>& request) {
   const auto field = [&](auto name) { return view(request[name]); };
   return {.method = view(request.method_string()),
           .target = view(request.target()),
@@ -82,12 +82,12 @@ void WebConnection::on_request(error_code error) {
   if (error) return refuse(400, "This is not an HTTP request.");
 
   const auto& request = request_->get();
-  const RequestFacts facts = facts_of(request);
-  const Verdict verdict = judge(facts, shared_.options.token, shared_.cookie_name);
+  const web::RequestFacts facts = facts_of(request);
+  const web::Verdict verdict = web::judge(facts, shared_.options.token, shared_.cookie_name);
   if (verdict.status != 200) return refuse(static_cast<unsigned>(verdict.status), verdict.reason);
   if (!request_->is_done()) return refuse(413, "A request here has no body.");
 
-  const std::string_view path = target_path(facts.target);
+  const std::string_view path = web::target_path(facts.target);
   if (facts.websocket) {
     if (path != "/ws") return refuse(404, "The WebSocket is at /ws.");
     return become_websocket();

@@ -20,7 +20,7 @@
 #include <set>
 #include <string>
 
-#include "studio/access.h"
+#include "web/access.h"
 #include "studio/web_server.h"
 
 namespace gloam::studio {

@@ -60,7 +60,7 @@ class WebServer::Impl {
     if (!error) acceptor_.listen(net::socket_base::max_listen_connections, error);
     if (!error) port_ = acceptor_.local_endpoint(error).port();
     if (error) return listen_error(error, port);
-    shared_.cookie_name = cookie_name(port_);
+    shared_.cookie_name = web::cookie_name(port_);
     accept();
     thread_ = std::thread([this] { run(); });
     return {};

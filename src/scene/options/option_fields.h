@@ -10,6 +10,7 @@
 
 #include "gloam/scene.h"
 #include "scene/options/agent_fields.h"
+#include "scene/options/bridge_fields.h"
 #include "scene/options/camera_fields.h"
 #include "scene/options/effect_fields.h"
 #include "scene/options/environment_fields.h"
@@ -77,6 +78,7 @@ void visit_tables(Visitor& v, SceneHeader& header, Scene& scene) {
   v("topic", scene.topics, FieldRule{});
   v("metric", scene.metrics, FieldRule{});
   v("goal", scene.goals, FieldRule{});
+  v("bridge", scene.bridge, FieldRule{});
 }
 
 }  // namespace gloam

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "studio/access.h"
+#include "web/access.h"
 #include "studio/messages.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
@@ -20,7 +20,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
       std::abort();
   }
   // No header without the token lets anybody in.
-  const Verdict verdict = judge({.method = "GET",
+  const web::Verdict verdict = web::judge({.method = "GET",
                                  .target = text,
                                  .host = "localhost",
                                  .cookie = text,
@@ -28,6 +28,6 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
                                  .hosts = 1},
                                 "5ac2f1e04b7d", "gloam_view_1");
   if (verdict.status == 200 && text.find("5ac2f1e04b7d") == std::string_view::npos) std::abort();
-  (void)judge({.method = "GET", .target = "/", .host = text, .origin = text, .hosts = 1}, "t", "c");
+  (void)web::judge({.method = "GET", .target = "/", .host = text, .origin = text, .hosts = 1}, "t", "c");
   return 0;
 }

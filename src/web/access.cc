@@ -1,4 +1,4 @@
-#include "studio/access.h"
+#include "web/access.h"
 
 #include <sys/random.h>
 
@@ -8,7 +8,7 @@
 #include <charconv>
 #include <cstdint>
 
-namespace gloam::studio {
+namespace gloam::web {
 namespace {
 
 bool equal_ignoring_case(std::string_view a, std::string_view b) {
@@ -158,4 +158,4 @@ std::string_view target_path(std::string_view target) {
   return target.substr(0, target.find('?'));
 }
 
-}  // namespace gloam::studio
+}  // namespace gloam::web

@@ -1,5 +1,5 @@
 #pragma once
-// Access to the view's server. Pure functions of a request's fields, so that the rules can be read
+// Access to servers on this machine. Pure functions of a request's fields, so that the rules can be read
 // and tested in one place. The rules follow Jupyter's: a random token, checks of Host and Origin
 // against DNS rebinding and cross-site WebSocket hijacking, no CORS.
 
@@ -8,7 +8,7 @@
 
 #include "gloam/result.h"
 
-namespace gloam::studio {
+namespace gloam::web {
 
 /// 48 lower-case hexadecimal digits (192 bits) from the operating system's random source.
 Result<std::string> make_token();
@@ -41,4 +41,4 @@ std::string cookie_name(int port);
 /// Path of a request target without the query; empty when the target is not a path.
 std::string_view target_path(std::string_view target);
 
-}  // namespace gloam::studio
+}  // namespace gloam::web

@@ -1,10 +1,10 @@
-#include "studio/access.h"
+#include "web/access.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-namespace gloam::studio {
+namespace gloam::web {
 namespace {
 
 constexpr const char* kToken = "0123456789abcdef0123456789abcdef0123456789abcdef";
@@ -143,4 +143,4 @@ TEST(Access, PathsOfTargets) {
 }
 
 }  // namespace
-}  // namespace gloam::studio
+}  // namespace gloam::web

@@ -1,0 +1,104 @@
+#include "live.h"
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+#include "gloam/log_player.h"
+
+namespace gloam::cli {
+namespace {
+
+// A log that plays begins again at its end.
+Status play_again(const LiveRun& run, const LiveCommand& command) {
+  LogPlayer* const player = run.view.player;
+  if (player == nullptr || !command.loop || run.simulation.paused()) return {};
+  if (run.simulation.latest().time() < player->end() - 1e-9) return {};
+  return player->seek(0);
+}
+
+Status keep_running(const LiveRun& run, const LiveCommand& command, const Bridges* bridges,
+                    const LogStream* log) {
+  while (!interrupted()) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    GLOAM_TRY_STATUS(play_again(run, command));
+    GLOAM_TRY_STATUS(run.simulation.status());
+    if (log != nullptr) GLOAM_TRY_STATUS(log->status());
+    if (run.duration && run.simulation.latest().time() >= *run.duration - 1e-9) break;
+    if (bridges == nullptr) continue;
+    if (bridges->end_asked()) break;
+    for (const auto& bridge : bridges->list()) GLOAM_TRY_STATUS(bridge->status());
+  }
+  return {};
+}
+
+// A run of a given length rests at its end.
+void begin(const LiveRun& run, const LiveCommand& command) {
+  if (!command.paused) run.simulation.resume();
+  std::fprintf(stderr, "gloam: %s; Ctrl-C ends it\n",
+               command.paused ? "paused until a client starts it" : "running");
+}
+
+}  // namespace
+
+void LiveCommand::add_to(CLI::App& app) {
+  app.add_flag("--view", view, "Serve a live page on this machine instead of recording");
+  app.add_flag("--ros2", ros2, "Be a ROS 2 node on this machine: topics, services (docs/ros2.md)");
+  app.add_flag("--zmq", zmq, "Serve states and operations over ZeroMQ (docs/zmq.md)");
+  app.add_flag("--foxglove", foxglove, "Serve Foxglove (docs/foxglove.md)");
+  app.add_flag("--paused", paused, "Live runs: wait until a client starts the simulation");
+  app.add_option("--port", port, "Port of --view; 0 = any free one")->check(CLI::Range(0, 65535));
+  app.add_option("--speed", speed, "Simulated seconds per second, where it is paced")
+      ->check(positive_number());
+}
+
+BridgeOptions LiveCommand::options(const BridgeOptions& scene) const {
+  BridgeOptions bridges = scene;
+  if (ros2 && !bridges.ros2) bridges.ros2.emplace();
+  if (zmq && !bridges.zmq) bridges.zmq.emplace();
+  if (foxglove && !bridges.foxglove) bridges.foxglove.emplace();
+  return bridges;
+}
+
+int run_live(LiveRun run, const LiveCommand& command, EndOnInterrupt& starting) {
+  Simulation& simulation = run.simulation;
+  simulation.set_pace(Pace::kRealTime, command.speed);
+  std::unique_ptr<ViewServer> page;
+  if (command.view) {
+    run.view.port = command.port;
+    run.view.speed = command.speed;
+    auto started = ViewServer::start(simulation, run.view);
+    if (!started.ok()) return fail(started.error());
+    page = std::move(*started);
+    std::fprintf(stderr, "gloam: open %s\n", page->url().c_str());
+  }
+  std::unique_ptr<LogStream> log;
+  if (!run.log.file.empty()) {
+    run.log.required = false;
+    auto started = start_log(simulation, run.log);
+    if (!started.ok()) return fail(started.error());
+    log = std::move(*started);
+  }
+  std::unique_ptr<Bridges> bridges;
+  if (run.bridges.any()) {
+    auto started = Bridges::start(simulation, run.bridges, run.view.player);
+    if (!started.ok()) return fail(started.error());
+    bridges = std::move(*started);
+    for (const auto& bridge : bridges->list())
+      std::fprintf(stderr, "gloam: %s: %s\n", bridge->name().c_str(), bridge->address().c_str());
+  }
+  starting.release();
+  begin(run, command);
+  const Status status = keep_running(run, command, bridges.get(), log.get());
+  bridges.reset();  // no client changes what the log ends with
+  if (page != nullptr) page->stop();
+  int code = status.ok() ? 0 : fail(status.error());
+  if (log != nullptr) {
+    if (const Status finished = log->finish(); !finished.ok()) code = fail(finished.error());
+    std::fprintf(stderr, "gloam: %s\n", run.log.file.c_str());
+  }
+  return code;
+}
+
+}  // namespace gloam::cli

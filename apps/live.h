@@ -1,0 +1,43 @@
+#pragma once
+// Live runs: a simulation with a page for browsers, bridges to other programs and a log, for
+// commands that keep one.
+
+#include <optional>
+
+#include "command.h"
+#include "gloam/bridge.h"
+#include "gloam/log.h"
+#include "gloam/view.h"
+#include "interrupt.h"
+
+namespace gloam::cli {
+
+struct LiveCommand {
+  bool view = false, ros2 = false, zmq = false, foxglove = false;
+  bool paused = false;  ///< waits for a client to start it
+  int port = 8080;      ///< of the page
+  double speed = 1;
+  bool loop = false;  ///< of a log: it begins again at its end
+
+  /// Adds --view, a flag for each bridge, --paused, --port and --speed.
+  void add_to(CLI::App& command);
+  /// Whether anything keeps the run alive: a page or a bridge.
+  bool any(const BridgeOptions& bridges) const { return view || options(bridges).any(); }
+  /// Bridges of the scene and of the command line.
+  BridgeOptions options(const BridgeOptions& scene) const;
+};
+
+/// What a live run shows, besides its simulation.
+struct LiveRun {
+  Simulation& simulation;
+  ViewOptions view = {};
+  BridgeOptions bridges = {};
+  LogRequest log = {};                  ///< no file = none
+  std::optional<double> duration = {};  ///< [s]; empty = until Ctrl-C
+};
+
+/// Serves it until Ctrl-C, its duration or a client ends it. `starting`: released when all of it is
+/// there. Returns the exit code.
+int run_live(LiveRun run, const LiveCommand& command, EndOnInterrupt& starting);
+
+}  // namespace gloam::cli

@@ -1,0 +1,8 @@
+// Placeholder until the bridge lands.
+#include "bridge/bridge_list.h"
+namespace gloam::bridge {
+Result<std::unique_ptr<Bridge>> start_foxglove(const BridgeContext&,
+                                               const FoxgloveOptions& options) {
+  return Error{ErrorKind::kUsage, "not there yet", options.loc};
+}
+}  // namespace gloam::bridge

@@ -1,0 +1,13 @@
+// The bridge to ZeroMQ of a build without its library.
+
+#include "bridge/bridge_list.h"
+
+namespace gloam::bridge {
+
+Result<std::unique_ptr<Bridge>> start_zmq(const BridgeContext&, const ZmqOptions& options) {
+  return Error{
+      ErrorKind::kUsage, "this build has no bridge to ZeroMQ", options.loc,
+      "build it where libzmq3-dev, cppzmq-dev and libmsgpack-cxx-dev are installed: ./gloam setup"};
+}
+
+}  // namespace gloam::bridge

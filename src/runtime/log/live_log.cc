@@ -1,0 +1,61 @@
+// gloam::start_log: a log that begins and ends while its simulation goes on.
+
+#include "gloam/log.h"
+#include "runtime/live_simulation.h"
+#include "runtime/log/log_recorder.h"
+
+namespace gloam {
+namespace {
+
+/// Lets the simulation rest for as long as it lives.
+class Rest {
+ public:
+  explicit Rest(LiveSimulation& simulation)
+      : simulation_(simulation), was_paused_(simulation.paused()) {
+    simulation_.pause();
+    static_cast<void>(simulation_.simulator().wait());  // its failure is told by status()
+  }
+  ~Rest() {
+    if (!was_paused_) simulation_.resume();
+  }
+  Rest(const Rest&) = delete;
+  Rest& operator=(const Rest&) = delete;
+
+ private:
+  LiveSimulation& simulation_;
+  const bool was_paused_;
+};
+
+class LiveLog final : public LogStream {
+ public:
+  LiveLog(LiveSimulation& simulation, std::unique_ptr<LogRecorder> recorder)
+      : simulation_(simulation), recorder_(std::move(recorder)) {}
+  Status status() const override { return recorder_->status(); }
+  int64_t dropped() const override { return recorder_->dropped(); }
+  Status finish() override {
+    if (is_finished_) return {};
+    is_finished_ = true;
+    const Rest rest(simulation_);
+    return recorder_->finish(simulation_.latest());
+  }
+
+ private:
+  LiveSimulation& simulation_;
+  std::unique_ptr<LogRecorder> recorder_;
+  bool is_finished_ = false;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<LogStream>> start_log(Simulation& simulation, const LogRequest& request) {
+  auto* live = dynamic_cast<LiveSimulation*>(&simulation);
+  if (live == nullptr)
+    return Error{ErrorKind::kUsage, "a log is written of a simulation, not of a replay"};
+  if (live->simulator().is_on_sim_thread())
+    return Error{ErrorKind::kUsage, "a step hook cannot begin a log"};
+  const Rest rest(*live);
+  GLOAM_TRY(auto recorder, LogRecorder::start(*live, request));
+  return std::unique_ptr<LogStream>(std::make_unique<LiveLog>(*live, std::move(recorder)));
+}
+
+}  // namespace gloam
