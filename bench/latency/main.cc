@@ -211,9 +211,9 @@ void print(const ordered_json& line) {
 
 Status measure(int seconds, const std::string& only) {
   GLOAM_TRY(const World world, measured_world());
-  GLOAM_TRY(const auto simulation, Simulation::create(world, {.pace = Pace::kRealTime}));
-  StepTimes times(3'600'000);
+  StepTimes times(3'600'000);  // outlives the simulation, whose hook writes it
   size_t step = 0;
+  GLOAM_TRY(const auto simulation, Simulation::create(world, {.pace = Pace::kRealTime}));
   GLOAM_TRY_STATUS(simulation->set_step_hook([&](const mjModel_*, mjData_*) {
     if (step < times.began.size()) times.began[step++] = now_ms();
   }));
