@@ -262,7 +262,8 @@ TEST_F(OperatorTest, SpawnsWhatIsAsked) {
   EXPECT_EQ(simulation_->latest().step(), 5);  // the run goes on
   EXPECT_EQ(spawn_ball("ball").failure, SpawnFailure::kNameTaken);
   EXPECT_EQ(spawn_ball("ball", true).name, "ball_2");
-  EXPECT_EQ(spawn_ball("").name, "model");
+  EXPECT_EQ(spawn_ball("").failure, SpawnFailure::kNameTaken);  // the model is called "ball"
+  EXPECT_EQ(spawn_ball("", true).name, "ball_3");
 
   const SpawnResult box = op().spawn({.name = "box", .text = kUrdf, .X_FE = {{0, 5, 3}, {}}});
   ASSERT_TRUE(box.ok()) << box.error.to_string();
@@ -304,10 +305,11 @@ TEST_F(OperatorTest, RefusesToSpawnByCause) {
   EXPECT_EQ(cause({.uri = "gloam://prop/unicorn"}), SpawnFailure::kNoResource);
   EXPECT_EQ(cause({.uri = "http://example.com/a.xml"}), SpawnFailure::kNoResource);
   EXPECT_EQ(cause({.text = "<sdf version='1.9'/>"}), SpawnFailure::kUnsupportedFormat);
-  EXPECT_EQ(cause({.text = "hello"}), SpawnFailure::kParse);
-  EXPECT_EQ(cause({.text = "<mujoco><worldbody><body><geom/></worldbody></mujoco>"}),
+  EXPECT_EQ(cause({.text = "<mujoco/>"}), SpawnFailure::kNameInvalid);
+  EXPECT_EQ(cause({.name = "x", .text = "hello"}), SpawnFailure::kParse);
+  EXPECT_EQ(cause({.name = "x", .text = "<mujoco><worldbody><body><geom/></worldbody></mujoco>"}),
             SpawnFailure::kParse);
-  EXPECT_EQ(cause({.text = "<mujoco><asset><mesh file='none.stl'/></asset></mujoco>"}),
+  EXPECT_EQ(cause({.name = "x", .text = "<mujoco><asset><mesh file='none.stl'/></asset></mujoco>"}),
             SpawnFailure::kMissingAssets);
   EXPECT_EQ(cause({.text = kBall, .ns = "a//b"}), SpawnFailure::kNamespaceInvalid);
   EXPECT_EQ(cause({.text = kBall, .X_FE = {{}, {0, 0, 0, 0}}}), SpawnFailure::kPoseInvalid);
