@@ -12,11 +12,11 @@
 namespace gloam::bridge {
 namespace {
 
-namespace act = simulation_interfaces::action;
+namespace steps_action = simulation_interfaces::action;
 using StepStatus = action_msgs::GoalStatus;
 
 GoalEnd steps_end(int8_t status, simulation_interfaces::Result result) {
-  act::SimulateSteps_GetResult_Response response;
+  steps_action::SimulateSteps_GetResult_Response response;
   response.status = status;
   response.result.result = std::move(result);
   GoalEnd end{.status = status};
@@ -25,7 +25,7 @@ GoalEnd steps_end(int8_t status, simulation_interfaces::Result result) {
 }
 
 GoalEnd run_steps(Operator& operations, uint64_t steps, GoalContext& context) {
-  act::SimulateSteps_FeedbackMessage feedback;
+  steps_action::SimulateSteps_FeedbackMessage feedback;
   feedback.goal_id.uuid = context.id();
   std::vector<uint8_t> bytes;
   const Status status =
@@ -53,7 +53,7 @@ Ros2Action simulate_steps_action(Operator& operations, const std::string& ns, Ro
   options.clock = [op] { return op->simulation().latest().time(); };
   options.unknown = steps_end(StepStatus::STATUS_UNKNOWN, {}).response;
   options.accept = [op](std::span<const uint8_t> bytes) -> Result<GoalRequest> {
-    GLOAM_TRY(const auto request, decode<act::SimulateSteps_SendGoal_Request>(bytes));
+    GLOAM_TRY(const auto request, decode<steps_action::SimulateSteps_SendGoal_Request>(bytes));
     GoalRequest goal{.id = request.goal_id.uuid};
     const uint64_t steps = request.goal.steps;
     if (steps >= 1 && steps <= static_cast<uint64_t>(std::numeric_limits<int64_t>::max() / 2))
