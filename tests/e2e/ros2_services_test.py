@@ -33,7 +33,7 @@ file = "room.xml"
 [[robot]]
 name = "arm"
 file = "arm.xml"
-position = [0, 3, 0]
+position = [0, 3, 1]
 [robot.controller]
 type = "joint_position"
 kp = 50
@@ -215,7 +215,8 @@ class Ros2Services(unittest.TestCase):
             self.assertEqual((cancelled["cancelling"], cancelled["status"]), (1, 5))
             self.assertFalse(refused["accepted"])
             answers = self.call(set_state(PLAYING), {**follow, "goal": bend}, {**follow, "goal": {"trajectory": {"joint_names": ["knee"]}}})
-            self.assertEqual((answers[1]["status"], answers[1]["result"]["error_code"]), (4, 0), answers[1])
+            self.assertEqual((answers[1]["status"], answers[1]["result"]["error_code"]), (4, 0),
+                             answers[1]["result"])
             self.assertGreater(len(answers[1]["feedback"]), 10)
             self.assertFalse(answers[2]["accepted"])
 
