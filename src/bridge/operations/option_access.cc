@@ -35,8 +35,12 @@ Status check_files(Scene scene, const ModelSource& source) {
     return o.robot != "environment" &&
            std::ranges::find(scene.robots, o.robot, &RobotOptions::name) == scene.robots.end();
   });
-  if (scene.file.empty()) scene.file = scene.bare_model;
-  if (scene.robots.empty() && scene.bare_model.empty() && scene.environment.file.empty()) return {};
+  if (scene.bare_model.empty()) {
+    // A scene must hold something.
+    scene.props.push_back({.name = "check_of_files", .kind = prop_kinds().front().kind});
+  } else if (scene.file.empty()) {
+    scene.file = scene.bare_model;
+  }
   const Result<Scene> read = overlay_scene(scene, "", "options");
   return read.ok() ? Status() : Status(read.error());
 }
