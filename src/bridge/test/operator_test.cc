@@ -219,6 +219,11 @@ TEST_F(OperatorTest, RefusesToSpawnByCause) {
             SpawnFailure::kParse);
   EXPECT_EQ(cause({.name = "x", .text = "<mujoco><asset><mesh file='none.stl'/></asset></mujoco>"}),
             SpawnFailure::kMissingAssets);
+  write("a.fbx", "no mesh");
+  write("fbx.xml",
+        "<mujoco><asset><mesh name='a' file='a.fbx'/></asset>"
+        "<worldbody><geom type='mesh' mesh='a'/></worldbody></mujoco>");
+  EXPECT_EQ(cause({.uri = "fbx.xml"}), SpawnFailure::kUnsupportedAssets);
   EXPECT_EQ(cause({.text = kBall, .ns = "a//b"}), SpawnFailure::kNamespaceInvalid);
   EXPECT_EQ(cause({.text = kBall, .X_FE = {{}, {0, 0, 0, 0}}}), SpawnFailure::kPoseInvalid);
   EXPECT_EQ(cause({.text = kBall, .frame = "nowhere"}), SpawnFailure::kPoseInvalid);
