@@ -320,7 +320,9 @@ TEST_F(OperatorTest, ChangesOptionsAndLiveFields) {
   expect_ok(op().set_live_field("gravity", 0, {0, 0, 0}));
   expect_ok(op().step(100));
   EXPECT_NEAR(op().entity_state("crate").value().velocity.z, 0, 1e-2);
+  EXPECT_EQ(op().live_field("gravity").value(), (std::vector<double>{0, 0, 0}));
   expect_error(op().set_live_field("gravit", 0, {0}), ErrorKind::kInput, "gravity");
+  expect_error(op().live_field("gravit"), ErrorKind::kInput, "gravity");
   EXPECT_FALSE(op().set_live_field("gravity", 2, {0, 0, 0}).ok());
 }
 
