@@ -104,6 +104,17 @@ TEST_F(Ros2Services, AreThe22OfThePackage) {
   EXPECT_EQ(simulation_services(op(), 1).size(), 22u);
 }
 
+// As rosidl of Kilted describes the packages' own definitions.
+TEST_F(Ros2Services, HaveTheHashesOfRos) {
+  const auto hash_of = [&](const std::string& name) {
+    return std::ranges::find(services_, name, &Ros2Service::name)->hash;
+  };
+  EXPECT_EQ(hash_of("/sim/spawn_entities"),
+            "RIHS01_41703a359ee032bf4fc230f144f531705ba039a2e97edeae1f7997dd83b04857");
+  EXPECT_EQ(hash_of("/sim/get_simulator_features"),
+            "RIHS01_abb9439c8cf196722a469fb6c68b44b484f198c2a1356ac38849a29c2a20a794");
+}
+
 TEST_F(Ros2Services, DamagedRequestsHaveNoAnswer) {
   const std::vector<uint8_t> damaged = {0, 1, 0, 0, 255, 255, 255, 255};
   for (const Ros2Service& service : services_) {
