@@ -1,0 +1,116 @@
+// Operator: options of the scene and live fields of its model.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bridge/operations/operator_private.h"
+#include "gloam/program.h"
+
+namespace gloam::bridge {
+namespace {
+
+/// Name of a live field as World::inputs() has it, and of the array in MuJoCo.
+struct LiveFieldName {
+  std::string_view name;
+  const char* field;
+};
+// By LiveFieldId.
+constexpr LiveFieldName kLiveFields[kLiveFieldCount] = {
+    {"gravity", "opt.gravity"},
+    {"wind", "opt.wind"},
+    {"body_mass", "body_mass"},
+    {"geom_friction", "geom_friction"},
+    {"height_field", "hfield_data"},
+    {"light_diffuse", "light_diffuse"},
+    {"light_intensity", "light_intensity"},
+    {"light_active", "light_active"},
+    {"geom_color", "geom_rgba"},
+    {"material_color", "mat_rgba"},
+    {"material_emission", "mat_emission"},
+    {"material_specular", "mat_specular"},
+    {"material_shininess", "mat_shininess"},
+    {"material_reflectance", "mat_reflectance"},
+    {"material_metallic", "mat_metallic"},
+    {"material_roughness", "mat_roughness"},
+};
+
+Result<LiveFieldId> find_live_field(std::string_view name) {
+  const auto* found = std::ranges::find(kLiveFields, name, &LiveFieldName::name);
+  if (found != std::end(kLiveFields)) return static_cast<LiveFieldId>(found - kLiveFields);
+  std::vector<std::string> names;
+  for (const LiveFieldName& field : kLiveFields) names.emplace_back(field.name);
+  return Error{ErrorKind::kInput,
+               fmt::format("there is no live field '{}'", name.substr(0, 100)),
+               {},
+               suggest_name(name, names)};
+}
+
+// The files that options name must be those that the scene itself could name.
+Status check_files(Scene scene, const ModelSource& source) {
+  std::erase_if(scene.robots, [&](const RobotOptions& o) { return source.is_own(o.file); });
+  std::erase_if(scene.overrides, [&](const OverrideOptions& o) {
+    return o.robot != "environment" &&
+           std::ranges::find(scene.robots, o.robot, &RobotOptions::name) == scene.robots.end();
+  });
+  if (scene.bare_model.empty()) {
+    // A scene must hold something.
+    scene.props.push_back({.name = "check_of_files", .kind = prop_kinds().front().kind});
+  } else if (scene.file.empty()) {
+    scene.file = scene.bare_model;
+  }
+  const Result<Scene> read = overlay_scene(scene, "", "options");
+  return read.ok() ? Status() : Status(read.error());
+}
+
+}  // namespace
+
+std::vector<OptionInfo> Operator::options() const {
+  return list_options(written_scene(simulation_.world()));
+}
+
+Result<std::string> Operator::option(std::string_view path) const {
+  return get_option(written_scene(simulation_.world()), path);
+}
+
+Status Operator::set_options(const std::vector<std::pair<std::string, std::string>>& values) {
+  Private& p = *private_;
+  GLOAM_TRY_STATUS(p.need_world());
+  const std::lock_guard one_at_a_time(p.change_mutex);
+  Scene scene = written_scene(simulation_.world());
+  for (const auto& [path, value] : values) {
+    if (path == "sim.timestep")
+      return Error{ErrorKind::kUnsupported, "the timestep of a running simulation stays as it is"};
+    GLOAM_TRY_STATUS(set_option(scene, path, value));
+  }
+  GLOAM_TRY_STATUS(check_files(scene, p.source));
+  return p.exchange(scene);
+}
+
+Result<std::vector<double>> Operator::live_field(std::string_view name) const {
+  GLOAM_TRY(const LiveFieldId id, find_live_field(name));
+  const std::lock_guard lock(private_->solved_mutex);
+  GLOAM_TRY_STATUS(private_->solve());
+  return private_->solved->instant.value(kLiveFields[static_cast<size_t>(id)].field);
+}
+
+Status Operator::set_live_field(std::string_view name, int first, std::vector<float> values) {
+  GLOAM_TRY(const LiveFieldId id, find_live_field(name));
+  return simulation_.post({.what = SetLiveField{id, first, std::move(values)}});
+}
+
+Status Operator::recompile(std::string_view toml) {
+  Private& p = *private_;
+  GLOAM_TRY_STATUS(p.need_world());
+  const Scene first = p.first_scene();
+  std::error_code code;
+  const std::filesystem::path folder = first.file.empty()
+                                           ? std::filesystem::current_path(code)
+                                           : std::filesystem::absolute(first.file).parent_path();
+  GLOAM_TRY(Scene scene, parse_scene(toml, folder, first.access));
+  const std::lock_guard one_at_a_time(p.change_mutex);
+  GLOAM_TRY_STATUS(p.exchange(scene));
+  return {};
+}
+
+}  // namespace gloam::bridge
