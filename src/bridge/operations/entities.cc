@@ -30,7 +30,7 @@ const Entity* find_by_name(std::string_view name, const std::vector<Entity>& ent
 /// Numbers of a free joint that a change sets; the rest is what it is now.
 Result<Command> joint_command(const Entity& entity, const StateChange& change,
                               const EntityState& now) {
-  SetJointState set{.joint = {entity.joint, entity.body.world}};
+  SetJointState set{{entity.joint, entity.body.world}, {}, {}};
   const Pose X = change.X_WE.value_or(now.X_WE);
   if (change.X_WE) set.qpos = {X.p.x, X.p.y, X.p.z, X.q.w, X.q.x, X.q.y, X.q.z};
   if (change.velocity || change.angular_velocity) {
@@ -181,7 +181,8 @@ Status Operator::set_entity_state(std::string_view name, const StateChange& aske
   return {};
 }
 
-Result<std::vector<Box>> Operator::entity_bounds(const std::vector<Entity>& entities) const {
+Result<std::vector<Box>> Operator::entity_bounds(const std::vector<Entity>& entities,
+                                                 BoxFrame frame) const {
   const std::lock_guard lock(private_->solved_mutex);
   GLOAM_TRY_STATUS(private_->solve());
   std::vector<Entity> now;
@@ -190,12 +191,12 @@ Result<std::vector<Box>> Operator::entity_bounds(const std::vector<Entity>& enti
     if (found == nullptr) return no_entity(entity.name, private_->solved->entities);
     now.push_back(*found);
   }
-  return read_boxes(private_->solved->instant, now);
+  return read_boxes(private_->solved->instant, now, frame);
 }
 
-Result<Box> Operator::entity_bounds(std::string_view name) const {
+Result<Box> Operator::entity_bounds(std::string_view name, BoxFrame frame) const {
   GLOAM_TRY(Entity entity, find_entity(name));
-  GLOAM_TRY(const std::vector<Box> boxes, entity_bounds(std::vector{std::move(entity)}));
+  GLOAM_TRY(const std::vector<Box> boxes, entity_bounds(std::vector{std::move(entity)}, frame));
   return boxes.front();
 }
 

@@ -70,6 +70,32 @@ std::string describe(EntityKind kind, bool is_agent) {
   }
 }
 
+/// A box around a geom, in the geom's axes.
+struct GeomBox {
+  Vec3 p_W;           // origin of the geom [m]
+  Vec3 axes_W[3];     // unit
+  const double* box;  // centre and half sizes
+
+  /// Widens a box in frame E until it holds this one.
+  void join(const Pose& X_WE, Box* around) const {
+    const Quat q_EW = inverse(X_WE.q);
+    Vec3 centre = difference(p_W, X_WE.p), half = {};
+    for (size_t k = 0; k < 3; ++k) {
+      const Vec3 &a = axes_W[k], side = rotate(q_EW, a);
+      centre = sum(centre, {a.x * box[k], a.y * box[k], a.z * box[k]});
+      half = sum(half, {std::abs(side.x) * box[3 + k], std::abs(side.y) * box[3 + k],
+                        std::abs(side.z) * box[3 + k]});
+    }
+    centre = rotate(q_EW, centre);
+    const Vec3 low = difference(centre, half), high = sum(centre, half);
+    if (around->is_empty()) *around = {low, high};
+    around->low = {std::min(around->low.x, low.x), std::min(around->low.y, low.y),
+                   std::min(around->low.z, low.z)};
+    around->high = {std::max(around->high.x, high.x), std::max(around->high.y, high.y),
+                    std::max(around->high.z, high.z)};
+  }
+};
+
 /// What the World says of names.
 struct KnownNames {
   std::set<std::string> mocap;              // that clients may move
@@ -152,7 +178,8 @@ Result<EntityState> read_state(const Instant& instant, const Entity& entity) {
   return state;
 }
 
-Result<std::vector<Box>> read_boxes(const Instant& instant, const std::vector<Entity>& entities) {
+Result<std::vector<Box>> read_boxes(const Instant& instant, const std::vector<Entity>& entities,
+                                    BoxFrame frame) {
   GLOAM_TRY(const std::vector<double> parents, instant.value("body_parentid"));
   GLOAM_TRY(const std::vector<double> bodies, instant.value("geom_bodyid"));
   GLOAM_TRY(const std::vector<double> types, instant.value("geom_type"));
@@ -160,31 +187,20 @@ Result<std::vector<Box>> read_boxes(const Instant& instant, const std::vector<En
   GLOAM_TRY(const std::vector<double> places, instant.value("geom_xpos"));
   GLOAM_TRY(const std::vector<double> turns, instant.value("geom_xmat"));
   const std::vector<int> owners = entity_of_body(parents, entities);
+  std::vector<Pose> X_WE(entities.size());
+  for (size_t i = 0; i < entities.size() && frame == BoxFrame::kEntity; ++i) {
+    GLOAM_TRY(const BodyState body, instant.body(entities[i].body));
+    X_WE[i] = body.X_WB;
+  }
   std::vector<Box> all(entities.size());
   for (size_t geom = 0; geom < bodies.size(); ++geom) {
     const int owner = owners[static_cast<size_t>(bodies[geom])];
     if (owner < 0 || types[geom] == kPlane) continue;
-    const double *R = turns.data() + 9 * geom, *p = places.data() + 3 * geom,
-                 *aabb = boxes.data() + 6 * geom;
-    double low[3], high[3];
-    for (size_t i = 0; i < 3; ++i) {
-      double centre = p[i], half = 0;
-      for (size_t k = 0; k < 3; ++k) {
-        centre += R[3 * i + k] * aabb[k];
-        half += std::abs(R[3 * i + k]) * aabb[3 + k];
-      }
-      low[i] = centre - half;
-      high[i] = centre + half;
-    }
-    Box& box = all[static_cast<size_t>(owner)];
-    if (box.is_empty()) {
-      box = {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
-      continue;
-    }
-    box.low = {std::min(box.low.x, low[0]), std::min(box.low.y, low[1]),
-               std::min(box.low.z, low[2])};
-    box.high = {std::max(box.high.x, high[0]), std::max(box.high.y, high[1]),
-                std::max(box.high.z, high[2])};
+    const double *R = turns.data() + 9 * geom, *p = places.data() + 3 * geom;
+    const GeomBox box = {{p[0], p[1], p[2]},
+                         {Vec3{R[0], R[3], R[6]}, Vec3{R[1], R[4], R[7]}, Vec3{R[2], R[5], R[8]}},
+                         boxes.data() + 6 * geom};
+    box.join(X_WE[static_cast<size_t>(owner)], &all[static_cast<size_t>(owner)]);
   }
   return all;
 }

@@ -26,7 +26,7 @@ struct Entity {
   std::string name;  ///< unique
   EntityKind kind = EntityKind::kObject;
   Body body;                                ///< root of it
-  bool floats = false;                      ///< its root has a free joint
+  int joint = -1;                           ///< free joint of its root; -1 = none
   bool is_mocap = false;                    ///< its root is a mocap body that nobody else moves
   bool is_agent = false;                    ///< moves by itself
   bool is_spawned = false;                  ///< came by Operator::spawn
@@ -40,11 +40,17 @@ struct Entity {
 /// Root of an entity at an instant, world axes.
 struct EntityState {
   Pose X_WE;
-  Vec3 velocity, angular_velocity;          ///< of its origin [m/s], [rad/s]
-  Vec3 acceleration, angular_acceleration;  ///< of its origin, without gravity [m/s²], [rad/s²]
+  Vec3 velocity = {}, angular_velocity = {};  ///< of its origin [m/s], [rad/s]
+  /// Accelerations of its origin, without gravity [m/s²], [rad/s²].
+  Vec3 acceleration = {}, angular_acceleration = {};
 };
 
-/// A box along the world's axes [m]; empty: low > high.
+/// Frame of a box.
+enum class BoxFrame : uint8_t {
+  kWorld,
+  kEntity,  ///< the entity's own, which turns with it
+};
+/// A box along the axes of a frame [m]; empty: low > high.
 struct Box {
   Vec3 low = {1, 1, 1}, high = {};
   bool is_empty() const { return low.x > high.x; }
@@ -63,7 +69,8 @@ struct NamedPose {
 Result<std::vector<Entity>> list_entities(const World& world, const Instant& instant);
 /// States of entities, and boxes around their geoms, at an instant.
 Result<EntityState> read_state(const Instant& instant, const Entity& entity);
-Result<std::vector<Box>> read_boxes(const Instant& instant, const std::vector<Entity>& entities);
+Result<std::vector<Box>> read_boxes(const Instant& instant, const std::vector<Entity>& entities,
+                                    BoxFrame frame);
 std::vector<NamedPose> list_named_poses(const World& world);
 
 }  // namespace gloam::bridge

@@ -232,7 +232,7 @@ Result<SceneEntity> ModelSource::find(const SpawnRequest& request, const Scene& 
     if (std::ranges::find(kinds, kind) == kinds.end())
       return refuse(failure, SpawnFailure::kNoResource,
                     fmt::format("there is no prop '{:.100}'", kind), suggest_name(kind, kinds));
-    return PropOptions{.kind = kind, .position = X_WE.p, .orientation = X_WE.q};
+    return SceneEntity(PropOptions{.kind = kind, .position = X_WE.p, .orientation = X_WE.q});
   }
   RobotOptions robot{.X_WR = X_WE};
   std::string text = request.text;
@@ -243,7 +243,8 @@ Result<SceneEntity> ModelSource::find(const SpawnRequest& request, const Scene& 
       return path.error();
     }
     const std::string extension = lower_extension_of(*path);
-    if (is_mesh_extension(extension)) return ObjectOptions{.file = *path, .X_WO = X_WE};
+    if (is_mesh_extension(extension))
+      return SceneEntity(ObjectOptions{.file = *path, .X_WO = X_WE});
     if (!is_model_extension(extension))
       return refuse(failure, SpawnFailure::kUnsupportedFormat,
                     fmt::format("'{}' files are not read", extension),
@@ -251,7 +252,7 @@ Result<SceneEntity> ModelSource::find(const SpawnRequest& request, const Scene& 
     robot.file = *path;
     std::ifstream in(*path, std::ios::binary);
     text.assign(std::istreambuf_iterator<char>(in), {});
-    if (extension == ".toml") return robot;
+    if (extension == ".toml") return SceneEntity(robot);
   }
   if (text.size() > kLongestModel)
     return refuse(failure, SpawnFailure::kUnsupportedFormat, "a model of more than 16 MiB");
@@ -262,12 +263,12 @@ Result<SceneEntity> ModelSource::find(const SpawnRequest& request, const Scene& 
   if (kind == ModelText::kOther)
     return refuse(failure, SpawnFailure::kParse, "the text is neither MJCF nor URDF");
   if (kind == ModelText::kUrdf && !is_fixed_urdf(text)) robot.base = "free";
-  if (!robot.file.empty()) return robot;
+  if (!robot.file.empty()) return SceneEntity(robot);
   if (!scene.access.root.empty())
     return refuse(failure, SpawnFailure::kOther,
                   "models as text are not taken where --root limits the files that are read");
   GLOAM_TRY(robot.file, write(text, kind == ModelText::kUrdf ? ".urdf" : ".xml"));
-  return robot;
+  return SceneEntity(robot);
 }
 
 }  // namespace gloam::bridge

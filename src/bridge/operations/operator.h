@@ -85,9 +85,10 @@ class Operator {
   Result<std::vector<EntityState>> entity_states(const std::vector<Entity>& entities) const;
   /// Applies at the next step. Errors: kUnsupported, it neither floats nor is a mocap body.
   Status set_entity_state(std::string_view name, const StateChange& change);
-  /// Box around its geoms at the latest instant; empty = it has none.
-  Result<Box> entity_bounds(std::string_view name) const;
-  Result<std::vector<Box>> entity_bounds(const std::vector<Entity>& entities) const;
+  /// Boxes around geoms at the latest instant; an empty one = it has none.
+  Result<Box> entity_bounds(std::string_view name, BoxFrame frame = BoxFrame::kWorld) const;
+  Result<std::vector<Box>> entity_bounds(const std::vector<Entity>& entities,
+                                         BoxFrame frame = BoxFrame::kWorld) const;
   std::vector<NamedPose> named_poses() const;
   /// Recompiles the World with one entity more.
   SpawnResult spawn(const SpawnRequest& request);

@@ -40,8 +40,8 @@ enum class SpawnFailure : uint8_t {
 
 struct SpawnResult {
   SpawnFailure failure = SpawnFailure::kNone;
-  std::string name;  ///< of the new entity
-  Error error = {};  ///< of a failure
+  std::string name = {};  ///< of the new entity
+  Error error = {};       ///< of a failure
   bool ok() const { return failure == SpawnFailure::kNone; }
 };
 
