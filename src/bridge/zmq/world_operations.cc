@@ -73,7 +73,7 @@ void pack_entity(Packer& out, const Entity& entity) {
   out.pack_map(6);
   pack_pair(out, "name", entity.name);
   pack_pair(out, "kind", std::string_view(entity_kind_name(entity.category())));
-  pack_pair(out, "floats", entity.floats);
+  pack_pair(out, "floats", entity.joint >= 0);
   pack_pair(out, "spawned", entity.is_spawned);
   pack_pair(out, "description", entity.description);
   pack_pair(out, "tags", entity.tags);
