@@ -140,6 +140,23 @@ ModelText model_text_of(std::string_view text) {
   return ModelText::kOther;
 }
 
+// Attribute of the first element of a tag: of the root, whose text was found good.
+std::string attribute_of(std::string_view text, const std::string& tag, const std::string& name) {
+  const size_t begin = text.find("<" + tag), end = text.find('>', begin);
+  if (begin == std::string_view::npos || end == std::string_view::npos) return {};
+  const std::string_view element = text.substr(begin, end - begin);
+  for (const char* space : {" ", "\n", "\t"}) {
+    const size_t at = element.find(space + name + "=");
+    if (at == std::string_view::npos) continue;
+    const size_t quote = at + name.size() + 2;
+    if (quote >= element.size()) return {};
+    const size_t last = element.find(element[quote], quote + 1);
+    if (last == std::string_view::npos) return {};
+    return std::string(element.substr(quote + 1, last - quote - 1));
+  }
+  return {};
+}
+
 // ROS fixes a robot to the world by a link of that name; others stand freely, as in Gazebo.
 bool is_fixed_urdf(std::string_view text) {
   return text.find("link name=\"world\"") != std::string_view::npos ||
@@ -222,7 +239,8 @@ Result<fs::path> ModelSource::write(const std::string& text, const std::string& 
 }
 
 Result<SceneEntity> ModelSource::find(const SpawnRequest& request, const Scene& scene,
-                                      const Pose& X_WE, SpawnFailure* failure) {
+                                      const Pose& X_WE, std::string* model_name,
+                                      SpawnFailure* failure) {
   if (request.uri.empty() && request.text.empty())
     return refuse(failure, SpawnFailure::kNoResource, "there is neither an address nor a text");
   if (const std::string kind = prop_kind_of(request.uri); !kind.empty()) {
@@ -262,6 +280,8 @@ Result<SceneEntity> ModelSource::find(const SpawnRequest& request, const Scene& 
                   "give MJCF or URDF");
   if (kind == ModelText::kOther)
     return refuse(failure, SpawnFailure::kParse, "the text is neither MJCF nor URDF");
+  *model_name = attribute_of(text, kind == ModelText::kUrdf ? "robot" : "mujoco",
+                             kind == ModelText::kUrdf ? "name" : "model");
   if (kind == ModelText::kUrdf && !is_fixed_urdf(text)) robot.base = "free";
   if (!robot.file.empty()) return SceneEntity(robot);
   if (!scene.access.root.empty())

@@ -29,10 +29,10 @@ class ModelSource {
   ModelSource(const ModelSource&) = delete;
   ModelSource& operator=(const ModelSource&) = delete;
 
-  /// What a request asks for, without a name and with its pose in the world, and a name for it.
-  /// `*failure` tells the cause of an Error.
+  /// What a request asks for, without a name and with its pose in the world. `model_name`: the name
+  /// that a model gives itself; `failure`: the cause of an Error.
   Result<SceneEntity> find(const SpawnRequest& request, const Scene& scene, const Pose& X_WE,
-                           SpawnFailure* failure);
+                           std::string* model_name, SpawnFailure* failure);
   /// An absolute path for a path or an address of a client. Errors: not there, not to be read.
   static Result<std::filesystem::path> resolve(const std::string& uri, const Scene& scene);
   /// The same of a folder.

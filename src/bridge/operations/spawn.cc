@@ -47,13 +47,15 @@ bool is_namespace(std::string_view ns) {
   return !at_start;
 }
 
-std::string default_name(const SceneEntity& entity) {
+// Name of a resource: that of the model itself, else of its file.
+std::string default_name(const SceneEntity& entity, const std::string& model_name,
+                         const ModelSource& source) {
   if (const auto* prop = std::get_if<PropOptions>(&entity)) return prop->kind;
   const auto* object = std::get_if<ObjectOptions>(&entity);
   const fs::path file = object != nullptr ? object->file : std::get<RobotOptions>(entity).file;
-  std::string name = file.stem().string();
+  std::string name = !model_name.empty() || source.is_own(file) ? model_name : file.stem().string();
   std::erase_if(name, [](char c) { return !is_name(std::string_view(&c, 1)); });
-  return name.empty() ? "entity" : name;
+  return name.substr(0, kLongestName);
 }
 
 void add_to_scene(SceneEntity entity, const std::string& name, Scene* scene) {
@@ -144,7 +146,8 @@ SpawnResult Operator::spawn(const SpawnRequest& request) {
                         {},
                         "run a scene: [environment] or [[robot]] with this file"});
   SpawnFailure failure = SpawnFailure::kOther;
-  Result<SceneEntity> entity = p.source.find(request, scene, X_WE, &failure);
+  std::string model_name;
+  Result<SceneEntity> entity = p.source.find(request, scene, X_WE, &model_name, &failure);
   if (!entity.ok()) return failed(failure, entity.error());
 
   const std::vector<Entity> all = entities();
@@ -152,9 +155,13 @@ SpawnResult Operator::spawn(const SpawnRequest& request) {
     return std::ranges::find(all, name, &Entity::name) != all.end() ||
            simulation_.world().find_body(name).ok();
   };
-  std::string name = request.name.empty() ? default_name(*entity) : request.name;
+  std::string name =
+      request.name.empty() ? default_name(*entity, model_name, p.source) : request.name;
+  if (name.empty() && !request.allow_renaming)
+    return failed(SpawnFailure::kNameInvalid, "neither the request nor the model has a name");
+  if (name.empty()) name = "entity";
   if (is_taken(name)) {
-    if (!request.allow_renaming && !request.name.empty())
+    if (!request.allow_renaming)
       return failed(SpawnFailure::kNameTaken, fmt::format("there is an entity '{}' already", name));
     int number = 2;
     while (is_taken(fmt::format("{}_{}", name, number))) ++number;

@@ -11,7 +11,7 @@
 namespace gloam::bridge {
 
 struct SpawnRequest {
-  std::string name = {};        ///< letters, digits, _ - .; empty = after the resource
+  std::string name = {};        ///< letters, digits, _ - .; empty = the resource's own
   bool allow_renaming = false;  ///< NAME_2 … where NAME is taken
   /// Resource: a path or file:// address of MJCF or URDF (a [[robot]]) or of a mesh (an
   /// [[object]]), "gloam://prop/KIND" (a [[prop]]), "gloam://assets/…" (a file that comes with

@@ -4,112 +4,19 @@
 #include "bridge/operations/operator.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <thread>
+
+#include "bridge/test/lab.h"
 
 namespace gloam::bridge {
 namespace {
 namespace fs = std::filesystem;
 
-constexpr const char* kRoom = R"(
-<mujoco>
-  <option timestep="0.002"/>
-  <worldbody>
-    <geom name="floor" type="plane" size="5 5 0.1"/>
-    <body name="crate" pos="1 2 0.5"><freejoint/><geom type="box" size="0.1 0.2 0.5" mass="3"/></body>
-    <body name="table" pos="0 -1 0.4"><geom type="box" size="0.5 0.3 0.4"/></body>
-    <body name="hand" mocap="true" pos="2 0 1"><geom type="sphere" size="0.05"/></body>
-    <body name="door" pos="3 0 1"><joint type="hinge" axis="0 0 1"/><geom type="box" size="0.4 0.02 1"/></body>
-  </worldbody>
-</mujoco>)";
-constexpr const char* kArm = R"(
-<mujoco model="arm">
-  <worldbody><body name="base"><geom size="0.05" mass="1"/>
-    <body name="link"><joint name="elbow" axis="0 1 0"/><geom type="capsule" fromto="0 0 0 0.3 0 0" size="0.02"/></body>
-  </body></worldbody>
-  <actuator><position name="elbow" joint="elbow" kp="50"/></actuator>
-</mujoco>)";
-constexpr const char* kBall = R"(
-<mujoco model="ball">
-  <worldbody><body name="ball"><freejoint/><geom size="0.1" mass="1"/></body></worldbody>
-</mujoco>)";
-constexpr const char* kUrdf = R"(<?xml version="1.0"?>
-<!-- a comment with <sdf> in it -->
-<robot name="box"><link name="base"><inertial><mass value="1"/>
-  <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial>
-  <collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link></robot>)";
-constexpr const char* kScene = R"(
-[scene]
-name = "lab"
-[environment]
-file = "room.xml"
-[[robot]]
-name = "arm"
-file = "arm.xml"
-position = [0, 3, 0]
-[[prop]]
-name = "seat"
-kind = "chair"
-position = [-2, 0, 0]
-loose = false
-[[goal]]
-robot = "arm"
-position = [1, 1, 0]
-radius = 0.3
-)";
-
-/// A scene in a folder of its own, whose ways up end in the test's own folder.
-class OperatorTest : public testing::Test {
- protected:
-  void SetUp() override {
-    std::string name = (fs::temp_directory_path() / "gloam_operator_XXXXXX").string();
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    top_ = name;
-    folder_ = top_ / "a" / "b" / "c" / "d";
-    fs::create_directories(folder_);
-    write("room.xml", kRoom);
-    write("arm.xml", kArm);
-    write("ball.xml", kBall);
-    write("lab.toml", kScene);
-    write("other.toml",
-          "# Another one.\n[environment]\nfile = \"room.xml\"\n[[robot]]\nname = \"ball\"\n"
-          "file = \"ball.xml\"\n");
-    std::ofstream(top_ / "secret.xml") << kBall;
-    const Result<Scene> scene = load_scene(folder_ / "lab.toml");
-    ASSERT_TRUE(scene.ok()) << scene.error().to_string();
-    const Result<World> world = World::compile(*scene);
-    ASSERT_TRUE(world.ok()) << world.error().to_string();
-    auto simulation = Simulation::create(*world, {});
-    ASSERT_TRUE(simulation.ok()) << simulation.error().to_string();
-    simulation_ = std::move(*simulation);
-    op_ = std::make_unique<Operator>(*simulation_);
-    op_->set_recording_folder(folder_ / "logs");
-  }
-  void TearDown() override {
-    op_.reset();
-    simulation_.reset();
-    std::error_code code;
-    fs::remove_all(top_, code);
-  }
-  void write(const char* name, const char* text) const { std::ofstream(folder_ / name) << text; }
-  Operator& op() { return *op_; }
-  Entity entity(const char* name) {
-    Result<Entity> found = op().find_entity(name);
-    EXPECT_TRUE(found.ok()) << found.error().to_string();
-    return found.ok() ? *found : Entity{};
-  }
-  SpawnResult spawn_ball(const std::string& name, bool rename = false) {
-    return op().spawn(
-        {.name = name, .allow_renaming = rename, .text = kBall, .X_FE = {{0, 0, 2}, {}}});
-  }
-
-  fs::path top_, folder_;
-  std::unique_ptr<Simulation> simulation_;
-  std::unique_ptr<Operator> op_;
-};
+using OperatorTest = Lab;
 
 void expect_ok(const Status& status) {
   EXPECT_TRUE(status.ok()) << (status.ok() ? "" : status.error().to_string());
@@ -262,7 +169,8 @@ TEST_F(OperatorTest, SpawnsWhatIsAsked) {
   EXPECT_EQ(simulation_->latest().step(), 5);  // the run goes on
   EXPECT_EQ(spawn_ball("ball").failure, SpawnFailure::kNameTaken);
   EXPECT_EQ(spawn_ball("ball", true).name, "ball_2");
-  EXPECT_EQ(spawn_ball("").name, "model");
+  EXPECT_EQ(spawn_ball("").failure, SpawnFailure::kNameTaken);  // the model is called "ball"
+  EXPECT_EQ(spawn_ball("", true).name, "ball_3");
 
   const SpawnResult box = op().spawn({.name = "box", .text = kUrdf, .X_FE = {{0, 5, 3}, {}}});
   ASSERT_TRUE(box.ok()) << box.error.to_string();
@@ -304,10 +212,11 @@ TEST_F(OperatorTest, RefusesToSpawnByCause) {
   EXPECT_EQ(cause({.uri = "gloam://prop/unicorn"}), SpawnFailure::kNoResource);
   EXPECT_EQ(cause({.uri = "http://example.com/a.xml"}), SpawnFailure::kNoResource);
   EXPECT_EQ(cause({.text = "<sdf version='1.9'/>"}), SpawnFailure::kUnsupportedFormat);
-  EXPECT_EQ(cause({.text = "hello"}), SpawnFailure::kParse);
-  EXPECT_EQ(cause({.text = "<mujoco><worldbody><body><geom/></worldbody></mujoco>"}),
+  EXPECT_EQ(cause({.text = "<mujoco/>"}), SpawnFailure::kNameInvalid);
+  EXPECT_EQ(cause({.name = "x", .text = "hello"}), SpawnFailure::kParse);
+  EXPECT_EQ(cause({.name = "x", .text = "<mujoco><worldbody><body><geom/></worldbody></mujoco>"}),
             SpawnFailure::kParse);
-  EXPECT_EQ(cause({.text = "<mujoco><asset><mesh file='none.stl'/></asset></mujoco>"}),
+  EXPECT_EQ(cause({.name = "x", .text = "<mujoco><asset><mesh file='none.stl'/></asset></mujoco>"}),
             SpawnFailure::kMissingAssets);
   EXPECT_EQ(cause({.text = kBall, .ns = "a//b"}), SpawnFailure::kNamespaceInvalid);
   EXPECT_EQ(cause({.text = kBall, .X_FE = {{}, {0, 0, 0, 0}}}), SpawnFailure::kPoseInvalid);
