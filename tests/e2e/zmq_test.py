@@ -159,7 +159,7 @@ class Zmq(unittest.TestCase):
                 seen.setdefault(message.topic, []).append(message)
             steps = [m.step for m in seen["state/100"]]
             self.assertEqual(steps, sorted(set(steps)))
-            self.assertEqual(seen["/arm/joint_states"][0].data["name"], ["arm/hinge"])
+            self.assertEqual(seen["/arm/joint_states"][0].data["name"], ["hinge"])
             self.assertEqual(len(seen["state/100"][0].data["qpos"]), 1)
 
     def test_a_killed_client_leaves_nothing(self):

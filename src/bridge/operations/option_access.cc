@@ -10,6 +10,24 @@
 namespace gloam::bridge {
 namespace {
 
+// Names of live fields as World::inputs() has them, by LiveFieldId.
+constexpr std::string_view kLiveFields[kLiveFieldCount] = {"gravity",
+                                                           "wind",
+                                                           "body_mass",
+                                                           "geom_friction",
+                                                           "height_field",
+                                                           "light_diffuse",
+                                                           "light_intensity",
+                                                           "light_active",
+                                                           "geom_color",
+                                                           "material_color",
+                                                           "material_emission",
+                                                           "material_specular",
+                                                           "material_shininess",
+                                                           "material_reflectance",
+                                                           "material_metallic",
+                                                           "material_roughness"};
+
 // The files that options name must be those that the scene itself could name.
 Status check_files(Scene scene, const ModelSource& source) {
   std::erase_if(scene.robots, [&](const RobotOptions& o) { return source.is_own(o.file); });
@@ -48,16 +66,15 @@ Status Operator::set_options(const std::vector<std::pair<std::string, std::strin
 }
 
 Status Operator::set_live_field(std::string_view name, int first, std::vector<float> values) {
-  std::vector<std::string> names;
-  for (const InputInfo& input : simulation_.world().inputs())
-    if (input.kind == InputKind::kLiveField) names.push_back(input.name);
-  const auto found = std::ranges::find(names, name);
-  if (found == names.end() || names.size() != static_cast<size_t>(kLiveFieldCount))
+  const auto* found = std::ranges::find(kLiveFields, name);
+  if (found == std::end(kLiveFields)) {
+    const std::vector<std::string> names(std::begin(kLiveFields), std::end(kLiveFields));
     return Error{ErrorKind::kInput,
-                 fmt::format("there is no live field '{:.100}'", name),
+                 fmt::format("there is no live field '{}'", name.substr(0, 100)),
                  {},
                  suggest_name(name, names)};
-  const auto field = static_cast<LiveFieldId>(found - names.begin());
+  }
+  const auto field = static_cast<LiveFieldId>(found - std::begin(kLiveFields));
   return simulation_.post({.what = SetLiveField{field, first, std::move(values)}});
 }
 

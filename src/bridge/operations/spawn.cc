@@ -69,8 +69,9 @@ void add_to_scene(SceneEntity entity, const std::string& name, Scene* scene) {
 // Cause of a compile's failure, by what its message says: MuJoCo and Gloam tell of files alike.
 SpawnFailure cause_of(const Error& error) {
   if (error.kind == ErrorKind::kUsage) return SpawnFailure::kOther;
-  for (const char* words : {"there is no file", "outside the folder", "could not open",
-                            "cannot be read", "cannot open", "resource not found", "not found"})
+  for (const char* words :
+       {"there is no file", "does not exist", "outside the folder", "could not open",
+        "cannot be read", "cannot open", "resource not found", "not found"})
     if (error.message.find(words) != std::string::npos) return SpawnFailure::kMissingAssets;
   return SpawnFailure::kParse;
 }

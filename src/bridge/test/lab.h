@@ -48,7 +48,7 @@ file = "room.xml"
 [[robot]]
 name = "arm"
 file = "arm.xml"
-position = [0, 3, 0]
+position = [0, 3, 1]
 [robot.controller]
 type = "joint_position"
 kp = 50

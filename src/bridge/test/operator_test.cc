@@ -189,7 +189,8 @@ TEST_F(OperatorTest, NamespacesAreThoseOfTopics) {
   const SpawnResult arm = op().spawn({.name = "second", .uri = "arm.xml", .ns = "/fleet/b"});
   ASSERT_TRUE(arm.ok()) << arm.error.to_string();
   bool found = false;
-  for (const TopicInfo& topic : simulation_->topics().value()) {
+  const std::vector<TopicInfo> topics = simulation_->topics().value();
+  for (const TopicInfo& topic : topics) {
     EXPECT_FALSE(topic.name.starts_with("/second/")) << topic.name;
     found = found || topic.name == "/fleet/b/joint_states";
   }
@@ -307,6 +308,10 @@ TEST_F(OperatorTest, ChangesOptionsAndLiveFields) {
   expect_error(op().set_options({{"sim.timestep", "0.001"}}), ErrorKind::kUnsupported, "timestep");
   EXPECT_GT(op().options().size(), 20u);
 
+  for (const InputInfo& input : simulation_->world().inputs())
+    if (input.kind == InputKind::kLiveField)
+      expect_ok(op().set_live_field(input.name, 0,
+                                    std::vector<float>(static_cast<size_t>(input.count), 0.5f)));
   expect_ok(op().set_live_field("gravity", 0, {0, 0, 0}));
   expect_ok(op().step(100));
   EXPECT_NEAR(op().entity_state("crate").value().velocity.z, 0, 1e-2);

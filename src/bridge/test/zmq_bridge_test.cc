@@ -96,7 +96,7 @@ TEST_F(ZmqBridgeTest, LockstepAnswersWithTheStateAfterTheSteps) {
   });
   const Value state = client.call("step", 1, one("n", 50));
   EXPECT_EQ(state["step"].as<int>(), 50);
-  EXPECT_DOUBLE_EQ(state["time"].number(), 0.1);
+  EXPECT_NEAR(state["time"].number(), 0.1, 1e-12);
   EXPECT_EQ(state["hash"].as<uint64_t>(), simulation_->latest().hash());
   EXPECT_EQ(numbers_of(state["ctrl"]), (std::vector<double>{2, 0}));
   const Joint slide = *simulation_->world().find_joint("cart/slide");

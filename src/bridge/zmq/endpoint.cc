@@ -102,9 +102,9 @@ Status bind_socket(zmq::socket_t& socket, const ZmqOptions& options, int port,
   return {};
 }
 
-void set_common(zmq::socket_t& socket, const CurveKey& key) {
+void set_common(zmq::socket_t& socket, const std::string& host, const CurveKey& key) {
   socket.set(zmq::sockopt::linger, 0);
-  socket.set(zmq::sockopt::ipv6, true);
+  socket.set(zmq::sockopt::ipv6, host.find(':') != std::string::npos);
   socket.set(zmq::sockopt::backlog, 256);
   socket.set(zmq::sockopt::handshake_ivl, kHandshake);
   socket.set(zmq::sockopt::heartbeat_ivl, kHeartbeat);
@@ -151,12 +151,12 @@ Result<std::unique_ptr<Endpoints>> Endpoints::bind(const ZmqOptions& options) {
   auto endpoints = std::make_unique<Endpoints>();
   endpoints->public_key = key.public_key;
   try {
-    set_common(endpoints->operations, key);
+    set_common(endpoints->operations, options.host, key);
     endpoints->operations.set(zmq::sockopt::router_mandatory, true);
     endpoints->operations.set(zmq::sockopt::maxmsgsize, static_cast<int64_t>(kMaxRequestBytes));
     endpoints->operations.set(zmq::sockopt::sndhwm, kReplies);
     endpoints->operations.set(zmq::sockopt::rcvhwm, kReplies);
-    set_common(endpoints->streams, key);
+    set_common(endpoints->streams, options.host, key);
     endpoints->streams.set(zmq::sockopt::maxmsgsize, static_cast<int64_t>(kMaxSubscription));
     endpoints->streams.set(zmq::sockopt::sndhwm, kStreamMessages);
     endpoints->streams.set(zmq::sockopt::xpub_verbose, true);  // latched topics are sent again

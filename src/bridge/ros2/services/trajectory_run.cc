@@ -22,28 +22,42 @@ constexpr double kLongestSettling = 10;  // where the goal names no time for it 
 constexpr double kWatchRate = 50;        // looks at the joints, and feedback [Hz]
 constexpr auto kLongestWait = std::chrono::milliseconds(50);  // between looks at a cancel
 
-/// The newest Snapshot of a stream.
+/// Hands Snapshots over one at a time: a simulation that runs as fast as it can waits, so that
+/// goals are not late.
 class SnapshotInbox {
  public:
   void put(const Snapshot& snapshot) {
-    const std::lock_guard lock(mutex_);
-    snapshot_ = snapshot;
-    is_new_ = true;
-    came_.notify_one();
-  }
-  /// A Snapshot after the one before; none came in a while = empty.
-  Snapshot wait() {
     std::unique_lock lock(mutex_);
-    if (!came_.wait_for(lock, kLongestWait, [this] { return is_new_; })) return {};
-    is_new_ = false;
-    return snapshot_;
+    snapshot_ = snapshot;
+    changed_.notify_all();
+    changed_.wait(lock, [this] { return closed_ || !snapshot_; });
+  }
+  /// The next one; none came in a while = empty.
+  Snapshot take() {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, kLongestWait, [this] { return static_cast<bool>(snapshot_); });
+    Snapshot taken;
+    std::swap(taken, snapshot_);
+    changed_.notify_all();
+    return taken;
+  }
+  void close() {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+    changed_.notify_all();
   }
 
  private:
   std::mutex mutex_;
-  std::condition_variable came_;
+  std::condition_variable changed_;
   Snapshot snapshot_;
-  bool is_new_ = false;
+  bool closed_ = false;
+};
+
+/// Before a stream closes, its last callback must return.
+struct InboxCloser {
+  SnapshotInbox& inbox;
+  ~InboxCloser() { inbox.close(); }
 };
 
 GoalEnd aborted(int32_t code, std::string text) {
@@ -112,14 +126,16 @@ GoalEnd TrajectoryRun::run(GoalContext& context) {
   if (const Status begun = begin(now); !begun.ok())
     return aborted(JointResult::INVALID_GOAL, begun.error().to_string());
   SnapshotInbox inbox;
-  const auto stream = simulation_.open_snapshots(
-      {.rate = rate_}, [&inbox](const Snapshot& snapshot) { inbox.put(snapshot); });
+  const auto stream =
+      simulation_.open_snapshots({.rate = rate_, .required = true, .capacity = 1},
+                                 [&inbox](const Snapshot& snapshot) { inbox.put(snapshot); });
   if (!stream.ok()) return aborted(JointResult::INVALID_GOAL, stream.error().to_string());
+  const InboxCloser closer{inbox};
   for (double before = now.time();;) {
     if (context.is_cancelled()) return cancelled(now);
     if (const Status posted = post_ahead(now); !posted.ok())
       return aborted(JointResult::INVALID_GOAL, posted.error().to_string());
-    const Snapshot next = inbox.wait();
+    const Snapshot next = inbox.take();
     if (!simulation_.status().ok())
       return aborted(JointResult::INVALID_GOAL, "the simulation has failed");
     if (!next) continue;

@@ -33,7 +33,8 @@ int load_code(const Error& error) {
   if (says("there is no world") || says("there is no folder") || says("neither an address") ||
       says("lies outside what clients") || says("no address"))
     return Response::NO_RESOURCE;
-  if (says("there is no file") || says("cannot be read") || says("could not open"))
+  if (says("there is no file") || says("does not exist") || says("cannot be read") ||
+      says("could not open"))
     return Response::MISSING_ASSETS;
   if (error.kind == ErrorKind::kInput || error.kind == ErrorKind::kIo)
     return Response::RESOURCE_PARSE_ERROR;
