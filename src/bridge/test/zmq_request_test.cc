@@ -182,6 +182,13 @@ TEST_F(ZmqArguments, NumbersMayComeAsBytes) {
   EXPECT_NE(check(2, with_bytes(23)), "");
 }
 
+TEST(ZmqErrors, QuoteStrangersInValidUtf8) {
+  EXPECT_EQ(valid_text("Größe 3 m²"), "Größe 3 m²");
+  EXPECT_EQ(valid_text("a\xff\xc3"), "a??");
+  EXPECT_EQ(valid_text("\xc0\x80\xed\xa0\x80\xf4\x90\x80\x80"), "?????????");
+  EXPECT_EQ(valid_text("\xe2\x82"), "??");
+}
+
 TEST(ZmqOperations, HaveDistinctNamesAndExplainThemselves) {
   std::string last;
   for (const Operation& operation : all_operations()) {

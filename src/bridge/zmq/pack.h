@@ -30,6 +30,9 @@ inline void pack_bytes(Packer& packer, std::span<const uint8_t> bytes) {
   packer.pack_bin_body(reinterpret_cast<const char*>(bytes.data()),
                        static_cast<uint32_t>(bytes.size()));
 }
+/// With ? in the place of each byte that is no part of UTF-8: texts of strangers come back in
+/// errors.
+std::string valid_text(std::string_view text);
 /// Packs {kind, message, remedy, where}: the form of every error on the wire.
 void pack_error(Packer& packer, const Error& error);
 

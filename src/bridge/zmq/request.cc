@@ -21,33 +21,6 @@ Error no_request(std::string message) {
           .hint = "a request is a map {op: text, id: integer or text, token: text, args: map}"};
 }
 
-const char* kind_name(ErrorKind kind) {
-  switch (kind) {
-    case ErrorKind::kInput:
-      return "input";
-    case ErrorKind::kIo:
-      return "io";
-    case ErrorKind::kUsage:
-      return "usage";
-    case ErrorKind::kPartial:
-      return "partial";
-    case ErrorKind::kDiverged:
-      return "diverged";
-    case ErrorKind::kUnsupported:
-      return "unsupported";
-    case ErrorKind::kInterrupted:
-      return "interrupted";
-  }
-  return "input";
-}
-
-std::string place_of(const SourceLoc& loc) {
-  if (loc.file.empty()) return {};
-  if (loc.line == 0) return loc.file;
-  if (loc.column == 0) return fmt::format("{}:{}", loc.file, loc.line);
-  return fmt::format("{}:{}:{}", loc.file, loc.line, loc.column);
-}
-
 // Each element takes a byte, so that counts beyond the message's size are refused before memory
 // for them is taken.
 Result<msgpack::object_handle> unpack_within_limits(std::span<const uint8_t> bytes) {
@@ -113,14 +86,6 @@ Status take_entry(const std::string& key, const msgpack::object& value, Request*
 }
 
 }  // namespace
-
-void pack_error(Packer& packer, const Error& error) {
-  packer.pack_map(4);
-  pack_pair(packer, "kind", std::string_view(kind_name(error.kind)));
-  pack_pair(packer, "message", error.message);
-  pack_pair(packer, "remedy", error.hint);
-  pack_pair(packer, "where", place_of(error.loc));
-}
 
 Result<Request> parse_request(std::span<const uint8_t> bytes) {
   if (bytes.size() > kMaxRequestBytes)
