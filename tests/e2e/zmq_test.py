@@ -100,7 +100,9 @@ class Zmq(unittest.TestCase):
                                 env={**os.environ, **PYTHON}, **options)
 
     def test_lockstep_is_the_run_of_the_command_line(self):
-        ran = subprocess.run([str(PROGRAM), "run", str(self.scene), "--duration", "1", "--json", "--out", str(self.folder / "out"),
+        plain = self.folder / "plain.toml"
+        plain.write_text(SCENE.split("[bridge.zmq]")[0])
+        ran = subprocess.run([str(PROGRAM), "run", str(plain), "--duration", "1", "--json", "--out", str(self.folder / "out"),
                               "--output", "state"], text=True, capture_output=True, check=True)
         wanted = int(json.loads(ran.stdout)["state_hash"], 16)
         self.serve("--paused")
