@@ -267,6 +267,22 @@ time.sleep(100)
             self.assertAlmostEqual(sim.seek(0.5)["time"], 0.5, delta=0.011)
             self.assertAlmostEqual(sim.seek(0.25)["time"], 0.25, delta=0.011)
 
+    def test_curve_is_found_with_the_server(self):
+        import zmq
+        public, secret = zmq.curve_keypair()
+        key = self.folder / "server.key"
+        key.write_text(f"== CURVE PUBLIC KEY ==\n{public.decode()}\n\n== CURVE SECRET KEY ==\n{secret.decode()}\n")
+        key.chmod(0o600)
+        self.serve("--paused", "--set", f"bridge.zmq.curve_secret='{key}'")
+        with self.client() as sim, sim.stream("state/0", timeout=20) as stream:
+            sim.step(1)
+            time.sleep(0.5)
+            sim.step(1)
+            self.assertEqual(next(stream).type, "state")
+            address = sim.address
+        with self.assertRaises((TimeoutError, ConnectionError)):
+            self.client(address=address, server_key=zmq.curve_keypair()[0].decode(), timeout=1)
+
     def test_the_end_may_be_asked_for(self):
         server = self.serve()
         with self.client() as sim:

@@ -1,12 +1,8 @@
 // Operations that become Commands: controls, goals, poses, forces, fields, and messages to topics.
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <array>
 
 #include "bridge/zmq/operation.h"
-#include "gloam/program.h"
 
 namespace gloam::bridge::zeromq {
 namespace {
@@ -21,26 +17,6 @@ const Argument kStepArgument{"at_step", kInteger, false, "steps since reset",
 Vec3 vector_of(const std::vector<double>& v) { return {v[0], v[1], v[2]}; }
 
 int64_t step_of(const Call& call) { return call.arguments.integer("at_step", Command::kNextStep); }
-
-Result<RobotInfo> robot_of(const Call& call, const World& world) {
-  const std::vector<RobotInfo> robots = world.robots();
-  std::vector<std::string> names;
-  for (const RobotInfo& robot : robots) names.push_back(robot.name);
-  const std::string name = call.arguments.text("robot");
-  if (name.empty() && robots.size() == 1) return robots[0];
-  if (name.empty())
-    return Error{ErrorKind::kUsage,
-                 fmt::format("there are {} robots, not one", robots.size()),
-                 {},
-                 "name one as 'robot'"};
-  const auto found = std::ranges::find(names, name);
-  if (found == names.end())
-    return Error{ErrorKind::kInput,
-                 fmt::format("there is no robot '{:.60}'", name),
-                 {},
-                 suggest_name(name.substr(0, 60), names)};
-  return robots[static_cast<size_t>(found - names.begin())];
-}
 
 // Robot that has a joint or actuator; empty = none.
 template <class Handle>
@@ -157,20 +133,6 @@ Status live_field(const Call& call, Packer& out) {
   return {};
 }
 
-Status claim(const Call& call, Packer& out) {
-  GLOAM_TRY(const RobotInfo robot, robot_of(call, call.services.simulation().world()));
-  GLOAM_TRY_STATUS(call.services.sessions.claim(call.from, robot.name));
-  pack_nothing(out);
-  return {};
-}
-
-Status release(const Call& call, Packer& out) {
-  GLOAM_TRY(const RobotInfo robot, robot_of(call, call.services.simulation().world()));
-  GLOAM_TRY_STATUS(call.services.sessions.release(call.from.client, robot.name));
-  pack_nothing(out);
-  return {};
-}
-
 Status publish(const Call& call, Packer& out) {
   GLOAM_TRY_STATUS(call.services.simulation().publish(call.arguments.text("topic"),
                                                       call.arguments.bytes("data")));
@@ -240,12 +202,6 @@ std::vector<Operation> command_operations() {
         {"values", kNumbers, true, "the field's own", "elements from 'first' on"},
         {"first", kInteger, false, "", "index of the first element; default 0"}},
        live_field},
-      {"claim",
-       "makes a robot's controls and goals this client's alone until it releases it or is gone",
-       kAtOnce,
-       {kRobotArgument},
-       claim},
-      {"release", "gives a claimed robot back", kAtOnce, {kRobotArgument}, release},
       {"publish",
        "a message to an input topic",
        kAtOnce,

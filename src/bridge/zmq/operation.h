@@ -16,7 +16,7 @@
 
 namespace gloam::bridge::zeromq {
 
-/// What operations work with.
+/// Parts of a bridge that operations work with.
 struct Services {
   const BridgeContext& context;
   Sessions& sessions;
@@ -54,6 +54,8 @@ struct Operation {
 /// Rows by subject; each in its own file.
 std::vector<Operation> run_operations();
 std::vector<Operation> command_operations();
+std::vector<Operation> claim_operations();
+std::vector<Operation> option_operations();
 std::vector<Operation> world_operations();
 std::vector<Operation> record_operations();
 std::vector<Operation> hello_operations();
@@ -65,6 +67,8 @@ Result<const Operation*> find_operation(std::string_view name);
 
 /// {}: the result of what only succeeds.
 inline void pack_nothing(Packer& out) { out.pack_map(0); }
+/// The robot that argument "robot" names, without it the only one.
+Result<RobotInfo> robot_of(const Call& call, const World& world);
 /// {step, time, hash, qpos, qvel, ctrl} of the latest instant.
 Status pack_latest(const Call& call, Packer& out);
 

@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
-#include <optional>
 #include <utility>
 
-#include "gloam/program.h"
+#include "bridge/zmq/subscription.h"
 
 namespace gloam::bridge::zeromq {
 namespace {
@@ -18,42 +16,6 @@ constexpr milliseconds kRetry{1000};
 constexpr size_t kMaxSubscriptions = 4096;
 constexpr size_t kMaxSubscriptionBytes = 512;
 constexpr size_t kMaxStateRates = 16;
-constexpr int64_t kStateRate = 100;  // [Hz], of "state"
-constexpr std::string_view kStatePrefix = "state/";
-
-/// A subscription to a topic.
-struct TopicForm {
-  std::string topic;
-  StreamForm form;
-};
-
-std::optional<TopicForm> parse_topic(std::string_view subscription) {
-  for (int i = kStreamForms - 1; i >= 0; --i) {
-    const auto form = static_cast<StreamForm>(i);
-    const std::string_view prefix = prefix_of(form);
-    if (subscription.starts_with(prefix) && subscription.substr(prefix.size()).starts_with('/'))
-      return TopicForm{std::string(subscription.substr(prefix.size())), form};
-  }
-  return std::nullopt;
-}
-
-bool is_state(std::string_view subscription) {
-  return subscription == kStateStream || subscription.starts_with(kStatePrefix);
-}
-
-Result<Rational> parse_rate(std::string_view subscription) {
-  if (subscription == kStateStream) return Rational{kStateRate, 1};
-  const std::string_view digits = subscription.substr(kStatePrefix.size());
-  int64_t rate = -1;
-  const auto end = digits.data() + digits.size();
-  const auto read = std::from_chars(digits.data(), end, rate);
-  if (read.ec != std::errc() || read.ptr != end || rate < 0 || rate > 1000000)
-    return Error{ErrorKind::kUsage,
-                 fmt::format("'{}' is no rate of states", digits),
-                 {},
-                 "state/500 is 500 a second of simulation time, state/0 every step"};
-  return Rational{rate, 1};
-}
 
 PackBuffer state_header(const Snapshot& snapshot, uint64_t sequence) {
   const auto now = std::chrono::steady_clock::now().time_since_epoch();
@@ -145,40 +107,25 @@ void Streams::follow(const Plan& plan) {
 }
 
 void Streams::follow_topics(const Plan& plan) {
-  std::map<std::string, std::set<std::string>> forms;  // topic -> subscriptions
+  TopicForms forms;
   for (const std::string& subscription : plan.wanted)
-    if (const auto form = parse_topic(subscription)) forms[form->topic].insert(subscription);
+    if (const auto topic = parse_topic(subscription)) forms[topic->topic].insert(topic->form);
   const auto topics = forms.empty() ? std::vector<TopicInfo>() : simulation_.topics();
   if (!topics.ok()) {
-    for (const auto& [topic, subscriptions] : forms)
-      for (const std::string& subscription : subscriptions) tell(subscription, topics.error());
+    for (const auto& [topic, wanted] : forms)
+      for (const StreamForm form : wanted) tell(name_of(topic, form), topics.error());
     return;
   }
   std::map<std::string, std::set<std::string>> groups;
-  for (const auto& [topic, subscriptions] : forms) {
+  for (const auto& [topic, wanted] : forms) {
     const auto info = std::ranges::find(*topics, topic, &TopicInfo::name);
     const bool is_there = info != topics->end() && !info->is_input;
-    for (const std::string& subscription : subscriptions) {
-      const bool is_shared = parse_topic(subscription)->form == StreamForm::kShared;
-      if (!is_there)
-        tell(subscription, {ErrorKind::kInput,
-                            fmt::format("no topic '{}' is said", topic),
-                            {},
-                            "operation 'topics' lists them"});
-      else if (is_shared && !shared_memory_)
-        tell(subscription, {ErrorKind::kUsage,
-                            "shared memory is off",
-                            {},
-                            "[bridge.zmq] shared_memory = true; or subscribe without 'shm'"});
-    }
+    tell_refused(topic, wanted, is_there);
     if (!is_there) continue;
     std::shared_ptr<TopicSink>& sink = sinks_[topic];
     if (sink == nullptr) sink = std::make_shared<TopicSink>(topic, outbox_);
-    for (int i = 0; i < kStreamForms; ++i) {
-      const auto form = static_cast<StreamForm>(i);
-      const bool may = form != StreamForm::kShared || shared_memory_;
-      sink->want(form, may && subscriptions.contains(std::string(prefix_of(form)) + topic));
-    }
+    for (const StreamForm form : kAllForms)
+      sink->want(form, wanted.contains(form) && may_send(form));
     groups[info->qos.is_latched ? topic : info->source].insert(topic);
   }
   std::erase_if(groups_, [&groups](const auto& open) {
@@ -188,6 +135,22 @@ void Streams::follow_topics(const Plan& plan) {
   std::erase_if(sinks_, [&forms](const auto& sink) { return !forms.contains(sink.first); });
   for (const auto& [key, names] : groups)
     if (!groups_.contains(key)) open_group(key, names);
+}
+
+void Streams::tell_refused(const std::string& topic, const std::set<StreamForm>& forms,
+                           bool is_there) {
+  for (const StreamForm form : forms) {
+    if (!is_there)
+      tell(name_of(topic, form), {ErrorKind::kInput,
+                                  fmt::format("no topic '{}' is said", topic),
+                                  {},
+                                  "operation 'topics' lists them"});
+    else if (!may_send(form))
+      tell(name_of(topic, form), {ErrorKind::kUsage,
+                                  "shared memory is off",
+                                  {},
+                                  "[bridge.zmq] shared_memory = true; or subscribe without 'shm'"});
+  }
 }
 
 void Streams::open_group(const std::string& key, const std::set<std::string>& topics) {
@@ -202,19 +165,15 @@ void Streams::open_group(const std::string& key, const std::set<std::string>& to
         const auto sink = sinks.find(message.topic.name);
         if (sink != sinks.end()) sink->second->take(message);
       });
-  if (!stream.ok()) {
-    for (const std::string& topic : topics)
-      for (int i = 0; i < kStreamForms; ++i) {
-        const auto form = static_cast<StreamForm>(i);
-        if (sinks_[topic]->wants(form)) tell(std::string(prefix_of(form)) + topic, stream.error());
-      }
-    return;
-  }
   for (const std::string& topic : topics)
-    for (int i = 0; i < kStreamForms; ++i) {
-      const auto form = static_cast<StreamForm>(i);
-      if (sinks_[topic]->wants(form)) told_.erase(std::string(prefix_of(form)) + topic);
+    for (const StreamForm form : kAllForms) {
+      if (!sinks_[topic]->wants(form)) continue;
+      if (stream.ok())
+        told_.erase(name_of(topic, form));
+      else
+        tell(name_of(topic, form), stream.error());
     }
+  if (!stream.ok()) return;
   group->stream = std::move(*stream);
   groups_[key] = std::move(group);
 }

@@ -19,8 +19,6 @@
 
 namespace gloam::bridge::zeromq {
 
-inline constexpr std::string_view kStateStream = "state";
-
 class Streams {
  public:
   Streams(Simulation& simulation, Outbox& outbox, StateLayouts& layouts, bool shared_memory);
@@ -45,6 +43,7 @@ class Streams {
     std::unique_ptr<SnapshotStream> stream;
     std::atomic<bool> has_ended{false};
   };
+  using TopicForms = std::map<std::string, std::set<StreamForm>>;
   /// Copy of what is wanted, made at one moment.
   struct Plan {
     std::set<std::string> wanted;
@@ -55,6 +54,8 @@ class Streams {
   Plan wait_for_work();
   void follow(const Plan& plan);
   void follow_topics(const Plan& plan);
+  void tell_refused(const std::string& topic, const std::set<StreamForm>& forms, bool is_there);
+  bool may_send(StreamForm form) const { return form != StreamForm::kShared || shared_memory_; }
   void follow_states(const Plan& plan);
   void open_group(const std::string& key, const std::set<std::string>& topics);
   Result<std::unique_ptr<SnapshotStream>> open_state(const std::string& subscription,
@@ -76,7 +77,7 @@ class Streams {
   std::set<std::string> wanted_;
   std::vector<std::string> again_;
 
-  // Of the thread.
+  // The thread's own.
   std::map<std::string, std::shared_ptr<TopicSink>> sinks_;  // by topic
   std::map<std::string, std::unique_ptr<Group>> groups_;
   std::map<std::string, std::unique_ptr<StateFeed>> states_;

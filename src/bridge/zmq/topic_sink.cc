@@ -8,7 +8,7 @@ namespace {
 
 zmq::message_t message_of(const PackBuffer& buffer) { return {buffer.data(), buffer.size()}; }
 
-// Of CLOCK_MONOTONIC, which all processes of a machine share.
+// CLOCK_MONOTONIC, which all processes of a machine share [ns].
 int64_t monotonic_now() {
   return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -54,8 +54,8 @@ void TopicSink::take(const TopicMessage& message) {
   if (message.topic.qos.is_latched)
     kept_ = Kept{message.topic, message.run,      message.step,
                  message.time,  message.delivery, {message.data.begin(), message.data.end()}};
-  for (int form = 0; form < kStreamForms; ++form)
-    if (wanted_[form]) send(message, static_cast<StreamForm>(form));
+  for (const StreamForm form : kAllForms)
+    if (wants(form)) send(message, form);
   ++sequence_;
 }
 
@@ -64,8 +64,8 @@ void TopicSink::send_latched() {
   if (!kept_) return;
   const TopicMessage message{kept_->topic, kept_->run,      kept_->step,
                              kept_->time,  kept_->delivery, kept_->data};
-  for (int form = 0; form < kStreamForms; ++form)
-    if (wanted_[form]) send(message, static_cast<StreamForm>(form));
+  for (const StreamForm form : kAllForms)
+    if (wants(form)) send(message, form);
 }
 
 void TopicSink::send(const TopicMessage& message, StreamForm form) {

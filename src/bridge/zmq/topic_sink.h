@@ -23,6 +23,8 @@ enum class StreamForm : uint8_t {
   kShared,   ///< "shm/front/image_raw"
 };
 inline constexpr int kStreamForms = 3;
+inline constexpr StreamForm kAllForms[] = {StreamForm::kCdr, StreamForm::kDecoded,
+                                           StreamForm::kShared};
 std::string_view prefix_of(StreamForm form);  ///< "", "decoded", "shm"
 
 /// A message without data that tells subscribers why none comes.

@@ -1,4 +1,4 @@
-// Operations on the World: options, entities, spawning, scenes.
+// Operations on the World: entities, spawning, scenes.
 
 #include <algorithm>
 
@@ -38,35 +38,6 @@ Pose pose_argument(const Call& call) {
   if (const auto q = call.arguments.numbers("orientation"); q.size() == 4)
     X.q = {q[0], q[1], q[2], q[3]};
   return X;
-}
-
-Status options(const Call& call, Packer& out) {
-  const std::vector<OptionInfo> all = call.services.operations().options();
-  out.pack_array(static_cast<uint32_t>(all.size()));
-  for (const OptionInfo& option : all) {
-    out.pack_map(6);
-    pack_pair(out, "path", option.path);
-    pack_pair(out, "value", option.value);
-    pack_pair(out, "unit", option.unit);
-    pack_pair(out, "low", option.low);
-    pack_pair(out, "high", option.high);
-    pack_pair(out, "choices", option.choices);
-  }
-  return {};
-}
-
-Status get_option_text(const Call& call, Packer& out) {
-  GLOAM_TRY(const std::string value,
-            call.services.operations().option(call.arguments.text("path")));
-  out.pack_map(1);
-  pack_pair(out, "value", value);
-  return {};
-}
-
-Status set_options(const Call& call, Packer& out) {
-  GLOAM_TRY_STATUS(call.services.operations().set_options(call.arguments.text_map("options")));
-  pack_nothing(out);
-  return {};
 }
 
 void pack_entity(Packer& out, const Entity& entity) {
@@ -181,12 +152,6 @@ Status load_world(const Call& call, Packer& out) {
   return {};
 }
 
-Status recompile(const Call& call, Packer& out) {
-  GLOAM_TRY_STATUS(call.services.operations().recompile(call.arguments.text("toml")));
-  pack_nothing(out);
-  return {};
-}
-
 }  // namespace
 
 std::vector<Operation> world_operations() {
@@ -194,17 +159,6 @@ std::vector<Operation> world_operations() {
   const Argument position{"position", kNumbers, false, "m, (3)", "x y z", 3};
   const Argument orientation{"orientation", kNumbers, false, "(4)", "unit quaternion w x y z", 4};
   return {
-      {"options", "options of the scene: [{path, value, unit, …}]", kQueued, {}, options},
-      {"get_option",
-       "one option as TOML: {value}",
-       kQueued,
-       {{"path", kText, true, "", "sim.duration, camera.NAME.width …"}},
-       get_option_text},
-      {"set_options",
-       "changes options, all or none; the scene is compiled again and the run goes on",
-       kQueued,
-       {{"options", kTextMap, true, "", "path -> value as TOML"}},
-       set_options},
       {"entities", "robots, people, vehicles, objects: [{name, kind, …}]", kQueued, {}, entities},
       {"entity_state",
        "pose, velocities, accelerations, box; world axes",
@@ -246,11 +200,6 @@ std::vector<Operation> world_operations() {
        {{"uri", kText, false, "", "name of one of 'worlds', path or file:// address"},
         {"text", kText, false, "", "the scene itself in TOML"}},
        load_world},
-      {"recompile",
-       "goes on in another scene: what has the same name keeps its state",
-       kQueued,
-       {{"toml", kText, true, "", "the whole scene file"}},
-       recompile},
   };
 }
 
