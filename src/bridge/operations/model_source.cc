@@ -15,6 +15,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr size_t kLongestModel = size_t{16} << 20;  // [bytes]
+constexpr size_t kMostText = size_t{256} << 20;     // of all models that were texts [bytes]
 constexpr size_t kLongestAddress = 4000;
 constexpr std::string_view kFileScheme = "file://", kOwnScheme = "gloam://",
                            kPackageScheme = "package://", kPropFolder = "gloam://prop/";
@@ -218,6 +219,9 @@ Result<fs::path> ModelSource::resolve_folder(const std::string& uri, const Scene
 
 Result<fs::path> ModelSource::write(const std::string& text, const std::string& extension) {
   const std::lock_guard lock(mutex_);
+  if (written_ + text.size() > kMostText)
+    return Error{ErrorKind::kUsage, "256 MiB of models came as text, no more are taken"};
+  written_ += text.size();
   std::error_code code;
   if (folder_.empty()) {
     std::string name = (fs::temp_directory_path(code) / "gloam_spawned_XXXXXX").string();
@@ -287,6 +291,7 @@ Result<SceneEntity> ModelSource::find(const SpawnRequest& request, const Scene& 
   if (!scene.access.root.empty())
     return refuse(failure, SpawnFailure::kOther,
                   "models as text are not taken where --root limits the files that are read");
+  *failure = SpawnFailure::kOther;
   GLOAM_TRY(robot.file, write(text, kind == ModelText::kUrdf ? ".urdf" : ".xml"));
   return SceneEntity(robot);
 }

@@ -47,6 +47,7 @@ class ModelSource {
   mutable std::mutex mutex_;
   std::filesystem::path folder_;  // empty until the first
   int count_ = 0;
+  size_t written_ = 0;  // [bytes]
 };
 
 /// Name of a prop's kind in "gloam://prop/KIND"; empty = another address.

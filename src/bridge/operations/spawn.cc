@@ -68,11 +68,16 @@ void add_to_scene(SceneEntity entity, const std::string& name, Scene* scene) {
 
 // Cause of a compile's failure, by what its message says: MuJoCo and Gloam tell of files alike.
 SpawnFailure cause_of(const Error& error) {
+  const auto says = [&](std::initializer_list<const char*> words) {
+    return std::ranges::any_of(
+        words, [&](const char* word) { return error.message.find(word) != std::string::npos; });
+  };
   if (error.kind == ErrorKind::kUsage) return SpawnFailure::kOther;
-  for (const char* words :
-       {"there is no file", "does not exist", "outside the folder", "could not open",
-        "cannot be read", "cannot open", "resource not found", "not found"})
-    if (error.message.find(words) != std::string::npos) return SpawnFailure::kMissingAssets;
+  if (says({"there is no file", "does not exist", "outside the folder", "could not open",
+            "cannot be read", "cannot open", "is not known"}))
+    return SpawnFailure::kMissingAssets;
+  if (error.kind == ErrorKind::kUnsupported || says({"no decoder found"}))
+    return SpawnFailure::kUnsupportedAssets;
   return SpawnFailure::kParse;
 }
 

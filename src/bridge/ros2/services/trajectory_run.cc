@@ -1,11 +1,10 @@
 #include "bridge/ros2/services/trajectory_run.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <condition_variable>
 
 #include "bridge/ros2/services/simulation_values.h"
+#include "bridge/ros2/services/snapshot_inbox.h"
 #include "ros/codec.h"
 #include "ros/messages/control_msgs_5.h"
 
@@ -20,45 +19,6 @@ constexpr double kGoalPeriod = 0.02;     // between goals of joints [s]
 constexpr double kPostedAhead = 0.1;     // goals that are under way [s]
 constexpr double kLongestSettling = 10;  // where the goal names no time for it [s]
 constexpr double kWatchRate = 50;        // looks at the joints, and feedback [Hz]
-constexpr auto kLongestWait = std::chrono::milliseconds(50);  // between looks at a cancel
-
-/// Hands Snapshots over one at a time: a simulation that runs as fast as it can waits, so that
-/// goals are not late.
-class SnapshotInbox {
- public:
-  void put(const Snapshot& snapshot) {
-    std::unique_lock lock(mutex_);
-    snapshot_ = snapshot;
-    changed_.notify_all();
-    changed_.wait(lock, [this] { return closed_ || !snapshot_; });
-  }
-  /// The next one; none came in a while = empty.
-  Snapshot take() {
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, kLongestWait, [this] { return static_cast<bool>(snapshot_); });
-    Snapshot taken;
-    std::swap(taken, snapshot_);
-    changed_.notify_all();
-    return taken;
-  }
-  void close() {
-    const std::lock_guard lock(mutex_);
-    closed_ = true;
-    changed_.notify_all();
-  }
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  Snapshot snapshot_;
-  bool closed_ = false;
-};
-
-/// Before a stream closes, its last callback must return.
-struct InboxCloser {
-  SnapshotInbox& inbox;
-  ~InboxCloser() { inbox.close(); }
-};
 
 GoalEnd aborted(int32_t code, std::string text) {
   return trajectory_end(GoalState::STATUS_ABORTED, code, std::move(text));
