@@ -1,6 +1,4 @@
-// Clients of the bridge to ZeroMQ: over its socket, and through shared memory. Rows of kClients:
-//   {"zmq", [](BridgeOptions* o) { o->zmq.emplace(); }, run_zmq_client},
-//   {"zmq shm", [](BridgeOptions* o) { o->zmq.emplace(); }, run_shm_client},
+// Clients of the bridge to ZeroMQ: over its socket, and through shared memory.
 
 #include <fcntl.h>
 #include <sys/mman.h>

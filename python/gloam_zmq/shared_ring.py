@@ -1,4 +1,4 @@
-"""Messages in POSIX shared memory, read where they stand. Layout: src/bridge/zmq/shared_ring.h of Gloam, docs/zmq.md."""
+"""Messages in POSIX shared memory, read where they stand. Layout: src/bridge/zmq/streams/shared_ring.h of Gloam, docs/zmq.md."""
 import mmap
 import os
 import struct

@@ -1,5 +1,5 @@
-#include "bridge/zmq/arguments.h"
-#include "bridge/zmq/operation.h"
+#include "bridge/zmq/operations/arguments.h"
+#include "bridge/zmq/operations/operation.h"
 #include "bridge/zmq/request.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

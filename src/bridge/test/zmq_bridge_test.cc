@@ -14,7 +14,7 @@
 
 #include "bridge/test/zmq_fixture.h"
 #include "bridge/zmq/address_file.h"
-#include "bridge/zmq/operation.h"
+#include "bridge/zmq/operations/operation.h"
 #include "gloam/log.h"
 #include "ros/codec.h"
 #include "ros/messages/geometry_msgs.h"

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "bridge/test/zmq_fixture.h"
-#include "bridge/zmq/arguments.h"
-#include "bridge/zmq/operation.h"
+#include "bridge/zmq/operations/arguments.h"
+#include "bridge/zmq/operations/operation.h"
 #include "bridge/zmq/request.h"
 
 namespace gloam::bridge::zeromq {

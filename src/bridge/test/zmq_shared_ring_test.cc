@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "bridge/zmq/shared_ring.h"
+#include "bridge/zmq/streams/shared_ring.h"
 
 namespace gloam::bridge::zeromq {
 namespace {

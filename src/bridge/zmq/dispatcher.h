@@ -6,7 +6,7 @@
 #include <memory>
 #include <span>
 
-#include "bridge/zmq/operation.h"
+#include "bridge/zmq/operations/operation.h"
 #include "bridge/zmq/request.h"
 #include "bridge/zmq/worker.h"
 

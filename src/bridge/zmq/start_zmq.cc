@@ -8,8 +8,8 @@
 #include "bridge/zmq/address_file.h"
 #include "bridge/zmq/dispatcher.h"
 #include "bridge/zmq/server.h"
-#include "bridge/zmq/shared_ring.h"
-#include "bridge/zmq/streams.h"
+#include "bridge/zmq/streams/shared_ring.h"
+#include "bridge/zmq/streams/streams.h"
 
 namespace gloam::bridge {
 namespace zeromq {

@@ -1,6 +1,6 @@
 // Operations on the scene as text: its options, or all of it.
 
-#include "bridge/zmq/operation.h"
+#include "bridge/zmq/operations/operation.h"
 
 namespace gloam::bridge::zeromq {
 namespace {

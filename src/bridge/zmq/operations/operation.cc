@@ -1,4 +1,4 @@
-#include "bridge/zmq/operation.h"
+#include "bridge/zmq/operations/operation.h"
 
 #include <fmt/format.h>
 

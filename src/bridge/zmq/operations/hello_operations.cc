@@ -4,7 +4,7 @@
 #include <set>
 
 #include "bridge/zmq/address_file.h"
-#include "bridge/zmq/operation.h"
+#include "bridge/zmq/operations/operation.h"
 #include "gloam/log_player.h"
 #include "gloam/program.h"
 #include "gloam/topics.h"

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "bridge/zmq/outbox.h"
-#include "bridge/zmq/state_pack.h"
-#include "bridge/zmq/topic_sink.h"
+#include "bridge/zmq/streams/state_pack.h"
+#include "bridge/zmq/streams/topic_sink.h"
 #include "gloam/simulation.h"
 
 namespace gloam::bridge::zeromq {

@@ -1,4 +1,4 @@
-#include "bridge/zmq/state_pack.h"
+#include "bridge/zmq/streams/state_pack.h"
 
 namespace gloam::bridge::zeromq {
 namespace {

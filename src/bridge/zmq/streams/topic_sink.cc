@@ -1,4 +1,4 @@
-#include "bridge/zmq/topic_sink.h"
+#include "bridge/zmq/streams/topic_sink.h"
 
 #include <chrono>
 #include <utility>

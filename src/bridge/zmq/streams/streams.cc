@@ -1,11 +1,11 @@
-#include "bridge/zmq/streams.h"
+#include "bridge/zmq/streams/streams.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <utility>
 
-#include "bridge/zmq/subscription.h"
+#include "bridge/zmq/streams/subscription.h"
 
 namespace gloam::bridge::zeromq {
 namespace {

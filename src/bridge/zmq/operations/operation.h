@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "bridge/bridge_list.h"
-#include "bridge/zmq/arguments.h"
+#include "bridge/zmq/operations/arguments.h"
 #include "bridge/zmq/outbox.h"
 #include "bridge/zmq/sessions.h"
-#include "bridge/zmq/state_pack.h"
+#include "bridge/zmq/streams/state_pack.h"
 
 namespace gloam::bridge::zeromq {
 

@@ -4,7 +4,7 @@
 
 #include <chrono>
 
-#include "bridge/zmq/operation.h"
+#include "bridge/zmq/operations/operation.h"
 #include "gloam/log_player.h"
 
 namespace gloam::bridge::zeromq {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "bridge/zmq/topic_sink.h"
+#include "bridge/zmq/streams/topic_sink.h"
 #include "gloam/result.h"
 #include "gloam/types.h"
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "bridge/zmq/operation.h"
+#include "bridge/zmq/operations/operation.h"
 #include "gloam/program.h"
 
 namespace gloam::bridge::zeromq {

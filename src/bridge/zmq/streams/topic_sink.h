@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "bridge/zmq/decoder.h"
 #include "bridge/zmq/outbox.h"
-#include "bridge/zmq/shared_ring.h"
+#include "bridge/zmq/streams/decoder.h"
+#include "bridge/zmq/streams/shared_ring.h"
 #include "gloam/topics.h"
 
 namespace gloam::bridge::zeromq {

@@ -1,4 +1,4 @@
-#include "bridge/zmq/decoder.h"
+#include "bridge/zmq/streams/decoder.h"
 
 #include <type_traits>
 

@@ -4,7 +4,7 @@
 
 #include <cstring>
 
-#include "bridge/zmq/operation.h"
+#include "bridge/zmq/operations/operation.h"
 #include "gloam/view.h"
 
 namespace gloam::bridge::zeromq {

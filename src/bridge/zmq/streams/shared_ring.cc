@@ -1,4 +1,4 @@
-#include "bridge/zmq/shared_ring.h"
+#include "bridge/zmq/streams/shared_ring.h"
 
 #include <dirent.h>
 #include <fcntl.h>

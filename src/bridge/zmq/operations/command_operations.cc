@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "bridge/zmq/operation.h"
+#include "bridge/zmq/operations/operation.h"
 
 namespace gloam::bridge::zeromq {
 namespace {

@@ -1,4 +1,4 @@
-#include "bridge/zmq/arguments.h"
+#include "bridge/zmq/operations/arguments.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "bridge/zmq/subscription.h"
+#include "bridge/zmq/streams/subscription.h"
 
 #include <fmt/format.h>
 
