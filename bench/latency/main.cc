@@ -70,6 +70,8 @@ constexpr double kWarmUp = 1500;  // of each measurement [ms]
 
 constexpr Client kClients[] = {
     {"ros2", [](BridgeOptions* o) { o->ros2.emplace(); }, run_ros2_client},
+    {"zmq", [](BridgeOptions* o) { o->zmq = ZmqOptions{.port = 0}; }, run_zmq_client},
+    {"zmq shm", [](BridgeOptions* o) { o->zmq = ZmqOptions{.port = 0}; }, run_shm_client},
     {"rclpy", [](BridgeOptions* o) { o->ros2.emplace(); }, run_rclpy_client},
 };
 
