@@ -1,0 +1,31 @@
+#pragma once
+// Playback: a log that is played, as Foxglove's time line controls it.
+
+#include <optional>
+
+#include "bridge/foxglove/client_messages.h"
+#include "bridge/foxglove/server_messages.h"
+#include "gloam/log_player.h"
+
+namespace gloam::bridge::foxglove {
+
+/// One thread's alone: seeking takes as long as effects are solved again.
+class Playback {
+ public:
+  explicit Playback(LogPlayer& player) : player_(player) {}
+
+  /// Does what a client asks; the state then, as an answer to it. Errors: a time beyond the log, a
+  /// speed out of range, those of seeking.
+  Result<PlaybackState> control(const PlaybackMessage& message);
+  PlaybackState state() const;
+  /// The state, if it is another kind than at the last call.
+  std::optional<PlaybackState> change();
+
+ private:
+  LogPlayer& player_;
+  float speed_ = 1;
+  PlaybackStatus told_ = PlaybackStatus::kBuffering;
+  float told_speed_ = 1;
+};
+
+}  // namespace gloam::bridge::foxglove
