@@ -117,6 +117,9 @@ class Simulation {
   /// Posts what a message to an input topic asks for; `data` is CDR. Errors: no such input, a
   /// damaged message, those of post().
   virtual Status publish(std::string_view topic, std::span<const uint8_t> data) = 0;
+  /// The Commands that publish() would post, for the holder of a ControlLease. Errors: as there.
+  virtual Result<std::vector<Command>> decode_input(std::string_view topic,
+                                                    std::span<const uint8_t> data) const = 0;
   virtual Result<std::vector<LabelRow>> labels() = 0;
   /// What the ray through pixel (u, v) [px] of a frame hits in the latest Snapshot. Error: nothing
   /// there.

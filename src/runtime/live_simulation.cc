@@ -248,14 +248,18 @@ Result<std::unique_ptr<TopicStream>> LiveSimulation::open_topics(const TopicRequ
   return std::unique_ptr<TopicStream>(std::move(feed));
 }
 
-Status LiveSimulation::publish(std::string_view topic, std::span<const uint8_t> data) {
+Result<std::vector<Command>> LiveSimulation::decode_input(std::string_view topic,
+                                                          std::span<const uint8_t> data) const {
   GLOAM_TRY(const auto table, topic_table());
   GLOAM_TRY(const auto found, find_topics(*table, std::string(topic)));
   const auto* decode = std::get_if<InputDecoder>(&found.front()->code);
   if (decode == nullptr)
     return Error{ErrorKind::kUsage, fmt::format("topic '{}' is said, not heard", topic)};
-  GLOAM_TRY(const std::vector<Command> commands,
-            (*decode)(data, simulator_->latest(), simulator_->timestep().value()));
+  return (*decode)(data, simulator_->latest(), simulator_->timestep().value());
+}
+
+Status LiveSimulation::publish(std::string_view topic, std::span<const uint8_t> data) {
+  GLOAM_TRY(const std::vector<Command> commands, decode_input(topic, data));
   if (commands.size() == 1) return post(commands[0]);
   return post(commands);
 }

@@ -69,6 +69,8 @@ class LiveSimulation final : public Simulation {
   Result<std::unique_ptr<TopicStream>> open_topics(const TopicRequest& request,
                                                    TopicCallback on_message) override;
   Status publish(std::string_view topic, std::span<const uint8_t> data) override;
+  Result<std::vector<Command>> decode_input(std::string_view topic,
+                                            std::span<const uint8_t> data) const override;
   std::vector<std::string> camera_names() const override;
   Result<std::vector<LabelRow>> labels() override;
   Result<Pose> body_pose(Body body) override;

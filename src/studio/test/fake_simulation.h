@@ -60,6 +60,10 @@ class FakeSimulation : public Simulation {
     return unsupported();
   }
   Status publish(std::string_view, std::span<const uint8_t>) override { return unsupported(); }
+  Result<std::vector<Command>> decode_input(std::string_view,
+                                            std::span<const uint8_t>) const override {
+    return Error{ErrorKind::kInput, "no topics here"};
+  }
   std::vector<std::string> camera_names() const override { return {"front", "robot/head"}; }
   Result<std::vector<LabelRow>> labels() override { return std::vector<LabelRow>{}; }
   Result<PickResult> pick(const CameraFrame& frame, double u, double v) override;

@@ -1,0 +1,169 @@
+// The bridge to ROS 2: one node with the topics that the simulation says and hears, and services.
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdio>
+#include <cstdlib>
+#include <mutex>
+#include <thread>
+
+#include "bridge/bridge_list.h"
+#include "bridge/ros2/dds_node.h"
+#include "bridge/ros2/ros2_names.h"
+#include "bridge/ros2/service_server.h"
+#include "bridge/ros2/topic_inlets.h"
+#include "bridge/ros2/topic_outlets.h"
+
+namespace gloam::bridge {
+namespace {
+
+constexpr auto kLook = std::chrono::milliseconds(100);  // at recompiles and silent masters
+constexpr int kLargestDomain = 232;
+
+Result<int> domain_of(const Ros2Options& options) {
+  if (options.domain) return *options.domain;
+  const char* given = std::getenv("ROS_DOMAIN_ID");
+  if (given == nullptr || *given == '\0') return 0;
+  char* end = nullptr;
+  const long domain = std::strtol(given, &end, 10);
+  if (*end == '\0' && domain >= 0 && domain <= kLargestDomain) return static_cast<int>(domain);
+  return Error{ErrorKind::kUsage, std::string("ROS_DOMAIN_ID '") + given + "' is not 0 … 232"};
+}
+
+bool is_name_like(std::string_view name, std::string_view pattern) {
+  if (pattern.empty()) return name.empty();
+  if (pattern[0] == '*')
+    return is_name_like(name, pattern.substr(1)) ||
+           (!name.empty() && is_name_like(name.substr(1), pattern));
+  return !name.empty() && name[0] == pattern[0] && is_name_like(name.substr(1), pattern.substr(1));
+}
+
+class Ros2Bridge final : public Bridge {
+ public:
+  Ros2Bridge(const BridgeContext& context, const Ros2Options& options)
+      : simulation_(context.simulation), options_(options) {}
+  ~Ros2Bridge() override {
+    {
+      const std::lock_guard lock(mutex_);
+      stopping_ = true;
+    }
+    wake_.notify_all();
+    if (thread_.joinable()) thread_.join();
+    if (services_ != nullptr) services_->stop();
+  }
+
+  Status open() {
+    GLOAM_TRY(domain_, domain_of(options_));
+    const std::string ns = options_.ns.empty() ? "/" : options_.ns;
+    if (ns[0] != '/' || ros_name(ns) != ns)
+      return Error{ErrorKind::kUsage, "'" + ns + "' is no namespace of ROS", options_.loc,
+                   "as '/sim': letters, digits and '_' between slashes"};
+    GLOAM_TRY(node_, DdsNode::create({.domain = domain_,
+                                      .network = options_.network,
+                                      .node = ros_name(options_.node),
+                                      .ns = ns}));
+    outlets_ = std::make_unique<TopicOutlets>(simulation_, *node_, [this] { look(); });
+    inlets_ = std::make_unique<TopicInlets>(simulation_, *node_);
+    services_ = std::make_unique<ServiceServer>(*node_);
+    GLOAM_TRY_STATUS(take_topics());
+    services_->start();
+    thread_ = std::thread([this] { run(); });
+    return {};
+  }
+
+  std::string name() const override { return "ros2"; }
+  std::string address() const override {
+    return "node '" + options_.node + "' in domain " + std::to_string(domain_) +
+           (options_.network ? ", all network cards" : ", this machine alone");
+  }
+  BridgeStats stats() const override {
+    BridgeStats stats;
+    stats.clients = outlets_->subscriptions();
+    stats.messages_out = outlets_->sent() + services_->answered();
+    stats.messages_in = inlets_->heard() + services_->answered();
+    stats.refused = inlets_->refused() + services_->refused();
+    stats.dropped = outlets_->dropped();
+    return stats;
+  }
+  Status status() const override { return {}; }
+
+ private:
+  bool is_offered(const TopicInfo& topic) const {
+    if (options_.topics.empty()) return true;
+    for (const std::string& pattern : options_.topics)
+      if (is_name_like(topic.name, pattern)) return true;
+    return false;
+  }
+
+  // The topics of the World that runs; after a recompile some are others.
+  Status take_topics() {
+    world_ = simulation_.world().compiled();
+    GLOAM_TRY(const auto topics, simulation_.topics());
+    std::vector<TopicInfo> said, heard;
+    for (const TopicInfo& topic : topics)
+      if (is_offered(topic)) (topic.is_input ? heard : said).push_back(topic);
+    GLOAM_TRY_STATUS(outlets_->set_topics(said));
+    GLOAM_TRY_STATUS(inlets_->set_topics(heard));
+    node_->announce();
+    return {};
+  }
+
+  void look() {
+    {
+      const std::lock_guard lock(mutex_);
+      is_due_ = true;
+    }
+    wake_.notify_all();
+  }
+
+  void tell(const Status& status) {
+    if (!status.ok()) std::fprintf(stderr, "gloam: ros2: %s\n", status.error().to_string().c_str());
+  }
+
+  void run() {
+    std::unique_lock lock(mutex_);
+    auto told = std::chrono::steady_clock::now() - std::chrono::hours(1);
+    while (!stopping_) {
+      wake_.wait_for(lock, kLook, [this] { return stopping_ || is_due_; });
+      if (stopping_) return;
+      is_due_ = false;
+      lock.unlock();
+      if (simulation_.world().compiled() != world_) tell(take_topics());
+      tell(outlets_->follow_subscriptions());
+      inlets_->release_silent();
+      const auto now = std::chrono::steady_clock::now();
+      if (now - told > std::chrono::seconds(1)) {
+        const std::string refusal = inlets_->take_refusal();
+        if (!refusal.empty()) {
+          std::fprintf(stderr, "gloam: ros2: refused: %s\n", refusal.c_str());
+          told = now;
+        }
+      }
+      lock.lock();
+    }
+  }
+
+  Simulation& simulation_;
+  const Ros2Options options_;
+  int domain_ = 0;
+  std::shared_ptr<const CompiledWorld> world_;  // whose topics are offered
+  std::unique_ptr<DdsNode> node_;
+  std::unique_ptr<TopicOutlets> outlets_;
+  std::unique_ptr<TopicInlets> inlets_;
+  std::unique_ptr<ServiceServer> services_;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool stopping_ = false, is_due_ = false;
+  std::thread thread_;
+};
+
+}  // namespace
+
+Result<std::unique_ptr<Bridge>> start_ros2(const BridgeContext& context,
+                                           const Ros2Options& options) {
+  auto bridge = std::make_unique<Ros2Bridge>(context, options);
+  GLOAM_TRY_STATUS(bridge->open());
+  return std::unique_ptr<Bridge>(std::move(bridge));
+}
+
+}  // namespace gloam::bridge
