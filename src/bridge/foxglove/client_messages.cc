@@ -190,8 +190,8 @@ Result<ClientMessage> parse_text_message(std::string_view text) {
   if (op == "setParameters") return read_set_parameters(std::move(reader));
   if (op == "subscribeParameterUpdates" || op == "unsubscribeParameterUpdates")
     return reader.finish(WatchParametersMessage{reader.texts("parameterNames"), op[0] == 's'});
-  if (op == "subscribeConnectionGraph") return WatchGraphMessage{true};
-  if (op == "unsubscribeConnectionGraph") return WatchGraphMessage{false};
+  if (op == "subscribeConnectionGraph") return ClientMessage(WatchGraphMessage{true});
+  if (op == "unsubscribeConnectionGraph") return ClientMessage(WatchGraphMessage{false});
   if (op == "fetchAsset") return read_fetch_asset(std::move(reader));
   return malformed("this server knows no op '" + op.substr(0, 64) + "'");
 }

@@ -35,7 +35,7 @@ class Server::Impl {
   Status listen() {
     const ServerOptions& options = state_.options;
     GLOAM_TRY_STATUS(listener_.listen(options.host, options.port,
-                                      "set bridge.foxglove.port = 0 for any free one, or another"));
+                                      "try --port 0, or bridge.foxglove.port of the scene"));
     listener_.accept([this](tcp::socket socket) { take(std::move(socket)); });
     tick();
     thread_ = std::thread([this] { run(); });
