@@ -78,8 +78,8 @@ Status Channels::open(Feed* feed) {
   feed->has_ended = false;
   TopicRequest request{.topics = {feed->topic}};
   request.on_end = [feed](const Error& why) {
-    const std::lock_guard lock(feed->mutex);
     feed->has_ended = true;
+    const std::lock_guard lock(feed->mutex);
     for (const Reader& reader : feed->readers)
       reader.client->outbox.send(status_message(StatusLevel::kError, why.to_string()));
   };

@@ -2,6 +2,7 @@
 // Channels: the topics that clients can subscribe to. A topic is opened for its first subscriber
 // and closed after its last one.
 
+#include <atomic>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -58,7 +59,7 @@ class Channels {
     std::mutex mutex;  // guards all but the stream
     std::vector<Reader> readers;
     std::optional<std::pair<double, Payload>> latched;  // the last message and its time [s]
-    bool has_ended = false;
+    std::atomic<bool> has_ended{false};
     std::unique_ptr<TopicStream> stream;  // last: its callbacks use the others
   };
 

@@ -11,7 +11,7 @@ constexpr double kSlowest = 0.001, kFastest = 1000;  // simulated seconds per se
 
 Error bad_value(const std::string& what) { return {ErrorKind::kInput, what}; }
 
-/// Live fields that are parameters: all numbers of each, and where mjModel has them.
+/// A live field as a parameter: all its numbers, and where mjModel has them.
 struct FieldParameter {
   const char* name;
   LiveFieldId id;
@@ -20,7 +20,13 @@ struct FieldParameter {
 constexpr FieldParameter kFieldParameters[] = {
     {"gravity", LiveFieldId::kGravity, "opt.gravity"},
     {"wind", LiveFieldId::kWind, "opt.wind"},
+    {"body_mass", LiveFieldId::kBodyMass, "body_mass"},
+    {"geom_friction", LiveFieldId::kGeomFriction, "geom_friction"},
+    {"light_diffuse", LiveFieldId::kLightDiffuse, "light_diffuse"},
+    {"light_intensity", LiveFieldId::kLightIntensity, "light_intensity"},
+    {"light_active", LiveFieldId::kLightActive, "light_active"},
 };
+constexpr size_t kMostNumbers = 300;  // longer fields are no parameters: nobody edits them by hand
 
 }  // namespace
 
@@ -49,25 +55,36 @@ Parameters::Parameters(Operator& operations, Counters& counters)
   add_live_fields();
 }
 
+std::vector<double> Parameters::field(const std::string& model_field) {
+  const Snapshot now = operations_.simulation().latest();
+  if (!now) return {};
+  if (!solved_ || &solved_.data() != &now.data()) {
+    solved_ = {};
+    if (!instant_.solve(now).ok()) return {};
+    solved_ = now;
+  }
+  const auto values = instant_.value(model_field);
+  return values.ok() ? *values : std::vector<double>();
+}
+
 void Parameters::add_live_fields() {
   Simulation& simulation = operations_.simulation();
-  for (const FieldParameter& field : kFieldParameters) {
-    const auto get = [this, &simulation, field]() -> json {
-      if (!instant_.solve(simulation.latest()).ok()) return nullptr;
-      const auto values = instant_.value(field.model_field);
-      return values.ok() ? json(*values) : json();
-    };
-    const auto set = [&simulation, field](const json& value) -> Status {
-      if (!value.is_array() || value.size() != 3) return bad_value("is an array of 3 numbers");
-      SetLiveField command{.field = field.id};
+  for (const FieldParameter& from : kFieldParameters) {
+    const size_t count = field(from.model_field).size();
+    if (count == 0 || count > kMostNumbers) continue;
+    const auto get = [this, from] { return json(field(from.model_field)); };
+    const auto set = [this, &simulation, from](const json& value) -> Status {
+      const size_t size = field(from.model_field).size();
+      const std::string what = "is an array of " + std::to_string(size) + " numbers";
+      if (!value.is_array() || value.size() != size) return bad_value(what);
+      SetLiveField command{.field = from.id};
       for (const json& number : value) {
-        if (!number.is_number() || !std::isfinite(number.get<float>()))
-          return bad_value("is an array of 3 numbers");
+        if (!number.is_number() || !std::isfinite(number.get<float>())) return bad_value(what);
         command.values.push_back(number.get<float>());
       }
       return simulation.post(Command{.what = std::move(command)});
     };
-    parameters_[field.name] = {"float64_array", get, set};
+    parameters_[from.name] = {"float64_array", get, set};
   }
 }
 

@@ -37,6 +37,8 @@ class Parameters {
     std::set<std::string> names;
   };
   void add_live_fields();
+  /// Numbers of a field of mjModel at the latest instant; none where there are none.
+  std::vector<double> field(const std::string& model_field);
   nlohmann::json value_of(const std::string& name) const;
   /// Names that there are; tells the client of others.
   std::vector<std::string> known(const ClientPtr& client, const std::vector<std::string>& names);
@@ -46,6 +48,7 @@ class Parameters {
   Counters& counters_;
   double speed_ = 1;  // simulated seconds per second
   Instant instant_;
+  Snapshot solved_;  // instant_ is of it
   std::map<std::string, Parameter> parameters_;
   std::map<int64_t, Watcher> watchers_;
   std::map<std::string, nlohmann::json> told_;
