@@ -33,9 +33,7 @@ int keep_live(const World& world, const RunRequest& request, const RunCommand& c
   LiveRun run{**simulation};
   run.view.width = request.width;
   run.view.height = request.height;
-  // A live picture is a quick one unless the user asked for light on the command line.
-  if (!command.options.tier.empty()) run.view.render = scene.render;
-  run.view.render.ev100 = scene.render.ev100;
+  run.view.render = scene.render;
   if (!request.cameras.empty()) {
     run.view.camera = request.cameras.front();
   } else if (!scene.cameras.empty()) {
@@ -114,6 +112,12 @@ int run(const RunCommand& command_line, const Globals& globals) {
   if (const Status status = check_outputs(command.options.outputs); !status.ok())
     return fail(status.error());
   scene->record.mcap |= command.mcap;
+  // Live pictures are quick ones unless the user asked for light on the command line.
+  if (command.live.any(scene->bridge) && command.options.tier.empty()) {
+    scene->render.tier = "direct";
+    scene->render.spp = 1;
+    scene->render.denoise = false;
+  }
   auto world = compile(*scene, globals, command.options.keyframe);
   if (!world.ok()) return fail(world.error());
   tell_void_outputs(command.options.outputs, *scene, *world);

@@ -60,6 +60,15 @@ InputDecoder velocity(Robot robot) {
   };
 }
 
+InputDecoder stamped_velocity(Robot robot) {
+  return [robot](InputBytes bytes, const Snapshot&, double) -> Commands {
+    GLOAM_TRY(const auto message, decode<geometry_msgs::TwistStamped>(bytes));
+    const geometry_msgs::Twist& twist = message.twist;
+    return std::vector{
+        now(SetVelocityGoal{robot, twist.linear.x, twist.linear.y, twist.angular.z})};
+  };
+}
+
 Status check_lengths(const std::string& what, size_t names, size_t values) {
   if (names == values) return {};
   return Error{ErrorKind::kInput, fmt::format("{}: {} names and {} numbers", what, names, values)};
@@ -74,6 +83,18 @@ InputDecoder joint_command(RobotJoints joints) {
       GLOAM_TRY(const Joint joint, joints.find(state.name[i]));
       commands.push_back(now(SetJointGoal{joint, state.position[i]}));
     }
+    return commands;
+  };
+}
+
+// Goals of all joints, in their order.
+InputDecoder position_commands(RobotJoints joints) {
+  return [joints = std::move(joints)](InputBytes bytes, const Snapshot&, double) -> Commands {
+    GLOAM_TRY(const auto message, decode<std_msgs::Float64MultiArray>(bytes));
+    GLOAM_TRY_STATUS(check_lengths("position_commands", joints.names.size(), message.data.size()));
+    std::vector<Command> commands;
+    for (size_t i = 0; i < message.data.size(); ++i)
+      commands.push_back(now(SetJointGoal{{joints.ids[i], joints.world}, message.data[i]}));
     return commands;
   };
 }
@@ -156,6 +177,23 @@ InputDecoder wrench(Body body) {
   };
 }
 
+// Puts a floating robot elsewhere, at rest.
+InputDecoder initial_pose(Joint root) {
+  return [root](InputBytes bytes, const Snapshot&, double) -> Commands {
+    GLOAM_TRY(const auto message, decode<geometry_msgs::PoseWithCovarianceStamped>(bytes));
+    GLOAM_TRY_STATUS(check_frame(message.header));
+    const Pose X_WB = from_ros(message.pose.pose);
+    const double norm =
+        X_WB.q.w * X_WB.q.w + X_WB.q.x * X_WB.q.x + X_WB.q.y * X_WB.q.y + X_WB.q.z * X_WB.q.z;
+    if (!(norm > 0.5 && norm < 2))
+      return Error{ErrorKind::kInput, "initialpose: its orientation is no unit quaternion"};
+    return std::vector{
+        now(SetJointState{root,
+                          {X_WB.p.x, X_WB.p.y, X_WB.p.z, X_WB.q.w, X_WB.q.x, X_WB.q.y, X_WB.q.z},
+                          {0, 0, 0, 0, 0, 0}})};
+  };
+}
+
 Commands reset(InputBytes bytes, const Snapshot&, double) {
   GLOAM_TRY_STATUS(decode<std_msgs::Empty>(bytes));
   return std::vector{now(ResetSim{})};
@@ -184,15 +222,23 @@ void add_input_topics(const TopicSource& world, TopicTable* table) {
     if (controller != "none") {
       add_input(space + "/cmd_vel", type_name<geometry_msgs::Twist>(), source, velocity(handle),
                 table);
+      add_input(space + "/cmd_vel_stamped", type_name<geometry_msgs::TwistStamped>(), source,
+                stamped_velocity(handle), table);
       const RobotJoints joints = joints_by_name(*world, robot);
       add_input(space + "/joint_command", type_name<sensor_msgs::JointState>(), source,
                 joint_command(joints), table);
       add_input(space + "/joint_trajectory", type_name<trajectory_msgs::JointTrajectory>(), source,
                 joint_trajectory(joints), table);
+      add_input(space + "/position_commands", type_name<std_msgs::Float64MultiArray>(), source,
+                position_commands(joints), table);
     }
     if (!robot_actuators(m, robot).empty())
       add_input(space + "/controls", type_name<std_msgs::Float64MultiArray>(), source,
                 controls(handle), table);
+    const int root = robot.root_body > 0 ? m.body_jntadr[robot.root_body] : -1;
+    if (root >= 0 && m.jnt_type[root] == mjJNT_FREE)
+      add_input(space + "/initialpose", type_name<geometry_msgs::PoseWithCovarianceStamped>(),
+                source, initial_pose({root, world->serial}), table);
     if (robot.root_body > 0)
       add_input(space + "/wrench_command", type_name<geometry_msgs::WrenchStamped>(), source,
                 wrench({robot.root_body, world->serial}), table);

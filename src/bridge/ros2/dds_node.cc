@@ -24,6 +24,7 @@
 #include <map>
 #include <set>
 
+#include "bridge/ros2/loopback_transport.h"
 #include "bridge/ros2/raw_type.h"
 #include "ros/codec.h"
 #include "ros/messages/rmw_dds_common.h"
@@ -61,9 +62,11 @@ dds::DomainParticipantQos participant_qos(const DdsNodeOptions& options) {
   qos.transport().use_builtin_transports = false;
   const auto memory = std::make_shared<eprosima::fastdds::rtps::SharedMemTransportDescriptor>();
   memory->segment_size(kSegmentSize);
-  const auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
-  if (!options.network) udp->interfaceWhiteList = {"127.0.0.1"};
-  qos.transport().user_transports = {memory, udp};
+  if (options.network)
+    qos.transport().user_transports = {
+        memory, std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>()};
+  else
+    qos.transport().user_transports = {memory, std::make_shared<LoopbackTransportDescriptor>()};
   // Who is on this machine is asked one by one: multicast may not pass loopback.
   auto& peers = qos.wire_protocol().builtin.initialPeersList;
   peers.push_back(udp_locator("239.255.0.1", discovery_port(options.domain)));

@@ -17,13 +17,15 @@ bool is_large_message(const TopicInfo& topic) {
   return topic.qos.is_latched;  // a robot's description may be long
 }
 
-// ROS's drivers offer pictures reliably, so that both kinds of subscribers match.
+// A reliable writer matches both kinds of readers; a slow one loses the oldest all the same.
 Result<DdsEndpoint> endpoint_of(const TopicInfo& topic) {
   GLOAM_TRY(const MessageInfo type, message_info(topic.type));
+  TopicQos qos = topic.qos;
+  qos.is_reliable = true;
   return DdsEndpoint{.topic = dds_topic(topic.name),
                      .type = type.dds_name,
                      .type_hash = type.hash,
-                     .qos = topic.qos,
+                     .qos = qos,
                      .is_large = is_large_message(topic)};
 }
 

@@ -59,6 +59,12 @@ struct PoseWithCovariance {
   GLOAM_MESSAGE(PoseWithCovariance, pose, covariance)
 };
 
+struct PoseWithCovarianceStamped {
+  std_msgs::Header header;
+  PoseWithCovariance pose;
+  GLOAM_MESSAGE(PoseWithCovarianceStamped, header, pose)
+};
+
 struct Transform {
   Vector3 translation;  ///< [m]
   Quaternion rotation;

@@ -316,6 +316,35 @@ TEST_F(TopicInputs, JointCommandsBecomeGoals) {
   EXPECT_FALSE(publish("/cart/joint_command", command).ok());
 }
 
+TEST_F(TopicInputs, ArraysAreGoalsOfAllJointsAndStampsOfVelocitiesAreLeftOut) {
+  std_msgs::Float64MultiArray goals;
+  goals.data = {0.25};
+  ASSERT_TRUE(publish("/cart/position_commands", goals).ok());
+  ASSERT_TRUE(publish("/cart/cmd_vel_stamped",
+                      geometry_msgs::TwistStamped{{}, {{0.5, 0, 0}, {0, 0, 0.1}}})
+                  .ok());
+  ASSERT_TRUE(simulation_->step(1).ok());
+  const auto log = simulation_->take_command_log();
+  ASSERT_EQ(log.size(), 2u);
+  EXPECT_EQ(std::get<SetJointGoal>(log[0].command.what).position, 0.25);
+  EXPECT_EQ(std::get<SetVelocityGoal>(log[1].command.what).yaw_rate, 0.1);
+  goals.data = {0.25, 0.5};
+  EXPECT_FALSE(publish("/cart/position_commands", goals).ok());
+}
+
+TEST_F(TopicInputs, AnInitialPosePutsAFloatingRobotThereAtRest) {
+  geometry_msgs::PoseWithCovarianceStamped there;
+  there.pose.pose.position = {1, 2, 3};
+  ASSERT_TRUE(publish("/cart/initialpose", there).ok());
+  ASSERT_TRUE(simulation_->step(1).ok());
+  EXPECT_NEAR(simulation_->body_pose({1, 0})->p.x, 1, 1e-3);
+  there.pose.pose.orientation.w = 0;
+  EXPECT_FALSE(publish("/cart/initialpose", there).ok());
+  there.pose.pose.orientation.w = 1;
+  there.header.frame_id = "map";
+  EXPECT_FALSE(publish("/cart/initialpose", there).ok());
+}
+
 TEST_F(TopicInputs, TrajectoriesAreCutIntoGoalsAtTheirTimes) {
   trajectory_msgs::JointTrajectory way;
   way.joint_names = {"lift"};

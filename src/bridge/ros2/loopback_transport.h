@@ -1,0 +1,19 @@
+#pragma once
+// LoopbackTransport: UDP that listens and sends on loopback alone, and yet reaches programs of this
+// machine that announce the addresses of its network cards, as all do by default. Fast DDS 2.9
+// would leave such addresses out (its pull request 3733).
+
+#include <fastdds/rtps/transport/ChainingTransportDescriptor.h>
+
+#include <memory>
+
+namespace gloam::bridge {
+
+class LoopbackTransportDescriptor final
+    : public eprosima::fastdds::rtps::ChainingTransportDescriptor {
+ public:
+  LoopbackTransportDescriptor();
+  eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
+};
+
+}  // namespace gloam::bridge

@@ -1,0 +1,169 @@
+"""`gloam run --ros2` and real rclpy nodes in other processes."""
+import contextlib
+import json
+import os
+import re
+import signal
+import subprocess
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+from e2e.ros2_env import ros2_env
+from e2e.support import PROGRAM, ROOT
+
+DEMO = ROOT / "examples" / "demo.toml"
+SMALL = ["--set", "camera.chase.width=64", "--set", "camera.chase.height=48"]
+PROBE = Path(__file__).resolve().parent / "ros2_probe.py"
+# The domains of a run of tests do not meet those of another, most likely; ports of domains above 101 are ephemeral ones on Linux.
+DOMAINS = iter(range(1 + os.getpid() % 80, 1 + os.getpid() % 80 + 20))
+
+
+class Ros2(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.ros = ros2_env()
+
+    def setUp(self):
+        self.domain = next(DOMAINS)
+        scratch = tempfile.TemporaryDirectory(prefix="gloam_e2e_")
+        self.addCleanup(scratch.cleanup)
+        self.folder = Path(scratch.name)
+
+    @contextlib.contextmanager
+    def gloam(self, *arguments, scene=DEMO, domain=None):
+        """A live run; ended as a user does, by Ctrl-C, and expected to end well."""
+        env = {**os.environ, "ROS_DOMAIN_ID": str(domain or self.domain)}
+        errors = open(self.folder / "stderr", "w+")
+        process = subprocess.Popen([str(PROGRAM), "run", str(scene), "--ros2", *map(str, arguments)], env=env, stdout=subprocess.PIPE,
+                                   stderr=errors, text=True)
+        try:
+            yield process
+        finally:
+            process.send_signal(signal.SIGINT)
+            try:
+                out, _ = process.communicate(timeout=60)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                raise
+            errors.seek(0)
+            self.errors = errors.read()
+            errors.close()
+        self.assertIn(process.returncode, (0, 130), self.errors)
+        self.assertEqual(out, "", "stdout is data")
+
+    def start(self, *arguments, domain=None):
+        return subprocess.Popen([str(self.ros.python), str(PROBE), *map(str, arguments)], env=self.ros.variables(domain or self.domain),
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def probe(self, *arguments, domain=None):
+        process = self.start(*arguments, domain=domain)
+        out, errors = process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 0, errors)
+        return json.loads(out)
+
+    def test_every_topic_is_heard_with_stamps_that_agree(self):
+        with self.gloam(*SMALL):
+            heard = self.probe("listen", 8)
+            graph = self.probe("graph", 1)
+        topics = heard["topics"]
+        self.assertGreater(len(topics), 50)
+        for name, topic in topics.items():
+            if "h264" in name or "label_info" in name:
+                continue
+            with self.subTest(topic=name):
+                self.assertGreater(topic["count"], 0)
+                stamps = [s for s in topic["stamps"] if s is not None]
+                self.assertEqual(stamps, sorted(stamps), "time goes back")
+        # Transforms and joints come 50 times a second of simulation time, without a gap.
+        for name in ("/tf", "/quadruped/joint_states"):
+            stamps = topics[name]["stamps"][5:]
+            gaps = [round(b - a, 6) for a, b in zip(stamps, stamps[1:])]
+            self.assertGreater(len(gaps), 50)
+            self.assertLessEqual(max(gaps), 0.02 + 1e-6, name)
+        # Pictures and their camera_info are of one instant.
+        pictures = set(topics["/chase/image_raw"]["stamps"])
+        self.assertGreater(len(pictures & set(topics["/chase/camera_info"]["stamps"])), 0.8 * len(pictures))
+        self.assertEqual(topics["/chase/image_raw"]["encoding"], "rgb8")
+        self.assertIn(["gloam", "/"], graph["nodes"])
+        for node, type_hash in graph["publishers"]["/quadruped/odom"]:
+            self.assertEqual(node, "gloam")
+            self.assertNotIn("INVALID", type_hash)
+
+    def test_a_robot_is_driven_from_outside_and_the_log_verifies(self):
+        out = self.folder / "run"
+        with self.gloam("--mcap", "--out", out):
+            way = self.probe("drive", "quadruped", 6, 0.4)
+        self.assertGreater(way["to"][0] - way["from"][0], 0.5, way)
+        result = subprocess.run([str(PROGRAM), "replay", str(out / "run.mcap"), "--verify"], capture_output=True, text=True, timeout=300)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        self.assertRegex(result.stdout, r"\b0 of \d+ steps differ")
+        listing = subprocess.run([str(PROGRAM), "info", str(out / "run.mcap")], capture_output=True, text=True, timeout=60).stdout
+        self.assertRegex(listing, r"/quadruped/odom")
+
+    def test_of_two_masters_one_is_obeyed_and_the_other_told_of(self):
+        with self.gloam():
+            first = self.start("drive", "quadruped", 8, 0.4)
+            time.sleep(4)
+            self.probe("drive", "quadruped", 2, -0.4)
+            out, errors = first.communicate(timeout=60)
+            self.assertEqual(first.returncode, 0, errors)
+            way = json.loads(out)
+        self.assertGreater(way["to"][0] - way["from"][0], 0.3, way)
+        self.assertIn("obeys another publisher", self.errors)
+
+    def test_sim_time_and_two_simulators_in_two_domains(self):
+        other = next(DOMAINS)
+        with self.gloam(), self.gloam(scene=ROOT / "examples" / "two_robots.toml", domain=other):
+            clock = self.probe("clock", 2)
+            self.assertAlmostEqual(clock["node"], clock["said"], delta=0.2)
+            self.assertGreater(clock["said"] - clock["first"], 0.5)
+            here, there = self.probe("graph", 1), self.probe("graph", 1, domain=other)
+        self.assertIn("/quadruped/odom", here["topics"])
+        self.assertNotIn("/quadruped/odom", there["topics"])
+
+    def test_either_side_may_start_again(self):
+        listener = self.start("drive", "quadruped", 3, 0.2)
+        with self.gloam():
+            out, errors = listener.communicate(timeout=60)
+            self.assertEqual(listener.returncode, 0, errors)
+            self.assertGreater(json.loads(out)["count"], 20, "a node that was there first")
+        with self.gloam():
+            self.assertGreater(self.probe("drive", "quadruped", 2, 0.2)["count"], 20)
+            killed = self.start("drive", "quadruped", 30, 0.2)
+            time.sleep(3)
+            killed.kill()
+            killed.communicate()
+            self.assertGreater(self.probe("drive", "quadruped", 2, 0.2)["count"], 20)
+
+    def test_a_stuck_subscriber_of_raw_pictures_stops_nobody(self):
+        with self.gloam():
+            stuck = self.start("stuck", 40)
+            stuck.stdout.readline()
+            clock = self.probe("clock", 5)
+            stuck.kill()
+            stuck.communicate()
+        self.assertGreater(clock["said"] - clock["first"], 2.5, "half of real time at least on a machine that renders beside it")
+
+    def test_it_listens_on_loopback_alone(self):
+        with self.gloam() as process:
+            self.probe("graph", 0.5)
+            sockets = subprocess.run(["ss", "-ulnpH"], capture_output=True, text=True)
+            if sockets.returncode != 0:
+                self.skipTest("no ss here")
+            own = [line.split()[3] for line in sockets.stdout.splitlines() if f"pid={process.pid}," in line]
+        self.assertTrue(own)
+        for address in own:
+            self.assertRegex(address, r"^(127\.0\.0\.1|239\.255\.0\.1):\d+$")
+
+    def test_bad_settings_are_told_of(self):
+        for setting, words in (("bridge.ros2.domain=300", "232"), ("bridge.ros2.ns='a b'", "namespace"), ("bridge.ros2.interfaces=3", "2")):
+            result = subprocess.run([str(PROGRAM), "run", str(DEMO), "--ros2", "--duration", "1", "--set", setting], capture_output=True,
+                                    text=True, timeout=60)
+            self.assertNotEqual(result.returncode, 0)
+            self.assertTrue(re.search(words, result.stderr), result.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
