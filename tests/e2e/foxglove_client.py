@@ -28,6 +28,7 @@ class FoxgloveClient:
             self._input += self._receive(time.monotonic() + 10)
         answer, _, self._input = self._input.partition(b"\r\n\r\n")
         if not answer.startswith(b"HTTP/1.1 101"):
+            self.close()
             raise Refused(answer.decode(errors="replace").splitlines()[0])
         while not (self.channels and self.services):
             self.next()

@@ -32,9 +32,22 @@ std::optional<Channels::Channel> Channels::find(uint64_t id) const {
 ChannelInfo Channels::add_channel(const TopicInfo& topic, const MessageInfo& type) {
   ChannelInfo info{++last_id_, topic.name, 0, {topic.type, type.definition}};
   info.schema_id = schema_ids_.emplace(topic.type, schema_ids_.size() + 1).first->second;
+  const bool is_camera = topic.source.starts_with("camera ") && !topic.qos.is_latched;
   const std::lock_guard lock(mutex_);
-  channels_[info.id] = {info, topic.qos.is_latched};
+  channels_[info.id] = {info, topic.qos.is_latched, is_camera ? topic.source : topic.name};
   return info;
+}
+
+void Channels::remove_channel(uint64_t id) {
+  const auto channel = find(id);
+  for (auto& [client, subscriptions] : subscriptions_)
+    std::erase_if(subscriptions, [id](const auto& item) { return item.second == id; });
+  if (const auto feed = feeds_.find(channel->feed); feed != feeds_.end()) {
+    const std::lock_guard lock(feed->second->mutex);
+    feed->second->outlets.erase(channel->info.topic);
+  }
+  const std::lock_guard lock(mutex_);
+  channels_.erase(id);
 }
 
 Result<ChannelChange> Channels::follow() {
@@ -53,39 +66,47 @@ Result<ChannelChange> Channels::follow() {
   }
   for (const auto& [name, id] : present) {
     change.removed.push_back(id);
-    for (auto& [client, subscriptions] : subscriptions_)
-      std::erase_if(subscriptions, [id = id](const auto& item) { return item.second == id; });
-    if (const auto feed = feeds_.find(id); feed != feeds_.end()) {
-      close(feed->second.get());
-      feeds_.erase(feed);
-    }
-    const std::lock_guard lock(mutex_);
-    channels_.erase(id);
+    remove_channel(id);
   }
   // Latched messages are of the World before, and streams may have ended with it.
-  for (auto& [id, feed] : feeds_) {
-    if (!feed->is_latched && !feed->has_ended) continue;
-    close(feed.get());
-    if (const Status opened = open(feed.get()); !opened.ok())
-      for (const Reader& reader : feed->readers)
-        refuse_request(reader.client, counters_, opened.error().to_string());
+  for (auto& [key, feed] : feeds_) {
+    const std::lock_guard lock(feed->mutex);
+    const bool is_latched = std::ranges::any_of(
+        feed->outlets, [](const auto& outlet) { return outlet.second.is_latched; });
+    if (is_latched) feed->has_ended = true;
   }
+  settle();
   note_subscribers();
   return change;
 }
 
-Status Channels::open(Feed* feed) {
+void Channels::settle() {
+  for (auto& [key, feed] : feeds_) settle(feed.get());
+  std::erase_if(feeds_, [](const auto& item) { return item.second->outlets.empty(); });
+}
+
+void Channels::settle(Feed* feed) {
+  std::vector<std::string> wanted;
+  {
+    const std::lock_guard lock(feed->mutex);
+    for (const auto& [topic, outlet] : feed->outlets) wanted.push_back(topic);
+  }
+  if (wanted == feed->open_topics && !feed->has_ended) return;
+  close(feed);  // outside of the lock: its last callback may wait for it
   feed->has_ended = false;
-  TopicRequest request{.topics = {feed->topic}};
+  feed->open_topics = wanted;
+  if (wanted.empty()) return;
+  TopicRequest request{.topics = wanted};
   request.on_end = [feed](const Error& why) {
     feed->has_ended = true;
-    const std::lock_guard lock(feed->mutex);
-    for (const Reader& reader : feed->readers)
-      reader.client->outbox.send(status_message(StatusLevel::kError, why.to_string()));
+    tell_readers(feed, why);
   };
-  GLOAM_TRY(feed->stream, simulation_.open_topics(
-                              request, [this, feed](const TopicMessage& m) { deliver(feed, m); }));
-  return {};
+  auto stream = simulation_.open_topics(
+      request, [this, feed](const TopicMessage& message) { deliver(feed, message); });
+  if (stream.ok())
+    feed->stream = *std::move(stream);
+  else
+    tell_readers(feed, stream.error());
 }
 
 void Channels::close(Feed* feed) {
@@ -94,15 +115,24 @@ void Channels::close(Feed* feed) {
   feed->stream.reset();
 }
 
+void Channels::tell_readers(Feed* feed, const Error& why) {
+  const std::lock_guard lock(feed->mutex);
+  for (const auto& [topic, outlet] : feed->outlets)
+    for (const Reader& reader : outlet.readers)
+      reader.client->outbox.send(status_message(StatusLevel::kError, why.to_string()));
+}
+
 void Channels::deliver(Feed* feed, const TopicMessage& message) {
   const std::lock_guard lock(feed->mutex);
-  if (feed->readers.empty()) return;
+  const auto found = feed->outlets.find(message.topic.name);
+  if (found == feed->outlets.end() || found->second.readers.empty()) return;
+  Outlet& outlet = found->second;
   auto payload =
       std::make_shared<const std::vector<uint8_t>>(message.data.begin(), message.data.end());
-  if (feed->is_latched) feed->latched = {message.time, payload};
-  for (const Reader& reader : feed->readers) {
+  if (outlet.is_latched) outlet.latched = {message.time, payload};
+  for (const Reader& reader : outlet.readers) {
     Frame frame = message_data(reader.subscription, message.time, payload);
-    if (feed->is_latched)
+    if (outlet.is_latched)
       reader.client->outbox.send(std::move(frame));
     else
       reader.client->outbox.offer(std::move(frame));
@@ -111,44 +141,36 @@ void Channels::deliver(Feed* feed, const TopicMessage& message) {
 }
 
 void Channels::subscribe(const ClientPtr& client, const SubscribeMessage& message) {
-  auto& subscriptions = subscriptions_[client->id];
-  for (const SubscribeMessage::Item& item : message.items) {
-    const auto channel = find(item.channel);
-    const std::string id = std::to_string(item.id);
-    if (!channel) {
-      refuse_request(client, counters_, "there is no channel " + std::to_string(item.channel));
-      continue;
-    }
-    if (subscriptions.contains(item.id)) {
-      refuse_request(client, counters_, "subscription " + id + " is there already");
-      continue;
-    }
-    if (std::ranges::any_of(subscriptions,
-                            [&](const auto& s) { return s.second == item.channel; })) {
-      refuse_request(client, counters_, "'" + channel->info.topic + "' is subscribed to already");
-      continue;
-    }
-    std::unique_ptr<Feed>& feed = feeds_[item.channel];
-    const bool is_new = feed == nullptr;
-    if (is_new) feed = std::make_unique<Feed>();
-    feed->topic = channel->info.topic;
-    feed->is_latched = channel->is_latched;
-    {
-      const std::lock_guard lock(feed->mutex);
-      feed->readers.push_back({client, item.id});
-      if (feed->latched)
-        client->outbox.send(message_data(item.id, feed->latched->first, feed->latched->second));
-    }
-    subscriptions[item.id] = item.channel;
-    if (!is_new && !feed->has_ended) continue;
-    close(feed.get());
-    if (const Status opened = open(feed.get()); !opened.ok()) {
-      refuse_request(client, counters_, opened.error().to_string());
-      subscriptions.erase(item.id);
-      remove_reader(item.channel, client);
-    }
-  }
+  for (const SubscribeMessage::Item& item : message.items)
+    if (const Status added = add_reader(client, item); !added.ok())
+      refuse_request(client, counters_, added.error().to_string());
   note_subscribers();
+}
+
+Status Channels::add_reader(const ClientPtr& client, const SubscribeMessage::Item& item) {
+  auto& subscriptions = subscriptions_[client->id];
+  const auto channel = find(item.channel);
+  if (!channel)
+    return Error{ErrorKind::kInput, "there is no channel " + std::to_string(item.channel)};
+  if (subscriptions.contains(item.id))
+    return Error{ErrorKind::kInput,
+                 "subscription " + std::to_string(item.id) + " is there already"};
+  const auto is_same = [&](const auto& subscription) {
+    return subscription.second == item.channel;
+  };
+  if (std::ranges::any_of(subscriptions, is_same))
+    return Error{ErrorKind::kInput, "'" + channel->info.topic + "' is subscribed to already"};
+  subscriptions[item.id] = item.channel;
+  std::unique_ptr<Feed>& feed = feeds_[channel->feed];
+  if (feed == nullptr) feed = std::make_unique<Feed>();
+  const std::lock_guard lock(feed->mutex);
+  Outlet& outlet = feed->outlets[channel->info.topic];
+  outlet.is_latched = channel->is_latched;
+  outlet.readers.push_back({client, item.id});
+  if (outlet.is_latched && !outlet.latched) feed->has_ended = true;  // it is said again
+  if (outlet.latched)
+    client->outbox.send(message_data(item.id, outlet.latched->first, outlet.latched->second));
+  return {};
 }
 
 void Channels::unsubscribe(const ClientPtr& client, const UnsubscribeMessage& message) {
@@ -173,19 +195,17 @@ void Channels::leave(const ClientPtr& client) {
   note_subscribers();
 }
 
-void Channels::remove_reader(uint64_t channel, const ClientPtr& client) {
-  const auto found = feeds_.find(channel);
-  if (found == feeds_.end()) return;
-  Feed* const feed = found->second.get();
-  bool is_last = false;
-  {
-    const std::lock_guard lock(feed->mutex);
-    std::erase_if(feed->readers, [&](const Reader& r) { return r.client->id == client->id; });
-    is_last = feed->readers.empty();
-  }
-  if (!is_last) return;
-  close(feed);  // outside of the lock: its last callback may wait for it
-  feeds_.erase(found);
+void Channels::remove_reader(uint64_t id, const ClientPtr& client) {
+  const auto channel = find(id);
+  const auto feed = channel ? feeds_.find(channel->feed) : feeds_.end();
+  if (feed == feeds_.end()) return;
+  const std::lock_guard lock(feed->second->mutex);
+  auto& outlets = feed->second->outlets;
+  const auto outlet = outlets.find(channel->info.topic);
+  if (outlet == outlets.end()) return;
+  std::erase_if(outlet->second.readers,
+                [&](const Reader& reader) { return reader.client->id == client->id; });
+  if (outlet->second.readers.empty()) outlets.erase(outlet);
 }
 
 void Channels::note_subscribers() {

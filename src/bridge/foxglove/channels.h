@@ -1,6 +1,7 @@
 #pragma once
 // Channels: the topics that clients can subscribe to. A topic is opened for its first subscriber
-// and closed after its last one.
+// and closed after its last one. All topics of a camera are one stream, so that it is rendered
+// once.
 
 #include <atomic>
 #include <map>
@@ -36,39 +37,49 @@ class Channels {
   std::map<std::string, std::vector<int64_t>> subscribers() const;
   int64_t dropped() const { return dropped_; }  ///< by the simulation's streams
 
-  // One thread: these open and close streams and may take seconds.
+  // One thread.
   /// Takes the topics of the World that runs. Error: that World's topics cannot be listed.
   Result<ChannelChange> follow();
   void subscribe(const ClientPtr& client, const SubscribeMessage& message);
   void unsubscribe(const ClientPtr& client, const UnsubscribeMessage& message);
   void leave(const ClientPtr& client);
+  /// Opens and closes the streams that the calls before ask for; may take seconds.
+  void settle();
 
  private:
   struct Channel {
     ChannelInfo info;
     bool is_latched = false;
+    std::string feed;  ///< key of the stream that serves it
   };
   struct Reader {
     ClientPtr client;
     uint32_t subscription = 0;
   };
-  /// Readers of one channel and the stream that serves them.
-  struct Feed {
-    std::string topic;
+  /// Readers of one topic.
+  struct Outlet {
     bool is_latched = false;
-    std::mutex mutex;  // guards all but the stream
     std::vector<Reader> readers;
-    std::optional<std::pair<double, Payload>> latched;  // the last message and its time [s]
+    std::optional<std::pair<double, Payload>> latched;  ///< the last message and its time [s]
+  };
+  /// A stream and the topics that it serves.
+  struct Feed {
+    std::mutex mutex;  // guards the outlets
+    std::map<std::string, Outlet> outlets;
     std::atomic<bool> has_ended{false};
-    std::unique_ptr<TopicStream> stream;  // last: its callbacks use the others
+    std::vector<std::string> open_topics;  // of the stream
+    std::unique_ptr<TopicStream> stream;   // last: its callbacks use the others
   };
 
   std::optional<Channel> find(uint64_t id) const;
   ChannelInfo add_channel(const TopicInfo& topic, const MessageInfo& type);
-  Status open(Feed* feed);
+  void remove_channel(uint64_t id);
+  Status add_reader(const ClientPtr& client, const SubscribeMessage::Item& item);
+  void remove_reader(uint64_t channel, const ClientPtr& client);
+  void settle(Feed* feed);
   void close(Feed* feed);
   void deliver(Feed* feed, const TopicMessage& message);
-  void remove_reader(uint64_t channel, const ClientPtr& client);
+  static void tell_readers(Feed* feed, const Error& why);
   void note_subscribers();
 
   Simulation& simulation_;
@@ -85,7 +96,7 @@ class Channels {
   uint64_t last_id_ = 0;
   std::map<std::string, uint64_t> schema_ids_;
   std::map<int64_t, std::map<uint32_t, uint64_t>> subscriptions_;  // channels by client and id
-  std::map<uint64_t, std::unique_ptr<Feed>> feeds_;                // by channel
+  std::map<std::string, std::unique_ptr<Feed>> feeds_;
 };
 
 }  // namespace gloam::bridge::foxglove

@@ -81,6 +81,7 @@ class FoxgloveBridge final : public Bridge, private ServerEvents {
 
   Status start() {
     GLOAM_TRY_STATUS(channels_.follow());
+    told_time_ = simulation_.latest().time();
     return server_.listen();
   }
 
@@ -134,7 +135,10 @@ class FoxgloveBridge final : public Bridge, private ServerEvents {
     }
     publishing_.leave(client);
     graph_watchers_.erase(client->id);
-    subscribing_.post_always([this, client] { channels_.leave(client); });
+    subscribing_.post_always([this, client] {
+      channels_.leave(client);
+      settle_subscriptions();
+    });
     operating_.post_always([this, client] { parameters_.leave(client); });
     graph_changed_ = true;
   }
@@ -173,13 +177,13 @@ class FoxgloveBridge final : public Bridge, private ServerEvents {
   void obey(const ClientPtr& client, const SubscribeMessage& message) {
     do_later(subscribing_, client, [this, client, message] {
       channels_.subscribe(client, message);
-      graph_changed_ = true;
+      settle_subscriptions();
     });
   }
   void obey(const ClientPtr& client, const UnsubscribeMessage& message) {
     do_later(subscribing_, client, [this, client, message] {
       channels_.unsubscribe(client, message);
-      graph_changed_ = true;
+      settle_subscriptions();
     });
   }
   void obey(const ClientPtr& client, const AdvertiseMessage& message) {
@@ -242,7 +246,14 @@ class FoxgloveBridge final : public Bridge, private ServerEvents {
 
   // The workers' threads.
 
+  // Streams are opened once for several changes that come in a row.
+  void settle_subscriptions() {
+    if (subscribing_.is_idle()) channels_.settle();
+    graph_changed_ = true;
+  }
+
   void follow_world() {
+    channels_.settle();
     auto change = channels_.follow();
     if (!change.ok() || (change->added.empty() && change->removed.empty())) return;
     const std::lock_guard lock(clients_mutex_);
@@ -326,7 +337,7 @@ class FoxgloveBridge final : public Bridge, private ServerEvents {
   std::atomic<bool> graph_changed_{false};
 
   // The network's thread alone.
-  double told_time_ = -1;
+  double told_time_ = 0;
   int ticks_ = 0;
   std::map<int64_t, ClientPtr> graph_watchers_;
   std::set<std::string> graph_names_;

@@ -33,6 +33,11 @@ void Worker::post_always(Job job) {
   wake_.notify_one();
 }
 
+bool Worker::is_idle() {
+  const std::lock_guard lock(mutex_);
+  return waiting_.empty();
+}
+
 void Worker::stop() {
   {
     const std::lock_guard lock(mutex_);

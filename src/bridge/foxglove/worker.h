@@ -23,6 +23,8 @@ class Worker {
   bool post(Job job, int64_t key = 0);
   /// A job that must not be lost: where a client has gone.
   void post_always(Job job);
+  /// No job waits.
+  bool is_idle();
   /// Waits for the present job; those that wait are thrown away.
   void stop();
 
