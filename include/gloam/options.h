@@ -11,6 +11,12 @@
 
 namespace gloam {
 
+class World;  // gloam/world.h
+
+/// The Scene that a World was compiled from, as it was given: World::scene() without what
+/// generators and draws added. Changed, it compiles again.
+Scene written_scene(const World& world);
+
 /// The options of a Scene as a scene file: those that differ from their defaults. parse_scene(text,
 /// scene.file.parent_path()) gives the same Scene again; files are named from there where they lie
 /// below it. A bare model is no option: keep Scene::bare_model beside the text.

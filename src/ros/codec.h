@@ -40,7 +40,12 @@ void put_cdr(CdrWriter& writer, const T& value) {
     writer.write_string(value);
   } else if constexpr (std::same_as<T, Bytes>) {
     writer.write_sequence(value.span());
+  } else if constexpr (std::same_as<T, Bools>) {
+    writer.write_sequence(std::span<const uint8_t>(value));
   } else {
+    constexpr size_t kMost = FieldTraits<T>::kSize;
+    if constexpr (FieldTraits<T>::kIsSequence)
+      GLOAM_CHECK(kMost == 0 || value.size() <= kMost, "a sequence over its bound");
     if constexpr (FieldTraits<T>::kIsSequence) writer.write_count(value.size());
     if constexpr (CdrPrimitive<Element>) {
       writer.write_array(std::span<const Element>(value));
@@ -87,10 +92,16 @@ bool get_cdr(CdrReader& reader, T* value) {
     const bool ok = reader.read_sequence(&own);
     *value = std::move(own);
     return ok;
+  } else if constexpr (std::same_as<T, Bools>) {
+    if (!reader.read_sequence(static_cast<std::vector<uint8_t>*>(value))) return false;
+    const bool good = std::ranges::all_of(*value, [](uint8_t v) { return v <= 1; });
+    return good || reader.fail("a bool is neither 0 nor 1");
   } else {
     if constexpr (FieldTraits<T>::kIsSequence) {
       size_t count = 0;
       if (!reader.read_count(&count, least_cdr_size<Element>())) return false;
+      constexpr size_t kMost = FieldTraits<T>::kSize;
+      if (kMost != 0 && count > kMost) return reader.fail("a sequence is over its bound");
       value->resize(count);
     }
     if constexpr (CdrPrimitive<Element>) {

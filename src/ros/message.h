@@ -10,7 +10,8 @@
 //
 // in a namespace with `kPackage = "std_msgs/msg"`. Types of fields: ROS's primitives as bool,
 // int8_t … uint64_t, float, double, `char` (char), std::byte (byte), std::string, BoundedString;
-// other messages; std::array (T[N]), std::vector (T[]) and Bytes (uint8[]) of those.
+// other messages; std::array (T[N]), std::vector (T[]), BoundedVector (T[<=N]), Bytes (uint8[]) and
+// Bools (bool[]) of those.
 
 #include <algorithm>
 #include <array>
@@ -56,6 +57,17 @@ struct BoundedString : std::string {
   BoundedString(std::string text) : std::string(std::move(text)) {}  // NOLINT: implicit, as string
 };
 
+/// T[<=N]: the decoder refuses more elements.
+template <class T, size_t N>
+struct BoundedVector : std::vector<T> {
+  using std::vector<T>::vector;
+};
+
+/// bool[], one byte each, 0 or 1: std::vector<bool> has no elements to point to.
+struct Bools : std::vector<uint8_t> {
+  using std::vector<uint8_t>::vector;
+};
+
 /// uint8[] that is large: its own bytes, or a view of others', which must outlive the message. A
 /// view spares a copy: the encoder copies from where the picture or the points are.
 class Bytes {
@@ -93,7 +105,7 @@ template <class T>
 struct FieldTraits {
   using Element = T;
   static constexpr bool kIsArray = false, kIsSequence = false;
-  static constexpr size_t kSize = 0;  ///< of an array
+  static constexpr size_t kSize = 0;  ///< of an array, the most of a bounded sequence
 };
 template <class T, size_t N>
 struct FieldTraits<std::array<T, N>> {
@@ -107,8 +119,16 @@ struct FieldTraits<std::vector<T>> {
   static constexpr bool kIsArray = false, kIsSequence = true;
   static constexpr size_t kSize = 0;
 };
+template <class T, size_t N>
+struct FieldTraits<BoundedVector<T, N>> : FieldTraits<std::vector<T>> {
+  static constexpr size_t kSize = N;
+};
 template <>
 struct FieldTraits<Bytes> : FieldTraits<std::vector<uint8_t>> {};
+template <>
+struct FieldTraits<Bools> : FieldTraits<std::vector<uint8_t>> {
+  using Element = bool;
+};
 
 /// Most characters of a string type; 0 = any number.
 template <class T>

@@ -111,9 +111,10 @@ FieldDescription describe_field(std::string_view name) {
   field.type.kind = field_kind<Element>();
   if constexpr (Message<Element>) field.type.message = ros_type_name<Element>();
   field.type.string_bound = kStringBound<Element>;
-  field.type.array = Traits::kIsArray      ? ArrayKind::kFixed
-                     : Traits::kIsSequence ? ArrayKind::kUnbounded
-                                           : ArrayKind::kNone;
+  field.type.array = Traits::kIsArray       ? ArrayKind::kFixed
+                     : !Traits::kIsSequence ? ArrayKind::kNone
+                     : Traits::kSize > 0    ? ArrayKind::kBounded
+                                            : ArrayKind::kUnbounded;
   field.type.array_size = Traits::kSize;
   return field;
 }

@@ -207,6 +207,8 @@ const char* to_string(InputKind kind) {
 
 const Scene& World::scene() const { return compiled_->scene; }
 
+Scene written_scene(const World& world) { return world.compiled()->written; }
+
 Result<Robot> World::find_robot(const std::string& name) const {
   std::vector<std::string> names;
   for (const RobotInstance& robot : compiled_->robots) {

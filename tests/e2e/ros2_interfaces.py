@@ -68,7 +68,7 @@ SIMULATION = {
     "srv/ResetSimulation": f"uint8 scope\n---\n{RESULT}",
     "srv/SpawnEntity": "string name\nbool allow_renaming\nResource entity_resource\nstring entity_namespace\n"
                        "geometry_msgs/PoseStamped initial_pose\n---\nResult result\nstring entity_name",
-    "srv/SpawnEntities": "SpawnEntity[] spawn_requests\n---\nResult result\nSpawnResult[] spawn_results",
+    "srv/SpawnEntities": "SpawnEntity[] spawn_requests\n---\nResult result\nSpawnResult[] results",
     "srv/DeleteEntity": f"string entity\n---\n{RESULT}",
     "srv/GetEntities": "EntityFilters filters\n---\nResult result\nstring[] entities",
     "srv/GetEntitiesStates": "EntityFilters filters\n---\nResult result\nstring[] entities\nEntityState[] states",

@@ -9,6 +9,7 @@
 
 #include "bridge/bridge_list.h"
 #include "bridge/ros2/dds_node.h"
+#include "bridge/ros2/node_services.h"
 #include "bridge/ros2/ros2_names.h"
 #include "bridge/ros2/service_server.h"
 #include "bridge/ros2/topic_inlets.h"
@@ -41,7 +42,7 @@ bool is_name_like(std::string_view name, std::string_view pattern) {
 class Ros2Bridge final : public Bridge {
  public:
   Ros2Bridge(const BridgeContext& context, const Ros2Options& options)
-      : simulation_(context.simulation), options_(options) {}
+      : simulation_(context.simulation), operations_(context.operations), options_(options) {}
   ~Ros2Bridge() override {
     {
       const std::lock_guard lock(mutex_);
@@ -65,6 +66,9 @@ class Ros2Bridge final : public Bridge {
     outlets_ = std::make_unique<TopicOutlets>(simulation_, *node_, [this] { look(); });
     inlets_ = std::make_unique<TopicInlets>(simulation_, *node_);
     services_ = std::make_unique<ServiceServer>(*node_);
+    offers_ = std::make_unique<NodeServices>(operations_, *node_, *services_);
+    GLOAM_TRY_STATUS(
+        offers_->open(options_.interfaces, ns == "/" ? "" : ns, ros_name(options_.node)));
     GLOAM_TRY_STATUS(take_topics());
     services_->start();
     thread_ = std::thread([this] { run(); });
@@ -104,6 +108,7 @@ class Ros2Bridge final : public Bridge {
       if (is_offered(topic)) (topic.is_input ? heard : said).push_back(topic);
     GLOAM_TRY_STATUS(outlets_->set_topics(said));
     GLOAM_TRY_STATUS(inlets_->set_topics(heard));
+    GLOAM_TRY_STATUS(offers_->follow_robots());
     node_->announce();
     return {};
   }
@@ -144,12 +149,14 @@ class Ros2Bridge final : public Bridge {
   }
 
   Simulation& simulation_;
+  Operator& operations_;
   const Ros2Options options_;
   int domain_ = 0;
   std::shared_ptr<const CompiledWorld> world_;  // whose topics are offered
   std::unique_ptr<DdsNode> node_;
   std::unique_ptr<TopicOutlets> outlets_;
   std::unique_ptr<TopicInlets> inlets_;
+  std::unique_ptr<NodeServices> offers_;
   std::unique_ptr<ServiceServer> services_;
   std::mutex mutex_;
   std::condition_variable wake_;

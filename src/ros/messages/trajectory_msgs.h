@@ -1,7 +1,7 @@
 #pragma once
 // Messages of ROS 2's package trajectory_msgs.
 
-#include "ros/messages/std_msgs.h"
+#include "ros/messages/geometry_msgs.h"
 
 namespace gloam::trajectory_msgs {
 
@@ -22,6 +22,23 @@ struct JointTrajectory {
   std::vector<std::string> joint_names;
   std::vector<JointTrajectoryPoint> points;
   GLOAM_MESSAGE(JointTrajectory, header, joint_names, points)
+};
+
+/// One value a joint, or none.
+struct MultiDOFJointTrajectoryPoint {
+  std::vector<geometry_msgs::Transform> transforms;
+  std::vector<geometry_msgs::Twist> velocities;
+  std::vector<geometry_msgs::Twist> accelerations;
+  builtin_interfaces::Duration time_from_start;
+  GLOAM_MESSAGE(MultiDOFJointTrajectoryPoint, transforms, velocities, accelerations,
+                time_from_start)
+};
+
+struct MultiDOFJointTrajectory {
+  std_msgs::Header header;
+  std::vector<std::string> joint_names;
+  std::vector<MultiDOFJointTrajectoryPoint> points;
+  GLOAM_MESSAGE(MultiDOFJointTrajectory, header, joint_names, points)
 };
 
 }  // namespace gloam::trajectory_msgs

@@ -30,8 +30,12 @@ class RandomMessage {
       std::vector<uint8_t> bytes(draw(20));
       for (uint8_t& byte : bytes) fill(&byte);
       *value = std::move(bytes);
+    } else if constexpr (std::same_as<T, Bools>) {
+      value->resize(draw(20));
+      for (uint8_t& element : *value) element = static_cast<uint8_t>(draw(2));
     } else {
-      if constexpr (FieldTraits<T>::kIsSequence) value->resize(draw(4));
+      constexpr uint32_t kMost = FieldTraits<T>::kSize > 0 ? FieldTraits<T>::kSize : 3;
+      if constexpr (FieldTraits<T>::kIsSequence) value->resize(draw(kMost + 1));
       for (auto& element : *value) fill(&element);
     }
   }

@@ -1,0 +1,294 @@
+#include "bridge/operations/model_source.h"
+
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+
+#include "gloam/options.h"
+#include "gloam/program.h"
+
+namespace gloam::bridge {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr size_t kLongestModel = size_t{16} << 20;  // [bytes]
+constexpr size_t kLongestAddress = 4000;
+constexpr std::string_view kFileScheme = "file://", kOwnScheme = "gloam://",
+                           kPackageScheme = "package://", kPropFolder = "gloam://prop/";
+
+Error refuse(SpawnFailure* failure, SpawnFailure cause, std::string message,
+             std::string hint = {}) {
+  *failure = cause;
+  return Error{ErrorKind::kInput, std::move(message), {}, std::move(hint)};
+}
+
+std::string lower_extension_of(const fs::path& path) {
+  std::string extension = path.extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension;
+}
+
+// "%20" as a blank; what is no such code stays.
+std::string percent_decoded(std::string_view text) {
+  std::string out;
+  for (size_t i = 0; i < text.size(); ++i) {
+    const auto is_hex = [&](size_t at) {
+      return at < text.size() && std::isxdigit(static_cast<unsigned char>(text[at])) != 0;
+    };
+    if (text[i] == '%' && is_hex(i + 1) && is_hex(i + 2)) {
+      out += static_cast<char>(std::stoi(std::string(text.substr(i + 1, 2)), nullptr, 16));
+      i += 2;
+    } else {
+      out += text[i];
+    }
+  }
+  return out;
+}
+
+bool is_below(const fs::path& path, const fs::path& folder) {
+  std::error_code code;
+  const fs::path whole = fs::weakly_canonical(path, code), top = fs::weakly_canonical(folder, code);
+  if (code || top.empty()) return false;
+  const auto [in_top, in_whole] = std::mismatch(top.begin(), top.end(), whole.begin(), whole.end());
+  return in_top == top.end() || (std::next(in_top) == top.end() && in_top->empty());
+}
+
+fs::path folder_of(const Scene& scene) {
+  std::error_code code;
+  const fs::path file = scene.bare_model.empty() ? scene.file : scene.bare_model;
+  if (file.empty()) return fs::current_path(code);
+  return fs::absolute(file, code).parent_path();
+}
+
+/// Folders that come with Gloam.
+std::vector<fs::path> own_folders() {
+  const Result<fs::path> home = gloam_home();
+  if (!home.ok()) return {};
+  return {*home / "assets", *home / "examples"};
+}
+
+Result<fs::path> path_of(const std::string& uri, const Scene& scene) {
+  const auto refused = [&](std::string why, std::string hint = {}) {
+    return Error{ErrorKind::kInput, fmt::format("'{:.200}' {}", uri, why), {}, std::move(hint)};
+  };
+  if (uri.empty() || uri.size() > kLongestAddress) return refused("is no address of a file");
+  std::string path = percent_decoded(uri);
+  if (std::ranges::any_of(path, [](unsigned char c) { return c < 0x20; }))
+    return refused("holds a control character");
+  if (path.starts_with(kFileScheme)) {
+    path = path.substr(kFileScheme.size());
+    if (path.starts_with("localhost/")) path = path.substr(9);
+    if (!path.starts_with('/')) return refused("names another machine", "file:///FOLDER/FILE");
+    return fs::path(path);
+  }
+  if (path.starts_with(kOwnScheme)) {
+    GLOAM_TRY(const fs::path home, gloam_home());
+    return home / path.substr(kOwnScheme.size());
+  }
+  if (path.starts_with(kPackageScheme)) {
+    path = path.substr(kPackageScheme.size());
+    const size_t slash = std::min(path.find('/'), path.size());
+    for (const auto& [name, folder] : scene.access.packages)
+      if (name == path.substr(0, slash) && slash < path.size())
+        return folder / path.substr(slash + 1);
+    return refused("is of a package that is not known here", "--package NAME=FOLDER tells of it");
+  }
+  if (path.find("://") != std::string::npos) return refused("is no address that is read here");
+  return fs::path(path).is_absolute() ? fs::path(path) : folder_of(scene) / path;
+}
+
+// As the scene itself would name the file.
+Status check_as_scene_would(const fs::path& file, const Scene& scene) {
+  Scene only;
+  only.file = scene.file.empty() && !scene.bare_model.empty() ? scene.bare_model : scene.file;
+  only.access = scene.access;
+  if (is_mesh_extension(lower_extension_of(file))) {
+    only.objects.push_back({.name = "it", .file = file});
+  } else {
+    only.robots.push_back({.name = "it", .file = file});
+  }
+  const Result<Scene> read = overlay_scene(only, "", "client");
+  return read.ok() ? Status() : Status(read.error());
+}
+
+/// Kind of a model's text.
+enum class ModelText : uint8_t { kMjcf, kUrdf, kSdf, kUsd, kOther };
+
+ModelText model_text_of(std::string_view text) {
+  if (text.starts_with("#usda")) return ModelText::kUsd;
+  for (size_t at = text.find('<'); at != std::string_view::npos; at = text.find('<', at + 1)) {
+    const std::string_view tag = text.substr(at + 1, 8);
+    if (tag.starts_with('?')) continue;
+    if (tag.starts_with("!--")) {
+      at = text.find("-->", at);
+      if (at == std::string_view::npos) break;
+      continue;
+    }
+    const auto is_tag = [&](std::string_view name) {
+      return tag.starts_with(name) &&
+             (tag.size() == name.size() ||
+              std::string_view(" \t\r\n>/").find(tag[name.size()]) != std::string_view::npos);
+    };
+    if (is_tag("mujoco")) return ModelText::kMjcf;
+    if (is_tag("robot")) return ModelText::kUrdf;
+    if (is_tag("sdf")) return ModelText::kSdf;
+    break;
+  }
+  return ModelText::kOther;
+}
+
+// Attribute of the first element of a tag: of the root, whose text was found good.
+std::string attribute_of(std::string_view text, const std::string& tag, const std::string& name) {
+  const size_t begin = text.find("<" + tag), end = text.find('>', begin);
+  if (begin == std::string_view::npos || end == std::string_view::npos) return {};
+  const std::string_view element = text.substr(begin, end - begin);
+  for (const char* space : {" ", "\n", "\t"}) {
+    const size_t at = element.find(space + name + "=");
+    if (at == std::string_view::npos) continue;
+    const size_t quote = at + name.size() + 2;
+    if (quote >= element.size()) return {};
+    const size_t last = element.find(element[quote], quote + 1);
+    if (last == std::string_view::npos) return {};
+    return std::string(element.substr(quote + 1, last - quote - 1));
+  }
+  return {};
+}
+
+// ROS fixes a robot to the world by a link of that name; others stand freely, as in Gazebo.
+bool is_fixed_urdf(std::string_view text) {
+  return text.find("link name=\"world\"") != std::string_view::npos ||
+         text.find("link name='world'") != std::string_view::npos;
+}
+
+}  // namespace
+
+bool is_model_extension(const std::string& extension) {
+  return extension == ".xml" || extension == ".urdf" || extension == ".toml" ||
+         extension == ".mjcf";
+}
+
+bool is_mesh_extension(const std::string& extension) {
+  constexpr std::string_view kMeshes[] = {".glb", ".gltf", ".obj", ".stl", ".ply"};
+  return std::ranges::find(kMeshes, extension) != std::end(kMeshes);
+}
+
+std::string prop_kind_of(const std::string& uri) {
+  return uri.starts_with(kPropFolder) ? uri.substr(kPropFolder.size()) : std::string();
+}
+
+ModelSource::~ModelSource() {
+  std::error_code code;
+  if (!folder_.empty()) fs::remove_all(folder_, code);
+}
+
+bool ModelSource::is_own(const fs::path& file) const {
+  const std::lock_guard lock(mutex_);
+  return !folder_.empty() && is_below(file, folder_);
+}
+
+Result<fs::path> ModelSource::resolve(const std::string& uri, const Scene& scene) {
+  GLOAM_TRY(const fs::path path, path_of(uri, scene));
+  std::error_code code;
+  if (!fs::is_regular_file(path, code))
+    return Error{ErrorKind::kInput, fmt::format("there is no file '{:.200}'", uri)};
+  for (const fs::path& folder : own_folders())
+    if (is_below(path, folder)) return fs::weakly_canonical(path, code);
+  GLOAM_TRY_STATUS(check_as_scene_would(path, scene));
+  return path.lexically_normal();
+}
+
+Result<fs::path> ModelSource::resolve_folder(const std::string& uri, const Scene& scene) {
+  GLOAM_TRY(const fs::path path, path_of(uri, scene));
+  std::error_code code;
+  if (!fs::exists(path, code))
+    return Error{ErrorKind::kInput, fmt::format("there is no folder '{:.200}'", uri)};
+  std::vector<fs::path> allowed = own_folders();
+  allowed.push_back(scene.access.root.empty() ? folder_of(scene) : scene.access.root);
+  for (const auto& [name, folder] : scene.access.packages) allowed.push_back(folder);
+  for (const fs::path& folder : allowed)
+    if (is_below(path, folder)) return path.lexically_normal();
+  return Error{ErrorKind::kInput,
+               fmt::format("'{:.200}' lies outside what clients may read", uri),
+               {},
+               "start Gloam with --root FOLDER"};
+}
+
+Result<fs::path> ModelSource::write(const std::string& text, const std::string& extension) {
+  const std::lock_guard lock(mutex_);
+  std::error_code code;
+  if (folder_.empty()) {
+    std::string name = (fs::temp_directory_path(code) / "gloam_spawned_XXXXXX").string();
+    if (code || ::mkdtemp(name.data()) == nullptr)
+      return Error{ErrorKind::kIo, "there is no room for a client's model in the temporary folder"};
+    folder_ = name;
+  }
+  const fs::path folder = folder_ / std::to_string(++count_);
+  fs::create_directory(folder, code);
+  // A package is the root of its models (docs/security.md).
+  std::ofstream(folder / "package.xml") << "<package><name>spawned</name></package>\n";
+  const fs::path file = folder / ("model" + extension);
+  std::ofstream out(file, std::ios::binary);
+  out.write(text.data(), static_cast<std::streamsize>(text.size()));
+  out.close();
+  if (!out)
+    return Error{ErrorKind::kIo, fmt::format("the file '{}' cannot be written", file.string())};
+  return file;
+}
+
+Result<SceneEntity> ModelSource::find(const SpawnRequest& request, const Scene& scene,
+                                      const Pose& X_WE, std::string* model_name,
+                                      SpawnFailure* failure) {
+  if (request.uri.empty() && request.text.empty())
+    return refuse(failure, SpawnFailure::kNoResource, "there is neither an address nor a text");
+  if (const std::string kind = prop_kind_of(request.uri); !kind.empty()) {
+    const std::vector<PropInfo> known = prop_kinds();
+    std::vector<std::string> kinds;
+    for (const PropInfo& info : known) kinds.push_back(info.kind);
+    if (std::ranges::find(kinds, kind) == kinds.end())
+      return refuse(failure, SpawnFailure::kNoResource,
+                    fmt::format("there is no prop '{:.100}'", kind), suggest_name(kind, kinds));
+    return SceneEntity(PropOptions{.kind = kind, .position = X_WE.p, .orientation = X_WE.q});
+  }
+  RobotOptions robot{.X_WR = X_WE};
+  std::string text = request.text;
+  if (text.empty()) {
+    const Result<fs::path> path = resolve(request.uri, scene);
+    if (!path.ok()) {
+      *failure = SpawnFailure::kNoResource;
+      return path.error();
+    }
+    const std::string extension = lower_extension_of(*path);
+    if (is_mesh_extension(extension))
+      return SceneEntity(ObjectOptions{.file = *path, .X_WO = X_WE});
+    if (!is_model_extension(extension))
+      return refuse(failure, SpawnFailure::kUnsupportedFormat,
+                    fmt::format("'{}' files are not read", extension),
+                    "give MJCF, URDF, glTF, OBJ, STL or PLY");
+    robot.file = *path;
+    std::ifstream in(*path, std::ios::binary);
+    text.assign(std::istreambuf_iterator<char>(in), {});
+    if (extension == ".toml") return SceneEntity(robot);
+  }
+  if (text.size() > kLongestModel)
+    return refuse(failure, SpawnFailure::kUnsupportedFormat, "a model of more than 16 MiB");
+  const ModelText kind = model_text_of(text);
+  if (kind == ModelText::kSdf || kind == ModelText::kUsd)
+    return refuse(failure, SpawnFailure::kUnsupportedFormat, "SDF and USD are not read",
+                  "give MJCF or URDF");
+  if (kind == ModelText::kOther)
+    return refuse(failure, SpawnFailure::kParse, "the text is neither MJCF nor URDF");
+  *model_name = attribute_of(text, kind == ModelText::kUrdf ? "robot" : "mujoco",
+                             kind == ModelText::kUrdf ? "name" : "model");
+  if (kind == ModelText::kUrdf && !is_fixed_urdf(text)) robot.base = "free";
+  if (!robot.file.empty()) return SceneEntity(robot);
+  if (!scene.access.root.empty())
+    return refuse(failure, SpawnFailure::kOther,
+                  "models as text are not taken where --root limits the files that are read");
+  GLOAM_TRY(robot.file, write(text, kind == ModelText::kUrdf ? ".urdf" : ".xml"));
+  return SceneEntity(robot);
+}
+
+}  // namespace gloam::bridge

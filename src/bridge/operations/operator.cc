@@ -1,0 +1,164 @@
+// Operator: the run: playing, pausing, steps, resets.
+
+#include "bridge/operations/operator.h"
+
+#include <algorithm>
+
+#include "bridge/operations/operator_private.h"
+
+namespace gloam::bridge {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr double kStepTell = 0.02;  // between two reports of steps that are taken [s]
+constexpr double kSlowest = 1e-3, kFastest = 1e3;
+
+Error wrong_state(std::string message, std::string hint = {}) {
+  return Error{ErrorKind::kUsage, std::move(message), {}, std::move(hint)};
+}
+
+}  // namespace
+
+const char* to_string(RunState state) {
+  static constexpr const char* kNames[] = {"stopped", "playing",  "paused",
+                                           "failed",  "no world", "loading"};
+  return kNames[static_cast<size_t>(state)];
+}
+
+Operator::Operator(Simulation& simulation)
+    : private_(std::make_unique<Private>(simulation)), simulation_(simulation) {}
+Operator::~Operator() = default;
+
+Status Operator::Private::need_world() const {
+  if (unloaded) return wrong_state("no world is loaded", "load one");
+  return {};
+}
+
+Status Operator::Private::exchange(const Scene& scene, const ProgressCallback& progress) {
+  GLOAM_TRY(const World world, World::compile(scene, progress));
+  GLOAM_TRY_STATUS(simulation.recompile(world));
+  return {};
+}
+
+void Operator::Private::forget_waiting() {
+  const std::lock_guard lock(names_mutex);
+  waiting.clear();
+}
+
+RunState Operator::state() const {
+  if (private_->loading) return RunState::kLoading;
+  if (private_->unloaded) return RunState::kNoWorld;
+  if (!simulation_.status().ok()) return RunState::kFailed;
+  if (!simulation_.paused() && !private_->stepping) return RunState::kPlaying;
+  const bool at_start = private_->rests && simulation_.latest().step() == 0;
+  return at_start ? RunState::kStopped : RunState::kPaused;
+}
+
+Status Operator::pause() {
+  GLOAM_TRY_STATUS(private_->need_world());
+  private_->stop_stepping = true;
+  private_->rests = false;
+  simulation_.pause();
+  return {};
+}
+
+Status Operator::play() {
+  GLOAM_TRY_STATUS(private_->need_world());
+  if (private_->stepping) return wrong_state("steps are being taken", "pause first");
+  GLOAM_TRY_STATUS(simulation_.status());
+  private_->rests = false;
+  simulation_.resume();
+  return {};
+}
+
+Status Operator::stop() {
+  GLOAM_TRY_STATUS(pause());
+  GLOAM_TRY_STATUS(reset({}));
+  private_->rests = true;
+  return {};
+}
+
+Status Operator::step(int64_t count, const StepProgress& progress) {
+  Private& p = *private_;
+  GLOAM_TRY_STATUS(p.need_world());
+  if (count < 1) return Error{ErrorKind::kInput, "the number of steps must be 1 or more"};
+  if (!simulation_.paused()) return wrong_state("the simulation is not paused", "pause it first");
+  if (p.stepping.exchange(true)) return wrong_state("another client takes steps");
+  p.stop_stepping = false;
+  p.rests = false;
+  Status status;
+  int64_t done = 0, chunk = 1;
+  while (status.ok() && done < count) {
+    if (p.stop_stepping) {
+      status = Error{ErrorKind::kInterrupted, "stopped before all steps were taken"};
+      break;
+    }
+    const auto begin = Clock::now();
+    const int64_t now = std::min(chunk, count - done);
+    {
+      const std::lock_guard one_at_a_time(p.change_mutex);
+      status = simulation_.step(now);
+    }
+    if (!status.ok()) break;
+    done += now;
+    const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+    chunk = std::clamp<int64_t>(seconds < kStepTell / 2 ? 2 * chunk : chunk / 2, 1, 100000);
+    if (seconds >= kStepTell / 2 && seconds <= 2 * kStepTell) chunk = now;
+    if (progress && !progress(done, count - done) && done < count) p.stop_stepping = true;
+  }
+  p.stepping = false;
+  return status;
+}
+
+Status Operator::set_speed(std::optional<double> speed) {
+  if (!speed) {
+    simulation_.set_pace(Pace::kFast, 1);
+  } else if (*speed >= kSlowest && *speed <= kFastest) {
+    simulation_.set_pace(Pace::kRealTime, *speed);
+  } else {
+    return Error{ErrorKind::kInput, "the speed must be 0.001 to 1000"};
+  }
+  private_->speed = speed.value_or(0);
+  return {};
+}
+
+std::optional<double> Operator::speed() const {
+  const double speed = private_->speed;
+  return speed > 0 ? std::optional(speed) : std::nullopt;
+}
+
+Status Operator::reset(const ResetScope& scope) {
+  Private& p = *private_;
+  GLOAM_TRY_STATUS(p.need_world());
+  const std::lock_guard one_at_a_time(p.change_mutex);
+  if (scope.state) {
+    GLOAM_TRY_STATUS(simulation_.post({.what = ResetSim{}}));
+    p.rests = simulation_.paused();
+  }
+  if (scope.state) p.forget_waiting();
+  if (!scope.spawned) return {};
+  const Scene first = p.first_scene();
+  Scene scene = written_scene(simulation_.world());
+  const auto same = [](const auto& a, const auto& b) {
+    return std::ranges::equal(a, b, [](const auto& x, const auto& y) { return x.name == y.name; });
+  };
+  if (same(scene.robots, first.robots) && same(scene.objects, first.objects) &&
+      same(scene.props, first.props) && same(scene.agents, first.agents))
+    return {};
+  scene.robots = first.robots;
+  scene.objects = first.objects;
+  scene.props = first.props;
+  scene.agents = first.agents;
+  scene.topics = first.topics;
+  GLOAM_TRY_STATUS(p.exchange(scene));
+  {
+    const std::lock_guard lock(p.names_mutex);
+    p.spawned.clear();
+  }
+  // What came back begins as the scene says, and what was moved stays where the reset has put it.
+  if (scope.state) return simulation_.post({.what = ResetSim{}});
+  return {};
+}
+
+}  // namespace gloam::bridge

@@ -1,0 +1,95 @@
+// Operator: options of the scene and live fields of its model.
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "bridge/operations/operator_private.h"
+#include "gloam/program.h"
+
+namespace gloam::bridge {
+namespace {
+
+// Names of live fields as World::inputs() has them, by LiveFieldId.
+constexpr std::string_view kLiveFields[kLiveFieldCount] = {"gravity",
+                                                           "wind",
+                                                           "body_mass",
+                                                           "geom_friction",
+                                                           "height_field",
+                                                           "light_diffuse",
+                                                           "light_intensity",
+                                                           "light_active",
+                                                           "geom_color",
+                                                           "material_color",
+                                                           "material_emission",
+                                                           "material_specular",
+                                                           "material_shininess",
+                                                           "material_reflectance",
+                                                           "material_metallic",
+                                                           "material_roughness"};
+
+// The files that options name must be those that the scene itself could name.
+Status check_files(Scene scene, const ModelSource& source) {
+  std::erase_if(scene.robots, [&](const RobotOptions& o) { return source.is_own(o.file); });
+  std::erase_if(scene.overrides, [&](const OverrideOptions& o) {
+    return o.robot != "environment" &&
+           std::ranges::find(scene.robots, o.robot, &RobotOptions::name) == scene.robots.end();
+  });
+  if (scene.file.empty()) scene.file = scene.bare_model;
+  if (scene.robots.empty() && scene.bare_model.empty() && scene.environment.file.empty()) return {};
+  const Result<Scene> read = overlay_scene(scene, "", "options");
+  return read.ok() ? Status() : Status(read.error());
+}
+
+}  // namespace
+
+std::vector<OptionInfo> Operator::options() const {
+  return list_options(written_scene(simulation_.world()));
+}
+
+Result<std::string> Operator::option(std::string_view path) const {
+  return get_option(written_scene(simulation_.world()), path);
+}
+
+Status Operator::set_options(const std::vector<std::pair<std::string, std::string>>& values) {
+  Private& p = *private_;
+  GLOAM_TRY_STATUS(p.need_world());
+  const std::lock_guard one_at_a_time(p.change_mutex);
+  Scene scene = written_scene(simulation_.world());
+  for (const auto& [path, value] : values) {
+    if (path == "sim.timestep")
+      return Error{ErrorKind::kUnsupported, "the timestep of a running simulation stays as it is"};
+    GLOAM_TRY_STATUS(set_option(scene, path, value));
+  }
+  GLOAM_TRY_STATUS(check_files(scene, p.source));
+  return p.exchange(scene);
+}
+
+Status Operator::set_live_field(std::string_view name, int first, std::vector<float> values) {
+  const auto* found = std::ranges::find(kLiveFields, name);
+  if (found == std::end(kLiveFields)) {
+    const std::vector<std::string> names(std::begin(kLiveFields), std::end(kLiveFields));
+    return Error{ErrorKind::kInput,
+                 fmt::format("there is no live field '{}'", name.substr(0, 100)),
+                 {},
+                 suggest_name(name, names)};
+  }
+  const auto field = static_cast<LiveFieldId>(found - std::begin(kLiveFields));
+  return simulation_.post({.what = SetLiveField{field, first, std::move(values)}});
+}
+
+Status Operator::recompile(std::string_view toml) {
+  Private& p = *private_;
+  GLOAM_TRY_STATUS(p.need_world());
+  const Scene first = p.first_scene();
+  std::error_code code;
+  const std::filesystem::path folder = first.file.empty()
+                                           ? std::filesystem::current_path(code)
+                                           : std::filesystem::absolute(first.file).parent_path();
+  GLOAM_TRY(Scene scene, parse_scene(toml, folder, first.access));
+  const std::lock_guard one_at_a_time(p.change_mutex);
+  GLOAM_TRY_STATUS(p.exchange(scene));
+  return {};
+}
+
+}  // namespace gloam::bridge

@@ -1,0 +1,76 @@
+// The action FollowJointTrajectory of one robot.
+
+#include <algorithm>
+
+#include "bridge/ros2/services/actions.h"
+#include "bridge/ros2/services/trajectory_run.h"
+#include "ros/codec.h"
+
+namespace gloam::bridge {
+namespace {
+
+namespace fjt = control_msgs::action;
+
+constexpr std::string_view kInputName = "joint_trajectory";
+
+bool is_trajectory_input(const TopicInfo& topic) {
+  return topic.is_input && topic.type == "trajectory_msgs/msg/JointTrajectory" &&
+         topic.name.ends_with(kInputName) && topic.source.starts_with("robot ");
+}
+
+// Controllers that bring joints to goals: Gloam's own, and those of programs, which may.
+bool obeys_joint_goals(const World& world, const std::string& robot) {
+  const std::vector<RobotOptions>& robots = world.scene().robots;
+  const auto found = std::ranges::find(robots, robot, &RobotOptions::name);
+  if (found == robots.end()) return false;
+  const std::string& type = found->controller.type;
+  return type != "none" && type != "torque" && type != "trot";
+}
+
+}  // namespace
+
+std::vector<std::string> trajectory_robots(Simulation& simulation) {
+  std::vector<std::string> robots;
+  const Result<std::vector<TopicInfo>> topics = simulation.topics();
+  if (!topics.ok()) return robots;
+  const World world = simulation.world();
+  for (const TopicInfo& topic : *topics) {
+    if (!is_trajectory_input(topic)) continue;
+    const std::string robot = topic.source.substr(std::string_view("robot ").size());
+    if (obeys_joint_goals(world, robot)) robots.push_back(robot);
+  }
+  return robots;
+}
+
+Ros2Action trajectory_action(Simulation& simulation, const std::string& robot, int interfaces,
+                             Ros2Publish publish) {
+  ActionOptions options;
+  options.name = "/" + robot + "/follow_joint_trajectory";
+  if (const auto topics = simulation.topics(); topics.ok())
+    for (const TopicInfo& topic : *topics)
+      if (is_trajectory_input(topic) && topic.source == "robot " + robot)
+        options.name =
+            topic.name.substr(0, topic.name.size() - kInputName.size()) + "follow_joint_trajectory";
+  options.type = "control_msgs/action/FollowJointTrajectory";
+  options.policy = GoalPolicy::kReplace;
+  options.clock = [&simulation] { return simulation.latest().time(); };
+  options.unknown = trajectory_end(action_msgs::GoalStatus::STATUS_UNKNOWN, 0, "").response;
+  options.accept = [&simulation, robot,
+                    interfaces](std::span<const uint8_t> bytes) -> Result<GoalRequest> {
+    GLOAM_TRY(auto request, decode<fjt::FollowJointTrajectory_SendGoal_Request>(bytes));
+    GoalRequest goal{.id = request.goal_id.uuid};
+    Result<JointWay> way = JointWay::make(request.goal.trajectory);
+    const Snapshot now = simulation.latest();
+    if (!way.ok() || !request.goal.multi_dof_trajectory.points.empty() ||
+        request.goal.trajectory.joint_names.empty() ||
+        !find_joints(now, robot, request.goal.trajectory.joint_names).ok())
+      return goal;  // refused, as joint_trajectory_controller does
+    const auto run = std::make_shared<TrajectoryRun>(simulation, robot, interfaces, request.goal,
+                                                     std::move(*way));
+    goal.run = [run](GoalContext& context) { return run->run(context); };
+    return goal;
+  };
+  return make_action(std::move(options), std::move(publish));
+}
+
+}  // namespace gloam::bridge
