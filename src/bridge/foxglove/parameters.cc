@@ -7,8 +7,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kSlowest = 0.001, kFastest = 1000;  // simulated seconds per second
-
 Error bad_value(const std::string& what) { return {ErrorKind::kInput, what}; }
 
 /// A live field as a parameter: all its numbers, and where mjModel has them.
@@ -34,24 +32,19 @@ Parameters::Parameters(Operator& operations, Counters& counters)
     : operations_(operations), counters_(counters) {
   Simulation& simulation = operations.simulation();
   parameters_["paused"] = {"", [&simulation] { return json(simulation.paused()); },
-                           [&simulation](const json& value) -> Status {
+                           [&operations](const json& value) -> Status {
                              if (!value.is_boolean()) return bad_value("is true or false");
-                             value.get<bool>() ? simulation.pause() : simulation.resume();
-                             return {};
+                             return value.get<bool>() ? operations.pause() : operations.play();
                            }};
-  parameters_["speed"] = {"float64", [this] { return json(speed_); },
-                          [this, &simulation](const json& value) -> Status {
+  parameters_["speed"] = {"float64", [&operations] { return json(operations.speed().value_or(0)); },
+                          [&operations](const json& value) -> Status {
                             if (!value.is_number()) return bad_value("is a number");
-                            const double speed = value.get<double>();
-                            if (!(speed >= kSlowest && speed <= kFastest))
-                              return bad_value("is 0.001 to 1000");
-                            simulation.set_pace(Pace::kRealTime, speed_ = speed);
-                            return {};
+                            return operations.set_speed(value.get<double>());
                           }};
-  const std::string scene = simulation.world().scene().file.filename().string();
-  parameters_["scene"] = {"", [scene] { return json(scene); }, {}};
-  const double step_rate = simulation.step_rate().value();
-  parameters_["step_rate"] = {"float64", [step_rate] { return json(step_rate); }, {}};
+  parameters_["scene"] = {
+      "", [&simulation] { return json(simulation.world().scene().file.filename().string()); }, {}};
+  parameters_["step_rate"] = {
+      "float64", [&simulation] { return json(simulation.step_rate().value()); }, {}};
   add_live_fields();
 }
 

@@ -46,7 +46,6 @@ class Parameters {
 
   Operator& operations_;
   Counters& counters_;
-  double speed_ = 1;  // simulated seconds per second
   Instant instant_;
   Snapshot solved_;  // instant_ is of it
   std::map<std::string, Parameter> parameters_;

@@ -1,7 +1,9 @@
 #pragma once
-// Services: what clients may call, as ROS 2 services with their requests in CDR or JSON.
+// Services: what clients may call, as ROS 2 services with their requests in CDR or JSON: those of
+// simulation_interfaces, and buttons without arguments.
 
 #include <functional>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -18,12 +20,14 @@ class Services {
   Services(Operator& operations, Counters& counters);
 
   const std::vector<ServiceInfo>& list() const { return infos_; }
-  /// Carries a call out and answers it; may take as long as the call says.
+  /// Carries a call out; the answer is sent when it is there.
   void call(const ClientPtr& client, const CallMessage& message);
 
  private:
   using Bytes = std::vector<uint8_t>;
-  using Answer = std::function<Result<Bytes>(std::span<const uint8_t> request)>;
+  using Reply = std::function<void(Result<Bytes>)>;
+  /// Calls the reply once, on any thread.
+  using Answer = std::function<void(std::span<const uint8_t> request, const Reply& reply)>;
   struct Service {
     Answer answer;
     MessageSchema request, response;
@@ -31,11 +35,15 @@ class Services {
   void add(const std::string& name, const std::string& type, Answer answer);
   /// A service without arguments.
   void add_trigger(const std::string& name, std::function<Status()> act);
-  Result<Bytes> carry_out(const CallMessage& message) const;
+  /// The request in CDR. Errors: no such service or encoding, a damaged request.
+  Result<Bytes> request_of(const CallMessage& message) const;
+  static Result<Bytes> encode_answer(const Service& service, const std::string& encoding,
+                                     Bytes response);
 
   Counters& counters_;
   std::vector<ServiceInfo> infos_;  // ids are places in the list, from 1
-  std::vector<Service> services_;
+  // Shared: answers may come when a client has gone.
+  std::vector<std::shared_ptr<const Service>> services_;
 };
 
 }  // namespace gloam::bridge::foxglove

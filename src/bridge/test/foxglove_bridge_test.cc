@@ -330,6 +330,15 @@ TEST_F(FoxgloveBridgeTest, ServicesAreCalledInCdrAndJson) {
   ASSERT_TRUE(answer);
   EXPECT_EQ(json::parse(answer->substr(16)), json({{"success", true}, {"message", ""}}));
   EXPECT_FALSE(simulation_->paused());
+  // The simulation plays: simulation_interfaces says so in its own result code.
+  client.send_frame(2, call(service_of(services, "/step_simulation"), 4, "json", R"({"steps":3})"));
+  answer = client.wait_for_binary(3);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(json::parse(answer->substr(16))["result"]["result"], 3) << *answer;
+  client.send_frame(2, call(service_of(services, "/get_entities"), 5, "json", "{}"));
+  answer = client.wait_for_binary(3);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(json::parse(answer->substr(16))["result"]["result"], 1) << *answer;
   for (const auto& bad : {call(999, 3, "json", "{}"), call(1, 3, "protobuf", ""),
                           call(1, 3, "json", "[]"), call(1, 3, "cdr", "x")}) {
     client.send_frame(2, bad);
