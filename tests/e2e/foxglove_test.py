@@ -19,6 +19,11 @@ QUICK = ["--tier", "direct", "--spp", "1", "--resolution", "64x48"]
 NODE_CLIENT = ROOT / "tests" / "e2e" / "foxglove_client.mjs"
 
 
+def time_of(message):
+    """[s] of a time message; None of others."""
+    return int.from_bytes(message[1:9], "little") * 1e-9 if isinstance(message, bytes) and message[0] == 2 else None
+
+
 class Served:
     """A program that serves Foxglove, by its two addresses."""
 
@@ -92,7 +97,7 @@ class Live(FoxgloveTest):
         client = self.connect(self.served.watch_url, ("foxglove.sdk.v1.1", "foxglove.sdk.v1"))
         listed = json.loads(subprocess.run([str(PROGRAM), "info", str(SCENE), "--topics", "--json"], capture_output=True, text=True, check=True).stdout)
         self.assertEqual(set(client.channels), {t["name"] for t in listed if not t["input"]})
-        topics = [t for t in client.channels if t not in ("/chase/events",)]
+        topics = list(client.channels)
         ids = {client.subscribe(topic): topic for topic in topics}
         missing, end = set(topics), time.monotonic() + 120
         while missing and time.monotonic() < end:
@@ -105,6 +110,17 @@ class Live(FoxgloveTest):
                     self.assertEqual(stamp, int.from_bytes(message[5:13], "little"), topic)
                 missing.discard(topic)
         self.assertEqual(missing, set())
+
+    def test_the_layout_shows_what_there_is(self):
+        client = self.connect(self.served.watch_url)
+        layout = json.loads((ROOT / "examples" / "foxglove" / "two_robots.json").read_text())
+        panels = layout["configById"]
+        shown = set(re.findall(r'"([\w!]+![\w]+)"', json.dumps(layout["layout"])))
+        self.assertEqual(shown, set(panels))
+        topics = set(panels["3D!scene"]["topics"]) | {panels["Image!chase"]["imageMode"][key] for key in ("imageTopic", "calibrationTopic")}
+        topics |= {path["value"].split(".")[0] for path in panels["Plot!joints"]["paths"]}
+        self.assertLessEqual(topics, set(client.channels))
+        self.assertLessEqual({panel["serviceName"] for panel in panels.values() if "serviceName" in panel}, set(client.services))
 
     def test_a_robot_goes_where_it_is_told(self):
         client = self.connect(self.served.url)
@@ -141,6 +157,10 @@ class Live(FoxgloveTest):
         client = self.connect(self.served.url)
         self.assertEqual(client.call("/pause"), {"success": True, "message": ""})
         self.assertTrue(client.parameters("paused")["paused"])
+        before = client.time()
+        self.assertEqual(client.call("/step_simulation", {"steps": 50})["result"]["result"], 1)
+        self.assertAlmostEqual(client.wait(lambda m: t if (t := time_of(m)) is not None and t > before + 0.099 else None), before + 0.1, delta=0.03)
+        self.assertLessEqual({"ada", "bo"}, set(client.call("/get_entities")["entities"]))
         client.set_parameter("speed", 0.5)
         self.assertEqual(client.parameters("speed"), {"speed": 0.5})
         client.set_parameter("paused", False)

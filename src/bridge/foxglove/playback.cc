@@ -14,7 +14,7 @@ PlaybackState Playback::state() const {
   const Simulation& simulation = player_.simulation();
   PlaybackState state;
   state.time = simulation.latest().time();
-  state.speed = speed_;
+  state.speed = static_cast<float>(operations_.speed().value_or(kFastestPlay));
   state.status = simulation.paused() ? PlaybackStatus::kPaused : PlaybackStatus::kPlaying;
   if (state.time >= player_.end() - 1e-9) state.status = PlaybackStatus::kEnded;
   return state;
@@ -25,8 +25,7 @@ Result<PlaybackState> Playback::control(const PlaybackMessage& message) {
     return Error{ErrorKind::kInput,
                  "the speed of playback is 0.001 to 1000, not " + std::to_string(message.speed)};
   Simulation& simulation = player_.simulation();
-  if (message.speed != speed_) simulation.set_pace(Pace::kRealTime, message.speed);
-  speed_ = message.speed;
+  if (message.speed != state().speed) GLOAM_TRY_STATUS(operations_.set_speed(message.speed));
   if (!message.play) simulation.pause();
   bool did_seek = false;
   if (message.seek) {

@@ -5,6 +5,7 @@
 
 #include "bridge/foxglove/client_messages.h"
 #include "bridge/foxglove/server_messages.h"
+#include "bridge/operations/operator.h"
 #include "gloam/log_player.h"
 
 namespace gloam::bridge::foxglove {
@@ -12,7 +13,7 @@ namespace gloam::bridge::foxglove {
 /// One thread's alone: seeking takes as long as effects are solved again.
 class Playback {
  public:
-  explicit Playback(LogPlayer& player) : player_(player) {}
+  Playback(LogPlayer& player, Operator& operations) : player_(player), operations_(operations) {}
 
   /// Does what a client asks; the state then, as an answer to it. Errors: a time beyond the log, a
   /// speed out of range, those of seeking.
@@ -23,7 +24,7 @@ class Playback {
 
  private:
   LogPlayer& player_;
-  float speed_ = 1;
+  Operator& operations_;
   PlaybackStatus told_ = PlaybackStatus::kBuffering;
   float told_speed_ = 1;
 };

@@ -70,7 +70,7 @@ class FoxgloveBridge final : public Bridge, private ServerEvents {
         parameters_(context.operations, counters_),
         assets_(simulation_),
         server_(server_options(options, context.token), *this) {
-    if (player_ != nullptr) playback_.emplace(*player_);
+    if (player_ != nullptr) playback_.emplace(*player_, context.operations);
   }
   /// From where the requests come to where they go, so that nobody calls one who is gone.
   ~FoxgloveBridge() override {

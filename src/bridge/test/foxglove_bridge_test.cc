@@ -39,16 +39,35 @@ constexpr const char* kToken = "0123456789abcdef0123456789abcdef";
 const std::string kWithToken = std::string("/?token=") + kToken;
 constexpr const char* kV1 = "foxglove.sdk.v1";
 
-World compile_text(const char* text) {
-  const auto folder = std::filesystem::path(testing::TempDir()) / "gloam_foxglove";
-  std::filesystem::create_directories(folder);
-  const auto file = folder / "cart.xml";  // the robot's name
-  std::ofstream(file) << text;
+World compile_file(const std::filesystem::path& file) {
   const auto scene = load_scene(file);
   EXPECT_TRUE(scene.ok()) << (scene.ok() ? "" : scene.error().to_string());
   auto world = World::compile(*scene);
   EXPECT_TRUE(world.ok()) << (world.ok() ? "" : world.error().to_string());
   return *world;
+}
+
+World compile_text(const char* text) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "gloam_foxglove";
+  std::filesystem::create_directories(folder);
+  const auto file = folder / "cart.xml";  // the robot's name
+  std::ofstream(file) << text;
+  return compile_file(file);
+}
+
+/// A tetrahedron as a binary STL.
+std::string tetrahedron() {
+  const float p[4][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const int faces[4][3] = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  std::string stl(80, '\0');
+  stl += as_bytes(4u);
+  for (const auto& face : faces) {
+    stl += std::string(12, '\0');
+    for (const int corner : face)
+      for (const float x : p[corner]) stl += as_bytes(x);
+    stl += std::string(2, '\0');
+  }
+  return stl;
 }
 
 class FoxgloveBridgeTest : public ::testing::Test {
@@ -446,6 +465,32 @@ TEST_F(FoxgloveBridgeTest, GivesNoFilesAway) {
     EXPECT_EQ(number_at<uint32_t>(*answer, 0), 5u);
     EXPECT_EQ(number_at<uint8_t>(*answer, 4), 1) << uri;
   }
+}
+
+TEST_F(FoxgloveBridgeTest, GivesMeshesThatARobotNames) {
+  namespace fs = std::filesystem;
+  const fs::path package = fs::path(testing::TempDir()) / "gloam_foxglove" / "arm";
+  fs::create_directories(package / "meshes");
+  fs::create_directories(package / "urdf");
+  std::ofstream(package / "package.xml") << "<package><name>arm</name></package>";
+  std::ofstream(package / "meshes" / "link.stl", std::ios::binary) << tetrahedron();
+  std::ofstream(package / "meshes" / "other.stl", std::ios::binary) << tetrahedron();
+  std::ofstream(package / "urdf" / "arm.urdf") << R"(<robot name="arm"><link name="base">
+    <inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
+    <visual><geometry><mesh filename="package://arm/meshes/link.stl"/></geometry></visual>
+    <collision><geometry><mesh filename="package://arm/meshes/link.stl"/></geometry></collision>
+    </link></robot>)";
+  ASSERT_TRUE(simulation_->recompile(compile_file(package / "urdf" / "arm.urdf")).ok());
+  FoxgloveClient client(port_);
+  ASSERT_EQ(client.upgrade("/", kV1), 101);
+  const auto fetch = [&](const std::string& uri) {
+    client.send_json({{"op", "fetchAsset"}, {"uri", uri}, {"requestId", 1}});
+    return client.wait_for_binary(4).value_or("");
+  };
+  EXPECT_EQ(fetch("package://arm/meshes/link.stl").substr(4), std::string(5, '\0') + tetrahedron());
+  EXPECT_EQ(fetch("package://arm/meshes/other.stl")[4], 1) << "it is not named";
+  EXPECT_EQ(fetch("package://arm/meshes/../meshes/link.stl")[4], 1);
+  EXPECT_EQ(fetch("package://arm/package.xml")[4], 1);
 }
 
 TEST_F(FoxgloveBridgeTest, TopicsFollowARecompile) {
