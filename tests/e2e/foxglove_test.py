@@ -52,16 +52,17 @@ class Messages:
 
     def __init__(self):
         from rosbags.typesys import Stores, get_typestore
-        self._store = get_typestore(Stores.ROS2_KILTED)
+        self._store, self._compared = get_typestore(Stores.ROS2_KILTED), set()
 
     def decode(self, channel, payload):
         from rosbags.typesys import get_types_from_msg
         name = channel["schemaName"]
-        types = get_types_from_msg(channel["schema"], name)
-        if name in self._store.fielddefs:
-            assert types[name][1] == self._store.fielddefs[name][1], f"{name} is another type than ROS's"
-        else:
+        if name not in self._compared:
+            types = get_types_from_msg(channel["schema"], name)
+            if name in self._store.fielddefs:
+                assert types[name][1] == self._store.fielddefs[name][1], f"{name} is another type than ROS's"
             self._store.register({n: t for n, t in types.items() if n not in self._store.fielddefs})
+            self._compared.add(name)
         return self._store.deserialize_cdr(payload, name)
 
 
@@ -97,19 +98,20 @@ class Live(FoxgloveTest):
         client = self.connect(self.served.watch_url, ("foxglove.sdk.v1.1", "foxglove.sdk.v1"))
         listed = json.loads(subprocess.run([str(PROGRAM), "info", str(SCENE), "--topics", "--json"], capture_output=True, text=True, check=True).stdout)
         self.assertEqual(set(client.channels), {t["name"] for t in listed if not t["input"]})
-        topics = list(client.channels)
-        ids = {client.subscribe(topic): topic for topic in topics}
-        missing, end = set(topics), time.monotonic() + 120
-        while missing and time.monotonic() < end:
+        ids = {client.subscribe(topic): topic for topic in client.channels}
+        end = time.monotonic() + 120
+        while ids and time.monotonic() < end:
             message = client.next(60)
-            if isinstance(message, bytes) and message[0] == 1:
-                topic = ids[int.from_bytes(message[1:5], "little")]
-                value = self.messages.decode(client.channels[topic], message[13:])
-                if hasattr(value, "header") and topic in missing:
-                    stamp = value.header.stamp.sec * 10**9 + value.header.stamp.nanosec
-                    self.assertEqual(stamp, int.from_bytes(message[5:13], "little"), topic)
-                missing.discard(topic)
-        self.assertEqual(missing, set())
+            number = int.from_bytes(message[1:5], "little") if isinstance(message, bytes) and message[0] == 1 else 0
+            if number not in ids:
+                continue
+            topic = ids.pop(number)
+            client.unsubscribe(number)
+            value = self.messages.decode(client.channels[topic], message[13:])
+            if hasattr(value, "header"):
+                stamp = value.header.stamp.sec * 10**9 + value.header.stamp.nanosec
+                self.assertEqual(stamp, int.from_bytes(message[5:13], "little"), topic)
+        self.assertEqual(set(ids.values()), set())
 
     def test_the_layout_shows_what_there_is(self):
         client = self.connect(self.served.watch_url)

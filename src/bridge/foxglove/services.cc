@@ -9,6 +9,12 @@
 #include "ros/messages/std_srvs.h"
 
 namespace gloam::bridge::foxglove {
+namespace {
+
+constexpr int kInterfaces = 2;  // shapes of simulation_interfaces 2.x
+
+}  // namespace
+
 Services::Services(Operator& operations, Counters& counters) : counters_(counters) {
   add_trigger("/pause", [&operations] { return operations.pause(); });
   add_trigger("/resume", [&operations] { return operations.play(); });

@@ -353,7 +353,7 @@ TEST_F(FoxgloveBridgeTest, ServicesAreCalledInCdrAndJson) {
   client.send_frame(2, call(service_of(services, "/step_simulation"), 4, "json", R"({"steps":3})"));
   answer = client.wait_for_binary(3);
   ASSERT_TRUE(answer);
-  EXPECT_EQ(json::parse(answer->substr(16))["result"]["result"], 3) << *answer;
+  EXPECT_EQ(json::parse(answer->substr(16))["result"]["result"], 4) << *answer;
   client.send_frame(2, call(service_of(services, "/get_entities"), 5, "json", "{}"));
   answer = client.wait_for_binary(3);
   ASSERT_TRUE(answer);
