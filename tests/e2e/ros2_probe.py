@@ -1,6 +1,6 @@
 """A ROS 2 node for tests of the bridge, run by the interpreter of ros2_env: does one thing and prints JSON.
 
-    ros2_probe.py listen SECONDS            every topic that there is: counts, stamps, rates
+    ros2_probe.py listen SECONDS [TOPIC …]  all topics that there are, or these: counts, stamps, what pictures are
     ros2_probe.py drive ROBOT SECONDS VX    drives by cmd_vel, prints where odometry says it went
     ros2_probe.py clock SECONDS             a node with use_sim_time: its clock beside /clock
     ros2_probe.py graph SECONDS             nodes, topics with types and hashes
@@ -49,9 +49,11 @@ def find_topics(node, seconds):
     return {name: types[0] for name, types in node.get_topic_names_and_types() if name not in HIDDEN and node.count_publishers(name)}
 
 
-def listen(node, seconds):
+def listen(node, seconds, only=()):
     got, unknown = {}, []
     for name, type_name in find_topics(node, 1).items():
+        if only and name not in only:
+            continue
         kind = message_class(type_name)
         if kind is None:
             unknown.append(type_name)
@@ -117,7 +119,7 @@ def main():
     rclpy.init()
     node = rclpy.create_node("probe")
     work, *arguments = sys.argv[1:]
-    result = {"listen": lambda s: listen(node, float(s)), "drive": lambda r, s, v: drive(node, r, s, v), "clock": lambda s: clock(node, s),
+    result = {"listen": lambda s, *only: listen(node, float(s), only), "drive": lambda r, s, v: drive(node, r, s, v), "clock": lambda s: clock(node, s),
               "graph": lambda s: graph(node, s), "stuck": lambda s: stuck(node, s)}[work](*arguments)
     print(json.dumps(result))
 

@@ -65,7 +65,7 @@ class Ros2(unittest.TestCase):
 
     def test_every_topic_is_heard_with_stamps_that_agree(self):
         with self.gloam(*SMALL):
-            heard = self.probe("listen", 8)
+            heard = self.probe("listen", 12)
             graph = self.probe("graph", 1)
         topics = heard["topics"]
         self.assertGreater(len(topics), 50)
@@ -76,12 +76,6 @@ class Ros2(unittest.TestCase):
                 self.assertGreater(topic["count"], 0)
                 stamps = [s for s in topic["stamps"] if s is not None]
                 self.assertEqual(stamps, sorted(stamps), "time goes back")
-        # Transforms and joints come 50 times a second of simulation time, without a gap.
-        for name in ("/tf", "/quadruped/joint_states"):
-            stamps = topics[name]["stamps"][5:]
-            gaps = [round(b - a, 6) for a, b in zip(stamps, stamps[1:])]
-            self.assertGreater(len(gaps), 50)
-            self.assertLessEqual(max(gaps), 0.02 + 1e-6, name)
         # Pictures and their camera_info are of one instant.
         pictures = set(topics["/chase/image_raw"]["stamps"])
         self.assertGreater(len(pictures & set(topics["/chase/camera_info"]["stamps"])), 0.8 * len(pictures))
@@ -90,6 +84,15 @@ class Ros2(unittest.TestCase):
         for node, type_hash in graph["publishers"]["/quadruped/odom"]:
             self.assertEqual(node, "gloam")
             self.assertNotIn("INVALID", type_hash)
+
+    def test_transforms_and_joints_come_without_a_gap(self):
+        with self.gloam():
+            topics = self.probe("listen", 5, "/tf", "/quadruped/joint_states", "/quadruped/odom")["topics"]
+        for name, topic in topics.items():
+            stamps = topic["stamps"][5:]
+            gaps = [round(b - a, 6) for a, b in zip(stamps, stamps[1:])]
+            self.assertGreater(len(gaps), 50)
+            self.assertEqual({g for g in gaps if abs(g - 0.02) > 1e-6}, set(), name)
 
     def test_a_robot_is_driven_from_outside_and_the_log_verifies(self):
         out = self.folder / "run"

@@ -17,6 +17,7 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
+#include <fastdds/rtps/flowcontrol/FlowControllerDescriptor.hpp>
 
 #include <algorithm>
 #include <atomic>
@@ -37,6 +38,9 @@ namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastrtps::types::ReturnCode_t;
 
 constexpr uint32_t kSegmentSize = 16u << 20;  // shared memory of one participant [bytes]
+constexpr const char* kPaceName = "gloam_large";
+constexpr int32_t kBytesPerPeriod = 132'000;  // two of DDS's fragments, which are of 65,500 bytes
+constexpr uint64_t kPeriod = 2;               // [ms]
 constexpr int kLocalParticipants = 32;        // of one domain that are looked for on loopback
 constexpr auto kReplyPatience = std::chrono::milliseconds(500);
 
@@ -67,6 +71,14 @@ dds::DomainParticipantQos participant_qos(const DdsNodeOptions& options) {
         memory, std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>()};
   else
     qos.transport().user_transports = {memory, std::make_shared<LoopbackTransportDescriptor>()};
+  // A picture sent at once would overflow its reader's socket, which holds 212,992 bytes by
+  // default.
+  const auto pace = std::make_shared<eprosima::fastdds::rtps::FlowControllerDescriptor>();
+  pace->name = kPaceName;
+  pace->scheduler = eprosima::fastdds::rtps::FlowControllerSchedulerPolicy::FIFO;
+  pace->max_bytes_per_period = kBytesPerPeriod;
+  pace->period_ms = kPeriod;
+  qos.flow_controllers().push_back(pace);
   // Who is on this machine is asked one by one: multicast may not pass loopback.
   auto& peers = qos.wire_protocol().builtin.initialPeersList;
   peers.push_back(udp_locator("239.255.0.1", discovery_port(options.domain)));
@@ -217,8 +229,11 @@ class RawWriter final : public DdsWriter, private dds::DataWriterListener {
   Status open(dds::Publisher& publisher, dds::Topic& topic, const DdsEndpoint& endpoint) {
     dds::DataWriterQos qos = dds::DATAWRITER_QOS_DEFAULT;
     set_qos(endpoint, &qos);
-    qos.publish_mode().kind =
-        endpoint.is_large ? dds::ASYNCHRONOUS_PUBLISH_MODE : dds::SYNCHRONOUS_PUBLISH_MODE;
+    qos.publish_mode().kind = dds::SYNCHRONOUS_PUBLISH_MODE;
+    if (endpoint.is_large) {
+      qos.publish_mode().kind = dds::ASYNCHRONOUS_PUBLISH_MODE;
+      qos.publish_mode().flow_controller_name = kPaceName;
+    }
     publisher_ = &publisher;
     writer_ = publisher.create_datawriter(&topic, qos, this);
     if (writer_ == nullptr)

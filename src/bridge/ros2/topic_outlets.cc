@@ -10,6 +10,7 @@ namespace {
 using OutletClock = std::chrono::steady_clock;
 // A subscriber that comes back soon finds the stream as it was, its exposure and its encoder too.
 constexpr auto kLinger = std::chrono::seconds(2);
+constexpr int kSmallDepth = 100;  // of small messages, as tf2 keeps transforms
 
 bool is_large_message(const TopicInfo& topic) {
   for (const char* part : {"Image", "PointCloud", "Video", "EventPacket", "MarkerArray", "Scene"})
@@ -22,11 +23,13 @@ Result<DdsEndpoint> endpoint_of(const TopicInfo& topic) {
   GLOAM_TRY(const MessageInfo type, message_info(topic.type));
   TopicQos qos = topic.qos;
   qos.is_reliable = true;
+  const bool is_large = is_large_message(topic);
+  if (!is_large) qos.depth = std::max(qos.depth, kSmallDepth);
   return DdsEndpoint{.topic = dds_topic(topic.name),
                      .type = type.dds_name,
                      .type_hash = type.hash,
                      .qos = qos,
-                     .is_large = is_large_message(topic)};
+                     .is_large = is_large};
 }
 
 }  // namespace

@@ -1,0 +1,264 @@
+// Latency of bridges, published: bench_latency [--seconds N] [--only CLIENT[,CLIENT]]
+//
+// One simulation in real time, 1 kHz, with a camera for each size of picture; a client in another
+// process for each bridge, one after the other. A step hook notes when each physics step began,
+// which is when its instant came to be but for some ten microseconds. One line of JSON for each
+// client and topic: p50 and p99 [ms], jitter (standard deviation [ms]), messages, and instants of
+// which none came. "inside" is the same topic opened in the simulation's own process: rendering and
+// encoding; what a bridge adds is the difference.
+
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+#include <vector>
+
+#include "bench/command_line.h"
+#include "bench/latency/latency.h"
+#include "gloam/bridge.h"
+#include "gloam/simulation.h"
+
+namespace gloam::latency {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr const char* kModel = R"(<mujoco model="arm">
+  <option timestep="0.001"/>
+  <worldbody>
+    <light pos="0 0 4" dir="0 0 -1"/>
+    <geom name="floor" type="plane" size="5 5 0.1" rgba="0.5 0.6 0.5 1"/>
+    <body name="arm" pos="0 0 1">
+      <joint name="a" axis="0 1 0"/><geom type="capsule" fromto="0 0 0 0.4 0 0" size="0.03"/>
+      <body name="hand" pos="0.4 0 0">
+        <joint name="b" axis="0 1 0"/><geom type="capsule" fromto="0 0 0 0.3 0 0" size="0.03"/>
+      </body>
+    </body>
+    <camera name="c64" pos="0 -2 1" xyaxes="1 0 0 0 0 1" resolution="64 64"/>
+    <camera name="c320" pos="0 -2 1" xyaxes="1 0 0 0 0 1" resolution="320 240"/>
+    <camera name="c640" pos="0 -2 1" xyaxes="1 0 0 0 0 1" resolution="640 480"/>
+    <camera name="c1280" pos="0 -2 1" xyaxes="1 0 0 0 0 1" resolution="1280 720"/>
+  </worldbody>
+  <actuator><motor name="a" joint="a"/></actuator>
+</mujoco>)";
+
+constexpr double kStep = 0.001;  // [s]
+constexpr Subject kSubjects[] = {
+    {"state 1 kHz", "/arm/joint_states", 1000},
+    {"raw 64x64", "/c64/image_raw", 10},
+    {"raw 320x240", "/c320/image_raw", 10},
+    {"raw 640x480", "/c640/image_raw", 5},
+    {"JPEG 640x480", "/c640/image_raw/compressed", 5},
+    {"raw 1280x720", "/c1280/image_raw", 3},
+    {"JPEG 1280x720", "/c1280/image_raw/compressed", 3},
+};
+constexpr int kPatience = 10'000;  // for a message [ms]
+constexpr double kWarmUp = 1500;  // of each measurement [ms]
+
+constexpr Client kClients[] = {
+    {"ros2", [](BridgeOptions* o) { o->ros2.emplace(); }, run_ros2_client},
+    {"rclpy", [](BridgeOptions* o) { o->ros2.emplace(); }, run_rclpy_client},
+};
+
+/// Milliseconds at which the instants of a run came to be, by step.
+struct StepTimes {
+  std::vector<std::atomic<double>> began;
+  explicit StepTimes(size_t steps) : began(steps) {}
+  double of(uint64_t instant) const {
+    const auto step =
+        static_cast<size_t>(std::llround(1e-9 * static_cast<double>(instant) / kStep));
+    return step >= 1 && step <= began.size() ? began[step - 1].load() : 0;
+  }
+};
+
+/// Messages of one topic at one reader.
+struct Series {
+  std::vector<double> latencies;  // [ms]
+  uint64_t first = 0, last = 0, bytes = 0;
+
+  void add(const Arrival& arrival, const StepTimes& times) {
+    const double born = times.of(arrival.instant);
+    if (born <= 0) return;
+    if (first == 0) first = arrival.instant;
+    last = arrival.instant;
+    bytes = arrival.bytes;
+    latencies.push_back(arrival.at - born);
+  }
+
+  ordered_json report(const char* client, const Subject& subject) const {
+    ordered_json line = {{"client", client}, {"stream", subject.name}};
+    if (latencies.empty()) {
+      line["messages"] = 0;
+      return line;
+    }
+    std::vector<double> sorted = latencies;
+    std::ranges::sort(sorted);
+    const auto at = [&](double share) {
+      return sorted[static_cast<size_t>(share * static_cast<double>(sorted.size() - 1))];
+    };
+    double mean = 0, variance = 0;
+    const auto count = static_cast<double>(sorted.size());
+    for (const double x : sorted) mean += x / count;
+    for (const double x : sorted) variance += (x - mean) * (x - mean) / count;
+    const double expected = std::round(1e-9 * static_cast<double>(last - first) * subject.rate) + 1;
+    line.update({{"p50_ms", at(0.5)},
+                 {"p99_ms", at(0.99)},
+                 {"jitter_ms", std::sqrt(variance)},
+                 {"bytes", bytes},
+                 {"messages", sorted.size()},
+                 {"dropped", std::max(0.0, expected - count)}});
+    return line;
+  }
+};
+
+class Run {
+ public:
+  Run(Simulation& simulation, const StepTimes& times, int seconds)
+      : simulation_(simulation), times_(times), seconds_(seconds) {}
+
+  ordered_json inside(const Subject& subject) {
+    std::mutex mutex;
+    Series series;
+    const double start = now_ms() + kWarmUp;
+    auto stream = simulation_.open_topics({.topics = {subject.topic}}, [&](const TopicMessage& m) {
+      const double at = now_ms();
+      if (at < start) return;
+      const std::lock_guard lock(mutex);
+      series.add({static_cast<uint64_t>(std::llround(m.time * 1e9)), at, m.data.size()}, times_);
+    });
+    if (!stream.ok()) return {{"error", stream.error().to_string()}};
+    std::this_thread::sleep_for(std::chrono::milliseconds(static_cast<int>(kWarmUp)) +
+                                std::chrono::seconds(seconds_));
+    stream->reset();
+    return series.report("inside", subject);
+  }
+
+  ordered_json outside(const Client& client, const std::string& address, const Subject& subject) {
+    int ends[2];
+    if (pipe(ends) != 0) return {{"error", "no pipe"}};
+    const std::string out = std::to_string(ends[1]);
+    const pid_t process = fork();
+    if (process == 0) {
+      execl("/proc/self/exe", "latency", "--client", client.name, address.c_str(), subject.topic,
+            out.c_str(), nullptr);
+      _exit(127);
+    }
+    close(ends[1]);
+    Series series;
+    Arrival arrival;
+    double start = 0;
+    pollfd waiting{ends[0], POLLIN, 0};
+    while (poll(&waiting, 1, kPatience) > 0 &&
+           read(ends[0], &arrival, sizeof arrival) == sizeof arrival) {
+      if (start == 0) start = arrival.at + kWarmUp;
+      if (arrival.at > start + 1e3 * seconds_) break;
+      if (arrival.at >= start) series.add(arrival, times_);
+    }
+    kill(process, SIGKILL);
+    waitpid(process, nullptr, 0);
+    close(ends[0]);
+    return series.report(client.name, subject);
+  }
+
+ private:
+  Simulation& simulation_;
+  const StepTimes& times_;
+  const int seconds_;
+};
+
+Result<World> measured_world() {
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("gloam_latency_" + std::to_string(getpid()));
+  std::filesystem::create_directory(folder);
+  const auto file = folder / "arm.xml";
+  std::ofstream(file) << kModel;
+  GLOAM_TRY(Scene scene, load_scene(file));
+  scene.render.tier = "direct";
+  scene.render.spp = 1;
+  scene.render.denoise = false;
+  for (const Subject& subject : kSubjects) {
+    TopicOptions topic;
+    topic.name = subject.topic;
+    topic.rate = Rational{static_cast<int64_t>(subject.rate), 1};
+    scene.topics.push_back(topic);
+  }
+  auto world = World::compile(scene);
+  std::filesystem::remove_all(folder);
+  return world;
+}
+
+bool is_chosen(const std::string& only, const std::string& name) {
+  return only.empty() || ("," + only + ",").find("," + name + ",") != std::string::npos;
+}
+
+void print(const ordered_json& line) {
+  std::printf("%s\n", line.dump().c_str());
+  std::fflush(stdout);
+}
+
+Status measure(int seconds, const std::string& only) {
+  GLOAM_TRY(const World world, measured_world());
+  GLOAM_TRY(const auto simulation, Simulation::create(world, {.pace = Pace::kRealTime}));
+  StepTimes times(3'600'000);
+  size_t step = 0;
+  GLOAM_TRY_STATUS(simulation->set_step_hook([&](const mjModel_*, mjData_*) {
+    if (step < times.began.size()) times.began[step++] = now_ms();
+  }));
+  simulation->resume();
+  Run run(*simulation, times, seconds);
+  if (is_chosen(only, "inside"))
+    for (const Subject& subject : kSubjects) print(run.inside(subject));
+  for (const Client& client : kClients) {
+    if (!is_chosen(only, client.name)) continue;
+    BridgeOptions options;
+    client.choose(&options);
+    GLOAM_TRY(const auto bridges, Bridges::start(*simulation, options));
+    for (const Subject& subject : kSubjects)
+      print(run.outside(client, bridges->list().front()->address(), subject));
+  }
+  return {};
+}
+
+}  // namespace
+
+std::span<const Client> clients() { return kClients; }
+
+double now_ms() {
+  timespec t = {};
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+}
+
+bool tell(int out, const Arrival& arrival) {
+  return write(out, &arrival, sizeof arrival) == sizeof arrival;
+}
+
+}  // namespace gloam::latency
+
+int main(int argc, char** argv) {
+  if (argc == 6 && std::strcmp(argv[1], "--client") == 0) {
+    for (const auto& client : gloam::latency::clients())
+      if (std::strcmp(client.name, argv[2]) == 0)
+        return client.run(argv[3], argv[4], std::atoi(argv[5]));
+    return 2;
+  }
+  gloam::CommandLine line(argc, argv);
+  int seconds = 5;
+  std::string only;
+  line.value("--seconds", &seconds);
+  line.value("--only", &only);
+  return gloam::exit_code(gloam::latency::measure(seconds, only));
+}
