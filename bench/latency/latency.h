@@ -40,5 +40,6 @@ std::span<const Client> clients();
 
 int run_ros2_client(const std::string& address, const std::string& topic, int out);
 int run_rclpy_client(const std::string& address, const std::string& topic, int out);
+int run_foxglove_client(const std::string& address, const std::string& topic, int out);
 
 }  // namespace gloam::latency
