@@ -41,7 +41,7 @@ void open(WebSocket& socket, const std::string& address) {
 void subscribe(WebSocket& socket, const json& message, const std::string& topic) {
   for (const json& channel : message.value("channels", json::array())) {
     if (channel["topic"] != topic) continue;
-    const json subscriptions = {{{"id", 1}, {"channelId", channel["id"]}}};
+    const json subscriptions = json::array({{{"id", 1}, {"channelId", channel["id"]}}});
     const std::string text = json({{"op", "subscribe"}, {"subscriptions", subscriptions}}).dump();
     socket.write(net::buffer(text));
   }

@@ -75,7 +75,6 @@ Result<ChannelChange> Channels::follow() {
         feed->outlets, [](const auto& outlet) { return outlet.second.is_latched; });
     if (is_latched) feed->has_ended = true;
   }
-  settle();
   note_subscribers();
   return change;
 }

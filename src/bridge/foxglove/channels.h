@@ -37,7 +37,7 @@ class Channels {
   std::map<std::string, std::vector<int64_t>> subscribers() const;
   int64_t dropped() const { return dropped_; }  ///< by the simulation's streams
 
-  // One thread.
+  // One thread; settle() comes after the others.
   /// Takes the topics of the World that runs. Error: that World's topics cannot be listed.
   Result<ChannelChange> follow();
   void subscribe(const ClientPtr& client, const SubscribeMessage& message);
