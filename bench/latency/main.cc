@@ -66,13 +66,14 @@ constexpr Subject kSubjects[] = {
     {"JPEG 1280x720", "/c1280/image_raw/compressed", 3},
 };
 constexpr int kPatience = 10'000;  // for a message [ms]
-constexpr double kWarmUp = 1500;  // of each measurement [ms]
+constexpr double kWarmUp = 1500;   // of each measurement [ms]
 
 constexpr Client kClients[] = {
     {"ros2", [](BridgeOptions* o) { o->ros2.emplace(); }, run_ros2_client},
     {"zmq", [](BridgeOptions* o) { o->zmq = ZmqOptions{.port = 0}; }, run_zmq_client},
     {"zmq shm", [](BridgeOptions* o) { o->zmq = ZmqOptions{.port = 0}; }, run_shm_client},
     {"rclpy", [](BridgeOptions* o) { o->ros2.emplace(); }, run_rclpy_client},
+    {"foxglove", [](BridgeOptions* o) { o->foxglove.emplace().port = 0; }, run_foxglove_client},
 };
 
 /// Milliseconds at which the instants of a run came to be, by step.
