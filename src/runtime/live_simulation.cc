@@ -16,6 +16,8 @@
 namespace gloam {
 namespace {
 
+constexpr std::chrono::milliseconds kLook{5};  // after which a wish to stop is seen
+
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
@@ -117,8 +119,11 @@ Status LiveSimulation::run_until(int64_t step) {
   paused_ = false;
   step = std::min(step, simulator_->end());
   simulator_->run_until(step);
-  while (simulator_->step_count() < step && simulator_->status().ok() && !stop_requested_) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  while (!stop_requested_) {
+    if (!simulator_->wait_for(kLook)) continue;
+    // Somebody may have paused it on the way.
+    if (simulator_->step_count() >= step || !simulator_->status().ok()) break;
+    std::this_thread::sleep_for(kLook);
   }
   if (stop_requested_.exchange(false)) {
     pause();

@@ -197,6 +197,11 @@ Status Simulator::wait() {
   return status();
 }
 
+bool Simulator::wait_for(std::chrono::milliseconds time) {
+  std::unique_lock lock(mutex_);
+  return changed_.wait_for(lock, time, [this] { return idle_ || !running_; });
+}
+
 Status Simulator::reset() {
   if (is_on_sim_thread()) return no_call_from_a_step();
   call([this] {

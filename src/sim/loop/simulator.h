@@ -5,6 +5,7 @@
 // (latest, status, counters, pause, set_pace) works, and what would wait for a step is an Error.
 
 #include <array>
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <limits>
@@ -67,6 +68,9 @@ class Simulator {
   /// Waits until it runs no longer: paused, told step reached, failed or stopped. The Error of a
   /// failure.
   Status wait();
+  /// The same, but at most `time`, and without a call to the sim thread, which is not to be
+  /// interrupted by those that look every few milliseconds. Whether it runs no longer.
+  bool wait_for(std::chrono::milliseconds time);
   /// Back to step 0 now, also after a failure. Commands that wait are thrown away.
   Status reset();
   void set_pace(Pace pace, double speed);
