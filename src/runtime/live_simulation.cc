@@ -249,7 +249,13 @@ Result<std::vector<TopicInfo>> LiveSimulation::topics() const {
 
 Result<std::unique_ptr<TopicStream>> LiveSimulation::open_topics(const TopicRequest& request,
                                                                  TopicCallback on_message) {
-  GLOAM_TRY(auto feed, TopicFeed::open(*this, topics_, request, std::move(on_message)));
+  return open_topic_batches(request, 1, std::move(on_message));
+}
+
+Result<std::unique_ptr<TopicStream>> LiveSimulation::open_topic_batches(const TopicRequest& request,
+                                                                        int batch,
+                                                                        TopicCallback on_message) {
+  GLOAM_TRY(auto feed, TopicFeed::open(*this, topics_, request, std::move(on_message), batch));
   return std::unique_ptr<TopicStream>(std::move(feed));
 }
 

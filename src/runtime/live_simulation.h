@@ -81,6 +81,9 @@ class LiveSimulation final : public Simulation {
     return topics_.of(simulator_->world());
   }
   Simulator& simulator() { return *simulator_; }
+  /// The same as open_topics() for a reader in no hurry: SubscriptionOptions::batch.
+  Result<std::unique_ptr<TopicStream>> open_topic_batches(const TopicRequest& request, int batch,
+                                                          TopicCallback on_message);
   Result<std::shared_ptr<SharedRenderer>> renderer() { return renderers_.of(simulator_->world()); }
   Result<std::unique_ptr<LiveCamera>> open_live_camera(const CameraRequest& request,
                                                        FrameCallback on_frame);

@@ -17,6 +17,8 @@
 namespace gloam {
 namespace {
 
+constexpr int kBatch = 32;  // instants that are written at once: a log is in no hurry
+
 // As rosbag2 writes it: YAML, with the numbers of rmw's enums.
 std::string qos_text(const TopicQos& qos) {
   return fmt::format(
@@ -141,15 +143,17 @@ Status LogRecorder::open_streams(const std::vector<TopicInfo>& topics) {
   TopicRequest request{
       .width = request_.width, .height = request_.height, .required = request_.required};
   for (const TopicInfo& topic : topics) request.topics.push_back(topic.name);
-  GLOAM_TRY(topics_, simulation_.open_topics(request, [this](const TopicMessage& message) {
-    write(message.topic.name, message.time, message.run, message.data);
-  }));
+  GLOAM_TRY(topics_,
+            simulation_.open_topic_batches(request, kBatch, [this](const TopicMessage& message) {
+              write(message.topic.name, message.time, message.run, message.data);
+            }));
   const Rational step_rate = simulation_.step_rate();
   SnapshotRequest states{
       .rate = request_.state_rate, .required = request_.required, .capacity = 256};
   if (states.rate.value() > step_rate.value()) states.rate = step_rate;
-  GLOAM_TRY(states_,
-            simulation_.open_snapshots(states, [this](const Snapshot& now) { take(now); }));
+  GLOAM_TRY(states_, LiveSnapshots::open(
+                         simulation_.simulator(), states,
+                         [this](const Snapshot& now) { take(now); }, {}, kBatch));
   return {};
 }
 

@@ -13,8 +13,8 @@ namespace gloam {
 
 Result<std::unique_ptr<TopicFeed>> TopicFeed::open(LiveSimulation& simulation, TopicTables& tables,
                                                    const TopicRequest& request,
-                                                   TopicCallback on_message) {
-  std::unique_ptr<TopicFeed> feed(new TopicFeed(tables, request, std::move(on_message)));
+                                                   TopicCallback on_message, int batch) {
+  std::unique_ptr<TopicFeed> feed(new TopicFeed(tables, request, std::move(on_message), batch));
   GLOAM_TRY(feed->table_, tables.of(simulation.world().compiled()));
   GLOAM_TRY_STATUS(feed->open_all(simulation));
   return feed;
@@ -167,8 +167,8 @@ Status TopicFeed::open_snapshots(LiveSimulation& simulation, Outlets outlets) {
     if (const Status taken = take_instant(reader.get(), now); !taken.ok())
       note("topics of instants", taken);
   };
-  GLOAM_TRY(auto stream,
-            LiveSnapshots::open(simulation.simulator(), request, on_snapshot, first_of(schedules)));
+  GLOAM_TRY(auto stream, LiveSnapshots::open(simulation.simulator(), request, on_snapshot,
+                                             first_of(schedules), batch_));
   streams_.push_back(std::move(stream));
   return {};
 }

@@ -17,16 +17,17 @@ class LiveSimulation;
 
 class TopicFeed final : public TopicStream {
  public:
-  /// Errors: no such topic, an input, those of the streams.
+  /// `batch`: of topics of instants and of sensors, as SubscriptionOptions::batch, 1 … 64. Errors:
+  /// no such topic, an input, those of the streams.
   static Result<std::unique_ptr<TopicFeed>> open(LiveSimulation& simulation, TopicTables& tables,
                                                  const TopicRequest& request,
-                                                 TopicCallback on_message);
+                                                 TopicCallback on_message, int batch = 1);
   int64_t dropped() const override;
   Status status() const override;
 
  private:
-  TopicFeed(TopicTables& tables, const TopicRequest& request, TopicCallback on_message)
-      : tables_(tables), request_(request), on_message_(std::move(on_message)) {}
+  TopicFeed(TopicTables& tables, const TopicRequest& request, TopicCallback on_message, int batch)
+      : tables_(tables), request_(request), on_message_(std::move(on_message)), batch_(batch) {}
 
   /// A topic and the room for its messages.
   struct Outlet {
@@ -79,6 +80,7 @@ class TopicFeed final : public TopicStream {
   std::shared_ptr<const TopicTable> table_;  // of the World at the opening
   const TopicRequest request_;
   TopicCallback on_message_;
+  const int batch_;
   std::mutex sensors_mutex_;  // guards the gatherings
   std::vector<std::unique_ptr<Gathering>> gatherings_;
   mutable std::mutex mutex_;  // guards the first fault

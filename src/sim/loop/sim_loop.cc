@@ -280,6 +280,10 @@ int64_t SimLoop::dropped() const {
   return dropped;
 }
 
+void SimLoop::flush_queues() {
+  for (const Subscription& s : subscriptions_) s.queue()->flush();
+}
+
 void SimLoop::close_queues() {
   for (const Subscription& s : subscriptions_) s.queue()->close();
 }

@@ -37,6 +37,8 @@ class SimLoop {
   /// Hands out the Snapshots that are due at the present step. False when a required queue is full:
   /// call again when it may have room.
   bool publish_due();
+  /// Wakes the readers of what was handed out and waits to be a batch.
+  void flush_queues();
   /// Applies Commands and takes one step; when a Command was a reset, stands at step 0 instead.
   /// False when physics failed.
   bool advance();

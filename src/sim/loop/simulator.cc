@@ -112,6 +112,7 @@ void Simulator::answer_calls() {
 }
 
 void Simulator::report_idle() {
+  loop_.flush_queues();
   const std::lock_guard lock(mutex_);
   if (called_.load(std::memory_order_relaxed)) return;  // not idle: somebody wants something
   idle_ = true;

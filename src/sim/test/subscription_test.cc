@@ -1,5 +1,8 @@
 // Who gets which Snapshot, and what happens to readers that are slow.
 
+#include <array>
+#include <atomic>
+#include <chrono>
 #include <thread>
 
 #include "test_world.h"
@@ -85,6 +88,33 @@ TEST(Subscription, SlowBestEffortReadersSeeStepsInOrder) {
   EXPECT_EQ(got + queue->dropped(), 5001);
 }
 
+TEST(Subscription, ASleepingReaderIsWokenForAWholeBatchOrWhenTheSimulationStandsStill) {
+  constexpr auto kPause = std::chrono::milliseconds(100);
+  auto sim = make_simulator(world_from_mjcf(kBall), lockstep());
+  auto queue = *sim->subscribe({.rate = {500, 1}, .required = true, .capacity = 32, .batch = 8});
+  std::atomic<int64_t> got = 0;
+  std::thread reader([&] {
+    while (queue->next()) ++got;
+  });
+  std::array<int64_t, 2> seen{-1, -1};
+  int64_t step = 0;
+  ASSERT_TRUE(sim->set_step_hook([&](const mjModel*, mjData*) {
+                   if (step == 0 || step == 6 || step == 12) std::this_thread::sleep_for(kPause);
+                   if (step == 6) seen[0] = got;
+                   if (step == 12) seen[1] = got;
+                   ++step;
+                 })
+                  .ok());
+  std::this_thread::sleep_for(kPause);  // until the reader sleeps
+  sim->start();
+  ASSERT_TRUE(sim->step(13).ok());
+  EXPECT_EQ(seen[0], 0);
+  EXPECT_GE(seen[1], 8);
+  while (got < 14) std::this_thread::yield();  // hangs if the rest is kept
+  sim->stop();
+  reader.join();
+}
+
 TEST(Subscription, WaitingReadersAreReleasedByStop) {
   auto sim = make_simulator(world_from_mjcf(kBall), lockstep());
   auto queue = *sim->subscribe({.rate = {500, 1}});
@@ -131,6 +161,12 @@ TEST(Subscription, ThePoolIsUsedAgainAndGrowsOnlyForReadersThatHoldTooMuch) {
     while (Snapshot s = queue->try_next()) held.push_back(s);
   }
   EXPECT_EQ(sim->counters().pool_grown, grown);
+}
+
+TEST(Subscription, RefusesBatchesThatNeverFill) {
+  auto sim = make_simulator(world_from_mjcf(kBall));
+  EXPECT_FALSE(sim->subscribe({.capacity = 8, .batch = 0}).ok());
+  EXPECT_FALSE(sim->subscribe({.capacity = 8, .batch = 9}).ok());
 }
 
 TEST(Subscription, RefusesBadOptions) {
