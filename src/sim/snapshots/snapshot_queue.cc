@@ -65,7 +65,16 @@ void SnapshotQueue::publish(SnapshotWindow window) {
     dropped_.fetch_add(1, std::memory_order_relaxed);
   }
   if (!queue_.try_push(window)) dropped_.fetch_add(1, std::memory_order_relaxed);
-  if (queue_.size() >= options_.batch) readers_.raise();
+  if (is_batch()) readers_.raise();
+}
+
+// Whether readers are to be woken for what waits.
+bool SnapshotQueue::is_batch() {
+  if (options_.batch == 1) return true;
+  const auto now = std::chrono::steady_clock::now();
+  if (queue_.size() < options_.batch && now - woken_at_ < kLongestBatch) return false;
+  woken_at_ = now;
+  return true;
 }
 
 }  // namespace gloam
