@@ -216,6 +216,7 @@ bool LogRecorder::write_history(const Snapshot& now) {
     const std::string json = command_text({run, command}, record.world_at(command.step));
     write(kCommandTopic, now.time(), run, bytes_of(json));
   }
+  for (const StepInput& input : record.inputs) write_input(input, now.time(), run);
   world_ = now.data().world;
   return true;
 }
@@ -229,18 +230,22 @@ void LogRecorder::write_commands() {
   }
 }
 
+void LogRecorder::write_input(const StepInput& input, double time, int64_t run) {
+  gloam_msgs::StepInput message;
+  message.header = ros_header(time, "");
+  message.run = run;
+  message.step = input.step;
+  message.index = input.index;
+  message.value = input.value;
+  encode(message, &bytes_);
+  write(kInputTopic, time, run, bytes_);
+}
+
 void LogRecorder::write_hook_inputs() {
-  for (StepInput& input : inputs_->take()) {
-    gloam_msgs::StepInput message;
+  for (const StepInput& input : inputs_->take()) {
     const double time =
         static_cast<double>(input.step) * simulation_.simulator().timestep().value();
-    message.header = ros_header(time, "");
-    message.run = input.run;
-    message.step = input.step;
-    message.index = std::move(input.index);
-    message.value = std::move(input.value);
-    encode(message, &bytes_);
-    write(kInputTopic, time, message.run, bytes_);
+    write_input(input, time, input.run);
   }
 }
 

@@ -204,6 +204,7 @@ void SimLoop::begin_run() {
   chapters_ = {{stepper_->shared_world(), 0}};
   run_seed_ = stepper_->seed();
   first_step_ = 0;
+  earlier_inputs_.clear();
   if (!stepper_->reset()) return;
   for (ControllerSlot& slot : controllers_) {
     slot.k = slot.due = 0;
@@ -269,6 +270,7 @@ void SimLoop::begin_run_at(const RunRecord& record) {
   chapters_ = record.chapters;
   run_seed_ = record.seed;
   first_step_ = record.step;
+  earlier_inputs_ = record.inputs;
   commands_.begin_history(record.commands, run_);
   for (Subscription& s : subscriptions_) s.begin(stepper_->step_count());
   find_next_publication();

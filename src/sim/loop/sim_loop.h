@@ -51,6 +51,8 @@ class SimLoop {
   int64_t first_step() const {
     return first_step_;
   }  ///< of the run; of a checkpoint, if it is one's
+  /// Numbers that step hooks wrote before first_step().
+  const std::vector<StepInput>& earlier_inputs() const { return earlier_inputs_; }
   /// Stepper::jump.
   void jump(int64_t step);
   /// A copy of the instant; null where effects or controllers cannot be copied.
@@ -95,6 +97,7 @@ class SimLoop {
   std::vector<RunRecord::Chapter> chapters_;
   uint64_t run_seed_ = 0;
   int64_t first_step_ = 0;
+  std::vector<StepInput> earlier_inputs_;
   int64_t run_ = 0;
   int64_t next_publication_ = 0;  // earliest `due` of the subscriptions
   int64_t dropped_by_closed_ = 0;

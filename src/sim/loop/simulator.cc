@@ -300,6 +300,7 @@ Result<std::shared_ptr<const CheckpointData>> Simulator::checkpoint() {
                     .timestep = own_timestep_,
                     .chapters = loop_.chapters(),
                     .commands = std::move(*commands),
+                    .inputs = loop_.earlier_inputs(),
                     .step = stepper.step_count(),
                     .hash = stepper.hash(),
                     .first_step = loop_.first_step()};
