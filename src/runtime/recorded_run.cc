@@ -133,13 +133,11 @@ Result<std::vector<RecordedLidar>> recorded_lidars(const World& world, Rational 
   return lidars;
 }
 
-constexpr const char* kLogName = "run.mcap";
-
 // The log that is asked for, or the scene's.
 LogRequest log_request_of(const Scene& scene, const RunRequest& request) {
   LogRequest log = request.log;
   const RecordOptions& record = scene.record;
-  if (log.file.empty() && record.mcap && !request.out.empty()) log.file = request.out / kLogName;
+  if (log.file.empty() && record.mcap && !request.out.empty()) log.file = request.out / kRunLogName;
   if (log.topics.empty()) log.topics = record.topics;
   log.durable |= record.durable;
   log.embed |= record.embed;
@@ -255,7 +253,7 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
     const bool has_media = shared != nullptr ? !shared->description.volumes.empty()
                                              : !scene.volumes.empty() || !scene.gases.empty();
     RunInfo info = run_info(world, request, has_media, 1 / rate.value(), duration);
-    if (log_request.file == request.out / kLogName) info.beside = {kLogName};
+    if (log_request.file == request.out / kRunLogName) info.beside = {kRunLogName};
     GLOAM_TRY(info.lidars, recorded_lidars(world, simulator.timestep()));
     uint64_t memory = 0;
     for (const CameraRequest& camera : requests) {
