@@ -18,6 +18,7 @@
 #include "gloam/program.h"
 #include "gloam/run.h"
 #include "record/recorder.h"
+#include "runtime/changed_settings.h"
 #include "runtime/label_table.h"
 #include "runtime/live_simulation.h"
 #include "runtime/log/log_recorder.h"
@@ -174,6 +175,8 @@ RunInfo run_info(const World& world, const RunRequest& request, bool has_media, 
   for (const DrawnOption& d : world.compiled()->drawn) info.drawn.push_back({d.option, d.value});
   if (scene.render.error)
     info.settings.push_back({"error", fmt::format("{}", *scene.render.error)});
+  for (NamedText& setting : changed_settings(*world.compiled()))
+    info.settings.push_back(std::move(setting));
   return info;
 }
 
