@@ -7,6 +7,7 @@
 #include <numeric>
 #include <thread>
 
+#include "base/log.h"
 #include "control/controllers.h"
 #include "geometry/mesh/single.h"
 #include "runtime/label_table.h"
@@ -80,6 +81,7 @@ Status LiveSimulation::recompile(const World& world) {
   const Status status = simulator_->recompile(world.compiled(), std::move(controllers));
   renderers_.keep_only(simulator_->world());
   GLOAM_TRY_STATUS(status);
+  send_latched();
   return metering_ == Metering::kAlways ? meters_.open(*simulator_, renderers_) : Status();
 }
 
@@ -91,12 +93,35 @@ Result<Checkpoint> LiveSimulation::checkpoint() {
 Status LiveSimulation::restore(const Checkpoint& checkpoint) {
   const std::lock_guard one_at_a_time(recompile_mutex_);
   const auto& world = checkpoint.data().record.chapters.back().world;
+  const bool is_other = world != simulator_->world();
   if (renderers_.any()) GLOAM_TRY_STATUS(renderers_.of(world));
   const Status status = simulator_->restore(checkpoint.data(), make_controllers);
   renderers_.keep_only(simulator_->world());
   GLOAM_TRY_STATUS(status);
   restart_speed_clock();
+  if (is_other) send_latched();
   return metering_ == Metering::kAlways ? meters_.open(*simulator_, renderers_) : Status();
+}
+
+void LiveSimulation::add_latched(std::weak_ptr<LatchedTopics> topics) {
+  const std::lock_guard lock(latched_mutex_);
+  std::erase_if(latched_, [](const auto& one) { return one.expired(); });
+  latched_.push_back(std::move(topics));
+}
+
+void LiveSimulation::send_latched() {
+  std::vector<std::weak_ptr<LatchedTopics>> readers;
+  {
+    const std::lock_guard lock(latched_mutex_);
+    readers = latched_;
+  }
+  const Snapshot now = simulator_->latest();
+  for (const auto& reader : readers) {
+    const std::shared_ptr<LatchedTopics> open = reader.lock();
+    if (open == nullptr) continue;
+    if (const Status sent = open->send(now); !sent.ok())
+      log_warning("latched topics: {}", sent.error().to_string());
+  }
 }
 
 Result<std::unique_ptr<ControlLease>> LiveSimulation::claim(Robot robot) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gloam/simulation.h"
+#include "runtime/streams/latched_topics.h"
 #include "runtime/streams/topic_tables.h"
 #include "sim/loop/step_schedule.h"
 
@@ -22,6 +23,7 @@ class TopicFeed final : public TopicStream {
   static Result<std::unique_ptr<TopicFeed>> open(LiveSimulation& simulation, TopicTables& tables,
                                                  const TopicRequest& request,
                                                  TopicCallback on_message, int batch = 1);
+  ~TopicFeed() override;
   int64_t dropped() const override;
   Status status() const override;
 
@@ -69,10 +71,12 @@ class TopicFeed final : public TopicStream {
   Status open_sensor_stream(LiveSimulation& simulation, std::vector<Gathering*> gatherings,
                             SampleSteps steps);
   Status open_snapshots(LiveSimulation& simulation, Outlets outlets);
-  Status send_latched(LiveSimulation& simulation, Outlets outlets);
+  Status open_latched(LiveSimulation& simulation, Outlets outlets);
+  Status send_latched(LiveSimulation& simulation, const Snapshot& now);
   void take_sample(Gathering* gathering, size_t part, const SensorMessage& message);
   Status take_instant(InstantReader* reader, const Snapshot& now);
   Status follow(const std::shared_ptr<const CompiledWorld>& world, InstantReader* reader);
+  static void keep_topics(const TopicTable& table, Outlets* outlets);
   void note(const std::string& what, const Status& fault);
   void send(Outlet* outlet, const Status& encoded, TopicMessage message);
 
@@ -81,7 +85,10 @@ class TopicFeed final : public TopicStream {
   const TopicRequest request_;
   TopicCallback on_message_;
   const int batch_;
-  std::mutex sensors_mutex_;  // guards the gatherings
+  Outlets latched_outlets_;
+  std::shared_ptr<const TopicTable> latched_table_;  // theirs
+  std::shared_ptr<LatchedTopics> latched_;           // null = there are none
+  std::mutex sensors_mutex_;                         // guards the gatherings
   std::vector<std::unique_ptr<Gathering>> gatherings_;
   mutable std::mutex mutex_;  // guards the first fault
   Status fault_;
