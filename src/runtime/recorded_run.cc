@@ -118,7 +118,7 @@ Result<std::vector<CameraRequest>> camera_requests(const World& world, const Run
   return requests;
 }
 
-// Those LiDARs of the scene of which files are wanted.
+// LiDARs of the scene whose files are wanted.
 Result<std::vector<RecordedLidar>> recorded_lidars(const World& world, Rational timestep) {
   const Scene& scene = world.compiled()->scene;
   const bool all = wants(scene.record.outputs, "lidar");

@@ -50,7 +50,7 @@ Result<std::vector<TopicInfo>> wanted_topics(const TopicTable& table,
   return wanted;
 }
 
-// What was written stays readable.
+// Error of a log that ends early, of which the part that was written stays readable.
 Status partial(const Status& status) {
   if (status.ok()) return status;
   Error error = status.error();

@@ -76,7 +76,7 @@ Status SimLoop::exchange(NextWorld& next, const Correspondence& same) {
   return {};
 }
 
-// What the scene said about earlier times is past; but the goal of a robot that is new is the last
+// Commands of the scene for earlier times are past; but the goal of a robot that is new is the last
 // of those that it would have got.
 void SimLoop::take_over_goals(const Correspondence& same) {
   std::vector<VelocityTarget> before(same.robot.size());

@@ -1,5 +1,5 @@
 #pragma once
-// What happens around every step, in a fixed order, on whichever thread runs it:
+// SimLoop: the order of things around every step, the same on whichever thread runs it:
 //   Snapshots due now -> Commands due now -> controllers -> step hook -> physics.
 
 #include <functional>

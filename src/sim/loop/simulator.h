@@ -101,8 +101,8 @@ class Simulator {
   /// old World runs on; another timestep, a simulation that has failed, what MuJoCo says.
   Status recompile(std::shared_ptr<const CompiledWorld> world,
                    std::vector<RobotController> controllers);
-  /// What has led to the present instant, and a copy of it where that can be. Errors: the
-  /// simulation has failed, Commands were not kept.
+  /// The record of all that has led to the present instant, and a copy of it where that can be.
+  /// Errors: the simulation has failed, Commands were not kept.
   Result<std::shared_ptr<const CheckpointData>> checkpoint();
   /// Goes on from there in a new run. What takes long is done before, while the simulation runs on.
   /// Commands that wait are thrown away. Errors: of another timestep; stepping it again ends
