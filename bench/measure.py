@@ -450,7 +450,24 @@ def record_cost(quick):
                   f"{data['waits'][1]} times in {data['steps']} steps; {data['megabytes']:.0f} MB for a second")
 
 
+def latency(quick):
+    """from an instant to its message in another process, by bridge, stream and size: what the bridge adds, the renderer's share aside"""
+    bars = {("zmq shm", "raw 640x480"): 0.3, ("zmq", "raw 640x480"): 1, ("ros2", "JPEG 640x480"): 5, ("ros2", "state 1 kHz"): 0.3,
+            ("zmq", "state 1 kHz"): 1}
+    lines = run(BIN / "bench_latency", "--seconds", 2 if quick else 8, "--only", "inside,ros2,zmq,zmq shm,foxglove", ROS_DOMAIN_ID=str(os.getpid() % 90))
+    for line in map(json.loads, lines.splitlines()):
+        if not line.get("messages"):
+            raise RuntimeError(f"{line.get('client')}, {line.get('stream')}: no message came: {line}")
+        bar = bars.get((line["client"], line["stream"]))
+        if bar is None:
+            continue
+        share = line.get("bridge_p50_ms", line["p50_ms"])
+        yield at_most(f"{line['client']}: {line['stream']}, ms that the bridge adds", share, bar,
+                      f"whole latency p50 {line['p50_ms']:.2f}, p99 {line['p99_ms']:.2f}, jitter {line['jitter_ms']:.2f} ms; "
+                      f"{line['messages']} messages, {line['dropped']:.0f} lost")
+
+
 # With the seconds that each takes on two cores: the first estimate of the time left.
 ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, direct_places: 60, view: 40, fast_tier: 400, truth: 40, load_time: 120, import_time: 60,
        first_picture: 15, adaptive_sampling: 120, lidar: 25, environments: 60, hfield: 25, gas: 20,
-       effects: 90, all_effects: 75, log_rate: 60, record_cost: 300}
+       effects: 90, all_effects: 75, log_rate: 60, record_cost: 300, latency: 330}
