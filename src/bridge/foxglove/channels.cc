@@ -1,13 +1,18 @@
 #include "bridge/foxglove/channels.h"
 
 #include <algorithm>
+#include <thread>
 
 #include "bridge/topic_filter.h"
 
 namespace gloam::bridge::foxglove {
 
+// All at once: cameras that still run would keep the renderer from the one that is closed.
 Channels::~Channels() {
-  for (auto& [id, feed] : feeds_) close(feed.get());
+  std::vector<std::thread> closing;
+  for (auto& [key, feed] : feeds_)
+    if (feed->stream != nullptr) closing.emplace_back([this, feed = feed.get()] { close(feed); });
+  for (std::thread& thread : closing) thread.join();
 }
 
 std::vector<ChannelInfo> Channels::list() const {
