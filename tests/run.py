@@ -29,7 +29,7 @@ BUILD = ROOT / "build"
 CLANG = "-19"
 READERS = {"base", "trajectory", "ros", "mcap", "geometry", "scene", "world"}  # of strangers' files: under sanitizers in every CI
 UNIT = ["base", "trajectory", "ros", "mcap", "geometry", "places", "scene", "world", "sim", "render", "sensors", "control", "metrics", "topics", "record", "runtime",
-        "report", "studio"]
+        "report", "web", "bridge", "studio"]
 
 
 class Tally:
