@@ -439,7 +439,7 @@ def record_cost(quick):
     """a log of states, /tf and joints against bare steps; the same with four cameras and all other topics; verification"""
     for scene in ("house", "two_robots"):
         data = run_json(BIN / "bench_record_cost", ROOT / "examples" / f"{scene}.toml", CACHE, "--json", "--cameras", 0,
-                        "--seconds", 10, "--pairs", 3 if quick else 9)
+                        "--seconds", 10, "--pairs", 5 if quick else 15)
         yield at_most(f"CPU time that a log of states adds to the thread that steps, {scene}", data["overhead"], 0.02,
                       f"median of pairs; {data['logged_us']:.1f} µs a step, bare {data['bare_us']:.1f} µs; "
                       f"wall {data['logged_wall_us']:.1f} and {data['bare_wall_us']:.1f} µs")
