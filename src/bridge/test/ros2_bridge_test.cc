@@ -169,7 +169,8 @@ TEST_F(Ros2BridgeTest, ASilentMasterLosesItsRobotWhichThenStands) {
   const auto node = *DdsNode::create({.domain = test_domain(4)});
   TopicInlets inlets(*simulation_, *node);
   std::vector<TopicInfo> inputs;
-  for (const TopicInfo& topic : *simulation_->topics())
+  const auto topics = *simulation_->topics();
+  for (const TopicInfo& topic : topics)
     if (topic.is_input) inputs.push_back(topic);
   ASSERT_TRUE(inlets.set_topics(inputs).ok());
   const auto talker = *DdsNode::create({.domain = test_domain(4), .node = "talker"});
