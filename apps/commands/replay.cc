@@ -87,6 +87,7 @@ int play(const ReplayCommand& command, const LogReplay& replay) {
   run.view.height = replay.request.height;
   if (!replay.request.cameras.empty()) run.view.camera = replay.request.cameras.front();
   run.view.player = player->get();
+  if (replay.request.duration > 0) run.duration = replay.request.duration;
   run.bridges = command.live.options({});
   return run_live(std::move(run), command.live, starting);
 }

@@ -42,5 +42,6 @@ int run_ros2_client(const std::string& address, const std::string& topic, int ou
 int run_zmq_client(const std::string& address, const std::string& topic, int out);
 int run_shm_client(const std::string& address, const std::string& topic, int out);
 int run_rclpy_client(const std::string& address, const std::string& topic, int out);
+int run_foxglove_client(const std::string& address, const std::string& topic, int out);
 
 }  // namespace gloam::latency

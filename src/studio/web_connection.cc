@@ -9,6 +9,7 @@
 
 #include "studio/messages.h"
 #include "studio/page.h"
+#include "web/request_facts.h"
 
 namespace gloam::studio {
 namespace {
@@ -24,21 +25,6 @@ constexpr size_t kMaxMessage = 64 << 10;
 constexpr size_t kMaxWaitingTexts = 128;
 constexpr size_t kMaxDrained = 256 << 10;
 constexpr std::chrono::seconds kGoodbyeTime{2};
-
-std::string_view view(beast::string_view text) { return {text.data(), text.size()}; }
-
-web::RequestFacts facts_of(const http::request<http::empty_body>& request) {
-  const auto field = [&](auto name) { return view(request[name]); };
-  return {.method = view(request.method_string()),
-          .target = view(request.target()),
-          .host = field(http::field::host),
-          .origin = field(http::field::origin),
-          .sec_fetch_site = field("Sec-Fetch-Site"),
-          .cookie = field(http::field::cookie),
-          .authorization = field(http::field::authorization),
-          .hosts = static_cast<int>(request.count(http::field::host)),
-          .websocket = websocket::is_upgrade(request)};
-}
 
 /// Header fields that forbid a browser unsafe uses of any answer of this server.
 void add_safety_fields(http::fields& fields) {
@@ -82,7 +68,7 @@ void WebConnection::on_request(error_code error) {
   if (error) return refuse(400, "This is not an HTTP request.");
 
   const auto& request = request_->get();
-  const web::RequestFacts facts = facts_of(request);
+  const web::RequestFacts facts = web::facts_of(request);
   const web::Verdict verdict = web::judge(facts, shared_.options.token, shared_.cookie_name);
   if (verdict.status != 200) return refuse(static_cast<unsigned>(verdict.status), verdict.reason);
   if (!request_->is_done()) return refuse(413, "A request here has no body.");

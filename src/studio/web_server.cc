@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "studio/web_connection.h"
+#include "web/listener.h"
 
 namespace gloam::studio {
 namespace {
@@ -19,54 +20,27 @@ namespace net = boost::asio;
 using boost::system::error_code;
 using net::ip::tcp;
 
-constexpr std::chrono::milliseconds kAcceptPause{100}, kStopTime{700};
-
-Error listen_error(const error_code& error, int port) {
-  const std::string number = std::to_string(port);
-  if (error == net::error::address_in_use)
-    return {
-        .kind = ErrorKind::kIo, .message = "port " + number + " is in use", .hint = "try --port 0"};
-  if (error == net::error::access_denied)
-    return {.kind = ErrorKind::kIo,
-            .message = "this user may not listen on port " + number,
-            .hint = "ports from 1024 are free to all: try --port 8080"};
-  return {.kind = ErrorKind::kIo,
-          .message = "cannot listen on port " + number + ": " + error.message()};
-}
+constexpr std::chrono::milliseconds kStopTime{700};
 
 }  // namespace
 
 class WebServer::Impl {
  public:
-  Impl(const WebOptions& options, WebEvents& events) : acceptor_(context_), timer_(context_) {
+  Impl(const WebOptions& options, WebEvents& events) : listener_(context_), timer_(context_) {
     shared_.options = options;
     shared_.events = &events;
   }
   ~Impl() { stop(); }
 
   Status listen() {
-    error_code error;
-    const auto& name = shared_.options.host;
-    // Names are not looked up: a resolver could answer with any address.
-    const bool v6 = name == "::1" || name == "[::1]";
-    const auto address = v6 || name == "localhost"
-                             ? net::ip::make_address(v6 ? "::1" : "127.0.0.1", error)
-                             : net::ip::make_address(name, error);
-    const int port = shared_.options.port;
-    const tcp::endpoint endpoint(address, static_cast<unsigned short>(port));
-    if (!error) acceptor_.open(endpoint.protocol(), error);
-    if (!error) acceptor_.set_option(net::socket_base::reuse_address(true), error);
-    if (!error) acceptor_.bind(endpoint, error);
-    if (!error) acceptor_.listen(net::socket_base::max_listen_connections, error);
-    if (!error) port_ = acceptor_.local_endpoint(error).port();
-    if (error) return listen_error(error, port);
-    shared_.cookie_name = web::cookie_name(port_);
-    accept();
+    GLOAM_TRY_STATUS(listener_.listen(shared_.options.host, shared_.options.port, "try --port 0"));
+    shared_.cookie_name = web::cookie_name(port());
+    listener_.accept([this](tcp::socket socket) { take(std::move(socket)); });
     thread_ = std::thread([this] { run(); });
     return {};
   }
 
-  int port() const { return port_; }
+  int port() const { return listener_.port(); }
 
   template <class Function>
   void post(Function function) {
@@ -112,40 +86,14 @@ class WebServer::Impl {
     }
   }
 
-  void accept() {
-    acceptor_.async_accept([this](const error_code& error, tcp::socket socket) {
-      if (!acceptor_.is_open()) return;
-      if (error) {
-        // Out of file handles, most likely: they come back.
-        timer_.expires_after(kAcceptPause);
-        timer_.async_wait([this](const error_code& cancelled) {
-          if (!cancelled) accept();
-        });
-        return;
-      }
-      if (shared_.connections.size() < static_cast<size_t>(shared_.options.max_connections)) {
-        error_code ignored;
-        socket.set_option(tcp::no_delay(true), ignored);
-        std::make_shared<WebConnection>(std::move(socket), shared_)->read_request();
-      } else {
-        turn_away(socket);
-      }
-      accept();
-    });
-  }
-
-  static void turn_away(tcp::socket& socket) {
-    error_code ignored;
-    socket.non_blocking(true, ignored);
-    constexpr std::string_view kBusy =
-        "HTTP/1.1 503 Service Unavailable\r\nContent-Length: 0\r\nConnection: close\r\n\r\n";
-    socket.write_some(net::buffer(kBusy.data(), kBusy.size()), ignored);
-    socket.shutdown(tcp::socket::shutdown_both, ignored);
+  void take(tcp::socket socket) {
+    if (shared_.connections.size() >= static_cast<size_t>(shared_.options.max_connections))
+      return web::turn_away(socket);
+    std::make_shared<WebConnection>(std::move(socket), shared_)->read_request();
   }
 
   void say_goodbye() {
-    error_code ignored;
-    acceptor_.close(ignored);
+    listener_.close();
     if (shared_.connections.empty()) return context_.stop();
     shared_.on_empty = [this] { context_.stop(); };
     timer_.expires_after(kStopTime);
@@ -158,9 +106,8 @@ class WebServer::Impl {
 
   WebShared shared_;  // the connections die with the context: they must find it alive
   net::io_context context_{1};
-  tcp::acceptor acceptor_;
+  web::Listener listener_;
   net::steady_timer timer_;
-  int port_ = 0;
   std::thread thread_;
 };
 

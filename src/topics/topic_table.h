@@ -29,5 +29,6 @@ void add_camera_topics(const TopicSource& world, TopicTable* table);
 void add_label_topics(const TopicSource& world, TopicTable* table);
 void add_lidar_topics(const TopicSource& world, TopicTable* table);
 void add_input_topics(const TopicSource& world, TopicTable* table);
+void add_object_scene_topics(const TopicSource& world, TopicTable* table);
 
 }  // namespace gloam

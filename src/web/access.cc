@@ -53,23 +53,6 @@ bool is_dotted_loopback(std::string_view name) {
   return name.empty();
 }
 
-/// Name of a Host field without its port; empty when it is malformed.
-std::string_view host_name(std::string_view host) {
-  size_t end = host.find(':');
-  if (!host.empty() && host.front() == '[') {
-    end = host.find(']');
-    if (end == std::string_view::npos) return {};
-    ++end;
-  }
-  if (end == std::string_view::npos || end == host.size()) return host;
-  const std::string_view port = host.substr(end + 1);
-  const bool digits = std::all_of(port.begin(), port.end(), [](char c) {
-    return std::isdigit(static_cast<unsigned char>(c)) != 0;
-  });
-  if (host[end] != ':' || port.empty() || port.size() > 5 || !digits) return {};
-  return host.substr(0, end);
-}
-
 bool token_in_query(std::string_view target, std::string_view token) {
   const auto question = target.find('?');
   if (question == std::string_view::npos) return false;
@@ -89,10 +72,12 @@ bool token_in_cookie(std::string_view cookie, std::string_view name, std::string
 }
 
 bool token_in_authorization(std::string_view authorization, std::string_view token) {
-  constexpr std::string_view kScheme = "token ";
-  return authorization.size() > kScheme.size() &&
-         equal_ignoring_case(authorization.substr(0, kScheme.size()), kScheme) &&
-         equal_in_constant_time(trim(authorization.substr(kScheme.size())), token);
+  for (const std::string_view scheme : {"token ", "bearer "}) {
+    if (authorization.size() > scheme.size() &&
+        equal_ignoring_case(authorization.substr(0, scheme.size()), scheme))
+      return equal_in_constant_time(trim(authorization.substr(scheme.size())), token);
+  }
+  return false;
 }
 
 }  // namespace
@@ -124,6 +109,27 @@ bool equal_in_constant_time(std::string_view given, std::string_view expected) {
 bool is_loopback_name(std::string_view name) {
   return equal_ignoring_case(name, "localhost") || name == "::1" || name == "[::1]" ||
          is_dotted_loopback(name);
+}
+
+std::string_view host_name(std::string_view host) {
+  size_t end = host.find(':');
+  if (!host.empty() && host.front() == '[') {
+    end = host.find(']');
+    if (end == std::string_view::npos) return {};
+    ++end;
+  }
+  if (end == std::string_view::npos || end == host.size()) return host;
+  const std::string_view port = host.substr(end + 1);
+  const bool digits = std::all_of(port.begin(), port.end(), [](char c) {
+    return std::isdigit(static_cast<unsigned char>(c)) != 0;
+  });
+  if (host[end] != ':' || port.empty() || port.size() > 5 || !digits) return {};
+  return host.substr(0, end);
+}
+
+bool carries_token(const RequestFacts& request, std::string_view token) {
+  return token_in_query(request.target, token) ||
+         token_in_authorization(request.authorization, token);
 }
 
 Verdict judge(const RequestFacts& request, std::string_view token, std::string_view cookie_name) {

@@ -1,7 +1,7 @@
 #pragma once
-// Access to servers on this machine. Pure functions of a request's fields, so that the rules can be read
-// and tested in one place. The rules follow Jupyter's: a random token, checks of Host and Origin
-// against DNS rebinding and cross-site WebSocket hijacking, no CORS.
+// Access to servers on this machine. Pure functions of a request's fields, so that the rules can be
+// read and tested in one place. The rules follow Jupyter's: a random token, checks of Host and
+// Origin against DNS rebinding and cross-site WebSocket hijacking, no CORS.
 
 #include <string>
 #include <string_view>
@@ -34,6 +34,13 @@ struct Verdict {
   bool set_cookie = false;  ///< the token came in the address: hand it back as a cookie
 };
 Verdict judge(const RequestFacts& request, std::string_view token, std::string_view cookie_name);
+
+/// Whether a request carries the token in its address (?token=…) or as "Authorization: token …" or
+/// "Authorization: bearer …".
+bool carries_token(const RequestFacts& request, std::string_view token);
+
+/// Name of a Host field without its port; empty when it is malformed.
+std::string_view host_name(std::string_view host);
 
 /// Cookies ignore ports: the name carries it, or two views on one machine would log each other out.
 std::string cookie_name(int port);

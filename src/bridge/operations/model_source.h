@@ -17,10 +17,6 @@ namespace gloam::bridge {
 /// One entity more in a Scene.
 using SceneEntity = std::variant<RobotOptions, ObjectOptions, PropOptions>;
 
-/// Extensions of files by what they are, in lower case with their dot.
-bool is_model_extension(const std::string& extension);  ///< MJCF, URDF, a model in TOML
-bool is_mesh_extension(const std::string& extension);
-
 class ModelSource {
  public:
   ModelSource() = default;

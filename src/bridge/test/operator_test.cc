@@ -214,6 +214,7 @@ TEST_F(OperatorTest, RefusesToSpawnByCause) {
   EXPECT_EQ(cause({.uri = "http://example.com/a.xml"}), SpawnFailure::kNoResource);
   EXPECT_EQ(cause({.text = "<sdf version='1.9'/>"}), SpawnFailure::kUnsupportedFormat);
   EXPECT_EQ(cause({.text = "<mujoco/>"}), SpawnFailure::kNameInvalid);
+  EXPECT_EQ(cause({.name = "x", .text = "<mujoco/>"}), SpawnFailure::kParse);
   EXPECT_EQ(cause({.name = "x", .text = "hello"}), SpawnFailure::kParse);
   EXPECT_EQ(cause({.name = "x", .text = "<mujoco><worldbody><body><geom/></worldbody></mujoco>"}),
             SpawnFailure::kParse);
@@ -229,6 +230,13 @@ TEST_F(OperatorTest, RefusesToSpawnByCause) {
   EXPECT_EQ(cause({.text = kBall, .frame = "nowhere"}), SpawnFailure::kPoseInvalid);
   EXPECT_EQ(cause({.text = std::string(20u << 20, ' ')}), SpawnFailure::kUnsupportedFormat);
   EXPECT_EQ(op().entities().size(), 6u);
+}
+
+// "a-b" and "a_b" would say the same topics.
+TEST_F(OperatorTest, RefusesNamesThatShareTopics) {
+  ASSERT_TRUE(op().spawn({.name = "a-b", .uri = "arm.xml"}).ok());
+  EXPECT_EQ(op().spawn({.name = "a_b", .uri = "arm.xml"}).failure, SpawnFailure::kNameTaken);
+  EXPECT_TRUE(simulation_->topics().ok());
 }
 
 TEST_F(OperatorTest, ReadsNoFilesBeyondTheScenes) {

@@ -67,9 +67,8 @@ class Client {
     const std::lock_guard lock(mutex_);
     std::vector<int> all;
     if (status_.empty()) return all;
-    for (const auto& goal :
-         decode<action_msgs::GoalStatusArray>(status_.back()).value().status_list)
-      all.push_back(goal.status);
+    const auto newest = decode<action_msgs::GoalStatusArray>(status_.back()).value();
+    for (const auto& goal : newest.status_list) all.push_back(goal.status);
     return all;
   }
   const Ros2Action& action() const { return action_; }

@@ -212,9 +212,10 @@ Ros2Action make_action(ActionOptions options, Ros2Publish publish) {
   action.services.push_back(
       {.name = base + "get_result",
        .type = type + "_GetResult",
-       .answer_later = [server](std::span<const uint8_t> bytes, const ActionServer::Reply& reply) {
-         server->get_result(bytes, reply);
-       }});
+       .answer_later = [server](
+                           std::span<const uint8_t> bytes,
+                           const ActionServer::Reply& reply) { server->get_result(bytes, reply); },
+       .hash = get_result_hash});
   action.topics.push_back({.name = base + "feedback", .type = type + "_FeedbackMessage"});
   action.topics.push_back({.name = base + "status",
                            .type = ros_type_name<action_msgs::GoalStatusArray>(),

@@ -1,0 +1,28 @@
+#include "bridge/foxglove/handshake.h"
+
+namespace gloam::bridge::foxglove {
+
+Admission admit(const web::RequestFacts& request, std::string_view protocols,
+                std::string_view token, bool loopback_only) {
+  if (request.hosts != 1) return {400, "The request must have exactly one Host field.", {}};
+  if (request.method != "GET") return {405, "This server knows GET only.", {}};
+  const bool has_token = web::carries_token(request, token);
+  if (!has_token) {
+    // A page whose name was rebound to this machine has its own name in Host.
+    if (!web::is_loopback_name(web::host_name(request.host)))
+      return {403, "Without the token this server answers to loopback names only.", {}};
+    if (!request.origin.empty())
+      return {403, "A page needs the address that Gloam printed, with its token.", {}};
+    if (!loopback_only)
+      return {401, "Beyond this machine the address needs the token that Gloam printed.", {}};
+  }
+  if (!request.websocket)
+    return {426, "This is a WebSocket for Foxglove: open a connection to it there.", {}};
+  const auto protocol = choose_protocol(protocols);
+  if (!protocol)
+    return {
+        400, "This server speaks foxglove.sdk.v1.1, foxglove.sdk.v1, foxglove.websocket.v1.", {}};
+  return {101, {}, *protocol, has_token};
+}
+
+}  // namespace gloam::bridge::foxglove

@@ -1,0 +1,110 @@
+#include "bridge/foxglove/server.h"
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/post.hpp>
+#include <exception>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "bridge/foxglove/connection.h"
+#include "web/listener.h"
+
+namespace gloam::bridge::foxglove {
+namespace {
+
+namespace net = boost::asio;
+using boost::system::error_code;
+using net::ip::tcp;
+
+constexpr std::chrono::milliseconds kStopTime{700};
+constexpr size_t kSpareConnections = 64;  // so that half-open ones do not keep clients out
+
+}  // namespace
+
+class Server::Impl {
+ public:
+  Impl(const ServerOptions& options, ServerEvents& events)
+      : listener_(context_), timer_(context_), ticker_(context_) {
+    state_.options = options;
+    state_.loopback_only = web::is_loopback_name(options.host);
+    state_.events = &events;
+  }
+  ~Impl() { stop(); }
+
+  Status listen() {
+    const ServerOptions& options = state_.options;
+    GLOAM_TRY_STATUS(listener_.listen(options.host, options.port,
+                                      "try --port 0, or bridge.foxglove.port of the scene"));
+    listener_.accept([this](tcp::socket socket) { take(std::move(socket)); });
+    tick();
+    thread_ = std::thread([this] { run(); });
+    return {};
+  }
+  int port() const { return listener_.port(); }
+  int64_t dropped() const { return state_.dropped; }
+
+  void stop() {
+    if (!thread_.joinable()) return;
+    net::post(context_, [this] { say_goodbye(); });
+    thread_.join();
+    state_.on_empty = nullptr;
+  }
+
+ private:
+  void run() {
+    while (true) {
+      try {
+        context_.run();
+        return;
+      } catch (const std::exception&) {
+        // One connection ran out of memory: its operation is gone, the others go on.
+      }
+    }
+  }
+
+  void take(tcp::socket socket) {
+    const auto most = static_cast<size_t>(state_.options.max_clients) + kSpareConnections;
+    if (state_.connections.size() >= most) return web::turn_away(socket);
+    std::make_shared<Connection>(std::move(socket), state_)->read_request();
+  }
+
+  void tick() {
+    ticker_.expires_after(state_.options.tick);
+    ticker_.async_wait([this](const error_code& cancelled) {
+      if (cancelled) return;
+      tick();
+      if (state_.clients > 0) state_.events->on_tick();
+    });
+  }
+
+  void say_goodbye() {
+    listener_.close();
+    ticker_.cancel();
+    if (state_.connections.empty()) return context_.stop();
+    state_.on_empty = [this] { context_.stop(); };
+    timer_.expires_after(kStopTime);
+    timer_.async_wait([this](const error_code&) { context_.stop(); });
+    const std::vector<Connection*> open(state_.connections.begin(), state_.connections.end());
+    for (Connection* connection : open)
+      connection->close(boost::beast::websocket::close_code::going_away,
+                        "The simulation has ended.");
+  }
+
+  ServerState state_;  // the connections die with the context: they must find it alive
+  net::io_context context_{1};
+  web::Listener listener_;
+  net::steady_timer timer_, ticker_;
+  std::thread thread_;
+};
+
+Server::Server(const ServerOptions& options, ServerEvents& events)
+    : impl_(std::make_unique<Impl>(options, events)) {}
+Server::~Server() = default;
+
+Status Server::listen() { return impl_->listen(); }
+int Server::port() const { return impl_->port(); }
+int64_t Server::dropped() const { return impl_->dropped(); }
+void Server::stop() { impl_->stop(); }
+
+}  // namespace gloam::bridge::foxglove

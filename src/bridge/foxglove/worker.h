@@ -1,0 +1,45 @@
+#pragma once
+// Worker: a thread that does one job after the other, so that the network's thread need not wait.
+
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+namespace gloam::bridge::foxglove {
+
+class Worker {
+ public:
+  using Job = std::function<void()>;
+
+  Worker();
+  ~Worker() { stop(); }
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  /// Jobs of one key other than 0 that come in a row are one: the last. False: too many wait.
+  bool post(Job job, int64_t key = 0);
+  /// A job that must not be lost: where a client has gone.
+  void post_always(Job job);
+  /// No job waits.
+  bool is_idle();
+  /// Waits for the present job; those that wait are thrown away.
+  void stop();
+
+ private:
+  struct Waiting {
+    Job job;
+    int64_t key = 0;
+  };
+  void run();
+
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<Waiting> waiting_;
+  bool stopping_ = false;
+  std::thread thread_;
+};
+
+}  // namespace gloam::bridge::foxglove

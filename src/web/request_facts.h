@@ -1,0 +1,31 @@
+#pragma once
+// The fields of a Beast request that decide on access.
+
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <string_view>
+
+#include "web/access.h"
+
+namespace gloam::web {
+
+inline std::string_view view(boost::beast::string_view text) { return {text.data(), text.size()}; }
+
+/// Views into the request, which must outlive them.
+inline RequestFacts facts_of(
+    const boost::beast::http::request<boost::beast::http::empty_body>& request) {
+  namespace http = boost::beast::http;
+  const auto field = [&](auto name) { return view(request[name]); };
+  return {.method = view(request.method_string()),
+          .target = view(request.target()),
+          .host = field(http::field::host),
+          .origin = field(http::field::origin),
+          .sec_fetch_site = field("Sec-Fetch-Site"),
+          .cookie = field(http::field::cookie),
+          .authorization = field(http::field::authorization),
+          .hosts = static_cast<int>(request.count(http::field::host)),
+          .websocket = boost::beast::websocket::is_upgrade(request)};
+}
+
+}  // namespace gloam::web
