@@ -1,8 +1,10 @@
 """The bridge to ZeroMQ as a user has it: `gloam run --zmq` in one process, the Python client in others."""
 import json
 import os
+import random
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -46,6 +48,19 @@ def wait_for(condition, seconds=30):
         if time.monotonic() > end:
             raise AssertionError("it did not happen in time")
         time.sleep(0.02)
+
+
+def free_port():
+    """A port that is free, and the next one, too; below those that the system gives to clients."""
+    for port in random.sample(range(20000, 32000), 100):
+        with socket.socket() as first, socket.socket() as second:
+            try:
+                first.bind(("127.0.0.1", port))
+                second.bind(("127.0.0.1", port + 1))
+                return port
+            except OSError:
+                continue
+    raise AssertionError("no free ports")
 
 
 class Zmq(unittest.TestCase):
@@ -198,7 +213,7 @@ time.sleep(100)
             wait_for(lambda: sim.state()["step"] > before)
 
     def test_clients_outlive_a_server(self):
-        port = 23456 + os.getpid() % 20000
+        port = free_port()
         self.scene.write_text(SCENE.replace("port = 0", f"port = {port}"))
         first = self.serve("--paused", env={"GLOAM_TOKEN": "a-token-of-the-users-own"})
         sim = self.client()
@@ -250,7 +265,7 @@ time.sleep(100)
         self.assertEqual(list(self.folder.glob("gloam/zmq-*.json")), [])
 
     def test_a_second_server_on_a_port_says_so(self):
-        port = 23457 + os.getpid() % 20000
+        port = free_port()
         self.scene.write_text(SCENE.replace("port = 0", f"port = {port}"))
         self.serve("--paused")
         second = subprocess.run([str(PROGRAM), "run", str(self.scene), "--paused"], text=True, capture_output=True, cwd=self.folder)

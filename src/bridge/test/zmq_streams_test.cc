@@ -115,6 +115,34 @@ TEST_F(ZmqBridgeTest, AStreamThatIsNotThereSaysSo) {
   }
 }
 
+TEST_F(ZmqBridgeTest, ATopicComesAndGoesWithItsRobot) {
+  start_default();
+  RawSubscriber subscriber(streams_address());
+  subscriber.subscribe("decoded/newcomer/joint_states");
+  auto message = subscriber.receive();
+  ASSERT_TRUE(message);
+  EXPECT_TRUE(message->header.has("error")) << "not there yet";
+  RawClient client(operations_address());
+  client.call("spawn", 2, [](Packer& packer) {
+    pack_pair(packer, "text",
+              std::string("<mujoco><worldbody><body><joint name='hinge'/><geom size='.1'/></body>"
+                          "</worldbody></mujoco>"));
+    pack_pair(packer, "name", std::string("newcomer"));
+  });
+  message.reset();
+  for (int i = 0; i < 100 && !message; ++i) {
+    client.call("step", 1, steps_of(10));
+    message = subscriber.receive(100);
+  }
+  ASSERT_TRUE(message);
+  EXPECT_THAT(unpack_value(message->payload).to_string(), HasSubstr("hinge"));
+  client.call("remove", 1,
+              [](Packer& packer) { pack_pair(packer, "name", std::string("newcomer")); });
+  do message = subscriber.receive();
+  while (message && !message->header.has("error"));
+  EXPECT_TRUE(message) << "it has not been told that the topic is gone";
+}
+
 TEST_F(ZmqBridgeTest, SharedMemoryMayBeOff) {
   bridge_ = *start({.port = 0, .shared_memory = false});
   RawSubscriber subscriber(streams_address());

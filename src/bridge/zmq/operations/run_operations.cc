@@ -164,7 +164,7 @@ std::vector<Operation> run_operations() {
         {"paced", kBool, false, "", "at the pace of the run instead of as fast as possible"}},
        step},
       {"reset",
-       "back to the initial state, at the next step or at once",
+       "back to the initial state; its entities are those that the scene began with",
        kQueued,
        {{"state", kBool, false, "", "state and time; default true"},
         {"spawned", kBool, false, "", "entities too; default true"}},

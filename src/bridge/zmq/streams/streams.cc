@@ -66,7 +66,8 @@ void Streams::set_wanted(const std::string& subscription, bool is_wanted) {
 Streams::Plan Streams::wait_for_work() {
   std::unique_lock lock(mutex_);
   const auto is_due = [this] { return stopping_ || has_work_; };
-  if (has_failed_)
+  // Now and then also while something is open: for what it has lost, and topics that are gone.
+  if (has_failed_ || !groups_.empty() || !states_.empty())
     changed_.wait_for(lock, kRetry, is_due);
   else
     changed_.wait(lock, is_due);
@@ -128,7 +129,7 @@ void Streams::follow_topics(const Plan& plan) {
       sink->want(form, wanted.contains(form) && may_send(form));
     groups[info->qos.is_latched ? topic : info->source].insert(topic);
   }
-  std::erase_if(groups_, [&groups](const auto& open) {
+  close_if(groups_, [&groups](const auto& open) {
     const auto wanted = groups.find(open.first);
     return wanted == groups.end() || wanted->second != open.second->topics;
   });
@@ -179,7 +180,7 @@ void Streams::open_group(const std::string& key, const std::set<std::string>& to
 }
 
 void Streams::follow_states(const Plan& plan) {
-  std::erase_if(states_, [&plan](const auto& open) { return !plan.wanted.contains(open.first); });
+  close_if(states_, [&plan](const auto& open) { return !plan.wanted.contains(open.first); });
   for (const std::string& subscription : plan.wanted) {
     if (!is_state(subscription) || states_.contains(subscription)) continue;
     if (states_.size() >= kMaxStateRates) {
@@ -230,9 +231,10 @@ void Streams::note_end(std::atomic<bool>& has_ended) {
 }
 
 void Streams::close_ended() {
-  std::erase_if(groups_, [](const auto& group) { return group.second->has_ended.load(); });
-  std::erase_if(states_, [](const auto& state) { return state.second->has_ended.load(); });
-  int64_t lost = 0;
+  const auto has_ended = [](const auto& open) { return open.second->has_ended.load(); };
+  close_if(groups_, has_ended);
+  close_if(states_, has_ended);
+  int64_t lost = lost_before_;
   for (const auto& [key, group] : groups_) lost += group->stream->dropped();
   for (const auto& [key, state] : states_) lost += state->stream->dropped();
   dropped_ = lost;

@@ -61,6 +61,15 @@ class Streams {
   Result<std::unique_ptr<SnapshotStream>> open_state(const std::string& subscription,
                                                      StateFeed* feed);
   void close_ended();
+  /// Closes what `closes` says, and keeps count of what it has lost.
+  template <class Streams, class Closes>
+  void close_if(Streams& streams, const Closes& closes) {
+    std::erase_if(streams, [&](const auto& open) {
+      if (!closes(open)) return false;
+      lost_before_ += open.second->stream->dropped();
+      return true;
+    });
+  }
   void tell(const std::string& subscription, const Error& error);
   void note_end(std::atomic<bool>& has_ended);
   EndCallback end_callback(std::atomic<bool>& has_ended);
@@ -82,6 +91,7 @@ class Streams {
   std::map<std::string, std::unique_ptr<Group>> groups_;
   std::map<std::string, std::unique_ptr<StateFeed>> states_;
   std::map<std::string, std::string> told_;  // errors by subscription
+  int64_t lost_before_ = 0;                  // by streams that are closed
   bool has_failed_ = false;                  // something wanted is not open: tried again
   std::thread thread_;
 };
