@@ -168,9 +168,8 @@ TEST_F(Ros2BridgeTest, DamagedMessagesAreRefusedAndCounted) {
 TEST_F(Ros2BridgeTest, ASilentMasterLosesItsRobotWhichThenStands) {
   const auto node = *DdsNode::create({.domain = test_domain(4)});
   TopicInlets inlets(*simulation_, *node);
-  std::vector<TopicInfo> inputs;
-  for (const TopicInfo& topic : *simulation_->topics())
-    if (topic.is_input) inputs.push_back(topic);
+  std::vector<TopicInfo> inputs = *simulation_->topics();
+  std::erase_if(inputs, [](const TopicInfo& topic) { return !topic.is_input; });
   ASSERT_TRUE(inlets.set_topics(inputs).ok());
   const auto talker = *DdsNode::create({.domain = test_domain(4), .node = "talker"});
   const auto writer = *talker->add_writer(
