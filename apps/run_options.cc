@@ -2,6 +2,8 @@
 
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "gloam/outputs.h"
 #include "gloam/program.h"
 
@@ -30,7 +32,29 @@ void SceneOptions::add_keyframe_to(CLI::App& command) {
                      "their robots");
 }
 
+namespace {
+
+// A log that is gone on from has its World: what would change it is refused by name, unless it is
+// `kept`: a matter of the new run alone.
+void refuse_beside_log(const CLI::App& command, const std::vector<const CLI::Option*>& options) {
+  constexpr std::string_view kKept[] = {"--camera", "--resolution", "--threads"};
+  const CLI::Option* at = command.get_option_no_throw("--at");
+  if (at == nullptr || at->count() == 0) return;
+  for (const CLI::Option* option : options) {
+    const std::string name = option->get_name();
+    if (option->count() > 0 && std::ranges::find(kKept, name) == std::end(kKept))
+      throw CLI::ParseError(fmt::format("{} does not go with --at: a log is gone on from as it is; "
+                                        "gloam replay LOG --restep --set … runs a changed scene "
+                                        "under its Commands",
+                                        name),
+                            CLI::ExitCodes::InvalidError);
+  }
+}
+
+}  // namespace
+
 void RunOptions::add_to(CLI::App& command) {
+  const std::vector<CLI::Option*> others = command.get_options();
   command.add_option("--timestep", timestep, "Physics time step in seconds; default: the model's")
       ->check(positive_number());
   command.add_option("--camera", cameras, "Camera by name (repeatable); default: all");
@@ -74,6 +98,14 @@ void RunOptions::add_to(CLI::App& command) {
       ->delimiter(',');
   add_keyframe_to(command);
   SceneOptions::add_to(command);
+  std::vector<const CLI::Option*> own;
+  for (const CLI::Option* option : command.get_options())
+    if (std::ranges::find(others, option) == others.end()) own.push_back(option);
+  // With --at no scene is loaded, where the number of threads would be set.
+  command.parse_complete_callback([this, &command, own = std::move(own)] {
+    refuse_beside_log(command, own);
+    set_thread_count(threads);
+  });
 }
 
 Result<Scene> SceneOptions::load(const std::string& file) {

@@ -436,15 +436,38 @@ def log_rate(quick):
 
 
 def record_cost(quick):
-    """a log of four cameras, LiDAR, states and all other topics, against bare steps, in a generated house; verification"""
-    data = run_json(BIN / "bench_record_cost", ROOT / "examples" / "house.toml", CACHE, "--json", "--pairs", 1)
-    yield at_most("CPU time that logging adds to the thread that steps", data["overhead"], 0.02,
-                  f"four cameras 640x480 and all topics: {data['logged_us']:.1f} µs a step, bare {data['bare_us']:.1f} µs; {data['megabytes']:.0f} MB/s of log")
-    data = run_json(BIN / "bench_record_cost", ROOT / "examples" / "two_robots.toml", CACHE, "--json", "--cameras", 0, "--seconds", 5, "--pairs", 1)
+    """a log of states, /tf and joints against bare steps; the same with four cameras and all other topics; verification"""
+    for scene in ("house", "two_robots"):
+        data = run_json(BIN / "bench_record_cost", ROOT / "examples" / f"{scene}.toml", CACHE, "--json", "--cameras", 0,
+                        "--seconds", 10, "--pairs", 5 if quick else 15)
+        yield at_most(f"CPU time that a log of states adds to the thread that steps, {scene}", data["overhead"], 0.02,
+                      f"median of pairs; {data['logged_us']:.1f} µs a step, bare {data['bare_us']:.1f} µs; "
+                      f"wall {data['logged_wall_us']:.1f} and {data['bare_wall_us']:.1f} µs")
     yield at_least("steps per second of a verification / of a bare run", data["verify_over_bare"], 0.9, f"{data['steps']} steps, {data['differing']} differ")
+    data = run_json(BIN / "bench_record_cost", ROOT / "examples" / "house.toml", CACHE, "--json", "--pairs", 1)
+    yield at_most("the same with four cameras 640x480 and all topics, house", data["overhead"], 0.02,
+                  f"{data['logged_us']:.1f} µs a step, bare {data['bare_us']:.1f} µs; the thread waited for pictures "
+                  f"{data['waits'][1]} times in {data['steps']} steps; {data['megabytes']:.0f} MB for a second")
+
+
+def latency(quick):
+    """from an instant to its message in another process, by bridge, stream and size: what the bridge adds, the renderer's share aside"""
+    bars = {("zmq shm", "raw 640x480"): 0.3, ("zmq", "raw 640x480"): 1, ("ros2", "JPEG 640x480"): 5, ("ros2", "state 1 kHz"): 0.3,
+            ("zmq", "state 1 kHz"): 1}
+    lines = run(BIN / "bench_latency", "--seconds", 2 if quick else 8, "--only", "inside,ros2,zmq,zmq shm,foxglove", ROS_DOMAIN_ID=str(os.getpid() % 90))
+    for line in map(json.loads, lines.splitlines()):
+        if not line.get("messages"):
+            raise RuntimeError(f"{line.get('client')}, {line.get('stream')}: no message came: {line}")
+        bar = bars.get((line["client"], line["stream"]))
+        if bar is None:
+            continue
+        share = line.get("bridge_p50_ms", line["p50_ms"])
+        yield at_most(f"{line['client']}: {line['stream']}, ms that the bridge adds", share, bar,
+                      f"whole latency p50 {line['p50_ms']:.2f}, p99 {line['p99_ms']:.2f}, jitter {line['jitter_ms']:.2f} ms; "
+                      f"{line['messages']} messages, {line['dropped']:.0f} lost")
 
 
 # With the seconds that each takes on two cores: the first estimate of the time left.
 ALL = {sim_step_rate: 15, sim_beside_cameras: 60, path_tier: 60, equal_error: 600, direct_tier: 90, direct_places: 60, view: 40, fast_tier: 400, truth: 40, load_time: 120, import_time: 60,
        first_picture: 15, adaptive_sampling: 120, lidar: 25, environments: 60, hfield: 25, gas: 20,
-       effects: 90, all_effects: 75, log_rate: 60, record_cost: 300}
+       effects: 90, all_effects: 75, log_rate: 60, record_cost: 300, latency: 330}

@@ -52,7 +52,7 @@ Status place_log(RunRequest* request) {
   std::filesystem::create_directories(request->out, code);
   if (code)
     return Error{ErrorKind::kIo, "no folder " + request->out.string() + ": " + code.message()};
-  request->log.file = request->out / "run.mcap";
+  request->log.file = request->out / kRunLogName;
   request->log.overwrite = request->overwrite;
   return {};
 }

@@ -39,6 +39,8 @@ struct Client {
 std::span<const Client> clients();
 
 int run_ros2_client(const std::string& address, const std::string& topic, int out);
+int run_zmq_client(const std::string& address, const std::string& topic, int out);
+int run_shm_client(const std::string& address, const std::string& topic, int out);
 int run_rclpy_client(const std::string& address, const std::string& topic, int out);
 int run_foxglove_client(const std::string& address, const std::string& topic, int out);
 

@@ -4,8 +4,9 @@
 // process for each bridge, one after the other. A step hook notes when each physics step began,
 // which is when its instant came to be but for some ten microseconds. One line of JSON for each
 // client and topic: p50 and p99 [ms], jitter (standard deviation [ms]), messages, and instants of
-// which none came. "inside" is the same topic opened in the simulation's own process: rendering and
-// encoding; what a bridge adds is the difference.
+// which none came. "inside" is the same topic opened in the simulation's own process. Of the others
+// "bridge_p50_ms", "bridge_p99_ms" leave out what passed until the message left the simulation:
+// physics, rendering, encoding.
 
 #include <poll.h>
 #include <signal.h>
@@ -28,6 +29,7 @@
 
 #include "bench/command_line.h"
 #include "bench/latency/latency.h"
+#include "bench/latency/timed_simulation.h"
 #include "gloam/bridge.h"
 #include "gloam/simulation.h"
 
@@ -70,6 +72,8 @@ constexpr double kWarmUp = 1500;   // of each measurement [ms]
 
 constexpr Client kClients[] = {
     {"ros2", [](BridgeOptions* o) { o->ros2.emplace(); }, run_ros2_client},
+    {"zmq", [](BridgeOptions* o) { o->zmq = ZmqOptions{.port = 0}; }, run_zmq_client},
+    {"zmq shm", [](BridgeOptions* o) { o->zmq = ZmqOptions{.port = 0}; }, run_shm_client},
     {"rclpy", [](BridgeOptions* o) { o->ros2.emplace(); }, run_rclpy_client},
     {"foxglove", [](BridgeOptions* o) { o->foxglove.emplace().port = 0; }, run_foxglove_client},
 };
@@ -77,26 +81,35 @@ constexpr Client kClients[] = {
 /// Milliseconds at which the instants of a run came to be, by step.
 struct StepTimes {
   std::vector<std::atomic<double>> began;
-  explicit StepTimes(size_t steps) : began(steps) {}
-  double of(uint64_t instant) const {
+  std::vector<std::atomic<double>> left;  ///< when their message left the simulation
+  explicit StepTimes(size_t steps) : began(steps), left(steps) {}
+  size_t index(uint64_t instant) const {
     const auto step =
         static_cast<size_t>(std::llround(1e-9 * static_cast<double>(instant) / kStep));
-    return step >= 1 && step <= began.size() ? began[step - 1].load() : 0;
+    return step >= 1 && step <= began.size() ? step - 1 : 0;
   }
 };
+
+double quantile(std::vector<double> values, double share) {
+  std::ranges::sort(values);
+  return values[static_cast<size_t>(share * static_cast<double>(values.size() - 1))];
+}
 
 /// Messages of one topic at one reader.
 struct Series {
   std::vector<double> latencies;  // [ms]
+  std::vector<double> shares;     // of the bridge [ms]; empty inside
   uint64_t first = 0, last = 0, bytes = 0;
 
   void add(const Arrival& arrival, const StepTimes& times) {
-    const double born = times.of(arrival.instant);
+    const size_t index = times.index(arrival.instant);
+    const double born = times.began[index], left = times.left[index];
     if (born <= 0) return;
     if (first == 0) first = arrival.instant;
     last = arrival.instant;
     bytes = arrival.bytes;
     latencies.push_back(arrival.at - born);
+    if (left > 0) shares.push_back(arrival.at - left);
   }
 
   ordered_json report(const char* client, const Subject& subject) const {
@@ -105,22 +118,20 @@ struct Series {
       line["messages"] = 0;
       return line;
     }
-    std::vector<double> sorted = latencies;
-    std::ranges::sort(sorted);
-    const auto at = [&](double share) {
-      return sorted[static_cast<size_t>(share * static_cast<double>(sorted.size() - 1))];
-    };
     double mean = 0, variance = 0;
-    const auto count = static_cast<double>(sorted.size());
-    for (const double x : sorted) mean += x / count;
-    for (const double x : sorted) variance += (x - mean) * (x - mean) / count;
+    const auto count = static_cast<double>(latencies.size());
+    for (const double x : latencies) mean += x / count;
+    for (const double x : latencies) variance += (x - mean) * (x - mean) / count;
     const double expected = std::round(1e-9 * static_cast<double>(last - first) * subject.rate) + 1;
-    line.update({{"p50_ms", at(0.5)},
-                 {"p99_ms", at(0.99)},
+    line.update({{"p50_ms", quantile(latencies, 0.5)},
+                 {"p99_ms", quantile(latencies, 0.99)},
                  {"jitter_ms", std::sqrt(variance)},
                  {"bytes", bytes},
-                 {"messages", sorted.size()},
+                 {"messages", latencies.size()},
                  {"dropped", std::max(0.0, expected - count)}});
+    if (shares.empty()) return line;
+    line["bridge_p50_ms"] = quantile(shares, 0.5);
+    line["bridge_p99_ms"] = quantile(shares, 0.99);
     return line;
   }
 };
@@ -212,21 +223,24 @@ void print(const ordered_json& line) {
 
 Status measure(int seconds, const std::string& only) {
   GLOAM_TRY(const World world, measured_world());
-  GLOAM_TRY(const auto simulation, Simulation::create(world, {.pace = Pace::kRealTime}));
-  StepTimes times(3'600'000);
+  StepTimes times(3'600'000);  // outlives the simulation, whose hook writes it
   size_t step = 0;
+  GLOAM_TRY(const auto simulation, Simulation::create(world, {.pace = Pace::kRealTime}));
   GLOAM_TRY_STATUS(simulation->set_step_hook([&](const mjModel_*, mjData_*) {
     if (step < times.began.size()) times.began[step++] = now_ms();
   }));
   simulation->resume();
   Run run(*simulation, times, seconds);
+  TimedSimulation timed(*simulation, [&](const TopicMessage& message) {
+    times.left[times.index(static_cast<uint64_t>(std::llround(message.time * 1e9)))] = now_ms();
+  });
   if (is_chosen(only, "inside"))
     for (const Subject& subject : kSubjects) print(run.inside(subject));
   for (const Client& client : kClients) {
     if (!is_chosen(only, client.name)) continue;
     BridgeOptions options;
     client.choose(&options);
-    GLOAM_TRY(const auto bridges, Bridges::start(*simulation, options));
+    GLOAM_TRY(const auto bridges, Bridges::start(timed, options));
     for (const Subject& subject : kSubjects)
       print(run.outside(client, bridges->list().front()->address(), subject));
   }

@@ -16,6 +16,9 @@ namespace gloam {
 
 class Simulation;
 
+/// Name of a run's log in its results folder.
+inline constexpr const char* kRunLogName = "run.mcap";
+
 struct LogRequest {
   std::filesystem::path file = {};       ///< new file; empty = no log
   bool overwrite = false;                ///< a file of this name is replaced

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <thread>
 
+#include "base/log.h"
 #include "control/controllers.h"
 #include "geometry/mesh/single.h"
 #include "runtime/label_table.h"
@@ -15,6 +16,8 @@
 
 namespace gloam {
 namespace {
+
+constexpr std::chrono::milliseconds kLook{5};  // after which a wish to stop is seen
 
 double wall_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -78,6 +81,7 @@ Status LiveSimulation::recompile(const World& world) {
   const Status status = simulator_->recompile(world.compiled(), std::move(controllers));
   renderers_.keep_only(simulator_->world());
   GLOAM_TRY_STATUS(status);
+  send_latched();
   return metering_ == Metering::kAlways ? meters_.open(*simulator_, renderers_) : Status();
 }
 
@@ -89,12 +93,35 @@ Result<Checkpoint> LiveSimulation::checkpoint() {
 Status LiveSimulation::restore(const Checkpoint& checkpoint) {
   const std::lock_guard one_at_a_time(recompile_mutex_);
   const auto& world = checkpoint.data().record.chapters.back().world;
+  const bool is_other = world != simulator_->world();
   if (renderers_.any()) GLOAM_TRY_STATUS(renderers_.of(world));
   const Status status = simulator_->restore(checkpoint.data(), make_controllers);
   renderers_.keep_only(simulator_->world());
   GLOAM_TRY_STATUS(status);
   restart_speed_clock();
+  if (is_other) send_latched();
   return metering_ == Metering::kAlways ? meters_.open(*simulator_, renderers_) : Status();
+}
+
+void LiveSimulation::add_latched(std::weak_ptr<LatchedTopics> topics) {
+  const std::lock_guard lock(latched_mutex_);
+  std::erase_if(latched_, [](const auto& one) { return one.expired(); });
+  latched_.push_back(std::move(topics));
+}
+
+void LiveSimulation::send_latched() {
+  std::vector<std::weak_ptr<LatchedTopics>> readers;
+  {
+    const std::lock_guard lock(latched_mutex_);
+    readers = latched_;
+  }
+  const Snapshot now = simulator_->latest();
+  for (const auto& reader : readers) {
+    const std::shared_ptr<LatchedTopics> open = reader.lock();
+    if (open == nullptr) continue;
+    if (const Status sent = open->send(now); !sent.ok())
+      log_warning("latched topics: {}", sent.error().to_string());
+  }
 }
 
 Result<std::unique_ptr<ControlLease>> LiveSimulation::claim(Robot robot) {
@@ -117,8 +144,11 @@ Status LiveSimulation::run_until(int64_t step) {
   paused_ = false;
   step = std::min(step, simulator_->end());
   simulator_->run_until(step);
-  while (simulator_->step_count() < step && simulator_->status().ok() && !stop_requested_) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  while (!stop_requested_) {
+    if (!simulator_->wait_for(kLook)) continue;
+    // Somebody may have paused it on the way.
+    if (simulator_->step_count() >= step || !simulator_->status().ok()) break;
+    std::this_thread::sleep_for(kLook);
   }
   if (stop_requested_.exchange(false)) {
     pause();
@@ -244,7 +274,13 @@ Result<std::vector<TopicInfo>> LiveSimulation::topics() const {
 
 Result<std::unique_ptr<TopicStream>> LiveSimulation::open_topics(const TopicRequest& request,
                                                                  TopicCallback on_message) {
-  GLOAM_TRY(auto feed, TopicFeed::open(*this, topics_, request, std::move(on_message)));
+  return open_topic_batches(request, 1, std::move(on_message));
+}
+
+Result<std::unique_ptr<TopicStream>> LiveSimulation::open_topic_batches(const TopicRequest& request,
+                                                                        int batch,
+                                                                        TopicCallback on_message) {
+  GLOAM_TRY(auto feed, TopicFeed::open(*this, topics_, request, std::move(on_message), batch));
   return std::unique_ptr<TopicStream>(std::move(feed));
 }
 

@@ -5,10 +5,12 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <vector>
 
 #include "gloam/simulation.h"
 #include "runtime/robot_claims.h"
 #include "runtime/streams/exposure_meter.h"
+#include "runtime/streams/latched_topics.h"
 #include "runtime/streams/live_camera.h"
 #include "runtime/streams/live_lidar.h"
 #include "runtime/streams/live_sensors.h"
@@ -83,9 +85,14 @@ class LiveSimulation final : public Simulation {
     return topics_.of(simulator_->world());
   }
   Simulator& simulator() { return *simulator_; }
+  /// The same as open_topics() for a reader in no hurry: SubscriptionOptions::batch.
+  Result<std::unique_ptr<TopicStream>> open_topic_batches(const TopicRequest& request, int batch,
+                                                          TopicCallback on_message);
   Result<std::shared_ptr<SharedRenderer>> renderer() { return renderers_.of(simulator_->world()); }
   Result<std::unique_ptr<LiveCamera>> open_live_camera(const CameraRequest& request,
                                                        FrameCallback on_frame);
+  /// Sends them again when another World runs.
+  void add_latched(std::weak_ptr<LatchedTopics> topics);
   /// Several sensors in one stream.
   Result<std::unique_ptr<LiveSensors>> open_live_sensors(LiveSensorsRequest request,
                                                          SensorCallback on_message);
@@ -99,6 +106,7 @@ class LiveSimulation final : public Simulation {
   LiveSimulation(uint64_t seed, bool required_meters, Metering metering)
       : seed_(seed), metering_(metering), meters_(seed, required_meters) {}
   void restart_speed_clock();
+  void send_latched();
   Result<std::shared_ptr<const CompiledWorld>> solve_latest(PoseFrame& poses);
 
   const uint64_t seed_;
@@ -109,6 +117,8 @@ class LiveSimulation final : public Simulation {
   ExposureMeters meters_;
   RobotClaims claims_;
   mutable TopicTables topics_;
+  std::mutex latched_mutex_;
+  std::vector<std::weak_ptr<LatchedTopics>> latched_;
   std::mutex solver_mutex_;
   std::unique_ptr<PoseSolver> solver_;  // for questions about the latest instant
   std::atomic<bool> paused_{true}, stop_requested_{false};

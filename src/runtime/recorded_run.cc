@@ -18,6 +18,7 @@
 #include "gloam/program.h"
 #include "gloam/run.h"
 #include "record/recorder.h"
+#include "runtime/changed_settings.h"
 #include "runtime/label_table.h"
 #include "runtime/live_simulation.h"
 #include "runtime/log/log_recorder.h"
@@ -117,7 +118,7 @@ Result<std::vector<CameraRequest>> camera_requests(const World& world, const Run
   return requests;
 }
 
-// Those LiDARs of the scene of which files are wanted.
+// LiDARs of the scene whose files are wanted.
 Result<std::vector<RecordedLidar>> recorded_lidars(const World& world, Rational timestep) {
   const Scene& scene = world.compiled()->scene;
   const bool all = wants(scene.record.outputs, "lidar");
@@ -133,13 +134,11 @@ Result<std::vector<RecordedLidar>> recorded_lidars(const World& world, Rational 
   return lidars;
 }
 
-constexpr const char* kLogName = "run.mcap";
-
 // The log that is asked for, or the scene's.
 LogRequest log_request_of(const Scene& scene, const RunRequest& request) {
   LogRequest log = request.log;
   const RecordOptions& record = scene.record;
-  if (log.file.empty() && record.mcap && !request.out.empty()) log.file = request.out / kLogName;
+  if (log.file.empty() && record.mcap && !request.out.empty()) log.file = request.out / kRunLogName;
   if (log.topics.empty()) log.topics = record.topics;
   log.durable |= record.durable;
   log.embed |= record.embed;
@@ -176,6 +175,8 @@ RunInfo run_info(const World& world, const RunRequest& request, bool has_media, 
   for (const DrawnOption& d : world.compiled()->drawn) info.drawn.push_back({d.option, d.value});
   if (scene.render.error)
     info.settings.push_back({"error", fmt::format("{}", *scene.render.error)});
+  for (NamedText& setting : changed_settings(*world.compiled()))
+    info.settings.push_back(std::move(setting));
   return info;
 }
 
@@ -255,7 +256,7 @@ Result<RunReport> record_motion(const World& world, const RunRequest& request,
     const bool has_media = shared != nullptr ? !shared->description.volumes.empty()
                                              : !scene.volumes.empty() || !scene.gases.empty();
     RunInfo info = run_info(world, request, has_media, 1 / rate.value(), duration);
-    if (log_request.file == request.out / kLogName) info.beside = {kLogName};
+    if (log_request.file == request.out / kRunLogName) info.beside = {kRunLogName};
     GLOAM_TRY(info.lidars, recorded_lidars(world, simulator.timestep()));
     uint64_t memory = 0;
     for (const CameraRequest& camera : requests) {

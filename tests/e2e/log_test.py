@@ -93,6 +93,17 @@ class Log(unittest.TestCase):
         log = self.folder / "results/two_robots/run.mcap"  # where a run goes that names no folder
         self.assertRegex(gloam("replay", log, "--verify").stdout, r"^0 of 350 steps differ")
 
+    def test_a_run_that_goes_on_refuses_by_name_what_it_cannot_change(self):
+        for options in (["--spp", "9"], ["--device", "cpu"], ["--tier", "direct"], ["--error", "0.1"], ["--max-depth", "2"], ["--ev", "3"],
+                        ["--look", "studio"], ["--groups", "0"], ["--sites"], ["--no-denoise"], ["--output", "png"], ["--keyframe", "home"],
+                        ["--seed", "4"], ["--set", "sim.duration=1"], ["--timestep", "0.001"], ["--root", "."], ["--strict"],
+                        ["--package", "a=b"]):
+            said = subprocess.run([str(PROGRAM), "run", str(self.log), "--at", "0.5", "--duration", "0.01", "--out", "refused", *options],
+                                  cwd=self.folder, capture_output=True, text=True, timeout=300)
+            self.assertEqual(said.returncode, 2, (options, said.stderr))
+            self.assertIn(f"{options[0]} does not go with --at", said.stderr)
+        self.assertFalse((self.folder / "refused").exists())
+
     def test_a_replay_says_where_its_motion_comes_from(self):
         for option, word in (("--poses", "poses only"), ("--restep", "a new run")):
             out = self.folder / option

@@ -24,6 +24,7 @@ ARM = """<mujoco model="arm"><worldbody><body name="base"><geom size="0.05" mass
 <joint name="elbow" axis="0 1 0"/><geom type="capsule" fromto="0 0 0 0.3 0 0" size="0.02"/></body></body></worldbody>
 <actuator><motor name="elbow" joint="elbow"/></actuator></mujoco>"""
 BALL = '<mujoco model="ball"><worldbody><body name="ball"><freejoint/><geom size="0.1" mass="1"/></body></worldbody></mujoco>'
+FBX = '<mujoco><asset><mesh name="a" file="a.fbx"/></asset><worldbody><geom type="mesh" mesh="a"/></worldbody></mujoco>'
 URDF = """<robot name="box"><link name="base"><inertial><mass value="1"/><inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0"
 iyz="0"/></inertial><collision><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link></robot>"""
 SCENE = """[scene]
@@ -78,7 +79,7 @@ class Ros2Services(unittest.TestCase):
         self.addCleanup(scratch.cleanup)
         self.folder = Path(scratch.name) / "a" / "b" / "c" / "d"
         self.folder.mkdir(parents=True)
-        for name, text in {"room.xml": ROOM, "arm.xml": ARM, "ball.xml": BALL, "lab.toml": SCENE,
+        for name, text in {"room.xml": ROOM, "arm.xml": ARM, "ball.xml": BALL, "lab.toml": SCENE, "a.fbx": "no mesh", "fbx.xml": FBX,
                            "other.toml": '[environment]\nfile = "room.xml"\n'}.items():
             (self.folder / name).write_text(text)
 
@@ -184,13 +185,13 @@ class Ros2Services(unittest.TestCase):
                 spawn("ball", text=BALL, allow_renaming=True), spawn("a b", text=BALL), spawn("", text="<mujoco/>"),
                 spawn("x", text="<sdf/>"), spawn("x"), spawn("x", text=BALL, entity_namespace="a//b"),
                 spawn("x", text="<mujoco><worldbody><body><geom/></body>"), spawn("x", text='<mujoco><asset><mesh file="no.stl"/></asset></mujoco>'),
-                spawn("x", text=BALL, initial_pose={"pose": {"orientation": {"w": 3.0}}}),
+                spawn("x", uri="fbx.xml"), spawn("x", text=BALL, initial_pose={"pose": {"orientation": {"w": 3.0}}}),
                 spawn("box", text=URDF, initial_pose={"pose": {"position": {"y": 4.0, "z": 1.0}}}),
                 spawn("chair", uri="gloam://prop/chair", initial_pose={"pose": {"position": {"x": -3.0}}}),
                 spawn("second", uri="arm.xml", entity_namespace="fleet/b", initial_pose={"pose": {"position": {"y": -4.0}}}),
                 spawn("x", uri="/etc/passwd"))
             self.assertEqual([a["result"]["result"] for a in answers],
-                             [OK, 101, OK, 102, 102, 103, 104, 105, 106, 107, 109, OK, OK, OK, 104])
+                             [OK, 101, OK, 102, 102, 103, 104, 105, 106, 107, 108, 109, OK, OK, OK, 104])
             self.assertEqual([a["entity_name"] for a in answers if a["result"]["result"] == OK], ["ball", "ball_2", "box", "chair", "second"])
             one = {"name": "c", "entity_resource": {"uri": "ball.xml"}, "initial_pose": {"pose": {"position": {"z": 4.0}}}}
             answers = self.call(service("SpawnEntities", {"spawn_requests": [one, one]}), service("SpawnEntities", {"spawn_requests": []}),
@@ -214,10 +215,13 @@ class Ros2Services(unittest.TestCase):
             self.assertEqual(bad["result"]["result"], NOT_FOUND)
             self.assertEqual(current["world"]["name"], "lab")
             self.assertEqual(self.codes(
-                load(), load("nothing"), load("a.sdf"), load(text="[["), load(text='[environment]\nfile = "no.xml"'), load("other"),
+                load(), load("nothing"), load("a.sdf"), load(text="[["), load(text='[environment]\nfile = "no.xml"'),
+                load(text='[environment]\nfile = "fbx.xml"'), load("other"),
                 service("GetCurrentWorld"), service("UnloadWorld"), service("UnloadWorld"), service("GetCurrentWorld"),
-                service("GetSimulationState"), set_state(PLAYING), service("StepSimulation"), load("lab"), service("StepSimulation")),
-                [102, 102, 101, 103, 104, OK, OK, OK, 101, 101, OK, 103, FAILED, OK, OK])
+                service("GetSimulationState"), set_state(PLAYING), service("StepSimulation"),
+                service("ResetSimulation"), service("DeleteEntity", {"entity": "crate"}), load("lab"), service("StepSimulation")),
+                [102, 102, 101, 103, 104, 105, OK, OK, OK, 101, 101, OK, 103, FAILED, INCORRECT_STATE,
+                 INCORRECT_STATE, OK, OK])
 
     def test_actions_step_and_follow(self):
         steps = {"action": "/sim/simulate_steps", "type": "simulation_interfaces/action/SimulateSteps"}

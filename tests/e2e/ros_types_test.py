@@ -109,9 +109,12 @@ class RosTypes(unittest.TestCase):
         if kind == Nodetype.BASE:
             return self.random_primitive(draw, what[0])
         element, size = what
-        values = [self.random_value(draw, *element) for _ in range(size if kind == Nodetype.ARRAY else draw.randrange(4))]
+        count = size if kind == Nodetype.ARRAY else draw.randrange((size or 3) + 1)  # of a sequence `size` is its bound
+        values = [self.random_value(draw, *element) for _ in range(count)]
         if element[0] == Nodetype.NAME or element[1][0] == "string":
             return values
+        if element[1][0] == "byte":
+            values = [value % 256 for value in values]
         return numpy.array(values, {"bool": "bool", "char": "uint8", "byte": "uint8"}.get(element[1][0], element[1][0]))
 
     def random_primitive(self, draw, name):

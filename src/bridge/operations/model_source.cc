@@ -7,6 +7,7 @@
 #include <cctype>
 #include <fstream>
 
+#include "bridge/operations/model_text.h"
 #include "gloam/options.h"
 #include "gloam/program.h"
 
@@ -15,9 +16,10 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr size_t kLongestModel = size_t{16} << 20;  // [bytes]
+constexpr size_t kMostText = size_t{256} << 20;     // of all models that were texts [bytes]
 constexpr size_t kLongestAddress = 4000;
-constexpr std::string_view kFileScheme = "file://", kOwnScheme = "gloam://",
-                           kPackageScheme = "package://", kPropFolder = "gloam://prop/";
+constexpr std::string_view kFileScheme = "file://", kPackageScheme = "package://";
+constexpr std::string_view kOwnScheme = "gloam://", kPropFolder = "gloam://prop/";
 
 Error refuse(SpawnFailure* failure, SpawnFailure cause, std::string message,
              std::string hint = {}) {
@@ -71,8 +73,8 @@ std::vector<fs::path> own_folders() {
 }
 
 Result<fs::path> path_of(const std::string& uri, const Scene& scene) {
-  const auto refused = [&](std::string why, std::string hint = {}) {
-    return Error{ErrorKind::kInput, fmt::format("'{:.200}' {}", uri, why), {}, std::move(hint)};
+  const auto refused = [&](const char* why, const char* hint = "") {
+    return Error{ErrorKind::kInput, fmt::format("'{:.200}' {}", uri, why), {}, hint};
   };
   if (uri.empty() || uri.size() > kLongestAddress) return refused("is no address of a file");
   std::string path = percent_decoded(uri);
@@ -114,66 +116,7 @@ Status check_as_scene_would(const fs::path& file, const Scene& scene) {
   return read.ok() ? Status() : Status(read.error());
 }
 
-/// Kind of a model's text.
-enum class ModelText : uint8_t { kMjcf, kUrdf, kSdf, kUsd, kOther };
-
-ModelText model_text_of(std::string_view text) {
-  if (text.starts_with("#usda")) return ModelText::kUsd;
-  for (size_t at = text.find('<'); at != std::string_view::npos; at = text.find('<', at + 1)) {
-    const std::string_view tag = text.substr(at + 1, 8);
-    if (tag.starts_with('?')) continue;
-    if (tag.starts_with("!--")) {
-      at = text.find("-->", at);
-      if (at == std::string_view::npos) break;
-      continue;
-    }
-    const auto is_tag = [&](std::string_view name) {
-      return tag.starts_with(name) &&
-             (tag.size() == name.size() ||
-              std::string_view(" \t\r\n>/").find(tag[name.size()]) != std::string_view::npos);
-    };
-    if (is_tag("mujoco")) return ModelText::kMjcf;
-    if (is_tag("robot")) return ModelText::kUrdf;
-    if (is_tag("sdf")) return ModelText::kSdf;
-    break;
-  }
-  return ModelText::kOther;
-}
-
-// Attribute of the first element of a tag: of the root, whose text was found good.
-std::string attribute_of(std::string_view text, const std::string& tag, const std::string& name) {
-  const size_t begin = text.find("<" + tag), end = text.find('>', begin);
-  if (begin == std::string_view::npos || end == std::string_view::npos) return {};
-  const std::string_view element = text.substr(begin, end - begin);
-  for (const char* space : {" ", "\n", "\t"}) {
-    const size_t at = element.find(space + name + "=");
-    if (at == std::string_view::npos) continue;
-    const size_t quote = at + name.size() + 2;
-    if (quote >= element.size()) return {};
-    const size_t last = element.find(element[quote], quote + 1);
-    if (last == std::string_view::npos) return {};
-    return std::string(element.substr(quote + 1, last - quote - 1));
-  }
-  return {};
-}
-
-// ROS fixes a robot to the world by a link of that name; others stand freely, as in Gazebo.
-bool is_fixed_urdf(std::string_view text) {
-  return text.find("link name=\"world\"") != std::string_view::npos ||
-         text.find("link name='world'") != std::string_view::npos;
-}
-
 }  // namespace
-
-bool is_model_extension(const std::string& extension) {
-  return extension == ".xml" || extension == ".urdf" || extension == ".toml" ||
-         extension == ".mjcf";
-}
-
-bool is_mesh_extension(const std::string& extension) {
-  constexpr std::string_view kMeshes[] = {".glb", ".gltf", ".obj", ".stl", ".ply"};
-  return std::ranges::find(kMeshes, extension) != std::end(kMeshes);
-}
 
 std::string prop_kind_of(const std::string& uri) {
   return uri.starts_with(kPropFolder) ? uri.substr(kPropFolder.size()) : std::string();
@@ -218,6 +161,9 @@ Result<fs::path> ModelSource::resolve_folder(const std::string& uri, const Scene
 
 Result<fs::path> ModelSource::write(const std::string& text, const std::string& extension) {
   const std::lock_guard lock(mutex_);
+  if (written_ + text.size() > kMostText)
+    return Error{ErrorKind::kUsage, "256 MiB of models came as text, no more are taken"};
+  written_ += text.size();
   std::error_code code;
   if (folder_.empty()) {
     std::string name = (fs::temp_directory_path(code) / "gloam_spawned_XXXXXX").string();
@@ -268,9 +214,9 @@ Result<SceneEntity> ModelSource::find(const SpawnRequest& request, const Scene& 
                     fmt::format("'{}' files are not read", extension),
                     "give MJCF, URDF, glTF, OBJ, STL or PLY");
     robot.file = *path;
+    if (extension == ".toml") return SceneEntity(robot);
     std::ifstream in(*path, std::ios::binary);
     text.assign(std::istreambuf_iterator<char>(in), {});
-    if (extension == ".toml") return SceneEntity(robot);
   }
   if (text.size() > kLongestModel)
     return refuse(failure, SpawnFailure::kUnsupportedFormat, "a model of more than 16 MiB");
@@ -280,14 +226,15 @@ Result<SceneEntity> ModelSource::find(const SpawnRequest& request, const Scene& 
                   "give MJCF or URDF");
   if (kind == ModelText::kOther)
     return refuse(failure, SpawnFailure::kParse, "the text is neither MJCF nor URDF");
-  *model_name = attribute_of(text, kind == ModelText::kUrdf ? "robot" : "mujoco",
-                             kind == ModelText::kUrdf ? "name" : "model");
-  if (kind == ModelText::kUrdf && !is_fixed_urdf(text)) robot.base = "free";
+  const bool is_urdf = kind == ModelText::kUrdf;
+  *model_name = attribute_of(text, is_urdf ? "robot" : "mujoco", is_urdf ? "name" : "model");
+  if (is_urdf && !is_fixed_urdf(text)) robot.base = "free";
   if (!robot.file.empty()) return SceneEntity(robot);
   if (!scene.access.root.empty())
     return refuse(failure, SpawnFailure::kOther,
                   "models as text are not taken where --root limits the files that are read");
-  GLOAM_TRY(robot.file, write(text, kind == ModelText::kUrdf ? ".urdf" : ".xml"));
+  *failure = SpawnFailure::kOther;
+  GLOAM_TRY(robot.file, write(text, is_urdf ? ".urdf" : ".xml"));
   return SceneEntity(robot);
 }
 

@@ -17,10 +17,6 @@ namespace gloam::bridge {
 /// One entity more in a Scene.
 using SceneEntity = std::variant<RobotOptions, ObjectOptions, PropOptions>;
 
-/// Extensions of files by what they are, in lower case with their dot.
-bool is_model_extension(const std::string& extension);  ///< MJCF, URDF, a model in TOML
-bool is_mesh_extension(const std::string& extension);
-
 class ModelSource {
  public:
   ModelSource() = default;
@@ -47,6 +43,7 @@ class ModelSource {
   mutable std::mutex mutex_;
   std::filesystem::path folder_;  // empty until the first
   int count_ = 0;
+  size_t written_ = 0;  // [bytes]
 };
 
 /// Name of a prop's kind in "gloam://prop/KIND"; empty = another address.

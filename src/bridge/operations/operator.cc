@@ -46,6 +46,11 @@ void Operator::Private::forget_waiting() {
   waiting.clear();
 }
 
+size_t Operator::Private::spawned_count() const {
+  const std::lock_guard lock(names_mutex);
+  return spawned.size();
+}
+
 RunState Operator::state() const {
   if (private_->loading) return RunState::kLoading;
   if (private_->unloaded) return RunState::kNoWorld;

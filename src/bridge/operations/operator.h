@@ -114,8 +114,9 @@ class Operator {
   Result<std::string> option(std::string_view path) const;
   /// All of them or none; recompiles the World.
   Status set_options(const std::vector<std::pair<std::string, std::string>>& values);
-  /// Elements of a live field from `first` on, at the next step; names are those of
-  /// World::inputs(), "gravity".
+  /// Elements of a live field at the latest instant; names are those of World::inputs(), "gravity".
+  Result<std::vector<double>> live_field(std::string_view name) const;
+  /// Changes elements from `first` on, at the next step.
   Status set_live_field(std::string_view name, int first, std::vector<float> values);
   /// Goes on in the scene of a text in TOML, whose paths start at the first scene's folder.
   Status recompile(std::string_view toml);

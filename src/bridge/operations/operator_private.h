@@ -42,6 +42,7 @@ struct Operator::Private {
   Status need_world() const;
   Scene first_scene() const;
   void forget_waiting();
+  size_t spawned_count() const;
   /// A scene that a client names. `known`: scenes that it may call by their names.
   Result<Scene> read_world(const std::string& uri, const std::string& text,
                            const std::vector<WorldFile>& known) const;

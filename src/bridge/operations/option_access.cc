@@ -10,23 +10,41 @@
 namespace gloam::bridge {
 namespace {
 
-// Names of live fields as World::inputs() has them, by LiveFieldId.
-constexpr std::string_view kLiveFields[kLiveFieldCount] = {"gravity",
-                                                           "wind",
-                                                           "body_mass",
-                                                           "geom_friction",
-                                                           "height_field",
-                                                           "light_diffuse",
-                                                           "light_intensity",
-                                                           "light_active",
-                                                           "geom_color",
-                                                           "material_color",
-                                                           "material_emission",
-                                                           "material_specular",
-                                                           "material_shininess",
-                                                           "material_reflectance",
-                                                           "material_metallic",
-                                                           "material_roughness"};
+/// Name of a live field as World::inputs() has it, and of the array in MuJoCo.
+struct LiveFieldName {
+  std::string_view name;
+  const char* field;
+};
+// By LiveFieldId.
+constexpr LiveFieldName kLiveFields[kLiveFieldCount] = {
+    {"gravity", "opt.gravity"},
+    {"wind", "opt.wind"},
+    {"body_mass", "body_mass"},
+    {"geom_friction", "geom_friction"},
+    {"height_field", "hfield_data"},
+    {"light_diffuse", "light_diffuse"},
+    {"light_intensity", "light_intensity"},
+    {"light_active", "light_active"},
+    {"geom_color", "geom_rgba"},
+    {"material_color", "mat_rgba"},
+    {"material_emission", "mat_emission"},
+    {"material_specular", "mat_specular"},
+    {"material_shininess", "mat_shininess"},
+    {"material_reflectance", "mat_reflectance"},
+    {"material_metallic", "mat_metallic"},
+    {"material_roughness", "mat_roughness"},
+};
+
+Result<LiveFieldId> find_live_field(std::string_view name) {
+  const auto* found = std::ranges::find(kLiveFields, name, &LiveFieldName::name);
+  if (found != std::end(kLiveFields)) return static_cast<LiveFieldId>(found - kLiveFields);
+  std::vector<std::string> names;
+  for (const LiveFieldName& field : kLiveFields) names.emplace_back(field.name);
+  return Error{ErrorKind::kInput,
+               fmt::format("there is no live field '{}'", name.substr(0, 100)),
+               {},
+               suggest_name(name, names)};
+}
 
 // The files that options name must be those that the scene itself could name.
 Status check_files(Scene scene, const ModelSource& source) {
@@ -35,8 +53,12 @@ Status check_files(Scene scene, const ModelSource& source) {
     return o.robot != "environment" &&
            std::ranges::find(scene.robots, o.robot, &RobotOptions::name) == scene.robots.end();
   });
-  if (scene.file.empty()) scene.file = scene.bare_model;
-  if (scene.robots.empty() && scene.bare_model.empty() && scene.environment.file.empty()) return {};
+  if (scene.bare_model.empty()) {
+    // A scene must hold something.
+    scene.props.push_back({.name = "check_of_files", .kind = prop_kinds().front().kind});
+  } else if (scene.file.empty()) {
+    scene.file = scene.bare_model;
+  }
   const Result<Scene> read = overlay_scene(scene, "", "options");
   return read.ok() ? Status() : Status(read.error());
 }
@@ -65,17 +87,16 @@ Status Operator::set_options(const std::vector<std::pair<std::string, std::strin
   return p.exchange(scene);
 }
 
+Result<std::vector<double>> Operator::live_field(std::string_view name) const {
+  GLOAM_TRY(const LiveFieldId id, find_live_field(name));
+  const std::lock_guard lock(private_->solved_mutex);
+  GLOAM_TRY_STATUS(private_->solve());
+  return private_->solved->instant.value(kLiveFields[static_cast<size_t>(id)].field);
+}
+
 Status Operator::set_live_field(std::string_view name, int first, std::vector<float> values) {
-  const auto* found = std::ranges::find(kLiveFields, name);
-  if (found == std::end(kLiveFields)) {
-    const std::vector<std::string> names(std::begin(kLiveFields), std::end(kLiveFields));
-    return Error{ErrorKind::kInput,
-                 fmt::format("there is no live field '{}'", name.substr(0, 100)),
-                 {},
-                 suggest_name(name, names)};
-  }
-  const auto field = static_cast<LiveFieldId>(found - std::begin(kLiveFields));
-  return simulation_.post({.what = SetLiveField{field, first, std::move(values)}});
+  GLOAM_TRY(const LiveFieldId id, find_live_field(name));
+  return simulation_.post({.what = SetLiveField{id, first, std::move(values)}});
 }
 
 Status Operator::recompile(std::string_view toml) {

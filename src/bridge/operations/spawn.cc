@@ -15,7 +15,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr size_t kMostSpawned = 1000, kLongestName = 128;
-constexpr int kMostListed = 2000, kDeepest = 4;
 
 SpawnResult failed(SpawnFailure failure, Error error) {
   return {.failure = failure, .error = std::move(error)};
@@ -68,11 +67,16 @@ void add_to_scene(SceneEntity entity, const std::string& name, Scene* scene) {
 
 // Cause of a compile's failure, by what its message says: MuJoCo and Gloam tell of files alike.
 SpawnFailure cause_of(const Error& error) {
+  const auto says = [&](std::initializer_list<const char*> words) {
+    return std::ranges::any_of(
+        words, [&](const char* word) { return error.message.find(word) != std::string::npos; });
+  };
   if (error.kind == ErrorKind::kUsage) return SpawnFailure::kOther;
-  for (const char* words :
-       {"there is no file", "does not exist", "outside the folder", "could not open",
-        "cannot be read", "cannot open", "resource not found", "not found"})
-    if (error.message.find(words) != std::string::npos) return SpawnFailure::kMissingAssets;
+  if (says({"there is no file", "does not exist", "outside the folder", "could not open",
+            "cannot be read", "cannot open", "is not known"}))
+    return SpawnFailure::kMissingAssets;
+  if (error.kind == ErrorKind::kUnsupported || says({"no decoder found"}))
+    return SpawnFailure::kUnsupportedAssets;
   return SpawnFailure::kParse;
 }
 
@@ -95,23 +99,68 @@ bool erase_named(std::string_view name, std::vector<Options>* all) {
   return std::erase_if(*all, [&](const Options& o) { return o.name == name; }) > 0;
 }
 
-void list_models(const fs::path& folder, std::vector<Spawnable>* list) {
-  std::error_code code;
-  std::vector<fs::path> files;
-  const auto options = fs::directory_options::skip_permission_denied;
-  for (fs::recursive_directory_iterator it(folder, options, code), end; !code && it != end;
-       it.increment(code)) {
-    if (it.depth() > kDeepest) it.disable_recursion_pending();
-    std::string extension = it->path().extension().string();
-    if (!it->is_regular_file(code) || it->path().filename() == "package.xml") continue;
-    if (is_model_extension(extension) || is_mesh_extension(extension)) files.push_back(it->path());
-    if (files.size() >= kMostListed) break;
+// Errors of a request by itself.
+SpawnResult check_request(const SpawnRequest& request) {
+  if (!request.name.empty() && !is_name(request.name))
+    return failed(SpawnFailure::kNameInvalid,
+                  "a name has up to 128 letters, digits, '_', '-' and '.'");
+  if (!request.ns.empty() && !is_namespace(request.ns))
+    return failed(SpawnFailure::kNamespaceInvalid,
+                  fmt::format("'{:.100}' is no namespace of ROS", request.ns));
+  return {};
+}
+
+Result<Pose> find_pose(const SpawnRequest& request, Simulation& simulation) {
+  Pose X_FE = request.X_FE;
+  if (!is_finite(X_FE.p) || !normalize(&X_FE.q))
+    return Error{ErrorKind::kInput,
+                 "the pose has no unit quaternion, or numbers that are not finite"};
+  if (request.frame.empty() || request.frame == "world") return X_FE;
+  GLOAM_TRY(const Body body, simulation.world().find_body(request.frame));
+  GLOAM_TRY(const Pose X_WF, simulation.body_pose(body));
+  return product(X_WF, X_FE);
+}
+
+// The name that is asked for, or the resource's own, or a free one after it.
+SpawnResult choose_name(const SpawnRequest& request, const std::string& own,
+                        const std::vector<Entity>& entities, const World& world) {
+  const auto is_taken = [&](const std::string& name) {
+    return std::ranges::find(entities, name, &Entity::name) != entities.end() ||
+           world.find_body(name).ok();
+  };
+  std::string name = request.name.empty() ? own : request.name;
+  if (name.empty() && !request.allow_renaming)
+    return failed(SpawnFailure::kNameInvalid, "neither the request nor the model has a name");
+  if (name.empty()) name = "entity";
+  if (!is_taken(name)) return {.name = name};
+  if (!request.allow_renaming)
+    return failed(SpawnFailure::kNameTaken, fmt::format("there is an entity '{}' already", name));
+  int number = 2;
+  while (is_taken(fmt::format("{}_{}", name, number))) ++number;
+  return {.name = fmt::format("{}_{}", name, number)};
+}
+
+// The World of a scene with the new entity, its topics by its namespace.
+Result<World> compile_with(const std::string& name, const std::string& ns, Scene* scene,
+                           SpawnFailure* failure) {
+  Result<World> world = World::compile(*scene);
+  if (world.ok() && !ns.empty()) {
+    *failure = SpawnFailure::kNamespaceInvalid;
+    GLOAM_TRY_STATUS(rename_topics(*world, name, ns, scene));
+    world = World::compile(*scene);
   }
-  std::ranges::sort(files);
-  for (const fs::path& file : files) {
-    const bool is_mesh = is_mesh_extension(file.extension().string());
-    list->push_back({"file://" + file.string(), is_mesh ? "mesh, as a body" : "model", {}});
+  if (!world.ok()) {
+    *failure = cause_of(world.error());
+    return world;
   }
+  *failure = SpawnFailure::kParse;
+  for (const RobotInfo& robot : world->robots())
+    if (robot.name == name && robot.root.id <= 0)
+      return Error{ErrorKind::kInput, "the model has no body"};
+  // Names of topics have fewer characters: two entities may have one.
+  *failure = ns.empty() ? SpawnFailure::kNameTaken : SpawnFailure::kNamespaceInvalid;
+  GLOAM_TRY_STATUS(list_topics(*world));
+  return world;
 }
 
 }  // namespace
@@ -120,24 +169,10 @@ SpawnResult Operator::spawn(const SpawnRequest& request) {
   Private& p = *private_;
   if (const Status world = p.need_world(); !world.ok())
     return failed(SpawnFailure::kOther, world.error());
-  if (!request.name.empty() && !is_name(request.name))
-    return failed(SpawnFailure::kNameInvalid,
-                  "a name has up to 128 letters, digits, '_', '-' and '.'");
-  if (!request.ns.empty() && !is_namespace(request.ns))
-    return failed(SpawnFailure::kNamespaceInvalid,
-                  fmt::format("'{:.100}' is no namespace of ROS", request.ns));
-  Pose X_FE = request.X_FE;
-  if (!is_finite(X_FE.p) || !normalize(&X_FE.q))
-    return failed(SpawnFailure::kPoseInvalid,
-                  "the pose has no unit quaternion, or numbers that are not finite");
-  Pose X_WE = X_FE;
-  if (!request.frame.empty() && request.frame != "world") {
-    const Result<Body> body = simulation_.world().find_body(request.frame);
-    if (!body.ok()) return failed(SpawnFailure::kPoseInvalid, body.error());
-    const Result<Pose> X_WF = simulation_.body_pose(*body);
-    if (!X_WF.ok()) return failed(SpawnFailure::kPoseInvalid, X_WF.error());
-    X_WE = product(*X_WF, X_FE);
-  }
+  if (const SpawnResult checked = check_request(request); !checked.ok()) return checked;
+  const Result<Pose> X_WE = find_pose(request, simulation_);
+  if (!X_WE.ok()) return failed(SpawnFailure::kPoseInvalid, X_WE.error());
+
   const std::lock_guard one_at_a_time(p.change_mutex);
   Scene scene = written_scene(simulation_.world());
   if (!scene.bare_model.empty())
@@ -146,50 +181,24 @@ SpawnResult Operator::spawn(const SpawnRequest& request) {
                         "a bare model takes nothing more",
                         {},
                         "run a scene: [environment] or [[robot]] with this file"});
+  if (p.spawned_count() >= kMostSpawned)
+    return failed(SpawnFailure::kOther, "1000 entities were spawned, no more are");
   SpawnFailure failure = SpawnFailure::kOther;
   std::string model_name;
-  Result<SceneEntity> entity = p.source.find(request, scene, X_WE, &model_name, &failure);
+  Result<SceneEntity> entity = p.source.find(request, scene, *X_WE, &model_name, &failure);
   if (!entity.ok()) return failed(failure, entity.error());
-
-  const std::vector<Entity> all = entities();
-  const auto is_taken = [&](const std::string& name) {
-    return std::ranges::find(all, name, &Entity::name) != all.end() ||
-           simulation_.world().find_body(name).ok();
-  };
-  std::string name =
-      request.name.empty() ? default_name(*entity, model_name, p.source) : request.name;
-  if (name.empty() && !request.allow_renaming)
-    return failed(SpawnFailure::kNameInvalid, "neither the request nor the model has a name");
-  if (name.empty()) name = "entity";
-  if (is_taken(name)) {
-    if (!request.allow_renaming)
-      return failed(SpawnFailure::kNameTaken, fmt::format("there is an entity '{}' already", name));
-    int number = 2;
-    while (is_taken(fmt::format("{}_{}", name, number))) ++number;
-    name = fmt::format("{}_{}", name, number);
-  }
-  {
-    const std::lock_guard lock(p.names_mutex);
-    if (p.spawned.size() >= kMostSpawned)
-      return failed(SpawnFailure::kOther, "1000 entities were spawned, no more are");
-  }
-  add_to_scene(std::move(*entity), name, &scene);
-  Result<World> world = World::compile(scene);
-  if (world.ok() && !request.ns.empty()) {
-    if (const Status renamed = rename_topics(*world, name, request.ns, &scene); !renamed.ok())
-      return failed(SpawnFailure::kNamespaceInvalid, renamed.error());
-    world = World::compile(scene);
-    if (world.ok())
-      if (const auto topics = list_topics(*world); !topics.ok())
-        return failed(SpawnFailure::kNamespaceInvalid, topics.error());
-  }
-  if (!world.ok()) return failed(cause_of(world.error()), world.error());
+  SpawnResult result = choose_name(request, default_name(*entity, model_name, p.source), entities(),
+                                   simulation_.world());
+  if (!result.ok()) return result;
+  add_to_scene(std::move(*entity), result.name, &scene);
+  const Result<World> world = compile_with(result.name, request.ns, &scene, &failure);
+  if (!world.ok()) return failed(failure, world.error());
   if (const Status status = simulation_.recompile(*world); !status.ok())
     return failed(SpawnFailure::kOther, status.error());
   const std::lock_guard lock(p.names_mutex);
-  p.spawned.insert(name);
-  p.infos.erase(name);
-  return {.name = name};
+  p.spawned.insert(result.name);
+  p.infos.erase(result.name);
+  return result;
 }
 
 Status Operator::remove(std::string_view name) {
@@ -215,20 +224,6 @@ Status Operator::remove(std::string_view name) {
   p.spawned.erase(std::string(name));
   p.infos.erase(std::string(name));
   return {};
-}
-
-Result<std::vector<Spawnable>> Operator::spawnables(const std::vector<std::string>& folders) const {
-  std::vector<Spawnable> list;
-  for (const PropInfo& prop : prop_kinds())
-    list.push_back({"gloam://prop/" + prop.kind, prop.text, prop.size});
-  if (const Result<fs::path> home = gloam_home(); home.ok())
-    list_models(*home / "assets/robots", &list);
-  const Scene scene = written_scene(simulation_.world());
-  for (const std::string& folder : folders) {
-    GLOAM_TRY(const fs::path path, ModelSource::resolve_folder(folder, scene));
-    list_models(path, &list);
-  }
-  return list;
 }
 
 }  // namespace gloam::bridge

@@ -32,8 +32,9 @@ enum class SpawnFailure : uint8_t {
   kUnsupportedFormat,
   kNoResource,  ///< neither address nor text, or no such file
   kNamespaceInvalid,
-  kParse,          ///< the model or the scene with it does not compile
-  kMissingAssets,  ///< a file that the model names is not there or may not be read
+  kParse,              ///< the model or the scene with it does not compile
+  kMissingAssets,      ///< a file that the model names is not there or may not be read
+  kUnsupportedAssets,  ///< a file that the model names is of a format that is not read
   kPoseInvalid,
   kOther,  ///< the simulation has failed, too many entities, a bare model
 };

@@ -20,7 +20,7 @@ namespace gloam::bridge {
 
 struct DdsNodeOptions {
   int domain = 0;        ///< 0 … 232
-  bool network = false;  ///< all network cards; else loopback and shared memory alone
+  bool network = false;  ///< all network cards; else loopback alone
   std::string node = "gloam", ns = "/";
 };
 

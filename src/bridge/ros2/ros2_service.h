@@ -22,6 +22,7 @@ struct Ros2Service {
   std::function<void(std::span<const uint8_t> request,
                      std::function<void(std::vector<uint8_t>)> reply)>
       answer_later = {};
+  std::string hash = {};  ///< of its type, "RIHS01_…"; empty = not told
 };
 
 }  // namespace gloam::bridge

@@ -14,6 +14,7 @@ Status ServiceServer::add(Ros2Service service) {
   const TopicQos qos{.is_reliable = true, .depth = 100};
   GLOAM_TRY(entry->writer, node_.add_writer({.topic = dds_reply(service.name),
                                              .type = dds_type(service.type, "_Response"),
+                                             .type_hash = service.hash,
                                              .qos = qos}));
   entry->service = std::move(service);
   const Entry* const self = entry.get();
@@ -21,6 +22,7 @@ Status ServiceServer::add(Ros2Service service) {
       entry->reader,
       node_.add_reader({.topic = dds_request(entry->service.name),
                         .type = dds_type(entry->service.type, "_Request"),
+                        .type_hash = entry->service.hash,
                         .qos = qos},
                        [this, self](const DdsSample& sample) {
                          const std::lock_guard lock(mutex_);

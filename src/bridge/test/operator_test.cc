@@ -214,16 +214,29 @@ TEST_F(OperatorTest, RefusesToSpawnByCause) {
   EXPECT_EQ(cause({.uri = "http://example.com/a.xml"}), SpawnFailure::kNoResource);
   EXPECT_EQ(cause({.text = "<sdf version='1.9'/>"}), SpawnFailure::kUnsupportedFormat);
   EXPECT_EQ(cause({.text = "<mujoco/>"}), SpawnFailure::kNameInvalid);
+  EXPECT_EQ(cause({.name = "x", .text = "<mujoco/>"}), SpawnFailure::kParse);
   EXPECT_EQ(cause({.name = "x", .text = "hello"}), SpawnFailure::kParse);
   EXPECT_EQ(cause({.name = "x", .text = "<mujoco><worldbody><body><geom/></worldbody></mujoco>"}),
             SpawnFailure::kParse);
   EXPECT_EQ(cause({.name = "x", .text = "<mujoco><asset><mesh file='none.stl'/></asset></mujoco>"}),
             SpawnFailure::kMissingAssets);
+  write("a.fbx", "no mesh");
+  write("fbx.xml",
+        "<mujoco><asset><mesh name='a' file='a.fbx'/></asset>"
+        "<worldbody><geom type='mesh' mesh='a'/></worldbody></mujoco>");
+  EXPECT_EQ(cause({.uri = "fbx.xml"}), SpawnFailure::kUnsupportedAssets);
   EXPECT_EQ(cause({.text = kBall, .ns = "a//b"}), SpawnFailure::kNamespaceInvalid);
   EXPECT_EQ(cause({.text = kBall, .X_FE = {{}, {0, 0, 0, 0}}}), SpawnFailure::kPoseInvalid);
   EXPECT_EQ(cause({.text = kBall, .frame = "nowhere"}), SpawnFailure::kPoseInvalid);
   EXPECT_EQ(cause({.text = std::string(20u << 20, ' ')}), SpawnFailure::kUnsupportedFormat);
   EXPECT_EQ(op().entities().size(), 6u);
+}
+
+// "a-b" and "a_b" would say the same topics.
+TEST_F(OperatorTest, RefusesNamesThatShareTopics) {
+  ASSERT_TRUE(op().spawn({.name = "a-b", .uri = "arm.xml"}).ok());
+  EXPECT_EQ(op().spawn({.name = "a_b", .uri = "arm.xml"}).failure, SpawnFailure::kNameTaken);
+  EXPECT_TRUE(simulation_->topics().ok());
 }
 
 TEST_F(OperatorTest, ReadsNoFilesBeyondTheScenes) {
@@ -315,7 +328,9 @@ TEST_F(OperatorTest, ChangesOptionsAndLiveFields) {
   expect_ok(op().set_live_field("gravity", 0, {0, 0, 0}));
   expect_ok(op().step(100));
   EXPECT_NEAR(op().entity_state("crate").value().velocity.z, 0, 1e-2);
+  EXPECT_EQ(op().live_field("gravity").value(), (std::vector<double>{0, 0, 0}));
   expect_error(op().set_live_field("gravit", 0, {0}), ErrorKind::kInput, "gravity");
+  expect_error(op().live_field("gravit"), ErrorKind::kInput, "gravity");
   EXPECT_FALSE(op().set_live_field("gravity", 2, {0, 0, 0}).ok());
 }
 

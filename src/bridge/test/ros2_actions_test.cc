@@ -67,9 +67,8 @@ class Client {
     const std::lock_guard lock(mutex_);
     std::vector<int> all;
     if (status_.empty()) return all;
-    for (const auto& goal :
-         decode<action_msgs::GoalStatusArray>(status_.back()).value().status_list)
-      all.push_back(goal.status);
+    const auto newest = decode<action_msgs::GoalStatusArray>(status_.back()).value();
+    for (const auto& goal : newest.status_list) all.push_back(goal.status);
     return all;
   }
   const Ros2Action& action() const { return action_; }
@@ -131,6 +130,13 @@ using StepsResult = sa::SimulateSteps_GetResult_Response;
 TEST_F(Ros2Actions, StepsAreTakenAndTold) {
   const auto client = steps();
   EXPECT_EQ(client->action().name, "/sim/simulate_steps");
+  // As rosidl of Kilted describes them.
+  EXPECT_EQ(client->action().services[0].hash,
+            "RIHS01_504407b9ff5617a737df8222cf581452b4f2e699e11e940d8d36590c5fb07d01");
+  EXPECT_EQ(client->action().services[1].hash,
+            "RIHS01_573d8b0a534451d7bc2ac8c5ffde8ac14b8593b7001175d0cd6516dcbeb8689a");
+  EXPECT_EQ(client->action().services[2].hash,
+            "RIHS01_a1dae0516ab5c70d6d797e1bcd55c9448dfbb1966643f1ebd3e3f153d8169ae0");
   ASSERT_TRUE(send_steps(*client, 1, 300));
   const StepsResult result = client->result<StepsResult>(1).get();
   EXPECT_EQ(result.status, GoalStatus::STATUS_SUCCEEDED);

@@ -104,6 +104,17 @@ TEST_F(Ros2Services, AreThe22OfThePackage) {
   EXPECT_EQ(simulation_services(op(), 1).size(), 22u);
 }
 
+// As rosidl of Kilted describes the packages' own definitions.
+TEST_F(Ros2Services, HaveTheHashesOfRos) {
+  const auto hash_of = [&](const std::string& name) {
+    return std::ranges::find(services_, name, &Ros2Service::name)->hash;
+  };
+  EXPECT_EQ(hash_of("/sim/spawn_entities"),
+            "RIHS01_41703a359ee032bf4fc230f144f531705ba039a2e97edeae1f7997dd83b04857");
+  EXPECT_EQ(hash_of("/sim/get_simulator_features"),
+            "RIHS01_abb9439c8cf196722a469fb6c68b44b484f198c2a1356ac38849a29c2a20a794");
+}
+
 TEST_F(Ros2Services, DamagedRequestsHaveNoAnswer) {
   const std::vector<uint8_t> damaged = {0, 1, 0, 0, 255, 255, 255, 255};
   for (const Ros2Service& service : services_) {
@@ -416,11 +427,11 @@ TEST_F(Ros2Parameters, AreReadAndSet) {
   EXPECT_FALSE(set("speed", double_parameter(-3)));
   EXPECT_TRUE(set("use_sim_time", bool_parameter(true)));
   EXPECT_FALSE(set("use_sim_time", bool_parameter(false)));
-  EXPECT_TRUE(set("gravity", doubles_parameter({0, 0, -1})));
-  EXPECT_FALSE(set("gravity", doubles_parameter({0, 0})));
-  EXPECT_FALSE(set("gravity", doubles_parameter({0, 0, std::nan("")})));
+  EXPECT_TRUE(set("live.gravity", doubles_parameter({0, 0, -1})));
+  EXPECT_FALSE(set("live.gravity", doubles_parameter({0, 0})));
+  EXPECT_FALSE(set("live.gravity", doubles_parameter({0, 0, std::nan("")})));
   ASSERT_TRUE(op().step(1).ok());
-  EXPECT_EQ(get("gravity").double_array_value.at(2), -1);
+  EXPECT_EQ(get("live.gravity").double_array_value.at(2), -1);
 
   EXPECT_EQ(get("prop.seat.seed").integer_value, 0);
   rcl_interfaces::ParameterValue seed;
@@ -430,6 +441,7 @@ TEST_F(Ros2Parameters, AreReadAndSet) {
   EXPECT_EQ(get("prop.seat.seed").integer_value, 5);
   EXPECT_TRUE(set("robot.arm.position", doubles_parameter({0, 2, 0})));
   EXPECT_NEAR(op().entity_state("arm").value().X_WE.p.y, 2, 1e-9);
+  EXPECT_FALSE(set("live.none", doubles_parameter({1})));
   EXPECT_FALSE(set("sim.timestep", double_parameter(0.1)));
   EXPECT_FALSE(set("no.such.option", seed));
   EXPECT_EQ(get("no.such.option").type, rcl_interfaces::ParameterType::PARAMETER_NOT_SET);
@@ -464,7 +476,8 @@ TEST_F(Ros2Parameters, AreListedAndDescribed) {
         .result;
   };
   EXPECT_GT(list({}, 0).names.size(), 30u);
-  EXPECT_EQ(list({}, 1).names.size(), 5u);
+  EXPECT_EQ(list({}, 1).names.size(), 3u);
+  EXPECT_GT(list({"live"}, 0).names.size(), 4u);
   for (const std::string& name : list({"prop.seat"}, 0).names)
     EXPECT_TRUE(name.starts_with("prop.seat.")) << name;
   EXPECT_GT(list({"prop.seat"}, 0).names.size(), 3u);

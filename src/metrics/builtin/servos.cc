@@ -1,10 +1,14 @@
-// Tracking errors of joints: target less position of position servos (a gain and a bias of equal
-// size), hinges [rad] and slides [m] apart. A servo's control is its target, within its range.
+// Tracking errors of joints, hinges [rad] and slides [m] apart: target less position of position
+// servos (a gain and a bias of equal size), whose control is the target, within its range; and of
+// motors under a joint_position controller, whose targets are those of the scene. Goals that
+// Commands give to such a motor are in no Snapshot and not seen.
 
 #include <algorithm>
 #include <cmath>
 
+#include "control/robot_joints.h"
 #include "metrics/builtin/robot_metric.h"
+#include "sim/state/initial_state.h"
 
 namespace gloam {
 namespace {
@@ -19,11 +23,43 @@ bool is_servo(const mjModel& m, int actuator, int joint_type) {
          m.jnt_type[m.actuator_trnid[2 * actuator]] == joint_type;
 }
 
+/// A joint that a controller holds with a motor.
+struct HeldJoint {
+  int qpos = 0;
+  double target = 0;  // [rad or m]
+};
+
+// Motors of a joint_position controller, on joints of that type.
+std::vector<HeldJoint> held_joints(const MetricRobot& robot, int joint_type) {
+  const mjModel& m = *robot.world->model;
+  const ControllerOptions& options = robot.instance->options.controller;
+  if (options.type != "joint_position") return {};
+  const std::vector<DrivenJoint> joints = driven_joints(m, *robot.instance);
+  const DataPtr data(mj_makeData(&m));
+  if (data == nullptr) return {};
+  reset_to_initial_state(*robot.world, m, *data);
+  std::vector<HeldJoint> held;
+  for (size_t i = 0; i < joints.size(); ++i) {
+    const DrivenJoint& joint = joints[i];
+    if (joint.takes_target || m.jnt_type[joint.joint] != joint_type) continue;
+    const bool is_given = i < options.target.size();
+    held.push_back({joint.qpos, is_given ? options.target[i] : data->qpos[joint.qpos]});
+  }
+  return held;
+}
+
 struct ServoGroup {
   std::vector<int> actuators;
+  std::vector<HeldJoint> held;
   const char* unit = "rad";
   double square = 0, most = 0;  // sum over all samples; largest absolute error
   int64_t count = 0;
+
+  size_t joints() const { return actuators.size() + held.size(); }
+  void add(double error, double* sum) {
+    *sum += error * error;
+    most = std::max(most, std::fabs(error));
+  }
 };
 
 class ServoMetric final : public RobotMetric {
@@ -34,7 +70,8 @@ class ServoMetric final : public RobotMetric {
       group.unit = unit;
       for (const int actuator : robot.actuators)
         if (is_servo(*robot.world->model, actuator, type)) group.actuators.push_back(actuator);
-      if (!group.actuators.empty()) groups_.push_back(group);
+      group.held = held_joints(robot, type);
+      if (group.joints() > 0) groups_.push_back(group);
     }
   }
   bool is_empty() const { return groups_.empty(); }
@@ -61,13 +98,13 @@ class ServoMetric final : public RobotMetric {
         mjtNum target = instant.data->ctrl[c];
         if (m.actuator_ctrllimited[c])
           target = std::clamp(target, m.actuator_ctrlrange[2 * c], m.actuator_ctrlrange[2 * c + 1]);
-        const double error = target - instant.data->actuator_length[m.actuator_outadr[a]];
-        square += error * error;
-        group.most = std::max(group.most, std::fabs(error));
+        group.add(target - instant.data->actuator_length[m.actuator_outadr[a]], &square);
       }
+      for (const HeldJoint& joint : group.held)
+        group.add(joint.target - instant.data->qpos[joint.qpos], &square);
       group.square += square;
-      group.count += static_cast<int64_t>(group.actuators.size());
-      out[g] = std::sqrt(square / static_cast<double>(group.actuators.size()));
+      group.count += static_cast<int64_t>(group.joints());
+      out[g] = std::sqrt(square / static_cast<double>(group.joints()));
     }
   }
   void summarize(std::vector<MetricNumber>* numbers) const override {

@@ -47,6 +47,7 @@ Result<Checkpoint> log_checkpoint(const std::filesystem::path& file,
   data->record.step = state.step;
   data->record.hash = state.hash;
   std::erase_if(data->record.commands, [&](const Command& c) { return c.step >= state.step; });
+  std::erase_if(data->record.inputs, [&](const StepInput& i) { return i.step >= state.step; });
   std::erase_if(data->record.chapters, [&](const RunRecord::Chapter& chapter) {
     return chapter.from > 0 && chapter.from >= state.step;
   });

@@ -17,6 +17,8 @@
 namespace gloam {
 namespace {
 
+constexpr int kBatch = 32;  // instants that are written at once: a log is in no hurry
+
 // As rosbag2 writes it: YAML, with the numbers of rmw's enums.
 std::string qos_text(const TopicQos& qos) {
   return fmt::format(
@@ -48,7 +50,7 @@ Result<std::vector<TopicInfo>> wanted_topics(const TopicTable& table,
   return wanted;
 }
 
-// What was written stays readable.
+// Error of a log that ends early, of which the part that was written stays readable.
 Status partial(const Status& status) {
   if (status.ok()) return status;
   Error error = status.error();
@@ -141,15 +143,17 @@ Status LogRecorder::open_streams(const std::vector<TopicInfo>& topics) {
   TopicRequest request{
       .width = request_.width, .height = request_.height, .required = request_.required};
   for (const TopicInfo& topic : topics) request.topics.push_back(topic.name);
-  GLOAM_TRY(topics_, simulation_.open_topics(request, [this](const TopicMessage& message) {
-    write(message.topic.name, message.time, message.run, message.data);
-  }));
+  GLOAM_TRY(topics_,
+            simulation_.open_topic_batches(request, kBatch, [this](const TopicMessage& message) {
+              write(message.topic.name, message.time, message.run, message.data);
+            }));
   const Rational step_rate = simulation_.step_rate();
   SnapshotRequest states{
       .rate = request_.state_rate, .required = request_.required, .capacity = 256};
   if (states.rate.value() > step_rate.value()) states.rate = step_rate;
-  GLOAM_TRY(states_,
-            simulation_.open_snapshots(states, [this](const Snapshot& now) { take(now); }));
+  GLOAM_TRY(states_, LiveSnapshots::open(
+                         simulation_.simulator(), states,
+                         [this](const Snapshot& now) { take(now); }, {}, kBatch));
   return {};
 }
 
@@ -212,6 +216,7 @@ bool LogRecorder::write_history(const Snapshot& now) {
     const std::string json = command_text({run, command}, record.world_at(command.step));
     write(kCommandTopic, now.time(), run, bytes_of(json));
   }
+  for (const StepInput& input : record.inputs) write_input(input, now.time(), run);
   world_ = now.data().world;
   return true;
 }
@@ -225,18 +230,22 @@ void LogRecorder::write_commands() {
   }
 }
 
+void LogRecorder::write_input(const StepInput& input, double time, int64_t run) {
+  gloam_msgs::StepInput message;
+  message.header = ros_header(time, "");
+  message.run = run;
+  message.step = input.step;
+  message.index = input.index;
+  message.value = input.value;
+  encode(message, &bytes_);
+  write(kInputTopic, time, run, bytes_);
+}
+
 void LogRecorder::write_hook_inputs() {
-  for (StepInput& input : inputs_->take()) {
-    gloam_msgs::StepInput message;
+  for (const StepInput& input : inputs_->take()) {
     const double time =
         static_cast<double>(input.step) * simulation_.simulator().timestep().value();
-    message.header = ros_header(time, "");
-    message.run = input.run;
-    message.step = input.step;
-    message.index = std::move(input.index);
-    message.value = std::move(input.value);
-    encode(message, &bytes_);
-    write(kInputTopic, time, message.run, bytes_);
+    write_input(input, time, input.run);
   }
 }
 

@@ -43,6 +43,7 @@ class LogRecorder {
   void take(const Snapshot& now);
   void write_commands();
   void write_hook_inputs();
+  void write_input(const StepInput& input, double time, int64_t run);
   void write_world(const Snapshot& now);
   bool write_history(const Snapshot& now);
   void write_new_world(const Snapshot& now);

@@ -52,6 +52,7 @@ Result<std::unique_ptr<LiveSensors>> LiveSensors::open(Simulator& simulator, uin
   options.due = both_due(live->group_.due(), wanted.used);
   options.required = wanted.required;
   options.capacity = 64;
+  options.batch = wanted.batch;
   GLOAM_TRY(auto queue, simulator.subscribe(options));
   live->thread_.start(
       std::move(queue),

@@ -16,6 +16,7 @@ namespace gloam {
 struct LiveSensorsRequest {
   std::vector<std::string> sensors;
   bool required = false;
+  int batch = 1;  ///< as SubscriptionOptions::batch, 1 … 64
   /// The first step at or after the one given whose samples the reader uses; empty = every step
   /// with a sample. For sensors without errors, whose samples do not hang on those before.
   std::function<int64_t(int64_t step)> used = {};

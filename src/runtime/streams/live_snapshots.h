@@ -11,11 +11,13 @@ namespace gloam {
 
 class LiveSnapshots final : public SnapshotStream {
  public:
-  /// `due`: as SubscriptionOptions::due, instead of the request's rate; empty = that.
+  /// `due` and `batch`: as SubscriptionOptions has them; `due` instead of the request's rate, empty
+  /// = that.
   static Result<std::unique_ptr<LiveSnapshots>> open(Simulator& simulator,
                                                      const SnapshotRequest& request,
                                                      SnapshotCallback on_snapshot,
-                                                     std::function<int64_t(int64_t)> due = {});
+                                                     std::function<int64_t(int64_t)> due = {},
+                                                     int batch = 1);
   int64_t dropped() const override { return thread_.dropped(); }
   Status status() const override { return thread_.status(); }
 

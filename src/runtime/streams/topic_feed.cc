@@ -13,8 +13,8 @@ namespace gloam {
 
 Result<std::unique_ptr<TopicFeed>> TopicFeed::open(LiveSimulation& simulation, TopicTables& tables,
                                                    const TopicRequest& request,
-                                                   TopicCallback on_message) {
-  std::unique_ptr<TopicFeed> feed(new TopicFeed(tables, request, std::move(on_message)));
+                                                   TopicCallback on_message, int batch) {
+  std::unique_ptr<TopicFeed> feed(new TopicFeed(tables, request, std::move(on_message), batch));
   GLOAM_TRY(feed->table_, tables.of(simulation.world().compiled()));
   GLOAM_TRY_STATUS(feed->open_all(simulation));
   return feed;
@@ -53,7 +53,7 @@ Status TopicFeed::open_all(LiveSimulation& simulation) {
     else
       latched.push_back(std::move(outlet));
   }
-  GLOAM_TRY_STATUS(send_latched(simulation, std::move(latched)));
+  GLOAM_TRY_STATUS(open_latched(simulation, std::move(latched)));
   for (auto& [camera, outlets] : cameras)
     GLOAM_TRY_STATUS(open_camera(simulation, camera, std::move(outlets)));
   for (auto& [lidar, outlets] : lidars)
@@ -62,23 +62,35 @@ Status TopicFeed::open_all(LiveSimulation& simulation) {
   return open_snapshots(simulation, std::move(instants));
 }
 
+TopicFeed::~TopicFeed() {
+  if (latched_ != nullptr) latched_->close();
+}
+
+// Leaves out the topics that are not in `table`, and takes the others from there.
+void TopicFeed::keep_topics(const TopicTable& table, Outlets* outlets) {
+  Outlets next;
+  for (Outlet& outlet : *outlets) {
+    const auto same = std::ranges::find_if(table, [&outlet](const Topic& topic) {
+      return topic.info.name == outlet.topic->info.name;
+    });
+    if (same == table.end()) continue;
+    outlet.topic = &*same;
+    next.push_back(std::move(outlet));
+  }
+  *outlets = std::move(next);
+}
+
 // Makes what reads instants of a World: at first, and after a recompile, when what is gone is
 // silent.
 Status TopicFeed::follow(const std::shared_ptr<const CompiledWorld>& world, InstantReader* reader) {
   GLOAM_TRY(const auto table, tables_.of(world));
   GLOAM_TRY(reader->solver, PoseSolver::create(world));
-  Outlets next;
+  keep_topics(*table, &reader->outlets);
   for (Outlet& outlet : reader->outlets) {
-    const auto same = std::ranges::find_if(*table, [&outlet](const Topic& topic) {
-      return topic.info.name == outlet.topic->info.name;
-    });
-    if (same == table->end()) continue;
-    outlet.topic = &*same;
-    const auto* make = std::get_if<InstantEncoderMaker>(&same->code);
-    outlet.encode_instant = make != nullptr ? (*make)() : std::get<InstantEncoder>(same->code);
-    next.push_back(std::move(outlet));
+    const TopicCode& code = outlet.topic->code;
+    const auto* make = std::get_if<InstantEncoderMaker>(&code);
+    outlet.encode_instant = make != nullptr ? (*make)() : std::get<InstantEncoder>(code);
   }
-  reader->outlets = std::move(next);
   reader->table = table;
   return {};
 }
@@ -96,10 +108,23 @@ void TopicFeed::note(const std::string& what, const Status& fault) {
   fault_ = fault;
 }
 
-Status TopicFeed::send_latched(LiveSimulation& simulation, Outlets outlets) {
-  const Snapshot now = simulation.latest();
+Status TopicFeed::open_latched(LiveSimulation& simulation, Outlets outlets) {
+  if (outlets.empty()) return {};
+  latched_outlets_ = std::move(outlets);
+  latched_table_ = table_;
+  latched_ = std::make_shared<LatchedTopics>(
+      [this, &simulation](const Snapshot& now) { return send_latched(simulation, now); });
+  GLOAM_TRY_STATUS(latched_->send(simulation.latest()));
+  simulation.add_latched(latched_);
+  return {};
+}
+
+Status TopicFeed::send_latched(LiveSimulation& simulation, const Snapshot& now) {
+  GLOAM_TRY(const auto table, tables_.of(now.data().world));
+  if (table != latched_table_) keep_topics(*table, &latched_outlets_);
+  latched_table_ = table;
   const LatchedInputs inputs{now.time(), [&simulation] { return simulation.labels(); }};
-  for (Outlet& outlet : outlets) {
+  for (Outlet& outlet : latched_outlets_) {
     const TopicInfo& info = outlet.topic->info;
     const Status encoded =
         std::get<LatchedEncoder>(outlet.topic->code)(info, inputs, &outlet.bytes);
@@ -167,8 +192,8 @@ Status TopicFeed::open_snapshots(LiveSimulation& simulation, Outlets outlets) {
     if (const Status taken = take_instant(reader.get(), now); !taken.ok())
       note("topics of instants", taken);
   };
-  GLOAM_TRY(auto stream,
-            LiveSnapshots::open(simulation.simulator(), request, on_snapshot, first_of(schedules)));
+  GLOAM_TRY(auto stream, LiveSnapshots::open(simulation.simulator(), request, on_snapshot,
+                                             first_of(schedules), batch_));
   streams_.push_back(std::move(stream));
   return {};
 }

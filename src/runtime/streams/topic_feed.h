@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "gloam/simulation.h"
+#include "runtime/streams/latched_topics.h"
 #include "runtime/streams/topic_tables.h"
 #include "sim/loop/step_schedule.h"
 
@@ -17,16 +18,18 @@ class LiveSimulation;
 
 class TopicFeed final : public TopicStream {
  public:
-  /// Errors: no such topic, an input, those of the streams.
+  /// `batch`: of topics of instants and of sensors, as SubscriptionOptions::batch, 1 … 64. Errors:
+  /// no such topic, an input, those of the streams.
   static Result<std::unique_ptr<TopicFeed>> open(LiveSimulation& simulation, TopicTables& tables,
                                                  const TopicRequest& request,
-                                                 TopicCallback on_message);
+                                                 TopicCallback on_message, int batch = 1);
+  ~TopicFeed() override;
   int64_t dropped() const override;
   Status status() const override;
 
  private:
-  TopicFeed(TopicTables& tables, const TopicRequest& request, TopicCallback on_message)
-      : tables_(tables), request_(request), on_message_(std::move(on_message)) {}
+  TopicFeed(TopicTables& tables, const TopicRequest& request, TopicCallback on_message, int batch)
+      : tables_(tables), request_(request), on_message_(std::move(on_message)), batch_(batch) {}
 
   /// A topic and the room for its messages.
   struct Outlet {
@@ -68,10 +71,12 @@ class TopicFeed final : public TopicStream {
   Status open_sensor_stream(LiveSimulation& simulation, std::vector<Gathering*> gatherings,
                             SampleSteps steps);
   Status open_snapshots(LiveSimulation& simulation, Outlets outlets);
-  Status send_latched(LiveSimulation& simulation, Outlets outlets);
+  Status open_latched(LiveSimulation& simulation, Outlets outlets);
+  Status send_latched(LiveSimulation& simulation, const Snapshot& now);
   void take_sample(Gathering* gathering, size_t part, const SensorMessage& message);
   Status take_instant(InstantReader* reader, const Snapshot& now);
   Status follow(const std::shared_ptr<const CompiledWorld>& world, InstantReader* reader);
+  static void keep_topics(const TopicTable& table, Outlets* outlets);
   void note(const std::string& what, const Status& fault);
   void send(Outlet* outlet, const Status& encoded, TopicMessage message);
 
@@ -79,7 +84,11 @@ class TopicFeed final : public TopicStream {
   std::shared_ptr<const TopicTable> table_;  // of the World at the opening
   const TopicRequest request_;
   TopicCallback on_message_;
-  std::mutex sensors_mutex_;  // guards the gatherings
+  const int batch_;
+  Outlets latched_outlets_;
+  std::shared_ptr<const TopicTable> latched_table_;  // theirs
+  std::shared_ptr<LatchedTopics> latched_;           // null = there are none
+  std::mutex sensors_mutex_;                         // guards the gatherings
   std::vector<std::unique_ptr<Gathering>> gatherings_;
   mutable std::mutex mutex_;  // guards the first fault
   Status fault_;

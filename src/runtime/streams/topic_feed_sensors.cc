@@ -37,7 +37,8 @@ Status TopicFeed::open_sensors(LiveSimulation& simulation, Outlets outlets) {
 Status TopicFeed::open_sensor_stream(LiveSimulation& simulation, std::vector<Gathering*> gatherings,
                                      SampleSteps steps) {
   if (gatherings.empty()) return {};
-  LiveSensorsRequest request{.required = request_.required, .on_end = request_.on_end};
+  LiveSensorsRequest request{
+      .required = request_.required, .batch = batch_, .on_end = request_.on_end};
   request.on_lost = [this](const Error& why) {
     note("topics of sensors", why);
     if (request_.on_end) request_.on_end(why);

@@ -1,5 +1,6 @@
 // Logs: what is written is read back, stepped again to the bit, and found out where it is not.
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <atomic>
@@ -8,6 +9,7 @@
 
 #include "gloam/controller.h"
 #include "gloam/log.h"
+#include "gloam/log_replay.h"
 #include "gloam/run.h"
 #include "runtime/log/command_text.h"
 #include "runtime/log/log_recorder.h"
@@ -107,6 +109,37 @@ TEST_F(Logs, InputsOfStepHooksAreSteppedAgain) {
   const LogVerification found = verify();
   EXPECT_TRUE(found.is_equal()) << found.where << " after step " << found.equal_step;
   EXPECT_EQ(found.runs, 2);
+}
+
+// A log of a run that went on from a log, and of one that went on from that.
+TEST_F(Logs, InputsOfStepHooksBeforeABranchAreInItsLog) {
+  const auto hook = [](const mjModel_*, mjData_* d) { d->qfrc_applied[2] = 9 + d->time; };
+  {
+    auto live = simulation(world());
+    ASSERT_TRUE(live->set_step_hook(hook).ok());
+    auto log = *LogRecorder::start(*live, {.file = file_});
+    ASSERT_TRUE(live->step(100).ok());
+    live->simulator().stop();
+    ASSERT_TRUE(log->finish(live->latest()).ok());
+  }
+  for (const auto& [time, steps] : {std::pair(0.1, 100), std::pair(0.2, 150)}) {
+    const auto from = log_checkpoint(file_, "", 0, time);
+    ASSERT_TRUE(from.ok()) << from.error().to_string();
+    file_ = folder_.path() / fmt::format("branch_{}.mcap", steps);
+    auto live = simulation(from->world());
+    ASSERT_TRUE(live->restore(*from).ok());
+    if (steps == 150) {
+      ASSERT_TRUE(live->set_step_hook(hook).ok());
+    }
+    auto log = *LogRecorder::start(*live, {.file = file_});
+    ASSERT_TRUE(live->step(50).ok());
+    live->simulator().stop();
+    ASSERT_TRUE(log->finish(live->latest()).ok());
+    const LogVerification found = verify();
+    EXPECT_TRUE(found.is_equal()) << found.where << " after step " << found.equal_step;
+    EXPECT_TRUE(found.notes.empty());
+    EXPECT_EQ(found.steps, steps);
+  }
 }
 
 /// Depends on the wall: no log can know.

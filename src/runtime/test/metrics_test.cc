@@ -163,6 +163,38 @@ TEST(Metrics, ServosAreMeasuredAgainstTheirControls) {
   EXPECT_NEAR(arm.summary().at("r.slide_error_max_m"), 0.1, 1e-6);
 }
 
+// A hinge of 2 kg m² and a slide of 2 kg on motors that joint_position makes critically damped
+// springs of 5 rad/s: e = e0 (1 + w t) exp(-w t).
+constexpr const char* kMotorArm = R"(<mujoco><option gravity="0 0 0" integrator="RK4"/><worldbody>
+  <body><inertial pos="0 0 0" mass="1" diaginertia="2 2 2"/><joint name="j" axis="0 0 1"/>
+    <body><inertial pos="0 0 0" mass="2" diaginertia="1e-9 1e-9 1e-9"/>
+      <joint name="s" type="slide" axis="0 0 1"/></body></body></worldbody>
+  <actuator><motor joint="j"/><motor joint="s" gear="3"/></actuator>
+  <keyframe><key name="go" qpos=".2 .1"/></keyframe></mujoco>)";
+constexpr const char* kSprings =
+    "[robot.controller]\ntype = \"joint_position\"\nkp = 50\nkd = 20\n";
+
+TEST(Metrics, JointsThatAControllerHoldsOnMotorsAreMeasuredAgainstItsTargets) {
+  Measured arm(kMotorArm, std::string(kSprings) + "target = [0.7, -0.3]\n");
+  const double w = 5, t = 0.4, left = (1 + w * t) * std::exp(-w * t);
+  const NumbersByName last = arm.run_to(t);
+  EXPECT_NEAR(last.at("r.joint_error_rad"), 0.5 * left, 2e-3);
+  EXPECT_NEAR(last.at("r.slide_error_m"), 0.4 * left, 2e-3);
+  EXPECT_NEAR(arm.summary().at("r.joint_error_max_rad"), 0.5, 1e-9) << "where it begins";
+  EXPECT_NEAR(arm.summary().at("r.slide_error_max_m"), 0.4, 1e-9);
+}
+
+TEST(Metrics, JointsThatAControllerHoldsWhereTheyBeginHaveThatTarget) {
+  Measured arm(kMotorArm, kSprings);
+  EXPECT_EQ(arm.run_to(0.1).at("r.joint_error_rad"), 0);
+  EXPECT_EQ(arm.summary().at("r.slide_error_max_m"), 0);
+}
+
+TEST(Metrics, MotorsWithoutTargetsHaveNoErrors) {
+  Measured arm(kMotorArm);
+  EXPECT_EQ(arm.run_to(0.1).count("r.joint_error_rad"), 0u);
+}
+
 // A cart on two slides whose velocity a hook sets; nothing is in its way.
 constexpr const char* kPlanarCart =
     R"(<mujoco><option gravity="0 0 0"/><worldbody><body name="cart">

@@ -6,9 +6,11 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <mutex>
 #include <thread>
 
+#include "runtime/live_simulation.h"
 #include "scenes.h"
 
 namespace gloam {
@@ -74,7 +76,7 @@ CameraRequest small(const std::string& camera, Rational rate, const std::string&
   return request;
 }
 
-/// What a stream delivers, to be read once it is closed.
+/// Items that a stream delivers, to be read once it is closed.
 template <class Item>
 class CollectedUnlocked {
  public:
@@ -204,6 +206,52 @@ TEST(RecompileSensing, ManyWhileItRuns) {
   for (const Status& s :
        {(*eye)->status(), (*dvs)->status(), (*where)->status(), (*lidar)->status()})
     EXPECT_TRUE(s.ok()) << s.error().to_string();
+}
+
+// Two sensors in one stream, of which one is not in the next World.
+TEST(RecompileSensing, ASensorThatIsGoneIsToldOfAndTheOthersGoOn) {
+  const TempFolder folder;
+  const auto with = [&folder](const char* name, const std::string& sensors) {
+    return compile_text(folder, name,
+                        "<mujoco><worldbody><body name=\"b\"><joint name=\"j\"/><geom "
+                        "size=\".1\"/></body></worldbody><sensor>" +
+                            sensors + "</sensor></mujoco>");
+  };
+  const std::string angle = "<jointpos name=\"angle\" joint=\"j\"/>";
+  const World both = with("both.xml", angle + "<jointvel name=\"rate\" joint=\"j\"/>");
+  const World one = with("one.xml", angle), none = with("none.xml", "");
+  auto simulation = *LiveSimulation::create(both, {.pace = Pace::kLockstep});
+  std::mutex mutex;
+  std::vector<std::string> lost;
+  std::map<std::string, std::vector<int64_t>> steps;
+  LiveSensorsRequest request{.sensors = {"angle", "rate"}, .required = true};
+  request.on_lost = [&](const Error& why) {
+    const std::lock_guard lock(mutex);
+    lost.push_back(why.to_string());
+  };
+  request.on_end = [&](const Error& why) {
+    const std::lock_guard lock(mutex);
+    lost.push_back("the end: " + why.to_string());
+  };
+  auto stream = *simulation->open_live_sensors(request, [&](const SensorMessage& message) {
+    const std::lock_guard lock(mutex);
+    steps[message.sensor].push_back(message.step);
+  });
+  ASSERT_TRUE(simulation->step(20).ok());
+  ASSERT_TRUE(simulation->recompile(one).ok());
+  ASSERT_TRUE(simulation->step(20).ok());
+  ASSERT_TRUE(simulation->recompile(none).ok());
+  ASSERT_TRUE(simulation->step(20).ok());
+  simulation->simulator().stop();
+  stream->drain();
+  ASSERT_EQ(lost.size(), 3u);
+  EXPECT_NE(lost[0].find("'rate'"), std::string::npos) << lost[0];
+  EXPECT_NE(lost[1].find("'angle'"), std::string::npos) << lost[1];
+  EXPECT_EQ(lost[2], "the end: " + lost[1]);
+  EXPECT_EQ(steps["rate"].back(), 20) << "the last in its World";
+  EXPECT_EQ(steps["angle"].back(), 40);
+  EXPECT_EQ(steps["angle"].size(), 41u) << "none twice, none left out";
+  EXPECT_FALSE(stream->status().ok());
 }
 
 }  // namespace

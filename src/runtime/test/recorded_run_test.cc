@@ -10,6 +10,7 @@
 #include "gloam/program.h"
 #include "gloam/run.h"
 #include "scenes.h"
+#include "world/world.h"
 
 namespace gloam {
 namespace {
@@ -112,6 +113,31 @@ outputs = ["state"]
   EXPECT_NEAR(last[1], 0.1, 1e-9) << "1 m/s along X";
   EXPECT_NEAR(last[8], 1, 1e-12);
   EXPECT_NEAR(last[14], 0.1, 1e-9) << "the pose of that instant, not of the step before";
+}
+
+TEST_F(RecordedRun, SettingsThatTheFileHasNotAreInTheSummary) {
+  const World world = flight(folder_, std::string(kCameras));
+  RunRequest only = request("as_written");
+  const Scene& written = world.compiled()->written;
+  Scene scene = written;
+  scene.record.outputs = {"metrics"};
+  const Json before = summary(run(*World::compile(scene), only))["settings"];
+  EXPECT_FALSE(before.contains("record.outputs")) << "nothing of the run";
+  for (const auto& [path, value] :
+       {std::pair("sim.duration", "0.02"), std::pair("camera.side.fovy", "33"),
+        std::pair("weather.visibility", "8"), std::pair("sim.seed", "6"),
+        std::pair("render.spp", "2")})
+    ASSERT_TRUE(set_option(scene, path, value).ok()) << path;
+  only.out = folder_.path() / "changed";
+  Json after = summary(run(*World::compile(scene), only))["settings"];
+  EXPECT_EQ(after["sim.duration"], "0.02");
+  EXPECT_EQ(after["camera.side.fovy"], "33.0");
+  EXPECT_EQ(after["weather.visibility"], "8.0");
+  EXPECT_EQ(after["spp"], "2");
+  for (const char* path : {"sim.duration", "camera.side.fovy", "weather.visibility"})
+    after.erase(path);
+  after["spp"] = before["spp"];
+  EXPECT_EQ(after, before) << "nothing else is another";
 }
 
 TEST_F(RecordedRun, HoldsWhatTheSceneAsksFor) {

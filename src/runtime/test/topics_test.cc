@@ -285,6 +285,34 @@ TEST_F(Topics, GoOnThroughARecompile) {
   EXPECT_NEAR(static_cast<double>(inbox.messages["/tf"].size()), 21, 1);
 }
 
+// A reader that came before has the frames and the model of the World that runs.
+TEST_F(Topics, LatchedOnesAreSentAgainInAnotherWorld) {
+  std::string changed = kTopicScene;
+  changed.replace(changed.find("0, 0, 0.3"), 9, "0, 0, 0.5");
+  const World world = world_of();
+  const World other = *World::compile(*parse_scene(changed, folder_.path()));
+  auto simulation = *Simulation::create(world, {.pace = Pace::kLockstep});
+  TopicInbox inbox;
+  auto stream = *simulation->open_topics({.topics = {"/tf_static"}}, inbox.callback());
+  auto closed = *simulation->open_topics({.topics = {"/cart/robot_description"}}, inbox.callback());
+  closed.reset();
+  ASSERT_TRUE(simulation->step(100).ok());
+  const auto height = [&]() -> double {
+    const tf2_msgs::TFMessage last = inbox.all<tf2_msgs::TFMessage>("/tf_static").back();
+    for (const auto& frame : last.transforms)
+      if (frame.child_frame_id == "roof") return frame.transform.translation.z;
+    return NAN;
+  };
+  EXPECT_DOUBLE_EQ(height(), 0.3);
+  ASSERT_TRUE(simulation->recompile(other).ok());
+  EXPECT_EQ(inbox.steps["/tf_static"], (std::vector<int64_t>{0, 100}));
+  EXPECT_DOUBLE_EQ(height(), 0.5);
+  EXPECT_EQ(inbox.messages["/cart/robot_description"].size(), 1u) << "it was closed";
+  stream.reset();
+  ASSERT_TRUE(simulation->recompile(world).ok());
+  EXPECT_EQ(inbox.messages["/tf_static"].size(), 2u);
+}
+
 class TopicInputs : public Topics {
  protected:
   TopicInputs() : world_(world_of()) {

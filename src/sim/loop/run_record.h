@@ -24,10 +24,12 @@ struct RunRecord {
   std::optional<double> timestep = {};  ///< instead of the model's [s]
   std::vector<Chapter> chapters;        ///< the first from step 0, then one per recompile
   std::vector<Command> commands = {};   ///< posted ones, each with the step it applied at
-  std::vector<StepInput> inputs = {};   ///< that step hooks wrote, where a log has kept them
-  int64_t step = 0;                     ///< of the instant
-  uint64_t hash = 0;                    ///< of its state, chained from the initial one
-  int64_t first_step = 0;               ///< of a run that went on from a checkpoint; 0 = of others
+  /// Numbers that step hooks wrote, where a log has kept them; in a live run those before
+  /// first_step.
+  std::vector<StepInput> inputs = {};
+  int64_t step = 0;        ///< the instant's
+  uint64_t hash = 0;       ///< of its state, chained from the initial one
+  int64_t first_step = 0;  ///< of a run that went on from a checkpoint; 0 = of others
 
   /// The World that a Command at `step` is for.
   const CompiledWorld& world_at(int64_t step) const {

@@ -76,7 +76,7 @@ Status SimLoop::exchange(NextWorld& next, const Correspondence& same) {
   return {};
 }
 
-// What the scene said about earlier times is past; but the goal of a robot that is new is the last
+// Commands of the scene for earlier times are past; but the goal of a robot that is new is the last
 // of those that it would have got.
 void SimLoop::take_over_goals(const Correspondence& same) {
   std::vector<VelocityTarget> before(same.robot.size());
@@ -204,6 +204,7 @@ void SimLoop::begin_run() {
   chapters_ = {{stepper_->shared_world(), 0}};
   run_seed_ = stepper_->seed();
   first_step_ = 0;
+  earlier_inputs_.clear();
   if (!stepper_->reset()) return;
   for (ControllerSlot& slot : controllers_) {
     slot.k = slot.due = 0;
@@ -269,6 +270,7 @@ void SimLoop::begin_run_at(const RunRecord& record) {
   chapters_ = record.chapters;
   run_seed_ = record.seed;
   first_step_ = record.step;
+  earlier_inputs_ = record.inputs;
   commands_.begin_history(record.commands, run_);
   for (Subscription& s : subscriptions_) s.begin(stepper_->step_count());
   find_next_publication();
@@ -278,6 +280,10 @@ int64_t SimLoop::dropped() const {
   int64_t dropped = dropped_by_closed_;
   for (const Subscription& s : subscriptions_) dropped += s.queue()->dropped();
   return dropped;
+}
+
+void SimLoop::flush_queues() {
+  for (const Subscription& s : subscriptions_) s.queue()->flush();
 }
 
 void SimLoop::close_queues() {

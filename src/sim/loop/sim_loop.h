@@ -1,5 +1,5 @@
 #pragma once
-// What happens around every step, in a fixed order, on whichever thread runs it:
+// SimLoop: the order of things around every step, the same on whichever thread runs it:
 //   Snapshots due now -> Commands due now -> controllers -> step hook -> physics.
 
 #include <functional>
@@ -37,6 +37,8 @@ class SimLoop {
   /// Hands out the Snapshots that are due at the present step. False when a required queue is full:
   /// call again when it may have room.
   bool publish_due();
+  /// Wakes the readers of what was handed out and waits to be a batch.
+  void flush_queues();
   /// Applies Commands and takes one step; when a Command was a reset, stands at step 0 instead.
   /// False when physics failed.
   bool advance();
@@ -49,6 +51,8 @@ class SimLoop {
   int64_t first_step() const {
     return first_step_;
   }  ///< of the run; of a checkpoint, if it is one's
+  /// Numbers that step hooks wrote before first_step().
+  const std::vector<StepInput>& earlier_inputs() const { return earlier_inputs_; }
   /// Stepper::jump.
   void jump(int64_t step);
   /// A copy of the instant; null where effects or controllers cannot be copied.
@@ -93,6 +97,7 @@ class SimLoop {
   std::vector<RunRecord::Chapter> chapters_;
   uint64_t run_seed_ = 0;
   int64_t first_step_ = 0;
+  std::vector<StepInput> earlier_inputs_;
   int64_t run_ = 0;
   int64_t next_publication_ = 0;  // earliest `due` of the subscriptions
   int64_t dropped_by_closed_ = 0;

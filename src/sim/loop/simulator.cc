@@ -112,6 +112,7 @@ void Simulator::answer_calls() {
 }
 
 void Simulator::report_idle() {
+  loop_.flush_queues();
   const std::lock_guard lock(mutex_);
   if (called_.load(std::memory_order_relaxed)) return;  // not idle: somebody wants something
   idle_ = true;
@@ -195,6 +196,11 @@ Status Simulator::wait() {
     changed_.wait(lock, [this] { return idle_ || !running_; });
   }
   return status();
+}
+
+bool Simulator::wait_for(std::chrono::milliseconds time) {
+  std::unique_lock lock(mutex_);
+  return changed_.wait_for(lock, time, [this] { return idle_ || !running_; });
 }
 
 Status Simulator::reset() {
@@ -294,6 +300,7 @@ Result<std::shared_ptr<const CheckpointData>> Simulator::checkpoint() {
                     .timestep = own_timestep_,
                     .chapters = loop_.chapters(),
                     .commands = std::move(*commands),
+                    .inputs = loop_.earlier_inputs(),
                     .step = stepper.step_count(),
                     .hash = stepper.hash(),
                     .first_step = loop_.first_step()};

@@ -5,6 +5,7 @@
 // (latest, status, counters, pause, set_pace) works, and what would wait for a step is an Error.
 
 #include <array>
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <limits>
@@ -67,6 +68,9 @@ class Simulator {
   /// Waits until it runs no longer: paused, told step reached, failed or stopped. The Error of a
   /// failure.
   Status wait();
+  /// The same, but at most `time`, and without a call to the sim thread, which is not to be
+  /// interrupted by those that look every few milliseconds. Whether it runs no longer.
+  bool wait_for(std::chrono::milliseconds time);
   /// Back to step 0 now, also after a failure. Commands that wait are thrown away.
   Status reset();
   void set_pace(Pace pace, double speed);
@@ -97,8 +101,8 @@ class Simulator {
   /// old World runs on; another timestep, a simulation that has failed, what MuJoCo says.
   Status recompile(std::shared_ptr<const CompiledWorld> world,
                    std::vector<RobotController> controllers);
-  /// What has led to the present instant, and a copy of it where that can be. Errors: the
-  /// simulation has failed, Commands were not kept.
+  /// The record of all that has led to the present instant, and a copy of it where that can be.
+  /// Errors: the simulation has failed, Commands were not kept.
   Result<std::shared_ptr<const CheckpointData>> checkpoint();
   /// Goes on from there in a new run. What takes long is done before, while the simulation runs on.
   /// Commands that wait are thrown away. Errors: of another timestep; stepping it again ends

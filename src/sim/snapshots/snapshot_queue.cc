@@ -9,8 +9,22 @@ SnapshotQueue::SnapshotQueue(const SubscriptionOptions& options, std::shared_ptr
 
 SnapshotWindow SnapshotQueue::try_next_window() {
   SnapshotWindow window;
-  if (queue_.try_pop(window) && options_.required) sim_signal_->raise();
+  if (queue_.try_pop(window) && options_.required &&
+      is_awaited_.exchange(false, std::memory_order_acq_rel))
+    sim_signal_->raise();
   return window;
+}
+
+// Whichever of the two exchanges comes second sees what happened before the first: the reader finds
+// that it is awaited, or the sim thread finds the room.
+bool SnapshotQueue::has_room() {
+  if (!full()) return true;
+  is_awaited_.exchange(true, std::memory_order_acq_rel);
+  return !full();
+}
+
+void SnapshotQueue::flush() {
+  if (queue_.size() > 0) readers_.raise();
 }
 
 SnapshotWindow SnapshotQueue::next_window() {
@@ -51,7 +65,16 @@ void SnapshotQueue::publish(SnapshotWindow window) {
     dropped_.fetch_add(1, std::memory_order_relaxed);
   }
   if (!queue_.try_push(window)) dropped_.fetch_add(1, std::memory_order_relaxed);
-  readers_.raise();
+  if (is_batch()) readers_.raise();
+}
+
+// Whether readers are to be woken for what waits.
+bool SnapshotQueue::is_batch() {
+  if (options_.batch == 1) return true;
+  const auto now = std::chrono::steady_clock::now();
+  if (queue_.size() < options_.batch && now - woken_at_ < kLongestBatch) return false;
+  woken_at_ = now;
+  return true;
 }
 
 }  // namespace gloam

@@ -19,6 +19,10 @@ Result<Subscription> Subscription::make(const SubscriptionOptions& options, Rati
     return Error{ErrorKind::kUsage, fmt::format("a queue of {} Snapshots is not in 1 … {}",
                                                 options.capacity, kLargestQueue)};
   }
+  if (options.batch < 1 || options.batch > options.capacity) {
+    return Error{ErrorKind::kUsage, fmt::format("a batch of {} Snapshots is not in 1 … {}",
+                                                options.batch, options.capacity)};
+  }
   GLOAM_TRY(StepSchedule schedule, StepSchedule::make(options.rate, options.phase, timestep));
   if (options.window.num < 0 || options.window.den <= 0 || options.window.value() > kLongestWindow)
     return Error{ErrorKind::kUsage, fmt::format("a window of {:g} s is not in 0 … {} s",
@@ -84,7 +88,7 @@ bool Subscription::publish(int64_t step, Stepper& stepper) {
     if (p.window.count < keys_.count && next_key(p) <= step) p.window.add(stepper.snapshot());
   }
   while (pending_count_ > 0 && pending_[0].window.count == keys_.count) {
-    if (queue_->options().required && queue_->full()) return false;
+    if (queue_->options().required && !queue_->has_room()) return false;
     queue_->publish(std::exchange(pending_[0].window, {}));
     std::rotate(pending_.begin(), pending_.begin() + 1, pending_.begin() + pending_count_);
     --pending_count_;

@@ -1,5 +1,8 @@
 // Who gets which Snapshot, and what happens to readers that are slow.
 
+#include <array>
+#include <atomic>
+#include <chrono>
 #include <thread>
 
 #include "test_world.h"
@@ -85,6 +88,71 @@ TEST(Subscription, SlowBestEffortReadersSeeStepsInOrder) {
   EXPECT_EQ(got + queue->dropped(), 5001);
 }
 
+// A reader of batches of 8, and how many Snapshots it has after sleeps of the sim thread.
+struct BatchReader {
+  std::shared_ptr<SnapshotQueue> queue;
+  std::atomic<int64_t> got = 0;
+  std::thread thread{[this] {
+    while (queue->next()) ++got;
+  }};
+  explicit BatchReader(Simulator& sim)
+      : queue(*sim.subscribe({.rate = {500, 1}, .required = true, .capacity = 32, .batch = 8})) {}
+  ~BatchReader() {
+    queue->close();
+    thread.join();
+  }
+};
+
+TEST(Subscription, ASleepingReaderIsWokenForAWholeBatchOrWhenTheSimulationStandsStill) {
+  constexpr auto kPause = std::chrono::milliseconds(40);
+  auto sim = make_simulator(world_from_mjcf(kBall), lockstep());
+  BatchReader reader(*sim);
+  std::array<int64_t, 2> seen{-1, -1};
+  int64_t step = 0;
+  std::chrono::steady_clock::time_point first;
+  bool in_time = false;
+  ASSERT_TRUE(sim->set_step_hook([&](const mjModel*, mjData*) {
+                   if (step == 1) first = std::chrono::steady_clock::now();
+                   if (step == 1 || step == 7 || step == 15) std::this_thread::sleep_for(kPause);
+                   if (step == 7) seen[0] = reader.got;
+                   if (step == 15) seen[1] = reader.got;
+                   if (step == 7)
+                     in_time = std::chrono::steady_clock::now() - first < kLongestBatch;
+                   ++step;
+                 })
+                  .ok());
+  sim->start();
+  ASSERT_TRUE(sim->step(16).ok());
+  // The first Snapshot is a batch of its own, the time since the last being endless; the reader
+  // sleeps again while the hook of step 1 does.
+  if (in_time) {
+    EXPECT_LE(seen[0], 2);
+  }
+  EXPECT_GE(seen[1], 8);
+  while (reader.got < 17) std::this_thread::yield();  // hangs if the rest is kept
+  sim->stop();
+}
+
+TEST(Subscription, ABatchIsNotWaitedForForever) {
+  auto sim = make_simulator(world_from_mjcf(kBall), lockstep());
+  BatchReader reader(*sim);
+  int64_t step = 0, seen = -1;
+  ASSERT_TRUE(sim->set_step_hook([&](const mjModel*, mjData*) {
+                   if (step == 3) std::this_thread::sleep_for(kLongestBatch);
+                   if (step == 4) {
+                     for (int i = 0; i < 500 && reader.got < 4; ++i)
+                       std::this_thread::sleep_for(std::chrono::milliseconds(10));
+                     seen = reader.got;
+                   }
+                   ++step;
+                 })
+                  .ok());
+  sim->start();
+  ASSERT_TRUE(sim->step(6).ok());
+  EXPECT_GE(seen, 4);
+  sim->stop();
+}
+
 TEST(Subscription, WaitingReadersAreReleasedByStop) {
   auto sim = make_simulator(world_from_mjcf(kBall), lockstep());
   auto queue = *sim->subscribe({.rate = {500, 1}});
@@ -131,6 +199,12 @@ TEST(Subscription, ThePoolIsUsedAgainAndGrowsOnlyForReadersThatHoldTooMuch) {
     while (Snapshot s = queue->try_next()) held.push_back(s);
   }
   EXPECT_EQ(sim->counters().pool_grown, grown);
+}
+
+TEST(Subscription, RefusesBatchesThatNeverFill) {
+  auto sim = make_simulator(world_from_mjcf(kBall));
+  EXPECT_FALSE(sim->subscribe({.capacity = 8, .batch = 0}).ok());
+  EXPECT_FALSE(sim->subscribe({.capacity = 8, .batch = 9}).ok());
 }
 
 TEST(Subscription, RefusesBadOptions) {

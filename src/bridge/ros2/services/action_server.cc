@@ -195,22 +195,27 @@ void ActionServer::forget_old() {
 
 Ros2Action make_action(ActionOptions options, Ros2Publish publish) {
   Ros2Action action{.name = options.name, .type = options.type};
+  const std::string send_goal_hash = options.send_goal_hash;
+  const std::string get_result_hash = options.get_result_hash;
   const std::string base = options.name + "/_action/", type = options.type;
   const auto server = std::make_shared<ActionServer>(std::move(options), std::move(publish));
   action.services.push_back(
       {.name = base + "send_goal",
        .type = type + "_SendGoal",
-       .answer = [server](std::span<const uint8_t> bytes) { return server->send_goal(bytes); }});
+       .answer = [server](std::span<const uint8_t> bytes) { return server->send_goal(bytes); },
+       .hash = send_goal_hash});
   action.services.push_back(
       {.name = base + "cancel_goal",
        .type = service_type<CancelRequest>(),
-       .answer = [server](std::span<const uint8_t> bytes) { return server->cancel_goal(bytes); }});
+       .answer = [server](std::span<const uint8_t> bytes) { return server->cancel_goal(bytes); },
+       .hash = service_hash_of<CancelRequest, CancelResponse>()});
   action.services.push_back(
       {.name = base + "get_result",
        .type = type + "_GetResult",
-       .answer_later = [server](std::span<const uint8_t> bytes, const ActionServer::Reply& reply) {
-         server->get_result(bytes, reply);
-       }});
+       .answer_later = [server](
+                           std::span<const uint8_t> bytes,
+                           const ActionServer::Reply& reply) { server->get_result(bytes, reply); },
+       .hash = get_result_hash});
   action.topics.push_back({.name = base + "feedback", .type = type + "_FeedbackMessage"});
   action.topics.push_back({.name = base + "status",
                            .type = ros_type_name<action_msgs::GoalStatusArray>(),

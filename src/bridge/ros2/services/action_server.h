@@ -53,6 +53,7 @@ struct ActionOptions {
   /// Reads a SendGoal_Request. Error: it is damaged.
   std::function<Result<GoalRequest>(std::span<const uint8_t>)> accept;
   std::vector<uint8_t> unknown;  ///< GetResult_Response for a goal that there is not
+  std::string send_goal_hash = {}, get_result_hash = {};  ///< of the services' types
 };
 
 class ActionServer {

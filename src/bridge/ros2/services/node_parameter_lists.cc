@@ -13,6 +13,8 @@ namespace ri = rcl_interfaces;
 namespace rsrv = rcl_interfaces::srv;
 using ri::ParameterType;
 
+constexpr int64_t kMostNumbers = 1024;  // of a live field that is listed
+
 ri::ParameterDescriptor describe_option(const OptionInfo& option) {
   ri::ParameterDescriptor descriptor;
   descriptor.name = option.path;
@@ -42,6 +44,9 @@ rsrv::ListParameters_Response NodeParameters::list(
     const rsrv::ListParameters_Request& request) const {
   std::vector<std::string> names;
   for (const OwnParameter& own : own_parameters()) names.emplace_back(own.name);
+  for (const InputInfo& input : op_.simulation().world().inputs())
+    if (input.kind == InputKind::kLiveField && input.count <= kMostNumbers)
+      names.push_back("live." + input.name);
   for (const OptionInfo& option : op_.options()) names.push_back(option.path);
   rsrv::ListParameters_Response response;
   ri::ListParametersResult& result = response.result;
@@ -79,6 +84,11 @@ rsrv::DescribeParameters_Response NodeParameters::describe(
       descriptor.type = own->type;
       descriptor.description = own->description;
       descriptor.read_only = own->read_only;
+      continue;
+    }
+    if (!live_field_of(name).empty() && op_.live_field(live_field_of(name)).ok()) {
+      descriptor.type = ParameterType::PARAMETER_DOUBLE_ARRAY;
+      descriptor.description = "Live field of the model; set whole, it changes at the next step";
       continue;
     }
     const auto option = std::ranges::find(options, name, &OptionInfo::path);

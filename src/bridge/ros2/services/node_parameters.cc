@@ -21,11 +21,24 @@ constexpr OwnParameter kOwn[] = {
     {"paused", ParameterType::PARAMETER_BOOL, "Whether the simulation rests", false},
     {"speed", ParameterType::PARAMETER_DOUBLE,
      "Simulated seconds per second, 0.001 … 1000; 0 = as fast as possible", false},
-    {"gravity", ParameterType::PARAMETER_DOUBLE_ARRAY, "Gravity [m/s²]", false},
-    {"wind", ParameterType::PARAMETER_DOUBLE_ARRAY, "Wind of MuJoCo's model [m/s]", false},
 };
 
+constexpr std::string_view kLive = "live.";
+
 Outcome refused(std::string reason) { return {false, std::move(reason)}; }
+
+// Whether it is no option.
+bool is_own(const std::string& name) {
+  return find_own_parameter(name) != nullptr || !live_field_of(name).empty();
+}
+
+Outcome check_live(const ri::Parameter& parameter, size_t count) {
+  std::vector<double> numbers;
+  const bool good = numbers_of(parameter.value, &numbers) && numbers.size() == count &&
+                    std::ranges::all_of(numbers, [](double v) { return std::isfinite(v); });
+  if (good) return {true, ""};
+  return refused("'" + parameter.name + "' has " + std::to_string(count) + " finite numbers");
+}
 
 }  // namespace
 
@@ -34,6 +47,10 @@ std::vector<OwnParameter> own_parameters() { return {std::begin(kOwn), std::end(
 const OwnParameter* find_own_parameter(std::string_view name) {
   const auto* found = std::ranges::find_if(kOwn, [&](const auto& own) { return name == own.name; });
   return found == std::end(kOwn) ? nullptr : found;
+}
+
+std::string live_field_of(const std::string& name) {
+  return name.starts_with(kLive) ? name.substr(kLive.size()) : std::string();
 }
 
 bool is_fixed_option(std::string_view path) {
@@ -47,35 +64,31 @@ ri::ParameterValue NodeParameters::value(const std::string& name) const {
   if (name == "use_sim_time") return bool_parameter(true);
   if (name == "paused") return bool_parameter(op_.state() != RunState::kPlaying);
   if (name == "speed") return double_parameter(op_.speed().value_or(0));
-  if (name == "gravity" || name == "wind") {
-    Instant instant;
-    if (!instant.solve(op_.simulation().latest()).ok()) return {};
-    const auto numbers = instant.value("opt." + name);
-    return numbers.ok() ? doubles_parameter(*numbers) : ri::ParameterValue{};
+  if (const std::string field = live_field_of(name); !field.empty()) {
+    Result<std::vector<double>> numbers = op_.live_field(field);
+    return numbers.ok() ? doubles_parameter(std::move(*numbers)) : ri::ParameterValue{};
   }
   const Result<std::string> option = op_.option(name);
   return option.ok() ? parameter_from_toml(*option) : ri::ParameterValue{};
 }
 
 Outcome NodeParameters::check_own(const ri::Parameter& parameter) const {
+  if (const std::string field = live_field_of(parameter.name); !field.empty()) {
+    const Result<std::vector<double>> now = op_.live_field(field);
+    return now.ok() ? check_live(parameter, now->size()) : refused(now.error().to_string());
+  }
   const OwnParameter& own = *find_own_parameter(parameter.name);
   if (own.read_only) {
     if (parameter.value == value(parameter.name)) return {true, ""};
     return refused("'" + parameter.name + "' cannot be changed");
   }
-  double number = 0;
-  std::vector<double> numbers;
   if (own.type == ParameterType::PARAMETER_BOOL)
     return parameter.value.type == own.type ? Outcome{true, ""}
                                             : refused("'" + parameter.name + "' is a bool");
-  if (own.type == ParameterType::PARAMETER_DOUBLE) {
-    if (!number_of(parameter.value, &number)) return refused("'speed' is a number");
-    const bool good = number == 0 || (number >= 1e-3 && number <= 1e3);
-    return good ? Outcome{true, ""} : refused("'speed' is 0, or 0.001 … 1000");
-  }
-  const bool good = numbers_of(parameter.value, &numbers) && numbers.size() == 3 &&
-                    std::ranges::all_of(numbers, [](double v) { return std::isfinite(v); });
-  return good ? Outcome{true, ""} : refused("'" + parameter.name + "' has three numbers");
+  double number = 0;
+  const bool good =
+      number_of(parameter.value, &number) && (number == 0 || (number >= 1e-3 && number <= 1e3));
+  return good ? Outcome{true, ""} : refused("'speed' is 0, or 0.001 … 1000");
 }
 
 Status NodeParameters::set_own(const ri::Parameter& parameter) {
@@ -92,7 +105,7 @@ Status NodeParameters::set_own(const ri::Parameter& parameter) {
   if (parameter.name == "use_sim_time") return {};
   std::vector<double> numbers;
   numbers_of(parameter.value, &numbers);
-  return op_.set_live_field(parameter.name, 0, {numbers.begin(), numbers.end()});
+  return op_.set_live_field(live_field_of(parameter.name), 0, {numbers.begin(), numbers.end()});
 }
 
 // What is checked without a change comes first; options all at once; then the rest.
@@ -100,7 +113,7 @@ Outcome NodeParameters::set_all(const std::vector<ri::Parameter>& parameters) {
   std::vector<std::pair<std::string, std::string>> options;
   for (const ri::Parameter& parameter : parameters) {
     const std::string& name = parameter.name;
-    if (find_own_parameter(name) != nullptr) {
+    if (is_own(name)) {
       if (Outcome checked = check_own(parameter); !checked.successful) return checked;
       continue;
     }
@@ -114,7 +127,7 @@ Outcome NodeParameters::set_all(const std::vector<ri::Parameter>& parameters) {
       return refused(status.error().to_string());
   }
   for (const ri::Parameter& parameter : parameters) {
-    if (find_own_parameter(parameter.name) == nullptr) continue;
+    if (!is_own(parameter.name)) continue;
     if (const Status status = set_own(parameter); !status.ok())
       return refused(status.error().to_string());
   }

@@ -5,6 +5,7 @@
 #include "bridge/ros2/services/action_server.h"
 #include "bridge/ros2/services/actions.h"
 #include "bridge/ros2/services/simulation_values.h"
+#include "bridge/ros2/services/typed_service.h"
 #include "ros/codec.h"
 #include "ros/messages/simulation_services.h"
 #include "ros/type_description.h"
@@ -50,6 +51,10 @@ Ros2Action simulate_steps_action(Operator& operations, const std::string& ns, Ro
   ActionOptions options;
   options.name = ns + "/simulate_steps";
   options.type = "simulation_interfaces/action/SimulateSteps";
+  options.send_goal_hash = service_hash_of<steps_action::SimulateSteps_SendGoal_Request,
+                                           steps_action::SimulateSteps_SendGoal_Response>();
+  options.get_result_hash = service_hash_of<steps_action::SimulateSteps_GetResult_Request,
+                                            steps_action::SimulateSteps_GetResult_Response>();
   options.clock = [op] { return op->simulation().latest().time(); };
   options.unknown = steps_end(StepStatus::STATUS_UNKNOWN, {}).response;
   options.accept = [op](std::span<const uint8_t> bytes) -> Result<GoalRequest> {

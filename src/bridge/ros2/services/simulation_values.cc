@@ -197,6 +197,8 @@ int spawn_code(SpawnFailure failure) {
       return Code::RESOURCE_PARSE_ERROR;
     case SpawnFailure::kMissingAssets:
       return Code::MISSING_ASSETS;
+    case SpawnFailure::kUnsupportedAssets:
+      return Code::UNSUPPORTED_ASSETS;
     case SpawnFailure::kPoseInvalid:
       return Code::INVALID_POSE;
     default:

@@ -4,6 +4,7 @@
 
 #include "bridge/ros2/services/actions.h"
 #include "bridge/ros2/services/trajectory_run.h"
+#include "bridge/ros2/services/typed_service.h"
 #include "ros/codec.h"
 
 namespace gloam::bridge {
@@ -53,6 +54,10 @@ Ros2Action trajectory_action(Simulation& simulation, const std::string& robot, i
             topic.name.substr(0, topic.name.size() - kInputName.size()) + "follow_joint_trajectory";
   options.type = "control_msgs/action/FollowJointTrajectory";
   options.policy = GoalPolicy::kReplace;
+  options.send_goal_hash = service_hash_of<fjt::FollowJointTrajectory_SendGoal_Request,
+                                           fjt::FollowJointTrajectory_SendGoal_Response>();
+  options.get_result_hash = service_hash_of<fjt::FollowJointTrajectory_GetResult_Request,
+                                            fjt::FollowJointTrajectory_GetResult_Response>();
   options.clock = [&simulation] { return simulation.latest().time(); };
   options.unknown = trajectory_end(action_msgs::GoalStatus::STATUS_UNKNOWN, 0, "").response;
   options.accept = [&simulation, robot,

@@ -9,7 +9,7 @@
 #include "bridge/ros2/ros2_service.h"
 #include "bridge/ros2/services/service_worker.h"
 #include "ros/codec.h"
-#include "ros/type_description.h"
+#include "ros/message_types.h"
 
 namespace gloam::bridge {
 
@@ -18,6 +18,11 @@ template <Message Request>
 std::string service_type() {
   std::string name = ros_type_name<Request>();
   return name.substr(0, name.size() - std::string_view("_Request").size());
+}
+
+template <Message Request, Message Response>
+std::string service_hash_of() {
+  return service_hash(service_type<Request>(), describe<Request>(), describe<Response>());
 }
 
 /// Answered at once.
@@ -31,7 +36,8 @@ Ros2Service make_service(std::string name, std::function<Response(const Request&
             std::vector<uint8_t> response;
             encode(answer(request), &response);
             return response;
-          }};
+          },
+          .hash = service_hash_of<Request, Response>()};
 }
 
 /// Answered by the worker; `busy` is the response when too many requests wait. A damaged request
@@ -47,16 +53,17 @@ Ros2Service make_slow_service(std::string name, std::shared_ptr<ServiceWorker> w
   };
   return {.name = std::move(name),
           .type = service_type<Request>(),
-          .answer_later = [worker = std::move(worker), busy = std::move(busy),
-                           answer = std::move(answer),
-                           send](std::span<const uint8_t> bytes, const Reply& reply) {
-            Result<Request> request = decode<Request>(bytes);
-            if (!request.ok()) return;
-            const auto job = [answer, send, reply, request = std::move(*request)] {
-              send(answer(request), reply);
-            };
-            if (!worker->add(job)) send(busy, reply);
-          }};
+          .answer_later =
+              [worker = std::move(worker), busy = std::move(busy), answer = std::move(answer),
+               send](std::span<const uint8_t> bytes, const Reply& reply) {
+                Result<Request> request = decode<Request>(bytes);
+                if (!request.ok()) return;
+                const auto job = [answer, send, reply, request = std::move(*request)] {
+                  send(answer(request), reply);
+                };
+                if (!worker->add(job)) send(busy, reply);
+              },
+          .hash = service_hash_of<Request, Response>()};
 }
 
 }  // namespace gloam::bridge

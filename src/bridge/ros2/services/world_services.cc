@@ -36,6 +36,7 @@ int load_code(const Error& error) {
   if (says("there is no file") || says("does not exist") || says("cannot be read") ||
       says("could not open"))
     return Response::MISSING_ASSETS;
+  if (says("no decoder found")) return Response::UNSUPPORTED_ASSETS;
   if (error.kind == ErrorKind::kInput || error.kind == ErrorKind::kIo)
     return Response::RESOURCE_PARSE_ERROR;
   return WorldCode::RESULT_OPERATION_FAILED;

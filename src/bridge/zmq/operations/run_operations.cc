@@ -1,0 +1,185 @@
+// Operations on the run: state, pause, steps, resets, checkpoints.
+
+#include <fmt/format.h>
+
+#include <chrono>
+
+#include "bridge/zmq/operations/operation.h"
+#include "gloam/log_player.h"
+
+namespace gloam::bridge::zeromq {
+namespace {
+
+using enum ArgumentType;
+using enum OperationSpeed;
+
+/// As fast as possible while it lives; then the pace that was.
+class FastPace {
+ public:
+  explicit FastPace(Operator& operations) : operations_(operations), speed_(operations.speed()) {
+    if (speed_) (void)operations_.set_speed({}).ok();
+  }
+  ~FastPace() {
+    if (speed_) (void)operations_.set_speed(speed_).ok();
+  }
+  FastPace(const FastPace&) = delete;
+  FastPace& operator=(const FastPace&) = delete;
+
+ private:
+  Operator& operations_;
+  const std::optional<double> speed_;
+};
+
+Status ping(const Call&, Packer& out) {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  out.pack_map(1);
+  pack_pair(out, "monotonic_ns", static_cast<int64_t>(std::chrono::nanoseconds(now).count()));
+  return {};
+}
+
+Status state(const Call& call, Packer& out) {
+  const Services& services = call.services;
+  const SimulationStats stats = services.simulation().stats();
+  const Status physics = services.simulation().status();
+  const Snapshot now = services.simulation().latest();
+  GLOAM_TRY(const StateLayout layout, services.layouts.of(now));
+  out.pack_map(kStatePairs + 8);
+  pack_state(out, now, layout);
+  pack_pair(out, "run_state", std::string_view(to_string(services.operations().state())));
+  pack_pair(out, "paused", services.simulation().paused());
+  pack_pair(out, "speed", services.operations().speed().value_or(0));
+  pack_pair(out, "realtime_factor", stats.realtime_factor);
+  pack_pair(out, "commands_applied", stats.commands_applied);
+  pack_pair(out, "warnings", stats.warnings);
+  pack_pair(out, "claims", services.sessions.claims(call.from.client));
+  out.pack(std::string_view("error"));
+  if (physics.ok())
+    out.pack_nil();
+  else
+    pack_error(out, physics.error());
+  return {};
+}
+
+Status pause(const Call& call, Packer& out) {
+  GLOAM_TRY_STATUS(call.services.operations().pause());
+  return pack_latest(call, out);
+}
+
+Status resume(const Call& call, Packer& out) {
+  GLOAM_TRY_STATUS(call.services.operations().play());
+  pack_nothing(out);
+  return {};
+}
+
+Status pace(const Call& call, Packer& out) {
+  std::optional<double> speed;
+  if (call.arguments.has("speed")) speed = call.arguments.number("speed");
+  GLOAM_TRY_STATUS(call.services.operations().set_speed(speed));
+  pack_nothing(out);
+  return {};
+}
+
+Status step(const Call& call, Packer& out) {
+  Operator& operations = call.services.operations();
+  std::optional<FastPace> fast;
+  if (!call.arguments.flag("paced")) fast.emplace(operations);
+  const std::atomic<bool>& is_stopping = call.services.is_stopping;
+  GLOAM_TRY_STATUS(operations.step(call.arguments.integer("n", 1),
+                                   [&is_stopping](int64_t, int64_t) { return !is_stopping; }));
+  return pack_latest(call, out);
+}
+
+Status reset(const Call& call, Packer& out) {
+  const ResetScope scope{.state = call.arguments.flag("state", true),
+                         .spawned = call.arguments.flag("spawned", true)};
+  GLOAM_TRY_STATUS(call.services.operations().reset(scope));
+  pack_nothing(out);
+  return {};
+}
+
+Status checkpoint(const Call& call, Packer& out) {
+  GLOAM_TRY(const int64_t id, call.services.operations().save_checkpoint());
+  out.pack_map(1);
+  pack_pair(out, "id", id);
+  return {};
+}
+
+Status restore(const Call& call, Packer& out) {
+  GLOAM_TRY_STATUS(call.services.operations().restore_checkpoint(call.arguments.integer("id")));
+  return pack_latest(call, out);
+}
+
+Status forget_checkpoint(const Call& call, Packer& out) {
+  GLOAM_TRY_STATUS(call.services.operations().forget_checkpoint(call.arguments.integer("id")));
+  pack_nothing(out);
+  return {};
+}
+
+Status checkpoints(const Call& call, Packer& out) {
+  const auto kept = call.services.operations().checkpoints();
+  out.pack_array(static_cast<uint32_t>(kept.size()));
+  for (const auto& [id, checkpoint] : kept) {
+    out.pack_map(4);
+    pack_pair(out, "id", id);
+    pack_pair(out, "step", checkpoint.step());
+    pack_pair(out, "time", checkpoint.time());
+    pack_pair(out, "hash", checkpoint.hash());
+  }
+  return {};
+}
+
+Status seek(const Call& call, Packer& out) {
+  LogPlayer* const player = call.services.context.player;
+  if (player == nullptr)
+    return Error{ErrorKind::kUsage, "this is no replay", {}, "gloam replay LOG --zmq is one"};
+  GLOAM_TRY_STATUS(player->seek(call.arguments.number("time")));
+  return pack_latest(call, out);
+}
+
+Status end(const Call& call, Packer& out) {
+  call.services.operations().ask_end();
+  pack_nothing(out);
+  return {};
+}
+
+}  // namespace
+
+std::vector<Operation> run_operations() {
+  const Argument id{"id", kInteger, true, "", "number that 'checkpoint' gave"};
+  return {
+      {"ping", "answers at once, whatever else goes on", kAtOnce, {}, ping},
+      {"state", "the latest instant, and how the run is", kAtOnce, {}, state},
+      {"pause", "stops after the present step; steps that are being taken end", kAtOnce, {}, pause},
+      {"resume", "runs until paused", kAtOnce, {}, resume},
+      {"pace",
+       "speed of a run",
+       kAtOnce,
+       {{"speed", kNumber, false, "simulated seconds per second",
+         "0.001 to 1000; without it as fast as possible"}},
+       pace},
+      {"step",
+       "takes steps and answers with the state after the last; the run must be paused",
+       kQueued,
+       {{"n", kInteger, false, "steps", "1 or more; default 1"},
+        {"paced", kBool, false, "", "at the pace of the run instead of as fast as possible"}},
+       step},
+      {"reset",
+       "back to the initial state; its entities are those that the scene began with",
+       kQueued,
+       {{"state", kBool, false, "", "state and time; default true"},
+        {"spawned", kBool, false, "", "entities too; default true"}},
+       reset},
+      {"checkpoint", "keeps the present instant, {id}; 64 at most", kQueued, {}, checkpoint},
+      {"restore", "goes on from a checkpoint", kQueued, {id}, restore},
+      {"forget_checkpoint", "lets go of a checkpoint", kQueued, {id}, forget_checkpoint},
+      {"checkpoints", "those that are kept: [{id, step, time, hash}]", kQueued, {}, checkpoints},
+      {"seek",
+       "goes to an instant of a replay",
+       kQueued,
+       {{"time", kNumber, true, "s", "from 0 to the log's end"}},
+       seek},
+      {"end", "ends the program", kAtOnce, {}, end},
+  };
+}
+
+}  // namespace gloam::bridge::zeromq
