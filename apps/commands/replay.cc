@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -87,7 +88,8 @@ int play(const ReplayCommand& command, const LogReplay& replay) {
   run.view.height = replay.request.height;
   if (!replay.request.cameras.empty()) run.view.camera = replay.request.cameras.front();
   run.view.player = player->get();
-  if (replay.request.duration > 0) run.duration = replay.request.duration;
+  if (replay.request.duration > 0)
+    run.duration = std::min(replay.request.duration, (*player)->end());
   run.bridges = command.live.options({});
   return run_live(std::move(run), command.live, starting);
 }
