@@ -68,7 +68,9 @@ constexpr Subject kSubjects[] = {
     {"JPEG 1280x720", "/c1280/image_raw/compressed", 3},
 };
 constexpr int kPatience = 10'000;  // for a message [ms]
-constexpr double kWarmUp = 1500;   // of each measurement [ms]
+// Bridges keep a stream open for a while after its last reader.
+constexpr auto kLinger = std::chrono::milliseconds(2500);
+constexpr double kWarmUp = 1500;  // of each measurement [ms]
 
 constexpr Client kClients[] = {
     {"ros2", [](BridgeOptions* o) { o->ros2.emplace(); }, run_ros2_client},
@@ -179,9 +181,12 @@ class Run {
       if (arrival.at > start + 1e3 * seconds_) break;
       if (arrival.at >= start) series.add(arrival, times_);
     }
-    kill(process, SIGKILL);
-    waitpid(process, nullptr, 0);
     close(ends[0]);
+    kill(process, SIGTERM);
+    for (int i = 0; i < 100 && waitpid(process, nullptr, WNOHANG) == 0; ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    if (kill(process, SIGKILL) == 0) waitpid(process, nullptr, 0);
+    std::this_thread::sleep_for(kLinger);
     return series.report(client.name, subject);
   }
 
@@ -236,6 +241,7 @@ Status measure(int seconds, const std::string& only) {
   });
   if (is_chosen(only, "inside"))
     for (const Subject& subject : kSubjects) print(run.inside(subject));
+  signal(SIGPIPE, SIG_IGN);
   for (const Client& client : kClients) {
     if (!is_chosen(only, client.name)) continue;
     BridgeOptions options;

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <thread>
@@ -41,16 +42,18 @@ std::string type_of(const std::string& topic) {
 int run_ros2_client(const std::string&, const std::string& topic, int out) {
   auto node = bridge::DdsNode::create({.domain = domain_of_environment(), .node = "latency"});
   if (!node.ok()) return 1;
-  std::atomic<bool> is_over{false};
+  static std::atomic<bool> is_over{false};
+  // Leaves as programs do: a killed one counts as a subscriber for 20 s more.
+  std::signal(SIGTERM, [](int) { is_over = true; });
   const auto reader = (*node)->add_reader(
       {.topic = bridge::dds_topic(topic),
        .type = bridge::dds_type(type_of(topic)),
        .qos = {.is_reliable = false, .depth = 100}},
-      [&](const bridge::DdsSample& sample) {
+      [out](const bridge::DdsSample& sample) {
         if (!tell(out, {first_stamp(sample.data), now_ms(), sample.data.size()})) is_over = true;
       });
   if (!reader.ok()) return 1;
-  while (!is_over) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+  while (!is_over) std::this_thread::sleep_for(std::chrono::milliseconds(20));
   return 0;
 }
 

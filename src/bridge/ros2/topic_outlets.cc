@@ -12,7 +12,9 @@ using OutletClock = std::chrono::steady_clock;
 constexpr auto kLinger = std::chrono::seconds(2);
 constexpr int kSmallDepth = 100;  // of small messages, as tf2 keeps transforms
 
+// Compressed pictures fit a socket at once, and do not wait behind raw ones.
 bool is_large_message(const TopicInfo& topic) {
+  if (topic.type.find("Compressed") != std::string::npos) return false;
   for (const char* part : {"Image", "PointCloud", "Video", "EventPacket", "MarkerArray", "Scene"})
     if (topic.type.find(part) != std::string::npos) return true;
   return topic.qos.is_latched;  // a robot's description may be long
