@@ -5,12 +5,12 @@
 
 #include "gloam/log_player.h"
 #include "gloam/view.h"
-#include "web/access.h"
 #include "studio/driver.h"
 #include "studio/messages.h"
 #include "studio/picture.h"
 #include "studio/publisher.h"
 #include "studio/web_server.h"
+#include "web/access.h"
 
 namespace gloam {
 namespace {

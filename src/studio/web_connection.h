@@ -20,8 +20,8 @@
 #include <set>
 #include <string>
 
-#include "web/access.h"
 #include "studio/web_server.h"
+#include "web/access.h"
 
 namespace gloam::studio {
 

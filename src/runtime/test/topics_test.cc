@@ -348,9 +348,9 @@ TEST_F(TopicInputs, ArraysAreGoalsOfAllJointsAndStampsOfVelocitiesAreLeftOut) {
   std_msgs::Float64MultiArray goals;
   goals.data = {0.25};
   ASSERT_TRUE(publish("/cart/position_commands", goals).ok());
-  ASSERT_TRUE(publish("/cart/cmd_vel_stamped",
-                      geometry_msgs::TwistStamped{{}, {{0.5, 0, 0}, {0, 0, 0.1}}})
-                  .ok());
+  ASSERT_TRUE(
+      publish("/cart/cmd_vel_stamped", geometry_msgs::TwistStamped{{}, {{0.5, 0, 0}, {0, 0, 0.1}}})
+          .ok());
   ASSERT_TRUE(simulation_->step(1).ok());
   const auto log = simulation_->take_command_log();
   ASSERT_EQ(log.size(), 2u);

@@ -3,8 +3,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "web/access.h"
 #include "studio/messages.h"
+#include "web/access.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace gloam::studio;
@@ -21,13 +21,14 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   }
   // No header without the token lets anybody in.
   const web::Verdict verdict = web::judge({.method = "GET",
-                                 .target = text,
-                                 .host = "localhost",
-                                 .cookie = text,
-                                 .authorization = text,
-                                 .hosts = 1},
-                                "5ac2f1e04b7d", "gloam_view_1");
+                                           .target = text,
+                                           .host = "localhost",
+                                           .cookie = text,
+                                           .authorization = text,
+                                           .hosts = 1},
+                                          "5ac2f1e04b7d", "gloam_view_1");
   if (verdict.status == 200 && text.find("5ac2f1e04b7d") == std::string_view::npos) std::abort();
-  (void)web::judge({.method = "GET", .target = "/", .host = text, .origin = text, .hosts = 1}, "t", "c");
+  (void)web::judge({.method = "GET", .target = "/", .host = text, .origin = text, .hosts = 1}, "t",
+                   "c");
   return 0;
 }
