@@ -177,6 +177,33 @@ class Ros2(unittest.TestCase):
         x, y = (float(v) for v in way.read_text().split("\n")[-2].split()[1:3])
         self.assertLess(((x - 2.5) ** 2 + (y - 1.2) ** 2) ** 0.5, 1.5, "it stands before the pillar")
 
+    def test_a_network_card_that_disappears_cuts_nobody_off(self):
+        script = f"""set -e
+ip link set lo up multicast on
+ip link add card0 type veth peer name card1
+ip link set card1 up
+ip addr add 10.9.9.1/24 dev card0
+ip link set card0 up multicast on
+ip route add 224.0.0.0/4 dev card0
+{PROGRAM} run {ROOT / "examples" / "two_robots.toml"} --ros2 --set bridge.ros2.network=true --duration 60 2>/dev/null &
+run=$!
+{self.ros.python} {PROBE} listen 6 /clock &
+probe=$!
+sleep 4
+ip link del card0
+wait $probe
+kill -INT $run
+wait $run || true
+"""
+        if subprocess.run(["unshare", "-rn", "ip", "link", "add", "x0", "type", "veth"], capture_output=True).returncode != 0:
+            self.skipTest("no network of one's own here: unshare -rn, veth")
+        result = subprocess.run(["unshare", "-rn", "bash", "-c", script], env=self.ros.variables(self.domain), capture_output=True, text=True,
+                                timeout=120)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        stamps = json.loads(result.stdout)["topics"]["/clock"]["stamps"]
+        self.assertGreater(stamps[-1] - stamps[0], 4)
+        self.assertLess(max(b - a for a, b in zip(stamps, stamps[1:])), 0.5)
+
     def test_bad_settings_are_told_of(self):
         for setting, words in (("bridge.ros2.domain=300", "232"), ("bridge.ros2.ns='a b'", "namespace"), ("bridge.ros2.interfaces=3", "2")):
             result = subprocess.run([str(PROGRAM), "run", str(DEMO), "--ros2", "--duration", "1", "--set", setting], capture_output=True,
